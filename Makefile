@@ -1,0 +1,227 @@
+# geotex: everything is built from here. `make help` lists the targets.
+#
+#   config=release|debug|sanitize   optimised (default) · -O0 -g · address and undefined sanitizers
+#   zstd=1|0                        compressed sections in libgeotex, or a library of libc alone
+#   build=DIR                       where everything goes (build)
+#   V=1                             print the commands
+#   werror=0                        warnings stay warnings
+-include Makefile.config
+
+config ?= release
+zstd   ?= 1
+build  ?= build
+werror ?= 1
+PREFIX ?= /usr/local
+.DEFAULT_GOAL := all
+
+VERSION := 0.1.0
+SOVERSION := 0
+
+# ---- rooms: what each needs. Imports run one way, from right to left ------------------------------
+ROOMS_CORE := base asset derive trace render
+ROOMS_COOK := mesh chart bake measure cook
+
+needs_base    := base
+needs_asset   := base asset
+needs_derive  := $(needs_asset) derive
+needs_trace   := $(needs_derive) trace
+needs_image   := image
+needs_host    := host
+needs_render  := $(needs_derive) render
+needs_mesh    := base mesh
+needs_chart   := $(needs_mesh) chart
+needs_bake    := $(needs_asset) mesh chart bake
+needs_measure := $(needs_trace) mesh measure
+needs_cook    := $(needs_trace) mesh chart bake measure cook
+needs_cli     := $(needs_trace) render mesh chart bake measure cook host image cli
+
+# ---- flags ---------------------------------------------------------------------------------------
+CC  ?= cc
+CXX ?= c++
+flags_release  := -O2 -g
+flags_debug    := -O0 -g
+flags_sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined
+flags := $(flags_$(config))
+ifeq ($(flags),)
+$(error config=$(config): use release, debug or sanitize)
+endif
+warnings := -Wall -Wextra $(if $(filter 1,$(werror)),-Werror)
+
+# Contraction to fused multiply-adds would make the bytes depend on the processor.
+common   := $(flags) $(warnings) -fPIC -fvisibility=hidden -ffp-contract=off -MMD -MP \
+            -Iinclude -Ilib -DGTX_BUILDING $(if $(filter 1,$(zstd)),-DGTX_ZSTD)
+cflags   := -std=c11 -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes $(common)
+cxxflags := -std=c++17 -Wshadow=local $(common)
+
+# Packages, asked for only where they are used: nothing here is needed to build libgeotex.
+pkg = $(shell pkg-config $(1) $(2))
+cflags_mesh  = $(call pkg,--cflags,openmesh draco tinygltf)
+cflags_chart = $(call pkg,--cflags,openmesh)
+cflags_image = $(call pkg,--cflags,OpenImageIO)
+cflags_host  = $(call pkg,--cflags,egl glfw3)
+libs_asset   = $(if $(filter 1,$(zstd)),$(call pkg,--libs,libzstd))
+libs_mesh    = $(call pkg,--libs,openmesh draco) -pthread -lstdc++
+libs_image   = -ldl
+libs_host    = $(call pkg,--libs,egl glfw3)
+libs_of      = $(strip $(foreach r,$(1),$(libs_$(r)))) -lm
+
+# ---- objects -------------------------------------------------------------------------------------
+out := $(build)/$(config)
+Q   := $(if $(V),,@)
+say  = @printf '  %-5s %s\n'
+
+sources    = $(filter-out %/module.cpp,$(wildcard lib/$(1)/*.c lib/$(1)/*.cpp))
+objects    = $(patsubst %,$(out)/%.o,$(basename $(call sources,$(1)))) \
+             $(if $(filter render,$(1)),$(out)/gen/shader_sources.o)
+objects_of = $(foreach r,$(1),$(call objects,$(r)))
+room_flags = $(cflags_$(word 2,$(subst /, ,$(1))))
+
+$(out)/%.o: %.c
+	@mkdir -p $(@D)
+	$(say) CC $<
+	$(Q)$(CC) $(cflags) $(call room_flags,$<) $(CFLAGS) -c $< -o $@
+
+$(out)/%.o: %.cpp
+	@mkdir -p $(@D)
+	$(say) CXX $<
+	$(Q)$(CXX) $(cxxflags) $(call room_flags,$<) $(CXXFLAGS) -c $< -o $@
+
+# Shaders travel inside the library: one byte array a file and a table of names.
+shaders := $(sort $(wildcard shaders/*.glsl shaders/*.vert shaders/*.frag))
+$(out)/gen/shader_sources.c: $(shaders) Makefile
+	@mkdir -p $(@D)
+	$(say) GEN $@
+	$(Q){ echo '/* Generated from shaders/. */'; echo '#include "render/shaders.h"'; n=0; \
+	for f in $(shaders); do echo "static const char text_$$n[] = {"; \
+	  od -An -v -tx1 $$f | sed 's/ \([0-9a-f][0-9a-f]\)/0x\1,/g'; echo '0};'; n=$$((n+1)); done; \
+	echo 'const gtx_shader_file gtx_shader_files[] = {'; n=0; \
+	for f in $(shaders); do echo "{\"$${f#shaders/}\", text_$$n},"; n=$$((n+1)); done; \
+	echo '{0, 0}};'; } > $@
+$(out)/gen/shader_sources.o: $(out)/gen/shader_sources.c
+	$(Q)$(CC) $(cflags) -c $< -o $@
+
+# ---- products ------------------------------------------------------------------------------------
+lib_core := $(out)/libgeotex.a
+lib_cook := $(out)/libgeotex-cook.a
+so_core  := $(out)/libgeotex.so.$(VERSION)
+so_cook  := $(out)/libgeotex-cook.so.$(VERSION)
+command  := $(out)/gtx
+module   := $(out)/geotex-image.so
+sample_names := $(basename $(notdir $(wildcard samples/*.c samples/*.cpp)))
+sample_bins  := $(addprefix $(out)/samples/,$(sample_names))
+
+all: $(build)/gtx $(so_core) $(so_cook) $(sample_bins) ## the libraries, the command (build/gtx) and the samples
+
+$(lib_core): $(call objects_of,$(ROOMS_CORE))
+	$(say) AR $@
+	$(Q)rm -f $@ && $(AR) rcs $@ $^
+
+$(lib_cook): $(call objects_of,$(ROOMS_COOK))
+	$(say) AR $@
+	$(Q)rm -f $@ && $(AR) rcs $@ $^
+
+$(so_core): $(call objects_of,$(ROOMS_CORE))
+	$(say) LINK $@
+	$(Q)$(CC) $(flags) -shared -Wl,-soname,libgeotex.so.$(SOVERSION) -Wl,--no-undefined -o $@ $^ $(call libs_of,asset)
+	$(Q)ln -sf $(@F) $(out)/libgeotex.so.$(SOVERSION) && ln -sf $(@F) $(out)/libgeotex.so
+
+$(so_cook): $(call objects_of,$(ROOMS_COOK)) $(so_core)
+	$(say) LINK $@
+	$(Q)$(CXX) $(flags) -shared -Wl,-soname,libgeotex-cook.so.$(SOVERSION) -Wl,--no-undefined -o $@ \
+	  $(call objects_of,$(ROOMS_COOK) base asset derive trace) $(call libs_of,asset mesh)
+	$(Q)ln -sf $(@F) $(out)/libgeotex-cook.so.$(SOVERSION) && ln -sf $(@F) $(out)/libgeotex-cook.so
+
+$(module): lib/image/module.cpp
+	@mkdir -p $(@D)
+	$(say) LINK $@
+	$(Q)$(CXX) $(cxxflags) $(cflags_image) $(CXXFLAGS) -shared -o $@ $< $(call pkg,--libs,OpenImageIO)
+
+$(command): $(call objects_of,cli host image) $(lib_cook) $(lib_core) | $(module)
+	$(say) LINK $@
+	$(Q)$(CXX) $(flags) -o $@ $(call objects_of,cli host image) $(lib_cook) $(lib_core) $(call libs_of,asset mesh host image)
+
+$(build)/gtx: $(command) $(module)
+	$(Q)ln -sf $(config)/gtx $@
+
+# A sample is one file; it links what an engine would link, and lib/host for its window.
+$(out)/samples/%: $(out)/samples/%.o $(call objects_of,host image) $(lib_cook) $(lib_core) | $(module)
+	$(say) LINK $@
+	$(Q)$(CXX) $(flags) -o $@ $< $(call objects_of,host image) $(lib_cook) $(lib_core) $(call libs_of,asset mesh host image)
+
+# ---- tests: every tests/ROOM/test_*.c(pp) is a program that links its room and what it needs ------
+test_sources := $(wildcard tests/*/test_*.c tests/*/test_*.cpp)
+test_bins    := $(patsubst %,$(out)/%,$(basename $(test_sources)))
+test_room     = $(word 2,$(subst /, ,$(1)))
+test_needs    = $(needs_$(1)) $(extra_needs_$(1))
+extra_needs_render  := trace host image
+extra_needs_bake    := derive trace
+extra_needs_chart   :=
+extra_needs_measure := chart bake cook
+common_test_objects := $(patsubst %,$(out)/%.o,$(basename $(wildcard tests/common/*.c)))
+
+define test_rule
+$(out)/$(basename $(1)): $(out)/$(basename $(1)).o $(common_test_objects) \
+    $(call objects_of,$(call test_needs,$(call test_room,$(1))))
+	$$(say) LINK $$@
+	$$(Q)$$(CXX) $$(flags) -o $$@ $$^ $$(call libs_of,$$(call test_needs,$(call test_room,$(1)))) $$(call pkg,--libs,cmocka)
+endef
+$(foreach t,$(test_sources),$(eval $(call test_rule,$(t))))
+$(out)/tests/%: cflags += -Itests $(call pkg,--cflags,cmocka)
+$(out)/tests/%: cxxflags += -Itests $(call pkg,--cflags,cmocka)
+
+build-tests: $(test_bins) all
+
+run-tests: build-tests
+	@GTX=$(abspath $(command)) GTX_OUT=$(abspath $(out)) GTX_CONFIG=$(config) tests/run $(test_bins)
+
+# `make test-asset` builds and runs the programs of one room alone.
+test-%:
+	@$(MAKE) --no-print-directory $(filter $(out)/tests/$*/%,$(test_bins)) \
+	  $(if $(filter cli samples,$*),all)
+	@GTX=$(abspath $(command)) GTX_OUT=$(abspath $(out)) GTX_CONFIG=$(config) \
+	  tests/run $(filter $(out)/tests/$*/%,$(test_bins))
+
+test: ## install what is missing, build, pass the tests
+	@$(MAKE) --no-print-directory deps
+	@$(MAKE) --no-print-directory -j$$(nproc) build-tests
+	@$(MAKE) --no-print-directory run-tests
+
+# ---- the demo ------------------------------------------------------------------------------------
+MODEL ?= $(build)/demo/sculpt.glb
+demo: ## install what is missing, build, cook MODEL (default: the sculpt) and render the mixed scene
+	@$(MAKE) --no-print-directory deps
+	@$(MAKE) --no-print-directory -j$$(nproc) all
+	@$(MAKE) --no-print-directory run-demo
+
+run-demo:
+	@mkdir -p $(build)/demo
+	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
+	@$(build)/gtx cook $(MODEL) -o $(build)/demo/model.gtx
+	@$(out)/samples/mixed_scene $(build)/demo/model.gtx --headless $(build)/demo/mixed_scene.png
+	@echo $(build)/demo/mixed_scene.png
+
+# ---- dependencies --------------------------------------------------------------------------------
+packages := g++ pkg-config libopenmesh-dev libdraco-dev libtinygltf-dev nlohmann-json3-dev \
+            libglfw3-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri \
+            libopenimageio-dev libzstd-dev libcmocka-dev glslang-tools
+
+deps: ## install the Debian packages that are missing (apt-get, with sudo when not root)
+	@missing=; for p in $(packages); do \
+	  dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || missing="$$missing $$p"; done; \
+	if [ -n "$$missing" ]; then \
+	  if [ "$$(id -u)" = 0 ]; then sudo=; else sudo=sudo; fi; \
+	  echo "installing:$$missing"; \
+	  $$sudo apt-get update -qq && \
+	  $$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing >/dev/null; \
+	fi
+
+help: ## this list
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | awk -F'\t' '{printf "  make %-14s %s\n", $$1, $$2}'
+
+clean: ## remove what was built
+	rm -rf $(build)
+
+.PHONY: all build-tests run-tests test demo run-demo deps help clean
+.SECONDARY:
+.DELETE_ON_ERROR:
+-include $(shell [ -d $(out) ] && find $(out) -name '*.d')

@@ -1,0 +1,83 @@
+/* Cooking: triangle meshes -> `.gtx` assets. Links libgeotex-cook (C++17 inside).
+ *
+ * The line is the paper's (section 5): import, clean, partition, overlap, frame, bake, dilate,
+ * pack, measure. The same input and options give the same bytes, whatever the thread count. */
+#ifndef GEOTEX_COOK_H
+#define GEOTEX_COOK_H
+
+#include <geotex/geotex.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum gtx_partition {
+    GTX_PARTITION_DEFAULT = 0,
+    GTX_PARTITION_VSA = 1         /* variational shape approximation (paper, section 5.2) */
+} gtx_partition;
+
+typedef struct gtx_cook_desc {
+    gtx_partition partition;
+    uint32_t charts;              /* wanted number of charts; 0 = round(10 T^0.28), T triangles */
+    uint32_t resolution;          /* texels along the longest patch side, 64..512; 0 = 128 */
+    uint32_t height_bits;         /* 8 or 16; 0 = 8 */
+    uint32_t dilation;            /* texels of dilated normal and colour; 0 = 2^(mips - 1) */
+    uint32_t mips;                /* levels of normal and colour, 1..8; 0 = 4 */
+    int32_t zstd_level;           /* 0 = 3; -1 = stored */
+    uint32_t threads;             /* 0 = all processors */
+    float unit;                   /* metres per object unit; 0 = 1 */
+    uint32_t measure;             /* 1: measure the error (report, `error`) */
+    gtx_progress_fn progress;     /* may be NULL */
+    void *progress_user;
+    const char *charts_ply;       /* path for the partition before splitting as a PLY, a colour a
+                                     chart, inverted triangles green; or NULL */
+    uint32_t reserved[8];
+} gtx_cook_desc;
+
+/* What a cook did, as JSON (format/cook-report.schema.json); freed with gtx_report_free. */
+typedef struct gtx_report {
+    char *json;                   /* terminated */
+    size_t size;
+    char **sources;               /* paths of the files that were read, the model first */
+    size_t source_count;
+    char **warnings;              /* one sentence each */
+    size_t warning_count;
+} gtx_report;
+
+/* Reads the model at `input` (OBJ, PLY, Draco, glTF, GLB), cooks it and writes the asset to
+ * `output`: whole, through a temporary name and a rename, or not at all. `desc`, `report` and
+ * `error` may be NULL. Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, READ, WRITE, INPUT,
+ * EMPTY, UNSUPPORTED, INTERNAL. Any thread. */
+GTX_API gtx_result gtx_cook_file(const char *input, const char *output, const gtx_cook_desc *desc,
+                                 gtx_report *report, gtx_error *error);
+
+/* The measures of an asset against its source model, as JSON (format/compare-report.schema.json). */
+typedef struct gtx_compare_desc {
+    uint32_t size;                /* pixels along a side of the 26 views; 0 = 1024 */
+    uint32_t levels;              /* levels of detail to evaluate; 0 = the asset's mip count */
+    uint32_t threads;             /* 0 = all processors */
+    gtx_progress_fn progress;
+    void *progress_user;
+    uint32_t reserved[8];
+} gtx_compare_desc;
+
+/* The figures a build may put a limit on. */
+typedef struct gtx_compare_result {
+    uint64_t hole_pixels, surface_pixels;
+    double silhouette_iou, silhouette_iou_min;
+    double forward_rms;           /* fraction of the source's bounding diagonal */
+} gtx_compare_result;
+
+/* `model` is the mesh file the asset was cooked from. `report` and `error` may be NULL.
+ * Errors: as gtx_cook_file, and those of gtx_open_file. */
+GTX_API gtx_result gtx_compare_files(const char *asset, const char *model,
+                                     const gtx_compare_desc *desc, gtx_compare_result *result,
+                                     gtx_report *report, gtx_error *error);
+
+/* Frees what a report owns and zeroes it. NULL is fine. */
+GTX_API void gtx_report_free(gtx_report *report);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

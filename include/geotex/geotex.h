@@ -1,0 +1,302 @@
+/* geotex: finely tessellated models as oriented height-map patches, cast beside polygons.
+ *
+ * This header opens, inspects, validates, creates and encodes `.gtx` assets and casts rays into
+ * them. It needs libc only. Drawing is in render.h, cooking from meshes in cook.h.
+ *
+ * Rules that hold everywhere
+ *   - A descriptor struct filled with zeros asks for the defaults; `reserved` fields must be zero.
+ *   - Functions that can fail return a gtx_result and take an optional, caller-owned gtx_error last.
+ *     On failure the outputs are left NULL or untouched.
+ *   - There is no global state. Distinct objects may be used from distinct threads at once; one
+ *     object may be read (every function taking a const pointer) from many threads at once.
+ *   - Nothing prints, exits or throws.
+ *   - Strings are UTF-8, matrices column-major, coordinates right-handed.
+ *
+ * Words: a patch is an oriented box with a height map; a texel is a vertex of the height sheet; a
+ * cell is the square between 2x2 texels. The format is specified in format/gtx.md, and the
+ * technique in de Toledo, Wang, Levy, "Geometry Textures and Applications", CGF 27(8), 2008. */
+#ifndef GEOTEX_GEOTEX_H
+#define GEOTEX_GEOTEX_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(_WIN32) && defined(GTX_SHARED)
+#ifdef GTX_BUILDING
+#define GTX_API __declspec(dllexport)
+#else
+#define GTX_API __declspec(dllimport)
+#endif
+#elif defined(__GNUC__)
+#define GTX_API __attribute__((visibility("default")))
+#else
+#define GTX_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- version ---------------------------------------------------------------------------- */
+
+#define GTX_VERSION_MAJOR 0
+#define GTX_VERSION_MINOR 1
+#define GTX_VERSION_PATCH 0
+/* major * 10000 + minor * 100 + patch. The format has a version of its own (gtx_info). */
+#define GTX_VERSION (GTX_VERSION_MAJOR * 10000 + GTX_VERSION_MINOR * 100 + GTX_VERSION_PATCH)
+
+/* The GTX_VERSION that the library was built with. */
+GTX_API uint32_t gtx_version(void);
+
+/* ---- results ---------------------------------------------------------------------------- */
+
+/* Values are frozen: appended to, never renumbered. */
+typedef enum gtx_result {
+    GTX_OK = 0,
+    GTX_CANCELLED = 1,            /* a progress callback asked to stop */
+    GTX_ERROR_ARGUMENT = 10,      /* a NULL or an out-of-range argument */
+    GTX_ERROR_NOT_ZEROED = 11,    /* a descriptor's reserved field is not zero */
+    GTX_ERROR_MEMORY = 20,        /* the allocator returned NULL */
+    GTX_ERROR_LIMIT = 21,         /* a stated limit (memory, texture size, patch count) is exceeded */
+    GTX_ERROR_READ = 30,          /* a file cannot be opened or read */
+    GTX_ERROR_WRITE = 31,         /* a file cannot be written */
+    GTX_ERROR_NOT_GTX = 40,       /* the bytes do not start with the .gtx identifier */
+    GTX_ERROR_VERSION = 41,       /* a .gtx of another major version */
+    GTX_ERROR_TRUNCATED = 42,     /* the file ends too early */
+    GTX_ERROR_CORRUPT = 43,       /* a rule of the format is broken; gtx_error.rule says which */
+    GTX_ERROR_UNSUPPORTED = 45,   /* legal, but needs something this build does not have */
+    GTX_ERROR_INPUT = 60,         /* a source model is malformed */
+    GTX_ERROR_EMPTY = 61,         /* a source model has no usable triangle */
+    GTX_ERROR_GL = 80,            /* the OpenGL context lacks something or reported an error */
+    GTX_ERROR_SHADER = 81,        /* a shader did not compile or link */
+    GTX_ERROR_INTERNAL = 99       /* a defect of geotex itself */
+} gtx_result;
+
+/* One English sentence for a result. Static storage, never NULL. Any thread. */
+GTX_API const char *gtx_result_string(gtx_result result);
+
+/* What went wrong. Written only on failure. */
+typedef struct gtx_error {
+    gtx_result result;
+    uint32_t rule;                /* rule number of format/gtx.md, 0 when none applies */
+    uint64_t offset;              /* byte offset in the file that broke the rule, else 0 */
+    char message[240];            /* one sentence without a final newline, always terminated */
+} gtx_error;
+
+/* ---- memory and progress ---------------------------------------------------------------- */
+
+/* Memory hooks. `alloc` returns at least `size` bytes aligned to 16, or NULL; `free` gets the size
+ * back. Both may be called from any thread that calls into geotex. NULL hooks mean malloc and free.
+ * The struct is copied by the objects that keep it. */
+typedef struct gtx_allocator {
+    void *(*alloc)(size_t size, void *user);
+    void (*free)(void *memory, size_t size, void *user);
+    void *user;
+} gtx_allocator;
+
+/* How far a long call has come. `stage` is a static string such as "bake". */
+typedef struct gtx_progress {
+    const char *stage;
+    uint32_t stage_index, stage_count;
+    float fraction;               /* of the whole call, 0..1, never falling */
+} gtx_progress;
+
+/* Called from the calling thread. Return non-zero to cancel: the call then returns GTX_CANCELLED. */
+typedef int (*gtx_progress_fn)(const gtx_progress *progress, void *user);
+
+/* ---- assets ----------------------------------------------------------------------------- */
+
+/* An asset in memory: patch records and maps, checked. Immutable after it was made. */
+typedef struct gtx_asset gtx_asset;
+
+enum { /* gtx_patch.flags */
+    GTX_PATCH_TWO_SIDED = 1u << 8 /* the sheet is seen from below too */
+};
+
+/* A patch: the frame of its parallelepiped and the rectangle of its maps. 128 bytes, the layout of
+ * the file record (little-endian). Lengths are in object units, relative to the asset's anchor.
+ *
+ * The texel (i, j) of a w x h rectangle with height code c lies at
+ *   origin + (i + 0.5) / w * extent_x * axis_x
+ *          + (j + 0.5) / h * extent_y * axis_y
+ *          + (c - 1) / (2^bits - 2) * extent_z * axis_z        for c >= 1; c = 0 is empty.
+ * axis_z is the direction of projection; axis_x and axis_y may tilt against it. */
+typedef struct gtx_patch {
+    float origin[3], extent_x;
+    float axis_x[3], extent_y;
+    float axis_y[3], extent_z;
+    float axis_z[3], coverage;    /* coverage: share of texels with a code, 0..1 */
+    uint32_t page;
+    uint16_t rect[4];             /* x, y, w, h in texels of the page at level 0 */
+    uint16_t dilation;            /* texels of valid normal and colour around the coded ones */
+    uint16_t flags;
+    float sphere[4];              /* centre and radius around the coded texels' surface */
+    uint32_t source_triangles;    /* triangles of the chart */
+    uint32_t reserved[7];
+} gtx_patch;
+
+typedef enum gtx_map {
+    GTX_MAP_HEIGHT = 0,           /* level 0 only; uint8_t or uint16_t codes, 0 = empty */
+    GTX_MAP_TRIM = 1,             /* level 0 only; uint8_t, (c - 128) / 16 texels outside the outline */
+    GTX_MAP_NORMAL = 2,           /* 2 x uint8_t, hemi-octahedral in the patch's normal frame */
+    GTX_MAP_COLOR = 3             /* 4 x uint8_t, sRGB colour and linear alpha; may be absent */
+} gtx_map;
+
+typedef struct gtx_info {
+    uint32_t version_major, version_minor;    /* of the format */
+    uint32_t patch_count;
+    uint32_t page_count, page_width, page_height;
+    uint32_t mip_count;           /* levels of normal and colour, 1..8 */
+    uint32_t height_bits;         /* 8 or 16 */
+    uint32_t has_color;           /* 0 or 1 */
+    float bounds_min[3], bounds_max[3];       /* relative to the anchor */
+    float unit;                   /* metres per object unit */
+    double anchor[3];             /* object-space position of the asset's origin */
+    uint64_t source_triangles;
+    uint64_t content_hash;        /* of the decoded sections: equal for stored and compressed files */
+    uint64_t file_size;           /* bytes that were opened, 0 for a created asset */
+} gtx_info;
+
+typedef struct gtx_open_desc {
+    const gtx_allocator *allocator;
+    uint64_t max_bytes;           /* most that opening may allocate; 0 = 4 GiB */
+    uint32_t flags;
+    uint32_t reserved[5];
+} gtx_open_desc;
+
+enum { /* gtx_open_desc.flags */
+    GTX_OPEN_SKIP_HASH = 1        /* trust the section hashes (the header hash is always checked) */
+};
+
+/* Reads an asset from `size` bytes, which may be freed afterwards. Every rule of format/gtx.md is
+ * checked; hostile bytes end in an error, never in a fault. `desc` may be NULL.
+ * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, NOT_GTX, VERSION, TRUNCATED, CORRUPT, UNSUPPORTED. */
+GTX_API gtx_result gtx_open_memory(const void *data, size_t size, const gtx_open_desc *desc,
+                                   gtx_asset **out, gtx_error *error);
+
+/* The same from a file. Errors: also READ. */
+GTX_API gtx_result gtx_open_file(const char *path, const gtx_open_desc *desc, gtx_asset **out,
+                                 gtx_error *error);
+
+/* Frees the asset. NULL is fine. */
+GTX_API void gtx_close(gtx_asset *asset);
+
+GTX_API void gtx_get_info(const gtx_asset *asset, gtx_info *out);
+
+/* gtx_info.patch_count records, owned by the asset. */
+GTX_API const gtx_patch *gtx_patches(const gtx_asset *asset);
+
+/* All pages of one level of a map, page after page, rows tight, owned by the asset; *size (may be
+ * NULL) gets the bytes. NULL when the asset has no such map or level. Level k is
+ * (page_width >> k) x (page_height >> k). */
+GTX_API const void *gtx_map_data(const gtx_asset *asset, gtx_map map, uint32_t level, size_t *size);
+
+/* The META section: JSON text of *size bytes, not terminated; NULL when absent. Informative. */
+GTX_API const char *gtx_meta(const gtx_asset *asset, size_t *size);
+
+/* ---- validation ------------------------------------------------------------------------- */
+
+typedef struct gtx_issue {
+    uint32_t rule;                /* number in format/gtx.md */
+    uint32_t is_error;            /* 0: a warning */
+    uint64_t offset;              /* byte offset in the file */
+    const char *name;             /* short identifier such as "patch-axis-unit" */
+    const char *message;          /* one sentence; valid during the call */
+} gtx_issue;
+
+typedef void (*gtx_issue_fn)(const gtx_issue *issue, void *user);
+
+/* Runs every rule of format/gtx.md over untrusted bytes and reports each broken one in file order.
+ * GTX_OK when no error was reported (warnings do not count). `fn` may be NULL. */
+GTX_API gtx_result gtx_validate(const void *data, size_t size, gtx_issue_fn fn, void *user,
+                                gtx_error *error);
+
+/* ---- creating and encoding -------------------------------------------------------------- */
+
+/* The content of an asset. All arrays are copied and checked by the rules of format/gtx.md;
+ * coverage, spheres and bounds must be given (the rules check them). */
+typedef struct gtx_asset_desc {
+    const gtx_patch *patches;
+    uint32_t patch_count;
+    uint32_t page_count, page_width, page_height;
+    uint32_t mip_count;           /* 1..8 */
+    uint32_t height_bits;         /* 8 or 16 */
+    const void *height;           /* page_count * page_width * page_height codes */
+    const uint8_t *trim;          /* the same count */
+    const uint8_t *const *normal; /* mip_count pointers, level 0 first */
+    const uint8_t *const *color;  /* mip_count pointers, or NULL */
+    const char *meta;             /* JSON text, or NULL */
+    size_t meta_size;
+    float bounds_min[3], bounds_max[3];
+    float unit;                   /* 0 = 1 */
+    double anchor[3];
+    uint64_t source_triangles;
+    const gtx_allocator *allocator;
+    uint32_t reserved[6];
+} gtx_asset_desc;
+
+/* Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, CORRUPT (with the broken rule). */
+GTX_API gtx_result gtx_create(const gtx_asset_desc *desc, gtx_asset **out, gtx_error *error);
+
+typedef struct gtx_encode_desc {
+    const gtx_allocator *allocator;
+    int32_t zstd_level;           /* 0 = stored, 1..19 */
+    uint32_t reserved[5];
+} gtx_encode_desc;
+
+/* Encodes the asset as the bytes of a `.gtx`. *data comes from the descriptor's allocator (malloc
+ * when none) and is freed with it, as *size bytes. The same asset and options give the same bytes
+ * (for one zstd version). Errors: ARGUMENT, NOT_ZEROED, MEMORY, UNSUPPORTED (built without zstd). */
+GTX_API gtx_result gtx_encode(const gtx_asset *asset, const gtx_encode_desc *desc, void **data,
+                              size_t *size, gtx_error *error);
+
+/* Encodes into "<path>.tmp" and renames it over `path` once it is whole. Errors: also WRITE. */
+GTX_API gtx_result gtx_save_file(const gtx_asset *asset, const char *path,
+                                 const gtx_encode_desc *desc, gtx_error *error);
+
+/* ---- ray query -------------------------------------------------------------------------- */
+
+/* What casting on the CPU needs of an asset: levels, bounds and a hierarchy over the patches.
+ * Keeps no reference to the asset. Immutable; any number of threads may cast at once. */
+typedef struct gtx_caster gtx_caster;
+
+typedef struct gtx_caster_desc {
+    const gtx_allocator *allocator;
+    uint32_t level;               /* level of detail to cast, 0 = finest .. 7 */
+    uint32_t reserved[5];
+} gtx_caster_desc;
+
+/* Coordinates are relative to the asset's anchor. direction need not be normalised; t counts in
+ * its lengths. Hits with t_min <= t <= t_max are found; t_max <= 0 means infinity. */
+typedef struct gtx_ray {
+    float origin[3], t_min;
+    float direction[3], t_max;
+} gtx_ray;
+
+typedef struct gtx_hit {
+    float t;                      /* along the ray; infinity when nothing was hit */
+    uint32_t patch;               /* index of the patch, UINT32_MAX when nothing was hit */
+    float x, y;                   /* texel coordinates in the patch: texel i is at x = i */
+    float normal[3];              /* unit normal from the normal map, object space */
+    float facet[3];               /* unit geometric normal of the sheet, on the side of axis_z */
+    uint32_t back;                /* 1: the sheet was crossed from below */
+} gtx_hit;
+
+enum { /* flags of gtx_raycast */
+    GTX_RAY_ANY = 1,              /* any hit will do (shadows); t and normal are those of that hit */
+    GTX_RAY_TWO_SIDED = 2,        /* accept crossings from below in every patch */
+    GTX_RAY_EXHAUSTIVE = 4        /* visit every cell of every patch: the slow reference */
+};
+
+GTX_API gtx_result gtx_caster_create(const gtx_asset *asset, const gtx_caster_desc *desc,
+                                     gtx_caster **out, gtx_error *error);
+GTX_API void gtx_caster_destroy(gtx_caster *caster);
+
+/* Casts `count` rays. A ray with a NaN, or with a zero direction, hits nothing. Errors: ARGUMENT. */
+GTX_API gtx_result gtx_raycast(const gtx_caster *caster, const gtx_ray *rays, gtx_hit *hits,
+                               size_t count, uint32_t flags);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,110 @@
+/* Drawing assets with OpenGL 3.3 core or later, beside the engine's own polygons.
+ *
+ * The host owns the context, the framebuffer and the function loader; geotex links no GL. Every
+ * draw writes true depth computed from the engine's own matrices, so patches and polygons drawn
+ * before or after share one z-buffer.
+ *
+ * State. gtx_draw leaves a fixed state behind, and reads none back unless
+ * GTX_VIEW_RESTORE_STATE is set:
+ *   program 0, vertex array 0, array and element buffers 0, active texture unit 0,
+ *   textures 0 on units 0..5 (2D and 2D array), depth test on, depth func LESS (GREATER when
+ *   reversed), depth mask on, cull face off, blend off, front face CCW, colour mask all on.
+ * It does not touch the framebuffer binding, viewport, scissor, stencil or clip control. */
+#ifndef GEOTEX_RENDER_H
+#define GEOTEX_RENDER_H
+
+#include <geotex/geotex.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A renderer: programs and shared objects of one context (or share group). */
+typedef struct gtx_renderer gtx_renderer;
+/* An asset on the GPU. */
+typedef struct gtx_model gtx_model;
+
+typedef void (*gtx_gl_proc)(void);
+
+typedef struct gtx_renderer_desc {
+    gtx_gl_proc (*load)(const char *name, void *user);   /* required: the host's GL loader */
+    void *load_user;
+    void (*log)(const char *message, void *user);        /* shader logs; may be NULL */
+    void *log_user;
+    const gtx_allocator *allocator;
+    uint32_t reserved[8];
+} gtx_renderer_desc;
+
+/* Needs the context current, as do all functions below but gtx_model_prepare.
+ * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL (a function or version is missing), SHADER. */
+GTX_API gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out,
+                                       gtx_error *error);
+GTX_API void gtx_renderer_destroy(gtx_renderer *renderer);
+
+/* Derives what the GPU needs, without GL: any thread. Keeps no reference to the asset.
+ * `allocator` may be NULL. Errors: ARGUMENT, MEMORY. */
+GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *allocator,
+                                     gtx_model **out, gtx_error *error);
+
+/* Uploads up to `max_bytes` (0 = everything) and sets *done to 1 once the model can be drawn.
+ * Errors: ARGUMENT, LIMIT (texture size), GL (out of memory). */
+GTX_API gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t max_bytes,
+                                    uint32_t *done, gtx_error *error);
+
+/* Both at once. */
+GTX_API gtx_result gtx_model_create(gtx_renderer *renderer, const gtx_asset *asset,
+                                    gtx_model **out, gtx_error *error);
+GTX_API void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model);
+
+/* Bytes of the model's textures and buffers on the GPU, colour apart. */
+typedef struct gtx_model_size {
+    uint64_t geometry, color;
+} gtx_model_size;
+GTX_API gtx_model_size gtx_model_gpu_size(const gtx_model *model);
+
+typedef enum gtx_method {
+    GTX_METHOD_AUTO = 0,          /* what is fastest within the error budget: cast for now */
+    GTX_METHOD_CAST = 1,          /* exact: cells walked, bilinear patches solved */
+    GTX_METHOD_PAPER = 2          /* linear then binary search, balanced by slant (paper, 4.1) */
+} gtx_method;
+
+enum { /* gtx_view.flags */
+    GTX_VIEW_REVERSED_Z = 1,          /* nearer is greater: depth func GREATER */
+    GTX_VIEW_DEPTH_ZERO_TO_ONE = 2,   /* clip z in 0..1 (glClipControl), not -1..1 */
+    GTX_VIEW_RESTORE_STATE = 4        /* read the touched state first and put it back */
+};
+
+/* One camera and one light. */
+typedef struct gtx_view {
+    float view[16], projection[16];   /* column-major; world -> eye -> clip */
+    float light_direction[3];         /* world space, towards the light; zero = headlight */
+    float ambient;                    /* share of colour without light; 0 = 0.2 */
+    gtx_method method;
+    uint32_t flags;
+    float depth_range[2];             /* of glDepthRange; both 0 = 0..1 */
+    uint32_t reserved[8];
+} gtx_view;
+
+/* A placed model. `transform` is affine and takes the asset's coordinates (relative to its anchor)
+ * to the world; its linear part must be invertible. `tint` multiplies the colour; all 0 = white. */
+typedef struct gtx_instance {
+    const gtx_model *model;
+    float transform[16];
+    float tint[4];
+    uint32_t reserved[4];
+} gtx_instance;
+
+/* Draws the instances into the bound framebuffer: colour (Lambert, in sRGB bytes; location 0) and
+ * depth. One instanced draw for each run of instances of one model.
+ * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL. */
+GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,
+                            const gtx_instance *instances, uint32_t count, gtx_error *error);
+
+/* The text of an installed shader file such as "geotex_cast.glsl", for engines that write their
+ * own mains; NULL when there is none of that name. */
+GTX_API const char *gtx_shader_source(const char *name);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

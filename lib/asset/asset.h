@@ -1,0 +1,70 @@
+/* The inside of a gtx_asset, for the rooms that derive, write and edit. */
+#ifndef GTX_ASSET_ASSET_H
+#define GTX_ASSET_ASSET_H
+
+#include <geotex/geotex.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define GTX_MAX_MIPS 8
+#define GTX_MAX_SECTIONS 256
+#define GTX_MAX_PATCHES (1u << 20)
+#define GTX_MAX_PAGES 2048
+#define GTX_MAX_PAGE_SIDE 16384
+
+/* Maps are decoded and tight; colour pointers are NULL when the asset has no colour. */
+struct gtx_asset {
+    gtx_allocator allocator;
+    gtx_info info;
+    gtx_patch *patches;
+    uint8_t *height, *trim;
+    uint8_t *normal[GTX_MAX_MIPS], *color[GTX_MAX_MIPS];
+    char *meta;
+    size_t meta_size;
+};
+
+/* Texels of a page at a level, and of all pages. */
+static inline size_t gtx_page_texels(const gtx_asset *asset, uint32_t level)
+{
+    return (size_t)(asset->info.page_width >> level) * (asset->info.page_height >> level);
+}
+
+/* The height code at texel (x, y) of a patch; 0 = empty. No bounds check. */
+static inline uint32_t gtx_height_code(const gtx_asset *asset, const gtx_patch *patch, uint32_t x,
+                                       uint32_t y)
+{
+    size_t row = (size_t)patch->page * asset->info.page_height + patch->rect[1] + y;
+    size_t texel = row * asset->info.page_width + patch->rect[0] + x;
+    if (asset->info.height_bits == 8)
+        return asset->height[texel];
+    return asset->height[2 * texel] | (uint32_t)asset->height[2 * texel + 1] << 8;
+}
+
+/* The trim code at texel (x, y) of a patch. No bounds check. */
+static inline uint32_t gtx_trim_code(const gtx_asset *asset, const gtx_patch *patch, uint32_t x,
+                                     uint32_t y)
+{
+    size_t row = (size_t)patch->page * asset->info.page_height + patch->rect[1] + y;
+    return asset->trim[row * asset->info.page_width + patch->rect[0] + x];
+}
+
+/* Hemi-octahedral normals in the patch's normal frame (format/gtx.md, "Normals"): n is a unit
+ * vector in that frame with n[2] >= 0. */
+void gtx_encode_normal(const float n[3], uint8_t out[2]);
+void gtx_decode_normal(const uint8_t in[2], float n[3]);
+
+/* Rows of the patch's normal frame in object space: x', y', z'. */
+void gtx_normal_frame(const gtx_patch *patch, float rows[3][3]);
+
+/* Maps a height code to a fraction of extent_z, 0..1, for c >= 1. */
+static inline float gtx_code_height(uint32_t code, uint32_t height_bits)
+{
+    return (float)(code - 1) / (height_bits == 8 ? 254.0f : 65534.0f);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

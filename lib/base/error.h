@@ -1,0 +1,31 @@
+/* Filling a caller's gtx_error. */
+#ifndef GTX_BASE_ERROR_H
+#define GTX_BASE_ERROR_H
+
+#include <geotex/geotex.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(__GNUC__)
+#define GTX_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))
+#else
+#define GTX_PRINTF(fmt, args)
+#endif
+
+/* Writes result and message into `error` (NULL is fine) and returns `result`, so that a failing
+ * function ends with `return gtx_fail(error, GTX_ERROR_..., "...")`. */
+gtx_result gtx_fail(gtx_error *error, gtx_result result, const char *format, ...) GTX_PRINTF(3, 4);
+
+/* The same for a broken rule of the format at a byte offset. */
+gtx_result gtx_fail_rule(gtx_error *error, gtx_result result, uint32_t rule, uint64_t offset,
+                         const char *format, ...) GTX_PRINTF(5, 6);
+
+/* GTX_ERROR_NOT_ZEROED unless the `count` words of a descriptor's reserved field are zero. */
+gtx_result gtx_check_reserved(const uint32_t *reserved, size_t count, gtx_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,161 @@
+/* A JSON writer: two-space indentation, one member a line. */
+#include "base/json.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void append(gtx_json *json, const char *text, size_t size)
+{
+    if (json->failed)
+        return;
+    if (json->size + size + 1 > json->capacity) {
+        size_t capacity = (json->size + size + 1) * 2;
+        char *grown = realloc(json->text, capacity);
+        if (!grown) {
+            json->failed = true;
+            return;
+        }
+        json->text = grown;
+        json->capacity = capacity;
+    }
+    memcpy(json->text + json->size, text, size);
+    json->size += size;
+    json->text[json->size] = 0;
+}
+
+static void append_string(gtx_json *json, const char *value)
+{
+    append(json, "\"", 1);
+    for (const char *p = value; *p; ++p) {
+        unsigned char c = (unsigned char)*p;
+        char escaped[8];
+        if (c == '"' || c == '\\') {
+            escaped[0] = '\\';
+            escaped[1] = (char)c;
+            append(json, escaped, 2);
+        } else if (c < 0x20) {
+            append(json, escaped, (size_t)snprintf(escaped, sizeof escaped, "\\u%04x", c));
+        } else {
+            append(json, p, 1);
+        }
+    }
+    append(json, "\"", 1);
+}
+
+static void new_line(gtx_json *json)
+{
+    if (json->depth)
+        append(json, "\n", 1);
+    for (unsigned i = 0; i < json->depth; ++i)
+        append(json, "  ", 2);
+}
+
+static void begin_value(gtx_json *json, const char *key)
+{
+    if (json->comma)
+        append(json, ",", 1);
+    new_line(json);
+    json->comma = true;
+    if (key) {
+        append_string(json, key);
+        append(json, ": ", 2);
+    }
+}
+
+static void begin_nest(gtx_json *json, const char *key, const char *bracket)
+{
+    begin_value(json, key);
+    append(json, bracket, 1);
+    json->depth++;
+    json->comma = false;
+}
+
+static void end_nest(gtx_json *json, const char *bracket)
+{
+    bool empty = !json->comma;
+    json->depth--;
+    if (!empty) {
+        append(json, "\n", 1);
+        for (unsigned i = 0; i < json->depth; ++i)
+            append(json, "  ", 2);
+    }
+    append(json, bracket, 1);
+    json->comma = true;
+    if (json->depth == 0)
+        append(json, "\n", 1);
+}
+
+void gtx_json_begin_object(gtx_json *json, const char *key)
+{
+    begin_nest(json, key, "{");
+}
+
+void gtx_json_end_object(gtx_json *json)
+{
+    end_nest(json, "}");
+}
+
+void gtx_json_begin_array(gtx_json *json, const char *key)
+{
+    begin_nest(json, key, "[");
+}
+
+void gtx_json_end_array(gtx_json *json)
+{
+    end_nest(json, "]");
+}
+
+void gtx_json_string(gtx_json *json, const char *key, const char *value)
+{
+    begin_value(json, key);
+    append_string(json, value);
+}
+
+void gtx_json_number(gtx_json *json, const char *key, double value)
+{
+    char text[40];
+    if (!isfinite(value)) {
+        gtx_json_null(json, key);
+        return;
+    }
+    int size = snprintf(text, sizeof text, "%.9g", value);
+    for (char *p = text; *p; ++p)
+        if (*p == ',') /* the decimal point of some locales */
+            *p = '.';
+    begin_value(json, key);
+    append(json, text, (size_t)size);
+}
+
+void gtx_json_integer(gtx_json *json, const char *key, uint64_t value)
+{
+    char text[24];
+    begin_value(json, key);
+    append(json, text, (size_t)snprintf(text, sizeof text, "%llu", (unsigned long long)value));
+}
+
+void gtx_json_bool(gtx_json *json, const char *key, bool value)
+{
+    begin_value(json, key);
+    append(json, value ? "true" : "false", value ? 4 : 5);
+}
+
+void gtx_json_hash(gtx_json *json, const char *key, uint64_t value)
+{
+    char text[24];
+    snprintf(text, sizeof text, "0x%016llx", (unsigned long long)value);
+    gtx_json_string(json, key, text);
+}
+
+void gtx_json_null(gtx_json *json, const char *key)
+{
+    begin_value(json, key);
+    append(json, "null", 4);
+}
+
+void gtx_json_free(gtx_json *json)
+{
+    free(json->text);
+    *json = (gtx_json){0};
+}

@@ -1,0 +1,64 @@
+/* Charts: sets of triangles, each with the frame in which it is a height map. */
+#pragma once
+
+#include "mesh/mesh.hpp"
+
+namespace gtx {
+
+/* A right-handed parallelepiped. z is the direction of projection; x and y may tilt against it
+ * (paper, section 4.2: "parallel hexahedron"). A point is origin + a x + b y + c z. */
+struct Frame {
+    Vec3d origin;                /* corner of the core's rectangle at its lowest depth */
+    Vec3d x, y, z;               /* unit length, det(x, y, z) >= 0.1 */
+    double extent[3] = {0, 0, 0}; /* of the core along x, y, z; extent[2] may be zero */
+
+    /* (a, b, c) of a point. */
+    Vec3d local(const Vec3d &point) const;
+    Vec3d point(const Vec3d &local) const { return origin + x * local.x + y * local.y + z * local.z; }
+};
+
+struct Chart {
+    std::vector<uint32_t> triangles; /* the core, ascending */
+    Frame frame;
+    bool two_sided = false;
+};
+
+struct ChartOptions {
+    unsigned charts = 0;         /* wanted number; 0 = round(10 T^0.28) for T triangles */
+    unsigned resolution = 128;   /* texels along the longest patch side */
+};
+
+/* What partitioning found, for the cook report. */
+struct ChartReport {
+    /* Of the partition before folding charts were split (paper, Table 3). */
+    uint64_t initial_charts = 0, initial_inverted = 0, initial_folding = 0;
+    /* Of the final charts: core triangles with n.z <= 0 and more than a texel of projected area,
+     * without junk; charts that hold one. */
+    uint64_t inverted_triangles = 0, folding_charts = 0;
+    double second_layer_fraction = 0; /* DESIGN: share of core texels with a second layer */
+    uint64_t junk_triangles = 0;      /* too small and too twisted to be anyone's surface */
+    double junk_area_fraction = 0;
+};
+
+struct Partition {
+    std::vector<Chart> charts;
+    double pitch = 0;                    /* texel pitch of the model, object units */
+    std::vector<uint32_t> initial_chart; /* per triangle, before splitting */
+    std::vector<uint8_t> junk;           /* per triangle: 1 = junk */
+    ChartReport report;
+};
+
+/* Variational shape approximation (Cohen-Steiner, Alliez, Desbrun 2004; metric L2,1) on OpenMesh
+ * connectivity, then folding charts split until none folds, and a frame for each (paper, section
+ * 5). Deterministic for any thread count. Stages of `task`: "partition", "frame". */
+Partition partition_vsa(const Mesh &mesh, const ChartOptions &options, Task &task);
+
+/* The surface that a chart's maps may show: its core and the source surface reached across its
+ * border within `reach` object units (measured in the frame's (x, y) plane from the core's
+ * outline) through edges, that faces the frame (n.z >= 0.1). Returns triangles beyond the core,
+ * ascending. `neighbours` is triangle_neighbours(mesh). Const and reentrant. */
+std::vector<uint32_t> overlap_triangles(const Mesh &mesh,
+                                        const std::vector<std::array<uint32_t, 3>> &neighbours,
+                                        const Chart &chart, double reach);
+
+} // namespace gtx

@@ -1,0 +1,56 @@
+/* What loading derives from an asset by the normative rules of format/gtx.md: level-of-detail
+ * grids, min-max bounds, corner cells and proxies. No GL, no files. */
+#ifndef GTX_DERIVE_DERIVE_H
+#define GTX_DERIVE_DERIVE_H
+
+#include "asset/asset.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Level k of one patch: nodes (i, j) at texels (min(i << k, w - 1), min(j << k, h - 1)); codes by
+ * the rule of format/gtx.md, "Levels". A cell (i, j) lies between 2x2 nodes and exists where
+ * `solid` is 1. */
+typedef struct gtx_grid {
+    uint32_t level, nodes_x, nodes_y;  /* cells are one fewer on each axis */
+    uint16_t *code;                    /* nodes_x * nodes_y */
+    uint8_t *solid;                    /* (nodes_x - 1) * (nodes_y - 1) */
+} gtx_grid;
+
+gtx_result gtx_grid_build(const gtx_asset *asset, uint32_t patch, uint32_t level,
+                          const gtx_allocator *allocator, gtx_grid *out, gtx_error *error);
+void gtx_grid_free(gtx_grid *grid, const gtx_allocator *allocator);
+
+/* Corner cells of one page at level 0, for kernels that fetch a cell at once: texel (x, y) of the
+ * page holds the codes of (x, y), (x+1, y), (x, y+1), (x+1, y+1), as 4 x uint8_t or 4 x uint16_t;
+ * all four are zero where the cell does not exist. `out` has 4 * height_bits / 8 * page_width *
+ * page_height bytes. */
+void gtx_derive_cells(const gtx_asset *asset, uint32_t page, void *out);
+
+/* A proxy: convex or not, a closed triangle hull around a patch's solid cells, front faces outward
+ * in the patch's own space. Coordinates: texels in x and y (texel i at x = i), height codes in z
+ * (the surface of code c at z = c). */
+typedef struct gtx_proxy_vertex {
+    float x, y, z;
+    uint32_t patch;
+} gtx_proxy_vertex;
+
+typedef struct gtx_proxies {
+    gtx_proxy_vertex *vertices;
+    uint32_t *indices;                 /* triangles, all patches one after another */
+    uint32_t vertex_count, index_count;
+    uint32_t *first_index;             /* patch_count + 1 offsets into indices */
+    uint32_t patch_count;
+} gtx_proxies;
+
+/* Boxes around the solid cells of every patch, from the lowest code to the highest, grown by
+ * `grow` texels and codes. A patch without a solid cell has no triangle. */
+gtx_result gtx_derive_boxes(const gtx_asset *asset, float grow, const gtx_allocator *allocator,
+                            gtx_proxies *out, gtx_error *error);
+void gtx_proxies_free(gtx_proxies *proxies, const gtx_allocator *allocator);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

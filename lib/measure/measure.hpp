@@ -1,0 +1,52 @@
+/* Measures of an asset against its source mesh; every definition is in the header's functions. */
+#pragma once
+
+#include "mesh/mesh.hpp"
+
+#include <geotex/geotex.h>
+
+namespace gtx {
+
+struct Deviation {
+    double rms = 0, max = 0;     /* fractions of the source's bounding diagonal */
+};
+
+/* Forward: 2^18 area-stratified points of the source to the nearest point of the trimmed asset.
+ * Reverse: as many points of cells with trim <= 0 to the nearest point of the source. `junk` (per
+ * triangle, may be empty) leaves triangles out of the forward samples. */
+struct SurfaceError {
+    Deviation forward, reverse;
+};
+SurfaceError surface_error(const gtx_asset *asset, const Mesh &mesh,
+                           const std::vector<uint8_t> &junk, Task &task);
+
+/* How many pixels a level of detail gets wrong. */
+struct LevelReport {
+    uint32_t level = 0;
+    uint64_t hole_pixels = 0, leak_pixels = 0;
+    double silhouette_iou = 0;
+};
+
+/* Figures of all views together. The top ones are those of the worst level that the runtime may
+ * draw (level 0). */
+struct CompareReport {
+    uint32_t views = 0;
+    uint64_t surface_pixels = 0, hole_pixels = 0, leak_pixels = 0;
+    double silhouette_iou = 0, silhouette_iou_min = 0;
+    double depth_rms = 0, depth_p99 = 0, depth_max = 0;   /* fractions of the diagonal */
+    double normal_mean_deg = 0, normal_p99_deg = 0;
+    double psnr_db = 0;
+    std::vector<LevelReport> levels;
+    SurfaceError error;
+};
+
+struct CompareOptions {
+    uint32_t size = 1024;        /* pixels along a side of a view */
+    uint32_t levels = 1;         /* levels of detail to evaluate */
+    bool surface = true;         /* measure `error` too */
+};
+
+CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOptions &options,
+                      Task &task);
+
+} // namespace gtx

@@ -1,0 +1,68 @@
+/* The triangle mesh that flows through the cooker, and the two ways to get one. */
+#pragma once
+
+#include "mesh/task.hpp"
+#include "mesh/vec.hpp"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace gtx {
+
+struct Rgba8 {
+    uint8_t r = 255, g = 255, b = 255, a = 255; /* sRGB colour, linear alpha */
+    bool operator==(const Rgba8 &o) const { return r == o.r && g == o.g && b == o.b && a == o.a; }
+};
+
+enum TriangleFlag : uint8_t {
+    TRIANGLE_TWO_SIDED = 1 /* of an open component, or declared double-sided by its material */
+};
+
+/* Attributes belong to corners: corner 3 * t + k is vertex triangles[t][k] as triangle t sees it.
+ * As imported, positions may repeat, and anything may be wrong. As cleaned: positions are finite,
+ * welded and all used; every edge has one or two triangles, consistently wound; every vertex has
+ * one fan of triangles; no triangle is degenerate or there twice; every corner has a unit normal;
+ * flags say which triangles are two-sided. */
+struct Mesh {
+    std::vector<Vec3d> positions;
+    std::vector<std::array<uint32_t, 3>> triangles;
+    std::vector<Vec3f> normals; /* per corner, or empty */
+    std::vector<Rgba8> colors;  /* per corner, or empty */
+    std::vector<uint8_t> flags; /* per triangle, TriangleFlag, or empty */
+
+    size_t triangle_count() const { return triangles.size(); }
+    const Vec3d &position(size_t t, int k) const { return positions[triangles[t][k]]; }
+    /* Twice the area times the unit normal. */
+    Vec3d area_vector(size_t t) const
+    {
+        return cross(position(t, 1) - position(t, 0), position(t, 2) - position(t, 0));
+    }
+};
+
+/* What cleaning took away, by reason ("duplicate", "degenerate", "non-finite", ...). */
+struct CleanReport {
+    std::map<std::string, uint64_t> dropped; /* triangles */
+    uint64_t nonmanifold_edges = 0;          /* edges with more than two triangles, split */
+    uint64_t flipped = 0;                    /* triangles whose winding was turned */
+    uint64_t components = 0, boundary_edges = 0;
+    bool closed = false;                     /* no boundary edge at all */
+};
+
+/* Reads a model by its content (falling back to its extension): OBJ, PLY, Draco, glTF and GLB.
+ * Node transforms are applied. What is ignored is named in task.warnings. `sources`, when given,
+ * gets the path of every file that was read (the model first).
+ * Throws Error: READ, INPUT, UNSUPPORTED, EMPTY (no triangle), LIMIT, MEMORY, CANCELLED. */
+Mesh import_mesh(const std::string &path, Task &task, std::vector<std::string> *sources = nullptr);
+
+/* Welds, repairs and orients; the result keeps the promises above. Throws Error: EMPTY, CANCELLED. */
+Mesh clean_mesh(Mesh mesh, Task &task, CleanReport &report);
+
+/* Three neighbours a triangle: neighbour[t][k] shares the edge from corner k to corner k + 1, or is
+ * NO_TRIANGLE at a border. For cleaned meshes. */
+constexpr uint32_t NO_TRIANGLE = 0xffffffffu;
+std::vector<std::array<uint32_t, 3>> triangle_neighbours(const Mesh &mesh);
+
+} // namespace gtx

@@ -1,0 +1,119 @@
+/* Progress, cancelling and threads of a long job. */
+#include "mesh/task.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <mutex>
+#include <thread>
+
+namespace gtx {
+
+static double now()
+{
+    using clock = std::chrono::steady_clock;
+    return std::chrono::duration<double>(clock::now().time_since_epoch()).count();
+}
+
+Task::Task(unsigned threads, gtx_progress_fn progress, void *user,
+           std::vector<const char *> stages, std::vector<float> weights)
+    : threads_(threads ? threads : std::max(1u, std::thread::hardware_concurrency())),
+      progress_(progress), user_(user), stages_(std::move(stages))
+{
+    if (stages_.empty())
+        stages_.push_back("work");
+    weights.resize(stages_.size(), 1.f);
+    double total = 0;
+    for (float w : weights)
+        total += w;
+    double before = 0;
+    for (float w : weights) {
+        before_.push_back(before / total);
+        before += w;
+    }
+    before_.push_back(1);
+    seconds_.assign(stages_.size(), 0);
+    stage_start_ = now();
+}
+
+void Task::begin(const char *stage)
+{
+    end();
+    for (size_t i = 0; i < stages_.size(); ++i)
+        if (!std::strcmp(stages_[i], stage))
+            stage_ = i;
+    report(0);
+}
+
+void Task::advance(double fraction)
+{
+    report(std::clamp(fraction, 0., 1.));
+}
+
+void Task::end()
+{
+    double time = now();
+    seconds_[stage_] += time - stage_start_;
+    stage_start_ = time;
+}
+
+void Task::report(double fraction)
+{
+    if (!progress_)
+        return;
+    double whole = before_[stage_] + fraction * (before_[stage_ + 1] - before_[stage_]);
+    reported_ = std::max(reported_, float(whole));
+    gtx_progress progress = {stages_[stage_], uint32_t(stage_), uint32_t(stages_.size()),
+                             reported_};
+    if (progress_(&progress, user_))
+        throw Error(GTX_CANCELLED, "cancelled");
+}
+
+void Task::parallel(size_t count, const std::function<void(size_t)> &body, double from, double to)
+{
+    std::atomic<size_t> next{0}, done{0};
+    std::atomic<bool> stop{false};
+    std::mutex mutex;
+    std::exception_ptr failure;
+    size_t failed_at = count;
+
+    auto run_one = [&]() {
+        size_t i = next++;
+        if (i >= count || stop)
+            return false;
+        try {
+            body(i);
+        } catch (...) {
+            std::lock_guard<std::mutex> lock(mutex);
+            if (i < failed_at) {
+                failed_at = i;
+                failure = std::current_exception();
+            }
+            stop = true;
+        }
+        ++done;
+        return true;
+    };
+
+    size_t helpers = std::min<size_t>(threads_, std::max<size_t>(count, 1)) - 1;
+    std::vector<std::thread> pool;
+    for (size_t i = 0; i < helpers; ++i)
+        pool.emplace_back([&] { while (run_one()) {} });
+    try {
+        while (run_one())
+            advance(from + (to - from) * double(done) / double(count));
+    } catch (...) { /* cancelled from the callback */
+        stop = true;
+        for (std::thread &t : pool)
+            t.join();
+        throw;
+    }
+    for (std::thread &t : pool)
+        t.join();
+    if (failure)
+        std::rethrow_exception(failure);
+    advance(to);
+}
+
+} // namespace gtx

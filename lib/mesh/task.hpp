@@ -1,0 +1,65 @@
+/* What a long job carries through the cooker's rooms: errors, progress, cancelling, threads. */
+#pragma once
+
+#include <geotex/geotex.h>
+
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace gtx {
+
+/* Thrown inside the C++ rooms; turned into a gtx_error where the C API ends. */
+struct Error : std::exception {
+    gtx_result result;
+    std::string message;
+    Error(gtx_result result, std::string message) : result(result), message(std::move(message)) {}
+    const char *what() const noexcept override { return message.c_str(); }
+};
+
+/* One job. Used from the thread that runs it, except where stated. */
+class Task {
+public:
+    /* `threads` 0 means all processors. `stages` names the steps in order; `weights` their shares
+     * of the time (any scale, same length). */
+    Task(unsigned threads, gtx_progress_fn progress, void *user,
+         std::vector<const char *> stages = {}, std::vector<float> weights = {});
+
+    /* Enters the named stage. Throws Error(GTX_CANCELLED) when the callback says so. */
+    void begin(const char *stage);
+    /* Reports the share of the current stage that is done, 0..1; throws as begin(). Cheap enough
+     * to call every few thousand steps. */
+    void advance(double fraction);
+
+    /* Runs body(i) for i in [0, count) on the task's threads, in no particular order, and returns
+     * when all are done; reports progress from `from` to `to` of the stage and throws when
+     * cancelled. The first exception of a body (lowest i) is rethrown. Bodies must write only to
+     * places of their own, so that results do not depend on the thread count. */
+    void parallel(size_t count, const std::function<void(size_t)> &body, double from = 0,
+                  double to = 1);
+
+    unsigned threads() const { return threads_; }
+    /* Seconds spent in each stage so far, in the order of the constructor. */
+    const std::vector<double> &seconds() const { return seconds_; }
+    const std::vector<const char *> &stages() const { return stages_; }
+    /* Closes the clock of the last stage. */
+    void end();
+
+    /* One sentence each, in the order found: what was dropped, ignored or repaired. */
+    std::vector<std::string> warnings;
+
+private:
+    void report(double fraction);
+    unsigned threads_;
+    gtx_progress_fn progress_;
+    void *user_;
+    std::vector<const char *> stages_;
+    std::vector<double> before_, seconds_; /* share done before a stage; seconds in it */
+    size_t stage_ = 0;
+    double stage_start_ = 0;
+    float reported_ = 0;
+};
+
+} // namespace gtx
