@@ -59,6 +59,7 @@ cflags_mesh  = $(call pkg,--cflags,openmesh draco tinygltf)
 cflags_chart = $(call pkg,--cflags,openmesh)
 cflags_image = $(call pkg,--cflags,OpenImageIO)
 cflags_host  = $(call pkg,--cflags,egl glfw3)
+cflags_cli   = -D_POSIX_C_SOURCE=200809L
 libs_asset   = $(if $(filter 1,$(zstd)),$(call pkg,--libs,libzstd))
 libs_mesh    = $(call pkg,--libs,openmesh draco) -pthread -lstdc++
 libs_image   = -ldl
@@ -153,6 +154,8 @@ test_sources := $(wildcard tests/*/test_*.c tests/*/test_*.cpp)
 test_bins    := $(patsubst %,$(out)/%,$(basename $(test_sources)))
 test_room     = $(word 2,$(subst /, ,$(1)))
 test_needs    = $(needs_$(1)) $(extra_needs_$(1))
+needs_consumer := base
+needs_corpus   := base
 extra_needs_render  := trace host image
 extra_needs_bake    := derive trace
 extra_needs_chart   :=
@@ -166,20 +169,22 @@ $(out)/$(basename $(1)): $(out)/$(basename $(1)).o $(common_test_objects) \
 	$$(Q)$$(CXX) $$(flags) -o $$@ $$^ $$(call libs_of,$$(call test_needs,$(call test_room,$(1)))) $$(call pkg,--libs,cmocka)
 endef
 $(foreach t,$(test_sources),$(eval $(call test_rule,$(t))))
-$(out)/tests/%: cflags += -Itests $(call pkg,--cflags,cmocka)
+$(out)/tests/%: cflags += -Itests -D_XOPEN_SOURCE=700 $(call pkg,--cflags,cmocka)
 $(out)/tests/%: cxxflags += -Itests $(call pkg,--cflags,cmocka)
 
 build-tests: $(test_bins) all
 
+# What test programs may ask for: the command, the build folder, the compilers.
+test_env = GTX=$(abspath $(command)) GTX_OUT=$(abspath $(out)) GTX_CONFIG=$(config) CC="$(CC)" CXX="$(CXX)"
+
 run-tests: build-tests
-	@GTX=$(abspath $(command)) GTX_OUT=$(abspath $(out)) GTX_CONFIG=$(config) tests/run $(test_bins)
+	@$(test_env) tests/run $(test_bins)
 
 # `make test-asset` builds and runs the programs of one room alone.
 test-%:
 	@$(MAKE) --no-print-directory $(filter $(out)/tests/$*/%,$(test_bins)) \
-	  $(if $(filter cli samples,$*),all)
-	@GTX=$(abspath $(command)) GTX_OUT=$(abspath $(out)) GTX_CONFIG=$(config) \
-	  tests/run $(filter $(out)/tests/$*/%,$(test_bins))
+	  $(if $(filter cli samples consumer corpus,$*),all)
+	@$(test_env) tests/run $(filter $(out)/tests/$*/%,$(test_bins))
 
 test: ## install what is missing, build, pass the tests
 	@$(MAKE) --no-print-directory deps

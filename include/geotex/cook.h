@@ -38,6 +38,7 @@ typedef struct gtx_cook_desc {
 typedef struct gtx_report {
     char *json;                   /* terminated */
     size_t size;
+    char summary[160];            /* one line: patches, texels, bytes, seconds */
     char **sources;               /* paths of the files that were read, the model first */
     size_t source_count;
     char **warnings;              /* one sentence each */

@@ -1,0 +1,91 @@
+/* What the verbs of the command share: option tables, messages, exit codes. */
+#ifndef GTX_CLI_CLI_H
+#define GTX_CLI_CLI_H
+
+#include <geotex/geotex.h>
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { /* exit codes of the command */
+    EXIT_CODE_OK = 0,
+    EXIT_CODE_USAGE = 1,
+    EXIT_CODE_FILE = 2,        /* a named file cannot be read or written */
+    EXIT_CODE_INVALID = 3,     /* invalid input */
+    EXIT_CODE_INTERNAL = 4,
+    EXIT_CODE_UNSUPPORTED = 5, /* legal, but not supported */
+    EXIT_CODE_DIFFERS = 7,     /* a stated limit is passed */
+    EXIT_CODE_CANCELLED = 130
+};
+
+/* ---- options ---- */
+
+typedef enum option_kind {
+    OPTION_FLAG,   /* bool *, no value */
+    OPTION_STRING, /* const char ** */
+    OPTION_UINT,   /* uint32_t *, within [min, max] */
+    OPTION_INT,    /* int32_t *, within [min, max] */
+    OPTION_NUMBER, /* double *, within [min, max] */
+    OPTION_SIZE,   /* uint32_t[2], "WxH", each within [min, max] */
+    OPTION_TRIPLE, /* double[3], "a,b,c" */
+    OPTION_CHOICE  /* uint32_t *, index into the names of `argument`, written "a|b|c" */
+} option_kind;
+
+typedef struct option {
+    const char *name;     /* without the leading dashes */
+    char letter;          /* short form, or 0 */
+    option_kind kind;
+    void *value;
+    const char *argument; /* how the value is shown in help, NULL for flags */
+    const char *help;
+    double min, max;
+} option;
+
+typedef struct verb {
+    const char *name;
+    const char *operands; /* as shown in help: "ASSET [MODEL]" */
+    const char *summary;
+    int min_operands, max_operands;
+    const option *options; /* ends with a NULL name */
+} verb;
+
+/* Parses argv[1..] (argv[0] is the verb) into the options' values; operands are moved, in order, to
+ * operands[0..*count). Returns -1 to go on, or an exit code: 0 after --help, 1 after a message. */
+int parse_options(const verb *v, int argc, char **argv, const char **operands, int *count);
+
+/* Only errors are printed. */
+extern bool cli_quiet;
+
+/* ---- messages ---- */
+
+/* "file: error[id]: sentence" on stderr, from a failed call; returns the exit code. */
+int report_error(const char *file, const gtx_error *error);
+/* "file: warning: sentence", unless quiet. */
+void report_warning(const char *file, const char *sentence);
+/* Writes text to stdout or says why it could not; returns an exit code. */
+int print_result(const char *text, size_t size);
+/* Writes a text file whole, through a temporary name. Returns an exit code. */
+int write_text_file(const char *path, const char *text, size_t size);
+
+/* A progress bar on stderr when it is a terminal; cancels on Ctrl-C. A gtx_progress_fn. */
+int show_progress(const gtx_progress *progress, void *user);
+void end_progress(void);
+/* Makes Ctrl-C cancel the running call instead of killing the process. */
+void catch_interrupt(void);
+
+/* ---- verbs: each gets argv[0] = its name ---- */
+
+int cmd_cook(int argc, char **argv);
+int cmd_info(int argc, char **argv);
+int cmd_validate(int argc, char **argv);
+int cmd_render(int argc, char **argv);
+int cmd_compare(int argc, char **argv);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,64 @@
+/* gtx compare: an asset against its source mesh. */
+#include "cli/cli.h"
+
+#include <geotex/cook.h>
+
+#include <inttypes.h>
+#include <string.h>
+
+static gtx_compare_desc desc;
+static bool as_json;
+static double max_holes = -1, min_iou = -1, max_rms = -1;
+
+static const option options[] = {
+    {"json", 0, OPTION_FLAG, &as_json, NULL, "the whole report as JSON", 0, 0},
+    {"size", 0, OPTION_UINT, &desc.size, "N", "pixels along a side of the 26 views [1024]", 64,
+     4096},
+    {"levels", 0, OPTION_UINT, &desc.levels, "N", "levels of detail to evaluate [all]", 1, 8},
+    {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
+    {"max-holes", 0, OPTION_NUMBER, &max_holes, "N", "exit 7 above N hole pixels", 0, 1e18},
+    {"min-iou", 0, OPTION_NUMBER, &min_iou, "X", "exit 7 below this silhouette IoU", 0, 1},
+    {"max-rms", 0, OPTION_NUMBER, &max_rms, "X", "exit 7 above this forward RMS, of the diagonal", 0,
+     1},
+    {0}};
+
+static const verb compare_verb = {"compare", "ASSET MODEL",
+                                  "Measures an asset against the mesh it was cooked from, on the CPU.",
+                                  2, 2, options};
+
+int cmd_compare(int argc, char **argv)
+{
+    const char *files[2];
+    int count;
+    int code = parse_options(&compare_verb, argc, argv, files, &count);
+    if (code >= 0)
+        return code;
+    desc.progress = show_progress;
+    catch_interrupt();
+
+    gtx_report report;
+    gtx_compare_result result;
+    gtx_error error;
+    memset(&report, 0, sizeof report);
+    gtx_result ok = gtx_compare_files(files[0], files[1], &desc, &result, &report, &error);
+    end_progress();
+    if (ok != GTX_OK)
+        return report_error(error.rule ? files[0] : files[1], &error);
+    if (as_json) {
+        code = print_result(report.json, report.size);
+    } else {
+        printf("hole pixels     %" PRIu64 " of %" PRIu64 "\n", result.hole_pixels,
+               result.surface_pixels);
+        printf("silhouette IoU  %.5f (worst view %.5f)\n", result.silhouette_iou,
+               result.silhouette_iou_min);
+        printf("forward RMS     %.5f %% of the diagonal\n", 100 * result.forward_rms);
+        code = print_result("", 0);
+    }
+    gtx_report_free(&report);
+    if (code)
+        return code;
+    bool differs = (max_holes >= 0 && (double)result.hole_pixels > max_holes) ||
+                   (min_iou >= 0 && result.silhouette_iou < min_iou) ||
+                   (max_rms >= 0 && result.forward_rms > max_rms);
+    return differs ? EXIT_CODE_DIFFERS : EXIT_CODE_OK;
+}

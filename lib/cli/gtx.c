@@ -1,0 +1,48 @@
+/* The `gtx` command: picks a verb. */
+#include "cli/cli.h"
+
+#include <string.h>
+
+static const struct {
+    const char *name;
+    int (*run)(int argc, char **argv);
+    const char *summary;
+} verbs[] = {
+    {"cook", cmd_cook, "turn a triangle mesh into a .gtx asset"},
+    {"info", cmd_info, "say what is in an asset"},
+    {"validate", cmd_validate, "check an asset against every rule of the format"},
+    {"render", cmd_render, "draw assets and meshes into a PNG, without a window"},
+    {"compare", cmd_compare, "measure an asset against the mesh it was cooked from"},
+};
+
+static void print_verbs(FILE *to)
+{
+    fputs("gtx VERB [options] ...\n\n", to);
+    for (size_t i = 0; i < sizeof verbs / sizeof *verbs; ++i)
+        fprintf(to, "  %-10s %s\n", verbs[i].name, verbs[i].summary);
+    fputs("\n`gtx VERB --help` tells a verb's options. Results go to stdout, messages to stderr.\n"
+          "Exit: 0 ok, 1 usage, 2 file cannot be read or written, 3 invalid input, 4 internal,\n"
+          "5 unsupported, 7 a stated limit is passed, 130 cancelled.\n", to);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 2) {
+        print_verbs(stderr);
+        return EXIT_CODE_USAGE;
+    }
+    if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h") || !strcmp(argv[1], "help")) {
+        print_verbs(stdout);
+        return EXIT_CODE_OK;
+    }
+    if (!strcmp(argv[1], "--version")) {
+        uint32_t v = gtx_version();
+        printf("gtx %u.%u.%u\n", v / 10000, v / 100 % 100, v % 100);
+        return EXIT_CODE_OK;
+    }
+    for (size_t i = 0; i < sizeof verbs / sizeof *verbs; ++i)
+        if (!strcmp(argv[1], verbs[i].name))
+            return verbs[i].run(argc - 1, argv + 1);
+    fprintf(stderr, "gtx: error[usage]: unknown verb '%s' (see gtx --help)\n", argv[1]);
+    return EXIT_CODE_USAGE;
+}

@@ -1,0 +1,174 @@
+/* Option tables: parsing and help. */
+#include "cli/cli.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool cli_quiet;
+
+static const option common_options[] = {
+    {"quiet", 'q', OPTION_FLAG, &cli_quiet, NULL, "print errors only", 0, 0},
+    {"help", 'h', OPTION_FLAG, NULL, NULL, "this text", 0, 0},
+    {0}};
+
+static void print_options(const option *options)
+{
+    for (; options->name; ++options) {
+        char left[64];
+        char letter[8] = "    ";
+        if (options->letter)
+            snprintf(letter, sizeof letter, "-%c, ", options->letter);
+        snprintf(left, sizeof left, "%s--%s%s%s", letter, options->name,
+                 options->argument ? " " : "", options->argument ? options->argument : "");
+        printf("  %-34s %s\n", left, options->help);
+    }
+}
+
+static void print_help(const verb *v)
+{
+    printf("gtx %s %s\n%s\n\n", v->name, v->operands, v->summary);
+    print_options(v->options);
+    print_options(common_options);
+}
+
+static int usage(const verb *v, const char *what, const char *which)
+{
+    fprintf(stderr, "gtx %s: error[usage]: %s '%s' (see gtx %s --help)\n", v->name, what, which,
+            v->name);
+    return EXIT_CODE_USAGE;
+}
+
+static bool parse_number(const char *text, char **end, double *out)
+{
+    *out = strtod(text, end);
+    return *end != text && isfinite(*out);
+}
+
+static bool parse_triple(const char *text, double out[3])
+{
+    char *end = (char *)text;
+    for (int i = 0; i < 3; ++i) {
+        if (!parse_number(end, &end, &out[i]) || *end != (i < 2 ? ',' : 0))
+            return false;
+        end += i < 2;
+    }
+    return true;
+}
+
+static bool parse_size(const option *o, const char *text)
+{
+    uint32_t *out = o->value;
+    double w, h;
+    char *end;
+    if (!parse_number(text, &end, &w) || *end != 'x' || !parse_number(end + 1, &end, &h) || *end)
+        return false;
+    if (w != floor(w) || h != floor(h) || w < o->min || h < o->min || w > o->max || h > o->max)
+        return false;
+    out[0] = (uint32_t)w;
+    out[1] = (uint32_t)h;
+    return true;
+}
+
+static bool parse_choice(const option *o, const char *text)
+{
+    uint32_t index = 0;
+    size_t length = strlen(text);
+    for (const char *name = o->argument; name; ++index) {
+        const char *bar = strchr(name, '|');
+        size_t size = bar ? (size_t)(bar - name) : strlen(name);
+        if (size == length && !memcmp(name, text, size)) {
+            *(uint32_t *)o->value = index;
+            return true;
+        }
+        name = bar ? bar + 1 : NULL;
+    }
+    return false;
+}
+
+static bool parse_value(const option *o, const char *text)
+{
+    char *end;
+    double number;
+    switch (o->kind) {
+    case OPTION_STRING:
+        *(const char **)o->value = text;
+        return *text != 0;
+    case OPTION_SIZE: return parse_size(o, text);
+    case OPTION_TRIPLE: return parse_triple(text, o->value);
+    case OPTION_CHOICE: return parse_choice(o, text);
+    default: break;
+    }
+    if (!parse_number(text, &end, &number) || *end || number < o->min || number > o->max)
+        return false;
+    if (o->kind != OPTION_NUMBER && number != floor(number))
+        return false;
+    if (o->kind == OPTION_UINT)
+        *(uint32_t *)o->value = (uint32_t)number;
+    else if (o->kind == OPTION_INT)
+        *(int32_t *)o->value = (int32_t)number;
+    else
+        *(double *)o->value = number;
+    return true;
+}
+
+static const option *find(const option *options, const char *name, size_t length)
+{
+    for (; options->name; ++options) {
+        bool is_long = length > 1 && strlen(options->name) == length;
+        if (is_long ? !memcmp(options->name, name, length) : length == 1 && options->letter == *name)
+            return options;
+    }
+    return NULL;
+}
+
+int parse_options(const verb *v, int argc, char **argv, const char **operands, int *count)
+{
+    bool only_operands = false;
+    *count = 0;
+    for (int i = 1; i < argc; ++i) {
+        const char *text = argv[i];
+        if (only_operands || text[0] != '-' || !text[1]) {
+            if (*count == v->max_operands)
+                return usage(v, "one operand too many:", text);
+            operands[(*count)++] = text;
+            continue;
+        }
+        if (!strcmp(text, "--")) {
+            only_operands = true;
+            continue;
+        }
+        const char *name = text + (text[1] == '-' ? 2 : 1);
+        const char *equals = text[1] == '-' ? strchr(name, '=') : NULL;
+        size_t length = equals ? (size_t)(equals - name) : strlen(name);
+        const option *o = find(v->options, name, length);
+        if (!o)
+            o = find(common_options, name, length);
+        if (!o || (text[1] != '-' && length != 1))
+            return usage(v, "unknown option", text);
+        if (o->kind == OPTION_FLAG) {
+            if (equals)
+                return usage(v, "no value belongs to", text);
+            if (!o->value) {
+                print_help(v);
+                return EXIT_CODE_OK;
+            }
+            *(bool *)o->value = true;
+            continue;
+        }
+        const char *value = equals ? equals + 1 : i + 1 < argc ? argv[++i] : NULL;
+        if (!value)
+            return usage(v, "a value is missing after", text);
+        if (!parse_value(o, value)) {
+            fprintf(stderr, "gtx %s: error[usage]: --%s wants %s, not '%s'", v->name, o->name,
+                    o->argument, value);
+            if (o->max > o->min)
+                fprintf(stderr, " (%g to %g)", o->min, o->max);
+            fputc('\n', stderr);
+            return EXIT_CODE_USAGE;
+        }
+    }
+    if (*count < v->min_operands)
+        return usage(v, "operands are missing: expected", v->operands);
+    return -1;
+}

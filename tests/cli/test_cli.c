@@ -1,0 +1,369 @@
+/* The command as a script sees it: exit codes, one clear line, whole files or none. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+static char folder[64];
+static char output[65536]; /* of the last command, stdout then stderr */
+
+/* Runs `gtx ARGUMENTS` in the test's folder; returns the exit code. */
+static int gtx(const char *format, ...)
+{
+    char arguments[1024], command[2048];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(arguments, sizeof arguments, format, args);
+    va_end(args);
+    snprintf(command, sizeof command, "cd %s && '%s' %s 2>stderr.txt", folder, getenv("GTX"),
+             arguments);
+    FILE *pipe = popen(command, "r");
+    assert_non_null(pipe);
+    size_t size = fread(output, 1, sizeof output - 1, pipe);
+    int status = pclose(pipe);
+    char path[128];
+    snprintf(path, sizeof path, "%s/stderr.txt", folder);
+    FILE *errors = fopen(path, "r");
+    if (errors) {
+        size += fread(output + size, 1, sizeof output - 1 - size, errors);
+        fclose(errors);
+    }
+    output[size] = 0;
+    if (!WIFEXITED(status))
+        fail_msg("gtx %s died by signal: %s", arguments, output);
+    return WEXITSTATUS(status);
+}
+
+static void expect(int code, int wanted)
+{
+    if (code != wanted)
+        fail_msg("exit code %d instead of %d: %s", code, wanted, output);
+}
+
+static void expect_text(const char *text)
+{
+    if (!strstr(output, text))
+        fail_msg("'%s' is not in: %s", text, output);
+}
+
+static char *in_folder(const char *name)
+{
+    static char path[4][192];
+    static unsigned turn;
+    turn = (turn + 1) % 4;
+    snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
+    return path[turn];
+}
+
+static bool exists(const char *name)
+{
+    struct stat info;
+    return stat(in_folder(name), &info) == 0;
+}
+
+static void write_file(const char *name, const void *data, size_t size)
+{
+    FILE *file = fopen(in_folder(name), "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(data, 1, size, file), size);
+    fclose(file);
+}
+
+static char *slurp(const char *name, size_t *size)
+{
+    FILE *file = fopen(in_folder(name), "rb");
+    assert_non_null(file);
+    fseek(file, 0, SEEK_END);
+    *size = (size_t)ftell(file);
+    rewind(file);
+    char *data = malloc(*size + 1);
+    assert_non_null(data);
+    assert_int_equal(fread(data, 1, *size, file), *size);
+    fclose(file);
+    return data;
+}
+
+/* A closed bumpy sphere of 2 * n * n * 2 triangles or so. */
+static void write_sphere(const char *name, unsigned n)
+{
+    FILE *file = fopen(in_folder(name), "w");
+    const double pi = acos(-1);
+    unsigned columns = 2 * n;
+    assert_non_null(file);
+    fprintf(file, "v 0 1 0\nv 0 -1 0\n");
+    for (unsigned i = 1; i < n; ++i)
+        for (unsigned j = 0; j < columns; ++j) {
+            double a = pi * i / n, b = 2 * pi * j / columns;
+            double r = 1 + 0.03 * sin(7 * a) * cos(6 * b);
+            fprintf(file, "v %.9g %.9g %.9g\n", r * sin(a) * cos(b), r * cos(a), r * sin(a) * sin(b));
+        }
+    for (unsigned j = 0; j < columns; ++j) {
+        unsigned k = (j + 1) % columns, last = 3 + (n - 2) * columns;
+        fprintf(file, "f 1 %u %u\nf 2 %u %u\n", 3 + k, 3 + j, last + j, last + k);
+        for (unsigned i = 0; i + 2 < n; ++i) {
+            unsigned a = 3 + i * columns, b = a + columns;
+            fprintf(file, "f %u %u %u %u\n", a + j, a + k, b + k, b + j);
+        }
+    }
+    fclose(file);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    if (!getenv("GTX")) {
+        fprintf(stderr, "GTX, the path of the command, is not set\n");
+        return 1;
+    }
+    strcpy(folder, "/tmp/gtx-cli-XXXXXX");
+    if (!mkdtemp(folder))
+        return 1;
+    write_sphere("sphere.obj", 40);
+    return gtx("cook sphere.obj -o sphere.gtx");
+}
+
+static int tear_down(void **state)
+{
+    char command[128];
+    (void)state;
+    snprintf(command, sizeof command, "rm -rf %s", folder);
+    return system(command);
+}
+
+static void usage_is_exit_1(void **state)
+{
+    (void)state;
+    expect(gtx(""), 1);
+    expect(gtx("frobnicate"), 1);
+    expect_text("frobnicate");
+    expect(gtx("cook"), 1);
+    expect(gtx("cook sphere.obj"), 1);
+    expect_text("-o OUT.gtx");
+    expect(gtx("cook sphere.obj -o x.gtx --resolution 7"), 1);
+    expect_text("64 to 512");
+    expect(gtx("cook sphere.obj -o x.gtx --unknown"), 1);
+    expect(gtx("cook sphere.obj -o x.gtx --charts"), 1);
+    expect(gtx("cook sphere.obj -o x.gtx --height-bits 12"), 1);
+    expect(gtx("info"), 1);
+    expect(gtx("info a b"), 1);
+    assert_false(exists("x.gtx"));
+}
+
+static void help_is_exit_0(void **state)
+{
+    static const char *const verbs[] = {"cook", "info", "validate", "render", "compare"};
+    (void)state;
+    expect(gtx("--help"), 0);
+    expect(gtx("--version"), 0);
+    for (size_t i = 0; i < sizeof verbs / sizeof *verbs; ++i) {
+        expect(gtx("%s --help", verbs[i]), 0);
+        expect_text(verbs[i]);
+    }
+}
+
+static void a_missing_file_is_exit_2(void **state)
+{
+    (void)state;
+    expect(gtx("cook none.obj -o x.gtx"), 2);
+    expect_text("none.obj: error[read]:");
+    expect(gtx("info none.gtx"), 2);
+    expect(gtx("validate none.gtx"), 2);
+    expect(gtx("compare none.gtx sphere.obj"), 2);
+    expect(gtx("compare sphere.gtx none.obj"), 2);
+    expect(gtx("cook sphere.obj -o no/such/folder/x.gtx"), 2);
+    expect(gtx("info ."), 2);
+    expect(gtx("cook . -o x.gtx"), 2);
+    assert_false(exists("x.gtx"));
+}
+
+static void bad_models_are_exit_3_and_write_nothing(void **state)
+{
+    static const struct {
+        const char *name, *text;
+        int code;
+    } cases[] = {
+        {"empty.obj", "", 3},
+        {"points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", 3},
+        {"index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", 3},
+        {"nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 3},
+        {"flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", 3},
+        {"short.ply", "ply\nformat ascii 1.0\nelement vertex 3\n", 3},
+        {"lying.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\n"
+                      "property float x\nproperty float y\nproperty float z\n"
+                      "element face 1\nproperty list uchar int vertex_indices\nend_header\nabc", 3},
+        {"empty.glb", "glTF", 3},
+        {"bad.gltf", "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[{\"attributes\":"
+                     "{\"POSITION\":7}}]}],\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}]}", 3},
+        {"ext.gltf", "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"ACME_x\"],"
+                     "\"extensionsUsed\":[\"ACME_x\"]}", 5},
+        {"noise.drc", "DRACO\002\002\001\001abcdefgh", 3},
+        {"what.xyz", "1 2 3\n", 5},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        write_file(cases[i].name, cases[i].text, strlen(cases[i].text));
+        write_file("kept.gtx", "precious", 8);
+        expect(gtx("cook %s -o kept.gtx", cases[i].name), cases[i].code);
+        expect_text("error[");
+        assert_int_equal(strchr(output, '\n') - output + 1, (long)strlen(output)); /* one line */
+        size_t size;
+        char *kept = slurp("kept.gtx", &size);
+        assert_int_equal(size, 8);
+        assert_memory_equal(kept, "precious", 8);
+        free(kept);
+        assert_false(exists("kept.gtx.tmp"));
+    }
+}
+
+static void one_triangle_cooks(void **state)
+{
+    static const char text[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    (void)state;
+    write_file("one.obj", text, sizeof text - 1);
+    expect(gtx("cook one.obj -o one.gtx"), 0);
+    expect(gtx("validate one.gtx"), 0);
+    expect(gtx("compare one.gtx one.obj --size 256 --min-iou 0.9"), 0);
+}
+
+static void an_asset_is_described(void **state)
+{
+    (void)state;
+    expect(gtx("info sphere.gtx"), 0);
+    expect_text("patches");
+    expect(gtx("info --json sphere.gtx"), 0);
+    expect_text("\"content_hash\": \"0x");
+    expect(gtx("validate sphere.gtx"), 0);
+    expect_text("valid");
+    expect(gtx("validate --json sphere.gtx"), 0);
+    expect_text("\"valid\": true");
+    expect(gtx("cook -q sphere.obj -o again.gtx"), 0);
+    assert_string_equal(output, "");
+}
+
+static void cooking_is_deterministic(void **state)
+{
+    size_t size[2];
+    (void)state;
+    expect(gtx("cook sphere.obj -o one.gtx --threads 1"), 0);
+    expect(gtx("cook sphere.obj -o three.gtx --threads 3"), 0);
+    char *one = slurp("one.gtx", &size[0]), *three = slurp("three.gtx", &size[1]);
+    assert_int_equal(size[0], size[1]);
+    assert_memory_equal(one, three, size[0]);
+    free(one);
+    free(three);
+}
+
+static void broken_assets_name_the_rule(void **state)
+{
+    size_t size;
+    char *good = slurp("sphere.gtx", &size);
+    (void)state;
+    write_file("short.gtx", good, size / 2);
+    expect(gtx("info short.gtx"), 3);
+    expect(gtx("validate short.gtx"), 3);
+    expect_text("105");
+    write_file("stub.gtx", good, 20);
+    expect(gtx("validate stub.gtx"), 3);
+    good[60] ^= 1; /* page_width: the header's hash no longer fits */
+    write_file("flip.gtx", good, size);
+    expect(gtx("info flip.gtx"), 3);
+    expect(gtx("validate flip.gtx"), 3);
+    expect_text("byte");
+    write_file("text.gtx", "hello\n", 6);
+    expect(gtx("validate text.gtx"), 3);
+    expect_text("100");
+    expect(gtx("compare text.gtx sphere.obj"), 3);
+    free(good);
+}
+
+static void comparing_judges_only_stated_limits(void **state)
+{
+    (void)state;
+    expect(gtx("compare sphere.gtx sphere.obj --size 256 --levels 1"), 0);
+    expect_text("silhouette IoU");
+    expect(gtx("compare sphere.gtx sphere.obj --size 256 --levels 1 --max-holes 0 --min-iou 0.98"), 0);
+    expect(gtx("compare sphere.gtx sphere.obj --size 256 --levels 1 --max-rms 1e-12"), 7);
+    expect(gtx("compare sphere.gtx sphere.obj --size 256 --levels 1 --json"), 0);
+    expect_text("\"hole_pixels\"");
+}
+
+static void rendering_writes_a_png(void **state)
+{
+    (void)state;
+    int code = gtx("render sphere.gtx -o sphere.png --size 64x64");
+    if (code == 5)
+        skip(); /* no OpenGL here */
+    expect(code, 0);
+    size_t size;
+    char *png = slurp("sphere.png", &size);
+    assert_true(size > 100);
+    assert_memory_equal(png, "\x89PNG", 4);
+    free(png);
+    expect(gtx("render none.gtx -o x.png"), 2);
+    expect(gtx("render sphere.gtx"), 1);
+    assert_false(exists("x.png"));
+}
+
+/* The interrupt comes at ten moments of a longer cook. */
+static void an_interrupted_cook_leaves_no_half_file(void **state)
+{
+    (void)state;
+    write_sphere("big.obj", 260);
+    for (int moment = 0; moment < 10; ++moment) {
+        write_file("kept.gtx", "precious", 8);
+        pid_t child = fork();
+        assert_true(child >= 0);
+        if (child == 0) {
+            if (chdir(folder) == 0 && freopen("stderr.txt", "w", stderr))
+                execl(getenv("GTX"), "gtx", "cook", "big.obj", "-o", "kept.gtx", (char *)NULL);
+            _exit(99);
+        }
+        struct timespec pause = {0, (20 + 60 * moment) * 1000000};
+        nanosleep(&pause, NULL);
+        kill(child, SIGINT);
+        int status;
+        assert_int_equal(waitpid(child, &status, 0), child);
+        size_t size;
+        char *kept = slurp("kept.gtx", &size);
+        bool cancelled = WIFSIGNALED(status) || WEXITSTATUS(status) == 130;
+        if (cancelled) {
+            assert_int_equal(size, 8);
+            assert_memory_equal(kept, "precious", 8);
+        } else {
+            assert_int_equal(WEXITSTATUS(status), 0);
+            expect(gtx("validate kept.gtx"), 0);
+        }
+        free(kept);
+        assert_false(exists("kept.gtx.tmp"));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(usage_is_exit_1),
+        cmocka_unit_test(help_is_exit_0),
+        cmocka_unit_test(a_missing_file_is_exit_2),
+        cmocka_unit_test(bad_models_are_exit_3_and_write_nothing),
+        cmocka_unit_test(one_triangle_cooks),
+        cmocka_unit_test(an_asset_is_described),
+        cmocka_unit_test(cooking_is_deterministic),
+        cmocka_unit_test(broken_assets_name_the_rule),
+        cmocka_unit_test(comparing_judges_only_stated_limits),
+        cmocka_unit_test(rendering_writes_a_png),
+        cmocka_unit_test(an_interrupted_cook_leaves_no_half_file),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
