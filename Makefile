@@ -61,7 +61,7 @@ cflags_image = $(call pkg,--cflags,OpenImageIO)
 cflags_host  = $(call pkg,--cflags,egl glfw3)
 cflags_cli   = -D_POSIX_C_SOURCE=200809L
 libs_asset   = $(if $(filter 1,$(zstd)),$(call pkg,--libs,libzstd))
-libs_mesh    = $(call pkg,--libs,openmesh draco) -pthread -lstdc++
+libs_mesh    = $(call pkg,--libs,openmesh draco zlib) -pthread -lstdc++
 libs_image   = -ldl
 libs_host    = $(call pkg,--libs,egl glfw3)
 libs_of      = $(strip $(foreach r,$(1),$(libs_$(r)))) -lm
@@ -160,10 +160,13 @@ extra_needs_render  := trace host image
 extra_needs_bake    := derive trace
 extra_needs_chart   :=
 extra_needs_measure := chart bake cook
-common_test_objects := $(patsubst %,$(out)/%.o,$(basename $(wildcard tests/common/*.c)))
+# An archive: a test takes from it only what it asks for, and so needs no room but its own.
+common_tests := $(out)/tests/common.a
+$(common_tests): $(patsubst %,$(out)/%.o,$(basename $(wildcard tests/common/*.c)))
+	$(Q)rm -f $@ && $(AR) rcs $@ $^
 
 define test_rule
-$(out)/$(basename $(1)): $(out)/$(basename $(1)).o $(common_test_objects) \
+$(out)/$(basename $(1)): $(out)/$(basename $(1)).o $(common_tests) \
     $(call objects_of,$(call test_needs,$(call test_room,$(1))))
 	$$(say) LINK $$@
 	$$(Q)$$(CXX) $$(flags) -o $$@ $$^ $$(call libs_of,$$(call test_needs,$(call test_room,$(1)))) $$(call pkg,--libs,cmocka)
@@ -208,7 +211,7 @@ run-demo:
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libdraco-dev libtinygltf-dev nlohmann-json3-dev \
             libglfw3-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri \
-            libopenimageio-dev libzstd-dev libcmocka-dev glslang-tools
+            libopenimageio-dev libzstd-dev zlib1g-dev libcmocka-dev glslang-tools
 
 deps: ## install the Debian packages that are missing (apt-get, with sudo when not root)
 	@missing=; for p in $(packages); do \

@@ -1,0 +1,82 @@
+/* The rules of format/gtx.md: one way of checking for opening, validating and creating. */
+#ifndef GTX_ASSET_CHECK_H
+#define GTX_ASSET_CHECK_H
+
+#include "asset/asset.h"
+#include "asset/section.h"
+#include "base/error.h"
+
+#include <stdbool.h>
+
+typedef enum gtx_rule {
+#define GTX_RULE(number, id, name, result, sentence) GTX_RULE_##id = number,
+#include "asset/rules.def"
+#undef GTX_RULE
+} gtx_rule;
+
+/* A run of checks. The first broken rule fills `error`; `fn` hears of every one. */
+typedef struct gtx_check {
+    gtx_issue_fn fn;              /* may be NULL */
+    void *user;
+    gtx_error *error;             /* may be NULL */
+    bool keep_going;              /* look for more after a broken rule, where that is safe */
+    bool in_file;                 /* offsets mean something */
+    gtx_result result;            /* of the first broken rule or failure */
+    uint64_t broken;              /* rules broken so far */
+    bool failed;                  /* something else went wrong: memory, a limit */
+} gtx_check;
+
+/* Reports a broken rule: its sentence, followed by what was found instead. */
+void gtx_break(gtx_check *check, gtx_rule rule, uint64_t offset, const char *format, ...)
+    GTX_PRINTF(4, 5);
+
+/* Ends the run for a reason that is no rule. */
+void gtx_check_fail(gtx_check *check, gtx_result result, const char *format, ...) GTX_PRINTF(3, 4);
+
+/* Whether the run is over. */
+static inline bool gtx_check_over(const gtx_check *check)
+{
+    return check->failed || (check->broken && !check->keep_going);
+}
+
+/* What a file's header and table say, once they hold. */
+typedef struct gtx_layout {
+    gtx_info info;
+    gtx_section sections[GTX_MAX_SECTIONS];
+    uint32_t section_count;
+    bool known;                   /* the sections can be read */
+} gtx_layout;
+
+/* Header, table and padding of a file. */
+void gtx_check_file(gtx_check *check, const uint8_t *data, uint64_t size, gtx_layout *out);
+
+/* The values of the header that an asset keeps. False when no size may be computed from them. */
+bool gtx_check_info(gtx_check *check, const gtx_info *info);
+
+/* One bit for each block of 2^(mip_count-1) x 2^(mip_count-1) texels of all pages, page by page:
+ * set where a rectangle lies. */
+typedef struct gtx_occupancy {
+    uint64_t *words;
+    size_t word_count;
+    uint32_t shift;               /* log2 of the block's side */
+    uint32_t width, height;       /* blocks a page */
+} gtx_occupancy;
+
+/* Bytes that the occupancy of such an asset takes. */
+uint64_t gtx_occupancy_size(const gtx_info *info);
+
+/* Patch records, rectangles and their overlap. `offset` is that of the first record. Fills
+ * `out`, to be freed with gtx_occupancy_free; it stays empty when a rectangle is no rectangle. */
+void gtx_check_patches(gtx_check *check, const gtx_asset *asset, uint64_t offset,
+                       gtx_occupancy *out);
+void gtx_occupancy_free(gtx_occupancy *occupancy, const gtx_allocator *allocator);
+
+/* Heights against patches: coverage, spheres, bounds, codes outside. The offsets are those of the
+ * patch records and of the height section; `height_stored` says that its bytes lie there as such. */
+void gtx_check_maps(gtx_check *check, const gtx_asset *asset, const gtx_occupancy *occupancy,
+                    uint64_t patch_offset, uint64_t height_offset, bool height_stored);
+
+/* META's text. */
+void gtx_check_meta(gtx_check *check, const char *meta, size_t size, uint64_t offset);
+
+#endif

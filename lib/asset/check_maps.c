@@ -1,0 +1,166 @@
+/* Heights against patches: coverage, spheres, bounds, and that nothing lies outside rectangles. */
+#include "asset/check.h"
+
+#include "base/bytes.h"
+
+#include <math.h>
+
+#define COVERAGE_TOLERANCE 1e-4
+#define SPHERE_TOLERANCE 1e-3
+#define BOUNDS_TOLERANCE 1e-4
+
+/* The box that points must lie in. */
+typedef struct box {
+    double low[3], high[3];
+} box;
+
+/* Without bounds that hold, which was told before, nothing is outside. */
+static box grown_bounds(const gtx_info *info)
+{
+    double diagonal = 0;
+    for (int i = 0; i < 3; ++i) {
+        if (!isfinite(info->bounds_min[i]) || !isfinite(info->bounds_max[i]) ||
+            info->bounds_max[i] < info->bounds_min[i])
+            return (box){{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}};
+        double side = (double)info->bounds_max[i] - info->bounds_min[i];
+        diagonal += side * side;
+    }
+    double slack = BOUNDS_TOLERANCE * sqrt(diagonal);
+    box out;
+    for (int i = 0; i < 3; ++i) {
+        out.low[i] = info->bounds_min[i] - slack;
+        out.high[i] = info->bounds_max[i] + slack;
+    }
+    return out;
+}
+
+static void texel_point(const gtx_patch *patch, double u, double v, double h, double out[3])
+{
+    for (int i = 0; i < 3; ++i)
+        out[i] = patch->origin[i] + u * patch->extent_x * patch->axis_x[i] +
+                 v * patch->extent_y * patch->axis_y[i] + h * patch->extent_z * patch->axis_z[i];
+}
+
+static bool in_sphere(const gtx_patch *patch, const double point[3])
+{
+    double square = 0;
+    for (int i = 0; i < 3; ++i)
+        square += (point[i] - patch->sphere[i]) * (point[i] - patch->sphere[i]);
+    double radius = patch->sphere[3] * (1 + SPHERE_TOLERANCE);
+    return square <= radius * radius;
+}
+
+static bool in_box(const box *bounds, const double point[3])
+{
+    for (int i = 0; i < 3; ++i)
+        if (!(point[i] >= bounds->low[i] && point[i] <= bounds->high[i]))
+            return false;
+    return true;
+}
+
+/* What a walk over the texels of a patch finds. */
+typedef struct patch_finding {
+    uint64_t coded;
+    bool outside_sphere, outside_bounds;
+    double sphere_point[3], bounds_point[3];
+} patch_finding;
+
+static patch_finding walk_patch(const gtx_asset *asset, const gtx_patch *patch, const box *bounds)
+{
+    patch_finding found = {0};
+    double levels = asset->info.height_bits == 8 ? 254 : 65534;
+    uint32_t w = patch->rect[2], h = patch->rect[3];
+    for (uint32_t y = 0; y < h; ++y) {
+        for (uint32_t x = 0; x < w; ++x) {
+            uint32_t code = gtx_height_code(asset, patch, x, y);
+            if (code == 0)
+                continue;
+            ++found.coded;
+            double point[3];
+            texel_point(patch, (x + 0.5) / w, (y + 0.5) / h, (code - 1) / levels, point);
+            if (!found.outside_sphere && !in_sphere(patch, point)) {
+                found.outside_sphere = true;
+                memcpy(found.sphere_point, point, sizeof point);
+            }
+            if (!found.outside_bounds && !in_box(bounds, point)) {
+                found.outside_bounds = true;
+                memcpy(found.bounds_point, point, sizeof point);
+            }
+        }
+    }
+    return found;
+}
+
+static bool finite_frame(const gtx_patch *patch)
+{
+    double sum = (double)patch->coverage + patch->sphere[3]; /* of floats: it cannot overflow */
+    sum += (double)patch->extent_x + patch->extent_y + patch->extent_z;
+    for (int i = 0; i < 3; ++i)
+        sum += (double)patch->origin[i] + patch->axis_x[i] + patch->axis_y[i] + patch->axis_z[i] +
+               patch->sphere[i];
+    return isfinite(sum);
+}
+
+static void check_patch(gtx_check *check, const gtx_asset *asset, uint32_t index, const box *bounds,
+                        uint64_t offset)
+{
+    const gtx_patch *patch = &asset->patches[index];
+    if (!finite_frame(patch)) /* told before */
+        return;
+    patch_finding found = walk_patch(asset, patch, bounds);
+    double share = (double)found.coded / ((double)patch->rect[2] * patch->rect[3]);
+    if (fabs(share - patch->coverage) > COVERAGE_TOLERANCE)
+        gtx_break(check, GTX_RULE_PATCH_COVERAGE, offset + 60, "patch %u says %g and has %g", index,
+                  (double)patch->coverage, share);
+    const double *p = found.sphere_point;
+    if (found.outside_sphere && patch->sphere[3] > 0)
+        gtx_break(check, GTX_RULE_PATCH_SPHERE, offset + 80,
+                  "patch %u has a point at (%g, %g, %g)", index, p[0], p[1], p[2]);
+    p = found.bounds_point;
+    if (found.outside_bounds)
+        gtx_break(check, GTX_RULE_PATCH_BOUNDS, offset, "patch %u has a point at (%g, %g, %g)",
+                  index, p[0], p[1], p[2]);
+}
+
+static bool occupied(const gtx_occupancy *occupancy, uint64_t line, uint32_t x)
+{
+    uint64_t bit = line * occupancy->width + (x >> occupancy->shift);
+    return occupancy->words[bit / 64] >> bit % 64 & 1;
+}
+
+/* The first texel of a page with a code outside every rectangle; false when there is none. */
+static bool find_outside(const gtx_asset *asset, const gtx_occupancy *occupancy, uint32_t page,
+                         uint32_t *out_x, uint32_t *out_y)
+{
+    uint32_t width = asset->info.page_width, height = asset->info.page_height;
+    const gtx_patch whole = {.page = page};
+    for (uint32_t y = 0; y < height; ++y) {
+        uint64_t line = (uint64_t)page * occupancy->height + (y >> occupancy->shift);
+        for (uint32_t x = 0; x < width; ++x) {
+            if (gtx_height_code(asset, &whole, x, y) && !occupied(occupancy, line, x)) {
+                *out_x = x;
+                *out_y = y;
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+void gtx_check_maps(gtx_check *check, const gtx_asset *asset, const gtx_occupancy *occupancy,
+                    uint64_t patch_offset, uint64_t height_offset, bool height_stored)
+{
+    const gtx_info *info = &asset->info;
+    box bounds = grown_bounds(info);
+    for (uint32_t i = 0; i < info->patch_count; ++i)
+        check_patch(check, asset, i, &bounds, patch_offset + sizeof(gtx_patch) * i);
+    for (uint32_t page = 0; page < info->page_count; ++page) {
+        uint32_t x, y;
+        if (!find_outside(asset, occupancy, page, &x, &y))
+            continue;
+        uint64_t texel = ((uint64_t)page * info->page_height + y) * info->page_width + x;
+        uint64_t within = height_stored ? texel * (info->height_bits / 8) : 0;
+        gtx_break(check, GTX_RULE_HEIGHT_OUTSIDE, height_offset + within,
+                  "page %u has a code at (%u, %u)", page, x, y);
+    }
+}

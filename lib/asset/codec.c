@@ -1,0 +1,128 @@
+/* Sections of scheme 2: one zstd frame, with contexts in the caller's memory. */
+#include "asset/codec.h"
+
+#include "base/alloc.h"
+
+#ifdef GTX_ZSTD
+/* Contexts inside given memory, their sizes and frame headers are zstd's "static" interface. */
+#define ZSTD_STATIC_LINKING_ONLY
+#include <zstd.h>
+
+#define LARGEST_WINDOW (1ull << 27)
+
+bool gtx_has_zstd(void)
+{
+    return true;
+}
+
+size_t gtx_decoder_size(void)
+{
+    return ZSTD_estimateDCtxSize();
+}
+
+static bool begin(gtx_codec *codec, const gtx_allocator *allocator, size_t context_size,
+                  size_t filtered_size)
+{
+    *codec = (gtx_codec){.allocator = *allocator, .context_size = context_size,
+                         .filtered_size = filtered_size};
+    codec->context = gtx_alloc_array(allocator, context_size, 1);
+    codec->filtered = gtx_alloc_array(allocator, filtered_size, 1);
+    return codec->context && (codec->filtered || !filtered_size);
+}
+
+bool gtx_decoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t filtered_size)
+{
+    return begin(codec, allocator, ZSTD_estimateDCtxSize(), filtered_size);
+}
+
+bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t filtered_size,
+                       int level)
+{
+    return begin(codec, allocator, ZSTD_estimateCCtxSize(level), filtered_size);
+}
+
+const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx_image image,
+                               const uint8_t *bytes, uint8_t *out)
+{
+    ZSTD_frameHeader frame;
+    size_t stored = (size_t)section->stored_size, size = (size_t)section->size;
+    if (ZSTD_getFrameHeader(&frame, bytes, stored) != 0 || frame.frameType != ZSTD_frame)
+        return "there is no zstd frame";
+    if (frame.frameContentSize != section->size)
+        return "the frame states another size";
+    if (frame.windowSize > LARGEST_WINDOW)
+        return "the frame needs a window above 2^27 bytes";
+    if (ZSTD_findFrameCompressedSize(bytes, stored) != stored)
+        return "the frame does not fill the section";
+
+    ZSTD_DCtx *context = ZSTD_initStaticDCtx(codec->context, codec->context_size);
+    uint8_t *coded = section->filter & GTX_FILTER_PLANES ? codec->filtered : out;
+    if (!context || ZSTD_decompressDCtx(context, coded, size, bytes, stored) != size)
+        return "the frame does not decode";
+    if (section->filter)
+        gtx_filter_undo(image, section->filter, coded, out);
+    return NULL;
+}
+
+size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, gtx_image image, int level,
+                          const uint8_t *data, uint8_t *out)
+{
+    size_t size = (size_t)section->size;
+    if (section->filter) {
+        gtx_filter_apply(image, section->filter, data, codec->filtered);
+        data = codec->filtered;
+    }
+    ZSTD_CCtx *context = ZSTD_initStaticCCtx(codec->context, codec->context_size);
+    if (!context || size < 2)
+        return 0;
+    size_t written = ZSTD_compressCCtx(context, out, size - 1, data, size, level);
+    return ZSTD_isError(written) ? 0 : written;
+}
+
+#else
+
+bool gtx_has_zstd(void)
+{
+    return false;
+}
+
+size_t gtx_decoder_size(void)
+{
+    return 0;
+}
+
+bool gtx_decoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t filtered_size)
+{
+    (void)filtered_size;
+    *codec = (gtx_codec){.allocator = *allocator};
+    return true;
+}
+
+bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t filtered_size,
+                       int level)
+{
+    (void)level;
+    return gtx_decoder_begin(codec, allocator, filtered_size);
+}
+
+const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx_image image,
+                               const uint8_t *bytes, uint8_t *out)
+{
+    (void)codec, (void)section, (void)image, (void)bytes, (void)out;
+    return "this build has no zstd";
+}
+
+size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, gtx_image image, int level,
+                          const uint8_t *data, uint8_t *out)
+{
+    (void)codec, (void)section, (void)image, (void)level, (void)data, (void)out;
+    return 0;
+}
+
+#endif
+
+void gtx_codec_end(gtx_codec *codec)
+{
+    gtx_free_array(&codec->allocator, codec->context, codec->context_size, 1);
+    gtx_free_array(&codec->allocator, codec->filtered, codec->filtered_size, 1);
+}

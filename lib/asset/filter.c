@@ -1,0 +1,82 @@
+/* Image filters before compression: planes, and Paeth's predictor (PNG specification, 9.4). */
+#include "asset/codec.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Images of bytes that are predicted on their own: pages, or planes of pages. */
+typedef struct blocks {
+    size_t count, rows, row_bytes, stride; /* stride: from a byte to the one left of it */
+} blocks;
+
+static blocks blocks_of(gtx_image image, uint32_t filter)
+{
+    if (filter & GTX_FILTER_PLANES)
+        return (blocks){(size_t)image.pages * image.texel, image.height, image.width, 1};
+    return (blocks){image.pages, image.height, (size_t)image.width * image.texel, image.texel};
+}
+
+static uint8_t predict(int a, int b, int c)
+{
+    int pa = abs(b - c), pb = abs(a - c), pc = abs(a + b - 2 * c);
+    return (uint8_t)(pa <= pb && pa <= pc ? a : pb <= pc ? b : c);
+}
+
+/* From the last byte to the first: a predictor needs what is not yet replaced. */
+static void paeth_apply(blocks shape, uint8_t *data)
+{
+    size_t row_bytes = shape.row_bytes, stride = shape.stride;
+    for (size_t line = shape.count * shape.rows; line-- > 0;) {
+        uint8_t *row = data + line * row_bytes;
+        bool top = line % shape.rows == 0;
+        for (size_t i = row_bytes; i-- > 0;) {
+            int a = i >= stride ? row[i - stride] : 0;
+            int b = top ? 0 : *(row + i - row_bytes);
+            int c = top || i < stride ? 0 : *(row + i - row_bytes - stride);
+            row[i] = (uint8_t)(row[i] - predict(a, b, c));
+        }
+    }
+}
+
+static void paeth_undo(blocks shape, uint8_t *data)
+{
+    size_t row_bytes = shape.row_bytes, stride = shape.stride;
+    for (size_t line = 0; line < shape.count * shape.rows; ++line) {
+        uint8_t *row = data + line * row_bytes;
+        bool top = line % shape.rows == 0;
+        for (size_t i = 0; i < row_bytes; ++i) {
+            int a = i >= stride ? row[i - stride] : 0;
+            int b = top ? 0 : *(row + i - row_bytes);
+            int c = top || i < stride ? 0 : *(row + i - row_bytes - stride);
+            row[i] = (uint8_t)(row[i] + predict(a, b, c));
+        }
+    }
+}
+
+void gtx_filter_apply(gtx_image image, uint32_t filter, const uint8_t *in, uint8_t *out)
+{
+    size_t size = (size_t)gtx_image_size(image), texels = size / image.texel;
+    if (filter & GTX_FILTER_PLANES) {
+        for (size_t plane = 0; plane < image.texel; ++plane)
+            for (size_t i = 0; i < texels; ++i)
+                out[plane * texels + i] = in[i * image.texel + plane];
+    } else {
+        memcpy(out, in, size);
+    }
+    if (filter & GTX_FILTER_PAETH)
+        paeth_apply(blocks_of(image, filter), out);
+}
+
+void gtx_filter_undo(gtx_image image, uint32_t filter, uint8_t *coded, uint8_t *out)
+{
+    size_t size = (size_t)gtx_image_size(image), texels = size / image.texel;
+    if (filter & GTX_FILTER_PAETH)
+        paeth_undo(blocks_of(image, filter), coded);
+    if (filter & GTX_FILTER_PLANES) {
+        for (size_t plane = 0; plane < image.texel; ++plane)
+            for (size_t i = 0; i < texels; ++i)
+                out[i * image.texel + plane] = coded[plane * texels + i];
+    } else if (out != coded) {
+        memcpy(out, coded, size);
+    }
+}

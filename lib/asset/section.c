@@ -1,0 +1,103 @@
+/* What the sections of an asset are: types, formats, sizes, order and hashes. */
+#include "asset/section.h"
+
+#include "base/bytes.h"
+#include "base/hash.h"
+
+typedef struct kind_row {
+    char type[5];
+    uint32_t flags;
+    uint32_t format;              /* VkFormat; of 8-bit heights */
+    uint32_t texel;               /* bytes; of 8-bit heights */
+    bool levels;
+} kind_row;
+
+#define MUST 1u
+#define FORMAT_R16_UINT 74u
+
+static const kind_row kinds[] = {
+    [GTX_SECTION_PATCHES] = {"PTCH", MUST, 0, 0, false},
+    [GTX_SECTION_HEIGHT] = {"HGHT", MUST, 13, 1, false},
+    [GTX_SECTION_TRIM] = {"TRIM", MUST, 9, 1, false},
+    [GTX_SECTION_NORMAL] = {"NRML", MUST, 16, 2, true},
+    [GTX_SECTION_COLOR] = {"COLR", 0, 43, 4, true},
+    [GTX_SECTION_UNKNOWN] = {"", 0, 0, 0, false},
+    [GTX_SECTION_META] = {"META", 0, 0, 0, false},
+};
+
+gtx_section_kind gtx_section_kind_of(const uint8_t type[4])
+{
+    for (int kind = GTX_SECTION_PATCHES; kind <= GTX_SECTION_META; ++kind)
+        if (kind != GTX_SECTION_UNKNOWN && !memcmp(kinds[kind].type, type, 4))
+            return (gtx_section_kind)kind;
+    return GTX_SECTION_UNKNOWN;
+}
+
+gtx_image gtx_section_image(const gtx_info *info, gtx_section_kind kind, uint32_t level)
+{
+    if (!gtx_section_is_image(kind))
+        return (gtx_image){0};
+    uint32_t texel = kinds[kind].texel;
+    if (kind == GTX_SECTION_HEIGHT)
+        texel = info->height_bits / 8;
+    return (gtx_image){info->page_count, info->page_width >> level, info->page_height >> level,
+                       texel};
+}
+
+gtx_section gtx_section_describe(const gtx_info *info, gtx_section_kind kind, uint32_t level)
+{
+    gtx_section section = {.kind = kind, .flags = kinds[kind].flags, .level = level,
+                           .format = kinds[kind].format};
+    memcpy(section.type, kinds[kind].type, 4);
+    if (kind == GTX_SECTION_HEIGHT && info->height_bits == 16)
+        section.format = FORMAT_R16_UINT;
+    section.size = kind == GTX_SECTION_PATCHES ? (uint64_t)info->patch_count * sizeof(gtx_patch)
+                                               : gtx_image_size(gtx_section_image(info, kind, level));
+    return section;
+}
+
+uint32_t gtx_asset_sections(const gtx_asset *asset, gtx_section out[GTX_MAX_KNOWN_SECTIONS])
+{
+    uint32_t count = 0;
+    for (int kind = GTX_SECTION_PATCHES; kind <= GTX_SECTION_META; ++kind) {
+        for (uint32_t level = kinds[kind].levels ? asset->info.mip_count : 1; level-- > 0;) {
+            const void *data = gtx_asset_data(asset, (gtx_section_kind)kind, level);
+            if (!data)
+                continue;
+            gtx_section *section = &out[count++];
+            *section = gtx_section_describe(&asset->info, (gtx_section_kind)kind, level);
+            if (kind == GTX_SECTION_META)
+                section->size = asset->meta_size;
+            section->hash = gtx_hash_bytes(data, (size_t)section->size);
+        }
+    }
+    return count;
+}
+
+void *gtx_asset_data(const gtx_asset *asset, gtx_section_kind kind, uint32_t level)
+{
+    switch (kind) {
+    case GTX_SECTION_PATCHES: return asset->patches;
+    case GTX_SECTION_HEIGHT: return asset->height;
+    case GTX_SECTION_TRIM: return asset->trim;
+    case GTX_SECTION_NORMAL: return asset->normal[level];
+    case GTX_SECTION_COLOR: return asset->color[level];
+    case GTX_SECTION_META: return asset->meta;
+    case GTX_SECTION_UNKNOWN: break;
+    }
+    return NULL;
+}
+
+uint64_t gtx_content_hash(const gtx_section *sections, uint32_t count)
+{
+    gtx_hash hash;
+    gtx_hash_begin(&hash);
+    for (uint32_t i = 0; i < count; ++i) {
+        if (sections[i].kind == GTX_SECTION_META)
+            continue;
+        uint8_t bytes[8];
+        gtx_store_u64(bytes, sections[i].hash);
+        gtx_hash_add(&hash, bytes, 8);
+    }
+    return gtx_hash_end(&hash);
+}

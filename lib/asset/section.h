@@ -1,0 +1,83 @@
+/* Sections of a file: their kinds, order, formats and sizes. */
+#ifndef GTX_ASSET_SECTION_H
+#define GTX_ASSET_SECTION_H
+
+#include "asset/asset.h"
+
+#include <stdbool.h>
+
+#define GTX_HEADER_SIZE 192u
+#define GTX_ENTRY_SIZE 64u
+#define GTX_META_LIMIT (1u << 20)
+
+/* In file order. */
+typedef enum gtx_section_kind {
+    GTX_SECTION_PATCHES,
+    GTX_SECTION_HEIGHT,
+    GTX_SECTION_TRIM,
+    GTX_SECTION_NORMAL,
+    GTX_SECTION_COLOR,
+    GTX_SECTION_UNKNOWN,
+    GTX_SECTION_META
+} gtx_section_kind;
+
+enum { GTX_SCHEME_STORED = 0, GTX_SCHEME_ZSTD = 2 };
+enum { GTX_FILTER_NONE = 0, GTX_FILTER_PAETH = 1, GTX_FILTER_PLANES = 2 }; /* bits: 3 is both */
+
+/* A table entry. */
+typedef struct gtx_section {
+    gtx_section_kind kind;
+    uint8_t type[4];
+    char name[5];                 /* the type, fit for printing */
+    uint32_t flags, level, format;
+    uint64_t offset, stored_size, size;
+    uint32_t scheme, filter;
+    uint64_t hash;
+} gtx_section;
+
+/* The dimensions of an image section; `texel` is bytes a texel. */
+typedef struct gtx_image {
+    uint32_t pages, width, height, texel;
+} gtx_image;
+
+static inline uint64_t gtx_align64(uint64_t n)
+{
+    return (n + 63) & ~(uint64_t)63;
+}
+
+gtx_section_kind gtx_section_kind_of(const uint8_t type[4]);
+
+static inline bool gtx_section_is_image(gtx_section_kind kind)
+{
+    return kind >= GTX_SECTION_HEIGHT && kind <= GTX_SECTION_COLOR;
+}
+
+/* The image of a kind at a level; all zero when the kind is no image. */
+gtx_image gtx_section_image(const gtx_info *info, gtx_section_kind kind, uint32_t level);
+
+static inline uint64_t gtx_image_size(gtx_image image)
+{
+    return (uint64_t)image.pages * image.width * image.height * image.texel;
+}
+
+/* The one entry that is right for a known kind: type, flags, level, format and size (0 for META);
+ * the other fields are 0. */
+gtx_section gtx_section_describe(const gtx_info *info, gtx_section_kind kind, uint32_t level);
+
+/* Entries of all sections of an asset in file order, with their hashes. Returns how many. */
+#define GTX_MAX_KNOWN_SECTIONS (4 + 2 * GTX_MAX_MIPS)
+uint32_t gtx_asset_sections(const gtx_asset *asset, gtx_section out[GTX_MAX_KNOWN_SECTIONS]);
+
+/* The decoded bytes of a section inside the asset. */
+void *gtx_asset_data(const gtx_asset *asset, gtx_section_kind kind, uint32_t level);
+
+/* XXH64 over the section hashes, META left out. */
+uint64_t gtx_content_hash(const gtx_section *sections, uint32_t count);
+
+/* An asset with all its maps, zeroed; freed with gtx_close. NULL when memory is out. */
+gtx_asset *gtx_asset_new(const gtx_allocator *allocator, const gtx_info *info, size_t meta_size);
+
+/* Bytes that gtx_asset_new takes. */
+uint64_t gtx_asset_bytes(const gtx_info *info, size_t meta_size);
+
+#endif

@@ -1,0 +1,183 @@
+/* Encoding an asset as the one file that is right for it, and saving that file whole. */
+#include "asset/codec.h"
+
+#include "asset/header.h"
+#include "base/alloc.h"
+#include "base/error.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* A file in the making. */
+typedef struct writer {
+    const gtx_asset *asset;
+    gtx_allocator allocator;
+    int level;                    /* of zstd; 0 = stored */
+    gtx_codec codec;
+    uint32_t count;
+    gtx_section sections[GTX_MAX_KNOWN_SECTIONS];
+    uint8_t *coded[GTX_MAX_KNOWN_SECTIONS]; /* NULL where stored */
+} writer;
+
+/* The filter that made cooked scans smallest, by type: single bytes are predicted, and bytes that
+ * mean different things are parted first. */
+static uint32_t filter_of(const gtx_asset *asset, gtx_section_kind kind)
+{
+    switch (kind) {
+    case GTX_SECTION_HEIGHT: return asset->info.height_bits == 8 ? 1 : 3;
+    case GTX_SECTION_TRIM: return 1;
+    case GTX_SECTION_NORMAL: return 3;
+    case GTX_SECTION_COLOR: return 3;
+    default: return 0;
+    }
+}
+
+/* Compresses section `i` through `buffer`, which holds the largest one. False: out of memory. */
+static bool compress(writer *w, uint32_t i, uint8_t *buffer)
+{
+    gtx_section *section = &w->sections[i];
+    section->filter = filter_of(w->asset, section->kind);
+    gtx_image image = gtx_section_image(&w->asset->info, section->kind, section->level);
+    const uint8_t *data = gtx_asset_data(w->asset, section->kind, section->level);
+    size_t size = gtx_encode_section(&w->codec, section, image, w->level, data, buffer);
+    if (size == 0) { /* would not get smaller */
+        section->filter = 0;
+        return true;
+    }
+    section->scheme = GTX_SCHEME_ZSTD;
+    section->stored_size = size;
+    w->coded[i] = gtx_alloc_array(&w->allocator, size, 1);
+    if (!w->coded[i])
+        return false;
+    memcpy(w->coded[i], buffer, size);
+    return true;
+}
+
+static bool compress_all(writer *w)
+{
+    size_t largest = 0;
+    for (uint32_t i = 0; i < w->count; ++i)
+        if (w->sections[i].size > largest)
+            largest = (size_t)w->sections[i].size;
+    uint8_t *buffer = gtx_alloc_array(&w->allocator, largest, 1);
+    bool whole = buffer && gtx_encoder_begin(&w->codec, &w->allocator, largest,
+                                             w->level);
+    for (uint32_t i = 0; whole && i < w->count; ++i)
+        whole = compress(w, i, buffer);
+    if (buffer)
+        gtx_codec_end(&w->codec);
+    gtx_free_array(&w->allocator, buffer, largest, 1);
+    return whole;
+}
+
+/* Gives every section its place; returns the size of the file. */
+static uint64_t place(writer *w)
+{
+    uint64_t end = GTX_HEADER_SIZE + (uint64_t)GTX_ENTRY_SIZE * w->count;
+    for (uint32_t i = 0; i < w->count; ++i) {
+        gtx_section *section = &w->sections[i];
+        if (section->scheme == GTX_SCHEME_STORED)
+            section->stored_size = section->size;
+        section->offset = end;
+        end = gtx_align64(end + section->stored_size);
+    }
+    return end;
+}
+
+static void emit(const writer *w, uint8_t *bytes, uint64_t size)
+{
+    gtx_header_store(bytes, &w->asset->info, w->sections, w->count, size);
+    for (uint32_t i = 0; i < w->count; ++i) {
+        const gtx_section *section = &w->sections[i];
+        const void *data = w->coded[i];
+        if (!data)
+            data = gtx_asset_data(w->asset, section->kind, section->level);
+        memcpy(bytes + section->offset, data, (size_t)section->stored_size);
+    }
+}
+
+static gtx_result write_all(writer *w, void **data, size_t *size, gtx_error *error)
+{
+    w->count = gtx_asset_sections(w->asset, w->sections);
+    if (w->level && !compress_all(w))
+        return gtx_fail(error, GTX_ERROR_MEMORY, "out of memory for compressing");
+    uint64_t total = place(w);
+    uint8_t *bytes = total > SIZE_MAX ? NULL
+                                      : gtx_alloc_array(&w->allocator, (size_t)total, 1);
+    if (!bytes)
+        return gtx_fail(error, GTX_ERROR_MEMORY, "out of memory for the bytes of a file");
+    emit(w, bytes, total);
+    *data = bytes;
+    *size = (size_t)total;
+    return GTX_OK;
+}
+
+gtx_result gtx_encode(const gtx_asset *asset, const gtx_encode_desc *desc, void **data,
+                      size_t *size, gtx_error *error)
+{
+    static const gtx_encode_desc stored = {0};
+    if (!desc)
+        desc = &stored;
+    if (!asset || !data || !size)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "gtx_encode needs an asset and a result");
+    gtx_result result = gtx_check_reserved(desc->reserved, 5, error);
+    if (result)
+        return result;
+    if (desc->zstd_level < 0 || desc->zstd_level > 19)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "zstd_level is 0..19, not %d", desc->zstd_level);
+    if (desc->zstd_level && !gtx_has_zstd())
+        return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "this build has no zstd");
+
+    writer w = {.asset = asset,
+                     .allocator = gtx_allocator_or_default(desc->allocator),
+                     .level = desc->zstd_level};
+    result = write_all(&w, data, size, error);
+    for (uint32_t i = 0; i < w.count; ++i)
+        gtx_free_array(&w.allocator, w.coded[i], (size_t)w.sections[i].stored_size, 1);
+    return result;
+}
+
+/* Writes `data` to a file and makes sure that all of it got there. */
+static bool write_file(const char *path, const void *data, size_t size)
+{
+    FILE *file = fopen(path, "wb");
+    if (!file)
+        return false;
+    bool whole = fwrite(data, 1, size, file) == size;
+    return fclose(file) == 0 && whole;
+}
+
+static gtx_result save_bytes(const char *path, const gtx_allocator *allocator, const void *data,
+                             size_t size, gtx_error *error)
+{
+    size_t length = strlen(path) + sizeof ".tmp";
+    char *temporary = gtx_alloc_array(allocator, length, 1);
+    if (!temporary)
+        return gtx_fail(error, GTX_ERROR_MEMORY, "out of memory for a path");
+    snprintf(temporary, length, "%s.tmp", path);
+    gtx_result result = GTX_OK;
+    if (!write_file(temporary, data, size))
+        result = gtx_fail(error, GTX_ERROR_WRITE, "cannot write %s", temporary);
+    else if (rename(temporary, path))
+        result = gtx_fail(error, GTX_ERROR_WRITE, "cannot rename %s to %s", temporary, path);
+    if (result)
+        remove(temporary);
+    gtx_free_array(allocator, temporary, length, 1);
+    return result;
+}
+
+gtx_result gtx_save_file(const gtx_asset *asset, const char *path, const gtx_encode_desc *desc,
+                         gtx_error *error)
+{
+    if (!path)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "the path to save to is NULL");
+    void *data;
+    size_t size;
+    gtx_result result = gtx_encode(asset, desc, &data, &size, error);
+    if (result)
+        return result;
+    gtx_allocator allocator = gtx_allocator_or_default(desc ? desc->allocator : NULL);
+    result = save_bytes(path, &allocator, data, size, error);
+    gtx_free_array(&allocator, data, size, 1);
+    return result;
+}

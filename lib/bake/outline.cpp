@@ -1,0 +1,150 @@
+/* Where the true surface ends: outline edges, distances to them, and the trim map. */
+#include "bake/patch_maps.hpp"
+
+#include <algorithm>
+
+namespace gtx {
+
+constexpr uint32_t NO_EDGE = 0xffffffffu;
+
+double nearest_parameter(const OutlineEdge &edge, double u, double v)
+{
+    double ex = edge.to.x - edge.from.x, ey = edge.to.y - edge.from.y;
+    double square = ex * ex + ey * ey;
+    if (square <= 0)
+        return 0;
+    return std::clamp(((u - edge.from.x) * ex + (v - edge.from.y) * ey) / square, 0., 1.);
+}
+
+static double distance_square(const OutlineEdge &edge, double u, double v)
+{
+    double at = nearest_parameter(edge, u, v);
+    double dx = edge.from.x + at * (edge.to.x - edge.from.x) - u;
+    double dy = edge.from.y + at * (edge.to.y - edge.from.y) - v;
+    return dx * dx + dy * dy;
+}
+
+/* Distances while they are being found, squared. */
+struct DistanceField {
+    const Grid &grid;
+    Outline &outline;
+
+    void offer(int i, int j, uint32_t edge)
+    {
+        size_t texel = size_t(j) * grid.w + i;
+        if (outline.nearest[texel] == edge)
+            return;
+        float square = float(distance_square(outline.edges[edge], i, j));
+        if (square < outline.distance[texel]) {
+            outline.distance[texel] = square;
+            outline.nearest[texel] = edge;
+        }
+    }
+
+    /* Every texel within two of the edge. */
+    void splat(uint32_t edge)
+    {
+        constexpr double REACH = 2;
+        const Vec3d &p = outline.edges[edge].from, &q = outline.edges[edge].to;
+        int x0 = int(std::ceil(std::max(std::min(p.x, q.x) - REACH, 0.)));
+        int y0 = int(std::ceil(std::max(std::min(p.y, q.y) - REACH, 0.)));
+        int x1 = int(std::floor(std::min(std::max(p.x, q.x) + REACH, grid.w - 1.)));
+        int y1 = int(std::floor(std::min(std::max(p.y, q.y) + REACH, grid.h - 1.)));
+        for (int j = y0; j <= y1; ++j)
+            for (int i = x0; i <= x1; ++i)
+                offer(i, j, edge);
+    }
+
+    void offer_from(int i, int j, int di, int dj)
+    {
+        int x = i + di, y = j + dj;
+        if (x < 0 || y < 0 || x >= grid.w || y >= grid.h)
+            return;
+        uint32_t edge = outline.nearest[size_t(y) * grid.w + x];
+        if (edge != NO_EDGE)
+            offer(i, j, edge);
+    }
+
+    /* Passes nearest edges on across the grid (Danielsson 1980, with edges in place of points). */
+    void sweep(bool down)
+    {
+        int back = down ? -1 : 1;
+        for (int row = 0; row < grid.h; ++row) {
+            int j = down ? row : grid.h - 1 - row;
+            for (int i = 0; i < grid.w; ++i) {
+                offer_from(i, j, -1, 0);
+                for (int di = -1; di <= 1; ++di)
+                    offer_from(i, j, di, back);
+            }
+            for (int i = grid.w - 1; i >= 0; --i)
+                offer_from(i, j, 1, 0);
+        }
+    }
+};
+
+Outline find_outline(const FlatChart &chart, size_t count)
+{
+    Outline outline;
+    auto collect = [&](bool inner) {
+        for (size_t t = 0; t < count; ++t) {
+            const FlatTriangle &triangle = chart.triangles[t];
+            for (int k = 0; triangle.front && k < 3; ++k)
+                if (inner || chart.mate[t][k] >= count) /* NO_TRIANGLE is the largest of all */
+                    outline.edges.push_back(
+                        {triangle.corner[k], triangle.corner[(k + 1) % 3], uint32_t(t), k});
+        }
+    };
+    collect(false);
+    if (outline.edges.empty()) /* a closed shred seen edge-on has no outline but its edges */
+        collect(true);
+    outline.nearest.assign(chart.grid.texels(), NO_EDGE);
+    outline.distance.assign(chart.grid.texels(), INFINITY);
+    DistanceField field{chart.grid, outline};
+    for (size_t e = 0; e < outline.edges.size(); ++e)
+        field.splat(uint32_t(e));
+    field.sweep(true);
+    field.sweep(false);
+    for (float &d : outline.distance)
+        d = std::sqrt(d);
+    return outline;
+}
+
+/* Lowers the distances around a point of the core that bilinear lookup would cut away: the tip of a
+ * corner, or a sliver that passes between texel centres. */
+static void show_point(const Grid &grid, double u, double v, std::vector<float> &trim)
+{
+    constexpr double AIM = SHOWN - 1.0 / 16; /* a code below the limit */
+    int i = std::clamp(int(u), 0, grid.w - 2), j = std::clamp(int(v), 0, grid.h - 2);
+    float *a = &trim[size_t(j) * grid.w + i], *b = a + grid.w;
+    double x = u - i, y = v - j;
+    double d = (a[0] * (1 - x) + a[1] * x) * (1 - y) + (b[0] * (1 - x) + b[1] * x) * y;
+    if (d <= AIM)
+        return;
+    for (float *corner : {a, a + 1, b, b + 1})
+        *corner -= float(d - AIM);
+}
+
+std::vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Cover &all,
+                                  const Outline &core_outline, const Outline &all_outline)
+{
+    const Grid &grid = chart.grid;
+    std::vector<float> trim(grid.texels());
+    for (size_t i = 0; i < trim.size(); ++i) {
+        bool in_core = core.triangle[i] != NO_TRIANGLE && core.triangle[i] < chart.core;
+        bool in_all = all.triangle[i] != NO_TRIANGLE;
+        float to_core = in_core ? -core_outline.distance[i] : core_outline.distance[i];
+        float to_all = in_all ? -all_outline.distance[i] : all_outline.distance[i];
+        trim[i] = std::max(to_all, to_core - float(OVERLAP));
+    }
+    for (const OutlineEdge &edge : core_outline.edges) {
+        Vec3d along = edge.to - edge.from;
+        int steps = 1 + int(2 * std::hypot(along.x, along.y));
+        for (int s = 0; s < steps; ++s) {
+            Vec3d p = edge.from + along * (double(s) / steps);
+            show_point(grid, p.x, p.y, trim);
+        }
+    }
+    return trim;
+}
+
+} // namespace gtx

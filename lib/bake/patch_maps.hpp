@@ -1,0 +1,126 @@
+/* The inside of this room: a chart laid out in texels, what is found there, the maps that follow. */
+#pragma once
+
+#include "bake/bake.hpp"
+
+namespace gtx {
+
+/* A hit up to this many texels outside the outline belongs to the surface (format/gtx.md, Trim). */
+constexpr double SHOWN = 0.3;
+/* Source surface beyond a chart's border counts as true up to this many texels from it. */
+constexpr double OVERLAP = 1.5;
+
+using Neighbours = std::vector<std::array<uint32_t, 3>>;
+
+/* The working grid of a chart: texel space (u, v, c), where texel (i, j) lies at u = i, v = j, and
+ * c stays in object units along the frame's z. */
+struct Grid {
+    Vec3d origin;          /* of the frame */
+    Vec3d dual[3];         /* reciprocal axes: local coordinate k is dot(dual[k], p - origin) */
+    double pitch[2] = {};  /* object units a texel */
+    double corner[2] = {}; /* local (a, b) of the outer corner of texel (0, 0) */
+    int w = 0, h = 0;
+
+    Vec3d texel(const Vec3d &point) const
+    {
+        Vec3d p = point - origin;
+        return {(dot(dual[0], p) - corner[0]) / pitch[0] - 0.5,
+                (dot(dual[1], p) - corner[1]) / pitch[1] - 0.5, dot(dual[2], p)};
+    }
+    double coarse_pitch() const { return pitch[0] > pitch[1] ? pitch[0] : pitch[1]; }
+    size_t texels() const { return size_t(w) * h; }
+};
+
+/* A triangle of the chart (or of its overlap) in texel space. */
+struct FlatTriangle {
+    Vec3d corner[3];
+    uint32_t source;       /* its index in the mesh */
+    bool front;            /* faces the frame, so that it can be seen in the map */
+};
+
+/* The true surface of a chart: first `core` triangles of its own, then those of its overlap. */
+struct FlatChart {
+    Grid grid;
+    std::vector<FlatTriangle> triangles;
+    size_t core = 0;
+    /* mate[t][k] is the index here of the front-facing triangle across edge k, or NO_TRIANGLE. */
+    Neighbours mate;
+};
+
+FlatChart flatten(const Mesh &mesh, const Neighbours &neighbours, const Chart &chart, double pitch);
+
+/* What lies at each texel centre of the grid. */
+struct Cover {
+    std::vector<double> height;     /* c, where covered */
+    std::vector<uint32_t> triangle; /* index in FlatChart::triangles, NO_TRIANGLE where empty */
+};
+
+/* The outline of a set of triangles: the edges where its front-facing surface ends, and for each
+ * texel of the grid the nearest of them. */
+struct OutlineEdge {
+    Vec3d from, to;                 /* texel space */
+    uint32_t triangle;
+    int side;                       /* the edge from its corner `side` to the next */
+};
+struct Outline {
+    std::vector<OutlineEdge> edges;
+    std::vector<uint32_t> nearest;  /* edge, per texel */
+    std::vector<float> distance;    /* to it, in texels, unsigned; exact up to two texels */
+};
+/* The nearest point of an edge to (u, v): its parameter, 0 at `from` and 1 at `to`. */
+double nearest_parameter(const OutlineEdge &edge, double u, double v);
+
+/* Centre samples of the core, topmost first. */
+Cover raster_core(const FlatChart &chart);
+/* Adds the overlap at texels the core left empty, where it continues the core's border. */
+void raster_overlap(const FlatChart &chart, const Outline &core, Cover &cover);
+
+/* The outline of the first `count` triangles. */
+Outline find_outline(const FlatChart &chart, size_t count);
+
+/* Signed distances to the outline of the true surface, per texel, in texels. */
+std::vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Cover &all,
+                                  const Outline &core_outline, const Outline &all_outline);
+
+/* Which texels need a code: the corners of every cell where a hit may be shown. */
+std::vector<uint8_t> find_support(const Grid &grid, const std::vector<float> &trim);
+/* Gives every supported texel that nothing covers the height of the surface continued there. */
+void extrapolate(const FlatChart &chart, const Outline &outline,
+                 const std::vector<uint8_t> &support, Cover &cover);
+
+/* The maps of one patch, `rect` still without its place on a page. */
+struct PatchMaps {
+    gtx_patch record = {};
+    std::vector<uint16_t> height;             /* codes */
+    std::vector<uint8_t> trim;
+    std::vector<std::vector<uint8_t>> normal; /* a level each, 2 bytes a texel */
+    std::vector<std::vector<uint8_t>> color;  /* a level each, 4 bytes a texel, or none */
+    Vec3d low, high;                          /* of the coded texels' points */
+    uint64_t coded = 0;
+};
+
+/* Normal and colour of a texel before they are stored. */
+struct Shade {
+    Vec3f normal;                   /* object space, unit */
+    float color[4] = {0, 0, 0, 0};  /* linear light, and alpha */
+};
+/* The shade of texel (i, j): of the triangle that covers it, else of the nearest outline point. */
+Shade shade_texel(const Mesh &mesh, const FlatChart &chart, const Outline &outline,
+                  const Cover &cover, int i, int j);
+
+/* Encodes a shade a texel (w x h, `occupied` says which are set) as all levels of normal and
+ * colour, dilated. `patch` gives the rectangle, axes and dilation. */
+void build_mips(std::vector<Shade> shades, std::vector<uint8_t> occupied, unsigned mips,
+                bool color, PatchMaps &patch);
+
+/* Places rectangles whose sides are multiples of `grain` on pages of one size, as full as it can. */
+struct Packing {
+    struct Place {
+        uint32_t page, x, y;
+    };
+    std::vector<Place> places;
+    uint32_t page_count = 0, width = 0, height = 0;
+};
+Packing pack(const std::vector<std::array<uint32_t, 2>> &sizes, uint32_t grain);
+
+} // namespace gtx

@@ -1,0 +1,44 @@
+/* The sRGB transfer function (IEC 61966-2-1) by table. */
+#include "bake/srgb.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace gtx {
+
+static float decode(double s)
+{
+    return float(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+}
+
+struct Tables {
+    std::array<float, 256> light;   /* of a code */
+    std::array<float, 255> between; /* light at which code i gives way to i + 1 */
+    Tables()
+    {
+        for (int i = 0; i < 256; ++i)
+            light[i] = decode(i / 255.0);
+        for (int i = 0; i < 255; ++i)
+            between[i] = decode((i + 0.5) / 255);
+    }
+};
+
+static const Tables &tables()
+{
+    static const Tables t;
+    return t;
+}
+
+float srgb_to_linear(uint8_t code)
+{
+    return tables().light[code];
+}
+
+uint8_t linear_to_srgb(float light)
+{
+    const auto &between = tables().between;
+    return uint8_t(std::lower_bound(between.begin(), between.end(), light) - between.begin());
+}
+
+} // namespace gtx

@@ -1,0 +1,109 @@
+/* The partition as a coloured PLY (paper, Figure 5). */
+#include "chart/frame.hpp"
+
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+namespace gtx {
+
+namespace {
+
+/* Hues a golden ratio apart, clear of green, which marks inverted triangles. */
+Rgba8 chart_color(uint32_t chart)
+{
+    double turn = std::fmod(chart * 0.6180339887, 1.) * 0.7;
+    double hue = 6 * (turn < 0.2 ? turn : turn + 0.3), light = 0.75 + 0.25 * (chart % 3 == 0);
+    auto channel = [=](double at) {
+        double away = std::abs(std::fmod(hue - at + 9, 6.) - 3);
+        return uint8_t(255 * light * std::min(1., 0.25 + std::max(0., 1.5 - away)));
+    };
+    return {channel(0), channel(2), channel(4), 255};
+}
+
+/* Triangles that face away from the median normal of their initial chart. */
+std::vector<bool> initially_inverted(const Mesh &mesh, const Partition &partition)
+{
+    std::vector<std::vector<uint32_t>> charts(partition.report.initial_charts);
+    for (uint32_t t = 0; t < mesh.triangle_count(); ++t)
+        charts[partition.initial_chart[t]].push_back(t);
+    std::vector<bool> out(mesh.triangle_count());
+    for (const std::vector<uint32_t> &chart : charts) {
+        Vec3d z = median_axis(mesh, chart);
+        for (uint32_t t : chart)
+            out[t] = dot(mesh.area_vector(t), z) <= 0;
+    }
+    return out;
+}
+
+struct Close {
+    void operator()(std::FILE *file) const { std::fclose(file); }
+};
+
+/* Numbers in the machine's byte order, which the header names. */
+class PlyFile {
+public:
+    explicit PlyFile(const std::string &path) : file_(std::fopen(path.c_str(), "wb"))
+    {
+        good_ = file_ != nullptr;
+    }
+    void put(const void *data, size_t size)
+    {
+        good_ = good_ && std::fwrite(data, 1, size, file_.get()) == size;
+    }
+    bool close()
+    {
+        std::FILE *file = file_.release();
+        return file && std::fclose(file) == 0 && good_;
+    }
+
+private:
+    std::unique_ptr<std::FILE, Close> file_;
+    bool good_;
+};
+
+bool little_endian()
+{
+    uint16_t one = 1;
+    uint8_t first;
+    std::memcpy(&first, &one, 1);
+    return first == 1;
+}
+
+std::string header(const Mesh &mesh)
+{
+    return std::string("ply\nformat binary_") + (little_endian() ? "little" : "big") +
+           "_endian 1.0\nelement vertex " + std::to_string(mesh.positions.size()) +
+           "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+           std::to_string(mesh.triangle_count()) +
+           "\nproperty list uchar int vertex_indices\nproperty uchar red\n"
+           "property uchar green\nproperty uchar blue\nproperty int chart\nend_header\n";
+}
+
+} // namespace
+
+void write_charts_ply(const std::string &path, const Mesh &mesh, const Partition &partition)
+{
+    std::vector<bool> inverted = initially_inverted(mesh, partition);
+    std::string temporary = path + ".part";
+    PlyFile file(temporary);
+    std::string head = header(mesh);
+    file.put(head.data(), head.size());
+    for (const Vec3d &p : mesh.positions)
+        file.put(&p, sizeof p);
+    for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+        uint32_t chart = partition.initial_chart[t];
+        Rgba8 c = inverted[t] ? Rgba8{0, 255, 0, 255} : chart_color(chart);
+        uint8_t corners = 3, rgb[3] = {c.r, c.g, c.b};
+        file.put(&corners, 1);
+        file.put(mesh.triangles[t].data(), 12);
+        file.put(rgb, 3);
+        file.put(&chart, 4);
+    }
+    if (file.close() && !std::rename(temporary.c_str(), path.c_str()))
+        return;
+    std::remove(temporary.c_str());
+    throw Error(GTX_ERROR_WRITE, path + ": cannot be written");
+}
+
+} // namespace gtx

@@ -1,0 +1,274 @@
+/* The axis, the least rectangle and the minimax tilt of a chart's frame. */
+#include "chart/frame.hpp"
+
+#include <algorithm>
+
+namespace gtx {
+
+namespace {
+
+constexpr double DEVIANT_AREA = 0.005;
+constexpr int CONE_STEPS = 100;
+constexpr int LAWSON_STEPS = 11;
+/* Steepest tilt of each axis: det(x, y, z) is then at least 1 / (1 + 1.5^2) > 0.3. */
+constexpr double STEEPEST_TILT = 1.5;
+
+struct Point {
+    double u, v, h;
+};
+
+double turn(const Point &a, const Point &b, const Point &c)
+{
+    return (b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u);
+}
+
+Vec3d any_perpendicular(const Vec3d &z)
+{
+    Vec3d least = std::abs(z.x) <= std::abs(z.y) && std::abs(z.x) <= std::abs(z.z) ? Vec3d(1, 0, 0)
+                  : std::abs(z.y) <= std::abs(z.z)                               ? Vec3d(0, 1, 0)
+                                                                                 : Vec3d(0, 0, 1);
+    return normalize(cross(z, least));
+}
+
+std::vector<uint32_t> vertices_of(const Mesh &mesh, const std::vector<uint32_t> &triangles)
+{
+    std::vector<uint32_t> out;
+    out.reserve(triangles.size() * 3);
+    for (uint32_t t : triangles)
+        out.insert(out.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+}
+
+/* Andrew's monotone chain: the convex hull in the plane, counter-clockwise. */
+std::vector<Point> hull_of(std::vector<Point> points)
+{
+    std::sort(points.begin(), points.end(),
+              [](const Point &a, const Point &b) { return a.u != b.u ? a.u < b.u : a.v < b.v; });
+    std::vector<Point> hull;
+    auto add = [&hull](const Point &p, size_t floor) {
+        while (hull.size() >= floor + 2 &&
+               turn(hull[hull.size() - 2], hull[hull.size() - 1], p) <= 0)
+            hull.pop_back();
+        hull.push_back(p);
+    };
+    for (const Point &p : points)
+        add(p, 0);
+    size_t upper = hull.size() - 1;
+    for (size_t i = points.size() - 1; i-- > 0;)
+        add(points[i], upper);
+    hull.pop_back();
+    return hull;
+}
+
+/* The direction (cos, sin) of the longer side of the least rectangle around points in the plane.
+ * One side of that rectangle lies along an edge of the hull (Freeman, Shapira 1975). */
+Point least_rectangle(const std::vector<Point> &points)
+{
+    std::vector<Point> hull = hull_of(points);
+    Point best = {1, 0, 0};
+    double least = INFINITY;
+    for (size_t i = 0; i < hull.size(); ++i) {
+        const Point &a = hull[i], &b = hull[(i + 1) % hull.size()];
+        double du = b.u - a.u, dv = b.v - a.v, l = std::hypot(du, dv);
+        if (!(l > 0))
+            continue;
+        du /= l;
+        dv /= l;
+        double low = INFINITY, high = -INFINITY, height = 0;
+        for (const Point &p : hull) {
+            double along = du * p.u + dv * p.v;
+            low = std::min(low, along);
+            high = std::max(high, along);
+            height = std::max(height, du * (p.v - a.v) - dv * (p.u - a.u));
+        }
+        if ((high - low) * height >= least)
+            continue;
+        least = (high - low) * height;
+        best = high - low >= height ? Point{du, dv, 0} : Point{-dv, du, 0};
+    }
+    return best;
+}
+
+/* A plane h = a u + b v + c. */
+struct Plane {
+    double a = 0, b = 0, c = 0;
+    double above(const Point &p) const { return p.h - a * p.u - b * p.v - c; }
+};
+
+/* The weighted least-squares plane; false when the points do not span one. */
+bool fit_plane(const std::vector<Point> &points, const std::vector<double> &weights, Plane &out)
+{
+    double w = 0, u = 0, v = 0, h = 0;
+    for (size_t i = 0; i < points.size(); ++i) {
+        w += weights[i];
+        u += weights[i] * points[i].u;
+        v += weights[i] * points[i].v;
+        h += weights[i] * points[i].h;
+    }
+    u /= w, v /= w, h /= w;
+    double uu = 0, uv = 0, vv = 0, uh = 0, vh = 0;
+    for (size_t i = 0; i < points.size(); ++i) {
+        double du = points[i].u - u, dv = points[i].v - v, dh = points[i].h - h;
+        uu += weights[i] * du * du;
+        uv += weights[i] * du * dv;
+        vv += weights[i] * dv * dv;
+        uh += weights[i] * du * dh;
+        vh += weights[i] * dv * dh;
+    }
+    double det = uu * vv - uv * uv;
+    if (!(det > 1e-9 * uu * vv))
+        return false;
+    out.a = (uh * vv - vh * uv) / det;
+    out.b = (vh * uu - uh * uv) / det;
+    out.c = h - out.a * u - out.b * v;
+    return true;
+}
+
+double range_above(const Plane &plane, const std::vector<Point> &points)
+{
+    double low = INFINITY, high = -INFINITY;
+    for (const Point &p : points) {
+        double d = plane.above(p);
+        low = std::min(low, d);
+        high = std::max(high, d);
+    }
+    return high - low;
+}
+
+/* The plane above which points have the least range of height: least squares, reweighted by the
+ * distances they leave (Lawson 1961), which tends to the minimax plane. */
+Plane minimax_plane(const std::vector<Point> &points)
+{
+    Plane best, plane;
+    double least = range_above(best, points);
+    std::vector<double> weights(points.size(), 1);
+    for (int step = 0; step <= LAWSON_STEPS && fit_plane(points, weights, plane); ++step) {
+        double range = range_above(plane, points);
+        bool gentle = std::abs(plane.a) <= STEEPEST_TILT && std::abs(plane.b) <= STEEPEST_TILT;
+        if (gentle && range < least) {
+            least = range;
+            best = plane;
+        }
+        double sum = 0;
+        for (size_t i = 0; i < points.size(); ++i)
+            sum += weights[i] *= std::abs(plane.above(points[i]));
+        if (!(sum > 0))
+            break;
+        for (double &w : weights)
+            w *= double(points.size()) / sum;
+    }
+    return best;
+}
+
+/* The centre of the smallest ball around unit vectors points along the axis of their smallest
+ * cone while that is narrower than a half-space (Badoiu, Clarkson 2003: step to the farthest). */
+Vec3d ball_axis(const std::vector<Vec3f> &normals)
+{
+    Vec3f centre;
+    for (const Vec3f &n : normals)
+        centre += n / float(normals.size());
+    for (int step = 1; step <= CONE_STEPS; ++step) {
+        const Vec3f *farthest = &normals[0];
+        float least = INFINITY;
+        for (const Vec3f &n : normals)
+            if (dot(n, centre) < least) {
+                least = dot(n, centre);
+                farthest = &n;
+            }
+        centre += (*farthest - centre) / float(step + 1);
+    }
+    return normalize(Vec3d(centre));
+}
+
+} // namespace
+
+FrameInverse::FrameInverse(const Frame &frame) : origin(frame.origin)
+{
+    double det = dot(frame.x, cross(frame.y, frame.z));
+    rows[0] = cross(frame.y, frame.z) / det;
+    rows[1] = cross(frame.z, frame.x) / det;
+    rows[2] = cross(frame.x, frame.y) / det;
+}
+
+Vec3d Frame::local(const Vec3d &point) const
+{
+    return FrameInverse(*this)(point);
+}
+
+Vec3d median_axis(const Mesh &mesh, const std::vector<uint32_t> &triangles)
+{
+    std::vector<float> values[3];
+    for (uint32_t t : triangles) {
+        Vec3d normal = normalize(mesh.area_vector(t));
+        for (int i = 0; i < 3; ++i)
+            values[i].push_back(float(normal[i]));
+    }
+    Vec3d median;
+    for (int i = 0; i < 3; ++i) {
+        auto middle = values[i].begin() + ptrdiff_t(values[i].size() / 2);
+        std::nth_element(values[i].begin(), middle, values[i].end());
+        median[i] = *middle;
+    }
+    return length(median) > 1e-3 ? normalize(median) : normalize(mesh.area_vector(triangles[0]));
+}
+
+Vec3d cone_axis(const Surface &surface, const std::vector<uint32_t> &triangles)
+{
+    std::vector<Vec3f> normals;
+    float size = 0;
+    for (uint32_t t : triangles) {
+        normals.push_back(surface.smooth[t]);
+        size += surface.size[t];
+    }
+    Vec3d axis = ball_axis(normals);
+    std::vector<std::pair<float, uint32_t>> order;
+    for (uint32_t t : triangles)
+        order.emplace_back(dot(surface.smooth[t], Vec3f(axis)), t);
+    std::sort(order.begin(), order.end());
+    normals.clear();
+    float dropped = 0;
+    for (const auto &[cosine, t] : order)
+        if ((dropped += surface.size[t]) > DEVIANT_AREA * size)
+            normals.push_back(surface.smooth[t]);
+    axis = ball_axis(normals);
+    return axis == Vec3d() ? Vec3d(surface.smooth[triangles[0]]) : axis;
+}
+
+Frame make_frame(const Mesh &mesh, const std::vector<uint32_t> &triangles, const Vec3d &z)
+{
+    std::vector<uint32_t> vertices = vertices_of(mesh, triangles);
+    Vec3d base = mesh.positions[vertices[0]], u = any_perpendicular(z), v = cross(z, u);
+    std::vector<Point> points;
+    points.reserve(vertices.size());
+    for (uint32_t i : vertices) {
+        Vec3d d = mesh.positions[i] - base;
+        points.push_back({dot(d, u), dot(d, v), dot(d, z)});
+    }
+    Point side = least_rectangle(points);
+    for (Point &p : points)
+        p = {p.u * side.u + p.v * side.v, p.v * side.u - p.u * side.v, p.h};
+
+    Plane plane = minimax_plane(points);
+    Frame frame;
+    frame.x = normalize(u * side.u + v * side.v + z * plane.a);
+    frame.y = normalize(v * side.u - u * side.v + z * plane.b);
+    frame.z = z;
+    frame.origin = base;
+    FrameInverse inverse(frame);
+    Vec3d low(INFINITY, INFINITY, INFINITY), high = -low;
+    for (uint32_t i : vertices) {
+        Vec3d p = inverse(mesh.positions[i]);
+        for (int k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], p[k]);
+            high[k] = std::max(high[k], p[k]);
+        }
+    }
+    frame.origin = frame.point(low);
+    for (int k = 0; k < 3; ++k)
+        frame.extent[k] = high[k] - low[k];
+    return frame;
+}
+
+} // namespace gtx

@@ -1,0 +1,31 @@
+/* Frames of charts: the axis of projection, the rectangle around it, the tilt. */
+#pragma once
+
+#include "chart/chart.hpp"
+#include "chart/surface.hpp"
+
+namespace gtx {
+
+/* The component-wise median of the triangles' normals, normalised (paper, section 5). */
+Vec3d median_axis(const Mesh &mesh, const std::vector<uint32_t> &triangles);
+
+/* The axis of the smallest cone around the smoothed normals, but for the most deviant 0.5 % of
+ * the area. */
+Vec3d cone_axis(const Surface &surface, const std::vector<uint32_t> &triangles);
+
+/* The frame along unit `z`: the rectangle of least area, longer side first, tilted where that
+ * takes away height. */
+Frame make_frame(const Mesh &mesh, const std::vector<uint32_t> &triangles, const Vec3d &z);
+
+/* Affine coordinates in a frame, for many points. */
+struct FrameInverse {
+    Vec3d origin, rows[3];
+    explicit FrameInverse(const Frame &frame);
+    Vec3d operator()(const Vec3d &point) const
+    {
+        Vec3d d = point - origin;
+        return {dot(d, rows[0]), dot(d, rows[1]), dot(d, rows[2])};
+    }
+};
+
+} // namespace gtx

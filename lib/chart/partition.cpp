@@ -1,0 +1,166 @@
+/* The order of partitioning: cluster, split what is no height map, set the density, report. */
+#include "chart/chart.hpp"
+#include "chart/split.hpp"
+#include "chart/vsa.hpp"
+
+#include <algorithm>
+
+namespace gtx {
+
+namespace {
+
+/* No chart's side exceeds the (area-weighted) median side by more than this factor: the longest
+ * side sets the density of the whole model. */
+constexpr double LONGEST_SIDE = 1.8;
+/* Texels of `resolution` that are left to the overlap. */
+constexpr unsigned OVERLAP_TEXELS = 8;
+
+uint32_t chart_count(const Mesh &mesh, const ChartOptions &options)
+{
+    double triangles = double(mesh.triangle_count());
+    double wanted = options.charts ? options.charts
+                                   : std::min(std::round(10 * std::pow(triangles, 0.28)),
+                                              std::ceil(triangles / 2));
+    return uint32_t(std::max(1., std::min(wanted, triangles)));
+}
+
+double long_side(const Frame &frame)
+{
+    return std::max(frame.extent[0], frame.extent[1]);
+}
+
+void report_initial(const Surface &surface, const std::vector<Region> &regions, Task &task,
+                    ChartReport &report)
+{
+    std::vector<uint64_t> inverted(regions.size());
+    task.parallel(regions.size(), [&](size_t i) {
+        Vec3d z = median_axis(surface.mesh, regions[i].triangles);
+        for (uint32_t t : regions[i].triangles)
+            inverted[i] += dot(surface.mesh.area_vector(t), z) <= 0;
+    }, 0.7, 0.72);
+    report.initial_charts = regions.size();
+    for (uint64_t n : inverted) {
+        report.initial_inverted += n;
+        report.initial_folding += n > 0;
+    }
+}
+
+double side_limit(const Surface &surface, const std::vector<Region> &regions, Task &task)
+{
+    std::vector<std::pair<double, double>> sides(regions.size()); /* length, area */
+    task.parallel(regions.size(), [&](size_t i) {
+        const std::vector<uint32_t> &triangles = regions[i].triangles;
+        Frame frame = make_frame(surface.mesh, triangles, median_axis(surface.mesh, triangles));
+        sides[i].first = long_side(frame);
+        for (uint32_t t : triangles)
+            sides[i].second += surface.size[t];
+    }, 0.72, 0.75);
+    std::sort(sides.begin(), sides.end());
+    double half = 0;
+    size_t middle = 0;
+    while (middle + 1 < sides.size() &&
+           (half += sides[middle].second) < 0.5 * double(surface.whole.size()))
+        ++middle;
+    return std::min(sides.back().first, LONGEST_SIDE * sides[middle].first);
+}
+
+/* Splits until every region is a chart; `frames` gets theirs. Returns whether any was split. */
+bool split_all(const Surface &surface, std::vector<Region> &regions, std::vector<Frame> &frames,
+               const Bounds &bounds, Task &task)
+{
+    size_t before = regions.size();
+    std::vector<Region> charts, pending = std::move(regions);
+    frames.clear();
+    while (!pending.empty()) {
+        std::vector<Verdict> verdicts(pending.size());
+        task.parallel(pending.size(), [&](size_t i) {
+            verdicts[i] = judge(surface, pending[i], bounds);
+        }, 0.75, 1);
+        std::vector<Region> next;
+        for (size_t i = 0; i < pending.size(); ++i) {
+            for (Region &piece : verdicts[i].pieces)
+                next.push_back(std::move(piece));
+            if (!verdicts[i].pieces.empty())
+                continue;
+            charts.push_back(std::move(pending[i]));
+            frames.push_back(verdicts[i].frame);
+        }
+        pending = std::move(next);
+    }
+    regions = std::move(charts);
+    return regions.size() != before;
+}
+
+void report_final(const Surface &surface, const std::vector<Region> &regions,
+                  const std::vector<Frame> &frames, Task &task, Partition &out)
+{
+    struct Count {
+        uint64_t inverted, samples, doubled;
+        bool folding;
+    };
+    std::vector<Count> counts(regions.size());
+    task.parallel(regions.size(), [&](size_t i) {
+        Layers layers = find_layers(surface, regions[i], frames[i], out.pitch);
+        counts[i] = {0, layers.samples, layers.doubled, !layers.folds.empty()};
+        for (uint32_t t : regions[i].triangles)
+            counts[i].inverted += is_inverted(surface, t, frames[i].z, out.pitch);
+    });
+    uint64_t samples = 0, doubled = 0;
+    for (const Count &c : counts) {
+        out.report.inverted_triangles += c.inverted;
+        out.report.folding_charts += c.inverted > 0 || c.folding;
+        samples += c.samples;
+        doubled += c.doubled;
+    }
+    out.report.second_layer_fraction = samples ? double(doubled) / double(samples) : 0;
+    double area = 0;
+    for (size_t t = 0; t < surface.junk.size(); ++t)
+        if (surface.junk[t]) {
+            ++out.report.junk_triangles;
+            area += surface.size[t];
+        }
+    out.report.junk_area_fraction = area / double(surface.junk.size());
+}
+
+} // namespace
+
+Partition partition_vsa(const Mesh &mesh, const ChartOptions &options, Task &task)
+{
+    if (!mesh.triangle_count())
+        throw Error(GTX_ERROR_EMPTY, "the mesh has no triangle to partition");
+    task.begin("partition");
+    uint32_t count = chart_count(mesh, options);
+    Surface surface = make_surface(mesh, expected_pitch(mesh, count));
+
+    Partition out;
+    out.initial_chart = cluster(surface, surface.whole, count, task);
+    std::vector<Region> regions = split_region(surface.whole, out.initial_chart, count);
+    surface.whole.neighbours = {};
+    report_initial(surface, regions, task, out.report);
+
+    double texels = double(std::max(options.resolution, 2 * OVERLAP_TEXELS) - OVERLAP_TEXELS);
+    Bounds bounds = {side_limit(surface, regions, task), 0};
+    std::vector<Frame> frames;
+    do { /* what is split makes the texel smaller, and smaller texels see more */
+        bounds.pitch = bounds.side / texels;
+        if (!split_all(surface, regions, frames, bounds, task))
+            break;
+        bounds.side = 0;
+        for (const Frame &frame : frames)
+            bounds.side = std::max(bounds.side, long_side(frame));
+    } while (bounds.side / texels < bounds.pitch);
+    out.pitch = bounds.pitch;
+
+    task.begin("frame");
+    out.junk = surface.junk;
+    report_final(surface, regions, frames, task, out);
+    for (size_t i = 0; i < regions.size(); ++i) {
+        Chart chart = {std::move(regions[i].triangles), frames[i], false};
+        for (uint32_t t : chart.triangles)
+            chart.two_sided |= !mesh.flags.empty() && mesh.flags[t] & TRIANGLE_TWO_SIDED;
+        out.charts.push_back(std::move(chart));
+    }
+    return out;
+}
+
+} // namespace gtx

@@ -1,0 +1,183 @@
+/* Judges regions: too long, too steep, folded, or fit to be a chart. */
+#include "chart/split.hpp"
+
+#include "chart/vsa.hpp"
+
+#include <algorithm>
+#include <queue>
+
+namespace gtx {
+
+namespace {
+
+/* Smoothed normals steeper than this, on more than a small share of the area, are for another
+ * chart: a steep texel stands for much surface, and its height error shows. */
+constexpr double STEEP_COSINE = 0.3;
+constexpr double STEEP_AREA = 0.005;
+
+struct Candidate {
+    Frame frame;
+    bool steep = false, inverted = false;
+    Layers layers;
+
+    bool fits() const { return !steep && !inverted && layers.folds.empty(); }
+};
+
+Candidate try_axis(const Surface &surface, const Region &region, const Vec3d &z,
+                   const Bounds &bounds)
+{
+    Candidate out;
+    float steep = 0, size = 0;
+    for (uint32_t t : region.triangles) {
+        size += surface.size[t];
+        if (dot(Vec3d(surface.smooth[t]), z) < STEEP_COSINE)
+            steep += surface.size[t];
+        out.inverted = out.inverted || is_inverted(surface, t, z, bounds.pitch);
+    }
+    out.steep = region.size() > 1 && steep > STEEP_AREA * size;
+    out.frame = make_frame(surface.mesh, region.triangles, z);
+    if (!out.steep && !out.inverted && out.frame.extent[0] <= bounds.side &&
+        out.frame.extent[1] <= bounds.side)
+        out.layers = find_layers(surface, region, out.frame, bounds.pitch);
+    return out;
+}
+
+std::vector<Region> pieces_of(const Region &region, std::vector<uint32_t> labels)
+{
+    uint32_t count = connected_pieces(region, labels);
+    return split_region(region, labels, count);
+}
+
+/* Straight across the middle of the longer side. What the cut leaves apart from the main piece of
+ * its side goes to the other. */
+std::vector<uint32_t> cut_across(const Surface &surface, const Region &region, const Frame &frame)
+{
+    FrameInverse inverse(frame);
+    int axis = frame.extent[0] >= frame.extent[1] ? 0 : 1;
+    std::vector<uint32_t> side(region.size());
+    std::vector<std::pair<double, uint32_t>> order;
+    for (uint32_t i = 0; i < region.size(); ++i) {
+        Vec3d sum;
+        for (int k = 0; k < 3; ++k)
+            sum += inverse(surface.mesh.position(region.triangles[i], k));
+        order.emplace_back(sum[axis] / 3, i);
+        side[i] = sum[axis] / 3 > frame.extent[axis] / 2;
+    }
+    std::sort(order.begin(), order.end());
+    side[order.front().second] = 0; /* neither side is empty */
+    side[order.back().second] = 1;
+
+    std::vector<uint32_t> piece = side;
+    uint32_t count = connected_pieces(region, piece);
+    std::vector<size_t> size(count);
+    uint32_t main[2] = {NO_TRIANGLE, NO_TRIANGLE};
+    for (uint32_t p : piece)
+        ++size[p];
+    for (uint32_t i = 0; i < region.size(); ++i) {
+        uint32_t &best = main[side[i]];
+        if (best == NO_TRIANGLE || size[piece[i]] > size[best])
+            best = piece[i];
+    }
+    for (uint32_t i = 0; i < region.size(); ++i)
+        if (piece[i] != main[side[i]])
+            side[i] = !side[i];
+    return side;
+}
+
+/* Two clusters of normals, grown from the triangle that turns farthest from the axis and the one
+ * that turns farthest from that. */
+std::vector<uint32_t> split_normals(const Surface &surface, const Region &region, const Vec3d &z)
+{
+    auto farthest = [&](const std::vector<Vec3f> &field, const Vec3f &from) {
+        uint32_t best = 0;
+        for (uint32_t i = 1; i < region.size(); ++i)
+            if (dot(field[region.triangles[i]], from) <
+                dot(field[region.triangles[best]], from))
+                best = i;
+        return best;
+    };
+    uint32_t a = farthest(surface.smooth, Vec3f(z));
+    uint32_t b = farthest(surface.smooth, surface.smooth[region.triangles[a]]);
+    if (a == b)
+        b = a ? 0 : 1;
+    return cluster_pair(surface, region, a, b);
+}
+
+/* Watershed between what lies in front and what lies behind: triangles vote by their doubled
+ * samples, the deepest of which decides its own two. Crossing a crease costs most. */
+std::vector<uint32_t> split_layers(const Surface &surface, const Region &region,
+                                   const Layers &layers)
+{
+    std::vector<int> votes(region.size());
+    const DoubleSample *deepest = &layers.folds[0];
+    for (const DoubleSample &d : layers.folds) {
+        ++votes[d.front];
+        --votes[d.back];
+        if (d.depth > deepest->depth)
+            deepest = &d;
+    }
+    votes[deepest->front] = 1;
+    votes[deepest->back] = -1;
+
+    using Step = std::pair<float, uint32_t>;
+    std::priority_queue<Step, std::vector<Step>, std::greater<Step>> queue;
+    std::vector<float> reached(region.size(), INFINITY);
+    std::vector<uint32_t> side(region.size());
+    for (uint32_t i = 0; i < region.size(); ++i)
+        if (votes[i]) {
+            side[i] = votes[i] < 0;
+            reached[i] = 0;
+            queue.push({0.f, i});
+        }
+    while (!queue.empty()) {
+        auto [distance, i] = queue.top();
+        queue.pop();
+        if (distance > reached[i])
+            continue;
+        uint32_t t = region.triangles[i];
+        for (uint32_t n : region.neighbours[i]) {
+            if (n == NO_TRIANGLE)
+                continue;
+            uint32_t o = region.triangles[n];
+            float bend = 1 - dot(surface.smooth[t], surface.smooth[o]);
+            float next = distance + length(surface.centre[t] - surface.centre[o]) * (1 + 8 * bend);
+            if (next < reached[n]) {
+                reached[n] = next;
+                side[n] = side[i];
+                queue.push({next, n});
+            }
+        }
+    }
+    return side;
+}
+
+} // namespace
+
+bool is_inverted(const Surface &surface, uint32_t t, const Vec3d &z, double pitch)
+{
+    return dot(Vec3d(surface.normal[t]), z) <= 0 && !surface.junk[t] &&
+           -dot(surface.mesh.area_vector(t), z) / 2 > pitch * pitch;
+}
+
+Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds)
+{
+    auto too_long = [&](const Frame &frame) {
+        return region.size() > 1 && std::max(frame.extent[0], frame.extent[1]) > bounds.side;
+    };
+    Candidate median =
+        try_axis(surface, region, median_axis(surface.mesh, region.triangles), bounds);
+    if (too_long(median.frame))
+        return {{}, pieces_of(region, cut_across(surface, region, median.frame))};
+    if (median.fits() || region.size() == 1)
+        return {median.frame, {}};
+
+    Candidate cone = try_axis(surface, region, cone_axis(surface, region.triangles), bounds);
+    if (cone.fits() && !too_long(cone.frame))
+        return {cone.frame, {}};
+    for (const Candidate *c : {&median, &cone})
+        if (!c->layers.folds.empty())
+            return {{}, pieces_of(region, split_layers(surface, region, c->layers))};
+    return {{}, pieces_of(region, split_normals(surface, region, cone.frame.z))};
+}
+
+} // namespace gtx

@@ -1,0 +1,25 @@
+/* Whether a region can be a chart, and how to split it when it cannot. */
+#pragma once
+
+#include "chart/layers.hpp"
+
+namespace gtx {
+
+/* What a chart must keep to. */
+struct Bounds {
+    double side;   /* longest side of its rectangle */
+    double pitch;  /* texel at which layers are looked for */
+};
+
+struct Verdict {
+    Frame frame;                 /* of the chart, when there are no pieces */
+    std::vector<Region> pieces;  /* connected, at least two; or none: the region is a chart */
+};
+
+/* Regions are connected. A region of one triangle is always a chart. */
+Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds);
+
+/* Core triangles with n.z <= 0 and a projected area over a texel, junk left out. */
+bool is_inverted(const Surface &surface, uint32_t triangle, const Vec3d &z, double pitch);
+
+} // namespace gtx

@@ -1,0 +1,176 @@
+/* Connectivity through OpenMesh; areas, raw and smoothed normals, junk. */
+#include "chart/surface.hpp"
+
+#include <OpenMesh/Core/Mesh/TriConnectivity.hh>
+#include <OpenMesh/Core/System/omstream.hh>
+
+#include <algorithm>
+#include <numeric>
+
+namespace gtx {
+
+namespace {
+
+/* Bounds in texels. Larger triangles are designed, not scanned: their normals are to be trusted. */
+constexpr double LARGE_TRIANGLE = 32;
+constexpr double JUNK_TRIANGLE = 8;
+/* cos 84 degrees: a scan's surface does not turn so far within a triangle. */
+constexpr float JUNK_COSINE = 0.1f;
+constexpr int SMOOTHING_PASSES = 3;
+
+using Connectivity = OpenMesh::TriConnectivity;
+
+Connectivity connect(const Mesh &mesh)
+{
+    size_t count = mesh.triangle_count();
+    Connectivity out;
+    out.reserve(mesh.positions.size(), count * 3 / 2 + 16, count);
+    for (size_t v = 0; v < mesh.positions.size(); ++v)
+        out.new_vertex();
+    omerr().disable(); /* a refusal is an answer here, not an event */
+    for (const std::array<uint32_t, 3> &t : mesh.triangles) {
+        OpenMesh::VertexHandle v[3];
+        for (int k = 0; k < 3; ++k)
+            v[k] = OpenMesh::VertexHandle(int(t[k]));
+        if (out.add_face(v[0], v[1], v[2]).is_valid())
+            continue;
+        for (OpenMesh::VertexHandle &handle : v) /* no manifold neighbour: it stands alone */
+            handle = out.new_vertex();
+        out.add_face(v[0], v[1], v[2]);
+    }
+    return out;
+}
+
+std::vector<std::array<uint32_t, 3>> neighbours_of(const Mesh &mesh)
+{
+    Connectivity connectivity = connect(mesh);
+    std::vector<std::array<uint32_t, 3>> out(mesh.triangle_count());
+    for (size_t t = 0; t < out.size(); ++t) {
+        auto edge = connectivity.halfedge_handle(OpenMesh::FaceHandle(int(t)));
+        for (int k = 0; k < 3; ++k) {
+            auto face = connectivity.opposite_face_handle(edge);
+            out[t][k] = face.is_valid() ? uint32_t(face.idx()) : NO_TRIANGLE;
+            edge = connectivity.next_halfedge_handle(edge);
+        }
+    }
+    return out;
+}
+
+void smooth_normals(Surface &surface, float large)
+{
+    const Mesh &mesh = surface.mesh;
+    surface.smooth = surface.normal;
+    std::vector<Vec3f> at_vertex(mesh.positions.size());
+    for (int pass = 0; pass < SMOOTHING_PASSES; ++pass) {
+        std::fill(at_vertex.begin(), at_vertex.end(), Vec3f());
+        for (size_t t = 0; t < mesh.triangle_count(); ++t)
+            for (uint32_t v : mesh.triangles[t])
+                at_vertex[v] += surface.smooth[t] * surface.size[t];
+        for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+            if (surface.size[t] > large)
+                continue;
+            Vec3f sum;
+            for (uint32_t v : mesh.triangles[t])
+                sum += normalize(at_vertex[v]);
+            sum = normalize(sum);
+            surface.smooth[t] = sum == Vec3f() ? surface.normal[t] : sum;
+        }
+    }
+}
+
+double area_of(const Mesh &mesh)
+{
+    double area = 0;
+    for (size_t t = 0; t < mesh.triangle_count(); ++t)
+        area += length(mesh.area_vector(t)) / 2;
+    return area;
+}
+
+} // namespace
+
+double expected_pitch(const Mesh &mesh, size_t charts)
+{
+    constexpr double USED_TEXELS = 1024; /* of a chart */
+    return std::sqrt(area_of(mesh) / (USED_TEXELS * double(charts)));
+}
+
+Surface make_surface(const Mesh &mesh, double pitch)
+{
+    Surface surface = {mesh, {}, area_of(mesh), 0, {}, {}, {}, {}, {}};
+    size_t count = mesh.triangle_count();
+    surface.whole.triangles.resize(count);
+    std::iota(surface.whole.triangles.begin(), surface.whole.triangles.end(), 0u);
+    surface.whole.neighbours = neighbours_of(mesh);
+
+    Vec3d low = mesh.positions[0], high = low;
+    for (const Vec3d &p : mesh.positions)
+        for (int i = 0; i < 3; ++i) {
+            low[i] = std::min(low[i], p[i]);
+            high[i] = std::max(high[i], p[i]);
+        }
+    surface.diagonal = length(high - low);
+    Vec3d middle = low + (high - low) * 0.5;
+
+    double mean = surface.area / double(count);
+    for (size_t t = 0; t < count; ++t) {
+        Vec3d vector = mesh.area_vector(t);
+        Vec3d sum;
+        for (int k = 0; k < 3; ++k)
+            sum += mesh.position(t, k) - middle;
+        surface.size.push_back(std::max(float(length(vector) / 2 / mean), 1e-30f));
+        surface.normal.push_back(Vec3f(normalize(vector)));
+        surface.centre.push_back(Vec3f(sum / (3 * std::sqrt(mean))));
+    }
+    double texel = pitch * pitch / mean;
+    smooth_normals(surface, float(LARGE_TRIANGLE * texel));
+    for (size_t t = 0; t < count; ++t)
+        surface.junk.push_back(surface.size[t] < JUNK_TRIANGLE * texel &&
+                               dot(surface.normal[t], surface.smooth[t]) < JUNK_COSINE);
+    return surface;
+}
+
+std::vector<Region> split_region(const Region &parent, const std::vector<uint32_t> &labels,
+                                 uint32_t count)
+{
+    std::vector<Region> out(count);
+    std::vector<uint32_t> place(parent.size());
+    for (size_t i = 0; i < parent.size(); ++i) {
+        place[i] = uint32_t(out[labels[i]].size());
+        out[labels[i]].triangles.push_back(parent.triangles[i]);
+    }
+    for (Region &region : out)
+        region.neighbours.reserve(region.size());
+    for (size_t i = 0; i < parent.size(); ++i) {
+        std::array<uint32_t, 3> own = parent.neighbours[i];
+        for (uint32_t &n : own)
+            n = n != NO_TRIANGLE && labels[n] == labels[i] ? place[n] : NO_TRIANGLE;
+        out[labels[i]].neighbours.push_back(own);
+    }
+    return out;
+}
+
+uint32_t connected_pieces(const Region &region, std::vector<uint32_t> &labels)
+{
+    std::vector<uint32_t> piece(region.size(), NO_TRIANGLE), stack;
+    uint32_t count = 0;
+    for (uint32_t first = 0; first < region.size(); ++first) {
+        if (piece[first] != NO_TRIANGLE)
+            continue;
+        piece[first] = count;
+        stack.push_back(first);
+        while (!stack.empty()) {
+            uint32_t t = stack.back();
+            stack.pop_back();
+            for (uint32_t n : region.neighbours[t])
+                if (n != NO_TRIANGLE && piece[n] == NO_TRIANGLE && labels[n] == labels[t]) {
+                    piece[n] = count;
+                    stack.push_back(n);
+                }
+        }
+        ++count;
+    }
+    labels = std::move(piece);
+    return count;
+}
+
+} // namespace gtx

@@ -1,0 +1,42 @@
+/* The mesh as the partition's loops want it: flat arrays, a triangle an entry. */
+#pragma once
+
+#include "mesh/mesh.hpp"
+
+namespace gtx {
+
+/* A set of triangles and its connectivity. Indices into a region are called local. */
+struct Region {
+    std::vector<uint32_t> triangles;                  /* of the mesh, ascending */
+    std::vector<std::array<uint32_t, 3>> neighbours;  /* local; NO_TRIANGLE outside */
+
+    size_t size() const { return triangles.size(); }
+};
+
+struct Surface {
+    const Mesh &mesh;
+    Region whole;              /* every triangle: local indices are the mesh's */
+    double area = 0;           /* object units, as is the diagonal of the bounding box */
+    double diagonal = 0;
+    std::vector<float> size;   /* area over the mean area */
+    std::vector<Vec3f> centre; /* centroid from the middle of the box, over the root of the mean area */
+    std::vector<Vec3f> normal; /* unit */
+    std::vector<Vec3f> smooth; /* unit; what clustering goes by */
+    std::vector<uint8_t> junk; /* 1: too small and too twisted to be anyone's surface */
+};
+
+/* `pitch` is the expected size of a texel. */
+Surface make_surface(const Mesh &mesh, double pitch);
+
+/* The expected size of a texel when `charts` of them cover the mesh. */
+double expected_pitch(const Mesh &mesh, size_t charts);
+
+/* The triangles of `parent` whose label is below `count`, a region a label. Labels are local. */
+std::vector<Region> split_region(const Region &parent, const std::vector<uint32_t> &labels,
+                                 uint32_t count);
+
+/* Numbers the connected pieces of equal `labels` in order of their first triangle; returns how
+ * many there are. */
+uint32_t connected_pieces(const Region &region, std::vector<uint32_t> &labels);
+
+} // namespace gtx

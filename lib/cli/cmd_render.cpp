@@ -1,0 +1,76 @@
+/* gtx render: assets, meshes and scenes into a PNG, without a window. */
+#include "cli/cli.h"
+#include "cli/still.hpp"
+#include "image/image.h"
+
+#include <cstring>
+
+static const char *output, *depth_path;
+static gtx::StillOptions still_options;
+static uint32_t size[2] = {1024, 768};
+static uint32_t method;
+static const gtx_method methods[] = {GTX_METHOD_AUTO, GTX_METHOD_CAST, GTX_METHOD_PAPER};
+
+static const option options[] = {
+    {"output", 'o', OPTION_STRING, &output, "OUT.png", "where the picture goes (required)", 0, 0},
+    {"size", 0, OPTION_SIZE, size, "WxH", "pixels [1024x768]", 1, 8192},
+    {"camera", 0, OPTION_TRIPLE, still_options.camera, "AZ,EL,DIST",
+     "degrees, degrees, bounding-sphere radii [30,20,2.8]", 0, 0},
+    {"depth", 0, OPTION_STRING, &depth_path, "OUT.exr",
+     "distance along the view axis too, infinity where nothing is", 0, 0},
+    {"method", 0, OPTION_CHOICE, &method, "auto|cast|paper", "how patches are drawn [auto]", 0, 0},
+    {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
+
+static const verb render = {
+    "render", "FILE... -o OUT.png",
+    "Draws assets, polygon models and glTF scenes (node extras {\"geotex\": \"a.gtx\"} place assets).",
+    1, 64, options};
+
+static int write_images(const gtx::Still &still)
+{
+    gtx_error error;
+    if (gtx_image_write_png(output, size[0], size[1], 4, still.color.data(), &error) != GTX_OK)
+        return report_error(output, &error);
+    if (depth_path &&
+        gtx_image_write_exr(depth_path, size[0], size[1], still.depth.data(), &error) != GTX_OK)
+        return report_error(depth_path, &error);
+    return EXIT_CODE_OK;
+}
+
+int cmd_render(int argc, char **argv)
+{
+    const char *files[64];
+    int count;
+    int code = parse_options(&render, argc, argv, files, &count);
+    if (code >= 0)
+        return code;
+    if (!output) {
+        std::fputs("gtx render: error[usage]: -o OUT.png is missing\n", stderr);
+        return EXIT_CODE_USAGE;
+    }
+    still_options.width = size[0];
+    still_options.height = size[1];
+    still_options.method = methods[method];
+
+    const char *current = files[0];
+    gtx_error error = {};
+    try {
+        gtx::Task task(0, nullptr, nullptr);
+        gtx::Scene scene;
+        for (int i = 0; i < count; ++i) {
+            current = files[i];
+            gtx::add_file(scene, current, task);
+        }
+        for (const std::string &warning : task.warnings)
+            report_warning(files[0], warning.c_str());
+        gtx::measure_bounds(scene);
+        return write_images(gtx::draw_still(scene, still_options));
+    } catch (const gtx::Error &e) {
+        error.result = e.result;
+        std::snprintf(error.message, sizeof error.message, "%s", e.message.c_str());
+    } catch (const std::exception &e) {
+        error.result = GTX_ERROR_INTERNAL;
+        std::snprintf(error.message, sizeof error.message, "%s", e.what());
+    }
+    return report_error(current, &error);
+}

@@ -1,0 +1,42 @@
+/* What `gtx render` draws: assets and polygon models, placed in one coordinate system. */
+#pragma once
+
+#include <geotex/geotex.h>
+
+#include "mesh/mesh.hpp"
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace gtx {
+
+struct AssetCloser {
+    void operator()(gtx_asset *asset) const { gtx_close(asset); }
+};
+using AssetPointer = std::unique_ptr<gtx_asset, AssetCloser>;
+
+/* A column-major affine transform in double. */
+using Transform = std::array<double, 16>;
+
+struct PlacedAsset {
+    AssetPointer asset;
+    Transform transform; /* of the asset's object space, before its anchor is taken off */
+};
+
+struct Scene {
+    std::vector<PlacedAsset> assets;
+    std::vector<Mesh> meshes; /* cleaned */
+    Vec3d centre;             /* bounding sphere of everything */
+    double radius = 0;
+};
+
+/* Adds a .gtx asset, a polygon model, or a glTF scene whose nodes place assets through
+ * `"extras": {"geotex": "FILE.gtx"}` (paths relative to the scene). Throws Error. */
+void add_file(Scene &scene, const std::string &path, Task &task);
+
+/* Sets centre and radius once everything is in. */
+void measure_bounds(Scene &scene);
+
+} // namespace gtx

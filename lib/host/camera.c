@@ -1,0 +1,84 @@
+/* An orbit camera: view and projection matrices for every clip convention. */
+#include "host/camera.h"
+
+#include "base/vec.h"
+
+#include <string.h>
+
+#define RADIANS(degrees) ((degrees) * 3.14159265358979f / 180.0f)
+
+void gtx_matrix_multiply(const float a[16], const float b[16], float out[16])
+{
+    float r[16];
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) {
+            float sum = 0;
+            for (int k = 0; k < 4; ++k)
+                sum += a[4 * k + row] * b[4 * column + k];
+            r[4 * column + row] = sum;
+        }
+    memcpy(out, r, sizeof r);
+}
+
+void gtx_matrix_place(float x, float y, float z, float degrees, float scale, float out[16])
+{
+    const float c = scale * cosf(RADIANS(degrees)), s = scale * sinf(RADIANS(degrees));
+    const float m[16] = {c, 0, -s, 0, 0, scale, 0, 0, s, 0, c, 0, x, y, z, 1};
+    memcpy(out, m, sizeof m);
+}
+
+static void look(const gtx_camera *camera, float view[16])
+{
+    const float az = RADIANS(camera->azimuth), el = RADIANS(camera->elevation);
+    const gtx_vec3 back = gtx_v3(sinf(az) * cosf(el), sinf(el), cosf(az) * cosf(el));
+    /* Taken from the angles, not from a cross product: defined at the poles too. */
+    const gtx_vec3 right = gtx_v3(cosf(az), 0, -sinf(az));
+    const gtx_vec3 up = gtx_v3_cross(back, right);
+    const gtx_vec3 eye = gtx_v3_mad(gtx_v3_load(camera->target), back,
+                                    camera->distance * camera->radius);
+    const gtx_vec3 axis[3] = {right, up, back};
+    memset(view, 0, 16 * sizeof *view);
+    for (int row = 0; row < 3; ++row) {
+        view[row] = axis[row].x;
+        view[4 + row] = axis[row].y;
+        view[8 + row] = axis[row].z;
+        view[12 + row] = -gtx_v3_dot(axis[row], eye);
+    }
+    view[15] = 1;
+}
+
+void gtx_camera_matrices(const gtx_camera *camera, float aspect, float view[16],
+                         float projection[16])
+{
+    const float along = camera->distance * camera->radius, reach = 1.01f * camera->radius;
+    const float far = along + reach;
+    const float near = camera->orthographic ? along - reach
+                                            : fmaxf(along - reach, 0.002f * camera->radius);
+    /* Depth d at the near plane and at the far plane, in clip units. */
+    const float low = camera->zero_to_one ? 0.0f : -1.0f;
+    const float dn = camera->reversed_z ? 1.0f : low, df = camera->reversed_z ? low : 1.0f;
+    look(camera, view);
+    memset(projection, 0, 16 * sizeof *projection);
+    if (camera->orthographic) {
+        const float scale = 0.96f / camera->radius;
+        projection[0] = aspect < 1 ? scale : scale / aspect;
+        projection[5] = aspect < 1 ? scale * aspect : scale;
+        projection[10] = (dn - df) / (far - near);
+        projection[14] = (dn * far - df * near) / (far - near);
+        projection[15] = 1;
+    } else {
+        const float scale = 1 / tanf(RADIANS(camera->field > 0 ? camera->field : 45.0f) / 2);
+        projection[0] = scale / aspect;
+        projection[5] = scale;
+        projection[10] = (dn * near - df * far) / (far - near);
+        projection[14] = (dn - df) * near * far / (far - near);
+        projection[11] = -1;
+    }
+}
+
+float gtx_camera_distance(const float projection[16], int zero_to_one, float depth)
+{
+    const float z = zero_to_one ? depth : 2 * depth - 1;
+    /* z = (p10 e + p14) / (p11 e + p15) with e the eye's z, solved for -e. */
+    return (projection[14] - z * projection[15]) / (projection[10] - z * projection[11]);
+}

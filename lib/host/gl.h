@@ -1,0 +1,83 @@
+/* The OpenGL functions that hosts use (samples, tests, the command): one table, filled by a loader. */
+#ifndef GTX_HOST_GL_H
+#define GTX_HOST_GL_H
+
+#include <GL/glcorearb.h>
+#include <geotex/geotex.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define GTX_HOST_GL(X)                                                                             \
+    X(PFNGLATTACHSHADERPROC, AttachShader)                                                         \
+    X(PFNGLBINDATTRIBLOCATIONPROC, BindAttribLocation)                                             \
+    X(PFNGLBINDBUFFERPROC, BindBuffer)                                                             \
+    X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                                                   \
+    X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer)                                                 \
+    X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                                                   \
+    X(PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer)                                                   \
+    X(PFNGLBUFFERDATAPROC, BufferData)                                                             \
+    X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)                                     \
+    X(PFNGLCLEARPROC, Clear)                                                                       \
+    X(PFNGLCLEARCOLORPROC, ClearColor)                                                             \
+    X(PFNGLCLEARDEPTHPROC, ClearDepth)                                                             \
+    X(PFNGLCOMPILESHADERPROC, CompileShader)                                                       \
+    X(PFNGLCREATEPROGRAMPROC, CreateProgram)                                                       \
+    X(PFNGLCREATESHADERPROC, CreateShader)                                                         \
+    X(PFNGLCULLFACEPROC, CullFace)                                                                 \
+    X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                                                       \
+    X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)                                             \
+    X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                                                       \
+    X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers)                                           \
+    X(PFNGLDELETESHADERPROC, DeleteShader)                                                         \
+    X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)                                             \
+    X(PFNGLDEPTHFUNCPROC, DepthFunc)                                                               \
+    X(PFNGLDEPTHMASKPROC, DepthMask)                                                               \
+    X(PFNGLDEPTHRANGEPROC, DepthRange)                                                             \
+    X(PFNGLDISABLEPROC, Disable)                                                                   \
+    X(PFNGLDRAWELEMENTSPROC, DrawElements)                                                         \
+    X(PFNGLENABLEPROC, Enable)                                                                     \
+    X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray)                                   \
+    X(PFNGLFINISHPROC, Finish)                                                                     \
+    X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer)                                   \
+    X(PFNGLFRONTFACEPROC, FrontFace)                                                               \
+    X(PFNGLGENBUFFERSPROC, GenBuffers)                                                             \
+    X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                                                   \
+    X(PFNGLGENRENDERBUFFERSPROC, GenRenderbuffers)                                                 \
+    X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                                                   \
+    X(PFNGLGETERRORPROC, GetError)                                                                 \
+    X(PFNGLGETINTEGERVPROC, GetIntegerv)                                                           \
+    X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                                         \
+    X(PFNGLGETSTRINGPROC, GetString)                                                               \
+    X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                                             \
+    X(PFNGLISENABLEDPROC, IsEnabled)                                                               \
+    X(PFNGLLINKPROGRAMPROC, LinkProgram)                                                           \
+    X(PFNGLPIXELSTOREIPROC, PixelStorei)                                                           \
+    X(PFNGLREADPIXELSPROC, ReadPixels)                                                             \
+    X(PFNGLRENDERBUFFERSTORAGEPROC, RenderbufferStorage)                                           \
+    X(PFNGLSHADERSOURCEPROC, ShaderSource)                                                         \
+    X(PFNGLUNIFORM1FPROC, Uniform1f)                                                               \
+    X(PFNGLUNIFORM3FVPROC, Uniform3fv)                                                             \
+    X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)                                                 \
+    X(PFNGLUSEPROGRAMPROC, UseProgram)                                                             \
+    X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)                                           \
+    X(PFNGLVIEWPORTPROC, Viewport)
+
+typedef struct gtx_host_gl {
+#define GTX_HOST_GL_FIELD(type, name) type name;
+    GTX_HOST_GL(GTX_HOST_GL_FIELD)
+#undef GTX_HOST_GL_FIELD
+} gtx_host_gl;
+
+/* Of the shape that gtx_renderer_desc.load takes. */
+typedef void (*gtx_host_proc)(void);
+typedef gtx_host_proc (*gtx_host_load)(const char *name, void *user);
+
+/* Needs a current context. Errors: GL, which names the first missing function. */
+gtx_result gtx_host_gl_init(gtx_host_gl *gl, gtx_host_load load, void *user, gtx_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,138 @@
+/* A small lit polygon renderer. */
+#include "host/polygons.h"
+
+#include "base/error.h"
+#include "host/camera.h"
+
+#include <stddef.h>
+
+static const char vertex_text[] =
+    "#version 330 core\n"
+    "layout(location = 0) in vec3 position;\n"
+    "layout(location = 1) in vec3 normal;\n"
+    "layout(location = 2) in vec4 color;\n"
+    "uniform mat4 model, view_projection;\n"
+    "out vec3 world_normal;\n"
+    "out vec4 srgb;\n"
+    "void main()\n"
+    "{\n"
+    "    world_normal = transpose(inverse(mat3(model))) * normal;\n"
+    "    srgb = color;\n"
+    "    gl_Position = view_projection * (model * vec4(position, 1.0));\n"
+    "}\n";
+
+static const char fragment_text[] =
+    "#version 330 core\n"
+    "uniform vec3 light;\n"
+    "uniform float ambient;\n"
+    "in vec3 world_normal;\n"
+    "in vec4 srgb;\n"
+    "layout(location = 0) out vec4 color;\n"
+    "vec3 to_linear(vec3 c)\n"
+    "{\n"
+    "    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c));\n"
+    "}\n"
+    "vec3 to_srgb(vec3 c)\n"
+    "{\n"
+    "    return mix(c * 12.92, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));\n"
+    "}\n"
+    "void main()\n"
+    "{\n"
+    "    float lambert = max(dot(normalize(world_normal), light), 0.0);\n"
+    "    float share = srgb.a > 0.0 ? ambient + (1.0 - ambient) * lambert : 1.0;\n"
+    "    color = vec4(to_srgb(to_linear(srgb.rgb) * share), 1.0);\n"
+    "}\n";
+
+gtx_result gtx_polygons_create(const gtx_host_gl *gl, const gtx_polygon_vertex *vertices,
+                               uint32_t vertex_count, const uint32_t *indices,
+                               uint32_t index_count, gtx_polygons *out, gtx_error *error)
+{
+    const GLsizei stride = sizeof(gtx_polygon_vertex);
+    gtx_polygons p = {.index_count = (GLsizei)index_count};
+    gl->GenVertexArrays(1, &p.vertex_array);
+    gl->GenBuffers(1, &p.vertices);
+    gl->GenBuffers(1, &p.indices);
+    gl->BindVertexArray(p.vertex_array);
+    gl->BindBuffer(GL_ARRAY_BUFFER, p.vertices);
+    gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)vertex_count * stride, vertices, GL_STATIC_DRAW);
+    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, p.indices);
+    gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)index_count * 4, indices, GL_STATIC_DRAW);
+    gl->VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, stride,
+                            (const void *)offsetof(gtx_polygon_vertex, position));
+    gl->VertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, stride,
+                            (const void *)offsetof(gtx_polygon_vertex, normal));
+    gl->VertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride,
+                            (const void *)offsetof(gtx_polygon_vertex, color));
+    for (GLuint i = 0; i < 3; ++i)
+        gl->EnableVertexAttribArray(i);
+    gl->BindVertexArray(0);
+    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    if (gl->GetError() == GL_OUT_OF_MEMORY) {
+        gtx_polygons_destroy(gl, &p);
+        return gtx_fail(error, GTX_ERROR_GL, "out of GPU memory for %u triangles", index_count / 3);
+    }
+    *out = p;
+    return GTX_OK;
+}
+
+void gtx_polygons_destroy(const gtx_host_gl *gl, gtx_polygons *polygons)
+{
+    gl->DeleteVertexArrays(1, &polygons->vertex_array);
+    gl->DeleteBuffers(1, &polygons->vertices);
+    gl->DeleteBuffers(1, &polygons->indices);
+    *polygons = (gtx_polygons){0};
+}
+
+static void attach(const gtx_host_gl *gl, GLuint program, GLenum stage, const char *text)
+{
+    const GLuint shader = gl->CreateShader(stage);
+    gl->ShaderSource(shader, 1, &text, NULL);
+    gl->CompileShader(shader);
+    gl->AttachShader(program, shader);
+    gl->DeleteShader(shader);
+}
+
+gtx_result gtx_polygon_program_create(const gtx_host_gl *gl, gtx_polygon_program *out,
+                                      gtx_error *error)
+{
+    GLint linked = 0;
+    const GLuint program = gl->CreateProgram();
+    attach(gl, program, GL_VERTEX_SHADER, vertex_text);
+    attach(gl, program, GL_FRAGMENT_SHADER, fragment_text);
+    gl->LinkProgram(program);
+    gl->GetProgramiv(program, GL_LINK_STATUS, &linked);
+    if (!linked) {
+        gl->DeleteProgram(program);
+        return gtx_fail(error, GTX_ERROR_SHADER, "the polygon shader did not link");
+    }
+    out->program = program;
+    out->model = gl->GetUniformLocation(program, "model");
+    out->view_projection = gl->GetUniformLocation(program, "view_projection");
+    out->light = gl->GetUniformLocation(program, "light");
+    out->ambient = gl->GetUniformLocation(program, "ambient");
+    return GTX_OK;
+}
+
+void gtx_polygon_program_destroy(const gtx_host_gl *gl, gtx_polygon_program *program)
+{
+    gl->DeleteProgram(program->program);
+    *program = (gtx_polygon_program){0};
+}
+
+void gtx_polygons_draw(const gtx_host_gl *gl, const gtx_polygon_program *program,
+                       const gtx_polygons *polygons, const float *model, const float view[16],
+                       const float projection[16], const float light[3], float ambient)
+{
+    static const float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    float view_projection[16];
+    gtx_matrix_multiply(projection, view, view_projection);
+    gl->UseProgram(program->program);
+    gl->UniformMatrix4fv(program->model, 1, GL_FALSE, model ? model : identity);
+    gl->UniformMatrix4fv(program->view_projection, 1, GL_FALSE, view_projection);
+    gl->Uniform3fv(program->light, 1, light);
+    gl->Uniform1f(program->ambient, ambient);
+    gl->BindVertexArray(polygons->vertex_array);
+    gl->DrawElements(GL_TRIANGLES, polygons->index_count, GL_UNSIGNED_INT, NULL);
+    gl->BindVertexArray(0);
+    gl->UseProgram(0);
+}

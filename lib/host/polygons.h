@@ -1,0 +1,49 @@
+/* A small lit polygon renderer: what an engine draws beside geotex, and what tests compare with. */
+#ifndef GTX_HOST_POLYGONS_H
+#define GTX_HOST_POLYGONS_H
+
+#include "host/gl.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct gtx_polygon_vertex {
+    float position[3], normal[3];
+    uint8_t color[4];         /* sRGB; alpha 0: unlit */
+} gtx_polygon_vertex;
+
+/* Triangles in buffers on the GPU. */
+typedef struct gtx_polygons {
+    GLuint vertex_array, vertices, indices;
+    GLsizei index_count;
+} gtx_polygons;
+
+/* Errors: GL (out of memory). */
+gtx_result gtx_polygons_create(const gtx_host_gl *gl, const gtx_polygon_vertex *vertices,
+                               uint32_t vertex_count, const uint32_t *indices,
+                               uint32_t index_count, gtx_polygons *out, gtx_error *error);
+void gtx_polygons_destroy(const gtx_host_gl *gl, gtx_polygons *polygons);
+
+/* The program. */
+typedef struct gtx_polygon_program {
+    GLuint program;
+    GLint model, view_projection, light, ambient;
+} gtx_polygon_program;
+
+/* Errors: SHADER. */
+gtx_result gtx_polygon_program_create(const gtx_host_gl *gl, gtx_polygon_program *out,
+                                      gtx_error *error);
+void gtx_polygon_program_destroy(const gtx_host_gl *gl, gtx_polygon_program *program);
+
+/* Draws with the state as it is (depth test, culling), by the shading of gtx_draw: Lambert with
+ * the light direction and ambient share given. `model` NULL is the identity. Leaves program 0 and
+ * vertex array 0. */
+void gtx_polygons_draw(const gtx_host_gl *gl, const gtx_polygon_program *program,
+                       const gtx_polygons *polygons, const float *model, const float view[16],
+                       const float projection[16], const float light[3], float ambient);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

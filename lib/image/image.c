@@ -1,0 +1,132 @@
+/* Opens the image module on first use, and writes files through a temporary name. */
+#define _POSIX_C_SOURCE 200809L
+#include "image/image.h"
+
+#include "base/error.h"
+#include "image/module.h"
+
+#include <dlfcn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { MAX_PATH = 4096 };
+static const char module_name[] = "geotex-image.so";
+
+/* The module in the directory of the running program or the one above it (samples and tests lie
+ * deeper than the command), or NULL. */
+static void *open_beside_program(void)
+{
+    char path[MAX_PATH];
+    const ssize_t length = readlink("/proc/self/exe", path, sizeof path - sizeof module_name);
+    if (length <= 0)
+        return NULL;
+    path[length] = 0;
+    for (int up = 0; up < 3; ++up) {
+        char *slash = strrchr(path, '/');
+        if (!slash)
+            return NULL;
+        memcpy(slash + 1, module_name, sizeof module_name);
+        void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+        if (module)
+            return module;
+        *slash = 0;
+    }
+    return NULL;
+}
+
+/* dlopen counts references and gives the same module again, so nothing needs to be kept here. The
+ * module stays open: OpenImageIO's threads do not survive being unloaded. */
+static const gtx_image_functions *module_functions(gtx_error *error)
+{
+    void *module = open_beside_program();
+    if (!module)
+        module = dlopen(module_name, RTLD_NOW | RTLD_LOCAL);
+    if (!module) {
+        gtx_fail(error, GTX_ERROR_UNSUPPORTED, "images need %s: %.160s", module_name, dlerror());
+        return NULL;
+    }
+    const gtx_image_functions *functions = dlsym(module, GTX_IMAGE_MODULE_SYMBOL);
+    if (!functions || functions->version != GTX_IMAGE_MODULE_VERSION) {
+        gtx_fail(error, GTX_ERROR_UNSUPPORTED, "%s is of another version", module_name);
+        return NULL;
+    }
+    return functions;
+}
+
+static gtx_result write_image(const char *path, const char *format, uint32_t width, uint32_t height,
+                              uint32_t channels, const void *pixels, gtx_error *error)
+{
+    char message[GTX_IMAGE_MAX_MESSAGE];
+    if (!path || !pixels || !width || !height)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "an image without a path, pixels or size");
+    const gtx_image_functions *module = module_functions(error);
+    if (!module)
+        return GTX_ERROR_UNSUPPORTED;
+    const size_t size = strlen(path) + sizeof ".tmp";
+    char *temporary = malloc(size);
+    if (!temporary)
+        return gtx_fail(error, GTX_ERROR_MEMORY, "out of memory");
+    snprintf(temporary, size, "%s.tmp", path);
+    gtx_result result = GTX_OK;
+    if (module->write(temporary, format, width, height, channels, pixels, message))
+        result = gtx_fail(error, GTX_ERROR_WRITE, "%s", message);
+    else if (rename(temporary, path))
+        result = gtx_fail(error, GTX_ERROR_WRITE, "cannot rename to %.200s", path);
+    if (result)
+        remove(temporary);
+    free(temporary);
+    return result;
+}
+
+gtx_result gtx_image_write_png(const char *path, uint32_t width, uint32_t height, uint32_t channels,
+                               const uint8_t *pixels, gtx_error *error)
+{
+    if (channels != 1 && channels != 3 && channels != 4)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "a PNG of %u channels", channels);
+    return write_image(path, "png", width, height, channels, pixels, error);
+}
+
+gtx_result gtx_image_write_exr(const char *path, uint32_t width, uint32_t height, const float *z,
+                               gtx_error *error)
+{
+    return write_image(path, "exr", width, height, 1, z, error);
+}
+
+static gtx_result read_image(const char *path, const void *data, size_t size, gtx_image *out,
+                             gtx_error *error)
+{
+    char message[GTX_IMAGE_MAX_MESSAGE];
+    gtx_image image = {0};
+    const gtx_image_functions *module = module_functions(error);
+    if (!module)
+        return GTX_ERROR_UNSUPPORTED;
+    if (module->read(path, data, size, UINT64_C(1) << 28, &image.width, &image.height,
+                     &image.pixels, message))
+        return gtx_fail(error, GTX_ERROR_READ, "%s", message);
+    *out = image;
+    return GTX_OK;
+}
+
+gtx_result gtx_image_read(const char *path, gtx_image *out, gtx_error *error)
+{
+    if (!path || !out)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "no path or no place for the image");
+    return read_image(path, NULL, 0, out, error);
+}
+
+gtx_result gtx_image_decode(const void *data, size_t size, gtx_image *out, gtx_error *error)
+{
+    if (!data || !size || !out)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "no bytes or no place for the image");
+    return read_image(NULL, data, size, out, error);
+}
+
+void gtx_image_free(gtx_image *image)
+{
+    if (!image)
+        return;
+    free(image->pixels);
+    *image = (gtx_image){0};
+}

@@ -1,0 +1,38 @@
+/* Images on disk. OpenImageIO behind it is a module, opened when the first image is asked for, so
+ * that a program that needs none does not pay for it. */
+#ifndef GTX_IMAGE_IMAGE_H
+#define GTX_IMAGE_IMAGE_H
+
+#include <geotex/geotex.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Writes rows from the top; `channels` is 1 (grey), 3 (RGB) or 4 (RGBA), 8 bits each, sRGB. The
+ * file appears whole, through a temporary name and a rename, or not at all.
+ * Errors: ARGUMENT, MEMORY, WRITE, UNSUPPORTED (the module cannot be opened). */
+gtx_result gtx_image_write_png(const char *path, uint32_t width, uint32_t height, uint32_t channels,
+                               const uint8_t *pixels, gtx_error *error);
+
+/* Writes an OpenEXR image with the one float channel Z. Errors: likewise. */
+gtx_result gtx_image_write_exr(const char *path, uint32_t width, uint32_t height, const float *z,
+                               gtx_error *error);
+
+/* An image in memory, rows from the top. */
+typedef struct gtx_image {
+    uint32_t width, height;
+    uint8_t *pixels;          /* 4 * width * height: sRGB colour, alpha 255 where there is none */
+} gtx_image;
+
+/* Reads any file OpenImageIO knows as RGBA8: grey spreads to three channels. Images of more than
+ * 2^28 pixels are refused. Errors: ARGUMENT, MEMORY, LIMIT, READ, UNSUPPORTED. */
+gtx_result gtx_image_read(const char *path, gtx_image *out, gtx_error *error);
+/* The same from the bytes of a file. Errors: likewise. */
+gtx_result gtx_image_decode(const void *data, size_t size, gtx_image *out, gtx_error *error);
+void gtx_image_free(gtx_image *image);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,135 @@
+/* The image module: the only file that sees OpenImageIO. */
+#include "image/module.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <vector>
+
+namespace {
+
+int fail(char *message, const char *what, const std::string &detail)
+{
+    std::snprintf(message, GTX_IMAGE_MAX_MESSAGE, "%s: %s", what, detail.c_str());
+    return 1;
+}
+
+int write(const char *path, const char *format, uint32_t width, uint32_t height, uint32_t channels,
+          const void *pixels, char *message)
+{
+    const bool is_depth = std::string(format) == "exr";
+    const OIIO::TypeDesc type = is_depth ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8;
+    /* By format name: the temporary path does not end in the format's extension. */
+    std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
+    if (!output)
+        return fail(message, path, OIIO::geterror());
+    OIIO::ImageSpec spec(int(width), int(height), int(channels), type);
+    if (is_depth) {
+        spec.channelnames = {"Z"};
+        spec.z_channel = 0;
+    } else {
+        spec.attribute("oiio:ColorSpace", "sRGB");
+        spec.attribute("oiio:UnassociatedAlpha", 1);
+    }
+    if (!output->open(path, spec) || !output->write_image(type, pixels) || !output->close())
+        return fail(message, path, output->geterror());
+    return 0;
+}
+
+/* RGBA from any number of channels: grey, grey and alpha, RGB, RGBA and more. */
+void spread(const std::vector<uint8_t> &in, int channels, int alpha, uint8_t *out)
+{
+    const size_t count = in.size() / size_t(channels);
+    const bool is_grey = channels - (alpha >= 0) < 3;
+    for (size_t i = 0; i < count; ++i) {
+        const uint8_t *texel = &in[i * size_t(channels)];
+        for (int c = 0; c < 3; ++c)
+            out[4 * i + size_t(c)] = texel[is_grey ? 0 : c];
+        out[4 * i + 3] = alpha >= 0 ? texel[alpha] : 255;
+    }
+}
+
+/* OpenImageIO picks a reader by the file's name; bytes without one say by their first ones. */
+std::string name_for(const void *data, size_t size)
+{
+    static const struct {
+        const char *start, *name;
+    } formats[] = {{"\x89PNG", "embedded.png"}, {"\xff\xd8\xff", "embedded.jpg"},
+                   {"RIFF", "embedded.webp"}, {"BM", "embedded.bmp"}, {"GIF8", "embedded.gif"}};
+    for (const auto &format : formats)
+        if (size >= std::strlen(format.start) &&
+            std::memcmp(data, format.start, std::strlen(format.start)) == 0)
+            return format.name;
+    return {};
+}
+
+int read(const char *path, const void *data, size_t size, uint64_t max_pixels, uint32_t *width,
+         uint32_t *height, uint8_t **pixels, char *message)
+{
+    const std::string file = path ? path : name_for(data, size);
+    const char *name = path ? path : "embedded image";
+    if (file.empty())
+        return fail(message, name, "neither PNG, JPEG, WebP, BMP nor GIF");
+    OIIO::Filesystem::IOMemReader memory(data, size);
+    OIIO::Filesystem::IOProxy *proxy = &memory;
+    OIIO::ImageSpec hint;
+    hint.attribute("oiio:UnassociatedAlpha", 1);
+    if (!path)
+        hint.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file, &hint);
+    if (!input)
+        return fail(message, name, OIIO::geterror());
+    const OIIO::ImageSpec &spec = input->spec();
+    const uint64_t count = uint64_t(spec.width) * uint64_t(spec.height);
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 ||
+        spec.nchannels > 64 || count > max_pixels)
+        return fail(message, name, "not an image of a supported size");
+    std::vector<uint8_t> texels(size_t(count) * size_t(spec.nchannels));
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, texels.data()))
+        return fail(message, name, input->geterror());
+    *pixels = static_cast<uint8_t *>(std::malloc(size_t(count) * 4));
+    if (!*pixels)
+        return fail(message, name, "out of memory");
+    const int alpha = spec.alpha_channel >= 0 && spec.alpha_channel < spec.nchannels
+                          ? spec.alpha_channel : -1;
+    spread(texels, spec.nchannels, alpha, *pixels);
+    *width = uint32_t(spec.width);
+    *height = uint32_t(spec.height);
+    return 0;
+}
+
+/* Nothing may be thrown across the C boundary. */
+template <class Call> int guarded(char *message, Call call)
+{
+    try {
+        return call();
+    } catch (const std::exception &e) {
+        return fail(message, "image", e.what());
+    }
+}
+
+int guarded_write(const char *path, const char *format, uint32_t width, uint32_t height,
+                  uint32_t channels, const void *pixels, char *message)
+{
+    return guarded(message, [&] {
+        return write(path, format, width, height, channels, pixels, message);
+    });
+}
+
+int guarded_read(const char *path, const void *data, size_t size, uint64_t max_pixels,
+                 uint32_t *width, uint32_t *height, uint8_t **pixels, char *message)
+{
+    return guarded(message, [&] {
+        return read(path, data, size, max_pixels, width, height, pixels, message);
+    });
+}
+
+} // namespace
+
+extern "C" __attribute__((visibility("default"))) const gtx_image_functions gtx_image_module = {
+    GTX_IMAGE_MODULE_VERSION, guarded_write, guarded_read};

@@ -1,0 +1,32 @@
+/* The functions of the image module, as image.c finds them with dlsym. */
+#ifndef GTX_IMAGE_MODULE_H
+#define GTX_IMAGE_MODULE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define GTX_IMAGE_MODULE_SYMBOL "gtx_image_module"
+#define GTX_IMAGE_MODULE_VERSION 1
+
+enum { GTX_IMAGE_MAX_MESSAGE = 200 };
+
+/* All return 0 for success and otherwise fill `message`. */
+typedef struct gtx_image_functions {
+    uint32_t version;
+    /* `format` is "png" (bytes) or "exr" (floats). */
+    int (*write)(const char *path, const char *format, uint32_t width, uint32_t height,
+                 uint32_t channels, const void *pixels, char message[GTX_IMAGE_MAX_MESSAGE]);
+    /* *pixels gets 4 * *width * *height bytes from malloc. `data` NULL: the file at `path`. */
+    int (*read)(const char *path, const void *data, size_t size, uint64_t max_pixels,
+                uint32_t *width, uint32_t *height, uint8_t **pixels,
+                char message[GTX_IMAGE_MAX_MESSAGE]);
+} gtx_image_functions;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,68 @@
+/* Edges of a triangle mesh: half-edge 3 * t + k runs from corner k of triangle t to the next. */
+#pragma once
+
+#include "mesh/mesh.hpp"
+
+#include <algorithm>
+
+namespace gtx {
+
+constexpr uint32_t NO_EDGE = 0xffffffffu;
+
+/* The half-edges after and before h in its triangle. */
+inline uint32_t next_edge(uint32_t h)
+{
+    return h % 3 == 2 ? h - 2 : h + 1;
+}
+
+inline uint32_t previous_edge(uint32_t h)
+{
+    return h % 3 == 0 ? h + 2 : h - 1;
+}
+
+inline uint32_t start_of(const Mesh &mesh, uint32_t h)
+{
+    return mesh.triangles[h / 3][h % 3];
+}
+
+/* A half-edge in the list of those that share its lower vertex. */
+struct EdgeEntry {
+    uint32_t high, half_edge; /* the higher vertex */
+    bool operator<(const EdgeEntry &o) const
+    {
+        return high != o.high ? high < o.high : half_edge < o.half_edge;
+    }
+};
+
+/* Calls visit(entries, count) once for every undirected edge, its half-edges in rising order.
+ * A counting sort by the lower vertex leaves lists of about three entries. */
+template <class Visit> void for_each_edge(const Mesh &mesh, Visit visit)
+{
+    std::vector<uint32_t> end(mesh.positions.size() + 1, 0);
+    auto each_half_edge = [&](auto body) {
+        for (size_t t = 0; t < mesh.triangles.size(); ++t)
+            for (int k = 0; k < 3; ++k) {
+                uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+                body(std::min(a, b), EdgeEntry{std::max(a, b), uint32_t(3 * t + k)});
+            }
+    };
+    each_half_edge([&](uint32_t low, const EdgeEntry &) { ++end[low + 1]; });
+    for (size_t v = 1; v < end.size(); ++v)
+        end[v] += end[v - 1];
+    std::vector<EdgeEntry> entries(3 * mesh.triangles.size());
+    each_half_edge([&](uint32_t low, const EdgeEntry &entry) { entries[end[low]++] = entry; });
+
+    EdgeEntry *from = entries.data();
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+        EdgeEntry *to = entries.data() + end[v];
+        std::sort(from, to);
+        while (from != to) {
+            EdgeEntry *first = from;
+            while (from != to && from->high == first->high)
+                ++from;
+            visit(static_cast<const EdgeEntry *>(first), size_t(from - first));
+        }
+    }
+}
+
+} // namespace gtx

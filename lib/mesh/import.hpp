@@ -1,0 +1,58 @@
+/* What the importers share: the file in memory, errors, polygons. Internal to lib/mesh. */
+#pragma once
+
+#include "mesh/mesh.hpp"
+
+#include "base/error.h"
+
+#include <string_view>
+
+namespace gtx {
+
+/* A model file, inflated when it was gzipped. */
+struct ModelFile {
+    std::string path;
+    std::string bytes;
+    std::vector<std::string> *sources; /* gets the path of every further file; may be null */
+};
+
+/* One importer a format. They promise valid vertex indices and nothing else: positions may be
+ * anything, even NaN. */
+Mesh import_obj(const ModelFile &file, Task &task);
+Mesh import_ply(const ModelFile &file, Task &task);
+Mesh import_draco(const ModelFile &file, Task &task);
+Mesh import_gltf(const ModelFile &file, Task &task);
+
+/* Vertices and triangles are numbered in 32 bits, and the last number is taken. */
+constexpr uint64_t MAX_VERTICES = 0xfffffffe;
+
+/* Throws Error(result, the sentence). */
+[[noreturn]] void fail(gtx_result result, const char *format, ...) GTX_PRINTF(2, 3);
+
+/* Text out of a file, fit for a message: short and printable. */
+std::string printable(std::string_view text);
+
+/* Throws Error: READ, LIMIT. */
+std::string read_whole_file(const std::string &path);
+
+/* Cuts a polygon of n >= 3 corners into n - 2 triangles of corner numbers, wound alike. */
+void triangulate(const std::vector<Vec3d> &polygon, std::vector<std::array<uint32_t, 3>> &out);
+
+/* A mesh with its attributes by vertex, as most files have it; normals and colors may be empty. */
+struct VertexMesh {
+    std::vector<Vec3d> positions;
+    std::vector<Vec3f> normals;
+    std::vector<Rgba8> colors;
+    std::vector<std::array<uint32_t, 3>> triangles;
+};
+
+/* The same with its attributes by corner. */
+Mesh by_corner(VertexMesh &&mesh);
+
+/* 0..1 to 0..255; NaN is 0. */
+inline uint8_t to_byte(double v)
+{
+    return v > 0 ? uint8_t(v < 1 ? v * 255 + 0.5 : 255) : uint8_t(0);
+}
+
+} // namespace gtx

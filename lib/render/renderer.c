@@ -1,0 +1,49 @@
+/* Renderers: the objects of one context that all models share. */
+#include "render/renderer.h"
+
+#include "base/alloc.h"
+#include "base/error.h"
+
+gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out, gtx_error *error)
+{
+    if (!desc || !desc->load || !out)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "a renderer needs a loader of OpenGL functions");
+    *out = NULL;
+    gtx_result result = gtx_check_reserved(desc->reserved, 8, error);
+    if (result)
+        return result;
+    const gtx_allocator hooks = gtx_allocator_or_default(desc->allocator);
+    gtx_renderer *renderer = gtx_alloc_array(&hooks, 1, sizeof *renderer);
+    if (!renderer)
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a renderer");
+    renderer->allocator = hooks;
+    renderer->log = desc->log;
+    renderer->log_user = desc->log_user;
+    result = gtx_gl_init(&renderer->gl, desc, error);
+    if (result) { /* no function may be called */
+        gtx_free_array(&hooks, renderer, 1, sizeof *renderer);
+        return result;
+    }
+    result = gtx_programs_create(renderer, error);
+    if (result) {
+        gtx_renderer_destroy(renderer);
+        return result;
+    }
+    renderer->gl.GenVertexArrays(1, &renderer->vertex_array);
+    renderer->gl.GenBuffers(1, &renderer->instance_buffer);
+    *out = renderer;
+    return GTX_OK;
+}
+
+void gtx_renderer_destroy(gtx_renderer *renderer)
+{
+    if (!renderer)
+        return;
+    gtx_programs_destroy(renderer);
+    renderer->gl.DeleteVertexArrays(1, &renderer->vertex_array);
+    renderer->gl.DeleteBuffers(1, &renderer->instance_buffer);
+    const gtx_allocator hooks = renderer->allocator;
+    gtx_free_array(&hooks, renderer->instances, renderer->instance_capacity,
+                   sizeof *renderer->instances);
+    gtx_free_array(&hooks, renderer, 1, sizeof *renderer);
+}

@@ -1,0 +1,103 @@
+/* The inside of renderers and models, for the files of this room. */
+#ifndef GTX_RENDER_RENDERER_H
+#define GTX_RENDER_RENDERER_H
+
+#include "derive/derive.h"
+#include "render/gl.h"
+
+#include <stdbool.h>
+
+/* Texture units; a model has one texture a unit. Samplers of the shaders carry the same numbers. */
+enum {
+    UNIT_CELLS, UNIT_TRIM, UNIT_NORMALS, UNIT_COLORS, UNIT_PATCHES,
+    UNIT_COUNT,
+    UNIT_CLEARED = 6 /* units that render.h promises to leave empty */
+};
+
+enum { PROGRAM_CAST, PROGRAM_PAPER, PROGRAM_COUNT };
+
+typedef struct gtx_program {
+    gl_uint object;
+    gl_int clip_from_world, depth, light, maps;
+} gtx_program;
+
+/* What the proxy's vertex shader reads for each instance. */
+typedef struct gtx_instance_data {
+    float world[3][4];        /* rows of object -> world */
+    float object[3][4];       /* rows of the inverse's linear part, and the eye in object space */
+    float tint[4];
+} gtx_instance_data;
+
+struct gtx_renderer {
+    gtx_allocator allocator;
+    gtx_gl gl;
+    void (*log)(const char *message, void *user);
+    void *log_user;
+    gtx_program programs[PROGRAM_COUNT];
+    gl_uint vertex_array, instance_buffer;
+    gtx_instance_data *instances; /* scratch of gtx_draw */
+    uint32_t instance_capacity;
+};
+
+/* One mip level of a texture, waiting for its upload. All layers follow one another. */
+typedef struct gtx_level {
+    uint32_t unit, level, width, height, layers;
+    uint32_t texel_size;
+    uint32_t next_row;        /* of height * layers rows, the first one not uploaded yet */
+    uint8_t *data;            /* freed once it is uploaded */
+} gtx_level;
+
+enum { GTX_MAX_LEVELS = 3 + 2 * GTX_MAX_MIPS };
+
+struct gtx_model {
+    gtx_allocator allocator;
+    uint32_t height_bits, mip_count, patch_count;
+    bool has_color, ready;
+    gtx_level levels[GTX_MAX_LEVELS];
+    uint32_t level_count;
+    gtx_proxies proxies;      /* freed once they are uploaded */
+    uint32_t index_count;
+    gtx_model_size size;
+    gl_uint textures[UNIT_COUNT];
+    gl_uint vertices, indices;
+};
+
+/* program.c. Errors: MEMORY, SHADER. */
+gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error);
+void gtx_programs_destroy(gtx_renderer *renderer);
+
+/* model.c: gives the CPU's copy of the maps and proxies back. */
+void gtx_model_free_staging(gtx_model *model);
+
+/* view.c: what a draw takes from a gtx_view. */
+typedef struct gtx_frame {
+    float clip_from_world[16];
+    double eye[4];            /* world; the ray through a point p has the direction p * w - xyz */
+    float depth[4], light[4]; /* as geotex_view.glsl has them */
+    bool reversed, mirrored;  /* mirrored: the view turns clockwise into counter-clockwise */
+} gtx_frame;
+
+/* Errors: ARGUMENT (a matrix without an inverse, or not finite). */
+gtx_result gtx_frame_from_view(const gtx_view *view, gtx_frame *out, gtx_error *error);
+
+/* Fills the instance's data; *mirrored says that its transform turns the winding. Errors:
+ * ARGUMENT (not affine, no inverse, not finite). */
+gtx_result gtx_place_instance(const gtx_frame *frame, const gtx_instance *instance,
+                              gtx_instance_data *out, bool *mirrored, gtx_error *error);
+
+/* state.c: what gtx_draw touches, read and put back. */
+enum { GTX_MAX_DRAW_BUFFERS = 16 };
+typedef struct gtx_state {
+    gl_int program, vertex_array, array_buffer, unit;
+    gl_int textures[UNIT_CLEARED], arrays[UNIT_CLEARED], samplers[UNIT_CLEARED];
+    gl_int depth_func, cull_mode, front_face, draw_buffers;
+    gl_bool depth_test, depth_mask, cull;
+    gl_bool blend[GTX_MAX_DRAW_BUFFERS], color_mask[GTX_MAX_DRAW_BUFFERS][4];
+} gtx_state;
+
+void gtx_state_read(const gtx_gl *gl, gtx_state *state);
+void gtx_state_restore(const gtx_gl *gl, const gtx_state *state);
+/* The state that render.h promises after a draw. */
+void gtx_state_leave(const gtx_gl *gl, bool reversed);
+
+#endif

@@ -1,0 +1,80 @@
+/* The OpenGL state around a draw: the fixed one it leaves, and reading and restoring the host's. */
+#include "render/renderer.h"
+
+void gtx_state_leave(const gtx_gl *gl, bool reversed)
+{
+    gl->UseProgram(0);
+    gl->BindVertexArray(0);
+    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    for (gl_uint i = UNIT_CLEARED; i-- > 0;) {
+        gl->ActiveTexture(GL_TEXTURE0 + i);
+        gl->BindTexture(GL_TEXTURE_2D, 0);
+        gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+        gl->BindSampler(i, 0);
+    }
+    gl->Enable(GL_DEPTH_TEST);
+    gl->DepthFunc(reversed ? GL_GREATER : GL_LESS);
+    gl->DepthMask(GL_TRUE);
+    gl->Disable(GL_CULL_FACE);
+    gl->CullFace(GL_BACK);
+    gl->FrontFace(GL_CCW);
+    gl->Disable(GL_BLEND);
+    gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+void gtx_state_read(const gtx_gl *gl, gtx_state *state)
+{
+    gl->GetIntegerv(GL_CURRENT_PROGRAM, &state->program);
+    gl->GetIntegerv(GL_VERTEX_ARRAY_BINDING, &state->vertex_array);
+    gl->GetIntegerv(GL_ARRAY_BUFFER_BINDING, &state->array_buffer);
+    gl->GetIntegerv(GL_ACTIVE_TEXTURE, &state->unit);
+    for (gl_uint i = 0; i < UNIT_CLEARED; ++i) {
+        gl->ActiveTexture(GL_TEXTURE0 + i);
+        gl->GetIntegerv(GL_TEXTURE_BINDING_2D, &state->textures[i]);
+        gl->GetIntegerv(GL_TEXTURE_BINDING_2D_ARRAY, &state->arrays[i]);
+        gl->GetIntegerv(GL_SAMPLER_BINDING, &state->samplers[i]);
+    }
+    gl->GetIntegerv(GL_DEPTH_FUNC, &state->depth_func);
+    gl->GetIntegerv(GL_CULL_FACE_MODE, &state->cull_mode);
+    gl->GetIntegerv(GL_FRONT_FACE, &state->front_face);
+    gl->GetIntegerv(GL_MAX_DRAW_BUFFERS, &state->draw_buffers);
+    if (state->draw_buffers > GTX_MAX_DRAW_BUFFERS)
+        state->draw_buffers = GTX_MAX_DRAW_BUFFERS;
+    state->depth_test = gl->IsEnabled(GL_DEPTH_TEST);
+    gl->GetBooleanv(GL_DEPTH_WRITEMASK, &state->depth_mask);
+    state->cull = gl->IsEnabled(GL_CULL_FACE);
+    for (gl_int i = 0; i < state->draw_buffers; ++i) {
+        state->blend[i] = gl->IsEnabledi(GL_BLEND, (gl_uint)i);
+        gl->GetBooleani_v(GL_COLOR_WRITEMASK, (gl_uint)i, state->color_mask[i]);
+    }
+}
+
+static void set(const gtx_gl *gl, gl_enum cap, gl_bool on)
+{
+    (on ? gl->Enable : gl->Disable)(cap);
+}
+
+void gtx_state_restore(const gtx_gl *gl, const gtx_state *state)
+{
+    gl->UseProgram((gl_uint)state->program);
+    gl->BindVertexArray((gl_uint)state->vertex_array);
+    gl->BindBuffer(GL_ARRAY_BUFFER, (gl_uint)state->array_buffer);
+    for (gl_uint i = 0; i < UNIT_CLEARED; ++i) {
+        gl->ActiveTexture(GL_TEXTURE0 + i);
+        gl->BindTexture(GL_TEXTURE_2D, (gl_uint)state->textures[i]);
+        gl->BindTexture(GL_TEXTURE_2D_ARRAY, (gl_uint)state->arrays[i]);
+        gl->BindSampler(i, (gl_uint)state->samplers[i]);
+    }
+    gl->ActiveTexture((gl_enum)state->unit);
+    set(gl, GL_DEPTH_TEST, state->depth_test);
+    gl->DepthFunc((gl_enum)state->depth_func);
+    gl->DepthMask(state->depth_mask);
+    set(gl, GL_CULL_FACE, state->cull);
+    gl->CullFace((gl_enum)state->cull_mode);
+    gl->FrontFace((gl_enum)state->front_face);
+    for (gl_int i = 0; i < state->draw_buffers; ++i) {
+        const gl_bool *mask = state->color_mask[i];
+        (state->blend[i] ? gl->Enablei : gl->Disablei)(GL_BLEND, (gl_uint)i);
+        gl->ColorMaski((gl_uint)i, mask[0], mask[1], mask[2], mask[3]);
+    }
+}

@@ -1,0 +1,96 @@
+/* The slow reference: every cell of a sheet, crossings found by bisection. It shares with the walk
+ * only what defines the surface: the cell's corners and the trim. */
+#include "trace/caster.h"
+
+typedef struct interval {
+    double t0, t1;
+} interval;
+
+/* The part of `i` where o + t d lies within [low, high]; empty when t0 > t1. */
+static interval cut(interval i, double o, double d, double low, double high)
+{
+    const interval none = {1, 0};
+    if (d == 0)
+        return o < low || o > high ? none : i;
+    double near = ((d > 0 ? low : high) - o) / d, far = ((d > 0 ? high : low) - o) / d;
+    return (interval){near > i.t0 ? near : i.t0, far < i.t1 ? far : i.t1};
+}
+
+/* The ray's height above the surface of the cell. */
+static double above(const gtx_line *line, const gtx_cell *cell, double t)
+{
+    double u = (line->origin[0] + t * line->direction[0] - cell->x0) / (cell->x1 - cell->x0);
+    double v = (line->origin[1] + t * line->direction[1] - cell->y0) / (cell->y1 - cell->y0);
+    double z = line->origin[2] + t * line->direction[2];
+    return z - (cell->c + cell->cx * u + cell->cy * v + cell->cxy * u * v);
+}
+
+/* Where `above` changes sign between t0 and t1, given that it does so once. */
+static double bisect(const gtx_line *line, const gtx_cell *cell, double t0, double t1)
+{
+    bool start = above(line, cell, t0) > 0;
+    for (;;) {
+        double middle = t0 + (t1 - t0) / 2;
+        if (!(middle > t0 && middle < t1))
+            return t1;
+        if ((above(line, cell, middle) > 0) == start)
+            t0 = middle;
+        else
+            t1 = middle;
+    }
+}
+
+/* Where the parabola through three of its values on [t0, t1] turns; t1 when it does not. */
+static double turn(double t0, double t1, double f0, double middle, double f1)
+{
+    double a = f0 - 2 * middle + f1, b = f1 - f0, x = a == 0 ? 1 : -b / (4 * a);
+    return x > -0.5 && x < 0.5 ? t0 + (0.5 + x) * (t1 - t0) : t1;
+}
+
+static void search_cell(const gtx_caster *caster, uint32_t index, const gtx_line *line,
+                        const gtx_cell *cell, bool both, interval i, gtx_crossing *best)
+{
+    const gtx_sheet *sheet = &caster->sheets[index];
+    double f0 = above(line, cell, i.t0), f1 = above(line, cell, i.t1);
+    double middle = above(line, cell, i.t0 + (i.t1 - i.t0) / 2);
+    double split = turn(i.t0, i.t1, f0, middle, f1);
+    const double end[3] = {i.t0, split, i.t1};
+    for (int k = 0; k < 2; ++k) {
+        bool from = above(line, cell, end[k]) > 0, to = above(line, cell, end[k + 1]) > 0;
+        if (from == to || (!from && !both))
+            continue;
+        double t = bisect(line, cell, end[k], end[k + 1]);
+        double x = line->origin[0] + t * line->direction[0];
+        double y = line->origin[1] + t * line->direction[1];
+        if (!(t < best->t || (t == best->t && index < best->sheet)) ||
+            !gtx_sheet_shows(sheet, caster->trim_limit, x, y))
+            continue;
+        *best = (gtx_crossing){t, index, x, y, !from};
+        return;
+    }
+}
+
+void gtx_search_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *ray, bool both,
+                      gtx_crossing *best)
+{
+    const gtx_sheet *s = &caster->sheets[sheet];
+    const gtx_line line = gtx_sheet_line(s, ray);
+    const double *o = line.origin, *d = line.direction;
+    uint32_t rows = (s->height - 2 + (1u << caster->level)) >> caster->level;
+    for (uint32_t j = 0; j < rows; ++j) {
+        gtx_cell first = gtx_sheet_cell(s, caster->level, 0, j);
+        interval row = cut((interval){ray->t_min, best->t}, o[1], d[1], first.y0, first.y1);
+        if (row.t0 > row.t1)
+            continue;
+        for (uint32_t i = 0; i < s->tree_width[0]; ++i) {
+            gtx_range range = s->tree[0][(size_t)j * s->tree_width[0] + i];
+            if (range.min > range.max)
+                continue;
+            gtx_cell cell = gtx_sheet_cell(s, caster->level, i, j);
+            interval inside = cut(row, o[0], d[0], cell.x0, cell.x1);
+            inside = cut(inside, o[2], d[2], range.min - 1.0, range.max + 1.0);
+            if (inside.t0 <= inside.t1)
+                search_cell(caster, sheet, &line, &cell, both || s->two_sided, inside, best);
+        }
+    }
+}

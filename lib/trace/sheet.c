@@ -1,0 +1,292 @@
+/* Sheets: what casting needs of one patch, and the lookups in its maps. */
+#include "trace/caster.h"
+
+#include "base/alloc.h"
+#include "base/error.h"
+#include "derive/derive.h"
+
+#include <math.h>
+#include <string.h>
+
+static uint32_t min_u32(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint32_t cells_of(uint32_t texels, uint32_t level)
+{
+    return (texels - 2 + (1u << level)) >> level;
+}
+
+/* Rows of the map from object space to grid space: the inverse of the patch's frame (format/gtx.md,
+ * section 3), axes taken as they stand. */
+static void invert_frame(const gtx_patch *patch, uint32_t height_bits, double rows[3][4])
+{
+    const float *axis[3] = {patch->axis_x, patch->axis_y, patch->axis_z};
+    const double scale[3] = {patch->rect[2] / (double)patch->extent_x,
+                             patch->rect[3] / (double)patch->extent_y,
+                             (height_bits == 8 ? 254.0 : 65534.0) / patch->extent_z};
+    const double offset[3] = {-0.5, -0.5, 1};
+    double cross[3][3], det = 0;
+    for (int r = 0; r < 3; ++r) {
+        const float *a = axis[(r + 1) % 3], *b = axis[(r + 2) % 3];
+        for (int k = 0; k < 3; ++k) {
+            int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+            cross[r][k] = (double)a[k1] * b[k2] - (double)a[k2] * b[k1];
+        }
+    }
+    for (int k = 0; k < 3; ++k)
+        det += axis[0][k] * cross[0][k];
+    for (int r = 0; r < 3; ++r) {
+        rows[r][3] = offset[r];
+        for (int k = 0; k < 3; ++k) {
+            rows[r][k] = cross[r][k] / det * scale[r];
+            rows[r][3] -= rows[r][k] * patch->origin[k];
+        }
+    }
+}
+
+static gtx_range cell_range(const gtx_grid *grid, uint32_t i, uint32_t j)
+{
+    gtx_range range = {UINT16_MAX, 0};
+    if (!grid->solid[(size_t)j * (grid->nodes_x - 1) + i])
+        return range;
+    for (uint32_t k = 0; k < 4; ++k) {
+        uint16_t code = grid->code[(size_t)(j + (k >> 1)) * grid->nodes_x + i + (k & 1)];
+        range.min = code < range.min ? code : range.min;
+        range.max = code > range.max ? code : range.max;
+    }
+    return range;
+}
+
+/* Tree level 0 from the grid's cells, the others from the one below. */
+static void fill_tree(gtx_sheet *sheet, const gtx_grid *grid)
+{
+    uint32_t width = grid->nodes_x - 1, height = grid->nodes_y - 1;
+    for (uint32_t j = 0; j < height; ++j)
+        for (uint32_t i = 0; i < width; ++i)
+            sheet->tree[0][(size_t)j * width + i] = cell_range(grid, i, j);
+    for (uint32_t l = 1; l < sheet->levels; ++l) {
+        const gtx_range *below = sheet->tree[l - 1];
+        uint32_t up = (width + 1) / 2;
+        for (size_t k = 0; k < (size_t)up * ((height + 1) / 2); ++k)
+            sheet->tree[l][k] = (gtx_range){UINT16_MAX, 0};
+        for (uint32_t j = 0; j < height; ++j)
+            for (uint32_t i = 0; i < width; ++i) {
+                gtx_range from = below[(size_t)j * width + i];
+                gtx_range *to = &sheet->tree[l][(size_t)(j / 2) * up + i / 2];
+                to->min = from.min < to->min ? from.min : to->min;
+                to->max = from.max > to->max ? from.max : to->max;
+            }
+        width = up;
+        height = (height + 1) / 2;
+    }
+}
+
+/* The box in x and y is that of the solid cells, not of the map: tilted frames waste less. */
+static void fill_box(gtx_sheet *sheet, const gtx_grid *grid)
+{
+    uint32_t low[2] = {UINT32_MAX, UINT32_MAX}, high[2] = {0, 0};
+    for (uint32_t j = 0; j + 1 < grid->nodes_y; ++j)
+        for (uint32_t i = 0; i + 1 < grid->nodes_x; ++i)
+            if (grid->solid[(size_t)j * (grid->nodes_x - 1) + i]) {
+                const uint32_t at[2] = {i, j};
+                for (int a = 0; a < 2; ++a) {
+                    low[a] = at[a] < low[a] ? at[a] : low[a];
+                    high[a] = at[a] + 1 > high[a] ? at[a] + 1 : high[a];
+                }
+            }
+    gtx_range whole = sheet->tree[sheet->levels - 1][0];
+    sheet->low[0] = 1; /* none */
+    if (whole.min > whole.max)
+        return;
+    const uint32_t size[2] = {sheet->width, sheet->height};
+    for (int a = 0; a < 2; ++a) {
+        sheet->low[a] = low[a] << grid->level;
+        sheet->high[a] = min_u32(high[a] << grid->level, size[a] - 1);
+    }
+    /* A code more on both sides, so that a flat sheet does not lie in the faces of its box. */
+    sheet->low[2] = whole.min - 1.0;
+    sheet->high[2] = whole.max + 1.0;
+}
+
+static void copy_maps(gtx_sheet *sheet, const gtx_asset *asset, const gtx_patch *patch)
+{
+    for (uint32_t y = 0; y < sheet->height; ++y) {
+        size_t row = (size_t)patch->page * asset->info.page_height + patch->rect[1] + y;
+        size_t from = row * asset->info.page_width + patch->rect[0];
+        size_t to = (size_t)y * sheet->width;
+        memcpy(sheet->trim + to, asset->trim + from, sheet->width);
+        memcpy(sheet->normal + 2 * to, asset->normal[0] + 2 * from, 2 * (size_t)sheet->width);
+    }
+}
+
+/* How much of the caster's arrays is taken. */
+typedef struct cursor {
+    size_t code, range, texel;
+} cursor;
+
+/* Takes the sheet's share and, once there is memory, points the sheet into it. */
+static void place_sheet(const gtx_caster *caster, gtx_sheet *sheet, cursor *at)
+{
+    uint32_t width = cells_of(sheet->width, caster->level);
+    uint32_t height = cells_of(sheet->height, caster->level);
+    if (caster->code) {
+        sheet->code = caster->code + at->code;
+        sheet->trim = caster->trim + at->texel;
+        sheet->normal = caster->normal + 2 * at->texel;
+    }
+    sheet->nodes_x = width + 1;
+    at->code += (size_t)(width + 1) * (height + 1);
+    at->texel += (size_t)sheet->width * sheet->height;
+    for (sheet->levels = 0;; width = (width + 1) / 2, height = (height + 1) / 2) {
+        if (caster->ranges)
+            sheet->tree[sheet->levels] = caster->ranges + at->range;
+        sheet->tree_width[sheet->levels++] = width;
+        at->range += (size_t)width * height;
+        if (width == 1 && height == 1)
+            break;
+    }
+}
+
+static gtx_result fill_sheet(gtx_caster *caster, const gtx_asset *asset, uint32_t index,
+                             gtx_error *error)
+{
+    gtx_sheet *sheet = &caster->sheets[index];
+    const gtx_patch *patch = &asset->patches[index];
+    gtx_grid grid;
+    gtx_result result =
+        gtx_grid_build(asset, index, caster->level, &caster->allocator, &grid, error);
+    if (result)
+        return result;
+    memcpy(sheet->code, grid.code, (size_t)grid.nodes_x * grid.nodes_y * sizeof *grid.code);
+    fill_tree(sheet, &grid);
+    fill_box(sheet, &grid);
+    gtx_grid_free(&grid, &caster->allocator);
+    copy_maps(sheet, asset, patch);
+    invert_frame(patch, asset->info.height_bits, sheet->to_grid);
+    gtx_normal_frame(patch, sheet->normal_frame);
+    sheet->two_sided = patch->flags & GTX_PATCH_TWO_SIDED;
+    return GTX_OK;
+}
+
+gtx_result gtx_sheets_build(gtx_caster *caster, const gtx_asset *asset, gtx_error *error)
+{
+    const gtx_allocator *hooks = &caster->allocator;
+    cursor total = {0}, at = {0};
+    caster->sheets = gtx_alloc_array(hooks, caster->sheet_count, sizeof *caster->sheets);
+    for (uint32_t i = 0; caster->sheets && i < caster->sheet_count; ++i) {
+        caster->sheets[i].width = asset->patches[i].rect[2];
+        caster->sheets[i].height = asset->patches[i].rect[3];
+        place_sheet(caster, &caster->sheets[i], &total);
+    }
+    caster->code_count = total.code;
+    caster->range_count = total.range;
+    caster->texel_count = total.texel;
+    caster->code = gtx_alloc_array(hooks, total.code, sizeof *caster->code);
+    caster->ranges = gtx_alloc_array(hooks, total.range, sizeof *caster->ranges);
+    caster->trim = gtx_alloc_array(hooks, total.texel, 1);
+    caster->normal = gtx_alloc_array(hooks, total.texel, 2);
+    if (!caster->sheets || !caster->code || !caster->ranges || !caster->trim || !caster->normal)
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory to cast into %u patches",
+                        caster->sheet_count);
+    gtx_result result = GTX_OK;
+    for (uint32_t i = 0; !result && i < caster->sheet_count; ++i) {
+        place_sheet(caster, &caster->sheets[i], &at);
+        result = fill_sheet(caster, asset, i, error);
+    }
+    return result;
+}
+
+void gtx_sheets_free(gtx_caster *caster)
+{
+    const gtx_allocator *hooks = &caster->allocator;
+    gtx_free_array(hooks, caster->code, caster->code_count, sizeof *caster->code);
+    gtx_free_array(hooks, caster->ranges, caster->range_count, sizeof *caster->ranges);
+    gtx_free_array(hooks, caster->trim, caster->texel_count, 1);
+    gtx_free_array(hooks, caster->normal, caster->texel_count, 2);
+    gtx_free_array(hooks, caster->sheets, caster->sheet_count, sizeof *caster->sheets);
+}
+
+gtx_line gtx_sheet_line(const gtx_sheet *sheet, const gtx_line *ray)
+{
+    gtx_line line = {.t_min = ray->t_min, .t_max = ray->t_max};
+    for (int r = 0; r < 3; ++r) {
+        const double *row = sheet->to_grid[r], *o = ray->origin, *d = ray->direction;
+        line.origin[r] = row[0] * o[0] + row[1] * o[1] + row[2] * o[2] + row[3];
+        line.direction[r] = row[0] * d[0] + row[1] * d[1] + row[2] * d[2];
+    }
+    return line;
+}
+
+gtx_cell gtx_sheet_cell(const gtx_sheet *sheet, uint32_t level, uint32_t i, uint32_t j)
+{
+    const uint16_t *row = sheet->code + (size_t)j * sheet->nodes_x + i;
+    const uint16_t *next = row + sheet->nodes_x;
+    return (gtx_cell){.x0 = i << level,
+                      .x1 = min_u32((i + 1) << level, sheet->width - 1),
+                      .y0 = j << level,
+                      .y1 = min_u32((j + 1) << level, sheet->height - 1),
+                      .c = row[0],
+                      .cx = row[1] - row[0],
+                      .cy = next[0] - row[0],
+                      .cxy = next[1] - next[0] - row[1] + row[0]};
+}
+
+/* Four weights and the texel of the first for a bilinear lookup at (x, y), clamped to the map. */
+static size_t bilinear(const gtx_sheet *sheet, double x, double y, double weight[4])
+{
+    double right = sheet->width - 1, top = sheet->height - 1;
+    x = x > 0 ? (x < right ? x : right) : 0;
+    y = y > 0 ? (y < top ? y : top) : 0;
+    uint32_t i = min_u32((uint32_t)x, sheet->width - 2);
+    uint32_t j = min_u32((uint32_t)y, sheet->height - 2);
+    double u = x - i, v = y - j;
+    weight[0] = (1 - u) * (1 - v);
+    weight[1] = u * (1 - v);
+    weight[2] = (1 - u) * v;
+    weight[3] = u * v;
+    return (size_t)j * sheet->width + i;
+}
+
+bool gtx_sheet_shows(const gtx_sheet *sheet, double trim_limit, double x, double y)
+{
+    double weight[4];
+    const uint8_t *row = sheet->trim + bilinear(sheet, x, y, weight);
+    const uint8_t *next = row + sheet->width;
+    return weight[0] * row[0] + weight[1] * row[1] + weight[2] * next[0] + weight[3] * next[1] <=
+           trim_limit;
+}
+
+void gtx_sheet_normal(const gtx_sheet *sheet, double x, double y, float out[3])
+{
+    double weight[4];
+    size_t texel = bilinear(sheet, x, y, weight);
+    const size_t corner[4] = {texel, texel + 1, texel + sheet->width, texel + sheet->width + 1};
+    double a = -1, b = -1;
+    for (int k = 0; k < 4; ++k) {
+        a += weight[k] * sheet->normal[2 * corner[k]] / 127.5;
+        b += weight[k] * sheet->normal[2 * corner[k] + 1] / 127.5;
+    }
+    const double px = (a + b) / 2, py = (a - b) / 2, pz = 1 - fabs(px) - fabs(py);
+    const double length = sqrt(px * px + py * py + pz * pz);
+    for (int k = 0; k < 3; ++k)
+        out[k] = (float)((px * sheet->normal_frame[0][k] + py * sheet->normal_frame[1][k] +
+                          pz * sheet->normal_frame[2][k]) / length);
+}
+
+void gtx_sheet_facet(const gtx_sheet *sheet, const gtx_cell *cell, double x, double y,
+                     float out[3])
+{
+    const double u = (x - cell->x0) / (cell->x1 - cell->x0);
+    const double v = (y - cell->y0) / (cell->y1 - cell->y0);
+    const double slope_x = (cell->cx + cell->cxy * v) / (cell->x1 - cell->x0);
+    const double slope_y = (cell->cy + cell->cxy * u) / (cell->y1 - cell->y0);
+    double n[3];
+    for (int k = 0; k < 3; ++k)
+        n[k] = sheet->to_grid[2][k] - slope_x * sheet->to_grid[0][k] -
+               slope_y * sheet->to_grid[1][k];
+    const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (int k = 0; k < 3; ++k)
+        out[k] = (float)(n[k] / length);
+}

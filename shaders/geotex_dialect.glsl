@@ -1,0 +1,25 @@
+/* One GLSL for OpenGL 3.3 core and later, OpenGL ES 3.0 and Vulkan. Comes first after #version.
+ *
+ * GTX_SAMPLER(b, type) declares a sampler at binding b of set 0; GTX_VARYING(n) gives a varying its
+ * location; members between GTX_UNIFORMS and GTX_UNIFORMS_END are plain uniforms, each marked
+ * GTX_UNIFORM, and one block at binding 8 under Vulkan. */
+#ifdef GL_ES
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+precision highp sampler2DArray;
+precision highp usampler2DArray;
+#endif
+#ifdef VULKAN
+#define GTX_SAMPLER(b, type) layout(set = 0, binding = b) uniform type
+#define GTX_VARYING(n) layout(location = n)
+#define GTX_UNIFORMS layout(std140, set = 0, binding = 8) uniform gtx_uniforms {
+#define GTX_UNIFORM
+#define GTX_UNIFORMS_END };
+#else
+#define GTX_SAMPLER(b, type) uniform type
+#define GTX_VARYING(n)
+#define GTX_UNIFORMS
+#define GTX_UNIFORM uniform
+#define GTX_UNIFORMS_END
+#endif

@@ -1,0 +1,48 @@
+/* The stock forward main: casts the ray, writes lit colour (sRGB bytes) and true depth.
+ *
+ * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl, geotex_surface.glsl and a
+ * gtx_cast (geotex_cast.glsl or geotex_paper.glsl) before it; varyings as geotex_proxy.vert. */
+GTX_VARYING(0) in vec3 gtx_point;
+GTX_VARYING(1) flat in vec3 gtx_eye;
+GTX_VARYING(2) flat in vec4 gtx_clip_z;
+GTX_VARYING(3) flat in vec4 gtx_clip_w;
+GTX_VARYING(4) flat in vec3 gtx_normal_x;
+GTX_VARYING(5) flat in vec3 gtx_normal_y;
+GTX_VARYING(6) flat in vec3 gtx_normal_z;
+GTX_VARYING(7) flat in vec4 gtx_color;
+GTX_VARYING(8) flat in int gtx_patch_index;
+
+layout(location = 0) out vec4 gtx_out_color;
+
+void main()
+{
+    vec3 dx = dFdx(gtx_point), dy = dFdy(gtx_point);
+    gtx_sheet sheet = gtx_sheet_of(gtx_patch_index);
+    vec3 direction = gtx_point * gtx_depth.w - gtx_eye;
+
+    /* z and w of the clip position are linear along the ray: zw + t * step. */
+    vec2 zw = vec2(dot(gtx_clip_z, vec4(gtx_point, 1.0)), dot(gtx_clip_w, vec4(gtx_point, 1.0)));
+    vec2 zw_step = vec2(dot(gtx_clip_z.xyz, direction), dot(gtx_clip_w.xyz, direction));
+    float t0 = -1e30, t1 = 1e30;
+    gtx_clip(zw.x + gtx_depth.x * zw.y, zw_step.x + gtx_depth.x * zw_step.y, t0, t1);
+    gtx_clip(zw.y - zw.x, zw_step.y - zw_step.x, t0, t1);
+    gtx_clip_box(sheet, gtx_point, direction, t0, t1);
+    gtx_hit hit;
+    if (t0 > t1 || !gtx_cast(sheet, gtx_point, direction, t0, t1, hit))
+        discard;
+
+    float widen = 1.0 + hit.t * gtx_depth.w;
+    float level = gtx_level_of(hit, direction, dx * widen, dy * widen);
+    vec2 code = gtx_lookup(gtx_normals, sheet, hit.grid.xy, level, gtx_maps.x).xy;
+    vec3 n = gtx_decode_normal(sheet, code);
+    n = normalize(gtx_normal_x * n.x + gtx_normal_y * n.y + gtx_normal_z * n.z);
+    float lambert = max(dot(hit.back ? -n : n, gtx_light.xyz), 0.0);
+    vec4 color = gtx_color;
+    if (gtx_maps.y > 0.0)
+        color *= gtx_lookup(gtx_colors, sheet, hit.grid.xy, level, gtx_maps.x);
+    color.rgb *= gtx_light.w + (1.0 - gtx_light.w) * lambert;
+    gtx_out_color = vec4(gtx_to_srgb(color.rgb), color.a);
+
+    zw = vec2(dot(gtx_clip_z, vec4(hit.grid, 1.0)), dot(gtx_clip_w, vec4(hit.grid, 1.0)));
+    gl_FragDepth = clamp(zw.x / zw.y, -gtx_depth.x, 1.0) * gtx_depth.y + gtx_depth.z;
+}

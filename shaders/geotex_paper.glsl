@@ -1,0 +1,56 @@
+/* The search of the paper (de Toledo, Wang, Levy 2008, section 4.1): N linear steps, then M binary
+ * ones, fewer linear and more binary the steeper the view. The same gtx_cast as geotex_cast.glsl,
+ * to be measured against it; it may step over thin features.
+ *
+ * The four codes of a cell come with one fetch and are interpolated by hand, for a filter would
+ * blend heights with code 0, which means empty. */
+
+/* The paper's z(P): whether the point is on or below the sheet. */
+bool gtx_below(gtx_sheet sheet, vec3 point, out vec4 height, out ivec2 cell)
+{
+    cell = clamp(ivec2(floor(point.xy)), ivec2(0), sheet.size - 2);
+    height = vec4(texelFetch(gtx_cells, ivec3(sheet.corner + cell, sheet.page), 0));
+    vec2 f = point.xy - vec2(cell);
+    return height.x > 0.0 &&
+           point.z <= mix(mix(height.x, height.y, f.x), mix(height.z, height.w, f.x), f.y);
+}
+
+bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, out gtx_hit hit)
+{
+    const float most_linear = 40.0, least_linear = 10.0, most_binary = 6.0, least_binary = 3.0;
+    vec3 in_box = direction / (sheet.high - sheet.low); /* the paper's canonical cube */
+    float steep = abs(in_box.z) / max(length(in_box), 1e-30);
+    int linear_steps = int(mix(most_linear, least_linear, steep));
+    int binary_steps = int(mix(least_binary, most_binary, steep) + 0.5);
+
+    vec4 height;
+    ivec2 cell;
+    float width = (t1 - t0) / float(linear_steps);
+    float outside = t0, inside = t0;
+    bool found = false;
+    for (int i = 1; i <= linear_steps; ++i) {
+        inside = t0 + width * float(i);
+        found = gtx_below(sheet, origin + inside * direction, height, cell);
+        if (found)
+            break;
+        outside = inside;
+    }
+    if (!found)
+        return false;
+    for (int i = 0; i < binary_steps; ++i) {
+        float middle = 0.5 * (outside + inside);
+        if (gtx_below(sheet, origin + middle * direction, height, cell))
+            inside = middle;
+        else
+            outside = middle;
+    }
+    vec3 point = origin + inside * direction;
+    gtx_below(sheet, point, height, cell);
+    vec2 f = point.xy - vec2(cell);
+    float hxy = height.x - height.y - height.z + height.w;
+    hit.t = inside;
+    hit.grid = point;
+    hit.slope = vec2(height.y - height.x + hxy * f.y, height.z - height.x + hxy * f.x);
+    hit.back = false;
+    return gtx_shows(sheet, cell, point.xy);
+}

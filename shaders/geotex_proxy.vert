@@ -1,0 +1,59 @@
+/* Proxies of instances: every fragment of a patch's hull gets its ray, in the patch's grid space.
+ *
+ * Needs geotex_dialect.glsl, geotex_sheet.glsl and geotex_view.glsl before it. The back faces of
+ * the hull are what is rasterised, so that a camera inside it still sees the patch; the ray is cut
+ * to the hull and to the near and far planes in the fragment. */
+layout(location = 0) in vec3 gtx_position;  /* grid space */
+layout(location = 1) in uint gtx_patch;
+layout(location = 2) in vec4 gtx_world_x;   /* rows of object -> world, one set an instance */
+layout(location = 3) in vec4 gtx_world_y;
+layout(location = 4) in vec4 gtx_world_z;
+layout(location = 5) in vec4 gtx_object_x;  /* xyz: rows of the inverse's linear part; w: the eye in */
+layout(location = 6) in vec4 gtx_object_y;  /* object space (orthographic: what the eye is to a */
+layout(location = 7) in vec4 gtx_object_z;  /* direction, see gtx_eye) */
+layout(location = 8) in vec4 gtx_tint;
+
+GTX_VARYING(0) out vec3 gtx_point;          /* grid space, on the hull */
+GTX_VARYING(1) flat out vec3 gtx_eye;       /* the ray's direction is gtx_point * gtx_depth.w - gtx_eye */
+GTX_VARYING(2) flat out vec4 gtx_clip_z;    /* rows of grid -> clip */
+GTX_VARYING(3) flat out vec4 gtx_clip_w;
+GTX_VARYING(4) flat out vec3 gtx_normal_x;  /* columns of object -> world for normals */
+GTX_VARYING(5) flat out vec3 gtx_normal_y;
+GTX_VARYING(6) flat out vec3 gtx_normal_z;
+GTX_VARYING(7) flat out vec4 gtx_color;
+GTX_VARYING(8) flat out int gtx_patch_index;
+
+/* A row over world space, taken to grid space. */
+vec4 gtx_row(vec4 row, gtx_sheet sheet)
+{
+    vec4 object = row.x * gtx_world_x + row.y * gtx_world_y + row.z * gtx_world_z +
+                  vec4(0.0, 0.0, 0.0, row.w);
+    return vec4(dot(object.xyz, sheet.axis_x), dot(object.xyz, sheet.axis_y),
+                dot(object.xyz, sheet.axis_z), dot(object.xyz, sheet.origin) + object.w);
+}
+
+void main()
+{
+    int index = int(gtx_patch);
+    gtx_sheet sheet = gtx_sheet_of(index);
+    vec4 grid = vec4(gtx_position, 1.0);
+    vec4 eye = vec4(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w, gtx_depth.w);
+    mat4 rows = transpose(gtx_clip_from_world);
+    gtx_point = gtx_position;
+    gtx_eye = vec3(dot(gtx_record(index, 0), eye), dot(gtx_record(index, 1), eye),
+                   dot(gtx_record(index, 2), eye));
+    gtx_clip_z = gtx_row(rows[2], sheet);
+    gtx_clip_w = gtx_row(rows[3], sheet);
+    /* n_world = transpose(inverse) n: the inverse's rows are the columns. */
+    gtx_normal_x = gtx_object_x.xyz;
+    gtx_normal_y = gtx_object_y.xyz;
+    gtx_normal_z = gtx_object_z.xyz;
+    gtx_color = gtx_tint;
+    gtx_patch_index = index;
+
+    float w = dot(gtx_clip_w, grid);
+    /* z in the middle of either clip convention: only the sides of the frustum cut the hull. The
+     * fragment writes its own depth. */
+    gl_Position = vec4(dot(gtx_row(rows[0], sheet), grid), dot(gtx_row(rows[1], sheet), grid),
+                       0.5 * w, w);
+}

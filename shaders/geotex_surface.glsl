@@ -1,0 +1,53 @@
+/* Looking up the normal and the colour of a hit. Needs geotex_dialect.glsl and geotex_sheet.glsl. */
+GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;  /* hemi-octahedral, two channels, mips */
+GTX_SAMPLER(3, highp sampler2DArray) gtx_colors;   /* sRGB, mips; decoded when sampled */
+
+/* The mip level whose texels have the area of the pixel at a hit. `dx` and `dy` are the steps of
+ * the ray's point from pixel to pixel at the hit's t, in grid space: differentials of the ray, not
+ * of the hit, so that they may be taken before any loop or branch. */
+float gtx_level_of(gtx_hit hit, vec3 direction, vec3 dx, vec3 dy)
+{
+    /* Both steps slide along the ray onto the sheet's tangent plane. The area that they span in x
+     * and y is the triple product of them with the ray over the ray's rate of descent. */
+    vec3 n = vec3(-hit.slope, 1.0);
+    float area = abs(dot(cross(dx, dy), direction)) / max(abs(dot(n, direction)), 1e-20);
+    return 0.5 * log2(max(area, 1e-20));
+}
+
+vec4 gtx_lookup_level(highp sampler2DArray map, gtx_sheet sheet, vec2 at, float level)
+{
+    float scale = exp2(-level);
+    vec2 size = vec2(textureSize(map, int(level)).xy);
+    vec2 low = vec2(sheet.corner) * scale, high = vec2(sheet.corner + sheet.size) * scale;
+    vec2 texel = clamp((vec2(sheet.corner) + at + 0.5) * scale, low + 0.5, high - 0.5);
+    return textureLod(map, vec3(texel / size, float(sheet.page)), level);
+}
+
+/* Trilinear, and clamped at each level to the patch's own texels: patches are packed without a
+ * gutter (section 4.5). */
+vec4 gtx_lookup(highp sampler2DArray map, gtx_sheet sheet, vec2 at, float level, float last)
+{
+    level = clamp(level, 0.0, last);
+    float fine = floor(level);
+    vec4 a = gtx_lookup_level(map, sheet, at, fine);
+    if (level == fine)
+        return a;
+    return mix(a, gtx_lookup_level(map, sheet, at, fine + 1.0), level - fine);
+}
+
+/* Object-space unit normal from two bytes in 0..1 (section 4.3). */
+vec3 gtx_decode_normal(gtx_sheet sheet, vec2 code)
+{
+    vec2 e = code * 2.0 - 1.0;
+    vec2 p = vec2(e.x + e.y, e.x - e.y) * 0.5;
+    vec3 n = normalize(vec3(p, 1.0 - abs(p.x) - abs(p.y)));
+    vec3 z = normalize(sheet.axis_z);
+    vec3 x = normalize(sheet.axis_x - dot(sheet.axis_x, z) * z);
+    return n.x * x + n.y * cross(z, x) + n.z * z;
+}
+
+vec3 gtx_to_srgb(vec3 c)
+{
+    c = clamp(c, 0.0, 1.0);
+    return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+}

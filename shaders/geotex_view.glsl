@@ -1,0 +1,10 @@
+/* The camera and the light of a draw: uniforms shared by the stock mains. */
+GTX_UNIFORMS
+GTX_UNIFORM mat4 gtx_clip_from_world;   /* the engine's projection * view */
+GTX_UNIFORM vec4 gtx_depth;             /* x: clip z >= -x * w at the near plane (1 or 0);
+                                           y, z: window depth = z_clip / w_clip * y + z;
+                                           w: 1 perspective, 0 orthographic */
+GTX_UNIFORM vec4 gtx_light;             /* xyz: world space, unit, towards the light; w: ambient */
+GTX_UNIFORM vec4 gtx_maps;              /* x: last mip level of normals and colours; y: 1 when the
+                                           model has colours */
+GTX_UNIFORMS_END

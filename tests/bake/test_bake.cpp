@@ -1,0 +1,379 @@
+/* Baked maps: valid as an asset, on the surface, whole, and the same for any thread count. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+extern "C" {
+#include <cmocka.h>
+}
+
+#include "asset/asset.h"
+#include "bake/shapes.hpp"
+
+#include <cstring>
+
+using namespace gtx;
+using shapes::describe;
+
+static Maps bake_with(const Mesh &mesh, const Partition &partition, BakeOptions options = {},
+                      unsigned threads = 1)
+{
+    Task task(threads, nullptr, nullptr, {"bake", "pack"});
+    return bake(mesh, partition, options, task);
+}
+
+/* gtx_create checks every rule of the format. */
+static gtx_asset *create(const Maps &maps)
+{
+    std::vector<const uint8_t *> levels;
+    gtx_asset_desc desc = describe(maps, levels);
+    gtx_asset *asset = nullptr;
+    gtx_error error = {};
+    if (gtx_create(&desc, &asset, &error))
+        fail_msg("%s (rule %u)", error.message, error.rule);
+    return asset;
+}
+
+static Maps bake_valid(const Mesh &mesh, const Partition &partition, BakeOptions options = {})
+{
+    Maps maps = bake_with(mesh, partition, options);
+    gtx_close(create(maps));
+    return maps;
+}
+
+static Vec3d point_of(const Maps &maps, const gtx_patch &p, unsigned i, unsigned j, unsigned code)
+{
+    double a = (i + 0.5) / p.rect[2] * p.extent_x, b = (j + 0.5) / p.rect[3] * p.extent_y;
+    double c = (code - 1) / (maps.height_bits == 8 ? 254. : 65534.) * p.extent_z;
+    Vec3d point;
+    for (int k = 0; k < 3; ++k)
+        point[k] = maps.anchor[k] + p.origin[k] + a * p.axis_x[k] + b * p.axis_y[k] + c * p.axis_z[k];
+    return point;
+}
+
+/* Calls visit(patch, point, trim in texels) for each coded texel. */
+template <class Visit> static void each_texel(const Maps &maps, Visit visit)
+{
+    for (const gtx_patch &p : maps.patches) {
+        for (unsigned j = 0; j < p.rect[3]; ++j) {
+            for (unsigned i = 0; i < p.rect[2]; ++i) {
+                size_t at = (size_t(p.page) * maps.page_height + p.rect[1] + j) * maps.page_width +
+                            p.rect[0] + i;
+                unsigned code = maps.height_bits == 8
+                                    ? maps.height[at]
+                                    : maps.height[2 * at] | maps.height[2 * at + 1] << 8;
+                if (code)
+                    visit(p, point_of(maps, p, i, j, code), (maps.trim[at] - 128) / 16., at);
+            }
+        }
+    }
+}
+
+static void a_bumpy_ball_lies_on_its_surface(void **)
+{
+    Mesh mesh = shapes::ball(48, shapes::bumps);
+    Partition partition = shapes::split(mesh, shapes::by_axis(mesh), 96);
+    for (unsigned bits : {8u, 16u}) {
+        BakeOptions options;
+        options.height_bits = bits;
+        Maps maps = bake_valid(mesh, partition, options);
+        assert_int_equal(maps.patches.size(), partition.charts.size());
+        double worst = 0, outside = 0;
+        each_texel(maps, [&](const gtx_patch &, const Vec3d &p, double trim, size_t) {
+            double off = std::fabs(length(p) - shapes::bumps(normalize(p)));
+            (trim <= 0 ? worst : outside) = std::max(trim <= 0 ? worst : outside, off);
+        });
+        print_message("# %u bits: %.5f inside, %.5f extrapolated\n", bits, worst, outside);
+        assert_true(worst < (bits == 8 ? 0.004 : 0.0025));
+        assert_true(outside < 0.02);
+    }
+}
+
+static void normals_are_those_of_the_source(void **)
+{
+    Mesh mesh = shapes::ball(48, [](const Vec3d &) { return 1.; });
+    Maps maps = bake_valid(mesh, shapes::split(mesh, shapes::by_axis(mesh), 96));
+    double worst = 1;
+    each_texel(maps, [&](const gtx_patch &patch, const Vec3d &p, double trim, size_t at) {
+        float rows[3][3], n[3];
+        gtx_normal_frame(&patch, rows);
+        gtx_decode_normal(&maps.normal[0][2 * at], n);
+        Vec3d normal;
+        for (int k = 0; k < 3; ++k)
+            normal[k] = n[0] * rows[0][k] + n[1] * rows[1][k] + n[2] * rows[2][k];
+        if (trim <= 0)
+            worst = std::min(worst, dot(normal, normalize(p)));
+    });
+    print_message("# worst cosine %.6f\n", worst);
+    assert_true(worst > 0.9998);
+}
+
+static void the_whole_core_is_shown(void **)
+{
+    Mesh mesh = shapes::ball(32, shapes::bumps);
+    Partition partition = shapes::split(mesh, shapes::by_axis(mesh), 64);
+    Maps maps = bake_with(mesh, partition);
+    for (size_t c = 0; c < partition.charts.size(); ++c) {
+        const gtx_patch &p = maps.patches[c];
+        Vec3d x(p.axis_x[0], p.axis_x[1], p.axis_x[2]), y(p.axis_y[0], p.axis_y[1], p.axis_y[2]);
+        Vec3d origin(p.origin[0] + maps.anchor[0], p.origin[1] + maps.anchor[1],
+                     p.origin[2] + maps.anchor[2]);
+        for (uint32_t t : partition.charts[c].triangles) {
+            for (int k = 0; k < 3; ++k) { /* hand-made frames are orthogonal */
+                Vec3d q = mesh.position(t, k) - origin;
+                double u = dot(q, x) / p.extent_x * p.rect[2] - 0.5;
+                double v = dot(q, y) / p.extent_y * p.rect[3] - 0.5;
+                int i = int(std::floor(u)), j = int(std::floor(v));
+                assert_true(i >= 0 && j >= 0 && i + 1 < p.rect[2] && j + 1 < p.rect[3]);
+                double trim = 0;
+                for (int n = 0; n < 4; ++n) {
+                    int a = i + n % 2, b = j + n / 2;
+                    size_t at = (size_t(p.page) * maps.page_height + p.rect[1] + b) *
+                                    maps.page_width + p.rect[0] + a;
+                    assert_true(maps.height[at] != 0);
+                    double weight = (1 - std::fabs(u - a)) * (1 - std::fabs(v - b));
+                    trim += weight * (maps.trim[at] - 128) / 16.;
+                }
+                assert_true(trim <= 0.3);
+            }
+        }
+    }
+}
+
+static void any_thread_count_gives_the_same_bytes(void **)
+{
+    Mesh mesh = shapes::ball(24, shapes::bumps);
+    mesh.colors.resize(3 * mesh.triangle_count());
+    for (size_t i = 0; i < mesh.colors.size(); ++i)
+        mesh.colors[i] = {uint8_t(i), uint8_t(i / 7), uint8_t(i / 31), 255};
+    Partition partition = shapes::split(mesh, shapes::by_axis(mesh), 40);
+    Maps one = bake_with(mesh, partition);
+    for (unsigned threads : {2u, 5u}) {
+        Maps many = bake_with(mesh, partition, {}, threads);
+        assert_true(one.height == many.height && one.trim == many.trim);
+        assert_true(one.normal == many.normal && one.color == many.color);
+        assert_memory_equal(one.patches.data(), many.patches.data(),
+                            one.patches.size() * sizeof(gtx_patch));
+        assert_memory_equal(one.bounds_min, many.bounds_min, sizeof one.bounds_min);
+    }
+}
+
+static void one_triangle_bakes(void **)
+{
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    shapes::add_normals(mesh);
+    Maps maps = bake_valid(mesh, shapes::split(mesh, shapes::all_in_one(), 64));
+    const gtx_patch &p = maps.patches[0];
+    assert_true(p.extent_z >= std::max(p.extent_x, p.extent_y) / 4100);
+    each_texel(maps, [&](const gtx_patch &, const Vec3d &q, double, size_t) {
+        assert_true(std::fabs(q.z) < 1e-6);
+    });
+    assert_true(maps.report.texels_empty < maps.report.texels_total);
+}
+
+static void a_needle_and_a_speck_bake(void **)
+{
+    for (const Vec3d &tip : {Vec3d(1, 1e-4, 0), Vec3d(1e-6, 1e-6, 0)}) {
+        Mesh mesh;
+        mesh.positions = {{0, 0, 0}, {tip.x, 0, 0}, tip, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+        mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+        shapes::add_normals(mesh);
+        bake_valid(mesh, shapes::split(mesh, [](size_t t) { return int(t); }, 128));
+    }
+}
+
+static void a_chart_that_faces_away_bakes(void **)
+{
+    Mesh mesh = shapes::sheet(4, [](double u, double v) { return Vec3d(u, v, 0); });
+    Partition partition = shapes::split(mesh, shapes::all_in_one(), 16);
+    partition.charts[0].frame =
+        shapes::frame_along(mesh, partition.charts[0].triangles, Vec3d(0, 0, -1));
+    bake_valid(mesh, partition);
+    partition.charts[0].frame =
+        shapes::frame_along(mesh, partition.charts[0].triangles, Vec3d(1, 0, 0));
+    bake_valid(mesh, partition);
+}
+
+static void an_edge_on_closed_shred_bakes(void **)
+{
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 1}};
+    mesh.normals.assign(6, Vec3f(0, 0, 1));
+    Partition partition = shapes::split(mesh, shapes::all_in_one(), 32);
+    partition.charts[0].frame = shapes::frame_along(mesh, {0, 1}, Vec3d(0, 0, 1));
+    partition.pitch = 1 / 32.;
+    bake_valid(mesh, partition);
+}
+
+static void far_away_keeps_its_precision(void **)
+{
+    Vec3d far(1e7, -2e7, 3e7);
+    Mesh mesh = shapes::sheet(16, [&](double u, double v) {
+        return far + Vec3d(u, v, 0.1 * std::sin(6 * u) * std::cos(5 * v));
+    });
+    Maps maps = bake_valid(mesh, shapes::split(mesh, shapes::all_in_one(), 64));
+    assert_true(std::fabs(maps.anchor[0] - far.x) <= 2);
+    double worst = 0;
+    each_texel(maps, [&](const gtx_patch &, const Vec3d &p, double trim, size_t) {
+        Vec3d q = p - far;
+        if (trim <= 0)
+            worst = std::max(worst, std::fabs(q.z - 0.1 * std::sin(6 * q.x) * std::cos(5 * q.y)));
+    });
+    assert_true(worst < 5e-3);
+}
+
+static void a_tilted_frame_is_followed(void **)
+{
+    Mesh mesh = shapes::sheet(16, [](double u, double v) { return Vec3d(u, v, 0.5 * u); });
+    Partition partition = shapes::split(mesh, shapes::all_in_one(), 64);
+    Frame &frame = partition.charts[0].frame;
+    frame.origin = {0, 0, 0};
+    frame.x = normalize(Vec3d(1, 0, 0.5));
+    frame.y = {0, 1, 0};
+    frame.z = {0, 0, 1};
+    Maps maps = bake_valid(mesh, partition);
+    assert_true(maps.patches[0].extent_z < 1e-3f); /* the slope is in the axis */
+    each_texel(maps, [&](const gtx_patch &, const Vec3d &p, double, size_t) {
+        assert_true(std::fabs(p.z - 0.5 * p.x) < 1e-3);
+    });
+}
+
+static void colours_stay_and_are_averaged_in_light(void **)
+{
+    Mesh mesh = shapes::sheet(8, [](double u, double v) { return Vec3d(u, v, 0); });
+    Partition partition = shapes::split(mesh, shapes::all_in_one(), 32);
+    mesh.colors.assign(3 * mesh.triangle_count(), Rgba8{10, 100, 200, 77});
+    Maps maps = bake_valid(mesh, partition);
+    assert_int_equal(maps.color.size(), 4);
+    const uint8_t expected[4] = {10, 100, 200, 77};
+    each_texel(maps, [&](const gtx_patch &, const Vec3d &, double, size_t at) {
+        assert_memory_equal(&maps.color[0][4 * at], expected, 4);
+    });
+    size_t middle = size_t(maps.page_height / 8 / 2) * (maps.page_width / 8) + maps.page_width / 16;
+    assert_memory_equal(&maps.color[3][4 * middle], expected, 4);
+
+    for (size_t t = 0; t < mesh.triangle_count(); ++t) /* black left half, white right half */
+        for (int k = 0; k < 3; ++k)
+            mesh.colors[3 * t + k] = mesh.position(t, 0).x + mesh.position(t, 1).x +
+                                                 mesh.position(t, 2).x < 1.5
+                                         ? Rgba8{0, 0, 0, 255}
+                                         : Rgba8{255, 255, 255, 255};
+    BakeOptions options;
+    options.mips = 7; /* one texel in the end */
+    maps = bake_valid(mesh, partition, options);
+    uint8_t grey = maps.color[6][0];
+    assert_true(grey > 175 && grey < 200); /* half the light is 188, half the code 128 */
+}
+
+static void maps_around_the_surface_are_dilated(void **)
+{
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    mesh.colors.assign(3, Rgba8{200, 200, 200, 255});
+    shapes::add_normals(mesh);
+    Maps maps = bake_valid(mesh, shapes::split(mesh, shapes::all_in_one(), 64));
+    const gtx_patch &p = maps.patches[0];
+    assert_int_equal(p.dilation, 8);
+    auto coded = [&](int x, int y) {
+        return x >= 0 && y >= 0 && x < p.rect[2] && y < p.rect[3] &&
+               maps.height[size_t(p.rect[1] + y) * maps.page_width + p.rect[0] + x] != 0;
+    };
+    for (int y = 0; y < p.rect[3]; ++y) {
+        for (int x = 0; x < p.rect[2]; ++x) {
+            bool near = false;
+            for (int b = -8; b <= 8 && !near; ++b)
+                for (int a = -8; a <= 8 && !near; ++a)
+                    near = coded(x + a, y + b);
+            size_t at = size_t(p.rect[1] + y) * maps.page_width + p.rect[0] + x;
+            assert_int_equal(maps.color[0][4 * at], near ? 200 : 0);
+        }
+    }
+}
+
+static void every_option_gives_a_valid_asset(void **)
+{
+    Mesh mesh = shapes::ball(10, shapes::bumps);
+    mesh.colors.assign(3 * mesh.triangle_count(), Rgba8{1, 2, 3, 4});
+    Partition partition = shapes::split(mesh, shapes::by_axis(mesh), 20);
+    partition.charts[1].two_sided = true;
+    for (unsigned mips = 1; mips <= 8; ++mips) {
+        BakeOptions options;
+        options.mips = mips;
+        options.height_bits = mips % 2 ? 8 : 16;
+        options.dilation = mips * 3;
+        Maps maps = bake_valid(mesh, partition, options);
+        assert_int_equal(maps.normal.size(), mips);
+        assert_int_equal(maps.patches[1].flags, GTX_PATCH_TWO_SIDED);
+        assert_int_equal(maps.patches[0].flags, 0);
+    }
+}
+
+static gtx_result failure(const Mesh &mesh, const Partition &partition, BakeOptions options)
+{
+    try {
+        bake_with(mesh, partition, options);
+    } catch (const Error &error) {
+        return error.result;
+    }
+    return GTX_OK;
+}
+
+static void nonsense_is_refused(void **)
+{
+    Mesh mesh = shapes::sheet(2, [](double u, double v) { return Vec3d(u, v, 0); });
+    Partition partition = shapes::split(mesh, shapes::all_in_one(), 8);
+    BakeOptions options;
+    options.mips = 9;
+    assert_int_equal(failure(mesh, partition, options), GTX_ERROR_ARGUMENT);
+    options.mips = 4;
+    options.height_bits = 9;
+    assert_int_equal(failure(mesh, partition, options), GTX_ERROR_ARGUMENT);
+    assert_int_equal(failure(mesh, Partition(), {}), GTX_ERROR_EMPTY);
+    partition.pitch = 0;
+    assert_int_equal(failure(mesh, partition, {}), GTX_ERROR_INTERNAL);
+    partition.pitch = 0.1;
+    mesh.normals.clear();
+    assert_int_equal(failure(mesh, partition, {}), GTX_ERROR_INTERNAL);
+}
+
+static void cancelling_stops_the_bake(void **)
+{
+    Mesh mesh = shapes::ball(10, shapes::bumps);
+    Partition partition = shapes::split(mesh, shapes::by_axis(mesh), 20);
+    auto stop = [](const gtx_progress *progress, void *) { return int(progress->fraction > 0.2f); };
+    Task task(2, stop, nullptr, {"bake", "pack"});
+    gtx_result result = GTX_OK;
+    try {
+        bake(mesh, partition, {}, task);
+    } catch (const Error &error) {
+        result = error.result;
+    }
+    assert_int_equal(result, GTX_CANCELLED);
+}
+
+int main()
+{
+    const CMUnitTest tests[] = {
+        cmocka_unit_test(a_bumpy_ball_lies_on_its_surface),
+        cmocka_unit_test(normals_are_those_of_the_source),
+        cmocka_unit_test(the_whole_core_is_shown),
+        cmocka_unit_test(any_thread_count_gives_the_same_bytes),
+        cmocka_unit_test(one_triangle_bakes),
+        cmocka_unit_test(a_needle_and_a_speck_bake),
+        cmocka_unit_test(a_chart_that_faces_away_bakes),
+        cmocka_unit_test(an_edge_on_closed_shred_bakes),
+        cmocka_unit_test(far_away_keeps_its_precision),
+        cmocka_unit_test(a_tilted_frame_is_followed),
+        cmocka_unit_test(colours_stay_and_are_averaged_in_light),
+        cmocka_unit_test(maps_around_the_surface_are_dilated),
+        cmocka_unit_test(every_option_gives_a_valid_asset),
+        cmocka_unit_test(nonsense_is_refused),
+        cmocka_unit_test(cancelling_stops_the_bake),
+    };
+    return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

@@ -1,0 +1,332 @@
+/* Levels, corner cells and boxes against the text of format/gtx.md. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "common/fixture.h"
+#include "derive/derive.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A sheet given by a string of digits a row: '0' is empty, n is code 1 + n. */
+typedef struct picture {
+    const char *rows[8];
+} picture;
+
+static void picture_sheet(const gtx_patch *patch, double x, double y, const void *user,
+                          fixture_texel *out)
+{
+    const picture *p = user;
+    (void)patch;
+    int digit = p->rows[(int)y][(int)x] - '0';
+    out->height = digit ? digit / 254.0 : -1;
+    out->trim = -1;
+}
+
+static gtx_asset *make(const picture *p, uint32_t width, uint32_t height)
+{
+    const double corner[3] = {0, 0, 0};
+    fixture_patch patch = {fixture_frame(corner, width, height, 1, 8), picture_sheet, p};
+    return fixture_build(&patch, 1, 8, 1);
+}
+
+static const picture RAGGED = {{"9900011", //
+                                "9990011", //
+                                "0990000", //
+                                "0000300", //
+                                "5500000"}};
+
+static void level_0_is_the_map(void **state)
+{
+    (void)state;
+    gtx_asset *asset = make(&RAGGED, 7, 5);
+    gtx_grid grid;
+    assert_int_equal(gtx_grid_build(asset, 0, 0, NULL, &grid, NULL), GTX_OK);
+    assert_int_equal(grid.nodes_x, 7);
+    assert_int_equal(grid.nodes_y, 5);
+    for (int j = 0; j < 5; ++j)
+        for (int i = 0; i < 7; ++i) {
+            int digit = RAGGED.rows[j][i] - '0';
+            assert_int_equal(grid.code[7 * j + i], digit ? digit + 1 : 0);
+        }
+    const char *solid = "100001"
+                        "010000"
+                        "000000"
+                        "000000";
+    for (int k = 0; k < 24; ++k)
+        assert_int_equal(grid.solid[k], solid[k] - '0');
+    gtx_grid_free(&grid, NULL);
+    gtx_close(asset);
+}
+
+static void level_1_follows_the_rule(void **state)
+{
+    (void)state;
+    gtx_asset *asset = make(&RAGGED, 7, 5);
+    gtx_grid grid;
+    assert_int_equal(gtx_grid_build(asset, 0, 1, NULL, &grid, NULL), GTX_OK);
+    assert_int_equal(grid.nodes_x, 4);
+    assert_int_equal(grid.nodes_y, 3);
+    /* Nodes (0, 0), (3, 0) and (0, 2) have codes of their own. Node (0, 1) at texel (0, 2) is empty
+     * and has seven codes of 10 and two of 6 around it, 9.1 in the mean; (3, 1) four of 2 and one
+     * of 4, 2.4; (2, 2) a 10 and a 4; (3, 2) the 4. */
+    const uint32_t node[7] = {0, 3, 8, 4, 7, 10, 11}, code[7] = {10, 2, 6, 9, 2, 7, 4};
+    for (int k = 0; k < 7; ++k)
+        assert_int_equal(grid.code[node[k]], code[k]);
+    const char *solid = "101"
+                        "000";
+    for (int k = 0; k < 6; ++k)
+        assert_int_equal(grid.solid[k], solid[k] - '0');
+    gtx_grid_free(&grid, NULL);
+    gtx_close(asset);
+}
+
+/* The rule again, in the most literal way. */
+static uint32_t literal_code(const gtx_asset *asset, uint32_t i, uint32_t j, uint32_t level)
+{
+    const gtx_patch *p = gtx_patches(asset);
+    int w = p->rect[2], h = p->rect[3], reach = 1 << level;
+    int x = (int)fmin((double)(i * (1u << level)), w - 1);
+    int y = (int)fmin((double)(j * (1u << level)), h - 1);
+    if (gtx_height_code(asset, p, (uint32_t)x, (uint32_t)y))
+        return gtx_height_code(asset, p, (uint32_t)x, (uint32_t)y);
+    double sum = 0, count = 0;
+    for (int b = 0; b < h; ++b)
+        for (int a = 0; a < w; ++a) {
+            uint32_t code = gtx_height_code(asset, p, (uint32_t)a, (uint32_t)b);
+            if (code && abs(a - x) <= reach && abs(b - y) <= reach) {
+                sum += code;
+                count += 1;
+            }
+        }
+    return level && count > 0 ? (uint32_t)floor(sum / count + 0.5) : 0;
+}
+
+static void every_level_follows_the_rule(void **state)
+{
+    (void)state;
+    for (uint32_t bits = 8; bits <= 16; bits += 8) {
+        gtx_asset *asset = fixture_bumpy(bits, 0);
+        for (uint32_t level = 0; level < 8; ++level) {
+            gtx_grid grid, finer;
+            assert_int_equal(gtx_grid_build(asset, 0, level, NULL, &grid, NULL), GTX_OK);
+            assert_int_equal(gtx_grid_build(asset, 0, 0, NULL, &finer, NULL), GTX_OK);
+            assert_int_equal(grid.nodes_x, (uint32_t)ceil(63.0 / (1 << level)) + 1);
+            assert_int_equal(grid.nodes_y, (uint32_t)ceil(47.0 / (1 << level)) + 1);
+            for (uint32_t j = 0; j < grid.nodes_y; ++j)
+                for (uint32_t i = 0; i < grid.nodes_x; ++i)
+                    assert_int_equal(grid.code[j * grid.nodes_x + i],
+                                     literal_code(asset, i, j, level));
+            uint8_t *expected = calloc(63 * 47, 1);
+            for (uint32_t y = 0; y < 47; ++y)
+                for (uint32_t x = 0; x < 63; ++x)
+                    if (finer.solid[y * 63 + x])
+                        expected[(y >> level) * (grid.nodes_x - 1) + (x >> level)] = 1;
+            for (uint32_t j = 0; j + 1 < grid.nodes_y; ++j)
+                for (uint32_t i = 0; i + 1 < grid.nodes_x; ++i) {
+                    uint32_t cell = j * (grid.nodes_x - 1) + i, node = j * grid.nodes_x + i;
+                    assert_int_equal(grid.solid[cell], expected[cell]);
+                    if (grid.solid[cell])
+                        assert_true(grid.code[node] && grid.code[node + 1] &&
+                                    grid.code[node + grid.nodes_x] &&
+                                    grid.code[node + grid.nodes_x + 1]);
+                }
+            free(expected);
+            gtx_grid_free(&grid, NULL);
+            gtx_grid_free(&finer, NULL);
+        }
+        gtx_close(asset);
+    }
+}
+
+static void no_such_patch_or_level(void **state)
+{
+    (void)state;
+    gtx_asset *asset = make(&RAGGED, 7, 5);
+    gtx_grid grid;
+    gtx_error error = {0};
+    assert_int_equal(gtx_grid_build(asset, 1, 0, NULL, &grid, &error), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_grid_build(asset, 0, 8, NULL, &grid, &error), GTX_ERROR_ARGUMENT);
+    assert_true(error.message[0]);
+    gtx_close(asset);
+}
+
+static void cells_hold_their_corners(void **state)
+{
+    (void)state;
+    for (uint32_t bits = 8; bits <= 16; bits += 8) {
+        gtx_asset *asset = fixture_sphere(1, 48, bits);
+        uint32_t width = asset->info.page_width, height = asset->info.page_height, solid = 0;
+        size_t size = (size_t)width * height * 4 * bits / 8;
+        uint8_t *cells = malloc(size);
+        memset(cells, 0xaa, size);
+        gtx_derive_cells(asset, 0, cells);
+        for (uint32_t y = 0; y < height; ++y)
+            for (uint32_t x = 0; x < width; ++x) {
+                /* The six maps are stacked, so the last row and column of each ends its cells. */
+                uint32_t expected[4] = {0};
+                const gtx_patch *p = &asset->patches[y / 48];
+                if (x + 1 < 48 && y % 48 + 1 < 48)
+                    for (uint32_t k = 0; k < 4; ++k)
+                        expected[k] = gtx_height_code(asset, p, x + (k & 1), y % 48 + (k >> 1));
+                int exists = expected[0] && expected[1] && expected[2] && expected[3];
+                solid += (uint32_t)exists;
+                for (uint32_t k = 0; k < 4; ++k) {
+                    size_t at = 4 * ((size_t)y * width + x) + k;
+                    uint32_t code = bits == 8 ? cells[at] : ((uint16_t *)(void *)cells)[at];
+                    assert_int_equal(code, exists ? expected[k] : 0);
+                }
+            }
+        assert_true(solid > 4000);
+        free(cells);
+        gtx_close(asset);
+    }
+}
+
+/* Signed volume of a patch's triangles; every edge must be met once in each direction. */
+static double closed_volume(const gtx_proxies *p, uint32_t patch)
+{
+    double volume = 0;
+    uint32_t first = p->first_index[patch], last = p->first_index[patch + 1];
+    for (uint32_t i = first; i < last; i += 3) {
+        const gtx_proxy_vertex *v[3];
+        for (int k = 0; k < 3; ++k) {
+            v[k] = &p->vertices[p->indices[i + k]];
+            assert_int_equal(v[k]->patch, patch);
+            uint32_t a = p->indices[i + k], b = p->indices[i + (k + 1) % 3], twins = 0;
+            for (uint32_t j = first; j < last; ++j)
+                twins += p->indices[j] == b &&
+                         p->indices[j % 3 == 2 ? j - 2 : j + 1] == a;
+            assert_int_equal(twins, 1);
+        }
+        volume += (v[0]->x * ((double)v[1]->y * v[2]->z - (double)v[1]->z * v[2]->y) +
+                   v[0]->y * ((double)v[1]->z * v[2]->x - (double)v[1]->x * v[2]->z) +
+                   v[0]->z * ((double)v[1]->x * v[2]->y - (double)v[1]->y * v[2]->x)) / 6;
+    }
+    return volume;
+}
+
+static void boxes_fit(void **state)
+{
+    (void)state;
+    gtx_asset *asset = make(&RAGGED, 7, 5);
+    gtx_proxies boxes;
+    assert_int_equal(gtx_derive_boxes(asset, 0.5f, NULL, &boxes, NULL), GTX_OK);
+    assert_int_equal(boxes.patch_count, 1);
+    assert_int_equal(boxes.first_index[1], boxes.index_count);
+    float low[3] = {9, 9, 99}, high[3] = {-9, -9, -9};
+    for (uint32_t i = 0; i < boxes.vertex_count; ++i) {
+        const float p[3] = {boxes.vertices[i].x, boxes.vertices[i].y, boxes.vertices[i].z};
+        for (int a = 0; a < 3; ++a) {
+            low[a] = fminf(low[a], p[a]);
+            high[a] = fmaxf(high[a], p[a]);
+        }
+    }
+    /* Solid cells: (0, 0), (5, 0), (1, 1); their codes are 10 and 2. */
+    const float expected_low[3] = {-0.5f, -0.5f, 1.5f}, expected_high[3] = {6.5f, 2.5f, 10.5f};
+    for (int a = 0; a < 3; ++a) {
+        assert_float_equal(low[a], expected_low[a], 1e-6f);
+        assert_float_equal(high[a], expected_high[a], 1e-6f);
+    }
+    assert_float_equal(closed_volume(&boxes, 0), 7.0 * 3.0 * 9.0, 1e-3);
+    gtx_proxies_free(&boxes, NULL);
+    assert_int_equal(gtx_derive_boxes(asset, NAN, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_derive_boxes(asset, -1, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
+    gtx_close(asset);
+}
+
+static void a_patch_without_cells_has_no_box(void **state)
+{
+    (void)state;
+    const picture holes = {{"1010101", "0101010", "1010101"}}, sheet = {{"11", "11"}};
+    const double corner[3] = {0, 0, 0};
+    fixture_patch patches[3] = {{fixture_frame(corner, 2, 2, 1, 1), picture_sheet, &sheet},
+                                {fixture_frame(corner, 7, 3, 1, 1), picture_sheet, &holes},
+                                {fixture_frame(corner, 2, 2, 1, 1), picture_sheet, &sheet}};
+    gtx_asset *asset = fixture_build(patches, 3, 8, 1);
+    gtx_proxies boxes;
+    assert_int_equal(gtx_derive_boxes(asset, 1, NULL, &boxes, NULL), GTX_OK);
+    assert_int_equal(boxes.first_index[1], 36);
+    assert_int_equal(boxes.first_index[2], 36);
+    assert_int_equal(boxes.first_index[3], 72);
+    assert_true(closed_volume(&boxes, 2) > 0);
+    gtx_proxies_free(&boxes, NULL);
+    gtx_close(asset);
+
+    asset = fixture_build(&patches[1], 1, 8, 1);
+    assert_int_equal(gtx_derive_boxes(asset, 1, NULL, &boxes, NULL), GTX_OK);
+    assert_int_equal(boxes.index_count, 0);
+    gtx_proxies_free(&boxes, NULL);
+    gtx_close(asset);
+}
+
+/* Hooks that run out of memory after a number of allocations and count what is not given back. */
+typedef struct meter {
+    int left;
+    size_t live;
+} meter;
+
+static void *metered_alloc(size_t size, void *user)
+{
+    meter *m = user;
+    if (m->left-- <= 0)
+        return NULL;
+    m->live += size;
+    return malloc(size);
+}
+
+static void metered_free(void *memory, size_t size, void *user)
+{
+    ((meter *)user)->live -= size;
+    free(memory);
+}
+
+static void memory_may_run_out(void **state)
+{
+    (void)state;
+    gtx_asset *asset = make(&RAGGED, 7, 5);
+    meter m = {0};
+    const gtx_allocator hooks = {metered_alloc, metered_free, &m};
+    gtx_grid grid;
+    gtx_proxies boxes;
+    for (int n = 0;; ++n) {
+        m.left = n;
+        gtx_result result = gtx_grid_build(asset, 0, 2, &hooks, &grid, NULL);
+        if (result == GTX_OK)
+            break;
+        assert_int_equal(result, GTX_ERROR_MEMORY);
+        assert_int_equal(m.live, 0);
+    }
+    gtx_grid_free(&grid, &hooks);
+    for (int n = 0;; ++n) {
+        m.left = n;
+        gtx_result result = gtx_derive_boxes(asset, 0, &hooks, &boxes, NULL);
+        if (result == GTX_OK)
+            break;
+        assert_int_equal(result, GTX_ERROR_MEMORY);
+        assert_int_equal(m.live, 0);
+    }
+    gtx_proxies_free(&boxes, &hooks);
+    assert_int_equal(m.live, 0);
+    gtx_close(asset);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(level_0_is_the_map),
+        cmocka_unit_test(level_1_follows_the_rule),
+        cmocka_unit_test(every_level_follows_the_rule),
+        cmocka_unit_test(no_such_patch_or_level),
+        cmocka_unit_test(cells_hold_their_corners),
+        cmocka_unit_test(boxes_fit),
+        cmocka_unit_test(a_patch_without_cells_has_no_box),
+        cmocka_unit_test(memory_may_run_out),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
