@@ -208,6 +208,22 @@ run-demo:
 	@$(out)/samples/mixed_scene $(build)/demo/model.gtx --headless $(build)/demo/mixed_scene.png
 	@echo $(build)/demo/mixed_scene.png
 
+# ---- benchmarks ----------------------------------------------------------------------------------
+bench: ## frame times of MODEL (default: the sculpt): culled mesh, cast, the paper's search
+	@$(MAKE) --no-print-directory deps
+	@$(MAKE) --no-print-directory -j$$(nproc) all $(out)/tests/bench/bench
+	@$(MAKE) --no-print-directory run-bench
+
+run-bench:
+	@mkdir -p $(build)/demo
+	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
+	@$(build)/gtx cook $(MODEL) -o $(build)/demo/bench.gtx
+	@$(out)/tests/bench/bench $(build)/demo/bench.gtx $(MODEL)
+
+$(out)/tests/bench/bench: $(out)/tests/bench/bench.o $(call objects_of,host) $(lib_cook) $(lib_core)
+	$(say) LINK $@
+	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host) -lmeshoptimizer
+
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libdraco-dev libtinygltf-dev nlohmann-json3-dev \
             libglfw3-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri \
@@ -229,7 +245,7 @@ help: ## this list
 clean: ## remove what was built
 	rm -rf $(build)
 
-.PHONY: all build-tests run-tests test demo run-demo deps help clean
+.PHONY: all build-tests run-tests test demo run-demo bench run-bench deps help clean
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(shell [ -d $(out) ] && find $(out) -name '*.d')

@@ -18,13 +18,15 @@ typedef enum gtx_partition {
 
 typedef struct gtx_cook_desc {
     gtx_partition partition;
-    uint32_t charts;              /* wanted number of charts; 0 = round(10 T^0.28), T triangles */
+    uint32_t charts;              /* wanted number of charts, up to 2^20; 0 = round(10 T^0.28) for
+                                     T triangles */
     uint32_t resolution;          /* texels along the longest patch side, 64..512; 0 = 128 */
     uint32_t height_bits;         /* 8 or 16; 0 = 8 */
-    uint32_t dilation;            /* texels of dilated normal and colour; 0 = 2^(mips - 1) */
+    uint32_t dilation;            /* texels of dilated normal and colour, up to 128; 0 =
+                                     2^(mips - 1) */
     uint32_t mips;                /* levels of normal and colour, 1..8; 0 = 4 */
-    int32_t zstd_level;           /* 0 = 3; -1 = stored */
-    uint32_t threads;             /* 0 = all processors */
+    int32_t zstd_level;           /* 1..19; 0 = 3 (stored, in a build without zstd); -1 = stored */
+    uint32_t threads;             /* up to 1024; 0 = all processors */
     float unit;                   /* metres per object unit; 0 = 1 */
     uint32_t measure;             /* 1: measure the error (report, `error`) */
     gtx_progress_fn progress;     /* may be NULL */
@@ -34,7 +36,7 @@ typedef struct gtx_cook_desc {
     uint32_t reserved[8];
 } gtx_cook_desc;
 
-/* What a cook did, as JSON (format/cook-report.schema.json); freed with gtx_report_free. */
+/* What a call did, as JSON; freed with gtx_report_free. Written only on success. */
 typedef struct gtx_report {
     char *json;                   /* terminated */
     size_t size;
@@ -46,17 +48,17 @@ typedef struct gtx_report {
 } gtx_report;
 
 /* Reads the model at `input` (OBJ, PLY, Draco, glTF, GLB), cooks it and writes the asset to
- * `output`: whole, through a temporary name and a rename, or not at all. `desc`, `report` and
- * `error` may be NULL. Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, READ, WRITE, INPUT,
- * EMPTY, UNSUPPORTED, INTERNAL. Any thread. */
+ * `output`: whole, through a temporary name and a rename, or not at all. `desc`, `report`
+ * (format/cook-report.schema.json) and `error` may be NULL. Errors: CANCELLED, ARGUMENT,
+ * NOT_ZEROED, MEMORY, LIMIT, READ, WRITE, INPUT, EMPTY, UNSUPPORTED, INTERNAL. Any thread. */
 GTX_API gtx_result gtx_cook_file(const char *input, const char *output, const gtx_cook_desc *desc,
                                  gtx_report *report, gtx_error *error);
 
 /* The measures of an asset against its source model, as JSON (format/compare-report.schema.json). */
 typedef struct gtx_compare_desc {
-    uint32_t size;                /* pixels along a side of the 26 views; 0 = 1024 */
-    uint32_t levels;              /* levels of detail to evaluate; 0 = the asset's mip count */
-    uint32_t threads;             /* 0 = all processors */
+    uint32_t size;                /* pixels along a side of the 26 views, up to 4096; 0 = 1024 */
+    uint32_t levels;              /* levels of detail to evaluate, up to 8; 0 = the mip count */
+    uint32_t threads;             /* up to 1024; 0 = all processors */
     gtx_progress_fn progress;
     void *progress_user;
     uint32_t reserved[8];

@@ -66,7 +66,7 @@ typedef struct gtx_occupancy {
 uint64_t gtx_occupancy_size(const gtx_info *info);
 
 /* Patch records, rectangles and their overlap. `offset` is that of the first record. Fills
- * `out`, to be freed with gtx_occupancy_free; it stays empty when a rectangle is no rectangle. */
+ * `out`, to be freed with gtx_occupancy_free; it stays empty when rectangles are wrong. */
 void gtx_check_patches(gtx_check *check, const gtx_asset *asset, uint64_t offset,
                        gtx_occupancy *out);
 void gtx_occupancy_free(gtx_occupancy *occupancy, const gtx_allocator *allocator);

@@ -177,9 +177,15 @@ void gtx_check_patches(gtx_check *check, const gtx_asset *asset, uint64_t offset
         gtx_check_fail(check, GTX_ERROR_MEMORY, "out of memory while checking rectangles");
         return;
     }
-    for (uint32_t i = 0; i < info->patch_count; ++i)
-        if (!claim_rectangle(&occupancy, &asset->patches[i]))
-            gtx_break(check, GTX_RULE_PATCH_OVERLAP, offset + sizeof(gtx_patch) * i + 68,
-                      "patch %u overlaps one before it", i);
-    *out = occupancy;
+    for (uint32_t i = 0; i < info->patch_count; ++i) {
+        if (claim_rectangle(&occupancy, &asset->patches[i]))
+            continue;
+        gtx_break(check, GTX_RULE_PATCH_OVERLAP, offset + sizeof(gtx_patch) * i + 68,
+                  "patch %u overlaps one before it", i);
+        usable = false;
+    }
+    if (usable)
+        *out = occupancy;
+    else
+        gtx_occupancy_free(&occupancy, &asset->allocator);
 }

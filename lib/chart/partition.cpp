@@ -11,7 +11,7 @@ namespace {
 
 /* No chart's side exceeds the (area-weighted) median side by more than this factor: the longest
  * side sets the density of the whole model. */
-constexpr double LONGEST_SIDE = 1.8;
+constexpr double LONGEST_SIDE = 2.5;
 /* Texels of `resolution` that are left to the overlap. */
 constexpr unsigned OVERLAP_TEXELS = 8;
 

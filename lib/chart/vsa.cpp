@@ -17,7 +17,7 @@ constexpr int LLOYD_ITERATIONS = 10;
 constexpr int PAIR_ITERATIONS = 3;
 /* Weight of the distance from a cluster's centre, in radii of an average cluster. Normals alone
  * make snakes along creases, and one long chart sets the texel density of the whole model. */
-constexpr float COMPACTNESS = 0.03f;
+constexpr float COMPACTNESS = 0.01f;
 
 /* A priority queue of 2048 buckets, 32 an octave: the order of nearly equal errors does not
  * matter, and a heap costs twice the time. Last in, first out within a bucket. */
@@ -168,7 +168,7 @@ void Clustering::refit()
         clusters_[c].error = float(sum[c]);
 }
 
-/* At most doubles the number of clusters. */
+/* A second seed for the clusters with more than their share of the error. */
 void Clustering::add_worst_seeds(size_t wanted)
 {
     std::vector<uint32_t> order(count());
@@ -177,9 +177,12 @@ void Clustering::add_worst_seeds(size_t wanted)
         float ea = clusters_[a].error, eb = clusters_[b].error;
         return ea != eb ? ea > eb : a < b;
     });
+    double total = 0;
+    for (const Cluster &c : clusters_)
+        total += c.error;
     order.resize(std::min(order.size(), wanted - count()));
     for (uint32_t c : order)
-        if (clusters_[c].worst != clusters_[c].seed)
+        if (clusters_[c].worst != clusters_[c].seed && clusters_[c].error * double(wanted) >= total)
             add_seed(clusters_[c].worst);
 }
 

@@ -40,10 +40,20 @@ struct CompareReport {
     SurfaceError error;
 };
 
+/* One hole pixel, to find out why it is there. */
+struct HoleSample {
+    uint32_t level, view, x, y;
+    uint32_t triangle;           /* of the mesh, seen there */
+    uint32_t patch;              /* that was hit behind it; UINT32_MAX: none */
+    double depth;                /* by how much too deep; infinity: no hit */
+    Vec3d position;              /* of the source's surface, object space */
+};
+
 struct CompareOptions {
     uint32_t size = 1024;        /* pixels along a side of a view */
     uint32_t levels = 1;         /* levels of detail to evaluate */
     bool surface = true;         /* measure `error` too */
+    std::vector<HoleSample> *holes = nullptr; /* appended to: every hole pixel, views in order */
 };
 
 CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOptions &options,

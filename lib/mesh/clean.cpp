@@ -7,7 +7,8 @@ namespace gtx {
 static void warn(Task &task, uint64_t count, const char *noun, const char *what)
 {
     if (count)
-        task.warnings.push_back(std::to_string(count) + " " + noun + (count > 1 ? "s " : " ") + what);
+        task.warnings.push_back(std::to_string(count) + " " + noun + (count > 1 ? "s " : " ") +
+                                what);
 }
 
 static void warn_dropped(Task &task, const CleanReport &report)
@@ -29,7 +30,7 @@ static void warn_dropped(Task &task, const CleanReport &report)
 static void warn_repaired(Task &task, const Surface &surface, const CleanReport &report)
 {
     warn(task, report.nonmanifold_edges, "edge", "with more than two triangles: split");
-    warn(task, surface.cut_edges, "edge", "where a one-sided surface meets itself turned over: cut");
+    warn(task, surface.cut_edges, "edge", "where a one-sided surface meets itself reversed: cut");
     warn(task, report.flipped, "triangle", "wound against the others or inwards: turned");
     warn(task, surface.inside_out, "closed component", "inside out: turned");
     warn(task, surface.open_components, "component", "with a border: made two-sided");

@@ -150,11 +150,13 @@ void drop_duplicates(Mesh &mesh, CleanReport &report)
     size_t from = 0;
     for (size_t v = 0; v < mesh.positions.size(); from = end[v++]) {
         std::sort(entries.begin() + from, entries.begin() + end[v]);
-        for (size_t i = from + 1; i < end[v]; ++i)
-            if (entries[i].middle == entries[i - 1].middle && entries[i].high == entries[i - 1].high) {
-                fates[entries[i].triangle] = DUPLICATE;
+        for (size_t i = from + 1; i < end[v]; ++i) {
+            const Entry &a = entries[i - 1], &b = entries[i];
+            if (a.middle == b.middle && a.high == b.high) {
+                fates[b.triangle] = DUPLICATE;
                 all_kept = false;
             }
+        }
     }
     if (!all_kept)
         drop(mesh, fates, report);

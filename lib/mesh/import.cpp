@@ -40,12 +40,12 @@ void fail(gtx_result result, const char *format, ...)
     throw Error(result, message);
 }
 
-std::string printable(std::string_view text)
+std::string printable(std::string_view text, size_t longest)
 {
     std::string out;
-    for (char c : text.substr(0, 40))
+    for (char c : text.substr(0, longest))
         out += c >= ' ' && c <= '~' ? c : '?';
-    return text.size() > 40 ? out + "..." : out;
+    return text.size() > longest ? out + "..." : out;
 }
 
 std::string read_whole_file(const std::string &path)

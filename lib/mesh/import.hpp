@@ -30,7 +30,7 @@ constexpr uint64_t MAX_VERTICES = 0xfffffffe;
 [[noreturn]] void fail(gtx_result result, const char *format, ...) GTX_PRINTF(2, 3);
 
 /* Text out of a file, fit for a message: short and printable. */
-std::string printable(std::string_view text);
+std::string printable(std::string_view text, size_t longest = 40);
 
 /* Throws Error: READ, LIMIT. */
 std::string read_whole_file(const std::string &path);

@@ -1,6 +1,7 @@
-/* glTF and GLB containers: the JSON, made safe for tinygltf, and the buffers behind it. */
+/* glTF and GLB containers: the model that the JSON describes, and the buffers behind it. */
 #define TINYGLTF_IMPLEMENTATION
 #include "mesh/import_gltf.hpp"
+#include "mesh/import_gltf_json.hpp"
 
 #include "base/bytes.h"
 
@@ -10,34 +11,6 @@
 namespace gtx {
 
 using nlohmann::json;
-
-/* tinygltf walks extras and extensions recursively. */
-static const int max_json_depth = 100;
-
-static const char *const known_extensions[] = {
-    "KHR_draco_mesh_compression", "KHR_mesh_quantization", "KHR_texture_transform",
-    "KHR_texture_basisu",         "EXT_texture_webp",      "EXT_texture_avif",
-    "KHR_lights_punctual",        "EXT_mesh_features",     "EXT_structural_metadata",
-};
-
-/* What a document may hold that has no place in a mesh, and is not read. */
-static const struct {
-    const char *key, *warning;
-} unread[] = {
-    {"images", "textures were ignored"},    {"textures", nullptr},
-    {"samplers", nullptr},                  {"animations", "animations were ignored"},
-    {"skins", "skins were ignored"},        {"cameras", "cameras were ignored"},
-    {"extensions", nullptr},                {"extras", nullptr},
-    {"buffers", nullptr},
-};
-
-static bool is_known(const std::string &extension)
-{
-    for (const char *known : known_extensions)
-        if (extension == known)
-            return true;
-    return extension.rfind("KHR_materials_", 0) == 0; /* appearance alone */
-}
 
 /* ---- the container ---- */
 
@@ -84,121 +57,13 @@ static Container split_glb(std::string_view bytes)
     return out;
 }
 
-/* ---- the JSON ---- */
-
-static json parse_json(std::string_view text)
-{
-    auto check_depth = [](int depth, json::parse_event_t, json &) {
-        if (depth > max_json_depth)
-            fail(GTX_ERROR_LIMIT, "the JSON is nested more than %d levels deep", max_json_depth);
-        return true;
-    };
-    if (text.size() > size_t(1) << 31)
-        fail(GTX_ERROR_LIMIT, "the JSON is larger than 2 GiB");
-    try {
-        json root = json::parse(text.begin(), text.end(), check_depth);
-        if (!root.is_object())
-            fail(GTX_ERROR_INPUT, "the JSON is not an object");
-        return root;
-    } catch (const json::exception &e) { /* "[json.exception.parse_error.101] parse error at ..." */
-        std::string what = e.what();
-        size_t tag = what.find("] ");
-        fail(GTX_ERROR_INPUT, "the JSON is malformed: %.150s",
-             what.c_str() + (tag == std::string::npos ? 0 : tag + 2));
-    }
-}
-
-/* An array of objects, or nothing. */
-static json *objects(json &root, const char *key)
-{
-    auto found = root.find(key);
-    if (found == root.end())
-        return nullptr;
-    if (!found->is_array())
-        fail(GTX_ERROR_INPUT, "'%s' is not an array", key);
-    for (const json &item : *found)
-        if (!item.is_object())
-            fail(GTX_ERROR_INPUT, "'%s' holds something that is not an object", key);
-    return &*found;
-}
-
-static void check_version_and_extensions(json &root, Task &task)
-{
-    json asset = root.value("asset", json::object());
-    std::string version =
-        asset.is_object() && asset.contains("version") && asset["version"].is_string()
-            ? asset["version"].get<std::string>()
-            : "";
-    if (version.empty())
-        fail(GTX_ERROR_INPUT, "the glTF has no asset version");
-    if (version.rfind("2.", 0) != 0)
-        fail(GTX_ERROR_UNSUPPORTED, "glTF version %s is not 2", printable(version).c_str());
-    std::string ignored;
-    for (const char *key : {"extensionsRequired", "extensionsUsed"}) {
-        json names = root.value(key, json::array());
-        if (!names.is_array())
-            fail(GTX_ERROR_INPUT, "'%s' is not an array", key);
-        for (const json &name : names) {
-            if (!name.is_string())
-                fail(GTX_ERROR_INPUT, "'%s' holds something that is not a string", key);
-            if (is_known(name))
-                continue;
-            std::string text = printable(name.get<std::string>());
-            if (!std::strcmp(key, "extensionsRequired"))
-                fail(GTX_ERROR_UNSUPPORTED, "the model requires the glTF extension %s",
-                     text.c_str());
-            if (ignored.size() < 200)
-                ignored += (ignored.empty() ? "" : ", ") + text;
-        }
-    }
-    if (!ignored.empty())
-        task.warnings.push_back("glTF extensions were ignored: " + ignored);
-}
-
-/* Takes off what tinygltf 2.7 would read without need or without care: it opens every URI of the
- * document, and it decodes Draco without checking a single number. */
-static void strip(json &root, Task &task)
-{
-    for (const auto &item : unread) {
-        auto found = root.find(item.key);
-        if (found == root.end())
-            continue;
-        if (item.warning && found->is_array() && !found->empty())
-            task.warnings.push_back(item.warning);
-        root.erase(found);
-    }
-    bool has_targets = false;
-    for (const char *key : {"bufferViews", "accessors", "nodes", "scenes", "materials"})
-        objects(root, key);
-    json *meshes = objects(root, "meshes");
-    for (size_t i = 0; meshes && i < meshes->size(); ++i) {
-        json *primitives = objects((*meshes)[i], "primitives");
-        for (size_t k = 0; primitives && k < primitives->size(); ++k) {
-            json &primitive = (*primitives)[k];
-            has_targets |= primitive.erase("targets") > 0;
-            /* Indices inside the Draco data have no buffer view, which tinygltf insists on. */
-            auto extensions = primitive.find("extensions");
-            if (extensions != primitive.end() && extensions->is_object() &&
-                extensions->contains("KHR_draco_mesh_compression"))
-                primitive.erase("indices");
-        }
-    }
-    if (has_targets)
-        task.warnings.push_back("morph targets were ignored");
-}
-
-static bool keep_no_image(tinygltf::Image *, const int, std::string *, std::string *, int, int,
-                          const unsigned char *, int, void *)
-{
-    return true;
-}
+/* ---- the model ---- */
 
 static tinygltf::Model load_model(const json &root)
 {
     tinygltf::TinyGLTF loader;
     tinygltf::Model model;
     std::string error, warning, text = root.dump();
-    loader.SetImageLoader(keep_no_image, nullptr);
     bool good;
     try {
         good = loader.LoadASCIIFromString(&model, &error, &warning, text.c_str(),
@@ -209,9 +74,9 @@ static tinygltf::Model load_model(const json &root)
         good = false;
         error = e.what();
     }
-    if (!good)
-        fail(GTX_ERROR_INPUT, "the glTF is malformed: %.150s",
-             error.substr(0, error.find('\n')).c_str());
+    if (!good || !error.empty()) /* it goes on after some errors */
+        fail(GTX_ERROR_INPUT, "the glTF is malformed: %s",
+             printable(error.substr(0, error.find('\n')), 150).c_str());
     return model;
 }
 
@@ -283,7 +148,7 @@ static std::string read_buffer(const ModelFile &file, const json &buffer, size_t
                                const Container &container)
 {
     auto length = buffer.find("byteLength");
-    if (length == buffer.end() || !length->is_number_unsigned())
+    if (length == buffer.end())
         fail(GTX_ERROR_INPUT, "buffer %zu has no byteLength", number);
     auto uri = buffer.find("uri");
     std::string bytes;
@@ -292,8 +157,6 @@ static std::string read_buffer(const ModelFile &file, const json &buffer, size_t
             bytes = container.binary;
         else /* legal when only an extension fills it; who reads it finds it too short */
             return {};
-    } else if (!uri->is_string()) {
-        fail(GTX_ERROR_INPUT, "buffer %zu: its uri is not a string", number);
     } else {
         const std::string &text = uri->get_ref<const std::string &>();
         size_t comma = text.find(',');
@@ -327,19 +190,18 @@ GltfDocument read_gltf_document(const ModelFile &file, Task &task)
     container.json = file.bytes;
     if (container.json.substr(0, 4) == "glTF")
         container = split_glb(file.bytes);
-    json root = parse_json(container.json);
-    check_version_and_extensions(root, task);
+    json root = read_gltf_json(container.json, task);
 
     GltfDocument doc;
     uint64_t total = file.bytes.size();
-    json *buffers = objects(root, "buffers");
-    for (size_t i = 0; buffers && i < buffers->size(); ++i) {
-        doc.buffers.push_back(read_buffer(file, (*buffers)[i], i, container));
+    json buffers = root.value("buffers", json::array());
+    for (size_t i = 0; i < buffers.size(); ++i) {
+        doc.buffers.push_back(read_buffer(file, buffers[i], i, container));
         total += doc.buffers.back().size();
-        task.advance(0.1 + 0.1 * double(i) / double(buffers->size()));
+        task.advance(0.1 + 0.1 * double(i) / double(buffers.size()));
     }
     doc.triangle_limit = (uint64_t(1) << 24) + 64 * total;
-    strip(root, task);
+    strip_gltf_json(root, task);
     doc.model = load_model(root);
     return doc;
 }

@@ -43,7 +43,17 @@ void gtx_renderer_destroy(gtx_renderer *renderer)
     renderer->gl.DeleteVertexArrays(1, &renderer->vertex_array);
     renderer->gl.DeleteBuffers(1, &renderer->instance_buffer);
     const gtx_allocator hooks = renderer->allocator;
-    gtx_free_array(&hooks, renderer->instances, renderer->instance_capacity,
-                   sizeof *renderer->instances);
+    gtx_renderer_free_scratch(renderer);
     gtx_free_array(&hooks, renderer, 1, sizeof *renderer);
+}
+
+void gtx_renderer_free_scratch(gtx_renderer *renderer)
+{
+    gtx_free_array(&renderer->allocator, renderer->instances, renderer->instance_capacity,
+                   sizeof *renderer->instances);
+    gtx_free_array(&renderer->allocator, renderer->mirrored, renderer->instance_capacity,
+                   sizeof *renderer->mirrored);
+    renderer->instances = NULL;
+    renderer->mirrored = NULL;
+    renderer->instance_capacity = 0;
 }

@@ -35,7 +35,9 @@ struct gtx_renderer {
     void *log_user;
     gtx_program programs[PROGRAM_COUNT];
     gl_uint vertex_array, instance_buffer;
-    gtx_instance_data *instances; /* scratch of gtx_draw */
+    /* Scratch of gtx_draw: what is uploaded, and whose winding is turned. */
+    gtx_instance_data *instances;
+    bool *mirrored;
     uint32_t instance_capacity;
 };
 
@@ -61,6 +63,9 @@ struct gtx_model {
     gl_uint textures[UNIT_COUNT];
     gl_uint vertices, indices;
 };
+
+/* renderer.c: gives the scratch back. */
+void gtx_renderer_free_scratch(gtx_renderer *renderer);
 
 /* program.c. Errors: MEMORY, SHADER. */
 gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error);

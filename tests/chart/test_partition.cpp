@@ -135,6 +135,230 @@ static void test_shapes(void **)
     }
 }
 
+static void test_small(void **)
+{
+    Mesh one;
+    one.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    one.triangles = {{0, 1, 2}};
+    Partition p = partition(one);
+    check(one, p);
+    assert_int_equal(p.charts.size(), 1);
+    assert_true(length(p.charts[0].frame.z - Vec3d(0, 0, 1)) < 1e-6);
+    assert_true(p.charts[0].frame.extent[2] < 1e-12);
+
+    Mesh box = shapes::cube(1); /* a face is a chart */
+    p = partition(box);
+    check(box, p);
+    assert_int_equal(p.charts.size(), 6);
+
+    for (double scale : {1e-30, 1e-6, 1e30}) {
+        Mesh ball = shapes::bumpy_sphere(10);
+        for (Vec3d &v : ball.positions)
+            v *= scale;
+        check(ball, partition(ball));
+    }
+    Mesh needle = shapes::plane(10, 1, 1e-6);
+    check(needle, partition(needle));
+}
+
+static void test_empty(void **)
+{
+    try {
+        partition(Mesh());
+        fail();
+    } catch (const Error &e) {
+        assert_int_equal(e.result, GTX_ERROR_EMPTY);
+    }
+}
+
+/* What folds must be split, however few charts were asked for. */
+static void test_folds_are_split(void **)
+{
+    ChartOptions one;
+    one.charts = 1;
+    for (const Mesh &mesh : {shapes::sphere(16), shapes::torus(30, 0.4), shapes::helicoid(60, 5),
+                             shapes::folded_sheet(30, 0.02), shapes::cylinder(40),
+                             shapes::bumpy_sphere(30)}) {
+        Partition p = partition(mesh, 2, one);
+        check(mesh, p);
+        assert_int_equal(p.report.initial_charts, 1);
+        assert_true(p.charts.size() > 1);
+    }
+    Mesh ramp = shapes::helicoid(60, 5); /* every normal faces up, and yet it folds */
+    Partition p = partition(ramp, 2, one);
+    assert_int_equal(p.report.initial_inverted, 0);
+    assert_true(p.charts.size() >= 5);
+
+    Mesh flat = shapes::plane(20);
+    assert_int_equal(partition(flat, 2, one).charts.size(), 1);
+}
+
+/* No line along z may meet a chart twice, but for what the rules call one layer. */
+static void test_single_layer(void **)
+{
+    Mesh mesh = shapes::both(shapes::helicoid(50, 4), shapes::folded_sheet(20, 0.03), {4, 0, 0});
+    ChartOptions few;
+    few.charts = 2;
+    Partition p = partition(mesh, 2, few);
+    check(mesh, p);
+    for (const Chart &chart : p.charts) {
+        double apart = std::max(chart.frame.extent[2] / 254, 1e-4 * 6.) + 1e-9;
+        for (uint32_t t : chart.triangles) {
+            Vec3d sum;
+            for (int k = 0; k < 3; ++k)
+                sum += mesh.position(t, k) / 3;
+            Vec3d at = chart.frame.local(sum);
+            size_t deep = 0;
+            for (uint32_t o : chart.triangles) {
+                Vec3d c[3];
+                for (int k = 0; k < 3; ++k)
+                    c[k] = chart.frame.local(mesh.position(o, k));
+                double area = (c[1].x - c[0].x) * (c[2].y - c[0].y) -
+                              (c[1].y - c[0].y) * (c[2].x - c[0].x);
+                double b = ((at.x - c[0].x) * (c[2].y - c[0].y) -
+                            (at.y - c[0].y) * (c[2].x - c[0].x)) / area;
+                double d = ((c[1].x - c[0].x) * (at.y - c[0].y) -
+                            (c[1].y - c[0].y) * (at.x - c[0].x)) / area;
+                double z = c[0].z + b * (c[1].z - c[0].z) + d * (c[2].z - c[0].z);
+                deep += b >= 0 && d >= 0 && b + d <= 1 && std::abs(z - at.z) > apart;
+            }
+            assert_int_equal(deep, 0);
+        }
+    }
+}
+
+static void test_wanted_count(void **)
+{
+    Mesh mesh = shapes::bumpy_sphere(40);
+    for (unsigned wanted : {20u, 100u, 400u}) {
+        ChartOptions options;
+        options.charts = wanted;
+        Partition p = partition(mesh, 2, options);
+        assert_int_equal(p.report.initial_charts, wanted);
+        assert_in_range(p.charts.size(), wanted, wanted * 5 / 4);
+        check(mesh, p);
+    }
+    assert_int_equal(partition(mesh).report.initial_charts,
+                     std::lround(10 * std::pow(double(mesh.triangle_count()), 0.28)));
+}
+
+/* Distant components get their charts by area; tiny ones get one and take nobody's. */
+static void test_components(void **)
+{
+    Mesh mesh = shapes::sphere(20);
+    for (int i = 0; i < 50; ++i) {
+        Mesh crumb = shapes::sphere(1);
+        for (Vec3d &v : crumb.positions)
+            v *= 0.003;
+        mesh = shapes::both(mesh, crumb, {2, 0.1 * i, 0});
+    }
+    ChartOptions options;
+    options.charts = 60;
+    Partition p = partition(mesh, 2, options);
+    check(mesh, p);
+    size_t large = 0;
+    for (const Chart &c : p.charts)
+        large += c.triangles.front() < shapes::sphere(20).triangle_count();
+    assert_in_range(large, 55, 75);
+}
+
+static void test_two_sided(void **)
+{
+    Mesh mesh = shapes::both(shapes::sphere(8), shapes::plane(10), {3, 0, 0});
+    mesh.flags.assign(mesh.triangle_count(), 0);
+    size_t first = shapes::sphere(8).triangle_count();
+    std::fill(mesh.flags.begin() + ptrdiff_t(first), mesh.flags.end(), TRIANGLE_TWO_SIDED);
+    for (const Chart &c : partition(mesh).charts)
+        assert_int_equal(c.two_sided, c.triangles.front() >= first);
+}
+
+static void assert_same(const Partition &a, const Partition &b)
+{
+    assert_true(a.pitch == b.pitch);
+    assert_true(a.initial_chart == b.initial_chart);
+    assert_true(a.junk == b.junk);
+    assert_int_equal(a.charts.size(), b.charts.size());
+    for (size_t i = 0; i < a.charts.size(); ++i) {
+        const Frame &f = a.charts[i].frame, &g = b.charts[i].frame;
+        assert_true(a.charts[i].triangles == b.charts[i].triangles);
+        assert_true(f.origin == g.origin && f.x == g.x && f.y == g.y && f.z == g.z);
+        assert_memory_equal(f.extent, g.extent, sizeof f.extent);
+    }
+}
+
+static void test_deterministic(void **)
+{
+    Mesh mesh = shapes::both(shapes::bumpy_sphere(30), shapes::helicoid(40, 3), {4, 0, 0});
+    assert_same(partition(mesh, 1), partition(mesh, 3));
+}
+
+/* Scanner noise: a few triangles turned over within a good surface drive no split. */
+static void test_junk(void **)
+{
+    Mesh mesh = shapes::plane(60);
+    size_t before = partition(mesh).charts.size();
+    mesh.positions[61 * 30 + 30] = mesh.positions[61 * 30 + 31] + Vec3d(0.0005, 0.0003, 0.0002);
+    Partition p = partition(mesh);
+    check(mesh, p);
+    print("noisy", p);
+    assert_true(p.report.junk_triangles > 0);
+    assert_true(p.report.junk_area_fraction < 1e-3);
+    assert_true(p.charts.size() <= before + 1);
+}
+
+static int cancel(const gtx_progress *, void *)
+{
+    return 1;
+}
+
+static void test_cancel(void **)
+{
+    Task task(2, cancel, nullptr, {"partition", "frame"});
+    Mesh mesh = shapes::sphere(10);
+    try {
+        partition_vsa(mesh, {}, task);
+        fail();
+    } catch (const Error &e) {
+        assert_int_equal(e.result, GTX_CANCELLED);
+    }
+}
+
+static std::string read_file(const std::string &path)
+{
+    std::FILE *file = std::fopen(path.c_str(), "rb");
+    assert_non_null(file);
+    std::string text(1 << 22, 0);
+    text.resize(std::fread(&text[0], 1, text.size(), file));
+    std::fclose(file);
+    return text;
+}
+
+static void test_charts_ply(void **)
+{
+    Mesh mesh = shapes::torus(10, 0.4);
+    ChartOptions one;
+    one.charts = 1; /* half of it faces away */
+    Partition p = partition(mesh, 2, one);
+    std::string path = "/tmp/geotex_charts_" + std::to_string(uintptr_t(&p)) + ".ply";
+    write_charts_ply(path, mesh, p);
+    std::string text = read_file(path);
+    std::remove(path.c_str());
+    assert_int_equal(text.compare(0, 4, "ply\n"), 0);
+    size_t data = text.find("end_header\n") + 11;
+    assert_int_equal(text.size() - data, 24 * mesh.positions.size() + 20 * mesh.triangle_count());
+    size_t green = 0;
+    for (size_t t = 0; t < mesh.triangle_count(); ++t)
+        green += !text.compare(data + 24 * mesh.positions.size() + 20 * t + 13, 3, "\0\xff\0", 3);
+    assert_int_equal(green, p.report.initial_inverted);
+    assert_true(green > mesh.triangle_count() / 4);
+    try {
+        write_charts_ply("/nowhere/charts.ply", mesh, p);
+        fail();
+    } catch (const Error &e) {
+        assert_int_equal(e.result, GTX_ERROR_WRITE);
+    }
+}
+
 static void test_models(void **)
 {
     const char *models = std::getenv("GEOTEX_MODELS");
@@ -166,6 +390,13 @@ static void test_models(void **)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_shapes), cmocka_unit_test(test_models)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_shapes),     cmocka_unit_test(test_small),
+        cmocka_unit_test(test_empty),      cmocka_unit_test(test_folds_are_split),
+        cmocka_unit_test(test_single_layer), cmocka_unit_test(test_wanted_count),
+        cmocka_unit_test(test_components), cmocka_unit_test(test_two_sided),
+        cmocka_unit_test(test_deterministic), cmocka_unit_test(test_junk),
+        cmocka_unit_test(test_cancel),     cmocka_unit_test(test_charts_ply),
+        cmocka_unit_test(test_models)};
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -236,7 +236,8 @@ static Mesh open_book(uint32_t pages)
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {0, 0, 1}};
     for (uint32_t i = 0; i < pages; ++i) {
-        mesh.positions.push_back(Vec3d(std::cos(i * TURN / pages), std::sin(i * TURN / pages), 0.5));
+        double turn = i * TURN / pages;
+        mesh.positions.push_back(Vec3d(std::cos(turn), std::sin(turn), 0.5));
         if (i % 2)
             mesh.triangles.push_back({0, 1, i + 2});
         else

@@ -72,7 +72,8 @@ static void test_source_kept(void **)
 
 static void test_source_unusable(void **)
 {
-    const Vec3f bad[] = {{0, 0, 0}, {NAN, 0, 1}, {INFINITY, 0, 0}, {-1, -1, -1}, {1e38f, 1e38f, 1e38f}};
+    const Vec3f bad[] = {{0, 0, 0}, {NAN, 0, 1}, {INFINITY, 0, 0}, {-1, -1, -1},
+                         {1e38f, 1e38f, 1e38f}};
     for (const Vec3f &normal : bad) {
         Mesh mesh = sphere_with_normals();
         for (size_t c = 0; c < mesh.normals.size(); c += 3)

@@ -1,0 +1,737 @@
+/* Decodes a .gtx file: written from gtx.md alone, in C99, with libc and libzstd.
+ *
+ *   cc -std=c99 gtx_decode.c -lzstd -lm -o gtx_decode      (-DNO_ZSTD: stored files only)
+ *   gtx_decode FILE                 prints what the file holds; exit 0
+ *                                   or the number of the rule that it breaks; exit 3
+ *
+ * It is made to be read beside the specification, not to be fast. Exit 2: FILE cannot be read;
+ * 5: out of memory, or compressed and without zstd. */
+#include <inttypes.h>
+#include <limits.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#ifndef NO_ZSTD
+#include <zstd.h>
+#endif
+
+enum { HEADER = 192, ENTRY = 64, RECORD = 128, MAX_SECTIONS = 256 };
+enum { NO_MEMORY = 1, UNSUPPORTED = 2 }; /* in place of a rule */
+
+typedef unsigned char byte;
+
+struct section {
+    char type[5];
+    uint32_t flags, level, format, scheme, filter;
+    uint64_t offset, stored_size, size, hash;
+    uint32_t width, height, texel; /* of an image; else 0 */
+    byte *bytes;                   /* decoded; NULL when skipped */
+};
+
+struct file {
+    const byte *data;
+    uint64_t size;
+    uint32_t patches, pages, width, height, mips, section_count, bits;
+    struct section section[MAX_SECTIONS];
+};
+
+static uint64_t load(const byte *p, int count)
+{
+    uint64_t value = 0;
+    while (count-- > 0)
+        value = value << 8 | p[count];
+    return value;
+}
+
+static uint32_t u16(const byte *p) { return (uint32_t)load(p, 2); }
+static uint32_t u32(const byte *p) { return (uint32_t)load(p, 4); }
+static uint64_t u64(const byte *p) { return load(p, 8); }
+
+static double f32(const byte *p)
+{
+    uint32_t bits = u32(p);
+    float value;
+    memcpy(&value, &bits, 4);
+    return value;
+}
+
+static double f64(const byte *p)
+{
+    uint64_t bits = u64(p);
+    double value;
+    memcpy(&value, &bits, 8);
+    return value;
+}
+
+static uint64_t align64(uint64_t n)
+{
+    return (n + 63) / 64 * 64;
+}
+
+static int all_zero(const byte *p, uint64_t count)
+{
+    while (count-- > 0)
+        if (*p++)
+            return 0;
+    return 1;
+}
+
+/* ---- XXH64, seed 0 ---- */
+
+static const uint64_t p1 = 0x9E3779B185EBCA87u, p2 = 0xC2B2AE3D27D4EB4Fu,
+                      p3 = 0x165667B19E3779F9u, p4 = 0x85EBCA77C2B2AE63u, p5 = 0x27D4EB2F165667C5u;
+
+static uint64_t rotl(uint64_t v, int bits)
+{
+    return v << bits | v >> (64 - bits);
+}
+
+static uint64_t xxh_round(uint64_t acc, uint64_t lane)
+{
+    return rotl(acc + lane * p2, 31) * p1;
+}
+
+static uint64_t xxh_merge(uint64_t acc, uint64_t v)
+{
+    return (acc ^ xxh_round(0, v)) * p1 + p4;
+}
+
+static uint64_t xxh64(const byte *p, uint64_t size)
+{
+    const byte *end = p + size;
+    uint64_t acc = p5;
+    if (size >= 32) {
+        uint64_t a = p1 + p2, b = p2, c = 0, d = 0 - p1;
+        for (; end - p >= 32; p += 32) {
+            a = xxh_round(a, u64(p));
+            b = xxh_round(b, u64(p + 8));
+            c = xxh_round(c, u64(p + 16));
+            d = xxh_round(d, u64(p + 24));
+        }
+        acc = rotl(a, 1) + rotl(b, 7) + rotl(c, 12) + rotl(d, 18);
+        acc = xxh_merge(xxh_merge(xxh_merge(xxh_merge(acc, a), b), c), d);
+    }
+    acc += size;
+    for (; end - p >= 8; p += 8)
+        acc = rotl(acc ^ xxh_round(0, u64(p)), 27) * p1 + p4;
+    if (end - p >= 4) {
+        acc = rotl(acc ^ u32(p) * p1, 23) * p2 + p3;
+        p += 4;
+    }
+    for (; p < end; ++p)
+        acc = rotl(acc ^ *p * p5, 11) * p1;
+    acc = (acc ^ acc >> 33) * p2;
+    acc = (acc ^ acc >> 29) * p3;
+    return acc ^ acc >> 32;
+}
+
+/* ---- 1.1 header ---- */
+
+static unsigned check_header(struct file *f)
+{
+    static const byte identifier[12] = {0xAB, 0x47, 0x54, 0x58, 0x20, 0x30,
+                                        0x31, 0xBB, 0x0D, 0x0A, 0x1A, 0x0A};
+    const byte *h = f->data;
+    if (f->size && memcmp(h, identifier, f->size < 12 ? (size_t)f->size : 12))
+        return 100;
+    if (f->size < HEADER)
+        return 118;
+    if (u16(h + 12) != 0 || u16(h + 14) != 1)
+        return 101;
+    if (u32(h + 16) != HEADER)
+        return 102;
+    if (u32(h + 20) != 0)
+        return 103;
+    f->section_count = u32(h + 28);
+    if (f->section_count < 4 || f->section_count > MAX_SECTIONS)
+        return 104;
+    if (f->size < u64(h + 32) || f->size < HEADER + (uint64_t)ENTRY * f->section_count)
+        return 118;
+    if (f->size > u64(h + 32))
+        return 105;
+    if (u64(h + 40) != HEADER)
+        return 106;
+    if (u32(h + 48) != ENTRY)
+        return 107;
+    return 0;
+}
+
+static unsigned check_values(struct file *f)
+{
+    const byte *h = f->data;
+    f->patches = u32(h + 52);
+    f->pages = u32(h + 56);
+    f->width = u32(h + 60);
+    f->height = u32(h + 64);
+    f->mips = u32(h + 68);
+    if (f->patches < 1 || f->patches > 1u << 20)
+        return 108;
+    if (f->pages < 1 || f->pages > 2048)
+        return 109;
+    if (f->mips < 1 || f->mips > 8)
+        return 111;
+    uint32_t block = 1u << (f->mips - 1);
+    if (f->width < 8 || f->width > 16384 || f->width % block || f->height < 8 ||
+        f->height > 16384 || f->height % block)
+        return 110;
+    for (int i = 0; i < 3; ++i)
+        if (!isfinite(f32(h + 72 + 4 * i)) || !isfinite(f32(h + 84 + 4 * i)) ||
+            f32(h + 84 + 4 * i) < f32(h + 72 + 4 * i))
+            return 112;
+    if (!isfinite(f32(h + 96)) || f32(h + 96) <= 0)
+        return 113;
+    if (!all_zero(h + 100, 4) || !all_zero(h + 144, 40))
+        return 114;
+    for (int i = 0; i < 3; ++i)
+        if (!isfinite(f64(h + 104 + 8 * i)))
+            return 115;
+    return 0;
+}
+
+static unsigned check_header_hash(const struct file *f)
+{
+    size_t table = (size_t)ENTRY * f->section_count;
+    byte *copy = malloc(184 + table);
+    if (!copy)
+        return NO_MEMORY;
+    memcpy(copy, f->data, 184);
+    memcpy(copy + 184, f->data + HEADER, table);
+    uint64_t hash = xxh64(copy, 184 + table);
+    free(copy);
+    return hash == u64(f->data + 184) ? 0 : 117;
+}
+
+/* ---- 1.2 and 2: table ---- */
+
+static int is_type(const struct section *s, const char *type)
+{
+    return !strcmp(s->type, type);
+}
+
+static int order_of(const struct section *s)
+{
+    static const char *const order[] = {"PTCH", "HGHT", "TRIM", "NRML", "COLR"};
+    for (int i = 0; i < 5; ++i)
+        if (is_type(s, order[i]))
+            return 16 * i + 8 - (int)s->level;
+    return is_type(s, "META") ? 1000 : 500;
+}
+
+static int is_known(const struct section *s)
+{
+    return order_of(s) != 500;
+}
+
+static unsigned check_known(struct file *f, struct section *s)
+{
+    int levels = is_type(s, "NRML") || is_type(s, "COLR");
+    if (s->level >= (levels ? f->mips : 1))
+        return 203;
+    uint32_t format = 0;
+    if (is_type(s, "HGHT")) {
+        if (s->format != 13 && s->format != 74)
+            return 204;
+        f->bits = s->format == 74 ? 16 : 8;
+        format = s->format;
+        s->texel = f->bits / 8;
+    } else if (is_type(s, "TRIM")) {
+        format = 9, s->texel = 1;
+    } else if (is_type(s, "NRML")) {
+        format = 16, s->texel = 2;
+    } else if (is_type(s, "COLR")) {
+        format = 43, s->texel = 4;
+    }
+    if (s->format != format)
+        return 204;
+    if (is_type(s, "META"))
+        return s->size >= 1 && s->size <= 1u << 20 ? 0 : 600;
+    s->width = s->texel ? f->width >> s->level : 0;
+    s->height = s->texel ? f->height >> s->level : 0;
+    uint64_t size = s->texel ? (uint64_t)f->pages * s->width * s->height * s->texel
+                             : (uint64_t)RECORD * f->patches;
+    return s->size == size ? 0 : 207;
+}
+
+static unsigned check_entry(struct file *f, uint32_t index, uint64_t *end)
+{
+    const byte *e = f->data + HEADER + ENTRY * index;
+    struct section *s = &f->section[index];
+    memcpy(s->type, e, 4);
+    s->flags = u32(e + 4);
+    s->level = u32(e + 8);
+    s->format = u32(e + 12);
+    s->offset = u64(e + 16);
+    s->stored_size = u64(e + 24);
+    s->size = u64(e + 32);
+    s->scheme = u32(e + 40);
+    s->filter = u32(e + 44);
+    s->hash = u64(e + 48);
+
+    if (s->level > 7)
+        return 203;
+    int known = is_known(s), order = order_of(s);
+    if (!known && s->flags & 1)
+        return 201;
+    if (s->flags != (known && order < 16 * 4 ? 1 : 0))
+        return 202;
+    if (!known && (s->level || s->format))
+        return s->level ? 203 : 204;
+    for (uint32_t i = 0; i < index; ++i)
+        if (order_of(&f->section[i]) > order ||
+            (!memcmp(f->section[i].type, s->type, 4) && f->section[i].level == s->level))
+            return 200;
+    unsigned rule = known ? check_known(f, s) : 0;
+    if (rule)
+        return rule;
+    if (s->offset > f->size || s->stored_size > f->size - s->offset)
+        return 206;
+    if (s->offset != *end)
+        return 205;
+    *end = align64(s->offset + s->stored_size);
+    if (s->scheme != 2 && (s->scheme != 0 || s->stored_size != s->size))
+        return 208;
+    if (s->filter > (s->scheme == 2 && s->texel ? 3 : 0))
+        return 209;
+    if (!all_zero(e + 56, 8))
+        return 211;
+    return 0;
+}
+
+static unsigned check_presence(const struct file *f)
+{
+    uint32_t patches = 0, heights = 0, trims = 0, normals = 0, colors = 0;
+    for (uint32_t i = 0; i < f->section_count; ++i) {
+        patches += is_type(&f->section[i], "PTCH");
+        heights += is_type(&f->section[i], "HGHT");
+        trims += is_type(&f->section[i], "TRIM");
+        normals += is_type(&f->section[i], "NRML");
+        colors += is_type(&f->section[i], "COLR");
+    }
+    return patches && heights && trims && normals == f->mips && (!colors || colors == f->mips)
+               ? 0 : 214;
+}
+
+static unsigned check_table(struct file *f)
+{
+    uint64_t end = HEADER + (uint64_t)ENTRY * f->section_count;
+    byte hashes[8 * MAX_SECTIONS];
+    uint32_t hash_count = 0;
+    for (uint32_t i = 0; i < f->section_count; ++i) {
+        unsigned rule = check_entry(f, i, &end);
+        if (rule)
+            return rule;
+        if (!is_type(&f->section[i], "META"))
+            memcpy(hashes + 8 * hash_count++, f->data + HEADER + ENTRY * i + 48, 8);
+    }
+    unsigned rule = check_presence(f);
+    if (rule)
+        return rule;
+    if (end != f->size)
+        return 215;
+    for (uint32_t i = 0; i < f->section_count; ++i) {
+        uint64_t from = f->section[i].offset + f->section[i].stored_size;
+        if (!all_zero(f->data + from, align64(from) - from))
+            return 212;
+    }
+    return xxh64(hashes, 8 * hash_count) == u64(f->data + 128) ? 0 : 116;
+}
+
+/* ---- sections ---- */
+
+/* The content size and window of a zstd frame (RFC 8878, 3.1.1.1); 0 when there are none. */
+static int frame_header(const byte *p, uint64_t size, uint64_t *content, uint64_t *window)
+{
+    static const int dictionary_bytes[] = {0, 1, 2, 4};
+    if (size < 6 || u32(p) != 0xFD2FB528)
+        return 0;
+    int descriptor = p[4], single = descriptor >> 5 & 1, kind = descriptor >> 6;
+    int at = 5 + !single + dictionary_bytes[descriptor & 3];
+    int width = kind ? 1 << kind : single;
+    if (!width || size < (uint64_t)at + (uint64_t)width)
+        return 0;
+    *content = load(p + at, width) + (width == 2 ? 256 : 0);
+    *window = *content;
+    if (!single) {
+        uint64_t base = (uint64_t)1 << (10 + (p[5] >> 3));
+        *window = base + base / 8 * (p[5] & 7);
+    }
+    return 1;
+}
+
+static unsigned inflate(const byte *in, uint64_t stored, byte *out, uint64_t size)
+{
+#ifdef NO_ZSTD
+    (void)in, (void)stored, (void)out, (void)size;
+    return UNSUPPORTED;
+#else
+    if (ZSTD_findFrameCompressedSize(in, (size_t)stored) != stored ||
+        ZSTD_decompress(out, (size_t)size, in, (size_t)stored) != size)
+        return 213;
+    return 0;
+#endif
+}
+
+static int paeth(int a, int b, int c)
+{
+    int p = a + b - c, pa = abs(p - a), pb = abs(p - b), pc = abs(p - c);
+    if (pa <= pb && pa <= pc)
+        return a;
+    return pb <= pc ? b : c;
+}
+
+/* `step` bytes lie between a byte and the one to its left. */
+static void undo_paeth(byte *image, uint64_t rows, uint64_t row_bytes, uint64_t step)
+{
+    for (uint64_t y = 0; y < rows; ++y)
+        for (uint64_t x = 0; x < row_bytes; ++x) {
+            byte *p = image + y * row_bytes + x;
+            int a = x >= step ? *(p - step) : 0;
+            int b = y ? *(p - row_bytes) : 0;
+            int c = x >= step && y ? *(p - row_bytes - step) : 0;
+            *p = (byte)(*p + paeth(a, b, c));
+        }
+}
+
+static unsigned undo_filter(const struct file *f, struct section *s)
+{
+    uint64_t texels = (uint64_t)s->width * s->height, all = texels * f->pages;
+    if (s->filter == 1)
+        for (uint32_t page = 0; page < f->pages; ++page)
+            undo_paeth(s->bytes + page * texels * s->texel, s->height,
+                       (uint64_t)s->width * s->texel, s->texel);
+    if (s->filter == 3)
+        for (uint32_t page = 0; page < f->pages * s->texel; ++page)
+            undo_paeth(s->bytes + page * texels, s->height, s->width, 1);
+    if (s->filter < 2)
+        return 0;
+    byte *merged = malloc((size_t)s->size);
+    if (!merged)
+        return NO_MEMORY;
+    for (uint64_t i = 0; i < all; ++i)
+        for (uint32_t plane = 0; plane < s->texel; ++plane)
+            merged[i * s->texel + plane] = s->bytes[plane * all + i];
+    free(s->bytes);
+    s->bytes = merged;
+    return 0;
+}
+
+static unsigned decode_section(const struct file *f, struct section *s)
+{
+    const byte *stored = f->data + s->offset;
+    uint64_t content, window;
+    if (s->scheme == 2) {
+        if (!frame_header(stored, s->stored_size, &content, &window) || content != s->size ||
+            window > (uint64_t)1 << 27 || s->size / 32768 > s->stored_size)
+            return 213;
+    }
+    s->bytes = malloc((size_t)s->size);
+    if (!s->bytes)
+        return NO_MEMORY;
+    unsigned rule = 0;
+    if (s->scheme == 2)
+        rule = inflate(stored, s->stored_size, s->bytes, s->size);
+    else
+        memcpy(s->bytes, stored, (size_t)s->size);
+    if (!rule && s->filter)
+        rule = undo_filter(f, s);
+    if (!rule && xxh64(s->bytes, s->size) != s->hash)
+        rule = 210;
+    return rule;
+}
+
+static struct section *find(struct file *f, const char *type)
+{
+    for (uint32_t i = 0; i < f->section_count; ++i)
+        if (is_type(&f->section[i], type))
+            return &f->section[i];
+    return NULL;
+}
+
+/* ---- 3: patches ---- */
+
+static double dot(const byte *a, const byte *b)
+{
+    return f32(a) * f32(b) + f32(a + 4) * f32(b + 4) + f32(a + 8) * f32(b + 8);
+}
+
+static double determinant(const byte *x, const byte *y, const byte *z)
+{
+    double xy[3];
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        xy[i] = f32(x + 4 * j) * f32(y + 4 * k) - f32(x + 4 * k) * f32(y + 4 * j);
+    }
+    return xy[0] * f32(z) + xy[1] * f32(z + 4) + xy[2] * f32(z + 8);
+}
+
+static unsigned check_record(const struct file *f, const byte *r)
+{
+    for (int i = 0; i < 96; i += 4)
+        if ((i < 64 || i >= 80) && !isfinite(f32(r + i)))
+            return 300;
+    double ex = f32(r + 12), ey = f32(r + 28), ez = f32(r + 44);
+    if (!(ex > 0 && ey > 0 && ez > 0 && ez >= fmax(ex, ey) / 4096 * 0.999))
+        return 301;
+    for (int i = 16; i <= 48; i += 16)
+        if (fabs(sqrt(dot(r + i, r + i)) - 1) > 1e-3)
+            return 302;
+    if (determinant(r + 16, r + 32, r + 48) < 0.099)
+        return 303;
+    if (!(f32(r + 92) > 0))
+        return 308;
+    if (u32(r + 64) >= f->pages)
+        return 305;
+    uint32_t x = u16(r + 68), y = u16(r + 70), w = u16(r + 72), h = u16(r + 74);
+    uint32_t block = 1u << (f->mips - 1);
+    if (w < 2 || h < 2 || x + w > f->width || y + h > f->height || x % block || y % block ||
+        w % block || h % block)
+        return 306;
+    if (u16(r + 78) & ~0x100u)
+        return 307;
+    if (!all_zero(r + 100, 28))
+        return 309;
+    return 0;
+}
+
+/* The position in a page-sized map of texel (i, j) of a patch. */
+static uint64_t texel_at(const struct file *f, const byte *r, uint32_t i, uint32_t j)
+{
+    return ((uint64_t)u32(r + 64) * f->height + u16(r + 70) + j) * f->width + u16(r + 68) + i;
+}
+
+/* `taken` has a byte a texel of all pages. */
+static unsigned check_patches(const struct file *f, const byte *records, byte *taken)
+{
+    for (uint32_t n = 0; n < f->patches; ++n) {
+        unsigned rule = check_record(f, records + RECORD * (uint64_t)n);
+        if (rule)
+            return rule;
+    }
+    for (uint32_t n = 0; n < f->patches; ++n) {
+        const byte *r = records + RECORD * (uint64_t)n;
+        for (uint32_t j = 0; j < u16(r + 74); ++j)
+            for (uint32_t i = 0; i < u16(r + 72); ++i)
+                if (taken[texel_at(f, r, i, j)]++)
+                    return 310;
+    }
+    return 0;
+}
+
+static uint32_t height_code(const struct file *f, const byte *heights, uint64_t texel)
+{
+    return f->bits == 8 ? heights[texel] : u16(heights + 2 * texel);
+}
+
+static unsigned check_points(const struct file *f, const byte *r, const byte *heights)
+{
+    uint32_t w = u16(r + 72), h = u16(r + 74);
+    double levels = f->bits == 8 ? 254 : 65534, diagonal = 0, coded = 0;
+    unsigned sphere = 0, bounds = 0;
+    for (int i = 0; i < 3; ++i)
+        diagonal += pow(f32(f->data + 84 + 4 * i) - f32(f->data + 72 + 4 * i), 2);
+    diagonal = sqrt(diagonal);
+    for (uint32_t j = 0; j < h; ++j) {
+        for (uint32_t i = 0; i < w; ++i) {
+            uint32_t code = height_code(f, heights, texel_at(f, r, i, j));
+            if (!code)
+                continue;
+            ++coded;
+            double distance = 0;
+            for (int k = 0; k < 3; ++k) {
+                double p = f32(r + 4 * k) + (i + 0.5) / w * f32(r + 12) * f32(r + 16 + 4 * k) +
+                           (j + 0.5) / h * f32(r + 28) * f32(r + 32 + 4 * k) +
+                           (code - 1) / levels * f32(r + 44) * f32(r + 48 + 4 * k);
+                distance += pow(p - f32(r + 80 + 4 * k), 2);
+                if (p < f32(f->data + 72 + 4 * k) - 1e-4 * diagonal ||
+                    p > f32(f->data + 84 + 4 * k) + 1e-4 * diagonal)
+                    bounds = 311;
+            }
+            if (sqrt(distance) > f32(r + 92) * 1.001)
+                sphere = 308;
+        }
+    }
+    if (fabs(coded / ((double)w * h) - f32(r + 60)) > 1e-4)
+        return 304;
+    return sphere ? sphere : bounds;
+}
+
+static unsigned check_maps(const struct file *f, const byte *records, const byte *heights,
+                           const byte *taken)
+{
+    for (uint32_t n = 0; n < f->patches; ++n) {
+        unsigned rule = check_points(f, records + RECORD * (uint64_t)n, heights);
+        if (rule)
+            return rule;
+    }
+    for (uint64_t i = 0; i < (uint64_t)f->pages * f->width * f->height; ++i)
+        if (!taken[i] && height_code(f, heights, i))
+            return 400;
+    return 0;
+}
+
+static unsigned check_meta(const struct section *meta)
+{
+    for (uint64_t i = 0; i < meta->size;) {
+        const byte *p = meta->bytes + i;
+        int more = *p < 0x80 ? 0 : *p >= 0xC0 && *p < 0xE0 ? 1 : *p >= 0xE0 && *p < 0xF0 ? 2 : 3;
+        static const uint32_t least[] = {0, 0x80, 0x800, 0x10000};
+        static const byte mask[] = {0x7F, 0x1F, 0x0F, 0x07};
+        if ((*p >= 0x80 && *p < 0xC0) || *p >= 0xF8 || meta->size - i <= (uint64_t)more)
+            return 600;
+        uint32_t code = *p & mask[more];
+        for (int k = 1; k <= more; ++k) {
+            if (p[k] >> 6 != 2)
+                return 600;
+            code = code << 6 | (p[k] & 0x3F);
+        }
+        if (code < least[more] || code > 0x10FFFF || (code >= 0xD800 && code < 0xE000))
+            return 600;
+        i += 1 + (uint64_t)more;
+    }
+    return 0;
+}
+
+/* ---- 6: all of it ---- */
+
+static unsigned decode_content(struct file *f, byte *taken)
+{
+    for (uint32_t i = 0; i < f->section_count; ++i) {
+        struct section *s = &f->section[i];
+        if (!is_known(s))
+            continue;
+        unsigned rule = decode_section(f, s);
+        if (!rule && is_type(s, "PTCH"))
+            rule = check_patches(f, s->bytes, taken);
+        if (!rule && is_type(s, "META"))
+            rule = check_meta(s);
+        if (rule)
+            return rule;
+    }
+    return check_maps(f, find(f, "PTCH")->bytes, find(f, "HGHT")->bytes, taken);
+}
+
+/* Returns 0, or the rule that is broken. `f` is to be freed with release in either case. */
+static unsigned decode(const byte *data, uint64_t size, struct file *f)
+{
+    memset(f, 0, sizeof *f);
+    f->data = data;
+    f->size = size;
+    unsigned rule = check_header(f);
+    if (!rule)
+        rule = check_values(f);
+    if (!rule)
+        rule = check_header_hash(f);
+    if (!rule)
+        rule = check_table(f);
+    if (rule)
+        return rule;
+    byte *taken = calloc((size_t)f->pages * f->width, f->height);
+    if (!taken)
+        return NO_MEMORY;
+    rule = decode_content(f, taken);
+    free(taken);
+    return rule;
+}
+
+static void release(struct file *f)
+{
+    for (uint32_t i = 0; i < f->section_count && i < MAX_SECTIONS; ++i)
+        free(f->section[i].bytes);
+}
+
+#ifndef GTX_DECODE_NO_MAIN
+
+static void print_floats(const char *name, const byte *p, int count)
+{
+    printf(" %s", name);
+    for (int i = 0; i < count; ++i)
+        printf("%c%.9g", i ? ',' : ' ', f32(p + 4 * i));
+}
+
+static void print_patch(uint32_t index, const byte *r)
+{
+    printf("patch %" PRIu32 ":", index);
+    print_floats("origin", r, 3);
+    print_floats("x", r + 16, 3);
+    print_floats("y", r + 32, 3);
+    print_floats("z", r + 48, 3);
+    printf(" extents %.9g,%.9g,%.9g coverage %.9g", f32(r + 12), f32(r + 28), f32(r + 44),
+           f32(r + 60));
+    printf(" page %" PRIu32 " rect %" PRIu32 ",%" PRIu32 " %" PRIu32 "x%" PRIu32, u32(r + 64),
+           u16(r + 68), u16(r + 70), u16(r + 72), u16(r + 74));
+    printf(" dilation %" PRIu32 " flags 0x%04" PRIx32, u16(r + 76), u16(r + 78));
+    print_floats("sphere", r + 80, 4);
+    printf(" triangles %" PRIu32 "\n", u32(r + 96));
+}
+
+static void print_file(struct file *f)
+{
+    const byte *h = f->data;
+    printf("gtx %" PRIu32 ".%" PRIu32 ", %" PRIu64 " bytes\n", u16(h + 12), u16(h + 14), f->size);
+    printf("patches %" PRIu32 ", pages %" PRIu32 " of %" PRIu32 "x%" PRIu32 ", mips %" PRIu32
+           ", height bits %" PRIu32 "\n", f->patches, f->pages, f->width, f->height, f->mips, f->bits);
+    printf("header:");
+    print_floats("min", h + 72, 3);
+    print_floats("max", h + 84, 3);
+    print_floats("unit", h + 96, 1);
+    printf(" anchor %.17g,%.17g,%.17g", f64(h + 104), f64(h + 112), f64(h + 120));
+    printf(" content 0x%016" PRIx64 " triangles %" PRIu64 "\n", u64(h + 128), u64(h + 136));
+    for (uint32_t n = 0; n < f->patches; ++n)
+        print_patch(n, find(f, "PTCH")->bytes + RECORD * (uint64_t)n);
+    for (uint32_t i = 0; i < f->section_count; ++i) {
+        const struct section *s = &f->section[i];
+        printf("section %02x%02x%02x%02x level %" PRIu32 " size %" PRIu64 " scheme %" PRIu32
+               " filter %" PRIu32, (byte)s->type[0], (byte)s->type[1], (byte)s->type[2],
+               (byte)s->type[3], s->level, s->size, s->scheme, s->filter);
+        if (s->bytes)
+            printf(" %s xxh64 0x%016" PRIx64 "\n", s->type, xxh64(s->bytes, s->size));
+        else
+            printf(" skipped\n");
+    }
+}
+
+static byte *read_whole(const char *path, uint64_t *size)
+{
+    FILE *in = fopen(path, "rb");
+    byte *data = NULL;
+    long end = -1;
+    if (in && !fseek(in, 0, SEEK_END) && (end = ftell(in)) >= 0 && end < LONG_MAX)
+        data = malloc((size_t)end + 1);
+    if (data && (fseek(in, 0, SEEK_SET) || fread(data, 1, (size_t)end, in) != (size_t)end)) {
+        free(data);
+        data = NULL;
+    }
+    if (in)
+        fclose(in);
+    *size = (uint64_t)end;
+    return data;
+}
+
+int main(int argc, char **argv)
+{
+    static struct file file;
+    uint64_t size;
+    if (argc != 2) {
+        fprintf(stderr, "usage: gtx_decode FILE\n");
+        return 1;
+    }
+    byte *data = read_whole(argv[1], &size);
+    if (!data) {
+        fprintf(stderr, "%s: cannot be read\n", argv[1]);
+        return 2;
+    }
+    unsigned rule = decode(data, size, &file);
+    if (!rule)
+        print_file(&file);
+    else if (rule >= 100)
+        printf("%s: breaks rule %u\n", argv[1], rule);
+    else
+        printf("%s: %s\n", argv[1], rule == NO_MEMORY ? "out of memory" : "compressed");
+    release(&file);
+    free(data);
+    return !rule ? 0 : rule >= 100 ? 3 : 5;
+}
+
+#endif

@@ -1,0 +1,253 @@
+/* The reports of cooking and comparing, as JSON and as a line. */
+#include "cook/report.hpp"
+
+#include "mesh/task.hpp"
+
+#include <sys/resource.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace gtx {
+
+static void write_deviation(Json &json, const char *key, const Deviation &deviation)
+{
+    gtx_json_begin_object(&json, key);
+    gtx_json_number(&json, "rms", deviation.rms);
+    gtx_json_number(&json, "max", deviation.max);
+    gtx_json_end_object(&json);
+}
+
+static void write_strings(Json &json, const char *key, const std::vector<std::string> &strings)
+{
+    gtx_json_begin_array(&json, key);
+    for (const std::string &s : strings)
+        gtx_json_string(&json, nullptr, s.c_str());
+    gtx_json_end_array(&json);
+}
+
+static void write_charts(Json &json, const CookFacts &facts)
+{
+    const ChartReport &charts = facts.charts;
+    gtx_json_begin_object(&json, "source_folds");
+    gtx_json_integer(&json, "triangles", charts.initial_inverted);
+    gtx_json_integer(&json, "charts", charts.initial_folding);
+    gtx_json_end_object(&json);
+    gtx_json_integer(&json, "charts", facts.chart_count);
+    gtx_json_integer(&json, "inverted_triangles", charts.inverted_triangles);
+    gtx_json_integer(&json, "folding_charts", charts.folding_charts);
+    gtx_json_number(&json, "second_layer_fraction", charts.second_layer_fraction);
+    gtx_json_begin_object(&json, "junk");
+    gtx_json_integer(&json, "triangles", charts.junk_triangles);
+    gtx_json_number(&json, "area_fraction", charts.junk_area_fraction);
+    gtx_json_end_object(&json);
+}
+
+static void write_error(Json &json, const CookFacts &facts)
+{
+    gtx_json_begin_object(&json, "error");
+    gtx_json_null(&json, "requested");
+    if (facts.measured) {
+        write_deviation(json, "forward", facts.error.forward);
+        write_deviation(json, "reverse", facts.error.reverse);
+    } else {
+        gtx_json_null(&json, "forward");
+        gtx_json_null(&json, "reverse");
+    }
+    gtx_json_end_object(&json);
+}
+
+static double per_triangle(const CookFacts &facts)
+{
+    return double(facts.bytes) / double(facts.source_triangles);
+}
+
+static double empty_fraction(const BakeReport &bake)
+{
+    return double(bake.texels_empty) / double(bake.texels_total);
+}
+
+static std::string cook_summary(const CookFacts &facts)
+{
+    char line[200];
+    snprintf(line, sizeof line,
+             "%llu triangles, %llu patches, %llu texels (%.1f %% empty), %llu bytes (%.2f a "
+             "triangle), %.2f s",
+             (unsigned long long)facts.source_triangles, (unsigned long long)facts.chart_count,
+             (unsigned long long)facts.bake.texels_total, 100 * empty_fraction(facts.bake),
+             (unsigned long long)facts.bytes, per_triangle(facts), facts.total_seconds);
+    return line;
+}
+
+static void check_written(const Json &json)
+{
+    if (json.failed)
+        throw std::bad_alloc();
+}
+
+std::string write_cook_report(const CookFacts &facts, const std::vector<std::string> &warnings,
+                              Json &json)
+{
+    gtx_json_begin_object(&json, nullptr);
+    gtx_json_begin_object(&json, "source");
+    gtx_json_integer(&json, "triangles", facts.source_triangles);
+    gtx_json_integer(&json, "vertices", facts.source_vertices);
+    gtx_json_end_object(&json);
+    write_charts(json, facts);
+    gtx_json_begin_object(&json, "dropped_triangles");
+    for (const auto &[reason, count] : facts.clean.dropped)
+        gtx_json_integer(&json, reason.c_str(), count);
+    gtx_json_end_object(&json);
+    gtx_json_integer(&json, "texels_total", facts.bake.texels_total);
+    gtx_json_integer(&json, "texels_empty", facts.bake.texels_empty);
+    gtx_json_number(&json, "empty_fraction", empty_fraction(facts.bake));
+    gtx_json_number(&json, "page_fill", facts.bake.page_fill);
+    write_error(json, facts);
+    gtx_json_integer(&json, "bytes", facts.bytes);
+    gtx_json_number(&json, "bytes_per_triangle", per_triangle(facts));
+    gtx_json_integer(&json, "gpu_bytes", facts.gpu_bytes);
+    gtx_json_begin_object(&json, "seconds");
+    for (size_t i = 0; i < facts.stages.size(); ++i)
+        gtx_json_number(&json, facts.stages[i], facts.seconds[i]);
+    gtx_json_number(&json, "total", facts.total_seconds);
+    gtx_json_end_object(&json);
+    gtx_json_integer(&json, "peak_rss_bytes", peak_rss_bytes());
+    gtx_json_hash(&json, "content_hash", facts.content_hash);
+    write_strings(json, "warnings", warnings);
+    gtx_json_end_object(&json);
+    check_written(json);
+    return cook_summary(facts);
+}
+
+std::string write_compare_report(const CompareReport &report,
+                                 const std::vector<std::string> &warnings, Json &json)
+{
+    gtx_json_begin_object(&json, nullptr);
+    gtx_json_integer(&json, "views", report.views);
+    gtx_json_integer(&json, "surface_pixels", report.surface_pixels);
+    gtx_json_integer(&json, "hole_pixels", report.hole_pixels);
+    gtx_json_integer(&json, "leak_pixels", report.leak_pixels);
+    gtx_json_begin_array(&json, "levels");
+    for (const LevelReport &level : report.levels) {
+        gtx_json_begin_object(&json, nullptr);
+        gtx_json_integer(&json, "level", level.level);
+        gtx_json_integer(&json, "hole_pixels", level.hole_pixels);
+        gtx_json_integer(&json, "leak_pixels", level.leak_pixels);
+        gtx_json_number(&json, "silhouette_iou", level.silhouette_iou);
+        gtx_json_end_object(&json);
+    }
+    gtx_json_end_array(&json);
+    gtx_json_number(&json, "silhouette_iou", report.silhouette_iou);
+    gtx_json_number(&json, "silhouette_iou_min", report.silhouette_iou_min);
+    gtx_json_begin_object(&json, "depth_error");
+    gtx_json_number(&json, "rms", report.depth_rms);
+    gtx_json_number(&json, "p99", report.depth_p99);
+    gtx_json_number(&json, "max", report.depth_max);
+    gtx_json_end_object(&json);
+    gtx_json_begin_object(&json, "normal_error_deg");
+    gtx_json_number(&json, "mean", report.normal_mean_deg);
+    gtx_json_number(&json, "p99", report.normal_p99_deg);
+    gtx_json_end_object(&json);
+    gtx_json_number(&json, "psnr_db", report.psnr_db);
+    gtx_json_begin_object(&json, "error");
+    write_deviation(json, "forward", report.error.forward);
+    write_deviation(json, "reverse", report.error.reverse);
+    gtx_json_end_object(&json);
+    write_strings(json, "warnings", warnings);
+    gtx_json_end_object(&json);
+    check_written(json);
+
+    char line[160];
+    snprintf(line, sizeof line, "%llu hole pixels of %llu, silhouette IoU %.5f, forward RMS %.3g",
+             (unsigned long long)report.hole_pixels, (unsigned long long)report.surface_pixels,
+             report.silhouette_iou, report.error.forward.rms);
+    return line;
+}
+
+void write_meta(const MetaFacts &facts, Json &json)
+{
+    char generator[32];
+    snprintf(generator, sizeof generator, "geotex %d.%d.%d", GTX_VERSION_MAJOR, GTX_VERSION_MINOR,
+             GTX_VERSION_PATCH);
+    gtx_json_begin_object(&json, nullptr);
+    gtx_json_string(&json, "generator", generator);
+    gtx_json_begin_object(&json, "options");
+    gtx_json_string(&json, "partition", facts.partition);
+    gtx_json_integer(&json, "charts", facts.charts);
+    gtx_json_integer(&json, "resolution", facts.resolution);
+    gtx_json_integer(&json, "height_bits", facts.height_bits);
+    gtx_json_integer(&json, "mips", facts.mips);
+    gtx_json_integer(&json, "dilation", facts.dilation);
+    gtx_json_end_object(&json);
+    gtx_json_begin_object(&json, "source");
+    gtx_json_integer(&json, "triangles", facts.source_triangles);
+    gtx_json_hash(&json, "xxh64", facts.source_hash);
+    gtx_json_end_object(&json);
+    gtx_json_end_object(&json);
+    check_written(json);
+}
+
+uint64_t gpu_bytes(const gtx_info &info)
+{
+    uint64_t texels = uint64_t(info.page_count) * info.page_width * info.page_height;
+    /* Corner cells: the codes of a cell's four texels in one. And a byte of trim. */
+    uint64_t bytes = texels * (4 * info.height_bits / 8 + 1);
+    for (uint32_t k = 0; k < info.mip_count; ++k)
+        bytes += 2 * uint64_t(info.page_count) * (info.page_width >> k) * (info.page_height >> k);
+    return bytes + info.patch_count * sizeof(gtx_patch);
+}
+
+uint64_t peak_rss_bytes()
+{
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) ? 0 : uint64_t(usage.ru_maxrss) * 1024;
+}
+
+static char *copy_text(const char *text, size_t size)
+{
+    char *copy = static_cast<char *>(malloc(size + 1));
+    if (!copy)
+        throw std::bad_alloc();
+    memcpy(copy, text, size);
+    copy[size] = 0;
+    return copy;
+}
+
+static void copy_strings(const std::vector<std::string> &from, char **&strings, size_t &count)
+{
+    strings = static_cast<char **>(calloc(from.size() + 1, sizeof *strings));
+    if (!strings)
+        throw std::bad_alloc();
+    for (const std::string &s : from)
+        strings[count++] = copy_text(s.data(), s.size());
+}
+
+void fill_report(gtx_report *report, const Json &json, const std::string &summary,
+                 const std::vector<std::string> &sources, const std::vector<std::string> &warnings)
+{
+    std::unique_ptr<gtx_report, decltype(&gtx_report_free)> owner(report, gtx_report_free);
+    *report = {};
+    report->json = copy_text(json.text, json.size);
+    report->size = json.size;
+    snprintf(report->summary, sizeof report->summary, "%s", summary.c_str());
+    copy_strings(sources, report->sources, report->source_count);
+    copy_strings(warnings, report->warnings, report->warning_count);
+    owner.release();
+}
+
+} // namespace gtx
+
+void gtx_report_free(gtx_report *report)
+{
+    if (!report)
+        return;
+    for (size_t i = 0; i < report->source_count; ++i)
+        free(report->sources[i]);
+    for (size_t i = 0; i < report->warning_count; ++i)
+        free(report->warnings[i]);
+    free(report->sources);
+    free(report->warnings);
+    free(report->json);
+    *report = {};
+}

@@ -1,0 +1,61 @@
+/* What the two calls of cook.h tell about their work. */
+#pragma once
+
+#include "bake/bake.hpp"
+#include "measure/measure.hpp"
+
+#include <geotex/cook.h>
+
+#include "base/json.h"
+
+#include <memory>
+
+namespace gtx {
+
+/* Everything the cook report is written from. */
+struct CookFacts {
+    uint64_t source_triangles = 0, source_vertices = 0;
+    CleanReport clean;
+    ChartReport charts;
+    uint64_t chart_count = 0;
+    BakeReport bake;
+    bool measured = false;
+    SurfaceError error;
+    uint64_t bytes = 0, gpu_bytes = 0, content_hash = 0;
+    std::vector<const char *> stages;
+    std::vector<double> seconds; /* a stage each */
+    double total_seconds = 0;
+};
+
+/* A JSON text that frees itself. */
+struct Json : gtx_json {
+    Json() : gtx_json{} {}
+    ~Json() { gtx_json_free(this); }
+    Json(const Json &) = delete;
+    Json &operator=(const Json &) = delete;
+};
+
+/* Fill `json` and return the line of gtx_report.summary. */
+std::string write_cook_report(const CookFacts &facts, const std::vector<std::string> &warnings,
+                              Json &json);
+std::string write_compare_report(const CompareReport &report,
+                                 const std::vector<std::string> &warnings, Json &json);
+
+/* Moves all of it into a caller's report, in memory that gtx_report_free gives back. */
+void fill_report(gtx_report *report, const Json &json, const std::string &summary,
+                 const std::vector<std::string> &sources, const std::vector<std::string> &warnings);
+
+/* The META section: what made the asset, from what. Nothing of when, where or by how many. */
+struct MetaFacts {
+    const char *partition;
+    uint64_t charts, resolution, height_bits, mips, dilation, source_triangles, source_hash;
+};
+void write_meta(const MetaFacts &facts, Json &json);
+
+/* Bytes of the asset's geometry on the GPU as lib/render lays it out, colour left out. */
+uint64_t gpu_bytes(const gtx_info &info);
+
+/* The most memory this process has held so far. */
+uint64_t peak_rss_bytes();
+
+} // namespace gtx

@@ -1,0 +1,46 @@
+/* What is seen of an asset in a view, row by row. */
+#pragma once
+
+#include "measure/view.hpp"
+
+#include <geotex/geotex.h>
+
+#include <memory>
+
+namespace gtx {
+
+/* Nearest crossing of a pixel's ray, seen from either side. */
+enum class Crossing : uint8_t {
+    none,
+    shown,                       /* the sheet is seen: from above, or of a two-sided patch */
+    leak                         /* from below, with no sheet seen right behind it */
+};
+
+/* One level of detail of an asset, to be looked at. Const and reentrant. */
+class AssetView {
+public:
+    /* Throws Error: MEMORY. */
+    AssetView(const gtx_asset *asset, uint32_t level);
+
+    /* Casts row j of the view; both vectors get view.size entries. A hit is what is shown: hit.t is
+     * the depth, infinity where there is none. */
+    void cast_row(const View &view, uint32_t j, std::vector<gtx_hit> &hits,
+                  std::vector<Crossing> &crossings) const;
+
+    /* The length of one step of the patch's height codes. */
+    double height_step(uint32_t patch) const;
+    /* Normal and colour at a hit. */
+    Fragment fragment(const gtx_hit &hit) const;
+
+private:
+    struct Destroy {
+        void operator()(gtx_caster *caster) const { gtx_caster_destroy(caster); }
+    };
+    const gtx_asset *asset_;
+    gtx_info info_;
+    const gtx_patch *patches_;
+    const uint8_t *color_;       /* level 0, or null */
+    std::unique_ptr<gtx_caster, Destroy> caster_;
+};
+
+} // namespace gtx

@@ -1,0 +1,275 @@
+/* Holes, leaks, silhouettes, depth and shading of an asset against its source, view by view. */
+#include "measure/cast.hpp"
+#include "measure/measure.hpp"
+
+#include <algorithm>
+
+namespace gtx {
+
+/* Tolerances, as DESIGN fixes them: pixels, height steps and fractions of the diagonal. */
+static const double HOLE_PIXELS = 2, HOLE_STEPS = 4, HOLE_DIAGONAL = 0.001, FLAT_DIAGONAL = 0.01;
+static const double PI = 3.14159265358979323846;
+
+/* Of one view at one level. Sums are made within a view and added up in the order of the views, so
+ * that they do not depend on the threads. */
+struct Figures {
+    uint64_t surface = 0, holes = 0, leaks = 0, both = 0, either = 0;
+    /* At level 0 only. */
+    std::vector<float> depth, angle;
+    double color_square = 0;
+    std::vector<HoleSample> samples;
+};
+
+/* What all views share. */
+struct Comparison {
+    const Mesh &mesh;
+    const CompareOptions &options;
+    Extent extent;
+    std::vector<View> views;
+    std::vector<AssetView> levels;
+};
+
+/* The source around a pixel: whether all nine are seen from the front, and their depths. */
+struct Around {
+    bool surface = false;
+    float nearest = 0, deepest = 0;
+};
+
+static Around look_around(const MeshImage &image, uint32_t size, uint32_t i, uint32_t j)
+{
+    Around around;
+    if (i == 0 || j == 0 || i + 1 >= size || j + 1 >= size)
+        return around;
+    around.nearest = std::numeric_limits<float>::infinity();
+    for (uint32_t b = j - 1; b <= j + 1; ++b)
+        for (uint32_t a = i - 1; a <= i + 1; ++a) {
+            size_t at = size_t(b) * size + a;
+            if (!image.front[at])
+                return around;
+            around.nearest = std::min(around.nearest, image.depth[at]);
+            around.deepest = std::max(around.deepest, image.depth[at]);
+        }
+    around.surface = true;
+    return around;
+}
+
+/* Headlight Lambert, in 8-bit sRGB. */
+static void shade(const Fragment &fragment, const Vec3d &toward, double out[3])
+{
+    double light = 0.2 + 0.8 * std::max(0., dot(fragment.normal, toward));
+    for (int k = 0; k < 3; ++k)
+        out[k] = std::round(std::clamp(fragment.color[k] * light, 0., 255.));
+}
+
+/* Sum of squared differences of the two images, black where nothing is. */
+static double color_difference(const Fragment *source, const Fragment *asset, const Vec3d &toward)
+{
+    double a[3] = {0, 0, 0}, b[3] = {0, 0, 0}, sum = 0;
+    if (source)
+        shade(*source, toward, a);
+    if (asset)
+        shade(*asset, toward, b);
+    for (int k = 0; k < 3; ++k)
+        sum += (a[k] - b[k]) * (a[k] - b[k]);
+    return sum;
+}
+
+static double degrees_between(const Vec3d &a, const Vec3d &b)
+{
+    return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / PI;
+}
+
+/* One view at one level while it is measured. */
+struct Look {
+    const Comparison &all;
+    uint32_t view_index, level;
+    const View &view;
+    const MeshImage &image;
+    const AssetView &asset;
+    Figures &out;
+
+    void pixel(uint32_t i, uint32_t j, const gtx_hit &hit);
+    void hole(uint32_t i, uint32_t j, const gtx_hit &hit, double behind);
+    void appearance(uint32_t i, uint32_t j, const gtx_hit &hit, bool depths_agree);
+    void leaks(const std::vector<Crossing> &crossings);
+};
+
+void Look::hole(uint32_t i, uint32_t j, const gtx_hit &hit, double behind)
+{
+    ++out.holes;
+    if (!all.options.holes)
+        return;
+    size_t at = size_t(j) * view.size + i;
+    out.samples.push_back({level, view_index, i, j, image.triangle[at], hit.patch, behind,
+                           view.at(i, j) - view.toward * double(image.depth[at])});
+}
+
+void Look::appearance(uint32_t i, uint32_t j, const gtx_hit &hit, bool depths_agree)
+{
+    bool in_source = image.triangle[size_t(j) * view.size + i] != NO_HIT;
+    bool in_asset = hit.patch != NO_HIT;
+    Fragment source = {}, seen = {};
+    if (in_source)
+        source = fragment_at(all.mesh, view, image, i, j);
+    if (in_asset)
+        seen = asset.fragment(hit);
+    out.color_square += color_difference(in_source ? &source : nullptr, in_asset ? &seen : nullptr,
+                                         view.toward);
+    if (depths_agree)
+        out.angle.push_back(float(degrees_between(source.normal, seen.normal)));
+}
+
+void Look::pixel(uint32_t i, uint32_t j, const gtx_hit &hit)
+{
+    const size_t at = size_t(j) * view.size + i;
+    const bool in_source = image.triangle[at] != NO_HIT, in_asset = hit.patch != NO_HIT;
+    out.both += in_source && in_asset;
+    out.either += in_source || in_asset;
+    if (!in_source && !in_asset)
+        return;
+
+    const double diagonal = all.extent.diagonal;
+    double tolerance = std::max(HOLE_PIXELS * view.pixel, HOLE_DIAGONAL * diagonal);
+    if (in_asset)
+        tolerance = std::max(tolerance, HOLE_STEPS * asset.height_step(hit.patch));
+    const double error = double(hit.t) - image.depth[at]; /* meaningless unless in both */
+    const Around around = look_around(image, view.size, i, j);
+    if (around.surface) {
+        ++out.surface;
+        if (!in_asset || hit.t - around.deepest > tolerance)
+            hole(i, j, hit, double(hit.t) - around.deepest);
+    }
+    if (level)
+        return;
+    if (around.surface && in_asset && around.deepest - around.nearest < FLAT_DIAGONAL * diagonal)
+        out.depth.push_back(float(std::abs(error) / diagonal));
+    appearance(i, j, hit, in_source && in_asset && std::abs(error) <= tolerance);
+}
+
+/* A leak counts where its 3x3 is covered. */
+void Look::leaks(const std::vector<Crossing> &crossings)
+{
+    const uint32_t size = view.size;
+    for (uint32_t j = 1; j + 1 < size; ++j)
+        for (uint32_t i = 1; i + 1 < size; ++i) {
+            if (crossings[size_t(j) * size + i] != Crossing::leak)
+                continue;
+            bool covered = true;
+            for (uint32_t b = j - 1; b <= j + 1; ++b)
+                for (uint32_t a = i - 1; a <= i + 1; ++a)
+                    covered &= crossings[size_t(b) * size + a] != Crossing::none;
+            out.leaks += covered;
+        }
+}
+
+static void measure_level(const Comparison &all, uint32_t view_index, uint32_t level,
+                          const MeshImage &image, Figures &out)
+{
+    const View &view = all.views[view_index];
+    Look look = {all, view_index, level, view, image, all.levels[level], out};
+    std::vector<gtx_hit> hits;
+    std::vector<Crossing> row, crossings;
+    crossings.reserve(size_t(view.size) * view.size);
+    for (uint32_t j = 0; j < view.size; ++j) {
+        look.asset.cast_row(view, j, hits, row);
+        crossings.insert(crossings.end(), row.begin(), row.end());
+        for (uint32_t i = 0; i < view.size; ++i)
+            look.pixel(i, j, hits[i]);
+    }
+    look.leaks(crossings);
+}
+
+/* The value that 99 % of the values are not above. */
+static double percentile_99(std::vector<float> &values)
+{
+    if (values.empty())
+        return 0;
+    size_t rank = (values.size() * 99 + 99) / 100 - 1;
+    std::nth_element(values.begin(), values.begin() + ptrdiff_t(rank), values.end());
+    return values[rank];
+}
+
+/* The figures of level 0 that come from lists: figures[view]. */
+static void summarise(const std::vector<Figures> &figures, CompareReport &report)
+{
+    std::vector<float> depth, angle;
+    double depth_square = 0, angle_sum = 0, color_square = 0, pixels = 0;
+    for (const Figures &f : figures) {
+        depth.insert(depth.end(), f.depth.begin(), f.depth.end());
+        angle.insert(angle.end(), f.angle.begin(), f.angle.end());
+        color_square += f.color_square;
+        pixels += double(f.either);
+    }
+    for (float d : depth) {
+        depth_square += double(d) * d;
+        report.depth_max = std::max(report.depth_max, double(d));
+    }
+    for (float a : angle)
+        angle_sum += a;
+    report.depth_rms = depth.empty() ? 0 : std::sqrt(depth_square / double(depth.size()));
+    report.depth_p99 = percentile_99(depth);
+    report.normal_mean_deg = angle.empty() ? 0 : angle_sum / double(angle.size());
+    report.normal_p99_deg = percentile_99(angle);
+    report.psnr_db = 10 * std::log10(255. * 255. * 3 * pixels / color_square);
+}
+
+static LevelReport add_up(const std::vector<Figures> &figures, uint32_t level,
+                          CompareReport &report)
+{
+    LevelReport sum;
+    sum.level = level;
+    uint64_t both = 0, either = 0, surface = 0;
+    double least = 1;
+    for (const Figures &f : figures) {
+        surface += f.surface;
+        sum.hole_pixels += f.holes;
+        sum.leak_pixels += f.leaks;
+        both += f.both;
+        either += f.either;
+        if (f.either)
+            least = std::min(least, double(f.both) / double(f.either));
+    }
+    sum.silhouette_iou = either ? double(both) / double(either) : 1;
+    if (level == 0) {
+        report.surface_pixels = surface;
+        report.hole_pixels = sum.hole_pixels;
+        report.leak_pixels = sum.leak_pixels;
+        report.silhouette_iou = sum.silhouette_iou;
+        report.silhouette_iou_min = least;
+        summarise(figures, report);
+    }
+    return sum;
+}
+
+CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOptions &options,
+                      Task &task)
+{
+    Comparison all = {mesh, options, extent_of(mesh), {}, {}};
+    if (!(all.extent.radius > 0))
+        throw Error(GTX_ERROR_EMPTY, "the source has no extent to measure against");
+    all.views = comparison_views(all.extent, options.size);
+    for (uint32_t level = 0; level < options.levels; ++level)
+        all.levels.emplace_back(asset, level);
+
+    std::vector<std::vector<Figures>> figures(options.levels,
+                                              std::vector<Figures>(all.views.size()));
+    task.parallel(all.views.size(), [&](size_t v) {
+        MeshImage image = rasterise(mesh, all.views[v]);
+        for (uint32_t level = 0; level < options.levels; ++level)
+            measure_level(all, uint32_t(v), level, image, figures[level][v]);
+    }, 0, options.surface ? 0.8 : 1);
+
+    CompareReport report;
+    report.views = uint32_t(all.views.size());
+    for (uint32_t level = 0; level < options.levels; ++level) {
+        report.levels.push_back(add_up(figures[level], level, report));
+        for (const Figures &f : figures[level])
+            if (options.holes)
+                options.holes->insert(options.holes->end(), f.samples.begin(), f.samples.end());
+    }
+    if (options.surface)
+        report.error = surface_error(asset, mesh, {}, task);
+    return report;
+}
+
+} // namespace gtx

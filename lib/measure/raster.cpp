@@ -1,0 +1,117 @@
+/* An orthographic z-buffer of the mesh, sampled at pixel centres. */
+#include "measure/view.hpp"
+
+#include <algorithm>
+
+namespace gtx {
+
+/* Square pixels by which an edge reaches outwards: neighbours overlap instead of leaving pinholes
+ * where rounding puts a pixel centre outside both. */
+static const double EDGE_SLACK = 1e-9;
+
+/* Barycentric weights at a point of the image, from pixel coordinates; false outside the triangle
+ * or when it is seen edge-on. */
+static bool weights_at(const Vec3d v[3], double x, double y, double weight[3])
+{
+    double area = (v[1].x - v[0].x) * (v[2].y - v[0].y) - (v[1].y - v[0].y) * (v[2].x - v[0].x);
+    double sign = area < 0 ? -1 : 1;
+    if (area == 0)
+        return false;
+    for (int k = 0; k < 3; ++k) {
+        const Vec3d &a = v[(k + 1) % 3], &b = v[(k + 2) % 3];
+        double edge = (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
+        if (edge * sign < -EDGE_SLACK)
+            return false;
+        weight[k] = std::clamp(edge / area, 0., 1.);
+    }
+    return true;
+}
+
+static uint32_t first_pixel(double low)
+{
+    return uint32_t(std::max(0., std::ceil(low - 0.5 - EDGE_SLACK)));
+}
+
+/* One past the last pixel whose centre is not beyond `high`. */
+static uint32_t end_pixel(double high, uint32_t size)
+{
+    return uint32_t(std::clamp(std::floor(high - 0.5 + EDGE_SLACK) + 1, 0., double(size)));
+}
+
+static void draw(const Vec3d v[3], uint32_t triangle, uint32_t size, MeshImage &image)
+{
+    auto x = std::minmax({v[0].x, v[1].x, v[2].x}), y = std::minmax({v[0].y, v[1].y, v[2].y});
+    auto z = std::minmax({v[0].z, v[1].z, v[2].z});
+    uint32_t end_x = end_pixel(x.second, size), end_y = end_pixel(y.second, size);
+    for (uint32_t j = first_pixel(y.first); j < end_y; ++j)
+        for (uint32_t i = first_pixel(x.first); i < end_x; ++i) {
+            double w[3];
+            if (!weights_at(v, i + 0.5, j + 0.5, w))
+                continue;
+            double depth = w[0] * v[0].z + w[1] * v[1].z + w[2] * v[2].z;
+            float nearest = float(std::clamp(depth, z.first, z.second));
+            size_t at = size_t(j) * size + i;
+            if (nearest < image.depth[at]) {
+                image.depth[at] = nearest;
+                image.triangle[at] = triangle;
+            }
+        }
+}
+
+static bool is_two_sided(const Mesh &mesh, uint32_t triangle)
+{
+    return !mesh.flags.empty() && (mesh.flags[triangle] & TRIANGLE_TWO_SIDED);
+}
+
+MeshImage rasterise(const Mesh &mesh, const View &view)
+{
+    MeshImage image;
+    size_t pixels = size_t(view.size) * view.size;
+    image.depth.assign(pixels, std::numeric_limits<float>::infinity());
+    image.triangle.assign(pixels, NO_HIT);
+    image.front.assign(pixels, 0);
+
+    std::vector<Vec3d> projected(mesh.positions.size());
+    for (size_t i = 0; i < projected.size(); ++i)
+        projected[i] = view.project(mesh.positions[i]);
+    for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+        Vec3d v[3];
+        for (int k = 0; k < 3; ++k)
+            v[k] = projected[mesh.triangles[t][k]];
+        draw(v, uint32_t(t), view.size, image);
+    }
+    for (size_t at = 0; at < pixels; ++at) {
+        uint32_t t = image.triangle[at];
+        if (t != NO_HIT)
+            image.front[at] = is_two_sided(mesh, t) || dot(mesh.area_vector(t), view.toward) > 0;
+    }
+    return image;
+}
+
+Fragment fragment_at(const Mesh &mesh, const View &view, const MeshImage &image, uint32_t i,
+                     uint32_t j)
+{
+    uint32_t t = image.triangle[size_t(j) * view.size + i];
+    Vec3d v[3];
+    double w[3] = {1. / 3, 1. / 3, 1. / 3};
+    for (int k = 0; k < 3; ++k)
+        v[k] = view.project(mesh.position(t, k));
+    weights_at(v, i + 0.5, j + 0.5, w);
+
+    Fragment fragment = {Vec3d(), {0, 0, 0}};
+    for (int k = 0; k < 3; ++k) {
+        Rgba8 c = mesh.colors.empty() ? Rgba8() : mesh.colors[3 * t + k];
+        const double rgb[3] = {double(c.r), double(c.g), double(c.b)};
+        for (int a = 0; a < 3; ++a)
+            fragment.color[a] += w[k] * rgb[a];
+        if (!mesh.normals.empty())
+            fragment.normal += Vec3d(mesh.normals[3 * t + k]) * w[k];
+    }
+    Vec3d facet = mesh.area_vector(t);
+    fragment.normal = normalize(mesh.normals.empty() ? facet : fragment.normal);
+    if (is_two_sided(mesh, t) && dot(facet, view.toward) < 0)
+        fragment.normal = -fragment.normal;
+    return fragment;
+}
+
+} // namespace gtx

@@ -1,0 +1,63 @@
+/* The views of a comparison, and what is seen of the source in them. */
+#pragma once
+
+#include "mesh/mesh.hpp"
+
+#include <limits>
+
+namespace gtx {
+
+constexpr uint32_t NO_HIT = 0xffffffffu;
+
+/* The box and sphere of a mesh that fix the scale of its measures. */
+struct Extent {
+    Vec3d centre;                /* of the bounding box */
+    double radius = 0;           /* from there to the farthest vertex */
+    double diagonal = 0;         /* of the bounding box */
+};
+Extent extent_of(const Mesh &mesh);
+
+/* An orthographic camera. Depth is the distance from the image plane, which lies two radii from
+ * the centre, so that all of an asset is in front of it. */
+struct View {
+    Vec3d toward, right, up;     /* unit vectors; `toward` points to the eye */
+    Vec3d middle;                /* of the image plane */
+    double pixel = 1;            /* its side */
+    uint32_t size = 0;           /* pixels along a side of the image */
+
+    /* The centre of a pixel on the image plane; rows go down. */
+    Vec3d at(uint32_t i, uint32_t j) const
+    {
+        return middle + right * ((i + 0.5 - 0.5 * size) * pixel) +
+               up * ((0.5 * size - j - 0.5) * pixel);
+    }
+    /* Pixel coordinates and depth of a point. */
+    Vec3d project(const Vec3d &p) const
+    {
+        Vec3d d = p - middle;
+        return {0.5 * size + dot(d, right) / pixel, 0.5 * size - dot(d, up) / pixel,
+                -dot(d, toward)};
+    }
+};
+
+/* The 26 directions (normalised non-zero {-1, 0, 1}^3, x fastest), up +Y, or +Z when parallel; the
+ * sphere of the extent is inscribed in 96 % of size x size pixels. */
+std::vector<View> comparison_views(const Extent &extent, uint32_t size);
+
+/* The nearest fragment at every pixel centre. */
+struct MeshImage {
+    std::vector<float> depth;       /* infinity where nothing is */
+    std::vector<uint32_t> triangle; /* NO_HIT where nothing is */
+    std::vector<uint8_t> front;     /* 1: seen from the front, or two-sided */
+};
+MeshImage rasterise(const Mesh &mesh, const View &view);
+
+/* Normal (unit, towards the eye's side) and colour of the source where pixel (i, j) shows it. */
+struct Fragment {
+    Vec3d normal;
+    double color[3];             /* sRGB, 0..255 */
+};
+Fragment fragment_at(const Mesh &mesh, const View &view, const MeshImage &image, uint32_t i,
+                     uint32_t j);
+
+} // namespace gtx

@@ -1,0 +1,174 @@
+/* Models on the CPU's side: everything the GPU needs, derived from an asset without OpenGL. */
+#include "render/renderer.h"
+
+#include "base/alloc.h"
+#include "base/error.h"
+
+#include <string.h>
+
+enum {
+    RECORD_TEXELS = 8,        /* of a patch, as gtx_sheet_of reads them */
+    RECORDS_A_ROW = 256
+};
+
+/* How far, in texels and codes, hulls stand off the sheet: rounding in the rasteriser must not cut
+ * the sheet's rim, and a flat sheet must not lie in a face. */
+static const float hull_margin = 0.25f;
+
+/* Adds a level of `unit` and its memory; NULL when there is none. */
+static uint8_t *add_level(gtx_model *model, uint32_t unit, uint32_t level, uint32_t width,
+                          uint32_t height, uint32_t layers, uint32_t texel_size)
+{
+    gtx_level *l = &model->levels[model->level_count++];
+    *l = (gtx_level){unit, level, width, height, layers, texel_size, 0, NULL};
+    l->data = gtx_alloc_array(&model->allocator, (size_t)width * height * layers, texel_size);
+    uint64_t *size = unit == UNIT_COLORS ? &model->size.color : &model->size.geometry;
+    *size += (uint64_t)width * height * layers * texel_size;
+    return l->data;
+}
+
+static bool copy_levels(gtx_model *model, const gtx_asset *asset, gtx_map map, uint32_t unit,
+                        uint32_t count, uint32_t texel_size)
+{
+    for (uint32_t k = 0; k < count; ++k) {
+        size_t size;
+        const void *texels = gtx_map_data(asset, map, k, &size);
+        uint8_t *copy = add_level(model, unit, k, asset->info.page_width >> k,
+                                  asset->info.page_height >> k, asset->info.page_count, texel_size);
+        if (!copy)
+            return false;
+        memcpy(copy, texels, size);
+    }
+    return true;
+}
+
+static bool derive_cells(gtx_model *model, const gtx_asset *asset)
+{
+    const gtx_info *info = &asset->info;
+    const uint32_t cell_size = 4 * info->height_bits / 8;
+    uint8_t *cells = add_level(model, UNIT_CELLS, 0, info->page_width, info->page_height,
+                               info->page_count, cell_size);
+    for (uint32_t page = 0; cells && page < info->page_count; ++page)
+        gtx_derive_cells(asset, page, cells + page * gtx_page_texels(asset, 0) * cell_size);
+    return cells != NULL;
+}
+
+/* Rows of the inverse of grid -> object, whose columns are `axis` and `origin`. */
+static void invert(double axis[3][3], const double origin[3], double rows[3][4])
+{
+    double cross[3][3], det = 0;
+    for (int r = 0; r < 3; ++r)
+        for (int k = 0; k < 3; ++k) {
+            const double *a = axis[(r + 1) % 3], *b = axis[(r + 2) % 3];
+            cross[r][k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+        }
+    for (int k = 0; k < 3; ++k)
+        det += axis[0][k] * cross[0][k];
+    for (int r = 0; r < 3; ++r) {
+        rows[r][3] = 0;
+        for (int k = 0; k < 3; ++k) {
+            rows[r][k] = cross[r][k] / det;
+            rows[r][3] -= rows[r][k] * origin[k];
+        }
+    }
+}
+
+/* The eight texels of a patch's record, as geotex_sheet.glsl reads them. */
+static void fill_record(float record[RECORD_TEXELS][4], const gtx_patch *patch, uint32_t height_bits,
+                        float low, float high)
+{
+    const float *unit[3] = {patch->axis_x, patch->axis_y, patch->axis_z};
+    const double step[3] = {(double)patch->extent_x / patch->rect[2],
+                            (double)patch->extent_y / patch->rect[3],
+                            patch->extent_z / (height_bits == 8 ? 254.0 : 65534.0)};
+    double axis[3][3], origin[3], rows[3][4];
+    for (int k = 0; k < 3; ++k) {
+        for (int a = 0; a < 3; ++a)
+            axis[a][k] = step[a] * unit[a][k];
+        /* Texel 0 lies half a texel inside the rectangle, and height 0 has code 1. */
+        origin[k] = patch->origin[k] + 0.5 * axis[0][k] + 0.5 * axis[1][k] - axis[2][k];
+    }
+    invert(axis, origin, rows);
+    for (int k = 0; k < 4; ++k)
+        for (int r = 0; r < 3; ++r)
+            record[r][k] = (float)rows[r][k];
+    for (int k = 0; k < 3; ++k) {
+        record[3][k] = (float)origin[k];
+        for (int a = 0; a < 3; ++a)
+            record[4 + a][k] = (float)axis[a][k];
+    }
+    record[3][3] = low;
+    record[4][3] = high;
+    record[5][3] = (float)patch->page;
+    record[6][3] = patch->flags & GTX_PATCH_TWO_SIDED ? 1.0f : 0.0f;
+    for (int k = 0; k < 4; ++k)
+        record[7][k] = patch->rect[k];
+}
+
+static bool fill_records(gtx_model *model, const gtx_asset *asset)
+{
+    const gtx_proxies *proxies = &model->proxies;
+    const uint32_t rows = (model->patch_count + RECORDS_A_ROW - 1) / RECORDS_A_ROW;
+    float(*records)[RECORD_TEXELS][4] = (float(*)[RECORD_TEXELS][4])(void *)add_level(
+        model, UNIT_PATCHES, 0, RECORD_TEXELS * RECORDS_A_ROW, rows, 1, 4 * sizeof(float));
+    for (uint32_t i = 0; records && i < model->patch_count; ++i) {
+        float low = 0, high = 0;
+        for (uint32_t k = proxies->first_index[i]; k < proxies->first_index[i + 1]; ++k) {
+            const float z = proxies->vertices[proxies->indices[k]].z;
+            low = k == proxies->first_index[i] || z < low ? z : low;
+            high = k == proxies->first_index[i] || z > high ? z : high;
+        }
+        fill_record(records[i], &asset->patches[i], model->height_bits, low, high);
+    }
+    return records != NULL;
+}
+
+gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *allocator,
+                             gtx_model **out, gtx_error *error)
+{
+    if (!asset || !out)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "a model needs an asset");
+    *out = NULL;
+    const gtx_allocator hooks = gtx_allocator_or_default(allocator);
+    gtx_model *model = gtx_alloc_array(&hooks, 1, sizeof *model);
+    if (!model)
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a model");
+    model->allocator = hooks;
+    model->height_bits = asset->info.height_bits;
+    model->mip_count = asset->info.mip_count;
+    model->patch_count = asset->info.patch_count;
+    model->has_color = asset->info.has_color;
+    gtx_result result = gtx_derive_boxes(asset, hull_margin, &hooks, &model->proxies, error);
+    if (!result && !(derive_cells(model, asset) && fill_records(model, asset) &&
+                     copy_levels(model, asset, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
+                     copy_levels(model, asset, GTX_MAP_NORMAL, UNIT_NORMALS, model->mip_count, 2) &&
+                     (!model->has_color ||
+                      copy_levels(model, asset, GTX_MAP_COLOR, UNIT_COLORS, model->mip_count, 4))))
+        result = gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's maps");
+    if (result) {
+        gtx_model_free_staging(model);
+        gtx_free_array(&hooks, model, 1, sizeof *model);
+        return result;
+    }
+    model->index_count = model->proxies.index_count;
+    model->size.geometry += (uint64_t)model->index_count * sizeof *model->proxies.indices +
+                            (uint64_t)model->proxies.vertex_count * sizeof *model->proxies.vertices;
+    *out = model;
+    return GTX_OK;
+}
+
+void gtx_model_free_staging(gtx_model *model)
+{
+    for (uint32_t i = 0; i < model->level_count; ++i) {
+        gtx_level *l = &model->levels[i];
+        gtx_free_array(&model->allocator, l->data, (size_t)l->width * l->height * l->layers,
+                       l->texel_size);
+        l->data = NULL;
+    }
+    gtx_proxies_free(&model->proxies, &model->allocator);
+}
+
+gtx_model_size gtx_model_gpu_size(const gtx_model *model)
+{
+    return model ? model->size : (gtx_model_size){0, 0};
+}

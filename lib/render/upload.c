@@ -1,0 +1,201 @@
+/* Models on the GPU's side: textures and buffers, uploaded in slices of rows. */
+#include "render/renderer.h"
+
+#include "base/alloc.h"
+#include "base/error.h"
+
+/* How the texture of a unit is stored and read. */
+typedef struct texture_kind {
+    gl_enum target, inner, format, type, min_filter, mag_filter;
+} texture_kind;
+
+static texture_kind kind_of(const gtx_model *model, uint32_t unit)
+{
+    static const texture_kind kinds[UNIT_COUNT] = {
+        [UNIT_CELLS] = {GL_TEXTURE_2D_ARRAY, GL_RGBA8UI, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE,
+                        GL_NEAREST, GL_NEAREST},
+        [UNIT_TRIM] = {GL_TEXTURE_2D_ARRAY, GL_R8, GL_RED, GL_UNSIGNED_BYTE, GL_NEAREST, GL_NEAREST},
+        [UNIT_NORMALS] = {GL_TEXTURE_2D_ARRAY, GL_RG8, GL_RG, GL_UNSIGNED_BYTE,
+                          GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR},
+        [UNIT_COLORS] = {GL_TEXTURE_2D_ARRAY, GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE,
+                         GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR},
+        [UNIT_PATCHES] = {GL_TEXTURE_2D, GL_RGBA32F, GL_RGBA, GL_FLOAT, GL_NEAREST, GL_NEAREST},
+    };
+    texture_kind kind = kinds[unit];
+    if (unit == UNIT_CELLS && model->height_bits == 16) {
+        kind.inner = GL_RGBA16UI;
+        kind.type = GL_UNSIGNED_SHORT;
+    }
+    return kind;
+}
+
+static gtx_result check_limits(const gtx_gl *gl, const gtx_model *model, gtx_error *error)
+{
+    gl_int side = 0, layers = 0;
+    gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
+    gl->GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &layers);
+    for (uint32_t i = 0; i < model->level_count; ++i) {
+        const gtx_level *l = &model->levels[i];
+        if (l->width > (uint32_t)side || l->height > (uint32_t)side || l->layers > (uint32_t)layers)
+            return gtx_fail(error, GTX_ERROR_LIMIT,
+                            "a texture of %u x %u x %u is beyond this GPU's %d x %d x %d", l->width,
+                            l->height, l->layers, side, side, layers);
+    }
+    return GTX_OK;
+}
+
+static void allocate_textures(const gtx_gl *gl, gtx_model *model)
+{
+    for (uint32_t i = 0; i < model->level_count; ++i) {
+        const gtx_level *l = &model->levels[i];
+        const texture_kind kind = kind_of(model, l->unit);
+        if (!model->textures[l->unit])
+            gl->GenTextures(1, &model->textures[l->unit]);
+        gl->BindTexture(kind.target, model->textures[l->unit]);
+        if (kind.target == GL_TEXTURE_2D)
+            gl->TexImage2D(kind.target, (gl_int)l->level, (gl_int)kind.inner, (gl_size)l->width,
+                           (gl_size)l->height, 0, kind.format, kind.type, NULL);
+        else
+            gl->TexImage3D(kind.target, (gl_int)l->level, (gl_int)kind.inner, (gl_size)l->width,
+                           (gl_size)l->height, (gl_size)l->layers, 0, kind.format, kind.type, NULL);
+        gl->TexParameteri(kind.target, GL_TEXTURE_BASE_LEVEL, 0);
+        gl->TexParameteri(kind.target, GL_TEXTURE_MAX_LEVEL, (gl_int)l->level);
+        gl->TexParameteri(kind.target, GL_TEXTURE_MIN_FILTER, (gl_int)kind.min_filter);
+        gl->TexParameteri(kind.target, GL_TEXTURE_MAG_FILTER, (gl_int)kind.mag_filter);
+        gl->TexParameteri(kind.target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+        gl->TexParameteri(kind.target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    }
+}
+
+/* Both buffers go through the array target: the element target belongs to the host's vertex array. */
+static void upload_buffers(const gtx_gl *gl, gtx_model *model)
+{
+    const gtx_proxies *p = &model->proxies;
+    gl->GenBuffers(1, &model->vertices);
+    gl->GenBuffers(1, &model->indices);
+    gl->BindBuffer(GL_ARRAY_BUFFER, model->vertices);
+    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(p->vertex_count * sizeof *p->vertices),
+                   p->vertices, GL_STATIC_DRAW);
+    gl->BindBuffer(GL_ARRAY_BUFFER, model->indices);
+    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(p->index_count * sizeof *p->indices), p->indices,
+                   GL_STATIC_DRAW);
+    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+}
+
+static void default_unpacking(const gtx_gl *gl)
+{
+    static const gl_enum zero[] = {GL_UNPACK_SWAP_BYTES,  GL_UNPACK_LSB_FIRST,
+                                   GL_UNPACK_ROW_LENGTH,  GL_UNPACK_SKIP_ROWS,
+                                   GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_IMAGES,
+                                   GL_UNPACK_IMAGE_HEIGHT};
+    for (size_t i = 0; i < sizeof zero / sizeof *zero; ++i)
+        gl->PixelStorei(zero[i], 0);
+    gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+}
+
+/* Uploads rows of a level until it is done or `*budget` bytes are used up; always at least one. */
+static void upload_rows(const gtx_gl *gl, gtx_model *model, gtx_level *l, uint64_t *budget)
+{
+    const texture_kind kind = kind_of(model, l->unit);
+    const uint64_t row_size = (uint64_t)l->width * l->texel_size;
+    gl->BindTexture(kind.target, model->textures[l->unit]);
+    do {
+        const uint32_t layer = l->next_row / l->height, y = l->next_row % l->height;
+        const uint64_t affordable = *budget / row_size;
+        uint32_t rows = l->height - y;
+        if (rows > affordable)
+            rows = affordable ? (uint32_t)affordable : 1;
+        const uint8_t *data = l->data + l->next_row * row_size;
+        if (kind.target == GL_TEXTURE_2D)
+            gl->TexSubImage2D(kind.target, (gl_int)l->level, 0, (gl_int)y, (gl_size)l->width,
+                              (gl_size)rows, kind.format, kind.type, data);
+        else
+            gl->TexSubImage3D(kind.target, (gl_int)l->level, 0, (gl_int)y, (gl_int)layer,
+                              (gl_size)l->width, (gl_size)rows, 1, kind.format, kind.type, data);
+        l->next_row += rows;
+        *budget -= rows * row_size < *budget ? rows * row_size : *budget;
+    } while (l->next_row < l->height * l->layers && *budget > 0);
+    gl->BindTexture(kind.target, 0);
+}
+
+static gtx_result check_memory(const gtx_gl *gl, gtx_error *error)
+{
+    for (int i = 0; i < 16; ++i) { /* a lost context reports errors for ever */
+        const gl_enum code = gl->GetError();
+        if (code == GL_OUT_OF_MEMORY)
+            return gtx_fail(error, GTX_ERROR_GL, "out of GPU memory");
+        if (!code)
+            break;
+    }
+    return GTX_OK;
+}
+
+gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t max_bytes,
+                            uint32_t *done, gtx_error *error)
+{
+    if (!renderer || !model)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "an upload needs a renderer and a model");
+    const gtx_gl *gl = &renderer->gl;
+    uint64_t budget = max_bytes ? max_bytes : UINT64_MAX;
+    if (done)
+        *done = model->ready;
+    if (model->ready)
+        return GTX_OK;
+    gl->ActiveTexture(GL_TEXTURE0);
+    default_unpacking(gl);
+    if (!model->vertices) {
+        gtx_result result = check_limits(gl, model, error);
+        if (result)
+            return result;
+        allocate_textures(gl, model);
+        upload_buffers(gl, model);
+    }
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    for (uint32_t i = 0; i < model->level_count && budget > 0; ++i)
+        if (model->levels[i].next_row < model->levels[i].height * model->levels[i].layers)
+            upload_rows(gl, model, &model->levels[i], &budget);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    gl->BindTexture(GL_TEXTURE_2D, 0);
+    gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+    gtx_result result = check_memory(gl, error);
+    if (result)
+        return result;
+    model->ready = true;
+    for (uint32_t i = 0; i < model->level_count; ++i)
+        model->ready &= model->levels[i].next_row == model->levels[i].height * model->levels[i].layers;
+    if (model->ready)
+        gtx_model_free_staging(model);
+    if (done)
+        *done = model->ready;
+    return GTX_OK;
+}
+
+gtx_result gtx_model_create(gtx_renderer *renderer, const gtx_asset *asset, gtx_model **out,
+                            gtx_error *error)
+{
+    if (!renderer)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "a model needs a renderer");
+    gtx_result result = gtx_model_prepare(asset, &renderer->allocator, out, error);
+    if (result)
+        return result;
+    result = gtx_model_upload(renderer, *out, 0, NULL, error);
+    if (result) {
+        gtx_model_destroy(renderer, *out);
+        *out = NULL;
+    }
+    return result;
+}
+
+void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model)
+{
+    if (!model)
+        return;
+    if (renderer && model->vertices) {
+        renderer->gl.DeleteTextures(UNIT_COUNT, model->textures);
+        renderer->gl.DeleteBuffers(1, &model->vertices);
+        renderer->gl.DeleteBuffers(1, &model->indices);
+    }
+    gtx_model_free_staging(model);
+    const gtx_allocator hooks = model->allocator;
+    gtx_free_array(&hooks, model, 1, sizeof *model);
+}

@@ -1,0 +1,336 @@
+/* One bad file for every rule: exactly that rule is named, at the right byte, and opening refuses.
+ *
+ *   test_bad --write   makes tests/golden/bad anew from tests/golden/good */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "asset/check.h"
+#include "asset/codec.h"
+#include "asset/golden.h"
+
+#include <inttypes.h>
+
+/* Offsets in the golden files with four sections. */
+enum { ENTRY = 192, HGHT = ENTRY + 64, TRIM = ENTRY + 128, NRML = ENTRY + 192, RECORD = 448 };
+
+typedef enum rehash {
+    NOTHING, HEADER, CONTENT, SECTIONS
+} rehash;
+
+/* Writes `width` bytes of `value` at `offset`; `edit` does what one number cannot. */
+typedef struct bad {
+    uint32_t rule;
+    const char *name, *base;
+    uint32_t offset, width;
+    uint64_t value;
+    rehash rehash;
+    uint64_t reported;            /* offset that must be reported */
+    void (*edit)(bytes *file);
+} bad;
+
+static void resize(bytes *file, size_t size)
+{
+    uint8_t *data = need(calloc(size, 1));
+    memcpy(data, file->data, size < file->size ? size : file->size);
+    free(file->data);
+    *file = (bytes){data, size};
+}
+
+static void truncate_file(bytes *file)
+{
+    resize(file, file->size - 1);
+}
+
+static void append_block(bytes *file)
+{
+    resize(file, file->size + 64);
+}
+
+static void append_counted_block(bytes *file)
+{
+    append_block(file);
+    gtx_store_u64(file->data + 32, file->size);
+}
+
+/* HGHT and TRIM of `minimal` have one size: everything but their offsets changes place. */
+static void swap_sections(bytes *file)
+{
+    uint8_t entry[64], *a = file->data + HGHT, *b = file->data + TRIM;
+    memcpy(entry, a, 64);
+    memcpy(a, b, 64);
+    memcpy(b, entry, 64);
+    memcpy(b + 16, a + 16, 8);
+    memcpy(a + 16, entry + 16, 8);
+    uint8_t *from = file->data + gtx_load_u64(a + 16), *to = file->data + gtx_load_u64(b + 16);
+    for (int i = 0; i < 64; ++i) {
+        uint8_t byte = from[i];
+        from[i] = to[i];
+        to[i] = byte;
+    }
+}
+
+static void rename_normals(bytes *file)
+{
+    memcpy(file->data + NRML, "XTRA", 4);
+    gtx_store_u32(file->data + NRML + 4, 0);
+    gtx_store_u32(file->data + NRML + 12, 0);
+}
+
+static void dirty_last_byte(bytes *file)
+{
+    file->data[file->size - 1] = 1;
+}
+
+/* The frame of the second section of `zstd` loses its first byte. */
+static void break_frame(bytes *file)
+{
+    file->data[gtx_load_u64(file->data + HGHT + 16)] ^= 1;
+}
+
+static const bad bads[] = {
+    {100, "identifier", "minimal", 1, 1, 'X', NOTHING, 0, NULL},
+    {101, "version", "minimal", 14, 2, 2, HEADER, 12, NULL},
+    {102, "header-size", "minimal", 16, 4, 256, HEADER, 16, NULL},
+    {103, "must-flags", "minimal", 20, 4, 1, HEADER, 20, NULL},
+    {104, "section-count", "minimal", 28, 4, 3, HEADER, 28, NULL},
+    {105, "file-size", "minimal", 0, 0, 0, NOTHING, 32, append_block},
+    {106, "table-offset", "minimal", 40, 8, 256, HEADER, 40, NULL},
+    {107, "table-stride", "minimal", 48, 4, 72, HEADER, 48, NULL},
+    {108, "patch-count", "minimal", 52, 4, 0, HEADER, 52, NULL},
+    {109, "page-count", "minimal", 56, 4, 2049, HEADER, 56, NULL},
+    {110, "page-size", "color", 60, 4, 18, HEADER, 60, NULL},
+    {111, "mip-count", "minimal", 68, 4, 33, HEADER, 68, NULL},
+    {112, "bounds", "minimal", 84, 4, 0xC0000000, HEADER, 84, NULL},        /* -2 */
+    {113, "unit", "minimal", 96, 4, 0, HEADER, 96, NULL},
+    {114, "header-reserved", "minimal", 150, 1, 1, HEADER, 150, NULL},
+    {115, "anchor", "minimal", 112, 8, 0x7FF0000000000000, HEADER, 112, NULL}, /* infinity */
+    {116, "content-hash", "minimal", 128, 8, 1, HEADER, 128, NULL},
+    {117, "header-hash", "minimal", 136, 1, 1, NOTHING, 184, NULL},
+    {118, "truncated", "minimal", 0, 0, 0, NOTHING, 32, truncate_file},
+    {200, "section-order", "minimal", 0, 0, 0, CONTENT, TRIM, swap_sections},
+    {201, "section-unknown", "unknown", ENTRY + 4 * 64 + 4, 4, 1, HEADER, ENTRY + 4 * 64, NULL},
+    {202, "section-flags", "minimal", HGHT + 4, 4, 0, HEADER, HGHT + 4, NULL},
+    {203, "section-level", "minimal", NRML + 8, 4, 1, HEADER, NRML + 8, NULL},
+    {204, "section-format", "minimal", HGHT + 12, 4, 9, HEADER, HGHT + 12, NULL},
+    {205, "section-offset", "minimal", HGHT + 16, 8, 640, HEADER, HGHT + 16, NULL},
+    {206, "section-range", "minimal", NRML + 16, 8, 0xFFFFFFFFFFFFFFC0, HEADER, NRML + 16, NULL},
+    {207, "section-size", "zstd", HGHT + 32, 8, 4095, HEADER, HGHT + 32, NULL},
+    {208, "section-scheme", "minimal", HGHT + 40, 4, 1, HEADER, HGHT + 40, NULL},
+    {209, "section-filter", "minimal", HGHT + 44, 4, 1, HEADER, HGHT + 44, NULL},
+    {210, "section-hash", "minimal", TRIM + 48, 8, 1, CONTENT, TRIM + 48, NULL},
+    {211, "section-reserved", "minimal", TRIM + 60, 4, 1, HEADER, TRIM + 56, NULL},
+    {212, "padding", "color", 0, 0, 0, NOTHING, 3711, dirty_last_byte},
+    {213, "section-zstd", "zstd", 0, 0, 0, NOTHING, 0, break_frame},
+    {214, "section-missing", "minimal", 0, 0, 0, CONTENT, ENTRY, rename_normals},
+    {215, "file-end", "minimal", 0, 0, 0, HEADER, 832, append_counted_block},
+    {300, "patch-finite", "minimal", RECORD, 4, 0x7FC00000, SECTIONS, RECORD, NULL}, /* NaN */
+    {301, "patch-extent", "minimal", RECORD + 44, 4, 0x38D1B717, SECTIONS, RECORD + 44, NULL},
+    {302, "patch-axis-unit", "minimal", RECORD + 16, 4, 0x3F8147AE, SECTIONS, RECORD + 16, NULL},
+    {303, "patch-handedness", "minimal", RECORD + 56, 4, 0xBF800000, SECTIONS, RECORD + 16, NULL},
+    {304, "patch-coverage", "minimal", RECORD + 60, 4, 0x3F000000, SECTIONS, RECORD + 60, NULL},
+    {305, "patch-page", "minimal", RECORD + 64, 4, 1, SECTIONS, RECORD + 64, NULL},
+    {306, "patch-rectangle", "minimal", RECORD + 68, 2, 1, SECTIONS, RECORD + 68, NULL},
+    {307, "patch-flags", "minimal", RECORD + 78, 2, 1, SECTIONS, RECORD + 78, NULL},
+    {308, "patch-sphere", "minimal", RECORD + 92, 4, 0x3E000000, SECTIONS, RECORD + 80, NULL},
+    {309, "patch-reserved", "minimal", RECORD + 124, 4, 1, SECTIONS, RECORD + 124, NULL},
+    {310, "patch-overlap", "two-pages", RECORD + 128 + 68, 2, 7, SECTIONS, RECORD + 128 + 68, NULL},
+    {311, "patch-bounds", "minimal", 84, 4, 0x3F000000, HEADER, RECORD, NULL},       /* 0.5 */
+    {400, "height-outside", "two-pages", 960 + 16 * 24 + 3, 1, 9, SECTIONS, 960 + 16 * 24 + 3, NULL},
+    {600, "meta", "color", 3648, 1, 0xFF, SECTIONS, 3648, NULL},
+};
+enum { BAD_COUNT = sizeof bads / sizeof bads[0] };
+
+static void path_of(const bad *b, char path[256])
+{
+    snprintf(path, 256, BAD "%u-%s.gtx", b->rule, b->name);
+}
+
+static bytes make_bad(const bad *b)
+{
+    bytes file = read_golden(b->base);
+    if (b->edit)
+        b->edit(&file);
+    for (uint32_t i = 0; i < b->width; ++i)
+        file.data[b->offset + i] = (uint8_t)(b->value >> 8 * i);
+    if (b->rehash == SECTIONS)
+        rehash_sections(file);
+    else if (b->rehash != NOTHING)
+        rehash_header(file, b->rehash == CONTENT);
+    return file;
+}
+
+static void test_bytes(void **state)
+{
+    (void)state;
+    for (int i = 0; i < BAD_COUNT; ++i) {
+        char path[256];
+        path_of(&bads[i], path);
+        bytes kept = read_file(path), made = make_bad(&bads[i]);
+        assert_non_null(kept.data);
+        assert_int_equal(kept.size, made.size);
+        assert_memory_equal(kept.data, made.data, kept.size);
+        free(kept.data);
+        free(made.data);
+    }
+}
+
+/* What validation said. */
+typedef struct hearing {
+    const bad *expected;
+    uint32_t issues, others;
+    uint64_t offset;
+} hearing;
+
+static void hear(const gtx_issue *issue, void *user)
+{
+    hearing *h = user;
+    if (h->issues++ == 0)
+        h->offset = issue->offset;
+    if (issue->rule != h->expected->rule || strcmp(issue->name, h->expected->name)) {
+        ++h->others;
+        print_error("%u-%s: also %u %s at %" PRIu64 ": %s\n", h->expected->rule,
+                    h->expected->name, issue->rule, issue->name, issue->offset, issue->message);
+    }
+    assert_true(issue->is_error);
+    assert_true(strlen(issue->message) > 10);
+}
+
+static bool needs_zstd(const bad *b)
+{
+    return !strcmp(b->base, "zstd");
+}
+
+static uint64_t reported_offset(const bad *b, bytes file)
+{
+    return b->edit == break_frame ? gtx_load_u64(file.data + HGHT + 16) : b->reported;
+}
+
+static void test_validate(void **state)
+{
+    (void)state;
+    for (int i = 0; i < BAD_COUNT; ++i) {
+        if (needs_zstd(&bads[i]) && !gtx_has_zstd())
+            continue;
+        bytes file = make_bad(&bads[i]);
+        hearing h = {.expected = &bads[i]};
+        gtx_error error = {0};
+        gtx_result result = gtx_validate(file.data, file.size, hear, &h, &error);
+        assert_int_not_equal(result, GTX_OK);
+        assert_int_equal(h.others, 0);
+        if (h.issues != 1 || h.offset != reported_offset(&bads[i], file))
+            print_error("%u-%s: %u issues, at %" PRIu64 "\n", bads[i].rule, bads[i].name, h.issues,
+                        h.offset);
+        assert_int_equal(h.issues, 1);
+        assert_int_equal(h.offset, reported_offset(&bads[i], file));
+        assert_int_equal(error.rule, bads[i].rule);
+        free(file.data);
+    }
+}
+
+static gtx_result result_of(uint32_t rule)
+{
+    switch (rule) {
+    case 100: return GTX_ERROR_NOT_GTX;
+    case 101: return GTX_ERROR_VERSION;
+    case 118: return GTX_ERROR_TRUNCATED;
+    case 103: case 201: return GTX_ERROR_UNSUPPORTED;
+    default: return GTX_ERROR_CORRUPT;
+    }
+}
+
+static void test_open(void **state)
+{
+    (void)state;
+    for (int i = 0; i < BAD_COUNT; ++i) {
+        if (needs_zstd(&bads[i]) && !gtx_has_zstd())
+            continue;
+        bytes file = make_bad(&bads[i]);
+        gtx_asset *asset = (gtx_asset *)&file;
+        gtx_error error = {0};
+        gtx_result result = gtx_open_memory(file.data, file.size, NULL, &asset, &error);
+        assert_int_equal(result, result_of(bads[i].rule));
+        assert_int_equal(error.result, result);
+        assert_int_equal(error.rule, bads[i].rule);
+        assert_int_equal(error.offset, reported_offset(&bads[i], file));
+        assert_null(asset);
+        free(file.data);
+    }
+}
+
+/* Every rule has its bad file. */
+static void test_complete(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t number;
+        const char *name;
+    } rules[] = {
+#define GTX_RULE(number, id, name, result, sentence) {number, name},
+#include "asset/rules.def"
+#undef GTX_RULE
+    };
+    assert_int_equal(BAD_COUNT, sizeof rules / sizeof rules[0]);
+    for (int i = 0; i < BAD_COUNT; ++i) {
+        assert_int_equal(bads[i].rule, rules[i].number);
+        assert_string_equal(bads[i].name, rules[i].name);
+    }
+}
+
+typedef struct several {
+    uint32_t rules[8], count;
+} several;
+
+static void list(const gtx_issue *issue, void *user)
+{
+    several *s = user;
+    assert_true(s->count < 8);
+    s->rules[s->count++] = issue->rule;
+}
+
+/* Validation goes on after a broken rule where it can. */
+static void test_several(void **state)
+{
+    (void)state;
+    bytes file = read_golden("two-pages");
+    gtx_store_u32(file.data + 96, 0);                       /* unit */
+    gtx_store_f32(file.data + RECORD + 60, 0.25f);          /* coverage of patch 0 */
+    file.data[RECORD + 128 + 78] = 2;                       /* flags of patch 1 */
+    rehash_sections(file);
+    several s = {0};
+    gtx_error error = {0};
+    assert_int_equal(gtx_validate(file.data, file.size, list, &s, &error), GTX_ERROR_CORRUPT);
+    assert_int_equal(error.rule, 113);
+    assert_int_equal(s.count, 3);
+    assert_int_equal(s.rules[0], 113);
+    assert_int_equal(s.rules[1], 307);
+    assert_int_equal(s.rules[2], 304);
+    assert_int_equal(gtx_validate(file.data, file.size, NULL, NULL, NULL), GTX_ERROR_CORRUPT);
+    free(file.data);
+}
+
+static int write_bads(void)
+{
+    for (int i = 0; i < BAD_COUNT; ++i) {
+        char path[256];
+        path_of(&bads[i], path);
+        bytes file = make_bad(&bads[i]);
+        write_file(path, file);
+        free(file.data);
+    }
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc > 1 && !strcmp(argv[1], "--write"))
+        return write_bads();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_complete), cmocka_unit_test(test_bytes),
+        cmocka_unit_test(test_validate), cmocka_unit_test(test_open),
+        cmocka_unit_test(test_several),
+    };
+    return cmocka_run_group_tests_name("bad", tests, NULL, NULL);
+}

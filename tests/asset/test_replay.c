@@ -1,0 +1,387 @@
+/* Broken bytes by the thousand: cut files, flipped bits, failing memory. The library and the
+ * decoder of the specification must agree on what is a file and what is not. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "asset/codec.h"
+#include "asset/golden.h"
+
+#define GTX_DECODE_NO_MAIN
+#ifndef GTX_ZSTD
+#define NO_ZSTD
+#endif
+#include "../../format/gtx_decode.c"
+
+/* ---- memory that counts and fails ---- */
+
+typedef struct meter {
+    size_t live, peak, blocks, calls, fail_at; /* fail_at: this call and later ones; 0 = never */
+} meter;
+
+static void *meter_alloc(size_t size, void *user)
+{
+    meter *m = user;
+    if (++m->calls >= m->fail_at && m->fail_at)
+        return NULL;
+    size_t *block = need(malloc(size + 16));
+    *block = size;
+    m->live += size;
+    m->peak = m->live > m->peak ? m->live : m->peak;
+    ++m->blocks;
+    return (char *)block + 16;
+}
+
+static void meter_free(void *memory, size_t size, void *user)
+{
+    meter *m = user;
+    size_t *block = (size_t *)((char *)memory - 16);
+    assert_int_equal(*block, size);
+    m->live -= size;
+    --m->blocks;
+    free(block);
+}
+
+static gtx_allocator hooks(meter *m)
+{
+    return (gtx_allocator){meter_alloc, meter_free, m};
+}
+
+/* ---- library and decoder on the same bytes ---- */
+
+/* Opens a copy of exactly `size` bytes, so that a step too far is caught. */
+static gtx_result open_copy(bytes file, gtx_asset **out, gtx_error *error)
+{
+    uint8_t *copy = need(malloc(file.size ? file.size : 1));
+    memcpy(copy, file.data, file.size);
+    gtx_result result = gtx_open_memory(copy, file.size, NULL, out, error);
+    gtx_result verdict = gtx_validate(copy, file.size, NULL, NULL, NULL);
+    assert_int_equal(result, verdict);
+    free(copy);
+    return result;
+}
+
+static void assert_round_trip(const gtx_asset *asset)
+{
+    void *data, *again;
+    size_t size, again_size;
+    gtx_asset *copy;
+    assert_int_equal(gtx_encode(asset, NULL, &data, &size, NULL), GTX_OK);
+    assert_int_equal(gtx_open_memory(data, size, NULL, &copy, NULL), GTX_OK);
+    assert_int_equal(gtx_encode(copy, NULL, &again, &again_size, NULL), GTX_OK);
+    assert_int_equal(size, again_size);
+    assert_memory_equal(data, again, size);
+    gtx_close(copy);
+    free(data);
+    free(again);
+}
+
+/* Opens the bytes, compares with the decoder; true when they are a file. */
+static bool try_bytes(bytes file, gtx_error *error)
+{
+    static struct file decoded;
+    gtx_asset *asset = NULL;
+    gtx_result result = open_copy(file, &asset, error);
+    unsigned rule = decode(file.data, file.size, &decoded);
+    release(&decoded);
+    if (result == GTX_ERROR_MEMORY || result == GTX_ERROR_LIMIT || rule == NO_MEMORY)
+        return false; /* a matter of the machine */
+    if ((result == GTX_OK) != (rule == 0))
+        print_error("library: rule %u, %s; decoder: rule %u\n", error->rule,
+                    result ? error->message : "accepted", rule);
+    assert_int_equal(result == GTX_OK, rule == 0);
+    if (asset)
+        assert_round_trip(asset);
+    gtx_close(asset);
+    return result == GTX_OK;
+}
+
+static bool readable(const golden *g)
+{
+    return !g->zstd_level || gtx_has_zstd();
+}
+
+static void test_goldens_agree(void **state)
+{
+    (void)state;
+    for (int i = 0; i < GOLDEN_COUNT; ++i) {
+        if (!readable(&goldens[i]))
+            continue;
+        bytes file = read_golden(goldens[i].name);
+        static struct file decoded;
+        gtx_asset *asset;
+        assert_int_equal(gtx_open_memory(file.data, file.size, NULL, &asset, NULL), GTX_OK);
+        assert_int_equal(decode(file.data, file.size, &decoded), 0);
+        for (uint32_t s = 0; s < decoded.section_count; ++s) {
+            const struct section *section = &decoded.section[s];
+            if (!section->bytes)
+                continue;
+            gtx_section_kind kind = gtx_section_kind_of((const uint8_t *)section->type);
+            assert_memory_equal(section->bytes, gtx_asset_data(asset, kind, section->level),
+                                section->size);
+        }
+        release(&decoded);
+        gtx_close(asset);
+        free(file.data);
+    }
+}
+
+static void test_truncation(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"minimal", "unknown", "color"};
+    for (int i = 0; i < 3; ++i) {
+        bytes file = read_golden(names[i]);
+        for (size_t size = 0; size < file.size; ++size) {
+            gtx_error error = {0};
+            assert_false(try_bytes((bytes){file.data, size}, &error));
+            assert_int_equal(error.result, GTX_ERROR_TRUNCATED);
+        }
+        free(file.data);
+    }
+}
+
+typedef enum repair {
+    NO_REPAIR, REPAIR_HEADER, REPAIR_ALL
+} repair;
+
+/* Flips every bit of [from, to), repairs hashes, and returns how many results are files. */
+static uint32_t flip(const char *name, size_t from, size_t to, repair how)
+{
+    bytes file = read_golden(name);
+    uint8_t *original = need(malloc(file.size));
+    memcpy(original, file.data, file.size);
+    uint32_t accepted = 0;
+    for (size_t bit = 8 * from; bit < 8 * to && bit < 8 * file.size; ++bit) {
+        file.data[bit / 8] ^= (uint8_t)(1u << bit % 8);
+        if (how == REPAIR_HEADER && gtx_load_u32(file.data + 28) <= GTX_MAX_SECTIONS)
+            rehash_header(file, true);
+        else if (how == REPAIR_ALL)
+            rehash_sections(file);
+        gtx_error error = {0};
+        accepted += try_bytes(file, &error);
+        memcpy(file.data, original, file.size);
+    }
+    free(original);
+    free(file.data);
+    return accepted;
+}
+
+static size_t table_end(const char *name)
+{
+    bytes file = read_golden(name);
+    size_t end = GTX_HEADER_SIZE + (size_t)GTX_ENTRY_SIZE * gtx_load_u32(file.data + 28);
+    free(file.data);
+    return end;
+}
+
+/* Not one flipped bit of header, table or content goes unnoticed. */
+static void test_flips(void **state)
+{
+    (void)state;
+    assert_int_equal(flip("minimal", 0, SIZE_MAX / 8, NO_REPAIR), 0);
+    assert_int_equal(flip("color", 0, SIZE_MAX / 8, NO_REPAIR), 0);
+    assert_int_equal(flip("unknown", 0, table_end("unknown"), NO_REPAIR), 0);
+}
+
+/* With hashes made right again the other rules are on their own. Some bits are free: may_flags,
+ * the anchor, the unit, the number of source triangles... */
+static void test_repaired_flips(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"minimal", "two-pages", "unknown", "color", "zstd"};
+    for (int i = 0; i < (gtx_has_zstd() ? 5 : 4); ++i) {
+        uint32_t accepted = flip(names[i], 0, table_end(names[i]), REPAIR_HEADER);
+        assert_in_range(accepted, 100, 1000);
+    }
+}
+
+static void test_repaired_content(void **state)
+{
+    (void)state;
+    assert_in_range(flip("minimal", 448, 448 + 128 + 64, REPAIR_ALL), 100, 900);
+    assert_in_range(flip("two-pages", 448, 448 + 512, REPAIR_ALL), 500, 3000);
+    assert_in_range(flip("color", table_end("color"), SIZE_MAX / 8, REPAIR_ALL), 1000, 30000);
+}
+
+static void test_compressed_flips(void **state)
+{
+    (void)state;
+    if (!gtx_has_zstd())
+        skip();
+    assert_int_equal(flip("zstd", table_end("zstd"), SIZE_MAX / 8, NO_REPAIR), 0);
+}
+
+/* Bytes changed at random, several at once, with the hashes made right. */
+static void test_random_changes(void **state)
+{
+    (void)state;
+    uint64_t seed = 1;
+    for (uint32_t round = 0; round < 4000; ++round) {
+        bytes file = read_golden(goldens[round % GOLDEN_COUNT].name);
+        if (readable(&goldens[round % GOLDEN_COUNT])) {
+            size_t table = GTX_HEADER_SIZE + GTX_ENTRY_SIZE * gtx_load_u32(file.data + 28);
+            for (int i = 0; i < 3; ++i) {
+                seed = seed * 6364136223846793005u + 1442695040888963407u;
+                size_t at = 28 + (size_t)(seed >> 33) % (table - 28);
+                file.data[at] = (uint8_t)(seed >> 20);
+            }
+            if (gtx_load_u32(file.data + 28) <= GTX_MAX_SECTIONS)
+                rehash_header(file, true);
+            gtx_error error = {0};
+            try_bytes(file, &error);
+        }
+        free(file.data);
+    }
+}
+
+/* ---- memory ---- */
+
+typedef gtx_result (*attempt_fn)(const gtx_allocator *allocator, const void *user);
+
+/* Every allocation fails in turn: a clear result, and nothing is left. Returns the tries. */
+static size_t exhaust(attempt_fn attempt, const void *user)
+{
+    for (size_t fail_at = 1;; ++fail_at) {
+        meter m = {.fail_at = fail_at};
+        gtx_allocator allocator = hooks(&m);
+        gtx_result result = attempt(&allocator, user);
+        assert_int_equal(m.blocks, 0);
+        assert_int_equal(m.live, 0);
+        if (m.calls < fail_at) {
+            assert_int_equal(result, GTX_OK);
+            return fail_at;
+        }
+        assert_int_equal(result, GTX_ERROR_MEMORY);
+    }
+}
+
+static gtx_result attempt_open(const gtx_allocator *allocator, const void *user)
+{
+    const bytes *file = user;
+    gtx_open_desc desc = {.allocator = allocator};
+    gtx_asset *asset;
+    gtx_result result = gtx_open_memory(file->data, file->size, &desc, &asset, NULL);
+    assert_int_equal(!asset, result != GTX_OK);
+    gtx_close(asset);
+    return result;
+}
+
+static gtx_result attempt_open_file(const gtx_allocator *allocator, const void *user)
+{
+    gtx_open_desc desc = {.allocator = allocator};
+    gtx_asset *asset;
+    gtx_result result = gtx_open_file(user, &desc, &asset, NULL);
+    gtx_close(asset);
+    return result;
+}
+
+static gtx_result attempt_create(const gtx_allocator *allocator, const void *user)
+{
+    gtx_asset *asset = NULL;
+    gtx_result result = golden_create(user, allocator, &asset, NULL);
+    assert_int_equal(!asset, result != GTX_OK);
+    gtx_close(asset);
+    return result;
+}
+
+static gtx_result attempt_encode(const gtx_allocator *allocator, const void *user)
+{
+    const golden *g = user;
+    gtx_asset *asset;
+    assert_int_equal(golden_create(g, NULL, &asset, NULL), GTX_OK);
+    gtx_encode_desc desc = {.allocator = allocator, .zstd_level = g->zstd_level};
+    void *data = NULL;
+    size_t size = 0;
+    gtx_result result = gtx_encode(asset, &desc, &data, &size, NULL);
+    assert_int_equal(!data, result != GTX_OK);
+    if (data)
+        allocator->free(data, size, allocator->user);
+    gtx_close(asset);
+    return result;
+}
+
+static void test_memory_exhaustion(void **state)
+{
+    (void)state;
+    for (int i = 0; i < GOLDEN_COUNT; ++i) {
+        if (!readable(&goldens[i]))
+            continue;
+        bytes file = read_golden(goldens[i].name);
+        assert_true(exhaust(attempt_open, &file) >= 6);
+        assert_true(exhaust(attempt_create, &goldens[i]) >= 6);
+        assert_true(exhaust(attempt_encode, &goldens[i]) >= 2);
+        free(file.data);
+    }
+    exhaust(attempt_open_file, GOOD "color.gtx");
+}
+
+/* What opening takes is said before, and is all that it takes. */
+static void test_max_bytes(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"minimal", "color", "zstd", "zstd16"};
+    for (int i = 0; i < (gtx_has_zstd() ? 4 : 2); ++i) {
+        bytes file = read_golden(names[i]);
+        meter free_meter = {0};
+        gtx_allocator allocator = hooks(&free_meter);
+        assert_int_equal(attempt_open(&allocator, &file), GTX_OK);
+        gtx_open_desc desc = {.allocator = &allocator, .max_bytes = free_meter.peak};
+        gtx_asset *asset;
+        assert_int_equal(gtx_open_memory(file.data, file.size, &desc, &asset, NULL), GTX_OK);
+        gtx_close(asset);
+        for (desc.max_bytes = 1; desc.max_bytes < free_meter.peak;
+             desc.max_bytes += 1 + desc.max_bytes / 3) {
+            meter m = {0};
+            allocator = hooks(&m);
+            gtx_error error = {0};
+            assert_int_equal(gtx_open_memory(file.data, file.size, &desc, &asset, &error),
+                             GTX_ERROR_LIMIT);
+            assert_null(asset);
+            assert_int_equal(error.result, GTX_ERROR_LIMIT);
+            assert_int_equal(m.calls, 0);
+        }
+        free(file.data);
+    }
+}
+
+/* A file of a few kilobytes that claims pages of gigabytes is refused without trying. */
+static void test_bomb(void **state)
+{
+    (void)state;
+    if (!gtx_has_zstd())
+        skip();
+    bytes file = read_golden("zstd");
+    gtx_store_u32(file.data + 60, 16384);
+    gtx_store_u32(file.data + 64, 16384);
+    uint32_t count = gtx_load_u32(file.data + 28);
+    for (uint32_t i = 0; i < count; ++i) {
+        uint8_t *entry = file.data + GTX_HEADER_SIZE + GTX_ENTRY_SIZE * i;
+        if (gtx_section_is_image(gtx_section_kind_of(entry)))
+            gtx_store_u64(entry + 32, gtx_load_u64(entry + 32) * 65536);
+    }
+    rehash_header(file, true);
+    meter m = {0};
+    gtx_allocator allocator = hooks(&m);
+    gtx_open_desc desc = {.allocator = &allocator};
+    gtx_asset *asset;
+    gtx_error error = {0};
+    assert_int_equal(gtx_open_memory(file.data, file.size, &desc, &asset, &error),
+                     GTX_ERROR_CORRUPT);
+    assert_int_equal(m.calls, 0);
+    free(file.data);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_goldens_agree),     cmocka_unit_test(test_truncation),
+        cmocka_unit_test(test_flips),             cmocka_unit_test(test_repaired_flips),
+        cmocka_unit_test(test_repaired_content),  cmocka_unit_test(test_compressed_flips),
+        cmocka_unit_test(test_random_changes),    cmocka_unit_test(test_memory_exhaustion),
+        cmocka_unit_test(test_max_bytes),         cmocka_unit_test(test_bomb),
+    };
+    return cmocka_run_group_tests_name("replay", tests, NULL, NULL);
+}

@@ -1,0 +1,215 @@
+/* Seams: rays at points all over a surface must be stopped by the patches baked from it. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+extern "C" {
+#include <cmocka.h>
+}
+
+#include "bake/shapes.hpp"
+
+#include <random>
+
+using namespace gtx;
+
+struct Shot {
+    gtx_ray ray;
+    float target; /* t of the source point aimed at */
+};
+
+/* Rays at points spread evenly over the triangles, from directions that see their front. */
+static std::vector<Shot> aim(const Mesh &mesh, const double anchor[3], size_t count)
+{
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> unit(0, 1);
+    std::vector<Shot> shots;
+    while (shots.size() < count) {
+        size_t t = random() % mesh.triangle_count();
+        double a = unit(random), b = unit(random);
+        if (a + b > 1) {
+            a = 1 - a;
+            b = 1 - b;
+        }
+        Vec3d p = mesh.position(t, 0) * (1 - a - b) + mesh.position(t, 1) * a +
+                  mesh.position(t, 2) * b;
+        Vec3d d(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5);
+        if (length(d) > 0.5 || length(d) < 1e-3)
+            continue;
+        d = normalize(d);
+        if (dot(d, normalize(mesh.area_vector(t))) > -0.15)
+            continue;
+        Vec3d from = p - d * 3. - Vec3d(anchor[0], anchor[1], anchor[2]);
+        Shot shot = {};
+        for (int k = 0; k < 3; ++k) {
+            shot.ray.origin[k] = float(from[k]);
+            shot.ray.direction[k] = float(d[k]);
+        }
+        shot.target = 3;
+        shots.push_back(shot);
+    }
+    return shots;
+}
+
+/* Whether a ray meets the mesh, and its front first. */
+static bool sees_front(const Mesh &mesh, const Vec3d &from, const Vec3d &d)
+{
+    double nearest = 1e300;
+    bool front = false;
+    for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+        Vec3d e = mesh.position(t, 1) - mesh.position(t, 0);
+        Vec3d f = mesh.position(t, 2) - mesh.position(t, 0), to = from - mesh.position(t, 0);
+        Vec3d n = cross(e, f), q = cross(to, d);
+        double det = -dot(n, d), u = -dot(f, q) / det, v = dot(e, q) / det, at = dot(n, to) / det;
+        if (det != 0 && u >= 0 && v >= 0 && u + v <= 1 && at > 0 && at < nearest) {
+            nearest = at;
+            front = det > 0;
+        }
+    }
+    return front;
+}
+
+/* Whether the source goes on around a ray. Past a silhouette a ray may slip by what sampling
+ * rounds off; that is no crack. */
+static bool in_surface(const Mesh &mesh, const double anchor[3], const gtx_ray &ray, double pitch)
+{
+    Vec3d from, d;
+    for (int k = 0; k < 3; ++k) {
+        from[k] = ray.origin[k] + anchor[k];
+        d[k] = ray.direction[k];
+    }
+    Vec3d x = normalize(cross(d, std::fabs(d.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)));
+    Vec3d y = cross(d, x);
+    for (int i = 0; i < 8; ++i) {
+        double turn = i * M_PI / 4;
+        Vec3d aside = (x * std::cos(turn) + y * std::sin(turn)) * pitch;
+        if (!sees_front(mesh, from + aside, d))
+            return false;
+    }
+    return true;
+}
+
+/* Rays that pass where the surface is: nothing hit, or only something behind it. */
+static size_t holes(const Mesh &mesh, const Partition &partition, size_t count,
+                    BakeOptions options = {})
+{
+    Task task(2, nullptr, nullptr, {"bake", "pack"});
+    Maps maps = bake(mesh, partition, options, task);
+    std::vector<const uint8_t *> levels;
+    gtx_asset_desc desc = shapes::describe(maps, levels);
+    gtx_asset *asset = nullptr;
+    gtx_error error = {};
+    if (gtx_create(&desc, &asset, &error))
+        fail_msg("%s (rule %u)", error.message, error.rule);
+    gtx_caster *caster = nullptr;
+    assert_int_equal(gtx_caster_create(asset, nullptr, &caster, &error), GTX_OK);
+
+    std::vector<Shot> shots = aim(mesh, maps.anchor, count);
+    std::vector<gtx_ray> rays;
+    for (const Shot &shot : shots)
+        rays.push_back(shot.ray);
+    std::vector<gtx_hit> hits(rays.size());
+    assert_int_equal(gtx_raycast(caster, rays.data(), hits.data(), rays.size(), 0), GTX_OK);
+    size_t found = 0;
+    for (size_t i = 0; i < hits.size(); ++i)
+        if (!(hits[i].t < shots[i].target + 8 * partition.pitch))
+            found += in_surface(mesh, maps.anchor, rays[i], partition.pitch);
+    gtx_caster_destroy(caster);
+    gtx_close(asset);
+    print_message("# %zu patches, %zu rays, %zu holes\n", maps.patches.size(), rays.size(), found);
+    return found;
+}
+
+/* Ragged charts: each triangle goes to the nearest of `count` scattered seeds whose normal agrees. */
+static std::function<int(size_t)> scattered(const Mesh &mesh, int count)
+{
+    std::mt19937 random(5);
+    std::vector<size_t> seeds;
+    for (int i = 0; i < count; ++i)
+        seeds.push_back(random() % mesh.triangle_count());
+    auto centre = [&mesh](size_t t) {
+        return (mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) * (1 / 3.);
+    };
+    return [=, &mesh](size_t t) {
+        int best = 0;
+        double least = 1e300;
+        for (int i = 0; i < count; ++i) {
+            Vec3d d = centre(t) - centre(seeds[i]);
+            double bend = 1 - dot(normalize(mesh.area_vector(t)),
+                                  normalize(mesh.area_vector(seeds[i])));
+            double cost = dot(d, d) + bend * bend;
+            if (cost < least) {
+                least = cost;
+                best = i;
+            }
+        }
+        return best;
+    };
+}
+
+static void a_bumpy_ball_of_six_patches(void **)
+{
+    Mesh mesh = shapes::ball(64, shapes::bumps);
+    for (double resolution : {32., 96., 200.})
+        assert_int_equal(holes(mesh, shapes::split(mesh, shapes::by_axis(mesh), resolution), 100000),
+                         0);
+}
+
+static void a_ball_of_ragged_patches(void **)
+{
+    Mesh mesh = shapes::ball(64, shapes::bumps);
+    for (int count : {20, 60, 200})
+        assert_int_equal(holes(mesh, shapes::split(mesh, scattered(mesh, count), 64), 100000), 0);
+}
+
+static void a_coarse_ball_with_long_triangles(void **)
+{
+    Mesh mesh = shapes::ball(6, shapes::bumps);
+    assert_int_equal(holes(mesh, shapes::split(mesh, scattered(mesh, 16), 64), 100000), 0);
+}
+
+static void a_torus_of_ragged_patches(void **)
+{
+    Mesh mesh = shapes::sheet(
+        96,
+        [](double u, double v) {
+            double a = 2 * M_PI * u, b = 2 * M_PI * v, r = 0.35 + 0.03 * std::sin(5 * a + 3 * b);
+            double ring = 1 + r * std::cos(b);
+            return Vec3d(ring * std::cos(a), ring * std::sin(a), r * std::sin(b));
+        },
+        true);
+    for (int count : {40, 120})
+        assert_int_equal(holes(mesh, shapes::split(mesh, scattered(mesh, count), 64), 100000), 0);
+}
+
+static void a_cube_closes_at_its_edges(void **)
+{
+    Mesh mesh = shapes::ball(8, [](const Vec3d &d) {
+        return 1 / std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
+    });
+    for (double resolution : {20., 64.})
+        assert_int_equal(holes(mesh, shapes::split(mesh, shapes::by_axis(mesh), resolution), 100000),
+                         0);
+}
+
+static void an_open_sheet_is_whole_up_to_its_border(void **)
+{
+    Mesh mesh = shapes::sheet(40, [](double u, double v) {
+        return Vec3d(u, v, 0.1 * std::sin(9 * u) * std::cos(7 * v));
+    });
+    assert_int_equal(holes(mesh, shapes::split(mesh, scattered(mesh, 12), 48), 100000), 0);
+}
+
+int main()
+{
+    const CMUnitTest tests[] = {
+        cmocka_unit_test(a_bumpy_ball_of_six_patches),
+        cmocka_unit_test(a_ball_of_ragged_patches),
+        cmocka_unit_test(a_coarse_ball_with_long_triangles),
+        cmocka_unit_test(a_torus_of_ragged_patches),
+        cmocka_unit_test(a_cube_closes_at_its_edges),
+        cmocka_unit_test(an_open_sheet_is_whole_up_to_its_border),
+    };
+    return cmocka_run_group_tests(tests, nullptr, nullptr);
+}

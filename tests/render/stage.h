@@ -1,0 +1,336 @@
+/* What the tests of drawing share: a context, a framebuffer, a renderer, and the comparison of what
+ * was drawn with the rays of gtx_raycast. */
+#ifndef GTX_TESTS_STAGE_H
+#define GTX_TESTS_STAGE_H
+
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "common/fixture.h"
+#include "host/camera.h"
+#include "host/framebuffer.h"
+#include "host/offscreen.h"
+#include "host/polygons.h"
+
+#include <geotex/render.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { STAGE_WIDTH = 240, STAGE_HEIGHT = 180, STAGE_PIXELS = STAGE_WIDTH * STAGE_HEIGHT };
+
+typedef struct stage {
+    gtx_offscreen *offscreen;
+    gtx_host_gl gl;
+    gtx_framebuffer framebuffer;
+    gtx_renderer *renderer;
+    uint8_t color[4 * STAGE_PIXELS];
+    float depth[STAGE_PIXELS];
+} stage;
+
+static stage the_stage;
+
+static inline void stage_log(const char *message, void *user)
+{
+    (void)user;
+    fprintf(stderr, "%s\n", message);
+}
+
+static inline int stage_open(void **state)
+{
+    stage *s = &the_stage;
+    gtx_error error = {0};
+    const gtx_renderer_desc desc = {.load = gtx_offscreen_load, .log = stage_log};
+    *state = s;
+    if (gtx_offscreen_create(&s->offscreen, &error))
+        return 0; /* the tests skip */
+    if (gtx_host_gl_init(&s->gl, gtx_offscreen_load, NULL, &error) ||
+        gtx_framebuffer_create(&s->gl, STAGE_WIDTH, STAGE_HEIGHT, &s->framebuffer, &error) ||
+        gtx_renderer_create(&desc, &s->renderer, &error)) {
+        fprintf(stderr, "%s\n", error.message);
+        return -1;
+    }
+    return 0;
+}
+
+static inline int stage_close(void **state)
+{
+    stage *s = *state;
+    if (!s->offscreen)
+        return 0;
+    gtx_renderer_destroy(s->renderer);
+    gtx_framebuffer_destroy(&s->gl, &s->framebuffer);
+    const int clean = s->gl.GetError() == GL_NO_ERROR;
+    gtx_offscreen_destroy(s->offscreen);
+    return clean ? 0 : -1;
+}
+
+#define STAGE_OR_SKIP(state)                                                                       \
+    stage *s = *(state);                                                                           \
+    if (!s->offscreen)                                                                             \
+        skip()
+
+static inline void must(gtx_result result, const gtx_error *error)
+{
+    if (result)
+        fail_msg("%s", error->message);
+}
+
+static const float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+static inline gtx_view view_of(const gtx_camera *camera)
+{
+    gtx_view view = {.flags = (camera->reversed_z ? GTX_VIEW_REVERSED_Z : 0u) |
+                              (camera->zero_to_one ? GTX_VIEW_DEPTH_ZERO_TO_ONE : 0u)};
+    gtx_camera_matrices(camera, (float)STAGE_WIDTH / STAGE_HEIGHT, view.view, view.projection);
+    return view;
+}
+
+/* Around the asset's bounds, from an angle that no frame is aligned with. */
+static inline gtx_camera camera_around(const gtx_asset *asset)
+{
+    gtx_info info;
+    gtx_camera camera = {.azimuth = 27, .elevation = 33, .distance = 3.1f};
+    gtx_get_info(asset, &info);
+    for (int k = 0; k < 3; ++k) {
+        const float half = (info.bounds_max[k] - info.bounds_min[k]) / 2;
+        camera.target[k] = info.bounds_min[k] + half;
+        camera.radius += half * half;
+    }
+    camera.radius = sqrtf(camera.radius);
+    return camera;
+}
+
+static inline void stage_clear(stage *s, const gtx_view *view)
+{
+    gtx_framebuffer_bind(&s->gl, &s->framebuffer);
+    s->gl.DepthMask(GL_TRUE);
+    s->gl.ClearColor(0, 0, 0, 0);
+    s->gl.ClearDepth(view->flags & GTX_VIEW_REVERSED_Z ? 0 : 1);
+    s->gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+/* Clears, draws and reads back. */
+static inline void stage_draw(stage *s, const gtx_view *view, const gtx_instance *instances,
+                              uint32_t count)
+{
+    gtx_error error = {0};
+    stage_clear(s, view);
+    must(gtx_draw(s->renderer, view, instances, count, &error), &error);
+    assert_int_equal(s->gl.GetError(), GL_NO_ERROR);
+    gtx_framebuffer_read_color(&s->gl, &s->framebuffer, s->color);
+    gtx_framebuffer_read_depth(&s->gl, &s->framebuffer, s->depth);
+}
+
+/* ---- 4x4 matrices in double, column-major ------------------------------------------------ */
+
+typedef struct matrix {
+    double m[16];
+} matrix;
+
+static inline matrix matrix_of(const float *m)
+{
+    matrix out;
+    for (int i = 0; i < 16; ++i)
+        out.m[i] = m[i];
+    return out;
+}
+
+static inline matrix matrix_mul(matrix a, matrix b)
+{
+    matrix out = {{0}};
+    for (int i = 0; i < 64; ++i)
+        out.m[4 * (i / 16) + i % 4] += a.m[4 * (i / 4 % 4) + i % 4] * b.m[4 * (i / 16) + i / 4 % 4];
+    return out;
+}
+
+/* Gauss-Jordan with pivoting. */
+static inline matrix matrix_inverse(matrix a)
+{
+    matrix b = matrix_of(identity);
+    for (int i = 0; i < 4; ++i) {
+        int pivot = i;
+        for (int r = i + 1; r < 4; ++r)
+            if (fabs(a.m[4 * i + r]) > fabs(a.m[4 * i + pivot]))
+                pivot = r;
+        for (int c = 0; c < 4; ++c) {
+            double t = a.m[4 * c + i];
+            a.m[4 * c + i] = a.m[4 * c + pivot];
+            a.m[4 * c + pivot] = t;
+            t = b.m[4 * c + i];
+            b.m[4 * c + i] = b.m[4 * c + pivot];
+            b.m[4 * c + pivot] = t;
+        }
+        const double scale = 1 / a.m[4 * i + i];
+        for (int c = 0; c < 4; ++c) {
+            a.m[4 * c + i] *= scale;
+            b.m[4 * c + i] *= scale;
+        }
+        for (int r = 0; r < 4; ++r) {
+            const double factor = r == i ? 0 : a.m[4 * i + r];
+            for (int c = 0; c < 4; ++c) {
+                a.m[4 * c + r] -= factor * a.m[4 * c + i];
+                b.m[4 * c + r] -= factor * b.m[4 * c + i];
+            }
+        }
+    }
+    return b;
+}
+
+/* m * (p, 1), divided by its w, which is returned. */
+static inline double matrix_point(matrix m, const double p[3], double out[3])
+{
+    double r[4];
+    for (int i = 0; i < 4; ++i)
+        r[i] = m.m[i] * p[0] + m.m[4 + i] * p[1] + m.m[8 + i] * p[2] + m.m[12 + i];
+    for (int i = 0; i < 3; ++i)
+        out[i] = r[i] / r[3];
+    return r[3];
+}
+
+/* ---- comparison with the caster ----------------------------------------------------------- */
+
+typedef struct agreement {
+    long hits, wrong, excluded; /* pixels that the caster hits; that differ; within rounding */
+} agreement;
+
+typedef struct oracle {
+    const gtx_asset *asset;
+    const gtx_caster *caster;
+    const gtx_view *view;
+    const gtx_instance *instances;
+    uint32_t count;
+} oracle;
+
+/* Window depth of the nearest hit at window position (x, y), y from the top; 2 for a miss. `texels`
+ * and `codes` get what a change of depth by one means on the patch that was hit. */
+static inline double oracle_depth(const oracle *o, double x, double y, double *texels, double *codes)
+{
+    const int zero_to_one = (o->view->flags & GTX_VIEW_DEPTH_ZERO_TO_ONE) != 0;
+    const int reversed = (o->view->flags & GTX_VIEW_REVERSED_Z) != 0;
+    double best = 2;
+    for (uint32_t i = 0; i < o->count; ++i) {
+        const matrix clip = matrix_mul(
+            matrix_mul(matrix_of(o->view->projection), matrix_of(o->view->view)),
+            matrix_of(o->instances[i].transform));
+        const matrix back = matrix_inverse(clip);
+        double ends[2][3];
+        for (int e = 0; e < 2; ++e) {
+            const double z = (e == 0) != reversed ? (zero_to_one ? 0 : -1) : 1;
+            const double ndc[3] = {2 * x / STAGE_WIDTH - 1, 1 - 2 * y / STAGE_HEIGHT, z};
+            matrix_point(back, ndc, ends[e]);
+        }
+        gtx_ray ray = {.t_max = 1};
+        for (int k = 0; k < 3; ++k) {
+            ray.origin[k] = (float)ends[0][k];
+            ray.direction[k] = (float)(ends[1][k] - ends[0][k]);
+        }
+        gtx_hit hit;
+        assert_int_equal(gtx_raycast(o->caster, &ray, &hit, 1, 0), GTX_OK);
+        if (hit.patch == UINT32_MAX)
+            continue;
+        double window[2];
+        for (int e = 0; e < 2; ++e) { /* at the hit, and a little behind it */
+            double at[3], ndc[3];
+            for (int k = 0; k < 3; ++k)
+                at[k] = ray.origin[k] + (hit.t + 1e-5 * e) * (double)ray.direction[k];
+            matrix_point(clip, at, ndc);
+            window[e] = zero_to_one ? ndc[2] : 0.5 + 0.5 * ndc[2];
+        }
+        const double nearer = reversed ? 1 - window[0] : window[0];
+        if (nearer >= (reversed && best <= 1 ? 1 - best : best))
+            continue;
+        best = window[0];
+        const gtx_patch *patch = &gtx_patches(o->asset)[hit.patch];
+        double length = 0, along_z = 0;
+        for (int k = 0; k < 3; ++k) {
+            length += (double)ray.direction[k] * ray.direction[k];
+            along_z += (double)ray.direction[k] * patch->axis_z[k];
+        }
+        const double change = fabs(window[1] - window[0]) / 1e-5;
+        const double pitch = fmin(patch->extent_x / patch->rect[2], patch->extent_y / patch->rect[3]);
+        *texels = sqrt(length) / pitch / change;
+        *codes = fabs(along_z) / patch->extent_z * 254 / change;
+    }
+    return best;
+}
+
+/* A wrong pixel: hit and miss differ, or the hits by more than a height step of 8 bits or 1/8 texel.
+ * Steps of 16 bits are finer than what 1/256 pixel, to which rasterisers snap, does to a ray. */
+static inline int agrees(double expected, double texels, double codes, double drawn, double empty)
+{
+    if ((expected > 1) != (drawn == empty))
+        return 0;
+    const double change = fabs(expected - drawn);
+    return expected > 1 || (change * texels <= 0.125 && change * codes <= 1);
+}
+
+/* Draws and compares each pixel with the ray through its centre. A difference is excluded when a
+ * ray less than 1/70 pixel away agrees. */
+static inline agreement stage_compare(stage *s, const gtx_asset *asset, const gtx_view *view,
+                                      const gtx_instance *instances, uint32_t count)
+{
+    gtx_caster *caster;
+    gtx_error error = {0};
+    agreement a = {0, 0, 0};
+    must(gtx_caster_create(asset, NULL, &caster, &error), &error);
+    const oracle o = {asset, caster, view, instances, count};
+    const double empty = view->flags & GTX_VIEW_REVERSED_Z ? 0 : 1;
+    stage_draw(s, view, instances, count);
+    for (int i = 0; i < STAGE_PIXELS; ++i) {
+        const double x = i % STAGE_WIDTH + 0.5, y = i / STAGE_WIDTH + 0.5;
+        double texels = 0, codes = 0;
+        const double expected = oracle_depth(&o, x, y, &texels, &codes);
+        a.hits += expected <= 1;
+        if (agrees(expected, texels, codes, s->depth[i], empty))
+            continue;
+        int near = 0;
+        for (int k = 0; k < 9 && !near; ++k) {
+            const double e = oracle_depth(&o, x + (k % 3 - 1) * 0.01, y + (k / 3 - 1) * 0.01,
+                                          &texels, &codes);
+            near = agrees(e, texels, codes, s->depth[i], empty);
+        }
+        a.excluded += near;
+        a.wrong += !near;
+    }
+    gtx_caster_destroy(caster);
+    return a;
+}
+
+/* An asset, its model, and one instance of it that is placed by the identity. */
+typedef struct subject {
+    gtx_asset *asset;
+    gtx_model *model;
+    gtx_instance instance;
+} subject;
+
+static inline subject subject_open(stage *s, gtx_asset *asset)
+{
+    gtx_error error = {0};
+    subject out = {.asset = asset};
+    must(gtx_model_create(s->renderer, asset, &out.model, &error), &error);
+    out.instance.model = out.model;
+    memcpy(out.instance.transform, identity, sizeof identity);
+    return out;
+}
+
+static inline void subject_close(stage *s, subject *shown)
+{
+    gtx_model_destroy(s->renderer, shown->model);
+    gtx_close(shown->asset);
+}
+
+static inline void expect_agreement(stage *s, const subject *shown, const gtx_view *view,
+                                    long least_hits)
+{
+    const agreement a = stage_compare(s, shown->asset, view, &shown->instance, 1);
+    if (a.wrong || a.hits < least_hits || a.excluded * 100 > a.hits)
+        fail_msg("%ld hits, %ld wrong, %ld excluded", a.hits, a.wrong, a.excluded);
+}
+
+#endif
