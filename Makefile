@@ -175,7 +175,14 @@ $(foreach t,$(test_sources),$(eval $(call test_rule,$(t))))
 $(out)/tests/%: cflags += -Itests -D_XOPEN_SOURCE=700 $(call pkg,--cflags,cmocka)
 $(out)/tests/%: cxxflags += -Itests $(call pkg,--cflags,cmocka)
 
-build-tests: $(test_bins) all
+# The decoder of the specification stands alone: C99, no header of geotex.
+$(out)/gtx_decode: format/gtx_decode.c
+	@mkdir -p $(@D)
+	$(say) CC $@
+	$(Q)$(CC) -std=c99 $(flags) $(warnings) $(if $(filter 1,$(zstd)),,-DNO_ZSTD) -o $@ $< $(libs_asset) -lm
+$(filter $(out)/tests/asset/%,$(test_bins)): | $(out)/gtx_decode
+
+build-tests: $(test_bins) $(out)/gtx_decode all
 
 # What test programs may ask for: the command, the build folder, the compilers.
 test_env = GTX=$(abspath $(command)) GTX_OUT=$(abspath $(out)) GTX_CONFIG=$(config) CC="$(CC)" CXX="$(CXX)"

@@ -4,8 +4,7 @@
  *   gtx_decode FILE                 prints what the file holds; exit 0
  *                                   or the number of the rule that it breaks; exit 3
  *
- * It is made to be read beside the specification, not to be fast. Exit 2: FILE cannot be read;
- * 5: out of memory, or compressed and without zstd. */
+ * Made to be read, not to be fast. Exit 2: FILE cannot be read; 5: no memory, or no zstd. */
 #include <inttypes.h>
 #include <limits.h>
 #include <math.h>
@@ -19,9 +18,9 @@
 
 enum { HEADER = 192, ENTRY = 64, RECORD = 128, MAX_SECTIONS = 256 };
 enum { NO_MEMORY = 1, UNSUPPORTED = 2 }; /* in place of a rule */
+enum { UNKNOWN = 500 };                  /* the order of sections to skip */
 
 typedef unsigned char byte;
-
 struct section {
     char type[5];
     uint32_t flags, level, format, scheme, filter;
@@ -65,10 +64,7 @@ static double f64(const byte *p)
     return value;
 }
 
-static uint64_t align64(uint64_t n)
-{
-    return (n + 63) / 64 * 64;
-}
+static uint64_t align64(uint64_t n) { return (n + 63) / 64 * 64; }
 
 static int all_zero(const byte *p, uint64_t count)
 {
@@ -83,44 +79,30 @@ static int all_zero(const byte *p, uint64_t count)
 static const uint64_t p1 = 0x9E3779B185EBCA87u, p2 = 0xC2B2AE3D27D4EB4Fu,
                       p3 = 0x165667B19E3779F9u, p4 = 0x85EBCA77C2B2AE63u, p5 = 0x27D4EB2F165667C5u;
 
-static uint64_t rotl(uint64_t v, int bits)
-{
-    return v << bits | v >> (64 - bits);
-}
+static uint64_t rotl(uint64_t v, int bits) { return v << bits | v >> (64 - bits); }
 
 static uint64_t xxh_round(uint64_t acc, uint64_t lane)
 {
     return rotl(acc + lane * p2, 31) * p1;
 }
 
-static uint64_t xxh_merge(uint64_t acc, uint64_t v)
-{
-    return (acc ^ xxh_round(0, v)) * p1 + p4;
-}
-
 static uint64_t xxh64(const byte *p, uint64_t size)
 {
-    const byte *end = p + size;
-    uint64_t acc = p5;
+    uint64_t lane[4] = {p1 + p2, p2, 0, 0 - p1}, acc = p5, left = size;
+    for (; left >= 32; left -= 32)
+        for (int i = 0; i < 4; ++i, p += 8)
+            lane[i] = xxh_round(lane[i], u64(p));
     if (size >= 32) {
-        uint64_t a = p1 + p2, b = p2, c = 0, d = 0 - p1;
-        for (; end - p >= 32; p += 32) {
-            a = xxh_round(a, u64(p));
-            b = xxh_round(b, u64(p + 8));
-            c = xxh_round(c, u64(p + 16));
-            d = xxh_round(d, u64(p + 24));
-        }
-        acc = rotl(a, 1) + rotl(b, 7) + rotl(c, 12) + rotl(d, 18);
-        acc = xxh_merge(xxh_merge(xxh_merge(xxh_merge(acc, a), b), c), d);
+        acc = rotl(lane[0], 1) + rotl(lane[1], 7) + rotl(lane[2], 12) + rotl(lane[3], 18);
+        for (int i = 0; i < 4; ++i)
+            acc = (acc ^ xxh_round(0, lane[i])) * p1 + p4;
     }
     acc += size;
-    for (; end - p >= 8; p += 8)
+    for (; left >= 8; left -= 8, p += 8)
         acc = rotl(acc ^ xxh_round(0, u64(p)), 27) * p1 + p4;
-    if (end - p >= 4) {
+    for (; left >= 4; left -= 4, p += 4)
         acc = rotl(acc ^ u32(p) * p1, 23) * p2 + p3;
-        p += 4;
-    }
-    for (; p < end; ++p)
+    for (; left; --left, ++p)
         acc = rotl(acc ^ *p * p5, 11) * p1;
     acc = (acc ^ acc >> 33) * p2;
     acc = (acc ^ acc >> 29) * p3;
@@ -176,9 +158,8 @@ static unsigned check_values(struct file *f)
     if (f->width < 8 || f->width > 16384 || f->width % block || f->height < 8 ||
         f->height > 16384 || f->height % block)
         return 110;
-    for (int i = 0; i < 3; ++i)
-        if (!isfinite(f32(h + 72 + 4 * i)) || !isfinite(f32(h + 84 + 4 * i)) ||
-            f32(h + 84 + 4 * i) < f32(h + 72 + 4 * i))
+    for (const byte *min = h + 72, *max = h + 84; min < h + 84; min += 4, max += 4)
+        if (!isfinite(f32(min)) || !isfinite(f32(max)) || f32(max) < f32(min))
             return 112;
     if (!isfinite(f32(h + 96)) || f32(h + 96) <= 0)
         return 113;
@@ -190,7 +171,7 @@ static unsigned check_values(struct file *f)
     return 0;
 }
 
-static unsigned check_header_hash(const struct file *f)
+static unsigned check_header_hash(struct file *f)
 {
     size_t table = (size_t)ENTRY * f->section_count;
     byte *copy = malloc(184 + table);
@@ -216,12 +197,7 @@ static int order_of(const struct section *s)
     for (int i = 0; i < 5; ++i)
         if (is_type(s, order[i]))
             return 16 * i + 8 - (int)s->level;
-    return is_type(s, "META") ? 1000 : 500;
-}
-
-static int is_known(const struct section *s)
-{
-    return order_of(s) != 500;
+    return is_type(s, "META") ? 1000 : UNKNOWN;
 }
 
 static unsigned check_known(struct file *f, struct section *s)
@@ -229,22 +205,19 @@ static unsigned check_known(struct file *f, struct section *s)
     int levels = is_type(s, "NRML") || is_type(s, "COLR");
     if (s->level >= (levels ? f->mips : 1))
         return 203;
-    uint32_t format = 0;
-    if (is_type(s, "HGHT")) {
-        if (s->format != 13 && s->format != 74)
-            return 204;
-        f->bits = s->format == 74 ? 16 : 8;
-        format = s->format;
-        s->texel = f->bits / 8;
-    } else if (is_type(s, "TRIM")) {
-        format = 9, s->texel = 1;
-    } else if (is_type(s, "NRML")) {
-        format = 16, s->texel = 2;
-    } else if (is_type(s, "COLR")) {
-        format = 43, s->texel = 4;
-    }
-    if (s->format != format)
+    static const struct {
+        const char *type;
+        uint32_t format, texel;
+    } images[] = {
+        {"HGHT", 13, 1}, {"HGHT", 74, 2}, {"TRIM", 9, 1}, {"NRML", 16, 2}, {"COLR", 43, 4}};
+    int image = !is_type(s, "PTCH") && !is_type(s, "META");
+    for (int i = 0; i < 5; ++i)
+        if (is_type(s, images[i].type) && s->format == images[i].format)
+            s->texel = images[i].texel;
+    if (image ? !s->texel : s->format)
         return 204;
+    if (is_type(s, "HGHT"))
+        f->bits = 8 * s->texel;
     if (is_type(s, "META"))
         return s->size >= 1 && s->size <= 1u << 20 ? 0 : 600;
     s->width = s->texel ? f->width >> s->level : 0;
@@ -271,7 +244,7 @@ static unsigned check_entry(struct file *f, uint32_t index, uint64_t *end)
 
     if (s->level > 7)
         return 203;
-    int known = is_known(s), order = order_of(s);
+    int order = order_of(s), known = order != UNKNOWN;
     if (!known && s->flags & 1)
         return 201;
     if (s->flags != (known && order < 16 * 4 ? 1 : 0))
@@ -299,18 +272,27 @@ static unsigned check_entry(struct file *f, uint32_t index, uint64_t *end)
     return 0;
 }
 
+static const struct section *find(const struct file *f, const char *type)
+{
+    uint32_t i = 0;
+    while (!is_type(&f->section[i], type))
+        ++i;
+    return &f->section[i];
+}
+
+static uint32_t count_of(const struct file *f, const char *type)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < f->section_count; ++i)
+        count += is_type(&f->section[i], type);
+    return count;
+}
+
 static unsigned check_presence(const struct file *f)
 {
-    uint32_t patches = 0, heights = 0, trims = 0, normals = 0, colors = 0;
-    for (uint32_t i = 0; i < f->section_count; ++i) {
-        patches += is_type(&f->section[i], "PTCH");
-        heights += is_type(&f->section[i], "HGHT");
-        trims += is_type(&f->section[i], "TRIM");
-        normals += is_type(&f->section[i], "NRML");
-        colors += is_type(&f->section[i], "COLR");
-    }
-    return patches && heights && trims && normals == f->mips && (!colors || colors == f->mips)
-               ? 0 : 214;
+    uint32_t colors = count_of(f, "COLR");
+    return count_of(f, "PTCH") && count_of(f, "HGHT") && count_of(f, "TRIM") &&
+           count_of(f, "NRML") == f->mips && (!colors || colors == f->mips) ? 0 : 214;
 }
 
 static unsigned check_table(struct file *f)
@@ -397,13 +379,10 @@ static void undo_paeth(byte *image, uint64_t rows, uint64_t row_bytes, uint64_t 
 static unsigned undo_filter(const struct file *f, struct section *s)
 {
     uint64_t texels = (uint64_t)s->width * s->height, all = texels * f->pages;
-    if (s->filter == 1)
-        for (uint32_t page = 0; page < f->pages; ++page)
-            undo_paeth(s->bytes + page * texels * s->texel, s->height,
-                       (uint64_t)s->width * s->texel, s->texel);
-    if (s->filter == 3)
-        for (uint32_t page = 0; page < f->pages * s->texel; ++page)
-            undo_paeth(s->bytes + page * texels, s->height, s->width, 1);
+    uint32_t step = s->filter == 3 ? 1 : s->texel, images = f->pages * s->texel / step;
+    if (s->filter & 1)
+        for (uint32_t i = 0; i < images; ++i)
+            undo_paeth(s->bytes + i * texels * step, s->height, (uint64_t)s->width * step, step);
     if (s->filter < 2)
         return 0;
     byte *merged = malloc((size_t)s->size);
@@ -421,11 +400,10 @@ static unsigned decode_section(const struct file *f, struct section *s)
 {
     const byte *stored = f->data + s->offset;
     uint64_t content, window;
-    if (s->scheme == 2) {
-        if (!frame_header(stored, s->stored_size, &content, &window) || content != s->size ||
-            window > (uint64_t)1 << 27 || s->size / 32768 > s->stored_size)
-            return 213;
-    }
+    if (s->scheme == 2 &&
+        (!frame_header(stored, s->stored_size, &content, &window) || content != s->size ||
+         window > (uint64_t)1 << 27 || s->size / 32768 > s->stored_size))
+        return 213;
     s->bytes = malloc((size_t)s->size);
     if (!s->bytes)
         return NO_MEMORY;
@@ -439,14 +417,6 @@ static unsigned decode_section(const struct file *f, struct section *s)
     if (!rule && xxh64(s->bytes, s->size) != s->hash)
         rule = 210;
     return rule;
-}
-
-static struct section *find(struct file *f, const char *type)
-{
-    for (uint32_t i = 0; i < f->section_count; ++i)
-        if (is_type(&f->section[i], type))
-            return &f->section[i];
-    return NULL;
 }
 
 /* ---- 3: patches ---- */
@@ -599,7 +569,7 @@ static unsigned decode_content(struct file *f, byte *taken)
 {
     for (uint32_t i = 0; i < f->section_count; ++i) {
         struct section *s = &f->section[i];
-        if (!is_known(s))
+        if (order_of(s) == UNKNOWN)
             continue;
         unsigned rule = decode_section(f, s);
         if (!rule && is_type(s, "PTCH"))
@@ -615,22 +585,20 @@ static unsigned decode_content(struct file *f, byte *taken)
 /* Returns 0, or the rule that is broken. `f` is to be freed with release in either case. */
 static unsigned decode(const byte *data, uint64_t size, struct file *f)
 {
+    static unsigned (*const steps[])(struct file *) = {check_header, check_values,
+                                                       check_header_hash, check_table};
     memset(f, 0, sizeof *f);
     f->data = data;
     f->size = size;
-    unsigned rule = check_header(f);
-    if (!rule)
-        rule = check_values(f);
-    if (!rule)
-        rule = check_header_hash(f);
-    if (!rule)
-        rule = check_table(f);
-    if (rule)
-        return rule;
+    for (int i = 0; i < 4; ++i) {
+        unsigned rule = steps[i](f);
+        if (rule)
+            return rule;
+    }
     byte *taken = calloc((size_t)f->pages * f->width, f->height);
     if (!taken)
         return NO_MEMORY;
-    rule = decode_content(f, taken);
+    unsigned rule = decode_content(f, taken);
     free(taken);
     return rule;
 }
@@ -653,17 +621,23 @@ static void print_floats(const char *name, const byte *p, int count)
 static void print_patch(uint32_t index, const byte *r)
 {
     printf("patch %" PRIu32 ":", index);
-    print_floats("origin", r, 3);
-    print_floats("x", r + 16, 3);
-    print_floats("y", r + 32, 3);
-    print_floats("z", r + 48, 3);
-    printf(" extents %.9g,%.9g,%.9g coverage %.9g", f32(r + 12), f32(r + 28), f32(r + 44),
-           f32(r + 60));
+    print_floats("frame", r, 16);
+    print_floats("sphere", r + 80, 4);
     printf(" page %" PRIu32 " rect %" PRIu32 ",%" PRIu32 " %" PRIu32 "x%" PRIu32, u32(r + 64),
            u16(r + 68), u16(r + 70), u16(r + 72), u16(r + 74));
-    printf(" dilation %" PRIu32 " flags 0x%04" PRIx32, u16(r + 76), u16(r + 78));
-    print_floats("sphere", r + 80, 4);
-    printf(" triangles %" PRIu32 "\n", u32(r + 96));
+    printf(" dilation %" PRIu32 " flags 0x%04" PRIx32 " triangles %" PRIu32 "\n", u16(r + 76),
+           u16(r + 78), u32(r + 96));
+}
+
+static void print_section(const struct section *s)
+{
+    const byte *t = (const byte *)s->type;
+    printf("section %02x%02x%02x%02x level %" PRIu32 " size %" PRIu64 " scheme %" PRIu32
+           " filter %" PRIu32, t[0], t[1], t[2], t[3], s->level, s->size, s->scheme, s->filter);
+    if (s->bytes)
+        printf(" %s xxh64 0x%016" PRIx64 "\n", s->type, xxh64(s->bytes, s->size));
+    else
+        printf(" skipped\n");
 }
 
 static void print_file(struct file *f)
@@ -671,40 +645,31 @@ static void print_file(struct file *f)
     const byte *h = f->data;
     printf("gtx %" PRIu32 ".%" PRIu32 ", %" PRIu64 " bytes\n", u16(h + 12), u16(h + 14), f->size);
     printf("patches %" PRIu32 ", pages %" PRIu32 " of %" PRIu32 "x%" PRIu32 ", mips %" PRIu32
-           ", height bits %" PRIu32 "\n", f->patches, f->pages, f->width, f->height, f->mips, f->bits);
+           ", bits %" PRIu32 "\n", f->patches, f->pages, f->width, f->height, f->mips, f->bits);
     printf("header:");
-    print_floats("min", h + 72, 3);
-    print_floats("max", h + 84, 3);
-    print_floats("unit", h + 96, 1);
+    print_floats("bounds and unit", h + 72, 7);
     printf(" anchor %.17g,%.17g,%.17g", f64(h + 104), f64(h + 112), f64(h + 120));
     printf(" content 0x%016" PRIx64 " triangles %" PRIu64 "\n", u64(h + 128), u64(h + 136));
     for (uint32_t n = 0; n < f->patches; ++n)
         print_patch(n, find(f, "PTCH")->bytes + RECORD * (uint64_t)n);
-    for (uint32_t i = 0; i < f->section_count; ++i) {
-        const struct section *s = &f->section[i];
-        printf("section %02x%02x%02x%02x level %" PRIu32 " size %" PRIu64 " scheme %" PRIu32
-               " filter %" PRIu32, (byte)s->type[0], (byte)s->type[1], (byte)s->type[2],
-               (byte)s->type[3], s->level, s->size, s->scheme, s->filter);
-        if (s->bytes)
-            printf(" %s xxh64 0x%016" PRIx64 "\n", s->type, xxh64(s->bytes, s->size));
-        else
-            printf(" skipped\n");
-    }
+    for (uint32_t i = 0; i < f->section_count; ++i)
+        print_section(&f->section[i]);
 }
 
+/* All bytes of a file that can be sought in; NULL when it cannot be read. */
 static byte *read_whole(const char *path, uint64_t *size)
 {
     FILE *in = fopen(path, "rb");
-    byte *data = NULL;
-    long end = -1;
-    if (in && !fseek(in, 0, SEEK_END) && (end = ftell(in)) >= 0 && end < LONG_MAX)
-        data = malloc((size_t)end + 1);
-    if (data && (fseek(in, 0, SEEK_SET) || fread(data, 1, (size_t)end, in) != (size_t)end)) {
+    if (!in)
+        return NULL;
+    long end = fseek(in, 0, SEEK_END) ? -1 : ftell(in);
+    byte *data = end >= 0 && end < LONG_MAX ? malloc((size_t)end + 1) : NULL;
+    rewind(in);
+    if (data && fread(data, 1, (size_t)end, in) != (size_t)end) {
         free(data);
         data = NULL;
     }
-    if (in)
-        fclose(in);
+    fclose(in);
     *size = (uint64_t)end;
     return data;
 }
@@ -725,10 +690,8 @@ int main(int argc, char **argv)
     unsigned rule = decode(data, size, &file);
     if (!rule)
         print_file(&file);
-    else if (rule >= 100)
-        printf("%s: breaks rule %u\n", argv[1], rule);
     else
-        printf("%s: %s\n", argv[1], rule == NO_MEMORY ? "out of memory" : "compressed");
+        printf("%s: %s %u\n", argv[1], rule >= 100 ? "breaks rule" : "not decoded, code", rule);
     release(&file);
     free(data);
     return !rule ? 0 : rule >= 100 ? 3 : 5;

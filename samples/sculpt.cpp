@@ -59,7 +59,9 @@ static std::string make_glb(const Model &model)
         add_attribute<float>(mesh, Attribute::NORMAL, DT_FLOAT32, model.normals),
         add_attribute<uint8_t>(mesh, Attribute::COLOR, DT_UINT8, model.colors)};
     draco::Encoder encoder;
-    encoder.SetAttributeQuantization(Attribute::POSITION, 14);
+    /* one bit more whenever a larger count halves the spacing of vertices */
+    int more = std::max(0, int(std::log2(model.triangles.size() / 8e5) / 2 + 0.5));
+    encoder.SetAttributeQuantization(Attribute::POSITION, 14 + more);
     encoder.SetAttributeQuantization(Attribute::NORMAL, 10);
     draco::EncoderBuffer buffer;
     if (!encoder.EncodeMeshToBuffer(mesh, &buffer).ok())
@@ -76,13 +78,14 @@ static std::string make_glb(const Model &model)
     std::snprintf(json, sizeof json, R"({"asset":{"version":"2.0","generator":"geotex sculpt"},
 "extensionsUsed":["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"],
 "scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+"materials":[{"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0.6}}],
 "buffers":[{"byteLength":%zu}],"bufferViews":[{"buffer":0,"byteLength":%zu}],
 "accessors":[{"componentType":5125,"count":%zu,"type":"SCALAR"},
 {"componentType":5126,"count":%zu,"type":"VEC3","min":[%.9g,%.9g,%.9g],"max":[%.9g,%.9g,%.9g]},
 {"componentType":5126,"count":%zu,"type":"VEC3"},
 {"componentType":5121,"count":%zu,"type":"VEC3","normalized":true}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":1,"NORMAL":2,"COLOR_0":3},"indices":0,
-"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,
+"material":0,"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,
 "attributes":{"POSITION":%u,"NORMAL":%u,"COLOR_0":%u}}}}]}]})",
                   size, size, 3 * model.triangles.size(), count, low[0], low[1], low[2], high[0],
                   high[1], high[2], count, count, ids[0], ids[1], ids[2]);

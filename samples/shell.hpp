@@ -13,18 +13,18 @@ using Vec = std::array<double, 3>;
 struct ShellPoint {
     Vec position, color; /* sRGB, 0..1 */
 };
+struct Model {
+    std::vector<Vec> positions, normals, colors; /* normals of any length, linear colours */
+    std::vector<std::array<uint32_t, 3>> triangles;
+};
 
 inline double mix(double a, double b, double t) { return a + (b - a) * t; }
 inline Vec mix(Vec a, Vec b, double t)
 {
     return {mix(a[0], b[0], t), mix(a[1], b[1], t), mix(a[2], b[2], t)};
 }
-inline double smooth(double t)
-{
-    t = std::min(1., std::max(0., t));
-    return t * t * (3 - 2 * t);
-}
-/* A quarter circle that rises from 0 to 1: rounds the ends of a tube. */
+inline double smooth(double t) { return t <= 0 ? 0 : t >= 1 ? 1 : t * t * (3 - 2 * t); }
+/* A quarter circle from 0 to 1: rounds the ends of a tube. */
 inline double dome(double t) { return t < 1 ? std::sqrt(t * (2 - t)) : 1; }
 /* A bump around v = 0, once a turn. */
 inline double peak(double v) { return std::pow(std::max(0., std::cos(v)), 40); }
@@ -101,11 +101,6 @@ inline ShellPoint shell_at(double s, double v)
     return {{out * std::cos(angle), up, out * std::sin(angle)}, color};
 }
 
-struct Model {
-    std::vector<Vec> positions, normals, colors; /* per vertex: any length, linear colour */
-    std::vector<std::array<uint32_t, 3>> triangles;
-};
-
 inline void add_vertex(Model &model, double s, double v)
 {
     ShellPoint point = shell_at(s, v);
@@ -121,11 +116,10 @@ inline void add_normals(Model &model)
     model.normals.assign(model.positions.size(), Vec{});
     for (const auto &t : model.triangles)
         for (int k = 0, i = 1, j = 2; k < 3; i = j, j = k++) {
-            const Vec &p = model.positions[t[0]], &q = model.positions[t[1]];
-            const Vec &r = model.positions[t[2]];
+            const Vec *p = model.positions.data(), &o = p[t[0]], &q = p[t[1]], &r = p[t[2]];
+            double area = (q[i] - o[i]) * (r[j] - o[j]) - (q[j] - o[j]) * (r[i] - o[i]);
             for (uint32_t v : t)
-                model.normals[v][k] +=
-                    (q[i] - p[i]) * (r[j] - p[j]) - (q[j] - p[j]) * (r[i] - p[i]);
+                model.normals[v][k] += area;
         }
 }
 
@@ -140,17 +134,16 @@ inline Model make_shell(double triangles)
         for (uint32_t c = 0; c < columns; ++c)
             add_vertex(model, double(r) / (rings + 1), 2 * PI * c / columns);
     add_vertex(model, 1, 0);
-
     auto vertex = [&](uint32_t r, uint32_t c) {
         return r == 0 ? 0 : r > rings ? 1 + rings * columns : 1 + (r - 1) * columns + c % columns;
     };
     for (uint32_t r = 0; r <= rings; ++r)
         for (uint32_t c = 0; c < columns; ++c) {
-            uint32_t a = vertex(r, c), b = vertex(r, c + 1);
+            uint32_t diagonal[] = {vertex(r, c + 1), vertex(r + 1, c)};
             if (r > 0)
-                model.triangles.push_back({a, b, vertex(r + 1, c)});
+                model.triangles.push_back({vertex(r, c), diagonal[0], diagonal[1]});
             if (r < rings)
-                model.triangles.push_back({vertex(r + 1, c), b, vertex(r + 1, c + 1)});
+                model.triangles.push_back({diagonal[1], diagonal[0], vertex(r + 1, c + 1)});
         }
     add_normals(model);
     return model;

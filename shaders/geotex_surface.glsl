@@ -16,11 +16,13 @@ float gtx_level_of(gtx_hit hit, vec3 direction, vec3 dx, vec3 dy)
 
 vec4 gtx_lookup_level(highp sampler2DArray map, gtx_sheet sheet, vec2 at, float level)
 {
-    float scale = exp2(-level);
-    vec2 size = vec2(textureSize(map, int(level)).xy);
-    vec2 low = vec2(sheet.corner) * scale, high = vec2(sheet.corner + sheet.size) * scale;
-    vec2 texel = clamp((vec2(sheet.corner) + at + 0.5) * scale, low + 0.5, high - 0.5);
-    return textureLod(map, vec3(texel / size, float(sheet.page)), level);
+    /* In texels of level 0, where the size is known: some drivers answer textureSize for a level
+     * that differs from pixel to pixel as if it did not. */
+    float half_texel = 0.5 * exp2(level);
+    vec2 low = vec2(sheet.corner) + half_texel;
+    vec2 high = vec2(sheet.corner + sheet.size) - half_texel;
+    vec2 texel = clamp(vec2(sheet.corner) + at + 0.5, low, high);
+    return textureLod(map, vec3(texel / vec2(textureSize(map, 0).xy), float(sheet.page)), level);
 }
 
 /* Trilinear, and clamped at each level to the patch's own texels: patches are packed without a

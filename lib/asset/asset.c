@@ -19,7 +19,8 @@ static uint64_t map_size(const gtx_info *info, gtx_section_kind kind, uint32_t l
 
 uint64_t gtx_asset_bytes(const gtx_info *info, size_t meta_size)
 {
-    uint64_t bytes = sizeof(gtx_asset) + (uint64_t)info->patch_count * sizeof(gtx_patch) + meta_size;
+    uint64_t bytes = sizeof(gtx_asset) + meta_size;
+    bytes += (uint64_t)info->patch_count * sizeof(gtx_patch);
     bytes += map_size(info, GTX_SECTION_HEIGHT, 0) + map_size(info, GTX_SECTION_TRIM, 0);
     for (uint32_t k = 0; k < info->mip_count; ++k) {
         bytes += map_size(info, GTX_SECTION_NORMAL, k);

@@ -41,21 +41,23 @@ void gtx_break(gtx_check *check, gtx_rule rule, uint64_t offset, const char *for
     if (!check->in_file)
         offset = 0;
     if (first)
-        check->result = gtx_fail_rule(check->error, row->result, row->number, offset, "%s", message);
+        check->result = gtx_fail_rule(check->error, row->result, row->number, offset, "%s",
+                                      message);
     if (check->fn)
         check->fn(&(gtx_issue){row->number, 1, offset, row->name, message}, check->user);
 }
 
 void gtx_check_fail(gtx_check *check, gtx_result result, const char *format, ...)
 {
-    if (check->failed)
+    bool first = !check->broken && !check->failed;
+    check->failed = true;
+    if (!first)
         return;
     char message[240];
     va_list args;
     va_start(args, format);
     vsnprintf(message, sizeof message, format, args);
     va_end(args);
-    check->failed = true;
     check->result = gtx_fail(check->error, result, "%s", message);
 }
 
@@ -93,7 +95,8 @@ bool gtx_check_info(gtx_check *check, const gtx_info *info)
         gtx_break(check, GTX_RULE_UNIT, 96, "it is %g", (double)info->unit);
     for (uint32_t i = 0; i < 3; ++i)
         if (!isfinite(info->anchor[i]))
-            gtx_break(check, GTX_RULE_ANCHOR, 104 + 8 * i, "component %u is %g", i, info->anchor[i]);
+            gtx_break(check, GTX_RULE_ANCHOR, 104 + 8 * i, "component %u is %g", i,
+                      info->anchor[i]);
     return usable;
 }
 

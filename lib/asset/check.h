@@ -21,7 +21,7 @@ typedef struct gtx_check {
     gtx_error *error;             /* may be NULL */
     bool keep_going;              /* look for more after a broken rule, where that is safe */
     bool in_file;                 /* offsets mean something */
-    gtx_result result;            /* of the first broken rule or failure */
+    gtx_result result;            /* of what came first: a broken rule, or a failure */
     uint64_t broken;              /* rules broken so far */
     bool failed;                  /* something else went wrong: memory, a limit */
 } gtx_check;
@@ -72,7 +72,7 @@ void gtx_check_patches(gtx_check *check, const gtx_asset *asset, uint64_t offset
 void gtx_occupancy_free(gtx_occupancy *occupancy, const gtx_allocator *allocator);
 
 /* Heights against patches: coverage, spheres, bounds, codes outside. The offsets are those of the
- * patch records and of the height section; `height_stored` says that its bytes lie there as such. */
+ * patch records and of the height section, whose codes lie there as such when `height_stored`. */
 void gtx_check_maps(gtx_check *check, const gtx_asset *asset, const gtx_occupancy *occupancy,
                     uint64_t patch_offset, uint64_t height_offset, bool height_stored);
 

@@ -46,7 +46,8 @@ static bool check_shape(gtx_check *check, const gtx_header *header, uint64_t siz
     if (header->file_size > least)
         least = header->file_size;
     if (size < least) {
-        gtx_break(check, GTX_RULE_TRUNCATED, 32, "it has %" PRIu64 " bytes of %" PRIu64, size, least);
+        gtx_break(check, GTX_RULE_TRUNCATED, 32, "it has %" PRIu64 " bytes of %" PRIu64, size,
+                  least);
         readable = false;
     } else if (header->file_size != size) {
         gtx_break(check, GTX_RULE_FILE_SIZE, 32, "it is %" PRIu64 " of %" PRIu64 " bytes",
@@ -128,8 +129,8 @@ static void check_coding(table_walk *walk, const gtx_section *section, uint64_t 
     gtx_check *check = walk->check;
     bool stored = section->scheme == GTX_SCHEME_STORED, zstd = section->scheme == GTX_SCHEME_ZSTD;
     if ((!stored && !zstd) || (stored && section->stored_size != section->size))
-        gtx_break(check, GTX_RULE_SECTION_SCHEME, at + 40, "%s has scheme %u, %" PRIu64 " of %" PRIu64
-                  " bytes", section->name, section->scheme, section->stored_size,
+        gtx_break(check, GTX_RULE_SECTION_SCHEME, at + 40, "%s has scheme %u, %" PRIu64
+                  " of %" PRIu64 " bytes", section->name, section->scheme, section->stored_size,
                   section->size);
     uint32_t most = zstd && gtx_section_is_image(section->kind) ? 3 : 0;
     if (section->filter > most)
@@ -144,9 +145,9 @@ static void check_coding(table_walk *walk, const gtx_section *section, uint64_t 
 static void check_place(table_walk *walk, const gtx_section *section, uint64_t at)
 {
     if (section->offset > walk->size || section->stored_size > walk->size - section->offset) {
-        gtx_break(walk->check, GTX_RULE_SECTION_RANGE, at + 16, "%s has %" PRIu64 " bytes at %" PRIu64
-                  " of %" PRIu64, section->name, section->stored_size, section->offset,
-                  walk->size);
+        gtx_break(walk->check, GTX_RULE_SECTION_RANGE, at + 16, "%s has %" PRIu64
+                  " bytes at %" PRIu64 " of %" PRIu64, section->name, section->stored_size,
+                  section->offset, walk->size);
         walk->chained = false;
     }
     if (!walk->chained)
@@ -216,7 +217,8 @@ static void check_padding(const table_walk *walk, const uint8_t *data)
         uint64_t end = section->offset + section->stored_size, next = gtx_align64(end);
         for (uint64_t i = end; i < next && i < walk->size; ++i) {
             if (data[i]) {
-                gtx_break(walk->check, GTX_RULE_PADDING, i, "byte %" PRIu64 " is 0x%02x", i, data[i]);
+                gtx_break(walk->check, GTX_RULE_PADDING, i, "byte %" PRIu64 " is 0x%02x", i,
+                          data[i]);
                 break;
             }
         }

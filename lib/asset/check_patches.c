@@ -47,11 +47,14 @@ static void check_frame(gtx_check *check, const gtx_patch *patch, uint32_t index
 {
     double ex = patch->extent_x, ey = patch->extent_y, ez = patch->extent_z;
     if (ex <= 0)
-        gtx_break(check, GTX_RULE_PATCH_EXTENT, offset + 12, "extent_x of patch %u is %g", index, ex);
+        gtx_break(check, GTX_RULE_PATCH_EXTENT, offset + 12, "extent_x of patch %u is %g", index,
+                  ex);
     if (ey <= 0)
-        gtx_break(check, GTX_RULE_PATCH_EXTENT, offset + 28, "extent_y of patch %u is %g", index, ey);
+        gtx_break(check, GTX_RULE_PATCH_EXTENT, offset + 28, "extent_y of patch %u is %g", index,
+                  ey);
     if (ez <= 0 || ez < LEAST_DEPTH * fmax(ex, ey))
-        gtx_break(check, GTX_RULE_PATCH_EXTENT, offset + 44, "extent_z of patch %u is %g", index, ez);
+        gtx_break(check, GTX_RULE_PATCH_EXTENT, offset + 44, "extent_z of patch %u is %g", index,
+                  ez);
 
     const float *axes[] = {patch->axis_x, patch->axis_y, patch->axis_z};
     for (uint32_t i = 0; i < 3; ++i) {
@@ -114,7 +117,8 @@ static gtx_occupancy occupancy_shape(const gtx_info *info)
     gtx_occupancy shape = {.shift = info->mip_count - 1,
                            .width = info->page_width >> (info->mip_count - 1),
                            .height = info->page_height >> (info->mip_count - 1)};
-    shape.word_count = (size_t)(((uint64_t)info->page_count * shape.width * shape.height + 63) / 64);
+    uint64_t blocks = (uint64_t)info->page_count * shape.width * shape.height;
+    shape.word_count = (size_t)((blocks + 63) / 64);
     return shape;
 }
 

@@ -4,7 +4,8 @@
 #include "base/bytes.h"
 #include "base/hash.h"
 
-const uint8_t gtx_identifier[12] = {0xAB, 'G', 'T', 'X', ' ', '0', '1', 0xBB, '\r', '\n', 0x1A, '\n'};
+const uint8_t gtx_identifier[12] = {0xAB, 'G', 'T', 'X', ' ', '0',
+                                    '1', 0xBB, '\r', '\n', 0x1A, '\n'};
 
 void gtx_header_load(const uint8_t *bytes, gtx_header *header, gtx_info *info)
 {

@@ -91,8 +91,8 @@ static bool decode(reader *r, const gtx_section *section, uint64_t entry_offset,
         memcpy(out, bytes, (size_t)section->size);
     }
     if (!r->skip_hash && gtx_hash_bytes(out, (size_t)section->size) != section->hash)
-        gtx_break(&r->check, GTX_RULE_SECTION_HASH, entry_offset + 48, "that of %s is 0x%016" PRIx64,
-                  section->name, section->hash);
+        gtx_break(&r->check, GTX_RULE_SECTION_HASH, entry_offset + 48,
+                  "that of %s is 0x%016" PRIx64, section->name, section->hash);
     return true;
 }
 

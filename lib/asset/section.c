@@ -51,8 +51,9 @@ gtx_section gtx_section_describe(const gtx_info *info, gtx_section_kind kind, ui
     memcpy(section.type, kinds[kind].type, 4);
     if (kind == GTX_SECTION_HEIGHT && info->height_bits == 16)
         section.format = FORMAT_R16_UINT;
-    section.size = kind == GTX_SECTION_PATCHES ? (uint64_t)info->patch_count * sizeof(gtx_patch)
-                                               : gtx_image_size(gtx_section_image(info, kind, level));
+    section.size = gtx_image_size(gtx_section_image(info, kind, level));
+    if (kind == GTX_SECTION_PATCHES)
+        section.size = (uint64_t)info->patch_count * sizeof(gtx_patch);
     return section;
 }
 

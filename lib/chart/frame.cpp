@@ -219,21 +219,21 @@ Vec3d cone_axis(const Surface &surface, const std::vector<uint32_t> &triangles)
     std::vector<Vec3f> normals;
     float size = 0;
     for (uint32_t t : triangles) {
-        normals.push_back(surface.smooth[t]);
-        size += surface.size[t];
+        normals.push_back(surface.facets[t].normal);
+        size += surface.facets[t].size;
     }
     Vec3d axis = ball_axis(normals);
     std::vector<std::pair<float, uint32_t>> order;
     for (uint32_t t : triangles)
-        order.emplace_back(dot(surface.smooth[t], Vec3f(axis)), t);
+        order.emplace_back(dot(surface.facets[t].normal, Vec3f(axis)), t);
     std::sort(order.begin(), order.end());
     normals.clear();
     float dropped = 0;
     for (const auto &[cosine, t] : order)
-        if ((dropped += surface.size[t]) > DEVIANT_AREA * size)
-            normals.push_back(surface.smooth[t]);
+        if ((dropped += surface.facets[t].size) > DEVIANT_AREA * size)
+            normals.push_back(surface.facets[t].normal);
     axis = ball_axis(normals);
-    return axis == Vec3d() ? Vec3d(surface.smooth[triangles[0]]) : axis;
+    return axis == Vec3d() ? Vec3d(surface.facets[triangles[0]].normal) : axis;
 }
 
 Frame make_frame(const Mesh &mesh, const std::vector<uint32_t> &triangles, const Vec3d &z)

@@ -1,5 +1,5 @@
 /* The order of partitioning: cluster, split what is no height map, set the density, report. */
-#include "chart/chart.hpp"
+#include "chart/attach.hpp"
 #include "chart/split.hpp"
 #include "chart/vsa.hpp"
 
@@ -15,18 +15,40 @@ constexpr double LONGEST_SIDE = 2.5;
 /* Texels of `resolution` that are left to the overlap. */
 constexpr unsigned OVERLAP_TEXELS = 8;
 
+uint32_t default_count(const Mesh &mesh)
+{
+    return uint32_t(std::lround(10 * std::pow(double(mesh.triangle_count()), 0.28)));
+}
+
 uint32_t chart_count(const Mesh &mesh, const ChartOptions &options)
 {
-    double triangles = double(mesh.triangle_count());
-    double wanted = options.charts ? options.charts
-                                   : std::min(std::round(10 * std::pow(triangles, 0.28)),
-                                              std::ceil(triangles / 2));
-    return uint32_t(std::max(1., std::min(wanted, triangles)));
+    size_t triangles = mesh.triangle_count(), most = options.charts ? triangles : triangles / 2;
+    size_t wanted = options.charts ? options.charts : default_count(mesh);
+    return uint32_t(std::max<size_t>(1, std::min(wanted, most)));
+}
+
+double side_texels(const ChartOptions &options)
+{
+    return double(std::max(options.resolution, 2 * OVERLAP_TEXELS) - OVERLAP_TEXELS);
 }
 
 double long_side(const Frame &frame)
 {
     return std::max(frame.extent[0], frame.extent[1]);
+}
+
+/* The longest side gets the resolution, unless more charts than wanted came out so alike that
+ * together they would take more than full rectangles in the wanted number. */
+double texel_size(const std::vector<Frame> &frames, const Mesh &mesh, const ChartOptions &options)
+{
+    double longest = 0, area = 0;
+    for (const Frame &frame : frames) {
+        longest = std::max(longest, long_side(frame));
+        area += frame.extent[0] * frame.extent[1];
+    }
+    double side = side_texels(options);
+    double wanted = std::max(options.charts, default_count(mesh));
+    return std::max(longest / side, std::sqrt(area / wanted) / side);
 }
 
 void report_initial(const Surface &surface, const std::vector<Region> &regions, Task &task,
@@ -53,7 +75,7 @@ double side_limit(const Surface &surface, const std::vector<Region> &regions, Ta
         Frame frame = make_frame(surface.mesh, triangles, median_axis(surface.mesh, triangles));
         sides[i].first = long_side(frame);
         for (uint32_t t : triangles)
-            sides[i].second += surface.size[t];
+            sides[i].second += surface.facets[t].size;
     }, 0.72, 0.75);
     std::sort(sides.begin(), sides.end());
     double half = 0;
@@ -117,7 +139,7 @@ void report_final(const Surface &surface, const std::vector<Region> &regions,
     for (size_t t = 0; t < surface.junk.size(); ++t)
         if (surface.junk[t]) {
             ++out.report.junk_triangles;
-            area += surface.size[t];
+            area += surface.facets[t].size;
         }
     out.report.junk_area_fraction = area / double(surface.junk.size());
 }
@@ -138,24 +160,24 @@ Partition partition_vsa(const Mesh &mesh, const ChartOptions &options, Task &tas
     surface.whole.neighbours = {};
     report_initial(surface, regions, task, out.report);
 
-    double texels = double(std::max(options.resolution, 2 * OVERLAP_TEXELS) - OVERLAP_TEXELS);
     Bounds bounds = {side_limit(surface, regions, task), 0};
     std::vector<Frame> frames;
-    do { /* what is split makes the texel smaller, and smaller texels see more */
-        bounds.pitch = bounds.side / texels;
-        if (!split_all(surface, regions, frames, bounds, task))
+    bounds.pitch = bounds.side / side_texels(options);
+    while (split_all(surface, regions, frames, bounds, task)) {
+        double pitch = texel_size(frames, mesh, options);
+        if (pitch == bounds.pitch)
             break;
-        bounds.side = 0;
-        for (const Frame &frame : frames)
-            bounds.side = std::max(bounds.side, long_side(frame));
-    } while (bounds.side / texels < bounds.pitch);
+        bounds.pitch = pitch; /* another texel sees other folds */
+    }
     out.pitch = bounds.pitch;
 
     task.begin("frame");
+    attach_crumbs(surface, bounds, regions, frames);
     out.junk = surface.junk;
     report_final(surface, regions, frames, task, out);
     for (size_t i = 0; i < regions.size(); ++i) {
         Chart chart = {std::move(regions[i].triangles), frames[i], false};
+        std::sort(chart.triangles.begin(), chart.triangles.end());
         for (uint32_t t : chart.triangles)
             chart.two_sided |= !mesh.flags.empty() && mesh.flags[t] & TRIANGLE_TWO_SIDED;
         out.charts.push_back(std::move(chart));

@@ -29,9 +29,9 @@ Candidate try_axis(const Surface &surface, const Region &region, const Vec3d &z,
     Candidate out;
     float steep = 0, size = 0;
     for (uint32_t t : region.triangles) {
-        size += surface.size[t];
-        if (dot(Vec3d(surface.smooth[t]), z) < STEEP_COSINE)
-            steep += surface.size[t];
+        size += surface.facets[t].size;
+        if (dot(Vec3d(surface.facets[t].normal), z) < STEEP_COSINE)
+            steep += surface.facets[t].size;
         out.inverted = out.inverted || is_inverted(surface, t, z, bounds.pitch);
     }
     out.steep = region.size() > 1 && steep > STEEP_AREA * size;
@@ -88,16 +88,20 @@ std::vector<uint32_t> cut_across(const Surface &surface, const Region &region, c
  * that turns farthest from that. */
 std::vector<uint32_t> split_normals(const Surface &surface, const Region &region, const Vec3d &z)
 {
-    auto farthest = [&](const std::vector<Vec3f> &field, const Vec3f &from) {
+    auto farthest = [&](const Vec3f &from) {
         uint32_t best = 0;
-        for (uint32_t i = 1; i < region.size(); ++i)
-            if (dot(field[region.triangles[i]], from) <
-                dot(field[region.triangles[best]], from))
+        float least = INFINITY;
+        for (uint32_t i = 0; i < region.size(); ++i) {
+            float cosine = dot(surface.facets[region.triangles[i]].normal, from);
+            if (cosine < least) {
+                least = cosine;
                 best = i;
+            }
+        }
         return best;
     };
-    uint32_t a = farthest(surface.smooth, Vec3f(z));
-    uint32_t b = farthest(surface.smooth, surface.smooth[region.triangles[a]]);
+    uint32_t a = farthest(Vec3f(z));
+    uint32_t b = farthest(surface.facets[region.triangles[a]].normal);
     if (a == b)
         b = a ? 0 : 1;
     return cluster_pair(surface, region, a, b);
@@ -139,8 +143,8 @@ std::vector<uint32_t> split_layers(const Surface &surface, const Region &region,
             if (n == NO_TRIANGLE)
                 continue;
             uint32_t o = region.triangles[n];
-            float bend = 1 - dot(surface.smooth[t], surface.smooth[o]);
-            float next = distance + length(surface.centre[t] - surface.centre[o]) * (1 + 8 * bend);
+            float bend = 1 - dot(surface.facets[t].normal, surface.facets[o].normal);
+            float next = distance + length(surface.facets[t].centre - surface.facets[o].centre) * (1 + 8 * bend);
             if (next < reached[n]) {
                 reached[n] = next;
                 side[n] = side[i];

@@ -17,6 +17,8 @@ constexpr double JUNK_TRIANGLE = 8;
 /* cos 84 degrees: a scan's surface does not turn so far within a triangle. */
 constexpr float JUNK_COSINE = 0.1f;
 constexpr int SMOOTHING_PASSES = 3;
+/* Sizes divide. */
+constexpr float SMALLEST_SIZE = 1e-30f;
 
 using Connectivity = OpenMesh::TriConnectivity;
 
@@ -59,21 +61,20 @@ std::vector<std::array<uint32_t, 3>> neighbours_of(const Mesh &mesh)
 void smooth_normals(Surface &surface, float large)
 {
     const Mesh &mesh = surface.mesh;
-    surface.smooth = surface.normal;
     std::vector<Vec3f> at_vertex(mesh.positions.size());
     for (int pass = 0; pass < SMOOTHING_PASSES; ++pass) {
         std::fill(at_vertex.begin(), at_vertex.end(), Vec3f());
         for (size_t t = 0; t < mesh.triangle_count(); ++t)
             for (uint32_t v : mesh.triangles[t])
-                at_vertex[v] += surface.smooth[t] * surface.size[t];
+                at_vertex[v] += surface.facets[t].normal * surface.facets[t].size;
         for (size_t t = 0; t < mesh.triangle_count(); ++t) {
-            if (surface.size[t] > large)
+            if (surface.facets[t].size > large)
                 continue;
             Vec3f sum;
             for (uint32_t v : mesh.triangles[t])
                 sum += normalize(at_vertex[v]);
             sum = normalize(sum);
-            surface.smooth[t] = sum == Vec3f() ? surface.normal[t] : sum;
+            surface.facets[t].normal = sum == Vec3f() ? surface.normal[t] : sum;
         }
     }
 }
@@ -96,7 +97,7 @@ double expected_pitch(const Mesh &mesh, size_t charts)
 
 Surface make_surface(const Mesh &mesh, double pitch)
 {
-    Surface surface = {mesh, {}, area_of(mesh), 0, {}, {}, {}, {}, {}};
+    Surface surface = {mesh, {}, area_of(mesh), 0, {}, {}, {}};
     size_t count = mesh.triangle_count();
     surface.whole.triangles.resize(count);
     std::iota(surface.whole.triangles.begin(), surface.whole.triangles.end(), 0u);
@@ -117,15 +118,16 @@ Surface make_surface(const Mesh &mesh, double pitch)
         Vec3d sum;
         for (int k = 0; k < 3; ++k)
             sum += mesh.position(t, k) - middle;
-        surface.size.push_back(std::max(float(length(vector) / 2 / mean), 1e-30f));
-        surface.normal.push_back(Vec3f(normalize(vector)));
-        surface.centre.push_back(Vec3f(sum / (3 * std::sqrt(mean))));
+        Vec3f normal = Vec3f(normalize(vector)), centre = Vec3f(sum / (3 * std::sqrt(mean)));
+        float size = std::max(float(length(vector) / 2 / mean), SMALLEST_SIZE);
+        surface.normal.push_back(normal);
+        surface.facets.push_back({normal, centre, size});
     }
     double texel = pitch * pitch / mean;
     smooth_normals(surface, float(LARGE_TRIANGLE * texel));
     for (size_t t = 0; t < count; ++t)
-        surface.junk.push_back(surface.size[t] < JUNK_TRIANGLE * texel &&
-                               dot(surface.normal[t], surface.smooth[t]) < JUNK_COSINE);
+        surface.junk.push_back(surface.facets[t].size < JUNK_TRIANGLE * texel &&
+                               dot(surface.normal[t], surface.facets[t].normal) < JUNK_COSINE);
     return surface;
 }
 

@@ -7,10 +7,17 @@ namespace gtx {
 
 /* A set of triangles and its connectivity. Indices into a region are called local. */
 struct Region {
-    std::vector<uint32_t> triangles;                  /* of the mesh, ascending */
+    std::vector<uint32_t> triangles;                  /* of the mesh */
     std::vector<std::array<uint32_t, 3>> neighbours;  /* local; NO_TRIANGLE outside */
 
     size_t size() const { return triangles.size(); }
+};
+
+/* What clustering knows of a triangle. */
+struct Facet {
+    Vec3f normal; /* unit, smoothed */
+    Vec3f centre; /* from the middle of the bounding box, over the root of the mean area */
+    float size;   /* area over the mean area */
 };
 
 struct Surface {
@@ -18,10 +25,8 @@ struct Surface {
     Region whole;              /* every triangle: local indices are the mesh's */
     double area = 0;           /* object units, as is the diagonal of the bounding box */
     double diagonal = 0;
-    std::vector<float> size;   /* area over the mean area */
-    std::vector<Vec3f> centre; /* centroid from the middle of the box, over the root of the mean area */
-    std::vector<Vec3f> normal; /* unit */
-    std::vector<Vec3f> smooth; /* unit; what clustering goes by */
+    std::vector<Facet> facets;
+    std::vector<Vec3f> normal; /* unit, raw */
     std::vector<uint8_t> junk; /* 1: too small and too twisted to be anyone's surface */
 };
 

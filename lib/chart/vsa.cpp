@@ -15,6 +15,7 @@ namespace {
 
 constexpr int LLOYD_ITERATIONS = 10;
 constexpr int PAIR_ITERATIONS = 3;
+constexpr double SEED_STEPS = 8;
 /* Weight of the distance from a cluster's centre, in radii of an average cluster. Normals alone
  * make snakes along creases, and one long chart sets the texel density of the whole model. */
 constexpr float COMPACTNESS = 0.01f;
@@ -27,13 +28,18 @@ public:
         uint32_t triangle, cluster, next;
     };
 
-    explicit BucketQueue(size_t capacity) { entries_.reserve(capacity); }
-
     void push(float key, uint32_t triangle, uint32_t cluster)
     {
+        if (!free_) { /* places are used again at once, which keeps them in the cache */
+            entries_.push_back({});
+            free_ = uint32_t(entries_.size());
+        }
+        uint32_t place = free_;
+        Entry &entry = entries_[place - 1];
+        free_ = entry.next;
         size_t b = bucket(key);
-        entries_.push_back({triangle, cluster, heads_[b]});
-        heads_[b] = uint32_t(entries_.size());
+        entry = {triangle, cluster, heads_[b]};
+        heads_[b] = place;
         used_[b / 64] |= uint64_t(1) << b % 64;
     }
 
@@ -45,7 +51,10 @@ public:
             size_t b = word * 64;
             for (uint64_t bits = used_[word]; !(bits & 1); bits >>= 1)
                 ++b;
-            out = entries_[heads_[b] - 1];
+            uint32_t place = heads_[b];
+            out = entries_[place - 1];
+            entries_[place - 1].next = free_;
+            free_ = place;
             heads_[b] = out.next;
             if (!out.next)
                 used_[word] &= ~(uint64_t(1) << b % 64);
@@ -66,7 +75,8 @@ private:
         return place <= LOWEST ? 0 : std::min<size_t>(place - LOWEST, BUCKETS - 1);
     }
 
-    std::vector<Entry> entries_; /* indices from 1; 0 ends a list */
+    std::vector<Entry> entries_; /* places count from 1; 0 ends a list */
+    uint32_t free_ = 0;
     uint32_t heads_[BUCKETS] = {};
     uint64_t used_[WORDS] = {};
 };
@@ -75,18 +85,20 @@ class Clustering {
 public:
     /* `clusters` sets the length scale of compactness. */
     Clustering(const Surface &surface, const Region &region, double clusters)
-        : surface_(surface), region_(region), labels_(region.size())
+        : nodes_(region.size())
     {
         double size = 0;
-        for (uint32_t t : region.triangles)
-            size += surface.size[t];
+        for (size_t i = 0; i < region.size(); ++i) {
+            const Facet &facet = surface.facets[region.triangles[i]];
+            nodes_[i] = {facet, region.neighbours[i], 0};
+            size += facet.size;
+        }
         spread_ = COMPACTNESS / float(size / clusters / 3.14159265);
     }
 
     void add_seed(uint32_t local)
     {
-        uint32_t t = region_.triangles[local];
-        clusters_.push_back({surface_.smooth[t], surface_.centre[t], local});
+        clusters_.push_back({nodes_[local].facet.normal, nodes_[local].facet.centre, local});
     }
 
     void grow();
@@ -94,41 +106,56 @@ public:
     void add_worst_seeds(size_t wanted);
 
     size_t count() const { return clusters_.size(); }
-    std::vector<uint32_t> take_labels() { return std::move(labels_); }
-
-private:
-    float error(uint32_t local, const Cluster &cluster) const
+    std::vector<uint32_t> labels() const
     {
-        uint32_t t = region_.triangles[local];
-        Vec3f dn = surface_.smooth[t] - cluster.normal;
-        Vec3f dc = surface_.centre[t] - cluster.centre;
-        return surface_.size[t] * (dot(dn, dn) + spread_ * dot(dc, dc));
+        std::vector<uint32_t> out;
+        for (const Node &node : nodes_)
+            out.push_back(node.label);
+        return out;
     }
 
-    const Surface &surface_;
-    const Region &region_;
+private:
+    /* A triangle, in one line of the cache: growing is nothing but reaching for them. */
+    struct alignas(16) Node {
+        Facet facet;
+        std::array<uint32_t, 3> neighbours;
+        uint32_t label;
+    };
+
+    float error(const Facet &facet, const Cluster &cluster) const
+    {
+        Vec3f dn = facet.normal - cluster.normal, dc = facet.centre - cluster.centre;
+        return facet.size * (dot(dn, dn) + spread_ * dot(dc, dc));
+    }
+
+    std::vector<Node> nodes_;
     float spread_;
-    std::vector<uint32_t> labels_;
     std::vector<Cluster> clusters_;
 };
 
 void Clustering::grow()
 {
-    std::fill(labels_.begin(), labels_.end(), NO_TRIANGLE);
-    BucketQueue queue(region_.size() * 2);
+    /* A label, or OPEN and the cluster that offered last: half of all offers repeat that. */
+    constexpr uint32_t OPEN = 1u << 31;
+    for (Node &node : nodes_)
+        node.label = NO_TRIANGLE;
+    BucketQueue queue;
     auto take = [&](uint32_t local, uint32_t label) {
-        labels_[local] = label;
-        for (uint32_t n : region_.neighbours[local])
-            if (n != NO_TRIANGLE && labels_[n] == NO_TRIANGLE)
-                queue.push(error(n, clusters_[label]), n, label);
+        nodes_[local].label = label;
+        for (uint32_t n : nodes_[local].neighbours) {
+            if (n == NO_TRIANGLE || !(nodes_[n].label & OPEN) || nodes_[n].label == (OPEN | label))
+                continue;
+            nodes_[n].label = OPEN | label;
+            queue.push(error(nodes_[n].facet, clusters_[label]), n, label);
+        }
     };
     for (uint32_t c = 0; c < clusters_.size(); ++c)
-        labels_[clusters_[c].seed] = c;
+        nodes_[clusters_[c].seed].label = c;
     for (uint32_t c = 0; c < clusters_.size(); ++c)
         take(clusters_[c].seed, c);
     BucketQueue::Entry entry;
     while (queue.pop(entry))
-        if (labels_[entry.triangle] == NO_TRIANGLE)
+        if (nodes_[entry.triangle].label & OPEN)
             take(entry.triangle, entry.cluster);
 }
 
@@ -136,36 +163,40 @@ void Clustering::grow()
  * that fits best. */
 void Clustering::refit()
 {
-    std::vector<Vec3d> normal(count()), centre(count());
-    std::vector<double> size(count());
-    for (size_t i = 0; i < region_.size(); ++i) {
-        uint32_t t = region_.triangles[i], c = labels_[i];
-        normal[c] += Vec3d(surface_.smooth[t]) * double(surface_.size[t]);
-        centre[c] += Vec3d(surface_.centre[t]) * double(surface_.size[t]);
-        size[c] += surface_.size[t];
+    struct Sum {
+        Vec3d normal, centre;
+        double size = 0, error = 0;
+        float best = INFINITY, worst = -1;
+    };
+    std::vector<Sum> sums(count());
+    for (const Node &node : nodes_) {
+        Sum &sum = sums[node.label];
+        double size = node.facet.size;
+        sum.normal += Vec3d(node.facet.normal) * size;
+        sum.centre += Vec3d(node.facet.centre) * size;
+        sum.size += size;
     }
-    std::vector<float> best(count(), INFINITY), most(count(), -1.f);
-    std::vector<double> sum(count());
     for (size_t c = 0; c < count(); ++c) {
-        clusters_[c].normal = Vec3f(normalize(normal[c]));
-        clusters_[c].centre = Vec3f(centre[c] / size[c]);
-        clusters_[c].worst = clusters_[c].seed;
+        clusters_[c].normal = Vec3f(normalize(sums[c].normal));
+        clusters_[c].centre = Vec3f(sums[c].centre / sums[c].size);
     }
-    for (uint32_t i = 0; i < region_.size(); ++i) {
-        uint32_t c = labels_[i];
-        float e = error(i, clusters_[c]), density = e / surface_.size[region_.triangles[i]];
-        sum[c] += e;
-        if (e < best[c]) {
-            best[c] = e;
-            clusters_[c].seed = i;
+    for (uint32_t i = 0; i < nodes_.size(); ++i) {
+        const Node &node = nodes_[i];
+        Cluster &cluster = clusters_[node.label];
+        Sum &sum = sums[node.label];
+        float e = error(node.facet, cluster), density = e / node.facet.size;
+        sum.error += e;
+        if (e < sum.best) {
+            sum.best = e;
+            cluster.seed = i;
         }
-        if (density > most[c]) {
-            most[c] = density;
-            clusters_[c].worst = i;
+        if (density > sum.worst) {
+            sum.worst = density;
+            cluster.worst = i;
         }
     }
     for (size_t c = 0; c < count(); ++c)
-        clusters_[c].error = float(sum[c]);
+        clusters_[c].error = float(sums[c].error);
 }
 
 /* A second seed for the clusters with more than their share of the error. */
@@ -186,19 +217,22 @@ void Clustering::add_worst_seeds(size_t wanted)
             add_seed(clusters_[c].worst);
 }
 
-/* A seed for each connected piece. Returns how many are so small beside a cluster of `mean` size
- * that they are not to take its place. */
-uint32_t seed_pieces(const Surface &surface, const Region &region, double mean,
+/* A seed for each connected piece, and some more along the order of the triangles, to save the
+ * first rounds. Returns how many pieces are so small beside a cluster of `mean` size that they are
+ * not to take its place. */
+uint32_t seed_pieces(const Surface &surface, const Region &region, uint32_t wanted,
                      Clustering &clustering)
 {
     std::vector<uint32_t> pieces(region.size(), 0);
     std::vector<double> size(connected_pieces(region, pieces));
-    for (uint32_t i = 0, next = 0; i < region.size(); ++i) {
-        size[pieces[i]] += surface.size[region.triangles[i]];
-        if (pieces[i] == next) {
-            clustering.add_seed(i);
-            ++next;
-        }
+    double mean = double(region.size()) / wanted;
+    for (uint32_t i = 0, next = 0, step = 0; i < region.size(); ++i, ++step) {
+        size[pieces[i]] += surface.facets[region.triangles[i]].size;
+        if (pieces[i] != next && step < SEED_STEPS * mean)
+            continue;
+        next += pieces[i] == next;
+        step = 0;
+        clustering.add_seed(i);
     }
     return uint32_t(std::count_if(size.begin(), size.end(),
                                   [=](double s) { return s < 0.5 * mean; }));
@@ -210,7 +244,7 @@ std::vector<uint32_t> cluster(const Surface &surface, const Region &region, uint
                               Task &task)
 {
     Clustering clustering(surface, region, count);
-    count += seed_pieces(surface, region, double(region.size()) / count, clustering);
+    count += seed_pieces(surface, region, count, clustering);
     for (size_t before = 0; clustering.count() < count && clustering.count() > before;) {
         before = clustering.count();
         clustering.grow();
@@ -224,7 +258,7 @@ std::vector<uint32_t> cluster(const Surface &surface, const Region &region, uint
         task.advance(0.3 + 0.4 * i / LLOYD_ITERATIONS);
     }
     count = uint32_t(clustering.count());
-    return clustering.take_labels();
+    return clustering.labels();
 }
 
 std::vector<uint32_t> cluster_pair(const Surface &surface, const Region &region, uint32_t a,
@@ -238,7 +272,7 @@ std::vector<uint32_t> cluster_pair(const Surface &surface, const Region &region,
             clustering.refit();
         clustering.grow();
     }
-    return clustering.take_labels();
+    return clustering.labels();
 }
 
 } // namespace gtx

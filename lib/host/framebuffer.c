@@ -68,3 +68,16 @@ void gtx_framebuffer_read_depth(const gtx_host_gl *gl, const gtx_framebuffer *fr
 {
     read_rows(gl, framebuffer, GL_DEPTH_COMPONENT, GL_FLOAT, (uint8_t *)depth);
 }
+
+void gtx_average_down(uint8_t *pixels, int width, int height, int n)
+{
+    const size_t row = (size_t)4 * n * width;
+    for (int i = 0; i < width * height; ++i) /* what is written is never read again */
+        for (int c = 0; c < 4; ++c) {
+            const uint8_t *from = pixels + i / width * n * row + (size_t)4 * n * (i % width) + c;
+            int sum = 0;
+            for (int k = 0; k < n * n; ++k)
+                sum += from[k / n * row + (size_t)4 * (k % n)];
+            pixels[(size_t)4 * i + c] = (uint8_t)((sum + n * n / 2) / (n * n));
+        }
+}

@@ -27,6 +27,10 @@ void gtx_framebuffer_read_color(const gtx_host_gl *gl, const gtx_framebuffer *fr
 void gtx_framebuffer_read_depth(const gtx_host_gl *gl, const gtx_framebuffer *framebuffer,
                                 float *depth);
 
+/* Averages squares of n x n texels, in place: an image drawn n times as large becomes a smooth one
+ * of width x height RGBA texels. */
+void gtx_average_down(uint8_t *pixels, int width, int height, int n);
+
 #ifdef __cplusplus
 }
 #endif

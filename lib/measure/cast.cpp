@@ -9,7 +9,7 @@ namespace gtx {
 static const double LEAK_STEPS = 4;
 
 AssetView::AssetView(const gtx_asset *asset, uint32_t level)
-    : asset_(asset), patches_(gtx_patches(asset)),
+    : patches_(gtx_patches(asset)),
       color_(static_cast<const uint8_t *>(gtx_map_data(asset, GTX_MAP_COLOR, 0, nullptr)))
 {
     gtx_get_info(asset, &info_);

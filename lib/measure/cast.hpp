@@ -36,7 +36,6 @@ private:
     struct Destroy {
         void operator()(gtx_caster *caster) const { gtx_caster_destroy(caster); }
     };
-    const gtx_asset *asset_;
     gtx_info info_;
     const gtx_patch *patches_;
     const uint8_t *color_;       /* level 0, or null */

@@ -13,12 +13,15 @@ void drop_invalid(Mesh &mesh, CleanReport &report);
  * others. */
 void weld(Mesh &mesh);
 
-/* Triangles on the three vertices of an earlier one, whatever their winding: "duplicate". */
-void drop_duplicates(Mesh &mesh, CleanReport &report);
+/* Of triangles on the same three vertices one stays: "duplicate". It winds as most do. Returns for
+ * each triangle kept whether as many of its copies wound one way as the other: they were the two
+ * sides of a sheet without thickness. */
+std::vector<uint8_t> drop_duplicates(Mesh &mesh, CleanReport &report);
 
 /* What the later steps know of the mesh. */
 struct Surface {
     Mesh &mesh;
+    std::vector<uint8_t> thin;     /* per triangle, from drop_duplicates */
     std::vector<uint32_t> twin;    /* per half-edge: the other side of the edge, or NO_EDGE */
     std::vector<uint32_t> suspect; /* half-edges whose two ends may be shared by another edge */
     std::vector<uint8_t> turned;   /* per triangle: its winding differs from the source's */

@@ -9,23 +9,28 @@ static void join(std::vector<uint32_t> &twin, uint32_t a, uint32_t b)
     twin[b] = a;
 }
 
+/* Two triangles that may continue each other over an edge of many. */
+struct Candidate {
+    bool mixed;
+    double agreement;
+    uint32_t a, b;
+    bool operator<(const Candidate &o) const
+    {
+        return mixed != o.mixed           ? o.mixed
+               : agreement != o.agreement ? agreement > o.agreement
+               : a != o.a                 ? a < o.a
+                                          : b < o.b;
+    }
+};
+
 /* Greedy: of the triangles that run the edge in opposite directions, those two whose normals agree
- * best continue each other. Of an edge with very many triangles no surface can be told. */
+ * best continue each other. A sheet without thickness adds nothing to a surface that it touches, so
+ * it must not take a side from it. Of an edge with very many triangles no surface can be told. */
 static void pair_many(Surface &surface, const EdgeEntry *edge, size_t count)
 {
     constexpr size_t most = 64;
     if (count > most)
         return;
-    struct Candidate {
-        double agreement;
-        uint32_t a, b;
-        bool operator<(const Candidate &o) const
-        {
-            return agreement != o.agreement ? agreement > o.agreement
-                   : a != o.a               ? a < o.a
-                                            : b < o.b;
-        }
-    };
     Vec3d normals[most];
     for (size_t i = 0; i < count; ++i)
         normals[i] = normalize(surface.mesh.area_vector(edge[i].half_edge / 3));
@@ -33,8 +38,9 @@ static void pair_many(Surface &surface, const EdgeEntry *edge, size_t count)
     for (size_t i = 0; i < count; ++i)
         for (size_t j = i + 1; j < count; ++j) {
             uint32_t a = edge[i].half_edge, b = edge[j].half_edge;
+            bool mixed = surface.thin[a / 3] != surface.thin[b / 3];
             if (start_of(surface.mesh, a) != start_of(surface.mesh, b))
-                candidates.push_back({dot(normals[i], normals[j]), a, b});
+                candidates.push_back({mixed, dot(normals[i], normals[j]), a, b});
         }
     std::sort(candidates.begin(), candidates.end());
     for (const Candidate &c : candidates)

@@ -41,7 +41,7 @@ static void one_vertex_a_fan(Surface &surface)
     }
 }
 
-/* The suspect half-edges grouped by their vertices; visit(half_edges, count). */
+/* Calls visit(half_edges) for each group of suspect half-edges with the same two vertices. */
 template <class Visit> static void for_each_suspect_edge(const Surface &surface, Visit visit)
 {
     struct Entry {
@@ -53,20 +53,22 @@ template <class Visit> static void for_each_suspect_edge(const Surface &surface,
         entries.push_back({std::min(a, b), std::max(a, b), h});
     }
     std::sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) {
-        return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high
-                                                                 : a.half_edge < b.half_edge;
+        return a.low != b.low     ? a.low < b.low
+               : a.high != b.high ? a.high < b.high
+                                  : a.half_edge < b.half_edge;
     });
     std::vector<uint32_t> group;
-    for (size_t i = 0; i < entries.size();) {
-        group.clear();
-        size_t j = i;
-        for (; j < entries.size() && entries[j].low == entries[i].low &&
-               entries[j].high == entries[i].high; ++j)
-            if (group.empty() || group.back() != entries[j].half_edge)
-                group.push_back(entries[j].half_edge);
-        visit(group);
-        i = j;
+    for (size_t i = 0; i < entries.size(); ++i) {
+        const Entry &e = entries[i];
+        if (i > 0 && (e.low != entries[i - 1].low || e.high != entries[i - 1].high)) {
+            visit(group);
+            group.clear();
+        }
+        if (group.empty() || group.back() != e.half_edge)
+            group.push_back(e.half_edge);
     }
+    if (!group.empty())
+        visit(group);
 }
 
 /* Two sheets may pass the same edge and still be one fan at both its ends, so that no vertex tells

@@ -121,45 +121,70 @@ void weld(Mesh &mesh)
     mesh.positions = std::move(welded);
 }
 
-/* A counting sort by the lowest vertex brings the copies of a triangle into one short list. */
-void drop_duplicates(Mesh &mesh, CleanReport &report)
+/* A triangle in the list of those that share its lowest vertex. */
+struct TriangleEntry {
+    uint32_t middle, high, triangle;
+    bool odd; /* its corners are an odd permutation of their order */
+    bool operator<(const TriangleEntry &o) const
+    {
+        return middle != o.middle ? middle < o.middle
+               : high != o.high   ? high < o.high
+                                  : triangle < o.triangle;
+    }
+};
+
+/* A counting sort by the lowest vertex leaves short lists; end[v] is where that of v ends. */
+static std::vector<TriangleEntry> list_triangles(const Mesh &mesh, std::vector<uint32_t> &end)
 {
-    struct Entry {
-        uint32_t middle, high, triangle;
-        bool operator<(const Entry &o) const
-        {
-            return middle != o.middle ? middle < o.middle
-                   : high != o.high   ? high < o.high
-                                      : triangle < o.triangle;
-        }
-    };
-    std::vector<uint32_t> end(mesh.positions.size() + 1, 0);
+    end.assign(mesh.positions.size() + 1, 0);
     for (const auto &v : mesh.triangles)
         ++end[std::min({v[0], v[1], v[2]}) + 1];
     for (size_t v = 1; v < end.size(); ++v)
         end[v] += end[v - 1];
-    std::vector<Entry> entries(mesh.triangles.size());
+    std::vector<TriangleEntry> entries(mesh.triangles.size());
     for (size_t t = 0; t < entries.size(); ++t) {
         auto v = mesh.triangles[t];
+        bool odd = (v[0] > v[1]) ^ (v[1] > v[2]) ^ (v[0] > v[2]);
         std::sort(v.begin(), v.end());
-        entries[end[v[0]]++] = {v[1], v[2], uint32_t(t)};
+        entries[end[v[0]]++] = {v[1], v[2], uint32_t(t), odd};
     }
+    return entries;
+}
 
-    std::vector<uint8_t> fates(entries.size(), KEEP);
+std::vector<uint8_t> drop_duplicates(Mesh &mesh, CleanReport &report)
+{
+    std::vector<uint32_t> end;
+    std::vector<TriangleEntry> entries = list_triangles(mesh, end);
+    std::vector<uint8_t> fates(entries.size(), KEEP), thin(entries.size(), 0);
     bool all_kept = true;
-    size_t from = 0;
-    for (size_t v = 0; v < mesh.positions.size(); from = end[v++]) {
-        std::sort(entries.begin() + from, entries.begin() + end[v]);
-        for (size_t i = from + 1; i < end[v]; ++i) {
-            const Entry &a = entries[i - 1], &b = entries[i];
-            if (a.middle == b.middle && a.high == b.high) {
-                fates[b.triangle] = DUPLICATE;
-                all_kept = false;
-            }
+    TriangleEntry *from = entries.data();
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+        TriangleEntry *to = entries.data() + end[v];
+        std::sort(from, to);
+        while (from != to) {
+            TriangleEntry *first = from;
+            long odd = 0;
+            for (; from != to && from->middle == first->middle && from->high == first->high; ++from)
+                odd += from->odd;
+            long count = from - first;
+            TriangleEntry *keeper = first; /* the first that winds as most do */
+            while (2 * odd != count && keeper->odd != (2 * odd > count))
+                ++keeper;
+            for (TriangleEntry *e = first; e != from; ++e)
+                fates[e->triangle] = e == keeper ? KEEP : DUPLICATE;
+            thin[keeper->triangle] = 2 * odd == count;
+            all_kept = all_kept && count == 1;
         }
     }
-    if (!all_kept)
-        drop(mesh, fates, report);
+    if (all_kept)
+        return thin;
+    size_t kept = 0;
+    for (size_t t = 0; t < fates.size(); ++t)
+        if (fates[t] == KEEP)
+            thin[kept++] = thin[t];
+    thin.resize(kept);
+    drop(mesh, fates, report);
+    return thin;
 }
 
 } // namespace gtx

@@ -129,13 +129,15 @@ Type PlyReader::type_named(std::string_view name)
 
 void PlyReader::header_element(const std::vector<std::string_view> &words)
 {
-    Element element;
-    const char *stop = nullptr;
-    if (words.size() == 3) {
+    Element element = {};
+    bool good = words.size() == 3;
+    if (good) {
         element.name = words[1];
-        stop = words[2].data() + words[2].size();
+        const char *end = words[2].data() + words[2].size();
+        auto [stop, error] = std::from_chars(words[2].data(), end, element.count);
+        good = error == std::errc() && stop == end;
     }
-    if (!stop || std::from_chars(words[2].data(), stop, element.count).ptr != stop)
+    if (!good)
         fail(GTX_ERROR_INPUT, "line %zu: an element needs a name and a count", line_);
     elements_.push_back(std::move(element));
 }

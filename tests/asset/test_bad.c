@@ -138,7 +138,7 @@ static const bad bads[] = {
     {309, "patch-reserved", "minimal", RECORD + 124, 4, 1, SECTIONS, RECORD + 124, NULL},
     {310, "patch-overlap", "two-pages", RECORD + 128 + 68, 2, 7, SECTIONS, RECORD + 128 + 68, NULL},
     {311, "patch-bounds", "minimal", 84, 4, 0x3F000000, HEADER, RECORD, NULL},       /* 0.5 */
-    {400, "height-outside", "two-pages", 960 + 16 * 24 + 3, 1, 9, SECTIONS, 960 + 16 * 24 + 3, NULL},
+    {400, "height-outside", "two-pages", 1347, 1, 9, SECTIONS, 1347, NULL},
     {600, "meta", "color", 3648, 1, 0xFF, SECTIONS, 3648, NULL},
 };
 enum { BAD_COUNT = sizeof bads / sizeof bads[0] };

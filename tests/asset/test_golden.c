@@ -11,6 +11,7 @@
 #include "asset/golden.h"
 
 #include <inttypes.h>
+#include <sys/wait.h>
 
 static gtx_asset *open_bytes(bytes file)
 {
@@ -162,6 +163,32 @@ static void test_valid(void **state)
     }
 }
 
+static int run_decoder(const char *path)
+{
+    char command[512];
+    snprintf(command, sizeof command, "'%s/gtx_decode' %s >/dev/null 2>&1",
+             getenv("GTX_OUT"), path);
+    int status = system(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/* The decoder of the specification as a program. */
+static void test_decoder(void **state)
+{
+    (void)state;
+    if (!getenv("GTX_OUT"))
+        skip();
+    for (int i = 0; i < GOLDEN_COUNT; ++i) {
+        char path[256];
+        snprintf(path, sizeof path, GOOD "%s.gtx", goldens[i].name);
+        assert_int_equal(run_decoder(path), readable(&goldens[i]) ? 0 : 5);
+    }
+    assert_int_equal(run_decoder(BAD "302-patch-axis-unit.gtx"), 3);
+    assert_int_equal(run_decoder(BAD "118-truncated.gtx"), 3);
+    assert_int_equal(run_decoder("tests/golden"), 2);
+    assert_int_equal(run_decoder("nowhere.gtx"), 2);
+}
+
 /* A compressed file without zstd is refused as unsupported, not as broken. */
 static void test_without_zstd(void **state)
 {
@@ -197,7 +224,8 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_stored_bytes), cmocka_unit_test(test_hashes),
         cmocka_unit_test(test_content),      cmocka_unit_test(test_round_trip),
-        cmocka_unit_test(test_valid),        cmocka_unit_test(test_without_zstd),
+        cmocka_unit_test(test_valid),        cmocka_unit_test(test_decoder),
+        cmocka_unit_test(test_without_zstd),
     };
     return cmocka_run_group_tests_name("golden", tests, NULL, NULL);
 }

@@ -79,14 +79,14 @@ static void a_bumpy_ball_lies_on_its_surface(void **)
         options.height_bits = bits;
         Maps maps = bake_valid(mesh, partition, options);
         assert_int_equal(maps.patches.size(), partition.charts.size());
-        double worst = 0, outside = 0;
+        double inside = 0, outside = 0;
         each_texel(maps, [&](const gtx_patch &, const Vec3d &p, double trim, size_t) {
-            double off = std::fabs(length(p) - shapes::bumps(normalize(p)));
-            (trim <= 0 ? worst : outside) = std::max(trim <= 0 ? worst : outside, off);
+            double &worst = trim <= 0.3 ? inside : outside;
+            worst = std::max(worst, std::fabs(length(p) - shapes::bumps(normalize(p))));
         });
-        print_message("# %u bits: %.5f inside, %.5f extrapolated\n", bits, worst, outside);
-        assert_true(worst < (bits == 8 ? 0.004 : 0.0025));
-        assert_true(outside < 0.02);
+        print_message("# %u bits: %.5f shown, %.5f beyond\n", bits, inside, outside);
+        assert_true(inside < (bits == 8 ? 0.004 : 0.0025));
+        assert_true(outside < 0.06); /* continued by up to two texels of 0.017 */
     }
 }
 

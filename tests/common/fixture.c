@@ -149,8 +149,9 @@ gtx_asset *fixture_build_with(const fixture_patch *from, uint32_t count, uint32_
     }
     for (uint32_t i = 0; i < count; ++i)
         finish_patch(&m, &patches[i]);
-    for (int k = 0; k < 3 && m.desc.bounds_min[0] > m.desc.bounds_max[0]; ++k)
-        m.desc.bounds_min[k] = m.desc.bounds_max[k] = 0;
+    if (m.desc.bounds_min[0] > m.desc.bounds_max[0]) /* no coded texel at all */
+        for (int k = 0; k < 3; ++k)
+            m.desc.bounds_min[k] = m.desc.bounds_max[k] = 0;
 
     m.desc.patches = patches;
     m.desc.height = m.height;

@@ -115,6 +115,22 @@ static void test_duplicates(void **)
     assert_true(c.report.closed);
     assert_int_equal(c.report.flipped, 0);
 
+    /* a flap without thickness hangs from a closed surface: that stays closed */
+    Mesh flap = torus();
+    flap.positions.push_back(flap.position(5, 0) + Vec3d(0.1, 0.2, 1));
+    flap.positions.push_back(flap.position(5, 1) + Vec3d(0.1, 0.2, 1));
+    uint32_t a = flap.triangles[5][0], b = flap.triangles[5][1];
+    uint32_t d = uint32_t(flap.positions.size() - 2);
+    for (std::array<uint32_t, 3> t : {std::array<uint32_t, 3>{a, b, d}, {b, a, d}, {b, d + 1, d}})
+        flap.triangles.push_back(t);
+    flap.triangles.push_back({d, d + 1, b});
+    c = clean(flap);
+    assert_int_equal(c.report.components, 2);
+    assert_int_equal(c.report.boundary_edges, 4);
+    assert_int_equal(c.mesh.flags[5], 0);
+    /* a sheet of two sides alone keeps one */
+    assert_int_equal(clean(moved(torus(), {1, 1, 0}, {0, 0, 0})).report.components, 1);
+
     Mesh twice = sphere();
     append(twice, sphere());
     assert_true(clean(twice).report.closed);

@@ -8,6 +8,7 @@
 
 #include "mesh/mesh.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>

@@ -304,6 +304,8 @@ static void degenerate_rays_hit_nothing(void **state)
     gtx_ray still = good;
     still.direction[2] = 0;
     assert_int_equal(cast(caster, still, 0).patch, UINT32_MAX);
+    gtx_caster_destroy(caster);
+    gtx_close(asset);
 }
 
 static void extreme_rays_end(void **state)

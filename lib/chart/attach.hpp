@@ -1,0 +1,13 @@
+/* Crumbs of surface find a place in a larger chart. */
+#pragma once
+
+#include "chart/split.hpp"
+
+namespace gtx {
+
+/* Moves charts of a few texels into charts that they touch, where these stay free of folds and
+ * texels are saved. Hosts keep their axes, and may then have several connected pieces. */
+void attach_crumbs(const Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
+                   std::vector<Frame> &frames);
+
+} // namespace gtx

@@ -1,0 +1,36 @@
+/* A sky and a tiled floor with soft shadows baked in: what a picture of a model stands on. */
+#ifndef GTX_HOST_BACKDROP_H
+#define GTX_HOST_BACKDROP_H
+
+#include "host/camera.h"
+#include "host/polygons.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct gtx_backdrop {
+    gtx_polygons floor, sky;
+} gtx_backdrop;
+
+/* Draws what stands on the floor, into the bound framebuffer. */
+typedef gtx_result (*gtx_draw_standing)(const float view[16], const float projection[16],
+                                        void *user, gtx_error *error);
+
+/* A floor at height 0, `side` long and centred on the origin. Its shadows are those of what
+ * `draw` draws within half of it, in parallel light from `light` (unit, towards the light).
+ * Unbinds the framebuffer. Errors: MEMORY, GL, and what `draw` returns. */
+gtx_result gtx_backdrop_create(const gtx_host_gl *gl, float side, const float light[3],
+                               gtx_draw_standing draw, void *user, gtx_backdrop *out,
+                               gtx_error *error);
+void gtx_backdrop_destroy(const gtx_host_gl *gl, gtx_backdrop *backdrop);
+
+/* Clears the framebuffer and draws sky and floor; leaves the depth test on. */
+void gtx_backdrop_draw(const gtx_host_gl *gl, const gtx_polygon_program *program,
+                       const gtx_backdrop *backdrop, const float view[16],
+                       const float projection[16]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,135 @@
+/* The cells of an asset as shapes to be near to. */
+#include "measure/cells.hpp"
+
+#include "asset/asset.h"
+
+namespace gtx {
+
+/* Trim codes: 128 is the outline, 16 a texel (format/gtx.md, 4.2). */
+static const double LIMIT = 0.3;
+
+static double trim_of(double code)
+{
+    return (code - 128) / 16;
+}
+
+template <class T> static double mix(const T corner[4], double u, double v)
+{
+    return (corner[0] * (1 - u) + corner[1] * u) * (1 - v) + (corner[2] * (1 - u) + corner[3] * u) * v;
+}
+
+Cells::Cells(const gtx_asset *asset)
+{
+    for (uint32_t i = 0; i < asset->info.patch_count; ++i)
+        add_patch(asset, i);
+}
+
+void Cells::add_patch(const gtx_asset *asset, uint32_t index)
+{
+    const gtx_patch &patch = asset->patches[index];
+    Frame frame;
+    double steps = asset->info.height_bits == 8 ? 254 : 65534;
+    for (int k = 0; k < 3; ++k) {
+        frame.x[k] = double(patch.axis_x[k]) * patch.extent_x / patch.rect[2];
+        frame.y[k] = double(patch.axis_y[k]) * patch.extent_y / patch.rect[3];
+        frame.z[k] = double(patch.axis_z[k]) * patch.extent_z / steps;
+        frame.origin[k] = patch.origin[k] + (frame.x[k] + frame.y[k]) / 2 - frame.z[k];
+    }
+    frames_.push_back(frame);
+    for (uint32_t y = 0; y + 1 < patch.rect[3]; ++y)
+        for (uint32_t x = 0; x + 1 < patch.rect[2]; ++x) {
+            Cell cell = {index, uint16_t(x), uint16_t(y), {}, {}, false};
+            bool solid = true, shown = false;
+            for (uint32_t k = 0; k < 4; ++k) {
+                cell.code[k] = uint16_t(gtx_height_code(asset, &patch, x + (k & 1), y + (k >> 1)));
+                cell.trim[k] = uint8_t(gtx_trim_code(asset, &patch, x + (k & 1), y + (k >> 1)));
+                bool outside = trim_of(cell.trim[k]) > LIMIT;
+                solid &= cell.code[k] != 0;
+                shown |= !outside;
+                cell.crossed |= outside;
+            }
+            if (solid && shown)
+                cells_.push_back(cell);
+        }
+}
+
+Vec3d Cells::point(size_t i, double u, double v) const
+{
+    const Cell &cell = cells_[i];
+    const Frame &f = frames_[cell.patch];
+    return f.origin + f.x * (cell.x + u) + f.y * (cell.y + v) + f.z * mix(cell.code, u, v);
+}
+
+double Cells::trim(size_t i, double u, double v) const
+{
+    return trim_of(mix(cells_[i].trim, u, v));
+}
+
+Box Cells::box(size_t i) const
+{
+    Box box;
+    for (int k = 0; k < 4; ++k)
+        box.add(point(i, k & 1, k >> 1));
+    return box;
+}
+
+/* The part of a triangle where the trim, linear over it, is at most the limit: nothing, one
+ * triangle or two. */
+static double clipped_distance2(const Vec3d &p, const Vec3d v[3], const double trim[3])
+{
+    Vec3d kept[4];
+    int count = 0;
+    for (int k = 0; k < 3; ++k) {
+        int n = (k + 1) % 3;
+        bool in = trim[k] <= LIMIT, next_in = trim[n] <= LIMIT;
+        if (in)
+            kept[count++] = v[k];
+        if (in != next_in)
+            kept[count++] = v[k] + (v[n] - v[k]) * ((LIMIT - trim[k]) / (trim[n] - trim[k]));
+    }
+    double best = std::numeric_limits<double>::infinity();
+    for (int k = 2; k < count; ++k)
+        best = std::min(best, triangle_distance2(p, kept[0], kept[k - 1], kept[k]));
+    return best;
+}
+
+double Cells::distance2(size_t i, const Vec3d &p) const
+{
+    double best = std::numeric_limits<double>::infinity();
+    if (!cells_[i].crossed) {
+        static const int ring[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
+        Vec3d centre = point(i, 0.5, 0.5), last = point(i, 0, 0);
+        for (int k = 1; k < 5; ++k) {
+            Vec3d next = point(i, ring[k][0], ring[k][1]);
+            best = std::min(best, triangle_distance2(p, centre, last, next));
+            last = next;
+        }
+        return best;
+    }
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        Vec3d corner[4];
+        double trims[4];
+        for (int k = 0; k < 4; ++k) {
+            double u = 0.5 * ((quarter & 1) + (k & 1)), v = 0.5 * ((quarter >> 1) + (k >> 1));
+            corner[k] = point(i, u, v);
+            trims[k] = trim(i, u, v);
+        }
+        for (int k = 1; k < 3; ++k) { /* both hold corners 0 and 3 */
+            const Vec3d v[3] = {corner[0], corner[k], corner[3]};
+            const double t[3] = {trims[0], trims[k], trims[3]};
+            best = std::min(best, clipped_distance2(p, v, t));
+        }
+    }
+    return best;
+}
+
+double Cells::core_area(size_t i) const
+{
+    int inside = 0;
+    for (int k = 0; k < 16; ++k)
+        inside += trim(i, 0.125 + 0.25 * (k & 3), 0.125 + 0.25 * (k >> 2)) <= 0;
+    Vec3d across = point(i, 1, 1) - point(i, 0, 0), back = point(i, 0, 1) - point(i, 1, 0);
+    return length(cross(across, back)) / 2 * inside / 16;
+}
+
+} // namespace gtx

@@ -1,0 +1,46 @@
+/* The surface of an asset as small shapes: its cells, trimmed. */
+#pragma once
+
+#include "measure/nearest.hpp"
+
+#include <geotex/geotex.h>
+
+namespace gtx {
+
+/* Shapes for NearestTree, relative to the asset's anchor. An untrimmed cell is the four
+ * triangles around its centre, which lie within a sixteenth of its twist of the bilinear patch. A
+ * cell that the outline crosses is cut into 2x2, and the eight triangles of those are clipped where
+ * the trim, linear along their sides, passes the limit. */
+class Cells {
+public:
+    explicit Cells(const gtx_asset *asset);
+
+    size_t size() const { return cells_.size(); }
+    Box box(size_t i) const;
+    double distance2(size_t i, const Vec3d &p) const;
+
+    /* The area of cell i that lies where the trim is at most 0, estimated on a 4x4 grid. */
+    double core_area(size_t i) const;
+    /* The point at (u, v) in 0..1 of cell i, and its trim in texels. */
+    Vec3d point(size_t i, double u, double v) const;
+    double trim(size_t i, double u, double v) const;
+
+private:
+    struct Cell {
+        uint32_t patch;
+        uint16_t x, y;
+        uint16_t code[4];        /* of (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1) */
+        uint8_t trim[4];
+        bool crossed;            /* by the outline */
+    };
+    /* Texel coordinates and codes to object space. */
+    struct Frame {
+        Vec3d origin, x, y, z;
+    };
+    void add_patch(const gtx_asset *asset, uint32_t index);
+
+    std::vector<Frame> frames_;
+    std::vector<Cell> cells_;
+};
+
+} // namespace gtx

@@ -1,0 +1,160 @@
+/* Distances between the source and the asset, sampled on either and sought on the other. */
+#include "measure/cells.hpp"
+#include "measure/measure.hpp"
+#include "measure/view.hpp"
+
+#include <functional>
+
+namespace gtx {
+
+static const size_t SAMPLES = size_t(1) << 18, CHUNK = 1024;
+
+/* The nearest of the three sides, or of the plane where p is over the triangle. */
+double triangle_distance2(const Vec3d &p, const Vec3d &a, const Vec3d &b, const Vec3d &c)
+{
+    const Vec3d corner[3] = {a, b, c};
+    const Vec3d edge[3] = {b - a, c - b, a - c};
+    const Vec3d normal = cross(edge[0], c - a);
+    bool over = dot(normal, normal) > 0;
+    double best = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; ++k) {
+        Vec3d d = p - corner[k];
+        over = over && dot(cross(edge[k], d), normal) >= 0;
+        double square = dot(edge[k], edge[k]);
+        double s = square > 0 ? std::clamp(dot(d, edge[k]) / square, 0., 1.) : 0;
+        Vec3d off = d - edge[k] * s;
+        best = std::min(best, dot(off, off));
+    }
+    if (over) {
+        double height = dot(p - a, normal);
+        best = std::min(best, height * height / dot(normal, normal));
+    }
+    return best;
+}
+
+/* Shapes for NearestTree. Everything here is relative to the asset's anchor: boxes are floats. */
+struct MeshTriangles {
+    const Mesh &mesh;
+    Vec3d anchor;
+
+    size_t size() const { return mesh.triangle_count(); }
+    Vec3d position(size_t t, int k) const { return mesh.position(t, k) - anchor; }
+    Box box(size_t t) const
+    {
+        Box box;
+        for (int k = 0; k < 3; ++k)
+            box.add(position(t, k));
+        return box;
+    }
+    double distance2(size_t t, const Vec3d &p) const
+    {
+        return triangle_distance2(p, position(t, 0), position(t, 1), position(t, 2));
+    }
+};
+
+/* Knuth's MMIX generator, upper bits: the same samples everywhere. */
+class Random {
+public:
+    double next() /* in [0, 1) */
+    {
+        state_ = state_ * 6364136223846793005u + 1442695040888963407u;
+        return double(state_ >> 11) / 9007199254740992.0;
+    }
+
+private:
+    uint64_t state_ = 1;
+};
+
+/* Calls place(shape) for SAMPLES points that are stratified over the areas. */
+static void stratify(const std::vector<double> &area, Random &random,
+                     const std::function<void(size_t)> &place)
+{
+    double total = 0, before = 0;
+    for (double a : area)
+        total += a;
+    if (!(total > 0))
+        return;
+    size_t shape = 0, last = area.size() - 1;
+    while (area[last] <= 0)
+        --last;
+    for (size_t i = 0; i < SAMPLES; ++i) {
+        double at = (double(i) + random.next()) / double(SAMPLES) * total;
+        while (shape < last && (area[shape] <= 0 || before + area[shape] <= at))
+            before += area[shape++];
+        place(shape);
+    }
+}
+
+static std::vector<Vec3d> sample_mesh(const MeshTriangles &source,
+                                      const std::vector<uint8_t> &junk)
+{
+    std::vector<double> area(source.size());
+    for (size_t t = 0; t < area.size(); ++t)
+        area[t] = !junk.empty() && junk[t] ? 0 : length(source.mesh.area_vector(t)) / 2;
+    std::vector<Vec3d> points;
+    Random random;
+    stratify(area, random, [&](size_t t) {
+        double u = std::sqrt(random.next()), v = random.next();
+        points.push_back(source.position(t, 0) * (1 - u) + source.position(t, 1) * (u * (1 - v)) +
+                         source.position(t, 2) * (u * v));
+    });
+    return points;
+}
+
+static std::vector<Vec3d> sample_cells(const Cells &cells)
+{
+    std::vector<double> area(cells.size());
+    for (size_t i = 0; i < area.size(); ++i)
+        area[i] = cells.core_area(i);
+    std::vector<Vec3d> points;
+    Random random;
+    stratify(area, random, [&](size_t i) {
+        for (int attempt = 0; attempt < 64; ++attempt) {
+            double u = random.next(), v = random.next();
+            if (cells.trim(i, u, v) <= 0) {
+                points.push_back(cells.point(i, u, v));
+                return;
+            }
+        }
+    });
+    return points;
+}
+
+template <class Shapes>
+static Deviation deviation(const std::vector<Vec3d> &points, const Shapes &shapes, double diagonal,
+                           Task &task, double from, double to)
+{
+    NearestTree<Shapes> tree(shapes);
+    std::vector<double> square(points.size());
+    task.parallel((points.size() + CHUNK - 1) / CHUNK, [&](size_t chunk) {
+        size_t end = std::min(points.size(), (chunk + 1) * CHUNK);
+        for (size_t i = chunk * CHUNK; i < end; ++i)
+            square[i] = tree.distance2(points[i]);
+    }, from, to);
+    Deviation result;
+    double sum = 0, most = 0;
+    for (double s : square) {
+        sum += s;
+        most = std::max(most, s);
+    }
+    if (!points.empty())
+        result.rms = std::sqrt(sum / double(points.size())) / diagonal;
+    result.max = std::sqrt(most) / diagonal;
+    return result;
+}
+
+SurfaceError surface_error(const gtx_asset *asset, const Mesh &mesh,
+                           const std::vector<uint8_t> &junk, Task &task)
+{
+    const double diagonal = extent_of(mesh).diagonal;
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    const MeshTriangles source = {mesh, Vec3d(info.anchor[0], info.anchor[1], info.anchor[2])};
+    const Cells cells(asset);
+    SurfaceError error;
+    error.forward = deviation(sample_mesh(source, junk), cells, diagonal, task, 0, 0.5);
+    error.reverse = deviation(sample_cells(cells), source, diagonal, task, 0.5, 1);
+    return error;
+}
+
+} // namespace gtx

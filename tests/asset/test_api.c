@@ -1,0 +1,399 @@
+/* The public calls of an asset: arguments, files, creating by the rules, normals, filters. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "asset/codec.h"
+#include "asset/golden.h"
+
+#include <math.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* ---- a small descriptor that tests bend ---- */
+
+typedef struct sheet {
+    gtx_patch patches[2];
+    uint8_t height[256], trim[256], normal[512];
+    const uint8_t *levels[1];
+    gtx_asset_desc desc;
+} sheet;
+
+static void make_sheet(sheet *s)
+{
+    *s = (sheet){0};
+    for (uint32_t i = 0; i < 2; ++i)
+        s->patches[i] = (gtx_patch){.extent_x = 1, .axis_x = {1, 0, 0}, .extent_y = 1,
+                                    .axis_y = {0, 1, 0}, .extent_z = 1, .axis_z = {0, 0, 1},
+                                    .coverage = 1, .rect = {(uint16_t)(8 * i), 0, 8, 8},
+                                    .sphere = {0.5f, 0.5f, 0.5f, 1}};
+    for (uint32_t y = 0; y < 8; ++y)
+        memset(s->height + 16 * y, 100, 16);
+    s->levels[0] = s->normal;
+    s->desc = (gtx_asset_desc){.patches = s->patches, .patch_count = 2, .page_count = 1,
+                               .page_width = 16, .page_height = 16, .mip_count = 1,
+                               .height_bits = 8, .height = s->height, .trim = s->trim,
+                               .normal = s->levels, .bounds_max = {1, 1, 1}};
+}
+
+static uint32_t broken_rule(const sheet *s)
+{
+    gtx_asset *asset = NULL;
+    gtx_error error = {0};
+    gtx_result result = gtx_create(&s->desc, &asset, &error);
+    assert_int_equal(!asset, result != GTX_OK);
+    gtx_close(asset);
+    if (result == GTX_OK)
+        return 0;
+    assert_int_equal(result, GTX_ERROR_CORRUPT);
+    assert_int_equal(error.offset, 0);
+    return error.rule;
+}
+
+#define EXPECT_RULE(number, change)           \
+    do {                                      \
+        sheet s;                              \
+        make_sheet(&s);                       \
+        change;                               \
+        assert_int_equal(broken_rule(&s), number); \
+    } while (0)
+
+static void test_create_rules(void **state)
+{
+    (void)state;
+    EXPECT_RULE(0, (void)0);
+    EXPECT_RULE(108, s.desc.patch_count = 0);
+    EXPECT_RULE(108, s.desc.patch_count = (1u << 20) + 1);
+    EXPECT_RULE(109, s.desc.page_count = 0);
+    EXPECT_RULE(110, s.desc.page_width = 4);
+    EXPECT_RULE(110, s.desc.page_height = 16385);
+    EXPECT_RULE(111, s.desc.mip_count = 0);
+    EXPECT_RULE(111, s.desc.mip_count = 9);
+    EXPECT_RULE(112, s.desc.bounds_min[1] = NAN);
+    EXPECT_RULE(112, s.desc.bounds_min[1] = 2);
+    EXPECT_RULE(113, s.desc.unit = -1);
+    EXPECT_RULE(113, s.desc.unit = INFINITY);
+    EXPECT_RULE(115, s.desc.anchor[2] = NAN);
+    EXPECT_RULE(300, s.patches[1].origin[0] = NAN);
+    EXPECT_RULE(300, s.patches[1].sphere[3] = INFINITY);
+    EXPECT_RULE(301, s.patches[0].extent_y = 0);
+    EXPECT_RULE(301, s.patches[0].extent_z = 0.0002f);
+    EXPECT_RULE(302, s.patches[0].axis_y[1] = 1.002f);
+    EXPECT_RULE(303, s.patches[0].axis_x[0] = -1);
+    EXPECT_RULE(304, s.patches[0].coverage = 0.99f);
+    EXPECT_RULE(304, s.height[0] = 0);
+    EXPECT_RULE(305, s.patches[1].page = 1);
+    EXPECT_RULE(306, s.patches[1].rect[0] = 9);
+    EXPECT_RULE(306, s.patches[1].rect[2] = 65535);
+    EXPECT_RULE(307, s.patches[1].flags = 1u << 9);
+    EXPECT_RULE(308, s.patches[1].sphere[0] = 2);
+    EXPECT_RULE(308, s.patches[1].sphere[3] = -1);
+    EXPECT_RULE(309, s.patches[1].reserved[6] = 1);
+    EXPECT_RULE(310, s.patches[1].rect[0] = 7);
+    EXPECT_RULE(311, s.desc.bounds_max[2] = 0.25f);
+    EXPECT_RULE(400, s.height[255] = 1);
+    EXPECT_RULE(600, (s.desc.meta = "\xC3", s.desc.meta_size = 1));
+    EXPECT_RULE(600, (s.desc.meta = "x", s.desc.meta_size = (1u << 20) + 1));
+}
+
+/* Values at the edge of what floats hold: results, never faults. */
+static void test_huge_values(void **state)
+{
+    (void)state;
+    EXPECT_RULE(308, s.patches[0].origin[0] = 3e38f);
+    EXPECT_RULE(301, s.patches[0].extent_x = 3e38f);
+    EXPECT_RULE(0, (s.desc.bounds_min[0] = -3e38f, s.desc.bounds_max[0] = 3e38f));
+}
+
+static void test_arguments(void **state)
+{
+    (void)state;
+    sheet s;
+    make_sheet(&s);
+    gtx_asset *asset = NULL;
+    gtx_error error;
+    assert_int_equal(gtx_create(NULL, &asset, &error), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_create(&s.desc, NULL, &error), GTX_ERROR_ARGUMENT);
+    s.desc.reserved[5] = 1;
+    assert_int_equal(gtx_create(&s.desc, &asset, &error), GTX_ERROR_NOT_ZEROED);
+    s.desc.reserved[5] = 0;
+    s.desc.height_bits = 12;
+    assert_int_equal(gtx_create(&s.desc, &asset, &error), GTX_ERROR_ARGUMENT);
+    s.desc.height_bits = 8;
+    s.levels[0] = NULL;
+    assert_int_equal(gtx_create(&s.desc, &asset, &error), GTX_ERROR_ARGUMENT);
+    s.levels[0] = s.normal;
+    assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_OK);
+
+    gtx_asset *other = asset;
+    gtx_open_desc open = {.reserved = {1}};
+    assert_int_equal(gtx_open_memory("x", 1, &open, &other, &error), GTX_ERROR_NOT_ZEROED);
+    open = (gtx_open_desc){.flags = 2};
+    assert_int_equal(gtx_open_memory("x", 1, &open, &other, &error), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_open_memory(NULL, 1, NULL, &other, &error), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_open_memory("x", 1, NULL, NULL, &error), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_open_memory(NULL, 0, NULL, &other, &error), GTX_ERROR_TRUNCATED);
+    assert_int_equal(gtx_open_memory("text", 4, NULL, &other, &error), GTX_ERROR_NOT_GTX);
+    assert_null(other);
+    assert_int_equal(gtx_validate(NULL, 1, NULL, NULL, NULL), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_validate(NULL, 0, NULL, NULL, NULL), GTX_ERROR_TRUNCATED);
+
+    void *data;
+    size_t size;
+    gtx_encode_desc encode = {.zstd_level = 20};
+    assert_int_equal(gtx_encode(asset, &encode, &data, &size, &error), GTX_ERROR_ARGUMENT);
+    encode.zstd_level = -1;
+    assert_int_equal(gtx_encode(asset, &encode, &data, &size, &error), GTX_ERROR_ARGUMENT);
+    encode = (gtx_encode_desc){.reserved = {0, 0, 0, 0, 7}};
+    assert_int_equal(gtx_encode(asset, &encode, &data, &size, &error), GTX_ERROR_NOT_ZEROED);
+    encode = (gtx_encode_desc){.zstd_level = 3};
+    if (!gtx_has_zstd())
+        assert_int_equal(gtx_encode(asset, &encode, &data, &size, &error), GTX_ERROR_UNSUPPORTED);
+    assert_int_equal(gtx_save_file(asset, NULL, NULL, &error), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_open_file(NULL, NULL, &other, &error), GTX_ERROR_ARGUMENT);
+    gtx_close(asset);
+    gtx_close(NULL);
+}
+
+static void test_accessors(void **state)
+{
+    (void)state;
+    sheet s;
+    make_sheet(&s);
+    gtx_asset *asset;
+    assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_OK);
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    assert_true(info.unit == 1);
+    assert_int_equal(info.file_size, 0);
+    size_t size = 1;
+    assert_memory_equal(gtx_map_data(asset, GTX_MAP_HEIGHT, 0, &size), s.height, 256);
+    assert_int_equal(size, 256);
+    assert_non_null(gtx_map_data(asset, GTX_MAP_NORMAL, 0, NULL));
+    assert_null(gtx_map_data(asset, GTX_MAP_HEIGHT, 1, &size));
+    assert_int_equal(size, 0);
+    assert_null(gtx_map_data(asset, GTX_MAP_NORMAL, 1, NULL));
+    assert_null(gtx_map_data(asset, GTX_MAP_COLOR, 0, NULL));
+    assert_null(gtx_map_data(asset, (gtx_map)99, 0, NULL));
+    assert_null(gtx_meta(asset, &size));
+    assert_int_equal(size, 0);
+    gtx_close(asset);
+}
+
+/* Hashes of sections may be trusted; the header's never is. */
+static void test_skip_hash(void **state)
+{
+    (void)state;
+    bytes file = read_golden("minimal");
+    gtx_open_desc desc = {.flags = GTX_OPEN_SKIP_HASH};
+    gtx_asset *asset;
+    gtx_error error = {0};
+    file.data[704] ^= 1;
+    assert_int_equal(gtx_open_memory(file.data, file.size, NULL, &asset, &error),
+                     GTX_ERROR_CORRUPT);
+    assert_int_equal(error.rule, 210);
+    assert_int_equal(gtx_open_memory(file.data, file.size, &desc, &asset, &error), GTX_OK);
+    gtx_close(asset);
+    file.data[136] ^= 1;
+    assert_int_equal(gtx_open_memory(file.data, file.size, &desc, &asset, &error),
+                     GTX_ERROR_CORRUPT);
+    assert_int_equal(error.rule, 117);
+    free(file.data);
+}
+
+/* ---- files ---- */
+
+static void path_in(char out[256], const char *folder, const char *name)
+{
+    snprintf(out, 256, "%s/%s", folder, name);
+}
+
+static void test_files(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/gtx-asset-XXXXXX", path[256], temporary[256], taken[256];
+    assert_non_null(mkdtemp(folder));
+    path_in(path, folder, "a.gtx");
+    path_in(temporary, folder, "a.gtx.tmp");
+    path_in(taken, folder, "folder");
+
+    bytes golden_file = read_golden("color");
+    gtx_asset *asset, *other;
+    gtx_error error = {0};
+    assert_int_equal(gtx_open_file(GOOD "color.gtx", NULL, &asset, NULL), GTX_OK);
+    assert_int_equal(gtx_save_file(asset, path, NULL, NULL), GTX_OK);
+    assert_int_equal(gtx_save_file(asset, path, NULL, NULL), GTX_OK); /* over what is there */
+    assert_int_not_equal(access(temporary, F_OK), 0);
+    bytes saved = read_file(path);
+    assert_int_equal(saved.size, golden_file.size);
+    assert_memory_equal(saved.data, golden_file.data, saved.size);
+
+    assert_int_equal(gtx_open_file(folder, NULL, &other, &error), GTX_ERROR_READ);
+    assert_int_equal(gtx_open_file("/nowhere/a.gtx", NULL, &other, &error), GTX_ERROR_READ);
+    assert_int_equal(gtx_save_file(asset, "/nowhere/a.gtx", NULL, &error), GTX_ERROR_WRITE);
+
+    /* A folder stands where the file should go: it stays, and nothing else does. */
+    assert_int_equal(mkdir(taken, 0700), 0);
+    assert_int_equal(gtx_save_file(asset, taken, NULL, &error), GTX_ERROR_WRITE);
+    path_in(temporary, folder, "folder.tmp");
+    assert_int_not_equal(access(temporary, F_OK), 0);
+    assert_int_equal(rmdir(taken), 0);
+
+    write_file(path, (bytes){saved.data, 0});
+    assert_int_equal(gtx_open_file(path, NULL, &other, &error), GTX_ERROR_TRUNCATED);
+    assert_null(other);
+    remove(path);
+    rmdir(folder);
+    free(saved.data);
+    free(golden_file.data);
+    gtx_close(asset);
+}
+
+/* A disk that is full does not cost what was there. */
+static void test_full_disk(void **state)
+{
+    (void)state;
+    gtx_asset *asset;
+    gtx_error error = {0};
+    char folder[] = "/tmp/gtx-asset-XXXXXX", path[256], temporary[256];
+    assert_non_null(mkdtemp(folder));
+    path_in(path, folder, "a.gtx");
+    path_in(temporary, folder, "a.gtx.tmp");
+    write_file(path, (bytes){(uint8_t *)"old", 3});
+    assert_int_equal(gtx_open_file(GOOD "color.gtx", NULL, &asset, NULL), GTX_OK);
+    if (access("/dev/full", W_OK) == 0) {
+        assert_int_equal(symlink("/dev/full", temporary), 0);
+        assert_int_equal(gtx_save_file(asset, path, NULL, &error), GTX_ERROR_WRITE);
+        assert_int_not_equal(access(temporary, F_OK), 0);
+        bytes old = read_file(path);
+        assert_int_equal(old.size, 3);
+        assert_memory_equal(old.data, "old", 3);
+        free(old.data);
+    }
+    gtx_close(asset);
+    remove(path);
+    rmdir(folder);
+}
+
+/* ---- size ---- */
+
+/* As many patches as a file may have, one overlap among them. */
+static void test_many_patches(void **state)
+{
+    (void)state;
+    const uint32_t side = 2048, count = 1u << 20;
+    gtx_patch *patches = need(calloc(count, sizeof *patches));
+    uint8_t *maps = need(calloc((size_t)side * side, 2));
+    for (uint32_t i = 0; i < count; ++i)
+        patches[i] = (gtx_patch){.extent_x = 1, .axis_x = {1, 0, 0}, .extent_y = 1,
+                                 .axis_y = {0, 1, 0}, .extent_z = 1, .axis_z = {0, 0, 1},
+                                 .rect = {(uint16_t)(i % 1024 * 2), (uint16_t)(i / 1024 * 2), 2, 2},
+                                 .sphere = {0, 0, 0, 1}};
+    const uint8_t *levels[] = {maps};
+    gtx_asset_desc desc = {.patches = patches, .patch_count = count, .page_count = 1,
+                           .page_width = side, .page_height = side, .mip_count = 1,
+                           .height_bits = 8, .height = maps, .trim = maps, .normal = levels};
+    gtx_asset *asset;
+    gtx_error error = {0};
+    assert_int_equal(gtx_create(&desc, &asset, &error), GTX_OK);
+    gtx_close(asset);
+    patches[count - 1].rect[0] -= 1;
+    assert_int_equal(gtx_create(&desc, &asset, &error), GTX_ERROR_CORRUPT);
+    assert_int_equal(error.rule, 310);
+    for (uint32_t i = 0; i < count; ++i) /* all of them on one another */
+        memcpy(patches[i].rect, (uint16_t[]){0, 0, 2048, 2048}, 8);
+    assert_int_equal(gtx_create(&desc, &asset, &error), GTX_ERROR_CORRUPT);
+    assert_int_equal(error.rule, 310);
+    free(patches);
+    free(maps);
+}
+
+/* ---- codings ---- */
+
+static void test_filters(void **state)
+{
+    (void)state;
+    uint8_t in[2 * 5 * 3 * 4], coded[sizeof in], out[sizeof in];
+    for (uint32_t texel = 1; texel <= 4; texel *= 2) {
+        gtx_image image = {2, 5, 3, texel};
+        size_t size = (size_t)gtx_image_size(image);
+        for (size_t i = 0; i < size; ++i)
+            in[i] = (uint8_t)(i * i * 37 + i);
+        for (uint32_t filter = 0; filter < 4; ++filter) {
+            gtx_filter_apply(image, filter, in, coded);
+            gtx_filter_undo(image, filter, coded, out);
+            assert_memory_equal(in, out, size);
+        }
+    }
+    /* Two pages of 2 x 2 texels by hand. */
+    const uint8_t image[] = {10, 20, 30, 45, 1, 2, 3, 4};
+    const uint8_t right[] = {10, 10, 20, 15, 1, 1, 2, 1};
+    gtx_filter_apply((gtx_image){2, 2, 2, 1}, GTX_FILTER_PAETH, image, coded);
+    assert_memory_equal(coded, right, 8);
+    const uint8_t planes[] = {10, 30, 1, 3, 20, 45, 2, 4};
+    gtx_filter_apply((gtx_image){1, 2, 2, 2}, GTX_FILTER_PLANES, image, coded);
+    assert_memory_equal(coded, planes, 8);
+}
+
+static void test_normals(void **state)
+{
+    (void)state;
+    double worst = 0;
+    for (int i = 0; i < 200; ++i) {
+        for (int j = 0; j < 400; ++j) {
+            double z = (i + 0.5) / 200, a = j * 2 * 3.14159265358979 / 400, r = sqrt(1 - z * z);
+            float n[3] = {(float)(r * cos(a)), (float)(r * sin(a)), (float)z}, back[3];
+            uint8_t code[2];
+            gtx_encode_normal(n, code);
+            gtx_decode_normal(code, back);
+            double cosine = 0;
+            for (int k = 0; k < 3; ++k)
+                cosine += (double)n[k] * back[k];
+            worst = fmax(worst, acos(fmin(1, cosine)));
+        }
+    }
+    assert_true(worst * 57.2957795 < 0.6);
+
+    for (uint32_t code = 0; code < 65536; ++code) { /* codes survive decoding */
+        uint8_t in[2] = {(uint8_t)code, (uint8_t)(code >> 8)}, out[2];
+        float n[3];
+        gtx_decode_normal(in, n);
+        assert_true(n[2] > -1e-6f && fabsf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-5f);
+        gtx_encode_normal(n, out);
+        assert_memory_equal(in, out, 2);
+    }
+
+    static const float odd[][3] = {
+        {0, 0, -1}, {NAN, 0, 1}, {INFINITY, 0, 0}, {0, 0, 0}, {0, 1, -9}};
+    for (int i = 0; i < 5; ++i) {
+        uint8_t code[2];
+        gtx_encode_normal(odd[i], code);
+    }
+}
+
+static void test_normal_frame(void **state)
+{
+    (void)state;
+    /* x leans towards z: the frame is upright all the same. */
+    gtx_patch patch = {.axis_x = {0.8f, 0, 0.6f}, .axis_y = {0, 1, 0}, .axis_z = {0, 0, 1}};
+    float rows[3][3];
+    gtx_normal_frame(&patch, rows);
+    const float right[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int i = 0; i < 9; ++i)
+        assert_true(fabsf(rows[i / 3][i % 3] - right[i / 3][i % 3]) < 1e-6f);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_create_rules), cmocka_unit_test(test_huge_values),
+        cmocka_unit_test(test_arguments),    cmocka_unit_test(test_accessors),
+        cmocka_unit_test(test_skip_hash),    cmocka_unit_test(test_files),
+        cmocka_unit_test(test_full_disk),    cmocka_unit_test(test_many_patches),
+        cmocka_unit_test(test_filters),      cmocka_unit_test(test_normals),
+        cmocka_unit_test(test_normal_frame),
+    };
+    return cmocka_run_group_tests_name("api", tests, NULL, NULL);
+}

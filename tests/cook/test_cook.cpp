@@ -1,0 +1,410 @@
+/* Cooking files: what is written, what is reported, and what is left behind when it fails. */
+#include "bake/shapes.hpp"
+#include "cook/schema.hpp"
+
+#include <geotex/cook.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+/* Last, for its macros take names that the standard library uses. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+extern "C" {
+#include <cmocka.h>
+}
+
+namespace fs = std::filesystem;
+
+static fs::path folder;
+
+static std::string in_folder(const char *name)
+{
+    return (folder / name).string();
+}
+
+static void write_file(const std::string &path, const std::string &text)
+{
+    std::ofstream(path, std::ios::binary) << text;
+}
+
+static std::string read_file(const std::string &path)
+{
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+static std::string obj_text(const gtx::Mesh &mesh)
+{
+    std::string text;
+    char line[120];
+    for (const gtx::Vec3d &p : mesh.positions)
+        text.append(line, size_t(snprintf(line, sizeof line, "v %.9g %.9g %.9g\n", p.x, p.y, p.z)));
+    for (const auto &t : mesh.triangles)
+        text.append(line, size_t(snprintf(line, sizeof line, "f %u %u %u\n", t[0] + 1, t[1] + 1,
+                                          t[2] + 1)));
+    return text;
+}
+
+static std::string ball_file()
+{
+    std::string path = in_folder("ball.obj");
+    if (!fs::exists(path))
+        write_file(path, obj_text(shapes::ball(24, shapes::bumps)));
+    return path;
+}
+
+static size_t files_in_folder()
+{
+    return size_t(std::distance(fs::directory_iterator(folder), {}));
+}
+
+static int make_folder(void **)
+{
+    char name[] = "/tmp/geotex-cook-XXXXXX";
+    if (!mkdtemp(name))
+        return -1;
+    folder = name;
+    ball_file();
+    return 0;
+}
+
+static int remove_folder(void **)
+{
+    fs::remove_all(folder);
+    return 0;
+}
+
+/* Cooks the ball, or fails the test. */
+static void cook_ball(const std::string &output, const gtx_cook_desc &desc,
+                      gtx_report *report = nullptr)
+{
+    gtx_error error = {};
+    if (gtx_cook_file(ball_file().c_str(), output.c_str(), &desc, report, &error))
+        fail_msg("%d: %s", error.result, error.message);
+}
+
+static void an_asset_comes_out(void **)
+{
+    std::string output = in_folder("a.gtx");
+    gtx_error error = {};
+    assert_int_equal(gtx_cook_file(ball_file().c_str(), output.c_str(), nullptr, nullptr, nullptr),
+                     GTX_OK);
+    gtx_asset *asset = nullptr;
+    assert_int_equal(gtx_open_file(output.c_str(), nullptr, &asset, &error), GTX_OK);
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    assert_int_equal(info.source_triangles, 6 * 24 * 24 * 2);
+    assert_int_equal(info.mip_count, 4);
+    assert_int_equal(info.height_bits, 8);
+    assert_true(info.unit == 1);
+    assert_true(info.patch_count > 50 && info.patch_count < 400);
+    size_t size = 0;
+    const char *text = gtx_meta(asset, &size);
+    schema::json meta = schema::json::parse(std::string(text, size));
+    assert_string_equal(meta["options"]["partition"].get<std::string>().c_str(), "vsa");
+    assert_null(strstr(std::string(text, size).c_str(), folder.c_str()));
+    gtx_close(asset);
+    fs::remove(output);
+}
+
+static void options_reach_the_asset(void **)
+{
+    std::string output = in_folder("b.gtx");
+    gtx_cook_desc desc = {};
+    desc.charts = 12;
+    desc.height_bits = 16;
+    desc.mips = 3;
+    desc.dilation = 5;
+    desc.zstd_level = -1;
+    desc.unit = 0.01f;
+    cook_ball(output, desc);
+    gtx_asset *asset = nullptr;
+    assert_int_equal(gtx_open_file(output.c_str(), nullptr, &asset, nullptr), GTX_OK);
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    assert_int_equal(info.mip_count, 3);
+    assert_int_equal(info.height_bits, 16);
+    assert_true(info.unit == 0.01f);
+    assert_true(info.patch_count < 40);
+    assert_int_equal(gtx_patches(asset)[0].dilation, 5);
+    gtx_close(asset);
+    fs::remove(output);
+}
+
+static void the_report_follows_its_schema(void **)
+{
+    std::string output = in_folder("c.gtx");
+    schema::json rules = schema::load("format/cook-report.schema.json");
+    for (uint32_t measure : {0u, 1u}) {
+        gtx_cook_desc desc = {};
+        desc.charts = 12;
+        desc.measure = measure;
+        gtx_report report = {};
+        cook_ball(output, desc, &report);
+        assert_int_equal(strlen(report.json), report.size);
+        schema::json json = schema::json::parse(report.json);
+        std::string why = schema::broken(json, rules, rules);
+        if (!why.empty())
+            fail_msg("%s", why.c_str());
+        std::string hash = json["content_hash"];
+        assert_true(hash.size() == 18 && strspn(hash.c_str() + 2, "0123456789abcdef") == 16);
+        assert_int_equal(json["source"]["triangles"], 6 * 24 * 24 * 2);
+        assert_int_equal(json["bytes"], fs::file_size(output));
+        assert_int_equal(json["error"]["forward"].is_null(), !measure);
+        if (measure)
+            assert_true(json["error"]["forward"]["rms"] < 2e-3);
+        assert_int_equal(report.source_count, 1);
+        assert_string_equal(report.sources[0], ball_file().c_str());
+        assert_int_equal(json["warnings"].size(), report.warning_count);
+        assert_true(strlen(report.summary) > 20);
+        gtx_report_free(&report);
+        assert_null(report.json);
+        gtx_report_free(&report);
+    }
+    gtx_report_free(nullptr);
+    fs::remove(output);
+}
+
+static void any_thread_count_gives_the_same_file(void **)
+{
+    std::string expected;
+    for (uint32_t threads : {1u, 2u, 3u, 7u}) {
+        std::string output = in_folder("d.gtx");
+        gtx_cook_desc desc = {};
+        desc.threads = threads;
+        cook_ball(output, desc);
+        std::string bytes = read_file(output);
+        if (expected.empty())
+            expected = bytes;
+        assert_true(bytes == expected);
+        fs::remove(output);
+    }
+}
+
+static void wrong_arguments_are_refused(void **)
+{
+    using Change = void (*)(gtx_cook_desc &);
+    const struct {
+        gtx_result result;
+        Change change;
+    } cases[] = {
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.partition = gtx_partition(77); }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.resolution = 63; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.resolution = 513; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.height_bits = 12; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.dilation = 129; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.mips = 9; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.zstd_level = 20; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.zstd_level = -2; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.charts = (1u << 20) + 1; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.threads = 1025; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.unit = -1; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.unit = NAN; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.measure = 2; }},
+        {GTX_ERROR_NOT_ZEROED, [](gtx_cook_desc &d) { d.reserved[7] = 1; }},
+    };
+    std::string output = in_folder("e.gtx");
+    for (const auto &c : cases) {
+        gtx_cook_desc desc = {};
+        c.change(desc);
+        gtx_error error = {};
+        assert_int_equal(
+            gtx_cook_file(ball_file().c_str(), output.c_str(), &desc, nullptr, &error), c.result);
+        assert_int_equal(error.result, c.result);
+        assert_true(strlen(error.message) > 5);
+    }
+    assert_int_equal(gtx_cook_file(nullptr, output.c_str(), nullptr, nullptr, nullptr),
+                     GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_cook_file(output.c_str(), nullptr, nullptr, nullptr, nullptr),
+                     GTX_ERROR_ARGUMENT);
+    assert_false(fs::exists(output));
+}
+
+static void a_source_is_never_overwritten(void **)
+{
+    std::string before = read_file(ball_file());
+    assert_int_equal(
+        gtx_cook_file(ball_file().c_str(), ball_file().c_str(), nullptr, nullptr, nullptr),
+        GTX_ERROR_ARGUMENT);
+    assert_true(read_file(ball_file()) == before);
+}
+
+static void failures_leave_nothing_behind(void **)
+{
+    std::string output = in_folder("f.gtx"), input = in_folder("bad.obj");
+    write_file(output, "what was there before");
+    size_t files = files_in_folder() + 1; /* and the input */
+    const struct {
+        const char *text;
+        gtx_result result;
+    } cases[] = {
+        {"", GTX_ERROR_EMPTY},
+        {"v 0 0 0\nv 1 0 0\nv 0 1 0\n", GTX_ERROR_EMPTY},
+        {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", GTX_ERROR_INPUT},
+        {"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", GTX_ERROR_EMPTY},
+    };
+    for (const auto &c : cases) {
+        write_file(input, c.text);
+        gtx_error error = {};
+        gtx_report report = {};
+        gtx_result result =
+            gtx_cook_file(input.c_str(), output.c_str(), nullptr, &report, &error);
+        if (result != c.result)
+            fail_msg("%d, not %d: %s", result, c.result, error.message);
+        assert_null(report.json);
+        assert_true(read_file(output) == "what was there before");
+        assert_int_equal(files_in_folder(), files);
+    }
+    gtx_error error = {};
+    assert_int_equal(
+        gtx_cook_file(in_folder("none.obj").c_str(), output.c_str(), nullptr, nullptr, &error),
+        GTX_ERROR_READ);
+    std::string nowhere = in_folder("no/such/folder.gtx");
+    assert_int_equal(
+        gtx_cook_file(ball_file().c_str(), nowhere.c_str(), nullptr, nullptr, &error),
+        GTX_ERROR_WRITE);
+    assert_int_equal(files_in_folder(), files);
+    fs::remove(output);
+    fs::remove(input);
+}
+
+/* Cancels at call `at`, and checks that progress never falls. */
+struct Watch {
+    int calls = 0, at = -1;
+    float last = 0;
+    std::vector<std::string> stages;
+};
+
+static int watch_progress(const gtx_progress *progress, void *user)
+{
+    Watch *watch = static_cast<Watch *>(user);
+    assert_true(progress->fraction >= watch->last && progress->fraction <= 1);
+    watch->last = progress->fraction;
+    if (watch->stages.empty() || watch->stages.back() != progress->stage)
+        watch->stages.push_back(progress->stage);
+    return watch->calls++ == watch->at;
+}
+
+static void progress_rises_through_the_stages(void **)
+{
+    Watch watch;
+    gtx_cook_desc desc = {};
+    desc.charts = 12;
+    desc.progress = watch_progress;
+    desc.progress_user = &watch;
+    std::string output = in_folder("g.gtx");
+    cook_ball(output, desc);
+    const std::vector<std::string> stages = {"import", "clean", "partition", "frame",
+                                             "bake",   "pack",  "write"};
+    assert_true(watch.stages == stages);
+    fs::remove(output);
+}
+
+static void cancelling_anywhere_leaves_nothing_behind(void **)
+{
+    Watch all;
+    gtx_cook_desc desc = {};
+    desc.charts = 12;
+    desc.progress = watch_progress;
+    desc.progress_user = &all;
+    std::string output = in_folder("h.gtx"), ply = in_folder("h.ply");
+    desc.charts_ply = ply.c_str();
+    cook_ball(output, desc);
+    assert_true(fs::exists(ply));
+    fs::remove(output);
+    fs::remove(ply);
+    size_t files = files_in_folder();
+    int step = std::max(1, all.calls / 25);
+    for (int at = 0; at < all.calls; at += step) {
+        Watch watch;
+        watch.at = at;
+        desc.progress_user = &watch;
+        gtx_error error = {};
+        assert_int_equal(
+            gtx_cook_file(ball_file().c_str(), output.c_str(), &desc, nullptr, &error),
+            GTX_CANCELLED);
+        assert_int_equal(error.result, GTX_CANCELLED);
+        assert_int_equal(watch.calls, at + 1);
+        assert_int_equal(files_in_folder(), files);
+    }
+}
+
+static void a_comparison_measures_the_cook(void **)
+{
+    std::string output = in_folder("i.gtx");
+    gtx_cook_desc cook = {};
+    cook.charts = 12;
+    cook_ball(output, cook);
+    gtx_compare_desc desc = {};
+    desc.size = 128;
+    desc.levels = 2;
+    gtx_compare_result result = {};
+    gtx_report report = {};
+    gtx_error error = {};
+    if (gtx_compare_files(output.c_str(), ball_file().c_str(), &desc, &result, &report, &error))
+        fail_msg("%s", error.message);
+    schema::json rules = schema::load("format/compare-report.schema.json");
+    schema::json json = schema::json::parse(report.json);
+    std::string why = schema::broken(json, rules, rules);
+    if (!why.empty())
+        fail_msg("%s", why.c_str());
+    assert_int_equal(json["levels"].size(), 2);
+    assert_int_equal(json["hole_pixels"], result.hole_pixels);
+    assert_int_equal(result.hole_pixels, 0);
+    assert_true(result.silhouette_iou > 0.98);
+    gtx_report_free(&report);
+
+    desc.levels = 9;
+    assert_int_equal(gtx_compare_files(output.c_str(), ball_file().c_str(), &desc, &result,
+                                       nullptr, nullptr),
+                     GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_compare_files(ball_file().c_str(), ball_file().c_str(), nullptr, &result,
+                                       nullptr, &error),
+                     GTX_ERROR_NOT_GTX);
+    assert_int_equal(gtx_compare_files(output.c_str(), in_folder("none.obj").c_str(), nullptr,
+                                       nullptr, nullptr, nullptr),
+                     GTX_ERROR_READ);
+    fs::remove(output);
+}
+
+static void a_scan_keeps_its_figures(void **)
+{
+    const char *models = getenv("GEOTEX_MODELS");
+    if (!models)
+        skip();
+    std::string input = std::string(models) + "/draco/bunny.drc", output = in_folder("j.gtx");
+    gtx_report report = {};
+    gtx_error error = {};
+    if (gtx_cook_file(input.c_str(), output.c_str(), nullptr, &report, &error))
+        fail_msg("%s", error.message);
+    schema::json json = schema::json::parse(report.json);
+    assert_int_equal(json["source"]["triangles"], 69451);
+    assert_int_equal(json["inverted_triangles"], 0);
+    assert_true(json["empty_fraction"] < 0.45);
+    assert_true(json["page_fill"] > 0.9);
+    gtx_report_free(&report);
+    fs::remove(output);
+}
+
+int main()
+{
+    const CMUnitTest tests[] = {
+        cmocka_unit_test(an_asset_comes_out),
+        cmocka_unit_test(options_reach_the_asset),
+        cmocka_unit_test(the_report_follows_its_schema),
+        cmocka_unit_test(any_thread_count_gives_the_same_file),
+        cmocka_unit_test(wrong_arguments_are_refused),
+        cmocka_unit_test(a_source_is_never_overwritten),
+        cmocka_unit_test(failures_leave_nothing_behind),
+        cmocka_unit_test(progress_rises_through_the_stages),
+        cmocka_unit_test(cancelling_anywhere_leaves_nothing_behind),
+        cmocka_unit_test(a_comparison_measures_the_cook),
+        cmocka_unit_test(a_scan_keeps_its_figures),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,101 @@
+/* Draco streams: encoded here, decoded by the importer, and damaged in every byte. */
+#include <draco/compression/encode.h>
+#include <draco/mesh/triangle_soup_mesh_builder.h>
+#include <draco/point_cloud/point_cloud_builder.h>
+
+#include "test_import.hpp"
+
+static std::string bytes_of(const draco::EncoderBuffer &buffer)
+{
+    return std::string(buffer.data(), buffer.size());
+}
+
+/* A grid of 5 x 5 squares with a colour and a normal. */
+static std::string encoded_grid(draco::MeshEncoderMethod method)
+{
+    const int n = 5;
+    draco::TriangleSoupMeshBuilder builder;
+    builder.Start(2 * n * n);
+    int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+    int normal = builder.AddAttribute(draco::GeometryAttribute::NORMAL, 3, draco::DT_FLOAT32);
+    int color = builder.AddAttribute(draco::GeometryAttribute::COLOR, 3, draco::DT_UINT8);
+    for (int f = 0; f < 2 * n * n; ++f) {
+        float x = float(f / 2 % n), y = float(f / 2 / n), up[] = {0, 0, 1};
+        float p[4][3] = {{x, y, 0}, {x + 1, y, 0}, {x + 1, y + 1, 0}, {x, y + 1, 0}};
+        uint8_t red[] = {255, 51, 0};
+        draco::FaceIndex face(static_cast<uint32_t>(f));
+        int k = f % 2;
+        builder.SetAttributeValuesForFace(position, face, p[0], p[1 + k], p[2 + k]);
+        builder.SetAttributeValuesForFace(normal, face, up, up, up);
+        builder.SetAttributeValuesForFace(color, face, red, red, red);
+    }
+    std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
+    draco::Encoder encoder;
+    encoder.SetEncodingMethod(method);
+    encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, 14);
+    draco::EncoderBuffer buffer;
+    assert_true(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
+    return bytes_of(buffer);
+}
+
+static void test_decode(void **)
+{
+    for (auto method : {draco::MESH_EDGEBREAKER_ENCODING, draco::MESH_SEQUENTIAL_ENCODING}) {
+        Imported i = import_text("a.drc", encoded_grid(method));
+        assert_works(i, 36, 50);
+        assert_float_equal(area_vector(i.mesh).z, 25, 1e-2);
+        assert_color(i.mesh, 7, 255, 51, 0, 255);
+        assert_float_equal(i.mesh.normals[9].z, 1, 1e-2);
+    }
+}
+
+static void test_point_cloud(void **)
+{
+    draco::PointCloudBuilder builder;
+    builder.Start(4);
+    int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+    for (uint32_t i = 0; i < 4; ++i) {
+        float p[] = {float(i), 0, 0};
+        builder.SetAttributeValueForPoint(position, draco::PointIndex(i), p);
+    }
+    std::unique_ptr<draco::PointCloud> cloud = builder.Finalize(false);
+    draco::Encoder encoder;
+    draco::EncoderBuffer buffer;
+    assert_true(encoder.EncodePointCloudToBuffer(*cloud, &buffer).ok());
+    assert_fails(import_text("a.drc", bytes_of(buffer)), GTX_ERROR_UNSUPPORTED, "point cloud");
+}
+
+static void test_damaged(void **)
+{
+    Folder folder;
+    size_t refused = 0;
+    for (auto method : {draco::MESH_EDGEBREAKER_ENCODING, draco::MESH_SEQUENTIAL_ENCODING}) {
+        const std::string good = encoded_grid(method);
+        for (size_t at = 0; at < good.size(); ++at)
+            for (int bit = 0; bit < 8; bit += 3) {
+                std::string bad = good;
+                bad[at] = char(bad[at] ^ 1 << bit);
+                Imported i = import_path(folder.write("a.drc", bad));
+                if (i.result != GTX_OK)
+                    ++refused;
+                else
+                    assert_works(i, i.mesh.positions.size(), i.mesh.triangles.size());
+            }
+        for (size_t size = 0; size < good.size(); ++size)
+            assert_int_not_equal(import_path(folder.write("a.drc", good.substr(0, size))).result,
+                                 GTX_OK);
+    }
+    assert_true(refused > 20);
+    assert_fails(import_text("a.drc", "DRACO"), GTX_ERROR_INPUT, "header");
+    assert_fails(import_text("a.drc", "not at all"), GTX_ERROR_INPUT, "header");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_decode),
+        cmocka_unit_test(test_point_cloud),
+        cmocka_unit_test(test_damaged),
+    };
+    return cmocka_run_group_tests_name("import_draco", tests, nullptr, nullptr);
+}
