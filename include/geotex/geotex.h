@@ -206,7 +206,8 @@ typedef struct gtx_issue {
 
 typedef void (*gtx_issue_fn)(const gtx_issue *issue, void *user);
 
-/* Runs every rule of format/gtx.md over untrusted bytes and reports each broken one in file order.
+/* Runs every rule of format/gtx.md over untrusted bytes and reports each broken one in the order of
+ * its section 6, as far as it is safe to read on.
  * GTX_OK when no error was reported (warnings do not count). `fn` may be NULL. */
 GTX_API gtx_result gtx_validate(const void *data, size_t size, gtx_issue_fn fn, void *user,
                                 gtx_error *error);

@@ -14,7 +14,7 @@ _Static_assert(sizeof(gtx_patch) == 128 && offsetof(gtx_patch, page) == 64 &&
 
 static uint64_t map_size(const gtx_info *info, gtx_section_kind kind, uint32_t level)
 {
-    return gtx_image_size(gtx_section_image(info, kind, level));
+    return gtx_shape_size(gtx_section_shape(info, kind, level));
 }
 
 uint64_t gtx_asset_bytes(const gtx_info *info, size_t meta_size)

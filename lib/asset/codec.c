@@ -41,7 +41,7 @@ bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t 
     return begin(codec, allocator, ZSTD_estimateCCtxSize(level), filtered_size);
 }
 
-const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx_image image,
+const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
                                const uint8_t *bytes, uint8_t *out)
 {
     ZSTD_frameHeader frame;
@@ -64,8 +64,8 @@ const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx
     return NULL;
 }
 
-size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, gtx_image image, int level,
-                          const uint8_t *data, uint8_t *out)
+size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
+                          int level, const uint8_t *data, uint8_t *out)
 {
     size_t size = (size_t)section->size;
     if (section->filter) {
@@ -105,15 +105,15 @@ bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t 
     return gtx_decoder_begin(codec, allocator, filtered_size);
 }
 
-const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx_image image,
+const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
                                const uint8_t *bytes, uint8_t *out)
 {
     (void)codec, (void)section, (void)image, (void)bytes, (void)out;
     return "this build has no zstd";
 }
 
-size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, gtx_image image, int level,
-                          const uint8_t *data, uint8_t *out)
+size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
+                          int level, const uint8_t *data, uint8_t *out)
 {
     (void)codec, (void)section, (void)image, (void)level, (void)data, (void)out;
     return 0;

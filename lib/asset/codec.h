@@ -7,12 +7,12 @@
 /* Whether this build has zstd. */
 bool gtx_has_zstd(void);
 
-/* Writes the filtered image to `out`; both have gtx_image_size(image) bytes. */
-void gtx_filter_apply(gtx_image image, uint32_t filter, const uint8_t *in, uint8_t *out);
+/* Writes the filtered image to `out`; both have gtx_shape_size(image) bytes. */
+void gtx_filter_apply(gtx_map_shape image, uint32_t filter, const uint8_t *in, uint8_t *out);
 
 /* Turns `coded` back into the image, in `out`. With GTX_FILTER_PLANES the two must be distinct and
  * `coded` is overwritten; otherwise they may be the same. */
-void gtx_filter_undo(gtx_image image, uint32_t filter, uint8_t *coded, uint8_t *out);
+void gtx_filter_undo(gtx_map_shape image, uint32_t filter, uint8_t *coded, uint8_t *out);
 
 /* A zstd context and a buffer for filtered images, from the caller's allocator. */
 typedef struct gtx_codec {
@@ -34,12 +34,12 @@ bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t 
 void gtx_codec_end(gtx_codec *codec);
 
 /* Decodes a section of scheme 2 into `out` (section->size bytes). NULL, or what is wrong. */
-const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx_image image,
+const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
                                const uint8_t *bytes, uint8_t *out);
 
 /* Encodes an image, or plain bytes when section->filter is 0, into `out`. Returns the bytes
  * written, 0 when they are not fewer than section->size. */
-size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, gtx_image image, int level,
-                          const uint8_t *data, uint8_t *out);
+size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
+                          int level, const uint8_t *data, uint8_t *out);
 
 #endif

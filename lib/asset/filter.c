@@ -9,7 +9,7 @@ typedef struct blocks {
     size_t count, rows, row_bytes, stride; /* stride: from a byte to the one left of it */
 } blocks;
 
-static blocks blocks_of(gtx_image image, uint32_t filter)
+static blocks blocks_of(gtx_map_shape image, uint32_t filter)
 {
     if (filter & GTX_FILTER_PLANES)
         return (blocks){(size_t)image.pages * image.texel, image.height, image.width, 1};
@@ -53,9 +53,9 @@ static void paeth_undo(blocks shape, uint8_t *data)
     }
 }
 
-void gtx_filter_apply(gtx_image image, uint32_t filter, const uint8_t *in, uint8_t *out)
+void gtx_filter_apply(gtx_map_shape image, uint32_t filter, const uint8_t *in, uint8_t *out)
 {
-    size_t size = (size_t)gtx_image_size(image), texels = size / image.texel;
+    size_t size = (size_t)gtx_shape_size(image), texels = size / image.texel;
     if (filter & GTX_FILTER_PLANES) {
         for (size_t plane = 0; plane < image.texel; ++plane)
             for (size_t i = 0; i < texels; ++i)
@@ -67,9 +67,9 @@ void gtx_filter_apply(gtx_image image, uint32_t filter, const uint8_t *in, uint8
         paeth_apply(blocks_of(image, filter), out);
 }
 
-void gtx_filter_undo(gtx_image image, uint32_t filter, uint8_t *coded, uint8_t *out)
+void gtx_filter_undo(gtx_map_shape image, uint32_t filter, uint8_t *coded, uint8_t *out)
 {
-    size_t size = (size_t)gtx_image_size(image), texels = size / image.texel;
+    size_t size = (size_t)gtx_shape_size(image), texels = size / image.texel;
     if (filter & GTX_FILTER_PAETH)
         paeth_undo(blocks_of(image, filter), coded);
     if (filter & GTX_FILTER_PLANES) {

@@ -80,7 +80,7 @@ static bool decode(reader *r, const gtx_section *section, uint64_t entry_offset,
 {
     const uint8_t *bytes = r->data + section->offset;
     if (section->scheme == GTX_SCHEME_ZSTD) {
-        gtx_image image = gtx_section_image(&r->layout.info, section->kind, section->level);
+        gtx_map_shape image = gtx_section_shape(&r->layout.info, section->kind, section->level);
         const char *wrong = gtx_decode_section(&r->codec, section, image, bytes, out);
         if (wrong) {
             gtx_break(&r->check, GTX_RULE_SECTION_ZSTD, section->offset, "in %s %s",
@@ -193,7 +193,7 @@ gtx_result gtx_open_memory(const void *data, size_t size, const gtx_open_desc *d
     return open_bytes(data, size, desc, limit_of(desc), out, error);
 }
 
-/* The bytes of a stream from where it stands to its end; nothing to seek back from remains. */
+/* The size of a file, which is then read from its start. */
 static gtx_result measure(FILE *file, const char *path, uint64_t *size, gtx_error *error)
 {
     /* The first read tells a directory, which opens and has a "size" on some systems. */

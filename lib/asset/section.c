@@ -33,14 +33,14 @@ gtx_section_kind gtx_section_kind_of(const uint8_t type[4])
     return GTX_SECTION_UNKNOWN;
 }
 
-gtx_image gtx_section_image(const gtx_info *info, gtx_section_kind kind, uint32_t level)
+gtx_map_shape gtx_section_shape(const gtx_info *info, gtx_section_kind kind, uint32_t level)
 {
     if (!gtx_section_is_image(kind))
-        return (gtx_image){0};
+        return (gtx_map_shape){0};
     uint32_t texel = kinds[kind].texel;
     if (kind == GTX_SECTION_HEIGHT)
         texel = info->height_bits / 8;
-    return (gtx_image){info->page_count, info->page_width >> level, info->page_height >> level,
+    return (gtx_map_shape){info->page_count, info->page_width >> level, info->page_height >> level,
                        texel};
 }
 
@@ -51,7 +51,7 @@ gtx_section gtx_section_describe(const gtx_info *info, gtx_section_kind kind, ui
     memcpy(section.type, kinds[kind].type, 4);
     if (kind == GTX_SECTION_HEIGHT && info->height_bits == 16)
         section.format = FORMAT_R16_UINT;
-    section.size = gtx_image_size(gtx_section_image(info, kind, level));
+    section.size = gtx_shape_size(gtx_section_shape(info, kind, level));
     if (kind == GTX_SECTION_PATCHES)
         section.size = (uint64_t)info->patch_count * sizeof(gtx_patch);
     return section;

@@ -36,9 +36,9 @@ typedef struct gtx_section {
 } gtx_section;
 
 /* The dimensions of an image section; `texel` is bytes a texel. */
-typedef struct gtx_image {
+typedef struct gtx_map_shape {
     uint32_t pages, width, height, texel;
-} gtx_image;
+} gtx_map_shape;
 
 static inline uint64_t gtx_align64(uint64_t n)
 {
@@ -53,9 +53,9 @@ static inline bool gtx_section_is_image(gtx_section_kind kind)
 }
 
 /* The image of a kind at a level; all zero when the kind is no image. */
-gtx_image gtx_section_image(const gtx_info *info, gtx_section_kind kind, uint32_t level);
+gtx_map_shape gtx_section_shape(const gtx_info *info, gtx_section_kind kind, uint32_t level);
 
-static inline uint64_t gtx_image_size(gtx_image image)
+static inline uint64_t gtx_shape_size(gtx_map_shape image)
 {
     return (uint64_t)image.pages * image.width * image.height * image.texel;
 }

@@ -19,14 +19,14 @@ typedef struct writer {
     uint8_t *coded[GTX_MAX_KNOWN_SECTIONS]; /* NULL where stored */
 } writer;
 
-/* The filter that made cooked scans smallest, by type: single bytes are predicted, and bytes that
- * mean different things are parted first. */
+/* The filter that made cooked scans and photographic textures smallest, at zstd levels 3 and 19:
+ * prediction everywhere, and planes first where the bytes of a texel have little in common. */
 static uint32_t filter_of(const gtx_asset *asset, gtx_section_kind kind)
 {
     switch (kind) {
     case GTX_SECTION_HEIGHT: return asset->info.height_bits == 8 ? 1 : 3;
     case GTX_SECTION_TRIM: return 1;
-    case GTX_SECTION_NORMAL: return 3;
+    case GTX_SECTION_NORMAL: return 1;
     case GTX_SECTION_COLOR: return 3;
     default: return 0;
     }
@@ -37,7 +37,7 @@ static bool compress(writer *w, uint32_t i, uint8_t *buffer)
 {
     gtx_section *section = &w->sections[i];
     section->filter = filter_of(w->asset, section->kind);
-    gtx_image image = gtx_section_image(&w->asset->info, section->kind, section->level);
+    gtx_map_shape image = gtx_section_shape(&w->asset->info, section->kind, section->level);
     const uint8_t *data = gtx_asset_data(w->asset, section->kind, section->level);
     size_t size = gtx_encode_section(&w->codec, section, image, w->level, data, buffer);
     if (size == 0) { /* would not get smaller */

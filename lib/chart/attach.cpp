@@ -10,10 +10,12 @@ namespace gtx {
 namespace {
 
 constexpr double CRUMB_TEXELS = 64;     /* most area of a crumb */
+constexpr double TRIFLE_TEXELS = 2;     /* most area of one that may face anywhere: it is junk then */
 constexpr double RIM = 4;               /* texels that a patch needs beyond its chart's sides */
+constexpr double PATCH = 256;           /* what a patch costs for being one, in texels */
 constexpr double STEEP_COSINE = 0.1;    /* of raw normals, on at most a small share of the area */
 constexpr double STEEP_AREA = 0.05;
-constexpr int PASSES = 3;               /* crumbs may lead to crumbs */
+constexpr int PASSES = 4;               /* crumbs may lead to crumbs; trifles wait for the last */
 
 /* Numbers vertices so that those at one position share a number. */
 std::vector<uint32_t> position_numbers(const Mesh &mesh)
@@ -33,7 +35,7 @@ std::vector<uint32_t> position_numbers(const Mesh &mesh)
 
 class Attachment {
 public:
-    Attachment(const Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
+    Attachment(Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
                std::vector<Frame> &frames)
         : surface_(surface), bounds_(bounds), regions_(regions), frames_(frames)
     {
@@ -44,16 +46,19 @@ public:
 private:
     void find_crumbs();
     void find_touching();
-    bool place(uint32_t crumb);
-    bool try_host(uint32_t crumb, uint32_t host);
+    double texels(const Region &region) const;
+    void place(uint32_t crumb, bool trifle);
+    bool try_host(uint32_t crumb, uint32_t host, bool trifle);
+    void mark_junk(const Region &crumb, const Vec3d &z);
     bool faces(const Region &crumb, const Vec3d &z) const;
     Frame widened(const Frame &frame, const Region &crumb) const;
     double cost(const Frame &frame) const
     {
-        return (frame.extent[0] / bounds_.pitch + RIM) * (frame.extent[1] / bounds_.pitch + RIM);
+        double w = frame.extent[0] / bounds_.pitch + RIM, h = frame.extent[1] / bounds_.pitch + RIM;
+        return PATCH + w * h;
     }
 
-    const Surface &surface_;
+    Surface &surface_;
     const Bounds &bounds_;
     std::vector<Region> &regions_;
     std::vector<Frame> &frames_;
@@ -62,20 +67,23 @@ private:
     std::vector<uint32_t> host_;                          /* of a region; itself when it stays */
 };
 
+double Attachment::texels(const Region &region) const
+{
+    double size = 0, mean = surface_.area / double(surface_.facets.size());
+    for (uint32_t t : region.triangles)
+        size += surface_.facets[t].size;
+    return size * mean / (bounds_.pitch * bounds_.pitch);
+}
+
 void Attachment::find_crumbs()
 {
-    std::vector<double> size(regions_.size());
-    for (size_t i = 0; i < regions_.size(); ++i)
-        for (uint32_t t : regions_[i].triangles)
-            size[i] += surface_.facets[t].size;
-    double mean = surface_.area / double(surface_.facets.size());
-    double most = CRUMB_TEXELS * bounds_.pitch * bounds_.pitch / mean;
+    std::vector<std::pair<double, uint32_t>> order;
     for (uint32_t i = 0; i < regions_.size(); ++i)
-        if (size[i] < most)
-            crumbs_.push_back(i);
-    std::sort(crumbs_.begin(), crumbs_.end(), [&](uint32_t a, uint32_t b) {
-        return size[a] != size[b] ? size[a] > size[b] : a < b;
-    });
+        order.emplace_back(-texels(regions_[i]), i);
+    std::sort(order.begin(), order.end());
+    for (const auto &[less, region] : order)
+        if (-less < CRUMB_TEXELS)
+            crumbs_.push_back(region);
 }
 
 void Attachment::find_touching()
@@ -140,10 +148,17 @@ Frame Attachment::widened(const Frame &frame, const Region &crumb) const
     return out;
 }
 
-bool Attachment::try_host(uint32_t crumb, uint32_t host)
+void Attachment::mark_junk(const Region &crumb, const Vec3d &z)
+{
+    for (uint32_t t : crumb.triangles)
+        if (dot(Vec3d(surface_.normal[t]), z) < STEEP_COSINE)
+            surface_.junk[t] = 1;
+}
+
+bool Attachment::try_host(uint32_t crumb, uint32_t host, bool trifle)
 {
     const Region &guest = regions_[crumb];
-    if (!faces(guest, frames_[host].z))
+    if (!trifle && !faces(guest, frames_[host].z))
         return false;
     Frame frame = widened(frames_[host], guest);
     if (std::max(frame.extent[0], frame.extent[1]) > bounds_.side ||
@@ -159,8 +174,10 @@ bool Attachment::try_host(uint32_t crumb, uint32_t host)
     }
     Layers before = find_layers(surface_, regions_[host], frames_[host], bounds_.pitch);
     Layers after = find_layers(surface_, both, frame, bounds_.pitch);
-    if (after.doubled > before.doubled || !after.folds.empty())
+    if ((after.doubled > before.doubled && !trifle) || !after.folds.empty())
         return false;
+    if (trifle)
+        mark_junk(guest, frame.z);
     regions_[host] = std::move(both);
     frames_[host] = frame;
     regions_[crumb] = {};
@@ -168,17 +185,16 @@ bool Attachment::try_host(uint32_t crumb, uint32_t host)
     return true;
 }
 
-bool Attachment::place(uint32_t crumb)
+void Attachment::place(uint32_t crumb, bool trifle)
 {
     auto near = std::lower_bound(touching_.begin(), touching_.end(), std::make_pair(crumb, 0u));
     for (; near != touching_.end() && near->first == crumb; ++near) {
         uint32_t host = near->second;
         while (host_[host] != host)
             host = host_[host];
-        if (host != crumb && try_host(crumb, host))
-            return true;
+        if (host != crumb && try_host(crumb, host, trifle))
+            return;
     }
-    return false;
 }
 
 void Attachment::run()
@@ -187,12 +203,12 @@ void Attachment::run()
     find_touching();
     host_.resize(regions_.size());
     std::iota(host_.begin(), host_.end(), 0u);
-    bool moved = true;
-    for (int pass = 0; pass < PASSES && moved; ++pass) {
-        moved = false;
-        for (uint32_t crumb : crumbs_)
-            moved = (host_[crumb] == crumb && place(crumb)) || moved;
-    }
+    for (int pass = 1; pass <= PASSES; ++pass)
+        for (uint32_t crumb : crumbs_) {
+            bool trifle = pass == PASSES && texels(regions_[crumb]) < TRIFLE_TEXELS;
+            if (host_[crumb] == crumb)
+                place(crumb, trifle);
+        }
     size_t kept = 0;
     for (uint32_t i = 0; i < regions_.size(); ++i) {
         if (host_[i] != i)
@@ -206,7 +222,7 @@ void Attachment::run()
 
 } // namespace
 
-void attach_crumbs(const Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
+void attach_crumbs(Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
                    std::vector<Frame> &frames)
 {
     Attachment(surface, bounds, regions, frames).run();

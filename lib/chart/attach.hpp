@@ -6,8 +6,9 @@
 namespace gtx {
 
 /* Moves charts of a few texels into charts that they touch, where these stay free of folds and
- * texels are saved. Hosts keep their axes, and may then have several connected pieces. */
-void attach_crumbs(const Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
+ * texels are saved. Hosts keep their axes, and may then have several connected pieces. What
+ * is smaller than a texel or two and faces away becomes junk there. */
+void attach_crumbs(Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
                    std::vector<Frame> &frames);
 
 } // namespace gtx

@@ -77,10 +77,11 @@ static gtx_result draw_shadow(const gtx_host_gl *gl, shadow *s, const float ligh
     return result;
 }
 
-/* A rectangle over the whole of clip space, darker towards the top. */
+/* A rectangle over the upper half of clip space, darker towards the top. The lower half is cleared
+ * to the horizon, into which the floor fades. */
 static gtx_result create_sky(const gtx_host_gl *gl, gtx_polygons *out, gtx_error *error)
 {
-    gtx_polygon_vertex corners[4] = {{{-1, -1, 0}, {0}, {0}}, {{1, -1, 0}, {0}, {0}},
+    gtx_polygon_vertex corners[4] = {{{-1, 0, 0}, {0}, {0}}, {{1, 0, 0}, {0}, {0}},
                                      {{1, 1, 0}, {0}, {0}}, {{-1, 1, 0}, {0}, {0}}};
     static const uint32_t order[6] = {0, 1, 2, 0, 2, 3};
     for (int i = 0; i < 4; ++i)
@@ -127,9 +128,12 @@ void gtx_backdrop_draw(const gtx_host_gl *gl, const gtx_polygon_program *program
     static const float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     static const float no_light[3] = {0, 1, 0};
     gl->DepthMask(GL_TRUE);
+    gl->ClearColor(horizon[0] / 255, horizon[1] / 255, horizon[2] / 255, 1);
+    gl->ClearDepth(1);
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     gl->Disable(GL_DEPTH_TEST);
     gtx_polygons_draw(gl, program, &backdrop->sky, NULL, identity, identity, no_light, 1);
     gl->Enable(GL_DEPTH_TEST);
+    gl->DepthFunc(GL_LESS);
     gtx_polygons_draw(gl, program, &backdrop->floor, NULL, view, projection, no_light, 1);
 }

@@ -60,6 +60,13 @@ Vec3d Cells::point(size_t i, double u, double v) const
     return f.origin + f.x * (cell.x + u) + f.y * (cell.y + v) + f.z * mix(cell.code, u, v);
 }
 
+Vec3d Cells::corner(size_t i, int k) const
+{
+    const Cell &cell = cells_[i];
+    const Frame &f = frames_[cell.patch];
+    return f.origin + f.x * (cell.x + (k & 1)) + f.y * (cell.y + (k >> 1)) + f.z * cell.code[k];
+}
+
 double Cells::trim(size_t i, double u, double v) const
 {
     return trim_of(mix(cells_[i].trim, u, v));
@@ -69,7 +76,7 @@ Box Cells::box(size_t i) const
 {
     Box box;
     for (int k = 0; k < 4; ++k)
-        box.add(point(i, k & 1, k >> 1));
+        box.add(corner(i, k));
     return box;
 }
 
@@ -97,25 +104,25 @@ double Cells::distance2(size_t i, const Vec3d &p) const
 {
     double best = std::numeric_limits<double>::infinity();
     if (!cells_[i].crossed) {
-        static const int ring[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
-        Vec3d centre = point(i, 0.5, 0.5), last = point(i, 0, 0);
-        for (int k = 1; k < 5; ++k) {
-            Vec3d next = point(i, ring[k][0], ring[k][1]);
-            best = std::min(best, triangle_distance2(p, centre, last, next));
-            last = next;
-        }
+        static const int ring[5] = {0, 1, 3, 2, 0};
+        Vec3d at[4];
+        for (int k = 0; k < 4; ++k)
+            at[k] = corner(i, k);
+        Vec3d centre = (at[0] + at[1] + at[2] + at[3]) * 0.25; /* on the bilinear patch */
+        for (int k = 0; k < 4; ++k)
+            best = std::min(best, triangle_distance2(p, centre, at[ring[k]], at[ring[k + 1]]));
         return best;
     }
     for (int quarter = 0; quarter < 4; ++quarter) {
-        Vec3d corner[4];
+        Vec3d at[4];
         double trims[4];
         for (int k = 0; k < 4; ++k) {
             double u = 0.5 * ((quarter & 1) + (k & 1)), v = 0.5 * ((quarter >> 1) + (k >> 1));
-            corner[k] = point(i, u, v);
+            at[k] = point(i, u, v);
             trims[k] = trim(i, u, v);
         }
         for (int k = 1; k < 3; ++k) { /* both hold corners 0 and 3 */
-            const Vec3d v[3] = {corner[0], corner[k], corner[3]};
+            const Vec3d v[3] = {at[0], at[k], at[3]};
             const double t[3] = {trims[0], trims[k], trims[3]};
             best = std::min(best, clipped_distance2(p, v, t));
         }
@@ -128,7 +135,7 @@ double Cells::core_area(size_t i) const
     int inside = 0;
     for (int k = 0; k < 16; ++k)
         inside += trim(i, 0.125 + 0.25 * (k & 3), 0.125 + 0.25 * (k >> 2)) <= 0;
-    Vec3d across = point(i, 1, 1) - point(i, 0, 0), back = point(i, 0, 1) - point(i, 1, 0);
+    Vec3d across = corner(i, 3) - corner(i, 0), back = corner(i, 2) - corner(i, 1);
     return length(cross(across, back)) / 2 * inside / 16;
 }
 

@@ -37,6 +37,7 @@ private:
     struct Frame {
         Vec3d origin, x, y, z;
     };
+    Vec3d corner(size_t i, int k) const;
     void add_patch(const gtx_asset *asset, uint32_t index);
 
     std::vector<Frame> frames_;

@@ -26,8 +26,8 @@ struct Format {
 };
 
 static const Format formats[] = {
-    {".glb", "glTF", import_gltf},   {".drc", "DRACO", import_draco}, {".ply", "ply\n", import_ply},
-    {".ply", "ply\r", import_ply},   {".gltf", "{", import_gltf},     {".obj", nullptr, import_obj},
+    {".glb", "glTF", import_gltf}, {".drc", "DRACO", import_draco}, {".ply", "ply\n", import_ply},
+    {".ply", "ply\r", import_ply}, {".gltf", "{", import_gltf},     {".obj", nullptr, import_obj},
 };
 
 void fail(gtx_result result, const char *format, ...)

@@ -1,4 +1,4 @@
-/* Draco streams. Damaged ones often decode without complaint, so the result is checked like a file. */
+/* Draco streams. Damaged ones often decode without complaint, so all of the result is checked. */
 #include "mesh/import_draco.hpp"
 
 #include <draco/compression/decode.h>
@@ -42,7 +42,8 @@ static DracoAttribute read_attribute(const draco::Mesh &mesh, const draco::Point
             break;
         }
         draco::AttributeValueIndex v = from.mapped_index(p);
-        uint64_t at = uint64_t(from.byte_offset()) + uint64_t(v.value()) * uint64_t(from.byte_stride());
+        uint64_t at =
+            uint64_t(from.byte_offset()) + uint64_t(v.value()) * uint64_t(from.byte_stride());
         double values[4];
         sound = at + uint64_t(item) <= from.buffer()->data_size() &&
                 from.ConvertValue<double>(v, int8_t(to.components), values);

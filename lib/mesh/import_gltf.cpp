@@ -50,7 +50,8 @@ static Affine local_transform(const tinygltf::Node &node, int number)
         Vec3d u(node.rotation[0], node.rotation[1], node.rotation[2]);
         double w = node.rotation[3], norm = dot(u, u) + w * w;
         if (norm > 0)
-            for (Vec3d &c : out.column) /* v + 2w (u x v) + 2u x (u x v), for any length of (u, w) */
+            for (Vec3d &c :
+                 out.column) /* v + 2w (u x v) + 2u x (u x v), for any length of (u, w) */
                 c = c + (cross(u, c) * w + cross(u, cross(u, c))) * (2 / norm);
     }
     if (check(node.scale, 3, "scale"))
@@ -194,7 +195,8 @@ static Attributes read_draco(const GltfDocument &doc, const tinygltf::Primitive 
         !extension.Has("attributes") || !extension.Get("attributes").IsObject())
         fail(GTX_ERROR_INPUT, "%s: KHR_draco_mesh_compression lacks its view or its attributes",
              where.c_str());
-    DracoMesh draco = decode_draco(gltf_view(doc, extension.Get("bufferView").Get<int>(), where), task);
+    DracoMesh draco =
+        decode_draco(gltf_view(doc, extension.Get("bufferView").Get<int>(), where), task);
     const tinygltf::Value &ids = extension.Get("attributes");
     out.triangles = std::move(draco.triangles);
     return {draco_values(doc, primitive, ids, draco, "POSITION"),
@@ -237,13 +239,13 @@ static void set_colors(const tinygltf::Material *material, const GltfValues &col
     for (size_t i = 0; i < out.positions.size(); ++i) {
         double c[4];
         for (int k = 0; k < 4; ++k)
-            c[k] = factor[k] * (k < color.components
-                                    ? color.values[i * size_t(color.components) + size_t(k)]
-                                    : 1);
+            c[k] =
+                factor[k] *
+                (k < color.components ? color.values[i * size_t(color.components) + size_t(k)] : 1);
         for (int k = 0; k < 3; ++k)
             c[k] = srgb_from_linear(std::clamp(c[k], 0., 1.));
-        out.colors.push_back({to_byte(c[0]), to_byte(c[1]), to_byte(c[2]),
-                              opaque ? uint8_t(255) : to_byte(c[3])});
+        out.colors.push_back(
+            {to_byte(c[0]), to_byte(c[1]), to_byte(c[2]), opaque ? uint8_t(255) : to_byte(c[3])});
     }
 }
 
@@ -262,7 +264,8 @@ static Primitive read_primitive(const GltfDocument &doc, const tinygltf::Primiti
                (v.components >= least && v.components <= most && v.count == count);
     };
     if (!suits(a.position, 3, 3) || !suits(a.normal, 3, 3) || !suits(a.color, 3, 4))
-        fail(GTX_ERROR_INPUT, "%s: POSITION, NORMAL and COLOR_0 do not fit together", where.c_str());
+        fail(GTX_ERROR_INPUT, "%s: POSITION, NORMAL and COLOR_0 do not fit together",
+             where.c_str());
     out.mesh.positions.reserve(count);
     for (size_t i = 0; i < count; ++i) {
         const double *p = &a.position.values[3 * i];
@@ -286,8 +289,7 @@ static Primitive read_primitive(const GltfDocument &doc, const tinygltf::Primiti
 /* ---- the mesh ---- */
 
 /* Adds `count` attributes of a primitive that has them or not to a mesh that has them or not. */
-template <class T>
-static void extend(std::vector<T> &to, size_t before, size_t count, bool has)
+template <class T> static void extend(std::vector<T> &to, size_t before, size_t count, bool has)
 {
     if (has || !to.empty())
         to.resize(before + count);
@@ -319,8 +321,8 @@ static void append(const Primitive &primitive, const Affine &transform, Mesh &me
         for (size_t k = 0; k < 3; ++k) {
             size_t corner = 3 * (before + t) + k;
             if (!from.normals.empty())
-                mesh.normals[corner] = Vec3f(
-                    normalize(cofactor.direction(Vec3d(from.normals[corners[k]]))));
+                mesh.normals[corner] =
+                    Vec3f(normalize(cofactor.direction(Vec3d(from.normals[corners[k]]))));
             if (!from.colors.empty())
                 mesh.colors[corner] = from.colors[corners[k]];
         }
@@ -362,7 +364,8 @@ Mesh import_gltf(const ModelFile &file, Task &task)
             for (const Affine &transform : instances[m]) {
                 uint64_t triangles = mesh.triangles.size() + primitive.mesh.triangles.size();
                 uint64_t vertices = mesh.positions.size() + primitive.mesh.positions.size();
-                if (std::max(triangles, vertices / 3) > doc.triangle_limit || vertices > MAX_VERTICES)
+                if (std::max(triangles, vertices / 3) > doc.triangle_limit ||
+                    vertices > MAX_VERTICES)
                     fail(GTX_ERROR_LIMIT, "%s: the instances come to more than %llu triangles",
                          where.c_str(), (unsigned long long)doc.triangle_limit);
                 append(primitive, transform, mesh);

@@ -1,4 +1,4 @@
-/* A glTF document whose numbers can be trusted to lie inside their buffers. Internal to lib/mesh. */
+/* A glTF document whose numbers are known to lie inside their buffers. Internal to lib/mesh. */
 #pragma once
 
 #include "mesh/import.hpp"

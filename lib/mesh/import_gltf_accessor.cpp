@@ -78,7 +78,8 @@ static const tinygltf::Accessor &find_accessor(const GltfDocument &doc, int numb
     const tinygltf::Accessor &a = doc.model.accessors[size_t(number)];
     if (!component_size(a.componentType))
         fail(GTX_ERROR_INPUT, "accessor %d: %d is not a component type", number, a.componentType);
-    if (a.type != TINYGLTF_TYPE_SCALAR && (a.type < TINYGLTF_TYPE_VEC2 || a.type > TINYGLTF_TYPE_VEC4))
+    if (a.type != TINYGLTF_TYPE_SCALAR &&
+        (a.type < TINYGLTF_TYPE_VEC2 || a.type > TINYGLTF_TYPE_VEC4))
         fail(GTX_ERROR_INPUT, "accessor %d is neither a scalar nor a vector", number);
     return a;
 }
@@ -152,7 +153,8 @@ GltfValues gltf_values(const GltfDocument &doc, int accessor)
         out.values.reserve(a.count * components);
         for (size_t i = 0; i < a.count; ++i)
             for (size_t k = 0; k < components; ++k)
-                out.values.push_back(component(data + i * stride + k * size, a.componentType) / full);
+                out.values.push_back(component(data + i * stride + k * size, a.componentType) /
+                                     full);
     } else {
         if (a.count > doc.triangle_limit)
             fail(GTX_ERROR_LIMIT, "%s: %zu zeros", user.c_str(), a.count);

@@ -94,8 +94,8 @@ static std::string percent_decoded(std::string_view uri)
 {
     std::string out;
     for (size_t i = 0; i < uri.size(); ++i) {
-        bool escaped = uri[i] == '%' && i + 2 < uri.size() && hex(uri[i + 1]) >= 0 &&
-                       hex(uri[i + 2]) >= 0;
+        bool escaped =
+            uri[i] == '%' && i + 2 < uri.size() && hex(uri[i + 1]) >= 0 && hex(uri[i + 2]) >= 0;
         out += escaped ? char(hex(uri[i + 1]) * 16 + hex(uri[i + 2])) : uri[i];
         i += escaped ? 2 : 0;
     }

@@ -22,10 +22,14 @@ static const char *const known_extensions[] = {
 static const struct {
     const char *key, *warning;
 } unread[] = {
-    {"images", "textures were ignored"}, {"textures", nullptr},
-    {"samplers", nullptr},               {"animations", "animations were ignored"},
-    {"skins", "skins were ignored"},     {"cameras", "cameras were ignored"},
-    {"extensions", nullptr},             {"extras", nullptr},
+    {"images", "textures were ignored"},
+    {"textures", nullptr},
+    {"samplers", nullptr},
+    {"animations", "animations were ignored"},
+    {"skins", "skins were ignored"},
+    {"cameras", "cameras were ignored"},
+    {"extensions", nullptr},
+    {"extras", nullptr},
     {"buffers", nullptr},
 };
 
@@ -176,7 +180,8 @@ static void check_extensions(const json &root, Task &task)
     if (auto used = root.find("extensionsUsed"); used != root.end())
         for (const json &name : *used)
             if (!is_known(name) && ignored.size() < 200)
-                ignored += (ignored.empty() ? "" : ", ") + printable(name.get_ref<const std::string &>());
+                ignored +=
+                    (ignored.empty() ? "" : ", ") + printable(name.get_ref<const std::string &>());
     if (!ignored.empty())
         task.warnings.push_back("glTF extensions were ignored: " + ignored);
 }

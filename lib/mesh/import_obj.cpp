@@ -39,11 +39,11 @@ private:
     Task &task_;
     Mesh mesh_;
     std::vector<Vec3f> normals_;
-    std::vector<Rgba8> colors_;                /* by vertex, or empty */
+    std::vector<Rgba8> colors_;                      /* by vertex, or empty */
     std::vector<uint32_t> corners_, corner_normals_; /* of the face at hand */
     std::vector<Vec3d> polygon_;
     std::vector<std::array<uint32_t, 3>> cut_;
-    std::vector<std::string> ignored_;         /* statements, in the order found */
+    std::vector<std::string> ignored_; /* statements, in the order found */
     size_t short_faces_ = 0;
 };
 
@@ -123,8 +123,8 @@ bool ObjReader::index(size_t count, const char *what, uint32_t &out)
     auto [stop, error] = std::from_chars(at_, end_, value);
     if (error == std::errc::invalid_argument)
         return false;
-    bool beyond = error != std::errc() || value == 0 || value > int64_t(count) ||
-                  value < -int64_t(count);
+    bool beyond =
+        error != std::errc() || value == 0 || value > int64_t(count) || value < -int64_t(count);
     if (beyond)
         fail(GTX_ERROR_INPUT, "line %zu: %s %s, but %zu are defined before it", line_, what,
              printable({at_, size_t(stop - at_)}).c_str(), count);

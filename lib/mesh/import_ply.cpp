@@ -1,5 +1,5 @@
 /* PLY, the Stanford polygon format: ascii and binary, faces and triangle strips. */
-#include "mesh/import.hpp"
+#include "mesh/import_ply.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -10,53 +10,26 @@ namespace gtx {
 
 namespace {
 
-enum class Type { i8, u8, i16, u16, i32, u32, f32, f64 };
-
-struct TypeName {
-    const char *name, *alias;
-    Type type;
-    unsigned size;
-    double full; /* what a colour channel of full strength is */
-};
-
-constexpr TypeName types[] = {
-    {"char", "int8", Type::i8, 1, 127},        {"uchar", "uint8", Type::u8, 1, 255},
-    {"short", "int16", Type::i16, 2, 32767},   {"ushort", "uint16", Type::u16, 2, 65535},
-    {"int", "int32", Type::i32, 4, 2147483647}, {"uint", "uint32", Type::u32, 4, 4294967295.0},
-    {"float", "float32", Type::f32, 4, 1},     {"double", "float64", Type::f64, 8, 1},
-};
-
-unsigned size_of(Type type)
-{
-    return types[int(type)].size;
-}
-
-struct Property {
-    std::string name;
-    Type type;       /* of the value, or of a list's items */
-    bool is_list;
-    Type count_type; /* of a list's length */
-};
-
-struct Element {
-    std::string name;
-    uint64_t count;
-    std::vector<Property> properties;
-};
-
 /* What a vertex property means: its place in a row of values. */
 enum { X, Y, Z, NX, NY, NZ, RED, GREEN, BLUE, ALPHA, ROLE_COUNT };
 constexpr const char *role_names[ROLE_COUNT][2] = {
-    {"x", "x"},           {"y", "y"},   {"z", "z"},
-    {"nx", "normal_x"},   {"ny", "normal_y"}, {"nz", "normal_z"},
-    {"red", "diffuse_red"}, {"green", "diffuse_green"}, {"blue", "diffuse_blue"},
+    {"x", "x"},
+    {"y", "y"},
+    {"z", "z"},
+    {"nx", "normal_x"},
+    {"ny", "normal_y"},
+    {"nz", "normal_z"},
+    {"red", "diffuse_red"},
+    {"green", "diffuse_green"},
+    {"blue", "diffuse_blue"},
     {"alpha", "diffuse_alpha"},
 };
 
 class PlyReader {
 public:
     PlyReader(const std::string &bytes, Task &task)
-        : begin_(bytes.data()), at_(begin_), end_(begin_ + bytes.size()), task_(task)
+        : begin_(bytes.data()), end_(begin_ + bytes.size()), header_(read_ply_header(bytes)),
+          at_(begin_ + header_.size), task_(task)
     {
     }
     Mesh read();
@@ -66,134 +39,40 @@ private:
     void header();
     void header_element(const std::vector<std::string_view> &words);
     void header_property(const std::vector<std::string_view> &words);
-    Type type_named(std::string_view name);
-
     size_t left() const { return size_t(end_ - at_); }
     double ascii_value();
-    double value(Type type);
-    uint64_t list_length(const Property &property);
-    void skip(const Property &property);
-    void check_count(const Element &element);
+    double value(PlyType type);
+    uint64_t list_length(const PlyProperty &property);
+    void skip(const PlyProperty &property);
+    void check_count(const PlyElement &element);
     void progress(uint64_t row);
 
-    void read_vertices(const Element &element);
-    void read_lists(const Element &element, size_t list, std::vector<double> &lists);
-    void skip_rows(const Element &element);
+    void read_vertices(const PlyElement &element);
+    void read_lists(const PlyElement &element, size_t list, std::vector<double> &lists);
+    void skip_rows(const PlyElement &element);
 
     uint32_t vertex_index(double value, const char *what, size_t row);
     void cut_faces(VertexMesh &mesh);
     void cut_strips(VertexMesh &mesh);
-    void ignored(const Element &element, const Property &property);
+    void ignored(const PlyElement &element, const PlyProperty &property);
 
-    const char *begin_, *at_, *end_;
-    size_t line_ = 0;
-    bool ascii_ = false, swap_ = false;
-    const Element *element_ = nullptr; /* at hand, for messages */
+    const char *begin_, *end_;
+    PlyHeader header_; /* its lines go on counting */
+    const char *at_;
+    const PlyElement *element_ = nullptr; /* at hand, for messages */
     uint64_t row_ = 0;
     Task &task_;
-    std::vector<Element> elements_;
     VertexMesh mesh_;
     std::vector<double> faces_, strips_; /* each list behind its length */
     std::string ignored_;
 };
-
-/* ---- header ---- */
-
-std::vector<std::string_view> PlyReader::header_line()
-{
-    const char *stop = std::find_if(at_, end_, [](char c) { return c == '\n' || c == '\r'; });
-    ++line_;
-    if (stop == end_)
-        fail(GTX_ERROR_INPUT, "line %zu: the header has no end_header", line_);
-    std::vector<std::string_view> words;
-    for (const char *p = at_; p < stop;) {
-        const char *word = p;
-        while (p < stop && *p != ' ' && *p != '\t')
-            ++p;
-        if (p > word)
-            words.push_back({word, size_t(p - word)});
-        while (p < stop && (*p == ' ' || *p == '\t'))
-            ++p;
-    }
-    at_ = stop + (*stop == '\r' && stop + 1 < end_ && stop[1] == '\n' ? 2 : 1);
-    return words;
-}
-
-Type PlyReader::type_named(std::string_view name)
-{
-    for (const TypeName &t : types)
-        if (name == t.name || name == t.alias)
-            return t.type;
-    fail(GTX_ERROR_INPUT, "line %zu: '%s' is not a PLY type", line_, printable(name).c_str());
-}
-
-void PlyReader::header_element(const std::vector<std::string_view> &words)
-{
-    Element element = {};
-    bool good = words.size() == 3;
-    if (good) {
-        element.name = words[1];
-        const char *end = words[2].data() + words[2].size();
-        auto [stop, error] = std::from_chars(words[2].data(), end, element.count);
-        good = error == std::errc() && stop == end;
-    }
-    if (!good)
-        fail(GTX_ERROR_INPUT, "line %zu: an element needs a name and a count", line_);
-    elements_.push_back(std::move(element));
-}
-
-void PlyReader::header_property(const std::vector<std::string_view> &words)
-{
-    bool is_list = words.size() == 5 && words[1] == "list";
-    if (elements_.empty() || (words.size() != 3 && !is_list))
-        fail(GTX_ERROR_INPUT, "line %zu: this is not a property of an element", line_);
-    Property property;
-    property.name = words.back();
-    property.is_list = is_list;
-    property.type = type_named(words[words.size() - 2]);
-    property.count_type = is_list ? type_named(words[2]) : Type::u8;
-    if (property.count_type == Type::f32 || property.count_type == Type::f64)
-        fail(GTX_ERROR_INPUT, "line %zu: the length of a list is not an integer", line_);
-    elements_.back().properties.push_back(std::move(property));
-}
-
-void PlyReader::header()
-{
-    auto first = header_line();
-    if (first.size() != 1 || first[0] != "ply")
-        fail(GTX_ERROR_INPUT, "the file does not start with 'ply'");
-    bool has_format = false;
-    for (;;) {
-        auto words = header_line();
-        std::string_view word = words.empty() ? "comment" : words[0];
-        if (word == "end_header")
-            break;
-        if (word == "format" && words.size() == 3) {
-            has_format = true;
-            ascii_ = words[1] == "ascii";
-            swap_ = words[1] == "binary_big_endian";
-            if (!ascii_ && !swap_ && words[1] != "binary_little_endian")
-                fail(GTX_ERROR_INPUT, "line %zu: '%s' is not a PLY format", line_,
-                     printable(words[1]).c_str());
-        } else if (word == "element") {
-            header_element(words);
-        } else if (word == "property") {
-            header_property(words);
-        } else if (word != "comment" && word != "obj_info") {
-            fail(GTX_ERROR_INPUT, "line %zu: '%s' is not a PLY header line", line_,
-                 printable(word).c_str());
-        }
-    }
-    if (!has_format)
-        fail(GTX_ERROR_INPUT, "the header has no format line");
-}
 
 /* ---- values ---- */
 
 double PlyReader::ascii_value()
 {
     for (; at_ < end_ && (*at_ == ' ' || (*at_ >= '\t' && *at_ <= '\r')); ++at_)
-        line_ += *at_ == '\n';
+        header_.lines += *at_ == '\n';
     const char *start = at_ + (at_ < end_ && *at_ == '+');
     double value = 0;
     auto [stop, error] = std::from_chars(start, end_, value);
@@ -203,7 +82,7 @@ double PlyReader::ascii_value()
     if (error == std::errc::result_out_of_range) /* too large or too small */
         value = std::memchr(start, '-', size_t(stop - start)) == nullptr ? HUGE_VAL : 0;
     else if (error != std::errc())
-        fail(GTX_ERROR_INPUT, "line %zu: '%s' is not a number", line_ + 1,
+        fail(GTX_ERROR_INPUT, "line %zu: '%s' is not a number", header_.lines + 1,
              printable({at_, std::min<size_t>(left(), 12)}).c_str());
     at_ = stop;
     return value;
@@ -224,57 +103,57 @@ bool host_is_big_endian()
     return first == 0;
 }
 
-double PlyReader::value(Type type)
+double PlyReader::value(PlyType type)
 {
-    if (ascii_)
+    if (header_.ascii)
         return ascii_value();
-    unsigned size = size_of(type);
+    unsigned size = ply_size(type);
     if (left() < size)
         fail(GTX_ERROR_INPUT, "the file ends in %s %llu of %llu", printable(element_->name).c_str(),
              (unsigned long long)row_, (unsigned long long)element_->count);
     unsigned char bytes[8];
     std::memcpy(bytes, at_, size);
     at_ += size;
-    if (swap_ != host_is_big_endian())
+    if (header_.big_endian != host_is_big_endian())
         std::reverse(bytes, bytes + size);
     switch (type) {
-    case Type::i8: return as<int8_t>(bytes);
-    case Type::u8: return as<uint8_t>(bytes);
-    case Type::i16: return as<int16_t>(bytes);
-    case Type::u16: return as<uint16_t>(bytes);
-    case Type::i32: return as<int32_t>(bytes);
-    case Type::u32: return as<uint32_t>(bytes);
-    case Type::f32: return as<float>(bytes);
-    case Type::f64: return as<double>(bytes);
+    case PlyType::i8: return as<int8_t>(bytes);
+    case PlyType::u8: return as<uint8_t>(bytes);
+    case PlyType::i16: return as<int16_t>(bytes);
+    case PlyType::u16: return as<uint16_t>(bytes);
+    case PlyType::i32: return as<int32_t>(bytes);
+    case PlyType::u32: return as<uint32_t>(bytes);
+    case PlyType::f32: return as<float>(bytes);
+    case PlyType::f64: return as<double>(bytes);
     }
     return 0;
 }
 
 /* The length, after checking that the file is long enough to hold the items. */
-uint64_t PlyReader::list_length(const Property &property)
+uint64_t PlyReader::list_length(const PlyProperty &property)
 {
     double length = value(property.count_type);
-    size_t item = ascii_ ? 1 : size_of(property.type);
+    size_t item = header_.ascii ? 1 : ply_size(property.type);
     if (!(length >= 0) || length > double(left() / item))
         fail(GTX_ERROR_INPUT, "%s %llu: a list of %.0f items does not fit the file",
              printable(element_->name).c_str(), (unsigned long long)row_, length);
     return uint64_t(length);
 }
 
-void PlyReader::skip(const Property &property)
+void PlyReader::skip(const PlyProperty &property)
 {
     for (uint64_t n = property.is_list ? list_length(property) : 1; n > 0; --n)
         value(property.type);
 }
 
 /* Before anything is allocated: does the file have room for that many rows? */
-void PlyReader::check_count(const Element &element)
+void PlyReader::check_count(const PlyElement &element)
 {
     uint64_t row = 0;
-    for (const Property &p : element.properties)
-        row += ascii_ ? 2 : size_of(p.is_list ? p.count_type : p.type);
+    for (const PlyProperty &p : element.properties)
+        row += header_.ascii ? 2 : ply_size(p.is_list ? p.count_type : p.type);
     /* The last value of an ascii file needs no blank behind it. */
-    if (row && element.count > (left() + (ascii_ ? 1 : 0)) / row)
+    if (row && element.count > (left() + (header_.ascii ? 1 : 0)) / row)
         fail(GTX_ERROR_INPUT, "%llu rows of element '%s' do not fit the file",
              (unsigned long long)element.count, printable(element.name).c_str());
 }
@@ -288,19 +167,19 @@ void PlyReader::progress(uint64_t row)
 
 /* ---- elements ---- */
 
-void PlyReader::ignored(const Element &element, const Property &property)
+void PlyReader::ignored(const PlyElement &element, const PlyProperty &property)
 {
     if (ignored_.size() < 200)
         ignored_ += (ignored_.empty() ? "" : ", ") + printable(element.name) + "." +
                     printable(property.name);
 }
 
-void PlyReader::read_vertices(const Element &element)
+void PlyReader::read_vertices(const PlyElement &element)
 {
     std::vector<int> roles;
     bool has[ROLE_COUNT] = {};
     double full[ROLE_COUNT] = {};
-    for (const Property &p : element.properties) {
+    for (const PlyProperty &p : element.properties) {
         int role = ROLE_COUNT; /* a place of its own that nobody reads */
         for (int r = 0; r < ROLE_COUNT && !p.is_list; ++r)
             if (p.name == role_names[r][0] || p.name == role_names[r][1])
@@ -309,7 +188,7 @@ void PlyReader::read_vertices(const Element &element)
             ignored(element, p);
         } else {
             has[role] = true;
-            full[role] = types[int(p.type)].full;
+            full[role] = ply_full(p.type);
         }
         roles.push_back(role);
     }
@@ -324,7 +203,7 @@ void PlyReader::read_vertices(const Element &element)
     for (uint64_t row = 0; row < element.count; ++row) {
         progress(row);
         for (size_t i = 0; i < roles.size(); ++i) {
-            const Property &p = element.properties[i];
+            const PlyProperty &p = element.properties[i];
             if (p.is_list)
                 skip(p);
             else
@@ -334,15 +213,14 @@ void PlyReader::read_vertices(const Element &element)
         if (normals)
             mesh_.normals.push_back({float(v[NX]), float(v[NY]), float(v[NZ])});
         if (colors)
-            mesh_.colors.push_back(
-                {to_byte(v[RED] / full[RED]), to_byte(v[GREEN] / full[GREEN]),
-                 to_byte(v[BLUE] / full[BLUE]),
-                 has[ALPHA] ? to_byte(v[ALPHA] / full[ALPHA]) : uint8_t(255)});
+            mesh_.colors.push_back({to_byte(v[RED] / full[RED]), to_byte(v[GREEN] / full[GREEN]),
+                                    to_byte(v[BLUE] / full[BLUE]),
+                                    has[ALPHA] ? to_byte(v[ALPHA] / full[ALPHA]) : uint8_t(255)});
     }
 }
 
 /* Keeps the lists of one property. Faces may come before the vertices, so they are cut later. */
-void PlyReader::read_lists(const Element &element, size_t list, std::vector<double> &lists)
+void PlyReader::read_lists(const PlyElement &element, size_t list, std::vector<double> &lists)
 {
     for (size_t i = 0; i < element.properties.size(); ++i)
         if (i != list)
@@ -350,7 +228,7 @@ void PlyReader::read_lists(const Element &element, size_t list, std::vector<doub
     for (uint64_t row = 0; row < element.count; ++row) {
         progress(row);
         for (size_t i = 0; i < element.properties.size(); ++i) {
-            const Property &p = element.properties[i];
+            const PlyProperty &p = element.properties[i];
             if (i != list) {
                 skip(p);
                 continue;
@@ -363,13 +241,13 @@ void PlyReader::read_lists(const Element &element, size_t list, std::vector<doub
     }
 }
 
-void PlyReader::skip_rows(const Element &element)
+void PlyReader::skip_rows(const PlyElement &element)
 {
     if (element.properties.empty())
         return;
     for (uint64_t row = 0; row < element.count; ++row) {
         progress(row);
-        for (const Property &p : element.properties)
+        for (const PlyProperty &p : element.properties)
             skip(p);
     }
 }
@@ -439,8 +317,7 @@ void PlyReader::cut_strips(VertexMesh &mesh)
 
 Mesh PlyReader::read()
 {
-    header();
-    for (const Element &element : elements_) {
+    for (const PlyElement &element : header_.elements) {
         element_ = &element;
         check_count(element);
         size_t list = 0, properties = element.properties.size();

@@ -55,8 +55,8 @@ static bool is_convex(const std::vector<Point> &flat)
 static bool inside(Point p, Point a, Point b, Point c)
 {
     auto same = [&](Point q) { return p.x == q.x && p.y == q.y; };
-    return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0 && !same(a) &&
-           !same(b) && !same(c);
+    return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0 && !same(a) && !same(b) &&
+           !same(c);
 }
 
 /* Meisters, "Polygons have ears", 1975. A polygon that crosses itself may have none left; then the

@@ -6,13 +6,17 @@ typedef struct interval {
     double t0, t1;
 } interval;
 
-/* The part of `i` where o + t d lies within [low, high]; empty when t0 > t1. */
-static interval cut(interval i, double o, double d, double low, double high)
+/* The part of `i` where the line's coordinate along the axis lies within [low, high]; empty when
+ * t0 > t1. */
+static inline interval cut(interval i, const gtx_line *line, int axis, double inverse, double low,
+                           double high)
 {
     const interval none = {1, 0};
-    if (d == 0)
+    double o = line->origin[axis];
+    if (line->direction[axis] == 0)
         return o < low || o > high ? none : i;
-    double near = ((d > 0 ? low : high) - o) / d, far = ((d > 0 ? high : low) - o) / d;
+    double near = ((inverse > 0 ? low : high) - o) * inverse;
+    double far = ((inverse > 0 ? high : low) - o) * inverse;
     return (interval){near > i.t0 ? near : i.t0, far < i.t1 ? far : i.t1};
 }
 
@@ -75,20 +79,23 @@ void gtx_search_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *
 {
     const gtx_sheet *s = &caster->sheets[sheet];
     const gtx_line line = gtx_sheet_line(s, ray);
-    const double *o = line.origin, *d = line.direction;
+    const double inverse[3] = {1 / line.direction[0], 1 / line.direction[1],
+                               1 / line.direction[2]};
     uint32_t rows = (s->height - 2 + (1u << caster->level)) >> caster->level;
     for (uint32_t j = 0; j < rows; ++j) {
         gtx_cell first = gtx_sheet_cell(s, caster->level, 0, j);
-        interval row = cut((interval){ray->t_min, best->t}, o[1], d[1], first.y0, first.y1);
-        if (row.t0 > row.t1)
-            continue;
-        for (uint32_t i = 0; i < s->tree_width[0]; ++i) {
+        interval row = {ray->t_min, best->t};
+        row = cut(row, &line, 1, inverse[1], first.y0, first.y1);
+        for (uint32_t i = 0; row.t0 <= row.t1 && i < s->tree_width[0]; ++i) {
             gtx_range range = s->tree[0][(size_t)j * s->tree_width[0] + i];
             if (range.min > range.max)
                 continue;
+            double low = range.min - 1.0, high = range.max + 1.0;
+            interval inside = cut(row, &line, 2, inverse[2], low, high);
+            if (inside.t0 > inside.t1)
+                continue;
             gtx_cell cell = gtx_sheet_cell(s, caster->level, i, j);
-            interval inside = cut(row, o[0], d[0], cell.x0, cell.x1);
-            inside = cut(inside, o[2], d[2], range.min - 1.0, range.max + 1.0);
+            inside = cut(inside, &line, 0, inverse[0], cell.x0, cell.x1);
             if (inside.t0 <= inside.t1)
                 search_cell(caster, sheet, &line, &cell, both || s->two_sided, inside, best);
         }

@@ -317,8 +317,8 @@ static void test_filters(void **state)
     (void)state;
     uint8_t in[2 * 5 * 3 * 4], coded[sizeof in], out[sizeof in];
     for (uint32_t texel = 1; texel <= 4; texel *= 2) {
-        gtx_image image = {2, 5, 3, texel};
-        size_t size = (size_t)gtx_image_size(image);
+        gtx_map_shape image = {2, 5, 3, texel};
+        size_t size = (size_t)gtx_shape_size(image);
         for (size_t i = 0; i < size; ++i)
             in[i] = (uint8_t)(i * i * 37 + i);
         for (uint32_t filter = 0; filter < 4; ++filter) {
@@ -330,10 +330,10 @@ static void test_filters(void **state)
     /* Two pages of 2 x 2 texels by hand. */
     const uint8_t image[] = {10, 20, 30, 45, 1, 2, 3, 4};
     const uint8_t right[] = {10, 10, 20, 15, 1, 1, 2, 1};
-    gtx_filter_apply((gtx_image){2, 2, 2, 1}, GTX_FILTER_PAETH, image, coded);
+    gtx_filter_apply((gtx_map_shape){2, 2, 2, 1}, GTX_FILTER_PAETH, image, coded);
     assert_memory_equal(coded, right, 8);
     const uint8_t planes[] = {10, 30, 1, 3, 20, 45, 2, 4};
-    gtx_filter_apply((gtx_image){1, 2, 2, 2}, GTX_FILTER_PLANES, image, coded);
+    gtx_filter_apply((gtx_map_shape){1, 2, 2, 2}, GTX_FILTER_PLANES, image, coded);
     assert_memory_equal(coded, planes, 8);
 }
 

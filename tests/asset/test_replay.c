@@ -128,6 +128,28 @@ static void test_goldens_agree(void **state)
     }
 }
 
+/* The inverse of every filter, also of those that the encoder does not choose. */
+static void test_filters_agree(void **state)
+{
+    (void)state;
+    const struct file pages = {.pages = 2};
+    for (uint32_t texel = 1; texel <= 4; texel *= 2) {
+        for (uint32_t filter = 0; filter < 4; ++filter) {
+            const gtx_map_shape shape = {2, 7, 5, texel};
+            size_t size = (size_t)gtx_shape_size(shape);
+            struct section section = {.filter = filter, .size = size, .width = 7, .height = 5,
+                                      .texel = texel, .bytes = need(malloc(size))};
+            uint8_t coded[280], out[280];
+            for (size_t i = 0; i < size; ++i)
+                section.bytes[i] = coded[i] = (uint8_t)(i * i * 13 + 7 * i);
+            gtx_filter_undo(shape, filter, coded, out);
+            assert_int_equal(undo_filter(&pages, &section), 0);
+            assert_memory_equal(section.bytes, out, size);
+            free(section.bytes);
+        }
+    }
+}
+
 static void test_truncation(void **state)
 {
     (void)state;
@@ -378,7 +400,8 @@ static void test_bomb(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_goldens_agree),     cmocka_unit_test(test_truncation),
+        cmocka_unit_test(test_goldens_agree),     cmocka_unit_test(test_filters_agree),
+        cmocka_unit_test(test_truncation),
         cmocka_unit_test(test_flips),             cmocka_unit_test(test_repaired_flips),
         cmocka_unit_test(test_repaired_content),  cmocka_unit_test(test_compressed_flips),
         cmocka_unit_test(test_random_changes),    cmocka_unit_test(test_memory_exhaustion),

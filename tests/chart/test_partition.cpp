@@ -21,14 +21,15 @@ static Partition partition(const Mesh &mesh, unsigned threads = 2, ChartOptions 
     return partition_vsa(mesh, options, task);
 }
 
-static size_t pieces(const Chart &chart,
-                     const std::vector<std::array<uint32_t, 3>> &neighbours)
+/* Areas of the connected pieces of a chart, ascending. */
+static std::vector<double> pieces(const Mesh &mesh, const Chart &chart,
+                                  const std::vector<std::array<uint32_t, 3>> &neighbours)
 {
     std::vector<bool> seen(chart.triangles.size());
-    size_t count = 0;
+    std::vector<double> areas;
     for (uint32_t first : chart.triangles) {
         std::vector<uint32_t> stack = {first};
-        bool fresh = false;
+        double area = 0;
         while (!stack.empty()) {
             uint32_t t = stack.back();
             stack.pop_back();
@@ -36,12 +37,15 @@ static size_t pieces(const Chart &chart,
             if (t == NO_TRIANGLE || at == chart.triangles.end() || *at != t ||
                 seen[size_t(at - chart.triangles.begin())])
                 continue;
-            seen[size_t(at - chart.triangles.begin())] = fresh = true;
+            seen[size_t(at - chart.triangles.begin())] = true;
+            area += length(mesh.area_vector(t)) / 2;
             stack.insert(stack.end(), neighbours[t].begin(), neighbours[t].end());
         }
-        count += fresh;
+        if (area > 0)
+            areas.push_back(area);
     }
-    return count;
+    std::sort(areas.begin(), areas.end());
+    return areas;
 }
 
 static void check_frame(const Mesh &mesh, const Chart &chart, double pitch)
@@ -77,12 +81,15 @@ static void check(const Mesh &mesh, const Partition &p)
         assert_true(std::is_sorted(chart.triangles.begin(), chart.triangles.end()));
         for (uint32_t t : chart.triangles)
             ++used[t];
-        assert_int_equal(pieces(chart, neighbours), 1);
+        std::vector<double> areas = pieces(mesh, chart, neighbours);
+        areas.pop_back(); /* beside one piece only crumbs */
+        for (double area : areas)
+            assert_true(area < 64 * p.pitch * p.pitch);
         check_frame(mesh, chart, p.pitch);
         longest = std::max({longest, chart.frame.extent[0], chart.frame.extent[1]});
     }
     assert_true(std::all_of(used.begin(), used.end(), [](int n) { return n == 1; }));
-    assert_true(std::abs(longest / p.pitch - 120) < 1e-6);
+    assert_true(longest / p.pitch < 120 + 1e-6);
     assert_int_equal(p.initial_chart.size(), mesh.triangle_count());
     for (uint32_t c : p.initial_chart)
         assert_true(c < p.report.initial_charts);
@@ -262,6 +269,49 @@ static void test_components(void **)
     assert_in_range(large, 55, 75);
 }
 
+/* Texels are no finer than the wanted number of full rectangles would have them. */
+static void test_density(void **)
+{
+    ChartOptions options;
+    options.resolution = 256;
+    Partition p = partition(shapes::bumpy_sphere(30), 2, options);
+    double longest = 0;
+    for (const Chart &c : p.charts)
+        longest = std::max({longest, c.frame.extent[0], c.frame.extent[1]});
+    assert_true(std::abs(longest / p.pitch - 248) < 1e-6);
+
+    Mesh mesh;
+    for (int i = 0; i < 300; ++i)
+        mesh = shapes::both(mesh, shapes::cube(1), {4. * i, 0, 0});
+    p = partition(mesh);
+    assert_in_range(p.charts.size(), 1800, 2400);
+    assert_true(texels(p) < 1.2 * 120 * 120 * 10 * std::pow(3600., 0.28));
+}
+
+/* Crumbs that touch a chart beside it join it; those that hang over it do not. */
+static void test_crumbs(void **)
+{
+    Mesh mesh = shapes::plane(30);
+    size_t alone = partition(mesh).charts.size();
+    auto add = [&mesh](size_t vertex, const Vec3d &b, const Vec3d &c) {
+        auto v = uint32_t(mesh.positions.size());
+        Vec3d a = mesh.positions[vertex];
+        mesh.positions.insert(mesh.positions.end(), {a, a + b, a + c});
+        mesh.triangles.push_back({v, v + 1, v + 2});
+    };
+    for (size_t row = 5; row < 25; ++row)
+        add(31 * row, {-0.002, 0.002, 0}, {-0.002, -0.002, 0});
+    Partition p = partition(mesh);
+    check(mesh, p);
+    assert_in_range(p.charts.size(), alone - 3, alone + 3);
+    for (size_t row = 5; row < 25; ++row)
+        add(31 * row + 15, {0.006, 0, 0.006}, {0, 0.006, 0.006});
+    p = partition(mesh);
+    check(mesh, p);
+    assert_in_range(p.charts.size(), alone + 17, alone + 23);
+    assert_int_equal(p.report.junk_triangles, 0);
+}
+
 static void test_two_sided(void **)
 {
     Mesh mesh = shapes::both(shapes::sphere(8), shapes::plane(10), {3, 0, 0});
@@ -391,12 +441,12 @@ static void test_models(void **)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_shapes),     cmocka_unit_test(test_small),
-        cmocka_unit_test(test_empty),      cmocka_unit_test(test_folds_are_split),
-        cmocka_unit_test(test_single_layer), cmocka_unit_test(test_wanted_count),
-        cmocka_unit_test(test_components), cmocka_unit_test(test_two_sided),
-        cmocka_unit_test(test_deterministic), cmocka_unit_test(test_junk),
-        cmocka_unit_test(test_cancel),     cmocka_unit_test(test_charts_ply),
-        cmocka_unit_test(test_models)};
+        cmocka_unit_test(test_shapes), cmocka_unit_test(test_small), cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_folds_are_split), cmocka_unit_test(test_single_layer),
+        cmocka_unit_test(test_wanted_count), cmocka_unit_test(test_components),
+        cmocka_unit_test(test_density), cmocka_unit_test(test_crumbs),
+        cmocka_unit_test(test_two_sided), cmocka_unit_test(test_deterministic),
+        cmocka_unit_test(test_junk), cmocka_unit_test(test_cancel),
+        cmocka_unit_test(test_charts_ply), cmocka_unit_test(test_models)};
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

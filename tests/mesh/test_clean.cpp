@@ -115,21 +115,27 @@ static void test_duplicates(void **)
     assert_true(c.report.closed);
     assert_int_equal(c.report.flipped, 0);
 
-    /* a flap without thickness hangs from a closed surface: that stays closed */
-    Mesh flap = torus();
-    flap.positions.push_back(flap.position(5, 0) + Vec3d(0.1, 0.2, 1));
-    flap.positions.push_back(flap.position(5, 1) + Vec3d(0.1, 0.2, 1));
-    uint32_t a = flap.triangles[5][0], b = flap.triangles[5][1];
-    uint32_t d = uint32_t(flap.positions.size() - 2);
-    for (std::array<uint32_t, 3> t : {std::array<uint32_t, 3>{a, b, d}, {b, a, d}, {b, d + 1, d}})
-        flap.triangles.push_back(t);
-    flap.triangles.push_back({d, d + 1, b});
-    c = clean(flap);
+    /* a brim without thickness continues one side of a closed surface straight on, better than the
+     * other side does: the surface stays closed all the same */
+    Mesh brim = torus(24, 12);
+    for (uint32_t i = 0; i < 24; ++i)
+        brim.positions.push_back(brim.positions[12 * i] * 2. - brim.positions[12 * i + 11]);
+    for (uint32_t i = 0; i < 24; ++i) {
+        uint32_t next = (i + 1) % 24, p = 12 * i, q = 12 * next, r = 288 + next, s = 288 + i;
+        brim.triangles.insert(brim.triangles.end(), {{p, q, r}, {p, r, s}, {q, p, r}, {r, p, s}});
+    }
+    c = clean(brim);
     assert_int_equal(c.report.components, 2);
-    assert_int_equal(c.report.boundary_edges, 4);
-    assert_int_equal(c.mesh.flags[5], 0);
+    assert_int_equal(c.report.boundary_edges, 48);
+    assert_int_equal(c.mesh.flags[0], 0);
     /* a sheet of two sides alone keeps one */
     assert_int_equal(clean(moved(torus(), {1, 1, 0}, {0, 0, 0})).report.components, 1);
+
+    /* the copy that stays winds as most do */
+    Mesh copies;
+    copies.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    copies.triangles = {{0, 2, 1}, {0, 1, 2}, {1, 2, 0}};
+    assert_true(clean(copies).mesh.area_vector(0).z > 0);
 
     Mesh twice = sphere();
     append(twice, sphere());
@@ -192,13 +198,16 @@ static void test_winding(void **)
     assert_true(volume(inverted.mesh) > 0);
     assert_int_equal(inverted.report.flipped, inverted.mesh.triangle_count());
 
-    /* an open surface has no outside: the majority decides */
-    Mesh open = grid(8, 8, false, false, false, [](double u, double v) { return Vec3d(u, v, 0); });
-    for (size_t t = 0; t < 88; ++t)
-        turn(open, t);
-    Cleaned c = clean(open);
-    assert_int_equal(c.report.flipped, 40);
-    assert_true(c.mesh.area_vector(0).z < 0);
+    /* an open surface has no outside: the majority decides, wherever it begins */
+    for (size_t turns : {40, 88}) {
+        Mesh open = grid(8, 8, false, false, false,
+                         [](double u, double v) { return Vec3d(u, v, 0); });
+        for (size_t t = 0; t < turns; ++t)
+            turn(open, t);
+        Cleaned c = clean(open);
+        assert_int_equal(c.report.flipped, 40);
+        assert_true((c.mesh.area_vector(0).z > 0) == (turns == 40));
+    }
 }
 
 static void test_nested(void **)

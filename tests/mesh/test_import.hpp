@@ -107,7 +107,8 @@ inline void assert_triangle(const Mesh &mesh, size_t t, uint32_t a, uint32_t b, 
 {
     const auto &found = mesh.triangles[t];
     if (found != std::array<uint32_t, 3>{a, b, c})
-        fail_msg("triangle %zu is %u %u %u, not %u %u %u", t, found[0], found[1], found[2], a, b, c);
+        fail_msg("triangle %zu is %u %u %u, not %u %u %u", t, found[0], found[1], found[2], a, b,
+                 c);
 }
 
 inline void assert_position(const Mesh &mesh, size_t i, double x, double y, double z)

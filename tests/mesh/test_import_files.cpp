@@ -4,9 +4,10 @@
 #include "test_import.hpp"
 
 static const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-static const std::string ply =
-    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 1 0 0 0 1 0 3 0 1 2\n";
+static const std::string ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float "
+                               "x\nproperty float y\nproperty float z\n"
+                               "element face 1\nproperty list uchar int "
+                               "vertex_indices\nend_header\n0 0 0 1 0 0 0 1 0 3 0 1 2\n";
 
 static std::string gzipped(const std::string &bytes)
 {
@@ -46,8 +47,9 @@ static void test_gzip(void **)
     assert_works(import_text("a.obj.gz", packed), 3, 1);
     assert_works(import_text("a.obj", packed), 3, 1);
     assert_works(import_text("a.obj.gz", packed + "garbage"), 3, 1);
-    assert_works(import_text("a.obj.gz", gzipped("v 0 0 0\nv 1 0 0\n") + gzipped("v 0 1 0\nf 1 2 3\n")),
-                 3, 1);
+    assert_works(
+        import_text("a.obj.gz", gzipped("v 0 0 0\nv 1 0 0\n") + gzipped("v 0 1 0\nf 1 2 3\n")), 3,
+        1);
     assert_works(import_text("a.gz", gzipped(ply)), 3, 1);
     assert_fails(import_text("a.gz", packed), GTX_ERROR_UNSUPPORTED, "none of");
     for (size_t size = 2; size < packed.size(); ++size)
@@ -68,7 +70,9 @@ static void test_cancel(void **)
         text += "f 1 1 1\n";
     Folder folder;
     int calls = 0;
-    auto stop = [](const gtx_progress *, void *count) { return int(++*static_cast<int *>(count) > 2); };
+    auto stop = [](const gtx_progress *, void *count) {
+        return int(++*static_cast<int *>(count) > 2);
+    };
     Task task(1, stop, &calls);
     try {
         gtx::import_mesh(folder.write("a.obj", text), task);

@@ -20,6 +20,18 @@ template <class T> static std::string packed(std::initializer_list<T> values)
     return std::string(reinterpret_cast<const char *>(values.begin()), values.size() * sizeof(T));
 }
 
+/* JSON with its quotes written '. */
+static std::string quoted(std::string text)
+{
+    std::replace(text.begin(), text.end(), '\'', '"');
+    return text;
+}
+
+static std::string change(const std::string &json, const std::string &from, const std::string &to)
+{
+    return edited(json, quoted(from), quoted(to));
+}
+
 /* The unit square as four vertices and six indices: 48 + 12 bytes. */
 static std::string square()
 {
@@ -27,23 +39,39 @@ static std::string square()
            packed<uint16_t>({0, 1, 2, 0, 2, 3});
 }
 
-static const char square_json[] = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
-"nodes":[{"mesh":0}],
-"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
-"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
-{"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}],
-"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],
-"buffers":[{"byteLength":60,"uri":"URI"}]})";
+static const std::string square_json =
+    quoted(R"({'asset':{'version':'2.0'},'scene':0,'scenes':[{'nodes':[0]}],
+'nodes':[{'mesh':0}],
+'meshes':[{'primitives':[{'attributes':{'POSITION':0},'indices':1}]}],
+'accessors':[{'bufferView':0,'componentType':5126,'count':4,'type':'VEC3'},
+{'bufferView':1,'componentType':5123,'count':6,'type':'SCALAR'}],
+'bufferViews':[{'buffer':0,'byteLength':48},{'buffer':0,'byteOffset':48,'byteLength':12}],
+'buffers':[{'byteLength':60,'uri':'URI'}]})");
 
 static std::string with_data(const std::string &json, const std::string &bytes)
 {
-    return edited(json, "\"URI\"", "\"data:application/octet-stream;base64," + base64(bytes) + "\"");
+    return change(json, "'URI'", "'data:application/octet-stream;base64," + base64(bytes) + "'");
 }
 
 /* The square with one change. */
 static std::string changed(const char *from, const std::string &to)
 {
-    return with_data(edited(square_json, from, to), square());
+    return with_data(change(square_json, from, to), square());
+}
+
+static Imported import_data(const std::string &json, const std::string &bytes)
+{
+    return import_text("a.gltf", with_data(json, bytes));
+}
+
+static Imported import_json(const std::string &json)
+{
+    return import_text("a.gltf", quoted(json));
+}
+
+static Imported import_changed(const char *from, const std::string &to)
+{
+    return import_text("a.gltf", changed(from, to));
 }
 
 static std::string glb(const std::string &json, const std::string &binary)
@@ -51,15 +79,16 @@ static std::string glb(const std::string &json, const std::string &binary)
     std::string text = json, data = binary;
     text.resize((text.size() + 3) / 4 * 4, ' ');
     data.resize((data.size() + 3) / 4 * 4);
-    std::string out = "glTF" + packed<uint32_t>({2, uint32_t(28 + text.size() + data.size()),
-                                                 uint32_t(text.size()), 0x4e4f534a}) +
+    std::string out = "glTF" +
+                      packed<uint32_t>({2, uint32_t(28 + text.size() + data.size()),
+                                        uint32_t(text.size()), 0x4e4f534a}) +
                       text;
     return out + packed<uint32_t>({uint32_t(data.size()), 0x004e4942}) + data;
 }
 
 static void test_plain(void **)
 {
-    Imported i = import_text("a.gltf", with_data(square_json, square()));
+    Imported i = import_data(square_json, square());
     assert_works(i, 4, 2);
     assert_triangle(i.mesh, 1, 0, 2, 3);
     assert_position(i.mesh, 2, 1, 1, 0);
@@ -70,7 +99,7 @@ static void test_plain(void **)
 
 static void test_glb(void **)
 {
-    std::string json = edited(square_json, ",\"uri\":\"URI\"", "");
+    std::string json = change(square_json, ",'uri':'URI'", "");
     std::string good = glb(json, square());
     assert_works(import_text("a.glb", good), 4, 2);
     assert_works(import_text("a.glb", good + "trailing"), 4, 2);
@@ -92,21 +121,24 @@ static void test_files(void **)
     folder.write("models/parts/my data.bin", square() + "more");
     folder.write("secret.bin", square());
     auto with_uri = [&](const std::string &uri) {
-        return import_path(folder.write("models/a.gltf", edited(square_json, "URI", uri)));
+        return import_path(folder.write("models/a.gltf", change(square_json, "URI", uri)));
     };
     Imported i = with_uri("parts/my%20data.bin");
     assert_works(i, 4, 2);
     assert_int_equal(i.sources.size(), 2);
-    assert_true(std::filesystem::equivalent(i.sources[1], folder.path / "models/parts/my data.bin"));
+    assert_true(
+        std::filesystem::equivalent(i.sources[1], folder.path / "models/parts/my data.bin"));
     assert_works(with_uri("./parts/my data.bin"), 4, 2);
-    assert_fails(with_uri("absent.bin"), GTX_ERROR_READ, "buffer 0: 'absent.bin': it cannot be opened");
+    assert_fails(with_uri("absent.bin"), GTX_ERROR_READ,
+                 "buffer 0: 'absent.bin': it cannot be opened");
     for (const std::string &uri :
          {std::string("../secret.bin"), std::string("parts/../../secret.bin"), std::string(""),
           std::string("%2e%2e/secret.bin"), std::string("..%5c..\\\\secret.bin"),
           (folder.path / "secret.bin").string(), std::string("file:///etc/passwd"),
           std::string("https://example.com/a.bin"), std::string("parts/a%00.bin")})
         assert_fails(with_uri(uri), GTX_ERROR_INPUT, "is not a file in the model's folder");
-    assert_fails(with_uri("data:application/octet-stream;base64,????"), GTX_ERROR_INPUT, "not base64");
+    assert_fails(with_uri("data:application/octet-stream;base64,????"), GTX_ERROR_INPUT,
+                 "not base64");
     assert_fails(with_uri("data:text/plain,hello"), GTX_ERROR_INPUT, "not base64");
     assert_fails(with_uri("data:;base64,AAAA"), GTX_ERROR_INPUT, "buffer 0 has 3 of its 60 bytes");
 }
@@ -116,9 +148,9 @@ static void test_files(void **)
 static void test_transforms(void **)
 {
     /* translation x rotation (a quarter turn about z, unnormalised) x scale, below a matrix */
-    Imported i = import_text("a.gltf", changed("[{\"mesh\":0}]", R"([
+    Imported i = import_changed("[{'mesh':0}]", R"([
         {"children":[1],"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 100,0,0,1]},
-        {"mesh":0,"translation":[10,20,30],"rotation":[0,0,2,2],"scale":[2,3,4]}])"));
+        {"mesh":0,"translation":[10,20,30],"rotation":[0,0,2,2],"scale":[2,3,4]}])");
     assert_works(i, 4, 2);
     assert_position(i.mesh, 0, 110, 20, 30);
     assert_position(i.mesh, 1, 110, 22, 30);
@@ -128,8 +160,8 @@ static void test_transforms(void **)
 
 static void test_far_away(void **)
 {
-    Imported i = import_text("a.gltf", changed("{\"mesh\":0}", "{\"mesh\":0,\"translation\":[1e9,0,0],"
-                                                               "\"scale\":[0.001,0.001,0.001]}"));
+    Imported i = import_changed("{'mesh':0}", "{'mesh':0,'translation':[1e9,0,0],"
+                                              "'scale':[0.001,0.001,0.001]}");
     assert_works(i, 4, 2);
     double side = i.mesh.positions[1].x - i.mesh.positions[0].x;
     assert_float_equal(side, 0.001, 1e-6);
@@ -137,14 +169,16 @@ static void test_far_away(void **)
 
 static void test_mirror(void **)
 {
-    std::string json = edited(square_json, "\"POSITION\":0", "\"POSITION\":0,\"NORMAL\":2");
-    json = edited(json, ",\"type\":\"SCALAR\"}],",
-                  R"(,"type":"SCALAR"},{"bufferView":2,"componentType":5126,"count":4,"type":"VEC3"}],)");
-    json = edited(json, "\"byteLength\":12}", R"("byteLength":12},{"buffer":0,"byteOffset":60,"byteLength":48})");
-    json = edited(json, "\"byteLength\":60", "\"byteLength\":108");
+    std::string json = change(square_json, "'POSITION':0", "'POSITION':0,'NORMAL':2");
+    json = change(
+        json, ",'type':'SCALAR'}],",
+        R"(,"type":"SCALAR"},{"bufferView":2,"componentType":5126,"count":4,"type":"VEC3"}],)");
+    json = change(json, "'byteLength':12}",
+                  R"("byteLength":12},{"buffer":0,"byteOffset":60,"byteLength":48})");
+    json = change(json, "'byteLength':60", "'byteLength':108");
     std::string bytes = square() + packed<float>({1, 1, 0, 1, 1, 0, 1, 1, 0, 0, 0, 1});
-    json = edited(json, "{\"mesh\":0}", "{\"mesh\":0,\"scale\":[-2,1,1]}");
-    Imported i = import_text("a.gltf", with_data(json, bytes));
+    json = change(json, "{'mesh':0}", "{'mesh':0,'scale':[-2,1,1]}");
+    Imported i = import_data(json, bytes);
     assert_works(i, 4, 2);
     assert_triangle(i.mesh, 0, 0, 2, 1);
     assert_float_equal(area_vector(i.mesh).z, 2, 1e-9); /* still facing +z */
@@ -153,7 +187,7 @@ static void test_mirror(void **)
     assert_float_equal(n.y, 0.8944272, 1e-6);
 
     Imported flat = import_text(
-        "a.gltf", with_data(edited(json, "[-2,1,1]", "[1,1,0]"), bytes)); /* singular, not fatal */
+        "a.gltf", with_data(change(json, "[-2,1,1]", "[1,1,0]"), bytes)); /* singular, not fatal */
     assert_works(flat, 4, 2);
     for (const Vec3f &normal : flat.mesh.normals)
         assert_true(gtx::is_finite(normal));
@@ -161,29 +195,28 @@ static void test_mirror(void **)
 
 static void test_trees(void **)
 {
-    assert_works(import_text("a.gltf", changed("[{\"mesh\":0}]", R"([{"children":[1,2]},{"mesh":0},{"mesh":0}])")),
-                 8, 4);
-    assert_works(import_text("a.gltf", changed("\"scene\":0,\"scenes\":[{\"nodes\":[0]}],", "")), 4, 2);
-    std::string library = edited(square_json, "\"scene\":0,\"scenes\":[{\"nodes\":[0]}],", "");
-    library = edited(library, "\"nodes\":[{\"mesh\":0}],", "");
-    assert_works(import_text("a.gltf", with_data(library, square())), 4, 2);
-    assert_fails(import_text("a.gltf", changed("[{\"mesh\":0}]", "[{}, {\"mesh\":0}]")), GTX_ERROR_EMPTY,
+    assert_works(import_changed("[{'mesh':0}]", R"([{"children":[1,2]},{"mesh":0},{"mesh":0}])"), 8,
+                 4);
+    assert_works(import_changed("'scene':0,'scenes':[{'nodes':[0]}],", ""), 4, 2);
+    std::string library = change(square_json, "'scene':0,'scenes':[{'nodes':[0]}],", "");
+    library = change(library, "'nodes':[{'mesh':0}],", "");
+    assert_works(import_data(library, square()), 4, 2);
+    assert_fails(import_changed("[{'mesh':0}]", "[{}, {'mesh':0}]"), GTX_ERROR_EMPTY,
                  "no triangle");
-    assert_fails(import_text("a.gltf", changed("\"scene\":0", "\"scene\":1")), GTX_ERROR_INPUT,
-                 "no scene 1");
-    assert_fails(import_text("a.gltf", changed("{\"mesh\":0}", "{\"mesh\":0,\"children\":[0]}")),
+    assert_fails(import_changed("'scene':0", "'scene':1"), GTX_ERROR_INPUT, "no scene 1");
+    assert_fails(import_changed("{'mesh':0}", "{'mesh':0,'children':[0]}"), GTX_ERROR_INPUT,
+                 "node 0 is reached twice");
+    assert_fails(import_changed("[{'mesh':0}]", R"([{"children":[1]},{"children":[0]}])"),
                  GTX_ERROR_INPUT, "node 0 is reached twice");
-    assert_fails(import_text("a.gltf", changed("[{\"mesh\":0}]", R"([{"children":[1]},{"children":[0]}])")),
-                 GTX_ERROR_INPUT, "node 0 is reached twice");
-    assert_fails(import_text("a.gltf", changed("{\"mesh\":0}", "{\"mesh\":0,\"children\":[7]}")),
-                 GTX_ERROR_INPUT, "no node 7");
-    assert_fails(import_text("a.gltf", changed("{\"mesh\":0}", "{\"mesh\":3}")), GTX_ERROR_INPUT,
+    assert_fails(import_changed("{'mesh':0}", "{'mesh':0,'children':[7]}"), GTX_ERROR_INPUT,
+                 "no node 7");
+    assert_fails(import_changed("{'mesh':0}", "{'mesh':3}"), GTX_ERROR_INPUT,
                  "node 0: there is no mesh 3");
 
     std::string deep = "[";
     for (int k = 1; k < 50000; ++k)
-        deep += "{\"translation\":[1,0,0],\"children\":[" + std::to_string(k) + "]},";
-    Imported i = import_text("a.gltf", changed("[{\"mesh\":0}]", deep + "{\"mesh\":0}]"));
+        deep += "{'translation':[1,0,0],'children':[" + std::to_string(k) + "]},";
+    Imported i = import_changed("[{'mesh':0}]", deep + "{'mesh':0}]");
     assert_works(i, 4, 2);
     assert_position(i.mesh, 0, 49999, 0, 0);
 }
@@ -194,130 +227,132 @@ static void test_instances(void **)
     std::string indices;
     for (int k = 0; k < 30000; ++k)
         indices += packed<uint16_t>({0, 1, 2});
-    std::string json = edited(square_json, "\"byteLength\":12", "\"byteLength\":180000");
-    json = edited(json, "\"count\":6", "\"count\":90000");
-    json = edited(json, "\"byteLength\":60", "\"byteLength\":180048");
+    std::string json = change(square_json, "'byteLength':12", "'byteLength':180000");
+    json = change(json, "'count':6", "'count':90000");
+    json = change(json, "'byteLength':60", "'byteLength':180048");
     std::string nodes, roots;
     for (int k = 0; k < 2000; ++k) {
-        nodes += std::string(k ? "," : "") + "{\"mesh\":0}";
+        nodes += std::string(k ? "," : "") + "{'mesh':0}";
         roots += (k ? "," : "") + std::to_string(k);
     }
-    json = edited(json, "{\"mesh\":0}", nodes);
-    json = edited(json, "\"nodes\":[0]", "\"nodes\":[" + roots + "]");
-    assert_fails(import_text("a.gltf", with_data(json, square().substr(0, 48) + indices)),
-                 GTX_ERROR_LIMIT, "instances");
+    json = change(json, "{'mesh':0}", nodes);
+    json = change(json, "'nodes':[0]", "'nodes':[" + roots + "]");
+    assert_fails(import_data(json, square().substr(0, 48) + indices), GTX_ERROR_LIMIT, "instances");
 }
 
 /* ---- primitives ---- */
 
 static void test_modes(void **)
 {
-    Imported strip = import_text("a.gltf", changed("\"indices\":1", "\"mode\":5"));
+    Imported strip = import_changed("'indices':1", "'mode':5");
     assert_works(strip, 4, 2);
     assert_triangle(strip.mesh, 0, 0, 1, 2);
     assert_triangle(strip.mesh, 1, 2, 1, 3);
-    Imported fan = import_text("a.gltf", changed("\"indices\":1", "\"mode\":6"));
+    Imported fan = import_changed("'indices':1", "'mode':6");
     assert_works(fan, 4, 2);
     assert_triangle(fan.mesh, 1, 0, 2, 3);
-    assert_works(import_text("a.gltf", changed("\"indices\":1", "\"mode\":4")), 4, 1);
-    Imported lines = import_text("a.gltf", changed("\"indices\":1", "\"mode\":1"));
+    assert_works(import_changed("'indices':1", "'mode':4"), 4, 1);
+    Imported lines = import_changed("'indices':1", "'mode':1");
     assert_fails(lines, GTX_ERROR_EMPTY, "no triangle");
     assert_true(lines.warns("points and lines"));
-    assert_fails(import_text("a.gltf", changed("\"indices\":1", "\"mode\":9")), GTX_ERROR_INPUT,
+    assert_fails(import_changed("'indices':1", "'mode':9"), GTX_ERROR_INPUT,
                  "mesh 0 primitive 0: 9 is not a mode");
 }
 
 static void test_index_types(void **)
 {
     std::string positions = square().substr(0, 48);
-    std::string json = edited(square_json, "\"componentType\":5123", "\"componentType\":5121");
-    assert_works(import_text("a.gltf", with_data(json, positions + packed<uint8_t>({0, 1, 2, 0, 2, 3, 9, 9,
-                                                                                    9, 9, 9, 9}))),
-                 4, 2);
-    json = edited(square_json, "\"componentType\":5123", "\"componentType\":5125");
-    json = edited(json, "\"count\":6", "\"count\":3");
-    assert_works(import_text("a.gltf", with_data(json, positions + packed<uint32_t>({1, 2, 3}))), 4, 1);
-    assert_fails(import_text("a.gltf", with_data(json, positions + packed<uint32_t>({1, 2, 4}))),
-                 GTX_ERROR_INPUT, "accessor 1: index 2 is vertex 4 of 4");
-    assert_fails(import_text("a.gltf", changed("\"componentType\":5123", "\"componentType\":5122")),
-                 GTX_ERROR_INPUT, "accessor 1: indices must be unsigned");
+    std::string json = change(square_json, "'componentType':5123", "'componentType':5121");
+    assert_works(
+        import_data(json, positions + packed<uint8_t>({0, 1, 2, 0, 2, 3, 9, 9, 9, 9, 9, 9})), 4, 2);
+    json = change(square_json, "'componentType':5123", "'componentType':5125");
+    json = change(json, "'count':6", "'count':3");
+    assert_works(import_data(json, positions + packed<uint32_t>({1, 2, 3})), 4, 1);
+    assert_fails(import_data(json, positions + packed<uint32_t>({1, 2, 4})), GTX_ERROR_INPUT,
+                 "accessor 1: index 2 is vertex 4 of 4");
+    assert_fails(import_changed("'componentType':5123", "'componentType':5122"), GTX_ERROR_INPUT,
+                 "accessor 1: indices must be unsigned");
 }
 
 static void test_sparse(void **)
 {
-    std::string json = edited(square_json, "\"count\":4,", R"("count":4,"sparse":{"count":1,
+    std::string json = change(square_json, "'count':4,", R"("count":4,"sparse":{"count":1,
         "indices":{"bufferView":1,"byteOffset":2,"componentType":5123},
         "values":{"bufferView":0,"byteOffset":24}},)");
-    Imported i = import_text("a.gltf", with_data(json, square()));
+    Imported i = import_data(json, square());
     assert_works(i, 4, 2);
     assert_position(i.mesh, 1, 1, 1, 0);
-    Imported zeros = import_text("a.gltf", with_data(edited(json, "{\"bufferView\":0,\"componentType\"",
-                                                            "{\"componentType\""), square()));
+    Imported zeros =
+        import_data(change(json, "{'bufferView':0,'componentType'", "{'componentType'"), square());
     assert_works(zeros, 4, 2);
     assert_position(zeros.mesh, 1, 1, 1, 0);
     assert_position(zeros.mesh, 2, 0, 0, 0);
-    assert_fails(import_text("a.gltf", with_data(edited(json, "\"byteOffset\":24", "\"byteOffset\":40"), square())),
+    assert_fails(import_data(change(json, "'byteOffset':24", "'byteOffset':40"), square()),
                  GTX_ERROR_INPUT, "accessor 0: its sparse values");
-    assert_fails(import_text("a.gltf", with_data(edited(json, "{\"count\":1,", "{\"count\":99,"), square())),
+    assert_fails(import_data(change(json, "{'count':1,", "{'count':99,"), square()),
                  GTX_ERROR_INPUT, "accessor 0: its sparse indices");
     std::string far = square();
     far[50] = 77;
-    assert_fails(import_text("a.gltf", with_data(json, far)), GTX_ERROR_INPUT, "sparse index 77 of 4");
-    assert_fails(import_text("a.gltf", changed("\"bufferView\":0,\"componentType\":5126,\"count\":4",
-                                               "\"componentType\":5126,\"count\":4000000000")),
+    assert_fails(import_data(json, far), GTX_ERROR_INPUT, "sparse index 77 of 4");
+    assert_fails(import_changed("'bufferView':0,'componentType':5126,'count':4",
+                                "'componentType':5126,'count':4000000000"),
                  GTX_ERROR_LIMIT, "accessor 0");
 }
 
 /* KHR_mesh_quantization: normalised shorts with a stride. */
 static void test_quantized(void **)
 {
-    std::string json = edited(square_json, "\"componentType\":5126", "\"componentType\":5122,\"normalized\":true");
-    json = edited(json, "{\"buffer\":0,\"byteLength\":48}", "{\"buffer\":0,\"byteLength\":48,\"byteStride\":8}");
-    json = edited(json, "\"asset\"", "\"extensionsRequired\":[\"KHR_mesh_quantization\"],\"asset\"");
-    std::string bytes = packed<int16_t>({0, 0, 0, 7, 32767, 0, 0, 7, 32767, -32767, 0, 7, 0, 16384, 0, 7});
+    std::string json =
+        change(square_json, "'componentType':5126", "'componentType':5122,'normalized':true");
+    json =
+        change(json, "{'buffer':0,'byteLength':48}", "{'buffer':0,'byteLength':48,'byteStride':8}");
+    json = change(json, "'asset'", "'extensionsRequired':['KHR_mesh_quantization'],'asset'");
+    std::string bytes =
+        packed<int16_t>({0, 0, 0, 7, 32767, 0, 0, 7, 32767, -32767, 0, 7, 0, 16384, 0, 7});
     bytes.resize(48);
-    Imported i = import_text("a.gltf", with_data(json, bytes + square().substr(48)));
+    Imported i = import_data(json, bytes + square().substr(48));
     assert_works(i, 4, 2);
     assert_position(i.mesh, 2, 1, -1, 0);
     assert_float_equal(i.mesh.positions[3].y, 16384 / 32767., 1e-12);
-    assert_fails(import_text("a.gltf", with_data(edited(json, "\"byteStride\":8", "\"byteStride\":4"), bytes)),
+    assert_fails(import_data(change(json, "'byteStride':8", "'byteStride':4"), bytes),
                  GTX_ERROR_INPUT, "");
 }
 
 static void test_materials(void **)
 {
-    std::string json = edited(square_json, "\"indices\":1}", R"("indices":1,"material":0},
+    std::string json = change(square_json, "'indices':1}", R"("indices":1,"material":0},
         {"attributes":{"POSITION":0,"COLOR_0":2},"indices":1,"material":1},
         {"attributes":{"POSITION":0},"indices":1})");
-    json = edited(json, "\"asset\"", R"("materials":[
+    json = change(json, "'asset'", R"("materials":[
         {"doubleSided":true,"pbrMetallicRoughness":{"baseColorFactor":[0.5,0,1,0.25]}},
         {"alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[1,1,0.5,0.5]}}],"asset")");
-    json = edited(json, "\"SCALAR\"}", R"("SCALAR"},{"bufferView":2,"componentType":5121,
+    json = change(json, "'SCALAR'}", R"("SCALAR"},{"bufferView":2,"componentType":5121,
         "normalized":true,"count":4,"type":"VEC4"})");
-    json = edited(json, "\"byteLength\":12}", R"("byteLength":12},{"buffer":0,"byteOffset":60,"byteLength":16})");
-    json = edited(json, "\"byteLength\":60", "\"byteLength\":76");
+    json = change(json, "'byteLength':12}",
+                  R"("byteLength":12},{"buffer":0,"byteOffset":60,"byteLength":16})");
+    json = change(json, "'byteLength':60", "'byteLength':76");
     std::string colors = packed<uint8_t>({55, 0, 255, 255, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
-    Imported i = import_text("a.gltf", with_data(json, square() + colors));
+    Imported i = import_data(json, square() + colors);
     assert_works(i, 12, 6);
-    assert_color(i.mesh, 0, 188, 0, 255, 255);  /* linear 0.5 is sRGB 188; opaque has no alpha */
-    assert_color(i.mesh, 6, 128, 0, 188, 128);  /* linear 55 / 255 is sRGB 128 */
+    assert_color(i.mesh, 0, 188, 0, 255, 255); /* linear 0.5 is sRGB 188; opaque has no alpha */
+    assert_color(i.mesh, 6, 128, 0, 188, 128); /* linear 55 / 255 is sRGB 128 */
     assert_color(i.mesh, 12, 255, 255, 255, 255);
     const uint8_t flags[] = {gtx::TRIANGLE_TWO_SIDED, gtx::TRIANGLE_TWO_SIDED, 0, 0, 0, 0};
     assert_memory_equal(i.mesh.flags.data(), flags, 6);
     assert_true(i.warns("blended"));
-    assert_fails(import_text("a.gltf", changed("\"indices\":1}", "\"indices\":1,\"material\":0}")),
-                 GTX_ERROR_INPUT, "mesh 0 primitive 0: there is no material 0");
+    assert_fails(import_changed("'indices':1}", "'indices':1,'material':0}"), GTX_ERROR_INPUT,
+                 "mesh 0 primitive 0: there is no material 0");
 }
 
 static void test_ignored(void **)
 {
-    Imported i = import_text("a.gltf", changed("\"asset\"", R"("images":[{"uri":"/etc/passwd"}],"skins":[{}],
-        "cameras":[{}],"animations":[{}],"extensionsUsed":["ACME_glow"],"extras":{"a":[1]},"asset")"));
+    Imported i = import_changed("'asset'", R"("images":[{"uri":"/etc/passwd"}],"skins":[{}],
+        "cameras":[{}],"animations":[{}],"extensionsUsed":["ACME_glow"],"extras":{"a":[1]},"asset")");
     assert_works(i, 4, 2);
     for (const char *what : {"textures", "skins", "cameras", "animations", "ACME_glow"})
         assert_true(i.warns(what));
     assert_int_equal(i.sources.size(), 1);
-    assert_true(import_text("a.gltf", changed("\"indices\":1", R"("indices":1,"targets":[{"POSITION":0}])"))
+    assert_true(import_changed("'indices':1", R"("indices":1,"targets":[{"POSITION":0}])")
                     .warns("morph targets"));
 }
 
@@ -328,67 +363,72 @@ static void test_bad(void **)
         gtx_result result;
         const char *message;
     } bad[] = {
-        {"\"2.0\"", "\"1.0\"", GTX_ERROR_UNSUPPORTED, "version 1.0"},
-        {"{\"version\":\"2.0\"}", "{}", GTX_ERROR_INPUT, "asset.version"},
-        {"\"asset\"", "\"extensionsRequired\":[\"ACME_x\"],\"asset\"", GTX_ERROR_UNSUPPORTED, "ACME_x"},
-        {"\"asset\"", "\"extensionsRequired\":[\"EXT_meshopt_compression\"],\"asset\"",
+        {"'2.0'", "'1.0'", GTX_ERROR_UNSUPPORTED, "version 1.0"},
+        {"{'version':'2.0'}", "{}", GTX_ERROR_INPUT, "asset.version"},
+        {"'asset'", "'extensionsRequired':['ACME_x'],'asset'", GTX_ERROR_UNSUPPORTED, "ACME_x"},
+        {"'asset'", "'extensionsRequired':['EXT_meshopt_compression'],'asset'",
          GTX_ERROR_UNSUPPORTED, "EXT_meshopt_compression"},
-        {"{\"buffer\":0,\"byteLength\":48}",
-         "{\"buffer\":0,\"byteLength\":48,\"extensions\":{\"EXT_meshopt_compression\":{}}}",
+        {"{'buffer':0,'byteLength':48}",
+         "{'buffer':0,'byteLength':48,'extensions':{'EXT_meshopt_compression':{}}}",
          GTX_ERROR_UNSUPPORTED, "EXT_meshopt_compression"},
-        {"\"POSITION\":0", "\"NORMAL\":0", GTX_ERROR_INPUT, "mesh 0 primitive 0 has no POSITION"},
-        {"\"POSITION\":0", "\"POSITION\":5", GTX_ERROR_INPUT, "no accessor 5"},
-        {"\"POSITION\":0", "\"POSITION\":-1", GTX_ERROR_INPUT, "attributes.POSITION is not an index"},
-        {"\"POSITION\":0", "\"POSITION\":0,\"NORMAL\":1", GTX_ERROR_INPUT, "do not fit together"},
-        {"\"attributes\":{\"POSITION\":0},", "", GTX_ERROR_INPUT, "no attributes"},
-        {"\"count\":4", "\"count\":5", GTX_ERROR_INPUT, "accessor 0: 5 values lie outside buffer view 0"},
-        {"\"count\":4", "\"count\":18446744073709551615", GTX_ERROR_INPUT, "lie outside"},
-        {"\"count\":4", "\"count\":-1", GTX_ERROR_INPUT, "accessors[0].count is not a size"},
-        {"\"count\":4", "\"count\":4,\"byteOffset\":18446744073709551615", GTX_ERROR_INPUT, "lie outside"},
-        {"\"count\":4", "\"count\":4,\"byteOffset\":-12", GTX_ERROR_INPUT, "accessors[0].byteOffset"},
+        {"'POSITION':0", "'NORMAL':0", GTX_ERROR_INPUT, "mesh 0 primitive 0 has no POSITION"},
+        {"'POSITION':0", "'POSITION':5", GTX_ERROR_INPUT, "no accessor 5"},
+        {"'POSITION':0", "'POSITION':-1", GTX_ERROR_INPUT, "attributes.POSITION is not an index"},
+        {"'POSITION':0", "'POSITION':0,'NORMAL':1", GTX_ERROR_INPUT, "do not fit together"},
+        {"'attributes':{'POSITION':0},", "", GTX_ERROR_INPUT, "no attributes"},
+        {"'count':4", "'count':5", GTX_ERROR_INPUT,
+         "accessor 0: 5 values lie outside buffer view 0"},
+        {"'count':4", "'count':18446744073709551615", GTX_ERROR_INPUT, "lie outside"},
+        {"'count':4", "'count':-1", GTX_ERROR_INPUT, "accessors[0].count is not a size"},
+        {"'count':4", "'count':4,'byteOffset':18446744073709551615", GTX_ERROR_INPUT,
+         "lie outside"},
+        {"'count':4", "'count':4,'byteOffset':-12", GTX_ERROR_INPUT, "accessors[0].byteOffset"},
         {"5126", "5130", GTX_ERROR_INPUT, ""},
         {"5126", "1", GTX_ERROR_INPUT, ""},
-        {"\"VEC3\"", "\"VEC2\"", GTX_ERROR_INPUT, "do not fit together"},
-        {"\"VEC3\"", "\"MAT4\"", GTX_ERROR_INPUT, "accessor 0 is neither"},
-        {"\"VEC3\"", "\"VEC9\"", GTX_ERROR_INPUT, "VEC9"},
-        {"\"byteLength\":48}", "\"byteLength\":61}", GTX_ERROR_INPUT, "buffer view 0 lies outside buffer 0"},
-        {"\"byteOffset\":48", "\"byteOffset\":18446744073709551610", GTX_ERROR_INPUT, "buffer view 1 lies"},
-        {"{\"buffer\":0,\"byteLength\":48}", "{\"buffer\":4,\"byteLength\":48}", GTX_ERROR_INPUT,
+        {"'VEC3'", "'VEC2'", GTX_ERROR_INPUT, "do not fit together"},
+        {"'VEC3'", "'MAT4'", GTX_ERROR_INPUT, "accessor 0 is neither"},
+        {"'VEC3'", "'VEC9'", GTX_ERROR_INPUT, "VEC9"},
+        {"'byteLength':48}", "'byteLength':61}", GTX_ERROR_INPUT,
+         "buffer view 0 lies outside buffer 0"},
+        {"'byteOffset':48", "'byteOffset':18446744073709551610", GTX_ERROR_INPUT,
+         "buffer view 1 lies"},
+        {"{'buffer':0,'byteLength':48}", "{'buffer':4,'byteLength':48}", GTX_ERROR_INPUT,
          "buffer view 0: there is no buffer 4"},
-        {"\"bufferView\":0", "\"bufferView\":9", GTX_ERROR_INPUT, "accessor 0: there is no buffer view 9"},
-        {"\"byteLength\":60", "\"byteLength\":99", GTX_ERROR_INPUT, "buffer 0 has 60 of its 99 bytes"},
-        {"\"byteLength\":60,", "", GTX_ERROR_INPUT, "buffer 0 has no byteLength"},
-        {"{\"mesh\":0}", "{\"mesh\":0,\"scale\":[1,1]}", GTX_ERROR_INPUT, "node 0: its scale has 2"},
-        {"{\"mesh\":0}", "{\"mesh\":0,\"matrix\":[\"x\"]}", GTX_ERROR_INPUT, "nodes[0].matrix[0]"},
-        {"{\"mesh\":0}", "7", GTX_ERROR_INPUT, "nodes[0] is not an object"},
-        {"[{\"mesh\":0}]", "{}", GTX_ERROR_INPUT, "nodes is not an array"},
-        {"\"asset\"", "asset", GTX_ERROR_INPUT, "the JSON is malformed"},
+        {"'bufferView':0", "'bufferView':9", GTX_ERROR_INPUT,
+         "accessor 0: there is no buffer view 9"},
+        {"'byteLength':60", "'byteLength':99", GTX_ERROR_INPUT, "buffer 0 has 60 of its 99 bytes"},
+        {"'byteLength':60,", "", GTX_ERROR_INPUT, "buffer 0 has no byteLength"},
+        {"{'mesh':0}", "{'mesh':0,'scale':[1,1]}", GTX_ERROR_INPUT, "node 0: its scale has 2"},
+        {"{'mesh':0}", "{'mesh':0,'matrix':['x']}", GTX_ERROR_INPUT, "nodes[0].matrix[0]"},
+        {"{'mesh':0}", "7", GTX_ERROR_INPUT, "nodes[0] is not an object"},
+        {"[{'mesh':0}]", "{}", GTX_ERROR_INPUT, "nodes is not an array"},
+        {"'asset'", "asset", GTX_ERROR_INPUT, "the JSON is malformed"},
     };
     for (const auto &b : bad)
-        assert_fails(import_text("a.gltf", changed(b.from, b.to)), b.result, b.message);
+        assert_fails(import_changed(b.from, b.to), b.result, b.message);
     std::string deep(1000000, '[');
-    assert_fails(import_text("a.gltf", "{\"a\":" + deep), GTX_ERROR_LIMIT, "100 levels");
-    assert_fails(import_text("a.gltf", changed("\"asset\"", "\"extras\":\"[[\\\"{\\\\\",\"asset\"") + "x"),
-                 GTX_ERROR_INPUT, "malformed");
-    assert_fails(import_text("a.gltf", "{\"asset\":{\"version\":\"\xff\"}}"), GTX_ERROR_INPUT, "malformed");
-    assert_fails(import_text("a.gltf", "[]"), GTX_ERROR_INPUT, "");
-    assert_fails(import_text("a.gltf", "{}"), GTX_ERROR_INPUT, "asset.version");
-    assert_fails(import_text("a.gltf", "{\"asset\":{\"version\":\"2.0\"}}"), GTX_ERROR_EMPTY, "no triangle");
+    assert_fails(import_json("{'a':" + deep), GTX_ERROR_LIMIT, "100 levels");
+    assert_fails(import_json("{'a':'[{" + deep), GTX_ERROR_INPUT, "malformed"); /* in a string */
+    assert_fails(import_json("{'asset':{'version':'\xff'}}"), GTX_ERROR_INPUT, "malformed");
+    assert_fails(import_json("[]"), GTX_ERROR_INPUT, "");
+    assert_fails(import_json("{}"), GTX_ERROR_INPUT, "asset.version");
+    assert_fails(import_json("{'asset':{'version':'2.0'}}"), GTX_ERROR_EMPTY, "no triangle");
 }
 
 /* Draco inside glTF: every number that points into the stream. */
 static void test_bad_draco(void **)
 {
     auto with_extension = [](const std::string &extension) {
-        return import_text("a.gltf", changed("\"indices\":1}",
-                                             "\"extensions\":{\"KHR_draco_mesh_compression\":" + extension + "}}"));
+        return import_changed("'indices':1}",
+                              "'extensions':{'KHR_draco_mesh_compression':" + extension + "}}");
     };
     assert_fails(with_extension("{}"), GTX_ERROR_INPUT, "lacks its view");
     assert_fails(with_extension("7"), GTX_ERROR_INPUT, "is not an object");
-    assert_fails(with_extension("{\"bufferView\":-1,\"attributes\":{}}"), GTX_ERROR_INPUT, "bufferView");
-    assert_fails(with_extension("{\"bufferView\":77,\"attributes\":{\"POSITION\":0}}"), GTX_ERROR_INPUT,
+    assert_fails(with_extension("{'bufferView':-1,'attributes':{}}"), GTX_ERROR_INPUT,
+                 "bufferView");
+    assert_fails(with_extension("{'bufferView':77,'attributes':{'POSITION':0}}"), GTX_ERROR_INPUT,
                  "mesh 0 primitive 0: there is no buffer view 77");
-    assert_fails(with_extension("{\"bufferView\":0,\"attributes\":{\"POSITION\":0}}"), GTX_ERROR_INPUT,
+    assert_fails(with_extension("{'bufferView':0,'attributes':{'POSITION':0}}"), GTX_ERROR_INPUT,
                  "Draco header");
 }
 

@@ -30,8 +30,8 @@ static void test_counts(void **)
         {"gltf/2CylinderEngine.glb", 84657, 121496, true, true}, /* 34 primitives in 82 nodes */
         {"gltf/BoxMetaDraco/glTF/BoxMetaDraco.gltf", 36, 12, true, true},
         {"gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb", 2399, 4212, true, false},
-        {"gltf/KhronosSampleModels/SimpleSparseAccessor/glTF/SimpleSparseAccessor.gltf", 14, 12, false,
-         false},
+        {"gltf/KhronosSampleModels/SimpleSparseAccessor/glTF/SimpleSparseAccessor.gltf", 14, 12,
+         false, false},
     };
     if (models().empty())
         skip();
@@ -66,7 +66,8 @@ static void test_unsupported(void **)
         skip();
     std::string m = models();
     assert_fails(import_path(m + "/draco/pc_color.drc"), GTX_ERROR_UNSUPPORTED, "point cloud");
-    assert_fails(import_path(m + "/nasty/gen_vertices_no_faces.ply"), GTX_ERROR_UNSUPPORTED, "point cloud");
+    assert_fails(import_path(m + "/nasty/gen_vertices_no_faces.ply"), GTX_ERROR_UNSUPPORTED,
+                 "point cloud");
     assert_fails(import_path(m + "/scans/mask.off.gz"), GTX_ERROR_UNSUPPORTED, "mask.off.gz");
     assert_fails(import_path(m + "/gltf/BoxTextured_meshopt.glb"), GTX_ERROR_UNSUPPORTED,
                  "EXT_meshopt_compression");
@@ -85,7 +86,8 @@ static void test_malformed(void **)
             if (!entry.is_regular_file())
                 continue;
             Imported i = import_path(entry.path().string());
-            assert_true(std::find(std::begin(allowed), std::end(allowed), i.result) != std::end(allowed));
+            assert_true(std::find(std::begin(allowed), std::end(allowed), i.result) !=
+                        std::end(allowed));
             if (i.result == GTX_OK)
                 assert_works(i, i.mesh.positions.size(), i.mesh.triangles.size());
             else

@@ -23,14 +23,16 @@ static void test_line_ends(void **)
         assert_works(import_text("a.obj", text), 3, 1);
         assert_fails(import_text("a.obj", text + "f 1 2 9"), GTX_ERROR_INPUT, "line 6: vertex 9");
     }
-    assert_works(import_text("a.obj", "\xef\xbb\xbfv 0 0 0\nv 1 \\\n 0 0\nv 0 1 0\nf 1 \\\r\n2\\\n 3"
-                                      "\ncurv 0 1 \\\n 2 3\n"),
+    assert_works(import_text("a.obj",
+                             "\xef\xbb\xbfv 0 0 0\nv 1 \\\n 0 0\nv 0 1 0\nf 1 \\\r\n2\\\n 3"
+                             "\ncurv 0 1 \\\n 2 3\n"),
                  3, 1);
 }
 
 static void test_numbers(void **)
 {
-    Imported i = import_text("a.obj", "v +1e3 -.5 2.\nv 1e400 -1e400 1e-400\nv nan inf 0\nf 1 2 3\n");
+    Imported i =
+        import_text("a.obj", "v +1e3 -.5 2.\nv 1e400 -1e400 1e-400\nv nan inf 0\nf 1 2 3\n");
     assert_works(i, 3, 1);
     assert_position(i.mesh, 0, 1000, -0.5, 2);
     assert_true(std::isinf(i.mesh.positions[1].x) && i.mesh.positions[1].z == 0);
@@ -96,7 +98,8 @@ static void test_odd_polygons(void **)
     /* crossing itself, repeating corners, of no area, of NaN: as many triangles as ever */
     assert_works(import_text("a.obj", std::string(square) + "f 1 3 2 4\n"), 4, 2);
     assert_works(import_text("a.obj", std::string(square) + "f 1 1 1 1 1\n"), 4, 3);
-    assert_works(import_text("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv nan 0 0\nf 1 2 3 2 1 4\n"), 4, 4);
+    assert_works(import_text("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv nan 0 0\nf 1 2 3 2 1 4\n"), 4,
+                 4);
     std::string large = "";
     std::string face = "f";
     for (int k = 0; k < 3000; ++k) {
@@ -138,12 +141,14 @@ static void test_bad(void **)
         {"\x01\x02\x03", "is not an OBJ statement"},
     };
     for (const auto &b : bad)
-        assert_fails(import_text("a.obj", std::string(square) + b.line), GTX_ERROR_INPUT, b.message);
+        assert_fails(import_text("a.obj", std::string(square) + b.line), GTX_ERROR_INPUT,
+                     b.message);
     assert_fails(import_text("a.obj", std::string(square) + std::string("f 1 2\0 3", 8)),
                  GTX_ERROR_INPUT, "line 5: a corner");
     assert_fails(import_text("a.obj", square), GTX_ERROR_EMPTY, "no triangle");
     assert_fails(import_text("a.obj", ""), GTX_ERROR_EMPTY, "no triangle");
-    for (const char *tail : {"v", "f", "f 1/", "f 1//", "f 1/2/", "\\", "f 1 \\\n", "#", "v 1 2 +", "v 1 2 -"})
+    for (const char *tail :
+         {"v", "f", "f 1/", "f 1//", "f 1/2/", "\\", "f 1 \\\n", "#", "v 1 2 +", "v 1 2 -"})
         assert_true(import_text("a.obj", std::string(square) + tail).result != GTX_OK);
 }
 

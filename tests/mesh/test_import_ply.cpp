@@ -32,13 +32,14 @@ template <class T> static void put(std::string &out, T value, bool turn)
 
 static std::string everything(bool big)
 {
-    std::string out = std::string("ply\nformat ") + (big ? "binary_big_endian" : "binary_little_endian") +
-                      " 1.0\nelement junk 2\nproperty list uint16 double many\nproperty char one\n"
-                      "element vertex 3\nproperty double x\nproperty float32 y\nproperty int16 z\n"
-                      "property float nx\nproperty float ny\nproperty float nz\n"
-                      "property uchar red\nproperty ushort green\nproperty float blue\n"
-                      "property uint8 alpha\nproperty list uchar int tags\n"
-                      "element face 1\nproperty uint id\nproperty list int uint vertex_index\nend_header\n";
+    std::string out =
+        std::string("ply\nformat ") + (big ? "binary_big_endian" : "binary_little_endian") +
+        " 1.0\nelement junk 2\nproperty list uint16 double many\nproperty char one\n"
+        "element vertex 3\nproperty double x\nproperty float32 y\nproperty int16 z\n"
+        "property float nx\nproperty float ny\nproperty float nz\n"
+        "property uchar red\nproperty ushort green\nproperty float blue\n"
+        "property uint8 alpha\nproperty list uchar int tags\n"
+        "element face 1\nproperty uint id\nproperty list int uint vertex_index\nend_header\n";
     for (uint16_t n : {uint16_t(2), uint16_t(0)}) {
         put(out, n, big);
         for (int k = 0; k < n; ++k)
@@ -86,10 +87,11 @@ static void test_binary(void **)
 
 static void test_faces_first(void **)
 {
-    Imported i = import_text("a.ply", "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int "
-                                      "vertex_index\nelement vertex 4\nproperty float z\nproperty "
-                                      "float y\nproperty float x\nend_header\n4 0 1 2 3\n"
-                                      "0 0 0\n0 0 1\n0 1 1\n0 1 0\n");
+    Imported i =
+        import_text("a.ply", "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int "
+                             "vertex_index\nelement vertex 4\nproperty float z\nproperty "
+                             "float y\nproperty float x\nend_header\n4 0 1 2 3\n"
+                             "0 0 0\n0 0 1\n0 1 1\n0 1 0\n");
     assert_works(i, 4, 2);
     assert_position(i.mesh, 1, 1, 0, 0);
     assert_float_equal(area_vector(i.mesh).z, 1, 1e-9);
@@ -97,7 +99,8 @@ static void test_faces_first(void **)
 
 static void test_polygons(void **)
 {
-    std::string text = edited(std::string(header) + body, "3 0 1 2\n3 0 2 3\n", "5 0 1 2 3 0\n2 0 1\n");
+    std::string text =
+        edited(std::string(header) + body, "3 0 1 2\n3 0 2 3\n", "5 0 1 2 3 0\n2 0 1\n");
     Imported i = import_text("a.ply", text);
     assert_works(i, 4, 3);
     assert_true(i.warns("1 faces with fewer than three corners"));
@@ -122,8 +125,9 @@ static void test_point_cloud(void **)
     text = edited(text, "element face 2\nproperty list uchar int vertex_indices\n", "");
     assert_fails(import_text("a.ply", text + "0 0 0 1 0 0 1 1 0 0 1 0"), GTX_ERROR_UNSUPPORTED,
                  "point cloud");
-    assert_fails(import_text("a.ply", edited(edited(header, "vertex 4", "vertex 0"), "face 2", "face 0")),
-                 GTX_ERROR_EMPTY, "no triangle");
+    assert_fails(
+        import_text("a.ply", edited(edited(header, "vertex 4", "vertex 0"), "face 2", "face 0")),
+        GTX_ERROR_EMPTY, "no triangle");
 }
 
 static void test_bad(void **)
