@@ -8,111 +8,111 @@
  * above count, from below only when the sheet is two-sided; a point outside the outline does not
  * count and the search goes on behind it. Takes no derivative. */
 
-/* Height of the ray above a cell's bilinear patch as a quadratic of s: c + b s + a s^2. */
-struct gtx_gap {
-    float a, b, c;
-};
-
-gtx_gap gtx_gap_of(vec4 height, vec3 origin, vec3 direction)
+/* Height of the ray above a cell's bilinear patch as x + y s + z s^2, with s the way from `entry`,
+ * which is relative to the cell's corner. */
+vec3 gtx_gap(vec4 height, vec3 entry, vec3 direction)
 {
     float hx = height.y - height.x, hy = height.z - height.x;
     float hxy = height.x - height.y - height.z + height.w;
-    gtx_gap gap;
-    gap.a = -hxy * direction.x * direction.y;
-    gap.b = direction.z - (hx * direction.x + hy * direction.y +
-                           hxy * (origin.x * direction.y + origin.y * direction.x));
-    gap.c = origin.z - (height.x + hx * origin.x + hy * origin.y + hxy * origin.x * origin.y);
-    return gap;
+    return vec3(entry.z - (height.x + hx * entry.x + (hy + hxy * entry.x) * entry.y),
+                direction.z - (hx * direction.x + hy * direction.y +
+                               hxy * (entry.x * direction.y + entry.y * direction.x)),
+                -hxy * direction.x * direction.y);
 }
 
 /* The root where the gap falls (x) and the one where it rises (y), each by the form that does not
- * cancel; a root that does not exist is infinite or far away. `r` is the root of the discriminant. */
-vec2 gtx_roots(gtx_gap gap, float r)
+ * cancel. A root that does not exist comes out far away. */
+vec2 gtx_roots(vec3 gap)
 {
     const float tiny = 1e-30;
-    float near = gap.b < 0.0 ? r - gap.b : r + gap.b;
-    float stable = (gap.b < 0.0 ? 2.0 : -2.0) * gap.c / max(near, tiny);
-    float other = (gap.b < 0.0 ? near : -near) / (2.0 * (abs(gap.a) < tiny ? tiny : gap.a));
-    return gap.b < 0.0 ? vec2(stable, other) : vec2(other, stable);
+    float side = gap.y < 0.0 ? 1.0 : -1.0;
+    float r = sqrt(max(gap.y * gap.y - 4.0 * gap.z * gap.x, 0.0)) + abs(gap.y);
+    float stable = 2.0 * side * gap.x / max(r, tiny);
+    float other = 0.5 * side * r / (abs(gap.z) < tiny ? tiny : gap.z);
+    return gap.y < 0.0 ? vec2(stable, other) : vec2(other, stable);
 }
 
-void gtx_fill_hit(vec4 height, ivec2 cell, vec3 point, bool back, out gtx_hit hit)
+/* The cell that a ray is in. */
+struct gtx_walk {
+    ivec2 cell;
+    float enter, leave;      /* where the ray enters and leaves it */
+    bool above, then_above;  /* which side of the sheet the ray is on there */
+    bool known;              /* the cell exists: `above` of the next one is `then_above` of this */
+    bool pair;               /* two crossings within the cell */
+    vec4 height;
+    vec3 gap;
+};
+
+/* Looks at the cell; true when the ray crosses the sheet in it, in a way that counts. The side is
+ * carried from cell to cell, so that rounding at a border can neither hide a crossing nor find it
+ * twice. */
+bool gtx_look(inout gtx_walk w, gtx_sheet sheet, vec3 origin, vec3 direction)
 {
-    float hxy = height.x - height.y - height.z + height.w;
-    vec2 at = point.xy - vec2(cell);
-    hit.t = 0.0;
-    hit.grid = point;
-    hit.slope = vec2(height.y - height.x + hxy * at.y, height.z - height.x + hxy * at.x);
-    hit.back = back;
+    vec3 entry = origin + w.enter * direction;
+    float span = w.leave - w.enter;
+    w.height = vec4(texelFetch(gtx_cells, ivec3(sheet.corner + w.cell, sheet.page), 0));
+    w.gap = gtx_gap(w.height, vec3(entry.xy - vec2(w.cell), entry.z), direction);
+    w.above = w.known ? w.then_above : w.gap.x >= 0.0;
+    w.then_above = w.gap.x + span * (w.gap.y + span * w.gap.z) >= 0.0;
+    w.known = w.height.x > 0.0;
+    /* Without a change of side there may still be two crossings: the gap then has its extremum in
+     * between, beyond zero. */
+    bool change = w.above != w.then_above;
+    bool bends = (w.gap.y < 0.0) == w.above && (w.gap.y + 2.0 * span * w.gap.z > 0.0) == w.above;
+    w.pair = !change && bends && w.gap.y * w.gap.y > 4.0 * w.gap.z * w.gap.x;
+    return w.known && (w.pair || (change && (w.above || sheet.two_sided)));
+}
+
+/* The point of the cell's crossing, or of the first of two, that lies within the outline. */
+bool gtx_accept(gtx_walk w, gtx_sheet sheet, vec3 origin, vec3 direction, out gtx_hit hit)
+{
+    vec2 root = w.enter + clamp(gtx_roots(w.gap), 0.0, w.leave - w.enter);
+    float hxy = w.height.x - w.height.y - w.height.z + w.height.w;
+    hit.back = sheet.two_sided && !w.above;
+    for (int tries = w.pair && sheet.two_sided ? 2 : 1; tries > 0; --tries) {
+        hit.t = hit.back ? root.y : root.x;
+        hit.grid = origin + hit.t * direction;
+        vec2 at = hit.grid.xy - vec2(w.cell);
+        hit.slope = vec2(w.height.y - w.height.x + hxy * at.y, w.height.z - w.height.x + hxy * at.x);
+        if (gtx_shows(sheet, w.cell, hit.grid.xy))
+            return true;
+        hit.back = !hit.back;
+    }
+    return false;
 }
 
 bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, out gtx_hit hit)
 {
     /* From the entry on, at about a texel a unit: keeps the numbers small and so exact. */
-    vec3 o = origin + t0 * direction;
     float speed = max(max(abs(direction.x), abs(direction.y)), max(abs(direction.z), 1e-30));
-    vec3 d = direction / speed;
+    vec3 o = origin + t0 * direction, d = direction / speed;
     float end = (t1 - t0) * speed;
 
-    ivec2 way = ivec2(d.x < 0.0 ? -1 : 1, d.y < 0.0 ? -1 : 1);
-    vec2 inverse = vec2(way) / max(abs(d.xy), 1e-9);
     ivec2 last = sheet.size - 2;
-    ivec2 cell = clamp(ivec2(floor(o.xy)), ivec2(0), last);
-    float s = 0.0;
-    /* Which side of the sheet the ray was on where it left the cell before: carried along, so that
-     * rounding at a border can neither hide a crossing nor find it twice. */
-    bool known = false, above = false;
-
-    for (int i = sheet.size.x + sheet.size.y; i > 0; --i) {
-        vec2 planes = (vec2(cell + max(way, ivec2(0))) - o.xy) * inverse;
-        float leave = max(s, min(min(planes.x, planes.y), end));
-        vec4 height = vec4(texelFetch(gtx_cells, ivec3(sheet.corner + cell, sheet.page), 0));
-        float top = max(max(height.x, height.y), max(height.z, height.w));
-        if (top == 0.0) {
-            known = false;
-        } else if (min(o.z + s * d.z, o.z + leave * d.z) > top &&
-                   (!known || above || !sheet.two_sided)) {
-            known = above = true;
-        } else {
-            float span = leave - s;
-            gtx_gap gap = gtx_gap_of(height, o + s * d - vec3(cell, 0.0), d);
-            if (!known)
-                above = gap.c >= 0.0;
-            bool then_above = gap.c + span * (gap.b + span * gap.a) >= 0.0;
-            float disc = gap.b * gap.b - 4.0 * gap.a * gap.c;
-            if (above != then_above || disc > 0.0) {
-                vec2 root = gtx_roots(gap, sqrt(max(disc, 0.0)));
-                /* A change of side is a crossing; no change is none or two, both inside. */
-                bool pair = above == then_above && min(root.x, root.y) >= 0.0 &&
-                            max(root.x, root.y) <= span;
-                bool falls = pair || (above && !then_above);
-                bool rises = sheet.two_sided && (pair || (!above && then_above));
-                bool rise_first = rises && (!falls || root.y < root.x);
-                for (int k = 0; k < 2; ++k) {
-                    bool rise = (k == 0) == rise_first;
-                    if (!(rise ? rises : falls))
-                        continue;
-                    float at = s + clamp(rise ? root.y : root.x, 0.0, span);
-                    vec3 point = o + at * d;
-                    if (gtx_shows(sheet, cell, point.xy)) {
-                        gtx_fill_hit(height, cell, point, rise, hit);
-                        hit.t = t0 + at / speed;
-                        return true;
-                    }
-                }
-            }
-            known = true;
-            above = then_above;
+    ivec2 way = ivec2(d.x < 0.0 ? -1 : 1, d.y < 0.0 ? -1 : 1), ahead = max(way, ivec2(0));
+    vec2 inverse = vec2(way) / max(abs(d.xy), 1e-9);
+    ivec2 next = clamp(ivec2(floor(o.xy)), ivec2(0), last);
+    gtx_walk w;
+    w.leave = 0.0;
+    w.known = w.then_above = false;
+    bool inside = true;
+    /* The inner loop finds the next crossing and does no more: wide processors run the whole body
+     * of a loop for all their rays until the last of them is through. */
+    while (inside) {
+        bool crossing = false;
+        while (inside && !crossing) {
+            vec2 planes = (vec2(next + ahead) - o.xy) * inverse;
+            w.cell = next;
+            w.enter = w.leave;
+            w.leave = max(w.enter, min(min(planes.x, planes.y), end));
+            crossing = gtx_look(w, sheet, o, d);
+            next += planes.x <= planes.y ? ivec2(way.x, 0) : ivec2(0, way.y);
+            inside = w.leave < end && next == clamp(next, ivec2(0), last);
         }
-        if (leave >= end)
-            return false;
-        s = leave;
-        if (planes.x <= planes.y)
-            cell.x += way.x;
-        else
-            cell.y += way.y;
-        if (any(lessThan(cell, ivec2(0))) || any(greaterThan(cell, last)))
-            return false;
+        if (crossing && gtx_accept(w, sheet, o, d, hit)) {
+            hit.t = t0 + hit.t / speed;
+            return true;
+        }
     }
     return false;
 }

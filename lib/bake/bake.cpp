@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace gtx {
+namespace gtx::baking {
 
 constexpr uint64_t MOST_PATCHES = 1u << 20, MOST_PAGES = 2048;
 
@@ -294,6 +294,12 @@ static void check(const Mesh &mesh, const Partition &partition, const BakeOption
         options.mips > 8 || options.dilation > 0xffff)
         throw Error(GTX_ERROR_ARGUMENT, "height bits, mips or dilation out of range");
 }
+
+} // namespace gtx::baking
+
+namespace gtx {
+
+using namespace baking;
 
 Maps bake(const Mesh &mesh, const Partition &partition, const BakeOptions &options, Task &task)
 {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace gtx {
+namespace gtx::baking {
 
 /* Steepest continuation, in texels of depth a texel: beyond it a sliver at the border would shoot
  * away. */
@@ -91,4 +91,4 @@ void extrapolate(const FlatChart &chart, const Outline &outline,
     }
 }
 
-} // namespace gtx
+} // namespace gtx::baking

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace gtx {
+namespace gtx::baking {
 
 /* Cells a chart gets at least along a side, and texels it may have at most. */
 constexpr double LEAST_CELLS = 4, MOST_TEXELS = 512;
@@ -111,4 +111,4 @@ FlatChart flatten(const Mesh &mesh, const Neighbours &neighbours, const Chart &c
     return flat;
 }
 
-} // namespace gtx
+} // namespace gtx::baking

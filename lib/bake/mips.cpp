@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace gtx {
+namespace gtx::baking {
 
 struct Level {
     int w, h;
@@ -143,4 +143,4 @@ void build_mips(std::vector<Shade> shades, std::vector<uint8_t> occupied, unsign
     }
 }
 
-} // namespace gtx
+} // namespace gtx::baking

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace gtx {
+namespace gtx::baking {
 
 constexpr uint32_t NO_EDGE = 0xffffffffu;
 
@@ -147,4 +147,4 @@ std::vector<float> trim_distances(const FlatChart &chart, const Cover &core, con
     return trim;
 }
 
-} // namespace gtx
+} // namespace gtx::baking

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace gtx {
+namespace gtx::baking {
 
 constexpr uint32_t MOST_SIDE = 4096, LEAST_SIDE = 8;
 
@@ -203,4 +203,4 @@ Packing pack(const Sizes &texels, uint32_t grain)
     return packing;
 }
 
-} // namespace gtx
+} // namespace gtx::baking

@@ -3,7 +3,7 @@
 
 #include "bake/bake.hpp"
 
-namespace gtx {
+namespace gtx::baking {
 
 /* A hit up to this many texels outside the outline belongs to the surface (format/gtx.md, Trim). */
 constexpr double SHOWN = 0.3;
@@ -123,4 +123,4 @@ struct Packing {
 };
 Packing pack(const std::vector<std::array<uint32_t, 2>> &sizes, uint32_t grain);
 
-} // namespace gtx
+} // namespace gtx::baking

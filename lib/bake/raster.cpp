@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace gtx {
+namespace gtx::baking {
 
 /* Surface this many texels in depth away from the border that it should continue belongs to
  * another sheet that passes above or below. */
@@ -82,4 +82,4 @@ void raster_overlap(const FlatChart &chart, const Outline &core, Cover &cover)
     }
 }
 
-} // namespace gtx
+} // namespace gtx::baking

@@ -2,7 +2,7 @@
 #include "bake/patch_maps.hpp"
 #include "bake/srgb.hpp"
 
-namespace gtx {
+namespace gtx::baking {
 
 /* Weights of a triangle's corners at a point. */
 struct Weights {
@@ -53,4 +53,4 @@ Shade shade_texel(const Mesh &mesh, const FlatChart &chart, const Outline &outli
     return shade;
 }
 
-} // namespace gtx
+} // namespace gtx::baking

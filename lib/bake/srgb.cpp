@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace gtx {
+namespace gtx::baking {
 
 static float decode(double s)
 {
@@ -41,4 +41,4 @@ uint8_t linear_to_srgb(float light)
     return uint8_t(std::lower_bound(between.begin(), between.end(), light) - between.begin());
 }
 
-} // namespace gtx
+} // namespace gtx::baking

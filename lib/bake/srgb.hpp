@@ -3,10 +3,10 @@
 
 #include <cstdint>
 
-namespace gtx {
+namespace gtx::baking {
 
 float srgb_to_linear(uint8_t code);
 /* The code whose light is nearest as sRGB counts; inverse of the above. Clamps. */
 uint8_t linear_to_srgb(float light);
 
-} // namespace gtx
+} // namespace gtx::baking

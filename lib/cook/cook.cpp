@@ -38,11 +38,19 @@ struct Options {
     float unit = 1;
 };
 
+/* A C caller can store any number in an enum, which C++ may not even read as one. */
+static unsigned partition_number(const gtx_cook_desc &desc)
+{
+    std::underlying_type_t<gtx_partition> number;
+    static_assert(sizeof number == sizeof desc.partition);
+    std::memcpy(&number, &desc.partition, sizeof number);
+    return unsigned(number);
+}
+
 static void check(const gtx_cook_desc &desc)
 {
     require_zeroed(desc.reserved);
-    require_argument(desc.partition == GTX_PARTITION_DEFAULT || desc.partition == GTX_PARTITION_VSA,
-                     "unknown partition");
+    require_argument(partition_number(desc) <= GTX_PARTITION_VSA, "unknown partition");
     require_argument(desc.charts <= MOST_CHARTS, "charts is at most 2^20");
     require_argument(!desc.resolution || (desc.resolution >= 64 && desc.resolution <= 512),
                      "resolution is 64 to 512");

@@ -10,6 +10,8 @@ namespace gtx {
 static const double HOLE_PIXELS = 2, HOLE_STEPS = 4, HOLE_DIAGONAL = 0.001, FLAT_DIAGONAL = 0.01;
 static const double PI = 3.14159265358979323846;
 
+namespace {
+
 /* Of one view at one level. Sums are made within a view and added up in the order of the views, so
  * that they do not depend on the threads. */
 struct Figures {
@@ -34,6 +36,23 @@ struct Around {
     bool surface = false;
     float nearest = 0, deepest = 0;
 };
+
+/* One view at one level while it is measured. */
+struct Look {
+    const Comparison &all;
+    uint32_t view_index, level;
+    const View &view;
+    const MeshImage &image;
+    const AssetView &asset;
+    Figures &out;
+
+    void pixel(uint32_t i, uint32_t j, const gtx_hit &hit);
+    void hole(uint32_t i, uint32_t j, const gtx_hit &hit, double behind);
+    void appearance(uint32_t i, uint32_t j, const gtx_hit &hit, bool depths_agree);
+    void leaks(const std::vector<Crossing> &crossings);
+};
+
+} // namespace
 
 static Around look_around(const MeshImage &image, uint32_t size, uint32_t i, uint32_t j)
 {
@@ -78,21 +97,6 @@ static double degrees_between(const Vec3d &a, const Vec3d &b)
 {
     return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / PI;
 }
-
-/* One view at one level while it is measured. */
-struct Look {
-    const Comparison &all;
-    uint32_t view_index, level;
-    const View &view;
-    const MeshImage &image;
-    const AssetView &asset;
-    Figures &out;
-
-    void pixel(uint32_t i, uint32_t j, const gtx_hit &hit);
-    void hole(uint32_t i, uint32_t j, const gtx_hit &hit, double behind);
-    void appearance(uint32_t i, uint32_t j, const gtx_hit &hit, bool depths_agree);
-    void leaks(const std::vector<Crossing> &crossings);
-};
 
 void Look::hole(uint32_t i, uint32_t j, const gtx_hit &hit, double behind)
 {

@@ -40,6 +40,8 @@ double triangle_distance2(const Vec3d &p, const Vec3d &a, const Vec3d &b, const 
     return best;
 }
 
+namespace {
+
 /* Shapes for NearestTree. Everything here is relative to the asset's anchor: boxes are floats. */
 struct MeshTriangles {
     const Mesh &mesh;
@@ -72,6 +74,8 @@ public:
 private:
     uint64_t state_ = 1;
 };
+
+} // namespace
 
 /* Calls place(shape) for SAMPLES points that are stratified over the areas. */
 static void stratify(const std::vector<double> &area, Random &random,

@@ -27,7 +27,7 @@ static Sizes random_sizes(size_t count, uint32_t most, uint32_t grain)
 }
 
 /* Share of the pages that is filled; fails the test on an overlap or a place outside. */
-static double checked_fill(const Sizes &sizes, const gtx::Packing &packing, uint32_t grain)
+static double checked_fill(const Sizes &sizes, const gtx::baking::Packing &packing, uint32_t grain)
 {
     assert_true(packing.width >= 8 && packing.height >= 8);
     assert_true(packing.width <= 4096 && packing.height <= 4096);
@@ -37,7 +37,7 @@ static double checked_fill(const Sizes &sizes, const gtx::Packing &packing, uint
     std::vector<uint8_t> taken(packing.page_count * across * down);
     double area = 0;
     for (size_t r = 0; r < sizes.size(); ++r) {
-        const gtx::Packing::Place &at = packing.places[r];
+        const gtx::baking::Packing::Place &at = packing.places[r];
         assert_true(at.page < packing.page_count);
         assert_true(at.x + sizes[r][0] <= packing.width && at.y + sizes[r][1] <= packing.height);
         assert_true(at.x % grain == 0 && at.y % grain == 0);
@@ -55,7 +55,7 @@ static double checked_fill(const Sizes &sizes, const gtx::Packing &packing, uint
 
 static void one_rectangle_is_its_page(void **)
 {
-    gtx::Packing packing = gtx::pack({{128, 64}}, 8);
+    gtx::baking::Packing packing = gtx::baking::pack({{128, 64}}, 8);
     assert_int_equal(packing.page_count, 1);
     assert_int_equal(packing.width, 128);
     assert_int_equal(packing.height, 64);
@@ -63,15 +63,15 @@ static void one_rectangle_is_its_page(void **)
 
 static void a_tiny_rectangle_gets_the_least_page(void **)
 {
-    assert_true(checked_fill({{2, 2}}, gtx::pack({{2, 2}}, 1), 1) > 0);
-    assert_true(checked_fill({{128, 128}}, gtx::pack({{128, 128}}, 128), 128) == 1);
+    assert_true(checked_fill({{2, 2}}, gtx::baking::pack({{2, 2}}, 1), 1) > 0);
+    assert_true(checked_fill({{128, 128}}, gtx::baking::pack({{128, 128}}, 128), 128) == 1);
 }
 
 static void hundreds_fill_one_page(void **)
 {
     for (size_t count : {50, 222, 453, 2000}) {
         Sizes sizes = random_sizes(count, 136, 8);
-        gtx::Packing packing = gtx::pack(sizes, 8);
+        gtx::baking::Packing packing = gtx::baking::pack(sizes, 8);
         assert_int_equal(packing.page_count, 1);
         double fill = checked_fill(sizes, packing, 8);
         print_message("# %zu rectangles: %u x %u, %.1f %% filled\n", count, packing.width,
@@ -84,7 +84,7 @@ static void hundreds_fill_one_page(void **)
 static void many_pages_are_filled_evenly(void **)
 {
     Sizes sizes = random_sizes(400, 640, 32);
-    gtx::Packing packing = gtx::pack(sizes, 32);
+    gtx::baking::Packing packing = gtx::baking::pack(sizes, 32);
     assert_true(packing.page_count > 1);
     double fill = checked_fill(sizes, packing, 32);
     print_message("# %u pages of %u x %u, %.1f %% filled\n", packing.page_count, packing.width,
@@ -95,7 +95,7 @@ static void many_pages_are_filled_evenly(void **)
 static void the_same_input_gives_the_same_places(void **)
 {
     Sizes sizes = random_sizes(300, 96, 4);
-    gtx::Packing a = gtx::pack(sizes, 4), b = gtx::pack(sizes, 4);
+    gtx::baking::Packing a = gtx::baking::pack(sizes, 4), b = gtx::baking::pack(sizes, 4);
     for (size_t i = 0; i < sizes.size(); ++i)
         assert_true(a.places[i].x == b.places[i].x && a.places[i].y == b.places[i].y);
 }

@@ -273,7 +273,7 @@ static void broken_assets_name_the_rule(void **state)
     write_file("short.gtx", good, size / 2);
     expect(gtx("info short.gtx"), 3);
     expect(gtx("validate short.gtx"), 3);
-    expect_text("105");
+    expect_text("118");
     write_file("stub.gtx", good, 20);
     expect(gtx("validate stub.gtx"), 3);
     good[60] ^= 1; /* page_width: the header's hash no longer fits */

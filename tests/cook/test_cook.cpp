@@ -193,7 +193,7 @@ static void wrong_arguments_are_refused(void **)
         gtx_result result;
         Change change;
     } cases[] = {
-        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.partition = gtx_partition(77); }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { memset(&d.partition, 77, sizeof d.partition); }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.resolution = 63; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.resolution = 513; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.height_bits = 12; }},

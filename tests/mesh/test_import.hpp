@@ -135,6 +135,20 @@ inline std::string edited(std::string text, const std::string &from, const std::
     return text.replace(at, from.size(), to);
 }
 
+inline std::string base64(const std::string &bytes)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        uint32_t bits = 0;
+        for (size_t k = 0; k < 3; ++k)
+            bits = bits << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0);
+        for (size_t k = 0; k < 4; ++k)
+            out += i + k > bytes.size() ? '=' : digits[bits >> (18 - 6 * k) & 63];
+    }
+    return out;
+}
+
 /* The sum of the triangles' areas and of their normals: what any cut of a polygon keeps. */
 inline double area(const Mesh &mesh)
 {

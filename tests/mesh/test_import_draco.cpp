@@ -90,12 +90,51 @@ static void test_damaged(void **)
     assert_fails(import_text("a.drc", "not at all"), GTX_ERROR_INPUT, "header");
 }
 
+/* The grid as KHR_draco_mesh_compression; its accessors have no buffer view of their own. */
+static const char gltf[] = R"({"asset":{"version":"2.0"},"extensionsUsed":
+["KHR_draco_mesh_compression"],"extensionsRequired":["KHR_draco_mesh_compression"],
+"nodes":[{"mesh":0,"scale":[2,2,2]}],"meshes":[{"primitives":[{"attributes":
+{"POSITION":0,"NORMAL":1,"COLOR_0":2},"indices":3,"extensions":{"KHR_draco_mesh_compression":
+{"bufferView":0,"attributes":{"POSITION":0,"NORMAL":1,"COLOR_0":2}}}}]}],"accessors":[
+{"componentType":5126,"count":36,"type":"VEC3"},{"componentType":5126,"count":36,"type":"VEC3"},
+{"componentType":5121,"normalized":true,"count":36,"type":"VEC3"},
+{"componentType":5123,"count":150,"type":"SCALAR"}],"bufferViews":[{"buffer":0,"byteLength":SIZE}],
+"buffers":[{"byteLength":SIZE,"uri":"data:;base64,DATA"}]})";
+
+static void test_gltf(void **)
+{
+    std::string grid = encoded_grid(draco::MESH_EDGEBREAKER_ENCODING),
+                size = std::to_string(grid.size());
+    std::string json = edited(gltf, "\"byteLength\":SIZE,", "\"byteLength\":" + size + ",");
+    json = edited(edited(json, "SIZE", size), "DATA", base64(grid));
+    Imported i = import_text("a.gltf", json);
+    assert_works(i, 36, 50);
+    assert_float_equal(area_vector(i.mesh).z, 100, 1e-1);
+    assert_color(i.mesh, 0, 255, 124, 0, 255); /* linear 51 / 255 */
+    assert_float_equal(i.mesh.normals[3].z, 1, 1e-2);
+
+    std::string unknown = "\"attributes\":{\"POSITION\":9,\"NORMAL\":1,\"COLOR_0\":2}}}}]";
+    assert_fails(import_text("a.gltf", edited(json,
+                                              "\"attributes\":{\"POSITION\":0,\"NORMAL\":1,"
+                                              "\"COLOR_0\":2}}}}]",
+                                              unknown)),
+                 GTX_ERROR_INPUT, "no attribute 9 for POSITION");
+    std::string damaged = grid;
+    damaged.resize(grid.size() / 2);
+    json = edited(edited(gltf, "\"byteLength\":SIZE,", "\"byteLength\":" + size + ","), "SIZE",
+                  std::to_string(damaged.size()));
+    damaged.resize(grid.size());
+    assert_fails(import_text("a.gltf", edited(json, "DATA", base64(damaged))), GTX_ERROR_INPUT,
+                 "the Draco data is damaged");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_decode),
         cmocka_unit_test(test_point_cloud),
         cmocka_unit_test(test_damaged),
+        cmocka_unit_test(test_gltf),
     };
     return cmocka_run_group_tests_name("import_draco", tests, nullptr, nullptr);
 }

@@ -1,20 +1,6 @@
 /* glTF: scenes, transforms, accessors, materials, containers; and documents that lie. */
 #include "test_import.hpp"
 
-static std::string base64(const std::string &bytes)
-{
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string out;
-    for (size_t i = 0; i < bytes.size(); i += 3) {
-        uint32_t bits = 0;
-        for (size_t k = 0; k < 3; ++k)
-            bits = bits << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0);
-        for (size_t k = 0; k < 4; ++k)
-            out += i + k > bytes.size() ? '=' : digits[bits >> (18 - 6 * k) & 63];
-    }
-    return out;
-}
-
 template <class T> static std::string packed(std::initializer_list<T> values)
 {
     return std::string(reinterpret_cast<const char *>(values.begin()), values.size() * sizeof(T));
