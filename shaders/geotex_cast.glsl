@@ -38,7 +38,7 @@ struct gtx_walk {
     float enter, leave;      /* where the ray enters and leaves it */
     bool above, then_above;  /* which side of the sheet the ray is on there */
     bool known;              /* the cell exists: `above` of the next one is `then_above` of this */
-    bool pair;               /* two crossings within the cell */
+    bool pair;               /* two crossings, without a change of side */
     vec4 height;
     vec3 gap;
 };
@@ -55,8 +55,7 @@ bool gtx_look(inout gtx_walk w, gtx_sheet sheet, vec3 origin, vec3 direction)
     w.above = w.known ? w.then_above : w.gap.x >= 0.0;
     w.then_above = w.gap.x + span * (w.gap.y + span * w.gap.z) >= 0.0;
     w.known = w.height.x > 0.0;
-    /* Without a change of side there may still be two crossings: the gap then has its extremum in
-     * between, beyond zero. */
+    /* Two crossings: the gap has its extremum in between, beyond zero. */
     bool change = w.above != w.then_above;
     bool bends = (w.gap.y < 0.0) == w.above && (w.gap.y + 2.0 * span * w.gap.z > 0.0) == w.above;
     w.pair = !change && bends && w.gap.y * w.gap.y > 4.0 * w.gap.z * w.gap.x;
@@ -66,14 +65,15 @@ bool gtx_look(inout gtx_walk w, gtx_sheet sheet, vec3 origin, vec3 direction)
 /* The point of the cell's crossing, or of the first of two, that lies within the outline. */
 bool gtx_accept(gtx_walk w, gtx_sheet sheet, vec3 origin, vec3 direction, out gtx_hit hit)
 {
+    vec4 h = w.height;
+    float hxy = h.x - h.y - h.z + h.w;
     vec2 root = w.enter + clamp(gtx_roots(w.gap), 0.0, w.leave - w.enter);
-    float hxy = w.height.x - w.height.y - w.height.z + w.height.w;
     hit.back = sheet.two_sided && !w.above;
     for (int tries = w.pair && sheet.two_sided ? 2 : 1; tries > 0; --tries) {
         hit.t = hit.back ? root.y : root.x;
         hit.grid = origin + hit.t * direction;
         vec2 at = hit.grid.xy - vec2(w.cell);
-        hit.slope = vec2(w.height.y - w.height.x + hxy * at.y, w.height.z - w.height.x + hxy * at.x);
+        hit.slope = vec2(h.y - h.x + hxy * at.y, h.z - h.x + hxy * at.x);
         if (gtx_shows(sheet, w.cell, hit.grid.xy))
             return true;
         hit.back = !hit.back;
@@ -88,16 +88,15 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
     vec3 o = origin + t0 * direction, d = direction / speed;
     float end = (t1 - t0) * speed;
 
-    ivec2 last = sheet.size - 2;
     ivec2 way = ivec2(d.x < 0.0 ? -1 : 1, d.y < 0.0 ? -1 : 1), ahead = max(way, ivec2(0));
     vec2 inverse = vec2(way) / max(abs(d.xy), 1e-9);
-    ivec2 next = clamp(ivec2(floor(o.xy)), ivec2(0), last);
+    ivec2 next = clamp(ivec2(floor(o.xy)), ivec2(0), sheet.size - 2);
     gtx_walk w;
     w.leave = 0.0;
     w.known = w.then_above = false;
     bool inside = true;
     /* The inner loop finds the next crossing and does no more: wide processors run the whole body
-     * of a loop for all their rays until the last of them is through. */
+     * of a loop, for all their rays, until the last of them is through. */
     while (inside) {
         bool crossing = false;
         while (inside && !crossing) {
@@ -107,7 +106,7 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
             w.leave = max(w.enter, min(min(planes.x, planes.y), end));
             crossing = gtx_look(w, sheet, o, d);
             next += planes.x <= planes.y ? ivec2(way.x, 0) : ivec2(0, way.y);
-            inside = w.leave < end && next == clamp(next, ivec2(0), last);
+            inside = w.leave < end && next == clamp(next, ivec2(0), sheet.size - 2);
         }
         if (crossing && gtx_accept(w, sheet, o, d, hit)) {
             hit.t = t0 + hit.t / speed;

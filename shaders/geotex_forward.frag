@@ -11,13 +11,15 @@ GTX_VARYING(5) flat in vec3 gtx_normal_y;
 GTX_VARYING(6) flat in vec3 gtx_normal_z;
 GTX_VARYING(7) flat in vec4 gtx_color;
 GTX_VARYING(8) flat in int gtx_patch_index;
+GTX_VARYING(9) flat in vec4 gtx_rect;
+GTX_VARYING(10) flat in vec4 gtx_span;
 
 layout(location = 0) out vec4 gtx_out_color;
 
 void main()
 {
     vec3 dx = dFdx(gtx_point), dy = dFdy(gtx_point);
-    gtx_sheet sheet = gtx_sheet_of(gtx_patch_index);
+    gtx_sheet sheet = gtx_sheet_of(gtx_rect, gtx_span);
     vec3 direction = gtx_point * gtx_depth.w - gtx_eye;
 
     /* z and w of the clip position are linear along the ray: zw + t * step. */
@@ -34,7 +36,7 @@ void main()
     float widen = 1.0 + hit.t * gtx_depth.w;
     float level = gtx_level_of(hit, direction, dx * widen, dy * widen);
     vec2 code = gtx_lookup(gtx_normals, sheet, hit.grid.xy, level, gtx_maps.x).xy;
-    vec3 n = gtx_decode_normal(sheet, code);
+    vec3 n = gtx_decode_normal(gtx_frame_of(gtx_patch_index), code);
     n = normalize(gtx_normal_x * n.x + gtx_normal_y * n.y + gtx_normal_z * n.z);
     float lambert = max(dot(hit.back ? -n : n, gtx_light.xyz), 0.0);
     vec4 color = gtx_color;

@@ -22,38 +22,43 @@ GTX_VARYING(5) flat out vec3 gtx_normal_y;
 GTX_VARYING(6) flat out vec3 gtx_normal_z;
 GTX_VARYING(7) flat out vec4 gtx_color;
 GTX_VARYING(8) flat out int gtx_patch_index;
+GTX_VARYING(9) flat out vec4 gtx_rect;      /* what gtx_sheet_of takes: spares fragments that miss the */
+GTX_VARYING(10) flat out vec4 gtx_span;     /* fetching of the record */
 
 /* A row over world space, taken to grid space. */
-vec4 gtx_row(vec4 row, gtx_sheet sheet)
+vec4 gtx_row(vec4 row, gtx_frame frame)
 {
     vec4 object = row.x * gtx_world_x + row.y * gtx_world_y + row.z * gtx_world_z +
                   vec4(0.0, 0.0, 0.0, row.w);
-    return vec4(dot(object.xyz, sheet.axis_x), dot(object.xyz, sheet.axis_y),
-                dot(object.xyz, sheet.axis_z), dot(object.xyz, sheet.origin) + object.w);
+    return vec4(dot(object.xyz, frame.axis_x), dot(object.xyz, frame.axis_y),
+                dot(object.xyz, frame.axis_z), dot(object.xyz, frame.origin) + object.w);
 }
 
 void main()
 {
     int index = int(gtx_patch);
-    gtx_sheet sheet = gtx_sheet_of(index);
+    gtx_frame frame = gtx_frame_of(index);
     vec4 grid = vec4(gtx_position, 1.0);
     vec4 eye = vec4(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w, gtx_depth.w);
     mat4 rows = transpose(gtx_clip_from_world);
     gtx_point = gtx_position;
     gtx_eye = vec3(dot(gtx_record(index, 0), eye), dot(gtx_record(index, 1), eye),
                    dot(gtx_record(index, 2), eye));
-    gtx_clip_z = gtx_row(rows[2], sheet);
-    gtx_clip_w = gtx_row(rows[3], sheet);
+    gtx_clip_z = gtx_row(rows[2], frame);
+    gtx_clip_w = gtx_row(rows[3], frame);
     /* n_world = transpose(inverse) n: the inverse's rows are the columns. */
     gtx_normal_x = gtx_object_x.xyz;
     gtx_normal_y = gtx_object_y.xyz;
     gtx_normal_z = gtx_object_z.xyz;
     gtx_color = gtx_tint;
     gtx_patch_index = index;
+    gtx_rect = gtx_record(index, 7);
+    gtx_span = vec4(gtx_record(index, 3).w, gtx_record(index, 4).w, gtx_record(index, 5).w,
+                    gtx_record(index, 6).w);
 
     float w = dot(gtx_clip_w, grid);
     /* z in the middle of either clip convention: only the sides of the frustum cut the hull. The
      * fragment writes its own depth. */
-    gl_Position = vec4(dot(gtx_row(rows[0], sheet), grid), dot(gtx_row(rows[1], sheet), grid),
+    gl_Position = vec4(dot(gtx_row(rows[0], frame), grid), dot(gtx_row(rows[1], frame), grid),
                        0.5 * w, w);
 }

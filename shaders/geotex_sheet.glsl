@@ -7,13 +7,18 @@ GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* four codes a cell: (0,0) (1
 GTX_SAMPLER(1, highp sampler2DArray) gtx_trim;    /* distance to the outline, as stored */
 GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* 8 texels a patch, 256 patches a row */
 
+/* What casting needs of a patch. */
 struct gtx_sheet {
-    vec3 origin, axis_x, axis_y, axis_z;  /* object = origin + mat3(axis_x, axis_y, axis_z) * grid */
-    vec3 low, high;                       /* box of the cells, in grid space */
     ivec2 corner;                         /* of the rectangle in its page */
     ivec2 size;                           /* of the rectangle, in texels */
     int page;
     bool two_sided;                       /* crossings from below count too */
+    vec3 low, high;                       /* box of the cells, in grid space */
+};
+
+/* object = origin + axis_x * grid.x + axis_y * grid.y + axis_z * grid.z */
+struct gtx_frame {
+    vec3 origin, axis_x, axis_y, axis_z;
 };
 
 /* Where a ray meets the sheet. */
@@ -29,37 +34,39 @@ vec4 gtx_record(int patch_index, int texel)
     return texelFetch(gtx_patches, ivec2((patch_index & 255) * 8 + texel, patch_index >> 8), 0);
 }
 
+gtx_frame gtx_frame_of(int patch_index)
+{
+    return gtx_frame(gtx_record(patch_index, 3).xyz, gtx_record(patch_index, 4).xyz,
+                     gtx_record(patch_index, 5).xyz, gtx_record(patch_index, 6).xyz);
+}
+
+/* From the rectangle (x, y, w, h) and (lowest z, highest z, page, two-sided). */
+gtx_sheet gtx_sheet_of(vec4 rect, vec4 span)
+{
+    return gtx_sheet(ivec2(rect.xy), ivec2(rect.zw), int(span.z), span.w > 0.0,
+                     vec3(0.0, 0.0, span.x), vec3(rect.zw - 1.0, span.y));
+}
+
+/* The same straight from the record. */
 gtx_sheet gtx_sheet_of(int patch_index)
 {
-    vec4 a = gtx_record(patch_index, 3), b = gtx_record(patch_index, 4);
-    vec4 c = gtx_record(patch_index, 5), d = gtx_record(patch_index, 6);
-    vec4 rect = gtx_record(patch_index, 7);
-    gtx_sheet sheet;
-    sheet.origin = a.xyz;
-    sheet.axis_x = b.xyz;
-    sheet.axis_y = c.xyz;
-    sheet.axis_z = d.xyz;
-    sheet.low = vec3(0.0, 0.0, a.w);
-    sheet.high = vec3(rect.zw - 1.0, b.w);
-    sheet.corner = ivec2(rect.xy);
-    sheet.size = ivec2(rect.zw);
-    sheet.page = int(c.w);
-    sheet.two_sided = d.w > 0.0;
-    return sheet;
+    return gtx_sheet_of(gtx_record(patch_index, 7),
+                        vec4(gtx_record(patch_index, 3).w, gtx_record(patch_index, 4).w,
+                             gtx_record(patch_index, 5).w, gtx_record(patch_index, 6).w));
 }
 
 /* Object-space position of a grid-space point. */
-vec3 gtx_object_point(gtx_sheet sheet, vec3 grid)
+vec3 gtx_object_point(gtx_frame frame, vec3 grid)
 {
-    return sheet.origin + sheet.axis_x * grid.x + sheet.axis_y * grid.y + sheet.axis_z * grid.z;
+    return frame.origin + frame.axis_x * grid.x + frame.axis_y * grid.y + frame.axis_z * grid.z;
 }
 
 /* Object-space normal of the sheet itself at a hit, on the side of axis_z; not normalised. Normals
  * go by the cofactors of the frame. */
-vec3 gtx_facet(gtx_sheet sheet, gtx_hit hit)
+vec3 gtx_facet(gtx_frame frame, gtx_hit hit)
 {
-    return cross(sheet.axis_x, sheet.axis_y) - hit.slope.x * cross(sheet.axis_y, sheet.axis_z) -
-           hit.slope.y * cross(sheet.axis_z, sheet.axis_x);
+    return cross(frame.axis_x, frame.axis_y) - hit.slope.x * cross(frame.axis_y, frame.axis_z) -
+           hit.slope.y * cross(frame.axis_z, frame.axis_x);
 }
 
 /* Whether the sheet shows at a point of a cell: at most 0.3 texel outside its outline (section 4.2:
@@ -89,8 +96,9 @@ void gtx_clip(float a, float b, inout float t0, inout float t1)
 /* Shortens [t0, t1] to the sheet's box. */
 void gtx_clip_box(gtx_sheet sheet, vec3 origin, vec3 direction, inout float t0, inout float t1)
 {
-    for (int i = 0; i < 3; ++i) {
-        gtx_clip(origin[i] - sheet.low[i], direction[i], t0, t1);
-        gtx_clip(sheet.high[i] - origin[i], -direction[i], t0, t1);
-    }
+    vec3 steady = mix(direction, vec3(1e-30), vec3(lessThan(abs(direction), vec3(1e-30))));
+    vec3 a = (sheet.low - origin) / steady, b = (sheet.high - origin) / steady;
+    vec3 enter = min(a, b), leave = max(a, b);
+    t0 = max(max(t0, enter.x), max(enter.y, enter.z));
+    t1 = min(min(t1, leave.x), min(leave.y, leave.z));
 }

@@ -38,13 +38,13 @@ vec4 gtx_lookup(highp sampler2DArray map, gtx_sheet sheet, vec2 at, float level,
 }
 
 /* Object-space unit normal from two bytes in 0..1 (section 4.3). */
-vec3 gtx_decode_normal(gtx_sheet sheet, vec2 code)
+vec3 gtx_decode_normal(gtx_frame frame, vec2 code)
 {
     vec2 e = code * 2.0 - 1.0;
     vec2 p = vec2(e.x + e.y, e.x - e.y) * 0.5;
     vec3 n = normalize(vec3(p, 1.0 - abs(p.x) - abs(p.y)));
-    vec3 z = normalize(sheet.axis_z);
-    vec3 x = normalize(sheet.axis_x - dot(sheet.axis_x, z) * z);
+    vec3 z = normalize(frame.axis_z);
+    vec3 x = normalize(frame.axis_x - dot(frame.axis_x, z) * z);
     return n.x * x + n.y * cross(z, x) + n.z * z;
 }
 

@@ -6,9 +6,9 @@
  *
  * State. gtx_draw leaves a fixed state behind, and reads none back unless
  * GTX_VIEW_RESTORE_STATE is set:
- *   program 0, vertex array 0, array and element buffers 0, active texture unit 0,
- *   textures 0 on units 0..5 (2D and 2D array), depth test on, depth func LESS (GREATER when
- *   reversed), depth mask on, cull face off, blend off, front face CCW, colour mask all on.
+ *   program 0, vertex array 0, array and element buffers 0, active texture unit 0, textures (2D and
+ *   2D array) and samplers 0 on units 0..5, depth test on, depth func LESS (GREATER when reversed),
+ *   depth mask on, cull face off, cull mode BACK, front face CCW, blend off, colour mask all on.
  * It does not touch the framebuffer binding, viewport, scissor, stencil or clip control. */
 #ifndef GEOTEX_RENDER_H
 #define GEOTEX_RENDER_H
@@ -47,6 +47,8 @@ GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator
                                      gtx_model **out, gtx_error *error);
 
 /* Uploads up to `max_bytes` (0 = everything) and sets *done to 1 once the model can be drawn.
+ * Leaves the active texture unit 0 with no 2D and 2D array texture, array and pixel unpack buffers
+ * 0, and pixel unpacking at its defaults.
  * Errors: ARGUMENT, LIMIT (texture size), GL (out of memory). */
 GTX_API gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t max_bytes,
                                     uint32_t *done, gtx_error *error);

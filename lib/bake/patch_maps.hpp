@@ -99,6 +99,13 @@ struct PatchMaps {
     uint64_t coded = 0;
 };
 
+/* A vector as a record keeps it. */
+inline void store(float out[3], const Vec3d &v)
+{
+    for (int k = 0; k < 3; ++k)
+        out[k] = float(v[k]);
+}
+
 /* Normal and colour of a texel before they are stored. */
 struct Shade {
     Vec3f normal;                   /* object space, unit */
@@ -112,6 +119,17 @@ Shade shade_texel(const Mesh &mesh, const FlatChart &chart, const Outline &outli
  * colour, dilated. `patch` gives the rectangle, axes and dilation. */
 void build_mips(std::vector<Shade> shades, std::vector<uint8_t> occupied, unsigned mips,
                 bool color, PatchMaps &patch);
+
+/* What every chart's bake reads. */
+struct Job {
+    const Mesh &mesh;
+    const Neighbours &neighbours;
+    const BakeOptions &options;
+    double pitch;
+    Vec3d anchor;
+};
+
+PatchMaps bake_chart(const Job &job, const Chart &chart);
 
 /* Places rectangles whose sides are multiples of `grain` on pages of one size, as full as it can. */
 struct Packing {

@@ -10,7 +10,7 @@ namespace gtx {
 namespace {
 
 constexpr double CRUMB_TEXELS = 64;     /* most area of a crumb */
-constexpr double TRIFLE_TEXELS = 2;     /* most area of one that may face anywhere: it is junk then */
+constexpr double TRIFLE_TEXELS = 2;     /* of one that may face anywhere: it is junk then */
 constexpr double RIM = 4;               /* texels that a patch needs beyond its chart's sides */
 constexpr double PATCH = 256;           /* what a patch costs for being one, in texels */
 constexpr double STEEP_COSINE = 0.1;    /* of raw normals, on at most a small share of the area */

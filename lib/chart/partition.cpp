@@ -12,6 +12,8 @@ namespace {
 /* No chart's side exceeds the (area-weighted) median side by more than this factor: the longest
  * side sets the density of the whole model. */
 constexpr double LONGEST_SIDE = 2.5;
+/* Half-edges are counted in ints. */
+constexpr size_t MOST_TRIANGLES = 300000000;
 /* Texels of `resolution` that are left to the overlap. */
 constexpr unsigned OVERLAP_TEXELS = 8;
 
@@ -150,6 +152,8 @@ Partition partition_vsa(const Mesh &mesh, const ChartOptions &options, Task &tas
 {
     if (!mesh.triangle_count())
         throw Error(GTX_ERROR_EMPTY, "the mesh has no triangle to partition");
+    if (mesh.triangle_count() > MOST_TRIANGLES)
+        throw Error(GTX_ERROR_LIMIT, "the mesh has more than 300 million triangles");
     task.begin("partition");
     uint32_t count = chart_count(mesh, options);
     Surface surface = make_surface(mesh, expected_pitch(mesh, count));

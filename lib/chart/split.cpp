@@ -14,6 +14,8 @@ namespace {
  * chart: a steep texel stands for much surface, and its height error shows. */
 constexpr double STEEP_COSINE = 0.3;
 constexpr double STEEP_AREA = 0.005;
+/* How much longer a step of the watershed is across a bend of 90 degrees. */
+constexpr float CREASE = 8;
 
 struct Candidate {
     Frame frame;
@@ -144,7 +146,8 @@ std::vector<uint32_t> split_layers(const Surface &surface, const Region &region,
                 continue;
             uint32_t o = region.triangles[n];
             float bend = 1 - dot(surface.facets[t].normal, surface.facets[o].normal);
-            float next = distance + length(surface.facets[t].centre - surface.facets[o].centre) * (1 + 8 * bend);
+            float step = length(surface.facets[t].centre - surface.facets[o].centre);
+            float next = distance + step * (1 + CREASE * bend);
             if (next < reached[n]) {
                 reached[n] = next;
                 side[n] = side[i];

@@ -190,12 +190,14 @@ void write_meta(const MetaFacts &facts, Json &json)
 
 uint64_t gpu_bytes(const gtx_info &info)
 {
-    uint64_t texels = uint64_t(info.page_count) * info.page_width * info.page_height;
+    uint64_t pages = info.page_count, texels = pages * info.page_width * info.page_height;
     /* Corner cells: the codes of a cell's four texels in one. And a byte of trim. */
     uint64_t bytes = texels * (4 * info.height_bits / 8 + 1);
     for (uint32_t k = 0; k < info.mip_count; ++k)
-        bytes += 2 * uint64_t(info.page_count) * (info.page_width >> k) * (info.page_height >> k);
-    return bytes + info.patch_count * sizeof(gtx_patch);
+        bytes += 2 * pages * (info.page_width >> k) * (info.page_height >> k);
+    /* Records in rows of 256, and a box of 8 vertices and 12 triangles a patch. */
+    constexpr uint64_t RECORD = 128, ROW = 256, BOX = 8 * 16 + 36 * 4;
+    return bytes + (info.patch_count + ROW - 1) / ROW * ROW * RECORD + info.patch_count * BOX;
 }
 
 uint64_t peak_rss_bytes()

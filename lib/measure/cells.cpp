@@ -15,7 +15,8 @@ static double trim_of(double code)
 
 template <class T> static double mix(const T corner[4], double u, double v)
 {
-    return (corner[0] * (1 - u) + corner[1] * u) * (1 - v) + (corner[2] * (1 - u) + corner[3] * u) * v;
+    double near = corner[0] * (1 - u) + corner[1] * u, far = corner[2] * (1 - u) + corner[3] * u;
+    return near * (1 - v) + far * v;
 }
 
 Cells::Cells(const gtx_asset *asset)
@@ -100,19 +101,39 @@ static double clipped_distance2(const Vec3d &p, const Vec3d v[3], const double t
     return best;
 }
 
-double Cells::distance2(size_t i, const Vec3d &p) const
+/* Whether p is at least sqrt(bound) away from the box of four points. */
+static bool beyond(const Vec3d at[4], const Vec3d &p, double bound)
+{
+    double sum = 0;
+    for (int a = 0; a < 3; ++a) {
+        double low = std::min(std::min(at[0][a], at[1][a]), std::min(at[2][a], at[3][a]));
+        double high = std::max(std::max(at[0][a], at[1][a]), std::max(at[2][a], at[3][a]));
+        double d = std::max(std::max(low - p[a], p[a] - high), 0.);
+        sum += d * d;
+    }
+    return sum >= bound;
+}
+
+double Cells::distance2(size_t i, const Vec3d &p, double bound) const
+{
+    Vec3d at[4];
+    for (int k = 0; k < 4; ++k)
+        at[k] = corner(i, k);
+    if (beyond(at, p, bound))
+        return bound;
+    if (cells_[i].crossed)
+        return crossed_distance2(i, p);
+    static const int ring[5] = {0, 1, 3, 2, 0};
+    Vec3d centre = (at[0] + at[1] + at[2] + at[3]) * 0.25; /* on the bilinear patch */
+    double best = bound;
+    for (int k = 0; k < 4; ++k)
+        best = std::min(best, triangle_distance2(p, centre, at[ring[k]], at[ring[k + 1]]));
+    return best;
+}
+
+double Cells::crossed_distance2(size_t i, const Vec3d &p) const
 {
     double best = std::numeric_limits<double>::infinity();
-    if (!cells_[i].crossed) {
-        static const int ring[5] = {0, 1, 3, 2, 0};
-        Vec3d at[4];
-        for (int k = 0; k < 4; ++k)
-            at[k] = corner(i, k);
-        Vec3d centre = (at[0] + at[1] + at[2] + at[3]) * 0.25; /* on the bilinear patch */
-        for (int k = 0; k < 4; ++k)
-            best = std::min(best, triangle_distance2(p, centre, at[ring[k]], at[ring[k + 1]]));
-        return best;
-    }
     for (int quarter = 0; quarter < 4; ++quarter) {
         Vec3d at[4];
         double trims[4];

@@ -17,7 +17,7 @@ public:
 
     size_t size() const { return cells_.size(); }
     Box box(size_t i) const;
-    double distance2(size_t i, const Vec3d &p) const;
+    double distance2(size_t i, const Vec3d &p, double bound) const;
 
     /* The area of cell i that lies where the trim is at most 0, estimated on a 4x4 grid. */
     double core_area(size_t i) const;
@@ -38,6 +38,7 @@ private:
         Vec3d origin, x, y, z;
     };
     Vec3d corner(size_t i, int k) const;
+    double crossed_distance2(size_t i, const Vec3d &p) const;
     void add_patch(const gtx_asset *asset, uint32_t index);
 
     std::vector<Frame> frames_;

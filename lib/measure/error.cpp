@@ -56,7 +56,7 @@ struct MeshTriangles {
             box.add(position(t, k));
         return box;
     }
-    double distance2(size_t t, const Vec3d &p) const
+    double distance2(size_t t, const Vec3d &p, double) const
     {
         return triangle_distance2(p, position(t, 0), position(t, 1), position(t, 2));
     }

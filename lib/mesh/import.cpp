@@ -1,6 +1,8 @@
 /* Reading a model file: its bytes, inflated if need be, to the importer of its format. */
 #include "mesh/import.hpp"
 
+#include <charconv>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <filesystem>
@@ -48,6 +50,23 @@ std::string printable(std::string_view text, size_t longest)
     return text.size() > longest ? out + "..." : out;
 }
 
+bool parse_number(const char *&at, const char *end, double &value)
+{
+    const char *start = at + (at < end && *at == '+');
+    auto [stop, error] = std::from_chars(start, end, value);
+    if (error == std::errc::result_out_of_range) { /* too large or too small? */
+        std::string_view text(start, size_t(stop - start));
+        bool negative = text[0] == '-';
+        size_t exponent = text.find_first_of("eE");
+        bool small = exponent != text.npos ? text[exponent + 1] == '-' : text[negative] == '0';
+        value = small ? 0 : negative ? -HUGE_VAL : HUGE_VAL;
+    } else if (error != std::errc()) {
+        return false;
+    }
+    at = stop;
+    return true;
+}
+
 std::string read_whole_file(const std::string &path)
 {
     std::error_code ignored;
@@ -57,6 +76,8 @@ std::string read_whole_file(const std::string &path)
     if (!stream)
         fail(GTX_ERROR_READ, "it cannot be opened");
     std::string bytes;
+    uint64_t size = std::filesystem::file_size(path, ignored); /* a pipe has none */
+    bytes.reserve(ignored ? 0 : size_t(std::min(size, max_file_bytes)));
     std::vector<char> block(size_t(1) << 20);
     while (stream.read(block.data(), std::streamsize(block.size())) || stream.gcount() > 0) {
         bytes.append(block.data(), size_t(stream.gcount()));

@@ -32,6 +32,10 @@ constexpr uint64_t MAX_VERTICES = 0xfffffffe;
 /* Text out of a file, fit for a message: short and printable. */
 std::string printable(std::string_view text, size_t longest = 40);
 
+/* A decimal number in any locale, also inf and nan; what is too large is infinite. False, and `at`
+ * stays, where there is none. */
+bool parse_number(const char *&at, const char *end, double &value);
+
 /* Throws Error: READ, LIMIT. */
 std::string read_whole_file(const std::string &path);
 

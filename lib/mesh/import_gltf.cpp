@@ -49,10 +49,9 @@ static Affine local_transform(const tinygltf::Node &node, int number)
     if (check(node.rotation, 4, "rotation")) {
         Vec3d u(node.rotation[0], node.rotation[1], node.rotation[2]);
         double w = node.rotation[3], norm = dot(u, u) + w * w;
-        if (norm > 0)
-            for (Vec3d &c :
-                 out.column) /* v + 2w (u x v) + 2u x (u x v), for any length of (u, w) */
-                c = c + (cross(u, c) * w + cross(u, cross(u, c))) * (2 / norm);
+        /* v + 2w (u x v) + 2u x (u x v), for a quaternion (u, w) of any length */
+        for (Vec3d &c : out.column)
+            c = norm > 0 ? c + (cross(u, c) * w + cross(u, cross(u, c))) * (2 / norm) : c;
     }
     if (check(node.scale, 3, "scale"))
         for (int i = 0; i < 3; ++i)
@@ -126,13 +125,13 @@ static std::vector<std::vector<Affine>> find_instances(const tinygltf::Model &mo
 
 /* ---- primitives ---- */
 
-/* A primitive as stored; its attributes may come from accessors or from Draco. */
 namespace {
 struct Primitive {
     VertexMesh mesh;
     bool two_sided = false;
 };
 
+/* As stored, from accessors or from Draco; normal and color may be empty. */
 struct Attributes {
     GltfValues position, normal, color;
 };
@@ -164,21 +163,20 @@ static int attribute(const tinygltf::Primitive &primitive, const char *name)
 
 /* One attribute of the Draco data; the accessor says whether integers are normalised. */
 static GltfValues draco_values(const GltfDocument &doc, const tinygltf::Primitive &primitive,
-                               const tinygltf::Value &ids, DracoMesh &draco, const char *name)
+                               const tinygltf::Value &ids, const DracoMesh &draco, const char *name)
 {
     int accessor = attribute(primitive, name);
-    GltfValues out;
-    if (accessor < 0 || !ids.Has(name))
-        return accessor < 0 ? out : gltf_values(doc, accessor);
+    if (accessor < 0)
+        return {};
+    if (!ids.Has(name))
+        return gltf_values(doc, accessor);
     if (size_t(accessor) >= doc.model.accessors.size())
         fail(GTX_ERROR_INPUT, "there is no accessor %d", accessor);
     const tinygltf::Accessor &a = doc.model.accessors[size_t(accessor)];
-    int id = ids.Get(name).IsInt() ? ids.Get(name).Get<int>() : -1;
-    for (DracoAttribute &from : draco.attributes)
-        if (id >= 0 && from.id == uint32_t(id)) {
-            out.components = from.components;
-            out.count = draco.points;
-            out.values = from.values;
+    int id = ids.Get(name).GetNumberAsInt();
+    for (const DracoAttribute &from : draco.attributes)
+        if (from.id == uint32_t(id)) {
+            GltfValues out = {from.components, draco.points, from.values};
             double full = gltf_full_value(a.componentType, a.normalized);
             for (double &v : out.values)
                 v /= full;
@@ -191,17 +189,20 @@ static Attributes read_draco(const GltfDocument &doc, const tinygltf::Primitive 
                              const std::string &where, Task &task, VertexMesh &out)
 {
     const tinygltf::Value &extension = primitive.extensions.at("KHR_draco_mesh_compression");
-    if (!extension.Has("bufferView") || !extension.Get("bufferView").IsInt() ||
-        !extension.Has("attributes") || !extension.Get("attributes").IsObject())
+    if (!extension.Has("bufferView") || !extension.Has("attributes"))
         fail(GTX_ERROR_INPUT, "%s: KHR_draco_mesh_compression lacks its view or its attributes",
              where.c_str());
-    DracoMesh draco =
-        decode_draco(gltf_view(doc, extension.Get("bufferView").Get<int>(), where), task);
+    int view = extension.Get("bufferView").GetNumberAsInt();
     const tinygltf::Value &ids = extension.Get("attributes");
+    DracoMesh draco = decode_draco(gltf_view(doc, view, where), task);
+    Attributes a = {draco_values(doc, primitive, ids, draco, "POSITION"),
+                    draco_values(doc, primitive, ids, draco, "NORMAL"),
+                    draco_values(doc, primitive, ids, draco, "COLOR_0")};
+    if (a.position.count != draco.points) /* positions from an accessor, triangles from Draco */
+        fail(GTX_ERROR_INPUT, "%s: %zu positions for %zu Draco points", where.c_str(),
+             a.position.count, draco.points);
     out.triangles = std::move(draco.triangles);
-    return {draco_values(doc, primitive, ids, draco, "POSITION"),
-            draco_values(doc, primitive, ids, draco, "NORMAL"),
-            draco_values(doc, primitive, ids, draco, "COLOR_0")};
+    return a;
 }
 
 static Attributes read_accessors(const GltfDocument &doc, const tinygltf::Primitive &primitive,
@@ -238,10 +239,9 @@ static void set_colors(const tinygltf::Material *material, const GltfValues &col
         return;
     for (size_t i = 0; i < out.positions.size(); ++i) {
         double c[4];
-        for (int k = 0; k < 4; ++k)
-            c[k] =
-                factor[k] *
-                (k < color.components ? color.values[i * size_t(color.components) + size_t(k)] : 1);
+        size_t components = size_t(color.components);
+        for (size_t k = 0; k < 4; ++k)
+            c[k] = factor[k] * (k < components ? color.values[i * components + k] : 1);
         for (int k = 0; k < 3; ++k)
             c[k] = srgb_from_linear(std::clamp(c[k], 0., 1.));
         out.colors.push_back(
@@ -332,6 +332,20 @@ static void append(const Primitive &primitive, const Affine &transform, Mesh &me
     }
 }
 
+static void append_instances(const Primitive &primitive, const std::vector<Affine> &instances,
+                             const std::string &where, uint64_t limit, Task &task, Mesh &mesh)
+{
+    for (const Affine &transform : instances) {
+        uint64_t triangles = mesh.triangles.size() + primitive.mesh.triangles.size();
+        uint64_t vertices = mesh.positions.size() + primitive.mesh.positions.size();
+        if (std::max(triangles, vertices / 3) > limit || vertices > MAX_VERTICES)
+            fail(GTX_ERROR_LIMIT, "%s: the instances come to more than %llu triangles",
+                 where.c_str(), (unsigned long long)limit);
+        append(primitive, transform, mesh);
+        task.advance(0.2 + 0.8 * double(triangles) / double(limit));
+    }
+}
+
 static void warn_of_materials(const tinygltf::Model &model, Task &task)
 {
     for (const tinygltf::Material &material : model.materials)
@@ -361,16 +375,7 @@ Mesh import_gltf(const ModelFile &file, Task &task)
                 continue;
             }
             Primitive primitive = read_primitive(doc, primitives[i], where, task);
-            for (const Affine &transform : instances[m]) {
-                uint64_t triangles = mesh.triangles.size() + primitive.mesh.triangles.size();
-                uint64_t vertices = mesh.positions.size() + primitive.mesh.positions.size();
-                if (std::max(triangles, vertices / 3) > doc.triangle_limit ||
-                    vertices > MAX_VERTICES)
-                    fail(GTX_ERROR_LIMIT, "%s: the instances come to more than %llu triangles",
-                         where.c_str(), (unsigned long long)doc.triangle_limit);
-                append(primitive, transform, mesh);
-                task.advance(0.2 + 0.8 * double(m) / double(instances.size()));
-            }
+            append_instances(primitive, instances[m], where, doc.triangle_limit, task, mesh);
         }
     }
     if (has_lines)

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstring>
-#include <limits>
 
 namespace gtx {
 
@@ -78,16 +77,9 @@ bool ObjReader::number(double &value)
 {
     if (at_line_end())
         return false;
-    const char *start = at_ + (*at_ == '+');
-    auto [stop, error] = std::from_chars(start, end_, value);
-    if (error == std::errc::result_out_of_range) /* too large or too small */
-        value = std::memchr(start, '-', size_t(stop - start)) == nullptr
-                    ? std::numeric_limits<double>::infinity()
-                    : 0;
-    else if (error != std::errc())
+    if (!parse_number(at_, end_, value))
         fail(GTX_ERROR_INPUT, "line %zu: '%s' is not a number", line_,
              printable({at_, std::min<size_t>(size_t(end_ - at_), 12)}).c_str());
-    at_ = stop;
     return true;
 }
 

@@ -2,7 +2,6 @@
 #include "mesh/import_ply.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 
@@ -35,10 +34,6 @@ public:
     Mesh read();
 
 private:
-    std::vector<std::string_view> header_line();
-    void header();
-    void header_element(const std::vector<std::string_view> &words);
-    void header_property(const std::vector<std::string_view> &words);
     size_t left() const { return size_t(end_ - at_); }
     double ascii_value();
     double value(PlyType type);
@@ -52,8 +47,8 @@ private:
     void skip_rows(const PlyElement &element);
 
     uint32_t vertex_index(double value, const char *what, size_t row);
-    void cut_faces(VertexMesh &mesh);
-    void cut_strips(VertexMesh &mesh);
+    void cut_faces();
+    void cut_strips();
     void ignored(const PlyElement &element, const PlyProperty &property);
 
     const char *begin_, *end_;
@@ -73,18 +68,13 @@ double PlyReader::ascii_value()
 {
     for (; at_ < end_ && (*at_ == ' ' || (*at_ >= '\t' && *at_ <= '\r')); ++at_)
         header_.lines += *at_ == '\n';
-    const char *start = at_ + (at_ < end_ && *at_ == '+');
-    double value = 0;
-    auto [stop, error] = std::from_chars(start, end_, value);
     if (at_ == end_)
         fail(GTX_ERROR_INPUT, "the file ends in %s %llu of %llu", printable(element_->name).c_str(),
              (unsigned long long)row_, (unsigned long long)element_->count);
-    if (error == std::errc::result_out_of_range) /* too large or too small */
-        value = std::memchr(start, '-', size_t(stop - start)) == nullptr ? HUGE_VAL : 0;
-    else if (error != std::errc())
+    double value = 0;
+    if (!parse_number(at_, end_, value))
         fail(GTX_ERROR_INPUT, "line %zu: '%s' is not a number", header_.lines + 1,
              printable({at_, std::min<size_t>(left(), 12)}).c_str());
-    at_ = stop;
     return value;
 }
 
@@ -260,7 +250,7 @@ uint32_t PlyReader::vertex_index(double value, const char *what, size_t row)
     return uint32_t(value);
 }
 
-void PlyReader::cut_faces(VertexMesh &mesh)
+void PlyReader::cut_faces()
 {
     std::vector<uint32_t> corners;
     std::vector<Vec3d> polygon;
@@ -272,20 +262,20 @@ void PlyReader::cut_faces(VertexMesh &mesh)
         for (size_t stop = i + n; i < stop; ++i)
             corners.push_back(vertex_index(faces_[i], "face", row));
         if (n == 3) {
-            mesh.triangles.push_back({corners[0], corners[1], corners[2]});
+            mesh_.triangles.push_back({corners[0], corners[1], corners[2]});
         } else if (n > 3) {
             polygon.clear();
             cut.clear();
             for (uint32_t v : corners)
-                polygon.push_back(mesh.positions[v]);
+                polygon.push_back(mesh_.positions[v]);
             triangulate(polygon, cut);
             for (const auto &t : cut)
-                mesh.triangles.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
+                mesh_.triangles.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
         } else {
             ++dropped;
         }
         if (row % 0x8000 == 0)
-            task_.advance(1);
+            task_.advance(1); /* for the chance to stop */
     }
     if (dropped)
         task_.warnings.push_back(std::to_string(dropped) +
@@ -293,7 +283,7 @@ void PlyReader::cut_faces(VertexMesh &mesh)
 }
 
 /* Every other triangle of a strip is turned; -1 starts a new strip. */
-void PlyReader::cut_strips(VertexMesh &mesh)
+void PlyReader::cut_strips()
 {
     size_t row = 0;
     for (size_t i = 0; i < strips_.size(); ++row) {
@@ -306,9 +296,9 @@ void PlyReader::cut_strips(VertexMesh &mesh)
             }
             uint32_t c = vertex_index(strips_[i], "strip", row);
             if (++count >= 3 && count % 2)
-                mesh.triangles.push_back({a, b, c});
+                mesh_.triangles.push_back({a, b, c});
             else if (count >= 3)
-                mesh.triangles.push_back({b, a, c});
+                mesh_.triangles.push_back({b, a, c});
             a = b;
             b = c;
         }
@@ -336,8 +326,8 @@ Mesh PlyReader::read()
     }
     if (!mesh_.positions.empty() && faces_.empty() && strips_.empty())
         fail(GTX_ERROR_UNSUPPORTED, "the file is a point cloud: it has no faces");
-    cut_faces(mesh_);
-    cut_strips(mesh_);
+    cut_faces();
+    cut_strips();
     if (mesh_.triangles.size() > MAX_VERTICES)
         fail(GTX_ERROR_LIMIT, "more than %llu triangles", (unsigned long long)MAX_VERTICES);
     if (!ignored_.empty())

@@ -8,7 +8,7 @@ namespace gtx {
 enum class PlyType { i8, u8, i16, u16, i32, u32, f32, f64 };
 
 unsigned ply_size(PlyType type);
-/* What a colour channel of full strength is in that type. */
+/* What a colour channel of full strength is in that type; 32 bits hold bytes in practice. */
 double ply_full(PlyType type);
 
 struct PlyProperty {

@@ -12,10 +12,9 @@ static constexpr struct {
     double full;
 } types[] = {
     /* in the order of PlyType */
-    {"char", "int8", 1, 127},        {"uchar", "uint8", 1, 255},
-    {"short", "int16", 2, 32767},    {"ushort", "uint16", 2, 65535},
-    {"int", "int32", 4, 2147483647}, {"uint", "uint32", 4, 4294967295.0},
-    {"float", "float32", 4, 1},      {"double", "float64", 8, 1},
+    {"char", "int8", 1, 127},       {"uchar", "uint8", 1, 255},  {"short", "int16", 2, 32767},
+    {"ushort", "uint16", 2, 65535}, {"int", "int32", 4, 255},    {"uint", "uint32", 4, 255},
+    {"float", "float32", 4, 1},     {"double", "float64", 8, 1},
 };
 
 unsigned ply_size(PlyType type)

@@ -334,6 +334,10 @@ static void nonsense_is_refused(void **)
     options.height_bits = 9;
     assert_int_equal(failure(mesh, partition, options), GTX_ERROR_ARGUMENT);
     assert_int_equal(failure(mesh, Partition(), {}), GTX_ERROR_EMPTY);
+    Mesh huge = mesh;
+    for (Vec3d &p : huge.positions)
+        p *= 1e30;
+    assert_int_equal(failure(huge, partition, {}), GTX_ERROR_INPUT);
     partition.pitch = 0;
     assert_int_equal(failure(mesh, partition, {}), GTX_ERROR_INTERNAL);
     partition.pitch = 0.1;

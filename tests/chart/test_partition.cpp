@@ -102,7 +102,8 @@ static double texels(const Partition &p)
 {
     double sum = 0;
     for (const Chart &c : p.charts)
-        sum += std::ceil(c.frame.extent[0] / p.pitch + 1) * std::ceil(c.frame.extent[1] / p.pitch + 1);
+        sum += std::ceil(c.frame.extent[0] / p.pitch + 1) *
+               std::ceil(c.frame.extent[1] / p.pitch + 1);
     return sum;
 }
 

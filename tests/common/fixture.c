@@ -55,7 +55,8 @@ static void sample_level(maps *m, const fixture_patch *from, const gtx_patch *pa
             fixture_texel texel = {.normal = {0, 0, 1}, .color = {200, 200, 200, 255}};
             double x = (i + 0.5) * step - 0.5, y = (j + 0.5) * step - 0.5;
             from->sheet(patch, x, y, from->user, &texel);
-            size_t at = (size_t)(patch->rect[1] / step + j) * page_width + patch->rect[0] / step + i;
+            size_t at = (size_t)(patch->rect[1] / step + j) * page_width +
+                        patch->rect[0] / step + i;
             put_normal(patch, texel.normal, m->normal[level] + 2 * at);
             memcpy(m->color[level] + 4 * at, texel.color, 4);
             if (level)

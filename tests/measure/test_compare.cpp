@@ -108,12 +108,12 @@ static void a_good_sphere_has_no_fault(void **)
 {
     gtx_asset *asset = fixture_sphere(2, 96, 16);
     Mesh mesh = sphere_mesh(2, 100);
-    CompareReport r = measure(asset, mesh, views_of(256));
+    CompareReport r = measure(asset, mesh, views_of(192));
     print_message("# iou %.5f min %.5f, depth rms %.2e max %.2e, normal %.3f deg, psnr %.1f\n",
                   r.silhouette_iou, r.silhouette_iou_min, r.depth_rms, r.depth_max,
                   r.normal_mean_deg, r.psnr_db);
     assert_int_equal(r.views, 26);
-    assert_true(r.surface_pixels > 26 * 44000);
+    assert_true(r.surface_pixels > 26 * 24000);
     assert_int_equal(r.hole_pixels, 0);
     assert_int_equal(r.leak_pixels, 0);
     assert_true(r.silhouette_iou > 0.997 && r.silhouette_iou_min > 0.995);
@@ -145,7 +145,7 @@ static void a_missing_patch_is_a_hole(void **)
 static void levels_are_measured(void **)
 {
     gtx_asset *asset = fixture_sphere(2, 96, 8);
-    CompareReport r = measure(asset, sphere_mesh(2, 60), views_of(128, 4));
+    CompareReport r = measure(asset, sphere_mesh(2, 60), views_of(96, 4));
     assert_int_equal(r.levels.size(), 4);
     for (uint32_t k = 0; k < 4; ++k) {
         print_message("# level %u: %d holes, %d leaks, iou %.4f\n", k, int(r.levels[k].hole_pixels),

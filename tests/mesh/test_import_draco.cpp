@@ -119,6 +119,13 @@ static void test_gltf(void **)
                                               "\"COLOR_0\":2}}}}]",
                                               unknown)),
                  GTX_ERROR_INPUT, "no attribute 9 for POSITION");
+    /* positions from an accessor, triangles from Draco: their numbers need not agree */
+    std::string few =
+        edited(json, "{\"POSITION\":0,\"NORMAL\":1,\"COLOR_0\":2}}}}]", "{\"NORMAL\":1}}}}]");
+    few = edited(few, "\"COLOR_0\":2", "\"X\":2");
+    few = edited(few, "[\n{\"componentType\":5126,\"count\":36",
+                 "[\n{\"bufferView\":0,\"componentType\":5126,\"count\":2");
+    assert_fails(import_text("a.gltf", few), GTX_ERROR_INPUT, "2 positions for 36 Draco points");
     std::string damaged = grid;
     damaged.resize(grid.size() / 2);
     json = edited(edited(gltf, "\"byteLength\":SIZE,", "\"byteLength\":" + size + ","), "SIZE",

@@ -333,7 +333,8 @@ static void test_materials(void **)
 static void test_ignored(void **)
 {
     Imported i = import_changed("'asset'", R"("images":[{"uri":"/etc/passwd"}],"skins":[{}],
-        "cameras":[{}],"animations":[{}],"extensionsUsed":["ACME_glow"],"extras":{"a":[1]},"asset")");
+        "cameras":[{}],"animations":[{}],"extensionsUsed":["ACME_glow"],"extras":{"a":[1]},
+        "asset")");
     assert_works(i, 4, 2);
     for (const char *what : {"textures", "skins", "cameras", "animations", "ACME_glow"})
         assert_true(i.warns(what));

@@ -239,7 +239,8 @@ static void along_the_axes(void **state)
         }
     /* Within the plane of the sheet nothing is crossed; just past the border neither. */
     for (int k = 0; k < 4; ++k) {
-        gtx_ray flat = {.origin = {-1, 1, 0.5f}, .direction = {k & 1 ? 1.f : 0, k & 2 ? 1.f : 0, 0}};
+        gtx_ray flat = {.origin = {-1, 1, 0.5f},
+                        .direction = {k & 1 ? 1.f : 0, k & 2 ? 1.f : 0, 0}};
         assert_int_equal(cast(caster, flat, GTX_RAY_TWO_SIDED).patch, UINT32_MAX);
     }
     gtx_ray past = {.origin = {3.8751f, 1, 8}, .direction = {0, 0, -1}};
@@ -376,6 +377,39 @@ static void any_hit_is_a_hit(void **state)
         assert_true(any.t >= nearest.t);
     }
     gtx_caster_destroy(caster);
+    gtx_close(asset);
+}
+
+/* Along the direction of projection a coarser level shows all that a finer one does. */
+static void coverage_only_grows(void **state)
+{
+    (void)state;
+    gtx_asset *asset = fixture_bumpy(8, 0);
+    const gtx_patch *p = gtx_patches(asset);
+    gtx_caster *casters[8];
+    for (uint32_t level = 0; level < 8; ++level)
+        casters[level] = caster_of(asset, level);
+    uint64_t seed = 21;
+    int hits[8] = {0};
+    for (int i = 0; i < 20000; ++i) {
+        double a = uniform(&seed) * p->extent_x, b = uniform(&seed) * p->extent_y;
+        gtx_ray ray = {.t_max = 0};
+        for (int k = 0; k < 3; ++k) {
+            ray.origin[k] = (float)(p->origin[k] + a * p->axis_x[k] + b * p->axis_y[k] +
+                                    9 * p->axis_z[k]);
+            ray.direction[k] = -p->axis_z[k];
+        }
+        int finer = 0;
+        for (uint32_t level = 0; level < 8; ++level) {
+            int hit = cast(casters[level], ray, 0).patch != UINT32_MAX;
+            assert_true(hit >= finer);
+            finer = hit;
+            hits[level] += hit;
+        }
+    }
+    assert_true(hits[0] > 5000 && hits[7] > hits[0]);
+    for (uint32_t level = 0; level < 8; ++level)
+        gtx_caster_destroy(casters[level]);
     gtx_close(asset);
 }
 
@@ -537,6 +571,7 @@ int main(void)
         cmocka_unit_test(extreme_rays_end),
         cmocka_unit_test(interval_is_respected),
         cmocka_unit_test(any_hit_is_a_hit),
+        cmocka_unit_test(coverage_only_grows),
         cmocka_unit_test(trim_ends_the_sheet),
         cmocka_unit_test(a_field_of_patches),
         cmocka_unit_test(codes_without_a_cell_are_no_surface),
