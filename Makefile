@@ -25,8 +25,8 @@ needs_base    := base
 needs_asset   := base asset
 needs_derive  := $(needs_asset) derive
 needs_trace   := $(needs_derive) trace
-needs_image   := image
-needs_host    := host
+needs_image   := base image
+needs_host    := base host
 needs_render  := $(needs_derive) render
 needs_mesh    := base mesh
 needs_chart   := $(needs_mesh) chart
@@ -193,7 +193,7 @@ run-tests: build-tests
 # `make test-asset` builds and runs the programs of one room alone.
 test-%:
 	@$(MAKE) --no-print-directory $(filter $(out)/tests/$*/%,$(test_bins)) \
-	  $(if $(filter cli samples consumer corpus,$*),all)
+	  $(if $(filter cli samples consumer corpus image,$*),all)
 	@$(test_env) tests/run $(filter $(out)/tests/$*/%,$(test_bins))
 
 test: ## install what is missing, build, pass the tests

@@ -45,8 +45,8 @@ struct Box {
 /* The squared distance from p to the triangle abc. */
 double triangle_distance2(const Vec3d &p, const Vec3d &a, const Vec3d &b, const Vec3d &c);
 
-/* `Shapes` has size(), box(i) and distance2(i, p, bound), which may answer anything >= bound for what
- * is not nearer than that. It outlives the tree. */
+/* `Shapes` has size(), box(i) and distance2(i, p, bound), which may answer anything >= bound for
+ * what is not nearer than that. It outlives the tree. */
 template <class Shapes> class NearestTree {
 public:
     explicit NearestTree(const Shapes &shapes) : shapes_(shapes)

@@ -27,7 +27,7 @@ static void warn_dropped(Task &task, const CleanReport &report)
     }
 }
 
-static void warn_repaired(Task &task, const Surface &surface, const CleanReport &report)
+static void warn_repaired(Task &task, const Draft &surface, const CleanReport &report)
 {
     warn(task, report.nonmanifold_edges, "edge", "with more than two triangles: split");
     warn(task, surface.cut_edges, "edge", "where a one-sided surface meets itself reversed: cut");
@@ -58,7 +58,7 @@ Mesh clean_mesh(Mesh mesh, Task &task, CleanReport &report)
     if (mesh.triangles.empty())
         throw Error(GTX_ERROR_EMPTY, "no triangle with a finite, non-zero area");
 
-    Surface surface{mesh, std::move(thin), {}, {}, std::vector<uint8_t>(mesh.triangles.size(), 0)};
+    Draft surface{mesh, std::move(thin), {}, {}, std::vector<uint8_t>(mesh.triangles.size(), 0)};
     pair_edges(surface, report);
     task.advance(0.4);
     orient(surface);

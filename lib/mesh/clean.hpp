@@ -18,8 +18,8 @@ void weld(Mesh &mesh);
  * sides of a sheet without thickness. */
 std::vector<uint8_t> drop_duplicates(Mesh &mesh, CleanReport &report);
 
-/* What the later steps know of the mesh. */
-struct Surface {
+/* A mesh being cleaned: what the later steps know of it. */
+struct Draft {
     Mesh &mesh;
     std::vector<uint8_t> thin;     /* per triangle, from drop_duplicates */
     std::vector<uint32_t> twin;    /* per half-edge: the other side of the edge, or NO_EDGE */
@@ -32,19 +32,19 @@ struct Surface {
 };
 
 /* Finds twins. Edges with more than two triangles are split. */
-void pair_edges(Surface &surface, CleanReport &report);
+void pair_edges(Draft &surface, CleanReport &report);
 
 /* Gives all triangles of a component the winding that most of them have. */
-void orient(Surface &surface);
+void orient(Draft &surface);
 
 /* Gives every fan of triangles a vertex of its own. */
-void split_fans(Surface &surface);
+void split_fans(Draft &surface);
 
 /* Turns closed components that are inside out, flags open ones as two-sided, counts both. */
-void choose_sides(Surface &surface, Task &task, CleanReport &report);
+void choose_sides(Draft &surface, Task &task, CleanReport &report);
 
 /* Keeps the source's usable corner normals and derives the others. */
-void make_normals(Surface &surface, Task &task);
+void make_normals(Draft &surface, Task &task);
 
 /* Triangles grouped by component: those of component c are order[first[c]] to
  * order[first[c + 1] - 1], in breadth-first order from the lowest. */
@@ -86,7 +86,7 @@ template <class Meet> Components flood(const std::vector<uint32_t> &twin, Meet m
 }
 
 /* Turns the winding of the triangles with turn[t] != 0, their attributes and twins with them. */
-void turn_triangles(Surface &surface, const std::vector<uint8_t> &turn);
+void turn_triangles(Draft &surface, const std::vector<uint8_t> &turn);
 
 /* The corners around the vertex of corner c that are reached over twins, in winding order. */
 void fan_of(const std::vector<uint32_t> &twin, uint32_t c, std::vector<uint32_t> &fan);

@@ -26,7 +26,7 @@ struct Candidate {
 /* Greedy: of the triangles that run the edge in opposite directions, those two whose normals agree
  * best continue each other. A sheet without thickness adds nothing to a surface that it touches, so
  * it must not take a side from it. Of an edge with very many triangles no surface can be told. */
-static void pair_many(Surface &surface, const EdgeEntry *edge, size_t count)
+static void pair_many(Draft &surface, const EdgeEntry *edge, size_t count)
 {
     constexpr size_t most = 64;
     if (count > most)
@@ -48,7 +48,7 @@ static void pair_many(Surface &surface, const EdgeEntry *edge, size_t count)
             join(surface.twin, c.a, c.b);
 }
 
-void pair_edges(Surface &surface, CleanReport &report)
+void pair_edges(Draft &surface, CleanReport &report)
 {
     surface.twin.assign(3 * surface.mesh.triangles.size(), NO_EDGE);
     for_each_edge(surface.mesh, [&](const EdgeEntry *edge, size_t count) {
@@ -63,7 +63,7 @@ void pair_edges(Surface &surface, CleanReport &report)
     });
 }
 
-void turn_triangles(Surface &surface, const std::vector<uint8_t> &turn)
+void turn_triangles(Draft &surface, const std::vector<uint8_t> &turn)
 {
     Mesh &mesh = surface.mesh;
     /* Exchanging corners 1 and 2 reverses edge 1 and exchanges edges 0 and 2. */
@@ -87,7 +87,7 @@ void turn_triangles(Surface &surface, const std::vector<uint8_t> &turn)
 }
 
 /* Around a one-sided surface the flood meets itself turned over: there it is cut. */
-void orient(Surface &surface)
+void orient(Draft &surface)
 {
     const Mesh &mesh = surface.mesh;
     std::vector<uint32_t> &twin = surface.twin;

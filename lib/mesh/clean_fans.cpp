@@ -19,7 +19,7 @@ void fan_of(const std::vector<uint32_t> &twin, uint32_t c, std::vector<uint32_t>
     } while (corner != NO_EDGE && corner != first);
 }
 
-static void one_vertex_a_fan(Surface &surface)
+static void one_vertex_a_fan(Draft &surface)
 {
     Mesh &mesh = surface.mesh;
     std::vector<bool> seen(surface.twin.size(), false), taken(mesh.positions.size(), false);
@@ -42,7 +42,7 @@ static void one_vertex_a_fan(Surface &surface)
 }
 
 /* Calls visit(half_edges) for each group of suspect half-edges with the same two vertices. */
-template <class Visit> static void for_each_suspect_edge(const Surface &surface, Visit visit)
+template <class Visit> static void for_each_suspect_edge(const Draft &surface, Visit visit)
 {
     struct Entry {
         uint32_t low, high, half_edge;
@@ -75,7 +75,7 @@ template <class Visit> static void for_each_suspect_edge(const Surface &surface,
  * them apart. All sides of such an edge are parted. Each fan around an end of it then has the edge
  * at its two ends only; where these are still the same edge they close the fan, and as a fan winds
  * one way they fit. */
-void split_fans(Surface &surface)
+void split_fans(Draft &surface)
 {
     std::vector<uint32_t> &twin = surface.twin;
     one_vertex_a_fan(surface);

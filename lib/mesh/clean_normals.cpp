@@ -45,7 +45,7 @@ static Vec3f mean_normal(const std::vector<FanCorner> &fan, size_t i)
 }
 
 /* The normals of the corners around one vertex; returns how many source normals it replaced. */
-static uint64_t fan_normals(Mesh &mesh, const Surface &surface, const std::vector<Vec3f> &faces,
+static uint64_t fan_normals(Mesh &mesh, const Draft &surface, const std::vector<Vec3f> &faces,
                             bool from_source, const std::vector<uint32_t> &corners,
                             std::vector<FanCorner> &fan)
 {
@@ -64,7 +64,7 @@ static uint64_t fan_normals(Mesh &mesh, const Surface &surface, const std::vecto
     return replaced;
 }
 
-void make_normals(Surface &surface, Task &task)
+void make_normals(Draft &surface, Task &task)
 {
     Mesh &mesh = surface.mesh;
     bool from_source = !mesh.normals.empty();

@@ -76,7 +76,7 @@ static void shoot(const Mesh &mesh, const Components &components, const std::vec
 
 /* A closed component of negative volume is the wall of a cavity if another encloses it, and inside
  * out if none does. */
-static void turn_inside_out(Surface &surface, const Components &components,
+static void turn_inside_out(Draft &surface, const Components &components,
                             const std::vector<bool> &closed, Task &task)
 {
     const Mesh &mesh = surface.mesh;
@@ -105,7 +105,7 @@ static void turn_inside_out(Surface &surface, const Components &components,
     turn_triangles(surface, turn);
 }
 
-void choose_sides(Surface &surface, Task &task, CleanReport &report)
+void choose_sides(Draft &surface, Task &task, CleanReport &report)
 {
     Components components = flood(surface.twin, [](uint32_t, uint32_t, bool) {});
     std::vector<bool> closed(components.count(), true);

@@ -47,7 +47,9 @@ static DracoAttribute read_attribute(const draco::Mesh &mesh, const draco::Point
         double values[4];
         sound = at + uint64_t(item) <= from.buffer()->data_size() &&
                 from.ConvertValue<double>(v, int8_t(to.components), values);
-        to.values.insert(to.values.end(), values, values + to.components);
+        /* Draco has divided normalised integers by their full value: callers want them raw. */
+        for (int k = 0; k < to.components; ++k)
+            to.values.push_back(from.normalized() ? values[k] * to.full : values[k]);
     }
     if (!sound)
         fail(GTX_ERROR_INPUT, "Draco attribute %u refers to values that are not there", to.id);

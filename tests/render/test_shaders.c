@@ -1,0 +1,103 @@
+/* The shader files under every dialect that they are written for, by the reference compiler. */
+#define _POSIX_C_SOURCE 200809L
+#include "stage.h"
+
+
+
+static const char *const vertex[] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
+                                     "geotex_proxy.vert", NULL};
+static const char *const cast[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                   "geotex_view.glsl",    "geotex_surface.glsl",
+                                   "geotex_cast.glsl",    "geotex_forward.frag", NULL};
+static const char *const paper[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                    "geotex_view.glsl",    "geotex_surface.glsl",
+                                    "geotex_paper.glsl",   "geotex_forward.frag", NULL};
+
+/* Compiles a program's stage and expects no word of complaint. */
+static void compile(const char *version, const char *options, const char *kind,
+                    const char *const *parts)
+{
+    char path[64] = "/tmp/geotex-shader-XXXXXX", command[512];
+    const int handle = mkstemp(path);
+    assert_true(handle >= 0);
+    FILE *file = fdopen(handle, "w");
+    fprintf(file, "%s\n", version);
+    for (; *parts; ++parts) {
+        assert_non_null(gtx_shader_source(*parts));
+        fputs(gtx_shader_source(*parts), file);
+    }
+    fclose(file);
+    snprintf(command, sizeof command, "glslangValidator %s -S %s %s >%s.log 2>&1", options, kind,
+             path, path);
+    const int status = system(command);
+    if (status) {
+        snprintf(command, sizeof command, "cat %s.log >&2", path);
+        if (system(command))
+            fputs("no log\n", stderr);
+    }
+    remove(path);
+    strcat(path, ".log");
+    remove(path);
+    if (status)
+        fail_msg("%s does not compile as %s", kind, version);
+}
+
+static void every_dialect(void **state)
+{
+    (void)state;
+    static const char *const versions[][2] = {{"#version 330 core", ""},
+                                              {"#version 450 core", ""},
+                                              {"#version 300 es", ""},
+                                              {"#version 310 es", ""},
+                                              {"#version 450", "-V -o /dev/null"}};
+    if (system("glslangValidator --version >/dev/null 2>&1"))
+        skip();
+    for (size_t i = 0; i < sizeof versions / sizeof *versions; ++i) {
+        compile(versions[i][0], versions[i][1], "vert", vertex);
+        compile(versions[i][0], versions[i][1], "frag", cast);
+        compile(versions[i][0], versions[i][1], "frag", paper);
+    }
+}
+
+/* The files are complete by themselves: an engine's own main needs the caster and nothing of the
+ * stock one. */
+static void a_main_of_ones_own(void **state)
+{
+    STAGE_OR_SKIP(state);
+    static const char text[] =
+        "in vec3 origin, direction;\n"
+        "flat in int index;\n"
+        "out vec4 position;\n"
+        "void main()\n"
+        "{\n"
+        "    gtx_sheet sheet = gtx_sheet_of(index);\n"
+        "    gtx_hit hit;\n"
+        "    float t0 = 0.0, t1 = 1e30;\n"
+        "    gtx_clip_box(sheet, origin, direction, t0, t1);\n"
+        "    if (t0 > t1 || !gtx_cast(sheet, origin, direction, t0, t1, hit))\n"
+        "        discard;\n"
+        "    gtx_frame frame = gtx_frame_of(index);\n"
+        "    position = vec4(gtx_object_point(frame, hit.grid), gtx_facet(frame, hit).x);\n"
+        "}\n";
+    const char *parts[] = {"#version 330 core\n", gtx_shader_source("geotex_dialect.glsl"),
+                           gtx_shader_source("geotex_sheet.glsl"),
+                           gtx_shader_source("geotex_cast.glsl"), text};
+    PFNGLGETSHADERIVPROC get_shader =
+        (PFNGLGETSHADERIVPROC)gtx_offscreen_load("glGetShaderiv", NULL);
+    const GLuint shader = s->gl.CreateShader(GL_FRAGMENT_SHADER);
+    GLint compiled = 0;
+    s->gl.ShaderSource(shader, 5, parts, NULL);
+    s->gl.CompileShader(shader);
+    get_shader(shader, GL_COMPILE_STATUS, &compiled);
+    s->gl.DeleteShader(shader);
+    assert_true(compiled);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_dialect),
+        cmocka_unit_test(a_main_of_ones_own),
+    };
+    return cmocka_run_group_tests(tests, stage_open, stage_close);
+}
