@@ -33,7 +33,6 @@ needs_chart   := $(needs_mesh) chart
 needs_bake    := $(needs_asset) mesh chart bake
 needs_measure := $(needs_trace) mesh measure
 needs_cook    := $(needs_trace) mesh chart bake measure cook
-needs_cli     := $(needs_trace) render mesh chart bake measure cook host image cli
 
 # ---- flags ---------------------------------------------------------------------------------------
 CC  ?= cc
@@ -154,8 +153,10 @@ test_sources := $(wildcard tests/*/test_*.c tests/*/test_*.cpp)
 test_bins    := $(patsubst %,$(out)/%,$(basename $(test_sources)))
 test_room     = $(word 2,$(subst /, ,$(1)))
 test_needs    = $(needs_$(1)) $(extra_needs_$(1))
+# These run the command and the products; they link nothing of ours but the smallest room.
+needs_cli := base
 needs_consumer := base
-needs_corpus   := base
+needs_corpus := base
 extra_needs_render  := trace host image
 extra_needs_bake    := derive trace
 extra_needs_chart   :=

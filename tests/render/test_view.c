@@ -103,23 +103,57 @@ static void near_and_far_cut(void **state)
     subject_close(s, &scene);
 }
 
+/* Mirrored by the view, by the instance, by both and by neither. */
 static void camera_inside_boxes(void **state)
 {
     STAGE_OR_SKIP(state);
     subject ball = subject_open(s, fixture_sphere(2, 64, 8));
     subject sheet = subject_open(s, fixture_bumpy(8, GTX_PATCH_TWO_SIDED));
-    const subject *scenes[2] = {&ball, &sheet};
+    subject *subjects[2] = {&ball, &sheet};
     for (int k = 0; k < 2; ++k)
-        for (int i = 0; i < 6; ++i) {
-            gtx_camera camera = camera_around(scenes[k]->asset);
+        for (int i = 0; i < 8; ++i) {
+            gtx_camera camera = camera_around(subjects[k]->asset);
             camera.distance = k ? 0.02f + 0.1f * (float)i : 0.63f + 0.01f * (float)i;
             camera.azimuth = 60.0f * (float)i;
             camera.elevation = 20;
-            const gtx_view view = view_of(&camera);
-            expect_agreement(s, scenes[k], &view, 100);
+            gtx_view view = view_of(&camera);
+            if (i & 1)
+                view.projection[0] = -view.projection[0];
+            if (i & 2) { /* about the plane x = target[0] */
+                subjects[k]->instance.transform[0] = -1;
+                subjects[k]->instance.transform[12] = 2 * camera.target[0];
+            }
+            expect_agreement(s, subjects[k], &view, 100);
+            memcpy(subjects[k]->instance.transform, identity, sizeof identity);
         }
     subject_close(s, &ball);
     subject_close(s, &sheet);
+}
+
+/* A two-sided sheet is lit on the side that is seen. */
+static void the_back_is_lit_too(void **state)
+{
+    STAGE_OR_SKIP(state);
+    subject shown = subject_open(s, fixture_bumpy(8, GTX_PATCH_TWO_SIDED));
+    shown.instance.tint[0] = shown.instance.tint[3] = 1;
+    double mean[2] = {0, 0};
+    for (int side = 0; side < 2; ++side) {
+        gtx_camera camera = camera_around(shown.asset);
+        camera.azimuth = side ? 36.87f + 180 : 36.87f; /* along the patch's z, (0.6, 0, 0.8) */
+        camera.elevation = 0;
+        const gtx_view view = view_of(&camera);
+        stage_draw(s, &view, &shown.instance, 1);
+        long hits = 0;
+        for (int i = 0; i < STAGE_PIXELS; ++i)
+            if (s->depth[i] < 1) {
+                mean[side] += s->color[4 * i];
+                ++hits;
+            }
+        assert_true(hits > 2000);
+        mean[side] /= (double)hits;
+    }
+    assert_true(fabs(mean[0] - mean[1]) < 0.1 * mean[0]);
+    subject_close(s, &shown);
 }
 
 static void headlight_and_light(void **state)
@@ -156,7 +190,7 @@ int main(void)
         cmocka_unit_test(every_depth_convention), cmocka_unit_test(reversed_equals_ordinary),
         cmocka_unit_test(infinite_far_plane),     cmocka_unit_test(depth_range),
         cmocka_unit_test(near_and_far_cut),       cmocka_unit_test(camera_inside_boxes),
-        cmocka_unit_test(headlight_and_light),
+        cmocka_unit_test(headlight_and_light),    cmocka_unit_test(the_back_is_lit_too),
     };
     return cmocka_run_group_tests(tests, stage_open, stage_close);
 }
