@@ -60,7 +60,7 @@ static void place_instances(world *w, const gtx_asset *asset)
 static gtx_result build_solids(world *w, gtx_error *error)
 {
     static const gtx_rgb stone = {206, 198, 186}, dark = {126, 121, 116}, wood = {186, 142, 92};
-    static const float columns[4][2] = {{-2.95f, 0.4f}, {-1.9f, -3.3f}, {2.2f, -3.0f}, {4.6f, -1.2f}};
+    static const float columns[4][2] = {{-2.95f, 0.4f}, {-1.9f, -3.3f}, {2.2f, -3}, {4.6f, -1.2f}};
     static const float crates[4][5] = {{3.05f, 0.45f, 0.4f, 0.9f, 25},
                                        {4.1f, 0.35f, 1.35f, 0.7f, -12},
                                        {-1.85f, 0.3f, 1.9f, 0.6f, 40},
@@ -139,7 +139,8 @@ int main(int argc, char **argv)
         return 1;
     }
     gtx_error error = {0};
-    gtx_result result = still ? gtx_show_still(&show, &pixels, &error) : gtx_show_window(&show, &error);
+    gtx_result result = still ? gtx_show_still(&show, &pixels, &error)
+                              : gtx_show_window(&show, &error);
     if (still && !result)
         result = gtx_image_write_png(still, (uint32_t)show.width, (uint32_t)show.height, 4, pixels,
                                      &error);

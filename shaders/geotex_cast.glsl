@@ -62,25 +62,6 @@ bool gtx_look(inout gtx_walk w, gtx_sheet sheet, vec3 origin, vec3 direction)
     return w.known && (w.pair || (change && (w.above || sheet.two_sided)));
 }
 
-/* The point of the cell's crossing, or of the first of two, that lies within the outline. */
-bool gtx_accept(gtx_walk w, gtx_sheet sheet, vec3 origin, vec3 direction, out gtx_hit hit)
-{
-    vec4 h = w.height;
-    float hxy = h.x - h.y - h.z + h.w;
-    vec2 root = w.enter + clamp(gtx_roots(w.gap), 0.0, w.leave - w.enter);
-    hit.back = sheet.two_sided && !w.above;
-    for (int tries = w.pair && sheet.two_sided ? 2 : 1; tries > 0; --tries) {
-        hit.t = hit.back ? root.y : root.x;
-        hit.grid = origin + hit.t * direction;
-        vec2 at = hit.grid.xy - vec2(w.cell);
-        hit.slope = vec2(h.y - h.x + hxy * at.y, h.z - h.x + hxy * at.x);
-        if (gtx_shows(sheet, w.cell, hit.grid.xy))
-            return true;
-        hit.back = !hit.back;
-    }
-    return false;
-}
-
 bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, out gtx_hit hit)
 {
     /* From the entry on, at about a texel a unit: keeps the numbers small and so exact. */
@@ -94,10 +75,12 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
     gtx_walk w;
     w.leave = 0.0;
     w.known = w.then_above = false;
-    bool inside = true;
+    bool inside = true, found = false;
+    float s = 0.0;
+    hit.back = false;
     /* The inner loop finds the next crossing and does no more: wide processors run the whole body
      * of a loop, for all their rays, until the last of them is through. */
-    while (inside) {
+    while (inside && !found) {
         bool crossing = false;
         while (inside && !crossing) {
             vec2 planes = (vec2(next + ahead) - o.xy) * inverse;
@@ -108,10 +91,21 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
             next += planes.x <= planes.y ? ivec2(way.x, 0) : ivec2(0, way.y);
             inside = w.leave < end && next == clamp(next, ivec2(0), sheet.size - 2);
         }
-        if (crossing && gtx_accept(w, sheet, o, d, hit)) {
-            hit.t = t0 + hit.t / speed;
-            return true;
+        vec2 root = w.enter + clamp(gtx_roots(w.gap), 0.0, w.leave - w.enter);
+        hit.back = sheet.two_sided && !w.above;
+        s = hit.back ? root.y : root.x;
+        found = crossing && gtx_shows(sheet, w.cell, o.xy + s * d.xy);
+        if (crossing && !found && w.pair && sheet.two_sided) { /* the other one is still to come */
+            next = w.cell;
+            w.leave = s;
+            w.then_above = hit.back;
+            inside = true;
         }
     }
-    return false;
+    hit.t = t0 + s / speed;
+    hit.grid = o + s * d;
+    vec2 at = hit.grid.xy - vec2(w.cell);
+    vec4 h = w.height;
+    hit.slope = vec2(h.y - h.x, h.z - h.x) + (h.x - h.y - h.z + h.w) * at.yx;
+    return found;
 }

@@ -8,13 +8,13 @@ layout(location = 1) in uint gtx_patch;
 layout(location = 2) in vec4 gtx_world_x;   /* rows of object -> world, one set an instance */
 layout(location = 3) in vec4 gtx_world_y;
 layout(location = 4) in vec4 gtx_world_z;
-layout(location = 5) in vec4 gtx_object_x;  /* xyz: rows of the inverse's linear part; w: the eye in */
-layout(location = 6) in vec4 gtx_object_y;  /* object space (orthographic: what the eye is to a */
-layout(location = 7) in vec4 gtx_object_z;  /* direction, see gtx_eye) */
+layout(location = 5) in vec4 gtx_object_x;  /* xyz: rows of the inverse's linear part; w: the eye */
+layout(location = 6) in vec4 gtx_object_y;  /* in object space, or against the view's direction */
+layout(location = 7) in vec4 gtx_object_z;  /* when orthographic */
 layout(location = 8) in vec4 gtx_tint;
 
 GTX_VARYING(0) out vec3 gtx_point;          /* grid space, on the hull */
-GTX_VARYING(1) flat out vec3 gtx_eye;       /* the ray's direction is gtx_point * gtx_depth.w - gtx_eye */
+GTX_VARYING(1) flat out vec3 gtx_eye;       /* the ray: gtx_point * gtx_depth.w - gtx_eye */
 GTX_VARYING(2) flat out vec4 gtx_clip_z;    /* rows of grid -> clip */
 GTX_VARYING(3) flat out vec4 gtx_clip_w;
 GTX_VARYING(4) flat out vec3 gtx_normal_x;  /* columns of object -> world for normals */
@@ -22,8 +22,8 @@ GTX_VARYING(5) flat out vec3 gtx_normal_y;
 GTX_VARYING(6) flat out vec3 gtx_normal_z;
 GTX_VARYING(7) flat out vec4 gtx_color;
 GTX_VARYING(8) flat out int gtx_patch_index;
-GTX_VARYING(9) flat out vec4 gtx_rect;      /* what gtx_sheet_of takes: spares fragments that miss the */
-GTX_VARYING(10) flat out vec4 gtx_span;     /* fetching of the record */
+GTX_VARYING(9) flat out vec4 gtx_rect;      /* what gtx_sheet_of takes: a fragment that misses */
+GTX_VARYING(10) flat out vec4 gtx_span;     /* need not fetch the record */
 
 /* A row over world space, taken to grid space. */
 vec4 gtx_row(vec4 row, gtx_frame frame)

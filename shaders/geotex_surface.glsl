@@ -1,4 +1,4 @@
-/* Looking up the normal and the colour of a hit. Needs geotex_dialect.glsl and geotex_sheet.glsl. */
+/* Normal and colour of a hit. Needs geotex_dialect.glsl and geotex_sheet.glsl before it. */
 GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;  /* hemi-octahedral, two channels, mips */
 GTX_SAMPLER(3, highp sampler2DArray) gtx_colors;   /* sRGB, mips; decoded when sampled */
 

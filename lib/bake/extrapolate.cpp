@@ -11,13 +11,11 @@ constexpr double STEEPEST = 4;
 
 std::vector<uint8_t> find_support(const Grid &grid, const std::vector<float> &trim)
 {
-    /* Bilinear trim is nowhere in a cell below its least corner, and codes round to 1/32. */
-    constexpr float LIMIT = float(SHOWN + 1.0 / 32);
     std::vector<uint8_t> support(grid.texels(), 0);
     for (int j = 0; j + 1 < grid.h; ++j) {
         for (int i = 0; i + 1 < grid.w; ++i) {
             size_t a = size_t(j) * grid.w + i, b = a + grid.w;
-            if (std::min({trim[a], trim[a + 1], trim[b], trim[b + 1]}) <= LIMIT)
+            if (shown(std::min({trim[a], trim[a + 1], trim[b], trim[b + 1]})))
                 support[a] = support[a + 1] = support[b] = support[b + 1] = 1;
         }
     }
@@ -45,12 +43,13 @@ static Slope triangle_slope(const FlatTriangle &t)
 
 /* The slope of the covered texels around (u, v) by weighted least squares. A triangle of its own
  * tells less: at the border of a scan it is often a sliver. Falls back to it where the texels lie
- * on a line. */
+ * on a line. Texels of another sheet do not count. */
 static Slope fitted_slope(const FlatChart &chart, const Cover &cover, const Vec3d &at,
-                          uint32_t triangle)
+                          uint32_t triangle, Paths &paths)
 {
     constexpr int REACH = 2;
     const Grid &grid = chart.grid;
+    double cliff = CLIFF * grid.coarse_pitch();
     int ci = int(std::floor(at.x + 0.5)), cj = int(std::floor(at.y + 0.5));
     double suu = 0, suv = 0, svv = 0, suz = 0, svz = 0;
     for (int j = std::max(cj - REACH, 0); j <= std::min(cj + REACH, grid.h - 1); ++j) {
@@ -59,6 +58,9 @@ static Slope fitted_slope(const FlatChart &chart, const Cover &cover, const Vec3
             if (cover.triangle[texel] == NO_TRIANGLE)
                 continue;
             double u = i - at.x, v = j - at.y, z = cover.height[texel] - at.z;
+            if (std::fabs(z) > cliff &&
+                !paths.joined(triangle, cover.triangle[texel], at.x, at.y, REACH + 1))
+                continue;
             double m = 1 / (0.5 + u * u + v * v);
             suu += m * u * u;
             suv += m * u * v;
@@ -74,7 +76,7 @@ static Slope fitted_slope(const FlatChart &chart, const Cover &cover, const Vec3
     return {(suz * svv - svz * suv) / det, (svz * suu - suz * suv) / det};
 }
 
-void extrapolate(const FlatChart &chart, const Outline &outline,
+void extrapolate(const FlatChart &chart, const Outline &outline, Paths &paths,
                  const std::vector<uint8_t> &support, Cover &cover)
 {
     const Grid &grid = chart.grid;
@@ -85,7 +87,7 @@ void extrapolate(const FlatChart &chart, const Outline &outline,
         double u = double(texel % grid.w), v = double(texel / grid.w);
         const OutlineEdge &edge = outline.edges[outline.nearest[texel]];
         Vec3d border = edge.from + (edge.to - edge.from) * nearest_parameter(edge, u, v);
-        Slope slope = clamped(fitted_slope(chart, sampled, border, edge.triangle),
+        Slope slope = clamped(fitted_slope(chart, sampled, border, edge.triangle, paths),
                               grid.coarse_pitch());
         cover.height[texel] = border.z + slope.u * (u - border.x) + slope.v * (v - border.y);
     }

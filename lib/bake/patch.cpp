@@ -141,11 +141,13 @@ PatchMaps bake_chart(const Job &job, const Chart &chart)
     Cover core = raster_core(flat);
     Outline core_outline = find_outline(flat, flat.core);
     Cover all = core;
-    raster_overlap(flat, core_outline, all);
+    Paths paths(job.mesh, job.neighbours, flat);
+    raster_overlap(flat, core_outline, paths, all);
     Outline outline = find_outline(flat, flat.triangles.size());
     std::vector<float> trim = trim_distances(flat, core, all, core_outline, outline);
     std::vector<uint8_t> support = find_support(flat.grid, trim);
-    extrapolate(flat, outline, support, all);
+    extrapolate(flat, outline, paths, support, all);
+    cut_cliffs(flat, outline, trim, all, paths, support);
 
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < support.size(); ++i) {

@@ -3,10 +3,18 @@
 
 #include "bake/bake.hpp"
 
+#include <unordered_set>
+
 namespace gtx::baking {
 
 /* A hit up to this many texels outside the outline belongs to the surface (format/gtx.md, Trim). */
 constexpr double SHOWN = 0.3;
+/* Whether a cell with this signed distance at a corner can show: bilinear trim is nowhere in a cell
+ * below its least corner, and codes round to 1/32. */
+inline bool shown(float trim)
+{
+    return trim <= float(SHOWN + 1.0 / 32);
+}
 /* Source surface beyond a chart's border counts as true up to this many texels from it. */
 constexpr double OVERLAP = 1.5;
 
@@ -49,6 +57,31 @@ struct FlatChart {
 
 FlatChart flatten(const Mesh &mesh, const Neighbours &neighbours, const Chart &chart, double pitch);
 
+/* Texels of depth between neighbouring texels beyond which the surface must be seen to lead from
+ * one to the other: they may lie on two sheets, side by side only in projection. */
+constexpr double CLIFF = 4;
+
+/* Whether the source leads from one place of a chart to another without a detour, be it over
+ * triangles that the chart does not have: a steep wall is no cliff. */
+class Paths {
+public:
+    Paths(const Mesh &mesh, const Neighbours &neighbours, const FlatChart &chart)
+        : mesh_(mesh), neighbours_(neighbours), chart_(chart)
+    {
+    }
+
+    /* Whether edges lead from triangle `from` of the chart to `to` inside the square of `reach`
+     * texels around (u, v). */
+    bool joined(uint32_t from, uint32_t to, double u, double v, double reach);
+
+private:
+    const Mesh &mesh_;
+    const Neighbours &neighbours_;
+    const FlatChart &chart_;
+    std::unordered_set<uint32_t> seen_; /* by one search */
+    std::vector<uint32_t> queue_;
+};
+
 /* What lies at each texel centre of the grid. */
 struct Cover {
     std::vector<double> height;     /* c, where covered */
@@ -73,7 +106,7 @@ double nearest_parameter(const OutlineEdge &edge, double u, double v);
 /* Centre samples of the core, topmost first. */
 Cover raster_core(const FlatChart &chart);
 /* Adds the overlap at texels the core left empty, where it continues the core's border. */
-void raster_overlap(const FlatChart &chart, const Outline &core, Cover &cover);
+void raster_overlap(const FlatChart &chart, const Outline &core, Paths &paths, Cover &cover);
 
 /* The outline of the first `count` triangles. */
 Outline find_outline(const FlatChart &chart, size_t count);
@@ -85,8 +118,11 @@ std::vector<float> trim_distances(const FlatChart &chart, const Cover &core, con
 /* Which texels need a code: the corners of every cell where a hit may be shown. */
 std::vector<uint8_t> find_support(const Grid &grid, const std::vector<float> &trim);
 /* Gives every supported texel that nothing covers the height of the surface continued there. */
-void extrapolate(const FlatChart &chart, const Outline &outline,
+void extrapolate(const FlatChart &chart, const Outline &outline, Paths &paths,
                  const std::vector<uint8_t> &support, Cover &cover);
+/* Takes texels out of the support until no cell that shows bridges two sheets. */
+void cut_cliffs(const FlatChart &chart, const Outline &outline, const std::vector<float> &trim,
+                const Cover &cover, Paths &paths, std::vector<uint8_t> &support);
 
 /* The maps of one patch, `rect` still without its place on a page. */
 struct PatchMaps {

@@ -5,10 +5,6 @@
 
 namespace gtx::baking {
 
-/* Surface this many texels in depth away from the border that it should continue belongs to
- * another sheet that passes above or below. */
-constexpr double ANOTHER_SHEET = 12;
-
 /* Calls visit(texel, c) for the texel centres in a triangle. Edges belong to both sides, so that
  * no centre falls between two triangles. */
 template <class Visit> static void raster(const FlatTriangle &t, const Grid &grid, Visit visit)
@@ -57,10 +53,12 @@ Cover raster_core(const FlatChart &chart)
     return cover;
 }
 
-void raster_overlap(const FlatChart &chart, const Outline &core, Cover &cover)
+void raster_overlap(const FlatChart &chart, const Outline &core, Paths &paths, Cover &cover)
 {
+    /* Texels around the border within which surface must lead on from it. */
+    constexpr double REACH = 2.5;
     const Grid &grid = chart.grid;
-    double limit = ANOTHER_SHEET * grid.coarse_pitch();
+    double cliff = CLIFF * grid.coarse_pitch();
     for (size_t t = chart.core; t < chart.triangles.size(); ++t) {
         if (!chart.triangles[t].front)
             continue;
@@ -69,15 +67,18 @@ void raster_overlap(const FlatChart &chart, const Outline &core, Cover &cover)
             if (triangle != NO_TRIANGLE && triangle < chart.core)
                 return;
             const OutlineEdge &edge = core.edges[core.nearest[texel]];
-            double at = nearest_parameter(edge, double(texel % grid.w), double(texel / grid.w));
-            double border = edge.from.z + at * (edge.to.z - edge.from.z);
-            double off = std::fabs(c - border);
+            double u = double(texel % grid.w), v = double(texel / grid.w);
+            Vec3d border = edge.from + (edge.to - edge.from) * nearest_parameter(edge, u, v);
+            double off = std::fabs(c - border.z);
             /* Of several layers the one nearest to the border's depth continues it. */
-            if (off <= limit && (triangle == NO_TRIANGLE ||
-                                 off < std::fabs(cover.height[texel] - border))) {
-                cover.height[texel] = c;
-                triangle = uint32_t(t);
-            }
+            if (triangle != NO_TRIANGLE && off >= std::fabs(cover.height[texel] - border.z))
+                return;
+            /* What no short way leads to is another sheet that passes above or below. */
+            double reach = REACH + core.distance[texel];
+            if (off > cliff && !paths.joined(edge.triangle, uint32_t(t), u, v, reach))
+                return;
+            cover.height[texel] = c;
+            triangle = uint32_t(t);
         });
     }
 }

@@ -9,6 +9,9 @@ namespace gtx {
 namespace {
 
 constexpr double FACING = 0.1; /* least n.z */
+/* Surface is reached from one edge of the border, and stays within this many reaches of it: the
+ * sheet that passes below a silhouette is not followed from where the two meet. */
+constexpr double TETHER = 1.5;
 
 struct Point {
     double a, b;
@@ -61,9 +64,14 @@ public:
         size_t last = column(std::max({corner[0].a, corner[1].a, corner[2].a}));
         for (size_t c = first; c <= last; ++c)
             for (uint32_t edge : columns_[c])
-                if (near_edge(corner, edges_[edge][0], edges_[edge][1]))
+                if (near_edge(corner, edges_[edge], reach_))
                     return true;
         return false;
+    }
+
+    bool tethered(const Point corner[3], uint32_t edge) const
+    {
+        return near_edge(corner, edges_[edge], TETHER * reach_);
     }
 
 private:
@@ -72,15 +80,16 @@ private:
         return size_t(std::clamp(a / step_, 0., double(columns_.size() - 1)));
     }
 
-    bool near_edge(const Point corner[3], const Point &s, const Point &e) const
+    static bool near_edge(const Point corner[3], const std::array<Point, 2> &edge, double reach)
     {
-        if (std::max({corner[0].b, corner[1].b, corner[2].b}) < std::min(s.b, e.b) - reach_ ||
-            std::min({corner[0].b, corner[1].b, corner[2].b}) > std::max(s.b, e.b) + reach_)
+        auto [s, e] = edge;
+        if (std::max({corner[0].b, corner[1].b, corner[2].b}) < std::min(s.b, e.b) - reach ||
+            std::min({corner[0].b, corner[1].b, corner[2].b}) > std::max(s.b, e.b) + reach)
             return false;
         bool left = true, right = true;
         for (int k = 0; k < 3; ++k) {
             const Point &p = corner[k], &q = corner[(k + 1) % 3];
-            if (near(p, q, s, e, reach_))
+            if (near(p, q, s, e, reach))
                 return true;
             left = left && side(s, p, q) >= 0;
             right = right && side(s, p, q) <= 0;
@@ -113,25 +122,31 @@ std::vector<uint32_t> overlap_triangles(const Mesh &mesh,
             if (neighbours[t][k] != NO_TRIANGLE && !in_core(neighbours[t][k]))
                 border.emplace_back(t, k);
     Outline outline(chart.frame.extent[0], reach, border.size());
-    std::vector<uint32_t> out;
+    std::vector<std::pair<uint32_t, uint32_t>> found; /* triangle, edge it was reached from */
     std::unordered_set<uint32_t> seen;
-    auto visit = [&](uint32_t t) {
-        if (t == NO_TRIANGLE || in_core(t) || !seen.insert(t).second)
+    auto visit = [&](uint32_t t, uint32_t edge) {
+        if (t == NO_TRIANGLE || in_core(t) || seen.count(t))
             return;
         Vec3d normal = normalize(mesh.area_vector(t));
         Point corner[3] = {plan(t, 0), plan(t, 1), plan(t, 2)};
+        if (!outline.tethered(corner, edge))
+            return; /* it may be nearer to another edge */
+        seen.insert(t);
         if (dot(normal, chart.frame.z) >= FACING && outline.near_triangle(corner))
-            out.push_back(t);
+            found.emplace_back(t, edge);
     };
     for (auto [t, k] : border)
         outline.add(plan(t, k), plan(t, (k + 1) % 3));
-    for (auto [t, k] : border)
-        visit(neighbours[t][k]);
-    for (size_t next = 0; next < out.size(); ++next) {
-        std::array<uint32_t, 3> around = neighbours[out[next]];
-        for (uint32_t n : around)
-            visit(n);
+    for (uint32_t edge = 0; edge < border.size(); ++edge)
+        visit(neighbours[border[edge].first][border[edge].second], edge);
+    for (size_t next = 0; next < found.size(); ++next) {
+        auto [t, edge] = found[next];
+        for (uint32_t n : neighbours[t])
+            visit(n, edge);
     }
+    std::vector<uint32_t> out;
+    for (const auto &[t, edge] : found)
+        out.push_back(t);
     std::sort(out.begin(), out.end());
     return out;
 }

@@ -1,4 +1,4 @@
-/* The OpenGL functions that hosts use (samples, tests, the command): one table, filled by a loader. */
+/* The OpenGL functions of hosts (samples, tests, the command): one table, filled by a loader. */
 #ifndef GTX_HOST_GL_H
 #define GTX_HOST_GL_H
 

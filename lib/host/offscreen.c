@@ -48,7 +48,8 @@ static int try_display(gtx_offscreen *offscreen, EGLDisplay display)
     EGLint count = 0;
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, NULL, NULL))
         return 0;
-    if (eglBindAPI(EGL_OPENGL_API) && eglChooseConfig(display, wanted, &config, 1, &count) && count) {
+    if (eglBindAPI(EGL_OPENGL_API) &&
+        eglChooseConfig(display, wanted, &config, 1, &count) && count > 0) {
         EGLContext context = best_context(display, config);
         if (context != EGL_NO_CONTEXT) {
             if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {

@@ -12,7 +12,8 @@ extern "C" {
 typedef struct gtx_window gtx_window;
 
 /* Opens a window and makes its context current. Left drag turns `camera`, the wheel moves it, and
- * Escape closes; the camera must outlive the window. Errors: MEMORY, GL (no display, no 3.3 core). */
+ * Escape closes; the camera must outlive the window.
+ * Errors: MEMORY, GL (no display, no 3.3 core). */
 gtx_result gtx_window_create(const char *title, int width, int height, gtx_camera *camera,
                              gtx_window **out, gtx_error *error);
 void gtx_window_destroy(gtx_window *window);

@@ -14,7 +14,8 @@ typedef struct run {
 static gtx_result check(const gtx_renderer *renderer, const gtx_view *view,
                         const gtx_instance *instances, uint32_t count, gtx_error *error)
 {
-    const uint32_t flags = GTX_VIEW_REVERSED_Z | GTX_VIEW_DEPTH_ZERO_TO_ONE | GTX_VIEW_RESTORE_STATE;
+    const uint32_t flags =
+        GTX_VIEW_REVERSED_Z | GTX_VIEW_DEPTH_ZERO_TO_ONE | GTX_VIEW_RESTORE_STATE;
     if (!renderer || !view || (count && !instances))
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a draw needs a renderer, a view and instances");
     if (view->flags & ~flags || (unsigned)view->method > GTX_METHOD_PAPER)
@@ -65,8 +66,9 @@ static void begin(const gtx_gl *gl, const gtx_program *program, const gtx_frame 
 static void bind_textures(const gtx_gl *gl, const gtx_model *model)
 {
     for (gl_uint i = 0; i < UNIT_COUNT; ++i) {
+        const gl_enum target = i == UNIT_PATCHES ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY;
         gl->ActiveTexture(GL_TEXTURE0 + i);
-        gl->BindTexture(i == UNIT_PATCHES ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY, model->textures[i]);
+        gl->BindTexture(target, model->textures[i]);
     }
 }
 

@@ -74,8 +74,8 @@ static void invert(double axis[3][3], const double origin[3], double rows[3][4])
 }
 
 /* The eight texels of a patch's record, as geotex_sheet.glsl reads them. */
-static void fill_record(float record[RECORD_TEXELS][4], const gtx_patch *patch, uint32_t height_bits,
-                        float low, float high)
+static void fill_record(float record[RECORD_TEXELS][4], const gtx_patch *patch,
+                        uint32_t height_bits, float low, float high)
 {
     const float *unit[3] = {patch->axis_x, patch->axis_y, patch->axis_z};
     const double step[3] = {(double)patch->extent_x / patch->rect[2],

@@ -74,8 +74,9 @@ static gl_uint link_stages(const gtx_renderer *renderer, gl_uint vertex, gl_uint
 static void locate(const gtx_gl *gl, gtx_program *program)
 {
     static const char *const samplers[UNIT_COUNT] = {
-        [UNIT_CELLS] = "gtx_cells",   [UNIT_TRIM] = "gtx_trim",       [UNIT_NORMALS] = "gtx_normals",
-        [UNIT_COLORS] = "gtx_colors", [UNIT_PATCHES] = "gtx_patches",
+        [UNIT_CELLS] = "gtx_cells",     [UNIT_TRIM] = "gtx_trim",
+        [UNIT_NORMALS] = "gtx_normals", [UNIT_COLORS] = "gtx_colors",
+        [UNIT_PATCHES] = "gtx_patches",
     };
     program->clip_from_world = gl->GetUniformLocation(program->object, "gtx_clip_from_world");
     program->depth = gl->GetUniformLocation(program->object, "gtx_depth");

@@ -14,7 +14,8 @@ static texture_kind kind_of(const gtx_model *model, uint32_t unit)
     static const texture_kind kinds[UNIT_COUNT] = {
         [UNIT_CELLS] = {GL_TEXTURE_2D_ARRAY, GL_RGBA8UI, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE,
                         GL_NEAREST, GL_NEAREST},
-        [UNIT_TRIM] = {GL_TEXTURE_2D_ARRAY, GL_R8, GL_RED, GL_UNSIGNED_BYTE, GL_NEAREST, GL_NEAREST},
+        [UNIT_TRIM] = {GL_TEXTURE_2D_ARRAY, GL_R8, GL_RED, GL_UNSIGNED_BYTE,
+                       GL_NEAREST, GL_NEAREST},
         [UNIT_NORMALS] = {GL_TEXTURE_2D_ARRAY, GL_RG8, GL_RG, GL_UNSIGNED_BYTE,
                           GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR},
         [UNIT_COLORS] = {GL_TEXTURE_2D_ARRAY, GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE,
@@ -67,7 +68,7 @@ static void allocate_textures(const gtx_gl *gl, gtx_model *model)
     }
 }
 
-/* Both buffers go through the array target: the element target belongs to the host's vertex array. */
+/* Both go through the array target: the element target belongs to the host's vertex array. */
 static void upload_buffers(const gtx_gl *gl, gtx_model *model)
 {
     const gtx_proxies *p = &model->proxies;
@@ -93,6 +94,11 @@ static void default_unpacking(const gtx_gl *gl)
     gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
 }
 
+static bool is_complete(const gtx_level *l)
+{
+    return l->next_row == l->height * l->layers;
+}
+
 /* Uploads rows of a level until it is done or `*budget` bytes are used up; always at least one. */
 static void upload_rows(const gtx_gl *gl, gtx_model *model, gtx_level *l, uint64_t *budget)
 {
@@ -114,7 +120,7 @@ static void upload_rows(const gtx_gl *gl, gtx_model *model, gtx_level *l, uint64
                               (gl_size)l->width, (gl_size)rows, 1, kind.format, kind.type, data);
         l->next_row += rows;
         *budget -= rows * row_size < *budget ? rows * row_size : *budget;
-    } while (l->next_row < l->height * l->layers && *budget > 0);
+    } while (!is_complete(l) && *budget > 0);
     gl->BindTexture(kind.target, 0);
 }
 
@@ -152,7 +158,7 @@ gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t m
     }
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     for (uint32_t i = 0; i < model->level_count && budget > 0; ++i)
-        if (model->levels[i].next_row < model->levels[i].height * model->levels[i].layers)
+        if (!is_complete(&model->levels[i]))
             upload_rows(gl, model, &model->levels[i], &budget);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     gl->BindTexture(GL_TEXTURE_2D, 0);
@@ -162,7 +168,7 @@ gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t m
         return result;
     model->ready = true;
     for (uint32_t i = 0; i < model->level_count; ++i)
-        model->ready &= model->levels[i].next_row == model->levels[i].height * model->levels[i].layers;
+        model->ready &= is_complete(&model->levels[i]);
     if (model->ready)
         gtx_model_free_staging(model);
     if (done)

@@ -16,7 +16,8 @@ static void project(const gtx_camera *camera, const float point[3], float clip[4
     gtx_camera_matrices(camera, 1.5f, view, projection);
     gtx_matrix_multiply(projection, view, both);
     for (int i = 0; i < 4; ++i)
-        clip[i] = both[i] * point[0] + both[4 + i] * point[1] + both[8 + i] * point[2] + both[12 + i];
+        clip[i] = both[i] * point[0] + both[4 + i] * point[1] + both[8 + i] * point[2] +
+                  both[12 + i];
 }
 
 /* Azimuth 0 stands on +Z; azimuth turns towards +X, elevation towards +Y. */

@@ -218,7 +218,8 @@ typedef struct oracle {
 
 /* Window depth of the nearest hit at window position (x, y), y from the top; 2 for a miss. `texels`
  * and `codes` get what a change of depth by one means on the patch that was hit. */
-static inline double oracle_depth(const oracle *o, double x, double y, double *texels, double *codes)
+static inline double oracle_depth(const oracle *o, double x, double y, double *texels,
+                                  double *codes)
 {
     const int zero_to_one = (o->view->flags & GTX_VIEW_DEPTH_ZERO_TO_ONE) != 0;
     const int reversed = (o->view->flags & GTX_VIEW_REVERSED_Z) != 0;
@@ -262,15 +263,17 @@ static inline double oracle_depth(const oracle *o, double x, double y, double *t
             along_z += (double)ray.direction[k] * patch->axis_z[k];
         }
         const double change = fabs(window[1] - window[0]) / 1e-5;
-        const double pitch = fmin(patch->extent_x / patch->rect[2], patch->extent_y / patch->rect[3]);
+        const double pitch =
+            fmin(patch->extent_x / patch->rect[2], patch->extent_y / patch->rect[3]);
         *texels = sqrt(length) / pitch / change;
         *codes = fabs(along_z) / patch->extent_z * 254 / change;
     }
     return best;
 }
 
-/* A wrong pixel: hit and miss differ, or the hits by more than a height step of 8 bits or 1/8 texel.
- * Steps of 16 bits are finer than what 1/256 pixel, to which rasterisers snap, does to a ray. */
+/* A wrong pixel: hit and miss differ, or the hits by more than a height step of 8 bits or 1/8
+ * texel. Steps of 16 bits are finer than what 1/256 pixel, to which rasterisers snap, does to a
+ * ray. */
 static inline int agrees(double expected, double texels, double codes, double drawn, double empty)
 {
     if ((expected > 1) != (drawn == empty))

@@ -1,4 +1,4 @@
-/* What the functions of render.h refuse, and models that are prepared and uploaded piece by piece. */
+/* What the functions of render.h refuse, and models that are uploaded piece by piece. */
 #define _POSIX_C_SOURCE 200809L
 #include "stage.h"
 
@@ -16,14 +16,16 @@ static void fake_version(GLenum name, GLint *value)
 
 static gtx_gl_proc load_old(const char *name, void *user)
 {
-    return strcmp(name, "glGetIntegerv") ? gtx_offscreen_load(name, user) : (gtx_gl_proc)fake_version;
+    const gtx_gl_proc real = gtx_offscreen_load(name, user);
+    return strcmp(name, "glGetIntegerv") ? real : (gtx_gl_proc)fake_version;
 }
 
 static void a_missing_function_is_named(void **state)
 {
     STAGE_OR_SKIP(state);
     (void)s;
-    static char names[][32] = {"glActiveTexture", "glDrawElementsInstanced", "glVertexAttribPointer"};
+    static char names[][32] = {"glActiveTexture", "glDrawElementsInstanced",
+                               "glVertexAttribPointer"};
     for (int i = 0; i < 3; ++i) {
         gtx_error error = {0};
         gtx_renderer *renderer = (gtx_renderer *)&error;

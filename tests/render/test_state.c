@@ -135,7 +135,8 @@ static void restored_when_asked(void **state)
 static void fixed_otherwise(void **state)
 {
     STAGE_OR_SKIP(state);
-    static const GLint promised[TOUCHED] = {0, 0, 0, GL_TEXTURE0, GL_LESS, GL_BACK, GL_CCW, 1, 1, 0, 0};
+    static const GLint promised[TOUCHED] = {0, 0, 0, GL_TEXTURE0, GL_LESS, GL_BACK,
+                                            GL_CCW, 1, 1, 0, 0};
     gtx_error error = {0};
     subject shown = subject_open(s, fixture_sphere(2, 48, 8));
     gtx_camera camera = camera_around(shown.asset);
@@ -147,7 +148,8 @@ static void fixed_otherwise(void **state)
         must(gtx_draw(s->renderer, &view, &shown.instance, 1, &error), &error);
         const snapshot after = take(s);
         for (int i = 0; i < TOUCHED; ++i) {
-            const GLint expected = singles[i] == GL_DEPTH_FUNC && reversed ? GL_GREATER : promised[i];
+            const int turned = singles[i] == GL_DEPTH_FUNC && reversed;
+            const GLint expected = turned ? GL_GREATER : promised[i];
             if (after.value[i] != expected)
                 fail_msg("0x%x is %d, not %d", singles[i], after.value[i], expected);
         }
