@@ -22,15 +22,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef __SANITIZE_ADDRESS__
-/* Drivers keep memory and are unloaded; the counting allocators of the tests watch over our own. */
-__attribute__((visibility("default"))) const char *__asan_default_options(void);
-const char *__asan_default_options(void)
-{
-    return "detect_leaks=0";
-}
-#endif
-
 enum { STAGE_WIDTH = 240, STAGE_HEIGHT = 180, STAGE_PIXELS = STAGE_WIDTH * STAGE_HEIGHT };
 
 typedef struct stage {
