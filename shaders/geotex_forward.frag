@@ -36,9 +36,12 @@ void main()
     float widen = 1.0 + hit.t * gtx_depth.w;
     float level = gtx_level_of(hit, direction, dx * widen, dy * widen);
     vec2 code = gtx_lookup(gtx_normals, sheet, hit.grid.xy, level, gtx_maps.x).xy;
-    vec3 n = gtx_decode_normal(gtx_frame_of(gtx_patch_index), code);
+    gtx_frame frame = gtx_frame_of(gtx_patch_index);
+    vec3 n = gtx_decode_normal(frame, code);
+    if (hit.back)
+        n = gtx_from_behind(n, mat3(frame.axis_x, frame.axis_y, frame.axis_z) * direction);
     n = normalize(gtx_normal_x * n.x + gtx_normal_y * n.y + gtx_normal_z * n.z);
-    float lambert = max(dot(hit.back ? -n : n, gtx_light.xyz), 0.0);
+    float lambert = max(dot(n, gtx_light.xyz), 0.0);
     vec4 color = gtx_color;
     if (gtx_maps.y > 0.0)
         color *= gtx_lookup(gtx_colors, sheet, hit.grid.xy, level, gtx_maps.x);

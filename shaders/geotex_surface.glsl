@@ -48,6 +48,16 @@ vec3 gtx_decode_normal(gtx_frame frame, vec2 code)
     return n.x * x + n.y * cross(z, x) + n.z * z;
 }
 
+/* The normal of a sheet seen from behind along `ray`. Plainly behind, it turns round. Near an outline,
+ * where the sheet sticks out a little from behind the visible one, turning round would light it from
+ * the wrong side: there it is mirrored in the picture plane, which is continuous across the outline. */
+vec3 gtx_from_behind(vec3 n, vec3 ray)
+{
+    vec3 d = normalize(ray);
+    float away = max(dot(n, d), 0.0);
+    return mix(n - 2.0 * away * d, -n, smoothstep(0.2, 0.6, away));
+}
+
 vec3 gtx_to_srgb(vec3 c)
 {
     c = clamp(c, 0.0, 1.0);

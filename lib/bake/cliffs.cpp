@@ -35,7 +35,7 @@ bool Paths::joined(uint32_t from, uint32_t to, double u, double v, double reach)
 
 namespace {
 
-/* Cells that bridge, and how many of them each texel is a corner of. */
+/* Which cells show, and which of them bridge. */
 class Bridges {
 public:
     Bridges(const FlatChart &chart, const Outline &outline, const std::vector<float> &trim,
@@ -52,22 +52,24 @@ private:
         size_t w = size_t(chart_.grid.w);
         return {cell, cell + 1, cell + w, cell + w + 1};
     }
-    bool bridges(size_t cell);
-    /* Texels with the least rank go first: those that nothing covers, then those of the overlap;
-     * those that end more bridges at once; the lower ones. */
-    auto rank(size_t texel) const
+    /* The cells with this corner, which is not on the grid's first row or column. */
+    std::array<size_t, 4> around(size_t texel) const
     {
-        uint32_t t = cover_.triangle[texel];
-        int worth = t == NO_TRIANGLE ? 0 : t >= chart_.core ? 1 : 2;
-        return std::make_tuple(worth, -count_[texel], cover_.height[texel]);
+        size_t w = size_t(chart_.grid.w);
+        return {texel - w - 1, texel - w, texel - 1, texel};
     }
+    bool bridges(size_t cell);
+    /* What is lost with a texel: the share of the surface, not of what continues it, in the good
+     * cells around it; for each of the bad ones that go too. */
+    double loss(size_t texel) const;
 
     const FlatChart &chart_;
     const Outline &outline_;
     const std::vector<float> &trim_;
     const Cover &cover_;
     Paths &paths_;
-    std::vector<int> count_;
+    enum : uint8_t { NONE, GOOD, BAD };
+    std::vector<uint8_t> cells_;
 };
 
 /* Whether a step between corners of a cell is more than a slope, with no surface along it. */
@@ -91,30 +93,53 @@ bool Bridges::bridges(size_t cell)
     return false;
 }
 
+double Bridges::loss(size_t texel) const
+{
+    constexpr double CORE = 4, OVERLAP_ONLY = 1; /* another chart's core lies there */
+    double lost = 0;
+    int bad = 0;
+    for (size_t cell : around(texel)) {
+        bad += cells_[cell] == BAD;
+        if (cells_[cell] != GOOD)
+            continue;
+        for (size_t c : corners(cell)) {
+            uint32_t t = cover_.triangle[c];
+            if (t != NO_TRIANGLE)
+                lost += t < chart_.core ? CORE : OVERLAP_ONLY;
+        }
+    }
+    return lost / bad;
+}
+
 void Bridges::cut(std::vector<uint8_t> &support)
 {
     const Grid &grid = chart_.grid;
-    std::vector<size_t> cells;
-    count_.assign(grid.texels(), 0);
-    for (int j = 0; j + 1 < grid.h; ++j) {
-        for (int i = 0; i + 1 < grid.w; ++i) {
+    cells_.assign(grid.texels(), NONE);
+    for (int j = 1; j + 1 < grid.h; ++j) { /* the margin keeps cells that show off the sides */
+        for (int i = 1; i + 1 < grid.w; ++i) {
             size_t cell = size_t(j) * size_t(grid.w) + size_t(i);
             std::array<size_t, 4> c = corners(cell);
             bool shows = std::any_of(c.begin(), c.end(), [&](size_t t) { return shown(trim_[t]); });
             bool exists = std::all_of(c.begin(), c.end(), [&](size_t t) { return support[t]; });
-            if (!shows || !exists || !bridges(cell))
-                continue;
-            cells.push_back(cell);
-            for (size_t texel : c)
-                ++count_[texel];
+            if (shows && exists)
+                cells_[cell] = bridges(cell) ? BAD : GOOD;
         }
     }
-    for (size_t cell : cells) {
-        std::array<size_t, 4> c = corners(cell);
-        if (std::all_of(c.begin(), c.end(), [&](size_t t) { return support[t]; }))
-            support[*std::min_element(c.begin(), c.end(), [this](size_t a, size_t b) {
-                return rank(a) < rank(b);
-            })] = 0;
+    for (size_t cell = 0; cell < cells_.size(); ++cell) {
+        if (cells_[cell] != BAD)
+            continue;
+        std::pair<double, double> least = {INFINITY, INFINITY};
+        size_t drop = cell;
+        for (size_t texel : corners(cell)) { /* of equals, the lower */
+            std::pair<double, double> rank = {loss(texel), cover_.height[texel]};
+            if (rank < least) {
+                least = rank;
+                drop = texel;
+            }
+        }
+        support[drop] = 0;
+        for (size_t gone : around(drop))
+            cells_[gone] = NONE;
     }
 }
 

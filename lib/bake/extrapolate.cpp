@@ -58,7 +58,7 @@ static Slope fitted_slope(const FlatChart &chart, const Cover &cover, const Vec3
             if (cover.triangle[texel] == NO_TRIANGLE)
                 continue;
             double u = i - at.x, v = j - at.y, z = cover.height[texel] - at.z;
-            if (std::fabs(z) > cliff &&
+            if (std::fabs(z) > cliff * std::max(1., std::hypot(u, v)) &&
                 !paths.joined(triangle, cover.triangle[texel], at.x, at.y, REACH + 1))
                 continue;
             double m = 1 / (0.5 + u * u + v * v);

@@ -148,6 +148,7 @@ PatchMaps bake_chart(const Job &job, const Chart &chart)
     std::vector<uint8_t> support = find_support(flat.grid, trim);
     extrapolate(flat, outline, paths, support, all);
     cut_cliffs(flat, outline, trim, all, paths, support);
+    fit_heights(flat, support, all);
 
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < support.size(); ++i) {

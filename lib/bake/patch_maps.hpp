@@ -124,6 +124,9 @@ void extrapolate(const FlatChart &chart, const Outline &outline, Paths &paths,
 void cut_cliffs(const FlatChart &chart, const Outline &outline, const std::vector<float> &trim,
                 const Cover &cover, Paths &paths, std::vector<uint8_t> &support);
 
+/* Moves the heights of the supported texels so that the sheet between them follows the source. */
+void fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, Cover &cover);
+
 /* The maps of one patch, `rect` still without its place on a page. */
 struct PatchMaps {
     gtx_patch record = {};

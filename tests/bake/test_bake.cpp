@@ -174,6 +174,57 @@ static void one_triangle_bakes(void **)
     assert_true(maps.report.texels_empty < maps.report.texels_total);
 }
 
+/* Cells that can show, and those of them with a step of more than six pitches of 1/32. */
+static std::pair<size_t, size_t> count_steps(const Maps &maps)
+{
+    const gtx_patch &p = maps.patches[0];
+    size_t cells = 0, steps = 0;
+    for (unsigned j = 0; j + 1 < p.rect[3]; ++j) {
+        for (unsigned i = 0; i + 1 < p.rect[2]; ++i) {
+            int low = 255, high = 0, trim = 255;
+            for (unsigned k = 0; k < 4; ++k) {
+                size_t at = size_t(p.rect[1] + j + k / 2) * maps.page_width + p.rect[0] + i + k % 2;
+                low = std::min<int>(low, maps.height[at]);
+                high = std::max<int>(high, maps.height[at]);
+                trim = std::min<int>(trim, maps.trim[at]);
+            }
+            bool shows = low > 0 && trim <= 128 + 4;
+            cells += shows;
+            steps += shows && (high - low) / 254. * p.extent_z > 6. / 32;
+        }
+    }
+    return {cells, steps};
+}
+
+/* Two terraces, 16 pitches apart in depth and half a texel in the plane: a steep slope between them
+ * is surface, and without it no cell may look like one. */
+static void a_cliff_is_not_bridged_but_a_slope_is(void **)
+{
+    Mesh slope = shapes::sheet(64, [](double u, double v) {
+        return Vec3d(u, v, u <= 0.5 ? 0 : 0.5);
+    });
+    Mesh cliff = slope;
+    cliff.triangles.clear();
+    for (const auto &t : slope.triangles)
+        if (slope.positions[t[0]].z == slope.positions[t[1]].z &&
+            slope.positions[t[0]].z == slope.positions[t[2]].z)
+            cliff.triangles.push_back(t);
+    cliff.normals.assign(3 * cliff.triangle_count(), Vec3f(0, 0, 1));
+
+    auto bake_flat = [](const Mesh &mesh) {
+        Partition partition = shapes::split(mesh, shapes::all_in_one(), 32);
+        Chart &chart = partition.charts[0];
+        chart.frame = shapes::frame_along(mesh, chart.triangles, {0, 0, 1});
+        partition.pitch = 1 / 32.;
+        return bake_valid(mesh, partition);
+    };
+    auto [all, bridges] = count_steps(bake_flat(slope));
+    assert_true(bridges >= 32);
+    auto [kept, left] = count_steps(bake_flat(cliff));
+    assert_int_equal(left, 0);
+    assert_true(kept + 4 * 34 >= all); /* but for two columns, a cell's margin at each end */
+}
+
 static void a_needle_and_a_speck_bake(void **)
 {
     for (const Vec3d &tip : {Vec3d(1, 1e-4, 0), Vec3d(1e-6, 1e-6, 0)}) {
@@ -368,6 +419,7 @@ int main()
         cmocka_unit_test(the_whole_core_is_shown),
         cmocka_unit_test(any_thread_count_gives_the_same_bytes),
         cmocka_unit_test(one_triangle_bakes),
+        cmocka_unit_test(a_cliff_is_not_bridged_but_a_slope_is),
         cmocka_unit_test(a_needle_and_a_speck_bake),
         cmocka_unit_test(a_chart_that_faces_away_bakes),
         cmocka_unit_test(an_edge_on_closed_shred_bakes),

@@ -1,0 +1,95 @@
+/* Fits the height sheet to the source between the texels too. */
+#include "bake/patch_maps.hpp"
+
+#include <algorithm>
+
+namespace gtx::baking {
+
+/* Heights sampled at the texels alone cut every crest and fill every groove that runs between them.
+ * So the sheet is fitted by least squares to samples along the source's edges, where a mesh has its
+ * crests, with the sampled height itself as one more observation of each texel. */
+
+constexpr double STEP = 0.5;    /* texels between samples on an edge */
+constexpr double OUTLIER = 1.5; /* texels of depth: farther samples are of another sheet */
+constexpr int ROUNDS = 8;
+/* A sheet below the source lets a grazing ray pass over a crest and open a hole, one above it only
+ * moves an outline by as much: being below weighs this many times more. */
+constexpr double BELOW = 6;
+
+struct Observation {
+    uint32_t texel;             /* the lower corner of its cell */
+    float weight[4];            /* of the cell's four texels */
+    double height;
+};
+
+static void observe(const Grid &grid, const std::vector<uint8_t> &support, const Cover &cover,
+                    const Vec3d &at, std::vector<Observation> &out)
+{
+    int i = int(std::floor(at.x)), j = int(std::floor(at.y));
+    if (i < 0 || j < 0 || i + 1 >= grid.w || j + 1 >= grid.h)
+        return;
+    uint32_t texel = uint32_t(j) * uint32_t(grid.w) + uint32_t(i);
+    const uint32_t corner[4] = {texel, texel + 1, texel + uint32_t(grid.w),
+                                texel + uint32_t(grid.w) + 1};
+    float u = float(at.x - i), v = float(at.y - j);
+    Observation o = {texel, {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}, at.z};
+    double sheet = 0;
+    for (int k = 0; k < 4; ++k) {
+        if (!support[corner[k]] || cover.triangle[corner[k]] == NO_TRIANGLE)
+            return; /* what is continued past the surface must not bend the surface */
+        sheet += o.weight[k] * cover.height[corner[k]];
+    }
+    if (std::fabs(at.z - sheet) <= OUTLIER * grid.coarse_pitch())
+        out.push_back(o);
+}
+
+static std::vector<Observation> observe_edges(const FlatChart &chart,
+                                              const std::vector<uint8_t> &support,
+                                              const Cover &cover)
+{
+    std::vector<Observation> out;
+    for (size_t t = 0; t < chart.triangles.size(); ++t) {
+        const FlatTriangle &triangle = chart.triangles[t];
+        if (!triangle.front)
+            continue;
+        for (int k = 0; k < 3; ++k) {
+            uint32_t mate = chart.mate[t][size_t(k)];
+            if (mate != NO_TRIANGLE && mate < t)
+                continue; /* seen from the other side */
+            Vec3d from = triangle.corner[k], along = triangle.corner[(k + 1) % 3] - from;
+            int steps = std::max(1, int(std::hypot(along.x, along.y) / STEP));
+            for (int s = 0; s < steps; ++s)
+                observe(chart.grid, support, cover, from + along * ((s + 0.5) / steps), out);
+        }
+    }
+    return out;
+}
+
+void fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, Cover &cover)
+{
+    const std::vector<Observation> observations = observe_edges(chart, support, cover);
+    const std::vector<double> sampled = cover.height;
+    const uint32_t row = uint32_t(chart.grid.w);
+    std::vector<double> pull(sampled.size()), weight(sampled.size());
+    for (int round = 0; round < ROUNDS; ++round) {
+        for (size_t i = 0; i < sampled.size(); ++i) {
+            pull[i] = sampled[i] - cover.height[i];
+            weight[i] = 1;
+        }
+        for (const Observation &o : observations) {
+            const uint32_t corner[4] = {o.texel, o.texel + 1, o.texel + row, o.texel + row + 1};
+            double residual = o.height;
+            for (int k = 0; k < 4; ++k)
+                residual -= o.weight[k] * cover.height[corner[k]];
+            double trust = residual > 0 ? BELOW : 1;
+            for (int k = 0; k < 4; ++k) {
+                pull[corner[k]] += trust * o.weight[k] * residual;
+                weight[corner[k]] += trust * o.weight[k]; /* row sums: a step that cannot overshoot */
+            }
+        }
+        for (size_t i = 0; i < sampled.size(); ++i)
+            cover.height[i] += pull[i] / weight[i];
+    }
+}
+
+} // namespace gtx::baking
