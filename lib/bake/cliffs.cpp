@@ -38,12 +38,14 @@ namespace {
 /* Which cells show, and which of them bridge. */
 class Bridges {
 public:
-    Bridges(const FlatChart &chart, const Outline &outline, const std::vector<float> &trim,
-            const Cover &cover, Paths &paths)
+    Bridges(const FlatChart &chart, const Outline &outline, std::vector<float> &trim, Cover &cover,
+            Paths &paths)
         : chart_(chart), outline_(outline), trim_(trim), cover_(cover), paths_(paths)
     {
     }
 
+    void find(const std::vector<uint8_t> &support);
+    void give_to_core(const Outline &core);
     void cut(std::vector<uint8_t> &support);
 
 private:
@@ -65,8 +67,11 @@ private:
 
     const FlatChart &chart_;
     const Outline &outline_;
-    const std::vector<float> &trim_;
-    const Cover &cover_;
+    bool is_core(size_t texel) const { return cover_.triangle[texel] < chart_.core; }
+    bool continue_core(size_t texel, double &height) const;
+
+    std::vector<float> &trim_;
+    Cover &cover_;
     Paths &paths_;
     enum : uint8_t { NONE, GOOD, BAD };
     std::vector<uint8_t> cells_;
@@ -111,7 +116,52 @@ double Bridges::loss(size_t texel) const
     return lost / bad;
 }
 
-void Bridges::cut(std::vector<uint8_t> &support)
+/* The height of the core continued by a texel: the mean over its neighbours in the core of a line
+ * through each and the one behind it. False where there is none, or where they do not agree. */
+bool Bridges::continue_core(size_t texel, double &height) const
+{
+    const double cliff = CLIFF * chart_.grid.coarse_pitch();
+    const int w = chart_.grid.w, h = chart_.grid.h, x = int(texel) % w, y = int(texel) / w;
+    double sum = 0, low = INFINITY, high = -INFINITY;
+    int count = 0;
+    for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+            int nx = x + dx, ny = y + dy, bx = nx + dx, by = ny + dy;
+            if (nx < 0 || ny < 0 || nx >= w || ny >= h || !is_core(size_t(ny) * w + nx))
+                continue;
+            double near = cover_.height[size_t(ny) * w + nx], slope = 0;
+            if (bx >= 0 && by >= 0 && bx < w && by < h && is_core(size_t(by) * w + bx))
+                slope = near - cover_.height[size_t(by) * w + bx];
+            sum += near + (std::fabs(slope) <= cliff ? slope : 0);
+            low = std::min(low, near);
+            high = std::max(high, near);
+            ++count;
+        }
+    }
+    height = sum / std::max(count, 1);
+    return count > 0 && high - low <= cliff;
+}
+
+/* A texel beyond the core that makes a bridge with it may as well continue the core: what lies
+ * there is shown by another chart. So the core keeps its last cell. */
+void Bridges::give_to_core(const Outline &core)
+{
+    std::vector<std::pair<size_t, double>> given;
+    for (size_t cell = 0; cell < cells_.size(); ++cell) {
+        double height;
+        if (cells_[cell] == BAD)
+            for (size_t texel : corners(cell))
+                if (!is_core(texel) && continue_core(texel, height))
+                    given.emplace_back(texel, height);
+    }
+    for (auto [texel, height] : given) {
+        cover_.height[texel] = height;
+        cover_.triangle[texel] = NO_TRIANGLE;
+        trim_[texel] = std::max(trim_[texel], core.distance[texel]);
+    }
+}
+
+void Bridges::find(const std::vector<uint8_t> &support)
 {
     const Grid &grid = chart_.grid;
     cells_.assign(grid.texels(), NONE);
@@ -125,6 +175,10 @@ void Bridges::cut(std::vector<uint8_t> &support)
                 cells_[cell] = bridges(cell) ? BAD : GOOD;
         }
     }
+}
+
+void Bridges::cut(std::vector<uint8_t> &support)
+{
     for (size_t cell = 0; cell < cells_.size(); ++cell) {
         if (cells_[cell] != BAD)
             continue;
@@ -145,10 +199,14 @@ void Bridges::cut(std::vector<uint8_t> &support)
 
 } // namespace
 
-void cut_cliffs(const FlatChart &chart, const Outline &outline, const std::vector<float> &trim,
-                const Cover &cover, Paths &paths, std::vector<uint8_t> &support)
+void cut_cliffs(const FlatChart &chart, const Outline &core_outline, const Outline &outline,
+                Paths &paths, std::vector<float> &trim, Cover &cover, std::vector<uint8_t> &support)
 {
-    Bridges(chart, outline, trim, cover, paths).cut(support);
+    Bridges bridges(chart, outline, trim, cover, paths);
+    bridges.find(support);
+    bridges.give_to_core(core_outline);
+    bridges.find(support);
+    bridges.cut(support);
 }
 
 } // namespace gtx::baking

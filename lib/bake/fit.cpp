@@ -10,20 +10,25 @@ namespace gtx::baking {
  * crests, with the sampled height itself as one more observation of each texel. */
 
 constexpr double STEP = 0.5;    /* texels between samples on an edge */
-constexpr double OUTLIER = 1.5; /* texels of depth: farther samples are of another sheet */
+constexpr double OUTLIER = 2; /* texels of depth: farther samples are of another sheet */
+constexpr double FARTHEST = 0.75; /* texels of depth that a height may move: no fins */
 constexpr int ROUNDS = 8;
 /* A sheet below the source lets a grazing ray pass over a crest and open a hole, one above it only
  * moves an outline by as much: being below weighs this many times more. */
 constexpr double BELOW = 6;
+/* The overlap is another chart's core and better shown there: it counts this much. So across a
+ * crease the sheet follows the core to its very edge. */
+constexpr double OVERLAP_COUNTS = 0.1;
 
 struct Observation {
     uint32_t texel;             /* the lower corner of its cell */
     float weight[4];            /* of the cell's four texels */
     double height;
+    double counts;              /* in the sum of squares */
 };
 
 static void observe(const Grid &grid, const std::vector<uint8_t> &support, const Cover &cover,
-                    const Vec3d &at, std::vector<Observation> &out)
+                    const Vec3d &at, double counts, std::vector<Observation> &out)
 {
     int i = int(std::floor(at.x)), j = int(std::floor(at.y));
     if (i < 0 || j < 0 || i + 1 >= grid.w || j + 1 >= grid.h)
@@ -32,7 +37,8 @@ static void observe(const Grid &grid, const std::vector<uint8_t> &support, const
     const uint32_t corner[4] = {texel, texel + 1, texel + uint32_t(grid.w),
                                 texel + uint32_t(grid.w) + 1};
     float u = float(at.x - i), v = float(at.y - j);
-    Observation o = {texel, {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}, at.z};
+    Observation o = {texel, {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}, at.z,
+                     counts};
     double sheet = 0;
     for (int k = 0; k < 4; ++k) {
         if (!support[corner[k]] || cover.triangle[corner[k]] == NO_TRIANGLE)
@@ -58,8 +64,9 @@ static std::vector<Observation> observe_edges(const FlatChart &chart,
                 continue; /* seen from the other side */
             Vec3d from = triangle.corner[k], along = triangle.corner[(k + 1) % 3] - from;
             int steps = std::max(1, int(std::hypot(along.x, along.y) / STEP));
+            double counts = t < chart.core ? 1 : OVERLAP_COUNTS;
             for (int s = 0; s < steps; ++s)
-                observe(chart.grid, support, cover, from + along * ((s + 0.5) / steps), out);
+                observe(chart.grid, support, cover, from + along * ((s + 0.5) / steps), counts, out);
         }
     }
     return out;
@@ -70,25 +77,27 @@ void fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, Co
     const std::vector<Observation> observations = observe_edges(chart, support, cover);
     const std::vector<double> sampled = cover.height;
     const uint32_t row = uint32_t(chart.grid.w);
+    const double farthest = FARTHEST * chart.grid.coarse_pitch();
     std::vector<double> pull(sampled.size()), weight(sampled.size());
     for (int round = 0; round < ROUNDS; ++round) {
         for (size_t i = 0; i < sampled.size(); ++i) {
-            pull[i] = sampled[i] - cover.height[i];
-            weight[i] = 1;
+            weight[i] = cover.triangle[i] < chart.core ? 1 : OVERLAP_COUNTS;
+            pull[i] = weight[i] * (sampled[i] - cover.height[i]);
         }
         for (const Observation &o : observations) {
             const uint32_t corner[4] = {o.texel, o.texel + 1, o.texel + row, o.texel + row + 1};
             double residual = o.height;
             for (int k = 0; k < 4; ++k)
                 residual -= o.weight[k] * cover.height[corner[k]];
-            double trust = residual > 0 ? BELOW : 1;
+            double trust = o.counts * (residual > 0 ? BELOW : 1);
             for (int k = 0; k < 4; ++k) {
                 pull[corner[k]] += trust * o.weight[k] * residual;
                 weight[corner[k]] += trust * o.weight[k]; /* row sums: a step that cannot overshoot */
             }
         }
         for (size_t i = 0; i < sampled.size(); ++i)
-            cover.height[i] += pull[i] / weight[i];
+            cover.height[i] = std::clamp(cover.height[i] + pull[i] / weight[i],
+                                         sampled[i] - farthest, sampled[i] + farthest);
     }
 }
 

@@ -147,7 +147,7 @@ PatchMaps bake_chart(const Job &job, const Chart &chart)
     std::vector<float> trim = trim_distances(flat, core, all, core_outline, outline);
     std::vector<uint8_t> support = find_support(flat.grid, trim);
     extrapolate(flat, outline, paths, support, all);
-    cut_cliffs(flat, outline, trim, all, paths, support);
+    cut_cliffs(flat, core_outline, outline, paths, trim, all, support);
     fit_heights(flat, support, all);
 
     double low = INFINITY, high = -INFINITY;

@@ -120,9 +120,11 @@ std::vector<uint8_t> find_support(const Grid &grid, const std::vector<float> &tr
 /* Gives every supported texel that nothing covers the height of the surface continued there. */
 void extrapolate(const FlatChart &chart, const Outline &outline, Paths &paths,
                  const std::vector<uint8_t> &support, Cover &cover);
-/* Takes texels out of the support until no cell that shows bridges two sheets. */
-void cut_cliffs(const FlatChart &chart, const Outline &outline, const std::vector<float> &trim,
-                const Cover &cover, Paths &paths, std::vector<uint8_t> &support);
+/* Lets texels beyond the core continue it, then takes texels out of the support, until no cell that
+ * shows bridges two sheets. */
+void cut_cliffs(const FlatChart &chart, const Outline &core_outline, const Outline &outline,
+                Paths &paths, std::vector<float> &trim, Cover &cover,
+                std::vector<uint8_t> &support);
 
 /* Moves the heights of the supported texels so that the sheet between them follows the source. */
 void fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, Cover &cover);

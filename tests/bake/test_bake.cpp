@@ -85,7 +85,7 @@ static void a_bumpy_ball_lies_on_its_surface(void **)
             worst = std::max(worst, std::fabs(length(p) - shapes::bumps(normalize(p))));
         });
         print_message("# %u bits: %.5f shown, %.5f beyond\n", bits, inside, outside);
-        assert_true(inside < (bits == 8 ? 0.004 : 0.0025));
+        assert_true(inside < 0.0085); /* half a texel: heights are fitted between the texels */
         assert_true(outside < 0.06); /* continued by up to two texels of 0.017 */
     }
 }
