@@ -10,8 +10,8 @@ namespace gtx::baking {
  * crests, with the sampled height itself as one more observation of each texel. */
 
 constexpr double STEP = 0.5;    /* texels between samples on an edge */
-constexpr double OUTLIER = 2; /* texels of depth: farther samples are of another sheet */
-constexpr double FARTHEST = 0.75; /* texels of depth that a height may move: no fins */
+constexpr double OUTLIER = 4; /* texels of depth: farther samples are of another sheet */
+constexpr double FARTHEST = 1; /* texels of depth that a height may move: no fins */
 constexpr int ROUNDS = 8;
 /* A sheet below the source lets a grazing ray pass over a crest and open a hole, one above it only
  * moves an outline by as much: being below weighs this many times more. */
