@@ -79,13 +79,18 @@ static void a_bumpy_ball_lies_on_its_surface(void **)
         options.height_bits = bits;
         Maps maps = bake_valid(mesh, partition, options);
         assert_int_equal(maps.patches.size(), partition.charts.size());
-        double inside = 0, outside = 0;
+        double inside = 0, outside = 0, sum = 0, count = 0;
         each_texel(maps, [&](const gtx_patch &, const Vec3d &p, double trim, size_t) {
             double &worst = trim <= 0.3 ? inside : outside;
-            worst = std::max(worst, std::fabs(length(p) - shapes::bumps(normalize(p))));
+            double off = std::fabs(length(p) - shapes::bumps(normalize(p)));
+            worst = std::max(worst, off);
+            sum += trim <= 0.3 ? off : 0;
+            count += trim <= 0.3;
         });
-        print_message("# %u bits: %.5f shown, %.5f beyond\n", bits, inside, outside);
-        assert_true(inside < 0.0085); /* half a texel: heights are fitted between the texels */
+        print_message("# %u bits: %.5f on the mean, %.5f shown, %.5f beyond\n", bits, sum / count,
+                      inside, outside);
+        assert_true(sum / count < 0.001);
+        assert_true(inside < 0.017); /* a texel: as far as fitting may move a height at a crease */
         assert_true(outside < 0.06); /* continued by up to two texels of 0.017 */
     }
 }
