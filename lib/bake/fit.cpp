@@ -12,6 +12,7 @@ namespace gtx::baking {
 constexpr double STEP = 0.5;    /* texels between samples on an edge */
 constexpr double OUTLIER = 4; /* texels of depth: farther samples are of another sheet */
 constexpr double FARTHEST = 1; /* texels of depth that a height may move: no fins */
+constexpr double MISSED = 0.3;   /* texels of depth below the source that count as missed */
 constexpr int ROUNDS = 8;
 /* A sheet below the source lets a grazing ray pass over a crest and open a hole, one above it only
  * moves an outline by as much: being below weighs this many times more. */
@@ -72,7 +73,26 @@ static std::vector<Observation> observe_edges(const FlatChart &chart,
     return out;
 }
 
-void fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, Cover &cover)
+/* The share of the core's observations that the sheet passes below. */
+static double missed_share(const FlatChart &chart, const std::vector<Observation> &observations,
+                           const Cover &cover)
+{
+    const uint32_t row = uint32_t(chart.grid.w);
+    size_t core = 0, below = 0;
+    for (const Observation &o : observations) {
+        if (o.counts < 1)
+            continue;
+        const uint32_t corner[4] = {o.texel, o.texel + 1, o.texel + row, o.texel + row + 1};
+        double residual = o.height;
+        for (int k = 0; k < 4; ++k)
+            residual -= o.weight[k] * cover.height[corner[k]];
+        ++core;
+        below += residual > MISSED * chart.grid.coarse_pitch();
+    }
+    return core ? double(below) / double(core) : 0;
+}
+
+double fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, Cover &cover)
 {
     const std::vector<Observation> observations = observe_edges(chart, support, cover);
     const std::vector<double> sampled = cover.height;
@@ -99,6 +119,7 @@ void fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, Co
             cover.height[i] = std::clamp(cover.height[i] + pull[i] / weight[i],
                                          sampled[i] - farthest, sampled[i] + farthest);
     }
+    return missed_share(chart, observations, cover);
 }
 
 } // namespace gtx::baking

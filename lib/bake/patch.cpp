@@ -135,9 +135,10 @@ static void shade(const Job &job, const FlatChart &flat, const Outline &outline,
                !job.mesh.colors.empty(), maps);
 }
 
-PatchMaps bake_chart(const Job &job, const Chart &chart)
+/* Bakes at a pitch; *missed gets the share of the surface that the sheet leaves too far above it. */
+static PatchMaps bake_at(const Job &job, const Chart &chart, double pitch, double *missed)
 {
-    FlatChart flat = flatten(job.mesh, job.neighbours, chart, job.pitch);
+    FlatChart flat = flatten(job.mesh, job.neighbours, chart, pitch);
     Cover core = raster_core(flat);
     Outline core_outline = find_outline(flat, flat.core);
     Cover all = core;
@@ -148,7 +149,7 @@ PatchMaps bake_chart(const Job &job, const Chart &chart)
     std::vector<uint8_t> support = find_support(flat.grid, trim);
     extrapolate(flat, outline, paths, support, all);
     cut_cliffs(flat, core_outline, outline, paths, trim, all, support);
-    fit_heights(flat, support, all);
+    *missed = fit_heights(flat, support, all);
 
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < support.size(); ++i) {
@@ -163,6 +164,17 @@ PatchMaps bake_chart(const Job &job, const Chart &chart)
     quantise(flat.grid, crop, all, support, trim, low, job.options.height_bits, maps);
     measure_patch(job.options.height_bits, maps);
     shade(job, flat, outline, crop, all, maps);
+    return maps;
+}
+
+/* A chart whose relief is finer than the model's pitch gets a finer one. */
+PatchMaps bake_chart(const Job &job, const Chart &chart)
+{
+    constexpr double ALLOWED = 0.01, FINER = 0.7;
+    double missed;
+    PatchMaps maps = bake_at(job, chart, job.pitch, &missed);
+    if (missed > ALLOWED)
+        maps = bake_at(job, chart, job.pitch * FINER, &missed);
     return maps;
 }
 

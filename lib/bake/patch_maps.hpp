@@ -126,8 +126,9 @@ void cut_cliffs(const FlatChart &chart, const Outline &core_outline, const Outli
                 Paths &paths, std::vector<float> &trim, Cover &cover,
                 std::vector<uint8_t> &support);
 
-/* Moves the heights of the supported texels so that the sheet between them follows the source. */
-void fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, Cover &cover);
+/* Moves the heights of the supported texels so that the sheet between them follows the source.
+ * Returns the share of the core's samples that it still passes below by a visible part of a texel. */
+double fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, Cover &cover);
 
 /* The maps of one patch, `rect` still without its place on a page. */
 struct PatchMaps {
