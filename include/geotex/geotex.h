@@ -139,7 +139,10 @@ typedef enum gtx_map {
     GTX_MAP_HEIGHT = 0,           /* level 0 only; uint8_t or uint16_t codes, 0 = empty */
     GTX_MAP_TRIM = 1,             /* level 0 only; uint8_t, (c - 128) / 16 texels outside the outline */
     GTX_MAP_NORMAL = 2,           /* 2 x uint8_t, hemi-octahedral in the patch's normal frame */
-    GTX_MAP_COLOR = 3             /* 4 x uint8_t, sRGB colour and linear alpha; may be absent */
+    GTX_MAP_COLOR = 3,            /* 4 x uint8_t, sRGB colour and linear alpha; may be absent */
+    GTX_MAP_MATERIAL = 4,         /* 4 x uint8_t: occlusion, roughness, metallic, share of lighting
+                                     (0: unlit); may be absent: 255, 255, 0, 255 */
+    GTX_MAP_EMISSION = 5          /* 3 x uint8_t, sRGB, times emission_scale; may be absent */
 } gtx_map;
 
 typedef struct gtx_info {
@@ -148,9 +151,10 @@ typedef struct gtx_info {
     uint32_t page_count, page_width, page_height;
     uint32_t mip_count;           /* levels of normal and colour, 1..8 */
     uint32_t height_bits;         /* 8 or 16 */
-    uint32_t has_color;           /* 0 or 1 */
+    uint32_t has_color, has_material, has_emission;   /* 0 or 1 */
     float bounds_min[3], bounds_max[3];       /* relative to the anchor */
     float unit;                   /* metres per object unit */
+    float emission_scale;         /* light of a full emission texel; 0 without emission */
     double anchor[3];             /* object-space position of the asset's origin */
     uint64_t source_triangles;
     uint64_t content_hash;        /* of the decoded sections: equal for stored and compressed files */
@@ -225,7 +229,10 @@ typedef struct gtx_asset_desc {
     const void *height;           /* page_count * page_width * page_height codes */
     const uint8_t *trim;          /* the same count */
     const uint8_t *const *normal; /* mip_count pointers, level 0 first */
-    const uint8_t *const *color;  /* mip_count pointers, or NULL */
+    const uint8_t *const *color;  /* mip_count pointers, or NULL; likewise the next two */
+    const uint8_t *const *material;
+    const uint8_t *const *emission;
+    float emission_scale;         /* 0 = 1, where there is emission */
     const char *meta;             /* JSON text, or NULL */
     size_t meta_size;
     float bounds_min[3], bounds_max[3];

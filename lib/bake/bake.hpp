@@ -26,7 +26,9 @@ struct Maps {
     std::vector<uint8_t> height;              /* 1 or 2 bytes a texel, little-endian */
     std::vector<uint8_t> trim;
     std::vector<std::vector<uint8_t>> normal; /* a level each */
-    std::vector<std::vector<uint8_t>> color;  /* a level each, or empty */
+    std::vector<std::vector<uint8_t>> color;  /* a level each, or empty; likewise the next two */
+    std::vector<std::vector<uint8_t>> material, emission;
+    float emission_scale = 0;                 /* 0 without emission */
     double anchor[3] = {0, 0, 0};
     float bounds_min[3] = {0, 0, 0}, bounds_max[3] = {0, 0, 0};
     BakeReport report;

@@ -1,6 +1,7 @@
 /* The triangle mesh that flows through the cooker, and the two ways to get one. */
 #pragma once
 
+#include "mesh/appearance.hpp"
 #include "mesh/task.hpp"
 #include "mesh/vec.hpp"
 
@@ -11,11 +12,6 @@
 #include <vector>
 
 namespace gtx {
-
-struct Rgba8 {
-    uint8_t r = 255, g = 255, b = 255, a = 255; /* sRGB colour, linear alpha */
-    bool operator==(const Rgba8 &o) const { return r == o.r && g == o.g && b == o.b && a == o.a; }
-};
 
 enum TriangleFlag : uint8_t {
     TRIANGLE_TWO_SIDED = 1 /* of an open component, or declared double-sided by its material */
@@ -32,6 +28,7 @@ struct Mesh {
     std::vector<Vec3f> normals; /* per corner, or empty */
     std::vector<Rgba8> colors;  /* per corner, or empty */
     std::vector<uint8_t> flags; /* per triangle, TriangleFlag, or empty */
+    Appearance appearance;      /* materials and textures, where the source has them */
 
     size_t triangle_count() const { return triangles.size(); }
     const Vec3d &position(size_t t, int k) const { return positions[triangles[t][k]]; }
