@@ -22,14 +22,21 @@ constexpr float SMALLEST_SIZE = 1e-30f;
 
 using Connectivity = OpenMesh::TriConnectivity;
 
+/* A refusal of OpenMesh is an answer here, not an event. Its stream is global: silenced once. */
+void silence_openmesh()
+{
+    static const bool silent = (omerr().disable(), true);
+    (void)silent;
+}
+
 Connectivity connect(const Mesh &mesh)
 {
+    silence_openmesh();
     size_t count = mesh.triangle_count();
     Connectivity out;
     out.reserve(mesh.positions.size(), count * 3 / 2 + 16, count);
     for (size_t v = 0; v < mesh.positions.size(); ++v)
         out.new_vertex();
-    omerr().disable(); /* a refusal is an answer here, not an event */
     for (const std::array<uint32_t, 3> &t : mesh.triangles) {
         OpenMesh::VertexHandle v[3];
         for (int k = 0; k < 3; ++k)

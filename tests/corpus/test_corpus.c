@@ -1,8 +1,9 @@
-/* Real and hostile models through the command: a valid asset, or one clear line and exit 2, 3 or 5.
+/* Real and hostile models through the command: a sound asset, or one clear line and exit 2, 3 or 5.
  *
- * Every file under $GEOTEX_MODELS that could be a model is cooked in a process of its own, with at
- * most 60 seconds and 4 GiB; what was cooked is validated. Files of malformed/ are sampled (every
- * eighth) and models of more than 2 MB left out, unless GTX_CORPUS=all. */
+ * Every file under $GEOTEX_MODELS is cooked; what was cooked is validated, compared and rendered.
+ * Each run is a process of its own with at most 60 seconds and 4 GiB. Files of malformed/ are
+ * sampled (every eighth), and files of more than 2 MB and small assets' pictures left out, unless
+ * GTX_CORPUS=all. $GTX_OUT/corpus.txt says what became of each file. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -20,27 +21,20 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MAX_FILES = 4096, SECONDS = 60 };
+enum { MAX_FILES = 4096, SECONDS = 60, SAMPLE = 8, PICTURE_SAMPLE = 6 };
+static const uint64_t memory_limit = 4ull << 30;
+static const off_t small_file = 2000000;
+
 static char *files[MAX_FILES];
 static unsigned file_count;
-static bool everything;
-
-static bool has_suffix(const char *path, const char *suffix)
-{
-    size_t n = strlen(path), m = strlen(suffix);
-    return n >= m && !strcmp(path + n - m, suffix);
-}
+static bool everything, sanitized;
+static char folder[] = "/tmp/gtx-corpus-XXXXXX";
+static char asset[64], temporary[80], picture[64], log_file[64];
 
 static int collect(const char *path, const struct stat *info, int kind, struct FTW *ftw)
 {
-    static const char *const models[] = {".obj", ".ply", ".drc", ".glb", ".gltf", ".off", ".stl",
-                                         ".obj.gz", ".ply.gz", ".off.gz", NULL};
     (void)ftw;
-    bool model = false;
-    for (const char *const *suffix = models; *suffix; ++suffix)
-        model = model || has_suffix(path, *suffix);
-    if (kind == FTW_F && model && file_count < MAX_FILES &&
-        (everything || info->st_size <= 2000000))
+    if (kind == FTW_F && file_count < MAX_FILES && (everything || info->st_size <= small_file))
         files[file_count++] = strdup(path);
     return 0;
 }
@@ -50,17 +44,17 @@ static int by_name(const void *a, const void *b)
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* Runs the command with its output in log; returns the wait status. */
-static int run(const char *log, char *const argv[])
+/* Runs the command within the limits, its output in the log; returns the exit code, -1 when it died
+ * of a signal: a fault, or one of the limits. */
+static int run(char *const argv[])
 {
     pid_t child = fork();
     if (child == 0) {
-        const char *config = getenv("GTX_CONFIG");
-        struct rlimit time = {SECONDS, SECONDS + 5}, memory = {4ull << 30, 4ull << 30};
-        setrlimit(RLIMIT_CPU, &time);
-        if (!config || strcmp(config, "sanitize")) /* shadow memory needs terabytes of addresses */
+        struct rlimit memory = {memory_limit, memory_limit};
+        if (!sanitized) /* shadow memory needs terabytes of addresses */
             setrlimit(RLIMIT_AS, &memory);
-        int out = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        alarm(sanitized ? 10 * SECONDS : SECONDS); /* stays armed over execv */
+        int out = open(log_file, O_WRONLY | O_CREAT | O_TRUNC, 0600);
         dup2(out, 1);
         dup2(out, 2);
         execv(argv[0], argv);
@@ -68,98 +62,191 @@ static int run(const char *log, char *const argv[])
     }
     int status = -1;
     waitpid(child, &status, 0);
-    return status;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-static void print_log(const char *log)
+/* The last line of the log, and how many errors it tells of. */
+static unsigned read_log(char last[512])
 {
     char line[512];
-    FILE *file = fopen(log, "r");
-    while (file && fgets(line, sizeof line, file))
-        print_message("    %s", line);
-    if (file)
-        fclose(file);
-}
-
-static bool last_line_is_clear(const char *log)
-{
-    char line[1024], last[1024] = "";
     unsigned errors = 0;
-    FILE *file = fopen(log, "r");
-    while (file && fgets(line, sizeof line, file)) {
-        strcpy(last, line);
+    FILE *file = fopen(log_file, "r");
+    for (last[0] = 0; file && fgets(line, sizeof line, file); strcpy(last, line))
         errors += strstr(line, ": error[") != NULL;
-    }
     if (file)
         fclose(file);
-    return errors == 1 && strstr(last, ": error[");
+    last[strcspn(last, "\n")] = 0;
+    return errors;
 }
 
-static void the_corpus_cooks_or_is_refused(void **state)
+static bool exists(const char *path)
 {
-    const char *models = getenv("GEOTEX_MODELS"), *mode = getenv("GTX_CORPUS");
-    char *gtx = getenv("GTX");
+    return access(path, F_OK) == 0;
+}
+
+/* What is wrong with how cooking ended, or NULL. */
+static const char *fault_of_cook(int code, unsigned errors, const char *last)
+{
+    if (code == -1)
+        return "cook died of a signal or a limit";
+    if (exists(temporary))
+        return "cook left its temporary file";
+    if (code == 0)
+        return exists(asset) ? NULL : "cook wrote nothing";
+    if (exists(asset))
+        return "cook failed but wrote a file";
+    if (code != 2 && code != 3 && code != 5)
+        return "cook left with an unexpected exit code";
+    return errors == 1 && strstr(last, ": error[") ? NULL : "cook did not say why in one line";
+}
+
+/* What is wrong with a cooked asset, or NULL. */
+static const char *fault_of_asset(char *gtx, char *model, bool pictured)
+{
+    char *validate[] = {gtx, "validate", asset, NULL};
+    char *compare[] = {gtx, "compare", asset, model, "--size", "128", NULL};
+    char *render[] = {gtx, "render", asset, "-o", picture, "--size", "128x128", NULL};
+    if (run(validate))
+        return "the asset is invalid";
+    if (pictured && run(compare))
+        return "the asset cannot be compared";
+    if (pictured && (run(render) || !exists(picture)))
+        return "the asset cannot be drawn";
+    return NULL;
+}
+
+static void remove_outputs(void)
+{
+    unlink(asset);
+    unlink(temporary);
+    unlink(picture);
+    unlink(log_file);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    const char *config = getenv("GTX_CONFIG"), *mode = getenv("GTX_CORPUS");
+    sanitized = config && !strcmp(config, "sanitize");
+    everything = mode && !strcmp(mode, "all");
+    if (!mkdtemp(folder))
+        return -1;
+    snprintf(asset, sizeof asset, "%s/out.gtx", folder);
+    snprintf(temporary, sizeof temporary, "%s.tmp", asset);
+    snprintf(picture, sizeof picture, "%s/out.png", folder);
+    snprintf(log_file, sizeof log_file, "%s/log", folder);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    remove_outputs();
+    return rmdir(folder);
+}
+
+static void every_file_cooks_or_is_refused(void **state)
+{
+    char *models = getenv("GEOTEX_MODELS"), *gtx = getenv("GTX"), path[4096];
     (void)state;
     if (!models || !gtx)
         skip();
-    everything = mode && !strcmp(mode, "all");
     assert_int_equal(nftw(models, collect, 16, FTW_PHYS), 0);
     qsort(files, file_count, sizeof *files, by_name);
     assert_true(file_count > 0);
+    snprintf(path, sizeof path, "%s/corpus.txt", getenv("GTX_OUT") ? getenv("GTX_OUT") : folder);
+    FILE *table = fopen(path, "w");
+    assert_non_null(table);
 
-    char folder[] = "/tmp/gtx-corpus-XXXXXX", asset[64], temporary[80], log[64];
-    assert_non_null(mkdtemp(folder));
-    snprintf(asset, sizeof asset, "%s/out.gtx", folder);
-    snprintf(temporary, sizeof temporary, "%s.tmp", asset);
-    snprintf(log, sizeof log, "%s/log", folder);
-
-    unsigned cooked = 0, refused = 0, bad = 0, malformed = 0;
+    unsigned cooked = 0, refused = 0, faults = 0, malformed = 0;
     for (unsigned i = 0; i < file_count; ++i) {
-        if (strstr(files[i], "/malformed/") && !everything && malformed++ % 8)
+        if (strstr(files[i], "/malformed/") && !everything && malformed++ % SAMPLE)
             continue;
+        char last[512];
         char *cook[] = {gtx, "cook", files[i], "-o", asset, NULL};
-        char *validate[] = {gtx, "validate", asset, NULL};
-        unlink(asset);
-        const char *fault = NULL;
-        int status = run(log, cook);
-        int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-        bool written = access(asset, F_OK) == 0;
-        if (code == -1)
-            fault = "died by a signal";
-        else if (code == 0 && !written)
-            fault = "wrote nothing";
-        else if (code == 0 && run(log, validate) != 0)
-            fault = "wrote an invalid asset";
-        else if (code != 0 && code != 2 && code != 3 && code != 5)
-            fault = "left with an unexpected exit code";
-        else if (code != 0 && written)
-            fault = "failed but wrote a file";
-        else if (code != 0 && !last_line_is_clear(log))
-            fault = "did not say why in one line";
-        else if (access(temporary, F_OK) == 0)
-            fault = "left its temporary file";
+        remove_outputs();
+        int code = run(cook);
+        unsigned errors = read_log(last);
+        const char *fault = fault_of_cook(code, errors, last);
+        if (!fault && code == 0)
+            fault = fault_of_asset(gtx, files[i], everything || cooked % PICTURE_SAMPLE == 0);
         if (fault) {
-            print_message("%s: %s (status %d)\n", files[i], fault, status);
-            print_log(log);
-            ++bad;
+            print_message("%s: %s\n", files[i], fault);
+            read_log(last);
+            print_message("    %s\n", last);
         }
+        const char *name = files[i] + strlen(models), *reason = strstr(last, ": error[");
+        fprintf(table, "%-8s%d %s%s\n", fault ? "fault" : code ? "refused" : "cooked", code,
+                name + strspn(name, "/"), reason ? reason : "");
         cooked += code == 0;
         refused += code > 0;
-    }
-    print_message("corpus: %u cooked, %u refused, %u at fault\n", cooked, refused, bad);
-    unlink(asset);
-    unlink(temporary);
-    unlink(log);
-    rmdir(folder);
-    for (unsigned i = 0; i < file_count; ++i)
+        faults += fault != NULL;
         free(files[i]);
-    assert_int_equal(bad, 0);
+    }
+    fprintf(table, "%u cooked, %u refused, %u at fault\n", cooked, refused, faults);
+    fclose(table);
+    assert_int_equal(faults, 0);
+}
+
+/* Models that break careless cookers, and how well an asset of each must follow its model. */
+static void nasty_models_give_sensible_assets(void **state)
+{
+    static const struct {
+        const char *name;
+        const char *overlap; /* least silhouette IoU, or NULL: refused as empty */
+    } models[] = {
+        {"gen_single_triangle.ply", "0.97"},
+        {"gen_flat_z0.ply", "0.99"},
+        {"gen_quads_ngons_ascii.ply", "0.98"},
+        {"gen_ngon_concave.obj", "0.98"},
+        {"gen_nonmanifold_edge_fan16.ply", "0.98"},
+        {"gen_2000_tiny_components.ply", "0.88"},
+        {"gen_coincident_spheres.ply", "0.999"},
+        {"gen_duplicate_faces.ply", "0.999"},
+        {"gen_winding_random_half.ply", "0.999"},
+        {"gen_winding_all_inverted.ply", "0.999"},
+        {"gen_offset_1e7_f64.ply", "0.999"},
+        {"gen_offset_1e7_node.glb", "0.999"},
+        {"gen_scale_1e-6.ply", "0.999"},
+        {"gen_mirrored_negative_scale.glb", "0.999"},
+        {"gen_moebius.ply", "0.99"},
+        {"gen_klein_bottle_figure8.ply", "0.99"},
+        {"gen_nan_vertices.ply", "0.999"},
+        {"gen_hemisphere_open.ply", "0.99"},
+        {"gen_self_intersecting_tori.ply", "0.99"},
+        {"gen_all_nan.ply", NULL},
+        {"gen_empty_0v_0f.ply", NULL},
+        {"gen_line_collapsed.ply", NULL},
+        {"gen_point_collapsed.ply", NULL},
+    };
+    char *folder_of_models = getenv("GEOTEX_MODELS"), *gtx = getenv("GTX"), path[4096], last[512];
+    (void)state;
+    if (!folder_of_models || !gtx)
+        skip();
+    unsigned faults = 0;
+    for (size_t i = 0; i < sizeof models / sizeof *models; ++i) {
+        snprintf(path, sizeof path, "%s/nasty/%s", folder_of_models, models[i].name);
+        char *cook[] = {gtx, "cook", path, "-o", asset, NULL};
+        char *compare[] = {gtx,     "compare", asset,       path,
+                           "--size", "512",    "--levels",  "1",
+                           "--max-holes", "0", "--min-iou", (char *)models[i].overlap, NULL};
+        remove_outputs();
+        int code = run(cook);
+        read_log(last);
+        bool good = models[i].overlap ? code == 0 && run(compare) == 0
+                                      : code == 3 && strstr(last, "error[empty]");
+        if (!good)
+            print_message("%s: cook %d, %s\n", models[i].name, code, last);
+        faults += !good;
+    }
+    assert_int_equal(faults, 0);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_corpus_cooks_or_is_refused),
+        cmocka_unit_test(every_file_cooks_or_is_refused),
+        cmocka_unit_test(nasty_models_give_sensible_assets),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }
