@@ -1,6 +1,7 @@
 # geotex: everything is built from here. `make help` lists the targets.
 #
-#   config=release|debug|sanitize   optimised (default) · -O0 -g · address and undefined sanitizers
+#   config=release|debug            optimised (default) · -O0 -g
+#   config=sanitize|thread          address and undefined sanitizers · thread sanitizer
 #   zstd=1|0                        compressed sections in libgeotex, or a library of libc alone
 #   build=DIR                       where everything goes (build)
 #   V=1                             print the commands
@@ -19,20 +20,20 @@ SOVERSION := 0
 
 # ---- rooms: what each needs. Imports run one way, from right to left ------------------------------
 ROOMS_CORE := base asset derive trace render
-ROOMS_COOK := mesh chart bake measure cook
+ROOMS_COOK := image mesh chart bake measure cook
 
 needs_base    := base
 needs_asset   := base asset
 needs_derive  := $(needs_asset) derive
 needs_trace   := $(needs_derive) trace
 needs_image   := base image
-needs_host    := base host
+needs_host    := base image host
 needs_render  := $(needs_derive) render
-needs_mesh    := base mesh
+needs_mesh    := base image mesh
 needs_chart   := $(needs_mesh) chart
-needs_bake    := $(needs_asset) mesh chart bake
-needs_measure := $(needs_trace) mesh measure
-needs_cook    := $(needs_trace) mesh chart bake measure cook
+needs_bake    := $(needs_asset) image mesh chart bake
+needs_measure := $(needs_trace) image mesh measure
+needs_cook    := $(needs_trace) image mesh chart bake measure cook
 
 # ---- flags ---------------------------------------------------------------------------------------
 CC  ?= cc
@@ -40,9 +41,10 @@ CXX ?= c++
 flags_release  := -O2 -g
 flags_debug    := -O0 -g
 flags_sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined
+flags_thread   := -O1 -g -fsanitize=thread
 flags := $(flags_$(config))
 ifeq ($(flags),)
-$(error config=$(config): use release, debug or sanitize)
+$(error config=$(config): use release, debug, sanitize or thread)
 endif
 warnings := -Wall -Wextra $(if $(filter 1,$(werror)),-Werror)
 
@@ -60,7 +62,7 @@ cflags_image = $(call pkg,--cflags,OpenImageIO)
 cflags_host  = $(call pkg,--cflags,egl glfw3)
 cflags_cli   = -D_POSIX_C_SOURCE=200809L
 libs_asset   = $(if $(filter 1,$(zstd)),$(call pkg,--libs,libzstd))
-libs_mesh    = $(call pkg,--libs,openmesh draco zlib) -pthread -lstdc++
+libs_mesh    = $(call pkg,--libs,openmesh draco zlib) -lmeshoptimizer -ldl -pthread -lstdc++
 libs_image   = -ldl
 libs_host    = $(call pkg,--libs,egl glfw3)
 libs_of      = $(strip $(foreach r,$(1),$(libs_$(r)))) -lm
@@ -120,14 +122,24 @@ $(lib_cook): $(call objects_of,$(ROOMS_COOK))
 	$(say) AR $@
 	$(Q)rm -f $@ && $(AR) rcs $@ $^
 
-$(so_core): $(call objects_of,$(ROOMS_CORE))
+# What a shared library exports: the functions that its headers declare, and nothing else.
+$(out)/gen/libgeotex.map: include/geotex/geotex.h include/geotex/render.h
+$(out)/gen/libgeotex-cook.map: include/geotex/cook.h
+$(out)/gen/%.map: Makefile
+	@mkdir -p $(@D)
+	$(Q){ echo '{ global:'; sed -n 's/^GTX_API.*[ *]\(gtx_[a-z_]*\)(.*/  \1;/p' $(filter %.h,$^); \
+	echo 'local: *; };'; } > $@
+
+$(so_core): $(call objects_of,$(ROOMS_CORE)) | $(out)/gen/libgeotex.map
 	$(say) LINK $@
-	$(Q)$(CC) $(flags) -shared -Wl,-soname,libgeotex.so.$(SOVERSION) -Wl,--no-undefined -o $@ $^ $(call libs_of,asset)
+	$(Q)$(CC) $(flags) -shared -Wl,-soname,libgeotex.so.$(SOVERSION) -Wl,--no-undefined \
+	  -Wl,--version-script=$(out)/gen/libgeotex.map -o $@ $^ $(call libs_of,asset)
 	$(Q)ln -sf $(@F) $(out)/libgeotex.so.$(SOVERSION) && ln -sf $(@F) $(out)/libgeotex.so
 
-$(so_cook): $(call objects_of,$(ROOMS_COOK)) $(so_core)
+$(so_cook): $(call objects_of,$(ROOMS_COOK)) $(so_core) | $(out)/gen/libgeotex-cook.map
 	$(say) LINK $@
-	$(Q)$(CXX) $(flags) -shared -Wl,-soname,libgeotex-cook.so.$(SOVERSION) -Wl,--no-undefined -o $@ \
+	$(Q)$(CXX) $(flags) -shared -Wl,-soname,libgeotex-cook.so.$(SOVERSION) -Wl,--no-undefined \
+	  -Wl,--version-script=$(out)/gen/libgeotex-cook.map -o $@ \
 	  $(call objects_of,$(ROOMS_COOK) base asset derive trace) $(call libs_of,asset mesh)
 	$(Q)ln -sf $(@F) $(out)/libgeotex-cook.so.$(SOVERSION) && ln -sf $(@F) $(out)/libgeotex-cook.so
 
@@ -148,6 +160,48 @@ $(out)/samples/%: $(out)/samples/%.o $(call objects_of,host image) $(lib_cook) $
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $< $(call objects_of,host image) $(lib_cook) $(lib_core) $(call libs_of,asset mesh host image)
 
+# ---- installation: exactly the files of lib/package/files, below PREFIX --------------------------
+fill = sed -e 's|@PREFIX@|$(PREFIX)|g' -e 's|@VERSION@|$(VERSION)|g' -e 's|@SOVERSION@|$(SOVERSION)|g' \
+  -e 's|@CORE_LIBS@|$(call libs_of,asset)|g' -e 's|@COOK_LIBS@|$(call libs_of,mesh)|g'
+verbs := cook info validate render compare
+to    := $(DESTDIR)$(PREFIX)
+
+$(out)/gen/gtx.1: lib/package/gtx.1.in lib/package/verbs.awk $(command)
+	@mkdir -p $(@D)
+	$(Q){ sed '/@VERBS@/,$$d' $<; for verb in $(verbs); do $(command) $$verb --help; done | \
+	  awk -f lib/package/verbs.awk; sed '1,/@VERBS@/d' $<; } | $(fill) > $@
+
+install: all $(out)/gen/gtx.1 ## put libraries, headers, command, shaders and manual below PREFIX (and DESTDIR)
+	@install -d $(to)/bin $(to)/include/geotex $(to)/lib/geotex $(to)/lib/pkgconfig \
+	  $(to)/lib/cmake/geotex $(to)/share/geotex/shaders $(to)/share/doc/geotex $(to)/share/man/man1
+	@install -m 755 $(command) $(to)/bin
+	@install -m 644 include/geotex/*.h $(to)/include/geotex
+	@install -m 644 $(lib_core) $(lib_cook) $(to)/lib
+	@install -m 755 $(so_core) $(so_cook) $(to)/lib
+	@for so in libgeotex.so libgeotex-cook.so; do \
+	  ln -sf $$so.$(VERSION) $(to)/lib/$$so.$(SOVERSION); ln -sf $$so.$(SOVERSION) $(to)/lib/$$so; done
+	@install -m 755 $(module) $(to)/lib/geotex
+	@for pc in geotex geotex-cook; do \
+	  $(fill) lib/package/$$pc.pc.in > $(to)/lib/pkgconfig/$$pc.pc; done
+	@for cmake in geotexConfig geotexConfigVersion; do \
+	  $(fill) lib/package/$$cmake.cmake.in > $(to)/lib/cmake/geotex/$$cmake.cmake; done
+	@install -m 644 $(shaders) $(to)/share/geotex/shaders
+	@install -m 644 README.md LICENSE $(filter-out %.gtx,$(wildcard format/*)) $(to)/share/doc/geotex
+	@install -m 644 $(out)/gen/gtx.1 $(to)/share/man/man1
+
+uninstall: ## remove what install put there
+	@cd $(to) && rm -f $$(cat $(abspath lib/package/files)) && \
+	  rmdir --ignore-fail-on-non-empty -p include/geotex lib/geotex lib/cmake/geotex lib/pkgconfig \
+	    share/geotex/shaders share/doc/geotex share/man/man1 bin 2>/dev/null || true
+
+# The same bytes from the same commit, wherever and whenever.
+dist_name := geotex-$(VERSION)
+dist: ## the committed sources as build/geotex-VERSION.tar.gz
+	@mkdir -p $(build)
+	@git -c tar.umask=0022 archive --format=tar --prefix=$(dist_name)/ HEAD > $(build)/$(dist_name).tar
+	@gzip -9nf $(build)/$(dist_name).tar
+	@echo $(build)/$(dist_name).tar.gz
+
 # ---- tests: every tests/ROOM/test_*.c(pp) is a program that links its room and what it needs ------
 test_sources := $(wildcard tests/*/test_*.c tests/*/test_*.cpp)
 test_bins    := $(patsubst %,$(out)/%,$(basename $(test_sources)))
@@ -157,6 +211,8 @@ test_needs    = $(needs_$(1)) $(extra_needs_$(1))
 needs_cli := base
 needs_consumer := base
 needs_corpus := base
+needs_samples := $(needs_image)
+needs_threads := $(needs_cook)
 extra_needs_render  := trace host image
 extra_needs_bake    := derive trace
 extra_needs_chart   :=
@@ -182,11 +238,12 @@ $(out)/gtx_decode: format/gtx_decode.c
 	$(say) CC $@
 	$(Q)$(CC) -std=c99 $(flags) $(warnings) $(if $(filter 1,$(zstd)),,-DNO_ZSTD) -o $@ $< $(libs_asset) -lm
 $(filter $(out)/tests/asset/%,$(test_bins)): | $(out)/gtx_decode
+$(filter $(out)/tests/mesh/%,$(test_bins)): | $(module)
 
 build-tests: $(test_bins) $(out)/gtx_decode all
 
 # What test programs may ask for: the command, the build folder, the compilers.
-test_env = GTX=$(abspath $(command)) GTX_OUT=$(abspath $(out)) GTX_CONFIG=$(config) CC="$(CC)" CXX="$(CXX)"
+test_env = GTX=$(abspath $(command)) GTX_BUILD=$(abspath $(build)) GTX_OUT=$(abspath $(out)) GTX_CONFIG=$(config) CC="$(CC)" CXX="$(CXX)"
 
 run-tests: build-tests
 	@$(test_env) tests/run $(test_bins)
@@ -201,6 +258,12 @@ test: ## install what is missing, build, pass the tests
 	@$(MAKE) --no-print-directory deps
 	@$(MAKE) --no-print-directory -j$$(nproc) build-tests
 	@$(MAKE) --no-print-directory run-tests
+
+check: ## every test under the sanitizers, threads under theirs, every file of the corpus
+	@$(MAKE) --no-print-directory deps
+	@$(MAKE) --no-print-directory -j$$(nproc) config=sanitize build-tests
+	@GTX_CORPUS=all $(MAKE) --no-print-directory config=sanitize run-tests
+	@$(MAKE) --no-print-directory -j$$(nproc) config=thread test-threads
 
 # ---- the demo ------------------------------------------------------------------------------------
 MODEL ?= $(build)/demo/sculpt.glb
@@ -234,8 +297,10 @@ $(out)/tests/bench/bench: $(out)/tests/bench/bench.o $(call objects_of,host) $(l
 
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libdraco-dev libtinygltf-dev nlohmann-json3-dev \
+            libmeshoptimizer-dev \
             libglfw3-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri \
-            libopenimageio-dev libzstd-dev zlib1g-dev libcmocka-dev glslang-tools
+            libopenimageio-dev libzstd-dev zlib1g-dev libcmocka-dev glslang-tools \
+            ninja-build cmake
 
 deps: ## install the Debian packages that are missing (apt-get, with sudo when not root)
 	@missing=; for p in $(packages); do \
@@ -253,7 +318,7 @@ help: ## this list
 clean: ## remove what was built
 	rm -rf $(build)
 
-.PHONY: all build-tests run-tests test demo run-demo bench run-bench deps help clean
+.PHONY: all install uninstall dist build-tests run-tests test check demo run-demo bench run-bench deps help clean
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(shell [ -d $(out) ] && find $(out) -name '*.d')

@@ -6,13 +6,10 @@
  * Nothing is sorted and nothing is clipped: both renderers write true depth. */
 #include "host/backdrop.h"
 #include "host/shapes.h"
-#include "host/show.h"
-#include "image/image.h"
+#include "host/sample.h"
 
 #include <geotex/render.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { INSTANCES = 6 };
@@ -118,33 +115,9 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
 int main(int argc, char **argv)
 {
     world w = {0};
-    gtx_show show = {.title = "mixed scene", .width = 1280, .height = 720, .load = load,
+    gtx_show show = {.title = "mixed_scene", .width = 1280, .height = 720, .load = load,
                      .draw = draw, .user = &w};
     show.camera = (gtx_camera){.target = {0.2f, 1.0f, 0}, .radius = 5.5f, .azimuth = 8,
                                .elevation = 15, .distance = 1.5f, .field = 36};
-    const char *still = NULL;
-    uint8_t *pixels;
-    int bad = 0;
-    for (int i = 1; i < argc; ++i)
-        if (strcmp(argv[i], "--headless") == 0 && i + 1 < argc)
-            still = argv[++i];
-        else if (strcmp(argv[i], "--size") == 0 && i + 1 < argc)
-            bad |= sscanf(argv[++i], "%dx%d", &show.width, &show.height) != 2;
-        else if (argv[i][0] == '-' || w.path)
-            bad = 1;
-        else
-            w.path = argv[i];
-    if (!w.path || bad) {
-        fprintf(stderr, "usage: mixed_scene ASSET.gtx [--headless OUT.png] [--size WxH]\n");
-        return 1;
-    }
-    gtx_error error = {0};
-    gtx_result result = still ? gtx_show_still(&show, &pixels, &error)
-                              : gtx_show_window(&show, &error);
-    if (still && !result)
-        result = gtx_image_write_png(still, (uint32_t)show.width, (uint32_t)show.height, 4, pixels,
-                                     &error);
-    if (result)
-        fprintf(stderr, "mixed_scene: %s\n", error.message);
-    return result ? 1 : 0; /* the process ends here, and with it the context and all memory */
+    return gtx_sample_main(&show, argc, argv, &w.path);
 }

@@ -28,6 +28,7 @@ gtx_result gtx_show_window(gtx_show *show, gtx_error *error)
     if (!result)
         result = show->load(&gl, gtx_window_load, show->user, error);
     while (!result && gtx_window_next(window, &show->width, &show->height)) {
+        gtx_window_pointer(window, show->pointer);
         gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
         gl.Viewport(0, 0, show->width, show->height);
         result = draw_frame(show, &gl, error);

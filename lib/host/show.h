@@ -13,6 +13,7 @@ typedef struct gtx_show {
     const char *title;
     int width, height;
     gtx_camera camera;
+    float pointer[2];         /* of the mouse in clip space, kept up to date in a window */
     /* Both are called with the context current; an error ends the show. `load` is called once. */
     gtx_result (*load)(const gtx_host_gl *gl, gtx_host_load loader, void *user, gtx_error *error);
     /* Draws into the bound framebuffer, whose viewport is set. */

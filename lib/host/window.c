@@ -95,6 +95,14 @@ int gtx_window_next(gtx_window *window, int *width, int *height)
     return !glfwWindowShouldClose(window->glfw);
 }
 
+void gtx_window_pointer(const gtx_window *window, float pointer[2])
+{
+    int width, height;
+    glfwGetWindowSize(window->glfw, &width, &height);
+    pointer[0] = width > 0 ? 2 * (float)window->x / (float)width - 1 : 0;
+    pointer[1] = height > 0 ? 1 - 2 * (float)window->y / (float)height : 0;
+}
+
 int gtx_window_pressed(gtx_window *window, char key)
 {
     const unsigned char was = window->down[key & 127];

@@ -22,6 +22,9 @@ void gtx_window_destroy(gtx_window *window);
  * *width and *height are the framebuffer's size for the next frame. */
 int gtx_window_next(gtx_window *window, int *width, int *height);
 
+/* Where the mouse is in clip space: x and y in -1..1 within the window. */
+void gtx_window_pointer(const gtx_window *window, float pointer[2]);
+
 /* 1 once after each press of a letter key ('A'..'Z') or digit. */
 int gtx_window_pressed(gtx_window *window, char key);
 

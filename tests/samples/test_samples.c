@@ -1,0 +1,139 @@
+/* Every sample runs without a window, and its picture is the one that was looked at.
+ *
+ * GTX_UPDATE_GOLDEN=1 writes tests/golden/samples anew: look at each before keeping it. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "image/image.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static char folder[] = "/tmp/gtx-samples-XXXXXX";
+
+/* Runs a shell command line with $S the samples' folder and $T a temporary one; returns its exit
+ * code. */
+static int run(const char *format, ...)
+{
+    char command[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(command, sizeof command, format, arguments);
+    va_end(arguments);
+    int status = system(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    char samples[4096];
+    if (!getenv("GTX_OUT") || !mkdtemp(folder))
+        return -1;
+    snprintf(samples, sizeof samples, "%s/samples", getenv("GTX_OUT"));
+    setenv("S", samples, 1);
+    setenv("T", folder, 1);
+    return run("$S/sculpt --triangles 20000 $T/shell.glb >/dev/null && "
+               "$S/cook_from_c $T/shell.glb $T/shell.gtx >$T/cook.log");
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    return run("rm -r $T");
+}
+
+static void cooking_says_how_far_it_is(void **state)
+{
+    (void)state;
+    assert_int_equal(run("grep -q ' 50 %%' $T/cook.log && grep -q 'patches' $T/cook.log"), 0);
+    assert_int_equal(run("$S/cook_from_c $T/nothing.glb $T/no.gtx 2>/dev/null"), 1);
+}
+
+static void an_interrupt_leaves_nothing_behind(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$S/sculpt --triangles 400000 $T/large.glb >/dev/null"), 0);
+    assert_int_equal(run("timeout --preserve-status -s INT 0.3 $S/cook_from_c $T/large.glb "
+                         "$T/large.gtx >/dev/null 2>&1"), 130);
+    assert_int_equal(run("ls $T/large.gtx* 2>/dev/null"), 2);
+}
+
+static void an_asset_is_printed(void **state)
+{
+    (void)state;
+    assert_int_equal(run("$S/open_asset $T/shell.gtx | grep -q 'patches on 1 pages'"), 0);
+    assert_int_equal(run("$S/open_asset $T/shell.glb 2>/dev/null"), 1);
+}
+
+/* Drivers round differently: a picture may differ a little everywhere and much in few places. */
+static void assert_alike(const gtx_image *a, const gtx_image *b)
+{
+    assert_int_equal(a->width, b->width);
+    assert_int_equal(a->height, b->height);
+    const size_t count = (size_t)a->width * a->height;
+    size_t sum = 0, far = 0;
+    for (size_t i = 0; i < count; ++i) {
+        int most = 0;
+        for (int c = 0; c < 3; ++c) {
+            const int d = abs(a->pixels[4 * i + (size_t)c] - b->pixels[4 * i + (size_t)c]);
+            sum += (size_t)d;
+            most = d > most ? d : most;
+        }
+        far += most > 40;
+    }
+    if (far * 100 > count || sum > 6 * count)
+        fail_msg("%zu of %zu pixels are far off, mean difference %.2f", far, count,
+                 (double)sum / (3.0 * (double)count));
+}
+
+static void draws_its_picture(void **state)
+{
+    const char *name = *state;
+    char golden[256], picture[256];
+    gtx_image expected, found;
+    snprintf(golden, sizeof golden, "tests/golden/samples/%s.png", name);
+    snprintf(picture, sizeof picture, "%s/%s.png", folder, name);
+    assert_int_equal(run("$S/%s $T/shell.gtx --headless %s --size 240x160", name, picture), 0);
+    if (getenv("GTX_UPDATE_GOLDEN"))
+        assert_int_equal(run("cp %s %s", picture, golden), 0);
+    assert_int_equal(gtx_image_read(golden, &expected, NULL), GTX_OK);
+    assert_int_equal(gtx_image_read(picture, &found, NULL), GTX_OK);
+    assert_alike(&expected, &found);
+    gtx_image_free(&expected);
+    gtx_image_free(&found);
+}
+
+static void misuse_is_one_line(void **state)
+{
+    const char *name = *state;
+    assert_int_equal(run("$S/%s 2>$T/err; test $? = 1 && grep -q ^usage $T/err", name), 0);
+    assert_int_equal(run("$S/%s $T/shell.glb --headless $T/x.png 2>$T/err; test $? = 1 && "
+                         "test $(wc -l <$T/err) = 1 && ! test -e $T/x.png", name), 0);
+    assert_int_equal(run("$S/%s $T/shell.gtx --headless $T/x.png --size 0x9 2>/dev/null", name), 1);
+}
+
+int main(void)
+{
+#define PICTURE(name) cmocka_unit_test_prestate(draws_its_picture, name)
+#define MISUSE(name) cmocka_unit_test_prestate(misuse_is_one_line, name)
+    static char smallest[] = "smallest_engine", instances[] = "instances", picking[] = "picking",
+                mixed[] = "mixed_scene";
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cooking_says_how_far_it_is),
+        cmocka_unit_test(an_interrupt_leaves_nothing_behind),
+        cmocka_unit_test(an_asset_is_printed),
+        PICTURE(smallest),
+        PICTURE(instances),
+        PICTURE(picking),
+        PICTURE(mixed),
+        MISUSE(smallest),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
