@@ -1,5 +1,5 @@
-/* Wavefront OBJ: positions with colours, normals and polygons. */
-#include "mesh/import.hpp"
+/* Wavefront OBJ: positions with colours, normals, texture coordinates, materials and polygons. */
+#include "mesh/import_mtl.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -9,12 +9,18 @@ namespace gtx {
 
 namespace {
 
-constexpr uint32_t no_normal = 0xffffffff;
+constexpr uint32_t NOTHING = 0xffffffff;
+
+/* A corner of a face: numbers of what it names. */
+struct Corner {
+    uint32_t vertex = 0, coordinate = NOTHING, normal = NOTHING;
+};
 
 class ObjReader {
 public:
-    ObjReader(const std::string &text, Task &task)
-        : begin_(text.data()), at_(begin_), end_(begin_ + text.size()), task_(task)
+    ObjReader(const ModelFile &file, Task &task)
+        : begin_(file.bytes.data()), at_(begin_), end_(begin_ + file.bytes.size()), file_(file),
+          task_(task)
     {
     }
     Mesh read();
@@ -29,21 +35,28 @@ private:
     void statement(std::string_view word);
     void vertex();
     void face();
-    void triangle(uint32_t a, uint32_t b, uint32_t c);
+    void triangle(const Corner &a, const Corner &b, const Corner &c);
+    std::string_view rest_of_line();
+    void use_material();
     void ignore(std::string_view word);
+    void finish_materials();
     void finish();
 
     const char *begin_, *at_, *end_;
     size_t line_ = 1;
+    const ModelFile &file_;
     Task &task_;
     Mesh mesh_;
     std::vector<Vec3f> normals_;
-    std::vector<Rgba8> colors_;                      /* by vertex, or empty */
-    std::vector<uint32_t> corners_, corner_normals_; /* of the face at hand */
+    std::vector<std::array<float, 2>> coordinates_;
+    std::vector<Rgba8> colors_;                  /* by vertex, or empty */
+    std::vector<std::string> libraries_, names_; /* of mtllib and usemtl */
+    uint32_t name_ = NOTHING;                    /* of the material in use, in names_ */
+    std::vector<Corner> corners_;                /* of the face at hand */
     std::vector<Vec3d> polygon_;
     std::vector<std::array<uint32_t, 3>> cut_;
     std::vector<std::string> ignored_; /* statements, in the order found */
-    size_t short_faces_ = 0;
+    size_t short_faces_ = 0, lost_coordinates_ = 0;
 };
 
 /* Skips blanks, and line ends behind a backslash. */
@@ -130,66 +143,103 @@ bool ObjReader::corner()
 {
     if (at_line_end())
         return false;
-    uint32_t v = 0, normal = no_normal;
-    bool good = index(mesh_.positions.size(), "vertex", v);
+    Corner corner;
+    bool good = index(mesh_.positions.size(), "vertex", corner.vertex);
     if (good && at_ < end_ && *at_ == '/') {
-        int64_t coordinate;
-        at_ = std::from_chars(at_ + 1, end_, coordinate).ptr;
+        int64_t named = 0, count = int64_t(coordinates_.size());
+        at_ = std::from_chars(at_ + 1, end_, named).ptr;
+        if (named && named <= count && named >= -count)
+            corner.coordinate = uint32_t(named > 0 ? named - 1 : count + named);
+        else
+            lost_coordinates_ += named != 0;
         if (at_ < end_ && *at_ == '/') {
             ++at_;
-            index(normals_.size(), "normal", normal); /* "v/vt/" is met in the wild */
+            index(normals_.size(), "normal", corner.normal); /* "v/vt/" is met in the wild */
         }
     }
     const char *stop = at_;
     if (!good || !(at_line_end() || at_ != stop))
         fail(GTX_ERROR_INPUT, "line %zu: a corner of a face is not v, v/vt, v//vn or v/vt/vn",
              line_);
-    corners_.push_back(v);
-    corner_normals_.push_back(normal);
+    corners_.push_back(corner);
     return true;
 }
 
-void ObjReader::triangle(uint32_t a, uint32_t b, uint32_t c)
+/* Attributes begin with the first triangle that has them. */
+void ObjReader::triangle(const Corner &a, const Corner &b, const Corner &c)
 {
-    bool has_normals = corner_normals_[a] != no_normal || corner_normals_[b] != no_normal ||
-                       corner_normals_[c] != no_normal;
-    if (has_normals)
-        mesh_.normals.resize(mesh_.triangles.size() * 3);
-    mesh_.triangles.push_back({corners_[a], corners_[b], corners_[c]});
-    if (!mesh_.normals.empty() || has_normals)
-        for (uint32_t k : {a, b, c}) {
-            uint32_t n = corner_normals_[k];
-            mesh_.normals.push_back(n == no_normal ? Vec3f() : normals_[n]);
-        }
+    auto &normals = mesh_.normals;
+    auto &coordinates = mesh_.appearance.uv[0];
+    auto &materials = mesh_.appearance.material;
+    const size_t before = mesh_.triangles.size();
+    bool has_normal = !normals.empty(), has_coordinate = !coordinates.empty();
+    for (const Corner *k : {&a, &b, &c}) {
+        has_normal |= k->normal != NOTHING;
+        has_coordinate |= k->coordinate != NOTHING;
+    }
+    mesh_.triangles.push_back({a.vertex, b.vertex, c.vertex});
+    normals.resize(has_normal ? before * 3 : 0);
+    coordinates.resize(has_coordinate ? before * 3 : 0);
+    for (const Corner *k : {&a, &b, &c}) {
+        if (has_normal)
+            normals.push_back(k->normal == NOTHING ? Vec3f() : normals_[k->normal]);
+        if (has_coordinate)
+            coordinates.push_back(k->coordinate == NOTHING ? std::array<float, 2>{0, 0}
+                                                           : coordinates_[k->coordinate]);
+    }
+    if (name_ != NOTHING || !materials.empty()) {
+        materials.resize(before, NOTHING);
+        materials.push_back(name_);
+    }
 }
 
 void ObjReader::face()
 {
     corners_.clear();
-    corner_normals_.clear();
     while (corner())
         ;
     if (corners_.size() < 3) {
         ++short_faces_;
     } else if (corners_.size() == 3) {
-        triangle(0, 1, 2);
+        triangle(corners_[0], corners_[1], corners_[2]);
     } else {
         polygon_.clear();
         cut_.clear();
-        for (uint32_t v : corners_)
-            polygon_.push_back(mesh_.positions[v]);
+        for (const Corner &c : corners_)
+            polygon_.push_back(mesh_.positions[c.vertex]);
         triangulate(polygon_, cut_);
         for (const auto &t : cut_)
-            triangle(t[0], t[1], t[2]);
+            triangle(corners_[t[0]], corners_[t[1]], corners_[t[2]]);
     }
     if (mesh_.triangles.size() > MAX_VERTICES)
         fail(GTX_ERROR_LIMIT, "line %zu: more than %llu triangles", line_,
              (unsigned long long)MAX_VERTICES);
 }
 
+/* Names may have blanks in them. */
+std::string_view ObjReader::rest_of_line()
+{
+    at_line_end();
+    const char *stop = at_;
+    while (stop < end_ && *stop != '\n' && *stop != '\r')
+        ++stop;
+    std::string_view rest(at_, size_t(stop - at_));
+    at_ = stop;
+    return rest.substr(0, rest.find_last_not_of(" \t") + 1);
+}
+
+void ObjReader::use_material()
+{
+    std::string name(rest_of_line());
+    auto known = std::find(names_.begin(), names_.end(), name);
+    name_ = uint32_t(known - names_.begin());
+    if (known == names_.end())
+        names_.push_back(name);
+}
+
 void ObjReader::ignore(std::string_view word)
 {
-    static const char *const silent[] = {"vt", "o", "g", "s", "vp"};
+    static const char *const silent[] = {"o", "g", "s", "vp"};
     for (const char *name : silent)
         if (word == name)
             return;
@@ -213,15 +263,56 @@ void ObjReader::statement(std::string_view word)
         numbers(n, 3, "normal");
         if (normals_.size() < MAX_VERTICES)
             normals_.push_back({float(n[0]), float(n[1]), float(n[2])});
+    } else if (word == "vt") {
+        double u = 0, v = 0;
+        number(u);
+        number(v);
+        if (coordinates_.size() < MAX_VERTICES) /* images have their origin at the top */
+            coordinates_.push_back({float(u), float(1 - v)});
     } else if (word == "f") {
         face();
+    } else if (word == "usemtl") {
+        use_material();
+    } else if (word == "mtllib") {
+        libraries_.emplace_back(rest_of_line());
     } else {
         ignore(word);
     }
 }
 
+/* Materials take the numbers of the names that are used; what no library defines is plain. */
+void ObjReader::finish_materials()
+{
+    Appearance &look = mesh_.appearance;
+    MtlLibrary library;
+    if (!names_.empty())
+        for (const std::string &name : libraries_)
+            read_mtl(file_, name, library, task_);
+    for (const std::string &name : names_) {
+        auto found = std::find_if(library.materials.begin(), library.materials.end(),
+                                  [&](const MtlMaterial &m) { return m.name == name; });
+        look.materials.push_back(found == library.materials.end() ? Material() : found->look);
+    }
+    if (!look.material.empty() &&
+        std::find(look.material.begin(), look.material.end(), NOTHING) != look.material.end()) {
+        std::replace(look.material.begin(), look.material.end(), NOTHING,
+                     uint32_t(look.materials.size()));
+        look.materials.emplace_back();
+    }
+    load_images(library.images, look, task_);
+    std::string ignored;
+    for (const std::string &name : library.ignored)
+        ignored += (ignored.empty() ? "" : ", ") + name;
+    if (!ignored.empty())
+        task_.warnings.push_back("MTL statements were ignored: " + ignored);
+    if (lost_coordinates_ && !look.uv[0].empty())
+        task_.warnings.push_back(std::to_string(lost_coordinates_) +
+                                 " corners name texture coordinates that are not there");
+}
+
 void ObjReader::finish()
 {
+    finish_materials();
     if (!colors_.empty()) {
         colors_.resize(mesh_.positions.size());
         for (const auto &t : mesh_.triangles)
@@ -263,7 +354,7 @@ Mesh ObjReader::read()
 
 Mesh import_obj(const ModelFile &file, Task &task)
 {
-    return ObjReader(file.bytes, task).read();
+    return ObjReader(file, task).read();
 }
 
 } // namespace gtx
