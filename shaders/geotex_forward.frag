@@ -1,7 +1,8 @@
 /* The stock forward main: casts the ray, writes lit colour (sRGB bytes) and true depth.
  *
  * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl, geotex_surface.glsl and a
- * gtx_cast (geotex_cast.glsl or geotex_paper.glsl) before it; varyings as geotex_proxy.vert. */
+ * gtx_cast (geotex_cast.glsl or geotex_paper.glsl) before it; varyings as geotex_proxy.vert. With
+ * GTX_MATERIALS defined it needs geotex_material.glsl too, and shades by that; else by Lambert. */
 GTX_VARYING(0) in vec3 gtx_point;
 GTX_VARYING(1) flat in vec3 gtx_eye;
 GTX_VARYING(2) flat in vec4 gtx_clip_z;
@@ -41,11 +42,19 @@ void main()
     if (hit.back)
         n = gtx_from_behind(n, mat3(frame.axis_x, frame.axis_y, frame.axis_z) * direction);
     n = normalize(gtx_normal_x * n.x + gtx_normal_y * n.y + gtx_normal_z * n.z);
-    float lambert = max(dot(n, gtx_light.xyz), 0.0);
     vec4 color = gtx_color;
     if (gtx_maps.y > 0.0)
         color *= gtx_lookup(gtx_colors, sheet, hit.grid.xy, level, gtx_maps.x);
+#ifdef GTX_MATERIALS
+    /* The columns for normals are the inverse transpose of object -> world, times any number. */
+    mat3 world = inverse(transpose(mat3(gtx_normal_x, gtx_normal_y, gtx_normal_z)));
+    vec3 ray = world * (mat3(frame.axis_x, frame.axis_y, frame.axis_z) * direction);
+    gtx_material material = gtx_material_of(sheet, hit.grid.xy, level, color.rgb);
+    color.rgb = gtx_shade(material, n, -normalize(ray), gtx_light.xyz, gtx_light.w);
+#else
+    float lambert = max(dot(n, gtx_light.xyz), 0.0);
     color.rgb *= gtx_light.w + (1.0 - gtx_light.w) * lambert;
+#endif
     gtx_out_color = vec4(gtx_to_srgb(color.rgb), color.a);
 
     zw = vec2(dot(gtx_clip_z, vec4(hit.grid, 1.0)), dot(gtx_clip_w, vec4(hit.grid, 1.0)));

@@ -6,5 +6,6 @@ GTX_UNIFORM vec4 gtx_depth;             /* x: clip z >= -x * w at the near plane
                                            w: 1 perspective, 0 orthographic */
 GTX_UNIFORM vec4 gtx_light;             /* xyz: world space, unit, towards the light; w: ambient */
 GTX_UNIFORM vec4 gtx_maps;              /* x: last mip level of normals and colours; y: 1 when the
-                                           model has colours */
+                                           model has colours; z: scale of its emission, or 0;
+                                           w: 1 when it has materials */
 GTX_UNIFORMS_END

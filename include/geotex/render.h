@@ -7,7 +7,7 @@
  * State. gtx_draw leaves a fixed state behind, and reads none back unless
  * GTX_VIEW_RESTORE_STATE is set:
  *   program 0, vertex array 0, array and element buffers 0, active texture unit 0, textures (2D and
- *   2D array) and samplers 0 on units 0..5, depth test on, depth func LESS (GREATER when reversed),
+ *   2D array) and samplers 0 on units 0..7, depth test on, depth func LESS (GREATER when reversed),
  *   depth mask on, cull face off, cull mode BACK, front face CCW, blend off, colour mask all on.
  * It does not touch the framebuffer binding, viewport, scissor, stencil or clip control. */
 #ifndef GEOTEX_RENDER_H
@@ -58,7 +58,7 @@ GTX_API gtx_result gtx_model_create(gtx_renderer *renderer, const gtx_asset *ass
                                     gtx_model **out, gtx_error *error);
 GTX_API void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model);
 
-/* Bytes of the model's textures and buffers on the GPU, colour apart. */
+/* Bytes of the model's textures and buffers on the GPU; `color` is colour, material, emission. */
 typedef struct gtx_model_size {
     uint64_t geometry, color;
 } gtx_model_size;
@@ -96,8 +96,8 @@ typedef struct gtx_instance {
     uint32_t reserved[4];
 } gtx_instance;
 
-/* Draws the instances into the bound framebuffer: colour (Lambert, in sRGB bytes; location 0) and
- * depth. One instanced draw for each run of instances of one model.
+/* Draws the instances into the bound framebuffer: colour (in sRGB bytes; location 0) and depth. A
+ * model with materials is shaded by metallic and roughness (glTF 2.0, appendix B), another by Lambert. One instanced draw for each run of instances of one model.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL. */
 GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,
                             const gtx_instance *instances, uint32_t count, gtx_error *error);

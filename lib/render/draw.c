@@ -46,12 +46,15 @@ static gtx_result reserve(gtx_renderer *renderer, uint32_t count, gtx_error *err
     return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for %u instances", count);
 }
 
-static void begin(const gtx_gl *gl, const gtx_program *program, const gtx_frame *frame)
+/* What one draw holds on to: the frame, and the program in use. */
+typedef struct pass {
+    const gtx_frame *frame;
+    gtx_method method;
+    const gtx_program *program;
+} pass;
+
+static void begin(const gtx_gl *gl, const gtx_frame *frame)
 {
-    gl->UseProgram(program->object);
-    gl->UniformMatrix4fv(program->clip_from_world, 1, GL_FALSE, frame->clip_from_world);
-    gl->Uniform4fv(program->depth, 1, frame->depth);
-    gl->Uniform4fv(program->light, 1, frame->light);
     for (gl_uint i = 0; i < UNIT_COUNT; ++i)
         gl->BindSampler(i, 0);
     gl->Enable(GL_DEPTH_TEST);
@@ -99,13 +102,32 @@ static void set_attributes(const gtx_renderer *renderer, const run *r)
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->model->indices);
 }
 
-static void draw_run(const gtx_renderer *renderer, const gtx_program *program, const run *r)
+/* Takes the program that the model needs into use. */
+static const gtx_program *use_program(const gtx_renderer *renderer, pass *p, const gtx_model *model)
+{
+    const gtx_gl *gl = &renderer->gl;
+    const bool shades = model->has_material || model->emission_scale > 0;
+    const int plain = p->method == GTX_METHOD_PAPER ? PROGRAM_PAPER : PROGRAM_CAST;
+    const gtx_program *program = &renderer->programs[plain + shades];
+    if (program != p->program) {
+        gl->UseProgram(program->object);
+        gl->UniformMatrix4fv(program->clip_from_world, 1, GL_FALSE, p->frame->clip_from_world);
+        gl->Uniform4fv(program->depth, 1, p->frame->depth);
+        gl->Uniform4fv(program->light, 1, p->frame->light);
+        p->program = program;
+    }
+    return program;
+}
+
+static void draw_run(const gtx_renderer *renderer, pass *p, const run *r)
 {
     const gtx_gl *gl = &renderer->gl;
     const gtx_model *model = r->model;
     if (!model || !model->index_count) /* before the first run, or no cell at all */
         return;
-    const float maps[4] = {(float)(model->mip_count - 1), model->has_color ? 1.0f : 0.0f, 0, 0};
+    const float maps[4] = {(float)(model->mip_count - 1), model->has_color ? 1.0f : 0.0f,
+                           model->emission_scale, model->has_material ? 1.0f : 0.0f};
+    const gtx_program *program = use_program(renderer, p, model);
     bind_textures(gl, model);
     set_attributes(renderer, r);
     gl->Uniform4fv(program->maps, 1, maps);
@@ -116,18 +138,18 @@ static void draw_run(const gtx_renderer *renderer, const gtx_program *program, c
 }
 
 /* Draws instances whose data is in the instance buffer. */
-static void draw_runs(const gtx_renderer *renderer, const gtx_program *program,
-                      const gtx_instance *instances, uint32_t count)
+static void draw_runs(const gtx_renderer *renderer, pass *p, const gtx_instance *instances,
+                      uint32_t count)
 {
     run r = {0};
     for (uint32_t i = 0; i < count; ++i) {
         if (instances[i].model != r.model || renderer->mirrored[i] != r.mirrored) {
-            draw_run(renderer, program, &r);
+            draw_run(renderer, p, &r);
             r = (run){instances[i].model, i, 0, renderer->mirrored[i]};
         }
         ++r.count;
     }
-    draw_run(renderer, program, &r);
+    draw_run(renderer, p, &r);
 }
 
 gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_instance *instances,
@@ -147,17 +169,16 @@ gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_inst
         return result;
 
     const gtx_gl *gl = &renderer->gl;
-    const gtx_program *program =
-        &renderer->programs[view->method == GTX_METHOD_PAPER ? PROGRAM_PAPER : PROGRAM_CAST];
+    pass p = {&frame, view->method, NULL};
     const bool restore = view->flags & GTX_VIEW_RESTORE_STATE;
     if (restore)
         gtx_state_read(gl, &state);
-    begin(gl, program, &frame);
+    begin(gl, &frame);
     gl->BindVertexArray(renderer->vertex_array);
     gl->BindBuffer(GL_ARRAY_BUFFER, renderer->instance_buffer);
     gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(count * sizeof *renderer->instances),
                    renderer->instances, GL_STREAM_DRAW);
-    draw_runs(renderer, program, instances, count);
+    draw_runs(renderer, &p, instances, count);
     if (restore)
         gtx_state_restore(gl, &state);
     else

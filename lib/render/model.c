@@ -22,7 +22,8 @@ static uint8_t *add_level(gtx_model *model, uint32_t unit, uint32_t level, uint3
     gtx_level *l = &model->levels[model->level_count++];
     *l = (gtx_level){unit, level, width, height, layers, texel_size, 0, NULL};
     l->data = gtx_alloc_array(&model->allocator, (size_t)width * height * layers, texel_size);
-    uint64_t *size = unit == UNIT_COLORS ? &model->size.color : &model->size.geometry;
+    const bool looks = unit == UNIT_COLORS || unit == UNIT_MATERIALS || unit == UNIT_EMISSIONS;
+    uint64_t *size = looks ? &model->size.color : &model->size.geometry;
     *size += (uint64_t)width * height * layers * texel_size;
     return l->data;
 }
@@ -33,6 +34,8 @@ static bool copy_levels(gtx_model *model, const gtx_asset *asset, gtx_map map, u
     for (uint32_t k = 0; k < count; ++k) {
         size_t size;
         const void *texels = gtx_map_data(asset, map, k, &size);
+        if (!texels) /* an optional map */
+            return true;
         uint8_t *copy = add_level(model, unit, k, asset->info.page_width >> k,
                                   asset->info.page_height >> k, asset->info.page_count, texel_size);
         if (!copy)
@@ -138,12 +141,16 @@ gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *alloca
     model->mip_count = asset->info.mip_count;
     model->patch_count = asset->info.patch_count;
     model->has_color = asset->info.has_color;
+    model->has_material = asset->info.has_material;
+    model->emission_scale = asset->info.has_emission ? asset->info.emission_scale : 0;
+    const uint32_t mips = model->mip_count;
     gtx_result result = gtx_derive_boxes(asset, hull_margin, &hooks, &model->proxies, error);
     if (!result && !(derive_cells(model, asset) && fill_records(model, asset) &&
                      copy_levels(model, asset, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
-                     copy_levels(model, asset, GTX_MAP_NORMAL, UNIT_NORMALS, model->mip_count, 2) &&
-                     (!model->has_color ||
-                      copy_levels(model, asset, GTX_MAP_COLOR, UNIT_COLORS, model->mip_count, 4))))
+                     copy_levels(model, asset, GTX_MAP_NORMAL, UNIT_NORMALS, mips, 2) &&
+                     copy_levels(model, asset, GTX_MAP_COLOR, UNIT_COLORS, mips, 4) &&
+                     copy_levels(model, asset, GTX_MAP_MATERIAL, UNIT_MATERIALS, mips, 4) &&
+                     copy_levels(model, asset, GTX_MAP_EMISSION, UNIT_EMISSIONS, mips, 3)))
         result = gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's maps");
     if (result) {
         gtx_model_free_staging(model);

@@ -9,6 +9,7 @@
 enum { MAX_PARTS = 8, MAX_LOG = 2048 };
 
 static const char version_line[] = "#version 330 core\n";
+static const char material_lines[] = "#version 330 core\n#define GTX_MATERIALS\n";
 
 static const char *const vertex_parts[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
                                            "geotex_view.glsl", "geotex_proxy.vert", NULL};
@@ -16,8 +17,14 @@ static const char *const vertex_parts[] = {"geotex_dialect.glsl", "geotex_sheet.
 static const char *const fragment_parts[PROGRAM_COUNT][MAX_PARTS] = {
     [PROGRAM_CAST] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
                       "geotex_surface.glsl", "geotex_cast.glsl", "geotex_forward.frag", NULL},
+    [PROGRAM_CAST_MATERIAL] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
+                               "geotex_surface.glsl", "geotex_material.glsl", "geotex_cast.glsl",
+                               "geotex_forward.frag", NULL},
     [PROGRAM_PAPER] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
                        "geotex_surface.glsl", "geotex_paper.glsl", "geotex_forward.frag", NULL},
+    [PROGRAM_PAPER_MATERIAL] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
+                                "geotex_surface.glsl", "geotex_material.glsl",
+                                "geotex_paper.glsl", "geotex_forward.frag", NULL},
 };
 
 const char *gtx_shader_source(const char *name)
@@ -29,10 +36,11 @@ const char *gtx_shader_source(const char *name)
 }
 
 /* A compiled shader, or 0. */
-static gl_uint compile(const gtx_renderer *renderer, gl_enum stage, const char *const *parts)
+static gl_uint compile(const gtx_renderer *renderer, gl_enum stage, const char *head,
+                       const char *const *parts)
 {
     const gtx_gl *gl = &renderer->gl;
-    const char *texts[MAX_PARTS + 1] = {version_line};
+    const char *texts[MAX_PARTS + 1] = {head};
     gl_size count = 1;
     for (; parts[count - 1]; ++count)
         texts[count] = gtx_shader_source(parts[count - 1]);
@@ -76,7 +84,8 @@ static void locate(const gtx_gl *gl, gtx_program *program)
     static const char *const samplers[UNIT_COUNT] = {
         [UNIT_CELLS] = "gtx_cells",     [UNIT_TRIM] = "gtx_trim",
         [UNIT_NORMALS] = "gtx_normals", [UNIT_COLORS] = "gtx_colors",
-        [UNIT_PATCHES] = "gtx_patches",
+        [UNIT_PATCHES] = "gtx_patches", [UNIT_MATERIALS] = "gtx_materials",
+        [UNIT_EMISSIONS] = "gtx_emissions",
     };
     program->clip_from_world = gl->GetUniformLocation(program->object, "gtx_clip_from_world");
     program->depth = gl->GetUniformLocation(program->object, "gtx_depth");
@@ -92,9 +101,11 @@ gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
 {
     const gtx_gl *gl = &renderer->gl;
     bool failed = false;
-    const gl_uint vertex = compile(renderer, GL_VERTEX_SHADER, vertex_parts);
+    const gl_uint vertex = compile(renderer, GL_VERTEX_SHADER, version_line, vertex_parts);
     for (int i = 0; i < PROGRAM_COUNT && vertex && !failed; ++i) {
-        const gl_uint fragment = compile(renderer, GL_FRAGMENT_SHADER, fragment_parts[i]);
+        const bool shades = i == PROGRAM_CAST_MATERIAL || i == PROGRAM_PAPER_MATERIAL;
+        const gl_uint fragment = compile(renderer, GL_FRAGMENT_SHADER,
+                                         shades ? material_lines : version_line, fragment_parts[i]);
         renderer->programs[i].object = fragment ? link_stages(renderer, vertex, fragment) : 0;
         failed = !renderer->programs[i].object;
         if (fragment)

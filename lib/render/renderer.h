@@ -9,12 +9,13 @@
 
 /* Texture units; a model has one texture a unit. Samplers of the shaders carry the same numbers. */
 enum {
-    UNIT_CELLS, UNIT_TRIM, UNIT_NORMALS, UNIT_COLORS, UNIT_PATCHES,
+    UNIT_CELLS, UNIT_TRIM, UNIT_NORMALS, UNIT_COLORS, UNIT_PATCHES, UNIT_MATERIALS, UNIT_EMISSIONS,
     UNIT_COUNT,
-    UNIT_CLEARED = 6 /* units that render.h promises to leave empty */
+    UNIT_CLEARED = 8 /* units that render.h promises to leave empty */
 };
 
-enum { PROGRAM_CAST, PROGRAM_PAPER, PROGRAM_COUNT };
+/* Each method without and with materials: Lambert alone costs less. */
+enum { PROGRAM_CAST, PROGRAM_CAST_MATERIAL, PROGRAM_PAPER, PROGRAM_PAPER_MATERIAL, PROGRAM_COUNT };
 
 typedef struct gtx_program {
     gl_uint object;
@@ -49,12 +50,13 @@ typedef struct gtx_level {
     uint8_t *data;            /* freed once it is uploaded */
 } gtx_level;
 
-enum { GTX_MAX_LEVELS = 3 + 2 * GTX_MAX_MIPS };
+enum { GTX_MAX_LEVELS = 3 + 4 * GTX_MAX_MIPS };
 
 struct gtx_model {
     gtx_allocator allocator;
     uint32_t height_bits, mip_count, patch_count;
-    bool has_color, ready;
+    bool has_color, has_material, ready;
+    float emission_scale;     /* 0: no emission */
     gtx_level levels[GTX_MAX_LEVELS];
     uint32_t level_count;
     gtx_proxies proxies;      /* freed once they are uploaded */

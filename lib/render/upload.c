@@ -20,6 +20,10 @@ static texture_kind kind_of(const gtx_model *model, uint32_t unit)
                           GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR},
         [UNIT_COLORS] = {GL_TEXTURE_2D_ARRAY, GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE,
                          GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR},
+        [UNIT_MATERIALS] = {GL_TEXTURE_2D_ARRAY, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE,
+                            GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR},
+        [UNIT_EMISSIONS] = {GL_TEXTURE_2D_ARRAY, GL_SRGB8, GL_RGB, GL_UNSIGNED_BYTE,
+                            GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR},
         [UNIT_PATCHES] = {GL_TEXTURE_2D, GL_RGBA32F, GL_RGBA, GL_FLOAT, GL_NEAREST, GL_NEAREST},
     };
     texture_kind kind = kinds[unit];

@@ -13,6 +13,10 @@ static const char *const paper[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
                                     "geotex_view.glsl",    "geotex_surface.glsl",
                                     "geotex_paper.glsl",   "geotex_forward.frag", NULL};
 
+static const char *const material[] = {
+    "geotex_dialect.glsl",  "geotex_sheet.glsl", "geotex_view.glsl",    "geotex_surface.glsl",
+    "geotex_material.glsl", "geotex_cast.glsl",  "geotex_forward.frag", NULL};
+
 /* Compiles a program's stage and expects no word of complaint. */
 static void compile(const char *version, const char *options, const char *kind,
                     const char *const *parts)
@@ -56,6 +60,9 @@ static void every_dialect(void **state)
         compile(versions[i][0], versions[i][1], "vert", vertex);
         compile(versions[i][0], versions[i][1], "frag", cast);
         compile(versions[i][0], versions[i][1], "frag", paper);
+        char head[64];
+        snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS", versions[i][0]);
+        compile(head, versions[i][1], "frag", material);
     }
 }
 

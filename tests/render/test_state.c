@@ -155,8 +155,8 @@ static void fixed_otherwise(void **state)
         }
         for (int i = TOUCHED; i < SINGLES; ++i)
             assert_int_equal(after.value[i], before.value[i]);
-        for (int i = 0; i < 3 * UNITS; ++i) /* units 0..5 are cleared, the others the host's */
-            assert_int_equal(after.value[SINGLES + i], i < 18 ? 0 : before.value[SINGLES + i]);
+        for (int i = 0; i < 3 * UNITS; ++i) /* units 0..7 are cleared, the others the host's */
+            assert_int_equal(after.value[SINGLES + i], i < 24 ? 0 : before.value[SINGLES + i]);
         for (int i = 0; i < 5 * BUFFERS; ++i)
             assert_int_equal(after.value[SINGLES + 3 * UNITS + i], i % 5 != 0);
         for (int i = VALUES - 8; i < VALUES; ++i)

@@ -1,0 +1,50 @@
+/* The material of a hit, and the stock shading of it: metallic-roughness as in glTF 2.0, appendix B.
+ * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl and geotex_surface.glsl before it. */
+GTX_SAMPLER(5, highp sampler2DArray) gtx_materials;  /* occlusion, roughness, metallic, lit; mips */
+GTX_SAMPLER(6, highp sampler2DArray) gtx_emissions;  /* sRGB, mips; decoded when sampled */
+
+/* What light meets at a point. Colours are linear. */
+struct gtx_material {
+    vec3 color, emission;
+    float occlusion, roughness, metallic;
+    float lit;                /* share of lighting: 0 shows the colour as it is */
+};
+
+/* gtx_maps.z scales the emission, 0 when there is none; .w is 1 when the model has materials. */
+gtx_material gtx_material_of(gtx_sheet sheet, vec2 at, float level, vec3 color)
+{
+    gtx_material m = gtx_material(color, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
+    if (gtx_maps.w > 0.0) {
+        vec4 map = gtx_lookup(gtx_materials, sheet, at, level, gtx_maps.x);
+        m.occlusion = map.x;
+        m.roughness = map.y;
+        m.metallic = map.z;
+        m.lit = map.w;
+    }
+    if (gtx_maps.z > 0.0)
+        m.emission = gtx_lookup(gtx_emissions, sheet, at, level, gtx_maps.x).rgb * gtx_maps.z;
+    return m;
+}
+
+/* Of one directional light, so bright that a white wall facing it is white, and of light from
+ * everywhere, which takes the share `ambient`. n, eye and light are unit, away from the surface. */
+vec3 gtx_shade(gtx_material m, vec3 n, vec3 eye, vec3 light, float ambient)
+{
+    vec3 f0 = mix(vec3(0.04), m.color, m.metallic);
+    vec3 diffuse = m.color * (0.96 * (1.0 - m.metallic));
+    float alpha = max(m.roughness * m.roughness, 0.002);
+    vec3 h = normalize(light + eye + 1e-5 * n);
+    float nl = max(dot(n, light), 0.0), nv = max(dot(n, eye), 1e-3), nh = max(dot(n, h), 0.0);
+
+    /* Fresnel by Schlick; distribution by Trowbridge and Reitz, times pi; visibility by Smith, with
+     * masking and shadowing correlated. */
+    vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - max(dot(eye, h), 0.0), 5.0);
+    float a2 = alpha * alpha, d = nh * nh * (a2 - 1.0) + 1.0;
+    float distribution = a2 / (d * d);
+    float visibility = 0.5 / max(nl * sqrt(nv * nv * (1.0 - a2) + a2) +
+                                 nv * sqrt(nl * nl * (1.0 - a2) + a2), 1e-6);
+    vec3 direct = (diffuse * (1.0 - fresnel) / 0.96 + fresnel * (distribution * visibility)) * nl;
+    vec3 around = (diffuse + f0) * m.occlusion;
+    vec3 shaded = (1.0 - ambient) * direct + ambient * around;
+    return mix(m.color, shaded, m.lit) + m.emission;
+}
