@@ -19,6 +19,8 @@
 extern "C" {
 #endif
 
+/* Objects carry labels, and a draw is a group, where the context has KHR_debug. */
+
 /* A renderer: programs and shared objects of one context (or share group). */
 typedef struct gtx_renderer gtx_renderer;
 /* An asset on the GPU. */
@@ -29,7 +31,8 @@ typedef void (*gtx_gl_proc)(void);
 typedef struct gtx_renderer_desc {
     gtx_gl_proc (*load)(const char *name, void *user);   /* required: the host's GL loader */
     void *load_user;
-    void (*log)(const char *message, void *user);        /* shader logs; may be NULL */
+    void (*log)(const char *message, void *user);        /* shader logs, and a line on the context;
+                                                            may be NULL */
     void *log_user;
     const gtx_allocator *allocator;
     uint32_t reserved[8];
@@ -56,6 +59,14 @@ GTX_API gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, ui
 /* Both at once. */
 GTX_API gtx_result gtx_model_create(gtx_renderer *renderer, const gtx_asset *asset,
                                     gtx_model **out, gtx_error *error);
+
+/* Takes one patch from an edited asset: its maps at all levels, and the record, bounds and proxy
+ * that follow. `edited` has the pages, maps and number of patches of the asset that the model was
+ * made of, and is not kept. State is left as by gtx_model_upload.
+ * Errors: ARGUMENT, MEMORY (nothing has changed), GL (out of memory). */
+GTX_API gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model,
+                                    const gtx_asset *edited, uint32_t patch, gtx_error *error);
+
 GTX_API void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model);
 
 /* Bytes of the model's textures and buffers on the GPU; `color` is colour, material, emission. */

@@ -22,6 +22,15 @@ static void fill_row(const gtx_asset *asset, const gtx_patch *patch, uint32_t y,
     }
 }
 
+void gtx_derive_patch_cells(const gtx_asset *asset, uint32_t patch, void *out)
+{
+    const gtx_patch *p = &asset->patches[patch];
+    const size_t row_size = 4 * (size_t)asset->info.height_bits / 8 * p->rect[2];
+    memset(out, 0, row_size * p->rect[3]);
+    for (uint32_t y = 0; y + 1 < p->rect[3]; ++y)
+        fill_row(asset, p, y, (uint8_t *)out + y * row_size);
+}
+
 void gtx_derive_cells(const gtx_asset *asset, uint32_t page, void *out)
 {
     size_t cell_size = 4 * (size_t)asset->info.height_bits / 8;

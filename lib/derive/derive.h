@@ -27,6 +27,8 @@ void gtx_grid_free(gtx_grid *grid, const gtx_allocator *allocator);
  * all four are zero where the cell does not exist. `out` has 4 * height_bits / 8 * page_width *
  * page_height bytes. */
 void gtx_derive_cells(const gtx_asset *asset, uint32_t page, void *out);
+/* Those of one patch alone, tight: rect[2] x rect[3] texels. */
+void gtx_derive_patch_cells(const gtx_asset *asset, uint32_t patch, void *out);
 
 /* A proxy: convex or not, a closed triangle hull around a patch's solid cells, front faces outward
  * in the patch's own space. Coordinates: texels in x and y (texel i at x = i), height codes in z

@@ -173,6 +173,8 @@ gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_inst
     const bool restore = view->flags & GTX_VIEW_RESTORE_STATE;
     if (restore)
         gtx_state_read(gl, &state);
+    if (gl->PushDebugGroup)
+        gl->PushDebugGroup(GL_DEBUG_SOURCE_THIRD_PARTY, 0, -1, "geotex draw");
     begin(gl, &frame);
     gl->BindVertexArray(renderer->vertex_array);
     gl->BindBuffer(GL_ARRAY_BUFFER, renderer->instance_buffer);
@@ -183,5 +185,7 @@ gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_inst
         gtx_state_restore(gl, &state);
     else
         gtx_state_leave(gl, frame.reversed);
+    if (gl->PopDebugGroup)
+        gl->PopDebugGroup();
     return GTX_OK;
 }

@@ -66,6 +66,16 @@ enum {
     GL_TEXTURE_MAX_LEVEL = 0x813D,
     GL_MAJOR_VERSION = 0x821B,
     GL_MINOR_VERSION = 0x821C,
+    GL_NUM_EXTENSIONS = 0x821D,
+    GL_DEBUG_SOURCE_THIRD_PARTY = 0x8249,
+    GL_VENDOR = 0x1F00,
+    GL_RENDERER = 0x1F01,
+    GL_VERSION = 0x1F02,
+    GL_EXTENSIONS = 0x1F03,
+    GL_BUFFER = 0x82E0,
+    GL_SHADER = 0x82E1,
+    GL_PROGRAM = 0x82E2,
+    GL_TEXTURE = 0x1702,
     GL_RG = 0x8227,
     GL_R8 = 0x8229,
     GL_RG8 = 0x822B,
@@ -138,6 +148,8 @@ enum {
     X(void, GetProgramInfoLog, (gl_uint program, gl_size size, gl_size *length, char *log))        \
     X(void, GetProgramiv, (gl_uint program, gl_enum name, gl_int *value))                          \
     X(void, GetShaderInfoLog, (gl_uint shader, gl_size size, gl_size *length, char *log))          \
+    X(const gl_bool *, GetString, (gl_enum name))                                                  \
+    X(const gl_bool *, GetStringi, (gl_enum name, gl_uint index))                                  \
     X(void, GetShaderiv, (gl_uint shader, gl_enum name, gl_int *value))                            \
     X(gl_int, GetUniformLocation, (gl_uint program, const char *name))                             \
     X(gl_bool, IsEnabled, (gl_enum cap))                                                           \
@@ -171,11 +183,25 @@ enum {
       (gl_uint index, gl_int size, gl_enum type, gl_bool normalized, gl_size stride,               \
        const void *offset))
 
+/* Names for debuggers (KHR_debug, OpenGL 4.3): NULL where the context has none. */
+#define GTX_GL_OPTIONAL(X)                                                                         \
+    X(void, ObjectLabel, (gl_enum kind, gl_uint object, gl_size length, const char *label))        \
+    X(void, PopDebugGroup, (void))                                                                 \
+    X(void, PushDebugGroup, (gl_enum source, gl_uint id, gl_size length, const char *message))
+
 typedef struct gtx_gl {
 #define GTX_GL_FIELD(result, name, parameters) result(GTX_GL_CALL *name) parameters;
     GTX_GL(GTX_GL_FIELD)
+    GTX_GL_OPTIONAL(GTX_GL_FIELD)
 #undef GTX_GL_FIELD
 } gtx_gl;
+
+/* Labels an object, where the context takes labels. */
+static inline void gtx_gl_label(const gtx_gl *gl, gl_enum kind, gl_uint object, const char *label)
+{
+    if (gl->ObjectLabel)
+        gl->ObjectLabel(kind, object, -1, label);
+}
 
 /* Errors: GL, which names the first missing function, or the version below 3.3. */
 gtx_result gtx_gl_init(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *error);

@@ -6,11 +6,6 @@
 
 #include <string.h>
 
-enum {
-    RECORD_TEXELS = 8,        /* of a patch, as gtx_sheet_of reads them */
-    RECORDS_A_ROW = 256
-};
-
 /* How far, in texels and codes, hulls stand off the sheet: rounding in the rasteriser must not cut
  * the sheet's rim, and a flat sheet must not lie in a face. */
 static const float hull_margin = 0.25f;
@@ -77,7 +72,7 @@ static void invert(double axis[3][3], const double origin[3], double rows[3][4])
 }
 
 /* The eight texels of a patch's record, as geotex_sheet.glsl reads them. */
-static void fill_record(float record[RECORD_TEXELS][4], const gtx_patch *patch,
+static void fill_record(float record[GTX_RECORD_TEXELS][4], const gtx_patch *patch,
                         uint32_t height_bits, float low, float high)
 {
     const float *unit[3] = {patch->axis_x, patch->axis_y, patch->axis_z};
@@ -108,21 +103,32 @@ static void fill_record(float record[RECORD_TEXELS][4], const gtx_patch *patch,
         record[7][k] = patch->rect[k];
 }
 
-static bool fill_records(gtx_model *model, const gtx_asset *asset)
+gtx_result gtx_model_derive_proxies(const gtx_asset *asset, const gtx_allocator *allocator,
+                                    gtx_proxies *out, gtx_error *error)
 {
-    const gtx_proxies *proxies = &model->proxies;
-    const uint32_t rows = (model->patch_count + RECORDS_A_ROW - 1) / RECORDS_A_ROW;
-    float(*records)[RECORD_TEXELS][4] = (float(*)[RECORD_TEXELS][4])(void *)add_level(
-        model, UNIT_PATCHES, 0, RECORD_TEXELS * RECORDS_A_ROW, rows, 1, 4 * sizeof(float));
-    for (uint32_t i = 0; records && i < model->patch_count; ++i) {
+    return gtx_derive_boxes(asset, hull_margin, allocator, out, error);
+}
+
+void gtx_model_fill_records(const gtx_asset *asset, const gtx_proxies *proxies,
+                            float (*records)[GTX_RECORD_TEXELS][4])
+{
+    for (uint32_t i = 0; i < asset->info.patch_count; ++i) {
         float low = 0, high = 0;
         for (uint32_t k = proxies->first_index[i]; k < proxies->first_index[i + 1]; ++k) {
             const float z = proxies->vertices[proxies->indices[k]].z;
             low = k == proxies->first_index[i] || z < low ? z : low;
             high = k == proxies->first_index[i] || z > high ? z : high;
         }
-        fill_record(records[i], &asset->patches[i], model->height_bits, low, high);
+        fill_record(records[i], &asset->patches[i], asset->info.height_bits, low, high);
     }
+}
+
+static bool derive_records(gtx_model *model, const gtx_asset *asset)
+{
+    void *records = add_level(model, UNIT_PATCHES, 0, GTX_RECORD_TEXELS * GTX_RECORDS_A_ROW,
+                              gtx_model_record_rows(model->patch_count), 1, 4 * sizeof(float));
+    if (records)
+        gtx_model_fill_records(asset, &model->proxies, records);
     return records != NULL;
 }
 
@@ -142,10 +148,14 @@ gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *alloca
     model->patch_count = asset->info.patch_count;
     model->has_color = asset->info.has_color;
     model->has_material = asset->info.has_material;
+    model->has_emission = asset->info.has_emission;
     model->emission_scale = asset->info.has_emission ? asset->info.emission_scale : 0;
+    model->page_count = asset->info.page_count;
+    model->page_width = asset->info.page_width;
+    model->page_height = asset->info.page_height;
     const uint32_t mips = model->mip_count;
-    gtx_result result = gtx_derive_boxes(asset, hull_margin, &hooks, &model->proxies, error);
-    if (!result && !(derive_cells(model, asset) && fill_records(model, asset) &&
+    gtx_result result = gtx_model_derive_proxies(asset, &hooks, &model->proxies, error);
+    if (!result && !(derive_cells(model, asset) && derive_records(model, asset) &&
                      copy_levels(model, asset, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
                      copy_levels(model, asset, GTX_MAP_NORMAL, UNIT_NORMALS, mips, 2) &&
                      copy_levels(model, asset, GTX_MAP_COLOR, UNIT_COLORS, mips, 4) &&

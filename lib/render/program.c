@@ -99,6 +99,11 @@ static void locate(const gtx_gl *gl, gtx_program *program)
 
 gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
 {
+    static const char *const labels[PROGRAM_COUNT] = {
+        [PROGRAM_CAST] = "geotex cast",
+        [PROGRAM_CAST_MATERIAL] = "geotex cast, materials",
+        [PROGRAM_PAPER] = "geotex paper",
+        [PROGRAM_PAPER_MATERIAL] = "geotex paper, materials"};
     const gtx_gl *gl = &renderer->gl;
     bool failed = false;
     const gl_uint vertex = compile(renderer, GL_VERTEX_SHADER, version_line, vertex_parts);
@@ -108,6 +113,8 @@ gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
                                          shades ? material_lines : version_line, fragment_parts[i]);
         renderer->programs[i].object = fragment ? link_stages(renderer, vertex, fragment) : 0;
         failed = !renderer->programs[i].object;
+        if (!failed)
+            gtx_gl_label(gl, GL_PROGRAM, renderer->programs[i].object, labels[i]);
         if (fragment)
             gl->DeleteShader(fragment);
         if (!failed)

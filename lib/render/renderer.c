@@ -4,6 +4,21 @@
 #include "base/alloc.h"
 #include "base/error.h"
 
+#include <stdio.h>
+
+/* One line on what the renderer runs on: the first question of every bug report. */
+static void log_context(const gtx_renderer *renderer)
+{
+    const gtx_gl *gl = &renderer->gl;
+    char line[256];
+    if (!renderer->log)
+        return;
+    snprintf(line, sizeof line, "geotex: OpenGL %.80s, %.100s%s",
+             (const char *)gl->GetString(GL_VERSION), (const char *)gl->GetString(GL_RENDERER),
+             gl->ObjectLabel ? ", objects labelled" : "");
+    renderer->log(line, renderer->log_user);
+}
+
 gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out, gtx_error *error)
 {
     if (!desc || !desc->load || !out)
@@ -31,6 +46,7 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
     }
     renderer->gl.GenVertexArrays(1, &renderer->vertex_array);
     renderer->gl.GenBuffers(1, &renderer->instance_buffer);
+    log_context(renderer);
     *out = renderer;
     return GTX_OK;
 }

@@ -54,8 +54,8 @@ enum { GTX_MAX_LEVELS = 3 + 4 * GTX_MAX_MIPS };
 
 struct gtx_model {
     gtx_allocator allocator;
-    uint32_t height_bits, mip_count, patch_count;
-    bool has_color, has_material, ready;
+    uint32_t height_bits, mip_count, patch_count, page_count, page_width, page_height;
+    bool has_color, has_material, has_emission, ready;
     float emission_scale;     /* 0: no emission */
     gtx_level levels[GTX_MAX_LEVELS];
     uint32_t level_count;
@@ -75,6 +75,30 @@ void gtx_programs_destroy(gtx_renderer *renderer);
 
 /* model.c: gives the CPU's copy of the maps and proxies back. */
 void gtx_model_free_staging(gtx_model *model);
+/* Boxes around the patches, as a model draws them. Errors: MEMORY. */
+gtx_result gtx_model_derive_proxies(const gtx_asset *asset, const gtx_allocator *allocator,
+                                    gtx_proxies *out, gtx_error *error);
+/* The patch records, as gtx_sheet_of reads them: rows of GTX_RECORDS_A_ROW times
+ * GTX_RECORD_TEXELS texels. */
+enum { GTX_RECORD_TEXELS = 8, GTX_RECORDS_A_ROW = 256 };
+void gtx_model_fill_records(const gtx_asset *asset, const gtx_proxies *proxies,
+                            float (*records)[GTX_RECORD_TEXELS][4]);
+static inline uint32_t gtx_model_record_rows(uint32_t patches)
+{
+    return (patches + GTX_RECORDS_A_ROW - 1) / GTX_RECORDS_A_ROW;
+}
+
+/* upload.c: how the texture of a unit is stored and read. */
+typedef struct gtx_texture_kind {
+    gl_enum target, inner, format, type, min_filter, mag_filter;
+} gtx_texture_kind;
+gtx_texture_kind gtx_texture_kind_of(const gtx_model *model, uint32_t unit);
+/* Copies the proxies into the model's buffers, which exist. */
+void gtx_upload_proxies(const gtx_gl *gl, const gtx_model *model, const gtx_proxies *proxies);
+/* Pixel unpacking as render.h promises to leave it. */
+void gtx_default_unpacking(const gtx_gl *gl);
+/* Errors: GL (out of memory since the last look). */
+gtx_result gtx_check_gl_memory(const gtx_gl *gl, gtx_error *error);
 
 /* view.c: what a draw takes from a gtx_view. */
 typedef struct gtx_frame {

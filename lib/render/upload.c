@@ -4,14 +4,9 @@
 #include "base/alloc.h"
 #include "base/error.h"
 
-/* How the texture of a unit is stored and read. */
-typedef struct texture_kind {
-    gl_enum target, inner, format, type, min_filter, mag_filter;
-} texture_kind;
-
-static texture_kind kind_of(const gtx_model *model, uint32_t unit)
+gtx_texture_kind gtx_texture_kind_of(const gtx_model *model, uint32_t unit)
 {
-    static const texture_kind kinds[UNIT_COUNT] = {
+    static const gtx_texture_kind kinds[UNIT_COUNT] = {
         [UNIT_CELLS] = {GL_TEXTURE_2D_ARRAY, GL_RGBA8UI, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE,
                         GL_NEAREST, GL_NEAREST},
         [UNIT_TRIM] = {GL_TEXTURE_2D_ARRAY, GL_R8, GL_RED, GL_UNSIGNED_BYTE,
@@ -26,7 +21,7 @@ static texture_kind kind_of(const gtx_model *model, uint32_t unit)
                             GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR},
         [UNIT_PATCHES] = {GL_TEXTURE_2D, GL_RGBA32F, GL_RGBA, GL_FLOAT, GL_NEAREST, GL_NEAREST},
     };
-    texture_kind kind = kinds[unit];
+    gtx_texture_kind kind = kinds[unit];
     if (unit == UNIT_CELLS && model->height_bits == 16) {
         kind.inner = GL_RGBA16UI;
         kind.type = GL_UNSIGNED_SHORT;
@@ -51,12 +46,18 @@ static gtx_result check_limits(const gtx_gl *gl, const gtx_model *model, gtx_err
 
 static void allocate_textures(const gtx_gl *gl, gtx_model *model)
 {
+    static const char *const labels[UNIT_COUNT] = {
+        [UNIT_CELLS] = "geotex cells",         [UNIT_TRIM] = "geotex trim",
+        [UNIT_NORMALS] = "geotex normals",     [UNIT_COLORS] = "geotex colors",
+        [UNIT_PATCHES] = "geotex patches",     [UNIT_MATERIALS] = "geotex materials",
+        [UNIT_EMISSIONS] = "geotex emissions"};
     for (uint32_t i = 0; i < model->level_count; ++i) {
         const gtx_level *l = &model->levels[i];
-        const texture_kind kind = kind_of(model, l->unit);
+        const gtx_texture_kind kind = gtx_texture_kind_of(model, l->unit);
         if (!model->textures[l->unit])
             gl->GenTextures(1, &model->textures[l->unit]);
         gl->BindTexture(kind.target, model->textures[l->unit]);
+        gtx_gl_label(gl, GL_TEXTURE, model->textures[l->unit], labels[l->unit]);
         if (kind.target == GL_TEXTURE_2D)
             gl->TexImage2D(kind.target, (gl_int)l->level, (gl_int)kind.inner, (gl_size)l->width,
                            (gl_size)l->height, 0, kind.format, kind.type, NULL);
@@ -73,21 +74,20 @@ static void allocate_textures(const gtx_gl *gl, gtx_model *model)
 }
 
 /* Both go through the array target: the element target belongs to the host's vertex array. */
-static void upload_buffers(const gtx_gl *gl, gtx_model *model)
+void gtx_upload_proxies(const gtx_gl *gl, const gtx_model *model, const gtx_proxies *p)
 {
-    const gtx_proxies *p = &model->proxies;
-    gl->GenBuffers(1, &model->vertices);
-    gl->GenBuffers(1, &model->indices);
     gl->BindBuffer(GL_ARRAY_BUFFER, model->vertices);
     gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(p->vertex_count * sizeof *p->vertices),
                    p->vertices, GL_STATIC_DRAW);
+    gtx_gl_label(gl, GL_BUFFER, model->vertices, "geotex proxy vertices");
     gl->BindBuffer(GL_ARRAY_BUFFER, model->indices);
+    gtx_gl_label(gl, GL_BUFFER, model->indices, "geotex proxy indices");
     gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(p->index_count * sizeof *p->indices), p->indices,
                    GL_STATIC_DRAW);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
 }
 
-static void default_unpacking(const gtx_gl *gl)
+void gtx_default_unpacking(const gtx_gl *gl)
 {
     static const gl_enum zero[] = {GL_UNPACK_SWAP_BYTES,  GL_UNPACK_LSB_FIRST,
                                    GL_UNPACK_ROW_LENGTH,  GL_UNPACK_SKIP_ROWS,
@@ -106,7 +106,7 @@ static bool is_complete(const gtx_level *l)
 /* Uploads rows of a level until it is done or `*budget` bytes are used up; always at least one. */
 static void upload_rows(const gtx_gl *gl, gtx_model *model, gtx_level *l, uint64_t *budget)
 {
-    const texture_kind kind = kind_of(model, l->unit);
+    const gtx_texture_kind kind = gtx_texture_kind_of(model, l->unit);
     const uint64_t row_size = (uint64_t)l->width * l->texel_size;
     gl->BindTexture(kind.target, model->textures[l->unit]);
     do {
@@ -128,7 +128,7 @@ static void upload_rows(const gtx_gl *gl, gtx_model *model, gtx_level *l, uint64
     gl->BindTexture(kind.target, 0);
 }
 
-static gtx_result check_memory(const gtx_gl *gl, gtx_error *error)
+gtx_result gtx_check_gl_memory(const gtx_gl *gl, gtx_error *error)
 {
     for (int i = 0; i < 16; ++i) { /* a lost context reports errors for ever */
         const gl_enum code = gl->GetError();
@@ -152,13 +152,15 @@ gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t m
     if (model->ready)
         return GTX_OK;
     gl->ActiveTexture(GL_TEXTURE0);
-    default_unpacking(gl);
+    gtx_default_unpacking(gl);
     if (!model->vertices) {
         gtx_result result = check_limits(gl, model, error);
         if (result)
             return result;
         allocate_textures(gl, model);
-        upload_buffers(gl, model);
+        gl->GenBuffers(1, &model->vertices);
+        gl->GenBuffers(1, &model->indices);
+        gtx_upload_proxies(gl, model, &model->proxies);
     }
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     for (uint32_t i = 0; i < model->level_count && budget > 0; ++i)
@@ -167,7 +169,7 @@ gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t m
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     gl->BindTexture(GL_TEXTURE_2D, 0);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
-    gtx_result result = check_memory(gl, error);
+    gtx_result result = gtx_check_gl_memory(gl, error);
     if (result)
         return result;
     model->ready = true;

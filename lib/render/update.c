@@ -1,0 +1,124 @@
+/* Edits of a model on the GPU: one patch's maps, and what follows from them. */
+#include "render/renderer.h"
+
+#include "base/alloc.h"
+#include "base/error.h"
+
+/* What is derived anew before anything on the GPU changes. */
+typedef struct derived {
+    gtx_proxies proxies;
+    void *cells, *records;
+    size_t cell_count, cell_size, record_count;
+} derived;
+
+static bool is_alike(const gtx_model *model, const gtx_info *info)
+{
+    return info->page_count == model->page_count && info->page_width == model->page_width &&
+           info->page_height == model->page_height && info->mip_count == model->mip_count &&
+           info->height_bits == model->height_bits && info->patch_count == model->patch_count &&
+           info->has_color == model->has_color && info->has_material == model->has_material &&
+           info->has_emission == model->has_emission;
+}
+
+static void free_derived(derived *d, const gtx_allocator *hooks)
+{
+    gtx_proxies_free(&d->proxies, hooks);
+    gtx_free_array(hooks, d->cells, d->cell_count, d->cell_size);
+    gtx_free_array(hooks, d->records, d->record_count, 4 * sizeof(float));
+}
+
+static gtx_result derive(const gtx_model *model, const gtx_asset *asset, uint32_t patch,
+                         derived *d, gtx_error *error)
+{
+    const gtx_allocator *hooks = &model->allocator;
+    const uint16_t *rect = asset->patches[patch].rect;
+    *d = (derived){.cell_count = (size_t)rect[2] * rect[3], .cell_size = model->height_bits / 2,
+                   .record_count = (size_t)GTX_RECORD_TEXELS * GTX_RECORDS_A_ROW *
+                                   gtx_model_record_rows(model->patch_count)};
+    gtx_result result = gtx_model_derive_proxies(asset, hooks, &d->proxies, error);
+    if (result)
+        return result;
+    d->cells = gtx_alloc_array(hooks, d->cell_count, d->cell_size);
+    d->records = gtx_alloc_array(hooks, d->record_count, 4 * sizeof(float));
+    if (!d->cells || !d->records) {
+        free_derived(d, hooks);
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for an update");
+    }
+    gtx_derive_patch_cells(asset, patch, d->cells);
+    gtx_model_fill_records(asset, &d->proxies, d->records);
+    return GTX_OK;
+}
+
+/* The patch's rectangle at a mip level, out of rows of `width` texels. */
+static void upload_rect(const gtx_gl *gl, const gtx_model *model, uint32_t unit,
+                        const gtx_patch *patch, uint32_t level, const void *data, uint32_t width)
+{
+    const gtx_texture_kind kind = gtx_texture_kind_of(model, unit);
+    gl->BindTexture(kind.target, model->textures[unit]);
+    gl->PixelStorei(GL_UNPACK_ROW_LENGTH, (gl_int)width);
+    gl->TexSubImage3D(kind.target, (gl_int)level, patch->rect[0] >> level, patch->rect[1] >> level,
+                      (gl_int)patch->page, patch->rect[2] >> level, patch->rect[3] >> level, 1,
+                      kind.format, kind.type, data);
+}
+
+static void upload_maps(const gtx_gl *gl, const gtx_model *model, const gtx_asset *asset,
+                        const gtx_patch *patch)
+{
+    static const struct {
+        gtx_map map;
+        uint32_t unit, texel_size;
+    } maps[] = {{GTX_MAP_TRIM, UNIT_TRIM, 1},
+                {GTX_MAP_NORMAL, UNIT_NORMALS, 2},
+                {GTX_MAP_COLOR, UNIT_COLORS, 4},
+                {GTX_MAP_MATERIAL, UNIT_MATERIALS, 4},
+                {GTX_MAP_EMISSION, UNIT_EMISSIONS, 3}};
+    for (size_t i = 0; i < sizeof maps / sizeof *maps; ++i) {
+        for (uint32_t k = 0; k < model->mip_count; ++k) {
+            const uint8_t *data = gtx_map_data(asset, maps[i].map, k, NULL);
+            if (!data)
+                break;
+            const size_t width = model->page_width >> k, height = model->page_height >> k;
+            const size_t row = patch->page * height + (patch->rect[1] >> k);
+            const size_t texel = row * width + (patch->rect[0] >> k);
+            upload_rect(gl, model, maps[i].unit, patch, k, data + texel * maps[i].texel_size,
+                        (uint32_t)width);
+        }
+    }
+}
+
+gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model, const gtx_asset *edited,
+                            uint32_t patch, gtx_error *error)
+{
+    if (!renderer || !model || !edited || !model->ready)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "an update needs a renderer, an uploaded model and an asset");
+    if (!is_alike(model, &edited->info) || patch >= model->patch_count)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "patch %u is not one of an asset with the model's pages and maps", patch);
+    derived d;
+    gtx_result result = derive(model, edited, patch, &d, error);
+    if (result)
+        return result;
+
+    const gtx_gl *gl = &renderer->gl;
+    const gtx_patch *p = &edited->patches[patch];
+    gl->ActiveTexture(GL_TEXTURE0);
+    gtx_default_unpacking(gl);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    upload_rect(gl, model, UNIT_CELLS, p, 0, d.cells, p->rect[2]);
+    upload_maps(gl, model, edited, p);
+    gl->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    const gtx_texture_kind records = gtx_texture_kind_of(model, UNIT_PATCHES);
+    gl->BindTexture(records.target, model->textures[UNIT_PATCHES]);
+    gl->TexSubImage2D(records.target, 0, 0, 0, GTX_RECORD_TEXELS * GTX_RECORDS_A_ROW,
+                      (gl_size)gtx_model_record_rows(model->patch_count), records.format,
+                      records.type, d.records);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    gl->BindTexture(GL_TEXTURE_2D, 0);
+    gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+    gtx_upload_proxies(gl, model, &d.proxies);
+    model->index_count = d.proxies.index_count;
+    model->emission_scale = edited->info.has_emission ? edited->info.emission_scale : 0;
+    free_derived(&d, &model->allocator);
+    return gtx_check_gl_memory(gl, error);
+}

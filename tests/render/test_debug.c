@@ -1,0 +1,175 @@
+/* What a debugger sees: labels on every object, a group around a draw, and no complaint. */
+#include "stage.h"
+
+typedef struct witness {
+    int complaints, groups;
+} witness;
+
+static void APIENTRY on_message(GLenum source, GLenum type, GLuint id, GLenum severity,
+                                GLsizei length, const GLchar *text, const void *user)
+{
+    witness *w = (witness *)(uintptr_t)user;
+    (void)source, (void)id, (void)length;
+    if (type == GL_DEBUG_TYPE_PUSH_GROUP && !strcmp(text, "geotex draw"))
+        ++w->groups;
+    else if (type != GL_DEBUG_TYPE_POP_GROUP && severity != GL_DEBUG_SEVERITY_NOTIFICATION) {
+        fprintf(stderr, "%s\n", text);
+        ++w->complaints;
+    }
+}
+
+static void a_draw_is_a_silent_group(void **state)
+{
+    STAGE_OR_SKIP(state);
+    PFNGLDEBUGMESSAGECALLBACKPROC set_callback =
+        (PFNGLDEBUGMESSAGECALLBACKPROC)gtx_offscreen_load("glDebugMessageCallback", NULL);
+    GLint major = 0;
+    s->gl.GetIntegerv(GL_MAJOR_VERSION, &major);
+    if (!set_callback || major < 4)
+        skip();
+    witness w = {0};
+    set_callback(on_message, &w);
+    s->gl.Enable(GL_DEBUG_OUTPUT);
+    s->gl.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    subject shown = subject_open(s, fixture_sphere(2, 48, 8));
+    gtx_camera camera = camera_around(shown.asset);
+    gtx_view view = view_of(&camera);
+    for (int i = 0; i < 4; ++i) {
+        view.method = i % 2 ? GTX_METHOD_PAPER : GTX_METHOD_CAST;
+        view.flags = i / 2 ? GTX_VIEW_RESTORE_STATE : 0;
+        stage_draw(s, &view, &shown.instance, 1);
+    }
+    must(gtx_model_update(s->renderer, shown.model, shown.asset, 0, NULL), &(gtx_error){0});
+    subject_close(s, &shown);
+    s->gl.Disable(GL_DEBUG_OUTPUT);
+    s->gl.Disable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    set_callback(NULL, NULL);
+    assert_int_equal(w.complaints, 0);
+    assert_int_equal(w.groups, 4);
+}
+
+/* How many objects of a kind carry a label of ours. */
+static int labelled(GLenum kind)
+{
+    PFNGLGETOBJECTLABELPROC get_label =
+        (PFNGLGETOBJECTLABELPROC)gtx_offscreen_load("glGetObjectLabel", NULL);
+    PFNGLISTEXTUREPROC is_texture = (PFNGLISTEXTUREPROC)gtx_offscreen_load("glIsTexture", NULL);
+    PFNGLISBUFFERPROC is_buffer = (PFNGLISBUFFERPROC)gtx_offscreen_load("glIsBuffer", NULL);
+    PFNGLISPROGRAMPROC is_program = (PFNGLISPROGRAMPROC)gtx_offscreen_load("glIsProgram", NULL);
+    int count = 0;
+    for (GLuint i = 1; i < 200; ++i) {
+        char text[64] = "";
+        const GLboolean there = kind == GL_TEXTURE  ? is_texture(i)
+                                : kind == GL_BUFFER ? is_buffer(i)
+                                                    : is_program(i);
+        if (there)
+            get_label(kind, i, sizeof text, NULL, text);
+        count += !strncmp(text, "geotex ", 7);
+    }
+    return count;
+}
+
+static void objects_carry_labels(void **state)
+{
+    STAGE_OR_SKIP(state);
+    GLint major = 0;
+    s->gl.GetIntegerv(GL_MAJOR_VERSION, &major);
+    if (major < 4 || !gtx_offscreen_load("glGetObjectLabel", NULL))
+        skip();
+    subject shown = subject_open(s, fixture_sphere(2, 48, 8));
+    assert_int_equal(labelled(GL_PROGRAM), 4);
+    assert_int_equal(labelled(GL_TEXTURE), 5);
+    assert_int_equal(labelled(GL_BUFFER), 2);
+    subject_close(s, &shown);
+    assert_int_equal(labelled(GL_TEXTURE), 0); /* deleted with the model */
+    s->gl.GetError();
+}
+
+static void remember(const char *message, void *user)
+{
+    snprintf(user, 256, "%s", message);
+}
+
+static void the_log_names_the_context(void **state)
+{
+    STAGE_OR_SKIP(state);
+    char line[256] = "";
+    const gtx_renderer_desc desc = {.load = gtx_offscreen_load, .log = remember, .log_user = line};
+    gtx_renderer *renderer = NULL;
+    gtx_error error = {0};
+    must(gtx_renderer_create(&desc, &renderer, &error), &error);
+    gtx_renderer_destroy(renderer);
+    assert_true(!strncmp(line, "geotex: OpenGL ", 15));
+    assert_non_null(strstr(line, (const char *)s->gl.GetString(GL_RENDERER)));
+}
+
+typedef struct counter {
+    long until_failure, bytes;
+} counter;
+
+static void *counted_alloc(size_t size, void *user)
+{
+    counter *c = user;
+    if (c->until_failure-- == 0)
+        return NULL;
+    c->bytes += (long)size;
+    return malloc(size);
+}
+
+static void counted_free(void *memory, size_t size, void *user)
+{
+    ((counter *)user)->bytes -= (long)size;
+    free(memory);
+}
+
+/* A renderer, a model, a draw and an update, with the n-th allocation failing. */
+static gtx_result use(stage *s, const gtx_asset *asset, const gtx_allocator *hooks)
+{
+    const gtx_renderer_desc desc = {.load = gtx_offscreen_load, .allocator = hooks};
+    gtx_renderer *renderer = NULL;
+    gtx_model *model = NULL;
+    gtx_camera camera = camera_around(asset);
+    const gtx_view view = view_of(&camera);
+    stage_clear(s, &view);
+    gtx_result result = gtx_renderer_create(&desc, &renderer, NULL);
+    if (!result)
+        result = gtx_model_create(renderer, asset, &model, NULL);
+    gtx_instance instance = {.model = model};
+    memcpy(instance.transform, identity, sizeof identity);
+    if (!result)
+        result = gtx_draw(renderer, &view, &instance, 1, NULL);
+    if (!result)
+        result = gtx_model_update(renderer, model, asset, 0, NULL);
+    gtx_model_destroy(renderer, model);
+    gtx_renderer_destroy(renderer);
+    return result;
+}
+
+static void every_allocation_goes_through_the_hooks(void **state)
+{
+    STAGE_OR_SKIP(state);
+    gtx_asset *asset = fixture_flat(0.5, 8);
+    gtx_result result = GTX_ERROR_MEMORY;
+    long n = 0;
+    for (; result; ++n) {
+        counter c = {n, 0};
+        const gtx_allocator hooks = {counted_alloc, counted_free, &c};
+        result = use(s, asset, &hooks);
+        assert_true(result == GTX_OK || result == GTX_ERROR_MEMORY);
+        assert_int_equal(c.bytes, 0);
+        assert_true(n < 200);
+    }
+    assert_true(n > 12);
+    gtx_close(asset);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_draw_is_a_silent_group),
+        cmocka_unit_test(objects_carry_labels),
+        cmocka_unit_test(the_log_names_the_context),
+        cmocka_unit_test(every_allocation_goes_through_the_hooks),
+    };
+    return cmocka_run_group_tests(tests, stage_open, stage_close);
+}

@@ -1,0 +1,189 @@
+/* Materials: what metallic, roughness, occlusion, emission and unlit do to a sphere. */
+#include "stage.h"
+
+typedef struct look {
+    uint8_t color[4], material[4], emission[3];
+} look;
+
+/* The asset again with one colour, material and emission all over; closes the first. */
+static gtx_asset *repaint(gtx_asset *asset, const look *l)
+{
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    const uint8_t *normal[8], *levels[3][8];
+    const uint8_t *texel[3] = {l->color, l->material, l->emission};
+    const size_t sizes[3] = {4, 4, 3};
+    for (uint32_t k = 0; k < info.mip_count; ++k) {
+        const size_t count = (size_t)(info.page_width >> k) * (info.page_height >> k);
+        normal[k] = gtx_map_data(asset, GTX_MAP_NORMAL, k, NULL);
+        for (int m = 0; m < 3; ++m) {
+            uint8_t *map = malloc(count * sizes[m]);
+            for (size_t i = 0; i < count * sizes[m]; ++i)
+                map[i] = texel[m][i % sizes[m]];
+            levels[m][k] = map;
+        }
+    }
+    const int shines = l->emission[0] | l->emission[1] | l->emission[2];
+    gtx_asset_desc desc = {
+        .patches = gtx_patches(asset), .patch_count = info.patch_count,
+        .page_count = info.page_count, .page_width = info.page_width,
+        .page_height = info.page_height, .mip_count = info.mip_count,
+        .height_bits = info.height_bits, .height = gtx_map_data(asset, GTX_MAP_HEIGHT, 0, NULL),
+        .trim = gtx_map_data(asset, GTX_MAP_TRIM, 0, NULL), .normal = normal, .color = levels[0],
+        .material = levels[1], .emission = shines ? levels[2] : NULL, .unit = 1};
+    memcpy(desc.bounds_min, info.bounds_min, sizeof desc.bounds_min);
+    memcpy(desc.bounds_max, info.bounds_max, sizeof desc.bounds_max);
+    gtx_asset *out = NULL;
+    gtx_error error = {0};
+    must(gtx_create(&desc, &out, &error), &error);
+    for (int m = 0; m < 3; ++m)
+        for (uint32_t k = 0; k < info.mip_count; ++k)
+            free((void *)(uintptr_t)levels[m][k]);
+    gtx_close(asset);
+    return out;
+}
+
+/* What a sphere of that look shows: the middle of the picture (facing the light), its brightest
+ * pixel, and the mean over the sphere. */
+typedef struct shown {
+    int middle[3], brightest;
+    double mean;
+} shown;
+
+static shown draw_sphere(stage *s, look l, float ambient)
+{
+    subject sphere = subject_open(s, repaint(fixture_sphere(2, 48, 8), &l));
+    gtx_camera camera = camera_around(sphere.asset);
+    gtx_view view = view_of(&camera); /* the light is at the camera */
+    view.ambient = ambient;
+    stage_draw(s, &view, &sphere.instance, 1);
+    subject_close(s, &sphere);
+    shown out = {.mean = 0};
+    double sum = 0;
+    long count = 0;
+    for (int i = 0; i < STAGE_PIXELS; ++i) {
+        const uint8_t *p = &s->color[4 * i];
+        const int value = p[0] + p[1] + p[2];
+        sum += p[3] ? value : 0;
+        count += p[3] > 0;
+        out.brightest = value > out.brightest ? value : out.brightest;
+    }
+    out.mean = sum / (double)count;
+    for (int c = 0; c < 3; ++c)
+        out.middle[c] = s->color[4 * (STAGE_HEIGHT / 2 * STAGE_WIDTH + STAGE_WIDTH / 2) + c];
+    return out;
+}
+
+static const look clay = {{180, 120, 60, 255}, {255, 255, 0, 255}, {0, 0, 0}};
+
+static void rough_looks_like_its_colour(void **state)
+{
+    STAGE_OR_SKIP(state);
+    const shown clay_shown = draw_sphere(s, clay, 0.2f);
+    for (int c = 0; c < 3; ++c) /* a little more by the specular reflection of a rough wall */
+        assert_in_range(clay_shown.middle[c], clay.color[c] - 4, clay.color[c] + 24);
+}
+
+static void smooth_has_a_highlight(void **state)
+{
+    STAGE_OR_SKIP(state);
+    look smooth = clay;
+    smooth.material[1] = 60;
+    const shown a = draw_sphere(s, clay, 0.2f), b = draw_sphere(s, smooth, 0.2f);
+    assert_true(b.brightest > a.brightest + 150);
+    assert_true(b.mean < a.mean + 30); /* small */
+}
+
+static void metal_is_dark_but_for_its_tinted_highlight(void **state)
+{
+    STAGE_OR_SKIP(state);
+    look metal = clay;
+    metal.material[1] = 90;
+    metal.material[2] = 255;
+    const shown a = draw_sphere(s, clay, 0.05f), b = draw_sphere(s, metal, 0.05f);
+    assert_true(b.mean < 0.8 * a.mean);
+    assert_true(b.brightest > a.brightest);
+    assert_true(b.middle[0] > b.middle[2] + 20); /* the colour of the metal, not of the light */
+}
+
+static void occlusion_darkens_what_no_light_reaches(void **state)
+{
+    STAGE_OR_SKIP(state);
+    look hidden = clay;
+    hidden.material[0] = 0;
+    const shown a = draw_sphere(s, clay, 1), b = draw_sphere(s, hidden, 1);
+    for (int c = 0; c < 3; ++c) {
+        assert_in_range(a.middle[c], clay.color[c] - 4, clay.color[c] + 24);
+        assert_in_range(b.middle[c], 0, 3);
+    }
+}
+
+static void unlit_shows_its_colour_everywhere(void **state)
+{
+    STAGE_OR_SKIP(state);
+    look unlit = clay;
+    unlit.material[3] = 0;
+    const shown a = draw_sphere(s, unlit, 0.2f);
+    for (int c = 0; c < 3; ++c)
+        assert_in_range(a.middle[c], unlit.color[c] - 1, unlit.color[c] + 1);
+    assert_true(fabs(a.mean - (180 + 120 + 60)) < 3);
+}
+
+static void emission_shines_in_the_dark(void **state)
+{
+    STAGE_OR_SKIP(state);
+    look lamp = clay;
+    memset(lamp.color, 0, 3);
+    memcpy(lamp.emission, (uint8_t[3]){20, 200, 90}, 3);
+    const shown a = draw_sphere(s, lamp, 0.2f);
+    assert_in_range(a.middle[1], 196, 215);
+    assert_in_range(a.middle[2], 86, 125);
+    assert_true(a.mean > 20 + 200 + 90 - 6);
+}
+
+/* Models with and without materials in one draw, in any order, are as each alone. */
+static void programs_change_within_a_draw(void **state)
+{
+    STAGE_OR_SKIP(state);
+    look smooth = clay;
+    smooth.material[1] = 60;
+    subject plain = subject_open(s, fixture_sphere(2, 48, 8));
+    subject shiny = subject_open(s, repaint(fixture_sphere(2, 48, 8), &smooth));
+    gtx_camera camera = camera_around(plain.asset);
+    camera.distance = 6;
+    const gtx_view view = view_of(&camera);
+    gtx_instance both[3] = {plain.instance, shiny.instance, plain.instance};
+    both[0].transform[12] = -3;
+    both[1].transform[12] = 3;
+    both[2].transform[13] = 5;
+    uint8_t *first = malloc(sizeof s->color);
+    stage_draw(s, &view, both, 3);
+    memcpy(first, s->color, sizeof s->color);
+    const gtx_instance turned[3] = {both[1], both[2], both[0]};
+    stage_draw(s, &view, turned, 3);
+    assert_memory_equal(first, s->color, sizeof s->color);
+    stage_draw(s, &view, both, 1); /* what the plain one alone shows is in the picture of all */
+    long same = 0, covered = 0;
+    for (int i = 0; i < STAGE_PIXELS; ++i) {
+        covered += s->color[4 * i + 3] > 0;
+        same += s->color[4 * i + 3] > 0 && !memcmp(&first[4 * i], &s->color[4 * i], 4);
+    }
+    assert_true(covered > 500 && same > covered * 9 / 10);
+    free(first);
+    subject_close(s, &plain);
+    subject_close(s, &shiny);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rough_looks_like_its_colour),
+        cmocka_unit_test(smooth_has_a_highlight),
+        cmocka_unit_test(metal_is_dark_but_for_its_tinted_highlight),
+        cmocka_unit_test(occlusion_darkens_what_no_light_reaches),
+        cmocka_unit_test(unlit_shows_its_colour_everywhere),
+        cmocka_unit_test(emission_shines_in_the_dark),
+        cmocka_unit_test(programs_change_within_a_draw),
+    };
+    return cmocka_run_group_tests(tests, stage_open, stage_close);
+}
