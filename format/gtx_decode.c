@@ -81,10 +81,7 @@ static const uint64_t p1 = 0x9E3779B185EBCA87u, p2 = 0xC2B2AE3D27D4EB4Fu,
 
 static uint64_t rotl(uint64_t v, int bits) { return v << bits | v >> (64 - bits); }
 
-static uint64_t xxh_round(uint64_t acc, uint64_t lane)
-{
-    return rotl(acc + lane * p2, 31) * p1;
-}
+static uint64_t xxh_round(uint64_t acc, uint64_t lane) { return rotl(acc + lane * p2, 31) * p1; }
 
 static uint64_t xxh64(const byte *p, uint64_t size)
 {
@@ -120,7 +117,7 @@ static unsigned check_header(struct file *f)
         return 100;
     if (f->size < HEADER)
         return 118;
-    if (u16(h + 12) != 0 || u16(h + 14) != 1)
+    if (u16(h + 12) != 0 || u16(h + 14) != 2)
         return 101;
     if (u32(h + 16) != HEADER)
         return 102;
@@ -163,7 +160,7 @@ static unsigned check_values(struct file *f)
             return 112;
     if (!isfinite(f32(h + 96)) || f32(h + 96) <= 0)
         return 113;
-    if (!all_zero(h + 100, 4) || !all_zero(h + 144, 40))
+    if (!all_zero(h + 100, 4) || !all_zero(h + 148, 36))
         return 114;
     for (int i = 0; i < 3; ++i)
         if (!isfinite(f64(h + 104 + 8 * i)))
@@ -173,45 +170,42 @@ static unsigned check_values(struct file *f)
 
 static unsigned check_header_hash(struct file *f)
 {
+    byte copy[184 + ENTRY * MAX_SECTIONS];
     size_t table = (size_t)ENTRY * f->section_count;
-    byte *copy = malloc(184 + table);
-    if (!copy)
-        return NO_MEMORY;
     memcpy(copy, f->data, 184);
     memcpy(copy + 184, f->data + HEADER, table);
-    uint64_t hash = xxh64(copy, 184 + table);
-    free(copy);
-    return hash == u64(f->data + 184) ? 0 : 117;
+    return xxh64(copy, 184 + table) == u64(f->data + 184) ? 0 : 117;
 }
 
 /* ---- 1.2 and 2: table ---- */
 
-static int is_type(const struct section *s, const char *type)
-{
-    return !strcmp(s->type, type);
-}
+/* In file order; those from NRML on have levels, those from COLR on may be absent. META is last. */
+enum { KNOWN = 7 };
+static const char *const types[KNOWN] = {"PTCH", "HGHT", "TRIM", "NRML", "COLR", "MATL", "EMIT"};
+
+static int is_type(const struct section *s, const char *type) { return !strcmp(s->type, type); }
 
 static int order_of(const struct section *s)
 {
-    static const char *const order[] = {"PTCH", "HGHT", "TRIM", "NRML", "COLR"};
-    for (int i = 0; i < 5; ++i)
-        if (is_type(s, order[i]))
+    for (int i = 0; i < KNOWN; ++i)
+        if (is_type(s, types[i]))
             return 16 * i + 8 - (int)s->level;
     return is_type(s, "META") ? 1000 : UNKNOWN;
 }
 
 static unsigned check_known(struct file *f, struct section *s)
 {
-    int levels = is_type(s, "NRML") || is_type(s, "COLR");
+    int levels = order_of(s) > 16 * 3 && order_of(s) < UNKNOWN;
     if (s->level >= (levels ? f->mips : 1))
         return 203;
     static const struct {
         const char *type;
         uint32_t format, texel;
     } images[] = {
-        {"HGHT", 13, 1}, {"HGHT", 74, 2}, {"TRIM", 9, 1}, {"NRML", 16, 2}, {"COLR", 43, 4}};
+        {"HGHT", 13, 1}, {"HGHT", 74, 2}, {"TRIM", 9, 1}, {"NRML", 16, 2}, {"COLR", 43, 4},
+        {"MATL", 37, 4}, {"EMIT", 29, 3}};
     int image = !is_type(s, "PTCH") && !is_type(s, "META");
-    for (int i = 0; i < 5; ++i)
+    for (int i = 0; i < 7; ++i)
         if (is_type(s, images[i].type) && s->format == images[i].format)
             s->texel = images[i].texel;
     if (image ? !s->texel : s->format)
@@ -290,9 +284,14 @@ static uint32_t count_of(const struct file *f, const char *type)
 
 static unsigned check_presence(const struct file *f)
 {
-    uint32_t colors = count_of(f, "COLR");
-    return count_of(f, "PTCH") && count_of(f, "HGHT") && count_of(f, "TRIM") &&
-           count_of(f, "NRML") == f->mips && (!colors || colors == f->mips) ? 0 : 214;
+    for (int i = 0; i < KNOWN; ++i) {
+        uint32_t count = count_of(f, types[i]), all = i < 3 ? 1 : f->mips;
+        if (count != all && (count || i < 4))
+            return 214;
+    }
+    double scale = f32(f->data + 144);
+    int right = count_of(f, "EMIT") ? isfinite(scale) && scale > 0 : all_zero(f->data + 144, 4);
+    return right ? 0 : 119;
 }
 
 static unsigned check_table(struct file *f)
@@ -649,7 +648,8 @@ static void print_file(struct file *f)
     printf("header:");
     print_floats("bounds and unit", h + 72, 7);
     printf(" anchor %.17g,%.17g,%.17g", f64(h + 104), f64(h + 112), f64(h + 120));
-    printf(" content 0x%016" PRIx64 " triangles %" PRIu64 "\n", u64(h + 128), u64(h + 136));
+    printf(" emission scale %.9g content 0x%016" PRIx64 " triangles %" PRIu64 "\n", f32(h + 144),
+           u64(h + 128), u64(h + 136));
     for (uint32_t n = 0; n < f->patches; ++n)
         print_patch(n, find(f, "PTCH")->bytes + RECORD * (uint64_t)n);
     for (uint32_t i = 0; i < f->section_count; ++i)

@@ -128,7 +128,7 @@ typedef struct gtx_patch {
     float axis_z[3], coverage;    /* coverage: share of texels with a code, 0..1 */
     uint32_t page;
     uint16_t rect[4];             /* x, y, w, h in texels of the page at level 0 */
-    uint16_t dilation;            /* texels of valid normal and colour around the coded ones */
+    uint16_t dilation;            /* texels with valid normals, colours... around the coded ones */
     uint16_t flags;
     float sphere[4];              /* centre and radius around the coded texels' surface */
     uint32_t source_triangles;    /* triangles of the chart */
@@ -149,7 +149,7 @@ typedef struct gtx_info {
     uint32_t version_major, version_minor;    /* of the format */
     uint32_t patch_count;
     uint32_t page_count, page_width, page_height;
-    uint32_t mip_count;           /* levels of normal and colour, 1..8 */
+    uint32_t mip_count;           /* levels of every map but height and trim, 1..8 */
     uint32_t height_bits;         /* 8 or 16 */
     uint32_t has_color, has_material, has_emission;   /* 0 or 1 */
     float bounds_min[3], bounds_max[3];       /* relative to the anchor */
@@ -212,7 +212,9 @@ typedef void (*gtx_issue_fn)(const gtx_issue *issue, void *user);
 
 /* Runs every rule of format/gtx.md over untrusted bytes and reports each broken one in the order of
  * its section 6, as far as it is safe to read on.
- * GTX_OK when no error was reported (warnings do not count). `fn` may be NULL. */
+ * GTX_OK when no error was reported (warnings do not count). `fn` may be NULL.
+ * Takes from malloc what opening would, 4 GiB at most.
+ * Errors: as gtx_open_memory; rules that are broken come before MEMORY and LIMIT. */
 GTX_API gtx_result gtx_validate(const void *data, size_t size, gtx_issue_fn fn, void *user,
                                 gtx_error *error);
 

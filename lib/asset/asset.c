@@ -21,17 +21,25 @@ uint64_t gtx_asset_bytes(const gtx_info *info, size_t meta_size)
 {
     uint64_t bytes = sizeof(gtx_asset) + meta_size;
     bytes += (uint64_t)info->patch_count * sizeof(gtx_patch);
-    bytes += map_size(info, GTX_SECTION_HEIGHT, 0) + map_size(info, GTX_SECTION_TRIM, 0);
-    for (uint32_t k = 0; k < info->mip_count; ++k) {
-        bytes += map_size(info, GTX_SECTION_NORMAL, k);
-        bytes += info->has_color ? map_size(info, GTX_SECTION_COLOR, k) : 0;
-    }
+    for (gtx_section_kind kind = GTX_SECTION_FIRST_IMAGE; kind <= GTX_SECTION_LAST_IMAGE; ++kind)
+        for (uint32_t k = 0; k < gtx_map_levels(info, kind); ++k)
+            bytes += map_size(info, kind, k);
     return bytes;
 }
 
-static uint8_t *new_map(const gtx_asset *asset, gtx_section_kind kind, uint32_t level)
+/* False when memory is out. */
+static bool new_maps(gtx_asset *asset)
 {
-    return gtx_alloc_array(&asset->allocator, (size_t)map_size(&asset->info, kind, level), 1);
+    for (gtx_section_kind kind = GTX_SECTION_FIRST_IMAGE; kind <= GTX_SECTION_LAST_IMAGE; ++kind) {
+        for (uint32_t k = 0; k < gtx_map_levels(&asset->info, kind); ++k) {
+            uint8_t *map = gtx_alloc_array(&asset->allocator,
+                                           (size_t)map_size(&asset->info, kind, k), 1);
+            *gtx_asset_map(asset, kind, k) = map;
+            if (!map)
+                return false;
+        }
+    }
+    return true;
 }
 
 gtx_asset *gtx_asset_new(const gtx_allocator *allocator, const gtx_info *info, size_t meta_size)
@@ -44,17 +52,7 @@ gtx_asset *gtx_asset_new(const gtx_allocator *allocator, const gtx_info *info, s
     asset->allocator = *allocator;
     asset->info = *info;
     asset->patches = gtx_alloc_array(allocator, info->patch_count, sizeof(gtx_patch));
-    asset->height = new_map(asset, GTX_SECTION_HEIGHT, 0);
-    asset->trim = new_map(asset, GTX_SECTION_TRIM, 0);
-    bool whole = asset->patches && asset->height && asset->trim;
-    for (uint32_t k = 0; k < info->mip_count; ++k) {
-        asset->normal[k] = new_map(asset, GTX_SECTION_NORMAL, k);
-        whole = whole && asset->normal[k];
-        if (info->has_color) {
-            asset->color[k] = new_map(asset, GTX_SECTION_COLOR, k);
-            whole = whole && asset->color[k];
-        }
-    }
+    bool whole = asset->patches && new_maps(asset);
     if (meta_size) {
         asset->meta = gtx_alloc_array(allocator, meta_size, 1);
         asset->meta_size = meta_size;
@@ -73,10 +71,10 @@ void gtx_close(gtx_asset *asset)
     const gtx_info *info = &asset->info;
     gtx_allocator allocator = asset->allocator;
     gtx_free_array(&allocator, asset->patches, info->patch_count, sizeof(gtx_patch));
-    for (int kind = GTX_SECTION_HEIGHT; kind <= GTX_SECTION_COLOR; ++kind)
-        for (uint32_t k = 0; k < (kind >= GTX_SECTION_NORMAL ? info->mip_count : 1); ++k)
-            gtx_free_array(&allocator, gtx_asset_data(asset, (gtx_section_kind)kind, k),
-                           (size_t)map_size(info, (gtx_section_kind)kind, k), 1);
+    for (gtx_section_kind kind = GTX_SECTION_FIRST_IMAGE; kind <= GTX_SECTION_LAST_IMAGE; ++kind)
+        for (uint32_t k = 0; k < gtx_map_levels(info, kind); ++k)
+            gtx_free_array(&allocator, *gtx_asset_map(asset, kind, k),
+                           (size_t)map_size(info, kind, k), 1);
     gtx_free_array(&allocator, asset->meta, asset->meta_size, 1);
     gtx_free_array(&allocator, asset, 1, sizeof *asset);
 }
@@ -94,10 +92,11 @@ const gtx_patch *gtx_patches(const gtx_asset *asset)
 const void *gtx_map_data(const gtx_asset *asset, gtx_map map, uint32_t level, size_t *size)
 {
     static const gtx_section_kind kinds[] = {
-        [GTX_MAP_HEIGHT] = GTX_SECTION_HEIGHT, [GTX_MAP_TRIM] = GTX_SECTION_TRIM,
-        [GTX_MAP_NORMAL] = GTX_SECTION_NORMAL, [GTX_MAP_COLOR] = GTX_SECTION_COLOR};
+        [GTX_MAP_HEIGHT] = GTX_SECTION_HEIGHT,     [GTX_MAP_TRIM] = GTX_SECTION_TRIM,
+        [GTX_MAP_NORMAL] = GTX_SECTION_NORMAL,     [GTX_MAP_COLOR] = GTX_SECTION_COLOR,
+        [GTX_MAP_MATERIAL] = GTX_SECTION_MATERIAL, [GTX_MAP_EMISSION] = GTX_SECTION_EMISSION};
     const void *data = NULL;
-    if (map <= GTX_MAP_COLOR && level < (map >= GTX_MAP_NORMAL ? asset->info.mip_count : 1))
+    if (map <= GTX_MAP_EMISSION && level < gtx_map_levels(&asset->info, kinds[map]))
         data = gtx_asset_data(asset, kinds[map], level);
     if (size)
         *size = data ? (size_t)map_size(&asset->info, kinds[map], level) : 0;

@@ -14,13 +14,14 @@ extern "C" {
 #define GTX_MAX_PAGES 2048
 #define GTX_MAX_PAGE_SIDE 16384
 
-/* Maps are decoded and tight; colour pointers are NULL when the asset has no colour. */
+/* Maps are decoded and tight; the pointers of maps that the asset lacks are NULL. */
 struct gtx_asset {
     gtx_allocator allocator;
     gtx_info info;
     gtx_patch *patches;
     uint8_t *height, *trim;
     uint8_t *normal[GTX_MAX_MIPS], *color[GTX_MAX_MIPS];
+    uint8_t *material[GTX_MAX_MIPS], *emission[GTX_MAX_MIPS];
     char *meta;
     size_t meta_size;
 };

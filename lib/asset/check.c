@@ -100,6 +100,15 @@ bool gtx_check_info(gtx_check *check, const gtx_info *info)
     return usable;
 }
 
+void gtx_check_emission(gtx_check *check, const gtx_info *info)
+{
+    float scale = info->emission_scale;
+    bool right = info->has_emission ? isfinite(scale) && scale > 0 : scale == 0 && !signbit(scale);
+    if (!right)
+        gtx_break(check, GTX_RULE_EMISSION_SCALE, 144, "it is %g %s EMIT", (double)scale,
+                  info->has_emission ? "with" : "without");
+}
+
 /* Length of the UTF-8 sequence at `p`, 0 when there is none (RFC 3629, section 4). */
 static size_t utf8_length(const uint8_t *p, size_t left)
 {

@@ -50,8 +50,12 @@ typedef struct gtx_layout {
 /* Header, table and padding of a file. */
 void gtx_check_file(gtx_check *check, const uint8_t *data, uint64_t size, gtx_layout *out);
 
-/* The values of the header that an asset keeps. False when no size may be computed from them. */
+/* The values of the header that an asset keeps, but for emission_scale. False when no size may be
+ * computed from them. */
 bool gtx_check_info(gtx_check *check, const gtx_info *info);
+
+/* emission_scale, once it is known whether there is emission. */
+void gtx_check_emission(gtx_check *check, const gtx_info *info);
 
 /* One bit for each block of 2^(mip_count-1) x 2^(mip_count-1) texels of all pages, page by page:
  * set where a rectangle lies. */

@@ -24,7 +24,7 @@ static bool check_start(gtx_check *check, const uint8_t *data, uint64_t size)
         return false;
     }
     uint32_t major = gtx_load_u16(data + 12), minor = gtx_load_u16(data + 14);
-    if (major != 0 || minor != 1) {
+    if (major != GTX_FORMAT_MAJOR || minor != GTX_FORMAT_MINOR) {
         gtx_break(check, GTX_RULE_VERSION, 12, "it is %u.%u", major, minor);
         return false;
     }
@@ -62,7 +62,7 @@ static bool check_shape(gtx_check *check, const gtx_header *header, uint64_t siz
 
 static void check_reserved(gtx_check *check, const uint8_t *data)
 {
-    static const uint32_t ranges[][2] = {{100, 104}, {144, 184}};
+    static const uint32_t ranges[][2] = {{100, 104}, {148, 184}};
     for (uint32_t r = 0; r < 2; ++r) {
         for (uint32_t i = ranges[r][0]; i < ranges[r][1]; ++i) {
             if (data[i]) {
@@ -169,7 +169,7 @@ static bool check_entry(table_walk *walk, const uint8_t *bytes, uint32_t index)
 
     if (unknown && section->flags & 1)
         gtx_break(check, GTX_RULE_SECTION_UNKNOWN, at, "%s is not", section->name);
-    bool mipped = section->kind == GTX_SECTION_NORMAL || section->kind == GTX_SECTION_COLOR;
+    bool mipped = section->kind >= GTX_SECTION_NORMAL && gtx_section_is_image(section->kind);
     if (section->level >= (mipped ? walk->layout->info.mip_count : 1)) {
         gtx_break(check, GTX_RULE_SECTION_LEVEL, at + 8, "that of %s is %u", section->name,
                   section->level);
@@ -197,14 +197,13 @@ static bool check_entry(table_walk *walk, const uint8_t *bytes, uint32_t index)
 /* False when one is missing. */
 static bool check_presence(const table_walk *walk)
 {
-    static const char *const names[] = {"PTCH", "HGHT", "TRIM", "NRML", "COLR"};
-    uint32_t mips = walk->layout->info.mip_count;
-    const uint32_t needed[] = {1, 1, 1, mips, walk->seen[GTX_SECTION_COLOR] ? mips : 0};
-    for (uint32_t kind = 0; kind < 5; ++kind) {
-        if (walk->seen[kind] >= needed[kind])
+    const gtx_info *info = &walk->layout->info;
+    for (gtx_section_kind kind = GTX_SECTION_PATCHES; kind <= GTX_SECTION_LAST_IMAGE; ++kind) {
+        uint32_t needed = kind == GTX_SECTION_PATCHES ? 1 : gtx_map_levels(info, kind);
+        if (walk->seen[kind] >= needed)
             continue;
-        gtx_break(walk->check, GTX_RULE_SECTION_MISSING, GTX_HEADER_SIZE, "%u of %u %s are there",
-                  walk->seen[kind], needed[kind], names[kind]);
+        gtx_break(walk->check, GTX_RULE_SECTION_MISSING, GTX_HEADER_SIZE, "%u of %u %.4s are there",
+                  walk->seen[kind], needed, gtx_section_describe(info, kind, 0).type);
         return false;
     }
     return true;
@@ -232,12 +231,15 @@ static void check_table(gtx_check *check, const uint8_t *data, uint64_t size, gt
     bool readable = true;
     for (uint32_t i = 0; i < layout->section_count; ++i)
         readable = check_entry(&walk, data, i) && readable;
+    layout->info.has_color = walk.seen[GTX_SECTION_COLOR] > 0;
+    layout->info.has_material = walk.seen[GTX_SECTION_MATERIAL] > 0;
+    layout->info.has_emission = walk.seen[GTX_SECTION_EMISSION] > 0;
     if (readable)
         readable = check_presence(&walk);
+    gtx_check_emission(check, &layout->info);
     if (walk.chained && walk.end != size)
         gtx_break(check, GTX_RULE_FILE_END, walk.end < size ? walk.end : size,
                   "it has %" PRIu64 " bytes in place of %" PRIu64, size, walk.end);
-    layout->info.has_color = walk.seen[GTX_SECTION_COLOR] > 0;
     layout->known = readable;
     if (readable)
         check_padding(&walk, data);

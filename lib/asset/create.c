@@ -25,7 +25,8 @@ static gtx_result check_arguments(const gtx_asset_desc *desc, gtx_asset **out, g
 static gtx_result check_levels(const gtx_asset_desc *desc, gtx_error *error)
 {
     for (uint32_t k = 0; k < desc->mip_count; ++k)
-        if (!desc->normal[k] || (desc->color && !desc->color[k]))
+        if (!desc->normal[k] || (desc->color && !desc->color[k]) ||
+            (desc->material && !desc->material[k]) || (desc->emission && !desc->emission[k]))
             return gtx_fail(error, GTX_ERROR_ARGUMENT, "level %u of a map is missing", k);
     return GTX_OK;
 }
@@ -33,8 +34,8 @@ static gtx_result check_levels(const gtx_asset_desc *desc, gtx_error *error)
 static gtx_info info_of(const gtx_asset_desc *desc)
 {
     gtx_info info = {
-        .version_major = 0,
-        .version_minor = 1,
+        .version_major = GTX_FORMAT_MAJOR,
+        .version_minor = GTX_FORMAT_MINOR,
         .patch_count = desc->patch_count,
         .page_count = desc->page_count,
         .page_width = desc->page_width,
@@ -42,28 +43,37 @@ static gtx_info info_of(const gtx_asset_desc *desc)
         .mip_count = desc->mip_count,
         .height_bits = desc->height_bits,
         .has_color = desc->color != NULL,
+        .has_material = desc->material != NULL,
+        .has_emission = desc->emission != NULL,
         .unit = desc->unit == 0 ? 1 : desc->unit,
         .source_triangles = desc->source_triangles,
     };
+    info.emission_scale = desc->emission_scale;
+    if (desc->emission_scale == 0)
+        info.emission_scale = desc->emission ? 1 : 0;
     memcpy(info.bounds_min, desc->bounds_min, sizeof info.bounds_min);
     memcpy(info.bounds_max, desc->bounds_max, sizeof info.bounds_max);
     memcpy(info.anchor, desc->anchor, sizeof info.anchor);
     return info;
 }
 
+static void copy_levels(gtx_asset *asset, gtx_section_kind kind, const uint8_t *const *levels)
+{
+    for (uint32_t k = 0; k < gtx_map_levels(&asset->info, kind); ++k)
+        memcpy(*gtx_asset_map(asset, kind, k), levels[k],
+               (size_t)gtx_shape_size(gtx_section_shape(&asset->info, kind, k)));
+}
+
 static void copy_maps(gtx_asset *asset, const gtx_asset_desc *desc)
 {
-    const gtx_info *info = &asset->info;
-    size_t texels = gtx_page_texels(asset, 0) * info->page_count;
-    memcpy(asset->patches, desc->patches, info->patch_count * sizeof(gtx_patch));
-    memcpy(asset->height, desc->height, texels * (info->height_bits / 8));
-    memcpy(asset->trim, desc->trim, texels);
-    for (uint32_t k = 0; k < info->mip_count; ++k) {
-        texels = gtx_page_texels(asset, k) * info->page_count;
-        memcpy(asset->normal[k], desc->normal[k], texels * 2);
-        if (info->has_color)
-            memcpy(asset->color[k], desc->color[k], texels * 4);
-    }
+    const uint8_t *const height = desc->height;
+    memcpy(asset->patches, desc->patches, asset->info.patch_count * sizeof(gtx_patch));
+    copy_levels(asset, GTX_SECTION_HEIGHT, &height);
+    copy_levels(asset, GTX_SECTION_TRIM, &desc->trim);
+    copy_levels(asset, GTX_SECTION_NORMAL, desc->normal);
+    copy_levels(asset, GTX_SECTION_COLOR, desc->color);
+    copy_levels(asset, GTX_SECTION_MATERIAL, desc->material);
+    copy_levels(asset, GTX_SECTION_EMISSION, desc->emission);
     if (asset->meta)
         memcpy(asset->meta, desc->meta, asset->meta_size);
 }
@@ -90,6 +100,7 @@ gtx_result gtx_create(const gtx_asset_desc *desc, gtx_asset **out, gtx_error *er
     gtx_check check = {.error = error};
     gtx_info info = info_of(desc);
     gtx_check_info(&check, &info);
+    gtx_check_emission(&check, &info);
     if (desc->meta_size > GTX_META_LIMIT)
         gtx_break(&check, GTX_RULE_META, 0, "it has %zu bytes", desc->meta_size);
     if (check.broken)

@@ -33,6 +33,7 @@ void gtx_header_load(const uint8_t *bytes, gtx_header *header, gtx_info *info)
     info->unit = gtx_load_f32(bytes + 96);
     info->content_hash = gtx_load_u64(bytes + 128);
     info->source_triangles = gtx_load_u64(bytes + 136);
+    info->emission_scale = gtx_load_f32(bytes + 144);
     info->file_size = header->file_size;
 }
 
@@ -85,8 +86,8 @@ void gtx_header_store(uint8_t *bytes, const gtx_info *info, const gtx_section *s
 {
     memset(bytes, 0, GTX_HEADER_SIZE);
     memcpy(bytes, gtx_identifier, sizeof gtx_identifier);
-    gtx_store_u16(bytes + 12, 0);
-    gtx_store_u16(bytes + 14, 1);
+    gtx_store_u16(bytes + 12, GTX_FORMAT_MAJOR);
+    gtx_store_u16(bytes + 14, GTX_FORMAT_MINOR);
     gtx_store_u32(bytes + 16, GTX_HEADER_SIZE);
     gtx_store_u32(bytes + 28, count);
     gtx_store_u64(bytes + 32, file_size);
@@ -105,6 +106,7 @@ void gtx_header_store(uint8_t *bytes, const gtx_info *info, const gtx_section *s
     gtx_store_f32(bytes + 96, info->unit);
     gtx_store_u64(bytes + 128, gtx_content_hash(sections, count));
     gtx_store_u64(bytes + 136, info->source_triangles);
+    gtx_store_f32(bytes + 144, info->emission_scale);
     for (uint32_t i = 0; i < count; ++i)
         entry_store(bytes + GTX_HEADER_SIZE + GTX_ENTRY_SIZE * i, &sections[i]);
     gtx_store_u64(bytes + 184, gtx_header_hash(bytes, count));

@@ -12,7 +12,7 @@ typedef struct gtx_header {
 
 extern const uint8_t gtx_identifier[12];
 
-/* Reads GTX_HEADER_SIZE bytes. height_bits and has_color come from the table. */
+/* Reads GTX_HEADER_SIZE bytes. height_bits and which maps there are come from the table. */
 void gtx_header_load(const uint8_t *bytes, gtx_header *header, gtx_info *info);
 
 /* Writes header and table in front of a file; offsets, hashes and sizes are in place already. */

@@ -21,6 +21,8 @@ static const kind_row kinds[] = {
     [GTX_SECTION_TRIM] = {"TRIM", MUST, 9, 1, false},
     [GTX_SECTION_NORMAL] = {"NRML", MUST, 16, 2, true},
     [GTX_SECTION_COLOR] = {"COLR", 0, 43, 4, true},
+    [GTX_SECTION_MATERIAL] = {"MATL", 0, 37, 4, true},
+    [GTX_SECTION_EMISSION] = {"EMIT", 0, 29, 3, true},
     [GTX_SECTION_UNKNOWN] = {"", 0, 0, 0, false},
     [GTX_SECTION_META] = {"META", 0, 0, 0, false},
 };
@@ -31,6 +33,19 @@ gtx_section_kind gtx_section_kind_of(const uint8_t type[4])
         if (kind != GTX_SECTION_UNKNOWN && !memcmp(kinds[kind].type, type, 4))
             return (gtx_section_kind)kind;
     return GTX_SECTION_UNKNOWN;
+}
+
+uint32_t gtx_map_levels(const gtx_info *info, gtx_section_kind kind)
+{
+    switch (kind) {
+    case GTX_SECTION_HEIGHT:
+    case GTX_SECTION_TRIM: return 1;
+    case GTX_SECTION_NORMAL: return info->mip_count;
+    case GTX_SECTION_COLOR: return info->has_color ? info->mip_count : 0;
+    case GTX_SECTION_MATERIAL: return info->has_material ? info->mip_count : 0;
+    case GTX_SECTION_EMISSION: return info->has_emission ? info->mip_count : 0;
+    default: return 0;
+    }
 }
 
 gtx_map_shape gtx_section_shape(const gtx_info *info, gtx_section_kind kind, uint32_t level)
@@ -75,18 +90,27 @@ uint32_t gtx_asset_sections(const gtx_asset *asset, gtx_section out[GTX_MAX_KNOW
     return count;
 }
 
-void *gtx_asset_data(const gtx_asset *asset, gtx_section_kind kind, uint32_t level)
+uint8_t **gtx_asset_map(gtx_asset *asset, gtx_section_kind kind, uint32_t level)
 {
     switch (kind) {
-    case GTX_SECTION_PATCHES: return asset->patches;
-    case GTX_SECTION_HEIGHT: return asset->height;
-    case GTX_SECTION_TRIM: return asset->trim;
-    case GTX_SECTION_NORMAL: return asset->normal[level];
-    case GTX_SECTION_COLOR: return asset->color[level];
-    case GTX_SECTION_META: return asset->meta;
-    case GTX_SECTION_UNKNOWN: break;
+    case GTX_SECTION_HEIGHT: return &asset->height;
+    case GTX_SECTION_TRIM: return &asset->trim;
+    case GTX_SECTION_NORMAL: return &asset->normal[level];
+    case GTX_SECTION_COLOR: return &asset->color[level];
+    case GTX_SECTION_MATERIAL: return &asset->material[level];
+    case GTX_SECTION_EMISSION: return &asset->emission[level];
+    default: return NULL;
     }
-    return NULL;
+}
+
+void *gtx_asset_data(const gtx_asset *asset, gtx_section_kind kind, uint32_t level)
+{
+    uint8_t **map = gtx_asset_map((gtx_asset *)asset, kind, level);
+    if (map)
+        return *map;
+    if (kind == GTX_SECTION_PATCHES)
+        return asset->patches;
+    return kind == GTX_SECTION_META ? asset->meta : NULL;
 }
 
 uint64_t gtx_content_hash(const gtx_section *sections, uint32_t count)

@@ -1,4 +1,4 @@
-/* Sections of a file: their kinds, order, formats and sizes. */
+/* Sections of a file: their kinds, order, formats and sizes; and the version of the format. */
 #ifndef GTX_ASSET_SECTION_H
 #define GTX_ASSET_SECTION_H
 
@@ -6,6 +6,8 @@
 
 #include <stdbool.h>
 
+#define GTX_FORMAT_MAJOR 0u
+#define GTX_FORMAT_MINOR 2u
 #define GTX_HEADER_SIZE 192u
 #define GTX_ENTRY_SIZE 64u
 #define GTX_META_LIMIT (1u << 20)
@@ -17,8 +19,12 @@ typedef enum gtx_section_kind {
     GTX_SECTION_TRIM,
     GTX_SECTION_NORMAL,
     GTX_SECTION_COLOR,
+    GTX_SECTION_MATERIAL,
+    GTX_SECTION_EMISSION,
     GTX_SECTION_UNKNOWN,
-    GTX_SECTION_META
+    GTX_SECTION_META,
+    GTX_SECTION_FIRST_IMAGE = GTX_SECTION_HEIGHT,
+    GTX_SECTION_LAST_IMAGE = GTX_SECTION_EMISSION
 } gtx_section_kind;
 
 enum { GTX_SCHEME_STORED = 0, GTX_SCHEME_ZSTD = 2 };
@@ -49,8 +55,11 @@ gtx_section_kind gtx_section_kind_of(const uint8_t type[4]);
 
 static inline bool gtx_section_is_image(gtx_section_kind kind)
 {
-    return kind >= GTX_SECTION_HEIGHT && kind <= GTX_SECTION_COLOR;
+    return kind >= GTX_SECTION_FIRST_IMAGE && kind <= GTX_SECTION_LAST_IMAGE;
 }
+
+/* Levels of an image kind that such an asset has; 0 for what it lacks and for other kinds. */
+uint32_t gtx_map_levels(const gtx_info *info, gtx_section_kind kind);
 
 /* The image of a kind at a level; all zero when the kind is no image. */
 gtx_map_shape gtx_section_shape(const gtx_info *info, gtx_section_kind kind, uint32_t level);
@@ -65,10 +74,13 @@ static inline uint64_t gtx_shape_size(gtx_map_shape image)
 gtx_section gtx_section_describe(const gtx_info *info, gtx_section_kind kind, uint32_t level);
 
 /* Entries of all sections of an asset in file order, with their hashes. Returns how many. */
-#define GTX_MAX_KNOWN_SECTIONS (4 + 2 * GTX_MAX_MIPS)
+#define GTX_MAX_KNOWN_SECTIONS (4 + 4 * GTX_MAX_MIPS)
 uint32_t gtx_asset_sections(const gtx_asset *asset, gtx_section out[GTX_MAX_KNOWN_SECTIONS]);
 
-/* The decoded bytes of a section inside the asset. */
+/* Where the asset keeps the image of a level; NULL when the kind is no image. */
+uint8_t **gtx_asset_map(gtx_asset *asset, gtx_section_kind kind, uint32_t level);
+
+/* The decoded bytes of a section inside the asset; NULL when it has none. */
 void *gtx_asset_data(const gtx_asset *asset, gtx_section_kind kind, uint32_t level);
 
 /* XXH64 over the section hashes, META left out. */

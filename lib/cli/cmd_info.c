@@ -55,6 +55,9 @@ static int print_json(const gtx_asset *asset, const gtx_info *info)
     gtx_json_integer(&json, "mips", info->mip_count);
     gtx_json_integer(&json, "height_bits", info->height_bits);
     gtx_json_bool(&json, "color", info->has_color);
+    gtx_json_bool(&json, "material", info->has_material);
+    gtx_json_bool(&json, "emission", info->has_emission);
+    gtx_json_number(&json, "emission_scale", (double)info->emission_scale);
     vector(&json, "anchor", NULL, info->anchor);
     vector(&json, "bounds_min", info->bounds_min, NULL);
     vector(&json, "bounds_max", info->bounds_max, NULL);
@@ -75,8 +78,11 @@ static int print_text(const gtx_asset *asset, const gtx_info *info)
     printf("texels          %" PRIu64 " in %u page%s of %u x %u\n", texels(asset, info),
            info->page_count, info->page_count == 1 ? "" : "s", info->page_width, info->page_height);
     printf("heights         %u bits\n", info->height_bits);
-    printf("maps            normal%s, %u mip level%s\n", info->has_color ? ", colour" : "",
+    printf("maps            normal%s%s%s, %u mip level%s\n", info->has_color ? ", colour" : "",
+           info->has_material ? ", material" : "", info->has_emission ? ", emission" : "",
            info->mip_count, info->mip_count == 1 ? "" : "s");
+    if (info->has_emission)
+        printf("emission        times %g\n", (double)info->emission_scale);
     printf("bounds          %g %g %g .. %g %g %g\n", (double)info->bounds_min[0],
            (double)info->bounds_min[1], (double)info->bounds_min[2], (double)info->bounds_max[0],
            (double)info->bounds_max[1], (double)info->bounds_max[2]);

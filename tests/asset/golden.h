@@ -14,10 +14,13 @@
 #define GOOD "tests/golden/good/"
 #define BAD "tests/golden/bad/"
 
+enum { NO_MAP = 0, COLOR = 1, MATERIAL = 2, EMISSION = 4, EVERY_MAP = 7 };
+
 typedef struct golden {
     const char *name;
     uint32_t side, pages, mips, bits;
-    bool color, two_sided;
+    unsigned maps;                /* of those that may be absent */
+    bool two_sided;
     const char *meta;
     int zstd_level;
     bool unknown;                 /* a section that readers skip is put in */
@@ -26,22 +29,28 @@ typedef struct golden {
 
 /* Hashes are literals: a change of the format must be made knowingly. */
 static const golden goldens[] = {
-    {"minimal", 8, 1, 1, 8, false, false, NULL, 0, false,
-     0xa1ada67a311afbb8, 0x76993293cea3c988},
-    {"two-sided", 8, 1, 1, 8, false, true, NULL, 0, false,
-     0x2a060121eecc877a, 0xf978d26d14950ebe},
-    {"height16", 16, 1, 1, 16, false, false, NULL, 0, false,
-     0x203462dc802c36e8, 0x78fe746c3203600a},
-    {"color", 16, 1, 3, 8, true, false, "{\"generator\":\"golden\"}", 0, false,
-     0x2d0c8982ac6de85c, 0x3dbd7f0cddf80b10},
-    {"two-pages", 16, 2, 1, 8, false, false, NULL, 0, false,
-     0x3c7934d87b3b52d9, 0x1df350835783b15e},
-    {"unknown", 8, 1, 1, 8, false, false, NULL, 0, true,
-     0x99111e7725385c91, 0x15109973a55ca6af},
-    {"zstd", 64, 1, 4, 8, true, false, "{\"generator\":\"golden\"}", 3, false,
-     0x2c9eff3911803ffc, 0xed48ebd85de4f72e},
-    {"zstd16", 64, 2, 2, 16, false, false, NULL, 19, false,
-     0x725a3d49f50dad05, 0x781bd285f6632f9a},
+    {"minimal", 8, 1, 1, 8, NO_MAP, false, NULL, 0, false,
+     0xa1ada67a311afbb8, 0x89efc7c1fb6cde79},
+    {"two-sided", 8, 1, 1, 8, NO_MAP, true, NULL, 0, false,
+     0x2a060121eecc877a, 0xcbfb55edf4629404},
+    {"height16", 16, 1, 1, 16, NO_MAP, false, NULL, 0, false,
+     0x203462dc802c36e8, 0x15d874c0dc4c472a},
+    {"color", 16, 1, 3, 8, COLOR, false, "{\"generator\":\"golden\"}", 0, false,
+     0x2d0c8982ac6de85c, 0x80d4db5a8e9f642b},
+    {"two-pages", 16, 2, 1, 8, NO_MAP, false, NULL, 0, false,
+     0x3c7934d87b3b52d9, 0xb9dd35fd666c4d06},
+    {"unknown", 8, 1, 1, 8, NO_MAP, false, NULL, 0, true,
+     0x99111e7725385c91, 0x2bdd2860da8fa37f},
+    {"zstd", 64, 1, 4, 8, COLOR, false, "{\"generator\":\"golden\"}", 3, false,
+     0x2c9eff3911803ffc, 0x40da29e0645e8794},
+    {"zstd16", 64, 2, 2, 16, NO_MAP, false, NULL, 19, false,
+     0x725a3d49f50dad05, 0x5d2bb89e4ac35f93},
+    {"material", 8, 1, 2, 8, MATERIAL, false, NULL, 0, false,
+     0x9cbc61974bba266a, 0x5c46ab4b8c59a263},
+    {"emission", 8, 1, 2, 8, EMISSION, false, NULL, 0, false,
+     0x2e1f08ad6478c029, 0x72913a0a4296575f},
+    {"zstd-material", 64, 2, 4, 8, EVERY_MAP, false, NULL, 3, false,
+     0x81bc44e2a270d991, 0x7e134018441ea113},
 };
 enum { GOLDEN_COUNT = sizeof goldens / sizeof goldens[0] };
 
@@ -119,7 +128,7 @@ static inline gtx_result golden_create(const golden *g, const gtx_allocator *all
     uint32_t patch_count = g->side > 8 ? 2 * g->pages : 1;
     gtx_patch patches[4];
     uint8_t *height = need(calloc(texels, g->bits / 8)), *trim = need(calloc(texels, 1));
-    uint8_t *normal[8] = {0}, *color[8] = {0};
+    uint8_t *normal[8] = {0}, *color[8] = {0}, *material[8] = {0}, *emission[8] = {0};
     for (uint32_t i = 0; i < patch_count; ++i) {
         patches[i] = golden_patch(g, i);
         golden_fill(g, &patches[i], height, trim);
@@ -128,17 +137,26 @@ static inline gtx_result golden_create(const golden *g, const gtx_allocator *all
         size_t count = texels >> 2 * k;
         normal[k] = need(calloc(count, 2));
         color[k] = need(calloc(count, 4));
+        material[k] = need(calloc(count, 4));
+        emission[k] = need(calloc(count, 3));
         for (size_t i = 0; i < 2 * count; ++i)
             normal[k][i] = (uint8_t)(120 + (i * 7 + k) % 16);
         for (size_t i = 0; i < 4 * count; ++i)
             color[k][i] = (uint8_t)(i % 4 == 3 ? 255 : i / 4 % 64 + 50 * (i % 4));
+        for (size_t i = 0; i < 4 * count; ++i)
+            material[k][i] = (uint8_t)(i / 16 % 32 + 70 * (i % 4));
+        for (size_t i = 0; i < 3 * count; ++i)
+            emission[k][i] = (uint8_t)(i / 3 % 48 + 60 * (i % 3) + k);
     }
     gtx_asset_desc desc = {
         .patches = patches, .patch_count = patch_count, .page_count = g->pages,
         .page_width = g->side, .page_height = g->side, .mip_count = g->mips,
         .height_bits = g->bits, .height = height, .trim = trim,
         .normal = (const uint8_t *const *)normal,
-        .color = g->color ? (const uint8_t *const *)color : NULL,
+        .color = g->maps & COLOR ? (const uint8_t *const *)color : NULL,
+        .material = g->maps & MATERIAL ? (const uint8_t *const *)material : NULL,
+        .emission = g->maps & EMISSION ? (const uint8_t *const *)emission : NULL,
+        .emission_scale = g->maps & EMISSION ? 2.5f : 0,
         .meta = g->meta, .meta_size = g->meta ? strlen(g->meta) : 0,
         .bounds_min = {-1, -1, -1}, .bounds_max = {2, 2, 2}, .unit = 0.5f,
         .anchor = {1e7, -2, 0.25}, .source_triangles = 1234, .allocator = allocator};
@@ -146,6 +164,8 @@ static inline gtx_result golden_create(const golden *g, const gtx_allocator *all
     for (uint32_t k = 0; k < g->mips; ++k) {
         free(normal[k]);
         free(color[k]);
+        free(material[k]);
+        free(emission[k]);
     }
     free(height);
     free(trim);

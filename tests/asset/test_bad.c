@@ -1,4 +1,5 @@
-/* One bad file for every rule: exactly that rule is named, at the right byte, and opening refuses.
+/* One bad file for every rule, and more ways to break some: exactly that rule is named, at the
+ * right byte, and opening refuses.
  *
  *   test_bad --write   makes tests/golden/bad anew from tests/golden/good */
 #include <stdarg.h>
@@ -15,6 +16,10 @@
 
 /* Offsets in the golden files with four sections. */
 enum { ENTRY = 192, HGHT = ENTRY + 64, TRIM = ENTRY + 128, NRML = ENTRY + 192, RECORD = 448 };
+/* The smaller and the larger level in `material` and `emission`; in `zstd-material` the largest
+ * levels of colour and material, and the smallest of emission. */
+enum { SMALL = ENTRY + 5 * 64, LARGE = ENTRY + 6 * 64 };
+enum { COLR = ENTRY + 10 * 64, MATL = ENTRY + 14 * 64, EMIT = ENTRY + 15 * 64 };
 
 typedef enum rehash {
     NOTHING, HEADER, CONTENT, SECTIONS
@@ -72,11 +77,32 @@ static void swap_sections(bytes *file)
     }
 }
 
+/* Makes a section one that readers skip. */
+static void forget(bytes *file, size_t entry)
+{
+    memcpy(file->data + entry, "XTRA", 4);
+    memset(file->data + entry + 4, 0, 12);
+}
+
 static void rename_normals(bytes *file)
 {
-    memcpy(file->data + NRML, "XTRA", 4);
-    gtx_store_u32(file->data + NRML + 4, 0);
-    gtx_store_u32(file->data + NRML + 12, 0);
+    forget(file, NRML);
+}
+
+static void rename_large_level(bytes *file)
+{
+    forget(file, LARGE);
+}
+
+/* Colour and material have one size: only the names change place. */
+static void material_before_color(bytes *file)
+{
+    for (size_t level = 0; level < 4; ++level) {
+        memcpy(file->data + COLR - 64 * level, "MATL", 4);
+        memcpy(file->data + MATL - 64 * level, "COLR", 4);
+        gtx_store_u32(file->data + COLR - 64 * level + 12, 37);
+        gtx_store_u32(file->data + MATL - 64 * level + 12, 43);
+    }
 }
 
 static void dirty_last_byte(bytes *file)
@@ -92,7 +118,7 @@ static void break_frame(bytes *file)
 
 static const bad bads[] = {
     {100, "identifier", "minimal", 1, 1, 'X', NOTHING, 0, NULL},
-    {101, "version", "minimal", 14, 2, 2, HEADER, 12, NULL},
+    {101, "version", "minimal", 14, 2, 3, HEADER, 12, NULL},
     {102, "header-size", "minimal", 16, 4, 256, HEADER, 16, NULL},
     {103, "must-flags", "minimal", 20, 4, 1, HEADER, 20, NULL},
     {104, "section-count", "minimal", 28, 4, 3, HEADER, 28, NULL},
@@ -110,6 +136,7 @@ static const bad bads[] = {
     {116, "content-hash", "minimal", 128, 8, 1, HEADER, 128, NULL},
     {117, "header-hash", "minimal", 136, 1, 1, NOTHING, 184, NULL},
     {118, "truncated", "minimal", 0, 0, 0, NOTHING, 32, truncate_file},
+    {119, "emission-scale", "emission", 144, 4, 0, HEADER, 144, NULL},
     {200, "section-order", "minimal", 0, 0, 0, CONTENT, TRIM, swap_sections},
     {201, "section-unknown", "unknown", ENTRY + 4 * 64 + 4, 4, 1, HEADER, ENTRY + 4 * 64, NULL},
     {202, "section-flags", "minimal", HGHT + 4, 4, 0, HEADER, HGHT + 4, NULL},
@@ -142,6 +169,51 @@ static const bad bads[] = {
     {600, "meta", "color", 3648, 1, 0xFF, SECTIONS, 3648, NULL},
 };
 enum { BAD_COUNT = sizeof bads / sizeof bads[0] };
+
+/* Other ways to break a rule; not kept as files. */
+static const bad variants[] = {
+    {104, "section-count", "minimal", 28, 4, 257, HEADER, 28, NULL},
+    {108, "patch-count", "minimal", 52, 4, (1u << 20) + 1, HEADER, 52, NULL},
+    {109, "page-count", "minimal", 56, 4, 0, HEADER, 56, NULL},
+    {110, "page-size", "minimal", 60, 4, 7, HEADER, 60, NULL},
+    {110, "page-size", "minimal", 64, 4, 16385, HEADER, 64, NULL},
+    {111, "mip-count", "minimal", 68, 4, 0, HEADER, 68, NULL},
+    {111, "mip-count", "minimal", 68, 4, 9, HEADER, 68, NULL},
+    {112, "bounds", "minimal", 72, 4, 0x7FC00000, HEADER, 72, NULL},           /* NaN */
+    {113, "unit", "minimal", 96, 4, 0x7F800000, HEADER, 96, NULL},             /* infinity */
+    {114, "header-reserved", "minimal", 100, 4, 1, HEADER, 100, NULL},
+    {114, "header-reserved", "minimal", 148, 1, 1, HEADER, 148, NULL},
+    {114, "header-reserved", "minimal", 183, 1, 1, HEADER, 183, NULL},
+    {119, "emission-scale", "emission", 144, 4, 0x7FC00000, HEADER, 144, NULL}, /* NaN */
+    {119, "emission-scale", "emission", 144, 4, 0x7F800000, HEADER, 144, NULL}, /* infinity */
+    {119, "emission-scale", "emission", 144, 4, 0xBF800000, HEADER, 144, NULL}, /* -1 */
+    {119, "emission-scale", "minimal", 144, 4, 0x3F800000, HEADER, 144, NULL},  /* 1 */
+    {119, "emission-scale", "minimal", 144, 4, 0x80000000, HEADER, 144, NULL},  /* -0 */
+    {200, "section-order", "zstd-material", 0, 0, 0, HEADER, ENTRY + 11 * 64,
+     material_before_color},
+    {202, "section-flags", "material", SMALL + 4, 4, 1, HEADER, SMALL + 4, NULL},
+    {202, "section-flags", "emission", LARGE + 4, 4, 2, HEADER, LARGE + 4, NULL},
+    {203, "section-level", "emission", SMALL + 8, 4, 2, HEADER, SMALL + 8, NULL},
+    {204, "section-format", "material", SMALL + 12, 4, 43, HEADER, SMALL + 12, NULL},
+    {204, "section-format", "emission", LARGE + 12, 4, 23, HEADER, LARGE + 12, NULL},
+    {205, "section-offset", "minimal", HGHT + 16, 8, 577, HEADER, HGHT + 16, NULL},
+    {207, "section-size", "zstd-material", EMIT + 32, 8, 383, HEADER, EMIT + 32, NULL},
+    {208, "section-scheme", "minimal", TRIM + 24, 8, 63, HEADER, TRIM + 40, NULL},
+    {209, "section-filter", "zstd", HGHT + 44, 4, 4, HEADER, HGHT + 44, NULL},
+    {209, "section-filter", "zstd", ENTRY + 44, 4, 1, HEADER, ENTRY + 44, NULL},
+    {210, "section-hash", "emission", LARGE + 48, 8, 1, CONTENT, LARGE + 48, NULL},
+    {214, "section-missing", "material", 0, 0, 0, CONTENT, ENTRY, rename_large_level},
+    {214, "section-missing", "emission", 0, 0, 0, CONTENT, ENTRY, rename_large_level},
+    {301, "patch-extent", "minimal", RECORD + 12, 4, 0, SECTIONS, RECORD + 12, NULL},
+    {306, "patch-rectangle", "minimal", RECORD + 72, 2, 1, SECTIONS, RECORD + 68, NULL},
+    {308, "patch-sphere", "minimal", RECORD + 92, 4, 0xBF800000, SECTIONS, RECORD + 92, NULL},
+};
+enum { VARIANT_COUNT = sizeof variants / sizeof variants[0] };
+
+static const bad *bad_at(int index)
+{
+    return index < BAD_COUNT ? &bads[index] : &variants[index - BAD_COUNT];
+}
 
 static void path_of(const bad *b, char path[256])
 {
@@ -200,7 +272,7 @@ static void hear(const gtx_issue *issue, void *user)
 
 static bool needs_zstd(const bad *b)
 {
-    return !strcmp(b->base, "zstd");
+    return !strncmp(b->base, "zstd", 4);
 }
 
 static uint64_t reported_offset(const bad *b, bytes file)
@@ -211,21 +283,22 @@ static uint64_t reported_offset(const bad *b, bytes file)
 static void test_validate(void **state)
 {
     (void)state;
-    for (int i = 0; i < BAD_COUNT; ++i) {
-        if (needs_zstd(&bads[i]) && !gtx_has_zstd())
+    for (int i = 0; i < BAD_COUNT + VARIANT_COUNT; ++i) {
+        const bad *b = bad_at(i);
+        if (needs_zstd(b) && !gtx_has_zstd())
             continue;
-        bytes file = make_bad(&bads[i]);
-        hearing h = {.expected = &bads[i]};
+        bytes file = make_bad(b);
+        hearing h = {.expected = b};
         gtx_error error = {0};
         gtx_result result = gtx_validate(file.data, file.size, hear, &h, &error);
         assert_int_not_equal(result, GTX_OK);
         assert_int_equal(h.others, 0);
-        if (h.issues != 1 || h.offset != reported_offset(&bads[i], file))
-            print_error("%u-%s: %u issues, at %" PRIu64 "\n", bads[i].rule, bads[i].name, h.issues,
+        if (h.issues != 1 || h.offset != reported_offset(b, file))
+            print_error("%u-%s, row %d: %u issues, at %" PRIu64 "\n", b->rule, b->name, i, h.issues,
                         h.offset);
-        assert_int_equal(h.issues, 1);
-        assert_int_equal(h.offset, reported_offset(&bads[i], file));
-        assert_int_equal(error.rule, bads[i].rule);
+        assert_int_equal(h.issues, b->edit == material_before_color ? 4 : 1);
+        assert_int_equal(h.offset, reported_offset(b, file));
+        assert_int_equal(error.rule, b->rule);
         free(file.data);
     }
 }
@@ -244,17 +317,18 @@ static gtx_result result_of(uint32_t rule)
 static void test_open(void **state)
 {
     (void)state;
-    for (int i = 0; i < BAD_COUNT; ++i) {
-        if (needs_zstd(&bads[i]) && !gtx_has_zstd())
+    for (int i = 0; i < BAD_COUNT + VARIANT_COUNT; ++i) {
+        const bad *b = bad_at(i);
+        if (needs_zstd(b) && !gtx_has_zstd())
             continue;
-        bytes file = make_bad(&bads[i]);
+        bytes file = make_bad(b);
         gtx_asset *asset = (gtx_asset *)&file;
         gtx_error error = {0};
         gtx_result result = gtx_open_memory(file.data, file.size, NULL, &asset, &error);
-        assert_int_equal(result, result_of(bads[i].rule));
+        assert_int_equal(result, result_of(b->rule));
         assert_int_equal(error.result, result);
-        assert_int_equal(error.rule, bads[i].rule);
-        assert_int_equal(error.offset, reported_offset(&bads[i], file));
+        assert_int_equal(error.rule, b->rule);
+        assert_int_equal(error.offset, reported_offset(b, file));
         assert_null(asset);
         free(file.data);
     }

@@ -88,13 +88,17 @@ static void test_content(void **state)
         assert_int_equal(info.height_bits, g->bits);
         assert_int_equal(info.mip_count, g->mips);
         assert_int_equal(info.page_count, g->pages);
-        assert_int_equal(info.has_color, g->color);
+        assert_int_equal(info.version_minor, 2);
+        assert_int_equal(info.has_color, (g->maps & COLOR) != 0);
+        assert_int_equal(info.has_material, (g->maps & MATERIAL) != 0);
+        assert_int_equal(info.has_emission, (g->maps & EMISSION) != 0);
+        assert_true(info.emission_scale == (g->maps & EMISSION ? 2.5f : 0));
         assert_int_equal(info.source_triangles, 1234);
         assert_true(info.anchor[0] == 1e7 && info.anchor[1] == -2 && info.unit == 0.5f);
         assert_true(info.bounds_min[2] == -1 && info.bounds_max[0] == 2);
         assert_memory_equal(gtx_patches(read), gtx_patches(made),
                             info.patch_count * sizeof(gtx_patch));
-        for (int map = GTX_MAP_HEIGHT; map <= GTX_MAP_COLOR; ++map)
+        for (int map = GTX_MAP_HEIGHT; map <= GTX_MAP_EMISSION; ++map)
             for (uint32_t level = 0; level <= g->mips; ++level)
                 assert_same_map(read, made, (gtx_map)map, level);
         size_t size;

@@ -522,14 +522,19 @@ static void *metered_alloc(size_t size, void *user)
     meter *m = user;
     if (m->left-- <= 0)
         return NULL;
+    size_t *block = malloc(size + 16); /* the size in front: it must come back */
+    assert_non_null(block);
+    *block = size;
     m->live += size;
-    return malloc(size);
+    return (char *)block + 16;
 }
 
 static void metered_free(void *memory, size_t size, void *user)
 {
+    size_t *block = (size_t *)((char *)memory - 16);
+    assert_int_equal(*block, size);
     ((meter *)user)->live -= size;
-    free(memory);
+    free(block);
 }
 
 static void memory_may_run_out(void **state)

@@ -1,0 +1,19 @@
+/* Reading untrusted bytes: the one pass behind opening and validating. */
+#ifndef GTX_ASSET_READ_H
+#define GTX_ASSET_READ_H
+
+#include "asset/check.h"
+
+typedef struct gtx_read_options {
+    gtx_allocator allocator;
+    uint64_t limit;               /* most bytes that may be allocated at once */
+    bool skip_hash;               /* trust the section hashes */
+} gtx_read_options;
+
+/* Checks `size` bytes of a file and makes an asset of them; *out is NULL when a rule was broken or
+ * something failed. What it allocates is known, and held against the limit, before the first
+ * allocation. */
+gtx_result gtx_read_asset(gtx_check *check, const gtx_read_options *options, const void *data,
+                          size_t size, gtx_asset **out);
+
+#endif
