@@ -1,5 +1,5 @@
 /* Opens the image module on first use, and writes files through a temporary name. */
-#define _POSIX_C_SOURCE 200809L
+#define _GNU_SOURCE /* dladdr */
 #include "image/image.h"
 
 #include "base/error.h"
@@ -9,30 +9,48 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/auxv.h>
 #include <unistd.h>
 
 enum { MAX_PATH = 4096 };
 static const char module_name[] = "geotex-image.so";
 
-/* The module in the directory of the running program or the one above it (samples and tests lie
- * deeper than the command), or NULL. */
-static void *open_beside_program(void)
+/* Where the module may be, from the folder of the library or program that holds this code. */
+static const char *const places[] = {"", "geotex/", "../lib/geotex/"};
+
+/* The path of that library or program, with links followed. A program's own name is what its caller
+ * made it, so the kernel is asked for that. */
+static int path_of_code(char path[MAX_PATH])
 {
-    char path[MAX_PATH];
-    const ssize_t length = readlink("/proc/self/exe", path, sizeof path - sizeof module_name);
-    if (length <= 0)
+    Dl_info here, program;
+    if (!dladdr((const void *)places, &here))
+        return 0;
+    const int in_program = dladdr((const void *)getauxval(AT_ENTRY), &program) &&
+                           program.dli_fbase == here.dli_fbase;
+    char *resolved = realpath(in_program ? "/proc/self/exe" : here.dli_fname, NULL);
+    const int length = resolved ? snprintf(path, MAX_PATH, "%s", resolved) : -1;
+    free(resolved);
+    return length > 0 && length < MAX_PATH;
+}
+
+static void *open_module(gtx_error *error)
+{
+    char path[MAX_PATH + 64], reason[GTX_IMAGE_MAX_MESSAGE] = "not found";
+    if (!path_of_code(path)) {
+        gtx_fail(error, GTX_ERROR_UNSUPPORTED, "images need %s", module_name);
         return NULL;
-    path[length] = 0;
-    for (int up = 0; up < 3; ++up) {
-        char *slash = strrchr(path, '/');
-        if (!slash)
-            return NULL;
-        memcpy(slash + 1, module_name, sizeof module_name);
+    }
+    char *name = strrchr(path, '/') + 1;
+    const size_t left = sizeof path - (size_t)(name - path);
+    for (size_t i = 0; i < sizeof places / sizeof *places; ++i) {
+        snprintf(name, left, "%s%s", places[i], module_name);
         void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
         if (module)
             return module;
-        *slash = 0;
+        if (access(path, F_OK) == 0) /* there, but not to be opened: that is the reason to tell */
+            snprintf(reason, sizeof reason, "%s", dlerror());
     }
+    gtx_fail(error, GTX_ERROR_UNSUPPORTED, "images need %s: %.160s", module_name, reason);
     return NULL;
 }
 
@@ -40,13 +58,9 @@ static void *open_beside_program(void)
  * module stays open: OpenImageIO's threads do not survive being unloaded. */
 static const gtx_image_functions *module_functions(gtx_error *error)
 {
-    void *module = open_beside_program();
+    void *module = open_module(error);
     if (!module)
-        module = dlopen(module_name, RTLD_NOW | RTLD_LOCAL);
-    if (!module) {
-        gtx_fail(error, GTX_ERROR_UNSUPPORTED, "images need %s: %.160s", module_name, dlerror());
         return NULL;
-    }
     const gtx_image_functions *functions = dlsym(module, GTX_IMAGE_MODULE_SYMBOL);
     if (!functions || functions->version != GTX_IMAGE_MODULE_VERSION) {
         gtx_fail(error, GTX_ERROR_UNSUPPORTED, "%s is of another version", module_name);
@@ -121,6 +135,20 @@ gtx_result gtx_image_decode(const void *data, size_t size, gtx_image *out, gtx_e
     if (!data || !size || !out)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "no bytes or no place for the image");
     return read_image(NULL, data, size, out, error);
+}
+
+gtx_result gtx_image_measure(const void *data, size_t size, uint32_t *width, uint32_t *height,
+                             gtx_error *error)
+{
+    char message[GTX_IMAGE_MAX_MESSAGE];
+    if (!data || !size || !width || !height)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "no bytes or no place for the size");
+    const gtx_image_functions *module = module_functions(error);
+    if (!module)
+        return GTX_ERROR_UNSUPPORTED;
+    if (module->measure(NULL, data, size, width, height, message))
+        return gtx_fail(error, GTX_ERROR_READ, "%s", message);
+    return GTX_OK;
 }
 
 void gtx_image_free(gtx_image *image)

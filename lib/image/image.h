@@ -1,5 +1,7 @@
 /* Images on disk. OpenImageIO behind it is a module, opened when the first image is asked for, so
- * that a program that needs none does not pay for it. */
+ * that a program that needs none does not pay for it. The module, geotex-image.so, is looked for
+ * from the folder of the library or program that holds this code, and nowhere else: in that folder,
+ * in geotex/ below it and in ../lib/geotex/. No variable of the environment has a say in it. */
 #ifndef GTX_IMAGE_IMAGE_H
 #define GTX_IMAGE_IMAGE_H
 
@@ -30,6 +32,9 @@ typedef struct gtx_image {
 gtx_result gtx_image_read(const char *path, gtx_image *out, gtx_error *error);
 /* The same from the bytes of a file. Errors: likewise. */
 gtx_result gtx_image_decode(const void *data, size_t size, gtx_image *out, gtx_error *error);
+/* The size that such bytes claim, without decoding them. Errors: likewise. */
+gtx_result gtx_image_measure(const void *data, size_t size, uint32_t *width, uint32_t *height,
+                             gtx_error *error);
 void gtx_image_free(gtx_image *image);
 
 #ifdef __cplusplus

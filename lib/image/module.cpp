@@ -13,9 +13,11 @@
 
 namespace {
 
-int fail(char *message, const char *what, const std::string &detail)
+/* One line; without a name for bytes in memory. */
+int fail(char *message, const char *name, const std::string &detail)
 {
-    std::snprintf(message, GTX_IMAGE_MAX_MESSAGE, "%s: %s", what, detail.c_str());
+    const std::string line = detail.substr(0, detail.find('\n'));
+    std::snprintf(message, GTX_IMAGE_MAX_MESSAGE, "%s%s%s", name, *name ? ": " : "", line.c_str());
     return 1;
 }
 
@@ -68,33 +70,64 @@ std::string name_for(const void *data, size_t size)
     return {};
 }
 
+/* An open file or piece of memory. Neither copied nor moved: the reader points into it. */
+struct Source {
+    const char *name;
+    OIIO::Filesystem::IOMemReader memory;
+    OIIO::Filesystem::IOProxy *proxy = &memory;
+    std::unique_ptr<OIIO::ImageInput> input;
+
+    Source(const char *path, const void *data, size_t size)
+        : name(path ? path : ""), memory(data, size) {}
+
+    /* Returns 0 when an image of a sound size is open. */
+    int open(const char *path, const void *data, size_t size, char *message)
+    {
+        const std::string file = path ? path : name_for(data, size);
+        if (file.empty())
+            return fail(message, name, "neither PNG, JPEG, WebP, BMP nor GIF");
+        OIIO::ImageSpec hint;
+        hint.attribute("oiio:UnassociatedAlpha", 1);
+        if (!path)
+            hint.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+        input = OIIO::ImageInput::open(file, &hint);
+        if (!input)
+            return fail(message, name, OIIO::geterror());
+        const OIIO::ImageSpec &spec = input->spec();
+        if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 ||
+            spec.nchannels > 64)
+            return fail(message, name, "not an image of a supported size");
+        return 0;
+    }
+};
+
+int measure(const char *path, const void *data, size_t size, uint32_t *width, uint32_t *height,
+            char *message)
+{
+    Source source(path, data, size);
+    if (source.open(path, data, size, message))
+        return 1;
+    *width = uint32_t(source.input->spec().width);
+    *height = uint32_t(source.input->spec().height);
+    return 0;
+}
+
 int read(const char *path, const void *data, size_t size, uint64_t max_pixels, uint32_t *width,
          uint32_t *height, uint8_t **pixels, char *message)
 {
-    const std::string file = path ? path : name_for(data, size);
-    const char *name = path ? path : "embedded image";
-    if (file.empty())
-        return fail(message, name, "neither PNG, JPEG, WebP, BMP nor GIF");
-    OIIO::Filesystem::IOMemReader memory(data, size);
-    OIIO::Filesystem::IOProxy *proxy = &memory;
-    OIIO::ImageSpec hint;
-    hint.attribute("oiio:UnassociatedAlpha", 1);
-    if (!path)
-        hint.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file, &hint);
-    if (!input)
-        return fail(message, name, OIIO::geterror());
-    const OIIO::ImageSpec &spec = input->spec();
+    Source source(path, data, size);
+    if (source.open(path, data, size, message))
+        return 1;
+    const OIIO::ImageSpec &spec = source.input->spec();
     const uint64_t count = uint64_t(spec.width) * uint64_t(spec.height);
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 ||
-        spec.nchannels > 64 || count > max_pixels)
-        return fail(message, name, "not an image of a supported size");
+    if (count > max_pixels)
+        return fail(message, source.name, "not an image of a supported size");
     std::vector<uint8_t> texels(size_t(count) * size_t(spec.nchannels));
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, texels.data()))
-        return fail(message, name, input->geterror());
+    if (!source.input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, texels.data()))
+        return fail(message, source.name, source.input->geterror());
     *pixels = static_cast<uint8_t *>(std::malloc(size_t(count) * 4));
     if (!*pixels)
-        return fail(message, name, "out of memory");
+        return fail(message, source.name, "out of memory");
     const int alpha = spec.alpha_channel >= 0 && spec.alpha_channel < spec.nchannels
                           ? spec.alpha_channel : -1;
     spread(texels, spec.nchannels, alpha, *pixels);
@@ -129,7 +162,13 @@ int guarded_read(const char *path, const void *data, size_t size, uint64_t max_p
     });
 }
 
+int guarded_measure(const char *path, const void *data, size_t size, uint32_t *width,
+                    uint32_t *height, char *message)
+{
+    return guarded(message, [&] { return measure(path, data, size, width, height, message); });
+}
+
 } // namespace
 
 extern "C" __attribute__((visibility("default"))) const gtx_image_functions gtx_image_module = {
-    GTX_IMAGE_MODULE_VERSION, guarded_write, guarded_read};
+    GTX_IMAGE_MODULE_VERSION, guarded_write, guarded_read, guarded_measure};

@@ -10,7 +10,7 @@ extern "C" {
 #endif
 
 #define GTX_IMAGE_MODULE_SYMBOL "gtx_image_module"
-#define GTX_IMAGE_MODULE_VERSION 1
+#define GTX_IMAGE_MODULE_VERSION 2
 
 enum { GTX_IMAGE_MAX_MESSAGE = 200 };
 
@@ -24,6 +24,9 @@ typedef struct gtx_image_functions {
     int (*read)(const char *path, const void *data, size_t size, uint64_t max_pixels,
                 uint32_t *width, uint32_t *height, uint8_t **pixels,
                 char message[GTX_IMAGE_MAX_MESSAGE]);
+    /* What the header claims; `data` as above. */
+    int (*measure)(const char *path, const void *data, size_t size, uint32_t *width,
+                   uint32_t *height, char message[GTX_IMAGE_MAX_MESSAGE]);
 } gtx_image_functions;
 
 #ifdef __cplusplus

@@ -47,6 +47,11 @@ struct Material {
     Texture color_map, normal_map, metal_rough_map, occlusion_map, emission_map;
 };
 
+/* All textures of a material. */
+constexpr Texture Material::*MATERIAL_TEXTURES[] = {
+    &Material::color_map, &Material::normal_map, &Material::metal_rough_map,
+    &Material::occlusion_map, &Material::emission_map};
+
 /* Per corner like the other attributes of a mesh, or empty. */
 struct Appearance {
     std::vector<Material> materials;

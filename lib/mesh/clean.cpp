@@ -37,17 +37,35 @@ static void warn_repaired(Task &task, const Draft &surface, const CleanReport &r
     warn(task, surface.new_normals, "corner normal", "missing or facing inwards: derived");
 }
 
+/* Attributes that do not fit the triangles are no attributes, and a texture without coordinates or
+ * an image is none. */
+static void drop_misfits(Mesh &mesh)
+{
+    const size_t triangles = mesh.triangles.size();
+    Appearance &look = mesh.appearance;
+    for_each_corner_attribute(mesh, [&](auto &items) {
+        if (items.size() != 3 * triangles)
+            items.clear();
+    });
+    mesh.flags.resize(triangles, 0);
+    auto exists = [&](uint32_t m) { return m < look.materials.size(); };
+    if (look.material.size() != triangles ||
+        !std::all_of(look.material.begin(), look.material.end(), exists))
+        look.material.clear();
+    for (Material &m : look.materials)
+        for (Texture Material::*map : MATERIAL_TEXTURES) {
+            Texture &t = m.*map;
+            if (t.image >= look.images.size() || t.set > 1 || look.uv[t.set].empty())
+                t.image = Texture::NONE;
+        }
+}
+
 Mesh clean_mesh(Mesh mesh, Task &task, CleanReport &report)
 {
     report = CleanReport();
     if (mesh.triangles.size() >= NO_EDGE / 3 || mesh.positions.size() >= NO_EDGE)
         throw Error(GTX_ERROR_LIMIT, "more triangles than 32 bits can count");
-    if (mesh.normals.size() != 3 * mesh.triangles.size())
-        mesh.normals.clear();
-    if (mesh.colors.size() != 3 * mesh.triangles.size())
-        mesh.colors.clear();
-    mesh.flags.resize(mesh.triangles.size(), 0);
-
+    drop_misfits(mesh);
     drop_invalid(mesh, report);
     task.advance(0.1);
     weld(mesh);

@@ -18,6 +18,16 @@ void weld(Mesh &mesh);
  * sides of a sheet without thickness. */
 std::vector<uint8_t> drop_duplicates(Mesh &mesh, CleanReport &report);
 
+/* Calls use(vector) for each attribute of corners; those that a mesh lacks are empty. */
+template <class Use> void for_each_corner_attribute(Mesh &mesh, Use use)
+{
+    use(mesh.normals);
+    use(mesh.colors);
+    use(mesh.appearance.uv[0]);
+    use(mesh.appearance.uv[1]);
+    use(mesh.appearance.tangents);
+}
+
 /* A mesh being cleaned: what the later steps know of it. */
 struct Draft {
     Mesh &mesh;

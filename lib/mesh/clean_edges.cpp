@@ -72,10 +72,10 @@ void turn_triangles(Draft &surface, const std::vector<uint8_t> &turn)
         if (!turn[t])
             continue;
         std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
-        if (!mesh.normals.empty())
-            std::swap(mesh.normals[3 * t + 1], mesh.normals[3 * t + 2]);
-        if (!mesh.colors.empty())
-            std::swap(mesh.colors[3 * t + 1], mesh.colors[3 * t + 2]);
+        for_each_corner_attribute(mesh, [&](auto &items) {
+            if (!items.empty())
+                std::swap(items[3 * t + 1], items[3 * t + 2]);
+        });
         std::swap(surface.twin[3 * t], surface.twin[3 * t + 2]);
         surface.turned[t] ^= 1;
     }

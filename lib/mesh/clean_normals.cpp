@@ -15,6 +15,15 @@ static bool usable(Vec3f &normal, bool turned, const Vec3f &face)
     return dot(normal, face) > 0;
 }
 
+/* A normal that goes to the other side of its triangle takes its cross product with the tangent
+ * along; the texture stays, so the sign turns. Without an old normal the winding tells. */
+static void keep_bitangent(Mesh &mesh, uint32_t c, const Vec3f &before, bool turned)
+{
+    const float agreement = dot(before, mesh.normals[c]);
+    if (!mesh.appearance.tangents.empty() && (agreement < 0 || (!(agreement > 0) && turned)))
+        mesh.appearance.tangents[c][3] *= -1;
+}
+
 /* The angle of triangle t at corner c weighs its normal (Thuermer and Wuethrich 1998). */
 static double angle_at(const Mesh &mesh, uint32_t c)
 {
@@ -53,13 +62,17 @@ static uint64_t fan_normals(Mesh &mesh, const Draft &surface, const std::vector<
     fan.clear();
     for (size_t i = 0; i < corners.size(); ++i) {
         uint32_t c = corners[i], t = c / 3;
-        if (from_source && usable(mesh.normals[c], surface.turned[t], faces[t]))
+        const Vec3f before = mesh.normals[c];
+        if (from_source && usable(mesh.normals[c], surface.turned[t], faces[t])) {
+            keep_bitangent(mesh, c, before, surface.turned[t]);
             continue;
+        }
         ++replaced;
         if (fan.empty())
             for (uint32_t d : corners)
                 fan.push_back({faces[d / 3], float(angle_at(mesh, d))});
         mesh.normals[c] = mean_normal(fan, i);
+        keep_bitangent(mesh, c, before, surface.turned[t]);
     }
     return replaced;
 }

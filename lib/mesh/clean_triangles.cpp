@@ -9,27 +9,27 @@ namespace gtx {
 enum Fate : uint8_t { KEEP, BAD_INDEX, NON_FINITE, DEGENERATE, DUPLICATE };
 static const char *const fate_names[] = {"", "index", "non-finite", "degenerate", "duplicate"};
 
+/* Removes the items of the triangles that are not kept; each has `per` in a row, or all none. */
+template <class T>
+static void compact(std::vector<T> &items, size_t per, const std::vector<uint8_t> &fates)
+{
+    size_t kept = 0;
+    for (size_t t = 0; t < fates.size() && !items.empty(); ++t)
+        for (size_t k = 0; k < per && fates[t] == KEEP; ++k)
+            items[kept++] = items[per * t + k];
+    items.resize(kept);
+}
+
 /* Removes the triangles whose fate is not to be kept and counts them by reason. */
 static void drop(Mesh &mesh, const std::vector<uint8_t> &fates, CleanReport &report)
 {
-    size_t kept = 0;
     uint64_t counts[sizeof(fate_names) / sizeof(*fate_names)] = {0};
-    for (size_t t = 0; t < fates.size(); ++t) {
-        ++counts[fates[t]];
-        if (fates[t] != KEEP)
-            continue;
-        mesh.triangles[kept] = mesh.triangles[t];
-        mesh.flags[kept] = mesh.flags[t];
-        for (int k = 0; k < 3 && !mesh.normals.empty(); ++k)
-            mesh.normals[3 * kept + k] = mesh.normals[3 * t + k];
-        for (int k = 0; k < 3 && !mesh.colors.empty(); ++k)
-            mesh.colors[3 * kept + k] = mesh.colors[3 * t + k];
-        ++kept;
-    }
-    mesh.triangles.resize(kept);
-    mesh.flags.resize(kept);
-    mesh.normals.resize(mesh.normals.empty() ? 0 : 3 * kept);
-    mesh.colors.resize(mesh.colors.empty() ? 0 : 3 * kept);
+    for (uint8_t fate : fates)
+        ++counts[fate];
+    compact(mesh.triangles, 1, fates);
+    compact(mesh.flags, 1, fates);
+    compact(mesh.appearance.material, 1, fates);
+    for_each_corner_attribute(mesh, [&](auto &items) { compact(items, 3, fates); });
     for (size_t f = BAD_INDEX; f <= DUPLICATE; ++f)
         if (counts[f])
             report.dropped[fate_names[f]] += counts[f];

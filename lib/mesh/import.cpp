@@ -9,6 +9,7 @@
 #include <fstream>
 #include <memory>
 #include <new>
+#include <set>
 #include <stdexcept>
 
 #define ZLIB_CONST
@@ -25,11 +26,21 @@ struct Format {
     const char *extension;
     const char *magic; /* the first bytes of every such file; null when there are none */
     Mesh (*import)(const ModelFile &, Task &);
+    void (*references)(const ModelFile &, std::vector<std::string> &); /* null: it is alone */
 };
 
 static const Format formats[] = {
-    {".glb", "glTF", import_gltf}, {".drc", "DRACO", import_draco}, {".ply", "ply\n", import_ply},
-    {".ply", "ply\r", import_ply}, {".gltf", "{", import_gltf},     {".obj", nullptr, import_obj},
+    {".glb", "glTF", import_gltf, gltf_references},
+    {".gltf", "{", import_gltf, gltf_references},
+    {".drc", "DRACO", import_draco, nullptr},
+    {".ply", "ply\n", import_ply, nullptr},
+    {".ply", "ply\r", import_ply, nullptr},
+    {".off", "OFF", import_off, nullptr},
+    {".off", "COFF", import_off, nullptr},
+    {".off", "NOFF", import_off, nullptr},
+    {".off", "STOFF", import_off, nullptr},
+    {".stl", "solid", import_stl, nullptr},
+    {".obj", nullptr, import_obj, obj_references},
 };
 
 void fail(gtx_result result, const char *format, ...)
@@ -128,6 +139,17 @@ static bool starts_with(std::string_view bytes, const char *magic)
     return magic && bytes.substr(0, std::char_traits<char>::length(magic)) == magic;
 }
 
+std::string model_extension(const std::string &path)
+{
+    std::filesystem::path name = path;
+    if (name.extension() == ".gz")
+        name = name.stem();
+    std::string extension = name.extension().string();
+    for (char &c : extension)
+        c = c >= 'A' && c <= 'Z' ? char(c + 'a' - 'A') : c;
+    return extension;
+}
+
 /* By content; then by the name, so that a damaged file is called that and not unknown. */
 static const Format *find_format(const ModelFile &file)
 {
@@ -139,12 +161,7 @@ static const Format *find_format(const ModelFile &file)
         if (starts_with(text, format.magic))
             return &format;
 
-    std::filesystem::path name = file.path;
-    if (name.extension() == ".gz")
-        name = name.stem();
-    std::string extension = name.extension().string();
-    for (char &c : extension)
-        c = c >= 'A' && c <= 'Z' ? char(c + 'a' - 'A') : c;
+    std::string extension = model_extension(file.path);
     for (const Format &format : formats)
         if (extension == format.extension)
             return &format;
@@ -171,26 +188,67 @@ Mesh by_corner(VertexMesh &&from)
     return to;
 }
 
-Mesh import_mesh(const std::string &path, Task &task, std::vector<std::string> *sources)
-try {
-    ModelFile file = {path, read_whole_file(path), sources};
-    if (sources)
-        sources->push_back(path);
-    if (starts_with(file.bytes, "\x1f\x8b"))
-        file.bytes = inflate_gzip(file.bytes, task);
+/* What runs out of memory, or of a container's longest length, says so. */
+template <class Body> static auto within_memory(Body body)
+{
+    try {
+        return body();
+    } catch (const std::bad_alloc &) {
+        fail(GTX_ERROR_MEMORY, "not enough memory to read the model");
+    } catch (const std::length_error &) {
+        fail(GTX_ERROR_MEMORY, "not enough memory to read the model");
+    }
+}
+
+ModelFile model_in_memory(std::string bytes, const std::string &path, Task &task)
+{
+    return within_memory([&] {
+        if (starts_with(bytes, "\x1f\x8b"))
+            bytes = inflate_gzip(bytes, task);
+        return ModelFile{path, std::move(bytes), nullptr};
+    });
+}
+
+ModelFile read_model(const std::string &path, Task &task)
+{
+    return within_memory([&] { return model_in_memory(read_whole_file(path), path, task); });
+}
+
+std::vector<std::string> referenced_files(const ModelFile &file)
+{
+    return within_memory([&] {
+        std::vector<std::string> paths, once;
+        const Format *format = find_format(file);
+        if (format && format->references)
+            format->references(file, paths);
+        std::set<std::string> seen = {""};
+        for (std::string &path : paths)
+            if (seen.insert(path).second)
+                once.push_back(std::move(path));
+        return once;
+    });
+}
+
+Mesh import_model(const ModelFile &file, Task &task)
+{
     const Format *format = find_format(file);
     if (!format)
-        fail(GTX_ERROR_UNSUPPORTED, "'%s' is none of OBJ, PLY, Draco, glTF and GLB",
-             printable(std::filesystem::path(path).filename().string()).c_str());
-    Mesh mesh = format->import(file, task);
+        fail(GTX_ERROR_UNSUPPORTED, "'%s' is none of OBJ, PLY, OFF, STL, Draco, glTF and GLB",
+             printable(std::filesystem::path(file.path).filename().string()).c_str());
+    Mesh mesh = within_memory([&] { return format->import(file, task); });
     if (mesh.triangles.empty())
         fail(GTX_ERROR_EMPTY, "the model has no triangle");
     task.advance(1);
     return mesh;
-} catch (const std::bad_alloc &) {
-    fail(GTX_ERROR_MEMORY, "not enough memory to read the model");
-} catch (const std::length_error &) {
-    fail(GTX_ERROR_MEMORY, "not enough memory to read the model");
+}
+
+Mesh import_mesh(const std::string &path, Task &task, std::vector<std::string> *sources)
+{
+    ModelFile file = read_model(path, task);
+    file.sources = sources;
+    if (sources)
+        sources->push_back(path);
+    return import_model(file, task);
 }
 
 } // namespace gtx

@@ -1,4 +1,4 @@
-/* What the importers share: the file in memory, errors, polygons. Internal to lib/mesh. */
+/* What the importers share: errors, numbers, polygons. Internal to lib/mesh. */
 #pragma once
 
 #include "mesh/mesh.hpp"
@@ -9,19 +9,14 @@
 
 namespace gtx {
 
-/* A model file, inflated when it was gzipped. */
-struct ModelFile {
-    std::string path;
-    std::string bytes;
-    std::vector<std::string> *sources; /* gets the path of every further file; may be null */
-};
-
 /* One importer a format. They promise valid vertex indices and nothing else: positions may be
  * anything, even NaN. */
 Mesh import_obj(const ModelFile &file, Task &task);
 Mesh import_ply(const ModelFile &file, Task &task);
 Mesh import_draco(const ModelFile &file, Task &task);
 Mesh import_gltf(const ModelFile &file, Task &task);
+Mesh import_off(const ModelFile &file, Task &task);
+Mesh import_stl(const ModelFile &file, Task &task);
 
 /* Vertices and triangles are numbered in 32 bits, and the last number is taken. */
 constexpr uint64_t MAX_VERTICES = 0xfffffffe;
@@ -38,6 +33,15 @@ bool parse_number(const char *&at, const char *end, double &value);
 
 /* Throws Error: READ, LIMIT. */
 std::string read_whole_file(const std::string &path);
+
+/* The path of a file that a model names: beside the model or in a folder below it. Empty where the
+ * name leads anywhere else: a model from elsewhere must not make the cooker read other files. */
+std::string path_beside(const ModelFile &file, const std::string &name);
+std::string percent_decoded(std::string_view uri);
+
+/* Append the paths of the files that a model refers to; "" for those it must not. */
+void gltf_references(const ModelFile &file, std::vector<std::string> &paths);
+void obj_references(const ModelFile &file, std::vector<std::string> &paths);
 
 /* Cuts a polygon of n >= 3 corners into n - 2 triangles of corner numbers, wound alike. */
 void triangulate(const std::vector<Vec3d> &polygon, std::vector<std::array<uint32_t, 3>> &out);

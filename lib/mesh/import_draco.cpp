@@ -56,7 +56,7 @@ static DracoAttribute read_attribute(const draco::Mesh &mesh, const draco::Point
     return to;
 }
 
-static DracoMesh checked(const draco::Mesh &mesh, Task &task)
+static DracoMesh checked(const draco::Mesh &mesh, bool with_uv, Task &task)
 {
     DracoMesh out;
     out.points = mesh.num_points();
@@ -74,14 +74,14 @@ static DracoMesh checked(const draco::Mesh &mesh, Task &task)
     for (int i = 0; i < mesh.num_attributes(); ++i) {
         const draco::PointAttribute *attribute = mesh.attribute(i);
         task.advance(0.5 + 0.5 * i / mesh.num_attributes());
-        bool texture = attribute->attribute_type() == draco::GeometryAttribute::TEX_COORD;
-        if (!texture && attribute->num_components() <= 4)
+        bool uv = attribute->attribute_type() == draco::GeometryAttribute::TEX_COORD;
+        if ((!uv || with_uv) && attribute->num_components() <= 4)
             out.attributes.push_back(read_attribute(mesh, *attribute));
     }
     return out;
 }
 
-DracoMesh decode_draco(std::string_view bytes, Task &task)
+DracoMesh decode_draco(std::string_view bytes, bool with_uv, Task &task)
 {
     draco::DecoderBuffer buffer;
     buffer.Init(bytes.data(), bytes.size());
@@ -96,12 +96,12 @@ DracoMesh decode_draco(std::string_view bytes, Task &task)
     if (!mesh.ok() || !mesh.value())
         fail(GTX_ERROR_INPUT, "the Draco data is damaged: %s",
              printable(mesh.status().error_msg_string()).c_str());
-    return checked(*mesh.value(), task);
+    return checked(*mesh.value(), with_uv, task);
 }
 
 Mesh import_draco(const ModelFile &file, Task &task)
 {
-    DracoMesh draco = decode_draco(file.bytes, task);
+    DracoMesh draco = decode_draco(file.bytes, false, task);
     const DracoAttribute *by_role[3] = {};
     for (const DracoAttribute &a : draco.attributes)
         if (a.role != DracoRole::other && !by_role[int(a.role)])

@@ -21,7 +21,8 @@ struct DracoMesh {
     std::vector<DracoAttribute> attributes;
 };
 
-/* Throws Error: INPUT, UNSUPPORTED (a point cloud), LIMIT. */
-DracoMesh decode_draco(std::string_view bytes, Task &task);
+/* Texture coordinates only when they are wanted.
+ * Throws Error: INPUT, UNSUPPORTED (a point cloud), LIMIT. */
+DracoMesh decode_draco(std::string_view bytes, bool with_uv, Task &task);
 
 } // namespace gtx

@@ -5,7 +5,6 @@
 
 #include "base/bytes.h"
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 namespace gtx {
@@ -82,27 +81,7 @@ static tinygltf::Model load_model(const json &root)
 
 /* ---- buffers ---- */
 
-static int hex(char c)
-{
-    return c >= '0' && c <= '9'   ? c - '0'
-           : c >= 'a' && c <= 'f' ? c - 'a' + 10
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                  : -1;
-}
-
-static std::string percent_decoded(std::string_view uri)
-{
-    std::string out;
-    for (size_t i = 0; i < uri.size(); ++i) {
-        bool escaped =
-            uri[i] == '%' && i + 2 < uri.size() && hex(uri[i + 1]) >= 0 && hex(uri[i + 2]) >= 0;
-        out += escaped ? char(hex(uri[i + 1]) * 16 + hex(uri[i + 2])) : uri[i];
-        i += escaped ? 2 : 0;
-    }
-    return out;
-}
-
-static std::string base64_decoded(std::string_view text, size_t buffer)
+static std::string base64_decoded(std::string_view text, const std::string &user)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     int8_t value[256];
@@ -117,7 +96,7 @@ static std::string base64_decoded(std::string_view text, size_t buffer)
     int count = 0;
     for (unsigned char c : text) {
         if (value[c] < 0)
-            fail(GTX_ERROR_INPUT, "buffer %zu: its data URI is not base64", buffer);
+            fail(GTX_ERROR_INPUT, "%s: its data URI is not base64", user.c_str());
         bits = bits << 6 | uint32_t(value[c]);
         count += 6;
         if (count >= 8) {
@@ -128,20 +107,31 @@ static std::string base64_decoded(std::string_view text, size_t buffer)
     return out;
 }
 
-/* A file beside the model or in a folder below it, nothing else: a model from elsewhere must not
- * make the cooker read the machine's other files. */
+std::string data_uri_bytes(const std::string &uri, const std::string &user)
+{
+    size_t comma = uri.find(',');
+    if (comma == std::string::npos || comma < 7 || uri.compare(comma - 7, 7, ";base64") != 0)
+        fail(GTX_ERROR_INPUT, "%s: its data URI is not base64", user.c_str());
+    return base64_decoded(std::string_view(uri).substr(comma + 1), user);
+}
+
 static std::string file_beside(const ModelFile &file, const std::string &uri, size_t buffer)
 {
-    std::string path = percent_decoded(uri);
-    bool outside = path.empty() || path.find_first_of(std::string(":\\\0", 3)) != std::string::npos;
-    std::filesystem::path relative(outside ? std::string() : path);
-    outside |= relative.is_absolute();
-    for (const auto &part : relative)
-        outside |= part == "..";
-    if (outside)
+    std::string path = path_beside(file, percent_decoded(uri));
+    if (path.empty())
         fail(GTX_ERROR_INPUT, "buffer %zu: '%s' is not a file in the model's folder", buffer,
              printable(uri).c_str());
-    return (std::filesystem::path(file.path).parent_path() / relative).string();
+    return path;
+}
+
+/* What only a reader without EXT_meshopt_compression would want. */
+static bool is_fallback(const json &buffer)
+{
+    auto extensions = buffer.find("extensions");
+    if (extensions == buffer.end())
+        return false;
+    auto meshopt = extensions->find("EXT_meshopt_compression");
+    return meshopt != extensions->end() && meshopt->value("fallback", false);
 }
 
 static std::string read_buffer(const ModelFile &file, const json &buffer, size_t number,
@@ -152,14 +142,15 @@ static std::string read_buffer(const ModelFile &file, const json &buffer, size_t
         fail(GTX_ERROR_INPUT, "buffer %zu has no byteLength", number);
     auto uri = buffer.find("uri");
     std::string bytes;
-    if (uri == buffer.end()) {
+    if (is_fallback(buffer)) {
+        return {};
+    } else if (uri == buffer.end()) {
         if (number == 0 && container.has_binary)
             bytes = container.binary;
         else /* legal when only an extension fills it; who reads it finds it too short */
             return {};
     } else {
         const std::string &text = uri->get_ref<const std::string &>();
-        size_t comma = text.find(',');
         if (text.rfind("data:", 0) != 0) {
             std::string path = file_beside(file, text, number);
             try {
@@ -169,11 +160,8 @@ static std::string read_buffer(const ModelFile &file, const json &buffer, size_t
             }
             if (file.sources)
                 file.sources->push_back(path);
-        } else if (comma == std::string::npos || comma < 7 ||
-                   text.compare(comma - 7, 7, ";base64") != 0) {
-            fail(GTX_ERROR_INPUT, "buffer %zu: its data URI is not base64", number);
         } else {
-            bytes = base64_decoded(std::string_view(text).substr(comma + 1), number);
+            bytes = data_uri_bytes(text, "buffer " + std::to_string(number));
         }
     }
     uint64_t wanted = length->get<uint64_t>();
@@ -182,6 +170,14 @@ static std::string read_buffer(const ModelFile &file, const json &buffer, size_t
              (unsigned long long)wanted);
     bytes.resize(size_t(wanted));
     return bytes;
+}
+
+static std::vector<GltfDocument::ImageSource> read_images(const json &root)
+{
+    std::vector<GltfDocument::ImageSource> images;
+    for (const json &image : root.value("images", json::array()))
+        images.push_back({image.value("uri", ""), image.value("bufferView", -1)});
+    return images;
 }
 
 GltfDocument read_gltf_document(const ModelFile &file, Task &task)
@@ -201,8 +197,11 @@ GltfDocument read_gltf_document(const ModelFile &file, Task &task)
         task.advance(0.1 + 0.1 * double(i) / double(buffers.size()));
     }
     doc.triangle_limit = (uint64_t(1) << 24) + 64 * total;
+    doc.look = read_gltf_materials(root);
+    doc.images = read_images(root);
     strip_gltf_json(root, task);
     doc.model = load_model(root);
+    unpack_gltf_views(doc, task);
     return doc;
 }
 

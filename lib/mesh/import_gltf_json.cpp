@@ -15,6 +15,7 @@ static const int max_json_depth = 100;
 static const char *const known_extensions[] = {
     "KHR_draco_mesh_compression", "KHR_mesh_quantization", "KHR_texture_transform",
     "KHR_texture_basisu",         "EXT_texture_webp",      "EXT_texture_avif",
+    "EXT_meshopt_compression",    "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",        "EXT_mesh_features",     "EXT_structural_metadata",
 };
 
@@ -22,8 +23,9 @@ static const char *const known_extensions[] = {
 static const struct {
     const char *key, *warning;
 } unread[] = {
-    {"images", "textures were ignored"},
+    {"images", nullptr}, /* these four are read apart */
     {"textures", nullptr},
+    {"materials", nullptr},
     {"samplers", nullptr},
     {"animations", "animations were ignored"},
     {"skins", "skins were ignored"},
@@ -58,9 +60,9 @@ static const struct {
     {"meshes[].primitives[].mode", Kind::index},
     {"meshes[].primitives[].extensions.KHR_draco_mesh_compression.bufferView", Kind::index},
     {"meshes[].primitives[].extensions.KHR_draco_mesh_compression.attributes{}", Kind::index},
-    {"materials[].doubleSided", Kind::boolean},
-    {"materials[].alphaMode", Kind::string},
-    {"materials[].pbrMetallicRoughness.baseColorFactor[]", Kind::number},
+    {"nodes[].extensions.EXT_mesh_gpu_instancing.attributes{}", Kind::index},
+    {"images[].uri", Kind::string},
+    {"images[].bufferView", Kind::index},
     {"accessors[].bufferView", Kind::index},
     {"accessors[].byteOffset", Kind::size},
     {"accessors[].componentType", Kind::index},
@@ -77,6 +79,14 @@ static const struct {
     {"bufferViews[].byteOffset", Kind::size},
     {"bufferViews[].byteLength", Kind::size},
     {"bufferViews[].byteStride", Kind::index},
+    {"bufferViews[].extensions.EXT_meshopt_compression.buffer", Kind::index},
+    {"bufferViews[].extensions.EXT_meshopt_compression.byteOffset", Kind::index},
+    {"bufferViews[].extensions.EXT_meshopt_compression.byteLength", Kind::index},
+    {"bufferViews[].extensions.EXT_meshopt_compression.byteStride", Kind::index},
+    {"bufferViews[].extensions.EXT_meshopt_compression.count", Kind::index},
+    {"bufferViews[].extensions.EXT_meshopt_compression.mode", Kind::string},
+    {"bufferViews[].extensions.EXT_meshopt_compression.filter", Kind::string},
+    {"buffers[].extensions.EXT_meshopt_compression.fallback", Kind::boolean},
     {"buffers[].byteLength", Kind::size},
     {"buffers[].uri", Kind::string},
 };
@@ -166,7 +176,7 @@ static bool is_known(const std::string &extension)
     for (const char *known : known_extensions)
         if (extension == known)
             return true;
-    return extension.rfind("KHR_materials_", 0) == 0; /* appearance alone */
+    return extension.rfind("KHR_materials_", 0) == 0; /* each material says what it lacks */
 }
 
 static void check_extensions(const json &root, Task &task)
@@ -205,6 +215,8 @@ json read_gltf_json(std::string_view text, Task &task)
  * Draco data, and decodes Draco without checking a number. */
 void strip_gltf_json(json &root, Task &task)
 {
+    if (root.contains("extensions") && root["extensions"].contains("KHR_lights_punctual"))
+        task.warnings.push_back("lights were ignored");
     for (const auto &item : unread) {
         auto found = root.find(item.key);
         if (found == root.end())

@@ -1,4 +1,4 @@
-/* The triangle mesh that flows through the cooker, and the two ways to get one. */
+/* The triangle mesh that flows through the cooker, and how to get one. */
 #pragma once
 
 #include "mesh/appearance.hpp"
@@ -48,10 +48,32 @@ struct CleanReport {
     bool closed = false;                     /* no boundary edge at all */
 };
 
-/* Reads a model by its content (falling back to its extension): OBJ, PLY, Draco, glTF and GLB.
- * Node transforms are applied. What is ignored is named in task.warnings. `sources`, when given,
- * gets the path of every file that was read (the model first).
+/* A model in memory. `path` names the format where the bytes do not, and is what the files that the
+ * model refers to are relative to. */
+struct ModelFile {
+    std::string path;
+    std::string bytes; /* inflated when they were gzipped */
+    std::vector<std::string> *sources; /* gets the path of every further file read; may be null */
+};
+
+/* Throw Error: READ, INPUT, LIMIT, MEMORY, CANCELLED. */
+ModelFile read_model(const std::string &path, Task &task);
+ModelFile model_in_memory(std::string bytes, const std::string &path, Task &task);
+
+/* What a path says of the format: its extension in lower case, ".gz" left out. */
+std::string model_extension(const std::string &path);
+
+/* Paths of the files that a model refers to, whether they exist or not: buffers, images, material
+ * libraries. Found without decoding the model; nothing is said of one that is malformed. */
+std::vector<std::string> referenced_files(const ModelFile &file);
+
+/* Reads a model by its content (falling back to its extension): OBJ, PLY, OFF, STL, Draco, glTF and
+ * GLB. Node transforms are applied. What is ignored is named in task.warnings.
  * Throws Error: READ, INPUT, UNSUPPORTED, EMPTY (no triangle), LIMIT, MEMORY, CANCELLED. */
+Mesh import_model(const ModelFile &file, Task &task);
+
+/* The same of a file. `sources`, when given, gets the path of every file that was read (the model
+ * first). */
 Mesh import_mesh(const std::string &path, Task &task, std::vector<std::string> *sources = nullptr);
 
 /* Welds, repairs and orients; the result keeps the promises above. Throws Error: EMPTY, CANCELLED. */

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstring>
 #include <mutex>
-#include <thread>
 
 namespace gtx {
 
@@ -19,7 +18,8 @@ static double now()
 Task::Task(unsigned threads, gtx_progress_fn progress, void *user,
            std::vector<const char *> stages, std::vector<float> weights)
     : threads_(threads ? threads : std::max(1u, std::thread::hardware_concurrency())),
-      progress_(progress), user_(user), stages_(std::move(stages))
+      progress_(progress), user_(user), stages_(std::move(stages)),
+      caller_(std::this_thread::get_id())
 {
     if (stages_.empty())
         stages_.push_back("work");
@@ -51,6 +51,14 @@ void Task::advance(double fraction)
     report(std::clamp(fraction, 0., 1.));
 }
 
+void Task::check()
+{
+    if (std::this_thread::get_id() == caller_)
+        report(0); /* which never falls */
+    else if (cancelled_)
+        throw Error(GTX_CANCELLED, "cancelled");
+}
+
 void Task::end()
 {
     double time = now();
@@ -66,8 +74,10 @@ void Task::report(double fraction)
     reported_ = std::max(reported_, float(whole));
     gtx_progress progress = {stages_[stage_], uint32_t(stage_), uint32_t(stages_.size()),
                              reported_};
-    if (progress_(&progress, user_))
+    if (progress_(&progress, user_)) {
+        cancelled_ = true;
         throw Error(GTX_CANCELLED, "cancelled");
+    }
 }
 
 void Task::parallel(size_t count, const std::function<void(size_t)> &body, double from, double to)
@@ -101,7 +111,7 @@ void Task::parallel(size_t count, const std::function<void(size_t)> &body, doubl
     for (size_t i = 0; i < helpers; ++i)
         pool.emplace_back([&] { while (run_one()) {} });
     try {
-        while (run_one())
+        while (run_one() && !stop)
             advance(from + (to - from) * double(done) / double(count));
     } catch (...) { /* cancelled from the callback */
         stop = true;

@@ -3,10 +3,12 @@
 
 #include <geotex/geotex.h>
 
+#include <atomic>
 #include <cstddef>
 #include <exception>
 #include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace gtx {
@@ -40,6 +42,10 @@ public:
     void parallel(size_t count, const std::function<void(size_t)> &body, double from = 0,
                   double to = 1);
 
+    /* For long bodies of parallel(), now and then, on any thread: lets the callback be called and
+     * throws once it has asked to stop. */
+    void check();
+
     unsigned threads() const { return threads_; }
     /* Seconds spent in each stage so far, in the order of the constructor. */
     const std::vector<double> &seconds() const { return seconds_; }
@@ -60,6 +66,8 @@ private:
     size_t stage_ = 0;
     double stage_start_ = 0;
     float reported_ = 0;
+    std::thread::id caller_;
+    std::atomic<bool> cancelled_{false};
 };
 
 } // namespace gtx

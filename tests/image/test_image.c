@@ -86,6 +86,13 @@ static void the_same_from_memory(void **state)
     assert_int_equal(gtx_image_decode(bytes, size, &image, &error), GTX_OK);
     assert_memory_equal(image.pixels, pixels, sizeof pixels);
     gtx_image_free(&image);
+    uint32_t width = 0, height = 0;
+    assert_int_equal(gtx_image_measure(bytes, size, &width, &height, &error), GTX_OK);
+    assert_true(width == 8 && height == 8);
+    assert_int_equal(gtx_image_measure(bytes, 20, &width, &height, &error), GTX_ERROR_READ);
+    assert_null(strchr(error.message, '\n'));
+    assert_int_equal(gtx_image_measure("geotex", 6, &width, &height, &error), GTX_ERROR_READ);
+    assert_int_equal(gtx_image_measure(bytes, 0, &width, &height, NULL), GTX_ERROR_ARGUMENT);
     for (size_t cut = 1; cut < size; cut += 7) { /* truncated: an error, or rows that are missing */
         if (gtx_image_decode(bytes, cut, &image, &error) == GTX_OK)
             gtx_image_free(&image);

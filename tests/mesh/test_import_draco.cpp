@@ -3,7 +3,7 @@
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <draco/point_cloud/point_cloud_builder.h>
 
-#include "test_import.hpp"
+#include "test_import_gltf.hpp"
 
 static std::string bytes_of(const draco::EncoderBuffer &buffer)
 {
@@ -135,6 +135,59 @@ static void test_gltf(void **)
                  "the Draco data is damaged");
 }
 
+/* One triangle with texture coordinates, a tangent and a colour in bytes that are no fractions. */
+static void test_gltf_texture(void **)
+{
+    draco::TriangleSoupMeshBuilder builder;
+    builder.Start(1);
+    const float p[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    const float uv[3][2] = {{0, 0}, {0.25f, 0}, {0, 1}};
+    const float t[4] = {0, 1, 0, -1};
+    draco::FaceIndex face(0);
+    int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+    int texture = builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32);
+    int tangent = builder.AddAttribute(draco::GeometryAttribute::GENERIC, 4, draco::DT_FLOAT32);
+    builder.SetAttributeValuesForFace(position, face, p[0], p[1], p[2]);
+    builder.SetAttributeValuesForFace(texture, face, uv[0], uv[1], uv[2]);
+    builder.SetAttributeValuesForFace(tangent, face, t, t, t);
+    draco::Encoder encoder;
+    encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);
+    draco::EncoderBuffer buffer;
+    assert_true(encoder.EncodeMeshToBuffer(*builder.Finalize(), &buffer).ok());
+
+    Folder folder;
+    folder.write("a.png", png(folder, 1, 1, {255, 0, 0, 255}));
+    const std::string size = std::to_string(buffer.size());
+    std::string json = quoted(R"({'asset':{'version':'2.0'},
+'extensionsRequired':['KHR_draco_mesh_compression'],'meshes':[{'primitives':[{'material':0,
+'attributes':{'POSITION':0,'TEXCOORD_0':1,'TANGENT':2},'indices':3,'extensions':
+{'KHR_draco_mesh_compression':{'bufferView':0,'attributes':
+{'POSITION':0,'TEXCOORD_0':1,'TANGENT':2}}}}]}],
+'accessors':[{'componentType':5126,'count':3,'type':'VEC3'},
+{'componentType':5126,'count':3,'type':'VEC2'},{'componentType':5126,'count':3,'type':'VEC4'},
+{'componentType':5123,'count':3,'type':'SCALAR'}],
+'materials':[{'pbrMetallicRoughness':{'baseColorTexture':{'index':0}},'normalTexture':{'index':0}}],
+'textures':[{'source':0}],'images':[{'uri':'a.png'}],
+'bufferViews':[{'buffer':0,'byteLength':)") + size + quoted("}],'buffers':[{'byteLength':") + size +
+                       quoted(",'uri':'URI'}]}");
+    json = with_data(json, bytes_of(buffer));
+    Imported i = import_path(folder.write("a.gltf", json));
+    assert_works(i, 3, 1);
+    const gtx::Appearance &look = i.mesh.appearance;
+    assert_int_equal(look.uv[0].size(), 3);
+    assert_int_equal(look.tangents.size(), 3);
+    for (size_t k = 0; k < 3; ++k) {
+        const Vec3d &at = i.mesh.position(0, int(k));
+        assert_float_equal(look.uv[0][k][0], 0.25 * at.x, 1e-6);
+        assert_float_equal(look.uv[0][k][1], at.y, 1e-6);
+        assert_true(look.tangents[k][1] == 1 && look.tangents[k][3] == -1);
+    }
+    assert_sample(i.mesh, 0, {1, 0, 0, 1});
+    json = edited(json, "\"TEXCOORD_0\":1,\"TANGENT\":2}}", "\"TEXCOORD_0\":2,\"TANGENT\":2}}");
+    assert_fails(import_path(folder.write("a.gltf", json)), GTX_ERROR_INPUT,
+                 "POSITION and TEXCOORD_0 do not fit");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -142,6 +195,7 @@ int main(void)
         cmocka_unit_test(test_point_cloud),
         cmocka_unit_test(test_damaged),
         cmocka_unit_test(test_gltf),
+        cmocka_unit_test(test_gltf_texture),
     };
     return cmocka_run_group_tests_name("import_draco", tests, nullptr, nullptr);
 }

@@ -31,8 +31,8 @@ static void test_kind(void **)
     assert_works(import_text("ply.obj", ply), 3, 1); /* content before name */
     assert_works(import_text("none", ply), 3, 1);
     assert_fails(import_text("none", obj), GTX_ERROR_UNSUPPORTED, "'none' is none of");
-    assert_fails(import_text("a.off", "OFF\n3 1 0\n"), GTX_ERROR_UNSUPPORTED, "'a.off' is none of");
-    assert_fails(import_text("a.off", ""), GTX_ERROR_UNSUPPORTED, "none of");
+    assert_fails(import_text("a.fbx", "Kaydara\n"), GTX_ERROR_UNSUPPORTED, "'a.fbx' is none of");
+    assert_fails(import_text("a.fbx", ""), GTX_ERROR_UNSUPPORTED, "none of");
     assert_fails(import_text("a.gltf", "hello"), GTX_ERROR_INPUT, "JSON");
     assert_fails(import_text("a.glb", "glTF"), GTX_ERROR_INPUT, "GLB");
     assert_fails(import_text("a.drc", ""), GTX_ERROR_INPUT, "Draco");

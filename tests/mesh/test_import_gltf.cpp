@@ -1,63 +1,9 @@
 /* glTF: scenes, transforms, accessors, materials, containers; and documents that lie. */
-#include "test_import.hpp"
-
-template <class T> static std::string packed(std::initializer_list<T> values)
-{
-    return std::string(reinterpret_cast<const char *>(values.begin()), values.size() * sizeof(T));
-}
-
-/* JSON with its quotes written '. */
-static std::string quoted(std::string text)
-{
-    std::replace(text.begin(), text.end(), '\'', '"');
-    return text;
-}
-
-static std::string change(const std::string &json, const std::string &from, const std::string &to)
-{
-    return edited(json, quoted(from), quoted(to));
-}
-
-/* The unit square as four vertices and six indices: 48 + 12 bytes. */
-static std::string square()
-{
-    return packed<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) +
-           packed<uint16_t>({0, 1, 2, 0, 2, 3});
-}
-
-static const std::string square_json =
-    quoted(R"({'asset':{'version':'2.0'},'scene':0,'scenes':[{'nodes':[0]}],
-'nodes':[{'mesh':0}],
-'meshes':[{'primitives':[{'attributes':{'POSITION':0},'indices':1}]}],
-'accessors':[{'bufferView':0,'componentType':5126,'count':4,'type':'VEC3'},
-{'bufferView':1,'componentType':5123,'count':6,'type':'SCALAR'}],
-'bufferViews':[{'buffer':0,'byteLength':48},{'buffer':0,'byteOffset':48,'byteLength':12}],
-'buffers':[{'byteLength':60,'uri':'URI'}]})");
-
-static std::string with_data(const std::string &json, const std::string &bytes)
-{
-    return change(json, "'URI'", "'data:application/octet-stream;base64," + base64(bytes) + "'");
-}
-
-/* The square with one change. */
-static std::string changed(const char *from, const std::string &to)
-{
-    return with_data(change(square_json, from, to), square());
-}
-
-static Imported import_data(const std::string &json, const std::string &bytes)
-{
-    return import_text("a.gltf", with_data(json, bytes));
-}
+#include "test_import_gltf.hpp"
 
 static Imported import_json(const std::string &json)
 {
     return import_text("a.gltf", quoted(json));
-}
-
-static Imported import_changed(const char *from, const std::string &to)
-{
-    return import_text("a.gltf", changed(from, to));
 }
 
 static std::string glb(const std::string &json, const std::string &binary)
@@ -226,6 +172,42 @@ static void test_instances(void **)
     assert_fails(import_data(json, square().substr(0, 48) + indices), GTX_ERROR_LIMIT, "instances");
 }
 
+/* EXT_mesh_gpu_instancing: a node that repeats its mesh, quarter turns as normalised shorts. */
+static void test_gpu_instancing(void **)
+{
+    std::string json = change(square_json, "{'mesh':0}", R"({"mesh":0,"translation":[100,0,0],
+        "extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":2,"ROTATION":3}}}})");
+    json = change(json, "'asset'", "'extensionsRequired':['EXT_mesh_gpu_instancing'],'asset'");
+    json = change(json, ",'type':'SCALAR'}],",
+                  R"(,"type":"SCALAR"},
+        {"bufferView":2,"componentType":5126,"count":2,"type":"VEC3"},
+        {"bufferView":3,"componentType":5122,"normalized":true,"count":2,"type":"VEC4"}],)");
+    json = change(json, "'byteLength':12}", R"("byteLength":12},
+        {"buffer":0,"byteOffset":60,"byteLength":24},
+        {"buffer":0,"byteOffset":84,"byteLength":16})");
+    json = change(json, "'byteLength':60", "'byteLength':100");
+    std::string bytes = square() + packed<float>({0, 0, 5, 10, 0, 0}) +
+                        packed<int16_t>({0, 0, 0, 32767, 0, 0, 23170, 23170});
+    Imported i = import_data(json, bytes);
+    assert_works(i, 8, 4);
+    assert_position(i.mesh, 1, 101, 0, 5);
+    assert_position(i.mesh, 4, 110, 0, 0);
+    assert_position(i.mesh, 5, 110, 1, 0);
+    assert_true(i.warnings.empty());
+    assert_fails(import_data(change(json, "'TRANSLATION':2,'ROTATION':3", ""), bytes),
+                 GTX_ERROR_EMPTY, "no triangle"); /* repeated no times */
+    assert_fails(import_data(change(json, "5126,'count':2", "5126,'count':1"), bytes),
+                 GTX_ERROR_INPUT, "node 0: the TRANSLATION of its instances");
+    assert_fails(import_data(change(json, "'TRANSLATION':2", "'TRANSLATION':3"), bytes),
+                 GTX_ERROR_INPUT, "node 0: the TRANSLATION of its instances");
+    assert_fails(import_data(change(json, "'TRANSLATION':2", "'TRANSLATION':9"), bytes),
+                 GTX_ERROR_INPUT, "no accessor 9");
+    std::string many = change(json, "'bufferView':2,'componentType':5126,'count':2",
+                              "'componentType':5126,'count':2000000");
+    assert_fails(import_data(change(many, ",'ROTATION':3", ""), bytes), GTX_ERROR_LIMIT,
+                 "node 0: more than 1048576 repeated instances");
+}
+
 /* ---- primitives ---- */
 
 static void test_modes(void **)
@@ -320,9 +302,9 @@ static void test_materials(void **)
     std::string colors = packed<uint8_t>({55, 0, 255, 255, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
     Imported i = import_data(json, square() + colors);
     assert_works(i, 12, 6);
-    assert_color(i.mesh, 0, 188, 0, 255, 255); /* linear 0.5 is sRGB 188; opaque has no alpha */
-    assert_color(i.mesh, 6, 128, 0, 188, 128); /* linear 55 / 255 is sRGB 128 */
-    assert_color(i.mesh, 12, 255, 255, 255, 255);
+    assert_sample(i.mesh, 0, {0.5, 0, 1, 1}); /* opaque has no alpha */
+    assert_sample(i.mesh, 2, {55 / 255., 0, 0.5, 1});
+    assert_sample(i.mesh, 4, {1, 1, 1, 1});
     const uint8_t flags[] = {gtx::TRIANGLE_TWO_SIDED, gtx::TRIANGLE_TWO_SIDED, 0, 0, 0, 0};
     assert_memory_equal(i.mesh.flags.data(), flags, 6);
     assert_true(i.warns("blended"));
@@ -333,10 +315,11 @@ static void test_materials(void **)
 static void test_ignored(void **)
 {
     Imported i = import_changed("'asset'", R"("images":[{"uri":"/etc/passwd"}],"skins":[{}],
-        "cameras":[{}],"animations":[{}],"extensionsUsed":["ACME_glow"],"extras":{"a":[1]},
+        "cameras":[{}],"animations":[{}],"extensionsUsed":["ACME_glow","KHR_lights_punctual"],
+        "extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"}]}},"extras":{"a":[1]},
         "asset")");
     assert_works(i, 4, 2);
-    for (const char *what : {"textures", "skins", "cameras", "animations", "ACME_glow"})
+    for (const char *what : {"skins", "cameras", "animations", "ACME_glow", "lights"})
         assert_true(i.warns(what));
     assert_int_equal(i.sources.size(), 1);
     assert_true(import_changed("'indices':1", R"("indices":1,"targets":[{"POSITION":0}])")
@@ -353,11 +336,9 @@ static void test_bad(void **)
         {"'2.0'", "'1.0'", GTX_ERROR_UNSUPPORTED, "version 1.0"},
         {"{'version':'2.0'}", "{}", GTX_ERROR_INPUT, "asset.version"},
         {"'asset'", "'extensionsRequired':['ACME_x'],'asset'", GTX_ERROR_UNSUPPORTED, "ACME_x"},
-        {"'asset'", "'extensionsRequired':['EXT_meshopt_compression'],'asset'",
-         GTX_ERROR_UNSUPPORTED, "EXT_meshopt_compression"},
         {"{'buffer':0,'byteLength':48}",
          "{'buffer':0,'byteLength':48,'extensions':{'EXT_meshopt_compression':{}}}",
-         GTX_ERROR_UNSUPPORTED, "EXT_meshopt_compression"},
+         GTX_ERROR_INPUT, "buffer view 0: its meshopt mode is unknown"},
         {"'POSITION':0", "'NORMAL':0", GTX_ERROR_INPUT, "mesh 0 primitive 0 has no POSITION"},
         {"'POSITION':0", "'POSITION':5", GTX_ERROR_INPUT, "no accessor 5"},
         {"'POSITION':0", "'POSITION':-1", GTX_ERROR_INPUT, "attributes.POSITION is not an index"},
@@ -422,14 +403,15 @@ static void test_bad_draco(void **)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_plain),     cmocka_unit_test(test_glb),
-        cmocka_unit_test(test_files),     cmocka_unit_test(test_transforms),
-        cmocka_unit_test(test_far_away),  cmocka_unit_test(test_mirror),
-        cmocka_unit_test(test_trees),     cmocka_unit_test(test_instances),
-        cmocka_unit_test(test_modes),     cmocka_unit_test(test_index_types),
-        cmocka_unit_test(test_sparse),    cmocka_unit_test(test_quantized),
-        cmocka_unit_test(test_materials), cmocka_unit_test(test_ignored),
-        cmocka_unit_test(test_bad),       cmocka_unit_test(test_bad_draco),
+        cmocka_unit_test(test_plain),          cmocka_unit_test(test_glb),
+        cmocka_unit_test(test_files),          cmocka_unit_test(test_transforms),
+        cmocka_unit_test(test_far_away),       cmocka_unit_test(test_mirror),
+        cmocka_unit_test(test_trees),          cmocka_unit_test(test_instances),
+        cmocka_unit_test(test_gpu_instancing), cmocka_unit_test(test_modes),
+        cmocka_unit_test(test_index_types),    cmocka_unit_test(test_sparse),
+        cmocka_unit_test(test_quantized),      cmocka_unit_test(test_materials),
+        cmocka_unit_test(test_ignored),        cmocka_unit_test(test_bad),
+        cmocka_unit_test(test_bad_draco),
     };
     return cmocka_run_group_tests_name("import_gltf", tests, nullptr, nullptr);
 }
