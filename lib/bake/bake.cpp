@@ -30,6 +30,19 @@ static Vec3d find_anchor(const Mesh &mesh)
     return anchor;
 }
 
+/* The maps with mip levels: where a patch has them, where the pages do, and what an empty texel of
+ * those holds. */
+struct Pyramid {
+    Levels PatchMaps::*from;
+    Levels Maps::*to;
+    size_t texel;                /* bytes */
+    uint8_t blank;
+};
+constexpr Pyramid PYRAMIDS[] = {{&PatchMaps::normal, &Maps::normal, 2, 128},
+                                {&PatchMaps::color, &Maps::color, 4, 0},
+                                {&PatchMaps::material, &Maps::material, 4, 0},
+                                {&PatchMaps::emission, &Maps::emission, 3, 0}};
+
 /* Copies a tight rectangle of `texel` bytes a texel to its place at a level of the pages. */
 static void blit(const std::vector<uint8_t> &from, const gtx_patch &r, const Maps &maps,
                  unsigned level, size_t texel, std::vector<uint8_t> &to)
@@ -56,9 +69,9 @@ static std::vector<uint8_t> height_bytes(const PatchMaps &patch, unsigned bits)
     return bytes;
 }
 
-/* Pages of the right size, with what lies outside every rectangle. */
-static void allocate_pages(const Packing &packing, const BakeOptions &options, bool color,
-                           Maps &maps)
+/* Pages of the right size, with what lies outside every rectangle, for maps such as a patch has. */
+static void allocate_pages(const Packing &packing, const BakeOptions &options,
+                           const PatchMaps &patch, Maps &maps)
 {
     maps.page_count = packing.page_count;
     maps.page_width = packing.width;
@@ -71,9 +84,9 @@ static void allocate_pages(const Packing &packing, const BakeOptions &options, b
     for (unsigned k = 0; k < options.mips; ++k) {
         size_t of_level =
             size_t(packing.page_count) * (packing.width >> k) * (packing.height >> k);
-        maps.normal.emplace_back(2 * of_level, uint8_t(128));
-        if (color)
-            maps.color.emplace_back(4 * of_level, uint8_t(0));
+        for (const Pyramid &p : PYRAMIDS)
+            if (!(patch.*p.from).empty())
+                (maps.*p.to).emplace_back(p.texel * of_level, p.blank);
     }
 }
 
@@ -85,11 +98,9 @@ static void place_patch(PatchMaps &patch, const Packing::Place &place, Maps &map
     r.rect[1] = uint16_t(place.y);
     blit(height_bytes(patch, maps.height_bits), r, maps, 0, maps.height_bits / 8, maps.height);
     blit(patch.trim, r, maps, 0, 1, maps.trim);
-    for (unsigned k = 0; k < maps.mip_count; ++k) {
-        blit(patch.normal[k], r, maps, k, 2, maps.normal[k]);
-        if (!maps.color.empty())
-            blit(patch.color[k], r, maps, k, 4, maps.color[k]);
-    }
+    for (const Pyramid &p : PYRAMIDS)
+        for (unsigned k = 0; k < (maps.*p.to).size(); ++k)
+            blit((patch.*p.from)[k], r, maps, k, p.texel, (maps.*p.to)[k]);
 }
 
 static void summarise(const std::vector<PatchMaps> &patches, Maps &maps)
@@ -137,10 +148,16 @@ Maps bake(const Mesh &mesh, const Partition &partition, const BakeOptions &optio
     check(mesh, partition, options);
     task.begin("bake");
     Neighbours neighbours = triangle_neighbours(mesh);
-    Job job = {mesh, neighbours, options, partition.pitch, find_anchor(mesh)};
+    Job job = {mesh,            neighbours,      options, appearance_needs(mesh),
+               partition.pitch, find_anchor(mesh)};
     std::vector<PatchMaps> patches(partition.charts.size());
     task.parallel(patches.size(),
                   [&](size_t i) { patches[i] = bake_chart(job, partition.charts[i]); });
+    patches.erase(std::remove_if(patches.begin(), patches.end(),
+                                 [](const PatchMaps &p) { return !p.coded; }),
+                  patches.end());
+    if (patches.empty())
+        throw Error(GTX_ERROR_EMPTY, "the materials cut all of the model away");
 
     task.begin("pack");
     std::vector<std::array<uint32_t, 2>> sizes;
@@ -150,11 +167,12 @@ Maps bake(const Mesh &mesh, const Partition &partition, const BakeOptions &optio
     if (packing.page_count > MOST_PAGES)
         throw Error(GTX_ERROR_LIMIT, "the maps fill more than 2048 pages");
     Maps maps;
-    allocate_pages(packing, options, !mesh.colors.empty(), maps);
+    allocate_pages(packing, options, patches[0], maps);
     for (size_t i = 0; i < patches.size(); ++i)
         place_patch(patches[i], packing.places[i], maps);
     for (int k = 0; k < 3; ++k)
         maps.anchor[k] = job.anchor[k];
+    maps.emission_scale = job.needs.emission_scale;
     summarise(patches, maps);
     return maps;
 }

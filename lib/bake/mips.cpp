@@ -1,106 +1,94 @@
-/* Normal and colour of a patch as bytes: mip levels, dilated past what is occupied. */
+/* What is seen at a patch's texels as bytes: mip levels, dilated past what is occupied. */
 #include "bake/patch_maps.hpp"
-#include "bake/srgb.hpp"
 
 #include "asset/asset.h"
+#include "mesh/srgb.hpp"
 
 #include <algorithm>
 
 namespace gtx::baking {
 
-struct Level {
-    int w, h;
-    std::vector<Shade> shades;
-    std::vector<uint8_t> occupied;
-};
-
 /* A sum of shades that gives their mean. */
 struct Mean {
-    Shade sum;
+    Vec3f normal, last;
+    float values[MOST_CHANNELS] = {};
     int count = 0;
 
-    void add(const Shade &s)
+    void add(const Shades &from, size_t at)
     {
-        sum.normal += s.normal;
-        for (int k = 0; k < 4; ++k)
-            sum.color[k] += s.color[k];
+        last = from.normal[at];
+        normal += last;
+        for (int k = 0; k < from.channels; ++k)
+            values[k] += from.values[at * from.channels + k];
         ++count;
     }
-    /* `or_else` gives the normal when the sum of normals vanishes. */
-    Shade shade(const Shade &or_else) const
+    void store(Shades &to, size_t at) const
     {
-        Shade mean = sum;
-        float size = length(mean.normal);
-        mean.normal = size > 1e-6f ? mean.normal / size : or_else.normal;
-        for (float &c : mean.color)
-            c /= float(count);
-        return mean;
+        float size = length(normal);
+        to.normal[at] = size > 1e-6f ? normal / size : last;
+        for (int k = 0; k < to.channels; ++k)
+            to.values[at * to.channels + k] = values[k] / float(count);
     }
 };
 
 /* The next level: means of the occupied texels of each square. */
-static Level halve(const Level &fine)
+static Shades halve(const Shades &fine)
 {
-    Level coarse{fine.w / 2, fine.h / 2, {}, {}};
-    coarse.shades.resize(size_t(coarse.w) * coarse.h);
-    coarse.occupied.resize(coarse.shades.size(), 0);
+    Shades coarse(fine.w / 2, fine.h / 2, fine.channels);
     for (int j = 0; j < coarse.h; ++j) {
         for (int i = 0; i < coarse.w; ++i) {
             Mean mean;
-            const Shade *last = nullptr;
             for (int k = 0; k < 4; ++k) {
                 size_t at = size_t(2 * j + k / 2) * fine.w + 2 * i + k % 2;
                 if (fine.occupied[at])
-                    mean.add(*(last = &fine.shades[at]));
+                    mean.add(fine, at);
             }
             size_t to = size_t(j) * coarse.w + i;
-            coarse.occupied[to] = last != nullptr;
-            if (last)
-                coarse.shades[to] = mean.shade(*last);
+            coarse.occupied[to] = mean.count > 0;
+            if (mean.count)
+                mean.store(coarse, to);
         }
     }
     return coarse;
 }
 
-/* Fills empty texels ring by ring with the mean of the neighbours that the ring before had. */
-static void dilate(Level &level, unsigned rings)
+void dilate(Shades &shades, unsigned rings)
 {
     std::vector<size_t> ring;
     for (unsigned r = 0; r < rings; ++r) {
         ring.clear();
-        for (int j = 0; j < level.h; ++j) {
-            for (int i = 0; i < level.w; ++i) {
-                size_t at = size_t(j) * level.w + i;
-                if (level.occupied[at])
+        for (int j = 0; j < shades.h; ++j) {
+            for (int i = 0; i < shades.w; ++i) {
+                size_t at = size_t(j) * shades.w + i;
+                if (shades.occupied[at])
                     continue;
                 Mean mean;
-                const Shade *last = nullptr;
-                for (int y = std::max(j - 1, 0); y <= std::min(j + 1, level.h - 1); ++y)
-                    for (int x = std::max(i - 1, 0); x <= std::min(i + 1, level.w - 1); ++x)
-                        if (level.occupied[size_t(y) * level.w + x])
-                            mean.add(*(last = &level.shades[size_t(y) * level.w + x]));
-                if (!last)
+                for (int y = std::max(j - 1, 0); y <= std::min(j + 1, shades.h - 1); ++y)
+                    for (int x = std::max(i - 1, 0); x <= std::min(i + 1, shades.w - 1); ++x)
+                        if (shades.occupied[size_t(y) * shades.w + x])
+                            mean.add(shades, size_t(y) * shades.w + x);
+                if (!mean.count)
                     continue;
-                level.shades[at] = mean.shade(*last);
+                mean.store(shades, at);
                 ring.push_back(at);
             }
         }
         if (ring.empty())
             return;
         for (size_t at : ring)
-            level.occupied[at] = 1;
+            shades.occupied[at] = 1;
     }
 }
 
-static std::vector<uint8_t> encode_normals(const Level &level, const gtx_patch &record)
+static std::vector<uint8_t> encode_normals(const Shades &shades, const gtx_patch &record)
 {
     float rows[3][3];
     gtx_normal_frame(&record, rows);
-    std::vector<uint8_t> bytes(2 * level.shades.size(), 128);
-    for (size_t i = 0; i < level.shades.size(); ++i) {
-        if (!level.occupied[i])
+    std::vector<uint8_t> bytes(2 * shades.normal.size(), 128);
+    for (size_t i = 0; i < shades.normal.size(); ++i) {
+        if (!shades.occupied[i])
             continue;
-        const Vec3f &n = level.shades[i].normal;
+        const Vec3f &n = shades.normal[i];
         Vec3f m;
         for (int k = 0; k < 3; ++k)
             m[k] = rows[k][0] * n.x + rows[k][1] * n.y + rows[k][2] * n.z;
@@ -113,33 +101,51 @@ static std::vector<uint8_t> encode_normals(const Level &level, const gtx_patch &
     return bytes;
 }
 
-static std::vector<uint8_t> encode_colors(const Level &level)
+static uint8_t unorm(float value)
 {
-    std::vector<uint8_t> bytes(4 * level.shades.size(), 0);
-    for (size_t i = 0; i < level.shades.size(); ++i) {
-        if (!level.occupied[i])
-            continue;
-        const float *c = level.shades[i].color;
-        for (int k = 0; k < 3; ++k)
-            bytes[4 * i + k] = linear_to_srgb(c[k]);
-        bytes[4 * i + 3] = uint8_t(std::clamp(c[3], 0.f, 1.f) * 255 + 0.5f);
-    }
+    return uint8_t(std::min(std::max(0.f, value), 1.f) * 255 + 0.5f); /* NaN is 0 */
+}
+
+/* `count` channels from `first` on, as bytes that code(channel, value) gives. */
+template <class Code>
+static std::vector<uint8_t> encode(const Shades &shades, int first, int count, Code code)
+{
+    std::vector<uint8_t> bytes(count * shades.normal.size(), 0);
+    for (size_t i = 0; i < shades.normal.size(); ++i)
+        for (int k = 0; shades.occupied[i] && k < count; ++k)
+            bytes[count * i + k] = code(k, shades.values[i * shades.channels + first + k]);
     return bytes;
 }
 
-void build_mips(std::vector<Shade> shades, std::vector<uint8_t> occupied, unsigned mips,
-                bool color, PatchMaps &patch)
+static void encode_level(const Shades &shades, const AppearanceNeeds &needs, PatchMaps &patch)
 {
-    const gtx_patch &record = patch.record;
-    Level level{record.rect[2], record.rect[3], std::move(shades), std::move(occupied)};
+    patch.normal.push_back(encode_normals(shades, patch.record));
+    int first = 0;
+    if (needs.color) {
+        patch.color.push_back(encode(shades, first, COLOR_CHANNELS, [](int k, float value) {
+            return k < 3 ? linear_to_srgb(value) : unorm(value);
+        }));
+        first += COLOR_CHANNELS;
+    }
+    if (needs.material) {
+        patch.material.push_back(encode(shades, first, MATERIAL_CHANNELS,
+                                        [](int, float value) { return unorm(value); }));
+        first += MATERIAL_CHANNELS;
+    }
+    if (needs.emission)
+        patch.emission.push_back(encode(shades, first, EMISSION_CHANNELS, [&](int, float value) {
+            return linear_to_srgb(value / needs.emission_scale);
+        }));
+}
+
+void build_mips(Shades shades, unsigned mips, const AppearanceNeeds &needs, PatchMaps &patch)
+{
     for (unsigned k = 0; k < mips; ++k) {
-        Level filled = level;
-        dilate(filled, std::max(1u, unsigned(record.dilation) >> k));
-        patch.normal.push_back(encode_normals(filled, record));
-        if (color)
-            patch.color.push_back(encode_colors(filled));
+        Shades filled = shades;
+        dilate(filled, std::max(1u, unsigned(patch.record.dilation) >> k));
+        encode_level(filled, needs, patch);
         if (k + 1 < mips)
-            level = halve(level);
+            shades = halve(shades);
     }
 }
 

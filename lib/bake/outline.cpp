@@ -82,6 +82,19 @@ struct DistanceField {
     }
 };
 
+void measure_distances(const Grid &grid, Outline &outline)
+{
+    outline.nearest.assign(grid.texels(), NO_EDGE);
+    outline.distance.assign(grid.texels(), INFINITY);
+    DistanceField field{grid, outline};
+    for (size_t e = 0; e < outline.edges.size(); ++e)
+        field.splat(uint32_t(e));
+    field.sweep(true);
+    field.sweep(false);
+    for (float &d : outline.distance)
+        d = std::sqrt(d);
+}
+
 Outline find_outline(const FlatChart &chart, size_t count)
 {
     Outline outline;
@@ -97,15 +110,7 @@ Outline find_outline(const FlatChart &chart, size_t count)
     collect(false);
     if (outline.edges.empty()) /* a closed shred seen edge-on has no outline but its edges */
         collect(true);
-    outline.nearest.assign(chart.grid.texels(), NO_EDGE);
-    outline.distance.assign(chart.grid.texels(), INFINITY);
-    DistanceField field{chart.grid, outline};
-    for (size_t e = 0; e < outline.edges.size(); ++e)
-        field.splat(uint32_t(e));
-    field.sweep(true);
-    field.sweep(false);
-    for (float &d : outline.distance)
-        d = std::sqrt(d);
+    measure_distances(chart.grid, outline);
     return outline;
 }
 

@@ -5,11 +5,6 @@
 
 namespace gtx::baking {
 
-/* The part of a working grid that becomes the rectangle: its first texel may lie outside. */
-struct Crop {
-    int x = 0, y = 0, w = 0, h = 0;
-};
-
 static Crop crop_support(const Grid &grid, const std::vector<uint8_t> &support, int grain)
 {
     int low[2] = {grid.w, grid.h}, high[2] = {0, 0};
@@ -120,50 +115,54 @@ static void quantise(const Grid &grid, const Crop &crop, const Cover &cover,
     }
 }
 
-static void shade(const Job &job, const FlatChart &flat, const Outline &outline, const Crop &crop,
-                  const Cover &cover, PatchMaps &maps)
+/* The height sheet of a chart over its working grid. */
+struct Sheet {
+    FlatChart flat;
+    Outline outline;
+    Cover cover;
+    std::vector<float> trim;
+    std::vector<uint8_t> support;
+    double missed;               /* share of the surface that it leaves too far above it */
+};
+
+static Sheet lay_sheet(const Job &job, const Chart &chart, double pitch)
 {
-    std::vector<Shade> shades(maps.height.size());
-    std::vector<uint8_t> occupied(maps.height.size());
-    for (size_t i = 0; i < shades.size(); ++i) {
-        occupied[i] = maps.height[i] != 0;
-        if (occupied[i])
-            shades[i] = shade_texel(job.mesh, flat, outline, cover, crop.x + int(i) % crop.w,
-                                    crop.y + int(i) / crop.w);
-    }
-    build_mips(std::move(shades), std::move(occupied), job.options.mips,
-               !job.mesh.colors.empty(), maps);
+    Sheet s;
+    s.flat = flatten(job.mesh, job.neighbours, chart, pitch);
+    Cover core = raster_core(s.flat);
+    Outline core_outline = find_outline(s.flat, s.flat.core);
+    s.cover = core;
+    Paths paths(job.mesh, job.neighbours, s.flat);
+    raster_overlap(s.flat, core_outline, paths, s.cover);
+    s.outline = find_outline(s.flat, s.flat.triangles.size());
+    s.trim = trim_distances(s.flat, core, s.cover, core_outline, s.outline);
+    if (job.needs.mask)
+        trim_mask(job.mesh, job.neighbours, s.flat, s.trim);
+    s.support = find_support(s.flat.grid, s.trim);
+    extrapolate(s.flat, s.outline, paths, s.support, s.cover);
+    cut_cliffs(s.flat, core_outline, s.outline, paths, s.trim, s.cover, s.support);
+    s.missed = fit_heights(s.flat, s.support, s.cover);
+    return s;
 }
 
-/* Bakes at a pitch; *missed gets the share of the surface that the sheet leaves too far above it. */
-static PatchMaps bake_at(const Job &job, const Chart &chart, double pitch, double *missed)
+static PatchMaps encode_sheet(const Job &job, const Chart &chart, const Sheet &s)
 {
-    FlatChart flat = flatten(job.mesh, job.neighbours, chart, pitch);
-    Cover core = raster_core(flat);
-    Outline core_outline = find_outline(flat, flat.core);
-    Cover all = core;
-    Paths paths(job.mesh, job.neighbours, flat);
-    raster_overlap(flat, core_outline, paths, all);
-    Outline outline = find_outline(flat, flat.triangles.size());
-    std::vector<float> trim = trim_distances(flat, core, all, core_outline, outline);
-    std::vector<uint8_t> support = find_support(flat.grid, trim);
-    extrapolate(flat, outline, paths, support, all);
-    cut_cliffs(flat, core_outline, outline, paths, trim, all, support);
-    *missed = fit_heights(flat, support, all);
-
+    PatchMaps maps;
     double low = INFINITY, high = -INFINITY;
-    for (size_t i = 0; i < support.size(); ++i) {
-        if (support[i]) {
-            low = std::min(low, all.height[i]);
-            high = std::max(high, all.height[i]);
+    for (size_t i = 0; i < s.support.size(); ++i) {
+        if (s.support[i]) {
+            low = std::min(low, s.cover.height[i]);
+            high = std::max(high, s.cover.height[i]);
         }
     }
-    Crop crop = crop_support(flat.grid, support, 1 << (job.options.mips - 1));
-    PatchMaps maps;
-    maps.record = make_record(job, chart, flat.grid, crop, low, high);
-    quantise(flat.grid, crop, all, support, trim, low, job.options.height_bits, maps);
+    if (low > high) /* a mask has left nothing */
+        return maps;
+    Crop crop = crop_support(s.flat.grid, s.support, 1 << (job.options.mips - 1));
+    maps.record = make_record(job, chart, s.flat.grid, crop, low, high);
+    quantise(s.flat.grid, crop, s.cover, s.support, s.trim, low, job.options.height_bits, maps);
     measure_patch(job.options.height_bits, maps);
-    shade(job, flat, outline, crop, all, maps);
+    build_mips(shade_texels(job, s.flat, s.outline, s.cover, crop, maps.height), job.options.mips,
+               job.needs, maps);
     return maps;
 }
 
@@ -171,11 +170,10 @@ static PatchMaps bake_at(const Job &job, const Chart &chart, double pitch, doubl
 PatchMaps bake_chart(const Job &job, const Chart &chart)
 {
     constexpr double ALLOWED = 0.01, FINER = 0.7;
-    double missed;
-    PatchMaps maps = bake_at(job, chart, job.pitch, &missed);
-    if (missed > ALLOWED)
-        maps = bake_at(job, chart, job.pitch * FINER, &missed);
-    return maps;
+    Sheet sheet = lay_sheet(job, chart, job.pitch);
+    if (sheet.missed > ALLOWED)
+        sheet = lay_sheet(job, chart, job.pitch * FINER);
+    return encode_sheet(job, chart, sheet);
 }
 
 } // namespace gtx::baking

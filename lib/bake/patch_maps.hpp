@@ -111,9 +111,25 @@ void raster_overlap(const FlatChart &chart, const Outline &core, Paths &paths, C
 /* The outline of the first `count` triangles. */
 Outline find_outline(const FlatChart &chart, size_t count);
 
+/* Finds what of `outline` follows from its edges. */
+void measure_distances(const Grid &grid, Outline &outline);
+
+/* A point of the true surface. */
+struct SurfacePoint {
+    uint32_t triangle;              /* of the chart */
+    float weight[3] = {0, 0, 0};    /* of its corners */
+};
+/* What lies at a texel: the point that covers it, else the nearest of the outline. */
+SurfacePoint surface_point(const FlatChart &chart, const Outline &outline, const Cover &cover,
+                           size_t texel);
+
 /* Signed distances to the outline of the true surface, per texel, in texels. */
 std::vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Cover &all,
                                   const Outline &core_outline, const Outline &all_outline);
+
+/* Lets the trim end where the surface's material is cut away, too. */
+void trim_mask(const Mesh &mesh, const Neighbours &neighbours, const FlatChart &chart,
+               std::vector<float> &trim);
 
 /* Which texels need a code: the corners of every cell where a hit may be shown. */
 std::vector<uint8_t> find_support(const Grid &grid, const std::vector<float> &trim);
@@ -130,15 +146,17 @@ void cut_cliffs(const FlatChart &chart, const Outline &core_outline, const Outli
  * Returns the share of the core's samples that it still passes below by a visible part of a texel. */
 double fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, Cover &cover);
 
+using Levels = std::vector<std::vector<uint8_t>>;
+
 /* The maps of one patch, `rect` still without its place on a page. */
 struct PatchMaps {
     gtx_patch record = {};
     std::vector<uint16_t> height;             /* codes */
     std::vector<uint8_t> trim;
-    std::vector<std::vector<uint8_t>> normal; /* a level each, 2 bytes a texel */
-    std::vector<std::vector<uint8_t>> color;  /* a level each, 4 bytes a texel, or none */
+    Levels normal;                            /* a level each, 2 bytes a texel */
+    Levels color, material, emission;         /* 4, 4 and 3 bytes a texel, or none */
     Vec3d low, high;                          /* of the coded texels' points */
-    uint64_t coded = 0;
+    uint64_t coded = 0;                       /* 0: nothing of the chart is there */
 };
 
 /* A vector as a record keeps it. */
@@ -148,28 +166,47 @@ inline void store(float out[3], const Vec3d &v)
         out[k] = float(v[k]);
 }
 
-/* Normal and colour of a texel before they are stored. */
-struct Shade {
-    Vec3f normal;                   /* object space, unit */
-    float color[4] = {0, 0, 0, 0};  /* linear light, and alpha */
+/* The part of a working grid that becomes the rectangle: its first texel may lie outside. */
+struct Crop {
+    int x = 0, y = 0, w = 0, h = 0;
 };
-/* The shade of texel (i, j): of the triangle that covers it, else of the nearest outline point. */
-Shade shade_texel(const Mesh &mesh, const FlatChart &chart, const Outline &outline,
-                  const Cover &cover, int i, int j);
 
-/* Encodes a shade a texel (w x h, `occupied` says which are set) as all levels of normal and
- * colour, dilated. `patch` gives the rectangle, axes and dilation. */
-void build_mips(std::vector<Shade> shades, std::vector<uint8_t> occupied, unsigned mips,
-                bool color, PatchMaps &patch);
+/* What is seen at each texel of a level, before it is stored. */
+struct Shades {
+    int w, h, channels;
+    std::vector<Vec3f> normal;                /* object space, unit */
+    std::vector<float> values;                /* `channels` a texel: those that follow, if needed */
+    std::vector<uint8_t> occupied;            /* has a shade */
+
+    Shades(int w, int h, int channels)
+        : w(w), h(h), channels(channels), normal(size_t(w) * h), values(normal.size() * channels),
+          occupied(normal.size(), 0)
+    {
+    }
+};
+/* Floats of each kind: light and alpha; occlusion, roughness, metallic and lit; light. */
+constexpr int COLOR_CHANNELS = 4, MATERIAL_CHANNELS = 4, EMISSION_CHANNELS = 3, MOST_CHANNELS = 11;
 
 /* What every chart's bake reads. */
 struct Job {
     const Mesh &mesh;
     const Neighbours &neighbours;
     const BakeOptions &options;
+    AppearanceNeeds needs;
     double pitch;
     Vec3d anchor;
 };
+
+/* The shades of the texels with a code. */
+Shades shade_texels(const Job &job, const FlatChart &chart, const Outline &outline,
+                    const Cover &cover, const Crop &crop, const std::vector<uint16_t> &height);
+
+/* Fills empty texels ring by ring with the mean of the neighbours that the ring before had. */
+void dilate(Shades &shades, unsigned rings);
+
+/* Encodes shades as all levels of the maps that are needed, dilated. `patch` gives the axes and
+ * dilation. */
+void build_mips(Shades shades, unsigned mips, const AppearanceNeeds &needs, PatchMaps &patch);
 
 PatchMaps bake_chart(const Job &job, const Chart &chart);
 

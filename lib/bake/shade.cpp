@@ -1,56 +1,77 @@
-/* Normal and colour of the source at a texel. */
+/* What the source looks like at the texels of a patch. */
 #include "bake/patch_maps.hpp"
-#include "bake/srgb.hpp"
+
+#include <algorithm>
 
 namespace gtx::baking {
 
-/* Weights of a triangle's corners at a point. */
-struct Weights {
-    float corner[3] = {0, 0, 0};
-};
-
-static Weights inside(const FlatTriangle &t, double u, double v)
+SurfacePoint surface_point(const FlatChart &chart, const Outline &outline, const Cover &cover,
+                           size_t texel)
 {
-    Vec3d e = t.corner[1] - t.corner[0], f = t.corner[2] - t.corner[0];
-    double area = e.x * f.y - e.y * f.x, du = u - t.corner[0].x, dv = v - t.corner[0].y;
+    double u = double(texel % chart.grid.w), v = double(texel / chart.grid.w);
+    SurfacePoint point = {cover.triangle[texel]};
+    if (point.triangle == NO_TRIANGLE) {
+        const OutlineEdge &edge = outline.edges[outline.nearest[texel]];
+        float at = float(nearest_parameter(edge, u, v));
+        point.triangle = edge.triangle;
+        point.weight[edge.side] = 1 - at;
+        point.weight[(edge.side + 1) % 3] = at;
+        return point;
+    }
+    const Vec3d *p = chart.triangles[point.triangle].corner;
+    Vec3d e = p[1] - p[0], f = p[2] - p[0];
+    double area = e.x * f.y - e.y * f.x, du = u - p[0].x, dv = v - p[0].y;
     double b1 = (du * f.y - dv * f.x) / area, b2 = (e.x * dv - e.y * du) / area;
-    return {{float(1 - b1 - b2), float(b1), float(b2)}};
+    point.weight[0] = float(1 - b1 - b2);
+    point.weight[1] = float(b1);
+    point.weight[2] = float(b2);
+    return point;
 }
 
-Shade shade_texel(const Mesh &mesh, const FlatChart &chart, const Outline &outline,
-                  const Cover &cover, int i, int j)
+static void store(const SurfaceSample &sample, const AppearanceNeeds &needs, Shades &shades,
+                  size_t at)
 {
-    size_t texel = size_t(j) * chart.grid.w + i;
-    uint32_t triangle = cover.triangle[texel];
-    Weights weights;
-    if (triangle != NO_TRIANGLE) {
-        weights = inside(chart.triangles[triangle], i, j);
-    } else {
-        const OutlineEdge &edge = outline.edges[outline.nearest[texel]];
-        float at = float(nearest_parameter(edge, i, j));
-        triangle = edge.triangle;
-        weights.corner[edge.side] = 1 - at;
-        weights.corner[(edge.side + 1) % 3] = at;
-    }
+    const float material[] = {sample.occlusion, sample.roughness, sample.metallic, sample.lit};
+    shades.normal[at] = sample.normal;
+    float *out = shades.values.data() + at * shades.channels;
+    if (needs.color)
+        out = std::copy_n(sample.color, COLOR_CHANNELS, out);
+    if (needs.material)
+        out = std::copy_n(material, MATERIAL_CHANNELS, out);
+    if (needs.emission)
+        std::copy_n(sample.emission, EMISSION_CHANNELS, out);
+}
 
-    size_t source = chart.triangles[triangle].source;
-    Shade shade;
-    for (int k = 0; k < 3; ++k) {
-        shade.normal += mesh.normals[3 * source + k] * weights.corner[k];
-        if (mesh.colors.empty())
+Shades shade_texels(const Job &job, const FlatChart &chart, const Outline &outline,
+                    const Cover &cover, const Crop &crop, const std::vector<uint16_t> &height)
+{
+    /* A texel with a code is at most so far from what is shown. */
+    constexpr unsigned MARGIN = 2;
+    const AppearanceNeeds &needs = job.needs;
+    const double side = std::sqrt(chart.grid.pitch[0] * chart.grid.pitch[1]);
+    Shades shades(crop.w, crop.h, COLOR_CHANNELS * needs.color +
+                                      MATERIAL_CHANNELS * needs.material +
+                                      EMISSION_CHANNELS * needs.emission);
+    bool masked = false;
+    for (size_t at = 0; at < height.size(); ++at) {
+        if (!height[at])
             continue;
-        const Rgba8 &c = mesh.colors[3 * source + k];
-        shade.color[0] += weights.corner[k] * srgb_to_linear(c.r);
-        shade.color[1] += weights.corner[k] * srgb_to_linear(c.g);
-        shade.color[2] += weights.corner[k] * srgb_to_linear(c.b);
-        shade.color[3] += weights.corner[k] * float(c.a) / 255;
+        size_t row = size_t(crop.y + int(at) / crop.w);
+        size_t texel = row * size_t(chart.grid.w) + size_t(crop.x + int(at) % crop.w);
+        SurfacePoint point = surface_point(chart, outline, cover, texel);
+        SurfaceSample sample = sample_surface(job.mesh, chart.triangles[point.triangle].source,
+                                              point.weight, side);
+        store(sample, needs, shades, at);
+        shades.occupied[at] = !(sample.cut < 0);
+        masked |= sample.cut < 0;
     }
-    float size = length(shade.normal);
-    if (size > 1e-3f)
-        shade.normal *= 1 / size;
-    else /* corner normals that cancel out */
-        shade.normal = Vec3f(normalize(mesh.area_vector(source)));
-    return shade;
+    /* What is cut away often has a colour that nobody was to see: beyond the mask the surface
+     * beside it goes on. */
+    if (masked)
+        dilate(shades, MARGIN);
+    for (size_t at = 0; masked && at < height.size(); ++at)
+        shades.occupied[at] = height[at] != 0;
+    return shades;
 }
 
 } // namespace gtx::baking

@@ -1,10 +1,10 @@
 /* A scene -> an image: an offscreen context, polygons and patches in one z-buffer. */
 #include "cli/still.hpp"
 
+#include "cli/polygons.hpp"
 #include "host/camera.h"
 #include "host/framebuffer.h"
 #include "host/offscreen.h"
-#include "host/polygons.h"
 
 #include <cstring>
 #include <limits>
@@ -49,22 +49,12 @@ struct Studio {
 
 static void draw_mesh(Studio &studio, const Mesh &mesh, const Vec3d &centre, const gtx_view &view)
 {
-    size_t corners = 3 * mesh.triangle_count();
-    if (corners > 0xffffffffu)
-        throw Error(GTX_ERROR_LIMIT, "a mesh of too many triangles to draw");
-    std::vector<gtx_polygon_vertex> vertices(corners);
-    std::vector<uint32_t> indices(corners);
-    for (size_t c = 0; c < corners; ++c) {
-        Vec3f p(mesh.position(c / 3, int(c % 3)) - centre);
-        Vec3f n = mesh.normals[c];
-        Rgba8 color = mesh.colors.empty() ? Rgba8{} : mesh.colors[c];
-        vertices[c] = {{p.x, p.y, p.z}, {n.x, n.y, n.z}, {color.r, color.g, color.b, 255}};
-        indices[c] = uint32_t(c);
-    }
+    const Polygons shape = make_polygons(mesh, centre);
     gtx_polygons polygons;
     gtx_error error;
-    check(gtx_polygons_create(&studio.gl, vertices.data(), uint32_t(corners), indices.data(),
-                              uint32_t(corners), &polygons, &error), error);
+    check(gtx_polygons_create(&studio.gl, shape.vertices.data(), uint32_t(shape.vertices.size()),
+                              shape.indices.data(), uint32_t(shape.indices.size()), &polygons,
+                              &error), error);
     gtx_polygons_draw(&studio.gl, &studio.program, &polygons, nullptr, view.view, view.projection,
                       view.light_direction, view.ambient);
     gtx_polygons_destroy(&studio.gl, &polygons);

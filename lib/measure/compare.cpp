@@ -167,7 +167,7 @@ void Look::leaks(const std::vector<Crossing> &crossings)
 }
 
 static void measure_level(const Comparison &all, uint32_t view_index, uint32_t level,
-                          const MeshImage &image, Figures &out)
+                          const MeshImage &image, Task &task, Figures &out)
 {
     const View &view = all.views[view_index];
     Look look = {all, view_index, level, view, image, all.levels[level], out};
@@ -175,6 +175,7 @@ static void measure_level(const Comparison &all, uint32_t view_index, uint32_t l
     std::vector<Crossing> row, crossings;
     crossings.reserve(size_t(view.size) * view.size);
     for (uint32_t j = 0; j < view.size; ++j) {
+        task.check(); /* a view takes seconds */
         look.asset.cast_row(view, j, hits, row);
         crossings.insert(crossings.end(), row.begin(), row.end());
         for (uint32_t i = 0; i < view.size; ++i)
@@ -260,7 +261,7 @@ CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOpt
     task.parallel(all.views.size(), [&](size_t v) {
         MeshImage image = rasterise(mesh, all.views[v]);
         for (uint32_t level = 0; level < options.levels; ++level)
-            measure_level(all, uint32_t(v), level, image, figures[level][v]);
+            measure_level(all, uint32_t(v), level, image, task, figures[level][v]);
     }, 0, options.surface ? 0.8 : 1);
 
     CompareReport report;

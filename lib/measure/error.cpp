@@ -107,8 +107,10 @@ static std::vector<Vec3d> sample_mesh(const MeshTriangles &source,
     Random random;
     stratify(area, random, [&](size_t t) {
         double u = std::sqrt(random.next()), v = random.next();
-        points.push_back(source.position(t, 0) * (1 - u) + source.position(t, 1) * (u * (1 - v)) +
-                         source.position(t, 2) * (u * v));
+        const double weight[3] = {1 - u, u * (1 - v), u * v};
+        if (!is_cut(source.mesh, t, weight, 0))
+            points.push_back(source.position(t, 0) * weight[0] + source.position(t, 1) * weight[1] +
+                             source.position(t, 2) * weight[2]);
     });
     return points;
 }
@@ -140,8 +142,9 @@ static Deviation deviation(const std::vector<Vec3d> &points, const Shapes &shape
     std::vector<double> square(points.size());
     task.parallel((points.size() + CHUNK - 1) / CHUNK, [&](size_t chunk) {
         size_t end = std::min(points.size(), (chunk + 1) * CHUNK);
+        uint32_t near = NO_HIT; /* consecutive points lie on one shape or on the next */
         for (size_t i = chunk * CHUNK; i < end; ++i)
-            square[i] = tree.distance2(points[i]);
+            square[i] = tree.distance2(points[i], &near);
     }, from, to);
     Deviation result;
     double sum = 0, most = 0;

@@ -1,9 +1,10 @@
-/* Nearest point on many small shapes: a balanced tree of boxes over the shapes in Morton order. */
+/* Nearest point on many small shapes: a balanced tree of boxes, split at medians. */
 #pragma once
 
 #include "mesh/vec.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -49,12 +50,17 @@ double triangle_distance2(const Vec3d &p, const Vec3d &a, const Vec3d &b, const 
  * what is not nearer than that. It outlives the tree. */
 template <class Shapes> class NearestTree {
 public:
-    explicit NearestTree(const Shapes &shapes) : shapes_(shapes)
+    explicit NearestTree(const Shapes &shapes) : shapes_(shapes), order_(shapes.size())
     {
-        sort();
         leaves_ = 1;
         while (leaves_ * LEAF < order_.size())
             leaves_ *= 2;
+        std::vector<Vec3f> centre;
+        for (size_t i = 0; i < order_.size(); ++i) {
+            centre.push_back(Vec3f(shapes_.box(i).centre()));
+            order_[i] = uint32_t(i);
+        }
+        split(centre, order_.begin(), order_.end(), leaves_ * LEAF);
         boxes_.resize(2 * leaves_);
         for (size_t i = 0; i < order_.size(); ++i)
             boxes_[leaves_ + i / LEAF].add(shapes_.box(order_[i]));
@@ -64,10 +70,14 @@ public:
         }
     }
 
-    /* The squared distance to the nearest shape; infinity when there is none. */
-    double distance2(const Vec3d &p) const
+    /* The squared distance to the nearest shape; infinity when there is none. `*near` is a shape to
+     * try first, such as the nearest of a point close by (any number from size() on: none), and
+     * becomes the nearest: a short distance known early spares most of the search. */
+    double distance2(const Vec3d &p, uint32_t *near) const
     {
         double best = std::numeric_limits<double>::infinity();
+        if (*near < shapes_.size())
+            best = shapes_.distance2(*near, p, best);
         std::pair<size_t, double> stack[64];
         int size = 0;
         stack[size++] = {1, boxes_[1].distance2(p)};
@@ -77,16 +87,21 @@ public:
                 continue;
             if (node >= leaves_) {
                 size_t first = (node - leaves_) * LEAF;
-                for (size_t i = first; i < std::min(first + LEAF, order_.size()); ++i)
-                    best = std::min(best, shapes_.distance2(order_[i], p, best));
+                for (size_t i = first; i < std::min(first + LEAF, order_.size()); ++i) {
+                    double distance2 = shapes_.distance2(order_[i], p, best);
+                    if (distance2 < best) {
+                        best = distance2;
+                        *near = order_[i];
+                    }
+                }
                 continue;
             }
-            std::pair<size_t, double> child[2];
-            for (size_t k = 0; k < 2; ++k)
-                child[k] = {2 * node + k, boxes_[2 * node + k].distance2(p)};
-            bool first_nearer = child[0].second <= child[1].second;
-            stack[size++] = child[first_nearer ? 1 : 0];
-            stack[size++] = child[first_nearer ? 0 : 1];
+            double left = boxes_[2 * node].distance2(p), right = boxes_[2 * node + 1].distance2(p);
+            bool left_first = left <= right;
+            if (std::max(left, right) < best)
+                stack[size++] = {2 * node + left_first, std::max(left, right)};
+            if (std::min(left, right) < best)
+                stack[size++] = {2 * node + !left_first, std::min(left, right)};
         }
         return best;
     }
@@ -94,32 +109,31 @@ public:
 private:
     static constexpr size_t LEAF = 4;
 
-    /* Every third bit of the result is a bit of v, 21 of them. */
-    static uint64_t spread(uint64_t v)
+    /* Orders the shapes of a node with places for `room` of them: those of its first child have the
+     * lower centres along the longest side of all, and fill it. */
+    using Place = std::vector<uint32_t>::iterator;
+    static void split(const std::vector<Vec3f> &centre, Place from, Place to, size_t room)
     {
-        uint64_t out = 0;
-        for (int bit = 0; bit < 21; ++bit)
-            out |= (v >> bit & 1) << (3 * bit);
-        return out;
-    }
-
-    void sort()
-    {
-        Box whole;
-        for (size_t i = 0; i < shapes_.size(); ++i)
-            whole.add(shapes_.box(i));
-        Vec3d low(whole.low), size = Vec3d(whole.high) - low;
-        std::vector<std::pair<uint64_t, uint32_t>> keys(shapes_.size());
-        for (size_t i = 0; i < keys.size(); ++i) {
-            Vec3d c = shapes_.box(i).centre() - low;
-            uint64_t code = 0;
-            for (int k = 0; k < 3; ++k)
-                code |= spread(uint64_t(std::clamp(c[k] / size[k], 0., 1.) * 0x1fffff)) << k;
-            keys[i] = {code, uint32_t(i)};
+        if (room <= LEAF)
+            return;
+        Place middle = from + std::min(std::ptrdiff_t(room / 2), to - from);
+        if (middle != to) {
+            Vec3f low = centre[*from], high = low;
+            for (Place i = from; i != to; ++i) {
+                for (int k = 0; k < 3; ++k) {
+                    low[k] = std::min(low[k], centre[*i][k]);
+                    high[k] = std::max(high[k], centre[*i][k]);
+                }
+            }
+            Vec3f side = high - low;
+            int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
+            std::nth_element(from, middle, to, [&](uint32_t a, uint32_t b) {
+                float at = centre[a][axis], other = centre[b][axis];
+                return at < other || (at == other && a < b);
+            });
+            split(centre, middle, to, room / 2);
         }
-        std::sort(keys.begin(), keys.end());
-        for (auto &key : keys)
-            order_.push_back(key.second);
+        split(centre, from, middle, room / 2);
     }
 
     const Shapes &shapes_;

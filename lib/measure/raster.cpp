@@ -38,8 +38,19 @@ static uint32_t end_pixel(double high, uint32_t size)
     return uint32_t(std::clamp(std::floor(high - 0.5 + EDGE_SLACK) + 1, 0., double(size)));
 }
 
-static void draw(const Vec3d v[3], uint32_t triangle, uint32_t size, MeshImage &image)
+bool is_cut(const Mesh &mesh, size_t triangle, const double weight[3], double footprint)
 {
+    const Appearance &look = mesh.appearance;
+    if (look.material.empty() || !(look.materials[look.material[triangle]].alpha_cutoff > 0))
+        return false;
+    const float w[3] = {float(weight[0]), float(weight[1]), float(weight[2])};
+    return sample_surface(mesh, triangle, w, footprint).cut < 0;
+}
+
+static void draw(const Mesh &mesh, const View &view, const Vec3d v[3], uint32_t triangle,
+                 MeshImage &image)
+{
+    const uint32_t size = view.size;
     auto x = std::minmax({v[0].x, v[1].x, v[2].x}), y = std::minmax({v[0].y, v[1].y, v[2].y});
     auto z = std::minmax({v[0].z, v[1].z, v[2].z});
     uint32_t end_x = end_pixel(x.second, size), end_y = end_pixel(y.second, size);
@@ -51,7 +62,7 @@ static void draw(const Vec3d v[3], uint32_t triangle, uint32_t size, MeshImage &
             double depth = w[0] * v[0].z + w[1] * v[1].z + w[2] * v[2].z;
             float nearest = float(std::clamp(depth, z.first, z.second));
             size_t at = size_t(j) * size + i;
-            if (nearest < image.depth[at]) {
+            if (nearest < image.depth[at] && !is_cut(mesh, triangle, w, view.pixel)) {
                 image.depth[at] = nearest;
                 image.triangle[at] = triangle;
             }
@@ -78,7 +89,7 @@ MeshImage rasterise(const Mesh &mesh, const View &view)
         Vec3d v[3];
         for (int k = 0; k < 3; ++k)
             v[k] = projected[mesh.triangles[t][k]];
-        draw(v, uint32_t(t), view.size, image);
+        draw(mesh, view, v, uint32_t(t), image);
     }
     for (size_t at = 0; at < pixels; ++at) {
         uint32_t t = image.triangle[at];
@@ -86,6 +97,37 @@ MeshImage rasterise(const Mesh &mesh, const View &view)
             image.front[at] = is_two_sided(mesh, t) || dot(mesh.area_vector(t), view.toward) > 0;
     }
     return image;
+}
+
+/* Attributes of the corners, as they are. */
+static Fragment corner_fragment(const Mesh &mesh, uint32_t t, const double w[3])
+{
+    Fragment fragment = {Vec3d(), {0, 0, 0}};
+    for (int k = 0; k < 3; ++k) {
+        Rgba8 c = mesh.colors.empty() ? Rgba8() : mesh.colors[3 * t + k];
+        const double rgb[3] = {double(c.r), double(c.g), double(c.b)};
+        for (int a = 0; a < 3; ++a)
+            fragment.color[a] += w[k] * rgb[a];
+        if (!mesh.normals.empty())
+            fragment.normal += Vec3d(mesh.normals[3 * t + k]) * w[k];
+    }
+    fragment.normal = normalize(mesh.normals.empty() ? mesh.area_vector(t) : fragment.normal);
+    return fragment;
+}
+
+/* IEC 61966-2-1, not rounded to a code. */
+static double srgb(double light)
+{
+    light = std::clamp(light, 0., 1.);
+    return 255 * (light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055);
+}
+
+static Fragment material_fragment(const Mesh &mesh, uint32_t t, const double w[3], double footprint)
+{
+    const float weights[3] = {float(w[0]), float(w[1]), float(w[2])};
+    const SurfaceSample sample = sample_surface(mesh, t, weights, footprint);
+    return {normalize(Vec3d(sample.normal)),
+            {srgb(sample.color[0]), srgb(sample.color[1]), srgb(sample.color[2])}};
 }
 
 Fragment fragment_at(const Mesh &mesh, const View &view, const MeshImage &image, uint32_t i,
@@ -98,18 +140,10 @@ Fragment fragment_at(const Mesh &mesh, const View &view, const MeshImage &image,
         v[k] = view.project(mesh.position(t, k));
     weights_at(v, i + 0.5, j + 0.5, w);
 
-    Fragment fragment = {Vec3d(), {0, 0, 0}};
-    for (int k = 0; k < 3; ++k) {
-        Rgba8 c = mesh.colors.empty() ? Rgba8() : mesh.colors[3 * t + k];
-        const double rgb[3] = {double(c.r), double(c.g), double(c.b)};
-        for (int a = 0; a < 3; ++a)
-            fragment.color[a] += w[k] * rgb[a];
-        if (!mesh.normals.empty())
-            fragment.normal += Vec3d(mesh.normals[3 * t + k]) * w[k];
-    }
-    Vec3d facet = mesh.area_vector(t);
-    fragment.normal = normalize(mesh.normals.empty() ? facet : fragment.normal);
-    if (is_two_sided(mesh, t) && dot(facet, view.toward) < 0)
+    Fragment fragment = mesh.appearance.material.empty()
+                            ? corner_fragment(mesh, t, w)
+                            : material_fragment(mesh, t, w, view.pixel);
+    if (is_two_sided(mesh, t) && dot(mesh.area_vector(t), view.toward) < 0)
         fragment.normal = -fragment.normal;
     return fragment;
 }

@@ -44,7 +44,10 @@ struct View {
  * sphere of the extent is inscribed in 96 % of size x size pixels. */
 std::vector<View> comparison_views(const Extent &extent, uint32_t size);
 
-/* The nearest fragment at every pixel centre. */
+/* Whether a triangle's material cuts it away at a point; `footprint` as in sample_surface. */
+bool is_cut(const Mesh &mesh, size_t triangle, const double weight[3], double footprint);
+
+/* The nearest fragment at every pixel centre. What a mask cuts away is no surface. */
 struct MeshImage {
     std::vector<float> depth;       /* infinity where nothing is */
     std::vector<uint32_t> triangle; /* NO_HIT where nothing is */
@@ -52,7 +55,8 @@ struct MeshImage {
 };
 MeshImage rasterise(const Mesh &mesh, const View &view);
 
-/* Normal (unit, towards the eye's side) and colour of the source where pixel (i, j) shows it. */
+/* Normal (unit, towards the eye's side) and colour of the source where pixel (i, j) shows it: those
+ * of its materials, textures included, else those of its corners. */
 struct Fragment {
     Vec3d normal;
     double color[3];             /* sRGB, 0..255 */

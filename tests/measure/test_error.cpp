@@ -11,6 +11,7 @@ extern "C" {
 #include "common/fixture.h"
 #include "measure/cells.hpp"
 #include "measure/measure.hpp"
+#include "measure/view.hpp"
 #include "meshes.hpp"
 
 using namespace gtx;
@@ -81,12 +82,14 @@ static void tree_finds_the_nearest(void **)
                 soup.corners.push_back(at + random_point(seed, 0.5));
         }
         NearestTree<Soup> tree(soup);
+        uint32_t near = NO_HIT; /* then whatever the point before was near to */
         for (int q = 0; q < 500; ++q) {
             Vec3d p = random_point(seed, 8);
             double least = std::numeric_limits<double>::infinity();
             for (size_t i = 0; i < count; ++i)
                 least = std::min(least, soup.distance2(i, p, least));
-            assert_true(tree.distance2(p) == least);
+            assert_true(tree.distance2(p, &near) == least);
+            assert_true(count ? soup.distance2(near, p, least) == least : near == NO_HIT);
         }
     }
 }
@@ -120,8 +123,9 @@ static void trim_is_honoured(void **)
     gtx_asset *asset = fixture_build(&patch, 1, 8, 1);
     Cells cells(asset);
     NearestTree<Cells> tree(cells);
-    assert_float_equal(std::sqrt(tree.distance2(Vec3d(12, 7.3, 0.5))), 12 - 7.8, 0.02);
-    assert_float_equal(std::sqrt(tree.distance2(Vec3d(7.7, 7.3, 0.75))), 0.25, 1e-9);
+    uint32_t near = NO_HIT;
+    assert_float_equal(std::sqrt(tree.distance2(Vec3d(12, 7.3, 0.5), &near)), 12 - 7.8, 0.02);
+    assert_float_equal(std::sqrt(tree.distance2(Vec3d(7.7, 7.3, 0.75), &near)), 0.25, 1e-9);
     double area = 0;
     for (size_t i = 0; i < cells.size(); ++i)
         area += cells.core_area(i);

@@ -1,0 +1,18 @@
+/* A mesh as polygons to draw, fine enough that its textures are seen. */
+#pragma once
+
+#include "host/polygons.h"
+#include "mesh/mesh.hpp"
+
+namespace gtx {
+
+struct Polygons {
+    std::vector<gtx_polygon_vertex> vertices; /* relative to `centre` */
+    std::vector<uint32_t> indices;
+};
+
+/* Textured triangles are cut into smaller ones, which take colour and normal at their corners; what
+ * a mask cuts away is left out. Throws Error: LIMIT. */
+Polygons make_polygons(const Mesh &mesh, const Vec3d &centre);
+
+} // namespace gtx
