@@ -143,10 +143,12 @@ $(so_cook): $(call objects_of,$(ROOMS_COOK)) $(so_core) | $(out)/gen/libgeotex-c
 	  $(call objects_of,$(ROOMS_COOK) base asset derive trace) $(call libs_of,asset mesh)
 	$(Q)ln -sf $(@F) $(out)/libgeotex-cook.so.$(SOVERSION) && ln -sf $(@F) $(out)/libgeotex-cook.so
 
-$(module): lib/image/module.cpp
+# It is looked for beside the program that asks: links for those that lie elsewhere.
+$(module): lib/image/module.cpp lib/image/module.h Makefile
 	@mkdir -p $(@D)
 	$(say) LINK $@
 	$(Q)$(CXX) $(cxxflags) $(cflags_image) $(CXXFLAGS) -shared -o $@ $< $(call pkg,--libs,OpenImageIO)
+	$(Q)for d in $(out)/samples $(sort $(dir $(test_bins))); do mkdir -p $$d && ln -sf $(abspath $@) $$d; done
 
 $(command): $(call objects_of,cli host image) $(lib_cook) $(lib_core) | $(module)
 	$(say) LINK $@

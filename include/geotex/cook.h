@@ -28,31 +28,55 @@ typedef struct gtx_cook_desc {
     int32_t zstd_level;           /* 1..19; 0 = 3 (stored, in a build without zstd); -1 = stored */
     uint32_t threads;             /* up to 1024; 0 = all processors */
     float unit;                   /* metres per object unit; 0 = 1 */
+    uint32_t z_up;                /* 1: the models' +Z becomes +Y, and their +Y -Z */
     uint32_t measure;             /* 1: measure the error (report, `error`) */
     gtx_progress_fn progress;     /* may be NULL */
     void *progress_user;
     const char *charts_ply;       /* path for the partition before splitting as a PLY, a colour a
                                      chart, inverted triangles green; or NULL */
+    const char *const *more;      /* paths of further models that are cooked into the same asset */
+    uint32_t more_count;
+    uint32_t strict;              /* 1: a warning is an error (INPUT), and nothing is written */
+    uint32_t if_changed;          /* 1: gtx_cook_file leaves an output alone that is a valid asset
+                                     of the same key (below), and so its time of change */
     uint32_t reserved[8];
 } gtx_cook_desc;
+
+/* An asset keeps the key that it was cooked under. The key covers
+ *   - the content of every file behind the models: themselves, and the buffers, material libraries
+ *     and images that they refer to, one that is missing included; not their paths or times;
+ *   - the options that change what comes out: partition, charts, resolution, height_bits, dilation,
+ *     mips, zstd_level, unit and z_up; not threads, measure, progress or strict;
+ *   - geotex's version and the revision of its cooker,
+ * but not the library that decodes images. Where `strict` is asked for, an asset that was cooked
+ * with warnings is cooked again; where `charts_ply` is, or importing read what could not be
+ * foreseen, any is. */
 
 /* What a call did, as JSON; freed with gtx_report_free. Written only on success. */
 typedef struct gtx_report {
     char *json;                   /* terminated */
     size_t size;
     char summary[160];            /* one line: patches, texels, bytes, seconds */
-    char **sources;               /* paths of the files that were read, the model first */
+    uint32_t unchanged;           /* 1: if_changed, and the output was left alone */
+    char **sources;               /* paths of the files behind the models, the first model first */
     size_t source_count;
     char **warnings;              /* one sentence each */
     size_t warning_count;
 } gtx_report;
 
-/* Reads the model at `input` (OBJ, PLY, Draco, glTF, GLB), cooks it and writes the asset to
- * `output`: whole, through a temporary name and a rename, or not at all. `desc`, `report`
- * (format/cook-report.schema.json) and `error` may be NULL. Errors: CANCELLED, ARGUMENT,
+/* Reads the model at `input` (glTF, GLB, Draco, OBJ, PLY, OFF, STL, each also gzipped), cooks it
+ * and writes the asset to `output`: whole, through a temporary name and a rename, or not at all.
+ * `desc`, `report` (format/cook-report.schema.json) and `error` may be NULL. Errors: CANCELLED, ARGUMENT,
  * NOT_ZEROED, MEMORY, LIMIT, READ, WRITE, INPUT, EMPTY, UNSUPPORTED, INTERNAL. Any thread. */
 GTX_API gtx_result gtx_cook_file(const char *input, const char *output, const gtx_cook_desc *desc,
                                  gtx_report *report, gtx_error *error);
+
+/* The same of the `size` bytes of a model file, into memory: gtx_close frees the asset, gtx_encode
+ * makes a file of it. `name` is a path that need not exist: its extension says what the bytes are
+ * where they do not, and files that the model refers to are looked for beside it. */
+GTX_API gtx_result gtx_cook_memory(const void *data, size_t size, const char *name,
+                                   const gtx_cook_desc *desc, gtx_asset **out, gtx_report *report,
+                                   gtx_error *error);
 
 /* The measures of an asset against its source model, as JSON (format/compare-report.schema.json). */
 typedef struct gtx_compare_desc {
@@ -61,6 +85,9 @@ typedef struct gtx_compare_desc {
     uint32_t threads;             /* up to 1024; 0 = all processors */
     gtx_progress_fn progress;
     void *progress_user;
+    uint32_t z_up;                /* as it was cooked; likewise the next two */
+    const char *const *more;
+    uint32_t more_count;
     uint32_t reserved[8];
 } gtx_compare_desc;
 

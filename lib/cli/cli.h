@@ -59,6 +59,12 @@ int parse_options(const verb *v, int argc, char **argv, const char **operands, i
 
 /* Only errors are printed. */
 extern bool cli_quiet;
+/* The choice of --progress. */
+extern uint32_t cli_progress;
+enum { PROGRESS_BAR, PROGRESS_JSON };
+#define PROGRESS_OPTION                                                                            \
+    {"progress", 0, OPTION_CHOICE, &cli_progress, "bar|json",                                      \
+     "bar: on a terminal; json: an object a line on stderr [bar]", 0, 0}
 
 /* ---- messages ---- */
 
@@ -71,7 +77,14 @@ int print_result(const char *text, size_t size);
 /* Writes a text file whole, through a temporary name. Returns an exit code. */
 int write_text_file(const char *path, const char *text, size_t size);
 
-/* A progress bar on stderr when it is a terminal; cancels on Ctrl-C. A gtx_progress_fn. */
+/* Reads a file whole, or standard input for "-", and says why when it cannot; *data is freed by the
+ * caller. Returns an exit code. */
+int read_whole(const char *path, void **data, size_t *size);
+/* Writes a dependency file as Make and Ninja read it: `target` was made from `sources`. Returns an
+ * exit code. */
+int write_depfile(const char *path, const char *target, char *const *sources, size_t count);
+
+/* Progress on stderr as cli_progress says; cancels on Ctrl-C. A gtx_progress_fn. */
 int show_progress(const gtx_progress *progress, void *user);
 void end_progress(void);
 /* Makes Ctrl-C cancel the running call instead of killing the process. */

@@ -6,6 +6,8 @@
 #include <inttypes.h>
 #include <string.h>
 
+enum { MOST_FILES = 4097 };
+
 static gtx_compare_desc desc;
 static bool as_json;
 static double max_holes = -1, min_iou = -1, max_rms = -1;
@@ -15,24 +17,28 @@ static const option options[] = {
     {"size", 0, OPTION_UINT, &desc.size, "N", "pixels along a side of the 26 views [1024]", 64,
      4096},
     {"levels", 0, OPTION_UINT, &desc.levels, "N", "levels of detail to evaluate [all]", 1, 8},
+    {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z", "as the asset was cooked [y]", 0, 0},
     {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
+    PROGRESS_OPTION,
     {"max-holes", 0, OPTION_NUMBER, &max_holes, "N", "exit 7 above N hole pixels", 0, 1e18},
     {"min-iou", 0, OPTION_NUMBER, &min_iou, "X", "exit 7 below this silhouette IoU", 0, 1},
     {"max-rms", 0, OPTION_NUMBER, &max_rms, "X", "exit 7 above this forward RMS, of the diagonal", 0,
      1},
     {0}};
 
-static const verb compare_verb = {"compare", "ASSET MODEL",
-                                  "Measures an asset against the mesh it was cooked from, on the CPU.",
-                                  2, 2, options};
+static const verb compare_verb = {
+    "compare", "ASSET MODEL...",
+    "Measures an asset against the models it was cooked from, on the CPU.", 2, MOST_FILES, options};
 
 int cmd_compare(int argc, char **argv)
 {
-    const char *files[2];
+    static const char *files[MOST_FILES];
     int count;
     int code = parse_options(&compare_verb, argc, argv, files, &count);
     if (code >= 0)
         return code;
+    desc.more = files + 2;
+    desc.more_count = (uint32_t)(count - 2);
     desc.progress = show_progress;
     catch_interrupt();
 
@@ -43,7 +49,7 @@ int cmd_compare(int argc, char **argv)
     gtx_result ok = gtx_compare_files(files[0], files[1], &desc, &result, &report, &error);
     end_progress();
     if (ok != GTX_OK)
-        return report_error(error.rule ? files[0] : files[1], &error);
+        return report_error(error.rule ? files[0] : count > 2 ? "gtx compare" : files[1], &error);
     if (as_json) {
         code = print_result(report.json, report.size);
     } else {

@@ -1,18 +1,23 @@
-/* gtx cook: a triangle mesh -> an asset. */
+/* gtx cook: triangle meshes -> an asset. */
 #include "cli/cli.h"
 
 #include <geotex/cook.h>
 
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
+
+enum { MOST_MODELS = 4096 };
 
 static gtx_cook_desc desc;
-static const char *output, *report_path;
+static const char *output, *name, *report_path, *depfile_path;
 static uint32_t partition;
 static double unit = 1;
 static int32_t zstd_level = 3;
+static bool strict, if_changed;
 
 static const option options[] = {
-    {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes (required)", 0, 0},
+    {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes, - for stdout", 0, 0},
     {"charts", 0, OPTION_UINT, &desc.charts, "N", "wanted number of patches [10 T^0.28]", 1, 1e6},
     {"resolution", 0, OPTION_UINT, &desc.resolution, "N", "texels along the longest patch [128]", 64,
      512},
@@ -22,48 +27,149 @@ static const option options[] = {
     {"mips", 0, OPTION_UINT, &desc.mips, "N", "levels of normal and colour [4]", 1, 8},
     {"dilation", 0, OPTION_UINT, &desc.dilation, "N", "texels of dilation [2^(mips-1)]", 1, 128},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
-    {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
+    {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z", "z: the model's +Z becomes +Y [y]", 0, 0},
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the model [1]", 1e-30, 1e30},
+    {"name", 0, OPTION_STRING, &name, "PATH",
+     "what stdin would be called: its type, and where the files beside it are", 0, 0},
+    {"if-changed", 0, OPTION_FLAG, &if_changed, NULL,
+     "leave OUT.gtx alone when its key tells that it would not change", 0, 0},
+    {"strict", 0, OPTION_FLAG, &strict, NULL, "a warning is an error (exit 3)", 0, 0},
+    {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
+    PROGRESS_OPTION,
     {"report", 0, OPTION_STRING, &report_path, "R.json", "write the cook report, error measured", 0,
      0},
+    {"depfile", 0, OPTION_STRING, &depfile_path, "D", "write the files behind the models, for Make",
+     0, 0},
     {"charts-ply", 0, OPTION_STRING, &desc.charts_ply, "F.ply",
      "write the first partition, a colour a chart, inverted triangles green", 0, 0},
     {0}};
 
-static const verb cook = {"cook", "MODEL -o OUT.gtx",
-                          "Cooks OBJ, PLY, Draco, glTF and GLB models into a .gtx asset.", 1, 1,
-                          options};
+static const verb cook = {
+    "cook", "MODEL... -o OUT.gtx",
+    "Cooks models (glTF, GLB, Draco, OBJ, PLY, OFF, STL, each also gzipped; - reads stdin) into\n"
+    "one .gtx asset. It keeps a key, for --if-changed: of the content of the models and of every\n"
+    "file they refer to, the options from --charts to --unit, and the cooker's revision; paths,\n"
+    "times, threads and reports are not in it.",
+    1, MOST_MODELS, options};
+
+static int usage(const char *sentence)
+{
+    fprintf(stderr, "gtx cook: error[usage]: %s (see gtx cook --help)\n", sentence);
+    return EXIT_CODE_USAGE;
+}
+
+static bool is_stream(const char *path)
+{
+    return !strcmp(path, "-");
+}
+
+static int check(const char *const *models, int count)
+{
+    if (!output)
+        return usage("-o OUT.gtx is missing");
+    for (int i = 1; i < count; ++i)
+        if (is_stream(models[i]))
+            return usage("only the first model may be read from stdin");
+    if (is_stream(output) && (depfile_path || if_changed))
+        return usage("--depfile and --if-changed need an output that is a file");
+    if (is_stream(models[0]) && if_changed)
+        return usage("--if-changed needs models that are files");
+    if (is_stream(output) && isatty(STDOUT_FILENO))
+        return usage("an asset is not written to a terminal");
+    return EXIT_CODE_OK;
+}
+
+/* To stdout once it is whole, or to a file as gtx_cook_file would. */
+static int write_asset(const gtx_asset *asset)
+{
+    gtx_encode_desc encode;
+    gtx_error error;
+    void *data;
+    size_t size;
+    memset(&encode, 0, sizeof encode);
+    encode.zstd_level = zstd_level;
+    if (!is_stream(output))
+        return gtx_save_file(asset, output, &encode, &error) ? report_error(output, &error)
+                                                             : EXIT_CODE_OK;
+    if (gtx_encode(asset, &encode, &data, &size, &error))
+        return report_error("stdout", &error);
+    int code = print_result(data, size);
+    free(data);
+    return code;
+}
+
+/* Where stdin or stdout takes part. */
+static int cook_stream(const char *model, const char *label, gtx_report *report)
+{
+    void *data;
+    size_t size;
+    gtx_asset *asset = NULL;
+    gtx_error error;
+    int code = read_whole(model, &data, &size);
+    if (code)
+        return code;
+    catch_interrupt();
+    gtx_result result = gtx_cook_memory(data, size, is_stream(model) && name ? name : model, &desc,
+                                        &asset, report, &error);
+    free(data);
+    end_progress();
+    if (result)
+        return report_error(label, &error);
+    code = write_asset(asset);
+    gtx_close(asset);
+    return code;
+}
+
+static int cook_files(const char *model, const char *label, gtx_report *report)
+{
+    gtx_error error;
+    catch_interrupt();
+    gtx_result result = gtx_cook_file(model, output, &desc, report, &error);
+    end_progress();
+    return result ? report_error(label, &error) : EXIT_CODE_OK;
+}
+
+static int tell(const char *label, const gtx_report *report)
+{
+    for (size_t i = 0; i < report->warning_count; ++i)
+        report_warning(label, report->warnings[i]);
+    if (!cli_quiet)
+        fprintf(stderr, "%s: %s\n", is_stream(output) ? "stdout" : output, report->summary);
+    int code = EXIT_CODE_OK;
+    if (depfile_path)
+        code = write_depfile(depfile_path, output, report->sources, report->source_count);
+    if (!code && report_path)
+        code = write_text_file(report_path, report->json, report->size);
+    return code;
+}
 
 int cmd_cook(int argc, char **argv)
 {
-    const char *model;
+    static const char *models[MOST_MODELS];
     int count;
-    int code = parse_options(&cook, argc, argv, &model, &count);
+    int code = parse_options(&cook, argc, argv, models, &count);
     if (code >= 0)
         return code;
-    if (!output) {
-        fputs("gtx cook: error[usage]: -o OUT.gtx is missing\n", stderr);
-        return EXIT_CODE_USAGE;
-    }
+    code = check(models, count);
+    if (code)
+        return code;
     desc.partition = (gtx_partition)(GTX_PARTITION_VSA + partition);
     desc.zstd_level = zstd_level ? zstd_level : -1;
     desc.unit = (float)unit;
     desc.measure = report_path != NULL;
+    desc.strict = strict;
+    desc.if_changed = if_changed;
+    desc.more = models + 1;
+    desc.more_count = (uint32_t)(count - 1);
     desc.progress = show_progress;
-    catch_interrupt();
 
+    const char *label = count > 1 ? "gtx cook" : is_stream(models[0]) ? "stdin" : models[0];
+    bool streams = is_stream(models[0]) || is_stream(output);
     gtx_report report;
-    gtx_error error;
     memset(&report, 0, sizeof report);
-    gtx_result result = gtx_cook_file(model, output, &desc, &report, &error);
-    end_progress();
-    if (result != GTX_OK)
-        return report_error(model, &error);
-    for (size_t i = 0; i < report.warning_count; ++i)
-        report_warning(model, report.warnings[i]);
-    if (!cli_quiet)
-        fprintf(stderr, "%s: %s\n", output, report.summary);
-    code = report_path ? write_text_file(report_path, report.json, report.size) : EXIT_CODE_OK;
+    code = (streams ? cook_stream : cook_files)(models[0], label, &report);
+    if (!code)
+        code = tell(label, &report);
     gtx_report_free(&report);
     return code;
 }

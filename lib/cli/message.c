@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 static const struct {
@@ -102,24 +103,68 @@ void catch_interrupt(void)
     sigaction(SIGTERM, &action, NULL);
 }
 
+static double seconds_now(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Shares of the time are known roughly, so the first moments tell nothing about the rest. */
+static bool time_left(double fraction, double elapsed, double *left)
+{
+    *left = fraction > 0 ? elapsed * (1 - fraction) / fraction : 0;
+    return fraction >= 0.05 && elapsed >= 0.5;
+}
+
+static void print_bar(const gtx_progress *progress, double elapsed)
+{
+    static int last_percent = -1, last_second = -1;
+    int percent = (int)(progress->fraction * 100), second = (int)elapsed;
+    if (!isatty(STDERR_FILENO) || (percent == last_percent && second == last_second))
+        return;
+    last_percent = percent;
+    last_second = second;
+    double left;
+    fprintf(stderr, "\r%3d%% %-10s", percent, progress->stage);
+    if (time_left(progress->fraction, elapsed, &left))
+        fprintf(stderr, "%6.0f s left ", left);
+    bar_shown = true;
+}
+
+/* A line at each step and each hundredth. */
+static void print_json_line(const gtx_progress *progress, double elapsed)
+{
+    static uint32_t last_stage = UINT32_MAX;
+    static float last_fraction;
+    if (progress->stage_index == last_stage && progress->fraction < last_fraction + 0.01f)
+        return;
+    last_stage = progress->stage_index;
+    last_fraction = progress->fraction;
+    double left;
+    char eta[32] = "null";
+    if (time_left(progress->fraction, elapsed, &left))
+        snprintf(eta, sizeof eta, "%.2f", left);
+    fprintf(stderr, "{\"stage\": \"%s\", \"fraction\": %.4f, \"seconds\": %.2f, "
+                    "\"eta_seconds\": %s}\n",
+            progress->stage, (double)progress->fraction, elapsed, eta);
+}
+
 int show_progress(const gtx_progress *progress, void *user)
 {
-    static int last = -1;
+    static double start = -1;
     (void)user;
-    if (!cli_quiet && isatty(STDERR_FILENO)) {
-        int percent = (int)(progress->fraction * 100);
-        if (percent != last) {
-            last = percent;
-            fprintf(stderr, "\r%3d%% %-10s", percent, progress->stage);
-            bar_shown = true;
-        }
-    }
+    if (start < 0)
+        start = seconds_now();
+    if (!cli_quiet)
+        (cli_progress == PROGRESS_JSON ? print_json_line : print_bar)(progress,
+                                                                      seconds_now() - start);
     return interrupted;
 }
 
 void end_progress(void)
 {
     if (bar_shown)
-        fputs("\r                \r", stderr);
+        fprintf(stderr, "\r%32s\r", "");
     bar_shown = false;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 bool cli_quiet;
+uint32_t cli_progress;
 
 static const option common_options[] = {
     {"quiet", 'q', OPTION_FLAG, &cli_quiet, NULL, "print errors only", 0, 0},

@@ -1,5 +1,6 @@
 /* An asset measured against its source model, behind the C API. */
 #include "cook/guard.hpp"
+#include "cook/models.hpp"
 #include "cook/report.hpp"
 
 namespace gtx {
@@ -10,6 +11,8 @@ static void check(const gtx_compare_desc &desc)
     require_argument(desc.size <= 4096, "size is at most 4096");
     require_argument(desc.levels <= 8, "levels is at most 8");
     require_argument(desc.threads <= 1024, "threads is at most 1024");
+    require_argument(desc.z_up <= 1, "z_up is 0 or 1");
+    require_models(desc.more, desc.more_count);
 }
 
 static void compare_files(const gtx_asset *asset, const char *model, const gtx_compare_desc &desc,
@@ -17,9 +20,9 @@ static void compare_files(const gtx_asset *asset, const char *model, const gtx_c
 {
     Task task(desc.threads, desc.progress, desc.progress_user, {"import", "clean", "measure"},
               {5, 10, 85});
-    std::vector<std::string> sources;
     task.begin("import");
-    Mesh mesh = import_mesh(model, task, &sources);
+    Models models = read_models({model}, desc.more, desc.more_count, task);
+    Mesh mesh = import_models(models, desc.z_up, task);
     CleanReport clean;
     task.begin("clean");
     mesh = clean_mesh(std::move(mesh), task, clean);
@@ -36,7 +39,7 @@ static void compare_files(const gtx_asset *asset, const char *model, const gtx_c
     if (report) {
         Json json;
         std::string summary = write_compare_report(measured, task.warnings, json);
-        fill_report(report, json, summary, sources, task.warnings);
+        fill_report(report, json, summary, models.sources, task.warnings);
     }
     if (result)
         *result = {measured.hole_pixels, measured.surface_pixels, measured.silhouette_iou,

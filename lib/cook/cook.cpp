@@ -1,13 +1,12 @@
 /* The line from a model file to an asset file (paper, section 5), behind the C API. */
 #include "cook/guard.hpp"
+#include "cook/models.hpp"
+#include "cook/options.hpp"
 #include "cook/report.hpp"
-
-#include "base/hash.h"
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 
@@ -23,63 +22,6 @@ constexpr Stage STAGES[] = {{"import", 6}, {"clean", 14}, {"partition", 40}, {"f
                             {"bake", 22},  {"pack", 2},   {"measure", 0},    {"write", 6}};
 constexpr float MEASURE_WEIGHT = 60;
 
-constexpr uint32_t MOST_CHARTS = 1u << 20, MOST_THREADS = 1024, MOST_DILATION = 128;
-#ifdef GTX_ZSTD
-constexpr int DEFAULT_ZSTD = 3;
-#else
-constexpr int DEFAULT_ZSTD = 0;
-#endif
-
-/* A descriptor with its defaults filled in. */
-struct Options {
-    ChartOptions chart;
-    BakeOptions bake;
-    int zstd = 0;
-    float unit = 1;
-};
-
-/* A C caller can store any number in an enum, which C++ may not even read as one. */
-static unsigned partition_number(const gtx_cook_desc &desc)
-{
-    std::underlying_type_t<gtx_partition> number;
-    static_assert(sizeof number == sizeof desc.partition);
-    std::memcpy(&number, &desc.partition, sizeof number);
-    return unsigned(number);
-}
-
-static void check(const gtx_cook_desc &desc)
-{
-    require_zeroed(desc.reserved);
-    require_argument(partition_number(desc) <= GTX_PARTITION_VSA, "unknown partition");
-    require_argument(desc.charts <= MOST_CHARTS, "charts is at most 2^20");
-    require_argument(!desc.resolution || (desc.resolution >= 64 && desc.resolution <= 512),
-                     "resolution is 64 to 512");
-    require_argument(!desc.height_bits || desc.height_bits == 8 || desc.height_bits == 16,
-                     "height_bits is 8 or 16");
-    require_argument(desc.dilation <= MOST_DILATION, "dilation is at most 128");
-    require_argument(desc.mips <= 8, "mips is 1 to 8");
-    require_argument(desc.zstd_level >= -1 && desc.zstd_level <= 19, "zstd_level is -1 to 19");
-    require_argument(desc.threads <= MOST_THREADS, "threads is at most 1024");
-    require_argument(desc.unit >= 0 && std::isfinite(desc.unit), "unit is a positive number");
-    require_argument(desc.measure <= 1, "measure is 0 or 1");
-}
-
-static Options options_of(const gtx_cook_desc &desc)
-{
-    Options options;
-    options.chart.charts = desc.charts;
-    if (desc.resolution)
-        options.chart.resolution = desc.resolution;
-    if (desc.height_bits)
-        options.bake.height_bits = desc.height_bits;
-    if (desc.mips)
-        options.bake.mips = desc.mips;
-    options.bake.dilation = desc.dilation ? desc.dilation : 1u << (options.bake.mips - 1);
-    options.zstd = desc.zstd_level == 0 ? DEFAULT_ZSTD : std::max(desc.zstd_level, 0);
-    options.unit = desc.unit > 0 ? desc.unit : 1;
-    return options;
-}
-
 static Task make_task(const gtx_cook_desc &desc)
 {
     std::vector<const char *> names;
@@ -93,38 +35,27 @@ static Task make_task(const gtx_cook_desc &desc)
     return Task(desc.threads, desc.progress, desc.progress_user, names, weights);
 }
 
-/* One hash over all files that were read, in their order. */
-static uint64_t hash_files(const std::vector<std::string> &paths)
-{
-    gtx_hash hash;
-    gtx_hash_begin(&hash);
-    std::vector<char> block(1 << 18);
-    for (const std::string &path : paths) {
-        std::unique_ptr<FILE, int (*)(FILE *)> file(fopen(path.c_str(), "rb"), fclose);
-        if (!file)
-            throw Error(GTX_ERROR_READ, "cannot read " + path);
-        while (size_t size = fread(block.data(), 1, block.size(), file.get()))
-            gtx_hash_add(&hash, block.data(), size);
-        if (ferror(file.get()))
-            throw Error(GTX_ERROR_READ, "cannot read " + path);
-    }
-    return gtx_hash_end(&hash);
-}
-
 using Asset = std::unique_ptr<gtx_asset, decltype(&gtx_close)>;
 
-static Asset make_asset(const Maps &maps, const Options &options, const CookFacts &facts,
-                        uint64_t source_hash)
+static std::vector<const uint8_t *> level_pointers(const std::vector<std::vector<uint8_t>> &levels)
+{
+    std::vector<const uint8_t *> pointers;
+    for (const auto &level : levels)
+        pointers.push_back(level.data());
+    return pointers;
+}
+
+static Asset make_asset(const Maps &maps, const Options &options, const CookFacts &facts)
 {
     Json meta;
     write_meta({"vsa", facts.chart_count, options.chart.resolution, maps.height_bits,
-                maps.mip_count, options.bake.dilation, facts.source_triangles, source_hash},
+                maps.mip_count, options.bake.dilation, options.z_up, facts.source_triangles,
+                facts.source_hash, facts.key, facts.warnings},
                meta);
-    std::vector<const uint8_t *> normal, color;
-    for (const auto &level : maps.normal)
-        normal.push_back(level.data());
-    for (const auto &level : maps.color)
-        color.push_back(level.data());
+    const std::vector<const uint8_t *> normal = level_pointers(maps.normal),
+                                       color = level_pointers(maps.color),
+                                       material = level_pointers(maps.material),
+                                       emission = level_pointers(maps.emission);
 
     gtx_asset_desc desc = {};
     desc.patches = maps.patches.data();
@@ -138,6 +69,9 @@ static Asset make_asset(const Maps &maps, const Options &options, const CookFact
     desc.trim = maps.trim.data();
     desc.normal = normal.data();
     desc.color = color.empty() ? nullptr : color.data();
+    desc.material = material.empty() ? nullptr : material.data();
+    desc.emission = emission.empty() ? nullptr : emission.data();
+    desc.emission_scale = maps.emission_scale;
     desc.meta = meta.text;
     desc.meta_size = meta.size;
     std::copy_n(maps.bounds_min, 3, desc.bounds_min);
@@ -172,9 +106,33 @@ static void refuse_overwriting_source(const std::vector<std::string> &sources, c
     }
 }
 
+static void refuse_warnings(const gtx_cook_desc &desc, const Task &task)
+{
+    size_t count = task.warnings.size();
+    if (desc.strict && count)
+        throw Error(GTX_ERROR_INPUT, task.warnings.front() +
+                                         (count > 1 ? " (and " + std::to_string(count - 1) +
+                                                          " more warnings)"
+                                                    : ""));
+}
+
+/* The asset at `path` when cooking would only make it again. */
+static Asset find_cooked(const char *path, const gtx_cook_desc &desc, uint64_t key)
+{
+    gtx_asset *asset = nullptr;
+    if (!desc.if_changed || desc.charts_ply || gtx_open_file(path, nullptr, &asset, nullptr))
+        return Asset(nullptr, gtx_close);
+    Asset owner(asset, gtx_close);
+    uint64_t old_key, warnings;
+    bool same = read_meta(asset, old_key, warnings) && old_key == key;
+    if (!same || (desc.strict && warnings))
+        owner.reset();
+    return owner;
+}
+
 /* Everything from the clean mesh on; fills the rest of `facts`. */
 static Asset cook_mesh(const Mesh &mesh, const gtx_cook_desc &desc, const Options &options,
-                       uint64_t source_hash, Task &task, CookFacts &facts)
+                       Task &task, CookFacts &facts)
 {
     Partition partition = partition_vsa(mesh, options.chart, task);
     facts.charts = partition.report;
@@ -182,8 +140,10 @@ static Asset cook_mesh(const Mesh &mesh, const gtx_cook_desc &desc, const Option
     Asset asset(nullptr, gtx_close);
     {
         Maps maps = bake(mesh, partition, options.bake, task);
+        refuse_warnings(desc, task);
         facts.bake = maps.report;
-        asset = make_asset(maps, options, facts, source_hash);
+        facts.warnings = task.warnings.size();
+        asset = make_asset(maps, options, facts);
     }
     if (desc.measure) {
         task.begin("measure");
@@ -196,43 +156,84 @@ static Asset cook_mesh(const Mesh &mesh, const gtx_cook_desc &desc, const Option
     return asset;
 }
 
-static void cook_file(const char *input, const char *output, const gtx_cook_desc &desc,
-                      gtx_report *report)
+static uint64_t encoded_size(const gtx_asset *asset, const Options &options)
 {
-    require_argument(input && output, "gtx_cook_file needs an input and an output path");
+    gtx_encode_desc desc = {};
+    desc.zstd_level = options.zstd;
+    gtx_error error;
+    void *data;
+    size_t size;
+    require_ok(gtx_encode(asset, &desc, &data, &size, &error), error);
+    free(data);
+    return size;
+}
+
+/* Everything from the models on; fills `facts`. */
+static Asset cook_models(Models &models, const gtx_cook_desc &desc, const Options &options,
+                         Task &task, CookFacts &facts)
+{
+    Mesh mesh = import_models(models, options.z_up, task);
+    facts.source_triangles = mesh.triangle_count();
+    facts.source_vertices = mesh.positions.size();
+    if (!models.foreseen)
+        facts.key = 0; /* nobody's: it would not cover all, so this asset is always cooked again */
+    task.begin("clean");
+    mesh = clean_mesh(std::move(mesh), task, facts.clean);
+    refuse_warnings(desc, task);
+    return cook_mesh(mesh, desc, options, task, facts);
+}
+
+static void report_on(const gtx_asset *asset, CookFacts &facts, bool unchanged,
+                      const std::vector<std::string> &sources, const Task &task, gtx_report *report)
+{
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    facts.source_triangles = info.source_triangles;
+    facts.chart_count = info.patch_count;
+    facts.content_hash = info.content_hash;
+    facts.gpu_bytes = gpu_bytes(info);
+    facts.stages = task.stages();
+    facts.seconds = task.seconds();
+    Json json;
+    std::string summary = unchanged ? write_unchanged_report(facts, json)
+                                    : write_cook_report(facts, task.warnings, json);
+    fill_report(report, json, summary, sources, task.warnings);
+    report->unchanged = unchanged;
+}
+
+/* The whole line. Without an output the asset is only returned. */
+static Asset cook(const ModelInput &input, const char *output, const gtx_cook_desc &desc,
+                  gtx_report *report)
+{
     check(desc);
     auto start = std::chrono::steady_clock::now();
     Options options = options_of(desc);
     Task task = make_task(desc);
     CookFacts facts;
 
-    std::vector<std::string> sources;
     task.begin("import");
-    Mesh mesh = import_mesh(input, task, &sources);
-    refuse_overwriting_source(sources, output);
-    uint64_t source_hash = hash_files(sources);
-    facts.source_triangles = mesh.triangle_count();
-    facts.source_vertices = mesh.positions.size();
-    task.begin("clean");
-    mesh = clean_mesh(std::move(mesh), task, facts.clean);
-    Asset asset = cook_mesh(mesh, desc, options, source_hash, task, facts);
-    save(asset.get(), output, options);
-
+    Models models = read_models(input, desc.more, desc.more_count, task);
+    facts.source_hash = models.hash;
+    facts.key = content_key(options, models.hash);
+    Asset asset(nullptr, gtx_close);
+    if (output) {
+        refuse_overwriting_source(models.sources, output);
+        asset = find_cooked(output, desc, facts.key);
+    }
+    const bool unchanged = asset != nullptr;
+    if (!unchanged)
+        asset = cook_models(models, desc, options, task, facts);
+    if (!unchanged && output)
+        save(asset.get(), output, options);
     task.end();
-    if (!report)
-        return;
-    gtx_info info;
-    gtx_get_info(asset.get(), &info);
-    facts.content_hash = info.content_hash;
-    facts.gpu_bytes = gpu_bytes(info);
-    facts.bytes = std::filesystem::file_size(output);
-    facts.stages = task.stages();
-    facts.seconds = task.seconds();
-    facts.total_seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    Json json;
-    std::string summary = write_cook_report(facts, task.warnings, json);
-    fill_report(report, json, summary, sources, task.warnings);
+    if (report) {
+        facts.bytes = output ? std::filesystem::file_size(output)
+                             : encoded_size(asset.get(), options);
+        facts.total_seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        report_on(asset.get(), facts, unchanged, models.sources, task, report);
+    }
+    return asset;
 }
 
 } // namespace gtx
@@ -240,6 +241,20 @@ static void cook_file(const char *input, const char *output, const gtx_cook_desc
 gtx_result gtx_cook_file(const char *input, const char *output, const gtx_cook_desc *desc,
                          gtx_report *report, gtx_error *error)
 {
-    return gtx::guard(
-        error, [&] { gtx::cook_file(input, output, desc ? *desc : gtx_cook_desc{}, report); });
+    return gtx::guard(error, [&] {
+        gtx::require_argument(input && output, "gtx_cook_file needs an input and an output path");
+        gtx::cook({input}, output, desc ? *desc : gtx_cook_desc{}, report);
+    });
+}
+
+gtx_result gtx_cook_memory(const void *data, size_t size, const char *name,
+                           const gtx_cook_desc *desc, gtx_asset **out, gtx_report *report,
+                           gtx_error *error)
+{
+    return gtx::guard(error, [&] {
+        gtx::require_argument(data && name && out,
+                              "gtx_cook_memory needs bytes, a name and a result");
+        *out = gtx::cook({name, data, size}, nullptr, desc ? *desc : gtx_cook_desc{}, report)
+                   .release();
+    });
 }

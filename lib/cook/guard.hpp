@@ -45,4 +45,12 @@ template <size_t N> void require_zeroed(const uint32_t (&reserved)[N])
     require_ok(gtx_check_reserved(reserved, N, &error), error);
 }
 
+inline void require_models(const char *const *more, uint32_t count)
+{
+    require_argument(count <= 4096, "more_count is at most 4096");
+    require_argument(more || !count, "more is NULL, and more_count is not 0");
+    for (uint32_t i = 0; i < count; ++i)
+        require_argument(more[i], "one of the further models is NULL");
+}
+
 } // namespace gtx

@@ -3,11 +3,13 @@
 
 #include "mesh/task.hpp"
 
+#include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 
 namespace gtx {
 
@@ -90,6 +92,7 @@ std::string write_cook_report(const CookFacts &facts, const std::vector<std::str
                               Json &json)
 {
     gtx_json_begin_object(&json, nullptr);
+    gtx_json_bool(&json, "unchanged", false);
     gtx_json_begin_object(&json, "source");
     gtx_json_integer(&json, "triangles", facts.source_triangles);
     gtx_json_integer(&json, "vertices", facts.source_vertices);
@@ -114,10 +117,34 @@ std::string write_cook_report(const CookFacts &facts, const std::vector<std::str
     gtx_json_end_object(&json);
     gtx_json_integer(&json, "peak_rss_bytes", peak_rss_bytes());
     gtx_json_hash(&json, "content_hash", facts.content_hash);
+    gtx_json_hash(&json, "key", facts.key);
     write_strings(json, "warnings", warnings);
     gtx_json_end_object(&json);
     check_written(json);
     return cook_summary(facts);
+}
+
+std::string write_unchanged_report(const CookFacts &facts, Json &json)
+{
+    gtx_json_begin_object(&json, nullptr);
+    gtx_json_bool(&json, "unchanged", true);
+    gtx_json_begin_object(&json, "source");
+    gtx_json_integer(&json, "triangles", facts.source_triangles);
+    gtx_json_end_object(&json);
+    gtx_json_integer(&json, "charts", facts.chart_count);
+    gtx_json_integer(&json, "bytes", facts.bytes);
+    gtx_json_number(&json, "bytes_per_triangle", per_triangle(facts));
+    gtx_json_integer(&json, "gpu_bytes", facts.gpu_bytes);
+    gtx_json_begin_object(&json, "seconds");
+    gtx_json_number(&json, "total", facts.total_seconds);
+    gtx_json_end_object(&json);
+    gtx_json_integer(&json, "peak_rss_bytes", peak_rss_bytes());
+    gtx_json_hash(&json, "content_hash", facts.content_hash);
+    gtx_json_hash(&json, "key", facts.key);
+    write_strings(json, "warnings", {});
+    gtx_json_end_object(&json);
+    check_written(json);
+    return "unchanged";
 }
 
 std::string write_compare_report(const CompareReport &report,
@@ -179,13 +206,31 @@ void write_meta(const MetaFacts &facts, Json &json)
     gtx_json_integer(&json, "height_bits", facts.height_bits);
     gtx_json_integer(&json, "mips", facts.mips);
     gtx_json_integer(&json, "dilation", facts.dilation);
+    gtx_json_string(&json, "up", facts.z_up ? "z" : "y");
     gtx_json_end_object(&json);
     gtx_json_begin_object(&json, "source");
     gtx_json_integer(&json, "triangles", facts.source_triangles);
     gtx_json_hash(&json, "xxh64", facts.source_hash);
     gtx_json_end_object(&json);
+    gtx_json_hash(&json, "key", facts.key);
+    gtx_json_integer(&json, "warnings", facts.warnings);
     gtx_json_end_object(&json);
     check_written(json);
+}
+
+bool read_meta(const gtx_asset *asset, uint64_t &key, uint64_t &warnings)
+{
+    size_t size = 0;
+    const char *text = gtx_meta(asset, &size);
+    if (!text)
+        return false;
+    auto meta = nlohmann::json::parse(text, text + size, nullptr, false);
+    if (!meta.is_object() || !meta.contains("key") || !meta["key"].is_string() ||
+        !meta.contains("warnings") || !meta["warnings"].is_number_unsigned())
+        return false;
+    key = std::strtoull(meta["key"].get_ref<const std::string &>().c_str(), nullptr, 16);
+    warnings = meta["warnings"];
+    return true;
 }
 
 uint64_t gpu_bytes(const gtx_info &info)
@@ -202,6 +247,12 @@ uint64_t gpu_bytes(const gtx_info &info)
 
 uint64_t peak_rss_bytes()
 {
+    /* Of this program alone, where the system tells: the other figure starts with what the process
+     * held before it became this program, which is its parent's memory. */
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.rfind("VmHWM:", 0) == 0)
+            return std::strtoull(line.c_str() + 6, nullptr, 10) * 1024;
     struct rusage usage;
     return getrusage(RUSAGE_SELF, &usage) ? 0 : uint64_t(usage.ru_maxrss) * 1024;
 }

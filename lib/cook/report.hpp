@@ -21,6 +21,7 @@ struct CookFacts {
     BakeReport bake;
     bool measured = false;
     SurfaceError error;
+    uint64_t source_hash = 0, key = 0, warnings = 0;
     uint64_t bytes = 0, gpu_bytes = 0, content_hash = 0;
     std::vector<const char *> stages;
     std::vector<double> seconds; /* a stage each */
@@ -38,6 +39,7 @@ struct Json : gtx_json {
 /* Fill `json` and return the line of gtx_report.summary. */
 std::string write_cook_report(const CookFacts &facts, const std::vector<std::string> &warnings,
                               Json &json);
+std::string write_unchanged_report(const CookFacts &facts, Json &json);
 std::string write_compare_report(const CompareReport &report,
                                  const std::vector<std::string> &warnings, Json &json);
 
@@ -48,11 +50,17 @@ void fill_report(gtx_report *report, const Json &json, const std::string &summar
 /* The META section: what made the asset, from what. Nothing of when, where or by how many. */
 struct MetaFacts {
     const char *partition;
-    uint64_t charts, resolution, height_bits, mips, dilation, source_triangles, source_hash;
+    uint64_t charts, resolution, height_bits, mips, dilation;
+    bool z_up;
+    uint64_t source_triangles, source_hash, key, warnings;
 };
 void write_meta(const MetaFacts &facts, Json &json);
 
-/* Bytes of the asset's geometry on the GPU as lib/render lays it out, colour left out. */
+/* The key of an asset, and how many warnings it was cooked with; false when META does not tell. */
+bool read_meta(const gtx_asset *asset, uint64_t &key, uint64_t &warnings);
+
+/* Bytes of the asset's geometry on the GPU as lib/render lays it out; colour, material
+ * and emission left out. */
 uint64_t gpu_bytes(const gtx_info &info);
 
 /* The most memory this process has held so far. */

@@ -46,6 +46,11 @@ inline std::string broken(const json &value, const json &rule, const json &root,
         std::string path = rule["$ref"];
         return broken(value, root.at(json::json_pointer(path.substr(1))), root, at);
     }
+    if (rule.contains("const") && value != rule["const"])
+        return at + ": another value";
+    if (rule.contains("if") && broken(value, rule["if"], root, at).empty())
+        if (std::string why = broken(value, rule["then"], root, at); !why.empty())
+            return why;
     if (rule.contains("type") && !type_matches(value, rule["type"]))
         return at + ": wrong type";
     if (value.is_number() && rule.contains("minimum") && value < rule["minimum"])

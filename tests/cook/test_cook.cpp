@@ -1,92 +1,7 @@
 /* Cooking files: what is written, what is reported, and what is left behind when it fails. */
-#include "bake/shapes.hpp"
 #include "cook/schema.hpp"
 
-#include <geotex/cook.h>
-
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-
-/* Last, for its macros take names that the standard library uses. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-extern "C" {
-#include <cmocka.h>
-}
-
-namespace fs = std::filesystem;
-
-static fs::path folder;
-
-static std::string in_folder(const char *name)
-{
-    return (folder / name).string();
-}
-
-static void write_file(const std::string &path, const std::string &text)
-{
-    std::ofstream(path, std::ios::binary) << text;
-}
-
-static std::string read_file(const std::string &path)
-{
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-static std::string obj_text(const gtx::Mesh &mesh)
-{
-    std::string text;
-    char line[120];
-    for (const gtx::Vec3d &p : mesh.positions)
-        text.append(line, size_t(snprintf(line, sizeof line, "v %.9g %.9g %.9g\n", p.x, p.y, p.z)));
-    for (const auto &t : mesh.triangles)
-        text.append(line, size_t(snprintf(line, sizeof line, "f %u %u %u\n", t[0] + 1, t[1] + 1,
-                                          t[2] + 1)));
-    return text;
-}
-
-static std::string ball_file()
-{
-    std::string path = in_folder("ball.obj");
-    if (!fs::exists(path))
-        write_file(path, obj_text(shapes::ball(24, shapes::bumps)));
-    return path;
-}
-
-static size_t files_in_folder()
-{
-    return size_t(std::distance(fs::directory_iterator(folder), {}));
-}
-
-static int make_folder(void **)
-{
-    char name[] = "/tmp/geotex-cook-XXXXXX";
-    if (!mkdtemp(name))
-        return -1;
-    folder = name;
-    ball_file();
-    return 0;
-}
-
-static int remove_folder(void **)
-{
-    fs::remove_all(folder);
-    return 0;
-}
-
-/* Cooks the ball, or fails the test. */
-static void cook_ball(const std::string &output, const gtx_cook_desc &desc,
-                      gtx_report *report = nullptr)
-{
-    gtx_error error = {};
-    if (gtx_cook_file(ball_file().c_str(), output.c_str(), &desc, report, &error))
-        fail_msg("%d: %s", error.result, error.message);
-}
+#include "cook/folder.hpp"
 
 static void an_asset_comes_out(void **)
 {
@@ -206,6 +121,10 @@ static void wrong_arguments_are_refused(void **)
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.unit = -1; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.unit = NAN; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.measure = 2; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.z_up = 2; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.strict = 2; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.if_changed = 2; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.more_count = 1; }},
         {GTX_ERROR_NOT_ZEROED, [](gtx_cook_desc &d) { d.reserved[7] = 1; }},
     };
     std::string output = in_folder("e.gtx");
@@ -271,68 +190,6 @@ static void failures_leave_nothing_behind(void **)
     assert_int_equal(files_in_folder(), files);
     fs::remove(output);
     fs::remove(input);
-}
-
-/* Cancels at call `at`, and checks that progress never falls. */
-struct Watch {
-    int calls = 0, at = -1;
-    float last = 0;
-    std::vector<std::string> stages;
-};
-
-static int watch_progress(const gtx_progress *progress, void *user)
-{
-    Watch *watch = static_cast<Watch *>(user);
-    assert_true(progress->fraction >= watch->last && progress->fraction <= 1);
-    watch->last = progress->fraction;
-    if (watch->stages.empty() || watch->stages.back() != progress->stage)
-        watch->stages.push_back(progress->stage);
-    return watch->calls++ == watch->at;
-}
-
-static void progress_rises_through_the_stages(void **)
-{
-    Watch watch;
-    gtx_cook_desc desc = {};
-    desc.charts = 12;
-    desc.progress = watch_progress;
-    desc.progress_user = &watch;
-    std::string output = in_folder("g.gtx");
-    cook_ball(output, desc);
-    const std::vector<std::string> stages = {"import", "clean", "partition", "frame",
-                                             "bake",   "pack",  "write"};
-    assert_true(watch.stages == stages);
-    fs::remove(output);
-}
-
-static void cancelling_anywhere_leaves_nothing_behind(void **)
-{
-    Watch all;
-    gtx_cook_desc desc = {};
-    desc.charts = 12;
-    desc.threads = 1; /* how often several threads report is a matter of chance */
-    desc.progress = watch_progress;
-    desc.progress_user = &all;
-    std::string output = in_folder("h.gtx"), ply = in_folder("h.ply");
-    desc.charts_ply = ply.c_str();
-    cook_ball(output, desc);
-    assert_true(fs::exists(ply));
-    fs::remove(output);
-    fs::remove(ply);
-    size_t files = files_in_folder();
-    int step = std::max(1, all.calls / 25);
-    for (int at = 0; at < all.calls; at += step) {
-        Watch watch;
-        watch.at = at;
-        desc.progress_user = &watch;
-        gtx_error error = {};
-        assert_int_equal(
-            gtx_cook_file(ball_file().c_str(), output.c_str(), &desc, nullptr, &error),
-            GTX_CANCELLED);
-        assert_int_equal(error.result, GTX_CANCELLED);
-        assert_int_equal(watch.calls, at + 1);
-        assert_int_equal(files_in_folder(), files);
-    }
 }
 
 static void a_comparison_measures_the_cook(void **)
@@ -402,8 +259,6 @@ int main()
         cmocka_unit_test(wrong_arguments_are_refused),
         cmocka_unit_test(a_source_is_never_overwritten),
         cmocka_unit_test(failures_leave_nothing_behind),
-        cmocka_unit_test(progress_rises_through_the_stages),
-        cmocka_unit_test(cancelling_anywhere_leaves_nothing_behind),
         cmocka_unit_test(a_comparison_measures_the_cook),
         cmocka_unit_test(a_scan_keeps_its_figures),
     };

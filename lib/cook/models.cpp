@@ -1,0 +1,192 @@
+/* Reading models and putting them together. */
+#include "cook/models.hpp"
+
+#include "base/hash.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+namespace gtx {
+
+/* ---- reading ---- */
+
+static void add_number(gtx_hash &hash, uint64_t number)
+{
+    uint8_t bytes[8];
+    for (int i = 0; i < 8; ++i)
+        bytes[i] = uint8_t(number >> (8 * i));
+    gtx_hash_add(&hash, bytes, sizeof bytes);
+}
+
+static void add_bytes(gtx_hash &hash, const std::string &bytes)
+{
+    add_number(hash, bytes.size());
+    gtx_hash_add(&hash, bytes.data(), bytes.size());
+}
+
+/* A file that is not there counts too: the content changes when it appears. */
+static bool add_file(gtx_hash &hash, const std::string &path, Task &task)
+{
+    std::error_code ignored;
+    std::unique_ptr<FILE, int (*)(FILE *)> file(nullptr, fclose);
+    if (std::filesystem::is_regular_file(path, ignored))
+        file.reset(fopen(path.c_str(), "rb"));
+    if (!file) {
+        add_number(hash, UINT64_MAX);
+        return false;
+    }
+    std::vector<char> block(1 << 18);
+    uint64_t total = 0;
+    while (size_t size = fread(block.data(), 1, block.size(), file.get())) {
+        gtx_hash_add(&hash, block.data(), size);
+        total += size;
+        task.advance(0);
+    }
+    if (ferror(file.get()))
+        throw Error(GTX_ERROR_READ, "cannot read " + path);
+    add_number(hash, total);
+    return true;
+}
+
+/* What goes wrong, or is ignored, in one of several models names it. */
+template <class Body>
+static auto naming(const std::string &path, bool several, Task &task, Body body)
+{
+    size_t before = task.warnings.size();
+    try {
+        auto result = body();
+        for (size_t i = before; several && i < task.warnings.size(); ++i)
+            task.warnings[i].insert(0, path + ": ");
+        return result;
+    } catch (const Error &e) {
+        if (!several || e.result == GTX_CANCELLED)
+            throw;
+        throw Error(e.result, path + ": " + e.message);
+    }
+}
+
+Models read_models(const ModelInput &first, const char *const *more, uint32_t more_count,
+                   Task &task)
+{
+    std::vector<ModelInput> inputs = {first};
+    for (uint32_t i = 0; i < more_count; ++i)
+        inputs.push_back({more[i]});
+
+    Models models;
+    gtx_hash hash;
+    gtx_hash_begin(&hash);
+    for (const ModelInput &input : inputs) {
+        ModelFile file = naming(input.path, inputs.size() > 1, task, [&] {
+            return input.data ? model_in_memory({static_cast<const char *>(input.data), input.size},
+                                                input.path, task)
+                              : read_model(input.path, task);
+        });
+        if (!input.data)
+            models.sources.push_back(input.path);
+        /* Where the bytes leave the format open, the name decides. */
+        add_bytes(hash, model_extension(input.path));
+        add_bytes(hash, file.bytes);
+        for (const std::string &path : referenced_files(file))
+            if (add_file(hash, path, task))
+                models.sources.push_back(path);
+        models.files.push_back(std::move(file));
+    }
+    models.hash = gtx_hash_end(&hash);
+    return models;
+}
+
+/* ---- one mesh ---- */
+
+/* Appends attributes that either mesh may lack: `fill` stands for what is not there. */
+template <class T>
+static void append(std::vector<T> &to, size_t before, std::vector<T> &from, size_t count,
+                   const T &fill = T())
+{
+    if (to.empty() && from.empty())
+        return;
+    to.resize(before, fill);
+    to.insert(to.end(), from.begin(), from.end());
+    to.resize(before + count, fill);
+}
+
+/* `before` and `count` are triangles. */
+static void append(Appearance &to, size_t before, Appearance &&from, size_t count)
+{
+    bool has_materials = !to.material.empty() || !from.material.empty();
+    for (Appearance *a : {&to, &from})
+        if (has_materials && a->material.empty()) {
+            a->material.assign(a == &to ? before : count, uint32_t(a->materials.size()));
+            a->materials.emplace_back();
+        }
+    uint32_t images = uint32_t(to.images.size()), materials = uint32_t(to.materials.size());
+    for (Material &m : from.materials) {
+        for (Texture Material::*map : MATERIAL_TEXTURES)
+            if ((m.*map).used())
+                (m.*map).image += images;
+        to.materials.push_back(m);
+    }
+    for (Image &image : from.images)
+        to.images.push_back(std::move(image));
+    for (uint32_t m : from.material)
+        to.material.push_back(materials + m);
+    for (int set = 0; set < 2; ++set)
+        append(to.uv[set], 3 * before, from.uv[set], 3 * count);
+    append(to.tangents, 3 * before, from.tangents, 3 * count);
+}
+
+static void append(Mesh &to, Mesh &&from)
+{
+    size_t vertices = to.positions.size(), before = to.triangle_count();
+    size_t count = from.triangle_count();
+    if (vertices + from.positions.size() >= NO_TRIANGLE || before + count >= NO_TRIANGLE)
+        throw Error(GTX_ERROR_LIMIT, "more vertices or triangles than 32 bits can count");
+    append(to.normals, 3 * before, from.normals, 3 * count);
+    append(to.colors, 3 * before, from.colors, 3 * count);
+    append(to.flags, before, from.flags, count);
+    append(to.appearance, before, std::move(from.appearance), count);
+    to.positions.insert(to.positions.end(), from.positions.begin(), from.positions.end());
+    for (const auto &t : from.triangles)
+        to.triangles.push_back({uint32_t(t[0] + vertices), uint32_t(t[1] + vertices),
+                                uint32_t(t[2] + vertices)});
+}
+
+/* A quarter turn around x. */
+static void turn_z_up(Mesh &mesh)
+{
+    for (Vec3d &p : mesh.positions)
+        p = {p.x, p.z, -p.y};
+    for (Vec3f &n : mesh.normals)
+        n = {n.x, n.z, -n.y};
+    for (auto &t : mesh.appearance.tangents)
+        t = {t[0], t[2], -t[1], t[3]};
+}
+
+Mesh import_models(Models &models, bool z_up, Task &task)
+{
+    Mesh mesh;
+    bool several = models.files.size() > 1;
+    for (ModelFile &kept : models.files) {
+        ModelFile file = std::move(kept); /* freed as soon as it is imported */
+        std::vector<std::string> read;
+        file.sources = &read;
+        Mesh next = naming(file.path, several, task, [&] { return import_model(file, task); });
+        if (mesh.triangles.empty())
+            mesh = std::move(next);
+        else
+            append(mesh, std::move(next));
+        for (const std::string &path : read)
+            if (std::find(models.sources.begin(), models.sources.end(), path) ==
+                models.sources.end()) {
+                models.sources.push_back(path);
+                models.foreseen = false;
+            }
+    }
+    models.files.clear();
+    if (z_up)
+        turn_z_up(mesh);
+    return mesh;
+}
+
+} // namespace gtx

@@ -1,0 +1,33 @@
+/* The models of one call: read once, known by a hash, and imported as one mesh. */
+#pragma once
+
+#include "mesh/mesh.hpp"
+
+namespace gtx {
+
+/* A model file, or the bytes of one. */
+struct ModelInput {
+    const char *path;
+    const void *data = nullptr; /* null: the file is read */
+    size_t size = 0;
+};
+
+struct Models {
+    std::vector<ModelFile> files;
+    /* Every file behind them that is there: the models, then what they refer to. */
+    std::vector<std::string> sources;
+    /* Of the content of all of them, not of their paths. */
+    uint64_t hash = 0;
+    /* Whether importing read nothing else; known after it. */
+    bool foreseen = true;
+};
+
+/* `more` holds further files. */
+Models read_models(const ModelInput &first, const char *const *more, uint32_t more_count,
+                   Task &task);
+
+/* One after another into one mesh; gives back the files' memory. With `z_up` the models' +Z becomes
+ * +Y, and their +Y -Z. */
+Mesh import_models(Models &models, bool z_up, Task &task);
+
+} // namespace gtx

@@ -1,0 +1,87 @@
+/* Checking descriptors, filling in defaults, and the key over them. */
+#include "cook/options.hpp"
+
+#include "cook/guard.hpp"
+
+#include "base/hash.h"
+
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+namespace gtx {
+
+/* Raised with every change that makes other assets of the same models and options. */
+constexpr int COOKER_REVISION = 1;
+
+constexpr uint32_t MOST_CHARTS = 1u << 20, MOST_THREADS = 1024, MOST_DILATION = 128;
+#ifdef GTX_ZSTD
+constexpr int DEFAULT_ZSTD = 3;
+#else
+constexpr int DEFAULT_ZSTD = 0;
+#endif
+
+/* A C caller can store any number in an enum, which C++ may not even read as one. */
+static unsigned partition_number(const gtx_cook_desc &desc)
+{
+    std::underlying_type_t<gtx_partition> number;
+    static_assert(sizeof number == sizeof desc.partition);
+    std::memcpy(&number, &desc.partition, sizeof number);
+    return unsigned(number);
+}
+
+void check(const gtx_cook_desc &desc)
+{
+    require_zeroed(desc.reserved);
+    require_argument(partition_number(desc) <= GTX_PARTITION_VSA, "unknown partition");
+    require_argument(desc.charts <= MOST_CHARTS, "charts is at most 2^20");
+    require_argument(!desc.resolution || (desc.resolution >= 64 && desc.resolution <= 512),
+                     "resolution is 64 to 512");
+    require_argument(!desc.height_bits || desc.height_bits == 8 || desc.height_bits == 16,
+                     "height_bits is 8 or 16");
+    require_argument(desc.dilation <= MOST_DILATION, "dilation is at most 128");
+    require_argument(desc.mips <= 8, "mips is 1 to 8");
+    require_argument(desc.zstd_level >= -1 && desc.zstd_level <= 19, "zstd_level is -1 to 19");
+    require_argument(desc.threads <= MOST_THREADS, "threads is at most 1024");
+    require_argument(desc.unit >= 0 && std::isfinite(desc.unit), "unit is a positive number");
+    require_argument(desc.measure <= 1, "measure is 0 or 1");
+    require_argument(desc.z_up <= 1, "z_up is 0 or 1");
+    require_argument(desc.strict <= 1, "strict is 0 or 1");
+    require_argument(desc.if_changed <= 1, "if_changed is 0 or 1");
+    require_models(desc.more, desc.more_count);
+}
+
+Options options_of(const gtx_cook_desc &desc)
+{
+    Options options;
+    options.chart.charts = desc.charts;
+    if (desc.resolution)
+        options.chart.resolution = desc.resolution;
+    if (desc.height_bits)
+        options.bake.height_bits = desc.height_bits;
+    if (desc.mips)
+        options.bake.mips = desc.mips;
+    options.bake.dilation = desc.dilation ? desc.dilation : 1u << (options.bake.mips - 1);
+    options.zstd = desc.zstd_level == 0 ? DEFAULT_ZSTD : std::max(desc.zstd_level, 0);
+    options.unit = desc.unit > 0 ? desc.unit : 1;
+    options.z_up = desc.z_up;
+    return options;
+}
+
+uint64_t content_key(const Options &options, uint64_t source_hash)
+{
+    uint32_t unit_bits;
+    std::memcpy(&unit_bits, &options.unit, sizeof unit_bits);
+    char text[256];
+    int size = snprintf(text, sizeof text,
+                        "geotex %d revision %d source %016" PRIx64 " partition vsa charts %u "
+                        "resolution %u bits %u mips %u dilation %u zstd %d unit %08" PRIx32
+                        " up %c",
+                        GTX_VERSION, COOKER_REVISION, source_hash, options.chart.charts,
+                        options.chart.resolution, options.bake.height_bits, options.bake.mips,
+                        options.bake.dilation, options.zstd, unit_bits, options.z_up ? 'z' : 'y');
+    return gtx_hash_bytes(text, size_t(size));
+}
+
+} // namespace gtx

@@ -1,0 +1,26 @@
+/* What a cook is asked for, defaults filled in, and the key of what comes out. */
+#pragma once
+
+#include "bake/bake.hpp"
+
+#include <geotex/cook.h>
+
+namespace gtx {
+
+struct Options {
+    ChartOptions chart;
+    BakeOptions bake;
+    int zstd = 0;
+    float unit = 1;
+    bool z_up = false;
+};
+
+/* Throws Error: ARGUMENT, NOT_ZEROED. */
+void check(const gtx_cook_desc &desc);
+Options options_of(const gtx_cook_desc &desc);
+
+/* Of the sources' content, the options that matter and the cooker's revision: equal keys promise
+ * equal assets. */
+uint64_t content_key(const Options &options, uint64_t source_hash);
+
+} // namespace gtx
