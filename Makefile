@@ -165,7 +165,7 @@ $(out)/samples/%: $(out)/samples/%.o $(call objects_of,host image) $(lib_cook) $
 # ---- installation: exactly the files of lib/package/files, below PREFIX --------------------------
 fill = sed -e 's|@PREFIX@|$(PREFIX)|g' -e 's|@VERSION@|$(VERSION)|g' -e 's|@SOVERSION@|$(SOVERSION)|g' \
   -e 's|@CORE_LIBS@|$(call libs_of,asset)|g' -e 's|@COOK_LIBS@|$(call libs_of,mesh)|g'
-verbs := cook info validate render compare
+verbs := cook info validate unpack pack render compare
 to    := $(DESTDIR)$(PREFIX)
 
 $(out)/gen/gtx.1: lib/package/gtx.1.in lib/package/verbs.awk $(command)
@@ -210,7 +210,7 @@ test_bins    := $(patsubst %,$(out)/%,$(basename $(test_sources)))
 test_room     = $(word 2,$(subst /, ,$(1)))
 test_needs    = $(needs_$(1)) $(extra_needs_$(1))
 # These run the command and the products; they link nothing of ours but the smallest room.
-needs_cli := base
+needs_cli := base image
 needs_consumer := base
 needs_corpus := base
 needs_samples := $(needs_image)

@@ -95,6 +95,8 @@ void catch_interrupt(void);
 int cmd_cook(int argc, char **argv);
 int cmd_info(int argc, char **argv);
 int cmd_validate(int argc, char **argv);
+int cmd_unpack(int argc, char **argv);
+int cmd_pack(int argc, char **argv);
 int cmd_render(int argc, char **argv);
 int cmd_compare(int argc, char **argv);
 

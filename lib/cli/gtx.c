@@ -11,6 +11,8 @@ static const struct {
     {"cook", cmd_cook, "turn a triangle mesh into a .gtx asset"},
     {"info", cmd_info, "say what is in an asset"},
     {"validate", cmd_validate, "check an asset against every rule of the format"},
+    {"unpack", cmd_unpack, "write an asset's maps as images, to look at and to edit"},
+    {"pack", cmd_pack, "make an asset of unpacked images again"},
     {"render", cmd_render, "draw assets and meshes into a PNG, without a window"},
     {"compare", cmd_compare, "measure an asset against the mesh it was cooked from"},
 };

@@ -102,6 +102,12 @@ gtx_result gtx_image_write_png(const char *path, uint32_t width, uint32_t height
     return write_image(path, "png", width, height, channels, pixels, error);
 }
 
+gtx_result gtx_image_write_png16(const char *path, uint32_t width, uint32_t height,
+                                 const uint16_t *pixels, gtx_error *error)
+{
+    return write_image(path, "png16", width, height, 1, pixels, error);
+}
+
 gtx_result gtx_image_write_exr(const char *path, uint32_t width, uint32_t height, const float *z,
                                gtx_error *error)
 {
@@ -135,6 +141,22 @@ gtx_result gtx_image_decode(const void *data, size_t size, gtx_image *out, gtx_e
     if (!data || !size || !out)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "no bytes or no place for the image");
     return read_image(NULL, data, size, out, error);
+}
+
+gtx_result gtx_image_read_raw(const char *path, gtx_raw_image *out, gtx_error *error)
+{
+    char message[GTX_IMAGE_MAX_MESSAGE];
+    gtx_raw_image image = {0};
+    if (!path || !out)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "no path or no place for the image");
+    const gtx_image_functions *module = module_functions(error);
+    if (!module)
+        return GTX_ERROR_UNSUPPORTED;
+    if (module->read_raw(path, UINT64_C(1) << 28, &image.width, &image.height, &image.channels,
+                         &image.depth, &image.pixels, message))
+        return gtx_fail(error, GTX_ERROR_READ, "%s", message);
+    *out = image;
+    return GTX_OK;
 }
 
 gtx_result gtx_image_measure(const void *data, size_t size, uint32_t *width, uint32_t *height,

@@ -17,6 +17,10 @@ extern "C" {
 gtx_result gtx_image_write_png(const char *path, uint32_t width, uint32_t height, uint32_t channels,
                                const uint8_t *pixels, gtx_error *error);
 
+/* The same for one grey channel of 16 bits. Errors: likewise. */
+gtx_result gtx_image_write_png16(const char *path, uint32_t width, uint32_t height,
+                                 const uint16_t *pixels, gtx_error *error);
+
 /* Writes an OpenEXR image with the one float channel Z. Errors: likewise. */
 gtx_result gtx_image_write_exr(const char *path, uint32_t width, uint32_t height, const float *z,
                                gtx_error *error);
@@ -30,7 +34,16 @@ typedef struct gtx_image {
 /* Reads any file OpenImageIO knows as RGBA8: grey spreads to three channels. Images of more than
  * 2^28 pixels are refused. Errors: ARGUMENT, MEMORY, LIMIT, READ, UNSUPPORTED. */
 gtx_result gtx_image_read(const char *path, gtx_image *out, gtx_error *error);
-/* The same from the bytes of a file. Errors: likewise. */
+/* An image with the channels and the depth that its file has. */
+typedef struct gtx_raw_image {
+    uint32_t width, height, channels;   /* 1..4 */
+    uint32_t depth;           /* bytes a channel: 1 or 2 */
+    void *pixels;             /* from malloc, freed by the caller; rows from the top */
+} gtx_raw_image;
+
+/* Reads a file of 8 or 16 bits a channel without changing a value. Errors: as gtx_image_read. */
+gtx_result gtx_image_read_raw(const char *path, gtx_raw_image *out, gtx_error *error);
+/* gtx_image_read from the bytes of a file. Errors: likewise. */
 gtx_result gtx_image_decode(const void *data, size_t size, gtx_image *out, gtx_error *error);
 /* The size that such bytes claim, without decoding them. Errors: likewise. */
 gtx_result gtx_image_measure(const void *data, size_t size, uint32_t *width, uint32_t *height,

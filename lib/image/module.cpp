@@ -24,10 +24,12 @@ int fail(char *message, const char *name, const std::string &detail)
 int write(const char *path, const char *format, uint32_t width, uint32_t height, uint32_t channels,
           const void *pixels, char *message)
 {
-    const bool is_depth = std::string(format) == "exr";
-    const OIIO::TypeDesc type = is_depth ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8;
+    const bool is_depth = std::string(format) == "exr", is_deep = std::string(format) == "png16";
+    const OIIO::TypeDesc type = is_depth  ? OIIO::TypeDesc::FLOAT
+                                : is_deep ? OIIO::TypeDesc::UINT16
+                                          : OIIO::TypeDesc::UINT8;
     /* By format name: the temporary path does not end in the format's extension. */
-    std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
+    std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(is_deep ? "png" : format);
     if (!output)
         return fail(message, path, OIIO::geterror());
     OIIO::ImageSpec spec(int(width), int(height), int(channels), type);
@@ -136,6 +138,32 @@ int read(const char *path, const void *data, size_t size, uint64_t max_pixels, u
     return 0;
 }
 
+int read_raw(const char *path, uint64_t max_pixels, uint32_t *width, uint32_t *height,
+             uint32_t *channels, uint32_t *depth, void **pixels, char *message)
+{
+    Source source(path, nullptr, 0);
+    if (source.open(path, nullptr, 0, message))
+        return 1;
+    const OIIO::ImageSpec &spec = source.input->spec();
+    const uint64_t count = uint64_t(spec.width) * uint64_t(spec.height);
+    const bool is_deep = spec.format == OIIO::TypeDesc::UINT16;
+    if (count > max_pixels || spec.nchannels > 4 ||
+        (!is_deep && spec.format != OIIO::TypeDesc::UINT8))
+        return fail(message, source.name, "not an image of 8 or 16 bits and of a supported size");
+    *depth = is_deep ? 2 : 1;
+    *pixels = std::malloc(size_t(count) * size_t(spec.nchannels) * *depth);
+    if (!*pixels)
+        return fail(message, source.name, "out of memory");
+    if (!source.input->read_image(0, 0, 0, spec.nchannels, spec.format, *pixels)) {
+        std::free(*pixels);
+        return fail(message, source.name, source.input->geterror());
+    }
+    *width = uint32_t(spec.width);
+    *height = uint32_t(spec.height);
+    *channels = uint32_t(spec.nchannels);
+    return 0;
+}
+
 /* Nothing may be thrown across the C boundary. */
 template <class Call> int guarded(char *message, Call call)
 {
@@ -162,6 +190,14 @@ int guarded_read(const char *path, const void *data, size_t size, uint64_t max_p
     });
 }
 
+int guarded_read_raw(const char *path, uint64_t max_pixels, uint32_t *width, uint32_t *height,
+                     uint32_t *channels, uint32_t *depth, void **pixels, char *message)
+{
+    return guarded(message, [&] {
+        return read_raw(path, max_pixels, width, height, channels, depth, pixels, message);
+    });
+}
+
 int guarded_measure(const char *path, const void *data, size_t size, uint32_t *width,
                     uint32_t *height, char *message)
 {
@@ -171,4 +207,5 @@ int guarded_measure(const char *path, const void *data, size_t size, uint32_t *w
 } // namespace
 
 extern "C" __attribute__((visibility("default"))) const gtx_image_functions gtx_image_module = {
-    GTX_IMAGE_MODULE_VERSION, guarded_write, guarded_read, guarded_measure};
+    GTX_IMAGE_MODULE_VERSION, guarded_write, guarded_read, guarded_read_raw,
+    guarded_measure};

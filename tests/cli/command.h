@@ -95,6 +95,16 @@ static inline char *slurp(const char *name, size_t *size)
     return data;
 }
 
+static inline void same_files(const char *a, const char *b)
+{
+    size_t size[2];
+    char *data[2] = {slurp(a, &size[0]), slurp(b, &size[1])};
+    assert_int_equal(size[0], size[1]);
+    assert_memory_equal(data[0], data[1], size[0]);
+    free(data[0]);
+    free(data[1]);
+}
+
 /* A closed bumpy sphere of 2 * n * n * 2 triangles or so. */
 static inline void write_sphere(const char *name, unsigned n)
 {

@@ -10,16 +10,6 @@ static bool is_empty(void)
     return !output[0];
 }
 
-static void same_files(const char *a, const char *b)
-{
-    size_t size[2];
-    char *data[2] = {slurp(a, &size[0]), slurp(b, &size[1])};
-    assert_int_equal(size[0], size[1]);
-    assert_memory_equal(data[0], data[1], size[0]);
-    free(data[0]);
-    free(data[1]);
-}
-
 static void streams_carry_models_and_assets(void **state)
 {
     (void)state;

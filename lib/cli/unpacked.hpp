@@ -1,0 +1,65 @@
+/* An asset as a folder of images and one JSON file: what unpack writes and pack reads. */
+#pragma once
+
+#include <geotex/geotex.h>
+
+#include <nlohmann/json.hpp>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace gtx {
+
+/* A failed step: the file it was about, and what the command says of it. */
+struct UnpackedError : std::runtime_error {
+    gtx_result result;
+    std::string file;
+    UnpackedError(gtx_result result, std::string file, const std::string &message)
+        : std::runtime_error(message), result(result), file(std::move(file))
+    {
+    }
+};
+
+/* How a map lies in images: one a page and level. */
+struct UnpackedMap {
+    gtx_map map;
+    const char *name;
+    uint32_t texel_size;         /* bytes in the asset; heights of 16 bits have twice as many */
+    uint32_t channels;           /* of the image */
+    bool has_levels;
+};
+constexpr UnpackedMap UNPACKED_MAPS[] = {{GTX_MAP_HEIGHT, "height", 1, 1, false},
+                                         {GTX_MAP_TRIM, "trim", 1, 1, false},
+                                         {GTX_MAP_NORMAL, "normal", 2, 3, true},
+                                         {GTX_MAP_COLOR, "color", 4, 4, true},
+                                         {GTX_MAP_MATERIAL, "material", 4, 4, true},
+                                         {GTX_MAP_EMISSION, "emission", 3, 3, true}};
+
+constexpr const char *UNPACKED_JSON = "asset.json";
+
+/* "height-0.png" for page 0, "normal-0-2.png" for level 2 of page 0. */
+std::string unpacked_name(const UnpackedMap &map, uint32_t page, uint32_t level);
+
+/* Writes the images and the JSON into an existing folder. `zstd` is the level whose encoding gives
+ * the asset's file again, 0 = stored, or -1 when none does. Throws UnpackedError. */
+void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder);
+
+/* The content of a folder, owned. */
+struct Unpacked {
+    gtx_asset_desc desc = {};    /* its pointers lead into what follows */
+    int zstd = 0;
+    std::vector<gtx_patch> patches;
+    std::string meta;
+    std::vector<std::vector<uint8_t>> levels[6]; /* by UNPACKED_MAPS: pages one after another */
+    std::vector<const uint8_t *> pointers[6];
+    std::vector<std::string> warnings;
+};
+
+/* Fills `out`, which must stay where it is. Throws UnpackedError. */
+void read_unpacked(const std::string &folder, Unpacked &out);
+
+/* Computes coverage, spheres and bounds anew from the heights. */
+void derive_again(Unpacked &unpacked);
+
+} // namespace gtx
