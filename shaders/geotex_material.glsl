@@ -1,5 +1,6 @@
-/* The material of a hit, and the stock shading of it: metallic-roughness as in glTF 2.0, appendix B.
- * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl and geotex_surface.glsl before it. */
+/* The material of a hit, and its stock shading: metallic-roughness as in glTF 2.0, appendix B.
+ *
+ * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl and geotex_surface.glsl before. */
 GTX_SAMPLER(5, highp sampler2DArray) gtx_materials;  /* occlusion, roughness, metallic, lit; mips */
 GTX_SAMPLER(6, highp sampler2DArray) gtx_emissions;  /* sRGB, mips; decoded when sampled */
 

@@ -48,9 +48,10 @@ vec3 gtx_decode_normal(gtx_frame frame, vec2 code)
     return n.x * x + n.y * cross(z, x) + n.z * z;
 }
 
-/* The normal of a sheet seen from behind along `ray`. Plainly behind, it turns round. Near an outline,
- * where the sheet sticks out a little from behind the visible one, turning round would light it from
- * the wrong side: there it is mirrored in the picture plane, which is continuous across the outline. */
+/* The normal of a sheet seen from behind along `ray`. Plainly behind, it turns round. Near an
+ * outline, where the sheet sticks out a little from behind the visible one, turning round would
+ * light it from the wrong side: there it is mirrored in the picture plane, which is continuous
+ * across the outline. */
 vec3 gtx_from_behind(vec3 n, vec3 ray)
 {
     vec3 d = normalize(ray);

@@ -9,7 +9,9 @@
  *   program 0, vertex array 0, array and element buffers 0, active texture unit 0, textures (2D and
  *   2D array) and samplers 0 on units 0..7, depth test on, depth func LESS (GREATER when reversed),
  *   depth mask on, cull face off, cull mode BACK, front face CCW, blend off, colour mask all on.
- * It does not touch the framebuffer binding, viewport, scissor, stencil or clip control. */
+ * It does not touch the framebuffer binding, viewport, scissor, stencil or clip control.
+ *
+ * Where the context has KHR_debug, every object carries a label and a draw is a debug group. */
 #ifndef GEOTEX_RENDER_H
 #define GEOTEX_RENDER_H
 
@@ -18,8 +20,6 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* Objects carry labels, and a draw is a group, where the context has KHR_debug. */
 
 /* A renderer: programs and shared objects of one context (or share group). */
 typedef struct gtx_renderer gtx_renderer;
@@ -38,7 +38,8 @@ typedef struct gtx_renderer_desc {
     uint32_t reserved[8];
 } gtx_renderer_desc;
 
-/* Needs the context current, as do all functions below but gtx_model_prepare.
+/* Needs the context current, as do all functions below but gtx_model_prepare. Leaves program 0,
+ * vertex array 0 and array buffer 0.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL (a function or version is missing), SHADER. */
 GTX_API gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out,
                                        gtx_error *error);
@@ -52,7 +53,9 @@ GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator
 /* Uploads up to `max_bytes` (0 = everything) and sets *done to 1 once the model can be drawn.
  * Leaves the active texture unit 0 with no 2D and 2D array texture, array and pixel unpack buffers
  * 0, and pixel unpacking at its defaults.
- * Errors: ARGUMENT, LIMIT (texture size), GL (out of memory). */
+ * A call sends less than `max_bytes` and one row of a map.
+ * Errors: ARGUMENT, LIMIT (texture size), GL (out of memory: what was sent is given back, and the
+ * next call begins anew). */
 GTX_API gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t max_bytes,
                                     uint32_t *done, gtx_error *error);
 
@@ -61,8 +64,9 @@ GTX_API gtx_result gtx_model_create(gtx_renderer *renderer, const gtx_asset *ass
                                     gtx_model **out, gtx_error *error);
 
 /* Takes one patch from an edited asset: its maps at all levels, and the record, bounds and proxy
- * that follow. `edited` has the pages, maps and number of patches of the asset that the model was
- * made of, and is not kept. State is left as by gtx_model_upload.
+ * that follow. `edited` has the pages, maps and rectangles of the asset that the model was made of,
+ * and is not kept. State is left as by gtx_model_upload. Of several edited patches each is taken by
+ * a call; the model is whole again after the last.
  * Errors: ARGUMENT, MEMORY (nothing has changed), GL (out of memory). */
 GTX_API gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model,
                                     const gtx_asset *edited, uint32_t patch, gtx_error *error);
@@ -108,7 +112,8 @@ typedef struct gtx_instance {
 } gtx_instance;
 
 /* Draws the instances into the bound framebuffer: colour (in sRGB bytes; location 0) and depth. A
- * model with materials is shaded by metallic and roughness (glTF 2.0, appendix B), another by Lambert. One instanced draw for each run of instances of one model.
+ * model with materials or emission is shaded by metallic and roughness (glTF 2.0, appendix B),
+ * another by Lambert. One instanced draw for each run of instances of one model.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL. */
 GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,
                             const gtx_instance *instances, uint32_t count, gtx_error *error);

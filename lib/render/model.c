@@ -3,6 +3,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "base/hash.h"
 
 #include <string.h>
 
@@ -103,6 +104,18 @@ static void fill_record(float record[GTX_RECORD_TEXELS][4], const gtx_patch *pat
         record[7][k] = patch->rect[k];
 }
 
+uint64_t gtx_model_layout(const gtx_asset *asset)
+{
+    gtx_hash hash;
+    gtx_hash_begin(&hash);
+    for (uint32_t i = 0; i < asset->info.patch_count; ++i) {
+        const gtx_patch *p = &asset->patches[i];
+        gtx_hash_add(&hash, &p->page, sizeof p->page);
+        gtx_hash_add(&hash, p->rect, sizeof p->rect);
+    }
+    return gtx_hash_end(&hash);
+}
+
 gtx_result gtx_model_derive_proxies(const gtx_asset *asset, const gtx_allocator *allocator,
                                     gtx_proxies *out, gtx_error *error)
 {
@@ -153,6 +166,7 @@ gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *alloca
     model->page_count = asset->info.page_count;
     model->page_width = asset->info.page_width;
     model->page_height = asset->info.page_height;
+    model->layout = gtx_model_layout(asset);
     const uint32_t mips = model->mip_count;
     gtx_result result = gtx_model_derive_proxies(asset, &hooks, &model->proxies, error);
     if (!result && !(derive_cells(model, asset) && derive_records(model, asset) &&

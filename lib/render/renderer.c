@@ -19,6 +19,20 @@ static void log_context(const gtx_renderer *renderer)
     renderer->log(line, renderer->log_user);
 }
 
+/* A name becomes an object, which may be labelled, when it is bound. */
+static void create_shared(gtx_renderer *renderer)
+{
+    const gtx_gl *gl = &renderer->gl;
+    gl->GenVertexArrays(1, &renderer->vertex_array);
+    gl->BindVertexArray(renderer->vertex_array);
+    gtx_gl_label(gl, GL_VERTEX_ARRAY, renderer->vertex_array, "geotex attributes");
+    gl->BindVertexArray(0);
+    gl->GenBuffers(1, &renderer->instance_buffer);
+    gl->BindBuffer(GL_ARRAY_BUFFER, renderer->instance_buffer);
+    gtx_gl_label(gl, GL_BUFFER, renderer->instance_buffer, "geotex instances");
+    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+}
+
 gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out, gtx_error *error)
 {
     if (!desc || !desc->load || !out)
@@ -44,8 +58,7 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
         gtx_renderer_destroy(renderer);
         return result;
     }
-    renderer->gl.GenVertexArrays(1, &renderer->vertex_array);
-    renderer->gl.GenBuffers(1, &renderer->instance_buffer);
+    create_shared(renderer);
     log_context(renderer);
     *out = renderer;
     return GTX_OK;

@@ -55,11 +55,13 @@ enum { GTX_MAX_LEVELS = 3 + 4 * GTX_MAX_MIPS };
 struct gtx_model {
     gtx_allocator allocator;
     uint32_t height_bits, mip_count, patch_count, page_count, page_width, page_height;
+    uint64_t layout;          /* gtx_model_layout of the asset */
     bool has_color, has_material, has_emission, ready;
     float emission_scale;     /* 0: no emission */
     gtx_level levels[GTX_MAX_LEVELS];
     uint32_t level_count;
     gtx_proxies proxies;      /* freed once they are uploaded */
+    uint64_t vertex_bytes_sent, index_bytes_sent;
     uint32_t index_count;
     gtx_model_size size;
     gl_uint textures[UNIT_COUNT];
@@ -75,6 +77,8 @@ void gtx_programs_destroy(gtx_renderer *renderer);
 
 /* model.c: gives the CPU's copy of the maps and proxies back. */
 void gtx_model_free_staging(gtx_model *model);
+/* A hash of where the patches' rectangles lie. */
+uint64_t gtx_model_layout(const gtx_asset *asset);
 /* Boxes around the patches, as a model draws them. Errors: MEMORY. */
 gtx_result gtx_model_derive_proxies(const gtx_asset *asset, const gtx_allocator *allocator,
                                     gtx_proxies *out, gtx_error *error);
@@ -93,7 +97,8 @@ typedef struct gtx_texture_kind {
     gl_enum target, inner, format, type, min_filter, mag_filter;
 } gtx_texture_kind;
 gtx_texture_kind gtx_texture_kind_of(const gtx_model *model, uint32_t unit);
-/* Copies the proxies into the model's buffers, which exist. */
+/* Makes the model's buffers, which have names, as large as the proxies, and fills them unless the
+ * arrays are NULL. */
 void gtx_upload_proxies(const gtx_gl *gl, const gtx_model *model, const gtx_proxies *proxies);
 /* Pixel unpacking as render.h promises to leave it. */
 void gtx_default_unpacking(const gtx_gl *gl);

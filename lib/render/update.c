@@ -11,13 +11,14 @@ typedef struct derived {
     size_t cell_count, cell_size, record_count;
 } derived;
 
-static bool is_alike(const gtx_model *model, const gtx_info *info)
+static bool is_alike(const gtx_model *model, const gtx_asset *asset)
 {
+    const gtx_info *info = &asset->info;
     return info->page_count == model->page_count && info->page_width == model->page_width &&
            info->page_height == model->page_height && info->mip_count == model->mip_count &&
            info->height_bits == model->height_bits && info->patch_count == model->patch_count &&
            info->has_color == model->has_color && info->has_material == model->has_material &&
-           info->has_emission == model->has_emission;
+           info->has_emission == model->has_emission && gtx_model_layout(asset) == model->layout;
 }
 
 static void free_derived(derived *d, const gtx_allocator *hooks)
@@ -92,9 +93,9 @@ gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model, const gtx_
     if (!renderer || !model || !edited || !model->ready)
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "an update needs a renderer, an uploaded model and an asset");
-    if (!is_alike(model, &edited->info) || patch >= model->patch_count)
+    if (!is_alike(model, edited) || patch >= model->patch_count)
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
-                        "patch %u is not one of an asset with the model's pages and maps", patch);
+                        "patch %u is not one of an asset with the model's maps and rectangles", patch);
     derived d;
     gtx_result result = derive(model, edited, patch, &d, error);
     if (result)

@@ -4,6 +4,8 @@
 #include "base/alloc.h"
 #include "base/error.h"
 
+#include <string.h>
+
 gtx_texture_kind gtx_texture_kind_of(const gtx_model *model, uint32_t unit)
 {
     static const gtx_texture_kind kinds[UNIT_COUNT] = {
@@ -98,6 +100,21 @@ void gtx_default_unpacking(const gtx_gl *gl)
     gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
 }
 
+/* Uploads what `*budget` allows of a buffer, from byte *sent on. */
+static void upload_bytes(const gtx_gl *gl, gl_uint buffer, const void *data, uint64_t size,
+                         uint64_t *sent, uint64_t *budget)
+{
+    const uint64_t left = size - *sent, count = left < *budget ? left : *budget;
+    if (count == 0)
+        return;
+    gl->BindBuffer(GL_ARRAY_BUFFER, buffer);
+    gl->BufferSubData(GL_ARRAY_BUFFER, (gl_pointer)*sent, (gl_pointer)count,
+                      (const char *)data + *sent);
+    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    *sent += count;
+    *budget -= count;
+}
+
 static bool is_complete(const gtx_level *l)
 {
     return l->next_row == l->height * l->layers;
@@ -140,13 +157,53 @@ gtx_result gtx_check_gl_memory(const gtx_gl *gl, gtx_error *error)
     return GTX_OK;
 }
 
+/* Names, sizes and labels of all objects, still empty. */
+static void allocate(const gtx_gl *gl, gtx_model *model)
+{
+    const gtx_proxies empty = {.vertex_count = model->proxies.vertex_count,
+                               .index_count = model->proxies.index_count};
+    allocate_textures(gl, model);
+    gl->GenBuffers(1, &model->vertices);
+    gl->GenBuffers(1, &model->indices);
+    gtx_upload_proxies(gl, model, &empty);
+}
+
+/* Gives the objects back, so that an upload begins anew. */
+static void release(const gtx_gl *gl, gtx_model *model)
+{
+    gl->DeleteTextures(UNIT_COUNT, model->textures);
+    gl->DeleteBuffers(1, &model->vertices);
+    gl->DeleteBuffers(1, &model->indices);
+    memset(model->textures, 0, sizeof model->textures);
+    model->vertices = model->indices = 0;
+    model->vertex_bytes_sent = model->index_bytes_sent = 0;
+    for (uint32_t i = 0; i < model->level_count; ++i)
+        model->levels[i].next_row = 0;
+}
+
+/* Uploads up to `budget` bytes. Returns whether that was all. */
+static bool upload_slice(const gtx_gl *gl, gtx_model *model, uint64_t budget)
+{
+    const gtx_proxies *p = &model->proxies;
+    upload_bytes(gl, model->vertices, p->vertices, p->vertex_count * sizeof *p->vertices,
+                 &model->vertex_bytes_sent, &budget);
+    upload_bytes(gl, model->indices, p->indices, p->index_count * sizeof *p->indices,
+                 &model->index_bytes_sent, &budget);
+    for (uint32_t i = 0; i < model->level_count; ++i) {
+        if (!is_complete(&model->levels[i]) && budget > 0)
+            upload_rows(gl, model, &model->levels[i], &budget);
+        if (!is_complete(&model->levels[i]))
+            return false;
+    }
+    return true; /* the proxies came first */
+}
+
 gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t max_bytes,
                             uint32_t *done, gtx_error *error)
 {
     if (!renderer || !model)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "an upload needs a renderer and a model");
     const gtx_gl *gl = &renderer->gl;
-    uint64_t budget = max_bytes ? max_bytes : UINT64_MAX;
     if (done)
         *done = model->ready;
     if (model->ready)
@@ -157,24 +214,19 @@ gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t m
         gtx_result result = check_limits(gl, model, error);
         if (result)
             return result;
-        allocate_textures(gl, model);
-        gl->GenBuffers(1, &model->vertices);
-        gl->GenBuffers(1, &model->indices);
-        gtx_upload_proxies(gl, model, &model->proxies);
+        allocate(gl, model);
     }
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    for (uint32_t i = 0; i < model->level_count && budget > 0; ++i)
-        if (!is_complete(&model->levels[i]))
-            upload_rows(gl, model, &model->levels[i], &budget);
+    const bool whole = upload_slice(gl, model, max_bytes ? max_bytes : UINT64_MAX);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     gl->BindTexture(GL_TEXTURE_2D, 0);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
     gtx_result result = gtx_check_gl_memory(gl, error);
-    if (result)
+    if (result) {
+        release(gl, model);
         return result;
-    model->ready = true;
-    for (uint32_t i = 0; i < model->level_count; ++i)
-        model->ready &= is_complete(&model->levels[i]);
+    }
+    model->ready = whole;
     if (model->ready)
         gtx_model_free_staging(model);
     if (done)
@@ -202,11 +254,8 @@ void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model)
 {
     if (!model)
         return;
-    if (renderer && model->vertices) {
-        renderer->gl.DeleteTextures(UNIT_COUNT, model->textures);
-        renderer->gl.DeleteBuffers(1, &model->vertices);
-        renderer->gl.DeleteBuffers(1, &model->indices);
-    }
+    if (renderer && model->vertices)
+        release(&renderer->gl, model);
     gtx_model_free_staging(model);
     const gtx_allocator hooks = model->allocator;
     gtx_free_array(&hooks, model, 1, sizeof *model);

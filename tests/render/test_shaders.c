@@ -2,8 +2,6 @@
 #define _POSIX_C_SOURCE 200809L
 #include "stage.h"
 
-
-
 static const char *const vertex[] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
                                      "geotex_proxy.vert", NULL};
 static const char *const cast[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
@@ -13,9 +11,11 @@ static const char *const paper[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
                                     "geotex_view.glsl",    "geotex_surface.glsl",
                                     "geotex_paper.glsl",   "geotex_forward.frag", NULL};
 
-static const char *const material[] = {
-    "geotex_dialect.glsl",  "geotex_sheet.glsl", "geotex_view.glsl",    "geotex_surface.glsl",
-    "geotex_material.glsl", "geotex_cast.glsl",  "geotex_forward.frag", NULL};
+static const char *const materials[2][8] = {
+    {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl", "geotex_surface.glsl",
+     "geotex_material.glsl", "geotex_cast.glsl", "geotex_forward.frag", NULL},
+    {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl", "geotex_surface.glsl",
+     "geotex_material.glsl", "geotex_paper.glsl", "geotex_forward.frag", NULL}};
 
 /* Compiles a program's stage and expects no word of complaint. */
 static void compile(const char *version, const char *options, const char *kind,
@@ -62,7 +62,8 @@ static void every_dialect(void **state)
         compile(versions[i][0], versions[i][1], "frag", paper);
         char head[64];
         snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS", versions[i][0]);
-        compile(head, versions[i][1], "frag", material);
+        compile(head, versions[i][1], "frag", materials[0]);
+        compile(head, versions[i][1], "frag", materials[1]);
     }
 }
 

@@ -82,6 +82,12 @@ static void others_are_refused(void **state)
     STAGE_OR_SKIP(state);
     subject shown = subject_open(s, fixture_sphere(2, 48, 8));
     gtx_asset *other = fixture_sphere(2, 56, 8), *deep = fixture_sphere(2, 48, 16);
+    gtx_asset *moved = fixture_sphere(2, 48, 8); /* two rectangles have changed places */
+    gtx_patch *patches = (gtx_patch *)(uintptr_t)gtx_patches(moved);
+    uint16_t rect[4];
+    memcpy(rect, patches[0].rect, sizeof rect);
+    memcpy(patches[0].rect, patches[1].rect, sizeof rect);
+    memcpy(patches[1].rect, rect, sizeof rect);
     gtx_model *waiting = NULL;
     assert_int_equal(gtx_model_prepare(shown.asset, NULL, &waiting, NULL), GTX_OK);
     const struct {
@@ -89,6 +95,7 @@ static void others_are_refused(void **state)
         const gtx_asset *asset;
         uint32_t patch;
     } bad[] = {{shown.model, other, 0}, {shown.model, deep, 0},    {shown.model, shown.asset, 6},
+               {shown.model, moved, 0},
                {shown.model, NULL, 0},  {NULL, shown.asset, 0},    {waiting, shown.asset, 0}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i)
         assert_int_equal(gtx_model_update(s->renderer, bad[i].model, bad[i].asset, bad[i].patch,
@@ -96,6 +103,7 @@ static void others_are_refused(void **state)
     gtx_model_destroy(s->renderer, waiting);
     gtx_close(other);
     gtx_close(deep);
+    gtx_close(moved);
     subject_close(s, &shown);
 }
 
