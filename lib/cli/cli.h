@@ -98,6 +98,7 @@ int cmd_validate(int argc, char **argv);
 int cmd_unpack(int argc, char **argv);
 int cmd_pack(int argc, char **argv);
 int cmd_render(int argc, char **argv);
+int cmd_view(int argc, char **argv);
 int cmd_compare(int argc, char **argv);
 
 #ifdef __cplusplus

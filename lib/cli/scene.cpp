@@ -15,8 +15,6 @@ namespace gtx {
 
 using nlohmann::json;
 
-static const Transform identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-
 static Transform multiply(const Transform &a, const Transform &b)
 {
     Transform r;
@@ -65,7 +63,7 @@ static bool add_placed_assets(Scene &scene, const json &gltf, const std::string 
     std::vector<Visit> stack;
     for (const json &s : gltf.value("scenes", json::array()))
         for (size_t node : s.value("nodes", std::vector<size_t>()))
-            stack.push_back({node, identity});
+            stack.push_back({node, identity_transform});
 
     bool found = false;
     for (size_t visited = 0; !stack.empty(); ++visited) {
@@ -120,7 +118,7 @@ static void add_gltf(Scene &scene, const std::string &path, Task &task)
     }
 }
 
-void add_file(Scene &scene, const std::string &path, Task &task)
+bool is_asset(const std::string &path)
 {
     char start[5] = {0};
     FILE *file = std::fopen(path.c_str(), "rb");
@@ -128,8 +126,13 @@ void add_file(Scene &scene, const std::string &path, Task &task)
         throw Error(GTX_ERROR_READ, std::strerror(errno));
     size_t got = std::fread(start, 1, 4, file);
     std::fclose(file);
-    if (ends_with(path, ".gtx") || (got == 4 && !std::memcmp(start, "\xabGTX", 4)))
-        add_asset(scene, path, identity);
+    return ends_with(path, ".gtx") || (got == 4 && !std::memcmp(start, "\xabGTX", 4));
+}
+
+void add_file(Scene &scene, const std::string &path, Task &task)
+{
+    if (is_asset(path))
+        add_asset(scene, path, identity_transform);
     else if (ends_with(path, ".gltf"))
         add_gltf(scene, path, task);
     else
@@ -162,6 +165,8 @@ void measure_bounds(Scene &scene)
                  m[2] * p[0] + m[6] * p[1] + m[10] * p[2] + m[14]});
         }
     }
+    if (!(low.x <= high.x)) /* nothing at all */
+        low = high = Vec3d(0, 0, 0);
     scene.centre = (low + high) * 0.5;
     scene.radius = std::max(length(high - low) / 2, std::numeric_limits<double>::min());
 }

@@ -19,6 +19,7 @@ using AssetPointer = std::unique_ptr<gtx_asset, AssetCloser>;
 
 /* A column-major affine transform in double. */
 using Transform = std::array<double, 16>;
+constexpr Transform identity_transform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
 struct PlacedAsset {
     AssetPointer asset;
@@ -35,6 +36,9 @@ struct Scene {
 /* Adds a .gtx asset, a polygon model, or a glTF scene whose nodes place assets through
  * `"extras": {"geotex": "FILE.gtx"}` (paths relative to the scene). Throws Error. */
 void add_file(Scene &scene, const std::string &path, Task &task);
+
+/* Whether a file is to be opened as an asset: its name or first bytes. Throws Error: READ. */
+bool is_asset(const std::string &path);
 
 /* Sets centre and radius once everything is in. */
 void measure_bounds(Scene &scene);

@@ -27,37 +27,46 @@ void gtx_matrix_place(float x, float y, float z, float degrees, float scale, flo
     memcpy(out, m, sizeof m);
 }
 
-static void look(const gtx_camera *camera, float view[16])
+void gtx_camera_axes(const gtx_camera *camera, float right[3], float up[3], float back[3])
 {
     const float az = RADIANS(camera->azimuth), el = RADIANS(camera->elevation);
-    const gtx_vec3 back = gtx_v3(sinf(az) * cosf(el), sinf(el), cosf(az) * cosf(el));
+    const gtx_vec3 z = gtx_v3(sinf(az) * cosf(el), sinf(el), cosf(az) * cosf(el));
     /* Taken from the angles, not from a cross product: defined at the poles too. */
-    const gtx_vec3 right = gtx_v3(cosf(az), 0, -sinf(az));
-    const gtx_vec3 up = gtx_v3_cross(back, right);
-    const gtx_vec3 eye = gtx_v3_mad(gtx_v3_load(camera->target), back,
-                                    camera->distance * camera->radius);
-    const gtx_vec3 axis[3] = {right, up, back};
+    const gtx_vec3 x = gtx_v3(cosf(az), 0, -sinf(az));
+    gtx_v3_store(right, x);
+    gtx_v3_store(up, gtx_v3_cross(z, x));
+    gtx_v3_store(back, z);
+}
+
+/* Returns how far in front of the eye the centre of the sphere is. */
+static float look(const gtx_camera *camera, float view[16])
+{
+    float axis[3][3];
+    gtx_camera_axes(camera, axis[0], axis[1], axis[2]);
+    const gtx_vec3 target = gtx_v3_load(camera->target), pan = gtx_v3_load(camera->pan);
+    const gtx_vec3 back = gtx_v3_load(axis[2]);
+    const float along = camera->distance * camera->radius;
+    const gtx_vec3 eye = gtx_v3_mad(gtx_v3_add(target, pan), back, along);
     memset(view, 0, 16 * sizeof *view);
     for (int row = 0; row < 3; ++row) {
-        view[row] = axis[row].x;
-        view[4 + row] = axis[row].y;
-        view[8 + row] = axis[row].z;
-        view[12 + row] = -gtx_v3_dot(axis[row], eye);
+        for (int k = 0; k < 3; ++k)
+            view[4 * k + row] = axis[row][k];
+        view[12 + row] = -gtx_v3_dot(gtx_v3_load(axis[row]), eye);
     }
     view[15] = 1;
+    return along + gtx_v3_dot(pan, back);
 }
 
 void gtx_camera_matrices(const gtx_camera *camera, float aspect, float view[16],
                          float projection[16])
 {
-    const float along = camera->distance * camera->radius, reach = 1.01f * camera->radius;
-    const float far = along + reach;
-    const float near = camera->orthographic ? along - reach
-                                            : fmaxf(along - reach, 0.002f * camera->radius);
+    const float along = look(camera, view), reach = 1.01f * camera->radius;
+    const float least = 0.002f * camera->radius; /* of a near plane that rays meet in the eye */
+    const float near = camera->orthographic ? along - reach : fmaxf(along - reach, least);
+    const float far = camera->orthographic ? along + reach : fmaxf(along + reach, 2 * least);
     /* Depth d at the near plane and at the far plane, in clip units. */
     const float low = camera->zero_to_one ? 0.0f : -1.0f;
     const float dn = camera->reversed_z ? 1.0f : low, df = camera->reversed_z ? low : 1.0f;
-    look(camera, view);
     memset(projection, 0, 16 * sizeof *projection);
     if (camera->orthographic) {
         const float scale = 0.96f / camera->radius;

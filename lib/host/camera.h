@@ -15,7 +15,11 @@ typedef struct gtx_camera {
     int orthographic;
     int reversed_z;           /* near plane at 1, far plane at the other end */
     int zero_to_one;          /* clip z in 0..1 instead of -1..1 */
+    float pan[3];             /* moves the eye and what it looks at, but not the sphere */
 } gtx_camera;
+
+/* Where the eye's x, y and z point to in the world. */
+void gtx_camera_axes(const gtx_camera *camera, float right[3], float up[3], float back[3]);
 
 /* Column-major. The near and far planes enclose the sphere as tightly as they may. `aspect` is
  * width over height. */

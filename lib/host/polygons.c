@@ -48,7 +48,7 @@ gtx_result gtx_polygons_create(const gtx_host_gl *gl, const gtx_polygon_vertex *
                                uint32_t index_count, gtx_polygons *out, gtx_error *error)
 {
     const GLsizei stride = sizeof(gtx_polygon_vertex);
-    gtx_polygons p = {.index_count = (GLsizei)index_count};
+    gtx_polygons p = {.index_count = (GLsizei)index_count, .mode = GL_TRIANGLES};
     gl->GenVertexArrays(1, &p.vertex_array);
     gl->GenBuffers(1, &p.vertices);
     gl->GenBuffers(1, &p.indices);
@@ -132,7 +132,7 @@ void gtx_polygons_draw(const gtx_host_gl *gl, const gtx_polygon_program *program
     gl->Uniform3fv(program->light, 1, light);
     gl->Uniform1f(program->ambient, ambient);
     gl->BindVertexArray(polygons->vertex_array);
-    gl->DrawElements(GL_TRIANGLES, polygons->index_count, GL_UNSIGNED_INT, NULL);
+    gl->DrawElements(polygons->mode, polygons->index_count, GL_UNSIGNED_INT, NULL);
     gl->BindVertexArray(0);
     gl->UseProgram(0);
 }

@@ -13,10 +13,11 @@ typedef struct gtx_polygon_vertex {
     uint8_t color[4];         /* sRGB; alpha 0: unlit */
 } gtx_polygon_vertex;
 
-/* Triangles in buffers on the GPU. */
+/* Triangles in buffers on the GPU; or, after a host set `mode` to GL_LINES, pairs of ends. */
 typedef struct gtx_polygons {
     GLuint vertex_array, vertices, indices;
     GLsizei index_count;
+    GLenum mode;
 } gtx_polygons;
 
 /* Errors: GL (out of memory). */

@@ -11,7 +11,7 @@
 static gtx_result draw_frame(const gtx_show *show, const gtx_host_gl *gl, gtx_error *error)
 {
     float view[16], projection[16];
-    const float aspect = show->height > 0 ? (float)show->width / (float)show->height : 1;
+    const float aspect = (float)show->width / (float)show->height;
     gtx_camera_matrices(&show->camera, aspect, view, projection);
     return show->draw(gl, view, projection, show->user, error);
 }
@@ -28,6 +28,10 @@ gtx_result gtx_show_window(gtx_show *show, gtx_error *error)
     if (!result)
         result = show->load(&gl, gtx_window_load, show->user, error);
     while (!result && gtx_window_next(window, &show->width, &show->height)) {
+        if (gtx_window_pressed(window, GTX_KEY_ESCAPE))
+            gtx_window_close(window);
+        if (show->width == 0 || show->height == 0)
+            continue;
         gtx_window_pointer(window, show->pointer);
         gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
         gl.Viewport(0, 0, show->width, show->height);

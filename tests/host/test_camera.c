@@ -116,9 +116,32 @@ static void placing(void **state)
     assert_true(fabsf(x - 3) < 1e-6f && fabsf(y - 2) < 1e-6f && fabsf(z - 3) < 1e-6f);
 }
 
+/* Panned, the eye moves and looks along the same axis, and the planes still enclose the sphere. */
+static void panning_keeps_the_sphere_between_the_planes(void **state)
+{
+    (void)state;
+    for (int i = -3; i <= 3; ++i) {
+        gtx_camera camera = {.radius = 2, .distance = 3, .azimuth = 30, .elevation = 10};
+        float right[3], up[3], back[3], clip[4], nearest[3], farthest[3];
+        gtx_camera_axes(&camera, right, up, back);
+        for (int k = 0; k < 3; ++k) {
+            camera.pan[k] = 0.7f * (float)i * (right[k] + 0.5f * back[k]);
+            nearest[k] = camera.radius * back[k];
+            farthest[k] = -camera.radius * back[k];
+        }
+        project(&camera, camera.pan, clip); /* what is looked at stays in the middle */
+        assert_true(fabsf(clip[0]) < 1e-5f && fabsf(clip[1]) < 1e-5f);
+        project(&camera, nearest, clip);
+        assert_true(clip[2] > -clip[3] && clip[2] < clip[3]);
+        project(&camera, farthest, clip);
+        assert_true(clip[2] > -clip[3] && clip[2] < clip[3]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(panning_keeps_the_sphere_between_the_planes),
         cmocka_unit_test(where_it_stands),     cmocka_unit_test(up_is_up_and_right_is_right),
         cmocka_unit_test(depth_of_the_sphere), cmocka_unit_test(nearer_is_smaller_unless_reversed),
         cmocka_unit_test(orthographic_fit),    cmocka_unit_test(placing),

@@ -1,0 +1,241 @@
+/* gtx view, driven by its script options on a display of the test's own. */
+#include "cli/command.h"
+
+#include "image/image.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+static pid_t server; /* Xvfb, or 0 */
+
+/* Starts Xvfb on a free display; 0 where there is none to start. */
+static void start_display(void)
+{
+    int ends[2];
+    char number[16] = "", display[20];
+    size_t got = 0;
+    assert_int_equal(pipe(ends), 0);
+    server = fork();
+    if (server == 0) {
+        char fd[16];
+        snprintf(fd, sizeof fd, "%d", ends[1]);
+        if (freopen("/dev/null", "w", stderr))
+            execlp("Xvfb", "Xvfb", "-displayfd", fd, "-screen", "0", "1280x1024x24", (char *)NULL);
+        _exit(127);
+    }
+    close(ends[1]);
+    for (ssize_t n; got + 1 < sizeof number && !strchr(number, '\n'); got += (size_t)n)
+        if ((n = read(ends[0], number + got, sizeof number - 1 - got)) <= 0)
+            break;
+    close(ends[0]);
+    number[strcspn(number, "\n")] = 0;
+    if (number[0]) {
+        snprintf(display, sizeof display, ":%s", number);
+        setenv("DISPLAY", display, 1);
+    } else {
+        waitpid(server, NULL, 0);
+        server = 0;
+    }
+}
+
+static int open_stage(void **state)
+{
+    unsetenv("DISPLAY");
+    unsetenv("WAYLAND_DISPLAY");
+    if (set_up(state) || gtx("view --size 320x240 --frames 1") != 5)
+        return 1;
+    start_display();
+    return 0;
+}
+
+static int close_stage(void **state)
+{
+    if (server > 0) {
+        kill(server, SIGTERM);
+        waitpid(server, NULL, 0);
+    }
+    return tear_down(state);
+}
+
+static gtx_image picture(const char *name)
+{
+    gtx_image image;
+    gtx_error error;
+    if (gtx_image_read(in_folder(name), &image, &error))
+        fail_msg("%s: %s", name, error.message);
+    return image;
+}
+
+/* The picture that the window shows after some keys. */
+static gtx_image view(const char *arguments, const char *keys)
+{
+    expect(gtx("view --camera 30,20,5 %s --size 320x240 --frames 2 --keys '%s' "
+               "--screenshot shown.png", arguments, keys), 0);
+    return picture("shown.png");
+}
+
+/* Pixels below the text (the model), or within it, that differ. */
+static unsigned difference(const gtx_image *a, const gtx_image *b, bool text)
+{
+    unsigned count = 0;
+    assert_int_equal(a->width, b->width);
+    assert_int_equal(a->height, b->height);
+    for (uint32_t y = 0; y < a->height; ++y)
+        for (uint32_t x = 0; x < a->width; ++x) {
+            const size_t at = 4 * ((size_t)y * a->width + x);
+            count += (y < 58) == text && memcmp(a->pixels + at, b->pixels + at, 3) != 0;
+        }
+    return count;
+}
+
+static const uint8_t *pixel(const gtx_image *image, uint32_t x, uint32_t y)
+{
+    return image->pixels + 4 * ((size_t)y * image->width + x);
+}
+
+static void no_display_is_one_line_and_exit_5(void **state)
+{
+    (void)state;
+    char *display = getenv("DISPLAY");
+    char kept[32];
+    snprintf(kept, sizeof kept, "%s", display ? display : "");
+    unsetenv("DISPLAY");
+    expect(gtx("view sphere.gtx"), 5);
+    expect_text("gtx view: error[gl]: no display");
+    assert_int_equal(strchr(output, '\n') - output + 1, (long)strlen(output));
+    expect(gtx("view none.gtx"), 2); /* files are looked at first */
+    expect_text("none.gtx: error[read]");
+    if (kept[0])
+        setenv("DISPLAY", kept, 1);
+}
+
+static void every_mode_shows_something_else(void **state)
+{
+    static const struct {
+        const char *keys;
+        unsigned least; /* pixels of the model that change */
+    } modes[] = {{"p", 3000}, {"n", 3000}, {"b", 300}, {"h", 3000}};
+    (void)state;
+    if (!server)
+        skip();
+    gtx_image plain = view("sphere.gtx", "t"), text = view("sphere.gtx", ".");
+    assert_true(difference(&plain, &text, true) > 300); /* the text is there, */
+    assert_int_equal(difference(&plain, &text, false), 0); /* and nowhere else */
+    assert_true(pixel(&plain, 160, 120)[0] > 60); /* a lit model in the middle, */
+    assert_int_equal(pixel(&plain, 2, 2)[2], 242); /* the background around it */
+    for (size_t i = 0; i < sizeof modes / sizeof *modes; ++i) {
+        gtx_image other = view("sphere.gtx", modes[i].keys);
+        if (difference(&plain, &other, false) < modes[i].least)
+            fail_msg("'%s' changes %u pixels", modes[i].keys, difference(&plain, &other, false));
+        gtx_image_free(&other);
+    }
+    gtx_image twice = view("sphere.gtx", "tppnnbbhh");
+    assert_int_equal(difference(&plain, &twice, false), 0);
+    gtx_image_free(&twice);
+    gtx_image_free(&plain);
+    gtx_image_free(&text);
+}
+
+/* Seen from the front: the nearest normal is +Z, blue; the right one +X, the upper one +Y. */
+static void normals_have_the_colours_of_their_directions(void **state)
+{
+    (void)state;
+    if (!server)
+        skip();
+    gtx_image normals = view("sphere.gtx --camera 0,0,5", "nt");
+    assert_true(pixel(&normals, 160, 120)[2] > 230);
+    assert_true(abs(pixel(&normals, 160, 120)[0] - 128) < 40);
+    assert_true(pixel(&normals, 190, 120)[0] > pixel(&normals, 130, 120)[0] + 60);
+    assert_true(pixel(&normals, 160, 90)[1] > pixel(&normals, 160, 150)[1] + 60);
+    gtx_image mesh = view("sphere.obj --camera 0,0,5", "nt");
+    for (int k = 0; k < 3; ++k)
+        assert_true(abs(pixel(&normals, 170, 110)[k] - pixel(&mesh, 170, 110)[k]) < 12);
+    gtx_image_free(&normals);
+    gtx_image_free(&mesh);
+}
+
+static void the_window_shows_what_render_draws(void **state)
+{
+    (void)state;
+    if (!server)
+        skip();
+    gtx_image shown = view("sphere.gtx sphere.obj --method paper", "t");
+    expect(gtx("render sphere.gtx sphere.obj --method paper --camera 30,20,5 --size 320x240 "
+               "-o drawn.png"), 0);
+    gtx_image drawn = picture("drawn.png");
+    unsigned all = difference(&shown, &drawn, false) + difference(&shown, &drawn, true);
+    assert_true(all < 320 * 240 / 1000);
+    gtx_image_free(&shown);
+    gtx_image_free(&drawn);
+}
+
+static void resized_and_minimised_it_goes_on(void **state)
+{
+    (void)state;
+    if (!server)
+        skip();
+    expect(gtx("view sphere.gtx --size 320x240 --keys '>...' --frames 5 --screenshot big.png"), 0);
+    gtx_image big = picture("big.png");
+    assert_int_equal(big.width, 640);
+    assert_int_equal(big.height, 480);
+    assert_true(pixel(&big, 320, 240)[0] > 60);
+    expect(gtx("view sphere.gtx --size 320x240 --keys '<<<<<<<...' --frames 11"), 0);
+    expect(gtx("view sphere.gtx --size 320x240 --keys '_..p..._..' --frames 4 "
+               "--screenshot back.png"), 0);
+    gtx_image back = picture("back.png");
+    assert_int_equal(back.width, 320);
+    gtx_image_free(&big);
+    gtx_image_free(&back);
+}
+
+static void screenshots_get_free_names(void **state)
+{
+    (void)state;
+    if (!server)
+        skip();
+    gtx_image note = view("sphere.gtx", "ss."), plain = view("sphere.gtx", "t");
+    gtx_image first = picture("gtx-view-1.png"), second = picture("gtx-view-2.png");
+    assert_false(exists("gtx-view-3.png"));
+    assert_int_equal(difference(&first, &plain, true), 0); /* no text in them */
+    assert_int_equal(difference(&first, &second, false), 0);
+    assert_true(difference(&note, &plain, true) > 300);
+    gtx_image_free(&note);
+    gtx_image_free(&plain);
+    gtx_image_free(&first);
+    gtx_image_free(&second);
+}
+
+static void drops_are_opened_cooked_cancelled(void **state)
+{
+    (void)state;
+    if (!server)
+        skip();
+    gtx_image nothing = view("", "t"), opened = view("--drop sphere.gtx", "t");
+    assert_true(difference(&nothing, &opened, false) > 3000);
+    gtx_image cooked = view("--drop sphere.obj", "t");
+    assert_true(difference(&cooked, &opened, false) < 100); /* the default options of cook */
+    write_file("broken.obj", "v 0 0 0\nf 1 2 3\n", 16);
+    expect(gtx("view sphere.gtx --size 320x240 --frames 2 --drop broken.obj"), 3);
+    expect_text("broken.obj: error[");
+    expect(gtx("view sphere.gtx --size 320x240 --frames 2 --drop none.obj"), 2);
+    write_sphere("large.obj", 250);
+    expect(gtx("view sphere.gtx --size 320x240 --frames 3 --drop large.obj --keys '.!'"), 130);
+    expect(gtx("view sphere.gtx --size 320x240 --frames 999 --drop large.obj --keys '.!!'"), 130);
+    gtx_image_free(&nothing);
+    gtx_image_free(&opened);
+    gtx_image_free(&cooked);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(no_display_is_one_line_and_exit_5),
+        cmocka_unit_test(every_mode_shows_something_else),
+        cmocka_unit_test(normals_have_the_colours_of_their_directions),
+        cmocka_unit_test(the_window_shows_what_render_draws),
+        cmocka_unit_test(resized_and_minimised_it_goes_on),
+        cmocka_unit_test(screenshots_get_free_names),
+        cmocka_unit_test(drops_are_opened_cooked_cancelled),
+    };
+    return cmocka_run_group_tests(tests, open_stage, close_stage);
+}
