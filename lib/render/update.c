@@ -95,7 +95,8 @@ gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model, const gtx_
                         "an update needs a renderer, an uploaded model and an asset");
     if (!is_alike(model, edited) || patch >= model->patch_count)
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
-                        "patch %u is not one of an asset with the model's maps and rectangles", patch);
+                        "patch %u is not one of an asset with the model's maps and rectangles",
+                        patch);
     derived d;
     gtx_result result = derive(model, edited, patch, &d, error);
     if (result)
