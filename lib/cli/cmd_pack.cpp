@@ -1,8 +1,7 @@
 /* gtx pack: what gtx unpack wrote, edited or not -> an asset. */
-#include "cli/cli.h"
+#include "cli/guard.hpp"
 #include "cli/unpacked.hpp"
 
-#include <cstdio>
 #include <memory>
 
 static const char *output;
@@ -25,7 +24,7 @@ static bool follows_from_heights(uint32_t rule)
     return rule == 304 || rule == 308 || rule == 311;
 }
 
-static gtx_asset *create(gtx::Unpacked &unpacked, const char *folder)
+static gtx_asset *create(gtx::Unpacked &unpacked)
 {
     gtx_asset *asset = nullptr;
     gtx_error error = {};
@@ -35,7 +34,7 @@ static gtx_asset *create(gtx::Unpacked &unpacked, const char *folder)
         result = gtx_create(&unpacked.desc, &asset, &error);
     }
     if (result)
-        throw gtx::UnpackedError(result, folder, error.message);
+        throw gtx::Error(result, error.message);
     return asset;
 }
 
@@ -51,25 +50,19 @@ int cmd_pack(int argc, char **argv)
         return EXIT_CODE_USAGE;
     }
     std::string about = folder;
-    gtx_error error = {};
-    try {
+    return gtx::guarded(about, [&] {
         gtx::Unpacked unpacked;
-        gtx::read_unpacked(folder, unpacked);
-        std::unique_ptr<gtx_asset, void (*)(gtx_asset *)> asset(create(unpacked, folder), gtx_close);
+        gtx::read_unpacked(folder, unpacked, about);
+        about = folder;
+        std::unique_ptr<gtx_asset, void (*)(gtx_asset *)> asset(create(unpacked), gtx_close);
         for (const std::string &warning : unpacked.warnings)
             report_warning(folder, warning.c_str());
         gtx_encode_desc desc = {};
         desc.zstd_level = zstd_level >= 0 ? zstd_level : unpacked.zstd >= 0 ? unpacked.zstd : 3;
-        if (gtx_save_file(asset.get(), output, &desc, &error))
-            return report_error(output, &error);
-        return EXIT_CODE_OK;
-    } catch (const gtx::UnpackedError &e) {
-        about = e.file;
-        error.result = e.result;
-        std::snprintf(error.message, sizeof error.message, "%s", e.what());
-    } catch (const std::exception &e) {
-        error.result = GTX_ERROR_INTERNAL;
-        std::snprintf(error.message, sizeof error.message, "%s", e.what());
-    }
-    return report_error(about.c_str(), &error);
+        gtx_error error = {};
+        about = output;
+        if (gtx_result result = gtx_save_file(asset.get(), output, &desc, &error))
+            throw gtx::Error(result, error.message);
+        return int(EXIT_CODE_OK);
+    });
 }

@@ -1,5 +1,5 @@
 /* gtx render: assets, meshes and scenes into a PNG, without a window. */
-#include "cli/cli.h"
+#include "cli/guard.hpp"
 #include "cli/still.hpp"
 #include "image/image.h"
 
@@ -52,9 +52,8 @@ int cmd_render(int argc, char **argv)
     still_options.height = size[1];
     still_options.method = methods[method];
 
-    const char *current = files[0];
-    gtx_error error = {};
-    try {
+    std::string current = files[0];
+    return gtx::guarded(current, [&] {
         gtx::Task task(0, nullptr, nullptr);
         gtx::Scene scene;
         for (int i = 0; i < count; ++i) {
@@ -65,12 +64,5 @@ int cmd_render(int argc, char **argv)
             report_warning(files[0], warning.c_str());
         gtx::measure_bounds(scene);
         return write_images(gtx::draw_still(scene, still_options));
-    } catch (const gtx::Error &e) {
-        error.result = e.result;
-        std::snprintf(error.message, sizeof error.message, "%s", e.message.c_str());
-    } catch (const std::exception &e) {
-        error.result = GTX_ERROR_INTERNAL;
-        std::snprintf(error.message, sizeof error.message, "%s", e.what());
-    }
-    return report_error(current, &error);
+    });
 }

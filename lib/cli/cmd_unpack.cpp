@@ -1,5 +1,5 @@
 /* gtx unpack: an asset -> a folder of images and one JSON file. */
-#include "cli/cli.h"
+#include "cli/guard.hpp"
 #include "cli/unpacked.hpp"
 
 #include <cstdlib>
@@ -37,20 +37,22 @@ static int find_zstd(const gtx_asset *asset, const void *data, size_t size)
 }
 
 /* The folder appears whole: it is filled under a temporary name. */
-static void write_folder(const gtx_asset *asset, int zstd, const std::string &folder)
+static void write_folder(const gtx_asset *asset, int zstd, const std::string &folder,
+                         std::string &about)
 {
     std::error_code error;
     if (fs::exists(folder, error) && !(fs::is_directory(folder, error) && fs::is_empty(folder, error)))
-        throw gtx::UnpackedError(GTX_ERROR_WRITE, folder, "is there and not an empty folder");
+        throw gtx::Error(GTX_ERROR_WRITE, "is there and not an empty folder");
     const std::string temporary = (fs::path(folder) / "").parent_path().string() + ".tmp";
+    about = temporary;
     if (!fs::create_directory(temporary, error))
-        throw gtx::UnpackedError(GTX_ERROR_WRITE, temporary,
-                                 error ? "cannot be made" : "is left from before: remove it");
+        throw gtx::Error(GTX_ERROR_WRITE, error ? "cannot be made" : "is left from before: remove it");
     try {
-        gtx::write_unpacked(asset, zstd, temporary);
+        gtx::write_unpacked(asset, zstd, temporary, about);
+        about = folder;
         fs::rename(temporary, folder, error);
         if (error)
-            throw gtx::UnpackedError(GTX_ERROR_WRITE, folder, "cannot be written");
+            throw gtx::Error(GTX_ERROR_WRITE, "cannot be written");
     } catch (...) {
         fs::remove_all(temporary, error);
         throw;
@@ -76,20 +78,12 @@ int cmd_unpack(int argc, char **argv)
         return report_error(files[0], &error);
     std::unique_ptr<gtx_asset, void (*)(gtx_asset *)> guard(asset, gtx_close);
     std::string about = files[1];
-    try {
+    return gtx::guarded(about, [&] {
         const int zstd = find_zstd(asset, data, size);
         if (zstd < 0)
             report_warning(files[0], "packed again it will have other bytes: it holds unknown "
                                      "sections, or another zstd wrote it");
-        write_folder(asset, zstd, files[1]);
-        return EXIT_CODE_OK;
-    } catch (const gtx::UnpackedError &e) {
-        about = e.file;
-        error.result = e.result;
-        std::snprintf(error.message, sizeof error.message, "%s", e.what());
-    } catch (const std::exception &e) {
-        error.result = GTX_ERROR_INTERNAL;
-        std::snprintf(error.message, sizeof error.message, "%s", e.what());
-    }
-    return report_error(about.c_str(), &error);
+        write_folder(asset, zstd, files[1], about);
+        return int(EXIT_CODE_OK);
+    });
 }

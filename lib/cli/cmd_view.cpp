@@ -1,5 +1,5 @@
 /* gtx view: assets, meshes and scenes in a window. */
-#include "cli/cli.h"
+#include "cli/guard.hpp"
 #include "cli/viewer.hpp"
 
 static double camera[3] = {30, 20, 2.8};
@@ -38,8 +38,7 @@ int cmd_view(int argc, char **argv)
         return code;
 
     std::string current = "gtx view";
-    gtx_error error = {};
-    try {
+    return gtx::guarded(current, [&] {
         gtx::Task task(0, nullptr, nullptr);
         gtx::Scene scene;
         std::string name = gtx::file_name(count ? files[0] : "nothing");
@@ -55,12 +54,5 @@ int cmd_view(int argc, char **argv)
         current = "gtx view";
         gtx::Viewer viewer(std::move(scene), name, size, camera, gtx_method(method));
         return viewer.run(script);
-    } catch (const gtx::Error &e) {
-        error.result = e.result;
-        std::snprintf(error.message, sizeof error.message, "%s", e.message.c_str());
-    } catch (const std::exception &e) {
-        error.result = GTX_ERROR_INTERNAL;
-        std::snprintf(error.message, sizeof error.message, "%s", e.what());
-    }
-    return report_error(current.c_str(), &error);
+    });
 }

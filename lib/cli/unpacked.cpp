@@ -4,6 +4,8 @@
 #include "asset/asset.h"
 #include "image/image.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -69,24 +71,28 @@ static void write_image(const std::string &path, const UnpackedMap &map, uint32_
         result = gtx_image_write_png(path.c_str(), width, height, map.channels, texels, &error);
     }
     if (result)
-        throw UnpackedError(result, path, error.message);
+        throw Error(result, error.message);
 }
 
-static void write_images(const gtx_asset *asset, const gtx_info &info, const std::string &folder)
+static void write_images(const gtx_asset *asset, const gtx_info &info, const std::string &folder,
+                         std::string &about)
 {
     for (const UnpackedMap &map : UNPACKED_MAPS) {
         for (uint32_t level = 0; level < (map.has_levels ? info.mip_count : 1); ++level) {
             size_t size;
             const void *data = gtx_map_data(asset, map.map, level, &size);
-            for (uint32_t page = 0; data && page < info.page_count; ++page)
-                write_image(in_folder(folder, unpacked_name(map, page, level)), map,
-                            info.page_width >> level, info.page_height >> level, info.height_bits,
+            for (uint32_t page = 0; data && page < info.page_count; ++page) {
+                about = in_folder(folder, unpacked_name(map, page, level));
+                write_image(about, map, info.page_width >> level, info.page_height >> level,
+                            info.height_bits,
                             static_cast<const uint8_t *>(data) + page * (size / info.page_count));
+            }
         }
     }
 }
 
-void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder)
+void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder,
+                    std::string &about)
 {
     gtx_info info;
     gtx_get_info(asset, &info);
@@ -106,25 +112,20 @@ void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder)
     json["patches"] = Json::array();
     for (uint32_t i = 0; i < info.patch_count; ++i)
         json["patches"].push_back(patch_json(gtx_patches(asset)[i]));
-    write_images(asset, info, folder);
-    const std::string path = in_folder(folder, UNPACKED_JSON);
-    std::ofstream file(path, std::ios::binary);
+    write_images(asset, info, folder, about);
+    about = in_folder(folder, UNPACKED_JSON);
+    std::ofstream file(about, std::ios::binary);
     file << json.dump(1) << '\n';
     file.close();
     if (!file)
-        throw UnpackedError(GTX_ERROR_WRITE, path, "cannot be written");
+        throw Error(GTX_ERROR_WRITE, "cannot be written");
 }
 
 /* ---- reading ---- */
 
 /* Reads values out of the JSON; every fault names its field. */
 struct Reader {
-    const std::string &path;
-
-    [[noreturn]] void fail(const std::string &what) const
-    {
-        throw UnpackedError(GTX_ERROR_INPUT, path, what);
-    }
+    [[noreturn]] void fail(const std::string &what) const { throw Error(GTX_ERROR_INPUT, what); }
     const Json &at(const Json &object, const char *name) const
     {
         auto found = object.find(name);
@@ -194,13 +195,19 @@ static Json parse(const std::string &path)
     const uintmax_t size = std::filesystem::file_size(path, error);
     std::ifstream file(path, std::ios::binary);
     if (error || !file)
-        throw UnpackedError(GTX_ERROR_READ, path, "cannot be read");
+        throw Error(GTX_ERROR_READ, "cannot be read");
     if (size > MOST)
-        throw UnpackedError(GTX_ERROR_LIMIT, path, "is larger than 1 GiB");
+        throw Error(GTX_ERROR_LIMIT, "is larger than 1 GiB");
     Json json = Json::parse(file, nullptr, false);
     if (!json.is_object())
-        throw UnpackedError(GTX_ERROR_INPUT, path, "is not a JSON object");
+        throw Error(GTX_ERROR_INPUT, "is not a JSON object");
     return json;
+}
+
+static std::string describe(uint32_t width, uint32_t height, uint32_t channels, uint32_t depth)
+{
+    return std::to_string(width) + " x " + std::to_string(height) + " of " +
+           std::to_string(channels) + " x " + std::to_string(8 * depth) + " bits";
 }
 
 /* Appends a page of a level as the asset holds it. */
@@ -210,18 +217,14 @@ static void read_image(const std::string &path, const UnpackedMap &map, uint32_t
     gtx_raw_image image;
     gtx_error error;
     if (gtx_result result = gtx_image_read_raw(path.c_str(), &image, &error))
-        throw UnpackedError(result, path, error.message);
+        throw Error(result, error.message);
     std::unique_ptr<void, void (*)(void *)> guard(image.pixels, std::free);
     const uint32_t depth = map.map == GTX_MAP_HEIGHT ? bits / 8 : 1;
     if (image.width != width || image.height != height || image.channels != map.channels ||
         image.depth != depth)
-        throw UnpackedError(GTX_ERROR_INPUT, path,
-                            "is " + std::to_string(image.width) + " x " +
-                                std::to_string(image.height) + " of " +
-                                std::to_string(image.channels) + " x " +
-                                std::to_string(8 * image.depth) + " bits, not " +
-                                std::to_string(width) + " x " + std::to_string(height) + " of " +
-                                std::to_string(map.channels) + " x " + std::to_string(8 * depth));
+        throw Error(GTX_ERROR_INPUT, "is " + describe(image.width, image.height, image.channels,
+                                                      image.depth) +
+                                         ", not " + describe(width, height, map.channels, depth));
     const size_t count = size_t(width) * height;
     const uint8_t *texels = static_cast<const uint8_t *>(image.pixels);
     if (depth == 2) {
@@ -236,7 +239,8 @@ static void read_image(const std::string &path, const UnpackedMap &map, uint32_t
     }
 }
 
-static void read_maps(const std::string &folder, const bool has[6], Unpacked &out)
+static void read_maps(const std::string &folder, const bool has[6], Unpacked &out,
+                      std::string &about)
 {
     const gtx_asset_desc &d = out.desc;
     for (size_t m = 0; m < 6; ++m) {
@@ -245,20 +249,21 @@ static void read_maps(const std::string &folder, const bool has[6], Unpacked &ou
             continue;
         out.levels[m].resize(map.has_levels ? d.mip_count : 1);
         for (uint32_t level = 0; level < out.levels[m].size(); ++level)
-            for (uint32_t page = 0; page < d.page_count; ++page)
-                read_image(in_folder(folder, unpacked_name(map, page, level)), map,
-                           d.page_width >> level, d.page_height >> level, d.height_bits,
-                           out.levels[m][level]);
+            for (uint32_t page = 0; page < d.page_count; ++page) {
+                about = in_folder(folder, unpacked_name(map, page, level));
+                read_image(about, map, d.page_width >> level, d.page_height >> level,
+                           d.height_bits, out.levels[m][level]);
+            }
         for (const auto &level : out.levels[m])
             out.pointers[m].push_back(level.data());
     }
 }
 
-void read_unpacked(const std::string &folder, Unpacked &out)
+void read_unpacked(const std::string &folder, Unpacked &out, std::string &about)
 {
-    const std::string path = in_folder(folder, UNPACKED_JSON);
-    const Json json = parse(path);
-    const Reader reader{path};
+    about = in_folder(folder, UNPACKED_JSON);
+    const Json json = parse(about);
+    const Reader reader;
     if (!(reader.at(json, "format") == FORMAT))
         reader.fail(std::string("format is not \"") + FORMAT + '"');
     gtx_asset_desc &d = out.desc;
@@ -293,7 +298,7 @@ void read_unpacked(const std::string &folder, Unpacked &out)
 
     const bool has[6] = {true, true, true, reader.flag(json, "has_color"),
                          reader.flag(json, "has_material"), reader.flag(json, "has_emission")};
-    read_maps(folder, has, out);
+    read_maps(folder, has, out, about);
     auto levels = [&](size_t m) { return has[m] ? out.pointers[m].data() : nullptr; };
     d.patches = out.patches.data();
     d.patch_count = uint32_t(out.patches.size());

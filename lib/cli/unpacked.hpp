@@ -1,25 +1,14 @@
 /* An asset as a folder of images and one JSON file: what unpack writes and pack reads. */
 #pragma once
 
+#include "mesh/task.hpp"
+
 #include <geotex/geotex.h>
 
-#include <nlohmann/json.hpp>
-
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace gtx {
-
-/* A failed step: the file it was about, and what the command says of it. */
-struct UnpackedError : std::runtime_error {
-    gtx_result result;
-    std::string file;
-    UnpackedError(gtx_result result, std::string file, const std::string &message)
-        : std::runtime_error(message), result(result), file(std::move(file))
-    {
-    }
-};
 
 /* How a map lies in images: one a page and level. */
 struct UnpackedMap {
@@ -41,9 +30,12 @@ constexpr const char *UNPACKED_JSON = "asset.json";
 /* "height-0.png" for page 0, "normal-0-2.png" for level 2 of page 0. */
 std::string unpacked_name(const UnpackedMap &map, uint32_t page, uint32_t level);
 
+/* In all of these `about` names the file at hand when an Error is thrown. */
+
 /* Writes the images and the JSON into an existing folder. `zstd` is the level whose encoding gives
- * the asset's file again, 0 = stored, or -1 when none does. Throws UnpackedError. */
-void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder);
+ * the asset's file again, 0 = stored, or -1 when none does. */
+void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder,
+                    std::string &about);
 
 /* The content of a folder, owned. */
 struct Unpacked {
@@ -56,8 +48,8 @@ struct Unpacked {
     std::vector<std::string> warnings;
 };
 
-/* Fills `out`, which must stay where it is. Throws UnpackedError. */
-void read_unpacked(const std::string &folder, Unpacked &out);
+/* Fills `out`, which must stay where it is. */
+void read_unpacked(const std::string &folder, Unpacked &out, std::string &about);
 
 /* Computes coverage, spheres and bounds anew from the heights. */
 void derive_again(Unpacked &unpacked);

@@ -127,6 +127,28 @@ static inline void stage_draw(stage *s, const gtx_view *view, const gtx_instance
     gtx_framebuffer_read_depth(&s->gl, &s->framebuffer, s->depth);
 }
 
+/* ---- memory hooks ------------------------------------------------------------------------- */
+
+/* Fails the n-th allocation, and counts what is not given back. */
+typedef struct counter {
+    long until_failure, bytes;
+} counter;
+
+static inline void *counted_alloc(size_t size, void *user)
+{
+    counter *c = user;
+    if (c->until_failure-- == 0)
+        return NULL;
+    c->bytes += (long)size;
+    return malloc(size);
+}
+
+static inline void counted_free(void *memory, size_t size, void *user)
+{
+    ((counter *)user)->bytes -= (long)size;
+    free(memory);
+}
+
 /* ---- 4x4 matrices in double, column-major ------------------------------------------------ */
 
 typedef struct matrix {

@@ -166,26 +166,6 @@ static void prepared_elsewhere_and_uploaded_in_slices(void **state)
     subject_close(s, &whole);
 }
 
-/* Fails the n-th allocation, and counts what is not given back. */
-typedef struct counter {
-    long until_failure, bytes;
-} counter;
-
-static void *counted_alloc(size_t size, void *user)
-{
-    counter *c = user;
-    if (c->until_failure-- == 0)
-        return NULL;
-    c->bytes += (long)size;
-    return malloc(size);
-}
-
-static void counted_free(void *memory, size_t size, void *user)
-{
-    ((counter *)user)->bytes -= (long)size;
-    free(memory);
-}
-
 static void every_failed_allocation_is_reported(void **state)
 {
     (void)state;

@@ -105,25 +105,6 @@ static void the_log_names_the_context(void **state)
     assert_non_null(strstr(line, (const char *)s->gl.GetString(GL_RENDERER)));
 }
 
-typedef struct counter {
-    long until_failure, bytes;
-} counter;
-
-static void *counted_alloc(size_t size, void *user)
-{
-    counter *c = user;
-    if (c->until_failure-- == 0)
-        return NULL;
-    c->bytes += (long)size;
-    return malloc(size);
-}
-
-static void counted_free(void *memory, size_t size, void *user)
-{
-    ((counter *)user)->bytes -= (long)size;
-    free(memory);
-}
-
 /* A renderer, a model, a draw and an update, with the n-th allocation failing. */
 static gtx_result use(stage *s, const gtx_asset *asset, const gtx_allocator *hooks)
 {
