@@ -12,15 +12,18 @@ extern "C" {
 #endif
 
 typedef enum gtx_partition {
-    GTX_PARTITION_DEFAULT = 0,
-    GTX_PARTITION_VSA = 1         /* variational shape approximation (paper, section 5.2) */
+    GTX_PARTITION_DEFAULT = 0,    /* cuts */
+    GTX_PARTITION_CUTS = 1,       /* few large charts that fold nowhere, cut straight into patches */
+    GTX_PARTITION_VSA = 2         /* variational shape approximation (paper, section 5.2) */
 } gtx_partition;
 
 typedef struct gtx_cook_desc {
     gtx_partition partition;
-    uint32_t charts;              /* wanted number of charts, up to 2^20; 0 = round(10 T^0.28) for
+    uint32_t charts;              /* wanted number of patches, up to 2^20; 0 = round(10 T^0.28) for
                                      T triangles */
-    uint32_t resolution;          /* texels along the longest patch side, 64..512; 0 = 128 */
+    uint32_t resolution;          /* most texels along a patch side, 64..512; 0 = 128. The density
+                                     goes with it: patches have 1,400 texels of surface at 128 in
+                                     the mean (cuts), or the longest has this side (vsa) */
     uint32_t height_bits;         /* 8 or 16; 0 = 8 */
     uint32_t dilation;            /* texels of dilated normal and colour, up to 128; 0 =
                                      2^(mips - 1) */

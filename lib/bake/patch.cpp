@@ -46,7 +46,7 @@ static gtx_patch make_record(const Job &job, const Chart &chart, const Grid &gri
     unsigned dilation = job.options.dilation;
     record.dilation = uint16_t(dilation ? dilation : 1u << (job.options.mips - 1));
     record.flags = chart.two_sided ? GTX_PATCH_TWO_SIDED : 0;
-    record.source_triangles = uint32_t(chart.triangles.size());
+    record.source_triangles = uint32_t(chart.source_triangles);
     return record;
 }
 
@@ -108,7 +108,10 @@ static void quantise(const Grid &grid, const Crop &crop, const Cover &cover,
             size_t from = size_t(near_y) * grid.w + near_x, to = size_t(j) * crop.w + i;
             maps.trim[to] = uint8_t(std::clamp(128 + 16 * trim[from], 0.f, 255.f) + 0.5f);
             if (x == near_x && y == near_y && support[from]) {
-                double code = std::floor((cover.height[from] - low) * steps + 0.5);
+                /* Beyond a cut codes are rounded up: so the two sheets cross there, and no ray
+                 * finds a way between them. */
+                double rounding = grid.outside(x, y) > 0 ? 1 : 0.5;
+                double code = std::floor((cover.height[from] - low) * steps + rounding);
                 maps.height[to] = uint16_t(1 + std::clamp(code, 0., top));
             }
         }
@@ -125,10 +128,10 @@ struct Sheet {
     double missed;               /* share of the surface that it leaves too far above it */
 };
 
-static Sheet lay_sheet(const Job &job, const Chart &chart, double pitch)
+static Sheet lay_sheet(const Job &job, const Chart &chart, double finer)
 {
     Sheet s;
-    s.flat = flatten(job.mesh, job.neighbours, chart, pitch);
+    s.flat = flatten(job.mesh, job.neighbours, chart, job.pitch, finer);
     Cover core = raster_core(s.flat);
     Outline core_outline = find_outline(s.flat, s.flat.core);
     s.cover = core;
@@ -169,10 +172,10 @@ static PatchMaps encode_sheet(const Job &job, const Chart &chart, const Sheet &s
 /* A chart whose relief is finer than the model's pitch gets a finer one. */
 PatchMaps bake_chart(const Job &job, const Chart &chart)
 {
-    constexpr double ALLOWED = 0.01, FINER = 0.7;
-    Sheet sheet = lay_sheet(job, chart, job.pitch);
+    constexpr double ALLOWED = 0.01, FINER = 1.4;
+    Sheet sheet = lay_sheet(job, chart, 1);
     if (sheet.missed > ALLOWED)
-        sheet = lay_sheet(job, chart, job.pitch * FINER);
+        sheet = lay_sheet(job, chart, FINER);
     return encode_sheet(job, chart, sheet);
 }
 

@@ -48,7 +48,7 @@ static std::vector<const uint8_t *> level_pointers(const std::vector<std::vector
 static Asset make_asset(const Maps &maps, const Options &options, const CookFacts &facts)
 {
     Json meta;
-    write_meta({"vsa", facts.chart_count, options.chart.resolution, maps.height_bits,
+    write_meta({partition_name(options), facts.chart_count, options.chart.resolution, maps.height_bits,
                 maps.mip_count, options.bake.dilation, options.z_up, facts.source_triangles,
                 facts.source_hash, facts.key, facts.warnings},
                meta);
@@ -134,7 +134,7 @@ static Asset find_cooked(const char *path, const gtx_cook_desc &desc, uint64_t k
 static Asset cook_mesh(const Mesh &mesh, const gtx_cook_desc &desc, const Options &options,
                        Task &task, CookFacts &facts)
 {
-    Partition partition = partition_vsa(mesh, options.chart, task);
+    Partition partition = make_partition(mesh, options.chart, task);
     facts.charts = partition.report;
     facts.chart_count = partition.charts.size();
     Asset asset(nullptr, gtx_close);

@@ -13,7 +13,7 @@
 namespace gtx {
 
 /* Raised with every change that makes other assets of the same models and options. */
-constexpr int COOKER_REVISION = 1;
+constexpr int COOKER_REVISION = 2;
 
 constexpr uint32_t MOST_CHARTS = 1u << 20, MOST_THREADS = 1024, MOST_DILATION = 128;
 #ifdef GTX_ZSTD
@@ -56,12 +56,16 @@ Options options_of(const gtx_cook_desc &desc)
 {
     Options options;
     options.chart.charts = desc.charts;
+    if (partition_number(desc) == GTX_PARTITION_VSA)
+        options.chart.method = PartitionMethod::VSA;
     if (desc.resolution)
         options.chart.resolution = desc.resolution;
     if (desc.height_bits)
         options.bake.height_bits = desc.height_bits;
     if (desc.mips)
         options.bake.mips = desc.mips;
+    options.chart.height_bits = options.bake.height_bits;
+    options.chart.grain = 1u << (options.bake.mips - 1);
     options.bake.dilation = desc.dilation ? desc.dilation : 1u << (options.bake.mips - 1);
     options.zstd = desc.zstd_level == 0 ? DEFAULT_ZSTD : std::max(desc.zstd_level, 0);
     options.unit = desc.unit > 0 ? desc.unit : 1;
@@ -69,16 +73,22 @@ Options options_of(const gtx_cook_desc &desc)
     return options;
 }
 
+const char *partition_name(const Options &options)
+{
+    return options.chart.method == PartitionMethod::VSA ? "vsa" : "cuts";
+}
+
 uint64_t content_key(const Options &options, uint64_t source_hash)
 {
     uint32_t unit_bits;
     std::memcpy(&unit_bits, &options.unit, sizeof unit_bits);
-    char text[256];
+    char text[512]; /* more than the longest numbers take */
     int size = snprintf(text, sizeof text,
-                        "geotex %d revision %d source %016" PRIx64 " partition vsa charts %u "
+                        "geotex %d revision %d source %016" PRIx64 " partition %s charts %u "
                         "resolution %u bits %u mips %u dilation %u zstd %d unit %08" PRIx32
                         " up %c",
-                        GTX_VERSION, COOKER_REVISION, source_hash, options.chart.charts,
+                        GTX_VERSION, COOKER_REVISION, source_hash,
+                        partition_name(options), options.chart.charts,
                         options.chart.resolution, options.bake.height_bits, options.bake.mips,
                         options.bake.dilation, options.zstd, unit_bits, options.z_up ? 'z' : 'y');
     return gtx_hash_bytes(text, size_t(size));

@@ -19,6 +19,9 @@ struct Options {
 void check(const gtx_cook_desc &desc);
 Options options_of(const gtx_cook_desc &desc);
 
+/* The partition as an asset names it. */
+const char *partition_name(const Options &options);
+
 /* Of the sources' content, the options that matter and the cooker's revision: equal keys promise
  * equal assets. */
 uint64_t content_key(const Options &options, uint64_t source_hash);

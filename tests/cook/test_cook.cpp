@@ -21,7 +21,7 @@ static void an_asset_comes_out(void **)
     size_t size = 0;
     const char *text = gtx_meta(asset, &size);
     schema::json meta = schema::json::parse(std::string(text, size));
-    assert_string_equal(meta["options"]["partition"].get<std::string>().c_str(), "vsa");
+    assert_string_equal(meta["options"]["partition"].get<std::string>().c_str(), "cuts");
     assert_null(strstr(std::string(text, size).c_str(), folder.c_str()));
     gtx_close(asset);
     fs::remove(output);
