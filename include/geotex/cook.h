@@ -7,7 +7,8 @@
  * asset and the report, and what libgeotex takes on the way: opening, encoding, casting, writing
  * JSON. It is called from the calling thread alone. The containers of C++ that hold models, charts
  * and maps while they are made, and the decoders (OpenMesh, Draco, tinygltf, meshoptimizer, zlib,
- * OpenImageIO) take the process's own heap; where that runs out, the result is MEMORY too. */
+ * OpenImageIO) take the process's own heap; where that runs out, the result is MEMORY too, but an
+ * image that finds none is ignored with a warning. */
 #ifndef GEOTEX_COOK_H
 #define GEOTEX_COOK_H
 
@@ -82,9 +83,10 @@ typedef struct gtx_report {
 GTX_API gtx_result gtx_cook_file(const char *input, const char *output, const gtx_cook_desc *desc,
                                  gtx_report *report, gtx_error *error);
 
-/* The same of the `size` bytes of a model file, into memory: gtx_close frees the asset (with
- * desc->allocator), gtx_encode makes a file of it. `name` is a path that need not exist: its extension says what the bytes are
- * where they do not, and files that the model refers to are looked for beside it. */
+/* The same of the `size` bytes of a model file, into memory: gtx_close frees the asset, which is of
+ * the descriptor's allocator, and gtx_encode makes a file of it. `name` is a path that need not
+ * exist: its extension says what the bytes are where they do not, and files that the model refers to
+ * are looked for beside it. */
 GTX_API gtx_result gtx_cook_memory(const void *data, size_t size, const char *name,
                                    const gtx_cook_desc *desc, gtx_asset **out, gtx_report *report,
                                    gtx_error *error);

@@ -32,7 +32,7 @@ static void append(gtx_json *json, const char *text, size_t size)
     if (json->failed)
         return;
     size_t needed = json->size + size + 1;
-    if (needed > json->capacity && !grow(json, 2 * needed)) {
+    if (needed > json->capacity && !grow(json, 2 * needed + 64)) {
         json->failed = true;
         return;
     }

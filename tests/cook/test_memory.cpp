@@ -13,7 +13,9 @@ struct Meter {
     std::thread::id thread = std::this_thread::get_id();
     gtx_allocator hooks = {
         [](size_t size, void *user) { return static_cast<Meter *>(user)->alloc(size); },
-        [](void *memory, size_t size, void *user) { static_cast<Meter *>(user)->free(memory, size); },
+        [](void *memory, size_t size, void *user) {
+            static_cast<Meter *>(user)->free(memory, size);
+        },
         this};
 
     void *alloc(size_t size)
