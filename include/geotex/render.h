@@ -39,14 +39,16 @@ typedef struct gtx_renderer_desc {
 } gtx_renderer_desc;
 
 /* Needs the context current, as do all functions below but gtx_model_prepare. Leaves program 0,
- * vertex array 0 and array buffer 0.
+ * vertex array 0 and array buffer 0. The renderer is of the descriptor's allocator, and freed by
+ * gtx_renderer_destroy.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL (a function or version is missing), SHADER. */
 GTX_API gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out,
                                        gtx_error *error);
 GTX_API void gtx_renderer_destroy(gtx_renderer *renderer);
 
-/* Derives what the GPU needs, without GL: any thread. Keeps no reference to the asset.
- * `allocator` may be NULL. Errors: ARGUMENT, MEMORY. */
+/* Derives what the GPU needs, without GL: any thread. Keeps no reference to the asset. The model is
+ * of `allocator` (NULL = malloc), and freed by gtx_model_destroy; most of it once it is uploaded.
+ * Errors: ARGUMENT, MEMORY. */
 GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *allocator,
                                      gtx_model **out, gtx_error *error);
 
@@ -59,18 +61,19 @@ GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator
 GTX_API gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t max_bytes,
                                     uint32_t *done, gtx_error *error);
 
-/* Both at once. */
+/* Both at once, with the renderer's allocator. */
 GTX_API gtx_result gtx_model_create(gtx_renderer *renderer, const gtx_asset *asset,
                                     gtx_model **out, gtx_error *error);
 
 /* Takes one patch from an edited asset: its maps at all levels, and the record, bounds and proxy
  * that follow. `edited` has the pages, maps and rectangles of the asset that the model was made of,
  * and is not kept. State is left as by gtx_model_upload. Of several edited patches each is taken by
- * a call; the model is whole again after the last.
+ * a call; the model is whole again after the last. Works in memory of the model's allocator.
  * Errors: ARGUMENT, MEMORY (nothing has changed), GL (out of memory). */
 GTX_API gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model,
                                     const gtx_asset *edited, uint32_t patch, gtx_error *error);
 
+/* `renderer` may be NULL for a model that was never uploaded. A NULL model is fine. */
 GTX_API void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model);
 
 /* Bytes of the model's textures and buffers on the GPU; `color` is colour, material, emission. */
@@ -113,13 +116,14 @@ typedef struct gtx_instance {
 
 /* Draws the instances into the bound framebuffer: colour (in sRGB bytes; location 0) and depth. A
  * model with materials or emission is shaded by metallic and roughness (glTF 2.0, appendix B),
- * another by Lambert. One instanced draw for each run of instances of one model.
+ * another by Lambert. One instanced draw for each run of instances of one model. Room for the most
+ * instances so far is kept, of the renderer's allocator, until gtx_renderer_destroy.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL. */
 GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,
                             const gtx_instance *instances, uint32_t count, gtx_error *error);
 
 /* The text of an installed shader file such as "geotex_cast.glsl", for engines that write their
- * own mains; NULL when there is none of that name. */
+ * own mains; NULL when there is none of that name. Static storage. */
 GTX_API const char *gtx_shader_source(const char *name);
 
 #ifdef __cplusplus

@@ -149,8 +149,8 @@ static bool write_file(const char *path, const void *data, size_t size)
     return fclose(file) == 0 && whole;
 }
 
-static gtx_result save_bytes(const char *path, const gtx_allocator *allocator, const void *data,
-                             size_t size, gtx_error *error)
+gtx_result gtx_save_bytes(const char *path, const gtx_allocator *allocator, const void *data,
+                          size_t size, gtx_error *error)
 {
     size_t length = strlen(path) + sizeof ".tmp";
     char *temporary = gtx_alloc_array(allocator, length, 1);
@@ -179,7 +179,7 @@ gtx_result gtx_save_file(const gtx_asset *asset, const char *path, const gtx_enc
     if (result)
         return result;
     gtx_allocator allocator = gtx_allocator_or_default(desc ? desc->allocator : NULL);
-    result = save_bytes(path, &allocator, data, size, error);
+    result = gtx_save_bytes(path, &allocator, data, size, error);
     gtx_free_array(&allocator, data, size, 1);
     return result;
 }

@@ -4,11 +4,14 @@
 #include "cook/options.hpp"
 #include "cook/report.hpp"
 
+#include "asset/asset.h"
+#include "base/alloc.h"
+
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 
 namespace gtx {
 
@@ -47,7 +50,7 @@ static std::vector<const uint8_t *> level_pointers(const std::vector<std::vector
 
 static Asset make_asset(const Maps &maps, const Options &options, const CookFacts &facts)
 {
-    Json meta;
+    Json meta(options.allocator);
     write_meta({partition_name(options), facts.chart_count, options.chart.resolution, maps.height_bits,
                 maps.mip_count, options.bake.dilation, options.z_up, facts.source_triangles,
                 facts.source_hash, facts.key, facts.warnings},
@@ -79,6 +82,7 @@ static Asset make_asset(const Maps &maps, const Options &options, const CookFact
     std::copy_n(maps.anchor, 3, desc.anchor);
     desc.unit = options.unit;
     desc.source_triangles = facts.source_triangles;
+    desc.allocator = &options.allocator;
 
     gtx_asset *asset = nullptr;
     gtx_error error;
@@ -89,13 +93,30 @@ static Asset make_asset(const Maps &maps, const Options &options, const CookFact
     return Asset(asset, gtx_close);
 }
 
-static void save(const gtx_asset *asset, const char *output, const Options &options)
-{
-    gtx_encode_desc desc = {};
-    desc.zstd_level = options.zstd;
-    gtx_error error;
-    require_ok(gtx_save_file(asset, output, &desc, &error), error);
-}
+/* The bytes of a file. */
+struct Encoded {
+    gtx_allocator allocator;
+    void *data = nullptr;
+    size_t size = 0;
+
+    Encoded(const gtx_asset *asset, const Options &options) : allocator(options.allocator)
+    {
+        gtx_encode_desc desc = {};
+        desc.allocator = &allocator;
+        desc.zstd_level = options.zstd;
+        gtx_error error;
+        require_ok(gtx_encode(asset, &desc, &data, &size, &error), error);
+    }
+    ~Encoded() { gtx_free_array(&allocator, data, size, 1); }
+    Encoded(const Encoded &) = delete;
+    Encoded &operator=(const Encoded &) = delete;
+
+    void save(const char *path) const
+    {
+        gtx_error error;
+        require_ok(gtx_save_bytes(path, &allocator, data, size, &error), error);
+    }
+};
 
 static void refuse_overwriting_source(const std::vector<std::string> &sources, const char *output)
 {
@@ -119,8 +140,16 @@ static void refuse_warnings(const gtx_cook_desc &desc, const Task &task)
 /* The asset at `path` when cooking would only make it again. */
 static Asset find_cooked(const char *path, const gtx_cook_desc &desc, uint64_t key)
 {
+    if (!desc.if_changed || desc.charts_ply)
+        return Asset(nullptr, gtx_close);
     gtx_asset *asset = nullptr;
-    if (!desc.if_changed || desc.charts_ply || gtx_open_file(path, nullptr, &asset, nullptr))
+    gtx_open_desc open = {};
+    open.allocator = desc.allocator;
+    gtx_error error;
+    gtx_result opened = gtx_open_file(path, &open, &asset, &error);
+    if (opened == GTX_ERROR_MEMORY)
+        throw Error(opened, error.message);
+    if (opened)
         return Asset(nullptr, gtx_close);
     Asset owner(asset, gtx_close);
     uint64_t old_key, warnings;
@@ -156,18 +185,6 @@ static Asset cook_mesh(const Mesh &mesh, const gtx_cook_desc &desc, const Option
     return asset;
 }
 
-static uint64_t encoded_size(const gtx_asset *asset, const Options &options)
-{
-    gtx_encode_desc desc = {};
-    desc.zstd_level = options.zstd;
-    gtx_error error;
-    void *data;
-    size_t size;
-    require_ok(gtx_encode(asset, &desc, &data, &size, &error), error);
-    free(data);
-    return size;
-}
-
 /* Everything from the models on; fills `facts`. */
 static Asset cook_models(Models &models, const gtx_cook_desc &desc, const Options &options,
                          Task &task, CookFacts &facts)
@@ -183,8 +200,9 @@ static Asset cook_models(Models &models, const gtx_cook_desc &desc, const Option
     return cook_mesh(mesh, desc, options, task, facts);
 }
 
-static void report_on(const gtx_asset *asset, CookFacts &facts, bool unchanged,
-                      const std::vector<std::string> &sources, const Task &task, gtx_report *report)
+static std::unique_ptr<Report> report_on(const gtx_asset *asset, const Options &options,
+                                         CookFacts &facts, bool unchanged,
+                                         const std::vector<std::string> &sources, const Task &task)
 {
     gtx_info info;
     gtx_get_info(asset, &info);
@@ -194,11 +212,12 @@ static void report_on(const gtx_asset *asset, CookFacts &facts, bool unchanged,
     facts.gpu_bytes = gpu_bytes(info);
     facts.stages = task.stages();
     facts.seconds = task.seconds();
-    Json json;
+    Json json(options.allocator);
     std::string summary = unchanged ? write_unchanged_report(facts, json)
                                     : write_cook_report(facts, task.warnings, json);
-    fill_report(report, json, summary, sources, task.warnings);
+    auto report = std::make_unique<Report>(json, summary, sources, task.warnings);
     report->unchanged = unchanged;
+    return report;
 }
 
 /* The whole line. Without an output the asset is only returned. */
@@ -223,16 +242,23 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
     const bool unchanged = asset != nullptr;
     if (!unchanged)
         asset = cook_models(models, desc, options, task, facts);
-    if (!unchanged && output)
-        save(asset.get(), output, options);
+    std::optional<Encoded> file;
+    if (!unchanged && (output || report))
+        file.emplace(asset.get(), options);
     task.end();
+
+    /* The file comes last: a report that finds no memory must not leave one behind. */
+    std::unique_ptr<Report> made;
     if (report) {
-        facts.bytes = output ? std::filesystem::file_size(output)
-                             : encoded_size(asset.get(), options);
+        facts.bytes = file ? file->size : std::filesystem::file_size(output);
         facts.total_seconds =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        report_on(asset.get(), facts, unchanged, models.sources, task, report);
+        made = report_on(asset.get(), options, facts, unchanged, models.sources, task);
     }
+    if (file && output)
+        file->save(output);
+    if (report)
+        made->hand_over(report);
     return asset;
 }
 

@@ -3,6 +3,7 @@
 
 #include "cook/guard.hpp"
 
+#include "base/alloc.h"
 #include "base/hash.h"
 
 #include <cinttypes>
@@ -70,6 +71,7 @@ Options options_of(const gtx_cook_desc &desc)
     options.zstd = desc.zstd_level == 0 ? DEFAULT_ZSTD : std::max(desc.zstd_level, 0);
     options.unit = desc.unit > 0 ? desc.unit : 1;
     options.z_up = desc.z_up;
+    options.allocator = gtx_allocator_or_default(desc.allocator);
     return options;
 }
 

@@ -13,6 +13,7 @@ struct Options {
     int zstd = 0;
     float unit = 1;
     bool z_up = false;
+    gtx_allocator allocator = {}; /* never empty hooks */
 };
 
 /* Throws Error: ARGUMENT, NOT_ZEROED. */

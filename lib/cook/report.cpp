@@ -3,6 +3,8 @@
 
 #include "mesh/task.hpp"
 
+#include "base/alloc.h"
+
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
@@ -257,36 +259,41 @@ uint64_t peak_rss_bytes()
     return getrusage(RUSAGE_SELF, &usage) ? 0 : uint64_t(usage.ru_maxrss) * 1024;
 }
 
-static char *copy_text(const char *text, size_t size)
+/* Puts the strings behind each other at `at`, their addresses at `strings`. */
+static char *copy_strings(const std::vector<std::string> &from, char **strings, char *at)
 {
-    char *copy = static_cast<char *>(malloc(size + 1));
-    if (!copy)
-        throw std::bad_alloc();
-    memcpy(copy, text, size);
-    copy[size] = 0;
-    return copy;
+    for (const std::string &s : from) {
+        *strings++ = at;
+        memcpy(at, s.c_str(), s.size() + 1);
+        at += s.size() + 1;
+    }
+    return at;
 }
 
-static void copy_strings(const std::vector<std::string> &from, char **&strings, size_t &count)
+/* One block: the addresses of the strings, for they want alignment, the strings, and the JSON. */
+Report::Report(const Json &text, const std::string &line, const std::vector<std::string> &source,
+               const std::vector<std::string> &warning)
+    : gtx_report{}
 {
-    strings = static_cast<char **>(calloc(from.size() + 1, sizeof *strings));
-    if (!strings)
+    allocator = text.allocator;
+    block_size = (source.size() + warning.size()) * sizeof(char *) + text.size + 1;
+    for (const auto *strings : {&source, &warning})
+        for (const std::string &s : *strings)
+            block_size += s.size() + 1;
+    block = gtx_alloc_array(&allocator, block_size, 1);
+    if (!block)
         throw std::bad_alloc();
-    for (const std::string &s : from)
-        strings[count++] = copy_text(s.data(), s.size());
-}
 
-void fill_report(gtx_report *report, const Json &json, const std::string &summary,
-                 const std::vector<std::string> &sources, const std::vector<std::string> &warnings)
-{
-    std::unique_ptr<gtx_report, decltype(&gtx_report_free)> owner(report, gtx_report_free);
-    *report = {};
-    report->json = copy_text(json.text, json.size);
-    report->size = json.size;
-    snprintf(report->summary, sizeof report->summary, "%s", summary.c_str());
-    copy_strings(sources, report->sources, report->source_count);
-    copy_strings(warnings, report->warnings, report->warning_count);
-    owner.release();
+    sources = static_cast<char **>(block);
+    source_count = source.size();
+    warnings = sources + source_count;
+    warning_count = warning.size();
+    char *at = reinterpret_cast<char *>(warnings + warning_count);
+    at = copy_strings(source, sources, at);
+    json = copy_strings(warning, warnings, at);
+    size = text.size;
+    memcpy(json, text.text, size + 1);
+    snprintf(summary, sizeof summary, "%s", line.c_str());
 }
 
 } // namespace gtx
@@ -295,12 +302,7 @@ void gtx_report_free(gtx_report *report)
 {
     if (!report)
         return;
-    for (size_t i = 0; i < report->source_count; ++i)
-        free(report->sources[i]);
-    for (size_t i = 0; i < report->warning_count; ++i)
-        free(report->warnings[i]);
-    free(report->sources);
-    free(report->warnings);
-    free(report->json);
+    if (report->block)
+        gtx_free_array(&report->allocator, report->block, report->block_size, 1);
     *report = {};
 }

@@ -30,7 +30,7 @@ struct CookFacts {
 
 /* A JSON text that frees itself. */
 struct Json : gtx_json {
-    Json() : gtx_json{} {}
+    explicit Json(const gtx_allocator &hooks) : gtx_json{} { allocator = hooks; }
     ~Json() { gtx_json_free(this); }
     Json(const Json &) = delete;
     Json &operator=(const Json &) = delete;
@@ -43,9 +43,21 @@ std::string write_unchanged_report(const CookFacts &facts, Json &json);
 std::string write_compare_report(const CompareReport &report,
                                  const std::vector<std::string> &warnings, Json &json);
 
-/* Moves all of it into a caller's report, in memory that gtx_report_free gives back. */
-void fill_report(gtx_report *report, const Json &json, const std::string &summary,
-                 const std::vector<std::string> &sources, const std::vector<std::string> &warnings);
+/* A report that frees itself until the caller takes it. */
+struct Report : gtx_report {
+    /* Copies all of it, in memory of the text's allocator. */
+    Report(const Json &json, const std::string &summary, const std::vector<std::string> &sources,
+           const std::vector<std::string> &warnings);
+    ~Report() { gtx_report_free(this); }
+    Report(const Report &) = delete;
+    Report &operator=(const Report &) = delete;
+
+    void hand_over(gtx_report *to)
+    {
+        *to = *this;
+        block = nullptr;
+    }
+};
 
 /* The META section: what made the asset, from what. Nothing of when, where or by how many. */
 struct MetaFacts {
