@@ -24,6 +24,7 @@ GTX_VARYING(7) flat out vec4 gtx_color;
 GTX_VARYING(8) flat out int gtx_patch_index;
 GTX_VARYING(9) flat out vec4 gtx_rect;      /* what gtx_sheet_of takes: a fragment that misses */
 GTX_VARYING(10) flat out vec4 gtx_span;     /* need not fetch the record */
+GTX_VARYING(11) flat out int gtx_level;
 
 /* A row over world space, taken to grid space. */
 vec4 gtx_row(vec4 row, gtx_frame frame)
@@ -32,6 +33,27 @@ vec4 gtx_row(vec4 row, gtx_frame frame)
                   vec4(0.0, 0.0, 0.0, row.w);
     return vec4(dot(object.xyz, frame.axis_x), dot(object.xyz, frame.axis_y),
                 dot(object.xyz, frame.axis_z), dot(object.xyz, frame.origin) + object.w);
+}
+
+/* The coarsest level whose distance from level 0 is allowed where the patch's sphere is nearest. */
+int gtx_choose_level(int index)
+{
+    int last = int(gtx_maps.x), level = 0;
+    if (gtx_detail.z >= 0.0)
+        return min(int(gtx_detail.z), last);
+    /* No direction is stretched by more than the largest sum of a row of M^T M, squared. */
+    mat3 rows = mat3(gtx_world_x.xyz, gtx_world_y.xyz, gtx_world_z.xyz);
+    mat3 square = rows * transpose(rows);
+    vec3 sums = abs(square[0]) + abs(square[1]) + abs(square[2]);
+    float stretch = sqrt(max(sums.x, max(sums.y, sums.z)));
+    vec4 sphere = gtx_record(index, 8), centre = vec4(sphere.xyz, 1.0);
+    centre = vec4(dot(gtx_world_x, centre), dot(gtx_world_y, centre), dot(gtx_world_z, centre), 1.0);
+    float nearest = dot(transpose(gtx_clip_from_world)[3], centre) -
+                    gtx_detail.y * stretch * sphere.w;
+    float allowed = max(nearest, 0.0) / (gtx_detail.x * stretch);
+    while (level < last && gtx_record(index, 9 + level / 4)[level % 4] <= allowed)
+        ++level;
+    return level;
 }
 
 void main()
@@ -52,6 +74,7 @@ void main()
     gtx_normal_z = gtx_object_z.xyz;
     gtx_color = gtx_tint;
     gtx_patch_index = index;
+    gtx_level = gtx_choose_level(index);
     gtx_rect = gtx_record(index, 7);
     gtx_span = vec4(gtx_record(index, 3).w, gtx_record(index, 4).w, gtx_record(index, 5).w,
                     gtx_record(index, 6).w);

@@ -159,33 +159,70 @@ static void no_such_patch_or_level(void **state)
 static void cells_hold_their_corners(void **state)
 {
     (void)state;
-    for (uint32_t bits = 8; bits <= 16; bits += 8) {
-        gtx_asset *asset = fixture_sphere(1, 48, bits);
-        uint32_t width = asset->info.page_width, height = asset->info.page_height, solid = 0;
-        size_t size = (size_t)width * height * 4 * bits / 8;
-        uint8_t *cells = malloc(size);
-        memset(cells, 0xaa, size);
-        gtx_derive_cells(asset, 0, cells);
-        for (uint32_t y = 0; y < height; ++y)
-            for (uint32_t x = 0; x < width; ++x) {
-                /* The six maps are stacked, so the last row and column of each ends its cells. */
-                uint32_t expected[4] = {0};
-                const gtx_patch *p = &asset->patches[y / 48];
-                if (x + 1 < 48 && y % 48 + 1 < 48)
-                    for (uint32_t k = 0; k < 4; ++k)
-                        expected[k] = gtx_height_code(asset, p, x + (k & 1), y % 48 + (k >> 1));
-                int exists = expected[0] && expected[1] && expected[2] && expected[3];
-                solid += (uint32_t)exists;
-                for (uint32_t k = 0; k < 4; ++k) {
-                    size_t at = 4 * ((size_t)y * width + x) + k;
-                    uint32_t code = bits == 8 ? cells[at] : ((uint16_t *)(void *)cells)[at];
-                    assert_int_equal(code, exists ? expected[k] : 0);
+    enum { ROW = 50 }; /* texels; wider than any level */
+    for (uint32_t bits = 8; bits <= 16; bits += 8)
+        for (uint32_t level = 0; level < 4; ++level) {
+            gtx_asset *asset = fixture_sphere(1, 48, bits);
+            gtx_grid grid;
+            gtx_error error = {0};
+            uint32_t solid = 0;
+            const size_t size = (size_t)ROW * (48 >> level) * 4 * bits / 8;
+            uint8_t *cells = malloc(size);
+            memset(cells, 0xaa, size);
+            assert_int_equal(gtx_grid_build(asset, 2, level, NULL, &grid, &error), GTX_OK);
+            assert_in_range(grid.nodes_x - 1, 1, 48 >> level);
+            gtx_grid_cells(&grid, bits, ROW, cells);
+            for (uint32_t y = 0; y < 48u >> level; ++y)
+                for (uint32_t x = 0; x < ROW; ++x) {
+                    const int cell = x + 1 < grid.nodes_x && y + 1 < grid.nodes_y;
+                    const int exists = cell && grid.solid[y * (grid.nodes_x - 1) + x];
+                    solid += (uint32_t)exists;
+                    for (uint32_t k = 0; k < 4; ++k) {
+                        const size_t at = 4 * ((size_t)y * ROW + x) + k;
+                        const size_t node = (y + (k >> 1)) * grid.nodes_x + x + (k & 1);
+                        const uint32_t code = bits == 8 ? cells[at]
+                                                        : ((uint16_t *)(void *)cells)[at];
+                        if (cell)
+                            assert_int_equal(code, exists ? grid.code[node] : 0);
+                        else /* left alone */
+                            assert_int_equal(code, bits == 8 ? 0xaa : 0xaaaa);
+                    }
                 }
-            }
-        assert_true(solid > 4000);
-        free(cells);
-        gtx_close(asset);
+            assert_true(solid << (2 * level) > 1000);
+            free(cells);
+            gtx_grid_free(&grid, NULL);
+            gtx_close(asset);
+        }
+}
+
+/* A wave along x of two codes' height and eight texels' length. */
+static void wave(const gtx_patch *patch, double x, double y, const void *user, fixture_texel *out)
+{
+    static const int codes[8] = {100, 101, 102, 101, 100, 99, 98, 99};
+    (void)patch;
+    (void)y;
+    (void)user;
+    *out = (fixture_texel){(codes[(int)x % 8] - 1) / 254.0, -4, {0, 0, 1}, {255, 255, 255, 255}};
+}
+
+static void errors_are_distances_from_level_0(void **state)
+{
+    (void)state;
+    const double corner[3] = {0, 0, 0};
+    fixture_patch patch = {.frame = fixture_frame(corner, 32, 24, 0.001, 1), .sheet = wave};
+    gtx_asset *asset = fixture_build(&patch, 1, 8, 4);
+    /* Every second texel keeps the turns, every fourth and eighth has code 100; the last node stands
+     * on the last texel, where the wave is at 99, so the last cell of level 3 falls by 1 in 7. */
+    const double codes[4] = {0, 0, 2, 2 + 2 / 7.};
+    for (uint32_t level = 0; level < 4; ++level) {
+        gtx_grid grid;
+        gtx_error error = {0};
+        assert_int_equal(gtx_grid_build(asset, 0, level, NULL, &grid, &error), GTX_OK);
+        const double expected = fmax(codes[level] / 254, 0.3 * ((1 << level) - 1) * 0.001);
+        assert_true(fabs(gtx_grid_error(asset, 0, &grid) - expected) < 1e-6);
+        gtx_grid_free(&grid, NULL);
     }
+    gtx_close(asset);
 }
 
 /* Signed volume of a patch's triangles; every edge must be met once in each direction. */
@@ -216,7 +253,7 @@ static void boxes_fit(void **state)
     (void)state;
     gtx_asset *asset = make(&RAGGED, 7, 5);
     gtx_proxies boxes;
-    assert_int_equal(gtx_derive_boxes(asset, 0.5f, NULL, &boxes, NULL), GTX_OK);
+    assert_int_equal(gtx_derive_boxes(asset, 1, 0.5f, NULL, &boxes, NULL), GTX_OK);
     assert_int_equal(boxes.patch_count, 1);
     assert_int_equal(boxes.first_index[1], boxes.index_count);
     float low[3] = {9, 9, 99}, high[3] = {-9, -9, -9};
@@ -235,8 +272,8 @@ static void boxes_fit(void **state)
     }
     assert_float_equal(closed_volume(&boxes, 0), 7.0 * 3.0 * 9.0, 1e-3);
     gtx_proxies_free(&boxes, NULL);
-    assert_int_equal(gtx_derive_boxes(asset, NAN, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
-    assert_int_equal(gtx_derive_boxes(asset, -1, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_derive_boxes(asset, 1, NAN, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_derive_boxes(asset, 1, -1, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
     gtx_close(asset);
 }
 
@@ -250,7 +287,7 @@ static void a_patch_without_cells_has_no_box(void **state)
                                 {fixture_frame(corner, 2, 2, 1, 1), picture_sheet, &sheet}};
     gtx_asset *asset = fixture_build(patches, 3, 8, 1);
     gtx_proxies boxes;
-    assert_int_equal(gtx_derive_boxes(asset, 1, NULL, &boxes, NULL), GTX_OK);
+    assert_int_equal(gtx_derive_boxes(asset, 1, 1, NULL, &boxes, NULL), GTX_OK);
     assert_int_equal(boxes.first_index[1], 36);
     assert_int_equal(boxes.first_index[2], 36);
     assert_int_equal(boxes.first_index[3], 72);
@@ -259,7 +296,7 @@ static void a_patch_without_cells_has_no_box(void **state)
     gtx_close(asset);
 
     asset = fixture_build(&patches[1], 1, 8, 1);
-    assert_int_equal(gtx_derive_boxes(asset, 1, NULL, &boxes, NULL), GTX_OK);
+    assert_int_equal(gtx_derive_boxes(asset, 1, 1, NULL, &boxes, NULL), GTX_OK);
     assert_int_equal(boxes.index_count, 0);
     gtx_proxies_free(&boxes, NULL);
     gtx_close(asset);
@@ -310,7 +347,7 @@ static void memory_may_run_out(void **state)
     gtx_grid_free(&grid, &hooks);
     for (int n = 0;; ++n) {
         m.left = n;
-        gtx_result result = gtx_derive_boxes(asset, 0, &hooks, &boxes, NULL);
+        gtx_result result = gtx_derive_boxes(asset, 1, 0, &hooks, &boxes, NULL);
         if (result == GTX_OK)
             break;
         assert_int_equal(result, GTX_ERROR_MEMORY);
@@ -329,6 +366,7 @@ int main(void)
         cmocka_unit_test(every_level_follows_the_rule),
         cmocka_unit_test(no_such_patch_or_level),
         cmocka_unit_test(cells_hold_their_corners),
+        cmocka_unit_test(errors_are_distances_from_level_0),
         cmocka_unit_test(boxes_fit),
         cmocka_unit_test(a_patch_without_cells_has_no_box),
         cmocka_unit_test(memory_may_run_out),
