@@ -56,14 +56,25 @@ int gtx_choose_level(int index)
     return level;
 }
 
+/* A vertex of the hull, which fits level 0, as far out as the cells of a coarser level need it. */
+vec3 gtx_widen(vec3 position, vec4 rect, vec4 box, int level)
+{
+    vec2 cell = vec2(1 << level);
+    vec2 low = floor(box.xy / cell) * cell - box.xy;
+    vec2 high = min(ceil(box.zw / cell) * cell, rect.zw - 1.0) - box.zw;
+    return position + vec3(mix(low, high, step(0.5 * (box.xy + box.zw), position.xy)), 0.0);
+}
+
 void main()
 {
     int index = int(gtx_patch);
     gtx_frame frame = gtx_frame_of(index);
-    vec4 grid = vec4(gtx_position, 1.0);
+    gtx_level = gtx_choose_level(index);
+    gtx_rect = gtx_record(index, 7);
+    gtx_point = gtx_widen(gtx_position, gtx_rect, gtx_record(index, 11), gtx_level);
+    vec4 grid = vec4(gtx_point, 1.0);
     vec4 eye = vec4(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w, gtx_depth.w);
     mat4 rows = transpose(gtx_clip_from_world);
-    gtx_point = gtx_position;
     gtx_eye = vec3(dot(gtx_record(index, 0), eye), dot(gtx_record(index, 1), eye),
                    dot(gtx_record(index, 2), eye));
     gtx_clip_z = gtx_row(rows[2], frame);
@@ -74,8 +85,6 @@ void main()
     gtx_normal_z = gtx_object_z.xyz;
     gtx_color = gtx_tint;
     gtx_patch_index = index;
-    gtx_level = gtx_choose_level(index);
-    gtx_rect = gtx_record(index, 7);
     gtx_span = vec4(gtx_record(index, 3).w, gtx_record(index, 4).w, gtx_record(index, 5).w,
                     gtx_record(index, 6).w);
 

@@ -8,7 +8,7 @@
 GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* four codes a cell: (0,0) (1,0) (0,1) (1,1);
                                                      level k at mip level k */
 GTX_SAMPLER(1, highp sampler2DArray) gtx_trim;    /* distance to the outline, as stored */
-GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* 11 texels a patch, 128 patches a row */
+GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* 12 texels a patch, 128 patches a row */
 
 /* What casting needs of a patch. */
 struct gtx_sheet {
@@ -36,7 +36,7 @@ struct gtx_hit {
 
 vec4 gtx_record(int patch_index, int texel)
 {
-    return texelFetch(gtx_patches, ivec2((patch_index & 127) * 11 + texel, patch_index >> 7), 0);
+    return texelFetch(gtx_patches, ivec2((patch_index & 127) * 12 + texel, patch_index >> 7), 0);
 }
 
 gtx_frame gtx_frame_of(int patch_index)

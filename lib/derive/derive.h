@@ -29,9 +29,11 @@ void gtx_grid_free(gtx_grid *grid, const gtx_allocator *allocator);
  * mip level k. */
 void gtx_grid_cells(const gtx_grid *grid, uint32_t height_bits, size_t row_texels, void *out);
 
-/* The largest distance between a patch's sheet at this level and at level 0, in object units: of
- * heights along the frame's Z, and of what the wider trim limit lets stick out. */
-double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *grid);
+/* How far, in object units, a patch's sheet at a level is from that at level 0, `finest`: the largest
+ * distance of a texel from the plane that touches the level's sheet over it, or what the wider trim
+ * limit lets stick out, if that is more. */
+double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
+                      const gtx_grid *grid);
 
 /* A proxy: convex or not, a closed triangle hull around a patch's solid cells, front faces outward
  * in the patch's own space. Coordinates: texels in x and y (texel i at x = i), height codes in z
@@ -49,10 +51,11 @@ typedef struct gtx_proxies {
     uint32_t patch_count;
 } gtx_proxies;
 
-/* Boxes around the solid cells of every patch at the levels below `levels` (1..GTX_MAX_MIPS), grown
- * by `grow` texels and codes. A patch without a solid cell has no triangle. */
-gtx_result gtx_derive_boxes(const gtx_asset *asset, uint32_t levels, float grow,
-                            const gtx_allocator *allocator, gtx_proxies *out, gtx_error *error);
+/* Boxes around the solid cells of every patch at level 0, from the lowest code of its texels to the
+ * highest, between which all levels lie; grown by `grow` texels and codes. A patch without a solid
+ * cell has no triangle. */
+gtx_result gtx_derive_boxes(const gtx_asset *asset, float grow, const gtx_allocator *allocator,
+                            gtx_proxies *out, gtx_error *error);
 void gtx_proxies_free(gtx_proxies *proxies, const gtx_allocator *allocator);
 
 #ifdef __cplusplus

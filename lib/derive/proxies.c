@@ -34,26 +34,15 @@ static extent solid_extent(const gtx_asset *asset, const gtx_patch *patch)
                 for (uint32_t k = 0; k < 4; ++k)
                     include(&e, x + (k & 1), y + (k >> 1), corner[k]);
         }
-    return e;
-}
-
-/* Coarse cells end at multiples of `step`, or at the last texel; codes of their nodes are codes of
- * texels, not all of which have a cell, or means of them. */
-static void widen(const gtx_asset *asset, const gtx_patch *patch, uint32_t step, extent *e)
-{
-    for (int a = 0; a < 2; ++a) {
-        const uint32_t last = patch->rect[2 + a] - 1u, up = (e->max[a] + step - 1) / step * step;
-        e->min[a] = e->min[a] / step * step;
-        e->max[a] = up < last ? up : last;
-    }
-    for (uint32_t y = 0; y < patch->rect[3]; ++y)
+    for (uint32_t y = 0; e.max[0] && y < patch->rect[3]; ++y)
         for (uint32_t x = 0; x < patch->rect[2]; ++x) {
             const uint32_t code = gtx_height_code(asset, patch, x, y);
-            if (code && code < e->min[2])
-                e->min[2] = code;
-            if (code > e->max[2])
-                e->max[2] = code;
+            if (code && code < e.min[2])
+                e.min[2] = code;
+            if (code > e.max[2])
+                e.max[2] = code;
         }
+    return e;
 }
 
 /* Appends the box: vertex k takes the far side along axis a where bit a of k is set; triangles are
@@ -75,12 +64,11 @@ static void append_box(gtx_proxies *out, uint32_t patch, const extent *e, float 
     }
 }
 
-gtx_result gtx_derive_boxes(const gtx_asset *asset, uint32_t levels, float grow,
-                            const gtx_allocator *allocator, gtx_proxies *out, gtx_error *error)
+gtx_result gtx_derive_boxes(const gtx_asset *asset, float grow, const gtx_allocator *allocator,
+                            gtx_proxies *out, gtx_error *error)
 {
-    if (!asset || !out || levels < 1 || levels > GTX_MAX_MIPS || !(grow >= 0) || isinf(grow))
-        return gtx_fail(error, GTX_ERROR_ARGUMENT,
-                        "boxes need an asset, levels and a finite growth >= 0");
+    if (!asset || !out || !(grow >= 0) || isinf(grow))
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "boxes need an asset and a finite growth >= 0");
     const gtx_allocator hooks = gtx_allocator_or_default(allocator);
     uint32_t patches = asset->info.patch_count, boxes = 0;
     gtx_proxies proxies = {.patch_count = patches};
@@ -88,8 +76,6 @@ gtx_result gtx_derive_boxes(const gtx_asset *asset, uint32_t levels, float grow,
     proxies.first_index = gtx_alloc_array(&hooks, (size_t)patches + 1, sizeof(uint32_t));
     for (uint32_t i = 0; extents && i < patches; ++i) {
         extents[i] = solid_extent(asset, &asset->patches[i]);
-        if (levels > 1 && extents[i].max[0] > 0)
-            widen(asset, &asset->patches[i], 1u << (levels - 1), &extents[i]);
         boxes += extents[i].max[0] > 0;
     }
     proxies.vertex_count = boxes * BOX_VERTICES;

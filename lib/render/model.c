@@ -46,18 +46,24 @@ gtx_result gtx_model_derive_levels(const gtx_asset *asset, uint32_t patch,
                                    const size_t *row_texels, float errors[GTX_MAX_MIPS],
                                    gtx_error *error)
 {
-    for (uint32_t k = 0; k < asset->info.mip_count; ++k) {
-        gtx_grid grid;
-        const gtx_result result = gtx_grid_build(asset, patch, k, allocator, &grid, error);
+    gtx_grid finest = {0}, grid;
+    gtx_result result = gtx_grid_build(asset, patch, 0, allocator, &finest, error);
+    if (result)
+        return result;
+    gtx_grid_cells(&finest, asset->info.height_bits, row_texels[0], cells[0]);
+    errors[0] = 0;
+    for (uint32_t k = 1; !result && k < asset->info.mip_count; ++k) {
+        result = gtx_grid_build(asset, patch, k, allocator, &grid, error);
         if (result)
-            return result;
+            break;
         gtx_grid_cells(&grid, asset->info.height_bits, row_texels[k], cells[k]);
-        errors[k] = (float)gtx_grid_error(asset, patch, &grid);
-        if (k > 0 && errors[k] < errors[k - 1])
+        errors[k] = (float)gtx_grid_error(asset, patch, &finest, &grid);
+        if (errors[k] < errors[k - 1])
             errors[k] = errors[k - 1];
         gtx_grid_free(&grid, allocator);
     }
-    return GTX_OK;
+    gtx_grid_free(&finest, allocator);
+    return result;
 }
 
 /* Rows of the inverse of grid -> object, whose columns are `axis` and `origin`. */
@@ -127,7 +133,7 @@ uint64_t gtx_model_layout(const gtx_asset *asset)
 gtx_result gtx_model_derive_proxies(const gtx_asset *asset, const gtx_allocator *allocator,
                                     gtx_proxies *out, gtx_error *error)
 {
-    return gtx_derive_boxes(asset, asset->info.mip_count, hull_margin, allocator, out, error);
+    return gtx_derive_boxes(asset, hull_margin, allocator, out, error);
 }
 
 void gtx_model_fill_record(const gtx_asset *asset, const gtx_proxies *proxies, uint32_t patch,
@@ -135,13 +141,20 @@ void gtx_model_fill_record(const gtx_asset *asset, const gtx_proxies *proxies, u
 {
     const uint32_t first = proxies->first_index[patch], last = proxies->first_index[patch + 1];
     const gtx_patch *p = &asset->patches[patch];
-    float low = 0, high = 0;
+    float low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
     for (uint32_t k = first; k < last; ++k) {
-        const float z = proxies->vertices[proxies->indices[k]].z;
-        low = k == first || z < low ? z : low;
-        high = k == first || z > high ? z : high;
+        const gtx_proxy_vertex *v = &proxies->vertices[proxies->indices[k]];
+        const float at[3] = {v->x, v->y, v->z};
+        for (int a = 0; a < 3; ++a) {
+            low[a] = k == first || at[a] < low[a] ? at[a] : low[a];
+            high[a] = k == first || at[a] > high[a] ? at[a] : high[a];
+        }
     }
-    fill_frame(record, p, asset->info.height_bits, low, high);
+    fill_frame(record, p, asset->info.height_bits, low[2], high[2]);
+    for (int a = 0; a < 2; ++a) { /* the solid cells, without the margin */
+        record[11][a] = low[a] + hull_margin;
+        record[11][2 + a] = high[a] - hull_margin;
+    }
     memcpy(record[8], p->sphere, sizeof record[8]);
     for (uint32_t k = 1; k < asset->info.mip_count; ++k)
         record[9 + (k - 1) / 4][(k - 1) % 4] = errors[k];

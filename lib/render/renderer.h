@@ -91,7 +91,7 @@ gtx_result gtx_model_derive_levels(const gtx_asset *asset, uint32_t patch,
                                    gtx_error *error);
 /* The patch records, as geotex_sheet.glsl reads them: rows of GTX_RECORDS_A_ROW times
  * GTX_RECORD_TEXELS texels. */
-enum { GTX_RECORD_TEXELS = 11, GTX_RECORDS_A_ROW = 128 };
+enum { GTX_RECORD_TEXELS = 12, GTX_RECORDS_A_ROW = 128 };
 void gtx_model_fill_record(const gtx_asset *asset, const gtx_proxies *proxies, uint32_t patch,
                            const float errors[GTX_MAX_MIPS], float record[GTX_RECORD_TEXELS][4]);
 static inline uint32_t gtx_model_record_rows(uint32_t patches)

@@ -195,34 +195,47 @@ static void cells_hold_their_corners(void **state)
         }
 }
 
-/* A wave along x of two codes' height and eight texels' length. */
+/* A wave along x of eight texels' length, and a ramp with a step at every other texel. */
 static void wave(const gtx_patch *patch, double x, double y, const void *user, fixture_texel *out)
 {
     static const int codes[8] = {100, 101, 102, 101, 100, 99, 98, 99};
     (void)patch;
     (void)y;
-    (void)user;
-    *out = (fixture_texel){(codes[(int)x % 8] - 1) / 254.0, -4, {0, 0, 1}, {255, 255, 255, 255}};
+    const int column = (int)x, ramp = 40 + 4 * column + 2 * (column % 2);
+    const int code = user ? ramp : codes[column % 8];
+    *out = (fixture_texel){(code - 1) / 254.0, -4, {0, 0, 1}, {255, 255, 255, 255}};
+}
+
+static void check_errors(const void *ramp, double pitch, const double codes[4])
+{
+    const double corner[3] = {0, 0, 0};
+    fixture_patch patch = {.frame = fixture_frame(corner, 32, 24, pitch, 1), .sheet = wave,
+                           .user = ramp};
+    gtx_asset *asset = fixture_build(&patch, 1, 8, 4);
+    gtx_grid finest, grid;
+    assert_int_equal(gtx_grid_build(asset, 0, 0, NULL, &finest, NULL), GTX_OK);
+    for (uint32_t level = 0; level < 4; ++level) {
+        assert_int_equal(gtx_grid_build(asset, 0, level, NULL, &grid, NULL), GTX_OK);
+        const double expected = fmax(codes[level] / 254, 0.3 * ((1 << level) - 1) * pitch);
+        const double error = gtx_grid_error(asset, 0, &finest, &grid);
+        if (fabs(error - expected) > 1e-6)
+            fail_msg("level %u: %g instead of %g", level, error, expected);
+        gtx_grid_free(&grid, NULL);
+    }
+    gtx_grid_free(&finest, NULL);
+    gtx_close(asset);
 }
 
 static void errors_are_distances_from_level_0(void **state)
 {
     (void)state;
-    const double corner[3] = {0, 0, 0};
-    fixture_patch patch = {.frame = fixture_frame(corner, 32, 24, 0.001, 1), .sheet = wave};
-    gtx_asset *asset = fixture_build(&patch, 1, 8, 4);
-    /* Every second texel keeps the turns, every fourth and eighth has code 100; the last node stands
-     * on the last texel, where the wave is at 99, so the last cell of level 3 falls by 1 in 7. */
-    const double codes[4] = {0, 0, 2, 2 + 2 / 7.};
-    for (uint32_t level = 0; level < 4; ++level) {
-        gtx_grid grid;
-        gtx_error error = {0};
-        assert_int_equal(gtx_grid_build(asset, 0, level, NULL, &grid, &error), GTX_OK);
-        const double expected = fmax(codes[level] / 254, 0.3 * ((1 << level) - 1) * 0.001);
-        assert_true(fabs(gtx_grid_error(asset, 0, &grid) - expected) < 1e-6);
-        gtx_grid_free(&grid, NULL);
-    }
-    gtx_close(asset);
+    /* Every second texel keeps the turns; every fourth and eighth has code 100. */
+    const double flat[4] = {0, 0, 2, 2};
+    check_errors(NULL, 0.001, flat);
+    check_errors(NULL, 0.1, flat); /* the trim's limit rules */
+    /* Two codes above a slope of four a texel, as far as it is steep. */
+    const double steep = 2 / sqrt(1 + 16 / (254 * 254 * 0.004 * 0.004));
+    check_errors(flat, 0.004, (const double[4]){0, steep, steep, steep});
 }
 
 /* Signed volume of a patch's triangles; every edge must be met once in each direction. */
@@ -253,7 +266,7 @@ static void boxes_fit(void **state)
     (void)state;
     gtx_asset *asset = make(&RAGGED, 7, 5);
     gtx_proxies boxes;
-    assert_int_equal(gtx_derive_boxes(asset, 1, 0.5f, NULL, &boxes, NULL), GTX_OK);
+    assert_int_equal(gtx_derive_boxes(asset, 0.5f, NULL, &boxes, NULL), GTX_OK);
     assert_int_equal(boxes.patch_count, 1);
     assert_int_equal(boxes.first_index[1], boxes.index_count);
     float low[3] = {9, 9, 99}, high[3] = {-9, -9, -9};
@@ -272,8 +285,8 @@ static void boxes_fit(void **state)
     }
     assert_float_equal(closed_volume(&boxes, 0), 7.0 * 3.0 * 9.0, 1e-3);
     gtx_proxies_free(&boxes, NULL);
-    assert_int_equal(gtx_derive_boxes(asset, 1, NAN, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
-    assert_int_equal(gtx_derive_boxes(asset, 1, -1, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_derive_boxes(asset, NAN, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_derive_boxes(asset, -1, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
     gtx_close(asset);
 }
 
@@ -287,7 +300,7 @@ static void a_patch_without_cells_has_no_box(void **state)
                                 {fixture_frame(corner, 2, 2, 1, 1), picture_sheet, &sheet}};
     gtx_asset *asset = fixture_build(patches, 3, 8, 1);
     gtx_proxies boxes;
-    assert_int_equal(gtx_derive_boxes(asset, 1, 1, NULL, &boxes, NULL), GTX_OK);
+    assert_int_equal(gtx_derive_boxes(asset, 1, NULL, &boxes, NULL), GTX_OK);
     assert_int_equal(boxes.first_index[1], 36);
     assert_int_equal(boxes.first_index[2], 36);
     assert_int_equal(boxes.first_index[3], 72);
@@ -296,7 +309,7 @@ static void a_patch_without_cells_has_no_box(void **state)
     gtx_close(asset);
 
     asset = fixture_build(&patches[1], 1, 8, 1);
-    assert_int_equal(gtx_derive_boxes(asset, 1, 1, NULL, &boxes, NULL), GTX_OK);
+    assert_int_equal(gtx_derive_boxes(asset, 1, NULL, &boxes, NULL), GTX_OK);
     assert_int_equal(boxes.index_count, 0);
     gtx_proxies_free(&boxes, NULL);
     gtx_close(asset);
@@ -347,7 +360,7 @@ static void memory_may_run_out(void **state)
     gtx_grid_free(&grid, &hooks);
     for (int n = 0;; ++n) {
         m.left = n;
-        gtx_result result = gtx_derive_boxes(asset, 1, 0, &hooks, &boxes, NULL);
+        gtx_result result = gtx_derive_boxes(asset, 0, &hooks, &boxes, NULL);
         if (result == GTX_OK)
             break;
         assert_int_equal(result, GTX_ERROR_MEMORY);

@@ -9,14 +9,17 @@ static uint32_t measure(const gtx_asset *asset, uint32_t patch, double errors[GT
     gtx_info info;
     gtx_error error = {0};
     gtx_get_info(asset, &info);
+    gtx_grid finest;
+    must(gtx_grid_build(asset, patch, 0, NULL, &finest, &error), &error);
     for (uint32_t k = 0; k < info.mip_count; ++k) {
         gtx_grid grid;
         must(gtx_grid_build(asset, patch, k, NULL, &grid, &error), &error);
-        errors[k] = gtx_grid_error(asset, patch, &grid);
+        errors[k] = gtx_grid_error(asset, patch, &finest, &grid);
         if (k)
             errors[k] = fmax(errors[k], errors[k - 1]);
         gtx_grid_free(&grid, NULL);
     }
+    gtx_grid_free(&finest, NULL);
     return info.mip_count - 1;
 }
 
