@@ -39,15 +39,16 @@ struct gtx_walk {
     bool above, then_above;  /* which side of the sheet the ray is on there */
     bool known;              /* the cell exists: `above` of the next one is `then_above` of this */
     bool pair;               /* two crossings, without a change of side */
-    vec2 fit;                /* makes the last cell of a row, a texel less wide, as wide as others */
+    vec2 fit;                /* its widths are 1 / fit: at coarse levels a last cell is narrower */
     vec4 height;
     vec3 gap;
 };
 
 /* Looks at the cell; true when the ray crosses the sheet in it, in a way that counts. The side is
  * carried from cell to cell, so that rounding at a border can neither hide a crossing nor find it
- * twice. */
-bool gtx_look(inout gtx_walk w, gtx_sheet sheet, ivec2 last, float fit, vec3 origin, vec3 direction)
+ * twice. `fit` is that of the last cells, in whose column and row `last` is. */
+bool gtx_look(inout gtx_walk w, gtx_sheet sheet, ivec2 last, float fit, vec3 origin,
+              vec3 direction)
 {
     vec3 entry = origin + w.enter * direction;
     float span = w.leave - w.enter;
@@ -69,13 +70,12 @@ bool gtx_look(inout gtx_walk w, gtx_sheet sheet, ivec2 last, float fit, vec3 ori
 bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, out gtx_hit hit)
 {
     /* From the entry on, at about a cell a unit: keeps the numbers small and so exact. */
-    int step = 1 << sheet.level;
-    vec3 texels = vec3(vec2(step), 1.0), way_in_cells = direction / texels;
-    float speed = max(max(abs(way_in_cells.x), abs(way_in_cells.y)),
-                      max(abs(way_in_cells.z), 1e-30));
-    vec3 o = (origin + t0 * direction) / texels, d = way_in_cells / speed;
+    float width = float(1 << sheet.level);
+    vec3 texels = vec3(width, width, 1.0), ray = direction / texels;
+    float speed = max(max(abs(ray.x), abs(ray.y)), max(abs(ray.z), 1e-30));
+    vec3 o = (origin + t0 * direction) / texels, d = ray / speed;
     ivec2 last = (sheet.size - 2) >> sheet.level;
-    float fit = step > 1 ? float(step) / float(step - 1) : 1.0;
+    float fit = sheet.level > 0 ? width / (width - 1.0) : 1.0;
     float end = (t1 - t0) * speed;
 
     ivec2 way = ivec2(d.x < 0.0 ? -1 : 1, d.y < 0.0 ? -1 : 1), ahead = max(way, ivec2(0));

@@ -3,8 +3,7 @@
  * to be measured against it; it may step over thin features.
  *
  * The four codes of a cell come with one fetch and are interpolated by hand, for a filter would
- * blend heights with code 0, which means empty. The sheet is cast at level 0, whatever its
- * level. */
+ * blend heights with code 0, which means empty. Casts sheets of level 0 only. */
 
 /* The paper's z(P): whether the point is on or below the sheet. */
 bool gtx_below(gtx_sheet sheet, vec3 point, out vec4 height, out ivec2 cell)

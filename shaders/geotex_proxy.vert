@@ -24,7 +24,7 @@ GTX_VARYING(7) flat out vec4 gtx_color;
 GTX_VARYING(8) flat out int gtx_patch_index;
 GTX_VARYING(9) flat out vec4 gtx_rect;      /* what gtx_sheet_of takes: a fragment that misses */
 GTX_VARYING(10) flat out vec4 gtx_span;     /* need not fetch the record */
-GTX_VARYING(11) flat out int gtx_level;
+GTX_VARYING(11) flat out int gtx_level;     /* of detail, the same all over the patch */
 
 /* A row over world space, taken to grid space. */
 vec4 gtx_row(vec4 row, gtx_frame frame)
@@ -41,15 +41,15 @@ int gtx_choose_level(int index)
     int last = int(gtx_maps.x), level = 0;
     if (gtx_detail.z >= 0.0)
         return min(int(gtx_detail.z), last);
-    /* No direction is stretched by more than the largest sum of a row of M^T M, squared. */
+    /* The transform M stretches by no more than the root of the largest row sum of M^T M, which is
+     * exact for an even scale. */
     mat3 rows = mat3(gtx_world_x.xyz, gtx_world_y.xyz, gtx_world_z.xyz);
     mat3 square = rows * transpose(rows);
     vec3 sums = abs(square[0]) + abs(square[1]) + abs(square[2]);
     float stretch = sqrt(max(sums.x, max(sums.y, sums.z)));
     vec4 sphere = gtx_record(index, 8), centre = vec4(sphere.xyz, 1.0);
-    centre = vec4(dot(gtx_world_x, centre), dot(gtx_world_y, centre), dot(gtx_world_z, centre), 1.0);
-    float nearest = dot(transpose(gtx_clip_from_world)[3], centre) -
-                    gtx_detail.y * stretch * sphere.w;
+    centre.xyz = vec3(dot(gtx_world_x, centre), dot(gtx_world_y, centre), dot(gtx_world_z, centre));
+    float nearest = (gtx_clip_from_world * centre).w - gtx_detail.y * stretch * sphere.w;
     float allowed = max(nearest, 0.0) / (gtx_detail.x * stretch);
     while (level < last && gtx_record(index, 9 + level / 4)[level % 4] <= allowed)
         ++level;

@@ -45,8 +45,8 @@ gtx_frame gtx_frame_of(int patch_index)
                      gtx_record(patch_index, 5).xyz, gtx_record(patch_index, 6).xyz);
 }
 
-/* From the rectangle (x, y, w, h), (lowest z, highest z, page, two-sided), which hold at all levels,
- * and a level. */
+/* From the rectangle (x, y, w, h) and (lowest z, highest z, page, two-sided), which are those of all
+ * levels. */
 gtx_sheet gtx_sheet_of(vec4 rect, vec4 span, int level)
 {
     return gtx_sheet(ivec2(rect.xy), ivec2(rect.zw), int(span.z), level, span.w > 0.0,

@@ -94,9 +94,10 @@ enum { /* gtx_view.flags */
 /* One camera and one light.
  *
  * Level of detail. Each patch of an instance is cast at the coarsest level of its sheet whose
- * distance from level 0 (a bound, measured by gtx_model_prepare) is at most `max_error` pixels,
- * at the point of the patch's sphere that is nearest to the camera. A coarser level covers all that
- * a finer one does. Pixels are square. GTX_METHOD_PAPER always draws level 0. */
+ * distance from level 0, measured by gtx_model_prepare, is at most `max_error` pixels at the point
+ * of the patch's sphere that is nearest to the camera. Coverage only grows from level to level, so
+ * neighbours of different levels leave no gap. Pixels are square. GTX_METHOD_PAPER always draws
+ * level 0. */
 typedef struct gtx_view {
     float view[16], projection[16];   /* column-major; world -> eye -> clip */
     float light_direction[3];         /* world space, towards the light; zero = headlight */
@@ -105,7 +106,7 @@ typedef struct gtx_view {
     uint32_t flags;
     float depth_range[2];             /* of glDepthRange; both 0 = 0..1 */
     uint32_t viewport_height;         /* pixels; 0 = unknown: level 0, unless `level` says another */
-    float max_error;                  /* pixels; 0 = 0.5, which is not seen */
+    float max_error;                  /* pixels; 0 = 0.5 */
     uint32_t level;                   /* 0 = by the error, n = level n - 1 or the coarsest there is */
     uint32_t reserved[5];
 } gtx_view;

@@ -22,16 +22,16 @@ gtx_result gtx_grid_build(const gtx_asset *asset, uint32_t patch, uint32_t level
                           const gtx_allocator *allocator, gtx_grid *out, gtx_error *error);
 void gtx_grid_free(gtx_grid *grid, const gtx_allocator *allocator);
 
-/* Corner cells of a level, for kernels that fetch a cell at once: texel (i, j) gets the codes of the
- * nodes (i, j), (i+1, j), (i, j+1), (i+1, j+1), as 4 x uint8_t or 4 x uint16_t; all four are zero
+/* Corner cells of a level, for kernels that fetch a cell at once: texel (i, j) gets the codes of
+ * the nodes (i, j), (i+1, j), (i, j+1), (i+1, j+1), as 4 x uint8_t or 4 x uint16_t; all four are zero
  * where the cell does not exist. `out` is the first of rows of `row_texels` texels. Every level has
  * at most rect[2] >> level by rect[3] >> level cells, so level k of a patch fits its rectangle at
  * mip level k. */
 void gtx_grid_cells(const gtx_grid *grid, uint32_t height_bits, size_t row_texels, void *out);
 
-/* How far, in object units, a patch's sheet at a level is from that at level 0, `finest`: the largest
- * distance of a texel from the plane that touches the level's sheet over it, or what the wider trim
- * limit lets stick out, if that is more. */
+/* How far, in object units, a patch's sheet at a level is from that at level 0, `finest`: the
+ * largest distance of a texel from the plane that touches the level's sheet over it, or what the
+ * wider trim limit lets stick out, if that is more. */
 double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
                       const gtx_grid *grid);
 

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -115,7 +116,7 @@ static void set_detail(const gtx_view *view, const double clip[16], float detail
         y += clip[4 * k + 1] * clip[4 * k + 1];
         w += clip[4 * k + 3] * clip[4 * k + 3];
     }
-    detail[0] = (float)(sqrt(y) * view->viewport_height / 2 / max_error);
+    detail[0] = (float)fmin(sqrt(y) * view->viewport_height / 2 / max_error, FLT_MAX);
     detail[1] = (float)sqrt(w);
     const bool by_error = view->viewport_height > 0 && view->level == 0;
     detail[2] = by_error ? -1.0f : view->level > 0 ? (float)(view->level - 1) : 0.0f;

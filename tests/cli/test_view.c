@@ -159,6 +159,11 @@ static void levels_take_turns(void **state)
         assert_int_equal(difference(&shown[i], &drawn, false), 0);
         gtx_image_free(&drawn);
     }
+    expect(gtx("render sphere.gtx --camera 30,20,5 --size 320x240 --max-error 1000 -o drawn.png"),
+           0); /* the coarsest */
+    gtx_image drawn = picture("drawn.png");
+    assert_int_equal(difference(&shown[4], &drawn, false), 0);
+    gtx_image_free(&drawn);
     for (int i = 0; i < 6; ++i)
         gtx_image_free(&shown[i]);
 }
