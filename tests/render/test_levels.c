@@ -149,7 +149,7 @@ static void mixed_levels_leave_no_holes(void **state)
         for (int k = 0; k < 4; ++k)
             pure += memcmp(images[k], images[4], sizeof images[4]) == 0;
         mixed += !pure;
-        for (int p = STAGE_WIDTH; p < STAGE_PIXELS - STAGE_WIDTH; ++p) {
+        for (int p = STAGE_WIDTH + 1; p < STAGE_PIXELS - STAGE_WIDTH - 1; ++p) {
             int inside = 1;
             for (int d = 0; d < 9; ++d)
                 inside = inside && fine[p + (d / 3 - 1) * STAGE_WIDTH + d % 3 - 1] < 1;
