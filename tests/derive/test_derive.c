@@ -290,6 +290,43 @@ static void boxes_fit(void **state)
     gtx_close(asset);
 }
 
+/* Low ground up to x = 20, and high texels without a cell at (24, 8 j). */
+static void lonely(const gtx_patch *patch, double x, double y, const void *user, fixture_texel *out)
+{
+    (void)patch;
+    (void)user;
+    const int peak = fmod(x, 24) == 0 && x > 0 && fmod(y, 8) == 0;
+    *out = (fixture_texel){peak ? 0.9 : x < 20 ? 0.3 : -1, -4, {0, 0, 1}, {255, 255, 255, 255}};
+}
+
+static void boxes_hold_the_nodes_of_all_levels(void **state)
+{
+    (void)state;
+    const double corner[3] = {0, 0, 0};
+    fixture_patch patch = {.frame = fixture_frame(corner, 32, 24, 0.1, 1), .sheet = lonely};
+    gtx_asset *asset = fixture_build(&patch, 1, 8, 4);
+    gtx_proxies boxes;
+    uint32_t highest = 0;
+    assert_int_equal(gtx_derive_boxes(asset, 0, NULL, &boxes, NULL), GTX_OK);
+    const gtx_proxy_vertex *low = &boxes.vertices[0], *high = &boxes.vertices[7];
+    for (uint32_t level = 0; level < 4; ++level) {
+        gtx_grid grid;
+        assert_int_equal(gtx_grid_build(asset, 0, level, NULL, &grid, NULL), GTX_OK);
+        for (uint32_t j = 0; j + 1 < grid.nodes_y; ++j)
+            for (uint32_t i = 0; i + 1 < grid.nodes_x; ++i)
+                for (uint32_t k = 0; k < 4 && grid.solid[j * (grid.nodes_x - 1) + i]; ++k) {
+                    const uint32_t code = grid.code[(j + (k >> 1)) * grid.nodes_x + i + (k & 1)];
+                    assert_in_range(code, (uint32_t)low->z, (uint32_t)high->z);
+                    highest = code > highest ? code : highest;
+                }
+        gtx_grid_free(&grid, NULL);
+    }
+    assert_true(highest > 200); /* there was such a node */
+    assert_true(high->x < 20);  /* while x and y are those of level 0 */
+    gtx_proxies_free(&boxes, NULL);
+    gtx_close(asset);
+}
+
 static void a_patch_without_cells_has_no_box(void **state)
 {
     (void)state;
@@ -381,6 +418,7 @@ int main(void)
         cmocka_unit_test(cells_hold_their_corners),
         cmocka_unit_test(errors_are_distances_from_level_0),
         cmocka_unit_test(boxes_fit),
+        cmocka_unit_test(boxes_hold_the_nodes_of_all_levels),
         cmocka_unit_test(a_patch_without_cells_has_no_box),
         cmocka_unit_test(memory_may_run_out),
     };
