@@ -95,8 +95,8 @@ enum { /* gtx_view.flags */
  *
  * Level of detail. Each patch of an instance is cast at the coarsest level of its sheet whose
  * distance from level 0, measured by gtx_model_prepare, is at most `max_error` pixels at the point
- * of the patch's sphere that is nearest to the camera. Coverage only grows from level to level, so
- * neighbours of different levels leave no gap. Pixels are square. GTX_METHOD_PAPER always draws
+ * of the patch's sphere that is nearest to the camera. Coverage only grows from level to level, and
+ * neighbours of different levels meet within that error. Pixels are square. GTX_METHOD_PAPER always draws
  * level 0. */
 typedef struct gtx_view {
     float view[16], projection[16];   /* column-major; world -> eye -> clip */
