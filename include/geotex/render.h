@@ -94,7 +94,13 @@ enum { /* gtx_view.flags */
     GTX_VIEW_RESTORE_STATE = 4        /* read the touched state first and put it back */
 };
 
-/* One camera and one light. */
+/* One camera and one light.
+ *
+ * Level of detail. Each patch of an instance is cast at the coarsest level of its sheet whose
+ * distance from level 0, measured by gtx_model_prepare, is at most `max_error` pixels at the point
+ * of the patch's sphere that is nearest to the camera. Coverage only grows from level to level, and
+ * neighbours of different levels meet within that error. Pixels are square. GTX_METHOD_PAPER always draws
+ * level 0. */
 typedef struct gtx_view {
     float view[16], projection[16];   /* column-major; world -> eye -> clip */
     float light_direction[3];         /* world space, towards the light; zero = headlight */
@@ -102,7 +108,10 @@ typedef struct gtx_view {
     gtx_method method;
     uint32_t flags;
     float depth_range[2];             /* of glDepthRange; both 0 = 0..1 */
-    uint32_t reserved[8];
+    uint32_t viewport_height;         /* pixels; 0 = unknown: level 0, unless `level` says another */
+    float max_error;                  /* pixels; 0 = 0.5 */
+    uint32_t level;                   /* 0 = by the error, n = level n - 1 or the coarsest there is */
+    uint32_t reserved[5];
 } gtx_view;
 
 /* A placed model. `transform` is affine and takes the asset's coordinates (relative to its anchor)

@@ -238,12 +238,13 @@ bool read_meta(const gtx_asset *asset, uint64_t &key, uint64_t &warnings)
 uint64_t gpu_bytes(const gtx_info &info)
 {
     uint64_t pages = info.page_count, texels = pages * info.page_width * info.page_height;
-    /* Corner cells: the codes of a cell's four texels in one. And a byte of trim. */
-    uint64_t bytes = texels * (4 * info.height_bits / 8 + 1);
+    uint64_t bytes = texels; /* a byte of trim */
+    /* Corner cells, the codes of a cell's four texels in one, and normals. */
     for (uint32_t k = 0; k < info.mip_count; ++k)
-        bytes += 2 * pages * (info.page_width >> k) * (info.page_height >> k);
-    /* Records in rows of 256, and a box of 8 vertices and 12 triangles a patch. */
-    constexpr uint64_t RECORD = 128, ROW = 256, BOX = 8 * 16 + 36 * 4;
+        bytes += (4 * info.height_bits / 8 + 2) * pages * (info.page_width >> k) *
+                 (info.page_height >> k);
+    /* Records in rows of 128, and a box of 8 vertices and 12 triangles a patch. */
+    constexpr uint64_t RECORD = 192, ROW = 128, BOX = 8 * 16 + 36 * 4;
     return bytes + (info.patch_count + ROW - 1) / ROW * ROW * RECORD + info.patch_count * BOX;
 }
 
