@@ -484,51 +484,87 @@ static void expect_near(const struct surface *m, uint64_t x, uint64_t y, byte *e
     }
 }
 
-/* What 4.8 says of a texel of ring `ring`; 0 when it is in none up to this. */
-static int expect_empty(const struct surface *m, const byte *r, uint64_t x, uint64_t y, int ring)
+/* The rectangle of a patch at the level of a section, in rows of all pages. */
+struct rectangle {
+    uint64_t x0, x1, y0, y1;
+};
+
+static struct rectangle rectangle_of(const struct section *s, const byte *r)
 {
-    uint32_t level = m->s->level;
-    uint64_t x0 = u16(r + 68) >> level, x1 = x0 + (u16(r + 72) >> level), width = m->s->width;
-    uint64_t y0 = (u16(r + 70) >> level) + (uint64_t)u32(r + 64) * m->s->height;
-    uint64_t y1 = y0 + (u16(r + 74) >> level), at = y * width + x;
-    int sum[3] = {0, 0, 0}, least = 255, found = 0;
-    for (uint64_t j = y > y0 ? y - 1 : y; j <= y + 1 && j < y1; ++j)
-        for (uint64_t i = x > x0 ? x - 1 : x; i <= x + 1 && i < x1; ++i) {
-            uint64_t from = j * width + i;
+    uint64_t x = u16(r + 68) >> s->level, y = u16(r + 70) >> s->level;
+    y += (uint64_t)u32(r + 64) * s->height;
+    return (struct rectangle){x, x + (u16(r + 72) >> s->level), y, y + (u16(r + 74) >> s->level)};
+}
+
+/* The mean of the neighbours up to a ring; 0 when there are none. */
+static int expect_normal(const struct surface *m, struct rectangle r, uint64_t x, uint64_t y,
+                         uint32_t ring)
+{
+    int sum[3] = {0, 0, 0}, found = 0;
+    for (uint64_t j = y > r.y0 ? y - 1 : y; j <= y + 1 && j < r.y1; ++j)
+        for (uint64_t i = x > r.x0 ? x - 1 : x; i <= x + 1 && i < r.x1; ++i) {
+            uint64_t from = j * m->s->width + i;
             if (!m->ring[from] || m->ring[from] > ring)
                 continue;
             found = 1;
-            if (m->s->texel == 2)
-                add_normal(sum, m->out + 2 * from);
-            else if (m->out[from] + (i != x && j != y ? 23 : 16) < least)
-                least = m->out[from] + (i != x && j != y ? 23 : 16);
+            add_normal(sum, m->out + 2 * from);
         }
-    if (found && m->s->texel == 2)
-        mean_normal(sum, m->out + 2 * at);
-    else if (found)
-        m->out[at] = (byte)least;
+    if (found)
+        mean_normal(sum, m->out + 2 * (y * m->s->width + x));
     return found;
 }
 
-static void expect_rings(const struct surface *m, const byte *r)
+static void expect_rings(const struct surface *m, struct rectangle r, uint32_t rings)
 {
-    uint32_t level = m->s->level, rings = 16;
-    if (m->s->texel == 2)
-        rings = u16(r + 76) >> level;
-    rings = rings < 1 ? 1 : rings > 128 ? 128 : rings;
     int more = 1;
     for (uint32_t ring = 1; more && ring <= rings; ++ring) {
         more = 0;
-        for (uint32_t j = 0; j < u16(r + 74) >> level; ++j)
-            for (uint32_t i = 0; i < u16(r + 72) >> level; ++i) {
-                uint64_t y = (uint64_t)u32(r + 64) * m->s->height + (u16(r + 70) >> level) + j;
-                uint64_t x = (u16(r + 68) >> level) + i;
+        for (uint64_t y = r.y0; y < r.y1; ++y)
+            for (uint64_t x = r.x0; x < r.x1; ++x) {
                 byte *own = &m->ring[y * m->s->width + x];
-                if (*own || !expect_empty(m, r, x, y, (int)ring))
+                if (*own || !expect_normal(m, r, x, y, ring))
                     continue;
                 *own = (byte)(ring + 1);
                 more = 1;
             }
+    }
+}
+
+static void lower(const struct surface *m, uint64_t at, uint64_t from, int steps)
+{
+    if (m->out[from] + steps < m->out[at])
+        m->out[at] = (byte)(m->out[from] + steps);
+}
+
+static void sweep_trim(const struct surface *m, struct rectangle r, int down)
+{
+    uint64_t width = m->s->width, rows = r.y1 - r.y0, columns = r.x1 - r.x0;
+    for (uint64_t n = 0; n < rows; ++n)
+        for (uint64_t k = 0; k < columns; ++k) {
+            uint64_t y = down ? r.y0 + n : r.y1 - 1 - n, x = down ? r.x0 + k : r.x1 - 1 - k;
+            uint64_t at = y * width + x, before = down ? at - width : at + width;
+            if (m->ring[at])
+                continue;
+            if (k)
+                lower(m, at, down ? at - 1 : at + 1, 16);
+            if (n)
+                lower(m, at, before, 16);
+            if (n && x > r.x0)
+                lower(m, at, before - 1, 23);
+            if (n && x + 1 < r.x1)
+                lower(m, at, before + 1, 23);
+        }
+}
+
+static void expect_empty(const struct surface *m, const byte *record)
+{
+    struct rectangle r = rectangle_of(m->s, record);
+    uint32_t rings = u16(record + 76) >> m->s->level;
+    if (m->s->texel == 2) {
+        expect_rings(m, r, rings < 1 ? 1 : rings > 128 ? 128 : rings);
+    } else {
+        sweep_trim(m, r, 1);
+        sweep_trim(m, r, 0);
     }
 }
 
@@ -553,7 +589,7 @@ static void add_surface(const struct surface *m)
         if (!m->ring[at])
             memset(m->out + at * s->texel, s->texel == 2 ? 128 : 255, s->texel);
     for (uint32_t n = 0; n < m->f->patches; ++n)
-        expect_rings(m, find(m->f, "PTCH")->bytes + RECORD * (uint64_t)n);
+        expect_empty(m, find(m->f, "PTCH")->bytes + RECORD * (uint64_t)n);
     for (uint64_t at = 0; at < texels; ++at) {
         for (uint64_t k = 0; k < s->texel && m->ring[at] != 1; ++k)
             m->out[at * s->texel + k] += s->bytes[k * texels + cursor];

@@ -21,7 +21,7 @@ void gtx_normal_add(gtx_normal_sum *sum, const uint8_t code[2]);
 void gtx_normal_mean(const gtx_normal_sum *sum, uint8_t out[2]);
 
 /* A rectangle of an image with `stride` texels a row: its first texel, and a byte a texel that is 1
- * where there is a height and 0 elsewhere. Filling leaves 1 + the distance to the nearest 1 there. */
+ * where there is a height and 0 elsewhere. Normals leave there 1 + the steps to the nearest 1. */
 typedef struct gtx_fill {
     uint8_t *codes, *ring;
     size_t stride;
@@ -31,7 +31,7 @@ typedef struct gtx_fill {
 /* Rings of normals that a patch asks for at a level. */
 uint32_t gtx_fill_rings(const gtx_patch *patch, uint32_t level);
 
-/* Fill the texels whose ring is 0, as far as the rule reaches; others keep what they have. */
+/* Fill the texels whose ring is 0, as far as the rule reaches; they hold the far values before. */
 void gtx_fill_normals(const gtx_fill *area, uint32_t rings);
 void gtx_fill_trim(const gtx_fill *area);
 

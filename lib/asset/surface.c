@@ -86,13 +86,13 @@ static layer layer_of(const gtx_asset *asset, const gtx_section *section, uint8_
     s.shape = gtx_section_shape(&asset->info, section->kind, section->level);
     s.rows = (size_t)s.shape.pages * s.shape.height;
     s.texels = s.rows * s.shape.width;
-    uint32_t bytes = asset->info.height_bits / 8;
+    uint32_t width = asset->info.page_width, wide = asset->info.height_bits == 16;
     memset(ring, 0, s.texels);
-    for (size_t row = 0, at = 0; row < s.rows << s.level; ++row) {
+    for (size_t row = 0; row < s.rows << s.level; ++row) {
         uint8_t *to = ring + (row >> s.level) * s.shape.width;
-        for (uint32_t x = 0; x < asset->info.page_width; ++x, ++at)
-            if (load_code(asset->height, bytes, at))
-                to[x >> s.level] = 1;
+        const uint8_t *code = asset->height + (row * width << wide);
+        for (uint32_t x = 0; x < width; ++x)
+            to[x >> s.level] |= (code[(size_t)x << wide] | code[((size_t)x << wide) + wide]) != 0;
     }
     for (size_t at = 0; at < s.texels; ++at)
         s.occupied += ring[at];
@@ -125,6 +125,16 @@ static void predict_mean(const layer *s, size_t row, uint32_t x, uint8_t out[2])
     gtx_normal_mean(&sum, out);
 }
 
+static int least(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+static int most(int a, int b)
+{
+    return a < b ? b : a;
+}
+
 /* The median of left, above and the plane through three neighbours (LOCO-I, Weinberger et al.
  * 2000), of those that have a height. */
 static void predict_near(const layer *s, const uint8_t *image, size_t row, uint32_t x, uint8_t *out)
@@ -133,15 +143,15 @@ static void predict_near(const layer *s, const uint8_t *image, size_t row, uint3
     bool up = row % s->shape.height != 0;
     bool a = x && s->ring[at - 1] == 1, b = up && s->ring[at - width] == 1;
     bool c = x && up && s->ring[at - width - 1] == 1;
-    for (size_t k = 0; k < texel; ++k) {
-        const uint8_t *here = image + at * texel + k;
-        int p = a ? *(here - texel) : 0, q = b ? *(here - width * texel) : 0;
-        int r = c ? *(here - (width + 1) * texel) : 0;
+    const uint8_t *here = image + at * texel;
+    for (size_t k = 0; k < texel; ++k, ++here) {
         if (a && b && c) {
-            int low = p < q ? p : q, high = p < q ? q : p;
-            out[k] = (uint8_t)(r >= high ? low : r <= low ? high : p + q - r);
+            int p = *(here - texel), q = *(here - width * texel);
+            int plane = p + q - *(here - (width + 1) * texel);
+            out[k] = (uint8_t)most(least(p, q), least(most(p, q), plane));
         } else {
-            out[k] = (uint8_t)(a ? p : b ? q : c ? r : 128);
+            size_t back = a ? 1 : b ? width : c ? width + 1 : 0;
+            out[k] = back ? *(here - back * texel) : 128;
         }
     }
 }
