@@ -176,8 +176,8 @@ static void test_checksum(void **state)
     free(minimal.data);
 }
 
-/* Every filter that fits on texels of 1 to 4 bytes, also those that the encoder does not choose. The hash
- * tells whether the image came back. */
+/* Every filter that fits, on texels of 1 to 4 bytes, also those that the encoder does not choose.
+ * The hash tells whether the image came back. */
 static void test_filters(void **state)
 {
     (void)state;
