@@ -41,8 +41,31 @@ bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t 
     return begin(codec, allocator, ZSTD_estimateCCtxSize(level), filtered_size);
 }
 
-const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
-                               const uint8_t *bytes, uint8_t *out)
+static void undo(const gtx_section *section, const gtx_asset *asset, uint8_t *coded, uint8_t *out)
+{
+    gtx_map_shape image = gtx_section_shape(&asset->info, section->kind, section->level);
+    if (section->filter == GTX_FILTER_SURFACE)
+        gtx_surface_undo(asset, section, coded, out, coded + section->size);
+    else if (section->filter == GTX_FILTER_HEIGHTS)
+        gtx_heights_undo(image, coded, out);
+    else if (section->filter)
+        gtx_filter_undo(image, section->filter, coded, out);
+}
+
+static void apply(const gtx_section *section, const gtx_asset *asset, const uint8_t *data,
+                  uint8_t *coded)
+{
+    gtx_map_shape image = gtx_section_shape(&asset->info, section->kind, section->level);
+    if (section->filter == GTX_FILTER_SURFACE)
+        gtx_surface_apply(asset, section, data, coded, coded + section->size);
+    else if (section->filter == GTX_FILTER_HEIGHTS)
+        gtx_heights_apply(image, data, coded);
+    else
+        gtx_filter_apply(image, section->filter, data, coded);
+}
+
+const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section,
+                               const gtx_asset *asset, const uint8_t *bytes, uint8_t *out)
 {
     ZSTD_frameHeader frame;
     size_t stored = (size_t)section->stored_size, size = (size_t)section->size;
@@ -56,20 +79,19 @@ const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx
         return "the frame does not fill the section";
 
     ZSTD_DCtx *context = ZSTD_initStaticDCtx(codec->context, codec->context_size);
-    uint8_t *coded = section->filter & GTX_FILTER_PLANES ? codec->filtered : out;
+    uint8_t *coded = section->filter > GTX_FILTER_PAETH ? codec->filtered : out;
     if (!context || ZSTD_decompressDCtx(context, coded, size, bytes, stored) != size)
         return "the frame does not decode";
-    if (section->filter)
-        gtx_filter_undo(image, section->filter, coded, out);
+    undo(section, asset, coded, out);
     return NULL;
 }
 
-size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
+size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, const gtx_asset *asset,
                           int level, const uint8_t *data, uint8_t *out)
 {
     size_t size = (size_t)section->size;
     if (section->filter) {
-        gtx_filter_apply(image, section->filter, data, codec->filtered);
+        apply(section, asset, data, codec->filtered);
         data = codec->filtered;
     }
     ZSTD_CCtx *context = ZSTD_initStaticCCtx(codec->context, codec->context_size);
@@ -105,17 +127,17 @@ bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t 
     return gtx_decoder_begin(codec, allocator, filtered_size);
 }
 
-const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
-                               const uint8_t *bytes, uint8_t *out)
+const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section,
+                               const gtx_asset *asset, const uint8_t *bytes, uint8_t *out)
 {
-    (void)codec, (void)section, (void)image, (void)bytes, (void)out;
+    (void)codec, (void)section, (void)asset, (void)bytes, (void)out;
     return "this build has no zstd";
 }
 
-size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
+size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, const gtx_asset *asset,
                           int level, const uint8_t *data, uint8_t *out)
 {
-    (void)codec, (void)section, (void)image, (void)level, (void)data, (void)out;
+    (void)codec, (void)section, (void)asset, (void)level, (void)data, (void)out;
     return 0;
 }
 

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 #define GTX_FORMAT_MAJOR 0u
-#define GTX_FORMAT_MINOR 2u
+#define GTX_FORMAT_MINOR 3u
 #define GTX_HEADER_SIZE 192u
 #define GTX_ENTRY_SIZE 64u
 #define GTX_META_LIMIT (1u << 20)
@@ -28,7 +28,14 @@ typedef enum gtx_section_kind {
 } gtx_section_kind;
 
 enum { GTX_SCHEME_STORED = 0, GTX_SCHEME_ZSTD = 2 };
-enum { GTX_FILTER_NONE = 0, GTX_FILTER_PAETH = 1, GTX_FILTER_PLANES = 2 }; /* bits: 3 is both */
+enum {
+    GTX_FILTER_NONE = 0,
+    GTX_FILTER_PAETH = 1,
+    GTX_FILTER_PLANES = 2,
+    GTX_FILTER_PLANES_PAETH = 3,
+    GTX_FILTER_SURFACE = 4,
+    GTX_FILTER_HEIGHTS = 5
+};
 
 /* A table entry. */
 typedef struct gtx_section {

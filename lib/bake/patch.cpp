@@ -1,6 +1,8 @@
 /* One chart -> the maps of its patch (paper, section 5.3). */
 #include "bake/patch_maps.hpp"
 
+#include "asset/fill.h"
+
 #include <algorithm>
 
 namespace gtx::baking {
@@ -93,6 +95,23 @@ static void measure_patch(unsigned height_bits, PatchMaps &maps)
     r.sphere[3] = float(radius * (1 + 1e-6));
 }
 
+/* Trim where there is no height, by the rule that readers know. */
+static void fill_trim(PatchMaps &maps)
+{
+    uint32_t w = maps.record.rect[2], h = maps.record.rect[3];
+    std::vector<uint8_t> ring(maps.height.size());
+    for (size_t i = 0; i < ring.size(); ++i) {
+        ring[i] = maps.height[i] != 0;
+        if (!ring[i])
+            maps.trim[i] = GTX_FAR_TRIM;
+    }
+    gtx_fill area = {maps.trim.data(), ring.data(), w, w, h};
+    gtx_fill_trim(&area);
+}
+
+/* A texel and a half inside: deeper, no cell reaches the limit, so that no depth need be told. */
+constexpr float DEEP_TRIM = 128 - 24;
+
 static void quantise(const Grid &grid, const Crop &crop, const Cover &cover,
                      const std::vector<uint8_t> &support, const std::vector<float> &trim,
                      double low, unsigned height_bits, PatchMaps &maps)
@@ -106,7 +125,7 @@ static void quantise(const Grid &grid, const Crop &crop, const Cover &cover,
             int x = crop.x + i, y = crop.y + j;
             int near_x = std::clamp(x, 0, grid.w - 1), near_y = std::clamp(y, 0, grid.h - 1);
             size_t from = size_t(near_y) * grid.w + near_x, to = size_t(j) * crop.w + i;
-            maps.trim[to] = uint8_t(std::clamp(128 + 16 * trim[from], 0.f, 255.f) + 0.5f);
+            maps.trim[to] = uint8_t(std::clamp(128 + 16 * trim[from], DEEP_TRIM, 255.f) + 0.5f);
             if (x == near_x && y == near_y && support[from]) {
                 /* Beyond a cut codes are rounded up: so the two sheets cross there, and no ray
                  * finds a way between them. */
@@ -116,6 +135,7 @@ static void quantise(const Grid &grid, const Crop &crop, const Cover &cover,
             }
         }
     }
+    fill_trim(maps);
 }
 
 /* The height sheet of a chart over its working grid. */

@@ -118,7 +118,7 @@ static void break_frame(bytes *file)
 
 static const bad bads[] = {
     {100, "identifier", "minimal", 1, 1, 'X', NOTHING, 0, NULL},
-    {101, "version", "minimal", 14, 2, 3, HEADER, 12, NULL},
+    {101, "version", "minimal", 14, 2, 2, HEADER, 12, NULL},
     {102, "header-size", "minimal", 16, 4, 256, HEADER, 16, NULL},
     {103, "must-flags", "minimal", 20, 4, 1, HEADER, 20, NULL},
     {104, "section-count", "minimal", 28, 4, 3, HEADER, 28, NULL},
@@ -200,6 +200,10 @@ static const bad variants[] = {
     {207, "section-size", "zstd-material", EMIT + 32, 8, 383, HEADER, EMIT + 32, NULL},
     {208, "section-scheme", "minimal", TRIM + 24, 8, 63, HEADER, TRIM + 40, NULL},
     {209, "section-filter", "zstd", HGHT + 44, 4, 4, HEADER, HGHT + 44, NULL},
+    {209, "section-filter", "zstd", HGHT + 44, 4, 6, HEADER, HGHT + 44, NULL},
+    {209, "section-filter", "zstd", TRIM + 44, 4, 5, HEADER, TRIM + 44, NULL},
+    {209, "section-filter", "minimal", NRML + 44, 4, 4, HEADER, NRML + 44, NULL},
+    {209, "section-filter", "zstd-material", EMIT + 44, 4, 4, HEADER, EMIT + 44, NULL},
     {209, "section-filter", "zstd", ENTRY + 44, 4, 1, HEADER, ENTRY + 44, NULL},
     {210, "section-hash", "emission", LARGE + 48, 8, 1, CONTENT, LARGE + 48, NULL},
     {214, "section-missing", "material", 0, 0, 0, CONTENT, ENTRY, rename_large_level},
