@@ -51,7 +51,8 @@ static std::vector<const uint8_t *> level_pointers(const std::vector<std::vector
 static Asset make_asset(const Maps &maps, const Options &options, const CookFacts &facts)
 {
     Json meta(options.allocator);
-    write_meta({partition_name(options), facts.chart_count, options.chart.resolution, maps.height_bits,
+    write_meta({partition_name(options), facts.chart_count, options.chart.resolution,
+                maps.height_bits,
                 maps.mip_count, options.bake.dilation, options.z_up, facts.source_triangles,
                 facts.source_hash, facts.key, facts.warnings},
                meta);
