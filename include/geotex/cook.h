@@ -39,6 +39,11 @@ typedef struct gtx_cook_desc {
     uint32_t threads;             /* up to 1024; 0 = all processors */
     float unit;                   /* metres per object unit; 0 = 1 */
     uint32_t z_up;                /* 1: the models' +Z becomes +Y, and their +Y -Z */
+    double error;                 /* greatest RMS distance from the source to the asset, as a fraction
+                                     of the source's bounding diagonal; 0 = none asked for. The
+                                     density, and bits and charts where they are 0, become what
+                                     takes the fewest bytes. LIMIT where no density reaches it. For
+                                     the partition cuts. */
     uint32_t measure;             /* 1: measure the error (report, `error`) */
     gtx_progress_fn progress;     /* may be NULL */
     void *progress_user;
@@ -57,7 +62,7 @@ typedef struct gtx_cook_desc {
  *   - the content of every file behind the models: themselves, and the buffers, material libraries
  *     and images that they refer to, one that is missing included; not their paths or times;
  *   - the options that change what comes out: partition, charts, resolution, height_bits, dilation,
- *     mips, zstd_level, unit and z_up; not threads, measure, progress, strict or allocator;
+ *     mips, zstd_level, unit, error and z_up; not threads, measure, progress, strict or allocator;
  *   - geotex's version and the revision of its cooker,
  * but not the library that decodes images. Where `strict` is asked for, an asset that was cooked
  * with warnings is cooked again; where `charts_ply` is, or importing read what could not be

@@ -111,9 +111,10 @@ LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Fr
                           double pitch)
 {
     FrameInverse inverse(frame);
+    const Vec3d fixed = inverse(surface.mesh.positions[0]);
     auto corner = [&](uint32_t local, int k) {
         Vec3d p = inverse(surface.mesh.position(region.triangles[local], k));
-        return Vec3d(p.x / pitch, p.y / pitch, p.z);
+        return Vec3d((p.x - fixed.x) / pitch, (p.y - fixed.y) / pitch, p.z);
     };
     double from[2] = {INFINITY, INFINITY}, to[2] = {-INFINITY, -INFINITY};
     for (uint32_t local = 0; local < region.size(); ++local)

@@ -23,8 +23,8 @@ struct LayerRule {
 };
 LayerRule layer_rule(const Surface &surface, double pitch);
 
-/* Depths of triangles, both facings, at the texel centres of a frame. Texel (0, 0) of the frame has
- * its corner at the origin; the grid begins at texel `first`. */
+/* Depths of triangles, both facings, at the texel centres of a frame. Texels count from a fixed
+ * point of the mesh, so that a frame that grows keeps them; the grid begins at texel `first`. */
 struct LayerGrid {
     struct Sample {
         float low = INFINITY, high = -INFINITY;

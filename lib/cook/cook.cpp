@@ -3,6 +3,7 @@
 #include "cook/models.hpp"
 #include "cook/options.hpp"
 #include "cook/report.hpp"
+#include "cook/target.hpp"
 
 #include "asset/asset.h"
 #include "base/alloc.h"
@@ -32,13 +33,11 @@ static Task make_task(const gtx_cook_desc &desc)
     for (const Stage &stage : STAGES) {
         names.push_back(stage.name);
         weights.push_back(stage.weight);
-        if (!std::strcmp(stage.name, "measure") && desc.measure)
+        if (!std::strcmp(stage.name, "measure") && (desc.measure || desc.error > 0))
             weights.back() = MEASURE_WEIGHT;
     }
     return Task(desc.threads, desc.progress, desc.progress_user, names, weights);
 }
-
-using Asset = std::unique_ptr<gtx_asset, decltype(&gtx_close)>;
 
 static std::vector<const uint8_t *> level_pointers(const std::vector<std::vector<uint8_t>> &levels)
 {
@@ -160,30 +159,54 @@ static Asset find_cooked(const char *path, const gtx_cook_desc &desc, uint64_t k
     return owner;
 }
 
+/* Partition, maps and asset of the clean mesh, measured where an error is wanted. */
+static Attempt attempt(const Mesh &mesh, const gtx_cook_desc &desc, const Options &options,
+                       Task &task, const CookFacts &facts)
+{
+    const size_t before = task.warnings.size();
+    Attempt out;
+    out.partition = make_partition(mesh, options.chart, task);
+    {
+        Maps maps = bake(mesh, out.partition, options.bake, task);
+        refuse_warnings(desc, task);
+        CookFacts of_asset = facts;
+        of_asset.chart_count = out.partition.charts.size();
+        of_asset.warnings = task.warnings.size();
+        out.bake = maps.report;
+        out.asset = make_asset(maps, options, of_asset);
+    }
+    if (desc.measure || desc.error > 0) {
+        task.begin("measure");
+        out.error = surface_error(out.asset.get(), mesh, out.partition.junk, task);
+    }
+    if (desc.error > 0)
+        out.bytes = Encoded(out.asset.get(), options).size;
+    out.warnings.assign(task.warnings.begin() + ptrdiff_t(before), task.warnings.end());
+    task.warnings.resize(before);
+    return out;
+}
+
 /* Everything from the clean mesh on; fills the rest of `facts`. */
 static Asset cook_mesh(const Mesh &mesh, const gtx_cook_desc &desc, const Options &options,
                        Task &task, CookFacts &facts)
 {
-    Partition partition = make_partition(mesh, options.chart, task);
-    facts.charts = partition.report;
-    facts.chart_count = partition.charts.size();
-    Asset asset(nullptr, gtx_close);
-    {
-        Maps maps = bake(mesh, partition, options.bake, task);
-        refuse_warnings(desc, task);
-        facts.bake = maps.report;
-        facts.warnings = task.warnings.size();
-        asset = make_asset(maps, options, facts);
-    }
-    if (desc.measure) {
-        task.begin("measure");
-        facts.error = surface_error(asset.get(), mesh, partition.junk, task);
-        facts.measured = true;
-    }
+    auto cook_with = [&](const Options &o) { return attempt(mesh, desc, o, task, facts); };
+    Attempt made = desc.error > 0
+                       ? cook_to_error(options, desc.error, {!desc.charts, options.free_bits},
+                                       cook_with)
+                       : cook_with(options);
+    task.warnings.insert(task.warnings.end(), made.warnings.begin(), made.warnings.end());
+    facts.charts = made.partition.report;
+    facts.chart_count = made.partition.charts.size();
+    facts.bake = made.bake;
+    facts.warnings = task.warnings.size();
+    facts.requested = desc.error;
+    facts.measured = desc.measure || desc.error > 0;
+    facts.error = made.error;
     task.begin("write");
     if (desc.charts_ply)
-        write_charts_ply(desc.charts_ply, mesh, partition);
-    return asset;
+        write_charts_ply(desc.charts_ply, mesh, made.partition);
+    return std::move(made.asset);
 }
 
 /* Everything from the models on; fills `facts`. */

@@ -46,6 +46,9 @@ void check(const gtx_cook_desc &desc)
     require_argument(desc.zstd_level >= -1 && desc.zstd_level <= 19, "zstd_level is -1 to 19");
     require_argument(desc.threads <= MOST_THREADS, "threads is at most 1024");
     require_argument(desc.unit >= 0 && std::isfinite(desc.unit), "unit is a positive number");
+    require_argument(desc.error >= 0 && desc.error < 1, "error is a fraction of the diagonal");
+    require_argument(desc.error == 0 || partition_number(desc) != GTX_PARTITION_VSA,
+                     "an error can be asked for with the partition cuts only");
     require_argument(desc.measure <= 1, "measure is 0 or 1");
     require_argument(desc.z_up <= 1, "z_up is 0 or 1");
     require_argument(desc.strict <= 1, "strict is 0 or 1");
@@ -71,6 +74,8 @@ Options options_of(const gtx_cook_desc &desc)
     options.zstd = desc.zstd_level == 0 ? DEFAULT_ZSTD : std::max(desc.zstd_level, 0);
     options.unit = desc.unit > 0 ? desc.unit : 1;
     options.z_up = desc.z_up;
+    options.error = desc.error;
+    options.free_bits = desc.error > 0 && !desc.height_bits;
     options.allocator = gtx_allocator_or_default(desc.allocator);
     return options;
 }
@@ -84,15 +89,18 @@ uint64_t content_key(const Options &options, uint64_t source_hash)
 {
     uint32_t unit_bits;
     std::memcpy(&unit_bits, &options.unit, sizeof unit_bits);
+    uint64_t error_bits;
+    std::memcpy(&error_bits, &options.error, sizeof error_bits);
     char text[512]; /* more than the longest numbers take */
     int size = snprintf(text, sizeof text,
                         "geotex %d revision %d source %016" PRIx64 " partition %s charts %u "
                         "resolution %u bits %u mips %u dilation %u zstd %d unit %08" PRIx32
-                        " up %c",
-                        GTX_VERSION, COOKER_REVISION, source_hash,
-                        partition_name(options), options.chart.charts,
-                        options.chart.resolution, options.bake.height_bits, options.bake.mips,
-                        options.bake.dilation, options.zstd, unit_bits, options.z_up ? 'z' : 'y');
+                        " error %016" PRIx64 " up %c",
+                        GTX_VERSION, COOKER_REVISION, source_hash, partition_name(options),
+                        options.chart.charts, options.chart.resolution,
+                        options.free_bits ? 0 : options.bake.height_bits, options.bake.mips,
+                        options.bake.dilation, options.zstd, unit_bits, error_bits,
+                        options.z_up ? 'z' : 'y');
     return gtx_hash_bytes(text, size_t(size));
 }
 

@@ -12,6 +12,8 @@ struct Options {
     BakeOptions bake;
     int zstd = 0;
     float unit = 1;
+    double error = 0;            /* asked for; 0: none */
+    bool free_bits = false;      /* the error decides on the bits of a height */
     bool z_up = false;
     gtx_allocator allocator = {}; /* never empty hooks */
 };

@@ -51,7 +51,10 @@ static void write_charts(Json &json, const CookFacts &facts)
 static void write_error(Json &json, const CookFacts &facts)
 {
     gtx_json_begin_object(&json, "error");
-    gtx_json_null(&json, "requested");
+    if (facts.requested > 0)
+        gtx_json_number(&json, "requested", facts.requested);
+    else
+        gtx_json_null(&json, "requested");
     if (facts.measured) {
         write_deviation(json, "forward", facts.error.forward);
         write_deviation(json, "reverse", facts.error.reverse);

@@ -19,6 +19,7 @@ struct CookFacts {
     ChartReport charts;
     uint64_t chart_count = 0;
     BakeReport bake;
+    double requested = 0;        /* 0: none */
     bool measured = false;
     SurfaceError error;
     uint64_t source_hash = 0, key = 0, warnings = 0;
