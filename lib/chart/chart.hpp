@@ -75,7 +75,7 @@ Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &ta
 
 /* The surface that a chart's maps may show: its core and the source surface reached across its
  * border within `reach` object units (measured in the frame's (x, y) plane from the core's
- * outline) through edges, that faces the frame (n.z >= 0.1). Returns triangles beyond the core,
+ * outline) through edges, that faces the frame (n.z >= 0.2). Returns triangles beyond the core,
  * ascending. `neighbours` is triangle_neighbours(mesh). Const and reentrant. */
 std::vector<uint32_t> overlap_triangles(const Mesh &mesh,
                                         const std::vector<std::array<uint32_t, 3>> &neighbours,

@@ -45,12 +45,12 @@ struct Moments {
     }
 };
 
-constexpr Box NOTHING = {{INT32_MAX, INT32_MAX}, {INT32_MIN, INT32_MIN}};
+constexpr Rect NOTHING = {{INT32_MAX, INT32_MAX}, {INT32_MIN, INT32_MIN}};
 
 /* A column or row of a node, or several. */
 struct Slice {
     Moments moments;
-    Box box = NOTHING;
+    Rect box = NOTHING;
 
     void add(const Slice &s)
     {
@@ -106,11 +106,11 @@ struct Cut {
 };
 
 struct Half {
-    Box region;
+    Rect region;
     Cuts cuts;
 };
 
-Half half_of(const Box &region, const Cuts &cuts, int axis, int at, int side)
+Half half_of(const Rect &region, const Cuts &cuts, int axis, int at, int side)
 {
     Half half = {region, cuts};
     (side ? half.region.low : half.region.high)[axis] = at;
@@ -139,13 +139,13 @@ public:
 
 private:
     void grow_node(size_t n, std::vector<CutNode> &nodes) const;
-    void slice(const Box &box, std::vector<Slice> slices[2]) const;
-    std::vector<Cut> list_cuts(const Box &region, const Box &within, const Cuts &cuts,
+    void slice(const Rect &box, std::vector<Slice> slices[2]) const;
+    std::vector<Cut> list_cuts(const Rect &region, const Rect &within, const Cuts &cuts,
                                Slice &all) const;
     Cut look_ahead(const CutNode &node, const std::vector<Cut> &sorted) const;
-    double texels(const Box &box, const Cuts &cuts, double &patches) const;
-    double cost(const Slice &s, const Box &region, const Cuts &cuts, double &patches) const;
-    double value(const Slice &s, const Box &region, const Cuts &cuts) const
+    double texels(const Rect &box, const Cuts &cuts, double &patches) const;
+    double cost(const Slice &s, const Rect &region, const Cuts &cuts, double &patches) const;
+    double value(const Slice &s, const Rect &region, const Cuts &cuts) const
     {
         double patches, texels = cost(s, region, cuts, patches);
         return texels + patches * price_;
@@ -158,7 +158,7 @@ private:
 };
 
 /* Texels of a box, in as many patches as the longest side allows. */
-double Grower::texels(const Box &box, const Cuts &cuts, double &patches) const
+double Grower::texels(const Rect &box, const Cuts &cuts, double &patches) const
 {
     auto rounded = [&](unsigned n) { return (n + plan_.grain - 1) / plan_.grain * plan_.grain; };
     double total = 1;
@@ -177,7 +177,7 @@ double Grower::texels(const Box &box, const Cuts &cuts, double &patches) const
 }
 
 /* What a part of the chart costs in a region: texels, more where heights resolve less than they. */
-double Grower::cost(const Slice &s, const Box &region, const Cuts &cuts, double &patches) const
+double Grower::cost(const Slice &s, const Rect &region, const Cuts &cuts, double &patches) const
 {
     patches = 0;
     if (s.box.empty())
@@ -193,7 +193,7 @@ double Grower::cost(const Slice &s, const Box &region, const Cuts &cuts, double 
 }
 
 /* The columns and rows of a box. */
-void Grower::slice(const Box &box, std::vector<Slice> slices[2]) const
+void Grower::slice(const Rect &box, std::vector<Slice> slices[2]) const
 {
     std::vector<Line> columns(size_t(box.side(0)));
     for (int j = box.low[1]; j < box.high[1]; ++j) {
@@ -219,10 +219,10 @@ void Grower::slice(const Box &box, std::vector<Slice> slices[2]) const
 
 /* Every cut of a region, valued by its two sides as they are. Nothing lies outside `within`; `all`
  * gets what lies inside. */
-std::vector<Cut> Grower::list_cuts(const Box &region, const Box &within, const Cuts &cuts,
+std::vector<Cut> Grower::list_cuts(const Rect &region, const Rect &within, const Cuts &cuts,
                                    Slice &all) const
 {
-    Box box;
+    Rect box;
     for (int k = 0; k < 2; ++k) {
         box.low[k] = std::max(region.low[k], within.low[k]);
         box.high[k] = std::max(box.low[k], std::min(region.high[k], within.high[k]));
@@ -291,7 +291,7 @@ void Grower::grow_node(size_t n, std::vector<CutNode> &nodes) const
     std::sort(cuts.begin(), cuts.end());
     double patches;
     /* What passes between all texel centres is left to the overlap of others. */
-    node.tight = all.moments.n > 0 || n == 0 ? all.box : Box{};
+    node.tight = all.moments.n > 0 || n == 0 ? all.box : Rect{};
     node.cost = cost(all, node.region, node.cuts, patches);
     const bool fits = patches <= 1;
     if (!cuts.empty() && !(fits && node.cost < smallest_)) {

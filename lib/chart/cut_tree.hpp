@@ -18,7 +18,7 @@ struct Relief {
 Relief make_relief(const Surface &surface, const Region &region, const Frame &frame, double pitch);
 
 /* Texels low to high - 1 along each axis. */
-struct Box {
+struct Rect {
     int low[2], high[2];
 
     int side(int axis) const { return high[axis] - low[axis]; }
@@ -30,7 +30,7 @@ using Cuts = std::array<bool, 4>;
 
 /* A rectangle of the grid and what of the chart lies there. */
 struct CutNode {
-    Box region, tight;
+    Rect region, tight;
     Cuts cuts = {};
     double cost = 0;                  /* texels as one patch; infinite where it would be too long */
     int child[2] = {-1, -1};
