@@ -10,7 +10,7 @@ namespace gtx {
 namespace {
 
 /* Texels beyond a patch from which its overlap may take. */
-constexpr double MARGIN = 4;
+constexpr float MARGIN = 4;
 /* Texels from where the chart ends to a cut behind it, at least: room for the overlap there. */
 constexpr double ROOM = 2;
 
@@ -18,7 +18,7 @@ constexpr double ROOM = 2;
 struct Piece {
     uint32_t triangle;
     bool own; /* its centre lies in the region */
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, middle[2] = {0, 0};
+    float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, middle[2] = {0, 0};
 };
 
 class Harvest {
@@ -38,7 +38,7 @@ public:
             for (int k = 0; k < 3; ++k) {
                 Vec3d p = inverse(surface_.mesh.position(t, k));
                 for (int a = 0; a < 2; ++a) {
-                    double x = (p[a] - tree_.relief.corner[a]) / pitch_;
+                    float x = float((p[a] - tree_.relief.corner[a]) / pitch_);
                     piece.low[a] = std::min(piece.low[a], x);
                     piece.high[a] = std::max(piece.high[a], x);
                     piece.middle[a] += x / 3;
@@ -46,12 +46,12 @@ public:
             }
             pieces.push_back(piece);
         }
-        descend(tree_.nodes[0], pieces);
+        descend(tree_.nodes[0], std::move(pieces));
         return std::move(out_);
     }
 
 private:
-    void descend(const CutNode &node, const std::vector<Piece> &pieces);
+    void descend(const CutNode &node, std::vector<Piece> pieces);
     void make_patch(const CutNode &node, const std::vector<Piece> &pieces);
     void lay_frame(const CutNode &node, Chart &chart) const;
     void clip(const CutNode &node, Chart &chart) const;
@@ -63,7 +63,7 @@ private:
     std::vector<Chart> out_;
 };
 
-void Harvest::descend(const CutNode &node, const std::vector<Piece> &pieces)
+void Harvest::descend(const CutNode &node, std::vector<Piece> pieces)
 {
     if (node.tight.empty())
         return;
@@ -71,24 +71,25 @@ void Harvest::descend(const CutNode &node, const std::vector<Piece> &pieces)
         make_patch(node, pieces);
         return;
     }
-    for (int child : node.child) {
-        const CutNode &half = tree_.nodes[size_t(child)];
-        std::vector<Piece> inside;
+    std::vector<Piece> inside[2];
+    for (int side = 0; side < 2; ++side) {
+        const Rect &half = tree_.nodes[size_t(node.child[side])].region;
         for (Piece piece : pieces) {
             bool meets = true;
             for (int a = 0; a < 2; ++a) {
-                meets = meets && piece.high[a] >= half.region.low[a] - MARGIN &&
-                        piece.low[a] <= half.region.high[a] + MARGIN;
+                float low = float(half.low[a]), high = float(half.high[a]);
+                meets = meets && piece.high[a] >= low - MARGIN && piece.low[a] <= high + MARGIN;
                 piece.own = piece.own && /* what rounding puts off the grid belongs to its edge */
-                            (piece.middle[a] >= half.region.low[a] || !half.region.low[a]) &&
-                            (piece.middle[a] < half.region.high[a] ||
-                             half.region.high[a] == tree_.relief.size[a]);
+                            (piece.middle[a] >= low || !half.low[a]) &&
+                            (piece.middle[a] < high || half.high[a] == tree_.relief.size[a]);
             }
             if (meets)
-                inside.push_back(piece);
+                inside[side].push_back(piece);
         }
-        descend(half, inside);
     }
+    pieces = {}; /* of a terrain they are many */
+    for (int side = 0; side < 2; ++side)
+        descend(tree_.nodes[size_t(node.child[side])], std::move(inside[side]));
 }
 
 void Harvest::lay_frame(const CutNode &node, Chart &chart) const
