@@ -43,8 +43,8 @@ static void observe(const Grid &grid, const std::vector<uint8_t> &support, const
                      counts};
     double sheet = 0;
     for (int k = 0; k < 4; ++k) {
-        if (!support[corner[k]] || cover.triangle[corner[k]] == NO_TRIANGLE)
-            return; /* what is continued past the surface must not bend the surface */
+        if (!support[corner[k]])
+            return;
         sheet += o.weight[k] * cover.height[corner[k]];
     }
     if (std::fabs(at.z - sheet) <= OUTLIER * grid.coarse_pitch())
