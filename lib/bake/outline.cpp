@@ -100,7 +100,7 @@ void measure_distances(const Grid &grid, Outline &outline)
         d = std::sqrt(d);
 }
 
-Outline find_outline(const FlatChart &chart, size_t count)
+Outline find_outline(const Neighbours &neighbours, const FlatChart &chart, size_t count)
 {
     Outline outline;
     auto collect = [&](bool inner) {
@@ -108,8 +108,9 @@ Outline find_outline(const FlatChart &chart, size_t count)
             const FlatTriangle &triangle = chart.triangles[t];
             for (int k = 0; triangle.front && k < 3; ++k)
                 if (inner || chart.mate[t][k] >= count) /* NO_TRIANGLE is the largest of all */
-                    outline.edges.push_back(
-                        {triangle.corner[k], triangle.corner[(k + 1) % 3], uint32_t(t), k});
+                    outline.edges.push_back({triangle.corner[k], triangle.corner[(k + 1) % 3],
+                                             uint32_t(t), k,
+                                             neighbours[triangle.source][k] == NO_TRIANGLE});
         }
     };
     collect(false);
@@ -144,6 +145,8 @@ std::vector<float> trim_distances(const FlatChart &chart, const Cover &core, con
         bool in_all = all.triangle[i] != NO_TRIANGLE;
         float to_core = in_core ? -core_outline.distance[i] : core_outline.distance[i];
         float to_all = in_all ? -all_outline.distance[i] : all_outline.distance[i];
+        if (all_outline.edges[all_outline.nearest[i]].border)
+            to_all += float(SHOWN - BORDER_SHOWN);
         double cut = grid.outside(double(i % size_t(grid.w)), double(i / size_t(grid.w)));
         trim[i] = std::max({to_all, to_core - float(OVERLAP), float(cut - CUT_OVERLAP)});
     }

@@ -153,11 +153,11 @@ static Sheet lay_sheet(const Job &job, const Chart &chart, double finer)
     Sheet s;
     s.flat = flatten(job.mesh, job.neighbours, chart, job.pitch, finer);
     Cover core = raster_core(s.flat);
-    Outline core_outline = find_outline(s.flat, s.flat.core);
+    Outline core_outline = find_outline(job.neighbours, s.flat, s.flat.core);
     s.cover = core;
     Paths paths(job.mesh, job.neighbours, s.flat);
     raster_overlap(s.flat, core_outline, paths, s.cover);
-    s.outline = find_outline(s.flat, s.flat.triangles.size());
+    s.outline = find_outline(job.neighbours, s.flat, s.flat.triangles.size());
     s.trim = trim_distances(s.flat, core, s.cover, core_outline, s.outline);
     if (job.needs.mask)
         trim_mask(job.mesh, job.neighbours, s.flat, s.trim);

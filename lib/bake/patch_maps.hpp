@@ -18,6 +18,9 @@ inline bool shown(float trim)
 }
 /* Source surface beyond a chart's border counts as true up to this many texels from it. */
 constexpr double OVERLAP = 1;
+/* Where the model itself ends, up to this many texels beyond its border: nobody else's sheet starts
+ * there. */
+constexpr double BORDER_SHOWN = 0.1;
 /* Beyond a straight cut this is enough: the neighbour's sheet has the same texels. */
 constexpr double CUT_OVERLAP = 0.15;
 
@@ -106,6 +109,7 @@ struct OutlineEdge {
     Vec3d from, to;                 /* texel space */
     uint32_t triangle;
     int side;                       /* the edge from its corner `side` to the next */
+    bool border;                    /* the model ends here */
 };
 struct Outline {
     std::vector<OutlineEdge> edges;
@@ -121,7 +125,7 @@ Cover raster_core(const FlatChart &chart);
 void raster_overlap(const FlatChart &chart, const Outline &core, Paths &paths, Cover &cover);
 
 /* The outline of the first `count` triangles. */
-Outline find_outline(const FlatChart &chart, size_t count);
+Outline find_outline(const Neighbours &neighbours, const FlatChart &chart, size_t count);
 
 /* Finds what of `outline` follows from its edges. */
 void measure_distances(const Grid &grid, Outline &outline);
