@@ -14,6 +14,9 @@ constexpr size_t JUNK_SAMPLES = 4;
 constexpr double JUNK_PITCHES = 4;
 /* Layers closer than this share of the diagonal are one. */
 constexpr double LAYER_DISTANCE = 1e-4;
+/* Steps between neighbouring texels beyond which the surface must be seen to lead from one to the
+ * other, and within how many texels. */
+constexpr double CLIFF_PITCHES = 6, CLIFF_REACH = 2.5;
 
 void join(Sample &s, const Sample &other)
 {
@@ -71,6 +74,71 @@ bool is_fold(const std::vector<DoubleSample> &group, const LayerRule &rule)
                        [&](const DoubleSample &d) { return d.depth > rule.shallow; });
 }
 
+/* Corners of a region's triangles: x and y in texels from a fixed point, depth in object units. */
+class FlatRegion {
+public:
+    FlatRegion(const Surface &surface, const Region &region, const Frame &frame, double pitch)
+        : surface_(surface), region_(region), inverse_(frame),
+          fixed_(inverse_(surface.mesh.positions[0])), pitch_(pitch)
+    {
+    }
+    Vec3d corner(uint32_t local, int k) const
+    {
+        Vec3d p = inverse_(surface_.mesh.position(region_.triangles[local], k));
+        return Vec3d((p.x - fixed_.x) / pitch_, (p.y - fixed_.y) / pitch_, p.z);
+    }
+    /* Whether surface within `reach` texels of (u, v) leads from one triangle to another. */
+    bool joined(uint32_t from, uint32_t to, double u, double v, double reach) const
+    {
+        std::vector<uint32_t> queue(1, from);
+        for (size_t next = 0; next < queue.size(); ++next) {
+            if (queue[next] == to)
+                return true;
+            for (uint32_t n : region_.neighbours[queue[next]])
+                if (n != NO_TRIANGLE && std::find(queue.begin(), queue.end(), n) == queue.end() &&
+                    near(n, u, v, reach))
+                    queue.push_back(n);
+        }
+        return false;
+    }
+
+private:
+    bool near(uint32_t local, double u, double v, double reach) const
+    {
+        Vec3d a = corner(local, 0), b = corner(local, 1), c = corner(local, 2);
+        return std::min({a.x, b.x, c.x}) <= u + reach && std::max({a.x, b.x, c.x}) >= u - reach &&
+               std::min({a.y, b.y, c.y}) <= v + reach && std::max({a.y, b.y, c.y}) >= v - reach;
+    }
+    const Surface &surface_;
+    const Region &region_;
+    FrameInverse inverse_;
+    Vec3d fixed_;
+    double pitch_;
+};
+
+/* Samples side by side that are sheets of their own: no cell between them shows either. */
+void find_cliffs(const FlatRegion &flat, const LayerGrid &grid, float cliff,
+                 std::vector<DoubleSample> &out)
+{
+    const int width = grid.size[0], height = grid.size[1];
+    for (int j = 0; j < height; ++j)
+        for (int i = 0; i < width; ++i)
+            for (int axis = 0; axis < 2; ++axis) {
+                int x = i + 1 - axis, y = j + axis;
+                if (x >= width || y >= height)
+                    continue;
+                const Sample &a = grid.samples[size_t(j) * size_t(width) + size_t(i)],
+                             &b = grid.samples[size_t(y) * size_t(width) + size_t(x)];
+                float step = std::fabs(a.high - b.high);
+                if (!(a.high >= a.low && b.high >= b.low && step > cliff) ||
+                    flat.joined(a.front, b.front, grid.first[0] + (i + x) / 2. + 0.5,
+                                grid.first[1] + (j + y) / 2. + 0.5, CLIFF_REACH))
+                    continue;
+                out.push_back(a.high > b.high ? DoubleSample{a.front, b.front, step}
+                                              : DoubleSample{b.front, a.front, step});
+            }
+}
+
 } // namespace
 
 LayerRule layer_rule(const Surface &surface, double pitch)
@@ -110,12 +178,8 @@ void LayerGrid::add(const LayerGrid &other)
 LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Frame &frame,
                           double pitch)
 {
-    FrameInverse inverse(frame);
-    const Vec3d fixed = inverse(surface.mesh.positions[0]);
-    auto corner = [&](uint32_t local, int k) {
-        Vec3d p = inverse(surface.mesh.position(region.triangles[local], k));
-        return Vec3d((p.x - fixed.x) / pitch, (p.y - fixed.y) / pitch, p.z);
-    };
+    const FlatRegion flat(surface, region, frame, pitch);
+    auto corner = [&](uint32_t local, int k) { return flat.corner(local, k); };
     double from[2] = {INFINITY, INFINITY}, to[2] = {-INFINITY, -INFINITY};
     for (uint32_t local = 0; local < region.size(); ++local)
         for (int k = 0; k < 3; ++k) {
@@ -150,6 +214,8 @@ Layers find_layers(const Surface &surface, const Region &region, const Frame &fr
     Layers layers;
     for (const Sample &s : grid.samples)
         layers.samples += s.high >= s.low;
+    find_cliffs(FlatRegion(surface, region, frame, pitch), grid, float(CLIFF_PITCHES * pitch),
+                layers.cliffs);
     for (size_t at = 0; at < grid.samples.size(); ++at) {
         std::vector<DoubleSample> group = take_group(grid, at, rule.apart);
         layers.doubled += group.size();

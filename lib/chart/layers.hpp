@@ -15,6 +15,9 @@ struct Layers {
     size_t samples = 0;                 /* texel centres covered */
     size_t doubled = 0;                 /* of those, twice */
     std::vector<DoubleSample> folds;    /* the doubled ones that no junk rule excuses */
+    /* Neighbouring texel centres far apart in depth with no surface between: each shows where the
+     * cell that bridges them is cut away. */
+    std::vector<DoubleSample> cliffs;
 };
 
 /* How far apart two depths are to be two layers, and up to where a few of them are a scan's noise. */

@@ -20,6 +20,8 @@ constexpr size_t MOST_TRIANGLES = 300000000;
 constexpr unsigned OVERLAP_TEXELS = 8;
 /* Texels of surface in a patch that is cut, at a resolution of 128. */
 constexpr double CUT_TEXELS = 1400;
+/* And at least in a chart, on average: a model may be of thousands of small components. */
+constexpr double CHART_TEXELS = 100;
 
 uint32_t default_count(const Mesh &mesh)
 {
@@ -158,6 +160,21 @@ void report_final(const Surface &surface, const std::vector<Region> &regions,
     out.report.junk_area_fraction = area / double(surface.junk.size());
 }
 
+/* Splits the clusters until each is a chart, at the pitch asked for or one fine enough for them. */
+std::vector<Frame> split_for_count(const Surface &surface, const ChartOptions &options,
+                                   std::vector<Region> &regions, Bounds &bounds, Task &task)
+{
+    std::vector<Frame> frames;
+    for (;;) {
+        split_all(surface, regions, frames, bounds, task);
+        double finest = std::sqrt(surface.area / (CHART_TEXELS * double(regions.size())));
+        if (options.pitch > 0 || finest >= bounds.pitch)
+            break;
+        bounds.pitch = finest; /* another texel sees other folds */
+    }
+    return frames;
+}
+
 /* Splits the clusters of the paper's method until each is a chart, and finds the pitch. */
 std::vector<Frame> split_for_length(const Surface &surface, const ChartOptions &options,
                                     std::vector<Region> &regions, Bounds &bounds, Task &task)
@@ -207,12 +224,9 @@ Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &ta
     surface.whole.neighbours = {};
     report_initial(surface, regions, task, out.report);
 
-    std::vector<Frame> frames;
     Bounds bounds = {INFINITY, cut_pitch(surface, wanted, options), true};
-    if (cut)
-        split_all(surface, regions, frames, bounds, task);
-    else
-        frames = split_for_length(surface, options, regions, bounds, task);
+    std::vector<Frame> frames = (cut ? split_for_count : split_for_length)(surface, options, regions,
+                                                                           bounds, task);
     out.pitch = bounds.pitch;
 
     task.begin("frame");

@@ -25,7 +25,7 @@ struct Candidate {
     bool steep = false, inverted = false;
     Layers layers;
 
-    bool fits() const { return !steep && !inverted && layers.folds.empty(); }
+    bool fits() const { return !steep && !inverted && layers.folds.empty() && layers.cliffs.empty(); }
 };
 
 Candidate try_axis(const Surface &surface, const Region &region, const Vec3d &z,
@@ -149,11 +149,11 @@ std::vector<uint32_t> split_normals(const Surface &surface, const Region &region
 /* Watershed between what lies in front and what lies behind: triangles vote by their doubled
  * samples, the deepest of which decides its own two. Crossing a crease costs most. */
 std::vector<uint32_t> split_layers(const Surface &surface, const Region &region,
-                                   const Layers &layers)
+                                   const std::vector<DoubleSample> &samples)
 {
     std::vector<int> votes(region.size());
-    const DoubleSample *deepest = &layers.folds[0];
-    for (const DoubleSample &d : layers.folds) {
+    const DoubleSample *deepest = &samples[0];
+    for (const DoubleSample &d : samples) {
         ++votes[d.front];
         --votes[d.back];
         if (d.depth > deepest->depth)
@@ -212,7 +212,8 @@ Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds
         return try_axis(surface, region, cone ? cone_axis(surface, region.triangles)
                                               : median_axis(surface.mesh, region.triangles), bounds);
     };
-    Candidate first = try_kind(bounds.cone);
+    /* A triangle alone is a height map along its own normal, whatever its neighbours' are. */
+    Candidate first = try_kind(bounds.cone && region.size() > 1);
     if (too_long(first.frame))
         return {{}, pieces_of(region, cut_across(surface, region, first.frame))};
     if (first.fits() || region.size() == 1)
@@ -222,8 +223,9 @@ Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds
     if (second.fits() && !too_long(second.frame))
         return accept(surface, region, second.frame, bounds.pitch);
     for (const Candidate *c : {&first, &second})
-        if (!c->layers.folds.empty())
-            return {{}, pieces_of(region, split_layers(surface, region, c->layers))};
+        for (const std::vector<DoubleSample> *samples : {&c->layers.folds, &c->layers.cliffs})
+            if (!samples->empty())
+                return {{}, pieces_of(region, split_layers(surface, region, *samples))};
     return {{}, pieces_of(region, split_normals(surface, region, (bounds.cone ? first : second).frame.z))};
 }
 
