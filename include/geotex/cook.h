@@ -118,6 +118,8 @@ typedef struct gtx_compare_result {
     uint64_t hole_pixels, surface_pixels;
     double silhouette_iou, silhouette_iou_min;
     double forward_rms;           /* fraction of the source's bounding diagonal */
+    /* How far apart patches are where they meet, in height steps of the coarser one. */
+    double seam_p99_steps, seam_max_steps;
 } gtx_compare_result;
 
 /* `model` is the mesh file the asset was cooked from. `report` and `error` may be NULL.

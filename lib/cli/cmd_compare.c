@@ -58,6 +58,8 @@ int cmd_compare(int argc, char **argv)
         printf("silhouette IoU  %.5f (worst view %.5f)\n", result.silhouette_iou,
                result.silhouette_iou_min);
         printf("forward RMS     %.5f %% of the diagonal\n", 100 * result.forward_rms);
+        printf("seams           99 %% within %.2f height steps, all within %.2f\n",
+               result.seam_p99_steps, result.seam_max_steps);
         code = print_result("", 0);
     }
     gtx_report_free(&report);

@@ -45,7 +45,8 @@ static void compare_files(const gtx_asset *asset, const char *model, const gtx_c
     }
     if (result)
         *result = {measured.hole_pixels, measured.surface_pixels, measured.silhouette_iou,
-                   measured.silhouette_iou_min, measured.error.forward.rms};
+                   measured.silhouette_iou_min, measured.error.forward.rms,
+                   measured.seams.p99_steps, measured.seams.max_steps};
 }
 
 } // namespace gtx

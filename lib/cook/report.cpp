@@ -186,6 +186,13 @@ std::string write_compare_report(const CompareReport &report,
     write_deviation(json, "forward", report.error.forward);
     write_deviation(json, "reverse", report.error.reverse);
     gtx_json_end_object(&json);
+    gtx_json_begin_object(&json, "seams");
+    gtx_json_integer(&json, "points", report.seams.points);
+    gtx_json_integer(&json, "within_two_steps", report.seams.within_two_steps);
+    gtx_json_number(&json, "p99_steps", report.seams.p99_steps);
+    gtx_json_number(&json, "max_steps", report.seams.max_steps);
+    gtx_json_number(&json, "max", report.seams.max);
+    gtx_json_end_object(&json);
     write_strings(json, "warnings", warnings);
     gtx_json_end_object(&json);
     check_written(json);

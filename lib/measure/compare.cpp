@@ -1,6 +1,7 @@
 /* Holes, leaks, silhouettes, depth and shading of an asset against its source, view by view. */
 #include "measure/cast.hpp"
 #include "measure/measure.hpp"
+#include "measure/sample.hpp"
 
 #include <algorithm>
 
@@ -184,16 +185,6 @@ static void measure_level(const Comparison &all, uint32_t view_index, uint32_t l
     look.leaks(crossings);
 }
 
-/* The value that 99 % of the values are not above. */
-static double percentile_99(std::vector<float> &values)
-{
-    if (values.empty())
-        return 0;
-    size_t rank = (values.size() * 99 + 99) / 100 - 1;
-    std::nth_element(values.begin(), values.begin() + ptrdiff_t(rank), values.end());
-    return values[rank];
-}
-
 /* The figures of level 0 that come from lists: figures[view]. */
 static void summarise(const std::vector<Figures> &figures, CompareReport &report)
 {
@@ -272,8 +263,10 @@ CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOpt
             if (options.holes)
                 options.holes->insert(options.holes->end(), f.samples.begin(), f.samples.end());
     }
-    if (options.surface)
+    if (options.surface) {
         report.error = surface_error(asset, mesh, {}, task);
+        report.seams = measure_seams(asset, mesh, task);
+    }
     return report;
 }
 

@@ -1,9 +1,8 @@
 /* Distances between the source and the asset, sampled on either and sought on the other. */
 #include "measure/cells.hpp"
 #include "measure/measure.hpp"
+#include "measure/sample.hpp"
 #include "measure/view.hpp"
-
-#include <functional>
 
 namespace gtx {
 
@@ -62,40 +61,7 @@ struct MeshTriangles {
     }
 };
 
-/* Knuth's MMIX generator, upper bits: the same samples everywhere. */
-class Random {
-public:
-    double next() /* in [0, 1) */
-    {
-        state_ = state_ * 6364136223846793005u + 1442695040888963407u;
-        return double(state_ >> 11) / 9007199254740992.0;
-    }
-
-private:
-    uint64_t state_ = 1;
-};
-
 } // namespace
-
-/* Calls place(shape) for SAMPLES points that are stratified over the areas. */
-static void stratify(const std::vector<double> &area, Random &random,
-                     const std::function<void(size_t)> &place)
-{
-    double total = 0, before = 0;
-    for (double a : area)
-        total += a;
-    if (!(total > 0))
-        return;
-    size_t shape = 0, last = area.size() - 1;
-    while (area[last] <= 0)
-        --last;
-    for (size_t i = 0; i < SAMPLES; ++i) {
-        double at = (double(i) + random.next()) / double(SAMPLES) * total;
-        while (shape < last && (area[shape] <= 0 || before + area[shape] <= at))
-            before += area[shape++];
-        place(shape);
-    }
-}
 
 static std::vector<Vec3d> sample_mesh(const MeshTriangles &source,
                                       const std::vector<uint8_t> &junk)
@@ -105,7 +71,7 @@ static std::vector<Vec3d> sample_mesh(const MeshTriangles &source,
         area[t] = !junk.empty() && junk[t] ? 0 : length(source.mesh.area_vector(t)) / 2;
     std::vector<Vec3d> points;
     Random random;
-    stratify(area, random, [&](size_t t) {
+    stratify(area, SAMPLES, random, [&](size_t t) {
         double u = std::sqrt(random.next()), v = random.next();
         const double weight[3] = {1 - u, u * (1 - v), u * v};
         if (!is_cut(source.mesh, t, weight, 0))
@@ -122,7 +88,7 @@ static std::vector<Vec3d> sample_cells(const Cells &cells)
         area[i] = cells.core_area(i);
     std::vector<Vec3d> points;
     Random random;
-    stratify(area, random, [&](size_t i) {
+    stratify(area, SAMPLES, random, [&](size_t i) {
         for (int attempt = 0; attempt < 64; ++attempt) {
             double u = random.next(), v = random.next();
             if (cells.trim(i, u, v) <= 0) {

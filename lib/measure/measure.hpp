@@ -21,6 +21,16 @@ struct SurfaceError {
 SurfaceError surface_error(const gtx_asset *asset, const Mesh &mesh,
                            const std::vector<uint8_t> &junk, Task &task);
 
+/* Where patches meet: 100,000 points of the outlines of their cores (trim 0), each to the nearest
+ * point of the other patches, in height steps of the coarser of the two. Points within two
+ * texels of where the source ends have no other patch to meet. */
+struct SeamReport {
+    uint64_t points = 0, within_two_steps = 0;
+    double p99_steps = 0, max_steps = 0;
+    double max = 0;              /* fraction of the source's bounding diagonal */
+};
+SeamReport measure_seams(const gtx_asset *asset, const Mesh &mesh, Task &task);
+
 /* How many pixels a level of detail gets wrong. */
 struct LevelReport {
     uint32_t level = 0;
@@ -39,6 +49,7 @@ struct CompareReport {
     double psnr_db = 0;
     std::vector<LevelReport> levels;
     SurfaceError error;
+    SeamReport seams;
 };
 
 /* One hole pixel, to find out why it is there. */
@@ -53,7 +64,7 @@ struct HoleSample {
 struct CompareOptions {
     uint32_t size = 1024;        /* pixels along a side of a view */
     uint32_t levels = 1;         /* levels of detail to evaluate */
-    bool surface = true;         /* measure `error` too */
+    bool surface = true;         /* measure `error` and `seams` too */
     std::vector<HoleSample> *holes = nullptr; /* appended to: every hole pixel, views in order */
 };
 

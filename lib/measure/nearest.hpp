@@ -72,11 +72,13 @@ public:
 
     /* The squared distance to the nearest shape; infinity when there is none. `*near` is a shape to
      * try first, such as the nearest of a point close by (any number from size() on: none), and
-     * becomes the nearest: a short distance known early spares most of the search. */
-    double distance2(const Vec3d &p, uint32_t *near) const
+     * becomes the nearest: a short distance known early spares most of the search. Only shapes that
+     * `counts(shape)` is true of are sought. */
+    template <class Counts>
+    double distance2(const Vec3d &p, uint32_t *near, const Counts &counts) const
     {
         double best = std::numeric_limits<double>::infinity();
-        if (*near < shapes_.size())
+        if (*near < shapes_.size() && counts(*near))
             best = shapes_.distance2(*near, p, best);
         std::pair<size_t, double> stack[64];
         int size = 0;
@@ -88,6 +90,8 @@ public:
             if (node >= leaves_) {
                 size_t first = (node - leaves_) * LEAF;
                 for (size_t i = first; i < std::min(first + LEAF, order_.size()); ++i) {
+                    if (!counts(order_[i]))
+                        continue;
                     double distance2 = shapes_.distance2(order_[i], p, best);
                     if (distance2 < best) {
                         best = distance2;
@@ -104,6 +108,10 @@ public:
                 stack[size++] = {2 * node + !left_first, std::min(left, right)};
         }
         return best;
+    }
+    double distance2(const Vec3d &p, uint32_t *near) const
+    {
+        return distance2(p, near, [](uint32_t) { return true; });
     }
 
 private:

@@ -173,6 +173,34 @@ static void junk_is_left_out(void **)
     gtx_close(asset);
 }
 
+static void other_half(const gtx_patch *, double x, double, const void *, fixture_texel *out)
+{
+    out->height = 0.5;
+    out->trim = 7.5 - x;
+}
+
+/* Two halves of a plane meet, the second a little higher; the plane goes on around them. */
+static void a_step_between_patches_is_seen(void **)
+{
+    for (double step : {0., 0.05}) {
+        const double corner[3] = {10, 10, 0}, raised[3] = {10, 10, step};
+        fixture_patch patches[] = {{fixture_frame(corner, 16, 16, 1, 1), half_sheet, nullptr},
+                                   {fixture_frame(raised, 16, 16, 1, 1), other_half, nullptr}};
+        gtx_asset *asset = fixture_build(patches, 2, 8, 1);
+        Task task(2, nullptr, nullptr);
+        SeamReport seams = measure_seams(asset, plane_mesh(40, 40, 0.5, 5), task);
+        assert_int_equal(seams.points, 100000);
+        assert_int_equal(seams.within_two_steps, step > 0 ? 0 : 100000);
+        assert_float_equal(seams.p99_steps, step * 254, 1e-3);
+        assert_float_equal(seams.max_steps, step * 254, 1e-3);
+        assert_float_equal(seams.max, step / std::hypot(40, 40), 1e-6);
+        /* Where the source ends, no neighbour is missed. */
+        seams = measure_seams(asset, plane_mesh(17.5, 40, 0.5, 5), task);
+        assert_int_equal(seams.points, 0);
+        gtx_close(asset);
+    }
+}
+
 static void empty_sheet(const gtx_patch *, double, double, const void *, fixture_texel *out)
 {
     out->height = -1;
@@ -200,6 +228,7 @@ int main()
         cmocka_unit_test(a_sphere_is_near_its_asset),
         cmocka_unit_test(what_is_missing_is_far),
         cmocka_unit_test(junk_is_left_out),
+        cmocka_unit_test(a_step_between_patches_is_seen),
         cmocka_unit_test(an_asset_without_surface_is_infinitely_far),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
