@@ -18,10 +18,10 @@ constexpr double LONGEST_SIDE = 2.5;
 constexpr size_t MOST_TRIANGLES = 300000000;
 /* Texels of `resolution` that are left to the overlap. */
 constexpr unsigned OVERLAP_TEXELS = 8;
-/* Texels of surface in a patch that is cut, at a resolution of 128. */
-constexpr double CUT_TEXELS = 1400;
-/* And at least in a chart, on average: a model may be of thousands of small components. */
-constexpr double CHART_TEXELS = 100;
+/* At a resolution of 128, texels of surface in a patch that is cut; at least in a chart, on average,
+ * for a model may be of thousands of small components; in its rectangle at most. */
+constexpr double CUT_TEXELS = 1400, CHART_TEXELS = 100, MOST_TEXELS = 4 * CUT_TEXELS;
+constexpr double RIM = 4; /* texels of a rectangle beyond its chart's sides */
 
 uint32_t default_count(const Mesh &mesh)
 {
@@ -160,19 +160,42 @@ void report_final(const Surface &surface, const std::vector<Region> &regions,
     out.report.junk_area_fraction = area / double(surface.junk.size());
 }
 
-/* Splits the clusters until each is a chart, at the pitch asked for or one fine enough for them. */
+/* The pitch at which rectangles with a rim of `RIM` texels take `texels` together. */
+double pitch_for(const std::vector<Frame> &frames, double texels)
+{
+    double area = 0, sides = 0, rims = RIM * RIM * double(frames.size());
+    for (const Frame &frame : frames) {
+        area += frame.extent[0] * frame.extent[1];
+        sides += RIM * (frame.extent[0] + frame.extent[1]);
+    }
+    /* area / p^2 + sides / p + rims = texels */
+    double left = std::max(texels - rims, 0.5 * texels);
+    return (sides + std::sqrt(sides * sides + 4 * area * left)) / (2 * left);
+}
+
+/* Splits the clusters until each is a chart, at the pitch asked for, or else one that is fine enough
+ * for all of them, but not finer than a blade can pay for, whose rectangles are all rim. */
 std::vector<Frame> split_for_count(const Surface &surface, const ChartOptions &options,
                                    std::vector<Region> &regions, Bounds &bounds, Task &task)
 {
+    const double wanted = chart_count(surface.mesh, options);
+    const double scale = std::pow(options.resolution / 128., 2);
     std::vector<Frame> frames;
     for (;;) {
         split_all(surface, regions, frames, bounds, task);
-        double finest = std::sqrt(surface.area / (CHART_TEXELS * double(regions.size())));
-        if (options.pitch > 0 || finest >= bounds.pitch)
-            break;
-        bounds.pitch = finest; /* another texel sees other folds */
+        if (options.pitch > 0)
+            return frames;
+        double charts = double(regions.size());
+        double least = scale * CHART_TEXELS * charts;
+        double most = scale * MOST_TEXELS * std::max(charts, wanted);
+        double fine = std::min(bounds.pitch, std::sqrt(surface.area / least));
+        double pitch = std::max(fine, pitch_for(frames, most));
+        if (pitch >= bounds.pitch) {
+            bounds.pitch = pitch;
+            return frames;
+        }
+        bounds.pitch = pitch; /* a finer texel sees other folds */
     }
-    return frames;
 }
 
 /* Splits the clusters of the paper's method until each is a chart, and finds the pitch. */

@@ -359,6 +359,11 @@ static void test_density(void **)
     assert_true(texels(p) > 0.99 * 100 * 1800);
     assert_true(texels(p) < 1.5 * 100 * 1800);
 
+    mesh = shapes::sphere(8); /* a blade: its rectangles are all rim */
+    for (Vec3d &v : mesh.positions)
+        v = {1e6 * v.x, v.y, 1e-6 * v.z};
+    assert_true(partition(mesh).charts.size() < 10 * 10 * std::pow(mesh.triangle_count(), 0.28));
+
     double pitch = partition(shapes::bumpy_sphere(30)).pitch;
     options = {};
     options.resolution = 256;
