@@ -217,6 +217,7 @@ needs_samples := $(needs_image)
 needs_threads := $(needs_cook)
 extra_needs_render  := trace host image
 extra_needs_bake    := derive trace
+extra_needs_cook    := host
 extra_needs_chart   :=
 extra_needs_measure := chart bake cook
 # An archive: a test takes from it only what it asks for, and so needs no room but its own.

@@ -24,8 +24,21 @@ typedef enum gtx_partition {
     GTX_PARTITION_VSA = 2         /* variational shape approximation (paper, section 5.2) */
 } gtx_partition;
 
+/* How the maps are extracted from the patches' triangles. GPU is the paper's way (section 5): each
+ * patch is rendered along its frame's z, colours unlit, normals renormalised; textures are looked
+ * up, and what lies beyond a patch's border is continued, as by the CPU. Both agree within a code on
+ * 99.9 % of the texels. The bytes that the GPU gives depend on its driver, which the report names;
+ * one of OpenGL 3.3 is asked for through EGL, without a window. A context that the calling thread
+ * has current through EGL is current again when the call returns. */
+typedef enum gtx_extract {
+    GTX_EXTRACT_DEFAULT = 0,      /* cpu */
+    GTX_EXTRACT_CPU = 1,
+    GTX_EXTRACT_GPU = 2
+} gtx_extract;
+
 typedef struct gtx_cook_desc {
     gtx_partition partition;
+    gtx_extract extract;
     uint32_t charts;              /* wanted number of patches, up to 2^20; 0 = round(10 T^0.28) for
                                      T triangles */
     uint32_t resolution;          /* most texels along a patch side, 64..512; 0 = 128. The density
@@ -61,8 +74,8 @@ typedef struct gtx_cook_desc {
 /* An asset keeps the key that it was cooked under. The key covers
  *   - the content of every file behind the models: themselves, and the buffers, material libraries
  *     and images that they refer to, one that is missing included; not their paths or times;
- *   - the options that change what comes out: partition, charts, resolution, height_bits, dilation,
- *     mips, zstd_level, unit, error and z_up; not threads, measure, progress, strict or allocator;
+ *   - the options that change what comes out: partition, extract (and the driver, where it is GPU),
+ *     charts, resolution, height_bits, dilation, mips, zstd_level, unit, error and z_up; not threads, measure, progress, strict or allocator;
  *   - geotex's version and the revision of its cooker,
  * but not the library that decodes images. Where `strict` is asked for, an asset that was cooked
  * with warnings is cooked again; where `charts_ply` is, or importing read what could not be
@@ -87,7 +100,8 @@ typedef struct gtx_report {
 /* Reads the model at `input` (glTF, GLB, Draco, OBJ, PLY, OFF, STL, each also gzipped), cooks it
  * and writes the asset to `output`: whole, through a temporary name and a rename, or not at all.
  * `desc`, `report` (format/cook-report.schema.json) and `error` may be NULL. Errors: CANCELLED, ARGUMENT,
- * NOT_ZEROED, MEMORY, LIMIT, READ, WRITE, INPUT, EMPTY, UNSUPPORTED, INTERNAL. Any thread. */
+ * NOT_ZEROED, MEMORY, LIMIT, READ, WRITE, INPUT, EMPTY, UNSUPPORTED, INTERNAL; GL and SHADER where
+ * the GPU is to extract and no driver can. Any thread. */
 GTX_API gtx_result gtx_cook_file(const char *input, const char *output, const gtx_cook_desc *desc,
                                  gtx_report *report, gtx_error *error);
 

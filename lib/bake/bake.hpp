@@ -1,6 +1,7 @@
 /* Baking: charts with frames -> the maps of one asset. */
 #pragma once
 
+#include "bake/extract.hpp"
 #include "chart/chart.hpp"
 
 #include <geotex/geotex.h>
@@ -11,6 +12,7 @@ struct BakeOptions {
     unsigned height_bits = 8;    /* 8 or 16 */
     unsigned mips = 4;           /* levels of normal and colour, 1..8 */
     unsigned dilation = 0;       /* texels; 0 = 2^(mips - 1) */
+    Extractor *extractor = nullptr; /* draws the charts; null: the CPU samples them */
 };
 
 struct BakeReport {
@@ -37,7 +39,8 @@ struct Maps {
 /* Overlap, rasterise, trim, extrapolate, dilate, mip and pack. Patches come in the order of
  * the charts; one that its material cuts away whole has none. The anchor is the centre of the
  * mesh's bounding box, rounded to a multiple of a power of two. Deterministic for any thread count.
- * Stages of `task`: "bake", "pack". Throws Error: EMPTY, LIMIT, INPUT, ARGUMENT, CANCELLED. */
+ * Stages of `task`: "bake", "pack". Throws Error: EMPTY, LIMIT, INPUT, ARGUMENT, CANCELLED, and
+ * what the extractor throws. */
 Maps bake(const Mesh &mesh, const Partition &partition, const BakeOptions &options, Task &task);
 
 } // namespace gtx

@@ -89,8 +89,7 @@ static FlatTriangle flat_triangle(const Mesh &mesh, const Grid &grid, uint32_t s
     flat.source = source;
     for (int k = 0; k < 3; ++k)
         flat.corner[k] = grid.texel(mesh.position(source, k));
-    Vec3d e = flat.corner[1] - flat.corner[0], f = flat.corner[2] - flat.corner[0];
-    flat.front = e.x * f.y - e.y * f.x > 0;
+    flat.front = flat.signed_area() > 0;
     return flat;
 }
 

@@ -138,21 +138,13 @@ static void quantise(const Grid &grid, const Crop &crop, const Cover &cover,
     fill_trim(maps);
 }
 
-/* The height sheet of a chart over its working grid. */
-struct Sheet {
-    FlatChart flat;
-    Outline outline;
-    Cover cover;
-    std::vector<float> trim;
-    std::vector<uint8_t> support;
-    double missed;               /* share of the surface that it leaves too far above it */
-};
-
 static Sheet lay_sheet(const Job &job, const Chart &chart, double finer)
 {
     Sheet s;
     s.flat = flatten(job.mesh, job.neighbours, chart, job.pitch, finer);
-    Cover core = raster_core(s.flat);
+    if (job.options.extractor)
+        s.rendering = job.options.extractor->render(job.mesh, s.flat);
+    Cover core = job.options.extractor ? core_of(s.flat, s.rendering) : raster_core(s.flat);
     Outline core_outline = find_outline(job.neighbours, s.flat, s.flat.core);
     s.cover = core;
     Paths paths(job.mesh, job.neighbours, s.flat);
@@ -184,8 +176,7 @@ static PatchMaps encode_sheet(const Job &job, const Chart &chart, const Sheet &s
     maps.record = make_record(job, chart, s.flat.grid, crop, low, high);
     quantise(s.flat.grid, crop, s.cover, s.support, s.trim, low, job.options.height_bits, maps);
     measure_patch(job.options.height_bits, maps);
-    build_mips(shade_texels(job, s.flat, s.outline, s.cover, crop, maps.height), job.options.mips,
-               job.needs, maps);
+    build_mips(shade_texels(job, s, crop, maps.height), job.options.mips, job.needs, maps);
     return maps;
 }
 

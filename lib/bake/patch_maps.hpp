@@ -57,6 +57,13 @@ struct FlatTriangle {
     Vec3d corner[3];
     uint32_t source;       /* its index in the mesh */
     bool front;            /* faces the frame, so that it can be seen in the map */
+
+    /* Twice its area in texels; negative where it faces away. */
+    double signed_area() const
+    {
+        Vec3d e = corner[1] - corner[0], f = corner[2] - corner[0];
+        return e.x * f.y - e.y * f.x;
+    }
 };
 
 /* The true surface of a chart: first `core` triangles of its own, then those of its overlap. */
@@ -121,6 +128,15 @@ double nearest_parameter(const OutlineEdge &edge, double u, double v);
 
 /* Centre samples of the core, topmost first. */
 Cover raster_core(const FlatChart &chart);
+
+/* The same as a GPU has drawn it, and what it has made there of the triangles' corners. */
+struct Rendering {
+    std::vector<uint32_t> triangle; /* index in FlatChart::triangles, NO_TRIANGLE where empty */
+    std::vector<Vec3f> normal;      /* object space, unit; zero where the corners' cancel out */
+    std::vector<std::array<float, 4>> color; /* linear */
+};
+/* Which triangle is topmost a GPU tells; how high it is there follows exactly. */
+Cover core_of(const FlatChart &chart, const Rendering &rendering);
 /* Adds the overlap at texels the core left empty, where it continues the core's border. */
 void raster_overlap(const FlatChart &chart, const Outline &core, Paths &paths, Cover &cover);
 
@@ -135,6 +151,10 @@ struct SurfacePoint {
     uint32_t triangle;              /* of the chart */
     float weight[3] = {0, 0, 0};    /* of its corners */
 };
+/* The weights of a triangle's corners at (u, v). Outside of it, as a GPU's rounding of corners to
+ * parts of a texel has it, those of a point on its edge: a sliver's plane leads anywhere. */
+Vec3d weights_at(const FlatTriangle &triangle, double u, double v);
+
 /* What lies at a texel: the point that covers it, else the nearest of the outline. */
 SurfacePoint surface_point(const FlatChart &chart, const Outline &outline, const Cover &cover,
                            size_t texel);
@@ -213,9 +233,20 @@ struct Job {
     Vec3d anchor;
 };
 
+/* The height sheet of a chart over its working grid. */
+struct Sheet {
+    FlatChart flat;
+    Rendering rendering;         /* empty without a GPU */
+    Outline outline;
+    Cover cover;
+    std::vector<float> trim;
+    std::vector<uint8_t> support;
+    double missed;               /* share of the surface that it leaves too far above it */
+};
+
 /* The shades of the texels with a code. */
-Shades shade_texels(const Job &job, const FlatChart &chart, const Outline &outline,
-                    const Cover &cover, const Crop &crop, const std::vector<uint16_t> &height);
+Shades shade_texels(const Job &job, const Sheet &sheet, const Crop &crop,
+                    const std::vector<uint16_t> &height);
 
 /* Fills empty texels ring by ring with the mean of the neighbours that the ring before had. */
 void dilate(Shades &shades, unsigned rings);

@@ -5,6 +5,21 @@
 
 namespace gtx::baking {
 
+Vec3d weights_at(const FlatTriangle &triangle, double u, double v)
+{
+    constexpr double INSIDE = -1e-6; /* but for the rounding of these very weights */
+    const Vec3d *p = triangle.corner;
+    Vec3d e = p[1] - p[0], f = p[2] - p[0];
+    double area = triangle.signed_area(), du = u - p[0].x, dv = v - p[0].y;
+    double b1 = (du * f.y - dv * f.x) / area, b2 = (e.x * dv - e.y * du) / area;
+    Vec3d weight(1 - b1 - b2, b1, b2);
+    if (std::min({weight.x, weight.y, weight.z}) >= INSIDE)
+        return weight;
+    for (int k = 0; k < 3; ++k)
+        weight[k] = std::max(weight[k], 0.);
+    return weight / (weight.x + weight.y + weight.z);
+}
+
 SurfacePoint surface_point(const FlatChart &chart, const Outline &outline, const Cover &cover,
                            size_t texel)
 {
@@ -18,14 +33,27 @@ SurfacePoint surface_point(const FlatChart &chart, const Outline &outline, const
         point.weight[(edge.side + 1) % 3] = at;
         return point;
     }
-    const Vec3d *p = chart.triangles[point.triangle].corner;
-    Vec3d e = p[1] - p[0], f = p[2] - p[0];
-    double area = e.x * f.y - e.y * f.x, du = u - p[0].x, dv = v - p[0].y;
-    double b1 = (du * f.y - dv * f.x) / area, b2 = (e.x * dv - e.y * du) / area;
-    point.weight[0] = float(1 - b1 - b2);
-    point.weight[1] = float(b1);
-    point.weight[2] = float(b2);
+    const Vec3d weight = weights_at(chart.triangles[point.triangle], u, v);
+    for (int k = 0; k < 3; ++k)
+        point.weight[k] = float(weight[k]);
     return point;
+}
+
+/* What the GPU has interpolated where its triangle is still the one that covers the texel, else
+ * what the corners give here. */
+static Interpolated interpolated_at(const Job &job, const Sheet &sheet, const SurfacePoint &point,
+                                    size_t texel)
+{
+    Interpolated corners =
+        interpolate(job.mesh, sheet.flat.triangles[point.triangle].source, point.weight);
+    const Rendering &drawn = sheet.rendering;
+    if (drawn.triangle.empty() || drawn.triangle[texel] == NO_TRIANGLE ||
+        drawn.triangle[texel] != sheet.cover.triangle[texel])
+        return corners;
+    if (dot(drawn.normal[texel], drawn.normal[texel]) > 0)
+        corners.normal = drawn.normal[texel];
+    corners.color = drawn.color[texel];
+    return corners;
 }
 
 static void store(const SurfaceSample &sample, const AppearanceNeeds &needs, Shades &shades,
@@ -42,11 +70,12 @@ static void store(const SurfaceSample &sample, const AppearanceNeeds &needs, Sha
         std::copy_n(sample.emission, EMISSION_CHANNELS, out);
 }
 
-Shades shade_texels(const Job &job, const FlatChart &chart, const Outline &outline,
-                    const Cover &cover, const Crop &crop, const std::vector<uint16_t> &height)
+Shades shade_texels(const Job &job, const Sheet &sheet, const Crop &crop,
+                    const std::vector<uint16_t> &height)
 {
     /* A texel with a code is at most so far from what is shown. */
     constexpr unsigned MARGIN = 2;
+    const FlatChart &chart = sheet.flat;
     const AppearanceNeeds &needs = job.needs;
     const double side = std::sqrt(chart.grid.pitch[0] * chart.grid.pitch[1]);
     Shades shades(crop.w, crop.h, COLOR_CHANNELS * needs.color +
@@ -58,9 +87,10 @@ Shades shade_texels(const Job &job, const FlatChart &chart, const Outline &outli
             continue;
         size_t row = size_t(crop.y + int(at) / crop.w);
         size_t texel = row * size_t(chart.grid.w) + size_t(crop.x + int(at) % crop.w);
-        SurfacePoint point = surface_point(chart, outline, cover, texel);
+        SurfacePoint point = surface_point(chart, sheet.outline, sheet.cover, texel);
         SurfaceSample sample = sample_surface(job.mesh, chart.triangles[point.triangle].source,
-                                              point.weight, side);
+                                              point.weight, side,
+                                              interpolated_at(job, sheet, point, texel));
         store(sample, needs, shades, at);
         shades.occupied[at] = !(sample.cut < 0);
         masked |= sample.cut < 0;

@@ -11,7 +11,7 @@ enum { MOST_MODELS = 4096 };
 
 static gtx_cook_desc desc;
 static const char *output, *name, *report_path, *depfile_path;
-static uint32_t partition;
+static uint32_t partition, extract;
 static double unit = 1;
 static int32_t zstd_level = 3;
 static bool strict, if_changed;
@@ -23,6 +23,8 @@ static const option options[] = {
      512},
     {"partition", 0, OPTION_CHOICE, &partition, "cuts|vsa",
      "how the surface is cut into patches [cuts]", 0, 0},
+    {"extract", 0, OPTION_CHOICE, &extract, "cpu|gpu",
+     "what reads the maps off the patches: gpu renders them, through EGL [cpu]", 0, 0},
     {"error", 0, OPTION_NUMBER, &desc.error, "E",
      "smallest asset whose RMS error is at most this fraction of the diagonal", 1e-9, 0.5},
     {"height-bits", 0, OPTION_UINT, &desc.height_bits, "8|16", "bits of a height [8]", 8, 16},
@@ -156,6 +158,7 @@ int cmd_cook(int argc, char **argv)
     if (code)
         return code;
     desc.partition = (gtx_partition)(GTX_PARTITION_CUTS + partition);
+    desc.extract = (gtx_extract)(GTX_EXTRACT_CPU + extract);
     desc.zstd_level = zstd_level ? zstd_level : -1;
     desc.unit = (float)unit;
     desc.measure = report_path != NULL;

@@ -257,6 +257,10 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
     task.begin("import");
     Models models = read_models(input, desc.more, desc.more_count, task);
     facts.source_hash = models.hash;
+    if (const Extractor *gpu = options.bake.extractor) {
+        facts.renderer = gpu->renderer();
+        facts.version = gpu->version();
+    }
     facts.key = content_key(options, models.hash);
     Asset asset(nullptr, gtx_close);
     if (output) {

@@ -24,18 +24,18 @@ constexpr int DEFAULT_ZSTD = 0;
 #endif
 
 /* A C caller can store any number in an enum, which C++ may not even read as one. */
-static unsigned partition_number(const gtx_cook_desc &desc)
+template <class Enum> static unsigned number_of(const Enum &field)
 {
-    std::underlying_type_t<gtx_partition> number;
-    static_assert(sizeof number == sizeof desc.partition);
-    std::memcpy(&number, &desc.partition, sizeof number);
+    std::underlying_type_t<Enum> number;
+    std::memcpy(&number, &field, sizeof number);
     return unsigned(number);
 }
 
 void check(const gtx_cook_desc &desc)
 {
     require_zeroed(desc.reserved);
-    require_argument(partition_number(desc) <= GTX_PARTITION_VSA, "unknown partition");
+    require_argument(number_of(desc.partition) <= GTX_PARTITION_VSA, "unknown partition");
+    require_argument(number_of(desc.extract) <= GTX_EXTRACT_GPU, "unknown extraction");
     require_argument(desc.charts <= MOST_CHARTS, "charts is at most 2^20");
     require_argument(!desc.resolution || (desc.resolution >= 64 && desc.resolution <= 512),
                      "resolution is 64 to 512");
@@ -47,7 +47,7 @@ void check(const gtx_cook_desc &desc)
     require_argument(desc.threads <= MOST_THREADS, "threads is at most 1024");
     require_argument(desc.unit >= 0 && std::isfinite(desc.unit), "unit is a positive number");
     require_argument(desc.error >= 0 && desc.error < 1, "error is a fraction of the diagonal");
-    require_argument(desc.error == 0 || partition_number(desc) != GTX_PARTITION_VSA,
+    require_argument(desc.error == 0 || number_of(desc.partition) != GTX_PARTITION_VSA,
                      "an error can be asked for with the partition cuts only");
     require_argument(desc.measure <= 1, "measure is 0 or 1");
     require_argument(desc.z_up <= 1, "z_up is 0 or 1");
@@ -60,7 +60,7 @@ Options options_of(const gtx_cook_desc &desc)
 {
     Options options;
     options.chart.charts = desc.charts;
-    if (partition_number(desc) == GTX_PARTITION_VSA)
+    if (number_of(desc.partition) == GTX_PARTITION_VSA)
         options.chart.method = PartitionMethod::VSA;
     if (desc.resolution)
         options.chart.resolution = desc.resolution;
@@ -71,6 +71,10 @@ Options options_of(const gtx_cook_desc &desc)
     options.chart.height_bits = options.bake.height_bits;
     options.chart.grain = 1u << (options.bake.mips - 1);
     options.bake.dilation = desc.dilation ? desc.dilation : 1u << (options.bake.mips - 1);
+    if (number_of(desc.extract) == GTX_EXTRACT_GPU) {
+        options.driver = std::make_shared<const Driver>();
+        options.bake.extractor = &options.driver->extractor();
+    }
     options.zstd = desc.zstd_level == 0 ? DEFAULT_ZSTD : std::max(desc.zstd_level, 0);
     options.unit = desc.unit > 0 ? desc.unit : 1;
     options.z_up = desc.z_up;
@@ -91,8 +95,8 @@ uint64_t content_key(const Options &options, uint64_t source_hash)
     std::memcpy(&unit_bits, &options.unit, sizeof unit_bits);
     uint64_t error_bits;
     std::memcpy(&error_bits, &options.error, sizeof error_bits);
-    char text[512]; /* more than the longest numbers take */
-    int size = snprintf(text, sizeof text,
+    char numbers[512]; /* more than the longest take */
+    int size = snprintf(numbers, sizeof numbers,
                         "geotex %d revision %d source %016" PRIx64 " partition %s charts %u "
                         "resolution %u bits %u mips %u dilation %u zstd %d unit %08" PRIx32
                         " error %016" PRIx64 " up %c",
@@ -101,7 +105,10 @@ uint64_t content_key(const Options &options, uint64_t source_hash)
                         options.free_bits ? 0 : options.bake.height_bits, options.bake.mips,
                         options.bake.dilation, options.zstd, unit_bits, error_bits,
                         options.z_up ? 'z' : 'y');
-    return gtx_hash_bytes(text, size_t(size));
+    std::string text(numbers, size_t(size));
+    if (const Extractor *gpu = options.bake.extractor)
+        text += " extract gpu " + gpu->renderer() + " " + gpu->version();
+    return gtx_hash_bytes(text.data(), text.size());
 }
 
 } // namespace gtx

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bake/bake.hpp"
+#include "cook/driver.hpp"
 
 #include <geotex/cook.h>
 
@@ -10,6 +11,7 @@ namespace gtx {
 struct Options {
     ChartOptions chart;
     BakeOptions bake;
+    std::shared_ptr<const Driver> driver; /* null: the CPU extracts the maps */
     int zstd = 0;
     float unit = 1;
     double error = 0;            /* asked for; 0: none */
@@ -20,6 +22,7 @@ struct Options {
 
 /* Throws Error: ARGUMENT, NOT_ZEROED. */
 void check(const gtx_cook_desc &desc);
+/* Of a checked descriptor. Throws Error: GL, SHADER. */
 Options options_of(const gtx_cook_desc &desc);
 
 /* The partition as an asset names it. */

@@ -48,6 +48,17 @@ static void write_charts(Json &json, const CookFacts &facts)
     gtx_json_end_object(&json);
 }
 
+static void write_extract(Json &json, const CookFacts &facts)
+{
+    gtx_json_begin_object(&json, "extract");
+    gtx_json_string(&json, "by", facts.renderer.empty() ? "cpu" : "gpu");
+    if (!facts.renderer.empty()) {
+        gtx_json_string(&json, "renderer", facts.renderer.c_str());
+        gtx_json_string(&json, "version", facts.version.c_str());
+    }
+    gtx_json_end_object(&json);
+}
+
 static void write_error(Json &json, const CookFacts &facts)
 {
     gtx_json_begin_object(&json, "error");
@@ -103,6 +114,7 @@ std::string write_cook_report(const CookFacts &facts, const std::vector<std::str
     gtx_json_integer(&json, "vertices", facts.source_vertices);
     gtx_json_end_object(&json);
     write_charts(json, facts);
+    write_extract(json, facts);
     gtx_json_begin_object(&json, "dropped_triangles");
     for (const auto &[reason, count] : facts.clean.dropped)
         gtx_json_integer(&json, reason.c_str(), count);

@@ -19,6 +19,7 @@ struct CookFacts {
     ChartReport charts;
     uint64_t chart_count = 0;
     BakeReport bake;
+    std::string renderer, version; /* of the driver that extracted the maps; empty: the CPU did */
     double requested = 0;        /* 0: none */
     bool measured = false;
     SurfaceError error;

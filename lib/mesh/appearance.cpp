@@ -60,7 +60,6 @@ struct Point {
     Uv uv(const Texture &texture) const;
     std::array<float, 4> sample(const Texture &texture, Texels kind) const;
     Vec3f normal() const;
-    std::array<float, 4> vertex_color() const;
 };
 } // namespace
 
@@ -105,7 +104,7 @@ Vec3f Point::normal() const
     return Vec3f(normalize(mesh.area_vector(triangle))); /* normals that cancel out */
 }
 
-std::array<float, 4> Point::vertex_color() const
+static std::array<float, 4> vertex_color(const Mesh &mesh, size_t triangle, const float weights[3])
 {
     if (mesh.colors.empty())
         return {1, 1, 1, 1};
@@ -118,6 +117,12 @@ std::array<float, 4> Point::vertex_color() const
         sum[3] += weights[k] * float(c.a) / 255;
     }
     return sum;
+}
+
+Interpolated interpolate(const Mesh &mesh, size_t triangle, const float weights[3])
+{
+    const Point point = {mesh, triangle, weights, 0};
+    return {point.normal(), vertex_color(mesh, triangle, weights)};
 }
 
 /* ---- the normal texture ---- */
@@ -213,11 +218,17 @@ static void set_emission(const Point &point, const Material &m, SurfaceSample &s
 SurfaceSample sample_surface(const Mesh &mesh, size_t triangle, const float weights[3],
                              double footprint)
 {
+    return sample_surface(mesh, triangle, weights, footprint,
+                          interpolate(mesh, triangle, weights));
+}
+
+SurfaceSample sample_surface(const Mesh &mesh, size_t triangle, const float weights[3],
+                             double footprint, const Interpolated &corners)
+{
     const Point point = {mesh, triangle, weights, footprint};
-    const std::array<float, 4> color = point.vertex_color();
     SurfaceSample s;
-    s.normal = point.normal();
-    std::copy(color.begin(), color.end(), s.color);
+    s.normal = corners.normal;
+    std::copy(corners.color.begin(), corners.color.end(), s.color);
     if (mesh.appearance.material.empty())
         return s;
     const Material &m = mesh.appearance.materials[mesh.appearance.material[triangle]];

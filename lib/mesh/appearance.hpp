@@ -77,9 +77,19 @@ struct SurfaceSample {
     float cut = 1;                                 /* alpha less its cutoff; < 0: nothing is there */
 };
 
+/* What the corners of a triangle make of a point between them. */
+struct Interpolated {
+    Vec3f normal;                                  /* unit, object space */
+    std::array<float, 4> color = {1, 1, 1, 1};     /* linear */
+};
+Interpolated interpolate(const Mesh &mesh, size_t triangle, const float weights[3]);
+
 /* `weights` are barycentric; `footprint` is the side, in object units, of the square that the
  * sample stands for: it chooses the textures' mip level. */
 SurfaceSample sample_surface(const Mesh &mesh, size_t triangle, const float weights[3],
                              double footprint);
+/* The same where somebody else, a GPU say, has interpolated the corners. */
+SurfaceSample sample_surface(const Mesh &mesh, size_t triangle, const float weights[3],
+                             double footprint, const Interpolated &corners);
 
 } // namespace gtx
