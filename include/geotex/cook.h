@@ -25,11 +25,11 @@ typedef enum gtx_partition {
 } gtx_partition;
 
 /* How the maps are extracted from the patches' triangles. GPU is the paper's way (section 5): each
- * patch is rendered along its frame's z, colours unlit, normals renormalised; textures are looked
- * up, and what lies beyond a patch's border is continued, as by the CPU. Both agree within a code on
- * 99.9 % of the texels. The bytes that the GPU gives depend on its driver, which the report names;
- * one of OpenGL 3.3 is asked for through EGL, without a window. A context that the calling thread
- * has current through EGL is current again when the call returns. */
+ * patch is rendered along its frame's z, vertex colours unlit, normals renormalised; textures are
+ * looked up, and what lies beyond a patch's border is continued, as by the CPU. On Mesa's llvmpipe
+ * both agree within a code on 99.9 % of the texels that both cover. The bytes that the GPU gives
+ * depend on its driver, which the report names; one of OpenGL 3.3 is asked for through EGL, without
+ * a window. A context that the calling thread has current through EGL is so again afterwards. */
 typedef enum gtx_extract {
     GTX_EXTRACT_DEFAULT = 0,      /* cpu */
     GTX_EXTRACT_CPU = 1,
@@ -75,7 +75,8 @@ typedef struct gtx_cook_desc {
  *   - the content of every file behind the models: themselves, and the buffers, material libraries
  *     and images that they refer to, one that is missing included; not their paths or times;
  *   - the options that change what comes out: partition, extract (and the driver, where it is GPU),
- *     charts, resolution, height_bits, dilation, mips, zstd_level, unit, error and z_up; not threads, measure, progress, strict or allocator;
+ *     charts, resolution, height_bits, dilation, mips, zstd_level, unit, error and z_up; not
+ *     threads, measure, progress, strict or allocator;
  *   - geotex's version and the revision of its cooker,
  * but not the library that decodes images. Where `strict` is asked for, an asset that was cooked
  * with warnings is cooked again; where `charts_ply` is, or importing read what could not be

@@ -1,4 +1,4 @@
-/* The OpenGL functions of the extraction: one table, which a loader fills. No GL symbol is linked. */
+/* The OpenGL functions of the extraction: one table that a loader fills. No GL symbol is linked. */
 #pragma once
 
 #include "bake/extract.hpp"

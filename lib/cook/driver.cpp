@@ -107,7 +107,8 @@ Driver::Context::Context()
         if (query_devices && query_devices(MOST_DEVICES, devices, &count))
             for (EGLint i = 0; i < count && !made; ++i)
                 made = make(display_of(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr));
-        made = made || make(display_of(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+        if (!made)
+            made = make(display_of(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
     }
     egl.BindAPI(api_before);
     if (!made)

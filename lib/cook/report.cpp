@@ -231,6 +231,8 @@ void write_meta(const MetaFacts &facts, Json &json)
     gtx_json_integer(&json, "mips", facts.mips);
     gtx_json_integer(&json, "dilation", facts.dilation);
     gtx_json_string(&json, "up", facts.z_up ? "z" : "y");
+    if (facts.by_gpu)
+        gtx_json_string(&json, "extract", "gpu");
     gtx_json_end_object(&json);
     gtx_json_begin_object(&json, "source");
     gtx_json_integer(&json, "triangles", facts.source_triangles);

@@ -65,7 +65,7 @@ struct Report : gtx_report {
 struct MetaFacts {
     const char *partition;
     uint64_t charts, resolution, height_bits, mips, dilation;
-    bool z_up;
+    bool z_up, by_gpu;
     uint64_t source_triangles, source_hash, key, warnings;
 };
 void write_meta(const MetaFacts &facts, Json &json);

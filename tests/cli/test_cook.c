@@ -155,6 +155,25 @@ static void several_models_cook_together(void **state)
     expect(gtx("cook - open.obj --name a.obj -o b.gtx <sphere.obj"), 0);
 }
 
+/* By the driver that there is, or with a line that there is none. */
+static void a_gpu_may_extract_the_maps(void **state)
+{
+    (void)state;
+    int code = gtx("cook sphere.obj -o gpu.gtx --extract gpu --report gpu.json");
+    if (code == 5) {
+        expect_text("sphere.obj: error[gl]: no OpenGL driver");
+        print_message("skipped: %s", output);
+        skip();
+    }
+    expect(code, 0);
+    expect(gtx("cook sphere.obj -o gpu.gtx --extract hand"), 1);
+    size_t size;
+    char *text = slurp("gpu.json", &size);
+    text[size] = 0;
+    assert_non_null(strstr(text, "\"renderer\""));
+    free(text);
+}
+
 /* Not that of whoever started the command. */
 static void peak_memory_is_the_commands_own(void **state)
 {
@@ -196,6 +215,7 @@ int main(void)
         cmocka_unit_test(strict_is_exit_3),
         cmocka_unit_test(progress_is_a_json_object_a_line),
         cmocka_unit_test(several_models_cook_together),
+        cmocka_unit_test(a_gpu_may_extract_the_maps),
         cmocka_unit_test(peak_memory_is_the_commands_own),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -1,6 +1,7 @@
 /* Extraction by the GPU: it agrees with the CPU's, says whose it is, and leaves callers theirs. */
 #include "cook/schema.hpp"
 
+#include "bake/agreement.hpp"
 #include "cook/folder.hpp"
 #include "host/offscreen.h"
 
@@ -68,83 +69,22 @@ static Cooked cook(const std::string &model, const char *name, gtx_extract extra
 
 /* ---- agreement ---- */
 
-/* Texels of two assets of the same charts, and how many of them differ by more than one code. */
-struct Agreement {
-    uint64_t both = 0;              /* covered by both */
-    uint64_t one = 0;               /* covered by one alone, or of patches whose sizes differ */
-    uint64_t height = 0, normal = 0, color = 0;
-};
-
-struct Pages {
-    gtx_info info;
-    const uint8_t *maps[4];
-
-    explicit Pages(const gtx_asset *asset)
-    {
-        gtx_get_info(asset, &info);
-        for (int map : {GTX_MAP_HEIGHT, GTX_MAP_NORMAL, GTX_MAP_COLOR})
-            maps[map] =
-                static_cast<const uint8_t *>(gtx_map_data(asset, gtx_map(map), 0, nullptr));
-    }
-    size_t texel(const gtx_patch &p, unsigned i, unsigned j) const
-    {
-        return (size_t(p.page) * info.page_height + p.rect[1] + j) * info.page_width + p.rect[0] + i;
-    }
-};
-
-static bool differ(const uint8_t *a, const uint8_t *b, int channels)
-{
-    for (int k = 0; k < channels; ++k)
-        if (std::abs(a[k] - b[k]) > 1)
-            return true;
-    return false;
-}
-
-static void add_patch(const Pages &a, const gtx_patch &p, const Pages &b, const gtx_patch &q,
-                      Agreement &out)
-{
-    if (p.rect[2] != q.rect[2] || p.rect[3] != q.rect[3]) {
-        out.one += uint64_t(p.rect[2]) * p.rect[3];
-        return;
-    }
-    for (unsigned j = 0; j < p.rect[3]; ++j) {
-        for (unsigned i = 0; i < p.rect[2]; ++i) {
-            const size_t x = a.texel(p, i, j), y = b.texel(q, i, j);
-            const bool covered[2] = {a.maps[GTX_MAP_HEIGHT][x] != 0, b.maps[GTX_MAP_HEIGHT][y] != 0};
-            out.both += covered[0] && covered[1];
-            out.one += covered[0] != covered[1];
-            if (!covered[0] || !covered[1])
-                continue;
-            auto differs = [&](gtx_map map, int channels) {
-                return a.maps[map] && differ(a.maps[map] + x * size_t(channels),
-                                             b.maps[map] + y * size_t(channels), channels);
-            };
-            out.height += differs(GTX_MAP_HEIGHT, 1);
-            out.normal += differs(GTX_MAP_NORMAL, 2);
-            out.color += differs(GTX_MAP_COLOR, 4);
-        }
-    }
-}
-
 static void expect_agreement(const std::string &model, const char *name)
 {
     const Cooked cpu = cook(model, name, GTX_EXTRACT_CPU), gpu = cook(model, name, GTX_EXTRACT_GPU);
-    const Pages a(cpu.asset.get()), b(gpu.asset.get());
-    assert_int_equal(a.info.patch_count, b.info.patch_count);
-    Agreement found;
-    for (uint32_t i = 0; i < a.info.patch_count; ++i)
-        add_patch(a, gtx_patches(cpu.asset.get())[i], b, gtx_patches(gpu.asset.get())[i], found);
-    auto share = [&](uint64_t differing) { return 100 - 100. * double(differing) / double(found.both); };
+    const agreement::Agreement found = agreement::measure(cpu.asset.get(), gpu.asset.get());
+    gtx_info info;
+    gtx_get_info(gpu.asset.get(), &info);
+    auto percent = [&](uint64_t differing) { return 100 * found.share(differing); };
     print_message("%s on %s: within one code of %llu texels: height %.3f %%, normal %.3f %%, "
-                  "colour %.3f %%; %llu more covered by one alone\n",
+                  "colour %.3f %%%s; %llu more covered by one alone\n",
                   name, gpu.report["extract"]["renderer"].get<std::string>().c_str(),
-                  (unsigned long long)found.both, share(found.height), share(found.normal),
-                  share(found.color), (unsigned long long)found.one);
+                  (unsigned long long)found.both, percent(found.height), percent(found.normal),
+                  percent(found.color), info.has_color ? "" : " (it has none)",
+                  (unsigned long long)(found.either - found.both));
     assert_true(found.both > 1000);
-    assert_true(share(found.height) >= 99.9);
-    assert_true(share(found.normal) >= 99.9);
-    assert_true(share(found.color) >= 99.9);
-    assert_true(double(found.one) < 0.002 * double(found.both));
+    assert_true(found.least() >= 0.999);
+    assert_true(double(found.both) > 0.99 * double(found.either));
 }
 
 static void both_agree_within_a_code(void **)
@@ -178,8 +118,37 @@ static void the_report_names_the_driver(void **)
     assert_true(!gpu.report["extract"]["renderer"].get<std::string>().empty());
     assert_true(!gpu.report["extract"]["version"].get<std::string>().empty());
     assert_true(cpu.report["extract"] == schema::json({{"by", "cpu"}}));
+    size_t size = 0;
+    const char *meta = gtx_meta(gpu.asset.get(), &size);
+    assert_true(schema::json::parse(meta, meta + size)["options"]["extract"] == "gpu");
     assert_true(gpu.report["key"] != cpu.report["key"]);
     assert_true(plain.report["key"] == cpu.report["key"]);
+}
+
+/* As a build does that finds the same driver again, and one that wants no GPU. */
+static void the_key_covers_the_extraction(void **)
+{
+    const std::string output = in_folder("key.gtx");
+    cook(coloured_ball(4), "ball.ply", GTX_EXTRACT_GPU); /* skips without a driver */
+    gtx_cook_desc desc = {};
+    desc.if_changed = 1;
+    desc.extract = GTX_EXTRACT_GPU;
+    for (uint32_t unchanged : {0, 1}) {
+        gtx_report report = {};
+        gtx_error error = {};
+        if (gtx_cook_file(small_ball_file().c_str(), output.c_str(), &desc, &report, &error))
+            fail_msg("%s", error.message);
+        assert_int_equal(report.unchanged, unchanged);
+        gtx_report_free(&report);
+    }
+    desc.extract = GTX_EXTRACT_CPU;
+    gtx_report report = {};
+    assert_int_equal(gtx_cook_file(small_ball_file().c_str(), output.c_str(), &desc, &report,
+                                   nullptr),
+                     GTX_OK);
+    assert_int_equal(report.unchanged, 0);
+    gtx_report_free(&report);
+    fs::remove(output);
 }
 
 static void any_thread_count_gives_the_same(void **)
@@ -257,6 +226,7 @@ int main()
         cmocka_unit_test(both_agree_within_a_code),
         cmocka_unit_test(both_agree_on_models),
         cmocka_unit_test(the_report_names_the_driver),
+        cmocka_unit_test(the_key_covers_the_extraction),
         cmocka_unit_test(any_thread_count_gives_the_same),
         cmocka_unit_test(the_callers_context_is_current_again),
     };
