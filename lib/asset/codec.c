@@ -1,7 +1,15 @@
 /* Sections of scheme 2: one zstd frame, with contexts in the caller's memory. */
 #include "asset/codec.h"
 
+#include "asset/shell.h"
 #include "base/alloc.h"
+
+bool gtx_filter_is_buffered(const gtx_section *section)
+{
+    if (section->kind == GTX_SECTION_SHELL)
+        return section->filter == GTX_FILTER_SHELL;
+    return section->filter & GTX_FILTER_PLANES;
+}
 
 #ifdef GTX_ZSTD
 /* Contexts inside given memory, their sizes and frame headers are zstd's "static" interface. */
@@ -56,9 +64,11 @@ const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx
         return "the frame does not fill the section";
 
     ZSTD_DCtx *context = ZSTD_initStaticDCtx(codec->context, codec->context_size);
-    uint8_t *coded = section->filter & GTX_FILTER_PLANES ? codec->filtered : out;
+    uint8_t *coded = gtx_filter_is_buffered(section) ? codec->filtered : out;
     if (!context || ZSTD_decompressDCtx(context, coded, size, bytes, stored) != size)
         return "the frame does not decode";
+    if (section->filter && section->kind == GTX_SECTION_SHELL)
+        return gtx_shell_filter_undo(coded, size, out) ? NULL : "the counts do not fit the size";
     if (section->filter)
         gtx_filter_undo(image, section->filter, coded, out);
     return NULL;
@@ -68,7 +78,10 @@ size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, gtx_map_
                           int level, const uint8_t *data, uint8_t *out)
 {
     size_t size = (size_t)section->size;
-    if (section->filter) {
+    if (section->filter && section->kind == GTX_SECTION_SHELL) {
+        gtx_shell_filter_apply(data, size, codec->filtered);
+        data = codec->filtered;
+    } else if (section->filter) {
         gtx_filter_apply(image, section->filter, data, codec->filtered);
         data = codec->filtered;
     }

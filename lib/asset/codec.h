@@ -33,11 +33,14 @@ bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t 
                        int level);
 void gtx_codec_end(gtx_codec *codec);
 
+/* Whether undoing the section's filter takes a buffer of its size. */
+bool gtx_filter_is_buffered(const gtx_section *section);
+
 /* Decodes a section of scheme 2 into `out` (section->size bytes). NULL, or what is wrong. */
 const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
                                const uint8_t *bytes, uint8_t *out);
 
-/* Encodes an image, or plain bytes when section->filter is 0, into `out`. Returns the bytes
+/* Encodes an image, a level of the shell, or plain bytes when section->filter is 0, into `out`. Returns the bytes
  * written, 0 when they are not fewer than section->size. */
 size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
                           int level, const uint8_t *data, uint8_t *out);

@@ -30,6 +30,7 @@ static uint32_t filter_of(const gtx_asset *asset, gtx_section_kind kind)
     case GTX_SECTION_NORMAL: return 1;
     case GTX_SECTION_COLOR:
     case GTX_SECTION_MATERIAL: return 3;
+    case GTX_SECTION_SHELL: return GTX_FILTER_SHELL;
     default: return 0;
     }
 }

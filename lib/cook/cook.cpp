@@ -4,6 +4,8 @@
 #include "cook/options.hpp"
 #include "cook/report.hpp"
 
+#include "bake/shell.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -19,7 +21,8 @@ struct Stage {
     float weight;
 };
 constexpr Stage STAGES[] = {{"import", 6}, {"clean", 14}, {"partition", 40}, {"frame", 10},
-                            {"bake", 22},  {"pack", 2},   {"measure", 0},    {"write", 6}};
+                            {"bake", 22},  {"pack", 2},   {"shell", 8},      {"measure", 0},
+                            {"write", 6}};
 constexpr float MEASURE_WEIGHT = 60;
 
 static Task make_task(const gtx_cook_desc &desc)
@@ -45,17 +48,37 @@ static std::vector<const uint8_t *> level_pointers(const std::vector<std::vector
     return pointers;
 }
 
-static Asset make_asset(const Maps &maps, const Options &options, const CookFacts &facts)
+static std::vector<gtx_shell> shell_levels(const std::vector<ShellLevel> &shell)
+{
+    std::vector<gtx_shell> levels;
+    for (const ShellLevel &level : shell) {
+        gtx_shell out = {};
+        std::copy_n(level.origin, 3, out.origin);
+        out.step = level.step;
+        out.error = level.error;
+        out.vertex_count = uint32_t(level.positions.size() / 3);
+        out.triangle_count = uint32_t(level.triangle_count());
+        out.first = level.first.data();
+        out.indices = level.indices.data();
+        out.positions = level.positions.data();
+        levels.push_back(out);
+    }
+    return levels;
+}
+
+static Asset make_asset(const Maps &maps, const std::vector<ShellLevel> &shell,
+                        const Options &options, const CookFacts &facts)
 {
     Json meta;
     write_meta({"vsa", facts.chart_count, options.chart.resolution, maps.height_bits,
-                maps.mip_count, options.bake.dilation, options.z_up, facts.source_triangles,
-                facts.source_hash, facts.key, facts.warnings},
+                maps.mip_count, options.bake.dilation, options.shell_levels, options.z_up,
+                facts.source_triangles, facts.source_hash, facts.key, facts.warnings},
                meta);
     const std::vector<const uint8_t *> normal = level_pointers(maps.normal),
                                        color = level_pointers(maps.color),
                                        material = level_pointers(maps.material),
                                        emission = level_pointers(maps.emission);
+    const std::vector<gtx_shell> levels = shell_levels(shell);
 
     gtx_asset_desc desc = {};
     desc.patches = maps.patches.data();
@@ -72,6 +95,8 @@ static Asset make_asset(const Maps &maps, const Options &options, const CookFact
     desc.material = material.empty() ? nullptr : material.data();
     desc.emission = emission.empty() ? nullptr : emission.data();
     desc.emission_scale = maps.emission_scale;
+    desc.shell = levels.data();
+    desc.shell_levels = uint32_t(levels.size());
     desc.meta = meta.text;
     desc.meta_size = meta.size;
     std::copy_n(maps.bounds_min, 3, desc.bounds_min);
@@ -140,10 +165,12 @@ static Asset cook_mesh(const Mesh &mesh, const gtx_cook_desc &desc, const Option
     Asset asset(nullptr, gtx_close);
     {
         Maps maps = bake(mesh, partition, options.bake, task);
+        std::vector<ShellLevel> shell =
+            make_shell(shell_source(mesh, partition, maps), maps, options.shell_levels, task);
         refuse_warnings(desc, task);
         facts.bake = maps.report;
         facts.warnings = task.warnings.size();
-        asset = make_asset(maps, options, facts);
+        asset = make_asset(maps, shell, options, facts);
     }
     if (desc.measure) {
         task.begin("measure");
@@ -192,6 +219,9 @@ static void report_on(const gtx_asset *asset, CookFacts &facts, bool unchanged,
     facts.chart_count = info.patch_count;
     facts.content_hash = info.content_hash;
     facts.gpu_bytes = gpu_bytes(info);
+    facts.shell.resize(info.shell_levels);
+    for (uint32_t k = 0; k < info.shell_levels; ++k)
+        gtx_get_shell(asset, k, &facts.shell[k]);
     facts.stages = task.stages();
     facts.seconds = task.seconds();
     Json json;

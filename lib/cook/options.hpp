@@ -10,6 +10,7 @@ namespace gtx {
 struct Options {
     ChartOptions chart;
     BakeOptions bake;
+    unsigned shell_levels = 5;
     int zstd = 0;
     float unit = 1;
     bool z_up = false;

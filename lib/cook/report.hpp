@@ -22,6 +22,7 @@ struct CookFacts {
     bool measured = false;
     SurfaceError error;
     uint64_t source_hash = 0, key = 0, warnings = 0;
+    std::vector<gtx_shell> shell; /* the levels of the asset */
     uint64_t bytes = 0, gpu_bytes = 0, content_hash = 0;
     std::vector<const char *> stages;
     std::vector<double> seconds; /* a stage each */
@@ -50,7 +51,7 @@ void fill_report(gtx_report *report, const Json &json, const std::string &summar
 /* The META section: what made the asset, from what. Nothing of when, where or by how many. */
 struct MetaFacts {
     const char *partition;
-    uint64_t charts, resolution, height_bits, mips, dilation;
+    uint64_t charts, resolution, height_bits, mips, dilation, shell_levels;
     bool z_up;
     uint64_t source_triangles, source_hash, key, warnings;
 };

@@ -1,0 +1,416 @@
+/* Fewer triangles: vertices are merged into a neighbour, cheapest first (Garland and Heckbert 1997),
+ * in rounds of many at once that do not touch each other. Borders between patches cost nothing and
+ * need no care: both sides share their vertices, and a triangle may reach as far as the maps of its
+ * patch do. */
+#include "bake/shell_parts.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+namespace gtx::baking {
+
+using Triangle = std::array<uint32_t, 3>;
+
+constexpr uint32_t NO_VERTEX = 0xffffffffu;
+/* Triangles around a vertex beyond which it stays. */
+constexpr int MOST_FAN = 40;
+/* Share of the candidates that a round may take, before those that touch others are left out. */
+constexpr double ROUND_SHARE = 0.4;
+/* A triangle may turn by as much as has this cosine. */
+constexpr double LEAST_TURN_COSINE = 0.25;
+/* What moving a vertex along a plane costs, as a share of the squared distance: of two that leave the
+ * surface alone, the shorter way makes better triangles. */
+constexpr double SLIDE = 1e-5;
+/* Weight of staying on an open border against staying on the surface. */
+constexpr double BORDER = 10;
+
+/* Sum of squared distances to planes, times their weights. */
+struct Quadric {
+    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0, x = 0, y = 0, z = 0, c = 0, weight = 0;
+
+    void add_plane(const Vec3d &n, double d, double w)
+    {
+        xx += w * n.x * n.x, xy += w * n.x * n.y, xz += w * n.x * n.z;
+        yy += w * n.y * n.y, yz += w * n.y * n.z, zz += w * n.z * n.z;
+        x += w * n.x * d, y += w * n.y * d, z += w * n.z * d;
+        c += w * d * d;
+    }
+    void add(const Quadric &q)
+    {
+        xx += q.xx, xy += q.xy, xz += q.xz, yy += q.yy, yz += q.yz, zz += q.zz;
+        x += q.x, y += q.y, z += q.z, c += q.c, weight += q.weight;
+    }
+    /* Mean squared distance at a point. */
+    double at(const Vec3d &p) const
+    {
+        double rx = xx * p.x + 2 * (xy * p.y + xz * p.z + x);
+        double ry = yy * p.y + 2 * (yz * p.z + y);
+        double rz = zz * p.z + 2 * z;
+        double sum = rx * p.x + ry * p.y + rz * p.z + c;
+        return weight > 0 ? std::max(sum, 0.0) / weight : 0;
+    }
+};
+
+/* The triangles around a vertex in order: `ring` holds their other vertices, one more than there are
+ * triangles where the fan is open. */
+struct Fan {
+    int count = 0, ring_count = 0;
+    bool open = false;
+    uint32_t triangle[MOST_FAN], ring[MOST_FAN + 1];
+
+    bool has(uint32_t vertex) const
+    {
+        return std::find(ring, ring + ring_count, vertex) != ring + ring_count;
+    }
+};
+
+struct Candidate {
+    float cost;
+    uint32_t from, to;
+};
+
+struct Simplifier::State {
+    const std::vector<PatchRegion> &regions;
+    Task &task;
+    std::vector<Vec3d> positions;
+    std::vector<Triangle> triangles;
+    std::vector<uint32_t> patch;
+    std::vector<Quadric> quadrics;
+    std::vector<uint32_t> start, around; /* triangles of each vertex */
+    std::vector<uint8_t> touched;
+    std::vector<Candidate> candidates;
+    double error = 0;            /* squared */
+
+    State(const ShellSource &source, const std::vector<PatchRegion> &regions, Task &task)
+        : regions(regions), task(task), positions(source.positions), triangles(source.triangles),
+          patch(source.patch)
+    {
+    }
+    void find_around();
+    void make_quadrics();
+    bool find_fan(uint32_t vertex, Fan &fan) const;
+    bool keeps_topology(const Fan &fan, uint32_t from, uint32_t to) const;
+    bool keeps_place(uint32_t patch, const Triangle &before, const Triangle &after) const;
+    bool keeps_shape(const Fan &fan, uint32_t from, uint32_t to) const;
+    Candidate find_candidate(uint32_t vertex, double most) const;
+    void find_candidates(double most);
+    void collapse(const Fan &fan, uint32_t from, uint32_t to);
+    void compact();
+    size_t round(size_t wanted, double free, double most);
+};
+
+void Simplifier::State::find_around()
+{
+    start.assign(positions.size() + 1, 0);
+    for (const Triangle &t : triangles)
+        for (uint32_t v : t)
+            ++start[v + 1];
+    for (size_t v = 0; v < positions.size(); ++v)
+        start[v + 1] += start[v];
+    around.resize(3 * triangles.size());
+    std::vector<uint32_t> next(start.begin(), start.end() - 1);
+    for (size_t t = 0; t < triangles.size(); ++t)
+        for (uint32_t v : triangles[t])
+            around[next[v]++] = uint32_t(t);
+}
+
+static int corner_of(const Triangle &triangle, uint32_t vertex)
+{
+    return triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : triangle[2] == vertex ? 2 : -1;
+}
+
+/* False when the vertex is none that could go: without triangles, with too many, or with several
+ * fans. */
+bool Simplifier::State::find_fan(uint32_t vertex, Fan &fan) const
+{
+    const int count = int(start[vertex + 1] - start[vertex]);
+    if (count == 0 || count > MOST_FAN)
+        return false;
+    uint32_t of[MOST_FAN], after[MOST_FAN], before[MOST_FAN];
+    for (int i = 0; i < count; ++i) {
+        of[i] = around[start[vertex] + i];
+        const Triangle &t = triangles[of[i]];
+        const int k = corner_of(t, vertex);
+        after[i] = t[(k + 1) % 3];
+        before[i] = t[(k + 2) % 3];
+    }
+    int first = 0; /* the one that none leads to, in an open fan */
+    for (int i = 0; i < count; ++i)
+        if (std::find(before, before + count, after[i]) == before + count)
+            first = i;
+    fan.count = 0;
+    fan.ring_count = 0;
+    for (int i = first; i < count && fan.count < count;) {
+        fan.triangle[fan.count++] = of[i];
+        fan.ring[fan.ring_count++] = after[i];
+        const uint32_t end = before[i];
+        fan.open = end != after[first];
+        i = int(std::find(after, after + count, end) - after);
+        if (i == count)
+            fan.ring[fan.ring_count++] = end;
+        else if (i == first)
+            break;
+    }
+    return fan.count == count && (fan.open == (fan.ring_count == count + 1));
+}
+
+/* Planes of triangles by their area; at open borders also planes that stand on the edge. */
+void Simplifier::State::make_quadrics()
+{
+    quadrics.resize(positions.size());
+    const size_t chunk = 4096, chunks = (positions.size() + chunk - 1) / chunk;
+    task.parallel(chunks, [&](size_t n) {
+        Fan fan;
+        for (size_t v = n * chunk; v < std::min(positions.size(), (n + 1) * chunk); ++v) {
+            Quadric &q = quadrics[v];
+            auto add = [&](const Vec3d &normal, const Vec3d &on, double weight) {
+                q.add_plane(normal, -dot(normal, on), weight);
+            };
+            for (uint32_t i = start[v]; i < start[v + 1]; ++i) {
+                const Triangle &t = triangles[around[i]];
+                const Vec3d a = positions[t[0]];
+                const Vec3d area = cross(positions[t[1]] - a, positions[t[2]] - a);
+                add(normalize(area), a, length(area));
+                q.weight += length(area);
+            }
+            if (!find_fan(uint32_t(v), fan) || !fan.open)
+                continue;
+            const uint32_t ends[] = {fan.ring[0], fan.ring[fan.ring_count - 1]};
+            const uint32_t sides[] = {fan.triangle[0], fan.triangle[fan.count - 1]};
+            for (int k = 0; k < 2; ++k) {
+                const Triangle &t = triangles[sides[k]];
+                const Vec3d a = positions[t[0]], edge = positions[ends[k]] - positions[v];
+                const Vec3d normal = cross(positions[t[1]] - a, positions[t[2]] - a);
+                add(normalize(cross(edge, normal)), positions[v], BORDER * dot(edge, edge));
+            }
+        }
+    }, 0, 0.05);
+}
+
+/* The link condition (Dey et al. 1999): the surface stays what it is, and nothing vanishes whole. */
+bool Simplifier::State::keeps_topology(const Fan &fan, uint32_t from, uint32_t to) const
+{
+    if (start[to + 1] - start[to] > MOST_FAN)
+        return false;
+    const int at = int(std::find(fan.ring, fan.ring + fan.ring_count, to) - fan.ring);
+    const bool has_before = fan.open ? at > 0 : true, has_after = fan.open ? at < fan.count : true;
+    const uint32_t before = has_before ? fan.ring[(at + fan.ring_count - 1) % fan.ring_count]
+                                       : NO_VERTEX;
+    const uint32_t after = has_after ? fan.ring[(at + 1) % fan.ring_count] : NO_VERTEX;
+    bool remains = false;
+    for (uint32_t i = start[to]; i < start[to + 1]; ++i) {
+        const Triangle &t = triangles[around[i]];
+        if (corner_of(t, from) >= 0)
+            continue;
+        remains = true;
+        int common = 0;
+        for (uint32_t v : t) {
+            const bool beside = v == before || v == after;
+            if (v != to && !beside && fan.has(v))
+                return false;
+            common += beside;
+        }
+        if (common == 2)
+            return false;
+    }
+    return remains;
+}
+
+/* Whether a triangle that changes stays where its patch can show it. One that never was there may go
+ * anywhere. */
+bool Simplifier::State::keeps_place(uint32_t of, const Triangle &before,
+                                    const Triangle &after) const
+{
+    const PatchRegion &region = regions[of];
+    std::array<double, 2> was[3], is[3];
+    for (int k = 0; k < 3; ++k)
+        is[k] = region.place(positions[after[k]]);
+    const bool turned = winding(is) <= 0;
+    if (!turned && region.holds(is))
+        return true;
+    for (int k = 0; k < 3; ++k)
+        was[k] = region.place(positions[before[k]]);
+    return (!turned || winding(was) <= 0) && (region.holds(is) || !region.holds(was));
+}
+
+bool Simplifier::State::keeps_shape(const Fan &fan, uint32_t from, uint32_t to) const
+{
+    for (int i = 0; i < fan.count; ++i) {
+        const Triangle &before = triangles[fan.triangle[i]];
+        if (corner_of(before, to) >= 0)
+            continue;
+        Triangle after = before;
+        const int k = corner_of(before, from);
+        after[k] = to;
+        const Vec3d a = positions[before[(k + 1) % 3]], b = positions[before[(k + 2) % 3]] - a;
+        const Vec3d was = cross(b, positions[from] - a), is = cross(b, positions[to] - a);
+        const double sizes = std::sqrt(dot(was, was) * dot(is, is));
+        if (dot(was, was) > 0 && dot(was, is) <= LEAST_TURN_COSINE * sizes)
+            return false;
+        if (!keeps_place(patch[fan.triangle[i]], before, after))
+            return false;
+    }
+    return true;
+}
+
+/* The cheapest neighbour that the vertex may be merged into; `to` is NO_VERTEX when there is none. */
+Candidate Simplifier::State::find_candidate(uint32_t vertex, double most) const
+{
+    Candidate none = {0, vertex, NO_VERTEX};
+    Fan fan;
+    if (!find_fan(vertex, fan))
+        return none;
+    Candidate options[MOST_FAN + 1];
+    int count = 0;
+    for (int i = 0; i < fan.ring_count; i += fan.open ? fan.ring_count - 1 : 1) {
+        const Vec3d &target = positions[fan.ring[i]], way = target - positions[vertex];
+        const double cost = quadrics[vertex].at(target);
+        if (cost <= most)
+            options[count++] = {float(cost + SLIDE * dot(way, way)), vertex, fan.ring[i]};
+    }
+    std::sort(options, options + count, [](const Candidate &a, const Candidate &b) {
+        return a.cost != b.cost ? a.cost < b.cost : a.to < b.to;
+    });
+    for (int i = 0; i < count; ++i)
+        if (keeps_topology(fan, vertex, options[i].to) && keeps_shape(fan, vertex, options[i].to))
+            return options[i];
+    return none;
+}
+
+void Simplifier::State::find_candidates(double most)
+{
+    std::vector<Candidate> all(positions.size());
+    const size_t chunk = 2048, chunks = (positions.size() + chunk - 1) / chunk;
+    task.parallel(chunks, [&](size_t n) {
+        for (size_t v = n * chunk; v < std::min(positions.size(), (n + 1) * chunk); ++v)
+            all[v] = find_candidate(uint32_t(v), most);
+    }, 0.05, 1);
+    candidates.clear();
+    for (const Candidate &c : all)
+        if (c.to != NO_VERTEX)
+            candidates.push_back(c);
+}
+
+void Simplifier::State::collapse(const Fan &fan, uint32_t from, uint32_t to)
+{
+    for (int i = 0; i < fan.count; ++i) {
+        Triangle &t = triangles[fan.triangle[i]];
+        const bool gone = corner_of(t, to) >= 0;
+        t[corner_of(t, from)] = to;
+        if (gone)
+            t = {NO_VERTEX, NO_VERTEX, NO_VERTEX};
+    }
+    error = std::max(error, quadrics[from].at(positions[to]));
+    quadrics[to].add(quadrics[from]);
+    touched[from] = 1;
+    for (int i = 0; i < fan.ring_count; ++i)
+        touched[fan.ring[i]] = 1;
+}
+
+/* Takes out what is gone: triangles, and the vertices that none has. */
+void Simplifier::State::compact()
+{
+    size_t count = 0;
+    std::vector<uint32_t> renamed(positions.size(), NO_VERTEX);
+    for (size_t t = 0; t < triangles.size(); ++t) {
+        if (triangles[t][0] == NO_VERTEX)
+            continue;
+        triangles[count] = triangles[t];
+        patch[count++] = patch[t];
+        for (uint32_t v : triangles[t])
+            renamed[v] = 0;
+    }
+    triangles.resize(count);
+    patch.resize(count);
+    uint32_t vertices = 0;
+    for (size_t v = 0; v < positions.size(); ++v) {
+        if (renamed[v] == NO_VERTEX)
+            continue;
+        positions[vertices] = positions[v];
+        quadrics[vertices] = quadrics[v];
+        renamed[v] = vertices++;
+    }
+    positions.resize(vertices);
+    quadrics.resize(vertices);
+    for (Triangle &t : triangles)
+        for (uint32_t &v : t)
+            v = renamed[v];
+}
+
+/* Merges vertices that do not touch each other, so that what was found out about each still holds.
+ * Returns how many. */
+size_t Simplifier::State::round(size_t wanted, double free, double most)
+{
+    find_around();
+    find_candidates(most);
+    auto cheaper = [](const Candidate &a, const Candidate &b) {
+        return a.cost != b.cost ? a.cost < b.cost : a.from < b.from;
+    };
+    size_t taken = 0, share = size_t(std::ceil(double(candidates.size()) * ROUND_SHARE));
+    if (share < candidates.size())
+        std::nth_element(candidates.begin(), candidates.begin() + share, candidates.end(), cheaper);
+    const float limit = share < candidates.size() ? candidates[share].cost : INFINITY;
+    auto end = std::partition(candidates.begin(), candidates.end(), [&](const Candidate &c) {
+        return c.cost <= std::max(limit, float(free));
+    });
+    std::sort(candidates.begin(), end, cheaper);
+
+    touched.assign(positions.size(), 0);
+    size_t left = triangles.size();
+    Fan fan;
+    for (auto c = candidates.begin(); c != end; ++c) {
+        if (left <= wanted && c->cost > free)
+            break;
+        if (touched[c->from] || touched[c->to])
+            continue;
+        find_fan(c->from, fan);
+        left -= fan.open ? 1 : 2;
+        collapse(fan, c->from, c->to);
+        ++taken;
+    }
+    compact();
+    return taken;
+}
+
+Simplifier::Simplifier(const ShellSource &source, const std::vector<PatchRegion> &regions,
+                       Task &task)
+{
+    state_ = std::make_unique<State>(source, regions, task);
+    state_->find_around();
+    state_->make_quadrics();
+}
+
+Simplifier::~Simplifier() = default;
+
+void Simplifier::reduce(size_t wanted, double free, double most)
+{
+    for (bool going = true; going;) {
+        const size_t taken = state_->round(wanted, free * free, most * most);
+        const size_t left = state_->triangles.size();
+        /* Past the wanted number a few that still cost nothing are not worth a round. */
+        going = taken > 0 && (left > wanted || (free > 0 && taken > left / 50));
+    }
+}
+
+const std::vector<Vec3d> &Simplifier::positions() const
+{
+    return state_->positions;
+}
+
+const std::vector<Triangle> &Simplifier::triangles() const
+{
+    return state_->triangles;
+}
+
+const std::vector<uint32_t> &Simplifier::patch() const
+{
+    return state_->patch;
+}
+
+double Simplifier::error() const
+{
+    return std::sqrt(state_->error);
+}
+
+} // namespace gtx::baking

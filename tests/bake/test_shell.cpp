@@ -1,0 +1,371 @@
+/* The shell of meshes with known surfaces: how far it strays, that it stays whole and where its
+ * patches have normals, and that any number of threads makes the same. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+extern "C" {
+#include <cmocka.h>
+}
+
+#include "bake/shapes.hpp"
+#include "bake/shell.hpp"
+
+#include <memory>
+#include <set>
+
+using namespace gtx;
+using shapes::sheet;
+
+struct Shell {
+    Maps maps;
+    std::vector<ShellLevel> levels;
+};
+
+static Shell shell_of(const Mesh &mesh, const Partition &partition, unsigned levels = 5,
+                      unsigned threads = 2, BakeOptions options = {})
+{
+    Task task(threads, nullptr, nullptr, {"bake", "pack", "shell"}, {1, 1, 1});
+    Shell out = {bake(mesh, partition, options, task), {}};
+    out.levels = make_shell(shell_source(mesh, partition, out.maps), out.maps, levels, task);
+    return out;
+}
+
+static std::vector<gtx_shell> describe(const std::vector<ShellLevel> &levels)
+{
+    std::vector<gtx_shell> out;
+    for (const ShellLevel &level : levels) {
+        gtx_shell shell = {};
+        std::copy_n(level.origin, 3, shell.origin);
+        shell.step = level.step;
+        shell.error = level.error;
+        shell.vertex_count = uint32_t(level.positions.size() / 3);
+        shell.triangle_count = uint32_t(level.triangle_count());
+        shell.first = level.first.data();
+        shell.indices = level.indices.data();
+        shell.positions = level.positions.data();
+        out.push_back(shell);
+    }
+    return out;
+}
+
+/* The asset obeys every rule, and its file gives the levels back. */
+static void assert_valid(const Shell &shell)
+{
+    std::vector<const uint8_t *> normals;
+    gtx_asset_desc desc = shapes::describe(shell.maps, normals);
+    const std::vector<gtx_shell> levels = describe(shell.levels);
+    desc.shell = levels.data();
+    desc.shell_levels = uint32_t(levels.size());
+    gtx_asset *asset = nullptr, *again = nullptr;
+    gtx_error error;
+    if (gtx_create(&desc, &asset, &error))
+        print_error("%s\n", error.message);
+    assert_non_null(asset);
+    gtx_encode_desc encode = {};
+#ifdef GTX_ZSTD
+    encode.zstd_level = 3;
+#endif
+    void *data;
+    size_t size;
+    assert_int_equal(gtx_encode(asset, &encode, &data, &size, nullptr), GTX_OK);
+    assert_int_equal(gtx_open_memory(data, size, nullptr, &again, nullptr), GTX_OK);
+    for (uint32_t k = 0; k < levels.size(); ++k) {
+        gtx_shell level;
+        assert_int_equal(gtx_get_shell(again, k, &level), GTX_OK);
+        assert_int_equal(level.triangle_count, levels[k].triangle_count);
+        assert_memory_equal(level.indices, levels[k].indices, 12 * level.triangle_count);
+        assert_memory_equal(level.positions, levels[k].positions, 6 * level.vertex_count);
+    }
+    gtx_shell none;
+    assert_int_equal(gtx_get_shell(again, uint32_t(levels.size()), &none), GTX_ERROR_ARGUMENT);
+    gtx_close(again);
+    gtx_close(asset);
+    free(data);
+}
+
+static Vec3d point(const ShellLevel &level, uint32_t vertex)
+{
+    Vec3d p;
+    for (int k = 0; k < 3; ++k)
+        p[k] = level.origin[k] + double(level.step) * level.positions[3 * vertex + k];
+    return p;
+}
+
+/* Edges by how many triangles have them, in the one direction less in the other. */
+struct Edges {
+    size_t open = 0, crowded = 0;
+};
+static Edges count_edges(const ShellLevel &level)
+{
+    std::map<std::array<uint32_t, 2>, std::array<int, 2>> uses;
+    for (size_t i = 0; i < level.indices.size(); ++i) {
+        uint32_t a = level.indices[i], b = level.indices[i % 3 == 2 ? i - 2 : i + 1];
+        ++uses[{std::min(a, b), std::max(a, b)}][a < b];
+    }
+    Edges edges;
+    for (const auto &use : uses) {
+        edges.open += use.second[0] + use.second[1] == 1;
+        edges.crowded += use.second[0] > 1 || use.second[1] > 1;
+    }
+    return edges;
+}
+
+/* Calls with patch and triangle, three points of it relative to the anchor. */
+static void for_each(const ShellLevel &level,
+                     const std::function<void(size_t, const std::array<Vec3d, 3> &)> &call)
+{
+    for (size_t p = 0; p + 1 < level.first.size(); ++p)
+        for (size_t t = level.first[p]; t < level.first[p + 1]; ++t)
+            call(p, {point(level, level.indices[3 * t]), point(level, level.indices[3 * t + 1]),
+                     point(level, level.indices[3 * t + 2])});
+}
+
+/* Texel (i, j) covers i..i+1, j..j+1. */
+static std::array<double, 2> texel(const gtx_patch &p, const Vec3d &point)
+{
+    Vec3d x(p.axis_x[0], p.axis_x[1], p.axis_x[2]), y(p.axis_y[0], p.axis_y[1], p.axis_y[2]);
+    Vec3d z(p.axis_z[0], p.axis_z[1], p.axis_z[2]);
+    Vec3d from = point - Vec3d(p.origin[0], p.origin[1], p.origin[2]);
+    double det = dot(cross(x, y), z);
+    return {dot(from, cross(y, z)) / det / p.extent_x * p.rect[2],
+            dot(from, cross(z, x)) / det / p.extent_y * p.rect[3]};
+}
+
+/* Whether a texel has a code, or one at most `dilation` away. */
+static bool has_normal(const Maps &maps, const gtx_patch &p, int x, int y)
+{
+    for (int j = y - p.dilation; j <= y + p.dilation; ++j)
+        for (int i = x - p.dilation; i <= x + p.dilation; ++i) {
+            if (i < 0 || j < 0 || i >= p.rect[2] || j >= p.rect[3])
+                continue;
+            size_t row = size_t(p.page) * maps.page_height + p.rect[1] + j;
+            if (maps.height[row * maps.page_width + p.rect[0] + i])
+                return true;
+        }
+    return false;
+}
+
+/* Every triangle faces its patch, but for slivers, and has a normal wherever it is looked at. */
+static void assert_placed(const Shell &shell)
+{
+    for (const ShellLevel &level : shell.levels) {
+        for_each(level, [&](size_t n, const std::array<Vec3d, 3> &corner) {
+            const gtx_patch &p = shell.maps.patches[n];
+            std::array<double, 2> at[3];
+            for (int k = 0; k < 3; ++k)
+                at[k] = texel(p, corner[k]);
+            const double area = (at[1][0] - at[0][0]) * (at[2][1] - at[0][1]) -
+                                (at[1][1] - at[0][1]) * (at[2][0] - at[0][0]);
+            assert_true(area > -0.5);
+            for (int a = 0; a <= 16; ++a) {
+                for (int b = 0; a + b <= 16; ++b) {
+                    double u[2];
+                    for (int k = 0; k < 2; ++k)
+                        u[k] = (a * at[0][k] + b * at[1][k] + (16 - a - b) * at[2][k]) / 16;
+                    assert_true(u[0] > -0.5 && u[0] < p.rect[2] + 0.5);
+                    assert_true(u[1] > -0.5 && u[1] < p.rect[3] + 0.5);
+                    assert_true(has_normal(shell.maps, p, int(u[0]), int(u[1])));
+                }
+            }
+        });
+    }
+}
+
+/* ---- the shapes ---- */
+
+static void a_ball_stays_closed_and_near(void **)
+{
+    Mesh mesh = shapes::ball(40, [](const Vec3d &) { return 1.0; });
+    Shell shell = shell_of(mesh, shapes::split(mesh, shapes::by_axis(mesh), 64));
+    assert_int_equal(shell.levels.size(), 5);
+    assert_valid(shell);
+    assert_placed(shell);
+    size_t before = mesh.triangle_count();
+    double error = 0;
+    for (const ShellLevel &level : shell.levels) {
+        assert_true(level.triangle_count() <= before / 2 + 2);
+        assert_true(level.error >= error);
+        before = level.triangle_count();
+        error = level.error;
+        Edges edges = count_edges(level); /* neighbours share their vertices, and so their borders */
+        assert_int_equal(edges.open, 0);
+        assert_int_equal(edges.crowded, 0);
+        double deepest = 0;
+        for_each(level, [&](size_t, const std::array<Vec3d, 3> &c) {
+            for (const Vec3d &p : c) /* vertices are some of the source's, rounded */
+                assert_true(std::fabs(length(p) - 1) < 2 * level.step);
+            deepest = std::max(deepest, 1 - length((c[0] + c[1] + c[2]) / 3));
+        });
+        assert_true(deepest < 4 * level.error + level.step);
+    }
+    assert_true(shell.levels[0].error < 0.01 && shell.levels[0].triangle_count() < 2401);
+}
+
+static void bumps_stay_closed(void **)
+{
+    Mesh mesh = shapes::ball(48, shapes::bumps);
+    Shell shell = shell_of(mesh, shapes::split(mesh, shapes::by_axis(mesh), 96));
+    assert_true(shell.levels.size() >= 3);
+    assert_valid(shell);
+    assert_placed(shell);
+    for (const ShellLevel &level : shell.levels)
+        assert_int_equal(count_edges(level).open + count_edges(level).crowded, 0);
+}
+
+/* Nothing but its twelve edges matters: what is left are corners and a few more. */
+static void a_cube_keeps_its_corners(void **)
+{
+    Mesh mesh = shapes::ball(24, [](const Vec3d &d) {
+        return 1 / std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
+    });
+    Shell shell = shell_of(mesh, shapes::split(mesh, shapes::by_axis(mesh), 64));
+    assert_true(shell.levels.size() >= 1);
+    assert_valid(shell);
+    assert_placed(shell);
+    const ShellLevel &last = shell.levels.back();
+    assert_true(last.triangle_count() <= 60 && last.error < 0.03);
+    std::set<std::array<int, 3>> corners;
+    for (uint32_t v = 0; v < last.positions.size() / 3; ++v) {
+        Vec3d p = point(last, v);
+        if (std::fabs(p.x) > 0.98 && std::fabs(p.y) > 0.98 && std::fabs(p.z) > 0.98)
+            corners.insert({p.x > 0, p.y > 0, p.z > 0});
+    }
+    assert_int_equal(corners.size(), 8);
+}
+
+static void an_open_border_stays(void **)
+{
+    Mesh mesh = sheet(48, [](double u, double v) {
+        return Vec3d(u, v, 0.05 * std::sin(7 * u) * std::cos(5 * v));
+    });
+    Shell shell = shell_of(mesh, shapes::split(mesh, [&](size_t t) {
+        return mesh.position(t, 0).x < 0.5;
+    }, 64));
+    assert_valid(shell);
+    assert_placed(shell);
+    for (const ShellLevel &level : shell.levels) {
+        double area = 0;
+        for_each(level, [&](size_t, const std::array<Vec3d, 3> &c) {
+            area += cross(c[1] - c[0], c[2] - c[0]).z / 2;
+        });
+        assert_true(std::fabs(area - 1) < 0.01);
+        assert_int_equal(count_edges(level).crowded, 0);
+    }
+}
+
+/* Both sides of a thin strip stay two sides. */
+static void a_two_sided_strip_stays(void **)
+{
+    Mesh mesh = sheet(40, [](double u, double v) {
+        return Vec3d(u, v / 8, 0.1 * std::sin(6 * u));
+    });
+    Partition partition = shapes::split(mesh, shapes::all_in_one(), 64);
+    partition.charts[0].two_sided = true;
+    Shell shell = shell_of(mesh, partition);
+    assert_true(shell.levels.size() >= 2);
+    assert_valid(shell);
+    assert_placed(shell);
+}
+
+static void two_components_both_stay(void **)
+{
+    Mesh mesh = shapes::ball(20, [](const Vec3d &) { return 1.0; });
+    const size_t vertices = mesh.positions.size(), triangles = mesh.triangle_count();
+    for (size_t v = 0; v < vertices; ++v)
+        mesh.positions.push_back(mesh.positions[v] * 0.2 + Vec3d(3, 0, 0));
+    for (size_t t = 0; t < triangles; ++t) {
+        std::array<uint32_t, 3> other = mesh.triangles[t];
+        for (uint32_t &v : other)
+            v += uint32_t(vertices);
+        mesh.triangles.push_back(other);
+    }
+    mesh.normals.insert(mesh.normals.end(), mesh.normals.begin(), mesh.normals.end());
+    auto axis = shapes::by_axis(mesh);
+    Shell shell = shell_of(mesh, shapes::split(mesh, [&](size_t t) {
+        return axis(t) + 6 * (t >= triangles);
+    }, 64));
+    assert_valid(shell);
+    assert_placed(shell);
+    for (const ShellLevel &level : shell.levels) {
+        size_t small = 0;
+        for_each(level, [&](size_t p, const std::array<Vec3d, 3> &) { small += p >= 6; });
+        assert_in_range(small, 4, level.triangle_count() - 4);
+        assert_int_equal(count_edges(level).open, 0);
+    }
+}
+
+static void one_triangle_is_its_own_shell(void **)
+{
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    shapes::add_normals(mesh);
+    Shell shell = shell_of(mesh, shapes::split(mesh, shapes::all_in_one(), 16));
+    assert_int_equal(shell.levels.size(), 1);
+    assert_int_equal(shell.levels[0].triangle_count(), 1);
+    assert_true(shell.levels[0].error == 0);
+    assert_valid(shell);
+}
+
+static void none_and_fewer_levels_can_be_asked_for(void **)
+{
+    Mesh mesh = shapes::ball(20, shapes::bumps);
+    Partition partition = shapes::split(mesh, shapes::by_axis(mesh), 48);
+    assert_int_equal(shell_of(mesh, partition, 0).levels.size(), 0);
+    Shell one = shell_of(mesh, partition, 1), three = shell_of(mesh, partition, 3);
+    assert_int_equal(one.levels.size(), 1);
+    assert_int_equal(three.levels.size(), 3);
+    assert_true(one.levels[0].indices == three.levels[0].indices);
+}
+
+static void any_thread_count_gives_the_same(void **)
+{
+    Mesh mesh = shapes::ball(48, shapes::bumps);
+    Partition partition = shapes::split(mesh, shapes::by_axis(mesh), 96);
+    Shell one = shell_of(mesh, partition, 5, 1), many = shell_of(mesh, partition, 5, 7);
+    assert_int_equal(one.levels.size(), many.levels.size());
+    for (size_t k = 0; k < one.levels.size(); ++k) {
+        assert_true(one.levels[k].indices == many.levels[k].indices);
+        assert_true(one.levels[k].positions == many.levels[k].positions);
+        assert_true(one.levels[k].first == many.levels[k].first);
+        assert_true(one.levels[k].error == many.levels[k].error);
+    }
+}
+
+/* Every option of baking, and a place far from the origin. */
+static void options_and_offsets_are_followed(void **)
+{
+    Mesh mesh = shapes::ball(24, shapes::bumps);
+    for (Vec3d &p : mesh.positions)
+        p = p * 100 + Vec3d(1e7, -2e7, 3e6);
+    Partition partition = shapes::split(mesh, shapes::by_axis(mesh), 64);
+    for (unsigned bits : {8u, 16u}) {
+        for (unsigned mips : {1u, 8u}) {
+            BakeOptions options;
+            options.height_bits = bits;
+            options.mips = mips;
+            Shell shell = shell_of(mesh, partition, 5, 2, options);
+            assert_true(shell.levels.size() >= 2);
+            assert_valid(shell);
+            assert_int_equal(count_edges(shell.levels[0]).open, 0);
+        }
+    }
+}
+
+int main()
+{
+    const CMUnitTest tests[] = {
+        cmocka_unit_test(a_ball_stays_closed_and_near),
+        cmocka_unit_test(bumps_stay_closed),
+        cmocka_unit_test(a_cube_keeps_its_corners),
+        cmocka_unit_test(an_open_border_stays),
+        cmocka_unit_test(a_two_sided_strip_stays),
+        cmocka_unit_test(two_components_both_stay),
+        cmocka_unit_test(one_triangle_is_its_own_shell),
+        cmocka_unit_test(none_and_fewer_levels_can_be_asked_for),
+        cmocka_unit_test(any_thread_count_gives_the_same),
+        cmocka_unit_test(options_and_offsets_are_followed),
+    };
+    return cmocka_run_group_tests_name("shell", tests, nullptr, nullptr);
+}
