@@ -175,7 +175,6 @@ static ShellLevel make_level(const Simplifier &simplified, const std::vector<Pat
     ShellLevel level;
     std::copy_n(lattice.origin, 3, level.origin);
     level.step = lattice.step;
-    level.error = float(simplified.error());
     std::map<std::array<uint16_t, 3>, uint32_t> name; /* of the vertex at a place */
     std::vector<Triangle> ordered;
     Strip strip(triangles, patch, places.size());
@@ -214,14 +213,17 @@ std::vector<ShellLevel> make_shell(const ShellSource &source, const Maps &maps, 
     Vec3d size;
     for (int k = 0; k < 3; ++k)
         size[k] = double(maps.bounds_max[k]) - maps.bounds_min[k];
-    Simplifier simplifier(source, regions, task);
+    const double free = FREE_ERROR * pitch;
+    double thinned = 0;
+    Simplifier simplifier(thin(source, regions.size(), free, thinned, task), regions, task);
     size_t wanted = source.triangles.size() / FINEST_RATIO;
     for (unsigned k = 0; k < levels; ++k) {
         const size_t before = simplifier.triangles().size();
-        simplifier.reduce(wanted, k ? 0 : FREE_ERROR * pitch, MOST_ERROR * length(size));
+        simplifier.reduce(wanted, k ? 0 : free, MOST_ERROR * length(size));
         if (k && double(simplifier.triangles().size()) > MOST_SHARE * double(before))
             break;
         ShellLevel level = make_level(simplifier, regions, lattice);
+        level.error = float(thinned + simplifier.error());
         if (level.indices.empty())
             break;
         shell.push_back(std::move(level));

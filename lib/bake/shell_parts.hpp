@@ -45,6 +45,10 @@ inline double winding(const std::array<double, 2> (&c)[3])
     return (c[1][0] - c[0][0]) * (c[2][1] - c[0][1]) - (c[1][1] - c[0][1]) * (c[2][0] - c[0][0]);
 }
 
+/* The same surface with the vertices inside patches thinned out, at an error of at most `most`;
+ * `error` gets what it came to. */
+ShellSource thin(const ShellSource &source, size_t patches, double most, double &error, Task &task);
+
 /* Takes vertices away, cheapest first. */
 class Simplifier {
 public:

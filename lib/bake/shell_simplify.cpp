@@ -5,8 +5,7 @@
 #include "bake/shell_parts.hpp"
 
 #include <algorithm>
-#include <cstring>
-#include <memory>
+#include <functional>
 
 namespace gtx::baking {
 
@@ -15,8 +14,8 @@ using Triangle = std::array<uint32_t, 3>;
 constexpr uint32_t NO_VERTEX = 0xffffffffu;
 /* Triangles around a vertex beyond which it stays. */
 constexpr int MOST_FAN = 40;
-/* Share of the candidates that a round may take, before those that touch others are left out. */
-constexpr double ROUND_SHARE = 0.4;
+/* Share of the vertices that a round looks at, the cheapest: more once few of them may go. */
+constexpr double ROUND_SHARE = 0.4, FEW = 0.02;
 /* A triangle may turn by as much as has this cosine. */
 constexpr double LEAST_TURN_COSINE = 0.25;
 /* What moving a vertex along a plane costs, as a share of the squared distance: of two that leave the
@@ -66,9 +65,14 @@ struct Fan {
 };
 
 struct Candidate {
-    float cost;
+    float cost;                  /* of the cheapest neighbour, whether it may be or not, at first */
     uint32_t from, to;
 };
+
+static bool is_cheaper(const Candidate &a, const Candidate &b)
+{
+    return a.cost != b.cost ? a.cost < b.cost : a.from < b.from;
+}
 
 struct Simplifier::State {
     const std::vector<PatchRegion> &regions;
@@ -80,11 +84,13 @@ struct Simplifier::State {
     std::vector<uint32_t> start, around; /* triangles of each vertex */
     std::vector<uint8_t> touched;
     std::vector<Candidate> candidates;
+    size_t first_count;          /* triangles at the start */
+    double share = ROUND_SHARE;  /* of the candidates that a round takes */
     double error = 0;            /* squared */
 
     State(const ShellSource &source, const std::vector<PatchRegion> &regions, Task &task)
         : regions(regions), task(task), positions(source.positions), triangles(source.triangles),
-          patch(source.patch)
+          patch(source.patch), first_count(triangles.size())
     {
     }
     void find_around();
@@ -94,7 +100,8 @@ struct Simplifier::State {
     bool keeps_place(uint32_t patch, const Triangle &before, const Triangle &after) const;
     bool keeps_shape(const Fan &fan, uint32_t from, uint32_t to) const;
     Candidate find_candidate(uint32_t vertex, double most) const;
-    void find_candidates(double most);
+    float least_cost(uint32_t vertex, double most) const;
+    void find_candidates(double free, double most);
     void collapse(const Fan &fan, uint32_t from, uint32_t to);
     void compact();
     size_t round(size_t wanted, double free, double most);
@@ -185,7 +192,7 @@ void Simplifier::State::make_quadrics()
                 add(normalize(cross(edge, normal)), positions[v], BORDER * dot(edge, edge));
             }
         }
-    }, 0, 0.05);
+    }, 0, 0);
 }
 
 /* The link condition (Dey et al. 1999): the surface stays what it is, and nothing vanishes whole. */
@@ -278,18 +285,61 @@ Candidate Simplifier::State::find_candidate(uint32_t vertex, double most) const
     return none;
 }
 
-void Simplifier::State::find_candidates(double most)
+/* What the vertex costs at least; infinite where it must stay. */
+float Simplifier::State::least_cost(uint32_t vertex, double most) const
 {
-    std::vector<Candidate> all(positions.size());
-    const size_t chunk = 2048, chunks = (positions.size() + chunk - 1) / chunk;
-    task.parallel(chunks, [&](size_t n) {
-        for (size_t v = n * chunk; v < std::min(positions.size(), (n + 1) * chunk); ++v)
-            all[v] = find_candidate(uint32_t(v), most);
-    }, 0.05, 1);
-    candidates.clear();
-    for (const Candidate &c : all)
-        if (c.to != NO_VERTEX)
-            candidates.push_back(c);
+    double least = INFINITY;
+    for (uint32_t i = start[vertex]; i < start[vertex + 1]; ++i) {
+        const Triangle &t = triangles[around[i]];
+        const int k = corner_of(t, vertex);
+        for (int other = 1; other < 3; ++other) {
+            const Vec3d &target = positions[t[(k + other) % 3]], way = target - positions[vertex];
+            const double cost = quadrics[vertex].at(target);
+            if (cost <= most)
+                least = std::min(least, cost + SLIDE * dot(way, way));
+        }
+    }
+    return float(least);
+}
+
+/* Those that a round is about: the cheapest, and all below `free`. Whether they may go is looked at
+ * for them alone. */
+void Simplifier::State::find_candidates(double free, double most)
+{
+    const double done = 1 - 0.7 * double(triangles.size()) / double(first_count);
+    candidates.resize(positions.size());
+    const size_t chunk = 2048;
+    auto for_all = [&](const std::function<void(Candidate &, size_t)> &body) {
+        task.parallel((candidates.size() + chunk - 1) / chunk, [&](size_t n) {
+            const size_t end = std::min(candidates.size(), (n + 1) * chunk);
+            for (size_t i = n * chunk; i < end; ++i)
+                body(candidates[i], i);
+        }, done, done);
+    };
+    for_all([&](Candidate &c, size_t v) {
+        c = {least_cost(uint32_t(v), most), uint32_t(v), NO_VERTEX};
+    });
+    auto keep = [&](auto &&kept) {
+        candidates.erase(std::partition(candidates.begin(), candidates.end(), kept),
+                         candidates.end());
+    };
+    keep([](const Candidate &c) { return std::isfinite(c.cost); });
+    const size_t count = size_t(double(candidates.size()) * share);
+    float limit = INFINITY;
+    if (count < candidates.size()) {
+        std::nth_element(candidates.begin(), candidates.begin() + count, candidates.end(),
+                         is_cheaper);
+        limit = std::max(candidates[count].cost, float(free));
+        keep([&](const Candidate &c) { return c.cost <= limit; });
+    }
+    for_all([&](Candidate &c, size_t) { c = find_candidate(c.from, most); });
+    keep([&](const Candidate &c) { return c.to != NO_VERTEX && c.cost <= limit; });
+    /* Among those that cost nothing neighbours go one after another: so more of them find room. */
+    auto paid = std::partition(candidates.begin(), candidates.end(),
+                               [&](const Candidate &c) { return c.cost <= free; });
+    std::sort(candidates.begin(), paid,
+              [](const Candidate &a, const Candidate &b) { return a.from < b.from; });
+    std::sort(paid, candidates.end(), is_cheaper);
 }
 
 void Simplifier::State::collapse(const Fan &fan, uint32_t from, uint32_t to)
@@ -343,30 +393,19 @@ void Simplifier::State::compact()
 size_t Simplifier::State::round(size_t wanted, double free, double most)
 {
     find_around();
-    find_candidates(most);
-    auto cheaper = [](const Candidate &a, const Candidate &b) {
-        return a.cost != b.cost ? a.cost < b.cost : a.from < b.from;
-    };
-    size_t taken = 0, share = size_t(std::ceil(double(candidates.size()) * ROUND_SHARE));
-    if (share < candidates.size())
-        std::nth_element(candidates.begin(), candidates.begin() + share, candidates.end(), cheaper);
-    const float limit = share < candidates.size() ? candidates[share].cost : INFINITY;
-    auto end = std::partition(candidates.begin(), candidates.end(), [&](const Candidate &c) {
-        return c.cost <= std::max(limit, float(free));
-    });
-    std::sort(candidates.begin(), end, cheaper);
-
+    find_candidates(free, most);
+    size_t taken = 0;
     touched.assign(positions.size(), 0);
     size_t left = triangles.size();
     Fan fan;
-    for (auto c = candidates.begin(); c != end; ++c) {
-        if (left <= wanted && c->cost > free)
+    for (const Candidate &c : candidates) {
+        if (left <= wanted && c.cost > free)
             break;
-        if (touched[c->from] || touched[c->to])
+        if (touched[c.from] || touched[c.to])
             continue;
-        find_fan(c->from, fan);
+        find_fan(c.from, fan);
         left -= fan.open ? 1 : 2;
-        collapse(fan, c->from, c->to);
+        collapse(fan, c.from, c.to);
         ++taken;
     }
     compact();
@@ -385,11 +424,14 @@ Simplifier::~Simplifier() = default;
 
 void Simplifier::reduce(size_t wanted, double free, double most)
 {
+    state_->share = ROUND_SHARE;
     for (bool going = true; going;) {
         const size_t taken = state_->round(wanted, free * free, most * most);
         const size_t left = state_->triangles.size();
+        const bool few = double(taken) < FEW * double(left);
         /* Past the wanted number a few that still cost nothing are not worth a round. */
-        going = taken > 0 && (left > wanted || (free > 0 && taken > left / 50));
+        going = left > wanted ? taken > 0 || state_->share < 1 : free > 0 && !few;
+        state_->share = few ? std::min(1.0, 2 * state_->share) : ROUND_SHARE;
     }
 }
 

@@ -70,7 +70,7 @@ static gtx_cook_desc watched(Watch &watch)
 }
 
 static const std::vector<std::string> cook_stages = {"import", "clean", "partition", "frame",
-                                                     "bake",   "pack",  "write"};
+                                                     "bake",   "pack",  "shell",     "write"};
 
 static void a_cancelled_cook_overwrites_nothing(void **)
 {
