@@ -81,7 +81,7 @@ class Strip {
 public:
     Strip(const std::vector<Triangle> &triangles, const std::vector<uint32_t> &patch,
           size_t vertices)
-        : triangles_(triangles), patch_(patch), start_(vertices + 1, 0), left_(triangles.size(), 1)
+        : triangles_(triangles), patch_(patch), start_(vertices + 1, 0), left_(triangles.size(), 0)
     {
         for (const Triangle &t : triangles)
             for (uint32_t v : t)
@@ -94,21 +94,24 @@ public:
             for (uint32_t v : triangles[t])
                 around_[next[v]++] = uint32_t(t);
     }
-    /* All triangles of the patch, `members`, corners turned so that the shared edge comes first. */
-    void follow(const std::vector<uint32_t> &members, std::vector<Triangle> &out)
+    /* Adds the triangles `members` of a patch, corners turned so that a shared edge comes first. */
+    void follow(uint32_t patch, const std::vector<uint32_t> &members, std::vector<Triangle> &out)
     {
-        for (uint32_t seed : members) {
-            Triangle next;
-            while (find_beside(patch_[seed], next))
-                take(next, out);
-            if (left_[seed]) {
-                left_[seed] = 0;
-                take(triangles_[seed], out);
-            }
-        }
+        for (uint32_t t : members)
+            left_[t] = 1;
         Triangle next;
-        while (!members.empty() && find_beside(patch_[members[0]], next))
-            take(next, out);
+        auto go_on = [&] {
+            while (find_beside(patch, next))
+                take(next, out);
+        };
+        go_on();
+        for (uint32_t seed : members) {
+            if (!left_[seed])
+                continue;
+            left_[seed] = 0;
+            take(triangles_[seed], out);
+            go_on();
+        }
     }
 
 private:
@@ -141,7 +144,7 @@ private:
     const std::vector<Triangle> &triangles_;
     const std::vector<uint32_t> &patch_;
     std::vector<uint32_t> start_, around_;
-    std::vector<uint8_t> left_;
+    std::vector<uint8_t> left_; /* to be followed */
     std::deque<Edge> recent_;
 };
 
@@ -178,9 +181,9 @@ static ShellLevel make_level(const Simplifier &simplified, const std::vector<Pat
     std::map<std::array<uint16_t, 3>, uint32_t> name; /* of the vertex at a place */
     std::vector<Triangle> ordered;
     Strip strip(triangles, patch, places.size());
-    for (const auto &of_patch : members) {
+    for (uint32_t p = 0; p < members.size(); ++p) {
         level.first.push_back(uint32_t(ordered.size()));
-        strip.follow(of_patch, ordered);
+        strip.follow(p, members[p], ordered);
     }
     level.first.push_back(uint32_t(ordered.size()));
     for (const Triangle &t : ordered) {

@@ -352,6 +352,27 @@ static void options_and_offsets_are_followed(void **)
     }
 }
 
+/* A real scan, with holes in it. */
+static void a_scan_is_followed(void **)
+{
+    const char *models = getenv("GEOTEX_MODELS");
+    if (!models)
+        skip();
+    Task task(2, nullptr, nullptr, {"partition", "frame", "bake", "pack", "shell"},
+              {1, 1, 1, 1, 1});
+    CleanReport report;
+    Mesh mesh = clean_mesh(import_mesh(std::string(models) + "/scans/bunny.ply", task), task, report);
+    Partition partition = partition_vsa(mesh, {}, task);
+    Shell shell = {bake(mesh, partition, {}, task), {}};
+    shell.levels = make_shell(shell_source(mesh, partition, shell.maps), shell.maps, 5, task);
+    assert_true(shell.levels.size() >= 4);
+    assert_valid(shell);
+    assert_placed(shell);
+    const double diagonal = 0.25;
+    assert_true(shell.levels[0].error < 2e-3 * diagonal);
+    assert_true(shell.levels[0].triangle_count() < mesh.triangle_count() / 7);
+}
+
 int main()
 {
     const CMUnitTest tests[] = {
@@ -365,6 +386,7 @@ int main()
         cmocka_unit_test(none_and_fewer_levels_can_be_asked_for),
         cmocka_unit_test(any_thread_count_gives_the_same),
         cmocka_unit_test(options_and_offsets_are_followed),
+        cmocka_unit_test(a_scan_is_followed),
     };
     return cmocka_run_group_tests_name("shell", tests, nullptr, nullptr);
 }
