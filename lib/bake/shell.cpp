@@ -10,7 +10,7 @@ namespace gtx::baking {
 using Triangle = std::array<uint32_t, 3>;
 
 /* Triangles of the source for one of the finest level: what fills the bytes that a shell may take. */
-constexpr size_t FINEST_RATIO = 8;
+constexpr size_t FINEST_RATIO = 9;
 /* Every level has this part of the triangles of the one before. */
 constexpr size_t LEVEL_RATIO = 2;
 /* A level is worth its bytes when it has at most this share of them. */
