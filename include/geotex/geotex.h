@@ -196,9 +196,9 @@ GTX_API const gtx_patch *gtx_patches(const gtx_asset *asset);
  * (page_width >> k) x (page_height >> k). */
 GTX_API const void *gtx_map_data(const gtx_asset *asset, gtx_map map, uint32_t level, size_t *size);
 
-/* A level of the shell: the whole surface as triangles, for drawing it where it is small. A vertex is
- * its position alone; it may be shared by triangles of several patches, and its texel coordinates in
- * each follow from that patch's frame. Position q of a vertex stands for the point
+/* A level of the shell: the whole surface as triangles, for drawing it where it is small. A vertex
+ * is its position alone; it may be shared by triangles of several patches, and its texel coordinates
+ * in each follow from that patch's frame. Position q of a vertex stands for the point
  *   origin + step * q                                             relative to the asset's anchor. */
 typedef struct gtx_shell {
     float origin[3], step;

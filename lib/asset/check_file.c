@@ -121,7 +121,8 @@ static void check_format(table_walk *walk, gtx_section *section, uint64_t at)
     if (section->kind == GTX_SECTION_META && (section->size < 1 || section->size > GTX_META_LIMIT))
         gtx_break(walk->check, GTX_RULE_META, at + 32, "it has %" PRIu64 " bytes", section->size);
     bool free_size = section->kind >= GTX_SECTION_SHELL;
-    if (section->kind == GTX_SECTION_SHELL && section->size < gtx_shell_size(info->patch_count, 3, 1))
+    if (section->kind == GTX_SECTION_SHELL &&
+        section->size < gtx_shell_size(info->patch_count, 3, 1))
         gtx_break(walk->check, GTX_RULE_SHELL_SIZE, at + 32, "level %u has %" PRIu64 " bytes",
                   section->level, section->size);
     if (!free_size && section->size != right.size)

@@ -48,9 +48,14 @@ static void check_first(const walk *w)
     }
 }
 
+static uint64_t offset_of_indices(const walk *w)
+{
+    return w->offset + GTX_SHELL_HEADER + 4 * ((uint64_t)w->asset->info.patch_count + 1);
+}
+
 static void check_indices(const walk *w)
 {
-    const uint64_t at = w->offset + GTX_SHELL_HEADER + 4 * ((uint64_t)w->asset->info.patch_count + 1);
+    const uint64_t at = offset_of_indices(w);
     uint32_t met = 0;
     for (uint32_t t = 0; t < w->shell.triangle_count; ++t) {
         const uint32_t *index = w->shell.indices + 3 * (size_t)t;
@@ -110,7 +115,7 @@ static bool is_beside(const walk *w, const coordinate along[2], uint32_t vertex)
 
 static void check_places(const walk *w)
 {
-    const uint64_t at = w->offset + GTX_SHELL_HEADER + 4 * ((uint64_t)w->asset->info.patch_count + 1);
+    const uint64_t at = offset_of_indices(w);
     for (uint32_t p = 0; p < w->asset->info.patch_count; ++p) {
         const gtx_patch *patch = &w->asset->patches[p];
         const coordinate along[2] = {coordinate_of(patch, 0), coordinate_of(patch, 1)};

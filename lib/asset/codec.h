@@ -40,8 +40,8 @@ bool gtx_filter_is_buffered(const gtx_section *section);
 const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
                                const uint8_t *bytes, uint8_t *out);
 
-/* Encodes an image, a level of the shell, or plain bytes when section->filter is 0, into `out`. Returns the bytes
- * written, 0 when they are not fewer than section->size. */
+/* Encodes an image or a level of the shell, or plain bytes when section->filter is 0, into `out`.
+ * Returns the bytes written, 0 when they are not fewer than section->size. */
 size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
                           int level, const uint8_t *data, uint8_t *out);
 

@@ -21,7 +21,7 @@ static gtx_result check_arguments(const gtx_asset_desc *desc, gtx_asset **out, g
     if (!desc->meta && desc->meta_size)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "meta_size is given without meta");
     if ((desc->shell_levels && !desc->shell) || desc->shell_levels > GTX_MAX_SHELLS)
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "shell_levels is at most 8, and 0 without shell");
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "shell_levels is at most 8, and 0 without them");
     return GTX_OK;
 }
 

@@ -47,7 +47,8 @@ inline double winding(const std::array<double, 2> (&c)[3])
 
 /* The same surface with the vertices inside patches thinned out, at an error of at most `most`;
  * `error` gets what it came to. */
-ShellSource thin(const ShellSource &source, size_t patches, double most, double &error, Task &task);
+ShellSource thin(const ShellSource &source, size_t patches, double most, double &error,
+                 Task &task);
 
 /* Takes vertices away, cheapest first. */
 class Simplifier {

@@ -56,7 +56,8 @@ static std::vector<std::array<uint32_t, 3>> thin_piece(const Piece &piece, doubl
     return left;
 }
 
-ShellSource thin(const ShellSource &source, size_t patches, double most, double &error, Task &task)
+ShellSource thin(const ShellSource &source, size_t patches, double most, double &error,
+                 Task &task)
 {
     std::vector<std::vector<uint32_t>> members(patches);
     for (size_t t = 0; t < source.triangles.size(); ++t)
