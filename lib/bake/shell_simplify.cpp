@@ -2,18 +2,16 @@
  * in rounds of many at once that do not touch each other. Borders between patches cost nothing and
  * need no care: both sides share their vertices, and a triangle may reach as far as the maps of its
  * patch do. */
+#include "bake/shell_fan.hpp"
 #include "bake/shell_parts.hpp"
+#include "bake/shell_quadric.hpp"
 
 #include <algorithm>
 #include <functional>
 
 namespace gtx::baking {
 
-using Triangle = std::array<uint32_t, 3>;
-
 constexpr uint32_t NO_VERTEX = 0xffffffffu;
-/* Triangles around a vertex beyond which it stays. */
-constexpr int MOST_FAN = 40;
 /* Share of the vertices that a round looks at, the cheapest: more once few of them may go. */
 constexpr double ROUND_SHARE = 0.4, FEW = 0.02;
 /* A triangle may turn by as much as has this cosine. */
@@ -23,46 +21,6 @@ constexpr double LEAST_TURN_COSINE = 0.25;
 constexpr double SLIDE = 1e-5;
 /* Weight of staying on an open border against staying on the surface. */
 constexpr double BORDER = 10;
-
-/* Sum of squared distances to planes, times their weights. */
-struct Quadric {
-    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0, x = 0, y = 0, z = 0, c = 0, weight = 0;
-
-    void add_plane(const Vec3d &n, double d, double w)
-    {
-        xx += w * n.x * n.x, xy += w * n.x * n.y, xz += w * n.x * n.z;
-        yy += w * n.y * n.y, yz += w * n.y * n.z, zz += w * n.z * n.z;
-        x += w * n.x * d, y += w * n.y * d, z += w * n.z * d;
-        c += w * d * d;
-    }
-    void add(const Quadric &q)
-    {
-        xx += q.xx, xy += q.xy, xz += q.xz, yy += q.yy, yz += q.yz, zz += q.zz;
-        x += q.x, y += q.y, z += q.z, c += q.c, weight += q.weight;
-    }
-    /* Mean squared distance at a point. */
-    double at(const Vec3d &p) const
-    {
-        double rx = xx * p.x + 2 * (xy * p.y + xz * p.z + x);
-        double ry = yy * p.y + 2 * (yz * p.z + y);
-        double rz = zz * p.z + 2 * z;
-        double sum = rx * p.x + ry * p.y + rz * p.z + c;
-        return weight > 0 ? std::max(sum, 0.0) / weight : 0;
-    }
-};
-
-/* The triangles around a vertex in order: `ring` holds their other vertices, one more than there are
- * triangles where the fan is open. */
-struct Fan {
-    int count = 0, ring_count = 0;
-    bool open = false;
-    uint32_t triangle[MOST_FAN], ring[MOST_FAN + 1];
-
-    bool has(uint32_t vertex) const
-    {
-        return std::find(ring, ring + ring_count, vertex) != ring + ring_count;
-    }
-};
 
 struct Candidate {
     float cost;                  /* of the cheapest neighbour, whether it may be or not, at first */
@@ -95,7 +53,11 @@ struct Simplifier::State {
     }
     void find_around();
     void make_quadrics();
-    bool find_fan(uint32_t vertex, Fan &fan) const;
+    bool find_fan(uint32_t vertex, Fan &fan) const
+    {
+        return baking::find_fan(triangles, around.data() + start[vertex],
+                                start[vertex + 1] - start[vertex], vertex, fan);
+    }
     bool keeps_topology(const Fan &fan, uint32_t from, uint32_t to) const;
     bool keeps_place(uint32_t patch, const Triangle &before, const Triangle &after) const;
     bool keeps_shape(const Fan &fan, uint32_t from, uint32_t to) const;
@@ -120,46 +82,6 @@ void Simplifier::State::find_around()
     for (size_t t = 0; t < triangles.size(); ++t)
         for (uint32_t v : triangles[t])
             around[next[v]++] = uint32_t(t);
-}
-
-static int corner_of(const Triangle &triangle, uint32_t vertex)
-{
-    return triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : triangle[2] == vertex ? 2 : -1;
-}
-
-/* False when the vertex is none that could go: without triangles, with too many, or with several
- * fans. */
-bool Simplifier::State::find_fan(uint32_t vertex, Fan &fan) const
-{
-    const int count = int(start[vertex + 1] - start[vertex]);
-    if (count == 0 || count > MOST_FAN)
-        return false;
-    uint32_t of[MOST_FAN], after[MOST_FAN], before[MOST_FAN];
-    for (int i = 0; i < count; ++i) {
-        of[i] = around[start[vertex] + i];
-        const Triangle &t = triangles[of[i]];
-        const int k = corner_of(t, vertex);
-        after[i] = t[(k + 1) % 3];
-        before[i] = t[(k + 2) % 3];
-    }
-    int first = 0; /* the one that none leads to, in an open fan */
-    for (int i = 0; i < count; ++i)
-        if (std::find(before, before + count, after[i]) == before + count)
-            first = i;
-    fan.count = 0;
-    fan.ring_count = 0;
-    for (int i = first; i < count && fan.count < count;) {
-        fan.triangle[fan.count++] = of[i];
-        fan.ring[fan.ring_count++] = after[i];
-        const uint32_t end = before[i];
-        fan.open = end != after[first];
-        i = int(std::find(after, after + count, end) - after);
-        if (i == count)
-            fan.ring[fan.ring_count++] = end;
-        else if (i == first)
-            break;
-    }
-    return fan.count == count && (fan.open == (fan.ring_count == count + 1));
 }
 
 /* Planes of triangles by their area; at open borders also planes that stand on the edge. */
