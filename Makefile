@@ -293,6 +293,21 @@ run-bench:
 	@$(build)/gtx cook $(MODEL) -o $(build)/demo/bench.gtx
 	@$(out)/tests/bench/bench $(build)/demo/bench.gtx $(MODEL)
 
+CHARTS ?= 222
+paper-tables: ## the paper's Tables 2 and 3 of MODEL in CHARTS charts (the paper: the bunny, 222), ours beside
+	@$(MAKE) --no-print-directory deps
+	@$(MAKE) --no-print-directory -j$$(nproc) all $(out)/tests/bench/paper_tables
+	@$(MAKE) --no-print-directory run-paper-tables
+
+run-paper-tables:
+	@mkdir -p $(build)/demo $(build)/paper
+	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
+	@$(out)/tests/bench/paper_tables $(MODEL) $(CHARTS) $(build)/paper/tables.json
+
+$(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o $(lib_cook) $(lib_core)
+	$(say) LINK $@
+	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh)
+
 $(out)/tests/bench/bench: $(out)/tests/bench/bench.o $(call objects_of,host) $(lib_cook) $(lib_core)
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host) -lmeshoptimizer
@@ -320,7 +335,8 @@ help: ## this list
 clean: ## remove what was built
 	rm -rf $(build)
 
-.PHONY: all install uninstall dist build-tests run-tests test check demo run-demo bench run-bench deps help clean
+.PHONY: all install uninstall dist build-tests run-tests test check demo run-demo bench run-bench \
+        paper-tables run-paper-tables deps help clean
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(shell [ -d $(out) ] && find $(out) -name '*.d')

@@ -225,6 +225,15 @@ static unsigned check_known(struct file *f, struct section *s)
     return s->size == size ? 0 : 207;
 }
 
+static int has_filter(const struct section *s)
+{
+    if (s->filter == 4)
+        return is_type(s, "TRIM") || is_type(s, "NRML");
+    if (s->filter >= 5)
+        return s->filter == 5 ? is_type(s, "HGHT") : s->filter == 6 && is_type(s, "SHEL");
+    return s->texel != 0;
+}
+
 static unsigned check_entry(struct file *f, uint32_t index, uint64_t *end)
 {
     const byte *e = f->data + HEADER + ENTRY * index;
@@ -263,7 +272,7 @@ static unsigned check_entry(struct file *f, uint32_t index, uint64_t *end)
     *end = align64(s->offset + s->stored_size);
     if (s->scheme != 2 && (s->scheme != 0 || s->stored_size != s->size))
         return 208;
-    if (s->filter > (s->scheme != 2 ? 0u : s->texel ? 3u : is_type(s, "SHEL") ? 1u : 0u))
+    if (s->filter && (s->scheme != 2 || !has_filter(s)))
         return 209;
     if (!all_zero(e + 56, 8))
         return 211;
@@ -383,8 +392,240 @@ static void undo_paeth(byte *image, uint64_t rows, uint64_t row_bytes, uint64_t 
         }
 }
 
+static uint32_t height_code(const struct file *f, const byte *heights, uint64_t texel)
+{
+    return f->bits == 8 ? heights[texel] : u16(heights + 2 * texel);
+}
+
+static unsigned undo_heights(const struct file *f, struct section *s)
+{
+    int most = s->texel == 1 ? 255 : 65535;
+    uint64_t width = s->width, texels = width * s->height * f->pages;
+    byte *out = calloc((size_t)texels, s->texel);
+    if (!out)
+        return NO_MEMORY;
+    for (uint64_t at = 0; at < texels; ++at) {
+        int left = at % width != 0, up = at / width % s->height != 0, v = s->bytes[at], p;
+        int a = left ? (int)height_code(f, out, at - 1) : 0;
+        int b = up ? (int)height_code(f, out, at - width) : 0;
+        int c = left && up ? (int)height_code(f, out, at - width - 1) : 0;
+        if (a && b && c)
+            p = a + b - c < 1 ? 1 : a + b - c > most ? most : a + b - c;
+        else
+            p = a ? a : b ? b : c ? c : (most + 1) / 2;
+        if (s->texel == 2)
+            v += 256 * s->bytes[texels + at];
+        if (v)
+            v = (v - 1 + p - 1) % most + 1;
+        for (uint32_t k = 0; k < s->texel; ++k)
+            out[s->texel * at + k] = (byte)(v >> 8 * k);
+    }
+    free(s->bytes);
+    s->bytes = out;
+    return 0;
+}
+
+/* A TRIM or NRML section with filter 4, on its way from `s->bytes` to `out`. */
+struct surface {
+    const struct file *f;
+    const struct section *s;
+    byte *out, *ring; /* ring: 1 + that of the texel; 0 where there is none yet */
+};
+
+static int occupied(const struct file *f, uint32_t level, uint64_t x, uint64_t y)
+{
+    const byte *heights = find(f, "HGHT")->bytes;
+    for (uint64_t j = y << level; j < (y + 1) << level; ++j)
+        for (uint64_t i = x << level; i < (x + 1) << level; ++i)
+            if (height_code(f, heights, j * f->width + i))
+                return 1;
+    return 0;
+}
+
+/* sum: A, B, C */
+static void add_normal(int sum[3], const byte *code)
+{
+    int a = 2 * code[0] - 255, b = 2 * code[1] - 255;
+    sum[0] += a;
+    sum[1] += b;
+    sum[2] += 255 - (abs(a) > abs(b) ? abs(a) : abs(b));
+}
+
+static void mean_normal(const int sum[3], byte *code)
+{
+    int s = (abs(sum[0]) > abs(sum[1]) ? abs(sum[0]) : abs(sum[1])) + sum[2];
+    for (int k = 0; k < 2; ++k) {
+        int value = s ? (256 * s + 255 * sum[k]) / (2 * s) : 128;
+        code[k] = (byte)(value > 255 ? 255 : value);
+    }
+}
+
+static void expect_mean(const struct surface *m, uint64_t x, uint64_t y, byte *expected)
+{
+    const struct section *finer = m->s + 1; /* levels go from the smallest to the largest */
+    int sum[3] = {0, 0, 0};
+    for (uint64_t j = 2 * y; j < 2 * y + 2; ++j)
+        for (uint64_t i = 2 * x; i < 2 * x + 2; ++i)
+            if (occupied(m->f, finer->level, i, j))
+                add_normal(sum, finer->bytes + 2 * (j * finer->width + i));
+    mean_normal(sum, expected);
+}
+
+static int median(int a, int b, int c)
+{
+    int low = a < b ? a : b, high = a < b ? b : a;
+    return c < low ? low : c > high ? high : c;
+}
+
+static void expect_near(const struct surface *m, uint64_t x, uint64_t y, byte *expected)
+{
+    uint64_t width = m->s->width, at = y * width + x, texel = m->s->texel;
+    int left = x > 0, up = y % m->s->height != 0;
+    int has_a = left && m->ring[at - 1], has_b = up && m->ring[at - width];
+    int has_c = left && up && m->ring[at - width - 1];
+    for (uint64_t k = 0; k < texel; ++k) {
+        int a = has_a ? m->out[(at - 1) * texel + k] : 0;
+        int b = has_b ? m->out[(at - width) * texel + k] : 0;
+        int c = has_c ? m->out[(at - width - 1) * texel + k] : 0;
+        if (has_a && has_b && has_c)
+            expected[k] = (byte)median(a, b, a + b - c);
+        else
+            expected[k] = (byte)(has_a ? a : has_b ? b : has_c ? c : 128);
+    }
+}
+
+/* The rectangle of a patch at the level of a section, in rows of all pages. */
+struct rectangle {
+    uint64_t x0, x1, y0, y1;
+};
+
+static struct rectangle rectangle_of(const struct section *s, const byte *r)
+{
+    uint64_t x = u16(r + 68) >> s->level, y = u16(r + 70) >> s->level;
+    y += (uint64_t)u32(r + 64) * s->height;
+    return (struct rectangle){x, x + (u16(r + 72) >> s->level), y, y + (u16(r + 74) >> s->level)};
+}
+
+/* The mean of the neighbours up to a ring; 0 when there are none. */
+static int expect_normal(const struct surface *m, struct rectangle r, uint64_t x, uint64_t y,
+                         uint32_t ring)
+{
+    int sum[3] = {0, 0, 0}, found = 0;
+    for (uint64_t j = y > r.y0 ? y - 1 : y; j <= y + 1 && j < r.y1; ++j)
+        for (uint64_t i = x > r.x0 ? x - 1 : x; i <= x + 1 && i < r.x1; ++i) {
+            uint64_t from = j * m->s->width + i;
+            if (!m->ring[from] || m->ring[from] > ring)
+                continue;
+            found = 1;
+            add_normal(sum, m->out + 2 * from);
+        }
+    if (found)
+        mean_normal(sum, m->out + 2 * (y * m->s->width + x));
+    return found;
+}
+
+static void expect_rings(const struct surface *m, struct rectangle r, uint32_t rings)
+{
+    int more = 1;
+    for (uint32_t ring = 1; more && ring <= rings; ++ring) {
+        more = 0;
+        for (uint64_t y = r.y0; y < r.y1; ++y)
+            for (uint64_t x = r.x0; x < r.x1; ++x) {
+                byte *own = &m->ring[y * m->s->width + x];
+                if (*own || !expect_normal(m, r, x, y, ring))
+                    continue;
+                *own = (byte)(ring + 1);
+                more = 1;
+            }
+    }
+}
+
+static void lower(const struct surface *m, uint64_t at, uint64_t from, int steps)
+{
+    if (m->out[from] + steps < m->out[at])
+        m->out[at] = (byte)(m->out[from] + steps);
+}
+
+static void sweep_trim(const struct surface *m, struct rectangle r, int down)
+{
+    uint64_t width = m->s->width, rows = r.y1 - r.y0, columns = r.x1 - r.x0;
+    for (uint64_t n = 0; n < rows; ++n)
+        for (uint64_t k = 0; k < columns; ++k) {
+            uint64_t y = down ? r.y0 + n : r.y1 - 1 - n, x = down ? r.x0 + k : r.x1 - 1 - k;
+            uint64_t at = y * width + x, before = down ? at - width : at + width;
+            if (m->ring[at])
+                continue;
+            if (k)
+                lower(m, at, down ? at - 1 : at + 1, 16);
+            if (n)
+                lower(m, at, before, 16);
+            if (n && x > r.x0)
+                lower(m, at, before - 1, 23);
+            if (n && x + 1 < r.x1)
+                lower(m, at, before + 1, 23);
+        }
+}
+
+static void expect_empty(const struct surface *m, const byte *record)
+{
+    struct rectangle r = rectangle_of(m->s, record);
+    uint32_t rings = u16(record + 76) >> m->s->level;
+    if (m->s->texel == 2) {
+        expect_rings(m, r, rings < 1 ? 1 : rings > 128 ? 128 : rings);
+    } else {
+        sweep_trim(m, r, 1);
+        sweep_trim(m, r, 0);
+    }
+}
+
+static void add_surface(const struct surface *m)
+{
+    const struct section *s = m->s;
+    uint64_t rows = (uint64_t)m->f->pages * s->height, texels = rows * s->width, cursor = 0;
+    for (uint64_t at = 0; at < texels; ++at) {
+        uint64_t x = at % s->width, y = at / s->width;
+        m->ring[at] = (byte)occupied(m->f, s->level, x, y);
+        if (!m->ring[at])
+            continue;
+        if (s->level)
+            expect_mean(m, x, y, m->out + 2 * at);
+        else
+            expect_near(m, x, y, m->out + s->texel * at);
+        for (uint64_t k = 0; k < s->texel; ++k)
+            m->out[at * s->texel + k] += s->bytes[k * texels + cursor];
+        ++cursor;
+    }
+    for (uint64_t at = 0; at < texels; ++at)
+        if (!m->ring[at])
+            memset(m->out + at * s->texel, s->texel == 2 ? 128 : 255, s->texel);
+    for (uint32_t n = 0; n < m->f->patches; ++n)
+        expect_empty(m, find(m->f, "PTCH")->bytes + RECORD * (uint64_t)n);
+    for (uint64_t at = 0; at < texels; ++at) {
+        for (uint64_t k = 0; k < s->texel && m->ring[at] != 1; ++k)
+            m->out[at * s->texel + k] += s->bytes[k * texels + cursor];
+        cursor += m->ring[at] != 1;
+    }
+}
+
+static unsigned undo_surface(const struct file *f, struct section *s)
+{
+    struct surface m = {f, s, malloc((size_t)s->size), malloc((size_t)(s->size / s->texel))};
+    int whole = m.out && m.ring;
+    if (whole) {
+        add_surface(&m);
+        free(s->bytes);
+        s->bytes = m.out;
+    } else {
+        free(m.out);
+    }
+    free(m.ring);
+    return whole ? 0 : NO_MEMORY;
+}
+
 static unsigned undo_filter(const struct file *f, struct section *s)
 {
+    if (s->filter > 3)
+        return s->filter == 4 ? undo_surface(f, s) : undo_heights(f, s);
     uint64_t texels = (uint64_t)s->width * s->height, all = texels * f->pages;
     uint32_t step = s->filter == 3 ? 1 : s->texel, images = f->pages * s->texel / step;
     if (s->filter & 1)
@@ -601,11 +842,6 @@ static unsigned check_patches(const struct file *f, const byte *records, byte *t
     return 0;
 }
 
-static uint32_t height_code(const struct file *f, const byte *heights, uint64_t texel)
-{
-    return f->bits == 8 ? heights[texel] : u16(heights + 2 * texel);
-}
-
 static unsigned check_points(const struct file *f, const byte *r, const byte *heights)
 {
     uint32_t w = u16(r + 72), h = u16(r + 74);
@@ -700,9 +936,9 @@ static unsigned check_triangles(const struct file *f, const struct section *s, c
     return 0;
 }
 
-/* `coarser` is the level before it in the file, or NULL. */
+/* `finer` is the level after it in the file, or NULL. */
 static unsigned check_shell(const struct file *f, const struct section *s,
-                            const struct section *coarser, const byte *records)
+                            const struct section *finer, const byte *records)
 {
     const byte *h = s->bytes, *first = h + SHELL_HEADER;
     uint64_t vertices = u32(h + 20), triangles = u32(h + 24);
@@ -714,7 +950,7 @@ static unsigned check_shell(const struct file *f, const struct section *s,
             return 501;
     if (!all_zero(h + 28, 4))
         return 501;
-    if (coarser && f32(h + 16) > f32(coarser->bytes + 16))
+    if (finer && f32(finer->bytes + 16) > f32(h + 16))
         return 502;
     if (u32(first) != 0 || u32(first + 4 * f->patches) != triangles)
         return 503;
@@ -750,15 +986,15 @@ static unsigned check_meta(const struct section *meta)
 
 static unsigned decode_content(struct file *f, byte *taken)
 {
-    for (uint32_t i = 0; i < f->section_count; ++i) {
-        struct section *s = &f->section[i];
-        if (order_of(s) == UNKNOWN)
+    for (uint32_t n = 0; n < 8 * f->section_count; ++n) { /* level 0 of all sections first */
+        struct section *s = &f->section[n % f->section_count];
+        if (order_of(s) == UNKNOWN || s->level != n / f->section_count)
             continue;
         unsigned rule = decode_section(f, s);
         if (!rule && is_type(s, "PTCH"))
             rule = check_patches(f, s->bytes, taken);
         if (!rule && is_type(s, "SHEL"))
-            rule = check_shell(f, s, is_type(s - 1, "SHEL") ? s - 1 : NULL,
+            rule = check_shell(f, s, s->level ? s + 1 : NULL,
                                find(f, "PTCH")->bytes);
         if (!rule && is_type(s, "META"))
             rule = check_meta(s);

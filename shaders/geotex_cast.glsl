@@ -32,26 +32,31 @@ vec2 gtx_roots(vec3 gap)
     return gap.y < 0.0 ? vec2(stable, other) : vec2(other, stable);
 }
 
-/* The cell that a ray is in. */
+/* The cell that a ray is in. x and y count in cells of the level. */
 struct gtx_walk {
     ivec2 cell;
     float enter, leave;      /* where the ray enters and leaves it */
     bool above, then_above;  /* which side of the sheet the ray is on there */
     bool known;              /* the cell exists: `above` of the next one is `then_above` of this */
     bool pair;               /* two crossings, without a change of side */
+    vec2 fit;                /* its widths are 1 / fit: at coarse levels a last cell is narrower */
     vec4 height;
     vec3 gap;
 };
 
 /* Looks at the cell; true when the ray crosses the sheet in it, in a way that counts. The side is
  * carried from cell to cell, so that rounding at a border can neither hide a crossing nor find it
- * twice. */
-bool gtx_look(inout gtx_walk w, gtx_sheet sheet, vec3 origin, vec3 direction)
+ * twice. `fit` is that of the last cells, in whose column and row `last` is. */
+bool gtx_look(inout gtx_walk w, gtx_sheet sheet, ivec2 last, float fit, vec3 origin,
+              vec3 direction)
 {
     vec3 entry = origin + w.enter * direction;
     float span = w.leave - w.enter;
-    w.height = vec4(texelFetch(gtx_cells, ivec3(sheet.corner + w.cell, sheet.page), 0));
-    w.gap = gtx_gap(w.height, vec3(entry.xy - vec2(w.cell), entry.z), direction);
+    ivec2 texel = (sheet.corner >> sheet.level) + w.cell;
+    w.height = vec4(texelFetch(gtx_cells, ivec3(texel, sheet.page), sheet.level));
+    w.fit = mix(vec2(1.0), vec2(fit), vec2(equal(w.cell, last)));
+    w.gap = gtx_gap(w.height, vec3((entry.xy - vec2(w.cell)) * w.fit, entry.z),
+                    vec3(direction.xy * w.fit, direction.z));
     w.above = w.known ? w.then_above : w.gap.x >= 0.0;
     w.then_above = w.gap.x + span * (w.gap.y + span * w.gap.z) >= 0.0;
     w.known = w.height.x > 0.0;
@@ -64,14 +69,18 @@ bool gtx_look(inout gtx_walk w, gtx_sheet sheet, vec3 origin, vec3 direction)
 
 bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, out gtx_hit hit)
 {
-    /* From the entry on, at about a texel a unit: keeps the numbers small and so exact. */
-    float speed = max(max(abs(direction.x), abs(direction.y)), max(abs(direction.z), 1e-30));
-    vec3 o = origin + t0 * direction, d = direction / speed;
+    /* From the entry on, at about a cell a unit: keeps the numbers small and so exact. */
+    float width = float(1 << sheet.level);
+    vec3 texels = vec3(width, width, 1.0), ray = direction / texels;
+    float speed = max(max(abs(ray.x), abs(ray.y)), max(abs(ray.z), 1e-30));
+    vec3 o = (origin + t0 * direction) / texels, d = ray / speed;
+    ivec2 last = (sheet.size - 2) >> sheet.level;
+    float fit = sheet.level > 0 ? width / (width - 1.0) : 1.0;
     float end = (t1 - t0) * speed;
 
     ivec2 way = ivec2(d.x < 0.0 ? -1 : 1, d.y < 0.0 ? -1 : 1), ahead = max(way, ivec2(0));
     vec2 inverse = vec2(way) / max(abs(d.xy), 1e-9);
-    ivec2 next = clamp(ivec2(floor(o.xy)), ivec2(0), sheet.size - 2);
+    ivec2 next = clamp(ivec2(floor(o.xy)), ivec2(0), last);
     gtx_walk w;
     w.leave = 0.0;
     w.known = w.then_above = false;
@@ -87,14 +96,14 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
             w.cell = next;
             w.enter = w.leave;
             w.leave = max(w.enter, min(min(planes.x, planes.y), end));
-            crossing = gtx_look(w, sheet, o, d);
+            crossing = gtx_look(w, sheet, last, fit, o, d);
             next += planes.x <= planes.y ? ivec2(way.x, 0) : ivec2(0, way.y);
-            inside = w.leave < end && next == clamp(next, ivec2(0), sheet.size - 2);
+            inside = w.leave < end && next == clamp(next, ivec2(0), last);
         }
         vec2 root = w.enter + clamp(gtx_roots(w.gap), 0.0, w.leave - w.enter);
         hit.back = sheet.two_sided && !w.above;
         s = hit.back ? root.y : root.x;
-        found = crossing && gtx_shows(sheet, w.cell, o.xy + s * d.xy);
+        found = crossing && gtx_shows(sheet, (o.xy + s * d.xy) * texels.xy);
         if (crossing && !found && w.pair && sheet.two_sided) { /* the other one is still to come */
             next = w.cell;
             w.leave = s;
@@ -103,9 +112,11 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
         }
     }
     hit.t = t0 + s / speed;
-    hit.grid = o + s * d;
-    vec2 at = hit.grid.xy - vec2(w.cell);
+    hit.grid = (o + s * d) * texels;
+    hit.level = sheet.level;
+    vec2 at = (o.xy + s * d.xy - vec2(w.cell)) * w.fit;
     vec4 h = w.height;
     hit.slope = vec2(h.y - h.x, h.z - h.x) + (h.x - h.y - h.z + h.w) * at.yx;
+    hit.slope *= w.fit / texels.xy;
     return found;
 }

@@ -14,13 +14,14 @@ GTX_VARYING(7) flat in vec4 gtx_color;
 GTX_VARYING(8) flat in int gtx_patch_index;
 GTX_VARYING(9) flat in vec4 gtx_rect;
 GTX_VARYING(10) flat in vec4 gtx_span;
+GTX_VARYING(11) flat in int gtx_level;
 
 layout(location = 0) out vec4 gtx_out_color;
 
 void main()
 {
     vec3 dx = dFdx(gtx_point), dy = dFdy(gtx_point);
-    gtx_sheet sheet = gtx_sheet_of(gtx_rect, gtx_span);
+    gtx_sheet sheet = gtx_sheet_of(gtx_rect, gtx_span, gtx_level);
     vec3 direction = gtx_point * gtx_depth.w - gtx_eye;
 
     /* z and w of the clip position are linear along the ray: zw + t * step. */

@@ -3,7 +3,7 @@
  * to be measured against it; it may step over thin features.
  *
  * The four codes of a cell come with one fetch and are interpolated by hand, for a filter would
- * blend heights with code 0, which means empty. */
+ * blend heights with code 0, which means empty. Casts sheets of level 0 only. */
 
 /* The paper's z(P): whether the point is on or below the sheet. */
 bool gtx_below(gtx_sheet sheet, vec3 point, out vec4 height, out ivec2 cell)
@@ -52,5 +52,6 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
     hit.grid = point;
     hit.slope = vec2(height.y - height.x + hxy * f.y, height.z - height.x + hxy * f.x);
     hit.back = false;
-    return gtx_shows(sheet, cell, point.xy);
+    hit.level = 0;
+    return gtx_shows(sheet, point.xy);
 }

@@ -24,6 +24,7 @@ GTX_VARYING(7) flat out vec4 gtx_color;
 GTX_VARYING(8) flat out int gtx_patch_index;
 GTX_VARYING(9) flat out vec4 gtx_rect;      /* what gtx_sheet_of takes: a fragment that misses */
 GTX_VARYING(10) flat out vec4 gtx_span;     /* need not fetch the record */
+GTX_VARYING(11) flat out int gtx_level;     /* of detail, the same all over the patch */
 
 /* A row over world space, taken to grid space. */
 vec4 gtx_row(vec4 row, gtx_frame frame)
@@ -34,14 +35,46 @@ vec4 gtx_row(vec4 row, gtx_frame frame)
                 dot(object.xyz, frame.axis_z), dot(object.xyz, frame.origin) + object.w);
 }
 
+/* The coarsest level whose distance from level 0 is allowed where the patch's sphere is nearest. */
+int gtx_choose_level(int index)
+{
+    int last = int(gtx_maps.x), level = 0;
+    if (gtx_detail.z >= 0.0)
+        return min(int(gtx_detail.z), last);
+    /* The transform M stretches by no more than the root of the largest row sum of M^T M, which is
+     * exact for an even scale. */
+    mat3 rows = mat3(gtx_world_x.xyz, gtx_world_y.xyz, gtx_world_z.xyz);
+    mat3 square = rows * transpose(rows);
+    vec3 sums = abs(square[0]) + abs(square[1]) + abs(square[2]);
+    float stretch = sqrt(max(sums.x, max(sums.y, sums.z)));
+    vec4 sphere = gtx_record(index, 8), centre = vec4(sphere.xyz, 1.0);
+    centre.xyz = vec3(dot(gtx_world_x, centre), dot(gtx_world_y, centre), dot(gtx_world_z, centre));
+    float nearest = (gtx_clip_from_world * centre).w - gtx_detail.y * stretch * sphere.w;
+    float allowed = max(nearest, 0.0) / (gtx_detail.x * stretch);
+    while (level < last && gtx_record(index, 9 + level / 4)[level % 4] <= allowed)
+        ++level;
+    return level;
+}
+
+/* A vertex of the hull, which fits level 0, as far out as the cells of a coarser level need it. */
+vec3 gtx_widen(vec3 position, vec4 rect, vec4 box, int level)
+{
+    vec2 cell = vec2(1 << level);
+    vec2 low = floor(box.xy / cell) * cell - box.xy;
+    vec2 high = min(ceil(box.zw / cell) * cell, rect.zw - 1.0) - box.zw;
+    return position + vec3(mix(low, high, step(0.5 * (box.xy + box.zw), position.xy)), 0.0);
+}
+
 void main()
 {
     int index = int(gtx_patch);
     gtx_frame frame = gtx_frame_of(index);
-    vec4 grid = vec4(gtx_position, 1.0);
+    gtx_level = gtx_choose_level(index);
+    gtx_rect = gtx_record(index, 7);
+    gtx_point = gtx_widen(gtx_position, gtx_rect, gtx_record(index, 11), gtx_level);
+    vec4 grid = vec4(gtx_point, 1.0);
     vec4 eye = vec4(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w, gtx_depth.w);
     mat4 rows = transpose(gtx_clip_from_world);
-    gtx_point = gtx_position;
     gtx_eye = vec3(dot(gtx_record(index, 0), eye), dot(gtx_record(index, 1), eye),
                    dot(gtx_record(index, 2), eye));
     gtx_clip_z = gtx_row(rows[2], frame);
@@ -52,7 +85,6 @@ void main()
     gtx_normal_z = gtx_object_z.xyz;
     gtx_color = gtx_tint;
     gtx_patch_index = index;
-    gtx_rect = gtx_record(index, 7);
     gtx_span = vec4(gtx_record(index, 3).w, gtx_record(index, 4).w, gtx_record(index, 5).w,
                     gtx_record(index, 6).w);
 

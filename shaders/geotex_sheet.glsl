@@ -2,16 +2,20 @@
  *
  * Grid space of a patch: x and y in texels (texel i at x = i), z in height codes. Cell (i, j) spans
  * texels i..i+1, j..j+1, and exists where its four codes are not zero; inside it the sheet is the
- * bilinear patch through them (format/gtx.md, section 4.1). */
-GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* four codes a cell: (0,0) (1,0) (0,1) (1,1) */
+ * bilinear patch through them (format/gtx.md, section 4.1). At level k cell (i, j) spans 2^k texels
+ * from texel 2^k i, 2^k j on, the last ones of a row or column a texel less (section 5); grid space
+ * is the same at all levels. */
+GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* four codes a cell: (0,0) (1,0) (0,1) (1,1);
+                                                     level k at mip level k */
 GTX_SAMPLER(1, highp sampler2DArray) gtx_trim;    /* distance to the outline, as stored */
-GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* 8 texels a patch, 256 patches a row */
+GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* 12 texels a patch, 128 patches a row */
 
 /* What casting needs of a patch. */
 struct gtx_sheet {
     ivec2 corner;                         /* of the rectangle in its page */
     ivec2 size;                           /* of the rectangle, in texels */
     int page;
+    int level;                            /* of detail */
     bool two_sided;                       /* crossings from below count too */
     vec3 low, high;                       /* box of the cells, in grid space */
 };
@@ -26,12 +30,13 @@ struct gtx_hit {
     float t;      /* along the ray that was cast */
     vec3 grid;    /* the point in grid space; grid.xy are its texel coordinates */
     vec2 slope;   /* dz/dx and dz/dy of the sheet there, in codes a texel */
+    int level;    /* of detail, at which the sheet was cast */
     bool back;    /* the sheet was crossed from below */
 };
 
 vec4 gtx_record(int patch_index, int texel)
 {
-    return texelFetch(gtx_patches, ivec2((patch_index & 255) * 8 + texel, patch_index >> 8), 0);
+    return texelFetch(gtx_patches, ivec2((patch_index & 127) * 12 + texel, patch_index >> 7), 0);
 }
 
 gtx_frame gtx_frame_of(int patch_index)
@@ -40,19 +45,20 @@ gtx_frame gtx_frame_of(int patch_index)
                      gtx_record(patch_index, 5).xyz, gtx_record(patch_index, 6).xyz);
 }
 
-/* From the rectangle (x, y, w, h) and (lowest z, highest z, page, two-sided). */
-gtx_sheet gtx_sheet_of(vec4 rect, vec4 span)
+/* From the rectangle (x, y, w, h) and (lowest z, highest z, page, two-sided), which are those of all
+ * levels. */
+gtx_sheet gtx_sheet_of(vec4 rect, vec4 span, int level)
 {
-    return gtx_sheet(ivec2(rect.xy), ivec2(rect.zw), int(span.z), span.w > 0.0,
+    return gtx_sheet(ivec2(rect.xy), ivec2(rect.zw), int(span.z), level, span.w > 0.0,
                      vec3(0.0, 0.0, span.x), vec3(rect.zw - 1.0, span.y));
 }
 
-/* The same straight from the record. */
-gtx_sheet gtx_sheet_of(int patch_index)
+/* The same straight from the record. The level is below the model's number of mip levels. */
+gtx_sheet gtx_sheet_of(int patch_index, int level)
 {
     return gtx_sheet_of(gtx_record(patch_index, 7),
                         vec4(gtx_record(patch_index, 3).w, gtx_record(patch_index, 4).w,
-                             gtx_record(patch_index, 5).w, gtx_record(patch_index, 6).w));
+                             gtx_record(patch_index, 5).w, gtx_record(patch_index, 6).w), level);
 }
 
 /* Object-space position of a grid-space point. */
@@ -69,17 +75,19 @@ vec3 gtx_facet(gtx_frame frame, gtx_hit hit)
            hit.slope.y * cross(frame.axis_z, frame.axis_x);
 }
 
-/* Whether the sheet shows at a point of a cell: at most 0.3 texel outside its outline (section 4.2:
+/* Whether the sheet shows at a point: at most 0.3 * 2^level texels outside its outline (section 4.2:
  * stored code 128 + 16 * 0.3). */
-bool gtx_shows(gtx_sheet sheet, ivec2 cell, vec2 at)
+bool gtx_shows(gtx_sheet sheet, vec2 at)
 {
+    ivec2 cell = clamp(ivec2(floor(at)), ivec2(0), sheet.size - 2);
     ivec3 texel = ivec3(sheet.corner + cell, sheet.page);
     float a = texelFetch(gtx_trim, texel, 0).r;
     float b = texelFetch(gtx_trim, texel + ivec3(1, 0, 0), 0).r;
     float c = texelFetch(gtx_trim, texel + ivec3(0, 1, 0), 0).r;
     float d = texelFetch(gtx_trim, texel + ivec3(1, 1, 0), 0).r;
     vec2 f = clamp(at - vec2(cell), 0.0, 1.0);
-    return mix(mix(a, b, f.x), mix(c, d, f.x), f.y) * 255.0 <= 132.8;
+    return mix(mix(a, b, f.x), mix(c, d, f.x), f.y) * 255.0 <=
+           128.0 + 4.8 * float(1 << sheet.level);
 }
 
 /* Shortens [t0, t1] to where a + b t >= 0. */

@@ -5,6 +5,9 @@ GTX_UNIFORM vec4 gtx_depth;             /* x: clip z >= -x * w at the near plane
                                            y, z: window depth = z_clip / w_clip * y + z;
                                            w: 1 perspective, 0 orthographic */
 GTX_UNIFORM vec4 gtx_light;             /* xyz: world space, unit, towards the light; w: ambient */
+GTX_UNIFORM vec4 gtx_detail;            /* x: pixels a world unit at clip w = 1, over the error
+                                           allowed; y: how fast w grows, in world units;
+                                           z: the level for all patches; negative: by error */
 GTX_UNIFORM vec4 gtx_maps;              /* x: last mip level of normals and colours; y: 1 when the
                                            model has colours; z: scale of its emission, or 0;
                                            w: 1 when it has materials */

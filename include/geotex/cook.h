@@ -1,7 +1,14 @@
 /* Cooking: triangle meshes -> `.gtx` assets. Links libgeotex-cook (C++17 inside).
  *
  * The line is the paper's (section 5): import, clean, partition, overlap, frame, bake, dilate,
- * pack, shell, measure. The same input and options give the same bytes, whatever the thread count. */
+ * pack, shell, measure. The same input and options give the same bytes, whatever the thread count.
+ *
+ * Memory. The descriptors' `allocator` (NULL = malloc) gives everything that outlives a call, the
+ * asset and the report, and what libgeotex takes on the way: opening, encoding, casting, writing
+ * JSON. It is called from the calling thread alone. The containers of C++ that hold models, charts
+ * and maps while they are made, and the decoders (OpenMesh, Draco, tinygltf, meshoptimizer, zlib,
+ * OpenImageIO) take the process's own heap; where that runs out, the result is MEMORY too, but an
+ * image that finds none is ignored with a warning. */
 #ifndef GEOTEX_COOK_H
 #define GEOTEX_COOK_H
 
@@ -12,15 +19,18 @@ extern "C" {
 #endif
 
 typedef enum gtx_partition {
-    GTX_PARTITION_DEFAULT = 0,
-    GTX_PARTITION_VSA = 1         /* variational shape approximation (paper, section 5.2) */
+    GTX_PARTITION_DEFAULT = 0,    /* cuts */
+    GTX_PARTITION_CUTS = 1,       /* few large charts that fold nowhere, cut straight into patches */
+    GTX_PARTITION_VSA = 2         /* variational shape approximation (paper, section 5.2) */
 } gtx_partition;
 
 typedef struct gtx_cook_desc {
     gtx_partition partition;
-    uint32_t charts;              /* wanted number of charts, up to 2^20; 0 = round(10 T^0.28) for
+    uint32_t charts;              /* wanted number of patches, up to 2^20; 0 = round(10 T^0.28) for
                                      T triangles */
-    uint32_t resolution;          /* texels along the longest patch side, 64..512; 0 = 128 */
+    uint32_t resolution;          /* most texels along a patch side, 64..512; 0 = 128. The density
+                                     goes with it: patches have 1,400 texels of surface at 128 in
+                                     the mean (cuts), or the longest has this side (vsa) */
     uint32_t height_bits;         /* 8 or 16; 0 = 8 */
     uint32_t dilation;            /* texels of dilated normal and colour, up to 128; 0 =
                                      2^(mips - 1) */
@@ -29,6 +39,11 @@ typedef struct gtx_cook_desc {
     uint32_t threads;             /* up to 1024; 0 = all processors */
     float unit;                   /* metres per object unit; 0 = 1 */
     uint32_t z_up;                /* 1: the models' +Z becomes +Y, and their +Y -Z */
+    double error;                 /* greatest RMS distance from the source to the asset, as a fraction
+                                     of the source's bounding diagonal; 0 = none asked for. The
+                                     density, and bits and charts where they are 0, become what
+                                     takes the fewest bytes. LIMIT where no density reaches it. For
+                                     the partition cuts. */
     uint32_t measure;             /* 1: measure the error (report, `error`) */
     gtx_progress_fn progress;     /* may be NULL */
     void *progress_user;
@@ -40,6 +55,7 @@ typedef struct gtx_cook_desc {
     uint32_t strict;              /* 1: a warning is an error (INPUT), and nothing is written */
     uint32_t if_changed;          /* 1: gtx_cook_file leaves an output alone that is a valid asset
                                      of the same key (below), and so its time of change */
+    const gtx_allocator *allocator;   /* needed during the call; its hooks until all is freed */
     uint32_t reserved[8];
 } gtx_cook_desc;
 
@@ -47,13 +63,15 @@ typedef struct gtx_cook_desc {
  *   - the content of every file behind the models: themselves, and the buffers, material libraries
  *     and images that they refer to, one that is missing included; not their paths or times;
  *   - the options that change what comes out: partition, charts, resolution, height_bits, dilation,
- *     mips, shell_levels, zstd_level, unit and z_up; not threads, measure, progress or strict;
+ *     mips, shell_levels, zstd_level, unit, error and z_up; not threads, measure, progress, strict or
+ *     allocator;
  *   - geotex's version and the revision of its cooker,
  * but not the library that decodes images. Where `strict` is asked for, an asset that was cooked
  * with warnings is cooked again; where `charts_ply` is, or importing read what could not be
  * foreseen, any is. */
 
-/* What a call did, as JSON; freed with gtx_report_free. Written only on success. */
+/* What a call did, as JSON; freed with gtx_report_free. Written only on success. All that it points
+ * to lies in one block of the call's allocator, whose hooks it keeps. */
 typedef struct gtx_report {
     char *json;                   /* terminated */
     size_t size;
@@ -63,6 +81,9 @@ typedef struct gtx_report {
     size_t source_count;
     char **warnings;              /* one sentence each */
     size_t warning_count;
+    gtx_allocator allocator;      /* gave `block`, and takes it back */
+    void *block;
+    size_t block_size;
 } gtx_report;
 
 /* Reads the model at `input` (glTF, GLB, Draco, OBJ, PLY, OFF, STL, each also gzipped), cooks it
@@ -72,9 +93,10 @@ typedef struct gtx_report {
 GTX_API gtx_result gtx_cook_file(const char *input, const char *output, const gtx_cook_desc *desc,
                                  gtx_report *report, gtx_error *error);
 
-/* The same of the `size` bytes of a model file, into memory: gtx_close frees the asset, gtx_encode
- * makes a file of it. `name` is a path that need not exist: its extension says what the bytes are
- * where they do not, and files that the model refers to are looked for beside it. */
+/* The same of the `size` bytes of a model file, into memory: gtx_close frees the asset, which is of
+ * the descriptor's allocator, and gtx_encode makes a file of it. `name` is a path that need not
+ * exist: its extension says what the bytes are where they do not, and files that the model refers to
+ * are looked for beside it. */
 GTX_API gtx_result gtx_cook_memory(const void *data, size_t size, const char *name,
                                    const gtx_cook_desc *desc, gtx_asset **out, gtx_report *report,
                                    gtx_error *error);
@@ -89,6 +111,7 @@ typedef struct gtx_compare_desc {
     uint32_t z_up;                /* as it was cooked; likewise the next two */
     const char *const *more;
     uint32_t more_count;
+    const gtx_allocator *allocator;
     uint32_t reserved[8];
 } gtx_compare_desc;
 
@@ -105,7 +128,8 @@ GTX_API gtx_result gtx_compare_files(const char *asset, const char *model,
                                      const gtx_compare_desc *desc, gtx_compare_result *result,
                                      gtx_report *report, gtx_error *error);
 
-/* Frees what a report owns and zeroes it. NULL is fine. */
+/* Frees what a report owns, with the allocator of the call that wrote it, and zeroes it. NULL and a
+ * report of zeros are fine. */
 GTX_API void gtx_report_free(gtx_report *report);
 
 #ifdef __cplusplus

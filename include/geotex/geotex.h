@@ -87,7 +87,8 @@ typedef struct gtx_error {
 
 /* Memory hooks. `alloc` returns at least `size` bytes aligned to 16, or NULL; `free` gets the size
  * back. Both may be called from any thread that calls into geotex. NULL hooks mean malloc and free.
- * The struct is copied by the objects that keep it. */
+ * The struct is copied by the objects that keep it: each is freed by the function named with it, by
+ * the hooks it was made with. What a call takes for its own use it gives back before it returns. */
 typedef struct gtx_allocator {
     void *(*alloc)(size_t size, void *user);
     void (*free)(void *memory, size_t size, void *user);
@@ -174,12 +175,14 @@ enum { /* gtx_open_desc.flags */
 };
 
 /* Reads an asset from `size` bytes, which may be freed afterwards. Every rule of format/gtx.md is
- * checked; hostile bytes end in an error, never in a fault. `desc` may be NULL.
+ * checked; hostile bytes end in an error, never in a fault. `desc` may be NULL. The asset is of the
+ * descriptor's allocator, and freed by gtx_close.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, NOT_GTX, VERSION, TRUNCATED, CORRUPT, UNSUPPORTED. */
 GTX_API gtx_result gtx_open_memory(const void *data, size_t size, const gtx_open_desc *desc,
                                    gtx_asset **out, gtx_error *error);
 
-/* The same from a file. Errors: also READ. */
+/* The same from a file. Its bytes come from the allocator too, and count towards max_bytes, while
+ * they are read. Errors: also READ. */
 GTX_API gtx_result gtx_open_file(const char *path, const gtx_open_desc *desc, gtx_asset **out,
                                  gtx_error *error);
 
@@ -265,7 +268,8 @@ typedef struct gtx_asset_desc {
     uint32_t reserved[6];
 } gtx_asset_desc;
 
-/* Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, CORRUPT (with the broken rule). */
+/* Makes an asset of the descriptor's allocator, which gtx_close frees.
+ * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, CORRUPT (with the broken rule). */
 GTX_API gtx_result gtx_create(const gtx_asset_desc *desc, gtx_asset **out, gtx_error *error);
 
 typedef struct gtx_encode_desc {
@@ -280,7 +284,8 @@ typedef struct gtx_encode_desc {
 GTX_API gtx_result gtx_encode(const gtx_asset *asset, const gtx_encode_desc *desc, void **data,
                               size_t *size, gtx_error *error);
 
-/* Encodes into "<path>.tmp" and renames it over `path` once it is whole. Errors: also WRITE. */
+/* Encodes, with the descriptor's allocator, into "<path>.tmp" and renames it over `path` once it is
+ * whole. Errors: also WRITE. */
 GTX_API gtx_result gtx_save_file(const gtx_asset *asset, const char *path,
                                  const gtx_encode_desc *desc, gtx_error *error);
 
@@ -318,11 +323,15 @@ enum { /* flags of gtx_raycast */
     GTX_RAY_EXHAUSTIVE = 4        /* visit every cell of every patch: the slow reference */
 };
 
+/* Makes a caster of the descriptor's allocator, which gtx_caster_destroy frees. `desc` may be NULL.
+ * Errors: ARGUMENT, NOT_ZEROED, MEMORY. */
 GTX_API gtx_result gtx_caster_create(const gtx_asset *asset, const gtx_caster_desc *desc,
                                      gtx_caster **out, gtx_error *error);
+/* NULL is fine. */
 GTX_API void gtx_caster_destroy(gtx_caster *caster);
 
-/* Casts `count` rays. A ray with a NaN, or with a zero direction, hits nothing. Errors: ARGUMENT. */
+/* Casts `count` rays; takes no memory. A ray with a NaN, or with a zero direction, hits nothing.
+ * Errors: ARGUMENT. */
 GTX_API gtx_result gtx_raycast(const gtx_caster *caster, const gtx_ray *rays, gtx_hit *hits,
                                size_t count, uint32_t flags);
 

@@ -39,14 +39,16 @@ typedef struct gtx_renderer_desc {
 } gtx_renderer_desc;
 
 /* Needs the context current, as do all functions below but gtx_model_prepare. Leaves program 0,
- * vertex array 0 and array buffer 0.
+ * vertex array 0 and array buffer 0. The renderer is of the descriptor's allocator, and freed by
+ * gtx_renderer_destroy.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL (a function or version is missing), SHADER. */
 GTX_API gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out,
                                        gtx_error *error);
 GTX_API void gtx_renderer_destroy(gtx_renderer *renderer);
 
-/* Derives what the GPU needs, without GL: any thread. Keeps no reference to the asset.
- * `allocator` may be NULL. Errors: ARGUMENT, MEMORY. */
+/* Derives what the GPU needs, without GL: any thread. Keeps no reference to the asset. The model is
+ * of `allocator` (NULL = malloc), and freed by gtx_model_destroy; most of it once it is uploaded.
+ * Errors: ARGUMENT, MEMORY. */
 GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *allocator,
                                      gtx_model **out, gtx_error *error);
 
@@ -59,18 +61,19 @@ GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator
 GTX_API gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t max_bytes,
                                     uint32_t *done, gtx_error *error);
 
-/* Both at once. */
+/* Both at once, with the renderer's allocator. */
 GTX_API gtx_result gtx_model_create(gtx_renderer *renderer, const gtx_asset *asset,
                                     gtx_model **out, gtx_error *error);
 
 /* Takes one patch from an edited asset: its maps at all levels, and the record, bounds and proxy
  * that follow. `edited` has the pages, maps and rectangles of the asset that the model was made of,
  * and is not kept. State is left as by gtx_model_upload. Of several edited patches each is taken by
- * a call; the model is whole again after the last.
+ * a call; the model is whole again after the last. Works in memory of the model's allocator.
  * Errors: ARGUMENT, MEMORY (nothing has changed), GL (out of memory). */
 GTX_API gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model,
                                     const gtx_asset *edited, uint32_t patch, gtx_error *error);
 
+/* `renderer` may be NULL for a model that was never uploaded. A NULL model is fine. */
 GTX_API void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model);
 
 /* Bytes of the model's textures and buffers on the GPU; `color` is colour, material, emission. */
@@ -91,7 +94,13 @@ enum { /* gtx_view.flags */
     GTX_VIEW_RESTORE_STATE = 4        /* read the touched state first and put it back */
 };
 
-/* One camera and one light. */
+/* One camera and one light.
+ *
+ * Level of detail. Each patch of an instance is cast at the coarsest level of its sheet whose
+ * distance from level 0, measured by gtx_model_prepare, is at most `max_error` pixels at the point
+ * of the patch's sphere that is nearest to the camera. Coverage only grows from level to level, and
+ * neighbours of different levels meet within that error. Pixels are square. GTX_METHOD_PAPER always draws
+ * level 0. */
 typedef struct gtx_view {
     float view[16], projection[16];   /* column-major; world -> eye -> clip */
     float light_direction[3];         /* world space, towards the light; zero = headlight */
@@ -99,7 +108,10 @@ typedef struct gtx_view {
     gtx_method method;
     uint32_t flags;
     float depth_range[2];             /* of glDepthRange; both 0 = 0..1 */
-    uint32_t reserved[8];
+    uint32_t viewport_height;         /* pixels; 0 = unknown: level 0, unless `level` says another */
+    float max_error;                  /* pixels; 0 = 0.5 */
+    uint32_t level;                   /* 0 = by the error, n = level n - 1 or the coarsest there is */
+    uint32_t reserved[5];
 } gtx_view;
 
 /* A placed model. `transform` is affine and takes the asset's coordinates (relative to its anchor)
@@ -113,13 +125,14 @@ typedef struct gtx_instance {
 
 /* Draws the instances into the bound framebuffer: colour (in sRGB bytes; location 0) and depth. A
  * model with materials or emission is shaded by metallic and roughness (glTF 2.0, appendix B),
- * another by Lambert. One instanced draw for each run of instances of one model.
+ * another by Lambert. One instanced draw for each run of instances of one model. Room for the most
+ * instances so far is kept, of the renderer's allocator, until gtx_renderer_destroy.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL. */
 GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,
                             const gtx_instance *instances, uint32_t count, gtx_error *error);
 
 /* The text of an installed shader file such as "geotex_cast.glsl", for engines that write their
- * own mains; NULL when there is none of that name. */
+ * own mains; NULL when there is none of that name. Static storage. */
 GTX_API const char *gtx_shader_source(const char *name);
 
 #ifdef __cplusplus

@@ -80,7 +80,7 @@ void gtx_occupancy_free(gtx_occupancy *occupancy, const gtx_allocator *allocator
 void gtx_check_maps(gtx_check *check, const gtx_asset *asset, const gtx_occupancy *occupancy,
                     uint64_t patch_offset, uint64_t height_offset, bool height_stored);
 
-/* A level of the shell, once its coarser levels are there, and patches that broke no rule. `offset`
+/* A level of the shell, once the finer one is there, and patches that broke no rule. `offset`
  * is that of its section. */
 void gtx_check_shell(gtx_check *check, const gtx_asset *asset, uint32_t level, uint64_t offset);
 

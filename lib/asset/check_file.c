@@ -1,6 +1,7 @@
 /* Header, section table and padding of a file (format/gtx.md, section 1). */
 #include "asset/check.h"
 
+#include "asset/codec.h"
 #include "asset/header.h"
 #include "asset/shell.h"
 #include "base/bytes.h"
@@ -138,12 +139,7 @@ static void check_coding(table_walk *walk, const gtx_section *section, uint64_t 
         gtx_break(check, GTX_RULE_SECTION_SCHEME, at + 40, "%s has scheme %u, %" PRIu64
                   " of %" PRIu64 " bytes", section->name, section->scheme, section->stored_size,
                   section->size);
-    uint32_t most = 0;
-    if (zstd && section->kind == GTX_SECTION_SHELL)
-        most = GTX_FILTER_SHELL;
-    else if (zstd && gtx_section_is_image(section->kind))
-        most = GTX_FILTER_PAETH | GTX_FILTER_PLANES;
-    if (section->filter > most)
+    if (!gtx_filter_fits(section->kind, section->filter) || (section->filter && !zstd))
         gtx_break(check, GTX_RULE_SECTION_FILTER, at + 44, "that of %s is %u",
                   section->name, section->filter);
     if (zstd && section->kind != GTX_SECTION_UNKNOWN &&

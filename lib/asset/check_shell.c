@@ -143,12 +143,12 @@ void gtx_check_shell(gtx_check *check, const gtx_asset *asset, uint32_t level, u
     }
     uint64_t before = check->broken;
     check_header(&w, bytes);
-    gtx_shell coarser;
-    if (level + 1 < asset->info.shell_levels &&
-        gtx_shell_load(asset->shell[level + 1], asset->shell_size[level + 1], patches, &coarser) &&
-        w.shell.error > coarser.error)
+    gtx_shell finer;
+    if (level > 0 &&
+        gtx_shell_load(asset->shell[level - 1], asset->shell_size[level - 1], patches, &finer) &&
+        finer.error > w.shell.error)
         gtx_break(check, GTX_RULE_SHELL_ORDER, offset + 16, "level %u has %g after %g", level,
-                  (double)w.shell.error, (double)coarser.error);
+                  (double)w.shell.error, (double)finer.error);
     check_first(&w);
     check_indices(&w);
     if (check->broken == before)

@@ -4,13 +4,6 @@
 #include "asset/shell.h"
 #include "base/alloc.h"
 
-bool gtx_filter_is_buffered(const gtx_section *section)
-{
-    if (section->kind == GTX_SECTION_SHELL)
-        return section->filter == GTX_FILTER_SHELL;
-    return section->filter & GTX_FILTER_PLANES;
-}
-
 #ifdef GTX_ZSTD
 /* Contexts inside given memory, their sizes and frame headers are zstd's "static" interface. */
 #define ZSTD_STATIC_LINKING_ONLY
@@ -49,8 +42,37 @@ bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t 
     return begin(codec, allocator, ZSTD_estimateCCtxSize(level), filtered_size);
 }
 
-const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
-                               const uint8_t *bytes, uint8_t *out)
+/* False when the bytes are none that the filter makes. */
+static bool undo(const gtx_section *section, const gtx_asset *asset, uint8_t *coded, uint8_t *out)
+{
+    if (section->filter == GTX_FILTER_STEPS)
+        return gtx_shell_filter_undo(coded, (size_t)section->size, out);
+    gtx_map_shape image = gtx_section_shape(&asset->info, section->kind, section->level);
+    if (section->filter == GTX_FILTER_SURFACE)
+        gtx_surface_undo(asset, section, coded, out, coded + section->size);
+    else if (section->filter == GTX_FILTER_HEIGHTS)
+        gtx_heights_undo(image, coded, out);
+    else if (section->filter)
+        gtx_filter_undo(image, section->filter, coded, out);
+    return true;
+}
+
+static void apply(const gtx_section *section, const gtx_asset *asset, const uint8_t *data,
+                  uint8_t *coded)
+{
+    gtx_map_shape image = gtx_section_shape(&asset->info, section->kind, section->level);
+    if (section->filter == GTX_FILTER_SURFACE)
+        gtx_surface_apply(asset, section, data, coded, coded + section->size);
+    else if (section->filter == GTX_FILTER_HEIGHTS)
+        gtx_heights_apply(image, data, coded);
+    else if (section->filter == GTX_FILTER_STEPS)
+        gtx_shell_filter_apply(data, (size_t)section->size, coded);
+    else
+        gtx_filter_apply(image, section->filter, data, coded);
+}
+
+const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section,
+                               const gtx_asset *asset, const uint8_t *bytes, uint8_t *out)
 {
     ZSTD_frameHeader frame;
     size_t stored = (size_t)section->stored_size, size = (size_t)section->size;
@@ -64,25 +86,20 @@ const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx
         return "the frame does not fill the section";
 
     ZSTD_DCtx *context = ZSTD_initStaticDCtx(codec->context, codec->context_size);
-    uint8_t *coded = gtx_filter_is_buffered(section) ? codec->filtered : out;
+    uint8_t *coded = section->filter > GTX_FILTER_PAETH ? codec->filtered : out;
     if (!context || ZSTD_decompressDCtx(context, coded, size, bytes, stored) != size)
         return "the frame does not decode";
-    if (section->filter && section->kind == GTX_SECTION_SHELL)
-        return gtx_shell_filter_undo(coded, size, out) ? NULL : "the counts do not fit the size";
-    if (section->filter)
-        gtx_filter_undo(image, section->filter, coded, out);
+    if (!undo(section, asset, coded, out))
+        return "the counts do not fit the size";
     return NULL;
 }
 
-size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
+size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, const gtx_asset *asset,
                           int level, const uint8_t *data, uint8_t *out)
 {
     size_t size = (size_t)section->size;
-    if (section->filter && section->kind == GTX_SECTION_SHELL) {
-        gtx_shell_filter_apply(data, size, codec->filtered);
-        data = codec->filtered;
-    } else if (section->filter) {
-        gtx_filter_apply(image, section->filter, data, codec->filtered);
+    if (section->filter) {
+        apply(section, asset, data, codec->filtered);
         data = codec->filtered;
     }
     ZSTD_CCtx *context = ZSTD_initStaticCCtx(codec->context, codec->context_size);
@@ -118,17 +135,17 @@ bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t 
     return gtx_decoder_begin(codec, allocator, filtered_size);
 }
 
-const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
-                               const uint8_t *bytes, uint8_t *out)
+const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section,
+                               const gtx_asset *asset, const uint8_t *bytes, uint8_t *out)
 {
-    (void)codec, (void)section, (void)image, (void)bytes, (void)out;
+    (void)codec, (void)section, (void)asset, (void)bytes, (void)out;
     return "this build has no zstd";
 }
 
-size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, gtx_map_shape image,
+size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, const gtx_asset *asset,
                           int level, const uint8_t *data, uint8_t *out)
 {
-    (void)codec, (void)section, (void)image, (void)level, (void)data, (void)out;
+    (void)codec, (void)section, (void)asset, (void)level, (void)data, (void)out;
     return 0;
 }
 

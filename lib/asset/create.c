@@ -95,7 +95,7 @@ static void check_content(gtx_check *check, const gtx_asset *asset)
     if (!gtx_check_over(check))
         gtx_check_maps(check, asset, &occupancy, 0, 0, false);
     gtx_occupancy_free(&occupancy, &asset->allocator);
-    for (uint32_t k = asset->info.shell_levels; k-- > 0 && !gtx_check_over(check);)
+    for (uint32_t k = 0; k < asset->info.shell_levels && !gtx_check_over(check); ++k)
         gtx_check_shell(check, asset, k, 0);
     if (!gtx_check_over(check) && asset->meta)
         gtx_check_meta(check, asset->meta, asset->meta_size, 0);

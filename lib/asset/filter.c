@@ -1,8 +1,38 @@
-/* Image filters before compression: planes, and Paeth's predictor (PNG specification, 9.4). */
+/* Image filters before compression: which there are, planes, and Paeth's predictor (PNG
+ * specification, 9.4). */
 #include "asset/codec.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+bool gtx_filter_fits(gtx_section_kind kind, uint32_t filter)
+{
+    if (filter == GTX_FILTER_SURFACE)
+        return kind == GTX_SECTION_TRIM || kind == GTX_SECTION_NORMAL;
+    if (filter == GTX_FILTER_HEIGHTS)
+        return kind == GTX_SECTION_HEIGHT;
+    if (filter == GTX_FILTER_STEPS)
+        return kind == GTX_SECTION_SHELL;
+    return filter == GTX_FILTER_NONE ||
+           (filter <= GTX_FILTER_PLANES_PAETH && gtx_section_is_image(kind));
+}
+
+uint64_t gtx_undo_size(const gtx_section *section, gtx_map_shape image)
+{
+    switch (section->filter) {
+    case GTX_FILTER_NONE:
+    case GTX_FILTER_PAETH: return 0;
+    case GTX_FILTER_SURFACE: return section->size + section->size / image.texel;
+    default: return section->size;
+    }
+}
+
+uint64_t gtx_apply_size(const gtx_section *section, gtx_map_shape image)
+{
+    if (section->filter == GTX_FILTER_SURFACE)
+        return section->size + gtx_undo_size(section, image);
+    return section->filter ? section->size : 0;
+}
 
 /* Images of bytes that are predicted on their own: pages, or planes of pages. */
 typedef struct blocks {

@@ -26,7 +26,7 @@ typedef struct reader {
 /* What reading allocates, all of it known before the first allocation. */
 typedef struct demand {
     uint64_t bytes;
-    uint64_t filtered;            /* the largest image that is decoded through a buffer */
+    uint64_t filtered;            /* the most that undoing a filter takes */
     gtx_sizes sizes;
     bool zstd;
 } demand;
@@ -43,8 +43,9 @@ static demand demand_of(const gtx_layout *layout)
         if (section->kind == GTX_SECTION_SHELL)
             out.sizes.shell[section->level] = section->size;
         out.zstd = out.zstd || section->scheme == GTX_SCHEME_ZSTD;
-        if (gtx_filter_is_buffered(section) && section->size > out.filtered)
-            out.filtered = section->size;
+        uint64_t undo = gtx_undo_size(
+            section, gtx_section_shape(&layout->info, section->kind, section->level));
+        out.filtered = undo > out.filtered ? undo : out.filtered;
     }
     out.bytes = gtx_asset_bytes(&layout->info, &out.sizes) + gtx_occupancy_size(&layout->info) +
                 out.filtered + (out.zstd ? gtx_decoder_size() : 0);
@@ -78,8 +79,7 @@ static bool decode(reader *r, const gtx_section *section, uint64_t entry_offset,
 {
     const uint8_t *bytes = r->data + section->offset;
     if (section->scheme == GTX_SCHEME_ZSTD) {
-        gtx_map_shape image = gtx_section_shape(&r->layout.info, section->kind, section->level);
-        const char *wrong = gtx_decode_section(&r->codec, section, image, bytes, out);
+        const char *wrong = gtx_decode_section(&r->codec, section, r->asset, bytes, out);
         if (wrong) {
             gtx_break(r->check, GTX_RULE_SECTION_ZSTD, section->offset, "in %s %s",
                       section->name, wrong);
@@ -116,16 +116,25 @@ static void check_section(reader *r, const gtx_section *section)
     }
 }
 
+static void read_section(reader *r, uint32_t index)
+{
+    const gtx_section *section = &r->layout.sections[index];
+    bool known = section->filter != GTX_FILTER_SURFACE || (r->occupancy.words && r->heights_known);
+    if (section->kind == GTX_SECTION_UNKNOWN || !known)
+        return; /* not known: a rule is broken already */
+    uint8_t *out = gtx_asset_data(r->asset, section->kind, section->level);
+    if (decode(r, section, GTX_HEADER_SIZE + (uint64_t)GTX_ENTRY_SIZE * index, out))
+        check_section(r, section);
+}
+
+/* In the order of the file, but levels from the largest on: a filter may need the finer one. */
 static void read_sections(reader *r)
 {
     const gtx_layout *layout = &r->layout;
-    for (uint32_t i = 0; i < layout->section_count && !gtx_check_over(r->check); ++i) {
-        const gtx_section *section = &layout->sections[i];
-        if (section->kind == GTX_SECTION_UNKNOWN)
-            continue;
-        uint8_t *out = gtx_asset_data(r->asset, section->kind, section->level);
-        if (decode(r, section, GTX_HEADER_SIZE + (uint64_t)GTX_ENTRY_SIZE * i, out))
-            check_section(r, section);
+    for (uint32_t first = 0, end; first < layout->section_count; first = end) {
+        end = first + 1 + layout->sections[first].level;
+        for (uint32_t i = end; i-- > first && !gtx_check_over(r->check);)
+            read_section(r, i);
     }
     if (r->occupancy.words && r->heights_known && !gtx_check_over(r->check))
         gtx_check_maps(r->check, r->asset, &r->occupancy, r->patch_offset,

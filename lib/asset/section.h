@@ -29,8 +29,15 @@ typedef enum gtx_section_kind {
 } gtx_section_kind;
 
 enum { GTX_SCHEME_STORED = 0, GTX_SCHEME_ZSTD = 2 };
-enum { GTX_FILTER_NONE = 0, GTX_FILTER_PAETH = 1, GTX_FILTER_PLANES = 2 }; /* bits: 3 is both */
-enum { GTX_FILTER_SHELL = 1 }; /* of shell sections */
+enum {
+    GTX_FILTER_NONE = 0,
+    GTX_FILTER_PAETH = 1,
+    GTX_FILTER_PLANES = 2,
+    GTX_FILTER_PLANES_PAETH = 3,
+    GTX_FILTER_SURFACE = 4,
+    GTX_FILTER_HEIGHTS = 5,
+    GTX_FILTER_STEPS = 6
+};
 
 /* A table entry. */
 typedef struct gtx_section {

@@ -19,19 +19,18 @@ typedef struct writer {
     uint8_t *coded[GTX_MAX_KNOWN_SECTIONS]; /* NULL where stored */
 } writer;
 
-/* The filter that made cooked scans and photographic textures smallest, at zstd levels 3 and 19:
- * prediction, and planes first where the bytes of a texel have little in common. Emission, black
- * but for a few lights, is smallest as it is. */
-static uint32_t filter_of(const gtx_asset *asset, gtx_section_kind kind)
+/* The filter that made cooked scans and photographic textures smallest, at zstd levels 3 and 19.
+ * Emission, black but for a few lights, is smallest as it is. */
+static uint32_t filter_of(gtx_section_kind kind)
 {
     switch (kind) {
-    case GTX_SECTION_HEIGHT: return asset->info.height_bits == 8 ? 1 : 3;
-    case GTX_SECTION_TRIM: return 1;
-    case GTX_SECTION_NORMAL: return 1;
+    case GTX_SECTION_HEIGHT: return GTX_FILTER_HEIGHTS;
+    case GTX_SECTION_TRIM:
+    case GTX_SECTION_NORMAL: return GTX_FILTER_SURFACE;
     case GTX_SECTION_COLOR:
-    case GTX_SECTION_MATERIAL: return 3;
-    case GTX_SECTION_SHELL: return GTX_FILTER_SHELL;
-    default: return 0;
+    case GTX_SECTION_MATERIAL: return GTX_FILTER_PLANES_PAETH;
+    case GTX_SECTION_SHELL: return GTX_FILTER_STEPS;
+    default: return GTX_FILTER_NONE;
     }
 }
 
@@ -39,10 +38,8 @@ static uint32_t filter_of(const gtx_asset *asset, gtx_section_kind kind)
 static bool compress(writer *w, uint32_t i, uint8_t *buffer)
 {
     gtx_section *section = &w->sections[i];
-    section->filter = filter_of(w->asset, section->kind);
-    gtx_map_shape image = gtx_section_shape(&w->asset->info, section->kind, section->level);
     const uint8_t *data = gtx_asset_data(w->asset, section->kind, section->level);
-    size_t size = gtx_encode_section(&w->codec, section, image, w->level, data, buffer);
+    size_t size = gtx_encode_section(&w->codec, section, w->asset, w->level, data, buffer);
     if (size == 0) { /* would not get smaller */
         section->filter = 0;
         return true;
@@ -58,12 +55,17 @@ static bool compress(writer *w, uint32_t i, uint8_t *buffer)
 
 static bool compress_all(writer *w)
 {
-    size_t largest = 0;
-    for (uint32_t i = 0; i < w->count; ++i)
-        if (w->sections[i].size > largest)
-            largest = (size_t)w->sections[i].size;
+    size_t largest = 0, filtered = 0;
+    for (uint32_t i = 0; i < w->count; ++i) {
+        gtx_section *section = &w->sections[i];
+        section->filter = filter_of(section->kind);
+        size_t apply = (size_t)gtx_apply_size(
+            section, gtx_section_shape(&w->asset->info, section->kind, section->level));
+        filtered = apply > filtered ? apply : filtered;
+        largest = section->size > largest ? (size_t)section->size : largest;
+    }
     uint8_t *buffer = gtx_alloc_array(&w->allocator, largest, 1);
-    bool whole = buffer && gtx_encoder_begin(&w->codec, &w->allocator, largest,
+    bool whole = buffer && gtx_encoder_begin(&w->codec, &w->allocator, filtered,
                                              w->level);
     for (uint32_t i = 0; whole && i < w->count; ++i)
         whole = compress(w, i, buffer);
@@ -150,8 +152,8 @@ static bool write_file(const char *path, const void *data, size_t size)
     return fclose(file) == 0 && whole;
 }
 
-static gtx_result save_bytes(const char *path, const gtx_allocator *allocator, const void *data,
-                             size_t size, gtx_error *error)
+gtx_result gtx_save_bytes(const char *path, const gtx_allocator *allocator, const void *data,
+                          size_t size, gtx_error *error)
 {
     size_t length = strlen(path) + sizeof ".tmp";
     char *temporary = gtx_alloc_array(allocator, length, 1);
@@ -180,7 +182,7 @@ gtx_result gtx_save_file(const gtx_asset *asset, const char *path, const gtx_enc
     if (result)
         return result;
     gtx_allocator allocator = gtx_allocator_or_default(desc ? desc->allocator : NULL);
-    result = save_bytes(path, &allocator, data, size, error);
+    result = gtx_save_bytes(path, &allocator, data, size, error);
     gtx_free_array(&allocator, data, size, 1);
     return result;
 }

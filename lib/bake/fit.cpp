@@ -15,8 +15,9 @@ constexpr double FARTHEST = 1; /* texels of depth that a height may move: no fin
 constexpr double MISSED = 0.3;   /* texels of depth below the source that count as missed */
 constexpr int ROUNDS = 8;
 /* A sheet below the source lets a grazing ray pass over a crest and open a hole, one above it only
- * moves an outline by as much: being below weighs this many times more. */
-constexpr double BELOW = 6;
+ * moves an outline by as much: being below by more than `LEEWAY` texels of depth weighs this many
+ * times more. */
+constexpr double BELOW = 6, LEEWAY = 0.1;
 /* The overlap is another chart's core and better shown there: it counts this much. So across a
  * crease the sheet follows the core to its very edge. */
 constexpr double OVERLAP_COUNTS = 0.1;
@@ -42,8 +43,8 @@ static void observe(const Grid &grid, const std::vector<uint8_t> &support, const
                      counts};
     double sheet = 0;
     for (int k = 0; k < 4; ++k) {
-        if (!support[corner[k]] || cover.triangle[corner[k]] == NO_TRIANGLE)
-            return; /* what is continued past the surface must not bend the surface */
+        if (!support[corner[k]])
+            return;
         sheet += o.weight[k] * cover.height[corner[k]];
     }
     if (std::fabs(at.z - sheet) <= OUTLIER * grid.coarse_pitch())
@@ -98,6 +99,7 @@ double fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, 
     const std::vector<double> sampled = cover.height;
     const uint32_t row = uint32_t(chart.grid.w);
     const double farthest = FARTHEST * chart.grid.coarse_pitch();
+    const double leeway = LEEWAY * chart.grid.coarse_pitch();
     std::vector<double> pull(sampled.size()), weight(sampled.size());
     for (int round = 0; round < ROUNDS; ++round) {
         for (size_t i = 0; i < sampled.size(); ++i) {
@@ -109,7 +111,7 @@ double fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, 
             double residual = o.height;
             for (int k = 0; k < 4; ++k)
                 residual -= o.weight[k] * cover.height[corner[k]];
-            double trust = o.counts * (residual > 0 ? BELOW : 1);
+            double trust = o.counts * (residual > leeway ? BELOW : 1);
             for (int k = 0; k < 4; ++k) {
                 pull[corner[k]] += trust * o.weight[k] * residual;
                 weight[corner[k]] += trust * o.weight[k]; /* row sums: a step that cannot overshoot */

@@ -23,34 +23,63 @@ static Grid reciprocal_grid(const Frame &frame)
     return grid;
 }
 
-/* Fits the grid around the core: the model's pitch, finer along a side of under four cells, coarser
- * where the map would become too large. */
-static Grid fit_grid(const Mesh &mesh, const Chart &chart, double pitch)
+/* The core's sides: from where to where along an axis, at the pitch of a texel, in how many cells. */
+struct Side {
+    double low = INFINITY, high = -INFINITY, pitch = 0;
+    int cells = 0;
+};
+
+/* The model's pitch, finer along a side of under four cells, coarser where the map would become
+ * too large. */
+static std::array<Side, 2> measure_sides(const Mesh &mesh, const Chart &chart, const Grid &grid,
+                                         double pitch)
 {
-    Grid grid = reciprocal_grid(chart.frame);
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    std::array<Side, 2> sides;
     for (uint32_t t : chart.triangles) {
         for (int k = 0; k < 3; ++k) {
             Vec3d p = mesh.position(t, k) - grid.origin;
             for (int axis = 0; axis < 2; ++axis) {
                 double a = dot(grid.dual[axis], p);
-                low[axis] = std::min(low[axis], a);
-                high[axis] = std::max(high[axis], a);
+                sides[axis].low = std::min(sides[axis].low, a);
+                sides[axis].high = std::max(sides[axis].high, a);
             }
         }
     }
-    double longest = std::max(high[0] - low[0], high[1] - low[1]);
-    pitch = std::max(pitch, longest / MOST_TEXELS);
-    int size[2];
-    for (int axis = 0; axis < 2; ++axis) {
-        double extent = high[axis] - low[axis];
-        double own = std::clamp(extent / LEAST_CELLS, pitch * FINEST, pitch);
-        size[axis] = int(std::ceil(extent / own)) + 2 * MARGIN;
-        grid.pitch[axis] = own;
-        grid.corner[axis] = (low[axis] + high[axis]) / 2 - size[axis] * own / 2;
+    pitch = std::max(pitch, std::max(sides[0].high - sides[0].low, sides[1].high - sides[1].low) /
+                                MOST_TEXELS);
+    for (Side &side : sides) {
+        double extent = side.high - side.low;
+        side.pitch = std::clamp(extent / LEAST_CELLS, pitch * FINEST, pitch);
+        side.cells = int(std::ceil(extent / side.pitch));
     }
-    grid.w = size[0];
-    grid.h = size[1];
+    return sides;
+}
+
+/* Those of a chart that was cut along its grid: `finer` times as many cells. */
+static std::array<Side, 2> given_sides(const Chart &chart, double finer)
+{
+    std::array<Side, 2> sides;
+    for (int axis = 0; axis < 2; ++axis) {
+        int cells = int(std::ceil(chart.cells[axis] * finer));
+        sides[axis] = {0, chart.frame.extent[axis], chart.frame.extent[axis] / cells, cells};
+    }
+    return sides;
+}
+
+static Grid fit_grid(const Mesh &mesh, const Chart &chart, double pitch, double finer)
+{
+    Grid grid = reciprocal_grid(chart.frame);
+    std::array<Side, 2> sides = chart.cells[0] ? given_sides(chart, finer)
+                                               : measure_sides(mesh, chart, grid, pitch / finer);
+    for (int axis = 0; axis < 2; ++axis) {
+        const Side &s = sides[axis];
+        int size = s.cells + 2 * MARGIN;
+        (axis ? grid.h : grid.w) = size;
+        grid.pitch[axis] = s.pitch;
+        grid.corner[axis] = (s.low + s.high) / 2 - size * s.pitch / 2;
+        grid.clip_low[axis] = (chart.clip_low[axis] - grid.corner[axis]) / s.pitch - 0.5;
+        grid.clip_high[axis] = (chart.clip_high[axis] - grid.corner[axis]) / s.pitch - 0.5;
+    }
     return grid;
 }
 
@@ -79,10 +108,11 @@ static uint32_t find_triangle(const FlatChart &chart, uint32_t source)
     return NO_TRIANGLE;
 }
 
-FlatChart flatten(const Mesh &mesh, const Neighbours &neighbours, const Chart &chart, double pitch)
+FlatChart flatten(const Mesh &mesh, const Neighbours &neighbours, const Chart &chart, double pitch,
+                  double finer)
 {
     FlatChart flat;
-    flat.grid = fit_grid(mesh, chart, pitch);
+    flat.grid = fit_grid(mesh, chart, pitch, finer);
     flat.core = chart.triangles.size();
     /* Beyond the overlap that is shown, texels are sampled rather than extrapolated while there is
      * source surface to sample. */

@@ -44,10 +44,10 @@ static std::vector<float> sample_cut(const Mesh &mesh, const Neighbours &neighbo
                                      const FlatChart &fine)
 {
     Cover cover = raster_core(fine);
-    Outline core_outline = find_outline(fine, fine.core);
+    Outline core_outline = find_outline(neighbours, fine, fine.core);
     Paths paths(mesh, neighbours, fine);
     raster_overlap(fine, core_outline, paths, cover);
-    Outline outline = find_outline(fine, fine.triangles.size());
+    Outline outline = find_outline(neighbours, fine, fine.triangles.size());
 
     const double side = std::sqrt(fine.grid.pitch[0] * fine.grid.pitch[1]);
     std::vector<float> cut(fine.grid.texels(), 1);
@@ -85,7 +85,8 @@ static void contour_square(const std::vector<float> &cut, int w, int x, int y,
     /* Of four crossings, two belong together beside a corner that the middle is not joined with. */
     int first = count == 4 && (value[0] < 0) != (sum < 0) ? 1 : 0;
     for (int k = 0; k < count; k += 2)
-        edges.push_back({crossing[(first + k) % 4], crossing[(first + k + 1) % 4], NO_TRIANGLE, 0});
+        edges.push_back({crossing[(first + k) % 4], crossing[(first + k + 1) % 4], NO_TRIANGLE, 0,
+                         true});
 }
 
 void trim_mask(const Mesh &mesh, const Neighbours &neighbours, const FlatChart &chart,

@@ -2,6 +2,7 @@
 #include "bake/patch_maps.hpp"
 
 #include "asset/asset.h"
+#include "asset/fill.h"
 #include "mesh/srgb.hpp"
 
 #include <algorithm>
@@ -84,7 +85,7 @@ static std::vector<uint8_t> encode_normals(const Shades &shades, const gtx_patch
 {
     float rows[3][3];
     gtx_normal_frame(&record, rows);
-    std::vector<uint8_t> bytes(2 * shades.normal.size(), 128);
+    std::vector<uint8_t> bytes(2 * shades.normal.size(), GTX_FAR_NORMAL);
     for (size_t i = 0; i < shades.normal.size(); ++i) {
         if (!shades.occupied[i])
             continue;
@@ -99,6 +100,35 @@ static std::vector<uint8_t> encode_normals(const Shades &shades, const gtx_patch
         gtx_encode_normal(&m.x, &bytes[2 * i]);
     }
     return bytes;
+}
+
+/* The next level of normals, by the rule that readers know. */
+static std::vector<uint8_t> halve_normals(const std::vector<uint8_t> &fine, const Shades &shades)
+{
+    int w = shades.w / 2, h = shades.h / 2;
+    std::vector<uint8_t> coarse(2 * size_t(w) * h);
+    for (int j = 0; j < h; ++j) {
+        for (int i = 0; i < w; ++i) {
+            gtx_normal_sum sum = {};
+            for (int k = 0; k < 4; ++k) {
+                size_t at = size_t(2 * j + k / 2) * shades.w + 2 * i + k % 2;
+                if (shades.occupied[at])
+                    gtx_normal_add(&sum, &fine[2 * at]);
+            }
+            gtx_normal_mean(&sum, &coarse[2 * (size_t(j) * w + i)]);
+        }
+    }
+    return coarse;
+}
+
+static std::vector<uint8_t> fill_normals(std::vector<uint8_t> codes, const Shades &shades,
+                                         unsigned rings)
+{
+    std::vector<uint8_t> ring = shades.occupied;
+    gtx_fill area = {codes.data(), ring.data(), size_t(shades.w), uint32_t(shades.w),
+                     uint32_t(shades.h)};
+    gtx_fill_normals(&area, rings);
+    return codes;
 }
 
 static uint8_t unorm(float value)
@@ -119,7 +149,6 @@ static std::vector<uint8_t> encode(const Shades &shades, int first, int count, C
 
 static void encode_level(const Shades &shades, const AppearanceNeeds &needs, PatchMaps &patch)
 {
-    patch.normal.push_back(encode_normals(shades, patch.record));
     int first = 0;
     if (needs.color) {
         patch.color.push_back(encode(shades, first, COLOR_CHANNELS, [](int k, float value) {
@@ -140,12 +169,18 @@ static void encode_level(const Shades &shades, const AppearanceNeeds &needs, Pat
 
 void build_mips(Shades shades, unsigned mips, const AppearanceNeeds &needs, PatchMaps &patch)
 {
+    std::vector<uint8_t> normals = encode_normals(shades, patch.record);
     for (unsigned k = 0; k < mips; ++k) {
+        unsigned rings = gtx_fill_rings(&patch.record, k);
+        patch.normal.push_back(fill_normals(normals, shades, rings));
         Shades filled = shades;
-        dilate(filled, std::max(1u, unsigned(patch.record.dilation) >> k));
+        if (shades.channels)
+            dilate(filled, rings);
         encode_level(filled, needs, patch);
-        if (k + 1 < mips)
+        if (k + 1 < mips) {
+            normals = halve_normals(normals, shades);
             shades = halve(shades);
+        }
     }
 }
 

@@ -41,15 +41,20 @@ struct DistanceField {
         }
     }
 
-    /* Every texel within two of the edge. */
+    /* Every texel within two of the edge; the nearest on the grid's side where that is none, as for
+     * the outline of a larger chart around the part that is baked. */
     void splat(uint32_t edge)
     {
         constexpr double REACH = 2;
         const Vec3d &p = outline.edges[edge].from, &q = outline.edges[edge].to;
-        int x0 = int(std::ceil(std::max(std::min(p.x, q.x) - REACH, 0.)));
-        int y0 = int(std::ceil(std::max(std::min(p.y, q.y) - REACH, 0.)));
-        int x1 = int(std::floor(std::min(std::max(p.x, q.x) + REACH, grid.w - 1.)));
-        int y1 = int(std::floor(std::min(std::max(p.y, q.y) + REACH, grid.h - 1.)));
+        auto low = [](double a, double b, int size) {
+            return int(std::ceil(std::clamp(std::min(a, b) - REACH, 0., size - 1.)));
+        };
+        auto high = [](double a, double b, int size) {
+            return int(std::floor(std::clamp(std::max(a, b) + REACH, 0., size - 1.)));
+        };
+        int x0 = low(p.x, q.x, grid.w), x1 = high(p.x, q.x, grid.w);
+        int y0 = low(p.y, q.y, grid.h), y1 = high(p.y, q.y, grid.h);
         for (int j = y0; j <= y1; ++j)
             for (int i = x0; i <= x1; ++i)
                 offer(i, j, edge);
@@ -95,7 +100,7 @@ void measure_distances(const Grid &grid, Outline &outline)
         d = std::sqrt(d);
 }
 
-Outline find_outline(const FlatChart &chart, size_t count)
+Outline find_outline(const Neighbours &neighbours, const FlatChart &chart, size_t count)
 {
     Outline outline;
     auto collect = [&](bool inner) {
@@ -103,8 +108,9 @@ Outline find_outline(const FlatChart &chart, size_t count)
             const FlatTriangle &triangle = chart.triangles[t];
             for (int k = 0; triangle.front && k < 3; ++k)
                 if (inner || chart.mate[t][k] >= count) /* NO_TRIANGLE is the largest of all */
-                    outline.edges.push_back(
-                        {triangle.corner[k], triangle.corner[(k + 1) % 3], uint32_t(t), k});
+                    outline.edges.push_back({triangle.corner[k], triangle.corner[(k + 1) % 3],
+                                             uint32_t(t), k,
+                                             neighbours[triangle.source][k] == NO_TRIANGLE});
         }
     };
     collect(false);
@@ -139,14 +145,18 @@ std::vector<float> trim_distances(const FlatChart &chart, const Cover &core, con
         bool in_all = all.triangle[i] != NO_TRIANGLE;
         float to_core = in_core ? -core_outline.distance[i] : core_outline.distance[i];
         float to_all = in_all ? -all_outline.distance[i] : all_outline.distance[i];
-        trim[i] = std::max(to_all, to_core - float(OVERLAP));
+        if (all_outline.edges[all_outline.nearest[i]].border)
+            to_all += float(SHOWN - BORDER_SHOWN);
+        double cut = grid.outside(double(i % size_t(grid.w)), double(i / size_t(grid.w)));
+        trim[i] = std::max({to_all, to_core - float(OVERLAP), float(cut - CUT_OVERLAP)});
     }
     for (const OutlineEdge &edge : core_outline.edges) {
         Vec3d along = edge.to - edge.from;
         int steps = 1 + int(2 * std::hypot(along.x, along.y));
         for (int s = 0; s < steps; ++s) {
             Vec3d p = edge.from + along * (double(s) / steps);
-            show_point(grid, p.x, p.y, trim);
+            if (grid.outside(p.x, p.y) <= 0)
+                show_point(grid, p.x, p.y, trim);
         }
     }
     return trim;

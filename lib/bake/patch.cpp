@@ -1,6 +1,8 @@
 /* One chart -> the maps of its patch (paper, section 5.3). */
 #include "bake/patch_maps.hpp"
 
+#include "asset/fill.h"
+
 #include <algorithm>
 
 namespace gtx::baking {
@@ -46,7 +48,7 @@ static gtx_patch make_record(const Job &job, const Chart &chart, const Grid &gri
     unsigned dilation = job.options.dilation;
     record.dilation = uint16_t(dilation ? dilation : 1u << (job.options.mips - 1));
     record.flags = chart.two_sided ? GTX_PATCH_TWO_SIDED : 0;
-    record.source_triangles = uint32_t(chart.triangles.size());
+    record.source_triangles = uint32_t(chart.source_triangles);
     return record;
 }
 
@@ -93,6 +95,23 @@ static void measure_patch(unsigned height_bits, PatchMaps &maps)
     r.sphere[3] = float(radius * (1 + 1e-6));
 }
 
+/* Trim where there is no height, by the rule that readers know. */
+static void fill_trim(PatchMaps &maps)
+{
+    uint32_t w = maps.record.rect[2], h = maps.record.rect[3];
+    std::vector<uint8_t> ring(maps.height.size());
+    for (size_t i = 0; i < ring.size(); ++i) {
+        ring[i] = maps.height[i] != 0;
+        if (!ring[i])
+            maps.trim[i] = GTX_FAR_TRIM;
+    }
+    gtx_fill area = {maps.trim.data(), ring.data(), w, w, h};
+    gtx_fill_trim(&area);
+}
+
+/* A texel and a half inside: deeper, no cell reaches the limit, so that no depth need be told. */
+constexpr float DEEP_TRIM = 128 - 24;
+
 static void quantise(const Grid &grid, const Crop &crop, const Cover &cover,
                      const std::vector<uint8_t> &support, const std::vector<float> &trim,
                      double low, unsigned height_bits, PatchMaps &maps)
@@ -106,13 +125,17 @@ static void quantise(const Grid &grid, const Crop &crop, const Cover &cover,
             int x = crop.x + i, y = crop.y + j;
             int near_x = std::clamp(x, 0, grid.w - 1), near_y = std::clamp(y, 0, grid.h - 1);
             size_t from = size_t(near_y) * grid.w + near_x, to = size_t(j) * crop.w + i;
-            maps.trim[to] = uint8_t(std::clamp(128 + 16 * trim[from], 0.f, 255.f) + 0.5f);
+            maps.trim[to] = uint8_t(std::clamp(128 + 16 * trim[from], DEEP_TRIM, 255.f) + 0.5f);
             if (x == near_x && y == near_y && support[from]) {
-                double code = std::floor((cover.height[from] - low) * steps + 0.5);
+                /* Beyond a cut codes are rounded up: so the two sheets cross there, and no ray
+                 * finds a way between them. */
+                double rounding = grid.outside(x, y) > 0 ? 1 : 0.5;
+                double code = std::floor((cover.height[from] - low) * steps + rounding);
                 maps.height[to] = uint16_t(1 + std::clamp(code, 0., top));
             }
         }
     }
+    fill_trim(maps);
 }
 
 /* The height sheet of a chart over its working grid. */
@@ -125,16 +148,16 @@ struct Sheet {
     double missed;               /* share of the surface that it leaves too far above it */
 };
 
-static Sheet lay_sheet(const Job &job, const Chart &chart, double pitch)
+static Sheet lay_sheet(const Job &job, const Chart &chart, double finer)
 {
     Sheet s;
-    s.flat = flatten(job.mesh, job.neighbours, chart, pitch);
+    s.flat = flatten(job.mesh, job.neighbours, chart, job.pitch, finer);
     Cover core = raster_core(s.flat);
-    Outline core_outline = find_outline(s.flat, s.flat.core);
+    Outline core_outline = find_outline(job.neighbours, s.flat, s.flat.core);
     s.cover = core;
     Paths paths(job.mesh, job.neighbours, s.flat);
     raster_overlap(s.flat, core_outline, paths, s.cover);
-    s.outline = find_outline(s.flat, s.flat.triangles.size());
+    s.outline = find_outline(job.neighbours, s.flat, s.flat.triangles.size());
     s.trim = trim_distances(s.flat, core, s.cover, core_outline, s.outline);
     if (job.needs.mask)
         trim_mask(job.mesh, job.neighbours, s.flat, s.trim);
@@ -169,10 +192,10 @@ static PatchMaps encode_sheet(const Job &job, const Chart &chart, const Sheet &s
 /* A chart whose relief is finer than the model's pitch gets a finer one. */
 PatchMaps bake_chart(const Job &job, const Chart &chart)
 {
-    constexpr double ALLOWED = 0.01, FINER = 0.7;
-    Sheet sheet = lay_sheet(job, chart, job.pitch);
+    constexpr double ALLOWED = 0.01, FINER = 1.4;
+    Sheet sheet = lay_sheet(job, chart, 1);
     if (sheet.missed > ALLOWED)
-        sheet = lay_sheet(job, chart, job.pitch * FINER);
+        sheet = lay_sheet(job, chart, FINER);
     return encode_sheet(job, chart, sheet);
 }
 

@@ -3,6 +3,7 @@
 
 #include "bake/bake.hpp"
 
+#include <algorithm>
 #include <unordered_set>
 
 namespace gtx::baking {
@@ -16,7 +17,12 @@ inline bool shown(float trim)
     return trim <= float(SHOWN + 1.0 / 32);
 }
 /* Source surface beyond a chart's border counts as true up to this many texels from it. */
-constexpr double OVERLAP = 1.5;
+constexpr double OVERLAP = 1;
+/* Where the model itself ends, up to this many texels beyond its border: nobody else's sheet starts
+ * there. */
+constexpr double BORDER_SHOWN = 0.1;
+/* Beyond a straight cut this is enough: the neighbour's sheet has the same texels. */
+constexpr double CUT_OVERLAP = 0.15;
 
 using Neighbours = std::vector<std::array<uint32_t, 3>>;
 
@@ -28,7 +34,14 @@ struct Grid {
     double pitch[2] = {};  /* object units a texel */
     double corner[2] = {}; /* local (a, b) of the outer corner of texel (0, 0) */
     int w = 0, h = 0;
+    double clip_low[2] = {}, clip_high[2] = {}; /* of the core, texel space; infinite: none */
 
+    /* How far (u, v) lies outside the straight cuts; negative inside. */
+    double outside(double u, double v) const
+    {
+        return std::max(std::max(clip_low[0] - u, u - clip_high[0]),
+                        std::max(clip_low[1] - v, v - clip_high[1]));
+    }
     Vec3d texel(const Vec3d &point) const
     {
         Vec3d p = point - origin;
@@ -55,7 +68,9 @@ struct FlatChart {
     Neighbours mate;
 };
 
-FlatChart flatten(const Mesh &mesh, const Neighbours &neighbours, const Chart &chart, double pitch);
+/* Lays a chart out at the model's pitch, or `finer` times as fine. */
+FlatChart flatten(const Mesh &mesh, const Neighbours &neighbours, const Chart &chart, double pitch,
+                  double finer);
 
 /* Texels of depth between neighbouring texels beyond which the surface must be seen to lead from
  * one to the other: they may lie on two sheets, side by side only in projection. */
@@ -94,6 +109,7 @@ struct OutlineEdge {
     Vec3d from, to;                 /* texel space */
     uint32_t triangle;
     int side;                       /* the edge from its corner `side` to the next */
+    bool border;                    /* the model ends here */
 };
 struct Outline {
     std::vector<OutlineEdge> edges;
@@ -109,7 +125,7 @@ Cover raster_core(const FlatChart &chart);
 void raster_overlap(const FlatChart &chart, const Outline &core, Paths &paths, Cover &cover);
 
 /* The outline of the first `count` triangles. */
-Outline find_outline(const FlatChart &chart, size_t count);
+Outline find_outline(const Neighbours &neighbours, const FlatChart &chart, size_t count);
 
 /* Finds what of `outline` follows from its edges. */
 void measure_distances(const Grid &grid, Outline &outline);

@@ -1,24 +1,40 @@
 /* A JSON writer: two-space indentation, one member a line. */
 #include "base/json.h"
 
+#include "base/alloc.h"
+
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
+
+static void release_text(gtx_json *json)
+{
+    gtx_allocator allocator = gtx_allocator_or_default(&json->allocator);
+    gtx_free_array(&allocator, json->text, json->capacity, 1);
+}
+
+static bool grow(gtx_json *json, size_t capacity)
+{
+    gtx_allocator allocator = gtx_allocator_or_default(&json->allocator);
+    char *grown = gtx_alloc_array(&allocator, capacity, 1);
+    if (!grown)
+        return false;
+    if (json->size)
+        memcpy(grown, json->text, json->size);
+    release_text(json);
+    json->text = grown;
+    json->capacity = capacity;
+    return true;
+}
 
 static void append(gtx_json *json, const char *text, size_t size)
 {
     if (json->failed)
         return;
-    if (json->size + size + 1 > json->capacity) {
-        size_t capacity = (json->size + size + 1) * 2;
-        char *grown = realloc(json->text, capacity);
-        if (!grown) {
-            json->failed = true;
-            return;
-        }
-        json->text = grown;
-        json->capacity = capacity;
+    size_t needed = json->size + size + 1;
+    if (needed > json->capacity && !grow(json, 2 * needed + 64)) {
+        json->failed = true;
+        return;
     }
     memcpy(json->text + json->size, text, size);
     json->size += size;
@@ -156,6 +172,6 @@ void gtx_json_null(gtx_json *json, const char *key)
 
 void gtx_json_free(gtx_json *json)
 {
-    free(json->text);
-    *json = (gtx_json){0};
+    release_text(json);
+    *json = (gtx_json){.allocator = json->allocator};
 }

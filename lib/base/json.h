@@ -2,6 +2,8 @@
 #ifndef GTX_BASE_JSON_H
 #define GTX_BASE_JSON_H
 
+#include <geotex/geotex.h>
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -10,9 +12,10 @@
 extern "C" {
 #endif
 
-/* Zero-fill to start. `text` is terminated and owned by the writer; `failed` stays set once memory
- * ran out, and the text is then incomplete. */
+/* Zero-fill to start, but for `allocator` where it is not to be malloc. `text` is terminated and
+ * owned by the writer; `failed` stays set once memory ran out, and the text is then incomplete. */
 typedef struct gtx_json {
+    gtx_allocator allocator;
     char *text;
     size_t size, capacity;
     unsigned depth;

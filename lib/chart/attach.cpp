@@ -4,40 +4,29 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace gtx {
 
 namespace {
 
 constexpr double CRUMB_TEXELS = 64;     /* most area of a crumb */
-constexpr double TRIFLE_TEXELS = 2;     /* of one that may face anywhere: it is junk then */
+constexpr double GUEST_TEXELS = 4200;   /* of what joins a chart that will be cut anyway */
+constexpr double TRIFLE_TEXELS = 8;     /* of one that may face anywhere: it is junk then */
+constexpr double NEAR_TEXELS = 3;       /* up to here a region may be host without touching */
 constexpr double RIM = 4;               /* texels that a patch needs beyond its chart's sides */
 constexpr double PATCH = 256;           /* what a patch costs for being one, in texels */
 constexpr double STEEP_COSINE = 0.1;    /* of raw normals, on at most a small share of the area */
+constexpr double GUEST_COSINE = 0.3;
 constexpr double STEEP_AREA = 0.05;
 constexpr int PASSES = 4;               /* crumbs may lead to crumbs; trifles wait for the last */
-
-/* Numbers vertices so that those at one position share a number. */
-std::vector<uint32_t> position_numbers(const Mesh &mesh)
-{
-    std::vector<uint32_t> order(mesh.positions.size()), number(order.size());
-    std::iota(order.begin(), order.end(), 0u);
-    auto key = [&mesh](uint32_t v) {
-        const Vec3d &p = mesh.positions[v];
-        return std::array<double, 3>{p.x, p.y, p.z};
-    };
-    std::sort(order.begin(), order.end(),
-              [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
-    for (size_t i = 1; i < order.size(); ++i)
-        number[order[i]] = number[order[i - 1]] + (key(order[i]) != key(order[i - 1]));
-    return number;
-}
 
 class Attachment {
 public:
     Attachment(Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
                std::vector<Frame> &frames)
-        : surface_(surface), bounds_(bounds), regions_(regions), frames_(frames)
+        : surface_(surface), bounds_(bounds), regions_(regions), frames_(frames), grid_of_(frames),
+          grids_(regions.size())
     {
     }
 
@@ -45,7 +34,7 @@ public:
 
 private:
     void find_crumbs();
-    void find_touching();
+    void find_near();
     double texels(const Region &region) const;
     void place(uint32_t crumb, bool trifle);
     bool try_host(uint32_t crumb, uint32_t host, bool trifle);
@@ -63,8 +52,11 @@ private:
     std::vector<Region> &regions_;
     std::vector<Frame> &frames_;
     std::vector<uint32_t> crumbs_;                        /* largest first */
-    std::vector<std::pair<uint32_t, uint32_t>> touching_; /* crumb, region; ascending */
+    std::vector<std::pair<uint32_t, uint32_t>> near_;     /* crumb, region; ascending */
     std::vector<uint32_t> host_;                          /* of a region; itself when it stays */
+    /* Depths of regions that were asked to be hosts, in the frames that these had at first. */
+    std::vector<Frame> grid_of_;
+    std::vector<LayerGrid> grids_;
 };
 
 double Attachment::texels(const Region &region) const
@@ -82,48 +74,63 @@ void Attachment::find_crumbs()
         order.emplace_back(-texels(regions_[i]), i);
     std::sort(order.begin(), order.end());
     for (const auto &[less, region] : order)
-        if (-less < CRUMB_TEXELS)
+        if (-less < (bounds_.cone ? GUEST_TEXELS : CRUMB_TEXELS))
             crumbs_.push_back(region);
 }
 
-void Attachment::find_touching()
+/* Regions with a vertex in the same cell of a grid as one of a crumb, or in a cell beside it. */
+void Attachment::find_near()
 {
-    std::vector<uint32_t> number = position_numbers(surface_.mesh);
-    std::vector<bool> wanted(number.size());
+    using Cell = std::array<int64_t, 3>;
+    const double step = NEAR_TEXELS * bounds_.pitch;
+    const Mesh &mesh = surface_.mesh;
+    auto cell_of = [&](uint32_t v) {
+        const Vec3d &p = mesh.positions[v];
+        return Cell{int64_t(std::floor(p.x / step)), int64_t(std::floor(p.y / step)),
+                    int64_t(std::floor(p.z / step))};
+    };
     auto each_vertex = [&](uint32_t region, auto &&visit) {
         for (uint32_t t : regions_[region].triangles)
-            for (uint32_t v : surface_.mesh.triangles[t])
-                visit(number[v]);
+            for (uint32_t v : mesh.triangles[t])
+                visit(v);
     };
+    std::vector<std::pair<Cell, uint32_t>> wanted; /* cell, crumb */
     for (uint32_t crumb : crumbs_)
-        each_vertex(crumb, [&](uint32_t v) { wanted[v] = true; });
-    std::vector<std::pair<uint32_t, uint32_t>> at; /* position, region */
+        each_vertex(crumb, [&](uint32_t v) { wanted.emplace_back(cell_of(v), crumb); });
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    for (size_t i = wanted.size(); i-- > 0;)
+        for (int n = 0; n < 27; ++n) {
+            auto [cell, crumb] = wanted[i];
+            wanted.push_back({{cell[0] + n / 9 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n % 3 - 1},
+                              crumb});
+        }
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+
+    std::vector<uint32_t> seen(mesh.positions.size(), NO_TRIANGLE); /* by which region, last */
     for (uint32_t i = 0; i < regions_.size(); ++i)
         each_vertex(i, [&](uint32_t v) {
-            if (wanted[v])
-                at.emplace_back(v, i);
+            if (std::exchange(seen[v], i) == i)
+                return;
+            auto at = std::lower_bound(wanted.begin(), wanted.end(), std::make_pair(cell_of(v), 0u));
+            for (; at != wanted.end() && at->first == cell_of(v); ++at)
+                if (at->second != i)
+                    near_.emplace_back(at->second, i);
         });
-    std::sort(at.begin(), at.end());
-    at.erase(std::unique(at.begin(), at.end()), at.end());
-    for (uint32_t crumb : crumbs_)
-        each_vertex(crumb, [&](uint32_t v) {
-            auto near = std::lower_bound(at.begin(), at.end(), std::make_pair(v, 0u));
-            for (; near != at.end() && near->first == v; ++near)
-                if (near->second != crumb)
-                    touching_.emplace_back(crumb, near->second);
-        });
-    std::sort(touching_.begin(), touching_.end());
-    touching_.erase(std::unique(touching_.begin(), touching_.end()), touching_.end());
+    std::sort(near_.begin(), near_.end());
+    near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
 }
 
 bool Attachment::faces(const Region &crumb, const Vec3d &z) const
 {
     double steep = 0, size = 0;
+    const double least = texels(crumb) < CRUMB_TEXELS ? STEEP_COSINE : GUEST_COSINE;
     for (uint32_t t : crumb.triangles) {
         if (is_inverted(surface_, t, z, bounds_.pitch))
             return false;
         size += surface_.facets[t].size;
-        if (dot(Vec3d(surface_.normal[t]), z) < STEEP_COSINE)
+        if (dot(Vec3d(surface_.normal[t]), z) < least)
             steep += surface_.facets[t].size;
     }
     return steep <= STEEP_AREA * size;
@@ -161,10 +168,21 @@ bool Attachment::try_host(uint32_t crumb, uint32_t host, bool trifle)
     if (!trifle && !faces(guest, frames_[host].z))
         return false;
     Frame frame = widened(frames_[host], guest);
-    if (std::max(frame.extent[0], frame.extent[1]) > bounds_.side ||
-        cost(frame) > cost(frames_[host]) + cost(frames_[crumb]))
+    if (!bounds_.cone && (std::max(frame.extent[0], frame.extent[1]) > bounds_.side ||
+                          cost(frame) > cost(frames_[host]) + cost(frames_[crumb])))
         return false;
-    Region both = regions_[host];
+    LayerGrid &grid = grids_[host];
+    if (grid.samples.empty())
+        grid = make_layer_grid(surface_, regions_[host], grid_of_[host], bounds_.pitch);
+    LayerGrid own = make_layer_grid(surface_, guest, grid_of_[host], bounds_.pitch);
+    size_t doubled;
+    if (fold_together(grid, own, layer_rule(surface_, bounds_.pitch), doubled) ||
+        (doubled && !trifle))
+        return false;
+    grid.add(own);
+    if (trifle)
+        mark_junk(guest, frame.z);
+    Region &both = regions_[host];
     auto offset = uint32_t(both.size());
     both.triangles.insert(both.triangles.end(), guest.triangles.begin(), guest.triangles.end());
     for (std::array<uint32_t, 3> n : guest.neighbours) {
@@ -172,13 +190,6 @@ bool Attachment::try_host(uint32_t crumb, uint32_t host, bool trifle)
             i += i == NO_TRIANGLE ? 0 : offset;
         both.neighbours.push_back(n);
     }
-    Layers before = find_layers(surface_, regions_[host], frames_[host], bounds_.pitch);
-    Layers after = find_layers(surface_, both, frame, bounds_.pitch);
-    if ((after.doubled > before.doubled && !trifle) || !after.folds.empty())
-        return false;
-    if (trifle)
-        mark_junk(guest, frame.z);
-    regions_[host] = std::move(both);
     frames_[host] = frame;
     regions_[crumb] = {};
     host_[crumb] = host;
@@ -187,8 +198,8 @@ bool Attachment::try_host(uint32_t crumb, uint32_t host, bool trifle)
 
 void Attachment::place(uint32_t crumb, bool trifle)
 {
-    auto near = std::lower_bound(touching_.begin(), touching_.end(), std::make_pair(crumb, 0u));
-    for (; near != touching_.end() && near->first == crumb; ++near) {
+    auto near = std::lower_bound(near_.begin(), near_.end(), std::make_pair(crumb, 0u));
+    for (; near != near_.end() && near->first == crumb; ++near) {
         uint32_t host = near->second;
         while (host_[host] != host)
             host = host_[host];
@@ -200,7 +211,7 @@ void Attachment::place(uint32_t crumb, bool trifle)
 void Attachment::run()
 {
     find_crumbs();
-    find_touching();
+    find_near();
     host_.resize(regions_.size());
     std::iota(host_.begin(), host_.end(), 0u);
     for (int pass = 1; pass <= PASSES; ++pass)

@@ -18,14 +18,34 @@ struct Frame {
 };
 
 struct Chart {
-    std::vector<uint32_t> triangles; /* the core, ascending */
+    /* The triangles whose surface is the core, ascending. */
+    std::vector<uint32_t> triangles;
     Frame frame;
     bool two_sided = false;
+    /* The core is what of the triangles lies inside, along the frame's x and y, object units:
+     * straight cuts from a larger chart, whose triangles several charts then share. Where there is
+     * a cut, the sheet continues in a chart of the same axis and grid. */
+    double clip_low[2] = {-INFINITY, -INFINITY}, clip_high[2] = {INFINITY, INFINITY};
+    /* Texels of the grid along the frame's sides; 0 = as many as the pitch gives. */
+    unsigned cells[2] = {0, 0};
+    uint64_t source_triangles = 0; /* those whose centre lies in the core */
+};
+
+enum class PartitionMethod {
+    CUTS, /* few large charts that fold nowhere, cut straight */
+    VSA   /* variational shape approximation (paper, section 5.2) */
 };
 
 struct ChartOptions {
+    PartitionMethod method = PartitionMethod::CUTS;
     unsigned charts = 0;         /* wanted number; 0 = round(10 T^0.28) for T triangles */
-    unsigned resolution = 128;   /* texels along the longest patch side */
+    unsigned resolution = 128;   /* most texels along a patch side */
+    double pitch = 0;            /* texel pitch for CUTS, object units; 0 = what gives patches
+                                    their texels at this resolution */
+    unsigned grain = 8;          /* sides will be multiples of as many texels */
+    unsigned height_bits = 8;    /* heights will have */
+    /* Texels that a patch needs beyond its core: at a straight cut, and where its chart ends. */
+    unsigned overlap[2] = {1, 2};
 };
 
 /* What partitioning found, for the cook report. */
@@ -48,14 +68,14 @@ struct Partition {
     ChartReport report;
 };
 
-/* Variational shape approximation (Cohen-Steiner, Alliez, Desbrun 2004; metric L2,1) on OpenMesh
- * connectivity, then folding charts split until none folds, and a frame for each (paper, section
- * 5). Deterministic for any thread count. Stages of `task`: "partition", "frame". */
-Partition partition_vsa(const Mesh &mesh, const ChartOptions &options, Task &task);
+/* Clusters the triangles (on OpenMesh connectivity), splits clusters until none folds, and gives
+ * each a frame (paper, section 5); CUTS then cuts them to the wanted number. Deterministic for any
+ * thread count. Stages of `task`: "partition", "frame". Throws Error: EMPTY, LIMIT, CANCELLED. */
+Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &task);
 
 /* The surface that a chart's maps may show: its core and the source surface reached across its
  * border within `reach` object units (measured in the frame's (x, y) plane from the core's
- * outline) through edges, that faces the frame (n.z >= 0.1). Returns triangles beyond the core,
+ * outline) through edges, that faces the frame (n.z >= 0.2). Returns triangles beyond the core,
  * ascending. `neighbours` is triangle_neighbours(mesh). Const and reentrant. */
 std::vector<uint32_t> overlap_triangles(const Mesh &mesh,
                                         const std::vector<std::array<uint32_t, 3>> &neighbours,

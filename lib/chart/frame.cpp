@@ -12,6 +12,7 @@ constexpr int CONE_STEPS = 100;
 constexpr int LAWSON_STEPS = 11;
 /* Steepest tilt of each axis: det(x, y, z) is then at least 1 / (1 + 1.5^2) > 0.3. */
 constexpr double STEEPEST_TILT = 1.5;
+constexpr double LEAST_DETERMINANT = 0.15; /* a reader asks for 0.1 */
 
 struct Point {
     double u, v, h;
@@ -268,6 +269,39 @@ Frame make_frame(const Mesh &mesh, const std::vector<uint32_t> &triangles, const
     frame.origin = frame.point(low);
     for (int k = 0; k < 3; ++k)
         frame.extent[k] = high[k] - low[k];
+    return frame;
+}
+
+Frame part_of_frame(const Frame &whole, const double low[2], const double high[2],
+                    const std::vector<Vec3d> &points)
+{
+    std::vector<Point> heights;
+    heights.reserve(points.size());
+    for (const Vec3d &p : points)
+        heights.push_back({p.x, p.y, p.z});
+    Plane plane = heights.empty() ? Plane{} : minimax_plane(heights);
+    Vec3d x = whole.x + whole.z * plane.a, y = whole.y + whole.z * plane.b;
+    if (dot(normalize(x), cross(normalize(y), whole.z)) < LEAST_DETERMINANT) {
+        plane = {}; /* the whole is tilted already */
+        x = whole.x;
+        y = whole.y;
+    }
+    double lowest = INFINITY, highest = -INFINITY;
+    for (const Point &p : heights) {
+        double above = p.h - plane.a * p.u - plane.b * p.v;
+        lowest = std::min(lowest, above);
+        highest = std::max(highest, above);
+    }
+    if (heights.empty())
+        lowest = highest = 0;
+    Frame frame;
+    frame.origin = whole.point({low[0], low[1], lowest + plane.a * low[0] + plane.b * low[1]});
+    frame.x = normalize(x);
+    frame.y = normalize(y);
+    frame.z = whole.z;
+    frame.extent[0] = (high[0] - low[0]) * length(x);
+    frame.extent[1] = (high[1] - low[1]) * length(y);
+    frame.extent[2] = highest - lowest;
     return frame;
 }
 

@@ -1,84 +1,53 @@
 /* Rasterises a chart along its axis and looks for texel centres with two layers. */
 #include "chart/layers.hpp"
 
-#include <algorithm>
+#include "chart/raster.hpp"
 
 namespace gtx {
 
 namespace {
+
+using Sample = LayerGrid::Sample;
 
 /* Groups of doubled samples so small and so shallow are a scan's noise. */
 constexpr size_t JUNK_SAMPLES = 4;
 constexpr double JUNK_PITCHES = 4;
 /* Layers closer than this share of the diagonal are one. */
 constexpr double LAYER_DISTANCE = 1e-4;
+/* Steps between neighbouring texels beyond which the surface must be seen to lead from one to the
+ * other, and within how many texels. */
+constexpr double CLIFF_PITCHES = 6, CLIFF_REACH = 2.5;
 
-struct Sample {
-    float low = INFINITY, high = -INFINITY;
-    uint32_t back = 0, front = 0;
-};
-
-struct Grid {
-    int width, height;
-    std::vector<Sample> samples;
-};
-
-/* A triangle at the centres of the texels it covers, edges included. Corners are in texels. */
-void rasterise(const Vec3d corner[3], uint32_t local, Grid &grid)
+void join(Sample &s, const Sample &other)
 {
-    const Vec3d &a = corner[0], &b = corner[1], &c = corner[2];
-    double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-    if (area == 0)
-        return;
-    auto first = [](double x) { return int(std::max(0., std::ceil(x - 0.5))); };
-    auto last = [](double x, int size) { return int(std::min(size - 1., std::floor(x - 0.5))); };
-    int i0 = first(std::min({a.x, b.x, c.x})), i1 = last(std::max({a.x, b.x, c.x}), grid.width);
-    int j0 = first(std::min({a.y, b.y, c.y})), j1 = last(std::max({a.y, b.y, c.y}), grid.height);
-    for (int j = j0; j <= j1; ++j)
-        for (int i = i0; i <= i1; ++i) {
-            double x = i + 0.5, y = j + 0.5;
-            double wb = ((x - a.x) * (c.y - a.y) - (y - a.y) * (c.x - a.x)) / area;
-            double wc = ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / area;
-            if (wb < 0 || wc < 0 || wb + wc > 1)
-                continue;
-            float depth = float(a.z + wb * (b.z - a.z) + wc * (c.z - a.z));
-            Sample &s = grid.samples[size_t(j) * size_t(grid.width) + size_t(i)];
-            if (depth < s.low) {
-                s.low = depth;
-                s.back = local;
-            }
-            if (depth > s.high) {
-                s.high = depth;
-                s.front = local;
-            }
-        }
+    if (other.low < s.low) {
+        s.low = other.low;
+        s.back = other.back;
+    }
+    if (other.high > s.high) {
+        s.high = other.high;
+        s.front = other.front;
+    }
 }
 
-Grid rasterise_region(const Surface &surface, const Region &region, const Frame &frame,
-                      double pitch)
+/* A grid without samples around texels low to high - 1. */
+LayerGrid blank_grid(const int low[2], const int high[2])
 {
-    Grid grid = {int(std::ceil(frame.extent[0] / pitch)) + 1,
-                 int(std::ceil(frame.extent[1] / pitch)) + 1,
-                 {}};
-    grid.samples.resize(size_t(grid.width) * size_t(grid.height));
-    FrameInverse inverse(frame);
-    for (uint32_t local = 0; local < region.size(); ++local) {
-        Vec3d corner[3];
-        for (int k = 0; k < 3; ++k) {
-            corner[k] = inverse(surface.mesh.position(region.triangles[local], k));
-            corner[k].x /= pitch;
-            corner[k].y /= pitch;
-        }
-        rasterise(corner, local, grid);
+    LayerGrid grid;
+    for (int k = 0; k < 2; ++k) {
+        grid.first[k] = low[k];
+        grid.size[k] = std::max(0, high[k] - low[k]);
     }
+    grid.samples.resize(size_t(grid.size[0]) * size_t(grid.size[1]));
     return grid;
 }
 
 /* Empties `samples` of the 8-connected group that holds the one at `start`; returns the group. */
-std::vector<DoubleSample> take_group(Grid &grid, size_t start, float apart)
+std::vector<DoubleSample> take_group(LayerGrid &grid, size_t start, float apart)
 {
     std::vector<DoubleSample> group;
     std::vector<size_t> stack;
+    const int width = grid.size[0], height = grid.size[1];
     auto take = [&](size_t at) {
         Sample &s = grid.samples[at];
         if (!(s.high - s.low > apart))
@@ -89,35 +58,202 @@ std::vector<DoubleSample> take_group(Grid &grid, size_t start, float apart)
     };
     take(start);
     while (!stack.empty()) {
-        int i = int(stack.back() % size_t(grid.width)), j = int(stack.back() / size_t(grid.width));
+        int i = int(stack.back() % size_t(width)), j = int(stack.back() / size_t(width));
         stack.pop_back();
-        for (int y = std::max(0, j - 1); y <= std::min(grid.height - 1, j + 1); ++y)
-            for (int x = std::max(0, i - 1); x <= std::min(grid.width - 1, i + 1); ++x)
-                take(size_t(y) * size_t(grid.width) + size_t(x));
+        for (int y = std::max(0, j - 1); y <= std::min(height - 1, j + 1); ++y)
+            for (int x = std::max(0, i - 1); x <= std::min(width - 1, i + 1); ++x)
+                take(size_t(y) * size_t(width) + size_t(x));
     }
     return group;
 }
 
+bool is_fold(const std::vector<DoubleSample> &group, const LayerRule &rule)
+{
+    return group.size() > JUNK_SAMPLES ||
+           std::any_of(group.begin(), group.end(),
+                       [&](const DoubleSample &d) { return d.depth > rule.shallow; });
+}
+
+/* Corners of a region's triangles: x and y in texels from a fixed point, depth in object units. */
+class FlatRegion {
+public:
+    FlatRegion(const Surface &surface, const Region &region, const Frame &frame, double pitch)
+        : surface_(surface), region_(region), inverse_(frame),
+          fixed_(inverse_(surface.mesh.positions[0])), pitch_(pitch)
+    {
+    }
+    Vec3d corner(uint32_t local, int k) const
+    {
+        Vec3d p = inverse_(surface_.mesh.position(region_.triangles[local], k));
+        return Vec3d((p.x - fixed_.x) / pitch_, (p.y - fixed_.y) / pitch_, p.z);
+    }
+    /* Whether surface within `reach` texels of (u, v) leads from one triangle to another. */
+    bool joined(uint32_t from, uint32_t to, double u, double v, double reach) const
+    {
+        std::vector<uint32_t> queue(1, from);
+        for (size_t next = 0; next < queue.size(); ++next) {
+            if (queue[next] == to)
+                return true;
+            for (uint32_t n : region_.neighbours[queue[next]])
+                if (n != NO_TRIANGLE && std::find(queue.begin(), queue.end(), n) == queue.end() &&
+                    near(n, u, v, reach))
+                    queue.push_back(n);
+        }
+        return false;
+    }
+
+private:
+    bool near(uint32_t local, double u, double v, double reach) const
+    {
+        Vec3d a = corner(local, 0), b = corner(local, 1), c = corner(local, 2);
+        return std::min({a.x, b.x, c.x}) <= u + reach && std::max({a.x, b.x, c.x}) >= u - reach &&
+               std::min({a.y, b.y, c.y}) <= v + reach && std::max({a.y, b.y, c.y}) >= v - reach;
+    }
+    const Surface &surface_;
+    const Region &region_;
+    FrameInverse inverse_;
+    Vec3d fixed_;
+    double pitch_;
+};
+
+/* Samples side by side that are sheets of their own: no cell between them shows either. */
+void find_cliffs(const FlatRegion &flat, const LayerGrid &grid, float cliff,
+                 std::vector<DoubleSample> &out)
+{
+    const int width = grid.size[0], height = grid.size[1];
+    for (int j = 0; j < height; ++j)
+        for (int i = 0; i < width; ++i)
+            for (int axis = 0; axis < 2; ++axis) {
+                int x = i + 1 - axis, y = j + axis;
+                if (x >= width || y >= height)
+                    continue;
+                const Sample &a = grid.samples[size_t(j) * size_t(width) + size_t(i)],
+                             &b = grid.samples[size_t(y) * size_t(width) + size_t(x)];
+                float step = std::fabs(a.high - b.high);
+                if (!(a.high >= a.low && b.high >= b.low && step > cliff) ||
+                    flat.joined(a.front, b.front, grid.first[0] + (i + x) / 2. + 0.5,
+                                grid.first[1] + (j + y) / 2. + 0.5, CLIFF_REACH))
+                    continue;
+                out.push_back(a.high > b.high ? DoubleSample{a.front, b.front, step}
+                                              : DoubleSample{b.front, a.front, step});
+            }
+}
+
 } // namespace
+
+LayerRule layer_rule(const Surface &surface, double pitch)
+{
+    return {float(LAYER_DISTANCE * surface.diagonal), float(JUNK_PITCHES * pitch)};
+}
+
+const Sample *LayerGrid::at(int i, int j) const
+{
+    int x = i - first[0], y = j - first[1];
+    bool inside = x >= 0 && y >= 0 && x < size[0] && y < size[1];
+    return inside ? &samples[size_t(y) * size_t(size[0]) + size_t(x)] : nullptr;
+}
+
+void LayerGrid::add(const LayerGrid &other)
+{
+    int low[2], high[2];
+    bool grows = false;
+    for (int k = 0; k < 2; ++k) {
+        low[k] = std::min(first[k], other.first[k]);
+        high[k] = std::max(first[k] + size[k], other.first[k] + other.size[k]);
+        grows = grows || low[k] < first[k] || high[k] > first[k] + size[k];
+    }
+    if (grows) {
+        LayerGrid larger = blank_grid(low, high);
+        larger.add(*this);
+        *this = std::move(larger);
+    }
+    for (int j = 0; j < other.size[1]; ++j)
+        for (int i = 0; i < other.size[0]; ++i) {
+            int x = other.first[0] + i - first[0], y = other.first[1] + j - first[1];
+            join(samples[size_t(y) * size_t(size[0]) + size_t(x)],
+                 other.samples[size_t(j) * size_t(other.size[0]) + size_t(i)]);
+        }
+}
+
+LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Frame &frame,
+                          double pitch)
+{
+    const FlatRegion flat(surface, region, frame, pitch);
+    auto corner = [&](uint32_t local, int k) { return flat.corner(local, k); };
+    double from[2] = {INFINITY, INFINITY}, to[2] = {-INFINITY, -INFINITY};
+    for (uint32_t local = 0; local < region.size(); ++local)
+        for (int k = 0; k < 3; ++k) {
+            Vec3d p = corner(local, k);
+            for (int a = 0; a < 2; ++a) {
+                from[a] = std::min(from[a], p[a]);
+                to[a] = std::max(to[a], p[a]);
+            }
+        }
+    int low[2], high[2];
+    for (int a = 0; a < 2; ++a) {
+        low[a] = int(std::floor(from[a]));
+        high[a] = int(std::floor(to[a])) + 1;
+    }
+    LayerGrid grid = blank_grid(low, high);
+    for (uint32_t local = 0; local < region.size(); ++local) {
+        Vec3d p[3];
+        for (int k = 0; k < 3; ++k)
+            p[k] = corner(local, k) - Vec3d(low[0], low[1], 0);
+        raster_centres(p, grid.size[0], grid.size[1], [&](int i, int j, double depth) {
+            join(grid.samples[size_t(j) * size_t(grid.size[0]) + size_t(i)],
+                 {float(depth), float(depth), local, local});
+        });
+    }
+    return grid;
+}
 
 Layers find_layers(const Surface &surface, const Region &region, const Frame &frame, double pitch)
 {
-    constexpr double STEPS = 254; /* of an 8-bit height */
-    float apart = float(std::max(frame.extent[2] / STEPS, LAYER_DISTANCE * surface.diagonal));
-    float shallow = float(JUNK_PITCHES * pitch);
-    Grid grid = rasterise_region(surface, region, frame, pitch);
+    const LayerRule rule = layer_rule(surface, pitch);
+    LayerGrid grid = make_layer_grid(surface, region, frame, pitch);
     Layers layers;
     for (const Sample &s : grid.samples)
         layers.samples += s.high >= s.low;
+    find_cliffs(FlatRegion(surface, region, frame, pitch), grid, float(CLIFF_PITCHES * pitch),
+                layers.cliffs);
     for (size_t at = 0; at < grid.samples.size(); ++at) {
-        std::vector<DoubleSample> group = take_group(grid, at, apart);
+        std::vector<DoubleSample> group = take_group(grid, at, rule.apart);
         layers.doubled += group.size();
-        bool deep = std::any_of(group.begin(), group.end(),
-                                [=](const DoubleSample &d) { return d.depth > shallow; });
-        if (deep || group.size() > JUNK_SAMPLES)
+        if (!group.empty() && is_fold(group, rule))
             layers.folds.insert(layers.folds.end(), group.begin(), group.end());
     }
     return layers;
+}
+
+bool fold_together(const LayerGrid &host, const LayerGrid &guest, const LayerRule &rule,
+                   size_t &doubled)
+{
+    /* A group that reaches farther from the guest than this is too large anyway. */
+    const int around = int(JUNK_SAMPLES) + 1;
+    int low[2], high[2];
+    for (int k = 0; k < 2; ++k) {
+        low[k] = guest.first[k] - around;
+        high[k] = guest.first[k] + guest.size[k] + around;
+    }
+    LayerGrid both = blank_grid(low, high);
+    doubled = 0;
+    for (int j = low[1]; j < high[1]; ++j)
+        for (int i = low[0]; i < high[0]; ++i) {
+            Sample &s = both.samples[size_t(j - low[1]) * size_t(both.size[0]) + size_t(i - low[0])];
+            const Sample *there = host.at(i, j), *here = guest.at(i, j);
+            if (there)
+                s = *there;
+            bool was = s.high - s.low > rule.apart;
+            if (here)
+                join(s, *here);
+            doubled += !was && s.high - s.low > rule.apart;
+        }
+    for (size_t at = 0; at < both.samples.size(); ++at) {
+        std::vector<DoubleSample> group = take_group(both, at, rule.apart);
+        if (!group.empty() && is_fold(group, rule))
+            return true;
+    }
+    return false;
 }
 
 } // namespace gtx

@@ -15,9 +15,40 @@ struct Layers {
     size_t samples = 0;                 /* texel centres covered */
     size_t doubled = 0;                 /* of those, twice */
     std::vector<DoubleSample> folds;    /* the doubled ones that no junk rule excuses */
+    /* Neighbouring texel centres far apart in depth with no surface between: each shows where the
+     * cell that bridges them is cut away. */
+    std::vector<DoubleSample> cliffs;
 };
 
-/* Rasterises all triangles of a region, both facings, at the texel centres of its frame. */
+/* How far apart two depths are to be two layers, and up to where a few of them are a scan's noise. */
+struct LayerRule {
+    float apart, shallow;
+};
+LayerRule layer_rule(const Surface &surface, double pitch);
+
+/* Depths of triangles, both facings, at the texel centres of a frame. Texels count from a fixed
+ * point of the mesh, so that a frame that grows keeps them; the grid begins at texel `first`. */
+struct LayerGrid {
+    struct Sample {
+        float low = INFINITY, high = -INFINITY;
+        uint32_t back = 0, front = 0;
+    };
+    int first[2] = {0, 0}, size[2] = {0, 0};
+    std::vector<Sample> samples;
+
+    /* The sample at a texel of the frame, NULL outside the grid. */
+    const Sample *at(int i, int j) const;
+    /* Takes the samples of another grid of the same frame. */
+    void add(const LayerGrid &other);
+};
+LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Frame &frame,
+                          double pitch);
+
 Layers find_layers(const Surface &surface, const Region &region, const Frame &frame, double pitch);
+
+/* Whether a guest could join a host without a fold; `doubled` counts the texel centres that would
+ * be covered twice and are not yet. */
+bool fold_together(const LayerGrid &host, const LayerGrid &guest, const LayerRule &rule,
+                   size_t &doubled);
 
 } // namespace gtx

@@ -8,7 +8,7 @@ namespace gtx {
 
 namespace {
 
-constexpr double FACING = 0.1; /* least n.z */
+constexpr double FACING = 0.2; /* least n.z */
 /* Surface is reached from one edge of the border, and stays within this many reaches of it: the
  * sheet that passes below a silhouette is not followed from where the two meet. */
 constexpr double TETHER = 1.5;
@@ -116,10 +116,15 @@ std::vector<uint32_t> overlap_triangles(const Mesh &mesh,
         return Point{p.x, p.y};
     };
 
+    auto beyond_cut = [&](const Point &p, const Point &q) {
+        return std::max(p.a, q.a) < chart.clip_low[0] || std::min(p.a, q.a) > chart.clip_high[0] ||
+               std::max(p.b, q.b) < chart.clip_low[1] || std::min(p.b, q.b) > chart.clip_high[1];
+    };
     std::vector<std::pair<uint32_t, int>> border;
     for (uint32_t t : core)
         for (int k = 0; k < 3; ++k)
-            if (neighbours[t][k] != NO_TRIANGLE && !in_core(neighbours[t][k]))
+            if (neighbours[t][k] != NO_TRIANGLE && !in_core(neighbours[t][k]) &&
+                !beyond_cut(plan(t, k), plan(t, (k + 1) % 3)))
                 border.emplace_back(t, k);
     Outline outline(chart.frame.extent[0], reach, border.size());
     std::vector<std::pair<uint32_t, uint32_t>> found; /* triangle, edge it was reached from */

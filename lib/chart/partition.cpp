@@ -1,5 +1,7 @@
 /* The order of partitioning: cluster, split what is no height map, set the density, report. */
+#include "chart/agglomerate.hpp"
 #include "chart/attach.hpp"
+#include "chart/cut.hpp"
 #include "chart/split.hpp"
 #include "chart/vsa.hpp"
 
@@ -16,6 +18,10 @@ constexpr double LONGEST_SIDE = 2.5;
 constexpr size_t MOST_TRIANGLES = 300000000;
 /* Texels of `resolution` that are left to the overlap. */
 constexpr unsigned OVERLAP_TEXELS = 8;
+/* Texels of surface in a patch that is cut, at a resolution of 128. */
+constexpr double CUT_TEXELS = 1400;
+/* And at least in a chart, on average: a model may be of thousands of small components. */
+constexpr double CHART_TEXELS = 100;
 
 uint32_t default_count(const Mesh &mesh)
 {
@@ -51,6 +57,14 @@ double texel_size(const std::vector<Frame> &frames, const Mesh &mesh, const Char
     double side = side_texels(options);
     double wanted = std::max(options.charts, default_count(mesh));
     return std::max(longest / side, std::sqrt(area / wanted) / side);
+}
+
+/* The pitch asked for, or that at which a patch gets its share of texels. */
+double cut_pitch(const Surface &surface, size_t patches, const ChartOptions &options)
+{
+    if (options.pitch > 0)
+        return options.pitch;
+    return std::sqrt(surface.area / (CUT_TEXELS * double(patches))) * 128 / options.resolution;
 }
 
 void report_initial(const Surface &surface, const std::vector<Region> &regions, Task &task,
@@ -146,46 +160,90 @@ void report_final(const Surface &surface, const std::vector<Region> &regions,
     out.report.junk_area_fraction = area / double(surface.junk.size());
 }
 
+/* Splits the clusters until each is a chart, at the pitch asked for or one fine enough for them. */
+std::vector<Frame> split_for_count(const Surface &surface, const ChartOptions &options,
+                                   std::vector<Region> &regions, Bounds &bounds, Task &task)
+{
+    std::vector<Frame> frames;
+    for (;;) {
+        split_all(surface, regions, frames, bounds, task);
+        double finest = std::sqrt(surface.area / (CHART_TEXELS * double(regions.size())));
+        if (options.pitch > 0 || finest >= bounds.pitch)
+            break;
+        bounds.pitch = finest; /* another texel sees other folds */
+    }
+    return frames;
+}
+
+/* Splits the clusters of the paper's method until each is a chart, and finds the pitch. */
+std::vector<Frame> split_for_length(const Surface &surface, const ChartOptions &options,
+                                    std::vector<Region> &regions, Bounds &bounds, Task &task)
+{
+    std::vector<Frame> frames;
+    bounds = {side_limit(surface, regions, task), 0, false};
+    bounds.pitch = bounds.side / side_texels(options);
+    while (split_all(surface, regions, frames, bounds, task)) {
+        double pitch = texel_size(frames, surface.mesh, options);
+        if (pitch == bounds.pitch)
+            break;
+        bounds.pitch = pitch; /* another texel sees other folds */
+    }
+    return frames;
+}
+
+std::vector<Chart> whole_charts(std::vector<Region> regions, const std::vector<Frame> &frames)
+{
+    std::vector<Chart> out(regions.size());
+    for (size_t i = 0; i < regions.size(); ++i) {
+        out[i].source_triangles = regions[i].size();
+        out[i].triangles = std::move(regions[i].triangles);
+        out[i].frame = frames[i];
+        std::sort(out[i].triangles.begin(), out[i].triangles.end());
+    }
+    return out;
+}
+
 } // namespace
 
-Partition partition_vsa(const Mesh &mesh, const ChartOptions &options, Task &task)
+Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &task)
 {
     if (!mesh.triangle_count())
         throw Error(GTX_ERROR_EMPTY, "the mesh has no triangle to partition");
     if (mesh.triangle_count() > MOST_TRIANGLES)
         throw Error(GTX_ERROR_LIMIT, "the mesh has more than 300 million triangles");
     task.begin("partition");
-    uint32_t count = chart_count(mesh, options);
-    Surface surface = make_surface(mesh, expected_pitch(mesh, count));
+    const bool cut = options.method == PartitionMethod::CUTS;
+    const uint32_t wanted = chart_count(mesh, options);
+    Surface surface = make_surface(mesh, expected_pitch(mesh, wanted));
 
     Partition out;
-    out.initial_chart = cluster(surface, surface.whole, count, task);
+    uint32_t count = wanted;
+    out.initial_chart = cut ? agglomerate(surface, count, task)
+                            : cluster(surface, surface.whole, count, task);
     std::vector<Region> regions = split_region(surface.whole, out.initial_chart, count);
     surface.whole.neighbours = {};
     report_initial(surface, regions, task, out.report);
 
-    Bounds bounds = {side_limit(surface, regions, task), 0};
-    std::vector<Frame> frames;
-    bounds.pitch = bounds.side / side_texels(options);
-    while (split_all(surface, regions, frames, bounds, task)) {
-        double pitch = texel_size(frames, mesh, options);
-        if (pitch == bounds.pitch)
-            break;
-        bounds.pitch = pitch; /* another texel sees other folds */
-    }
+    Bounds bounds = {INFINITY, cut_pitch(surface, wanted, options), true};
+    std::vector<Frame> frames = (cut ? split_for_count : split_for_length)(surface, options, regions,
+                                                                           bounds, task);
     out.pitch = bounds.pitch;
 
     task.begin("frame");
     attach_crumbs(surface, bounds, regions, frames);
     out.junk = surface.junk;
     report_final(surface, regions, frames, task, out);
-    for (size_t i = 0; i < regions.size(); ++i) {
-        Chart chart = {std::move(regions[i].triangles), frames[i], false};
-        std::sort(chart.triangles.begin(), chart.triangles.end());
+    CutPlan plan = {wanted,
+                    bounds.pitch,
+                    std::max(options.resolution, options.grain),
+                    options.grain,
+                    {options.overlap[0], options.overlap[1]},
+                    options.height_bits == 8 ? 254. : 65534.};
+    out.charts = cut ? cut_charts(surface, std::move(regions), frames, plan, task)
+                     : whole_charts(std::move(regions), frames);
+    for (Chart &chart : out.charts)
         for (uint32_t t : chart.triangles)
             chart.two_sided |= !mesh.flags.empty() && mesh.flags[t] & TRIANGLE_TWO_SIDED;
-        out.charts.push_back(std::move(chart));
-    }
     return out;
 }
 

@@ -12,8 +12,11 @@ namespace {
 
 /* Smoothed normals steeper than this, on more than a small share of the area, are for another
  * chart: a steep texel stands for much surface, and its height error shows. */
-constexpr double STEEP_COSINE = 0.3;
-constexpr double STEEP_AREA = 0.005;
+constexpr double STEEP_COSINE = 0.25;
+constexpr double STEEP_AREA = 0.01;
+/* Raw normals that count as a wall's, and how much of one matters. */
+constexpr double WALL_COSINE = 0.05;
+constexpr double WALL_TEXELS = 1;
 /* How much longer a step of the watershed is across a bend of 90 degrees. */
 constexpr float CREASE = 8;
 
@@ -22,7 +25,7 @@ struct Candidate {
     bool steep = false, inverted = false;
     Layers layers;
 
-    bool fits() const { return !steep && !inverted && layers.folds.empty(); }
+    bool fits() const { return !steep && !inverted && layers.folds.empty() && layers.cliffs.empty(); }
 };
 
 Candidate try_axis(const Surface &surface, const Region &region, const Vec3d &z,
@@ -44,10 +47,44 @@ Candidate try_axis(const Surface &surface, const Region &region, const Vec3d &z,
     return out;
 }
 
+/* Sets apart what stands upright in a frame, or hangs over by less than a texel: a height map shows
+ * nothing of it, and there would be a hole where nobody else does. Empty where there is none. */
+std::vector<uint32_t> find_walls(const Surface &surface, const Region &region, const Vec3d &z,
+                                 double pitch)
+{
+    std::vector<uint32_t> wall(region.size());
+    for (size_t i = 0; i < region.size(); ++i) {
+        uint32_t t = region.triangles[i];
+        wall[i] = !surface.junk[t] && dot(Vec3d(surface.normal[t]), z) < WALL_COSINE;
+    }
+    std::vector<uint32_t> group = wall;
+    std::vector<double> area(connected_pieces(region, group));
+    for (size_t i = 0; i < region.size(); ++i)
+        area[group[i]] += length(surface.mesh.area_vector(region.triangles[i])) / 2;
+    bool any = false;
+    for (size_t i = 0; i < region.size(); ++i) {
+        wall[i] = wall[i] && area[group[i]] > WALL_TEXELS * pitch * pitch;
+        any = any || wall[i];
+    }
+    return any ? wall : std::vector<uint32_t>();
+}
+
 std::vector<Region> pieces_of(const Region &region, std::vector<uint32_t> labels)
 {
     uint32_t count = connected_pieces(region, labels);
     return split_region(region, labels, count);
+}
+
+/* What fits is a chart, but for its walls. */
+Verdict accept(const Surface &surface, const Region &region, const Frame &frame, double pitch)
+{
+    std::vector<uint32_t> wall = find_walls(surface, region, frame.z, pitch);
+    Verdict verdict = {frame, {}};
+    if (!wall.empty())
+        verdict.pieces = pieces_of(region, wall);
+    if (verdict.pieces.size() == 1) /* all of it */
+        verdict.pieces.clear();
+    return verdict;
 }
 
 /* Straight across the middle of the longer side. What the cut leaves apart from the main piece of
@@ -112,11 +149,11 @@ std::vector<uint32_t> split_normals(const Surface &surface, const Region &region
 /* Watershed between what lies in front and what lies behind: triangles vote by their doubled
  * samples, the deepest of which decides its own two. Crossing a crease costs most. */
 std::vector<uint32_t> split_layers(const Surface &surface, const Region &region,
-                                   const Layers &layers)
+                                   const std::vector<DoubleSample> &samples)
 {
     std::vector<int> votes(region.size());
-    const DoubleSample *deepest = &layers.folds[0];
-    for (const DoubleSample &d : layers.folds) {
+    const DoubleSample *deepest = &samples[0];
+    for (const DoubleSample &d : samples) {
         ++votes[d.front];
         --votes[d.back];
         if (d.depth > deepest->depth)
@@ -171,20 +208,25 @@ Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds
     auto too_long = [&](const Frame &frame) {
         return region.size() > 1 && std::max(frame.extent[0], frame.extent[1]) > bounds.side;
     };
-    Candidate median =
-        try_axis(surface, region, median_axis(surface.mesh, region.triangles), bounds);
-    if (too_long(median.frame))
-        return {{}, pieces_of(region, cut_across(surface, region, median.frame))};
-    if (median.fits() || region.size() == 1)
-        return {median.frame, {}};
+    auto try_kind = [&](bool cone) {
+        return try_axis(surface, region, cone ? cone_axis(surface, region.triangles)
+                                              : median_axis(surface.mesh, region.triangles), bounds);
+    };
+    /* A triangle alone is a height map along its own normal, whatever its neighbours' are. */
+    Candidate first = try_kind(bounds.cone && region.size() > 1);
+    if (too_long(first.frame))
+        return {{}, pieces_of(region, cut_across(surface, region, first.frame))};
+    if (first.fits() || region.size() == 1)
+        return accept(surface, region, first.frame, bounds.pitch);
 
-    Candidate cone = try_axis(surface, region, cone_axis(surface, region.triangles), bounds);
-    if (cone.fits() && !too_long(cone.frame))
-        return {cone.frame, {}};
-    for (const Candidate *c : {&median, &cone})
-        if (!c->layers.folds.empty())
-            return {{}, pieces_of(region, split_layers(surface, region, c->layers))};
-    return {{}, pieces_of(region, split_normals(surface, region, cone.frame.z))};
+    Candidate second = try_kind(!bounds.cone);
+    if (second.fits() && !too_long(second.frame))
+        return accept(surface, region, second.frame, bounds.pitch);
+    for (const Candidate *c : {&first, &second})
+        for (const std::vector<DoubleSample> *samples : {&c->layers.folds, &c->layers.cliffs})
+            if (!samples->empty())
+                return {{}, pieces_of(region, split_layers(surface, region, *samples))};
+    return {{}, pieces_of(region, split_normals(surface, region, (bounds.cone ? first : second).frame.z))};
 }
 
 } // namespace gtx

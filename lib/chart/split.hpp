@@ -9,6 +9,7 @@ namespace gtx {
 struct Bounds {
     double side;   /* longest side of its rectangle */
     double pitch;  /* texel at which layers are looked for */
+    bool cone;     /* axes are those of the narrowest cone, rather than the paper's median */
 };
 
 struct Verdict {

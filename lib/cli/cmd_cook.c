@@ -19,10 +19,12 @@ static bool strict, if_changed;
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes, - for stdout", 0, 0},
     {"charts", 0, OPTION_UINT, &desc.charts, "N", "wanted number of patches [10 T^0.28]", 1, 1e6},
-    {"resolution", 0, OPTION_UINT, &desc.resolution, "N", "texels along the longest patch [128]", 64,
+    {"resolution", 0, OPTION_UINT, &desc.resolution, "N", "most texels along a patch [128]", 64,
      512},
-    {"partition", 0, OPTION_CHOICE, &partition, "vsa", "how the surface is cut into charts [vsa]", 0,
-     0},
+    {"partition", 0, OPTION_CHOICE, &partition, "cuts|vsa",
+     "how the surface is cut into patches [cuts]", 0, 0},
+    {"error", 0, OPTION_NUMBER, &desc.error, "E",
+     "smallest asset whose RMS error is at most this fraction of the diagonal", 1e-9, 0.5},
     {"height-bits", 0, OPTION_UINT, &desc.height_bits, "8|16", "bits of a height [8]", 8, 16},
     {"mips", 0, OPTION_UINT, &desc.mips, "N", "levels of normal and colour [4]", 1, 8},
     {"dilation", 0, OPTION_UINT, &desc.dilation, "N", "texels of dilation [2^(mips-1)]", 1, 128},
@@ -155,7 +157,7 @@ int cmd_cook(int argc, char **argv)
     code = check(models, count);
     if (code)
         return code;
-    desc.partition = (gtx_partition)(GTX_PARTITION_VSA + partition);
+    desc.partition = (gtx_partition)(GTX_PARTITION_CUTS + partition);
     desc.shell_levels = shell_levels ? (int32_t)shell_levels : -1;
     desc.zstd_level = zstd_level ? zstd_level : -1;
     desc.unit = (float)unit;

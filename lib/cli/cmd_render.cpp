@@ -19,6 +19,10 @@ static const option options[] = {
     {"depth", 0, OPTION_STRING, &depth_path, "OUT.exr",
      "distance along the view axis too, infinity where nothing is", 0, 0},
     {"method", 0, OPTION_CHOICE, &method, "auto|cast|paper", "how patches are drawn [auto]", 0, 0},
+    {"level", 0, OPTION_CHOICE, &still_options.level, "auto|0|1|2|3|4|5|6|7",
+     "level of detail, or the coarsest there is; auto: by error [auto]", 0, 0},
+    {"max-error", 0, OPTION_NUMBER, &still_options.max_error, "PIXELS",
+     "how far a level may be from level 0 [0.5]", 1e-6, 1e6},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
 static const verb render = {

@@ -37,6 +37,9 @@ Still draw_still(const Scene &scene, const StillOptions &options)
     camera.distance = float(options.camera[2]);
     gtx_view view = {};
     view.method = options.method;
+    view.viewport_height = options.height;
+    view.max_error = float(options.max_error);
+    view.level = options.level;
     gtx_camera_matrices(&camera, float(options.width) / float(options.height), view.view,
                         view.projection);
     light_from_camera(view);

@@ -11,6 +11,8 @@ struct StillOptions {
     uint32_t width = 1024, height = 768;
     double camera[3] = {30, 20, 2.8}; /* azimuth, elevation in degrees; distance in radii */
     gtx_method method = GTX_METHOD_AUTO;
+    uint32_t level = 0;               /* of detail; as gtx_view has it, like the error */
+    double max_error = 0;
 };
 
 struct Still {

@@ -20,6 +20,8 @@ static const struct {
 const Viewer::Key Viewer::keys[] = {
     {'F', "frame everything", [](Viewer &v) { v.frame_all(); }},
     {'M', "method: auto, cast, paper", [](Viewer &v) { v.method = (v.method + 1) % 3; }},
+    {'L', "level of detail: auto, 0, 1, 2, 3",
+     [](Viewer &v) { v.view.level = (v.view.level + 1) % 5; }},
     {'P', "a colour a patch",
      [](Viewer &v) { v.look = v.look == Look::PATCHES ? Look::PLAIN : Look::PATCHES; }},
     {'N', "normals as colours",
@@ -222,9 +224,10 @@ void Viewer::add_status(gtx_shapes &shapes, float dot)
     const gtx_text_style plain = {dot, {32, 36, 44}, {244, 245, 247}};
     const gtx_text_style loud = {dot, {176, 24, 16}, {255, 255, 255}};
     static const char *const looks_text[] = {"", "  patches", "  normals"};
+    static const char *const levels_text[] = {"auto", "0", "1", "2", "3"};
     char line[160];
-    std::snprintf(line, sizeof line, "%s%s%s%s  %.1f ms  %dx%d", methods[method].name,
-                  looks_text[size_t(look)], boxes ? "  boxes" : "",
+    std::snprintf(line, sizeof line, "%s  level %s%s%s%s  %.1f ms  %dx%d", methods[method].name,
+                  levels_text[view.level], looks_text[size_t(look)], boxes ? "  boxes" : "",
                   fixed_light ? "  light fixed" : "", milliseconds, width, height);
     std::string lines = name + "\n" + facts + format_bytes(stage->gpu_bytes()) + " GPU\n" + line;
     if (scene.assets.empty() && scene.meshes.empty())
@@ -298,6 +301,7 @@ void Viewer::draw_frame()
     if (!fixed_light)
         light_from_camera(view);
     view.method = methods[method].method;
+    view.viewport_height = uint32_t(height);
     stage->draw(view, look);
     if (boxes)
         stage->draw_boxes(view);

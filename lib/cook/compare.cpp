@@ -3,6 +3,8 @@
 #include "cook/models.hpp"
 #include "cook/report.hpp"
 
+#include "base/alloc.h"
+
 namespace gtx {
 
 static void check(const gtx_compare_desc &desc)
@@ -37,9 +39,9 @@ static void compare_files(const gtx_asset *asset, const char *model, const gtx_c
     task.end();
 
     if (report) {
-        Json json;
+        Json json(gtx_allocator_or_default(desc.allocator));
         std::string summary = write_compare_report(measured, task.warnings, json);
-        fill_report(report, json, summary, models.sources, task.warnings);
+        Report(json, summary, models.sources, task.warnings).hand_over(report);
     }
     if (result)
         *result = {measured.hole_pixels, measured.surface_pixels, measured.silhouette_iou,
@@ -60,7 +62,9 @@ gtx_result gtx_compare_files(const char *asset_path, const char *model,
     if (checked)
         return checked;
     gtx_asset *asset = nullptr;
-    gtx_result opened = gtx_open_file(asset_path, nullptr, &asset, error); /* keeps its rule */
+    gtx_open_desc open = {};
+    open.allocator = given.allocator;
+    gtx_result opened = gtx_open_file(asset_path, &open, &asset, error); /* keeps its rule */
     if (opened)
         return opened;
     gtx_result compared = gtx::guard(

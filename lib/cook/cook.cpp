@@ -3,14 +3,17 @@
 #include "cook/models.hpp"
 #include "cook/options.hpp"
 #include "cook/report.hpp"
+#include "cook/target.hpp"
 
+#include "asset/asset.h"
 #include "bake/shell.hpp"
+#include "base/alloc.h"
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 
 namespace gtx {
 
@@ -32,13 +35,11 @@ static Task make_task(const gtx_cook_desc &desc)
     for (const Stage &stage : STAGES) {
         names.push_back(stage.name);
         weights.push_back(stage.weight);
-        if (!std::strcmp(stage.name, "measure") && desc.measure)
+        if (!std::strcmp(stage.name, "measure") && (desc.measure || desc.error > 0))
             weights.back() = MEASURE_WEIGHT;
     }
     return Task(desc.threads, desc.progress, desc.progress_user, names, weights);
 }
-
-using Asset = std::unique_ptr<gtx_asset, decltype(&gtx_close)>;
 
 static std::vector<const uint8_t *> level_pointers(const std::vector<std::vector<uint8_t>> &levels)
 {
@@ -69,10 +70,11 @@ static std::vector<gtx_shell> shell_levels(const std::vector<ShellLevel> &shell)
 static Asset make_asset(const Maps &maps, const std::vector<ShellLevel> &shell,
                         const Options &options, const CookFacts &facts)
 {
-    Json meta;
-    write_meta({"vsa", facts.chart_count, options.chart.resolution, maps.height_bits,
-                maps.mip_count, options.bake.dilation, options.shell_levels, options.z_up,
-                facts.source_triangles, facts.source_hash, facts.key, facts.warnings},
+    Json meta(options.allocator);
+    write_meta({partition_name(options), facts.chart_count, options.chart.resolution,
+                maps.height_bits, maps.mip_count, options.bake.dilation, options.shell_levels,
+                options.z_up, facts.source_triangles, facts.source_hash, facts.key,
+                facts.warnings},
                meta);
     const std::vector<const uint8_t *> normal = level_pointers(maps.normal),
                                        color = level_pointers(maps.color),
@@ -104,6 +106,7 @@ static Asset make_asset(const Maps &maps, const std::vector<ShellLevel> &shell,
     std::copy_n(maps.anchor, 3, desc.anchor);
     desc.unit = options.unit;
     desc.source_triangles = facts.source_triangles;
+    desc.allocator = &options.allocator;
 
     gtx_asset *asset = nullptr;
     gtx_error error;
@@ -114,13 +117,30 @@ static Asset make_asset(const Maps &maps, const std::vector<ShellLevel> &shell,
     return Asset(asset, gtx_close);
 }
 
-static void save(const gtx_asset *asset, const char *output, const Options &options)
-{
-    gtx_encode_desc desc = {};
-    desc.zstd_level = options.zstd;
-    gtx_error error;
-    require_ok(gtx_save_file(asset, output, &desc, &error), error);
-}
+/* The bytes of a file. */
+struct Encoded {
+    gtx_allocator allocator;
+    void *data = nullptr;
+    size_t size = 0;
+
+    Encoded(const gtx_asset *asset, const Options &options) : allocator(options.allocator)
+    {
+        gtx_encode_desc desc = {};
+        desc.allocator = &allocator;
+        desc.zstd_level = options.zstd;
+        gtx_error error;
+        require_ok(gtx_encode(asset, &desc, &data, &size, &error), error);
+    }
+    ~Encoded() { gtx_free_array(&allocator, data, size, 1); }
+    Encoded(const Encoded &) = delete;
+    Encoded &operator=(const Encoded &) = delete;
+
+    void save(const char *path) const
+    {
+        gtx_error error;
+        require_ok(gtx_save_bytes(path, &allocator, data, size, &error), error);
+    }
+};
 
 static void refuse_overwriting_source(const std::vector<std::string> &sources, const char *output)
 {
@@ -144,8 +164,16 @@ static void refuse_warnings(const gtx_cook_desc &desc, const Task &task)
 /* The asset at `path` when cooking would only make it again. */
 static Asset find_cooked(const char *path, const gtx_cook_desc &desc, uint64_t key)
 {
+    if (!desc.if_changed || desc.charts_ply)
+        return Asset(nullptr, gtx_close);
     gtx_asset *asset = nullptr;
-    if (!desc.if_changed || desc.charts_ply || gtx_open_file(path, nullptr, &asset, nullptr))
+    gtx_open_desc open = {};
+    open.allocator = desc.allocator;
+    gtx_error error;
+    gtx_result opened = gtx_open_file(path, &open, &asset, &error);
+    if (opened == GTX_ERROR_MEMORY)
+        throw Error(opened, error.message);
+    if (opened)
         return Asset(nullptr, gtx_close);
     Asset owner(asset, gtx_close);
     uint64_t old_key, warnings;
@@ -155,44 +183,56 @@ static Asset find_cooked(const char *path, const gtx_cook_desc &desc, uint64_t k
     return owner;
 }
 
+/* Partition, maps and asset of the clean mesh, measured where an error is wanted. */
+static Attempt attempt(const Mesh &mesh, const gtx_cook_desc &desc, const Options &options,
+                       Task &task, const CookFacts &facts)
+{
+    const size_t before = task.warnings.size();
+    Attempt out;
+    out.partition = make_partition(mesh, options.chart, task);
+    {
+        Maps maps = bake(mesh, out.partition, options.bake, task);
+        const std::vector<ShellLevel> shell =
+            make_shell(shell_source(mesh, out.partition, maps), maps, options.shell_levels, task);
+        refuse_warnings(desc, task);
+        CookFacts of_asset = facts;
+        of_asset.chart_count = out.partition.charts.size();
+        of_asset.warnings = task.warnings.size();
+        out.bake = maps.report;
+        out.asset = make_asset(maps, shell, options, of_asset);
+    }
+    if (desc.measure || desc.error > 0) {
+        task.begin("measure");
+        out.error = surface_error(out.asset.get(), mesh, out.partition.junk, task);
+    }
+    if (desc.error > 0)
+        out.bytes = Encoded(out.asset.get(), options).size;
+    out.warnings.assign(task.warnings.begin() + ptrdiff_t(before), task.warnings.end());
+    task.warnings.resize(before);
+    return out;
+}
+
 /* Everything from the clean mesh on; fills the rest of `facts`. */
 static Asset cook_mesh(const Mesh &mesh, const gtx_cook_desc &desc, const Options &options,
                        Task &task, CookFacts &facts)
 {
-    Partition partition = partition_vsa(mesh, options.chart, task);
-    facts.charts = partition.report;
-    facts.chart_count = partition.charts.size();
-    Asset asset(nullptr, gtx_close);
-    {
-        Maps maps = bake(mesh, partition, options.bake, task);
-        std::vector<ShellLevel> shell =
-            make_shell(shell_source(mesh, partition, maps), maps, options.shell_levels, task);
-        refuse_warnings(desc, task);
-        facts.bake = maps.report;
-        facts.warnings = task.warnings.size();
-        asset = make_asset(maps, shell, options, facts);
-    }
-    if (desc.measure) {
-        task.begin("measure");
-        facts.error = surface_error(asset.get(), mesh, partition.junk, task);
-        facts.measured = true;
-    }
+    auto cook_with = [&](const Options &o) { return attempt(mesh, desc, o, task, facts); };
+    Attempt made = desc.error > 0
+                       ? cook_to_error(options, desc.error, {!desc.charts, options.free_bits},
+                                       cook_with)
+                       : cook_with(options);
+    task.warnings.insert(task.warnings.end(), made.warnings.begin(), made.warnings.end());
+    facts.charts = made.partition.report;
+    facts.chart_count = made.partition.charts.size();
+    facts.bake = made.bake;
+    facts.warnings = task.warnings.size();
+    facts.requested = desc.error;
+    facts.measured = desc.measure || desc.error > 0;
+    facts.error = made.error;
     task.begin("write");
     if (desc.charts_ply)
-        write_charts_ply(desc.charts_ply, mesh, partition);
-    return asset;
-}
-
-static uint64_t encoded_size(const gtx_asset *asset, const Options &options)
-{
-    gtx_encode_desc desc = {};
-    desc.zstd_level = options.zstd;
-    gtx_error error;
-    void *data;
-    size_t size;
-    require_ok(gtx_encode(asset, &desc, &data, &size, &error), error);
-    free(data);
-    return size;
+        write_charts_ply(desc.charts_ply, mesh, made.partition);
+    return std::move(made.asset);
 }
 
 /* Everything from the models on; fills `facts`. */
@@ -210,8 +250,9 @@ static Asset cook_models(Models &models, const gtx_cook_desc &desc, const Option
     return cook_mesh(mesh, desc, options, task, facts);
 }
 
-static void report_on(const gtx_asset *asset, CookFacts &facts, bool unchanged,
-                      const std::vector<std::string> &sources, const Task &task, gtx_report *report)
+static std::unique_ptr<Report> report_on(const gtx_asset *asset, const Options &options,
+                                         CookFacts &facts, bool unchanged,
+                                         const std::vector<std::string> &sources, const Task &task)
 {
     gtx_info info;
     gtx_get_info(asset, &info);
@@ -224,11 +265,12 @@ static void report_on(const gtx_asset *asset, CookFacts &facts, bool unchanged,
         gtx_get_shell(asset, k, &facts.shell[k]);
     facts.stages = task.stages();
     facts.seconds = task.seconds();
-    Json json;
+    Json json(options.allocator);
     std::string summary = unchanged ? write_unchanged_report(facts, json)
                                     : write_cook_report(facts, task.warnings, json);
-    fill_report(report, json, summary, sources, task.warnings);
+    auto report = std::make_unique<Report>(json, summary, sources, task.warnings);
     report->unchanged = unchanged;
+    return report;
 }
 
 /* The whole line. Without an output the asset is only returned. */
@@ -253,16 +295,23 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
     const bool unchanged = asset != nullptr;
     if (!unchanged)
         asset = cook_models(models, desc, options, task, facts);
-    if (!unchanged && output)
-        save(asset.get(), output, options);
+    std::optional<Encoded> file;
+    if (!unchanged && (output || report))
+        file.emplace(asset.get(), options);
     task.end();
+
+    /* The file comes last: a report that finds no memory must not leave one behind. */
+    std::unique_ptr<Report> made;
     if (report) {
-        facts.bytes = output ? std::filesystem::file_size(output)
-                             : encoded_size(asset.get(), options);
+        facts.bytes = file ? file->size : std::filesystem::file_size(output);
         facts.total_seconds =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        report_on(asset.get(), facts, unchanged, models.sources, task, report);
+        made = report_on(asset.get(), options, facts, unchanged, models.sources, task);
     }
+    if (file && output)
+        file->save(output);
+    if (report)
+        made->hand_over(report);
     return asset;
 }
 

@@ -3,6 +3,7 @@
 
 #include "cook/guard.hpp"
 
+#include "base/alloc.h"
 #include "base/hash.h"
 
 #include <cinttypes>
@@ -13,7 +14,7 @@
 namespace gtx {
 
 /* Raised with every change that makes other assets of the same models and options. */
-constexpr int COOKER_REVISION = 2;
+constexpr int COOKER_REVISION = 3;
 
 constexpr int32_t MOST_SHELL_LEVELS = 5;
 constexpr uint32_t MOST_CHARTS = 1u << 20, MOST_THREADS = 1024, MOST_DILATION = 128;
@@ -48,6 +49,9 @@ void check(const gtx_cook_desc &desc)
     require_argument(desc.zstd_level >= -1 && desc.zstd_level <= 19, "zstd_level is -1 to 19");
     require_argument(desc.threads <= MOST_THREADS, "threads is at most 1024");
     require_argument(desc.unit >= 0 && std::isfinite(desc.unit), "unit is a positive number");
+    require_argument(desc.error >= 0 && desc.error < 1, "error is a fraction of the diagonal");
+    require_argument(desc.error == 0 || partition_number(desc) != GTX_PARTITION_VSA,
+                     "an error can be asked for with the partition cuts only");
     require_argument(desc.measure <= 1, "measure is 0 or 1");
     require_argument(desc.z_up <= 1, "z_up is 0 or 1");
     require_argument(desc.strict <= 1, "strict is 0 or 1");
@@ -59,33 +63,49 @@ Options options_of(const gtx_cook_desc &desc)
 {
     Options options;
     options.chart.charts = desc.charts;
+    if (partition_number(desc) == GTX_PARTITION_VSA)
+        options.chart.method = PartitionMethod::VSA;
     if (desc.resolution)
         options.chart.resolution = desc.resolution;
     if (desc.height_bits)
         options.bake.height_bits = desc.height_bits;
     if (desc.mips)
         options.bake.mips = desc.mips;
+    options.chart.height_bits = options.bake.height_bits;
+    options.chart.grain = 1u << (options.bake.mips - 1);
     options.bake.dilation = desc.dilation ? desc.dilation : 1u << (options.bake.mips - 1);
     if (desc.shell_levels)
         options.shell_levels = unsigned(std::max(desc.shell_levels, 0));
     options.zstd = desc.zstd_level == 0 ? DEFAULT_ZSTD : std::max(desc.zstd_level, 0);
     options.unit = desc.unit > 0 ? desc.unit : 1;
     options.z_up = desc.z_up;
+    options.error = desc.error;
+    options.free_bits = desc.error > 0 && !desc.height_bits;
+    options.allocator = gtx_allocator_or_default(desc.allocator);
     return options;
+}
+
+const char *partition_name(const Options &options)
+{
+    return options.chart.method == PartitionMethod::VSA ? "vsa" : "cuts";
 }
 
 uint64_t content_key(const Options &options, uint64_t source_hash)
 {
     uint32_t unit_bits;
     std::memcpy(&unit_bits, &options.unit, sizeof unit_bits);
-    char text[256];
+    uint64_t error_bits;
+    std::memcpy(&error_bits, &options.error, sizeof error_bits);
+    char text[512]; /* more than the longest numbers take */
     int size = snprintf(text, sizeof text,
-                        "geotex %d revision %d source %016" PRIx64 " partition vsa charts %u "
+                        "geotex %d revision %d source %016" PRIx64 " partition %s charts %u "
                         "resolution %u bits %u mips %u dilation %u shell %u zstd %d unit %08"
-                        PRIx32 " up %c",
-                        GTX_VERSION, COOKER_REVISION, source_hash, options.chart.charts,
-                        options.chart.resolution, options.bake.height_bits, options.bake.mips,
+                        PRIx32 " error %016" PRIx64 " up %c",
+                        GTX_VERSION, COOKER_REVISION, source_hash, partition_name(options),
+                        options.chart.charts, options.chart.resolution,
+                        options.free_bits ? 0 : options.bake.height_bits, options.bake.mips,
                         options.bake.dilation, options.shell_levels, options.zstd, unit_bits,
+                        error_bits,
                         options.z_up ? 'z' : 'y');
     return gtx_hash_bytes(text, size_t(size));
 }

@@ -13,12 +13,18 @@ struct Options {
     unsigned shell_levels = 5;
     int zstd = 0;
     float unit = 1;
+    double error = 0;            /* asked for; 0: none */
+    bool free_bits = false;      /* the error decides on the bits of a height */
     bool z_up = false;
+    gtx_allocator allocator = {}; /* never empty hooks */
 };
 
 /* Throws Error: ARGUMENT, NOT_ZEROED. */
 void check(const gtx_cook_desc &desc);
 Options options_of(const gtx_cook_desc &desc);
+
+/* The partition as an asset names it. */
+const char *partition_name(const Options &options);
 
 /* Of the sources' content, the options that matter and the cooker's revision: equal keys promise
  * equal assets. */

@@ -3,6 +3,8 @@
 
 #include "mesh/task.hpp"
 
+#include "base/alloc.h"
+
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
@@ -49,7 +51,10 @@ static void write_charts(Json &json, const CookFacts &facts)
 static void write_error(Json &json, const CookFacts &facts)
 {
     gtx_json_begin_object(&json, "error");
-    gtx_json_null(&json, "requested");
+    if (facts.requested > 0)
+        gtx_json_number(&json, "requested", facts.requested);
+    else
+        gtx_json_null(&json, "requested");
     if (facts.measured) {
         write_deviation(json, "forward", facts.error.forward);
         write_deviation(json, "reverse", facts.error.reverse);
@@ -252,12 +257,13 @@ bool read_meta(const gtx_asset *asset, uint64_t &key, uint64_t &warnings)
 uint64_t gpu_bytes(const gtx_info &info)
 {
     uint64_t pages = info.page_count, texels = pages * info.page_width * info.page_height;
-    /* Corner cells: the codes of a cell's four texels in one. And a byte of trim. */
-    uint64_t bytes = texels * (4 * info.height_bits / 8 + 1);
+    uint64_t bytes = texels; /* a byte of trim */
+    /* Corner cells, the codes of a cell's four texels in one, and normals. */
     for (uint32_t k = 0; k < info.mip_count; ++k)
-        bytes += 2 * pages * (info.page_width >> k) * (info.page_height >> k);
-    /* Records in rows of 256, and a box of 8 vertices and 12 triangles a patch. */
-    constexpr uint64_t RECORD = 128, ROW = 256, BOX = 8 * 16 + 36 * 4;
+        bytes += (4 * info.height_bits / 8 + 2) * pages * (info.page_width >> k) *
+                 (info.page_height >> k);
+    /* Records in rows of 128, and a box of 8 vertices and 12 triangles a patch. */
+    constexpr uint64_t RECORD = 192, ROW = 128, BOX = 8 * 16 + 36 * 4;
     return bytes + (info.patch_count + ROW - 1) / ROW * ROW * RECORD + info.patch_count * BOX;
 }
 
@@ -273,36 +279,41 @@ uint64_t peak_rss_bytes()
     return getrusage(RUSAGE_SELF, &usage) ? 0 : uint64_t(usage.ru_maxrss) * 1024;
 }
 
-static char *copy_text(const char *text, size_t size)
+/* Puts the strings behind each other at `at`, their addresses at `strings`. */
+static char *copy_strings(const std::vector<std::string> &from, char **strings, char *at)
 {
-    char *copy = static_cast<char *>(malloc(size + 1));
-    if (!copy)
-        throw std::bad_alloc();
-    memcpy(copy, text, size);
-    copy[size] = 0;
-    return copy;
+    for (const std::string &s : from) {
+        *strings++ = at;
+        memcpy(at, s.c_str(), s.size() + 1);
+        at += s.size() + 1;
+    }
+    return at;
 }
 
-static void copy_strings(const std::vector<std::string> &from, char **&strings, size_t &count)
+/* One block: the addresses of the strings, for they want alignment, the strings, and the JSON. */
+Report::Report(const Json &text, const std::string &line, const std::vector<std::string> &source,
+               const std::vector<std::string> &warning)
+    : gtx_report{}
 {
-    strings = static_cast<char **>(calloc(from.size() + 1, sizeof *strings));
-    if (!strings)
+    allocator = text.allocator;
+    block_size = (source.size() + warning.size()) * sizeof(char *) + text.size + 1;
+    for (const auto *strings : {&source, &warning})
+        for (const std::string &s : *strings)
+            block_size += s.size() + 1;
+    block = gtx_alloc_array(&allocator, block_size, 1);
+    if (!block)
         throw std::bad_alloc();
-    for (const std::string &s : from)
-        strings[count++] = copy_text(s.data(), s.size());
-}
 
-void fill_report(gtx_report *report, const Json &json, const std::string &summary,
-                 const std::vector<std::string> &sources, const std::vector<std::string> &warnings)
-{
-    std::unique_ptr<gtx_report, decltype(&gtx_report_free)> owner(report, gtx_report_free);
-    *report = {};
-    report->json = copy_text(json.text, json.size);
-    report->size = json.size;
-    snprintf(report->summary, sizeof report->summary, "%s", summary.c_str());
-    copy_strings(sources, report->sources, report->source_count);
-    copy_strings(warnings, report->warnings, report->warning_count);
-    owner.release();
+    sources = static_cast<char **>(block);
+    source_count = source.size();
+    warnings = sources + source_count;
+    warning_count = warning.size();
+    char *at = reinterpret_cast<char *>(warnings + warning_count);
+    at = copy_strings(source, sources, at);
+    json = copy_strings(warning, warnings, at);
+    size = text.size;
+    memcpy(json, text.text, size + 1);
+    snprintf(summary, sizeof summary, "%s", line.c_str());
 }
 
 } // namespace gtx
@@ -311,12 +322,7 @@ void gtx_report_free(gtx_report *report)
 {
     if (!report)
         return;
-    for (size_t i = 0; i < report->source_count; ++i)
-        free(report->sources[i]);
-    for (size_t i = 0; i < report->warning_count; ++i)
-        free(report->warnings[i]);
-    free(report->sources);
-    free(report->warnings);
-    free(report->json);
+    if (report->block)
+        gtx_free_array(&report->allocator, report->block, report->block_size, 1);
     *report = {};
 }

@@ -19,6 +19,7 @@ struct CookFacts {
     ChartReport charts;
     uint64_t chart_count = 0;
     BakeReport bake;
+    double requested = 0;        /* 0: none */
     bool measured = false;
     SurfaceError error;
     uint64_t source_hash = 0, key = 0, warnings = 0;
@@ -31,7 +32,7 @@ struct CookFacts {
 
 /* A JSON text that frees itself. */
 struct Json : gtx_json {
-    Json() : gtx_json{} {}
+    explicit Json(const gtx_allocator &hooks) : gtx_json{} { allocator = hooks; }
     ~Json() { gtx_json_free(this); }
     Json(const Json &) = delete;
     Json &operator=(const Json &) = delete;
@@ -44,9 +45,21 @@ std::string write_unchanged_report(const CookFacts &facts, Json &json);
 std::string write_compare_report(const CompareReport &report,
                                  const std::vector<std::string> &warnings, Json &json);
 
-/* Moves all of it into a caller's report, in memory that gtx_report_free gives back. */
-void fill_report(gtx_report *report, const Json &json, const std::string &summary,
-                 const std::vector<std::string> &sources, const std::vector<std::string> &warnings);
+/* A report that frees itself until the caller takes it. */
+struct Report : gtx_report {
+    /* Copies all of it, in memory of the text's allocator. */
+    Report(const Json &json, const std::string &summary, const std::vector<std::string> &sources,
+           const std::vector<std::string> &warnings);
+    ~Report() { gtx_report_free(this); }
+    Report(const Report &) = delete;
+    Report &operator=(const Report &) = delete;
+
+    void hand_over(gtx_report *to)
+    {
+        *to = *this;
+        block = nullptr;
+    }
+};
 
 /* The META section: what made the asset, from what. Nothing of when, where or by how many. */
 struct MetaFacts {

@@ -22,13 +22,18 @@ gtx_result gtx_grid_build(const gtx_asset *asset, uint32_t patch, uint32_t level
                           const gtx_allocator *allocator, gtx_grid *out, gtx_error *error);
 void gtx_grid_free(gtx_grid *grid, const gtx_allocator *allocator);
 
-/* Corner cells of one page at level 0, for kernels that fetch a cell at once: texel (x, y) of the
- * page holds the codes of (x, y), (x+1, y), (x, y+1), (x+1, y+1), as 4 x uint8_t or 4 x uint16_t;
- * all four are zero where the cell does not exist. `out` has 4 * height_bits / 8 * page_width *
- * page_height bytes. */
-void gtx_derive_cells(const gtx_asset *asset, uint32_t page, void *out);
-/* Those of one patch alone, tight: rect[2] x rect[3] texels. */
-void gtx_derive_patch_cells(const gtx_asset *asset, uint32_t patch, void *out);
+/* Corner cells of a level, for kernels that fetch a cell at once: texel (i, j) gets the codes of
+ * the nodes (i, j), (i+1, j), (i, j+1), (i+1, j+1), as 4 x uint8_t or 4 x uint16_t; all four are zero
+ * where the cell does not exist. `out` is the first of rows of `row_texels` texels. Every level has
+ * at most rect[2] >> level by rect[3] >> level cells, so level k of a patch fits its rectangle at
+ * mip level k. */
+void gtx_grid_cells(const gtx_grid *grid, uint32_t height_bits, size_t row_texels, void *out);
+
+/* How far, in object units, a patch's sheet at a level is from that at level 0, `finest`: the
+ * largest distance of a texel from the plane that touches the level's sheet over it, or what the
+ * wider trim limit lets stick out, if that is more. */
+double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
+                      const gtx_grid *grid);
 
 /* A proxy: convex or not, a closed triangle hull around a patch's solid cells, front faces outward
  * in the patch's own space. Coordinates: texels in x and y (texel i at x = i), height codes in z
@@ -46,8 +51,9 @@ typedef struct gtx_proxies {
     uint32_t patch_count;
 } gtx_proxies;
 
-/* Boxes around the solid cells of every patch, from the lowest code to the highest, grown by
- * `grow` texels and codes. A patch without a solid cell has no triangle. */
+/* Boxes around the solid cells of every patch at level 0, from the lowest code of its texels to the
+ * highest, between which all levels lie; grown by `grow` texels and codes. A patch without a solid
+ * cell has no triangle. */
 gtx_result gtx_derive_boxes(const gtx_asset *asset, float grow, const gtx_allocator *allocator,
                             gtx_proxies *out, gtx_error *error);
 void gtx_proxies_free(gtx_proxies *proxies, const gtx_allocator *allocator);

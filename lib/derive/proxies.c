@@ -34,6 +34,15 @@ static extent solid_extent(const gtx_asset *asset, const gtx_patch *patch)
                 for (uint32_t k = 0; k < 4; ++k)
                     include(&e, x + (k & 1), y + (k >> 1), corner[k]);
         }
+    /* Coarse nodes take the codes of texels, with a cell or not, or their means. */
+    for (uint32_t y = 0; e.max[0] && y < patch->rect[3]; ++y)
+        for (uint32_t x = 0; x < patch->rect[2]; ++x) {
+            const uint32_t code = gtx_height_code(asset, patch, x, y);
+            if (code && code < e.min[2])
+                e.min[2] = code;
+            if (code > e.max[2])
+                e.max[2] = code;
+        }
     return e;
 }
 

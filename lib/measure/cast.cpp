@@ -1,6 +1,8 @@
 /* Looking at an asset through the ray query. */
 #include "measure/cast.hpp"
 
+#include "asset/asset.h"
+
 #include <algorithm>
 
 namespace gtx {
@@ -14,6 +16,7 @@ AssetView::AssetView(const gtx_asset *asset, uint32_t level)
 {
     gtx_get_info(asset, &info_);
     gtx_caster_desc desc = {};
+    desc.allocator = &asset->allocator;
     desc.level = level;
     gtx_caster *caster = nullptr;
     gtx_error error = {};

@@ -19,7 +19,7 @@ enum class Crossing : uint8_t {
 /* One level of detail of an asset, to be looked at. Const and reentrant. */
 class AssetView {
 public:
-    /* Throws Error: MEMORY. */
+    /* The caster takes its memory where the asset did. Throws Error: MEMORY. */
     AssetView(const gtx_asset *asset, uint32_t level);
 
     /* Casts row j of the view; both vectors get view.size entries. A hit is what is shown: hit.t is

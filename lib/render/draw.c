@@ -20,7 +20,7 @@ static gtx_result check(const gtx_renderer *renderer, const gtx_view *view,
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a draw needs a renderer, a view and instances");
     if (view->flags & ~flags || (unsigned)view->method > GTX_METHOD_PAPER)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "the view asks for an unknown flag or method");
-    gtx_result result = gtx_check_reserved(view->reserved, 8, error);
+    gtx_result result = gtx_check_reserved(view->reserved, 5, error);
     for (uint32_t i = 0; !result && i < count; ++i) {
         result = gtx_check_reserved(instances[i].reserved, 4, error);
         if (!result && (!instances[i].model || !instances[i].model->ready))
@@ -114,6 +114,7 @@ static const gtx_program *use_program(const gtx_renderer *renderer, pass *p, con
         gl->UniformMatrix4fv(program->clip_from_world, 1, GL_FALSE, p->frame->clip_from_world);
         gl->Uniform4fv(program->depth, 1, p->frame->depth);
         gl->Uniform4fv(program->light, 1, p->frame->light);
+        gl->Uniform4fv(program->detail, 1, p->frame->detail);
         p->program = program;
     }
     return program;

@@ -41,15 +41,29 @@ static bool copy_levels(gtx_model *model, const gtx_asset *asset, gtx_map map, u
     return true;
 }
 
-static bool derive_cells(gtx_model *model, const gtx_asset *asset)
+gtx_result gtx_model_derive_levels(const gtx_asset *asset, uint32_t patch,
+                                   const gtx_allocator *allocator, void *const *cells,
+                                   const size_t *row_texels, float errors[GTX_MAX_MIPS],
+                                   gtx_error *error)
 {
-    const gtx_info *info = &asset->info;
-    const uint32_t cell_size = 4 * info->height_bits / 8;
-    uint8_t *cells = add_level(model, UNIT_CELLS, 0, info->page_width, info->page_height,
-                               info->page_count, cell_size);
-    for (uint32_t page = 0; cells && page < info->page_count; ++page)
-        gtx_derive_cells(asset, page, cells + page * gtx_page_texels(asset, 0) * cell_size);
-    return cells != NULL;
+    gtx_grid finest = {0}, grid;
+    gtx_result result = gtx_grid_build(asset, patch, 0, allocator, &finest, error);
+    if (result)
+        return result;
+    gtx_grid_cells(&finest, asset->info.height_bits, row_texels[0], cells[0]);
+    errors[0] = 0;
+    for (uint32_t k = 1; !result && k < asset->info.mip_count; ++k) {
+        result = gtx_grid_build(asset, patch, k, allocator, &grid, error);
+        if (result)
+            break;
+        gtx_grid_cells(&grid, asset->info.height_bits, row_texels[k], cells[k]);
+        errors[k] = (float)gtx_grid_error(asset, patch, &finest, &grid);
+        if (errors[k] < errors[k - 1])
+            errors[k] = errors[k - 1];
+        gtx_grid_free(&grid, allocator);
+    }
+    gtx_grid_free(&finest, allocator);
+    return result;
 }
 
 /* Rows of the inverse of grid -> object, whose columns are `axis` and `origin`. */
@@ -72,9 +86,9 @@ static void invert(double axis[3][3], const double origin[3], double rows[3][4])
     }
 }
 
-/* The eight texels of a patch's record, as geotex_sheet.glsl reads them. */
-static void fill_record(float record[GTX_RECORD_TEXELS][4], const gtx_patch *patch,
-                        uint32_t height_bits, float low, float high)
+/* The part of a record that casting reads. */
+static void fill_frame(float record[GTX_RECORD_TEXELS][4], const gtx_patch *patch,
+                       uint32_t height_bits, float low, float high)
 {
     const float *unit[3] = {patch->axis_x, patch->axis_y, patch->axis_z};
     const double step[3] = {(double)patch->extent_x / patch->rect[2],
@@ -122,27 +136,64 @@ gtx_result gtx_model_derive_proxies(const gtx_asset *asset, const gtx_allocator 
     return gtx_derive_boxes(asset, hull_margin, allocator, out, error);
 }
 
-void gtx_model_fill_records(const gtx_asset *asset, const gtx_proxies *proxies,
-                            float (*records)[GTX_RECORD_TEXELS][4])
+void gtx_model_fill_record(const gtx_asset *asset, const gtx_proxies *proxies, uint32_t patch,
+                           const float errors[GTX_MAX_MIPS], float record[GTX_RECORD_TEXELS][4])
 {
-    for (uint32_t i = 0; i < asset->info.patch_count; ++i) {
-        float low = 0, high = 0;
-        for (uint32_t k = proxies->first_index[i]; k < proxies->first_index[i + 1]; ++k) {
-            const float z = proxies->vertices[proxies->indices[k]].z;
-            low = k == proxies->first_index[i] || z < low ? z : low;
-            high = k == proxies->first_index[i] || z > high ? z : high;
+    const uint32_t first = proxies->first_index[patch], last = proxies->first_index[patch + 1];
+    const gtx_patch *p = &asset->patches[patch];
+    float low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
+    for (uint32_t k = first; k < last; ++k) {
+        const gtx_proxy_vertex *v = &proxies->vertices[proxies->indices[k]];
+        const float at[3] = {v->x, v->y, v->z};
+        for (int a = 0; a < 3; ++a) {
+            low[a] = k == first || at[a] < low[a] ? at[a] : low[a];
+            high[a] = k == first || at[a] > high[a] ? at[a] : high[a];
         }
-        fill_record(records[i], &asset->patches[i], asset->info.height_bits, low, high);
     }
+    fill_frame(record, p, asset->info.height_bits, low[2], high[2]);
+    for (int a = 0; a < 2; ++a) { /* the solid cells, without the margin */
+        record[11][a] = low[a] + hull_margin;
+        record[11][2 + a] = high[a] - hull_margin;
+    }
+    memcpy(record[8], p->sphere, sizeof record[8]);
+    for (uint32_t k = 1; k < asset->info.mip_count; ++k)
+        record[9 + (k - 1) / 4][(k - 1) % 4] = errors[k];
 }
 
-static bool derive_records(gtx_model *model, const gtx_asset *asset)
+/* Cells of all levels, and the records. */
+static gtx_result derive_sheets(gtx_model *model, const gtx_asset *asset, gtx_error *error)
 {
-    void *records = add_level(model, UNIT_PATCHES, 0, GTX_RECORD_TEXELS * GTX_RECORDS_A_ROW,
-                              gtx_model_record_rows(model->patch_count), 1, 4 * sizeof(float));
-    if (records)
-        gtx_model_fill_records(asset, &model->proxies, records);
-    return records != NULL;
+    const gtx_info *info = &asset->info;
+    const size_t cell_size = info->height_bits / 2;
+    uint8_t *pages[GTX_MAX_MIPS];
+    size_t row_texels[GTX_MAX_MIPS];
+    float (*records)[GTX_RECORD_TEXELS][4] =
+        (void *)add_level(model, UNIT_PATCHES, 0, GTX_RECORD_TEXELS * GTX_RECORDS_A_ROW,
+                          gtx_model_record_rows(model->patch_count), 1, 4 * sizeof(float));
+    bool failed = !records;
+    for (uint32_t k = 0; !failed && k < info->mip_count; ++k) {
+        row_texels[k] = info->page_width >> k;
+        pages[k] = add_level(model, UNIT_CELLS, k, info->page_width >> k, info->page_height >> k,
+                             info->page_count, (uint32_t)cell_size);
+        failed = !pages[k];
+    }
+    if (failed)
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's maps");
+    gtx_result result = GTX_OK;
+    for (uint32_t i = 0; !result && i < info->patch_count; ++i) {
+        const gtx_patch *p = &asset->patches[i];
+        void *cells[GTX_MAX_MIPS];
+        float errors[GTX_MAX_MIPS];
+        for (uint32_t k = 0; k < info->mip_count; ++k) {
+            const size_t row = (size_t)p->page * (info->page_height >> k) + (p->rect[1] >> k);
+            cells[k] = pages[k] + (row * row_texels[k] + (p->rect[0] >> k)) * cell_size;
+        }
+        result = gtx_model_derive_levels(asset, i, &model->allocator, cells, row_texels, errors,
+                                         error);
+        if (!result)
+            gtx_model_fill_record(asset, &model->proxies, i, errors, records[i]);
+    }
+    return result;
 }
 
 gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *allocator,
@@ -169,8 +220,9 @@ gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *alloca
     model->layout = gtx_model_layout(asset);
     const uint32_t mips = model->mip_count;
     gtx_result result = gtx_model_derive_proxies(asset, &hooks, &model->proxies, error);
-    if (!result && !(derive_cells(model, asset) && derive_records(model, asset) &&
-                     copy_levels(model, asset, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
+    if (!result)
+        result = derive_sheets(model, asset, error);
+    if (!result && !(copy_levels(model, asset, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
                      copy_levels(model, asset, GTX_MAP_NORMAL, UNIT_NORMALS, mips, 2) &&
                      copy_levels(model, asset, GTX_MAP_COLOR, UNIT_COLORS, mips, 4) &&
                      copy_levels(model, asset, GTX_MAP_MATERIAL, UNIT_MATERIALS, mips, 4) &&

@@ -90,6 +90,7 @@ static void locate(const gtx_gl *gl, gtx_program *program)
     program->clip_from_world = gl->GetUniformLocation(program->object, "gtx_clip_from_world");
     program->depth = gl->GetUniformLocation(program->object, "gtx_depth");
     program->light = gl->GetUniformLocation(program->object, "gtx_light");
+    program->detail = gl->GetUniformLocation(program->object, "gtx_detail");
     program->maps = gl->GetUniformLocation(program->object, "gtx_maps");
     gl->UseProgram(program->object);
     for (gl_int i = 0; i < UNIT_COUNT; ++i)

@@ -19,7 +19,7 @@ enum { PROGRAM_CAST, PROGRAM_CAST_MATERIAL, PROGRAM_PAPER, PROGRAM_PAPER_MATERIA
 
 typedef struct gtx_program {
     gl_uint object;
-    gl_int clip_from_world, depth, light, maps;
+    gl_int clip_from_world, depth, light, detail, maps;
 } gtx_program;
 
 /* What the proxy's vertex shader reads for each instance. */
@@ -50,7 +50,7 @@ typedef struct gtx_level {
     uint8_t *data;            /* freed once it is uploaded */
 } gtx_level;
 
-enum { GTX_MAX_LEVELS = 3 + 4 * GTX_MAX_MIPS };
+enum { GTX_MAX_LEVELS = 2 + 5 * GTX_MAX_MIPS };
 
 struct gtx_model {
     gtx_allocator allocator;
@@ -82,11 +82,18 @@ uint64_t gtx_model_layout(const gtx_asset *asset);
 /* Boxes around the patches, as a model draws them. Errors: MEMORY. */
 gtx_result gtx_model_derive_proxies(const gtx_asset *asset, const gtx_allocator *allocator,
                                     gtx_proxies *out, gtx_error *error);
-/* The patch records, as gtx_sheet_of reads them: rows of GTX_RECORDS_A_ROW times
+/* Builds a patch's sheets at all levels: `cells[k]`, in rows of `row_texels[k]`, gets the corner
+ * cells, `errors[k]` the distance from level 0 or that of a finer level, if that is greater.
+ * Errors: MEMORY. */
+gtx_result gtx_model_derive_levels(const gtx_asset *asset, uint32_t patch,
+                                   const gtx_allocator *allocator, void *const *cells,
+                                   const size_t *row_texels, float errors[GTX_MAX_MIPS],
+                                   gtx_error *error);
+/* The patch records, as geotex_sheet.glsl reads them: rows of GTX_RECORDS_A_ROW times
  * GTX_RECORD_TEXELS texels. */
-enum { GTX_RECORD_TEXELS = 8, GTX_RECORDS_A_ROW = 256 };
-void gtx_model_fill_records(const gtx_asset *asset, const gtx_proxies *proxies,
-                            float (*records)[GTX_RECORD_TEXELS][4]);
+enum { GTX_RECORD_TEXELS = 12, GTX_RECORDS_A_ROW = 128 };
+void gtx_model_fill_record(const gtx_asset *asset, const gtx_proxies *proxies, uint32_t patch,
+                           const float errors[GTX_MAX_MIPS], float record[GTX_RECORD_TEXELS][4]);
 static inline uint32_t gtx_model_record_rows(uint32_t patches)
 {
     return (patches + GTX_RECORDS_A_ROW - 1) / GTX_RECORDS_A_ROW;
@@ -109,7 +116,7 @@ gtx_result gtx_check_gl_memory(const gtx_gl *gl, gtx_error *error);
 typedef struct gtx_frame {
     float clip_from_world[16];
     double eye[4];            /* world; the ray through a point p has the direction p * w - xyz */
-    float depth[4], light[4]; /* as geotex_view.glsl has them */
+    float depth[4], light[4], detail[4]; /* as geotex_view.glsl has them */
     bool reversed, mirrored;  /* mirrored: the view turns clockwise into counter-clockwise */
 } gtx_frame;
 

@@ -7,8 +7,10 @@
 /* What is derived anew before anything on the GPU changes. */
 typedef struct derived {
     gtx_proxies proxies;
-    void *cells, *records;
-    size_t cell_count, cell_size, record_count;
+    float record[GTX_RECORD_TEXELS][4];
+    void *cells;              /* of all levels, one after another */
+    void *level[GTX_MAX_MIPS];
+    size_t cell_count, cell_size;
 } derived;
 
 static bool is_alike(const gtx_model *model, const gtx_asset *asset)
@@ -25,7 +27,6 @@ static void free_derived(derived *d, const gtx_allocator *hooks)
 {
     gtx_proxies_free(&d->proxies, hooks);
     gtx_free_array(hooks, d->cells, d->cell_count, d->cell_size);
-    gtx_free_array(hooks, d->records, d->record_count, 4 * sizeof(float));
 }
 
 static gtx_result derive(const gtx_model *model, const gtx_asset *asset, uint32_t patch,
@@ -33,21 +34,32 @@ static gtx_result derive(const gtx_model *model, const gtx_asset *asset, uint32_
 {
     const gtx_allocator *hooks = &model->allocator;
     const uint16_t *rect = asset->patches[patch].rect;
-    *d = (derived){.cell_count = (size_t)rect[2] * rect[3], .cell_size = model->height_bits / 2,
-                   .record_count = (size_t)GTX_RECORD_TEXELS * GTX_RECORDS_A_ROW *
-                                   gtx_model_record_rows(model->patch_count)};
+    size_t row_texels[GTX_MAX_MIPS];
+    float errors[GTX_MAX_MIPS];
+    *d = (derived){.cell_size = model->height_bits / 2};
+    for (uint32_t k = 0; k < model->mip_count; ++k)
+        d->cell_count += (size_t)(rect[2] >> k) * (rect[3] >> k);
     gtx_result result = gtx_model_derive_proxies(asset, hooks, &d->proxies, error);
     if (result)
         return result;
+    /* Zeroed: at level 0 the last row and column of texels has no cells. */
     d->cells = gtx_alloc_array(hooks, d->cell_count, d->cell_size);
-    d->records = gtx_alloc_array(hooks, d->record_count, 4 * sizeof(float));
-    if (!d->cells || !d->records) {
+    if (!d->cells) {
         free_derived(d, hooks);
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for an update");
     }
-    gtx_derive_patch_cells(asset, patch, d->cells);
-    gtx_model_fill_records(asset, &d->proxies, d->records);
-    return GTX_OK;
+    uint8_t *next = d->cells;
+    for (uint32_t k = 0; k < model->mip_count; ++k) {
+        row_texels[k] = rect[2] >> k;
+        d->level[k] = next;
+        next += row_texels[k] * (rect[3] >> k) * d->cell_size;
+    }
+    result = gtx_model_derive_levels(asset, patch, hooks, d->level, row_texels, errors, error);
+    if (result)
+        free_derived(d, hooks);
+    else
+        gtx_model_fill_record(asset, &d->proxies, patch, errors, d->record);
+    return result;
 }
 
 /* The patch's rectangle at a mip level, out of rows of `width` texels. */
@@ -107,14 +119,15 @@ gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model, const gtx_
     gl->ActiveTexture(GL_TEXTURE0);
     gtx_default_unpacking(gl);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    upload_rect(gl, model, UNIT_CELLS, p, 0, d.cells, p->rect[2]);
+    for (uint32_t k = 0; k < model->mip_count; ++k)
+        upload_rect(gl, model, UNIT_CELLS, p, k, d.level[k], p->rect[2] >> k);
     upload_maps(gl, model, edited, p);
     gl->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
     const gtx_texture_kind records = gtx_texture_kind_of(model, UNIT_PATCHES);
     gl->BindTexture(records.target, model->textures[UNIT_PATCHES]);
-    gl->TexSubImage2D(records.target, 0, 0, 0, GTX_RECORD_TEXELS * GTX_RECORDS_A_ROW,
-                      (gl_size)gtx_model_record_rows(model->patch_count), records.format,
-                      records.type, d.records);
+    gl->TexSubImage2D(records.target, 0, (gl_int)(patch % GTX_RECORDS_A_ROW * GTX_RECORD_TEXELS),
+                      (gl_int)(patch / GTX_RECORDS_A_ROW), GTX_RECORD_TEXELS, 1, records.format,
+                      records.type, d.record);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     gl->BindTexture(GL_TEXTURE_2D, 0);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);

@@ -10,7 +10,7 @@ gtx_texture_kind gtx_texture_kind_of(const gtx_model *model, uint32_t unit)
 {
     static const gtx_texture_kind kinds[UNIT_COUNT] = {
         [UNIT_CELLS] = {GL_TEXTURE_2D_ARRAY, GL_RGBA8UI, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE,
-                        GL_NEAREST, GL_NEAREST},
+                        GL_NEAREST_MIPMAP_NEAREST, GL_NEAREST},
         [UNIT_TRIM] = {GL_TEXTURE_2D_ARRAY, GL_R8, GL_RED, GL_UNSIGNED_BYTE,
                        GL_NEAREST, GL_NEAREST},
         [UNIT_NORMALS] = {GL_TEXTURE_2D_ARRAY, GL_RG8, GL_RG, GL_UNSIGNED_BYTE,

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -106,6 +107,23 @@ static void set_light(const gtx_view *view, const double forward[3], float light
     light[3] = view->ambient > 0 ? view->ambient : 0.2f;
 }
 
+/* What geotex_proxy.vert chooses levels by. */
+static void set_detail(const gtx_view *view, const double clip[16], float detail[4])
+{
+    const double max_error = view->max_error > 0 ? view->max_error : 0.5;
+    double y = 0, w = 0;
+    for (int k = 0; k < 3; ++k) {
+        y += clip[4 * k + 1] * clip[4 * k + 1];
+        w += clip[4 * k + 3] * clip[4 * k + 3];
+    }
+    detail[0] = (float)fmin(sqrt(y) * view->viewport_height / 2 / max_error, FLT_MAX);
+    detail[1] = (float)sqrt(w);
+    const bool by_error = view->viewport_height > 0 && view->level == 0;
+    detail[2] = by_error ? -1.0f : view->level > 0 ? (float)(view->level - 1) : 0.0f;
+    if (view->method == GTX_METHOD_PAPER)
+        detail[2] = 0;
+}
+
 gtx_result gtx_frame_from_view(const gtx_view *view, gtx_frame *out, gtx_error *error)
 {
     double clip[16], forward[3];
@@ -113,6 +131,10 @@ gtx_result gtx_frame_from_view(const gtx_view *view, gtx_frame *out, gtx_error *
         !all_finite(view->light_direction, 3) || !(view->ambient >= 0 && view->ambient <= 1))
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "the view holds a value that is not finite, or an ambient beyond 0..1");
+    if (!(view->max_error >= 0) || isinf(view->max_error) || view->level > GTX_MAX_MIPS)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "the view's error is not finite and >= 0, or its level beyond %d",
+                        GTX_MAX_MIPS - 1);
     memset(out, 0, sizeof *out);
     out->reversed = view->flags & GTX_VIEW_REVERSED_Z;
     multiply(view->projection, view->view, clip);
@@ -121,6 +143,7 @@ gtx_result gtx_frame_from_view(const gtx_view *view, gtx_frame *out, gtx_error *
     for (int i = 0; i < 16; ++i)
         out->clip_from_world[i] = (float)clip[i];
     set_light(view, forward, out->light);
+    set_detail(view, clip, out->detail);
 
     float n = view->depth_range[0], f = view->depth_range[1];
     if (n == 0 && f == 0)

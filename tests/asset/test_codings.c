@@ -1,4 +1,5 @@
-/* How texels are coded: image filters there and back, normals in two bytes and their frame. */
+/* How texels are coded: image filters there and back, what is filled in by rule, normals in two
+ * bytes and their frame. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -6,8 +7,10 @@
 #include <cmocka.h>
 
 #include "asset/codec.h"
+#include "asset/fill.h"
 
 #include <math.h>
+#include <string.h>
 
 static void test_filters(void **state)
 {
@@ -32,6 +35,80 @@ static void test_filters(void **state)
     const uint8_t planes[] = {10, 30, 1, 3, 20, 45, 2, 4};
     gtx_filter_apply((gtx_map_shape){1, 2, 2, 2}, GTX_FILTER_PLANES, image, coded);
     assert_memory_equal(coded, planes, 8);
+}
+
+static void test_heights(void **state)
+{
+    (void)state;
+    /* A slope with a hole: all but the start is foretold, and a hole stays 0. */
+    const uint8_t slope[] = {10, 10, 10, 20, 20, 20, 30, 0, 30};
+    const uint8_t right[] = {1 + (10 + 255 - 128), 1, 1, 11, 1, 1, 11, 0, 11};
+    uint8_t coded[32], out[32];
+    gtx_heights_apply((gtx_map_shape){1, 3, 3, 1}, slope, coded);
+    assert_memory_equal(coded, right, 9);
+    /* Any codes come back, of both widths, over two pages. */
+    uint8_t in[2 * 4 * 2 * 2];
+    for (uint32_t texel = 1; texel <= 2; ++texel) {
+        for (uint32_t seed = 0; seed < 400; ++seed) {
+            gtx_map_shape shape = {2, 4, 2, texel};
+            for (size_t i = 0; i < gtx_shape_size(shape); ++i)
+                in[i] = (uint8_t)(i * i * seed * 37 + seed % 3 * 85 + (seed & 1 ? 0 : i));
+            gtx_heights_apply(shape, in, coded);
+            gtx_heights_undo(shape, coded, out);
+            assert_memory_equal(in, out, (size_t)gtx_shape_size(shape));
+        }
+    }
+}
+
+static void test_mean(void **state)
+{
+    (void)state;
+    for (uint32_t code = 0; code < 65536; ++code) { /* of one, and of one twice */
+        const uint8_t in[2] = {(uint8_t)code, (uint8_t)(code >> 8)};
+        uint8_t out[2];
+        gtx_normal_sum sum = {0, 0, 0};
+        for (int i = 0; i < 2; ++i) {
+            gtx_normal_add(&sum, in);
+            gtx_normal_mean(&sum, out);
+            assert_memory_equal(in, out, 2);
+        }
+    }
+    static const uint8_t codes[2][2] = {{0, 0}, {255, 255}}; /* level, away from each other */
+    gtx_normal_sum sum = {0, 0, 0};
+    gtx_normal_add(&sum, codes[0]);
+    gtx_normal_add(&sum, codes[1]);
+    uint8_t out[2];
+    gtx_normal_mean(&sum, out);
+    assert_int_equal(out[0], 128);
+    assert_int_equal(out[1], 128);
+}
+
+/* A 4 x 5 rectangle in rows of 6 texels: what lies outside is neither read nor written. */
+static void test_fill(void **state)
+{
+    (void)state;
+    uint8_t trim[30], ring[30] = {0};
+    memset(trim, GTX_FAR_TRIM, sizeof trim);
+    trim[7] = 130;
+    ring[7] = 1;
+    trim[5] = 0; /* another rectangle's */
+    ring[5] = 1;
+    gtx_fill_trim(&(gtx_fill){trim, ring, 6, 4, 5});
+    static const uint8_t right[30] = {153, 146, 153, 169, 255, 0,   146, 130, 146, 162,
+                                      255, 255, 153, 146, 153, 169, 255, 255, 169, 162,
+                                      169, 176, 255, 255, 185, 178, 185, 192, 255, 255};
+    assert_memory_equal(trim, right, 30);
+    assert_int_equal(ring[0], 0);
+
+    uint8_t normal[2 * 4] = {200, 60, 128, 128, 128, 128, 128, 128}, line[4] = {1, 0, 0, 0};
+    gtx_fill_normals(&(gtx_fill){normal, line, 4, 4, 1}, 2);
+    const uint8_t filled[] = {200, 60, 200, 60, 200, 60, 128, 128};
+    assert_memory_equal(normal, filled, 8);
+    static const uint8_t rings[] = {1, 2, 3, 4};
+    assert_memory_equal(line, rings, 4);
+    assert_int_equal(gtx_fill_rings(&(gtx_patch){.dilation = 8}, 3), 1);
+    assert_int_equal(gtx_fill_rings(&(gtx_patch){.dilation = 8}, 4), 1);
+    assert_int_equal(gtx_fill_rings(&(gtx_patch){.dilation = 65535}, 0), 128);
 }
 
 static void test_normals(void **state)
@@ -86,6 +163,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_filters),
+        cmocka_unit_test(test_heights),
+        cmocka_unit_test(test_mean),
+        cmocka_unit_test(test_fill),
         cmocka_unit_test(test_normals),
         cmocka_unit_test(test_normal_frame),
     };

@@ -120,7 +120,9 @@ static void test_partitioned_model(void **)
 {
     Mesh mesh = shapes::bumpy_sphere(40);
     Task task(2, nullptr, nullptr, {"partition", "frame"});
-    Partition p = partition_vsa(mesh, {}, task);
+    ChartOptions options;
+    options.method = PartitionMethod::VSA; /* whole charts: each has others all around */
+    Partition p = make_partition(mesh, options, task);
     auto neighbours = triangle_neighbours(mesh);
     size_t all = 0;
     for (const Chart &chart : p.charts) {

@@ -136,6 +136,38 @@ static void every_mode_shows_something_else(void **state)
     gtx_image_free(&text);
 }
 
+static void levels_take_turns(void **state)
+{
+    (void)state;
+    if (!server)
+        skip();
+    const char *keys[] = {".", "l", "ll", "lll", "llll", "lllll"};
+    gtx_image shown[6];
+    for (int i = 0; i < 6; ++i)
+        shown[i] = view("sphere.gtx", keys[i]);
+    for (int i = 1; i < 4; ++i) { /* coarser and coarser, and the text tells */
+        assert_true(difference(&shown[i], &shown[i + 1], false) > 50);
+        assert_true(difference(&shown[i], &shown[i + 1], true) > 2);
+    }
+    assert_int_equal(difference(&shown[0], &shown[5], false), 0);
+    for (int i = 1; i < 5; ++i) {
+        char command[128];
+        snprintf(command, sizeof command, "render sphere.gtx --camera 30,20,5 --size 320x240 "
+                 "--level %d -o drawn.png", i - 1);
+        expect(gtx("%s", command), 0);
+        gtx_image drawn = picture("drawn.png");
+        assert_int_equal(difference(&shown[i], &drawn, false), 0);
+        gtx_image_free(&drawn);
+    }
+    expect(gtx("render sphere.gtx --camera 30,20,5 --size 320x240 --max-error 1000 -o drawn.png"),
+           0); /* the coarsest */
+    gtx_image drawn = picture("drawn.png");
+    assert_int_equal(difference(&shown[4], &drawn, false), 0);
+    gtx_image_free(&drawn);
+    for (int i = 0; i < 6; ++i)
+        gtx_image_free(&shown[i]);
+}
+
 /* Seen from the front: the nearest normal is +Z, blue; the right one +X, the upper one +Y. */
 static void normals_have_the_colours_of_their_directions(void **state)
 {
@@ -231,6 +263,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_display_is_one_line_and_exit_5),
         cmocka_unit_test(every_mode_shows_something_else),
+        cmocka_unit_test(levels_take_turns),
         cmocka_unit_test(normals_have_the_colours_of_their_directions),
         cmocka_unit_test(the_window_shows_what_render_draws),
         cmocka_unit_test(resized_and_minimised_it_goes_on),

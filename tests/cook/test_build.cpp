@@ -99,8 +99,10 @@ static void each_option_that_matters_changes_the_key(void **)
         [](gtx_cook_desc &d) { d.height_bits = 16; }, [](gtx_cook_desc &d) { d.dilation = 3; },
         [](gtx_cook_desc &d) { d.mips = 2; },        [](gtx_cook_desc &d) { d.zstd_level = 7; },
         [](gtx_cook_desc &d) { d.zstd_level = -1; }, [](gtx_cook_desc &d) { d.unit = 0.001f; },
-        [](gtx_cook_desc &d) { d.z_up = 1; },        [](gtx_cook_desc &d) { d.shell_levels = 2; },
-        [](gtx_cook_desc &d) { d.shell_levels = -1; }};
+        [](gtx_cook_desc &d) { d.z_up = 1; },        [](gtx_cook_desc &d) { d.error = 0.01; },
+        [](gtx_cook_desc &d) { d.shell_levels = 2; },
+        [](gtx_cook_desc &d) { d.shell_levels = -1; },
+        [](gtx_cook_desc &d) { d.partition = GTX_PARTITION_VSA; }};
     std::set<std::string> keys = {key_of(small_ball_file())};
     for (Change change : matter) {
         gtx_cook_desc desc = few_charts;
@@ -113,7 +115,7 @@ static void each_option_that_matters_changes_the_key(void **)
         [](gtx_cook_desc &d) { d.threads = 3; },     [](gtx_cook_desc &d) { d.measure = 1; },
         [](gtx_cook_desc &d) { d.strict = 1; },      [](gtx_cook_desc &d) { d.if_changed = 1; },
         [](gtx_cook_desc &d) { d.charts_ply = ply.c_str(); },
-        [](gtx_cook_desc &d) { d.partition = GTX_PARTITION_VSA; }};
+        [](gtx_cook_desc &d) { d.partition = GTX_PARTITION_CUTS; }};
     std::string key = key_of(small_ball_file());
     for (Change change : indifferent) {
         gtx_cook_desc desc = few_charts;

@@ -21,7 +21,7 @@ static void an_asset_comes_out(void **)
     size_t size = 0;
     const char *text = gtx_meta(asset, &size);
     schema::json meta = schema::json::parse(std::string(text, size));
-    assert_string_equal(meta["options"]["partition"].get<std::string>().c_str(), "vsa");
+    assert_string_equal(meta["options"]["partition"].get<std::string>().c_str(), "cuts");
     assert_null(strstr(std::string(text, size).c_str(), folder.c_str()));
     gtx_close(asset);
     fs::remove(output);
@@ -49,6 +49,48 @@ static void options_reach_the_asset(void **)
     assert_int_equal(gtx_patches(asset)[0].dilation, 5);
     gtx_close(asset);
     fs::remove(output);
+}
+
+/* The error that a file was cooked to keep, and its size. */
+static schema::json cook_to(double error, uint32_t threads)
+{
+    std::string output = in_folder("e.gtx");
+    gtx_cook_desc desc = {};
+    desc.error = error;
+    desc.threads = threads;
+    gtx_report report = {};
+    cook_ball(output, desc, &report);
+    schema::json json = schema::json::parse(report.json);
+    gtx_report_free(&report);
+    assert_true(json["error"]["requested"] == error);
+    assert_true(json["error"]["forward"]["rms"] <= error);
+    fs::remove(output);
+    return json;
+}
+
+static void an_error_is_kept_with_few_bytes(void **)
+{
+    schema::json coarse = cook_to(1e-3, 2), fine = cook_to(2e-4, 1);
+    assert_true(coarse["error"]["forward"]["rms"] > 0.7e-3);
+    assert_true(fine["error"]["forward"]["rms"] > 1.4e-4);
+    assert_true(coarse["bytes"] < fine["bytes"]);
+    assert_true(cook_to(1e-3, 1)["content_hash"] == coarse["content_hash"]);
+
+    gtx_cook_desc desc = {};
+    desc.error = 1e-9;
+    std::string output = in_folder("e.gtx");
+    gtx_error error;
+    assert_int_equal(gtx_cook_file(small_ball_file().c_str(), output.c_str(), &desc, nullptr, &error),
+                     GTX_ERROR_LIMIT);
+    assert_non_null(strstr(error.message, "out of reach"));
+    assert_false(fs::exists(output));
+    desc.error = -1;
+    assert_int_equal(gtx_cook_file(small_ball_file().c_str(), output.c_str(), &desc, nullptr, &error),
+                     GTX_ERROR_ARGUMENT);
+    desc.error = 0.01;
+    desc.partition = GTX_PARTITION_VSA;
+    assert_int_equal(gtx_cook_file(small_ball_file().c_str(), output.c_str(), &desc, nullptr, &error),
+                     GTX_ERROR_ARGUMENT);
 }
 
 static void the_report_follows_its_schema(void **)
@@ -256,6 +298,7 @@ int main()
     const CMUnitTest tests[] = {
         cmocka_unit_test(an_asset_comes_out),
         cmocka_unit_test(options_reach_the_asset),
+        cmocka_unit_test(an_error_is_kept_with_few_bytes),
         cmocka_unit_test(the_report_follows_its_schema),
         cmocka_unit_test(any_thread_count_gives_the_same_file),
         cmocka_unit_test(wrong_arguments_are_refused),

@@ -159,33 +159,83 @@ static void no_such_patch_or_level(void **state)
 static void cells_hold_their_corners(void **state)
 {
     (void)state;
-    for (uint32_t bits = 8; bits <= 16; bits += 8) {
-        gtx_asset *asset = fixture_sphere(1, 48, bits);
-        uint32_t width = asset->info.page_width, height = asset->info.page_height, solid = 0;
-        size_t size = (size_t)width * height * 4 * bits / 8;
-        uint8_t *cells = malloc(size);
-        memset(cells, 0xaa, size);
-        gtx_derive_cells(asset, 0, cells);
-        for (uint32_t y = 0; y < height; ++y)
-            for (uint32_t x = 0; x < width; ++x) {
-                /* The six maps are stacked, so the last row and column of each ends its cells. */
-                uint32_t expected[4] = {0};
-                const gtx_patch *p = &asset->patches[y / 48];
-                if (x + 1 < 48 && y % 48 + 1 < 48)
-                    for (uint32_t k = 0; k < 4; ++k)
-                        expected[k] = gtx_height_code(asset, p, x + (k & 1), y % 48 + (k >> 1));
-                int exists = expected[0] && expected[1] && expected[2] && expected[3];
-                solid += (uint32_t)exists;
-                for (uint32_t k = 0; k < 4; ++k) {
-                    size_t at = 4 * ((size_t)y * width + x) + k;
-                    uint32_t code = bits == 8 ? cells[at] : ((uint16_t *)(void *)cells)[at];
-                    assert_int_equal(code, exists ? expected[k] : 0);
+    enum { ROW = 50 }; /* texels; wider than any level */
+    for (uint32_t bits = 8; bits <= 16; bits += 8)
+        for (uint32_t level = 0; level < 4; ++level) {
+            gtx_asset *asset = fixture_sphere(1, 48, bits);
+            gtx_grid grid;
+            gtx_error error = {0};
+            uint32_t solid = 0;
+            const size_t size = (size_t)ROW * (48 >> level) * 4 * bits / 8;
+            uint8_t *cells = malloc(size);
+            memset(cells, 0xaa, size);
+            assert_int_equal(gtx_grid_build(asset, 2, level, NULL, &grid, &error), GTX_OK);
+            assert_in_range(grid.nodes_x - 1, 1, 48 >> level);
+            gtx_grid_cells(&grid, bits, ROW, cells);
+            for (uint32_t y = 0; y < 48u >> level; ++y)
+                for (uint32_t x = 0; x < ROW; ++x) {
+                    const int cell = x + 1 < grid.nodes_x && y + 1 < grid.nodes_y;
+                    const int exists = cell && grid.solid[y * (grid.nodes_x - 1) + x];
+                    solid += (uint32_t)exists;
+                    for (uint32_t k = 0; k < 4; ++k) {
+                        const size_t at = 4 * ((size_t)y * ROW + x) + k;
+                        const size_t node = (y + (k >> 1)) * grid.nodes_x + x + (k & 1);
+                        const uint32_t code = bits == 8 ? cells[at]
+                                                        : ((uint16_t *)(void *)cells)[at];
+                        if (cell)
+                            assert_int_equal(code, exists ? grid.code[node] : 0);
+                        else /* left alone */
+                            assert_int_equal(code, bits == 8 ? 0xaa : 0xaaaa);
+                    }
                 }
-            }
-        assert_true(solid > 4000);
-        free(cells);
-        gtx_close(asset);
+            assert_true(solid << (2 * level) > 1000);
+            free(cells);
+            gtx_grid_free(&grid, NULL);
+            gtx_close(asset);
+        }
+}
+
+/* A wave along x of eight texels' length, and a ramp with a step at every other texel. */
+static void wave(const gtx_patch *patch, double x, double y, const void *user, fixture_texel *out)
+{
+    static const int codes[8] = {100, 101, 102, 101, 100, 99, 98, 99};
+    (void)patch;
+    (void)y;
+    const int column = (int)x, ramp = 40 + 4 * column + 2 * (column % 2);
+    const int code = user ? ramp : codes[column % 8];
+    *out = (fixture_texel){(code - 1) / 254.0, -4, {0, 0, 1}, {255, 255, 255, 255}};
+}
+
+static void check_errors(const void *ramp, double pitch, const double codes[4])
+{
+    const double corner[3] = {0, 0, 0};
+    fixture_patch patch = {.frame = fixture_frame(corner, 32, 24, pitch, 1), .sheet = wave,
+                           .user = ramp};
+    gtx_asset *asset = fixture_build(&patch, 1, 8, 4);
+    gtx_grid finest, grid;
+    assert_int_equal(gtx_grid_build(asset, 0, 0, NULL, &finest, NULL), GTX_OK);
+    for (uint32_t level = 0; level < 4; ++level) {
+        assert_int_equal(gtx_grid_build(asset, 0, level, NULL, &grid, NULL), GTX_OK);
+        const double expected = fmax(codes[level] / 254, 0.3 * ((1 << level) - 1) * pitch);
+        const double error = gtx_grid_error(asset, 0, &finest, &grid);
+        if (fabs(error - expected) > 1e-6)
+            fail_msg("level %u: %g instead of %g", level, error, expected);
+        gtx_grid_free(&grid, NULL);
     }
+    gtx_grid_free(&finest, NULL);
+    gtx_close(asset);
+}
+
+static void errors_are_distances_from_level_0(void **state)
+{
+    (void)state;
+    /* Every second texel keeps the turns; every fourth and eighth has code 100. */
+    const double flat[4] = {0, 0, 2, 2};
+    check_errors(NULL, 0.001, flat);
+    check_errors(NULL, 0.1, flat); /* the trim's limit rules */
+    /* Two codes above a slope of four a texel, as far as it is steep. */
+    const double steep = 2 / sqrt(1 + 16 / (254 * 254 * 0.004 * 0.004));
+    check_errors(flat, 0.004, (const double[4]){0, steep, steep, steep});
 }
 
 /* Signed volume of a patch's triangles; every edge must be met once in each direction. */
@@ -237,6 +287,43 @@ static void boxes_fit(void **state)
     gtx_proxies_free(&boxes, NULL);
     assert_int_equal(gtx_derive_boxes(asset, NAN, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
     assert_int_equal(gtx_derive_boxes(asset, -1, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
+    gtx_close(asset);
+}
+
+/* Low ground up to x = 20, and high texels without a cell at (24, 8 j). */
+static void lonely(const gtx_patch *patch, double x, double y, const void *user, fixture_texel *out)
+{
+    (void)patch;
+    (void)user;
+    const int peak = fmod(x, 24) == 0 && x > 0 && fmod(y, 8) == 0;
+    *out = (fixture_texel){peak ? 0.9 : x < 20 ? 0.3 : -1, -4, {0, 0, 1}, {255, 255, 255, 255}};
+}
+
+static void boxes_hold_the_nodes_of_all_levels(void **state)
+{
+    (void)state;
+    const double corner[3] = {0, 0, 0};
+    fixture_patch patch = {.frame = fixture_frame(corner, 32, 24, 0.1, 1), .sheet = lonely};
+    gtx_asset *asset = fixture_build(&patch, 1, 8, 4);
+    gtx_proxies boxes;
+    uint32_t highest = 0;
+    assert_int_equal(gtx_derive_boxes(asset, 0, NULL, &boxes, NULL), GTX_OK);
+    const gtx_proxy_vertex *low = &boxes.vertices[0], *high = &boxes.vertices[7];
+    for (uint32_t level = 0; level < 4; ++level) {
+        gtx_grid grid;
+        assert_int_equal(gtx_grid_build(asset, 0, level, NULL, &grid, NULL), GTX_OK);
+        for (uint32_t j = 0; j + 1 < grid.nodes_y; ++j)
+            for (uint32_t i = 0; i + 1 < grid.nodes_x; ++i)
+                for (uint32_t k = 0; k < 4 && grid.solid[j * (grid.nodes_x - 1) + i]; ++k) {
+                    const uint32_t code = grid.code[(j + (k >> 1)) * grid.nodes_x + i + (k & 1)];
+                    assert_in_range(code, (uint32_t)low->z, (uint32_t)high->z);
+                    highest = code > highest ? code : highest;
+                }
+        gtx_grid_free(&grid, NULL);
+    }
+    assert_true(highest > 200); /* there was such a node */
+    assert_true(high->x < 20);  /* while x and y are those of level 0 */
+    gtx_proxies_free(&boxes, NULL);
     gtx_close(asset);
 }
 
@@ -329,7 +416,9 @@ int main(void)
         cmocka_unit_test(every_level_follows_the_rule),
         cmocka_unit_test(no_such_patch_or_level),
         cmocka_unit_test(cells_hold_their_corners),
+        cmocka_unit_test(errors_are_distances_from_level_0),
         cmocka_unit_test(boxes_fit),
+        cmocka_unit_test(boxes_hold_the_nodes_of_all_levels),
         cmocka_unit_test(a_patch_without_cells_has_no_box),
         cmocka_unit_test(memory_may_run_out),
     };

@@ -295,7 +295,7 @@ static inline int agrees(double expected, double texels, double codes, double dr
     return expected > 1 || (change * texels <= 0.125 && change * codes <= 1);
 }
 
-/* Draws and compares each pixel with the ray through its centre. A difference is excluded when a
+/* Draws and compares each pixel with the ray through its centre, cast at the view's level. A difference is excluded when a
  * ray less than 1/70 pixel away agrees. */
 static inline agreement stage_compare(stage *s, const gtx_asset *asset, const gtx_view *view,
                                       const gtx_instance *instances, uint32_t count)
@@ -303,7 +303,8 @@ static inline agreement stage_compare(stage *s, const gtx_asset *asset, const gt
     gtx_caster *caster;
     gtx_error error = {0};
     agreement a = {0, 0, 0};
-    must(gtx_caster_create(asset, NULL, &caster, &error), &error);
+    const gtx_caster_desc desc = {.level = view->level ? view->level - 1 : 0};
+    must(gtx_caster_create(asset, &desc, &caster, &error), &error);
     const oracle o = {asset, caster, view, instances, count};
     const double empty = view->flags & GTX_VIEW_REVERSED_Z ? 0 : 1;
     stage_draw(s, view, instances, count);

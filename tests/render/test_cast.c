@@ -1,4 +1,4 @@
-/* What is drawn against gtx_raycast, pixel by pixel: no wrong ray. */
+/* What is drawn against gtx_raycast, pixel by pixel and at every level: no wrong ray. */
 #include "stage.h"
 
 typedef enum shape { FLAT, BUMPY, BUMPY_TWO_SIDED, SPHERE } shape;
@@ -18,13 +18,16 @@ static void check_shape(stage *s, shape which, uint32_t height_bits)
 {
     subject shown = subject_open(s, build(which, height_bits));
     const float angles[][2] = {{27, 33}, {0, 90}, {118, 12}, {200, -40}, {0, 0}};
+    gtx_info info;
+    gtx_get_info(shown.asset, &info);
     for (size_t i = 0; i < sizeof angles / sizeof *angles; ++i)
-        for (int ortho = 0; ortho < 2; ++ortho) {
+        for (uint32_t level = 0; level < info.mip_count; ++level) {
             gtx_camera camera = camera_around(shown.asset);
             camera.azimuth = angles[i][0];
             camera.elevation = angles[i][1];
-            camera.orthographic = ortho;
-            const gtx_view view = view_of(&camera);
+            camera.orthographic = (i + level) % 2 == 0;
+            gtx_view view = view_of(&camera);
+            view.level = level + 1;
             expect_agreement(s, &shown, &view, which == SPHERE ? 4000 : 0);
         }
     subject_close(s, &shown);

@@ -78,7 +78,7 @@ static void a_main_of_ones_own(void **state)
         "out vec4 position;\n"
         "void main()\n"
         "{\n"
-        "    gtx_sheet sheet = gtx_sheet_of(index);\n"
+        "    gtx_sheet sheet = gtx_sheet_of(index, 0);\n"
         "    gtx_hit hit;\n"
         "    float t0 = 0.0, t1 = 1e30;\n"
         "    gtx_clip_box(sheet, origin, direction, t0, t1);\n"

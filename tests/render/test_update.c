@@ -54,11 +54,12 @@ static void an_updated_model_is_the_edited_one(void **state)
     gtx_error error = {0};
     subject shown = subject_open(s, fixture_sphere(2, 48, 8));
     gtx_camera camera = camera_around(shown.asset);
-    const gtx_view view = view_of(&camera);
+    gtx_view view = view_of(&camera);
     uint8_t *before = malloc(sizeof s->color), *expected = malloc(sizeof s->color);
-    stage_draw(s, &view, &shown.instance, 1);
-    memcpy(before, s->color, sizeof s->color);
-    for (uint32_t patch = 0; patch < 6; patch += 2) { /* those towards the camera */
+    for (uint32_t patch = 0; patch < 6; patch += 2) { /* those towards the camera, a level each */
+        view.level = patch + 1;
+        stage_draw(s, &view, &shown.instance, 1);
+        memcpy(before, s->color, sizeof s->color);
         gtx_asset *change = edited(shown.asset, patch, 1);
         subject whole = subject_open(s, change);
         stage_draw(s, &view, &whole.instance, 1);

@@ -1,0 +1,138 @@
+/* What has a height, continued where there is none: normals ring by ring, trim by sweeps. */
+#include "asset/fill.h"
+
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What eight levels of mips call for; it also bounds the work on hostile bytes. */
+#define MOST_RINGS 128u
+#define FAR 255u
+
+void gtx_normal_add(gtx_normal_sum *sum, const uint8_t code[2])
+{
+    int32_t a = 2 * code[0] - 255, b = 2 * code[1] - 255;
+    sum->a += a;
+    sum->b += b;
+    sum->z += 255 - (abs(a) > abs(b) ? abs(a) : abs(b)); /* |x| + |y| = max(|x + y|, |x - y|) */
+}
+
+void gtx_normal_mean(const gtx_normal_sum *sum, uint8_t out[2])
+{
+    int32_t a = abs(sum->a), b = abs(sum->b), size = (a > b ? a : b) + sum->z;
+    const int32_t part[2] = {sum->a, sum->b};
+    for (int k = 0; k < 2; ++k) { /* floor(128 + 127.5 v), as an encoded normal */
+        int32_t code = size ? (256 * size + 255 * part[k]) / (2 * size) : 128;
+        out[k] = (uint8_t)(code > 255 ? 255 : code);
+    }
+}
+
+uint32_t gtx_fill_rings(const gtx_patch *patch, uint32_t level)
+{
+    uint32_t rings = (uint32_t)patch->dilation >> level;
+    return rings < 1 ? 1 : rings < MOST_RINGS ? rings : MOST_RINGS;
+}
+
+static uint8_t least(int a, int b)
+{
+    return (uint8_t)(a < b ? a : b);
+}
+
+/* One step more than the least of three neighbours in the row swept before. */
+static void step_from_row(uint8_t *row, const uint8_t *before, uint32_t width)
+{
+    uint32_t last = width - 1, next = last ? 1 : 0, next_to_last = last - next;
+    row[0] = least(row[0], least(before[0], before[next]) + 1);
+    for (uint32_t i = 1; i < last; ++i)
+        row[i] = least(row[i], least(least(before[i - 1], before[i]), before[i + 1]) + 1);
+    row[last] = least(row[last], least(before[next_to_last], before[last]) + 1);
+}
+
+/* Distances in steps to any of 8 neighbours, by one sweep down and one up (Rosenfeld and Pfaltz
+ * 1968): a texel of ring r has a neighbour of ring r - 1. */
+static void measure_rings(const gtx_fill *area)
+{
+    uint32_t width = area->width, height = area->height;
+    for (uint32_t j = 0; j < height; ++j) {
+        uint8_t *row = area->ring + j * area->stride;
+        for (uint32_t i = 0; i < width; ++i)
+            row[i] = row[i] ? row[i] : FAR;
+        if (j)
+            step_from_row(row, row - area->stride, width);
+        for (uint32_t i = 1; i < width; ++i)
+            row[i] = least(row[i], row[i - 1] + 1);
+    }
+    for (uint32_t j = height; j-- > 0;) {
+        uint8_t *row = area->ring + j * area->stride;
+        if (j + 1 < height)
+            step_from_row(row, row + area->stride, width);
+        for (uint32_t i = width - 1; i-- > 0;)
+            row[i] = least(row[i], row[i + 1] + 1);
+    }
+}
+
+/* The texel at `p`: the mean of neighbours, so many steps to each side, of smaller rings. */
+static void fill_normal(const gtx_fill *area, const uint8_t *p, int x0, int x1, int y0, int y1)
+{
+    gtx_normal_sum sum = {0, 0, 0};
+    for (int y = y0; y <= y1; ++y)
+        for (int x = x0; x <= x1; ++x) {
+            const uint8_t *from = p + y * (ptrdiff_t)area->stride + x;
+            if (*from < *p)
+                gtx_normal_add(&sum, area->codes + 2 * (from - area->ring));
+        }
+    gtx_normal_mean(&sum, area->codes + 2 * (p - area->ring));
+}
+
+void gtx_fill_normals(const gtx_fill *area, uint32_t rings)
+{
+    measure_rings(area);
+    for (uint32_t ring = 1; ring <= rings; ++ring) {
+        for (uint32_t j = 0; j < area->height; ++j) {
+            const uint8_t *row = area->ring + j * area->stride, *end = row + area->width, *p = row;
+            while ((p = memchr(p, (int)ring + 1, (size_t)(end - p))) != NULL) {
+                fill_normal(area, p, p > row ? -1 : 0, p + 1 < end ? 1 : 0, j > 0 ? -1 : 0,
+                            j + 1 < area->height ? 1 : 0);
+                ++p;
+            }
+        }
+    }
+}
+
+/* One texel is 16 codes, a diagonal 22.6. `before` is the row swept last, or NULL. */
+static void step_trim(uint8_t *row, const uint8_t *ring, const uint8_t *before, uint32_t width,
+                      int side)
+{
+    for (uint32_t n = 0; n < width; ++n) {
+        uint32_t i = side < 0 ? n : width - 1 - n;
+        if (ring[i])
+            continue;
+        uint8_t best = row[i];
+        if (n)
+            best = least(best, row[(ptrdiff_t)i + side] + 16);
+        if (before) {
+            best = least(best, before[i] + 16);
+            if (i)
+                best = least(best, before[i - 1] + 23);
+            if (i + 1 < width)
+                best = least(best, before[i + 1] + 23);
+        }
+        row[i] = best;
+    }
+}
+
+/* Chamfer distances (Borgefors 1986), by one sweep down and one up. */
+void gtx_fill_trim(const gtx_fill *area)
+{
+    uint32_t height = area->height;
+    for (uint32_t j = 0; j < height; ++j) {
+        uint8_t *row = area->codes + j * area->stride;
+        step_trim(row, area->ring + j * area->stride, j ? row - area->stride : NULL, area->width,
+                  -1);
+    }
+    for (uint32_t j = height; j-- > 0;) {
+        uint8_t *row = area->codes + j * area->stride;
+        step_trim(row, area->ring + j * area->stride, j + 1 < height ? row + area->stride : NULL,
+                  area->width, 1);
+    }
+}

@@ -1,0 +1,175 @@
+/* Cuts charts straight, along the lines of their own grids of texels.
+ *
+ * A chart that folds nowhere is one height map already, however large. Parts of it fill their tight
+ * rectangles the better the smaller they are, and neighbours across a cut share the grid, so that
+ * their sheets agree there texel by texel. */
+#include "chart/cut_tree.hpp"
+
+namespace gtx {
+
+namespace {
+
+/* Texels beyond a patch from which its overlap may take. */
+constexpr float MARGIN = 4;
+/* Texels from where the chart ends to a cut behind it, at least: room for the overlap there. */
+constexpr double ROOM = 2;
+
+/* A triangle of a chart as its patches see it, in texels. */
+struct Piece {
+    uint32_t triangle;
+    bool own; /* its centre lies in the region */
+    float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, middle[2] = {0, 0};
+};
+
+class Harvest {
+public:
+    Harvest(const Surface &surface, const Frame &frame, double pitch, const CutTree &tree)
+        : surface_(surface), frame_(frame), pitch_(pitch), tree_(tree)
+    {
+    }
+
+    std::vector<Chart> reap(const Region &region)
+    {
+        FrameInverse inverse(frame_);
+        std::vector<Piece> pieces;
+        pieces.reserve(region.size());
+        for (uint32_t t : region.triangles) {
+            Piece piece = {t, true};
+            for (int k = 0; k < 3; ++k) {
+                Vec3d p = inverse(surface_.mesh.position(t, k));
+                for (int a = 0; a < 2; ++a) {
+                    float x = float((p[a] - tree_.relief.corner[a]) / pitch_);
+                    piece.low[a] = std::min(piece.low[a], x);
+                    piece.high[a] = std::max(piece.high[a], x);
+                    piece.middle[a] += x / 3;
+                }
+            }
+            pieces.push_back(piece);
+        }
+        descend(tree_.nodes[0], std::move(pieces));
+        return std::move(out_);
+    }
+
+private:
+    void descend(const CutNode &node, std::vector<Piece> pieces);
+    void make_patch(const CutNode &node, const std::vector<Piece> &pieces);
+    void lay_frame(const CutNode &node, Chart &chart) const;
+    void clip(const CutNode &node, Chart &chart) const;
+
+    const Surface &surface_;
+    const Frame &frame_;
+    double pitch_;
+    const CutTree &tree_;
+    std::vector<Chart> out_;
+};
+
+void Harvest::descend(const CutNode &node, std::vector<Piece> pieces)
+{
+    if (node.tight.empty())
+        return;
+    if (!node.divided) {
+        make_patch(node, pieces);
+        return;
+    }
+    std::vector<Piece> inside[2];
+    for (int side = 0; side < 2; ++side) {
+        const Rect &half = tree_.nodes[size_t(node.child[side])].region;
+        for (Piece piece : pieces) {
+            bool meets = true;
+            for (int a = 0; a < 2; ++a) {
+                float low = float(half.low[a]), high = float(half.high[a]);
+                meets = meets && piece.high[a] >= low - MARGIN && piece.low[a] <= high + MARGIN;
+                piece.own = piece.own && /* what rounding puts off the grid belongs to its edge */
+                            (piece.middle[a] >= low || !half.low[a]) &&
+                            (piece.middle[a] < high || half.high[a] == tree_.relief.size[a]);
+            }
+            if (meets)
+                inside[side].push_back(piece);
+        }
+    }
+    pieces = {}; /* of a terrain they are many */
+    for (int side = 0; side < 2; ++side)
+        descend(tree_.nodes[size_t(node.child[side])], std::move(inside[side]));
+}
+
+void Harvest::lay_frame(const CutNode &node, Chart &chart) const
+{
+    const Relief &relief = tree_.relief;
+    std::vector<Vec3d> points;
+    for (int j = node.tight.low[1]; j < node.tight.high[1]; ++j)
+        for (int i = node.tight.low[0]; i < node.tight.high[0]; ++i) {
+            double height = double(relief.height[relief.at(i, j)]);
+            if (!std::isnan(height))
+                points.push_back({relief.corner[0] + (i + 0.5) * pitch_,
+                                  relief.corner[1] + (j + 0.5) * pitch_, height * pitch_});
+        }
+    double low[2], high[2];
+    for (int a = 0; a < 2; ++a) {
+        low[a] = relief.corner[a] + node.tight.low[a] * pitch_;
+        high[a] = relief.corner[a] + node.tight.high[a] * pitch_;
+        chart.cells[a] = unsigned(node.tight.side(a));
+    }
+    chart.frame = part_of_frame(frame_, low, high, points);
+}
+
+void Harvest::clip(const CutNode &node, Chart &chart) const
+{
+    for (int a = 0; a < 2; ++a) {
+        const double cell = chart.frame.extent[a] / chart.cells[a];
+        const int low = node.tight.low[a] - node.region.low[a];
+        const int high = node.region.high[a] - node.tight.high[a];
+        if (node.cuts[size_t(2 * a)])
+            chart.clip_low[a] = -(low ? std::max<double>(low, ROOM) : 0) * cell;
+        if (node.cuts[size_t(2 * a + 1)])
+            chart.clip_high[a] =
+                chart.frame.extent[a] + (high ? std::max<double>(high, ROOM) : 0) * cell;
+    }
+}
+
+void Harvest::make_patch(const CutNode &node, const std::vector<Piece> &pieces)
+{
+    Chart chart;
+    for (const Piece &piece : pieces) {
+        chart.triangles.push_back(piece.triangle);
+        chart.source_triangles += piece.own;
+    }
+    lay_frame(node, chart);
+    clip(node, chart);
+    out_.push_back(std::move(chart));
+}
+
+} // namespace
+
+std::vector<Chart> cut_charts(const Surface &surface, std::vector<Region> regions,
+                              const std::vector<Frame> &frames, const CutPlan &plan, Task &task)
+{
+    double share = surface.area / (plan.pitch * plan.pitch) / double(plan.patches);
+    std::vector<CutTree> trees(regions.size());
+    task.parallel(regions.size(), [&](size_t i) {
+        trees[i] = grow_cut_tree(make_relief(surface, regions[i], frames[i], plan.pitch), plan,
+                                 share);
+    }, 0.2, 0.8);
+    divide_trees(trees, plan.patches);
+
+    std::vector<std::vector<Chart>> cut(regions.size());
+    task.parallel(regions.size(), [&](size_t i) {
+        if (trees[i].nodes[0].divided) {
+            cut[i] = Harvest(surface, frames[i], plan.pitch, trees[i]).reap(regions[i]);
+        } else {
+            cut[i].resize(1);
+            cut[i][0].source_triangles = regions[i].size();
+            cut[i][0].triangles = std::move(regions[i].triangles);
+            cut[i][0].frame = frames[i];
+        }
+        trees[i] = {};
+    }, 0.8, 1);
+    std::vector<Chart> out;
+    for (std::vector<Chart> &charts : cut)
+        for (Chart &chart : charts) {
+            std::sort(chart.triangles.begin(), chart.triangles.end());
+            out.push_back(std::move(chart));
+        }
+    return out;
+}
+
+} // namespace gtx

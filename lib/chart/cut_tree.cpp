@@ -1,0 +1,402 @@
+/* Grows k-d trees over charts, trading texels against relief, and prunes them to a number of leaves.
+ *
+ * A node's cut is the one whose two sides would take the fewest texels, after the best next cut of
+ * each: what counts is how the sides will fill their rectangles, whose sizes come in steps. */
+#include "chart/cut_tree.hpp"
+
+#include "chart/raster.hpp"
+
+namespace gtx {
+
+namespace {
+
+constexpr int LEAST_CELLS = 4;         /* along a side that was cut */
+constexpr double LEAST_SIDE = 0.1;     /* of a square patch's */
+constexpr double RELIEF_COST = 20;     /* of height steps beside texels, both squared */
+constexpr double RANGE = 4;            /* heights lie within as many standard deviations */
+constexpr double SMALLEST_SHARE = 1.0 / 16; /* of a patch's texels: cut no further */
+constexpr double PATCH_PRICE = 0.1;    /* likewise: what one more patch has to save */
+constexpr double AHEAD_SHARE = 16;     /* likewise: larger nodes are far from their leaves yet */
+constexpr size_t CANDIDATES = 6;       /* cuts whose next cuts are looked at */
+constexpr double BALANCE = 1e-6;       /* texels: of cuts that are worth the same, the middle one */
+
+/* Sums over heights at texels, to fit a plane to. */
+struct Moments {
+    double n = 0, u = 0, v = 0, h = 0, uu = 0, uv = 0, vv = 0, uh = 0, vh = 0, hh = 0;
+
+    void add(const Moments &m)
+    {
+        n += m.n, u += m.u, v += m.v, h += m.h;
+        uu += m.uu, uv += m.uv, vv += m.vv, uh += m.uh, vh += m.vh, hh += m.hh;
+    }
+    /* Mean square of what the least-squares plane leaves. */
+    double residual() const
+    {
+        if (n < 4)
+            return 0;
+        double suu = uu - u * u / n, suv = uv - u * v / n, svv = vv - v * v / n;
+        double suh = uh - u * h / n, svh = vh - v * h / n, shh = hh - h * h / n;
+        double det = suu * svv - suv * suv;
+        if (det > 1e-9 * suu * svv) {
+            double a = (suh * svv - svh * suv) / det, b = (svh * suu - suh * suv) / det;
+            shh -= a * suh + b * svh;
+        }
+        return std::max(0., shh / n);
+    }
+};
+
+constexpr Rect NOTHING = {{INT32_MAX, INT32_MAX}, {INT32_MIN, INT32_MIN}};
+
+/* A column or row of a node, or several. */
+struct Slice {
+    Moments moments;
+    Rect box = NOTHING;
+
+    void add(const Slice &s)
+    {
+        moments.add(s.moments);
+        for (int k = 0; k < 2; ++k) {
+            box.low[k] = std::min(box.low[k], s.box.low[k]);
+            box.high[k] = std::max(box.high[k], s.box.high[k]);
+        }
+    }
+};
+
+/* Sums along one column or row, where the other coordinate stays. */
+struct Line {
+    int low = INT32_MAX, high = INT32_MIN; /* of what is touched */
+    double n = 0, x = 0, h = 0, xx = 0, xh = 0, hh = 0;
+
+    void touch(int at)
+    {
+        low = std::min(low, at);
+        high = at + 1;
+    }
+    void add(double at, double height)
+    {
+        n += 1, x += at, h += height;
+        xx += at * at, xh += at * height, hh += height * height;
+    }
+    Slice slice(int axis, int at) const
+    {
+        Slice out;
+        if (high > low) {
+            out.box.low[axis] = at;
+            out.box.high[axis] = at + 1;
+            out.box.low[!axis] = low;
+            out.box.high[!axis] = high;
+        }
+        double a = at;
+        if (axis == 0)
+            out.moments = {n, n * a, x, h, n * a * a, a * x, xx, a * h, xh, hh};
+        else
+            out.moments = {n, x, n * a, h, xx, a * x, n * a * a, xh, a * h, hh};
+        return out;
+    }
+};
+
+struct Cut {
+    double value = INFINITY; /* texels, the price of patches included */
+    int axis = -1, at = 0;
+
+    bool operator<(const Cut &o) const
+    {
+        return value != o.value ? value < o.value : axis != o.axis ? axis < o.axis : at < o.at;
+    }
+};
+
+struct Half {
+    Rect region;
+    Cuts cuts;
+};
+
+Half half_of(const Rect &region, const Cuts &cuts, int axis, int at, int side)
+{
+    Half half = {region, cuts};
+    (side ? half.region.low : half.region.high)[axis] = at;
+    half.cuts[size_t(2 * axis + !side)] = true;
+    return half;
+}
+
+class Grower {
+public:
+    Grower(const Relief &relief, const CutPlan &plan, double share)
+        : relief_(relief), plan_(plan), smallest_(SMALLEST_SHARE * share),
+          price_(PATCH_PRICE * share), ahead_(AHEAD_SHARE * share),
+          least_(std::max(LEAST_CELLS, int(LEAST_SIDE * std::sqrt(share))))
+    {
+    }
+
+    std::vector<CutNode> grow() const
+    {
+        CutNode root;
+        root.region = root.tight = {{0, 0}, {relief_.size[0], relief_.size[1]}};
+        std::vector<CutNode> nodes = {root};
+        for (size_t n = 0; n < nodes.size(); ++n)
+            grow_node(n, nodes);
+        return nodes;
+    }
+
+private:
+    void grow_node(size_t n, std::vector<CutNode> &nodes) const;
+    void slice(const Rect &box, std::vector<Slice> slices[2]) const;
+    std::vector<Cut> list_cuts(const Rect &region, const Rect &within, const Cuts &cuts,
+                               Slice &all) const;
+    Cut look_ahead(const CutNode &node, const std::vector<Cut> &sorted) const;
+    double texels(const Rect &box, const Cuts &cuts, double &patches) const;
+    double cost(const Slice &s, const Rect &region, const Cuts &cuts, double &patches) const;
+    double value(const Slice &s, const Rect &region, const Cuts &cuts) const
+    {
+        double patches, texels = cost(s, region, cuts, patches);
+        return texels + patches * price_;
+    }
+
+    const Relief &relief_;
+    const CutPlan &plan_;
+    double smallest_, price_, ahead_;
+    int least_;
+};
+
+/* Texels of a box, in as many patches as the longest side allows. */
+double Grower::texels(const Rect &box, const Cuts &cuts, double &patches) const
+{
+    auto rounded = [&](unsigned n) { return (n + plan_.grain - 1) / plan_.grain * plan_.grain; };
+    double total = 1;
+    patches = 1;
+    for (int axis = 0; axis < 2; ++axis) {
+        unsigned n = unsigned(box.side(axis)) + plan_.overlap[!cuts[size_t(2 * axis)]] +
+                     plan_.overlap[!cuts[size_t(2 * axis + 1)]];
+        if (rounded(n) > plan_.side) {
+            unsigned rest = 2 * plan_.overlap[0], parts = 1 + (n - 1) / (plan_.side - rest);
+            n = parts * rounded((n + parts - 1) / parts + rest);
+            patches *= parts;
+        }
+        total *= rounded(n);
+    }
+    return total;
+}
+
+/* What a part of the chart costs in a region: texels, more where heights resolve less than they. */
+double Grower::cost(const Slice &s, const Rect &region, const Cuts &cuts, double &patches) const
+{
+    patches = 0;
+    if (s.box.empty())
+        return 0;
+    Cuts own; /* elsewhere the chart itself ends */
+    for (int axis = 0; axis < 2; ++axis) {
+        size_t low = size_t(2 * axis);
+        own[low] = cuts[low] && s.box.low[axis] == region.low[axis];
+        own[low + 1] = cuts[low + 1] && s.box.high[axis] == region.high[axis];
+    }
+    double steps = RANGE / plan_.steps;
+    return texels(s.box, own, patches) * (1 + RELIEF_COST * steps * steps * s.moments.residual());
+}
+
+/* The columns and rows of a box. */
+void Grower::slice(const Rect &box, std::vector<Slice> slices[2]) const
+{
+    std::vector<Line> columns(size_t(box.side(0)));
+    for (int j = box.low[1]; j < box.high[1]; ++j) {
+        Line row;
+        for (int i = box.low[0]; i < box.high[0]; ++i) {
+            size_t texel = relief_.at(i, j);
+            if (!relief_.touched[texel])
+                continue;
+            Line &column = columns[size_t(i - box.low[0])];
+            column.touch(j);
+            row.touch(i);
+            double height = double(relief_.height[texel]);
+            if (!std::isnan(height)) {
+                column.add(j, height);
+                row.add(i, height);
+            }
+        }
+        slices[1].push_back(row.slice(1, j));
+    }
+    for (size_t i = 0; i < columns.size(); ++i)
+        slices[0].push_back(columns[i].slice(0, box.low[0] + int(i)));
+}
+
+/* Every cut of a region, valued by its two sides as they are. Nothing lies outside `within`; `all`
+ * gets what lies inside. */
+std::vector<Cut> Grower::list_cuts(const Rect &region, const Rect &within, const Cuts &cuts,
+                                   Slice &all) const
+{
+    Rect box;
+    for (int k = 0; k < 2; ++k) {
+        box.low[k] = std::max(region.low[k], within.low[k]);
+        box.high[k] = std::max(box.low[k], std::min(region.high[k], within.high[k]));
+    }
+    std::vector<Slice> slices[2];
+    slice(box, slices);
+    std::vector<Cut> out;
+    for (int axis = 0; axis < 2; ++axis) {
+        std::vector<Slice> above(slices[axis].size() + 1);
+        for (size_t i = slices[axis].size(); i-- > 0;) {
+            above[i] = above[i + 1];
+            above[i].add(slices[axis][i]);
+        }
+        all = above[0];
+        Slice below;
+        for (int at = box.low[axis] + 1; at < box.high[axis]; ++at) {
+            size_t i = size_t(at - box.low[axis]);
+            below.add(slices[axis][i - 1]);
+            if (at < all.box.low[axis] + least_ || at > all.box.high[axis] - least_)
+                continue;
+            Half low = half_of(region, cuts, axis, at, 0), high = half_of(region, cuts, axis, at, 1);
+            double off_middle = std::fabs(all.box.low[axis] + all.box.high[axis] - 2. * at);
+            out.push_back({value(below, low.region, low.cuts) +
+                               value(above[i], high.region, high.cuts) + BALANCE * off_middle,
+                           axis, at});
+        }
+    }
+    return out;
+}
+
+/* The best of the first few cuts that are not beside each other, each with the best cut that may
+ * follow on its two sides. */
+Cut Grower::look_ahead(const CutNode &node, const std::vector<Cut> &sorted) const
+{
+    Cut best;
+    std::vector<Cut> tried;
+    for (const Cut &cut : sorted) {
+        if (tried.size() == CANDIDATES)
+            break;
+        if (std::any_of(tried.begin(), tried.end(), [&](const Cut &t) {
+                return t.axis == cut.axis && std::abs(t.at - cut.at) < least_ / 2;
+            }))
+            continue;
+        tried.push_back(cut);
+        double sum = 0;
+        for (int side = 0; side < 2; ++side) {
+            Half half = half_of(node.region, node.cuts, cut.axis, cut.at, side);
+            Slice all;
+            std::vector<Cut> next = list_cuts(half.region, node.tight, half.cuts, all);
+            double least = value(all, half.region, half.cuts);
+            for (const Cut &n : next)
+                least = std::min(least, n.value);
+            sum += least;
+        }
+        if (sum < best.value)
+            best = {sum, cut.axis, cut.at};
+    }
+    return best;
+}
+
+void Grower::grow_node(size_t n, std::vector<CutNode> &nodes) const
+{
+    CutNode node = nodes[n];
+    Slice all;
+    std::vector<Cut> cuts = list_cuts(node.region, node.tight, node.cuts, all);
+    std::sort(cuts.begin(), cuts.end());
+    double patches;
+    /* What passes between all texel centres is left to the overlap of others. */
+    node.tight = all.moments.n > 0 || n == 0 ? all.box : Rect{};
+    node.cost = cost(all, node.region, node.cuts, patches);
+    const bool fits = patches <= 1;
+    if (!cuts.empty() && !(fits && node.cost < smallest_)) {
+        Cut cut = node.cost < ahead_ ? look_ahead(node, cuts) : cuts[0];
+        for (int side = 0; side < 2; ++side) {
+            Half half = half_of(node.region, node.cuts, cut.axis, cut.at, side);
+            CutNode child;
+            child.region = half.region;
+            child.tight = node.tight;
+            child.cuts = half.cuts;
+            node.child[side] = int(nodes.size());
+            nodes.push_back(child);
+        }
+        if (!fits)
+            node.cost = INFINITY;
+    }
+    nodes[n] = node;
+}
+
+/* Divides the nodes for which that pays when each patch costs `price` texels on top; returns how
+ * many leaves come out. */
+size_t prune(std::vector<CutTree> &trees, double price)
+{
+    size_t leaves = 0;
+    for (CutTree &tree : trees) {
+        for (size_t n = tree.nodes.size(); n-- > 0;) {
+            CutNode &node = tree.nodes[n];
+            node.leaves = !node.tight.empty();
+            node.least = node.leaves ? node.cost + price : 0;
+            node.divided = false;
+            if (node.child[0] < 0)
+                continue;
+            const CutNode &a = tree.nodes[size_t(node.child[0])];
+            const CutNode &b = tree.nodes[size_t(node.child[1])];
+            if (a.least + b.least < node.least) {
+                node.least = a.least + b.least;
+                node.leaves = a.leaves + b.leaves;
+                node.divided = true;
+            }
+        }
+        leaves += tree.nodes[0].leaves;
+    }
+    return leaves;
+}
+
+} // namespace
+
+Relief make_relief(const Surface &surface, const Region &region, const Frame &frame, double pitch)
+{
+    Relief out;
+    for (int k = 0; k < 2; ++k) {
+        out.size[k] = std::max(1, int(std::ceil(frame.extent[k] / pitch)));
+        out.corner[k] = (frame.extent[k] - out.size[k] * pitch) / 2;
+    }
+    out.height.assign(size_t(out.size[0]) * size_t(out.size[1]), NAN);
+    out.touched.assign(out.height.size(), 0);
+    FrameInverse inverse(frame);
+    for (uint32_t t : region.triangles) {
+        Vec3d corner[3];
+        for (int k = 0; k < 3; ++k) {
+            Vec3d p = inverse(surface.mesh.position(t, k));
+            corner[k] = {(p.x - out.corner[0]) / pitch, (p.y - out.corner[1]) / pitch, p.z / pitch};
+        }
+        raster_centres(corner, out.size[0], out.size[1], [&](int i, int j, double depth) {
+            float &height = out.height[out.at(i, j)];
+            if (!(depth <= double(height)))
+                height = float(depth);
+            out.touched[out.at(i, j)] = 1;
+        });
+        for (int k = 0; k < 3; ++k) { /* a sliver passes between centres */
+            Vec3d from = corner[k], along = corner[(k + 1) % 3] - from;
+            int steps = 1 + int(2 * std::hypot(along.x, along.y));
+            for (int s = 0; s < steps; ++s) {
+                Vec3d p = from + along * (double(s) / steps);
+                int i = std::clamp(int(p.x), 0, out.size[0] - 1);
+                int j = std::clamp(int(p.y), 0, out.size[1] - 1);
+                out.touched[out.at(i, j)] = 1;
+            }
+        }
+    }
+    return out;
+}
+
+CutTree grow_cut_tree(Relief relief, const CutPlan &plan, double share)
+{
+    CutTree tree;
+    tree.relief = std::move(relief);
+    tree.nodes = Grower(tree.relief, plan, share).grow();
+    return tree;
+}
+
+void divide_trees(std::vector<CutTree> &trees, size_t wanted)
+{
+    constexpr double HIGHEST = 1e12;
+    constexpr int STEPS = 40;
+    double low = 0, high = 1;
+    if (prune(trees, low) <= wanted)
+        return;
+    while (high < HIGHEST && prune(trees, high) > wanted)
+        high *= 2;
+    for (int step = 0; step < STEPS; ++step) {
+        double middle = (low + high) / 2;
+        (prune(trees, middle) > wanted ? low : high) = middle;
+    }
+    prune(trees, high);
+}
+
+} // namespace gtx

@@ -1,0 +1,56 @@
+/* Where a chart is best cut: a k-d tree over its texels. */
+#pragma once
+
+#include "chart/cut.hpp"
+
+namespace gtx {
+
+/* A chart on the grid of its frame, heights in texels. */
+struct Relief {
+    double corner[2];                 /* of texel (0, 0), in the frame's coordinates */
+    int size[2];
+    std::vector<float> height;        /* at centres; NAN where none is */
+    std::vector<uint8_t> touched;     /* by any triangle */
+
+    size_t at(int i, int j) const { return size_t(j) * size_t(size[0]) + size_t(i); }
+};
+
+Relief make_relief(const Surface &surface, const Region &region, const Frame &frame, double pitch);
+
+/* Texels low to high - 1 along each axis. */
+struct Rect {
+    int low[2], high[2];
+
+    int side(int axis) const { return high[axis] - low[axis]; }
+    bool empty() const { return low[0] >= high[0]; }
+};
+
+/* The sides of a rectangle that are cuts: low, high of the first axis, then of the second. */
+using Cuts = std::array<bool, 4>;
+
+/* A rectangle of the grid and what of the chart lies there. */
+struct CutNode {
+    Rect region, tight;
+    Cuts cuts = {};
+    double cost = 0;                  /* texels as one patch; infinite where it would be too long */
+    int child[2] = {-1, -1};
+    /* With its descendants, under the price of a patch at hand: */
+    double least = 0;
+    size_t leaves = 1;
+    bool divided = false;             /* its children are what to go by */
+};
+
+struct CutTree {
+    Relief relief;
+    std::vector<CutNode> nodes;       /* the root first, children after their parents */
+};
+
+/* Grows the tree of a chart down to where its patches would be far smaller than wanted; `share` is
+ * how many texels of surface a wanted patch has. */
+CutTree grow_cut_tree(Relief relief, const CutPlan &plan, double share);
+
+/* Divides nodes so that all trees together have at most `wanted` leaves, if they can, and the
+ * fewest texels. */
+void divide_trees(std::vector<CutTree> &trees, size_t wanted);
+
+} // namespace gtx

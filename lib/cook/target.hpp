@@ -1,0 +1,35 @@
+/* Cooking to an error: the smallest asset that keeps to it. */
+#pragma once
+
+#include "cook/options.hpp"
+#include "measure/measure.hpp"
+
+#include <functional>
+#include <memory>
+
+namespace gtx {
+
+using Asset = std::unique_ptr<gtx_asset, decltype(&gtx_close)>;
+
+/* What came of cooking with some options. */
+struct Attempt {
+    Asset asset{nullptr, gtx_close};
+    Partition partition;
+    BakeReport bake;
+    SurfaceError error;
+    uint64_t bytes = 0;                 /* of the file */
+    std::vector<std::string> warnings;  /* of this attempt */
+};
+using Cook = std::function<Attempt(const Options &)>;
+
+/* What may be chosen where the caller has not. */
+struct Freedom {
+    bool charts, height_bits;
+};
+
+/* Looks for the fewest bytes at a forward RMS of at most `error`, a fraction of the bounding
+ * diagonal: texel pitch, bits of a height and number of patches are tried in turn, each measured.
+ * Deterministic. Throws Error: LIMIT where no density reaches the error. */
+Attempt cook_to_error(const Options &options, double error, const Freedom &free, const Cook &cook);
+
+} // namespace gtx
