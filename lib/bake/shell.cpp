@@ -17,6 +17,8 @@ constexpr size_t LEVEL_RATIO = 2;
 constexpr double MOST_SHARE = 0.75;
 /* An error that nobody sees: the maps know no better. In texels. */
 constexpr double FREE_ERROR = 1.0 / 16;
+/* What thinning may cost inside patches: dear triangles are not worth the time. In texels. */
+constexpr double THIN_ERROR = 1.0 / 8;
 /* What is seen from so far that this is a pixel is a handful of pixels. Share of the diagonal. */
 constexpr double MOST_ERROR = 1.0 / 64;
 /* Positions are rounded to this part of a texel. */
@@ -218,7 +220,7 @@ std::vector<ShellLevel> make_shell(const ShellSource &source, const Maps &maps, 
         size[k] = double(maps.bounds_max[k]) - maps.bounds_min[k];
     const double free = FREE_ERROR * pitch;
     double thinned = 0;
-    Simplifier simplifier(thin(source, regions.size(), free, thinned, task), regions, task);
+    Simplifier simplifier(thin(source, maps, regions, THIN_ERROR * pitch, thinned, task), regions, task);
     size_t wanted = source.triangles.size() / FINEST_RATIO;
     for (unsigned k = 0; k < levels; ++k) {
         const size_t before = simplifier.triangles().size();

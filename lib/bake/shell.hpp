@@ -10,6 +10,12 @@ struct ShellSource {
     std::vector<Vec3d> positions;
     std::vector<std::array<uint32_t, 3>> triangles;
     std::vector<uint32_t> patch; /* a triangle each */
+
+    Vec3d centre(size_t triangle) const
+    {
+        const auto &[a, b, c] = triangles[triangle];
+        return (positions[a] + positions[b] + positions[c]) / 3;
+    }
 };
 
 /* One level as the asset keeps it (format/gtx.md, "Shell"). */
@@ -22,8 +28,12 @@ struct ShellLevel {
     size_t triangle_count() const { return indices.size() / 3; }
 };
 
-/* What the charts show, each triangle with the patch of its chart; `maps` is what bake made of them. */
-ShellSource shell_source(const Mesh &mesh, const Partition &partition, const Maps &maps);
+/* What the charts show; `maps` is what bake made of them. A triangle has the patch of its chart; of
+ * several charts that share it, that in whose core its centre lies. One that reaches farther across
+ * a straight cut than the maps of its patch do is split there, its neighbours with it. Deterministic
+ * for any thread count. Stage of `task`: "shell". */
+ShellSource shell_source(const Mesh &mesh, const Partition &partition, const Maps &maps,
+                         Task &task);
 
 /* Simplifies the surface across all patches at once, down to at most `levels` levels, the finest
  * first. Deterministic for any thread count. Stage of `task`: "shell". */

@@ -45,10 +45,44 @@ inline double winding(const std::array<double, 2> (&c)[3])
     return (c[1][0] - c[0][0]) * (c[2][1] - c[0][1]) - (c[1][1] - c[0][1]) * (c[2][0] - c[0][0]);
 }
 
+/* The straight cuts around a chart's core, in texels of its grid. */
+class ChartCuts {
+public:
+    ChartCuts() = default;
+    ChartCuts(const Chart &chart, const Vec3d &anchor);
+
+    bool any() const { return any_; }
+    /* The core is the rectangle 0..size; `point` is relative to the anchor. */
+    std::array<double, 2> place(const Vec3d &point) const
+    {
+        return {dot(row_[0], point) + shift_[0], dot(row_[1], point) + shift_[1]};
+    }
+    /* How far a place lies outside the core; negative inside. */
+    double outside(const std::array<double, 2> &place) const;
+    /* How far it lies beyond a side: low and high of both axes; minus infinity where none is cut. */
+    double beyond(const std::array<double, 2> &place, int axis, bool high) const
+    {
+        return high ? place[axis] - high_[axis] : low_[axis] - place[axis];
+    }
+
+private:
+    Vec3d row_[2];
+    double shift_[2] = {}, size_[2] = {};
+    double low_[2] = {-INFINITY, -INFINITY}, high_[2] = {INFINITY, INFINITY};
+    bool any_ = false;
+};
+
+/* Splits those triangles of `source` that reach so far across a cut that their patch cannot show
+ * them. Its triangles are numbered as those of the mesh, and `cuts` and `regions` as the patches. */
+void split_at_cuts(const Partition &partition, const Maps &maps, const std::vector<ChartCuts> &cuts,
+                   const std::vector<PatchRegion> &regions, ShellSource &source, Task &task);
+
+constexpr uint32_t NO_PATCH = 0xffffffffu, NO_VERTEX = 0xffffffffu;
+
 /* The same surface with the vertices inside patches thinned out, at an error of at most `most`;
  * `error` gets what it came to. */
-ShellSource thin(const ShellSource &source, size_t patches, double most, double &error,
-                 Task &task);
+ShellSource thin(const ShellSource &source, const Maps &maps,
+                 const std::vector<PatchRegion> &regions, double most, double &error, Task &task);
 
 /* Takes vertices away, cheapest first. */
 class Simplifier {

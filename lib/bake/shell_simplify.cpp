@@ -11,7 +11,6 @@
 
 namespace gtx::baking {
 
-constexpr uint32_t NO_VERTEX = 0xffffffffu;
 /* Share of the vertices that a round looks at, the cheapest: more once few of them may go. */
 constexpr double ROUND_SHARE = 0.4, FEW = 0.02;
 /* A triangle may turn by as much as has this cosine. */
@@ -41,6 +40,9 @@ struct Simplifier::State {
     std::vector<Quadric> quadrics;
     std::vector<uint32_t> start, around; /* triangles of each vertex */
     std::vector<uint8_t> touched;
+    /* What each vertex costs at least, as far as is known: NAN where it has to be found out, infinite
+     * where it must stay unless something changes around it. */
+    std::vector<float> costs;
     std::vector<Candidate> candidates;
     size_t first_count;          /* triangles at the start */
     double share = ROUND_SHARE;  /* of the candidates that a round takes */
@@ -239,7 +241,9 @@ void Simplifier::State::find_candidates(double free, double most)
         }, done, done);
     };
     for_all([&](Candidate &c, size_t v) {
-        c = {least_cost(uint32_t(v), most), uint32_t(v), NO_VERTEX};
+        if (std::isnan(costs[v]))
+            costs[v] = least_cost(uint32_t(v), most);
+        c = {costs[v], uint32_t(v), NO_VERTEX};
     });
     auto keep = [&](auto &&kept) {
         candidates.erase(std::partition(candidates.begin(), candidates.end(), kept),
@@ -254,7 +258,10 @@ void Simplifier::State::find_candidates(double free, double most)
         limit = std::max(candidates[count].cost, float(free));
         keep([&](const Candidate &c) { return c.cost <= limit; });
     }
-    for_all([&](Candidate &c, size_t) { c = find_candidate(c.from, most); });
+    for_all([&](Candidate &c, size_t) {
+        c = find_candidate(c.from, most);
+        costs[c.from] = c.to == NO_VERTEX ? INFINITY : c.cost;
+    });
     keep([&](const Candidate &c) { return c.to != NO_VERTEX && c.cost <= limit; });
     /* Among those that cost nothing neighbours go one after another: so more of them find room. */
     auto paid = std::partition(candidates.begin(), candidates.end(),
@@ -301,10 +308,12 @@ void Simplifier::State::compact()
             continue;
         positions[vertices] = positions[v];
         quadrics[vertices] = quadrics[v];
+        costs[vertices] = touched[v] ? NAN : costs[v];
         renamed[v] = vertices++;
     }
     positions.resize(vertices);
     quadrics.resize(vertices);
+    costs.resize(vertices);
     for (Triangle &t : triangles)
         for (uint32_t &v : t)
             v = renamed[v];
@@ -347,6 +356,7 @@ Simplifier::~Simplifier() = default;
 void Simplifier::reduce(size_t wanted, double free, double most)
 {
     state_->share = ROUND_SHARE;
+    state_->costs.assign(state_->positions.size(), NAN);
     for (bool going = true; going;) {
         const size_t taken = state_->round(wanted, free * free, most * most);
         const size_t left = state_->triangles.size();

@@ -192,8 +192,10 @@ static Attempt attempt(const Mesh &mesh, const gtx_cook_desc &desc, const Option
     out.partition = make_partition(mesh, options.chart, task);
     {
         Maps maps = bake(mesh, out.partition, options.bake, task);
-        const std::vector<ShellLevel> shell =
-            make_shell(shell_source(mesh, out.partition, maps), maps, options.shell_levels, task);
+        std::vector<ShellLevel> shell;
+        if (options.shell_levels)
+            shell = make_shell(shell_source(mesh, out.partition, maps, task), maps,
+                               options.shell_levels, task);
         refuse_warnings(desc, task);
         CookFacts of_asset = facts;
         of_asset.chart_count = out.partition.charts.size();
