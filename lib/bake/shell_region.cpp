@@ -70,15 +70,17 @@ bool PatchRegion::holds(const std::array<double, 2> &place) const
 
 bool PatchRegion::holds(const std::array<double, 2> (&corner)[3]) const
 {
+    const auto [x0, x1] = std::minmax({corner[0][0], corner[1][0], corner[2][0]});
+    const auto [y0, y1] = std::minmax({corner[0][1], corner[1][1], corner[2][1]});
+    if (!(x0 >= 0 && y0 >= 0 && x1 < w_ && y1 < h_))
+        return false;
+    const int x = int((x0 + x1) / 2), y = int((y0 + y1) / 2);
+    const int far = std::max({int(x1) - x, x - int(x0), int(y1) - y, y - int(y0)});
+    if (clear_[size_t(y) * w_ + x] > far) /* the whole box around it */
+        return true;
     for (const auto &c : corner)
         if (!holds(c))
             return false;
-    const auto [x0, x1] = std::minmax({corner[0][0], corner[1][0], corner[2][0]});
-    const auto [y0, y1] = std::minmax({corner[0][1], corner[1][1], corner[2][1]});
-    const int x = int(corner[0][0]), y = int(corner[0][1]);
-    const int far = std::max({int(x1) - x, x - int(x0), int(y1) - y, y - int(y0)});
-    if (clear_[size_t(y) * w_ + x] > far)
-        return true;
     for (int j = int(y0); j <= int(y1); ++j) { /* what of the triangle lies in this row of texels */
         double low = w_, high = 0;
         auto reach = [&](double at) {

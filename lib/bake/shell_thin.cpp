@@ -11,14 +11,14 @@ using Triangles = std::vector<std::array<uint32_t, 3>>;
 
 /* Steeper triangles are left alone: it takes little for them to turn away from their patch. */
 constexpr double LEAST_FACING = 0.4;
-/* Errors to try, each half as large, before a patch is left as it is. */
-constexpr int ATTEMPTS = 3;
+/* So often a patch is thinned anew around what turned away, before it is left as it is. */
+constexpr int ATTEMPTS = 4;
 
 /* Triangles of a patch: those to be thinned, with vertices of their own, and others. */
 struct Piece {
     std::vector<uint32_t> vertices; /* of the source, as they come */
     std::vector<unsigned> indices;
-    Triangles steep;                /* of the source's vertices */
+    Triangles kept;                 /* as they are, of the source's vertices */
 };
 
 static std::vector<Piece> make_pieces(const ShellSource &source, const Maps &maps)
@@ -45,7 +45,7 @@ static std::vector<Piece> make_pieces(const ShellSource &source, const Maps &map
             const Vec3d a = source.positions[t[0]];
             const Vec3d area = cross(source.positions[t[1]] - a, source.positions[t[2]] - a);
             if (dot(area, Vec3d(z[0], z[1], z[2])) < LEAST_FACING * length(area)) {
-                piece.steep.push_back(t);
+                piece.kept.push_back(t);
                 continue;
             }
             for (uint32_t v : t) {
@@ -72,64 +72,86 @@ static std::vector<float> positions_of(const ShellSource &source, const Piece &p
     return positions;
 }
 
-/* Simplifies at an error of at most `most`, which becomes what it came to. */
-static Triangles simplify(const Piece &piece, const std::vector<float> &positions, double &most)
+/* The triangles left at an error of at most `most`, which becomes what it came to. */
+static std::vector<unsigned> simplify(const Piece &piece, const std::vector<float> &positions,
+                                      double &most)
 {
-    std::vector<unsigned> out(piece.indices.size());
+    std::vector<unsigned> left(piece.indices.size());
     const size_t vertices = piece.vertices.size(), stride = 3 * sizeof(float);
     const float scale = meshopt_simplifyScale(positions.data(), vertices, stride);
     float came_to = 0; /* as a share of the scale, like what is asked for */
-    out.resize(meshopt_simplify(out.data(), piece.indices.data(), piece.indices.size(),
-                                positions.data(), vertices, stride, 0,
-                                float(most / std::max(double(scale), most)),
-                                meshopt_SimplifyLockBorder, &came_to));
+    left.resize(meshopt_simplify(left.data(), piece.indices.data(), piece.indices.size(),
+                                 positions.data(), vertices, stride, 0,
+                                 float(most / std::max(double(scale), most)),
+                                 meshopt_SimplifyLockBorder, &came_to));
     most = double(came_to) * scale;
-    Triangles left;
-    for (size_t i = 0; i < out.size(); i += 3)
-        left.push_back({piece.vertices[out[i]], piece.vertices[out[i + 1]],
-                        piece.vertices[out[i + 2]]});
     return left;
 }
 
-/* Whether all face the patch: simplifying looks at them in space alone. */
-static bool all_face(const ShellSource &source, const PatchRegion &region,
-                     const Triangles &triangles)
+static void keep(const Piece &piece, const std::vector<unsigned> &indices, Triangles &out)
 {
-    return std::all_of(triangles.begin(), triangles.end(), [&](const auto &t) {
-        const std::array<double, 2> corner[] = {region.place(source.positions[t[0]]),
-                                                region.place(source.positions[t[1]]),
-                                                region.place(source.positions[t[2]])};
-        return winding(corner) > 0;
-    });
+    for (size_t i = 0; i < indices.size(); i += 3)
+        out.push_back({piece.vertices[indices[i]], piece.vertices[indices[i + 1]],
+                       piece.vertices[indices[i + 2]]});
 }
 
-static Triangles thin_piece(const ShellSource &source, const PatchRegion &region,
-                            const Piece &piece, double most, double &error)
+/* Simplifying looks at triangles in space alone. Where some have turned away from the patch, all
+ * around their corners is kept as it was. False when there is nothing of that. */
+static bool keep_turned(const ShellSource &source, const PatchRegion &region,
+                        const std::vector<unsigned> &left, Piece &piece)
 {
-    Triangles out = piece.steep;
-    if (piece.indices.empty())
-        return out;
-    const std::vector<float> positions = positions_of(source, piece);
-    Triangles left;
-    for (int n = 0; n <= ATTEMPTS; ++n) {
-        error = n < ATTEMPTS ? std::ldexp(most, -n) : 0;
-        left = simplify(piece, positions, error);
-        if (all_face(source, region, left))
-            break;
+    std::vector<uint8_t> stays(piece.vertices.size(), 0);
+    bool any = false;
+    for (size_t i = 0; i < left.size(); i += 3) {
+        std::array<double, 2> corner[3];
+        for (int k = 0; k < 3; ++k)
+            corner[k] = region.place(source.positions[piece.vertices[left[i + k]]]);
+        if (winding(corner) > 0)
+            continue;
+        any = true;
+        for (int k = 0; k < 3; ++k)
+            stays[left[i + k]] = 1;
     }
-    out.insert(out.end(), left.begin(), left.end());
-    return out;
+    std::vector<unsigned> kept, rest;
+    for (size_t i = 0; any && i < piece.indices.size(); i += 3) {
+        const unsigned *t = &piece.indices[i];
+        std::vector<unsigned> &to = stays[t[0]] || stays[t[1]] || stays[t[2]] ? kept : rest;
+        to.insert(to.end(), t, t + 3);
+    }
+    if (any) {
+        keep(piece, kept, piece.kept);
+        piece.indices = std::move(rest);
+    }
+    return any;
+}
+
+static Triangles thin_piece(const ShellSource &source, const PatchRegion &region, Piece piece,
+                            double most, double &error)
+{
+    std::vector<unsigned> left;
+    const std::vector<float> positions = positions_of(source, piece);
+    for (int n = 0; n < ATTEMPTS && !piece.indices.empty(); ++n) {
+        error = most;
+        left = simplify(piece, positions, error);
+        if (!keep_turned(source, region, left, piece)) {
+            keep(piece, left, piece.kept);
+            return std::move(piece.kept);
+        }
+    }
+    error = 0;
+    keep(piece, piece.indices, piece.kept);
+    return std::move(piece.kept);
 }
 
 ShellSource thin(const ShellSource &source, const Maps &maps,
                  const std::vector<PatchRegion> &regions, double most, double &error, Task &task)
 {
     const size_t patches = regions.size();
-    const std::vector<Piece> pieces = make_pieces(source, maps);
+    std::vector<Piece> pieces = make_pieces(source, maps);
     std::vector<Triangles> left(patches);
     std::vector<double> errors(patches, 0);
     task.parallel(patches, [&](size_t p) {
-        left[p] = thin_piece(source, regions[p], pieces[p], most, errors[p]);
+        left[p] = thin_piece(source, regions[p], std::move(pieces[p]), most, errors[p]);
     }, 0, 0.3);
     error = patches ? *std::max_element(errors.begin(), errors.end()) : 0;
 
