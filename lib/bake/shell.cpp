@@ -9,7 +9,7 @@ namespace gtx::baking {
 
 using Triangle = std::array<uint32_t, 3>;
 
-/* Triangles of the source for one of the finest level: what fills the bytes that a shell may take. */
+/* Triangles of the source for one of the finest level: fills the bytes that a shell may take. */
 constexpr size_t FINEST_RATIO = 9;
 /* Every level has this part of the triangles of the one before. */
 constexpr size_t LEVEL_RATIO = 2;
@@ -26,11 +26,12 @@ constexpr double STEP = 1.0 / 16;
 /* Edges among which the next triangle is looked for, as the asset's coding does. */
 constexpr size_t RECENT_EDGES = 16;
 
-std::vector<PatchRegion> patch_regions(const Maps &maps)
+std::vector<PatchRegion> patch_regions(const Maps &maps, Task &task)
 {
-    std::vector<PatchRegion> regions;
-    for (const gtx_patch &patch : maps.patches)
-        regions.emplace_back(patch, maps);
+    std::vector<PatchRegion> regions(maps.patches.size());
+    task.parallel(regions.size(), [&](size_t p) {
+        regions[p] = PatchRegion(maps.patches[p], maps);
+    }, 0, 0);
     return regions;
 }
 
@@ -181,6 +182,7 @@ static ShellLevel make_level(const Simplifier &simplified, const std::vector<Pat
     std::copy_n(lattice.origin, 3, level.origin);
     level.step = lattice.step;
     std::map<std::array<uint16_t, 3>, uint32_t> name; /* of the vertex at a place */
+    std::vector<uint32_t> named(places.size(), NO_VERTEX);
     std::vector<Triangle> ordered;
     Strip strip(triangles, patch, places.size());
     for (uint32_t p = 0; p < members.size(); ++p) {
@@ -190,10 +192,14 @@ static ShellLevel make_level(const Simplifier &simplified, const std::vector<Pat
     level.first.push_back(uint32_t(ordered.size()));
     for (const Triangle &t : ordered) {
         for (uint32_t v : t) {
-            const auto [named, is_new] = name.try_emplace(places[v], uint32_t(name.size()));
-            if (is_new)
-                level.positions.insert(level.positions.end(), places[v].begin(), places[v].end());
-            level.indices.push_back(named->second);
+            if (named[v] == NO_VERTEX) {
+                const auto [at, is_new] = name.try_emplace(places[v], uint32_t(name.size()));
+                if (is_new)
+                    level.positions.insert(level.positions.end(), places[v].begin(),
+                                           places[v].end());
+                named[v] = at->second;
+            }
+            level.indices.push_back(named[v]);
         }
     }
     return level;
@@ -212,7 +218,7 @@ std::vector<ShellLevel> make_shell(const ShellSource &source, const Maps &maps, 
     std::vector<ShellLevel> shell;
     if (source.triangles.empty() || !levels)
         return shell;
-    const std::vector<PatchRegion> regions = patch_regions(maps);
+    const std::vector<PatchRegion> regions = patch_regions(maps, task);
     const double pitch = mean_pitch(maps);
     const Lattice lattice(source.positions, STEP * pitch);
     Vec3d size;
@@ -220,7 +226,8 @@ std::vector<ShellLevel> make_shell(const ShellSource &source, const Maps &maps, 
         size[k] = double(maps.bounds_max[k]) - maps.bounds_min[k];
     const double free = FREE_ERROR * pitch;
     double thinned = 0;
-    Simplifier simplifier(thin(source, maps, regions, THIN_ERROR * pitch, thinned, task), regions, task);
+    const ShellSource few = thin(source, maps, regions, THIN_ERROR * pitch, thinned, task);
+    Simplifier simplifier(few, regions, task);
     size_t wanted = source.triangles.size() / FINEST_RATIO;
     for (unsigned k = 0; k < levels; ++k) {
         const size_t before = simplifier.triangles().size();

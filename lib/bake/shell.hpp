@@ -1,4 +1,4 @@
-/* The shell: the whole source surface as a few meshes of ever fewer triangles, for what is far away. */
+/* The shell: the source surface as a few meshes of ever fewer triangles, for what is far away. */
 #pragma once
 
 #include "bake/bake.hpp"
@@ -30,8 +30,8 @@ struct ShellLevel {
 
 /* What the charts show; `maps` is what bake made of them. A triangle has the patch of its chart; of
  * several charts that share it, that in whose core its centre lies. One that reaches farther across
- * a straight cut than the maps of its patch do is split there, its neighbours with it. Deterministic
- * for any thread count. Stage of `task`: "shell". */
+ * a straight cut than the maps of its patch do is split there, its neighbours with it.
+ * Deterministic for any thread count. Stage of `task`: "shell". */
 ShellSource shell_source(const Mesh &mesh, const Partition &partition, const Maps &maps,
                          Task &task);
 

@@ -11,8 +11,8 @@ using Triangle = std::array<uint32_t, 3>;
 
 /* A corner so near to a cut lies on it, in texels. */
 constexpr double ON_CUT = 0.05;
-/* A triangle that reaches no farther across is not split, in texels: more than twice as far, so that
- * one with its centre on this side always has an edge that crosses. */
+/* A triangle that reaches no farther across is not split, in texels: far enough that one with its
+ * centre on this side always has an edge that crosses. */
 constexpr double REACH = 0.25;
 
 ChartCuts::ChartCuts(const Chart &chart, const Vec3d &anchor)
@@ -151,7 +151,8 @@ void Splitter::find_splits(uint32_t triangle)
             continue;
         for (int k = 0; k < 3; ++k) {
             const int n = (k + 1) % 3;
-            if (std::min(beyond[k], beyond[n]) >= -ON_CUT || std::max(beyond[k], beyond[n]) <= ON_CUT)
+            const auto [least, most] = std::minmax(beyond[k], beyond[n]);
+            if (least >= -ON_CUT || most <= ON_CUT)
                 continue;
             const int low = t[k] < t[n] ? k : n, high = t[k] < t[n] ? n : k;
             splits_.push_back({t[low], t[high], beyond[low] / (beyond[low] - beyond[high])});
@@ -217,9 +218,8 @@ bool Splitter::round()
     std::sort(splits_.begin(), splits_.end(), [](const EdgeSplit &a, const EdgeSplit &b) {
         return a.rank() < b.rank();
     });
-    splits_.erase(std::unique(splits_.begin(), splits_.end(),
-                              [](const EdgeSplit &a, const EdgeSplit &b) { return a.same_edge(b); }),
-                  splits_.end());
+    auto same_edge = [](const EdgeSplit &a, const EdgeSplit &b) { return a.same_edge(b); };
+    splits_.erase(std::unique(splits_.begin(), splits_.end(), same_edge), splits_.end());
     first_new_ = uint32_t(source_.positions.size());
     is_end_.assign(first_new_ + splits_.size(), 0);
     for (const EdgeSplit &s : splits_) {

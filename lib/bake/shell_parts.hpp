@@ -37,7 +37,7 @@ private:
     std::vector<uint8_t> clear_; /* texels to the nearest one without a normal; 0: has none */
 };
 
-std::vector<PatchRegion> patch_regions(const Maps &maps);
+std::vector<PatchRegion> patch_regions(const Maps &maps, Task &task);
 
 /* Twice the area, positive when the corners go round as the patch sees them. */
 inline double winding(const std::array<double, 2> (&c)[3])
@@ -59,7 +59,7 @@ public:
     }
     /* How far a place lies outside the core; negative inside. */
     double outside(const std::array<double, 2> &place) const;
-    /* How far it lies beyond a side: low and high of both axes; minus infinity where none is cut. */
+    /* How far it lies beyond a side, the low or high one along an axis; -infinity: not cut there. */
     double beyond(const std::array<double, 2> &place, int axis, bool high) const
     {
         return high ? place[axis] - high_[axis] : low_[axis] - place[axis];
@@ -73,7 +73,7 @@ private:
 };
 
 /* Splits those triangles of `source` that reach so far across a cut that their patch cannot show
- * them. Its triangles are numbered as those of the mesh, and `cuts` and `regions` as the patches. */
+ * them. Its triangles are numbered as those of the mesh, `cuts` and `regions` as the patches. */
 void split_at_cuts(const Partition &partition, const Maps &maps, const std::vector<ChartCuts> &cuts,
                    const std::vector<PatchRegion> &regions, ShellSource &source, Task &task);
 

@@ -40,8 +40,8 @@ struct Simplifier::State {
     std::vector<Quadric> quadrics;
     std::vector<uint32_t> start, around; /* triangles of each vertex */
     std::vector<uint8_t> touched;
-    /* What each vertex costs at least, as far as is known: NAN where it has to be found out, infinite
-     * where it must stay unless something changes around it. */
+    /* What each vertex costs at least, as far as is known: NAN where it has to be found out,
+     * infinite where it must stay unless something changes around it. */
     std::vector<float> costs;
     std::vector<Candidate> candidates;
     size_t first_count;          /* triangles at the start */

@@ -36,7 +36,8 @@ static std::vector<uint32_t> patches_of(const Partition &partition, const Maps &
     return patch;
 }
 
-/* A patch without a normal under any part of a triangle does not show it: its material cuts it away. */
+/* A patch without a normal under any part of a triangle does not show it: its material cuts it
+ * away. */
 static bool shown(const PatchRegion &region, const ShellSource &source, size_t triangle)
 {
     bool held = region.holds(region.place(source.centre(triangle)));
@@ -77,7 +78,7 @@ ShellSource shell_source(const Mesh &mesh, const Partition &partition, const Map
     for (uint32_t chart : maps.charts)
         cuts.emplace_back(partition.charts[chart], anchor);
     source.patch = patches_of(partition, maps, cuts, source, task);
-    const std::vector<PatchRegion> regions(patch_regions(maps));
+    const std::vector<PatchRegion> regions = patch_regions(maps, task);
     split_at_cuts(partition, maps, cuts, regions, source, task);
     drop_hidden(regions, source, task);
     return source;

@@ -1,4 +1,4 @@
-/* The first and largest step to fewer triangles: inside each patch on its own, its border untouched. */
+/* The first and largest step to fewer triangles: inside each patch, its border untouched. */
 #include "bake/shell_parts.hpp"
 
 #include <meshoptimizer.h>

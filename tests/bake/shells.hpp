@@ -140,8 +140,8 @@ inline bool has_normal(const Maps &maps, const gtx_patch &p, int x, int y)
     return false;
 }
 
-/* A triangle faces its patch, but for what rounding does to slivers, and has a normal wherever it is
- * looked at. */
+/* A triangle faces its patch, but for what rounding does to slivers, and has a normal wherever it
+ * is looked at. */
 inline void assert_placed(const Maps &maps, size_t patch, const std::array<Vec3d, 3> &corner)
 {
     const gtx_patch &p = maps.patches[patch];
