@@ -47,7 +47,7 @@ typedef struct gtx_cook_desc {
     uint32_t measure;             /* 1: measure the error (report, `error`) */
     gtx_progress_fn progress;     /* may be NULL */
     void *progress_user;
-    int32_t shell_levels;         /* polygon levels of detail, 1..5; 0 = 5, -1 = none */
+    uint32_t shell_levels;        /* polygon levels of detail, at most 5 */
     const char *charts_ply;       /* path for the partition before splitting as a PLY, a colour a
                                      chart, inverted triangles green; or NULL */
     const char *const *more;      /* paths of further models that are cooked into the same asset */

@@ -11,7 +11,7 @@ enum { MOST_MODELS = 4096 };
 
 static gtx_cook_desc desc;
 static const char *output, *name, *report_path, *depfile_path;
-static uint32_t partition, shell_levels = 5;
+static uint32_t partition;
 static double unit = 1;
 static int32_t zstd_level = 3;
 static bool strict, if_changed;
@@ -28,8 +28,7 @@ static const option options[] = {
     {"height-bits", 0, OPTION_UINT, &desc.height_bits, "8|16", "bits of a height [8]", 8, 16},
     {"mips", 0, OPTION_UINT, &desc.mips, "N", "levels of normal and colour [4]", 1, 8},
     {"dilation", 0, OPTION_UINT, &desc.dilation, "N", "texels of dilation [2^(mips-1)]", 1, 128},
-    {"shell-levels", 0, OPTION_UINT, &shell_levels, "N", "polygon levels of detail, 0 = none [5]", 0,
-     5},
+    {"shell-levels", 0, OPTION_UINT, &desc.shell_levels, "N", "polygon levels of detail [0]", 0, 5},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
     {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z", "z: the model's +Z becomes +Y [y]", 0, 0},
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the model [1]", 1e-30, 1e30},
@@ -158,7 +157,6 @@ int cmd_cook(int argc, char **argv)
     if (code)
         return code;
     desc.partition = (gtx_partition)(GTX_PARTITION_CUTS + partition);
-    desc.shell_levels = shell_levels ? (int32_t)shell_levels : -1;
     desc.zstd_level = zstd_level ? zstd_level : -1;
     desc.unit = (float)unit;
     desc.measure = report_path != NULL;

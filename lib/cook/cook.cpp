@@ -24,9 +24,9 @@ struct Stage {
     float weight;
 };
 constexpr Stage STAGES[] = {{"import", 6}, {"clean", 14}, {"partition", 40}, {"frame", 10},
-                            {"bake", 22},  {"pack", 2},   {"shell", 8},      {"measure", 0},
+                            {"bake", 22},  {"pack", 2},   {"shell", 0},      {"measure", 0},
                             {"write", 6}};
-constexpr float MEASURE_WEIGHT = 60;
+constexpr float SHELL_WEIGHT = 18, MEASURE_WEIGHT = 60;
 
 static Task make_task(const gtx_cook_desc &desc)
 {
@@ -37,6 +37,8 @@ static Task make_task(const gtx_cook_desc &desc)
         weights.push_back(stage.weight);
         if (!std::strcmp(stage.name, "measure") && (desc.measure || desc.error > 0))
             weights.back() = MEASURE_WEIGHT;
+        if (!std::strcmp(stage.name, "shell") && desc.shell_levels)
+            weights.back() = SHELL_WEIGHT;
     }
     return Task(desc.threads, desc.progress, desc.progress_user, names, weights);
 }

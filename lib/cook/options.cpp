@@ -16,7 +16,7 @@ namespace gtx {
 /* Raised with every change that makes other assets of the same models and options. */
 constexpr int COOKER_REVISION = 3;
 
-constexpr int32_t MOST_SHELL_LEVELS = 5;
+constexpr uint32_t MOST_SHELL_LEVELS = 5;
 constexpr uint32_t MOST_CHARTS = 1u << 20, MOST_THREADS = 1024, MOST_DILATION = 128;
 #ifdef GTX_ZSTD
 constexpr int DEFAULT_ZSTD = 3;
@@ -44,8 +44,7 @@ void check(const gtx_cook_desc &desc)
                      "height_bits is 8 or 16");
     require_argument(desc.dilation <= MOST_DILATION, "dilation is at most 128");
     require_argument(desc.mips <= 8, "mips is 1 to 8");
-    require_argument(desc.shell_levels >= -1 && desc.shell_levels <= MOST_SHELL_LEVELS,
-                     "shell_levels is -1 to 5");
+    require_argument(desc.shell_levels <= MOST_SHELL_LEVELS, "shell_levels is 0 to 5");
     require_argument(desc.zstd_level >= -1 && desc.zstd_level <= 19, "zstd_level is -1 to 19");
     require_argument(desc.threads <= MOST_THREADS, "threads is at most 1024");
     require_argument(desc.unit >= 0 && std::isfinite(desc.unit), "unit is a positive number");
@@ -74,8 +73,7 @@ Options options_of(const gtx_cook_desc &desc)
     options.chart.height_bits = options.bake.height_bits;
     options.chart.grain = 1u << (options.bake.mips - 1);
     options.bake.dilation = desc.dilation ? desc.dilation : 1u << (options.bake.mips - 1);
-    if (desc.shell_levels)
-        options.shell_levels = unsigned(std::max(desc.shell_levels, 0));
+    options.shell_levels = desc.shell_levels;
     options.zstd = desc.zstd_level == 0 ? DEFAULT_ZSTD : std::max(desc.zstd_level, 0);
     options.unit = desc.unit > 0 ? desc.unit : 1;
     options.z_up = desc.z_up;

@@ -10,7 +10,7 @@ namespace gtx {
 struct Options {
     ChartOptions chart;
     BakeOptions bake;
-    unsigned shell_levels = 5;
+    unsigned shell_levels = 0;
     int zstd = 0;
     float unit = 1;
     double error = 0;            /* asked for; 0: none */

@@ -63,7 +63,7 @@ static void cooked_assets_come_back(void **state)
 {
     (void)state;
     static const char *const options[] = {"", "--zstd 0", "--zstd 9 --mips 1", "--height-bits 16",
-                                          "--shell-levels 0"};
+                                          "--shell-levels 5"};
     for (size_t i = 0; i < sizeof options / sizeof *options; ++i) {
         expect(gtx("cook -q sphere.obj -o c.gtx %s", options[i]), 0);
         there_and_back_again("c.gtx");

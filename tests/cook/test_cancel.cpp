@@ -63,6 +63,7 @@ static gtx_cook_desc watched(Watch &watch)
 {
     gtx_cook_desc desc = {};
     desc.charts = 12;
+    desc.shell_levels = 3;
     desc.threads = 1;
     desc.progress = watch_progress;
     desc.progress_user = &watch;
