@@ -18,7 +18,8 @@
 
 enum { HEADER = 192, ENTRY = 64, RECORD = 128, MAX_SECTIONS = 256 };
 enum { NO_MEMORY = 1, UNSUPPORTED = 2 }; /* in place of a rule */
-enum { UNKNOWN = 500 };                  /* the order of sections to skip */
+enum { SHELL_HEADER = 32, MAX_SHELLS = 8 };
+enum { SHELL = 112, UNKNOWN = 500 };     /* the order of shell sections, and of those to skip */
 
 typedef unsigned char byte;
 struct section {
@@ -180,8 +181,9 @@ static unsigned check_header_hash(struct file *f)
 /* ---- 1.2 and 2: table ---- */
 
 /* In file order; those from NRML on have levels, those from COLR on may be absent. META is last. */
-enum { KNOWN = 7 };
-static const char *const types[KNOWN] = {"PTCH", "HGHT", "TRIM", "NRML", "COLR", "MATL", "EMIT"};
+enum { KNOWN = 8 };
+static const char *const types[KNOWN] = {"PTCH", "HGHT", "TRIM", "NRML",
+                                         "COLR", "MATL", "EMIT", "SHEL"};
 
 static int is_type(const struct section *s, const char *type) { return !strcmp(s->type, type); }
 
@@ -196,7 +198,7 @@ static int order_of(const struct section *s)
 static unsigned check_known(struct file *f, struct section *s)
 {
     int levels = order_of(s) > 16 * 3 && order_of(s) < UNKNOWN;
-    if (s->level >= (levels ? f->mips : 1))
+    if (s->level >= (is_type(s, "SHEL") ? MAX_SHELLS : levels ? f->mips : 1))
         return 203;
     static const struct {
         const char *type;
@@ -204,7 +206,7 @@ static unsigned check_known(struct file *f, struct section *s)
     } images[] = {
         {"HGHT", 13, 1}, {"HGHT", 74, 2}, {"TRIM", 9, 1}, {"NRML", 16, 2}, {"COLR", 43, 4},
         {"MATL", 37, 4}, {"EMIT", 29, 3}};
-    int image = !is_type(s, "PTCH") && !is_type(s, "META");
+    int image = !is_type(s, "PTCH") && !is_type(s, "SHEL") && !is_type(s, "META");
     for (int i = 0; i < 7; ++i)
         if (is_type(s, images[i].type) && s->format == images[i].format)
             s->texel = images[i].texel;
@@ -214,6 +216,8 @@ static unsigned check_known(struct file *f, struct section *s)
         f->bits = 8 * s->texel;
     if (is_type(s, "META"))
         return s->size >= 1 && s->size <= 1u << 20 ? 0 : 600;
+    if (is_type(s, "SHEL"))
+        return s->size >= 36 + 4 * (uint64_t)f->patches + 12 + 18 ? 0 : 500;
     s->width = s->texel ? f->width >> s->level : 0;
     s->height = s->texel ? f->height >> s->level : 0;
     uint64_t size = s->texel ? (uint64_t)f->pages * s->width * s->height * s->texel
@@ -225,7 +229,9 @@ static int has_filter(const struct section *s)
 {
     if (s->filter == 4)
         return is_type(s, "TRIM") || is_type(s, "NRML");
-    return s->filter == 5 ? is_type(s, "HGHT") : s->texel && s->filter < 4;
+    if (s->filter >= 5)
+        return s->filter == 5 ? is_type(s, "HGHT") : s->filter == 6 && is_type(s, "SHEL");
+    return s->texel != 0;
 }
 
 static unsigned check_entry(struct file *f, uint32_t index, uint64_t *end)
@@ -293,9 +299,13 @@ static unsigned check_presence(const struct file *f)
 {
     for (int i = 0; i < KNOWN; ++i) {
         uint32_t count = count_of(f, types[i]), all = i < 3 ? 1 : f->mips;
-        if (count != all && (count || i < 4))
+        if (i < 7 && count != all && (count || i < 4))
             return 214;
     }
+    uint32_t shells = count_of(f, "SHEL");
+    for (uint32_t i = 0; i < f->section_count; ++i)
+        if (is_type(&f->section[i], "SHEL") && f->section[i].level >= shells)
+            return 214;
     double scale = f32(f->data + 144);
     int right = count_of(f, "EMIT") ? isfinite(scale) && scale > 0 : all_zero(f->data + 144, 4);
     return right ? 0 : 119;
@@ -634,6 +644,111 @@ static unsigned undo_filter(const struct file *f, struct section *s)
     return 0;
 }
 
+/* ---- 6: the shell ---- */
+
+struct edge {
+    uint32_t from, to, across;
+};
+
+struct steps {
+    const byte *words, *numbers;  /* of triangles, of positions */
+    byte *indices, *positions;
+    uint32_t vertices, triangles, met, edges;
+    struct edge recent[16];
+};
+
+/* Number i of `count`, of `width` bytes each, that lie in planes. */
+static uint32_t from_planes(const byte *p, uint64_t count, uint64_t i, int width)
+{
+    uint32_t value = 0;
+    while (width-- > 0)
+        value = value << 8 | p[(uint64_t)width * count + i];
+    return value;
+}
+
+static void meet(struct steps *s, uint32_t vertex, const uint32_t *near)
+{
+    if (vertex != s->met || vertex >= s->vertices)
+        return;
+    int known = near && near[0] < vertex && near[1] < vertex && near[2] < vertex;
+    for (uint64_t k = 0; k < 3; ++k) {
+        const byte *at = s->positions + 2 * k;
+        uint32_t expected = vertex ? u16(at + 6 * ((uint64_t)vertex - 1)) : 0;
+        if (known)
+            expected = u16(at + 6 * (uint64_t)near[0]) + u16(at + 6 * (uint64_t)near[1]) -
+                       u16(at + 6 * (uint64_t)near[2]);
+        uint32_t d = from_planes(s->numbers + 2 * k * s->vertices, s->vertices, vertex, 2);
+        uint32_t value = expected + (d & 1 ? ~(d >> 1) : d >> 1);
+        byte *out = s->positions + 6 * (uint64_t)vertex + 2 * k;
+        out[0] = (byte)value;
+        out[1] = (byte)(value >> 8);
+    }
+    ++s->met;
+}
+
+static void put_edge(struct steps *s, uint32_t from, uint32_t to, uint32_t across)
+{
+    struct edge e = {from, to, across};
+    s->recent[s->edges++ % 16] = e;
+}
+
+static void undo_triangle(struct steps *s, uint64_t t)
+{
+    uint32_t word[3], v[3];
+    for (uint64_t k = 0; k < 3; ++k)
+        word[k] = from_planes(s->words + 4 * k * s->triangles, s->triangles, t, 4);
+    if (word[0] < 16 && word[0] < s->edges) {
+        struct edge e = s->recent[(s->edges - 1 - word[0]) % 16];
+        uint32_t near[3] = {e.from, e.to, e.across};
+        v[0] = e.from;
+        v[1] = e.to;
+        v[2] = s->met - word[2];
+        meet(s, v[2], near);
+    } else {
+        word[0] -= 16;
+        for (int k = 0; k < 3; ++k) {
+            v[k] = s->met - word[k];
+            meet(s, v[k], NULL);
+        }
+        put_edge(s, v[1], v[0], v[2]);
+    }
+    put_edge(s, v[2], v[1], v[0]);
+    put_edge(s, v[0], v[2], v[1]);
+    for (int k = 0; k < 12; ++k)
+        s->indices[12 * t + (uint64_t)k] = (byte)(v[k / 4] >> k % 4 * 8);
+}
+
+static unsigned undo_steps(struct section *s)
+{
+    struct steps steps = {.vertices = u32(s->bytes + 20), .triangles = u32(s->bytes + 24)};
+    uint64_t arrays = 6 * (uint64_t)steps.vertices + 12 * (uint64_t)steps.triangles;
+    uint64_t left = s->size - SHELL_HEADER;
+    if (arrays > left || (left - arrays) % 4)
+        return 213;
+    byte *out = malloc((size_t)s->size);
+    if (!out)
+        return NO_MEMORY;
+    memcpy(out, s->bytes, SHELL_HEADER);
+    uint64_t firsts = (left - arrays) / 4, indices = SHELL_HEADER + 4 * firsts;
+    uint32_t first = 0;
+    for (uint64_t i = 0; i < firsts; ++i) {
+        first += from_planes(s->bytes + SHELL_HEADER, firsts, i, 4);
+        for (int k = 0; k < 4; ++k)
+            out[SHELL_HEADER + 4 * i + (uint64_t)k] = (byte)(first >> 8 * k);
+    }
+    steps.words = s->bytes + indices;
+    steps.indices = out + indices;
+    steps.numbers = steps.words + 12 * (uint64_t)steps.triangles;
+    steps.positions = steps.indices + 12 * (uint64_t)steps.triangles;
+    for (uint64_t t = 0; t < steps.triangles; ++t)
+        undo_triangle(&steps, t);
+    while (steps.met < steps.vertices)
+        meet(&steps, steps.met, NULL);
+    free(s->bytes);
+    s->bytes = out;
+    return 0;
+}
+
 static unsigned decode_section(const struct file *f, struct section *s)
 {
     const byte *stored = f->data + s->offset;
@@ -651,7 +766,7 @@ static unsigned decode_section(const struct file *f, struct section *s)
     else
         memcpy(s->bytes, stored, (size_t)s->size);
     if (!rule && s->filter)
-        rule = undo_filter(f, s);
+        rule = is_type(s, "SHEL") ? undo_steps(s) : undo_filter(f, s);
     if (!rule && xxh64(s->bytes, s->size) != s->hash)
         rule = 210;
     return rule;
@@ -774,6 +889,77 @@ static unsigned check_maps(const struct file *f, const byte *records, const byte
     return 0;
 }
 
+/* Whether a corner is at most a texel beside the rectangle of record `r`. */
+static int is_beside(const byte *shell, const byte *position, const byte *r)
+{
+    double p[3], det = determinant(r + 16, r + 32, r + 48);
+    for (int k = 0; k < 3; ++k)
+        p[k] = f32(shell + 4 * k) + f32(shell + 12) * u16(position + 2 * k) - f32(r + 4 * k);
+    for (int axis = 0; axis < 2; ++axis) {
+        const byte *a = r + (axis ? 48 : 32), *b = r + (axis ? 16 : 48);
+        double at = 0, size = u16(r + 72 + 2 * axis);
+        for (int k = 0; k < 3; ++k) {
+            int i = (k + 1) % 3, j = (k + 2) % 3;
+            at += p[k] * (f32(a + 4 * i) * f32(b + 4 * j) - f32(a + 4 * j) * f32(b + 4 * i));
+        }
+        at *= size / (det * f32(r + 12 + 16 * axis));
+        if (!(at >= -1 && at <= size + 1))
+            return 0;
+    }
+    return 1;
+}
+
+static unsigned check_triangles(const struct file *f, const struct section *s, const byte *records)
+{
+    const byte *h = s->bytes, *first = h + SHELL_HEADER, *index = first + 4 * (f->patches + 1);
+    uint32_t vertices = u32(h + 20), triangles = u32(h + 24), met = 0;
+    const byte *positions = index + 12 * (uint64_t)triangles;
+    for (uint64_t t = 0; t < triangles; ++t) {
+        uint32_t v[3];
+        for (int k = 0; k < 3; ++k) {
+            v[k] = u32(index + 12 * t + 4 * k);
+            if (v[k] > met || v[k] >= vertices)
+                return 504;
+            met += v[k] == met;
+        }
+        if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0])
+            return 504;
+    }
+    if (met != vertices)
+        return 504;
+    for (uint32_t n = 0; n < f->patches; ++n)
+        for (uint64_t i = 3 * (uint64_t)u32(first + 4 * n); i < 3 * (uint64_t)u32(first + 4 * n + 4);
+             ++i)
+            if (!is_beside(h, positions + 6 * (uint64_t)u32(index + 4 * i),
+                           records + RECORD * (uint64_t)n))
+                return 505;
+    return 0;
+}
+
+/* `finer` is the level after it in the file, or NULL. */
+static unsigned check_shell(const struct file *f, const struct section *s,
+                            const struct section *finer, const byte *records)
+{
+    const byte *h = s->bytes, *first = h + SHELL_HEADER;
+    uint64_t vertices = u32(h + 20), triangles = u32(h + 24);
+    if (!triangles || vertices > 1u << 28 ||
+        s->size != 36 + 4 * (uint64_t)f->patches + 12 * triangles + 6 * vertices)
+        return 500;
+    for (int i = 0; i < 20; i += 4)
+        if (!isfinite(f32(h + i)) || (i == 12 && f32(h + i) <= 0) || (i == 16 && f32(h + i) < 0))
+            return 501;
+    if (!all_zero(h + 28, 4))
+        return 501;
+    if (finer && f32(finer->bytes + 16) > f32(h + 16))
+        return 502;
+    if (u32(first) != 0 || u32(first + 4 * f->patches) != triangles)
+        return 503;
+    for (uint32_t n = 0; n < f->patches; ++n)
+        if (u32(first + 4 * n) > u32(first + 4 * n + 4))
+            return 503;
+    return check_triangles(f, s, records);
+}
+
 static unsigned check_meta(const struct section *meta)
 {
     for (uint64_t i = 0; i < meta->size;) {
@@ -796,17 +982,20 @@ static unsigned check_meta(const struct section *meta)
     return 0;
 }
 
-/* ---- 6: all of it ---- */
+/* ---- 7: all of it ---- */
 
 static unsigned decode_content(struct file *f, byte *taken)
 {
-    for (uint32_t n = 0; n < f->section_count * f->mips; ++n) { /* level 0 of all sections first */
+    for (uint32_t n = 0; n < 8 * f->section_count; ++n) { /* level 0 of all sections first */
         struct section *s = &f->section[n % f->section_count];
         if (order_of(s) == UNKNOWN || s->level != n / f->section_count)
             continue;
         unsigned rule = decode_section(f, s);
         if (!rule && is_type(s, "PTCH"))
             rule = check_patches(f, s->bytes, taken);
+        if (!rule && is_type(s, "SHEL"))
+            rule = check_shell(f, s, s->level ? s + 1 : NULL,
+                               find(f, "PTCH")->bytes);
         if (!rule && is_type(s, "META"))
             rule = check_meta(s);
         if (rule)

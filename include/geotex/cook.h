@@ -1,7 +1,7 @@
 /* Cooking: triangle meshes -> `.gtx` assets. Links libgeotex-cook (C++17 inside).
  *
  * The line is the paper's (section 5): import, clean, partition, overlap, frame, bake, dilate,
- * pack, measure. The same input and options give the same bytes, whatever the thread count.
+ * pack, shell, measure. The same input and options give the same bytes, whatever the thread count.
  *
  * Memory. The descriptors' `allocator` (NULL = malloc) gives everything that outlives a call, the
  * asset and the report, and what libgeotex takes on the way: opening, encoding, casting, writing
@@ -60,6 +60,7 @@ typedef struct gtx_cook_desc {
     uint32_t measure;             /* 1: measure the error (report, `error`) */
     gtx_progress_fn progress;     /* may be NULL */
     void *progress_user;
+    uint32_t shell_levels;        /* polygon levels of detail, at most 5 */
     const char *charts_ply;       /* path for the partition before splitting as a PLY, a colour a
                                      chart, inverted triangles green; or NULL */
     const char *const *more;      /* paths of further models that are cooked into the same asset */
@@ -75,8 +76,8 @@ typedef struct gtx_cook_desc {
  *   - the content of every file behind the models: themselves, and the buffers, material libraries
  *     and images that they refer to, one that is missing included; not their paths or times;
  *   - the options that change what comes out: partition, extract (and the driver, where it is GPU),
- *     charts, resolution, height_bits, dilation, mips, zstd_level, unit, error and z_up; not
- *     threads, measure, progress, strict or allocator;
+ *     charts, resolution, height_bits, dilation, mips, shell_levels, zstd_level, unit, error and
+ *     z_up; not threads, measure, progress, strict or allocator;
  *   - geotex's version and the revision of its cooker,
  * but not the library that decodes images. Where `strict` is asked for, an asset that was cooked
  * with warnings is cooked again; where `charts_ply` is, or importing read what could not be

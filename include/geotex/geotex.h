@@ -153,6 +153,7 @@ typedef struct gtx_info {
     uint32_t mip_count;           /* levels of every map but height and trim, 1..8 */
     uint32_t height_bits;         /* 8 or 16 */
     uint32_t has_color, has_material, has_emission;   /* 0 or 1 */
+    uint32_t shell_levels;        /* 0..8 */
     float bounds_min[3], bounds_max[3];       /* relative to the anchor */
     float unit;                   /* metres per object unit */
     float emission_scale;         /* light of a full emission texel; 0 without emission */
@@ -198,6 +199,23 @@ GTX_API const gtx_patch *gtx_patches(const gtx_asset *asset);
  * (page_width >> k) x (page_height >> k). */
 GTX_API const void *gtx_map_data(const gtx_asset *asset, gtx_map map, uint32_t level, size_t *size);
 
+/* A level of the shell: the whole surface as triangles, for drawing it where it is small. A vertex
+ * is its position alone; it may be shared by triangles of several patches, and its texel coordinates
+ * in each follow from that patch's frame. Position q of a vertex stands for the point
+ *   origin + step * q                                             relative to the asset's anchor. */
+typedef struct gtx_shell {
+    float origin[3], step;
+    float error;                  /* how far the level strays from the source, object units */
+    uint32_t vertex_count, triangle_count;
+    const uint32_t *first;        /* patch_count + 1: triangles first[p]..first[p + 1] - 1 are p's */
+    const uint32_t *indices;      /* 3 a triangle */
+    const uint16_t *positions;    /* 3 a vertex */
+} gtx_shell;
+
+/* Shows a level of the shell; 0 is the finest. The arrays are owned by the asset.
+ * Errors: ARGUMENT (there is no such level). */
+GTX_API gtx_result gtx_get_shell(const gtx_asset *asset, uint32_t level, gtx_shell *out);
+
 /* The META section: JSON text of *size bytes, not terminated; NULL when absent. Informative. */
 GTX_API const char *gtx_meta(const gtx_asset *asset, size_t *size);
 
@@ -238,6 +256,8 @@ typedef struct gtx_asset_desc {
     const uint8_t *const *material;
     const uint8_t *const *emission;
     float emission_scale;         /* 0 = 1, where there is emission */
+    const gtx_shell *shell;       /* shell_levels levels, the finest first; or NULL */
+    uint32_t shell_levels;        /* up to 8 */
     const char *meta;             /* JSON text, or NULL */
     size_t meta_size;
     float bounds_min[3], bounds_max[3];

@@ -17,9 +17,11 @@ static uint64_t map_size(const gtx_info *info, gtx_section_kind kind, uint32_t l
     return gtx_shape_size(gtx_section_shape(info, kind, level));
 }
 
-uint64_t gtx_asset_bytes(const gtx_info *info, size_t meta_size)
+uint64_t gtx_asset_bytes(const gtx_info *info, const gtx_sizes *sizes)
 {
-    uint64_t bytes = sizeof(gtx_asset) + meta_size;
+    uint64_t bytes = sizeof(gtx_asset) + sizes->meta;
+    for (uint32_t k = 0; k < GTX_MAX_SHELLS; ++k)
+        bytes += sizes->shell[k];
     bytes += (uint64_t)info->patch_count * sizeof(gtx_patch);
     for (gtx_section_kind kind = GTX_SECTION_FIRST_IMAGE; kind <= GTX_SECTION_LAST_IMAGE; ++kind)
         for (uint32_t k = 0; k < gtx_map_levels(info, kind); ++k)
@@ -42,9 +44,23 @@ static bool new_maps(gtx_asset *asset)
     return true;
 }
 
-gtx_asset *gtx_asset_new(const gtx_allocator *allocator, const gtx_info *info, size_t meta_size)
+/* False when memory is out. */
+static bool new_shell(gtx_asset *asset, const gtx_sizes *sizes)
 {
-    if (gtx_asset_bytes(info, meta_size) > SIZE_MAX)
+    for (uint32_t k = 0; k < GTX_MAX_SHELLS; ++k) {
+        asset->shell_size[k] = (size_t)sizes->shell[k];
+        if (sizes->shell[k])
+            asset->shell[k] = gtx_alloc_array(&asset->allocator, asset->shell_size[k], 1);
+        if (sizes->shell[k] && !asset->shell[k])
+            return false;
+    }
+    return true;
+}
+
+gtx_asset *gtx_asset_new(const gtx_allocator *allocator, const gtx_info *info,
+                         const gtx_sizes *sizes)
+{
+    if (gtx_asset_bytes(info, sizes) > SIZE_MAX)
         return NULL;
     gtx_asset *asset = gtx_alloc_array(allocator, 1, sizeof *asset);
     if (!asset)
@@ -52,10 +68,10 @@ gtx_asset *gtx_asset_new(const gtx_allocator *allocator, const gtx_info *info, s
     asset->allocator = *allocator;
     asset->info = *info;
     asset->patches = gtx_alloc_array(allocator, info->patch_count, sizeof(gtx_patch));
-    bool whole = asset->patches && new_maps(asset);
-    if (meta_size) {
-        asset->meta = gtx_alloc_array(allocator, meta_size, 1);
-        asset->meta_size = meta_size;
+    bool whole = asset->patches && new_maps(asset) && new_shell(asset, sizes);
+    if (whole && sizes->meta) {
+        asset->meta_size = (size_t)sizes->meta;
+        asset->meta = gtx_alloc_array(allocator, asset->meta_size, 1);
         whole = whole && asset->meta;
     }
     if (whole)
@@ -75,6 +91,8 @@ void gtx_close(gtx_asset *asset)
         for (uint32_t k = 0; k < gtx_map_levels(info, kind); ++k)
             gtx_free_array(&allocator, *gtx_asset_map(asset, kind, k),
                            (size_t)map_size(info, kind, k), 1);
+    for (uint32_t k = 0; k < GTX_MAX_SHELLS; ++k)
+        gtx_free_array(&allocator, asset->shell[k], asset->shell_size[k], 1);
     gtx_free_array(&allocator, asset->meta, asset->meta_size, 1);
     gtx_free_array(&allocator, asset, 1, sizeof *asset);
 }

@@ -3,6 +3,7 @@
 
 #include "asset/codec.h"
 #include "asset/header.h"
+#include "asset/shell.h"
 #include "base/bytes.h"
 
 #include <inttypes.h>
@@ -120,7 +121,12 @@ static void check_format(table_walk *walk, gtx_section *section, uint64_t at)
                   section->name, section->format);
     if (section->kind == GTX_SECTION_META && (section->size < 1 || section->size > GTX_META_LIMIT))
         gtx_break(walk->check, GTX_RULE_META, at + 32, "it has %" PRIu64 " bytes", section->size);
-    if (section->kind < GTX_SECTION_UNKNOWN && section->size != right.size)
+    bool free_size = section->kind >= GTX_SECTION_SHELL;
+    if (section->kind == GTX_SECTION_SHELL &&
+        section->size < gtx_shell_size(info->patch_count, 3, 1))
+        gtx_break(walk->check, GTX_RULE_SHELL_SIZE, at + 32, "level %u has %" PRIu64 " bytes",
+                  section->level, section->size);
+    if (!free_size && section->size != right.size)
         gtx_break(walk->check, GTX_RULE_SECTION_SIZE, at + 32, "that of %s is %" PRIu64
                   " in place of %" PRIu64, section->name, section->size, right.size);
 }
@@ -169,8 +175,7 @@ static bool check_entry(table_walk *walk, const uint8_t *bytes, uint32_t index)
 
     if (unknown && section->flags & 1)
         gtx_break(check, GTX_RULE_SECTION_UNKNOWN, at, "%s is not", section->name);
-    bool mipped = section->kind >= GTX_SECTION_NORMAL && gtx_section_is_image(section->kind);
-    if (section->level >= (mipped ? walk->layout->info.mip_count : 1)) {
+    if (section->level >= gtx_section_levels(section->kind, walk->layout->info.mip_count)) {
         gtx_break(check, GTX_RULE_SECTION_LEVEL, at + 8, "that of %s is %u", section->name,
                   section->level);
     } else {
@@ -206,6 +211,14 @@ static bool check_presence(const table_walk *walk)
                   walk->seen[kind], needed, gtx_section_describe(info, kind, 0).type);
         return false;
     }
+    for (uint32_t i = 0; i < walk->layout->section_count; ++i) {
+        const gtx_section *section = &walk->layout->sections[i];
+        if (section->kind == GTX_SECTION_SHELL && section->level >= info->shell_levels) {
+            gtx_break(walk->check, GTX_RULE_SECTION_MISSING, GTX_HEADER_SIZE,
+                      "SHEL has level %u, but only %u in all", section->level, info->shell_levels);
+            return false;
+        }
+    }
     return true;
 }
 
@@ -234,6 +247,7 @@ static void check_table(gtx_check *check, const uint8_t *data, uint64_t size, gt
     layout->info.has_color = walk.seen[GTX_SECTION_COLOR] > 0;
     layout->info.has_material = walk.seen[GTX_SECTION_MATERIAL] > 0;
     layout->info.has_emission = walk.seen[GTX_SECTION_EMISSION] > 0;
+    layout->info.shell_levels = walk.seen[GTX_SECTION_SHELL];
     if (readable)
         readable = check_presence(&walk);
     gtx_check_emission(check, &layout->info);

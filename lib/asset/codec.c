@@ -1,6 +1,7 @@
 /* Sections of scheme 2: one zstd frame, with contexts in the caller's memory. */
 #include "asset/codec.h"
 
+#include "asset/shell.h"
 #include "base/alloc.h"
 
 #ifdef GTX_ZSTD
@@ -41,8 +42,11 @@ bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t 
     return begin(codec, allocator, ZSTD_estimateCCtxSize(level), filtered_size);
 }
 
-static void undo(const gtx_section *section, const gtx_asset *asset, uint8_t *coded, uint8_t *out)
+/* False when the bytes are none that the filter makes. */
+static bool undo(const gtx_section *section, const gtx_asset *asset, uint8_t *coded, uint8_t *out)
 {
+    if (section->filter == GTX_FILTER_STEPS)
+        return gtx_shell_filter_undo(coded, (size_t)section->size, out);
     gtx_map_shape image = gtx_section_shape(&asset->info, section->kind, section->level);
     if (section->filter == GTX_FILTER_SURFACE)
         gtx_surface_undo(asset, section, coded, out, coded + section->size);
@@ -50,6 +54,7 @@ static void undo(const gtx_section *section, const gtx_asset *asset, uint8_t *co
         gtx_heights_undo(image, coded, out);
     else if (section->filter)
         gtx_filter_undo(image, section->filter, coded, out);
+    return true;
 }
 
 static void apply(const gtx_section *section, const gtx_asset *asset, const uint8_t *data,
@@ -60,6 +65,8 @@ static void apply(const gtx_section *section, const gtx_asset *asset, const uint
         gtx_surface_apply(asset, section, data, coded, coded + section->size);
     else if (section->filter == GTX_FILTER_HEIGHTS)
         gtx_heights_apply(image, data, coded);
+    else if (section->filter == GTX_FILTER_STEPS)
+        gtx_shell_filter_apply(data, (size_t)section->size, coded);
     else
         gtx_filter_apply(image, section->filter, data, coded);
 }
@@ -82,7 +89,8 @@ const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section,
     uint8_t *coded = section->filter > GTX_FILTER_PAETH ? codec->filtered : out;
     if (!context || ZSTD_decompressDCtx(context, coded, size, bytes, stored) != size)
         return "the frame does not decode";
-    undo(section, asset, coded, out);
+    if (!undo(section, asset, coded, out))
+        return "the counts do not fit the size";
     return NULL;
 }
 

@@ -11,6 +11,8 @@ bool gtx_filter_fits(gtx_section_kind kind, uint32_t filter)
         return kind == GTX_SECTION_TRIM || kind == GTX_SECTION_NORMAL;
     if (filter == GTX_FILTER_HEIGHTS)
         return kind == GTX_SECTION_HEIGHT;
+    if (filter == GTX_FILTER_STEPS)
+        return kind == GTX_SECTION_SHELL;
     return filter == GTX_FILTER_NONE ||
            (filter <= GTX_FILTER_PLANES_PAETH && gtx_section_is_image(kind));
 }

@@ -17,6 +17,7 @@ typedef struct reader {
     gtx_codec codec;
     gtx_asset *asset;
     bool heights_known;
+    bool frames_known;            /* the patches broke no rule */
     uint64_t patch_offset, height_offset;
     bool height_stored;
     gtx_occupancy occupancy;
@@ -26,7 +27,7 @@ typedef struct reader {
 typedef struct demand {
     uint64_t bytes;
     uint64_t filtered;            /* the most that undoing a filter takes */
-    size_t meta;
+    gtx_sizes sizes;
     bool zstd;
 } demand;
 
@@ -38,13 +39,15 @@ static demand demand_of(const gtx_layout *layout)
         if (section->kind == GTX_SECTION_UNKNOWN)
             continue;
         if (section->kind == GTX_SECTION_META)
-            out.meta = (size_t)section->size;
+            out.sizes.meta = section->size;
+        if (section->kind == GTX_SECTION_SHELL)
+            out.sizes.shell[section->level] = section->size;
         out.zstd = out.zstd || section->scheme == GTX_SCHEME_ZSTD;
         uint64_t undo = gtx_undo_size(
             section, gtx_section_shape(&layout->info, section->kind, section->level));
         out.filtered = undo > out.filtered ? undo : out.filtered;
     }
-    out.bytes = gtx_asset_bytes(&layout->info, out.meta) + gtx_occupancy_size(&layout->info) +
+    out.bytes = gtx_asset_bytes(&layout->info, &out.sizes) + gtx_occupancy_size(&layout->info) +
                 out.filtered + (out.zstd ? gtx_decoder_size() : 0);
     return out;
 }
@@ -63,7 +66,7 @@ static void allocate(reader *r)
                        need.bytes, r->options.limit);
         return;
     }
-    r->asset = gtx_asset_new(&r->options.allocator, &r->layout.info, need.meta);
+    r->asset = gtx_asset_new(&r->options.allocator, &r->layout.info, &need.sizes);
     if (!r->asset ||
         (need.zstd &&
          !gtx_decoder_begin(&r->codec, &r->options.allocator, (size_t)need.filtered)))
@@ -98,11 +101,16 @@ static void check_section(reader *r, const gtx_section *section)
     gtx_asset *asset = r->asset;
     if (section->kind == GTX_SECTION_PATCHES) {
         r->patch_offset = section->offset;
+        uint64_t before = check->broken;
         gtx_check_patches(check, asset, section->offset, &r->occupancy);
+        r->frames_known = check->broken == before;
     } else if (section->kind == GTX_SECTION_HEIGHT) {
         r->heights_known = true;
         r->height_offset = section->offset;
         r->height_stored = section->scheme == GTX_SCHEME_STORED;
+    } else if (section->kind == GTX_SECTION_SHELL) {
+        if (r->frames_known)
+            gtx_check_shell(check, asset, section->level, section->offset);
     } else if (section->kind == GTX_SECTION_META) {
         gtx_check_meta(check, asset->meta, asset->meta_size, section->offset);
     }

@@ -23,6 +23,7 @@ static const kind_row kinds[] = {
     [GTX_SECTION_COLOR] = {"COLR", 0, 43, 4, true},
     [GTX_SECTION_MATERIAL] = {"MATL", 0, 37, 4, true},
     [GTX_SECTION_EMISSION] = {"EMIT", 0, 29, 3, true},
+    [GTX_SECTION_SHELL] = {"SHEL", 0, 0, 0, false},
     [GTX_SECTION_UNKNOWN] = {"", 0, 0, 0, false},
     [GTX_SECTION_META] = {"META", 0, 0, 0, false},
 };
@@ -33,6 +34,13 @@ gtx_section_kind gtx_section_kind_of(const uint8_t type[4])
         if (kind != GTX_SECTION_UNKNOWN && !memcmp(kinds[kind].type, type, 4))
             return (gtx_section_kind)kind;
     return GTX_SECTION_UNKNOWN;
+}
+
+uint32_t gtx_section_levels(gtx_section_kind kind, uint32_t mip_count)
+{
+    if (kind == GTX_SECTION_SHELL)
+        return GTX_MAX_SHELLS;
+    return kinds[kind].levels ? mip_count : 1;
 }
 
 uint32_t gtx_map_levels(const gtx_info *info, gtx_section_kind kind)
@@ -76,7 +84,8 @@ uint32_t gtx_asset_sections(const gtx_asset *asset, gtx_section out[GTX_MAX_KNOW
 {
     uint32_t count = 0;
     for (int kind = GTX_SECTION_PATCHES; kind <= GTX_SECTION_META; ++kind) {
-        for (uint32_t level = kinds[kind].levels ? asset->info.mip_count : 1; level-- > 0;) {
+        uint32_t level = gtx_section_levels((gtx_section_kind)kind, asset->info.mip_count);
+        while (level-- > 0) {
             const void *data = gtx_asset_data(asset, (gtx_section_kind)kind, level);
             if (!data)
                 continue;
@@ -84,6 +93,8 @@ uint32_t gtx_asset_sections(const gtx_asset *asset, gtx_section out[GTX_MAX_KNOW
             *section = gtx_section_describe(&asset->info, (gtx_section_kind)kind, level);
             if (kind == GTX_SECTION_META)
                 section->size = asset->meta_size;
+            if (kind == GTX_SECTION_SHELL)
+                section->size = asset->shell_size[level];
             section->hash = gtx_hash_bytes(data, (size_t)section->size);
         }
     }
@@ -110,6 +121,8 @@ void *gtx_asset_data(const gtx_asset *asset, gtx_section_kind kind, uint32_t lev
         return *map;
     if (kind == GTX_SECTION_PATCHES)
         return asset->patches;
+    if (kind == GTX_SECTION_SHELL)
+        return asset->shell[level];
     return kind == GTX_SECTION_META ? asset->meta : NULL;
 }
 

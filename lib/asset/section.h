@@ -21,6 +21,7 @@ typedef enum gtx_section_kind {
     GTX_SECTION_COLOR,
     GTX_SECTION_MATERIAL,
     GTX_SECTION_EMISSION,
+    GTX_SECTION_SHELL,
     GTX_SECTION_UNKNOWN,
     GTX_SECTION_META,
     GTX_SECTION_FIRST_IMAGE = GTX_SECTION_HEIGHT,
@@ -34,7 +35,8 @@ enum {
     GTX_FILTER_PLANES = 2,
     GTX_FILTER_PLANES_PAETH = 3,
     GTX_FILTER_SURFACE = 4,
-    GTX_FILTER_HEIGHTS = 5
+    GTX_FILTER_HEIGHTS = 5,
+    GTX_FILTER_STEPS = 6
 };
 
 /* A table entry. */
@@ -76,12 +78,12 @@ static inline uint64_t gtx_shape_size(gtx_map_shape image)
     return (uint64_t)image.pages * image.width * image.height * image.texel;
 }
 
-/* The one entry that is right for a known kind: type, flags, level, format and size (0 for META);
- * the other fields are 0. */
+/* The one entry that is right for a known kind: type, flags, level, format and size (0 for SHEL and
+ * META); the other fields are 0. */
 gtx_section gtx_section_describe(const gtx_info *info, gtx_section_kind kind, uint32_t level);
 
 /* Entries of all sections of an asset in file order, with their hashes. Returns how many. */
-#define GTX_MAX_KNOWN_SECTIONS (4 + 4 * GTX_MAX_MIPS)
+#define GTX_MAX_KNOWN_SECTIONS (4 + 4 * GTX_MAX_MIPS + GTX_MAX_SHELLS)
 uint32_t gtx_asset_sections(const gtx_asset *asset, gtx_section out[GTX_MAX_KNOWN_SECTIONS]);
 
 /* Where the asset keeps the image of a level; NULL when the kind is no image. */
@@ -93,10 +95,20 @@ void *gtx_asset_data(const gtx_asset *asset, gtx_section_kind kind, uint32_t lev
 /* XXH64 over the section hashes, META left out. */
 uint64_t gtx_content_hash(const gtx_section *sections, uint32_t count);
 
-/* An asset with all its maps, zeroed; freed with gtx_close. NULL when memory is out. */
-gtx_asset *gtx_asset_new(const gtx_allocator *allocator, const gtx_info *info, size_t meta_size);
+/* Levels that a section of the kind may be of, where the asset has as many mips. */
+uint32_t gtx_section_levels(gtx_section_kind kind, uint32_t mip_count);
+
+/* Sizes that do not follow from a gtx_info; 0 for what is not there. */
+typedef struct gtx_sizes {
+    uint64_t shell[GTX_MAX_SHELLS];
+    uint64_t meta;
+} gtx_sizes;
+
+/* An asset with all its arrays, zeroed; freed with gtx_close. NULL when memory is out. */
+gtx_asset *gtx_asset_new(const gtx_allocator *allocator, const gtx_info *info,
+                         const gtx_sizes *sizes);
 
 /* Bytes that gtx_asset_new takes. */
-uint64_t gtx_asset_bytes(const gtx_info *info, size_t meta_size);
+uint64_t gtx_asset_bytes(const gtx_info *info, const gtx_sizes *sizes);
 
 #endif

@@ -29,6 +29,7 @@ static uint32_t filter_of(gtx_section_kind kind)
     case GTX_SECTION_NORMAL: return GTX_FILTER_SURFACE;
     case GTX_SECTION_COLOR:
     case GTX_SECTION_MATERIAL: return GTX_FILTER_PLANES_PAETH;
+    case GTX_SECTION_SHELL: return GTX_FILTER_STEPS;
     default: return GTX_FILTER_NONE;
     }
 }

@@ -153,6 +153,10 @@ Maps bake(const Mesh &mesh, const Partition &partition, const BakeOptions &optio
     std::vector<PatchMaps> patches(partition.charts.size());
     task.parallel(patches.size(),
                   [&](size_t i) { patches[i] = bake_chart(job, partition.charts[i]); });
+    Maps maps;
+    for (size_t i = 0; i < patches.size(); ++i)
+        if (patches[i].coded)
+            maps.charts.push_back(uint32_t(i));
     patches.erase(std::remove_if(patches.begin(), patches.end(),
                                  [](const PatchMaps &p) { return !p.coded; }),
                   patches.end());
@@ -166,7 +170,6 @@ Maps bake(const Mesh &mesh, const Partition &partition, const BakeOptions &optio
     Packing packing = pack(sizes, 1u << (options.mips - 1));
     if (packing.page_count > MOST_PAGES)
         throw Error(GTX_ERROR_LIMIT, "the maps fill more than 2048 pages");
-    Maps maps;
     allocate_pages(packing, options, patches[0], maps);
     for (size_t i = 0; i < patches.size(); ++i)
         place_patch(patches[i], packing.places[i], maps);

@@ -24,6 +24,7 @@ struct BakeReport {
 /* Everything gtx_create takes, owned. */
 struct Maps {
     std::vector<gtx_patch> patches;
+    std::vector<uint32_t> charts;             /* of each patch */
     uint32_t page_count = 0, page_width = 0, page_height = 0, mip_count = 0, height_bits = 8;
     std::vector<uint8_t> height;              /* 1 or 2 bytes a texel, little-endian */
     std::vector<uint8_t> trim;

@@ -91,6 +91,23 @@ static void write_images(const gtx_asset *asset, const gtx_info &info, const std
     }
 }
 
+static void write_shell(const gtx_asset *asset, const gtx_info &info, const std::string &folder,
+                        Json &json, std::string &about)
+{
+    json["shell"] = Json::array();
+    for (uint32_t k = 0; k < info.shell_levels; ++k) {
+        gtx_shell level;
+        gtx_get_shell(asset, k, &level);
+        about = in_folder(folder, unpacked_shell_name(k));
+        write_unpacked_shell(level, info.patch_count, about);
+        json["shell"].push_back({{"origin", list(level.origin, 3)},
+                                 {"step", level.step},
+                                 {"error", level.error},
+                                 {"triangles", level.triangle_count},
+                                 {"vertices", level.vertex_count}});
+    }
+}
+
 void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder,
                     std::string &about)
 {
@@ -113,6 +130,7 @@ void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder,
     for (uint32_t i = 0; i < info.patch_count; ++i)
         json["patches"].push_back(patch_json(gtx_patches(asset)[i]));
     write_images(asset, info, folder, about);
+    write_shell(asset, info, folder, json, about);
     about = in_folder(folder, UNPACKED_JSON);
     std::ofstream file(about, std::ios::binary);
     file << json.dump(1) << '\n';
@@ -259,6 +277,30 @@ static void read_maps(const std::string &folder, const bool has[6], Unpacked &ou
     }
 }
 
+static void read_shell(const Reader &reader, const Json &levels, const std::string &folder,
+                       Unpacked &out, std::string &about)
+{
+    if (!levels.is_array() || levels.size() > GTX_MAX_SHELLS)
+        reader.fail("shell is not a list of up to 8 levels");
+    out.shell_arrays.resize(levels.size());
+    for (const Json &json : levels) {
+        if (!json.is_object())
+            reader.fail("a level of shell is not an object");
+        gtx_shell level = {};
+        reader.numbers(json, "origin", level.origin, 3);
+        level.step = float(reader.number(reader.at(json, "step"), "step"));
+        level.error = float(reader.number(reader.at(json, "error"), "error"));
+        level.triangle_count = uint32_t(reader.whole(json, "triangles", UINT32_MAX));
+        level.vertex_count = uint32_t(reader.whole(json, "vertices", UINT32_MAX));
+        const uint32_t k = uint32_t(out.shell.size());
+        about = in_folder(folder, unpacked_shell_name(k));
+        read_unpacked_shell(about, uint32_t(out.patches.size()), level, out.shell_arrays[k]);
+        out.shell.push_back(level);
+    }
+    out.desc.shell = out.shell.data();
+    out.desc.shell_levels = uint32_t(out.shell.size());
+}
+
 void read_unpacked(const std::string &folder, Unpacked &out, std::string &about)
 {
     about = in_folder(folder, UNPACKED_JSON);
@@ -298,6 +340,7 @@ void read_unpacked(const std::string &folder, Unpacked &out, std::string &about)
 
     const bool has[6] = {true, true, true, reader.flag(json, "has_color"),
                          reader.flag(json, "has_material"), reader.flag(json, "has_emission")};
+    read_shell(reader, reader.at(json, "shell"), folder, out, about);
     read_maps(folder, has, out, about);
     auto levels = [&](size_t m) { return has[m] ? out.pointers[m].data() : nullptr; };
     d.patches = out.patches.data();
@@ -372,6 +415,9 @@ void derive_again(Unpacked &unpacked)
         d.bounds_min[k] = float(low[k]);
         d.bounds_max[k] = float(high[k]);
     }
+    if (d.shell_levels)
+        unpacked.warnings.push_back("the shell does not follow the heights and was left out");
+    d.shell_levels = 0;
     unpacked.warnings.push_back("coverage, spheres and bounds were computed anew from the heights");
 }
 

@@ -1,4 +1,4 @@
-/* An asset as a folder of images and one JSON file: what unpack writes and pack reads. */
+/* An asset as a folder of images, a file a level of the shell, and one JSON file: what unpack writes and pack reads. */
 #pragma once
 
 #include "mesh/task.hpp"
@@ -37,6 +37,17 @@ std::string unpacked_name(const UnpackedMap &map, uint32_t page, uint32_t level)
 void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder,
                     std::string &about);
 
+/* The arrays of a level of the shell. */
+struct UnpackedShell {
+    std::vector<uint32_t> numbers; /* first, then indices */
+    std::vector<uint16_t> positions;
+};
+std::string unpacked_shell_name(uint32_t level); /* "shell-0.bin" */
+void write_unpacked_shell(const gtx_shell &level, uint32_t patches, const std::string &path);
+/* Fills in the arrays; the other fields of `level` are there. */
+void read_unpacked_shell(const std::string &path, uint32_t patches, gtx_shell &level,
+                         UnpackedShell &out);
+
 /* The content of a folder, owned. */
 struct Unpacked {
     gtx_asset_desc desc = {};    /* its pointers lead into what follows */
@@ -45,13 +56,16 @@ struct Unpacked {
     std::string meta;
     std::vector<std::vector<uint8_t>> levels[6]; /* by UNPACKED_MAPS: pages one after another */
     std::vector<const uint8_t *> pointers[6];
+    std::vector<gtx_shell> shell;
+    std::vector<UnpackedShell> shell_arrays;
     std::vector<std::string> warnings;
 };
 
 /* Fills `out`, which must stay where it is. */
 void read_unpacked(const std::string &folder, Unpacked &out, std::string &about);
 
-/* Computes coverage, spheres and bounds anew from the heights. */
+/* Computes coverage, spheres and bounds anew from the heights, and leaves out the shell, which does not
+ * follow them. */
 void derive_again(Unpacked &unpacked);
 
 } // namespace gtx

@@ -6,6 +6,7 @@
 #include "cook/target.hpp"
 
 #include "asset/asset.h"
+#include "bake/shell.hpp"
 #include "base/alloc.h"
 
 #include <algorithm>
@@ -23,8 +24,9 @@ struct Stage {
     float weight;
 };
 constexpr Stage STAGES[] = {{"import", 6}, {"clean", 14}, {"partition", 40}, {"frame", 10},
-                            {"bake", 22},  {"pack", 2},   {"measure", 0},    {"write", 6}};
-constexpr float MEASURE_WEIGHT = 60;
+                            {"bake", 22},  {"pack", 2},   {"shell", 0},      {"measure", 0},
+                            {"write", 6}};
+constexpr float SHELL_WEIGHT = 18, MEASURE_WEIGHT = 60;
 
 static Task make_task(const gtx_cook_desc &desc)
 {
@@ -35,6 +37,8 @@ static Task make_task(const gtx_cook_desc &desc)
         weights.push_back(stage.weight);
         if (!std::strcmp(stage.name, "measure") && (desc.measure || desc.error > 0))
             weights.back() = MEASURE_WEIGHT;
+        if (!std::strcmp(stage.name, "shell") && desc.shell_levels)
+            weights.back() = SHELL_WEIGHT;
     }
     return Task(desc.threads, desc.progress, desc.progress_user, names, weights);
 }
@@ -47,18 +51,38 @@ static std::vector<const uint8_t *> level_pointers(const std::vector<std::vector
     return pointers;
 }
 
-static Asset make_asset(const Maps &maps, const Options &options, const CookFacts &facts)
+static std::vector<gtx_shell> shell_levels(const std::vector<ShellLevel> &shell)
+{
+    std::vector<gtx_shell> levels;
+    for (const ShellLevel &level : shell) {
+        gtx_shell out = {};
+        std::copy_n(level.origin, 3, out.origin);
+        out.step = level.step;
+        out.error = level.error;
+        out.vertex_count = uint32_t(level.positions.size() / 3);
+        out.triangle_count = uint32_t(level.triangle_count());
+        out.first = level.first.data();
+        out.indices = level.indices.data();
+        out.positions = level.positions.data();
+        levels.push_back(out);
+    }
+    return levels;
+}
+
+static Asset make_asset(const Maps &maps, const std::vector<ShellLevel> &shell,
+                        const Options &options, const CookFacts &facts)
 {
     Json meta(options.allocator);
     write_meta({partition_name(options), facts.chart_count, options.chart.resolution,
-                maps.height_bits, maps.mip_count, options.bake.dilation, options.z_up,
-                options.bake.extractor != nullptr, facts.source_triangles, facts.source_hash,
-                facts.key, facts.warnings},
+                maps.height_bits, maps.mip_count, options.bake.dilation, options.shell_levels,
+                options.z_up, options.bake.extractor != nullptr, facts.source_triangles,
+                facts.source_hash, facts.key, facts.warnings},
                meta);
     const std::vector<const uint8_t *> normal = level_pointers(maps.normal),
                                        color = level_pointers(maps.color),
                                        material = level_pointers(maps.material),
                                        emission = level_pointers(maps.emission);
+    const std::vector<gtx_shell> levels = shell_levels(shell);
 
     gtx_asset_desc desc = {};
     desc.patches = maps.patches.data();
@@ -75,6 +99,8 @@ static Asset make_asset(const Maps &maps, const Options &options, const CookFact
     desc.material = material.empty() ? nullptr : material.data();
     desc.emission = emission.empty() ? nullptr : emission.data();
     desc.emission_scale = maps.emission_scale;
+    desc.shell = levels.data();
+    desc.shell_levels = uint32_t(levels.size());
     desc.meta = meta.text;
     desc.meta_size = meta.size;
     std::copy_n(maps.bounds_min, 3, desc.bounds_min);
@@ -168,12 +194,16 @@ static Attempt attempt(const Mesh &mesh, const gtx_cook_desc &desc, const Option
     out.partition = make_partition(mesh, options.chart, task);
     {
         Maps maps = bake(mesh, out.partition, options.bake, task);
+        std::vector<ShellLevel> shell;
+        if (options.shell_levels)
+            shell = make_shell(shell_source(mesh, out.partition, maps, task), maps,
+                               options.shell_levels, task);
         refuse_warnings(desc, task);
         CookFacts of_asset = facts;
         of_asset.chart_count = out.partition.charts.size();
         of_asset.warnings = task.warnings.size();
         out.bake = maps.report;
-        out.asset = make_asset(maps, options, of_asset);
+        out.asset = make_asset(maps, shell, options, of_asset);
     }
     if (desc.measure || desc.error > 0) {
         task.begin("measure");
@@ -234,6 +264,9 @@ static std::unique_ptr<Report> report_on(const gtx_asset *asset, const Options &
     facts.chart_count = info.patch_count;
     facts.content_hash = info.content_hash;
     facts.gpu_bytes = gpu_bytes(info);
+    facts.shell.resize(info.shell_levels);
+    for (uint32_t k = 0; k < info.shell_levels; ++k)
+        gtx_get_shell(asset, k, &facts.shell[k]);
     facts.stages = task.stages();
     facts.seconds = task.seconds();
     Json json(options.allocator);

@@ -12,6 +12,7 @@ struct Options {
     ChartOptions chart;
     BakeOptions bake;
     std::shared_ptr<const Driver> driver; /* null: the CPU extracts the maps */
+    unsigned shell_levels = 0;
     int zstd = 0;
     float unit = 1;
     double error = 0;            /* asked for; 0: none */

@@ -76,6 +76,19 @@ static void write_error(Json &json, const CookFacts &facts)
     gtx_json_end_object(&json);
 }
 
+static void write_shell(Json &json, const CookFacts &facts)
+{
+    gtx_json_begin_array(&json, "shell");
+    for (const gtx_shell &level : facts.shell) {
+        gtx_json_begin_object(&json, nullptr);
+        gtx_json_integer(&json, "triangles", level.triangle_count);
+        gtx_json_integer(&json, "vertices", level.vertex_count);
+        gtx_json_number(&json, "error", level.error);
+        gtx_json_end_object(&json);
+    }
+    gtx_json_end_array(&json);
+}
+
 static double per_triangle(const CookFacts &facts)
 {
     return double(facts.bytes) / double(facts.source_triangles);
@@ -127,6 +140,7 @@ std::string write_cook_report(const CookFacts &facts, const std::vector<std::str
     gtx_json_integer(&json, "bytes", facts.bytes);
     gtx_json_number(&json, "bytes_per_triangle", per_triangle(facts));
     gtx_json_integer(&json, "gpu_bytes", facts.gpu_bytes);
+    write_shell(json, facts);
     gtx_json_begin_object(&json, "seconds");
     for (size_t i = 0; i < facts.stages.size(); ++i)
         gtx_json_number(&json, facts.stages[i], facts.seconds[i]);
@@ -152,6 +166,7 @@ std::string write_unchanged_report(const CookFacts &facts, Json &json)
     gtx_json_integer(&json, "bytes", facts.bytes);
     gtx_json_number(&json, "bytes_per_triangle", per_triangle(facts));
     gtx_json_integer(&json, "gpu_bytes", facts.gpu_bytes);
+    write_shell(json, facts);
     gtx_json_begin_object(&json, "seconds");
     gtx_json_number(&json, "total", facts.total_seconds);
     gtx_json_end_object(&json);
@@ -230,6 +245,7 @@ void write_meta(const MetaFacts &facts, Json &json)
     gtx_json_integer(&json, "height_bits", facts.height_bits);
     gtx_json_integer(&json, "mips", facts.mips);
     gtx_json_integer(&json, "dilation", facts.dilation);
+    gtx_json_integer(&json, "shell_levels", facts.shell_levels);
     gtx_json_string(&json, "up", facts.z_up ? "z" : "y");
     if (facts.by_gpu)
         gtx_json_string(&json, "extract", "gpu");

@@ -160,6 +160,59 @@ static void test_huge_values(void **state)
     EXPECT_RULE(0, (s.desc.bounds_min[0] = -3e38f, s.desc.bounds_max[0] = 3e38f));
 }
 
+/* Two levels of one triangle each, the coarser on the second patch. */
+static void test_shell(void **state)
+{
+    (void)state;
+    sheet s;
+    make_sheet(&s);
+    const uint32_t on_first[] = {0, 1, 1}, on_second[] = {0, 0, 1};
+    uint32_t indices[] = {0, 1, 2};
+    uint16_t positions[] = {0, 0, 0, 4, 0, 1, 0, 4, 2};
+    gtx_shell levels[2] = {{.step = 0.125f, .error = 0.5f, .vertex_count = 3, .triangle_count = 1,
+                            .first = on_first, .indices = indices, .positions = positions}};
+    levels[1] = levels[0];
+    levels[1].first = on_second;
+    for (int k = 0; k < 3; ++k)
+        levels[1].origin[k] = s.patches[1].origin[k];
+    s.desc.shell = levels;
+    s.desc.shell_levels = 2;
+    gtx_asset *asset = NULL;
+    gtx_info info;
+    gtx_shell shown;
+    assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_OK);
+    gtx_get_info(asset, &info);
+    assert_int_equal(info.shell_levels, 2);
+    assert_int_equal(gtx_get_shell(asset, 1, &shown), GTX_OK);
+    assert_memory_equal(shown.first, on_second, sizeof on_second);
+    assert_memory_equal(shown.indices, indices, sizeof indices);
+    assert_memory_equal(shown.positions, positions, sizeof positions);
+    assert_true(shown.step == 0.125f && shown.error == 0.5f);
+    assert_int_equal(gtx_get_shell(asset, 2, &shown), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_get_shell(asset, 0, NULL), GTX_ERROR_ARGUMENT);
+    gtx_close(asset);
+
+    levels[1].error = 0.25f;
+    assert_int_equal(broken_rule(&s), 502);
+    levels[1].error = 0.5f;
+    positions[3] = 4000;
+    assert_int_equal(broken_rule(&s), 505);
+    positions[3] = 4;
+    indices[1] = 7;
+    assert_int_equal(broken_rule(&s), 504);
+    indices[1] = 1;
+    levels[0].triangle_count = 0;
+    assert_int_equal(broken_rule(&s), 500);
+    levels[0].triangle_count = 1;
+    levels[0].indices = NULL;
+    assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_ERROR_ARGUMENT);
+    s.desc.shell_levels = 9;
+    assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_ERROR_ARGUMENT);
+    s.desc.shell = NULL;
+    s.desc.shell_levels = 1;
+    assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_ERROR_ARGUMENT);
+}
+
 static void test_arguments(void **state)
 {
     (void)state;
@@ -367,7 +420,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_create_rules), cmocka_unit_test(test_material_and_emission),
-        cmocka_unit_test(test_huge_values),  cmocka_unit_test(test_arguments),
+        cmocka_unit_test(test_huge_values),  cmocka_unit_test(test_shell), cmocka_unit_test(test_arguments),
         cmocka_unit_test(test_accessors),    cmocka_unit_test(test_skip_hash),
         cmocka_unit_test(test_files),        cmocka_unit_test(test_full_disk),
         cmocka_unit_test(test_many_patches),

@@ -62,7 +62,8 @@ static void every_golden_file_comes_back(void **state)
 static void cooked_assets_come_back(void **state)
 {
     (void)state;
-    static const char *const options[] = {"", "--zstd 0", "--zstd 9 --mips 1", "--height-bits 16"};
+    static const char *const options[] = {"", "--zstd 0", "--zstd 9 --mips 1", "--height-bits 16",
+                                          "--shell-levels 5"};
     for (size_t i = 0; i < sizeof options / sizeof *options; ++i) {
         expect(gtx("cook -q sphere.obj -o c.gtx %s", options[i]), 0);
         there_and_back_again("c.gtx");
@@ -149,9 +150,14 @@ static void what_is_no_asset_is_refused(void **state)
         {"\"flags\": 0", "\"flags\": 70000", "flags is not", 3},
         {"\"unit\": 1.0", "\"unit\": 1e400", "is not a JSON object", 3},
         {"\"unit\": 1.0", "\"unit\": -1.0", "unit", 3},
+        {"\"shell\": [", "\"shells\": [", "shell is missing", 3},
+        {"\"shell\": [", "\"shell\": [7,", "a level of shell is not an object", 3},
+        {"\"step\": ", "\"step\": -", "step positive", 3},
+        {"\"triangles\": ", "\"triangles\": 1", "shell-0.bin: error[input]: has not the size", 3},
+        {"\"vertices\": ", "\"vertices\": -", "vertices is not a whole number", 3},
     };
     shell("rm -rf maps");
-    expect(gtx("cook -q sphere.obj -o s.gtx"), 0);
+    expect(gtx("cook -q sphere.obj --shell-levels 3 -o s.gtx"), 0);
     expect(gtx("unpack s.gtx maps"), 0);
     shell("cp maps/asset.json good.json && rm -f no.gtx");
     for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {

@@ -1,0 +1,247 @@
+/* The levels of the shell: how many, how fine, and the order of their triangles. */
+#include "bake/shell_parts.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <map>
+
+namespace gtx::baking {
+
+using Triangle = std::array<uint32_t, 3>;
+
+/* Triangles of the source for one of the finest level: fills the bytes that a shell may take. */
+constexpr size_t FINEST_RATIO = 9;
+/* Every level has this part of the triangles of the one before. */
+constexpr size_t LEVEL_RATIO = 2;
+/* A level is worth its bytes when it has at most this share of them. */
+constexpr double MOST_SHARE = 0.75;
+/* An error that nobody sees: the maps know no better. In texels. */
+constexpr double FREE_ERROR = 1.0 / 16;
+/* What thinning may cost inside patches: dear triangles are not worth the time. In texels. */
+constexpr double THIN_ERROR = 1.0 / 8;
+/* What is seen from so far that this is a pixel is a handful of pixels. Share of the diagonal. */
+constexpr double MOST_ERROR = 1.0 / 64;
+/* Positions are rounded to this part of a texel. */
+constexpr double STEP = 1.0 / 16;
+/* Edges among which the next triangle is looked for, as the asset's coding does. */
+constexpr size_t RECENT_EDGES = 16;
+
+std::vector<PatchRegion> patch_regions(const Maps &maps, Task &task)
+{
+    std::vector<PatchRegion> regions(maps.patches.size());
+    task.parallel(regions.size(), [&](size_t p) {
+        regions[p] = PatchRegion(maps.patches[p], maps);
+    }, 0, 0);
+    return regions;
+}
+
+/* Texels of a mean patch are so far apart. */
+static double mean_pitch(const Maps &maps)
+{
+    double area = 0, texels = 0;
+    for (const gtx_patch &p : maps.patches) {
+        area += double(p.extent_x) * p.extent_y;
+        texels += double(p.rect[2]) * p.rect[3];
+    }
+    return std::sqrt(area / texels);
+}
+
+/* The places that positions are rounded to. */
+struct Lattice {
+    float origin[3] = {0, 0, 0}, step = 0;
+
+    Lattice(const std::vector<Vec3d> &points, double wanted)
+    {
+        Vec3d low = points[0], high = low;
+        for (const Vec3d &p : points) {
+            for (int k = 0; k < 3; ++k) {
+                low[k] = std::min(low[k], p[k]);
+                high[k] = std::max(high[k], p[k]);
+            }
+        }
+        const Vec3d size = high - low;
+        step = float(std::max(wanted, std::max({size.x, size.y, size.z}) / 65534));
+        store(origin, low);
+    }
+    std::array<uint16_t, 3> round(const Vec3d &point) const
+    {
+        std::array<uint16_t, 3> place;
+        for (int k = 0; k < 3; ++k)
+            place[k] = uint16_t(
+                std::clamp(std::floor((point[k] - origin[k]) / step + 0.5), 0.0, 65535.0));
+        return place;
+    }
+    Vec3d point(const std::array<uint16_t, 3> &place) const
+    {
+        return {origin[0] + double(step) * place[0], origin[1] + double(step) * place[1],
+                origin[2] + double(step) * place[2]};
+    }
+};
+
+/* Triangles in an order where most share an edge with one just before: few bytes, and vertices that
+ * a processor still remembers. */
+class Strip {
+public:
+    Strip(const std::vector<Triangle> &triangles, const std::vector<uint32_t> &patch,
+          size_t vertices)
+        : triangles_(triangles), patch_(patch), start_(vertices + 1, 0), left_(triangles.size(), 0)
+    {
+        for (const Triangle &t : triangles)
+            for (uint32_t v : t)
+                ++start_[v + 1];
+        for (size_t v = 0; v < vertices; ++v)
+            start_[v + 1] += start_[v];
+        around_.resize(3 * triangles.size());
+        std::vector<uint32_t> next(start_.begin(), start_.end() - 1);
+        for (size_t t = 0; t < triangles.size(); ++t)
+            for (uint32_t v : triangles[t])
+                around_[next[v]++] = uint32_t(t);
+    }
+    /* Adds the triangles `members` of a patch, corners turned so that a shared edge comes first. */
+    void follow(uint32_t patch, const std::vector<uint32_t> &members, std::vector<Triangle> &out)
+    {
+        for (uint32_t t : members)
+            left_[t] = 1;
+        Triangle next;
+        auto go_on = [&] {
+            while (find_beside(patch, next))
+                take(next, out);
+        };
+        go_on();
+        for (uint32_t seed : members) {
+            if (!left_[seed])
+                continue;
+            left_[seed] = 0;
+            take(triangles_[seed], out);
+            go_on();
+        }
+    }
+
+private:
+    using Edge = std::array<uint32_t, 2>;
+
+    void take(const Triangle &t, std::vector<Triangle> &out)
+    {
+        out.push_back(t);
+        for (int k = 0; k < 3; ++k)
+            recent_.push_front({t[(k + 1) % 3], t[k]});
+        while (recent_.size() > RECENT_EDGES)
+            recent_.pop_back();
+    }
+    bool find_beside(uint32_t patch, Triangle &found)
+    {
+        for (const Edge &edge : recent_) {
+            for (uint32_t i = start_[edge[0]]; i < start_[edge[0] + 1]; ++i) {
+                const Triangle &t = triangles_[around_[i]];
+                const int k = t[0] == edge[0] ? 0 : t[1] == edge[0] ? 1 : 2;
+                if (t[(k + 1) % 3] != edge[1] || !left_[around_[i]] || patch_[around_[i]] != patch)
+                    continue;
+                found = {t[k], t[(k + 1) % 3], t[(k + 2) % 3]};
+                left_[around_[i]] = 0;
+                return true;
+            }
+        }
+        return false;
+    }
+
+    const std::vector<Triangle> &triangles_;
+    const std::vector<uint32_t> &patch_;
+    std::vector<uint32_t> start_, around_;
+    std::vector<uint8_t> left_; /* to be followed */
+    std::deque<Edge> recent_;
+};
+
+/* Whether a level may have the triangle: it has an area, and lies on the rectangle of its patch or
+ * next to it. */
+static bool fits(const PatchRegion &region, const Triangle &t, const Lattice &lattice,
+                 const std::vector<std::array<uint16_t, 3>> &places)
+{
+    if (places[t[0]] == places[t[1]] || places[t[1]] == places[t[2]] ||
+        places[t[2]] == places[t[0]])
+        return false;
+    for (uint32_t v : t)
+        if (!region.near(region.place(lattice.point(places[v]))))
+            return false;
+    return true;
+}
+
+static ShellLevel make_level(const Simplifier &simplified, const std::vector<PatchRegion> &regions,
+                             const Lattice &lattice)
+{
+    const auto &triangles = simplified.triangles();
+    const auto &patch = simplified.patch();
+    std::vector<std::array<uint16_t, 3>> places;
+    for (const Vec3d &p : simplified.positions())
+        places.push_back(lattice.round(p));
+    std::vector<std::vector<uint32_t>> members(regions.size());
+    for (size_t t = 0; t < triangles.size(); ++t)
+        if (fits(regions[patch[t]], triangles[t], lattice, places))
+            members[patch[t]].push_back(uint32_t(t));
+
+    ShellLevel level;
+    std::copy_n(lattice.origin, 3, level.origin);
+    level.step = lattice.step;
+    std::map<std::array<uint16_t, 3>, uint32_t> name; /* of the vertex at a place */
+    std::vector<uint32_t> named(places.size(), NO_VERTEX);
+    std::vector<Triangle> ordered;
+    Strip strip(triangles, patch, places.size());
+    for (uint32_t p = 0; p < members.size(); ++p) {
+        level.first.push_back(uint32_t(ordered.size()));
+        strip.follow(p, members[p], ordered);
+    }
+    level.first.push_back(uint32_t(ordered.size()));
+    for (const Triangle &t : ordered) {
+        for (uint32_t v : t) {
+            if (named[v] == NO_VERTEX) {
+                const auto [at, is_new] = name.try_emplace(places[v], uint32_t(name.size()));
+                if (is_new)
+                    level.positions.insert(level.positions.end(), places[v].begin(),
+                                           places[v].end());
+                named[v] = at->second;
+            }
+            level.indices.push_back(named[v]);
+        }
+    }
+    return level;
+}
+
+} // namespace gtx::baking
+
+namespace gtx {
+
+using namespace baking;
+
+std::vector<ShellLevel> make_shell(const ShellSource &source, const Maps &maps, unsigned levels,
+                                   Task &task)
+{
+    task.begin("shell");
+    std::vector<ShellLevel> shell;
+    if (source.triangles.empty() || !levels)
+        return shell;
+    const std::vector<PatchRegion> regions = patch_regions(maps, task);
+    const double pitch = mean_pitch(maps);
+    const Lattice lattice(source.positions, STEP * pitch);
+    Vec3d size;
+    for (int k = 0; k < 3; ++k)
+        size[k] = double(maps.bounds_max[k]) - maps.bounds_min[k];
+    const double free = FREE_ERROR * pitch;
+    double thinned = 0;
+    const ShellSource few = thin(source, maps, regions, THIN_ERROR * pitch, thinned, task);
+    Simplifier simplifier(few, regions, task);
+    size_t wanted = source.triangles.size() / FINEST_RATIO;
+    for (unsigned k = 0; k < levels; ++k) {
+        const size_t before = simplifier.triangles().size();
+        simplifier.reduce(wanted, k ? 0 : free, MOST_ERROR * length(size));
+        if (k && double(simplifier.triangles().size()) > MOST_SHARE * double(before))
+            break;
+        ShellLevel level = make_level(simplifier, regions, lattice);
+        level.error = float(thinned + simplifier.error());
+        if (level.indices.empty())
+            break;
+        shell.push_back(std::move(level));
+        wanted = simplifier.triangles().size() / LEVEL_RATIO;
+    }
+    return shell;
+}
+
+} // namespace gtx

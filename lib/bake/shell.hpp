@@ -1,0 +1,43 @@
+/* The shell: the source surface as a few meshes of ever fewer triangles, for what is far away. */
+#pragma once
+
+#include "bake/bake.hpp"
+
+namespace gtx {
+
+/* Surface with a patch a triangle, and vertices that patches share, relative to the anchor. */
+struct ShellSource {
+    std::vector<Vec3d> positions;
+    std::vector<std::array<uint32_t, 3>> triangles;
+    std::vector<uint32_t> patch; /* a triangle each */
+
+    Vec3d centre(size_t triangle) const
+    {
+        const auto &[a, b, c] = triangles[triangle];
+        return (positions[a] + positions[b] + positions[c]) / 3;
+    }
+};
+
+/* One level as the asset keeps it (format/gtx.md, "Shell"). */
+struct ShellLevel {
+    float origin[3] = {0, 0, 0}, step = 0, error = 0;
+    std::vector<uint32_t> first;     /* of each patch, and the end */
+    std::vector<uint32_t> indices;   /* 3 a triangle */
+    std::vector<uint16_t> positions; /* 3 a vertex */
+
+    size_t triangle_count() const { return indices.size() / 3; }
+};
+
+/* What the charts show; `maps` is what bake made of them. A triangle has the patch of its chart; of
+ * several charts that share it, that in whose core its centre lies. One that reaches farther across
+ * a straight cut than the maps of its patch do is split there, its neighbours with it.
+ * Deterministic for any thread count. Stage of `task`: "shell". */
+ShellSource shell_source(const Mesh &mesh, const Partition &partition, const Maps &maps,
+                         Task &task);
+
+/* Simplifies the surface across all patches at once, down to at most `levels` levels, the finest
+ * first. Deterministic for any thread count. Stage of `task`: "shell". */
+std::vector<ShellLevel> make_shell(const ShellSource &source, const Maps &maps, unsigned levels,
+                                   Task &task);
+
+} // namespace gtx

@@ -1,0 +1,40 @@
+/* The triangles around a vertex, put in order. */
+#include "bake/shell_fan.hpp"
+
+namespace gtx::baking {
+
+bool find_fan(const std::vector<Triangle> &triangles, const uint32_t *around, size_t triangle_count,
+              uint32_t vertex, Fan &fan)
+{
+    if (triangle_count == 0 || triangle_count > MOST_FAN)
+        return false;
+    const int count = int(triangle_count);
+    uint32_t of[MOST_FAN], after[MOST_FAN], before[MOST_FAN];
+    for (int i = 0; i < count; ++i) {
+        of[i] = around[i];
+        const Triangle &t = triangles[of[i]];
+        const int k = corner_of(t, vertex);
+        after[i] = t[(k + 1) % 3];
+        before[i] = t[(k + 2) % 3];
+    }
+    int first = 0; /* the one that none leads to, in an open fan */
+    for (int i = 0; i < count; ++i)
+        if (std::find(before, before + count, after[i]) == before + count)
+            first = i;
+    fan.count = 0;
+    fan.ring_count = 0;
+    for (int i = first; i < count && fan.count < count;) {
+        fan.triangle[fan.count++] = of[i];
+        fan.ring[fan.ring_count++] = after[i];
+        const uint32_t end = before[i];
+        fan.open = end != after[first];
+        i = int(std::find(after, after + count, end) - after);
+        if (i == count)
+            fan.ring[fan.ring_count++] = end;
+        else if (i == first)
+            break;
+    }
+    return fan.count == count && (fan.open == (fan.ring_count == count + 1));
+}
+
+} // namespace gtx::baking

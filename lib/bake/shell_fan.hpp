@@ -1,0 +1,40 @@
+/* The triangles around a vertex. */
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace gtx::baking {
+
+using Triangle = std::array<uint32_t, 3>;
+
+/* Triangles around a vertex beyond which it stays. */
+constexpr int MOST_FAN = 40;
+
+/* The triangles around a vertex in order: `ring` holds their other vertices, one more than there are
+ * triangles where the fan is open. */
+struct Fan {
+    int count = 0, ring_count = 0;
+    bool open = false;
+    uint32_t triangle[MOST_FAN], ring[MOST_FAN + 1];
+
+    bool has(uint32_t vertex) const
+    {
+        return std::find(ring, ring + ring_count, vertex) != ring + ring_count;
+    }
+};
+
+inline int corner_of(const Triangle &triangle, uint32_t vertex)
+{
+    return triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : triangle[2] == vertex ? 2 : -1;
+}
+
+/* Puts those `around` a vertex in order. False when it is none that could go: without triangles, with
+ * too many, or with several fans. */
+bool find_fan(const std::vector<Triangle> &triangles, const uint32_t *around, size_t triangle_count,
+              uint32_t vertex, Fan &fan);
+
+} // namespace gtx::baking

@@ -1,0 +1,37 @@
+/* What it costs to move a vertex: squared distances to planes (Garland and Heckbert 1997). */
+#pragma once
+
+#include "mesh/vec.hpp"
+
+#include <algorithm>
+
+namespace gtx::baking {
+
+/* Sum of squared distances to planes, times their weights. */
+struct Quadric {
+    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0, x = 0, y = 0, z = 0, c = 0, weight = 0;
+
+    void add_plane(const Vec3d &n, double d, double w)
+    {
+        xx += w * n.x * n.x, xy += w * n.x * n.y, xz += w * n.x * n.z;
+        yy += w * n.y * n.y, yz += w * n.y * n.z, zz += w * n.z * n.z;
+        x += w * n.x * d, y += w * n.y * d, z += w * n.z * d;
+        c += w * d * d;
+    }
+    void add(const Quadric &q)
+    {
+        xx += q.xx, xy += q.xy, xz += q.xz, yy += q.yy, yz += q.yz, zz += q.zz;
+        x += q.x, y += q.y, z += q.z, c += q.c, weight += q.weight;
+    }
+    /* Mean squared distance at a point. */
+    double at(const Vec3d &p) const
+    {
+        double rx = xx * p.x + 2 * (xy * p.y + xz * p.z + x);
+        double ry = yy * p.y + 2 * (yz * p.z + y);
+        double rz = zz * p.z + 2 * z;
+        double sum = rx * p.x + ry * p.y + rz * p.z + c;
+        return weight > 0 ? std::max(sum, 0.0) / weight : 0;
+    }
+};
+
+} // namespace gtx::baking

@@ -1,0 +1,233 @@
+/* The shell of meshes with known surfaces: how far it strays, that it stays whole and where its
+ * patches have normals, and that any number of threads makes the same. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+extern "C" {
+#include <cmocka.h>
+}
+
+#include "bake/shells.hpp"
+
+#include <set>
+
+using namespace shells;
+using shapes::sheet;
+
+static void a_ball_stays_closed_and_near(void **)
+{
+    Mesh mesh = shapes::ball(40, [](const Vec3d &) { return 1.0; });
+    Shell shell = shell_of(mesh, shapes::split(mesh, shapes::by_axis(mesh), 64));
+    assert_int_equal(shell.levels.size(), 5);
+    assert_valid(shell);
+    assert_placed(shell);
+    size_t before = mesh.triangle_count();
+    double error = 0;
+    for (const ShellLevel &level : shell.levels) {
+        assert_true(4 * level.triangle_count() <= 3 * before);
+        assert_true(level.error >= error);
+        before = level.triangle_count();
+        error = level.error;
+        Edges edges = count_edges(level); /* neighbours share their vertices, and so their borders */
+        assert_int_equal(edges.open, 0);
+        assert_int_equal(edges.crowded, 0);
+        double deepest = 0;
+        for_each(level, [&](size_t, const std::array<Vec3d, 3> &c) {
+            for (const Vec3d &p : c) /* vertices are some of the source's, rounded */
+                assert_true(std::fabs(length(p) - 1) < 2 * level.step);
+            deepest = std::max(deepest, 1 - length((c[0] + c[1] + c[2]) / 3));
+        });
+        assert_true(deepest < 4 * level.error + level.step);
+    }
+    assert_true(shell.levels[0].error < 0.01 && shell.levels[0].triangle_count() < 2401);
+}
+
+static void bumps_stay_closed(void **)
+{
+    Mesh mesh = shapes::ball(48, shapes::bumps);
+    Shell shell = shell_of(mesh, shapes::split(mesh, shapes::by_axis(mesh), 96));
+    assert_true(shell.levels.size() >= 3);
+    assert_valid(shell);
+    assert_placed(shell);
+    for (const ShellLevel &level : shell.levels)
+        assert_int_equal(count_edges(level).open + count_edges(level).crowded, 0);
+}
+
+/* Nothing but its twelve edges matters: what is left are corners and a few more. */
+static void a_cube_keeps_its_corners(void **)
+{
+    Mesh mesh = shapes::ball(24, [](const Vec3d &d) {
+        return 1 / std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
+    });
+    Shell shell = shell_of(mesh, shapes::split(mesh, shapes::by_axis(mesh), 64));
+    assert_true(shell.levels.size() >= 1);
+    assert_valid(shell);
+    assert_placed(shell);
+    const ShellLevel &last = shell.levels.back();
+    assert_true(last.triangle_count() <= 60 && last.error < 0.03);
+    std::set<std::array<int, 3>> corners;
+    for (uint32_t v = 0; v < last.positions.size() / 3; ++v) {
+        Vec3d p = point(last, v);
+        if (std::fabs(p.x) > 0.98 && std::fabs(p.y) > 0.98 && std::fabs(p.z) > 0.98)
+            corners.insert({p.x > 0, p.y > 0, p.z > 0});
+    }
+    assert_int_equal(corners.size(), 8);
+}
+
+static void an_open_border_stays(void **)
+{
+    Mesh mesh = sheet(48, [](double u, double v) {
+        return Vec3d(u, v, 0.05 * std::sin(7 * u) * std::cos(5 * v));
+    });
+    Shell shell = shell_of(mesh, shapes::split(mesh, [&](size_t t) {
+        return mesh.position(t, 0).x < 0.5;
+    }, 64));
+    assert_valid(shell);
+    assert_placed(shell);
+    for (const ShellLevel &level : shell.levels) {
+        double area = 0;
+        for_each(level, [&](size_t, const std::array<Vec3d, 3> &c) {
+            area += cross(c[1] - c[0], c[2] - c[0]).z / 2;
+        });
+        assert_true(std::fabs(area - 1) < 0.01);
+        assert_int_equal(count_edges(level).crowded, 0);
+    }
+}
+
+static void a_two_sided_strip_stays(void **)
+{
+    Mesh mesh = sheet(40, [](double u, double v) {
+        return Vec3d(u, v / 8, 0.1 * std::sin(6 * u));
+    });
+    Partition partition = shapes::split(mesh, shapes::all_in_one(), 64);
+    partition.charts[0].two_sided = true;
+    Shell shell = shell_of(mesh, partition);
+    assert_true(shell.levels.size() >= 2);
+    assert_valid(shell);
+    assert_placed(shell);
+}
+
+static void two_components_both_stay(void **)
+{
+    Mesh mesh = shapes::ball(20, [](const Vec3d &) { return 1.0; });
+    const size_t vertices = mesh.positions.size(), triangles = mesh.triangle_count();
+    for (size_t v = 0; v < vertices; ++v)
+        mesh.positions.push_back(mesh.positions[v] * 0.2 + Vec3d(3, 0, 0));
+    for (size_t t = 0; t < triangles; ++t) {
+        std::array<uint32_t, 3> other = mesh.triangles[t];
+        for (uint32_t &v : other)
+            v += uint32_t(vertices);
+        mesh.triangles.push_back(other);
+    }
+    mesh.normals.insert(mesh.normals.end(), mesh.normals.begin(), mesh.normals.end());
+    auto axis = shapes::by_axis(mesh);
+    Shell shell = shell_of(mesh, shapes::split(mesh, [&](size_t t) {
+        return axis(t) + 6 * (t >= triangles);
+    }, 64));
+    assert_valid(shell);
+    assert_placed(shell);
+    for (const ShellLevel &level : shell.levels) {
+        size_t small = 0;
+        for_each(level, [&](size_t p, const std::array<Vec3d, 3> &) { small += p >= 6; });
+        assert_in_range(small, 4, level.triangle_count() - 4);
+        assert_int_equal(count_edges(level).open, 0);
+    }
+}
+
+static void one_triangle_is_its_own_shell(void **)
+{
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    shapes::add_normals(mesh);
+    Shell shell = shell_of(mesh, shapes::split(mesh, shapes::all_in_one(), 16));
+    assert_int_equal(shell.levels.size(), 1);
+    assert_int_equal(shell.levels[0].triangle_count(), 1);
+    assert_true(shell.levels[0].error == 0);
+    assert_valid(shell);
+}
+
+static void none_and_fewer_levels_can_be_asked_for(void **)
+{
+    Mesh mesh = shapes::ball(20, shapes::bumps);
+    Partition partition = shapes::split(mesh, shapes::by_axis(mesh), 48);
+    assert_int_equal(shell_of(mesh, partition, 0).levels.size(), 0);
+    Shell one = shell_of(mesh, partition, 1), three = shell_of(mesh, partition, 3);
+    assert_int_equal(one.levels.size(), 1);
+    assert_int_equal(three.levels.size(), 3);
+    assert_true(one.levels[0].indices == three.levels[0].indices);
+}
+
+static void any_thread_count_gives_the_same(void **)
+{
+    Mesh mesh = shapes::ball(48, shapes::bumps);
+    Partition partition = shapes::split(mesh, shapes::by_axis(mesh), 96);
+    Shell one = shell_of(mesh, partition, 5, 1), many = shell_of(mesh, partition, 5, 7);
+    assert_int_equal(one.levels.size(), many.levels.size());
+    for (size_t k = 0; k < one.levels.size(); ++k) {
+        assert_true(one.levels[k].indices == many.levels[k].indices);
+        assert_true(one.levels[k].positions == many.levels[k].positions);
+        assert_true(one.levels[k].first == many.levels[k].first);
+        assert_true(one.levels[k].error == many.levels[k].error);
+    }
+}
+
+/* Every option of baking, and a place far from the origin. */
+static void options_and_offsets_are_followed(void **)
+{
+    Mesh mesh = shapes::ball(24, shapes::bumps);
+    for (Vec3d &p : mesh.positions)
+        p = p * 100 + Vec3d(1e7, -2e7, 3e6);
+    Partition partition = shapes::split(mesh, shapes::by_axis(mesh), 64);
+    for (unsigned bits : {8u, 16u}) {
+        for (unsigned mips : {1u, 8u}) {
+            BakeOptions options;
+            options.height_bits = bits;
+            options.mips = mips;
+            Shell shell = shell_of(mesh, partition, 5, 2, options);
+            assert_true(shell.levels.size() >= 2);
+            assert_valid(shell);
+            assert_int_equal(count_edges(shell.levels[0]).open, 0);
+        }
+    }
+}
+
+/* A real scan, with holes in it. */
+static void a_scan_is_followed(void **)
+{
+    const char *models = getenv("GEOTEX_MODELS");
+    if (!models)
+        skip();
+    Task task(2, nullptr, nullptr, {"partition", "frame", "bake", "pack", "shell"},
+              {1, 1, 1, 1, 1});
+    CleanReport report;
+    Mesh mesh = clean_mesh(import_mesh(std::string(models) + "/scans/bunny.ply", task), task, report);
+    Partition partition = make_partition(mesh, {}, task);
+    Shell shell = {bake(mesh, partition, {}, task), {}};
+    shell.levels = make_shell(shell_source(mesh, partition, shell.maps, task), shell.maps, 5, task);
+    assert_true(shell.levels.size() >= 4);
+    assert_valid(shell);
+    assert_placed(shell);
+    const double diagonal = 0.25;
+    assert_true(shell.levels[0].error < 2e-3 * diagonal);
+    assert_true(shell.levels[0].triangle_count() < mesh.triangle_count() / 7);
+}
+
+int main()
+{
+    const CMUnitTest tests[] = {
+        cmocka_unit_test(a_ball_stays_closed_and_near),
+        cmocka_unit_test(bumps_stay_closed),
+        cmocka_unit_test(a_cube_keeps_its_corners),
+        cmocka_unit_test(an_open_border_stays),
+        cmocka_unit_test(a_two_sided_strip_stays),
+        cmocka_unit_test(two_components_both_stay),
+        cmocka_unit_test(one_triangle_is_its_own_shell),
+        cmocka_unit_test(none_and_fewer_levels_can_be_asked_for),
+        cmocka_unit_test(any_thread_count_gives_the_same),
+        cmocka_unit_test(options_and_offsets_are_followed),
+        cmocka_unit_test(a_scan_is_followed),
+    };
+    return cmocka_run_group_tests_name("shell", tests, nullptr, nullptr);
+}
