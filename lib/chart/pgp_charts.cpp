@@ -15,8 +15,8 @@ constexpr size_t MOST_TRIANGLES = 30000000;
 /* Charts below so many cells, of what lies about singularities and of what lines cut off, are
  * joined to a neighbour. */
 constexpr double LEAST_CELLS = 0.1;
-/* The search for the cell: charts that come out of a cell's area, about; what will do of the wanted
- * number, since a little too many can be joined. */
+/* The search for the cell: charts that come out of a cell's area, about, and what ends it, a share of
+ * the wanted number: a few too many are joined. */
 constexpr double CHARTS_PER_CELL = 0.97;
 constexpr double LEAST_RATIO = 0.98, MOST_RATIO = 1.06;
 constexpr int SEARCH_ROUNDS = 4;
@@ -215,14 +215,12 @@ std::vector<uint32_t> square_cells(const Surface &surface, uint32_t &count, Task
         Joining joining(edges, size, labels, squares);
         joining.join_smaller(LEAST_CELLS * cell * cell);
         double ratio = double(joining.count()) / wanted;
-        bool will_do = ratio >= LEAST_RATIO && ratio <= MOST_RATIO;
-        if (will_do || best.empty() || std::abs(std::log(ratio)) < nearest) {
+        if (best.empty() || std::abs(std::log(ratio)) < nearest) {
             nearest = std::abs(std::log(ratio));
-            if (will_do)
-                joining.join_until(wanted);
+            joining.join_until(wanted);
             best = joining.labels(labels, count);
         }
-        if (will_do)
+        if (ratio >= LEAST_RATIO && ratio <= MOST_RATIO)
             break;
         cell *= std::sqrt(std::clamp(ratio, 0.25, 4.));
     }
