@@ -6,6 +6,8 @@
 
 namespace gtx {
 
+constexpr double PI = 3.14159265358979323846;
+
 /* Half-edges, and how a direction is carried across them. A corner is the half-edge that leaves it.
  * Angles in a triangle count from its first edge, counter-clockwise. */
 struct HalfEdges {
@@ -17,6 +19,8 @@ struct HalfEdges {
 
     /* The next corner of the same vertex, counter-clockwise; NO_EDGE past a border. */
     uint32_t left_of(uint32_t corner) const { return opposite[previous_edge(corner)]; }
+    /* The triangle's angle at a corner. */
+    double angle(uint32_t corner) const;
     /* An angle here plus this is the same direction in the triangle across. */
     double transport(uint32_t half_edge) const;
 };

@@ -15,8 +15,8 @@ constexpr size_t MOST_TRIANGLES = 30000000;
 /* Charts below so many cells, of what lies about singularities and of what lines cut off, are
  * joined to a neighbour. */
 constexpr double LEAST_CELLS = 0.1;
-/* The search for the cell: charts that come out of a cell's area, about, and what ends it, a share of
- * the wanted number: a few too many are joined. */
+/* The search for the cell: charts that come out of a cell's area, about, and the shares of the
+ * wanted number that end it: a few too many are joined. */
 constexpr double CHARTS_PER_CELL = 0.97;
 constexpr double LEAST_RATIO = 0.98, MOST_RATIO = 1.06;
 constexpr int SEARCH_ROUNDS = 4;

@@ -5,8 +5,6 @@ namespace gtx {
 
 namespace {
 
-constexpr double PI = 3.14159265358979323846;
-
 double corner_angle(const Mesh &mesh, uint32_t t, int k)
 {
     Vec3d a = mesh.position(t, (k + 1) % 3) - mesh.position(t, k);
@@ -47,6 +45,11 @@ void find_fans(HalfEdges &edges)
 }
 
 } // namespace
+
+double HalfEdges::angle(uint32_t c) const
+{
+    return PI - std::abs(std::remainder(direction[c] - direction[previous_edge(c)], 2 * PI));
+}
 
 double HalfEdges::transport(uint32_t h) const
 {

@@ -12,7 +12,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double PI = 3.14159265358979323846;
 /* What a triangle's curvature counts for, against what its neighbours' directions do. */
 constexpr double FIT = 0.01;
 /* Without any curvature something must still hold the field. */
@@ -148,11 +147,7 @@ void find_indices(const HalfEdges &edges, CrossField &field)
         double sum = 2 * PI;
         uint32_t c = edges.first[v];
         do {
-            uint32_t before = previous_edge(c);
-            /* the interior angle, between the half-edge that leaves and the one that arrives */
-            sum -= PI - std::abs(std::remainder(edges.direction[c] - edges.direction[before],
-                                                2 * PI));
-            sum += field.bend[before];
+            sum += field.bend[previous_edge(c)] - edges.angle(c);
             c = edges.left_of(c);
         } while (c != NO_EDGE && c != edges.first[v]);
         if (c != NO_EDGE)

@@ -7,7 +7,6 @@ namespace gtx {
 
 namespace {
 
-constexpr double PI = 3.14159265358979323846;
 /* Cotangents of slivers and obtuse triangles would push vertices apart. */
 constexpr double LEAST_COTANGENT = 0.02;
 /* Cells are at most as much longer or shorter than the mean. */
@@ -16,9 +15,7 @@ constexpr double MOST_SCALE = 4;
 /* Of the angle that faces a half-edge. */
 double cotangent(const HalfEdges &edges, uint32_t h)
 {
-    uint32_t c = previous_edge(h);
-    double turn = std::remainder(edges.direction[c] - edges.direction[previous_edge(c)], 2 * PI);
-    return 1 / std::tan(PI - std::abs(turn));
+    return 1 / std::tan(edges.angle(previous_edge(h)));
 }
 
 } // namespace

@@ -13,7 +13,6 @@ namespace gtx {
 
 namespace {
 
-constexpr double PI = 3.14159265358979323846;
 /* The least squares alone are minimal where all phases vanish. Each solve is held to the last
  * solution at unit length by this weight, an edge's being 1; soon the phases stay at unit length.
  * A rough solve will do, since the next goes on from it. */

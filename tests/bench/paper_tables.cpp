@@ -168,11 +168,12 @@ void print_rows(const std::vector<Row> &rows)
             print_figures(row.method + std::string(", before splitting"), row.initial);
         print_figures(row.method, row.final);
     }
-    std::printf("before splitting: as the paper counts; folding charts are then split until none is\n"
-                "left, which the paper leaves open: a few more charts, smaller ones\n"
-                "texels: the longest side of all charts sets the density, so one long chart decides;\n"
-                "the paper does not say how a chart's rectangle is found: these are of least area\n"
-                "pgp: borders follow the triangles that lie on both sides of an integer line\n");
+    std::printf("before splitting: as the paper counts; then folding charts are split until none\n"
+                "is left, and crumbs are attached, which the paper leaves open\n"
+                "texels: the longest side of all charts sets the density, so one chart decides;\n"
+                "the paper does not say how it finds rectangles: these are of least area\n"
+                "pgp: borders follow the edges of triangles, not the integer lines themselves,\n"
+                "which leaves more empty than straight cuts would\n");
 }
 
 nlohmann::json to_json(const Figures &f)
