@@ -57,7 +57,7 @@ cxxflags := -std=c++17 -Wshadow=local $(common)
 # Packages, asked for only where they are used: nothing here is needed to build libgeotex.
 pkg = $(shell pkg-config $(1) $(2))
 cflags_mesh  = $(call pkg,--cflags,openmesh draco tinygltf)
-cflags_chart = $(call pkg,--cflags,openmesh)
+cflags_chart = $(call pkg,--cflags,openmesh eigen3)
 cflags_image = $(call pkg,--cflags,OpenImageIO)
 cflags_host  = $(call pkg,--cflags,egl glfw3)
 cflags_cli   = -D_POSIX_C_SOURCE=200809L
@@ -314,7 +314,7 @@ $(out)/tests/bench/bench: $(out)/tests/bench/bench.o $(call objects_of,host) $(l
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host) -lmeshoptimizer
 
 # ---- dependencies --------------------------------------------------------------------------------
-packages := g++ pkg-config libopenmesh-dev libdraco-dev libtinygltf-dev nlohmann-json3-dev \
+packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev nlohmann-json3-dev \
             libmeshoptimizer-dev \
             libglfw3-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri \
             libopenimageio-dev libzstd-dev zlib1g-dev libcmocka-dev glslang-tools \

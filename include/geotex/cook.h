@@ -21,7 +21,9 @@ extern "C" {
 typedef enum gtx_partition {
     GTX_PARTITION_DEFAULT = 0,    /* cuts */
     GTX_PARTITION_CUTS = 1,       /* few large charts that fold nowhere, cut straight into patches */
-    GTX_PARTITION_VSA = 2         /* variational shape approximation (paper, section 5.2) */
+    GTX_PARTITION_VSA = 2,        /* variational shape approximation (paper, section 5.2) */
+    GTX_PARTITION_PGP = 3         /* periodic global parameterization: squares along the principal
+                                     directions of curvature (paper, section 5.1) */
 } gtx_partition;
 
 /* How the maps are extracted from the patches' triangles. GPU is the paper's way (section 5): each
@@ -43,7 +45,8 @@ typedef struct gtx_cook_desc {
                                      T triangles */
     uint32_t resolution;          /* most texels along a patch side, 64..512; 0 = 128. The density
                                      goes with it: patches have 1,400 texels of surface at 128 in
-                                     the mean (cuts), or the longest has this side (vsa) */
+                                     the mean (cuts), or the longest has this side (vsa,
+                                     pgp) */
     uint32_t height_bits;         /* 8 or 16; 0 = 8 */
     uint32_t dilation;            /* texels of dilated normal and colour, up to 128; 0 =
                                      2^(mips - 1) */

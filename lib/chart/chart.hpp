@@ -33,7 +33,8 @@ struct Chart {
 
 enum class PartitionMethod {
     CUTS, /* few large charts that fold nowhere, cut straight */
-    VSA   /* variational shape approximation (paper, section 5.2) */
+    VSA,  /* variational shape approximation (paper, section 5.2) */
+    PGP   /* periodic global parameterization (paper, section 5.1) */
 };
 
 struct ChartOptions {

@@ -2,6 +2,7 @@
 #include "chart/agglomerate.hpp"
 #include "chart/attach.hpp"
 #include "chart/cut.hpp"
+#include "chart/pgp.hpp"
 #include "chart/split.hpp"
 #include "chart/vsa.hpp"
 
@@ -80,6 +81,16 @@ void report_initial(const Surface &surface, const std::vector<Region> &regions, 
     for (uint64_t n : inverted) {
         report.initial_inverted += n;
         report.initial_folding += n > 0;
+    }
+}
+
+std::vector<uint32_t> first_charts(const Surface &surface, PartitionMethod method, uint32_t &count,
+                                   Task &task)
+{
+    switch (method) {
+    case PartitionMethod::VSA: return cluster(surface, surface.whole, count, task);
+    case PartitionMethod::PGP: return square_cells(surface, count, task);
+    default: return agglomerate(surface, count, task);
     }
 }
 
@@ -241,8 +252,7 @@ Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &ta
 
     Partition out;
     uint32_t count = wanted;
-    out.initial_chart = cut ? agglomerate(surface, count, task)
-                            : cluster(surface, surface.whole, count, task);
+    out.initial_chart = first_charts(surface, options.method, count, task);
     std::vector<Region> regions = split_region(surface.whole, out.initial_chart, count);
     surface.whole.neighbours = {};
     report_initial(surface, regions, task, out.report);

@@ -21,7 +21,7 @@ static const option options[] = {
     {"charts", 0, OPTION_UINT, &desc.charts, "N", "wanted number of patches [10 T^0.28]", 1, 1e6},
     {"resolution", 0, OPTION_UINT, &desc.resolution, "N", "most texels along a patch [128]", 64,
      512},
-    {"partition", 0, OPTION_CHOICE, &partition, "cuts|vsa",
+    {"partition", 0, OPTION_CHOICE, &partition, "cuts|vsa|pgp",
      "how the surface is cut into patches [cuts]", 0, 0},
     {"extract", 0, OPTION_CHOICE, &extract, "cpu|gpu",
      "what reads the maps off the patches: gpu renders them, through EGL [cpu]", 0, 0},

@@ -24,6 +24,10 @@ constexpr int DEFAULT_ZSTD = 3;
 constexpr int DEFAULT_ZSTD = 0;
 #endif
 
+/* In the order of gtx_partition. */
+constexpr PartitionMethod METHODS[] = {PartitionMethod::CUTS, PartitionMethod::CUTS,
+                                       PartitionMethod::VSA, PartitionMethod::PGP};
+
 /* A C caller can store any number in an enum, which C++ may not even read as one. */
 template <class Enum> static unsigned number_of(const Enum &field)
 {
@@ -35,7 +39,7 @@ template <class Enum> static unsigned number_of(const Enum &field)
 void check(const gtx_cook_desc &desc)
 {
     require_zeroed(desc.reserved);
-    require_argument(number_of(desc.partition) <= GTX_PARTITION_VSA, "unknown partition");
+    require_argument(number_of(desc.partition) <= GTX_PARTITION_PGP, "unknown partition");
     require_argument(number_of(desc.extract) <= GTX_EXTRACT_GPU, "unknown extraction");
     require_argument(desc.charts <= MOST_CHARTS, "charts is at most 2^20");
     require_argument(!desc.resolution || (desc.resolution >= 64 && desc.resolution <= 512),
@@ -49,7 +53,7 @@ void check(const gtx_cook_desc &desc)
     require_argument(desc.threads <= MOST_THREADS, "threads is at most 1024");
     require_argument(desc.unit >= 0 && std::isfinite(desc.unit), "unit is a positive number");
     require_argument(desc.error >= 0 && desc.error < 1, "error is a fraction of the diagonal");
-    require_argument(desc.error == 0 || number_of(desc.partition) != GTX_PARTITION_VSA,
+    require_argument(desc.error == 0 || number_of(desc.partition) <= GTX_PARTITION_CUTS,
                      "an error can be asked for with the partition cuts only");
     require_argument(desc.measure <= 1, "measure is 0 or 1");
     require_argument(desc.z_up <= 1, "z_up is 0 or 1");
@@ -62,8 +66,7 @@ Options options_of(const gtx_cook_desc &desc)
 {
     Options options;
     options.chart.charts = desc.charts;
-    if (number_of(desc.partition) == GTX_PARTITION_VSA)
-        options.chart.method = PartitionMethod::VSA;
+    options.chart.method = METHODS[number_of(desc.partition)];
     if (desc.resolution)
         options.chart.resolution = desc.resolution;
     if (desc.height_bits)
@@ -89,7 +92,11 @@ Options options_of(const gtx_cook_desc &desc)
 
 const char *partition_name(const Options &options)
 {
-    return options.chart.method == PartitionMethod::VSA ? "vsa" : "cuts";
+    switch (options.chart.method) {
+    case PartitionMethod::VSA: return "vsa";
+    case PartitionMethod::PGP: return "pgp";
+    default: return "cuts";
+    }
 }
 
 uint64_t content_key(const Options &options, uint64_t source_hash)

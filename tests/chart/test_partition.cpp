@@ -193,7 +193,8 @@ static void test_shapes(void **)
         Partition p = partition(c.mesh);
         print(c.name, p);
         check(c.mesh, p);
-        check(c.mesh, partition(c.mesh, 2, with(PartitionMethod::VSA)), 64);
+        for (PartitionMethod method : {PartitionMethod::VSA, PartitionMethod::PGP})
+            check(c.mesh, partition(c.mesh, 2, with(method)), 64);
     }
 }
 
@@ -202,7 +203,9 @@ static void test_small(void **)
     Mesh one;
     one.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     one.triangles = {{0, 1, 2}};
-    Partition p = partition(one);
+    Partition p = partition(one, 2, with(PartitionMethod::PGP));
+    assert_int_equal(p.charts.size(), 1);
+    p = partition(one);
     check(one, p);
     assert_int_equal(p.charts.size(), 1);
     assert_true(length(p.charts[0].frame.z - Vec3d(0, 0, 1)) < 1e-6);
@@ -218,9 +221,11 @@ static void test_small(void **)
         for (Vec3d &v : ball.positions)
             v *= scale;
         check(ball, partition(ball));
+        check(ball, partition(ball, 2, with(PartitionMethod::PGP)), 64);
     }
     Mesh needle = shapes::plane(10, 1, 1e-6);
     check(needle, partition(needle));
+    check(needle, partition(needle, 2, with(PartitionMethod::PGP)), 64);
 }
 
 static void test_empty(void **)
@@ -295,7 +300,8 @@ static void check_single_layer(const Mesh &mesh, const Partition &p)
 static void test_single_layer(void **)
 {
     Mesh mesh = shapes::both(shapes::helicoid(50, 4), shapes::folded_sheet(20, 0.03), {4, 0, 0});
-    for (PartitionMethod method : {PartitionMethod::VSA, PartitionMethod::CUTS}) {
+    for (PartitionMethod method :
+         {PartitionMethod::VSA, PartitionMethod::PGP, PartitionMethod::CUTS}) {
         Partition p = partition(mesh, 2, with(method, 2));
         check(mesh, p);
         check_single_layer(mesh, p);
@@ -424,6 +430,8 @@ static void test_deterministic(void **)
 {
     Mesh mesh = shapes::both(shapes::bumpy_sphere(30), shapes::helicoid(40, 3), {4, 0, 0});
     assert_same(partition(mesh, 1), partition(mesh, 3));
+    const ChartOptions pgp = with(PartitionMethod::PGP, 40);
+    assert_same(partition(mesh, 1, pgp), partition(mesh, 3, pgp));
 }
 
 /* Scanner noise: a few triangles turned over within a good surface drive no split. */

@@ -102,7 +102,8 @@ static void each_option_that_matters_changes_the_key(void **)
         [](gtx_cook_desc &d) { d.z_up = 1; },        [](gtx_cook_desc &d) { d.error = 0.01; },
         [](gtx_cook_desc &d) { d.shell_levels = 2; },
         [](gtx_cook_desc &d) { d.shell_levels = 5; },
-        [](gtx_cook_desc &d) { d.partition = GTX_PARTITION_VSA; }};
+        [](gtx_cook_desc &d) { d.partition = GTX_PARTITION_VSA; },
+        [](gtx_cook_desc &d) { d.partition = GTX_PARTITION_PGP; }};
     std::set<std::string> keys = {key_of(small_ball_file())};
     for (Change change : matter) {
         gtx_cook_desc desc = few_charts;

@@ -88,9 +88,11 @@ static void an_error_is_kept_with_few_bytes(void **)
     assert_int_equal(gtx_cook_file(small_ball_file().c_str(), output.c_str(), &desc, nullptr, &error),
                      GTX_ERROR_ARGUMENT);
     desc.error = 0.01;
-    desc.partition = GTX_PARTITION_VSA;
-    assert_int_equal(gtx_cook_file(small_ball_file().c_str(), output.c_str(), &desc, nullptr, &error),
-                     GTX_ERROR_ARGUMENT);
+    for (gtx_partition partition : {GTX_PARTITION_VSA, GTX_PARTITION_PGP}) {
+        desc.partition = partition;
+        assert_int_equal(gtx_cook_file(small_ball_file().c_str(), output.c_str(), &desc, nullptr,
+                                       &error), GTX_ERROR_ARGUMENT);
+    }
 }
 
 static void the_report_follows_its_schema(void **)

@@ -1,0 +1,63 @@
+/* Periodic global parameterization (Ray, Li, Levy, Sheffer, Alliez 2006; paper, section 5.1). */
+#pragma once
+
+#include "chart/surface.hpp"
+#include "mesh/edges.hpp"
+
+namespace gtx {
+
+constexpr double PI = 3.14159265358979323846;
+
+/* Half-edges, and how a direction is carried across them. A corner is the half-edge that leaves it.
+ * Angles in a triangle count from its first edge, counter-clockwise. */
+struct HalfEdges {
+    std::vector<uint32_t> opposite;  /* a half-edge; NO_EDGE at a border */
+    std::vector<uint32_t> vertex;    /* a corner; a vertex here is one fan of triangles */
+    std::vector<uint32_t> first;     /* a vertex: the corner where a turn to the left begins */
+    std::vector<double> direction;   /* a half-edge: its angle */
+    std::vector<double> length;      /* a half-edge */
+
+    /* The next corner of the same vertex, counter-clockwise; NO_EDGE past a border. */
+    uint32_t left_of(uint32_t corner) const { return opposite[previous_edge(corner)]; }
+    /* The triangle's angle at a corner. */
+    double angle(uint32_t corner) const;
+    /* An angle here plus this is the same direction in the triangle across. */
+    double transport(uint32_t half_edge) const;
+};
+HalfEdges make_half_edges(const Surface &surface);
+
+/* Four directions a triangle, a quarter turn apart, that follow the surface's curvature. */
+struct CrossField {
+    std::vector<double> angle;   /* a triangle: of its first direction */
+    std::vector<uint8_t> turn;   /* a half-edge: quarter turns from the first direction, carried
+                                    across, to that of the triangle there */
+    std::vector<double> bend;    /* a half-edge: what is left then to turn, at most an eighth */
+    std::vector<int> index;      /* a vertex: quarter turns that the field makes around it; 0 where
+                                    it is regular or on a border */
+};
+CrossField make_cross_field(const Surface &surface, const HalfEdges &edges, Task &task);
+
+/* How long a cell is to be at each vertex, against the mean, for the directions to be gradients. */
+std::vector<double> make_scale(const HalfEdges &edges, const CrossField &field);
+
+/* Coordinates in a triangle's directions, as those turned by quarters to the left see them. */
+using Uv = std::array<double, 2>;
+Uv turned(const Uv &uv, unsigned quarters);
+
+/* A parameterization: integer lines of u and v follow the directions, a cell apart. */
+struct Periodic {
+    std::vector<Uv> uv;             /* a corner. Across an edge they are the same but for a turn
+                                       and whole numbers, between triangles that are regular */
+    std::vector<uint8_t> singular;  /* a triangle */
+};
+
+/* Throws Error: INPUT, CANCELLED. */
+Periodic parameterize(const HalfEdges &edges, const CrossField &field,
+                      const std::vector<double> &scale, double cell, Task &task);
+
+/* Partitions the surface into about `count` connected charts: squares of the parameterization, and
+ * what lies around its singularities where that is as large. Returns a label a triangle and
+ * their number in `count`. Throws Error: LIMIT, INPUT, CANCELLED. */
+std::vector<uint32_t> square_cells(const Surface &surface, uint32_t &count, Task &task);
+
+} // namespace gtx

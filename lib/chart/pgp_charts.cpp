@@ -1,0 +1,230 @@
+/* Charts out of a parameterization: its squares, searched for the wanted number of them. */
+#include "chart/pgp.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+
+namespace gtx {
+
+namespace {
+
+/* Entries of the matrix are counted in ints. */
+constexpr size_t MOST_TRIANGLES = 30000000;
+/* Charts below so many cells, of what lies about singularities and of what lines cut off, are
+ * joined to a neighbour. */
+constexpr double LEAST_CELLS = 0.1;
+/* The search for the cell: charts that come out of a cell's area, about, and the shares of the
+ * wanted number that end it: a few too many are joined. */
+constexpr double CHARTS_PER_CELL = 0.97;
+constexpr double LEAST_RATIO = 0.98, MOST_RATIO = 1.06;
+constexpr int SEARCH_ROUNDS = 4;
+
+class UnionFind {
+public:
+    explicit UnionFind(size_t count) : parent_(count)
+    {
+        std::iota(parent_.begin(), parent_.end(), 0u);
+    }
+    uint32_t find(uint32_t a)
+    {
+        while (parent_[a] != a)
+            a = parent_[a] = parent_[parent_[a]];
+        return a;
+    }
+    void join(uint32_t a, uint32_t b) { parent_[find(b)] = find(a); }
+    /* The sets' numbers, in order of their first members. */
+    std::vector<uint32_t> labels(uint32_t &count)
+    {
+        std::vector<uint32_t> number(parent_.size(), NO_TRIANGLE), out;
+        count = 0;
+        for (uint32_t i = 0; i < parent_.size(); ++i) {
+            uint32_t root = find(i);
+            if (number[root] == NO_TRIANGLE)
+                number[root] = count++;
+            out.push_back(number[root]);
+        }
+        return out;
+    }
+
+private:
+    std::vector<uint32_t> parent_;
+};
+
+struct Cells {
+    const HalfEdges &edges;
+    const CrossField &field;
+    const Periodic &map;
+
+    /* The middle of the square that a triangle's centre is in. */
+    Uv middle(uint32_t t) const
+    {
+        Uv out;
+        for (size_t i = 0; i < 2; ++i) {
+            double sum = map.uv[3 * t][i] + map.uv[3 * t + 1][i] + map.uv[3 * t + 2][i];
+            out[i] = std::floor(sum / 3) + 0.5;
+        }
+        return out;
+    }
+    /* Whether the triangles on both sides of an edge lie in one square. */
+    bool same(uint32_t h, uint32_t o) const
+    {
+        if (map.singular[h / 3] || map.singular[o / 3])
+            return map.singular[h / 3] && map.singular[o / 3];
+        unsigned turn = field.turn[h];
+        Uv here = turned(middle(h / 3), turn), there = middle(o / 3);
+        Uv from = turned(map.uv[h], turn), to = map.uv[next_edge(o)];
+        for (size_t i = 0; i < 2; ++i)
+            if (here[i] + std::round(to[i] - from[i]) != there[i])
+                return false;
+        return true;
+    }
+};
+
+/* Joins charts to neighbours, the smallest first. */
+class Joining {
+public:
+    Joining(const HalfEdges &edges, const std::vector<double> &size,
+            const std::vector<uint32_t> &labels, size_t count);
+    /* Those below `least`; what has no neighbour stays as it is and does not count. */
+    void join_smaller(double least);
+    void join_until(size_t count);
+    size_t count() const { return order_.size(); }
+    /* Of what `old` labels. */
+    std::vector<uint32_t> labels(std::vector<uint32_t> old, uint32_t &count);
+
+private:
+    void join_smallest();
+
+    std::vector<double> size_;
+    std::vector<std::map<uint32_t, double>> borders_; /* chart: neighbour, length of border */
+    std::set<std::pair<double, uint32_t>> order_;     /* size, chart */
+    UnionFind charts_;
+};
+
+Joining::Joining(const HalfEdges &edges, const std::vector<double> &size,
+                 const std::vector<uint32_t> &labels, size_t count)
+    : size_(count), borders_(count), charts_(count)
+{
+    for (size_t t = 0; t < size.size(); ++t)
+        size_[labels[t]] += size[t];
+    for (uint32_t h = 0; h < edges.opposite.size(); ++h) {
+        uint32_t o = edges.opposite[h];
+        if (o != NO_EDGE && labels[h / 3] != labels[o / 3])
+            borders_[labels[h / 3]][labels[o / 3]] += edges.length[h];
+    }
+    for (uint32_t i = 0; i < count; ++i)
+        order_.insert({size_[i], i});
+}
+
+void Joining::join_smaller(double least)
+{
+    while (!order_.empty() && order_.begin()->first < least)
+        join_smallest();
+}
+
+void Joining::join_until(size_t count)
+{
+    while (order_.size() > count)
+        join_smallest();
+}
+
+/* To the neighbour with which it has the longest border. */
+void Joining::join_smallest()
+{
+    uint32_t chart = order_.begin()->second, host = chart;
+    order_.erase(order_.begin());
+    double longest = -1;
+    for (const auto &[neighbour, border] : borders_[chart])
+        if (border > longest) {
+            longest = border;
+            host = neighbour;
+        }
+    if (host == chart)
+        return;
+    if (order_.erase({size_[host], host})) /* one that counts */
+        order_.insert({size_[host] + size_[chart], host});
+    size_[host] += size_[chart];
+    for (const auto &[neighbour, border] : borders_[chart]) {
+        borders_[neighbour].erase(chart);
+        if (neighbour == host)
+            continue;
+        borders_[neighbour][host] += border;
+        borders_[host][neighbour] += border;
+    }
+    charts_.join(host, chart);
+}
+
+std::vector<uint32_t> Joining::labels(std::vector<uint32_t> old, uint32_t &count)
+{
+    std::vector<uint32_t> joined = charts_.labels(count);
+    for (uint32_t &label : old)
+        label = joined[label];
+    return old;
+}
+
+/* Numbers the squares, and the pieces of what is singular, in order of their first triangle. */
+std::vector<uint32_t> label_cells(const Cells &cells, uint32_t &count)
+{
+    UnionFind sets(cells.map.singular.size());
+    for (uint32_t h = 0; h < cells.edges.opposite.size(); ++h) {
+        uint32_t o = cells.edges.opposite[h];
+        if (o != NO_EDGE && h < o && cells.same(h, o))
+            sets.join(h / 3, o / 3);
+    }
+    return sets.labels(count);
+}
+
+/* A triangle's area, where a cell of mean length 1 has that of 1. */
+std::vector<double> cell_areas(const Surface &surface, const HalfEdges &edges,
+                               const std::vector<double> &scale)
+{
+    std::vector<double> out;
+    for (uint32_t t = 0; t < surface.mesh.triangle_count(); ++t) {
+        double s = 0;
+        for (uint32_t c = 3 * t; c < 3 * t + 3; ++c)
+            s += scale[edges.vertex[c]] / 3;
+        out.push_back(length(surface.mesh.area_vector(t)) / 2 / (s * s));
+    }
+    return out;
+}
+
+} // namespace
+
+std::vector<uint32_t> square_cells(const Surface &surface, uint32_t &count, Task &task)
+{
+    if (surface.mesh.triangle_count() > MOST_TRIANGLES)
+        throw Error(GTX_ERROR_LIMIT, "the partition pgp takes up to 30 million triangles");
+    HalfEdges edges = make_half_edges(surface);
+    CrossField field = make_cross_field(surface, edges, task);
+    std::vector<double> scale = make_scale(edges, field);
+    std::vector<double> size = cell_areas(surface, edges, scale);
+
+    const uint32_t wanted = count;
+    double area = std::accumulate(size.begin(), size.end(), 0.);
+    if (!(area > 0) || !std::isfinite(area))
+        throw Error(GTX_ERROR_INPUT, "the surface has no area to parameterize");
+    double cell = std::sqrt(CHARTS_PER_CELL * area / wanted), nearest = INFINITY;
+    std::vector<uint32_t> best;
+    for (int round = 0; round < SEARCH_ROUNDS; ++round) {
+        task.advance(0.1 + 0.6 * round / SEARCH_ROUNDS);
+        Periodic map = parameterize(edges, field, scale, cell, task);
+        uint32_t squares;
+        std::vector<uint32_t> labels = label_cells({edges, field, map}, squares);
+        Joining joining(edges, size, labels, squares);
+        joining.join_smaller(LEAST_CELLS * cell * cell);
+        double ratio = double(joining.count()) / wanted;
+        if (best.empty() || std::abs(std::log(ratio)) < nearest) {
+            nearest = std::abs(std::log(ratio));
+            joining.join_until(wanted);
+            best = joining.labels(labels, count);
+        }
+        if (ratio >= LEAST_RATIO && ratio <= MOST_RATIO)
+            break;
+        cell *= std::sqrt(std::clamp(ratio, 0.25, 4.));
+    }
+    return best;
+}
+
+} // namespace gtx

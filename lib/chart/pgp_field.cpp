@@ -1,0 +1,170 @@
+/* The field of directions: fitted to the curvature, smooth across edges, and its singularities. */
+#include "chart/pgp.hpp"
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
+
+#include <complex>
+
+namespace gtx {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+/* What a triangle's curvature counts for, against what its neighbours' directions do. */
+constexpr double FIT = 0.01;
+/* Without any curvature something must still hold the field. */
+constexpr double FIT_LEAST = 1e-9;
+constexpr int PASSES = 20;
+
+/* Directions to keep to, four at once: cos 4a + i sin 4a for an angle a. */
+struct Guide {
+    std::vector<Complex> value;
+    std::vector<double> weight;
+};
+
+Eigen::Vector3d eigen(const Vec3d &v)
+{
+    return {v.x, v.y, v.z};
+}
+
+/* Around each vertex, the normal cycle's measure of curvature (Cohen-Steiner, Morvan 2003): each
+ * edge bends by its dihedral angle, in its own direction. */
+std::vector<Eigen::Matrix3d> vertex_curvatures(const Surface &surface, const HalfEdges &edges)
+{
+    const Mesh &mesh = surface.mesh;
+    std::vector<Eigen::Matrix3d> out(edges.first.size(), Eigen::Matrix3d::Zero());
+    for (uint32_t h = 0; h < edges.opposite.size(); ++h) {
+        uint32_t o = edges.opposite[h];
+        if (o == NO_EDGE || o < h || !(edges.length[h] > 0))
+            continue;
+        Vec3d e = (mesh.positions[start_of(mesh, o)] - mesh.positions[start_of(mesh, h)]) /
+                  edges.length[h];
+        Vec3d a = normalize(mesh.area_vector(h / 3)), b = normalize(mesh.area_vector(o / 3));
+        double bend = std::atan2(dot(cross(a, b), e), dot(a, b)) * edges.length[h];
+        Eigen::Matrix3d part = eigen(e) * eigen(e).transpose() * bend;
+        out[edges.vertex[h]] += part;
+        out[edges.vertex[o]] += part;
+    }
+    return out;
+}
+
+/* The principal directions in a triangle's plane: of a symmetric tensor there, (xx - yy + 2i xy)
+ * turns twice as fast as they do, and they count by how much the two curvatures differ. A border
+ * counts as the sharpest bend does. */
+Guide curvature_guide(const Surface &surface, const HalfEdges &edges)
+{
+    const Mesh &mesh = surface.mesh;
+    std::vector<Eigen::Matrix3d> at_vertex = vertex_curvatures(surface, edges);
+    Guide out;
+    double largest = 0;
+    for (uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+        Vec3d x = normalize(mesh.position(t, 1) - mesh.position(t, 0));
+        Vec3d y = cross(normalize(mesh.area_vector(t)), x);
+        Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
+        for (uint32_t c = 3 * t; c < 3 * t + 3; ++c)
+            tensor += at_vertex[edges.vertex[c]];
+        Eigen::Vector3d tx = tensor * eigen(x), ty = tensor * eigen(y);
+        Complex twice(eigen(x).dot(tx) - eigen(y).dot(ty), 2 * eigen(x).dot(ty));
+        double size = std::abs(twice);
+        largest = std::max(largest, size);
+        out.weight.push_back(size);
+        out.value.push_back(size > 0 ? twice * twice / (size * size) : Complex(1));
+    }
+    for (double &w : out.weight)
+        w = FIT_LEAST + (largest > 0 ? FIT * (w / largest) * (w / largest) : 0);
+    for (uint32_t h = 0; h < edges.opposite.size(); ++h)
+        if (edges.opposite[h] == NO_EDGE) {
+            out.value[h / 3] = std::polar(1., 4 * edges.direction[h]);
+            out.weight[h / 3] = FIT;
+        }
+    return out;
+}
+
+/* Minimises sum |z_f e^(4i transport) - z_g|^2 / 2 + weight |z - guide|^2, where the guide becomes
+ * the last solution at unit length: without that, z fades away from what is sure. */
+std::vector<Complex> smooth(const HalfEdges &edges, const Guide &guide, Task &task)
+{
+    using Vector = Eigen::VectorXcd;
+    int count = int(guide.value.size());
+    Eigen::VectorXd diagonal = Eigen::Map<const Eigen::VectorXd>(guide.weight.data(), count);
+    std::vector<Eigen::Triplet<Complex>> entries; /* the lower triangle */
+    for (uint32_t h = 0; h < edges.opposite.size(); ++h) {
+        uint32_t o = edges.opposite[h];
+        if (o == NO_EDGE || o < h || h / 3 == o / 3)
+            continue;
+        diagonal[h / 3] += 0.5;
+        diagonal[o / 3] += 0.5;
+        entries.emplace_back(int(o / 3), int(h / 3), -0.5 * std::polar(1., 4 * edges.transport(h)));
+    }
+    for (int t = 0; t < count; ++t)
+        entries.emplace_back(t, t, diagonal[t]);
+    Eigen::SparseMatrix<Complex> matrix(count, count);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    entries = {};
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<Complex>> solver(matrix);
+
+    std::vector<Complex> out = guide.value;
+    for (int pass = 0; pass < PASSES && solver.info() == Eigen::Success; ++pass) {
+        task.check();
+        Vector side(count);
+        for (int t = 0; t < count; ++t)
+            side[t] = guide.weight[size_t(t)] * out[size_t(t)];
+        Vector z = solver.solve(side);
+        for (size_t t = 0; t < out.size(); ++t) {
+            double size = std::abs(z[int(t)]);
+            if (size > 0 && std::isfinite(size))
+                out[t] = z[int(t)] / size;
+        }
+    }
+    return out;
+}
+
+/* How the field turns across each edge; once an edge, so that both sides agree. */
+void match(const HalfEdges &edges, CrossField &field)
+{
+    field.turn.assign(edges.opposite.size(), 0);
+    field.bend.assign(edges.opposite.size(), 0);
+    for (uint32_t h = 0; h < edges.opposite.size(); ++h) {
+        uint32_t o = edges.opposite[h];
+        if (o == NO_EDGE || o < h)
+            continue;
+        double between = field.angle[o / 3] - field.angle[h / 3] - edges.transport(h);
+        int quarters = int(std::lround(between / (PI / 2)));
+        field.turn[h] = uint8_t(quarters & 3);
+        field.turn[o] = uint8_t(-quarters & 3);
+        field.bend[h] = between - quarters * (PI / 2);
+        field.bend[o] = -field.bend[h];
+    }
+}
+
+/* A vertex' defect of angle and the field's turning around it together are quarter turns. */
+void find_indices(const HalfEdges &edges, CrossField &field)
+{
+    field.index.assign(edges.first.size(), 0);
+    for (size_t v = 0; v < edges.first.size(); ++v) {
+        double sum = 2 * PI;
+        uint32_t c = edges.first[v];
+        do {
+            sum += field.bend[previous_edge(c)] - edges.angle(c);
+            c = edges.left_of(c);
+        } while (c != NO_EDGE && c != edges.first[v]);
+        if (c != NO_EDGE)
+            field.index[v] = int(std::lround(sum / (PI / 2)));
+    }
+}
+
+} // namespace
+
+CrossField make_cross_field(const Surface &surface, const HalfEdges &edges, Task &task)
+{
+    CrossField out;
+    for (const Complex &z : smooth(edges, curvature_guide(surface, edges), task))
+        out.angle.push_back(std::arg(z) / 4);
+    match(edges, out);
+    find_indices(edges, out);
+    return out;
+}
+
+} // namespace gtx
