@@ -298,7 +298,11 @@ typedef struct gtx_caster gtx_caster;
 typedef struct gtx_caster_desc {
     const gtx_allocator *allocator;
     uint32_t level;               /* level of detail to cast, 0 = finest .. 7 */
-    uint32_t reserved[5];
+    /* Object units; > 0: each patch at its coarsest level, of as many as there are mip levels,
+     * whose sheet strays no farther from that of level 0, as the runtime chooses them. `level` is
+     * 0 then. */
+    float max_error;
+    uint32_t reserved[4];
 } gtx_caster_desc;
 
 /* Coordinates are relative to the asset's anchor. direction need not be normalised; t counts in

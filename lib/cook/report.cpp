@@ -197,6 +197,17 @@ std::string write_compare_report(const CompareReport &report,
         gtx_json_end_object(&json);
     }
     gtx_json_end_array(&json);
+    gtx_json_begin_array(&json, "details");
+    for (const DetailReport &detail : report.details) {
+        gtx_json_begin_object(&json, nullptr);
+        gtx_json_integer(&json, "size", detail.size);
+        gtx_json_integer(&json, "surface_pixels", detail.surface_pixels);
+        gtx_json_integer(&json, "hole_pixels", detail.hole_pixels);
+        gtx_json_integer(&json, "leak_pixels", detail.leak_pixels);
+        gtx_json_number(&json, "silhouette_iou", detail.silhouette_iou);
+        gtx_json_end_object(&json);
+    }
+    gtx_json_end_array(&json);
     gtx_json_number(&json, "silhouette_iou", report.silhouette_iou);
     gtx_json_number(&json, "silhouette_iou_min", report.silhouette_iou_min);
     gtx_json_begin_object(&json, "depth_error");

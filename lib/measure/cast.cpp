@@ -10,7 +10,7 @@ namespace gtx {
 /* Steps of height within which a crossing from below is the edge of an overlap, not a leak. */
 static const double LEAK_STEPS = 4;
 
-AssetView::AssetView(const gtx_asset *asset, uint32_t level)
+AssetView::AssetView(const gtx_asset *asset, uint32_t level, double max_error)
     : patches_(gtx_patches(asset)),
       color_(static_cast<const uint8_t *>(gtx_map_data(asset, GTX_MAP_COLOR, 0, nullptr)))
 {
@@ -18,6 +18,7 @@ AssetView::AssetView(const gtx_asset *asset, uint32_t level)
     gtx_caster_desc desc = {};
     desc.allocator = &asset->allocator;
     desc.level = level;
+    desc.max_error = float(max_error);
     gtx_caster *caster = nullptr;
     gtx_error error = {};
     if (gtx_caster_create(asset, &desc, &caster, &error))

@@ -16,11 +16,12 @@ enum class Crossing : uint8_t {
     leak                         /* from below, with no sheet seen right behind it */
 };
 
-/* One level of detail of an asset, to be looked at. Const and reentrant. */
+/* An asset at one level of detail, or where `max_error` (object units) is given each patch at its
+ * coarsest within it, to be looked at. Const and reentrant. */
 class AssetView {
 public:
     /* The caster takes its memory where the asset did. Throws Error: MEMORY. */
-    AssetView(const gtx_asset *asset, uint32_t level);
+    AssetView(const gtx_asset *asset, uint32_t level, double max_error = 0);
 
     /* Casts row j of the view; both vectors get view.size entries. A hit is what is shown: hit.t is
      * the depth, infinity where there is none. */

@@ -9,6 +9,9 @@ namespace gtx {
 
 /* Tolerances, as DESIGN fixes them: pixels, height steps and fractions of the diagonal. */
 static const double HOLE_PIXELS = 2, HOLE_STEPS = 4, HOLE_DIAGONAL = 0.001, FLAT_DIAGONAL = 0.01;
+/* Pixels that the runtime's levels may be off, and how many sizes of images are looked at. */
+static const double DETAIL_PIXELS = 0.5;
+static const uint32_t DETAIL_SIZES = 5, LEAST_SIZE = 16;
 static const double PI = 3.14159265358979323846;
 
 namespace {
@@ -23,13 +26,19 @@ struct Figures {
     std::vector<HoleSample> samples;
 };
 
+/* Views of one size, and the asset as it is looked at there. */
+struct Scene {
+    std::vector<View> views;
+    AssetView asset;
+    uint32_t level = 0;
+    bool appearance = false;      /* all figures, not holes and silhouettes alone */
+    bool samples = false;         /* holes are listed, too */
+};
+
 /* What all views share. */
 struct Comparison {
     const Mesh &mesh;
-    const CompareOptions &options;
     Extent extent;
-    std::vector<View> views;
-    std::vector<AssetView> levels;
 };
 
 /* The source around a pixel: whether all nine are seen from the front, and their depths. */
@@ -41,7 +50,8 @@ struct Around {
 /* One view at one level while it is measured. */
 struct Look {
     const Comparison &all;
-    uint32_t view_index, level;
+    const Scene &scene;
+    uint32_t view_index;
     const View &view;
     const MeshImage &image;
     const AssetView &asset;
@@ -102,10 +112,10 @@ static double degrees_between(const Vec3d &a, const Vec3d &b)
 void Look::hole(uint32_t i, uint32_t j, const gtx_hit &hit, double behind)
 {
     ++out.holes;
-    if (!all.options.holes)
+    if (!scene.samples)
         return;
     size_t at = size_t(j) * view.size + i;
-    out.samples.push_back({level, view_index, i, j, image.triangle[at], hit.patch, behind,
+    out.samples.push_back({scene.level, view_index, i, j, image.triangle[at], hit.patch, behind,
                            view.at(i, j) - view.toward * double(image.depth[at])});
 }
 
@@ -144,7 +154,7 @@ void Look::pixel(uint32_t i, uint32_t j, const gtx_hit &hit)
         if (!in_asset || hit.t - around.deepest > tolerance)
             hole(i, j, hit, double(hit.t) - around.deepest);
     }
-    if (level)
+    if (!scene.appearance)
         return;
     if (around.surface && in_asset && around.deepest - around.nearest < FLAT_DIAGONAL * diagonal)
         out.depth.push_back(float(std::abs(error) / diagonal));
@@ -167,11 +177,11 @@ void Look::leaks(const std::vector<Crossing> &crossings)
         }
 }
 
-static void measure_level(const Comparison &all, uint32_t view_index, uint32_t level,
-                          const MeshImage &image, Task &task, Figures &out)
+static void measure_view(const Comparison &all, const Scene &scene, uint32_t view_index,
+                         const MeshImage &image, Task &task, Figures &out)
 {
-    const View &view = all.views[view_index];
-    Look look = {all, view_index, level, view, image, all.levels[level], out};
+    const View &view = scene.views[view_index];
+    Look look = {all, scene, view_index, view, image, scene.asset, out};
     std::vector<gtx_hit> hits;
     std::vector<Crossing> row, crossings;
     crossings.reserve(size_t(view.size) * view.size);
@@ -209,12 +219,11 @@ static void summarise(const std::vector<Figures> &figures, CompareReport &report
     report.psnr_db = 10 * std::log10(255. * 255. * 3 * pixels / color_square);
 }
 
-static LevelReport add_up(const std::vector<Figures> &figures, uint32_t level,
-                          CompareReport &report)
+/* The figures that are sums; returns the least silhouette IoU of a view. */
+template <class Report>
+static double add_up(const std::vector<Figures> &figures, Report &sum, uint64_t &surface)
 {
-    LevelReport sum;
-    sum.level = level;
-    uint64_t both = 0, either = 0, surface = 0;
+    uint64_t both = 0, either = 0;
     double least = 1;
     for (const Figures &f : figures) {
         surface += f.surface;
@@ -226,40 +235,70 @@ static LevelReport add_up(const std::vector<Figures> &figures, uint32_t level,
             least = std::min(least, double(f.both) / double(f.either));
     }
     sum.silhouette_iou = either ? double(both) / double(either) : 1;
-    if (level == 0) {
-        report.surface_pixels = surface;
-        report.hole_pixels = sum.hole_pixels;
-        report.leak_pixels = sum.leak_pixels;
-        report.silhouette_iou = sum.silhouette_iou;
-        report.silhouette_iou_min = least;
-        summarise(figures, report);
+    return least;
+}
+
+/* Every level at the size asked for, then what the runtime would draw, at ever smaller sizes. */
+static std::vector<Scene> make_scenes(const gtx_asset *asset, const Extent &extent,
+                                      const CompareOptions &options)
+{
+    std::vector<Scene> scenes;
+    std::vector<View> views = comparison_views(extent, options.size);
+    for (uint32_t level = 0; level < options.levels; ++level)
+        scenes.push_back({views, AssetView(asset, level), level, level == 0,
+                          options.holes != nullptr});
+    for (uint32_t k = 0; k < DETAIL_SIZES && options.size >> k >= LEAST_SIZE; ++k) {
+        views = comparison_views(extent, options.size >> k);
+        scenes.push_back({views, AssetView(asset, 0, DETAIL_PIXELS * views[0].pixel)});
     }
-    return sum;
+    return scenes;
 }
 
 CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOptions &options,
                       Task &task)
 {
-    Comparison all = {mesh, options, extent_of(mesh), {}, {}};
+    const Comparison all = {mesh, extent_of(mesh)};
     if (!(all.extent.radius > 0))
         throw Error(GTX_ERROR_EMPTY, "the source has no extent to measure against");
-    all.views = comparison_views(all.extent, options.size);
-    for (uint32_t level = 0; level < options.levels; ++level)
-        all.levels.emplace_back(asset, level);
-
-    std::vector<std::vector<Figures>> figures(options.levels,
-                                              std::vector<Figures>(all.views.size()));
-    task.parallel(all.views.size(), [&](size_t v) {
-        MeshImage image = rasterise(mesh, all.views[v]);
-        for (uint32_t level = 0; level < options.levels; ++level)
-            measure_level(all, uint32_t(v), level, image, task, figures[level][v]);
+    const std::vector<Scene> scenes = make_scenes(asset, all.extent, options);
+    const size_t views = scenes[0].views.size();
+    std::vector<std::vector<Figures>> figures(scenes.size(), std::vector<Figures>(views));
+    task.parallel(views, [&](size_t v) {
+        MeshImage image;
+        uint32_t size = 0;
+        for (size_t s = 0; s < scenes.size(); ++s) {
+            const View &view = scenes[s].views[v];
+            if (view.size != size)
+                image = rasterise(mesh, view);
+            size = view.size;
+            measure_view(all, scenes[s], uint32_t(v), image, task, figures[s][v]);
+        }
     }, 0, options.surface ? 0.8 : 1);
 
     CompareReport report;
-    report.views = uint32_t(all.views.size());
-    for (uint32_t level = 0; level < options.levels; ++level) {
-        report.levels.push_back(add_up(figures[level], level, report));
-        for (const Figures &f : figures[level])
+    report.views = uint32_t(views);
+    for (size_t s = 0; s < scenes.size(); ++s) {
+        if (s >= options.levels) {
+            DetailReport detail;
+            detail.size = scenes[s].views[0].size;
+            add_up(figures[s], detail, detail.surface_pixels);
+            report.details.push_back(detail);
+            continue;
+        }
+        LevelReport level;
+        uint64_t surface = 0;
+        level.level = scenes[s].level;
+        double least = add_up(figures[s], level, surface);
+        report.levels.push_back(level);
+        if (scenes[s].appearance) {
+            report.surface_pixels = surface;
+            report.hole_pixels = level.hole_pixels;
+            report.leak_pixels = level.leak_pixels;
+            report.silhouette_iou = level.silhouette_iou;
+            report.silhouette_iou_min = least;
+            summarise(figures[s], report);
+        }
+        for (const Figures &f : figures[s])
             if (options.holes)
                 options.holes->insert(options.holes->end(), f.samples.begin(), f.samples.end());
     }

@@ -38,6 +38,14 @@ struct LevelReport {
     double silhouette_iou = 0;
 };
 
+/* The same in images of `size` pixels a side, where each patch is cast at the level that the
+ * runtime takes there by default: the coarsest within half a pixel. */
+struct DetailReport {
+    uint32_t size = 0;
+    uint64_t surface_pixels = 0, hole_pixels = 0, leak_pixels = 0;
+    double silhouette_iou = 0;
+};
+
 /* Figures of all views together. The top ones are those of the worst level that the runtime may
  * draw (level 0). */
 struct CompareReport {
@@ -48,6 +56,7 @@ struct CompareReport {
     double normal_mean_deg = 0, normal_p99_deg = 0;
     double psnr_db = 0;
     std::vector<LevelReport> levels;
+    std::vector<DetailReport> details; /* the views' own size, then each half of the one before */
     SurfaceError error;
     SeamReport seams;
 };

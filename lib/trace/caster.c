@@ -14,6 +14,9 @@ gtx_result gtx_caster_create(const gtx_asset *asset, const gtx_caster_desc *desc
     if (!asset || !out || d->level >= GTX_MAX_MIPS)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "casting needs an asset and a level below %d",
                         GTX_MAX_MIPS);
+    if (!(d->max_error >= 0) || isinf(d->max_error) || (d->max_error > 0 && d->level))
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "casting takes a level, or a finite error >= 0 that chooses levels");
     gtx_result result =
         gtx_check_reserved(d->reserved, sizeof d->reserved / sizeof *d->reserved, error);
     if (result)
@@ -23,10 +26,8 @@ gtx_result gtx_caster_create(const gtx_asset *asset, const gtx_caster_desc *desc
     if (!caster)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a caster");
     caster->allocator = hooks;
-    caster->level = d->level;
     caster->sheet_count = asset->info.patch_count;
-    caster->trim_limit = 128 + 16 * 0.3 * (1 << d->level);
-    result = gtx_sheets_build(caster, asset, error);
+    result = gtx_sheets_build(caster, asset, d->level, d->max_error, error);
     if (!result)
         result = gtx_bvh_build(&caster->bvh, caster->sheets, caster->sheet_count, &hooks, error);
     if (result) {
@@ -137,9 +138,9 @@ static gtx_hit describe(const gtx_caster *caster, const gtx_crossing *crossing)
     /* The cell behind the coordinates; a crossing may lie a rounding error outside. */
     const double right = sheet->width - 1, top = sheet->height - 1;
     const double x = fmin(fmax(crossing->x, 0), right), y = fmin(fmax(crossing->y, 0), top);
-    uint32_t i = (uint32_t)fmin(x, right - 1) >> caster->level;
-    uint32_t j = (uint32_t)fmin(y, top - 1) >> caster->level;
-    gtx_cell cell = gtx_sheet_cell(sheet, caster->level, i, j);
+    uint32_t i = (uint32_t)fmin(x, right - 1) >> sheet->level;
+    uint32_t j = (uint32_t)fmin(y, top - 1) >> sheet->level;
+    gtx_cell cell = gtx_sheet_cell(sheet, i, j);
     gtx_hit hit = {.t = (float)crossing->t, .patch = crossing->sheet, .x = (float)x,
                    .y = (float)y, .back = crossing->back};
     gtx_sheet_normal(sheet, x, y, hit.normal);

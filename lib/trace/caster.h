@@ -14,7 +14,7 @@ typedef struct gtx_range {
 
 enum { GTX_MAX_TREE = 16 }; /* levels of a min-max tree: a page side has 14 bits */
 
-/* One patch, cast at one level of detail. Grid space: x and y in texels of level 0 (texel i at
+/* One patch, cast at its level of detail. Grid space: x and y in texels of level 0 (texel i at
  * x = i), z in codes. The map from object space is affine, so t means the same in both.
  * Node (i, j) of tree level l covers cells (i << l) .. ((i + 1) << l) - 1 of the detail level. */
 typedef struct gtx_sheet {
@@ -22,6 +22,8 @@ typedef struct gtx_sheet {
     double low[3], high[3];     /* box of the solid cells in grid space; low[0] > high[0]: none */
     float normal_frame[3][3];   /* rows x', y', z' */
     uint32_t width, height;     /* texels of level 0 */
+    uint32_t level;             /* of detail */
+    double trim_limit;          /* code of the trim map at the limit of that level */
     uint32_t nodes_x;           /* row length of `code` */
     uint32_t levels;            /* of the tree; the last has one node */
     uint32_t tree_width[GTX_MAX_TREE];
@@ -48,8 +50,7 @@ typedef struct gtx_bvh {
 
 struct gtx_caster {
     gtx_allocator allocator;
-    uint32_t level, sheet_count;
-    double trim_limit;          /* code of the trim map at the limit of this level */
+    uint32_t sheet_count;
     gtx_sheet *sheets;
     gtx_bvh bvh;
     /* What the sheets point into. */
@@ -80,13 +81,15 @@ typedef struct gtx_cell {
     double c, cx, cy, cxy;
 } gtx_cell;
 
-/* sheet.c: sheets and what is looked up in them. */
-gtx_result gtx_sheets_build(gtx_caster *caster, const gtx_asset *asset, gtx_error *error);
+/* sheet.c: sheets, all at one level or each at its coarsest within an error, and what is looked up
+ * in them. */
+gtx_result gtx_sheets_build(gtx_caster *caster, const gtx_asset *asset, uint32_t level,
+                            double max_error, gtx_error *error);
 void gtx_sheets_free(gtx_caster *caster);
 gtx_line gtx_sheet_line(const gtx_sheet *sheet, const gtx_line *ray);
-gtx_cell gtx_sheet_cell(const gtx_sheet *sheet, uint32_t level, uint32_t i, uint32_t j);
+gtx_cell gtx_sheet_cell(const gtx_sheet *sheet, uint32_t i, uint32_t j);
 /* Whether the trim map shows the sheet at (x, y). */
-bool gtx_sheet_shows(const gtx_sheet *sheet, double trim_limit, double x, double y);
+bool gtx_sheet_shows(const gtx_sheet *sheet, double x, double y);
 /* The unit normals at (x, y) in object space: of the map, and of the surface of a cell. */
 void gtx_sheet_normal(const gtx_sheet *sheet, double x, double y, float out[3]);
 void gtx_sheet_facet(const gtx_sheet *sheet, const gtx_cell *cell, double x, double y,

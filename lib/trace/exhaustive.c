@@ -67,7 +67,7 @@ static void search_cell(const gtx_caster *caster, uint32_t index, const gtx_line
         double x = line->origin[0] + t * line->direction[0];
         double y = line->origin[1] + t * line->direction[1];
         if (!(t < best->t || (t == best->t && index < best->sheet)) ||
-            !gtx_sheet_shows(sheet, caster->trim_limit, x, y))
+            !gtx_sheet_shows(sheet, x, y))
             continue;
         *best = (gtx_crossing){t, index, x, y, !from};
         return;
@@ -81,9 +81,9 @@ void gtx_search_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *
     const gtx_line line = gtx_sheet_line(s, ray);
     const double inverse[3] = {1 / line.direction[0], 1 / line.direction[1],
                                1 / line.direction[2]};
-    uint32_t rows = (s->height - 2 + (1u << caster->level)) >> caster->level;
+    uint32_t rows = (s->height - 2 + (1u << s->level)) >> s->level;
     for (uint32_t j = 0; j < rows; ++j) {
-        gtx_cell first = gtx_sheet_cell(s, caster->level, 0, j);
+        gtx_cell first = gtx_sheet_cell(s, 0, j);
         interval row = {ray->t_min, best->t};
         row = cut(row, &line, 1, inverse[1], first.y0, first.y1);
         for (uint32_t i = 0; row.t0 <= row.t1 && i < s->tree_width[0]; ++i) {
@@ -94,7 +94,7 @@ void gtx_search_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *
             interval inside = cut(row, &line, 2, inverse[2], low, high);
             if (inside.t0 > inside.t1)
                 continue;
-            gtx_cell cell = gtx_sheet_cell(s, caster->level, i, j);
+            gtx_cell cell = gtx_sheet_cell(s, i, j);
             inside = cut(inside, &line, 0, inverse[0], cell.x0, cell.x1);
             if (inside.t0 <= inside.t1)
                 search_cell(caster, sheet, &line, &cell, both || s->two_sided, inside, best);

@@ -129,8 +129,8 @@ typedef struct cursor {
 /* Takes the sheet's share and, once there is memory, points the sheet into it. */
 static void place_sheet(const gtx_caster *caster, gtx_sheet *sheet, cursor *at)
 {
-    uint32_t width = cells_of(sheet->width, caster->level);
-    uint32_t height = cells_of(sheet->height, caster->level);
+    uint32_t width = cells_of(sheet->width, sheet->level);
+    uint32_t height = cells_of(sheet->height, sheet->level);
     if (caster->code) {
         sheet->code = caster->code + at->code;
         sheet->trim = caster->trim + at->texel;
@@ -156,7 +156,7 @@ static gtx_result fill_sheet(gtx_caster *caster, const gtx_asset *asset, uint32_
     const gtx_patch *patch = &asset->patches[index];
     gtx_grid grid;
     gtx_result result =
-        gtx_grid_build(asset, index, caster->level, &caster->allocator, &grid, error);
+        gtx_grid_build(asset, index, sheet->level, &caster->allocator, &grid, error);
     if (result)
         return result;
     memcpy(sheet->code, grid.code, (size_t)grid.nodes_x * grid.nodes_y * sizeof *grid.code);
@@ -170,15 +170,46 @@ static gtx_result fill_sheet(gtx_caster *caster, const gtx_asset *asset, uint32_
     return GTX_OK;
 }
 
-gtx_result gtx_sheets_build(gtx_caster *caster, const gtx_asset *asset, gtx_error *error)
+/* The coarsest level whose sheet is within `max_error` of the finest, as those below it are. */
+static gtx_result choose_level(const gtx_asset *asset, uint32_t patch, double max_error,
+                               const gtx_allocator *hooks, uint32_t *level, gtx_error *error)
+{
+    gtx_grid finest, grid;
+    gtx_result result = gtx_grid_build(asset, patch, 0, hooks, &finest, error);
+    if (result)
+        return result;
+    for (uint32_t k = 1; k < asset->info.mip_count; ++k) {
+        result = gtx_grid_build(asset, patch, k, hooks, &grid, error);
+        if (result)
+            break;
+        const bool close = gtx_grid_error(asset, patch, &finest, &grid) <= max_error;
+        gtx_grid_free(&grid, hooks);
+        if (!close)
+            break;
+        *level = k;
+    }
+    gtx_grid_free(&finest, hooks);
+    return result;
+}
+
+gtx_result gtx_sheets_build(gtx_caster *caster, const gtx_asset *asset, uint32_t level,
+                            double max_error, gtx_error *error)
 {
     const gtx_allocator *hooks = &caster->allocator;
     cursor total = {0}, at = {0};
     caster->sheets = gtx_alloc_array(hooks, caster->sheet_count, sizeof *caster->sheets);
     for (uint32_t i = 0; caster->sheets && i < caster->sheet_count; ++i) {
-        caster->sheets[i].width = asset->patches[i].rect[2];
-        caster->sheets[i].height = asset->patches[i].rect[3];
-        place_sheet(caster, &caster->sheets[i], &total);
+        gtx_sheet *sheet = &caster->sheets[i];
+        sheet->width = asset->patches[i].rect[2];
+        sheet->height = asset->patches[i].rect[3];
+        sheet->level = level;
+        if (max_error > 0) {
+            gtx_result chosen = choose_level(asset, i, max_error, hooks, &sheet->level, error);
+            if (chosen)
+                return chosen;
+        }
+        sheet->trim_limit = 128 + 16 * 0.3 * (1 << sheet->level);
+        place_sheet(caster, sheet, &total);
     }
     caster->code_count = total.code;
     caster->range_count = total.range;
@@ -219,8 +250,9 @@ gtx_line gtx_sheet_line(const gtx_sheet *sheet, const gtx_line *ray)
     return line;
 }
 
-gtx_cell gtx_sheet_cell(const gtx_sheet *sheet, uint32_t level, uint32_t i, uint32_t j)
+gtx_cell gtx_sheet_cell(const gtx_sheet *sheet, uint32_t i, uint32_t j)
 {
+    const uint32_t level = sheet->level;
     const uint16_t *row = sheet->code + (size_t)j * sheet->nodes_x + i;
     const uint16_t *next = row + sheet->nodes_x;
     return (gtx_cell){.x0 = i << level,
@@ -249,13 +281,13 @@ static size_t bilinear(const gtx_sheet *sheet, double x, double y, double weight
     return (size_t)j * sheet->width + i;
 }
 
-bool gtx_sheet_shows(const gtx_sheet *sheet, double trim_limit, double x, double y)
+bool gtx_sheet_shows(const gtx_sheet *sheet, double x, double y)
 {
     double weight[4];
     const uint8_t *row = sheet->trim + bilinear(sheet, x, y, weight);
     const uint8_t *next = row + sheet->width;
     return weight[0] * row[0] + weight[1] * row[1] + weight[2] * next[0] + weight[3] * next[1] <=
-           trim_limit;
+           sheet->trim_limit;
 }
 
 void gtx_sheet_normal(const gtx_sheet *sheet, double x, double y, float out[3])

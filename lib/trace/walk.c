@@ -53,7 +53,7 @@ static bool clip(const gtx_sheet *sheet, const gtx_line *line, double *t0, doubl
 static double plane(const walk *w, int axis, uint32_t n, uint32_t l)
 {
     uint32_t last = (axis ? w->sheet->height : w->sheet->width) - 1;
-    uint32_t texel = n << (l + w->caster->level);
+    uint32_t texel = n << (l + w->sheet->level);
     return texel < last ? texel : last;
 }
 
@@ -83,7 +83,7 @@ static bool accept(const walk *w, double t, double s, bool back)
         return false;
     double x = w->origin[0] + (t + s) * w->direction[0];
     double y = w->origin[1] + (t + s) * w->direction[1];
-    if (!gtx_sheet_shows(w->sheet, w->caster->trim_limit, x, y))
+    if (!gtx_sheet_shows(w->sheet, x, y))
         return false;
     *best = (gtx_crossing){when, w->index, x, y, back};
     return true;
@@ -94,7 +94,7 @@ static bool accept(const walk *w, double t, double s, bool back)
  * -root, from below +root, and each is solved in the form that does not cancel. */
 static bool cross_cell(const walk *w, uint32_t i, uint32_t j, double t, double exit)
 {
-    gtx_cell cell = gtx_sheet_cell(w->sheet, w->caster->level, i, j);
+    gtx_cell cell = gtx_sheet_cell(w->sheet, i, j);
     const double *o = w->origin, *d = w->direction;
     double width = cell.x1 - cell.x0, height = cell.y1 - cell.y0;
     double u = (o[0] + t * d[0] - cell.x0) / width, du = d[0] / width;

@@ -257,6 +257,12 @@ static void a_comparison_measures_the_cook(void **)
     if (!why.empty())
         fail_msg("%s", why.c_str());
     assert_int_equal(json["levels"].size(), 2);
+    /* What the runtime draws, down to 16 pixels: coarser and coarser, and without a hole. */
+    assert_int_equal(json["details"].size(), 4);
+    assert_int_equal(json["details"][3]["size"], 16);
+    for (const schema::json &detail : json["details"])
+        assert_int_equal(detail["hole_pixels"], 0);
+    assert_int_equal(json["details"][0]["surface_pixels"], json["surface_pixels"]);
     assert_int_equal(json["hole_pixels"], result.hole_pixels);
     assert_int_equal(result.hole_pixels, 0);
     assert_true(result.silhouette_iou > 0.98);

@@ -413,6 +413,53 @@ static void coverage_only_grows(void **state)
     gtx_close(asset);
 }
 
+/* How many of the same rays two casters answer alike, and by how far answers differ at most. */
+static int same_answers(const gtx_asset *asset, const gtx_caster *a, const gtx_caster *b, int count,
+                        float *farthest)
+{
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    uint64_t seed = 33;
+    int same = 0;
+    *farthest = 0;
+    for (int i = 0; i < count; ++i) {
+        gtx_ray ray = random_ray(&info, &seed);
+        gtx_hit one = cast(a, ray, 0), other = cast(b, ray, 0);
+        same += one.patch == other.patch && (one.patch == UINT32_MAX || one.t == other.t);
+        if (one.patch == other.patch && one.patch != UINT32_MAX)
+            *farthest = fmaxf(*farthest, fabsf(one.t - other.t));
+    }
+    return same;
+}
+
+/* Levels by an error: none allows none but the finest, much the coarsest that has mips. */
+static void an_error_chooses_levels(void **state)
+{
+    (void)state;
+    enum { RAYS = 20000 };
+    gtx_asset *asset = fixture_sphere(1, 64, 8);
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    assert_true(info.mip_count > 1);
+    gtx_caster *finest = caster_of(asset, 0), *coarsest = caster_of(asset, info.mip_count - 1);
+    float farthest;
+    assert_true(same_answers(asset, finest, coarsest, RAYS, &farthest) < RAYS);
+    const struct {
+        float error;
+        const gtx_caster *like;
+    } cases[] = {{1e-9f, finest}, {10, coarsest}};
+    for (int i = 0; i < 2; ++i) {
+        gtx_caster *chosen = NULL;
+        gtx_caster_desc desc = {.max_error = cases[i].error};
+        assert_int_equal(gtx_caster_create(asset, &desc, &chosen, NULL), GTX_OK);
+        assert_int_equal(same_answers(asset, chosen, cases[i].like, RAYS, &farthest), RAYS);
+        gtx_caster_destroy(chosen);
+    }
+    gtx_caster_destroy(finest);
+    gtx_caster_destroy(coarsest);
+    gtx_close(asset);
+}
+
 static void half_sheet(const gtx_patch *patch, double x, double y, const void *user,
                        fixture_texel *out)
 {
@@ -497,6 +544,13 @@ static void bad_arguments(void **state)
     gtx_caster_desc desc = {.level = 8};
     assert_int_equal(gtx_caster_create(NULL, NULL, &caster, &error), GTX_ERROR_ARGUMENT);
     assert_int_equal(gtx_caster_create(asset, &desc, &caster, &error), GTX_ERROR_ARGUMENT);
+    const float bad_errors[] = {-1, NAN, INFINITY};
+    for (int i = 0; i < 3; ++i) {
+        desc = (gtx_caster_desc){.max_error = bad_errors[i]};
+        assert_int_equal(gtx_caster_create(asset, &desc, &caster, &error), GTX_ERROR_ARGUMENT);
+    }
+    desc = (gtx_caster_desc){.max_error = 1, .level = 1};
+    assert_int_equal(gtx_caster_create(asset, &desc, &caster, &error), GTX_ERROR_ARGUMENT);
     desc = (gtx_caster_desc){.reserved = {0, 0, 1}};
     assert_int_equal(gtx_caster_create(asset, &desc, &caster, &error), GTX_ERROR_NOT_ZEROED);
     assert_null(caster);
@@ -577,6 +631,7 @@ int main(void)
         cmocka_unit_test(interval_is_respected),
         cmocka_unit_test(any_hit_is_a_hit),
         cmocka_unit_test(coverage_only_grows),
+        cmocka_unit_test(an_error_chooses_levels),
         cmocka_unit_test(trim_ends_the_sheet),
         cmocka_unit_test(a_field_of_patches),
         cmocka_unit_test(codes_without_a_cell_are_no_surface),
