@@ -138,8 +138,9 @@ Row make_row(const Mesh &mesh, const char *name, PartitionMethod method, unsigne
     const ChartReport &r = p.report;
     Row row = {name, {r.initial_charts, r.initial_inverted, r.initial_folding},
                {p.charts.size(), r.inverted_triangles, r.folding_charts}, r.second_layer_fraction};
-    count_texels(mesh, initial_charts(mesh, p), row.initial);
-    count_texels(mesh, p.charts, row.final);
+    const Mesh &charted = p.charted(mesh);
+    count_texels(charted, initial_charts(charted, p), row.initial);
+    count_texels(charted, p.charts, row.final);
     return row;
 }
 
@@ -171,9 +172,7 @@ void print_rows(const std::vector<Row> &rows)
     std::printf("before splitting: as the paper counts; then folding charts are split until none\n"
                 "is left, and crumbs are attached, which the paper leaves open\n"
                 "texels: the longest side of all charts sets the density, so one chart decides;\n"
-                "the paper does not say how it finds rectangles: these are of least area\n"
-                "pgp: borders follow the edges of triangles, not the integer lines themselves,\n"
-                "which leaves more empty than straight cuts would\n");
+                "the paper does not say how it finds rectangles: these are of least area\n");
 }
 
 nlohmann::json to_json(const Figures &f)

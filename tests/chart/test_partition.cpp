@@ -114,8 +114,9 @@ static void check_frame(const Mesh &mesh, const Chart &chart, double pitch)
 }
 
 /* `largest_guest`: texels of what may join a chart without touching it; 0: any. */
-static void check(const Mesh &mesh, const Partition &p, double largest_guest = 0)
+static void check(const Mesh &source, const Partition &p, double largest_guest = 0)
 {
+    const Mesh &mesh = p.charted(source);
     auto neighbours = triangle_neighbours(mesh);
     std::vector<int> used(mesh.triangle_count());
     uint64_t owned = 0;
@@ -140,7 +141,8 @@ static void check(const Mesh &mesh, const Partition &p, double largest_guest = 0
     assert_true(std::all_of(used.begin(), used.end(),
                             [=](int n) { return cut ? n >= 1 : n == 1; }));
     /* where patches end between all texel centres, a sliver is nobody's own */
-    assert_in_range(owned, mesh.triangle_count() * 999 / 1000, mesh.triangle_count());
+    assert_in_range(owned, source.triangle_count() * 999 / 1000, source.triangle_count());
+    assert_true(p.report.initial_inverted <= source.triangle_count());
     if (!cut)
         assert_true(longest / p.pitch < 128 + 1e-6);
     assert_int_equal(p.initial_chart.size(), mesh.triangle_count());
@@ -259,8 +261,9 @@ static void test_folds_are_split(void **)
     assert_int_equal(partition(flat, 2, one).charts.size(), 1);
 }
 
-static void check_single_layer(const Mesh &mesh, const Partition &p)
+static void check_single_layer(const Mesh &source, const Partition &p)
 {
+    const Mesh &mesh = p.charted(source);
     const double apart = 1e-4 * 6 + 1e-9;
     for (const Chart &chart : p.charts) {
         size_t noise = 0; /* as the junk rule has it: a few samples, and shallow */
