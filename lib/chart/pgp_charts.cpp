@@ -18,7 +18,7 @@ constexpr double LEAST_CELLS = 0.1;
 /* The search for the cell: charts that come out of a cell's area, about, and the shares of the
  * wanted number that end it: a few too many are joined. */
 constexpr double CHARTS_PER_CELL = 0.97;
-constexpr double LEAST_RATIO = 0.98, MOST_RATIO = 1.06;
+constexpr double LEAST_RATIO = 0.98, MOST_RATIO = 1.06, BEST_RATIO = 1.02;
 constexpr int SEARCH_ROUNDS = 4;
 
 class UnionFind {
@@ -178,6 +178,20 @@ std::vector<double> piece_areas(const Pieces &pieces, const std::vector<double> 
     return out;
 }
 
+/* A length of cells and how many charts it made of one that is wanted. */
+struct Try {
+    double cell = 0, ratio = 0;
+};
+
+/* Between the nearest tries that made too few and too many, where there are both. */
+double next_cell(const Try &last, const Try &few, const Try &many)
+{
+    if (few.cell == 0 || many.cell == 0)
+        return last.cell * std::sqrt(std::clamp(last.ratio / BEST_RATIO, 0.25, 4.));
+    double share = std::log(BEST_RATIO / few.ratio) / std::log(many.ratio / few.ratio);
+    return few.cell * std::pow(many.cell / few.cell, std::clamp(share, 0.1, 0.9));
+}
+
 } // namespace
 
 CutMesh square_cells(const Surface &surface, uint32_t &count, Task &task)
@@ -194,6 +208,7 @@ CutMesh square_cells(const Surface &surface, uint32_t &count, Task &task)
     if (!(area > 0) || !std::isfinite(area))
         throw Error(GTX_ERROR_INPUT, "the surface has no area to parameterize");
     double cell = std::sqrt(CHARTS_PER_CELL * area / wanted), nearest = INFINITY;
+    Try few, many;
     Pieces best;
     std::vector<uint32_t> label;
     for (int round = 0; round < SEARCH_ROUNDS; ++round) {
@@ -204,7 +219,7 @@ CutMesh square_cells(const Surface &surface, uint32_t &count, Task &task)
         std::vector<uint32_t> cells = label_cells(pieces, squares);
         Joining joining(pieces, piece_areas(pieces, size), cells, squares);
         joining.join_smaller(LEAST_CELLS * cell * cell);
-        double ratio = double(joining.count()) / wanted;
+        double ratio = double(std::max<size_t>(joining.count(), 1)) / wanted;
         if (label.empty() || std::abs(std::log(ratio)) < nearest) {
             nearest = std::abs(std::log(ratio));
             joining.join_until(wanted);
@@ -213,7 +228,8 @@ CutMesh square_cells(const Surface &surface, uint32_t &count, Task &task)
         }
         if (ratio >= LEAST_RATIO && ratio <= MOST_RATIO)
             break;
-        cell *= std::sqrt(std::clamp(ratio, 0.25, 4.));
+        (ratio < BEST_RATIO ? few : many) = {cell, ratio};
+        cell = next_cell({cell, ratio}, few, many);
     }
     return cut_mesh(surface.mesh, best, label);
 }

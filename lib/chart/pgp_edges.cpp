@@ -51,6 +51,11 @@ double HalfEdges::angle(uint32_t c) const
     return PI - std::abs(std::remainder(direction[c] - direction[previous_edge(c)], 2 * PI));
 }
 
+double HalfEdges::cotangent(uint32_t h) const
+{
+    return 1 / std::tan(angle(previous_edge(h)));
+}
+
 double HalfEdges::transport(uint32_t h) const
 {
     return std::remainder(direction[opposite[h]] + PI - direction[h], 2 * PI);

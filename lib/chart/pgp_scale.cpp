@@ -12,12 +12,6 @@ constexpr double LEAST_COTANGENT = 0.02;
 /* Cells are at most as much longer or shorter than the mean. */
 constexpr double MOST_SCALE = 4;
 
-/* Of the angle that faces a half-edge. */
-double cotangent(const HalfEdges &edges, uint32_t h)
-{
-    return 1 / std::tan(edges.angle(previous_edge(h)));
-}
-
 } // namespace
 
 /* With directions at an angle a and cells of length s, the gradients of u and v have no curl where
@@ -34,7 +28,7 @@ std::vector<double> make_scale(const HalfEdges &edges, const CrossField &field)
         int i = int(edges.vertex[h]), j = int(edges.vertex[next_edge(h)]);
         if (i == j || (o != NO_EDGE && o < h))
             continue;
-        double sum = cotangent(edges, h) + (o != NO_EDGE ? cotangent(edges, o) : 0);
+        double sum = edges.cotangent(h) + (o != NO_EDGE ? edges.cotangent(o) : 0);
         double weight = std::max(LEAST_COTANGENT, sum / 2);
         entries.emplace_back(std::max(i, j), std::min(i, j), -weight);
         diagonal[i] += weight;
