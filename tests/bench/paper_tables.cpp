@@ -171,18 +171,27 @@ void print_figures(const std::string &name, const Figures &f)
 constexpr Figures PAPER_VSA = {222, 3, 3, 461312, 179194};
 constexpr Figures PAPER_PGP = {224, 817, 45, 1008128, 240357};
 
+void print_head(const std::string &title)
+{
+    std::printf("%s\n%-24s %6s %9s %8s %9s %10s\n", title.c_str(), "", "charts", "inverted",
+                "folding", "texels", "empty");
+}
+
+void print_paper()
+{
+    print_head("the paper, bunny, 69451 triangles");
+    print_figures("VSA", PAPER_VSA);
+    print_figures("PGP", PAPER_PGP);
+}
+
 void print_rows(const std::vector<Row> &rows)
 {
-    std::printf("%-24s %6s %9s %8s %9s %10s\n", "", "charts", "inverted", "folding", "texels",
-                "empty");
-    print_figures("paper, bunny, VSA", PAPER_VSA);
-    print_figures("paper, bunny, PGP", PAPER_PGP);
     for (const Row &row : rows) {
         if (row.method != std::string("cuts")) /* its clusters are no charts yet */
             print_figures(row.method + std::string(", before splitting"), row.initial);
         print_figures(row.method, row.final);
     }
-    std::printf("\n%-24s %6s %9s %9s %9s %10s  %s\n", "assets of equal texels", "charts", "texels",
+    std::printf("%-24s %6s %9s %9s %9s %10s  %s\n", "assets of equal texels", "charts", "texels",
                 "empty", "range", "RMS", "hole pixels");
     for (const Row &row : rows) {
         const AssetFigures &a = row.asset;
@@ -193,12 +202,11 @@ void print_rows(const std::vector<Row> &rows)
                     static_cast<unsigned long long>(a.holes),
                     static_cast<unsigned long long>(a.pixels));
     }
-    std::printf("\n");
 }
 
 void print_notes()
 {
-    std::printf("before splitting: as the paper counts; then folding charts are split until none\n"
+    std::printf("\nbefore splitting: as the paper counts; then folding charts are split until none\n"
                 "is left, and crumbs are attached, which the paper leaves open\n"
                 "texels: the longest side of all charts sets the density, so one chart decides;\n"
                 "the paper does not say how it finds rectangles: these are of least area\n"
@@ -243,7 +251,7 @@ void add_model(const std::string &model, unsigned charts, const std::string &fol
     std::vector<AssetFigures> assets = equal_texels(model, charts, partitions, folder);
     for (size_t i = 0; i < rows.size(); ++i)
         rows[i].asset = assets[i];
-    std::printf("%s, %zu triangles\n", model.c_str(), mesh.triangle_count());
+    print_head("\n" + model + ", " + std::to_string(mesh.triangle_count()) + " triangles");
     print_rows(rows);
     for (const Row &row : rows)
         rows_json.push_back(to_json(row, model, mesh.triangle_count()));
@@ -262,6 +270,7 @@ int main(int argc, char **argv)
         nlohmann::json table = {
             {"paper", {{"vsa", to_json(PAPER_VSA)}, {"pgp", to_json(PAPER_PGP)}}},
             {"rows", nlohmann::json::array()}};
+        print_paper();
         for (int i = 2; i < argc; i += 2)
             add_model(argv[i], unsigned(std::atoi(argv[i + 1])), folder, table["rows"]);
         print_notes();

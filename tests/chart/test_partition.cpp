@@ -503,6 +503,29 @@ static void test_charts_ply(void **)
     }
 }
 
+/* Pieces have their charts' colours; a triangle that folds counts once, in however many pieces. */
+static void test_charts_ply_of_pieces(void **)
+{
+    Mesh mesh = shapes::torus(12, 0.4);
+    Partition p = partition(mesh, 2, with(PartitionMethod::PGP, 6));
+    assert_true(p.mesh.triangle_count() > mesh.triangle_count());
+    std::string path = "/tmp/geotex_pieces_" + std::to_string(uintptr_t(&p)) + ".ply";
+    write_charts_ply(path, p.charted(mesh), p);
+    Task task(1, nullptr, nullptr, {"import"});
+    task.begin("import");
+    Mesh read = import_mesh(path, task);
+    std::remove(path.c_str());
+    assert_int_equal(read.triangle_count(), p.mesh.triangle_count());
+    assert_int_equal(read.colors.size(), 3 * read.triangle_count());
+    std::vector<uint32_t> green;
+    for (uint32_t t = 0; t < read.triangle_count(); ++t)
+        if (read.colors[3 * t] == Rgba8{0, 255, 0, 255})
+            green.push_back(p.source_of(t));
+    green.erase(std::unique(green.begin(), green.end()), green.end());
+    assert_int_equal(green.size(), p.report.initial_inverted);
+    assert_true(!green.empty() && p.report.initial_folding > 0);
+}
+
 static void test_models(void **)
 {
     const char *models = std::getenv("GEOTEX_MODELS");
@@ -541,6 +564,7 @@ int main(void)
         cmocka_unit_test(test_density), cmocka_unit_test(test_crumbs),
         cmocka_unit_test(test_two_sided), cmocka_unit_test(test_deterministic),
         cmocka_unit_test(test_junk), cmocka_unit_test(test_cancel),
-        cmocka_unit_test(test_charts_ply), cmocka_unit_test(test_models)};
+        cmocka_unit_test(test_charts_ply), cmocka_unit_test(test_charts_ply_of_pieces),
+        cmocka_unit_test(test_models)};
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }
