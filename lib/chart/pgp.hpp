@@ -21,8 +21,9 @@ struct HalfEdges {
     uint32_t left_of(uint32_t corner) const { return opposite[previous_edge(corner)]; }
     /* The triangle's angle at a corner. */
     double angle(uint32_t corner) const;
-    /* Of the angle that faces a half-edge. */
-    double cotangent(uint32_t half_edge) const;
+    /* What an edge counts for in Laplace's equation: the mean cotangent of the angles that face it,
+     * or a little where that would push its ends apart. */
+    double weight(uint32_t half_edge) const;
     /* An angle here plus this is the same direction in the triangle across. */
     double transport(uint32_t half_edge) const;
 };

@@ -17,8 +17,6 @@ constexpr double FIT = 0.01;
 /* Without any curvature something must still hold the field. */
 constexpr double FIT_LEAST = 1e-9;
 constexpr int PASSES = 20;
-/* Cotangents of slivers and obtuse triangles would push directions apart. */
-constexpr double LEAST_COTANGENT = 0.02;
 
 /* Directions to keep to, four at once: cos 4a + i sin 4a for an angle a. */
 struct Guide {
@@ -160,8 +158,7 @@ std::vector<Complex> smooth(const HalfEdges &edges, const Polar &polar, const Gu
         int i = int(edges.vertex[h]), j = int(edges.vertex[next_edge(h)]);
         if (i == j || (o != NO_EDGE && o < h))
             continue;
-        double sum = edges.cotangent(h) + (o != NO_EDGE ? edges.cotangent(o) : 0);
-        double weight = std::max(LEAST_COTANGENT, sum / 2);
+        double weight = edges.weight(h);
         diagonal[i] += weight;
         diagonal[j] += weight;
         Complex turn = weight * std::polar(1., 4 * along_edge(edges, polar, h));
