@@ -534,7 +534,9 @@ static void test_models(void **)
     struct {
         const char *name, *file;
         unsigned charts;
+        PartitionMethod method = PartitionMethod::CUTS;
     } cases[] = {{"bunny", "scans/bunny.ply", 222},
+                 {"squares", "scans/bunny.ply", 222, PartitionMethod::PGP},
                  {"armadillo", "scans/armadillo_86k.obj.gz", 0},
                  {"horse", "scans/horse.ply.gz", 0},
                  {"nefertiti", "scans/nefertiti.obj.gz", 0},
@@ -545,9 +547,7 @@ static void test_models(void **)
         task.begin("read");
         CleanReport report;
         Mesh mesh = clean_mesh(import_mesh(std::string(models) + "/" + c.file, task), task, report);
-        ChartOptions options;
-        options.charts = c.charts;
-        Partition p = make_partition(mesh, options, task);
+        Partition p = make_partition(mesh, with(c.method, c.charts), task);
         task.end();
         print(c.name, p);
         print_message("           %.2f s\n", task.seconds()[1] + task.seconds()[2]);
