@@ -294,18 +294,23 @@ run-bench:
 	@$(build)/gtx cook $(MODEL) -o $(build)/demo/bench.gtx
 	@$(out)/tests/bench/bench $(build)/demo/bench.gtx $(MODEL)
 
-CHARTS ?= 222
-paper-tables: ## the paper's Tables 2 and 3 of MODEL in CHARTS charts (the paper: the bunny, 222), ours beside
+# Models and their charts: the paper's bunny where it is, and MODEL (default: the sculpt without it).
+CHARTS ?= 0
+bunny := $(wildcard $(GEOTEX_MODELS)/scans/bunny.ply)
+more_models  = $(if $(bunny),$(filter-out $(build)/demo/sculpt.glb,$(MODEL)),$(MODEL))
+table_models = $(if $(bunny),$(bunny) 222) $(foreach model,$(more_models),$(model) $(CHARTS))
+paper-tables: ## the paper's Tables 2 and 3 of the bunny and of MODEL, all partitions beside each other
 	@$(MAKE) --no-print-directory deps
 	@$(MAKE) --no-print-directory -j$$(nproc) all $(out)/tests/bench/paper_tables
 	@$(MAKE) --no-print-directory run-paper-tables
 
 run-paper-tables:
 	@mkdir -p $(build)/demo $(build)/paper
-	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
-	@$(out)/tests/bench/paper_tables $(MODEL) $(CHARTS) $(build)/paper/tables.json
+	$(if $(filter $(build)/demo/sculpt.glb,$(table_models)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
+	@$(out)/tests/bench/paper_tables $(build)/paper $(table_models)
 
-$(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o $(lib_cook) $(lib_core)
+$(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o $(out)/tests/bench/equal_texels.o \
+    $(lib_cook) $(lib_core)
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh)
 

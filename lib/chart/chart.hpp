@@ -28,7 +28,8 @@ struct Chart {
     double clip_low[2] = {-INFINITY, -INFINITY}, clip_high[2] = {INFINITY, INFINITY};
     /* Texels of the grid along the frame's sides; 0 = as many as the pitch gives. */
     unsigned cells[2] = {0, 0};
-    uint64_t source_triangles = 0; /* those whose centre lies in the core */
+    /* Those whose centre lies in the core; of one that is cut in pieces, the first counts. */
+    uint64_t source_triangles = 0;
 };
 
 enum class PartitionMethod {
@@ -61,12 +62,19 @@ struct ChartReport {
     double junk_area_fraction = 0;
 };
 
+/* Triangles here are those of charted(). */
 struct Partition {
     std::vector<Chart> charts;
+    /* PGP cuts triangles where charts end; empty where the charts are of the source's own. */
+    Mesh mesh;
+    std::vector<uint32_t> source;        /* per triangle of `mesh`: that of the source, ascending */
     double pitch = 0;                    /* texel pitch of the model, object units */
     std::vector<uint32_t> initial_chart; /* per triangle, before splitting */
     std::vector<uint8_t> junk;           /* per triangle: 1 = junk */
     ChartReport report;
+
+    const Mesh &charted(const Mesh &source_mesh) const;
+    uint32_t source_of(uint32_t triangle) const { return source.empty() ? triangle : source[triangle]; }
 };
 
 /* Clusters the triangles (on OpenMesh connectivity), splits clusters until none folds, and gives
@@ -82,7 +90,7 @@ std::vector<uint32_t> overlap_triangles(const Mesh &mesh,
                                         const std::vector<std::array<uint32_t, 3>> &neighbours,
                                         const Chart &chart, double reach);
 
-/* Writes the mesh with a colour a chart of the partition before splitting, inverted triangles green
+/* Writes the charted mesh with a colour a chart of the partition before splitting, inverted triangles green
  * (paper, Figure 5): binary PLY, through a temporary name beside it. Throws Error: WRITE. */
 void write_charts_ply(const std::string &path, const Mesh &mesh, const Partition &partition);
 

@@ -1,6 +1,7 @@
 /* The partition as a coloured PLY (paper, Figure 5). */
 #include "chart/frame.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -13,10 +14,12 @@ namespace {
 Rgba8 chart_color(uint32_t chart)
 {
     double turn = std::fmod(chart * 0.6180339887, 1.) * 0.7;
-    double hue = 6 * (turn < 0.2 ? turn : turn + 0.3), light = 0.75 + 0.25 * (chart % 3 == 0);
+    double hue = 6 * (turn < 0.2 ? turn : turn + 0.3), light = 1 - 0.2 * (chart % 3);
+    double pale = 0.5 * (chart % 2);
     auto channel = [=](double at) {
         double away = std::abs(std::fmod(hue - at + 9, 6.) - 3);
-        return uint8_t(255 * light * std::min(1., 0.25 + std::max(0., 1.5 - away)));
+        double pure = std::clamp(2 - away, 0., 1.);
+        return uint8_t(255 * light * (pale + (1 - pale) * pure));
     };
     return {channel(0), channel(2), channel(4), 255};
 }

@@ -68,30 +68,25 @@ double cut_pitch(const Surface &surface, size_t patches, const ChartOptions &opt
     return std::sqrt(surface.area / (CUT_TEXELS * double(patches))) * 128 / options.resolution;
 }
 
+/* A triangle in pieces counts once. */
 void report_initial(const Surface &surface, const std::vector<Region> &regions, Task &task,
-                    ChartReport &report)
+                    Partition &out)
 {
-    std::vector<uint64_t> inverted(regions.size());
+    std::vector<std::vector<uint32_t>> inverted(regions.size());
     task.parallel(regions.size(), [&](size_t i) {
         Vec3d z = median_axis(surface.mesh, regions[i].triangles);
         for (uint32_t t : regions[i].triangles)
-            inverted[i] += dot(surface.mesh.area_vector(t), z) <= 0;
+            if (dot(surface.mesh.area_vector(t), z) <= 0)
+                inverted[i].push_back(out.source_of(t));
     }, 0.7, 0.72);
-    report.initial_charts = regions.size();
-    for (uint64_t n : inverted) {
-        report.initial_inverted += n;
-        report.initial_folding += n > 0;
+    out.report.initial_charts = regions.size();
+    std::vector<uint32_t> all;
+    for (const std::vector<uint32_t> &some : inverted) {
+        all.insert(all.end(), some.begin(), some.end());
+        out.report.initial_folding += !some.empty();
     }
-}
-
-std::vector<uint32_t> first_charts(const Surface &surface, PartitionMethod method, uint32_t &count,
-                                   Task &task)
-{
-    switch (method) {
-    case PartitionMethod::VSA: return cluster(surface, surface.whole, count, task);
-    case PartitionMethod::PGP: return square_cells(surface, count, task);
-    default: return agglomerate(surface, count, task);
-    }
+    std::sort(all.begin(), all.end());
+    out.report.initial_inverted = uint64_t(std::unique(all.begin(), all.end()) - all.begin());
 }
 
 double side_limit(const Surface &surface, const std::vector<Region> &regions, Task &task)
@@ -225,11 +220,13 @@ std::vector<Frame> split_for_length(const Surface &surface, const ChartOptions &
     return frames;
 }
 
-std::vector<Chart> whole_charts(std::vector<Region> regions, const std::vector<Frame> &frames)
+std::vector<Chart> whole_charts(std::vector<Region> regions, const std::vector<Frame> &frames,
+                                const Partition &partition)
 {
     std::vector<Chart> out(regions.size());
     for (size_t i = 0; i < regions.size(); ++i) {
-        out[i].source_triangles = regions[i].size();
+        for (uint32_t t : regions[i].triangles)
+            out[i].source_triangles += !t || partition.source_of(t) != partition.source_of(t - 1);
         out[i].triangles = std::move(regions[i].triangles);
         out[i].frame = frames[i];
         std::sort(out[i].triangles.begin(), out[i].triangles.end());
@@ -237,25 +234,15 @@ std::vector<Chart> whole_charts(std::vector<Region> regions, const std::vector<F
     return out;
 }
 
-} // namespace
-
-Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &task)
+/* Charts, splitting what folds, from the first `count` of them. */
+void make_charts(Surface surface, const ChartOptions &options, uint32_t count, Task &task,
+                 Partition &out)
 {
-    if (!mesh.triangle_count())
-        throw Error(GTX_ERROR_EMPTY, "the mesh has no triangle to partition");
-    if (mesh.triangle_count() > MOST_TRIANGLES)
-        throw Error(GTX_ERROR_LIMIT, "the mesh has more than 300 million triangles");
-    task.begin("partition");
     const bool cut = options.method == PartitionMethod::CUTS;
-    const uint32_t wanted = chart_count(mesh, options);
-    Surface surface = make_surface(mesh, expected_pitch(mesh, wanted));
-
-    Partition out;
-    uint32_t count = wanted;
-    out.initial_chart = first_charts(surface, options.method, count, task);
+    const uint32_t wanted = chart_count(surface.mesh, options);
     std::vector<Region> regions = split_region(surface.whole, out.initial_chart, count);
     surface.whole.neighbours = {};
-    report_initial(surface, regions, task, out.report);
+    report_initial(surface, regions, task, out);
 
     Bounds bounds = {INFINITY, cut_pitch(surface, wanted, options), true};
     std::vector<Frame> frames = (cut ? split_for_count : split_for_length)(surface, options, regions,
@@ -273,10 +260,43 @@ Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &ta
                     {options.overlap[0], options.overlap[1]},
                     options.height_bits == 8 ? 254. : 65534.};
     out.charts = cut ? cut_charts(surface, std::move(regions), frames, plan, task)
-                     : whole_charts(std::move(regions), frames);
+                     : whole_charts(std::move(regions), frames, out);
+    const std::vector<uint8_t> &flags = surface.mesh.flags;
     for (Chart &chart : out.charts)
         for (uint32_t t : chart.triangles)
-            chart.two_sided |= !mesh.flags.empty() && mesh.flags[t] & TRIANGLE_TWO_SIDED;
+            chart.two_sided |= !flags.empty() && flags[t] & TRIANGLE_TWO_SIDED;
+}
+
+} // namespace
+
+const Mesh &Partition::charted(const Mesh &source_mesh) const
+{
+    return mesh.triangles.empty() ? source_mesh : mesh;
+}
+
+Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &task)
+{
+    if (!mesh.triangle_count())
+        throw Error(GTX_ERROR_EMPTY, "the mesh has no triangle to partition");
+    if (mesh.triangle_count() > MOST_TRIANGLES)
+        throw Error(GTX_ERROR_LIMIT, "the mesh has more than 300 million triangles");
+    task.begin("partition");
+    uint32_t count = chart_count(mesh, options);
+    const double pitch = expected_pitch(mesh, count);
+    Surface surface = make_surface(mesh, pitch);
+    Partition out;
+    if (options.method == PartitionMethod::PGP) {
+        CutMesh cut = square_cells(surface, count, task);
+        out.mesh = std::move(cut.mesh);
+        out.source = std::move(cut.source);
+        out.initial_chart = std::move(cut.label);
+        make_charts(make_surface(out.mesh, pitch), options, count, task, out);
+        return out;
+    }
+    out.initial_chart = options.method == PartitionMethod::VSA
+                            ? cluster(surface, surface.whole, count, task)
+                            : agglomerate(surface, count, task);
+    make_charts(std::move(surface), options, count, task, out);
     return out;
 }
 

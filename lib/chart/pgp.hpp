@@ -21,6 +21,9 @@ struct HalfEdges {
     uint32_t left_of(uint32_t corner) const { return opposite[previous_edge(corner)]; }
     /* The triangle's angle at a corner. */
     double angle(uint32_t corner) const;
+    /* What an edge counts for in Laplace's equation: the mean cotangent of the angles that face it,
+     * or a little where that would push its ends apart. */
+    double weight(uint32_t half_edge) const;
     /* An angle here plus this is the same direction in the triangle across. */
     double transport(uint32_t half_edge) const;
 };
@@ -44,10 +47,17 @@ std::vector<double> make_scale(const HalfEdges &edges, const CrossField &field);
 using Uv = std::array<double, 2>;
 Uv turned(const Uv &uv, unsigned quarters);
 
+/* Coordinates are multiples of this, so that sums with whole numbers are exact. */
+constexpr double UV_GRID = 1. / (uint64_t(1) << 40);
+inline double on_grid(double coordinate)
+{
+    return std::round(coordinate / UV_GRID) * UV_GRID;
+}
+
 /* A parameterization: integer lines of u and v follow the directions, a cell apart. */
 struct Periodic {
     std::vector<Uv> uv;             /* a corner. Across an edge they are the same but for a turn
-                                       and whole numbers, between triangles that are regular */
+                                       and whole numbers, exactly, between regular triangles */
     std::vector<uint8_t> singular;  /* a triangle */
 };
 
@@ -55,9 +65,43 @@ struct Periodic {
 Periodic parameterize(const HalfEdges &edges, const CrossField &field,
                       const std::vector<double> &scale, double cell, Task &task);
 
+/* The triangles, cut along the integer lines where they are regular: convex pieces in the order of
+ * their triangles. */
+constexpr uint32_t NO_PIECE = 0xffffffffu;
+struct PieceCorner {
+    uint32_t vertex; /* of the mesh, then of the points */
+    std::array<float, 3> weight; /* of the triangle's corners */
+};
+struct Seam {
+    uint32_t piece[2]; /* on its sides; NO_PIECE beyond a border */
+    float length;
+    bool line;         /* it lies on an integer line, or around what is singular */
+};
+struct Pieces {
+    std::vector<uint32_t> triangle;   /* a piece: what it is of */
+    std::vector<uint32_t> first;      /* a piece: its first corner; all corners' number at last */
+    std::vector<PieceCorner> corners; /* in the order of the triangle's */
+    std::vector<Vec3d> points;        /* vertices that the mesh had not */
+    std::vector<Seam> seams;
+};
+
+/* Throws Error: LIMIT. */
+Pieces cut_along_lines(const Mesh &mesh, const HalfEdges &edges, const CrossField &field,
+                       const Periodic &map);
+
+/* A mesh whose triangles are cut where charts end. */
+struct CutMesh {
+    Mesh mesh;
+    std::vector<uint32_t> source; /* a triangle: what it is of, ascending */
+    std::vector<uint32_t> label;  /* a triangle */
+};
+
+/* `label` is of pieces. */
+CutMesh cut_mesh(const Mesh &mesh, const Pieces &pieces, const std::vector<uint32_t> &label);
+
 /* Partitions the surface into about `count` connected charts: squares of the parameterization, and
- * what lies around its singularities where that is as large. Returns a label a triangle and
- * their number in `count`. Throws Error: LIMIT, INPUT, CANCELLED. */
-std::vector<uint32_t> square_cells(const Surface &surface, uint32_t &count, Task &task);
+ * what lies around its singularities where that is as large. `count` becomes their number. Throws
+ * Error: LIMIT, INPUT, CANCELLED. */
+CutMesh square_cells(const Surface &surface, uint32_t &count, Task &task);
 
 } // namespace gtx

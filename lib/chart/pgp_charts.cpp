@@ -18,7 +18,7 @@ constexpr double LEAST_CELLS = 0.1;
 /* The search for the cell: charts that come out of a cell's area, about, and the shares of the
  * wanted number that end it: a few too many are joined. */
 constexpr double CHARTS_PER_CELL = 0.97;
-constexpr double LEAST_RATIO = 0.98, MOST_RATIO = 1.06;
+constexpr double LEAST_RATIO = 0.98, MOST_RATIO = 1.06, BEST_RATIO = 1.02;
 constexpr int SEARCH_ROUNDS = 4;
 
 class UnionFind {
@@ -52,40 +52,11 @@ private:
     std::vector<uint32_t> parent_;
 };
 
-struct Cells {
-    const HalfEdges &edges;
-    const CrossField &field;
-    const Periodic &map;
-
-    /* The middle of the square that a triangle's centre is in. */
-    Uv middle(uint32_t t) const
-    {
-        Uv out;
-        for (size_t i = 0; i < 2; ++i) {
-            double sum = map.uv[3 * t][i] + map.uv[3 * t + 1][i] + map.uv[3 * t + 2][i];
-            out[i] = std::floor(sum / 3) + 0.5;
-        }
-        return out;
-    }
-    /* Whether the triangles on both sides of an edge lie in one square. */
-    bool same(uint32_t h, uint32_t o) const
-    {
-        if (map.singular[h / 3] || map.singular[o / 3])
-            return map.singular[h / 3] && map.singular[o / 3];
-        unsigned turn = field.turn[h];
-        Uv here = turned(middle(h / 3), turn), there = middle(o / 3);
-        Uv from = turned(map.uv[h], turn), to = map.uv[next_edge(o)];
-        for (size_t i = 0; i < 2; ++i)
-            if (here[i] + std::round(to[i] - from[i]) != there[i])
-                return false;
-        return true;
-    }
-};
-
 /* Joins charts to neighbours, the smallest first. */
 class Joining {
 public:
-    Joining(const HalfEdges &edges, const std::vector<double> &size,
+    /* Sizes are of pieces, as are labels. */
+    Joining(const Pieces &pieces, const std::vector<double> &size,
             const std::vector<uint32_t> &labels, size_t count);
     /* Those below `least`; what has no neighbour stays as it is and does not count. */
     void join_smaller(double least);
@@ -103,16 +74,20 @@ private:
     UnionFind charts_;
 };
 
-Joining::Joining(const HalfEdges &edges, const std::vector<double> &size,
+Joining::Joining(const Pieces &pieces, const std::vector<double> &size,
                  const std::vector<uint32_t> &labels, size_t count)
     : size_(count), borders_(count), charts_(count)
 {
-    for (size_t t = 0; t < size.size(); ++t)
-        size_[labels[t]] += size[t];
-    for (uint32_t h = 0; h < edges.opposite.size(); ++h) {
-        uint32_t o = edges.opposite[h];
-        if (o != NO_EDGE && labels[h / 3] != labels[o / 3])
-            borders_[labels[h / 3]][labels[o / 3]] += edges.length[h];
+    for (size_t i = 0; i < size.size(); ++i)
+        size_[labels[i]] += size[i];
+    for (const Seam &seam : pieces.seams) {
+        if (seam.piece[1] == NO_PIECE)
+            continue;
+        uint32_t a = labels[seam.piece[0]], b = labels[seam.piece[1]];
+        if (a == b)
+            continue;
+        borders_[a][b] += double(seam.length);
+        borders_[b][a] += double(seam.length);
     }
     for (uint32_t i = 0; i < count; ++i)
         order_.insert({size_[i], i});
@@ -164,15 +139,13 @@ std::vector<uint32_t> Joining::labels(std::vector<uint32_t> old, uint32_t &count
     return old;
 }
 
-/* Numbers the squares, and the pieces of what is singular, in order of their first triangle. */
-std::vector<uint32_t> label_cells(const Cells &cells, uint32_t &count)
+/* Numbers the squares, and the pieces of what is singular, in order of their first piece. */
+std::vector<uint32_t> label_cells(const Pieces &pieces, uint32_t &count)
 {
-    UnionFind sets(cells.map.singular.size());
-    for (uint32_t h = 0; h < cells.edges.opposite.size(); ++h) {
-        uint32_t o = cells.edges.opposite[h];
-        if (o != NO_EDGE && h < o && cells.same(h, o))
-            sets.join(h / 3, o / 3);
-    }
+    UnionFind sets(pieces.triangle.size());
+    for (const Seam &seam : pieces.seams)
+        if (!seam.line && seam.piece[1] != NO_PIECE)
+            sets.join(seam.piece[0], seam.piece[1]);
     return sets.labels(count);
 }
 
@@ -190,9 +163,38 @@ std::vector<double> cell_areas(const Surface &surface, const HalfEdges &edges,
     return out;
 }
 
+/* The same of pieces. */
+std::vector<double> piece_areas(const Pieces &pieces, const std::vector<double> &of_triangle)
+{
+    std::vector<double> out;
+    for (size_t i = 0; i < pieces.triangle.size(); ++i) {
+        double twice = 0; /* of the triangle's area, in its weights */
+        const PieceCorner *first = &pieces.corners[pieces.first[i]];
+        for (const PieceCorner *c = first; c + 1 < &pieces.corners[0] + pieces.first[i + 1]; ++c)
+            twice += double((c[0].weight[1] - first->weight[1]) * (c[1].weight[2] - first->weight[2]) -
+                            (c[0].weight[2] - first->weight[2]) * (c[1].weight[1] - first->weight[1]));
+        out.push_back(of_triangle[pieces.triangle[i]] * twice);
+    }
+    return out;
+}
+
+/* A length of cells and how many charts it made of one that is wanted. */
+struct Try {
+    double cell = 0, ratio = 0;
+};
+
+/* Between the nearest tries that made too few and too many, where there are both. */
+double next_cell(const Try &last, const Try &few, const Try &many)
+{
+    if (few.cell == 0 || many.cell == 0)
+        return last.cell * std::sqrt(std::clamp(last.ratio / BEST_RATIO, 0.25, 4.));
+    double share = std::log(BEST_RATIO / few.ratio) / std::log(many.ratio / few.ratio);
+    return few.cell * std::pow(many.cell / few.cell, std::clamp(share, 0.1, 0.9));
+}
+
 } // namespace
 
-std::vector<uint32_t> square_cells(const Surface &surface, uint32_t &count, Task &task)
+CutMesh square_cells(const Surface &surface, uint32_t &count, Task &task)
 {
     if (surface.mesh.triangle_count() > MOST_TRIANGLES)
         throw Error(GTX_ERROR_LIMIT, "the partition pgp takes up to 30 million triangles");
@@ -206,25 +208,30 @@ std::vector<uint32_t> square_cells(const Surface &surface, uint32_t &count, Task
     if (!(area > 0) || !std::isfinite(area))
         throw Error(GTX_ERROR_INPUT, "the surface has no area to parameterize");
     double cell = std::sqrt(CHARTS_PER_CELL * area / wanted), nearest = INFINITY;
-    std::vector<uint32_t> best;
+    Try few, many;
+    Pieces best;
+    std::vector<uint32_t> label;
     for (int round = 0; round < SEARCH_ROUNDS; ++round) {
         task.advance(0.1 + 0.6 * round / SEARCH_ROUNDS);
-        Periodic map = parameterize(edges, field, scale, cell, task);
+        Pieces pieces = cut_along_lines(surface.mesh, edges, field,
+                                        parameterize(edges, field, scale, cell, task));
         uint32_t squares;
-        std::vector<uint32_t> labels = label_cells({edges, field, map}, squares);
-        Joining joining(edges, size, labels, squares);
+        std::vector<uint32_t> cells = label_cells(pieces, squares);
+        Joining joining(pieces, piece_areas(pieces, size), cells, squares);
         joining.join_smaller(LEAST_CELLS * cell * cell);
-        double ratio = double(joining.count()) / wanted;
-        if (best.empty() || std::abs(std::log(ratio)) < nearest) {
+        double ratio = double(std::max<size_t>(joining.count(), 1)) / wanted;
+        if (label.empty() || std::abs(std::log(ratio)) < nearest) {
             nearest = std::abs(std::log(ratio));
             joining.join_until(wanted);
-            best = joining.labels(labels, count);
+            label = joining.labels(cells, count);
+            best = std::move(pieces);
         }
         if (ratio >= LEAST_RATIO && ratio <= MOST_RATIO)
             break;
-        cell *= std::sqrt(std::clamp(ratio, 0.25, 4.));
+        (ratio < BEST_RATIO ? few : many) = {cell, ratio};
+        cell = next_cell({cell, ratio}, few, many);
     }
-    return best;
+    return cut_mesh(surface.mesh, best, label);
 }
 
 } // namespace gtx

@@ -1,9 +1,14 @@
 /* Half-edges with fans for vertices, and angles in triangles. */
 #include "chart/pgp.hpp"
 
+#include <algorithm>
+
 namespace gtx {
 
 namespace {
+
+/* Of obtuse triangles, and of slivers. */
+constexpr double LEAST_WEIGHT = 0.02, MOST_WEIGHT = 1e4;
 
 double corner_angle(const Mesh &mesh, uint32_t t, int k)
 {
@@ -49,6 +54,14 @@ void find_fans(HalfEdges &edges)
 double HalfEdges::angle(uint32_t c) const
 {
     return PI - std::abs(std::remainder(direction[c] - direction[previous_edge(c)], 2 * PI));
+}
+
+double HalfEdges::weight(uint32_t h) const
+{
+    double sum = 1 / std::tan(angle(previous_edge(h)));
+    if (uint32_t o = opposite[h]; o != NO_EDGE)
+        sum += 1 / std::tan(angle(previous_edge(o)));
+    return std::clamp(sum / 2, LEAST_WEIGHT, MOST_WEIGHT);
 }
 
 double HalfEdges::transport(uint32_t h) const

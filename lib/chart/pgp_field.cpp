@@ -12,7 +12,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/* What a triangle's curvature counts for, against what its neighbours' directions do. */
+/* What curvature counts for, against what the neighbours' directions do. */
 constexpr double FIT = 0.01;
 /* Without any curvature something must still hold the field. */
 constexpr double FIT_LEAST = 1e-9;
@@ -22,6 +22,12 @@ constexpr int PASSES = 20;
 struct Guide {
     std::vector<Complex> value;
     std::vector<double> weight;
+};
+
+/* Angles around vertices, stretched so that a full turn is one (Knoeppel et al. 2013). */
+struct Polar {
+    std::vector<double> start;   /* a corner: of the half-edge that leaves it */
+    std::vector<double> stretch; /* a vertex */
 };
 
 Eigen::Vector3d eigen(const Vec3d &v)
@@ -50,6 +56,46 @@ std::vector<Eigen::Matrix3d> vertex_curvatures(const Surface &surface, const Hal
     return out;
 }
 
+Polar make_polar(const HalfEdges &edges)
+{
+    Polar out;
+    out.start.resize(edges.vertex.size());
+    for (uint32_t first : edges.first) {
+        double sum = 0;
+        uint32_t c = first;
+        do {
+            out.start[c] = sum;
+            sum += edges.angle(c);
+            c = edges.left_of(c);
+        } while (c != NO_EDGE && c != first);
+        const double stretch = c != NO_EDGE && sum > 0 ? 2 * PI / sum : 1;
+        out.stretch.push_back(stretch);
+        for (c = first; c != NO_EDGE;) {
+            out.start[c] *= stretch;
+            c = edges.left_of(c);
+            if (c == first)
+                break;
+        }
+    }
+    return out;
+}
+
+/* What an angle at a corner's vertex has to be turned by to be one in the corner's triangle: the
+ * middle of the corner is the same in both. */
+double into_triangle(const HalfEdges &edges, const Polar &polar, uint32_t c)
+{
+    double half = edges.angle(c) / 2;
+    return edges.direction[c] + half - polar.start[c] - polar.stretch[edges.vertex[c]] * half;
+}
+
+/* An angle at the start of a half-edge plus this is the same direction at its end. */
+double along_edge(const HalfEdges &edges, const Polar &polar, uint32_t h)
+{
+    uint32_t next = next_edge(h);
+    return polar.start[next] + polar.stretch[edges.vertex[next]] * edges.angle(next) + PI -
+           polar.start[h];
+}
+
 /* The principal directions in a triangle's plane: of a symmetric tensor there, (xx - yy + 2i xy)
  * turns twice as fast as they do, and they count by how much the two curvatures differ. A border
  * counts as the sharpest bend does. */
@@ -73,7 +119,7 @@ Guide curvature_guide(const Surface &surface, const HalfEdges &edges)
         out.value.push_back(size > 0 ? twice * twice / (size * size) : Complex(1));
     }
     for (double &w : out.weight)
-        w = FIT_LEAST + (largest > 0 ? FIT * (w / largest) * (w / largest) : 0);
+        w = largest > 0 ? FIT * (w / largest) * (w / largest) : 0;
     for (uint32_t h = 0; h < edges.opposite.size(); ++h)
         if (edges.opposite[h] == NO_EDGE) {
             out.value[h / 3] = std::polar(1., 4 * edges.direction[h]);
@@ -82,9 +128,26 @@ Guide curvature_guide(const Surface &surface, const HalfEdges &edges)
     return out;
 }
 
-/* Minimises sum |z_f e^(4i transport) - z_g|^2 / 2 + weight |z - guide|^2, where the guide becomes
- * the last solution at unit length: without that, z fades away from what is sure. */
-std::vector<Complex> smooth(const HalfEdges &edges, const Guide &guide, Task &task)
+/* What the triangles around a vertex want there together. */
+Guide gather(const HalfEdges &edges, const Polar &polar, const Guide &triangles)
+{
+    Guide out;
+    out.value.resize(edges.first.size());
+    for (uint32_t c = 0; c < edges.vertex.size(); ++c)
+        out.value[edges.vertex[c]] += triangles.weight[c / 3] * triangles.value[c / 3] *
+                                      std::polar(1., -4 * into_triangle(edges, polar, c));
+    for (Complex &value : out.value) {
+        double size = std::abs(value);
+        out.weight.push_back(FIT_LEAST + size / 3);
+        value = size > 0 ? value / size : Complex(1);
+    }
+    return out;
+}
+
+/* Minimises the Dirichlet energy of z over the surface, and weight |z - guide|^2, where the guide
+ * becomes the last solution at unit length: without that, z fades away from what is sure. */
+std::vector<Complex> smooth(const HalfEdges &edges, const Polar &polar, const Guide &guide,
+                            Task &task)
 {
     using Vector = Eigen::VectorXcd;
     int count = int(guide.value.size());
@@ -92,14 +155,17 @@ std::vector<Complex> smooth(const HalfEdges &edges, const Guide &guide, Task &ta
     std::vector<Eigen::Triplet<Complex>> entries; /* the lower triangle */
     for (uint32_t h = 0; h < edges.opposite.size(); ++h) {
         uint32_t o = edges.opposite[h];
-        if (o == NO_EDGE || o < h || h / 3 == o / 3)
+        int i = int(edges.vertex[h]), j = int(edges.vertex[next_edge(h)]);
+        if (i == j || (o != NO_EDGE && o < h))
             continue;
-        diagonal[h / 3] += 0.5;
-        diagonal[o / 3] += 0.5;
-        entries.emplace_back(int(o / 3), int(h / 3), -0.5 * std::polar(1., 4 * edges.transport(h)));
+        double weight = edges.weight(h);
+        diagonal[i] += weight;
+        diagonal[j] += weight;
+        Complex turn = weight * std::polar(1., 4 * along_edge(edges, polar, h));
+        entries.emplace_back(std::max(i, j), std::min(i, j), j > i ? -turn : -std::conj(turn));
     }
-    for (int t = 0; t < count; ++t)
-        entries.emplace_back(t, t, diagonal[t]);
+    for (int v = 0; v < count; ++v)
+        entries.emplace_back(v, v, diagonal[v]);
     Eigen::SparseMatrix<Complex> matrix(count, count);
     matrix.setFromTriplets(entries.begin(), entries.end());
     entries = {};
@@ -109,14 +175,28 @@ std::vector<Complex> smooth(const HalfEdges &edges, const Guide &guide, Task &ta
     for (int pass = 0; pass < PASSES && solver.info() == Eigen::Success; ++pass) {
         task.check();
         Vector side(count);
-        for (int t = 0; t < count; ++t)
-            side[t] = guide.weight[size_t(t)] * out[size_t(t)];
+        for (int v = 0; v < count; ++v)
+            side[v] = guide.weight[size_t(v)] * out[size_t(v)];
         Vector z = solver.solve(side);
-        for (size_t t = 0; t < out.size(); ++t) {
-            double size = std::abs(z[int(t)]);
+        for (size_t v = 0; v < out.size(); ++v) {
+            double size = std::abs(z[int(v)]);
             if (size > 0 && std::isfinite(size))
-                out[t] = z[int(t)] / size;
+                out[v] = z[int(v)] / size;
         }
+    }
+    return out;
+}
+
+/* The mean of what a triangle's corners have. */
+std::vector<double> angles_in_triangles(const HalfEdges &edges, const Polar &polar,
+                                        const std::vector<Complex> &at_vertex)
+{
+    std::vector<double> out;
+    for (uint32_t t = 0; 3 * t < edges.vertex.size(); ++t) {
+        Complex sum = 0;
+        for (uint32_t c = 3 * t; c < 3 * t + 3; ++c)
+            sum += at_vertex[edges.vertex[c]] * std::polar(1., 4 * into_triangle(edges, polar, c));
+        out.push_back(std::arg(sum) / 4);
     }
     return out;
 }
@@ -160,8 +240,9 @@ void find_indices(const HalfEdges &edges, CrossField &field)
 CrossField make_cross_field(const Surface &surface, const HalfEdges &edges, Task &task)
 {
     CrossField out;
-    for (const Complex &z : smooth(edges, curvature_guide(surface, edges), task))
-        out.angle.push_back(std::arg(z) / 4);
+    Polar polar = make_polar(edges);
+    Guide guide = gather(edges, polar, curvature_guide(surface, edges));
+    out.angle = angles_in_triangles(edges, polar, smooth(edges, polar, guide, task));
     match(edges, out);
     find_indices(edges, out);
     return out;

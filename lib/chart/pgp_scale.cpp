@@ -7,16 +7,8 @@ namespace gtx {
 
 namespace {
 
-/* Cotangents of slivers and obtuse triangles would push vertices apart. */
-constexpr double LEAST_COTANGENT = 0.02;
 /* Cells are at most as much longer or shorter than the mean. */
 constexpr double MOST_SCALE = 4;
-
-/* Of the angle that faces a half-edge. */
-double cotangent(const HalfEdges &edges, uint32_t h)
-{
-    return 1 / std::tan(edges.angle(previous_edge(h)));
-}
 
 } // namespace
 
@@ -34,8 +26,7 @@ std::vector<double> make_scale(const HalfEdges &edges, const CrossField &field)
         int i = int(edges.vertex[h]), j = int(edges.vertex[next_edge(h)]);
         if (i == j || (o != NO_EDGE && o < h))
             continue;
-        double sum = cotangent(edges, h) + (o != NO_EDGE ? cotangent(edges, o) : 0);
-        double weight = std::max(LEAST_COTANGENT, sum / 2);
+        double weight = edges.weight(h);
         entries.emplace_back(std::max(i, j), std::min(i, j), -weight);
         diagonal[i] += weight;
         diagonal[j] += weight;

@@ -19,6 +19,8 @@ namespace {
 constexpr double HOLD = 0.1;
 constexpr int PASSES = 10, MOST_ITERATIONS = 300;
 constexpr double TOLERANCE = 1e-2;
+/* Lines that pass a vertex closer than this share of a cell go through it: no slivers there. */
+constexpr double SNAP = 0.002;
 
 using Matrix4 = Eigen::Matrix4d;
 using Vector = Eigen::VectorXd;                                  /* re p, im p, re q, im q, ... */
@@ -44,7 +46,7 @@ private:
     void start_at(uint32_t vertex, std::vector<uint8_t> &known, std::vector<uint32_t> &queue);
     void to_unit_length();
     Uv phase(uint32_t corner) const;
-    Uv step(uint32_t half_edge) const;
+    Uv whole(uint32_t half_edge) const;
 
     const HalfEdges &edges_;
     const CrossField &field_;
@@ -210,21 +212,30 @@ void Solve::run(Task &task)
     }
 }
 
+double cells_of(double im, double re)
+{
+    double cells = std::atan2(im, re) / (2 * PI);
+    return std::abs(cells) < SNAP ? 0 : on_grid(cells);
+}
+
 /* As the corner's triangle sees it, in cells. */
 Uv Solve::phase(uint32_t corner) const
 {
     int i = 4 * int(edges_.vertex[corner]);
-    return turned({std::atan2(x_[i + 1], x_[i]) / (2 * PI),
-                   std::atan2(x_[i + 3], x_[i + 2]) / (2 * PI)}, turn_[corner]);
+    return turned({cells_of(x_[i + 1], x_[i]), cells_of(x_[i + 3], x_[i + 2])}, turn_[corner]);
 }
 
-Uv Solve::step(uint32_t h) const
+/* How many cells more than its phases tell lie along an edge; the same from both sides. */
+Uv Solve::whole(uint32_t h) const
 {
     const Edge &edge = list_[place_[h]];
+    Uv here = phase(edge.half_edge), there = phase(next_edge(edge.half_edge)), out;
+    for (size_t i = 0; i < 2; ++i)
+        out[i] = std::round(here[i] + edge.step[i] - there[i]);
     if (edge.half_edge == h)
-        return edge.step;
-    Uv other = turned(edge.step, field_.turn[edge.half_edge]);
-    return {-other[0], -other[1]};
+        return out;
+    out = turned(out, field_.turn[edge.half_edge]);
+    return {-out[0], -out[1]};
 }
 
 /* Around a regular triangle the whole cells add up to none; at a vertex where the field is singular
@@ -235,17 +246,17 @@ Periodic Solve::unwrap() const
     out.uv.resize(edges_.vertex.size());
     out.singular.assign(edges_.vertex.size() / 3, 0);
     for (uint32_t t = 0; t < out.singular.size(); ++t) {
-        double whole[2] = {0, 0};
+        Uv sum = {};
         bool singular = false;
         for (uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-            Uv here = phase(h), there = phase(next_edge(h)), along = step(h);
+            Uv here = phase(h), more = whole(h);
             for (size_t i = 0; i < 2; ++i) {
-                out.uv[h][i] = here[i] + whole[i];
-                whole[i] += std::round(here[i] + along[i] - there[i]);
+                out.uv[h][i] = here[i] + sum[i];
+                sum[i] += more[i];
             }
             singular = singular || field_.index[edges_.vertex[h]] != 0;
         }
-        out.singular[t] = singular || whole[0] != 0 || whole[1] != 0;
+        out.singular[t] = singular || sum[0] != 0 || sum[1] != 0;
     }
     return out;
 }

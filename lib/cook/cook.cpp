@@ -192,11 +192,12 @@ static Attempt attempt(const Mesh &mesh, const gtx_cook_desc &desc, const Option
     const size_t before = task.warnings.size();
     Attempt out;
     out.partition = make_partition(mesh, options.chart, task);
+    const Mesh &charted = out.partition.charted(mesh);
     {
-        Maps maps = bake(mesh, out.partition, options.bake, task);
+        Maps maps = bake(charted, out.partition, options.bake, task);
         std::vector<ShellLevel> shell;
         if (options.shell_levels)
-            shell = make_shell(shell_source(mesh, out.partition, maps, task), maps,
+            shell = make_shell(shell_source(charted, out.partition, maps, task), maps,
                                options.shell_levels, task);
         refuse_warnings(desc, task);
         CookFacts of_asset = facts;
@@ -207,7 +208,7 @@ static Attempt attempt(const Mesh &mesh, const gtx_cook_desc &desc, const Option
     }
     if (desc.measure || desc.error > 0) {
         task.begin("measure");
-        out.error = surface_error(out.asset.get(), mesh, out.partition.junk, task);
+        out.error = surface_error(out.asset.get(), charted, out.partition.junk, task);
     }
     if (desc.error > 0)
         out.bytes = Encoded(out.asset.get(), options).size;
@@ -235,7 +236,7 @@ static Asset cook_mesh(const Mesh &mesh, const gtx_cook_desc &desc, const Option
     facts.error = made.error;
     task.begin("write");
     if (desc.charts_ply)
-        write_charts_ply(desc.charts_ply, mesh, made.partition);
+        write_charts_ply(desc.charts_ply, made.partition.charted(mesh), made.partition);
     return std::move(made.asset);
 }
 

@@ -9,7 +9,7 @@ namespace gtx {
 
 namespace {
 
-/* What a vertex property means: its place in a row of values. */
+/* What a property of vertices, or a colour of faces, means: its place in a row of values. */
 enum { X, Y, Z, NX, NY, NZ, RED, GREEN, BLUE, ALPHA, ROLE_COUNT };
 constexpr const char *role_names[ROLE_COUNT][2] = {
     {"x", "x"},
@@ -22,6 +22,46 @@ constexpr const char *role_names[ROLE_COUNT][2] = {
     {"green", "diffuse_green"},
     {"blue", "diffuse_blue"},
     {"alpha", "diffuse_alpha"},
+};
+
+/* What the properties of an element mean. */
+struct Roles {
+    std::vector<int> of;              /* a property; ROLE_COUNT: nobody asks for it */
+    bool has[ROLE_COUNT] = {};
+    double full[ROLE_COUNT] = {};
+
+    /* Only roles from `first` on count. */
+    Roles(const PlyElement &element, int first);
+    bool all(int a, int b, int c) const { return has[a] && has[b] && has[c]; }
+    Rgba8 color(const double *values) const;
+};
+
+Roles::Roles(const PlyElement &element, int first)
+{
+    for (const PlyProperty &p : element.properties) {
+        int role = ROLE_COUNT;
+        for (int r = first; r < ROLE_COUNT && !p.is_list; ++r)
+            if (p.name == role_names[r][0] || p.name == role_names[r][1])
+                role = r;
+        if (role < ROLE_COUNT) {
+            has[role] = true;
+            full[role] = ply_full(p.type);
+        }
+        of.push_back(role);
+    }
+}
+
+Rgba8 Roles::color(const double *v) const
+{
+    return {to_byte(v[RED] / full[RED]), to_byte(v[GREEN] / full[GREEN]),
+            to_byte(v[BLUE] / full[BLUE]),
+            has[ALPHA] ? to_byte(v[ALPHA] / full[ALPHA]) : uint8_t(255)};
+}
+
+/* The corners of faces or of strips. */
+struct Lists {
+    std::vector<double> values; /* each list behind its length */
+    std::vector<Rgba8> colors;  /* a list each */
 };
 
 class PlyReader {
@@ -43,12 +83,13 @@ private:
     void progress(uint64_t row);
 
     void read_vertices(const PlyElement &element);
-    void read_lists(const PlyElement &element, size_t list, std::vector<double> &lists);
+    void read_lists(const PlyElement &element, size_t list, Lists &lists);
     void skip_rows(const PlyElement &element);
 
     uint32_t vertex_index(double value, const char *what, size_t row);
     void cut_faces();
     void cut_strips();
+    Mesh colored();
     void ignored(const PlyElement &element, const PlyProperty &property);
 
     const char *begin_, *end_;
@@ -58,7 +99,9 @@ private:
     uint64_t row_ = 0;
     Task &task_;
     VertexMesh mesh_;
-    std::vector<double> faces_, strips_; /* each list behind its length */
+    Lists faces_, strips_;
+    bool faces_colored_ = false;
+    std::vector<Rgba8> colors_; /* a triangle each */
     std::string ignored_;
 };
 
@@ -166,25 +209,13 @@ void PlyReader::ignored(const PlyElement &element, const PlyProperty &property)
 
 void PlyReader::read_vertices(const PlyElement &element)
 {
-    std::vector<int> roles;
-    bool has[ROLE_COUNT] = {};
-    double full[ROLE_COUNT] = {};
-    for (const PlyProperty &p : element.properties) {
-        int role = ROLE_COUNT; /* a place of its own that nobody reads */
-        for (int r = 0; r < ROLE_COUNT && !p.is_list; ++r)
-            if (p.name == role_names[r][0] || p.name == role_names[r][1])
-                role = r;
-        if (role == ROLE_COUNT) {
-            ignored(element, p);
-        } else {
-            has[role] = true;
-            full[role] = ply_full(p.type);
-        }
-        roles.push_back(role);
-    }
-    if (!has[X] || !has[Y] || !has[Z])
+    const Roles roles(element, X);
+    for (size_t i = 0; i < roles.of.size(); ++i)
+        if (roles.of[i] == ROLE_COUNT)
+            ignored(element, element.properties[i]);
+    if (!roles.all(X, Y, Z))
         fail(GTX_ERROR_INPUT, "the vertices have no x, y and z");
-    bool normals = has[NX] && has[NY] && has[NZ], colors = has[RED] && has[GREEN] && has[BLUE];
+    bool normals = roles.all(NX, NY, NZ), colors = roles.all(RED, GREEN, BLUE);
     if (element.count > MAX_VERTICES)
         fail(GTX_ERROR_LIMIT, "more than %llu vertices", (unsigned long long)MAX_VERTICES);
     mesh_.positions.reserve(element.count);
@@ -192,43 +223,51 @@ void PlyReader::read_vertices(const PlyElement &element)
     double v[ROLE_COUNT + 1] = {};
     for (uint64_t row = 0; row < element.count; ++row) {
         progress(row);
-        for (size_t i = 0; i < roles.size(); ++i) {
+        for (size_t i = 0; i < roles.of.size(); ++i) {
             const PlyProperty &p = element.properties[i];
             if (p.is_list)
                 skip(p);
             else
-                v[roles[i]] = value(p.type);
+                v[roles.of[i]] = value(p.type);
         }
         mesh_.positions.push_back({v[X], v[Y], v[Z]});
         if (normals)
             mesh_.normals.push_back({float(v[NX]), float(v[NY]), float(v[NZ])});
         if (colors)
-            mesh_.colors.push_back({to_byte(v[RED] / full[RED]), to_byte(v[GREEN] / full[GREEN]),
-                                    to_byte(v[BLUE] / full[BLUE]),
-                                    has[ALPHA] ? to_byte(v[ALPHA] / full[ALPHA]) : uint8_t(255)});
+            mesh_.colors.push_back(roles.color(v));
     }
 }
 
-/* Keeps the lists of one property. Faces may come before the vertices, so they are cut later. */
-void PlyReader::read_lists(const PlyElement &element, size_t list, std::vector<double> &lists)
+/* Keeps the lists of one property, and their colours. Faces may come before the vertices, so they
+ * are cut later. */
+void PlyReader::read_lists(const PlyElement &element, size_t list, Lists &lists)
 {
+    const Roles roles(element, RED);
+    const bool colored = roles.all(RED, GREEN, BLUE);
     for (size_t i = 0; i < element.properties.size(); ++i)
-        if (i != list)
+        if (i != list && !(colored && roles.of[i] < ROLE_COUNT))
             ignored(element, element.properties[i]);
+    double v[ROLE_COUNT + 1] = {};
     for (uint64_t row = 0; row < element.count; ++row) {
         progress(row);
         for (size_t i = 0; i < element.properties.size(); ++i) {
             const PlyProperty &p = element.properties[i];
+            if (i != list && !p.is_list) {
+                v[roles.of[i]] = value(p.type);
+                continue;
+            }
             if (i != list) {
                 skip(p);
                 continue;
             }
             uint64_t length = list_length(p);
-            lists.push_back(double(length));
+            lists.values.push_back(double(length));
             for (; length > 0; --length)
-                lists.push_back(value(p.type));
+                lists.values.push_back(value(p.type));
         }
+        lists.colors.push_back(colored ? roles.color(v) : Rgba8());
     }
+    faces_colored_ = faces_colored_ || colored;
 }
 
 void PlyReader::skip_rows(const PlyElement &element)
@@ -256,11 +295,11 @@ void PlyReader::cut_faces()
     std::vector<Vec3d> polygon;
     std::vector<std::array<uint32_t, 3>> cut;
     size_t row = 0, dropped = 0;
-    for (size_t i = 0; i < faces_.size(); ++row) {
-        size_t n = size_t(faces_[i++]);
+    for (size_t i = 0; i < faces_.values.size(); ++row) {
+        size_t n = size_t(faces_.values[i++]);
         corners.clear();
         for (size_t stop = i + n; i < stop; ++i)
-            corners.push_back(vertex_index(faces_[i], "face", row));
+            corners.push_back(vertex_index(faces_.values[i], "face", row));
         if (n == 3) {
             mesh_.triangles.push_back({corners[0], corners[1], corners[2]});
         } else if (n > 3) {
@@ -274,6 +313,7 @@ void PlyReader::cut_faces()
         } else {
             ++dropped;
         }
+        colors_.resize(mesh_.triangles.size(), faces_.colors[row]);
         if (row % 0x8000 == 0)
             task_.advance(1); /* for the chance to stop */
     }
@@ -286,15 +326,15 @@ void PlyReader::cut_faces()
 void PlyReader::cut_strips()
 {
     size_t row = 0;
-    for (size_t i = 0; i < strips_.size(); ++row) {
-        size_t stop = i + 1 + size_t(strips_[i]), count = 0;
+    for (size_t i = 0; i < strips_.values.size(); ++row) {
+        size_t stop = i + 1 + size_t(strips_.values[i]), count = 0;
         uint32_t a = 0, b = 0;
         for (++i; i < stop; ++i) {
-            if (strips_[i] == -1) {
+            if (strips_.values[i] == -1) {
                 count = 0;
                 continue;
             }
-            uint32_t c = vertex_index(strips_[i], "strip", row);
+            uint32_t c = vertex_index(strips_.values[i], "strip", row);
             if (++count >= 3 && count % 2)
                 mesh_.triangles.push_back({a, b, c});
             else if (count >= 3)
@@ -302,7 +342,21 @@ void PlyReader::cut_strips()
             a = b;
             b = c;
         }
+        colors_.resize(mesh_.triangles.size(), strips_.colors[row]);
     }
+}
+
+/* With the faces' colours where the vertices have none. */
+Mesh PlyReader::colored()
+{
+    const bool by_vertex = !mesh_.colors.empty();
+    Mesh out = by_corner(std::move(mesh_));
+    if (faces_colored_ && by_vertex)
+        task_.warnings.push_back("the colours of faces were ignored, for the vertices have some");
+    else if (faces_colored_)
+        for (const Rgba8 &color : colors_)
+            out.colors.insert(out.colors.end(), 3, color);
+    return out;
 }
 
 Mesh PlyReader::read()
@@ -324,7 +378,7 @@ Mesh PlyReader::read()
         else
             skip_rows(element);
     }
-    if (!mesh_.positions.empty() && faces_.empty() && strips_.empty())
+    if (!mesh_.positions.empty() && faces_.values.empty() && strips_.values.empty())
         fail(GTX_ERROR_UNSUPPORTED, "the file is a point cloud: it has no faces");
     cut_faces();
     cut_strips();
@@ -332,7 +386,7 @@ Mesh PlyReader::read()
         fail(GTX_ERROR_LIMIT, "more than %llu triangles", (unsigned long long)MAX_VERTICES);
     if (!ignored_.empty())
         task_.warnings.push_back("PLY properties were ignored: " + ignored_);
-    return by_corner(std::move(mesh_));
+    return colored();
 }
 
 } // namespace

@@ -2,7 +2,10 @@
  *
  * By its rules (section 5.4): one density for the model, 128 texels along the longest side of any
  * chart, sides rounded up to powers of two and charts stretched to fill them, texel centres, no
- * overlap, no dilation. Prints text; writes rows as JSON to the path of the third argument. */
+ * overlap, no dilation. Then as a user has them, at equal texels. Prints text; writes the rows as JSON
+ * beside the assets. */
+#include "equal_texels.hpp"
+
 #include "chart/frame.hpp"
 #include "chart/raster.hpp"
 
@@ -26,7 +29,16 @@ struct Row {
     Figures initial; /* before folding charts are split: what the paper counts */
     Figures final;
     double second_layer;
+    AssetFigures asset;
 };
+
+const struct {
+    const char *name;
+    PartitionMethod method;
+    gtx_partition partition;
+} METHODS[] = {{"cuts", PartitionMethod::CUTS, GTX_PARTITION_CUTS},
+               {"vsa", PartitionMethod::VSA, GTX_PARTITION_VSA},
+               {"pgp", PartitionMethod::PGP, GTX_PARTITION_PGP}};
 
 /* The part of a chart's core between its cuts, in its frame's coordinates, corner by corner. */
 std::vector<Vec3d> clipped(const Mesh &mesh, uint32_t triangle, const Chart &chart,
@@ -137,9 +149,11 @@ Row make_row(const Mesh &mesh, const char *name, PartitionMethod method, unsigne
     Partition p = make_partition(mesh, options, task);
     const ChartReport &r = p.report;
     Row row = {name, {r.initial_charts, r.initial_inverted, r.initial_folding},
-               {p.charts.size(), r.inverted_triangles, r.folding_charts}, r.second_layer_fraction};
-    count_texels(mesh, initial_charts(mesh, p), row.initial);
-    count_texels(mesh, p.charts, row.final);
+               {p.charts.size(), r.inverted_triangles, r.folding_charts}, r.second_layer_fraction,
+               {}};
+    const Mesh &charted = p.charted(mesh);
+    count_texels(charted, initial_charts(charted, p), row.initial);
+    count_texels(charted, p.charts, row.final);
     return row;
 }
 
@@ -157,23 +171,46 @@ void print_figures(const std::string &name, const Figures &f)
 constexpr Figures PAPER_VSA = {222, 3, 3, 461312, 179194};
 constexpr Figures PAPER_PGP = {224, 817, 45, 1008128, 240357};
 
+void print_head(const std::string &title)
+{
+    std::printf("%s\n%-24s %6s %9s %8s %9s %10s\n", title.c_str(), "", "charts", "inverted",
+                "folding", "texels", "empty");
+}
+
+void print_paper()
+{
+    print_head("the paper, bunny, 69451 triangles");
+    print_figures("VSA", PAPER_VSA);
+    print_figures("PGP", PAPER_PGP);
+}
+
 void print_rows(const std::vector<Row> &rows)
 {
-    std::printf("%-24s %6s %9s %8s %9s %10s\n", "", "charts", "inverted", "folding", "texels",
-                "empty");
-    print_figures("paper, bunny, VSA", PAPER_VSA);
-    print_figures("paper, bunny, PGP", PAPER_PGP);
     for (const Row &row : rows) {
         if (row.method != std::string("cuts")) /* its clusters are no charts yet */
             print_figures(row.method + std::string(", before splitting"), row.initial);
         print_figures(row.method, row.final);
     }
-    std::printf("before splitting: as the paper counts; then folding charts are split until none\n"
+    std::printf("%-24s %6s %9s %9s %9s %10s  %s\n", "assets of equal texels", "charts", "texels",
+                "empty", "range", "RMS", "hole pixels");
+    for (const Row &row : rows) {
+        const AssetFigures &a = row.asset;
+        std::printf("%-24s %6llu %9llu %7.2f %% %7.2f %% %8.5f %%  %llu of %llu\n", row.method,
+                    static_cast<unsigned long long>(a.patches),
+                    static_cast<unsigned long long>(a.texels),
+                    100 * double(a.empty) / double(a.texels), 100 * a.range, 100 * a.rms,
+                    static_cast<unsigned long long>(a.holes),
+                    static_cast<unsigned long long>(a.pixels));
+    }
+}
+
+void print_notes()
+{
+    std::printf("\nbefore splitting: as the paper counts; then folding charts are split until none\n"
                 "is left, and crumbs are attached, which the paper leaves open\n"
                 "texels: the longest side of all charts sets the density, so one chart decides;\n"
                 "the paper does not say how it finds rectangles: these are of least area\n"
-                "pgp: borders follow the edges of triangles, not the integer lines themselves,\n"
-                "which leaves more empty than straight cuts would\n");
+                "range: of heights in a patch, mean over texels; as RMS, of the diagonal\n");
 }
 
 nlohmann::json to_json(const Figures &f)
@@ -192,38 +229,54 @@ nlohmann::json to_json(const Row &row, const std::string &model, size_t triangle
     const nlohmann::json initial = to_json(row.initial);
     for (const auto &[key, value] : initial.items())
         out["initial_" + key] = value;
+    const AssetFigures &a = row.asset;
+    out["equal_texels"] = {{"charts", a.patches}, {"texels", a.texels}, {"empty", a.empty},
+                           {"height_range", a.range}, {"rms", a.rms}, {"hole_pixels", a.holes},
+                           {"surface_pixels", a.pixels}};
     return out;
 }
 
-int run(const std::string &model, unsigned charts, const char *json_path)
+void add_model(const std::string &model, unsigned charts, const std::string &folder,
+               nlohmann::json &rows_json)
 {
     Task task(0, nullptr, nullptr);
     CleanReport clean;
     Mesh mesh = clean_mesh(import_mesh(model, task), task, clean);
-    std::vector<Row> rows = {make_row(mesh, "vsa", PartitionMethod::VSA, charts),
-                             make_row(mesh, "pgp", PartitionMethod::PGP, charts),
-                             make_row(mesh, "cuts", PartitionMethod::CUTS, charts)};
-    std::printf("%s, %zu triangles\n", model.c_str(), mesh.triangle_count());
+    std::vector<gtx_partition> partitions;
+    std::vector<Row> rows;
+    for (const auto &m : METHODS) {
+        partitions.push_back(m.partition);
+        rows.push_back(make_row(mesh, m.name, m.method, charts));
+    }
+    std::vector<AssetFigures> assets = equal_texels(model, charts, partitions, folder);
+    for (size_t i = 0; i < rows.size(); ++i)
+        rows[i].asset = assets[i];
+    print_head("\n" + model + ", " + std::to_string(mesh.triangle_count()) + " triangles");
     print_rows(rows);
-    nlohmann::json table = {{"paper", {{"vsa", to_json(PAPER_VSA)}, {"pgp", to_json(PAPER_PGP)}}},
-                            {"rows", nlohmann::json::array()}};
     for (const Row &row : rows)
-        table["rows"].push_back(to_json(row, model, mesh.triangle_count()));
-    std::ofstream file(json_path);
-    file << table.dump(2) << "\n";
-    return file.good() ? 0 : 2;
+        rows_json.push_back(to_json(row, model, mesh.triangle_count()));
 }
 
 } // namespace
 
 int main(int argc, char **argv)
 {
-    if (argc != 4) {
-        std::fprintf(stderr, "usage: paper_tables MODEL CHARTS TABLES.json\n");
+    if (argc < 4 || argc % 2) {
+        std::fprintf(stderr, "usage: paper_tables FOLDER MODEL CHARTS [MODEL CHARTS]...\n");
         return 1;
     }
+    const std::string folder = argv[1];
     try {
-        return run(argv[1], unsigned(std::atoi(argv[2])), argv[3]);
+        nlohmann::json table = {
+            {"paper", {{"vsa", to_json(PAPER_VSA)}, {"pgp", to_json(PAPER_PGP)}}},
+            {"rows", nlohmann::json::array()}};
+        print_paper();
+        for (int i = 2; i < argc; i += 2)
+            add_model(argv[i], unsigned(std::atoi(argv[i + 1])), folder, table["rows"]);
+        print_notes();
+        std::ofstream file(folder + "/tables.json");
+        file << table.dump(2) << "\n";
+        return file.good() ? 0 : 2;
     } catch (const Error &e) {
         std::fprintf(stderr, "paper_tables: %s\n", e.message.c_str());
         return 3;

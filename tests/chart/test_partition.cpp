@@ -114,8 +114,9 @@ static void check_frame(const Mesh &mesh, const Chart &chart, double pitch)
 }
 
 /* `largest_guest`: texels of what may join a chart without touching it; 0: any. */
-static void check(const Mesh &mesh, const Partition &p, double largest_guest = 0)
+static void check(const Mesh &source, const Partition &p, double largest_guest = 0)
 {
+    const Mesh &mesh = p.charted(source);
     auto neighbours = triangle_neighbours(mesh);
     std::vector<int> used(mesh.triangle_count());
     uint64_t owned = 0;
@@ -140,7 +141,8 @@ static void check(const Mesh &mesh, const Partition &p, double largest_guest = 0
     assert_true(std::all_of(used.begin(), used.end(),
                             [=](int n) { return cut ? n >= 1 : n == 1; }));
     /* where patches end between all texel centres, a sliver is nobody's own */
-    assert_in_range(owned, mesh.triangle_count() * 999 / 1000, mesh.triangle_count());
+    assert_in_range(owned, source.triangle_count() * 999 / 1000, source.triangle_count());
+    assert_true(p.report.initial_inverted <= source.triangle_count());
     if (!cut)
         assert_true(longest / p.pitch < 128 + 1e-6);
     assert_int_equal(p.initial_chart.size(), mesh.triangle_count());
@@ -259,8 +261,9 @@ static void test_folds_are_split(void **)
     assert_int_equal(partition(flat, 2, one).charts.size(), 1);
 }
 
-static void check_single_layer(const Mesh &mesh, const Partition &p)
+static void check_single_layer(const Mesh &source, const Partition &p)
 {
+    const Mesh &mesh = p.charted(source);
     const double apart = 1e-4 * 6 + 1e-9;
     for (const Chart &chart : p.charts) {
         size_t noise = 0; /* as the junk rule has it: a few samples, and shallow */
@@ -500,6 +503,29 @@ static void test_charts_ply(void **)
     }
 }
 
+/* Pieces have their charts' colours; a triangle that folds counts once, in however many pieces. */
+static void test_charts_ply_of_pieces(void **)
+{
+    Mesh mesh = shapes::torus(12, 0.4);
+    Partition p = partition(mesh, 2, with(PartitionMethod::PGP, 6));
+    assert_true(p.mesh.triangle_count() > mesh.triangle_count());
+    std::string path = "/tmp/geotex_pieces_" + std::to_string(uintptr_t(&p)) + ".ply";
+    write_charts_ply(path, p.charted(mesh), p);
+    Task task(1, nullptr, nullptr, {"import"});
+    task.begin("import");
+    Mesh read = import_mesh(path, task);
+    std::remove(path.c_str());
+    assert_int_equal(read.triangle_count(), p.mesh.triangle_count());
+    assert_int_equal(read.colors.size(), 3 * read.triangle_count());
+    std::vector<uint32_t> green;
+    for (uint32_t t = 0; t < read.triangle_count(); ++t)
+        if (read.colors[3 * t] == Rgba8{0, 255, 0, 255})
+            green.push_back(p.source_of(t));
+    green.erase(std::unique(green.begin(), green.end()), green.end());
+    assert_int_equal(green.size(), p.report.initial_inverted);
+    assert_true(!green.empty() && p.report.initial_folding > 0);
+}
+
 static void test_models(void **)
 {
     const char *models = std::getenv("GEOTEX_MODELS");
@@ -508,7 +534,9 @@ static void test_models(void **)
     struct {
         const char *name, *file;
         unsigned charts;
+        PartitionMethod method = PartitionMethod::CUTS;
     } cases[] = {{"bunny", "scans/bunny.ply", 222},
+                 {"squares", "scans/bunny.ply", 222, PartitionMethod::PGP},
                  {"armadillo", "scans/armadillo_86k.obj.gz", 0},
                  {"horse", "scans/horse.ply.gz", 0},
                  {"nefertiti", "scans/nefertiti.obj.gz", 0},
@@ -519,9 +547,7 @@ static void test_models(void **)
         task.begin("read");
         CleanReport report;
         Mesh mesh = clean_mesh(import_mesh(std::string(models) + "/" + c.file, task), task, report);
-        ChartOptions options;
-        options.charts = c.charts;
-        Partition p = make_partition(mesh, options, task);
+        Partition p = make_partition(mesh, with(c.method, c.charts), task);
         task.end();
         print(c.name, p);
         print_message("           %.2f s\n", task.seconds()[1] + task.seconds()[2]);
@@ -538,6 +564,7 @@ int main(void)
         cmocka_unit_test(test_density), cmocka_unit_test(test_crumbs),
         cmocka_unit_test(test_two_sided), cmocka_unit_test(test_deterministic),
         cmocka_unit_test(test_junk), cmocka_unit_test(test_cancel),
-        cmocka_unit_test(test_charts_ply), cmocka_unit_test(test_models)};
+        cmocka_unit_test(test_charts_ply), cmocka_unit_test(test_charts_ply_of_pieces),
+        cmocka_unit_test(test_models)};
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

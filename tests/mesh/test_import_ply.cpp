@@ -130,6 +130,83 @@ static void test_point_cloud(void **)
         GTX_ERROR_EMPTY, "no triangle");
 }
 
+/* Colours of faces, in any type, where vertices have none. */
+static void test_face_colors(void **)
+{
+    const std::string plain = std::string(header) + body;
+    auto with = [&](const char *properties, const char *first, const char *second) {
+        std::string text = edited(plain, "vertex_indices\n",
+                                  (std::string("vertex_indices\n") + properties).c_str());
+        text = edited(text, "3 0 1 2\n", (std::string("3 0 1 2") + first + "\n").c_str());
+        return edited(text, "3 0 2 3\n", (std::string("3 0 2 3") + second + "\n").c_str());
+    };
+    const char bytes[] = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    Imported i = import_text("a.ply", with(bytes, " 255 0 10", " 1 2 3"));
+    assert_works(i, 4, 2);
+    assert_true(i.warnings.empty());
+    for (size_t c = 0; c < 3; ++c) {
+        assert_color(i.mesh, c, 255, 0, 10, 255);
+        assert_color(i.mesh, 3 + c, 1, 2, 3, 255);
+    }
+    i = import_text("a.ply", with("property float diffuse_blue\nproperty double diffuse_green\n"
+                                  "property ushort diffuse_red\nproperty float alpha\n",
+                                  " 0.5 1 65535 0.25", " nan -1 99999 2"));
+    assert_works(i, 4, 2);
+    assert_color(i.mesh, 0, 255, 255, 128, 64);
+    assert_color(i.mesh, 3, 255, 0, 0, 255);
+
+    /* not all of them, or not as numbers */
+    i = import_text("a.ply", with("property uchar red\nproperty uchar green\n", " 1 2", " 3 4"));
+    assert_works(i, 4, 2);
+    assert_true(i.mesh.colors.empty() && i.warns("face.red, face.green"));
+    i = import_text("a.ply", with("property list uchar uchar red\nproperty uchar green\n"
+                                  "property uchar blue\n", " 1 9 2 3", " 0 5 6"));
+    assert_works(i, 4, 2);
+    assert_true(i.mesh.colors.empty() && i.warns("face.red, face.green, face.blue"));
+
+    assert_fails(import_text("a.ply", with(bytes, " 1 2 3", " 1 2")), GTX_ERROR_INPUT,
+                 "the file ends in face 1 of 2");
+    assert_fails(import_text("a.ply", with(bytes, " 1 2 3", " 1 2 red")), GTX_ERROR_INPUT,
+                 "is not a number");
+}
+
+/* Every triangle of a polygon or of a strip has its colour; what has none is white. */
+static void test_face_colors_spread(void **)
+{
+    const char properties[] = "property list uchar int vertex_indices\nproperty uchar red\n"
+                              "property uchar green\nproperty uchar blue\n";
+    std::string text = std::string("ply\nformat ascii 1.0\nelement face 3\n") + properties +
+                       "element tristrips 1\n" + properties + "element vertex 5\nproperty float x\n"
+                       "property float y\nproperty float z\nend_header\n"
+                       "5 0 1 2 3 4 9 8 7\n2 0 1 1 1 1\n3 0 1 2 6 5 4\n4 0 1 2 3 3 2 1\n"
+                       "0 0 0\n2 0 0\n2 1 0\n1 2 0\n0 1 0\n";
+    Imported i = import_text("a.ply", text);
+    assert_works(i, 5, 6);
+    for (size_t t = 0; t < 3; ++t)
+        assert_color(i.mesh, 3 * t, 9, 8, 7, 255);
+    assert_color(i.mesh, 9, 6, 5, 4, 255);
+    assert_color(i.mesh, 12, 3, 2, 1, 255);
+    assert_color(i.mesh, 17, 3, 2, 1, 255);
+
+    text = edited(text, "element vertex", "element face 1\nproperty list uchar int vertex_index\n"
+                  "element vertex");
+    i = import_text("a.ply", edited(text, "0 0 0\n", "3 0 1 2\n0 0 0\n"));
+    assert_works(i, 5, 7);
+    assert_color(i.mesh, 12, 255, 255, 255, 255);
+}
+
+/* Vertices know better. */
+static void test_face_and_vertex_colors(void **)
+{
+    std::string text = edited(everything(false), "property uint id\n",
+                              "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                              "property uchar id\n");
+    Imported i = import_text("a.ply", text);
+    assert_works(i, 3, 1);
+    assert_color(i.mesh, 1, 51, 255, 128, 128);
+    assert_true(i.warns("the colours of faces were ignored"));
+}
+
 static void test_bad(void **)
 {
     static const struct {
@@ -169,6 +246,8 @@ int main(void)
         cmocka_unit_test(test_ascii),       cmocka_unit_test(test_binary),
         cmocka_unit_test(test_faces_first), cmocka_unit_test(test_polygons),
         cmocka_unit_test(test_strips),      cmocka_unit_test(test_point_cloud),
+        cmocka_unit_test(test_face_colors), cmocka_unit_test(test_face_colors_spread),
+        cmocka_unit_test(test_face_and_vertex_colors),
         cmocka_unit_test(test_bad),
     };
     return cmocka_run_group_tests_name("import_ply", tests, nullptr, nullptr);

@@ -1,0 +1,108 @@
+/* Assets of equal texels: resolutions are searched, then the assets measured. */
+#include "equal_texels.hpp"
+
+#include <geotex/geotex.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+namespace {
+
+/* What a density may be searched in, and when it is found. */
+constexpr uint32_t LEAST_RESOLUTION = 64, MOST_RESOLUTION = 512;
+constexpr double CLOSE = 0.01;
+constexpr int ROUNDS = 5;
+
+void require(gtx_result result, const gtx_error &error)
+{
+    if (!result)
+        return;
+    std::fprintf(stderr, "paper_tables: %s\n", error.message);
+    std::exit(3);
+}
+
+AssetFigures figures_of(const std::string &path)
+{
+    gtx_asset *asset = nullptr;
+    gtx_error error;
+    require(gtx_open_file(path.c_str(), nullptr, &asset, &error), error);
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    AssetFigures out;
+    out.patches = info.patch_count;
+    double diagonal = 0, used = 0;
+    for (int i = 0; i < 3; ++i)
+        diagonal += std::pow(double(info.bounds_max[i]) - double(info.bounds_min[i]), 2);
+    for (uint32_t i = 0; i < info.patch_count; ++i) {
+        const gtx_patch &patch = gtx_patches(asset)[i];
+        const double texels = double(patch.rect[2]) * patch.rect[3];
+        out.texels += uint64_t(texels);
+        used += texels * double(patch.coverage);
+        out.range += texels * double(patch.coverage) * double(patch.extent_z);
+    }
+    out.range /= used * std::sqrt(diagonal);
+    out.empty = out.texels - std::min(out.texels, uint64_t(std::llround(used)));
+    gtx_close(asset);
+    return out;
+}
+
+AssetFigures cook(const std::string &model, gtx_partition partition, unsigned charts,
+                  uint32_t resolution, const std::string &path)
+{
+    gtx_cook_desc desc = {};
+    desc.partition = partition;
+    desc.charts = charts;
+    desc.resolution = resolution;
+    gtx_error error;
+    require(gtx_cook_file(model.c_str(), path.c_str(), &desc, nullptr, &error), error);
+    return figures_of(path);
+}
+
+/* Leaves the asset that comes nearest to `texels`. */
+AssetFigures cook_to_texels(const std::string &model, gtx_partition partition, unsigned charts,
+                            double texels, const std::string &path)
+{
+    uint32_t resolution = 128, best = 0, last = 0;
+    double nearest = INFINITY;
+    AssetFigures out;
+    for (int round = 0; round < ROUNDS && resolution != last && nearest > CLOSE; ++round) {
+        last = resolution;
+        out = cook(model, partition, charts, resolution, path);
+        const double off = std::fabs(std::log(double(out.texels) / texels));
+        if (off < nearest) {
+            nearest = off;
+            best = resolution;
+        }
+        const double next = resolution * std::sqrt(texels / double(out.texels));
+        resolution = std::clamp(uint32_t(std::lround(next)), LEAST_RESOLUTION, MOST_RESOLUTION);
+    }
+    return best == last ? out : cook(model, partition, charts, best, path);
+}
+
+} // namespace
+
+std::vector<AssetFigures> equal_texels(const std::string &model, unsigned charts,
+                                       const std::vector<gtx_partition> &partitions,
+                                       const std::string &folder)
+{
+    std::vector<AssetFigures> out;
+    for (gtx_partition partition : partitions) {
+        const std::string path = folder + "/" + std::to_string(out.size()) + ".gtx";
+        AssetFigures figures = out.empty() ? cook(model, partition, charts, 128, path)
+                                           : cook_to_texels(model, partition, charts,
+                                                            double(out[0].texels), path);
+        gtx_compare_desc desc = {};
+        desc.levels = 1;
+        gtx_compare_result result = {};
+        gtx_error error;
+        require(gtx_compare_files(path.c_str(), model.c_str(), &desc, &result, nullptr, &error),
+                error);
+        figures.rms = result.forward_rms;
+        figures.holes = result.hole_pixels;
+        figures.pixels = result.surface_pixels;
+        out.push_back(figures);
+    }
+    return out;
+}
