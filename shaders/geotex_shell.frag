@@ -1,0 +1,47 @@
+/* The stock forward main of the shell: lit colour (sRGB bytes), from the same maps and by the same
+ * light as geotex_forward.frag. Depth is the polygon's own and nothing is discarded, so that the
+ * depth test comes first.
+ *
+ * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl and geotex_surface.glsl before it;
+ * varyings as geotex_shell.vert. GTX_TWO_SIDED lights backs, too; GTX_MATERIALS is as in
+ * geotex_forward.frag. */
+GTX_VARYING(0) in vec2 gtx_at;
+GTX_VARYING(1) flat in vec4 gtx_inset;
+GTX_VARYING(2) flat in vec2 gtx_map;
+GTX_VARYING(3) flat in vec3 gtx_normal_x;
+GTX_VARYING(4) flat in vec3 gtx_normal_y;
+GTX_VARYING(5) flat in vec3 gtx_normal_z;
+GTX_VARYING(6) flat in vec4 gtx_color;
+GTX_VARYING(7) flat in vec3 gtx_ray;
+
+layout(location = 0) out vec4 gtx_out_color;
+
+void main()
+{
+    vec3 place = vec3(clamp(gtx_at, gtx_inset.xy, gtx_inset.zw), gtx_map.x);
+    vec2 e = textureLod(gtx_normals, place, gtx_map.y).xy * 2.0 - 1.0;
+    vec2 p = vec2(e.x + e.y, e.x - e.y) * 0.5;
+    vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y +
+                       gtx_normal_z * (1.0 - abs(p.x) - abs(p.y)));
+#ifdef GTX_TWO_SIDED
+    if (!gl_FrontFacing)
+        n = gtx_from_behind(n, gtx_ray);
+#endif
+    vec4 color = gtx_color;
+    if (gtx_maps.y > 0.0)
+        color *= textureLod(gtx_colors, place, gtx_map.y);
+#ifdef GTX_MATERIALS
+    gtx_material material = gtx_material(color.rgb, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
+    if (gtx_maps.w > 0.0) {
+        vec4 map = textureLod(gtx_materials, place, gtx_map.y);
+        material = gtx_material(color.rgb, vec3(0.0), map.x, map.y, map.z, map.w);
+    }
+    if (gtx_maps.z > 0.0)
+        material.emission = textureLod(gtx_emissions, place, gtx_map.y).rgb * gtx_maps.z;
+    color.rgb = gtx_shade(material, n, -gtx_ray, gtx_light.xyz, gtx_light.w);
+#else
+    float lambert = max(dot(n, gtx_light.xyz), 0.0);
+    color.rgb *= gtx_light.w + (1.0 - gtx_light.w) * lambert;
+#endif
+    gtx_out_color = vec4(gtx_to_srgb(color.rgb), color.a);
+}

@@ -1,0 +1,587 @@
+/* The shell: drawn as casting draws, at the level that the error allows, with edges that
+ * multisampling smooths. */
+#include "shells.h"
+
+#include <stdbool.h>
+
+enum { TEXELS = 96 };
+static const double radius = 2;
+
+/* With a shell that always wins where it is fine enough. */
+static int open_stage(void **state)
+{
+    const int result = stage_open(state);
+    stage *s = *state;
+    const gtx_renderer_desc desc = {.load = gtx_offscreen_load, .log = stage_log,
+                                    .costs = {0, 0, 1, 1}};
+    if (result || !s->offscreen)
+        return result;
+    gtx_renderer_destroy(s->renderer);
+    return gtx_renderer_create(&desc, &s->renderer, NULL);
+}
+
+static subject sphere_open(stage *s)
+{
+    return subject_open(s, shelled(fixture_sphere(radius, TEXELS, 8), radius, SHELL_LEVELS, 0));
+}
+
+/* How two pictures of the same view differ. */
+typedef struct difference {
+    long both, either, holes; /* holes: covered a, with all its neighbours, and not b */
+    double mean, worst;       /* bytes of colour, over the pixels that both cover */
+} difference;
+
+typedef struct picture {
+    uint8_t color[4 * STAGE_PIXELS];
+    float depth[STAGE_PIXELS];
+    float empty;
+} picture;
+
+static picture first, second;
+
+static void draw(stage *s, const gtx_view *view, gtx_method method, const gtx_instance *instances,
+                 uint32_t count, picture *out)
+{
+    gtx_view with = *view;
+    with.method = method;
+    stage_draw(s, &with, instances, count);
+    memcpy(out->color, s->color, sizeof s->color);
+    memcpy(out->depth, s->depth, sizeof s->depth);
+    out->empty = view->flags & GTX_VIEW_REVERSED_Z ? 0 : 1;
+}
+
+static bool covers(const picture *p, int x, int y)
+{
+    return x >= 0 && y >= 0 && x < STAGE_WIDTH && y < STAGE_HEIGHT &&
+           p->depth[y * STAGE_WIDTH + x] != p->empty;
+}
+
+static difference compare(const picture *a, const picture *b)
+{
+    difference d = {0, 0, 0, 0, 0};
+    for (int i = 0; i < STAGE_PIXELS; ++i) {
+        const int x = i % STAGE_WIDTH, y = i / STAGE_WIDTH;
+        const bool in_a = covers(a, x, y), in_b = covers(b, x, y);
+        d.either += in_a || in_b;
+        if (in_a && !in_b) {
+            bool inside = true;
+            for (int k = 0; k < 9; ++k)
+                inside = inside && covers(a, x + k % 3 - 1, y + k / 3 - 1);
+            d.holes += inside;
+        }
+        if (!in_a || !in_b)
+            continue;
+        ++d.both;
+        for (int k = 0; k < 3; ++k) {
+            const double change = fabs((double)a->color[4 * i + k] - b->color[4 * i + k]);
+            d.mean += change / 3;
+            d.worst = fmax(d.worst, change);
+        }
+    }
+    d.mean /= (double)(d.both ? d.both : 1);
+    return d;
+}
+
+static void expect_alike(const difference *d, double least_iou, double most_mean, double most)
+{
+    const double iou = (double)d->both / (double)d->either;
+    if (d->both < 1500 || iou < least_iou || d->holes || d->mean > most_mean || d->worst > most)
+        fail_msg("%ld pixels, IoU %g, %ld holes, colours differ by %g and at most %g", d->both, iou,
+                 d->holes, d->mean, d->worst);
+}
+
+/* From many sides: no hole, the outline, and colours, which show the normals. */
+static void as_cast(void **state)
+{
+    STAGE_OR_SKIP(state);
+    subject shown = sphere_open(s);
+    gtx_camera camera = camera_around(shown.asset);
+    for (int i = 0; i < 12; ++i) {
+        camera.azimuth = 36 * (float)i;
+        camera.elevation = 80 - 14 * (float)i;
+        camera.orthographic = i % 2;
+        gtx_view view = view_of(&camera);
+        view.level = 1;
+        draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &first);
+        draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &second);
+        const difference d = compare(&first, &second);
+        expect_alike(&d, 0.995, 0.6, 12);
+    }
+    subject_close(s, &shown);
+}
+
+/* Within an error of half a pixel, whatever level that takes. */
+static void levels_keep_the_outline(void **state)
+{
+    STAGE_OR_SKIP(state);
+    subject shown = sphere_open(s);
+    gtx_camera camera = camera_around(shown.asset);
+    for (int i = 0; i < 6; ++i) {
+        camera.distance = 3 + 1.5f * (float)i;
+        camera.azimuth = 50 * (float)i;
+        gtx_view view = view_of(&camera);
+        view.viewport_height = STAGE_HEIGHT;
+        draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &first);
+        draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &second);
+        const difference d = compare(&first, &second);
+        const double iou = (double)d.both / (double)d.either;
+        if (iou < 0.975 || d.holes)
+            fail_msg("IoU %g, %ld holes", iou, d.holes);
+    }
+    subject_close(s, &shown);
+}
+
+/* Which level a view draws: 0 none, by casting; n the level n - 1. */
+static uint32_t drawn_as(stage *s, const gtx_view *view, const gtx_instance *instance)
+{
+    gtx_view forced = *view;
+    uint32_t found = UINT32_MAX;
+    draw(s, view, view->method, instance, 1, &first);
+    for (uint32_t way = 0; way <= SHELL_LEVELS; ++way) {
+        forced.level = way;
+        draw(s, &forced, way ? GTX_METHOD_SHELL : GTX_METHOD_CAST, instance, 1, &second);
+        if (memcmp(first.color, second.color, sizeof first.color) == 0) {
+            assert_int_equal(found, UINT32_MAX); /* or the test could not tell */
+            found = way;
+        }
+    }
+    assert_int_not_equal(found, UINT32_MAX);
+    return found;
+}
+
+/* The coarsest level within the error at the nearest corner of the bounds. */
+static void the_coarsest_within_the_error(void **state)
+{
+    STAGE_OR_SKIP(state);
+    subject shown = sphere_open(s);
+    gtx_camera camera = camera_around(shown.asset);
+    camera.azimuth = camera.elevation = 0; /* the nearest point of the bounds is on the axis */
+    gtx_view view = view_of(&camera);
+    view.viewport_height = STAGE_HEIGHT;
+    const double distance = camera.distance * camera.radius - radius;
+    const double pixels = view.projection[5] * STAGE_HEIGHT / 2 / distance;
+    for (uint32_t k = 0; k < SHELL_LEVELS; ++k) {
+        gtx_shell level;
+        assert_int_equal(gtx_get_shell(shown.asset, k, &level), GTX_OK);
+        for (int over = 0; over < 2; ++over) {
+            view.max_error = (float)(level.error * pixels * (over ? 1.02 : 0.98));
+            view.method = GTX_METHOD_AUTO;
+            assert_int_equal(drawn_as(s, &view, &shown.instance), k + (over ? 1 : 0));
+            view.method = GTX_METHOD_SHELL; /* at its finest where none is within the error */
+            assert_int_equal(drawn_as(s, &view, &shown.instance), k + (over || !k ? 1 : 0));
+        }
+    }
+    /* A large instance far away is as near. */
+    for (int i = 0; i < 15; i += 5)
+        shown.instance.transform[i] = 3;
+    camera.radius *= 3;
+    view = view_of(&camera);
+    view.viewport_height = STAGE_HEIGHT;
+    gtx_shell level;
+    assert_int_equal(gtx_get_shell(shown.asset, 1, &level), GTX_OK);
+    for (int over = 0; over < 2; ++over) {
+        view.max_error = (float)(level.error * pixels * (over ? 1.02 : 0.98));
+        assert_int_equal(drawn_as(s, &view, &shown.instance), over ? 2 : 1);
+    }
+    subject_close(s, &shown);
+}
+
+static void casts_when_it_must(void **state)
+{
+    STAGE_OR_SKIP(state);
+    subject shown = sphere_open(s);
+    gtx_camera camera = camera_around(shown.asset);
+    gtx_view view = view_of(&camera);
+    view.max_error = 50;
+    assert_int_equal(drawn_as(s, &view, &shown.instance), 0); /* the viewport is unknown */
+    view.viewport_height = STAGE_HEIGHT;
+    assert_int_equal(drawn_as(s, &view, &shown.instance), SHELL_LEVELS);
+    camera.distance = 0.4f; /* inside */
+    view = view_of(&camera);
+    view.viewport_height = STAGE_HEIGHT;
+    view.max_error = 50;
+    draw(s, &view, GTX_METHOD_AUTO, &shown.instance, 1, &first);
+    draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &second);
+    assert_memory_equal(first.color, second.color, sizeof first.color);
+    subject_close(s, &shown);
+
+    shown = subject_open(s, fixture_sphere(radius, TEXELS, 8));
+    gtx_error error = {0};
+    view.method = GTX_METHOD_SHELL;
+    assert_int_equal(gtx_draw(s->renderer, &view, &shown.instance, 1, &error),
+                     GTX_ERROR_UNSUPPORTED);
+    assert_non_null(strstr(error.message, "shell"));
+    subject_close(s, &shown);
+}
+
+/* Costs that the caller gives decide. */
+static void costs_are_compared(void **state)
+{
+    STAGE_OR_SKIP(state);
+    gtx_renderer *usual = s->renderer;
+    gtx_error error = {0};
+    gtx_asset *asset = shelled(fixture_sphere(radius, TEXELS, 8), radius, SHELL_LEVELS, 0);
+    gtx_camera camera = camera_around(asset);
+    for (int i = 0; i < 2; ++i) {
+        const gtx_renderer_desc desc = {.load = gtx_offscreen_load, .log = stage_log,
+                                        .costs = {i ? 1e6f : 1, 1, 1e3f, 1}};
+        must(gtx_renderer_create(&desc, &s->renderer, &error), &error);
+        subject shown = subject_open(s, asset);
+        gtx_view view = view_of(&camera);
+        view.viewport_height = STAGE_HEIGHT;
+        view.max_error = 2;
+        assert_int_equal(drawn_as(s, &view, &shown.instance) == 0, i);
+        gtx_model_destroy(s->renderer, shown.model);
+        gtx_renderer_destroy(s->renderer);
+    }
+    const gtx_renderer_desc bad = {.load = gtx_offscreen_load, .costs = {.cast_pixel = -1}};
+    assert_int_equal(gtx_renderer_create(&bad, &s->renderer, &error), GTX_ERROR_ARGUMENT);
+    s->renderer = usual;
+    gtx_close(asset);
+}
+
+/* Mean change of a byte of colour where either picture shows something. */
+static double change(const picture *a, const picture *b)
+{
+    double sum = 0;
+    long count = 0;
+    for (int i = 0; i < STAGE_PIXELS; ++i) {
+        if (a->depth[i] == a->empty && b->depth[i] == b->empty)
+            continue;
+        for (int k = 0; k < 3; ++k)
+            sum += fabs((double)a->color[4 * i + k] - b->color[4 * i + k]);
+        count += 3;
+    }
+    return sum / (double)count;
+}
+
+/* Comes nearer by little steps. What the worst change of level does to the picture, and the worst
+ * step, beyond what it does when everything is cast. */
+typedef struct zoom {
+    int changes;
+    double change, step;
+} zoom;
+
+static zoom zoom_in(stage *s, const subject *shown)
+{
+    static picture frames[2][2]; /* cast, auto; this and the last */
+    zoom out = {0, 0, 0};
+    uint32_t last = 0;
+    gtx_camera camera = camera_around(shown->asset);
+    for (int i = 0; i < 70; ++i) {
+        camera.distance = 12 * powf(0.98f, (float)i);
+        gtx_view view = view_of(&camera);
+        view.viewport_height = STAGE_HEIGHT;
+        draw(s, &view, GTX_METHOD_CAST, &shown->instance, 1, &frames[0][i % 2]);
+        draw(s, &view, GTX_METHOD_AUTO, &shown->instance, 1, &frames[1][i % 2]);
+        if (i == 0) {
+            last = drawn_as(s, &view, &shown->instance);
+            continue;
+        }
+        out.step = fmax(out.step, change(&frames[1][0], &frames[1][1]) -
+                                      change(&frames[0][0], &frames[0][1]));
+        gtx_view as_before = view;
+        as_before.level = last;
+        draw(s, &as_before, last ? GTX_METHOD_SHELL : GTX_METHOD_CAST, &shown->instance, 1, &first);
+        if (memcmp(first.color, frames[1][i % 2].color, sizeof first.color) == 0)
+            continue;
+        ++out.changes;
+        out.change = fmax(out.change, change(&first, &frames[1][i % 2]));
+        last = drawn_as(s, &view, &shown->instance);
+    }
+    return out;
+}
+
+static void a_zoom_is_smooth(void **state)
+{
+    STAGE_OR_SKIP(state);
+    subject shown = sphere_open(s);
+    const zoom z = zoom_in(s, &shown);
+    if (z.changes < 2 || z.change > 6 || z.step > 8)
+        fail_msg("%d changes of up to %g, steps %g", z.changes, z.change, z.step);
+    /* The coarsest level from near is another picture, or this test could not tell. */
+    gtx_camera camera = camera_around(shown.asset);
+    camera.distance = 1.8f;
+    gtx_view view = view_of(&camera);
+    view.level = 1;
+    draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &first);
+    view.level = SHELL_LEVELS;
+    draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &second);
+    const double seen = change(&first, &second);
+    if (seen < 6)
+        fail_msg("the coarsest level from near is %g away", seen);
+    subject_close(s, &shown);
+}
+
+static void place(float m[16], const float rows[9], float x, float y, float z)
+{
+    memcpy(m, identity, sizeof identity);
+    for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r)
+            m[4 * c + r] = rows[3 * r + c];
+    m[12] = x;
+    m[13] = y;
+    m[14] = z;
+}
+
+/* Turned, mirrored, squashed, tinted; both depth orders; mirrored views. */
+static void instances_are_placed(void **state)
+{
+    STAGE_OR_SKIP(state);
+    enum { COUNT = 7 };
+    subject shown = sphere_open(s);
+    gtx_instance instances[COUNT];
+    memset(instances, 0, sizeof instances);
+    for (int i = 0; i < COUNT; ++i) {
+        const float turn = 0.9f * (float)i, size = 0.6f + 0.1f * (float)i;
+        const float c = size * cosf(turn), d = size * sinf(turn), m = i % 3 ? 1.0f : -1.0f;
+        const float rows[9] = {m * c, 0, d, 0, i % 2 ? size : 0.5f * size, 0, -m * d, 0, c};
+        instances[i].model = shown.model;
+        instances[i].tint[i % 3] = instances[i].tint[3] = 1;
+        instances[i].tint[(i + 1) % 3] = 0.5f;
+        place(instances[i].transform, rows, 3.2f * (float)(i % 4) - 4.5f, 3.0f * (float)(i / 4) - 1.5f,
+              0.8f * sinf((float)i));
+    }
+    gtx_camera camera = {.radius = 7, .azimuth = 20, .elevation = 15, .distance = 2.6f};
+    for (int i = 0; i < 8; ++i) {
+        camera.reversed_z = i & 1;
+        camera.orthographic = i >> 1 & 1;
+        gtx_view view = view_of(&camera);
+        if (i & 4)
+            view.projection[0] = -view.projection[0];
+        view.level = 1;
+        draw(s, &view, GTX_METHOD_CAST, instances, COUNT, &first);
+        draw(s, &view, GTX_METHOD_SHELL, instances, COUNT, &second);
+        const difference d = compare(&first, &second);
+        expect_alike(&d, 0.99, 0.5, 255); /* outlines of one before another */
+    }
+    subject_close(s, &shown);
+}
+
+/* What the test counts: questions to OpenGL between two points. */
+static int questions;
+static PFNGLGETINTEGERVPROC real_get;
+static PFNGLISENABLEDPROC real_is_enabled;
+
+static void counted_get(GLenum name, GLint *value)
+{
+    ++questions;
+    real_get(name, value);
+}
+
+static GLboolean counted_is_enabled(GLenum name)
+{
+    ++questions;
+    return real_is_enabled(name);
+}
+
+static gtx_gl_proc load_counted(const char *name, void *user)
+{
+    const gtx_gl_proc real = gtx_offscreen_load(name, user);
+    if (strcmp(name, "glGetIntegerv") == 0) {
+        real_get = (PFNGLGETINTEGERVPROC)real;
+        return (gtx_gl_proc)counted_get;
+    }
+    if (strcmp(name, "glIsEnabled") == 0) {
+        real_is_enabled = (PFNGLISENABLEDPROC)real;
+        return (gtx_gl_proc)counted_is_enabled;
+    }
+    return real;
+}
+
+static void a_draw_asks_nothing(void **state)
+{
+    STAGE_OR_SKIP(state);
+    gtx_renderer *usual = s->renderer;
+    gtx_error error = {0};
+    const gtx_renderer_desc desc = {.load = load_counted, .costs = {0, 0, 1, 1}};
+    must(gtx_renderer_create(&desc, &s->renderer, &error), &error);
+    subject shown = sphere_open(s);
+    gtx_camera camera = camera_around(shown.asset);
+    gtx_view view = view_of(&camera);
+    view.viewport_height = STAGE_HEIGHT;
+    view.max_error = 2;
+    for (int restore = 0; restore < 2; ++restore) {
+        view.flags = restore ? GTX_VIEW_RESTORE_STATE : 0;
+        questions = 0;
+        draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &first);
+        draw(s, &view, GTX_METHOD_AUTO, &shown.instance, 1, &first);
+        assert_int_equal(questions > 0, restore); /* or the test counts nothing */
+    }
+    subject_close(s, &shown);
+    gtx_renderer_destroy(s->renderer);
+    s->renderer = usual;
+}
+
+/* Leaves what is 15 pixels or less from the middle. */
+static void crop_to_middle(picture *p)
+{
+    for (int i = 0; i < STAGE_PIXELS; ++i)
+        if (hypot(i % STAGE_WIDTH - STAGE_WIDTH / 2, i / STAGE_WIDTH - STAGE_HEIGHT / 2) > 15)
+            p->depth[i] = p->empty;
+}
+
+/* A sphere with a face missing shows the backs of the others, lit as cast: within its rim,
+ * which the sheets have a little farther out. */
+static void backs_of_two_sided_patches(void **state)
+{
+    STAGE_OR_SKIP(state);
+    for (int two_sided = 0; two_sided < 2; ++two_sided) {
+        subject shown = subject_open(
+            s, shelled(fixture_sphere_without(radius, TEXELS, 8, 1 << 4), radius, SHELL_LEVELS,
+                       two_sided ? GTX_PATCH_TWO_SIDED : 0));
+        gtx_camera camera = camera_around(shown.asset);
+        camera.target[0] = camera.target[1] = camera.target[2] = 0;
+        camera.azimuth = 10; /* before the missing face */
+        camera.elevation = 5;
+        gtx_view view = view_of(&camera);
+        view.level = 1;
+        draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &first);
+        draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &second);
+        assert_int_equal(covers(&second, STAGE_WIDTH / 2, STAGE_HEIGHT / 2), two_sided);
+        if (two_sided) {
+            crop_to_middle(&first);
+            crop_to_middle(&second);
+            const difference d = compare(&first, &second);
+            assert_int_equal(d.both, d.either);
+            assert_true(d.mean < 1 && d.worst < 12);
+        }
+        subject_close(s, &shown);
+    }
+}
+
+/* A patch that is edited leaves the shell: it is cast, as it has become, and the others stay. */
+static void an_edited_patch_is_cast(void **state)
+{
+    STAGE_OR_SKIP(state);
+    subject shown = sphere_open(s);
+    gtx_error error = {0};
+    gtx_asset *small = fixture_sphere(0.9 * radius, TEXELS, 8);
+    gtx_camera camera = camera_around(shown.asset);
+    camera.azimuth = camera.elevation = 3;
+    gtx_view view = view_of(&camera);
+    view.level = 1;
+    draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &first);
+    must(gtx_model_update(s->renderer, shown.model, small, 4, &error), &error); /* towards +z */
+    draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &second);
+    long nearer = 0, farther = 0;
+    for (int i = 0; i < STAGE_PIXELS; ++i) {
+nearer += second.depth[i] < first.depth[i];
+        farther += second.depth[i] > first.depth[i];
+    }
+    assert_true(farther > 1000);
+    assert_int_equal(nearer, 0);
+    view.level = 0;
+    view.viewport_height = STAGE_HEIGHT;
+    view.max_error = 2;
+    const int middle = STAGE_HEIGHT / 2 * STAGE_WIDTH + STAGE_WIDTH / 2;
+    draw(s, &view, GTX_METHOD_AUTO, &shown.instance, 1, &first);
+    draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &second);
+    assert_true(first.depth[middle] == second.depth[middle]);
+    const difference d = compare(&second, &first);
+    assert_true(d.worst > 0); /* the others are not cast */
+    gtx_close(small);
+    subject_close(s, &shown);
+}
+
+/* Pixels of the outline are in between: covered by some samples of four. */
+static void multisampling_smooths_edges(void **state)
+{
+    STAGE_OR_SKIP(state);
+    PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC storage =
+        (PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC)gtx_offscreen_load(
+            "glRenderbufferStorageMultisample", NULL);
+    subject shown = sphere_open(s);
+    GLuint object, buffers[2];
+    s->gl.GenFramebuffers(1, &object);
+    s->gl.GenRenderbuffers(2, buffers);
+    s->gl.BindFramebuffer(GL_FRAMEBUFFER, object);
+    for (int i = 0; i < 2; ++i) {
+        s->gl.BindRenderbuffer(GL_RENDERBUFFER, buffers[i]);
+        storage(GL_RENDERBUFFER, 4, i ? GL_DEPTH_COMPONENT24 : GL_RGBA8, STAGE_WIDTH, STAGE_HEIGHT);
+        s->gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, i ? GL_DEPTH_ATTACHMENT : GL_COLOR_ATTACHMENT0,
+                                      GL_RENDERBUFFER, buffers[i]);
+    }
+    gtx_camera camera = camera_around(shown.asset);
+    gtx_view view = view_of(&camera);
+    long between[2];
+    for (int i = 0; i < 2; ++i) {
+        view.method = i ? GTX_METHOD_SHELL : GTX_METHOD_CAST;
+        view.level = 1;
+        stage_clear(s, &view);
+        s->gl.BindFramebuffer(GL_FRAMEBUFFER, object);
+        s->gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        must(gtx_draw(s->renderer, &view, &shown.instance, 1, NULL), &(gtx_error){0});
+        s->gl.BindFramebuffer(GL_READ_FRAMEBUFFER, object);
+        s->gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, s->framebuffer.object);
+        s->gl.BlitFramebuffer(0, 0, STAGE_WIDTH, STAGE_HEIGHT, 0, 0, STAGE_WIDTH, STAGE_HEIGHT,
+                              GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        gtx_framebuffer_read_color(&s->gl, &s->framebuffer, s->color);
+        between[i] = 0;
+        for (int p = 0; p < STAGE_PIXELS; ++p) /* alpha is coverage */
+            between[i] += s->color[4 * p + 3] > 0 && s->color[4 * p + 3] < 255;
+    }
+    s->gl.DeleteFramebuffers(1, &object);
+    s->gl.DeleteRenderbuffers(2, buffers);
+    gtx_framebuffer_bind(&s->gl, &s->framebuffer);
+    subject_close(s, &shown);
+    if (between[1] < 150)
+        fail_msg("%ld pixels in between, cast %ld", between[1], between[0]);
+}
+
+static void slices_and_size(void **state)
+{
+    STAGE_OR_SKIP(state);
+    gtx_asset *plain = fixture_sphere(radius, TEXELS, 8), *asset = shelled(
+        fixture_sphere(radius, TEXELS, 8), radius, SHELL_LEVELS, 0);
+    gtx_model *models[2];
+    gtx_error error = {0};
+    uint32_t done = 0;
+    int slices = 0;
+    must(gtx_model_prepare(plain, NULL, &models[0], &error), &error);
+    must(gtx_model_prepare(asset, NULL, &models[1], &error), &error);
+    gtx_shell level;
+    uint64_t least = 0; /* two bytes an index, eight a vertex */
+    for (uint32_t k = 0; k < SHELL_LEVELS; ++k) {
+        gtx_get_shell(asset, k, &level);
+        least += 6 * (uint64_t)level.triangle_count + 8 * (uint64_t)level.vertex_count;
+    }
+    const uint64_t extra =
+        gtx_model_gpu_size(models[1]).geometry - gtx_model_gpu_size(models[0]).geometry;
+    assert_in_range(extra, least, 3 * least);
+    for (; !done; ++slices)
+        must(gtx_model_upload(s->renderer, models[1], 4096, &done, &error), &error);
+    assert_true(slices > 20);
+    subject shown = {asset, models[1], {.model = models[1]}};
+    memcpy(shown.instance.transform, identity, sizeof identity);
+    subject whole = sphere_open(s);
+    gtx_camera camera = camera_around(asset);
+    gtx_view view = view_of(&camera);
+    view.level = 2;
+    draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &first);
+    draw(s, &view, GTX_METHOD_SHELL, &whole.instance, 1, &second);
+    assert_memory_equal(first.color, second.color, sizeof first.color);
+    gtx_model_destroy(s->renderer, models[0]);
+    gtx_close(plain);
+    subject_close(s, &whole);
+    subject_close(s, &shown);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(as_cast),
+        cmocka_unit_test(levels_keep_the_outline),
+        cmocka_unit_test(the_coarsest_within_the_error),
+        cmocka_unit_test(casts_when_it_must),
+        cmocka_unit_test(costs_are_compared),
+        cmocka_unit_test(a_zoom_is_smooth),
+        cmocka_unit_test(instances_are_placed),
+        cmocka_unit_test(a_draw_asks_nothing),
+        cmocka_unit_test(backs_of_two_sided_patches),
+        cmocka_unit_test(an_edited_patch_is_cast),
+        cmocka_unit_test(multisampling_smooths_edges),
+        cmocka_unit_test(slices_and_size),
+    };
+    return cmocka_run_group_tests(tests, open_stage, stage_close);
+}
