@@ -3,8 +3,8 @@
  * depth test comes first.
  *
  * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl and geotex_surface.glsl before it;
- * varyings as geotex_shell.vert. GTX_TWO_SIDED lights backs, too; GTX_MATERIALS is as in
- * geotex_forward.frag. */
+ * varyings as geotex_shell.vert. GTX_TWO_SIDED lights backs, too, GTX_COLORS says that there is a map
+ * of them, and GTX_MATERIALS is as in geotex_forward.frag. */
 GTX_VARYING(0) in vec2 gtx_at;
 GTX_VARYING(1) flat in vec4 gtx_inset;
 GTX_VARYING(2) flat in vec2 gtx_map;
@@ -13,8 +13,30 @@ GTX_VARYING(4) flat in vec3 gtx_normal_y;
 GTX_VARYING(5) flat in vec3 gtx_normal_z;
 GTX_VARYING(6) flat in vec4 gtx_color;
 GTX_VARYING(7) flat in vec3 gtx_ray;
+GTX_VARYING(8) flat in vec3 gtx_color_root;
 
 layout(location = 0) out vec4 gtx_out_color;
+
+/* Light from the front on a unit normal; on a back, on what gtx_from_behind makes of it. */
+float gtx_lambert(vec3 n)
+{
+    float front = dot(n, gtx_light.xyz);
+#ifdef GTX_TWO_SIDED
+    if (!gl_FrontFacing) {
+        float away = max(dot(n, gtx_ray), 0.0);
+        float mirrored = front - 2.0 * away * dot(gtx_ray, gtx_light.xyz);
+        front = mix(mirrored, -front, smoothstep(0.2, 0.6, away));
+    }
+#endif
+    return max(front, 0.0);
+}
+
+/* A colour times a share of light, as sRGB: gtx_to_srgb with one power instead of three. */
+vec3 gtx_shaded_to_srgb(vec3 color, vec3 root, float share)
+{
+    vec3 c = color * share;
+    return mix(12.92 * c, root * pow(share, 1.0 / 2.4) - 0.055, step(0.0031308, c));
+}
 
 void main()
 {
@@ -23,14 +45,12 @@ void main()
     vec2 p = vec2(e.x + e.y, e.x - e.y) * 0.5;
     vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y +
                        gtx_normal_z * (1.0 - abs(p.x) - abs(p.y)));
-#ifdef GTX_TWO_SIDED
+    vec4 color = gtx_color;
+#ifdef GTX_MATERIALS
     if (!gl_FrontFacing)
         n = gtx_from_behind(n, gtx_ray);
-#endif
-    vec4 color = gtx_color;
     if (gtx_maps.y > 0.0)
         color *= textureLod(gtx_colors, place, gtx_map.y);
-#ifdef GTX_MATERIALS
     gtx_material material = gtx_material(color.rgb, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
     if (gtx_maps.w > 0.0) {
         vec4 map = textureLod(gtx_materials, place, gtx_map.y);
@@ -38,10 +58,15 @@ void main()
     }
     if (gtx_maps.z > 0.0)
         material.emission = textureLod(gtx_emissions, place, gtx_map.y).rgb * gtx_maps.z;
-    color.rgb = gtx_shade(material, n, -gtx_ray, gtx_light.xyz, gtx_light.w);
+    color.rgb = gtx_to_srgb(gtx_shade(material, n, -gtx_ray, gtx_light.xyz, gtx_light.w));
 #else
-    float lambert = max(dot(n, gtx_light.xyz), 0.0);
-    color.rgb *= gtx_light.w + (1.0 - gtx_light.w) * lambert;
+    float share = gtx_light.w + (1.0 - gtx_light.w) * gtx_lambert(n);
+#ifdef GTX_COLORS
+    color *= textureLod(gtx_colors, place, gtx_map.y);
+    color.rgb = gtx_to_srgb(color.rgb * share);
+#else
+    color.rgb = gtx_shaded_to_srgb(color.rgb, gtx_color_root, share);
 #endif
-    gtx_out_color = vec4(gtx_to_srgb(color.rgb), color.a);
+#endif
+    gtx_out_color = color;
 }

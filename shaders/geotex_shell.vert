@@ -24,6 +24,7 @@ GTX_VARYING(4) flat out vec3 gtx_normal_y;
 GTX_VARYING(5) flat out vec3 gtx_normal_z;
 GTX_VARYING(6) flat out vec4 gtx_color;
 GTX_VARYING(7) flat out vec3 gtx_ray;       /* of sight; world space, unit */
+GTX_VARYING(8) flat out vec3 gtx_color_root; /* so that gtx_to_srgb(color) is this - 0.055 */
 
 vec3 gtx_to_world(vec3 object)
 {
@@ -60,4 +61,5 @@ void main()
     gtx_normal_y = world_normals * cross(z, x);
     gtx_normal_z = world_normals * z;
     gtx_color = gtx_tint;
+    gtx_color_root = 1.055 * pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
 }

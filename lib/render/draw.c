@@ -160,14 +160,14 @@ static void draw_shell(const gtx_renderer *renderer, pass *p, const run *r)
     const gtx_gl *gl = &renderer->gl;
     const gtx_shells *shells = &r->model->shells;
     const uint32_t level = r->way - 1u;
+    const int plain = r->model->has_color ? PROGRAM_SHELL_COLOR : PROGRAM_SHELL;
     set_attributes(renderer, r, true);
     gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
     for (int two_sided = 0; two_sided < 2; ++two_sided) {
         if (shells->one_sided == (two_sided ? shells->patch_count : 0))
             continue;
-        use_program(renderer, p, shades(r->model) ? PROGRAM_SHELL_MATERIAL
-                                 : two_sided      ? PROGRAM_SHELL_TWO_SIDED
-                                                  : PROGRAM_SHELL, r->model);
+        use_program(renderer, p, shades(r->model) ? PROGRAM_SHELL_MATERIAL : plain + two_sided,
+                    r->model);
         gl->Uniform4fv(p->program->shell, 1, shells->levels[level].place);
         (two_sided ? gl->Disable : gl->Enable)(GL_CULL_FACE);
         gtx_shells_draw(gl, shells, level, two_sided, r->count);

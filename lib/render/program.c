@@ -15,8 +15,10 @@ static const char *const heads[PROGRAM_COUNT] = {
     [PROGRAM_PAPER] = VERSION,
     [PROGRAM_PAPER_MATERIAL] = VERSION "#define GTX_MATERIALS\n",
     [PROGRAM_SHELL] = VERSION,
-    [PROGRAM_SHELL_MATERIAL] = VERSION "#define GTX_TWO_SIDED\n#define GTX_MATERIALS\n",
     [PROGRAM_SHELL_TWO_SIDED] = VERSION "#define GTX_TWO_SIDED\n",
+    [PROGRAM_SHELL_COLOR] = VERSION "#define GTX_COLORS\n",
+    [PROGRAM_SHELL_COLOR_TWO_SIDED] = VERSION "#define GTX_COLORS\n#define GTX_TWO_SIDED\n",
+    [PROGRAM_SHELL_MATERIAL] = VERSION "#define GTX_MATERIALS\n",
 };
 
 static const char *const vertex_parts[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
@@ -24,6 +26,9 @@ static const char *const vertex_parts[] = {"geotex_dialect.glsl", "geotex_sheet.
 static const char *const shell_vertex_parts[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
                                                  "geotex_view.glsl", "geotex_shell.vert", NULL};
 
+#define SHELL_PARTS                                                                                \
+    "geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl", "geotex_surface.glsl",         \
+        "geotex_shell.frag", NULL
 static const char *const fragment_parts[PROGRAM_COUNT][MAX_PARTS] = {
     [PROGRAM_CAST] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
                       "geotex_surface.glsl", "geotex_cast.glsl", "geotex_forward.frag", NULL},
@@ -35,13 +40,13 @@ static const char *const fragment_parts[PROGRAM_COUNT][MAX_PARTS] = {
     [PROGRAM_PAPER_MATERIAL] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
                                 "geotex_surface.glsl", "geotex_material.glsl",
                                 "geotex_paper.glsl", "geotex_forward.frag", NULL},
-    [PROGRAM_SHELL] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
-                       "geotex_surface.glsl", "geotex_shell.frag", NULL},
+    [PROGRAM_SHELL] = {SHELL_PARTS},
+    [PROGRAM_SHELL_TWO_SIDED] = {SHELL_PARTS},
+    [PROGRAM_SHELL_COLOR] = {SHELL_PARTS},
+    [PROGRAM_SHELL_COLOR_TWO_SIDED] = {SHELL_PARTS},
     [PROGRAM_SHELL_MATERIAL] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
                                 "geotex_surface.glsl", "geotex_material.glsl",
                                 "geotex_shell.frag", NULL},
-    [PROGRAM_SHELL_TWO_SIDED] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
-                                 "geotex_surface.glsl", "geotex_shell.frag", NULL},
 };
 
 const char *gtx_shader_source(const char *name)
@@ -125,8 +130,10 @@ static bool create_program(const gtx_renderer *renderer, int kind, gtx_program *
         [PROGRAM_PAPER] = "geotex paper",
         [PROGRAM_PAPER_MATERIAL] = "geotex paper, materials",
         [PROGRAM_SHELL] = "geotex shell",
-        [PROGRAM_SHELL_MATERIAL] = "geotex shell, materials",
-        [PROGRAM_SHELL_TWO_SIDED] = "geotex shell, two-sided"};
+        [PROGRAM_SHELL_TWO_SIDED] = "geotex shell, two-sided",
+        [PROGRAM_SHELL_COLOR] = "geotex shell, colors",
+        [PROGRAM_SHELL_COLOR_TWO_SIDED] = "geotex shell, colors, two-sided",
+        [PROGRAM_SHELL_MATERIAL] = "geotex shell, materials"};
     const gtx_gl *gl = &renderer->gl;
     const gl_uint vertex = compile(renderer, GL_VERTEX_SHADER, heads[kind],
                                    kind >= PROGRAM_SHELL ? shell_vertex_parts : vertex_parts);

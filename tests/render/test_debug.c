@@ -80,7 +80,7 @@ static void objects_carry_labels(void **state)
     if (major < 4 || !gtx_offscreen_load("glGetObjectLabel", NULL))
         skip();
     subject shown = subject_open(s, shelled(fixture_sphere(2, 48, 8), 2, 2, 0));
-    assert_int_equal(labelled(GL_PROGRAM), 7);
+    assert_int_equal(labelled(GL_PROGRAM), 9);
     assert_int_equal(labelled(GL_TEXTURE), 5);
     assert_int_equal(labelled(GL_BUFFER), 5);
     subject_close(s, &shown);

@@ -76,7 +76,9 @@ static void every_dialect(void **state)
         compile(versions[i][0], versions[i][1], "frag", shell);
         snprintf(head, sizeof head, "%s\n#define GTX_TWO_SIDED", versions[i][0]);
         compile(head, versions[i][1], "frag", shell);
-        strcat(head, "\n#define GTX_MATERIALS");
+        snprintf(head, sizeof head, "%s\n#define GTX_COLORS", versions[i][0]);
+        compile(head, versions[i][1], "frag", shell);
+        snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS", versions[i][0]);
         compile(head, versions[i][1], "frag", shell_material);
     }
 }
