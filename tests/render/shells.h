@@ -65,8 +65,12 @@ static inline void make_shell_level(const gtx_patch *patches, uint32_t count, do
     l->shell.error = (float)(radius - sqrt(middle)) + 2 * l->shell.step;
 }
 
+/* What a sphere with a shell has of appearance. */
+typedef enum shell_looks { SHELL_COLORED, SHELL_PLAIN, SHELL_SHINY } shell_looks;
+
 /* A copy of a fixture's sphere that has a shell, of `levels` levels, and the flags in all patches. */
-static inline gtx_asset *shelled(gtx_asset *sphere, double radius, uint32_t levels, uint16_t flags)
+static inline gtx_asset *shelled_as(gtx_asset *sphere, double radius, uint32_t levels,
+                                    uint16_t flags, shell_looks looks)
 {
     static shell_level made[SHELL_LEVELS];
     gtx_info info;
@@ -80,8 +84,12 @@ static inline gtx_asset *shelled(gtx_asset *sphere, double radius, uint32_t leve
         make_shell_level(patches, info.patch_count, radius, SHELL_FINEST >> k, &made[k]);
         shells[k] = made[k].shell;
     }
-    const uint8_t *normal[8], *color[8];
+    const uint8_t *normal[8], *color[8], *material[8];
+    const size_t texels = (size_t)info.page_width * info.page_height * info.page_count;
+    uint8_t *halves = malloc(4 * texels);
+    memset(halves, 128, 4 * texels);
     for (uint32_t k = 0; k < info.mip_count; ++k) {
+        material[k] = halves;
         normal[k] = gtx_map_data(sphere, GTX_MAP_NORMAL, k, NULL);
         color[k] = gtx_map_data(sphere, GTX_MAP_COLOR, k, NULL);
     }
@@ -91,15 +99,23 @@ static inline gtx_asset *shelled(gtx_asset *sphere, double radius, uint32_t leve
                            .height_bits = info.height_bits,
                            .height = gtx_map_data(sphere, GTX_MAP_HEIGHT, 0, NULL),
                            .trim = gtx_map_data(sphere, GTX_MAP_TRIM, 0, NULL),
-                           .normal = normal, .color = color, .shell = shells,
-                           .shell_levels = levels};
+                           .normal = normal, .color = looks == SHELL_PLAIN ? NULL : color,
+                           .material = looks == SHELL_SHINY ? material : NULL,
+                           .emission = looks == SHELL_SHINY ? material : NULL,
+                           .shell = shells, .shell_levels = levels};
     memcpy(desc.bounds_min, info.bounds_min, sizeof desc.bounds_min);
     memcpy(desc.bounds_max, info.bounds_max, sizeof desc.bounds_max);
     gtx_asset *out = NULL;
     gtx_error error = {0};
     must(gtx_create(&desc, &out, &error), &error);
     gtx_close(sphere);
+    free(halves);
     return out;
+}
+
+static inline gtx_asset *shelled(gtx_asset *sphere, double radius, uint32_t levels, uint16_t flags)
+{
+    return shelled_as(sphere, radius, levels, flags, SHELL_COLORED);
 }
 
 #endif

@@ -110,6 +110,29 @@ static void as_cast(void **state)
     subject_close(s, &shown);
 }
 
+/* Without colours, and with materials and emission; tinted, from dark to over-bright. */
+static void all_looks(void **state)
+{
+    STAGE_OR_SKIP(state);
+    static const shell_looks looks[] = {SHELL_PLAIN, SHELL_SHINY};
+    for (int i = 0; i < 4; ++i) {
+        gtx_asset *sphere = fixture_sphere(radius, TEXELS, 8);
+        subject shown =
+            subject_open(s, shelled_as(sphere, radius, SHELL_LEVELS,
+                                       i / 2 ? GTX_PATCH_TWO_SIDED : 0, looks[i % 2]));
+        memcpy(shown.instance.tint, (float[4]){0.02f, 0.4f, 1.6f, 1}, 4 * sizeof(float));
+        gtx_camera camera = camera_around(shown.asset);
+        gtx_view view = view_of(&camera);
+        view.level = 1;
+        view.light_direction[1] = 1;
+        draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &first);
+        draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &second);
+        const difference d = compare(&first, &second);
+        expect_alike(&d, 0.995, 0.6, 24);
+        subject_close(s, &shown);
+    }
+}
+
 /* Within an error of half a pixel, whatever level that takes. */
 static void levels_keep_the_outline(void **state)
 {
@@ -571,6 +594,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(as_cast),
+        cmocka_unit_test(all_looks),
         cmocka_unit_test(levels_keep_the_outline),
         cmocka_unit_test(the_coarsest_within_the_error),
         cmocka_unit_test(casts_when_it_must),
