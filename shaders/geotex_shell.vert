@@ -41,12 +41,14 @@ void main()
     gtx_ray = normalize(gtx_to_world(object.xyz * gtx_depth.w -
                                      vec3(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w)));
 
-    /* The mip level whose texels, seen from above, are nearest to a pixel in size. */
+    /* The mip level whose texels, seen from above, are nearest to a pixel in size; 0 when the size of
+     * a pixel is unknown. */
     vec4 axis_y = gtx_record(index, 5);
     vec3 axis_x = gtx_record(index, 4).xyz, axis_z = gtx_record(index, 6).xyz;
     float texel = length(cross(gtx_to_world(axis_x), gtx_to_world(axis_y.xyz)));
-    float pixel = gl_Position.w / max(gtx_detail.x * gtx_detail.w, 1e-30);
-    float level = clamp(floor(log2(pixel) - 0.5 * log2(texel) + 0.5), 0.0, gtx_maps.x);
+    float pixels = gtx_detail.x * gtx_detail.w * sqrt(texel);
+    float level = log2(gl_Position.w / max(pixels, 1e-30));
+    level = pixels > 0.0 ? clamp(floor(level + 0.5), 0.0, gtx_maps.x) : 0.0;
     float half_texel = 0.5 * exp2(level);
     vec4 rect = gtx_record(index, 7);
     vec2 size = vec2(textureSize(gtx_normals, 0).xy);

@@ -115,7 +115,8 @@ enum { /* gtx_view.flags */
  * The shell. GTX_METHOD_SHELL draws an instance as the coarsest level of its shell whose error is at
  * most `max_error` pixels where the asset's bounds are nearest to the camera, or as the finest when
  * there is none; `level` counts levels of the shell. It writes no depth of its own, so that the depth
- * test comes first and multisampling smooths its edges. GTX_METHOD_AUTO draws the same level if there
+ * test comes first and multisampling smooths its edges; `viewport_height` also tells the
+ * mip level of its maps. GTX_METHOD_AUTO draws the same level if there
  * is one within the error and gtx_costs has it for cheaper, and casts otherwise, as it does when
  * `viewport_height` is unknown or `level` given. Patches taken by gtx_model_update are cast from then
  * on, by either method. */

@@ -68,37 +68,32 @@ static inline void make_shell_level(const gtx_patch *patches, uint32_t count, do
 /* What a sphere with a shell has of appearance. */
 typedef enum shell_looks { SHELL_COLORED, SHELL_PLAIN, SHELL_SHINY } shell_looks;
 
-/* A copy of a fixture's sphere that has a shell, of `levels` levels, and the flags in all patches. */
-static inline gtx_asset *shelled_as(gtx_asset *sphere, double radius, uint32_t levels,
+/* A copy of an asset with this shell, and the flags in all patches. Closes the asset. */
+static inline gtx_asset *with_shell(gtx_asset *plain, const gtx_shell *shells, uint32_t levels,
                                     uint16_t flags, shell_looks looks)
 {
-    static shell_level made[SHELL_LEVELS];
     gtx_info info;
-    gtx_get_info(sphere, &info);
-    gtx_shell shells[SHELL_LEVELS];
+    gtx_get_info(plain, &info);
     gtx_patch patches[6];
-    memcpy(patches, gtx_patches(sphere), info.patch_count * sizeof *patches);
+    assert_true(info.patch_count <= 6);
+    memcpy(patches, gtx_patches(plain), info.patch_count * sizeof *patches);
     for (uint32_t p = 0; p < info.patch_count; ++p)
         patches[p].flags |= flags;
-    for (uint32_t k = 0; k < levels; ++k) {
-        make_shell_level(patches, info.patch_count, radius, SHELL_FINEST >> k, &made[k]);
-        shells[k] = made[k].shell;
-    }
     const uint8_t *normal[8], *color[8], *material[8];
     const size_t texels = (size_t)info.page_width * info.page_height * info.page_count;
     uint8_t *halves = malloc(4 * texels);
     memset(halves, 128, 4 * texels);
     for (uint32_t k = 0; k < info.mip_count; ++k) {
         material[k] = halves;
-        normal[k] = gtx_map_data(sphere, GTX_MAP_NORMAL, k, NULL);
-        color[k] = gtx_map_data(sphere, GTX_MAP_COLOR, k, NULL);
+        normal[k] = gtx_map_data(plain, GTX_MAP_NORMAL, k, NULL);
+        color[k] = gtx_map_data(plain, GTX_MAP_COLOR, k, NULL);
     }
     gtx_asset_desc desc = {.patches = patches, .patch_count = info.patch_count,
                            .page_count = info.page_count, .page_width = info.page_width,
                            .page_height = info.page_height, .mip_count = info.mip_count,
                            .height_bits = info.height_bits,
-                           .height = gtx_map_data(sphere, GTX_MAP_HEIGHT, 0, NULL),
-                           .trim = gtx_map_data(sphere, GTX_MAP_TRIM, 0, NULL),
+                           .height = gtx_map_data(plain, GTX_MAP_HEIGHT, 0, NULL),
+                           .trim = gtx_map_data(plain, GTX_MAP_TRIM, 0, NULL),
                            .normal = normal, .color = looks == SHELL_PLAIN ? NULL : color,
                            .material = looks == SHELL_SHINY ? material : NULL,
                            .emission = looks == SHELL_SHINY ? material : NULL,
@@ -108,9 +103,25 @@ static inline gtx_asset *shelled_as(gtx_asset *sphere, double radius, uint32_t l
     gtx_asset *out = NULL;
     gtx_error error = {0};
     must(gtx_create(&desc, &out, &error), &error);
-    gtx_close(sphere);
+    gtx_close(plain);
     free(halves);
     return out;
+}
+
+/* The same of a fixture's sphere, with `levels` levels. */
+static inline gtx_asset *shelled_as(gtx_asset *sphere, double radius, uint32_t levels,
+                                    uint16_t flags, shell_looks looks)
+{
+    static shell_level made[SHELL_LEVELS];
+    gtx_shell shells[SHELL_LEVELS];
+    gtx_info info;
+    gtx_get_info(sphere, &info);
+    for (uint32_t k = 0; k < levels; ++k) {
+        make_shell_level(gtx_patches(sphere), info.patch_count, radius, SHELL_FINEST >> k,
+                         &made[k]);
+        shells[k] = made[k].shell;
+    }
+    return with_shell(sphere, shells, levels, flags, looks);
 }
 
 static inline gtx_asset *shelled(gtx_asset *sphere, double radius, uint32_t levels, uint16_t flags)

@@ -133,8 +133,8 @@ static void all_looks(void **state)
     }
 }
 
-/* Within an error of half a pixel, whatever level that takes. */
-static void levels_keep_the_outline(void **state)
+/* Within an error of half a pixel, whatever level of the shell and of the maps that takes. */
+static void levels_keep_the_looks(void **state)
 {
     STAGE_OR_SKIP(state);
     subject shown = sphere_open(s);
@@ -148,8 +148,8 @@ static void levels_keep_the_outline(void **state)
         draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &second);
         const difference d = compare(&first, &second);
         const double iou = (double)d.both / (double)d.either;
-        if (iou < 0.975 || d.holes)
-            fail_msg("IoU %g, %ld holes", iou, d.holes);
+        if (iou < 0.975 || d.holes || d.mean > 3)
+            fail_msg("IoU %g, %ld holes, colours differ by %g", iou, d.holes, d.mean);
     }
     subject_close(s, &shown);
 }
@@ -381,6 +381,67 @@ static void instances_are_placed(void **state)
     subject_close(s, &shown);
 }
 
+/* Two squares side by side, whose rectangles lie one under the other: one red, one green, the
+ * brighter the coarser the mip level. */
+static void square_sheet(const gtx_patch *patch, double x, double y, const void *user,
+                         fixture_texel *out)
+{
+    (void)patch, (void)y;
+    int level = 0; /* texel i of level k is at x + 1/2 = (2 i + 1) 2^(k - 1) */
+    for (double at = x + 0.5; level < 3 && at == floor(at); at /= 2)
+        ++level;
+    out->height = 0.5;
+    out->trim = -1;
+    out->color[*(const int *)user] = (uint8_t)(60 + 60 * level);
+    out->color[1 - *(const int *)user] = out->color[2] = 0;
+}
+
+static gtx_asset *two_squares(void)
+{
+    static const int channels[2] = {0, 1};
+    static const uint32_t first_triangle[3] = {0, 2, 4};
+    static const uint32_t indices[12] = {0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2};
+    static const uint16_t positions[18] = {0, 0, 0, 4, 0, 0, 4, 4, 0, 0, 4, 0, 8, 0, 0, 8, 4, 0};
+    fixture_patch squares[2];
+    for (int i = 0; i < 2; ++i) {
+        const double corner[3] = {4 * i + 0.0625, 0.0625, 0};
+        squares[i] = (fixture_patch){fixture_frame(corner, 32, 32, 0.125, 1), square_sheet,
+                                     &channels[i]};
+    }
+    const gtx_shell shell = {.origin = {0, 0, 0.5f}, .step = 1, .vertex_count = 6,
+                             .triangle_count = 4, .first = first_triangle, .indices = indices,
+                             .positions = positions};
+    return with_shell(fixture_build(squares, 2, 8, 4), &shell, 1, 0, SHELL_COLORED);
+}
+
+/* No texel of the one in the picture of the other, at no mip level; and the right level. */
+static void maps_end_at_their_rectangles(void **state)
+{
+    STAGE_OR_SKIP(state);
+    subject shown = subject_open(s, two_squares());
+    for (int level = 0; level < 4; ++level) {
+        const double pixel = 0.125 * (1 << level) * 1.2;
+        gtx_camera camera = {.target = {4, 2, 0.5f}, .orthographic = 1, .distance = 3,
+                             .radius = (float)(pixel * STAGE_HEIGHT / 2 * 0.96)};
+        gtx_view view = view_of(&camera);
+        view.viewport_height = STAGE_HEIGHT;
+        view.ambient = 1;
+        draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &first);
+        long counts[2] = {0, 0};
+        for (int i = 0; i < STAGE_PIXELS; ++i) {
+            const uint8_t *c = first.color + 4 * i;
+            if (first.depth[i] == first.empty)
+                continue;
+            ++counts[c[1] > c[0]];
+            if (abs(c[0] + c[1] - 60 - 60 * level) > 1 || (c[0] && c[1]) || c[2])
+                fail_msg("level %d: a pixel of (%d, %d, %d)", level, c[0], c[1], c[2]);
+        }
+        const double each = 16 / (pixel * pixel);
+        assert_true((double)counts[0] > 0.7 * each && (double)counts[1] > 0.7 * each);
+    }
+    subject_close(s, &shown);
+}
+
 /* What the test counts: questions to OpenGL between two points. */
 static int questions;
 static PFNGLGETINTEGERVPROC real_get;
@@ -595,7 +656,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(as_cast),
         cmocka_unit_test(all_looks),
-        cmocka_unit_test(levels_keep_the_outline),
+        cmocka_unit_test(levels_keep_the_looks),
         cmocka_unit_test(the_coarsest_within_the_error),
         cmocka_unit_test(casts_when_it_must),
         cmocka_unit_test(costs_are_compared),
@@ -606,6 +667,7 @@ int main(void)
         cmocka_unit_test(an_edited_patch_is_cast),
         cmocka_unit_test(multisampling_smooths_edges),
         cmocka_unit_test(slices_and_size),
+        cmocka_unit_test(maps_end_at_their_rectangles),
     };
     return cmocka_run_group_tests(tests, open_stage, stage_close);
 }
