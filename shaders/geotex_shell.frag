@@ -5,15 +5,13 @@
  * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl and geotex_surface.glsl before it;
  * varyings as geotex_shell.vert. GTX_TWO_SIDED lights backs, too, GTX_COLORS says that there is a map
  * of them, and GTX_MATERIALS is as in geotex_forward.frag. */
-GTX_VARYING(0) in vec2 gtx_at;
+GTX_VARYING(0) in vec4 gtx_at;
 GTX_VARYING(1) flat in vec4 gtx_inset;
-GTX_VARYING(2) flat in vec2 gtx_map;
-GTX_VARYING(3) flat in vec3 gtx_normal_x;
-GTX_VARYING(4) flat in vec3 gtx_normal_y;
-GTX_VARYING(5) flat in vec3 gtx_normal_z;
-GTX_VARYING(6) flat in vec4 gtx_color;
-GTX_VARYING(7) flat in vec3 gtx_ray;
-GTX_VARYING(8) flat in vec3 gtx_color_root;
+GTX_VARYING(2) flat in vec3 gtx_normal_x;
+GTX_VARYING(3) flat in vec3 gtx_normal_y;
+GTX_VARYING(4) flat in vec3 gtx_normal_z;
+GTX_VARYING(5) flat in vec4 gtx_color;
+GTX_VARYING(6) flat in vec3 gtx_ray;
 
 layout(location = 0) out vec4 gtx_out_color;
 
@@ -31,17 +29,19 @@ float gtx_lambert(vec3 n)
     return max(front, 0.0);
 }
 
-/* A colour times a share of light, as sRGB: gtx_to_srgb with one power instead of three. */
-vec3 gtx_shaded_to_srgb(vec3 color, vec3 root, float share)
+/* gtx_to_srgb of a colour times a share of light, from the colour's root: one power instead of
+ * three. Where sRGB is linear, near black, a polynomial is within a tenth of a byte of it. */
+vec3 gtx_shaded_to_srgb(vec3 root, float share)
 {
-    vec3 c = color * share;
-    return mix(12.92 * c, root * pow(share, 1.0 / 2.4) - 0.055, step(0.0031308, c));
+    vec3 r = min(root * pow(share, 1.0 / 2.4), 1.0);
+    return mix(12.92 * r * r * (0.197 + 2.05 * r), 1.055 * r - 0.055, step(0.0904, r));
 }
 
 void main()
 {
-    vec3 place = vec3(clamp(gtx_at, gtx_inset.xy, gtx_inset.zw), gtx_map.x);
-    vec2 e = textureLod(gtx_normals, place, gtx_map.y).xy * 2.0 - 1.0;
+    vec3 place = vec3(clamp(gtx_at.xy, gtx_inset.xy, gtx_inset.zw), gtx_at.z);
+    float level = gtx_at.w;
+    vec2 e = textureLod(gtx_normals, place, level).xy * 2.0 - 1.0;
     vec2 p = vec2(e.x + e.y, e.x - e.y) * 0.5;
     vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y +
                        gtx_normal_z * (1.0 - abs(p.x) - abs(p.y)));
@@ -50,22 +50,22 @@ void main()
     if (!gl_FrontFacing)
         n = gtx_from_behind(n, gtx_ray);
     if (gtx_maps.y > 0.0)
-        color *= textureLod(gtx_colors, place, gtx_map.y);
+        color *= textureLod(gtx_colors, place, level);
     gtx_material material = gtx_material(color.rgb, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
     if (gtx_maps.w > 0.0) {
-        vec4 map = textureLod(gtx_materials, place, gtx_map.y);
+        vec4 map = textureLod(gtx_materials, place, level);
         material = gtx_material(color.rgb, vec3(0.0), map.x, map.y, map.z, map.w);
     }
     if (gtx_maps.z > 0.0)
-        material.emission = textureLod(gtx_emissions, place, gtx_map.y).rgb * gtx_maps.z;
+        material.emission = textureLod(gtx_emissions, place, level).rgb * gtx_maps.z;
     color.rgb = gtx_to_srgb(gtx_shade(material, n, -gtx_ray, gtx_light.xyz, gtx_light.w));
 #else
     float share = gtx_light.w + (1.0 - gtx_light.w) * gtx_lambert(n);
 #ifdef GTX_COLORS
-    color *= textureLod(gtx_colors, place, gtx_map.y);
+    color *= textureLod(gtx_colors, place, level);
     color.rgb = gtx_to_srgb(color.rgb * share);
 #else
-    color.rgb = gtx_shaded_to_srgb(color.rgb, gtx_color_root, share);
+    color.rgb = gtx_shaded_to_srgb(color.rgb, share);
 #endif
 #endif
     gtx_out_color = color;

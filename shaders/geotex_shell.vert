@@ -3,7 +3,7 @@
  *
  * Needs geotex_dialect.glsl, geotex_sheet.glsl and geotex_view.glsl before it. What hardly changes
  * over a triangle is found here and stays the same all over it: triangles are small, and a vertex
- * serves several. */
+ * serves several. Each number more that a triangle carries costs a few per cent on llvmpipe. */
 GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;
 
 layout(location = 0) in vec3 gtx_position;  /* in steps of the level */
@@ -16,15 +16,13 @@ layout(location = 6) in vec4 gtx_object_y;
 layout(location = 7) in vec4 gtx_object_z;
 layout(location = 8) in vec4 gtx_tint;
 
-GTX_VARYING(0) out vec2 gtx_at;             /* in the page, 0..1 */
-GTX_VARYING(1) flat out vec4 gtx_inset;     /* the patch's part of it: least, greatest */
-GTX_VARYING(2) flat out vec2 gtx_map;       /* page, mip level */
-GTX_VARYING(3) flat out vec3 gtx_normal_x;  /* the patch's normals -> world */
-GTX_VARYING(4) flat out vec3 gtx_normal_y;
-GTX_VARYING(5) flat out vec3 gtx_normal_z;
-GTX_VARYING(6) flat out vec4 gtx_color;
-GTX_VARYING(7) flat out vec3 gtx_ray;       /* of sight; world space, unit */
-GTX_VARYING(8) flat out vec3 gtx_color_root; /* so that gtx_to_srgb(color) is this - 0.055 */
+GTX_VARYING(0) out vec4 gtx_at;             /* place in the page, 0..1; page; mip level */
+GTX_VARYING(1) flat out vec4 gtx_inset;     /* the patch's part of the page: least, greatest */
+GTX_VARYING(2) flat out vec3 gtx_normal_x;  /* the patch's normals -> world */
+GTX_VARYING(3) flat out vec3 gtx_normal_y;
+GTX_VARYING(4) flat out vec3 gtx_normal_z;
+GTX_VARYING(5) flat out vec4 gtx_color;     /* where no map gives colours, the 2.4th root of rgb */
+GTX_VARYING(6) flat out vec3 gtx_ray;       /* of sight; world space, unit */
 
 vec3 gtx_to_world(vec3 object)
 {
@@ -48,14 +46,15 @@ void main()
     float texel = length(cross(gtx_to_world(axis_x), gtx_to_world(axis_y.xyz)));
     float pixels = gtx_detail.x * gtx_detail.w * sqrt(texel);
     float level = log2(gl_Position.w / max(pixels, 1e-30));
-    level = pixels > 0.0 ? clamp(floor(level + 0.5), 0.0, gtx_maps.x) : 0.0;
-    float half_texel = 0.5 * exp2(level);
+    level = pixels > 0.0 ? clamp(level, 0.0, gtx_maps.x) : 0.0;
+    /* The lookup takes the nearest whole level, which may change within the triangle: of two that
+     * are nearly as near, the coarser one gives the inset. */
+    float half_texel = 0.5 * exp2(min(floor(level + 0.75), gtx_maps.x));
     vec4 rect = gtx_record(index, 7);
     vec2 size = vec2(textureSize(gtx_normals, 0).xy);
     vec2 at = vec2(dot(gtx_record(index, 0), object), dot(gtx_record(index, 1), object));
-    gtx_at = (rect.xy + at + 0.5) / size;
+    gtx_at = vec4((rect.xy + at + 0.5) / size, axis_y.w, level);
     gtx_inset = vec4(rect.xy + half_texel, rect.xy + rect.zw - half_texel) / size.xyxy;
-    gtx_map = vec2(axis_y.w, level);
 
     vec3 z = normalize(axis_z), x = normalize(axis_x - dot(axis_x, z) * z);
     mat3 world_normals = mat3(gtx_object_x.xyz, gtx_object_y.xyz, gtx_object_z.xyz);
@@ -63,5 +62,7 @@ void main()
     gtx_normal_y = world_normals * cross(z, x);
     gtx_normal_z = world_normals * z;
     gtx_color = gtx_tint;
-    gtx_color_root = 1.055 * pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
+#if !defined GTX_COLORS && !defined GTX_MATERIALS
+    gtx_color.rgb = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
+#endif
 }
