@@ -5,7 +5,8 @@
  * The mesh is indexed, in vertex-cache order, its back faces culled. Every time is the median of N
  * frames (default 12) over four azimuths, each finished with glFinish; the methods take turns frame by
  * frame, so that a machine that slows down slows all of them. Compare ratios. IoU is that of the
- * silhouette with the mesh's, over the four azimuths. Work is the time of all processors together. */
+ * silhouette with the mesh's, over the four azimuths; holes are pixels that the mesh covers with all
+ * their neighbours, and the method does not. Work is the time of all processors together. */
 #include "host/camera.h"
 #include "host/framebuffer.h"
 #include "host/offscreen.h"
@@ -129,7 +130,7 @@ static const struct {
                {"auto", GTX_METHOD_AUTO}, {"paper", GTX_METHOD_PAPER}};
 enum { MESH, CAST, SHELL, AUTO, PAPER, METHODS };
 
-/* What is asked for; the sizes are those of DESIGN's table of frames. */
+/* What is asked for. */
 struct Options {
     int frames = 12;
     float max_error = 0;
@@ -189,13 +190,63 @@ static std::vector<bool> covered_pixels(Bench &bench, const gtx_framebuffer &tar
 /* Times, and pixels that both the mesh and the method cover, or either. */
 struct Column {
     std::vector<double> times, work; /* milliseconds; of all processors together */
-    size_t both = 0, either = 0;
+    size_t both = 0, either = 0, holes = 0;
 };
+
+/* Whether a pixel and its eight neighbours are covered. */
+static bool is_inside(const std::vector<bool> &covered, size_t pixel, size_t width)
+{
+    const size_t x = pixel % width, y = pixel / width;
+    if (x == 0 || y == 0 || x + 1 == width || (y + 1) * width == covered.size())
+        return false;
+    for (size_t k = 0; k < 9; ++k)
+        if (!covered[(y + k / 3 - 1) * width + x + k % 3 - 1])
+            return false;
+    return true;
+}
 
 static double median(std::vector<double> values)
 {
     std::sort(values.begin(), values.end());
     return values[values.size() / 2];
+}
+
+/* Counts what each method covers, over the four azimuths; warms up, too. Returns the mesh's pixels. */
+static size_t compare_outlines(Bench &bench, const Options &options, const gtx_framebuffer &target,
+                               std::vector<Column> &columns)
+{
+    size_t pixels = 0;
+    for (int turn = 0; turn < 4; ++turn) {
+        const gtx_view view = view_of(bench, options, target.width, target.height, turn);
+        std::vector<bool> mesh;
+        for (size_t i = 0; i < columns.size(); ++i) {
+            draw(bench, options.methods[i], view);
+            const std::vector<bool> covered = covered_pixels(bench, target);
+            if (i == 0)
+                mesh = covered;
+            for (size_t p = 0; p < mesh.size(); ++p) {
+                columns[i].both += covered[p] && mesh[p];
+                columns[i].either += covered[p] || mesh[p];
+                columns[i].holes += !covered[p] && is_inside(mesh, p, size_t(target.width));
+            }
+        }
+        pixels += size_t(std::count(mesh.begin(), mesh.end(), true));
+    }
+    return pixels;
+}
+
+static void time_frames(Bench &bench, const Options &options, const gtx_framebuffer &target,
+                        std::vector<Column> &columns)
+{
+    for (int frame = 0; frame < options.frames; ++frame)
+        for (size_t i = 0; i < columns.size(); ++i) {
+            const gtx_view view = view_of(bench, options, target.width, target.height, frame);
+            const std::clock_t work = std::clock();
+            const double start = milliseconds();
+            draw(bench, options.methods[i], view);
+            columns[i].times.push_back(milliseconds() - start);
+            columns[i].work.push_back(1e3 * double(std::clock() - work) / CLOCKS_PER_SEC);
+        }
 }
 
 static void measure_size(Bench &bench, const Options &options, int width, int height)
@@ -204,40 +255,19 @@ static void measure_size(Bench &bench, const Options &options, int width, int he
     gtx_framebuffer target;
     check(gtx_framebuffer_create(&bench.gl, width, height, &target, &error), error);
     std::vector<Column> columns(options.methods.size());
-    size_t pixels = 0;
-    for (int turn = 0; turn < 4; ++turn) { /* warms up, too */
-        std::vector<bool> mesh;
-        for (size_t i = 0; i < columns.size(); ++i) {
-            draw(bench, options.methods[i], view_of(bench, options, width, height, turn));
-            std::vector<bool> covered = covered_pixels(bench, target);
-            if (i == 0)
-                mesh = covered;
-            for (size_t p = 0; p < mesh.size(); ++p) {
-                columns[i].both += covered[p] && mesh[p];
-                columns[i].either += covered[p] || mesh[p];
-            }
-        }
-        pixels += size_t(std::count(mesh.begin(), mesh.end(), true));
-    }
-    for (int frame = 0; frame < options.frames; ++frame)
-        for (size_t i = 0; i < columns.size(); ++i) {
-            gtx_view view = view_of(bench, options, width, height, frame);
-            const std::clock_t work = std::clock();
-            const double start = milliseconds();
-            draw(bench, options.methods[i], view);
-            columns[i].times.push_back(milliseconds() - start);
-            columns[i].work.push_back(1e3 * double(std::clock() - work) / CLOCKS_PER_SEC);
-        }
+    const size_t pixels = compare_outlines(bench, options, target, columns);
+    time_frames(bench, options, target, columns);
     const double mesh = median(columns[0].times), mesh_work = median(columns[0].work);
     for (size_t i = 0; i < columns.size(); ++i) {
-        const double time = median(columns[i].times), work = median(columns[i].work);
+        const Column &c = columns[i];
+        const double time = median(c.times), work = median(c.work);
+        const double least = *std::min_element(c.times.begin(), c.times.end());
         char size[32];
         std::snprintf(size, sizeof size, "%dx%d", width, height);
-        std::printf("| %-9s | %7zu | %-6s | %8.2f | %8.2f | %6.2f | %8.2f | %6.2f | %6.4f |\n", size,
-                    pixels / 4, methods[options.methods[i]].name, time,
-                    *std::min_element(columns[i].times.begin(), columns[i].times.end()),
-                    mesh / time, work, mesh_work / work,
-                    double(columns[i].both) / double(std::max<size_t>(columns[i].either, 1)));
+        std::printf("| %-9s | %7zu | %-6s | %8.2f | %8.2f | %6.2f | %8.2f | %6.2f | %6.4f | %5zu |\n",
+                    size, pixels / 4, methods[options.methods[i]].name, time, least, mesh / time,
+                    work, mesh_work / work,
+                    double(c.both) / double(std::max<size_t>(c.either, 1)), c.holes);
     }
     std::fflush(stdout);
     gtx_framebuffer_destroy(&bench.gl, &target);
@@ -314,8 +344,8 @@ int main(int argc, char **argv)
     std::printf("%s, milliseconds of %d frames, levels within %g pixels\n",
                 bench.gl.GetString(GL_RENDERER), options.frames,
                 options.max_error > 0 ? double(options.max_error) : 0.5);
-    std::printf("| window    | pixels  | method | median   | least    | mesh/  | work     | mesh/  | IoU    |\n"
-                "|---|---|---|---|---|---|---|---|---|\n");
+    std::printf("| window    | pixels  | method | median   | least    | mesh/  | work     | mesh/  | IoU    "
+                "| holes |\n|---|---|---|---|---|---|---|---|---|---|\n");
     for (const std::array<int, 2> &s : options.sizes)
         measure_size(bench, options, s[0], s[1]);
     gtx_polygons_destroy(&bench.gl, &bench.polygons);
