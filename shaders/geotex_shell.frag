@@ -3,8 +3,8 @@
  * depth test comes first.
  *
  * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl and geotex_surface.glsl before it;
- * varyings as geotex_shell.vert. GTX_TWO_SIDED lights backs, too, GTX_COLORS says that there is a map
- * of them, and GTX_MATERIALS is as in geotex_forward.frag. */
+ * varyings as geotex_shell.vert. GTX_TWO_SIDED lights backs, too, GTX_COLORS says that there is a
+ * map of them, and GTX_MATERIALS is as in geotex_forward.frag. */
 GTX_VARYING(0) in vec4 gtx_at;
 GTX_VARYING(1) flat in vec4 gtx_inset;
 GTX_VARYING(2) flat in vec3 gtx_normal_x;

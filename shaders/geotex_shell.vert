@@ -39,8 +39,8 @@ void main()
     gtx_ray = normalize(gtx_to_world(object.xyz * gtx_depth.w -
                                      vec3(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w)));
 
-    /* The mip level whose texels, seen from above, are nearest to a pixel in size; 0 when the size of
-     * a pixel is unknown. */
+    /* The mip level whose texels, seen from above, are nearest to a pixel in size; 0 when the size
+     * of a pixel is unknown. */
     vec4 axis_y = gtx_record(index, 5);
     vec3 axis_x = gtx_record(index, 4).xyz, axis_z = gtx_record(index, 6).xyz;
     float texel = length(cross(gtx_to_world(axis_x), gtx_to_world(axis_y.xyz)));

@@ -12,5 +12,5 @@ GTX_UNIFORM vec4 gtx_detail;            /* x: pixels a world unit at clip w = 1,
 GTX_UNIFORM vec4 gtx_maps;              /* x: last mip level of normals and colours; y: 1 when the
                                            model has colours; z: scale of its emission, or 0;
                                            w: 1 when it has materials */
-GTX_UNIFORM vec4 gtx_shell;             /* of the shell's level, xyz: origin; w: step of positions */
+GTX_UNIFORM vec4 gtx_shell;             /* of the shell's level, xyz: origin; w: step */
 GTX_UNIFORMS_END

@@ -15,8 +15,8 @@ gtx_costs gtx_costs_or_default(const gtx_costs *costs)
     return none ? measured : *costs;
 }
 
-/* An upper bound of how much the instance's transform M stretches, exact for an even scale: the root
- * of the largest row sum of M M^T. */
+/* An upper bound of how much the instance's transform M stretches, exact for an even scale: the
+ * root of the largest row sum of M M^T. */
 static double stretch_of(const gtx_instance_data *placed)
 {
     double most = 0;

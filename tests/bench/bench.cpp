@@ -1,4 +1,4 @@
-/* Frame times: the culled source mesh, cast, shell, auto and the paper's search, interleaved in one run.
+/* Frame times: the culled source mesh, cast, shell, auto and the paper's search, interleaved.
  *
  *   bench ASSET.gtx MODEL [--frames N] [--max-error PIXELS] [--sizes WxH,...] [--methods NAME,...]
  *
@@ -211,7 +211,7 @@ static double median(std::vector<double> values)
     return values[values.size() / 2];
 }
 
-/* Counts what each method covers, over the four azimuths; warms up, too. Returns the mesh's pixels. */
+/* Counts what each method covers, over the four azimuths; warms up. Returns the mesh's pixels. */
 static size_t compare_outlines(Bench &bench, const Options &options, const gtx_framebuffer &target,
                                std::vector<Column> &columns)
 {

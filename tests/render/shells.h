@@ -5,7 +5,11 @@
 
 #include "stage.h"
 
-enum { SHELL_LEVELS = 4, SHELL_FINEST = 32, SHELL_MOST = 6 * (SHELL_FINEST + 1) * (SHELL_FINEST + 1) };
+enum {
+    SHELL_LEVELS = 4,
+    SHELL_FINEST = 32,
+    SHELL_MOST = 6 * (SHELL_FINEST + 1) * (SHELL_FINEST + 1)
+};
 
 typedef struct shell_level {
     uint32_t first[7], indices[36 * SHELL_FINEST * SHELL_FINEST];
@@ -32,8 +36,9 @@ static inline uint32_t shell_vertex(shell_level *l, const double at[3])
 static inline void shell_point(const gtx_patch *p, double radius, int n, int i, int j, double at[3])
 {
     const double u = tan((2.0 * i / n - 1) * atan(1)), v = tan((2.0 * j / n - 1) * atan(1));
+    const double length = sqrt(1 + u * u + v * v);
     for (int k = 0; k < 3; ++k)
-        at[k] = (p->axis_z[k] + u * p->axis_x[k] + v * p->axis_y[k]) * radius / sqrt(1 + u * u + v * v);
+        at[k] = (p->axis_z[k] + u * p->axis_x[k] + v * p->axis_y[k]) * radius / length;
 }
 
 static inline void make_shell_level(const gtx_patch *patches, uint32_t count, double radius, int n,
