@@ -8,12 +8,27 @@
 
 enum { MAX_PARTS = 8, MAX_LOG = 2048 };
 
-static const char version_line[] = "#version 330 core\n";
-static const char material_lines[] = "#version 330 core\n#define GTX_MATERIALS\n";
+#define VERSION "#version 330 core\n"
+static const char *const heads[PROGRAM_COUNT] = {
+    [PROGRAM_CAST] = VERSION,
+    [PROGRAM_CAST_MATERIAL] = VERSION "#define GTX_MATERIALS\n",
+    [PROGRAM_PAPER] = VERSION,
+    [PROGRAM_PAPER_MATERIAL] = VERSION "#define GTX_MATERIALS\n",
+    [PROGRAM_SHELL] = VERSION,
+    [PROGRAM_SHELL_TWO_SIDED] = VERSION "#define GTX_TWO_SIDED\n",
+    [PROGRAM_SHELL_COLOR] = VERSION "#define GTX_COLORS\n",
+    [PROGRAM_SHELL_COLOR_TWO_SIDED] = VERSION "#define GTX_COLORS\n#define GTX_TWO_SIDED\n",
+    [PROGRAM_SHELL_MATERIAL] = VERSION "#define GTX_MATERIALS\n",
+};
 
 static const char *const vertex_parts[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
                                            "geotex_view.glsl", "geotex_proxy.vert", NULL};
+static const char *const shell_vertex_parts[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                                 "geotex_view.glsl", "geotex_shell.vert", NULL};
 
+#define SHELL_PARTS                                                                                \
+    "geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl", "geotex_surface.glsl",         \
+        "geotex_shell.frag", NULL
 static const char *const fragment_parts[PROGRAM_COUNT][MAX_PARTS] = {
     [PROGRAM_CAST] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
                       "geotex_surface.glsl", "geotex_cast.glsl", "geotex_forward.frag", NULL},
@@ -25,6 +40,13 @@ static const char *const fragment_parts[PROGRAM_COUNT][MAX_PARTS] = {
     [PROGRAM_PAPER_MATERIAL] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
                                 "geotex_surface.glsl", "geotex_material.glsl",
                                 "geotex_paper.glsl", "geotex_forward.frag", NULL},
+    [PROGRAM_SHELL] = {SHELL_PARTS},
+    [PROGRAM_SHELL_TWO_SIDED] = {SHELL_PARTS},
+    [PROGRAM_SHELL_COLOR] = {SHELL_PARTS},
+    [PROGRAM_SHELL_COLOR_TWO_SIDED] = {SHELL_PARTS},
+    [PROGRAM_SHELL_MATERIAL] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
+                                "geotex_surface.glsl", "geotex_material.glsl",
+                                "geotex_shell.frag", NULL},
 };
 
 const char *gtx_shader_source(const char *name)
@@ -92,39 +114,49 @@ static void locate(const gtx_gl *gl, gtx_program *program)
     program->light = gl->GetUniformLocation(program->object, "gtx_light");
     program->detail = gl->GetUniformLocation(program->object, "gtx_detail");
     program->maps = gl->GetUniformLocation(program->object, "gtx_maps");
+    program->shell = gl->GetUniformLocation(program->object, "gtx_shell");
     gl->UseProgram(program->object);
     for (gl_int i = 0; i < UNIT_COUNT; ++i)
         gl->Uniform1i(gl->GetUniformLocation(program->object, samplers[i]), i);
     gl->UseProgram(0);
 }
 
-gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
+/* False when it does not compile or link. */
+static bool create_program(const gtx_renderer *renderer, int kind, gtx_program *out)
 {
     static const char *const labels[PROGRAM_COUNT] = {
         [PROGRAM_CAST] = "geotex cast",
         [PROGRAM_CAST_MATERIAL] = "geotex cast, materials",
         [PROGRAM_PAPER] = "geotex paper",
-        [PROGRAM_PAPER_MATERIAL] = "geotex paper, materials"};
+        [PROGRAM_PAPER_MATERIAL] = "geotex paper, materials",
+        [PROGRAM_SHELL] = "geotex shell",
+        [PROGRAM_SHELL_TWO_SIDED] = "geotex shell, two-sided",
+        [PROGRAM_SHELL_COLOR] = "geotex shell, colors",
+        [PROGRAM_SHELL_COLOR_TWO_SIDED] = "geotex shell, colors, two-sided",
+        [PROGRAM_SHELL_MATERIAL] = "geotex shell, materials"};
     const gtx_gl *gl = &renderer->gl;
-    bool failed = false;
-    const gl_uint vertex = compile(renderer, GL_VERTEX_SHADER, version_line, vertex_parts);
-    for (int i = 0; i < PROGRAM_COUNT && vertex && !failed; ++i) {
-        const bool shades = i == PROGRAM_CAST_MATERIAL || i == PROGRAM_PAPER_MATERIAL;
-        const gl_uint fragment = compile(renderer, GL_FRAGMENT_SHADER,
-                                         shades ? material_lines : version_line, fragment_parts[i]);
-        renderer->programs[i].object = fragment ? link_stages(renderer, vertex, fragment) : 0;
-        failed = !renderer->programs[i].object;
-        if (!failed)
-            gtx_gl_label(gl, GL_PROGRAM, renderer->programs[i].object, labels[i]);
-        if (fragment)
-            gl->DeleteShader(fragment);
-        if (!failed)
-            locate(gl, &renderer->programs[i]);
-    }
+    const gl_uint vertex = compile(renderer, GL_VERTEX_SHADER, heads[kind],
+                                   kind >= PROGRAM_SHELL ? shell_vertex_parts : vertex_parts);
+    const gl_uint fragment =
+        vertex ? compile(renderer, GL_FRAGMENT_SHADER, heads[kind], fragment_parts[kind]) : 0;
+    out->object = fragment ? link_stages(renderer, vertex, fragment) : 0;
     if (vertex)
         gl->DeleteShader(vertex);
-    if (!vertex || failed)
-        return gtx_fail(error, GTX_ERROR_SHADER, "a shader did not compile; the log says why");
+    if (fragment)
+        gl->DeleteShader(fragment);
+    if (!out->object)
+        return false;
+    gtx_gl_label(gl, GL_PROGRAM, out->object, labels[kind]);
+    locate(gl, out);
+    return true;
+}
+
+gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
+{
+    for (int i = 0; i < PROGRAM_COUNT; ++i)
+        if (!create_program(renderer, i, &renderer->programs[i]))
+            return gtx_fail(error, GTX_ERROR_SHADER,
+                            "a shader did not compile; the log says why");
     return GTX_OK;
 }
 

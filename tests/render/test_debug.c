@@ -1,5 +1,5 @@
 /* What a debugger sees: labels on every object, a group around a draw, and no complaint. */
-#include "stage.h"
+#include "shells.h"
 
 typedef struct witness {
     int complaints, groups;
@@ -31,12 +31,13 @@ static void a_draw_is_a_silent_group(void **state)
     set_callback(on_message, &w);
     s->gl.Enable(GL_DEBUG_OUTPUT);
     s->gl.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-    subject shown = subject_open(s, fixture_sphere(2, 48, 8));
+    static const gtx_method methods[] = {GTX_METHOD_CAST, GTX_METHOD_PAPER, GTX_METHOD_SHELL};
+    subject shown = subject_open(s, shelled(fixture_sphere(2, 48, 8), 2, 2, 0));
     gtx_camera camera = camera_around(shown.asset);
     gtx_view view = view_of(&camera);
-    for (int i = 0; i < 4; ++i) {
-        view.method = i % 2 ? GTX_METHOD_PAPER : GTX_METHOD_CAST;
-        view.flags = i / 2 ? GTX_VIEW_RESTORE_STATE : 0;
+    for (int i = 0; i < 6; ++i) {
+        view.method = methods[i % 3];
+        view.flags = i / 3 ? GTX_VIEW_RESTORE_STATE : 0;
         stage_draw(s, &view, &shown.instance, 1);
     }
     must(gtx_model_update(s->renderer, shown.model, shown.asset, 0, NULL), &(gtx_error){0});
@@ -45,7 +46,7 @@ static void a_draw_is_a_silent_group(void **state)
     s->gl.Disable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
     set_callback(NULL, NULL);
     assert_int_equal(w.complaints, 0);
-    assert_int_equal(w.groups, 4);
+    assert_int_equal(w.groups, 6);
 }
 
 /* How many objects of a kind carry a label of ours. */
@@ -78,10 +79,10 @@ static void objects_carry_labels(void **state)
     s->gl.GetIntegerv(GL_MAJOR_VERSION, &major);
     if (major < 4 || !gtx_offscreen_load("glGetObjectLabel", NULL))
         skip();
-    subject shown = subject_open(s, fixture_sphere(2, 48, 8));
-    assert_int_equal(labelled(GL_PROGRAM), 4);
+    subject shown = subject_open(s, shelled(fixture_sphere(2, 48, 8), 2, 2, 0));
+    assert_int_equal(labelled(GL_PROGRAM), 9);
     assert_int_equal(labelled(GL_TEXTURE), 5);
-    assert_int_equal(labelled(GL_BUFFER), 3);
+    assert_int_equal(labelled(GL_BUFFER), 5);
     subject_close(s, &shown);
     assert_int_equal(labelled(GL_TEXTURE), 0); /* deleted with the model */
     s->gl.GetError();
@@ -131,7 +132,7 @@ static gtx_result use(stage *s, const gtx_asset *asset, const gtx_allocator *hoo
 static void every_allocation_goes_through_the_hooks(void **state)
 {
     STAGE_OR_SKIP(state);
-    gtx_asset *asset = fixture_flat(0.5, 8);
+    gtx_asset *asset = shelled(fixture_sphere(2, 48, 8), 2, 2, 0);
     gtx_result result = GTX_ERROR_MEMORY;
     const GLenum kinds[3] = {GL_PROGRAM, GL_TEXTURE, GL_BUFFER};
     int objects[3];

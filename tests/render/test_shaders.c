@@ -17,6 +17,14 @@ static const char *const materials[2][8] = {
     {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl", "geotex_surface.glsl",
      "geotex_material.glsl", "geotex_paper.glsl", "geotex_forward.frag", NULL}};
 
+static const char *const shell_vertex[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                           "geotex_view.glsl", "geotex_shell.vert", NULL};
+static const char *const shell[] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
+                                    "geotex_surface.glsl", "geotex_shell.frag", NULL};
+static const char *const shell_material[] = {"geotex_dialect.glsl",  "geotex_sheet.glsl",
+                                             "geotex_view.glsl",     "geotex_surface.glsl",
+                                             "geotex_material.glsl", "geotex_shell.frag", NULL};
+
 /* Compiles a program's stage and expects no word of complaint. */
 static void compile(const char *version, const char *options, const char *kind,
                     const char *const *parts)
@@ -64,6 +72,14 @@ static void every_dialect(void **state)
         snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS", versions[i][0]);
         compile(head, versions[i][1], "frag", materials[0]);
         compile(head, versions[i][1], "frag", materials[1]);
+        compile(versions[i][0], versions[i][1], "vert", shell_vertex);
+        compile(versions[i][0], versions[i][1], "frag", shell);
+        snprintf(head, sizeof head, "%s\n#define GTX_TWO_SIDED", versions[i][0]);
+        compile(head, versions[i][1], "frag", shell);
+        snprintf(head, sizeof head, "%s\n#define GTX_COLORS", versions[i][0]);
+        compile(head, versions[i][1], "frag", shell);
+        snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS", versions[i][0]);
+        compile(head, versions[i][1], "frag", shell_material);
     }
 }
 
