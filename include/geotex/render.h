@@ -1,4 +1,4 @@
-/* Drawing assets with OpenGL 3.3 core or later, beside the engine's own polygons.
+/* Drawing assets with OpenGL 3.3 core or OpenGL ES 3.0, or later, beside the engine's own polygons.
  *
  * The host owns the context, the framebuffer and the function loader; geotex links no GL. Every
  * draw writes true depth computed from the engine's own matrices, so patches and polygons drawn
@@ -10,6 +10,10 @@
  *   2D array) and samplers 0 on units 0..7, depth test on, depth func LESS (GREATER when reversed),
  *   depth mask on, cull face off, cull mode BACK, front face CCW, blend off, colour mask all on.
  * It does not touch the framebuffer binding, viewport, scissor, stencil or clip control.
+ *
+ * OpenGL ES is recognised by its version string; there is nothing to tell. It encodes what is written
+ * to an sRGB framebuffer, so bind one without: colours are sRGB bytes already. Before version 3.2
+ * GTX_VIEW_RESTORE_STATE takes blending and colour mask for the same at all draw buffers.
  *
  * Where the context has KHR_debug, every object carries a label and a draw is a debug group. */
 #ifndef GEOTEX_RENDER_H

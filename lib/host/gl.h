@@ -1,4 +1,5 @@
-/* The OpenGL functions of hosts (samples, tests, the command): one table, filled by a loader. */
+/* The functions of OpenGL and OpenGL ES that hosts (samples, tests, the command) use: one table,
+ * filled by a loader. */
 #ifndef GTX_HOST_GL_H
 #define GTX_HOST_GL_H
 
@@ -21,7 +22,7 @@ extern "C" {
     X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)                                     \
     X(PFNGLCLEARPROC, Clear)                                                                       \
     X(PFNGLCLEARCOLORPROC, ClearColor)                                                             \
-    X(PFNGLCLEARDEPTHPROC, ClearDepth)                                                             \
+    X(PFNGLCLEARDEPTHFPROC, ClearDepthf)                                                           \
     X(PFNGLCOMPILESHADERPROC, CompileShader)                                                       \
     X(PFNGLCREATEPROGRAMPROC, CreateProgram)                                                       \
     X(PFNGLCREATESHADERPROC, CreateShader)                                                         \
@@ -34,7 +35,6 @@ extern "C" {
     X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)                                             \
     X(PFNGLDEPTHFUNCPROC, DepthFunc)                                                               \
     X(PFNGLDEPTHMASKPROC, DepthMask)                                                               \
-    X(PFNGLDEPTHRANGEPROC, DepthRange)                                                             \
     X(PFNGLDISABLEPROC, Disable)                                                                   \
     X(PFNGLDRAWELEMENTSPROC, DrawElements)                                                         \
     X(PFNGLENABLEPROC, Enable)                                                                     \
@@ -76,6 +76,9 @@ typedef gtx_host_proc (*gtx_host_load)(const char *name, void *user);
 
 /* Needs a current context. Errors: GL, which names the first missing function. */
 gtx_result gtx_host_gl_init(gtx_host_gl *gl, gtx_host_load load, void *user, gtx_error *error);
+
+/* What a shader begins with in the current context: the version, and OpenGL ES's precisions. */
+const char *gtx_host_glsl(const gtx_host_gl *gl);
 
 #ifdef __cplusplus
 }

@@ -7,7 +7,6 @@
 #include <stddef.h>
 
 static const char vertex_text[] =
-    "#version 330 core\n"
     "layout(location = 0) in vec3 position;\n"
     "layout(location = 1) in vec3 normal;\n"
     "layout(location = 2) in vec4 color;\n"
@@ -22,7 +21,6 @@ static const char vertex_text[] =
     "}\n";
 
 static const char fragment_text[] =
-    "#version 330 core\n"
     "uniform vec3 light;\n"
     "uniform float ambient;\n"
     "in vec3 world_normal;\n"
@@ -85,8 +83,9 @@ void gtx_polygons_destroy(const gtx_host_gl *gl, gtx_polygons *polygons)
 
 static void attach(const gtx_host_gl *gl, GLuint program, GLenum stage, const char *text)
 {
+    const char *const texts[2] = {gtx_host_glsl(gl), text};
     const GLuint shader = gl->CreateShader(stage);
-    gl->ShaderSource(shader, 1, &text, NULL);
+    gl->ShaderSource(shader, 2, texts, NULL);
     gl->CompileShader(shader);
     gl->AttachShader(program, shader);
     gl->DeleteShader(shader);

@@ -8,8 +8,10 @@
 
 enum { MAX_PARTS = 8, MAX_LOG = 2048 };
 
-static const char version_line[] = "#version 330 core\n";
-static const char material_lines[] = "#version 330 core\n#define GTX_MATERIALS\n";
+/* Of OpenGL and of OpenGL ES; plain and with materials. */
+static const char *const heads[2][2] = {
+    {"#version 330 core\n", "#version 330 core\n#define GTX_MATERIALS\n"},
+    {"#version 300 es\n", "#version 300 es\n#define GTX_MATERIALS\n"}};
 
 static const char *const vertex_parts[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
                                            "geotex_view.glsl", "geotex_proxy.vert", NULL};
@@ -107,11 +109,11 @@ gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
         [PROGRAM_PAPER_MATERIAL] = "geotex paper, materials"};
     const gtx_gl *gl = &renderer->gl;
     bool failed = false;
-    const gl_uint vertex = compile(renderer, GL_VERTEX_SHADER, version_line, vertex_parts);
+    const gl_uint vertex = compile(renderer, GL_VERTEX_SHADER, heads[gl->es][0], vertex_parts);
     for (int i = 0; i < PROGRAM_COUNT && vertex && !failed; ++i) {
         const bool shades = i == PROGRAM_CAST_MATERIAL || i == PROGRAM_PAPER_MATERIAL;
-        const gl_uint fragment = compile(renderer, GL_FRAGMENT_SHADER,
-                                         shades ? material_lines : version_line, fragment_parts[i]);
+        const gl_uint fragment =
+            compile(renderer, GL_FRAGMENT_SHADER, heads[gl->es][shades], fragment_parts[i]);
         renderer->programs[i].object = fragment ? link_stages(renderer, vertex, fragment) : 0;
         failed = !renderer->programs[i].object;
         if (!failed)

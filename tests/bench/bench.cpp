@@ -143,7 +143,7 @@ enum { MESH, CAST, PAPER, METHODS };
 static void draw(Bench &bench, int method, const gtx_view &view)
 {
     bench.gl.DepthMask(GL_TRUE);
-    bench.gl.ClearDepth(1);
+    bench.gl.ClearDepthf(1);
     bench.gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     bench.gl.Enable(GL_DEPTH_TEST);
     bench.gl.DepthFunc(GL_LESS);
