@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "host/camera.h"
+#include "host/program.h"
 
 #include <stddef.h>
 
@@ -81,29 +82,13 @@ void gtx_polygons_destroy(const gtx_host_gl *gl, gtx_polygons *polygons)
     *polygons = (gtx_polygons){0};
 }
 
-static void attach(const gtx_host_gl *gl, GLuint program, GLenum stage, const char *text)
-{
-    const char *const texts[2] = {gtx_host_glsl(gl), text};
-    const GLuint shader = gl->CreateShader(stage);
-    gl->ShaderSource(shader, 2, texts, NULL);
-    gl->CompileShader(shader);
-    gl->AttachShader(program, shader);
-    gl->DeleteShader(shader);
-}
-
 gtx_result gtx_polygon_program_create(const gtx_host_gl *gl, gtx_polygon_program *out,
                                       gtx_error *error)
 {
-    GLint linked = 0;
-    const GLuint program = gl->CreateProgram();
-    attach(gl, program, GL_VERTEX_SHADER, vertex_text);
-    attach(gl, program, GL_FRAGMENT_SHADER, fragment_text);
-    gl->LinkProgram(program);
-    gl->GetProgramiv(program, GL_LINK_STATUS, &linked);
-    if (!linked) {
-        gl->DeleteProgram(program);
-        return gtx_fail(error, GTX_ERROR_SHADER, "the polygon shader did not link");
-    }
+    GLuint program;
+    gtx_result result = gtx_host_program_create(gl, vertex_text, fragment_text, &program, error);
+    if (result)
+        return result;
     out->program = program;
     out->model = gl->GetUniformLocation(program, "model");
     out->view_projection = gl->GetUniformLocation(program, "view_projection");

@@ -18,11 +18,16 @@ static gtx_result check(const gtx_renderer *renderer, const gtx_view *view,
         GTX_VIEW_REVERSED_Z | GTX_VIEW_DEPTH_ZERO_TO_ONE | GTX_VIEW_RESTORE_STATE;
     if (!renderer || !view || (count && !instances))
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a draw needs a renderer, a view and instances");
-    if (view->flags & ~flags || (unsigned)view->method > GTX_METHOD_PAPER)
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "the view asks for an unknown flag or method");
-    gtx_result result = gtx_check_reserved(view->reserved, 5, error);
+    if (view->flags & ~flags || (unsigned)view->method > GTX_METHOD_PAPER ||
+        (unsigned)view->pass > GTX_PASS_GBUFFER)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "the view asks for an unknown flag, method or pass");
+    if (view->shading && (view->pass != GTX_PASS_FORWARD || view->method == GTX_METHOD_PAPER))
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "a shading of one's own is cast, in place of the forward pass");
+    gtx_result result = gtx_check_reserved(view->reserved, 2, error);
     for (uint32_t i = 0; !result && i < count; ++i) {
-        result = gtx_check_reserved(instances[i].reserved, 4, error);
+        result = gtx_check_reserved(instances[i].reserved, 3, error);
         if (!result && (!instances[i].model || !instances[i].model->ready))
             result = gtx_fail(error, GTX_ERROR_ARGUMENT,
                               "instance %u has no model, or one that is not uploaded", i);
@@ -46,14 +51,32 @@ static gtx_result reserve(gtx_renderer *renderer, uint32_t count, gtx_error *err
     return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for %u instances", count);
 }
 
-/* What one draw holds on to: the frame, and the program in use. */
+/* What one draw holds on to: the frame, its programs, and the one in use. */
 typedef struct pass {
     const gtx_frame *frame;
-    gtx_method method;
-    const gtx_program *program;
+    const gtx_program *plain, *material, *current;
 } pass;
 
-static void begin(const gtx_gl *gl, const gtx_frame *frame)
+/* Compiles what the view is the first to need. */
+static gtx_result choose_programs(gtx_renderer *renderer, const gtx_view *view, pass *p,
+                                  gtx_error *error)
+{
+    static const int offsets[] = {[GTX_PASS_FORWARD] = PROGRAM_CAST,
+                                  [GTX_PASS_DEPTH] = PROGRAM_CAST_DEPTH,
+                                  [GTX_PASS_ID] = PROGRAM_CAST_ID,
+                                  [GTX_PASS_GBUFFER] = PROGRAM_CAST_GBUFFER};
+    if (view->shading) {
+        p->plain = p->material = &view->shading->program;
+        return GTX_OK;
+    }
+    const int method = view->method == GTX_METHOD_PAPER ? PROGRAM_PAPER : PROGRAM_CAST;
+    const int plain = method + offsets[view->pass];
+    p->plain = &renderer->programs[plain];
+    p->material = p->plain + (view->pass == GTX_PASS_FORWARD);
+    return gtx_program_need(renderer, plain, error);
+}
+
+static void begin(const gtx_gl *gl, const gtx_frame *frame, gl_bool color)
 {
     for (gl_uint i = 0; i < UNIT_COUNT; ++i)
         gl->BindSampler(i, 0);
@@ -63,7 +86,7 @@ static void begin(const gtx_gl *gl, const gtx_frame *frame)
     gl->Enable(GL_CULL_FACE);
     gl->CullFace(GL_BACK);
     gl->Disable(GL_BLEND);
-    gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    gl->ColorMask(color, color, color, color);
 }
 
 static void bind_textures(const gtx_gl *gl, const gtx_model *model)
@@ -84,7 +107,12 @@ static const void *at(size_t offset)
 static void set_attributes(const gtx_renderer *renderer, const run *r)
 {
     const gtx_gl *gl = &renderer->gl;
-    enum { FIRST_INSTANCE_ATTRIBUTE = 2, INSTANCE_ATTRIBUTES = sizeof(gtx_instance_data) / 16 };
+    enum {
+        FIRST_INSTANCE_ATTRIBUTE = 2,
+        INSTANCE_ATTRIBUTES = offsetof(gtx_instance_data, id) / 16,
+        ID_ATTRIBUTE = FIRST_INSTANCE_ATTRIBUTE + INSTANCE_ATTRIBUTES
+    };
+    const size_t base = r->first * sizeof(gtx_instance_data);
     gl->BindBuffer(GL_ARRAY_BUFFER, r->model->vertices);
     gl->VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(gtx_proxy_vertex), at(0));
     gl->VertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(gtx_proxy_vertex),
@@ -95,10 +123,14 @@ static void set_attributes(const gtx_renderer *renderer, const run *r)
     for (gl_uint i = 0; i < INSTANCE_ATTRIBUTES; ++i) {
         const gl_uint index = FIRST_INSTANCE_ATTRIBUTE + i;
         gl->VertexAttribPointer(index, 4, GL_FLOAT, GL_FALSE, sizeof(gtx_instance_data),
-                                at(r->first * sizeof(gtx_instance_data) + 16 * (size_t)i));
+                                at(base + 16 * (size_t)i));
         gl->VertexAttribDivisor(index, 1);
         gl->EnableVertexAttribArray(index);
     }
+    gl->VertexAttribIPointer(ID_ATTRIBUTE, 1, GL_UNSIGNED_INT, sizeof(gtx_instance_data),
+                             at(base + offsetof(gtx_instance_data, id)));
+    gl->VertexAttribDivisor(ID_ATTRIBUTE, 1);
+    gl->EnableVertexAttribArray(ID_ATTRIBUTE);
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->model->indices);
 }
 
@@ -107,15 +139,14 @@ static const gtx_program *use_program(const gtx_renderer *renderer, pass *p, con
 {
     const gtx_gl *gl = &renderer->gl;
     const bool shades = model->has_material || model->emission_scale > 0;
-    const int plain = p->method == GTX_METHOD_PAPER ? PROGRAM_PAPER : PROGRAM_CAST;
-    const gtx_program *program = &renderer->programs[plain + shades];
-    if (program != p->program) {
+    const gtx_program *program = shades ? p->material : p->plain;
+    if (program != p->current) {
         gl->UseProgram(program->object);
         gl->UniformMatrix4fv(program->clip_from_world, 1, GL_FALSE, p->frame->clip_from_world);
         gl->Uniform4fv(program->depth, 1, p->frame->depth);
         gl->Uniform4fv(program->light, 1, p->frame->light);
         gl->Uniform4fv(program->detail, 1, p->frame->detail);
-        p->program = program;
+        p->current = program;
     }
     return program;
 }
@@ -158,6 +189,7 @@ gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_inst
 {
     gtx_frame frame;
     gtx_state state;
+    pass p = {.frame = &frame};
     gtx_result result = check(renderer, view, instances, count, error);
     if (!result)
         result = gtx_frame_from_view(view, &frame, error);
@@ -166,17 +198,18 @@ gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_inst
     for (uint32_t i = 0; !result && i < count; ++i)
         result = gtx_place_instance(&frame, &instances[i], &renderer->instances[i],
                                     &renderer->mirrored[i], error);
+    if (!result)
+        result = choose_programs(renderer, view, &p, error);
     if (result)
         return result;
 
     const gtx_gl *gl = &renderer->gl;
-    pass p = {&frame, view->method, NULL};
     const bool restore = view->flags & GTX_VIEW_RESTORE_STATE;
     if (restore)
         gtx_state_read(gl, &state);
     if (gl->PushDebugGroup)
         gl->PushDebugGroup(GL_DEBUG_SOURCE_THIRD_PARTY, 0, -1, "geotex draw");
-    begin(gl, &frame);
+    begin(gl, &frame, view->pass != GTX_PASS_DEPTH);
     gl->BindVertexArray(renderer->vertex_array);
     gl->BindBuffer(GL_ARRAY_BUFFER, renderer->instance_buffer);
     gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(count * sizeof *renderer->instances),

@@ -100,7 +100,8 @@ static void bad_draws(void **state)
     view = good, view.change, expect_refused(s, expected, &view, &fine)
     VIEW_WITH(flags = 1u << 20, GTX_ERROR_ARGUMENT);
     VIEW_WITH(method = (gtx_method)9, GTX_ERROR_ARGUMENT);
-    VIEW_WITH(reserved[3] = 1, GTX_ERROR_NOT_ZEROED);
+    VIEW_WITH(pass = (gtx_pass)4, GTX_ERROR_ARGUMENT);
+    VIEW_WITH(reserved[1] = 1, GTX_ERROR_NOT_ZEROED);
     VIEW_WITH(view[5] = NAN, GTX_ERROR_ARGUMENT);
     VIEW_WITH(projection[0] = INFINITY, GTX_ERROR_ARGUMENT);
     VIEW_WITH(projection[0] = 0, GTX_ERROR_ARGUMENT);

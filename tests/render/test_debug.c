@@ -1,42 +1,13 @@
 /* What a debugger sees: labels on every object, a group around a draw, and no complaint. */
-#include "stage.h"
-
-typedef struct witness {
-    int complaints, groups;
-} witness;
-
-static void APIENTRY on_message(GLenum source, GLenum type, GLuint id, GLenum severity,
-                                GLsizei length, const GLchar *text, const void *user)
-{
-    witness *w = (witness *)(uintptr_t)user;
-    (void)source, (void)id, (void)length;
-    if (type == GL_DEBUG_TYPE_PUSH_GROUP && !strcmp(text, "geotex draw"))
-        ++w->groups;
-    else if (type != GL_DEBUG_TYPE_POP_GROUP && severity != GL_DEBUG_SEVERITY_NOTIFICATION) {
-        fprintf(stderr, "%s\n", text);
-        ++w->complaints;
-    }
-}
-
-static int has_debug(const stage *s)
-{
-    GLint major = 0, minor = 0;
-    s->gl.GetIntegerv(GL_MAJOR_VERSION, &major);
-    s->gl.GetIntegerv(GL_MINOR_VERSION, &minor);
-    return 10 * major + minor >= (getenv("GEOTEX_ES") ? 32 : 43);
-}
+#include "witness.h"
 
 static void a_draw_is_a_silent_group(void **state)
 {
     STAGE_OR_SKIP(state);
-    PFNGLDEBUGMESSAGECALLBACKPROC set_callback =
-        (PFNGLDEBUGMESSAGECALLBACKPROC)gtx_offscreen_load("glDebugMessageCallback", NULL);
-    if (!set_callback || !has_debug(s))
+    if (!has_debug(s))
         skip();
     witness w = {0};
-    set_callback(on_message, &w);
-    s->gl.Enable(GL_DEBUG_OUTPUT);
-    s->gl.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    witness_call(s, &w);
     subject shown = subject_open(s, fixture_sphere(2, 48, 8));
     gtx_camera camera = camera_around(shown.asset);
     gtx_view view = view_of(&camera);
@@ -47,9 +18,7 @@ static void a_draw_is_a_silent_group(void **state)
     }
     must(gtx_model_update(s->renderer, shown.model, shown.asset, 0, NULL), &(gtx_error){0});
     subject_close(s, &shown);
-    s->gl.Disable(GL_DEBUG_OUTPUT);
-    s->gl.Disable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-    set_callback(NULL, NULL);
+    witness_dismiss(s);
     assert_int_equal(w.complaints, 0);
     assert_int_equal(w.groups, 4);
 }
