@@ -1,5 +1,5 @@
-/* The stock forward main: lit colour in sRGB bytes. Follows geotex_fragment.glsl. With GTX_MATERIALS
- * it shades by metallic and roughness, else by Lambert, which costs less. */
+/* The stock forward main: lit colour in sRGB bytes. Follows geotex_fragment.glsl. With
+ * GTX_MATERIALS it shades by metallic and roughness, else by Lambert, which costs less. */
 layout(location = 0) out vec4 gtx_out_color;
 
 void main()

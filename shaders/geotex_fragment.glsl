@@ -12,8 +12,8 @@
  *   }
  *
  * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl, geotex_surface.glsl, with
- * GTX_MATERIALS defined geotex_material.glsl, and a gtx_cast (geotex_cast.glsl or geotex_paper.glsl)
- * before it. The varyings are those of geotex_proxy.vert. */
+ * GTX_MATERIALS defined geotex_material.glsl, and a gtx_cast (of geotex_cast.glsl or
+ * geotex_paper.glsl) before it. The varyings are those of geotex_proxy.vert. */
 GTX_VARYING(0) in vec3 gtx_point;
 GTX_VARYING(1) flat in vec3 gtx_eye;
 GTX_VARYING(2) flat in vec4 gtx_clip_z;

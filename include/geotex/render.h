@@ -11,8 +11,8 @@
  *   depth mask on, cull face off, cull mode BACK, front face CCW, blend off, colour mask all on.
  * It does not touch the framebuffer binding, viewport, scissor, stencil or clip control.
  *
- * OpenGL ES is recognised by its version string; there is nothing to tell. It encodes what is written
- * to an sRGB framebuffer, so bind one without: colours are sRGB bytes already. Before version 3.2
+ * OpenGL ES is recognised by its version string; there is nothing to tell. It encodes what is
+ * written to an sRGB framebuffer, so bind another kind: colours are sRGB bytes already. Before 3.2
  * GTX_VIEW_RESTORE_STATE takes blending and colour mask for the same at all draw buffers.
  *
  * Where the context has KHR_debug, every object carries a label and a draw is a debug group. */
@@ -92,8 +92,8 @@ typedef enum gtx_method {
     GTX_METHOD_PAPER = 2          /* linear then binary search, balanced by slant (paper, 4.1) */
 } gtx_method;
 
-/* What a draw writes, besides depth. The programs of the forward pass are compiled with the renderer,
- * those of another by the first draw in it; one of no instances will do. */
+/* What a draw writes, besides depth: location, what. The programs of the forward pass are compiled
+ * with the renderer, those of another by the first draw in it; one of no instances will do. */
 typedef enum gtx_pass {
     GTX_PASS_FORWARD = 0,         /* 0: lit colour, in sRGB bytes */
     GTX_PASS_DEPTH = 1,           /* nothing: the same depth, for shadow maps; colour is masked */
@@ -106,15 +106,16 @@ typedef enum gtx_pass {
                                      3: linear emission (R11F_G11F_B10F). Any may be left out */
 } gtx_pass;
 
-/* An engine's own fragment main, which finds the surface by a call and may do what it likes with it. */
+/* An engine's own fragment main, which finds the surface by a call and does as it likes with it. */
 typedef struct gtx_shading gtx_shading;
 
-/* `text` is GLSL that follows geotex_fragment.glsl, which says what there is to call; geotex_cast.glsl
- * and geotex_material.glsl come before it. It has no #version. Its own samplers begin at unit 8. Not
- * kept. The shading is of the renderer's allocator, freed by gtx_shading_destroy (NULL is fine).
+/* `text` is GLSL that follows geotex_fragment.glsl, which says what there is to call; before that
+ * come geotex_cast.glsl and geotex_material.glsl. It has no #version, its samplers begin at unit 8,
+ * and it is not kept. The shading is of the renderer's allocator, freed by gtx_shading_destroy.
  * Errors: ARGUMENT, MEMORY, SHADER (the renderer's log says why). */
 GTX_API gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
                                       gtx_error *error);
+/* A NULL shading is fine. */
 GTX_API void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading);
 /* The name of its program, to set uniforms of its own between draws. */
 GTX_API uint32_t gtx_shading_program(const gtx_shading *shading);
@@ -143,13 +144,13 @@ typedef struct gtx_view {
     float max_error;                  /* pixels; 0 = 0.5 */
     uint32_t level;                   /* 0 = by the error, n = level n - 1 or the coarsest there is */
     gtx_pass pass;
-    const gtx_shading *shading;       /* instead of the forward pass's; NULL = stock. Not by PAPER */
+    const gtx_shading *shading;       /* in place of the forward pass's; not with PAPER */
     uint32_t reserved[2];
 } gtx_view;
 
 /* A placed model. `transform` is affine and takes the asset's coordinates (relative to its anchor)
- * to the world; its linear part must be invertible. `tint` multiplies the colour; all 0 = white. `id`
- * is what GTX_PASS_ID writes and shadings read. */
+ * to the world; its linear part must be invertible. `tint` multiplies the colour; all 0 = white.
+ * `id` is what GTX_PASS_ID writes and a shading reads. */
 typedef struct gtx_instance {
     const gtx_model *model;
     float transform[16];
@@ -159,7 +160,7 @@ typedef struct gtx_instance {
 } gtx_instance;
 
 /* Draws the instances into the bound framebuffer: what view->pass says, and depth. In the forward
- * pass a model with materials or emission is shaded by metallic and roughness (glTF 2.0, appendix B),
+ * pass a model with materials or emission is shaded by metallic-roughness (glTF 2.0, appendix B),
  * another by Lambert. One instanced draw for each run of instances of one model. Room for the most
  * instances so far is kept, of the renderer's allocator, until gtx_renderer_destroy.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL, SHADER (a pass's first draw). */

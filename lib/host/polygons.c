@@ -12,13 +12,15 @@ static const char vertex_text[] =
     "layout(location = 1) in vec3 normal;\n"
     "layout(location = 2) in vec4 color;\n"
     "uniform mat4 model, view_projection;\n"
-    "out vec3 world_normal;\n"
+    "out vec3 world_point, world_normal;\n"
     "out vec4 srgb;\n"
     "void main()\n"
     "{\n"
     "    world_normal = transpose(inverse(mat3(model))) * normal;\n"
     "    srgb = color;\n"
-    "    gl_Position = view_projection * (model * vec4(position, 1.0));\n"
+    "    vec4 point = model * vec4(position, 1.0);\n"
+    "    world_point = point.xyz;\n"
+    "    gl_Position = view_projection * point;\n"
     "}\n";
 
 static const char fragment_text[] =
@@ -85,8 +87,14 @@ void gtx_polygons_destroy(const gtx_host_gl *gl, gtx_polygons *polygons)
 gtx_result gtx_polygon_program_create(const gtx_host_gl *gl, gtx_polygon_program *out,
                                       gtx_error *error)
 {
+    return gtx_polygon_program_create_with(gl, fragment_text, out, error);
+}
+
+gtx_result gtx_polygon_program_create_with(const gtx_host_gl *gl, const char *fragment,
+                                           gtx_polygon_program *out, gtx_error *error)
+{
     GLuint program;
-    gtx_result result = gtx_host_program_create(gl, vertex_text, fragment_text, &program, error);
+    gtx_result result = gtx_host_program_create(gl, vertex_text, fragment, &program, error);
     if (result)
         return result;
     out->program = program;

@@ -63,8 +63,29 @@ void gtx_target_destroy(const gtx_host_gl *gl, gtx_target *target)
     *target = (gtx_target){0};
 }
 
-void gtx_target_bind(const gtx_host_gl *gl, const gtx_target *target)
+gtx_result gtx_target_fit(const gtx_host_gl *gl, const GLenum *formats, gtx_target *target,
+                          GLuint *bound, gtx_error *error)
+{
+    GLint name, frame[4];
+    gl->GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &name);
+    gl->GetIntegerv(GL_VIEWPORT, frame);
+    *bound = (GLuint)name;
+    if (target->object && target->width == frame[2] && target->height == frame[3])
+        return GTX_OK;
+    gtx_target_destroy(gl, target);
+    gtx_result result = gtx_target_create(gl, frame[2], frame[3], formats, target, error);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, *bound);
+    return result;
+}
+
+void gtx_target_begin(const gtx_host_gl *gl, const gtx_target *target)
 {
     gl->BindFramebuffer(GL_FRAMEBUFFER, target->object);
     gl->Viewport(0, 0, target->width, target->height);
+    gl->DepthMask(GL_TRUE);
+    gl->ClearColor(0, 0, 0, 0);
+    gl->ClearDepthf(1);
+    gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    gl->Enable(GL_DEPTH_TEST);
+    gl->DepthFunc(GL_LESS);
 }

@@ -22,8 +22,13 @@ gtx_result gtx_target_create(const gtx_host_gl *gl, int width, int height, const
                              gtx_target *out, gtx_error *error);
 void gtx_target_destroy(const gtx_host_gl *gl, gtx_target *target);
 
-/* Binds it and sets the viewport. */
-void gtx_target_bind(const gtx_host_gl *gl, const gtx_target *target);
+/* Makes it, or makes it anew, as large as the viewport is. *bound gets the framebuffer that was
+ * bound, and stays so. Errors: GL. */
+gtx_result gtx_target_fit(const gtx_host_gl *gl, const GLenum *formats, gtx_target *target,
+                          GLuint *bound, gtx_error *error);
+
+/* Binds it, sets the viewport and clears it, depth to 1; the depth test is on, LESS. */
+void gtx_target_begin(const gtx_host_gl *gl, const gtx_target *target);
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,5 @@
-/* The part of OpenGL 3.3 core and OpenGL ES 3.0 that the renderer uses: types, values and a table of
- * functions that the host's loader fills. No GL header is needed and no GL symbol is linked. */
+/* The part of OpenGL 3.3 core and OpenGL ES 3.0 that the renderer uses: types, values and a table
+ * of functions that the host's loader fills. No GL header is needed and no GL symbol is linked. */
 #ifndef GTX_RENDER_GL_H
 #define GTX_RENDER_GL_H
 

@@ -47,8 +47,8 @@ static inline int stage_open(void **state)
     gtx_error error = {0};
     const gtx_renderer_desc desc = {.load = gtx_offscreen_load, .log = stage_log};
     *state = s;
-    /* GEOTEX_ES=1: every test of drawing, by OpenGL ES. */
-    if ((getenv("GEOTEX_ES") ? gtx_offscreen_create_es : gtx_offscreen_create)(&s->offscreen, &error))
+    const int es = getenv("GEOTEX_ES") != NULL; /* every test of drawing, by OpenGL ES */
+    if ((es ? gtx_offscreen_create_es : gtx_offscreen_create)(&s->offscreen, &error))
         return 0; /* the tests skip */
     if (gtx_host_gl_init(&s->gl, gtx_offscreen_load, NULL, &error) ||
         gtx_framebuffer_create(&s->gl, STAGE_WIDTH, STAGE_HEIGHT, &s->framebuffer, &error) ||

@@ -183,8 +183,8 @@ static void g_buffer_shades_as_forward(void **state)
     memcpy(view.light_direction, (float[3]){0.6f, 0, 0.8f}, sizeof view.light_direction);
     view.ambient = 0.25f;
     stage_draw(s, &view, three, COUNT);
-    must(gtx_target_create(&s->gl, STAGE_WIDTH, STAGE_HEIGHT,
-                           (GLenum[]){GL_RGBA8, GL_RGB10_A2, GL_RGBA8, 0}, &target, &error), &error);
+    const GLenum formats[] = {GL_RGBA8, GL_RGB10_A2, GL_RGBA8, 0};
+    must(gtx_target_create(&s->gl, STAGE_WIDTH, STAGE_HEIGHT, formats, &target, &error), &error);
     s->gl.ClearColor(0, 0, 0, 0);
     s->gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     view.pass = GTX_PASS_GBUFFER;
@@ -260,7 +260,8 @@ static void a_main_of_the_engines_own(void **state)
     gtx_shading *shading;
     subject shown = subject_open(s, fixture_sphere(2, 64, 8));
     gtx_instance instance = shown.instance;
-    const float linear[9] = {0, 0.8f, 0.1f, -0.7f, 0, 0, 0, 0.2f, 0.9f}, move[3] = {0.3f, -0.2f, 0.5f};
+    const float linear[9] = {0, 0.8f, 0.1f, -0.7f, 0, 0, 0, 0.2f, 0.9f};
+    const float move[3] = {0.3f, -0.2f, 0.5f};
     for (int i = 0; i < 9; ++i)
         instance.transform[i / 3 * 4 + i % 3] = linear[i];
     memcpy(instance.transform + 12, move, sizeof move);
@@ -270,7 +271,8 @@ static void a_main_of_the_engines_own(void **state)
     must(gtx_shading_create(s->renderer, text, &shading, &error), &error);
     view.shading = shading;
     const GLuint program = gtx_shading_program(shading);
-    const matrix back = matrix_inverse(matrix_mul(matrix_of(view.projection), matrix_of(view.view)));
+    const matrix back = matrix_inverse(
+        matrix_mul(matrix_of(view.projection), matrix_of(view.view)));
     const matrix to_object = matrix_inverse(matrix_of(instance.transform));
     for (int world = 0; world < 2; ++world) {
         const float scale[4] = {0.2f, 0, 0, (float)world};

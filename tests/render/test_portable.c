@@ -1,8 +1,8 @@
 /* One scene by OpenGL 3.3, the newest OpenGL, OpenGL ES 3.0 and the newest OpenGL ES: one picture.
  *
- * The bound: at most one pixel in a thousand differs by more than one step of colour or by more than
- * a millionth in depth. Mesa gives the same bytes; other drivers may compile the two languages to
- * code that rounds differently. */
+ * The bound: at most one pixel in a thousand differs by more than one step of colour or by more
+ * than a millionth in depth. Mesa gives the same bytes; other drivers may compile the two languages
+ * to code that rounds differently. */
 #define _DEFAULT_SOURCE
 #include "look.h"
 
@@ -30,7 +30,7 @@ static const struct context {
                 {"OpenGL ES", NULL, NULL, 1},
                 {"OpenGL ES 3.0", "MESA_GLES_VERSION_OVERRIDE", "3.0", 1}};
 enum { CONTEXTS = sizeof contexts / sizeof *contexts };
-/* Of the processes that draw, one a context, for Mesa reads versions once; and this process's own. */
+/* Of the processes that draw, one a context, for Mesa reads versions once; and one's own. */
 static album *albums, *drawing;
 
 static gtx_instance placed(const gtx_model *model, float scale, float x, float y, float z)
@@ -70,8 +70,8 @@ static void draw_scene(stage *s, const gtx_view *view, const gtx_instance *insta
     gtx_polygon_program_destroy(&s->gl, &program);
 }
 
-/* Cast by error, forced coarse and orthographic, the paper's search, reversed depth, after an edit on
- * the GPU, and with the state read back. */
+/* Cast by error, forced coarse and orthographic, the paper's search, reversed depth, after an edit
+ * on the GPU, and with the state read back. */
 static void draw_album(void **state)
 {
     static const look steel = {{150, 160, 200, 255}, {230, 90, 200, 255}, {40, 10, 0}};
