@@ -12,7 +12,7 @@
 #include <geotex/render.h>
 #include <string.h>
 
-enum { INSTANCES = 3, SIZE = 2048, UNIT = 8 }; /* geotex has units 0..7 */
+enum { INSTANCES = 3, SIZE = 1024, UNIT = 8 }; /* geotex has units 0..7 */
 
 /* Bias. Of the 4 x 4 texels that are compared the farthest centre lies 2 texels off in x and in y,
  * where a surface that faces the sun at an angle has fallen by 2 sqrt(2) tan(angle) texel widths.

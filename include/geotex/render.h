@@ -96,7 +96,8 @@ typedef enum gtx_method {
  * with the renderer, those of another by the first draw in it; one of no instances will do. */
 typedef enum gtx_pass {
     GTX_PASS_FORWARD = 0,         /* 0: lit colour, in sRGB bytes */
-    GTX_PASS_DEPTH = 1,           /* nothing: the same depth, for shadow maps; colour is masked */
+    GTX_PASS_DEPTH = 1,           /* nothing, colour is masked: the same depth, bit for bit; for
+                                     shadow maps, whose height viewport_height then is */
     GTX_PASS_ID = 2,              /* 0, unsigned integers (RGBA32UI, or RG32UI for the first two):
                                      the instance's id, the patch, and the texel at the low corner
                                      of the cell in it: x, y */
