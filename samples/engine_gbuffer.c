@@ -31,7 +31,7 @@ static const char patch_main[] = STORE
     "    gtx_surface s;\n"
     "    if (!gtx_find(s)) discard;\n"
     "    store(gtx_albedo(s).rgb, 0.6, gtx_world_normal(s));\n"
-    "    gl_FragDepth = gtx_window_depth(s);\n"
+    "    gtx_write_depth(s);\n"
     "}\n";
 
 /* The place of a pixel follows from its depth: true depth is all that the lights need. */

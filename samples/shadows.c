@@ -46,7 +46,7 @@ static const char patch_main[] = SUN
     "    gtx_surface s;\n"
     "    if (!gtx_find(s)) discard;\n"
     "    shade(gtx_albedo(s).rgb, gtx_world_point(s), gtx_world_normal(s));\n"
-    "    gl_FragDepth = gtx_window_depth(s);\n"
+    "    gtx_write_depth(s);\n"
     "}\n";
 
 typedef struct world {

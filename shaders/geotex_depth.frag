@@ -4,5 +4,5 @@ void main()
     gtx_surface s;
     if (!gtx_find(s))
         discard;
-    gl_FragDepth = gtx_window_depth(s);
+    gtx_write_depth(s);
 }

@@ -17,5 +17,5 @@ void main()
     color.rgb *= gtx_light.w + (1.0 - gtx_light.w) * lambert;
 #endif
     gtx_out_color = vec4(gtx_to_srgb(color.rgb), color.a);
-    gl_FragDepth = gtx_window_depth(s);
+    gtx_write_depth(s);
 }

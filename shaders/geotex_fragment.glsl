@@ -8,7 +8,7 @@
  *       if (!gtx_find(s))
  *           discard;
  *       color = vec4(gtx_albedo(s).rgb * lit(gtx_world_point(s), gtx_world_normal(s)), 1.0);
- *       gl_FragDepth = gtx_window_depth(s);
+ *       gtx_write_depth(s);
  *   }
  *
  * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl, geotex_surface.glsl, with
@@ -61,12 +61,18 @@ bool gtx_find(out gtx_surface s)
     return true;
 }
 
-/* For gl_FragDepth: what the engine's matrices and depth range make of the point. */
+/* What the engine's matrices and depth range make of the point. */
 float gtx_window_depth(gtx_surface s)
 {
     vec4 point = vec4(s.hit.grid, 1.0);
     float z = dot(gtx_clip_z, point) / dot(gtx_clip_w, point);
     return clamp(z, -gtx_depth.x, 1.0) * gtx_depth.y + gtx_depth.z;
+}
+
+/* Every main calls it, or writes a depth of its own (a logarithmic one, say). */
+void gtx_write_depth(gtx_surface s)
+{
+    gl_FragDepth = gtx_window_depth(s);
 }
 
 /* The asset's own coordinates. */

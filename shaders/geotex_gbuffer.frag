@@ -15,5 +15,5 @@ void main()
     gtx_out_normal = vec4(gtx_world_normal(s) * 0.5 + 0.5, 1.0);
     gtx_out_material = vec4(m.occlusion, m.roughness, m.metallic, m.lit);
     gtx_out_emission = vec4(m.emission, 1.0);
-    gl_FragDepth = gtx_window_depth(s);
+    gtx_write_depth(s);
 }

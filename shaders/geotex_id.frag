@@ -8,5 +8,5 @@ void main()
         discard;
     ivec2 cell = clamp(ivec2(floor(s.hit.grid.xy)), ivec2(0), s.sheet.size - 2);
     gtx_out_id = uvec4(gtx_id, gtx_patch_index, cell);
-    gl_FragDepth = gtx_window_depth(s);
+    gtx_write_depth(s);
 }

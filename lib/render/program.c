@@ -7,34 +7,40 @@
 
 #include <string.h>
 
-enum { MAX_PARTS = 12, MAX_LOG = 2048 };
+enum { MAX_PARTS = 5, MAX_TEXTS = 16, MAX_LOG = 2048 };
 
-/* Of OpenGL and of OpenGL ES; plain and with materials. */
-static const char *const heads[2][2] = {
-    {"#version 330 core\n", "#version 330 core\n#define GTX_MATERIALS\n"},
-    {"#version 300 es\n", "#version 300 es\n#define GTX_MATERIALS\n"}};
+/* What a program consists of: between #version and the parts come its defines and, in either stage,
+ * the files that all share. */
+typedef struct recipe {
+    const char *vertex, *defines, *parts[MAX_PARTS], *label;
+} recipe;
 
-static const char cast[] = "geotex_cast.glsl", paper[] = "geotex_paper.glsl";
-static const char forward[] = "geotex_forward.frag", depth[] = "geotex_depth.frag";
-static const char id[] = "geotex_id.frag", gbuffer[] = "geotex_gbuffer.frag";
+#define PROXY "geotex_proxy.vert"
+#define MATERIALS "#define GTX_MATERIALS\n"
+#define CAST "geotex_cast.glsl", "geotex_fragment.glsl"
+#define PAPER "geotex_paper.glsl", "geotex_fragment.glsl"
 
-/* How a stock program finds the surface, and what it does there. */
-static const struct stock {
-    const char *method, *main;
-    bool materials;
-    const char *label;
-} stock[PROGRAM_COUNT] = {
-    [PROGRAM_CAST] = {cast, forward, false, "geotex cast"},
-    [PROGRAM_CAST_MATERIAL] = {cast, forward, true, "geotex cast, materials"},
-    [PROGRAM_CAST_DEPTH] = {cast, depth, false, "geotex cast, depth"},
-    [PROGRAM_CAST_ID] = {cast, id, false, "geotex cast, ids"},
-    [PROGRAM_CAST_GBUFFER] = {cast, gbuffer, true, "geotex cast, g-buffer"},
-    [PROGRAM_PAPER] = {paper, forward, false, "geotex paper"},
-    [PROGRAM_PAPER_MATERIAL] = {paper, forward, true, "geotex paper, materials"},
-    [PROGRAM_PAPER_DEPTH] = {paper, depth, false, "geotex paper, depth"},
-    [PROGRAM_PAPER_ID] = {paper, id, false, "geotex paper, ids"},
-    [PROGRAM_PAPER_GBUFFER] = {paper, gbuffer, true, "geotex paper, g-buffer"},
+static const recipe recipes[PROGRAM_COUNT] = {
+    [PROGRAM_CAST] = {PROXY, "", {CAST, "geotex_forward.frag"}, "geotex cast"},
+    [PROGRAM_CAST_MATERIAL] = {PROXY, MATERIALS,
+                               {"geotex_material.glsl", CAST, "geotex_forward.frag"},
+                               "geotex cast, materials"},
+    [PROGRAM_CAST_DEPTH] = {PROXY, "", {CAST, "geotex_depth.frag"}, "geotex cast, depth"},
+    [PROGRAM_CAST_ID] = {PROXY, "", {CAST, "geotex_id.frag"}, "geotex cast, ids"},
+    [PROGRAM_CAST_GBUFFER] = {PROXY, MATERIALS,
+                              {"geotex_material.glsl", CAST, "geotex_gbuffer.frag"},
+                              "geotex cast, g-buffer"},
+    [PROGRAM_PAPER] = {PROXY, "", {PAPER, "geotex_forward.frag"}, "geotex paper"},
+    [PROGRAM_PAPER_MATERIAL] = {PROXY, MATERIALS,
+                                {"geotex_material.glsl", PAPER, "geotex_forward.frag"},
+                                "geotex paper, materials"},
+    [PROGRAM_PAPER_DEPTH] = {PROXY, "", {PAPER, "geotex_depth.frag"}, "geotex paper, depth"},
+    [PROGRAM_PAPER_ID] = {PROXY, "", {PAPER, "geotex_id.frag"}, "geotex paper, ids"},
+    [PROGRAM_PAPER_GBUFFER] = {PROXY, MATERIALS,
+                               {"geotex_material.glsl", PAPER, "geotex_gbuffer.frag"},
+                               "geotex paper, g-buffer"},
 };
+static const recipe own = {PROXY, MATERIALS, {"geotex_material.glsl", CAST}, "geotex cast, own"};
 
 const char *gtx_shader_source(const char *name)
 {
@@ -46,7 +52,7 @@ const char *gtx_shader_source(const char *name)
 
 /* The texts of a shader, in order. */
 typedef struct source {
-    const char *texts[MAX_PARTS];
+    const char *texts[MAX_TEXTS];
     gl_size count;
 } source;
 
@@ -55,30 +61,33 @@ static void add(source *s, const char *text)
     s->texts[s->count++] = text;
 }
 
-static source vertex_source(bool es)
+static source begin(bool es, const recipe *r)
 {
     source s = {.count = 0};
-    add(&s, heads[es][0]);
+    add(&s, es ? "#version 300 es\n" : "#version 330 core\n");
+    add(&s, r->defines);
     add(&s, gtx_shader_source("geotex_dialect.glsl"));
     add(&s, gtx_shader_source("geotex_sheet.glsl"));
     add(&s, gtx_shader_source("geotex_view.glsl"));
-    add(&s, gtx_shader_source("geotex_proxy.vert"));
     return s;
 }
 
-static source fragment_source(bool es, const char *method, bool materials, const char *main)
+static source vertex_source(bool es, const recipe *r)
 {
-    source s = {.count = 0};
-    add(&s, heads[es][materials]);
-    add(&s, gtx_shader_source("geotex_dialect.glsl"));
-    add(&s, gtx_shader_source("geotex_sheet.glsl"));
-    add(&s, gtx_shader_source("geotex_view.glsl"));
+    source s = begin(es, r);
+    add(&s, gtx_shader_source(r->vertex));
+    return s;
+}
+
+/* `text` ends the shader if it is not NULL. */
+static source fragment_source(bool es, const recipe *r, const char *text)
+{
+    source s = begin(es, r);
     add(&s, gtx_shader_source("geotex_surface.glsl"));
-    if (materials)
-        add(&s, gtx_shader_source("geotex_material.glsl"));
-    add(&s, gtx_shader_source(method));
-    add(&s, gtx_shader_source("geotex_fragment.glsl"));
-    add(&s, main);
+    for (int i = 0; i < MAX_PARTS && r->parts[i]; ++i)
+        add(&s, gtx_shader_source(r->parts[i]));
+    if (text)
+        add(&s, text);
     return s;
 }
 
@@ -140,17 +149,21 @@ static void locate(const gtx_gl *gl, gtx_program *program)
     gl->UseProgram(0);
 }
 
-static gtx_result build(const gtx_renderer *renderer, const source *s, const char *label,
+static gtx_result build(const gtx_renderer *renderer, const recipe *r, const char *text,
                         gtx_program *out, gtx_error *error)
 {
     const gtx_gl *gl = &renderer->gl;
-    const gl_uint fragment = compile(renderer, GL_FRAGMENT_SHADER, s);
-    out->object = fragment ? link_stages(renderer, renderer->vertex_shader, fragment) : 0;
+    const source above = vertex_source(gl->es, r), below = fragment_source(gl->es, r, text);
+    const gl_uint vertex = compile(renderer, GL_VERTEX_SHADER, &above);
+    const gl_uint fragment = vertex ? compile(renderer, GL_FRAGMENT_SHADER, &below) : 0;
+    out->object = fragment ? link_stages(renderer, vertex, fragment) : 0;
+    if (vertex)
+        gl->DeleteShader(vertex);
     if (fragment)
         gl->DeleteShader(fragment);
     if (!out->object)
         return gtx_fail(error, GTX_ERROR_SHADER, "a shader did not compile; the log says why");
-    gtx_gl_label(gl, GL_PROGRAM, out->object, label);
+    gtx_gl_label(gl, GL_PROGRAM, out->object, r->label);
     locate(gl, out);
     return GTX_OK;
 }
@@ -158,22 +171,13 @@ static gtx_result build(const gtx_renderer *renderer, const source *s, const cha
 gtx_result gtx_program_need(gtx_renderer *renderer, int program, gtx_error *error)
 {
     gtx_program *out = &renderer->programs[program];
-    const struct stock *s = &stock[program];
-    if (out->object)
-        return GTX_OK;
-    const source text = fragment_source(renderer->gl.es, s->method, s->materials,
-                                        gtx_shader_source(s->main));
-    return build(renderer, &text, s->label, out, error);
+    return out->object ? GTX_OK : build(renderer, &recipes[program], NULL, out, error);
 }
 
 gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
 {
     static const int first[] = {PROGRAM_CAST, PROGRAM_CAST_MATERIAL, PROGRAM_PAPER,
                                 PROGRAM_PAPER_MATERIAL};
-    const source text = vertex_source(renderer->gl.es);
-    renderer->vertex_shader = compile(renderer, GL_VERTEX_SHADER, &text);
-    if (!renderer->vertex_shader)
-        return gtx_fail(error, GTX_ERROR_SHADER, "a shader did not compile; the log says why");
     gtx_result result = GTX_OK;
     for (size_t i = 0; i < sizeof first / sizeof *first && !result; ++i)
         result = gtx_program_need(renderer, first[i], error);
@@ -185,8 +189,6 @@ void gtx_programs_destroy(gtx_renderer *renderer)
     for (int i = 0; i < PROGRAM_COUNT; ++i)
         if (renderer->programs[i].object)
             renderer->gl.DeleteProgram(renderer->programs[i].object);
-    if (renderer->vertex_shader)
-        renderer->gl.DeleteShader(renderer->vertex_shader);
 }
 
 gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
@@ -198,8 +200,7 @@ gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shad
     gtx_shading *shading = gtx_alloc_array(&renderer->allocator, 1, sizeof *shading);
     if (!shading)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a shading");
-    const source s = fragment_source(renderer->gl.es, cast, true, text);
-    gtx_result result = build(renderer, &s, "geotex cast, own main", &shading->program, error);
+    gtx_result result = build(renderer, &own, text, &shading->program, error);
     if (result)
         gtx_free_array(&renderer->allocator, shading, 1, sizeof *shading);
     else

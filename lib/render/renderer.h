@@ -43,7 +43,6 @@ struct gtx_renderer {
     gtx_gl gl;
     void (*log)(const char *message, void *user);
     void *log_user;
-    gl_uint vertex_shader;    /* of all programs */
     gtx_program programs[PROGRAM_COUNT]; /* 0: not needed yet */
     gl_uint vertex_array, instance_buffer;
     /* Scratch of gtx_draw: what is uploaded, and whose winding is turned. */

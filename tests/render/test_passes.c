@@ -254,7 +254,7 @@ static void a_main_of_the_engines_own(void **state)
         "        discard;\n"
         "    vec3 at = scale.w > 0.0 ? gtx_world_point(s) : gtx_object_point(s);\n"
         "    color = vec4(at * scale.x + 0.5, float(gtx_id) / 255.0);\n"
-        "    gl_FragDepth = gtx_window_depth(s);\n"
+        "    gtx_write_depth(s);\n"
         "}\n";
     gtx_error error = {0};
     gtx_shading *shading;
