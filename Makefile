@@ -283,7 +283,7 @@ run-demo:
 	@echo $(build)/demo/mixed_scene.png
 
 # ---- benchmarks ----------------------------------------------------------------------------------
-bench: ## frame times of MODEL (default: the sculpt): culled mesh, cast, the paper's search
+bench: ## frame times of MODEL (default: the sculpt): culled mesh, cast, shell, auto, the paper's search
 	@$(MAKE) --no-print-directory deps
 	@$(MAKE) --no-print-directory -j$$(nproc) all $(out)/tests/bench/bench
 	@$(MAKE) --no-print-directory run-bench
@@ -291,8 +291,8 @@ bench: ## frame times of MODEL (default: the sculpt): culled mesh, cast, the pap
 run-bench:
 	@mkdir -p $(build)/demo
 	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
-	@$(build)/gtx cook $(MODEL) -o $(build)/demo/bench.gtx
-	@$(out)/tests/bench/bench $(build)/demo/bench.gtx $(MODEL)
+	@$(build)/gtx cook $(MODEL) --shell-levels 5 -o $(build)/demo/bench.gtx
+	@$(out)/tests/bench/bench $(build)/demo/bench.gtx $(MODEL) $(BENCH)
 
 CHARTS ?= 222
 paper-tables: ## the paper's Tables 2 and 3 of MODEL in CHARTS charts (the paper: the bunny, 222), ours beside

@@ -13,7 +13,6 @@
 #include <string.h>
 
 enum { INSTANCES = 3, SIZE = 1024, UNIT = 8 }; /* geotex has units 0..7 */
-
 /* Bias. Of the 4 x 4 texels that are compared the farthest centre lies 2 texels off in x and in y,
  * where a surface that faces the sun at an angle has fallen by 2 sqrt(2) tan(angle) texel widths.
  * One width more is for the map's level of detail, which is half a texel off. At grazing angles the
@@ -85,8 +84,9 @@ static gtx_result shine(const gtx_host_gl *gl, const world *w, gtx_error *error)
         return result;
     gtx_target_begin(gl, &map);
     result = draw_all(gl, w, &v, &plain, error);
-    const GLuint readers[2] = {w->polygon.program, gtx_shading_program(w->shading)};
-    for (int i = 0; i < 2; ++i) {
+    const GLuint readers[] = {w->polygon.program, gtx_shading_program(w->shading, GTX_METHOD_CAST),
+                              gtx_shading_program(w->shading, GTX_METHOD_SHELL)};
+    for (int i = 0; i < 3; ++i) {
         gl->UseProgram(readers[i]);
         gtx_set_matrix(gl, readers[i], "sun_clip", clip);
         gtx_set_vector(gl, readers[i], "to_sun", to_sun);

@@ -10,8 +10,8 @@ void main()
     vec3 n = gtx_world_normal(s);
     vec4 color = gtx_albedo(s);
 #ifdef GTX_MATERIALS
-    vec3 eye = -normalize(gtx_world_linear() * gtx_object_ray(s));
-    color.rgb = gtx_shade(gtx_material_of(s, color.rgb), n, eye, gtx_light.xyz, gtx_light.w);
+    color.rgb = gtx_shade(gtx_material_of(s, color.rgb), n, -gtx_world_ray(s), gtx_light.xyz,
+                          gtx_light.w);
 #else
     float lambert = max(dot(n, gtx_light.xyz), 0.0);
     color.rgb *= gtx_light.w + (1.0 - gtx_light.w) * lambert;

@@ -98,6 +98,12 @@ vec3 gtx_object_ray(gtx_surface s)
     return mat3(s.frame.axis_x, s.frame.axis_y, s.frame.axis_z) * s.ray;
 }
 
+/* Away from the camera; unit. */
+vec3 gtx_world_ray(gtx_surface s)
+{
+    return normalize(gtx_world_linear() * gtx_object_ray(s));
+}
+
 /* Unit; towards the camera where the sheet is seen from behind. */
 vec3 gtx_world_normal(gtx_surface s)
 {

@@ -7,8 +7,10 @@ GTX_UNIFORM vec4 gtx_depth;             /* x: clip z >= -x * w at the near plane
 GTX_UNIFORM vec4 gtx_light;             /* xyz: world space, unit, towards the light; w: ambient */
 GTX_UNIFORM vec4 gtx_detail;            /* x: pixels a world unit at clip w = 1, over the error
                                            allowed; y: how fast w grows, in world units;
-                                           z: the level for all patches; negative: by error */
+                                           z: the level for all patches; negative: by error;
+                                           w: the error allowed, in pixels */
 GTX_UNIFORM vec4 gtx_maps;              /* x: last mip level of normals and colours; y: 1 when the
                                            model has colours; z: scale of its emission, or 0;
                                            w: 1 when it has materials */
+GTX_UNIFORM vec4 gtx_shell;             /* of the shell's level, xyz: origin; w: step */
 GTX_UNIFORMS_END

@@ -32,6 +32,14 @@ typedef struct gtx_model gtx_model;
 
 typedef void (*gtx_gl_proc)(void);
 
+/* What drawing a model takes, for GTX_METHOD_AUTO to compare: a triangle of its shell and a pixel
+ * that this covers; a patch that is cast and a pixel that its proxy covers. In any unit; all 0 = as
+ * measured with llvmpipe, where a shell that is fine enough always wins. */
+typedef struct gtx_costs {
+    float shell_triangle, shell_pixel;
+    float cast_patch, cast_pixel;
+} gtx_costs;
+
 typedef struct gtx_renderer_desc {
     gtx_gl_proc (*load)(const char *name, void *user);   /* required: the host's GL loader */
     void *load_user;
@@ -39,7 +47,8 @@ typedef struct gtx_renderer_desc {
                                                             may be NULL */
     void *log_user;
     const gtx_allocator *allocator;
-    uint32_t reserved[8];
+    gtx_costs costs;                                     /* none below 0 */
+    uint32_t reserved[4];
 } gtx_renderer_desc;
 
 /* Needs the context current, as do all functions below but gtx_model_prepare. Leaves program 0,
@@ -87,9 +96,10 @@ typedef struct gtx_model_size {
 GTX_API gtx_model_size gtx_model_gpu_size(const gtx_model *model);
 
 typedef enum gtx_method {
-    GTX_METHOD_AUTO = 0,          /* what is fastest within the error budget: cast for now */
+    GTX_METHOD_AUTO = 0,          /* what is fastest within the error budget: shell or cast */
     GTX_METHOD_CAST = 1,          /* exact: cells walked, bilinear patches solved */
-    GTX_METHOD_PAPER = 2          /* linear then binary search, balanced by slant (paper, 4.1) */
+    GTX_METHOD_PAPER = 2,         /* linear then binary search, balanced by slant (paper, 4.1) */
+    GTX_METHOD_SHELL = 3          /* polygons of a level of the shell, which the asset must have */
 } gtx_method;
 
 /* What a draw writes, besides depth: location, what. The programs of the forward pass are compiled
@@ -110,16 +120,17 @@ typedef enum gtx_pass {
 /* An engine's own fragment main, which finds the surface by a call and does as it likes with it. */
 typedef struct gtx_shading gtx_shading;
 
-/* `text` is GLSL that follows geotex_fragment.glsl, which says what there is to call; before that
- * come geotex_cast.glsl and geotex_material.glsl. It has no #version, its samplers begin at unit 8,
- * and it is not kept. The shading is of the renderer's allocator, freed by gtx_shading_destroy.
- * Errors: ARGUMENT, MEMORY, SHADER (the renderer's log says why). */
+/* `text` is GLSL that follows geotex_fragment.glsl, which says what there is to call; for shells it
+ * follows geotex_shell_fragment.glsl. geotex_material.glsl comes before. It has no #version, its
+ * samplers begin at unit 8, and it is not kept. The shading is of the renderer's allocator, freed by
+ * gtx_shading_destroy. Errors: ARGUMENT, MEMORY, SHADER (the renderer's log says why). */
 GTX_API gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
                                       gtx_error *error);
 /* A NULL shading is fine. */
 GTX_API void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading);
-/* The name of its program, to set uniforms of its own between draws. */
-GTX_API uint32_t gtx_shading_program(const gtx_shading *shading);
+/* The name of its program that casts, or with GTX_METHOD_SHELL of the one that draws shells, to set
+ * uniforms of its own between draws. */
+GTX_API uint32_t gtx_shading_program(const gtx_shading *shading, gtx_method method);
 
 enum { /* gtx_view.flags */
     GTX_VIEW_REVERSED_Z = 1,          /* nearer is greater: depth func GREATER */
@@ -132,8 +143,17 @@ enum { /* gtx_view.flags */
  * Level of detail. Each patch of an instance is cast at the coarsest level of its sheet whose
  * distance from level 0, measured by gtx_model_prepare, is at most `max_error` pixels at the point
  * of the patch's sphere that is nearest to the camera. Coverage only grows from level to level, and
- * neighbours of different levels meet within that error. Pixels are square. GTX_METHOD_PAPER always draws
- * level 0. */
+ * neighbours of different levels meet within that error. Pixels are square. GTX_METHOD_PAPER always
+ * draws level 0.
+ *
+ * The shell. GTX_METHOD_SHELL draws an instance as the coarsest level of its shell whose error is at
+ * most `max_error` pixels where the asset's bounds are nearest to the camera, or as the finest when
+ * there is none; `level` counts levels of the shell. It writes no depth of its own, so that the depth
+ * test comes first and multisampling smooths its edges; `viewport_height` also tells the
+ * mip level of its maps. GTX_METHOD_AUTO draws the same level if there
+ * is one within the error and gtx_costs has it for cheaper, and casts otherwise, as it does when
+ * `viewport_height` is unknown or `level` given. Patches taken by gtx_model_update are cast from then
+ * on, by either method. */
 typedef struct gtx_view {
     float view[16], projection[16];   /* column-major; world -> eye -> clip */
     float light_direction[3];         /* world space, towards the light; zero = headlight */
@@ -164,7 +184,8 @@ typedef struct gtx_instance {
  * pass a model with materials or emission is shaded by metallic-roughness (glTF 2.0, appendix B),
  * another by Lambert. One instanced draw for each run of instances of one model. Room for the most
  * instances so far is kept, of the renderer's allocator, until gtx_renderer_destroy.
- * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL, SHADER (a pass's first draw). */
+ * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL, SHADER (a pass's first draw), UNSUPPORTED
+ * (GTX_METHOD_SHELL, and an asset without). */
 GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,
                             const gtx_instance *instances, uint32_t count, gtx_error *error);
 

@@ -4,6 +4,7 @@
  * rectangles the better the smaller they are, and neighbours across a cut share the grid, so that
  * their sheets agree there texel by texel. */
 #include "chart/cut_tree.hpp"
+#include "chart/frame.hpp"
 
 namespace gtx {
 
@@ -13,6 +14,9 @@ namespace {
 constexpr float MARGIN = 4;
 /* Texels from where the chart ends to a cut behind it, at least: room for the overlap there. */
 constexpr double ROOM = 2;
+/* Turns of a frame that are tried, and how many times as coarse the grid is for that. */
+constexpr size_t TURNS = 8;
+constexpr int COARSE = 6;
 
 /* A triangle of a chart as its patches see it, in texels. */
 struct Piece {
@@ -138,17 +142,40 @@ void Harvest::make_patch(const CutNode &node, const std::vector<Piece> &pieces)
     out_.push_back(std::move(chart));
 }
 
+/* Turns the frames of charts that will be cut as their patches fill rectangles best, for the least
+ * rectangle around all of a large chart says little about its parts. Coarse trees tell well enough.
+ */
+void turn_frames(const Surface &surface, const std::vector<Region> &regions, const CutPlan &plan,
+                 double share, std::vector<Frame> &frames, Task &task)
+{
+    auto radians = [](size_t turn) { return M_PI / 2 * double(turn) / TURNS; };
+    std::vector<CutTree> trees(regions.size() * TURNS);
+    task.parallel(regions.size(), [&](size_t i) {
+        Relief relief = make_relief(surface, regions[i], frames[i], plan.pitch);
+        for (size_t turn = 0; turn < TURNS; ++turn)
+            trees[i * TURNS + turn] =
+                grow_cut_tree(turn_relief(relief, radians(turn), COARSE), plan, share);
+    }, 0.2, 0.4);
+    std::vector<size_t> best = choose_turns(trees, TURNS, plan.patches);
+    task.parallel(regions.size(), [&](size_t i) {
+        if (trees[i * TURNS + best[i]].nodes[0].divided)
+            frames[i] = turned_frame(surface.mesh, regions[i].triangles, frames[i],
+                                     radians(best[i]));
+    });
+}
+
 } // namespace
 
 std::vector<Chart> cut_charts(const Surface &surface, std::vector<Region> regions,
-                              const std::vector<Frame> &frames, const CutPlan &plan, Task &task)
+                              std::vector<Frame> frames, const CutPlan &plan, Task &task)
 {
     double share = surface.area / (plan.pitch * plan.pitch) / double(plan.patches);
+    turn_frames(surface, regions, plan, share, frames, task);
     std::vector<CutTree> trees(regions.size());
     task.parallel(regions.size(), [&](size_t i) {
         trees[i] = grow_cut_tree(make_relief(surface, regions[i], frames[i], plan.pitch), plan,
                                  share);
-    }, 0.2, 0.8);
+    }, 0.4, 0.8);
     divide_trees(trees, plan.patches);
 
     std::vector<std::vector<Chart>> cut(regions.size());

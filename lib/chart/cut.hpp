@@ -18,6 +18,6 @@ struct CutPlan {
 /* Cuts the charts of `regions` and `frames`, which fold nowhere. Deterministic for any thread
  * count. */
 std::vector<Chart> cut_charts(const Surface &surface, std::vector<Region> regions,
-                              const std::vector<Frame> &frames, const CutPlan &plan, Task &task);
+                              std::vector<Frame> frames, const CutPlan &plan, Task &task);
 
 } // namespace gtx

@@ -123,7 +123,7 @@ public:
     Grower(const Relief &relief, const CutPlan &plan, double share)
         : relief_(relief), plan_(plan), smallest_(SMALLEST_SHARE * share),
           price_(PATCH_PRICE * share), ahead_(AHEAD_SHARE * share),
-          least_(std::max(LEAST_CELLS, int(LEAST_SIDE * std::sqrt(share))))
+          least_(std::max(LEAST_CELLS, int(LEAST_SIDE * std::sqrt(share))) / relief.coarse)
     {
     }
 
@@ -160,18 +160,23 @@ private:
 /* Texels of a box, in as many patches as the longest side allows. */
 double Grower::texels(const Rect &box, const Cuts &cuts, double &patches) const
 {
-    auto rounded = [&](unsigned n) { return (n + plan_.grain - 1) / plan_.grain * plan_.grain; };
+    const unsigned grain = plan_.grain;
+    auto rounded = [&](unsigned n) { /* on average, where the grid is too coarse to tell */
+        return relief_.coarse > 1 ? n + (grain - 1) / 2. : (n + grain - 1) / grain * grain;
+    };
     double total = 1;
     patches = 1;
     for (int axis = 0; axis < 2; ++axis) {
-        unsigned n = unsigned(box.side(axis)) + plan_.overlap[!cuts[size_t(2 * axis)]] +
+        unsigned n = unsigned(box.side(axis) * relief_.coarse) +
+                     plan_.overlap[!cuts[size_t(2 * axis)]] +
                      plan_.overlap[!cuts[size_t(2 * axis + 1)]];
-        if (rounded(n) > plan_.side) {
+        double side = rounded(n);
+        if (side > plan_.side) {
             unsigned rest = 2 * plan_.overlap[0], parts = 1 + (n - 1) / (plan_.side - rest);
-            n = parts * rounded((n + parts - 1) / parts + rest);
+            side = parts * rounded((n + parts - 1) / parts + rest);
             patches *= parts;
         }
-        total *= rounded(n);
+        total *= side;
     }
     return total;
 }
@@ -188,7 +193,7 @@ double Grower::cost(const Slice &s, const Rect &region, const Cuts &cuts, double
         own[low] = cuts[low] && s.box.low[axis] == region.low[axis];
         own[low + 1] = cuts[low + 1] && s.box.high[axis] == region.high[axis];
     }
-    double steps = RANGE / plan_.steps;
+    double steps = RANGE / plan_.steps * relief_.coarse;
     return texels(s.box, own, patches) * (1 + RELIEF_COST * steps * steps * s.moments.residual());
 }
 
@@ -311,28 +316,41 @@ void Grower::grow_node(size_t n, std::vector<CutNode> &nodes) const
     nodes[n] = node;
 }
 
-/* Divides the nodes for which that pays when each patch costs `price` texels on top; returns how
- * many leaves come out. */
-size_t prune(std::vector<CutTree> &trees, double price)
+/* Divides the nodes for which that pays when each patch costs `price` texels on top. */
+void prune(CutTree &tree, double price)
+{
+    for (size_t n = tree.nodes.size(); n-- > 0;) {
+        CutNode &node = tree.nodes[n];
+        node.leaves = !node.tight.empty();
+        node.least = node.leaves ? node.cost + price : 0;
+        node.divided = false;
+        if (node.child[0] < 0)
+            continue;
+        const CutNode &a = tree.nodes[size_t(node.child[0])];
+        const CutNode &b = tree.nodes[size_t(node.child[1])];
+        if (a.least + b.least < node.least) {
+            node.least = a.least + b.least;
+            node.leaves = a.leaves + b.leaves;
+            node.divided = true;
+        }
+    }
+}
+
+/* Of each run of `turns` trees the one that costs least at a price; how many leaves they have. */
+size_t prune_all(std::vector<CutTree> &trees, size_t turns, double price,
+                 std::vector<size_t> &best)
 {
     size_t leaves = 0;
-    for (CutTree &tree : trees) {
-        for (size_t n = tree.nodes.size(); n-- > 0;) {
-            CutNode &node = tree.nodes[n];
-            node.leaves = !node.tight.empty();
-            node.least = node.leaves ? node.cost + price : 0;
-            node.divided = false;
-            if (node.child[0] < 0)
-                continue;
-            const CutNode &a = tree.nodes[size_t(node.child[0])];
-            const CutNode &b = tree.nodes[size_t(node.child[1])];
-            if (a.least + b.least < node.least) {
-                node.least = a.least + b.least;
-                node.leaves = a.leaves + b.leaves;
-                node.divided = true;
-            }
+    best.clear();
+    for (size_t first = 0; first < trees.size(); first += turns) {
+        size_t least = first;
+        for (size_t t = first; t < first + turns; ++t) {
+            prune(trees[t], price);
+            if (trees[t].nodes[0].least < trees[least].nodes[0].least)
+                least = t;
         }
-        leaves += tree.nodes[0].leaves;
+        leaves += trees[least].nodes[0].leaves;
+        best.push_back(least - first);
     }
     return leaves;
 }
@@ -375,6 +393,35 @@ Relief make_relief(const Surface &surface, const Region &region, const Frame &fr
     return out;
 }
 
+Relief turn_relief(const Relief &relief, double turn, int coarse)
+{
+    const double c = std::cos(turn) / coarse, s = std::sin(turn) / coarse;
+    const double w = relief.size[0], h = relief.size[1];
+    Relief out;
+    out.coarse = coarse;
+    out.size[0] = 1 + int(std::fabs(c) * w + std::fabs(s) * h);
+    out.size[1] = 1 + int(std::fabs(s) * w + std::fabs(c) * h);
+    out.corner[0] = out.corner[1] = 0;
+    out.height.assign(size_t(out.size[0]) * size_t(out.size[1]), NAN);
+    out.touched.assign(out.height.size(), 0);
+    for (int j = 0; j < relief.size[1]; ++j) {
+        for (int i = 0; i < relief.size[0]; ++i) {
+            const size_t from = relief.at(i, j);
+            if (!relief.touched[from])
+                continue;
+            const double x = i + 0.5 - w / 2, y = j + 0.5 - h / 2;
+            const int column = int(c * x + s * y + out.size[0] / 2.);
+            const int row = int(c * y - s * x + out.size[1] / 2.);
+            const size_t to = out.at(std::clamp(column, 0, out.size[0] - 1),
+                                     std::clamp(row, 0, out.size[1] - 1));
+            out.touched[to] = 1;
+            if (!std::isnan(relief.height[from]))
+                out.height[to] = relief.height[from] / float(coarse);
+        }
+    }
+    return out;
+}
+
 CutTree grow_cut_tree(Relief relief, const CutPlan &plan, double share)
 {
     CutTree tree;
@@ -385,18 +432,25 @@ CutTree grow_cut_tree(Relief relief, const CutPlan &plan, double share)
 
 void divide_trees(std::vector<CutTree> &trees, size_t wanted)
 {
+    choose_turns(trees, 1, wanted);
+}
+
+std::vector<size_t> choose_turns(std::vector<CutTree> &trees, size_t turns, size_t wanted)
+{
     constexpr double HIGHEST = 1e12;
     constexpr int STEPS = 40;
+    std::vector<size_t> best;
     double low = 0, high = 1;
-    if (prune(trees, low) <= wanted)
-        return;
-    while (high < HIGHEST && prune(trees, high) > wanted)
+    if (prune_all(trees, turns, low, best) <= wanted)
+        return best;
+    while (high < HIGHEST && prune_all(trees, turns, high, best) > wanted)
         high *= 2;
     for (int step = 0; step < STEPS; ++step) {
         double middle = (low + high) / 2;
-        (prune(trees, middle) > wanted ? low : high) = middle;
+        (prune_all(trees, turns, middle, best) > wanted ? low : high) = middle;
     }
-    prune(trees, high);
+    prune_all(trees, turns, high, best);
+    return best;
 }
 
 } // namespace gtx

@@ -8,6 +8,7 @@ namespace gtx {
 /* A chart on the grid of its frame, heights in texels. */
 struct Relief {
     double corner[2];                 /* of texel (0, 0), in the frame's coordinates */
+    int coarse = 1;                   /* its texels are as many of the model's on a side */
     int size[2];
     std::vector<float> height;        /* at centres; NAN where none is */
     std::vector<uint8_t> touched;     /* by any triangle */
@@ -16,6 +17,10 @@ struct Relief {
 };
 
 Relief make_relief(const Surface &surface, const Region &region, const Frame &frame, double pitch);
+
+/* The same turned about z by `turn` radians, `coarse` times as coarse: what a chart would look like
+ * in a turned frame, roughly. */
+Relief turn_relief(const Relief &relief, double turn, int coarse);
 
 /* Texels low to high - 1 along each axis. */
 struct Rect {
@@ -52,5 +57,9 @@ CutTree grow_cut_tree(Relief relief, const CutPlan &plan, double share);
 /* Divides nodes so that all trees together have at most `wanted` leaves, if they can, and the
  * fewest texels. */
 void divide_trees(std::vector<CutTree> &trees, size_t wanted);
+
+/* Of each run of `turns` trees, which are of one chart, the index of the one that takes the fewest
+ * texels when all charts together have at most `wanted` leaves. */
+std::vector<size_t> choose_turns(std::vector<CutTree> &trees, size_t turns, size_t wanted);
 
 } // namespace gtx

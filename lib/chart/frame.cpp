@@ -183,6 +183,25 @@ Vec3d ball_axis(const std::vector<Vec3f> &normals)
     return normalize(Vec3d(centre));
 }
 
+/* Moves the origin of a frame and sets its extents, so that it holds the triangles. */
+void enclose(const Mesh &mesh, const std::vector<uint32_t> &triangles, Frame &frame)
+{
+    FrameInverse inverse(frame);
+    Vec3d low(INFINITY, INFINITY, INFINITY), high = -low;
+    for (uint32_t t : triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+            Vec3d p = inverse(mesh.position(t, corner));
+            for (int k = 0; k < 3; ++k) {
+                low[k] = std::min(low[k], p[k]);
+                high[k] = std::max(high[k], p[k]);
+            }
+        }
+    }
+    frame.origin = frame.point(low);
+    for (int k = 0; k < 3; ++k)
+        frame.extent[k] = high[k] - low[k];
+}
+
 } // namespace
 
 FrameInverse::FrameInverse(const Frame &frame) : origin(frame.origin)
@@ -257,19 +276,22 @@ Frame make_frame(const Mesh &mesh, const std::vector<uint32_t> &triangles, const
     frame.y = normalize(v * side.u - u * side.v + z * plane.b);
     frame.z = z;
     frame.origin = base;
-    FrameInverse inverse(frame);
-    Vec3d low(INFINITY, INFINITY, INFINITY), high = -low;
-    for (uint32_t i : vertices) {
-        Vec3d p = inverse(mesh.positions[i]);
-        for (int k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], p[k]);
-            high[k] = std::max(high[k], p[k]);
-        }
-    }
-    frame.origin = frame.point(low);
-    for (int k = 0; k < 3; ++k)
-        frame.extent[k] = high[k] - low[k];
+    enclose(mesh, triangles, frame);
     return frame;
+}
+
+Frame turned_frame(const Mesh &mesh, const std::vector<uint32_t> &triangles, const Frame &frame,
+                   double radians)
+{
+    const Vec3d &z = frame.z;
+    const Vec3d u = normalize(frame.x - z * dot(frame.x, z)), v = cross(z, u);
+    const double a = dot(frame.x, z) / dot(frame.x, u), b = dot(frame.y, z) / dot(frame.y, v);
+    const double c = std::cos(radians), s = std::sin(radians);
+    Frame out = frame;
+    out.x = normalize(u * c + v * s + z * (a * c + b * s));
+    out.y = normalize(v * c - u * s + z * (b * c - a * s));
+    enclose(mesh, triangles, out);
+    return out;
 }
 
 Frame part_of_frame(const Frame &whole, const double low[2], const double high[2],

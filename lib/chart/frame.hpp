@@ -17,6 +17,10 @@ Vec3d cone_axis(const Surface &surface, const std::vector<uint32_t> &triangles);
  * takes away height. */
 Frame make_frame(const Mesh &mesh, const std::vector<uint32_t> &triangles, const Vec3d &z);
 
+/* The frame of the same axis and tilt, turned by `radians` about z. */
+Frame turned_frame(const Mesh &mesh, const std::vector<uint32_t> &triangles, const Frame &frame,
+                   double radians);
+
 /* The part of a frame between `low` and `high` along its x and y, tilted where that takes height
  * from `points`, which are in the frame's coordinates. */
 Frame part_of_frame(const Frame &whole, const double low[2], const double high[2],

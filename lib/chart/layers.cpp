@@ -10,8 +10,8 @@ namespace {
 using Sample = LayerGrid::Sample;
 
 /* Groups of doubled samples so small and so shallow are a scan's noise. */
-constexpr size_t JUNK_SAMPLES = 4;
-constexpr double JUNK_PITCHES = 4;
+constexpr size_t JUNK_SAMPLES = 1;
+constexpr double JUNK_PITCHES = 2;
 /* Layers closer than this share of the diagonal are one. */
 constexpr double LAYER_DISTANCE = 1e-4;
 /* Steps between neighbouring texels beyond which the surface must be seen to lead from one to the
@@ -143,7 +143,8 @@ void find_cliffs(const FlatRegion &flat, const LayerGrid &grid, float cliff,
 
 LayerRule layer_rule(const Surface &surface, double pitch)
 {
-    return {float(LAYER_DISTANCE * surface.diagonal), float(JUNK_PITCHES * pitch)};
+    return {float(LAYER_DISTANCE * surface.diagonal), float(JUNK_PITCHES * pitch),
+            float(CLIFF_PITCHES * pitch)};
 }
 
 const Sample *LayerGrid::at(int i, int j) const
@@ -214,7 +215,7 @@ Layers find_layers(const Surface &surface, const Region &region, const Frame &fr
     Layers layers;
     for (const Sample &s : grid.samples)
         layers.samples += s.high >= s.low;
-    find_cliffs(FlatRegion(surface, region, frame, pitch), grid, float(CLIFF_PITCHES * pitch),
+    find_cliffs(FlatRegion(surface, region, frame, pitch), grid, rule.cliff,
                 layers.cliffs);
     for (size_t at = 0; at < grid.samples.size(); ++at) {
         std::vector<DoubleSample> group = take_group(grid, at, rule.apart);
@@ -225,9 +226,29 @@ Layers find_layers(const Surface &surface, const Region &region, const Frame &fr
     return layers;
 }
 
+/* Whether a sample of one grid lies beside one of the other and far from it. */
+static bool cliff_between(const LayerGrid &host, const LayerGrid &guest, float cliff)
+{
+    constexpr int BESIDE[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    for (int j = guest.first[1]; j < guest.first[1] + guest.size[1]; ++j)
+        for (int i = guest.first[0]; i < guest.first[0] + guest.size[0]; ++i) {
+            const Sample &here = *guest.at(i, j);
+            for (auto [x, y] : BESIDE) {
+                const Sample *there = host.at(i + x, j + y);
+                if (there && here.high >= here.low && there->high >= there->low &&
+                    std::fabs(here.high - there->high) > cliff)
+                    return true;
+            }
+        }
+    return false;
+}
+
 bool fold_together(const LayerGrid &host, const LayerGrid &guest, const LayerRule &rule,
                    size_t &doubled)
 {
+    doubled = 0;
+    if (cliff_between(host, guest, rule.cliff))
+        return true;
     /* A group that reaches farther from the guest than this is too large anyway. */
     const int around = int(JUNK_SAMPLES) + 1;
     int low[2], high[2];
@@ -236,7 +257,6 @@ bool fold_together(const LayerGrid &host, const LayerGrid &guest, const LayerRul
         high[k] = guest.first[k] + guest.size[k] + around;
     }
     LayerGrid both = blank_grid(low, high);
-    doubled = 0;
     for (int j = low[1]; j < high[1]; ++j)
         for (int i = low[0]; i < high[0]; ++i) {
             Sample &s = both.samples[size_t(j - low[1]) * size_t(both.size[0]) + size_t(i - low[0])];

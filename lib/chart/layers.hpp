@@ -20,9 +20,10 @@ struct Layers {
     std::vector<DoubleSample> cliffs;
 };
 
-/* How far apart two depths are to be two layers, and up to where a few of them are a scan's noise. */
+/* How far apart two depths are to be two layers, up to where a few of them are a scan's noise, and
+ * how far apart those of neighbours are to be a cliff. */
 struct LayerRule {
-    float apart, shallow;
+    float apart, shallow, cliff;
 };
 LayerRule layer_rule(const Surface &surface, double pitch);
 
@@ -46,7 +47,7 @@ LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Fr
 
 Layers find_layers(const Surface &surface, const Region &region, const Frame &frame, double pitch);
 
-/* Whether a guest could join a host without a fold; `doubled` counts the texel centres that would
+/* Whether a guest could not join a host without a fold or a cliff; `doubled` counts the texel centres that would
  * be covered twice and are not yet. */
 bool fold_together(const LayerGrid &host, const LayerGrid &guest, const LayerRule &rule,
                    size_t &doubled);

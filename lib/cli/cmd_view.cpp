@@ -4,14 +4,14 @@
 
 static double camera[3] = {30, 20, 2.8};
 static uint32_t size[2] = {1024, 768};
-static uint32_t method;
+static uint32_t method; /* in the viewer's table */
 static gtx::ViewScript script;
 
 static const option options[] = {
     {"size", 0, OPTION_SIZE, size, "WxH", "of the window [1024x768]", 16, 8192},
     {"camera", 0, OPTION_TRIPLE, camera, "AZ,EL,DIST",
      "degrees, degrees, bounding-sphere radii [30,20,2.8]", 0, 0},
-    {"method", 0, OPTION_CHOICE, &method, "auto|cast|paper", "how patches are drawn [auto]", 0, 0},
+    {"method", 0, OPTION_CHOICE, &method, "auto|cast|shell|paper", "how patches are drawn [auto]", 0, 0},
     {"frames", 0, OPTION_UINT, &script.frames, "N",
      "close after N frames, once all is pressed and cooked", 1, 1e9},
     {"keys", 0, OPTION_STRING, &script.keys, "KEYS",
@@ -52,7 +52,7 @@ int cmd_view(int argc, char **argv)
         if (count > 1)
             name += " and " + std::to_string(count - 1) + " more";
         current = "gtx view";
-        gtx::Viewer viewer(std::move(scene), name, size, camera, gtx_method(method));
+        gtx::Viewer viewer(std::move(scene), name, size, camera, method);
         return viewer.run(script);
     });
 }

@@ -98,6 +98,11 @@ AssetPointer recolor(const gtx_asset *asset, Look look)
     std::copy(info.bounds_min, info.bounds_min + 3, desc.bounds_min);
     std::copy(info.bounds_max, info.bounds_max + 3, desc.bounds_max);
     std::copy(info.anchor, info.anchor + 3, desc.anchor);
+    std::vector<gtx_shell> shell(info.shell_levels);
+    for (uint32_t k = 0; k < info.shell_levels; ++k)
+        gtx_get_shell(asset, k, &shell[k]);
+    desc.shell = shell.data();
+    desc.shell_levels = info.shell_levels;
     desc.unit = info.unit;
     desc.source_triangles = info.source_triangles;
     gtx_asset *out;

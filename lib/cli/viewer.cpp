@@ -15,11 +15,12 @@ namespace gtx {
 static const struct {
     gtx_method method;
     const char *name;
-} methods[] = {{GTX_METHOD_AUTO, "auto"}, {GTX_METHOD_CAST, "cast"}, {GTX_METHOD_PAPER, "paper"}};
+} methods[] = {{GTX_METHOD_AUTO, "auto"}, {GTX_METHOD_CAST, "cast"}, {GTX_METHOD_SHELL, "shell"},
+             {GTX_METHOD_PAPER, "paper"}};
 
 const Viewer::Key Viewer::keys[] = {
     {'F', "frame everything", [](Viewer &v) { v.frame_all(); }},
-    {'M', "method: auto, cast, paper", [](Viewer &v) { v.method = (v.method + 1) % 3; }},
+    {'M', "method: auto, cast, shell, paper", [](Viewer &v) { v.method = (v.method + 1) % 4; }},
     {'L', "level of detail: auto, 0, 1, 2, 3",
      [](Viewer &v) { v.view.level = (v.view.level + 1) % 5; }},
     {'P', "a colour a patch",
@@ -33,6 +34,18 @@ const Viewer::Key Viewer::keys[] = {
     {'H', "help", [](Viewer &v) { v.help = !v.help; }},
     {GTX_KEY_ESCAPE, "cancel cooking, then close", [](Viewer &v) { v.escape(); }},
 };
+
+/* All that the scene has must have a shell for that to be forced. */
+static bool has_shells(const Scene &scene)
+{
+    bool all = true;
+    for (const PlacedAsset &placed : scene.assets) {
+        gtx_info info;
+        gtx_get_info(placed.asset.get(), &info);
+        all = all && info.shell_levels > 0;
+    }
+    return all;
+}
 
 static std::string format_bytes(uint64_t bytes)
 {
@@ -52,7 +65,7 @@ std::string file_name(const std::string &path)
 }
 
 Viewer::Viewer(Scene scene_, std::string name_, const uint32_t size[2], const double at[3],
-               gtx_method method_)
+               size_t method_)
     : name(std::move(name_)), home{float(at[0]), float(at[1]), float(at[2])}, method(method_)
 {
     gtx_error error;
@@ -226,9 +239,10 @@ void Viewer::add_status(gtx_shapes &shapes, float dot)
     static const char *const looks_text[] = {"", "  patches", "  normals"};
     static const char *const levels_text[] = {"auto", "0", "1", "2", "3"};
     char line[160];
-    std::snprintf(line, sizeof line, "%s  level %s%s%s%s  %.1f ms  %dx%d", methods[method].name,
-                  levels_text[view.level], looks_text[size_t(look)], boxes ? "  boxes" : "",
-                  fixed_light ? "  light fixed" : "", milliseconds, width, height);
+    const bool no_shell = view.method != methods[method].method;
+    std::snprintf(line, sizeof line, "%s  level %s%s%s%s  %.1f ms  %dx%d",
+                  no_shell ? "no shell: auto" : methods[method].name, levels_text[view.level],
+                  looks_text[size_t(look)], boxes ? "  boxes" : "", fixed_light ? "  light fixed" : "", milliseconds, width, height);
     std::string lines = name + "\n" + facts + format_bytes(stage->gpu_bytes()) + " GPU\n" + line;
     if (scene.assets.empty() && scene.meshes.empty())
         lines = "drop a model or an asset here";
@@ -301,6 +315,8 @@ void Viewer::draw_frame()
     if (!fixed_light)
         light_from_camera(view);
     view.method = methods[method].method;
+    if (view.method == GTX_METHOD_SHELL && !has_shells(scene))
+        view.method = GTX_METHOD_AUTO;
     view.viewport_height = uint32_t(height);
     stage->draw(view, look);
     if (boxes)

@@ -25,7 +25,7 @@ class Viewer {
 public:
     /* Opens the window. Throws Error: GL, SHADER, MEMORY. */
     Viewer(Scene scene, std::string name, const uint32_t size[2], const double camera[3],
-           gtx_method method);
+           size_t method);
     Viewer(const Viewer &) = delete;
     ~Viewer();
 

@@ -4,10 +4,11 @@
 #include "base/alloc.h"
 #include "base/error.h"
 
-/* Instances that one call draws: of one model, and of one winding. */
+/* Instances that are drawn together: of one model, in one way, and of one winding. */
 typedef struct run {
     const gtx_model *model;
     uint32_t first, count;
+    uint8_t way;              /* as gtx_choose_way has it */
     bool mirrored;
 } run;
 
@@ -18,13 +19,13 @@ static gtx_result check(const gtx_renderer *renderer, const gtx_view *view,
         GTX_VIEW_REVERSED_Z | GTX_VIEW_DEPTH_ZERO_TO_ONE | GTX_VIEW_RESTORE_STATE;
     if (!renderer || !view || (count && !instances))
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a draw needs a renderer, a view and instances");
-    if (view->flags & ~flags || (unsigned)view->method > GTX_METHOD_PAPER ||
+    if (view->flags & ~flags || (unsigned)view->method > GTX_METHOD_SHELL ||
         (unsigned)view->pass > GTX_PASS_GBUFFER)
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "the view asks for an unknown flag, method or pass");
     if (view->shading && (view->pass != GTX_PASS_FORWARD || view->method == GTX_METHOD_PAPER))
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
-                        "a shading of one's own is cast, in place of the forward pass");
+                        "a shading takes the forward pass's place, and not by the paper's search");
     gtx_result result = gtx_check_reserved(view->reserved, 2, error);
     for (uint32_t i = 0; !result && i < count; ++i) {
         result = gtx_check_reserved(instances[i].reserved, 3, error);
@@ -45,35 +46,59 @@ static gtx_result reserve(gtx_renderer *renderer, uint32_t count, gtx_error *err
     renderer->instance_capacity = count;
     renderer->instances = gtx_alloc_array(hooks, count, sizeof *renderer->instances);
     renderer->mirrored = gtx_alloc_array(hooks, count, sizeof *renderer->mirrored);
-    if (renderer->instances && renderer->mirrored)
+    renderer->ways = gtx_alloc_array(hooks, count, sizeof *renderer->ways);
+    if (renderer->instances && renderer->mirrored && renderer->ways)
         return GTX_OK;
     gtx_renderer_free_scratch(renderer);
     return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for %u instances", count);
 }
 
-/* What one draw holds on to: the frame, its programs, and the one in use. */
+/* What one draw holds on to: the frame, what is asked for, and the program in use. */
 typedef struct pass {
     const gtx_frame *frame;
-    const gtx_program *plain, *material, *current;
+    const gtx_view *view;
+    const gtx_program *current;
 } pass;
 
+/* The program of a pass relative to the method's first. */
+static const int pass_programs[] = {[GTX_PASS_FORWARD] = 0,
+                                    [GTX_PASS_DEPTH] = PROGRAM_CAST_DEPTH,
+                                    [GTX_PASS_ID] = PROGRAM_CAST_ID,
+                                    [GTX_PASS_GBUFFER] = PROGRAM_CAST_GBUFFER};
+
 /* Compiles what the view is the first to need. */
-static gtx_result choose_programs(gtx_renderer *renderer, const gtx_view *view, pass *p,
-                                  gtx_error *error)
+static gtx_result need_programs(gtx_renderer *renderer, const gtx_view *view, gtx_error *error)
 {
-    static const int offsets[] = {[GTX_PASS_FORWARD] = PROGRAM_CAST,
-                                  [GTX_PASS_DEPTH] = PROGRAM_CAST_DEPTH,
-                                  [GTX_PASS_ID] = PROGRAM_CAST_ID,
-                                  [GTX_PASS_GBUFFER] = PROGRAM_CAST_GBUFFER};
-    if (view->shading) {
-        p->plain = p->material = &view->shading->program;
-        return GTX_OK;
-    }
+    const int offset = pass_programs[view->pass];
     const int method = view->method == GTX_METHOD_PAPER ? PROGRAM_PAPER : PROGRAM_CAST;
-    const int plain = method + offsets[view->pass];
-    p->plain = &renderer->programs[plain];
-    p->material = p->plain + (view->pass == GTX_PASS_FORWARD);
-    return gtx_program_need(renderer, plain, error);
+    gtx_result result = gtx_program_need(renderer, method + offset, error);
+    if (!result && method == PROGRAM_CAST)
+        result = gtx_program_need(renderer, PROGRAM_SHELL + offset, error);
+    return result;
+}
+
+static bool shades(const gtx_model *model)
+{
+    return model->has_material || model->emission_scale > 0;
+}
+
+static const gtx_program *program_of(const gtx_renderer *renderer, const gtx_view *view,
+                                     const gtx_model *model, bool shell, bool two_sided)
+{
+    if (view->shading)
+        return shell ? &view->shading->shell : &view->shading->cast;
+    int kind = shell                              ? PROGRAM_SHELL
+               : view->method == GTX_METHOD_PAPER ? PROGRAM_PAPER
+                                                  : PROGRAM_CAST;
+    if (view->pass != GTX_PASS_FORWARD)
+        kind += pass_programs[view->pass];
+    else if (shades(model))
+        ++kind;
+    else if (shell && model->has_color)
+        kind = two_sided ? PROGRAM_SHELL_COLOR_TWO_SIDED : PROGRAM_SHELL_COLOR;
+    else if (two_sided)
+        kind = PROGRAM_SHELL_TWO_SIDED;
+    return &renderer->programs[kind];
 }
 
 static void begin(const gtx_gl *gl, const gtx_frame *frame, gl_bool color)
@@ -83,7 +108,6 @@ static void begin(const gtx_gl *gl, const gtx_frame *frame, gl_bool color)
     gl->Enable(GL_DEPTH_TEST);
     gl->DepthFunc(frame->reversed ? GL_GREATER : GL_LESS);
     gl->DepthMask(GL_TRUE);
-    gl->Enable(GL_CULL_FACE);
     gl->CullFace(GL_BACK);
     gl->Disable(GL_BLEND);
     gl->ColorMask(color, color, color, color);
@@ -103,8 +127,8 @@ static const void *at(size_t offset)
     return (const char *)NULL + offset;
 }
 
-/* Points the attributes of geotex_proxy.vert at the run. */
-static void set_attributes(const gtx_renderer *renderer, const run *r)
+/* Points the attributes at the vertices of proxies, or of a level of the shell, and at the run. */
+static void set_attributes(const gtx_renderer *renderer, const run *r, bool shell)
 {
     const gtx_gl *gl = &renderer->gl;
     enum {
@@ -113,10 +137,15 @@ static void set_attributes(const gtx_renderer *renderer, const run *r)
         ID_ATTRIBUTE = FIRST_INSTANCE_ATTRIBUTE + INSTANCE_ATTRIBUTES
     };
     const size_t base = r->first * sizeof(gtx_instance_data);
-    gl->BindBuffer(GL_ARRAY_BUFFER, r->model->vertices);
-    gl->VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(gtx_proxy_vertex), at(0));
-    gl->VertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(gtx_proxy_vertex),
-                             at(offsetof(gtx_proxy_vertex, patch)));
+    if (shell) {
+        gtx_shells_bind(gl, &r->model->shells, r->way - 1u);
+    } else {
+        gl->BindBuffer(GL_ARRAY_BUFFER, r->model->vertices);
+        gl->VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(gtx_proxy_vertex), at(0));
+        gl->VertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(gtx_proxy_vertex),
+                                 at(offsetof(gtx_proxy_vertex, patch)));
+        gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->model->indices);
+    }
     gl->EnableVertexAttribArray(0);
     gl->EnableVertexAttribArray(1);
     gl->BindBuffer(GL_ARRAY_BUFFER, renderer->instance_buffer);
@@ -131,15 +160,14 @@ static void set_attributes(const gtx_renderer *renderer, const run *r)
                              at(base + offsetof(gtx_instance_data, id)));
     gl->VertexAttribDivisor(ID_ATTRIBUTE, 1);
     gl->EnableVertexAttribArray(ID_ATTRIBUTE);
-    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->model->indices);
 }
 
-/* Takes the program that the model needs into use. */
-static const gtx_program *use_program(const gtx_renderer *renderer, pass *p, const gtx_model *model)
+/* Takes a program into use, with the model's uniforms. */
+static void use_program(const gtx_gl *gl, pass *p, const gtx_program *program,
+                        const gtx_model *model)
 {
-    const gtx_gl *gl = &renderer->gl;
-    const bool shades = model->has_material || model->emission_scale > 0;
-    const gtx_program *program = shades ? p->material : p->plain;
+    const float maps[4] = {(float)(model->mip_count - 1), model->has_color ? 1.0f : 0.0f,
+                           model->emission_scale, model->has_material ? 1.0f : 0.0f};
     if (program != p->current) {
         gl->UseProgram(program->object);
         gl->UniformMatrix4fv(program->clip_from_world, 1, GL_FALSE, p->frame->clip_from_world);
@@ -148,25 +176,59 @@ static const gtx_program *use_program(const gtx_renderer *renderer, pass *p, con
         gl->Uniform4fv(program->detail, 1, p->frame->detail);
         p->current = program;
     }
-    return program;
+    gl->Uniform4fv(program->maps, 1, maps);
+}
+
+/* Casts the patches of a run, or only those that are edited. */
+static void cast_run(const gtx_renderer *renderer, pass *p, const run *r, bool edited_only)
+{
+    const gtx_gl *gl = &renderer->gl;
+    const gtx_model *model = r->model;
+    if (!model->index_count) /* no cell at all */
+        return;
+    use_program(gl, p, program_of(renderer, p->view, model, false, false), model);
+    set_attributes(renderer, r, false);
+    /* Back faces are wanted, so front faces are named as what culling takes away. */
+    gl->Enable(GL_CULL_FACE);
+    gl->FrontFace(r->mirrored ? GL_CCW : GL_CW);
+    if (!edited_only)
+        gl->DrawElementsInstanced(GL_TRIANGLES, (gl_size)model->index_count, GL_UNSIGNED_INT, NULL,
+                                  (gl_size)r->count);
+    for (uint32_t i = 0; edited_only && i < model->patch_count; ++i) {
+        const uint32_t first = model->first_index[i], last = model->first_index[i + 1];
+        if (model->shells.edited[i] && first < last)
+            gl->DrawElementsInstanced(GL_TRIANGLES, (gl_size)(last - first), GL_UNSIGNED_INT,
+                                      at(first * sizeof(uint32_t)), (gl_size)r->count);
+    }
+}
+
+/* Draws a level of the shell: patches with a back face culled, then those without. */
+static void draw_shell(const gtx_renderer *renderer, pass *p, const run *r)
+{
+    const gtx_gl *gl = &renderer->gl;
+    const gtx_shells *shells = &r->model->shells;
+    const uint32_t level = r->way - 1u;
+    set_attributes(renderer, r, true);
+    gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
+    for (int two_sided = 0; two_sided < 2; ++two_sided) {
+        if (shells->one_sided == (two_sided ? shells->patch_count : 0))
+            continue;
+        use_program(gl, p, program_of(renderer, p->view, r->model, true, two_sided), r->model);
+        gl->Uniform4fv(p->current->shell, 1, shells->levels[level].place);
+        (two_sided ? gl->Disable : gl->Enable)(GL_CULL_FACE);
+        gtx_shells_draw(gl, shells, level, two_sided, r->count);
+    }
 }
 
 static void draw_run(const gtx_renderer *renderer, pass *p, const run *r)
 {
-    const gtx_gl *gl = &renderer->gl;
-    const gtx_model *model = r->model;
-    if (!model || !model->index_count) /* before the first run, or no cell at all */
+    if (!r->model) /* before the first run */
         return;
-    const float maps[4] = {(float)(model->mip_count - 1), model->has_color ? 1.0f : 0.0f,
-                           model->emission_scale, model->has_material ? 1.0f : 0.0f};
-    const gtx_program *program = use_program(renderer, p, model);
-    bind_textures(gl, model);
-    set_attributes(renderer, r);
-    gl->Uniform4fv(program->maps, 1, maps);
-    /* Back faces are wanted, so front faces are named as what culling takes away. */
-    gl->FrontFace(r->mirrored ? GL_CCW : GL_CW);
-    gl->DrawElementsInstanced(GL_TRIANGLES, (gl_size)model->index_count, GL_UNSIGNED_INT, NULL,
-                              (gl_size)r->count);
+    bind_textures(&renderer->gl, r->model);
+    if (r->way)
+        draw_shell(renderer, p, r);
+    if (!r->way || r->model->shells.edited_count)
+        cast_run(renderer, p, r, r->way);
 }
 
 /* Draws instances whose data is in the instance buffer. */
@@ -175,9 +237,10 @@ static void draw_runs(const gtx_renderer *renderer, pass *p, const gtx_instance 
 {
     run r = {0};
     for (uint32_t i = 0; i < count; ++i) {
-        if (instances[i].model != r.model || renderer->mirrored[i] != r.mirrored) {
+        if (instances[i].model != r.model || renderer->ways[i] != r.way ||
+            renderer->mirrored[i] != r.mirrored) {
             draw_run(renderer, p, &r);
-            r = (run){instances[i].model, i, 0, renderer->mirrored[i]};
+            r = (run){instances[i].model, i, 0, renderer->ways[i], renderer->mirrored[i]};
         }
         ++r.count;
     }
@@ -189,17 +252,21 @@ gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_inst
 {
     gtx_frame frame;
     gtx_state state;
-    pass p = {.frame = &frame};
+    pass p = {.frame = &frame, .view = view};
     gtx_result result = check(renderer, view, instances, count, error);
     if (!result)
         result = gtx_frame_from_view(view, &frame, error);
     if (!result)
         result = reserve(renderer, count, error);
-    for (uint32_t i = 0; !result && i < count; ++i)
+    for (uint32_t i = 0; !result && i < count; ++i) {
         result = gtx_place_instance(&frame, &instances[i], &renderer->instances[i],
                                     &renderer->mirrored[i], error);
+        if (!result)
+            result = gtx_choose_way(renderer, view, &frame, instances[i].model,
+                                    &renderer->instances[i], &renderer->ways[i], error);
+    }
     if (!result)
-        result = choose_programs(renderer, view, &p, error);
+        result = need_programs(renderer, view, error);
     if (result)
         return result;
 

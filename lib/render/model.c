@@ -196,6 +196,21 @@ static gtx_result derive_sheets(gtx_model *model, const gtx_asset *asset, gtx_er
     return result;
 }
 
+/* Where single patches are cast, the proxies' ranges are needed for as long as the model lives. */
+static gtx_result prepare_shells(gtx_model *model, const gtx_asset *asset, gtx_error *error)
+{
+    gtx_result result = gtx_shells_prepare(asset, &model->allocator, &model->shells, error);
+    if (result || !model->shells.level_count)
+        return result;
+    model->first_index =
+        gtx_alloc_array(&model->allocator, model->patch_count + 1, sizeof *model->first_index);
+    if (!model->first_index)
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's shell");
+    memcpy(model->first_index, model->proxies.first_index,
+           (model->patch_count + 1) * sizeof *model->first_index);
+    return GTX_OK;
+}
+
 gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *allocator,
                              gtx_model **out, gtx_error *error)
 {
@@ -222,6 +237,8 @@ gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *alloca
     gtx_result result = gtx_model_derive_proxies(asset, &hooks, &model->proxies, error);
     if (!result)
         result = derive_sheets(model, asset, error);
+    if (!result)
+        result = prepare_shells(model, asset, error);
     if (!result && !(copy_levels(model, asset, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
                      copy_levels(model, asset, GTX_MAP_NORMAL, UNIT_NORMALS, mips, 2) &&
                      copy_levels(model, asset, GTX_MAP_COLOR, UNIT_COLORS, mips, 4) &&
@@ -229,13 +246,13 @@ gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *alloca
                      copy_levels(model, asset, GTX_MAP_EMISSION, UNIT_EMISSIONS, mips, 3)))
         result = gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's maps");
     if (result) {
-        gtx_model_free_staging(model);
-        gtx_free_array(&hooks, model, 1, sizeof *model);
+        gtx_model_destroy(NULL, model);
         return result;
     }
     model->index_count = model->proxies.index_count;
     model->size.geometry += (uint64_t)model->index_count * sizeof *model->proxies.indices +
-                            (uint64_t)model->proxies.vertex_count * sizeof *model->proxies.vertices;
+                            (uint64_t)model->proxies.vertex_count * sizeof *model->proxies.vertices +
+                            model->shells.vertex_bytes + model->shells.index_bytes;
     *out = model;
     return GTX_OK;
 }
@@ -249,6 +266,7 @@ void gtx_model_free_staging(gtx_model *model)
         l->data = NULL;
     }
     gtx_proxies_free(&model->proxies, &model->allocator);
+    gtx_shells_free_staging(&model->shells, &model->allocator);
 }
 
 gtx_model_size gtx_model_gpu_size(const gtx_model *model)

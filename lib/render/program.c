@@ -19,6 +19,10 @@ typedef struct recipe {
 #define MATERIALS "#define GTX_MATERIALS\n"
 #define CAST "geotex_cast.glsl", "geotex_fragment.glsl"
 #define PAPER "geotex_paper.glsl", "geotex_fragment.glsl"
+#define POLYGONS "geotex_shell.vert"
+#define TWO_SIDED "#define GTX_TWO_SIDED\n"
+#define COLORS "#define GTX_COLORS\n"
+#define SHELL "geotex_shell_fragment.glsl"
 
 static const recipe recipes[PROGRAM_COUNT] = {
     [PROGRAM_CAST] = {PROXY, "", {CAST, "geotex_forward.frag"}, "geotex cast"},
@@ -39,8 +43,26 @@ static const recipe recipes[PROGRAM_COUNT] = {
     [PROGRAM_PAPER_GBUFFER] = {PROXY, MATERIALS,
                                {"geotex_material.glsl", PAPER, "geotex_gbuffer.frag"},
                                "geotex paper, g-buffer"},
+    [PROGRAM_SHELL] = {POLYGONS, "", {SHELL, "geotex_shell.frag"}, "geotex shell"},
+    [PROGRAM_SHELL_MATERIAL] = {POLYGONS, MATERIALS,
+                                {"geotex_material.glsl", SHELL, "geotex_shell.frag"},
+                                "geotex shell, materials"},
+    [PROGRAM_SHELL_DEPTH] = {POLYGONS, "", {SHELL, "geotex_depth.frag"}, "geotex shell, depth"},
+    [PROGRAM_SHELL_ID] = {POLYGONS, "", {SHELL, "geotex_id.frag"}, "geotex shell, ids"},
+    [PROGRAM_SHELL_GBUFFER] = {POLYGONS, MATERIALS,
+                               {"geotex_material.glsl", SHELL, "geotex_gbuffer.frag"},
+                               "geotex shell, g-buffer"},
+    [PROGRAM_SHELL_TWO_SIDED] = {POLYGONS, TWO_SIDED, {SHELL, "geotex_shell.frag"},
+                                 "geotex shell, two-sided"},
+    [PROGRAM_SHELL_COLOR] = {POLYGONS, COLORS, {SHELL, "geotex_shell.frag"},
+                             "geotex shell, colors"},
+    [PROGRAM_SHELL_COLOR_TWO_SIDED] = {POLYGONS, COLORS TWO_SIDED, {SHELL, "geotex_shell.frag"},
+                                       "geotex shell, colors, two-sided"},
 };
-static const recipe own = {PROXY, MATERIALS, {"geotex_material.glsl", CAST}, "geotex cast, own"};
+static const recipe own_cast = {PROXY, MATERIALS, {"geotex_material.glsl", CAST},
+                                "geotex cast, own"};
+static const recipe own_shell = {POLYGONS, MATERIALS, {"geotex_material.glsl", SHELL},
+                                 "geotex shell, own"};
 
 const char *gtx_shader_source(const char *name)
 {
@@ -143,6 +165,7 @@ static void locate(const gtx_gl *gl, gtx_program *program)
     program->light = gl->GetUniformLocation(program->object, "gtx_light");
     program->detail = gl->GetUniformLocation(program->object, "gtx_detail");
     program->maps = gl->GetUniformLocation(program->object, "gtx_maps");
+    program->shell = gl->GetUniformLocation(program->object, "gtx_shell");
     gl->UseProgram(program->object);
     for (gl_int i = 0; i < UNIT_COUNT; ++i)
         gl->Uniform1i(gl->GetUniformLocation(program->object, samplers[i]), i);
@@ -177,7 +200,9 @@ gtx_result gtx_program_need(gtx_renderer *renderer, int program, gtx_error *erro
 gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
 {
     static const int first[] = {PROGRAM_CAST, PROGRAM_CAST_MATERIAL, PROGRAM_PAPER,
-                                PROGRAM_PAPER_MATERIAL};
+                                PROGRAM_PAPER_MATERIAL, PROGRAM_SHELL, PROGRAM_SHELL_MATERIAL,
+                                PROGRAM_SHELL_TWO_SIDED, PROGRAM_SHELL_COLOR,
+                                PROGRAM_SHELL_COLOR_TWO_SIDED};
     gtx_result result = GTX_OK;
     for (size_t i = 0; i < sizeof first / sizeof *first && !result; ++i)
         result = gtx_program_need(renderer, first[i], error);
@@ -200,9 +225,11 @@ gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shad
     gtx_shading *shading = gtx_alloc_array(&renderer->allocator, 1, sizeof *shading);
     if (!shading)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a shading");
-    gtx_result result = build(renderer, &own, text, &shading->program, error);
+    gtx_result result = build(renderer, &own_cast, text, &shading->cast, error);
+    if (!result)
+        result = build(renderer, &own_shell, text, &shading->shell, error);
     if (result)
-        gtx_free_array(&renderer->allocator, shading, 1, sizeof *shading);
+        gtx_shading_destroy(renderer, shading);
     else
         *out = shading;
     return result;
@@ -212,11 +239,12 @@ void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading)
 {
     if (!shading)
         return;
-    renderer->gl.DeleteProgram(shading->program.object);
+    renderer->gl.DeleteProgram(shading->cast.object);
+    renderer->gl.DeleteProgram(shading->shell.object);
     gtx_free_array(&renderer->allocator, shading, 1, sizeof *shading);
 }
 
-uint32_t gtx_shading_program(const gtx_shading *shading)
+uint32_t gtx_shading_program(const gtx_shading *shading, gtx_method method)
 {
-    return shading->program.object;
+    return method == GTX_METHOD_SHELL ? shading->shell.object : shading->cast.object;
 }

@@ -38,9 +38,14 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
     if (!desc || !desc->load || !out)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a renderer needs a loader of OpenGL functions");
     *out = NULL;
-    gtx_result result = gtx_check_reserved(desc->reserved, 8, error);
+    gtx_result result = gtx_check_reserved(desc->reserved, 4, error);
     if (result)
         return result;
+    const float costs[] = {desc->costs.shell_triangle, desc->costs.shell_pixel,
+                           desc->costs.cast_patch, desc->costs.cast_pixel};
+    for (int i = 0; i < 4; ++i)
+        if (!(costs[i] >= 0))
+            return gtx_fail(error, GTX_ERROR_ARGUMENT, "a cost is not a number, or below 0");
     const gtx_allocator hooks = gtx_allocator_or_default(desc->allocator);
     gtx_renderer *renderer = gtx_alloc_array(&hooks, 1, sizeof *renderer);
     if (!renderer)
@@ -48,6 +53,7 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
     renderer->allocator = hooks;
     renderer->log = desc->log;
     renderer->log_user = desc->log_user;
+    renderer->costs = gtx_costs_or_default(&desc->costs);
     result = gtx_gl_init(&renderer->gl, desc, error);
     if (result) { /* no function may be called */
         gtx_free_array(&hooks, renderer, 1, sizeof *renderer);
@@ -82,7 +88,10 @@ void gtx_renderer_free_scratch(gtx_renderer *renderer)
                    sizeof *renderer->instances);
     gtx_free_array(&renderer->allocator, renderer->mirrored, renderer->instance_capacity,
                    sizeof *renderer->mirrored);
+    gtx_free_array(&renderer->allocator, renderer->ways, renderer->instance_capacity,
+                   sizeof *renderer->ways);
     renderer->instances = NULL;
     renderer->mirrored = NULL;
+    renderer->ways = NULL;
     renderer->instance_capacity = 0;
 }

@@ -4,6 +4,7 @@
 
 #include "derive/derive.h"
 #include "render/gl.h"
+#include "render/shell.h"
 
 #include <stdbool.h>
 
@@ -18,16 +19,19 @@ enum {
 enum {
     PROGRAM_CAST, PROGRAM_CAST_MATERIAL, PROGRAM_CAST_DEPTH, PROGRAM_CAST_ID, PROGRAM_CAST_GBUFFER,
     PROGRAM_PAPER, PROGRAM_PAPER_MATERIAL, PROGRAM_PAPER_DEPTH, PROGRAM_PAPER_ID,
-    PROGRAM_PAPER_GBUFFER, PROGRAM_COUNT
+    PROGRAM_PAPER_GBUFFER,
+    PROGRAM_SHELL, PROGRAM_SHELL_MATERIAL, PROGRAM_SHELL_DEPTH, PROGRAM_SHELL_ID,
+    PROGRAM_SHELL_GBUFFER, PROGRAM_SHELL_TWO_SIDED, PROGRAM_SHELL_COLOR,
+    PROGRAM_SHELL_COLOR_TWO_SIDED, PROGRAM_COUNT
 };
 
 typedef struct gtx_program {
     gl_uint object;
-    gl_int clip_from_world, depth, light, detail, maps;
+    gl_int clip_from_world, depth, light, detail, maps, shell;
 } gtx_program;
 
 struct gtx_shading {
-    gtx_program program;
+    gtx_program cast, shell;
 };
 
 /* What the proxy's vertex shader reads for each instance. */
@@ -48,7 +52,9 @@ struct gtx_renderer {
     /* Scratch of gtx_draw: what is uploaded, and whose winding is turned. */
     gtx_instance_data *instances;
     bool *mirrored;
+    uint8_t *ways;            /* 0: by casting; n: by level n - 1 of the shell */
     uint32_t instance_capacity;
+    gtx_costs costs;
 };
 
 /* One mip level of a texture, waiting for its upload. All layers follow one another. */
@@ -72,6 +78,8 @@ struct gtx_model {
     gtx_proxies proxies;      /* freed once they are uploaded */
     uint64_t vertex_bytes_sent, index_bytes_sent;
     uint32_t index_count;
+    uint32_t *first_index;    /* of each patch's proxy and the end; only with a shell */
+    gtx_shells shells;
     gtx_model_size size;
     gl_uint textures[UNIT_COUNT];
     gl_uint vertices, indices;
@@ -137,6 +145,14 @@ gtx_result gtx_frame_from_view(const gtx_view *view, gtx_frame *out, gtx_error *
  * ARGUMENT (not affine, no inverse, not finite). */
 gtx_result gtx_place_instance(const gtx_frame *frame, const gtx_instance *instance,
                               gtx_instance_data *out, bool *mirrored, gtx_error *error);
+
+/* choose.c. */
+gtx_costs gtx_costs_or_default(const gtx_costs *costs);
+/* What a model's instance is drawn by: 0, or one more than the level of its shell. Errors:
+ * UNSUPPORTED (the view wants a shell and there is none). */
+gtx_result gtx_choose_way(const gtx_renderer *renderer, const gtx_view *view,
+                          const gtx_frame *frame, const gtx_model *model,
+                          const gtx_instance_data *placed, uint8_t *way, gtx_error *error);
 
 /* state.c: what gtx_draw touches, read and put back. */
 enum { GTX_MAX_DRAW_BUFFERS = 16 };

@@ -4,6 +4,8 @@
 #include "base/alloc.h"
 #include "base/error.h"
 
+#include <string.h>
+
 /* What is derived anew before anything on the GPU changes. */
 typedef struct derived {
     gtx_proxies proxies;
@@ -133,6 +135,11 @@ gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model, const gtx_
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
     gtx_upload_proxies(gl, model, &d.proxies);
     model->index_count = d.proxies.index_count;
+    if (model->shells.level_count) {
+        memcpy(model->first_index, d.proxies.first_index,
+               (model->patch_count + 1) * sizeof *model->first_index);
+        gtx_shells_mark(&model->shells, patch);
+    }
     model->emission_scale = edited->info.has_emission ? edited->info.emission_scale : 0;
     free_derived(&d, &model->allocator);
     return gtx_check_gl_memory(gl, error);

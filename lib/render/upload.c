@@ -158,6 +158,21 @@ gtx_result gtx_check_gl_memory(const gtx_gl *gl, gtx_error *error)
     return GTX_OK;
 }
 
+static void allocate_shells(const gtx_gl *gl, gtx_shells *s)
+{
+    if (!s->level_count)
+        return;
+    gl->GenBuffers(1, &s->vertex_buffer);
+    gl->GenBuffers(1, &s->index_buffer);
+    gl->BindBuffer(GL_ARRAY_BUFFER, s->vertex_buffer);
+    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)s->vertex_bytes, NULL, GL_STATIC_DRAW);
+    gtx_gl_label(gl, GL_BUFFER, s->vertex_buffer, "geotex shell vertices");
+    gl->BindBuffer(GL_ARRAY_BUFFER, s->index_buffer);
+    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)s->index_bytes, NULL, GL_STATIC_DRAW);
+    gtx_gl_label(gl, GL_BUFFER, s->index_buffer, "geotex shell indices");
+    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+}
+
 /* Names, sizes and labels of all objects, still empty. */
 static void allocate(const gtx_gl *gl, gtx_model *model)
 {
@@ -167,6 +182,7 @@ static void allocate(const gtx_gl *gl, gtx_model *model)
     gl->GenBuffers(1, &model->vertices);
     gl->GenBuffers(1, &model->indices);
     gtx_upload_proxies(gl, model, &empty);
+    allocate_shells(gl, &model->shells);
 }
 
 /* Gives the objects back, so that an upload begins anew. */
@@ -175,9 +191,13 @@ static void release(const gtx_gl *gl, gtx_model *model)
     gl->DeleteTextures(UNIT_COUNT, model->textures);
     gl->DeleteBuffers(1, &model->vertices);
     gl->DeleteBuffers(1, &model->indices);
+    gl->DeleteBuffers(1, &model->shells.vertex_buffer);
+    gl->DeleteBuffers(1, &model->shells.index_buffer);
     memset(model->textures, 0, sizeof model->textures);
     model->vertices = model->indices = 0;
     model->vertex_bytes_sent = model->index_bytes_sent = 0;
+    model->shells.vertex_buffer = model->shells.index_buffer = 0;
+    model->shells.vertex_bytes_sent = model->shells.index_bytes_sent = 0;
     for (uint32_t i = 0; i < model->level_count; ++i)
         model->levels[i].next_row = 0;
 }
@@ -186,6 +206,10 @@ static void release(const gtx_gl *gl, gtx_model *model)
 static bool upload_slice(const gtx_gl *gl, gtx_model *model, uint64_t budget)
 {
     const gtx_proxies *p = &model->proxies;
+    gtx_shells *s = &model->shells;
+    upload_bytes(gl, s->vertex_buffer, s->vertices, s->vertex_bytes, &s->vertex_bytes_sent,
+                 &budget);
+    upload_bytes(gl, s->index_buffer, s->indices, s->index_bytes, &s->index_bytes_sent, &budget);
     upload_bytes(gl, model->vertices, p->vertices, p->vertex_count * sizeof *p->vertices,
                  &model->vertex_bytes_sent, &budget);
     upload_bytes(gl, model->indices, p->indices, p->index_count * sizeof *p->indices,
@@ -196,7 +220,7 @@ static bool upload_slice(const gtx_gl *gl, gtx_model *model, uint64_t budget)
         if (!is_complete(&model->levels[i]))
             return false;
     }
-    return true; /* the proxies came first */
+    return true; /* the buffers came first */
 }
 
 gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t max_bytes,
@@ -259,5 +283,7 @@ void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model)
         release(&renderer->gl, model);
     gtx_model_free_staging(model);
     const gtx_allocator hooks = model->allocator;
+    gtx_shells_free(&model->shells, &hooks);
+    gtx_free_array(&hooks, model->first_index, model->patch_count + 1, sizeof *model->first_index);
     gtx_free_array(&hooks, model, 1, sizeof *model);
 }

@@ -107,7 +107,7 @@ static void set_light(const gtx_view *view, const double forward[3], float light
     light[3] = view->ambient > 0 ? view->ambient : 0.2f;
 }
 
-/* What geotex_proxy.vert chooses levels by. */
+/* What geotex_proxy.vert and geotex_shell.vert choose levels by. */
 static void set_detail(const gtx_view *view, const double clip[16], float detail[4])
 {
     const double max_error = view->max_error > 0 ? view->max_error : 0.5;
@@ -118,6 +118,7 @@ static void set_detail(const gtx_view *view, const double clip[16], float detail
     }
     detail[0] = (float)fmin(sqrt(y) * view->viewport_height / 2 / max_error, FLT_MAX);
     detail[1] = (float)sqrt(w);
+    detail[3] = (float)max_error;
     const bool by_error = view->viewport_height > 0 && view->level == 0;
     detail[2] = by_error ? -1.0f : view->level > 0 ? (float)(view->level - 1) : 0.0f;
     if (view->method == GTX_METHOD_PAPER)

@@ -129,7 +129,10 @@ static void every_mode_shows_something_else(void **state)
             fail_msg("'%s' changes %u pixels", modes[i].keys, difference(&plain, &other, false));
         gtx_image_free(&other);
     }
-    gtx_image twice = view("sphere.gtx", "tppnnbbhh");
+    gtx_image twice = view("sphere.gtx", "tppnnbbhhmmmm");
+    assert_int_equal(difference(&plain, &twice, false), 0);
+    gtx_image_free(&twice);
+    twice = view("sphere.gtx", "tmm"); /* the shell, which it has not */
     assert_int_equal(difference(&plain, &twice, false), 0);
     gtx_image_free(&twice);
     gtx_image_free(&plain);

@@ -1,4 +1,5 @@
 /* What a debugger sees: labels on every object, a group around a draw, and no complaint. */
+#include "shells.h"
 #include "witness.h"
 
 static void a_draw_is_a_silent_group(void **state)
@@ -7,20 +8,21 @@ static void a_draw_is_a_silent_group(void **state)
     if (!has_debug(s))
         skip();
     witness w = {0};
+    static const gtx_method methods[] = {GTX_METHOD_CAST, GTX_METHOD_PAPER, GTX_METHOD_SHELL};
     witness_call(s, &w);
-    subject shown = subject_open(s, fixture_sphere(2, 48, 8));
+    subject shown = subject_open(s, shelled(fixture_sphere(2, 48, 8), 2, 2, 0));
     gtx_camera camera = camera_around(shown.asset);
     gtx_view view = view_of(&camera);
-    for (int i = 0; i < 4; ++i) {
-        view.method = i % 2 ? GTX_METHOD_PAPER : GTX_METHOD_CAST;
-        view.flags = i / 2 ? GTX_VIEW_RESTORE_STATE : 0;
+    for (int i = 0; i < 6; ++i) {
+        view.method = methods[i % 3];
+        view.flags = i / 3 ? GTX_VIEW_RESTORE_STATE : 0;
         stage_draw(s, &view, &shown.instance, 1);
     }
     must(gtx_model_update(s->renderer, shown.model, shown.asset, 0, NULL), &(gtx_error){0});
     subject_close(s, &shown);
     witness_dismiss(s);
     assert_int_equal(w.complaints, 0);
-    assert_int_equal(w.groups, 4);
+    assert_int_equal(w.groups, 6);
 }
 
 /* How many objects of a kind carry a label of ours. */
@@ -51,10 +53,10 @@ static void objects_carry_labels(void **state)
     STAGE_OR_SKIP(state);
     if (!has_debug(s))
         skip();
-    subject shown = subject_open(s, fixture_sphere(2, 48, 8));
-    assert_int_equal(labelled(GL_PROGRAM), 4);
+    subject shown = subject_open(s, shelled(fixture_sphere(2, 48, 8), 2, 2, 0));
+    assert_int_equal(labelled(GL_PROGRAM), 9);
     assert_int_equal(labelled(GL_TEXTURE), 5);
-    assert_int_equal(labelled(GL_BUFFER), 3);
+    assert_int_equal(labelled(GL_BUFFER), 5);
     subject_close(s, &shown);
     assert_int_equal(labelled(GL_TEXTURE), 0); /* deleted with the model */
     s->gl.GetError();
@@ -104,7 +106,7 @@ static gtx_result use(stage *s, const gtx_asset *asset, const gtx_allocator *hoo
 static void every_allocation_goes_through_the_hooks(void **state)
 {
     STAGE_OR_SKIP(state);
-    gtx_asset *asset = fixture_flat(0.5, 8);
+    gtx_asset *asset = shelled(fixture_sphere(2, 48, 8), 2, 2, 0);
     gtx_result result = GTX_ERROR_MEMORY;
     const GLenum kinds[3] = {GL_PROGRAM, GL_TEXTURE, GL_BUFFER};
     int objects[3];

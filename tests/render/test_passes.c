@@ -2,6 +2,7 @@
  * context. */
 #include "host/target.h"
 #include "look.h"
+#include "shells.h"
 #include "witness.h"
 
 enum { COUNT = 3, IDS_COUNT = 4 * STAGE_PIXELS };
@@ -45,13 +46,16 @@ static void depth_alone_is_the_same_depth(void **state)
 {
     STAGE_OR_SKIP(state);
     static float expected[STAGE_PIXELS];
-    subject shown[2] = {subject_open(s, fixture_sphere(2, 64, 8)),
+    static const gtx_method methods[] = {GTX_METHOD_CAST, GTX_METHOD_SHELL, GTX_METHOD_CAST,
+                                         GTX_METHOD_SHELL, GTX_METHOD_CAST, GTX_METHOD_PAPER,
+                                         GTX_METHOD_SHELL, GTX_METHOD_AUTO};
+    subject shown[2] = {subject_open(s, shelled(fixture_sphere(2, 64, 8), 2, 2, 0)),
                         subject_open(s, fixture_bumpy(16, GTX_PATCH_TWO_SIDED))};
     for (int i = 0; i < 16; ++i) {
         gtx_instance three[COUNT];
         gtx_view view = look_at_three(i);
         place_three(&shown[i / 8], three);
-        view.method = i == 5 || i == 13 ? GTX_METHOD_PAPER : GTX_METHOD_CAST;
+        view.method = i < 8 ? methods[i] : i == 13 ? GTX_METHOD_PAPER : GTX_METHOD_CAST;
         stage_draw(s, &view, three, COUNT);
         memcpy(expected, s->depth, sizeof expected);
         view.pass = GTX_PASS_DEPTH;
@@ -159,6 +163,45 @@ static void ids_are_those_of_the_caster(void **state)
     subject_close(s, &shown);
 }
 
+/* By the shell the instance is the same, and but for the rims of patches the patch and its cell. */
+static void ids_of_the_shell(void **state)
+{
+    STAGE_OR_SKIP(state);
+    static uint32_t drawn[2][IDS_COUNT];
+    const GLuint nothing[4] = {5, 5, 5, 5};
+    gtx_error error = {0};
+    gtx_target target;
+    gtx_instance three[COUNT];
+    subject shown = subject_open(s, shelled(fixture_sphere(2, 64, 8), 2, 2, 0));
+    place_three(&shown, three);
+    gtx_view view = look_at_three(0);
+    view.pass = GTX_PASS_ID;
+    must(gtx_target_create(&s->gl, STAGE_WIDTH, STAGE_HEIGHT, (GLenum[]){GL_RGBA32UI, 0}, &target,
+                           &error), &error);
+    for (int i = 0; i < 2; ++i) {
+        view.method = i ? GTX_METHOD_SHELL : GTX_METHOD_CAST;
+        s->gl.Clear(GL_DEPTH_BUFFER_BIT);
+        s->gl.ClearBufferuiv(GL_COLOR, 0, nothing);
+        must(gtx_draw(s->renderer, &view, three, COUNT, &error), &error);
+        read_target(s, GL_COLOR_ATTACHMENT0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, drawn[i]);
+    }
+    long both = 0, instances = 0, patches = 0, cells = 0;
+    for (int p = 0; p < IDS_COUNT; p += 4) {
+        const uint32_t *a = &drawn[0][p], *b = &drawn[1][p];
+        if (a[0] == 5 || b[0] == 5)
+            continue;
+        const int same = a[0] == b[0] && a[1] == b[1];
+        ++both;
+        instances += a[0] == b[0];
+        patches += same;
+        cells += same && abs((int)(a[2] - b[2])) < 3 && abs((int)(a[3] - b[3])) < 3;
+    }
+    assert_true(both > 5000 && instances * 100 > both * 98);
+    assert_true(patches * 100 > both * 85 && cells * 100 > patches * 85);
+    gtx_target_destroy(&s->gl, &target);
+    subject_close(s, &shown);
+}
+
 static double to_linear(double srgb)
 {
     return srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
@@ -169,17 +212,17 @@ static double to_srgb(double c)
     return c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055;
 }
 
-static void g_buffer_shades_as_forward(void **state)
+static void g_buffer_shades_as_forward(stage *s, gtx_method method)
 {
-    STAGE_OR_SKIP(state);
     static uint8_t albedo[4 * STAGE_PIXELS];
     static uint32_t normal[STAGE_PIXELS];
     gtx_error error = {0};
     gtx_target target;
     gtx_instance three[COUNT];
-    subject shown = subject_open(s, fixture_sphere(2, 64, 8));
+    subject shown = subject_open(s, shelled(fixture_sphere(2, 64, 8), 2, 2, 0));
     place_three(&shown, three);
     gtx_view view = look_at_three(0);
+    view.method = method;
     memcpy(view.light_direction, (float[3]){0.6f, 0, 0.8f}, sizeof view.light_direction);
     view.ambient = 0.25f;
     stage_draw(s, &view, three, COUNT);
@@ -210,6 +253,18 @@ static void g_buffer_shades_as_forward(void **state)
     assert_true(checked > 1000);
     gtx_target_destroy(&s->gl, &target);
     subject_close(s, &shown);
+}
+
+static void g_buffer_by_casting(void **state)
+{
+    STAGE_OR_SKIP(state);
+    g_buffer_shades_as_forward(s, GTX_METHOD_CAST);
+}
+
+static void g_buffer_by_the_shell(void **state)
+{
+    STAGE_OR_SKIP(state);
+    g_buffer_shades_as_forward(s, GTX_METHOD_SHELL);
 }
 
 static void g_buffer_holds_the_material(void **state)
@@ -258,7 +313,7 @@ static void a_main_of_the_engines_own(void **state)
         "}\n";
     gtx_error error = {0};
     gtx_shading *shading;
-    subject shown = subject_open(s, fixture_sphere(2, 64, 8));
+    subject shown = subject_open(s, shelled(fixture_sphere(2, 64, 8), 2, 2, 0));
     gtx_instance instance = shown.instance;
     const float linear[9] = {0, 0.8f, 0.1f, -0.7f, 0, 0, 0, 0.2f, 0.9f};
     const float move[3] = {0.3f, -0.2f, 0.5f};
@@ -270,13 +325,15 @@ static void a_main_of_the_engines_own(void **state)
     gtx_view view = view_of(&camera);
     must(gtx_shading_create(s->renderer, text, &shading, &error), &error);
     view.shading = shading;
-    const GLuint program = gtx_shading_program(shading);
     const matrix back = matrix_inverse(
         matrix_mul(matrix_of(view.projection), matrix_of(view.view)));
     const matrix to_object = matrix_inverse(matrix_of(instance.transform));
-    for (int world = 0; world < 2; ++world) {
+    for (int i = 0; i < 4; ++i) {
+        const int world = i % 2;
         const float scale[4] = {0.2f, 0, 0, (float)world};
         long checked = 0;
+        view.method = i < 2 ? GTX_METHOD_CAST : GTX_METHOD_SHELL;
+        const GLuint program = gtx_shading_program(shading, view.method);
         s->gl.UseProgram(program);
         s->gl.Uniform4fv(s->gl.GetUniformLocation(program, "scale"), 1, scale);
         stage_draw(s, &view, &instance, 1);
@@ -364,7 +421,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(depth_alone_is_the_same_depth),
         cmocka_unit_test(ids_are_those_of_the_caster),
-        cmocka_unit_test(g_buffer_shades_as_forward),
+        cmocka_unit_test(ids_of_the_shell),
+        cmocka_unit_test(g_buffer_by_casting),
+        cmocka_unit_test(g_buffer_by_the_shell),
         cmocka_unit_test(g_buffer_holds_the_material),
         cmocka_unit_test(a_main_of_the_engines_own),
         cmocka_unit_test(nobody_complained),

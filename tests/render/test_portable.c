@@ -5,6 +5,7 @@
  * to code that rounds differently. */
 #define _DEFAULT_SOURCE
 #include "look.h"
+#include "shells.h"
 
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -70,8 +71,8 @@ static void draw_scene(stage *s, const gtx_view *view, const gtx_instance *insta
     gtx_polygon_program_destroy(&s->gl, &program);
 }
 
-/* Cast by error, forced coarse and orthographic, the paper's search, reversed depth, after an edit
- * on the GPU, and with the state read back. */
+/* Shell or cast by error, cast coarse and orthographic, the paper's search, reversed depth, after an
+ * edit on the GPU, and with the state read back. */
 static void draw_album(void **state)
 {
     static const look steel = {{150, 160, 200, 255}, {230, 90, 200, 255}, {40, 10, 0}};
@@ -79,7 +80,7 @@ static void draw_album(void **state)
     STAGE_OR_SKIP(state);
     album *a = drawing;
     gtx_error error = {0};
-    subject ball = subject_open(s, fixture_sphere(2, 64, 8));
+    subject ball = subject_open(s, shelled(fixture_sphere(2, 64, 8), 2, 3, 0));
     subject deep = subject_open(s, fixture_sphere(2, 48, 16));
     subject sheet = subject_open(s, fixture_bumpy(8, GTX_PATCH_TWO_SIDED));
     subject shiny = subject_open(s, repaint(fixture_sphere(2, 48, 8), &steel));
@@ -94,7 +95,7 @@ static void draw_album(void **state)
         gtx_view view = view_of(&camera);
         view.viewport_height = STAGE_HEIGHT;
         view.level = i == 1 ? 3 : 0;
-        view.method = i == 2 ? GTX_METHOD_PAPER : GTX_METHOD_CAST;
+        view.method = i == 2 ? GTX_METHOD_PAPER : i == 0 ? GTX_METHOD_AUTO : GTX_METHOD_CAST;
         view.flags |= i == 5 ? GTX_VIEW_RESTORE_STATE : 0;
         for (uint32_t patch = 0; i == 4 && patch < 6; patch += 2)
             must(gtx_model_update(s->renderer, shiny.model, edited, patch, &error), &error);

@@ -10,6 +10,12 @@ static const char *const mains[] = {"geotex_forward.frag", "geotex_depth.frag", 
 static const char *const methods[] = {"geotex_cast.glsl", "geotex_paper.glsl"};
 enum { MAINS = sizeof mains / sizeof *mains, METHODS = 2 };
 
+static const char *const shell_vertex[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                           "geotex_view.glsl", "geotex_shell.vert", NULL};
+static const char *const shell[] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
+                                    "geotex_surface.glsl", "geotex_shell_fragment.glsl",
+                                    "geotex_shell.frag", NULL};
+
 /* Compiles a program's stage and expects no word of complaint. */
 static void compile(const char *version, const char *options, const char *kind,
                     const char *const *parts)
@@ -67,6 +73,25 @@ static void every_dialect(void **state)
             if (k / METHODS == 0 || k / METHODS == 3)
                 compile(head, versions[i][1], "frag", shaded);
         }
+        compile(versions[i][0], versions[i][1], "vert", shell_vertex);
+        for (int k = 0; k < MAINS; ++k) {
+            const char *main = k ? mains[k] : "geotex_shell.frag";
+            const char *const parts[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                         "geotex_view.glsl", "geotex_surface.glsl",
+                                         "geotex_shell_fragment.glsl", main, NULL};
+            const char *const shaded[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                          "geotex_view.glsl", "geotex_surface.glsl",
+                                          "geotex_material.glsl", "geotex_shell_fragment.glsl",
+                                          main, NULL};
+            if (k < 3)
+                compile(versions[i][0], versions[i][1], "frag", parts);
+            if (k == 0 || k == 3)
+                compile(head, versions[i][1], "frag", shaded);
+        }
+        snprintf(head, sizeof head, "%s\n#define GTX_TWO_SIDED", versions[i][0]);
+        compile(head, versions[i][1], "frag", shell);
+        snprintf(head, sizeof head, "%s\n#define GTX_COLORS", versions[i][0]);
+        compile(head, versions[i][1], "frag", shell);
     }
 }
 

@@ -1,0 +1,215 @@
+/* Levels of the shell: from the asset's shared vertices to buffers in which each has one patch. */
+#include "render/shell.h"
+
+#include "base/alloc.h"
+#include "base/error.h"
+
+#include <string.h>
+
+/* The greatest index is left to hosts that restart primitives by it. */
+enum { MOST_NARROW_VERTICES = 65535 };
+
+/* Which of a patch's vertices a vertex of the level has become. */
+typedef struct split_vertex {
+    uint32_t patch;           /* one more than the patch that met it last */
+    uint32_t index;
+} split_vertex;
+
+static void store_index(const gtx_shells *shells, const gtx_shell_level *level, uint32_t at,
+                        uint32_t index)
+{
+    uint8_t *out = shells->indices + level->index_offset + (size_t)at * level->index_size;
+    const uint16_t narrow = (uint16_t)index;
+    memcpy(out, level->index_size == 2 ? (const void *)&narrow : (const void *)&index,
+           level->index_size);
+}
+
+/* Gives each vertex a copy for each patch that uses it, patch by patch in the order of drawing.
+ * Without memory for them it only counts. `seen` has an entry for each vertex of the asset's level.
+ * Returns how many copies there are. */
+static uint32_t split(const gtx_shells *shells, const gtx_shell_level *level,
+                      const gtx_shell *source, split_vertex *seen)
+{
+    gtx_shell_vertex *vertices =
+        shells->vertices ? shells->vertices + level->vertex_offset / sizeof *vertices : NULL;
+    uint32_t count = 0, met = 0;
+    memset(seen, 0, source->vertex_count * sizeof *seen);
+    for (uint32_t i = 0; i < shells->patch_count; ++i) {
+        const uint32_t patch = shells->order[i], last = source->first[patch + 1];
+        for (uint64_t c = 3 * (uint64_t)source->first[patch]; c < 3 * (uint64_t)last; ++c) {
+            split_vertex *s = &seen[source->indices[c]];
+            const uint16_t *q = source->positions + 3 * (size_t)source->indices[c];
+            if (s->patch != patch + 1) {
+                *s = (split_vertex){patch + 1, count++};
+                if (vertices)
+                    vertices[s->index] = (gtx_shell_vertex){{q[0], q[1], q[2]}, 0, patch};
+            }
+            if (vertices)
+                store_index(shells, level, met++, s->index);
+        }
+    }
+    return count;
+}
+
+/* Patches that are seen from the front alone first: they are drawn with back faces culled. */
+static void put_in_order(const gtx_asset *asset, gtx_shells *out)
+{
+    uint32_t next = 0;
+    for (uint32_t side = 0; side < 2; ++side) {
+        for (uint32_t p = 0; p < out->patch_count; ++p)
+            if (!(asset->patches[p].flags & GTX_PATCH_TWO_SIDED) == !side)
+                out->order[next++] = p;
+        if (side == 0)
+            out->one_sided = next;
+    }
+}
+
+/* An asset has been checked when it was opened; what is used to index is looked at again. */
+static bool is_sound(const gtx_shell *source, uint32_t patches)
+{
+    bool sound = source->first[0] == 0 && source->first[patches] == source->triangle_count;
+    for (uint32_t p = 0; p < patches; ++p)
+        sound = sound && source->first[p] <= source->first[p + 1];
+    for (size_t c = 0; sound && c < 3 * (size_t)source->triangle_count; ++c)
+        sound = source->indices[c] < source->vertex_count;
+    return sound;
+}
+
+/* What is known of a level before its vertices are: all but its place in the buffer of vertices. */
+static bool measure_level(gtx_shells *out, gtx_shell_level *level, const gtx_shell *source,
+                          const gtx_allocator *hooks)
+{
+    memcpy(level->place, source->origin, sizeof source->origin);
+    level->place[3] = source->step;
+    level->error = source->error;
+    level->triangle_count = source->triangle_count;
+    level->first = gtx_alloc_array(hooks, out->patch_count + 1, sizeof *level->first);
+    if (!level->first)
+        return false;
+    for (uint32_t i = 0; i < out->patch_count; ++i) {
+        const uint32_t *of = source->first + out->order[i];
+        level->first[i + 1] = level->first[i] + of[1] - of[0];
+    }
+    return true;
+}
+
+/* Counts, makes room and fills, with `seen` as split has it. */
+static bool fill_levels(const gtx_asset *asset, gtx_shells *out, split_vertex *seen,
+                        const gtx_allocator *hooks)
+{
+    gtx_shell source;
+    for (uint32_t k = 0; k < out->level_count; ++k) {
+        gtx_shell_level *level = &out->levels[k];
+        gtx_get_shell(asset, k, &source);
+        if (!measure_level(out, level, &source, hooks))
+            return false;
+        const uint32_t count = split(out, level, &source, seen);
+        level->index_size = count > MOST_NARROW_VERTICES ? 4 : 2;
+        level->vertex_offset = out->vertex_bytes;
+        level->index_offset = out->index_bytes;
+        out->vertex_bytes += (uint64_t)count * sizeof *out->vertices;
+        out->index_bytes += 3 * (uint64_t)level->triangle_count * level->index_size;
+        out->index_bytes = (out->index_bytes + 3) / 4 * 4;
+    }
+    out->vertices = gtx_alloc_array(hooks, (size_t)out->vertex_bytes, 1);
+    out->indices = gtx_alloc_array(hooks, (size_t)out->index_bytes, 1);
+    if (!out->vertices || !out->indices)
+        return false;
+    for (uint32_t k = 0; k < out->level_count; ++k) {
+        gtx_get_shell(asset, k, &source);
+        split(out, &out->levels[k], &source, seen);
+    }
+    return true;
+}
+
+gtx_result gtx_shells_prepare(const gtx_asset *asset, const gtx_allocator *allocator,
+                              gtx_shells *out, gtx_error *error)
+{
+    *out = (gtx_shells){.level_count = asset->info.shell_levels,
+                        .patch_count = asset->info.patch_count};
+    if (!out->level_count)
+        return GTX_OK;
+    memcpy(out->low, asset->info.bounds_min, sizeof out->low);
+    memcpy(out->high, asset->info.bounds_max, sizeof out->high);
+    out->order = gtx_alloc_array(allocator, out->patch_count, sizeof *out->order);
+    out->edited = gtx_alloc_array(allocator, out->patch_count, sizeof *out->edited);
+    uint32_t most = 0;
+    bool sound = true;
+    for (uint32_t k = 0; k < out->level_count; ++k) {
+        gtx_shell source;
+        gtx_get_shell(asset, k, &source);
+        sound = sound && is_sound(&source, out->patch_count);
+        most = source.vertex_count > most ? source.vertex_count : most;
+    }
+    split_vertex *seen = gtx_alloc_array(allocator, most, sizeof *seen);
+    bool made = out->order && out->edited && seen;
+    if (made && sound) {
+        put_in_order(asset, out);
+        made = fill_levels(asset, out, seen, allocator);
+    }
+    gtx_free_array(allocator, seen, most, sizeof *seen);
+    if (made && sound)
+        return GTX_OK;
+    gtx_shells_free(out, allocator);
+    if (!sound)
+        return gtx_fail(error, GTX_ERROR_CORRUPT, "a level of the shell refers beyond its end");
+    return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's shell");
+}
+
+void gtx_shells_free_staging(gtx_shells *shells, const gtx_allocator *allocator)
+{
+    gtx_free_array(allocator, shells->vertices, (size_t)shells->vertex_bytes, 1);
+    gtx_free_array(allocator, shells->indices, (size_t)shells->index_bytes, 1);
+    shells->vertices = NULL;
+    shells->indices = NULL;
+}
+
+void gtx_shells_free(gtx_shells *shells, const gtx_allocator *allocator)
+{
+    gtx_shells_free_staging(shells, allocator);
+    for (uint32_t k = 0; k < shells->level_count; ++k)
+        gtx_free_array(allocator, shells->levels[k].first, shells->patch_count + 1,
+                       sizeof *shells->levels[k].first);
+    gtx_free_array(allocator, shells->order, shells->patch_count, sizeof *shells->order);
+    gtx_free_array(allocator, shells->edited, shells->patch_count, sizeof *shells->edited);
+    *shells = (gtx_shells){0};
+}
+
+static const void *at(uint64_t offset)
+{
+    return (const char *)NULL + offset;
+}
+
+void gtx_shells_bind(const gtx_gl *gl, const gtx_shells *shells, uint32_t level)
+{
+    const uint64_t first = shells->levels[level].vertex_offset;
+    gl->BindBuffer(GL_ARRAY_BUFFER, shells->vertex_buffer);
+    gl->VertexAttribPointer(0, 3, GL_UNSIGNED_SHORT, GL_FALSE, sizeof(gtx_shell_vertex), at(first));
+    gl->VertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(gtx_shell_vertex),
+                             at(first + offsetof(gtx_shell_vertex, patch)));
+    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, shells->index_buffer);
+}
+
+static void draw_range(const gtx_gl *gl, const gtx_shell_level *level, uint32_t first,
+                       uint32_t last, uint32_t instances)
+{
+    const gl_enum type = level->index_size == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
+    if (first < last)
+        gl->DrawElementsInstanced(GL_TRIANGLES, (gl_size)(3 * (last - first)), type,
+                                  at(level->index_offset + 3 * (uint64_t)first * level->index_size),
+                                  (gl_size)instances);
+}
+
+void gtx_shells_draw(const gtx_gl *gl, const gtx_shells *shells, uint32_t level, bool two_sided,
+                     uint32_t instances)
+{
+    const gtx_shell_level *l = &shells->levels[level];
+    uint32_t from = two_sided ? shells->one_sided : 0;
+    const uint32_t end = two_sided ? shells->patch_count : shells->one_sided;
+    for (uint32_t i = from; shells->edited_count && i < end; ++i)
+        if (shells->edited[shells->order[i]]) {
+            draw_range(gl, l, l->first[from], l->first[i], instances);
+            from = i + 1;
+        }
+    draw_range(gl, l, l->first[from], l->first[end], instances);
+}

@@ -1,0 +1,61 @@
+/* The shell of a model: its levels as buffers, how one is chosen and how it is drawn. */
+#ifndef GTX_RENDER_SHELL_H
+#define GTX_RENDER_SHELL_H
+
+#include "asset/asset.h"
+#include "render/gl.h"
+
+#include <stdbool.h>
+
+/* A vertex of several patches comes once for each. */
+typedef struct gtx_shell_vertex {
+    uint16_t position[3], spare;
+    uint32_t patch;
+} gtx_shell_vertex;
+
+typedef struct gtx_shell_level {
+    float place[4];           /* origin and step of the positions */
+    float error;              /* object units */
+    uint32_t triangle_count;
+    uint32_t *first;          /* triangles first[i]..first[i + 1] - 1 are those of patch order[i] */
+    uint32_t index_size;      /* bytes */
+    uint64_t vertex_offset, index_offset;
+} gtx_shell_level;
+
+/* All levels share one buffer of vertices and one of indices, the finest first. */
+typedef struct gtx_shells {
+    uint32_t level_count, patch_count;
+    gtx_shell_level levels[GTX_MAX_SHELLS];
+    uint32_t *order;          /* of the patches: those seen from the front alone come first */
+    uint32_t one_sided;       /* how many */
+    bool *edited;             /* a patch each: its sheet has changed, and it must be cast */
+    uint32_t edited_count;
+    float low[3], high[3];    /* bounds in object space */
+    gtx_shell_vertex *vertices;   /* both freed once they are uploaded */
+    uint8_t *indices;
+    uint64_t vertex_bytes, index_bytes, vertex_bytes_sent, index_bytes_sent;
+    gl_uint vertex_buffer, index_buffer;
+} gtx_shells;
+
+/* Of an asset without a shell: no levels. Errors: MEMORY, CORRUPT. */
+gtx_result gtx_shells_prepare(const gtx_asset *asset, const gtx_allocator *allocator,
+                              gtx_shells *out, gtx_error *error);
+void gtx_shells_free_staging(gtx_shells *shells, const gtx_allocator *allocator);
+void gtx_shells_free(gtx_shells *shells, const gtx_allocator *allocator);
+
+/* Notes that a patch's sheet has changed. */
+static inline void gtx_shells_mark(gtx_shells *shells, uint32_t patch)
+{
+    shells->edited_count += !shells->edited[patch];
+    shells->edited[patch] = true;
+}
+
+/* Points attributes 0 and 1 at a level, and binds its indices. */
+void gtx_shells_bind(const gtx_gl *gl, const gtx_shells *shells, uint32_t level);
+
+/* Draws the patches that are not edited. The program, the textures and the attributes of instances
+ * are set, the vertex array is bound. `two_sided` picks the patches, and whether to cull. */
+void gtx_shells_draw(const gtx_gl *gl, const gtx_shells *shells, uint32_t level, bool two_sided,
+                     uint32_t instances);
+
+#endif
