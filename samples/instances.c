@@ -33,17 +33,13 @@ static void place(field *f, const gtx_asset *asset)
 {
     gtx_info info;
     gtx_get_info(asset, &info);
-    const float *low = info.bounds_min, *high = info.bounds_max;
-    const float height = high[1] - low[1];
-    float center[16], there[16];
-    gtx_matrix_place(-(low[0] + high[0]) / 2, -low[1], -(low[2] + high[2]) / 2, 0, 1, center);
     for (int i = 0; i < COUNT; ++i) {
         const float x = (float)(i % ROWS) - ROWS / 2 + 0.3f * scatter(i, 12.9f);
         const float z = (float)(i / ROWS) - ROWS / 2 + 0.3f * scatter(i, 78.2f);
         const float size = 0.45f + 0.3f * scatter(i, 37.7f);
         gtx_instance *instance = &f->instances[i];
-        gtx_matrix_place(1.3f * x, 0, 1.3f * z, 360 * scatter(i, 4.1f), size / height, there);
-        gtx_matrix_multiply(there, center, instance->transform);
+        gtx_matrix_stand(info.bounds_min, info.bounds_max, (float[3]){1.3f * x, 0, 1.3f * z},
+                         360 * scatter(i, 4.1f), size, instance->transform);
         instance->model = f->model; /* a run of the same model is one draw call */
         for (int k = 0; k < 3; ++k)
             instance->tint[k] = 0.35f + 0.65f * scatter(i, 9.7f + (float)k);

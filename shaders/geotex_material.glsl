@@ -39,7 +39,7 @@ vec3 gtx_shade(gtx_material m, vec3 n, vec3 eye, vec3 light, float ambient)
 
     /* Fresnel by Schlick; distribution by Trowbridge and Reitz, times pi; visibility by Smith, with
      * masking and shadowing correlated. */
-    vec3 fresnel = f0 + (1.0 - f0) * pow(1.0 - max(dot(eye, h), 0.0), 5.0);
+    vec3 fresnel = f0 + (1.0 - f0) * pow(clamp(1.0 - dot(eye, h), 0.0, 1.0), 5.0);
     float a2 = alpha * alpha, d = nh * nh * (a2 - 1.0) + 1.0;
     float distribution = a2 / (d * d);
     float visibility = 0.5 / max(nl * sqrt(nv * nv * (1.0 - a2) + a2) +

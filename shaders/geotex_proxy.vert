@@ -12,19 +12,21 @@ layout(location = 5) in vec4 gtx_object_x;  /* xyz: rows of the inverse's linear
 layout(location = 6) in vec4 gtx_object_y;  /* in object space, or against the view's direction */
 layout(location = 7) in vec4 gtx_object_z;  /* when orthographic */
 layout(location = 8) in vec4 gtx_tint;
+layout(location = 9) in uint gtx_instance;  /* its id */
 
 GTX_VARYING(0) out vec3 gtx_point;          /* grid space, on the hull */
 GTX_VARYING(1) flat out vec3 gtx_eye;       /* the ray: gtx_point * gtx_depth.w - gtx_eye */
 GTX_VARYING(2) flat out vec4 gtx_clip_z;    /* rows of grid -> clip */
 GTX_VARYING(3) flat out vec4 gtx_clip_w;
-GTX_VARYING(4) flat out vec3 gtx_normal_x;  /* columns of object -> world for normals */
-GTX_VARYING(5) flat out vec3 gtx_normal_y;
-GTX_VARYING(6) flat out vec3 gtx_normal_z;
+GTX_VARYING(4) flat out vec4 gtx_normal_x;  /* xyz: columns of object -> world for normals; w: what */
+GTX_VARYING(5) flat out vec4 gtx_normal_y;  /* object -> world adds */
+GTX_VARYING(6) flat out vec4 gtx_normal_z;
 GTX_VARYING(7) flat out vec4 gtx_color;
 GTX_VARYING(8) flat out int gtx_patch_index;
 GTX_VARYING(9) flat out vec4 gtx_rect;      /* what gtx_sheet_of takes: a fragment that misses */
 GTX_VARYING(10) flat out vec4 gtx_span;     /* need not fetch the record */
 GTX_VARYING(11) flat out int gtx_level;     /* of detail, the same all over the patch */
+GTX_VARYING(12) flat out uint gtx_id;       /* of the instance */
 
 /* A row over world space, taken to grid space. */
 vec4 gtx_row(vec4 row, gtx_frame frame)
@@ -80,9 +82,10 @@ void main()
     gtx_clip_z = gtx_row(rows[2], frame);
     gtx_clip_w = gtx_row(rows[3], frame);
     /* n_world = transpose(inverse) n: the inverse's rows are the columns. */
-    gtx_normal_x = gtx_object_x.xyz;
-    gtx_normal_y = gtx_object_y.xyz;
-    gtx_normal_z = gtx_object_z.xyz;
+    gtx_normal_x = vec4(gtx_object_x.xyz, gtx_world_x.w);
+    gtx_normal_y = vec4(gtx_object_y.xyz, gtx_world_y.w);
+    gtx_normal_z = vec4(gtx_object_z.xyz, gtx_world_z.w);
+    gtx_id = gtx_instance;
     gtx_color = gtx_tint;
     gtx_patch_index = index;
     gtx_span = vec4(gtx_record(index, 3).w, gtx_record(index, 4).w, gtx_record(index, 5).w,

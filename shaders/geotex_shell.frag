@@ -1,18 +1,6 @@
-/* The stock forward main of the shell: lit colour (sRGB bytes), from the same maps and by the same
- * light as geotex_forward.frag. Depth is the polygon's own and nothing is discarded, so that the
- * depth test comes first.
- *
- * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl and geotex_surface.glsl before it;
- * varyings as geotex_shell.vert. GTX_TWO_SIDED lights backs, too, GTX_COLORS says that there is a
- * map of them, and GTX_MATERIALS is as in geotex_forward.frag. */
-GTX_VARYING(0) in vec4 gtx_at;
-GTX_VARYING(1) flat in vec4 gtx_inset;
-GTX_VARYING(2) flat in vec3 gtx_normal_x;
-GTX_VARYING(3) flat in vec3 gtx_normal_y;
-GTX_VARYING(4) flat in vec3 gtx_normal_z;
-GTX_VARYING(5) flat in vec4 gtx_color;
-GTX_VARYING(6) flat in vec3 gtx_ray;
-
+/* The stock forward main of the shell: lit colour in sRGB bytes, from the same maps and by the same
+ * light as geotex_forward.frag. Follows geotex_shell_fragment.glsl. GTX_TWO_SIDED lights backs, too,
+ * GTX_COLORS says that there is a map of them, and GTX_MATERIALS is as in geotex_forward.frag. */
 layout(location = 0) out vec4 gtx_out_color;
 
 /* Light from the front on a unit normal; on a back, on what gtx_from_behind makes of it. */
@@ -39,7 +27,7 @@ vec3 gtx_shaded_to_srgb(vec3 root, float share)
 
 void main()
 {
-    vec3 place = vec3(clamp(gtx_at.xy, gtx_inset.xy, gtx_inset.zw), gtx_at.z);
+    vec3 place = gtx_place();
     float level = gtx_at.w;
     vec2 e = textureLod(gtx_normals, place, level).xy * 2.0 - 1.0;
     vec2 p = vec2(e.x + e.y, e.x - e.y) * 0.5;

@@ -15,6 +15,7 @@ layout(location = 5) in vec4 gtx_object_x;
 layout(location = 6) in vec4 gtx_object_y;
 layout(location = 7) in vec4 gtx_object_z;
 layout(location = 8) in vec4 gtx_tint;
+layout(location = 9) in uint gtx_instance;
 
 GTX_VARYING(0) out vec4 gtx_at;             /* place in the page, 0..1; page; mip level */
 GTX_VARYING(1) flat out vec4 gtx_inset;     /* the patch's part of the page: least, greatest */
@@ -23,6 +24,10 @@ GTX_VARYING(3) flat out vec3 gtx_normal_y;
 GTX_VARYING(4) flat out vec3 gtx_normal_z;
 GTX_VARYING(5) flat out vec4 gtx_color;     /* where no map gives colours, the 2.4th root of rgb */
 GTX_VARYING(6) flat out vec3 gtx_ray;       /* of sight; world space, unit */
+GTX_VARYING(7) out vec3 gtx_object;         /* the point in either space; what follows costs only */
+GTX_VARYING(8) out vec3 gtx_world;          /* where a main reads it */
+GTX_VARYING(9) flat out int gtx_patch_index;
+GTX_VARYING(10) flat out uint gtx_id;       /* of the instance */
 
 vec3 gtx_to_world(vec3 object)
 {
@@ -61,6 +66,10 @@ void main()
     gtx_normal_x = world_normals * x;
     gtx_normal_y = world_normals * cross(z, x);
     gtx_normal_z = world_normals * z;
+    gtx_object = object.xyz;
+    gtx_world = world;
+    gtx_patch_index = index;
+    gtx_id = gtx_instance;
     gtx_color = gtx_tint;
 #if !defined GTX_COLORS && !defined GTX_MATERIALS
     gtx_color.rgb = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));

@@ -1,4 +1,4 @@
-/* Drawing assets with OpenGL 3.3 core or later, beside the engine's own polygons.
+/* Drawing assets with OpenGL 3.3 core or OpenGL ES 3.0, or later, beside the engine's own polygons.
  *
  * The host owns the context, the framebuffer and the function loader; geotex links no GL. Every
  * draw writes true depth computed from the engine's own matrices, so patches and polygons drawn
@@ -10,6 +10,10 @@
  *   2D array) and samplers 0 on units 0..7, depth test on, depth func LESS (GREATER when reversed),
  *   depth mask on, cull face off, cull mode BACK, front face CCW, blend off, colour mask all on.
  * It does not touch the framebuffer binding, viewport, scissor, stencil or clip control.
+ *
+ * OpenGL ES is recognised by its version string; there is nothing to tell. It encodes what is
+ * written to an sRGB framebuffer, so bind another kind: colours are sRGB bytes already. Before 3.2
+ * GTX_VIEW_RESTORE_STATE takes blending and colour mask for the same at all draw buffers.
  *
  * Where the context has KHR_debug, every object carries a label and a draw is a debug group. */
 #ifndef GEOTEX_RENDER_H
@@ -98,6 +102,36 @@ typedef enum gtx_method {
     GTX_METHOD_SHELL = 3          /* polygons of a level of the shell, which the asset must have */
 } gtx_method;
 
+/* What a draw writes, besides depth: location, what. The programs of the forward pass are compiled
+ * with the renderer, those of another by the first draw in it; one of no instances will do. */
+typedef enum gtx_pass {
+    GTX_PASS_FORWARD = 0,         /* 0: lit colour, in sRGB bytes */
+    GTX_PASS_DEPTH = 1,           /* nothing, colour is masked: the same depth, bit for bit; for
+                                     shadow maps, whose height viewport_height then is */
+    GTX_PASS_ID = 2,              /* 0, unsigned integers (RGBA32UI, or RG32UI for the first two):
+                                     the instance's id, the patch, and the texel at the low corner
+                                     of the cell in it: x, y */
+    GTX_PASS_GBUFFER = 3          /* 0: albedo in sRGB bytes, alpha (RGBA8); 1: world-space normal
+                                     * 0.5 + 0.5 (RGB10_A2 or finer); 2: occlusion, roughness,
+                                     metallic, lit (RGBA8; 1, 1, 0, 1 without a material);
+                                     3: linear emission (R11F_G11F_B10F). Any may be left out */
+} gtx_pass;
+
+/* An engine's own fragment main, which finds the surface by a call and does as it likes with it. */
+typedef struct gtx_shading gtx_shading;
+
+/* `text` is GLSL that follows geotex_fragment.glsl, which says what there is to call; for shells it
+ * follows geotex_shell_fragment.glsl. geotex_material.glsl comes before. It has no #version, its
+ * samplers begin at unit 8, and it is not kept. The shading is of the renderer's allocator, freed by
+ * gtx_shading_destroy. Errors: ARGUMENT, MEMORY, SHADER (the renderer's log says why). */
+GTX_API gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
+                                      gtx_error *error);
+/* A NULL shading is fine. */
+GTX_API void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading);
+/* The name of its program that casts, or with GTX_METHOD_SHELL of the one that draws shells, to set
+ * uniforms of its own between draws. */
+GTX_API uint32_t gtx_shading_program(const gtx_shading *shading, gtx_method method);
+
 enum { /* gtx_view.flags */
     GTX_VIEW_REVERSED_Z = 1,          /* nearer is greater: depth func GREATER */
     GTX_VIEW_DEPTH_ZERO_TO_ONE = 2,   /* clip z in 0..1 (glClipControl), not -1..1 */
@@ -130,23 +164,28 @@ typedef struct gtx_view {
     uint32_t viewport_height;         /* pixels; 0 = unknown: level 0, unless `level` says another */
     float max_error;                  /* pixels; 0 = 0.5 */
     uint32_t level;                   /* 0 = by the error, n = level n - 1 or the coarsest there is */
-    uint32_t reserved[5];
+    gtx_pass pass;
+    const gtx_shading *shading;       /* in place of the forward pass's; not with PAPER */
+    uint32_t reserved[2];
 } gtx_view;
 
 /* A placed model. `transform` is affine and takes the asset's coordinates (relative to its anchor)
- * to the world; its linear part must be invertible. `tint` multiplies the colour; all 0 = white. */
+ * to the world; its linear part must be invertible. `tint` multiplies the colour; all 0 = white.
+ * `id` is what GTX_PASS_ID writes and a shading reads. */
 typedef struct gtx_instance {
     const gtx_model *model;
     float transform[16];
     float tint[4];
-    uint32_t reserved[4];
+    uint32_t id;
+    uint32_t reserved[3];
 } gtx_instance;
 
-/* Draws the instances into the bound framebuffer: colour (in sRGB bytes; location 0) and depth. A
- * model with materials or emission is shaded by metallic and roughness (glTF 2.0, appendix B),
+/* Draws the instances into the bound framebuffer: what view->pass says, and depth. In the forward
+ * pass a model with materials or emission is shaded by metallic-roughness (glTF 2.0, appendix B),
  * another by Lambert. One instanced draw for each run of instances of one model. Room for the most
  * instances so far is kept, of the renderer's allocator, until gtx_renderer_destroy.
- * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL, UNSUPPORTED (GTX_METHOD_SHELL, and an asset without). */
+ * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL, SHADER (a pass's first draw), UNSUPPORTED
+ * (GTX_METHOD_SHELL, and an asset without). */
 GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,
                             const gtx_instance *instances, uint32_t count, gtx_error *error);
 

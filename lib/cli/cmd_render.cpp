@@ -9,6 +9,7 @@ static const char *output, *depth_path;
 static gtx::StillOptions still_options;
 static uint32_t size[2] = {1024, 768};
 static uint32_t method;
+static bool gles;
 static const gtx_method methods[] = {GTX_METHOD_AUTO, GTX_METHOD_CAST, GTX_METHOD_SHELL,
                                      GTX_METHOD_PAPER};
 
@@ -24,6 +25,7 @@ static const option options[] = {
      "level of detail, or the coarsest there is; auto: by error [auto]", 0, 0},
     {"max-error", 0, OPTION_NUMBER, &still_options.max_error, "PIXELS",
      "how far a level may be from level 0 [0.5]", 1e-6, 1e6},
+    {"gles", 0, OPTION_FLAG, &gles, nullptr, "draw with OpenGL ES 3", 0, 0},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
 static const verb render = {
@@ -56,6 +58,7 @@ int cmd_render(int argc, char **argv)
     still_options.width = size[0];
     still_options.height = size[1];
     still_options.method = methods[method];
+    still_options.gles = gles;
 
     std::string current = files[0];
     return gtx::guarded(current, [&] {

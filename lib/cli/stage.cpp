@@ -108,7 +108,7 @@ void Stage::draw(const gtx_view &view, Look look)
 {
     const Props &p = props(look);
     gl.ClearColor(0.92f, 0.93f, 0.95f, 1);
-    gl.ClearDepth(1);
+    gl.ClearDepthf(1);
     gl.DepthMask(GL_TRUE);
     gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     gl.Enable(GL_DEPTH_TEST);

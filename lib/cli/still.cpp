@@ -13,10 +13,10 @@ namespace gtx {
 /* A context that lives as long as its picture. */
 struct Offscreen {
     gtx_offscreen *context = nullptr;
-    Offscreen()
+    explicit Offscreen(bool gles)
     {
         gtx_error error;
-        check(gtx_offscreen_create(&context, &error), error);
+        check((gles ? gtx_offscreen_create_es : gtx_offscreen_create)(&context, &error), error);
     }
     Offscreen(const Offscreen &) = delete;
     ~Offscreen() { gtx_offscreen_destroy(context); }
@@ -24,7 +24,7 @@ struct Offscreen {
 
 Still draw_still(const Scene &scene, const StillOptions &options)
 {
-    Offscreen offscreen;
+    Offscreen offscreen(options.gles);
     Stage stage(gtx_offscreen_load);
     gtx_framebuffer target; /* dies with the context */
     gtx_error error;

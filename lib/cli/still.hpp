@@ -13,6 +13,7 @@ struct StillOptions {
     gtx_method method = GTX_METHOD_AUTO;
     uint32_t level = 0;               /* of detail; as gtx_view has it, like the error */
     double max_error = 0;
+    bool gles = false;                /* by OpenGL ES */
 };
 
 struct Still {

@@ -68,7 +68,7 @@ static gtx_result draw_shadow(const gtx_host_gl *gl, shadow *s, const float ligh
     gtx_matrix_multiply(projection, view, s->clip);
     gl->Enable(GL_DEPTH_TEST);
     gl->DepthMask(GL_TRUE);
-    gl->ClearDepth(1);
+    gl->ClearDepthf(1);
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     result = draw(view, projection, user, error);
     gtx_framebuffer_read_depth(gl, &target, s->depth);
@@ -129,7 +129,7 @@ void gtx_backdrop_draw(const gtx_host_gl *gl, const gtx_polygon_program *program
     static const float no_light[3] = {0, 1, 0};
     gl->DepthMask(GL_TRUE);
     gl->ClearColor(horizon[0] / 255, horizon[1] / 255, horizon[2] / 255, 1);
-    gl->ClearDepth(1);
+    gl->ClearDepthf(1);
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     gl->Disable(GL_DEPTH_TEST);
     gtx_polygons_draw(gl, program, &backdrop->sky, NULL, identity, identity, no_light, 1);

@@ -91,3 +91,12 @@ float gtx_camera_distance(const float projection[16], int zero_to_one, float dep
     /* z = (p10 e + p14) / (p11 e + p15) with e the eye's z, solved for -e. */
     return (projection[14] - z * projection[15]) / (projection[10] - z * projection[11]);
 }
+
+void gtx_matrix_stand(const float low[3], const float high[3], const float foot[3], float degrees,
+                      float height, float out[16])
+{
+    float center[16], there[16];
+    gtx_matrix_place(-(low[0] + high[0]) / 2, -low[1], -(low[2] + high[2]) / 2, 0, 1, center);
+    gtx_matrix_place(foot[0], foot[1], foot[2], degrees, height / (high[1] - low[1]), there);
+    gtx_matrix_multiply(there, center, out);
+}

@@ -33,6 +33,9 @@ float gtx_camera_distance(const float projection[16], int zero_to_one, float dep
  * a uniform scale. */
 void gtx_matrix_multiply(const float a[16], const float b[16], float out[16]);
 void gtx_matrix_place(float x, float y, float z, float degrees, float scale, float out[16]);
+/* Stands what fills the box low..high on `foot`, turned around +Y and scaled to a height. */
+void gtx_matrix_stand(const float low[3], const float high[3], const float foot[3], float degrees,
+                      float height, float out[16]);
 
 #ifdef __cplusplus
 }

@@ -21,7 +21,8 @@ void gtx_framebuffer_destroy(const gtx_host_gl *gl, gtx_framebuffer *framebuffer
 /* Binds it and sets the viewport. */
 void gtx_framebuffer_bind(const gtx_host_gl *gl, const gtx_framebuffer *framebuffer);
 
-/* width * height texels, the top row first: 4 bytes of colour, or one float of window depth. */
+/* width * height texels, the top row first: 4 bytes of colour, or one float of window depth
+ * (which OpenGL ES reads with NV_read_depth alone). */
 void gtx_framebuffer_read_color(const gtx_host_gl *gl, const gtx_framebuffer *framebuffer,
                                 uint8_t *pixels);
 void gtx_framebuffer_read_depth(const gtx_host_gl *gl, const gtx_framebuffer *framebuffer,

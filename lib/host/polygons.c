@@ -3,26 +3,27 @@
 
 #include "base/error.h"
 #include "host/camera.h"
+#include "host/program.h"
 
 #include <stddef.h>
 
 static const char vertex_text[] =
-    "#version 330 core\n"
     "layout(location = 0) in vec3 position;\n"
     "layout(location = 1) in vec3 normal;\n"
     "layout(location = 2) in vec4 color;\n"
     "uniform mat4 model, view_projection;\n"
-    "out vec3 world_normal;\n"
+    "out vec3 world_point, world_normal;\n"
     "out vec4 srgb;\n"
     "void main()\n"
     "{\n"
     "    world_normal = transpose(inverse(mat3(model))) * normal;\n"
     "    srgb = color;\n"
-    "    gl_Position = view_projection * (model * vec4(position, 1.0));\n"
+    "    vec4 point = model * vec4(position, 1.0);\n"
+    "    world_point = point.xyz;\n"
+    "    gl_Position = view_projection * point;\n"
     "}\n";
 
 static const char fragment_text[] =
-    "#version 330 core\n"
     "uniform vec3 light;\n"
     "uniform float ambient;\n"
     "in vec3 world_normal;\n"
@@ -83,28 +84,19 @@ void gtx_polygons_destroy(const gtx_host_gl *gl, gtx_polygons *polygons)
     *polygons = (gtx_polygons){0};
 }
 
-static void attach(const gtx_host_gl *gl, GLuint program, GLenum stage, const char *text)
-{
-    const GLuint shader = gl->CreateShader(stage);
-    gl->ShaderSource(shader, 1, &text, NULL);
-    gl->CompileShader(shader);
-    gl->AttachShader(program, shader);
-    gl->DeleteShader(shader);
-}
-
 gtx_result gtx_polygon_program_create(const gtx_host_gl *gl, gtx_polygon_program *out,
                                       gtx_error *error)
 {
-    GLint linked = 0;
-    const GLuint program = gl->CreateProgram();
-    attach(gl, program, GL_VERTEX_SHADER, vertex_text);
-    attach(gl, program, GL_FRAGMENT_SHADER, fragment_text);
-    gl->LinkProgram(program);
-    gl->GetProgramiv(program, GL_LINK_STATUS, &linked);
-    if (!linked) {
-        gl->DeleteProgram(program);
-        return gtx_fail(error, GTX_ERROR_SHADER, "the polygon shader did not link");
-    }
+    return gtx_polygon_program_create_with(gl, fragment_text, out, error);
+}
+
+gtx_result gtx_polygon_program_create_with(const gtx_host_gl *gl, const char *fragment,
+                                           gtx_polygon_program *out, gtx_error *error)
+{
+    GLuint program;
+    gtx_result result = gtx_host_program_create(gl, vertex_text, fragment, &program, error);
+    if (result)
+        return result;
     out->program = program;
     out->model = gl->GetUniformLocation(program, "model");
     out->view_projection = gl->GetUniformLocation(program, "view_projection");

@@ -35,6 +35,10 @@ typedef struct gtx_polygon_program {
 /* Errors: SHADER. */
 gtx_result gtx_polygon_program_create(const gtx_host_gl *gl, gtx_polygon_program *out,
                                       gtx_error *error);
+/* The same with a fragment shader of the caller's, without #version: in vec3 world_point,
+ * world_normal (not normalised), in vec4 srgb (0..1). */
+gtx_result gtx_polygon_program_create_with(const gtx_host_gl *gl, const char *fragment,
+                                           gtx_polygon_program *out, gtx_error *error);
 void gtx_polygon_program_destroy(const gtx_host_gl *gl, gtx_polygon_program *program);
 
 /* Draws with the state as it is (depth test, culling), by the shading of gtx_draw: Lambert with

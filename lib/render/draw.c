@@ -19,11 +19,16 @@ static gtx_result check(const gtx_renderer *renderer, const gtx_view *view,
         GTX_VIEW_REVERSED_Z | GTX_VIEW_DEPTH_ZERO_TO_ONE | GTX_VIEW_RESTORE_STATE;
     if (!renderer || !view || (count && !instances))
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a draw needs a renderer, a view and instances");
-    if (view->flags & ~flags || (unsigned)view->method > GTX_METHOD_SHELL)
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "the view asks for an unknown flag or method");
-    gtx_result result = gtx_check_reserved(view->reserved, 5, error);
+    if (view->flags & ~flags || (unsigned)view->method > GTX_METHOD_SHELL ||
+        (unsigned)view->pass > GTX_PASS_GBUFFER)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "the view asks for an unknown flag, method or pass");
+    if (view->shading && (view->pass != GTX_PASS_FORWARD || view->method == GTX_METHOD_PAPER))
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "a shading takes the forward pass's place, and not by the paper's search");
+    gtx_result result = gtx_check_reserved(view->reserved, 2, error);
     for (uint32_t i = 0; !result && i < count; ++i) {
-        result = gtx_check_reserved(instances[i].reserved, 4, error);
+        result = gtx_check_reserved(instances[i].reserved, 3, error);
         if (!result && (!instances[i].model || !instances[i].model->ready))
             result = gtx_fail(error, GTX_ERROR_ARGUMENT,
                               "instance %u has no model, or one that is not uploaded", i);
@@ -48,14 +53,55 @@ static gtx_result reserve(gtx_renderer *renderer, uint32_t count, gtx_error *err
     return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for %u instances", count);
 }
 
-/* What one draw holds on to: the frame, and the program in use. */
+/* What one draw holds on to: the frame, what is asked for, and the program in use. */
 typedef struct pass {
     const gtx_frame *frame;
-    gtx_method method;
-    const gtx_program *program;
+    const gtx_view *view;
+    const gtx_program *current;
 } pass;
 
-static void begin(const gtx_gl *gl, const gtx_frame *frame)
+/* The program of a pass relative to the method's first. */
+static const int pass_programs[] = {[GTX_PASS_FORWARD] = 0,
+                                    [GTX_PASS_DEPTH] = PROGRAM_CAST_DEPTH,
+                                    [GTX_PASS_ID] = PROGRAM_CAST_ID,
+                                    [GTX_PASS_GBUFFER] = PROGRAM_CAST_GBUFFER};
+
+/* Compiles what the view is the first to need. */
+static gtx_result need_programs(gtx_renderer *renderer, const gtx_view *view, gtx_error *error)
+{
+    const int offset = pass_programs[view->pass];
+    const int method = view->method == GTX_METHOD_PAPER ? PROGRAM_PAPER : PROGRAM_CAST;
+    gtx_result result = gtx_program_need(renderer, method + offset, error);
+    if (!result && method == PROGRAM_CAST)
+        result = gtx_program_need(renderer, PROGRAM_SHELL + offset, error);
+    return result;
+}
+
+static bool shades(const gtx_model *model)
+{
+    return model->has_material || model->emission_scale > 0;
+}
+
+static const gtx_program *program_of(const gtx_renderer *renderer, const gtx_view *view,
+                                     const gtx_model *model, bool shell, bool two_sided)
+{
+    if (view->shading)
+        return shell ? &view->shading->shell : &view->shading->cast;
+    int kind = shell                              ? PROGRAM_SHELL
+               : view->method == GTX_METHOD_PAPER ? PROGRAM_PAPER
+                                                  : PROGRAM_CAST;
+    if (view->pass != GTX_PASS_FORWARD)
+        kind += pass_programs[view->pass];
+    else if (shades(model))
+        ++kind;
+    else if (shell && model->has_color)
+        kind = two_sided ? PROGRAM_SHELL_COLOR_TWO_SIDED : PROGRAM_SHELL_COLOR;
+    else if (two_sided)
+        kind = PROGRAM_SHELL_TWO_SIDED;
+    return &renderer->programs[kind];
+}
+
+static void begin(const gtx_gl *gl, const gtx_frame *frame, gl_bool color)
 {
     for (gl_uint i = 0; i < UNIT_COUNT; ++i)
         gl->BindSampler(i, 0);
@@ -64,7 +110,7 @@ static void begin(const gtx_gl *gl, const gtx_frame *frame)
     gl->DepthMask(GL_TRUE);
     gl->CullFace(GL_BACK);
     gl->Disable(GL_BLEND);
-    gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    gl->ColorMask(color, color, color, color);
 }
 
 static void bind_textures(const gtx_gl *gl, const gtx_model *model)
@@ -85,7 +131,12 @@ static const void *at(size_t offset)
 static void set_attributes(const gtx_renderer *renderer, const run *r, bool shell)
 {
     const gtx_gl *gl = &renderer->gl;
-    enum { FIRST_INSTANCE_ATTRIBUTE = 2, INSTANCE_ATTRIBUTES = sizeof(gtx_instance_data) / 16 };
+    enum {
+        FIRST_INSTANCE_ATTRIBUTE = 2,
+        INSTANCE_ATTRIBUTES = offsetof(gtx_instance_data, id) / 16,
+        ID_ATTRIBUTE = FIRST_INSTANCE_ATTRIBUTE + INSTANCE_ATTRIBUTES
+    };
+    const size_t base = r->first * sizeof(gtx_instance_data);
     if (shell) {
         gtx_shells_bind(gl, &r->model->shells, r->way - 1u);
     } else {
@@ -101,33 +152,31 @@ static void set_attributes(const gtx_renderer *renderer, const run *r, bool shel
     for (gl_uint i = 0; i < INSTANCE_ATTRIBUTES; ++i) {
         const gl_uint index = FIRST_INSTANCE_ATTRIBUTE + i;
         gl->VertexAttribPointer(index, 4, GL_FLOAT, GL_FALSE, sizeof(gtx_instance_data),
-                                at(r->first * sizeof(gtx_instance_data) + 16 * (size_t)i));
+                                at(base + 16 * (size_t)i));
         gl->VertexAttribDivisor(index, 1);
         gl->EnableVertexAttribArray(index);
     }
+    gl->VertexAttribIPointer(ID_ATTRIBUTE, 1, GL_UNSIGNED_INT, sizeof(gtx_instance_data),
+                             at(base + offsetof(gtx_instance_data, id)));
+    gl->VertexAttribDivisor(ID_ATTRIBUTE, 1);
+    gl->EnableVertexAttribArray(ID_ATTRIBUTE);
 }
 
 /* Takes a program into use, with the model's uniforms. */
-static void use_program(const gtx_renderer *renderer, pass *p, int kind, const gtx_model *model)
+static void use_program(const gtx_gl *gl, pass *p, const gtx_program *program,
+                        const gtx_model *model)
 {
-    const gtx_gl *gl = &renderer->gl;
-    const gtx_program *program = &renderer->programs[kind];
     const float maps[4] = {(float)(model->mip_count - 1), model->has_color ? 1.0f : 0.0f,
                            model->emission_scale, model->has_material ? 1.0f : 0.0f};
-    if (program != p->program) {
+    if (program != p->current) {
         gl->UseProgram(program->object);
         gl->UniformMatrix4fv(program->clip_from_world, 1, GL_FALSE, p->frame->clip_from_world);
         gl->Uniform4fv(program->depth, 1, p->frame->depth);
         gl->Uniform4fv(program->light, 1, p->frame->light);
         gl->Uniform4fv(program->detail, 1, p->frame->detail);
-        p->program = program;
+        p->current = program;
     }
     gl->Uniform4fv(program->maps, 1, maps);
-}
-
-static bool shades(const gtx_model *model)
-{
-    return model->has_material || model->emission_scale > 0;
 }
 
 /* Casts the patches of a run, or only those that are edited. */
@@ -135,10 +184,9 @@ static void cast_run(const gtx_renderer *renderer, pass *p, const run *r, bool e
 {
     const gtx_gl *gl = &renderer->gl;
     const gtx_model *model = r->model;
-    const int plain = p->method == GTX_METHOD_PAPER ? PROGRAM_PAPER : PROGRAM_CAST;
     if (!model->index_count) /* no cell at all */
         return;
-    use_program(renderer, p, plain + shades(model), model);
+    use_program(gl, p, program_of(renderer, p->view, model, false, false), model);
     set_attributes(renderer, r, false);
     /* Back faces are wanted, so front faces are named as what culling takes away. */
     gl->Enable(GL_CULL_FACE);
@@ -160,15 +208,13 @@ static void draw_shell(const gtx_renderer *renderer, pass *p, const run *r)
     const gtx_gl *gl = &renderer->gl;
     const gtx_shells *shells = &r->model->shells;
     const uint32_t level = r->way - 1u;
-    const int plain = r->model->has_color ? PROGRAM_SHELL_COLOR : PROGRAM_SHELL;
     set_attributes(renderer, r, true);
     gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
     for (int two_sided = 0; two_sided < 2; ++two_sided) {
         if (shells->one_sided == (two_sided ? shells->patch_count : 0))
             continue;
-        use_program(renderer, p, shades(r->model) ? PROGRAM_SHELL_MATERIAL : plain + two_sided,
-                    r->model);
-        gl->Uniform4fv(p->program->shell, 1, shells->levels[level].place);
+        use_program(gl, p, program_of(renderer, p->view, r->model, true, two_sided), r->model);
+        gl->Uniform4fv(p->current->shell, 1, shells->levels[level].place);
         (two_sided ? gl->Disable : gl->Enable)(GL_CULL_FACE);
         gtx_shells_draw(gl, shells, level, two_sided, r->count);
     }
@@ -206,6 +252,7 @@ gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_inst
 {
     gtx_frame frame;
     gtx_state state;
+    pass p = {.frame = &frame, .view = view};
     gtx_result result = check(renderer, view, instances, count, error);
     if (!result)
         result = gtx_frame_from_view(view, &frame, error);
@@ -218,17 +265,18 @@ gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_inst
             result = gtx_choose_way(renderer, view, &frame, instances[i].model,
                                     &renderer->instances[i], &renderer->ways[i], error);
     }
+    if (!result)
+        result = need_programs(renderer, view, error);
     if (result)
         return result;
 
     const gtx_gl *gl = &renderer->gl;
-    pass p = {&frame, view->method, NULL};
     const bool restore = view->flags & GTX_VIEW_RESTORE_STATE;
     if (restore)
         gtx_state_read(gl, &state);
     if (gl->PushDebugGroup)
         gl->PushDebugGroup(GL_DEBUG_SOURCE_THIRD_PARTY, 0, -1, "geotex draw");
-    begin(gl, &frame);
+    begin(gl, &frame, view->pass != GTX_PASS_DEPTH);
     gl->BindVertexArray(renderer->vertex_array);
     gl->BindBuffer(GL_ARRAY_BUFFER, renderer->instance_buffer);
     gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(count * sizeof *renderer->instances),

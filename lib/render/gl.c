@@ -3,43 +3,70 @@
 
 #include "base/error.h"
 
-#include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
-/* A loader may answer for functions that the context does not have: the context is asked. */
-static bool has_debug(const gtx_gl *gl, gl_int major, gl_int minor)
+static bool has_extension(const gtx_gl *gl, const char *wanted)
 {
     gl_int count = 0;
-    if (major > 4 || (major == 4 && minor >= 3))
-        return true;
     gl->GetIntegerv(GL_NUM_EXTENSIONS, &count);
     for (gl_int i = 0; i < count; ++i) {
         const char *name = (const char *)gl->GetStringi(GL_EXTENSIONS, (gl_uint)i);
-        if (name && !strcmp(name, "GL_KHR_debug"))
+        if (name && !strcmp(name, wanted))
             return true;
     }
     return false;
 }
 
-gtx_result gtx_gl_init(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *error)
+static gtx_result load_required(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *error)
 {
 #define LOAD(result, name, parameters)                                                             \
     gl->name = (result(GTX_GL_CALL *) parameters)desc->load("gl" #name, desc->load_user);          \
     if (!gl->name)                                                                                 \
         return gtx_fail(error, GTX_ERROR_GL, "the OpenGL loader does not know gl" #name);
     GTX_GL(LOAD)
+    return GTX_OK;
+}
+
+static gtx_result load_indexed(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *error)
+{
+    GTX_GL_INDEXED(LOAD)
 #undef LOAD
+    return GTX_OK;
+}
+
+/* OpenGL ES names the functions of an extension after it. */
+static void load_debug(gtx_gl *gl, const gtx_renderer_desc *desc, const char *suffix)
+{
+    char text[64];
+#define LOAD(result, name, parameters)                                                             \
+    snprintf(text, sizeof text, "gl" #name "%s", suffix);                                          \
+    gl->name = (result(GTX_GL_CALL *) parameters)desc->load(text, desc->load_user);
+    GTX_GL_DEBUG(LOAD)
+#undef LOAD
+}
+
+/* A loader may answer for functions that the context does not have: the context is asked. */
+gtx_result gtx_gl_init(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *error)
+{
+    gtx_result result = load_required(gl, desc, error);
+    if (result)
+        return result;
+    const char *version = (const char *)gl->GetString(GL_VERSION);
     gl_int major = 0, minor = 0;
+    gl->es = version && !strncmp(version, "OpenGL ES", 9);
     gl->GetIntegerv(GL_MAJOR_VERSION, &major);
     gl->GetIntegerv(GL_MINOR_VERSION, &minor);
-    if (major < 3 || (major == 3 && minor < 3))
-        return gtx_fail(error, GTX_ERROR_GL, "OpenGL 3.3 is needed and the context is %d.%d", major,
+    const gl_int have = 10 * major + minor;
+    if (have < (gl->es ? 30 : 33))
+        return gtx_fail(error, GTX_ERROR_GL, "OpenGL 3.3 or OpenGL ES 3.0 is needed and the context"
+                                             " is %s %d.%d", gl->es ? "OpenGL ES" : "OpenGL", major,
                         minor);
-    if (has_debug(gl, major, minor)) {
-#define LOAD_OPTIONAL(result, name, parameters)                                                    \
-    gl->name = (result(GTX_GL_CALL *) parameters)desc->load("gl" #name, desc->load_user);
-        GTX_GL_OPTIONAL(LOAD_OPTIONAL)
-#undef LOAD_OPTIONAL
-    }
-    return GTX_OK;
+    if (!gl->es || have >= 32)
+        result = load_indexed(gl, desc, error);
+    if (have >= (gl->es ? 32 : 43))
+        load_debug(gl, desc, "");
+    else if (has_extension(gl, "GL_KHR_debug"))
+        load_debug(gl, desc, gl->es ? "KHR" : "");
+    return result;
 }

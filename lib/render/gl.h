@@ -1,9 +1,10 @@
-/* The part of OpenGL 3.3 core that the renderer uses: types, values and a table of functions that
- * the host's loader fills. No GL header is needed and no GL symbol is linked. */
+/* The part of OpenGL 3.3 core and OpenGL ES 3.0 that the renderer uses: types, values and a table
+ * of functions that the host's loader fills. No GL header is needed and no GL symbol is linked. */
 #ifndef GTX_RENDER_GL_H
 #define GTX_RENDER_GL_H
 
 #include <geotex/render.h>
+#include <stdbool.h>
 
 #if defined(_WIN32) && !defined(_WIN64)
 #define GTX_GL_CALL __stdcall
@@ -120,7 +121,6 @@ enum {
     X(void, BufferSubData,                                                                         \
       (gl_enum target, gl_pointer offset, gl_pointer size, const void *data))                      \
     X(void, ColorMask, (gl_bool r, gl_bool g, gl_bool b, gl_bool a))                               \
-    X(void, ColorMaski, (gl_uint index, gl_bool r, gl_bool g, gl_bool b, gl_bool a))               \
     X(void, CompileShader, (gl_uint shader))                                                       \
     X(gl_uint, CreateProgram, (void))                                                              \
     X(gl_uint, CreateShader, (gl_enum stage))                                                      \
@@ -133,17 +133,14 @@ enum {
     X(void, DepthFunc, (gl_enum func))                                                             \
     X(void, DepthMask, (gl_bool mask))                                                             \
     X(void, Disable, (gl_enum cap))                                                                \
-    X(void, Disablei, (gl_enum cap, gl_uint index))                                                \
     X(void, DrawElementsInstanced,                                                                 \
       (gl_enum mode, gl_size count, gl_enum type, const void *indices, gl_size instances))         \
     X(void, Enable, (gl_enum cap))                                                                 \
-    X(void, Enablei, (gl_enum cap, gl_uint index))                                                 \
     X(void, EnableVertexAttribArray, (gl_uint index))                                              \
     X(void, FrontFace, (gl_enum mode))                                                             \
     X(void, GenBuffers, (gl_size count, gl_uint *buffers))                                         \
     X(void, GenTextures, (gl_size count, gl_uint *textures))                                       \
     X(void, GenVertexArrays, (gl_size count, gl_uint *arrays))                                     \
-    X(void, GetBooleani_v, (gl_enum name, gl_uint index, gl_bool *values))                         \
     X(void, GetBooleanv, (gl_enum name, gl_bool *values))                                          \
     X(gl_enum, GetError, (void))                                                                   \
     X(void, GetIntegerv, (gl_enum name, gl_int *values))                                           \
@@ -155,7 +152,6 @@ enum {
     X(void, GetShaderiv, (gl_uint shader, gl_enum name, gl_int *value))                            \
     X(gl_int, GetUniformLocation, (gl_uint program, const char *name))                             \
     X(gl_bool, IsEnabled, (gl_enum cap))                                                           \
-    X(gl_bool, IsEnabledi, (gl_enum cap, gl_uint index))                                           \
     X(void, LinkProgram, (gl_uint program))                                                        \
     X(void, PixelStorei, (gl_enum name, gl_int value))                                             \
     X(void, ShaderSource,                                                                          \
@@ -185,8 +181,16 @@ enum {
       (gl_uint index, gl_int size, gl_enum type, gl_bool normalized, gl_size stride,               \
        const void *offset))
 
-/* Names for debuggers (KHR_debug, OpenGL 4.3): NULL where the context has none. */
-#define GTX_GL_OPTIONAL(X)                                                                         \
+/* State of one draw buffer: NULL on OpenGL ES before 3.2, where all draw buffers share it. */
+#define GTX_GL_INDEXED(X)                                                                          \
+    X(void, ColorMaski, (gl_uint index, gl_bool r, gl_bool g, gl_bool b, gl_bool a))               \
+    X(void, Disablei, (gl_enum cap, gl_uint index))                                                \
+    X(void, Enablei, (gl_enum cap, gl_uint index))                                                 \
+    X(void, GetBooleani_v, (gl_enum name, gl_uint index, gl_bool *values))                         \
+    X(gl_bool, IsEnabledi, (gl_enum cap, gl_uint index))
+
+/* Names for debuggers (KHR_debug, OpenGL 4.3, OpenGL ES 3.2): NULL where the context has none. */
+#define GTX_GL_DEBUG(X)                                                                         \
     X(void, ObjectLabel, (gl_enum kind, gl_uint object, gl_size length, const char *label))        \
     X(void, PopDebugGroup, (void))                                                                 \
     X(void, PushDebugGroup, (gl_enum source, gl_uint id, gl_size length, const char *message))
@@ -194,8 +198,10 @@ enum {
 typedef struct gtx_gl {
 #define GTX_GL_FIELD(result, name, parameters) result(GTX_GL_CALL *name) parameters;
     GTX_GL(GTX_GL_FIELD)
-    GTX_GL_OPTIONAL(GTX_GL_FIELD)
+    GTX_GL_INDEXED(GTX_GL_FIELD)
+    GTX_GL_DEBUG(GTX_GL_FIELD)
 #undef GTX_GL_FIELD
+    bool es;                  /* OpenGL ES */
 } gtx_gl;
 
 /* Labels an object, where the context takes labels. */
@@ -205,7 +211,7 @@ static inline void gtx_gl_label(const gtx_gl *gl, gl_enum kind, gl_uint object, 
         gl->ObjectLabel(kind, object, -1, label);
 }
 
-/* Errors: GL, which names the first missing function, or the version below 3.3. */
+/* Errors: GL, which names the first missing function, or the version below 3.3 (OpenGL ES: 3.0). */
 gtx_result gtx_gl_init(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *error);
 
 #endif

@@ -1,53 +1,68 @@
 /* Programs: shader files put together in order, compiled and linked. */
 #include "render/renderer.h"
 
+#include "base/alloc.h"
 #include "base/error.h"
 #include "render/shaders.h"
 
 #include <string.h>
 
-enum { MAX_PARTS = 8, MAX_LOG = 2048 };
+enum { MAX_PARTS = 5, MAX_TEXTS = 16, MAX_LOG = 2048 };
 
-#define VERSION "#version 330 core\n"
-static const char *const heads[PROGRAM_COUNT] = {
-    [PROGRAM_CAST] = VERSION,
-    [PROGRAM_CAST_MATERIAL] = VERSION "#define GTX_MATERIALS\n",
-    [PROGRAM_PAPER] = VERSION,
-    [PROGRAM_PAPER_MATERIAL] = VERSION "#define GTX_MATERIALS\n",
-    [PROGRAM_SHELL] = VERSION,
-    [PROGRAM_SHELL_TWO_SIDED] = VERSION "#define GTX_TWO_SIDED\n",
-    [PROGRAM_SHELL_COLOR] = VERSION "#define GTX_COLORS\n",
-    [PROGRAM_SHELL_COLOR_TWO_SIDED] = VERSION "#define GTX_COLORS\n#define GTX_TWO_SIDED\n",
-    [PROGRAM_SHELL_MATERIAL] = VERSION "#define GTX_MATERIALS\n",
+/* What a program consists of: between #version and the parts come its defines and, in either stage,
+ * the files that all share. */
+typedef struct recipe {
+    const char *vertex, *defines, *parts[MAX_PARTS], *label;
+} recipe;
+
+#define PROXY "geotex_proxy.vert"
+#define MATERIALS "#define GTX_MATERIALS\n"
+#define CAST "geotex_cast.glsl", "geotex_fragment.glsl"
+#define PAPER "geotex_paper.glsl", "geotex_fragment.glsl"
+#define POLYGONS "geotex_shell.vert"
+#define TWO_SIDED "#define GTX_TWO_SIDED\n"
+#define COLORS "#define GTX_COLORS\n"
+#define SHELL "geotex_shell_fragment.glsl"
+
+static const recipe recipes[PROGRAM_COUNT] = {
+    [PROGRAM_CAST] = {PROXY, "", {CAST, "geotex_forward.frag"}, "geotex cast"},
+    [PROGRAM_CAST_MATERIAL] = {PROXY, MATERIALS,
+                               {"geotex_material.glsl", CAST, "geotex_forward.frag"},
+                               "geotex cast, materials"},
+    [PROGRAM_CAST_DEPTH] = {PROXY, "", {CAST, "geotex_depth.frag"}, "geotex cast, depth"},
+    [PROGRAM_CAST_ID] = {PROXY, "", {CAST, "geotex_id.frag"}, "geotex cast, ids"},
+    [PROGRAM_CAST_GBUFFER] = {PROXY, MATERIALS,
+                              {"geotex_material.glsl", CAST, "geotex_gbuffer.frag"},
+                              "geotex cast, g-buffer"},
+    [PROGRAM_PAPER] = {PROXY, "", {PAPER, "geotex_forward.frag"}, "geotex paper"},
+    [PROGRAM_PAPER_MATERIAL] = {PROXY, MATERIALS,
+                                {"geotex_material.glsl", PAPER, "geotex_forward.frag"},
+                                "geotex paper, materials"},
+    [PROGRAM_PAPER_DEPTH] = {PROXY, "", {PAPER, "geotex_depth.frag"}, "geotex paper, depth"},
+    [PROGRAM_PAPER_ID] = {PROXY, "", {PAPER, "geotex_id.frag"}, "geotex paper, ids"},
+    [PROGRAM_PAPER_GBUFFER] = {PROXY, MATERIALS,
+                               {"geotex_material.glsl", PAPER, "geotex_gbuffer.frag"},
+                               "geotex paper, g-buffer"},
+    [PROGRAM_SHELL] = {POLYGONS, "", {SHELL, "geotex_shell.frag"}, "geotex shell"},
+    [PROGRAM_SHELL_MATERIAL] = {POLYGONS, MATERIALS,
+                                {"geotex_material.glsl", SHELL, "geotex_shell.frag"},
+                                "geotex shell, materials"},
+    [PROGRAM_SHELL_DEPTH] = {POLYGONS, "", {SHELL, "geotex_depth.frag"}, "geotex shell, depth"},
+    [PROGRAM_SHELL_ID] = {POLYGONS, "", {SHELL, "geotex_id.frag"}, "geotex shell, ids"},
+    [PROGRAM_SHELL_GBUFFER] = {POLYGONS, MATERIALS,
+                               {"geotex_material.glsl", SHELL, "geotex_gbuffer.frag"},
+                               "geotex shell, g-buffer"},
+    [PROGRAM_SHELL_TWO_SIDED] = {POLYGONS, TWO_SIDED, {SHELL, "geotex_shell.frag"},
+                                 "geotex shell, two-sided"},
+    [PROGRAM_SHELL_COLOR] = {POLYGONS, COLORS, {SHELL, "geotex_shell.frag"},
+                             "geotex shell, colors"},
+    [PROGRAM_SHELL_COLOR_TWO_SIDED] = {POLYGONS, COLORS TWO_SIDED, {SHELL, "geotex_shell.frag"},
+                                       "geotex shell, colors, two-sided"},
 };
-
-static const char *const vertex_parts[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
-                                           "geotex_view.glsl", "geotex_proxy.vert", NULL};
-static const char *const shell_vertex_parts[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
-                                                 "geotex_view.glsl", "geotex_shell.vert", NULL};
-
-#define SHELL_PARTS                                                                                \
-    "geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl", "geotex_surface.glsl",         \
-        "geotex_shell.frag", NULL
-static const char *const fragment_parts[PROGRAM_COUNT][MAX_PARTS] = {
-    [PROGRAM_CAST] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
-                      "geotex_surface.glsl", "geotex_cast.glsl", "geotex_forward.frag", NULL},
-    [PROGRAM_CAST_MATERIAL] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
-                               "geotex_surface.glsl", "geotex_material.glsl", "geotex_cast.glsl",
-                               "geotex_forward.frag", NULL},
-    [PROGRAM_PAPER] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
-                       "geotex_surface.glsl", "geotex_paper.glsl", "geotex_forward.frag", NULL},
-    [PROGRAM_PAPER_MATERIAL] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
-                                "geotex_surface.glsl", "geotex_material.glsl",
-                                "geotex_paper.glsl", "geotex_forward.frag", NULL},
-    [PROGRAM_SHELL] = {SHELL_PARTS},
-    [PROGRAM_SHELL_TWO_SIDED] = {SHELL_PARTS},
-    [PROGRAM_SHELL_COLOR] = {SHELL_PARTS},
-    [PROGRAM_SHELL_COLOR_TWO_SIDED] = {SHELL_PARTS},
-    [PROGRAM_SHELL_MATERIAL] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
-                                "geotex_surface.glsl", "geotex_material.glsl",
-                                "geotex_shell.frag", NULL},
-};
+static const recipe own_cast = {PROXY, MATERIALS, {"geotex_material.glsl", CAST},
+                                "geotex cast, own"};
+static const recipe own_shell = {POLYGONS, MATERIALS, {"geotex_material.glsl", SHELL},
+                                 "geotex shell, own"};
 
 const char *gtx_shader_source(const char *name)
 {
@@ -57,18 +72,54 @@ const char *gtx_shader_source(const char *name)
     return NULL;
 }
 
+/* The texts of a shader, in order. */
+typedef struct source {
+    const char *texts[MAX_TEXTS];
+    gl_size count;
+} source;
+
+static void add(source *s, const char *text)
+{
+    s->texts[s->count++] = text;
+}
+
+static source begin(bool es, const recipe *r)
+{
+    source s = {.count = 0};
+    add(&s, es ? "#version 300 es\n" : "#version 330 core\n");
+    add(&s, r->defines);
+    add(&s, gtx_shader_source("geotex_dialect.glsl"));
+    add(&s, gtx_shader_source("geotex_sheet.glsl"));
+    add(&s, gtx_shader_source("geotex_view.glsl"));
+    return s;
+}
+
+static source vertex_source(bool es, const recipe *r)
+{
+    source s = begin(es, r);
+    add(&s, gtx_shader_source(r->vertex));
+    return s;
+}
+
+/* `text` ends the shader if it is not NULL. */
+static source fragment_source(bool es, const recipe *r, const char *text)
+{
+    source s = begin(es, r);
+    add(&s, gtx_shader_source("geotex_surface.glsl"));
+    for (int i = 0; i < MAX_PARTS && r->parts[i]; ++i)
+        add(&s, gtx_shader_source(r->parts[i]));
+    if (text)
+        add(&s, text);
+    return s;
+}
+
 /* A compiled shader, or 0. */
-static gl_uint compile(const gtx_renderer *renderer, gl_enum stage, const char *head,
-                       const char *const *parts)
+static gl_uint compile(const gtx_renderer *renderer, gl_enum stage, const source *s)
 {
     const gtx_gl *gl = &renderer->gl;
-    const char *texts[MAX_PARTS + 1] = {head};
-    gl_size count = 1;
-    for (; parts[count - 1]; ++count)
-        texts[count] = gtx_shader_source(parts[count - 1]);
     const gl_uint shader = gl->CreateShader(stage);
     gl_int compiled = GL_FALSE;
-    gl->ShaderSource(shader, count, texts, NULL);
+    gl->ShaderSource(shader, s->count, s->texts, NULL);
     gl->CompileShader(shader);
     gl->GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
     if (compiled)
@@ -121,43 +172,41 @@ static void locate(const gtx_gl *gl, gtx_program *program)
     gl->UseProgram(0);
 }
 
-/* False when it does not compile or link. */
-static bool create_program(const gtx_renderer *renderer, int kind, gtx_program *out)
+static gtx_result build(const gtx_renderer *renderer, const recipe *r, const char *text,
+                        gtx_program *out, gtx_error *error)
 {
-    static const char *const labels[PROGRAM_COUNT] = {
-        [PROGRAM_CAST] = "geotex cast",
-        [PROGRAM_CAST_MATERIAL] = "geotex cast, materials",
-        [PROGRAM_PAPER] = "geotex paper",
-        [PROGRAM_PAPER_MATERIAL] = "geotex paper, materials",
-        [PROGRAM_SHELL] = "geotex shell",
-        [PROGRAM_SHELL_TWO_SIDED] = "geotex shell, two-sided",
-        [PROGRAM_SHELL_COLOR] = "geotex shell, colors",
-        [PROGRAM_SHELL_COLOR_TWO_SIDED] = "geotex shell, colors, two-sided",
-        [PROGRAM_SHELL_MATERIAL] = "geotex shell, materials"};
     const gtx_gl *gl = &renderer->gl;
-    const gl_uint vertex = compile(renderer, GL_VERTEX_SHADER, heads[kind],
-                                   kind >= PROGRAM_SHELL ? shell_vertex_parts : vertex_parts);
-    const gl_uint fragment =
-        vertex ? compile(renderer, GL_FRAGMENT_SHADER, heads[kind], fragment_parts[kind]) : 0;
+    const source above = vertex_source(gl->es, r), below = fragment_source(gl->es, r, text);
+    const gl_uint vertex = compile(renderer, GL_VERTEX_SHADER, &above);
+    const gl_uint fragment = vertex ? compile(renderer, GL_FRAGMENT_SHADER, &below) : 0;
     out->object = fragment ? link_stages(renderer, vertex, fragment) : 0;
     if (vertex)
         gl->DeleteShader(vertex);
     if (fragment)
         gl->DeleteShader(fragment);
     if (!out->object)
-        return false;
-    gtx_gl_label(gl, GL_PROGRAM, out->object, labels[kind]);
+        return gtx_fail(error, GTX_ERROR_SHADER, "a shader did not compile; the log says why");
+    gtx_gl_label(gl, GL_PROGRAM, out->object, r->label);
     locate(gl, out);
-    return true;
+    return GTX_OK;
+}
+
+gtx_result gtx_program_need(gtx_renderer *renderer, int program, gtx_error *error)
+{
+    gtx_program *out = &renderer->programs[program];
+    return out->object ? GTX_OK : build(renderer, &recipes[program], NULL, out, error);
 }
 
 gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
 {
-    for (int i = 0; i < PROGRAM_COUNT; ++i)
-        if (!create_program(renderer, i, &renderer->programs[i]))
-            return gtx_fail(error, GTX_ERROR_SHADER,
-                            "a shader did not compile; the log says why");
-    return GTX_OK;
+    static const int first[] = {PROGRAM_CAST, PROGRAM_CAST_MATERIAL, PROGRAM_PAPER,
+                                PROGRAM_PAPER_MATERIAL, PROGRAM_SHELL, PROGRAM_SHELL_MATERIAL,
+                                PROGRAM_SHELL_TWO_SIDED, PROGRAM_SHELL_COLOR,
+                                PROGRAM_SHELL_COLOR_TWO_SIDED};
+    gtx_result result = GTX_OK;
+    for (size_t i = 0; i < sizeof first / sizeof *first && !result; ++i)
+        result = gtx_program_need(renderer, first[i], error);
+    return result;
 }
 
 void gtx_programs_destroy(gtx_renderer *renderer)
@@ -165,4 +214,37 @@ void gtx_programs_destroy(gtx_renderer *renderer)
     for (int i = 0; i < PROGRAM_COUNT; ++i)
         if (renderer->programs[i].object)
             renderer->gl.DeleteProgram(renderer->programs[i].object);
+}
+
+gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
+                              gtx_error *error)
+{
+    if (!renderer || !text || !out)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "a shading needs a renderer and a main");
+    *out = NULL;
+    gtx_shading *shading = gtx_alloc_array(&renderer->allocator, 1, sizeof *shading);
+    if (!shading)
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a shading");
+    gtx_result result = build(renderer, &own_cast, text, &shading->cast, error);
+    if (!result)
+        result = build(renderer, &own_shell, text, &shading->shell, error);
+    if (result)
+        gtx_shading_destroy(renderer, shading);
+    else
+        *out = shading;
+    return result;
+}
+
+void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading)
+{
+    if (!shading)
+        return;
+    renderer->gl.DeleteProgram(shading->cast.object);
+    renderer->gl.DeleteProgram(shading->shell.object);
+    gtx_free_array(&renderer->allocator, shading, 1, sizeof *shading);
+}
+
+uint32_t gtx_shading_program(const gtx_shading *shading, gtx_method method)
+{
+    return method == GTX_METHOD_SHELL ? shading->shell.object : shading->cast.object;
 }

@@ -13,7 +13,7 @@ static void log_context(const gtx_renderer *renderer)
     char line[256];
     if (!renderer->log)
         return;
-    snprintf(line, sizeof line, "geotex: OpenGL %.80s, %.100s%s",
+    snprintf(line, sizeof line, "geotex: %s%.80s, %.100s%s", gl->es ? "" : "OpenGL ",
              (const char *)gl->GetString(GL_VERSION), (const char *)gl->GetString(GL_RENDERER),
              gl->ObjectLabel ? ", objects labelled" : "");
     renderer->log(line, renderer->log_user);

@@ -15,11 +15,14 @@ enum {
     UNIT_CLEARED = 8 /* units that render.h promises to leave empty */
 };
 
-/* Each method without and with materials: Lambert alone costs less. */
+/* Each method by pass; the forward one without and with materials, for Lambert alone costs less. */
 enum {
-    PROGRAM_CAST, PROGRAM_CAST_MATERIAL, PROGRAM_PAPER, PROGRAM_PAPER_MATERIAL,
-    PROGRAM_SHELL, PROGRAM_SHELL_TWO_SIDED, PROGRAM_SHELL_COLOR, PROGRAM_SHELL_COLOR_TWO_SIDED,
-    PROGRAM_SHELL_MATERIAL, PROGRAM_COUNT
+    PROGRAM_CAST, PROGRAM_CAST_MATERIAL, PROGRAM_CAST_DEPTH, PROGRAM_CAST_ID, PROGRAM_CAST_GBUFFER,
+    PROGRAM_PAPER, PROGRAM_PAPER_MATERIAL, PROGRAM_PAPER_DEPTH, PROGRAM_PAPER_ID,
+    PROGRAM_PAPER_GBUFFER,
+    PROGRAM_SHELL, PROGRAM_SHELL_MATERIAL, PROGRAM_SHELL_DEPTH, PROGRAM_SHELL_ID,
+    PROGRAM_SHELL_GBUFFER, PROGRAM_SHELL_TWO_SIDED, PROGRAM_SHELL_COLOR,
+    PROGRAM_SHELL_COLOR_TWO_SIDED, PROGRAM_COUNT
 };
 
 typedef struct gtx_program {
@@ -27,11 +30,16 @@ typedef struct gtx_program {
     gl_int clip_from_world, depth, light, detail, maps, shell;
 } gtx_program;
 
+struct gtx_shading {
+    gtx_program cast, shell;
+};
+
 /* What the proxy's vertex shader reads for each instance. */
 typedef struct gtx_instance_data {
     float world[3][4];        /* rows of object -> world */
     float object[3][4];       /* rows of the inverse's linear part, and the eye in object space */
     float tint[4];
+    uint32_t id;
 } gtx_instance_data;
 
 struct gtx_renderer {
@@ -39,7 +47,7 @@ struct gtx_renderer {
     gtx_gl gl;
     void (*log)(const char *message, void *user);
     void *log_user;
-    gtx_program programs[PROGRAM_COUNT];
+    gtx_program programs[PROGRAM_COUNT]; /* 0: not needed yet */
     gl_uint vertex_array, instance_buffer;
     /* Scratch of gtx_draw: what is uploaded, and whose winding is turned. */
     gtx_instance_data *instances;
@@ -80,8 +88,9 @@ struct gtx_model {
 /* renderer.c: gives the scratch back. */
 void gtx_renderer_free_scratch(gtx_renderer *renderer);
 
-/* program.c. Errors: MEMORY, SHADER. */
+/* program.c: those of the forward pass at once, the others when first needed. Errors: SHADER. */
 gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error);
+gtx_result gtx_program_need(gtx_renderer *renderer, int program, gtx_error *error);
 void gtx_programs_destroy(gtx_renderer *renderer);
 
 /* model.c: gives the CPU's copy of the maps and proxies back. */

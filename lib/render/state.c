@@ -22,6 +22,22 @@ void gtx_state_leave(const gtx_gl *gl, bool reversed)
     gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
+static void read_draw_buffers(const gtx_gl *gl, gtx_state *state)
+{
+    if (!gl->IsEnabledi) {
+        state->blend[0] = gl->IsEnabled(GL_BLEND);
+        gl->GetBooleanv(GL_COLOR_WRITEMASK, state->color_mask[0]);
+        return;
+    }
+    gl->GetIntegerv(GL_MAX_DRAW_BUFFERS, &state->draw_buffers);
+    if (state->draw_buffers > GTX_MAX_DRAW_BUFFERS)
+        state->draw_buffers = GTX_MAX_DRAW_BUFFERS;
+    for (gl_int i = 0; i < state->draw_buffers; ++i) {
+        state->blend[i] = gl->IsEnabledi(GL_BLEND, (gl_uint)i);
+        gl->GetBooleani_v(GL_COLOR_WRITEMASK, (gl_uint)i, state->color_mask[i]);
+    }
+}
+
 void gtx_state_read(const gtx_gl *gl, gtx_state *state)
 {
     gl->GetIntegerv(GL_CURRENT_PROGRAM, &state->program);
@@ -37,21 +53,29 @@ void gtx_state_read(const gtx_gl *gl, gtx_state *state)
     gl->GetIntegerv(GL_DEPTH_FUNC, &state->depth_func);
     gl->GetIntegerv(GL_CULL_FACE_MODE, &state->cull_mode);
     gl->GetIntegerv(GL_FRONT_FACE, &state->front_face);
-    gl->GetIntegerv(GL_MAX_DRAW_BUFFERS, &state->draw_buffers);
-    if (state->draw_buffers > GTX_MAX_DRAW_BUFFERS)
-        state->draw_buffers = GTX_MAX_DRAW_BUFFERS;
     state->depth_test = gl->IsEnabled(GL_DEPTH_TEST);
     gl->GetBooleanv(GL_DEPTH_WRITEMASK, &state->depth_mask);
     state->cull = gl->IsEnabled(GL_CULL_FACE);
-    for (gl_int i = 0; i < state->draw_buffers; ++i) {
-        state->blend[i] = gl->IsEnabledi(GL_BLEND, (gl_uint)i);
-        gl->GetBooleani_v(GL_COLOR_WRITEMASK, (gl_uint)i, state->color_mask[i]);
-    }
+    read_draw_buffers(gl, state);
 }
 
 static void set(const gtx_gl *gl, gl_enum cap, gl_bool on)
 {
     (on ? gl->Enable : gl->Disable)(cap);
+}
+
+static void restore_draw_buffers(const gtx_gl *gl, const gtx_state *state)
+{
+    const gl_bool *mask = state->color_mask[0];
+    if (!gl->IsEnabledi) {
+        set(gl, GL_BLEND, state->blend[0]);
+        gl->ColorMask(mask[0], mask[1], mask[2], mask[3]);
+        return;
+    }
+    for (gl_int i = 0; i < state->draw_buffers; ++i, mask += 4) {
+        (state->blend[i] ? gl->Enablei : gl->Disablei)(GL_BLEND, (gl_uint)i);
+        gl->ColorMaski((gl_uint)i, mask[0], mask[1], mask[2], mask[3]);
+    }
 }
 
 void gtx_state_restore(const gtx_gl *gl, const gtx_state *state)
@@ -72,9 +96,5 @@ void gtx_state_restore(const gtx_gl *gl, const gtx_state *state)
     set(gl, GL_CULL_FACE, state->cull);
     gl->CullFace((gl_enum)state->cull_mode);
     gl->FrontFace((gl_enum)state->front_face);
-    for (gl_int i = 0; i < state->draw_buffers; ++i) {
-        const gl_bool *mask = state->color_mask[i];
-        (state->blend[i] ? gl->Enablei : gl->Disablei)(GL_BLEND, (gl_uint)i);
-        gl->ColorMaski((gl_uint)i, mask[0], mask[1], mask[2], mask[3]);
-    }
+    restore_draw_buffers(gl, state);
 }

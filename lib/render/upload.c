@@ -91,11 +91,12 @@ void gtx_upload_proxies(const gtx_gl *gl, const gtx_model *model, const gtx_prox
 
 void gtx_default_unpacking(const gtx_gl *gl)
 {
-    static const gl_enum zero[] = {GL_UNPACK_SWAP_BYTES,  GL_UNPACK_LSB_FIRST,
-                                   GL_UNPACK_ROW_LENGTH,  GL_UNPACK_SKIP_ROWS,
-                                   GL_UNPACK_SKIP_PIXELS, GL_UNPACK_SKIP_IMAGES,
-                                   GL_UNPACK_IMAGE_HEIGHT};
-    for (size_t i = 0; i < sizeof zero / sizeof *zero; ++i)
+    static const gl_enum zero[] = {GL_UNPACK_ROW_LENGTH,   GL_UNPACK_SKIP_ROWS,
+                                   GL_UNPACK_SKIP_PIXELS,  GL_UNPACK_SKIP_IMAGES,
+                                   GL_UNPACK_IMAGE_HEIGHT, GL_UNPACK_SWAP_BYTES,
+                                   GL_UNPACK_LSB_FIRST};
+    const size_t count = sizeof zero / sizeof *zero;
+    for (size_t i = 0; i < (gl->es ? count - 2 : count); ++i) /* OpenGL ES never swaps */
         gl->PixelStorei(zero[i], 0);
     gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
 }

@@ -192,6 +192,7 @@ gtx_result gtx_place_instance(const gtx_frame *frame, const gtx_instance *instan
     const bool white = t[0] == 0 && t[1] == 0 && t[2] == 0 && t[3] == 0;
     for (int k = 0; k < 4; ++k)
         out->tint[k] = white ? 1.0f : t[k];
+    out->id = instance->id;
     *mirrored = (det < 0) != frame->mirrored;
     return GTX_OK;
 }

@@ -166,7 +166,7 @@ static gtx_view view_of(const Bench &bench, const Options &options, int width, i
 static void draw(Bench &bench, int method, const gtx_view &view)
 {
     bench.gl.DepthMask(GL_TRUE);
-    bench.gl.ClearDepth(1);
+    bench.gl.ClearDepthf(1);
     bench.gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     bench.gl.Enable(GL_DEPTH_TEST);
     bench.gl.DepthFunc(GL_LESS);

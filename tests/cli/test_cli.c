@@ -175,6 +175,8 @@ static void rendering_writes_a_png(void **state)
     assert_true(size > 100);
     assert_memory_equal(png, "\x89PNG", 4);
     free(png);
+    code = gtx("render sphere.gtx -o es.png --size 64x64 --gles");
+    assert_true((code == 0 && exists("es.png")) || code == 5);
     expect(gtx("render none.gtx -o x.png"), 2);
     expect(gtx("render sphere.gtx"), 1);
     expect(gtx("render sphere.gtx --method shell -o x.png"), 5); /* it has none */

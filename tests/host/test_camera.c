@@ -114,6 +114,13 @@ static void placing(void **state)
     gtx_matrix_place(1, 2, 3, 90, 2, m); /* +Z goes to +X */
     const float x = m[8] + m[12], y = m[9] + m[13], z = m[10] + m[14];
     assert_true(fabsf(x - 3) < 1e-6f && fabsf(y - 2) < 1e-6f && fabsf(z - 3) < 1e-6f);
+
+    /* The box 1..3 x 2..6 x 4..10 on (7, 8, 9), half as high: what is left is behind. */
+    const float low[3] = {1, 2, 4}, high[3] = {3, 6, 10}, foot[3] = {7, 8, 9};
+    gtx_matrix_stand(low, high, foot, 90, 2, m);
+    const float at[3] = {m[0] + 2 * m[4] + 7 * m[8] + m[12], m[1] + 2 * m[5] + 7 * m[9] + m[13],
+                         m[2] + 2 * m[6] + 7 * m[10] + m[14]}; /* the middle of its side at x = 1 */
+    assert_true(fabsf(at[0] - 7) < 1e-5f && fabsf(at[1] - 8) < 1e-5f && fabsf(at[2] - 9.5f) < 1e-5f);
 }
 
 /* Panned, the eye moves and looks along the same axis, and the planes still enclose the sphere. */

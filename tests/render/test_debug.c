@@ -1,37 +1,15 @@
 /* What a debugger sees: labels on every object, a group around a draw, and no complaint. */
 #include "shells.h"
-
-typedef struct witness {
-    int complaints, groups;
-} witness;
-
-static void APIENTRY on_message(GLenum source, GLenum type, GLuint id, GLenum severity,
-                                GLsizei length, const GLchar *text, const void *user)
-{
-    witness *w = (witness *)(uintptr_t)user;
-    (void)source, (void)id, (void)length;
-    if (type == GL_DEBUG_TYPE_PUSH_GROUP && !strcmp(text, "geotex draw"))
-        ++w->groups;
-    else if (type != GL_DEBUG_TYPE_POP_GROUP && severity != GL_DEBUG_SEVERITY_NOTIFICATION) {
-        fprintf(stderr, "%s\n", text);
-        ++w->complaints;
-    }
-}
+#include "witness.h"
 
 static void a_draw_is_a_silent_group(void **state)
 {
     STAGE_OR_SKIP(state);
-    PFNGLDEBUGMESSAGECALLBACKPROC set_callback =
-        (PFNGLDEBUGMESSAGECALLBACKPROC)gtx_offscreen_load("glDebugMessageCallback", NULL);
-    GLint major = 0;
-    s->gl.GetIntegerv(GL_MAJOR_VERSION, &major);
-    if (!set_callback || major < 4)
+    if (!has_debug(s))
         skip();
     witness w = {0};
-    set_callback(on_message, &w);
-    s->gl.Enable(GL_DEBUG_OUTPUT);
-    s->gl.Enable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
     static const gtx_method methods[] = {GTX_METHOD_CAST, GTX_METHOD_PAPER, GTX_METHOD_SHELL};
+    witness_call(s, &w);
     subject shown = subject_open(s, shelled(fixture_sphere(2, 48, 8), 2, 2, 0));
     gtx_camera camera = camera_around(shown.asset);
     gtx_view view = view_of(&camera);
@@ -42,9 +20,7 @@ static void a_draw_is_a_silent_group(void **state)
     }
     must(gtx_model_update(s->renderer, shown.model, shown.asset, 0, NULL), &(gtx_error){0});
     subject_close(s, &shown);
-    s->gl.Disable(GL_DEBUG_OUTPUT);
-    s->gl.Disable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-    set_callback(NULL, NULL);
+    witness_dismiss(s);
     assert_int_equal(w.complaints, 0);
     assert_int_equal(w.groups, 6);
 }
@@ -75,9 +51,7 @@ static int labelled(GLenum kind)
 static void objects_carry_labels(void **state)
 {
     STAGE_OR_SKIP(state);
-    GLint major = 0;
-    s->gl.GetIntegerv(GL_MAJOR_VERSION, &major);
-    if (major < 4 || !gtx_offscreen_load("glGetObjectLabel", NULL))
+    if (!has_debug(s))
         skip();
     subject shown = subject_open(s, shelled(fixture_sphere(2, 48, 8), 2, 2, 0));
     assert_int_equal(labelled(GL_PROGRAM), 9);

@@ -4,26 +4,17 @@
 
 static const char *const vertex[] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
                                      "geotex_proxy.vert", NULL};
-static const char *const cast[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
-                                   "geotex_view.glsl",    "geotex_surface.glsl",
-                                   "geotex_cast.glsl",    "geotex_forward.frag", NULL};
-static const char *const paper[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
-                                    "geotex_view.glsl",    "geotex_surface.glsl",
-                                    "geotex_paper.glsl",   "geotex_forward.frag", NULL};
-
-static const char *const materials[2][8] = {
-    {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl", "geotex_surface.glsl",
-     "geotex_material.glsl", "geotex_cast.glsl", "geotex_forward.frag", NULL},
-    {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl", "geotex_surface.glsl",
-     "geotex_material.glsl", "geotex_paper.glsl", "geotex_forward.frag", NULL}};
+/* A fragment shader: the parts before the method, the method, geotex_fragment.glsl, the main. */
+static const char *const mains[] = {"geotex_forward.frag", "geotex_depth.frag", "geotex_id.frag",
+                                    "geotex_gbuffer.frag"};
+static const char *const methods[] = {"geotex_cast.glsl", "geotex_paper.glsl"};
+enum { MAINS = sizeof mains / sizeof *mains, METHODS = 2 };
 
 static const char *const shell_vertex[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
                                            "geotex_view.glsl", "geotex_shell.vert", NULL};
 static const char *const shell[] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
-                                    "geotex_surface.glsl", "geotex_shell.frag", NULL};
-static const char *const shell_material[] = {"geotex_dialect.glsl",  "geotex_sheet.glsl",
-                                             "geotex_view.glsl",     "geotex_surface.glsl",
-                                             "geotex_material.glsl", "geotex_shell.frag", NULL};
+                                    "geotex_surface.glsl", "geotex_shell_fragment.glsl",
+                                    "geotex_shell.frag", NULL};
 
 /* Compiles a program's stage and expects no word of complaint. */
 static void compile(const char *version, const char *options, const char *kind,
@@ -66,20 +57,41 @@ static void every_dialect(void **state)
         skip();
     for (size_t i = 0; i < sizeof versions / sizeof *versions; ++i) {
         compile(versions[i][0], versions[i][1], "vert", vertex);
-        compile(versions[i][0], versions[i][1], "frag", cast);
-        compile(versions[i][0], versions[i][1], "frag", paper);
         char head[64];
         snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS", versions[i][0]);
-        compile(head, versions[i][1], "frag", materials[0]);
-        compile(head, versions[i][1], "frag", materials[1]);
+        for (int k = 0; k < MAINS * METHODS; ++k) {
+            const char *const parts[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                         "geotex_view.glsl", "geotex_surface.glsl",
+                                         methods[k % METHODS], "geotex_fragment.glsl",
+                                         mains[k / METHODS], NULL};
+            const char *const shaded[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                          "geotex_view.glsl", "geotex_surface.glsl",
+                                          "geotex_material.glsl", methods[k % METHODS],
+                                          "geotex_fragment.glsl", mains[k / METHODS], NULL};
+            if (k / METHODS < 3)
+                compile(versions[i][0], versions[i][1], "frag", parts);
+            if (k / METHODS == 0 || k / METHODS == 3)
+                compile(head, versions[i][1], "frag", shaded);
+        }
         compile(versions[i][0], versions[i][1], "vert", shell_vertex);
-        compile(versions[i][0], versions[i][1], "frag", shell);
+        for (int k = 0; k < MAINS; ++k) {
+            const char *main = k ? mains[k] : "geotex_shell.frag";
+            const char *const parts[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                         "geotex_view.glsl", "geotex_surface.glsl",
+                                         "geotex_shell_fragment.glsl", main, NULL};
+            const char *const shaded[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                          "geotex_view.glsl", "geotex_surface.glsl",
+                                          "geotex_material.glsl", "geotex_shell_fragment.glsl",
+                                          main, NULL};
+            if (k < 3)
+                compile(versions[i][0], versions[i][1], "frag", parts);
+            if (k == 0 || k == 3)
+                compile(head, versions[i][1], "frag", shaded);
+        }
         snprintf(head, sizeof head, "%s\n#define GTX_TWO_SIDED", versions[i][0]);
         compile(head, versions[i][1], "frag", shell);
         snprintf(head, sizeof head, "%s\n#define GTX_COLORS", versions[i][0]);
         compile(head, versions[i][1], "frag", shell);
-        snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS", versions[i][0]);
-        compile(head, versions[i][1], "frag", shell_material);
     }
 }
 

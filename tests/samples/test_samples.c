@@ -124,7 +124,7 @@ int main(void)
 #define PICTURE(name) cmocka_unit_test_prestate(draws_its_picture, name)
 #define MISUSE(name) cmocka_unit_test_prestate(misuse_is_one_line, name)
     static char smallest[] = "smallest_engine", instances[] = "instances", picking[] = "picking",
-                mixed[] = "mixed_scene";
+                mixed[] = "mixed_scene", gbuffer[] = "engine_gbuffer", shadows[] = "shadows";
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cooking_says_how_far_it_is),
         cmocka_unit_test(an_interrupt_leaves_nothing_behind),
@@ -133,6 +133,8 @@ int main(void)
         PICTURE(instances),
         PICTURE(picking),
         PICTURE(mixed),
+        PICTURE(gbuffer),
+        PICTURE(shadows),
         MISUSE(smallest),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -1,0 +1,132 @@
+/* What a fragment of a proxy sees: the surface where its ray meets the patch. The stock mains are
+ * written with this, and so is an engine's own (gtx_shading_create):
+ *
+ *   layout(location = 0) out vec4 color;
+ *   void main()
+ *   {
+ *       gtx_surface s;
+ *       if (!gtx_find(s))
+ *           discard;
+ *       color = vec4(gtx_albedo(s).rgb * lit(gtx_world_point(s), gtx_world_normal(s)), 1.0);
+ *       gtx_write_depth(s);
+ *   }
+ *
+ * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl, geotex_surface.glsl, with
+ * GTX_MATERIALS defined geotex_material.glsl, and a gtx_cast (of geotex_cast.glsl or
+ * geotex_paper.glsl) before it. The varyings are those of geotex_proxy.vert. */
+GTX_VARYING(0) in vec3 gtx_point;
+GTX_VARYING(1) flat in vec3 gtx_eye;
+GTX_VARYING(2) flat in vec4 gtx_clip_z;
+GTX_VARYING(3) flat in vec4 gtx_clip_w;
+GTX_VARYING(4) flat in vec4 gtx_normal_x;
+GTX_VARYING(5) flat in vec4 gtx_normal_y;
+GTX_VARYING(6) flat in vec4 gtx_normal_z;
+GTX_VARYING(7) flat in vec4 gtx_color;
+GTX_VARYING(8) flat in int gtx_patch_index;
+GTX_VARYING(9) flat in vec4 gtx_rect;
+GTX_VARYING(10) flat in vec4 gtx_span;
+GTX_VARYING(11) flat in int gtx_level;
+GTX_VARYING(12) flat in uint gtx_id;    /* of the instance, as the host gave it */
+
+/* Where the ray of a fragment meets its patch, whose index is gtx_patch_index. */
+struct gtx_surface {
+    gtx_hit hit;        /* hit.grid.xy: texel coordinates in the patch */
+    gtx_sheet sheet;
+    gtx_frame frame;    /* grid space -> object space */
+    vec3 ray;           /* away from the camera, in grid space; of any length */
+    float level;        /* mip level whose texels are as large as the pixel */
+};
+
+/* False when the ray misses; then `s` is not filled. Takes derivatives: call it first, from all
+ * fragments. */
+bool gtx_find(out gtx_surface s)
+{
+    vec3 dx = dFdx(gtx_point), dy = dFdy(gtx_point);
+    s.sheet = gtx_sheet_of(gtx_rect, gtx_span, gtx_level);
+    s.ray = gtx_point * gtx_depth.w - gtx_eye;
+
+    /* z and w of the clip position are linear along the ray: zw + t * step. */
+    vec2 zw = vec2(dot(gtx_clip_z, vec4(gtx_point, 1.0)), dot(gtx_clip_w, vec4(gtx_point, 1.0)));
+    vec2 zw_step = vec2(dot(gtx_clip_z.xyz, s.ray), dot(gtx_clip_w.xyz, s.ray));
+    float t0 = -1e30, t1 = 1e30;
+    gtx_clip(zw.x + gtx_depth.x * zw.y, zw_step.x + gtx_depth.x * zw_step.y, t0, t1);
+    gtx_clip(zw.y - zw.x, zw_step.y - zw_step.x, t0, t1);
+    gtx_clip_box(s.sheet, gtx_point, s.ray, t0, t1);
+    if (t0 > t1 || !gtx_cast(s.sheet, gtx_point, s.ray, t0, t1, s.hit))
+        return false;
+
+    float widen = 1.0 + s.hit.t * gtx_depth.w;
+    s.level = gtx_level_of(s.hit, s.ray, dx * widen, dy * widen);
+    s.frame = gtx_frame_of(gtx_patch_index);
+    return true;
+}
+
+/* What the engine's matrices and depth range make of the point. */
+float gtx_window_depth(gtx_surface s)
+{
+    vec4 point = vec4(s.hit.grid, 1.0);
+    float z = dot(gtx_clip_z, point) / dot(gtx_clip_w, point);
+    return clamp(z, -gtx_depth.x, 1.0) * gtx_depth.y + gtx_depth.z;
+}
+
+/* Every main calls it, or writes a depth of its own (a logarithmic one, say). */
+void gtx_write_depth(gtx_surface s)
+{
+    gl_FragDepth = gtx_window_depth(s);
+}
+
+/* The asset's own coordinates. */
+vec3 gtx_object_point(gtx_surface s)
+{
+    return gtx_object_point(s.frame, s.hit.grid);
+}
+
+/* The linear part of object -> world: the columns for normals are its inverse transpose. */
+mat3 gtx_world_linear()
+{
+    return inverse(transpose(mat3(gtx_normal_x.xyz, gtx_normal_y.xyz, gtx_normal_z.xyz)));
+}
+
+vec3 gtx_world_point(gtx_surface s)
+{
+    return gtx_world_linear() * gtx_object_point(s) +
+           vec3(gtx_normal_x.w, gtx_normal_y.w, gtx_normal_z.w);
+}
+
+vec3 gtx_object_ray(gtx_surface s)
+{
+    return mat3(s.frame.axis_x, s.frame.axis_y, s.frame.axis_z) * s.ray;
+}
+
+/* Away from the camera; unit. */
+vec3 gtx_world_ray(gtx_surface s)
+{
+    return normalize(gtx_world_linear() * gtx_object_ray(s));
+}
+
+/* Unit; towards the camera where the sheet is seen from behind. */
+vec3 gtx_world_normal(gtx_surface s)
+{
+    vec2 code = gtx_lookup(gtx_normals, s.sheet, s.hit.grid.xy, s.level, gtx_maps.x).xy;
+    vec3 n = gtx_decode_normal(s.frame, code);
+    if (s.hit.back)
+        n = gtx_from_behind(n, gtx_object_ray(s));
+    return normalize(gtx_normal_x.xyz * n.x + gtx_normal_y.xyz * n.y + gtx_normal_z.xyz * n.z);
+}
+
+/* The colour map times the instance's tint. Linear. */
+vec4 gtx_albedo(gtx_surface s)
+{
+    vec4 color = gtx_color;
+    if (gtx_maps.y > 0.0)
+        color *= gtx_lookup(gtx_colors, s.sheet, s.hit.grid.xy, s.level, gtx_maps.x);
+    return color;
+}
+
+#ifdef GTX_MATERIALS
+/* With the albedo as its colour. A model without a material map is rough and no metal. */
+gtx_material gtx_material_of(gtx_surface s, vec3 albedo)
+{
+    return gtx_material_of(s.sheet, s.hit.grid.xy, s.level, albedo);
+}
+#endif
