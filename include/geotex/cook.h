@@ -104,9 +104,9 @@ typedef struct gtx_report {
 
 /* Reads the model at `input` (glTF, GLB, Draco, OBJ, PLY, OFF, STL, each also gzipped), cooks it
  * and writes the asset to `output`: whole, through a temporary name and a rename, or not at all.
- * `desc`, `report` (format/cook-report.schema.json) and `error` may be NULL. Errors: CANCELLED, ARGUMENT,
- * NOT_ZEROED, MEMORY, LIMIT, READ, WRITE, INPUT, EMPTY, UNSUPPORTED, INTERNAL; GL and SHADER where
- * the GPU is to extract and no driver can. Any thread. */
+ * `desc`, `report` (format/cook-report.schema.json) and `error` may be NULL. Errors: CANCELLED,
+ * ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, READ, WRITE, INPUT, EMPTY, UNSUPPORTED, INTERNAL; GL and
+ * SHADER where the GPU is to extract and no driver can. Any thread. */
 GTX_API gtx_result gtx_cook_file(const char *input, const char *output, const gtx_cook_desc *desc,
                                  gtx_report *report, gtx_error *error);
 

@@ -90,8 +90,9 @@ std::vector<uint32_t> overlap_triangles(const Mesh &mesh,
                                         const std::vector<std::array<uint32_t, 3>> &neighbours,
                                         const Chart &chart, double reach);
 
-/* Writes the charted mesh with a colour a chart of the partition before splitting, inverted triangles green
- * (paper, Figure 5): binary PLY, through a temporary name beside it. Throws Error: WRITE. */
+/* Writes the charted mesh with a colour a chart of the partition before splitting, inverted
+ * triangles green (paper, Figure 5): binary PLY, through a temporary name beside it. Throws Error:
+ * WRITE. */
 void write_charts_ply(const std::string &path, const Mesh &mesh, const Partition &partition);
 
 } // namespace gtx

@@ -47,8 +47,8 @@ LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Fr
 
 Layers find_layers(const Surface &surface, const Region &region, const Frame &frame, double pitch);
 
-/* Whether a guest could not join a host without a fold or a cliff; `doubled` counts the texel centres that would
- * be covered twice and are not yet. */
+/* Whether a guest could not join a host without a fold or a cliff; `doubled` counts the texel
+ * centres that would be covered twice and are not yet. */
 bool fold_together(const LayerGrid &host, const LayerGrid &guest, const LayerRule &rule,
                    size_t &doubled);
 

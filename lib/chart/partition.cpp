@@ -22,6 +22,7 @@ constexpr unsigned OVERLAP_TEXELS = 8;
 /* At a resolution of 128, texels of surface in a patch that is cut; at least in a chart, on average,
  * for a model may be of thousands of small components; in its rectangle at most. */
 constexpr double CUT_TEXELS = 1400, CHART_TEXELS = 100, MOST_TEXELS = 4 * CUT_TEXELS;
+constexpr double TWO_SIDED_AREA = 0.05; /* of a chart: it is two-sided */
 constexpr double RIM = 4; /* texels of a rectangle beyond its chart's sides */
 
 uint32_t default_count(const Mesh &mesh)
@@ -220,6 +221,18 @@ std::vector<Frame> split_for_length(const Surface &surface, const ChartOptions &
     return frames;
 }
 
+/* Whether more of it has two sides than the crumbs that a scan has everywhere. */
+bool is_two_sided(const Mesh &mesh, const Chart &chart)
+{
+    double both = 0, area = 0;
+    for (uint32_t t : chart.triangles) {
+        double of_triangle = length(mesh.area_vector(t));
+        area += of_triangle;
+        both += !mesh.flags.empty() && mesh.flags[t] & TRIANGLE_TWO_SIDED ? of_triangle : 0;
+    }
+    return both > TWO_SIDED_AREA * area;
+}
+
 std::vector<Chart> whole_charts(std::vector<Region> regions, const std::vector<Frame> &frames,
                                 const Partition &partition)
 {
@@ -261,10 +274,8 @@ void make_charts(Surface surface, const ChartOptions &options, uint32_t count, T
                     options.height_bits == 8 ? 254. : 65534.};
     out.charts = cut ? cut_charts(surface, std::move(regions), frames, plan, task)
                      : whole_charts(std::move(regions), frames, out);
-    const std::vector<uint8_t> &flags = surface.mesh.flags;
     for (Chart &chart : out.charts)
-        for (uint32_t t : chart.triangles)
-            chart.two_sided |= !flags.empty() && flags[t] & TRIANGLE_TWO_SIDED;
+        chart.two_sided = is_two_sided(surface.mesh, chart);
 }
 
 } // namespace

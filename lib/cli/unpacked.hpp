@@ -1,4 +1,5 @@
-/* An asset as a folder of images, a file a level of the shell, and one JSON file: what unpack writes and pack reads. */
+/* An asset as a folder of images, a file a level of the shell, and one JSON file: what unpack writes
+ * and pack reads. */
 #pragma once
 
 #include "mesh/task.hpp"

@@ -242,7 +242,8 @@ void Viewer::add_status(gtx_shapes &shapes, float dot)
     const bool no_shell = view.method != methods[method].method;
     std::snprintf(line, sizeof line, "%s  level %s%s%s%s  %.1f ms  %dx%d",
                   no_shell ? "no shell: auto" : methods[method].name, levels_text[view.level],
-                  looks_text[size_t(look)], boxes ? "  boxes" : "", fixed_light ? "  light fixed" : "", milliseconds, width, height);
+                  looks_text[size_t(look)], boxes ? "  boxes" : "",
+                  fixed_light ? "  light fixed" : "", milliseconds, width, height);
     std::string lines = name + "\n" + facts + format_bytes(stage->gpu_bytes()) + " GPU\n" + line;
     if (scene.assets.empty() && scene.meshes.empty())
         lines = "drop a model or an asset here";

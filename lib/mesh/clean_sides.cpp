@@ -3,6 +3,10 @@
 
 namespace gtx {
 
+/* A component whose borders could be closed with this share of its area is as good as closed, as
+ * scans are: hardly anything shows of its inside, and twice as much would have to be drawn. */
+constexpr double SMALL_GAPS = 0.01;
+
 /* Six times the enclosed volume; positive when the triangles wind counter-clockwise seen from
  * outside. */
 static double volume_of(const Mesh &mesh, const uint32_t *triangles, size_t count)
@@ -105,19 +109,53 @@ static void turn_inside_out(Draft &surface, const Components &components,
     turn_triangles(surface, turn);
 }
 
+/* The half-edge after h along a border. */
+static uint32_t next_border(const std::vector<uint32_t> &twin, uint32_t h)
+{
+    for (h = next_edge(h); twin[h] != NO_EDGE;)
+        h = next_edge(twin[h]);
+    return h;
+}
+
+/* The area of a surface that would close the border along half-edge h: triangles around its centre.
+ * Marks the border as seen. */
+static double gap_at(const Draft &surface, uint32_t h, std::vector<bool> &seen)
+{
+    const Mesh &mesh = surface.mesh;
+    std::vector<Vec3d> loop;
+    Vec3d centre;
+    for (; !seen[h]; h = next_border(surface.twin, h)) {
+        seen[h] = true;
+        loop.push_back(mesh.positions[start_of(mesh, h)]);
+        centre += loop.back() - loop[0];
+    }
+    centre = loop[0] + centre / double(loop.size());
+    double area = 0;
+    for (size_t i = 0; i < loop.size(); ++i)
+        area += length(cross(loop[i] - centre, loop[(i + 1) % loop.size()] - centre)) / 2;
+    return area;
+}
+
 void choose_sides(Draft &surface, Task &task, CleanReport &report)
 {
     Components components = flood(surface.twin, [](uint32_t, uint32_t, bool) {});
-    std::vector<bool> closed(components.count(), true);
+    std::vector<bool> closed(components.count()), seen(surface.twin.size());
     for (size_t c = 0; c < components.count(); ++c) {
         size_t from = components.first[c], to = components.first[c + 1], borders = 0;
-        for (size_t i = from; i < to; ++i)
-            for (uint32_t k = 0; k < 3; ++k)
-                borders += surface.twin[3 * components.order[i] + k] == NO_EDGE;
-        closed[c] = borders == 0;
+        double area = 0, gaps = 0;
+        for (size_t i = from; i < to; ++i) {
+            uint32_t t = components.order[i];
+            area += length(surface.mesh.area_vector(t)) / 2;
+            for (uint32_t h = 3 * t; h < 3 * t + 3; ++h)
+                if (surface.twin[h] == NO_EDGE) {
+                    ++borders;
+                    gaps += seen[h] ? 0 : gap_at(surface, h, seen);
+                }
+        }
+        closed[c] = gaps <= SMALL_GAPS * area;
         report.boundary_edges += borders;
-        surface.open_components += borders > 0;
-        for (size_t i = from; i < to && borders; ++i)
+        surface.open_components += !closed[c];
+        for (size_t i = from; i < to && !closed[c]; ++i)
             surface.mesh.flags[components.order[i]] |= TRIANGLE_TWO_SIDED;
     }
     report.components = components.count();

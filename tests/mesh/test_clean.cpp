@@ -356,6 +356,43 @@ static void test_pinched(void **)
     }
 }
 
+/* A sphere without some of its triangles, `share` of them, wound inwards if asked for. */
+static Mesh holed_sphere(double share, bool inwards)
+{
+    Mesh mesh = inwards ? turned(sphere(64)) : sphere(64);
+    size_t count = mesh.triangle_count();
+    mesh.triangles.erase(mesh.triangles.begin() + ptrdiff_t(count / 2),
+                         mesh.triangles.begin() + ptrdiff_t(double(count) * (0.5 + share)));
+    return mesh;
+}
+
+/* A scan with small gaps is as good as closed: one side, outwards. A wide gap shows the other. */
+static void test_gaps(void **)
+{
+    for (bool inwards : {false, true}) {
+        Cleaned small = clean(holed_sphere(0.002, inwards));
+        assert_true(small.report.boundary_edges > 0);
+        Vec3d p = small.mesh.position(0, 0);
+        assert_true(dot(small.mesh.area_vector(0), p) > 0);
+        for (uint8_t flags : small.mesh.flags)
+            assert_false(flags & gtx::TRIANGLE_TWO_SIDED);
+        Cleaned wide = clean(holed_sphere(0.1, inwards));
+        for (uint8_t flags : wide.mesh.flags)
+            assert_true(flags & gtx::TRIANGLE_TWO_SIDED);
+    }
+}
+
+/* A ribbon that twists by a full turn: its border's vector area is nothing, and it is no scan. */
+static void test_ribbon(void **)
+{
+    Cleaned c = clean(grid(64, 4, false, false, false, [](double u, double v) {
+        double w = v - 0.5;
+        return Vec3d(10 * u, w * std::cos(u * TURN), w * std::sin(u * TURN));
+    }));
+    for (uint8_t flags : c.mesh.flags)
+        assert_true(flags & gtx::TRIANGLE_TWO_SIDED);
+}
+
 static void test_attributes_follow(void **)
 {
     Mesh mesh = turned(cube());
@@ -430,7 +467,8 @@ int main(void)
         cmocka_unit_test(test_fans),          cmocka_unit_test(test_touching),
         cmocka_unit_test(test_pinched),       cmocka_unit_test(test_attributes_follow),
         cmocka_unit_test(test_threads_agree), cmocka_unit_test(test_cancel),
-        cmocka_unit_test(test_many_components),
+        cmocka_unit_test(test_many_components), cmocka_unit_test(test_gaps),
+        cmocka_unit_test(test_ribbon),
     };
     return cmocka_run_group_tests_name("clean", tests, nullptr, nullptr);
 }
