@@ -72,15 +72,17 @@ typedef struct gtx_cook_desc {
     uint32_t if_changed;          /* 1: gtx_cook_file leaves an output alone that is a valid asset
                                      of the same key (below), and so its time of change */
     const gtx_allocator *allocator;   /* needed during the call; its hooks until all is freed */
-    uint32_t reserved[8];
+    uint32_t adaptive;            /* 1: smaller squares where the surface is more curved, from half
+                                     the length to twice; for the partition pgp */
+    uint32_t reserved[7];
 } gtx_cook_desc;
 
 /* An asset keeps the key that it was cooked under. The key covers
  *   - the content of every file behind the models: themselves, and the buffers, material libraries
  *     and images that they refer to, one that is missing included; not their paths or times;
  *   - the options that change what comes out: partition, extract (and the driver, where it is GPU),
- *     charts, resolution, height_bits, dilation, mips, shell_levels, zstd_level, unit, error and
- *     z_up; not threads, measure, progress, strict or allocator;
+ *     charts, resolution, height_bits, dilation, mips, shell_levels, zstd_level, unit, error, z_up
+ *     and adaptive; not threads, measure, progress, strict or allocator;
  *   - geotex's version and the revision of its cooker,
  * but not the library that decodes images. Where `strict` is asked for, an asset that was cooked
  * with warnings is cooked again; where `charts_ply` is, or importing read what could not be

@@ -41,6 +41,7 @@ enum class PartitionMethod {
 struct ChartOptions {
     PartitionMethod method = PartitionMethod::CUTS;
     unsigned charts = 0;         /* wanted number; 0 = round(10 T^0.28) for T triangles */
+    bool adaptive = false;       /* PGP: smaller cells where the surface is more curved */
     unsigned resolution = 128;   /* most texels along a patch side */
     double pitch = 0;            /* texel pitch for CUTS, object units; 0 = what gives patches
                                     their texels at this resolution */

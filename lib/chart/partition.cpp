@@ -297,7 +297,7 @@ Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &ta
     Surface surface = make_surface(mesh, pitch);
     Partition out;
     if (options.method == PartitionMethod::PGP) {
-        CutMesh cut = square_cells(surface, count, task);
+        CutMesh cut = square_cells(surface, count, options.adaptive, task);
         out.mesh = std::move(cut.mesh);
         out.source = std::move(cut.source);
         out.initial_chart = std::move(cut.label);

@@ -29,6 +29,11 @@ struct HalfEdges {
 };
 HalfEdges make_half_edges(const Surface &surface);
 
+/* Around each vertex, the normal cycle's measure of curvature (Cohen-Steiner, Morvan 2003): each
+ * edge bends by its dihedral angle, in its own direction. An edge counts at both its ends. */
+using Tensor = std::array<double, 9>; /* symmetric */
+std::vector<Tensor> vertex_curvatures(const Surface &surface, const HalfEdges &edges);
+
 /* Four directions a triangle, a quarter turn apart, that follow the surface's curvature. */
 struct CrossField {
     std::vector<double> angle;   /* a triangle: of its first direction */
@@ -42,6 +47,10 @@ CrossField make_cross_field(const Surface &surface, const HalfEdges &edges, Task
 
 /* How long a cell is to be at each vertex, against the mean, for the directions to be gradients. */
 std::vector<double> make_scale(const HalfEdges &edges, const CrossField &field);
+/* Makes them shorter where the surface is more curved, down to half, and longer where it is less, up
+ * to twice; for cells of about this mean length. */
+void adapt_scale(const Surface &surface, const HalfEdges &edges, double cell,
+                 std::vector<double> &scale);
 
 /* Coordinates in a triangle's directions, as those turned by quarters to the left see them. */
 using Uv = std::array<double, 2>;
@@ -100,8 +109,9 @@ struct CutMesh {
 CutMesh cut_mesh(const Mesh &mesh, const Pieces &pieces, const std::vector<uint32_t> &label);
 
 /* Partitions the surface into about `count` connected charts: squares of the parameterization, and
- * what lies around its singularities where that is as large. `count` becomes their number. Throws
- * Error: LIMIT, INPUT, CANCELLED. */
-CutMesh square_cells(const Surface &surface, uint32_t &count, Task &task);
+ * what lies around its singularities where that is as large. Where `adaptive`, they are smaller
+ * where the surface is more curved. `count` becomes their number. Throws Error: LIMIT, INPUT,
+ * CANCELLED. */
+CutMesh square_cells(const Surface &surface, uint32_t &count, bool adaptive, Task &task);
 
 } // namespace gtx

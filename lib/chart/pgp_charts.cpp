@@ -194,13 +194,15 @@ double next_cell(const Try &last, const Try &few, const Try &many)
 
 } // namespace
 
-CutMesh square_cells(const Surface &surface, uint32_t &count, Task &task)
+CutMesh square_cells(const Surface &surface, uint32_t &count, bool adaptive, Task &task)
 {
     if (surface.mesh.triangle_count() > MOST_TRIANGLES)
         throw Error(GTX_ERROR_LIMIT, "the partition pgp takes up to 30 million triangles");
     HalfEdges edges = make_half_edges(surface);
     CrossField field = make_cross_field(surface, edges, task);
     std::vector<double> scale = make_scale(edges, field);
+    if (adaptive)
+        adapt_scale(surface, edges, std::sqrt(surface.area / count), scale);
     std::vector<double> size = cell_areas(surface, edges, scale);
 
     const uint32_t wanted = count;

@@ -8,6 +8,16 @@
 
 namespace gtx {
 
+static Eigen::Vector3d eigen(const Vec3d &v)
+{
+    return {v.x, v.y, v.z};
+}
+
+static Eigen::Map<const Eigen::Matrix3d> matrix(const Tensor &tensor)
+{
+    return Eigen::Map<const Eigen::Matrix3d>(tensor.data());
+}
+
 namespace {
 
 using Complex = std::complex<double>;
@@ -29,32 +39,6 @@ struct Polar {
     std::vector<double> start;   /* a corner: of the half-edge that leaves it */
     std::vector<double> stretch; /* a vertex */
 };
-
-Eigen::Vector3d eigen(const Vec3d &v)
-{
-    return {v.x, v.y, v.z};
-}
-
-/* Around each vertex, the normal cycle's measure of curvature (Cohen-Steiner, Morvan 2003): each
- * edge bends by its dihedral angle, in its own direction. */
-std::vector<Eigen::Matrix3d> vertex_curvatures(const Surface &surface, const HalfEdges &edges)
-{
-    const Mesh &mesh = surface.mesh;
-    std::vector<Eigen::Matrix3d> out(edges.first.size(), Eigen::Matrix3d::Zero());
-    for (uint32_t h = 0; h < edges.opposite.size(); ++h) {
-        uint32_t o = edges.opposite[h];
-        if (o == NO_EDGE || o < h || !(edges.length[h] > 0))
-            continue;
-        Vec3d e = (mesh.positions[start_of(mesh, o)] - mesh.positions[start_of(mesh, h)]) /
-                  edges.length[h];
-        Vec3d a = normalize(mesh.area_vector(h / 3)), b = normalize(mesh.area_vector(o / 3));
-        double bend = std::atan2(dot(cross(a, b), e), dot(a, b)) * edges.length[h];
-        Eigen::Matrix3d part = eigen(e) * eigen(e).transpose() * bend;
-        out[edges.vertex[h]] += part;
-        out[edges.vertex[o]] += part;
-    }
-    return out;
-}
 
 Polar make_polar(const HalfEdges &edges)
 {
@@ -102,7 +86,7 @@ double along_edge(const HalfEdges &edges, const Polar &polar, uint32_t h)
 Guide curvature_guide(const Surface &surface, const HalfEdges &edges)
 {
     const Mesh &mesh = surface.mesh;
-    std::vector<Eigen::Matrix3d> at_vertex = vertex_curvatures(surface, edges);
+    std::vector<Tensor> at_vertex = vertex_curvatures(surface, edges);
     Guide out;
     double largest = 0;
     for (uint32_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -110,7 +94,7 @@ Guide curvature_guide(const Surface &surface, const HalfEdges &edges)
         Vec3d y = cross(normalize(mesh.area_vector(t)), x);
         Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
         for (uint32_t c = 3 * t; c < 3 * t + 3; ++c)
-            tensor += at_vertex[edges.vertex[c]];
+            tensor += matrix(at_vertex[edges.vertex[c]]);
         Eigen::Vector3d tx = tensor * eigen(x), ty = tensor * eigen(y);
         Complex twice(eigen(x).dot(tx) - eigen(y).dot(ty), 2 * eigen(x).dot(ty));
         double size = std::abs(twice);
@@ -236,6 +220,25 @@ void find_indices(const HalfEdges &edges, CrossField &field)
 }
 
 } // namespace
+
+std::vector<Tensor> vertex_curvatures(const Surface &surface, const HalfEdges &edges)
+{
+    const Mesh &mesh = surface.mesh;
+    std::vector<Tensor> out(edges.first.size(), Tensor{});
+    for (uint32_t h = 0; h < edges.opposite.size(); ++h) {
+        uint32_t o = edges.opposite[h];
+        if (o == NO_EDGE || o < h || !(edges.length[h] > 0))
+            continue;
+        Vec3d e = (mesh.positions[start_of(mesh, o)] - mesh.positions[start_of(mesh, h)]) /
+                  edges.length[h];
+        Vec3d a = normalize(mesh.area_vector(h / 3)), b = normalize(mesh.area_vector(o / 3));
+        double bend = std::atan2(dot(cross(a, b), e), dot(a, b)) * edges.length[h];
+        Eigen::Matrix3d part = eigen(e) * eigen(e).transpose() * bend;
+        for (uint32_t v : {edges.vertex[h], edges.vertex[o]})
+            Eigen::Map<Eigen::Matrix3d>(out[v].data()) += part;
+    }
+    return out;
+}
 
 CrossField make_cross_field(const Surface &surface, const HalfEdges &edges, Task &task)
 {

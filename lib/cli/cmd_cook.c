@@ -14,7 +14,7 @@ static const char *output, *name, *report_path, *depfile_path;
 static uint32_t partition, extract;
 static double unit = 1;
 static int32_t zstd_level = 3;
-static bool strict, if_changed;
+static bool adaptive, strict, if_changed;
 
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes, - for stdout", 0, 0},
@@ -23,6 +23,8 @@ static const option options[] = {
      512},
     {"partition", 0, OPTION_CHOICE, &partition, "cuts|vsa|pgp",
      "how the surface is cut into patches [cuts]", 0, 0},
+    {"adaptive", 0, OPTION_FLAG, &adaptive, NULL,
+     "with --partition pgp: smaller patches where the surface is more curved", 0, 0},
     {"extract", 0, OPTION_CHOICE, &extract, "cpu|gpu",
      "what reads the maps off the patches: gpu renders them, through EGL [cpu]", 0, 0},
     {"error", 0, OPTION_NUMBER, &desc.error, "E",
@@ -81,6 +83,8 @@ static int check(const char *const *models, int count)
         return usage("--if-changed needs models that are files");
     if (is_stream(output) && isatty(STDOUT_FILENO))
         return usage("an asset is not written to a terminal");
+    if (adaptive && GTX_PARTITION_CUTS + partition != GTX_PARTITION_PGP)
+        return usage("--adaptive needs --partition pgp");
     return EXIT_CODE_OK;
 }
 
@@ -163,6 +167,7 @@ int cmd_cook(int argc, char **argv)
     desc.zstd_level = zstd_level ? zstd_level : -1;
     desc.unit = (float)unit;
     desc.measure = report_path != NULL;
+    desc.adaptive = adaptive;
     desc.strict = strict;
     desc.if_changed = if_changed;
     desc.more = models + 1;

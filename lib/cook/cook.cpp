@@ -75,8 +75,8 @@ static Asset make_asset(const Maps &maps, const std::vector<ShellLevel> &shell,
     Json meta(options.allocator);
     write_meta({partition_name(options), facts.chart_count, options.chart.resolution,
                 maps.height_bits, maps.mip_count, options.bake.dilation, options.shell_levels,
-                options.z_up, options.bake.extractor != nullptr, facts.source_triangles,
-                facts.source_hash, facts.key, facts.warnings},
+                options.z_up, options.bake.extractor != nullptr, options.chart.adaptive,
+                facts.source_triangles, facts.source_hash, facts.key, facts.warnings},
                meta);
     const std::vector<const uint8_t *> normal = level_pointers(maps.normal),
                                        color = level_pointers(maps.color),

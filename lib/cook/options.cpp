@@ -55,6 +55,9 @@ void check(const gtx_cook_desc &desc)
     require_argument(desc.error >= 0 && desc.error < 1, "error is a fraction of the diagonal");
     require_argument(desc.error == 0 || number_of(desc.partition) <= GTX_PARTITION_CUTS,
                      "an error can be asked for with the partition cuts only");
+    require_argument(desc.adaptive <= 1, "adaptive is 0 or 1");
+    require_argument(!desc.adaptive || number_of(desc.partition) == GTX_PARTITION_PGP,
+                     "only the partition pgp can be adaptive");
     require_argument(desc.measure <= 1, "measure is 0 or 1");
     require_argument(desc.z_up <= 1, "z_up is 0 or 1");
     require_argument(desc.strict <= 1, "strict is 0 or 1");
@@ -67,6 +70,7 @@ Options options_of(const gtx_cook_desc &desc)
     Options options;
     options.chart.charts = desc.charts;
     options.chart.method = METHODS[number_of(desc.partition)];
+    options.chart.adaptive = desc.adaptive;
     if (desc.resolution)
         options.chart.resolution = desc.resolution;
     if (desc.height_bits)
@@ -117,6 +121,8 @@ uint64_t content_key(const Options &options, uint64_t source_hash)
                         error_bits,
                         options.z_up ? 'z' : 'y');
     std::string text(numbers, size_t(size));
+    if (options.chart.adaptive)
+        text += " adaptive";
     if (const Extractor *gpu = options.bake.extractor)
         text += " extract gpu " + gpu->renderer() + " " + gpu->version();
     return gtx_hash_bytes(text.data(), text.size());

@@ -251,6 +251,8 @@ void write_meta(const MetaFacts &facts, Json &json)
     gtx_json_string(&json, "generator", generator);
     gtx_json_begin_object(&json, "options");
     gtx_json_string(&json, "partition", facts.partition);
+    if (facts.adaptive)
+        gtx_json_bool(&json, "adaptive", true);
     gtx_json_integer(&json, "charts", facts.charts);
     gtx_json_integer(&json, "resolution", facts.resolution);
     gtx_json_integer(&json, "height_bits", facts.height_bits);

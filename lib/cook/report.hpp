@@ -66,7 +66,7 @@ struct Report : gtx_report {
 struct MetaFacts {
     const char *partition;
     uint64_t charts, resolution, height_bits, mips, dilation, shell_levels;
-    bool z_up, by_gpu;
+    bool z_up, by_gpu, adaptive;
     uint64_t source_triangles, source_hash, key, warnings;
 };
 void write_meta(const MetaFacts &facts, Json &json);

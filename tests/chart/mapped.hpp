@@ -28,10 +28,11 @@ struct Mapped {
     double cell_for(double count) const { return std::sqrt(surface.area / count); }
 };
 
-inline gtx::CutMesh cells(const gtx::Mesh &mesh, uint32_t &count, unsigned threads = 2)
+inline gtx::CutMesh cells(const gtx::Mesh &mesh, uint32_t &count, unsigned threads = 2,
+                          bool adaptive = false)
 {
     gtx::Task task(threads, nullptr, nullptr, {"partition"});
     task.begin("partition");
     gtx::Surface surface = gtx::make_surface(mesh, gtx::expected_pitch(mesh, count));
-    return gtx::square_cells(surface, count, task);
+    return gtx::square_cells(surface, count, adaptive, task);
 }

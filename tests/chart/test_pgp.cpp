@@ -207,15 +207,20 @@ static void wanted_count(void **)
         }
 }
 
+/* The same where cells adapt. */
 static gtx_result result_of(const Mesh &mesh)
 {
-    uint32_t count = 20;
-    try {
-        cells(mesh, count);
-    } catch (const Error &e) {
-        return e.result;
+    gtx_result results[2] = {GTX_OK, GTX_OK};
+    for (bool adaptive : {false, true}) {
+        uint32_t count = 20;
+        try {
+            cells(mesh, count, 2, adaptive);
+        } catch (const Error &e) {
+            results[adaptive] = e.result;
+        }
     }
-    return GTX_OK;
+    assert_int_equal(results[true], results[false]);
+    return results[false];
 }
 
 /* An error or an answer, but soon. */
@@ -252,16 +257,19 @@ static void degenerate_meshes(void **)
 /* The unit of length is no part of the answer, nor is the number of threads. */
 static void same_answer(void **)
 {
-    Mesh mesh = shapes::both(shapes::bumpy_sphere(20), shapes::torus(20, 0.3), {4, 0, 0});
-    uint32_t count = 50, other = 50;
-    CutMesh cut = cells(mesh, count, 1), again = cells(mesh, other, 4);
-    assert_true(again.label == cut.label && again.mesh.positions == cut.mesh.positions);
-    assert_true(again.mesh.triangles == cut.mesh.triangles);
-    assert_int_equal(other, count);
-    for (Vec3d &v : mesh.positions)
+    const Mesh mesh = shapes::both(shapes::bumpy_sphere(20), shapes::torus(20, 0.3), {4, 0, 0});
+    Mesh large = mesh;
+    for (Vec3d &v : large.positions)
         v *= 8;
-    other = 50;
-    assert_true(cells(mesh, other).label == cut.label);
+    for (bool adaptive : {false, true}) {
+        uint32_t count = 50, other = 50;
+        CutMesh cut = cells(mesh, count, 1, adaptive), again = cells(mesh, other, 4, adaptive);
+        assert_true(again.label == cut.label && again.mesh.positions == cut.mesh.positions);
+        assert_true(again.mesh.triangles == cut.mesh.triangles);
+        assert_int_equal(other, count);
+        other = 50;
+        assert_true(cells(large, other, 2, adaptive).label == cut.label);
+    }
 }
 
 int main(void)

@@ -35,6 +35,10 @@ static void streams_carry_models_and_assets(void **state)
     expect_text("stdout: error[write]");
     expect(gtx("cook sphere.obj - -o b.gtx"), 1);
     expect(gtx("cook sphere.obj -o - --depfile d"), 1);
+    expect(gtx("cook sphere.obj -o b.gtx --adaptive"), 1);
+    expect(gtx("cook sphere.obj -o b.gtx --partition vsa --adaptive"), 1);
+    expect(gtx("cook sphere.obj -o c.gtx --partition pgp --adaptive"), 0);
+    expect(gtx("validate c.gtx"), 0);
     expect(gtx("cook sphere.obj -o - --if-changed"), 1);
     expect(gtx("cook - --name a.obj -o b.gtx --if-changed <sphere.obj"), 1);
     same_files("a.gtx", "b.gtx");

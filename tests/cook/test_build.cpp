@@ -91,6 +91,19 @@ static void age(const std::string &path)
     fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::hours(48));
 }
 
+static void adaptive_cells_are_told(void **)
+{
+    std::string output = in_folder("adaptive.gtx");
+    for (uint32_t adaptive : {0u, 1u}) {
+        gtx_cook_desc desc = few_charts;
+        desc.partition = GTX_PARTITION_PGP;
+        desc.adaptive = adaptive;
+        cook(small_ball_file(), output, desc);
+        assert_true(meta_of(output)["options"].value("adaptive", false) == bool(adaptive));
+    }
+    fs::remove(output);
+}
+
 static void each_option_that_matters_changes_the_key(void **)
 {
     using Change = void (*)(gtx_cook_desc &);
@@ -103,7 +116,8 @@ static void each_option_that_matters_changes_the_key(void **)
         [](gtx_cook_desc &d) { d.shell_levels = 2; },
         [](gtx_cook_desc &d) { d.shell_levels = 5; },
         [](gtx_cook_desc &d) { d.partition = GTX_PARTITION_VSA; },
-        [](gtx_cook_desc &d) { d.partition = GTX_PARTITION_PGP; }};
+        [](gtx_cook_desc &d) { d.partition = GTX_PARTITION_PGP; },
+        [](gtx_cook_desc &d) { d.partition = GTX_PARTITION_PGP, d.adaptive = 1; }};
     std::set<std::string> keys = {key_of(small_ball_file())};
     for (Change change : matter) {
         gtx_cook_desc desc = few_charts;
@@ -565,6 +579,7 @@ int main()
 {
     const CMUnitTest tests[] = {
         cmocka_unit_test(each_option_that_matters_changes_the_key),
+        cmocka_unit_test(adaptive_cells_are_told),
         cmocka_unit_test(each_source_changes_the_key),
         cmocka_unit_test(the_sources_are_all_that_is_read),
         cmocka_unit_test(other_files_are_not_looked_at),

@@ -165,12 +165,17 @@ static void wrong_arguments_are_refused(void **)
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.threads = 1025; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.unit = -1; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.unit = NAN; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.adaptive = 1; }},
+        {GTX_ERROR_ARGUMENT,
+         [](gtx_cook_desc &d) { d.adaptive = 1, d.partition = GTX_PARTITION_VSA; }},
+        {GTX_ERROR_ARGUMENT,
+         [](gtx_cook_desc &d) { d.adaptive = 2, d.partition = GTX_PARTITION_PGP; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.measure = 2; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.z_up = 2; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.strict = 2; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.if_changed = 2; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.more_count = 1; }},
-        {GTX_ERROR_NOT_ZEROED, [](gtx_cook_desc &d) { d.reserved[7] = 1; }},
+        {GTX_ERROR_NOT_ZEROED, [](gtx_cook_desc &d) { d.reserved[6] = 1; }},
     };
     std::string output = in_folder("e.gtx");
     for (const auto &c : cases) {
