@@ -18,6 +18,7 @@ constexpr double SMALLEST_SHARE = 1.0 / 16; /* of a patch's texels: cut no furth
 constexpr double PATCH_PRICE = 0.1;    /* likewise: what one more patch has to save */
 constexpr double AHEAD_SHARE = 16;     /* likewise: larger nodes are far from their leaves yet */
 constexpr size_t CANDIDATES = 6;       /* cuts whose next cuts are looked at */
+constexpr double MOST_TURNED = 4;       /* of a chart, texels when it is turned */
 constexpr double BALANCE = 1e-6;       /* texels: of cuts that are worth the same, the middle one */
 
 /* Sums over heights at texels, to fit a plane to. */
@@ -345,6 +346,8 @@ size_t prune_all(std::vector<CutTree> &trees, size_t turns, double price,
     for (size_t first = 0; first < trees.size(); first += turns) {
         size_t least = first;
         for (size_t t = first; t < first + turns; ++t) {
+            if (trees[t].nodes.empty())
+                continue;
             prune(trees[t], price);
             if (trees[t].nodes[0].least < trees[least].nodes[0].least)
                 least = t;
@@ -402,6 +405,11 @@ Relief turn_relief(const Relief &relief, double turn, int coarse)
     out.size[0] = 1 + int(std::fabs(c) * w + std::fabs(s) * h);
     out.size[1] = 1 + int(std::fabs(s) * w + std::fabs(c) * h);
     out.corner[0] = out.corner[1] = 0;
+    const double texels = double(out.size[0]) * out.size[1];
+    if (turn != 0 && texels > MOST_TURNED * (1 + w / coarse) * (1 + h / coarse)) {
+        out.size[0] = out.size[1] = 0;
+        return out;
+    }
     out.height.assign(size_t(out.size[0]) * size_t(out.size[1]), NAN);
     out.touched.assign(out.height.size(), 0);
     for (int j = 0; j < relief.size[1]; ++j) {
@@ -426,7 +434,8 @@ CutTree grow_cut_tree(Relief relief, const CutPlan &plan, double share)
 {
     CutTree tree;
     tree.relief = std::move(relief);
-    tree.nodes = Grower(tree.relief, plan, share).grow();
+    if (!tree.relief.touched.empty())
+        tree.nodes = Grower(tree.relief, plan, share).grow();
     return tree;
 }
 

@@ -19,7 +19,7 @@ struct Relief {
 Relief make_relief(const Surface &surface, const Region &region, const Frame &frame, double pitch);
 
 /* The same turned about z by `turn` radians, `coarse` times as coarse: what a chart would look like
- * in a turned frame, roughly. */
+ * in a turned frame, roughly. Without texels where it would take far more of them: a blade. */
 Relief turn_relief(const Relief &relief, double turn, int coarse);
 
 /* Texels low to high - 1 along each axis. */
@@ -59,7 +59,8 @@ CutTree grow_cut_tree(Relief relief, const CutPlan &plan, double share);
 void divide_trees(std::vector<CutTree> &trees, size_t wanted);
 
 /* Of each run of `turns` trees, which are of one chart, the index of the one that takes the fewest
- * texels when all charts together have at most `wanted` leaves. */
+ * texels when all charts together have at most `wanted` leaves. Of a run all but the first may have
+ * no nodes. */
 std::vector<size_t> choose_turns(std::vector<CutTree> &trees, size_t turns, size_t wanted);
 
 } // namespace gtx
