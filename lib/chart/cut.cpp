@@ -69,8 +69,6 @@ private:
 
 void Harvest::descend(const CutNode &node, std::vector<Piece> pieces)
 {
-    if (node.tight.empty())
-        return;
     if (!node.divided) {
         make_patch(node, pieces);
         return;

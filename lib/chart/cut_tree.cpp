@@ -249,6 +249,8 @@ std::vector<Cut> Grower::list_cuts(const Rect &region, const Rect &within, const
             below.add(slices[axis][i - 1]);
             if (at < all.box.low[axis] + least_ || at > all.box.high[axis] - least_)
                 continue;
+            if (!(below.moments.n > 0 && above[i].moments.n > 0))
+                continue; /* what passes between all texel centres makes no patch of its own */
             Half low = half_of(region, cuts, axis, at, 0), high = half_of(region, cuts, axis, at, 1);
             double off_middle = std::fabs(all.box.low[axis] + all.box.high[axis] - 2. * at);
             out.push_back({value(below, low.region, low.cuts) +
@@ -296,8 +298,7 @@ void Grower::grow_node(size_t n, std::vector<CutNode> &nodes) const
     std::vector<Cut> cuts = list_cuts(node.region, node.tight, node.cuts, all);
     std::sort(cuts.begin(), cuts.end());
     double patches;
-    /* What passes between all texel centres is left to the overlap of others. */
-    node.tight = all.moments.n > 0 || n == 0 ? all.box : Rect{};
+    node.tight = all.box;
     node.cost = cost(all, node.region, node.cuts, patches);
     const bool fits = patches <= 1;
     if (!cuts.empty() && !(fits && node.cost < smallest_)) {
@@ -322,8 +323,8 @@ void prune(CutTree &tree, double price)
 {
     for (size_t n = tree.nodes.size(); n-- > 0;) {
         CutNode &node = tree.nodes[n];
-        node.leaves = !node.tight.empty();
-        node.least = node.leaves ? node.cost + price : 0;
+        node.leaves = 1;
+        node.least = node.cost + price;
         node.divided = false;
         if (node.child[0] < 0)
             continue;

@@ -10,8 +10,8 @@ namespace {
 using Sample = LayerGrid::Sample;
 
 /* Groups of doubled samples so small and so shallow are a scan's noise. */
-constexpr size_t JUNK_SAMPLES = 1;
-constexpr double JUNK_PITCHES = 2;
+constexpr size_t JUNK_SAMPLES = 2;
+constexpr double JUNK_PITCHES = 1.5;
 /* Layers closer than this share of the diagonal are one. */
 constexpr double LAYER_DISTANCE = 1e-4;
 /* Steps between neighbouring texels beyond which the surface must be seen to lead from one to the

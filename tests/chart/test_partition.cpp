@@ -140,8 +140,7 @@ static void check(const Mesh &source, const Partition &p, double largest_guest =
     }
     assert_true(std::all_of(used.begin(), used.end(),
                             [=](int n) { return cut ? n >= 1 : n == 1; }));
-    /* where patches end between all texel centres, a sliver is nobody's own */
-    assert_in_range(owned, source.triangle_count() * 999 / 1000, source.triangle_count());
+    assert_int_equal(owned, source.triangle_count());
     assert_true(p.report.initial_inverted <= source.triangle_count());
     if (!cut)
         assert_true(longest / p.pitch < 128 + 1e-6);
