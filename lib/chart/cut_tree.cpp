@@ -15,10 +15,11 @@ constexpr double LEAST_SIDE = 0.1;     /* of a square patch's */
 constexpr double RELIEF_COST = 20;     /* of height steps beside texels, both squared */
 constexpr double RANGE = 4;            /* heights lie within as many standard deviations */
 constexpr double SMALLEST_SHARE = 1.0 / 16; /* of a patch's texels: cut no further */
+constexpr double SMALLEST_TRIED = 1.0 / 4;  /* likewise, where a turn of the frame is only tried */
 constexpr double PATCH_PRICE = 0.1;    /* likewise: what one more patch has to save */
 constexpr double AHEAD_SHARE = 16;     /* likewise: larger nodes are far from their leaves yet */
 constexpr size_t CANDIDATES = 6;       /* cuts whose next cuts are looked at */
-constexpr double MOST_TURNED = 4;       /* of a chart, texels when it is turned */
+constexpr double MOST_TURNED = 4;      /* of a chart, texels when it is turned */
 constexpr double BALANCE = 1e-6;       /* texels: of cuts that are worth the same, the middle one */
 
 /* Sums over heights at texels, to fit a plane to. */
@@ -119,16 +120,24 @@ Half half_of(const Rect &region, const Cuts &cuts, int axis, int at, int side)
     return half;
 }
 
+/* Columns or rows of a part of the chart, in order. */
+struct Lines {
+    int first; /* coordinate of the first */
+    std::vector<Slice> slices;
+};
+
 class Grower {
 public:
     Grower(const Relief &relief, const CutPlan &plan, double share)
-        : relief_(relief), plan_(plan), smallest_(SMALLEST_SHARE * share),
-          price_(PATCH_PRICE * share), ahead_(AHEAD_SHARE * share),
+        : relief_(relief), plan_(plan), smallest_((relief.coarse > 1 ? SMALLEST_TRIED : SMALLEST_SHARE) * share),
+          price_(PATCH_PRICE * share), ahead_(relief.coarse > 1 ? 0 : AHEAD_SHARE * share),
           least_(std::max(LEAST_CELLS, int(LEAST_SIDE * std::sqrt(share))) / relief.coarse)
     {
+        for (unsigned n = 0; n <= plan.side; ++n)
+            rounded_.push_back(rounded(n));
     }
 
-    std::vector<CutNode> grow() const
+    std::vector<CutNode> grow()
     {
         CutNode root;
         root.region = root.tight = {{0, 0}, {relief_.size[0], relief_.size[1]}};
@@ -139,39 +148,45 @@ public:
     }
 
 private:
-    void grow_node(size_t n, std::vector<CutNode> &nodes) const;
-    void slice(const Rect &box, std::vector<Slice> slices[2]) const;
-    std::vector<Cut> list_cuts(const Rect &region, const Rect &within, const Cuts &cuts,
-                               Slice &all) const;
-    Cut look_ahead(const CutNode &node, const std::vector<Cut> &sorted) const;
+    void grow_node(size_t n, std::vector<CutNode> &nodes);
+    std::vector<Lines> parts(const Rect &box, int axis, const std::vector<int> &across) const;
+    template <class Visit>
+    void sweep(const Lines &lines, int axis, const Rect &region, const Cuts &cuts, Visit visit);
+    double best_half(const Lines &along, const Lines &across, int axis, const Half &half);
+    Cut look_ahead(const CutNode &node, const Rect &box, const Lines lines[2],
+                   const std::vector<Cut> &sorted);
     double texels(const Rect &box, const Cuts &cuts, double &patches) const;
-    double cost(const Slice &s, const Rect &region, const Cuts &cuts, double &patches) const;
+    double area(const Slice &s, const Rect &region, const Cuts &cuts, double &patches) const;
+    double relief(const Slice &s) const;
     double value(const Slice &s, const Rect &region, const Cuts &cuts) const
     {
-        double patches, texels = cost(s, region, cuts, patches);
-        return texels + patches * price_;
+        double patches, texels = area(s, region, cuts, patches);
+        return texels * relief(s) + patches * price_;
+    }
+    double rounded(unsigned n) const /* on average, where the grid is too coarse to tell */
+    {
+        const unsigned grain = plan_.grain;
+        return relief_.coarse > 1 ? n + (grain - 1) / 2. : (n + grain - 1) / grain * grain;
     }
 
     const Relief &relief_;
     const CutPlan &plan_;
     double smallest_, price_, ahead_;
     int least_;
+    std::vector<double> rounded_;
+    std::vector<Slice> above_; /* of the sweep at hand */
 };
 
 /* Texels of a box, in as many patches as the longest side allows. */
 double Grower::texels(const Rect &box, const Cuts &cuts, double &patches) const
 {
-    const unsigned grain = plan_.grain;
-    auto rounded = [&](unsigned n) { /* on average, where the grid is too coarse to tell */
-        return relief_.coarse > 1 ? n + (grain - 1) / 2. : (n + grain - 1) / grain * grain;
-    };
     double total = 1;
     patches = 1;
     for (int axis = 0; axis < 2; ++axis) {
         unsigned n = unsigned(box.side(axis) * relief_.coarse) +
                      plan_.overlap[!cuts[size_t(2 * axis)]] +
                      plan_.overlap[!cuts[size_t(2 * axis + 1)]];
-        double side = rounded(n);
+        double side = n < rounded_.size() ? rounded_[n] : INFINITY;
         if (side > plan_.side) {
             unsigned rest = 2 * plan_.overlap[0], parts = 1 + (n - 1) / (plan_.side - rest);
             side = parts * rounded((n + parts - 1) / parts + rest);
@@ -182,8 +197,8 @@ double Grower::texels(const Rect &box, const Cuts &cuts, double &patches) const
     return total;
 }
 
-/* What a part of the chart costs in a region: texels, more where heights resolve less than they. */
-double Grower::cost(const Slice &s, const Rect &region, const Cuts &cuts, double &patches) const
+/* Texels of what lies in a region. */
+double Grower::area(const Slice &s, const Rect &region, const Cuts &cuts, double &patches) const
 {
     patches = 0;
     if (s.box.empty())
@@ -194,115 +209,174 @@ double Grower::cost(const Slice &s, const Rect &region, const Cuts &cuts, double
         own[low] = cuts[low] && s.box.low[axis] == region.low[axis];
         own[low + 1] = cuts[low + 1] && s.box.high[axis] == region.high[axis];
     }
-    double steps = RANGE / plan_.steps * relief_.coarse;
-    return texels(s.box, own, patches) * (1 + RELIEF_COST * steps * steps * s.moments.residual());
+    return texels(s.box, own, patches);
 }
 
-/* The columns and rows of a box. */
-void Grower::slice(const Rect &box, std::vector<Slice> slices[2]) const
+/* How much more a texel costs where heights resolve less than texels. */
+double Grower::relief(const Slice &s) const
 {
-    std::vector<Line> columns(size_t(box.side(0)));
-    for (int j = box.low[1]; j < box.high[1]; ++j) {
-        Line row;
+    double steps = RANGE / plan_.steps * relief_.coarse;
+    return 1 + RELIEF_COST * steps * steps * s.moments.residual();
+}
+
+/* The columns (axis 0) or rows of a box, in parts that end at the coordinates `across` of the other
+ * axis, of which the last is where the box ends. */
+std::vector<Lines> Grower::parts(const Rect &box, int axis, const std::vector<int> &across) const
+{
+    const size_t count = size_t(box.side(axis));
+    std::vector<size_t> part_of; /* a coordinate of the other axis */
+    for (int at = box.low[!axis]; at < box.high[!axis]; ++at) {
+        bool next = !part_of.empty() && at == across[part_of.back()];
+        part_of.push_back(part_of.empty() ? 0 : part_of.back() + next);
+    }
+    std::vector<Line> sums(across.size() * count);
+    for (int j = box.low[1]; j < box.high[1]; ++j)
         for (int i = box.low[0]; i < box.high[0]; ++i) {
-            size_t texel = relief_.at(i, j);
+            const size_t texel = relief_.at(i, j);
             if (!relief_.touched[texel])
                 continue;
-            Line &column = columns[size_t(i - box.low[0])];
-            column.touch(j);
-            row.touch(i);
+            const int line = (axis ? j : i) - box.low[axis], at = axis ? i : j;
+            Line &sum = sums[part_of[size_t(at - box.low[!axis])] * count + size_t(line)];
+            sum.touch(at);
             double height = double(relief_.height[texel]);
-            if (!std::isnan(height)) {
-                column.add(j, height);
-                row.add(i, height);
-            }
+            if (!std::isnan(height))
+                sum.add(at, height);
         }
-        slices[1].push_back(row.slice(1, j));
-    }
-    for (size_t i = 0; i < columns.size(); ++i)
-        slices[0].push_back(columns[i].slice(0, box.low[0] + int(i)));
-}
-
-/* Every cut of a region, valued by its two sides as they are. Nothing lies outside `within`; `all`
- * gets what lies inside. */
-std::vector<Cut> Grower::list_cuts(const Rect &region, const Rect &within, const Cuts &cuts,
-                                   Slice &all) const
-{
-    Rect box;
-    for (int k = 0; k < 2; ++k) {
-        box.low[k] = std::max(region.low[k], within.low[k]);
-        box.high[k] = std::max(box.low[k], std::min(region.high[k], within.high[k]));
-    }
-    std::vector<Slice> slices[2];
-    slice(box, slices);
-    std::vector<Cut> out;
-    for (int axis = 0; axis < 2; ++axis) {
-        std::vector<Slice> above(slices[axis].size() + 1);
-        for (size_t i = slices[axis].size(); i-- > 0;) {
-            above[i] = above[i + 1];
-            above[i].add(slices[axis][i]);
-        }
-        all = above[0];
-        Slice below;
-        for (int at = box.low[axis] + 1; at < box.high[axis]; ++at) {
-            size_t i = size_t(at - box.low[axis]);
-            below.add(slices[axis][i - 1]);
-            if (at < all.box.low[axis] + least_ || at > all.box.high[axis] - least_)
-                continue;
-            if (!(below.moments.n > 0 && above[i].moments.n > 0))
-                continue; /* what passes between all texel centres makes no patch of its own */
-            Half low = half_of(region, cuts, axis, at, 0), high = half_of(region, cuts, axis, at, 1);
-            double off_middle = std::fabs(all.box.low[axis] + all.box.high[axis] - 2. * at);
-            out.push_back({value(below, low.region, low.cuts) +
-                               value(above[i], high.region, high.cuts) + BALANCE * off_middle,
-                           axis, at});
-        }
+    std::vector<Lines> out;
+    for (size_t part = 0; part < across.size(); ++part) {
+        out.push_back({box.low[axis], {}});
+        for (size_t i = 0; i < count; ++i)
+            out[part].slices.push_back(sums[part * count + i].slice(axis, box.low[axis] + int(i)));
     }
     return out;
 }
 
+/* Visits every cut between lines: where, and what lies below and above it. Nowhere else in the
+ * region lies anything. */
+template <class Visit>
+void Grower::sweep(const Lines &lines, int axis, const Rect &region, const Cuts &cuts, Visit visit)
+{
+    const std::vector<Slice> &slices = lines.slices;
+    above_.assign(slices.size() + 1, {});
+    for (size_t i = slices.size(); i-- > 0;) {
+        above_[i] = above_[i + 1];
+        above_[i].add(slices[i]);
+    }
+    const Rect &box = above_[0].box;
+    Slice below;
+    for (size_t i = 1; i < slices.size(); ++i) {
+        below.add(slices[i - 1]);
+        const int at = lines.first + int(i);
+        if (at < box.low[axis] + least_ || at > box.high[axis] - least_)
+            continue;
+        if (!(below.moments.n > 0 && above_[i].moments.n > 0))
+            continue; /* what passes between all texel centres makes no patch of its own */
+        visit(at, below, above_[i], half_of(region, cuts, axis, at, 0),
+              half_of(region, cuts, axis, at, 1));
+    }
+}
+
+/* What a half costs, whole or after its best cut: its lines along the axis of the cut that made it,
+ * and across. */
+double Grower::best_half(const Lines &along, const Lines &across, int axis, const Half &half)
+{
+    double least = INFINITY;
+    for (int turn = 0; turn < 2; ++turn) {
+        sweep(turn ? across : along, turn ? !axis : axis, half.region, half.cuts,
+              [&](int, const Slice &below, const Slice &above, const Half &low, const Half &high) {
+                  double patches[2];
+                  double texels[2] = {area(below, low.region, low.cuts, patches[0]),
+                                      area(above, high.region, high.cuts, patches[1])};
+                  double price = (patches[0] + patches[1]) * price_;
+                  if (texels[0] + texels[1] + price < least) /* before what relief adds */
+                      least = std::min(least, texels[0] * relief(below) +
+                                                  texels[1] * relief(above) + price);
+              });
+        if (!turn)
+            least = std::min(least, value(above_[0], half.region, half.cuts));
+    }
+    return least;
+}
+
 /* The best of the first few cuts that are not beside each other, each with the best cut that may
  * follow on its two sides. */
-Cut Grower::look_ahead(const CutNode &node, const std::vector<Cut> &sorted) const
+Cut Grower::look_ahead(const CutNode &node, const Rect &box, const Lines lines[2],
+                       const std::vector<Cut> &sorted)
 {
-    Cut best;
     std::vector<Cut> tried;
     for (const Cut &cut : sorted) {
         if (tried.size() == CANDIDATES)
             break;
-        if (std::any_of(tried.begin(), tried.end(), [&](const Cut &t) {
+        if (std::none_of(tried.begin(), tried.end(), [&](const Cut &t) {
                 return t.axis == cut.axis && std::abs(t.at - cut.at) < least_ / 2;
             }))
+            tried.push_back(cut);
+    }
+    Cut best;
+    for (int axis = 0; axis < 2; ++axis) {
+        std::vector<int> across;
+        for (const Cut &cut : tried)
+            if (cut.axis == axis)
+                across.push_back(cut.at);
+        if (across.empty())
             continue;
-        tried.push_back(cut);
-        double sum = 0;
-        for (int side = 0; side < 2; ++side) {
-            Half half = half_of(node.region, node.cuts, cut.axis, cut.at, side);
-            Slice all;
-            std::vector<Cut> next = list_cuts(half.region, node.tight, half.cuts, all);
-            double least = value(all, half.region, half.cuts);
-            for (const Cut &n : next)
-                least = std::min(least, n.value);
-            sum += least;
+        std::sort(across.begin(), across.end());
+        across.push_back(box.high[axis]);
+        std::vector<Lines> low = parts(box, !axis, across), high = low;
+        for (size_t part = 1; part < across.size(); ++part)
+            for (size_t i = 0; i < low[part].slices.size(); ++i) {
+                low[part].slices[i].add(low[part - 1].slices[i]);
+                size_t back = across.size() - 1 - part;
+                high[back].slices[i].add(high[back + 1].slices[i]);
+            }
+        const std::vector<Slice> &all = lines[axis].slices;
+        for (size_t part = 0; part + 1 < across.size(); ++part) {
+            auto middle = all.begin() + (across[part] - lines[axis].first);
+            Lines along[2] = {{lines[axis].first, {all.begin(), middle}},
+                              {across[part], {middle, all.end()}}};
+            double sum = 0;
+            for (int side = 0; side < 2; ++side)
+                sum += best_half(along[side], side ? high[part + 1] : low[part], axis,
+                                 half_of(node.region, node.cuts, axis, across[part], side));
+            Cut cut = {sum, axis, across[part]};
+            if (cut < best)
+                best = cut;
         }
-        if (sum < best.value)
-            best = {sum, cut.axis, cut.at};
     }
     return best;
 }
 
-void Grower::grow_node(size_t n, std::vector<CutNode> &nodes) const
+void Grower::grow_node(size_t n, std::vector<CutNode> &nodes)
 {
     CutNode node = nodes[n];
+    Rect box;
+    for (int k = 0; k < 2; ++k) {
+        box.low[k] = std::max(node.region.low[k], node.tight.low[k]);
+        box.high[k] = std::max(box.low[k], std::min(node.region.high[k], node.tight.high[k]));
+    }
+    Lines lines[2];
+    std::vector<Cut> cuts;
     Slice all;
-    std::vector<Cut> cuts = list_cuts(node.region, node.tight, node.cuts, all);
+    for (int axis = 0; axis < 2; ++axis) {
+        lines[axis] = std::move(parts(box, axis, {box.high[!axis]})[0]);
+        sweep(lines[axis], axis, node.region, node.cuts,
+              [&](int at, const Slice &below, const Slice &above, const Half &low,
+                  const Half &high) {
+                  const Rect &whole = above_[0].box;
+                  double off_middle = std::fabs(whole.low[axis] + whole.high[axis] - 2. * at);
+                  cuts.push_back({value(below, low.region, low.cuts) +
+                                      value(above, high.region, high.cuts) + BALANCE * off_middle,
+                                  axis, at});
+              });
+        all = above_[0];
+    }
     std::sort(cuts.begin(), cuts.end());
     double patches;
     node.tight = all.box;
-    node.cost = cost(all, node.region, node.cuts, patches);
+    node.cost = area(all, node.region, node.cuts, patches) * relief(all);
     const bool fits = patches <= 1;
     if (!cuts.empty() && !(fits && node.cost < smallest_)) {
-        Cut cut = node.cost < ahead_ ? look_ahead(node, cuts) : cuts[0];
+        Cut cut = node.cost < ahead_ ? look_ahead(node, box, lines, cuts) : cuts[0];
         for (int side = 0; side < 2; ++side) {
             Half half = half_of(node.region, node.cuts, cut.axis, cut.at, side);
             CutNode child;
