@@ -165,7 +165,7 @@ $(out)/samples/%: $(out)/samples/%.o $(call objects_of,host image) $(lib_cook) $
 # ---- installation: exactly the files of lib/package/files, below PREFIX --------------------------
 fill = sed -e 's|@PREFIX@|$(PREFIX)|g' -e 's|@VERSION@|$(VERSION)|g' -e 's|@SOVERSION@|$(SOVERSION)|g' \
   -e 's|@CORE_LIBS@|$(call libs_of,asset)|g' -e 's|@COOK_LIBS@|$(call libs_of,mesh)|g'
-verbs := cook info validate unpack pack render view compare
+verbs := cook info validate unpack pack render view compare bench
 to    := $(DESTDIR)$(PREFIX)
 
 $(out)/gen/gtx.1: lib/package/gtx.1.in lib/package/verbs.awk $(command)
@@ -283,16 +283,16 @@ run-demo:
 	@echo $(build)/demo/mixed_scene.png
 
 # ---- benchmarks ----------------------------------------------------------------------------------
-bench: ## frame times of MODEL (default: the sculpt): culled mesh, cast, shell, auto, the paper's search
+bench: ## frame times of MODEL (default: the sculpt) by every method, BENCH="--instances 1,10" and more
 	@$(MAKE) --no-print-directory deps
-	@$(MAKE) --no-print-directory -j$$(nproc) all $(out)/tests/bench/bench
+	@$(MAKE) --no-print-directory -j$$(nproc) all
 	@$(MAKE) --no-print-directory run-bench
 
 run-bench:
 	@mkdir -p $(build)/demo
 	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
 	@$(build)/gtx cook $(MODEL) --shell-levels 5 -o $(build)/demo/bench.gtx
-	@$(out)/tests/bench/bench $(build)/demo/bench.gtx $(MODEL) $(BENCH)
+	@$(build)/gtx bench $(build)/demo/bench.gtx $(MODEL) $(BENCH)
 
 # Models and their charts: the paper's bunny where it is, and MODEL (default: the sculpt without it).
 CHARTS ?= 0
@@ -313,10 +313,6 @@ $(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o $(out)/tests/
     $(lib_cook) $(lib_core)
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh)
-
-$(out)/tests/bench/bench: $(out)/tests/bench/bench.o $(call objects_of,host) $(lib_cook) $(lib_core)
-	$(say) LINK $@
-	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host) -lmeshoptimizer
 
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev nlohmann-json3-dev \

@@ -16,6 +16,7 @@ static const struct {
     {"render", cmd_render, "draw assets and meshes into a PNG, without a window"},
     {"view", cmd_view, "look at assets and meshes in a window"},
     {"compare", cmd_compare, "measure an asset against the mesh it was cooked from"},
+    {"bench", cmd_bench, "time how an asset draws beside the mesh it was cooked from"},
 };
 
 static void print_verbs(FILE *to)

@@ -13,6 +13,7 @@ extern "C" {
 #define GTX_HOST_GL(X)                                                                             \
     X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                                                       \
     X(PFNGLATTACHSHADERPROC, AttachShader)                                                         \
+    X(PFNGLBEGINQUERYPROC, BeginQuery)                                                             \
     X(PFNGLBINDATTRIBLOCATIONPROC, BindAttribLocation)                                             \
     X(PFNGLBINDBUFFERPROC, BindBuffer)                                                             \
     X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                                                   \
@@ -34,6 +35,7 @@ extern "C" {
     X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                                                       \
     X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)                                             \
     X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                                                       \
+    X(PFNGLDELETEQUERIESPROC, DeleteQueries)                                                       \
     X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers)                                           \
     X(PFNGLDELETESHADERPROC, DeleteShader)                                                         \
     X(PFNGLDELETETEXTURESPROC, DeleteTextures)                                                     \
@@ -46,12 +48,14 @@ extern "C" {
     X(PFNGLDRAWELEMENTSPROC, DrawElements)                                                         \
     X(PFNGLENABLEPROC, Enable)                                                                     \
     X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray)                                   \
+    X(PFNGLENDQUERYPROC, EndQuery)                                                                 \
     X(PFNGLFINISHPROC, Finish)                                                                     \
     X(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer)                                   \
     X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)                                         \
     X(PFNGLFRONTFACEPROC, FrontFace)                                                               \
     X(PFNGLGENBUFFERSPROC, GenBuffers)                                                             \
     X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                                                   \
+    X(PFNGLGENQUERIESPROC, GenQueries)                                                             \
     X(PFNGLGENRENDERBUFFERSPROC, GenRenderbuffers)                                                 \
     X(PFNGLGENTEXTURESPROC, GenTextures)                                                           \
     X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                                                   \
@@ -59,6 +63,7 @@ extern "C" {
     X(PFNGLGETINTEGERVPROC, GetIntegerv)                                                           \
     X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                                               \
     X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                                         \
+    X(PFNGLGETQUERYOBJECTUIVPROC, GetQueryObjectuiv)                                               \
     X(PFNGLGETSTRINGPROC, GetString)                                                               \
     X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                                             \
     X(PFNGLISENABLEDPROC, IsEnabled)                                                               \

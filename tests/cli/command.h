@@ -88,7 +88,7 @@ static inline char *slurp(const char *name, size_t *size)
     fseek(file, 0, SEEK_END);
     *size = (size_t)ftell(file);
     rewind(file);
-    char *data = malloc(*size + 1);
+    char *data = (char *)malloc(*size + 1);
     assert_non_null(data);
     assert_int_equal(fread(data, 1, *size, file), *size);
     fclose(file);

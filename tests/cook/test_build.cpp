@@ -1,5 +1,5 @@
 /* Cooking as a build step: keys, outputs left alone, strictness, several models, memory. */
-#include "cook/schema.hpp"
+#include "common/schema.hpp"
 
 #include "cook/folder.hpp"
 

@@ -1,5 +1,5 @@
 /* Cooking files: what is written, what is reported, and what is left behind when it fails. */
-#include "cook/schema.hpp"
+#include "common/schema.hpp"
 
 #include "cook/folder.hpp"
 

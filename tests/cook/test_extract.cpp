@@ -1,5 +1,5 @@
 /* Extraction by the GPU: it agrees with the CPU's, says whose it is, and leaves callers theirs. */
-#include "cook/schema.hpp"
+#include "common/schema.hpp"
 
 #include "bake/agreement.hpp"
 #include "cook/folder.hpp"

@@ -1,0 +1,93 @@
+/* gtx bench: what it refuses, and that its report says what was measured and what was not. */
+#include "common/schema.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+extern "C" {
+#include "cli/command.h"
+}
+
+using schema::json;
+
+static void usage_is_exit_1(void **)
+{
+    expect(gtx("bench sphere.gtx"), 1);
+    for (const char *wrong : {"--sizes 100", "--sizes 0x10", "--sizes 10x-3", "--sizes 10x10,",
+                              "--sizes 99999x10", "--instances 0", "--instances 1,two",
+                              "--instances 99999999999", "--methods best", "--methods ''",
+                              "--frames 0", "--budget -1"})
+        expect(gtx("bench sphere.gtx sphere.obj %s", wrong), 1);
+    expect(gtx("bench none.gtx sphere.obj"), 2);
+    expect(gtx("bench sphere.gtx none.obj"), 2);
+    expect(gtx("bench sphere.obj sphere.obj"), 3);
+}
+
+/* The report of a run, of the form that is promised. */
+static json bench(const char *arguments)
+{
+    expect(gtx("bench sphere.gtx sphere.obj --json --frames 2 %s", arguments), 0);
+    json report = json::parse(std::string(output));
+    const json rules = schema::load("format/bench-report.schema.json");
+    const std::string why = schema::broken(report, rules, rules);
+    if (!why.empty())
+        fail_msg("%s", why.c_str());
+    return report;
+}
+
+static void every_method_is_measured(void **)
+{
+    const json report = bench("--sizes 64x48,96x96 --instances 1,5 --methods mesh,mesh_stream,"
+                              "mesh_lod,paper,cast,auto,cast_depth,auto_depth");
+    assert_int_equal(report["rows"].size(), 2 * 2 * 8);
+    assert_true(report["skipped"].empty());
+    double full = 0;
+    for (const json &row : report["rows"]) {
+        const std::string method = row["method"];
+        assert_true(row["ms_median"].get<double>() >= row["ms_min"].get<double>());
+        assert_true(row["silhouette_iou"].get<double>() > (method == "paper" ? 0.9 : 0.93));
+        if (method == "mesh") {
+            assert_true(row["silhouette_iou"].get<double>() == 1);
+            assert_true(row["psnr_db"].is_null());
+            full = row["triangles"].get<double>();
+        }
+        if (method == "mesh_lod") {
+            assert_true(row["triangles"].get<double>() <= full);
+            for (const json &other : report["rows"])
+                if (other["method"] == "auto" && other["zoom"] == row["zoom"] &&
+                    other["instances"] == row["instances"])
+                    assert_true(other["silhouette_iou"] <= row["silhouette_iou"]);
+        }
+        /* five stand on a wall of three by two */
+        if (row["instances"] == 5 && row["zoom"] == "96x96")
+            assert_in_range(row["pixels"].get<int>(), 200, 32 * 32);
+    }
+}
+
+static void what_is_not_measured_is_named(void **)
+{
+    const json no_shell = bench("--sizes 32x32 --methods mesh,shell");
+    assert_int_equal(no_shell["rows"].size(), 1);
+    assert_string_equal(no_shell["skipped"][0]["reason"].get<std::string>().c_str(),
+                        "the asset has no shell");
+    const json no_time = bench("--sizes 32x32 --budget 0");
+    assert_true(no_time["rows"].empty());
+    assert_int_equal(no_time["skipped"].size(), 6);
+}
+
+static void the_table_has_a_line_a_row(void **)
+{
+    expect(gtx("bench sphere.gtx sphere.obj --sizes 32x32 --frames 1 --methods mesh,cast"), 0);
+    expect_text("| 32x32     |     1 | mesh ");
+    expect_text("| 32x32     |     1 | cast ");
+}
+
+int main()
+{
+    const CMUnitTest tests[] = {
+        cmocka_unit_test(usage_is_exit_1), cmocka_unit_test(every_method_is_measured),
+        cmocka_unit_test(what_is_not_measured_is_named), cmocka_unit_test(the_table_has_a_line_a_row)};
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
