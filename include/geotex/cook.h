@@ -120,6 +120,26 @@ GTX_API gtx_result gtx_cook_memory(const void *data, size_t size, const char *na
                                    const gtx_cook_desc *desc, gtx_asset **out, gtx_report *report,
                                    gtx_error *error);
 
+/* A shell for an asset that has no source mesh: one whose maps were edited or filtered, or that was
+ * made of height grids. */
+typedef struct gtx_shell_desc {
+    uint32_t levels;              /* at most, 1..5; 0 = 5 */
+    uint32_t threads;             /* up to 1024; 0 = all processors */
+    gtx_progress_fn progress;     /* may be NULL */
+    void *progress_user;
+    const gtx_allocator *allocator;   /* of the asset that comes out */
+    uint32_t reserved[6];
+} gtx_shell_desc;
+
+/* Makes a copy of `asset` whose shell is simplified from what its maps show, in place of any that it
+ * had; gtx_close frees it. Sheets that overlap are cut where each is as deep inside its outline as
+ * the other and welded along that line, so that neighbours share their border vertices. The finest
+ * level aims at a ninth of the asset's source_triangles (of two triangles a texel where that is 0);
+ * an `error` is a distance from the maps' own surface. The same asset and options give the same
+ * bytes. `desc` may be NULL. Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, INTERNAL. Any thread. */
+GTX_API gtx_result gtx_cook_shell(const gtx_asset *asset, const gtx_shell_desc *desc,
+                                  gtx_asset **out, gtx_error *error);
+
 /* The measures of an asset against its source model, as JSON (format/compare-report.schema.json). */
 typedef struct gtx_compare_desc {
     uint32_t size;                /* pixels along a side of the 26 views, up to 4096; 0 = 1024 */
