@@ -85,7 +85,9 @@ private:
     bool goes_on(const OpenEdge &open) const;
     bool is_gap(const std::vector<OpenEdge> &edges) const;
     void close(const std::vector<OpenEdge> &edges);
-    bool in_use(uint32_t from, uint32_t to) const { return used_.count(pair_of(from, to)); }
+    void close_around_middle(const std::vector<uint32_t> &ring,
+                             const std::vector<uint32_t> &patch);
+    void add(const Triangle &t, uint32_t patch);
     static uint64_t pair_of(uint32_t from, uint32_t to) { return uint64_t(from) << 32 | to; }
 
     const std::vector<MapSheet> &sheets_;
@@ -355,30 +357,49 @@ void Welder::close(const std::vector<OpenEdge> &edges)
         ring.push_back(edge[0]);
         patch.push_back(source.patch[t]);
     }
-    constexpr double LAST_CHOICE = 1e30;
     while (ring.size() > 2) {
         const size_t n = ring.size();
-        size_t best = 0;
+        size_t best = n;
         double least = INFINITY;
         for (size_t i = 0; i < n; ++i) {
             const uint32_t from = ring[i], to = ring[(i + 2) % n];
-            double side = length(source.positions[from] - source.positions[to]);
-            if (n > 3 && in_use(from, to))
-                side += LAST_CHOICE;
-            if (side < least) {
+            const double side = length(source.positions[from] - source.positions[to]);
+            if (side < least && !(n > 3 && used_.count(pair_of(from, to)))) {
                 least = side;
                 best = i;
             }
         }
+        if (best == n)
+            return close_around_middle(ring, patch);
         const size_t tip = (best + 1) % n;
-        const uint32_t from = ring[best], to = ring[(best + 2) % n];
-        source.triangles.push_back({to, ring[tip], from});
-        source.patch.push_back(patch[best]);
-        for (uint64_t edge : {pair_of(to, ring[tip]), pair_of(ring[tip], from), pair_of(from, to)})
-            used_.insert(edge);
+        add({ring[(best + 2) % n], ring[tip], ring[best]}, patch[best]);
         ring.erase(ring.begin() + ptrdiff_t(tip));
         patch.erase(patch.begin() + ptrdiff_t(tip));
     }
+}
+
+/* Where every ear would take an edge that others have. */
+void Welder::close_around_middle(const std::vector<uint32_t> &ring,
+                                 const std::vector<uint32_t> &patch)
+{
+    const uint32_t middle = uint32_t(source.positions.size());
+    Vec3d at;
+    for (uint32_t v : ring)
+        at += source.positions[v] / double(ring.size());
+    source.positions.push_back(at);
+    normals_.push_back(normals_[ring[0]]);
+    piece_.push_back(piece_[ring[0]]);
+    at_border_.push_back(1);
+    for (size_t i = 0; i < ring.size(); ++i)
+        add({ring[(i + 1) % ring.size()], ring[i], middle}, patch[i]);
+}
+
+void Welder::add(const Triangle &t, uint32_t patch)
+{
+    source.triangles.push_back(t);
+    source.patch.push_back(patch);
+    for (int k = 0; k < 3; ++k)
+        used_.insert(pair_of(t[k], t[(k + 1) % 3]));
 }
 
 /* Follows open edges; where a way comes back to a vertex, a ring is complete. */
@@ -392,7 +413,7 @@ void Welder::close_gaps()
             if (at_border_[t[k]] && at_border_[t[(k + 1) % 3]])
                 used_.insert(pair_of(t[k], t[(k + 1) % 3]));
     constexpr uint32_t OFF = 0xffffffffu;
-    std::vector<uint32_t> step(source.positions.size(), OFF); /* of a vertex on the way */
+    std::vector<uint32_t> step(source.positions.size(), OFF); /* of a vertex that is on the way */
     for (size_t start = 0; start < open.size(); ++start) {
         std::vector<OpenEdge> way;
         for (uint32_t here = open[start].first[0];;) {

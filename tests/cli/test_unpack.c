@@ -70,6 +70,21 @@ static void cooked_assets_come_back(void **state)
     }
 }
 
+/* An asset in place of a folder, and a shell that needs no mesh. */
+static void an_asset_is_packed_anew(void **state)
+{
+    (void)state;
+    expect(gtx("cook -q sphere.obj -o c.gtx"), 0);
+    expect(gtx("pack c.gtx -o same.gtx"), 0);
+    same_files("c.gtx", "same.gtx");
+    expect(gtx("pack c.gtx -o shell.gtx --shell-levels 3"), 0);
+    expect(gtx("validate shell.gtx"), 0);
+    expect(gtx("info shell.gtx"), 0);
+    expect_text("shell ");
+    expect(gtx("pack sphere.obj -o no.gtx"), 3);
+    expect(gtx("pack c.gtx -o no.gtx --shell-levels 6"), 1);
+}
+
 static void unknown_sections_are_warned_of(void **state)
 {
     (void)state;
@@ -183,6 +198,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_golden_file_comes_back),
         cmocka_unit_test(cooked_assets_come_back),
+        cmocka_unit_test(an_asset_is_packed_anew),
         cmocka_unit_test(unknown_sections_are_warned_of),
         cmocka_unit_test(edits_arrive),
         cmocka_unit_test(what_is_there_stays),
