@@ -20,7 +20,7 @@ SOVERSION := 0
 
 # ---- rooms: what each needs. Imports run one way, from right to left ------------------------------
 ROOMS_CORE := base asset derive trace render
-ROOMS_COOK := image mesh chart bake measure cook
+ROOMS_COOK := image mesh grid chart bake measure cook
 
 needs_base    := base
 needs_asset   := base asset
@@ -30,10 +30,11 @@ needs_image   := base image
 needs_host    := base image host
 needs_render  := $(needs_derive) render
 needs_mesh    := base image mesh
+needs_grid    := $(needs_mesh) grid
 needs_chart   := $(needs_mesh) chart
-needs_bake    := $(needs_asset) image mesh chart bake
+needs_bake    := $(needs_asset) image mesh grid chart bake
 needs_measure := $(needs_trace) image mesh measure
-needs_cook    := $(needs_trace) image mesh chart bake measure cook
+needs_cook    := $(needs_trace) image mesh grid chart bake measure cook
 
 # ---- flags ---------------------------------------------------------------------------------------
 CC  ?= cc
@@ -165,7 +166,7 @@ $(out)/samples/%: $(out)/samples/%.o $(call objects_of,host image) $(lib_cook) $
 # ---- installation: exactly the files of lib/package/files, below PREFIX --------------------------
 fill = sed -e 's|@PREFIX@|$(PREFIX)|g' -e 's|@VERSION@|$(VERSION)|g' -e 's|@SOVERSION@|$(SOVERSION)|g' \
   -e 's|@CORE_LIBS@|$(call libs_of,asset)|g' -e 's|@COOK_LIBS@|$(call libs_of,mesh)|g'
-verbs := cook info validate unpack pack render view compare
+verbs := cook horizons info validate unpack pack render view compare
 to    := $(DESTDIR)$(PREFIX)
 
 $(out)/gen/gtx.1: lib/package/gtx.1.in lib/package/verbs.awk $(command)
@@ -219,7 +220,7 @@ extra_needs_render  := trace host image
 extra_needs_bake    := derive trace host
 extra_needs_cook    := host
 extra_needs_chart   :=
-extra_needs_measure := chart bake cook
+extra_needs_measure := grid chart bake cook
 # An archive: a test takes from it only what it asks for, and so needs no room but its own.
 common_tests := $(out)/tests/common.a
 $(common_tests): $(patsubst %,$(out)/%.o,$(basename $(wildcard tests/common/*.c)))
