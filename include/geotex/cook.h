@@ -167,7 +167,7 @@ typedef struct gtx_height_grid_desc {
 /* Reads a grid: IRAP classic and binary (".irap", ".gri"), ZMAP+ text, each also gzipped, which say
  * where they lie; or any image of 8 or 16 bits or of floats, whose top row is the northernmost, with
  * origin 0 and spacing 1, for the caller to change. A format's own way to say that there is no value
- * is known (9999900, 1e30; -32768 in 16 bits with a sign). The values are of the descriptor's
+ * is known (9999900, 1e30; -32767 and below in 16 bits with a sign). The values are of the descriptor's
  * allocator, and freed by gtx_height_grid_free. `desc` may be NULL.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT (2^28 nodes), READ, INPUT, UNSUPPORTED. */
 GTX_API gtx_result gtx_height_grid_read(const char *path, const gtx_height_grid_desc *desc, gtx_height_grid *out,

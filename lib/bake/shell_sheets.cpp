@@ -11,8 +11,9 @@ namespace gtx::baking {
 
 /* A sheet passes a point when it is no farther away than this, and as steep. */
 constexpr double REACH_TEXELS = 0.75, REACH_STEPS = 3, LEAST_COSINE = 0.3;
-/* Trim is told up to 8 texels: that deep in two sheets, the first one has it. */
-constexpr double DEEPEST = -7.9;
+/* So far inside its outline a sheet that is not steep need not look for others. Trim may not be told
+ * any deeper, so two that are would be equals. */
+constexpr double DEEP = -1.5;
 /* Where another sheet goes on, one may end this many texels beyond its outline, so that both reach
  * the line between their outlines. */
 constexpr double MOST_OUTSIDE = 1;
@@ -162,14 +163,13 @@ static double distance_to_own(const std::vector<MapSheet> &sheets, uint32_t patc
     const MapSheet &sheet = sheets[patch];
     const Vec3d point = sheet.point(i, j), normal = sheet.normal(i, j);
     const double trim = sheet.trim(i, j), mine = trim + sheet.steepness(normal);
+    if (trim <= DEEP && mine == trim)
+        return trim;
     double own = -INFINITY;
     for (uint32_t other : others) {
-        double theirs = sheets[other].trim(point, normal);
-        if (theirs > MOST_OUTSIDE)
-            continue;
-        theirs += sheets[other].steepness(normal);
-        const bool deep = mine <= DEEPEST && theirs <= DEEPEST;
-        own = std::max(own, deep ? (patch < other ? -1 : 1) : mine - theirs);
+        const double theirs = sheets[other].trim(point, normal);
+        if (theirs <= MOST_OUTSIDE)
+            own = std::max(own, mine - theirs - sheets[other].steepness(normal));
     }
     own = std::max(own, trim - (own == -INFINITY ? SHOWN : MOST_OUTSIDE));
     return std::fabs(own) < ON_CUT ? 0 : own;

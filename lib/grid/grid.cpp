@@ -37,8 +37,8 @@ void settle(HeightGrid &grid)
 
 /* ---- images ---- */
 
-/* What 16 bits with a sign cannot have as a height: the void of SRTM. */
-constexpr float SIGNED_VOID = -32768;
+/* 16 bits with a sign are terrain, whose voids are -32768 (SRTM) or -32767 (DTED). */
+constexpr float SIGNED_VOID = -32767;
 
 static HeightGrid read_image(const std::string &path, const GridReading &reading)
 {
@@ -64,7 +64,7 @@ static HeightGrid read_image(const std::string &path, const GridReading &reading
         for (uint32_t i = 0; i < grid.nx; ++i) {
             const float code = image.values[size_t(grid.ny - 1 - j) * grid.nx + i];
             const bool is_void = (reading.missing && code == float(*reading.missing)) ||
-                                 (image.least == SIGNED_VOID && code == SIGNED_VOID);
+                                 (image.least < 0 && code <= SIGNED_VOID);
             const double value = reading.range ? low + (code - least) * scale : code;
             grid.values[size_t(j) * grid.nx + i] = is_void ? NAN : float(value);
         }
