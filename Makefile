@@ -242,7 +242,7 @@ $(out)/gtx_decode: format/gtx_decode.c
 	$(say) CC $@
 	$(Q)$(CC) -std=c99 $(flags) $(warnings) $(if $(filter 1,$(zstd)),,-DNO_ZSTD) -o $@ $< $(libs_asset) -lm
 $(filter $(out)/tests/asset/%,$(test_bins)): | $(out)/gtx_decode
-$(filter $(out)/tests/mesh/%,$(test_bins)): | $(module)
+$(filter $(out)/tests/mesh/% $(out)/tests/grid/%,$(test_bins)): | $(module)
 
 build-tests: $(test_bins) $(out)/gtx_decode all
 

@@ -97,24 +97,31 @@ double MapSheet::steepness(const Vec3d &facing) const
 
 double MapSheet::trim(const Vec3d &at, const Vec3d &facing) const
 {
-    constexpr double SLACK = 1e-3; /* texels, for a point on the last row of them */
+    constexpr double SLACK = 1e-3; /* texels: a point on the side of a cell is in both */
     const Vec3d from = at - origin_;
     const double u = dot(row_[0], from), v = dot(row_[1], from);
     if (!(u > -SLACK && v > -SLACK && u < w_ - 1 + SLACK && v < h_ - 1 + SLACK))
         return INFINITY;
-    const int i = std::clamp(int(u), 0, w_ - 2), j = std::clamp(int(v), 0, h_ - 2);
+    for (int n = 0; n < 4; ++n) {
+        const int i = std::clamp(int(std::floor(u + (n & 1 ? -SLACK : SLACK))), 0, w_ - 2);
+        const int j = std::clamp(int(std::floor(v + (n & 2 ? -SLACK : SLACK))), 0, h_ - 2);
+        if (code(i, j) && code(i + 1, j) && code(i, j + 1) && code(i + 1, j + 1))
+            return trim_in_cell(i, j, {u - i, v - j, dot(row_[2], from)}, facing);
+    }
+    return INFINITY;
+}
+
+double MapSheet::trim_in_cell(int i, int j, const Vec3d &at, const Vec3d &facing) const
+{
     double height = 0, trimmed = 0;
     for (int k = 0; k < 4; ++k) {
         const int x = i + (k & 1), y = j + (k >> 1);
-        const uint32_t c = code(x, y);
-        if (!c)
-            return INFINITY;
-        const double weight = (k & 1 ? u - i : i + 1 - u) * (k & 2 ? v - j : j + 1 - v);
-        height += weight * (c - 1.0) / (maps_.height_bits == 8 ? 254 : 65534);
+        const double weight = (k & 1 ? at.x : 1 - at.x) * (k & 2 ? at.y : 1 - at.y);
+        height += weight * (code(x, y) - 1.0) / (maps_.height_bits == 8 ? 254 : 65534);
         trimmed += weight * trim(x, y);
     }
-    const double apart = std::fabs(dot(row_[2], from) - height) * std::fabs(dot(z_, facing));
-    const Vec3d here = normal(i + (u - i > 0.5), j + (v - j > 0.5));
+    const double apart = std::fabs(at.z - height) * std::fabs(dot(z_, facing));
+    const Vec3d here = normal(i + (at.x > 0.5), j + (at.y > 0.5));
     return apart <= reach_ && dot(here, facing) >= LEAST_COSINE ? trimmed : INFINITY;
 }
 

@@ -27,6 +27,8 @@ public:
     Vec3d low, high; /* box around the patch */
 
 private:
+    double trim_in_cell(int i, int j, const Vec3d &at, const Vec3d &facing) const;
+
     const Maps &maps_;
     Vec3d origin_, texel_[2], z_; /* one texel to the side, and the greatest height */
     Vec3d row_[3];                /* the way back */

@@ -15,7 +15,7 @@ constexpr double NEAR = 0.5;
 constexpr double LEAST_COSINE = 0.2;
 /* An opening of no more than so many texels around is a gap between pieces; so is a larger one, of so
  * many edges at most, where sheets show something beyond this share of them, so far from the edge. */
-constexpr double SURELY_A_GAP = 6, SHOWN_SHARE = 0.5, BEYOND = 0.5;
+constexpr double SURELY_A_GAP = 3.5, SHOWN_SHARE = 0.5, BEYOND = 0.5;
 constexpr size_t MOST_EDGES = 128;
 constexpr int ROUNDS = 3;
 /* An edge is followed no farther than this for vertices beside it, in cells of `Places`. */

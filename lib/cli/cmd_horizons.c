@@ -12,7 +12,7 @@ enum { MOST_GRIDS = 4096, MOST_NAME = 4096 };
 
 static gtx_horizons_desc desc;
 static gtx_height_grid_desc reading, reading_property;
-static const char *output, *range, *spacing, *origin, *color_range;
+static const char *output, *range, *property_range, *spacing, *origin, *color_range;
 static double missing = NAN, rotation = NAN, unit = 1;
 static uint32_t colors;
 static int32_t zstd_level = 3;
@@ -28,10 +28,12 @@ static const option options[] = {
     {"vertical", 0, OPTION_NUMBER, &desc.vertical, "X", "exaggeration of heights [1]", 1e-6, 1e6},
     {"one-surface", 0, OPTION_FLAG, &one_surface, NULL,
      "the grids are parts of one lattice, and become one surface", 0, 0},
-    {"missing", 0, OPTION_NUMBER, &missing, "V", "a height that says that there is none", -1e30,
-     1e30},
+    {"missing", 0, OPTION_NUMBER, &missing, "V",
+     "a height, and a property, that says that there is none", -1e30, 1e30},
     {"range", 0, OPTION_STRING, &range, "LOW,HIGH",
      "what the least and greatest code of height images stand for [themselves]", 0, 0},
+    {"property-range", 0, OPTION_STRING, &property_range, "LOW,HIGH", "the same of property images",
+     0, 0},
     {"spacing", 0, OPTION_STRING, &spacing, "DX,DY", "between nodes [as the file says, or 1]", 0,
      0},
     {"origin", 0, OPTION_STRING, &origin, "X,Y", "of the first node [as the file says, or 0]", 0,
@@ -80,6 +82,8 @@ static int check(void)
         return usage("-o OUT.gtx is missing");
     if (range && !parse_pair(range, reading.range))
         return usage("--range takes LOW,HIGH");
+    if (property_range && !parse_pair(property_range, reading_property.range))
+        return usage("--property-range takes LOW,HIGH");
     if (color_range && !parse_pair(color_range, desc.color_range))
         return usage("--color-range takes LOW,HIGH");
     if (spacing && (!parse_pair(spacing, pair) || pair[0] <= 0 || pair[1] <= 0))
@@ -181,6 +185,8 @@ int cmd_horizons(int argc, char **argv)
     desc.progress = show_progress;
     reading.has_missing = !isnan(missing);
     reading.missing = reading.has_missing ? missing : 0;
+    reading_property.has_missing = reading.has_missing;
+    reading_property.missing = reading.missing;
 
     gtx_height_grid *grids = calloc((size_t)count, sizeof *grids);
     if (!grids)
