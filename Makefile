@@ -310,6 +310,25 @@ run-paper-tables:
 	$(if $(filter $(build)/demo/sculpt.glb,$(table_models)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
 	@$(out)/tests/bench/paper_tables $(build)/paper $(table_models)
 
+# A figure is a program tests/bench/NAME.cpp that measures, prints, and writes NAME.json and NAME.svg;
+# what it takes besides the folder is arguments_NAME.
+figures := figure9
+reek    := $(wildcard $(GEOTEX_MODELS)/heightfields/reek_1588x1188)
+arguments_figure9 := $(or $(reek),own)
+paper-figures: ## the paper's figures of frame rates, measured here: tables, JSON and curves in build/paper
+	@$(MAKE) --no-print-directory deps
+	@$(MAKE) --no-print-directory -j$$(nproc) all $(figures:%=$(out)/tests/bench/%)
+	@$(MAKE) --no-print-directory run-paper-figures
+
+run-paper-figures:
+	@mkdir -p $(build)/paper
+	@$(foreach f,$(figures),$(out)/tests/bench/$(f) $(build)/paper $(arguments_$(f)) &&) true
+
+$(figures:%=$(out)/tests/bench/%): $(out)/tests/bench/%: $(out)/tests/bench/%.o $(out)/tests/bench/figure.o \
+    $(call objects_of,host image) $(lib_cook) $(lib_core) | $(module)
+	$(say) LINK $@
+	$(Q)ln -sf $(abspath $(module)) $(@D) && $(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host image) -lmeshoptimizer
+
 $(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o $(out)/tests/bench/equal_texels.o \
     $(lib_cook) $(lib_core)
 	$(say) LINK $@
@@ -343,7 +362,7 @@ clean: ## remove what was built
 	rm -rf $(build)
 
 .PHONY: all install uninstall dist build-tests run-tests test check demo run-demo bench run-bench \
-        paper-tables run-paper-tables deps help clean
+        paper-tables run-paper-tables paper-figures run-paper-figures deps help clean
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(shell [ -d $(out) ] && find $(out) -name '*.d')

@@ -21,6 +21,20 @@ typedef struct world {
     double range[2]; /* of the colours */
 } world;
 
+/* The values at the ends of the colours, as `gtx horizons` leaves them in META. */
+static void read_color_range(const gtx_asset *asset, double range[2])
+{
+    char text[512] = "";
+    size_t size;
+    const char *meta = gtx_meta(asset, &size), *keys[2] = {"\"color_low\":", "\"color_high\":"};
+    if (meta && size < sizeof text)
+        memcpy(text, meta, size);
+    for (int k = 0; k < 2; ++k) {
+        const char *at = strstr(text, keys[k]);
+        range[k] = at ? strtod(at + strlen(keys[k]), NULL) : 0;
+    }
+}
+
 static gtx_result make_asset(world *w, gtx_asset **asset, gtx_error *error)
 {
     gtx_result result = GTX_OK;

@@ -19,7 +19,10 @@ static gtx_result read_layer(const char *folder, int k, gtx_height_grid *grid, g
 {
     char path[4096];
     gtx_height_grid property;
-    gtx_height_grid_desc desc = {.has_missing = 1, .range = {depth[0], depth[1]}};
+    gtx_height_grid_desc desc;
+    memset(&desc, 0, sizeof desc); /* read as C++ too */
+    desc.has_missing = 1;
+    memcpy(desc.range, depth, sizeof desc.range);
     snprintf(path, sizeof path, "%s/%s_z16.png", folder, files[k].name);
     gtx_result result = gtx_height_grid_read(path, &desc, grid, error);
     memcpy(desc.range, files[k].thickness, sizeof desc.range);
@@ -45,21 +48,10 @@ static gtx_result make_layer(int k, gtx_height_grid *grid)
         values[k][i] = outside ? NAN : 1900 - 190 * bump + fault + (float)(k * apart);
         property[k][i] = 18 - 3 * (float)k + (k % 2 ? 5 : -5) * bump;
     }
-    *grid = (gtx_height_grid){.nx = OWN, .ny = OWN, .values = values[k], .property = property[k],
-                              .spacing = {45, 45}};
+    memset(grid, 0, sizeof *grid);
+    grid->nx = grid->ny = OWN;
+    grid->values = values[k];
+    grid->property = property[k];
+    grid->spacing[0] = grid->spacing[1] = 45;
     return GTX_OK;
-}
-
-/* The values at the ends of the colours, as `gtx horizons` leaves them in META. */
-static void read_color_range(const gtx_asset *asset, double range[2])
-{
-    char text[512] = "";
-    size_t size;
-    const char *meta = gtx_meta(asset, &size), *keys[2] = {"\"color_low\":", "\"color_high\":"};
-    if (meta && size < sizeof text)
-        memcpy(text, meta, size);
-    for (int k = 0; k < 2; ++k) {
-        const char *at = strstr(text, keys[k]);
-        range[k] = at ? strtod(at + strlen(keys[k]), NULL) : 0;
-    }
 }
