@@ -197,6 +197,8 @@ static std::string meta_of(const gtx_horizons_desc &desc, const double range[2],
     }
     gtx_json_number(&json, "vertical", desc.vertical > 0 ? desc.vertical : 1);
     gtx_json_end_object(&json);
+    if (json.failed)
+        throw std::bad_alloc();
     return std::string(json.text, json.size);
 }
 
