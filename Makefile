@@ -20,7 +20,7 @@ SOVERSION := 0
 
 # ---- rooms: what each needs. Imports run one way, from right to left ------------------------------
 ROOMS_CORE := base asset derive trace render
-ROOMS_COOK := image mesh chart bake measure cook
+ROOMS_COOK := image mesh grid chart bake measure cook
 
 needs_base    := base
 needs_asset   := base asset
@@ -30,10 +30,11 @@ needs_image   := base image
 needs_host    := base image host
 needs_render  := $(needs_derive) render
 needs_mesh    := base image mesh
+needs_grid    := $(needs_mesh) grid
 needs_chart   := $(needs_mesh) chart
-needs_bake    := $(needs_asset) image mesh chart bake
+needs_bake    := $(needs_asset) image mesh grid chart bake
 needs_measure := $(needs_trace) image mesh measure
-needs_cook    := $(needs_trace) image mesh chart bake measure cook
+needs_cook    := $(needs_trace) image mesh grid chart bake measure cook
 
 # ---- flags ---------------------------------------------------------------------------------------
 CC  ?= cc
@@ -165,7 +166,7 @@ $(out)/samples/%: $(out)/samples/%.o $(call objects_of,host image) $(lib_cook) $
 # ---- installation: exactly the files of lib/package/files, below PREFIX --------------------------
 fill = sed -e 's|@PREFIX@|$(PREFIX)|g' -e 's|@VERSION@|$(VERSION)|g' -e 's|@SOVERSION@|$(SOVERSION)|g' \
   -e 's|@CORE_LIBS@|$(call libs_of,asset)|g' -e 's|@COOK_LIBS@|$(call libs_of,mesh)|g'
-verbs := cook info validate unpack pack render view compare bench
+verbs := cook horizons info validate unpack pack render view compare bench
 to    := $(DESTDIR)$(PREFIX)
 
 $(out)/gen/gtx.1: lib/package/gtx.1.in lib/package/verbs.awk $(command)
@@ -219,7 +220,7 @@ extra_needs_render  := trace host image
 extra_needs_bake    := derive trace host
 extra_needs_cook    := host
 extra_needs_chart   :=
-extra_needs_measure := chart bake cook
+extra_needs_measure := grid chart bake cook
 # An archive: a test takes from it only what it asks for, and so needs no room but its own.
 common_tests := $(out)/tests/common.a
 $(common_tests): $(patsubst %,$(out)/%.o,$(basename $(wildcard tests/common/*.c)))
@@ -241,7 +242,7 @@ $(out)/gtx_decode: format/gtx_decode.c
 	$(say) CC $@
 	$(Q)$(CC) -std=c99 $(flags) $(warnings) $(if $(filter 1,$(zstd)),,-DNO_ZSTD) -o $@ $< $(libs_asset) -lm
 $(filter $(out)/tests/asset/%,$(test_bins)): | $(out)/gtx_decode
-$(filter $(out)/tests/mesh/%,$(test_bins)): | $(module)
+$(filter $(out)/tests/mesh/% $(out)/tests/grid/%,$(test_bins)): | $(module)
 
 build-tests: $(test_bins) $(out)/gtx_decode all
 
@@ -309,6 +310,25 @@ run-paper-tables:
 	$(if $(filter $(build)/demo/sculpt.glb,$(table_models)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
 	@$(out)/tests/bench/paper_tables $(build)/paper $(table_models)
 
+# A figure is a program tests/bench/NAME.cpp that measures, prints, and writes NAME.json and NAME.svg;
+# what it takes besides the folder is arguments_NAME.
+figures := figure9
+reek    := $(wildcard $(GEOTEX_MODELS)/heightfields/reek_1588x1188)
+arguments_figure9 := $(or $(reek),own)
+paper-figures: ## the paper's figures of frame rates, measured here: tables, JSON and curves in build/paper
+	@$(MAKE) --no-print-directory deps
+	@$(MAKE) --no-print-directory -j$$(nproc) all $(figures:%=$(out)/tests/bench/%)
+	@$(MAKE) --no-print-directory run-paper-figures
+
+run-paper-figures:
+	@mkdir -p $(build)/paper
+	@$(foreach f,$(figures),$(out)/tests/bench/$(f) $(build)/paper $(arguments_$(f)) &&) true
+
+$(figures:%=$(out)/tests/bench/%): $(out)/tests/bench/%: $(out)/tests/bench/%.o $(out)/tests/bench/figure.o \
+    $(call objects_of,host image) $(lib_cook) $(lib_core) | $(module)
+	$(say) LINK $@
+	$(Q)ln -sf $(abspath $(module)) $(@D) && $(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host image) -lmeshoptimizer
+
 $(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o $(out)/tests/bench/equal_texels.o \
     $(lib_cook) $(lib_core)
 	$(say) LINK $@
@@ -338,7 +358,7 @@ clean: ## remove what was built
 	rm -rf $(build)
 
 .PHONY: all install uninstall dist build-tests run-tests test check demo run-demo bench run-bench \
-        paper-tables run-paper-tables deps help clean
+        paper-tables run-paper-tables paper-figures run-paper-figures deps help clean
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(shell [ -d $(out) ] && find $(out) -name '*.d')

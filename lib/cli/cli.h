@@ -93,6 +93,7 @@ void catch_interrupt(void);
 /* ---- verbs: each gets argv[0] = its name ---- */
 
 int cmd_cook(int argc, char **argv);
+int cmd_horizons(int argc, char **argv);
 int cmd_info(int argc, char **argv);
 int cmd_validate(int argc, char **argv);
 int cmd_unpack(int argc, char **argv);

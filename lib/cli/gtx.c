@@ -9,6 +9,7 @@ static const struct {
     const char *summary;
 } verbs[] = {
     {"cook", cmd_cook, "turn a triangle mesh into a .gtx asset"},
+    {"horizons", cmd_horizons, "turn height grids, horizons or terrain, into an asset"},
     {"info", cmd_info, "say what is in an asset"},
     {"validate", cmd_validate, "check an asset against every rule of the format"},
     {"unpack", cmd_unpack, "write an asset's maps as images, to look at and to edit"},
