@@ -312,20 +312,23 @@ run-paper-tables:
 
 # A figure is a program tests/bench/NAME.cpp that measures, prints, and writes NAME.json and NAME.svg;
 # what it takes besides the folder is arguments_NAME.
-figures := figure9
+figures := figure7 figure9
 reek    := $(wildcard $(GEOTEX_MODELS)/heightfields/reek_1588x1188)
+arguments_figure7 = $(MODEL)
 arguments_figure9 := $(or $(reek),own)
+bench_objects := $(addprefix $(out)/lib/cli/,bench.o bench_mesh.o bench_scene.o polygons.o)
 paper-figures: ## the paper's figures of frame rates, measured here: tables, JSON and curves in build/paper
 	@$(MAKE) --no-print-directory deps
 	@$(MAKE) --no-print-directory -j$$(nproc) all $(figures:%=$(out)/tests/bench/%)
 	@$(MAKE) --no-print-directory run-paper-figures
 
 run-paper-figures:
-	@mkdir -p $(build)/paper
+	@mkdir -p $(build)/demo $(build)/paper
+	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
 	@$(foreach f,$(figures),$(out)/tests/bench/$(f) $(build)/paper $(arguments_$(f)) &&) true
 
 $(figures:%=$(out)/tests/bench/%): $(out)/tests/bench/%: $(out)/tests/bench/%.o $(out)/tests/bench/figure.o \
-    $(call objects_of,host image) $(lib_cook) $(lib_core) | $(module)
+    $(bench_objects) $(call objects_of,host image) $(lib_cook) $(lib_core) | $(module)
 	$(say) LINK $@
 	$(Q)ln -sf $(abspath $(module)) $(@D) && $(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host image) -lmeshoptimizer
 
