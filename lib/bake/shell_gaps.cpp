@@ -31,8 +31,8 @@ static void mark_twins(const std::vector<Triangle> &triangles,
     }
 }
 
-/* Where two pieces claim the same, and of several triangles on one side of an edge all but the first:
- * the gap that is left is closed as any. */
+/* Where two pieces claim the same, and of several triangles on one side of an edge all but the
+ * first: the gap that is left is closed as any. */
 void Welder::drop_folds()
 {
     std::vector<uint8_t> dropped(source.triangles.size(), 0);

@@ -128,8 +128,8 @@ std::vector<OpenEdge> Welder::open_edges() const
     return open;
 }
 
-/* The common vertices that an open edge passes by, in its order; none that are its neighbours on both
- * sides (`beside`: those that a vertex shares an open edge with). */
+/* The common vertices that an open edge passes by, in its order; none that are its neighbours on
+ * both sides (`beside`: those that a vertex shares an open edge with). */
 std::vector<uint32_t> Welder::stops_on(const OpenEdge &open, const Places &ends,
                                        const std::vector<std::vector<uint32_t>> &beside) const
 {

@@ -24,8 +24,8 @@ static bool write_json(const std::string &path, const std::string &platform,
     std::fprintf(file, "{\"platform\": \"%s\", \"rows\": [", platform.c_str());
     for (size_t i = 0; i < rows.size(); ++i)
         std::fprintf(file,
-                     "%s\n{\"scene\": \"%s\", \"zoom\": \"%s\", \"method\": \"%s\", \"pixels\": %llu, "
-                     "\"frames\": %d, \"ms_median\": %.3f, \"ms_min\": %.3f}",
+                     "%s\n{\"scene\": \"%s\", \"zoom\": \"%s\", \"method\": \"%s\", "
+                     "\"pixels\": %llu, \"frames\": %d, \"ms_median\": %.3f, \"ms_min\": %.3f}",
                      i ? "," : "", rows[i].scene.c_str(), rows[i].window.c_str(),
                      rows[i].method.c_str(), static_cast<unsigned long long>(rows[i].pixels),
                      rows[i].frames, rows[i].median, rows[i].least);
