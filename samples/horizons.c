@@ -74,8 +74,8 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
     gtx_get_info(asset, &w->info);
     const float *low = w->info.bounds_min, *high = w->info.bounds_max;
     float center[16], scale[16]; /* to a scene two wide */
-    gtx_matrix_place(-(low[0] + high[0]) / 2, -(low[1] + high[1]) / 2, -(low[2] + high[2]) / 2, 0, 1,
-                     center);
+    gtx_matrix_place(-(low[0] + high[0]) / 2, -(low[1] + high[1]) / 2, -(low[2] + high[2]) / 2, 0,
+                     1, center);
     gtx_matrix_place(0, 0, 0, 0, 2 / fmaxf(high[0] - low[0], high[2] - low[2]), scale);
     gtx_matrix_multiply(scale, center, w->instance.transform);
     w->instance.model = model;
@@ -92,7 +92,8 @@ static gtx_result draw_legend(const gtx_host_gl *gl, const world *w, int width, 
 {
     gtx_shapes s = {0};
     char text[32];
-    const float dot = (float)height / 360, bar = 90 * dot, x = 12 * dot, y = (float)height - x - bar;
+    const float dot = (float)height / 360, bar = 90 * dot, x = 12 * dot;
+    const float y = (float)height - x - bar;
     const gtx_text_style style = {dot, {32, 36, 44}, {237, 240, 245}};
     for (int i = 0; i < 64; ++i) {
         uint8_t c[3];

@@ -131,12 +131,13 @@ typedef struct gtx_shell_desc {
     uint32_t reserved[6];
 } gtx_shell_desc;
 
-/* Makes a copy of `asset` whose shell is simplified from what its maps show, in place of any that it
- * had; gtx_close frees it. Sheets that overlap are cut where each is as deep inside its outline as
+/* Makes a copy of `asset` whose shell is simplified from what its maps show, in place of any that
+ * it had; gtx_close frees it. Sheets that overlap are cut where each is as deep inside its outline as
  * the other and welded along that line, so that neighbours share their border vertices. The finest
  * level aims at a ninth of the asset's source_triangles (of two triangles a texel where that is 0);
  * an `error` is a distance from the maps' own surface. The same asset and options give the same
- * bytes. `desc` may be NULL. Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, INTERNAL. Any thread. */
+ * bytes. `desc` may be NULL. Any thread.
+ * Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, INTERNAL. */
 GTX_API gtx_result gtx_cook_shell(const gtx_asset *asset, const gtx_shell_desc *desc,
                                   gtx_asset **out, gtx_error *error);
 
@@ -165,13 +166,13 @@ typedef struct gtx_height_grid_desc {
 } gtx_height_grid_desc;
 
 /* Reads a grid: IRAP classic and binary (".irap", ".gri"), ZMAP+ text, each also gzipped, which say
- * where they lie; or any image of 8 or 16 bits or of floats, whose top row is the northernmost, with
- * origin 0 and spacing 1, for the caller to change. A format's own way to say that there is no value
- * is known (9999900, 1e30; -32767 and below in 16 bits with a sign). The values are of the descriptor's
- * allocator, and freed by gtx_height_grid_free. `desc` may be NULL.
+ * where they lie; or any image of 8 or 16 bits or of floats, whose top row is the northernmost,
+ * with origin 0 and spacing 1, for the caller to change. A format's own way to say that there is
+ * no value is known (9999900, 1e30; -32767 and below in 16 bits with a sign). The values are of the
+ * descriptor's allocator, and freed by gtx_height_grid_free. `desc` may be NULL.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT (2^28 nodes), READ, INPUT, UNSUPPORTED. */
-GTX_API gtx_result gtx_height_grid_read(const char *path, const gtx_height_grid_desc *desc, gtx_height_grid *out,
-                                 gtx_error *error);
+GTX_API gtx_result gtx_height_grid_read(const char *path, const gtx_height_grid_desc *desc,
+                                        gtx_height_grid *out, gtx_error *error);
 /* Frees the values of a grid that was read, and zeroes it. NULL and zeros are fine. */
 GTX_API void gtx_height_grid_free(gtx_height_grid *grid);
 
@@ -190,8 +191,8 @@ typedef struct gtx_horizons_desc {
     double vertical;              /* exaggeration, > 0; 0 = 1 */
     double color_range[2];        /* values at the ends of the colours; both 0 = the least and the
                                      greatest that there are */
-    uint32_t one_surface;         /* 1: the grids are parts of one lattice, such as neighbouring tiles
-                                     of terrain, and become one surface without a seam */
+    uint32_t one_surface;         /* 1: the grids are parts of one lattice, such as neighbouring
+                                     tiles of terrain, and become one surface without a seam */
     uint32_t tile;                /* most texels along a patch, 16..512; 0 = 128 */
     uint32_t height_bits;         /* 8 or 16; 0 = 8 */
     uint32_t mips;                /* 1..8; 0 = 4 */
@@ -212,9 +213,9 @@ typedef struct gtx_horizons_result {
 } gtx_horizons_result;
 
 /* Makes one asset of grids, tile by tile, without a mesh between (paper, section 6.2). East is +X,
- * up +Y, north -Z; the asset's anchor is in the middle of the grids. Every tile has a step of heights
- * of its own, and neighbours the same heights where they meet, so that no border shows. Nodes without
- * a value are empty texels; both sides are seen. Grids have the same numbers of nodes, unless they
+ * up +Y, north -Z; the asset's anchor is in the middle of the grids. Every tile has a step of
+ * heights of its own, and neighbours the same heights where they meet, so that no border shows.
+ * Nodes without a value are empty texels; both sides are seen. Grids have the same numbers of nodes, unless they
  * are parts of one surface. Where a property is NaN the surface is grey. The same grids and options
  * give the same bytes. `desc`, `result` and `error` may be NULL; gtx_close frees the asset.
  * Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, INPUT, EMPTY (a grid without four

@@ -11,14 +11,14 @@ namespace gtx::baking {
 
 /* A sheet passes a point when it is no farther away than this, and as steep. */
 constexpr double REACH_TEXELS = 0.75, REACH_STEPS = 3, LEAST_COSINE = 0.3;
-/* So far inside its outline a sheet that is not steep need not look for others. Trim may not be told
- * any deeper, so two that are would be equals. */
+/* So far inside its outline a sheet that is not steep need not look for others. Trim may not be
+ * told any deeper, so two that are would be equals. */
 constexpr double DEEP = -1.5;
 /* Where another sheet goes on, one may end this many texels beyond its outline, so that both reach
  * the line between their outlines. */
 constexpr double MOST_OUTSIDE = 1;
-/* A sheet steeper than this against a surface shows it with few texels, and gives it up to others by
- * so many texels. */
+/* A sheet steeper than this against a surface shows it with few texels, and gives it up to others
+ * by so many texels. */
 constexpr double STEEP_COSINE = 0.5, STEEP = 8;
 /* Texels whose trims differ by no more than this lie on the cut. */
 constexpr double ON_CUT = 0.4;

@@ -13,7 +13,7 @@ constexpr double TILE_OVERLAP = 0.15;
 /* Steps of heights are halves of halves of the coarsest, so often at most. */
 constexpr int MOST_HALVINGS = 12;
 
-/* Nodes of a layer: from..to are the tile's own, borders included; low..high those that it stores. */
+/* Nodes of a layer: from..to are the tile's own, borders included; low..high are stored. */
 struct Tile {
     uint32_t layer;
     int from[2], to[2], low[2], high[2];
@@ -251,7 +251,7 @@ static PatchMaps bake_tile(const Tile &tile, const LayerHeights &layer, const Gr
     return maps;
 }
 
-/* The middle of all grids, to a multiple of the largest power of two that is not above their size. */
+/* The middle of all grids, to a multiple of the largest power of two not above their size. */
 static Vec3d find_anchor(const std::vector<LayerHeights> &layers, const std::vector<Tile> &tiles)
 {
     Vec3d low(INFINITY, INFINITY, INFINITY), high = -low;

@@ -93,7 +93,7 @@ static int check(void)
     return EXIT_CODE_OK;
 }
 
-/* The operand "GRID[@X,Y][=PROPERTY]", cut at its marks; no mark is looked for in a folder's name. */
+/* The operand "GRID[@X,Y][=PROPERTY]", cut at its marks; an @ in a folder's name is none. */
 static int read_operand(const char *operand, gtx_height_grid *grid)
 {
     char name[MOST_NAME];

@@ -202,8 +202,8 @@ static std::string meta_of(const gtx_horizons_desc &desc, const double range[2],
     return std::string(json.text, json.size);
 }
 
-static Asset make_horizons(const gtx_height_grid *grids, uint32_t count, const gtx_horizons_desc &desc,
-                           gtx_horizons_result *result)
+static Asset make_horizons(const gtx_height_grid *grids, uint32_t count,
+                           const gtx_horizons_desc &desc, gtx_horizons_result *result)
 {
     check(grids, count, desc);
     const float shell = desc.shell_levels ? 60 : 0;
@@ -237,8 +237,8 @@ static Asset make_horizons(const gtx_height_grid *grids, uint32_t count, const g
 
 } // namespace gtx
 
-gtx_result gtx_height_grid_read(const char *path, const gtx_height_grid_desc *desc, gtx_height_grid *out,
-                         gtx_error *error)
+gtx_result gtx_height_grid_read(const char *path, const gtx_height_grid_desc *desc,
+                                gtx_height_grid *out, gtx_error *error)
 {
     return gtx::guard(error, [&] {
         gtx::require_argument(path && out, "gtx_height_grid_read needs a path and a result");

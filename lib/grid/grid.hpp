@@ -24,7 +24,8 @@ struct HeightGrid {
     float at(uint32_t i, uint32_t j) const { return values[size_t(j) * nx + i]; }
     std::array<double, 2> place(double i, double j) const
     {
-        const double turn = rotation * std::acos(-1.0) / 180, c = std::cos(turn), s = std::sin(turn);
+        const double turn = rotation * std::acos(-1.0) / 180;
+        const double c = std::cos(turn), s = std::sin(turn);
         const double x = i * step[0], y = j * step[1];
         return {origin[0] + c * x - s * y, origin[1] + s * x + c * y};
     }
@@ -32,7 +33,7 @@ struct HeightGrid {
 
 /* What a file may leave open. */
 struct GridReading {
-    const double *missing = nullptr; /* a value that says that there is none, besides the format's */
+    const double *missing = nullptr; /* says that there is no value, as the format's does */
     const double *range = nullptr;   /* two: what an image's least and greatest code stand for, the
                                         missing one left out */
 };
@@ -50,8 +51,9 @@ HeightGrid read_irap_classic(std::string_view bytes);
 HeightGrid read_irap_binary(std::string_view bytes);
 HeightGrid read_zmap(std::string_view bytes);
 
-/* One grid of several that are parts of one lattice, such as neighbouring tiles of terrain; of nodes
- * that several have, the first with a value counts. Throws Error: INPUT where the lattices differ. */
+/* One grid of several that are parts of one lattice, such as neighbouring tiles of terrain; of
+ * nodes that several have, the first with a value counts. Throws Error: INPUT where the lattices
+ * differ. */
 HeightGrid mosaic(const std::vector<HeightGrid> &parts);
 
 /* Colours for a value of 0..1, sRGB. */

@@ -24,8 +24,8 @@ static bool write_json(const std::string &path, const std::string &platform,
     std::fprintf(file, "{\"platform\": \"%s\", \"rows\": [", platform.c_str());
     for (size_t i = 0; i < rows.size(); ++i)
         std::fprintf(file,
-                     "%s\n{\"scene\": \"%s\", \"zoom\": \"%s\", \"method\": \"%s\", \"pixels\": %llu, "
-                     "\"frames\": %d, \"ms_median\": %.3f, \"ms_min\": %.3f}",
+                     "%s\n{\"scene\": \"%s\", \"zoom\": \"%s\", \"method\": \"%s\", "
+                     "\"pixels\": %llu, \"frames\": %d, \"ms_median\": %.3f, \"ms_min\": %.3f}",
                      i ? "," : "", rows[i].scene.c_str(), rows[i].window.c_str(),
                      rows[i].method.c_str(), static_cast<unsigned long long>(rows[i].pixels),
                      rows[i].frames, rows[i].median, rows[i].least);
@@ -69,7 +69,7 @@ static void draw_axes(FILE *file, int x, const std::string &scene, const Decades
     for (double d = across.low; d <= across.high; ++d) {
         const double at = x + PANEL * (d - across.low) / (across.high - across.low);
         std::fprintf(file, "<path d='M%.1f %dv%d' stroke='#ddd'/>"
-                           "<text x='%.1f' y='%d' text-anchor='middle'>%g</text>\n",
+                           "<text x='%.1f' y='%d' text-anchor='middle'>%.10g</text>\n",
                      at, TOP, PANEL, at, TOP + PANEL + 16, std::pow(10, d));
     }
     for (double d = up.low; d <= up.high; ++d) {
@@ -117,8 +117,10 @@ static bool write_svg(const std::string &path, const std::string &title,
             std::fprintf(file, "<polyline points='%s' fill='none' stroke='%s' stroke-width='2'/>\n",
                          points.c_str(), ink);
             if (!s)
-                std::fprintf(file, "<text x='%d' y='%d' fill='%s'>%s</text>\n",
-                             MARGIN + int(m) * 80, TOP + PANEL + 54, ink, methods[m].c_str());
+                std::fprintf(file, "<path d='M%d %dh18' stroke='%s' stroke-width='2'/>"
+                                   "<text x='%d' y='%d'>%s</text>\n",
+                             MARGIN + int(m) * 80, TOP + PANEL + 50, ink,
+                             MARGIN + int(m) * 80 + 22, TOP + PANEL + 54, methods[m].c_str());
         }
     }
     std::fprintf(file, "<text x='%d' y='%d'>frames a second over covered pixels</text>\n</svg>\n",

@@ -1,4 +1,4 @@
-/* What the programs of `make paper-figures` share: rows of frame times as a table, JSON and curves. */
+/* What the programs of `make paper-figures` share: frame times as a table, JSON and curves. */
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ struct FigureRow {
     double median, least;     /* milliseconds */
 };
 
-/* Median and least of the frames that `draw` finishes: `wanted` of them after one to warm up, or that
- * one alone where it takes more than two seconds. */
+/* Median and least of the frames that `draw` finishes: `wanted` of them after one to warm up, or
+ * that one alone where it takes more than two seconds. */
 struct FigureTimes {
     int frames;
     double median, least;

@@ -1,5 +1,5 @@
-/* Figure 9: four horizons seen from the top, in profile and obliquely, over the size of the picture,
- * against the mesh of the same grids.
+/* Figure 9: four horizons seen from the top, in profile and obliquely, over the size of the
+ * picture, against the mesh of the same grids.
  *
  *   figure9 OUT_FOLDER own|GRID_FOLDER [--frames N] [--sizes WxH,...]
  *
@@ -20,6 +20,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
 
 static void check(gtx_result result, const gtx_error &error)
 {
@@ -185,25 +186,26 @@ static uint64_t covered_pixels(const Stage &stage, const gtx_framebuffer &target
 static std::vector<FigureRow> measure(const Stage &stage, int frames, const std::string &sizes)
 {
     std::vector<FigureRow> rows;
-    for (size_t v = 0; v < sizeof views / sizeof *views; ++v)
-        for (size_t at = 0; at < sizes.size(); at = std::min(sizes.find(',', at), sizes.size() - 1) + 1) {
+    for (size_t v = 0; v < sizeof views / sizeof *views; ++v) {
+        std::stringstream list(sizes);
+        for (std::string size; std::getline(list, size, ',');) {
             int width, height;
             gtx_error error;
             gtx_framebuffer target;
-            if (std::sscanf(sizes.c_str() + at, "%dx%d", &width, &height) != 2)
-                break;
+            if (std::sscanf(size.c_str(), "%dx%d", &width, &height) != 2)
+                continue;
             check(gtx_framebuffer_create(&stage.gl, width, height, &target, &error), error);
             const gtx_view view = view_of(stage, v, width, height);
             for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m) {
                 const FigureTimes times = time_frames(frames, [&] { draw(stage, m, view); });
-                rows.push_back({views[v].name, methods[m].name,
-                                std::to_string(width) + "x" + std::to_string(height),
+                rows.push_back({views[v].name, methods[m].name, size,
                                 covered_pixels(stage, target), times.frames, times.median,
                                 times.least});
                 print_row(rows.back(), rows.size() == 1);
             }
             gtx_framebuffer_destroy(&stage.gl, &target);
         }
+    }
     return rows;
 }
 

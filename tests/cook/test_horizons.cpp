@@ -121,7 +121,8 @@ static void a_stack_is_an_asset(void **)
     assert_int_equal(info.patch_count, result.patches);
     assert_true(result.color_range[0] == 0 && result.color_range[1] == 199);
     assert_true(result.height_max < 0.2 && info.has_color && info.shell_levels >= 1);
-    const double top = info.bounds_max[1] + info.anchor[1], low = info.bounds_min[1] + info.anchor[1];
+    const double top = info.bounds_max[1] + info.anchor[1];
+    const double low = info.bounds_min[1] + info.anchor[1];
     assert_true(std::fabs(top - 40) < 1 && std::fabs(low + 240) < 1); /* depths, twice as deep */
     for (uint32_t p = 0; p < info.patch_count; ++p)
         assert_true(gtx_patches(asset)[p].flags & GTX_PATCH_TWO_SIDED);
