@@ -58,7 +58,21 @@ struct Decades {
 };
 
 constexpr int PANEL = 300, MARGIN = 56, TOP = 48;
-static const char *const INKS[] = {"#7a7a7a", "#1f77b4", "#2ca02c", "#d62728", "#9467bd"};
+constexpr int LABEL = 100; /* of the legend, in columns of this width */
+static const char *const INKS[] = {"#7a7a7a", "#1f77b4", "#2ca02c", "#d62728", "#9467bd",
+                                   "#8c564b", "#e377c2", "#17becf"};
+
+static void draw_legend(FILE *file, const std::vector<std::string> &methods, size_t columns)
+{
+    for (size_t m = 0; m < methods.size(); ++m) {
+        const int x = MARGIN + int(m % columns) * LABEL;
+        const int y = TOP + PANEL + 52 + int(m / columns) * 16;
+        std::fprintf(file, "<path d='M%d %dh18' stroke='%s' stroke-width='2'/>"
+                           "<text x='%d' y='%d'>%s</text>\n",
+                     x, y, INKS[m % (sizeof INKS / sizeof *INKS)], x + 22, y + 4,
+                     methods[m].c_str());
+    }
+}
 
 static void draw_axes(FILE *file, int x, const std::string &scene, const Decades &across,
                       const Decades &up)
@@ -93,7 +107,9 @@ static bool write_svg(const std::string &path, const std::string &title,
         across.add(double(std::max<uint64_t>(row.pixels, 1)));
         up.add(1000 / row.median);
     }
-    const int width = MARGIN + int(scenes.size()) * (PANEL + MARGIN), height = TOP + PANEL + 70;
+    const int width = MARGIN + int(scenes.size()) * (PANEL + MARGIN);
+    const size_t columns = size_t((width - MARGIN) / LABEL);
+    const int height = TOP + PANEL + 60 + 16 * int((methods.size() + columns - 1) / columns);
     std::fprintf(file, "<svg xmlns='http://www.w3.org/2000/svg' width='%d' height='%d' "
                        "font-family='sans-serif' font-size='11'>\n"
                        "<rect width='100%%' height='100%%' fill='white'/>\n"
@@ -116,13 +132,9 @@ static bool write_svg(const std::string &path, const std::string &title,
             const char *ink = INKS[m % (sizeof INKS / sizeof *INKS)];
             std::fprintf(file, "<polyline points='%s' fill='none' stroke='%s' stroke-width='2'/>\n",
                          points.c_str(), ink);
-            if (!s)
-                std::fprintf(file, "<path d='M%d %dh18' stroke='%s' stroke-width='2'/>"
-                                   "<text x='%d' y='%d'>%s</text>\n",
-                             MARGIN + int(m) * 80, TOP + PANEL + 50, ink,
-                             MARGIN + int(m) * 80 + 22, TOP + PANEL + 54, methods[m].c_str());
         }
     }
+    draw_legend(file, methods, columns);
     std::fprintf(file, "<text x='%d' y='%d'>frames a second over covered pixels</text>\n</svg>\n",
                  MARGIN, TOP + PANEL + 36);
     return std::fclose(file) == 0;
