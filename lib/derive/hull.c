@@ -117,8 +117,8 @@ static void find_extent(hull *h)
         h->blocks[a] = h->high[0] ? (h->high[a] - h->low[a] + BLOCK - 1) / BLOCK : 0;
 }
 
-/* Which halves of a block are needed, with a cell to spare, so that the hull follows slanted outlines
- * by leaving halves out; and the block's sums. */
+/* Which halves of a block are needed, with a cell to spare, so that the hull follows slanted
+ * outlines by leaving halves out; and the block's sums. */
 static void look_at_block(hull *h, uint32_t bi, uint32_t bj)
 {
     const uint32_t x0 = line(h, 0, bi), x1 = line(h, 0, bi + 1);
@@ -186,8 +186,8 @@ static void split_block(hull *h, uint32_t bi, uint32_t bj)
         h->edges[h->edge_count++] = (edge){{ring[upper], ring[lower]}, {bi, bj}};
 }
 
-/* The height at node (bi, bj) of a plane that is as near as can be to the sheet of the blocks around.
- * Slopes are held back a little, where few cells do not tell them. */
+/* The height at node (bi, bj) of a plane that is as near as can be to the sheet of the blocks
+ * around. Slopes are held back a little, where few cells do not tell them. */
 static float plane_at(const hull *h, uint32_t bi, uint32_t bj)
 {
     moments m = {.xx = 1, .yy = 1};
@@ -322,7 +322,8 @@ static float fall_at(const gtx_grid *grid, uint32_t i, uint32_t j, int axis, boo
     const uint32_t width = grid->nodes_x - 1, height = grid->nodes_y - 1;
     float first = 0, last = 0, count = 0;
     for (uint32_t k = 0; k < CELLS; ++k) {
-        const uint32_t x = axis ? i : upward ? i + k : i - k, y = !axis ? j : upward ? j + k : j - k;
+        const uint32_t x = axis ? i : upward ? i + k : i - k;
+        const uint32_t y = !axis ? j : upward ? j + k : j - k;
         if (x >= width || y >= height || !grid->solid[(size_t)y * width + x])
             break;
         const float code = least_code(grid, x, y);
