@@ -52,8 +52,7 @@ bool gtx_look(inout gtx_walk w, gtx_sheet sheet, ivec2 last, float fit, vec3 ori
 {
     vec3 entry = origin + w.enter * direction;
     float span = w.leave - w.enter;
-    ivec2 texel = (sheet.corner >> sheet.level) + w.cell;
-    w.height = vec4(texelFetch(gtx_cells, ivec3(texel, sheet.page), sheet.level));
+    w.height = vec4(texelFetch(gtx_cells, ivec3(sheet.cells + w.cell, sheet.page), 0));
     w.fit = mix(vec2(1.0), vec2(fit), vec2(equal(w.cell, last)));
     w.gap = gtx_gap(w.height, vec3((entry.xy - vec2(w.cell)) * w.fit, entry.z),
                     vec3(direction.xy * w.fit, direction.z));
@@ -98,7 +97,8 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
             w.leave = max(w.enter, min(min(planes.x, planes.y), end));
             crossing = gtx_look(w, sheet, last, fit, o, d);
             next += planes.x <= planes.y ? ivec2(way.x, 0) : ivec2(0, way.y);
-            inside = w.leave < end && next == clamp(next, ivec2(0), last);
+            bool left = w.known && (w.above ? w.gap.x : -w.gap.x) > sheet.reach;
+            inside = w.leave < end && next == clamp(next, ivec2(0), last) && !left;
         }
         vec2 root = w.enter + clamp(gtx_roots(w.gap), 0.0, w.leave - w.enter);
         hit.back = sheet.two_sided && !w.above;

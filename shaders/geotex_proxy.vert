@@ -1,10 +1,12 @@
-/* Proxies of instances: every fragment of a patch's hull gets its ray, in the patch's grid space.
+/* Proxies of instances: every fragment of a patch's hull or box gets its ray, in the patch's grid
+ * space.
  *
- * Needs geotex_dialect.glsl, geotex_sheet.glsl and geotex_view.glsl before it. The back faces of
- * the hull are what is rasterised, so that a camera inside it still sees the patch; the ray is cut
- * to the hull and to the near and far planes in the fragment. */
+ * Needs geotex_dialect.glsl, geotex_sheet.glsl and geotex_view.glsl before it. Hulls are rasterised
+ * by their front faces, where the rays begin. Patches that the near plane cuts have boxes instead,
+ * by their back faces, so that a camera inside still sees the patch; their rays are cut to the box
+ * and to the near plane in the fragment. */
 layout(location = 0) in vec3 gtx_position;  /* grid space */
-layout(location = 1) in uint gtx_patch;
+layout(location = 1) in uint gtx_patch;     /* index + 2^28 * kind: 0: box; n: hull of level n - 1 */
 layout(location = 2) in vec4 gtx_world_x;   /* rows of object -> world, one set an instance */
 layout(location = 3) in vec4 gtx_world_y;
 layout(location = 4) in vec4 gtx_world_z;
@@ -18,15 +20,23 @@ GTX_VARYING(0) out vec3 gtx_point;          /* grid space, on the hull */
 GTX_VARYING(1) flat out vec3 gtx_eye;       /* the ray: gtx_point * gtx_depth.w - gtx_eye */
 GTX_VARYING(2) flat out vec4 gtx_clip_z;    /* rows of grid -> clip */
 GTX_VARYING(3) flat out vec4 gtx_clip_w;
-GTX_VARYING(4) flat out vec4 gtx_normal_x;  /* xyz: columns of object -> world for normals; w: what */
-GTX_VARYING(5) flat out vec4 gtx_normal_y;  /* object -> world adds */
-GTX_VARYING(6) flat out vec4 gtx_normal_z;
-GTX_VARYING(7) flat out vec4 gtx_color;
+GTX_VARYING(4) flat out vec3 gtx_normal_x;  /* the patch's normals -> world */
+GTX_VARYING(5) flat out vec3 gtx_normal_y;
+GTX_VARYING(6) flat out vec3 gtx_normal_z;
+GTX_VARYING(7) flat out vec4 gtx_color;     /* where no map gives colours, the 2.4th root of rgb */
 GTX_VARYING(8) flat out int gtx_patch_index;
 GTX_VARYING(9) flat out vec4 gtx_rect;      /* what gtx_sheet_of takes: a fragment that misses */
 GTX_VARYING(10) flat out vec4 gtx_span;     /* need not fetch the record */
 GTX_VARYING(11) flat out int gtx_level;     /* of detail, the same all over the patch */
 GTX_VARYING(12) flat out uint gtx_id;       /* of the instance */
+GTX_VARYING(13) flat out float gtx_reach;   /* of the hull's rays; negative: a box */
+GTX_VARYING(14) out vec3 gtx_world;         /* gtx_point in world space */
+GTX_VARYING(15) flat out vec3 gtx_world_eye; /* the ray: gtx_world * gtx_depth.w - gtx_world_eye */
+
+vec3 gtx_to_world(vec4 object)
+{
+    return vec3(dot(gtx_world_x, object), dot(gtx_world_y, object), dot(gtx_world_z, object));
+}
 
 /* A row over world space, taken to grid space. */
 vec4 gtx_row(vec4 row, gtx_frame frame)
@@ -37,28 +47,7 @@ vec4 gtx_row(vec4 row, gtx_frame frame)
                 dot(object.xyz, frame.axis_z), dot(object.xyz, frame.origin) + object.w);
 }
 
-/* The coarsest level whose distance from level 0 is allowed where the patch's sphere is nearest. */
-int gtx_choose_level(int index)
-{
-    int last = int(gtx_maps.x), level = 0;
-    if (gtx_detail.z >= 0.0)
-        return min(int(gtx_detail.z), last);
-    /* The transform M stretches by no more than the root of the largest row sum of M^T M, which is
-     * exact for an even scale. */
-    mat3 rows = mat3(gtx_world_x.xyz, gtx_world_y.xyz, gtx_world_z.xyz);
-    mat3 square = rows * transpose(rows);
-    vec3 sums = abs(square[0]) + abs(square[1]) + abs(square[2]);
-    float stretch = sqrt(max(sums.x, max(sums.y, sums.z)));
-    vec4 sphere = gtx_record(index, 8), centre = vec4(sphere.xyz, 1.0);
-    centre.xyz = vec3(dot(gtx_world_x, centre), dot(gtx_world_y, centre), dot(gtx_world_z, centre));
-    float nearest = (gtx_clip_from_world * centre).w - gtx_detail.y * stretch * sphere.w;
-    float allowed = max(nearest, 0.0) / (gtx_detail.x * stretch);
-    while (level < last && gtx_record(index, 9 + level / 4)[level % 4] <= allowed)
-        ++level;
-    return level;
-}
-
-/* A vertex of the hull, which fits level 0, as far out as the cells of a coarser level need it. */
+/* A vertex of the box, which fits level 0, as far out as the cells of a coarser level need it. */
 vec3 gtx_widen(vec3 position, vec4 rect, vec4 box, int level)
 {
     vec2 cell = vec2(1 << level);
@@ -69,11 +58,18 @@ vec3 gtx_widen(vec3 position, vec4 rect, vec4 box, int level)
 
 void main()
 {
-    int index = int(gtx_patch);
+    int index = int(gtx_patch & 0x0fffffffu), kind = int(gtx_patch >> 28);
     gtx_frame frame = gtx_frame_of(index);
-    gtx_level = gtx_choose_level(index);
     gtx_rect = gtx_record(index, 7);
-    gtx_point = gtx_widen(gtx_position, gtx_rect, gtx_record(index, 11), gtx_level);
+    if (kind > 0) {
+        gtx_level = kind - 1;
+        gtx_point = gtx_position;
+        gtx_reach = gtx_record(index, 8 + gtx_level / 4)[gtx_level % 4];
+    } else {
+        gtx_level = int(gtx_detail.z);
+        gtx_point = gtx_widen(gtx_position, gtx_rect, gtx_record(index, 10), gtx_level);
+        gtx_reach = -1.0;
+    }
     vec4 grid = vec4(gtx_point, 1.0);
     vec4 eye = vec4(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w, gtx_depth.w);
     mat4 rows = transpose(gtx_clip_from_world);
@@ -82,17 +78,24 @@ void main()
     gtx_clip_z = gtx_row(rows[2], frame);
     gtx_clip_w = gtx_row(rows[3], frame);
     /* n_world = transpose(inverse) n: the inverse's rows are the columns. */
-    gtx_normal_x = vec4(gtx_object_x.xyz, gtx_world_x.w);
-    gtx_normal_y = vec4(gtx_object_y.xyz, gtx_world_y.w);
-    gtx_normal_z = vec4(gtx_object_z.xyz, gtx_world_z.w);
+    vec3 z = normalize(frame.axis_z), x = normalize(frame.axis_x - dot(frame.axis_x, z) * z);
+    mat3 world_normals = mat3(gtx_object_x.xyz, gtx_object_y.xyz, gtx_object_z.xyz);
+    gtx_normal_x = world_normals * x;
+    gtx_normal_y = world_normals * cross(z, x);
+    gtx_normal_z = world_normals * z;
+    gtx_world = gtx_to_world(vec4(gtx_object_point(frame, gtx_point), 1.0));
+    gtx_world_eye = gtx_to_world(eye);
     gtx_id = gtx_instance;
     gtx_color = gtx_tint;
+#ifdef GTX_PLAIN
+    gtx_color.rgb = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
+#endif
     gtx_patch_index = index;
     gtx_span = vec4(gtx_record(index, 3).w, gtx_record(index, 4).w, gtx_record(index, 5).w,
                     gtx_record(index, 6).w);
 
     float w = dot(gtx_clip_w, grid);
-    /* z in the middle of either clip convention: only the sides of the frustum cut the hull. The
+    /* z in the middle of either clip convention: only the sides of the frustum cut the proxy. The
      * fragment writes its own depth. */
     gl_Position = vec4(dot(gtx_row(rows[0], frame), grid), dot(gtx_row(rows[1], frame), grid),
                        0.5 * w, w);

@@ -5,19 +5,23 @@
  * bilinear patch through them (format/gtx.md, section 4.1). At level k cell (i, j) spans 2^k texels
  * from texel 2^k i, 2^k j on, the last ones of a row or column a texel less (section 5); grid space
  * is the same at all levels. */
-GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* four codes a cell: (0,0) (1,0) (0,1) (1,1);
-                                                     level k at mip level k */
+GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* four codes a cell: (0,0) (1,0) (0,1) (1,1); under
+                                                     level 0 the others side by side, for lookups
+                                                     by level cost more */
 GTX_SAMPLER(1, highp sampler2DArray) gtx_trim;    /* distance to the outline, as stored */
-GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* 12 texels a patch, 128 patches a row */
+GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* 11 texels a patch, 128 patches a row */
 
 /* What casting needs of a patch. */
 struct gtx_sheet {
     ivec2 corner;                         /* of the rectangle in its page */
+    ivec2 cells;                          /* where the level's begin there */
     ivec2 size;                           /* of the rectangle, in texels */
     int page;
     int level;                            /* of detail */
     bool two_sided;                       /* crossings from below count too */
     vec3 low, high;                       /* box of the cells, in grid space */
+    float reach;                          /* a ray farther above the sheet than so has left the
+                                             proxy, or below it */
 };
 
 /* object = origin + axis_x * grid.x + axis_y * grid.y + axis_z * grid.z */
@@ -36,7 +40,7 @@ struct gtx_hit {
 
 vec4 gtx_record(int patch_index, int texel)
 {
-    return texelFetch(gtx_patches, ivec2((patch_index & 127) * 12 + texel, patch_index >> 7), 0);
+    return texelFetch(gtx_patches, ivec2((patch_index & 127) * 11 + texel, patch_index >> 7), 0);
 }
 
 gtx_frame gtx_frame_of(int patch_index)
@@ -46,11 +50,14 @@ gtx_frame gtx_frame_of(int patch_index)
 }
 
 /* From the rectangle (x, y, w, h) and (lowest z, highest z, page, two-sided), which are those of all
- * levels. */
+ * levels, for a ray from anywhere. */
 gtx_sheet gtx_sheet_of(vec4 rect, vec4 span, int level)
 {
-    return gtx_sheet(ivec2(rect.xy), ivec2(rect.zw), int(span.z), level, span.w > 0.0,
-                     vec3(0.0, 0.0, span.x), vec3(rect.zw - 1.0, span.y));
+    ivec2 page = textureSize(gtx_cells, 0).xy;
+    ivec2 from = level > 0 ? ivec2(page.x - (page.x >> (level - 1)), page.y / 3 * 2) : ivec2(0);
+    return gtx_sheet(ivec2(rect.xy), from + (ivec2(rect.xy) >> level), ivec2(rect.zw),
+                     int(span.z), level, span.w > 0.0,
+                     vec3(0.0, 0.0, span.x), vec3(rect.zw - 1.0, span.y), 1e30);
 }
 
 /* The same straight from the record. The level is below the model's number of mip levels. */
@@ -80,11 +87,17 @@ vec3 gtx_facet(gtx_frame frame, gtx_hit hit)
 bool gtx_shows(gtx_sheet sheet, vec2 at)
 {
     ivec2 cell = clamp(ivec2(floor(at)), ivec2(0), sheet.size - 2);
+#ifdef GTX_GATHER
+    vec4 g = textureGather(gtx_trim, vec3((vec2(sheet.corner + cell) + 1.0) /
+                                          vec2(textureSize(gtx_trim, 0).xy), float(sheet.page)));
+    float a = g.w, b = g.z, c = g.x, d = g.y;
+#else
     ivec3 texel = ivec3(sheet.corner + cell, sheet.page);
     float a = texelFetch(gtx_trim, texel, 0).r;
     float b = texelFetch(gtx_trim, texel + ivec3(1, 0, 0), 0).r;
     float c = texelFetch(gtx_trim, texel + ivec3(0, 1, 0), 0).r;
     float d = texelFetch(gtx_trim, texel + ivec3(1, 1, 0), 0).r;
+#endif
     vec2 f = clamp(at - vec2(cell), 0.0, 1.0);
     return mix(mix(a, b, f.x), mix(c, d, f.x), f.y) * 255.0 <=
            128.0 + 4.8 * float(1 << sheet.level);

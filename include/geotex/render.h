@@ -150,9 +150,10 @@ enum { /* gtx_view.flags */
  * most `max_error` pixels where the asset's bounds are nearest to the camera, or as the finest when
  * there is none; `level` counts levels of the shell. It writes no depth of its own, so that the depth
  * test comes first and multisampling smooths its edges; `viewport_height` also tells the
- * mip level of its maps. GTX_METHOD_AUTO draws the same level if there
- * is one within the error and gtx_costs has it for cheaper, and casts otherwise, as it does when
- * `viewport_height` is unknown or `level` given. Patches taken by gtx_model_update are cast from then
+ * mip level of its maps. GTX_METHOD_AUTO draws the same level if there is one
+ * within the error, or else the finest if that is within one and a half times the error, if gtx_costs
+ * has it for cheaper, and casts otherwise, as it does when `viewport_height` is unknown or `level`
+ * given. Patches taken by gtx_model_update are cast from then
  * on, by either method. */
 typedef struct gtx_view {
     float view[16], projection[16];   /* column-major; world -> eye -> clip */
@@ -180,10 +181,12 @@ typedef struct gtx_instance {
     uint32_t reserved[3];
 } gtx_instance;
 
-/* Draws the instances into the bound framebuffer: what view->pass says, and depth. In the forward
- * pass a model with materials or emission is shaded by metallic-roughness (glTF 2.0, appendix B),
- * another by Lambert. One instanced draw for each run of instances of one model. Room for the most
- * instances so far is kept, of the renderer's allocator, until gtx_renderer_destroy.
+/* Draws the instances into the bound framebuffer, which has a depth buffer: what view->pass says, and
+ * depth. In the forward pass a model with materials or emission is shaded by metallic-roughness
+ * (glTF 2.0, appendix B), another by Lambert. An instance that is cast is drawn patch by patch,
+ * nearest first, those out of view left out; of a run of instances of one model those far away are
+ * one instanced draw, as are runs that are not cast. Room for the most instances and patches so far
+ * is kept, of the renderer's allocator, until gtx_renderer_destroy.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL, SHADER (a pass's first draw), UNSUPPORTED
  * (GTX_METHOD_SHELL, and an asset without). */
 GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,

@@ -92,6 +92,7 @@ enum {
     GL_ARRAY_BUFFER_BINDING = 0x8894,
     GL_STREAM_DRAW = 0x88E0,
     GL_STATIC_DRAW = 0x88E4,
+    GL_DYNAMIC_DRAW = 0x88E8,
     GL_PIXEL_UNPACK_BUFFER = 0x88EC,
     GL_MAX_ARRAY_TEXTURE_LAYERS = 0x88FF,
     GL_SAMPLER_BINDING = 0x8919,
@@ -195,11 +196,18 @@ enum {
     X(void, PopDebugGroup, (void))                                                                 \
     X(void, PushDebugGroup, (gl_enum source, gl_uint id, gl_size length, const char *message))
 
+/* Several draws in one call: of OpenGL, and of OpenGL ES with EXT_multi_draw_arrays. */
+#define GTX_GL_MULTI(X)                                                                            \
+    X(void, MultiDrawElements,                                                                     \
+      (gl_enum mode, const gl_size *counts, gl_enum type, const void *const *offsets,              \
+       gl_size draws))
+
 typedef struct gtx_gl {
 #define GTX_GL_FIELD(result, name, parameters) result(GTX_GL_CALL *name) parameters;
     GTX_GL(GTX_GL_FIELD)
     GTX_GL_INDEXED(GTX_GL_FIELD)
     GTX_GL_DEBUG(GTX_GL_FIELD)
+    GTX_GL_MULTI(GTX_GL_FIELD)
 #undef GTX_GL_FIELD
     bool es;                  /* OpenGL ES */
 } gtx_gl;
