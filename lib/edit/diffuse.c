@@ -26,6 +26,7 @@ typedef float rates[8];
 
 typedef struct flow {
     const gtx_edit *edit;
+    gtx_change *surface;      /* points and details as they stand; borrowed ones are their owners' */
     rates *rate;              /* of each texel's neighbours */
     gtx_change *source;       /* how the surface as it stands would flow */
 } flow;
@@ -36,12 +37,11 @@ static double dot(const double a[3], const double b[3])
 }
 
 /* Half the cotangents of a triangle's angles, and a third of its area. */
-static void measure_triangle(const gtx_edit *edit, const size_t corner[3], double half[3],
-                             double *third)
+static void measure_triangle(const flow *f, const size_t corner[3], double half[3], double *third)
 {
     double edge[3][3], normal[3]; /* edge k is opposite to corner k */
     for (int k = 0; k < 3; ++k) {
-        const float *a = edit->point[corner[(k + 1) % 3]], *b = edit->point[corner[(k + 2) % 3]];
+        const float *a = f->surface[corner[(k + 1) % 3]], *b = f->surface[corner[(k + 2) % 3]];
         for (int c = 0; c < 3; ++c)
             edge[k][c] = (double)b[c] - a[c];
     }
@@ -70,7 +70,7 @@ static void add_cell(const flow *f, const size_t corner[4], double *mass)
             size_t at[3];
             for (int k = 0; k < 3; ++k)
                 at[k] = corner[TRIANGLES[split][t].corner[k]];
-            measure_triangle(f->edit, at, half[split][t], &third[split][t]);
+            measure_triangle(f, at, half[split][t], &third[split][t]);
         }
     /* Of the two diagonals the one that Delaunay has: its weight is not negative. */
     across[0] = half[0][0][1] + half[0][1][2];
@@ -145,17 +145,25 @@ static void advance(const flow *f, gtx_change *now, gtx_change *before, float a,
     gtx_edit_follow(edit, out);
 }
 
-/* Points and details as they stand. */
-static void gather(const gtx_edit *edit, gtx_change *out)
+/* Points and details as they stand. Past a ridge a sheet goes straight on, and only the owner knows
+ * where its surface is. */
+static void gather(const flow *f)
 {
-    for (size_t t = 0; t < edit->texels; ++t) {
-        memcpy(out[t] + GTX_CHANGE_MOVE, edit->point[t], sizeof edit->point[t]);
-        memcpy(out[t] + GTX_CHANGE_DETAIL, edit->detail[t], sizeof edit->detail[t]);
+    const gtx_edit *edit = f->edit;
+    for (int pass = 0; pass < 2; ++pass) {
+        for (size_t t = 0; t < edit->texels; ++t) {
+            if (pass && edit->kind[t] != GTX_TEXEL_LOOSE)
+                continue;
+            memcpy(f->surface[t] + GTX_CHANGE_MOVE, edit->point[t], sizeof edit->point[t]);
+            memcpy(f->surface[t] + GTX_CHANGE_DETAIL, edit->detail[t], sizeof edit->detail[t]);
+        }
+        if (!pass)
+            gtx_edit_follow(edit, f->surface);
     }
 }
 
-/* How the surface as it stands flows: once, without following. */
-static void measure_source(const flow *f, gtx_change *surface)
+/* How the surface as it stands flows. */
+static void measure_source(const flow *f)
 {
     const gtx_edit *edit = f->edit;
     for (uint32_t p = 0; p < edit->count; ++p) {
@@ -165,8 +173,8 @@ static void measure_source(const flow *f, gtx_change *surface)
             for (int k = 0; k < 8 && edit->kind[t] == GTX_TEXEL_OWN; ++k) {
                 const ptrdiff_t next = NEXT[k][1] * (ptrdiff_t)sheet->width + NEXT[k][0];
                 for (int c = 0; c < 8; ++c)
-                    f->source[t][c] += f->rate[t][k] * (surface[(ptrdiff_t)t + next][c] -
-                                                        surface[t][c]);
+                    f->source[t][c] += f->rate[t][k] * (f->surface[(ptrdiff_t)t + next][c] -
+                                                        f->surface[t][c]);
             }
     }
 }
@@ -209,12 +217,13 @@ gtx_result gtx_edit_diffuse(gtx_edit *edit, double radius, gtx_error *error)
     }
     if (all) {
         gtx_edit_touch_all(edit);
+        f.surface = ring[1];
+        gather(&f);
         const float most = FASTEST / (edit->texel_size * edit->texel_size);
         float fastest = 0;
         for (uint32_t p = 0; p < edit->count; ++p)
             fastest = fmaxf(fastest, measure_sheet(&f, &edit->sheets[p], most, mass));
-        gather(edit, ring[1]);
-        measure_source(&f, ring[1]);
+        measure_source(&f);
         memset(ring[1], 0, edit->texels * sizeof *ring[1]);
         run(&f, radius * radius / 2, fastest, ring);
         if (ring[0] != edit->changes)

@@ -158,13 +158,16 @@ static void forget_changes(gtx_edit *edit)
     }
 }
 
-void gtx_edit_done(gtx_edit *edit)
+gtx_result gtx_edit_done(gtx_edit *edit, gtx_error *error)
 {
     /* Twice: a borrowed texel may be next to one that its owner borrows itself. */
     gtx_edit_follow(edit, edit->changes);
     gtx_edit_follow(edit, edit->changes);
-    gtx_edit_commit(edit);
+    gtx_result result = gtx_edit_hold(edit, error);
+    if (!result)
+        gtx_edit_commit(edit);
     forget_changes(edit);
+    return result;
 }
 
 /* The radius in object units. */
@@ -193,43 +196,40 @@ static gtx_result read_blur(const gtx_edit *edit, const gtx_edit_blur *blur, dou
     return GTX_OK;
 }
 
-gtx_result gtx_edit_gaussian(gtx_edit *edit, const gtx_edit_blur *blur, gtx_error *error)
+/* Ends with the surface + amount * (its blur - the surface). */
+static gtx_result filter(gtx_edit *edit, const gtx_edit_blur *blur, float amount, gtx_error *error)
 {
-    double radius;
+    double radius = 0;
     gtx_result result = read_blur(edit, blur, &radius, error);
     if (result)
         return result;
-    const bool alone = blur->flags & GTX_EDIT_ALONE;
-    result = alone ? gtx_edit_diffuse_alone(edit, radius, error)
-                   : gtx_edit_diffuse(edit, radius, error);
-    if (result)
-        return result;
-    gtx_edit_commit(edit); /* what was to follow has */
-    forget_changes(edit);
-    return GTX_OK;
-}
-
-gtx_result gtx_edit_high_boost(gtx_edit *edit, const gtx_edit_blur *blur, float amount,
-                               gtx_error *error)
-{
-    double radius;
-    gtx_result result = read_blur(edit, blur, &radius, error);
-    if (result)
-        return result;
-    if (!(amount > 0 && amount <= MOST_BOOST))
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "high-boost takes an amount up to %g",
-                        (double)MOST_BOOST);
     const bool alone = blur->flags & GTX_EDIT_ALONE;
     result = alone ? gtx_edit_diffuse_alone(edit, radius, error)
                    : gtx_edit_diffuse(edit, radius, error);
     if (result)
         return result;
     for (size_t t = 0; t < edit->texels; ++t)
-        for (int c = 0; c < 8; ++c)
-            edit->changes[t][c] *= -amount;
+        for (int c = 0; c < GTX_CHANGE_VALUE; ++c)
+            edit->changes[t][c] *= amount;
+    if (!alone)
+        return gtx_edit_done(edit, error);
     gtx_edit_commit(edit);
     forget_changes(edit);
     return GTX_OK;
+}
+
+gtx_result gtx_edit_gaussian(gtx_edit *edit, const gtx_edit_blur *blur, gtx_error *error)
+{
+    return filter(edit, blur, 1, error);
+}
+
+gtx_result gtx_edit_high_boost(gtx_edit *edit, const gtx_edit_blur *blur, float amount,
+                               gtx_error *error)
+{
+    if (!(amount > 0 && amount <= MOST_BOOST))
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "high-boost takes an amount above 0, up to %g",
+                        (double)MOST_BOOST);
+    return filter(edit, blur, -amount, error);
 }
 
 /* Calls the operation, and takes what it did to own texels. False where that is not finite. */
@@ -277,7 +277,11 @@ gtx_result gtx_edit_apply(gtx_edit *edit, gtx_edit_fn fn, void *user, gtx_error 
     }
     gtx_edit_follow(edit, edit->changes);
     for (size_t t = 0; t < edit->texels; ++t)
-        edit->value[t] = edit->next[t] = edit->changes[t][GTX_CHANGE_VALUE];
-    gtx_edit_done(edit);
-    return GTX_OK;
+        edit->next[t] = edit->changes[t][GTX_CHANGE_VALUE];
+    gtx_result result = gtx_edit_done(edit, error);
+    if (result)
+        memcpy(edit->next, edit->value, edit->texels * sizeof *edit->next);
+    else
+        memcpy(edit->value, edit->next, edit->texels * sizeof *edit->next);
+    return result;
 }

@@ -78,9 +78,14 @@ void gtx_edit_begin_details(gtx_edit *edit);
 /* Moves the points of touched sheets by edit->changes and gives them their normals. */
 void gtx_edit_commit(gtx_edit *edit);
 
-/* edit.c: touches all sheets; ends an operation whose changes are those of own texels. */
+/* hold.c: takes back from edit->changes, with the neighbours in mind, what would turn cells away from
+ * their patch's z. Errors: MEMORY. */
+gtx_result gtx_edit_hold(gtx_edit *edit, gtx_error *error);
+
+/* edit.c: touches all sheets; ends an operation whose changes are those of own texels. Errors: MEMORY
+ * (nothing has changed). */
 void gtx_edit_touch_all(gtx_edit *edit);
-void gtx_edit_done(gtx_edit *edit);
+gtx_result gtx_edit_done(gtx_edit *edit, gtx_error *error);
 /* Touches the sheets whose boxes, grown by `slack`, meet the box. */
 void gtx_edit_touch(gtx_edit *edit, const float low[3], const float high[3], float slack);
 

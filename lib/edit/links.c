@@ -1,5 +1,5 @@
 /* Whose surface it is: texels outside a patch's outline are looked up in its neighbours, by casting
- * along the patch's z, and follow them from then on. */
+ * along the patch's z, or around the ridge where that meets nothing; they follow them from then on. */
 #include "edit/edit.h"
 
 #include "base/alloc.h"
@@ -147,6 +147,101 @@ static bool neighbour(const gtx_spread *sheet, uint32_t texel, int k, uint32_t *
     return true;
 }
 
+/* The crossing of a neighbour near a point, along the neighbour's z. */
+static bool project(const linker *l, uint32_t patch, const double point[3], place *out)
+{
+    const float *z = l->edit->source->patches[patch].axis_z;
+    const double far = 2 * APART * l->edit->texel_size;
+    gtx_line ray = {.t_max = 2 * far};
+    for (int k = 0; k < 3; ++k) {
+        ray.origin[k] = point[k] + far * z[k];
+        ray.direction[k] = -z[k];
+    }
+    gtx_crossing found = {.t = ray.t_max, .sheet = UINT32_MAX};
+    gtx_walk_sheet(l->caster, patch, &ray, false, &found);
+    if (found.sheet == UINT32_MAX)
+        return false;
+    *out = (place){found, trim_at(&l->caster->sheets[patch], found.x, found.y)};
+    out->at.t -= far; /* above the point */
+    return true;
+}
+
+/* Turns `v` as the least turn from one unit vector to another does. */
+static bool turn(const float from[3], const float to[3], double v[3])
+{
+    double axis[3], cosine = 0, along = 0;
+    for (int k = 0; k < 3; ++k) {
+        const int a = (k + 1) % 3, b = (k + 2) % 3;
+        axis[k] = (double)from[a] * to[b] - (double)from[b] * to[a];
+        cosine += (double)from[k] * to[k];
+        along += axis[k] * v[k];
+    }
+    if (cosine < -0.9)
+        return false;
+    double out[3];
+    for (int k = 0; k < 3; ++k) {
+        const int a = (k + 1) % 3, b = (k + 2) % 3;
+        out[k] = cosine * v[k] + axis[a] * v[b] - axis[b] * v[a] + axis[k] * along / (1 + cosine);
+    }
+    memcpy(v, out, sizeof out);
+    return true;
+}
+
+/* The own texel that is nearest in the grid. */
+static bool find_own(const gtx_edit *edit, const gtx_spread *sheet, uint32_t texel, size_t *out)
+{
+    const int64_t i = texel % sheet->width, j = texel / sheet->width;
+    int64_t best = INT64_MAX;
+    for (int64_t y = j - GTX_EDIT_MARGIN; y <= j + GTX_EDIT_MARGIN; ++y)
+        for (int64_t x = i - GTX_EDIT_MARGIN; x <= i + GTX_EDIT_MARGIN; ++x) {
+            if (x < 0 || y < 0 || x >= sheet->width || y >= sheet->height)
+                continue;
+            const size_t at = sheet->first + (size_t)y * sheet->width + (size_t)x;
+            const int64_t square = (x - i) * (x - i) + (y - j) * (y - j);
+            if (edit->kind[at] != GTX_TEXEL_OWN || square >= best)
+                continue;
+            best = square;
+            *out = at;
+        }
+    return best < INT64_MAX;
+}
+
+/* Where the step from an own texel to the one at hand leads on a neighbour that goes on at another
+ * angle. */
+static bool link_around(const linker *l, uint32_t patch, uint32_t texel, gtx_link *out)
+{
+    const gtx_edit *edit = l->edit;
+    const gtx_spread *sheet = &edit->sheets[patch];
+    place best = {.trim = INFINITY};
+    size_t own = 0;
+    if (!find_own(edit, sheet, texel, &own))
+        return false;
+    for (uint32_t i = 0; i < l->near_count; ++i) {
+        const uint32_t other = l->near[i];
+        const float *z = edit->source->patches[other].axis_z;
+        double from[3], step[3];
+        float normal[3];
+        place start, end;
+        for (int k = 0; k < 3; ++k) {
+            from[k] = edit->rest[own][k];
+            step[k] = (double)edit->rest[sheet->first + texel][k] - from[k];
+        }
+        if (!project(l, other, from, &start))
+            continue;
+        gtx_sheet_normal(&l->caster->sheets[other], start.at.x, start.at.y, normal);
+        if (!turn(edit->normal[own], normal, step))
+            continue;
+        for (int k = 0; k < 3; ++k)
+            from[k] += step[k] - start.at.t * z[k];
+        if (project(l, other, from, &end) && end.trim < best.trim)
+            best = end;
+    }
+    if (best.trim == INFINITY)
+        return false;
+    *out = make_link(edit, texel, &best.at);
+    return true;
+}
+
 /* Steps from own and borrowed texels, and the loose ones in their order. */
 static void order_loose(gtx_edit *edit, gtx_spread *sheet)
 {
@@ -193,7 +288,8 @@ static gtx_result link_all(linker *l, gtx_error *error)
         sheet->first_loose = loose;
         for (uint32_t t = 0; t < count; ++t)
             if (edit->kind[sheet->first + t] == GTX_TEXEL_LOOSE &&
-                link_texel(l, p, t, &edit->links[links])) {
+                (link_texel(l, p, t, &edit->links[links]) ||
+                 link_around(l, p, t, &edit->links[links]))) {
                 edit->kind[sheet->first + t] = GTX_TEXEL_BORROWED;
                 ++links;
             }

@@ -71,8 +71,7 @@ gtx_result gtx_edit_pattern(gtx_edit *edit, const gtx_edit_image *image, float h
         for (int k = 0; k < 3; ++k)
             edit->changes[t][GTX_CHANGE_MOVE + k] = (float)(by * edit->normal[t][k]);
     }
-    gtx_edit_done(edit);
-    return GTX_OK;
+    return gtx_edit_done(edit, error);
 }
 
 /* A stamp's axes, of length 1: right, up, and where it presses. */
@@ -173,8 +172,7 @@ gtx_result gtx_edit_stamp(gtx_edit *edit, const gtx_edit_stamp_desc *stamp, gtx_
                 edit->changes[t][GTX_CHANGE_MOVE + k] = by * p.axis[2][k];
         }
     }
-    gtx_edit_done(edit);
-    return GTX_OK;
+    return gtx_edit_done(edit, error);
 }
 
 /* How high a texel's point stands, object units along z. */
@@ -215,6 +213,5 @@ gtx_result gtx_edit_set_heights(gtx_edit *edit, uint32_t patch, const uint32_t r
             for (int k = 0; k < 3; ++k)
                 edit->changes[at][GTX_CHANGE_MOVE + k] = by * record->axis_z[k];
         }
-    gtx_edit_done(edit);
-    return GTX_OK;
+    return gtx_edit_done(edit, error);
 }
