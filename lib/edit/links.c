@@ -77,18 +77,24 @@ static double trim_at(const gtx_sheet *sheet, double x, double y)
     return (1 - v) * ((1 - u) * row[0] + u * row[1]) + v * ((1 - u) * next[0] + u * next[1]);
 }
 
-/* The neighbour in whose outline the texel lies deepest. */
-static place find_owner(const linker *l, const gtx_line *ray)
+/* The neighbour that is nearest, and in whose outline the texel lies: the two are weighed, for which
+ * sheet is a little nearer is chance. The texel is at the middle of the ray. */
+static place find_owner(const linker *l, const gtx_line *ray, double facing)
 {
-    place best = {.at = {.sheet = UINT32_MAX}, .trim = INFINITY};
+    place best = {.at = {.sheet = UINT32_MAX}};
+    double least = INFINITY;
     for (uint32_t i = 0; i < l->near_count; ++i) {
         gtx_crossing found = {.t = ray->t_max, .sheet = UINT32_MAX};
         gtx_walk_sheet(l->caster, l->near[i], ray, false, &found);
         if (found.sheet == UINT32_MAX)
             continue;
         const double trim = trim_at(&l->caster->sheets[found.sheet], found.x, found.y);
-        if (trim < best.trim)
-            best = (place){found, trim};
+        const double apart = fabs(found.t - ray->t_max / 2) * facing / l->edit->texel_size;
+        const double cost = 2 * apart + fmax((trim - 128) / 16, -0.5);
+        if (cost >= least)
+            continue;
+        least = cost;
+        best = (place){found, trim};
     }
     return best;
 }
@@ -103,6 +109,15 @@ static gtx_link make_link(const gtx_edit *edit, uint32_t texel, const gtx_crossi
     return (gtx_link){.texel = texel, .patch = at->sheet,
                       .source = (j + GTX_EDIT_MARGIN) * other->width + i + GTX_EDIT_MARGIN,
                       .u = (float)fmin(x - i, 1), .v = (float)fmin(y - j, 1)};
+}
+
+/* Whether the surface that was found looks the same way, as one surface does. */
+static bool faces(const linker *l, const place *found, const float normal[3])
+{
+    const gtx_crossing *at = &found->at;
+    float n[3];
+    gtx_sheet_normal(&l->caster->sheets[at->sheet], at->x, at->y, n);
+    return n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2] > 0.3f;
 }
 
 /* Casts at one texel. One past the coded ones is set down on what is found there. */
@@ -122,8 +137,8 @@ static bool link_texel(const linker *l, uint32_t patch, uint32_t texel, gtx_link
         ray.origin[k] = edit->rest[at][k] + far * z[k];
         ray.direction[k] = -z[k];
     }
-    const place found = find_owner(l, &ray);
-    if (found.at.sheet == UINT32_MAX)
+    const place found = find_owner(l, &ray, facing);
+    if (found.at.sheet == UINT32_MAX || !faces(l, &found, n))
         return false;
     *out = make_link(edit, texel, &found.at);
     if (edit->ring[at]) {

@@ -86,6 +86,25 @@ static void turn_normals(gtx_edit *edit, const gtx_spread *sheet)
         }
 }
 
+/* Borrowed texels have the normals of their owners. */
+static void borrow_normals(gtx_edit *edit, const gtx_spread *sheet)
+{
+    for (size_t i = 0; i < sheet->link_count; ++i) {
+        const gtx_link *link = &edit->links[sheet->first_link + i];
+        const gtx_spread *other = &edit->sheets[link->patch];
+        const size_t a = other->first + link->source, b = a + other->width;
+        const float u = link->u, v = link->v;
+        float n[3], square = 0;
+        for (int k = 0; k < 3; ++k) {
+            n[k] = (1 - v) * ((1 - u) * edit->normal[a][k] + u * edit->normal[a + 1][k]) +
+                   v * ((1 - u) * edit->normal[b][k] + u * edit->normal[b + 1][k]);
+            square += n[k] * n[k];
+        }
+        for (int k = 0; k < 3 && square > 1e-6f; ++k)
+            edit->normal[sheet->first + link->texel][k] = n[k] / sqrtf(square);
+    }
+}
+
 void gtx_edit_commit(gtx_edit *edit)
 {
     for (uint32_t p = 0; p < edit->count; ++p) {
@@ -107,4 +126,7 @@ void gtx_edit_commit(gtx_edit *edit)
         turn_normals(edit, sheet);
         find_box(edit, sheet);
     }
+    for (uint32_t p = 0; p < edit->count; ++p)
+        if (edit->sheets[p].touched && edit->sheets[p].moved)
+            borrow_normals(edit, &edit->sheets[p]);
 }
