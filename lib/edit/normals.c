@@ -113,8 +113,10 @@ void gtx_edit_commit(gtx_edit *edit)
         bool moves = false;
         for (size_t t = sheet->first; sheet->touched && t < last; ++t) {
             const float *c = edit->changes[t];
+            /* Farther out nothing of it is ever shown. */
+            const bool counts = edit->trim[t] < GTX_EDIT_SHOWN + GTX_EDIT_MARGIN;
             for (int k = 0; k < 3 && edit->kind[t]; ++k) {
-                moves |= c[GTX_CHANGE_MOVE + k] != 0 || c[GTX_CHANGE_DETAIL + k] != 0;
+                moves |= counts && (c[GTX_CHANGE_MOVE + k] != 0 || c[GTX_CHANGE_DETAIL + k] != 0);
                 edit->point[t][k] += c[GTX_CHANGE_MOVE + k];
                 edit->detail[t][k] += c[GTX_CHANGE_DETAIL + k];
             }
