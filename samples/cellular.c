@@ -2,8 +2,8 @@
  *
  *   cellular ASSET.gtx [--headless OUT.png] [--size WxH]
  *
- * The operation is the first 40 lines of code. It runs on every patch by itself and reads texels past
- * the patch's outline: those are its neighbours', and follow them after every call. */
+ * The operation is the first 40 lines of code. It runs on every patch by itself and reads texels
+ * past the patch's outline: those are its neighbours', and follow them after every call. */
 #include "host/sample.h"
 
 #include <geotex/edit.h>
@@ -11,8 +11,8 @@
 #include <math.h>
 #include <string.h>
 
-/* What the sum of a texel and its eight neighbours becomes: the majority, but for close votes, which
- * are turned round so that borders keep moving (Vichniac 1984). */
+/* What the sum of a texel and its eight neighbours becomes: the majority, but for close votes,
+ * which are turned round so that borders keep moving (Vichniac 1984). */
 static const float vote[10] = {0, 0, 0, 0, 1, 0, 1, 1, 1, 1};
 
 static int around(const gtx_edit_sheet *s, uint32_t t, float *sum)

@@ -1,170 +1,137 @@
-/* Editing while it is drawn: somebody walks over the surface, and every step stays.
+/* Editing while it is drawn: somebody walks around the asset, and the sand keeps every step.
  *
  *   footprints ASSET.gtx [--headless OUT.png] [--size WxH]
  *
- * A step is a stamp on the surface, across all patches that it meets; those alone are sent to the GPU
- * again, and the next frame shows them. Without a window the picture holds four moments of the walk. */
+ * A step is a stamp across all patches that it meets; those alone go to the GPU again, and the next
+ * frame shows them. Without a window the picture holds four moments of the walk. */
 #include "host/sample.h"
 
+#include <geotex/cook.h>
 #include <geotex/edit.h>
 #include <geotex/render.h>
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { MOMENTS = 4, STEPS_A_MOMENT = 7, SOLE = 48, FRAMES_A_STEP = 20 };
+enum { GRID = 121, SOLE = 48, MOMENTS = 4, STEPS = 8, FRAMES_A_STEP = 12 }; /* steps a moment */
+static const float SIZE = 4.4f, ROUND = 1.35f, STRIDE = 0.27f, FOOT = 0.2f, DEEP = 0.045f;
 
-typedef struct walk {
+typedef struct beach {
     const char *path;
-    gtx_show show;
     int still;                /* four moments in one picture */
     gtx_renderer *renderer;
-    gtx_model *model;
-    gtx_asset *asset;
-    gtx_caster *caster;       /* of the ground as it was: it tells where to step */
+    gtx_asset *sand;          /* open as long as it is being edited */
     gtx_edit *edit;
+    gtx_model *models[2];
+    gtx_instance instances[2];
     float sole[SOLE * SOLE];
-    float at[3], up[3], ahead[3];
     int frames, steps;
-} walk;
+} beach;
 
-/* A heel and a ball, deep in the middle, and the ground that they push up around them. */
-static void draw_sole(float *sole)
+static float dunes(float x, float z)
+{
+    const float wind = 0.006f * sinf(24 * x + 7 * z + 2 * sinf(3 * z));
+    return 0.07f * sinf(1.7f * x + 0.8f * sinf(1.3f * z)) + 0.05f * cosf(2.1f * z - x) + wind;
+}
+
+/* The sand as the text of an OBJ, cooked in memory. */
+static gtx_result make_sand(gtx_asset **out, gtx_error *error)
+{
+    char *text = malloc((size_t)GRID * GRID * 100);
+    size_t size = 0;
+    for (int i = 0; text && i < GRID * GRID; ++i) {
+        const float x = SIZE * ((float)(i % GRID) / (GRID - 1) - 0.5f);
+        const float z = SIZE * ((float)(i / GRID) / (GRID - 1) - 0.5f);
+        size += (size_t)sprintf(text + size, "v %.6f %.6f %.6f\n", x, dunes(x, z), z);
+    }
+    for (int i = 1, n = GRID; text && i < n * (n - 1); i += i % n == n - 1 ? 2 : 1)
+        size += (size_t)sprintf(text + size, "f %d %d %d %d\n", i, i + n, i + n + 1, i + 1);
+    const gtx_cook_desc desc = {.charts = 30, .resolution = 256, .height_bits = 16};
+    gtx_result result = gtx_cook_memory(text, size, "sand.obj", &desc, out, NULL, error);
+    free(text);
+    return result;
+}
+
+/* A ball and a heel, deep in the middle, and what they push up around them. */
+static void make_sole(float *sole)
 {
     for (int i = 0; i < SOLE * SOLE; ++i) {
-        const float x = ((float)(i % SOLE) + 0.5f) / SOLE * 2 - 1;
-        const float y = 1 - ((float)i / SOLE + 0.5f) / SOLE * 2;
-        const float ball = hypotf(x / 0.34f, (y - 0.25f) / 0.5f);
-        const float heel = hypotf(x / 0.26f, (y + 0.5f) / 0.32f);
-        const float r = fminf(ball, heel);
+        const float x = (i % SOLE + 0.5f) / SOLE * 2 - 1, y = 1 - (i / SOLE + 0.5f) / SOLE * 2;
+        const float r = fminf(hypotf(x / 0.34f, (y - 0.25f) / 0.5f),
+                              hypotf(x / 0.26f, (y + 0.5f) / 0.32f));
         const float dent = r < 1.15f ? 1 - powf(r / 1.15f, 4) : 0;
         sole[i] = dent - 0.3f * expf(-30 * (r - 1.3f) * (r - 1.3f));
     }
 }
 
-static void cross(const float a[3], const float b[3], float out[3])
+static gtx_result step(beach *b, gtx_error *error)
 {
-    for (int k = 0; k < 3; ++k)
-        out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
-/* Goes a stride on, turning a little, with the ground under it. Returns 0 where there is none. */
-static int go(walk *w, float stride)
-{
-    float side[3], length = 0, along = 0;
-    cross(w->up, w->ahead, side);
-    gtx_ray ray = {.t_max = 6 * stride};
-    for (int k = 0; k < 3; ++k) {
-        w->ahead[k] += 0.14f * side[k];
-        ray.origin[k] = w->at[k] + stride * w->ahead[k] + 3 * stride * w->up[k];
-        ray.direction[k] = -w->up[k];
-    }
-    gtx_hit hit;
-    gtx_raycast(w->caster, &ray, &hit, 1, 0);
-    if (isinf(hit.t))
-        return 0;
-    for (int k = 0; k < 3; ++k) {
-        w->at[k] = ray.origin[k] + hit.t * ray.direction[k];
-        w->up[k] = 0.5f * w->up[k] + 0.5f * hit.normal[k];
-        along += w->ahead[k] * w->up[k];
-    }
-    for (int k = 0; k < 3; ++k) {
-        w->ahead[k] -= along * w->up[k];
-        length += w->ahead[k] * w->ahead[k];
-    }
-    for (int k = 0; k < 3; ++k)
-        w->ahead[k] /= sqrtf(length);
-    return 1;
-}
-
-/* One step: the stamp, and the patches that it changed to the GPU. */
-static gtx_result step(walk *w, gtx_error *error)
-{
-    const float texel = gtx_edit_texel_size(w->edit);
-    gtx_edit_stamp_desc stamp = {.radius = 11 * texel, .depth = 2.2f * texel,
-                                 .image = {w->sole, SOLE, SOLE}};
+    const float angle = 1.2f + (float)b->steps * STRIDE / ROUND;
+    const float r = ROUND + (b->steps++ % 2 ? 0.09f : -0.09f) + 0.1f * sinf(3 * angle);
+    const float x = r * cosf(angle), z = r * sinf(angle);
+    const gtx_edit_stamp_desc stamp = {.centre = {x, dunes(x, z), z}, .radius = FOOT,
+                                       .direction = {0, -1, 0}, .depth = DEEP,
+                                       .up = {-sinf(angle), 0, cosf(angle)},
+                                       .image = {b->sole, SOLE, SOLE}};
     const gtx_asset *edited;
     const uint32_t *patches;
-    uint32_t count;
-    float side[3];
-    if (!go(w, 13 * texel))
-        return GTX_OK;
-    cross(w->up, w->ahead, side);
-    for (int k = 0; k < 3; ++k) {
-        stamp.centre[k] = w->at[k] + (w->steps % 2 ? 5.5f : -5.5f) * texel * side[k];
-        stamp.direction[k] = -w->up[k];
-        stamp.up[k] = w->ahead[k];
-    }
-    ++w->steps;
-    gtx_result result = gtx_edit_stamp(w->edit, &stamp, error);
+    uint32_t count = 0;
+    gtx_result result = gtx_edit_stamp(b->edit, &stamp, error);
     if (!result)
-        result = gtx_edit_refresh(w->edit, &edited, &patches, &count, error);
+        result = gtx_edit_refresh(b->edit, &edited, &patches, &count, error);
     for (uint32_t i = 0; !result && i < count; ++i)
-        result = gtx_model_update(w->renderer, w->model, edited, patches[i], error);
+        result = gtx_model_update(b->renderer, b->models[0], edited, patches[i], error);
     return result;
 }
 
 static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, gtx_error *error)
 {
-    walk *w = user;
+    beach *b = user;
     const gtx_renderer_desc desc = {.load = loader};
+    gtx_asset *asset = NULL;
     gtx_info info;
     gtx_result result;
     (void)gl;
-    if ((result = gtx_open_file(w->path, NULL, &w->asset, error)) ||
-        (result = gtx_renderer_create(&desc, &w->renderer, error)) ||
-        (result = gtx_model_create(w->renderer, w->asset, &w->model, error)) ||
-        (result = gtx_caster_create(w->asset, NULL, &w->caster, error)) ||
-        (result = gtx_edit_begin(w->asset, NULL, &w->edit, error)))
+    if ((result = gtx_open_file(b->path, NULL, &asset, error)) ||
+        (result = make_sand(&b->sand, error)) ||
+        (result = gtx_edit_begin(b->sand, NULL, &b->edit, error)) ||
+        (result = gtx_renderer_create(&desc, &b->renderer, error)) ||
+        (result = gtx_model_create(b->renderer, b->sand, &b->models[0], error)) ||
+        (result = gtx_model_create(b->renderer, asset, &b->models[1], error)))
         return result;
-    gtx_get_info(w->asset, &info);
-    draw_sole(w->sole);
-    gtx_camera *camera = &w->show.camera;
-    for (int k = 0; k < 3; ++k)
-        camera->target[k] = (info.bounds_min[k] + info.bounds_max[k]) / 2;
-    camera->radius = (info.bounds_max[0] - info.bounds_min[0]) / 2;
-    *camera = (gtx_camera){.target = {camera->target[0], camera->target[1], camera->target[2]},
-                           .radius = camera->radius, .azimuth = 10, .elevation = 40, .distance = 2};
-    /* The walk starts in the middle of the picture. */
-    gtx_ray ray = {.t_max = 0};
-    gtx_hit hit;
-    float right[3], above[3], back[3];
-    gtx_camera_axes(camera, right, above, back);
-    for (int k = 0; k < 3; ++k) {
-        ray.origin[k] = camera->target[k] + 4 * camera->radius * back[k];
-        ray.direction[k] = -back[k];
-    }
-    gtx_raycast(w->caster, &ray, &hit, 1, 0);
-    for (int k = 0; k < 3 && !isinf(hit.t); ++k) {
-        w->at[k] = ray.origin[k] + hit.t * ray.direction[k];
-        w->up[k] = hit.normal[k];
-        w->ahead[k] = right[k];
-    }
+    gtx_get_info(asset, &info);
+    gtx_close(asset);
+    make_sole(b->sole);
+    gtx_matrix_place(0, 0, 0, 0, 1, b->instances[0].transform);
+    const float foot[3] = {0, dunes(0, 0) - 0.08f, 0};
+    gtx_matrix_stand(info.bounds_min, info.bounds_max, foot, 20, 1, b->instances[1].transform);
+    b->instances[0].model = b->models[0];
+    b->instances[1].model = b->models[1];
+    memcpy(b->instances[0].tint, (float[4]){0.87f, 0.75f, 0.56f, 1}, 4 * sizeof(float));
     return GTX_OK;
 }
 
 static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float projection[16],
                        void *user, gtx_error *error)
 {
-    walk *w = user;
-    GLint whole[4];
+    beach *b = user;
     gtx_result result = GTX_OK;
+    GLint whole[4];
     gl->GetIntegerv(GL_VIEWPORT, whole);
-    gl->ClearColor(0.16f, 0.18f, 0.21f, 1);
+    gl->ClearColor(0.62f, 0.74f, 0.83f, 1);
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    gtx_view v = {.light_direction = {-0.6f, 0.7f, 0.2f}};
+    gtx_view v = {.light_direction = {-0.8f, 0.5f, -0.3f}};
     memcpy(v.view, view, sizeof v.view);
     memcpy(v.projection, projection, sizeof v.projection);
-    const gtx_instance instance = {
-        .model = w->model, .transform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
-    for (int moment = 0; !result && moment < (w->still ? MOMENTS : 1); ++moment) {
-        const int steps = w->still ? STEPS_A_MOMENT * (moment > 0) : w->frames++ % FRAMES_A_STEP == 0;
-        for (int i = 0; !result && i < steps; ++i)
-            result = step(w, error);
-        const int half = w->still ? 2 : 1;
-        gl->Viewport(moment % 2 * whole[2] / 2, (w->still ? 1 - moment / 2 : 0) * whole[3] / 2,
-                     whole[2] / half, whole[3] / half);
+    const int cut = b->still ? 2 : 1, w = whole[2] / cut, h = whole[3] / cut;
+    for (int i = 0; !result && i < (b->still ? MOMENTS : 1); ++i) {
+        int now = b->still ? STEPS * (i > 0) : b->frames++ % FRAMES_A_STEP == 0;
+        while (!result && now-- > 0)
+            result = step(b, error);
+        gl->Viewport(i % 2 * w, (cut - 1 - i / 2) * h, w, h);
         if (!result)
-            result = gtx_draw(w->renderer, &v, &instance, 1, error);
+            result = gtx_draw(b->renderer, &v, b->instances, 2, error);
     }
     gl->Viewport(whole[0], whole[1], whole[2], whole[3]);
     return result;
@@ -172,10 +139,12 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
 
 int main(int argc, char **argv)
 {
-    static walk w; /* large */
-    w.show = (gtx_show){.title = "footprints", .width = 1280, .height = 960, .load = load,
-                        .draw = draw, .user = &w};
+    static beach b; /* large */
+    gtx_show show = {.title = "footprints", .width = 1280, .height = 960, .load = load,
+                     .draw = draw, .user = &b,
+                     .camera = {.target = {0, 0.1f, 0.1f}, .radius = 2.2f, .azimuth = 8,
+                                .elevation = 42, .distance = 2.1f, .field = 38}};
     for (int i = 1; i < argc; ++i)
-        w.still |= !strcmp(argv[i], "--headless");
-    return gtx_sample_main(&w.show, argc, argv, &w.path);
+        b.still |= !strcmp(argv[i], "--headless");
+    return gtx_sample_main(&show, argc, argv, &b.path);
 }

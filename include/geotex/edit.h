@@ -1,17 +1,22 @@
-/* Image operations on the surface of an asset: blur, boost, patterns, operations of one's own, and
- * edits while it is drawn.
+/* Image operations on the surface of an asset: blur, boost, patterns, operations of one's own,
+ * and edits while it is drawn.
  *
- * An edit spreads an asset out as one *sheet* a patch: a grid of points with normals. A texel of a
- * sheet belongs to the patch (it is inside its outline), or is borrowed: the surface there belongs
- * to a neighbour, and moves as that one's points do. So all patches see one surface, across their
- * borders, and what moves it opens no seam. (In the paper, section 6.3, every patch is filtered by
- * itself; GTX_EDIT_ALONE does the same, for comparison.)
+ * An edit spreads an asset out as one *sheet* a patch: a grid of points with normals. A texel of
+ * a sheet belongs to the patch (it is inside its outline), or is borrowed: the surface there
+ * belongs to a neighbour, and moves as that one's points do. So all patches see one surface,
+ * across their borders, and what moves it opens no seam. (In the paper, section 6.3, every patch
+ * is filtered by itself; GTX_EDIT_ALONE does the same, for comparison.)
  *
- * Points may move in any direction. They are put back on texels at the end: outlines, colours and
- * materials go where the surface goes. Nothing is resampled twice, however many operations there are.
+ * What would turn part of a patch's surface away from its axis_z, where no height map can show
+ * it, is held back there, and less and less around: the tip of a claw is rounded off a little
+ * less than its flanks.
  *
- * The rules of geotex.h hold here too. An operation that fails leaves the edit as it was. Levels of
- * a shell do not follow: edited assets have none. */
+ * Points may move in any direction. They are put back on texels at the end: outlines, colours
+ * and materials go where the surface goes. Nothing is resampled twice, however many operations
+ * there are.
+ *
+ * The rules of geotex.h hold here too. An operation that fails leaves the edit as it was. Levels
+ * of a shell do not follow: edited assets have none. */
 #ifndef GEOTEX_EDIT_H
 #define GEOTEX_EDIT_H
 
@@ -29,8 +34,8 @@ typedef struct gtx_edit_desc {
     uint32_t reserved[6];
 } gtx_edit_desc;
 
-/* Spreads the asset out. `asset` is not changed, and must stay open until gtx_edit_end; `desc` may be
- * NULL. Takes some 100 bytes a texel.
+/* Spreads the asset out. `asset` is not changed, and must stay open until gtx_edit_end; `desc`
+ * may be NULL. Takes some 100 bytes a texel.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, EMPTY (no texel has a height). */
 GTX_API gtx_result gtx_edit_begin(const gtx_asset *asset, const gtx_edit_desc *desc, gtx_edit **out,
                                   gtx_error *error);
@@ -59,7 +64,8 @@ typedef struct gtx_edit_blur {
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT (the radius is larger than the largest patch). */
 GTX_API gtx_result gtx_edit_gaussian(gtx_edit *edit, const gtx_edit_blur *blur, gtx_error *error);
 
-/* High-boost: surface + amount * (surface - its blur). 0 < amount <= 16. Errors: likewise. */
+/* High-boost: surface + amount * (surface - its blur). 0 < amount <= 16.
+ * Errors: likewise. */
 GTX_API gtx_result gtx_edit_high_boost(gtx_edit *edit, const gtx_edit_blur *blur, float amount,
                                        gtx_error *error);
 
@@ -83,8 +89,8 @@ enum { /* gtx_edit_sheet.kind */
     GTX_TEXEL_LOOSE = 3           /* past a border without neighbour: follows by itself */
 };
 
-/* A patch's sheet: arrays of width * height, row by row. It is the patch's rectangle and some texels
- * more on each side. */
+/* A patch's sheet: arrays of width * height, row by row. It is the patch's rectangle and some
+ * texels more on each side. */
 typedef struct gtx_edit_sheet {
     uint32_t patch, width, height;
     const uint8_t *kind;
@@ -96,15 +102,17 @@ typedef struct gtx_edit_sheet {
 
 typedef void (*gtx_edit_fn)(const gtx_edit_sheet *sheet, void *user);
 
-/* An operation of one's own: calls `fn` for every sheet, then makes borrowed texels follow. `fn` reads
- * any texel and writes `point` and `next` at own ones: neighbours' texels are there to read, 3 past
- * the outline at least. Values and points that are not finite end it: ARGUMENT, nothing changed.
+/* An operation of one's own: calls `fn` for every sheet, then makes borrowed texels follow. `fn`
+ * reads any texel and writes `point` and `next` at own ones: neighbours' texels are there to
+ * read, 3 past the outline at least. Values and points that are not finite end it: ARGUMENT,
+ * nothing changed.
  * Errors: ARGUMENT, MEMORY. */
 GTX_API gtx_result gtx_edit_apply(gtx_edit *edit, gtx_edit_fn fn, void *user, gtx_error *error);
 
-/* A mark on the surface: a crater, a footprint. Texels that are less than `radius` from the centre
- * and face against `direction` by any angle below 90 degrees move along it by depth times the image;
- * a zero image is a round bowl. The image spans 2 * radius; its top points along `up`. */
+/* A mark on the surface: a crater, a footprint. Texels that are less than `radius` from the
+ * centre and face against `direction` by any angle below 90 degrees move along it by depth times
+ * the image; a zero image is a round bowl. The image spans 2 * radius; its top points along
+ * `up`. */
 typedef struct gtx_edit_stamp_desc {
     float centre[3], radius;      /* relative to the anchor; object units */
     float direction[3], depth;    /* of any length but 0; depth may be negative */
@@ -118,22 +126,24 @@ GTX_API gtx_result gtx_edit_stamp(gtx_edit *edit, const gtx_edit_stamp_desc *sta
                                   gtx_error *error);
 
 /* Sets the heights of a rectangle of one patch, x, y, width and height in texels of the patch:
- * `heights` are as in the map (0..1 of the asset's extent_z), and may leave that range. Empty texels
- * stay so; texels that belong to a neighbour stay with it, and the neighbours' borrowed ones follow.
+ * `heights` are as in the map (0..1 of the asset's extent_z), and may leave that range. Empty
+ * texels stay so; texels that belong to a neighbour stay with it, and the neighbours' borrowed
+ * ones follow.
  * Errors: ARGUMENT (the rectangle is empty or leaves the patch, a height is not finite), MEMORY. */
 GTX_API gtx_result gtx_edit_set_heights(gtx_edit *edit, uint32_t patch, const uint32_t rectangle[4],
                                         const float *heights, gtx_error *error);
 
-/* Makes an asset of the edited surface, with the edit's allocator, which gtx_close frees. Patches that
- * did not change keep their bytes. Where a patch has outgrown its rectangle, pages are laid out anew.
+/* Makes an asset of the edited surface, with the edit's allocator, which gtx_close frees.
+ * Patches that did not change keep their bytes. Where a patch has outgrown its rectangle, pages
+ * are laid out anew.
  * Errors: ARGUMENT, MEMORY, LIMIT (a patch would be larger than a page may be). */
 GTX_API gtx_result gtx_edit_finish(const gtx_edit *edit, gtx_asset **out, gtx_error *error);
 
 /* The same while it is drawn: rectangles stay where they are, and only patches that have changed
- * since the last call are done again. *asset belongs to the edit, is valid until gtx_edit_end and is
- * changed by the next call; its content_hash is 0. *patches gets the `*count` indices of changed
- * patches, valid until the next call: give each to gtx_model_update. What moved out of its rectangle is
- * lost: sideways there is room for a texel or two.
+ * since the last call are done again. *asset belongs to the edit, is valid until gtx_edit_end
+ * and is changed by the next call; its content_hash is 0. *patches gets the `*count` indices of
+ * changed patches, valid until the next call: give each to gtx_model_update. What moved out of
+ * its rectangle is lost: sideways there is room for a texel or two.
  * Errors: ARGUMENT, MEMORY. */
 GTX_API gtx_result gtx_edit_refresh(gtx_edit *edit, const gtx_asset **asset,
                                     const uint32_t **patches, uint32_t *count, gtx_error *error);

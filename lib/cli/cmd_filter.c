@@ -16,7 +16,7 @@ static double boost_radius = 2, pattern_height, pattern_size;
 
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes (required)", 0, 0},
-    {"gaussian", 0, OPTION_STEP, &chosen, "TEXELS", "blur; the standard deviation in texels", 0, 1e6},
+    {"gaussian", 0, OPTION_STEP, &chosen, "TEXELS", "blur; standard deviation in texels", 0, 1e6},
     {"gaussian-world", 0, OPTION_STEP, &chosen, "UNITS", "the same in object units", 0, 1e30},
     {"high-boost", 0, OPTION_STEP, &chosen, "AMOUNT", "exaggerate what a blur takes away", 0, 16},
     {"boost-radius", 0, OPTION_NUMBER, &boost_radius, "TEXELS", "of that blur [2]", 0, 1e6},
@@ -25,8 +25,8 @@ static const option options[] = {
      "of white, object units [1 texel]", -1e30, 1e30},
     {"pattern-size", 0, OPTION_NUMBER, &pattern_size, "S",
      "the image's width on the surface, object units [64 texels]", 0, 1e30},
-    {"naive", 0, OPTION_FLAG, &naive, NULL, "blur each patch by itself, as in the paper: seams open",
-     0, 0},
+    {"naive", 0, OPTION_FLAG, &naive, NULL, "blur patch by patch, as the paper did: seams open", 0,
+     0},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
     {0}};
 

@@ -1,5 +1,6 @@
-/* The paper's own blur (section 6.3), for comparison: heights and normals patch by patch, of coded
- * texels alone. A patch knows nothing of its neighbours, and so flattens and comes apart from them. */
+/* The paper's own blur (section 6.3), for comparison: heights and normals patch by patch, of
+ * coded texels alone. A patch knows nothing of its neighbours, and so flattens and comes apart
+ * from them. */
 #include "edit/edit.h"
 
 #include "base/alloc.h"

@@ -1,10 +1,10 @@
 /* A Gaussian over the whole surface: heat flows along it, across the borders of patches.
  *
  * Where heat flows is told by the cotangent weights of the points (Desbrun et al. 1999), so that
- * neither the tilt of a patch's frame nor where it ends matters. Time goes by in Runge-Kutta-Legendre
- * steps (Meyer, Balsara, Aslam 2012), whose s stages go as far as s^2 / 2 explicit steps. What is
- * followed is the change, not the position: borrowed texels take it from their owners after every
- * stage and keep their own rounding of where they are. */
+ * neither the tilt of a patch's frame nor where it ends matters. Time goes by in
+ * Runge-Kutta-Legendre steps (Meyer, Balsara, Aslam 2012), whose s stages go as far as s^2 / 2
+ * explicit steps. What is followed is the change, not the position: borrowed texels take it from
+ * their owners after every stage and keep their own rounding of where they are. */
 #include "edit/edit.h"
 
 #include "base/alloc.h"
@@ -20,13 +20,14 @@ enum { STEPS = 6 };
 static const float FASTEST = 36;
 
 /* Neighbours in pairs: k + 4 is opposite to k. */
-static const int8_t NEXT[8][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
+static const int8_t NEXT[8][2] = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
+                                  {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
 
 typedef float rates[8];
 
 typedef struct flow {
     const gtx_edit *edit;
-    gtx_change *surface;      /* points and details as they stand; borrowed ones are their owners' */
+    gtx_change *surface;      /* points and details as they stand; borrowed ones the owners' */
     rates *rate;              /* of each texel's neighbours */
     gtx_change *source;       /* how the surface as it stands would flow */
 } flow;
@@ -55,8 +56,8 @@ static void measure_triangle(const flow *f, const size_t corner[3], double half[
     *third = twice / 6;
 }
 
-/* The two triangles of a cell by corners 0..3 = (0,0), (1,0), (1,1), (0,1), split from 0 to 2 or from
- * 1 to 3, and the directions in NEXT of their edges: of edge k, from corner k + 1 to k + 2. */
+/* The two triangles of a cell by corners 0..3 = (0,0), (1,0), (1,1), (0,1), split from 0 to 2 or
+ * from 1 to 3, and the directions in NEXT of their edges: of edge k, from corner k + 1 to k + 2. */
 static const struct {
     uint8_t corner[3], next[3];
 } TRIANGLES[2][2] = {{{{0, 1, 2}, {2, 5, 0}}, {{0, 2, 3}, {4, 6, 1}}},
@@ -179,8 +180,8 @@ static void measure_source(const flow *f)
     }
 }
 
-/* Lets `time` go by, at largest sums of rates `fastest`. `ring` are three arrays of changes, all 0; the
- * result is ring[0]. */
+/* Lets `time` go by, at largest sums of rates `fastest`. `ring` are three arrays of changes, all
+ * 0; the result is ring[0]. */
 static void run(const flow *f, double time, float fastest, gtx_change *ring[3])
 {
     const double step = time / STEPS, stages = sqrt(0.25 + 2 * step * fastest) - 0.5;

@@ -70,7 +70,8 @@ gtx_result gtx_edit_spread(gtx_edit *edit, gtx_error *error);
 
 /* links.c: finds whose the texels are that are not their patch's own. Errors: MEMORY. */
 gtx_result gtx_edit_link(gtx_edit *edit, gtx_error *error);
-/* Gives borrowed texels what their owners have, loose ones what is beside them; in touched sheets. */
+/* Gives borrowed texels what their owners have, loose ones what is beside them; in touched
+ * sheets. */
 void gtx_edit_follow(const gtx_edit *edit, gtx_change *changes);
 
 /* normals.c: fills in details and boxes, once points and normals are there. */
@@ -78,12 +79,12 @@ void gtx_edit_begin_details(gtx_edit *edit);
 /* Moves the points of touched sheets by edit->changes and gives them their normals. */
 void gtx_edit_commit(gtx_edit *edit);
 
-/* hold.c: takes back from edit->changes, with the neighbours in mind, what would turn cells away from
- * their patch's z. Errors: MEMORY. */
+/* hold.c: takes back from edit->changes, with the neighbours in mind, what would turn cells away
+ * from their patch's z. Errors: MEMORY. */
 gtx_result gtx_edit_hold(gtx_edit *edit, gtx_error *error);
 
-/* edit.c: touches all sheets; ends an operation whose changes are those of own texels. Errors: MEMORY
- * (nothing has changed). */
+/* edit.c: touches all sheets; ends an operation whose changes are those of own texels. Errors:
+ * MEMORY (nothing has changed). */
 void gtx_edit_touch_all(gtx_edit *edit);
 gtx_result gtx_edit_done(gtx_edit *edit, gtx_error *error);
 /* Touches the sheets whose boxes, grown by `slack`, meet the box. */
@@ -116,8 +117,9 @@ gtx_window gtx_edit_window(const gtx_edit *edit, const gtx_spread *sheet);
 void gtx_edit_warp(const gtx_edit *edit, const gtx_spread *sheet, const gtx_window *window,
                    gtx_texel *out);
 
-/* maps.c: writes a patch, whose record has its page and rectangle, into the maps of `out`, which has
- * the source's levels. Frame, coverage and sphere follow. Errors: MEMORY (nothing has changed). */
+/* maps.c: writes a patch, whose record has its page and rectangle, into the maps of `out`, which
+ * has the source's levels. Frame, coverage and sphere follow. Errors: MEMORY (nothing has
+ * changed). */
 gtx_result gtx_edit_write_patch(const gtx_edit *edit, uint32_t patch, const gtx_window *window,
                                 gtx_asset *out, gtx_error *error);
 /* The patch as it was. */

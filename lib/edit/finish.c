@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-/* An asset with the edit's maps and none of their texels. Levels of a shell are those of the surface
- * as it was, and stay behind. NULL when memory is out. */
+/* An asset with the edit's maps and none of their texels. Levels of a shell are those of the
+ * surface as it was, and stay behind. NULL when memory is out. */
 static gtx_asset *new_asset(const gtx_edit *edit, const gtx_info *info, const gtx_patch *patches)
 {
     const gtx_asset *source = edit->source;

@@ -1,5 +1,5 @@
-/* Changes are held back where a patch could not show the surface any more: a sheet is a height field,
- * and of the tip of a claw that a blur rounds off, some would turn away from its z. */
+/* Changes are held back where a patch could not show the surface any more: a sheet is a height
+ * field, and of the tip of a claw that a blur rounds off, some would turn away from its z. */
 #include "edit/edit.h"
 
 #include "base/alloc.h"
@@ -7,7 +7,8 @@
 
 #include <math.h>
 
-/* A cell's triangles keep this share of a texel's area, seen along z. At rest they have half of it. */
+/* A cell's triangles keep this share of a texel's area, seen along z. At rest they have half of
+ * it. */
 static const double LEAST_AREA = 0.05;
 /* Texels around one that is held on which this wears off. */
 enum { REACH = 8 };

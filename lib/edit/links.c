@@ -1,5 +1,6 @@
-/* Whose surface it is: texels outside a patch's outline are looked up in its neighbours, by casting
- * along the patch's z, or around the ridge where that meets nothing; they follow them from then on. */
+/* Whose surface it is: texels outside a patch's outline are looked up in its neighbours, by
+ * casting along the patch's z, or around the ridge where that meets nothing; they follow them
+ * from then on. */
 #include "edit/edit.h"
 
 #include "base/alloc.h"
@@ -77,8 +78,8 @@ static double trim_at(const gtx_sheet *sheet, double x, double y)
     return (1 - v) * ((1 - u) * row[0] + u * row[1]) + v * ((1 - u) * next[0] + u * next[1]);
 }
 
-/* The neighbour that is nearest, and in whose outline the texel lies: the two are weighed, for which
- * sheet is a little nearer is chance. The texel is at the middle of the ray. */
+/* The neighbour that is nearest, and in whose outline the texel lies: the two are weighed, for
+ * which sheet is a little nearer is chance. The texel is at the middle of the ray. */
 static place find_owner(const linker *l, const gtx_line *ray, double facing)
 {
     place best = {.at = {.sheet = UINT32_MAX}};

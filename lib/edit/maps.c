@@ -49,8 +49,8 @@ void gtx_edit_copy_patch(const gtx_edit *edit, uint32_t patch, gtx_asset *out)
         }
 }
 
-/* Frame and size of the record: the window's corner, and heights from the lowest to the highest. The
- * old range is kept while it fits, for the codes of what did not move. */
+/* Frame and size of the record: the window's corner, and heights from the lowest to the highest.
+ * The old range is kept while it fits, for the codes of what did not move. */
 static void fit_frame(writer *w, const gtx_window *window)
 {
     float low = INFINITY, high = -INFINITY;
@@ -252,7 +252,7 @@ static void write_looks(writer *w, gtx_section_kind kind)
             for (uint32_t x = 0; x < w->width >> k; ++x) {
                 double shift[2] = {0, 0};
                 for (uint32_t t = 0; t < size * size; ++t) {
-                    const size_t at = (size_t)(y * size + t / size) * w->width + x * size + t % size;
+                    const uint32_t at = (y * size + t / size) * w->width + x * size + t % size;
                     shift[0] += w->shift[at][0] / (double)(size * size);
                     shift[1] += w->shift[at][1] / (double)(size * size);
                 }

@@ -1,5 +1,5 @@
-/* Pages for rectangles that have grown: shelves, tallest first. The cooker packs a tenth tighter, and
- * takes longer than an edit may. */
+/* Pages for rectangles that have grown: shelves, tallest first. The cooker packs a tenth
+ * tighter, and takes longer than an edit may. */
 #include "edit/edit.h"
 
 #include "base/alloc.h"

@@ -72,7 +72,8 @@ static void empty_sheet(const gtx_patch *patch, double x, double y, const void *
 static void an_empty_asset_is_refused(void **state)
 {
     (void)state;
-    fixture_patch patch = {fixture_frame((const double[3]){0, 0, 0}, 16, 16, 1, 1), empty_sheet, NULL};
+    const double corner[3] = {0, 0, 0};
+    fixture_patch patch = {fixture_frame(corner, 16, 16, 1, 1), empty_sheet, NULL};
     gtx_asset *asset = fixture_build(&patch, 1, 8, 4);
     gtx_edit *edit = NULL;
     gtx_error error = {0};
@@ -199,7 +200,8 @@ static void a_plane_stays(void **state)
         gtx_caster *caster;
         must(gtx_caster_create(out, NULL, &caster, NULL));
         for (int i = 0; i < 400; ++i) { /* from one end to the other, and a little inside */
-            const float x = 0.01f + 3.85f * (float)(i % 20) / 19, y = 0.01f + 2.85f * (float)(i / 20) / 19;
+            const float x = 0.01f + 3.85f * (float)(i % 20) / 19;
+            const float y = 0.01f + 2.85f * (float)(i / 20) / 19;
             const gtx_ray ray = {.origin = {x, y, 5}, .direction = {0, 0, -1}};
             gtx_hit hit;
             must(gtx_raycast(caster, &ray, &hit, 1, 0));
