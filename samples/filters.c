@@ -16,7 +16,7 @@ enum { COLUMNS = 4, ROWS = 2 };
 static const float radii[COLUMNS] = {0, 2, 4, 8};
 static const char *const labels[ROWS][COLUMNS] = {
     {"source", "2 texels", "4 texels", "8 texels"},
-    {"each patch by itself", "2 texels", "4 texels", "8 texels"}};
+    {"alone", "2 texels", "4 texels", "8 texels"}};
 
 typedef struct gallery {
     const char *path;
