@@ -26,29 +26,32 @@ static gtx_asset *new_asset(const gtx_edit *edit, const gtx_info *info, const gt
     return asset;
 }
 
-/* Bounds of all texels with a code, from the patches' points. */
+/* Grows a box around a patch's texels with a code. */
+static void grow_box(const gtx_asset *asset, const gtx_patch *patch, float low[3], float high[3])
+{
+    const uint32_t w = patch->rect[2], h = patch->rect[3];
+    for (uint32_t t = 0; t < w * h; ++t) {
+        const uint32_t code = gtx_height_code(asset, patch, t % w, t / w);
+        if (!code)
+            continue;
+        const double a = (t % w + 0.5) / w * patch->extent_x;
+        const double b = (t / w + 0.5) / h * patch->extent_y;
+        const double c = (double)gtx_code_height(code, asset->info.height_bits) * patch->extent_z;
+        for (int k = 0; k < 3; ++k) {
+            const float at = (float)(patch->origin[k] + a * patch->axis_x[k] +
+                                     b * patch->axis_y[k] + c * patch->axis_z[k]);
+            low[k] = fminf(low[k], at);
+            high[k] = fmaxf(high[k], at);
+        }
+    }
+}
+
+/* Bounds around all patches. */
 static void write_bounds(gtx_asset *asset)
 {
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (uint32_t p = 0; p < asset->info.patch_count; ++p) {
-        const gtx_patch *patch = &asset->patches[p];
-        const uint32_t w = patch->rect[2], h = patch->rect[3];
-        for (uint32_t t = 0; t < w * h; ++t) {
-            const uint32_t code = gtx_height_code(asset, patch, t % w, t / w);
-            const double a = (t % w + 0.5) / w * patch->extent_x;
-            const double b = (t / w + 0.5) / h * patch->extent_y;
-            if (!code)
-                continue;
-            const double c = (double)gtx_code_height(code, asset->info.height_bits) *
-                             patch->extent_z;
-            for (int k = 0; k < 3; ++k) {
-                const float at = (float)(patch->origin[k] + a * patch->axis_x[k] +
-                                         b * patch->axis_y[k] + c * patch->axis_z[k]);
-                low[k] = fminf(low[k], at);
-                high[k] = fmaxf(high[k], at);
-            }
-        }
-    }
+    for (uint32_t p = 0; p < asset->info.patch_count; ++p)
+        grow_box(asset, &asset->patches[p], low, high);
     for (int k = 0; k < 3 && low[0] <= high[0]; ++k) {
         asset->info.bounds_min[k] = low[k];
         asset->info.bounds_max[k] = high[k];
@@ -200,8 +203,10 @@ gtx_result gtx_edit_refresh(gtx_edit *edit, const gtx_asset **asset, const uint3
     /* Only now: a call that failed is repeated from its beginning. */
     for (uint32_t i = 0; i < changed; ++i)
         edit->sheets[edit->changed[i]].shown = true;
-    if (changed)
-        write_bounds(edit->live);
+    /* Bounds grow only: there is no time to look at the other patches. */
+    for (uint32_t i = 0; i < changed; ++i)
+        grow_box(edit->live, &edit->live->patches[edit->changed[i]], edit->live->info.bounds_min,
+                 edit->live->info.bounds_max);
     *asset = edit->live;
     *patches = edit->changed;
     *count = changed;

@@ -117,6 +117,19 @@ static void spread_hold(const gtx_edit *edit, gtx_change *held)
     }
 }
 
+/* Ends a round. */
+static void take(const gtx_edit *edit, gtx_change *held, float share)
+{
+    for (uint32_t p = 0; p < edit->count; ++p) {
+        const gtx_spread *sheet = &edit->sheets[p];
+        const size_t last = sheet->first + (size_t)sheet->width * sheet->height;
+        for (size_t t = sheet->first; sheet->touched && t < last; ++t) {
+            held[t][LEFT] *= 1 - share * held[t][HELD];
+            held[t][HELD] = 0;
+        }
+    }
+}
+
 gtx_result gtx_edit_hold(gtx_edit *edit, gtx_error *error)
 {
     if (!find_turned(edit, NULL))
@@ -129,15 +142,16 @@ gtx_result gtx_edit_hold(gtx_edit *edit, gtx_error *error)
     for (int round = 0; round < ROUNDS && find_turned(edit, held); ++round) {
         const float share = round < HALVING_ROUNDS ? 0.5f : 1;
         spread_hold(edit, held);
-        for (size_t t = 0; t < edit->texels; ++t) {
-            held[t][LEFT] *= 1 - share * held[t][HELD];
-            held[t][HELD] = 0;
-        }
+        take(edit, held, share);
         gtx_edit_follow(edit, held);
     }
-    for (size_t t = 0; t < edit->texels; ++t)
-        for (int c = 0; c < GTX_CHANGE_VALUE; ++c)
-            edit->changes[t][c] *= held[t][LEFT];
+    for (uint32_t p = 0; p < edit->count; ++p) {
+        const gtx_spread *sheet = &edit->sheets[p];
+        const size_t last = sheet->first + (size_t)sheet->width * sheet->height;
+        for (size_t t = sheet->first; sheet->touched && t < last; ++t)
+            for (int c = 0; c < GTX_CHANGE_VALUE; ++c)
+                edit->changes[t][c] *= held[t][LEFT];
+    }
     gtx_free_array(&edit->allocator, held, edit->texels, sizeof *held);
     gtx_edit_follow(edit, edit->changes);
     return GTX_OK;
