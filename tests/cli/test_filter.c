@@ -72,6 +72,32 @@ static void a_blurred_model_stays_closed(void **state)
     expect_text("\"leak_pixels\": 0,");
 }
 
+/* Pixels of 26 views where the inside is seen. */
+static int leaks(const char *asset, const char *model)
+{
+    expect(gtx("compare %s %s --size 256 --levels 1 --json", asset, model), 0);
+    const char *at = strstr(output, "\"leak_pixels\": ");
+    assert_non_null(at);
+    return atoi(at + strlen("\"leak_pixels\": "));
+}
+
+static void a_scan_stays_closed_where_patches_alone_come_apart(void **state)
+{
+    (void)state;
+    char model[512];
+    if (!getenv("GEOTEX_MODELS"))
+        skip();
+    snprintf(model, sizeof model, "%s/scans/horse.ply.gz", getenv("GEOTEX_MODELS"));
+    expect(gtx("cook %s -o horse.gtx", model), 0);
+    expect(gtx("filter horse.gtx -o soft.gtx --gaussian 8"), 0);
+    expect(gtx("filter horse.gtx -o alone.gtx --gaussian 8 --naive"), 0);
+    const int before = leaks("horse.gtx", model), after = leaks("soft.gtx", model);
+    const int alone = leaks("alone.gtx", model);
+    print_message("# leak pixels: %d before, %d after, %d alone\n", before, after, alone);
+    assert_true(after <= before + 20);
+    assert_true(alone > 100 * (after + 1));
+}
+
 static void the_shell_stays_behind(void **state)
 {
     (void)state;
@@ -88,6 +114,7 @@ int main(void)
         cmocka_unit_test(misuse_leaves_nothing),
         cmocka_unit_test(operations_run_in_order),
         cmocka_unit_test(a_blurred_model_stays_closed),
+        cmocka_unit_test(a_scan_stays_closed_where_patches_alone_come_apart),
         cmocka_unit_test(the_shell_stays_behind),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
