@@ -16,7 +16,7 @@
  * there are.
  *
  * The rules of geotex.h hold here too. An operation that fails leaves the edit as it was. Levels
- * of a shell do not follow: edited assets have none. */
+ * of a shell do not follow: edited assets have none until gtx_cook_shell makes them one. */
 #ifndef GEOTEX_EDIT_H
 #define GEOTEX_EDIT_H
 

@@ -124,7 +124,8 @@ int cmd_filter(int argc, char **argv)
     if (!result) {
         gtx_get_info(asset, &info);
         if (info.shell_levels)
-            report_warning(file, "the shell is that of the surface as it was, and is left out");
+            report_warning(file, "the shell is that of the surface as it was, and is left out "
+                                 "(gtx pack --shell-levels makes one of the maps)");
         result = run(asset, &file, &error);
     }
     gtx_close(asset);
