@@ -55,7 +55,7 @@ static void raise(const gtx_edit_sheet *s, void *height)
 
 static gtx_result pattern(gtx_edit *edit, gtx_error *error)
 {
-    float vote_only = 0, mean = 1, height = 1.5f * gtx_edit_texel_size(edit);
+    float vote_only = 0, mean = 1, height = gtx_edit_texel_size(edit);
     gtx_result result = gtx_edit_apply(edit, seed, NULL, error);
     for (int i = 0; !result && i < 24; ++i)
         result = gtx_edit_apply(edit, grow, i < 22 ? &vote_only : &mean, error);
