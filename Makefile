@@ -19,13 +19,14 @@ VERSION := 0.1.0
 SOVERSION := 0
 
 # ---- rooms: what each needs. Imports run one way, from right to left ------------------------------
-ROOMS_CORE := base asset derive trace render
+ROOMS_CORE := base asset derive trace edit render
 ROOMS_COOK := image mesh grid chart bake measure cook
 
 needs_base    := base
 needs_asset   := base asset
 needs_derive  := $(needs_asset) derive
 needs_trace   := $(needs_derive) trace
+needs_edit    := $(needs_trace) edit
 needs_image   := base image
 needs_host    := base image host
 needs_render  := $(needs_derive) render
@@ -124,7 +125,7 @@ $(lib_cook): $(call objects_of,$(ROOMS_COOK))
 	$(Q)rm -f $@ && $(AR) rcs $@ $^
 
 # What a shared library exports: the functions that its headers declare, and nothing else.
-$(out)/gen/libgeotex.map: include/geotex/geotex.h include/geotex/render.h
+$(out)/gen/libgeotex.map: include/geotex/geotex.h include/geotex/edit.h include/geotex/render.h
 $(out)/gen/libgeotex-cook.map: include/geotex/cook.h
 $(out)/gen/%.map: Makefile
 	@mkdir -p $(@D)
@@ -166,7 +167,7 @@ $(out)/samples/%: $(out)/samples/%.o $(call objects_of,host image) $(lib_cook) $
 # ---- installation: exactly the files of lib/package/files, below PREFIX --------------------------
 fill = sed -e 's|@PREFIX@|$(PREFIX)|g' -e 's|@VERSION@|$(VERSION)|g' -e 's|@SOVERSION@|$(SOVERSION)|g' \
   -e 's|@CORE_LIBS@|$(call libs_of,asset)|g' -e 's|@COOK_LIBS@|$(call libs_of,mesh)|g'
-verbs := cook horizons info validate unpack pack render view compare bench
+verbs := cook horizons info validate unpack pack filter render view compare bench
 to    := $(DESTDIR)$(PREFIX)
 
 $(out)/gen/gtx.1: lib/package/gtx.1.in lib/package/verbs.awk $(command)
@@ -216,7 +217,7 @@ needs_consumer := base
 needs_corpus := base
 needs_samples := $(needs_image)
 needs_threads := $(needs_cook)
-extra_needs_render  := trace host image
+extra_needs_render  := trace edit host image
 extra_needs_bake    := derive trace host
 extra_needs_cook    := host
 extra_needs_chart   :=

@@ -135,7 +135,8 @@ int main(void)
 #define PICTURE(name) cmocka_unit_test_prestate(draws_its_picture, name)
 #define MISUSE(name) cmocka_unit_test_prestate(misuse_is_one_line, name)
     static char smallest[] = "smallest_engine", instances[] = "instances", picking[] = "picking",
-                mixed[] = "mixed_scene", gbuffer[] = "engine_gbuffer", shadows[] = "shadows";
+                mixed[] = "mixed_scene", gbuffer[] = "engine_gbuffer", shadows[] = "shadows",
+                filters[] = "filters", cellular[] = "cellular", footprints[] = "footprints";
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cooking_says_how_far_it_is),
         cmocka_unit_test(an_interrupt_leaves_nothing_behind),
@@ -147,6 +148,9 @@ int main(void)
         PICTURE(gbuffer),
         PICTURE(shadows),
         cmocka_unit_test(horizons_are_made_and_drawn),
+        PICTURE(filters),
+        PICTURE(cellular),
+        PICTURE(footprints),
         MISUSE(smallest),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
