@@ -337,6 +337,10 @@ $(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o $(out)/tests/
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh)
 
+$(out)/tests/bench/rays: $(out)/tests/bench/rays.o $(lib_core)
+	$(say) LINK $@
+	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset)
+
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev nlohmann-json3-dev \
             libmeshoptimizer-dev \

@@ -28,8 +28,6 @@ gtx_result gtx_caster_create(const gtx_asset *asset, const gtx_caster_desc *desc
     caster->allocator = hooks;
     caster->sheet_count = asset->info.patch_count;
     result = gtx_sheets_build(caster, asset, d->level, d->max_error, error);
-    if (!result)
-        result = gtx_bvh_build(&caster->bvh, caster->sheets, caster->sheet_count, &hooks, error);
     if (result) {
         gtx_caster_destroy(caster);
         return result;
@@ -44,7 +42,6 @@ void gtx_caster_destroy(gtx_caster *caster)
         return;
     const gtx_allocator hooks = caster->allocator;
     gtx_sheets_free(caster);
-    gtx_bvh_free(&caster->bvh, &hooks);
     gtx_free_array(&hooks, caster, 1, sizeof *caster);
 }
 
@@ -64,63 +61,104 @@ static bool read_ray(const gtx_ray *ray, gtx_line *out)
     return moves && out->t_min <= out->t_max; /* false with a NaN */
 }
 
-/* Where the ray enters the box, no later than `limit`; infinity when it misses. Boxes are rounded
- * outwards, so a ray that lies in a face may go either way. */
-static double enter(const gtx_bvh_node *node, const gtx_line *ray, const double inverse[3],
-                    double limit)
+/* The ray as the hierarchy sees it: in float, and with its time scaled by a power of two so that
+ * the direction is about 1 long. */
+typedef struct slabs {
+    float origin[3], inverse[3];
+    double scale;             /* a time of the ray, times this, is a time here */
+    float t_min;
+} slabs;
+
+/* What a time is off by at most here, in shares of itself: an upper bound for the three roundings
+ * between a plane and its time (Ize, "Robust BVH Ray Traversal", JCGT 2013). */
+static const float SLACK = 5e-7f;
+
+static float earlier(float t)
 {
-    double t0 = ray->t_min, t1 = limit;
+    return t - SLACK * fabsf(t);
+}
+
+static float later(float t)
+{
+    return t + SLACK * fabsf(t);
+}
+
+static slabs slabs_of(const gtx_line *ray)
+{
+    slabs s;
+    int power;
+    frexp(fmax(fmax(fabs(ray->direction[0]), fabs(ray->direction[1])), fabs(ray->direction[2])),
+          &power);
+    s.scale = ldexp(1, power);
     for (int a = 0; a < 3; ++a) {
-        double near = (node->low[a] - ray->origin[a]) * inverse[a];
-        double far = (node->high[a] - ray->origin[a]) * inverse[a];
-        if (inverse[a] < 0) {
-            double swap = near;
-            near = far;
-            far = swap;
-        }
-        t0 = near > t0 ? near : t0;
+        s.origin[a] = (float)ray->origin[a];
+        s.inverse[a] = (float)(s.scale / ray->direction[a]);
+    }
+    s.t_min = earlier((float)(ray->t_min * s.scale));
+    return s;
+}
+
+/* Where the ray enters the box, no later than `limit`; infinity when it misses. */
+static inline float enter(const gtx_node *node, const slabs *s, float limit)
+{
+    float t0 = s->t_min, t1 = limit;
+    for (int a = 0; a < 3; ++a) {
+        const bool back = s->inverse[a] < 0;
+        const float first = back ? node->high[a] : node->low[a];
+        const float last = back ? node->low[a] : node->high[a];
+        const float near = (first - s->origin[a]) * s->inverse[a];
+        const float far = (last - s->origin[a]) * s->inverse[a];
+        t0 = near > t0 ? near : t0; /* false with a NaN, of a ray within the plane */
         t1 = far < t1 ? far : t1;
     }
-    return t0 <= t1 ? t0 : INFINITY;
+    return earlier(t0) <= later(t1) ? t0 : INFINITY;
 }
+
+/* A subtree that the ray enters at t. */
+typedef struct subtree {
+    uint32_t node;
+    float t;
+} subtree;
 
 static gtx_crossing cast_tree(const gtx_caster *caster, const gtx_line *ray, uint32_t flags)
 {
-    const gtx_bvh_node *nodes = caster->bvh.nodes;
-    const double inverse[3] = {1 / ray->direction[0], 1 / ray->direction[1],
-                               1 / ray->direction[2]};
+    const gtx_node *nodes = caster->tree.nodes;
+    const slabs s = slabs_of(ray);
     const bool both = flags & GTX_RAY_TWO_SIDED;
     gtx_crossing best = {.t = ray->t_max, .sheet = UINT32_MAX};
-    struct {
-        uint32_t node;
-        double t;
-    } stack[GTX_BVH_DEPTH];
+    float limit = later((float)(best.t * s.scale));
+    gtx_line line; /* in the grid space of the sheet met last */
+    uint32_t sheet = UINT32_MAX;
+    subtree stack[GTX_HIERARCHY_DEPTH];
     int size = 0;
-    if (caster->bvh.node_count) {
-        stack[size].node = 0;
-        stack[size++].t = enter(&nodes[0], ray, inverse, best.t);
-    }
-    while (size) {
-        const gtx_bvh_node *node = &nodes[stack[--size].node];
-        if (stack[size].t == INFINITY || stack[size].t > best.t)
-            continue;
-        for (uint32_t i = 0; i < node->count; ++i)
-            gtx_walk_sheet(caster, caster->bvh.order[node->first + i], ray, both, &best);
-        if (node->count) {
-            if (best.sheet != UINT32_MAX && (flags & GTX_RAY_ANY))
-                break;
+    subtree at = {0, caster->tree.node_count ? enter(nodes, &s, limit) : INFINITY};
+    for (;;) {
+        if (at.t > limit || at.t == INFINITY) {
+            if (!size)
+                return best;
+            at = stack[--size];
             continue;
         }
-        double t[2];
-        for (uint32_t k = 0; k < 2; ++k)
-            t[k] = enter(&nodes[node->first + k], ray, inverse, best.t);
-        for (uint32_t k = 0; k < 2; ++k) { /* the nearer child on top */
-            uint32_t which = t[0] <= t[1] ? 1 - k : k;
-            stack[size].node = node->first + which;
-            stack[size++].t = t[which];
+        const gtx_node *node = &nodes[at.node];
+        if (!(node->link & GTX_LEAF)) {
+            const subtree one = {at.node + 1, enter(node + 1, &s, limit)};
+            const subtree two = {node->link, enter(&nodes[node->link], &s, limit)};
+            at = one.t <= two.t ? one : two;
+            if (one.t != INFINITY && two.t != INFINITY)
+                stack[size++] = one.t <= two.t ? two : one;
+            continue;
         }
+        const gtx_block *block = &caster->blocks[node->link - GTX_LEAF];
+        if (block->sheet != sheet) {
+            sheet = block->sheet;
+            line = gtx_sheet_line(&caster->sheets[sheet], ray);
+        }
+        gtx_walk_block(caster, block, &line, both, &best);
+        if (best.sheet != UINT32_MAX && (flags & GTX_RAY_ANY))
+            return best;
+        limit = later((float)(best.t * s.scale));
+        at.t = INFINITY;
     }
-    return best;
 }
 
 static gtx_crossing cast_exhaustively(const gtx_caster *caster, const gtx_line *ray,

@@ -2,6 +2,8 @@
  * only what defines the surface: the cell's corners and the trim. */
 #include "trace/caster.h"
 
+#include <math.h>
+
 typedef struct interval {
     double t0, t1;
 } interval;
@@ -81,20 +83,24 @@ void gtx_search_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *
     const gtx_line line = gtx_sheet_line(s, ray);
     const double inverse[3] = {1 / line.direction[0], 1 / line.direction[1],
                                1 / line.direction[2]};
-    uint32_t rows = (s->height - 2 + (1u << s->level)) >> s->level;
-    for (uint32_t j = 0; j < rows; ++j) {
+    for (uint32_t j = 0; j + 1 < s->nodes_y; ++j) {
         gtx_cell first = gtx_sheet_cell(s, 0, j);
         interval row = {ray->t_min, best->t};
         row = cut(row, &line, 1, inverse[1], first.y0, first.y1);
-        for (uint32_t i = 0; row.t0 <= row.t1 && i < s->tree_width[0]; ++i) {
-            gtx_range range = s->tree[0][(size_t)j * s->tree_width[0] + i];
-            if (range.min > range.max)
-                continue;
-            double low = range.min - 1.0, high = range.max + 1.0;
-            interval inside = cut(row, &line, 2, inverse[2], low, high);
-            if (inside.t0 > inside.t1)
+        for (uint32_t i = 0; row.t0 <= row.t1 && i + 1 < s->nodes_x; ++i) {
+            if (!gtx_sheet_solid(caster, s, i, j))
                 continue;
             gtx_cell cell = gtx_sheet_cell(s, i, j);
+            const double corner[4] = {cell.c, cell.c + cell.cx, cell.c + cell.cy,
+                                      cell.c + cell.cx + cell.cy + cell.cxy};
+            double low = corner[0], high = corner[0];
+            for (int k = 1; k < 4; ++k) {
+                low = fmin(low, corner[k]);
+                high = fmax(high, corner[k]);
+            }
+            interval inside = cut(row, &line, 2, inverse[2], low - 1, high + 1);
+            if (inside.t0 > inside.t1)
+                continue;
             inside = cut(inside, &line, 0, inverse[0], cell.x0, cell.x1);
             if (inside.t0 <= inside.t1)
                 search_cell(caster, sheet, &line, &cell, both || s->two_sided, inside, best);
