@@ -4,6 +4,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "derive/frame.h"
 
 #include <math.h>
 
@@ -26,10 +27,13 @@ static void include(gtx_box *a, const gtx_box *b)
     }
 }
 
-gtx_box gtx_box_join(gtx_box a, gtx_box b)
+void gtx_box_widen(gtx_box *box)
 {
-    include(&a, &b);
-    return a;
+    for (int k = 0; k < 3; ++k) {
+        const float slack = 1e-6f * (fabsf(box->low[k]) + fabsf(box->high[k]));
+        box->low[k] = nextafterf(box->low[k] - slack, -INFINITY);
+        box->high[k] = nextafterf(box->high[k] + slack, INFINITY);
+    }
 }
 
 static float half_area(const gtx_box *b)
@@ -180,32 +184,8 @@ static uint32_t min_u32(uint32_t a, uint32_t b)
     return a < b ? a : b;
 }
 
-/* Object space of a patch's nodes: the linear part takes texels and codes, as in format/gtx.md,
- * section 3. */
-typedef struct frame {
-    double origin[3], axis[3][3];
-} frame;
-
-static frame frame_of(const gtx_asset *asset, const gtx_patch *patch)
-{
-    const float *axes[3] = {patch->axis_x, patch->axis_y, patch->axis_z};
-    const double steps = asset->info.height_bits == 8 ? 254 : 65534;
-    const double scale[3] = {(double)patch->extent_x / patch->rect[2],
-                             (double)patch->extent_y / patch->rect[3], patch->extent_z / steps};
-    const double offset[3] = {0.5, 0.5, -1};
-    frame f;
-    for (int k = 0; k < 3; ++k) {
-        f.origin[k] = patch->origin[k];
-        for (int a = 0; a < 3; ++a) {
-            f.axis[a][k] = axes[a][k] * scale[a];
-            f.origin[k] += offset[a] * f.axis[a][k];
-        }
-    }
-    return f;
-}
-
 /* A bilinear sheet lies in the hull of its corners. */
-static void include_cell(gtx_box *box, const frame *f, const gtx_patch *patch,
+static void include_cell(gtx_box *box, const gtx_patch_frame *f, const gtx_patch *patch,
                          const gtx_grid *grid, uint32_t i, uint32_t j)
 {
     for (uint32_t corner = 0; corner < 4; ++corner) {
@@ -222,20 +202,10 @@ static void include_cell(gtx_box *box, const frame *f, const gtx_patch *patch,
     }
 }
 
-/* By a millionth of the coordinates, which is more than any of them was rounded by. */
-static void widen(gtx_box *box)
-{
-    for (int k = 0; k < 3; ++k) {
-        const float slack = 1e-6f * (fabsf(box->low[k]) + fabsf(box->high[k]));
-        box->low[k] = nextafterf(box->low[k] - slack, -INFINITY);
-        box->high[k] = nextafterf(box->high[k] + slack, INFINITY);
-    }
-}
-
 void gtx_grid_boxes(const gtx_asset *asset, uint32_t patch, const gtx_grid *grid, gtx_box *out)
 {
     const gtx_patch *record = &asset->patches[patch];
-    const frame f = frame_of(asset, record);
+    const gtx_patch_frame f = gtx_patch_frame_of(record, asset->info.height_bits);
     const uint32_t cells_x = grid->nodes_x - 1, cells_y = grid->nodes_y - 1;
     const uint32_t wide = gtx_blocks_of(cells_x), count = wide * gtx_blocks_of(cells_y);
     for (uint32_t b = 0; b < count; ++b) {
@@ -246,6 +216,6 @@ void gtx_grid_boxes(const gtx_asset *asset, uint32_t patch, const gtx_grid *grid
                 if (grid->solid[(size_t)j * cells_x + i])
                     include_cell(&out[b], &f, record, grid, i, j);
         if (out[b].low[0] <= out[b].high[0])
-            widen(&out[b]);
+            gtx_box_widen(&out[b]);
     }
 }

@@ -22,6 +22,11 @@ typedef struct gtx_box {
     float low[3], high[3];
 } gtx_box;
 
+extern const gtx_box gtx_box_empty;
+
+/* By a millionth of the coordinates: more than any of them was rounded by. */
+void gtx_box_widen(gtx_box *box);
+
 /* The box in object space of each block's solid cells, rounded outwards; rows of
  * gtx_blocks_of(nodes_x - 1), gtx_blocks_of(nodes_y - 1) of them. */
 void gtx_grid_boxes(const gtx_asset *asset, uint32_t patch, const gtx_grid *grid, gtx_box *out);
@@ -49,10 +54,6 @@ gtx_result gtx_hierarchy_build(const gtx_box *boxes, uint32_t count,
                                const gtx_allocator *allocator, gtx_hierarchy *out,
                                gtx_error *error);
 void gtx_hierarchy_free(gtx_hierarchy *hierarchy, const gtx_allocator *allocator);
-
-/* The smallest box around two; either may be empty. */
-gtx_box gtx_box_join(gtx_box a, gtx_box b);
-extern const gtx_box gtx_box_empty;
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,8 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "derive/placement.h"
+#include "trace/slabs.h"
 
 #include <math.h>
 
@@ -27,6 +29,7 @@ gtx_result gtx_caster_create(const gtx_asset *asset, const gtx_caster_desc *desc
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a caster");
     caster->allocator = hooks;
     caster->sheet_count = asset->info.patch_count;
+    caster->height_step = gtx_height_step(asset);
     result = gtx_sheets_build(caster, asset, d->level, d->max_error, error);
     if (result) {
         gtx_caster_destroy(caster);
@@ -45,8 +48,7 @@ void gtx_caster_destroy(gtx_caster *caster)
     gtx_free_array(&hooks, caster, 1, sizeof *caster);
 }
 
-/* False for rays that hit nothing by rule. */
-static bool read_ray(const gtx_ray *ray, gtx_line *out)
+bool gtx_read_ray(const gtx_ray *ray, gtx_line *out)
 {
     bool moves = false;
     for (int a = 0; a < 3; ++a) {
@@ -61,104 +63,29 @@ static bool read_ray(const gtx_ray *ray, gtx_line *out)
     return moves && out->t_min <= out->t_max; /* false with a NaN */
 }
 
-/* The ray as the hierarchy sees it: in float, and with its time scaled by a power of two so that
- * the direction is about 1 long. */
-typedef struct slabs {
-    float origin[3], inverse[3];
-    double scale;             /* a time of the ray, times this, is a time here */
-    float t_min;
-} slabs;
-
-/* What a time is off by at most here, in shares of itself: an upper bound for the three roundings
- * between a plane and its time (Ize, "Robust BVH Ray Traversal", JCGT 2013). */
-static const float SLACK = 5e-7f;
-
-static float earlier(float t)
-{
-    return t - SLACK * fabsf(t);
-}
-
-static float later(float t)
-{
-    return t + SLACK * fabsf(t);
-}
-
-static slabs slabs_of(const gtx_line *ray)
-{
-    slabs s;
-    int power;
-    frexp(fmax(fmax(fabs(ray->direction[0]), fabs(ray->direction[1])), fabs(ray->direction[2])),
-          &power);
-    s.scale = ldexp(1, power);
-    for (int a = 0; a < 3; ++a) {
-        s.origin[a] = (float)ray->origin[a];
-        s.inverse[a] = (float)(s.scale / ray->direction[a]);
-    }
-    s.t_min = earlier((float)(ray->t_min * s.scale));
-    return s;
-}
-
-/* Where the ray enters the box, no later than `limit`; infinity when it misses. */
-static inline float enter(const gtx_node *node, const slabs *s, float limit)
-{
-    float t0 = s->t_min, t1 = limit;
-    for (int a = 0; a < 3; ++a) {
-        const bool back = s->inverse[a] < 0;
-        const float first = back ? node->high[a] : node->low[a];
-        const float last = back ? node->low[a] : node->high[a];
-        const float near = (first - s->origin[a]) * s->inverse[a];
-        const float far = (last - s->origin[a]) * s->inverse[a];
-        t0 = near > t0 ? near : t0; /* false with a NaN, of a ray within the plane */
-        t1 = far < t1 ? far : t1;
-    }
-    return earlier(t0) <= later(t1) ? t0 : INFINITY;
-}
-
-/* A subtree that the ray enters at t. */
-typedef struct subtree {
-    uint32_t node;
-    float t;
-} subtree;
-
 static gtx_crossing cast_tree(const gtx_caster *caster, const gtx_line *ray, uint32_t flags)
 {
-    const gtx_node *nodes = caster->tree.nodes;
-    const slabs s = slabs_of(ray);
-    const bool both = flags & GTX_RAY_TWO_SIDED;
+    const gtx_node *nodes = caster->tree.nodes, *leaf;
+    const gtx_slabs s = gtx_slabs_of(ray);
     gtx_crossing best = {.t = ray->t_max, .sheet = UINT32_MAX};
-    float limit = later((float)(best.t * s.scale));
+    float limit = gtx_slabs_limit(&s, best.t);
     gtx_line line; /* in the grid space of the sheet met last */
     uint32_t sheet = UINT32_MAX;
-    subtree stack[GTX_HIERARCHY_DEPTH];
+    gtx_subtree stack[GTX_HIERARCHY_DEPTH];
+    gtx_subtree at = {0, caster->tree.node_count ? gtx_enter(nodes, &s, limit) : INFINITY};
     int size = 0;
-    subtree at = {0, caster->tree.node_count ? enter(nodes, &s, limit) : INFINITY};
-    for (;;) {
-        if (at.t > limit || at.t == INFINITY) {
-            if (!size)
-                return best;
-            at = stack[--size];
-            continue;
-        }
-        const gtx_node *node = &nodes[at.node];
-        if (!(node->link & GTX_LEAF)) {
-            const subtree one = {at.node + 1, enter(node + 1, &s, limit)};
-            const subtree two = {node->link, enter(&nodes[node->link], &s, limit)};
-            at = one.t <= two.t ? one : two;
-            if (one.t != INFINITY && two.t != INFINITY)
-                stack[size++] = one.t <= two.t ? two : one;
-            continue;
-        }
-        const gtx_block *block = &caster->blocks[node->link - GTX_LEAF];
+    while ((leaf = gtx_next_leaf(nodes, &s, limit, &at, stack, &size))) {
+        const gtx_block *block = &caster->blocks[leaf->link - GTX_LEAF];
         if (block->sheet != sheet) {
             sheet = block->sheet;
             line = gtx_sheet_line(&caster->sheets[sheet], ray);
         }
-        gtx_walk_block(caster, block, &line, both, &best);
+        gtx_walk_block(caster, block, &line, flags & GTX_RAY_TWO_SIDED, &best);
         if (best.sheet != UINT32_MAX && (flags & GTX_RAY_ANY))
-            return best;
-        limit = later((float)(best.t * s.scale));
-        at.t = INFINITY;
+            break;
+        limit = gtx_slabs_limit(&s, best.t);
     }
+    return best;
 }
 
 static gtx_crossing cast_exhaustively(const gtx_caster *caster, const gtx_line *ray,
@@ -170,7 +97,13 @@ static gtx_crossing cast_exhaustively(const gtx_caster *caster, const gtx_line *
     return best;
 }
 
-static gtx_hit describe(const gtx_caster *caster, const gtx_crossing *crossing)
+gtx_crossing gtx_cast_line(const gtx_caster *caster, const gtx_line *line, uint32_t flags)
+{
+    return flags & GTX_RAY_EXHAUSTIVE ? cast_exhaustively(caster, line, flags)
+                                      : cast_tree(caster, line, flags);
+}
+
+gtx_hit gtx_describe(const gtx_caster *caster, const gtx_crossing *crossing)
 {
     const gtx_sheet *sheet = &caster->sheets[crossing->sheet];
     /* The cell behind the coordinates; a crossing may lie a rounding error outside. */
@@ -190,17 +123,16 @@ gtx_result gtx_raycast(const gtx_caster *caster, const gtx_ray *rays, gtx_hit *h
                        uint32_t flags)
 {
     if (!caster || (count && (!rays || !hits)) ||
-        (flags & ~(uint32_t)(GTX_RAY_ANY | GTX_RAY_TWO_SIDED | GTX_RAY_EXHAUSTIVE)))
+        flags & ~(uint32_t)GTX_RAY_FLAGS)
         return GTX_ERROR_ARGUMENT;
     for (size_t i = 0; i < count; ++i) {
         gtx_line ray;
         gtx_crossing crossing = {.sheet = UINT32_MAX};
-        if (read_ray(&rays[i], &ray))
-            crossing = flags & GTX_RAY_EXHAUSTIVE ? cast_exhaustively(caster, &ray, flags)
-                                                  : cast_tree(caster, &ray, flags);
+        if (gtx_read_ray(&rays[i], &ray))
+            crossing = gtx_cast_line(caster, &ray, flags);
         hits[i] = crossing.sheet == UINT32_MAX
                       ? (gtx_hit){.t = INFINITY, .patch = UINT32_MAX}
-                      : describe(caster, &crossing);
+                      : gtx_describe(caster, &crossing);
     }
     return GTX_OK;
 }

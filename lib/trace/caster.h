@@ -36,11 +36,14 @@ struct gtx_caster {
     gtx_sheet *sheets;
     gtx_block *blocks;          /* a sheet's in rows; the hierarchy is over those with a cell */
     gtx_hierarchy tree;
+    double height_step;         /* the greatest, in object units */
     /* What the sheets point into. */
     uint16_t *code;
     uint8_t *trim, *normal;
     size_t code_count, texel_count;
 };
+
+enum { GTX_RAY_FLAGS = GTX_RAY_ANY | GTX_RAY_TWO_SIDED | GTX_RAY_EXHAUSTIVE };
 
 /* A ray in double; in object space, or in the grid space of a sheet. */
 typedef struct gtx_line {
@@ -85,5 +88,11 @@ void gtx_walk_block(const gtx_caster *caster, const gtx_block *block, const gtx_
                     bool both, gtx_crossing *best);
 void gtx_search_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *ray, bool both,
                       gtx_crossing *best);
+
+/* caster.c: the nearest crossing of a ray, or any by GTX_RAY_ANY; false for rays that hit nothing by
+ * rule. What is known of it then, in object space. */
+bool gtx_read_ray(const gtx_ray *ray, gtx_line *out);
+gtx_crossing gtx_cast_line(const gtx_caster *caster, const gtx_line *line, uint32_t flags);
+gtx_hit gtx_describe(const gtx_caster *caster, const gtx_crossing *crossing);
 
 #endif

@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "derive/derive.h"
+#include "derive/frame.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,34 +17,6 @@ static uint32_t min_u32(uint32_t a, uint32_t b)
 static uint32_t cells_of(uint32_t texels, uint32_t level)
 {
     return (texels - 2 + (1u << level)) >> level;
-}
-
-/* Rows of the map from object space to grid space: the inverse of the patch's frame (format/gtx.md,
- * section 3), axes taken as they stand. */
-static void invert_frame(const gtx_patch *patch, uint32_t height_bits, double rows[3][4])
-{
-    const float *axis[3] = {patch->axis_x, patch->axis_y, patch->axis_z};
-    const double scale[3] = {patch->rect[2] / (double)patch->extent_x,
-                             patch->rect[3] / (double)patch->extent_y,
-                             (height_bits == 8 ? 254.0 : 65534.0) / patch->extent_z};
-    const double offset[3] = {-0.5, -0.5, 1};
-    double cross[3][3], det = 0;
-    for (int r = 0; r < 3; ++r) {
-        const float *a = axis[(r + 1) % 3], *b = axis[(r + 2) % 3];
-        for (int k = 0; k < 3; ++k) {
-            int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-            cross[r][k] = (double)a[k1] * b[k2] - (double)a[k2] * b[k1];
-        }
-    }
-    for (int k = 0; k < 3; ++k)
-        det += axis[0][k] * cross[0][k];
-    for (int r = 0; r < 3; ++r) {
-        rows[r][3] = offset[r];
-        for (int k = 0; k < 3; ++k) {
-            rows[r][k] = cross[r][k] / det * scale[r];
-            rows[r][3] -= rows[r][k] * patch->origin[k];
-        }
-    }
 }
 
 static void add_cell(gtx_block *block, const gtx_grid *grid, uint32_t i, uint32_t j)
@@ -123,7 +96,8 @@ static gtx_result fill_sheet(gtx_caster *caster, const gtx_asset *asset, uint32_
     fill_blocks(caster, index, asset, &grid, boxes);
     gtx_grid_free(&grid, &caster->allocator);
     copy_maps(sheet, asset, patch);
-    invert_frame(patch, asset->info.height_bits, sheet->to_grid);
+    const gtx_patch_frame frame = gtx_patch_frame_of(patch, asset->info.height_bits);
+    memcpy(sheet->to_grid, frame.to_grid, sizeof sheet->to_grid);
     gtx_normal_frame(patch, sheet->normal_frame);
     sheet->two_sided = patch->flags & GTX_PATCH_TWO_SIDED;
     return GTX_OK;
