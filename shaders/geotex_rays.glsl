@@ -89,7 +89,7 @@ bool gtx_crosses(int sheet, int block, vec3 origin, vec3 direction, float t_max)
             vec3 entry = o + enter * d;
             vec3 gap = gtx_gap(height, vec3(entry.xy - vec2(next), entry.z), d);
             root = gtx_roots(gap);
-            met = bvec2(height.x > 0.0 && gap.y * gap.y >= 4.0 * gap.z * gap.x);
+            met = bvec2(height.x > 0.0 && gap.y * gap.y > 4.0 * gap.z * gap.x);
             met.y = met.y && record.w > 0.0;
             met.x = met.x && root.x >= -overlap && root.x <= leave - enter + overlap;
             met.y = met.y && root.y >= -overlap && root.y <= leave - enter + overlap;
@@ -159,9 +159,10 @@ bool gtx_occluded(vec3 origin, vec3 direction, float t_max)
     return found;
 }
 
-/* How far off the surface rays begin: two height steps of the coarsest patch. A sheet rounds the
- * surface that it stands for by half a step up or down, so that a ray which leaves a surface without
- * hollows meets no ripple of it, however grazing; nothing else is left out. */
+/* How far off the surface rays begin: two height steps of the coarsest patch, or the 32nd part of a
+ * texel if that is more. A sheet rounds the surface that it stands for by half a step up or down, and
+ * its cells cut a little into what is round; from there no ray that leaves a surface without hollows
+ * meets them, however grazing. Nothing else is left out. */
 float gtx_ray_offset()
 {
     return gtx_ray_texel(0).y;

@@ -407,9 +407,10 @@ typedef struct gtx_light_desc {
 GTX_API gtx_result gtx_scene_light(const gtx_scene *scene, const gtx_light_desc *light,
                                    const gtx_lit_point *points, float *shares, size_t count);
 
-/* Two height steps of the coarsest patch, in world units. A sheet rounds the surface that it stands
- * for by half a step up or down, so that no ray that begins there and leaves a surface without
- * hollows meets its ripples, however grazing; nothing else is left out. */
+/* How far off the surface rays begin, in world units: two height steps of the coarsest patch, or the
+ * 32nd part of a texel if that is more. A sheet rounds the surface that it stands for by half a step
+ * up or down, and its cells cut a little into what is round; from there no ray that leaves a surface
+ * without hollows meets them, however grazing. Nothing else is left out. */
 GTX_API float gtx_scene_offset(const gtx_scene *scene);
 
 #ifdef __cplusplus

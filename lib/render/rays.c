@@ -23,7 +23,7 @@ enum { TEXTURE_NODES, TEXTURE_CELLS, TEXTURE_TRIM, TEXTURES };
 typedef struct member {
     size_t nodes, end;        /* texels of its hierarchy; its sheets follow */
     gtx_box box;
-    double height_step;
+    double offset;            /* gtx_ray_offset */
 } member;
 
 struct gtx_rays {
@@ -187,7 +187,7 @@ static gtx_result put_asset(gtx_rays *rays, const gtx_asset *asset, staging *s, 
         member *m = &rays->members[rays->member_count++];
         m->nodes = s->node_count;
         m->end = s->node_count + NODE * (size_t)tree.node_count;
-        m->height_step = gtx_height_step(asset);
+        m->offset = gtx_ray_offset(asset);
         m->box = gtx_box_empty;
         for (int k = 0; tree.node_count && k < 3; ++k) {
             m->box.low[k] = tree.nodes[0].low[k];
@@ -332,7 +332,7 @@ gtx_result gtx_rays_place(gtx_renderer *renderer, gtx_rays *rays,
                             "no inverse", i);
         const member *m = &rays->members[instances[i].asset];
         rays->boxes[i] = gtx_placement_box(place, &m->box);
-        offset = fmax(offset, 2 * m->height_step * place->stretch);
+        offset = fmax(offset, m->offset * place->stretch);
     }
     gtx_hierarchy tree;
     gtx_result result = gtx_hierarchy_build(rays->boxes, count, &rays->allocator, &tree, error);

@@ -29,7 +29,7 @@ gtx_result gtx_caster_create(const gtx_asset *asset, const gtx_caster_desc *desc
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a caster");
     caster->allocator = hooks;
     caster->sheet_count = asset->info.patch_count;
-    caster->height_step = gtx_height_step(asset);
+    caster->ray_offset = gtx_ray_offset(asset);
     result = gtx_sheets_build(caster, asset, d->level, d->max_error, error);
     if (result) {
         gtx_caster_destroy(caster);

@@ -36,7 +36,7 @@ struct gtx_caster {
     gtx_sheet *sheets;
     gtx_block *blocks;          /* a sheet's in rows; the hierarchy is over those with a cell */
     gtx_hierarchy tree;
-    double height_step;         /* the greatest, in object units */
+    double ray_offset;          /* of the asset, in object units */
     /* What the sheets point into. */
     uint16_t *code;
     uint8_t *trim, *normal;

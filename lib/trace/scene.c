@@ -49,7 +49,7 @@ static gtx_result fill_scene(gtx_scene *scene, const gtx_scene_instance *instanc
         }
         boxes[i] = box_of(m);
         scene->offset =
-            fmaxf(scene->offset, (float)(2 * m->caster->height_step * m->place.stretch));
+            fmaxf(scene->offset, (float)(m->caster->ray_offset * m->place.stretch));
     }
     if (!result)
         result = gtx_hierarchy_build(boxes, scene->count, hooks, &scene->tree, error);
