@@ -217,10 +217,13 @@ needs_corpus := base
 needs_samples := $(needs_image)
 needs_threads := $(needs_cook)
 extra_needs_render  := trace host image
+extra_needs_trace   := image mesh chart bake measure cook
 extra_needs_bake    := derive trace host
 extra_needs_cook    := host
 extra_needs_chart   :=
 extra_needs_measure := grid chart bake cook
+# Embree ships no pkg-config file; its test asks for the header in the same way.
+libs_test_embree = $(shell printf '\043include <embree3/rtcore.h>' | $(CXX) -E -x c++ - >/dev/null 2>&1 && echo -lembree3)
 # An archive: a test takes from it only what it asks for, and so needs no room but its own.
 common_tests := $(out)/tests/common.a
 $(common_tests): $(patsubst %,$(out)/%.o,$(basename $(wildcard tests/common/*.c)))
@@ -230,7 +233,7 @@ define test_rule
 $(out)/$(basename $(1)): $(out)/$(basename $(1)).o $(common_tests) \
     $(call objects_of,$(call test_needs,$(call test_room,$(1))))
 	$$(say) LINK $$@
-	$$(Q)$$(CXX) $$(flags) -o $$@ $$^ $$(call libs_of,$$(call test_needs,$(call test_room,$(1)))) $$(call pkg,--libs,cmocka)
+	$$(Q)$$(CXX) $$(flags) -o $$@ $$^ $$(call libs_of,$$(call test_needs,$(call test_room,$(1)))) $$(call pkg,--libs,cmocka) $$(libs_$(notdir $(basename $(1))))
 endef
 $(foreach t,$(test_sources),$(eval $(call test_rule,$(t))))
 $(out)/tests/%: cflags += -Itests -D_XOPEN_SOURCE=700 $(call pkg,--cflags,cmocka)
@@ -346,7 +349,7 @@ packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinyglt
             libmeshoptimizer-dev \
             libglfw3-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri \
             libopenimageio-dev libzstd-dev zlib1g-dev libcmocka-dev glslang-tools \
-            ninja-build cmake xvfb
+            ninja-build cmake xvfb libembree-dev
 
 deps: ## install the Debian packages that are missing (apt-get, with sudo when not root)
 	@missing=; for p in $(packages); do \
