@@ -62,8 +62,8 @@ static const recipe recipes[PROGRAM_COUNT] = {
 };
 static const recipe own_cast = {PROXY, MATERIALS, {"geotex_material.glsl", CAST, RAYS},
                                 "geotex cast, own"};
-static const recipe own_shell = {POLYGONS, MATERIALS, {"geotex_material.glsl", SHELL, RAYS},
-                                 "geotex shell, own"};
+static const recipe own_shell = {POLYGONS, MATERIALS "#define GTX_SHELL\n",
+                                 {"geotex_material.glsl", SHELL, RAYS}, "geotex shell, own"};
 
 const char *gtx_shader_source(const char *name)
 {
