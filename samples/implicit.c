@@ -2,9 +2,9 @@
  *
  *   implicit ASSET.gtx [--headless OUT.png] [--size WxH]
  *
- * Spheres are taken out of the asset. Where a ray meets it inside one, it goes on to the sphere's
- * far side: a wall, if the asset goes that far, and else the cast begins again behind it. Torus and
- * ball have the relief of a height map, and are found in their boxes' fragments. */
+ * Spheres are taken out of the asset. Where a ray goes into it inside a sphere, the sphere's far
+ * side is a wall if the ray does not come out before; else the cast goes on behind. Torus and ball
+ * have the relief of a height map, and are found in their boxes' fragments. */
 #include "host/program.h"
 #include "host/sample.h"
 #include "host/shapes.h"
@@ -56,8 +56,7 @@ static gtx_result drill(const gtx_host_gl *gl, world *w, const gtx_asset *asset,
     gtx_rays *cast;
     gtx_hit hits[HOLES];
     float holes[HOLES][4];
-    gtx_result result;
-    result = gtx_caster_create(asset, NULL, &caster, error);
+    gtx_result result = gtx_caster_create(asset, NULL, &caster, error);
     known.caster = caster;
     memcpy(known.transform, w->instance.transform, sizeof known.transform);
     memcpy(placed.transform, w->instance.transform, sizeof placed.transform);
@@ -66,9 +65,9 @@ static gtx_result drill(const gtx_host_gl *gl, world *w, const gtx_asset *asset,
         (result = gtx_rays_place(w->renderer, cast, &placed, 1, error)))
         return result;
     gtx_scene_raycast(scene, rays, hits, NULL, HOLES, 0);
-    for (int i = 0; i < HOLES; ++i)
-        for (int k = 0; k < 4; ++k)
-            holes[i][k] = k < 3 ? rays[i].origin[k] + hits[i].t * rays[i].direction[k] : 0.3f;
+    for (int i = 0; i < 4 * HOLES; ++i) /* the radius, or a coordinate of the centre */
+        holes[i / 4][i % 4] = i % 4 == 3 ? 0.3f : rays[i / 4].origin[i % 4] +
+            fminf(hits[i / 4].t, 99) * rays[i / 4].direction[i % 4];
     gtx_rays_bind(w->renderer, cast, program);
     gl->UseProgram(program);
     gl->Uniform4fv(gl->GetUniformLocation(program, "holes"), HOLES, holes[0]);
@@ -103,8 +102,7 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
         return result;
     gtx_get_info(asset, &info);
     w->instance.model = model;
-    gtx_matrix_stand(info.bounds_min, info.bounds_max, (float[3]){0}, -15, 2,
-                     w->instance.transform);
+    gtx_matrix_stand(info.bounds_min, info.bounds_max, (float[3]){0}, -15, 2, w->instance.transform);
     make_relief(gl, w);
     result = drill(gl, w, asset, error);
     gtx_close(asset);
@@ -146,8 +144,7 @@ int main(int argc, char **argv)
 {
     world w = {.path = NULL};
     gtx_show show = {.title = "implicit", .width = 1280, .height = 720, .load = load, .draw = draw,
-                     .user = &w,
-                     .camera = {.target = {0.5f, 0.75f, 0}, .radius = 2.4f, .azimuth = 12,
-                                .elevation = 22, .distance = 2, .field = 36}};
+                     .user = &w, .camera = {.target = {0.5f, 0.75f, 0}, .radius = 2.4f,
+                     .azimuth = 12, .elevation = 22, .distance = 2, .field = 36}};
     return gtx_sample_main(&show, argc, argv, &w.path);
 }

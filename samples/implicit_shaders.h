@@ -14,26 +14,12 @@ static const char patch_main[] =
     "vec3 origin, ray;\n" /* world: gtx_point, and the ray, whose t is that of grid space */
     "float leave(float t) {\n" /* where the ray is outside the spheres again */
     "    float out_t = t;\n"
-    "    for (int i = 0; i < 16; ++i) {\n"
-    "        vec3 p = origin + out_t * ray - holes[i & 3].xyz;\n"
-    "        float a = dot(ray, ray), b = dot(p, ray), r = holes[i & 3].w, c = dot(p, p) - r * r;\n"
+    "    for (int i = 0; i < 12; ++i) {\n"
+    "        vec3 p = origin + out_t * ray - holes[i % 4].xyz;\n"
+    "        float a = dot(ray, ray), b = dot(p, ray), r = holes[i % 4].w, c = dot(p, p) - r * r;\n"
     "        if (c < -1e-5) out_t += (sqrt(b * b - a * c) - b) / a;\n"
     "    }\n"
     "    return out_t;\n"
-    "}\n"
-    /* From the wall the asset is left once, where the ray came in, unless the wall is outside.
-     * Where patches overlap at a crease, the rim of one may stick out a fraction of a texel into
-     * the asset. A line like that crosses one ray of five around the way back, and the outline
-     * of what is outside at least two. */
-    "bool encloses(vec3 wall, vec3 point) {\n"
-    "    mat3 around = gtx_ray_basis(normalize(ray));\n"
-    "    int free = 0;\n"
-    "    for (int i = 0; i < 5; ++i) {\n"
-    "        vec2 aside = 0.02 * vec2(cos(1.2566 * float(i)), sin(1.2566 * float(i)));\n"
-    "        vec3 back = point + around * vec3(aside, 0.0) - wall;\n"
-    "        free += gtx_occluded(wall, back, 0.999) ? 0 : 1;\n"
-    "    }\n"
-    "    return free >= 4;\n"
     "}\n"
     "void main() {\n"
     "    gtx_surface s;\n"
@@ -42,19 +28,19 @@ static const char patch_main[] =
     "    origin = gtx_world_point(s) - s.hit.t * ray;\n"
     "    vec3 n = vec3(0.0), base = vec3(0.60, 0.16, 0.10), point;\n"
     "    for (int i = 0; i < 8 && n == vec3(0.0); ++i) {\n"
-    "        float t = leave(s.hit.t), t0 = t, t1 = 1e30;\n"
+    "        float t = leave(s.hit.t), t0 = s.hit.t + 1e-5, t1 = 1e30;\n"
     "        vec3 wall = origin + t * ray;\n"
     "        point = origin + s.hit.t * ray;\n"
     "        if (t == s.hit.t) {\n"
     "            n = gtx_world_normal(s);\n"
     "            base = gtx_albedo(s).rgb;\n"
-    "        } else if (encloses(wall, point)) {\n"
+    "        } else if (!gtx_occluded(wall, point - wall, 0.999)) {\n" /* left once: inside */
     "            for (int k = 0; k < 4; ++k)\n"
     "                if (abs(distance(wall, holes[k].xyz) - holes[k].w) < 1e-3)\n"
     "                    n = (holes[k].xyz - wall) / holes[k].w;\n"
     "            point = wall;\n"
     "            base *= 0.7 + 0.3 * step(0.5, fract(12.0 * wall.y));\n"
-    "        } else {\n"
+    "        } else {\n" /* the ray came out again before: on to where it goes in next */
     "            gtx_clip_box(s.sheet, gtx_point, s.ray, t0, t1);\n"
     "            if (t0 > t1 || !gtx_cast(s.sheet, gtx_point, s.ray, t0, t1, s.hit)) discard;\n"
     "        }\n"
