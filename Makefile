@@ -298,6 +298,17 @@ run-bench:
 	@$(build)/gtx cook $(MODEL) --shell-levels 5 -o $(build)/demo/bench.gtx
 	@$(build)/gtx bench $(build)/demo/bench.gtx $(MODEL) $(BENCH)
 
+bench-rays: ## rays a second into MODEL (default: the sculpt), and what shadows by ray cost a frame
+	@$(MAKE) --no-print-directory deps
+	@$(MAKE) --no-print-directory -j$$(nproc) all $(out)/tests/bench/rays
+	@$(MAKE) --no-print-directory run-bench-rays
+
+run-bench-rays:
+	@mkdir -p $(build)/demo
+	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
+	@$(build)/gtx cook $(MODEL) -o $(build)/demo/rays.gtx
+	@$(out)/tests/bench/rays $(build)/demo/rays.gtx
+
 # Models and their charts: the paper's bunny where it is, and MODEL (default: the sculpt without it).
 CHARTS ?= 0
 bunny := $(wildcard $(GEOTEX_MODELS)/scans/bunny.ply)
@@ -340,9 +351,9 @@ $(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o $(out)/tests/
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh)
 
-$(out)/tests/bench/rays: $(out)/tests/bench/rays.o $(lib_core)
+$(out)/tests/bench/rays: $(out)/tests/bench/rays.o $(call objects_of,host image) $(lib_core)
 	$(say) LINK $@
-	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset)
+	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset host image)
 
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev nlohmann-json3-dev \
@@ -368,7 +379,8 @@ clean: ## remove what was built
 	rm -rf $(build)
 
 .PHONY: all install uninstall dist build-tests run-tests test check demo run-demo bench run-bench \
-        paper-tables run-paper-tables paper-figures run-paper-figures deps help clean
+        bench-rays run-bench-rays paper-tables run-paper-tables paper-figures run-paper-figures \\
+        deps help clean
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(shell [ -d $(out) ] && find $(out) -name '*.d')

@@ -102,7 +102,8 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
         return result;
     gtx_get_info(asset, &info);
     w->instance.model = model;
-    gtx_matrix_stand(info.bounds_min, info.bounds_max, (float[3]){0}, -15, 2, w->instance.transform);
+    const float foot[3] = {0};
+    gtx_matrix_stand(info.bounds_min, info.bounds_max, foot, -15, 2, w->instance.transform);
     make_relief(gl, w);
     result = drill(gl, w, asset, error);
     gtx_close(asset);
@@ -123,7 +124,6 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     gl->Enable(GL_DEPTH_TEST);
     gtx_polygons_draw(gl, &w->plain, &w->solids, NULL, view, projection, light, 0.25f);
-
     for (int k = 0; k < 12; ++k) /* a view turns and moves: its inverse is its transpose */
         eye[k / 4] -= view[k / 4 * 4 + k % 4] * (k % 4 < 3 ? view[12 + k % 4] : 0);
     gtx_matrix_multiply(projection, view, clip);
@@ -144,7 +144,7 @@ int main(int argc, char **argv)
 {
     world w = {.path = NULL};
     gtx_show show = {.title = "implicit", .width = 1280, .height = 720, .load = load, .draw = draw,
-                     .user = &w, .camera = {.target = {0.5f, 0.75f, 0}, .radius = 2.4f,
+                     .user = &w, .camera = {.target = {0.6f, 0.75f, 0}, .radius = 2.5f,
                      .azimuth = 12, .elevation = 22, .distance = 2, .field = 36}};
     return gtx_sample_main(&show, argc, argv, &w.path);
 }

@@ -1,18 +1,26 @@
-/* Rays a second into an asset on one thread.
+/* Rays into an asset: how many a second on one thread, and what they cost in a shader.
  *
  *   rays ASSET.gtx [--rays N]
  *
  * Chords join two points of the asset's bounding sphere, inner rays start anywhere in it towards
  * anywhere: no two rays have anything in common. Each row is the best of three runs, in time of the
- * processor. */
-#include <geotex/geotex.h>
+ * processor. Frames are 640 x 480 of the asset alone, the median of five, finished with glFinish. */
+#include "host/camera.h"
+#include "host/framebuffer.h"
+#include "host/offscreen.h"
 
+#include <geotex/render.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <random>
+#include <string>
 #include <vector>
 
 static void check(gtx_result result, const gtx_error &error)
@@ -85,6 +93,104 @@ static void measure(const gtx_caster *caster, const gtx_info &info, size_t count
                 100 * double(met) / double(count), double(count) / best / 1e6);
 }
 
+enum { WIDTH = 640, HEIGHT = 480 };
+
+struct Stage {
+    gtx_offscreen *context = nullptr;
+    gtx_host_gl gl = {};
+    gtx_framebuffer framebuffer = {};
+    gtx_renderer *renderer = nullptr;
+    gtx_model *model = nullptr;
+    gtx_rays *rays = nullptr;
+    gtx_view view = {};
+};
+
+static void open_stage(Stage &stage, const gtx_asset *asset, const gtx_info &info)
+{
+    gtx_error error;
+    gtx_renderer_desc desc = {};
+    desc.load = gtx_offscreen_load;
+    check(gtx_offscreen_create(&stage.context, &error), error);
+    check(gtx_host_gl_init(&stage.gl, gtx_offscreen_load, nullptr, &error), error);
+    check(gtx_framebuffer_create(&stage.gl, WIDTH, HEIGHT, &stage.framebuffer, &error), error);
+    check(gtx_renderer_create(&desc, &stage.renderer, &error), error);
+    check(gtx_model_create(stage.renderer, asset, &stage.model, &error), error);
+    gtx_rays_desc all = {};
+    all.assets = &asset;
+    all.asset_count = all.max_instances = 1;
+    gtx_ray_instance instance = {};
+    for (int i = 0; i < 16; i += 5)
+        instance.transform[i] = 1;
+    check(gtx_rays_create(stage.renderer, &all, &stage.rays, &error), error);
+    check(gtx_rays_place(stage.renderer, stage.rays, &instance, 1, &error), error);
+    gtx_camera camera = {};
+    for (int k = 0; k < 3; ++k) {
+        camera.target[k] = (info.bounds_min[k] + info.bounds_max[k]) / 2;
+        camera.radius = std::hypot(camera.radius, info.bounds_max[k] - camera.target[k]);
+    }
+    camera.azimuth = 30;
+    camera.elevation = 15;
+    camera.distance = 2.7f;
+    gtx_camera_matrices(&camera, float(WIDTH) / HEIGHT, stage.view.view, stage.view.projection);
+}
+
+/* Draws with `light` as what the surface is lit by. */
+static void frame(Stage &stage, const char *name, int rays, const std::string &light)
+{
+    const std::string text = "layout(location = 0) out vec4 color;\n"
+                             "void main() {\n"
+                             "    gtx_surface s;\n"
+                             "    if (!gtx_find(s)) discard;\n"
+                             "    vec3 p = gtx_world_point(s), n = gtx_world_normal(s);\n"
+                             "    float turn = gtx_ray_turn(gl_FragCoord.xy);\n"
+                             "    color = vec4(vec3(" + light + "), 1.0);\n"
+                             "    gtx_write_depth(s);\n"
+                             "}\n";
+    gtx_error error;
+    gtx_shading *shading;
+    gtx_instance instance = {};
+    instance.model = stage.model;
+    for (int i = 0; i < 16; i += 5)
+        instance.transform[i] = 1;
+    check(gtx_shading_create(stage.renderer, text.c_str(), &shading, &error), error);
+    gtx_rays_bind(stage.renderer, stage.rays, gtx_shading_program(shading, GTX_METHOD_CAST));
+    stage.view.shading = shading;
+    std::array<double, 5> times;
+    for (size_t i = 0; i <= times.size(); ++i) { /* the first compiles */
+        using clock = std::chrono::steady_clock;
+        const auto start = clock::now();
+        gtx_framebuffer_bind(&stage.gl, &stage.framebuffer);
+        stage.gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        check(gtx_draw(stage.renderer, &stage.view, &instance, 1, &error), error);
+        stage.gl.Finish();
+        if (i)
+            times[i - 1] = std::chrono::duration<double, std::milli>(clock::now() - start).count();
+    }
+    std::sort(times.begin(), times.end());
+    std::printf("%-24s %6d %10.1f\n", name, rays, times[2]);
+    gtx_shading_destroy(stage.renderer, shading);
+}
+
+static void measure_frames(const gtx_asset *asset, const gtx_info &info)
+{
+    Stage stage;
+    open_stage(stage, asset, info);
+    const float reach = info.bounds_max[0] - info.bounds_min[0];
+    const std::string sun = "gtx_sunlight(p, n, vec3(0.48, 0.8, 0.36), ";
+    const std::string sky = "gtx_skylight(p, n, " + std::to_string(reach) + ", ";
+    std::printf("%-24s %6s %10s   %s\n", "frame", "rays", "ms",
+                reinterpret_cast<const char *>(stage.gl.GetString(GL_RENDERER)));
+    frame(stage, "cast, no shadow", 0, "max(n.y, 0.0)");
+    frame(stage, "hard shadow", 1, sun + "0.0, 1, 0.0)");
+    frame(stage, "soft shadow", 8, sun + "0.08, 8, turn)");
+    frame(stage, "ambient occlusion", 8, sky + "8, turn)");
+    gtx_rays_destroy(stage.renderer, stage.rays);
+    gtx_model_destroy(stage.renderer, stage.model);
+    gtx_renderer_destroy(stage.renderer);
+    gtx_framebuffer_destroy(&stage.gl, &stage.framebuffer);
+    gtx_offscreen_destroy(stage.context);
+}
+
 int main(int argc, char **argv)
 {
     size_t count = 500000;
@@ -108,6 +214,7 @@ int main(int argc, char **argv)
     for (int inside = 0; inside < 2; ++inside)
         for (uint32_t flags : {uint32_t(0), uint32_t(GTX_RAY_ANY)})
             measure(caster, info, count, inside, flags);
+    measure_frames(asset, info);
     gtx_caster_destroy(caster);
     gtx_close(asset);
 }
