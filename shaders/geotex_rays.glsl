@@ -1,14 +1,15 @@
 /* Rays among all patches of all instances of a set: shadows and ambient occlusion, in any shader of
- * geotex or of the engine. Needs geotex_dialect.glsl and geotex_sheet.glsl before it; gtx_shading_create
- * puts it before an engine's own main, gtx_rays_bind gives a program its textures. Without them
- * nothing occludes.
+ * geotex or of the engine. Needs geotex_dialect.glsl and geotex_sheet.glsl before it;
+ * gtx_shading_create puts it before an engine's own main, gtx_rays_bind gives a program its
+ * textures. Without them nothing occludes.
  *
  *   bool gtx_occluded(origin, direction, t_max)              any crossing at 0 <= t <= t_max
  *   float gtx_sunlight(point, normal, light, spread, rays, turn)
  *   float gtx_skylight(point, normal, reach, rays, turn)
  *
  * in world space. Crossings count as for the picture: from above, and from below where a patch is
- * two-sided. The walk needs no stack: nodes lie depth first, each with the one behind its subtree. */
+ * two-sided. The walk needs no stack: nodes lie depth first, each with the one behind its
+ * subtree. */
 GTX_SAMPLER(9, highp sampler2D) gtx_ray_nodes;         /* rows of 1024 texels, counted through */
 GTX_SAMPLER(10, highp usampler2DArray) gtx_ray_cells;  /* as gtx_cells, layers of 1024 rows */
 GTX_SAMPLER(11, highp sampler2DArray) gtx_ray_trim;
@@ -110,7 +111,7 @@ vec3 gtx_ray_inverse(vec3 d)
     return 1.0 / mix(d, vec3(1e-30), lessThan(abs(d), vec3(1e-30)));
 }
 
-/* Any crossing at 0 <= t <= t_max, in lengths of `direction`, of which no component is beyond 1e15. */
+/* Any crossing at 0 <= t <= t_max, in lengths of `direction`; t_max is at most 1e15. */
 bool gtx_occluded(vec3 origin, vec3 direction, float t_max)
 {
     vec3 o = origin, d = direction, inverse = gtx_ray_inverse(d);
@@ -119,7 +120,7 @@ bool gtx_occluded(vec3 origin, vec3 direction, float t_max)
     int sheets = 0;
     bool found = false, more = true;
     while (more && !found) {
-        /* The inner loop finds the next leaf and does no more, as in gtx_cast (Aila and Laine 2009). */
+        /* The inner loop finds the next leaf and does no more (Aila and Laine 2009). */
         vec4 low = vec4(0.0), high = vec4(0.0);
         bool leaf = false;
         while (node < end && !leaf) {
@@ -160,9 +161,9 @@ bool gtx_occluded(vec3 origin, vec3 direction, float t_max)
 }
 
 /* How far off the surface rays begin: two height steps of the coarsest patch, or the 32nd part of a
- * texel if that is more. A sheet rounds the surface that it stands for by half a step up or down, and
- * its cells cut a little into what is round; from there no ray that leaves a surface without hollows
- * meets them, however grazing. Nothing else is left out. */
+ * texel if that is more. A sheet rounds the surface that it stands for by half a step up or down,
+ * and its cells cut a little into what is round; from there no ray that leaves a surface without
+ * hollows meets them, however grazing. Nothing else is left out. */
 float gtx_ray_offset()
 {
     return gtx_ray_texel(0).y;
@@ -184,15 +185,15 @@ vec2 gtx_ray_disc(int i, int rays, float turn)
     return sqrt((float(i) + 0.5) / float(rays)) * vec2(cos(angle), sin(angle));
 }
 
-/* A `turn` that differs from pixel to pixel and stays from frame to frame: interleaved gradient noise
- * (Jimenez 2014). */
+/* A `turn` that differs from pixel to pixel and stays from frame to frame: interleaved gradient
+ * noise (Jimenez 2014). */
 float gtx_ray_turn(vec2 pixel)
 {
     return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715))));
 }
 
-/* The share of a pattern of rays that end nowhere within `reach`: around `axis`, on a disc across it
- * or, a dome, on the half sphere above it. */
+/* The share of a pattern of rays that end nowhere within `reach`: around `axis`, on a disc across
+ * it or, a dome, on the half sphere above it. */
 float gtx_ray_share(vec3 point, vec3 normal, vec3 axis, float spread, bool dome, float reach,
                     int rays, float turn)
 {
@@ -209,8 +210,8 @@ float gtx_ray_share(vec3 point, vec3 normal, vec3 axis, float spread, bool dome,
 }
 
 /* The share of a disc of light far away that is seen, without the cosine: `light` points to its
- * middle, `spread` is the tangent of half the angle that it spans, 0 for a hard shadow (one ray will
- * do). All vectors unit. */
+ * middle, `spread` is the tangent of half the angle that it spans, 0 for a hard shadow, for which
+ * one ray will do. All vectors unit. */
 float gtx_sunlight(vec3 point, vec3 normal, vec3 light, float spread, int rays, float turn)
 {
     return gtx_ray_share(point, normal, light, rays == 1 ? 0.0 : spread, false, 1e15, rays, turn);

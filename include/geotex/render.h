@@ -121,8 +121,9 @@ typedef enum gtx_pass {
 typedef struct gtx_shading gtx_shading;
 
 /* `text` is GLSL that follows geotex_fragment.glsl, which says what there is to call; for shells it
- * follows geotex_shell_fragment.glsl, with GTX_SHELL defined. geotex_material.glsl comes before, and geotex_rays.glsl, whose
- * rays gtx_rays_bind provides. It has no #version, its samplers begin at unit 8, and it is not kept. The shading is of the renderer's allocator, freed by
+ * follows geotex_shell_fragment.glsl, with GTX_SHELL defined. geotex_material.glsl comes before, and
+ * geotex_rays.glsl, whose rays gtx_rays_bind provides. It has no #version, its samplers begin at
+ * unit 8, and it is not kept. The shading is of the renderer's allocator, freed by
  * gtx_shading_destroy. Errors: ARGUMENT, MEMORY, SHADER (the renderer's log says why). */
 GTX_API gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
                                       gtx_error *error);

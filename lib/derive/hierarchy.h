@@ -1,5 +1,5 @@
-/* A bounding volume hierarchy, for casting on the CPU and in shaders, and the boxes that it is built
- * over: blocks of a patch's cells. */
+/* A bounding volume hierarchy, for casting on the CPU and in shaders, and the boxes that it is
+ * built over: blocks of a patch's cells. */
 #ifndef GTX_DERIVE_HIERARCHY_H
 #define GTX_DERIVE_HIERARCHY_H
 

@@ -45,7 +45,7 @@ typedef struct staging {
     float (*nodes)[4];
     /* Of the asset at hand. */
     gtx_box *boxes;
-    float (*blocks)[2];       /* what the leaves of their nodes say: the block in its sheet, the sheet */
+    float (*blocks)[2];       /* what the leaves of their nodes say: block in the sheet, sheet */
     size_t box_count;
 } staging;
 

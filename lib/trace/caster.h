@@ -1,4 +1,4 @@
-/* The inside of a gtx_caster: sheets (one a patch), and a hierarchy over the blocks of their cells. */
+/* The inside of a gtx_caster: sheets (one a patch), and a hierarchy over blocks of their cells. */
 #ifndef GTX_TRACE_CASTER_H
 #define GTX_TRACE_CASTER_H
 
@@ -81,16 +81,16 @@ void gtx_sheet_normal(const gtx_sheet *sheet, double x, double y, float out[3]);
 void gtx_sheet_facet(const gtx_sheet *sheet, const gtx_cell *cell, double x, double y,
                      float out[3]);
 
-/* walk.c and exhaustive.c: the first accepted crossing of one block or sheet with t_min <= t < best->t
- * replaces *best (t = best->t too, when the sheet's index is lower). `both` accepts crossings from
- * below. `line` is the ray in the sheet's grid space. */
+/* walk.c and exhaustive.c: the first accepted crossing of one block or sheet, with
+ * t_min <= t < best->t (t = best->t too, when the sheet's index is lower), replaces *best. `both`
+ * accepts crossings from below. `line` is the ray in the sheet's grid space. */
 void gtx_walk_block(const gtx_caster *caster, const gtx_block *block, const gtx_line *line,
                     bool both, gtx_crossing *best);
 void gtx_search_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *ray, bool both,
                       gtx_crossing *best);
 
-/* caster.c: the nearest crossing of a ray, or any by GTX_RAY_ANY; false for rays that hit nothing by
- * rule. What is known of it then, in object space. */
+/* caster.c: a ray in double, false when it hits nothing by rule; its nearest crossing, or any by
+ * GTX_RAY_ANY; and what is known of that, in object space. */
 bool gtx_read_ray(const gtx_ray *ray, gtx_line *out);
 gtx_crossing gtx_cast_line(const gtx_caster *caster, const gtx_line *line, uint32_t flags);
 gtx_hit gtx_describe(const gtx_caster *caster, const gtx_crossing *crossing);

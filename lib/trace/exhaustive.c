@@ -2,8 +2,6 @@
  * only what defines the surface: the cell's corners and the trim. */
 #include "trace/caster.h"
 
-#include <math.h>
-
 typedef struct interval {
     double t0, t1;
 } interval;
@@ -76,6 +74,21 @@ static void search_cell(const gtx_caster *caster, uint32_t index, const gtx_line
     }
 }
 
+/* The codes at the corners of a cell, and a code more on both sides. */
+static void code_range(const gtx_sheet *sheet, uint32_t i, uint32_t j, double *low, double *high)
+{
+    const uint16_t *row = sheet->code + (size_t)j * sheet->nodes_x + i;
+    const uint16_t *next = row + sheet->nodes_x;
+    const uint16_t corner[4] = {row[0], row[1], next[0], next[1]};
+    uint16_t least = corner[0], most = corner[0];
+    for (int k = 1; k < 4; ++k) {
+        least = corner[k] < least ? corner[k] : least;
+        most = corner[k] > most ? corner[k] : most;
+    }
+    *low = least - 1.0;
+    *high = most + 1.0;
+}
+
 void gtx_search_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *ray, bool both,
                       gtx_crossing *best)
 {
@@ -88,19 +101,14 @@ void gtx_search_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *
         interval row = {ray->t_min, best->t};
         row = cut(row, &line, 1, inverse[1], first.y0, first.y1);
         for (uint32_t i = 0; row.t0 <= row.t1 && i + 1 < s->nodes_x; ++i) {
+            double low, high;
             if (!gtx_sheet_solid(caster, s, i, j))
                 continue;
-            gtx_cell cell = gtx_sheet_cell(s, i, j);
-            const double corner[4] = {cell.c, cell.c + cell.cx, cell.c + cell.cy,
-                                      cell.c + cell.cx + cell.cy + cell.cxy};
-            double low = corner[0], high = corner[0];
-            for (int k = 1; k < 4; ++k) {
-                low = fmin(low, corner[k]);
-                high = fmax(high, corner[k]);
-            }
-            interval inside = cut(row, &line, 2, inverse[2], low - 1, high + 1);
+            code_range(s, i, j, &low, &high);
+            interval inside = cut(row, &line, 2, inverse[2], low, high);
             if (inside.t0 > inside.t1)
                 continue;
+            gtx_cell cell = gtx_sheet_cell(s, i, j);
             inside = cut(inside, &line, 0, inverse[0], cell.x0, cell.x1);
             if (inside.t0 <= inside.t1)
                 search_cell(caster, sheet, &line, &cell, both || s->two_sided, inside, best);

@@ -78,8 +78,7 @@ static inline float gtx_slabs_limit(const gtx_slabs *s, double t)
 }
 
 /* Goes on to the leaf that the ray enters next, no later than `limit`: the nearer child first, the
- * other on the stack. NULL when there is none. `at` is where to begin; the walk goes on after a leaf
- * with at->t = INFINITY. */
+ * other on the stack. NULL when there is none. `at` begins at the root. */
 static inline const gtx_node *gtx_next_leaf(const gtx_node *nodes, const gtx_slabs *s, float limit,
                                             gtx_subtree *at, gtx_subtree *stack, int *size)
 {

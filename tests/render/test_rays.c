@@ -1,5 +1,5 @@
-/* Rays in shaders: bad arguments, the same answers as rays on the CPU, in a shading and in a program
- * of the engine's own, by either kind of heights, as instances move; and no acne. */
+/* Rays in shaders: bad arguments, the same answers as rays on the CPU, in a shading and in a
+ * program of the engine's own, by either kind of heights, as instances move; and no acne. */
 #include "host/program.h"
 #include "host/target.h"
 #include "stage.h"
@@ -349,6 +349,7 @@ static void a_floor_of_polygons(void **state)
     print_message("# %ld of %d dark, %ld differ\n", dark, STAGE_PIXELS, differ);
     assert_true(dark > STAGE_PIXELS / 20 && dark < STAGE_PIXELS / 2);
     assert_true(differ <= 10);
+    s->gl.DeleteProgram(program);
     gtx_scene_destroy(known);
     gtx_rays_bind(s->renderer, NULL, 0);
     scene_close(s, &c);

@@ -1,5 +1,5 @@
-/* Random rays into a cooked scan against Embree on the mesh that it was cooked from: outside a band of
- * one texel they hit the same place, or both nothing. Skipped without models or Embree. */
+/* Random rays into a cooked scan against Embree on the mesh that it was cooked from: outside a band
+ * of one texel they hit the same place, or both nothing. Skipped without models or Embree. */
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -138,8 +138,8 @@ static bool in_band(const Target &target, const Vec3d &from, const Vec3d &to, fl
     return false;
 }
 
-/* `allowed` may differ beyond the band: cells may bridge what is up to 12 texels apart in depth, as at
- * the folds of a scan, and rays almost along such a cell see it where the mesh has nothing. */
+/* `allowed` may differ beyond the band: cells may bridge what is up to 12 texels apart in depth, as
+ * at the folds of a scan, and rays almost along such a cell see it where the mesh has nothing. */
 static void chords_agree(const char *model, size_t count, size_t allowed)
 {
     const char *models = std::getenv("GEOTEX_MODELS");

@@ -1,5 +1,5 @@
-/* Scenes: bad ones, instances against single casters, shadows and occlusion against what is known of
- * spheres and planes, and what stands on a surface. */
+/* Scenes: bad ones, instances against single casters, shadows and occlusion against what is known
+ * of spheres and planes, and what stands on a surface. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -237,7 +237,7 @@ static void gentle_slope(const gtx_patch *patch, double x, double y, const void 
     out->normal[2] = 1;
 }
 
-/* The stairs that 8 bits make of a gentle slope are no hollows: without the offset they would be. */
+/* The stairs that 8 bits make of a gentle slope are no hollows, as they would be without offset. */
 static void no_acne_on_stairs(void **state)
 {
     (void)state;
@@ -286,8 +286,8 @@ static gtx_scene *ball_over_plane(gtx_caster *ball, gtx_caster *plane, float h)
     return scene_of(instances, 2);
 }
 
-/* From under a sphere of radius r whose centre is h away the share of the sky that is hidden, by the
- * cosine, is (r / h)^2; of a disc of light as wide as the sphere's shadow is known too. */
+/* From under a sphere of radius r whose centre is h away, the share of the sky that is hidden, by
+ * the cosine, is (r / h)^2; that of a disc of light is known too. */
 static void light_past_a_sphere(void **state)
 {
     (void)state;
