@@ -144,7 +144,7 @@ int main(int argc, char **argv)
 {
     world w = {.path = NULL};
     gtx_show show = {.title = "implicit", .width = 1280, .height = 720, .load = load, .draw = draw,
-                     .user = &w, .camera = {.target = {0.6f, 0.75f, 0}, .radius = 2.5f,
+                     .user = &w, .camera = {.target = {0.75f, 0.72f, 0}, .radius = 2.6f,
                      .azimuth = 12, .elevation = 22, .distance = 2, .field = 36}};
     return gtx_sample_main(&show, argc, argv, &w.path);
 }

@@ -138,6 +138,47 @@ static bool in_band(const Target &target, const Vec3d &from, const Vec3d &to, fl
     return false;
 }
 
+/* Shadow rays from where chords hit, to suns low over the horizon of the normal there and of the
+ * mesh: were sheets to shade themselves, more points would be dark than by the mesh. */
+static void shadows_agree(const Target &target, const Vec3d &centre, double radius, Random &random)
+{
+    gtx_scene_instance one = {target.caster, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
+    gtx_scene *scene;
+    assert_int_equal(gtx_scene_create(&one, 1, nullptr, &scene, nullptr), GTX_OK);
+    const double offset = gtx_scene_offset(scene);
+    size_t points = 0, dark = 0, dark_alone = 0, lit_alone = 0;
+    while (points < 50000) {
+        const Vec3d from = centre + on_sphere(random) * radius;
+        const gtx_ray ray = ray_between(from, centre + on_sphere(random) * radius);
+        gtx_hit hit;
+        gtx_raycast(target.caster, &ray, &hit, 1, 0);
+        if (hit.patch == UINT32_MAX || !alike(target, hit.t, embree(target, ray)))
+            continue;
+        const Vec3d n(hit.normal[0], hit.normal[1], hit.normal[2]);
+        const Vec3d way(ray.direction[0], ray.direction[1], ray.direction[2]);
+        const Vec3d point = from + way * double(hit.t);
+        const Vec3d sun = normalize(cross(n, on_sphere(random)) + n * 0.1);
+        gtx_lit_point lit = {{float(point.x), float(point.y), float(point.z)},
+                             {hit.normal[0], hit.normal[1], hit.normal[2]}, 0};
+        gtx_light_desc light = {};
+        light.direction[0] = float(sun.x);
+        light.direction[1] = float(sun.y);
+        light.direction[2] = float(sun.z);
+        float share;
+        gtx_scene_light(scene, &light, &lit, &share, 1);
+        const Vec3d start = point + n * offset;
+        const bool shaded = !std::isinf(embree(target, ray_between(start, start + sun)));
+        ++points;
+        dark += shaded;
+        dark_alone += !shaded && share == 0;
+        lit_alone += shaded && share > 0;
+    }
+    gtx_scene_destroy(scene);
+    print_message("# of %zu points in grazing light %zu are dark by the mesh; %zu only by the asset, "
+                  "%zu only by the mesh\n", points, dark, dark_alone, lit_alone);
+    assert_true(dark_alone + lit_alone < points / 200);
+}
+
 /* `allowed` may differ beyond the band: cells may bridge what is up to 12 texels apart in depth, as
  * at the folds of a scan, and rays almost along such a cell see it where the mesh has nothing. */
 static void chords_agree(const char *model, size_t count, size_t allowed)
@@ -176,6 +217,7 @@ static void chords_agree(const char *model, size_t count, size_t allowed)
     print_message("# %s: %zu rays, %zu hit, %zu within the band of a texel (%.2g), outside it %zu "
                   "differ in hit or miss and %zu in place\n", model, count, hits, band,
                   target.texel, wrong, other);
+    shadows_agree(target, centre, radius, random);
     rtcReleaseScene(target.scene);
     rtcReleaseDevice(target.device);
     gtx_caster_destroy(target.caster);
