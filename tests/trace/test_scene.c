@@ -90,6 +90,50 @@ static void bad_scenes_are_refused(void **state)
     gtx_close(asset);
 }
 
+typedef struct counter {
+    long until_failure, bytes;
+} counter;
+
+static void *counted_alloc(size_t size, void *user)
+{
+    counter *c = user;
+    if (c->until_failure-- == 0)
+        return NULL;
+    c->bytes += (long)size;
+    return malloc(size);
+}
+
+static void counted_free(void *memory, size_t size, void *user)
+{
+    ((counter *)user)->bytes -= (long)size;
+    free(memory);
+}
+
+static void memory_may_run_out(void **state)
+{
+    (void)state;
+    gtx_asset *asset = fixture_flat(0.5, 8);
+    gtx_caster *caster = caster_of(asset);
+    const gtx_scene_instance two[2] = {placed(caster, identity), placed(caster, identity)};
+    for (long n = 0;; ++n) {
+        counter c = {n, 0};
+        const gtx_allocator hooks = {counted_alloc, counted_free, &c};
+        gtx_scene *scene = NULL;
+        const gtx_result result = gtx_scene_create(two, 2, &hooks, &scene, NULL);
+        c.until_failure = -1;
+        gtx_scene_destroy(scene);
+        assert_int_equal(c.bytes, 0);
+        if (!result) {
+            assert_true(n > 3);
+            break;
+        }
+        assert_int_equal(result, GTX_ERROR_MEMORY);
+        assert_null(scene);
+    }
+    gtx_caster_destroy(caster);
+    gtx_close(asset);
+}
+
 /* Turned, mirrored, scaled unevenly, and far away. */
 static void random_transform(uint64_t *seed, float out[16])
 {
@@ -389,6 +433,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_scenes_are_refused),
+        cmocka_unit_test(memory_may_run_out),
         cmocka_unit_test(a_crowd_agrees_with_each_alone),
         cmocka_unit_test(no_acne_on_a_sphere),
         cmocka_unit_test(no_acne_on_stairs),
