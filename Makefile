@@ -217,7 +217,7 @@ needs_corpus := base
 needs_samples := $(needs_image)
 needs_threads := $(needs_cook)
 extra_needs_render  := trace host image
-extra_needs_trace   := image mesh chart bake measure cook
+extra_needs_trace   := image mesh grid chart bake measure cook
 extra_needs_bake    := derive trace host
 extra_needs_cook    := host
 extra_needs_chart   :=
@@ -379,7 +379,7 @@ clean: ## remove what was built
 	rm -rf $(build)
 
 .PHONY: all install uninstall dist build-tests run-tests test check demo run-demo bench run-bench \
-        bench-rays run-bench-rays paper-tables run-paper-tables paper-figures run-paper-figures \\
+        bench-rays run-bench-rays paper-tables run-paper-tables paper-figures run-paper-figures \
         deps help clean
 .SECONDARY:
 .DELETE_ON_ERROR:
