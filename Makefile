@@ -218,10 +218,13 @@ needs_corpus := base
 needs_samples := $(needs_image)
 needs_threads := $(needs_cook)
 extra_needs_render  := trace edit host image
+extra_needs_trace   := image mesh grid chart bake measure cook
 extra_needs_bake    := derive trace host
 extra_needs_cook    := host
 extra_needs_chart   :=
 extra_needs_measure := grid chart bake cook
+# Embree ships no pkg-config file; its test asks for the header in the same way.
+libs_test_embree = $(shell printf '\043include <embree3/rtcore.h>' | $(CXX) -E -x c++ - >/dev/null 2>&1 && echo -lembree3)
 # An archive: a test takes from it only what it asks for, and so needs no room but its own.
 common_tests := $(out)/tests/common.a
 $(common_tests): $(patsubst %,$(out)/%.o,$(basename $(wildcard tests/common/*.c)))
@@ -231,7 +234,7 @@ define test_rule
 $(out)/$(basename $(1)): $(out)/$(basename $(1)).o $(common_tests) \
     $(call objects_of,$(call test_needs,$(call test_room,$(1))))
 	$$(say) LINK $$@
-	$$(Q)$$(CXX) $$(flags) -o $$@ $$^ $$(call libs_of,$$(call test_needs,$(call test_room,$(1)))) $$(call pkg,--libs,cmocka)
+	$$(Q)$$(CXX) $$(flags) -o $$@ $$^ $$(call libs_of,$$(call test_needs,$(call test_room,$(1)))) $$(call pkg,--libs,cmocka) $$(libs_$(notdir $(basename $(1))))
 endef
 $(foreach t,$(test_sources),$(eval $(call test_rule,$(t))))
 $(out)/tests/%: cflags += -Itests -D_XOPEN_SOURCE=700 $(call pkg,--cflags,cmocka)
@@ -296,6 +299,17 @@ run-bench:
 	@$(build)/gtx cook $(MODEL) --shell-levels 5 -o $(build)/demo/bench.gtx
 	@$(build)/gtx bench $(build)/demo/bench.gtx $(MODEL) $(BENCH)
 
+bench-rays: ## rays a second into MODEL (default: the sculpt), and what shadows by ray cost a frame
+	@$(MAKE) --no-print-directory deps
+	@$(MAKE) --no-print-directory -j$$(nproc) all $(out)/tests/bench/rays
+	@$(MAKE) --no-print-directory run-bench-rays
+
+run-bench-rays:
+	@mkdir -p $(build)/demo
+	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
+	@$(build)/gtx cook $(MODEL) -o $(build)/demo/rays.gtx
+	@$(out)/tests/bench/rays $(build)/demo/rays.gtx
+
 # Models and their charts: the paper's bunny where it is, and MODEL (default: the sculpt without it).
 CHARTS ?= 0
 bunny := $(wildcard $(GEOTEX_MODELS)/scans/bunny.ply)
@@ -338,12 +352,16 @@ $(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o $(out)/tests/
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh)
 
+$(out)/tests/bench/rays: $(out)/tests/bench/rays.o $(call objects_of,host image) $(lib_core)
+	$(say) LINK $@
+	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset host image)
+
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev nlohmann-json3-dev \
             libmeshoptimizer-dev \
             libglfw3-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri \
             libopenimageio-dev libzstd-dev zlib1g-dev libcmocka-dev glslang-tools \
-            ninja-build cmake xvfb
+            ninja-build cmake xvfb libembree-dev
 
 deps: ## install the Debian packages that are missing (apt-get, with sudo when not root)
 	@missing=; for p in $(packages); do \
@@ -362,7 +380,8 @@ clean: ## remove what was built
 	rm -rf $(build)
 
 .PHONY: all install uninstall dist build-tests run-tests test check demo run-demo bench run-bench \
-        paper-tables run-paper-tables paper-figures run-paper-figures deps help clean
+        bench-rays run-bench-rays paper-tables run-paper-tables paper-figures run-paper-figures \
+        deps help clean
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(shell [ -d $(out) ] && find $(out) -name '*.d')

@@ -24,6 +24,7 @@ typedef struct recipe {
 #define TWO_SIDED "#define GTX_TWO_SIDED\n"
 #define COLORS "#define GTX_COLORS\n"
 #define SHELL "geotex_shell_fragment.glsl"
+#define RAYS "geotex_rays.glsl"
 
 static const recipe recipes[PROGRAM_COUNT] = {
     [PROGRAM_CAST] = {PROXY, PLAIN, {CAST, "geotex_forward.frag"}, "geotex cast"},
@@ -61,10 +62,10 @@ static const recipe recipes[PROGRAM_COUNT] = {
     [PROGRAM_SHELL_COLOR_TWO_SIDED] = {POLYGONS, COLORS TWO_SIDED, {SHELL, "geotex_shell.frag"},
                                        "geotex shell, colors, two-sided"},
 };
-static const recipe own_cast = {PROXY, MATERIALS, {"geotex_material.glsl", CAST},
+static const recipe own_cast = {PROXY, MATERIALS, {"geotex_material.glsl", CAST, RAYS},
                                 "geotex cast, own"};
-static const recipe own_shell = {POLYGONS, MATERIALS, {"geotex_material.glsl", SHELL},
-                                 "geotex shell, own"};
+static const recipe own_shell = {POLYGONS, MATERIALS "#define GTX_SHELL\n",
+                                 {"geotex_material.glsl", SHELL, RAYS}, "geotex shell, own"};
 
 const char *gtx_shader_source(const char *name)
 {
@@ -171,6 +172,7 @@ static void locate(const gtx_gl *gl, gtx_program *program)
     gl->UseProgram(program->object);
     for (gl_int i = 0; i < UNIT_COUNT; ++i)
         gl->Uniform1i(gl->GetUniformLocation(program->object, samplers[i]), i);
+    gtx_rays_locate(gl, program->object);
     gl->UseProgram(0);
 }
 

@@ -12,7 +12,8 @@
 enum {
     UNIT_CELLS, UNIT_TRIM, UNIT_NORMALS, UNIT_COLORS, UNIT_PATCHES, UNIT_MATERIALS, UNIT_EMISSIONS,
     UNIT_COUNT,
-    UNIT_CLEARED = 8 /* units that render.h promises to leave empty */
+    UNIT_CLEARED = 8, /* units that render.h promises to leave empty */
+    UNIT_RAYS = 13    /* the first of three, which gtx_rays_bind binds */
 };
 
 /* Each method by pass; the forward one without and with materials, for Lambert alone costs less. */
@@ -116,6 +117,9 @@ void gtx_renderer_free_scratch(gtx_renderer *renderer);
 gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error);
 gtx_result gtx_program_need(gtx_renderer *renderer, int program, gtx_error *error);
 void gtx_programs_destroy(gtx_renderer *renderer);
+
+/* rays.c: tells the program in use where gtx_rays_bind binds. */
+void gtx_rays_locate(const gtx_gl *gl, gl_uint program);
 
 /* model.c: gives the CPU's copy of the maps and proxies back. */
 void gtx_model_free_staging(gtx_model *model);

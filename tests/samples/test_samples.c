@@ -136,7 +136,8 @@ int main(void)
 #define MISUSE(name) cmocka_unit_test_prestate(misuse_is_one_line, name)
     static char smallest[] = "smallest_engine", instances[] = "instances", picking[] = "picking",
                 mixed[] = "mixed_scene", gbuffer[] = "engine_gbuffer", shadows[] = "shadows",
-                filters[] = "filters", cellular[] = "cellular", footprints[] = "footprints";
+                rays[] = "ray_shadows", implicit[] = "implicit", filters[] = "filters",
+                cellular[] = "cellular", footprints[] = "footprints";
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cooking_says_how_far_it_is),
         cmocka_unit_test(an_interrupt_leaves_nothing_behind),
@@ -147,6 +148,8 @@ int main(void)
         PICTURE(mixed),
         PICTURE(gbuffer),
         PICTURE(shadows),
+        PICTURE(rays),
+        PICTURE(implicit),
         cmocka_unit_test(horizons_are_made_and_drawn),
         PICTURE(filters),
         PICTURE(cellular),
