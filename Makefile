@@ -327,7 +327,7 @@ run-paper-tables:
 
 # A figure is a program tests/bench/NAME.cpp that measures, prints, and writes NAME.json and NAME.svg;
 # what it takes besides the folder is arguments_NAME.
-figures := figure7 figure9
+figures := figure2 figure7 figure9
 reek    := $(wildcard $(GEOTEX_MODELS)/heightfields/reek_1588x1188)
 arguments_figure7 = $(MODEL)
 arguments_figure9 := $(or $(reek),own)

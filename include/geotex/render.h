@@ -168,6 +168,8 @@ typedef struct gtx_view {
     uint32_t level;                   /* 0 = by the error, n = level n - 1 or the coarsest there is */
     gtx_pass pass;
     const gtx_shading *shading;       /* in place of the forward pass's; not with PAPER */
+    uint32_t search_steps[2];         /* of PAPER: linear (1..1000), then binary (0..100); both 0 =
+                                         balanced by how slanted the view is */
     uint32_t reserved[2];
 } gtx_view;
 

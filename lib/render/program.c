@@ -167,6 +167,7 @@ static void locate(const gtx_gl *gl, gtx_program *program)
     program->depth = gl->GetUniformLocation(program->object, "gtx_depth");
     program->light = gl->GetUniformLocation(program->object, "gtx_light");
     program->detail = gl->GetUniformLocation(program->object, "gtx_detail");
+    program->search = gl->GetUniformLocation(program->object, "gtx_search");
     program->maps = gl->GetUniformLocation(program->object, "gtx_maps");
     program->shell = gl->GetUniformLocation(program->object, "gtx_shell");
     gl->UseProgram(program->object);

@@ -28,7 +28,7 @@ enum {
 
 typedef struct gtx_program {
     gl_uint object;
-    gl_int clip_from_world, depth, light, detail, maps, shell;
+    gl_int clip_from_world, depth, light, detail, search, maps, shell;
 } gtx_program;
 
 struct gtx_shading {
@@ -172,7 +172,7 @@ gtx_result gtx_check_gl_memory(const gtx_gl *gl, gtx_error *error);
 typedef struct gtx_frame {
     float clip_from_world[16];
     double eye[4];            /* world; the ray through a point p has the direction p * w - xyz */
-    float depth[4], light[4], detail[4]; /* as geotex_view.glsl has them */
+    float depth[4], light[4], detail[4], search[4]; /* as geotex_view.glsl has them */
     bool reversed, mirrored;  /* mirrored: the view turns clockwise into counter-clockwise */
 } gtx_frame;
 
