@@ -81,7 +81,7 @@ static void frame(gtx_camera *camera, const gtx_asset *asset)
     camera->radius = sqrtf(square);
     camera->azimuth = 30;
     camera->elevation = 20;
-    camera->distance = 1.7f;
+    camera->distance = 1.9f;
 }
 
 static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, gtx_error *error)

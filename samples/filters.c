@@ -52,7 +52,7 @@ static void frame(gtx_camera *camera, const gtx_asset *asset)
     camera->radius = sqrtf(square);
     camera->azimuth = 30;
     camera->elevation = 15;
-    camera->distance = 2.1f;
+    camera->distance = 2.5f;
 }
 
 static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, gtx_error *error)

@@ -11,7 +11,7 @@ static const char patch_main[] =
     "#else\n"
     "uniform vec4 holes[4];\n" /* centre and radius */
     "layout(location = 0) out vec4 color;\n"
-    "vec3 origin, ray;\n" /* world: gtx_point, and the ray, whose t is that of grid space */
+    "vec3 origin, ray;\n" /* world; t is that of grid space */
     "float leave(float t) {\n" /* where the ray is outside the spheres again */
     "    float out_t = t;\n"
     "    for (int i = 0; i < 12; ++i) {\n"
@@ -24,8 +24,9 @@ static const char patch_main[] =
     "void main() {\n"
     "    gtx_surface s;\n"
     "    if (!gtx_find(s)) discard;\n"
-    "    ray = gtx_world_linear() * gtx_object_ray(s);\n"
-    "    origin = gtx_world_point(s) - s.hit.t * ray;\n"
+    "    ray = gtx_world * gtx_depth.w - gtx_world_eye;\n"
+    "    origin = gtx_world;\n"
+    "    s.sheet.reach = 1e30;\n" /* past what the hull tells of */
     "    vec3 n = vec3(0.0), base = vec3(0.60, 0.16, 0.10), point;\n"
     "    for (int i = 0; i < 8 && n == vec3(0.0); ++i) {\n"
     "        float t = leave(s.hit.t), t0 = s.hit.t + 1e-5, t1 = 1e30;\n"

@@ -3,8 +3,9 @@
  *
  *   figure2 OUT_FOLDER
  *
- * Writes a picture of each beside the curves. One patch of 256 x 256 texels. A ray is wrong where one way hits and the exact cast does not, or
- * where they differ by more than a height step and an eighth of a texel. */
+ * Writes a picture of each beside the curves. One patch of 256 x 256 texels. A ray is wrong where one
+ * way hits and the exact cast does not, or where they differ by more than a height step and an
+ * eighth of a texel. */
 #include "bench/figure.hpp"
 
 #include "host/camera.h"
