@@ -183,13 +183,34 @@ static PatchMaps encode_sheet(const Job &job, const Chart &chart, const Sheet &s
     return maps;
 }
 
+/* A few cells less, or more, along a side that rounding to a multiple of `grain` would fill up with
+ * empty texels; between two cuts texels stay those of the neighbours. */
+static bool refit(const Sheet &sheet, int grain, Chart &chart)
+{
+    constexpr int MOST_LESS = 3;
+    const Crop crop = crop_support(sheet.flat.grid, sheet.support, 1);
+    bool changed = false;
+    for (int axis = 0; axis < 2; ++axis) {
+        const int over = (axis ? crop.h : crop.w) % grain, cells = int(chart.cells[axis]);
+        const bool ends = std::isinf(chart.clip_low[axis]) || std::isinf(chart.clip_high[axis]);
+        if (!ends || !over || cells <= grain)
+            continue;
+        chart.cells[axis] = unsigned(over <= MOST_LESS ? cells - over : cells + grain - over);
+        changed = true;
+    }
+    return changed;
+}
+
 /* A chart whose relief is finer than the model's pitch gets a finer one. */
 PatchMaps bake_chart(const Job &job, const Chart &chart)
 {
     constexpr double ALLOWED = 0.01, FINER = 1.4;
     Sheet sheet = lay_sheet(job, chart, 1);
+    Chart fitted = chart;
     if (sheet.missed > ALLOWED)
         sheet = lay_sheet(job, chart, FINER);
+    else if (refit(sheet, 1 << (job.options.mips - 1), fitted))
+        sheet = lay_sheet(job, fitted, 1);
     return encode_sheet(job, chart, sheet);
 }
 

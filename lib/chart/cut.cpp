@@ -27,8 +27,8 @@ struct Piece {
 
 class Harvest {
 public:
-    Harvest(const Surface &surface, const Frame &frame, double pitch, const CutTree &tree)
-        : surface_(surface), frame_(frame), pitch_(pitch), tree_(tree)
+    Harvest(const Surface &surface, const Frame &frame, const CutPlan &plan, const CutTree &tree)
+        : surface_(surface), frame_(frame), plan_(plan), pitch_(plan.pitch), tree_(tree)
     {
     }
 
@@ -58,11 +58,13 @@ private:
     void descend(const CutNode &node, std::vector<Piece> pieces);
     void make_patch(const CutNode &node, const std::vector<Piece> &pieces);
     void lay_frame(const CutNode &node, Chart &chart) const;
+    unsigned spare_cells(const CutNode &node, int axis) const;
     void clip(const CutNode &node, Chart &chart) const;
 
     const Surface &surface_;
     const Frame &frame_;
-    double pitch_;
+    const CutPlan &plan_;
+    const double pitch_;
     const CutTree &tree_;
     std::vector<Chart> out_;
 };
@@ -94,6 +96,20 @@ void Harvest::descend(const CutNode &node, std::vector<Piece> pieces)
         descend(tree_.nodes[size_t(node.child[side])], std::move(inside[side]));
 }
 
+/* Texels that rounding would leave empty where the chart itself ends: they resolve it finer. Between
+ * two cuts texels stay those of the neighbours. */
+unsigned Harvest::spare_cells(const CutNode &node, int axis) const
+{
+    const size_t low = size_t(2 * axis);
+    const bool ends[2] = {!node.cuts[low] || node.tight.low[axis] > node.region.low[axis],
+                          !node.cuts[low + 1] || node.tight.high[axis] < node.region.high[axis]};
+    if (!ends[0] && !ends[1])
+        return 0;
+    const unsigned side = unsigned(node.tight.side(axis)) + plan_.overlap[ends[0]] +
+                          plan_.overlap[ends[1]];
+    return (plan_.grain - side % plan_.grain) % plan_.grain;
+}
+
 void Harvest::lay_frame(const CutNode &node, Chart &chart) const
 {
     const Relief &relief = tree_.relief;
@@ -109,7 +125,7 @@ void Harvest::lay_frame(const CutNode &node, Chart &chart) const
     for (int a = 0; a < 2; ++a) {
         low[a] = relief.corner[a] + node.tight.low[a] * pitch_;
         high[a] = relief.corner[a] + node.tight.high[a] * pitch_;
-        chart.cells[a] = unsigned(node.tight.side(a));
+        chart.cells[a] = unsigned(node.tight.side(a)) + spare_cells(node, a);
     }
     chart.frame = part_of_frame(frame_, low, high, points);
 }
@@ -179,7 +195,7 @@ std::vector<Chart> cut_charts(const Surface &surface, std::vector<Region> region
     std::vector<std::vector<Chart>> cut(regions.size());
     task.parallel(regions.size(), [&](size_t i) {
         if (trees[i].nodes[0].divided) {
-            cut[i] = Harvest(surface, frames[i], plan.pitch, trees[i]).reap(regions[i]);
+            cut[i] = Harvest(surface, frames[i], plan, trees[i]).reap(regions[i]);
         } else {
             cut[i].resize(1);
             cut[i][0].source_triangles = regions[i].size();
