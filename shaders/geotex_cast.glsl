@@ -98,7 +98,8 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
             w.leave = max(w.enter, min(min(planes.x, planes.y), end));
             crossing = gtx_look(w, sheet, last, fit, o, d);
             next += planes.x <= planes.y ? ivec2(way.x, 0) : ivec2(0, way.y);
-            inside = w.leave < end && next == clamp(next, ivec2(0), last);
+            bool left = w.known && (w.above ? w.gap.x : -w.gap.x) > sheet.reach;
+            inside = w.leave < end && next == clamp(next, ivec2(0), last) && !left;
         }
         vec2 root = w.enter + clamp(gtx_roots(w.gap), 0.0, w.leave - w.enter);
         hit.back = sheet.two_sided && !w.above;

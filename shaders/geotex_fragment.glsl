@@ -27,6 +27,7 @@ GTX_VARYING(9) flat in vec4 gtx_rect;
 GTX_VARYING(10) flat in vec4 gtx_span;
 GTX_VARYING(11) flat in int gtx_level;
 GTX_VARYING(12) flat in uint gtx_id;    /* of the instance, as the host gave it */
+GTX_VARYING(13) flat in float gtx_reach;
 
 /* Where the ray of a fragment meets its patch, whose index is gtx_patch_index. */
 struct gtx_surface {
@@ -48,7 +49,8 @@ bool gtx_find(out gtx_surface s)
     /* z and w of the clip position are linear along the ray: zw + t * step. */
     vec2 zw = vec2(dot(gtx_clip_z, vec4(gtx_point, 1.0)), dot(gtx_clip_w, vec4(gtx_point, 1.0)));
     vec2 zw_step = vec2(dot(gtx_clip_z.xyz, s.ray), dot(gtx_clip_w.xyz, s.ray));
-    float t0 = -1e30, t1 = 1e30;
+    float t0 = gtx_reach < 0.0 ? -1e30 : 0.0, t1 = 1e30;
+    s.sheet.reach = gtx_reach < 0.0 ? 1e30 : gtx_reach;
     gtx_clip(zw.x + gtx_depth.x * zw.y, zw_step.x + gtx_depth.x * zw_step.y, t0, t1);
     gtx_clip(zw.y - zw.x, zw_step.y - zw_step.x, t0, t1);
     gtx_clip_box(s.sheet, gtx_point, s.ray, t0, t1);

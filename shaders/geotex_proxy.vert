@@ -1,10 +1,12 @@
-/* Proxies of instances: every fragment of a patch's hull gets its ray, in the patch's grid space.
+/* Proxies of instances: every fragment of a patch's hull or box gets its ray, in the patch's grid
+ * space.
  *
- * Needs geotex_dialect.glsl, geotex_sheet.glsl and geotex_view.glsl before it. The back faces of
- * the hull are what is rasterised, so that a camera inside it still sees the patch; the ray is cut
- * to the hull and to the near and far planes in the fragment. */
+ * Needs geotex_dialect.glsl, geotex_sheet.glsl and geotex_view.glsl before it. Hulls are rasterised
+ * by their front faces, where the rays begin. Patches that the near plane cuts have boxes instead,
+ * by their back faces, so that a camera inside still sees the patch; their rays are cut to the box
+ * and to the near plane in the fragment. */
 layout(location = 0) in vec3 gtx_position;  /* grid space */
-layout(location = 1) in uint gtx_patch;
+layout(location = 1) in uint gtx_patch;     /* index + 2^28 * kind: 0: box; n: hull of level n - 1 */
 layout(location = 2) in vec4 gtx_world_x;   /* rows of object -> world, one set an instance */
 layout(location = 3) in vec4 gtx_world_y;
 layout(location = 4) in vec4 gtx_world_z;
@@ -27,6 +29,7 @@ GTX_VARYING(9) flat out vec4 gtx_rect;      /* what gtx_sheet_of takes: a fragme
 GTX_VARYING(10) flat out vec4 gtx_span;     /* need not fetch the record */
 GTX_VARYING(11) flat out int gtx_level;     /* of detail, the same all over the patch */
 GTX_VARYING(12) flat out uint gtx_id;       /* of the instance */
+GTX_VARYING(13) flat out float gtx_reach;   /* of the hull's rays; negative: a box */
 
 /* A row over world space, taken to grid space. */
 vec4 gtx_row(vec4 row, gtx_frame frame)
@@ -37,28 +40,7 @@ vec4 gtx_row(vec4 row, gtx_frame frame)
                 dot(object.xyz, frame.axis_z), dot(object.xyz, frame.origin) + object.w);
 }
 
-/* The coarsest level whose distance from level 0 is allowed where the patch's sphere is nearest. */
-int gtx_choose_level(int index)
-{
-    int last = int(gtx_maps.x), level = 0;
-    if (gtx_detail.z >= 0.0)
-        return min(int(gtx_detail.z), last);
-    /* The transform M stretches by no more than the root of the largest row sum of M^T M, which is
-     * exact for an even scale. */
-    mat3 rows = mat3(gtx_world_x.xyz, gtx_world_y.xyz, gtx_world_z.xyz);
-    mat3 square = rows * transpose(rows);
-    vec3 sums = abs(square[0]) + abs(square[1]) + abs(square[2]);
-    float stretch = sqrt(max(sums.x, max(sums.y, sums.z)));
-    vec4 sphere = gtx_record(index, 8), centre = vec4(sphere.xyz, 1.0);
-    centre.xyz = vec3(dot(gtx_world_x, centre), dot(gtx_world_y, centre), dot(gtx_world_z, centre));
-    float nearest = (gtx_clip_from_world * centre).w - gtx_detail.y * stretch * sphere.w;
-    float allowed = max(nearest, 0.0) / (gtx_detail.x * stretch);
-    while (level < last && gtx_record(index, 9 + level / 4)[level % 4] <= allowed)
-        ++level;
-    return level;
-}
-
-/* A vertex of the hull, which fits level 0, as far out as the cells of a coarser level need it. */
+/* A vertex of the box, which fits level 0, as far out as the cells of a coarser level need it. */
 vec3 gtx_widen(vec3 position, vec4 rect, vec4 box, int level)
 {
     vec2 cell = vec2(1 << level);
@@ -69,11 +51,18 @@ vec3 gtx_widen(vec3 position, vec4 rect, vec4 box, int level)
 
 void main()
 {
-    int index = int(gtx_patch);
+    int index = int(gtx_patch & 0x0fffffffu), kind = int(gtx_patch >> 28);
     gtx_frame frame = gtx_frame_of(index);
-    gtx_level = gtx_choose_level(index);
     gtx_rect = gtx_record(index, 7);
-    gtx_point = gtx_widen(gtx_position, gtx_rect, gtx_record(index, 11), gtx_level);
+    if (kind > 0) {
+        gtx_level = kind - 1;
+        gtx_point = gtx_position;
+        gtx_reach = gtx_record(index, 8 + gtx_level / 4)[gtx_level % 4];
+    } else {
+        gtx_level = clamp(int(gtx_detail.z), 0, int(gtx_maps.x));
+        gtx_point = gtx_widen(gtx_position, gtx_rect, gtx_record(index, 10), gtx_level);
+        gtx_reach = -1.0;
+    }
     vec4 grid = vec4(gtx_point, 1.0);
     vec4 eye = vec4(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w, gtx_depth.w);
     mat4 rows = transpose(gtx_clip_from_world);
@@ -92,7 +81,7 @@ void main()
                     gtx_record(index, 6).w);
 
     float w = dot(gtx_clip_w, grid);
-    /* z in the middle of either clip convention: only the sides of the frustum cut the hull. The
+    /* z in the middle of either clip convention: only the sides of the frustum cut the proxy. The
      * fragment writes its own depth. */
     gl_Position = vec4(dot(gtx_row(rows[0], frame), grid), dot(gtx_row(rows[1], frame), grid),
                        0.5 * w, w);

@@ -8,7 +8,7 @@
 GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* four codes a cell: (0,0) (1,0) (0,1) (1,1);
                                                      level k at mip level k */
 GTX_SAMPLER(1, highp sampler2DArray) gtx_trim;    /* distance to the outline, as stored */
-GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* 12 texels a patch, 128 patches a row */
+GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* 11 texels a patch, 128 patches a row */
 
 /* What casting needs of a patch. */
 struct gtx_sheet {
@@ -18,6 +18,8 @@ struct gtx_sheet {
     int level;                            /* of detail */
     bool two_sided;                       /* crossings from below count too */
     vec3 low, high;                       /* box of the cells, in grid space */
+    float reach;                          /* a ray farther above the sheet than so has left the
+                                             proxy, or below it */
 };
 
 /* object = origin + axis_x * grid.x + axis_y * grid.y + axis_z * grid.z */
@@ -36,7 +38,7 @@ struct gtx_hit {
 
 vec4 gtx_record(int patch_index, int texel)
 {
-    return texelFetch(gtx_patches, ivec2((patch_index & 127) * 12 + texel, patch_index >> 7), 0);
+    return texelFetch(gtx_patches, ivec2((patch_index & 127) * 11 + texel, patch_index >> 7), 0);
 }
 
 gtx_frame gtx_frame_of(int patch_index)
@@ -46,11 +48,11 @@ gtx_frame gtx_frame_of(int patch_index)
 }
 
 /* From the rectangle (x, y, w, h) and (lowest z, highest z, page, two-sided), which are those of all
- * levels. */
+ * levels, for a ray from anywhere. */
 gtx_sheet gtx_sheet_of(vec4 rect, vec4 span, int level)
 {
     return gtx_sheet(ivec2(rect.xy), ivec2(rect.zw), int(span.z), level, span.w > 0.0,
-                     vec3(0.0, 0.0, span.x), vec3(rect.zw - 1.0, span.y));
+                     vec3(0.0, 0.0, span.x), vec3(rect.zw - 1.0, span.y), 1e30);
 }
 
 /* The same straight from the record. The level is below the model's number of mip levels. */

@@ -35,27 +35,46 @@ void gtx_grid_cells(const gtx_grid *grid, uint32_t height_bits, size_t row_texel
 double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
                       const gtx_grid *grid);
 
-/* A proxy: convex or not, a closed triangle hull around a patch's solid cells, front faces outward
- * in the patch's own space. Coordinates: texels in x and y (texel i at x = i), height codes in z
- * (the surface of code c at z = c). */
+/* Proxies: triangles around a patch's solid cells, to be rasterised so that rays are cast where they
+ * may hit. Front faces point outward in the patch's own space. Coordinates: texels in x and y (texel
+ * i at x = i), height codes in z (the surface of code c at z = c). `patch` is the patch's index, and
+ * above it 0 for a box or one more than the level that a hull is made for. */
 typedef struct gtx_proxy_vertex {
     float x, y, z;
     uint32_t patch;
 } gtx_proxy_vertex;
 
+enum { GTX_PROXY_KIND_SHIFT = 28, GTX_PROXY_PATCH_MASK = (1 << GTX_PROXY_KIND_SHIFT) - 1 };
+
+/* Grows as proxies are added; begins as all zeros. */
 typedef struct gtx_proxies {
     gtx_proxy_vertex *vertices;
-    uint32_t *indices;                 /* triangles, all patches one after another */
+    uint32_t *indices;                 /* three a triangle */
     uint32_t vertex_count, index_count;
-    uint32_t *first_index;             /* patch_count + 1 offsets into indices */
-    uint32_t patch_count;
+    uint32_t vertex_room, index_room;
 } gtx_proxies;
 
-/* Boxes around the solid cells of every patch at level 0, from the lowest code of its texels to the
- * highest, between which all levels lie; grown by `grow` texels and codes. A patch without a solid
- * cell has no triangle. */
-gtx_result gtx_derive_boxes(const gtx_asset *asset, float grow, const gtx_allocator *allocator,
-                            gtx_proxies *out, gtx_error *error);
+enum { GTX_BOX_VERTICES = 8, GTX_BOX_INDICES = 36 };
+
+/* Adds the box around the solid cells of a patch at level 0, from the lowest code of its texels to
+ * the highest, between which all levels lie; grown by `grow` texels and codes. Of a patch without a
+ * solid cell it is a point. Errors: ARGUMENT, MEMORY. */
+gtx_result gtx_add_box(const gtx_asset *asset, uint32_t patch, float grow,
+                       const gtx_allocator *allocator, gtx_proxies *out, gtx_error *error);
+
+/* Adds a tight hull of what shows of a level's sheet: over blocks of cells a lid above the sheet, and
+ * walls where the blocks end, down to below it. Two-sided patches have a floor too, and a closed
+ * hull. Every ray from outside that crosses the sheet from above, and if it is two-sided from below,
+ * passes a front face before. The hull stands off by `grow` codes, and texels at the outline.
+ * `*thickness`, in codes, is more than a point in the hull lies above the sheet, or below. A sheet of
+ * which nothing shows has no triangle. Errors: ARGUMENT, MEMORY. */
+gtx_result gtx_add_hull(const gtx_asset *asset, uint32_t patch, const gtx_grid *grid, float grow,
+                        const gtx_allocator *allocator, gtx_proxies *out, float *thickness,
+                        gtx_error *error);
+
+/* Makes room for more. Errors: MEMORY. */
+gtx_result gtx_proxies_reserve(gtx_proxies *proxies, size_t vertices, size_t indices,
+                               const gtx_allocator *allocator, gtx_error *error);
 void gtx_proxies_free(gtx_proxies *proxies, const gtx_allocator *allocator);
 
 #ifdef __cplusplus

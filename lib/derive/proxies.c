@@ -1,12 +1,12 @@
-/* Proxies: closed hulls around the solid cells of every patch, to be rasterised. */
+/* Proxies: room for them, and the boxes around the solid cells of a patch. */
 #include "derive/derive.h"
 
 #include "base/alloc.h"
 #include "base/error.h"
 
 #include <math.h>
-
-enum { BOX_VERTICES = 8, BOX_INDICES = 36 };
+#include <stdbool.h>
+#include <string.h>
 
 /* Texels and codes of the solid cells of a patch, both ends included; none when max[0] is 0. */
 typedef struct extent {
@@ -46,69 +46,85 @@ static extent solid_extent(const gtx_asset *asset, const gtx_patch *patch)
     return e;
 }
 
-/* Appends the box: vertex k takes the far side along axis a where bit a of k is set; triangles are
+/* Vertex k takes the far side along axis a where bit a of k is set; triangles are
  * counter-clockwise seen from outside. */
 static void append_box(gtx_proxies *out, uint32_t patch, const extent *e, float grow)
 {
-    static const uint8_t corner[BOX_INDICES] = {
+    static const uint8_t corner[GTX_BOX_INDICES] = {
         0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, /* x- x+ */
         0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, /* y- y+ */
         0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6  /* z- z+ */
     };
-    for (uint32_t k = 0; k < BOX_INDICES; ++k)
+    for (uint32_t k = 0; k < GTX_BOX_INDICES; ++k)
         out->indices[out->index_count++] = out->vertex_count + corner[k];
-    for (uint32_t k = 0; k < BOX_VERTICES; ++k) {
-        float p[3];
-        for (int a = 0; a < 3; ++a)
+    for (uint32_t k = 0; k < GTX_BOX_VERTICES; ++k) {
+        float p[3] = {0, 0, 0};
+        for (int a = 0; a < 3 && e->max[0] > 0; ++a)
             p[a] = k >> a & 1 ? (float)e->max[a] + grow : (float)e->min[a] - grow;
         out->vertices[out->vertex_count++] = (gtx_proxy_vertex){p[0], p[1], p[2], patch};
     }
 }
 
-gtx_result gtx_derive_boxes(const gtx_asset *asset, float grow, const gtx_allocator *allocator,
-                            gtx_proxies *out, gtx_error *error)
+/* An array of more room with the same beginning; NULL without memory. */
+static void *enlarge(void *old, size_t count, size_t room, size_t wanted, size_t size,
+                     const gtx_allocator *hooks)
 {
-    if (!asset || !out || !(grow >= 0) || isinf(grow))
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "boxes need an asset and a finite growth >= 0");
-    const gtx_allocator hooks = gtx_allocator_or_default(allocator);
-    uint32_t patches = asset->info.patch_count, boxes = 0;
-    gtx_proxies proxies = {.patch_count = patches};
-    extent *extents = gtx_alloc_array(&hooks, patches, sizeof *extents);
-    proxies.first_index = gtx_alloc_array(&hooks, (size_t)patches + 1, sizeof(uint32_t));
-    for (uint32_t i = 0; extents && i < patches; ++i) {
-        extents[i] = solid_extent(asset, &asset->patches[i]);
-        boxes += extents[i].max[0] > 0;
-    }
-    proxies.vertex_count = boxes * BOX_VERTICES;
-    proxies.index_count = boxes * BOX_INDICES;
-    proxies.vertices = gtx_alloc_array(&hooks, proxies.vertex_count, sizeof *proxies.vertices);
-    proxies.indices = gtx_alloc_array(&hooks, proxies.index_count, sizeof *proxies.indices);
+    void *grown = gtx_alloc_array(hooks, wanted, size);
+    if (grown && count)
+        memcpy(grown, old, count * size);
+    if (grown)
+        gtx_free_array(hooks, old, room, size);
+    return grown;
+}
 
-    int failed = !extents || !proxies.first_index ||
-                 (boxes && (!proxies.vertices || !proxies.indices));
-    if (failed) {
-        gtx_proxies_free(&proxies, &hooks);
-    } else {
-        proxies.vertex_count = proxies.index_count = 0;
-        for (uint32_t i = 0; i < patches; ++i) {
-            if (extents[i].max[0] > 0)
-                append_box(&proxies, i, &extents[i], grow);
-            proxies.first_index[i + 1] = proxies.index_count;
+gtx_result gtx_proxies_reserve(gtx_proxies *p, size_t vertices, size_t indices,
+                               const gtx_allocator *allocator, gtx_error *error)
+{
+    const gtx_allocator hooks = gtx_allocator_or_default(allocator);
+    const size_t v = p->vertex_count + vertices, i = p->index_count + indices;
+    bool made = v <= UINT32_MAX / 2 && i <= UINT32_MAX / 2;
+    if (made && v > p->vertex_room) {
+        const uint32_t room = (uint32_t)(v + v / 2);
+        void *grown = enlarge(p->vertices, p->vertex_count, p->vertex_room, room,
+                              sizeof *p->vertices, &hooks);
+        made = grown != NULL;
+        if (made) {
+            p->vertices = grown;
+            p->vertex_room = room;
         }
-        *out = proxies;
     }
-    gtx_free_array(&hooks, extents, patches, sizeof *extents);
-    return failed ? gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the boxes of %u patches",
-                             patches)
-                  : GTX_OK;
+    if (made && i > p->index_room) {
+        const uint32_t room = (uint32_t)(i + i / 2);
+        void *grown = enlarge(p->indices, p->index_count, p->index_room, room,
+                              sizeof *p->indices, &hooks);
+        made = grown != NULL;
+        if (made) {
+            p->indices = grown;
+            p->index_room = room;
+        }
+    }
+    return made ? GTX_OK : gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the proxies");
+}
+
+gtx_result gtx_add_box(const gtx_asset *asset, uint32_t patch, float grow,
+                       const gtx_allocator *allocator, gtx_proxies *out, gtx_error *error)
+{
+    if (!asset || !out || patch >= asset->info.patch_count || !(grow >= 0) || isinf(grow))
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "a box needs an asset, its patch and a finite growth >= 0");
+    gtx_result result =
+        gtx_proxies_reserve(out, GTX_BOX_VERTICES, GTX_BOX_INDICES, allocator, error);
+    if (!result) {
+        const extent e = solid_extent(asset, &asset->patches[patch]);
+        append_box(out, patch, &e, grow);
+    }
+    return result;
 }
 
 void gtx_proxies_free(gtx_proxies *proxies, const gtx_allocator *allocator)
 {
     const gtx_allocator hooks = gtx_allocator_or_default(allocator);
-    gtx_free_array(&hooks, proxies->vertices, proxies->vertex_count, sizeof *proxies->vertices);
-    gtx_free_array(&hooks, proxies->indices, proxies->index_count, sizeof *proxies->indices);
-    gtx_free_array(&hooks, proxies->first_index, (size_t)proxies->patch_count + 1,
-                   sizeof *proxies->first_index);
+    gtx_free_array(&hooks, proxies->vertices, proxies->vertex_room, sizeof *proxies->vertices);
+    gtx_free_array(&hooks, proxies->indices, proxies->index_room, sizeof *proxies->indices);
     *proxies = (gtx_proxies){0};
 }

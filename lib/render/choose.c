@@ -15,9 +15,8 @@ gtx_costs gtx_costs_or_default(const gtx_costs *costs)
     return none ? measured : *costs;
 }
 
-/* An upper bound of how much the instance's transform M stretches, exact for an even scale: the
- * root of the largest row sum of M M^T. */
-static double stretch_of(const gtx_instance_data *placed)
+/* For a transform M the root of the largest row sum of M M^T. */
+double gtx_stretch_of(const gtx_instance_data *placed)
 {
     double most = 0;
     for (int r = 0; r < 3; ++r) {
@@ -55,7 +54,7 @@ static extent measure(const gtx_view *view, const gtx_frame *frame, const gtx_sh
         radius += (high - low) * (high - low) / 4;
     }
     /* detail[0]: pixels a world unit at w = 1, over the error allowed in pixels. */
-    const double scale = frame->detail[0] * stretch_of(placed);
+    const double scale = frame->detail[0] * gtx_stretch_of(placed);
     const double allowed = view->max_error > 0 ? view->max_error : 0.5;
     const double across = scale * allowed * sqrt(radius) / fmax(middle, DBL_MIN);
     return (extent){fmax(nearest, 0) / scale, across * across};

@@ -1,4 +1,4 @@
-/* Drawing: one instanced draw for each run of instances of one model. */
+/* Drawing: runs of instances of one model, in one draw where they are far away. */
 #include "render/renderer.h"
 
 #include "base/alloc.h"
@@ -127,8 +127,10 @@ static const void *at(size_t offset)
     return (const char *)NULL + offset;
 }
 
-/* Points the attributes at the vertices of proxies, or of a level of the shell, and at the run. */
-static void set_attributes(const gtx_renderer *renderer, const run *r, bool shell)
+/* Points the attributes at the vertices of proxies, or of a level of the shell, and at the data of
+ * instances from one on. */
+static void set_attributes(const gtx_renderer *renderer, const run *r, uint32_t instance,
+                           bool shell)
 {
     const gtx_gl *gl = &renderer->gl;
     enum {
@@ -136,7 +138,7 @@ static void set_attributes(const gtx_renderer *renderer, const run *r, bool shel
         INSTANCE_ATTRIBUTES = offsetof(gtx_instance_data, id) / 16,
         ID_ATTRIBUTE = FIRST_INSTANCE_ATTRIBUTE + INSTANCE_ATTRIBUTES
     };
-    const size_t base = r->first * sizeof(gtx_instance_data);
+    const size_t base = instance * sizeof(gtx_instance_data);
     if (shell) {
         gtx_shells_bind(gl, &r->model->shells, r->way - 1u);
     } else {
@@ -179,26 +181,79 @@ static void use_program(const gtx_gl *gl, pass *p, const gtx_program *program,
     gl->Uniform4fv(program->maps, 1, maps);
 }
 
-/* Casts the patches of a run, or only those that are edited. */
-static void cast_run(const gtx_renderer *renderer, pass *p, const run *r, bool edited_only)
+/* Which faces a run of proxies is drawn by: boxes by their back faces, so that a camera inside still
+ * sees the patch, hulls by their front faces, where rays begin. */
+static void face(const gtx_gl *gl, const run *r, bool back)
 {
-    const gtx_gl *gl = &renderer->gl;
+    gl->FrontFace(r->mirrored != back ? GL_CW : GL_CCW);
+}
+
+/* Draws all proxies of a kind, of `count` instances. */
+static void cast_whole(const gtx_renderer *renderer, const run *r, uint32_t kind, uint32_t instance,
+                       uint32_t count)
+{
     const gtx_model *model = r->model;
-    if (!model->index_count) /* no cell at all */
+    const uint32_t *first = &model->first_index[kind * model->patch_count];
+    const uint32_t indices = first[model->patch_count] - first[0];
+    if (!indices)
         return;
-    use_program(gl, p, program_of(renderer, p->view, model, false, false), model);
-    set_attributes(renderer, r, false);
-    /* Back faces are wanted, so front faces are named as what culling takes away. */
-    gl->Enable(GL_CULL_FACE);
-    gl->FrontFace(r->mirrored ? GL_CCW : GL_CW);
-    if (!edited_only)
-        gl->DrawElementsInstanced(GL_TRIANGLES, (gl_size)model->index_count, GL_UNSIGNED_INT, NULL,
-                                  (gl_size)r->count);
-    for (uint32_t i = 0; edited_only && i < model->patch_count; ++i) {
-        const uint32_t first = model->first_index[i], last = model->first_index[i + 1];
-        if (model->shells.edited[i] && first < last)
-            gl->DrawElementsInstanced(GL_TRIANGLES, (gl_size)(last - first), GL_UNSIGNED_INT,
-                                      at(first * sizeof(uint32_t)), (gl_size)r->count);
+    set_attributes(renderer, r, instance, false);
+    face(&renderer->gl, r, kind == 0);
+    renderer->gl.DrawElementsInstanced(GL_TRIANGLES, (gl_size)indices, GL_UNSIGNED_INT,
+                                       at(first[0] * sizeof(uint32_t)), (gl_size)count);
+}
+
+/* Draws parts of a plan, of the instance that the attributes point at. */
+static void cast_parts(const gtx_gl *gl, const gtx_plan *plan, uint32_t first, uint32_t count)
+{
+    if (gl->MultiDrawElements && count)
+        gl->MultiDrawElements(GL_TRIANGLES, plan->counts + first, GL_UNSIGNED_INT,
+                              plan->offsets + first, (gl_size)count);
+    for (uint32_t i = first; !gl->MultiDrawElements && i < first + count; ++i)
+        gl->DrawElementsInstanced(GL_TRIANGLES, plan->counts[i], GL_UNSIGNED_INT, plan->offsets[i],
+                                  1);
+}
+
+/* Draws an instance patch by patch, nearest first. */
+static void cast_sorted(gtx_renderer *renderer, const pass *p, const run *r, uint32_t instance,
+                        bool edited_only)
+{
+    const gtx_plan *plan = &renderer->plan;
+    gtx_plan_patches(renderer, p->view, p->frame, r->model, &renderer->instances[instance],
+                     edited_only);
+    if (plan->box_count + plan->hull_count == 0)
+        return;
+    set_attributes(renderer, r, instance, false);
+    face(&renderer->gl, r, true);
+    cast_parts(&renderer->gl, plan, 0, plan->box_count);
+    face(&renderer->gl, r, false);
+    cast_parts(&renderer->gl, plan, plan->box_count, plan->hull_count);
+}
+
+/* Casts the patches of a run, or only those that are edited. Instances that stand alone are sorted,
+ * those that need it are looked at patch by patch, and others drawn together. */
+static void cast_run(gtx_renderer *renderer, pass *p, const run *r, bool edited_only)
+{
+    const gtx_model *model = r->model;
+    const bool paper = p->view->method == GTX_METHOD_PAPER;
+    use_program(&renderer->gl, p, program_of(renderer, p->view, model, false, false), model);
+    renderer->gl.Enable(GL_CULL_FACE);
+    if (paper) {
+        cast_whole(renderer, r, 0, r->first, r->count);
+        return;
+    }
+    for (uint32_t i = r->first, end = r->first + r->count; i < end;) {
+        uint32_t last = i, kind = 0;
+        if (r->count > 1 && !edited_only)
+            kind = gtx_plan_whole(p->view, p->frame, model, &renderer->instances[i]);
+        for (++last; kind && last < end; ++last)
+            if (gtx_plan_whole(p->view, p->frame, model, &renderer->instances[last]) != kind)
+                break;
+        if (kind)
+            cast_whole(renderer, r, kind, i, last - i);
+        else
+            cast_sorted(renderer, p, r, i, edited_only);
+        i = last;
     }
 }
 
@@ -208,7 +263,7 @@ static void draw_shell(const gtx_renderer *renderer, pass *p, const run *r)
     const gtx_gl *gl = &renderer->gl;
     const gtx_shells *shells = &r->model->shells;
     const uint32_t level = r->way - 1u;
-    set_attributes(renderer, r, true);
+    set_attributes(renderer, r, r->first, true);
     gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
     for (int two_sided = 0; two_sided < 2; ++two_sided) {
         if (shells->one_sided == (two_sided ? shells->patch_count : 0))
@@ -220,7 +275,7 @@ static void draw_shell(const gtx_renderer *renderer, pass *p, const run *r)
     }
 }
 
-static void draw_run(const gtx_renderer *renderer, pass *p, const run *r)
+static void draw_run(gtx_renderer *renderer, pass *p, const run *r)
 {
     if (!r->model) /* before the first run */
         return;
@@ -232,7 +287,7 @@ static void draw_run(const gtx_renderer *renderer, pass *p, const run *r)
 }
 
 /* Draws instances whose data is in the instance buffer. */
-static void draw_runs(const gtx_renderer *renderer, pass *p, const gtx_instance *instances,
+static void draw_runs(gtx_renderer *renderer, pass *p, const gtx_instance *instances,
                       uint32_t count)
 {
     run r = {0};
@@ -259,8 +314,10 @@ gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_inst
     if (!result)
         result = reserve(renderer, count, error);
     for (uint32_t i = 0; !result && i < count; ++i) {
-        result = gtx_place_instance(&frame, &instances[i], &renderer->instances[i],
-                                    &renderer->mirrored[i], error);
+        result = gtx_plan_reserve(renderer, instances[i].model->patch_count, error);
+        if (!result)
+            result = gtx_place_instance(&frame, &instances[i], &renderer->instances[i],
+                                        &renderer->mirrored[i], error);
         if (!result)
             result = gtx_choose_way(renderer, view, &frame, instances[i].model,
                                     &renderer->instances[i], &renderer->ways[i], error);

@@ -43,6 +43,12 @@ static void load_debug(gtx_gl *gl, const gtx_renderer_desc *desc, const char *su
     snprintf(text, sizeof text, "gl" #name "%s", suffix);                                          \
     gl->name = (result(GTX_GL_CALL *) parameters)desc->load(text, desc->load_user);
     GTX_GL_DEBUG(LOAD)
+}
+
+static void load_multi(gtx_gl *gl, const gtx_renderer_desc *desc, const char *suffix)
+{
+    char text[64];
+    GTX_GL_MULTI(LOAD)
 #undef LOAD
 }
 
@@ -68,5 +74,7 @@ gtx_result gtx_gl_init(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *err
         load_debug(gl, desc, "");
     else if (has_extension(gl, "GL_KHR_debug"))
         load_debug(gl, desc, gl->es ? "KHR" : "");
+    if (!gl->es || has_extension(gl, "GL_EXT_multi_draw_arrays"))
+        load_multi(gl, desc, gl->es ? "EXT" : "");
     return result;
 }

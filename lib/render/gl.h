@@ -195,11 +195,18 @@ enum {
     X(void, PopDebugGroup, (void))                                                                 \
     X(void, PushDebugGroup, (gl_enum source, gl_uint id, gl_size length, const char *message))
 
+/* Several draws in one call: of OpenGL, and of OpenGL ES with EXT_multi_draw_arrays. */
+#define GTX_GL_MULTI(X)                                                                            \
+    X(void, MultiDrawElements,                                                                     \
+      (gl_enum mode, const gl_size *counts, gl_enum type, const void *const *offsets,              \
+       gl_size draws))
+
 typedef struct gtx_gl {
 #define GTX_GL_FIELD(result, name, parameters) result(GTX_GL_CALL *name) parameters;
     GTX_GL(GTX_GL_FIELD)
     GTX_GL_INDEXED(GTX_GL_FIELD)
     GTX_GL_DEBUG(GTX_GL_FIELD)
+    GTX_GL_MULTI(GTX_GL_FIELD)
 #undef GTX_GL_FIELD
     bool es;                  /* OpenGL ES */
 } gtx_gl;

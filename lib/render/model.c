@@ -5,11 +5,8 @@
 #include "base/error.h"
 #include "base/hash.h"
 
+#include <math.h>
 #include <string.h>
-
-/* How far, in texels and codes, hulls stand off the sheet: rounding in the rasteriser must not cut
- * the sheet's rim, and a flat sheet must not lie in a face. */
-static const float hull_margin = 0.25f;
 
 /* Adds a level of `unit` and its memory; NULL when there is none. */
 static uint8_t *add_level(gtx_model *model, uint32_t unit, uint32_t level, uint32_t width,
@@ -41,83 +38,6 @@ static bool copy_levels(gtx_model *model, const gtx_asset *asset, gtx_map map, u
     return true;
 }
 
-gtx_result gtx_model_derive_levels(const gtx_asset *asset, uint32_t patch,
-                                   const gtx_allocator *allocator, void *const *cells,
-                                   const size_t *row_texels, float errors[GTX_MAX_MIPS],
-                                   gtx_error *error)
-{
-    gtx_grid finest = {0}, grid;
-    gtx_result result = gtx_grid_build(asset, patch, 0, allocator, &finest, error);
-    if (result)
-        return result;
-    gtx_grid_cells(&finest, asset->info.height_bits, row_texels[0], cells[0]);
-    errors[0] = 0;
-    for (uint32_t k = 1; !result && k < asset->info.mip_count; ++k) {
-        result = gtx_grid_build(asset, patch, k, allocator, &grid, error);
-        if (result)
-            break;
-        gtx_grid_cells(&grid, asset->info.height_bits, row_texels[k], cells[k]);
-        errors[k] = (float)gtx_grid_error(asset, patch, &finest, &grid);
-        if (errors[k] < errors[k - 1])
-            errors[k] = errors[k - 1];
-        gtx_grid_free(&grid, allocator);
-    }
-    gtx_grid_free(&finest, allocator);
-    return result;
-}
-
-/* Rows of the inverse of grid -> object, whose columns are `axis` and `origin`. */
-static void invert(double axis[3][3], const double origin[3], double rows[3][4])
-{
-    double cross[3][3], det = 0;
-    for (int r = 0; r < 3; ++r)
-        for (int k = 0; k < 3; ++k) {
-            const double *a = axis[(r + 1) % 3], *b = axis[(r + 2) % 3];
-            cross[r][k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-        }
-    for (int k = 0; k < 3; ++k)
-        det += axis[0][k] * cross[0][k];
-    for (int r = 0; r < 3; ++r) {
-        rows[r][3] = 0;
-        for (int k = 0; k < 3; ++k) {
-            rows[r][k] = cross[r][k] / det;
-            rows[r][3] -= rows[r][k] * origin[k];
-        }
-    }
-}
-
-/* The part of a record that casting reads. */
-static void fill_frame(float record[GTX_RECORD_TEXELS][4], const gtx_patch *patch,
-                       uint32_t height_bits, float low, float high)
-{
-    const float *unit[3] = {patch->axis_x, patch->axis_y, patch->axis_z};
-    const double step[3] = {(double)patch->extent_x / patch->rect[2],
-                            (double)patch->extent_y / patch->rect[3],
-                            patch->extent_z / (height_bits == 8 ? 254.0 : 65534.0)};
-    double axis[3][3], origin[3], rows[3][4];
-    for (int k = 0; k < 3; ++k) {
-        for (int a = 0; a < 3; ++a)
-            axis[a][k] = step[a] * unit[a][k];
-        /* Texel 0 lies half a texel inside the rectangle, and height 0 has code 1. */
-        origin[k] = patch->origin[k] + 0.5 * axis[0][k] + 0.5 * axis[1][k] - axis[2][k];
-    }
-    invert(axis, origin, rows);
-    for (int k = 0; k < 4; ++k)
-        for (int r = 0; r < 3; ++r)
-            record[r][k] = (float)rows[r][k];
-    for (int k = 0; k < 3; ++k) {
-        record[3][k] = (float)origin[k];
-        for (int a = 0; a < 3; ++a)
-            record[4 + a][k] = (float)axis[a][k];
-    }
-    record[3][3] = low;
-    record[4][3] = high;
-    record[5][3] = (float)patch->page;
-    record[6][3] = patch->flags & GTX_PATCH_TWO_SIDED ? 1.0f : 0.0f;
-    for (int k = 0; k < 4; ++k)
-        record[7][k] = patch->rect[k];
-}
-
 uint64_t gtx_model_layout(const gtx_asset *asset)
 {
     gtx_hash hash;
@@ -130,85 +50,108 @@ uint64_t gtx_model_layout(const gtx_asset *asset)
     return gtx_hash_end(&hash);
 }
 
-gtx_result gtx_model_derive_proxies(const gtx_asset *asset, const gtx_allocator *allocator,
-                                    gtx_proxies *out, gtx_error *error)
+/* One array of each, in order of the kinds. */
+static gtx_result join_proxies(gtx_model *model, gtx_derived *derived, gtx_error *error)
 {
-    return gtx_derive_boxes(asset, hull_margin, allocator, out, error);
-}
-
-void gtx_model_fill_record(const gtx_asset *asset, const gtx_proxies *proxies, uint32_t patch,
-                           const float errors[GTX_MAX_MIPS], float record[GTX_RECORD_TEXELS][4])
-{
-    const uint32_t first = proxies->first_index[patch], last = proxies->first_index[patch + 1];
-    const gtx_patch *p = &asset->patches[patch];
-    float low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
-    for (uint32_t k = first; k < last; ++k) {
-        const gtx_proxy_vertex *v = &proxies->vertices[proxies->indices[k]];
-        const float at[3] = {v->x, v->y, v->z};
-        for (int a = 0; a < 3; ++a) {
-            low[a] = k == first || at[a] < low[a] ? at[a] : low[a];
-            high[a] = k == first || at[a] > high[a] ? at[a] : high[a];
+    uint32_t vertices = 0, indices = 0;
+    for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
+        const gtx_proxies *p = &derived->proxies[kind];
+        gtx_result result = gtx_proxies_reserve(&model->proxies, p->vertex_count, p->index_count,
+                                                &model->allocator, error);
+        if (result)
+            return result;
+        if (p->vertex_count)
+            memcpy(model->proxies.vertices + vertices, p->vertices,
+                   p->vertex_count * sizeof *p->vertices);
+        for (uint32_t i = 0; i < p->index_count; ++i)
+            model->proxies.indices[indices + i] = p->indices[i] + vertices;
+        for (uint32_t i = 0; i < model->patch_count; ++i) {
+            model->first_vertex[kind * model->patch_count + i] += vertices;
+            model->first_index[kind * model->patch_count + i] += indices;
         }
+        model->proxies.vertex_count = vertices += p->vertex_count;
+        model->proxies.index_count = indices += p->index_count;
     }
-    fill_frame(record, p, asset->info.height_bits, low[2], high[2]);
-    for (int a = 0; a < 2; ++a) { /* the solid cells, without the margin */
-        record[11][a] = low[a] + hull_margin;
-        record[11][2 + a] = high[a] - hull_margin;
-    }
-    memcpy(record[8], p->sphere, sizeof record[8]);
-    for (uint32_t k = 1; k < asset->info.mip_count; ++k)
-        record[9 + (k - 1) / 4][(k - 1) % 4] = errors[k];
+    model->first_vertex[model->kind_count * model->patch_count] = vertices;
+    model->first_index[model->kind_count * model->patch_count] = indices;
+    return GTX_OK;
 }
 
-/* Cells of all levels, and the records. */
-static gtx_result derive_sheets(gtx_model *model, const gtx_asset *asset, gtx_error *error)
+void gtx_model_sum_up(gtx_model *model)
+{
+    double radius = 0;
+    model->coarsest_error = 0;
+    model->boxed_count = 0;
+    for (uint32_t i = 0; i < model->patch_count; ++i) {
+        const gtx_patch_facts *facts = &model->facts[i];
+        const float error = facts->error[model->mip_count - 1];
+        double square = 0;
+        for (int k = 0; k < 3; ++k)
+            square += ((double)facts->hull[k] - model->sphere[k]) *
+                      ((double)facts->hull[k] - model->sphere[k]);
+        radius = fmax(radius, sqrt(square) + facts->hull[3]);
+        model->coarsest_error = error > model->coarsest_error ? error : model->coarsest_error;
+        model->boxed_count += facts->boxed;
+    }
+    model->sphere[3] = (float)(radius * 1.0001);
+}
+
+/* Cells of all levels, records and proxies. `records` and `pages` are where they go. */
+static gtx_result derive_patches(gtx_model *model, const gtx_asset *asset,
+                                 float (*records)[GTX_RECORD_TEXELS][4], uint8_t *const *pages,
+                                 gtx_derived *derived, gtx_error *error)
 {
     const gtx_info *info = &asset->info;
     const size_t cell_size = info->height_bits / 2;
+    gtx_result result = GTX_OK;
+    for (uint32_t i = 0; !result && i < info->patch_count; ++i) {
+        const gtx_patch *p = &asset->patches[i];
+        for (uint32_t k = 0; k < info->mip_count; ++k) {
+            const size_t row = (size_t)p->page * (info->page_height >> k) + (p->rect[1] >> k);
+            derived->row_texels[k] = info->page_width >> k;
+            derived->cells[k] =
+                pages[k] + (row * derived->row_texels[k] + (p->rect[0] >> k)) * cell_size;
+        }
+        for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
+            model->first_vertex[kind * info->patch_count + i] = derived->proxies[kind].vertex_count;
+            model->first_index[kind * info->patch_count + i] = derived->proxies[kind].index_count;
+        }
+        result = gtx_patch_derive(asset, i, &model->allocator, derived, error);
+        memcpy(records[i], derived->record, sizeof derived->record);
+        model->facts[i] = derived->facts;
+    }
+    if (!result)
+        result = join_proxies(model, derived, error);
+    for (uint32_t kind = 0; kind < model->kind_count; ++kind)
+        gtx_proxies_free(&derived->proxies[kind], &model->allocator);
+    return result;
+}
+
+static gtx_result derive_sheets(gtx_model *model, const gtx_asset *asset, gtx_error *error)
+{
+    const gtx_info *info = &asset->info;
+    const size_t slots = (size_t)model->kind_count * model->patch_count + 1;
     uint8_t *pages[GTX_MAX_MIPS];
-    size_t row_texels[GTX_MAX_MIPS];
     float (*records)[GTX_RECORD_TEXELS][4] =
         (void *)add_level(model, UNIT_PATCHES, 0, GTX_RECORD_TEXELS * GTX_RECORDS_A_ROW,
                           gtx_model_record_rows(model->patch_count), 1, 4 * sizeof(float));
-    bool failed = !records;
+    gtx_derived derived = {0};
+    model->first_vertex = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_vertex);
+    model->first_index = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_index);
+    model->facts = gtx_alloc_array(&model->allocator, model->patch_count, sizeof *model->facts);
+    bool failed = !records || !model->first_vertex || !model->first_index || !model->facts;
     for (uint32_t k = 0; !failed && k < info->mip_count; ++k) {
-        row_texels[k] = info->page_width >> k;
         pages[k] = add_level(model, UNIT_CELLS, k, info->page_width >> k, info->page_height >> k,
-                             info->page_count, (uint32_t)cell_size);
+                             info->page_count, info->height_bits / 2);
         failed = !pages[k];
     }
     if (failed)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's maps");
-    gtx_result result = GTX_OK;
-    for (uint32_t i = 0; !result && i < info->patch_count; ++i) {
-        const gtx_patch *p = &asset->patches[i];
-        void *cells[GTX_MAX_MIPS];
-        float errors[GTX_MAX_MIPS];
-        for (uint32_t k = 0; k < info->mip_count; ++k) {
-            const size_t row = (size_t)p->page * (info->page_height >> k) + (p->rect[1] >> k);
-            cells[k] = pages[k] + (row * row_texels[k] + (p->rect[0] >> k)) * cell_size;
-        }
-        result = gtx_model_derive_levels(asset, i, &model->allocator, cells, row_texels, errors,
-                                         error);
-        if (!result)
-            gtx_model_fill_record(asset, &model->proxies, i, errors, records[i]);
-    }
+    gtx_result result = derive_patches(model, asset, records, pages, &derived, error);
+    for (int k = 0; k < 3; ++k)
+        model->sphere[k] = (info->bounds_min[k] + info->bounds_max[k]) / 2;
+    gtx_model_sum_up(model);
     return result;
-}
-
-/* Where single patches are cast, the proxies' ranges are needed for as long as the model lives. */
-static gtx_result prepare_shells(gtx_model *model, const gtx_asset *asset, gtx_error *error)
-{
-    gtx_result result = gtx_shells_prepare(asset, &model->allocator, &model->shells, error);
-    if (result || !model->shells.level_count)
-        return result;
-    model->first_index =
-        gtx_alloc_array(&model->allocator, model->patch_count + 1, sizeof *model->first_index);
-    if (!model->first_index)
-        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's shell");
-    memcpy(model->first_index, model->proxies.first_index,
-           (model->patch_count + 1) * sizeof *model->first_index);
-    return GTX_OK;
 }
 
 gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *allocator,
@@ -234,11 +177,10 @@ gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *alloca
     model->page_height = asset->info.page_height;
     model->layout = gtx_model_layout(asset);
     const uint32_t mips = model->mip_count;
-    gtx_result result = gtx_model_derive_proxies(asset, &hooks, &model->proxies, error);
+    model->kind_count = 1 + mips;
+    gtx_result result = derive_sheets(model, asset, error);
     if (!result)
-        result = derive_sheets(model, asset, error);
-    if (!result)
-        result = prepare_shells(model, asset, error);
+        result = gtx_shells_prepare(asset, &hooks, &model->shells, error);
     if (!result && !(copy_levels(model, asset, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
                      copy_levels(model, asset, GTX_MAP_NORMAL, UNIT_NORMALS, mips, 2) &&
                      copy_levels(model, asset, GTX_MAP_COLOR, UNIT_COLORS, mips, 4) &&
@@ -249,8 +191,7 @@ gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *alloca
         gtx_model_destroy(NULL, model);
         return result;
     }
-    model->index_count = model->proxies.index_count;
-    model->size.geometry += (uint64_t)model->index_count * sizeof *model->proxies.indices +
+    model->size.geometry += (uint64_t)model->proxies.index_count * sizeof *model->proxies.indices +
                             (uint64_t)model->proxies.vertex_count * sizeof *model->proxies.vertices +
                             model->shells.vertex_bytes + model->shells.index_bytes;
     *out = model;

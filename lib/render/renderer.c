@@ -79,6 +79,7 @@ void gtx_renderer_destroy(gtx_renderer *renderer)
     renderer->gl.DeleteBuffers(1, &renderer->instance_buffer);
     const gtx_allocator hooks = renderer->allocator;
     gtx_renderer_free_scratch(renderer);
+    gtx_plan_free(renderer);
     gtx_free_array(&hooks, renderer, 1, sizeof *renderer);
 }
 

@@ -42,6 +42,15 @@ typedef struct gtx_instance_data {
     uint32_t id;
 } gtx_instance_data;
 
+/* What is drawn of one instance that is cast, as glMultiDrawElements takes it: first the boxes of
+ * patches that the near plane cuts, by their back faces, then the hulls of others, nearest first. */
+typedef struct gtx_plan {
+    uint32_t capacity, box_count, hull_count;
+    gl_size *counts;
+    const void **offsets;     /* into the buffer of indices */
+    struct gtx_plan_entry *entries; /* scratch */
+} gtx_plan;
+
 struct gtx_renderer {
     gtx_allocator allocator;
     gtx_gl gl;
@@ -54,6 +63,7 @@ struct gtx_renderer {
     bool *mirrored;
     uint8_t *ways;            /* 0: by casting; n: by level n - 1 of the shell */
     uint32_t instance_capacity;
+    gtx_plan plan;
     gtx_costs costs;
 };
 
@@ -67,6 +77,15 @@ typedef struct gtx_level {
 
 enum { GTX_MAX_LEVELS = 2 + 5 * GTX_MAX_MIPS };
 
+enum { GTX_MAX_PROXY_KINDS = 1 + GTX_MAX_MIPS };
+
+/* What the choice of a patch's proxy goes by. */
+typedef struct gtx_patch_facts {
+    float sphere[4], hull[4]; /* around the sheet; around the proxies */
+    float error[GTX_MAX_MIPS]; /* of each level, as gtx_grid_error has it, never falling */
+    bool boxed;               /* edited, and its hulls do not fit their place: cast by its box */
+} gtx_patch_facts;
+
 struct gtx_model {
     gtx_allocator allocator;
     uint32_t height_bits, mip_count, patch_count, page_count, page_width, page_height;
@@ -77,8 +96,13 @@ struct gtx_model {
     uint32_t level_count;
     gtx_proxies proxies;      /* freed once they are uploaded */
     uint64_t vertex_bytes_sent, index_bytes_sent;
-    uint32_t index_count;
-    uint32_t *first_index;    /* of each patch's proxy and the end; only with a shell */
+    /* Proxies are in order of their kind, boxes first and then the hulls of each level, and of
+     * patches. Where each begins, and the end: kind_count * patch_count + 1. */
+    uint32_t kind_count, *first_vertex, *first_index;
+    gtx_patch_facts *facts;   /* a patch each */
+    float sphere[4];          /* around all proxies */
+    float coarsest_error;     /* of all patches at the last level */
+    uint32_t boxed_count;
     gtx_shells shells;
     gtx_model_size size;
     gl_uint textures[UNIT_COUNT];
@@ -97,21 +121,23 @@ void gtx_programs_destroy(gtx_renderer *renderer);
 void gtx_model_free_staging(gtx_model *model);
 /* A hash of where the patches' rectangles lie. */
 uint64_t gtx_model_layout(const gtx_asset *asset);
-/* Boxes around the patches, as a model draws them. Errors: MEMORY. */
-gtx_result gtx_model_derive_proxies(const gtx_asset *asset, const gtx_allocator *allocator,
-                                    gtx_proxies *out, gtx_error *error);
-/* Builds a patch's sheets at all levels: `cells[k]`, in rows of `row_texels[k]`, gets the corner
- * cells, `errors[k]` the distance from level 0 or that of a finer level, if that is greater.
- * Errors: MEMORY. */
-gtx_result gtx_model_derive_levels(const gtx_asset *asset, uint32_t patch,
-                                   const gtx_allocator *allocator, void *const *cells,
-                                   const size_t *row_texels, float errors[GTX_MAX_MIPS],
-                                   gtx_error *error);
-/* The patch records, as geotex_sheet.glsl reads them: rows of GTX_RECORDS_A_ROW times
- * GTX_RECORD_TEXELS texels. */
-enum { GTX_RECORD_TEXELS = 12, GTX_RECORDS_A_ROW = 128 };
-void gtx_model_fill_record(const gtx_asset *asset, const gtx_proxies *proxies, uint32_t patch,
-                           const float errors[GTX_MAX_MIPS], float record[GTX_RECORD_TEXELS][4]);
+/* Sums up what the choice goes by, of all patches. */
+void gtx_model_sum_up(gtx_model *model);
+
+/* patch.c: what is derived of a patch. The patch records are as geotex_sheet.glsl reads them: rows
+ * of GTX_RECORDS_A_ROW times GTX_RECORD_TEXELS texels. */
+enum { GTX_RECORD_TEXELS = 11, GTX_RECORDS_A_ROW = 128 };
+typedef struct gtx_derived {
+    gtx_proxies proxies[GTX_MAX_PROXY_KINDS]; /* the patch's are added to them */
+    float record[GTX_RECORD_TEXELS][4];
+    gtx_patch_facts facts;
+    void *cells[GTX_MAX_MIPS];                /* where the cells of each level go, in rows of so */
+    size_t row_texels[GTX_MAX_MIPS];          /* many texels */
+} gtx_derived;
+/* Errors: MEMORY. */
+gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_allocator *allocator,
+                            gtx_derived *out, gtx_error *error);
+
 static inline uint32_t gtx_model_record_rows(uint32_t patches)
 {
     return (patches + GTX_RECORDS_A_ROW - 1) / GTX_RECORDS_A_ROW;
@@ -125,6 +151,9 @@ gtx_texture_kind gtx_texture_kind_of(const gtx_model *model, uint32_t unit);
 /* Makes the model's buffers, which have names, as large as the proxies, and fills them unless the
  * arrays are NULL. */
 void gtx_upload_proxies(const gtx_gl *gl, const gtx_model *model, const gtx_proxies *proxies);
+/* Puts a patch's edited proxies in the place of its old ones. False when a hull does not fit. */
+bool gtx_replace_proxies(const gtx_gl *gl, const gtx_model *model, gtx_proxies *proxies,
+                         uint32_t patch);
 /* Pixel unpacking as render.h promises to leave it. */
 void gtx_default_unpacking(const gtx_gl *gl);
 /* Errors: GL (out of memory since the last look). */
@@ -146,7 +175,20 @@ gtx_result gtx_frame_from_view(const gtx_view *view, gtx_frame *out, gtx_error *
 gtx_result gtx_place_instance(const gtx_frame *frame, const gtx_instance *instance,
                               gtx_instance_data *out, bool *mirrored, gtx_error *error);
 
+/* plan.c: makes room for plans of so many patches. Errors: MEMORY. */
+gtx_result gtx_plan_reserve(gtx_renderer *renderer, uint32_t patches, gtx_error *error);
+void gtx_plan_free(gtx_renderer *renderer);
+/* The kind of proxy that all patches of an instance have, if that is seen without looking at each,
+ * or 0. */
+uint32_t gtx_plan_whole(const gtx_view *view, const gtx_frame *frame, const gtx_model *model,
+                        const gtx_instance_data *placed);
+/* Fills the renderer's plan: each patch in view, or each that is edited. */
+void gtx_plan_patches(gtx_renderer *renderer, const gtx_view *view, const gtx_frame *frame,
+                      const gtx_model *model, const gtx_instance_data *placed, bool edited_only);
+
 /* choose.c. */
+/* An upper bound of how much an instance's transform stretches, exact for an even scale. */
+double gtx_stretch_of(const gtx_instance_data *placed);
 gtx_costs gtx_costs_or_default(const gtx_costs *costs);
 /* What a model's instance is drawn by: 0, or one more than the level of its shell. Errors:
  * UNSUPPORTED (the view wants a shell and there is none). */

@@ -6,15 +6,6 @@
 
 #include <string.h>
 
-/* What is derived anew before anything on the GPU changes. */
-typedef struct derived {
-    gtx_proxies proxies;
-    float record[GTX_RECORD_TEXELS][4];
-    void *cells;              /* of all levels, one after another */
-    void *level[GTX_MAX_MIPS];
-    size_t cell_count, cell_size;
-} derived;
-
 static bool is_alike(const gtx_model *model, const gtx_asset *asset)
 {
     const gtx_info *info = &asset->info;
@@ -25,43 +16,35 @@ static bool is_alike(const gtx_model *model, const gtx_asset *asset)
            info->has_emission == model->has_emission && gtx_model_layout(asset) == model->layout;
 }
 
-static void free_derived(derived *d, const gtx_allocator *hooks)
+/* Cells of all levels, one after another, and how many bytes. NULL without memory. Zeroed: at level
+ * 0 the last row and column of texels has no cells. */
+static uint8_t *make_cells(const gtx_model *model, const gtx_patch *patch, gtx_derived *d,
+                           size_t *size)
 {
-    gtx_proxies_free(&d->proxies, hooks);
-    gtx_free_array(hooks, d->cells, d->cell_count, d->cell_size);
+    size_t offset[GTX_MAX_MIPS];
+    *size = 0;
+    for (uint32_t k = 0; k < model->mip_count; ++k) {
+        d->row_texels[k] = patch->rect[2] >> k;
+        offset[k] = *size;
+        *size += d->row_texels[k] * (patch->rect[3] >> k) * (model->height_bits / 2);
+    }
+    uint8_t *cells = gtx_alloc_array(&model->allocator, *size, 1);
+    for (uint32_t k = 0; cells && k < model->mip_count; ++k)
+        d->cells[k] = cells + offset[k];
+    return cells;
 }
 
+/* Derives a patch anew, before anything on the GPU changes. Room for hulls that became smaller. */
 static gtx_result derive(const gtx_model *model, const gtx_asset *asset, uint32_t patch,
-                         derived *d, gtx_error *error)
+                         gtx_derived *d, gtx_error *error)
 {
-    const gtx_allocator *hooks = &model->allocator;
-    const uint16_t *rect = asset->patches[patch].rect;
-    size_t row_texels[GTX_MAX_MIPS];
-    float errors[GTX_MAX_MIPS];
-    *d = (derived){.cell_size = model->height_bits / 2};
-    for (uint32_t k = 0; k < model->mip_count; ++k)
-        d->cell_count += (size_t)(rect[2] >> k) * (rect[3] >> k);
-    gtx_result result = gtx_model_derive_proxies(asset, hooks, &d->proxies, error);
-    if (result)
-        return result;
-    /* Zeroed: at level 0 the last row and column of texels has no cells. */
-    d->cells = gtx_alloc_array(hooks, d->cell_count, d->cell_size);
-    if (!d->cells) {
-        free_derived(d, hooks);
-        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for an update");
+    gtx_result result = GTX_OK;
+    for (uint32_t kind = 0; !result && kind < model->kind_count; ++kind) {
+        const uint32_t *first = &model->first_index[kind * model->patch_count + patch];
+        result = gtx_proxies_reserve(&d->proxies[kind], 0, first[1] - first[0], &model->allocator,
+                                     error);
     }
-    uint8_t *next = d->cells;
-    for (uint32_t k = 0; k < model->mip_count; ++k) {
-        row_texels[k] = rect[2] >> k;
-        d->level[k] = next;
-        next += row_texels[k] * (rect[3] >> k) * d->cell_size;
-    }
-    result = gtx_model_derive_levels(asset, patch, hooks, d->level, row_texels, errors, error);
-    if (result)
-        free_derived(d, hooks);
-    else
-        gtx_model_fill_record(asset, &d->proxies, patch, errors, d->record);
-    return result;
+    return result ? result : gtx_patch_derive(asset, patch, &model->allocator, d, error);
 }
 
 /* The patch's rectangle at a mip level, out of rows of `width` texels. */
@@ -101,6 +84,35 @@ static void upload_maps(const gtx_gl *gl, const gtx_model *model, const gtx_asse
     }
 }
 
+static gtx_result upload(const gtx_renderer *renderer, gtx_model *model, const gtx_asset *edited,
+                         uint32_t patch, gtx_derived *d, gtx_error *error)
+{
+    const gtx_gl *gl = &renderer->gl;
+    const gtx_patch *p = &edited->patches[patch];
+    gl->ActiveTexture(GL_TEXTURE0);
+    gtx_default_unpacking(gl);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    for (uint32_t k = 0; k < model->mip_count; ++k)
+        upload_rect(gl, model, UNIT_CELLS, p, k, d->cells[k], p->rect[2] >> k);
+    upload_maps(gl, model, edited, p);
+    gl->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    const gtx_texture_kind records = gtx_texture_kind_of(model, UNIT_PATCHES);
+    gl->BindTexture(records.target, model->textures[UNIT_PATCHES]);
+    gl->TexSubImage2D(records.target, 0, (gl_int)(patch % GTX_RECORDS_A_ROW * GTX_RECORD_TEXELS),
+                      (gl_int)(patch / GTX_RECORDS_A_ROW), GTX_RECORD_TEXELS, 1, records.format,
+                      records.type, d->record);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    gl->BindTexture(GL_TEXTURE_2D, 0);
+    gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+    model->facts[patch] = d->facts;
+    model->facts[patch].boxed = !gtx_replace_proxies(gl, model, d->proxies, patch);
+    gtx_model_sum_up(model);
+    if (model->shells.level_count)
+        gtx_shells_mark(&model->shells, patch);
+    model->emission_scale = edited->info.has_emission ? edited->info.emission_scale : 0;
+    return gtx_check_gl_memory(gl, error);
+}
+
 gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model, const gtx_asset *edited,
                             uint32_t patch, gtx_error *error)
 {
@@ -111,36 +123,16 @@ gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model, const gtx_
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "patch %u is not one of an asset with the model's maps and rectangles",
                         patch);
-    derived d;
-    gtx_result result = derive(model, edited, patch, &d, error);
-    if (result)
-        return result;
-
-    const gtx_gl *gl = &renderer->gl;
     const gtx_patch *p = &edited->patches[patch];
-    gl->ActiveTexture(GL_TEXTURE0);
-    gtx_default_unpacking(gl);
-    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    for (uint32_t k = 0; k < model->mip_count; ++k)
-        upload_rect(gl, model, UNIT_CELLS, p, k, d.level[k], p->rect[2] >> k);
-    upload_maps(gl, model, edited, p);
-    gl->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-    const gtx_texture_kind records = gtx_texture_kind_of(model, UNIT_PATCHES);
-    gl->BindTexture(records.target, model->textures[UNIT_PATCHES]);
-    gl->TexSubImage2D(records.target, 0, (gl_int)(patch % GTX_RECORDS_A_ROW * GTX_RECORD_TEXELS),
-                      (gl_int)(patch / GTX_RECORDS_A_ROW), GTX_RECORD_TEXELS, 1, records.format,
-                      records.type, d.record);
-    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    gl->BindTexture(GL_TEXTURE_2D, 0);
-    gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
-    gtx_upload_proxies(gl, model, &d.proxies);
-    model->index_count = d.proxies.index_count;
-    if (model->shells.level_count) {
-        memcpy(model->first_index, d.proxies.first_index,
-               (model->patch_count + 1) * sizeof *model->first_index);
-        gtx_shells_mark(&model->shells, patch);
-    }
-    model->emission_scale = edited->info.has_emission ? edited->info.emission_scale : 0;
-    free_derived(&d, &model->allocator);
-    return gtx_check_gl_memory(gl, error);
+    gtx_derived d = {0};
+    size_t size;
+    uint8_t *cells = make_cells(model, p, &d, &size);
+    gtx_result result = cells ? derive(model, edited, patch, &d, error)
+                              : gtx_fail(error, GTX_ERROR_MEMORY, "no memory for an update");
+    if (!result)
+        result = upload(renderer, model, edited, patch, &d, error);
+    for (uint32_t kind = 0; kind < model->kind_count; ++kind)
+        gtx_proxies_free(&d.proxies[kind], &model->allocator);
+    gtx_free_array(&model->allocator, cells, size, 1);
+    return result;
 }

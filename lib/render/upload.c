@@ -89,6 +89,39 @@ void gtx_upload_proxies(const gtx_gl *gl, const gtx_model *model, const gtx_prox
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
 }
 
+static void replace(const gtx_gl *gl, gl_uint buffer, uint32_t first, uint32_t count,
+                    const void *data, size_t size)
+{
+    gl->BindBuffer(GL_ARRAY_BUFFER, buffer);
+    if (count)
+        gl->BufferSubData(GL_ARRAY_BUFFER, (gl_pointer)(first * size), (gl_pointer)(count * size),
+                          data);
+    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+}
+
+/* Indices that are left over make triangles without area. */
+bool gtx_replace_proxies(const gtx_gl *gl, const gtx_model *model, gtx_proxies *proxies,
+                         uint32_t patch)
+{
+    bool fits = true;
+    for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
+        gtx_proxies *p = &proxies[kind];
+        const uint32_t slot = kind * model->patch_count + patch;
+        const uint32_t first = model->first_vertex[slot], start = model->first_index[slot];
+        const uint32_t room = model->first_index[slot + 1] - start;
+        if (p->vertex_count > model->first_vertex[slot + 1] - first || p->index_count > room ||
+            p->index_room < room) {
+            fits = false;
+            continue;
+        }
+        for (uint32_t i = 0; i < room; ++i)
+            p->indices[i] = i < p->index_count ? p->indices[i] + first : first;
+        replace(gl, model->vertices, first, p->vertex_count, p->vertices, sizeof *p->vertices);
+        replace(gl, model->indices, start, room, p->indices, sizeof *p->indices);
+    }
+    return fits;
+}
+
 void gtx_default_unpacking(const gtx_gl *gl)
 {
     static const gl_enum zero[] = {GL_UNPACK_ROW_LENGTH,   GL_UNPACK_SKIP_ROWS,
@@ -284,6 +317,9 @@ void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model)
     gtx_model_free_staging(model);
     const gtx_allocator hooks = model->allocator;
     gtx_shells_free(&model->shells, &hooks);
-    gtx_free_array(&hooks, model->first_index, model->patch_count + 1, sizeof *model->first_index);
+    const size_t slots = (size_t)model->kind_count * model->patch_count + 1;
+    gtx_free_array(&hooks, model->first_vertex, slots, sizeof *model->first_vertex);
+    gtx_free_array(&hooks, model->first_index, slots, sizeof *model->first_index);
+    gtx_free_array(&hooks, model->facts, model->patch_count, sizeof *model->facts);
     gtx_free_array(&hooks, model, 1, sizeof *model);
 }

@@ -10,6 +10,7 @@
 #include "derive/derive.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -238,21 +239,21 @@ static void errors_are_distances_from_level_0(void **state)
     check_errors(flat, 0.004, (const double[4]){0, steep, steep, steep});
 }
 
-/* Signed volume of a patch's triangles; every edge must be met once in each direction. */
-static double closed_volume(const gtx_proxies *p, uint32_t patch)
+/* Signed volume of the triangles; with `closed` every edge must be met once in each direction. */
+static double volume_of(const gtx_proxies *p, uint32_t tag, bool closed)
 {
     double volume = 0;
-    uint32_t first = p->first_index[patch], last = p->first_index[patch + 1];
-    for (uint32_t i = first; i < last; i += 3) {
+    for (uint32_t i = 0; i < p->index_count; i += 3) {
         const gtx_proxy_vertex *v[3];
         for (int k = 0; k < 3; ++k) {
             v[k] = &p->vertices[p->indices[i + k]];
-            assert_int_equal(v[k]->patch, patch);
+            assert_int_equal(v[k]->patch, tag);
             uint32_t a = p->indices[i + k], b = p->indices[i + (k + 1) % 3], twins = 0;
-            for (uint32_t j = first; j < last; ++j)
+            for (uint32_t j = 0; j < p->index_count; ++j)
                 twins += p->indices[j] == b &&
                          p->indices[j % 3 == 2 ? j - 2 : j + 1] == a;
-            assert_int_equal(twins, 1);
+            if (closed)
+                assert_int_equal(twins, 1);
         }
         volume += (v[0]->x * ((double)v[1]->y * v[2]->z - (double)v[1]->z * v[2]->y) +
                    v[0]->y * ((double)v[1]->z * v[2]->x - (double)v[1]->x * v[2]->z) +
@@ -265,10 +266,8 @@ static void boxes_fit(void **state)
 {
     (void)state;
     gtx_asset *asset = make(&RAGGED, 7, 5);
-    gtx_proxies boxes;
-    assert_int_equal(gtx_derive_boxes(asset, 0.5f, NULL, &boxes, NULL), GTX_OK);
-    assert_int_equal(boxes.patch_count, 1);
-    assert_int_equal(boxes.first_index[1], boxes.index_count);
+    gtx_proxies boxes = {0};
+    assert_int_equal(gtx_add_box(asset, 0, 0.5f, NULL, &boxes, NULL), GTX_OK);
     float low[3] = {9, 9, 99}, high[3] = {-9, -9, -9};
     for (uint32_t i = 0; i < boxes.vertex_count; ++i) {
         const float p[3] = {boxes.vertices[i].x, boxes.vertices[i].y, boxes.vertices[i].z};
@@ -283,10 +282,11 @@ static void boxes_fit(void **state)
         assert_float_equal(low[a], expected_low[a], 1e-6f);
         assert_float_equal(high[a], expected_high[a], 1e-6f);
     }
-    assert_float_equal(closed_volume(&boxes, 0), 7.0 * 3.0 * 9.0, 1e-3);
+    assert_float_equal(volume_of(&boxes, 0, true), 7.0 * 3.0 * 9.0, 1e-3);
     gtx_proxies_free(&boxes, NULL);
-    assert_int_equal(gtx_derive_boxes(asset, NAN, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
-    assert_int_equal(gtx_derive_boxes(asset, -1, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_add_box(asset, 0, NAN, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_add_box(asset, 0, -1, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_add_box(asset, 1, 1, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
     gtx_close(asset);
 }
 
@@ -305,9 +305,9 @@ static void boxes_hold_the_nodes_of_all_levels(void **state)
     const double corner[3] = {0, 0, 0};
     fixture_patch patch = {.frame = fixture_frame(corner, 32, 24, 0.1, 1), .sheet = lonely};
     gtx_asset *asset = fixture_build(&patch, 1, 8, 4);
-    gtx_proxies boxes;
+    gtx_proxies boxes = {0};
     uint32_t highest = 0;
-    assert_int_equal(gtx_derive_boxes(asset, 0, NULL, &boxes, NULL), GTX_OK);
+    assert_int_equal(gtx_add_box(asset, 0, 0, NULL, &boxes, NULL), GTX_OK);
     const gtx_proxy_vertex *low = &boxes.vertices[0], *high = &boxes.vertices[7];
     for (uint32_t level = 0; level < 4; ++level) {
         gtx_grid grid;
@@ -327,28 +327,123 @@ static void boxes_hold_the_nodes_of_all_levels(void **state)
     gtx_close(asset);
 }
 
-static void a_patch_without_cells_has_no_box(void **state)
+static gtx_proxies hull_of(const gtx_asset *asset, uint32_t level, float grow, float *thickness)
+{
+    gtx_grid grid;
+    gtx_proxies hull = {0};
+    assert_int_equal(gtx_grid_build(asset, 0, level, NULL, &grid, NULL), GTX_OK);
+    assert_int_equal(gtx_add_hull(asset, 0, &grid, grow, NULL, &hull, thickness, NULL), GTX_OK);
+    gtx_grid_free(&grid, NULL);
+    return hull;
+}
+
+static void a_patch_without_cells_has_a_point_and_no_hull(void **state)
 {
     (void)state;
-    const picture holes = {{"1010101", "0101010", "1010101"}}, sheet = {{"11", "11"}};
-    const double corner[3] = {0, 0, 0};
-    fixture_patch patches[3] = {{fixture_frame(corner, 2, 2, 1, 1), picture_sheet, &sheet},
-                                {fixture_frame(corner, 7, 3, 1, 1), picture_sheet, &holes},
-                                {fixture_frame(corner, 2, 2, 1, 1), picture_sheet, &sheet}};
-    gtx_asset *asset = fixture_build(patches, 3, 8, 1);
-    gtx_proxies boxes;
-    assert_int_equal(gtx_derive_boxes(asset, 1, NULL, &boxes, NULL), GTX_OK);
-    assert_int_equal(boxes.first_index[1], 36);
-    assert_int_equal(boxes.first_index[2], 36);
-    assert_int_equal(boxes.first_index[3], 72);
-    assert_true(closed_volume(&boxes, 2) > 0);
+    const picture holes = {{"1010101", "0101010", "1010101"}};
+    gtx_asset *asset = make(&holes, 7, 3);
+    gtx_proxies boxes = {0};
+    float thickness;
+    assert_int_equal(gtx_add_box(asset, 0, 1, NULL, &boxes, NULL), GTX_OK);
+    assert_int_equal(boxes.index_count, GTX_BOX_INDICES);
+    for (uint32_t v = 0; v < boxes.vertex_count; ++v)
+        assert_true(boxes.vertices[v].x == 0 && boxes.vertices[v].y == 0);
+    gtx_proxies hull = hull_of(asset, 0, 1, &thickness);
+    assert_int_equal(hull.index_count, 0);
+    gtx_proxies_free(&hull, NULL);
     gtx_proxies_free(&boxes, NULL);
     gtx_close(asset);
+}
 
-    asset = fixture_build(&patches[1], 1, 8, 1);
-    assert_int_equal(gtx_derive_boxes(asset, 1, NULL, &boxes, NULL), GTX_OK);
-    assert_int_equal(boxes.index_count, 0);
-    gtx_proxies_free(&boxes, NULL);
+/* z of the triangles that face up, at (x, y): the highest; -1 where there is none. */
+static double lid_at(const gtx_proxies *p, double x, double y, double side)
+{
+    double best = -1;
+    for (uint32_t i = 0; i < p->index_count; i += 3) {
+        const gtx_proxy_vertex *v[3];
+        for (int k = 0; k < 3; ++k)
+            v[k] = &p->vertices[p->indices[i + k]];
+        const double x1 = v[1]->x - v[0]->x, y1 = v[1]->y - v[0]->y;
+        const double x2 = v[2]->x - v[0]->x, y2 = v[2]->y - v[0]->y;
+        const double det = x1 * y2 - x2 * y1;
+        if (det * side < 1e-6)
+            continue;
+        const double s = ((x - v[0]->x) * y2 - x2 * (y - v[0]->y)) / det;
+        const double t = (x1 * (y - v[0]->y) - (x - v[0]->x) * y1) / det;
+        if (s >= -1e-6 && t >= -1e-6 && s + t <= 1 + 1e-6)
+            best = v[0]->z + s * ((double)v[1]->z - v[0]->z) + t * ((double)v[2]->z - v[0]->z);
+    }
+    return best;
+}
+
+/* Each point that shows lies under the lid, and above the floor if there is one, by the margin, and
+ * no deeper than the thickness says. */
+static void check_hull(const gtx_asset *asset, uint32_t level, bool two_sided)
+{
+    const float grow = 0.25f;
+    const gtx_patch *patch = gtx_patches(asset);
+    float thickness;
+    gtx_grid grid;
+    gtx_proxies hull = hull_of(asset, level, grow, &thickness);
+    assert_int_equal(gtx_grid_build(asset, 0, level, NULL, &grid, NULL), GTX_OK);
+    const uint32_t limit = 128 + (48u << level) / 10;
+    uint32_t shown = 0;
+    for (uint32_t y = 0; y < patch->rect[3]; ++y)
+        for (uint32_t x = 0; x < patch->rect[2]; ++x) {
+            const uint32_t i = x >> level, j = y >> level, step = 1u << level;
+            if (gtx_trim_code(asset, patch, x, y) > limit || i + 1 >= grid.nodes_x ||
+                j + 1 >= grid.nodes_y || !grid.solid[j * (grid.nodes_x - 1) + i])
+                continue;
+            const double w = fmin(step, patch->rect[2] - 1.0 - i * step);
+            const double h = fmin(step, patch->rect[3] - 1.0 - j * step);
+            const double u = (x - i * step) / w, v = (y - j * step) / h;
+            const uint16_t *c = grid.code + j * grid.nodes_x + i, *d = c + grid.nodes_x;
+            const double z = (1 - v) * ((1 - u) * c[0] + u * c[1]) +
+                             v * ((1 - u) * d[0] + u * d[1]);
+            const double lid = lid_at(&hull, x, y, 1);
+            assert_true(lid >= z + 0.999 * grow - 1e-5 * z);
+            assert_true(lid - z < thickness);
+            if (two_sided)
+                assert_true(lid_at(&hull, x, y, -1) <= z - 0.999 * grow + 1e-5 * z);
+            ++shown;
+        }
+    assert_true(shown > 400);
+    if (two_sided)
+        assert_true(volume_of(&hull, (level + 1) << GTX_PROXY_KIND_SHIFT, true) > 0);
+    else
+        volume_of(&hull, (level + 1) << GTX_PROXY_KIND_SHIFT, false);
+    gtx_grid_free(&grid, NULL);
+    gtx_proxies_free(&hull, NULL);
+}
+
+static void hulls_hold_what_shows(void **state)
+{
+    (void)state;
+    for (uint32_t bits = 8; bits <= 16; bits += 8)
+        for (int two_sided = 0; two_sided < 2; ++two_sided) {
+            gtx_asset *asset = fixture_bumpy(bits, two_sided ? GTX_PATCH_TWO_SIDED : 0);
+            for (uint32_t level = 0; level < 4; ++level)
+                check_hull(asset, level, two_sided);
+            gtx_close(asset);
+        }
+}
+
+/* Against boxes that is what they are for. */
+static void hulls_are_thin(void **state)
+{
+    (void)state;
+    gtx_asset *asset = fixture_sphere(2, 64, 8);
+    gtx_proxies box = {0}, hull;
+    float thickness;
+    assert_int_equal(gtx_add_box(asset, 0, 0, NULL, &box, NULL), GTX_OK);
+    hull = hull_of(asset, 0, 0, &thickness);
+    double above = 0;
+    for (int i = 12; i < 52; ++i)
+        above = fmax(above, lid_at(&hull, i, 32, 1) -
+                                gtx_height_code(asset, gtx_patches(asset), (uint32_t)i, 32));
+    assert_true(above < 0.1 * (box.vertices[7].z - box.vertices[0].z));
+    gtx_proxies_free(&box, NULL);
+    gtx_proxies_free(&hull, NULL);
     gtx_close(asset);
 }
 
@@ -385,7 +480,6 @@ static void memory_may_run_out(void **state)
     meter m = {0};
     const gtx_allocator hooks = {metered_alloc, metered_free, &m};
     gtx_grid grid;
-    gtx_proxies boxes;
     for (int n = 0;; ++n) {
         m.left = n;
         gtx_result result = gtx_grid_build(asset, 0, 2, &hooks, &grid, NULL);
@@ -394,16 +488,19 @@ static void memory_may_run_out(void **state)
         assert_int_equal(result, GTX_ERROR_MEMORY);
         assert_int_equal(m.live, 0);
     }
-    gtx_grid_free(&grid, &hooks);
     for (int n = 0;; ++n) {
+        gtx_proxies proxies = {0};
+        float thickness;
         m.left = n;
-        gtx_result result = gtx_derive_boxes(asset, 0, &hooks, &boxes, NULL);
+        gtx_result result = gtx_add_box(asset, 0, 0, &hooks, &proxies, NULL);
+        if (!result)
+            result = gtx_add_hull(asset, 0, &grid, 0, &hooks, &proxies, &thickness, NULL);
+        gtx_proxies_free(&proxies, &hooks);
         if (result == GTX_OK)
             break;
         assert_int_equal(result, GTX_ERROR_MEMORY);
-        assert_int_equal(m.live, 0);
     }
-    gtx_proxies_free(&boxes, &hooks);
+    gtx_grid_free(&grid, &hooks);
     assert_int_equal(m.live, 0);
     gtx_close(asset);
 }
@@ -419,7 +516,9 @@ int main(void)
         cmocka_unit_test(errors_are_distances_from_level_0),
         cmocka_unit_test(boxes_fit),
         cmocka_unit_test(boxes_hold_the_nodes_of_all_levels),
-        cmocka_unit_test(a_patch_without_cells_has_no_box),
+        cmocka_unit_test(a_patch_without_cells_has_a_point_and_no_hull),
+        cmocka_unit_test(hulls_hold_what_shows),
+        cmocka_unit_test(hulls_are_thin),
         cmocka_unit_test(memory_may_run_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,133 @@
+/* What drawing derives from one patch: corner cells of all levels, its record, and its proxies. */
+#include "render/renderer.h"
+
+#include "base/alloc.h"
+#include "base/error.h"
+
+#include <math.h>
+#include <string.h>
+
+/* How far, in texels and codes, hulls stand off the sheet: rounding in the rasteriser must not cut
+ * the sheet's rim, and a flat sheet must not lie in a face. */
+static const float hull_margin = 0.25f;
+
+/* Rows of the inverse of grid -> object, whose columns are `axis` and `origin`. */
+static void invert(double axis[3][3], const double origin[3], double rows[3][4])
+{
+    double cross[3][3], det = 0;
+    for (int r = 0; r < 3; ++r)
+        for (int k = 0; k < 3; ++k) {
+            const double *a = axis[(r + 1) % 3], *b = axis[(r + 2) % 3];
+            cross[r][k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+        }
+    for (int k = 0; k < 3; ++k)
+        det += axis[0][k] * cross[0][k];
+    for (int r = 0; r < 3; ++r) {
+        rows[r][3] = 0;
+        for (int k = 0; k < 3; ++k) {
+            rows[r][k] = cross[r][k] / det;
+            rows[r][3] -= rows[r][k] * origin[k];
+        }
+    }
+}
+
+/* The part of a record that is the same for all levels. */
+static void fill_frame(float record[GTX_RECORD_TEXELS][4], const gtx_patch *patch,
+                       uint32_t height_bits)
+{
+    const float *unit[3] = {patch->axis_x, patch->axis_y, patch->axis_z};
+    const double step[3] = {(double)patch->extent_x / patch->rect[2],
+                            (double)patch->extent_y / patch->rect[3],
+                            patch->extent_z / (height_bits == 8 ? 254.0 : 65534.0)};
+    double axis[3][3], origin[3], rows[3][4];
+    for (int k = 0; k < 3; ++k) {
+        for (int a = 0; a < 3; ++a)
+            axis[a][k] = step[a] * unit[a][k];
+        /* Texel 0 lies half a texel inside the rectangle, and height 0 has code 1. */
+        origin[k] = patch->origin[k] + 0.5 * axis[0][k] + 0.5 * axis[1][k] - axis[2][k];
+    }
+    invert(axis, origin, rows);
+    for (int k = 0; k < 4; ++k)
+        for (int r = 0; r < 3; ++r)
+            record[r][k] = (float)rows[r][k];
+    for (int k = 0; k < 3; ++k) {
+        record[3][k] = (float)origin[k];
+        for (int a = 0; a < 3; ++a)
+            record[4 + a][k] = (float)axis[a][k];
+    }
+    record[5][3] = (float)patch->page;
+    record[6][3] = patch->flags & GTX_PATCH_TWO_SIDED ? 1.0f : 0.0f;
+    for (int k = 0; k < 4; ++k)
+        record[7][k] = patch->rect[k];
+}
+
+/* The part that follows from the box, whose vertices begin at `box`. */
+static void fill_box(float record[GTX_RECORD_TEXELS][4], const gtx_proxy_vertex *box)
+{
+    const gtx_proxy_vertex *low = box, *high = box + GTX_BOX_VERTICES - 1;
+    record[3][3] = low->z;
+    record[4][3] = high->z;
+    record[10][0] = low->x + hull_margin; /* the solid cells, without the margin */
+    record[10][1] = low->y + hull_margin;
+    record[10][2] = high->x - hull_margin;
+    record[10][3] = high->y - hull_margin;
+}
+
+/* Enlarges the sphere until the vertices are within, and as far again as they stand off. */
+static void hold(float sphere[4], float record[GTX_RECORD_TEXELS][4], const gtx_proxies *proxies,
+                 uint32_t first)
+{
+    double radius = sphere[3];
+    for (uint32_t v = first; v < proxies->vertex_count; ++v) {
+        const gtx_proxy_vertex *p = &proxies->vertices[v];
+        double square = 0;
+        for (int k = 0; k < 3; ++k) {
+            const double at = record[3][k] + (double)record[4][k] * p->x +
+                              (double)record[5][k] * p->y + (double)record[6][k] * p->z;
+            square += (at - sphere[k]) * (at - sphere[k]);
+        }
+        radius = fmax(radius, sqrt(square));
+    }
+    sphere[3] = (float)(radius * 1.0001);
+}
+
+gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_allocator *allocator,
+                            gtx_derived *out, gtx_error *error)
+{
+    const gtx_patch *p = &asset->patches[patch];
+    gtx_grid finest = {0}, grid;
+    gtx_result result =
+        gtx_add_box(asset, patch, hull_margin, allocator, &out->proxies[0], error);
+    if (!result)
+        result = gtx_grid_build(asset, patch, 0, allocator, &finest, error);
+    if (result)
+        return result;
+    memset(out->record, 0, sizeof out->record);
+    fill_frame(out->record, p, asset->info.height_bits);
+    fill_box(out->record,
+             out->proxies[0].vertices + out->proxies[0].vertex_count - GTX_BOX_VERTICES);
+    memcpy(out->facts.sphere, p->sphere, sizeof out->facts.sphere);
+    memcpy(out->facts.hull, p->sphere, sizeof out->facts.hull);
+    grid = finest;
+    for (uint32_t k = 0; !result && k < asset->info.mip_count; ++k) {
+        gtx_proxies *hulls = &out->proxies[1 + k];
+        const uint32_t first = hulls->vertex_count;
+        float *error_of = out->facts.error;
+        if (k)
+            result = gtx_grid_build(asset, patch, k, allocator, &grid, error);
+        if (result)
+            break;
+        gtx_grid_cells(&grid, asset->info.height_bits, out->row_texels[k], out->cells[k]);
+        error_of[k] = k ? (float)gtx_grid_error(asset, patch, &finest, &grid) : 0;
+        if (k && error_of[k] < error_of[k - 1])
+            error_of[k] = error_of[k - 1];
+        result = gtx_add_hull(asset, patch, &grid, hull_margin, allocator, hulls,
+                              &out->record[8 + k / 4][k % 4], error);
+        if (!result)
+            hold(out->facts.hull, out->record, hulls, first);
+        if (k)
+            gtx_grid_free(&grid, allocator);
+    }
+    gtx_grid_free(&finest, allocator);
+    return result;
+}
