@@ -52,8 +52,7 @@ bool gtx_look(inout gtx_walk w, gtx_sheet sheet, ivec2 last, float fit, vec3 ori
 {
     vec3 entry = origin + w.enter * direction;
     float span = w.leave - w.enter;
-    ivec2 texel = (sheet.corner >> sheet.level) + w.cell;
-    w.height = vec4(texelFetch(gtx_cells, ivec3(texel, sheet.page), sheet.level));
+    w.height = vec4(texelFetch(gtx_cells, ivec3(sheet.cells + w.cell, sheet.page), 0));
     w.fit = mix(vec2(1.0), vec2(fit), vec2(equal(w.cell, last)));
     w.gap = gtx_gap(w.height, vec3((entry.xy - vec2(w.cell)) * w.fit, entry.z),
                     vec3(direction.xy * w.fit, direction.z));

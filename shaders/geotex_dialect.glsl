@@ -3,6 +3,17 @@
  * GTX_SAMPLER(b, type) declares a sampler at binding b of set 0; GTX_VARYING(n) gives a varying its
  * location; members between GTX_UNIFORMS and GTX_UNIFORMS_END are plain uniforms, each marked
  * GTX_UNIFORM, and one block at binding 8 under Vulkan. */
+#ifdef GL_ARM_shader_framebuffer_fetch_depth_stencil
+#extension GL_ARM_shader_framebuffer_fetch_depth_stencil : require
+#ifdef GL_OES_sample_variables
+#extension GL_OES_sample_variables : require
+#define GTX_DEPTH_FETCH
+#endif
+#ifdef GL_ARB_sample_shading
+#extension GL_ARB_sample_shading : require
+#define GTX_DEPTH_FETCH
+#endif
+#endif
 #ifdef GL_ES
 precision highp float;
 precision highp int;

@@ -1,5 +1,6 @@
 /* The stock forward main: lit colour in sRGB bytes. Follows geotex_fragment.glsl. With
- * GTX_MATERIALS it shades by metallic and roughness, else by Lambert, which costs less. */
+ * GTX_MATERIALS it shades by metallic and roughness, else by Lambert, which costs less; least with
+ * GTX_PLAIN, where no map gives colours. */
 layout(location = 0) out vec4 gtx_out_color;
 
 void main()
@@ -8,14 +9,22 @@ void main()
     if (!gtx_find(s))
         discard;
     vec3 n = gtx_world_normal(s);
+#ifdef GTX_PLAIN
+    vec4 color = gtx_color;
+#else
     vec4 color = gtx_albedo(s);
+#endif
 #ifdef GTX_MATERIALS
     color.rgb = gtx_shade(gtx_material_of(s, color.rgb), n, -gtx_world_ray(s), gtx_light.xyz,
                           gtx_light.w);
-#else
-    float lambert = max(dot(n, gtx_light.xyz), 0.0);
-    color.rgb *= gtx_light.w + (1.0 - gtx_light.w) * lambert;
-#endif
     gtx_out_color = vec4(gtx_to_srgb(color.rgb), color.a);
+#else
+    float share = gtx_light.w + (1.0 - gtx_light.w) * max(dot(n, gtx_light.xyz), 0.0);
+#ifdef GTX_PLAIN
+    gtx_out_color = vec4(gtx_shaded_to_srgb(color.rgb, share), color.a);
+#else
+    gtx_out_color = vec4(gtx_to_srgb(color.rgb * share), color.a);
+#endif
+#endif
     gtx_write_depth(s);
 }

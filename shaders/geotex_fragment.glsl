@@ -18,9 +18,9 @@ GTX_VARYING(0) in vec3 gtx_point;
 GTX_VARYING(1) flat in vec3 gtx_eye;
 GTX_VARYING(2) flat in vec4 gtx_clip_z;
 GTX_VARYING(3) flat in vec4 gtx_clip_w;
-GTX_VARYING(4) flat in vec4 gtx_normal_x;
-GTX_VARYING(5) flat in vec4 gtx_normal_y;
-GTX_VARYING(6) flat in vec4 gtx_normal_z;
+GTX_VARYING(4) flat in vec3 gtx_normal_x;
+GTX_VARYING(5) flat in vec3 gtx_normal_y;
+GTX_VARYING(6) flat in vec3 gtx_normal_z;
 GTX_VARYING(7) flat in vec4 gtx_color;
 GTX_VARYING(8) flat in int gtx_patch_index;
 GTX_VARYING(9) flat in vec4 gtx_rect;
@@ -28,6 +28,8 @@ GTX_VARYING(10) flat in vec4 gtx_span;
 GTX_VARYING(11) flat in int gtx_level;
 GTX_VARYING(12) flat in uint gtx_id;    /* of the instance, as the host gave it */
 GTX_VARYING(13) flat in float gtx_reach;
+GTX_VARYING(14) in vec3 gtx_world;
+GTX_VARYING(15) flat in vec3 gtx_world_eye;
 
 /* Where the ray of a fragment meets its patch, whose index is gtx_patch_index. */
 struct gtx_surface {
@@ -38,21 +40,42 @@ struct gtx_surface {
     float level;        /* mip level whose texels are as large as the pixel */
 };
 
+/* What the engine's matrices and depth range make of a clip position. */
+float gtx_depth_of(vec2 zw)
+{
+    return clamp(zw.x / zw.y, -gtx_depth.x, 1.0) * gtx_depth.y + gtx_depth.z;
+}
+
+/* Shortens the ray to what the engine's far plane leaves of it and, where the driver tells it, to what
+ * has been drawn before: a shader that writes depth comes before the depth test. Of several samples
+ * the driver tells of one. `zw` and `zw_step` are linear along the ray. */
+void gtx_clip_depth(vec2 zw, vec2 zw_step, inout float t0, inout float t1)
+{
+    float low = -gtx_depth.x, high = 1.0;
+#ifdef GTX_DEPTH_FETCH
+    float drawn = (gl_LastFragDepthARM - gtx_depth.z) / gtx_depth.y;
+    if (gl_NumSamples < 2) {
+        low = gtx_detail.y < 0.0 ? drawn : low;
+        high = gtx_detail.y > 0.0 ? drawn : high;
+    }
+#endif
+    gtx_clip(zw.x - low * zw.y, zw_step.x - low * zw_step.y, t0, t1);
+    gtx_clip(high * zw.y - zw.x, high * zw_step.y - zw_step.x, t0, t1);
+}
+
 /* False when the ray misses; then `s` is not filled. Takes derivatives: call it first, from all
  * fragments. */
 bool gtx_find(out gtx_surface s)
 {
     vec3 dx = dFdx(gtx_point), dy = dFdy(gtx_point);
-    s.sheet = gtx_sheet_of(gtx_rect, gtx_span, gtx_level);
-    s.ray = gtx_point * gtx_depth.w - gtx_eye;
-
     /* z and w of the clip position are linear along the ray: zw + t * step. */
     vec2 zw = vec2(dot(gtx_clip_z, vec4(gtx_point, 1.0)), dot(gtx_clip_w, vec4(gtx_point, 1.0)));
+    s.sheet = gtx_sheet_of(gtx_rect, gtx_span, gtx_level);
+    s.ray = gtx_point * gtx_depth.w - gtx_eye;
     vec2 zw_step = vec2(dot(gtx_clip_z.xyz, s.ray), dot(gtx_clip_w.xyz, s.ray));
     float t0 = gtx_reach < 0.0 ? -1e30 : 0.0, t1 = 1e30;
     s.sheet.reach = gtx_reach < 0.0 ? 1e30 : gtx_reach;
-    gtx_clip(zw.x + gtx_depth.x * zw.y, zw_step.x + gtx_depth.x * zw_step.y, t0, t1);
-    gtx_clip(zw.y - zw.x, zw_step.y - zw_step.x, t0, t1);
+    gtx_clip_depth(zw, zw_step, t0, t1);
     gtx_clip_box(s.sheet, gtx_point, s.ray, t0, t1);
     if (t0 > t1 || !gtx_cast(s.sheet, gtx_point, s.ray, t0, t1, s.hit))
         return false;
@@ -67,8 +90,7 @@ bool gtx_find(out gtx_surface s)
 float gtx_window_depth(gtx_surface s)
 {
     vec4 point = vec4(s.hit.grid, 1.0);
-    float z = dot(gtx_clip_z, point) / dot(gtx_clip_w, point);
-    return clamp(z, -gtx_depth.x, 1.0) * gtx_depth.y + gtx_depth.z;
+    return gtx_depth_of(vec2(dot(gtx_clip_z, point), dot(gtx_clip_w, point)));
 }
 
 /* Every main calls it, or writes a depth of its own (a logarithmic one, say). */
@@ -83,16 +105,9 @@ vec3 gtx_object_point(gtx_surface s)
     return gtx_object_point(s.frame, s.hit.grid);
 }
 
-/* The linear part of object -> world: the columns for normals are its inverse transpose. */
-mat3 gtx_world_linear()
-{
-    return inverse(transpose(mat3(gtx_normal_x.xyz, gtx_normal_y.xyz, gtx_normal_z.xyz)));
-}
-
 vec3 gtx_world_point(gtx_surface s)
 {
-    return gtx_world_linear() * gtx_object_point(s) +
-           vec3(gtx_normal_x.w, gtx_normal_y.w, gtx_normal_z.w);
+    return gtx_world + s.hit.t * (gtx_world * gtx_depth.w - gtx_world_eye);
 }
 
 vec3 gtx_object_ray(gtx_surface s)
@@ -103,17 +118,16 @@ vec3 gtx_object_ray(gtx_surface s)
 /* Away from the camera; unit. */
 vec3 gtx_world_ray(gtx_surface s)
 {
-    return normalize(gtx_world_linear() * gtx_object_ray(s));
+    return normalize(gtx_world * gtx_depth.w - gtx_world_eye);
 }
 
 /* Unit; towards the camera where the sheet is seen from behind. */
 vec3 gtx_world_normal(gtx_surface s)
 {
-    vec2 code = gtx_lookup(gtx_normals, s.sheet, s.hit.grid.xy, s.level, gtx_maps.x).xy;
-    vec3 n = gtx_decode_normal(s.frame, code);
-    if (s.hit.back)
-        n = gtx_from_behind(n, gtx_object_ray(s));
-    return normalize(gtx_normal_x.xyz * n.x + gtx_normal_y.xyz * n.y + gtx_normal_z.xyz * n.z);
+    vec3 p = gtx_decode_normal(
+        gtx_lookup(gtx_normals, s.sheet, s.hit.grid.xy, s.level, gtx_maps.x).xy);
+    vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y + gtx_normal_z * p.z);
+    return s.hit.back ? gtx_from_behind(n, gtx_world_ray(s)) : n;
 }
 
 /* The colour map times the instance's tint. Linear. */

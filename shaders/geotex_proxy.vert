@@ -20,16 +20,23 @@ GTX_VARYING(0) out vec3 gtx_point;          /* grid space, on the hull */
 GTX_VARYING(1) flat out vec3 gtx_eye;       /* the ray: gtx_point * gtx_depth.w - gtx_eye */
 GTX_VARYING(2) flat out vec4 gtx_clip_z;    /* rows of grid -> clip */
 GTX_VARYING(3) flat out vec4 gtx_clip_w;
-GTX_VARYING(4) flat out vec4 gtx_normal_x;  /* xyz: columns of object -> world for normals; w: what */
-GTX_VARYING(5) flat out vec4 gtx_normal_y;  /* object -> world adds */
-GTX_VARYING(6) flat out vec4 gtx_normal_z;
-GTX_VARYING(7) flat out vec4 gtx_color;
+GTX_VARYING(4) flat out vec3 gtx_normal_x;  /* the patch's normals -> world */
+GTX_VARYING(5) flat out vec3 gtx_normal_y;
+GTX_VARYING(6) flat out vec3 gtx_normal_z;
+GTX_VARYING(7) flat out vec4 gtx_color;     /* where no map gives colours, the 2.4th root of rgb */
 GTX_VARYING(8) flat out int gtx_patch_index;
 GTX_VARYING(9) flat out vec4 gtx_rect;      /* what gtx_sheet_of takes: a fragment that misses */
 GTX_VARYING(10) flat out vec4 gtx_span;     /* need not fetch the record */
 GTX_VARYING(11) flat out int gtx_level;     /* of detail, the same all over the patch */
 GTX_VARYING(12) flat out uint gtx_id;       /* of the instance */
 GTX_VARYING(13) flat out float gtx_reach;   /* of the hull's rays; negative: a box */
+GTX_VARYING(14) out vec3 gtx_world;         /* gtx_point in world space */
+GTX_VARYING(15) flat out vec3 gtx_world_eye; /* the ray: gtx_world * gtx_depth.w - gtx_world_eye */
+
+vec3 gtx_to_world(vec4 object)
+{
+    return vec3(dot(gtx_world_x, object), dot(gtx_world_y, object), dot(gtx_world_z, object));
+}
 
 /* A row over world space, taken to grid space. */
 vec4 gtx_row(vec4 row, gtx_frame frame)
@@ -59,7 +66,7 @@ void main()
         gtx_point = gtx_position;
         gtx_reach = gtx_record(index, 8 + gtx_level / 4)[gtx_level % 4];
     } else {
-        gtx_level = clamp(int(gtx_detail.z), 0, int(gtx_maps.x));
+        gtx_level = int(gtx_detail.z);
         gtx_point = gtx_widen(gtx_position, gtx_rect, gtx_record(index, 10), gtx_level);
         gtx_reach = -1.0;
     }
@@ -71,11 +78,18 @@ void main()
     gtx_clip_z = gtx_row(rows[2], frame);
     gtx_clip_w = gtx_row(rows[3], frame);
     /* n_world = transpose(inverse) n: the inverse's rows are the columns. */
-    gtx_normal_x = vec4(gtx_object_x.xyz, gtx_world_x.w);
-    gtx_normal_y = vec4(gtx_object_y.xyz, gtx_world_y.w);
-    gtx_normal_z = vec4(gtx_object_z.xyz, gtx_world_z.w);
+    vec3 z = normalize(frame.axis_z), x = normalize(frame.axis_x - dot(frame.axis_x, z) * z);
+    mat3 world_normals = mat3(gtx_object_x.xyz, gtx_object_y.xyz, gtx_object_z.xyz);
+    gtx_normal_x = world_normals * x;
+    gtx_normal_y = world_normals * cross(z, x);
+    gtx_normal_z = world_normals * z;
+    gtx_world = gtx_to_world(vec4(gtx_object_point(frame, gtx_point), 1.0));
+    gtx_world_eye = gtx_to_world(eye);
     gtx_id = gtx_instance;
     gtx_color = gtx_tint;
+#ifdef GTX_PLAIN
+    gtx_color.rgb = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
+#endif
     gtx_patch_index = index;
     gtx_span = vec4(gtx_record(index, 3).w, gtx_record(index, 4).w, gtx_record(index, 5).w,
                     gtx_record(index, 6).w);

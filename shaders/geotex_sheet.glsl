@@ -5,14 +5,16 @@
  * bilinear patch through them (format/gtx.md, section 4.1). At level k cell (i, j) spans 2^k texels
  * from texel 2^k i, 2^k j on, the last ones of a row or column a texel less (section 5); grid space
  * is the same at all levels. */
-GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* four codes a cell: (0,0) (1,0) (0,1) (1,1);
-                                                     level k at mip level k */
+GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* four codes a cell: (0,0) (1,0) (0,1) (1,1); under
+                                                     level 0 the others side by side, for lookups
+                                                     by level cost more */
 GTX_SAMPLER(1, highp sampler2DArray) gtx_trim;    /* distance to the outline, as stored */
 GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* 11 texels a patch, 128 patches a row */
 
 /* What casting needs of a patch. */
 struct gtx_sheet {
     ivec2 corner;                         /* of the rectangle in its page */
+    ivec2 cells;                          /* where the level's begin there */
     ivec2 size;                           /* of the rectangle, in texels */
     int page;
     int level;                            /* of detail */
@@ -51,7 +53,10 @@ gtx_frame gtx_frame_of(int patch_index)
  * levels, for a ray from anywhere. */
 gtx_sheet gtx_sheet_of(vec4 rect, vec4 span, int level)
 {
-    return gtx_sheet(ivec2(rect.xy), ivec2(rect.zw), int(span.z), level, span.w > 0.0,
+    ivec2 page = textureSize(gtx_cells, 0).xy;
+    ivec2 from = level > 0 ? ivec2(page.x - (page.x >> (level - 1)), page.y / 3 * 2) : ivec2(0);
+    return gtx_sheet(ivec2(rect.xy), from + (ivec2(rect.xy) >> level), ivec2(rect.zw),
+                     int(span.z), level, span.w > 0.0,
                      vec3(0.0, 0.0, span.x), vec3(rect.zw - 1.0, span.y), 1e30);
 }
 

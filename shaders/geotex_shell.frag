@@ -17,22 +17,12 @@ float gtx_lambert(vec3 n)
     return max(front, 0.0);
 }
 
-/* gtx_to_srgb of a colour times a share of light, from the colour's root: one power instead of
- * three. Where sRGB is linear, near black, a polynomial is within a tenth of a byte of it. */
-vec3 gtx_shaded_to_srgb(vec3 root, float share)
-{
-    vec3 r = min(root * pow(share, 1.0 / 2.4), 1.0);
-    return mix(12.92 * r * r * (0.197 + 2.05 * r), 1.055 * r - 0.055, step(0.0904, r));
-}
-
 void main()
 {
     vec3 place = gtx_place();
     float level = gtx_at.w;
-    vec2 e = textureLod(gtx_normals, place, level).xy * 2.0 - 1.0;
-    vec2 p = vec2(e.x + e.y, e.x - e.y) * 0.5;
-    vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y +
-                       gtx_normal_z * (1.0 - abs(p.x) - abs(p.y)));
+    vec3 p = gtx_decode_normal(textureLod(gtx_normals, place, level).xy);
+    vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y + gtx_normal_z * p.z);
     vec4 color = gtx_color;
 #ifdef GTX_MATERIALS
     if (!gl_FrontFacing)

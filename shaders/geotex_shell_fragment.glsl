@@ -72,10 +72,8 @@ vec3 gtx_place()
 
 vec3 gtx_world_normal(gtx_surface s)
 {
-    vec2 e = textureLod(gtx_normals, gtx_place(), gtx_at.w).xy * 2.0 - 1.0;
-    vec2 p = vec2(e.x + e.y, e.x - e.y) * 0.5;
-    vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y +
-                       gtx_normal_z * (1.0 - abs(p.x) - abs(p.y)));
+    vec3 p = gtx_decode_normal(textureLod(gtx_normals, gtx_place(), gtx_at.w).xy);
+    vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y + gtx_normal_z * p.z);
     return gl_FrontFacing ? n : gtx_from_behind(n, gtx_ray);
 }
 

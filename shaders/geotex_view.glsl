@@ -6,8 +6,9 @@ GTX_UNIFORM vec4 gtx_depth;             /* x: clip z >= -x * w at the near plane
                                            w: 1 perspective, 0 orthographic */
 GTX_UNIFORM vec4 gtx_light;             /* xyz: world space, unit, towards the light; w: ambient */
 GTX_UNIFORM vec4 gtx_detail;            /* x: pixels a world unit at clip w = 1, over the error
-                                           allowed; y: how fast w grows, in world units;
-                                           z: the level for all patches; negative: by error;
+                                           allowed; y: 1 when what is nearer has the lesser
+                                           window depth, -1 when the greater, 0 when neither;
+                                           z: the level of boxes;
                                            w: the error allowed, in pixels */
 GTX_UNIFORM vec4 gtx_maps;              /* x: last mip level of normals and colours; y: 1 when the
                                            model has colours; z: scale of its emission, or 0;

@@ -22,6 +22,10 @@ gtx_result gtx_grid_build(const gtx_asset *asset, uint32_t patch, uint32_t level
                           const gtx_allocator *allocator, gtx_grid *out, gtx_error *error);
 void gtx_grid_free(gtx_grid *grid, const gtx_allocator *allocator);
 
+/* Leaves solid only the cells of which something shows: those with a texel within the level's trim
+ * limit (format/gtx.md, section 4.2). A ray that meets the others goes on behind them. */
+void gtx_grid_trim(const gtx_asset *asset, uint32_t patch, gtx_grid *grid);
+
 /* Corner cells of a level, for kernels that fetch a cell at once: texel (i, j) gets the codes of
  * the nodes (i, j), (i+1, j), (i, j+1), (i+1, j+1), as 4 x uint8_t or 4 x uint16_t; all four are zero
  * where the cell does not exist. `out` is the first of rows of `row_texels` texels. Every level has
@@ -62,12 +66,12 @@ enum { GTX_BOX_VERTICES = 8, GTX_BOX_INDICES = 36 };
 gtx_result gtx_add_box(const gtx_asset *asset, uint32_t patch, float grow,
                        const gtx_allocator *allocator, gtx_proxies *out, gtx_error *error);
 
-/* Adds a tight hull of what shows of a level's sheet: over blocks of cells a lid above the sheet, and
+/* Adds a tight hull of the solid cells of a level: over blocks of cells a lid above the sheet, and
  * walls where the blocks end, down to below it. Two-sided patches have a floor too, and a closed
  * hull. Every ray from outside that crosses the sheet from above, and if it is two-sided from below,
  * passes a front face before. The hull stands off by `grow` codes, and texels at the outline.
- * `*thickness`, in codes, is more than a point in the hull lies above the sheet, or below. A sheet of
- * which nothing shows has no triangle. Errors: ARGUMENT, MEMORY. */
+ * `*thickness`, in codes, is more than a point in the hull lies above the sheet, or below. A sheet
+ * without a solid cell has no triangle. Errors: ARGUMENT, MEMORY. */
 gtx_result gtx_add_hull(const gtx_asset *asset, uint32_t patch, const gtx_grid *grid, float grow,
                         const gtx_allocator *allocator, gtx_proxies *out, float *thickness,
                         gtx_error *error);

@@ -56,6 +56,27 @@ static void fill_solid(const gtx_asset *asset, const gtx_patch *patch, gtx_grid 
     }
 }
 
+void gtx_grid_trim(const gtx_asset *asset, uint32_t patch, gtx_grid *grid)
+{
+    enum { SOLID = 1, SHOWN = 2 };
+    const gtx_patch *p = &asset->patches[patch];
+    const uint32_t width = grid->nodes_x - 1, height = grid->nodes_y - 1, level = grid->level;
+    const uint32_t limit = 128 + (48u << level) / 10;
+    for (uint32_t y = 0; y < p->rect[3]; ++y) {
+        uint8_t *before = grid->solid + (size_t)((y ? y - 1 : 0) >> level) * width;
+        uint8_t *row = grid->solid + (size_t)min_u32(y >> level, height - 1) * width;
+        for (uint32_t x = 0; x < p->rect[2]; ++x) {
+            if (gtx_trim_code(asset, p, x, y) > limit)
+                continue;
+            const uint32_t left = (x ? x - 1 : 0) >> level, at = min_u32(x >> level, width - 1);
+            before[left] |= SHOWN, before[at] |= SHOWN;
+            row[left] |= SHOWN, row[at] |= SHOWN;
+        }
+    }
+    for (size_t c = 0; c < (size_t)width * height; ++c)
+        grid->solid[c] = grid->solid[c] == (SOLID | SHOWN);
+}
+
 gtx_result gtx_grid_build(const gtx_asset *asset, uint32_t patch, uint32_t level,
                           const gtx_allocator *allocator, gtx_grid *out, gtx_error *error)
 {

@@ -98,6 +98,8 @@ static const gtx_program *program_of(const gtx_renderer *renderer, const gtx_vie
         kind = two_sided ? PROGRAM_SHELL_COLOR_TWO_SIDED : PROGRAM_SHELL_COLOR;
     else if (two_sided)
         kind = PROGRAM_SHELL_TWO_SIDED;
+    else if (kind == PROGRAM_CAST && model->has_color)
+        kind = PROGRAM_CAST_COLOR;
     return &renderer->programs[kind];
 }
 
@@ -214,20 +216,27 @@ static void cast_parts(const gtx_gl *gl, const gtx_plan *plan, uint32_t first, u
                                   1);
 }
 
-/* Draws an instance patch by patch, nearest first. */
+/* Draws an instance patch by patch, nearest first. Boxes are told their level by a uniform. */
 static void cast_sorted(gtx_renderer *renderer, const pass *p, const run *r, uint32_t instance,
                         bool edited_only)
 {
+    const gtx_gl *gl = &renderer->gl;
     const gtx_plan *plan = &renderer->plan;
+    uint32_t first = 0;
     gtx_plan_patches(renderer, p->view, p->frame, r->model, &renderer->instances[instance],
                      edited_only);
-    if (plan->box_count + plan->hull_count == 0)
-        return;
     set_attributes(renderer, r, instance, false);
-    face(&renderer->gl, r, true);
-    cast_parts(&renderer->gl, plan, 0, plan->box_count);
-    face(&renderer->gl, r, false);
-    cast_parts(&renderer->gl, plan, plan->box_count, plan->hull_count);
+    face(gl, r, true);
+    for (uint32_t level = 0; level < r->model->mip_count; ++level) {
+        const float *d = p->frame->detail, detail[4] = {d[0], d[1], (float)level, d[3]};
+        if (!plan->box_count[level])
+            continue;
+        gl->Uniform4fv(p->current->detail, 1, detail);
+        cast_parts(gl, plan, first, plan->box_count[level]);
+        first += plan->box_count[level];
+    }
+    face(gl, r, false);
+    cast_parts(gl, plan, first, plan->hull_count);
 }
 
 /* Casts the patches of a run, or only those that are edited. Instances that stand alone are sorted,

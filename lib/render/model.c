@@ -96,9 +96,22 @@ void gtx_model_sum_up(gtx_model *model)
     model->sphere[3] = (float)(radius * 1.0001);
 }
 
+uint32_t gtx_model_cell_rows(const gtx_model *model)
+{
+    return model->page_height + (model->mip_count > 1 ? model->page_height / 2 : 0);
+}
+
+void gtx_model_cells_at(const gtx_model *model, const gtx_patch *patch, uint32_t level,
+                        uint32_t at[2])
+{
+    at[0] = (patch->rect[0] >> level) +
+            (level ? model->page_width - (model->page_width >> (level - 1)) : 0);
+    at[1] = (patch->rect[1] >> level) + (level ? model->page_height : 0);
+}
+
 /* Cells of all levels, records and proxies. `records` and `pages` are where they go. */
 static gtx_result derive_patches(gtx_model *model, const gtx_asset *asset,
-                                 float (*records)[GTX_RECORD_TEXELS][4], uint8_t *const *pages,
+                                 float (*records)[GTX_RECORD_TEXELS][4], uint8_t *pages,
                                  gtx_derived *derived, gtx_error *error)
 {
     const gtx_info *info = &asset->info;
@@ -107,10 +120,11 @@ static gtx_result derive_patches(gtx_model *model, const gtx_asset *asset,
     for (uint32_t i = 0; !result && i < info->patch_count; ++i) {
         const gtx_patch *p = &asset->patches[i];
         for (uint32_t k = 0; k < info->mip_count; ++k) {
-            const size_t row = (size_t)p->page * (info->page_height >> k) + (p->rect[1] >> k);
-            derived->row_texels[k] = info->page_width >> k;
-            derived->cells[k] =
-                pages[k] + (row * derived->row_texels[k] + (p->rect[0] >> k)) * cell_size;
+            uint32_t at[2];
+            gtx_model_cells_at(model, p, k, at);
+            const size_t row = (size_t)p->page * gtx_model_cell_rows(model) + at[1];
+            derived->row_texels[k] = info->page_width;
+            derived->cells[k] = pages + (row * info->page_width + at[0]) * cell_size;
         }
         for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
             model->first_vertex[kind * info->patch_count + i] = derived->proxies[kind].vertex_count;
@@ -131,7 +145,6 @@ static gtx_result derive_sheets(gtx_model *model, const gtx_asset *asset, gtx_er
 {
     const gtx_info *info = &asset->info;
     const size_t slots = (size_t)model->kind_count * model->patch_count + 1;
-    uint8_t *pages[GTX_MAX_MIPS];
     float (*records)[GTX_RECORD_TEXELS][4] =
         (void *)add_level(model, UNIT_PATCHES, 0, GTX_RECORD_TEXELS * GTX_RECORDS_A_ROW,
                           gtx_model_record_rows(model->patch_count), 1, 4 * sizeof(float));
@@ -139,13 +152,9 @@ static gtx_result derive_sheets(gtx_model *model, const gtx_asset *asset, gtx_er
     model->first_vertex = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_vertex);
     model->first_index = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_index);
     model->facts = gtx_alloc_array(&model->allocator, model->patch_count, sizeof *model->facts);
-    bool failed = !records || !model->first_vertex || !model->first_index || !model->facts;
-    for (uint32_t k = 0; !failed && k < info->mip_count; ++k) {
-        pages[k] = add_level(model, UNIT_CELLS, k, info->page_width >> k, info->page_height >> k,
-                             info->page_count, info->height_bits / 2);
-        failed = !pages[k];
-    }
-    if (failed)
+    uint8_t *pages = add_level(model, UNIT_CELLS, 0, info->page_width, gtx_model_cell_rows(model),
+                               info->page_count, info->height_bits / 2);
+    if (!records || !pages || !model->first_vertex || !model->first_index || !model->facts)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's maps");
     gtx_result result = derive_patches(model, asset, records, pages, &derived, error);
     for (int k = 0; k < 3; ++k)

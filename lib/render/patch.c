@@ -73,7 +73,7 @@ static void fill_box(float record[GTX_RECORD_TEXELS][4], const gtx_proxy_vertex 
     record[10][3] = high->y - hull_margin;
 }
 
-/* Enlarges the sphere until the vertices are within, and as far again as they stand off. */
+/* Enlarges the sphere until the vertices are within. */
 static void hold(float sphere[4], float record[GTX_RECORD_TEXELS][4], const gtx_proxies *proxies,
                  uint32_t first)
 {
@@ -108,25 +108,22 @@ gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_al
              out->proxies[0].vertices + out->proxies[0].vertex_count - GTX_BOX_VERTICES);
     memcpy(out->facts.sphere, p->sphere, sizeof out->facts.sphere);
     memcpy(out->facts.hull, p->sphere, sizeof out->facts.hull);
-    grid = finest;
+    out->facts.hull[3] = 0;
     for (uint32_t k = 0; !result && k < asset->info.mip_count; ++k) {
-        gtx_proxies *hulls = &out->proxies[1 + k];
-        const uint32_t first = hulls->vertex_count;
-        float *error_of = out->facts.error;
-        if (k)
-            result = gtx_grid_build(asset, patch, k, allocator, &grid, error);
+        result = gtx_grid_build(asset, patch, k, allocator, &grid, error);
         if (result)
             break;
+        float *errors = out->facts.error;
+        errors[k] = k ? (float)gtx_grid_error(asset, patch, &finest, &grid) : 0;
+        if (k && errors[k] < errors[k - 1])
+            errors[k] = errors[k - 1];
+        gtx_grid_trim(asset, patch, &grid);
         gtx_grid_cells(&grid, asset->info.height_bits, out->row_texels[k], out->cells[k]);
-        error_of[k] = k ? (float)gtx_grid_error(asset, patch, &finest, &grid) : 0;
-        if (k && error_of[k] < error_of[k - 1])
-            error_of[k] = error_of[k - 1];
-        result = gtx_add_hull(asset, patch, &grid, hull_margin, allocator, hulls,
+        const uint32_t first = out->proxies[1 + k].vertex_count;
+        result = gtx_add_hull(asset, patch, &grid, hull_margin, allocator, &out->proxies[1 + k],
                               &out->record[8 + k / 4][k % 4], error);
-        if (!result)
-            hold(out->facts.hull, out->record, hulls, first);
-        if (k)
-            gtx_grid_free(&grid, allocator);
+        hold(out->facts.hull, out->record, &out->proxies[1 + k], first);
+        gtx_grid_free(&grid, allocator);
     }
     gtx_grid_free(&finest, allocator);
     return result;

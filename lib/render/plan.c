@@ -6,9 +6,10 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct gtx_plan_entry {
-    float distance;           /* how far behind the near plane, of the patch's sphere */
+    float distance;           /* how far behind the near plane, of a hull; negative: a box */
     uint32_t slot;            /* of the proxy */
 };
 
@@ -138,7 +139,7 @@ uint32_t gtx_plan_whole(const gtx_view *view, const gtx_frame *frame, const gtx_
     return model->coarsest_error <= allowed_error(&s, model->sphere) ? model->mip_count : 0;
 }
 
-/* Boxes come first: their slots are the lowest, and they are the nearest. */
+/* Boxes come first, in order of their levels. */
 static int compare(const void *a, const void *b)
 {
     const struct gtx_plan_entry *x = a, *y = b;
@@ -152,23 +153,25 @@ void gtx_plan_patches(gtx_renderer *renderer, const gtx_view *view, const gtx_fr
 {
     gtx_plan *plan = &renderer->plan;
     const sight s = sight_of(view, frame, model, placed);
-    uint32_t count = 0;
-    plan->box_count = 0;
+    uint32_t count = 0, boxes = 0;
+    memset(plan->box_count, 0, sizeof plan->box_count);
     for (uint32_t i = 0; i < model->patch_count; ++i) {
         const gtx_patch_facts *facts = &model->facts[i];
         if ((edited_only && !model->shells.edited[i]) || is_outside(&s, facts->hull))
             continue;
         const bool box = facts->boxed || is_before_near(&s, facts->hull);
-        const uint32_t kind = box ? 0 : 1 + level_of(&s, model, facts);
-        const uint32_t slot = kind * model->patch_count + i;
+        const uint32_t level = level_of(&s, model, facts);
+        const uint32_t slot = (box ? 0 : 1 + level) * model->patch_count + i;
         if (model->first_index[slot] == model->first_index[slot + 1])
             continue;
-        plan->box_count += box;
+        const float distance = (float)at_centre(&s.side[0], facts->hull);
         plan->entries[count++] = (struct gtx_plan_entry){
-            box ? -INFINITY : (float)at_centre(&s.side[0], facts->hull), slot};
+            box ? (float)level - GTX_MAX_MIPS : fmaxf(distance, 0), slot};
+        boxes += box;
+        plan->box_count[level] += box;
     }
     qsort(plan->entries, count, sizeof *plan->entries, compare);
-    plan->hull_count = count - plan->box_count;
+    plan->hull_count = count - boxes;
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t first = model->first_index[plan->entries[i].slot];
         plan->counts[i] = (gl_size)(model->first_index[plan->entries[i].slot + 1] - first);

@@ -17,6 +17,7 @@ typedef struct recipe {
 
 #define PROXY "geotex_proxy.vert"
 #define MATERIALS "#define GTX_MATERIALS\n"
+#define PLAIN "#define GTX_PLAIN\n"
 #define CAST "geotex_cast.glsl", "geotex_fragment.glsl"
 #define PAPER "geotex_paper.glsl", "geotex_fragment.glsl"
 #define POLYGONS "geotex_shell.vert"
@@ -25,7 +26,8 @@ typedef struct recipe {
 #define SHELL "geotex_shell_fragment.glsl"
 
 static const recipe recipes[PROGRAM_COUNT] = {
-    [PROGRAM_CAST] = {PROXY, "", {CAST, "geotex_forward.frag"}, "geotex cast"},
+    [PROGRAM_CAST] = {PROXY, PLAIN, {CAST, "geotex_forward.frag"}, "geotex cast"},
+    [PROGRAM_CAST_COLOR] = {PROXY, "", {CAST, "geotex_forward.frag"}, "geotex cast, colors"},
     [PROGRAM_CAST_MATERIAL] = {PROXY, MATERIALS,
                                {"geotex_material.glsl", CAST, "geotex_forward.frag"},
                                "geotex cast, materials"},
@@ -202,7 +204,7 @@ gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
     static const int first[] = {PROGRAM_CAST, PROGRAM_CAST_MATERIAL, PROGRAM_PAPER,
                                 PROGRAM_PAPER_MATERIAL, PROGRAM_SHELL, PROGRAM_SHELL_MATERIAL,
                                 PROGRAM_SHELL_TWO_SIDED, PROGRAM_SHELL_COLOR,
-                                PROGRAM_SHELL_COLOR_TWO_SIDED};
+                                PROGRAM_SHELL_COLOR_TWO_SIDED, PROGRAM_CAST_COLOR};
     gtx_result result = GTX_OK;
     for (size_t i = 0; i < sizeof first / sizeof *first && !result; ++i)
         result = gtx_program_need(renderer, first[i], error);

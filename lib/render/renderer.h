@@ -22,7 +22,7 @@ enum {
     PROGRAM_PAPER_GBUFFER,
     PROGRAM_SHELL, PROGRAM_SHELL_MATERIAL, PROGRAM_SHELL_DEPTH, PROGRAM_SHELL_ID,
     PROGRAM_SHELL_GBUFFER, PROGRAM_SHELL_TWO_SIDED, PROGRAM_SHELL_COLOR,
-    PROGRAM_SHELL_COLOR_TWO_SIDED, PROGRAM_COUNT
+    PROGRAM_SHELL_COLOR_TWO_SIDED, PROGRAM_CAST_COLOR, PROGRAM_COUNT
 };
 
 typedef struct gtx_program {
@@ -43,9 +43,9 @@ typedef struct gtx_instance_data {
 } gtx_instance_data;
 
 /* What is drawn of one instance that is cast, as glMultiDrawElements takes it: first the boxes of
- * patches that the near plane cuts, by their back faces, then the hulls of others, nearest first. */
+ * patches that the near plane cuts, level by level, then the hulls of others, nearest first. */
 typedef struct gtx_plan {
-    uint32_t capacity, box_count, hull_count;
+    uint32_t capacity, box_count[GTX_MAX_MIPS], hull_count; /* boxes by the level that is cast */
     gl_size *counts;
     const void **offsets;     /* into the buffer of indices */
     struct gtx_plan_entry *entries; /* scratch */
@@ -121,6 +121,11 @@ void gtx_programs_destroy(gtx_renderer *renderer);
 void gtx_model_free_staging(gtx_model *model);
 /* A hash of where the patches' rectangles lie. */
 uint64_t gtx_model_layout(const gtx_asset *asset);
+/* Rows of a page of cells, and where the cells of a patch's level are in it: level 1 and the coarser
+ * ones lie side by side under level 0. */
+uint32_t gtx_model_cell_rows(const gtx_model *model);
+void gtx_model_cells_at(const gtx_model *model, const gtx_patch *patch, uint32_t level,
+                        uint32_t at[2]);
 /* Sums up what the choice goes by, of all patches. */
 void gtx_model_sum_up(gtx_model *model);
 

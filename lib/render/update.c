@@ -47,15 +47,17 @@ static gtx_result derive(const gtx_model *model, const gtx_asset *asset, uint32_
     return result ? result : gtx_patch_derive(asset, patch, &model->allocator, d, error);
 }
 
-/* The patch's rectangle at a mip level, out of rows of `width` texels. */
+/* As much as the patch's rectangle has at `level`, to a place in its page at a mip level, out of rows
+ * of `width` texels. */
 static void upload_rect(const gtx_gl *gl, const gtx_model *model, uint32_t unit,
-                        const gtx_patch *patch, uint32_t level, const void *data, uint32_t width)
+                        const gtx_patch *patch, uint32_t level, uint32_t mip,
+                        const uint32_t at[2], const void *data, uint32_t width)
 {
     const gtx_texture_kind kind = gtx_texture_kind_of(model, unit);
     gl->BindTexture(kind.target, model->textures[unit]);
     gl->PixelStorei(GL_UNPACK_ROW_LENGTH, (gl_int)width);
-    gl->TexSubImage3D(kind.target, (gl_int)level, patch->rect[0] >> level, patch->rect[1] >> level,
-                      (gl_int)patch->page, patch->rect[2] >> level, patch->rect[3] >> level, 1,
+    gl->TexSubImage3D(kind.target, (gl_int)mip, (gl_int)at[0], (gl_int)at[1], (gl_int)patch->page,
+                      patch->rect[2] >> level, patch->rect[3] >> level, 1,
                       kind.format, kind.type, data);
 }
 
@@ -76,10 +78,10 @@ static void upload_maps(const gtx_gl *gl, const gtx_model *model, const gtx_asse
             if (!data)
                 break;
             const size_t width = model->page_width >> k, height = model->page_height >> k;
-            const size_t row = patch->page * height + (patch->rect[1] >> k);
-            const size_t texel = row * width + (patch->rect[0] >> k);
-            upload_rect(gl, model, maps[i].unit, patch, k, data + texel * maps[i].texel_size,
-                        (uint32_t)width);
+            const uint32_t at[2] = {patch->rect[0] >> k, patch->rect[1] >> k};
+            const size_t texel = (patch->page * height + at[1]) * width + at[0];
+            upload_rect(gl, model, maps[i].unit, patch, k, k, at,
+                        data + texel * maps[i].texel_size, (uint32_t)width);
         }
     }
 }
@@ -92,8 +94,11 @@ static gtx_result upload(const gtx_renderer *renderer, gtx_model *model, const g
     gl->ActiveTexture(GL_TEXTURE0);
     gtx_default_unpacking(gl);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    for (uint32_t k = 0; k < model->mip_count; ++k)
-        upload_rect(gl, model, UNIT_CELLS, p, k, d->cells[k], p->rect[2] >> k);
+    for (uint32_t k = 0; k < model->mip_count; ++k) {
+        uint32_t at[2];
+        gtx_model_cells_at(model, p, k, at);
+        upload_rect(gl, model, UNIT_CELLS, p, k, 0, at, d->cells[k], p->rect[2] >> k);
+    }
     upload_maps(gl, model, edited, p);
     gl->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
     const gtx_texture_kind records = gtx_texture_kind_of(model, UNIT_PATCHES);

@@ -10,7 +10,7 @@ gtx_texture_kind gtx_texture_kind_of(const gtx_model *model, uint32_t unit)
 {
     static const gtx_texture_kind kinds[UNIT_COUNT] = {
         [UNIT_CELLS] = {GL_TEXTURE_2D_ARRAY, GL_RGBA8UI, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE,
-                        GL_NEAREST_MIPMAP_NEAREST, GL_NEAREST},
+                        GL_NEAREST, GL_NEAREST},
         [UNIT_TRIM] = {GL_TEXTURE_2D_ARRAY, GL_R8, GL_RED, GL_UNSIGNED_BYTE,
                        GL_NEAREST, GL_NEAREST},
         [UNIT_NORMALS] = {GL_TEXTURE_2D_ARRAY, GL_RG8, GL_RG, GL_UNSIGNED_BYTE,
@@ -80,12 +80,12 @@ void gtx_upload_proxies(const gtx_gl *gl, const gtx_model *model, const gtx_prox
 {
     gl->BindBuffer(GL_ARRAY_BUFFER, model->vertices);
     gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(p->vertex_count * sizeof *p->vertices),
-                   p->vertices, GL_STATIC_DRAW);
+                   p->vertices, GL_DYNAMIC_DRAW);
     gtx_gl_label(gl, GL_BUFFER, model->vertices, "geotex proxy vertices");
     gl->BindBuffer(GL_ARRAY_BUFFER, model->indices);
     gtx_gl_label(gl, GL_BUFFER, model->indices, "geotex proxy indices");
     gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(p->index_count * sizeof *p->indices), p->indices,
-                   GL_STATIC_DRAW);
+                   GL_DYNAMIC_DRAW);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
 }
 

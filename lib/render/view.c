@@ -107,22 +107,15 @@ static void set_light(const gtx_view *view, const double forward[3], float light
     light[3] = view->ambient > 0 ? view->ambient : 0.2f;
 }
 
-/* What geotex_proxy.vert and geotex_shell.vert choose levels by. */
+/* The error allowed, and what levels are chosen by. */
 static void set_detail(const gtx_view *view, const double clip[16], float detail[4])
 {
     const double max_error = view->max_error > 0 ? view->max_error : 0.5;
-    double y = 0, w = 0;
-    for (int k = 0; k < 3; ++k) {
+    double y = 0;
+    for (int k = 0; k < 3; ++k)
         y += clip[4 * k + 1] * clip[4 * k + 1];
-        w += clip[4 * k + 3] * clip[4 * k + 3];
-    }
     detail[0] = (float)fmin(sqrt(y) * view->viewport_height / 2 / max_error, FLT_MAX);
-    detail[1] = (float)sqrt(w);
     detail[3] = (float)max_error;
-    const bool by_error = view->viewport_height > 0 && view->level == 0;
-    detail[2] = by_error ? -1.0f : view->level > 0 ? (float)(view->level - 1) : 0.0f;
-    if (view->method == GTX_METHOD_PAPER)
-        detail[2] = 0;
 }
 
 gtx_result gtx_frame_from_view(const gtx_view *view, gtx_frame *out, gtx_error *error)
@@ -156,6 +149,7 @@ gtx_result gtx_frame_from_view(const gtx_view *view, gtx_frame *out, gtx_error *
     out->depth[1] = zero_to_one ? f - n : (f - n) / 2;
     out->depth[2] = zero_to_one ? n : (f + n) / 2;
     out->depth[3] = (float)out->eye[3];
+    out->detail[1] = !(f > n) ? 0.0f : out->reversed ? -1.0f : 1.0f;
     return GTX_OK;
 }
 

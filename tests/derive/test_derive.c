@@ -332,6 +332,7 @@ static gtx_proxies hull_of(const gtx_asset *asset, uint32_t level, float grow, f
     gtx_grid grid;
     gtx_proxies hull = {0};
     assert_int_equal(gtx_grid_build(asset, 0, level, NULL, &grid, NULL), GTX_OK);
+    gtx_grid_trim(asset, 0, &grid);
     assert_int_equal(gtx_add_hull(asset, 0, &grid, grow, NULL, &hull, thickness, NULL), GTX_OK);
     gtx_grid_free(&grid, NULL);
     return hull;
