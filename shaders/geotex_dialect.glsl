@@ -14,6 +14,10 @@
 #define GTX_DEPTH_FETCH
 #endif
 #endif
+#ifdef GL_ARB_texture_gather
+#extension GL_ARB_texture_gather : require
+#define GTX_GATHER
+#endif
 #ifdef GL_ES
 precision highp float;
 precision highp int;

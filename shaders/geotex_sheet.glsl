@@ -87,11 +87,17 @@ vec3 gtx_facet(gtx_frame frame, gtx_hit hit)
 bool gtx_shows(gtx_sheet sheet, vec2 at)
 {
     ivec2 cell = clamp(ivec2(floor(at)), ivec2(0), sheet.size - 2);
+#ifdef GTX_GATHER
+    vec4 g = textureGather(gtx_trim, vec3((vec2(sheet.corner + cell) + 1.0) /
+                                          vec2(textureSize(gtx_trim, 0).xy), float(sheet.page)));
+    float a = g.w, b = g.z, c = g.x, d = g.y;
+#else
     ivec3 texel = ivec3(sheet.corner + cell, sheet.page);
     float a = texelFetch(gtx_trim, texel, 0).r;
     float b = texelFetch(gtx_trim, texel + ivec3(1, 0, 0), 0).r;
     float c = texelFetch(gtx_trim, texel + ivec3(0, 1, 0), 0).r;
     float d = texelFetch(gtx_trim, texel + ivec3(1, 1, 0), 0).r;
+#endif
     vec2 f = clamp(at - vec2(cell), 0.0, 1.0);
     return mix(mix(a, b, f.x), mix(c, d, f.x), f.y) * 255.0 <=
            128.0 + 4.8 * float(1 << sheet.level);

@@ -150,9 +150,10 @@ enum { /* gtx_view.flags */
  * most `max_error` pixels where the asset's bounds are nearest to the camera, or as the finest when
  * there is none; `level` counts levels of the shell. It writes no depth of its own, so that the depth
  * test comes first and multisampling smooths its edges; `viewport_height` also tells the
- * mip level of its maps. GTX_METHOD_AUTO draws the same level if there
- * is one within the error and gtx_costs has it for cheaper, and casts otherwise, as it does when
- * `viewport_height` is unknown or `level` given. Patches taken by gtx_model_update are cast from then
+ * mip level of its maps. GTX_METHOD_AUTO draws the same level if there is one
+ * within the error, or else the finest if that is within one and a half times the error, if gtx_costs
+ * has it for cheaper, and casts otherwise, as it does when `viewport_height` is unknown or `level`
+ * given. Patches taken by gtx_model_update are cast from then
  * on, by either method. */
 typedef struct gtx_view {
     float view[16], projection[16];   /* column-major; world -> eye -> clip */

@@ -294,16 +294,29 @@ static void lift(hull *h, const triangle *t)
     h->lowest = fminf(h->lowest, lowest);
 }
 
-/* The least height of a cell's corners, and how steeply it falls along an axis, outward. */
-static float least_code(const gtx_grid *grid, uint32_t i, uint32_t j, int axis, bool upward,
-                        float *fall)
+/* The least height of a cell's corners. */
+static float least_code(const gtx_grid *grid, uint32_t i, uint32_t j)
 {
     const uint16_t *row = grid->code + (size_t)j * grid->nodes_x + i, *next = row + grid->nodes_x;
-    const float a = row[0], b = row[1], c = next[0], d = next[1];
-    const float rise = axis ? fmaxf(c - a, d - b) : fmaxf(b - a, d - c);
-    const float sink = axis ? fmaxf(a - c, b - d) : fmaxf(a - b, c - d);
-    *fall = fmaxf(upward ? rise : sink, 0);
-    return fminf(fminf(a, b), fminf(c, d));
+    return fminf(fminf(row[0], row[1]), fminf(next[0], next[1]));
+}
+
+/* How much the sheet falls outward over a cell, in the mean of the first few behind cell (i, j). */
+static float fall_at(const gtx_grid *grid, uint32_t i, uint32_t j, int axis, bool upward)
+{
+    enum { CELLS = 4 };
+    const uint32_t width = grid->nodes_x - 1, height = grid->nodes_y - 1;
+    float first = 0, last = 0, count = 0;
+    for (uint32_t k = 0; k < CELLS; ++k) {
+        const uint32_t x = axis ? i : upward ? i + k : i - k, y = !axis ? j : upward ? j + k : j - k;
+        if (x >= width || y >= height || !grid->solid[(size_t)y * width + x])
+            break;
+        const float code = least_code(grid, x, y);
+        first = k ? first : code;
+        last = code;
+        count += 1;
+    }
+    return count > 1 ? fmaxf(last - first, 0) / (count - 1) : 0;
 }
 
 /* Sinks the foot of the wall on an edge of the outline. It is below the first cells behind it,
@@ -334,10 +347,9 @@ static void sink(hull *h, const edge *e, int axis)
             const float wall = (float)at[0][!axis] +
                                share * ((float)at[1][!axis] - (float)at[0][!axis]);
             const float apart = upward ? (float)across - wall : wall - (float)across - 1;
-            float fall;
-            const float code = least_code(h->grid, i, j, !axis, upward, &fall);
-            deepest = fmaxf(deepest, a->z + share * (b->z - a->z) - code +
-                                     fmaxf(apart, 0) * steeper * fall);
+            const float beyond = fmaxf(apart, 0) * fall_at(h->grid, i, j, !axis, upward);
+            deepest = fmaxf(deepest, a->z + share * (b->z - a->z) -
+                                     least_code(h->grid, i, j) + steeper * beyond);
             break;
         }
     a->down = fmaxf(a->down, deepest + h->grow);

@@ -69,6 +69,10 @@ static bool is_casting_cheaper(const gtx_costs *costs, const gtx_model *model, u
            costs->shell_triangle * triangles + costs->shell_pixel * pixels;
 }
 
+/* The finest level may be off by so many times the error allowed before an instance is cast, which
+ * takes several times as long. */
+static const double finest_excess = 1.5;
+
 gtx_result gtx_choose_way(const gtx_renderer *renderer, const gtx_view *view,
                           const gtx_frame *frame, const gtx_model *model,
                           const gtx_instance_data *placed, uint8_t *way, gtx_error *error)
@@ -86,6 +90,8 @@ gtx_result gtx_choose_way(const gtx_renderer *renderer, const gtx_view *view,
         const extent e = measure(view, frame, shells, placed);
         while (level < shells->level_count && shells->levels[level].error <= e.error)
             ++level;
+        if (!level && shells->levels[0].error <= finest_excess * e.error)
+            level = 1;
         if (!forced && level &&
             is_casting_cheaper(&renderer->costs, model, level - 1, e.pixels))
             level = 0;

@@ -99,12 +99,17 @@ static void the_coarsest_within_the_error(void **state)
         assert_int_equal(gtx_get_shell(shown.asset, k, &level), GTX_OK);
         for (int over = 0; over < 2; ++over) {
             view.max_error = (float)(level.error * pixels * (over ? 1.02 : 0.98));
-            view.method = GTX_METHOD_AUTO;
-            assert_int_equal(drawn_as(s, &view, &shown.instance), k + (over ? 1 : 0));
+            view.method = GTX_METHOD_AUTO; /* the finest up to one and a half times the error */
+            assert_int_equal(drawn_as(s, &view, &shown.instance), k + (over || !k ? 1 : 0));
             view.method = GTX_METHOD_SHELL; /* at its finest where none is within the error */
             assert_int_equal(drawn_as(s, &view, &shown.instance), k + (over || !k ? 1 : 0));
         }
     }
+    gtx_shell finest;
+    assert_int_equal(gtx_get_shell(shown.asset, 0, &finest), GTX_OK);
+    view.method = GTX_METHOD_AUTO;
+    view.max_error = (float)(finest.error * pixels * 0.98 / 1.5);
+    assert_int_equal(drawn_as(s, &view, &shown.instance), 0);
     /* A large instance far away is as near. */
     for (int i = 0; i < 15; i += 5)
         shown.instance.transform[i] = 3;
