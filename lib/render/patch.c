@@ -119,6 +119,7 @@ gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_al
             errors[k] = errors[k - 1];
         gtx_grid_trim(asset, patch, &grid);
         gtx_grid_cells(&grid, asset->info.height_bits, out->row_texels[k], out->cells[k]);
+        gtx_grid_slabs(p, &grid, out->slabs[k]);
         const uint32_t first = out->proxies[1 + k].vertex_count;
         result = gtx_add_hull(asset, patch, &grid, hull_margin, allocator, &out->proxies[1 + k],
                               &out->record[8 + k / 4][k % 4], error);
