@@ -4,9 +4,9 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* How far slabs overlap, in texels, and stand off the sheet, in codes: rounding must neither open a
+/* How far slabs overlap, in cells, and stand off the sheet, in codes: rounding must neither open a
  * seam between neighbours nor cut the sheet off. */
-static const float overlap = 0.02f, margin = 0.05f;
+static const float cell_overlap = 0.0002f, margin = 0.05f;
 
 /* Cells of a grid, from low to high. */
 typedef struct block {
@@ -118,6 +118,7 @@ static gtx_slab slab_of(block b)
         for (uint32_t i = b.low[0]; i <= b.high[0]; ++i)
             if (is_solid(&b, i, j))
                 take_cell(&b, i, j, &s);
+    const float overlap = cell_overlap * (float)(1u << b.grid->level);
     for (int k = 0; k < 2; ++k) {
         s.low[k] = texel(&b, k, b.low[k]) - overlap;
         s.high[k] = texel(&b, k, b.high[k] + 1) + overlap;

@@ -107,7 +107,7 @@ static const gtx_program *program_of(const gtx_renderer *renderer, const gtx_vie
 
 static void begin(const gtx_gl *gl, const gtx_frame *frame, gl_bool color)
 {
-    for (gl_uint i = 0; i < UNIT_COUNT; ++i)
+    for (gl_uint i = 0; i < UNIT_CLEARED; ++i)
         gl->BindSampler(i, 0);
     gl->Enable(GL_DEPTH_TEST);
     gl->DepthFunc(frame->reversed ? GL_GREATER : GL_LESS);

@@ -223,7 +223,7 @@ static void allocate_slabs(const gtx_gl *gl, gtx_model *model)
         return;
     gl->GenBuffers(1, &model->slab_buffer);
     gl->BindBuffer(GL_ARRAY_BUFFER, model->slab_buffer);
-    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)slab_bytes(model), NULL, GL_STATIC_DRAW);
+    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)slab_bytes(model), NULL, GL_DYNAMIC_DRAW);
     gtx_gl_label(gl, GL_BUFFER, model->slab_buffer, "geotex slabs");
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     gl->GenTextures(1, &model->slab_texture);
