@@ -56,15 +56,16 @@ float gtx_depth_of(vec2 zw)
 }
 
 #ifndef GTX_TILES
-/* Shortens the ray to what the engine's far plane leaves of it and, where the driver tells it, to what
- * has been drawn before: a shader that writes depth comes before the depth test. Of several samples
- * the driver tells of one. `zw` and `zw_step` are linear along the ray. */
+/* Shortens the ray to what the engine's near and far planes leave of it and, where the driver tells
+ * it, to what has been drawn before: a shader that writes depth comes before the depth test. Of
+ * several samples the driver tells of one. Boxes, which the paper's search has, do without. `zw` and
+ * `zw_step` are linear along the ray. */
 void gtx_clip_depth(vec2 zw, vec2 zw_step, inout float t0, inout float t1)
 {
     float low = -gtx_depth.x, high = 1.0;
 #ifdef GTX_DEPTH_FETCH
     float drawn = (gl_LastFragDepthARM - gtx_depth.z) / gtx_depth.y;
-    if (gl_NumSamples < 2) {
+    if (gl_NumSamples < 2 && gtx_reach >= 0.0) {
         low = gtx_detail.y < 0.0 ? drawn : low;
         high = gtx_detail.y > 0.0 ? drawn : high;
     }

@@ -195,10 +195,12 @@ typedef struct gtx_instance {
     uint32_t reserved[3];
 } gtx_instance;
 
-/* Draws the instances into the bound framebuffer: what view->pass says, and depth. In the forward
- * pass a model with materials or emission is shaded by metallic-roughness (glTF 2.0, appendix B),
- * another by Lambert. One instanced draw for each run of instances of one model. Room for the most
- * instances so far is kept, of the renderer's allocator, until gtx_renderer_destroy.
+/* Draws the instances into the bound framebuffer, which has a depth buffer: what view->pass says, and
+ * depth. In the forward pass a model with materials or emission is shaded by metallic-roughness
+ * (glTF 2.0, appendix B), another by Lambert. An instance that is cast is drawn patch by patch,
+ * nearest first, those out of view left out; of a run of instances of one model those far away are
+ * one instanced draw, as are runs that are not cast. Room for the most instances and patches so far
+ * is kept, of the renderer's allocator, until gtx_renderer_destroy.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL, SHADER (a pass's first draw), UNSUPPORTED
  * (GTX_METHOD_SHELL, and an asset without). */
 GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,

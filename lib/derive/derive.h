@@ -63,7 +63,7 @@ enum { GTX_BOX_VERTICES = 8, GTX_BOX_INDICES = 36 };
 /* Adds the box around the solid cells of a patch at level 0, from the lowest code of its texels to
  * the highest, between which all levels lie; grown by `grow` texels and codes. Of a patch without a
  * solid cell it is a point. Errors: ARGUMENT, MEMORY. */
-gtx_result gtx_add_box(const gtx_asset *asset, uint32_t patch, float grow,
+gtx_result gtx_add_box(uint32_t patch, const gtx_grid *finest, float grow,
                        const gtx_allocator *allocator, gtx_proxies *out, gtx_error *error);
 
 /* Adds a tight hull of the solid cells of a level: over blocks of cells a lid above the sheet, and

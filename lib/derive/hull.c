@@ -53,6 +53,7 @@ typedef struct hull {
     uint32_t blocks[2];       /* how many */
     size_t block_count, node_count, triangle_count, edge_count;
     uint8_t *block;           /* RISING | FIRST | SECOND each */
+    uint8_t *corner;          /* whether a node of the level is one of a solid cell */
     moments *sums;            /* a block each */
     node *nodes;              /* blocks[0] + 1 a row */
     triangle *triangles;
@@ -78,6 +79,28 @@ static float texel(const hull *h, int axis, uint32_t i)
     return (float)min_u32(i << h->grid->level, h->last[axis]);
 }
 
+/* As fminf and fmaxf, of numbers, without a call. */
+static float lesser(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static float greater(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+static void find_corners(hull *h)
+{
+    const uint32_t width = h->grid->nodes_x - 1, height = h->grid->nodes_y - 1;
+    for (uint32_t j = 0; j < height; ++j)
+        for (uint32_t i = 0; i < width; ++i) {
+            uint8_t *corner = h->corner + (size_t)j * h->grid->nodes_x + i;
+            if (h->grid->solid[(size_t)j * width + i])
+                corner[0] = corner[1] = corner[width + 1] = corner[width + 2] = 1;
+        }
+}
+
 static void find_extent(hull *h)
 {
     const uint32_t width = h->grid->nodes_x - 1, height = h->grid->nodes_y - 1;
@@ -94,8 +117,8 @@ static void find_extent(hull *h)
         h->blocks[a] = h->high[0] ? (h->high[a] - h->low[a] + BLOCK - 1) / BLOCK : 0;
 }
 
-/* Which halves of a block are needed, with a cell to spare, so that the hull follows slanted outlines
- * by leaving halves out; and the block's sums. */
+/* Which halves of a block are needed, with a cell to spare, so that the hull follows slanted
+ * outlines by leaving halves out; and the block's sums. */
 static void look_at_block(hull *h, uint32_t bi, uint32_t bj)
 {
     const uint32_t x0 = line(h, 0, bi), x1 = line(h, 0, bi + 1);
@@ -109,8 +132,8 @@ static void look_at_block(hull *h, uint32_t bi, uint32_t bj)
             if (!h->grid->solid[(size_t)j * (h->grid->nodes_x - 1) + i])
                 continue;
             const float u = du * ((float)(i - x0) + 0.5f), v = dv * ((float)(j - y0) + 0.5f);
-            rise[0] = fminf(rise[0], v - u), rise[1] = fmaxf(rise[1], v - u);
-            fall[0] = fminf(fall[0], u + v - 1), fall[1] = fmaxf(fall[1], u + v - 1);
+            rise[0] = lesser(rise[0], v - u), rise[1] = greater(rise[1], v - u);
+            fall[0] = lesser(fall[0], u + v - 1), fall[1] = greater(fall[1], u + v - 1);
             const double x = i - x0, y = j - y0;
             const double z = h->grid->code[(size_t)j * h->grid->nodes_x + i];
             m.n += 1, m.x += x, m.y += y, m.z += z;
@@ -163,8 +186,8 @@ static void split_block(hull *h, uint32_t bi, uint32_t bj)
         h->edges[h->edge_count++] = (edge){{ring[upper], ring[lower]}, {bi, bj}};
 }
 
-/* The height at node (bi, bj) of a plane that is as near as can be to the sheet of the blocks around.
- * Slopes are held back a little, where few cells do not tell them. */
+/* The height at node (bi, bj) of a plane that is as near as can be to the sheet of the blocks
+ * around. Slopes are held back a little, where few cells do not tell them. */
 static float plane_at(const hull *h, uint32_t bi, uint32_t bj)
 {
     moments m = {.xx = 1, .yy = 1};
@@ -239,26 +262,16 @@ static shape shape_of(const hull *h, const triangle *t)
         s.height.c += n[k]->z * s.share[k].c;
     }
     const float cell = (float)(1u << h->grid->level);
-    const float low[2] = {fminf(n[0]->x, fminf(n[1]->x, n[2]->x)),
-                          fminf(n[0]->y, fminf(n[1]->y, n[2]->y))};
-    const float high[2] = {fmaxf(n[0]->x, fmaxf(n[1]->x, n[2]->x)),
-                           fmaxf(n[0]->y, fmaxf(n[1]->y, n[2]->y))};
+    const float low[2] = {lesser(n[0]->x, lesser(n[1]->x, n[2]->x)),
+                          lesser(n[0]->y, lesser(n[1]->y, n[2]->y))};
+    const float high[2] = {greater(n[0]->x, greater(n[1]->x, n[2]->x)),
+                           greater(n[0]->y, greater(n[1]->y, n[2]->y))};
     const uint32_t count[2] = {h->grid->nodes_x, h->grid->nodes_y};
     for (int a = 0; a < 2; ++a) {
-        s.from[a] = (uint32_t)(fmaxf(low[a] / cell - 1, 0));
-        s.to[a] = min_u32((uint32_t)(fmaxf(high[a] / cell, 0)) + 2, count[a]);
+        s.from[a] = (uint32_t)(greater(low[a] / cell - 1, 0));
+        s.to[a] = min_u32((uint32_t)(greater(high[a] / cell, 0)) + 2, count[a]);
     }
     return s;
-}
-
-/* Whether one of the cells around a node of the level is solid. */
-static bool is_corner(const gtx_grid *grid, uint32_t i, uint32_t j)
-{
-    const uint32_t width = grid->nodes_x - 1, height = grid->nodes_y - 1;
-    const uint8_t *row = grid->solid + (size_t)min_u32(j, height - 1) * width;
-    const uint8_t *before = grid->solid + (size_t)(j ? j - 1 : 0) * width;
-    const uint32_t left = i ? i - 1 : 0, at = min_u32(i, width - 1);
-    return row[left] | row[at] | before[left] | before[at];
 }
 
 /* Lifts and sinks the nodes of a triangle until lid and floor are clear of the sheet over all cells
@@ -271,34 +284,35 @@ static void lift(hull *h, const triangle *t)
     for (int k = 0; k < 3; ++k)
         slack[k] = -cell * (fabsf(s.share[k].b) + fabsf(s.share[k].c)) - 1e-4f;
     for (uint32_t j = s.from[1]; j < s.to[1]; ++j) {
-        const float y = texel(h, 1, j);
+        const size_t row = (size_t)j * h->grid->nodes_x;
+        const float y = texel(h, 1, j), z = s.height.a + s.height.c * y;
+        float base[3];
+        for (int k = 0; k < 3; ++k)
+            base[k] = s.share[k].a + s.share[k].c * y - slack[k];
         for (uint32_t i = s.from[0]; i < s.to[0]; ++i) {
             const float x = texel(h, 0, i);
-            bool meets = is_corner(h->grid, i, j);
-            for (int k = 0; k < 3; ++k)
-                meets = meets && s.share[k].a + s.share[k].b * x + s.share[k].c * y >= slack[k];
-            if (!meets)
-                continue;
-            const float over = h->grid->code[(size_t)j * h->grid->nodes_x + i] -
-                               (s.height.a + s.height.b * x + s.height.c * y);
-            highest = fmaxf(highest, over);
-            lowest = fminf(lowest, over);
+            const bool meets = (base[0] + s.share[0].b * x >= 0) &
+                               (base[1] + s.share[1].b * x >= 0) &
+                               (base[2] + s.share[2].b * x >= 0) & h->corner[row + i];
+            const float over = h->grid->code[row + i] - (z + s.height.b * x);
+            highest = meets ? greater(highest, over) : highest;
+            lowest = meets ? lesser(lowest, over) : lowest;
         }
     }
     for (int k = 0; k < 3; ++k) {
         node *n = &h->nodes[t->node[k]];
-        n->up = fmaxf(n->up, highest + h->grow);
-        n->down = fmaxf(n->down, h->two_sided ? h->grow - lowest : 0);
+        n->up = greater(n->up, highest + h->grow);
+        n->down = greater(n->down, h->two_sided ? h->grow - lowest : 0);
     }
-    h->highest = fmaxf(h->highest, highest);
-    h->lowest = fminf(h->lowest, lowest);
+    h->highest = greater(h->highest, highest);
+    h->lowest = lesser(h->lowest, lowest);
 }
 
 /* The least height of a cell's corners. */
 static float least_code(const gtx_grid *grid, uint32_t i, uint32_t j)
 {
     const uint16_t *row = grid->code + (size_t)j * grid->nodes_x + i, *next = row + grid->nodes_x;
-    return fminf(fminf(row[0], row[1]), fminf(next[0], next[1]));
+    return lesser(lesser(row[0], row[1]), lesser(next[0], next[1]));
 }
 
 /* How much the sheet falls outward over a cell, in the mean of the first few behind cell (i, j). */
@@ -308,7 +322,8 @@ static float fall_at(const gtx_grid *grid, uint32_t i, uint32_t j, int axis, boo
     const uint32_t width = grid->nodes_x - 1, height = grid->nodes_y - 1;
     float first = 0, last = 0, count = 0;
     for (uint32_t k = 0; k < CELLS; ++k) {
-        const uint32_t x = axis ? i : upward ? i + k : i - k, y = !axis ? j : upward ? j + k : j - k;
+        const uint32_t x = axis ? i : upward ? i + k : i - k;
+        const uint32_t y = !axis ? j : upward ? j + k : j - k;
         if (x >= width || y >= height || !grid->solid[(size_t)y * width + x])
             break;
         const float code = least_code(grid, x, y);
@@ -316,7 +331,7 @@ static float fall_at(const gtx_grid *grid, uint32_t i, uint32_t j, int axis, boo
         last = code;
         count += 1;
     }
-    return count > 1 ? fmaxf(last - first, 0) / (count - 1) : 0;
+    return count > 1 ? greater(last - first, 0) / (count - 1) : 0;
 }
 
 /* Sinks the foot of the wall on an edge of the outline. It is below the first cells behind it,
@@ -347,13 +362,13 @@ static void sink(hull *h, const edge *e, int axis)
             const float wall = (float)at[0][!axis] +
                                share * ((float)at[1][!axis] - (float)at[0][!axis]);
             const float apart = upward ? (float)across - wall : wall - (float)across - 1;
-            const float beyond = fmaxf(apart, 0) * fall_at(h->grid, i, j, !axis, upward);
-            deepest = fmaxf(deepest, a->z + share * (b->z - a->z) -
+            const float beyond = greater(apart, 0) * fall_at(h->grid, i, j, !axis, upward);
+            deepest = greater(deepest, a->z + share * (b->z - a->z) -
                                      least_code(h->grid, i, j) + steeper * beyond);
             break;
         }
-    a->down = fmaxf(a->down, deepest + h->grow);
-    b->down = fmaxf(b->down, deepest + h->grow);
+    a->down = greater(a->down, deepest + h->grow);
+    b->down = greater(b->down, deepest + h->grow);
 }
 
 /* More than the sheet is under the lid, or over the floor. */
@@ -361,10 +376,10 @@ static float thickness_of(const hull *h)
 {
     float lid = 0, floor = 0;
     for (size_t i = 0; i < h->node_count; ++i) {
-        lid = fmaxf(lid, h->nodes[i].up);
-        floor = fmaxf(floor, h->nodes[i].down);
+        lid = greater(lid, h->nodes[i].up);
+        floor = greater(floor, h->nodes[i].down);
     }
-    return fmaxf(lid - h->lowest, h->highest + floor) + 1;
+    return greater(lid - h->lowest, h->highest + floor) + 1;
 }
 
 static uint32_t add_vertex(gtx_proxies *out, const node *n, float z, uint32_t tag)
@@ -415,6 +430,7 @@ static void emit(const hull *h, uint32_t tag, gtx_proxies *out)
 
 static void build(hull *h)
 {
+    find_corners(h);
     for (uint32_t b = 0; b < h->block_count; ++b)
         look_at_block(h, b % h->blocks[0], b / h->blocks[0]);
     for (uint32_t b = 0; b < h->block_count; ++b)
@@ -432,9 +448,10 @@ static size_t allocate(hull *h, const gtx_allocator *hooks)
 {
     h->block_count = (size_t)h->blocks[0] * h->blocks[1];
     h->node_count = ((size_t)h->blocks[0] + 1) * (h->blocks[1] + 1);
+    const size_t corners = (size_t)h->grid->nodes_x * h->grid->nodes_y;
     const size_t size =
         h->block_count * (sizeof *h->sums + 2 * sizeof *h->triangles + 5 * sizeof *h->edges +
-                          sizeof *h->block) + h->node_count * sizeof *h->nodes;
+                          sizeof *h->block) + h->node_count * sizeof *h->nodes + corners;
     h->sums = gtx_alloc_array(hooks, size, 1);
     if (!h->sums)
         return 0;
@@ -442,6 +459,7 @@ static size_t allocate(hull *h, const gtx_allocator *hooks)
     h->triangles = (triangle *)(h->nodes + h->node_count);
     h->edges = (edge *)(h->triangles + 2 * h->block_count);
     h->block = (uint8_t *)(h->edges + 5 * h->block_count);
+    h->corner = h->block + h->block_count;
     return size;
 }
 

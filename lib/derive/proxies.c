@@ -13,36 +13,32 @@ typedef struct extent {
     uint32_t min[3], max[3];
 } extent;
 
-static void include(extent *e, uint32_t x, uint32_t y, uint32_t code)
+static void include(extent *e, uint32_t x, uint32_t y)
 {
-    const uint32_t p[3] = {x, y, code};
-    for (int a = 0; a < 3; ++a) {
+    const uint32_t p[2] = {x, y};
+    for (int a = 0; a < 2; ++a) {
         e->min[a] = p[a] < e->min[a] ? p[a] : e->min[a];
         e->max[a] = p[a] > e->max[a] ? p[a] : e->max[a];
     }
 }
 
-static extent solid_extent(const gtx_asset *asset, const gtx_patch *patch)
+static extent solid_extent(const gtx_grid *g)
 {
     extent e = {{UINT32_MAX, UINT32_MAX, UINT32_MAX}, {0, 0, 0}};
-    for (uint32_t y = 0; y + 1 < patch->rect[3]; ++y)
-        for (uint32_t x = 0; x + 1 < patch->rect[2]; ++x) {
-            uint32_t corner[4];
-            for (uint32_t k = 0; k < 4; ++k)
-                corner[k] = gtx_height_code(asset, patch, x + (k & 1), y + (k >> 1));
-            if (corner[0] && corner[1] && corner[2] && corner[3])
-                for (uint32_t k = 0; k < 4; ++k)
-                    include(&e, x + (k & 1), y + (k >> 1), corner[k]);
-        }
+    for (uint32_t y = 0; y + 1 < g->nodes_y; ++y)
+        for (uint32_t x = 0; x + 1 < g->nodes_x; ++x)
+            if (g->solid[(size_t)y * (g->nodes_x - 1) + x]) {
+                include(&e, x, y);
+                include(&e, x + 1, y + 1);
+            }
     /* Coarse nodes take the codes of texels, with a cell or not, or their means. */
-    for (uint32_t y = 0; e.max[0] && y < patch->rect[3]; ++y)
-        for (uint32_t x = 0; x < patch->rect[2]; ++x) {
-            const uint32_t code = gtx_height_code(asset, patch, x, y);
-            if (code && code < e.min[2])
-                e.min[2] = code;
-            if (code > e.max[2])
-                e.max[2] = code;
-        }
+    for (size_t n = 0; e.max[0] && n < (size_t)g->nodes_x * g->nodes_y; ++n) {
+        const uint32_t code = g->code[n];
+        if (code && code < e.min[2])
+            e.min[2] = code;
+        if (code > e.max[2])
+            e.max[2] = code;
+    }
     return e;
 }
 
@@ -106,16 +102,16 @@ gtx_result gtx_proxies_reserve(gtx_proxies *p, size_t vertices, size_t indices,
     return made ? GTX_OK : gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the proxies");
 }
 
-gtx_result gtx_add_box(const gtx_asset *asset, uint32_t patch, float grow,
+gtx_result gtx_add_box(uint32_t patch, const gtx_grid *finest, float grow,
                        const gtx_allocator *allocator, gtx_proxies *out, gtx_error *error)
 {
-    if (!asset || !out || patch >= asset->info.patch_count || !(grow >= 0) || isinf(grow))
+    if (!finest || finest->level || !out || !(grow >= 0) || isinf(grow))
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
-                        "a box needs an asset, its patch and a finite growth >= 0");
+                        "a box needs a patch's level 0 and a finite growth >= 0");
     gtx_result result =
         gtx_proxies_reserve(out, GTX_BOX_VERTICES, GTX_BOX_INDICES, allocator, error);
     if (!result) {
-        const extent e = solid_extent(asset, &asset->patches[patch]);
+        const extent e = solid_extent(finest);
         append_box(out, patch, &e, grow);
     }
     return result;

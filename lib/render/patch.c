@@ -91,41 +91,53 @@ static void hold(float sphere[4], float record[GTX_RECORD_TEXELS][4], const gtx_
     sphere[3] = (float)(radius * 1.0001);
 }
 
+/* Trims a level, and derives its cells, its slabs and its hull. */
+static gtx_result derive_level(const gtx_asset *asset, uint32_t patch, gtx_grid *grid,
+                               const gtx_allocator *allocator, gtx_derived *out, gtx_error *error)
+{
+    const uint32_t k = grid->level;
+    gtx_proxies *hulls = &out->proxies[1 + k];
+    const uint32_t first = hulls->vertex_count;
+    gtx_grid_trim(asset, patch, grid);
+    gtx_grid_cells(grid, asset->info.height_bits, out->row_texels[k], out->cells[k]);
+    gtx_grid_slabs(&asset->patches[patch], grid, out->slabs[k]);
+    gtx_result result = gtx_add_hull(asset, patch, grid, hull_margin, allocator, hulls,
+                                     &out->record[8 + k / 4][k % 4], error);
+    if (!result)
+        hold(out->facts.hull, out->record, hulls, first);
+    return result;
+}
+
 gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_allocator *allocator,
                             gtx_derived *out, gtx_error *error)
 {
     const gtx_patch *p = &asset->patches[patch];
     gtx_grid finest = {0}, grid;
-    gtx_result result =
-        gtx_add_box(asset, patch, hull_margin, allocator, &out->proxies[0], error);
+    gtx_proxies *boxes = &out->proxies[0];
+    float *errors = out->facts.error;
+    gtx_result result = gtx_grid_build(asset, patch, 0, allocator, &finest, error);
     if (!result)
-        result = gtx_grid_build(asset, patch, 0, allocator, &finest, error);
-    if (result)
-        return result;
-    memset(out->record, 0, sizeof out->record);
-    fill_frame(out->record, p, asset->info.height_bits);
-    fill_box(out->record,
-             out->proxies[0].vertices + out->proxies[0].vertex_count - GTX_BOX_VERTICES);
-    memcpy(out->facts.sphere, p->sphere, sizeof out->facts.sphere);
-    memcpy(out->facts.hull, p->sphere, sizeof out->facts.hull);
-    out->facts.hull[3] = 0;
-    for (uint32_t k = 0; !result && k < asset->info.mip_count; ++k) {
+        result = gtx_add_box(patch, &finest, hull_margin, allocator, boxes, error);
+    if (!result) {
+        memset(out->record, 0, sizeof out->record);
+        memset(&out->facts, 0, sizeof out->facts);
+        fill_frame(out->record, p, asset->info.height_bits);
+        fill_box(out->record, boxes->vertices + boxes->vertex_count - GTX_BOX_VERTICES);
+        memcpy(out->facts.sphere, p->sphere, sizeof out->facts.sphere);
+        memcpy(out->facts.hull, p->sphere, 3 * sizeof *p->sphere);
+    }
+    for (uint32_t k = 1; !result && k < asset->info.mip_count; ++k) {
         result = gtx_grid_build(asset, patch, k, allocator, &grid, error);
         if (result)
             break;
-        float *errors = out->facts.error;
-        errors[k] = k ? (float)gtx_grid_error(asset, patch, &finest, &grid) : 0;
-        if (k && errors[k] < errors[k - 1])
+        errors[k] = (float)gtx_grid_error(asset, patch, &finest, &grid);
+        if (errors[k] < errors[k - 1])
             errors[k] = errors[k - 1];
-        gtx_grid_trim(asset, patch, &grid);
-        gtx_grid_cells(&grid, asset->info.height_bits, out->row_texels[k], out->cells[k]);
-        gtx_grid_slabs(p, &grid, out->slabs[k]);
-        const uint32_t first = out->proxies[1 + k].vertex_count;
-        result = gtx_add_hull(asset, patch, &grid, hull_margin, allocator, &out->proxies[1 + k],
-                              &out->record[8 + k / 4][k % 4], error);
-        hold(out->facts.hull, out->record, &out->proxies[1 + k], first);
+        result = derive_level(asset, patch, &grid, allocator, out, error);
         gtx_grid_free(&grid, allocator);
     }
+    if (!result) /* last, for errors are measured against what is not trimmed */
+        result = derive_level(asset, patch, &finest, allocator, out, error);
     gtx_grid_free(&finest, allocator);
     return result;
 }

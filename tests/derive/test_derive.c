@@ -262,12 +262,23 @@ static double volume_of(const gtx_proxies *p, uint32_t tag, bool closed)
     return volume;
 }
 
+static gtx_result add_box(const gtx_asset *asset, float grow, const gtx_allocator *hooks,
+                          gtx_proxies *out)
+{
+    gtx_grid finest;
+    gtx_result result = gtx_grid_build(asset, 0, 0, NULL, &finest, NULL);
+    if (!result)
+        result = gtx_add_box(0, &finest, grow, hooks, out, NULL);
+    gtx_grid_free(&finest, NULL);
+    return result;
+}
+
 static void boxes_fit(void **state)
 {
     (void)state;
     gtx_asset *asset = make(&RAGGED, 7, 5);
     gtx_proxies boxes = {0};
-    assert_int_equal(gtx_add_box(asset, 0, 0.5f, NULL, &boxes, NULL), GTX_OK);
+    assert_int_equal(add_box(asset, 0.5f, NULL, &boxes), GTX_OK);
     float low[3] = {9, 9, 99}, high[3] = {-9, -9, -9};
     for (uint32_t i = 0; i < boxes.vertex_count; ++i) {
         const float p[3] = {boxes.vertices[i].x, boxes.vertices[i].y, boxes.vertices[i].z};
@@ -284,9 +295,9 @@ static void boxes_fit(void **state)
     }
     assert_float_equal(volume_of(&boxes, 0, true), 7.0 * 3.0 * 9.0, 1e-3);
     gtx_proxies_free(&boxes, NULL);
-    assert_int_equal(gtx_add_box(asset, 0, NAN, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
-    assert_int_equal(gtx_add_box(asset, 0, -1, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
-    assert_int_equal(gtx_add_box(asset, 1, 1, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
+    assert_int_equal(add_box(asset, NAN, NULL, &boxes), GTX_ERROR_ARGUMENT);
+    assert_int_equal(add_box(asset, -1, NULL, &boxes), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_add_box(0, NULL, 1, NULL, &boxes, NULL), GTX_ERROR_ARGUMENT);
     gtx_close(asset);
 }
 
@@ -307,7 +318,7 @@ static void boxes_hold_the_nodes_of_all_levels(void **state)
     gtx_asset *asset = fixture_build(&patch, 1, 8, 4);
     gtx_proxies boxes = {0};
     uint32_t highest = 0;
-    assert_int_equal(gtx_add_box(asset, 0, 0, NULL, &boxes, NULL), GTX_OK);
+    assert_int_equal(add_box(asset, 0, NULL, &boxes), GTX_OK);
     const gtx_proxy_vertex *low = &boxes.vertices[0], *high = &boxes.vertices[7];
     for (uint32_t level = 0; level < 4; ++level) {
         gtx_grid grid;
@@ -345,7 +356,7 @@ static void a_patch_without_cells_has_a_point_and_no_hull(void **state)
     gtx_asset *asset = make(&holes, 7, 3);
     gtx_proxies boxes = {0};
     float thickness;
-    assert_int_equal(gtx_add_box(asset, 0, 1, NULL, &boxes, NULL), GTX_OK);
+    assert_int_equal(add_box(asset, 1, NULL, &boxes), GTX_OK);
     assert_int_equal(boxes.index_count, GTX_BOX_INDICES);
     for (uint32_t v = 0; v < boxes.vertex_count; ++v)
         assert_true(boxes.vertices[v].x == 0 && boxes.vertices[v].y == 0);
@@ -436,7 +447,7 @@ static void hulls_are_thin(void **state)
     gtx_asset *asset = fixture_sphere(2, 64, 8);
     gtx_proxies box = {0}, hull;
     float thickness;
-    assert_int_equal(gtx_add_box(asset, 0, 0, NULL, &box, NULL), GTX_OK);
+    assert_int_equal(add_box(asset, 0, NULL, &box), GTX_OK);
     hull = hull_of(asset, 0, 0, &thickness);
     double above = 0;
     for (int i = 12; i < 52; ++i)
@@ -493,7 +504,7 @@ static void memory_may_run_out(void **state)
         gtx_proxies proxies = {0};
         float thickness;
         m.left = n;
-        gtx_result result = gtx_add_box(asset, 0, 0, &hooks, &proxies, NULL);
+        gtx_result result = add_box(asset, 0, &hooks, &proxies);
         if (!result)
             result = gtx_add_hull(asset, 0, &grid, 0, &hooks, &proxies, &thickness, NULL);
         gtx_proxies_free(&proxies, &hooks);
