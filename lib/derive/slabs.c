@@ -94,15 +94,12 @@ static void take_cell(const block *b, uint32_t i, uint32_t j, gtx_slab *s)
     const uint16_t *next = row + b->grid->nodes_x;
     const float x[2] = {texel(b, 0, i), texel(b, 0, i + 1)};
     const float y[2] = {texel(b, 1, j), texel(b, 1, j + 1)};
-    float over[2][2];
-    for (int v = 0; v < 2; ++v)
-        for (int u = 0; u < 2; ++u) {
-            over[v][u] = (float)(v ? next : row)[u] - s->slope[0] * x[u] - s->slope[1] * y[v];
-            extend(s->height, over[v][u]);
-        }
+    const float code[2][2] = {{row[0], row[1]}, {next[0], next[1]}};
+    for (int k = 0; k < 4; ++k)
+        extend(s->height, code[k >> 1][k & 1] - s->slope[0] * x[k & 1] - s->slope[1] * y[k >> 1]);
     for (int k = 0; k < 2; ++k) {
-        extend(s->rise_x, (over[k][1] - over[k][0]) / (x[1] - x[0]));
-        extend(s->rise_y, (over[1][k] - over[0][k]) / (y[1] - y[0]));
+        extend(s->rise_x, (code[k][1] - code[k][0]) / (x[1] - x[0]) - s->slope[0]);
+        extend(s->rise_y, (code[1][k] - code[0][k]) / (y[1] - y[0]) - s->slope[1]);
     }
 }
 
