@@ -19,21 +19,23 @@ VERSION := 0.1.0
 SOVERSION := 0
 
 # ---- rooms: what each needs. Imports run one way, from right to left ------------------------------
-ROOMS_CORE := base asset derive trace render
-ROOMS_COOK := image mesh chart bake measure cook
+ROOMS_CORE := base asset derive trace edit render
+ROOMS_COOK := image mesh grid chart bake measure cook
 
 needs_base    := base
 needs_asset   := base asset
 needs_derive  := $(needs_asset) derive
 needs_trace   := $(needs_derive) trace
+needs_edit    := $(needs_trace) edit
 needs_image   := base image
 needs_host    := base image host
 needs_render  := $(needs_derive) render
 needs_mesh    := base image mesh
+needs_grid    := $(needs_mesh) grid
 needs_chart   := $(needs_mesh) chart
-needs_bake    := $(needs_asset) image mesh chart bake
+needs_bake    := $(needs_asset) image mesh grid chart bake
 needs_measure := $(needs_trace) image mesh measure
-needs_cook    := $(needs_trace) image mesh chart bake measure cook
+needs_cook    := $(needs_trace) image mesh grid chart bake measure cook
 
 # ---- flags ---------------------------------------------------------------------------------------
 CC  ?= cc
@@ -123,7 +125,7 @@ $(lib_cook): $(call objects_of,$(ROOMS_COOK))
 	$(Q)rm -f $@ && $(AR) rcs $@ $^
 
 # What a shared library exports: the functions that its headers declare, and nothing else.
-$(out)/gen/libgeotex.map: include/geotex/geotex.h include/geotex/render.h
+$(out)/gen/libgeotex.map: include/geotex/geotex.h include/geotex/edit.h include/geotex/render.h
 $(out)/gen/libgeotex-cook.map: include/geotex/cook.h
 $(out)/gen/%.map: Makefile
 	@mkdir -p $(@D)
@@ -165,7 +167,7 @@ $(out)/samples/%: $(out)/samples/%.o $(call objects_of,host image) $(lib_cook) $
 # ---- installation: exactly the files of lib/package/files, below PREFIX --------------------------
 fill = sed -e 's|@PREFIX@|$(PREFIX)|g' -e 's|@VERSION@|$(VERSION)|g' -e 's|@SOVERSION@|$(SOVERSION)|g' \
   -e 's|@CORE_LIBS@|$(call libs_of,asset)|g' -e 's|@COOK_LIBS@|$(call libs_of,mesh)|g'
-verbs := cook info validate unpack pack render view compare bench
+verbs := cook horizons info validate unpack pack filter render view compare bench
 to    := $(DESTDIR)$(PREFIX)
 
 $(out)/gen/gtx.1: lib/package/gtx.1.in lib/package/verbs.awk $(command)
@@ -215,11 +217,14 @@ needs_consumer := base
 needs_corpus := base
 needs_samples := $(needs_image)
 needs_threads := $(needs_cook)
-extra_needs_render  := trace host image
+extra_needs_render  := trace edit host image
+extra_needs_trace   := image mesh grid chart bake measure cook
 extra_needs_bake    := derive trace host
 extra_needs_cook    := host
 extra_needs_chart   :=
-extra_needs_measure := chart bake cook
+extra_needs_measure := grid chart bake cook
+# Embree ships no pkg-config file; its test asks for the header in the same way.
+libs_test_embree = $(shell printf '\043include <embree3/rtcore.h>' | $(CXX) -E -x c++ - >/dev/null 2>&1 && echo -lembree3)
 # An archive: a test takes from it only what it asks for, and so needs no room but its own.
 common_tests := $(out)/tests/common.a
 $(common_tests): $(patsubst %,$(out)/%.o,$(basename $(wildcard tests/common/*.c)))
@@ -229,7 +234,7 @@ define test_rule
 $(out)/$(basename $(1)): $(out)/$(basename $(1)).o $(common_tests) \
     $(call objects_of,$(call test_needs,$(call test_room,$(1))))
 	$$(say) LINK $$@
-	$$(Q)$$(CXX) $$(flags) -o $$@ $$^ $$(call libs_of,$$(call test_needs,$(call test_room,$(1)))) $$(call pkg,--libs,cmocka)
+	$$(Q)$$(CXX) $$(flags) -o $$@ $$^ $$(call libs_of,$$(call test_needs,$(call test_room,$(1)))) $$(call pkg,--libs,cmocka) $$(libs_$(notdir $(basename $(1))))
 endef
 $(foreach t,$(test_sources),$(eval $(call test_rule,$(t))))
 $(out)/tests/%: cflags += -Itests -D_XOPEN_SOURCE=700 $(call pkg,--cflags,cmocka)
@@ -241,7 +246,7 @@ $(out)/gtx_decode: format/gtx_decode.c
 	$(say) CC $@
 	$(Q)$(CC) -std=c99 $(flags) $(warnings) $(if $(filter 1,$(zstd)),,-DNO_ZSTD) -o $@ $< $(libs_asset) -lm
 $(filter $(out)/tests/asset/%,$(test_bins)): | $(out)/gtx_decode
-$(filter $(out)/tests/mesh/%,$(test_bins)): | $(module)
+$(filter $(out)/tests/mesh/% $(out)/tests/grid/%,$(test_bins)): | $(module)
 
 build-tests: $(test_bins) $(out)/gtx_decode all
 
@@ -294,6 +299,17 @@ run-bench:
 	@$(build)/gtx cook $(MODEL) --shell-levels 5 -o $(build)/demo/bench.gtx
 	@$(build)/gtx bench $(build)/demo/bench.gtx $(MODEL) $(BENCH)
 
+bench-rays: ## rays a second into MODEL (default: the sculpt), and what shadows by ray cost a frame
+	@$(MAKE) --no-print-directory deps
+	@$(MAKE) --no-print-directory -j$$(nproc) all $(out)/tests/bench/rays
+	@$(MAKE) --no-print-directory run-bench-rays
+
+run-bench-rays:
+	@mkdir -p $(build)/demo
+	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
+	@$(build)/gtx cook $(MODEL) -o $(build)/demo/rays.gtx
+	@$(out)/tests/bench/rays $(build)/demo/rays.gtx
+
 # Models and their charts: the paper's bunny where it is, and MODEL (default: the sculpt without it).
 CHARTS ?= 0
 bunny := $(wildcard $(GEOTEX_MODELS)/scans/bunny.ply)
@@ -309,17 +325,43 @@ run-paper-tables:
 	$(if $(filter $(build)/demo/sculpt.glb,$(table_models)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
 	@$(out)/tests/bench/paper_tables $(build)/paper $(table_models)
 
+# A figure is a program tests/bench/NAME.cpp that measures, prints, and writes NAME.json and NAME.svg;
+# what it takes besides the folder is arguments_NAME.
+figures := figure2 figure7 figure9
+reek    := $(wildcard $(GEOTEX_MODELS)/heightfields/reek_1588x1188)
+arguments_figure7 = $(MODEL)
+arguments_figure9 := $(or $(reek),own)
+bench_objects := $(addprefix $(out)/lib/cli/,bench.o bench_mesh.o bench_scene.o polygons.o)
+paper-figures: ## the paper's figures of frame rates, measured here: tables, JSON and curves in build/paper
+	@$(MAKE) --no-print-directory deps
+	@$(MAKE) --no-print-directory -j$$(nproc) all $(figures:%=$(out)/tests/bench/%)
+	@$(MAKE) --no-print-directory run-paper-figures
+
+run-paper-figures:
+	@mkdir -p $(build)/demo $(build)/paper
+	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
+	@$(foreach f,$(figures),$(out)/tests/bench/$(f) $(build)/paper $(arguments_$(f)) &&) true
+
+$(figures:%=$(out)/tests/bench/%): $(out)/tests/bench/%: $(out)/tests/bench/%.o $(out)/tests/bench/figure.o \
+    $(bench_objects) $(call objects_of,host image) $(lib_cook) $(lib_core) | $(module)
+	$(say) LINK $@
+	$(Q)ln -sf $(abspath $(module)) $(@D) && $(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host image) -lmeshoptimizer
+
 $(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o $(out)/tests/bench/equal_texels.o \
     $(lib_cook) $(lib_core)
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh)
+
+$(out)/tests/bench/rays: $(out)/tests/bench/rays.o $(call objects_of,host image) $(lib_core)
+	$(say) LINK $@
+	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset host image)
 
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev nlohmann-json3-dev \
             libmeshoptimizer-dev \
             libglfw3-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri \
             libopenimageio-dev libzstd-dev zlib1g-dev libcmocka-dev glslang-tools \
-            ninja-build cmake xvfb
+            ninja-build cmake xvfb libembree-dev
 
 deps: ## install the Debian packages that are missing (apt-get, with sudo when not root)
 	@missing=; for p in $(packages); do \
@@ -338,7 +380,8 @@ clean: ## remove what was built
 	rm -rf $(build)
 
 .PHONY: all install uninstall dist build-tests run-tests test check demo run-demo bench run-bench \
-        paper-tables run-paper-tables deps help clean
+        bench-rays run-bench-rays paper-tables run-paper-tables paper-figures run-paper-figures \
+        deps help clean
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(shell [ -d $(out) ] && find $(out) -name '*.d')

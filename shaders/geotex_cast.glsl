@@ -8,30 +8,6 @@
  * above count, from below only when the sheet is two-sided; a point outside the outline does not
  * count and the search goes on behind it. Takes no derivative. */
 
-/* Height of the ray above a cell's bilinear patch as x + y s + z s^2, with s the way from `entry`,
- * which is relative to the cell's corner. */
-vec3 gtx_gap(vec4 height, vec3 entry, vec3 direction)
-{
-    float hx = height.y - height.x, hy = height.z - height.x;
-    float hxy = height.x - height.y - height.z + height.w;
-    return vec3(entry.z - (height.x + hx * entry.x + (hy + hxy * entry.x) * entry.y),
-                direction.z - (hx * direction.x + hy * direction.y +
-                               hxy * (entry.x * direction.y + entry.y * direction.x)),
-                -hxy * direction.x * direction.y);
-}
-
-/* The root where the gap falls (x) and the one where it rises (y), each by the form that does not
- * cancel. A root that does not exist comes out far away. */
-vec2 gtx_roots(vec3 gap)
-{
-    const float tiny = 1e-30;
-    float side = gap.y < 0.0 ? 1.0 : -1.0;
-    float r = sqrt(max(gap.y * gap.y - 4.0 * gap.z * gap.x, 0.0)) + abs(gap.y);
-    float stable = 2.0 * side * gap.x / max(r, tiny);
-    float other = 0.5 * side * r / (abs(gap.z) < tiny ? tiny : gap.z);
-    return gap.y < 0.0 ? vec2(stable, other) : vec2(other, stable);
-}
-
 /* The cell that a ray is in. x and y count in cells of the level. */
 struct gtx_walk {
     ivec2 cell;

@@ -22,6 +22,10 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
     float steep = abs(in_box.z) / max(length(in_box), 1e-30);
     int linear_steps = int(mix(most_linear, least_linear, steep));
     int binary_steps = int(mix(least_binary, most_binary, steep) + 0.5);
+    if (gtx_search.x > 0.0) {
+        linear_steps = int(gtx_search.x);
+        binary_steps = int(gtx_search.y);
+    }
 
     vec4 height;
     ivec2 cell;

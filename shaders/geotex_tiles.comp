@@ -5,14 +5,15 @@
  * geotex_cast.glsl before it. */
 layout(local_size_x = 64) in;
 
+/* 2^31 + 2^28 * back + 2^24 * level + patch, t, x, y; or 0 */
 layout(rgba32ui, binding = 0) uniform writeonly highp uimage2D gtx_found;
-                                        /* patch + 2^24 * level + 2^28 * back + 2^31, t, x, y; or 0 */
-uniform highp usamplerBuffer gtx_lists; /* for each tile x, y, first, end; then the slabs of all, as
-                                           slab, patch, least t */
-uniform highp samplerBuffer gtx_slabs;  /* 3 texels a slab, as in lib/derive/derive.h */
-uniform highp samplerBuffer gtx_rays;   /* 5 texels a patch: columns to grid space of gtx_place[3],
-                                           [6], [4], [5], and the rectangle; w of the first three:
-                                           level, page, two-sided */
+/* For each tile x, y, first, end; then the slabs of all: slab, patch, least t. */
+uniform highp usamplerBuffer gtx_lists;
+/* 3 texels a slab, as in lib/derive/derive.h. */
+uniform highp samplerBuffer gtx_slabs;
+/* 5 texels a patch: columns to grid space of gtx_place[3], [6], [4], [5], and the rectangle; w of the
+ * first three: level, page, two-sided. */
+uniform highp samplerBuffer gtx_tile_rays;
 
 struct gtx_candidate {
     int patch_index;
@@ -28,13 +29,13 @@ bool gtx_meets(uvec3 entry, vec2 pixel, vec2 range, float best, out gtx_candidat
     int slab = int(entry.x) * 3, rays = int(entry.y) * 5;
     c.block = texelFetch(gtx_slabs, slab);
     vec4 lid = texelFetch(gtx_slabs, slab + 1);
-    vec4 origin = texelFetch(gtx_rays, rays), direction = texelFetch(gtx_rays, rays + 1);
-    vec4 x = texelFetch(gtx_rays, rays + 2);
+    vec4 origin = texelFetch(gtx_tile_rays, rays), direction = texelFetch(gtx_tile_rays, rays + 1);
+    vec4 x = texelFetch(gtx_tile_rays, rays + 2);
     c.patch_index = int(entry.y);
     c.level = origin.w;
     c.page = direction.w;
     c.two_sided = x.w;
-    c.line = gtx_line_of(pixel, origin.xyz, x.xyz, texelFetch(gtx_rays, rays + 3).xyz,
+    c.line = gtx_line_of(pixel, origin.xyz, x.xyz, texelFetch(gtx_tile_rays, rays + 3).xyz,
                          direction.xyz);
     vec3 o = c.line.origin, d = c.line.direction;
     o.z -= dot(lid.xy, o.xy);
@@ -49,7 +50,7 @@ bool gtx_meets(uvec3 entry, vec2 pixel, vec2 range, float best, out gtx_candidat
 
 bool gtx_cast_slab(gtx_candidate c, out gtx_hit hit)
 {
-    gtx_sheet sheet = gtx_sheet_of(texelFetch(gtx_rays, c.patch_index * 5 + 4),
+    gtx_sheet sheet = gtx_sheet_of(texelFetch(gtx_tile_rays, c.patch_index * 5 + 4),
                                    vec4(0.0, 0.0, c.page, c.two_sided), int(c.level));
     sheet.first = ivec2(c.block.xy + 0.5) >> sheet.level;
     sheet.last = (ivec2(c.block.zw + 0.5) - 1) >> sheet.level;
@@ -61,7 +62,8 @@ void main()
     uvec4 tile = texelFetch(gtx_lists, int(gl_WorkGroupID.x));
     /* Four by two pixels side by side in a wide processor: their rays stay together. */
     int lane = int(gl_LocalInvocationIndex);
-    ivec2 pixel = ivec2(tile.xy) * 8 + ivec2(lane >> 1 & 4 | lane & 3, lane >> 3 & 6 | lane >> 2 & 1);
+    ivec2 pixel = ivec2(tile.xy) * 8 +
+                  ivec2(lane >> 1 & 4 | lane & 3, lane >> 3 & 6 | lane >> 2 & 1);
     vec2 at = vec2(pixel) + 0.5, zw, zw_step;
     gtx_clip_along(at, zw, zw_step);
     vec2 range = vec2(-1e30, 1e30);

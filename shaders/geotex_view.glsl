@@ -10,6 +10,8 @@ GTX_UNIFORM vec4 gtx_detail;            /* x: pixels a world unit at clip w = 1,
                                            window depth, -1 when the greater, 0 when neither;
                                            z: the level of boxes;
                                            w: the error allowed, in pixels */
+GTX_UNIFORM vec4 gtx_search;            /* of geotex_paper.glsl, x, y: linear and binary steps;
+                                           0: balanced */
 GTX_UNIFORM vec4 gtx_maps;              /* x: last mip level of normals and colours; y: 1 when the
                                            model has colours; z: scale of its emission, or 0;
                                            w: 1 when it has materials */

@@ -1,4 +1,4 @@
-/* Cooking: triangle meshes -> `.gtx` assets. Links libgeotex-cook (C++17 inside).
+/* Cooking: triangle meshes and height grids -> `.gtx` assets. Links libgeotex-cook (C++17 inside).
  *
  * The line is the paper's (section 5): import, clean, partition, overlap, frame, bake, dilate,
  * pack, shell, measure. The same input and options give the same bytes, whatever the thread count.
@@ -119,6 +119,110 @@ GTX_API gtx_result gtx_cook_file(const char *input, const char *output, const gt
 GTX_API gtx_result gtx_cook_memory(const void *data, size_t size, const char *name,
                                    const gtx_cook_desc *desc, gtx_asset **out, gtx_report *report,
                                    gtx_error *error);
+
+/* A shell for an asset that has no source mesh: one whose maps were edited or filtered, or that was
+ * made of height grids. */
+typedef struct gtx_shell_desc {
+    uint32_t levels;              /* at most, 1..5; 0 = 5 */
+    uint32_t threads;             /* up to 1024; 0 = all processors */
+    gtx_progress_fn progress;     /* may be NULL */
+    void *progress_user;
+    const gtx_allocator *allocator;   /* of the asset that comes out */
+    uint32_t reserved[6];
+} gtx_shell_desc;
+
+/* Makes a copy of `asset` whose shell is simplified from what its maps show, in place of any that
+ * it had; gtx_close frees it. Sheets that overlap are cut where each is as deep inside its outline as
+ * the other and welded along that line, so that neighbours share their border vertices. The finest
+ * level aims at a ninth of the asset's source_triangles (of two triangles a texel where that is 0);
+ * an `error` is a distance from the maps' own surface. The same asset and options give the same
+ * bytes. `desc` may be NULL. Any thread.
+ * Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, INTERNAL. */
+GTX_API gtx_result gtx_cook_shell(const gtx_asset *asset, const gtx_shell_desc *desc,
+                                  gtx_asset **out, gtx_error *error);
+
+/* ---- height grids ------------------------------------------------------------------------- */
+
+/* Values at the nodes of a lattice: a horizon, or terrain. Node (i, j) lies at
+ *   origin + R(rotation) (i * spacing[0], j * spacing[1])
+ * seen from above: x to the east, y to the north. */
+typedef struct gtx_height_grid {
+    uint32_t nx, ny;              /* nodes along x and y */
+    const float *values;          /* nx * ny, row by row from the origin; NaN where there is none */
+    const float *property;        /* likewise, what to colour by; NULL: by the values */
+    double origin[2], spacing[2]; /* object units; spacing > 0 */
+    double rotation;              /* degrees, counter-clockwise */
+    gtx_allocator allocator;      /* gave `values`, where gtx_height_grid_read did */
+    uint32_t reserved[4];
+} gtx_height_grid;
+
+typedef struct gtx_height_grid_desc {
+    double missing;               /* with has_missing: this value says that there is none */
+    uint32_t has_missing;
+    uint32_t reserved[5];
+    double range[2];              /* what the least and the greatest code of an image stand for, the
+                                     missing one left out; both 0: codes are the values */
+    const gtx_allocator *allocator;
+} gtx_height_grid_desc;
+
+/* Reads a grid: IRAP classic and binary (".irap", ".gri"), ZMAP+ text, each also gzipped, which say
+ * where they lie; or any image of 8 or 16 bits or of floats, whose top row is the northernmost,
+ * with origin 0 and spacing 1, for the caller to change. A format's own way to say that there is
+ * no value is known (9999900, 1e30; -32767 and below in 16 bits with a sign). The values are of the
+ * descriptor's allocator, and freed by gtx_height_grid_free. `desc` may be NULL.
+ * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT (2^28 nodes), READ, INPUT, UNSUPPORTED. */
+GTX_API gtx_result gtx_height_grid_read(const char *path, const gtx_height_grid_desc *desc,
+                                        gtx_height_grid *out, gtx_error *error);
+/* Frees the values of a grid that was read, and zeroes it. NULL and zeros are fine. */
+GTX_API void gtx_height_grid_free(gtx_height_grid *grid);
+
+typedef enum gtx_colors {
+    GTX_COLORS_VIRIDIS = 0,
+    GTX_COLORS_RAINBOW = 1,       /* blue, cyan, green, yellow, red */
+    GTX_COLORS_NONE = 2           /* an asset without colour; not for gtx_color */
+} gtx_colors;
+
+/* The sRGB colour of a value of 0..1, clamped, as the maps have it: for a legend. */
+GTX_API void gtx_color(gtx_colors colors, double value, uint8_t rgb[3]);
+
+typedef struct gtx_horizons_desc {
+    gtx_colors colors;
+    uint32_t depths;              /* 1: values count downwards */
+    double vertical;              /* exaggeration, > 0; 0 = 1 */
+    double color_range[2];        /* values at the ends of the colours; both 0 = the least and the
+                                     greatest that there are */
+    uint32_t one_surface;         /* 1: the grids are parts of one lattice, such as neighbouring
+                                     tiles of terrain, and become one surface without a seam */
+    uint32_t tile;                /* most texels along a patch, 16..512; 0 = 128 */
+    uint32_t height_bits;         /* 8 or 16; 0 = 8 */
+    uint32_t mips;                /* 1..8; 0 = 4 */
+    uint32_t shell_levels;        /* polygon levels of detail, 0..5, made of the maps */
+    uint32_t threads;             /* up to 1024; 0 = all processors */
+    float unit;                   /* metres per object unit; 0 = 1 */
+    gtx_progress_fn progress;     /* may be NULL */
+    void *progress_user;
+    const gtx_allocator *allocator;   /* of the asset */
+    uint32_t reserved[6];
+} gtx_horizons_desc;
+
+typedef struct gtx_horizons_result {
+    uint64_t nodes, triangles;    /* nodes with a value; two triangles where four make a square */
+    uint32_t patches;
+    double height_rms, height_max;    /* how far heights are from the values, object units */
+    double color_range[2];        /* values at the ends of the colours */
+} gtx_horizons_result;
+
+/* Makes one asset of grids, tile by tile, without a mesh between (paper, section 6.2). East is +X,
+ * up +Y, north -Z; the asset's anchor is in the middle of the grids. Every tile has a step of
+ * heights of its own, and neighbours the same heights where they meet, so that no border shows.
+ * Nodes without a value are empty texels; both sides are seen. Grids have the same numbers of nodes, unless they
+ * are parts of one surface. Where a property is NaN the surface is grey. The same grids and options
+ * give the same bytes. `desc`, `result` and `error` may be NULL; gtx_close frees the asset.
+ * Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, INPUT, EMPTY (a grid without four
+ * neighbouring values). Any thread. */
+GTX_API gtx_result gtx_horizons(const gtx_height_grid *grids, uint32_t count,
+                                const gtx_horizons_desc *desc, gtx_asset **out,
+                                gtx_horizons_result *result, gtx_error *error);
 
 /* The measures of an asset against its source model, as JSON (format/compare-report.schema.json). */
 typedef struct gtx_compare_desc {

@@ -339,6 +339,80 @@ GTX_API void gtx_caster_destroy(gtx_caster *caster);
 GTX_API gtx_result gtx_raycast(const gtx_caster *caster, const gtx_ray *rays, gtx_hit *hits,
                                size_t count, uint32_t flags);
 
+/* The surface under points, for what stands, falls or drives: casts along the vertical `up`, which
+ * need not be normalised, from `step` object units above each point (0 or more, so that a surface a
+ * little above it counts too) down for ever. hit.t is the height of the point above the surface, in
+ * object units: negative when the surface is above it, infinite when there is none. Flags as for
+ * gtx_raycast, which this is. Errors: ARGUMENT (also an `up` without a direction). */
+GTX_API gtx_result gtx_drop(const gtx_caster *caster, const float up[3], float step,
+                            const float (*points)[3], gtx_hit *hits, size_t count,
+                            uint32_t flags);
+
+/* The colour map at hits: linear red, green, blue and alpha, each 0..1, between the texels of level
+ * 0; white where nothing was hit, and when the asset has no colours. `asset` is what the caster was
+ * made of. Errors: ARGUMENT. */
+GTX_API gtx_result gtx_hit_colors(const gtx_asset *asset, const gtx_hit *hits,
+                                  float (*colors)[4], size_t count);
+
+/* ---- scenes: rays among instances ------------------------------------------------------------ */
+
+/* Casters placed in a world, with a hierarchy over them. Keeps references to the casters, which must
+ * outlive it. Immutable; any number of threads may use it at once. */
+typedef struct gtx_scene gtx_scene;
+
+/* `transform` is column-major and affine, and takes the asset's coordinates (relative to its
+ * anchor) to the world; its linear part must be invertible. */
+typedef struct gtx_scene_instance {
+    const gtx_caster *caster;
+    float transform[16];
+} gtx_scene_instance;
+
+/* Makes a scene of `allocator` (NULL = malloc), which gtx_scene_destroy frees.
+ * Errors: ARGUMENT (an instance without a caster, or with a transform as above), MEMORY. */
+GTX_API gtx_result gtx_scene_create(const gtx_scene_instance *instances, uint32_t count,
+                                    const gtx_allocator *allocator, gtx_scene **out,
+                                    gtx_error *error);
+/* NULL is fine. */
+GTX_API void gtx_scene_destroy(gtx_scene *scene);
+
+/* gtx_raycast in the world: rays, normals and facets are the world's. `which` gets the index of the
+ * instance that was hit, UINT32_MAX for none; it may be NULL. Errors: ARGUMENT. */
+GTX_API gtx_result gtx_scene_raycast(const gtx_scene *scene, const gtx_ray *rays, gtx_hit *hits,
+                                     uint32_t *which, size_t count, uint32_t flags);
+
+/* A point to be lit: world position, unit normal towards the side that is seen, and `turn`, 0..1,
+ * which turns the pattern of its rays. Noise for it trades bands for grain. */
+typedef struct gtx_lit_point {
+    float position[3], normal[3];
+    float turn;
+} gtx_lit_point;
+
+/* A disc of light far away, or the sky. */
+typedef struct gtx_light_desc {
+    float direction[3];           /* world, towards the light; zero: the sky, of which each point
+                                     sees the half above it, weighted by the cosine */
+    float spread;                 /* tangent of half the angle that the disc spans; 0: hard shadows */
+    float reach;                  /* rays end there, world units; 0 = never. With the sky: what is
+                                     farther away does not occlude */
+    uint32_t rays;                /* for each point; 0 = 1 */
+    float offset;                 /* how far off the surface rays begin; 0 = gtx_scene_offset */
+    uint32_t reserved[5];
+} gtx_light_desc;
+
+/* The share of the light, 0..1, that reaches each point past all patches of all instances: of a disc
+ * a shadow, hard or soft, which the cosine is still to be multiplied with; of the sky its ambient
+ * occlusion. Rays of a disc that begin under the horizon of the normal count as dark. The same
+ * arguments give the same shares; shaders have the same patterns (geotex_rays.glsl).
+ * Errors: ARGUMENT, NOT_ZEROED. */
+GTX_API gtx_result gtx_scene_light(const gtx_scene *scene, const gtx_light_desc *light,
+                                   const gtx_lit_point *points, float *shares, size_t count);
+
+/* How far off the surface rays begin, in world units: two height steps of the coarsest patch, or the
+ * 32nd part of a texel if that is more. A sheet rounds the surface that it stands for by half a step
+ * up or down, and its cells cut a little into what is round; from there no ray that leaves a surface
+ * without hollows meets them, however grazing. Nothing else is left out. */
+GTX_API float gtx_scene_offset(const gtx_scene *scene);
+
 #ifdef __cplusplus
 }
 #endif

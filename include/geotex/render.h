@@ -133,8 +133,9 @@ typedef enum gtx_pass {
 typedef struct gtx_shading gtx_shading;
 
 /* `text` is GLSL that follows geotex_fragment.glsl, which says what there is to call; for shells it
- * follows geotex_shell_fragment.glsl. geotex_material.glsl comes before. It has no #version, its
- * samplers begin at unit 8, and it is not kept. The shading is of the renderer's allocator, freed by
+ * follows geotex_shell_fragment.glsl, with GTX_SHELL defined. geotex_material.glsl comes before, and
+ * geotex_rays.glsl, whose rays gtx_rays_bind provides. It has no #version, its samplers begin at
+ * unit 8, and it is not kept. The shading is of the renderer's allocator, freed by
  * gtx_shading_destroy. Errors: ARGUMENT, MEMORY, SHADER (the renderer's log says why). */
 GTX_API gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
                                       gtx_error *error);
@@ -179,6 +180,8 @@ typedef struct gtx_view {
     uint32_t level;                   /* 0 = by the error, n = level n - 1 or the coarsest there is */
     gtx_pass pass;
     const gtx_shading *shading;       /* in place of the forward pass's; not with PAPER */
+    uint32_t search_steps[2];         /* of PAPER: linear (1..1000), then binary (0..100); both 0 =
+                                         balanced by how slanted the view is */
     uint32_t viewport_width;          /* pixels; 0 = unknown. Given, this and viewport_height are the
                                          size of glViewport: see gtx_tiling */
     uint32_t reserved[1];
@@ -205,6 +208,47 @@ typedef struct gtx_instance {
  * (GTX_METHOD_SHELL, and an asset without). */
 GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,
                             const gtx_instance *instances, uint32_t count, gtx_error *error);
+
+/* ---- rays in shaders --------------------------------------------------------------------- */
+
+/* The patches of some assets where any shader can cast rays at them: heights and outlines in textures
+ * of their own (5 bytes a texel, 9 with 16-bit heights), a hierarchy over blocks of their cells, and
+ * one over their instances above it. geotex_rays.glsl says what there is to call: shadows, hard and
+ * soft, and ambient occlusion across all patches of all instances. It needs no more than OpenGL 3.3
+ * or OpenGL ES 3.0, and is part of every gtx_shading. Sheets are those of level 0. */
+typedef struct gtx_rays gtx_rays;
+
+typedef struct gtx_rays_desc {
+    const gtx_asset *const *assets;   /* not kept */
+    uint32_t asset_count;
+    uint32_t max_instances;           /* up to 2^20 */
+    uint32_t reserved[4];
+} gtx_rays_desc;
+
+/* Derives and uploads; no instance is placed yet. Of the renderer's allocator, freed by
+ * gtx_rays_destroy. State is left as by gtx_model_upload.
+ * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT (texture size), GL (out of memory). */
+GTX_API gtx_result gtx_rays_create(gtx_renderer *renderer, const gtx_rays_desc *desc,
+                                   gtx_rays **out, gtx_error *error);
+/* NULL rays are fine. */
+GTX_API void gtx_rays_destroy(gtx_renderer *renderer, gtx_rays *rays);
+
+/* `asset` counts those of the descriptor; `transform` as in gtx_instance. */
+typedef struct gtx_ray_instance {
+    uint32_t asset;
+    float transform[16];
+} gtx_ray_instance;
+
+/* Puts these instances in place of those before, as often as they move; their hierarchy is built
+ * anew. State is left as by gtx_model_upload. Errors: ARGUMENT, MEMORY. */
+GTX_API gtx_result gtx_rays_place(gtx_renderer *renderer, gtx_rays *rays,
+                                  const gtx_ray_instance *instances, uint32_t count,
+                                  gtx_error *error);
+
+/* Binds the textures to units 13, 14 and 15, where gtx_draw leaves them, and tells the program, a
+ * shading's or one of the engine's own that includes geotex_rays.glsl; 0 binds alone. Leaves the
+ * active unit 0, program 0 when one was told. NULL rays bind nothing: then nothing occludes. */
+GTX_API void gtx_rays_bind(gtx_renderer *renderer, const gtx_rays *rays, uint32_t program);
 
 /* The text of an installed shader file such as "geotex_cast.glsl", for engines that write their
  * own mains; NULL when there is none of that name. Static storage. */

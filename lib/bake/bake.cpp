@@ -6,8 +6,6 @@
 namespace gtx::baking {
 
 constexpr uint64_t MOST_PATCHES = 1u << 20, MOST_PAGES = 2048;
-/* Lengths of a record are floats, and readers square them. */
-constexpr double LEAST_DIAGONAL = 1e-15, MOST_DIAGONAL = 1e15;
 
 /* The centre of the bounding box, to a multiple of the largest power of two that is not above its
  * diagonal: a model near the origin keeps its coordinates. */
@@ -122,6 +120,22 @@ static void summarise(const std::vector<PatchMaps> &patches, Maps &maps)
                             (double(maps.page_count) * maps.page_width * maps.page_height);
 }
 
+Maps place_on_pages(std::vector<PatchMaps> &patches, const BakeOptions &options)
+{
+    std::vector<std::array<uint32_t, 2>> sizes;
+    for (const PatchMaps &p : patches)
+        sizes.push_back({p.record.rect[2], p.record.rect[3]});
+    Packing packing = pack(sizes, 1u << (options.mips - 1));
+    if (packing.page_count > MOST_PAGES)
+        throw Error(GTX_ERROR_LIMIT, "the maps fill more than 2048 pages");
+    Maps maps;
+    allocate_pages(packing, options, patches[0], maps);
+    for (size_t i = 0; i < patches.size(); ++i)
+        place_patch(patches[i], packing.places[i], maps);
+    summarise(patches, maps);
+    return maps;
+}
+
 static void check(const Mesh &mesh, const Partition &partition, const BakeOptions &options)
 {
     if (partition.charts.empty())
@@ -153,10 +167,10 @@ Maps bake(const Mesh &mesh, const Partition &partition, const BakeOptions &optio
     std::vector<PatchMaps> patches(partition.charts.size());
     task.parallel(patches.size(),
                   [&](size_t i) { patches[i] = bake_chart(job, partition.charts[i]); });
-    Maps maps;
+    std::vector<uint32_t> charts;
     for (size_t i = 0; i < patches.size(); ++i)
         if (patches[i].coded)
-            maps.charts.push_back(uint32_t(i));
+            charts.push_back(uint32_t(i));
     patches.erase(std::remove_if(patches.begin(), patches.end(),
                                  [](const PatchMaps &p) { return !p.coded; }),
                   patches.end());
@@ -164,19 +178,11 @@ Maps bake(const Mesh &mesh, const Partition &partition, const BakeOptions &optio
         throw Error(GTX_ERROR_EMPTY, "the materials cut all of the model away");
 
     task.begin("pack");
-    std::vector<std::array<uint32_t, 2>> sizes;
-    for (const PatchMaps &p : patches)
-        sizes.push_back({p.record.rect[2], p.record.rect[3]});
-    Packing packing = pack(sizes, 1u << (options.mips - 1));
-    if (packing.page_count > MOST_PAGES)
-        throw Error(GTX_ERROR_LIMIT, "the maps fill more than 2048 pages");
-    allocate_pages(packing, options, patches[0], maps);
-    for (size_t i = 0; i < patches.size(); ++i)
-        place_patch(patches[i], packing.places[i], maps);
+    Maps maps = place_on_pages(patches, options);
+    maps.charts = std::move(charts);
     for (int k = 0; k < 3; ++k)
         maps.anchor[k] = job.anchor[k];
     maps.emission_scale = job.needs.emission_scale;
-    summarise(patches, maps);
     return maps;
 }
 

@@ -63,8 +63,7 @@ static Vec3d texel_point(const gtx_patch &r, int i, int j, double height)
     return p;
 }
 
-/* Coverage, sphere and the box of the coded texels. */
-static void measure_patch(unsigned height_bits, PatchMaps &maps)
+void measure_patch(unsigned height_bits, PatchMaps &maps)
 {
     gtx_patch &r = maps.record;
     double steps = height_bits == 8 ? 254 : 65534;
@@ -95,8 +94,7 @@ static void measure_patch(unsigned height_bits, PatchMaps &maps)
     r.sphere[3] = float(radius * (1 + 1e-6));
 }
 
-/* Trim where there is no height, by the rule that readers know. */
-static void fill_trim(PatchMaps &maps)
+void fill_trim(PatchMaps &maps)
 {
     uint32_t w = maps.record.rect[2], h = maps.record.rect[3];
     std::vector<uint8_t> ring(maps.height.size());
@@ -112,6 +110,11 @@ static void fill_trim(PatchMaps &maps)
 /* A texel and a half inside: deeper, no cell reaches the limit, so that no depth need be told. */
 constexpr float DEEP_TRIM = 128 - 24;
 
+uint8_t trim_code(float distance)
+{
+    return uint8_t(std::clamp(128 + 16 * distance, DEEP_TRIM, 255.f) + 0.5f);
+}
+
 static void quantise(const Grid &grid, const Crop &crop, const Cover &cover,
                      const std::vector<uint8_t> &support, const std::vector<float> &trim,
                      double low, unsigned height_bits, PatchMaps &maps)
@@ -125,7 +128,7 @@ static void quantise(const Grid &grid, const Crop &crop, const Cover &cover,
             int x = crop.x + i, y = crop.y + j;
             int near_x = std::clamp(x, 0, grid.w - 1), near_y = std::clamp(y, 0, grid.h - 1);
             size_t from = size_t(near_y) * grid.w + near_x, to = size_t(j) * crop.w + i;
-            maps.trim[to] = uint8_t(std::clamp(128 + 16 * trim[from], DEEP_TRIM, 255.f) + 0.5f);
+            maps.trim[to] = trim_code(trim[from]);
             if (x == near_x && y == near_y && support[from]) {
                 /* Beyond a cut codes are rounded up: so the two sheets cross there, and no ray
                  * finds a way between them. */

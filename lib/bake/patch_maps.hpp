@@ -24,6 +24,9 @@ constexpr double BORDER_SHOWN = 0.1;
 /* Beyond a straight cut this is enough: the neighbour's sheet has the same texels. */
 constexpr double CUT_OVERLAP = 0.15;
 
+/* Lengths of a record are floats, and readers square them. */
+constexpr double LEAST_DIAGONAL = 1e-15, MOST_DIAGONAL = 1e15;
+
 using Neighbours = std::vector<std::array<uint32_t, 3>>;
 
 /* The working grid of a chart: texel space (u, v, c), where texel (i, j) lies at u = i, v = j, and
@@ -256,6 +259,16 @@ void dilate(Shades &shades, unsigned rings);
 void build_mips(Shades shades, unsigned mips, const AppearanceNeeds &needs, PatchMaps &patch);
 
 PatchMaps bake_chart(const Job &job, const Chart &chart);
+
+/* Coverage, sphere and the box of the coded texels. */
+void measure_patch(unsigned height_bits, PatchMaps &maps);
+/* Trim where there is no height, by the rule that readers know. */
+void fill_trim(PatchMaps &maps);
+/* Signed distances to the outline in texels, as codes. */
+uint8_t trim_code(float distance);
+/* Puts them on the pages of one asset; those of an asset have the same kinds of maps. Anchor and
+ * emission scale are left to the caller. Throws Error: LIMIT. */
+Maps place_on_pages(std::vector<PatchMaps> &patches, const BakeOptions &options);
 
 /* Places rectangles whose sides are multiples of `grain` on pages of one size, as full as it can. */
 struct Packing {

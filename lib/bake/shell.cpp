@@ -228,7 +228,7 @@ std::vector<ShellLevel> make_shell(const ShellSource &source, const Maps &maps, 
     double thinned = 0;
     const ShellSource few = thin(source, maps, regions, THIN_ERROR * pitch, thinned, task);
     Simplifier simplifier(few, regions, task);
-    size_t wanted = source.triangles.size() / FINEST_RATIO;
+    size_t wanted = (source.model ? source.model : source.triangles.size()) / FINEST_RATIO;
     for (unsigned k = 0; k < levels; ++k) {
         const size_t before = simplifier.triangles().size();
         simplifier.reduce(wanted, k ? 0 : free, MOST_ERROR * length(size));

@@ -10,6 +10,7 @@ struct ShellSource {
     std::vector<Vec3d> positions;
     std::vector<std::array<uint32_t, 3>> triangles;
     std::vector<uint32_t> patch; /* a triangle each */
+    size_t model = 0;            /* triangles of the model, of which a shell has a share; 0: these */
 
     Vec3d centre(size_t triangle) const
     {
@@ -34,6 +35,10 @@ struct ShellLevel {
  * Deterministic for any thread count. Stage of `task`: "shell". */
 ShellSource shell_source(const Mesh &mesh, const Partition &partition, const Maps &maps,
                          Task &task);
+
+/* What the maps show, without a mesh: sheets are cut where they overlap and welded along the cuts.
+ * Deterministic for any thread count. Stage of `task`: "shell". */
+ShellSource shell_source(const Maps &maps, Task &task);
 
 /* Simplifies the surface across all patches at once, down to at most `levels` levels, the finest
  * first. Deterministic for any thread count. Stage of `task`: "shell". */

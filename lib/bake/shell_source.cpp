@@ -1,5 +1,5 @@
 /* Which surface the shell is made of: the triangles that the maps show, each with its patch. */
-#include "bake/shell_parts.hpp"
+#include "bake/shell_sheets.hpp"
 
 #include <algorithm>
 
@@ -82,6 +82,18 @@ ShellSource shell_source(const Mesh &mesh, const Partition &partition, const Map
     split_at_cuts(partition, maps, cuts, regions, source, task);
     drop_hidden(regions, source, task);
     return source;
+}
+
+ShellSource shell_source(const Maps &maps, Task &task)
+{
+    task.begin("shell");
+    const std::vector<MapSheet> sheets = map_sheets(maps, task);
+    const std::vector<std::vector<uint32_t>> others = touching(sheets);
+    std::vector<SheetPiece> pieces(sheets.size());
+    task.parallel(sheets.size(), [&](size_t p) {
+        pieces[p] = cut_sheet(sheets, uint32_t(p), others[p]);
+    }, 0, 0.3);
+    return weld(sheets, std::move(pieces), others);
 }
 
 } // namespace gtx

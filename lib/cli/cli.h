@@ -32,8 +32,20 @@ typedef enum option_kind {
     OPTION_NUMBER, /* double *, within [min, max] */
     OPTION_SIZE,   /* uint32_t[2], "WxH", each within [min, max] */
     OPTION_TRIPLE, /* double[3], "a,b,c" */
-    OPTION_CHOICE  /* uint32_t *, index into the names of `argument`, written "a|b|c" */
+    OPTION_CHOICE, /* uint32_t *, index into the names of `argument`, written "a|b|c" */
+    OPTION_STEP    /* steps *, appended to: a number within [min, max], or a text when both are 0 */
 } option_kind;
+
+/* What is done in the order in which it was asked for. */
+typedef struct step {
+    const char *name, *text;  /* of the option, and its value */
+    double number;
+} step;
+enum { MOST_STEPS = 64 };
+typedef struct steps {
+    step list[MOST_STEPS];
+    uint32_t count;
+} steps;
 
 typedef struct option {
     const char *name;     /* without the leading dashes */
@@ -93,10 +105,12 @@ void catch_interrupt(void);
 /* ---- verbs: each gets argv[0] = its name ---- */
 
 int cmd_cook(int argc, char **argv);
+int cmd_horizons(int argc, char **argv);
 int cmd_info(int argc, char **argv);
 int cmd_validate(int argc, char **argv);
 int cmd_unpack(int argc, char **argv);
 int cmd_pack(int argc, char **argv);
+int cmd_filter(int argc, char **argv);
 int cmd_render(int argc, char **argv);
 int cmd_view(int argc, char **argv);
 int cmd_compare(int argc, char **argv);

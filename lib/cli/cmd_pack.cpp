@@ -1,21 +1,28 @@
-/* gtx pack: what gtx unpack wrote, edited or not -> an asset. */
+/* gtx pack: what gtx unpack wrote, edited or not, or an asset -> an asset. */
 #include "cli/guard.hpp"
 #include "cli/unpacked.hpp"
 
+#include <geotex/cook.h>
+
+#include <filesystem>
 #include <memory>
 
 static const char *output;
 static int32_t zstd_level = -1;
+static uint32_t shell_levels;
 
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes (required)", 0, 0},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [as it was]", 0, 19},
+    {"shell-levels", 0, OPTION_UINT, &shell_levels, "N",
+     "polygon levels of detail, made of the maps [those that are there]", 1, 5},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
 static const verb pack = {
-    "pack", "DIR -o OUT.gtx",
+    "pack", "DIR|ASSET -o OUT.gtx",
     "Makes an asset of a folder that gtx unpack wrote: the same bytes, or an edited asset. Levels\n"
-    "of normal, colour, material and emission are taken as their images are.",
+    "of normal, colour, material and emission are taken as their images are. An asset is packed\n"
+    "anew, for another shell or compression.",
     1, 1, options};
 
 /* Rules that only tell of heights that have changed: coverage, sphere, bounds. */
@@ -24,8 +31,19 @@ static bool follows_from_heights(uint32_t rule)
     return rule == 304 || rule == 308 || rule == 311;
 }
 
-static gtx_asset *create(gtx::Unpacked &unpacked)
+using Asset = std::unique_ptr<gtx_asset, void (*)(gtx_asset *)>;
+
+static void require(gtx_result result, const gtx_error &error)
 {
+    if (result)
+        throw gtx::Error(result, error.message);
+}
+
+static Asset open_folder(const char *folder, std::string &about)
+{
+    gtx::Unpacked unpacked;
+    gtx::read_unpacked(folder, unpacked, about);
+    about = folder;
     gtx_asset *asset = nullptr;
     gtx_error error = {};
     gtx_result result = gtx_create(&unpacked.desc, &asset, &error);
@@ -33,36 +51,59 @@ static gtx_asset *create(gtx::Unpacked &unpacked)
         gtx::derive_again(unpacked);
         result = gtx_create(&unpacked.desc, &asset, &error);
     }
-    if (result)
-        throw gtx::Error(result, error.message);
-    return asset;
+    require(result, error);
+    for (const std::string &warning : unpacked.warnings)
+        report_warning(folder, warning.c_str());
+    if (zstd_level < 0)
+        zstd_level = unpacked.zstd;
+    return Asset(asset, gtx_close);
+}
+
+static Asset open_asset(const char *path)
+{
+    gtx_asset *asset = nullptr;
+    gtx_error error = {};
+    require(gtx_open_file(path, nullptr, &asset, &error), error);
+    return Asset(asset, gtx_close);
+}
+
+static Asset with_shell(const Asset &asset)
+{
+    gtx_shell_desc desc = {};
+    desc.levels = shell_levels;
+    desc.progress = show_progress;
+    gtx_asset *out = nullptr;
+    gtx_error error = {};
+    catch_interrupt();
+    gtx_result result = gtx_cook_shell(asset.get(), &desc, &out, &error);
+    end_progress();
+    require(result, error);
+    return Asset(out, gtx_close);
 }
 
 int cmd_pack(int argc, char **argv)
 {
-    const char *folder;
+    const char *input;
     int count;
-    int code = parse_options(&pack, argc, argv, &folder, &count);
+    int code = parse_options(&pack, argc, argv, &input, &count);
     if (code >= 0)
         return code;
     if (!output) {
         std::fputs("gtx pack: error[usage]: -o OUT.gtx is missing\n", stderr);
         return EXIT_CODE_USAGE;
     }
-    std::string about = folder;
+    std::string about = input;
     return gtx::guarded(about, [&] {
-        gtx::Unpacked unpacked;
-        gtx::read_unpacked(folder, unpacked, about);
-        about = folder;
-        std::unique_ptr<gtx_asset, void (*)(gtx_asset *)> asset(create(unpacked), gtx_close);
-        for (const std::string &warning : unpacked.warnings)
-            report_warning(folder, warning.c_str());
+        std::error_code ignored;
+        const bool is_file = std::filesystem::is_regular_file(input, ignored);
+        Asset asset = is_file ? open_asset(input) : open_folder(input, about);
+        if (shell_levels)
+            asset = with_shell(asset);
         gtx_encode_desc desc = {};
-        desc.zstd_level = zstd_level >= 0 ? zstd_level : unpacked.zstd >= 0 ? unpacked.zstd : 3;
+        desc.zstd_level = zstd_level >= 0 ? zstd_level : 3;
         gtx_error error = {};
         about = output;
-        if (gtx_result result = gtx_save_file(asset.get(), output, &desc, &error))
-            throw gtx::Error(result, error.message);
+        require(gtx_save_file(asset.get(), output, &desc, &error), error);
         return int(EXIT_CODE_OK);
     });
 }

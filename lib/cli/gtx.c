@@ -9,10 +9,12 @@ static const struct {
     const char *summary;
 } verbs[] = {
     {"cook", cmd_cook, "turn a triangle mesh into a .gtx asset"},
+    {"horizons", cmd_horizons, "turn height grids, horizons or terrain, into an asset"},
     {"info", cmd_info, "say what is in an asset"},
     {"validate", cmd_validate, "check an asset against every rule of the format"},
     {"unpack", cmd_unpack, "write an asset's maps as images, to look at and to edit"},
     {"pack", cmd_pack, "make an asset of unpacked images again"},
+    {"filter", cmd_filter, "blur, boost or pattern the surface of an asset"},
     {"render", cmd_render, "draw assets and meshes into a PNG, without a window"},
     {"view", cmd_view, "look at assets and meshes in a window"},
     {"compare", cmd_compare, "measure an asset against the mesh it was cooked from"},

@@ -87,6 +87,21 @@ static bool parse_choice(const option *o, const char *text)
     return false;
 }
 
+static bool parse_step(const option *o, const char *text)
+{
+    steps *all = o->value;
+    char *end;
+    step next = {.name = o->name, .text = text};
+    const bool is_number = o->max > o->min;
+    if (!*text || all->count == MOST_STEPS)
+        return false;
+    if (is_number && (!parse_number(text, &end, &next.number) || *end || next.number < o->min ||
+                      next.number > o->max))
+        return false;
+    all->list[all->count++] = next;
+    return true;
+}
+
 static bool parse_value(const option *o, const char *text)
 {
     char *end;
@@ -98,6 +113,7 @@ static bool parse_value(const option *o, const char *text)
     case OPTION_SIZE: return parse_size(o, text);
     case OPTION_TRIPLE: return parse_triple(text, o->value);
     case OPTION_CHOICE: return parse_choice(o, text);
+    case OPTION_STEP: return parse_step(o, text);
     default: break;
     }
     if (!parse_number(text, &end, &number) || *end || number < o->min || number > o->max)

@@ -1,4 +1,5 @@
 /* The line from a model file to an asset file (paper, section 5), behind the C API. */
+#include "cook/assemble.hpp"
 #include "cook/guard.hpp"
 #include "cook/models.hpp"
 #include "cook/options.hpp"
@@ -43,32 +44,6 @@ static Task make_task(const gtx_cook_desc &desc)
     return Task(desc.threads, desc.progress, desc.progress_user, names, weights);
 }
 
-static std::vector<const uint8_t *> level_pointers(const std::vector<std::vector<uint8_t>> &levels)
-{
-    std::vector<const uint8_t *> pointers;
-    for (const auto &level : levels)
-        pointers.push_back(level.data());
-    return pointers;
-}
-
-static std::vector<gtx_shell> shell_levels(const std::vector<ShellLevel> &shell)
-{
-    std::vector<gtx_shell> levels;
-    for (const ShellLevel &level : shell) {
-        gtx_shell out = {};
-        std::copy_n(level.origin, 3, out.origin);
-        out.step = level.step;
-        out.error = level.error;
-        out.vertex_count = uint32_t(level.positions.size() / 3);
-        out.triangle_count = uint32_t(level.triangle_count());
-        out.first = level.first.data();
-        out.indices = level.indices.data();
-        out.positions = level.positions.data();
-        levels.push_back(out);
-    }
-    return levels;
-}
-
 static Asset make_asset(const Maps &maps, const std::vector<ShellLevel> &shell,
                         const Options &options, const CookFacts &facts)
 {
@@ -78,45 +53,8 @@ static Asset make_asset(const Maps &maps, const std::vector<ShellLevel> &shell,
                 options.z_up, options.bake.extractor != nullptr, options.chart.adaptive,
                 facts.source_triangles, facts.source_hash, facts.key, facts.warnings},
                meta);
-    const std::vector<const uint8_t *> normal = level_pointers(maps.normal),
-                                       color = level_pointers(maps.color),
-                                       material = level_pointers(maps.material),
-                                       emission = level_pointers(maps.emission);
-    const std::vector<gtx_shell> levels = shell_levels(shell);
-
-    gtx_asset_desc desc = {};
-    desc.patches = maps.patches.data();
-    desc.patch_count = uint32_t(maps.patches.size());
-    desc.page_count = maps.page_count;
-    desc.page_width = maps.page_width;
-    desc.page_height = maps.page_height;
-    desc.mip_count = maps.mip_count;
-    desc.height_bits = maps.height_bits;
-    desc.height = maps.height.data();
-    desc.trim = maps.trim.data();
-    desc.normal = normal.data();
-    desc.color = color.empty() ? nullptr : color.data();
-    desc.material = material.empty() ? nullptr : material.data();
-    desc.emission = emission.empty() ? nullptr : emission.data();
-    desc.emission_scale = maps.emission_scale;
-    desc.shell = levels.data();
-    desc.shell_levels = uint32_t(levels.size());
-    desc.meta = meta.text;
-    desc.meta_size = meta.size;
-    std::copy_n(maps.bounds_min, 3, desc.bounds_min);
-    std::copy_n(maps.bounds_max, 3, desc.bounds_max);
-    std::copy_n(maps.anchor, 3, desc.anchor);
-    desc.unit = options.unit;
-    desc.source_triangles = facts.source_triangles;
-    desc.allocator = &options.allocator;
-
-    gtx_asset *asset = nullptr;
-    gtx_error error;
-    gtx_result result = gtx_create(&desc, &asset, &error);
-    if (result == GTX_ERROR_CORRUPT) /* what is baked must be valid, whatever the model */
-        throw Error(GTX_ERROR_INTERNAL, error.message);
-    require_ok(result, error);
-    return Asset(asset, gtx_close);
+    return assemble(maps, shell, {std::string(meta.text, meta.size), options.unit,
+                                  facts.source_triangles, options.allocator});
 }
 
 /* The bytes of a file. */

@@ -14,9 +14,8 @@
 namespace gtx {
 
 /* Raised with every change that makes other assets of the same models and options. */
-constexpr int COOKER_REVISION = 5;
+constexpr int COOKER_REVISION = 6;
 
-constexpr uint32_t MOST_SHELL_LEVELS = 5;
 constexpr uint32_t MOST_CHARTS = 1u << 20, MOST_THREADS = 1024, MOST_DILATION = 128;
 #ifdef GTX_ZSTD
 constexpr int DEFAULT_ZSTD = 3;

@@ -8,6 +8,8 @@
 
 namespace gtx {
 
+constexpr uint32_t MOST_SHELL_LEVELS = 5;
+
 struct Options {
     ChartOptions chart;
     BakeOptions bake;

@@ -1,6 +1,7 @@
 /* Cooking to an error: the smallest asset that keeps to it. */
 #pragma once
 
+#include "cook/assemble.hpp"
 #include "cook/options.hpp"
 #include "measure/measure.hpp"
 
@@ -8,8 +9,6 @@
 #include <memory>
 
 namespace gtx {
-
-using Asset = std::unique_ptr<gtx_asset, decltype(&gtx_close)>;
 
 /* What came of cooking with some options. */
 struct Attempt {

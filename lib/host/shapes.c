@@ -111,6 +111,36 @@ void gtx_shapes_cylinder(gtx_shapes *shapes, const float foot[3], float radius_l
     }
 }
 
+void gtx_shapes_tube(gtx_shapes *shapes, const float (*points)[3], uint32_t count, float radius,
+                     gtx_rgb color)
+{
+    enum { SIDES = 16 };
+    if (count < 2 || !reserve(shapes, SIDES * count, 6 * SIDES * (count - 1)))
+        return;
+    const uint32_t first = shapes->vertex_count;
+    gtx_vec3 side = gtx_v3(0, 0, 0);
+    for (uint32_t p = 0; p < count; ++p) {
+        const gtx_vec3 here = gtx_v3_load(points[p]);
+        const gtx_vec3 way = gtx_v3_normalize(gtx_v3_sub(gtx_v3_load(points[p + (p + 1 < count)]),
+                                                         gtx_v3_load(points[p - (p > 0)])));
+        if (!p) /* then carried along, so that the tube does not twist */
+            side = fabsf(way.y) < 0.9f ? gtx_v3(0, 1, 0) : gtx_v3(1, 0, 0);
+        side = gtx_v3_normalize(gtx_v3_mad(side, way, -gtx_v3_dot(side, way)));
+        const gtx_vec3 other = gtx_v3_cross(way, side);
+        for (uint32_t i = 0; i < SIDES; ++i) {
+            const float angle = full_turn * (float)i / SIDES;
+            const gtx_vec3 out = gtx_v3_add(gtx_v3_scale(side, cosf(angle)),
+                                            gtx_v3_scale(other, sinf(angle)));
+            add_vertex(shapes, gtx_v3_mad(here, out, radius), out, color);
+            if (!p)
+                continue;
+            const uint32_t a = first + p * SIDES + i, b = first + p * SIDES + (i + 1) % SIDES;
+            add_triangle(shapes, a - SIDES, b - SIDES, b);
+            add_triangle(shapes, a - SIDES, b, a);
+        }
+    }
+}
+
 void gtx_shapes_grid(gtx_shapes *shapes, float y, float side, uint32_t cells,
                      gtx_rgb (*color)(float x, float z, void *user), void *user)
 {

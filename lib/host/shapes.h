@@ -28,6 +28,10 @@ void gtx_shapes_box(gtx_shapes *shapes, const float center[3], const float size[
 void gtx_shapes_cylinder(gtx_shapes *shapes, const float foot[3], float radius_low,
                          float radius_high, float height, gtx_rgb color);
 
+/* A round tube along at least two points, no two after one another the same, open at its ends. */
+void gtx_shapes_tube(gtx_shapes *shapes, const float (*points)[3], uint32_t count, float radius,
+                     gtx_rgb color);
+
 /* A horizontal grid of cells x cells squares at height y, `side` long, centred on the origin, whose
  * vertices are unlit and get their colours from `color`. */
 void gtx_shapes_grid(gtx_shapes *shapes, float y, float side, uint32_t cells,

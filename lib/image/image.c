@@ -159,6 +159,22 @@ gtx_result gtx_image_read_raw(const char *path, gtx_raw_image *out, gtx_error *e
     return GTX_OK;
 }
 
+gtx_result gtx_image_read_values(const char *path, gtx_value_image *out, gtx_error *error)
+{
+    char message[GTX_IMAGE_MAX_MESSAGE];
+    gtx_value_image image = {0};
+    if (!path || !out)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "no path or no place for the image");
+    const gtx_image_functions *module = module_functions(error);
+    if (!module)
+        return GTX_ERROR_UNSUPPORTED;
+    if (module->read_values(path, UINT64_C(1) << 28, &image.width, &image.height, &image.least,
+                            &image.greatest, &image.values, message))
+        return gtx_fail(error, GTX_ERROR_READ, "%s", message);
+    *out = image;
+    return GTX_OK;
+}
+
 gtx_result gtx_image_measure(const void *data, size_t size, uint32_t *width, uint32_t *height,
                              gtx_error *error)
 {

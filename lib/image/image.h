@@ -43,6 +43,15 @@ typedef struct gtx_raw_image {
 
 /* Reads a file of 8 or 16 bits a channel without changing a value. Errors: as gtx_image_read. */
 gtx_result gtx_image_read_raw(const char *path, gtx_raw_image *out, gtx_error *error);
+/* The first channel of an image as numbers: whole ones as they are, signed too, or floats. */
+typedef struct gtx_value_image {
+    uint32_t width, height;
+    double least, greatest;   /* of the file's kind of whole number; both 0 for floats */
+    float *values;            /* from malloc, freed by the caller; rows from the top */
+} gtx_value_image;
+
+/* Reads 8 or 16 bits or floats a channel. Errors: as gtx_image_read. */
+gtx_result gtx_image_read_values(const char *path, gtx_value_image *out, gtx_error *error);
 /* gtx_image_read from the bytes of a file. Errors: likewise. */
 gtx_result gtx_image_decode(const void *data, size_t size, gtx_image *out, gtx_error *error);
 /* The size that such bytes claim, without decoding them. Errors: likewise. */

@@ -164,6 +164,53 @@ int read_raw(const char *path, uint64_t max_pixels, uint32_t *width, uint32_t *h
     return 0;
 }
 
+/* The types that numbers are read from. OpenImageIO scales whole ones when it converts them itself. */
+template <class T> void widen(const std::vector<char> &bytes, float *out, size_t count)
+{
+    for (size_t i = 0; i < count; ++i) {
+        T value;
+        std::memcpy(&value, bytes.data() + i * sizeof value, sizeof value);
+        out[i] = float(value);
+    }
+}
+const struct {
+    OIIO::TypeDesc::BASETYPE type;
+    double least, greatest;
+    void (*widen)(const std::vector<char> &, float *, size_t);
+} value_types[] = {{OIIO::TypeDesc::UINT8, 0, 255, widen<uint8_t>},
+                   {OIIO::TypeDesc::UINT16, 0, 65535, widen<uint16_t>},
+                   {OIIO::TypeDesc::INT16, -32768, 32767, widen<int16_t>},
+                   {OIIO::TypeDesc::HALF, 0, 0, widen<float>},
+                   {OIIO::TypeDesc::FLOAT, 0, 0, widen<float>}};
+
+int read_values(const char *path, uint64_t max_pixels, uint32_t *width, uint32_t *height,
+                double *least, double *greatest, float **values, char *message)
+{
+    Source source(path, nullptr, 0);
+    if (source.open(path, nullptr, 0, message))
+        return 1;
+    const OIIO::ImageSpec &spec = source.input->spec();
+    const uint64_t count = uint64_t(spec.width) * uint64_t(spec.height);
+    for (const auto &known : value_types) {
+        if (spec.format.basetype != known.type || count > max_pixels)
+            continue;
+        const OIIO::TypeDesc type = known.greatest > 0 ? spec.format : OIIO::TypeDesc::FLOAT;
+        std::vector<char> bytes(size_t(count) * type.size());
+        if (!source.input->read_image(0, 0, 0, 1, type, bytes.data()))
+            return fail(message, source.name, source.input->geterror());
+        *values = static_cast<float *>(std::malloc(size_t(count) * sizeof(float)));
+        if (!*values)
+            return fail(message, source.name, "out of memory");
+        known.widen(bytes, *values, size_t(count));
+        *width = uint32_t(spec.width);
+        *height = uint32_t(spec.height);
+        *least = known.least;
+        *greatest = known.greatest;
+        return 0;
+    }
+    return fail(message, source.name, "not an image of 8 or 16 bits or of floats, or too large");
+}
+
 /* Nothing may be thrown across the C boundary. */
 template <class Call> int guarded(char *message, Call call)
 {
@@ -198,6 +245,14 @@ int guarded_read_raw(const char *path, uint64_t max_pixels, uint32_t *width, uin
     });
 }
 
+int guarded_read_values(const char *path, uint64_t max_pixels, uint32_t *width, uint32_t *height,
+                        double *least, double *greatest, float **values, char *message)
+{
+    return guarded(message, [&] {
+        return read_values(path, max_pixels, width, height, least, greatest, values, message);
+    });
+}
+
 int guarded_measure(const char *path, const void *data, size_t size, uint32_t *width,
                     uint32_t *height, char *message)
 {
@@ -208,4 +263,4 @@ int guarded_measure(const char *path, const void *data, size_t size, uint32_t *w
 
 extern "C" __attribute__((visibility("default"))) const gtx_image_functions gtx_image_module = {
     GTX_IMAGE_MODULE_VERSION, guarded_write, guarded_read, guarded_read_raw,
-    guarded_measure};
+    guarded_read_values, guarded_measure};

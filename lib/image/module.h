@@ -10,7 +10,7 @@ extern "C" {
 #endif
 
 #define GTX_IMAGE_MODULE_SYMBOL "gtx_image_module"
-#define GTX_IMAGE_MODULE_VERSION 3
+#define GTX_IMAGE_MODULE_VERSION 4
 
 enum { GTX_IMAGE_MAX_MESSAGE = 200 };
 
@@ -28,6 +28,10 @@ typedef struct gtx_image_functions {
     int (*read_raw)(const char *path, uint64_t max_pixels, uint32_t *width, uint32_t *height,
                     uint32_t *channels, uint32_t *depth, void **pixels,
                     char message[GTX_IMAGE_MAX_MESSAGE]);
+    /* The first channel as floats; *least and *greatest of its type, 0 for floats. */
+    int (*read_values)(const char *path, uint64_t max_pixels, uint32_t *width, uint32_t *height,
+                       double *least, double *greatest, float **values,
+                       char message[GTX_IMAGE_MAX_MESSAGE]);
     /* What the header claims; `data` as above. */
     int (*measure)(const char *path, const void *data, size_t size, uint32_t *width,
                    uint32_t *height, char message[GTX_IMAGE_MAX_MESSAGE]);

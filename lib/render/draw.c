@@ -180,6 +180,7 @@ static void use_program(const gtx_gl *gl, pass *p, const gtx_program *program,
         gl->Uniform4fv(program->depth, 1, p->frame->depth);
         gl->Uniform4fv(program->light, 1, p->frame->light);
         gl->Uniform4fv(program->detail, 1, p->frame->detail);
+        gl->Uniform4fv(program->search, 1, p->frame->search);
         p->current = program;
     }
     gl->Uniform4fv(program->maps, 1, maps);

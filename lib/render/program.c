@@ -27,6 +27,7 @@ typedef struct recipe {
 #define TWO_SIDED "#define GTX_TWO_SIDED\n"
 #define COLORS "#define GTX_COLORS\n"
 #define SHELL "geotex_shell_fragment.glsl"
+#define RAYS "geotex_rays.glsl"
 
 static const recipe recipes[PROGRAM_COUNT] = {
     [PROGRAM_CAST] = {PROXY, PLAIN, {CAST, "geotex_forward.frag"}, "geotex cast"},
@@ -75,10 +76,10 @@ static const recipe recipes[PROGRAM_COUNT] = {
                                {"geotex_material.glsl", HITS, "geotex_gbuffer.frag"},
                                "geotex tiles, g-buffer"},
 };
-static const recipe own_cast = {PROXY, MATERIALS, {"geotex_material.glsl", CAST},
+static const recipe own_cast = {PROXY, MATERIALS, {"geotex_material.glsl", CAST, RAYS},
                                 "geotex cast, own"};
-static const recipe own_shell = {POLYGONS, MATERIALS, {"geotex_material.glsl", SHELL},
-                                 "geotex shell, own"};
+static const recipe own_shell = {POLYGONS, MATERIALS "#define GTX_SHELL\n",
+                                 {"geotex_material.glsl", SHELL, RAYS}, "geotex shell, own"};
 
 const char *gtx_shader_source(const char *name)
 {
@@ -185,12 +186,14 @@ static void locate(const gtx_gl *gl, gtx_program *program)
     program->depth = gl->GetUniformLocation(program->object, "gtx_depth");
     program->light = gl->GetUniformLocation(program->object, "gtx_light");
     program->detail = gl->GetUniformLocation(program->object, "gtx_detail");
+    program->search = gl->GetUniformLocation(program->object, "gtx_search");
     program->maps = gl->GetUniformLocation(program->object, "gtx_maps");
     program->shell = gl->GetUniformLocation(program->object, "gtx_shell");
     gl->UseProgram(program->object);
     for (gl_int i = 0; i < UNIT_COUNT; ++i)
         gl->Uniform1i(gl->GetUniformLocation(program->object, samplers[i]), i);
     gl->Uniform1i(gl->GetUniformLocation(program->object, "gtx_seen"), UNIT_SEEN);
+    gtx_rays_locate(gl, program->object);
     gl->UseProgram(0);
 }
 
@@ -218,7 +221,7 @@ gtx_result gtx_program_of_kernel(const gtx_renderer *renderer, gtx_program *out,
     static const char *const files[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
                                         "geotex_view.glsl", "geotex_tiles.glsl",
                                         "geotex_cast.glsl", "geotex_tiles.comp"};
-    static const char *const buffers[] = {"gtx_lists", "gtx_rays", "gtx_slabs"};
+    static const char *const buffers[] = {"gtx_lists", "gtx_tile_rays", "gtx_slabs"};
     const gtx_gl *gl = &renderer->gl;
     source s = {.count = 0};
     add(&s, "#version 430 core\n");

@@ -12,8 +12,9 @@
 enum {
     UNIT_CELLS, UNIT_TRIM, UNIT_NORMALS, UNIT_COLORS, UNIT_PATCHES, UNIT_MATERIALS, UNIT_EMISSIONS,
     UNIT_COUNT, UNIT_SEEN = UNIT_COUNT,
-    UNIT_LISTS = 5, UNIT_RAYS, UNIT_SLABS, /* buffers, for the kernel that casts by tiles */
-    UNIT_CLEARED = 8 /* units that render.h promises to leave empty */
+    UNIT_LISTS = 5, UNIT_TILE_RAYS, UNIT_SLABS, /* buffers, for the kernel that casts by tiles */
+    UNIT_CLEARED = 8, /* units that render.h promises to leave empty */
+    UNIT_RAYS = 13    /* the first of three, which gtx_rays_bind binds */
 };
 
 /* Each method by pass; the forward one without and with materials, for Lambert alone costs less. */
@@ -31,7 +32,7 @@ enum {
 
 typedef struct gtx_program {
     gl_uint object;
-    gl_int clip_from_world, depth, light, detail, maps, shell;
+    gl_int clip_from_world, depth, light, detail, search, maps, shell;
     gl_int place, tint, instance; /* of what is cast by tiles */
 } gtx_program;
 
@@ -167,6 +168,9 @@ gtx_result gtx_program_need(gtx_renderer *renderer, int program, gtx_error *erro
 gtx_result gtx_program_of_kernel(const gtx_renderer *renderer, gtx_program *out, gtx_error *error);
 void gtx_programs_destroy(gtx_renderer *renderer);
 
+/* rays.c: tells the program in use where gtx_rays_bind binds. */
+void gtx_rays_locate(const gtx_gl *gl, gl_uint program);
+
 /* model.c: gives the CPU's copy of the maps and proxies back. */
 void gtx_model_free_staging(gtx_model *model);
 /* A hash of where the patches' rectangles lie. */
@@ -217,7 +221,7 @@ gtx_result gtx_check_gl_memory(const gtx_gl *gl, gtx_error *error);
 typedef struct gtx_frame {
     float clip_from_world[16];
     double eye[4];            /* world; the ray through a point p has the direction p * w - xyz */
-    float depth[4], light[4], detail[4]; /* as geotex_view.glsl has them */
+    float depth[4], light[4], detail[4], search[4]; /* as geotex_view.glsl has them */
     bool reversed, mirrored;  /* mirrored: the view turns clockwise into counter-clockwise */
 } gtx_frame;
 

@@ -129,7 +129,13 @@ gtx_result gtx_frame_from_view(const gtx_view *view, gtx_frame *out, gtx_error *
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "the view's error is not finite and >= 0, or its level beyond %d",
                         GTX_MAX_MIPS - 1);
+    const uint32_t *steps = view->search_steps;
+    if (steps[0] > 1000 || steps[1] > 100 || (steps[1] && !steps[0]))
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "the view's search has over 1000 linear or 100 binary steps, or no linear ones");
     memset(out, 0, sizeof *out);
+    out->search[0] = (float)steps[0];
+    out->search[1] = (float)steps[1];
     out->reversed = view->flags & GTX_VIEW_REVERSED_Z;
     multiply(view->projection, view->view, clip);
     if (!find_eye(clip, out, forward))

@@ -3,6 +3,8 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "derive/placement.h"
+#include "trace/slabs.h"
 
 #include <math.h>
 
@@ -27,9 +29,8 @@ gtx_result gtx_caster_create(const gtx_asset *asset, const gtx_caster_desc *desc
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a caster");
     caster->allocator = hooks;
     caster->sheet_count = asset->info.patch_count;
+    caster->ray_offset = gtx_ray_offset(asset);
     result = gtx_sheets_build(caster, asset, d->level, d->max_error, error);
-    if (!result)
-        result = gtx_bvh_build(&caster->bvh, caster->sheets, caster->sheet_count, &hooks, error);
     if (result) {
         gtx_caster_destroy(caster);
         return result;
@@ -44,12 +45,10 @@ void gtx_caster_destroy(gtx_caster *caster)
         return;
     const gtx_allocator hooks = caster->allocator;
     gtx_sheets_free(caster);
-    gtx_bvh_free(&caster->bvh, &hooks);
     gtx_free_array(&hooks, caster, 1, sizeof *caster);
 }
 
-/* False for rays that hit nothing by rule. */
-static bool read_ray(const gtx_ray *ray, gtx_line *out)
+bool gtx_read_ray(const gtx_ray *ray, gtx_line *out)
 {
     bool moves = false;
     for (int a = 0; a < 3; ++a) {
@@ -64,61 +63,27 @@ static bool read_ray(const gtx_ray *ray, gtx_line *out)
     return moves && out->t_min <= out->t_max; /* false with a NaN */
 }
 
-/* Where the ray enters the box, no later than `limit`; infinity when it misses. Boxes are rounded
- * outwards, so a ray that lies in a face may go either way. */
-static double enter(const gtx_bvh_node *node, const gtx_line *ray, const double inverse[3],
-                    double limit)
-{
-    double t0 = ray->t_min, t1 = limit;
-    for (int a = 0; a < 3; ++a) {
-        double near = (node->low[a] - ray->origin[a]) * inverse[a];
-        double far = (node->high[a] - ray->origin[a]) * inverse[a];
-        if (inverse[a] < 0) {
-            double swap = near;
-            near = far;
-            far = swap;
-        }
-        t0 = near > t0 ? near : t0;
-        t1 = far < t1 ? far : t1;
-    }
-    return t0 <= t1 ? t0 : INFINITY;
-}
-
 static gtx_crossing cast_tree(const gtx_caster *caster, const gtx_line *ray, uint32_t flags)
 {
-    const gtx_bvh_node *nodes = caster->bvh.nodes;
-    const double inverse[3] = {1 / ray->direction[0], 1 / ray->direction[1],
-                               1 / ray->direction[2]};
-    const bool both = flags & GTX_RAY_TWO_SIDED;
+    const gtx_node *nodes = caster->tree.nodes, *leaf;
+    const gtx_slabs s = gtx_slabs_of(ray);
     gtx_crossing best = {.t = ray->t_max, .sheet = UINT32_MAX};
-    struct {
-        uint32_t node;
-        double t;
-    } stack[GTX_BVH_DEPTH];
+    float limit = gtx_slabs_limit(&s, best.t);
+    gtx_line line; /* in the grid space of the sheet met last */
+    uint32_t sheet = UINT32_MAX;
+    gtx_subtree stack[GTX_HIERARCHY_DEPTH];
+    gtx_subtree at = {0, caster->tree.node_count ? gtx_enter(nodes, &s, limit) : INFINITY};
     int size = 0;
-    if (caster->bvh.node_count) {
-        stack[size].node = 0;
-        stack[size++].t = enter(&nodes[0], ray, inverse, best.t);
-    }
-    while (size) {
-        const gtx_bvh_node *node = &nodes[stack[--size].node];
-        if (stack[size].t == INFINITY || stack[size].t > best.t)
-            continue;
-        for (uint32_t i = 0; i < node->count; ++i)
-            gtx_walk_sheet(caster, caster->bvh.order[node->first + i], ray, both, &best);
-        if (node->count) {
-            if (best.sheet != UINT32_MAX && (flags & GTX_RAY_ANY))
-                break;
-            continue;
+    while ((leaf = gtx_next_leaf(nodes, &s, limit, &at, stack, &size))) {
+        const gtx_block *block = &caster->blocks[leaf->link - GTX_LEAF];
+        if (block->sheet != sheet) {
+            sheet = block->sheet;
+            line = gtx_sheet_line(&caster->sheets[sheet], ray);
         }
-        double t[2];
-        for (uint32_t k = 0; k < 2; ++k)
-            t[k] = enter(&nodes[node->first + k], ray, inverse, best.t);
-        for (uint32_t k = 0; k < 2; ++k) { /* the nearer child on top */
-            uint32_t which = t[0] <= t[1] ? 1 - k : k;
-            stack[size].node = node->first + which;
-            stack[size++].t = t[which];
-        }
+        gtx_walk_block(caster, block, &line, flags & GTX_RAY_TWO_SIDED, &best);
+        if (best.sheet != UINT32_MAX && (flags & GTX_RAY_ANY))
+            break;
+        limit = gtx_slabs_limit(&s, best.t);
     }
     return best;
 }
@@ -132,7 +97,13 @@ static gtx_crossing cast_exhaustively(const gtx_caster *caster, const gtx_line *
     return best;
 }
 
-static gtx_hit describe(const gtx_caster *caster, const gtx_crossing *crossing)
+gtx_crossing gtx_cast_line(const gtx_caster *caster, const gtx_line *line, uint32_t flags)
+{
+    return flags & GTX_RAY_EXHAUSTIVE ? cast_exhaustively(caster, line, flags)
+                                      : cast_tree(caster, line, flags);
+}
+
+gtx_hit gtx_describe(const gtx_caster *caster, const gtx_crossing *crossing)
 {
     const gtx_sheet *sheet = &caster->sheets[crossing->sheet];
     /* The cell behind the coordinates; a crossing may lie a rounding error outside. */
@@ -152,17 +123,16 @@ gtx_result gtx_raycast(const gtx_caster *caster, const gtx_ray *rays, gtx_hit *h
                        uint32_t flags)
 {
     if (!caster || (count && (!rays || !hits)) ||
-        (flags & ~(uint32_t)(GTX_RAY_ANY | GTX_RAY_TWO_SIDED | GTX_RAY_EXHAUSTIVE)))
+        flags & ~(uint32_t)GTX_RAY_FLAGS)
         return GTX_ERROR_ARGUMENT;
     for (size_t i = 0; i < count; ++i) {
         gtx_line ray;
         gtx_crossing crossing = {.sheet = UINT32_MAX};
-        if (read_ray(&rays[i], &ray))
-            crossing = flags & GTX_RAY_EXHAUSTIVE ? cast_exhaustively(caster, &ray, flags)
-                                                  : cast_tree(caster, &ray, flags);
+        if (gtx_read_ray(&rays[i], &ray))
+            crossing = gtx_cast_line(caster, &ray, flags);
         hits[i] = crossing.sheet == UINT32_MAX
                       ? (gtx_hit){.t = INFINITY, .patch = UINT32_MAX}
-                      : describe(caster, &crossing);
+                      : gtx_describe(caster, &crossing);
     }
     return GTX_OK;
 }

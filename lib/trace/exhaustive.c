@@ -74,6 +74,21 @@ static void search_cell(const gtx_caster *caster, uint32_t index, const gtx_line
     }
 }
 
+/* The codes at the corners of a cell, and a code more on both sides. */
+static void code_range(const gtx_sheet *sheet, uint32_t i, uint32_t j, double *low, double *high)
+{
+    const uint16_t *row = sheet->code + (size_t)j * sheet->nodes_x + i;
+    const uint16_t *next = row + sheet->nodes_x;
+    const uint16_t corner[4] = {row[0], row[1], next[0], next[1]};
+    uint16_t least = corner[0], most = corner[0];
+    for (int k = 1; k < 4; ++k) {
+        least = corner[k] < least ? corner[k] : least;
+        most = corner[k] > most ? corner[k] : most;
+    }
+    *low = least - 1.0;
+    *high = most + 1.0;
+}
+
 void gtx_search_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *ray, bool both,
                       gtx_crossing *best)
 {
@@ -81,16 +96,15 @@ void gtx_search_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *
     const gtx_line line = gtx_sheet_line(s, ray);
     const double inverse[3] = {1 / line.direction[0], 1 / line.direction[1],
                                1 / line.direction[2]};
-    uint32_t rows = (s->height - 2 + (1u << s->level)) >> s->level;
-    for (uint32_t j = 0; j < rows; ++j) {
+    for (uint32_t j = 0; j + 1 < s->nodes_y; ++j) {
         gtx_cell first = gtx_sheet_cell(s, 0, j);
         interval row = {ray->t_min, best->t};
         row = cut(row, &line, 1, inverse[1], first.y0, first.y1);
-        for (uint32_t i = 0; row.t0 <= row.t1 && i < s->tree_width[0]; ++i) {
-            gtx_range range = s->tree[0][(size_t)j * s->tree_width[0] + i];
-            if (range.min > range.max)
+        for (uint32_t i = 0; row.t0 <= row.t1 && i + 1 < s->nodes_x; ++i) {
+            double low, high;
+            if (!gtx_sheet_solid(caster, s, i, j))
                 continue;
-            double low = range.min - 1.0, high = range.max + 1.0;
+            code_range(s, i, j, &low, &high);
             interval inside = cut(row, &line, 2, inverse[2], low, high);
             if (inside.t0 > inside.t1)
                 continue;

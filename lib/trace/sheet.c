@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "derive/derive.h"
+#include "derive/frame.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,96 +19,33 @@ static uint32_t cells_of(uint32_t texels, uint32_t level)
     return (texels - 2 + (1u << level)) >> level;
 }
 
-/* Rows of the map from object space to grid space: the inverse of the patch's frame (format/gtx.md,
- * section 3), axes taken as they stand. */
-static void invert_frame(const gtx_patch *patch, uint32_t height_bits, double rows[3][4])
+static void add_cell(gtx_block *block, const gtx_grid *grid, uint32_t i, uint32_t j)
 {
-    const float *axis[3] = {patch->axis_x, patch->axis_y, patch->axis_z};
-    const double scale[3] = {patch->rect[2] / (double)patch->extent_x,
-                             patch->rect[3] / (double)patch->extent_y,
-                             (height_bits == 8 ? 254.0 : 65534.0) / patch->extent_z};
-    const double offset[3] = {-0.5, -0.5, 1};
-    double cross[3][3], det = 0;
-    for (int r = 0; r < 3; ++r) {
-        const float *a = axis[(r + 1) % 3], *b = axis[(r + 2) % 3];
-        for (int k = 0; k < 3; ++k) {
-            int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-            cross[r][k] = (double)a[k1] * b[k2] - (double)a[k2] * b[k1];
-        }
-    }
-    for (int k = 0; k < 3; ++k)
-        det += axis[0][k] * cross[0][k];
-    for (int r = 0; r < 3; ++r) {
-        rows[r][3] = offset[r];
-        for (int k = 0; k < 3; ++k) {
-            rows[r][k] = cross[r][k] / det * scale[r];
-            rows[r][3] -= rows[r][k] * patch->origin[k];
-        }
-    }
-}
-
-static gtx_range cell_range(const gtx_grid *grid, uint32_t i, uint32_t j)
-{
-    gtx_range range = {UINT16_MAX, 0};
-    if (!grid->solid[(size_t)j * (grid->nodes_x - 1) + i])
-        return range;
+    block->solid |= (uint64_t)1 << (j % GTX_BLOCK * GTX_BLOCK + i % GTX_BLOCK);
     for (uint32_t k = 0; k < 4; ++k) {
-        uint16_t code = grid->code[(size_t)(j + (k >> 1)) * grid->nodes_x + i + (k & 1)];
-        range.min = code < range.min ? code : range.min;
-        range.max = code > range.max ? code : range.max;
-    }
-    return range;
-}
-
-/* Tree level 0 from the grid's cells, the others from the one below. */
-static void fill_tree(gtx_sheet *sheet, const gtx_grid *grid)
-{
-    uint32_t width = grid->nodes_x - 1, height = grid->nodes_y - 1;
-    for (uint32_t j = 0; j < height; ++j)
-        for (uint32_t i = 0; i < width; ++i)
-            sheet->tree[0][(size_t)j * width + i] = cell_range(grid, i, j);
-    for (uint32_t l = 1; l < sheet->levels; ++l) {
-        const gtx_range *below = sheet->tree[l - 1];
-        uint32_t up = (width + 1) / 2;
-        for (size_t k = 0; k < (size_t)up * ((height + 1) / 2); ++k)
-            sheet->tree[l][k] = (gtx_range){UINT16_MAX, 0};
-        for (uint32_t j = 0; j < height; ++j)
-            for (uint32_t i = 0; i < width; ++i) {
-                gtx_range from = below[(size_t)j * width + i];
-                gtx_range *to = &sheet->tree[l][(size_t)(j / 2) * up + i / 2];
-                to->min = from.min < to->min ? from.min : to->min;
-                to->max = from.max > to->max ? from.max : to->max;
-            }
-        width = up;
-        height = (height + 1) / 2;
+        const uint16_t code = grid->code[(size_t)(j + (k >> 1)) * grid->nodes_x + i + (k & 1)];
+        block->low = code < block->low ? code : block->low;
+        block->high = code > block->high ? code : block->high;
     }
 }
 
-/* The box in x and y is that of the solid cells, not of the map: tilted frames waste less. */
-static void fill_box(gtx_sheet *sheet, const gtx_grid *grid)
+/* The sheet's blocks, and their boxes. */
+static void fill_blocks(gtx_caster *caster, uint32_t index, const gtx_asset *asset,
+                        const gtx_grid *grid, gtx_box *boxes)
 {
-    uint32_t low[2] = {UINT32_MAX, UINT32_MAX}, high[2] = {0, 0};
-    for (uint32_t j = 0; j + 1 < grid->nodes_y; ++j)
-        for (uint32_t i = 0; i + 1 < grid->nodes_x; ++i)
-            if (grid->solid[(size_t)j * (grid->nodes_x - 1) + i]) {
-                const uint32_t at[2] = {i, j};
-                for (int a = 0; a < 2; ++a) {
-                    low[a] = at[a] < low[a] ? at[a] : low[a];
-                    high[a] = at[a] + 1 > high[a] ? at[a] + 1 : high[a];
-                }
-            }
-    gtx_range whole = sheet->tree[sheet->levels - 1][0];
-    sheet->low[0] = 1; /* none */
-    if (whole.min > whole.max)
-        return;
-    const uint32_t size[2] = {sheet->width, sheet->height};
-    for (int a = 0; a < 2; ++a) {
-        sheet->low[a] = low[a] << grid->level;
-        sheet->high[a] = min_u32(high[a] << grid->level, size[a] - 1);
-    }
-    /* A code more on both sides, so that a flat sheet does not lie in the faces of its box. */
-    sheet->low[2] = whole.min - 1.0;
-    sheet->high[2] = whole.max + 1.0;
+    const gtx_sheet *sheet = &caster->sheets[index];
+    gtx_block *blocks = caster->blocks + sheet->first_block;
+    const uint32_t cells_x = grid->nodes_x - 1, cells_y = grid->nodes_y - 1;
+    for (uint32_t b = 0; b < sheet->blocks_x * gtx_blocks_of(cells_y); ++b)
+        blocks[b] = (gtx_block){.sheet = index,
+                                .x = (uint16_t)(b % sheet->blocks_x * GTX_BLOCK),
+                                .y = (uint16_t)(b / sheet->blocks_x * GTX_BLOCK),
+                                .low = UINT16_MAX};
+    for (uint32_t j = 0; j < cells_y; ++j)
+        for (uint32_t i = 0; i < cells_x; ++i)
+            if (grid->solid[(size_t)j * cells_x + i])
+                add_cell(&blocks[j / GTX_BLOCK * sheet->blocks_x + i / GTX_BLOCK], grid, i, j);
+    gtx_grid_boxes(asset, index, grid, boxes + sheet->first_block);
 }
 
 static void copy_maps(gtx_sheet *sheet, const gtx_asset *asset, const gtx_patch *patch)
@@ -123,34 +61,29 @@ static void copy_maps(gtx_sheet *sheet, const gtx_asset *asset, const gtx_patch 
 
 /* How much of the caster's arrays is taken. */
 typedef struct cursor {
-    size_t code, range, texel;
+    size_t code, texel;
+    uint32_t block;
 } cursor;
 
 /* Takes the sheet's share and, once there is memory, points the sheet into it. */
 static void place_sheet(const gtx_caster *caster, gtx_sheet *sheet, cursor *at)
 {
-    uint32_t width = cells_of(sheet->width, sheet->level);
-    uint32_t height = cells_of(sheet->height, sheet->level);
+    sheet->nodes_x = cells_of(sheet->width, sheet->level) + 1;
+    sheet->nodes_y = cells_of(sheet->height, sheet->level) + 1;
+    sheet->first_block = at->block;
+    sheet->blocks_x = gtx_blocks_of(sheet->nodes_x - 1);
     if (caster->code) {
         sheet->code = caster->code + at->code;
         sheet->trim = caster->trim + at->texel;
         sheet->normal = caster->normal + 2 * at->texel;
     }
-    sheet->nodes_x = width + 1;
-    at->code += (size_t)(width + 1) * (height + 1);
+    at->code += (size_t)sheet->nodes_x * sheet->nodes_y;
     at->texel += (size_t)sheet->width * sheet->height;
-    for (sheet->levels = 0;; width = (width + 1) / 2, height = (height + 1) / 2) {
-        if (caster->ranges)
-            sheet->tree[sheet->levels] = caster->ranges + at->range;
-        sheet->tree_width[sheet->levels++] = width;
-        at->range += (size_t)width * height;
-        if (width == 1 && height == 1)
-            break;
-    }
+    at->block += sheet->blocks_x * gtx_blocks_of(sheet->nodes_y - 1);
 }
 
 static gtx_result fill_sheet(gtx_caster *caster, const gtx_asset *asset, uint32_t index,
-                             gtx_error *error)
+                             gtx_box *boxes, gtx_error *error)
 {
     gtx_sheet *sheet = &caster->sheets[index];
     const gtx_patch *patch = &asset->patches[index];
@@ -160,11 +93,11 @@ static gtx_result fill_sheet(gtx_caster *caster, const gtx_asset *asset, uint32_
     if (result)
         return result;
     memcpy(sheet->code, grid.code, (size_t)grid.nodes_x * grid.nodes_y * sizeof *grid.code);
-    fill_tree(sheet, &grid);
-    fill_box(sheet, &grid);
+    fill_blocks(caster, index, asset, &grid, boxes);
     gtx_grid_free(&grid, &caster->allocator);
     copy_maps(sheet, asset, patch);
-    invert_frame(patch, asset->info.height_bits, sheet->to_grid);
+    const gtx_patch_frame frame = gtx_patch_frame_of(patch, asset->info.height_bits);
+    memcpy(sheet->to_grid, frame.to_grid, sizeof sheet->to_grid);
     gtx_normal_frame(patch, sheet->normal_frame);
     sheet->two_sided = patch->flags & GTX_PATCH_TWO_SIDED;
     return GTX_OK;
@@ -212,20 +145,25 @@ gtx_result gtx_sheets_build(gtx_caster *caster, const gtx_asset *asset, uint32_t
         place_sheet(caster, sheet, &total);
     }
     caster->code_count = total.code;
-    caster->range_count = total.range;
+    caster->block_count = total.block;
     caster->texel_count = total.texel;
     caster->code = gtx_alloc_array(hooks, total.code, sizeof *caster->code);
-    caster->ranges = gtx_alloc_array(hooks, total.range, sizeof *caster->ranges);
+    caster->blocks = gtx_alloc_array(hooks, total.block, sizeof *caster->blocks);
     caster->trim = gtx_alloc_array(hooks, total.texel, 1);
     caster->normal = gtx_alloc_array(hooks, total.texel, 2);
-    if (!caster->sheets || !caster->code || !caster->ranges || !caster->trim || !caster->normal)
-        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory to cast into %u patches",
-                        caster->sheet_count);
+    gtx_box *boxes = gtx_alloc_array(hooks, total.block, sizeof *boxes);
     gtx_result result = GTX_OK;
+    if (!caster->sheets || !caster->code || !caster->blocks || !caster->trim || !caster->normal ||
+        !boxes)
+        result = gtx_fail(error, GTX_ERROR_MEMORY, "no memory to cast into %u patches",
+                          caster->sheet_count);
     for (uint32_t i = 0; !result && i < caster->sheet_count; ++i) {
         place_sheet(caster, &caster->sheets[i], &at);
-        result = fill_sheet(caster, asset, i, error);
+        result = fill_sheet(caster, asset, i, boxes, error);
     }
+    if (!result)
+        result = gtx_hierarchy_build(boxes, total.block, hooks, &caster->tree, error);
+    gtx_free_array(hooks, boxes, total.block, sizeof *boxes);
     return result;
 }
 
@@ -233,10 +171,11 @@ void gtx_sheets_free(gtx_caster *caster)
 {
     const gtx_allocator *hooks = &caster->allocator;
     gtx_free_array(hooks, caster->code, caster->code_count, sizeof *caster->code);
-    gtx_free_array(hooks, caster->ranges, caster->range_count, sizeof *caster->ranges);
+    gtx_free_array(hooks, caster->blocks, caster->block_count, sizeof *caster->blocks);
     gtx_free_array(hooks, caster->trim, caster->texel_count, 1);
     gtx_free_array(hooks, caster->normal, caster->texel_count, 2);
     gtx_free_array(hooks, caster->sheets, caster->sheet_count, sizeof *caster->sheets);
+    gtx_hierarchy_free(&caster->tree, hooks);
 }
 
 gtx_line gtx_sheet_line(const gtx_sheet *sheet, const gtx_line *ray)
@@ -263,6 +202,13 @@ gtx_cell gtx_sheet_cell(const gtx_sheet *sheet, uint32_t i, uint32_t j)
                       .cx = row[1] - row[0],
                       .cy = next[0] - row[0],
                       .cxy = next[1] - next[0] - row[1] + row[0]};
+}
+
+bool gtx_sheet_solid(const gtx_caster *caster, const gtx_sheet *sheet, uint32_t i, uint32_t j)
+{
+    const uint32_t block = j / GTX_BLOCK * sheet->blocks_x + i / GTX_BLOCK;
+    const uint32_t bit = j % GTX_BLOCK * GTX_BLOCK + i % GTX_BLOCK;
+    return caster->blocks[sheet->first_block + block].solid >> bit & 1;
 }
 
 /* Four weights and the texel of the first for a bilinear lookup at (x, y), clamped to the map. */

@@ -1,77 +1,34 @@
-/* Casting into one sheet: a front-to-back walk down a min-max tree to exact bilinear crossings.
+/* Casting into one block of a sheet: from cell to cell along the ray (Amanatides and Woo 1987), to
+ * exact bilinear crossings.
  *
- * The tree descends as in Tevs, Ihrke, Seidel, "Maximum Mipmaps for Fast, Accurate, and Scalable
- * Dynamic Height Field Rendering", I3D 2008, with minima too and without a stack: leaving a node
- * ascends one level when its parent is left as well. Nodes are integers and the time at which the
- * ray meets a plane comes from one expression, so no node is skipped or met twice: a line pierces
- * at most 2 N / 2^l - 1 nodes of level l, hence at most 4 N nodes are tested. */
+ * The time at which the ray meets a plane comes from one expression, in a block and in its
+ * neighbour, so no cell is skipped or met twice. */
 #include "trace/caster.h"
 
 #include <math.h>
 
 /* Texels by which neighbouring cells overlap along the ray, so that none slips between them. */
 static const double OVERLAP = 1e-7;
-/* Codes added to both ends of a node's range against rounding. */
+/* Codes added to both ends of a cell's range against rounding. */
 static const double RANGE_SLACK = 1e-3;
 
 typedef struct walk {
-    const gtx_caster *caster;
     const gtx_sheet *sheet;
-    uint32_t index;
+    const gtx_block *block;
     bool both;
-    double origin[3], direction[3]; /* grid space, from where the ray enters the box */
+    double origin[3], direction[3]; /* grid space, from where the ray enters the block */
     double inverse[2];
-    double start, length;           /* the ray's t there, and how far the box reaches */
+    double start, length;           /* the ray's t there, and how far the block reaches */
     double overlap;                 /* OVERLAP in t */
     double t_min;
     gtx_crossing *best;
 } walk;
 
-/* Cuts [*t0, *t1] to the part of the line inside the box of the solid cells. */
-static bool clip(const gtx_sheet *sheet, const gtx_line *line, double *t0, double *t1)
+/* The plane before cell `n` of the sheet, in texels. */
+static double plane(const gtx_sheet *sheet, int axis, uint32_t n)
 {
-    for (int a = 0; a < 3; ++a) {
-        double o = line->origin[a], d = line->direction[a];
-        if (d == 0) {
-            if (o < sheet->low[a] || o > sheet->high[a])
-                return false;
-            continue;
-        }
-        double near = (sheet->low[a] - o) / d, far = (sheet->high[a] - o) / d;
-        if (near > far) {
-            double swap = near;
-            near = far;
-            far = swap;
-        }
-        *t0 = near > *t0 ? near : *t0;
-        *t1 = far < *t1 ? far : *t1;
-    }
-    return *t0 <= *t1;
-}
-
-/* The plane before node `n` of tree level `l`, in texels. */
-static double plane(const walk *w, int axis, uint32_t n, uint32_t l)
-{
-    uint32_t last = (axis ? w->sheet->height : w->sheet->width) - 1;
-    uint32_t texel = n << (l + w->sheet->level);
+    uint32_t last = (axis ? sheet->height : sheet->width) - 1, texel = n << sheet->level;
     return texel < last ? texel : last;
-}
-
-static double time_at(const walk *w, int axis, double texel)
-{
-    return w->direction[axis] == 0 ? INFINITY : (texel - w->origin[axis]) * w->inverse[axis];
-}
-
-/* Which of the two children of node `n` the ray is in at time t. */
-static uint32_t child(const walk *w, int axis, uint32_t n, uint32_t l, double t)
-{
-    double split = plane(w, axis, 2 * n + 1, l - 1);
-    if (split == (axis ? w->sheet->height : w->sheet->width) - 1)
-        return 2 * n;
-    if (w->direction[axis] == 0)
-        return 2 * n + (w->origin[axis] >= split);
-    bool passed = t >= time_at(w, axis, split);
-    return 2 * n + (passed == (w->direction[axis] > 0));
 }
 
 /* Takes the crossing at time s after t when it counts. */
@@ -79,29 +36,29 @@ static bool accept(const walk *w, double t, double s, bool back)
 {
     double when = w->start + (t + s);
     gtx_crossing *best = w->best;
-    if (when < w->t_min || !(when < best->t || (when == best->t && w->index < best->sheet)))
+    const uint32_t index = w->block->sheet;
+    if (when < w->t_min || !(when < best->t || (when == best->t && index < best->sheet)))
         return false;
     double x = w->origin[0] + (t + s) * w->direction[0];
     double y = w->origin[1] + (t + s) * w->direction[1];
     if (!gtx_sheet_shows(w->sheet, x, y))
         return false;
-    *best = (gtx_crossing){when, w->index, x, y, back};
+    *best = (gtx_crossing){when, index, x, y, back};
     return true;
 }
 
-/* Crossings of cell (i, j) while the ray is over it, from t to `exit`. The ray's height above the
+/* Crossings of a cell while the ray is over it, from t to `exit`. The ray's height above the
  * bilinear patch is f(s) = a s^2 + b s + c with s = 0 at t; where it crosses from above f' is
  * -root, from below +root, and each is solved in the form that does not cancel. */
-static bool cross_cell(const walk *w, uint32_t i, uint32_t j, double t, double exit)
+static bool cross_cell(const walk *w, const gtx_cell *cell, double t, double exit)
 {
-    gtx_cell cell = gtx_sheet_cell(w->sheet, i, j);
     const double *o = w->origin, *d = w->direction;
-    double width = cell.x1 - cell.x0, height = cell.y1 - cell.y0;
-    double u = (o[0] + t * d[0] - cell.x0) / width, du = d[0] / width;
-    double v = (o[1] + t * d[1] - cell.y0) / height, dv = d[1] / height;
-    double c = o[2] + t * d[2] - (cell.c + cell.cx * u + cell.cy * v + cell.cxy * u * v);
-    double b = d[2] - (cell.cx * du + cell.cy * dv + cell.cxy * (u * dv + v * du));
-    double a = -cell.cxy * du * dv;
+    double width = cell->x1 - cell->x0, height = cell->y1 - cell->y0;
+    double u = (o[0] + t * d[0] - cell->x0) / width, du = d[0] / width;
+    double v = (o[1] + t * d[1] - cell->y0) / height, dv = d[1] / height;
+    double c = o[2] + t * d[2] - (cell->c + cell->cx * u + cell->cy * v + cell->cxy * u * v);
+    double b = d[2] - (cell->cx * du + cell->cy * dv + cell->cxy * (u * dv + v * du));
+    double a = -cell->cxy * du * dv;
     double square = b * b - 4 * a * c;
     if (!(square > 0))
         return false;
@@ -123,72 +80,108 @@ static bool cross_cell(const walk *w, uint32_t i, uint32_t j, double t, double e
     return false;
 }
 
-static bool range_met(const walk *w, gtx_range range, double t, double exit)
+/* Whether the ray is among the cell's heights at any time from t to `exit`. */
+static bool range_met(const walk *w, const gtx_cell *cell, double t, double exit)
 {
+    const double left = cell->c, right = left + cell->cx, across = left + cell->cy;
+    const double far = right + cell->cy + cell->cxy;
     double z0 = w->origin[2] + t * w->direction[2], z1 = w->origin[2] + exit * w->direction[2];
-    return range.min <= range.max && (z0 < z1 ? z0 : z1) <= range.max + RANGE_SLACK &&
-           (z0 < z1 ? z1 : z0) >= range.min - RANGE_SLACK;
+    double low = z0 < z1 ? z0 : z1, high = z0 < z1 ? z1 : z0;
+    low -= RANGE_SLACK;
+    high += RANGE_SLACK;
+    return (left >= low || right >= low || across >= low || far >= low) &&
+           (left <= high || right <= high || across <= high || far <= high);
 }
 
-static void walk_tree(const walk *w)
+static void walk_cells(const walk *w, uint32_t x, uint32_t y)
 {
-    uint32_t top = w->sheet->levels - 1, l = top, node[2] = {0, 0};
     const uint32_t ahead[2] = {w->direction[0] > 0, w->direction[1] > 0};
-    const double far[2] = {ahead[0] ? w->sheet->width - 1 : 0,
-                           ahead[1] ? w->sheet->height - 1 : 0};
+    uint32_t cell[2] = {x, y};
     double t = 0;
     for (;;) {
-        double edge[2], leave[2];
+        double leave[2];
         for (int a = 0; a < 2; ++a) {
-            edge[a] = plane(w, a, node[a] + ahead[a], l);
-            leave[a] = time_at(w, a, edge[a]);
+            const double edge = plane(w->sheet, a, cell[a] + ahead[a]);
+            leave[a] = w->direction[a] == 0 ? INFINITY : (edge - w->origin[a]) * w->inverse[a];
         }
-        int axis = leave[1] < leave[0];
+        const int axis = leave[1] < leave[0];
         double exit = leave[axis] < w->length ? leave[axis] : w->length;
         exit = exit > t ? exit : t;
-        gtx_range range = w->sheet->tree[l][(size_t)node[1] * w->sheet->tree_width[l] + node[0]];
-        if (range_met(w, range, t, exit)) {
-            if (l > 0) {
-                for (int a = 0; a < 2; ++a)
-                    node[a] = child(w, a, node[a], l, t);
-                --l;
-                continue;
-            }
-            if (cross_cell(w, node[0], node[1], t, exit))
+        const uint32_t i = cell[0] - w->block->x, j = cell[1] - w->block->y;
+        if (w->block->solid >> (j * GTX_BLOCK + i) & 1) {
+            const gtx_cell c = gtx_sheet_cell(w->sheet, cell[0], cell[1]);
+            if (range_met(w, &c, t, exit) && cross_cell(w, &c, t, exit))
                 return;
         }
-        if (exit >= w->length || edge[axis] == far[axis])
+        if (exit >= w->length)
             return;
         t = exit;
-        uint32_t parent = node[axis] >> 1;
-        node[axis] = ahead[axis] ? node[axis] + 1 : node[axis] - 1;
-        if (node[axis] >> 1 != parent && l < top) {
-            node[0] >>= 1;
-            node[1] >>= 1;
-            ++l;
-        }
+        cell[axis] += ahead[axis] ? 1u : -1u;
+        if (cell[axis] - (axis ? w->block->y : w->block->x) >= GTX_BLOCK)
+            return;
     }
+}
+
+/* The cell of the block that the ray is in where it enters. */
+static uint32_t entry_cell(const gtx_sheet *sheet, uint32_t first, uint32_t last, double at)
+{
+    const double cell = at / (1u << sheet->level);
+    return cell <= first ? first : cell >= last ? last : (uint32_t)cell;
+}
+
+/* Cuts [*t0, *t1] to where the line is between two planes across an axis. */
+static bool cut(const gtx_line *line, int axis, double low, double high, double *t0, double *t1)
+{
+    const double o = line->origin[axis], d = line->direction[axis];
+    if (d == 0)
+        return o >= low && o <= high;
+    const double near = ((d > 0 ? low : high) - o) * (1 / d);
+    const double far = ((d > 0 ? high : low) - o) * (1 / d);
+    *t0 = near > *t0 ? near : *t0;
+    *t1 = far < *t1 ? far : *t1;
+    return *t0 <= *t1;
+}
+
+void gtx_walk_block(const gtx_caster *caster, const gtx_block *block, const gtx_line *line,
+                    bool both, gtx_crossing *best)
+{
+    const gtx_sheet *s = &caster->sheets[block->sheet];
+    const uint32_t first[2] = {block->x, block->y};
+    const uint32_t cells[2] = {s->nodes_x - 1, s->nodes_y - 1};
+    walk w = {.sheet = s, .block = block, .both = both || s->two_sided, .t_min = line->t_min,
+              .best = best};
+    double t0 = line->t_min, t1 = best->t, fastest = 1e-300; /* along z no cell is ever left */
+    uint32_t last[2];
+    for (int a = 0; a < 2; ++a) {
+        last[a] = (first[a] + GTX_BLOCK < cells[a] ? first[a] + GTX_BLOCK : cells[a]) - 1;
+        if (!cut(line, a, plane(s, a, first[a]), plane(s, a, last[a] + 1), &t0, &t1))
+            return;
+        w.inverse[a] = 1 / line->direction[a];
+        fastest = fmax(fastest, fabs(line->direction[a]));
+    }
+    /* A code more on both sides, so that a flat sheet does not lie in the faces of its box. */
+    if (!cut(line, 2, block->low - 1.0, block->high + 1.0, &t0, &t1))
+        return;
+    for (int a = 0; a < 3; ++a) {
+        w.direction[a] = line->direction[a];
+        w.origin[a] = line->origin[a] + t0 * line->direction[a];
+    }
+    w.start = t0;
+    w.length = t1 - t0;
+    w.overlap = OVERLAP / fastest;
+    walk_cells(&w, entry_cell(s, first[0], last[0], w.origin[0]),
+               entry_cell(s, first[1], last[1], w.origin[1]));
 }
 
 void gtx_walk_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *ray, bool both,
                     gtx_crossing *best)
 {
     const gtx_sheet *s = &caster->sheets[sheet];
-    gtx_line line = gtx_sheet_line(s, ray);
-    double t0 = ray->t_min, t1 = best->t;
-    if (s->low[0] > s->high[0] || !clip(s, &line, &t0, &t1))
-        return;
-    walk w = {.caster = caster, .sheet = s, .index = sheet, .both = both || s->two_sided,
-              .start = t0, .length = t1 - t0, .t_min = ray->t_min, .best = best};
-    double fastest = 1e-300; /* of x and y; a ray along z never leaves its cell */
-    for (int a = 0; a < 3; ++a) {
-        w.direction[a] = line.direction[a];
-        w.origin[a] = line.origin[a] + t0 * line.direction[a];
-        if (a < 2) {
-            w.inverse[a] = 1 / w.direction[a];
-            fastest = fmax(fastest, fabs(w.direction[a]));
-        }
+    const gtx_line line = gtx_sheet_line(s, ray);
+    const uint32_t count = s->blocks_x * gtx_blocks_of(s->nodes_y - 1);
+    for (uint32_t i = 0; i < count; ++i) {
+        const gtx_block *block = &caster->blocks[s->first_block + i];
+        if (block->solid)
+            gtx_walk_block(caster, block, &line, both, best);
     }
-    w.overlap = OVERLAP / fastest;
-    walk_tree(&w);
 }

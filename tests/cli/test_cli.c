@@ -27,7 +27,8 @@ static void usage_is_exit_1(void **state)
 
 static void help_is_exit_0(void **state)
 {
-    static const char *const verbs[] = {"cook", "info", "validate", "render", "compare"};
+    static const char *const verbs[] = {"cook",   "info",   "validate", "unpack", "pack",
+                                        "filter", "render", "compare"};
     (void)state;
     expect(gtx("--help"), 0);
     expect(gtx("--version"), 0);

@@ -1,4 +1,4 @@
-/* gtx unpack and gtx pack: there and back again, edits, and folders that are no asset. */
+/* gtx horizons; gtx unpack and gtx pack: there and back again, edits, and folders that are no asset. */
 #include "cli/command.h"
 
 #include "image/image.h"
@@ -68,6 +68,45 @@ static void cooked_assets_come_back(void **state)
         expect(gtx("cook -q sphere.obj -o c.gtx %s", options[i]), 0);
         there_and_back_again("c.gtx");
     }
+}
+
+/* An asset in place of a folder, and a shell that needs no mesh. */
+static void an_asset_is_packed_anew(void **state)
+{
+    (void)state;
+    expect(gtx("cook -q sphere.obj -o c.gtx"), 0);
+    expect(gtx("pack c.gtx -o same.gtx"), 0);
+    same_files("c.gtx", "same.gtx");
+    expect(gtx("pack c.gtx -o shell.gtx --shell-levels 3"), 0);
+    expect(gtx("validate shell.gtx"), 0);
+    expect(gtx("info shell.gtx"), 0);
+    expect_text("shell ");
+    expect(gtx("pack sphere.obj -o no.gtx"), 3);
+    expect(gtx("pack c.gtx -o no.gtx --shell-levels 6"), 1);
+}
+
+static const char classic[] = "-996 3 10 10\n0 20 0 20\n3 0 0 0\n0 0 0 0 0 0 0\n"
+                              "1 2 3\n2 3 4\n3 4 5\n";
+
+static void grids_become_an_asset(void **state)
+{
+    (void)state;
+    write_file("a.irap", classic, sizeof classic - 1);
+    expect(gtx("horizons a.irap -o h.gtx --vertical 2 --colors rainbow"), 0);
+    expect_text("9 nodes, 8 triangles, 1 patches");
+    expect(gtx("validate h.gtx"), 0);
+    expect(gtx("horizons a.irap=a.irap a.irap@100,0 -q -o h.gtx"), 0);
+    expect(gtx("horizons a.irap a.irap@20,0 --one-surface -o h.gtx"), 0);
+    expect_text("15 nodes, 16 triangles");
+    write_file("b.irap", classic, sizeof classic - 3);
+    expect(gtx("horizons b.irap -o no.gtx"), 3);
+    expect_text("b.irap: error[input]");
+    expect(gtx("horizons nowhere.irap -o no.gtx"), 2);
+    expect(gtx("horizons a.irap"), 1);
+    expect(gtx("horizons a.irap -o no.gtx --spacing 3"), 1);
+    expect(gtx("horizons a.irap@x -o no.gtx"), 1);
+    expect(gtx("horizons a.irap -o no.gtx --missing 1 --vertical 0"), 1);
+    assert_false(exists("no.gtx"));
 }
 
 static void unknown_sections_are_warned_of(void **state)
@@ -183,6 +222,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_golden_file_comes_back),
         cmocka_unit_test(cooked_assets_come_back),
+        cmocka_unit_test(an_asset_is_packed_anew),
+        cmocka_unit_test(grids_become_an_asset),
         cmocka_unit_test(unknown_sections_are_warned_of),
         cmocka_unit_test(edits_arrive),
         cmocka_unit_test(what_is_there_stays),

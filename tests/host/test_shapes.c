@@ -52,6 +52,10 @@ static void boxes_and_cylinders_face_outward(void **state)
     expect_outward(&cylinder, gtx_v3(1, 3, 3));
     release(&box);
     release(&cylinder);
+    gtx_shapes tube = {0};
+    gtx_shapes_tube(&tube, (const float[][3]){{1, 0, 3}, {1, 2, 3}, {1, 5, 3}}, 3, 0.5f, red);
+    expect_outward(&tube, gtx_v3(1, 2.5f, 3));
+    release(&tube);
 }
 
 static gtx_rgb by_place(float x, float z, void *user)

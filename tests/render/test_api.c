@@ -102,6 +102,8 @@ static void bad_draws(void **state)
     VIEW_WITH(method = (gtx_method)9, GTX_ERROR_ARGUMENT);
     VIEW_WITH(pass = (gtx_pass)4, GTX_ERROR_ARGUMENT);
     VIEW_WITH(reserved[0] = 1, GTX_ERROR_NOT_ZEROED);
+    VIEW_WITH(search_steps[1] = 3, GTX_ERROR_ARGUMENT);
+    VIEW_WITH(search_steps[0] = 1001, GTX_ERROR_ARGUMENT);
     VIEW_WITH(view[5] = NAN, GTX_ERROR_ARGUMENT);
     VIEW_WITH(projection[0] = INFINITY, GTX_ERROR_ARGUMENT);
     VIEW_WITH(projection[0] = 0, GTX_ERROR_ARGUMENT);

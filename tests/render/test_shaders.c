@@ -16,6 +16,12 @@ static const char *const shell[] = {"geotex_dialect.glsl", "geotex_sheet.glsl", 
                                     "geotex_surface.glsl", "geotex_shell_fragment.glsl",
                                     "geotex_shell.frag", NULL};
 
+/* What comes before an engine's own main, and a main. */
+static const char *const rays[] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
+                                   "geotex_surface.glsl", "geotex_material.glsl",
+                                   "geotex_cast.glsl", "geotex_fragment.glsl", "geotex_rays.glsl",
+                                   "geotex_forward.frag", NULL};
+
 /* Compiles a program's stage and expects no word of complaint. */
 static void compile(const char *version, const char *options, const char *kind,
                     const char *const *parts)
@@ -88,6 +94,8 @@ static void every_dialect(void **state)
             if (k == 0 || k == 3)
                 compile(head, versions[i][1], "frag", shaded);
         }
+        snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS", versions[i][0]);
+        compile(head, versions[i][1], "frag", rays);
         snprintf(head, sizeof head, "%s\n#define GTX_TWO_SIDED", versions[i][0]);
         compile(head, versions[i][1], "frag", shell);
         snprintf(head, sizeof head, "%s\n#define GTX_COLORS", versions[i][0]);

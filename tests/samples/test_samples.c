@@ -93,14 +93,13 @@ static void assert_alike(const gtx_image *a, const gtx_image *b)
                  (double)sum / (3.0 * (double)count));
 }
 
-static void draws_its_picture(void **state)
+static void draws_picture_of(const char *name, const char *what)
 {
-    const char *name = *state;
     char golden[256], picture[256];
     gtx_image expected, found;
     snprintf(golden, sizeof golden, "tests/golden/samples/%s.png", name);
     snprintf(picture, sizeof picture, "%s/%s.png", folder, name);
-    assert_int_equal(run("$S/%s $T/shell.gtx --headless %s --size 240x160", name, picture), 0);
+    assert_int_equal(run("$S/%s %s --headless %s --size 240x160", name, what, picture), 0);
     if (getenv("GTX_UPDATE_GOLDEN"))
         assert_int_equal(run("cp %s %s", picture, golden), 0);
     assert_int_equal(gtx_image_read(golden, &expected, NULL), GTX_OK);
@@ -108,6 +107,18 @@ static void draws_its_picture(void **state)
     assert_alike(&expected, &found);
     gtx_image_free(&expected);
     gtx_image_free(&found);
+}
+
+static void draws_its_picture(void **state)
+{
+    draws_picture_of(*state, "$T/shell.gtx");
+}
+
+static void horizons_are_made_and_drawn(void **state)
+{
+    (void)state;
+    draws_picture_of("horizons", "own");
+    assert_int_equal(run("$S/horizons $T/nowhere --headless $T/x.png 2>/dev/null"), 1);
 }
 
 static void misuse_is_one_line(void **state)
@@ -124,7 +135,9 @@ int main(void)
 #define PICTURE(name) cmocka_unit_test_prestate(draws_its_picture, name)
 #define MISUSE(name) cmocka_unit_test_prestate(misuse_is_one_line, name)
     static char smallest[] = "smallest_engine", instances[] = "instances", picking[] = "picking",
-                mixed[] = "mixed_scene", gbuffer[] = "engine_gbuffer", shadows[] = "shadows";
+                mixed[] = "mixed_scene", gbuffer[] = "engine_gbuffer", shadows[] = "shadows",
+                rays[] = "ray_shadows", implicit[] = "implicit", filters[] = "filters",
+                cellular[] = "cellular", footprints[] = "footprints";
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cooking_says_how_far_it_is),
         cmocka_unit_test(an_interrupt_leaves_nothing_behind),
@@ -135,6 +148,12 @@ int main(void)
         PICTURE(mixed),
         PICTURE(gbuffer),
         PICTURE(shadows),
+        PICTURE(rays),
+        PICTURE(implicit),
+        cmocka_unit_test(horizons_are_made_and_drawn),
+        PICTURE(filters),
+        PICTURE(cellular),
+        PICTURE(footprints),
         MISUSE(smallest),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -1,0 +1,133 @@
+/* gtx filter: image operations on the surface of an asset. */
+#include "cli/cli.h"
+
+#include <geotex/edit.h>
+
+#include "image/image.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char *output;
+static int32_t zstd_level = 3;
+static steps chosen;
+static bool naive;
+static double boost_radius = 2, pattern_height, pattern_size;
+
+static const option options[] = {
+    {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes (required)", 0, 0},
+    {"gaussian", 0, OPTION_STEP, &chosen, "TEXELS", "blur; standard deviation in texels", 0, 1e6},
+    {"gaussian-world", 0, OPTION_STEP, &chosen, "UNITS", "the same in object units", 0, 1e30},
+    {"high-boost", 0, OPTION_STEP, &chosen, "AMOUNT", "exaggerate what a blur takes away", 0, 16},
+    {"boost-radius", 0, OPTION_NUMBER, &boost_radius, "TEXELS", "of that blur [2]", 0, 1e6},
+    {"pattern", 0, OPTION_STEP, &chosen, "IMAGE", "raise the surface by an image of heights", 0, 0},
+    {"pattern-height", 0, OPTION_NUMBER, &pattern_height, "H",
+     "of white, object units [1 texel]", -1e30, 1e30},
+    {"pattern-size", 0, OPTION_NUMBER, &pattern_size, "S",
+     "the image's width on the surface, object units [64 texels]", 0, 1e30},
+    {"naive", 0, OPTION_FLAG, &naive, NULL, "blur patch by patch, as the paper did: seams open", 0,
+     0},
+    {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
+    {0}};
+
+static const verb filter = {
+    "filter", "ASSET -o OUT.gtx",
+    "Changes the surface of an asset, heights and normals, across the borders of its patches.\n"
+    "Operations are done in the order given; each may be given again.",
+    1, 1, options};
+
+/* Grey of the image, 0..1. *file names it when it is at fault. */
+static gtx_result lay_pattern(gtx_edit *edit, const char *path, const char **file,
+                              gtx_error *error)
+{
+    gtx_image image;
+    const char *asset = *file;
+    *file = path;
+    gtx_result result = gtx_image_read(path, &image, error);
+    if (result)
+        return result;
+    const size_t count = (size_t)image.width * image.height;
+    float *values = malloc(count * sizeof *values);
+    if (!values) {
+        gtx_image_free(&image);
+        *error = (gtx_error){.result = GTX_ERROR_MEMORY};
+        strcpy(error->message, "no memory for the image");
+        return GTX_ERROR_MEMORY;
+    }
+    for (size_t i = 0; i < count; ++i) {
+        const uint8_t *p = image.pixels + 4 * i;
+        values[i] = (float)(p[0] + p[1] + p[2]) / 765;
+    }
+    const gtx_edit_image heights = {values, image.width, image.height};
+    const float texel = gtx_edit_texel_size(edit);
+    result = gtx_edit_pattern(edit, &heights,
+                              pattern_height != 0 ? (float)pattern_height : texel,
+                              pattern_size > 0 ? (float)pattern_size : 64 * texel, error);
+    gtx_image_free(&image);
+    free(values);
+    if (!result)
+        *file = asset;
+    return result;
+}
+
+static gtx_result take(gtx_edit *edit, const step *s, const char **file, gtx_error *error)
+{
+    gtx_edit_blur blur = {.radius = (float)s->number, .flags = naive ? GTX_EDIT_ALONE : 0};
+    if (!strcmp(s->name, "pattern"))
+        return lay_pattern(edit, s->text, file, error);
+    if (!strcmp(s->name, "high-boost")) {
+        blur.radius = (float)boost_radius;
+        return gtx_edit_high_boost(edit, &blur, (float)s->number, error);
+    }
+    if (!strcmp(s->name, "gaussian-world"))
+        blur.flags |= GTX_EDIT_WORLD;
+    return gtx_edit_gaussian(edit, &blur, error);
+}
+
+/* *file is what a failure is about. */
+static gtx_result run(const gtx_asset *asset, const char **file, gtx_error *error)
+{
+    gtx_edit *edit = NULL;
+    gtx_asset *edited = NULL;
+    gtx_result result = gtx_edit_begin(asset, NULL, &edit, error);
+    for (uint32_t i = 0; !result && i < chosen.count; ++i)
+        result = take(edit, &chosen.list[i], file, error);
+    if (!result)
+        result = gtx_edit_finish(edit, &edited, error);
+    gtx_edit_end(edit);
+    if (!result) {
+        const gtx_encode_desc encode = {.zstd_level = zstd_level};
+        *file = output;
+        result = gtx_save_file(edited, output, &encode, error);
+    }
+    gtx_close(edited);
+    return result;
+}
+
+int cmd_filter(int argc, char **argv)
+{
+    const char *file;
+    int count;
+    int code = parse_options(&filter, argc, argv, &file, &count);
+    if (code >= 0)
+        return code;
+    if (!output || !chosen.count) {
+        fprintf(stderr, "gtx filter: error[usage]: %s\n",
+                output ? "an operation is missing (see gtx filter --help)"
+                       : "-o OUT.gtx is missing");
+        return EXIT_CODE_USAGE;
+    }
+    gtx_asset *asset = NULL;
+    gtx_error error = {0};
+    gtx_info info;
+    gtx_result result = gtx_open_file(file, NULL, &asset, &error);
+    if (!result) {
+        gtx_get_info(asset, &info);
+        if (info.shell_levels)
+            report_warning(file, "the shell is that of the surface as it was, and is left out "
+                                 "(gtx pack --shell-levels makes one of the maps)");
+        result = run(asset, &file, &error);
+    }
+    gtx_close(asset);
+    return result ? report_error(file, &error) : EXIT_CODE_OK;
+}

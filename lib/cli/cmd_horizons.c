@@ -1,0 +1,204 @@
+/* gtx horizons: height grids -> an asset. */
+#include "cli/cli.h"
+
+#include <geotex/cook.h>
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_GRIDS = 4096, MOST_NAME = 4096 };
+
+static gtx_horizons_desc desc;
+static gtx_height_grid_desc reading, reading_property;
+static const char *output, *range, *property_range, *spacing, *origin, *color_range;
+static double missing = NAN, rotation = NAN, unit = 1;
+static uint32_t colors;
+static int32_t zstd_level = 3;
+static bool depths, one_surface;
+
+static const option options[] = {
+    {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes (required)", 0, 0},
+    {"colors", 0, OPTION_CHOICE, &colors, "viridis|rainbow|none",
+     "what properties, or else heights, are shown by [viridis]", 0, 0},
+    {"color-range", 0, OPTION_STRING, &color_range, "LOW,HIGH",
+     "values at the ends of the colours [the least and the greatest]", 0, 0},
+    {"depths", 0, OPTION_FLAG, &depths, NULL, "values count downwards", 0, 0},
+    {"vertical", 0, OPTION_NUMBER, &desc.vertical, "X", "exaggeration of heights [1]", 1e-6, 1e6},
+    {"one-surface", 0, OPTION_FLAG, &one_surface, NULL,
+     "the grids are parts of one lattice, and become one surface", 0, 0},
+    {"missing", 0, OPTION_NUMBER, &missing, "V",
+     "a height, and a property, that says that there is none", -1e30, 1e30},
+    {"range", 0, OPTION_STRING, &range, "LOW,HIGH",
+     "what the least and greatest code of height images stand for [themselves]", 0, 0},
+    {"property-range", 0, OPTION_STRING, &property_range, "LOW,HIGH", "the same of property images",
+     0, 0},
+    {"spacing", 0, OPTION_STRING, &spacing, "DX,DY", "between nodes [as the file says, or 1]", 0,
+     0},
+    {"origin", 0, OPTION_STRING, &origin, "X,Y", "of the first node [as the file says, or 0]", 0,
+     0},
+    {"rotation", 0, OPTION_NUMBER, &rotation, "DEG", "counter-clockwise [as the file says, or 0]",
+     -360, 360},
+    {"tile", 0, OPTION_UINT, &desc.tile, "N", "most texels along a patch [128]", 16, 512},
+    {"height-bits", 0, OPTION_UINT, &desc.height_bits, "8|16", "bits of a height [8]", 8, 16},
+    {"mips", 0, OPTION_UINT, &desc.mips, "N", "levels of normal and colour [4]", 1, 8},
+    {"shell-levels", 0, OPTION_UINT, &desc.shell_levels, "N", "polygon levels of detail [0]", 0, 5},
+    {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
+    {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the grids [1]", 1e-30, 1e30},
+    {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
+    PROGRESS_OPTION,
+    {0}};
+
+static const verb horizons = {
+    "horizons", "GRID[@X,Y][=PROPERTY]... -o OUT.gtx",
+    "Makes one asset of height grids: IRAP classic or binary and ZMAP+ (also gzipped), or images\n"
+    "(PNG, TIFF, EXR: 8 or 16 bits, or floats). @X,Y puts the first node of a grid elsewhere;\n"
+    "=PROPERTY is a grid of the same size to colour by. East becomes +X, up +Y, north -Z.",
+    1, MOST_GRIDS, options};
+
+static int usage(const char *sentence)
+{
+    fprintf(stderr, "gtx horizons: error[usage]: %s (see gtx horizons --help)\n", sentence);
+    return EXIT_CODE_USAGE;
+}
+
+/* "a,b". */
+static bool parse_pair(const char *text, double out[2])
+{
+    char *end;
+    out[0] = strtod(text, &end);
+    if (end == text || *end != ',')
+        return false;
+    text = end + 1;
+    out[1] = strtod(text, &end);
+    return end != text && !*end && isfinite(out[0]) && isfinite(out[1]);
+}
+
+static int check(void)
+{
+    double pair[2];
+    if (!output)
+        return usage("-o OUT.gtx is missing");
+    if (range && !parse_pair(range, reading.range))
+        return usage("--range takes LOW,HIGH");
+    if (property_range && !parse_pair(property_range, reading_property.range))
+        return usage("--property-range takes LOW,HIGH");
+    if (color_range && !parse_pair(color_range, desc.color_range))
+        return usage("--color-range takes LOW,HIGH");
+    if (spacing && (!parse_pair(spacing, pair) || pair[0] <= 0 || pair[1] <= 0))
+        return usage("--spacing takes DX,DY, both above 0");
+    if (origin && !parse_pair(origin, pair))
+        return usage("--origin takes X,Y");
+    return EXIT_CODE_OK;
+}
+
+/* The operand "GRID[@X,Y][=PROPERTY]", cut at its marks; an @ in a folder's name is none. */
+static int read_operand(const char *operand, gtx_height_grid *grid)
+{
+    char name[MOST_NAME];
+    gtx_height_grid property = {0};
+    gtx_error error;
+    if (strlen(operand) >= sizeof name)
+        return usage("a name is too long");
+    strcpy(name, operand);
+    char *second = strchr(name, '=');
+    if (second)
+        *second++ = 0;
+    char *slash = strrchr(name, '/'), *place = strchr(slash ? slash : name, '@');
+    double at[2];
+    if (place) {
+        *place++ = 0;
+        if (!parse_pair(place, at))
+            return usage("a grid's place is @X,Y");
+    }
+    if (gtx_height_grid_read(name, &reading, grid, &error))
+        return report_error(name, &error);
+    if (spacing)
+        parse_pair(spacing, grid->spacing);
+    if (origin)
+        parse_pair(origin, grid->origin);
+    if (place)
+        memcpy(grid->origin, at, sizeof at);
+    if (!isnan(rotation))
+        grid->rotation = rotation;
+    if (!second)
+        return EXIT_CODE_OK;
+    if (gtx_height_grid_read(second, &reading_property, &property, &error))
+        return report_error(second, &error);
+    if (property.nx != grid->nx || property.ny != grid->ny) {
+        error.result = GTX_ERROR_INPUT;
+        snprintf(error.message, sizeof error.message,
+                 "the property has %u x %u nodes, its grid %u x %u", property.nx, property.ny,
+                 grid->nx, grid->ny);
+        gtx_height_grid_free(&property);
+        return report_error(second, &error);
+    }
+    grid->property = property.values; /* of malloc, freed with free */
+    return EXIT_CODE_OK;
+}
+
+static void tell(const gtx_horizons_result *r)
+{
+    if (cli_quiet)
+        return;
+    fprintf(stderr, "%s: %" PRIu64 " nodes, %" PRIu64 " triangles, %u patches, heights within %g "
+            "(RMS %g)", output, r->nodes, r->triangles, r->patches, r->height_max, r->height_rms);
+    if (desc.colors != GTX_COLORS_NONE)
+        fprintf(stderr, ", colours %g to %g", r->color_range[0], r->color_range[1]);
+    fputc('\n', stderr);
+}
+
+static int make(const gtx_height_grid *grids, int count)
+{
+    gtx_asset *asset = NULL;
+    gtx_horizons_result result;
+    gtx_error error;
+    gtx_encode_desc encode = {.zstd_level = zstd_level};
+    catch_interrupt();
+    gtx_result made = gtx_horizons(grids, (uint32_t)count, &desc, &asset, &result, &error);
+    end_progress();
+    if (made)
+        return report_error("gtx horizons", &error);
+    made = gtx_save_file(asset, output, &encode, &error);
+    gtx_close(asset);
+    if (made)
+        return report_error(output, &error);
+    tell(&result);
+    return EXIT_CODE_OK;
+}
+
+int cmd_horizons(int argc, char **argv)
+{
+    static const char *operands[MOST_GRIDS];
+    int count;
+    int code = parse_options(&horizons, argc, argv, operands, &count);
+    if (code >= 0)
+        return code;
+    code = check();
+    if (code)
+        return code;
+    desc.colors = (gtx_colors)colors;
+    desc.depths = depths;
+    desc.one_surface = one_surface;
+    desc.unit = (float)unit;
+    desc.progress = show_progress;
+    reading.has_missing = !isnan(missing);
+    reading.missing = reading.has_missing ? missing : 0;
+    reading_property.has_missing = reading.has_missing;
+    reading_property.missing = reading.missing;
+
+    gtx_height_grid *grids = calloc((size_t)count, sizeof *grids);
+    if (!grids)
+        return EXIT_CODE_INTERNAL;
+    for (int i = 0; i < count && !code; ++i)
+        code = read_operand(operands[i], &grids[i]);
+    if (!code)
+        code = make(grids, count);
+    for (int i = 0; i < count; ++i) {
+        free((void *)grids[i].property);
+        gtx_height_grid_free(&grids[i]);
+    }
+    free(grids);
+    return code;
+}

@@ -1,0 +1,148 @@
+/* Maps and shell -> an asset; the shell of an asset without a mesh, behind the C API. */
+#include "cook/assemble.hpp"
+
+#include "cook/guard.hpp"
+#include "cook/options.hpp"
+
+#include "base/alloc.h"
+
+#include <geotex/cook.h>
+
+#include <algorithm>
+
+namespace gtx {
+
+static std::vector<const uint8_t *> level_pointers(const std::vector<std::vector<uint8_t>> &levels)
+{
+    std::vector<const uint8_t *> pointers;
+    for (const auto &level : levels)
+        pointers.push_back(level.data());
+    return pointers;
+}
+
+static std::vector<gtx_shell> shell_levels(const std::vector<ShellLevel> &shell)
+{
+    std::vector<gtx_shell> levels;
+    for (const ShellLevel &level : shell) {
+        gtx_shell out = {};
+        std::copy_n(level.origin, 3, out.origin);
+        out.step = level.step;
+        out.error = level.error;
+        out.vertex_count = uint32_t(level.positions.size() / 3);
+        out.triangle_count = uint32_t(level.triangle_count());
+        out.first = level.first.data();
+        out.indices = level.indices.data();
+        out.positions = level.positions.data();
+        levels.push_back(out);
+    }
+    return levels;
+}
+
+Asset assemble(const Maps &maps, const std::vector<ShellLevel> &shell, const AssetFacts &facts)
+{
+    const std::vector<const uint8_t *> normal = level_pointers(maps.normal),
+                                       color = level_pointers(maps.color),
+                                       material = level_pointers(maps.material),
+                                       emission = level_pointers(maps.emission);
+    const std::vector<gtx_shell> levels = shell_levels(shell);
+
+    gtx_asset_desc desc = {};
+    desc.patches = maps.patches.data();
+    desc.patch_count = uint32_t(maps.patches.size());
+    desc.page_count = maps.page_count;
+    desc.page_width = maps.page_width;
+    desc.page_height = maps.page_height;
+    desc.mip_count = maps.mip_count;
+    desc.height_bits = maps.height_bits;
+    desc.height = maps.height.data();
+    desc.trim = maps.trim.data();
+    desc.normal = normal.data();
+    desc.color = color.empty() ? nullptr : color.data();
+    desc.material = material.empty() ? nullptr : material.data();
+    desc.emission = emission.empty() ? nullptr : emission.data();
+    desc.emission_scale = maps.emission_scale;
+    desc.shell = levels.data();
+    desc.shell_levels = uint32_t(levels.size());
+    desc.meta = facts.meta.empty() ? nullptr : facts.meta.data();
+    desc.meta_size = facts.meta.size();
+    std::copy_n(maps.bounds_min, 3, desc.bounds_min);
+    std::copy_n(maps.bounds_max, 3, desc.bounds_max);
+    std::copy_n(maps.anchor, 3, desc.anchor);
+    desc.unit = facts.unit;
+    desc.source_triangles = facts.source_triangles;
+    desc.allocator = &facts.allocator;
+
+    gtx_asset *asset = nullptr;
+    gtx_error error;
+    gtx_result result = gtx_create(&desc, &asset, &error);
+    if (result == GTX_ERROR_CORRUPT) /* what is baked must be valid, whatever the model */
+        throw Error(GTX_ERROR_INTERNAL, error.message);
+    require_ok(result, error);
+    return Asset(asset, gtx_close);
+}
+
+Maps maps_of(const gtx_asset *asset)
+{
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    Maps maps;
+    maps.patches.assign(gtx_patches(asset), gtx_patches(asset) + info.patch_count);
+    for (uint32_t p = 0; p < info.patch_count; ++p)
+        maps.charts.push_back(p);
+    maps.page_count = info.page_count;
+    maps.page_width = info.page_width;
+    maps.page_height = info.page_height;
+    maps.mip_count = info.mip_count;
+    maps.height_bits = info.height_bits;
+    auto bytes = [&](gtx_map map, uint32_t level) {
+        size_t size = 0;
+        const auto *data = static_cast<const uint8_t *>(gtx_map_data(asset, map, level, &size));
+        return data ? std::vector<uint8_t>(data, data + size) : std::vector<uint8_t>();
+    };
+    maps.height = bytes(GTX_MAP_HEIGHT, 0);
+    maps.trim = bytes(GTX_MAP_TRIM, 0);
+    for (uint32_t k = 0; k < info.mip_count; ++k) {
+        maps.normal.push_back(bytes(GTX_MAP_NORMAL, k));
+        if (info.has_color)
+            maps.color.push_back(bytes(GTX_MAP_COLOR, k));
+        if (info.has_material)
+            maps.material.push_back(bytes(GTX_MAP_MATERIAL, k));
+        if (info.has_emission)
+            maps.emission.push_back(bytes(GTX_MAP_EMISSION, k));
+    }
+    maps.emission_scale = info.emission_scale;
+    std::copy_n(info.anchor, 3, maps.anchor);
+    std::copy_n(info.bounds_min, 3, maps.bounds_min);
+    std::copy_n(info.bounds_max, 3, maps.bounds_max);
+    return maps;
+}
+
+static Asset with_shell(const gtx_asset *asset, const gtx_shell_desc &desc)
+{
+    require_zeroed(desc.reserved);
+    require_argument(desc.levels <= MOST_SHELL_LEVELS, "levels is at most 5");
+    require_argument(desc.threads <= 1024, "threads is at most 1024");
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    Task task(desc.threads, desc.progress, desc.progress_user, {"shell"}, {1});
+    const Maps maps = maps_of(asset);
+    ShellSource source = shell_source(maps, task);
+    source.model = info.source_triangles;
+    size_t size;
+    const char *meta = gtx_meta(asset, &size);
+    const AssetFacts facts = {meta ? std::string(meta, size) : std::string(), info.unit,
+                              info.source_triangles, gtx_allocator_or_default(desc.allocator)};
+    return assemble(maps, make_shell(source, maps, desc.levels ? desc.levels : MOST_SHELL_LEVELS,
+                                     task), facts);
+}
+
+} // namespace gtx
+
+gtx_result gtx_cook_shell(const gtx_asset *asset, const gtx_shell_desc *desc, gtx_asset **out,
+                          gtx_error *error)
+{
+    return gtx::guard(error, [&] {
+        gtx::require_argument(asset && out, "gtx_cook_shell needs an asset and a result");
+        *out = gtx::with_shell(asset, desc ? *desc : gtx_shell_desc{}).release();
+    });
+}

@@ -1,0 +1,273 @@
+/* Height grids -> an asset (paper, section 6.2), behind the C API. */
+#include "cook/assemble.hpp"
+#include "cook/guard.hpp"
+#include "cook/options.hpp"
+#include "cook/report.hpp"
+
+#include "bake/tiles.hpp"
+#include "base/alloc.h"
+
+#include <geotex/cook.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace gtx {
+
+constexpr std::array<uint8_t, 3> NO_PROPERTY = {128, 128, 128};
+
+/* A C caller can store any number in an enum. */
+static uint32_t number_of(const gtx_colors &colors)
+{
+    std::underlying_type_t<gtx_colors> number;
+    std::memcpy(&number, &colors, sizeof number);
+    return uint32_t(number);
+}
+
+static ColorMap map_of(const gtx_colors &colors)
+{
+    return number_of(colors) == GTX_COLORS_RAINBOW ? ColorMap::RAINBOW : ColorMap::VIRIDIS;
+}
+
+/* ---- reading ---- */
+
+static void read(const char *path, const gtx_height_grid_desc &desc, gtx_height_grid *out)
+{
+    require_zeroed(desc.reserved);
+    require_argument(desc.has_missing <= 1, "has_missing is 0 or 1");
+    const bool ranged = desc.range[0] != 0 || desc.range[1] != 0;
+    require_argument(std::isfinite(desc.range[0]) && std::isfinite(desc.range[1]),
+                     "range is two finite numbers");
+    Task task(1, nullptr, nullptr);
+    GridReading reading;
+    reading.missing = desc.has_missing ? &desc.missing : nullptr;
+    reading.range = ranged ? desc.range : nullptr;
+    const HeightGrid grid = read_grid(path, reading, task);
+    gtx_height_grid made = {};
+    made.nx = grid.nx;
+    made.ny = grid.ny;
+    std::copy_n(grid.origin, 2, made.origin);
+    std::copy_n(grid.step, 2, made.spacing);
+    made.rotation = grid.rotation;
+    made.allocator = gtx_allocator_or_default(desc.allocator);
+    auto *values =
+        static_cast<float *>(gtx_alloc_array(&made.allocator, grid.count(), sizeof(float)));
+    if (!values)
+        throw std::bad_alloc();
+    std::copy(grid.values.begin(), grid.values.end(), values);
+    made.values = values;
+    *out = made;
+}
+
+/* ---- making ---- */
+
+static void check(const gtx_height_grid *grids, uint32_t count, const gtx_horizons_desc &desc)
+{
+    require_zeroed(desc.reserved);
+    require_argument(count > 0 && count <= 4096, "there are 1 to 4096 grids");
+    require_argument(number_of(desc.colors) <= GTX_COLORS_NONE, "unknown colours");
+    require_argument(desc.depths <= 1, "depths is 0 or 1");
+    require_argument(desc.one_surface <= 1, "one_surface is 0 or 1");
+    require_argument(desc.vertical >= 0 && desc.vertical < 1e9, "vertical is a positive number");
+    require_argument(std::isfinite(desc.color_range[0]) && std::isfinite(desc.color_range[1]),
+                     "color_range is two finite numbers");
+    require_argument(!desc.tile || (desc.tile >= 16 && desc.tile <= 512), "tile is 16 to 512");
+    require_argument(!desc.height_bits || desc.height_bits == 8 || desc.height_bits == 16,
+                     "height_bits is 8 or 16");
+    require_argument(desc.mips <= 8, "mips is 1 to 8");
+    require_argument(desc.shell_levels <= MOST_SHELL_LEVELS, "shell_levels is 0 to 5");
+    require_argument(desc.threads <= 1024, "threads is at most 1024");
+    require_argument(desc.unit >= 0 && std::isfinite(desc.unit), "unit is a positive number");
+    for (uint32_t n = 0; n < count; ++n) {
+        const gtx_height_grid &g = grids[n];
+        const std::string name = "grid " + std::to_string(n);
+        require_zeroed(g.reserved);
+        require_argument(g.values, "a grid has no values");
+        if (g.nx < 2 || g.ny < 2)
+            throw Error(GTX_ERROR_INPUT, name + " has " + std::to_string(g.nx) + " x " +
+                                             std::to_string(g.ny) +
+                                             " nodes, and a surface takes 2 x 2");
+        if (uint64_t(g.nx) * g.ny > uint64_t(1) << 28)
+            throw Error(GTX_ERROR_LIMIT, name + " has more than 2^28 nodes");
+        for (double place : {g.origin[0], g.origin[1], g.rotation, g.spacing[0], g.spacing[1]})
+            require_argument(std::fabs(place) < 1e15, "a grid lies nowhere");
+        require_argument(g.spacing[0] > 0 && g.spacing[1] > 0, "a grid's spacing is not positive");
+        if (!desc.one_surface && (g.nx != grids[0].nx || g.ny != grids[0].ny))
+            throw Error(GTX_ERROR_INPUT,
+                        name + " has " + std::to_string(g.nx) + " x " + std::to_string(g.ny) +
+                            " nodes, the first one " + std::to_string(grids[0].nx) + " x " +
+                            std::to_string(grids[0].ny));
+        require_argument(!desc.one_surface || !g.property == !grids[0].property,
+                         "of the parts of one surface some have a property and some do not");
+    }
+}
+
+static HeightGrid lattice(const gtx_height_grid &from, const float *values)
+{
+    HeightGrid grid;
+    grid.nx = from.nx;
+    grid.ny = from.ny;
+    std::copy_n(from.origin, 2, grid.origin);
+    std::copy_n(from.spacing, 2, grid.step);
+    grid.rotation = from.rotation;
+    grid.values.assign(values, values + grid.count());
+    for (float &value : grid.values)
+        if (!(std::fabs(value) < 1e30f))
+            value = NAN;
+    return grid;
+}
+
+/* The surfaces, and what each is coloured by: an empty grid stands for its heights. */
+struct Surfaces {
+    std::vector<HeightGrid> heights, properties;
+
+    Surfaces(const gtx_height_grid *grids, uint32_t count, bool as_one)
+    {
+        for (uint32_t n = 0; n < count; ++n) {
+            heights.push_back(lattice(grids[n], grids[n].values));
+            properties.push_back(grids[n].property ? lattice(grids[n], grids[n].property)
+                                                   : HeightGrid());
+        }
+        if (!as_one)
+            return;
+        heights = {mosaic(heights)};
+        properties = {grids[0].property ? mosaic(properties) : HeightGrid()};
+    }
+    const std::vector<float> &coloured(size_t n) const
+    {
+        return properties[n].values.empty() ? heights[n].values : properties[n].values;
+    }
+};
+
+static void find_color_range(const Surfaces &surfaces, const gtx_horizons_desc &desc,
+                             double range[2])
+{
+    std::copy_n(desc.color_range, 2, range);
+    if (range[0] != 0 || range[1] != 0)
+        return;
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    for (size_t n = 0; n < surfaces.heights.size(); ++n)
+        for (float value : surfaces.coloured(n))
+            if (!std::isnan(value)) {
+                range[0] = std::min(range[0], double(value));
+                range[1] = std::max(range[1], double(value));
+            }
+    if (range[0] > range[1])
+        range[0] = range[1] = 0;
+}
+
+static std::vector<std::array<uint8_t, 3>> colors_of(const std::vector<float> &values,
+                                                     ColorMap map, const double range[2])
+{
+    std::vector<std::array<uint8_t, 3>> colors;
+    colors.reserve(values.size());
+    const double size = range[1] - range[0];
+    for (float value : values)
+        colors.push_back(std::isnan(value) ? NO_PROPERTY
+                         : size != 0       ? color_of(map, (value - range[0]) / size)
+                                           : color_of(map, 0.5));
+    return colors;
+}
+
+static TileOptions options_of(const gtx_horizons_desc &desc)
+{
+    TileOptions options;
+    if (desc.height_bits)
+        options.bake.height_bits = desc.height_bits;
+    if (desc.mips)
+        options.bake.mips = desc.mips;
+    if (desc.tile)
+        options.tile = desc.tile;
+    options.vertical = (desc.vertical > 0 ? desc.vertical : 1) * (desc.depths ? -1 : 1);
+    return options;
+}
+
+static std::string meta_of(const gtx_horizons_desc &desc, const double range[2],
+                           const gtx_allocator &allocator)
+{
+    Json json(allocator);
+    gtx_json_begin_object(&json, nullptr);
+    gtx_json_string(&json, "generator", "geotex horizons");
+    if (number_of(desc.colors) != GTX_COLORS_NONE) {
+        gtx_json_string(&json, "colors",
+                        map_of(desc.colors) == ColorMap::RAINBOW ? "rainbow" : "viridis");
+        gtx_json_number(&json, "color_low", range[0]);
+        gtx_json_number(&json, "color_high", range[1]);
+    }
+    gtx_json_number(&json, "vertical", desc.vertical > 0 ? desc.vertical : 1);
+    gtx_json_end_object(&json);
+    if (json.failed)
+        throw std::bad_alloc();
+    return std::string(json.text, json.size);
+}
+
+static Asset make_horizons(const gtx_height_grid *grids, uint32_t count,
+                           const gtx_horizons_desc &desc, gtx_horizons_result *result)
+{
+    check(grids, count, desc);
+    const float shell = desc.shell_levels ? 60 : 0;
+    Task task(desc.threads, desc.progress, desc.progress_user, {"bake", "pack", "shell", "write"},
+              {35, 3, shell, 2});
+    const Surfaces surfaces(grids, count, desc.one_surface);
+    double range[2] = {0, 0};
+    std::vector<GridLayer> layers;
+    if (number_of(desc.colors) != GTX_COLORS_NONE)
+        find_color_range(surfaces, desc, range);
+    for (size_t n = 0; n < surfaces.heights.size(); ++n) {
+        layers.push_back({&surfaces.heights[n], {}});
+        if (number_of(desc.colors) != GTX_COLORS_NONE)
+            layers[n].colors = colors_of(surfaces.coloured(n), map_of(desc.colors), range);
+    }
+    TileReport report;
+    const Maps maps = bake_tiles(layers, options_of(desc), report, task);
+    std::vector<ShellLevel> levels;
+    if (desc.shell_levels)
+        levels = make_shell(shell_source(maps, task), maps, desc.shell_levels, task);
+    task.begin("write");
+    const gtx_allocator allocator = gtx_allocator_or_default(desc.allocator);
+    Asset asset = assemble(maps, levels, {meta_of(desc, range, allocator),
+                                          desc.unit > 0 ? desc.unit : 1, report.triangles,
+                                          allocator});
+    if (result)
+        *result = {report.nodes, report.triangles, uint32_t(maps.patches.size()),
+                   report.rms,   report.max,       {range[0], range[1]}};
+    return asset;
+}
+
+} // namespace gtx
+
+gtx_result gtx_height_grid_read(const char *path, const gtx_height_grid_desc *desc,
+                                gtx_height_grid *out, gtx_error *error)
+{
+    return gtx::guard(error, [&] {
+        gtx::require_argument(path && out, "gtx_height_grid_read needs a path and a result");
+        gtx::read(path, desc ? *desc : gtx_height_grid_desc{}, out);
+    });
+}
+
+void gtx_height_grid_free(gtx_height_grid *grid)
+{
+    if (!grid)
+        return;
+    if (grid->allocator.free)
+        gtx_free_array(&grid->allocator, const_cast<float *>(grid->values),
+                       size_t(grid->nx) * grid->ny, sizeof(float));
+    *grid = {};
+}
+
+void gtx_color(gtx_colors colors, double value, uint8_t rgb[3])
+{
+    const std::array<uint8_t, 3> color = gtx::color_of(gtx::map_of(colors), value);
+    std::copy(color.begin(), color.end(), rgb);
+}
+
+gtx_result gtx_horizons(const gtx_height_grid *grids, uint32_t count, const gtx_horizons_desc *desc,
+                        gtx_asset **out, gtx_horizons_result *result, gtx_error *error)
+{
+    return gtx::guard(error, [&] {
+        gtx::require_argument(grids && out, "gtx_horizons needs grids and a result");
+        *out = gtx::make_horizons(grids, count, desc ? *desc : gtx_horizons_desc{}, result)
+                   .release();
+    });
+}

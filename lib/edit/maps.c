@@ -1,0 +1,294 @@
+/* A patch's maps, written from its warped texels: heights and their frame, trim, normals at all
+ * levels, and the other maps from where their texels were. */
+#include "edit/edit.h"
+
+#include "asset/fill.h"
+#include "asset/section.h"
+#include "base/alloc.h"
+#include "base/error.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Least height of a patch to its sides (format/gtx.md, rule 301). */
+static const float FLATTEST = 1.0f / 4096;
+
+/* What writing one patch works with. */
+typedef struct writer {
+    const gtx_edit *edit;
+    const gtx_patch *from;
+    gtx_patch *to;
+    gtx_asset *out;
+    uint32_t width, height;
+    gtx_texel *texels;
+    float (*shift)[2];        /* from a texel to where it was */
+    uint8_t *ring, *occupied, *normals, *codes;
+} writer;
+
+/* The address of a texel of a patch in an image of an asset. */
+static uint8_t *texel_of(const gtx_asset *asset, const gtx_patch *patch, gtx_section_kind kind,
+                         uint32_t level, uint32_t x, uint32_t y)
+{
+    const gtx_map_shape shape = gtx_section_shape(&asset->info, kind, level);
+    const size_t row = (size_t)patch->page * shape.height + (patch->rect[1] >> level) + y;
+    /* The asset is not changed here; where it may be, it was not const. */
+    uint8_t *image = *gtx_asset_map((gtx_asset *)(uintptr_t)asset, kind, level);
+    return image + (row * shape.width + (patch->rect[0] >> level) + x) * shape.texel;
+}
+
+void gtx_edit_copy_patch(const gtx_edit *edit, uint32_t patch, gtx_asset *out)
+{
+    const gtx_patch *from = &edit->source->patches[patch], *to = &out->patches[patch];
+    for (int kind = GTX_SECTION_FIRST_IMAGE; kind <= GTX_SECTION_LAST_IMAGE; ++kind)
+        for (uint32_t k = 0; k < gtx_map_levels(&out->info, (gtx_section_kind)kind); ++k) {
+            const gtx_map_shape shape = gtx_section_shape(&out->info, (gtx_section_kind)kind, k);
+            for (uint32_t y = 0; y < (uint32_t)(to->rect[3] >> k); ++y)
+                memcpy(texel_of(out, to, (gtx_section_kind)kind, k, 0, y),
+                       texel_of(edit->source, from, (gtx_section_kind)kind, k, 0, y),
+                       (size_t)(to->rect[2] >> k) * shape.texel);
+        }
+}
+
+/* Frame and size of the record: the window's corner, and heights from the lowest to the highest.
+ * The old range is kept while it fits, for the codes of what did not move. */
+static void fit_frame(writer *w, const gtx_window *window)
+{
+    float low = INFINITY, high = -INFINITY;
+    for (size_t t = 0; t < (size_t)w->width * w->height; ++t)
+        if (w->texels[t].coded) {
+            low = fminf(low, w->texels[t].height);
+            high = fmaxf(high, w->texels[t].height);
+        }
+    const float step_x = w->from->extent_x / w->from->rect[2];
+    const float step_y = w->from->extent_y / w->from->rect[3];
+    w->to->extent_x = step_x * (float)w->width;
+    w->to->extent_y = step_y * (float)w->height;
+    const float least = FLATTEST * fmaxf(w->to->extent_x, w->to->extent_y);
+    float base = 0, range = fmaxf(w->from->extent_z, least);
+    if (low <= high && (low < 0 || high > range || high - low < 0.75f * range)) {
+        base = low;
+        range = fmaxf(high - low, least);
+    }
+    w->to->extent_z = range;
+    for (int k = 0; k < 3; ++k)
+        w->to->origin[k] = (float)(w->from->origin[k] +
+                                   (double)window->low[0] * step_x * w->from->axis_x[k] +
+                                   (double)window->low[1] * step_y * w->from->axis_y[k] +
+                                   (double)base * w->from->axis_z[k]);
+    for (size_t t = 0; t < (size_t)w->width * w->height; ++t)
+        w->texels[t].height = (w->texels[t].height - base) / range;
+}
+
+/* Codes, and what of the record follows from them. */
+static void write_heights(writer *w)
+{
+    const uint32_t bits = w->out->info.height_bits;
+    const float top = bits == 8 ? 254 : 65534;
+    uint64_t coded = 0;
+    double low[3] = {0}, high[3] = {0}, square = 0;
+    for (int pass = 0; pass < 2; ++pass)
+        for (uint32_t t = 0; t < w->width * w->height; ++t) {
+            const gtx_texel *texel = &w->texels[t];
+            const uint32_t x = t % w->width, y = t / w->width;
+            const float code = floorf(fminf(fmaxf(texel->height, 0), 1) * top + 0.5f);
+            if (!pass) {
+                const uint32_t c = texel->coded ? (uint32_t)code + 1 : 0;
+                uint8_t *to = texel_of(w->out, w->to, GTX_SECTION_HEIGHT, 0, x, y);
+                to[0] = (uint8_t)c;
+                if (bits == 16)
+                    to[1] = (uint8_t)(c >> 8);
+            }
+            if (!texel->coded)
+                continue;
+            const double a = (x + 0.5) / w->width * w->to->extent_x;
+            const double b = (y + 0.5) / w->height * w->to->extent_y;
+            double far = 0;
+            for (int k = 0; k < 3; ++k) {
+                const double p = w->to->origin[k] + a * w->to->axis_x[k] + b * w->to->axis_y[k] +
+                                 (double)(code / top * w->to->extent_z) * w->to->axis_z[k];
+                low[k] = !pass && (!coded || p < low[k]) ? p : low[k];
+                high[k] = !pass && (!coded || p > high[k]) ? p : high[k];
+                far += pass ? (p - (low[k] + high[k]) / 2) * (p - (low[k] + high[k]) / 2) : 0;
+            }
+            square = fmax(square, far);
+            coded += !pass;
+        }
+    w->to->coverage = (float)((double)coded / ((double)w->width * w->height));
+    if (!coded)
+        return;
+    for (int k = 0; k < 3; ++k)
+        w->to->sphere[k] = (float)((low[k] + high[k]) / 2);
+    w->to->sphere[3] = fmaxf((float)(sqrt(square) * (1 + 1e-6)), 1e-30f);
+}
+
+static void write_trim(writer *w)
+{
+    const size_t count = (size_t)w->width * w->height;
+    memset(w->codes, GTX_FAR_TRIM, count);
+    for (size_t t = 0; t < count; ++t) {
+        const float code = floorf(128 + 16 * w->texels[t].trim + 0.5f);
+        if (w->texels[t].coded)
+            w->codes[t] = (uint8_t)fminf(fmaxf(code, 0), 255);
+        w->ring[t] = w->texels[t].coded;
+    }
+    const gtx_fill area = {w->codes, w->ring, w->width, w->width, w->height};
+    gtx_fill_trim(&area);
+    for (uint32_t y = 0; y < w->height; ++y)
+        memcpy(texel_of(w->out, w->to, GTX_SECTION_TRIM, 0, 0, y),
+               w->codes + (size_t)y * w->width, w->width);
+}
+
+/* The next level of `normals` and `occupied`, in place: what is read is never before what is
+ * written. */
+static void halve_normals(writer *w, uint32_t width, uint32_t height)
+{
+    for (uint32_t j = 0; j < height / 2; ++j)
+        for (uint32_t i = 0; i < width / 2; ++i) {
+            const size_t to = (size_t)j * (width / 2) + i;
+            gtx_normal_sum sum = {0, 0, 0};
+            uint8_t any = 0;
+            for (uint32_t k = 0; k < 4; ++k) {
+                const size_t from = (size_t)(2 * j + k / 2) * width + 2 * i + k % 2;
+                if (w->occupied[from])
+                    gtx_normal_add(&sum, w->normals + 2 * from);
+                any |= w->occupied[from];
+            }
+            gtx_normal_mean(&sum, w->normals + 2 * to);
+            w->occupied[to] = any;
+        }
+}
+
+static void write_normals(writer *w)
+{
+    float rows[3][3];
+    gtx_normal_frame(w->to, rows);
+    for (size_t t = 0; t < (size_t)w->width * w->height; ++t) {
+        const float *n = w->texels[t].normal;
+        float m[3];
+        for (int k = 0; k < 3; ++k)
+            m[k] = rows[k][0] * n[0] + rows[k][1] * n[1] + rows[k][2] * n[2];
+        gtx_encode_normal(m, w->normals + 2 * t);
+        w->occupied[t] = w->texels[t].coded;
+    }
+    for (uint32_t k = 0; k < w->out->info.mip_count; ++k) {
+        const uint32_t width = w->width >> k, height = w->height >> k;
+        const size_t count = (size_t)width * height;
+        memset(w->codes, GTX_FAR_NORMAL, 2 * count);
+        memcpy(w->ring, w->occupied, count);
+        for (size_t t = 0; t < count; ++t)
+            if (w->occupied[t])
+                memcpy(w->codes + 2 * t, w->normals + 2 * t, 2);
+        const gtx_fill area = {w->codes, w->ring, width, width, height};
+        gtx_fill_normals(&area, gtx_fill_rings(w->to, k));
+        for (uint32_t y = 0; y < height; ++y)
+            memcpy(texel_of(w->out, w->to, GTX_SECTION_NORMAL, k, 0, y),
+                   w->codes + 2 * (size_t)y * width, 2 * (size_t)width);
+        halve_normals(w, width, height);
+    }
+}
+
+/* Takes the shift of a texel beside, if that is known and the own one is not. */
+static void spread_shift(writer *w, uint8_t *known, size_t t, size_t other)
+{
+    if (known[t] || !known[other])
+        return;
+    memcpy(w->shift[t], w->shift[other], sizeof w->shift[t]);
+    known[t] = 1;
+}
+
+/* Where texels were, also of those without a code: as the nearest to the left, right, above or
+ * below. */
+static void find_shifts(writer *w, const gtx_window *window)
+{
+    uint8_t *known = w->ring;
+    const uint32_t width = w->width, height = w->height;
+    for (size_t t = 0; t < (size_t)width * height; ++t) {
+        known[t] = w->texels[t].coded;
+        w->shift[t][0] = (float)window->low[0];
+        w->shift[t][1] = (float)window->low[1];
+        if (!known[t])
+            continue;
+        w->shift[t][0] = w->texels[t].from[0] - (float)(t % width);
+        w->shift[t][1] = w->texels[t].from[1] - (float)(t / width);
+    }
+    for (uint32_t j = 0; j < height; ++j) {
+        const size_t row = (size_t)j * width;
+        for (uint32_t i = 1; i < width; ++i)
+            spread_shift(w, known, row + i, row + i - 1);
+        for (uint32_t i = width - 1; i-- > 0;)
+            spread_shift(w, known, row + i, row + i + 1);
+    }
+    for (size_t t = width; t < (size_t)width * height; ++t)
+        spread_shift(w, known, t, t - width);
+    for (size_t t = (size_t)width * (height - 1); t-- > 0;)
+        spread_shift(w, known, t, t + width);
+}
+
+/* Bilinear, within the source's rectangle at the level. */
+static void look_up(const writer *w, gtx_section_kind kind, uint32_t level, double x, double y,
+                    uint32_t channels, uint8_t *out)
+{
+    const uint32_t right = (w->from->rect[2] >> level) - 1u, top = (w->from->rect[3] >> level) - 1u;
+    x = fmin(fmax(x, 0), right);
+    y = fmin(fmax(y, 0), top);
+    const uint32_t i = (uint32_t)x, j = (uint32_t)y;
+    const double u = x - i, v = y - j;
+    const uint32_t next_i = i < right ? i + 1 : i, next_j = j < top ? j + 1 : j;
+    const uint8_t *corner[4] = {texel_of(w->edit->source, w->from, kind, level, i, j),
+                                texel_of(w->edit->source, w->from, kind, level, next_i, j),
+                                texel_of(w->edit->source, w->from, kind, level, i, next_j),
+                                texel_of(w->edit->source, w->from, kind, level, next_i, next_j)};
+    for (uint32_t c = 0; c < channels; ++c)
+        out[c] = (uint8_t)((1 - v) * ((1 - u) * corner[0][c] + u * corner[1][c]) +
+                           v * ((1 - u) * corner[2][c] + u * corner[3][c]) + 0.5);
+}
+
+/* Maps of looks move with the surface, each level by itself. */
+static void write_looks(writer *w, gtx_section_kind kind)
+{
+    for (uint32_t k = 0; k < gtx_map_levels(&w->out->info, kind); ++k) {
+        const uint32_t texel = gtx_section_shape(&w->out->info, kind, k).texel, size = 1u << k;
+        for (uint32_t y = 0; y < w->height >> k; ++y)
+            for (uint32_t x = 0; x < w->width >> k; ++x) {
+                double shift[2] = {0, 0};
+                for (uint32_t t = 0; t < size * size; ++t) {
+                    const uint32_t at = (y * size + t / size) * w->width + x * size + t % size;
+                    shift[0] += w->shift[at][0] / (double)(size * size);
+                    shift[1] += w->shift[at][1] / (double)(size * size);
+                }
+                look_up(w, kind, k, x + shift[0] / size, y + shift[1] / size, texel,
+                        texel_of(w->out, w->to, kind, k, x, y));
+            }
+    }
+}
+
+gtx_result gtx_edit_write_patch(const gtx_edit *edit, uint32_t patch, const gtx_window *window,
+                                gtx_asset *out, gtx_error *error)
+{
+    const gtx_allocator *hooks = &edit->allocator;
+    writer w = {.edit = edit, .from = &edit->source->patches[patch], .to = &out->patches[patch],
+                .out = out, .width = window->size[0], .height = window->size[1]};
+    const size_t count = (size_t)w.width * w.height;
+    w.texels = gtx_alloc_array(hooks, count, sizeof *w.texels);
+    w.shift = gtx_alloc_array(hooks, count, sizeof *w.shift);
+    uint8_t *bytes = gtx_alloc_array(hooks, count, 6);
+    const bool failed = !w.texels || !w.shift || !bytes;
+    if (!failed) {
+        w.ring = bytes;
+        w.occupied = bytes + count;
+        w.normals = bytes + 2 * count;
+        w.codes = bytes + 4 * count;
+        gtx_edit_warp(edit, &edit->sheets[patch], window, w.texels);
+        find_shifts(&w, window);
+        fit_frame(&w, window);
+        write_heights(&w);
+        write_trim(&w);
+        write_normals(&w);
+        for (int kind = GTX_SECTION_COLOR; kind <= GTX_SECTION_EMISSION; ++kind)
+            write_looks(&w, (gtx_section_kind)kind);
+    }
+    gtx_free_array(hooks, w.texels, count, sizeof *w.texels);
+    gtx_free_array(hooks, w.shift, count, sizeof *w.shift);
+    gtx_free_array(hooks, bytes, count, 6);
+    return failed ? gtx_fail(error, GTX_ERROR_MEMORY, "no memory for patch %u", patch) : GTX_OK;
+}

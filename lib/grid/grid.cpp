@@ -1,0 +1,179 @@
+/* Reading a grid of any format, and what is done to grids of all. */
+#include "grid/text.hpp"
+
+#include "image/image.h"
+#include "mesh/mesh.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+
+namespace gtx {
+
+void settle(HeightGrid &grid)
+{
+    const double sizes[] = {grid.origin[0], grid.origin[1], grid.step[0], grid.step[1],
+                            grid.rotation};
+    for (double size : sizes)
+        if (!(std::fabs(size) < 1e15))
+            malformed("a number of the header is not finite");
+    if (grid.step[0] == 0 || grid.step[1] == 0)
+        malformed("a step between nodes is 0");
+    if (grid.step[0] < 0 || grid.step[1] < 0) {
+        HeightGrid turned = grid;
+        const bool x = grid.step[0] < 0, y = grid.step[1] < 0;
+        const auto origin = grid.place(x ? grid.nx - 1 : 0, y ? grid.ny - 1 : 0);
+        for (int k = 0; k < 2; ++k) {
+            turned.origin[k] = origin[k];
+            turned.step[k] = std::fabs(grid.step[k]);
+        }
+        for (uint32_t j = 0; j < grid.ny; ++j)
+            for (uint32_t i = 0; i < grid.nx; ++i)
+                turned.values[size_t(j) * grid.nx + i] =
+                    grid.at(x ? grid.nx - 1 - i : i, y ? grid.ny - 1 - j : j);
+        grid = std::move(turned);
+    }
+}
+
+/* ---- images ---- */
+
+/* 16 bits with a sign are terrain, whose voids are -32768 (SRTM) or -32767 (DTED). */
+constexpr float SIGNED_VOID = -32767;
+
+static HeightGrid read_image(const std::string &path, const GridReading &reading)
+{
+    gtx_value_image image;
+    gtx_error error;
+    if (gtx_result result = gtx_image_read_values(path.c_str(), &image, &error))
+        throw Error(result, error.message);
+    std::unique_ptr<float, void (*)(void *)> guard(image.values, std::free);
+    HeightGrid grid;
+    grid.nx = image.width;
+    grid.ny = image.height;
+    grid.values.resize(grid.count());
+    double least = image.least, scale = 1, low = least;
+    if (reading.range) {
+        if (!(image.greatest > image.least))
+            malformed("a range is for images of whole numbers");
+        if (reading.missing && *reading.missing == least)
+            least += 1;
+        low = reading.range[0];
+        scale = (reading.range[1] - low) / (image.greatest - least);
+    }
+    for (uint32_t j = 0; j < grid.ny; ++j)
+        for (uint32_t i = 0; i < grid.nx; ++i) {
+            const float code = image.values[size_t(grid.ny - 1 - j) * grid.nx + i];
+            const bool is_void = (reading.missing && code == float(*reading.missing)) ||
+                                 (image.least < 0 && code <= SIGNED_VOID);
+            const double value = reading.range ? low + (code - least) * scale : code;
+            grid.values[size_t(j) * grid.nx + i] = is_void ? NAN : float(value);
+        }
+    return grid;
+}
+
+/* ---- any file ---- */
+
+static const struct {
+    bool (*is)(std::string_view);
+    HeightGrid (*read)(std::string_view);
+} formats[] = {{is_irap_classic, read_irap_classic},
+               {is_irap_binary, read_irap_binary},
+               {is_zmap, read_zmap}};
+
+HeightGrid read_grid(const std::string &path, const GridReading &reading, Task &task)
+{
+    const ModelFile file = read_model(path, task);
+    for (const auto &format : formats) {
+        if (!format.is(file.bytes))
+            continue;
+        if (reading.range)
+            throw Error(GTX_ERROR_ARGUMENT, "a range is for images of whole numbers");
+        HeightGrid grid = format.read(file.bytes);
+        for (float &value : grid.values)
+            if (!std::isfinite(value) || (reading.missing && value == float(*reading.missing)))
+                value = NAN;
+        return grid;
+    }
+    HeightGrid grid = read_image(path, reading);
+    for (float &value : grid.values)
+        if (!(std::fabs(value) < 1e30f))
+            value = NAN;
+    return grid;
+}
+
+/* ---- mosaic ---- */
+
+/* Nodes of one lattice may differ by this part of a step: headers are rounded. */
+constexpr double OFF_LATTICE = 1e-3;
+
+HeightGrid mosaic(const std::vector<HeightGrid> &parts)
+{
+    const HeightGrid &first = parts.at(0);
+    std::vector<std::array<int64_t, 2>> at;
+    int64_t low[2] = {0, 0}, high[2] = {0, 0};
+    for (const HeightGrid &part : parts) {
+        const double turn = -first.rotation * std::acos(-1.0) / 180;
+        const double x = part.origin[0] - first.origin[0], y = part.origin[1] - first.origin[1];
+        const double local[2] = {std::cos(turn) * x - std::sin(turn) * y,
+                                 std::sin(turn) * x + std::cos(turn) * y};
+        const uint32_t size[2] = {part.nx, part.ny};
+        std::array<int64_t, 2> place;
+        for (int k = 0; k < 2; ++k) {
+            const double nodes = local[k] / first.step[k];
+            place[k] = std::llround(std::clamp(nodes, -1e9, 1e9));
+            if (std::fabs(nodes - double(place[k])) > OFF_LATTICE ||
+                std::fabs(part.step[k] / first.step[k] - 1) * size[k] > OFF_LATTICE ||
+                part.rotation != first.rotation)
+                malformed("parts of one surface have other steps, or nodes beside each other's");
+            low[k] = std::min(low[k], place[k]);
+            high[k] = std::max(high[k], place[k] + size[k]);
+        }
+        at.push_back(place);
+    }
+    constexpr int64_t MOST = 1 << 24, MOST_NODES = int64_t(1) << 28;
+    if (high[0] - low[0] > MOST || high[1] - low[1] > MOST ||
+        (high[0] - low[0]) * (high[1] - low[1]) > MOST_NODES)
+        throw Error(GTX_ERROR_LIMIT, "the parts of the surface span more than 2^28 nodes");
+    HeightGrid out = first;
+    const auto origin = first.place(double(low[0]), double(low[1]));
+    out.nx = uint32_t(high[0] - low[0]);
+    out.ny = uint32_t(high[1] - low[1]);
+    out.origin[0] = origin[0];
+    out.origin[1] = origin[1];
+    out.values.assign(out.count(), NAN);
+    for (size_t p = 0; p < parts.size(); ++p)
+        for (uint32_t j = 0; j < parts[p].ny; ++j)
+            for (uint32_t i = 0; i < parts[p].nx; ++i) {
+                const size_t row = size_t(at[p][1] - low[1]) + j;
+                float &to = out.values[row * out.nx + size_t(at[p][0] - low[0]) + i];
+                if (std::isnan(to))
+                    to = parts[p].at(i, j);
+            }
+    return out;
+}
+
+/* ---- colours ---- */
+
+using Rgb = std::array<uint8_t, 3>;
+
+/* Nine colours of viridis (van der Walt and Smith 2015), and the way round the hues that maps of
+ * geology have from of old. */
+static const std::vector<Rgb> VIRIDIS = {{68, 1, 84},   {71, 45, 123},  {59, 82, 139},
+                                         {44, 114, 142}, {33, 145, 140}, {40, 174, 128},
+                                         {94, 201, 98}, {173, 220, 48}, {253, 231, 37}};
+static const std::vector<Rgb> RAINBOW = {
+    {0, 0, 255}, {0, 255, 255}, {0, 255, 0}, {255, 255, 0}, {255, 0, 0}};
+
+Rgb color_of(ColorMap map, double value)
+{
+    const std::vector<Rgb> &colors = map == ColorMap::VIRIDIS ? VIRIDIS : RAINBOW;
+    const double last = double(colors.size() - 1);
+    const double at = value > 0 ? std::min(value, 1.0) * last : 0; /* NaN is 0 */
+    const size_t k = std::min(size_t(at), colors.size() - 2);
+    Rgb out;
+    for (int c = 0; c < 3; ++c)
+        out[c] = uint8_t(colors[k][c] + (at - double(k)) * (colors[k + 1][c] - colors[k][c]) + 0.5);
+    return out;
+}
+
+} // namespace gtx

@@ -1,0 +1,63 @@
+/* Height grids: files of geologists and of terrain -> rows of values and where they lie. */
+#pragma once
+
+#include "mesh/task.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gtx {
+
+/* Values at the nodes of a lattice. Node (i, j) lies at
+ *   origin + R(rotation) (i * step[0], j * step[1])
+ * with the rotation in degrees, counter-clockwise seen from above. Steps are positive. */
+struct HeightGrid {
+    uint32_t nx = 0, ny = 0;
+    double origin[2] = {0, 0}, step[2] = {1, 1}, rotation = 0;
+    std::vector<float> values; /* nx * ny, row by row from the origin; NaN where there is none */
+
+    size_t count() const { return size_t(nx) * ny; }
+    float at(uint32_t i, uint32_t j) const { return values[size_t(j) * nx + i]; }
+    std::array<double, 2> place(double i, double j) const
+    {
+        const double turn = rotation * std::acos(-1.0) / 180;
+        const double c = std::cos(turn), s = std::sin(turn);
+        const double x = i * step[0], y = j * step[1];
+        return {origin[0] + c * x - s * y, origin[1] + s * x + c * y};
+    }
+};
+
+/* What a file may leave open. */
+struct GridReading {
+    const double *missing = nullptr; /* says that there is no value, as the format's does */
+    const double *range = nullptr;   /* two: what an image's least and greatest code stand for, the
+                                        missing one left out */
+};
+
+/* Reads a grid by its content: IRAP classic and IRAP binary, ZMAP+, else an image (PNG, TIFF, EXR
+ * ... of 8 or 16 bits or of floats), whose top row is the last of the grid; each also gzipped but
+ * images. Throws Error: READ, INPUT, UNSUPPORTED, LIMIT, MEMORY. */
+HeightGrid read_grid(const std::string &path, const GridReading &reading, Task &task);
+
+/* The formats, from the bytes of a file. */
+bool is_irap_classic(std::string_view bytes);
+bool is_irap_binary(std::string_view bytes);
+bool is_zmap(std::string_view bytes);
+HeightGrid read_irap_classic(std::string_view bytes);
+HeightGrid read_irap_binary(std::string_view bytes);
+HeightGrid read_zmap(std::string_view bytes);
+
+/* One grid of several that are parts of one lattice, such as neighbouring tiles of terrain; of
+ * nodes that several have, the first with a value counts. Throws Error: INPUT where the lattices
+ * differ. */
+HeightGrid mosaic(const std::vector<HeightGrid> &parts);
+
+/* Colours for a value of 0..1, sRGB. */
+enum class ColorMap { VIRIDIS, RAINBOW };
+std::array<uint8_t, 3> color_of(ColorMap map, double value);
+
+} // namespace gtx
