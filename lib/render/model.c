@@ -176,7 +176,8 @@ static gtx_result derive_sheets(gtx_model *model, const gtx_asset *asset, gtx_er
     model->facts = gtx_alloc_array(&model->allocator, model->patch_count, sizeof *model->facts);
     uint8_t *pages = add_level(model, UNIT_CELLS, 0, info->page_width, gtx_model_cell_rows(model),
                                info->page_count, info->height_bits / 2);
-    if (!reserve_slabs(model, asset) || !records || !pages || !model->first_vertex || !model->first_index || !model->facts)
+    if (!reserve_slabs(model, asset) || !records || !pages || !model->first_vertex ||
+        !model->first_index || !model->facts)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's maps");
     gtx_result result = derive_patches(model, asset, records, pages, &derived, error);
     for (int k = 0; k < 3; ++k)

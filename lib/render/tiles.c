@@ -344,10 +344,10 @@ bool gtx_tiles_fill(gtx_renderer *renderer, const gtx_view *view, const gtx_fram
         return false;
     memset(first, 0, (tiles + 2) * sizeof *first);
     count_slabs(t, columns, first);
-    uint64_t active = 0, sum = 0;
+    uint64_t active = 0;
     for (size_t i = 2; i < tiles + 2; ++i)
         active += first[i] > 0;
-    sum = active;
+    uint64_t sum = active; /* the tiles' heads come before */
     first[0] = first[1] = (uint32_t)sum;
     for (size_t i = 2; i < tiles + 2; ++i) {
         sum += first[i];
