@@ -55,7 +55,7 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
 
     ivec2 way = ivec2(d.x < 0.0 ? -1 : 1, d.y < 0.0 ? -1 : 1), ahead = max(way, ivec2(0));
     vec2 inverse = vec2(way) / max(abs(d.xy), 1e-9);
-    ivec2 next = clamp(ivec2(floor(o.xy)), ivec2(0), last);
+    ivec2 next = clamp(ivec2(floor(o.xy)), sheet.first, sheet.last);
     gtx_walk w;
     w.leave = 0.0;
     w.known = w.then_above = false;
@@ -74,7 +74,7 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
             crossing = gtx_look(w, sheet, last, fit, o, d);
             next += planes.x <= planes.y ? ivec2(way.x, 0) : ivec2(0, way.y);
             bool left = w.known && (w.above ? w.gap.x : -w.gap.x) > sheet.reach;
-            inside = w.leave < end && next == clamp(next, ivec2(0), last) && !left;
+            inside = w.leave < end && next == clamp(next, sheet.first, sheet.last) && !left;
         }
         vec2 root = w.enter + clamp(gtx_roots(w.gap), 0.0, w.leave - w.enter);
         hit.back = sheet.two_sided && !w.above;

@@ -13,7 +13,15 @@
  *
  * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl, geotex_surface.glsl, with
  * GTX_MATERIALS defined geotex_material.glsl, and a gtx_cast (of geotex_cast.glsl or
- * geotex_paper.glsl) before it. The varyings are those of geotex_proxy.vert. */
+ * geotex_paper.glsl) before it. The varyings are those of geotex_proxy.vert; with GTX_TILES
+ * defined geotex_resolve.glsl comes after it instead. */
+#ifdef GTX_TILES
+/* What rays met is known already: geotex_resolve.glsl fills these. */
+vec4 gtx_clip_z, gtx_clip_w, gtx_color;
+vec3 gtx_normal_x, gtx_normal_y, gtx_normal_z, gtx_world, gtx_world_eye;
+int gtx_patch_index;
+uint gtx_id;
+#else
 GTX_VARYING(0) in vec3 gtx_point;
 GTX_VARYING(1) flat in vec3 gtx_eye;
 GTX_VARYING(2) flat in vec4 gtx_clip_z;
@@ -30,6 +38,7 @@ GTX_VARYING(12) flat in uint gtx_id;    /* of the instance, as the host gave it 
 GTX_VARYING(13) flat in float gtx_reach;
 GTX_VARYING(14) in vec3 gtx_world;
 GTX_VARYING(15) flat in vec3 gtx_world_eye;
+#endif
 
 /* Where the ray of a fragment meets its patch, whose index is gtx_patch_index. */
 struct gtx_surface {
@@ -46,6 +55,7 @@ float gtx_depth_of(vec2 zw)
     return clamp(zw.x / zw.y, -gtx_depth.x, 1.0) * gtx_depth.y + gtx_depth.z;
 }
 
+#ifndef GTX_TILES
 /* Shortens the ray to what the engine's near and far planes leave of it and, where the driver tells
  * it, to what has been drawn before: a shader that writes depth comes before the depth test. Of
  * several samples the driver tells of one. Boxes, which the paper's search has, do without. `zw` and
@@ -86,6 +96,7 @@ bool gtx_find(out gtx_surface s)
     s.frame = gtx_frame_of(gtx_patch_index);
     return true;
 }
+#endif
 
 /* What the engine's matrices and depth range make of the point. */
 float gtx_window_depth(gtx_surface s)

@@ -16,6 +16,7 @@ struct gtx_sheet {
     ivec2 corner;                         /* of the rectangle in its page */
     ivec2 cells;                          /* where the level's begin there */
     ivec2 size;                           /* of the rectangle, in texels */
+    ivec2 first, last;                    /* cells to look at */
     int page;
     int level;                            /* of detail */
     bool two_sided;                       /* crossings from below count too */
@@ -56,7 +57,7 @@ gtx_sheet gtx_sheet_of(vec4 rect, vec4 span, int level)
     ivec2 page = textureSize(gtx_cells, 0).xy;
     ivec2 from = level > 0 ? ivec2(page.x - (page.x >> (level - 1)), page.y / 3 * 2) : ivec2(0);
     return gtx_sheet(ivec2(rect.xy), from + (ivec2(rect.xy) >> level), ivec2(rect.zw),
-                     int(span.z), level, span.w > 0.0,
+                     ivec2(0), (ivec2(rect.zw) - 2) >> level, int(span.z), level, span.w > 0.0,
                      vec3(0.0, 0.0, span.x), vec3(rect.zw - 1.0, span.y), 1e30);
 }
 

@@ -9,6 +9,7 @@
  *   program 0, vertex array 0, array and element buffers 0, active texture unit 0, textures (2D and
  *   2D array) and samplers 0 on units 0..7, depth test on, depth func LESS (GREATER when reversed),
  *   depth mask on, cull face off, cull mode BACK, front face CCW, blend off, colour mask all on.
+ * From OpenGL 4.3 on also, where gtx_tiling has it: buffer textures 0 on units 0..7, image unit 0 empty.
  * It does not touch the framebuffer binding, viewport, scissor, stencil or clip control.
  *
  * OpenGL ES is recognised by its version string; there is nothing to tell. It encodes what is
@@ -40,6 +41,16 @@ typedef struct gtx_costs {
     float cast_patch, cast_pixel;
 } gtx_costs;
 
+/* Casting by tiles: a compute kernel of OpenGL 4.3 casts an instance into an image of the renderer's
+ * own, each ray once and to the nearest patch alone, and the image is drawn with its depth. It takes
+ * what GTX_METHOD_CAST and AUTO cast in views that tell their viewport_width, of instances one by one,
+ * in every pass but with an engine's own shading; anything else, and older contexts, cast in fragments. */
+typedef enum gtx_tiling {
+    GTX_TILES_AUTO = 0,           /* where it is known to be faster: with llvmpipe */
+    GTX_TILES_NEVER = 1,
+    GTX_TILES_ALWAYS = 2          /* wherever the context can */
+} gtx_tiling;
+
 typedef struct gtx_renderer_desc {
     gtx_gl_proc (*load)(const char *name, void *user);   /* required: the host's GL loader */
     void *load_user;
@@ -48,7 +59,8 @@ typedef struct gtx_renderer_desc {
     void *log_user;
     const gtx_allocator *allocator;
     gtx_costs costs;                                     /* none below 0 */
-    uint32_t reserved[4];
+    gtx_tiling tiles;
+    uint32_t reserved[3];
 } gtx_renderer_desc;
 
 /* Needs the context current, as do all functions below but gtx_model_prepare. Leaves program 0,
@@ -170,7 +182,9 @@ typedef struct gtx_view {
     const gtx_shading *shading;       /* in place of the forward pass's; not with PAPER */
     uint32_t search_steps[2];         /* of PAPER: linear (1..1000), then binary (0..100); both 0 =
                                          balanced by how slanted the view is */
-    uint32_t reserved[2];
+    uint32_t viewport_width;          /* pixels; 0 = unknown. Given, this and viewport_height are the
+                                         size of glViewport: see gtx_tiling */
+    uint32_t reserved[1];
 } gtx_view;
 
 /* A placed model. `transform` is affine and takes the asset's coordinates (relative to its anchor)

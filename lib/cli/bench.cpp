@@ -9,7 +9,8 @@
 namespace gtx {
 
 const char *const bench_method_names[BENCH_METHODS] = {
-    "mesh", "mesh_stream", "mesh_lod", "paper", "cast", "shell", "auto", "cast_depth", "auto_depth"};
+    "mesh", "mesh_stream", "mesh_lod", "paper", "cast", "shell", "auto", "cast_depth", "auto_depth",
+    "cast_fragment"};
 
 namespace {
 

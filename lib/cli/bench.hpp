@@ -13,9 +13,10 @@ enum class BenchMethod : uint32_t {
     MESH_STREAM, /* the same arrays sent anew each frame */
     MESH_LOD,    /* its coarsest simplification that looks as good as what AUTO draws */
     PAPER, CAST, SHELL, AUTO,
-    CAST_DEPTH, AUTO_DEPTH /* the depth pass alone */
+    CAST_DEPTH, AUTO_DEPTH, /* the depth pass alone */
+    CAST_FRAGMENT /* cast in fragments where CAST is by tiles */
 };
-constexpr uint32_t BENCH_METHODS = 9;
+constexpr uint32_t BENCH_METHODS = 10;
 extern const char *const bench_method_names[BENCH_METHODS]; /* as in reports */
 
 struct BenchOptions {

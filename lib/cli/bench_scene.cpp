@@ -21,7 +21,8 @@ static Way way_of(BenchMethod method)
 {
     switch (method) {
     case BenchMethod::PAPER: return {GTX_METHOD_PAPER, GTX_PASS_FORWARD};
-    case BenchMethod::CAST: return {GTX_METHOD_CAST, GTX_PASS_FORWARD};
+    case BenchMethod::CAST:
+    case BenchMethod::CAST_FRAGMENT: return {GTX_METHOD_CAST, GTX_PASS_FORWARD};
     case BenchMethod::SHELL: return {GTX_METHOD_SHELL, GTX_PASS_FORWARD};
     case BenchMethod::CAST_DEPTH: return {GTX_METHOD_CAST, GTX_PASS_DEPTH};
     case BenchMethod::AUTO_DEPTH: return {GTX_METHOD_AUTO, GTX_PASS_DEPTH};
@@ -146,6 +147,7 @@ gtx_view BenchScene::view_of(const Shot &shot, std::vector<gtx_instance> &placed
     for (int i = 0; i < 3; ++i)
         view.light_direction[i] = view.view[4 * i + 2];
     view.ambient = 0.2f;
+    view.viewport_width = shot.width;
     view.viewport_height = shot.height;
     view.max_error = float(options_.max_error);
     return view;
@@ -187,6 +189,8 @@ void BenchScene::draw(BenchMethod method, const Shot &shot)
         const Way way = way_of(method);
         view.method = way.method;
         view.pass = way.pass;
+        if (method == BenchMethod::CAST_FRAGMENT)
+            view.viewport_width = 0;
         gtx_error error;
         check(gtx_draw(renderer_, &view, placed.data(), shot.instances, &error), error);
     }

@@ -22,7 +22,7 @@ const option options[] = {
      "windows [100x100,200x200,400x400,640x480,800x600,1024x768,1280x1024]", 0, 0},
     {"instances", 0, OPTION_STRING, &instances, "N,...", "models in view, in one draw [1]", 0, 0},
     {"methods", 0, OPTION_STRING, &methods, "NAME,...",
-     "mesh mesh_stream mesh_lod paper cast shell auto cast_depth auto_depth "
+     "mesh mesh_stream mesh_lod paper cast shell auto cast_depth auto_depth cast_fragment "
      "[mesh,mesh_lod,paper,cast,shell,auto]", 0, 0},
     {"frames", 0, OPTION_UINT, &frames, "N", "frames a method [12]", 1, 10000},
     {"max-error", 0, OPTION_NUMBER, &max_error, "PIXELS",

@@ -37,6 +37,7 @@ Still draw_still(const Scene &scene, const StillOptions &options)
     camera.distance = float(options.camera[2]);
     gtx_view view = {};
     view.method = options.method;
+    view.viewport_width = options.width;
     view.viewport_height = options.height;
     view.max_error = float(options.max_error);
     view.level = options.level;

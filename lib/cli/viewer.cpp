@@ -318,6 +318,7 @@ void Viewer::draw_frame()
     view.method = methods[method].method;
     if (view.method == GTX_METHOD_SHELL && !has_shells(scene))
         view.method = GTX_METHOD_AUTO;
+    view.viewport_width = uint32_t(width);
     view.viewport_height = uint32_t(height);
     stage->draw(view, look);
     if (boxes)

@@ -76,6 +76,21 @@ gtx_result gtx_add_hull(const gtx_asset *asset, uint32_t patch, const gtx_grid *
                         const gtx_allocator *allocator, gtx_proxies *out, float *thickness,
                         gtx_error *error);
 
+/* A slab: low <= (x, y) <= high, and height[0] <= z - slope[0] x - slope[1] y <= height[1], in the
+ * coordinates of proxies. Of a block without a solid cell low is above high. `rise` bounds the
+ * sheet's slopes over those of the slab. Three texels of four floats. */
+typedef struct gtx_slab {
+    float low[2], high[2], slope[2], height[2], rise_x[2], rise_y[2];
+} gtx_slab;
+
+enum { GTX_SLAB_CELLS = 16 };
+
+/* Slabs of a patch's level, one around each block of GTX_SLAB_CELLS^2 cells, in rows. The solid cells
+ * are held, and neighbours overlap a little. gtx_slab_count says how many; it goes by the rectangle
+ * alone. */
+uint32_t gtx_slab_count(const gtx_patch *patch, uint32_t level);
+void gtx_grid_slabs(const gtx_patch *patch, const gtx_grid *grid, gtx_slab *out);
+
 /* Makes room for more. Errors: MEMORY. */
 gtx_result gtx_proxies_reserve(gtx_proxies *proxies, size_t vertices, size_t indices,
                                const gtx_allocator *allocator, gtx_error *error);

@@ -26,7 +26,7 @@ static gtx_result check(const gtx_renderer *renderer, const gtx_view *view,
     if (view->shading && (view->pass != GTX_PASS_FORWARD || view->method == GTX_METHOD_PAPER))
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "a shading takes the forward pass's place, and not by the paper's search");
-    gtx_result result = gtx_check_reserved(view->reserved, 2, error);
+    gtx_result result = gtx_check_reserved(view->reserved, 1, error);
     for (uint32_t i = 0; !result && i < count; ++i) {
         result = gtx_check_reserved(instances[i].reserved, 3, error);
         if (!result && (!instances[i].model || !instances[i].model->ready))
@@ -74,6 +74,8 @@ static gtx_result need_programs(gtx_renderer *renderer, const gtx_view *view, gt
     gtx_result result = gtx_program_need(renderer, method + offset, error);
     if (!result && method == PROGRAM_CAST)
         result = gtx_program_need(renderer, PROGRAM_SHELL + offset, error);
+    if (!result && gtx_kernel_suits(renderer, view))
+        result = gtx_program_need(renderer, PROGRAM_TILES + offset, error);
     return result;
 }
 
@@ -105,7 +107,7 @@ static const gtx_program *program_of(const gtx_renderer *renderer, const gtx_vie
 
 static void begin(const gtx_gl *gl, const gtx_frame *frame, gl_bool color)
 {
-    for (gl_uint i = 0; i < UNIT_COUNT; ++i)
+    for (gl_uint i = 0; i < UNIT_CLEARED; ++i)
         gl->BindSampler(i, 0);
     gl->Enable(GL_DEPTH_TEST);
     gl->DepthFunc(frame->reversed ? GL_GREATER : GL_LESS);
@@ -217,8 +219,31 @@ static void cast_parts(const gtx_gl *gl, const gtx_plan *plan, uint32_t first, u
                                   1);
 }
 
+/* Casts an instance by tiles; false when it has to be done otherwise. */
+static bool cast_tiles(gtx_renderer *renderer, pass *p, const run *r, uint32_t instance)
+{
+    const gtx_gl *gl = &renderer->gl;
+    const gtx_instance_data *placed = &renderer->instances[instance];
+    if (!r->model->slab_texture || !gtx_kernel_suits(renderer, p->view) ||
+        !gtx_tiles_fill(renderer, p->view, p->frame, r->model, placed))
+        return false;
+    if (!renderer->tiles.tile_count)
+        return true;
+    int kind = PROGRAM_TILES + pass_programs[p->view->pass];
+    if (p->view->pass == GTX_PASS_FORWARD && shades(r->model))
+        kind = PROGRAM_TILES_MATERIAL;
+    else if (p->view->pass == GTX_PASS_FORWARD && r->model->has_color)
+        kind = PROGRAM_TILES_COLOR;
+    gtx_kernel_cast(renderer, p->frame, r->model);
+    p->current = NULL;
+    use_program(gl, p, &renderer->programs[kind], r->model);
+    gtx_kernel_resolve(renderer, p->current, placed);
+    gl->BindVertexArray(renderer->vertex_array);
+    return true;
+}
+
 /* Draws an instance patch by patch, nearest first. Boxes are told their level by a uniform. */
-static void cast_sorted(gtx_renderer *renderer, const pass *p, const run *r, uint32_t instance,
+static void cast_sorted(gtx_renderer *renderer, pass *p, const run *r, uint32_t instance,
                         bool edited_only)
 {
     const gtx_gl *gl = &renderer->gl;
@@ -226,6 +251,9 @@ static void cast_sorted(gtx_renderer *renderer, const pass *p, const run *r, uin
     uint32_t first = 0;
     gtx_plan_patches(renderer, p->view, p->frame, r->model, &renderer->instances[instance],
                      edited_only);
+    if (cast_tiles(renderer, p, r, instance))
+        return;
+    use_program(gl, p, program_of(renderer, p->view, r->model, false, false), r->model);
     set_attributes(renderer, r, instance, false);
     face(gl, r, true);
     for (uint32_t level = 0; level < r->model->mip_count; ++level) {
@@ -246,9 +274,10 @@ static void cast_run(gtx_renderer *renderer, pass *p, const run *r, bool edited_
 {
     const gtx_model *model = r->model;
     const bool paper = p->view->method == GTX_METHOD_PAPER;
-    use_program(&renderer->gl, p, program_of(renderer, p->view, model, false, false), model);
+    const gtx_program *program = program_of(renderer, p->view, model, false, false);
     renderer->gl.Enable(GL_CULL_FACE);
     if (paper) {
+        use_program(&renderer->gl, p, program, model);
         cast_whole(renderer, r, 0, r->first, r->count);
         return;
     }
@@ -259,10 +288,12 @@ static void cast_run(gtx_renderer *renderer, pass *p, const run *r, bool edited_
         for (++last; kind && last < end; ++last)
             if (gtx_plan_whole(p->view, p->frame, model, &renderer->instances[last]) != kind)
                 break;
-        if (kind)
+        if (kind) {
+            use_program(&renderer->gl, p, program, model);
             cast_whole(renderer, r, kind, i, last - i);
-        else
+        } else {
             cast_sorted(renderer, p, r, i, edited_only);
+        }
         i = last;
     }
 }

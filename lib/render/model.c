@@ -125,6 +125,7 @@ static gtx_result derive_patches(gtx_model *model, const gtx_asset *asset,
             const size_t row = (size_t)p->page * gtx_model_cell_rows(model) + at[1];
             derived->row_texels[k] = info->page_width;
             derived->cells[k] = pages + (row * info->page_width + at[0]) * cell_size;
+            derived->slabs[k] = model->slabs + model->first_slab[k * info->patch_count + i];
         }
         for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
             model->first_vertex[kind * info->patch_count + i] = derived->proxies[kind].vertex_count;
@@ -132,6 +133,7 @@ static gtx_result derive_patches(gtx_model *model, const gtx_asset *asset,
         }
         result = gtx_patch_derive(asset, i, &model->allocator, derived, error);
         memcpy(records[i], derived->record, sizeof derived->record);
+        memcpy(model->records[i], derived->record, sizeof derived->record);
         model->facts[i] = derived->facts;
     }
     if (!result)
@@ -139,6 +141,26 @@ static gtx_result derive_patches(gtx_model *model, const gtx_asset *asset,
     for (uint32_t kind = 0; kind < model->kind_count; ++kind)
         gtx_proxies_free(&derived->proxies[kind], &model->allocator);
     return result;
+}
+
+/* Makes room for the slabs. */
+static bool reserve_slabs(gtx_model *model, const gtx_asset *asset)
+{
+    const uint32_t slots = model->mip_count * model->patch_count;
+    uint64_t count = 0;
+    model->records = gtx_alloc_array(&model->allocator, model->patch_count,
+                                     sizeof *model->records);
+    model->first_slab = gtx_alloc_array(&model->allocator, (size_t)slots + 1,
+                                        sizeof *model->first_slab);
+    for (uint32_t i = 0; model->first_slab && i < slots; ++i) {
+        model->first_slab[i] = (uint32_t)count;
+        count += gtx_slab_count(&asset->patches[i % model->patch_count], i / model->patch_count);
+    }
+    if (!model->first_slab || !model->records || count > UINT32_MAX)
+        return false;
+    model->first_slab[slots] = (uint32_t)count;
+    model->slabs = gtx_alloc_array(&model->allocator, (size_t)count, sizeof *model->slabs);
+    return model->slabs;
 }
 
 static gtx_result derive_sheets(gtx_model *model, const gtx_asset *asset, gtx_error *error)
@@ -154,7 +176,8 @@ static gtx_result derive_sheets(gtx_model *model, const gtx_asset *asset, gtx_er
     model->facts = gtx_alloc_array(&model->allocator, model->patch_count, sizeof *model->facts);
     uint8_t *pages = add_level(model, UNIT_CELLS, 0, info->page_width, gtx_model_cell_rows(model),
                                info->page_count, info->height_bits / 2);
-    if (!records || !pages || !model->first_vertex || !model->first_index || !model->facts)
+    if (!reserve_slabs(model, asset) || !records || !pages || !model->first_vertex ||
+        !model->first_index || !model->facts)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's maps");
     gtx_result result = derive_patches(model, asset, records, pages, &derived, error);
     for (int k = 0; k < 3; ++k)

@@ -91,7 +91,7 @@ static void hold(float sphere[4], float record[GTX_RECORD_TEXELS][4], const gtx_
     sphere[3] = (float)(radius * 1.0001);
 }
 
-/* Trims a level, and derives its cells and its hull. */
+/* Trims a level, and derives its cells, its slabs and its hull. */
 static gtx_result derive_level(const gtx_asset *asset, uint32_t patch, gtx_grid *grid,
                                const gtx_allocator *allocator, gtx_derived *out, gtx_error *error)
 {
@@ -100,6 +100,7 @@ static gtx_result derive_level(const gtx_asset *asset, uint32_t patch, gtx_grid 
     const uint32_t first = hulls->vertex_count;
     gtx_grid_trim(asset, patch, grid);
     gtx_grid_cells(grid, asset->info.height_bits, out->row_texels[k], out->cells[k]);
+    gtx_grid_slabs(&asset->patches[patch], grid, out->slabs[k]);
     gtx_result result = gtx_add_hull(asset, patch, grid, hull_margin, allocator, hulls,
                                      &out->record[8 + k / 4][k % 4], error);
     if (!result)

@@ -8,11 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct gtx_plan_entry {
-    float distance;           /* how far behind the near plane, of a hull; negative: a box */
-    uint32_t slot;            /* of the proxy */
-};
-
 /* A plane or any other linear function over object space, and how fast it grows. */
 typedef struct plane {
     double row[4], slope;
@@ -142,7 +137,7 @@ uint32_t gtx_plan_whole(const gtx_view *view, const gtx_frame *frame, const gtx_
 /* Boxes come first, in order of their levels. */
 static int compare(const void *a, const void *b)
 {
-    const struct gtx_plan_entry *x = a, *y = b;
+    const gtx_plan_entry *x = a, *y = b;
     if (x->distance != y->distance)
         return x->distance < y->distance ? -1 : 1;
     return x->slot < y->slot ? -1 : x->slot > y->slot;
@@ -165,12 +160,13 @@ void gtx_plan_patches(gtx_renderer *renderer, const gtx_view *view, const gtx_fr
         if (model->first_index[slot] == model->first_index[slot + 1])
             continue;
         const float distance = (float)at_centre(&s.side[0], facts->hull);
-        plan->entries[count++] = (struct gtx_plan_entry){
-            box ? (float)level - GTX_MAX_MIPS : fmaxf(distance, 0), slot};
+        plan->entries[count++] = (gtx_plan_entry){
+            box ? (float)level - GTX_MAX_MIPS : fmaxf(distance, 0), slot, i, level};
         boxes += box;
         plan->box_count[level] += box;
     }
     qsort(plan->entries, count, sizeof *plan->entries, compare);
+    plan->count = count;
     plan->hull_count = count - boxes;
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t first = model->first_index[plan->entries[i].slot];

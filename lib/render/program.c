@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-enum { MAX_PARTS = 5, MAX_TEXTS = 16, MAX_LOG = 2048 };
+enum { MAX_PARTS = 6, MAX_TEXTS = 16, MAX_LOG = 2048 };
 
 /* What a program consists of: between #version and the parts come its defines and, in either stage,
  * the files that all share. */
@@ -21,6 +21,9 @@ typedef struct recipe {
 #define CAST "geotex_cast.glsl", "geotex_fragment.glsl"
 #define PAPER "geotex_paper.glsl", "geotex_fragment.glsl"
 #define POLYGONS "geotex_shell.vert"
+#define RESOLVE "geotex_resolve.vert"
+#define TILES "#define GTX_TILES\n"
+#define HITS "geotex_tiles.glsl", "geotex_fragment.glsl", "geotex_resolve.glsl"
 #define TWO_SIDED "#define GTX_TWO_SIDED\n"
 #define COLORS "#define GTX_COLORS\n"
 #define SHELL "geotex_shell_fragment.glsl"
@@ -61,6 +64,17 @@ static const recipe recipes[PROGRAM_COUNT] = {
                              "geotex shell, colors"},
     [PROGRAM_SHELL_COLOR_TWO_SIDED] = {POLYGONS, COLORS TWO_SIDED, {SHELL, "geotex_shell.frag"},
                                        "geotex shell, colors, two-sided"},
+    [PROGRAM_TILES] = {RESOLVE, TILES PLAIN, {HITS, "geotex_forward.frag"}, "geotex tiles"},
+    [PROGRAM_TILES_COLOR] = {RESOLVE, TILES, {HITS, "geotex_forward.frag"},
+                             "geotex tiles, colors"},
+    [PROGRAM_TILES_MATERIAL] = {RESOLVE, TILES MATERIALS,
+                                {"geotex_material.glsl", HITS, "geotex_forward.frag"},
+                                "geotex tiles, materials"},
+    [PROGRAM_TILES_DEPTH] = {RESOLVE, TILES, {HITS, "geotex_depth.frag"}, "geotex tiles, depth"},
+    [PROGRAM_TILES_ID] = {RESOLVE, TILES, {HITS, "geotex_id.frag"}, "geotex tiles, ids"},
+    [PROGRAM_TILES_GBUFFER] = {RESOLVE, TILES MATERIALS,
+                               {"geotex_material.glsl", HITS, "geotex_gbuffer.frag"},
+                               "geotex tiles, g-buffer"},
 };
 static const recipe own_cast = {PROXY, MATERIALS, {"geotex_material.glsl", CAST, RAYS},
                                 "geotex cast, own"};
@@ -100,6 +114,8 @@ static source begin(bool es, const recipe *r)
 static source vertex_source(bool es, const recipe *r)
 {
     source s = begin(es, r);
+    if (strcmp(r->vertex, RESOLVE) == 0)
+        add(&s, gtx_shader_source("geotex_tiles.glsl"));
     add(&s, gtx_shader_source(r->vertex));
     return s;
 }
@@ -136,13 +152,13 @@ static gl_uint compile(const gtx_renderer *renderer, gl_enum stage, const source
 }
 
 /* A linked program, or 0. */
-static gl_uint link_stages(const gtx_renderer *renderer, gl_uint vertex, gl_uint fragment)
+static gl_uint link_stages(const gtx_renderer *renderer, const gl_uint *stages, int count)
 {
     const gtx_gl *gl = &renderer->gl;
     const gl_uint program = gl->CreateProgram();
     gl_int linked = GL_FALSE;
-    gl->AttachShader(program, vertex);
-    gl->AttachShader(program, fragment);
+    for (int i = 0; i < count; ++i)
+        gl->AttachShader(program, stages[i]);
     gl->LinkProgram(program);
     gl->GetProgramiv(program, GL_LINK_STATUS, &linked);
     if (linked)
@@ -163,6 +179,9 @@ static void locate(const gtx_gl *gl, gtx_program *program)
         [UNIT_PATCHES] = "gtx_patches", [UNIT_MATERIALS] = "gtx_materials",
         [UNIT_EMISSIONS] = "gtx_emissions",
     };
+    program->place = gl->GetUniformLocation(program->object, "gtx_place");
+    program->tint = gl->GetUniformLocation(program->object, "gtx_tint");
+    program->instance = gl->GetUniformLocation(program->object, "gtx_instance");
     program->clip_from_world = gl->GetUniformLocation(program->object, "gtx_clip_from_world");
     program->depth = gl->GetUniformLocation(program->object, "gtx_depth");
     program->light = gl->GetUniformLocation(program->object, "gtx_light");
@@ -173,6 +192,7 @@ static void locate(const gtx_gl *gl, gtx_program *program)
     gl->UseProgram(program->object);
     for (gl_int i = 0; i < UNIT_COUNT; ++i)
         gl->Uniform1i(gl->GetUniformLocation(program->object, samplers[i]), i);
+    gl->Uniform1i(gl->GetUniformLocation(program->object, "gtx_seen"), UNIT_SEEN);
     gtx_rays_locate(gl, program->object);
     gl->UseProgram(0);
 }
@@ -184,7 +204,7 @@ static gtx_result build(const gtx_renderer *renderer, const recipe *r, const cha
     const source above = vertex_source(gl->es, r), below = fragment_source(gl->es, r, text);
     const gl_uint vertex = compile(renderer, GL_VERTEX_SHADER, &above);
     const gl_uint fragment = vertex ? compile(renderer, GL_FRAGMENT_SHADER, &below) : 0;
-    out->object = fragment ? link_stages(renderer, vertex, fragment) : 0;
+    out->object = fragment ? link_stages(renderer, (gl_uint[2]){vertex, fragment}, 2) : 0;
     if (vertex)
         gl->DeleteShader(vertex);
     if (fragment)
@@ -193,6 +213,32 @@ static gtx_result build(const gtx_renderer *renderer, const recipe *r, const cha
         return gtx_fail(error, GTX_ERROR_SHADER, "a shader did not compile; the log says why");
     gtx_gl_label(gl, GL_PROGRAM, out->object, r->label);
     locate(gl, out);
+    return GTX_OK;
+}
+
+gtx_result gtx_program_of_kernel(const gtx_renderer *renderer, gtx_program *out, gtx_error *error)
+{
+    static const char *const files[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                        "geotex_view.glsl", "geotex_tiles.glsl",
+                                        "geotex_cast.glsl", "geotex_tiles.comp"};
+    static const char *const buffers[] = {"gtx_lists", "gtx_tile_rays", "gtx_slabs"};
+    const gtx_gl *gl = &renderer->gl;
+    source s = {.count = 0};
+    add(&s, "#version 430 core\n");
+    for (size_t i = 0; i < sizeof files / sizeof *files; ++i)
+        add(&s, gtx_shader_source(files[i]));
+    const gl_uint shader = compile(renderer, GL_COMPUTE_SHADER, &s);
+    out->object = shader ? link_stages(renderer, &shader, 1) : 0;
+    if (shader)
+        gl->DeleteShader(shader);
+    if (!out->object)
+        return gtx_fail(error, GTX_ERROR_SHADER, "a shader did not compile; the log says why");
+    gtx_gl_label(gl, GL_PROGRAM, out->object, "geotex kernel");
+    locate(gl, out);
+    gl->UseProgram(out->object);
+    for (gl_int i = 0; i < 3; ++i)
+        gl->Uniform1i(gl->GetUniformLocation(out->object, buffers[i]), UNIT_LISTS + i);
+    gl->UseProgram(0);
     return GTX_OK;
 }
 
@@ -209,8 +255,11 @@ gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
                                 PROGRAM_SHELL_TWO_SIDED, PROGRAM_SHELL_COLOR,
                                 PROGRAM_SHELL_COLOR_TWO_SIDED, PROGRAM_CAST_COLOR};
     gtx_result result = GTX_OK;
+    static const int tiles[] = {PROGRAM_TILES, PROGRAM_TILES_MATERIAL, PROGRAM_TILES_COLOR};
     for (size_t i = 0; i < sizeof first / sizeof *first && !result; ++i)
         result = gtx_program_need(renderer, first[i], error);
+    for (int i = 0; i < 3 && !result && renderer->gl.DispatchCompute; ++i)
+        result = gtx_program_need(renderer, tiles[i], error);
     return result;
 }
 

@@ -38,9 +38,11 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
     if (!desc || !desc->load || !out)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a renderer needs a loader of OpenGL functions");
     *out = NULL;
-    gtx_result result = gtx_check_reserved(desc->reserved, 4, error);
+    gtx_result result = gtx_check_reserved(desc->reserved, 3, error);
     if (result)
         return result;
+    if ((unsigned)desc->tiles > GTX_TILES_ALWAYS)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "the renderer asks for an unknown tiling");
     const float costs[] = {desc->costs.shell_triangle, desc->costs.shell_pixel,
                            desc->costs.cast_patch, desc->costs.cast_pixel};
     for (int i = 0; i < 4; ++i)
@@ -59,6 +61,7 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
         gtx_free_array(&hooks, renderer, 1, sizeof *renderer);
         return result;
     }
+    gtx_kernel_create(renderer);
     result = gtx_programs_create(renderer, error);
     if (result) {
         gtx_renderer_destroy(renderer);
@@ -75,11 +78,13 @@ void gtx_renderer_destroy(gtx_renderer *renderer)
     if (!renderer)
         return;
     gtx_programs_destroy(renderer);
+    gtx_kernel_destroy(renderer);
     renderer->gl.DeleteVertexArrays(1, &renderer->vertex_array);
     renderer->gl.DeleteBuffers(1, &renderer->instance_buffer);
     const gtx_allocator hooks = renderer->allocator;
     gtx_renderer_free_scratch(renderer);
     gtx_plan_free(renderer);
+    gtx_tiles_free(renderer);
     gtx_free_array(&hooks, renderer, 1, sizeof *renderer);
 }
 

@@ -11,7 +11,8 @@
 /* Texture units; a model has one texture a unit. Samplers of the shaders carry the same numbers. */
 enum {
     UNIT_CELLS, UNIT_TRIM, UNIT_NORMALS, UNIT_COLORS, UNIT_PATCHES, UNIT_MATERIALS, UNIT_EMISSIONS,
-    UNIT_COUNT,
+    UNIT_COUNT, UNIT_SEEN = UNIT_COUNT,
+    UNIT_LISTS = 5, UNIT_TILE_RAYS, UNIT_SLABS, /* buffers, for the kernel that casts by tiles */
     UNIT_CLEARED = 8, /* units that render.h promises to leave empty */
     UNIT_RAYS = 13    /* the first of three, which gtx_rays_bind binds */
 };
@@ -23,12 +24,16 @@ enum {
     PROGRAM_PAPER_GBUFFER,
     PROGRAM_SHELL, PROGRAM_SHELL_MATERIAL, PROGRAM_SHELL_DEPTH, PROGRAM_SHELL_ID,
     PROGRAM_SHELL_GBUFFER, PROGRAM_SHELL_TWO_SIDED, PROGRAM_SHELL_COLOR,
-    PROGRAM_SHELL_COLOR_TWO_SIDED, PROGRAM_CAST_COLOR, PROGRAM_COUNT
+    PROGRAM_SHELL_COLOR_TWO_SIDED, PROGRAM_CAST_COLOR,
+    /* what was cast by tiles */
+    PROGRAM_TILES, PROGRAM_TILES_MATERIAL, PROGRAM_TILES_DEPTH, PROGRAM_TILES_ID,
+    PROGRAM_TILES_GBUFFER, PROGRAM_TILES_COLOR, PROGRAM_COUNT
 };
 
 typedef struct gtx_program {
     gl_uint object;
     gl_int clip_from_world, depth, light, detail, search, maps, shell;
+    gl_int place, tint, instance; /* of what is cast by tiles */
 } gtx_program;
 
 struct gtx_shading {
@@ -43,14 +48,47 @@ typedef struct gtx_instance_data {
     uint32_t id;
 } gtx_instance_data;
 
+typedef struct gtx_plan_entry {
+    float distance;           /* how far behind the near plane, of a hull; negative: a box */
+    uint32_t slot;            /* of the proxy */
+    uint32_t patch, level;
+} gtx_plan_entry;
+
 /* What is drawn of one instance that is cast, as glMultiDrawElements takes it: first the boxes of
  * patches that the near plane cuts, level by level, then the hulls of others, nearest first. */
 typedef struct gtx_plan {
-    uint32_t capacity, box_count[GTX_MAX_MIPS], hull_count; /* boxes by the level that is cast */
+    uint32_t capacity, count;
+    uint32_t box_count[GTX_MAX_MIPS], hull_count; /* boxes by the level that is cast */
     gl_size *counts;
     const void **offsets;     /* into the buffer of indices */
-    struct gtx_plan_entry *entries; /* scratch */
+    gtx_plan_entry *entries;
 } gtx_plan;
+
+/* A slab in view, and the tiles that it may cover. */
+typedef struct gtx_seen_slab {
+    float near;               /* the least t of its points */
+    uint32_t slab, patch;
+    uint16_t x0, x1, y0, y1;
+    float sum[2], difference[2]; /* its extent in x + y and x - y, pixels */
+} gtx_seen_slab;
+
+/* An array of scratch that grows and does not keep what it held. */
+typedef struct gtx_scratch {
+    void *data;
+    size_t size;
+} gtx_scratch;
+
+/* Casting by tiles: what one instance has in each tile of 8 x 8 pixels, as geotex_tiles.comp reads
+ * it. */
+typedef struct gtx_tiles {
+    gtx_program kernel;
+    gl_uint vertex_array, corner_buffer, buffers[2], textures[2], image; /* lists, rays */
+    uint32_t image_width, image_height;
+    gl_int max_side, max_texels;
+    gtx_scratch seen, first, lists, rays, corners;
+    uint32_t seen_count, tile_count, list_texels, ray_texels, corner_count;
+    float place[12][4];
+} gtx_tiles;
 
 struct gtx_renderer {
     gtx_allocator allocator;
@@ -65,6 +103,7 @@ struct gtx_renderer {
     uint8_t *ways;            /* 0: by casting; n: by level n - 1 of the shell */
     uint32_t instance_capacity;
     gtx_plan plan;
+    gtx_tiles tiles;
     gtx_costs costs;
 };
 
@@ -77,6 +116,9 @@ typedef struct gtx_level {
 } gtx_level;
 
 enum { GTX_MAX_LEVELS = 2 + 5 * GTX_MAX_MIPS };
+
+/* A patch's record, as geotex_sheet.glsl reads them: rows of GTX_RECORDS_A_ROW of them. */
+enum { GTX_RECORD_TEXELS = 11, GTX_RECORDS_A_ROW = 128 };
 
 enum { GTX_MAX_PROXY_KINDS = 1 + GTX_MAX_MIPS };
 
@@ -105,6 +147,12 @@ struct gtx_model {
     float coarsest_error;     /* of all patches at the last level */
     uint32_t boxed_count;
     gtx_shells shells;
+    /* Slabs of all levels, and where those of a patch's level begin: mip_count * patch_count + 1. */
+    gtx_slab *slabs;
+    uint32_t *first_slab;
+    float (*records)[GTX_RECORD_TEXELS][4];
+    uint64_t slab_bytes_sent;
+    gl_uint slab_buffer, slab_texture; /* 0: this context does not cast by tiles */
     gtx_model_size size;
     gl_uint textures[UNIT_COUNT];
     gl_uint vertices, indices;
@@ -116,6 +164,8 @@ void gtx_renderer_free_scratch(gtx_renderer *renderer);
 /* program.c: those of the forward pass at once, the others when first needed. Errors: SHADER. */
 gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error);
 gtx_result gtx_program_need(gtx_renderer *renderer, int program, gtx_error *error);
+/* The program that casts by tiles. Errors: SHADER. */
+gtx_result gtx_program_of_kernel(const gtx_renderer *renderer, gtx_program *out, gtx_error *error);
 void gtx_programs_destroy(gtx_renderer *renderer);
 
 /* rays.c: tells the program in use where gtx_rays_bind binds. */
@@ -133,13 +183,12 @@ void gtx_model_cells_at(const gtx_model *model, const gtx_patch *patch, uint32_t
 /* Sums up what the choice goes by, of all patches. */
 void gtx_model_sum_up(gtx_model *model);
 
-/* patch.c: what is derived of a patch. The patch records are as geotex_sheet.glsl reads them: rows
- * of GTX_RECORDS_A_ROW times GTX_RECORD_TEXELS texels. */
-enum { GTX_RECORD_TEXELS = 11, GTX_RECORDS_A_ROW = 128 };
+/* patch.c: what is derived of a patch. */
 typedef struct gtx_derived {
     gtx_proxies proxies[GTX_MAX_PROXY_KINDS]; /* the patch's are added to them */
     float record[GTX_RECORD_TEXELS][4];
     gtx_patch_facts facts;
+    gtx_slab *slabs[GTX_MAX_MIPS];            /* where they go */
     void *cells[GTX_MAX_MIPS];                /* where the cells of each level go, in rows of so */
     size_t row_texels[GTX_MAX_MIPS];          /* many texels */
 } gtx_derived;
@@ -195,6 +244,23 @@ uint32_t gtx_plan_whole(const gtx_view *view, const gtx_frame *frame, const gtx_
 void gtx_plan_patches(gtx_renderer *renderer, const gtx_view *view, const gtx_frame *frame,
                       const gtx_model *model, const gtx_instance_data *placed, bool edited_only);
 
+/* tiles.c: fills the renderer's tiles from its plan. False when there is no memory for it, or it is
+ * more than the context takes. */
+bool gtx_tiles_fill(gtx_renderer *renderer, const gtx_view *view, const gtx_frame *frame,
+                    const gtx_model *model, const gtx_instance_data *placed);
+void gtx_tiles_free(gtx_renderer *renderer);
+
+/* kernel.c: the kernel and its objects. Where they cannot be made, nothing is cast by tiles. */
+void gtx_kernel_create(gtx_renderer *renderer);
+void gtx_kernel_destroy(gtx_renderer *renderer);
+/* Whether what a view casts is cast by tiles. */
+bool gtx_kernel_suits(const gtx_renderer *renderer, const gtx_view *view);
+/* Casts what the tiles hold. Uses programs and units UNIT_LISTS..UNIT_SEEN. */
+void gtx_kernel_cast(gtx_renderer *renderer, const gtx_frame *frame, const gtx_model *model);
+/* Draws what was cast by a program in use. Leaves the tiles' vertex array. */
+void gtx_kernel_resolve(gtx_renderer *renderer, const gtx_program *program,
+                        const gtx_instance_data *placed);
+
 /* choose.c. */
 /* An upper bound of how much an instance's transform stretches, exact for an even scale. */
 double gtx_stretch_of(const gtx_instance_data *placed);
@@ -212,6 +278,7 @@ typedef struct gtx_state {
     gl_int textures[UNIT_CLEARED], arrays[UNIT_CLEARED], samplers[UNIT_CLEARED];
     gl_int depth_func, cull_mode, front_face, draw_buffers;
     gl_bool depth_test, depth_mask, cull;
+    gl_int buffers[UNIT_CLEARED], image[6]; /* where the context casts by tiles */
     gl_bool blend[GTX_MAX_DRAW_BUFFERS], color_mask[GTX_MAX_DRAW_BUFFERS][4];
 } gtx_state;
 

@@ -34,6 +34,36 @@ static uint8_t *make_cells(const gtx_model *model, const gtx_patch *patch, gtx_d
     return cells;
 }
 
+/* Slabs of all levels, one after another, and how many. NULL without memory. */
+static gtx_slab *make_slabs(const gtx_model *model, const gtx_patch *patch, gtx_derived *d,
+                            size_t *count)
+{
+    *count = 0;
+    for (uint32_t k = 0; k < model->mip_count; ++k)
+        *count += gtx_slab_count(patch, k);
+    gtx_slab *slabs = gtx_alloc_array(&model->allocator, *count, sizeof *slabs), *next = slabs;
+    for (uint32_t k = 0; slabs && k < model->mip_count; ++k) {
+        d->slabs[k] = next;
+        next += gtx_slab_count(patch, k);
+    }
+    return slabs;
+}
+
+static void replace_slabs(const gtx_gl *gl, gtx_model *model, const gtx_derived *d, uint32_t patch)
+{
+    gl->BindBuffer(GL_ARRAY_BUFFER, model->slab_buffer);
+    for (uint32_t k = 0; k < model->mip_count; ++k) {
+        const uint32_t *first = &model->first_slab[k * model->patch_count + patch];
+        const size_t size = (first[1] - first[0]) * sizeof *model->slabs;
+        memcpy(model->slabs + first[0], d->slabs[k], size);
+        if (model->slab_buffer)
+            gl->BufferSubData(GL_ARRAY_BUFFER, (gl_pointer)(first[0] * sizeof *model->slabs),
+                              (gl_pointer)size, d->slabs[k]);
+    }
+    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    memcpy(model->records[patch], d->record, sizeof d->record);
+}
+
 /* Derives a patch anew, before anything on the GPU changes. Room for hulls that became smaller. */
 static gtx_result derive(const gtx_model *model, const gtx_asset *asset, uint32_t patch,
                          gtx_derived *d, gtx_error *error)
@@ -109,6 +139,7 @@ static gtx_result upload(const gtx_renderer *renderer, gtx_model *model, const g
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     gl->BindTexture(GL_TEXTURE_2D, 0);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+    replace_slabs(gl, model, d, patch);
     model->facts[patch] = d->facts;
     model->facts[patch].boxed = !gtx_replace_proxies(gl, model, d->proxies, patch);
     gtx_model_sum_up(model);
@@ -130,14 +161,16 @@ gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model, const gtx_
                         patch);
     const gtx_patch *p = &edited->patches[patch];
     gtx_derived d = {0};
-    size_t size;
+    size_t size, slab_count;
     uint8_t *cells = make_cells(model, p, &d, &size);
-    gtx_result result = cells ? derive(model, edited, patch, &d, error)
+    gtx_slab *slabs = make_slabs(model, p, &d, &slab_count);
+    gtx_result result = cells && slabs ? derive(model, edited, patch, &d, error)
                               : gtx_fail(error, GTX_ERROR_MEMORY, "no memory for an update");
     if (!result)
         result = upload(renderer, model, edited, patch, &d, error);
     for (uint32_t kind = 0; kind < model->kind_count; ++kind)
         gtx_proxies_free(&d.proxies[kind], &model->allocator);
     gtx_free_array(&model->allocator, cells, size, 1);
+    gtx_free_array(&model->allocator, slabs, slab_count, sizeof *slabs);
     return result;
 }

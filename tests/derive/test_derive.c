@@ -349,6 +349,70 @@ static gtx_proxies hull_of(const gtx_asset *asset, uint32_t level, float grow, f
     return hull;
 }
 
+/* The slab of a cell, among those of its level. */
+static const gtx_slab *slab_at(const gtx_slab *slabs, const gtx_grid *grid, uint32_t i, uint32_t j)
+{
+    const uint32_t row = (grid->nodes_x - 2) / GTX_SLAB_CELLS + 1;
+    return &slabs[j / GTX_SLAB_CELLS * row + i / GTX_SLAB_CELLS];
+}
+
+/* Each corner of a solid cell is in its cell's slab, the sides are no steeper than it says; slabs
+ * without a solid cell are empty, and the others not much thicker than what is in them. */
+static void check_slabs(const gtx_asset *asset, uint32_t patch, uint32_t level)
+{
+    const gtx_patch *p = &gtx_patches(asset)[patch];
+    gtx_grid grid;
+    assert_int_equal(gtx_grid_build(asset, patch, level, NULL, &grid, NULL), GTX_OK);
+    gtx_grid_trim(asset, patch, &grid);
+    const uint32_t count = gtx_slab_count(p, level), width = grid.nodes_x - 1;
+    gtx_slab *slabs = calloc(count, sizeof *slabs);
+    uint32_t *used = calloc(count, sizeof *used);
+    gtx_grid_slabs(p, &grid, slabs);
+    for (uint32_t c = 0; c < width * (grid.nodes_y - 1); ++c) {
+        const uint32_t i = c % width, j = c / width;
+        const gtx_slab *s = slab_at(slabs, &grid, i, j);
+        assert_true(s < slabs + count);
+        if (!grid.solid[c])
+            continue;
+        ++used[s - slabs];
+        for (uint32_t k = 0; k < 4; ++k) {
+            const uint32_t u = i + (k & 1), v = j + (k >> 1);
+            const double x = fmin(u << level, p->rect[2] - 1), y = fmin(v << level, p->rect[3] - 1);
+            const double z = grid.code[v * grid.nodes_x + u] - s->slope[0] * x - s->slope[1] * y;
+            assert_true(x >= s->low[0] && x <= s->high[0] && y >= s->low[1] && y <= s->high[1]);
+            assert_true(z > s->height[0] && z < s->height[1]);
+        }
+        const uint16_t *row = &grid.code[j * grid.nodes_x + i];
+        const double side = fmin((i + 1) << level, p->rect[2] - 1) - (i << level);
+        const double rise = (row[1] - row[0]) / side - s->slope[0];
+        assert_true(rise >= s->rise_x[0] - 2e-3 && rise <= s->rise_x[1] + 2e-3);
+    }
+    for (uint32_t n = 0; n < count; ++n)
+        assert_int_equal(used[n] > 0, slabs[n].low[0] <= slabs[n].high[0]);
+    free(used);
+    free(slabs);
+    gtx_grid_free(&grid, NULL);
+}
+
+static void slabs_hold_their_cells(void **state)
+{
+    (void)state;
+    gtx_asset *assets[] = {fixture_bumpy(8, 0), fixture_bumpy(16, GTX_PATCH_TWO_SIDED),
+                           fixture_flat(0.5, 8), fixture_sphere(2, 64, 8)};
+    for (size_t a = 0; a < sizeof assets / sizeof *assets; ++a) {
+        gtx_info info;
+        gtx_get_info(assets[a], &info);
+        for (uint32_t patch = 0; patch < info.patch_count; ++patch)
+            for (uint32_t level = 0; level < info.mip_count; ++level)
+                check_slabs(assets[a], patch, level);
+        gtx_close(assets[a]);
+    }
+    const picture holes = {{"1010101", "0101010", "1010101"}};
+    gtx_asset *asset = make(&holes, 7, 3);
+    check_slabs(asset, 0, 0);
+    gtx_close(asset);
+}
+
 static void a_patch_without_cells_has_a_point_and_no_hull(void **state)
 {
     (void)state;
@@ -530,6 +594,7 @@ int main(void)
         cmocka_unit_test(boxes_hold_the_nodes_of_all_levels),
         cmocka_unit_test(a_patch_without_cells_has_a_point_and_no_hull),
         cmocka_unit_test(hulls_hold_what_shows),
+        cmocka_unit_test(slabs_hold_their_cells),
         cmocka_unit_test(hulls_are_thin),
         cmocka_unit_test(memory_may_run_out),
     };

@@ -92,6 +92,13 @@ static inline gtx_view view_of(const gtx_camera *camera)
     return view;
 }
 
+/* Lets the view be cast by tiles, where the context can. It must name its level. */
+static inline void by_tiles(gtx_view *view)
+{
+    view->viewport_width = STAGE_WIDTH;
+    view->viewport_height = STAGE_HEIGHT;
+}
+
 /* Around the asset's bounds, from an angle that no frame is aligned with. */
 static inline gtx_camera camera_around(const gtx_asset *asset)
 {

@@ -52,7 +52,7 @@ static void bad_renderers(void **state)
     assert_int_equal(gtx_renderer_create(&desc, &renderer, NULL), GTX_ERROR_ARGUMENT);
     desc.load = gtx_offscreen_load;
     assert_int_equal(gtx_renderer_create(&desc, NULL, NULL), GTX_ERROR_ARGUMENT);
-    desc.reserved[3] = 1;
+    desc.reserved[2] = 1;
     assert_int_equal(gtx_renderer_create(&desc, &renderer, NULL), GTX_ERROR_NOT_ZEROED);
     gtx_renderer_destroy(NULL);
 }
@@ -101,7 +101,7 @@ static void bad_draws(void **state)
     VIEW_WITH(flags = 1u << 20, GTX_ERROR_ARGUMENT);
     VIEW_WITH(method = (gtx_method)9, GTX_ERROR_ARGUMENT);
     VIEW_WITH(pass = (gtx_pass)4, GTX_ERROR_ARGUMENT);
-    VIEW_WITH(reserved[1] = 1, GTX_ERROR_NOT_ZEROED);
+    VIEW_WITH(reserved[0] = 1, GTX_ERROR_NOT_ZEROED);
     VIEW_WITH(search_steps[1] = 3, GTX_ERROR_ARGUMENT);
     VIEW_WITH(search_steps[0] = 1001, GTX_ERROR_ARGUMENT);
     VIEW_WITH(view[5] = NAN, GTX_ERROR_ARGUMENT);

@@ -29,6 +29,8 @@ static void check_shape(stage *s, shape which, uint32_t height_bits)
             gtx_view view = view_of(&camera);
             view.level = level + 1;
             expect_agreement(s, &shown, &view, which == SPHERE ? 4000 : 0);
+            by_tiles(&view);
+            expect_agreement(s, &shown, &view, which == SPHERE ? 4000 : 0);
         }
     subject_close(s, &shown);
 }

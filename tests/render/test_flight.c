@@ -21,7 +21,7 @@ static gtx_view view_on_line(const gtx_asset *asset, double way, int reversed)
     return view;
 }
 
-static void fly(stage *s, gtx_asset *asset, uint32_t level)
+static void fly(stage *s, gtx_asset *asset, uint32_t level, int tiles)
 {
     subject shown = subject_open(s, asset);
     long hits = 0;
@@ -29,6 +29,8 @@ static void fly(stage *s, gtx_asset *asset, uint32_t level)
         for (int i = 0; i < FRAMES; ++i) {
             gtx_view view = view_on_line(shown.asset, 1.2 - 2.0 * i / FRAMES, reversed);
             view.level = level;
+            if (tiles)
+                by_tiles(&view);
             const agreement a = stage_compare(s, shown.asset, &view, &shown.instance, 1);
             if (a.wrong || a.excluded * 100 > a.hits + 100)
                 fail_msg("frame %d%s: %ld hits, %ld wrong, %ld excluded", i,
@@ -42,14 +44,17 @@ static void fly(stage *s, gtx_asset *asset, uint32_t level)
 static void through_a_sheet(void **state)
 {
     STAGE_OR_SKIP(state);
-    fly(s, fixture_bumpy(8, GTX_PATCH_TWO_SIDED), 0);
-    fly(s, fixture_bumpy(8, GTX_PATCH_TWO_SIDED), 2);
+    for (int tiles = 0; tiles < 2; ++tiles) {
+        fly(s, fixture_bumpy(8, GTX_PATCH_TWO_SIDED), 1, tiles);
+        fly(s, fixture_bumpy(8, GTX_PATCH_TWO_SIDED), 2, tiles);
+    }
 }
 
 static void through_a_closed_model(void **state)
 {
     STAGE_OR_SKIP(state);
-    fly(s, fixture_sphere(2, 64, 8), 0);
+    fly(s, fixture_sphere(2, 64, 8), 1, 0);
+    fly(s, fixture_sphere(2, 64, 8), 1, 1);
 }
 
 int main(void)

@@ -103,6 +103,29 @@ static void every_dialect(void **state)
     }
 }
 
+/* Casting by tiles is OpenGL's alone. */
+static void tiles(void **state)
+{
+    (void)state;
+    static const char *const kernel[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                         "geotex_view.glsl", "geotex_tiles.glsl",
+                                         "geotex_cast.glsl", "geotex_tiles.comp", NULL};
+    static const char *const corners[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                          "geotex_view.glsl", "geotex_tiles.glsl",
+                                          "geotex_resolve.vert", NULL};
+    if (system("glslangValidator --version >/dev/null 2>&1"))
+        skip();
+    compile("#version 430 core", "", "comp", kernel);
+    compile("#version 330 core", "", "vert", corners);
+    for (int k = 0; k < MAINS; ++k) {
+        const char *const parts[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                     "geotex_view.glsl", "geotex_surface.glsl",
+                                     "geotex_material.glsl", "geotex_tiles.glsl",
+                                     "geotex_fragment.glsl", "geotex_resolve.glsl", mains[k], NULL};
+        compile("#version 330 core\n#define GTX_TILES\n#define GTX_MATERIALS", "", "frag", parts);
+    }
+}
+
 /* The files are complete by themselves: an engine's own main needs the caster and nothing of the
  * stock one. */
 static void a_main_of_ones_own(void **state)
@@ -141,6 +164,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_dialect),
+        cmocka_unit_test(tiles),
         cmocka_unit_test(a_main_of_ones_own),
     };
     return cmocka_run_group_tests(tests, stage_open, stage_close);

@@ -11,6 +11,9 @@ static PFNGLGETBOOLEANI_VPROC get_boolean_at;
 static PFNGLISENABLEDIPROC is_enabled_at;
 static PFNGLENABLEIPROC enable_at;
 static PFNGLCOLORMASKIPROC color_mask_at;
+static PFNGLGETINTEGERI_VPROC get_integer_at;
+static PFNGLBINDIMAGETEXTUREPROC bind_image;
+static PFNGLTEXSTORAGE2DPROC texture_storage;
 static PFNGLSCISSORPROC scissor;
 static PFNGLSTENCILFUNCPROC stencil_func;
 
@@ -26,6 +29,9 @@ static int open_all(void **state)
     is_enabled_at = (PFNGLISENABLEDIPROC)gtx_offscreen_load("glIsEnabledi", NULL);
     enable_at = (PFNGLENABLEIPROC)gtx_offscreen_load("glEnablei", NULL);
     color_mask_at = (PFNGLCOLORMASKIPROC)gtx_offscreen_load("glColorMaski", NULL);
+    get_integer_at = (PFNGLGETINTEGERI_VPROC)gtx_offscreen_load("glGetIntegeri_v", NULL);
+    bind_image = (PFNGLBINDIMAGETEXTUREPROC)gtx_offscreen_load("glBindImageTexture", NULL);
+    texture_storage = (PFNGLTEXSTORAGE2DPROC)gtx_offscreen_load("glTexStorage2D", NULL);
     scissor = (PFNGLSCISSORPROC)gtx_offscreen_load("glScissor", NULL);
     stencil_func = (PFNGLSTENCILFUNCPROC)gtx_offscreen_load("glStencilFunc", NULL);
     return result;
@@ -43,8 +49,20 @@ static const GLenum singles[] = {
     GL_UNPACK_ALIGNMENT, GL_PIXEL_UNPACK_BUFFER_BINDING};
 enum {
     TOUCHED = 11, SINGLES = sizeof singles / sizeof *singles, UNITS = 8, BUFFERS = 8,
-    VALUES = SINGLES + 3 * UNITS + 5 * BUFFERS + 8
+    VALUES = SINGLES + 3 * UNITS + 5 * BUFFERS + 6 + UNITS + 8
 };
+
+static const GLenum image_values[6] = {GL_IMAGE_BINDING_NAME,   GL_IMAGE_BINDING_LEVEL,
+                                       GL_IMAGE_BINDING_LAYERED, GL_IMAGE_BINDING_LAYER,
+                                       GL_IMAGE_BINDING_ACCESS, GL_IMAGE_BINDING_FORMAT};
+
+static int has_compute(const stage *s)
+{
+    GLint major = 0, minor = 0;
+    s->gl.GetIntegerv(GL_MAJOR_VERSION, &major);
+    s->gl.GetIntegerv(GL_MINOR_VERSION, &minor);
+    return !getenv("GEOTEX_ES") && 10 * major + minor >= 43;
+}
 
 typedef struct snapshot {
     GLint value[VALUES];
@@ -72,6 +90,16 @@ static snapshot take(stage *s)
         for (int k = 0; k < 4; ++k)
             out.value[n++] = mask[k];
     }
+    if (has_compute(s)) {
+        for (int i = 0; i < 6; ++i)
+            get_integer_at(image_values[i], 0, &out.value[n + i]);
+        for (int i = 0; i < UNITS; ++i) {
+            active_texture(GL_TEXTURE0 + (GLenum)i);
+            s->gl.GetIntegerv(GL_TEXTURE_BINDING_BUFFER, &out.value[n + 6 + i]);
+        }
+        active_texture((GLenum)unit);
+    }
+    n += 6 + UNITS;
     s->gl.GetIntegerv(GL_VIEWPORT, &out.value[n]);
     s->gl.GetIntegerv(GL_SCISSOR_BOX, &out.value[n + 4]);
     return out;
@@ -98,6 +126,17 @@ static void disturb(stage *s)
         gen_samplers(1, &name);
         bind_sampler((GLuint)i, name);
     }
+    for (int i = 0; has_compute(s) && i < UNITS; ++i) {
+        active_texture(GL_TEXTURE0 + (GLenum)i);
+        gen_textures(1, &name);
+        bind_texture(GL_TEXTURE_BUFFER, name);
+    }
+    if (has_compute(s)) {
+        gen_textures(1, &name);
+        bind_texture(GL_TEXTURE_2D, name);
+        texture_storage(GL_TEXTURE_2D, 1, GL_RGBA8, 4, 4);
+        bind_image(0, name, 0, GL_FALSE, 0, GL_READ_ONLY, GL_RGBA8);
+    }
     enable_at(GL_BLEND, 1);
     enable_at(GL_BLEND, 3);
     color_mask_at(0, GL_FALSE, GL_TRUE, GL_FALSE, GL_TRUE);
@@ -122,13 +161,17 @@ static void restored_when_asked(void **state)
     gtx_camera camera = camera_around(shown.asset);
     gtx_view view = view_of(&camera);
     view.flags |= GTX_VIEW_RESTORE_STATE;
-    disturb(s);
-    const snapshot before = take(s);
-    must(gtx_draw(s->renderer, &view, &shown.instance, 1, &error), &error);
-    const snapshot after = take(s);
-    for (int i = 0; i < VALUES; ++i)
-        if (before.value[i] != after.value[i])
-            fail_msg("value %d was %d and is %d", i, before.value[i], after.value[i]);
+    for (int tiles = 0; tiles < 2; ++tiles) {
+        if (tiles)
+            by_tiles(&view);
+        disturb(s);
+        const snapshot before = take(s);
+        must(gtx_draw(s->renderer, &view, &shown.instance, 1, &error), &error);
+        const snapshot after = take(s);
+        for (int i = 0; i < VALUES; ++i)
+            if (before.value[i] != after.value[i])
+                fail_msg("value %d was %d and is %d", i, before.value[i], after.value[i]);
+    }
     subject_close(s, &shown);
 }
 
@@ -142,7 +185,8 @@ static void fixed_otherwise(void **state)
     gtx_camera camera = camera_around(shown.asset);
     for (int reversed = 0; reversed < 2; ++reversed) {
         camera.reversed_z = reversed;
-        const gtx_view view = view_of(&camera);
+        gtx_view view = view_of(&camera);
+        by_tiles(&view);
         disturb(s);
         const snapshot before = take(s);
         must(gtx_draw(s->renderer, &view, &shown.instance, 1, &error), &error);
@@ -159,6 +203,9 @@ static void fixed_otherwise(void **state)
             assert_int_equal(after.value[SINGLES + i], i < 24 ? 0 : before.value[SINGLES + i]);
         for (int i = 0; i < 5 * BUFFERS; ++i)
             assert_int_equal(after.value[SINGLES + 3 * UNITS + i], i % 5 != 0);
+        for (int i = 0; i < UNITS; ++i) /* buffer textures */
+            assert_int_equal(after.value[VALUES - 8 - UNITS + i], 0);
+        assert_int_equal(after.value[VALUES - 8 - UNITS - 6], 0); /* the image */
         for (int i = VALUES - 8; i < VALUES; ++i)
             assert_int_equal(after.value[i], before.value[i]);
     }
@@ -172,7 +219,8 @@ static void independent_of_the_hosts_state(void **state)
     gtx_error error = {0};
     subject shown = subject_open(s, fixture_sphere(2, 48, 8));
     gtx_camera camera = camera_around(shown.asset);
-    const gtx_view view = view_of(&camera);
+    gtx_view view = view_of(&camera);
+    by_tiles(&view);
     stage_draw(s, &view, &shown.instance, 1);
     uint8_t *plain = malloc(sizeof s->color);
     memcpy(plain, s->color, sizeof s->color);

@@ -58,6 +58,8 @@ static void an_updated_model_is_the_edited_one(void **state)
     uint8_t *before = malloc(sizeof s->color), *expected = malloc(sizeof s->color);
     for (uint32_t patch = 0; patch < 6; patch += 2) { /* those towards the camera, a level each */
         view.level = patch + 1;
+        if (patch == 2)
+            by_tiles(&view);
         stage_draw(s, &view, &shown.instance, 1);
         memcpy(before, s->color, sizeof s->color);
         gtx_asset *change = edited(shown.asset, patch, 1);
