@@ -84,6 +84,7 @@ static gtx_result draw_standing(const float view[16], const float projection[16]
     memcpy(v.light_direction, light, sizeof light);
     GLint viewport[4]; /* its height lets each instance have the level that half a pixel allows */
     w->gl->GetIntegerv(GL_VIEWPORT, viewport);
+    v.viewport_width = (uint32_t)viewport[2];
     v.viewport_height = (uint32_t)viewport[3];
     gtx_polygons_draw(w->gl, &w->program, &w->solids, NULL, view, projection, light, v.ambient);
     return gtx_draw(w->renderer, &v, w->instances, INSTANCES, error);

@@ -150,6 +150,7 @@ static gtx_view view_of(const Stage &stage, size_t which, int width, int height)
     gtx_view view = {};
     gtx_camera_matrices(&camera, float(width) / float(height), view.view, view.projection);
     view.light_direction[1] = 1;
+    view.viewport_width = uint32_t(width);
     view.viewport_height = uint32_t(height);
     return view;
 }
