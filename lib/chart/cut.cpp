@@ -96,8 +96,8 @@ void Harvest::descend(const CutNode &node, std::vector<Piece> pieces)
         descend(tree_.nodes[size_t(node.child[side])], std::move(inside[side]));
 }
 
-/* Texels that rounding would leave empty where the chart itself ends: they resolve it finer. Between
- * two cuts texels stay those of the neighbours. */
+/* Texels that rounding would leave empty where the chart itself ends: they resolve it finer, twice as
+ * fine at most. Between two cuts texels stay those of the neighbours. */
 unsigned Harvest::spare_cells(const CutNode &node, int axis) const
 {
     const size_t low = size_t(2 * axis);
@@ -105,9 +105,9 @@ unsigned Harvest::spare_cells(const CutNode &node, int axis) const
                           !node.cuts[low + 1] || node.tight.high[axis] < node.region.high[axis]};
     if (!ends[0] && !ends[1])
         return 0;
-    const unsigned side = unsigned(node.tight.side(axis)) + plan_.overlap[ends[0]] +
-                          plan_.overlap[ends[1]];
-    return (plan_.grain - side % plan_.grain) % plan_.grain;
+    const unsigned core = unsigned(node.tight.side(axis));
+    const unsigned side = core + plan_.overlap[ends[0]] + plan_.overlap[ends[1]];
+    return std::min(core, (plan_.grain - side % plan_.grain) % plan_.grain);
 }
 
 void Harvest::lay_frame(const CutNode &node, Chart &chart) const
