@@ -13,7 +13,7 @@ constexpr double STEP = 0.5;    /* texels between samples on an edge */
 constexpr double OUTLIER = 4; /* texels of depth: farther samples are of another sheet */
 constexpr double FARTHEST = 1; /* texels of depth that a height may move: no fins */
 constexpr double MISSED = 0.3;   /* texels of depth below the source that count as missed */
-constexpr int ROUNDS = 8;
+constexpr int ROUNDS = 6;
 /* A sheet below the source lets a grazing ray pass over a crest and open a hole, one above it only
  * moves an outline by as much: being below by more than `LEEWAY` texels of depth weighs this many
  * times more. */

@@ -159,7 +159,6 @@ static Sheet lay_sheet(const Job &job, const Chart &chart, double finer)
     s.support = find_support(s.flat.grid, s.trim);
     extrapolate(s.flat, s.outline, paths, s.support, s.cover);
     cut_cliffs(s.flat, core_outline, s.outline, paths, s.trim, s.cover, s.support);
-    s.missed = fit_heights(s.flat, s.support, s.cover);
     return s;
 }
 
@@ -207,10 +206,12 @@ PatchMaps bake_chart(const Job &job, const Chart &chart)
     constexpr double ALLOWED = 0.01, FINER = 1.4;
     Sheet sheet = lay_sheet(job, chart, 1);
     Chart fitted = chart;
-    if (sheet.missed > ALLOWED)
-        sheet = lay_sheet(job, chart, FINER);
-    else if (refit(sheet, 1 << (job.options.mips - 1), fitted))
+    if (refit(sheet, 1 << (job.options.mips - 1), fitted))
         sheet = lay_sheet(job, fitted, 1);
+    if (fit_heights(sheet.flat, sheet.support, sheet.cover) > ALLOWED) {
+        sheet = lay_sheet(job, chart, FINER);
+        fit_heights(sheet.flat, sheet.support, sheet.cover);
+    }
     return encode_sheet(job, chart, sheet);
 }
 

@@ -244,7 +244,6 @@ struct Sheet {
     Cover cover;
     std::vector<float> trim;
     std::vector<uint8_t> support;
-    double missed;               /* share of the surface that it leaves too far above it */
 };
 
 /* The shades of the texels with a code. */
