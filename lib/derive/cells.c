@@ -90,11 +90,10 @@ double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *fi
     /* The difference of two bilinear sheets is greatest at a corner of the finer cells. */
     for (uint32_t y = 0; y < finest->nodes_y; ++y)
         for (uint32_t x = 0; x < finest->nodes_x; ++x) {
-            if (!is_corner(finest, x, y))
-                continue;
             const gtx_surface s = surface_at(grid, p, x, y);
             const double codes = fabs(s.z - finest->code[(size_t)y * finest->nodes_x + x]);
-            if (codes * step[2] > greatest) /* or it cannot be greater square to the sheet */
+            /* or it cannot be greater square to the sheet */
+            if (codes * step[2] > greatest && is_corner(finest, x, y))
                 greatest = fmax(greatest, codes * square_to(&s, step, p));
         }
     return greatest;

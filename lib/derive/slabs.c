@@ -83,8 +83,8 @@ static void fit_plane(const block *b, float *a, float *c)
 
 static void extend(float range[2], float value)
 {
-    range[0] = fminf(range[0], value);
-    range[1] = fmaxf(range[1], value);
+    range[0] = value < range[0] ? value : range[0];
+    range[1] = value > range[1] ? value : range[1];
 }
 
 /* Takes a cell in: its corners over the plane, and the slopes of its sides against it. */
