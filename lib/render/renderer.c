@@ -55,7 +55,7 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
     renderer->allocator = hooks;
     renderer->log = desc->log;
     renderer->log_user = desc->log_user;
-    renderer->costs = gtx_costs_or_default(&desc->costs);
+    renderer->costs = desc->costs;
     result = gtx_gl_init(&renderer->gl, desc, error);
     if (result) { /* no function may be called */
         gtx_free_array(&hooks, renderer, 1, sizeof *renderer);

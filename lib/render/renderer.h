@@ -104,7 +104,7 @@ struct gtx_renderer {
     uint32_t instance_capacity;
     gtx_plan plan;
     gtx_tiles tiles;
-    gtx_costs costs;
+    gtx_costs costs;          /* as told, or all 0 */
 };
 
 /* One mip level of a texture, waiting for its upload. All layers follow one another. */
@@ -264,7 +264,6 @@ void gtx_kernel_resolve(gtx_renderer *renderer, const gtx_program *program,
 /* choose.c. */
 /* An upper bound of how much an instance's transform stretches, exact for an even scale. */
 double gtx_stretch_of(const gtx_instance_data *placed);
-gtx_costs gtx_costs_or_default(const gtx_costs *costs);
 /* What a model's instance is drawn by: 0, or one more than the level of its shell. Errors:
  * UNSUPPORTED (the view wants a shell and there is none). */
 gtx_result gtx_choose_way(const gtx_renderer *renderer, const gtx_view *view,
