@@ -40,8 +40,8 @@ static json bench(const char *arguments)
 static void every_method_is_measured(void **)
 {
     const json report = bench("--sizes 64x48,96x96 --instances 1,5 --methods mesh,mesh_stream,"
-                              "mesh_lod,paper,cast,auto,cast_depth,auto_depth");
-    assert_int_equal(report["rows"].size(), 2 * 2 * 8);
+                              "mesh_lod,paper,cast,auto,cast_depth,auto_depth,cast_fragment");
+    assert_int_equal(report["rows"].size(), 2 * 2 * 9);
     assert_true(report["skipped"].empty());
     double full = 0;
     for (const json &row : report["rows"]) {
