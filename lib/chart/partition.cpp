@@ -294,14 +294,14 @@ Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &ta
     task.begin("partition");
     uint32_t count = chart_count(mesh, options);
     const double pitch = expected_pitch(mesh, count);
-    Surface surface = make_surface(mesh, pitch);
+    Surface surface = make_surface(mesh, pitch, task);
     Partition out;
     if (options.method == PartitionMethod::PGP) {
         CutMesh cut = square_cells(surface, count, options.adaptive, task);
         out.mesh = std::move(cut.mesh);
         out.source = std::move(cut.source);
         out.initial_chart = std::move(cut.label);
-        make_charts(make_surface(out.mesh, pitch), options, count, task, out);
+        make_charts(make_surface(out.mesh, pitch, task), options, count, task, out);
         return out;
     }
     out.initial_chart = options.method == PartitionMethod::VSA

@@ -29,18 +29,21 @@ void silence_openmesh()
     (void)silent;
 }
 
-Connectivity connect(const Mesh &mesh)
+Connectivity connect(const Mesh &mesh, Task &task)
 {
+    constexpr size_t BREATH = 65536; /* triangles */
     silence_openmesh();
     size_t count = mesh.triangle_count();
     Connectivity out;
     out.reserve(mesh.positions.size(), count * 3 / 2 + 16, count);
     for (size_t v = 0; v < mesh.positions.size(); ++v)
         out.new_vertex();
-    for (const std::array<uint32_t, 3> &t : mesh.triangles) {
+    for (size_t t = 0; t < count; ++t) {
         OpenMesh::VertexHandle v[3];
         for (int k = 0; k < 3; ++k)
-            v[k] = OpenMesh::VertexHandle(int(t[k]));
+            v[k] = OpenMesh::VertexHandle(int(mesh.triangles[t][k]));
+        if (t % BREATH == 0)
+            task.check();
         if (out.add_face(v[0], v[1], v[2]).is_valid())
             continue;
         for (OpenMesh::VertexHandle &handle : v) /* no manifold neighbour: it stands alone */
@@ -50,9 +53,9 @@ Connectivity connect(const Mesh &mesh)
     return out;
 }
 
-std::vector<std::array<uint32_t, 3>> neighbours_of(const Mesh &mesh)
+std::vector<std::array<uint32_t, 3>> neighbours_of(const Mesh &mesh, Task &task)
 {
-    Connectivity connectivity = connect(mesh);
+    Connectivity connectivity = connect(mesh, task);
     std::vector<std::array<uint32_t, 3>> out(mesh.triangle_count());
     for (size_t t = 0; t < out.size(); ++t) {
         auto edge = connectivity.halfedge_handle(OpenMesh::FaceHandle(int(t)));
@@ -94,22 +97,17 @@ double area_of(const Mesh &mesh)
     return area;
 }
 
-} // namespace
-
-double expected_pitch(const Mesh &mesh, size_t charts)
+void connect_whole(Surface &surface, Task &task)
 {
-    constexpr double USED_TEXELS = 1024; /* of a chart */
-    return std::sqrt(area_of(mesh) / (USED_TEXELS * double(charts)));
+    surface.whole.triangles.resize(surface.mesh.triangle_count());
+    std::iota(surface.whole.triangles.begin(), surface.whole.triangles.end(), 0u);
+    surface.whole.neighbours = neighbours_of(surface.mesh, task);
 }
 
-Surface make_surface(const Mesh &mesh, double pitch)
+void measure_facets(Surface &surface, double pitch)
 {
-    Surface surface = {mesh, {}, area_of(mesh), 0, {}, {}, {}};
-    size_t count = mesh.triangle_count();
-    surface.whole.triangles.resize(count);
-    std::iota(surface.whole.triangles.begin(), surface.whole.triangles.end(), 0u);
-    surface.whole.neighbours = neighbours_of(mesh);
-
+    const Mesh &mesh = surface.mesh;
+    const size_t count = mesh.triangle_count();
     Vec3d low = mesh.positions[0], high = low;
     for (const Vec3d &p : mesh.positions)
         for (int i = 0; i < 3; ++i) {
@@ -135,6 +133,25 @@ Surface make_surface(const Mesh &mesh, double pitch)
     for (size_t t = 0; t < count; ++t)
         surface.junk.push_back(surface.facets[t].size < JUNK_TRIANGLE * texel &&
                                dot(surface.normal[t], surface.facets[t].normal) < JUNK_COSINE);
+}
+
+} // namespace
+
+double expected_pitch(const Mesh &mesh, size_t charts)
+{
+    constexpr double USED_TEXELS = 1024; /* of a chart */
+    return std::sqrt(area_of(mesh) / (USED_TEXELS * double(charts)));
+}
+
+Surface make_surface(const Mesh &mesh, double pitch, Task &task)
+{
+    Surface surface = {mesh, {}, area_of(mesh), 0, {}, {}, {}};
+    task.parallel(2, [&](size_t half) {
+        if (half == 0)
+            connect_whole(surface, task);
+        else
+            measure_facets(surface, pitch);
+    }, 0, 0);
     return surface;
 }
 

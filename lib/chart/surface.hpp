@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/mesh.hpp"
+#include "mesh/task.hpp"
 
 namespace gtx {
 
@@ -31,7 +32,7 @@ struct Surface {
 };
 
 /* `pitch` is the expected size of a texel. */
-Surface make_surface(const Mesh &mesh, double pitch);
+Surface make_surface(const Mesh &mesh, double pitch, Task &task);
 
 /* The expected size of a texel when `charts` of them cover the mesh. */
 double expected_pitch(const Mesh &mesh, size_t charts);

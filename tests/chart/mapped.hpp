@@ -14,7 +14,7 @@ struct Mapped {
     std::vector<double> scale;
 
     explicit Mapped(gtx::Mesh of)
-        : mesh(std::move(of)), surface(gtx::make_surface(mesh, gtx::expected_pitch(mesh, 50))),
+        : mesh(std::move(of)), surface(gtx::make_surface(mesh, gtx::expected_pitch(mesh, 50), task)),
           edges(gtx::make_half_edges(surface)), field(gtx::make_cross_field(surface, edges, task)),
           scale(gtx::make_scale(edges, field))
     {
@@ -33,6 +33,6 @@ inline gtx::CutMesh cells(const gtx::Mesh &mesh, uint32_t &count, unsigned threa
 {
     gtx::Task task(threads, nullptr, nullptr, {"partition"});
     task.begin("partition");
-    gtx::Surface surface = gtx::make_surface(mesh, gtx::expected_pitch(mesh, count));
+    gtx::Surface surface = gtx::make_surface(mesh, gtx::expected_pitch(mesh, count), task);
     return gtx::square_cells(surface, count, adaptive, task);
 }

@@ -201,7 +201,8 @@ static void wanted_count(void **)
             print_message("%u charts of %u\n", count, wanted);
             assert_in_range(count, wanted * 8 / 10, wanted * 12 / 10);
             assert_int_equal(std::set<uint32_t>(cut.label.begin(), cut.label.end()).size(), count);
-            Surface surface = make_surface(cut.mesh, 1);
+            Task task(1, nullptr, nullptr, {"partition"});
+            Surface surface = make_surface(cut.mesh, 1, task);
             std::vector<uint32_t> pieces = cut.label;
             assert_int_equal(connected_pieces(surface.whole, pieces), count);
         }
