@@ -40,7 +40,7 @@ needs_cook    := $(needs_trace) image mesh grid chart bake measure cook
 # ---- flags ---------------------------------------------------------------------------------------
 CC  ?= cc
 CXX ?= c++
-flags_release  := -O2 -g
+flags_release  := -O3 -g
 flags_debug    := -O0 -g
 flags_sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined
 flags_thread   := -O1 -g -fsanitize=thread
