@@ -8,7 +8,6 @@
 
 #include <geotex/edit.h>
 #include <geotex/render.h>
-#include <math.h>
 #include <string.h>
 
 /* What the sum of a texel and its eight neighbours becomes: the majority, but for close votes,
@@ -69,21 +68,6 @@ typedef struct engine {
     gtx_model *model;
 } engine;
 
-static void frame(gtx_camera *camera, const gtx_asset *asset)
-{
-    gtx_info info;
-    gtx_get_info(asset, &info);
-    float square = 0;
-    for (int k = 0; k < 3; ++k) {
-        camera->target[k] = (info.bounds_min[k] + info.bounds_max[k]) / 2;
-        square += powf((info.bounds_max[k] - info.bounds_min[k]) / 2, 2);
-    }
-    camera->radius = sqrtf(square);
-    camera->azimuth = 30;
-    camera->elevation = 20;
-    camera->distance = 1.9f;
-}
-
 static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, gtx_error *error)
 {
     engine *e = user;
@@ -98,7 +82,9 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
         (result = gtx_renderer_create(&desc, &e->renderer, error)) ||
         (result = gtx_model_create(e->renderer, grown, &e->model, error)))
         return result;
-    frame(&e->show.camera, grown);
+    gtx_info info;
+    gtx_get_info(grown, &info);
+    gtx_camera_frame(&e->show.camera, info.bounds_min, info.bounds_max);
     gtx_edit_end(edit);
     gtx_close(grown);
     gtx_close(asset);
@@ -122,6 +108,7 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
 int main(int argc, char **argv)
 {
     engine e = {.show = {.title = "cellular", .width = 960, .height = 720, .load = load,
-                         .draw = draw, .user = &e}};
+                         .draw = draw, .user = &e,
+                         .camera = {.azimuth = 30, .elevation = 20, .distance = 1.9f}}};
     return gtx_sample_main(&e.show, argc, argv, &e.path);
 }

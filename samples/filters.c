@@ -40,21 +40,6 @@ static gtx_result filter(const gtx_asset *asset, float radius, uint32_t flags, g
     return result;
 }
 
-static void frame(gtx_camera *camera, const gtx_asset *asset)
-{
-    gtx_info info;
-    gtx_get_info(asset, &info);
-    float square = 0;
-    for (int k = 0; k < 3; ++k) {
-        camera->target[k] = (info.bounds_min[k] + info.bounds_max[k]) / 2;
-        square += powf((info.bounds_max[k] - info.bounds_min[k]) / 2, 2);
-    }
-    camera->radius = sqrtf(square);
-    camera->azimuth = 30;
-    camera->elevation = 15;
-    camera->distance = 2.5f;
-}
-
 static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, gtx_error *error)
 {
     gallery *g = user;
@@ -73,7 +58,9 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
             result = gtx_model_create(g->renderer, smooth, &g->models[row][column], error);
         gtx_close(smooth);
     }
-    frame(&g->show.camera, asset);
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    gtx_camera_frame(&g->show.camera, info.bounds_min, info.bounds_max);
     gtx_close(asset);
     return result;
 }
@@ -115,6 +102,7 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
 int main(int argc, char **argv)
 {
     gallery g = {.show = {.title = "filters", .width = 1600, .height = 900, .load = load,
-                          .draw = draw, .user = &g}};
+                          .draw = draw, .user = &g,
+                          .camera = {.azimuth = 30, .elevation = 15, .distance = 2.5f}}};
     return gtx_sample_main(&g.show, argc, argv, &g.path);
 }

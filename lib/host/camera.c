@@ -27,6 +27,13 @@ void gtx_matrix_place(float x, float y, float z, float degrees, float scale, flo
     memcpy(out, m, sizeof m);
 }
 
+void gtx_camera_frame(gtx_camera *camera, const float low[3], const float high[3])
+{
+    const gtx_vec3 half = gtx_v3_scale(gtx_v3_sub(gtx_v3_load(high), gtx_v3_load(low)), 0.5f);
+    gtx_v3_store(camera->target, gtx_v3_add(gtx_v3_load(low), half));
+    camera->radius = gtx_v3_length(half);
+}
+
 void gtx_camera_axes(const gtx_camera *camera, float right[3], float up[3], float back[3])
 {
     const float az = RADIANS(camera->azimuth), el = RADIANS(camera->elevation);

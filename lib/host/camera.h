@@ -18,6 +18,9 @@ typedef struct gtx_camera {
     float pan[3];             /* moves the eye and what it looks at, but not the sphere */
 } gtx_camera;
 
+/* Puts the sphere around the box low..high; leaves the angles and the distance. */
+void gtx_camera_frame(gtx_camera *camera, const float low[3], const float high[3]);
+
 /* Where the eye's x, y and z point to in the world. */
 void gtx_camera_axes(const gtx_camera *camera, float right[3], float up[3], float back[3]);
 

@@ -42,6 +42,17 @@ static void where_it_stands(void **state)
     }
 }
 
+static void framing_a_box(void **state)
+{
+    (void)state;
+    gtx_camera camera = {.azimuth = 7, .distance = 3};
+    gtx_camera_frame(&camera, (float[3]){-1, 0, 2}, (float[3]){3, 2, 6});
+    const float target[3] = {1, 1, 4};
+    for (int k = 0; k < 3; ++k)
+        assert_true(camera.target[k] == target[k]);
+    assert_true(camera.radius == 3 && camera.azimuth == 7 && camera.distance == 3);
+}
+
 static void up_is_up_and_right_is_right(void **state)
 {
     (void)state;
@@ -149,6 +160,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(panning_keeps_the_sphere_between_the_planes),
+        cmocka_unit_test(framing_a_box),
         cmocka_unit_test(where_it_stands),     cmocka_unit_test(up_is_up_and_right_is_right),
         cmocka_unit_test(depth_of_the_sphere), cmocka_unit_test(nearer_is_smaller_unless_reversed),
         cmocka_unit_test(orthographic_fit),    cmocka_unit_test(placing),
