@@ -62,6 +62,10 @@ cflags_mesh  = $(call pkg,--cflags,openmesh draco tinygltf)
 cflags_chart = $(call pkg,--cflags,openmesh eigen3)
 cflags_image = $(call pkg,--cflags,OpenImageIO)
 cflags_host  = $(call pkg,--cflags,egl glfw3)
+# Loops over texels: their rooms are compiled for vectors.
+fast := $(if $(filter release,$(config)),-O3)
+cflags_asset  = $(fast)
+cflags_derive = $(fast)
 cflags_cli   = -D_POSIX_C_SOURCE=200809L
 libs_asset   = $(if $(filter 1,$(zstd)),$(call pkg,--libs,libzstd))
 libs_mesh    = $(call pkg,--libs,openmesh draco zlib) -lmeshoptimizer -ldl -pthread -lstdc++

@@ -6,22 +6,37 @@
 #include <stdbool.h>
 #include <string.h>
 
+/* Corners of a row of cells, and 0 where there is no cell. */
+static void pack_8(const uint16_t *row, const uint16_t *next, const uint8_t *solid, size_t cells,
+                   uint8_t *out)
+{
+    for (size_t i = 0; i < cells; ++i) {
+        const uint32_t corners = row[i] | (uint32_t)row[i + 1] << 8 | (uint32_t)next[i] << 16 |
+                                 (uint32_t)next[i + 1] << 24;
+        const uint32_t texel = solid[i] ? corners : 0;
+        memcpy(out + 4 * i, &texel, 4);
+    }
+}
+
+static void pack_16(const uint16_t *row, const uint16_t *next, const uint8_t *solid, size_t cells,
+                    uint8_t *out)
+{
+    for (size_t i = 0; i < cells; ++i) {
+        const uint16_t corners[4] = {row[i], row[i + 1], next[i], next[i + 1]};
+        if (solid[i])
+            memcpy(out + 8 * i, corners, 8);
+        else
+            memset(out + 8 * i, 0, 8);
+    }
+}
+
 void gtx_grid_cells(const gtx_grid *grid, uint32_t height_bits, size_t row_texels, void *out)
 {
-    const size_t code_size = height_bits / 8, cells_x = grid->nodes_x - 1;
+    const size_t cells = grid->nodes_x - 1, texel_size = height_bits / 2;
     for (size_t j = 0; j + 1 < grid->nodes_y; ++j) {
         const uint16_t *row = grid->code + j * grid->nodes_x, *next = row + grid->nodes_x;
-        uint8_t *texel = (uint8_t *)out + j * row_texels * 4 * code_size;
-        for (size_t i = 0; i < cells_x; ++i, texel += 4 * code_size) {
-            const uint16_t corner[4] = {row[i], row[i + 1], next[i], next[i + 1]};
-            if (!grid->solid[j * cells_x + i])
-                memset(texel, 0, 4 * code_size);
-            else if (code_size == 2)
-                memcpy(texel, corner, sizeof corner);
-            else
-                for (int k = 0; k < 4; ++k)
-                    texel[k] = (uint8_t)corner[k];
-        }
+        uint8_t *to = (uint8_t *)out + j * row_texels * texel_size;
+        (height_bits == 8 ? pack_8 : pack_16)(row, next, grid->solid + j * cells, cells, to);
     }
 }
 
@@ -50,17 +65,6 @@ static gtx_surface surface_at(const gtx_grid *grid, const gtx_patch *patch, uint
     return (gtx_surface){(1 - f[1]) * low + f[1] * high, dx / width[0], (high - low) / width[1]};
 }
 
-/* Whether texel (x, y) is a corner of a solid cell of level 0. */
-static bool is_corner(const gtx_grid *finest, uint32_t x, uint32_t y)
-{
-    const uint32_t width = finest->nodes_x - 1, height = finest->nodes_y - 1;
-    for (uint32_t j = y ? y - 1 : 0; j <= y && j < height; ++j)
-        for (uint32_t i = x ? x - 1 : 0; i <= x && i < width; ++i)
-            if (finest->solid[(size_t)j * width + i])
-                return true;
-    return false;
-}
-
 /* Of a code along the frame's Z in object space, square to the sheet: the share of the step that
  * leads away from the plane of its tangents. */
 static double square_to(const gtx_surface *s, const double step[3], const gtx_patch *p)
@@ -79,22 +83,120 @@ static double square_to(const gtx_surface *s, const double step[3], const gtx_pa
     return fabs(along) * step[2] / sqrt(length);
 }
 
+/* Texels looked at together. */
+enum { RUN = 256 };
+
+/* Codes of up to RUN texels of row y from x0 on, NaN where no solid cell of level 0 has a corner:
+ * that is greater than nothing. */
+static void load_run(const gtx_grid *finest, uint32_t x0, uint32_t count, uint32_t y, float *out)
+{
+    const uint32_t cells_x = finest->nodes_x - 1, last = finest->nodes_y - 2;
+    const uint8_t *above = finest->solid + (size_t)(y ? y - 1 : 0) * cells_x;
+    const uint8_t *below = finest->solid + (size_t)(y > last ? last : y) * cells_x;
+    const uint16_t *code = finest->code + (size_t)y * finest->nodes_x + x0;
+    uint8_t any[RUN + 1];     /* of the cells left of each texel */
+    for (uint32_t i = 0; i <= count; ++i)
+        any[i] = 0;
+    const uint32_t from = x0 ? 0 : 1, end = x0 + count > cells_x ? count : count + 1;
+    for (uint32_t i = from; i < end; ++i)
+        any[i] = above[x0 + i - 1] | below[x0 + i - 1];
+    for (uint32_t i = 0; i < count; ++i)
+        out[i] = any[i] | any[i + 1] ? (float)code[i] : NAN;
+}
+
+/* The greatest distance in codes of the texels over cells of a row from lines between the heights
+ * at the cells' sides. A cell has `count` of them, from a side on, `width` texels apart from the
+ * next. */
+static inline float apart_over(const float *side, uint32_t cells, uint32_t width, uint32_t count,
+                               const float *texels)
+{
+    float most[(1 << (GTX_MAX_MIPS - 1)) + 1] = {0};
+    const float share = 1 / (float)width;
+    for (uint32_t c = 0; c < cells; ++c, texels += count) {
+        const float rise = (side[c + 1] - side[c]) * share;
+        for (uint32_t i = 0; i < count; ++i) {
+            const float apart = fabsf(side[c] + (float)i * rise - texels[i]);
+            most[i] = apart > most[i] ? apart : most[i];
+        }
+    }
+    for (uint32_t i = 1; i < count; ++i)
+        most[0] = most[i] > most[0] ? most[i] : most[0];
+    return most[0];
+}
+
+/* The same with steps that are known, for vectors. */
+static float apart_over_whole(const float *side, uint32_t cells, uint32_t step, const float *texels)
+{
+    switch (step) {
+    case 2: return apart_over(side, cells, 2, 2, texels);
+    case 4: return apart_over(side, cells, 4, 4, texels);
+    case 8: return apart_over(side, cells, 8, 8, texels);
+    default: return apart_over(side, cells, step, step, texels);
+    }
+}
+
+/* What is measured between a patch's sheet at a level and at level 0. */
+typedef struct comparison {
+    const gtx_patch *patch;
+    const gtx_grid *finest, *grid;
+    double step[3];           /* object units a texel, and a code */
+    double greatest;          /* so far, object units */
+} comparison;
+
+/* Texels of a row, one by one: those of `texels` that are no NaN. */
+static void compare_exactly(comparison *c, uint32_t x0, uint32_t count, uint32_t y,
+                            const float *texels)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        if (isnan(texels[i]))
+            continue;
+        const gtx_surface s = surface_at(c->grid, c->patch, x0 + i, y);
+        const double codes = fabs(s.z - texels[i]);
+        /* or it cannot be greater square to the sheet */
+        if (codes * c->step[2] > c->greatest)
+            c->greatest = fmax(c->greatest, codes * square_to(&s, c->step, c->patch));
+    }
+}
+
+/* Of a row of texels, those over cells first to end - 1 of the level. */
+static void compare_run(comparison *c, uint32_t first, uint32_t end, uint32_t y)
+{
+    const gtx_grid *grid = c->grid;
+    const uint32_t step = 1u << grid->level, cells_y = grid->nodes_y - 1;
+    const uint32_t j = y >> grid->level < cells_y ? y >> grid->level : cells_y - 1;
+    const uint32_t low = j << grid->level, last = c->finest->nodes_y - 1;
+    const float f = (float)(y - low) / (float)(low + step < last ? step : last - low);
+    const uint16_t *row = grid->code + (size_t)j * grid->nodes_x + first;
+    const uint16_t *next = row + grid->nodes_x;
+    float texels[RUN], side[RUN];
+    for (uint32_t i = 0; i <= end - first; ++i)
+        side[i] = (float)row[i] + f * (float)(next[i] - row[i]);
+    /* The last cell of a row may be narrower, and has texels on both of its sides. */
+    const bool ends = end == grid->nodes_x - 1;
+    const uint32_t x0 = first << grid->level, whole = end - first - ends;
+    const uint32_t rest = ends ? c->finest->nodes_x - x0 - whole * step : 0;
+    load_run(c->finest, x0, whole * step + rest, y, texels);
+    float apart = apart_over_whole(side, whole, step, texels);
+    if (ends)
+        apart = fmaxf(apart, apart_over(side + whole, 1, rest - 1, rest, texels + whole * step));
+    /* Floats are off by less than this. */
+    if (apart + 0.05f > 0.9999 * c->greatest / c->step[2])
+        compare_exactly(c, x0, whole * step + rest, y, texels);
+}
+
 double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
                       const gtx_grid *grid)
 {
     const gtx_patch *p = &asset->patches[patch];
-    const double step[3] = {(double)p->extent_x / p->rect[2], (double)p->extent_y / p->rect[3],
-                            p->extent_z / (asset->info.height_bits == 8 ? 254.0 : 65534.0)};
+    comparison c = {p, finest, grid,
+                    {(double)p->extent_x / p->rect[2], (double)p->extent_y / p->rect[3],
+                     p->extent_z / (asset->info.height_bits == 8 ? 254.0 : 65534.0)}, 0};
     /* What the wider limit of the trim lets stick out. */
-    double greatest = 0.3 * ((1u << grid->level) - 1) * fmax(step[0], step[1]);
+    c.greatest = 0.3 * ((1u << grid->level) - 1) * fmax(c.step[0], c.step[1]);
     /* The difference of two bilinear sheets is greatest at a corner of the finer cells. */
-    for (uint32_t y = 0; y < finest->nodes_y; ++y)
-        for (uint32_t x = 0; x < finest->nodes_x; ++x) {
-            const gtx_surface s = surface_at(grid, p, x, y);
-            const double codes = fabs(s.z - finest->code[(size_t)y * finest->nodes_x + x]);
-            /* or it cannot be greater square to the sheet */
-            if (codes * step[2] > greatest && is_corner(finest, x, y))
-                greatest = fmax(greatest, codes * square_to(&s, step, p));
-        }
-    return greatest;
+    const uint32_t cells = (RUN >> grid->level) - 1, width = grid->nodes_x - 1;
+    for (uint32_t y = 0; grid->level && y < finest->nodes_y; ++y)
+        for (uint32_t first = 0; first < width; first += cells)
+            compare_run(&c, first, first + cells < width ? first + cells : width, y);
+    return c.greatest;
 }

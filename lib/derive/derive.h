@@ -20,6 +20,9 @@ typedef struct gtx_grid {
 
 gtx_result gtx_grid_build(const gtx_asset *asset, uint32_t patch, uint32_t level,
                           const gtx_allocator *allocator, gtx_grid *out, gtx_error *error);
+/* The same of a patch whose level 0 is there, not trimmed. Errors: ARGUMENT, MEMORY. */
+gtx_result gtx_grid_coarsen(const gtx_grid *finest, uint32_t level, const gtx_allocator *allocator,
+                            gtx_grid *out, gtx_error *error);
 void gtx_grid_free(gtx_grid *grid, const gtx_allocator *allocator);
 
 /* Leaves solid only the cells of which something shows: those with a texel within the level's trim

@@ -127,7 +127,7 @@ gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_al
         memcpy(out->facts.hull, p->sphere, 3 * sizeof *p->sphere);
     }
     for (uint32_t k = 1; !result && k < asset->info.mip_count; ++k) {
-        result = gtx_grid_build(asset, patch, k, allocator, &grid, error);
+        result = gtx_grid_coarsen(&finest, k, allocator, &grid, error);
         if (result)
             break;
         errors[k] = (float)gtx_grid_error(asset, patch, &finest, &grid);

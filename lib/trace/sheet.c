@@ -112,7 +112,7 @@ static gtx_result choose_level(const gtx_asset *asset, uint32_t patch, double ma
     if (result)
         return result;
     for (uint32_t k = 1; k < asset->info.mip_count; ++k) {
-        result = gtx_grid_build(asset, patch, k, hooks, &grid, error);
+        result = gtx_grid_coarsen(&finest, k, hooks, &grid, error);
         if (result)
             break;
         const bool close = gtx_grid_error(asset, patch, &finest, &grid) <= max_error;
