@@ -63,7 +63,7 @@ cflags_chart = $(call pkg,--cflags,openmesh eigen3)
 cflags_image = $(call pkg,--cflags,OpenImageIO)
 cflags_host  = $(call pkg,--cflags,egl glfw3)
 # Loops over texels: their rooms are compiled for vectors.
-fast := $(if $(filter release,$(config)),-O3)
+fast := $(if $(filter release,$(config)),-O3 -fno-trapping-math)
 cflags_asset  = $(fast)
 cflags_derive = $(fast)
 cflags_cli   = -D_POSIX_C_SOURCE=200809L

@@ -1,6 +1,6 @@
 /* What kernels on the GPU take of a level: corner cells, the four codes of a cell in one texel, and
  * how far the level's sheet lies from the finest one. */
-#include "derive/derive.h"
+#include "derive/codes.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -83,27 +83,6 @@ static double square_to(const gtx_surface *s, const double step[3], const gtx_pa
     return fabs(along) * step[2] / sqrt(length);
 }
 
-/* Texels looked at together. */
-enum { RUN = 256 };
-
-/* Codes of up to RUN texels of row y from x0 on, NaN where no solid cell of level 0 has a corner:
- * that is greater than nothing. */
-static void load_run(const gtx_grid *finest, uint32_t x0, uint32_t count, uint32_t y, float *out)
-{
-    const uint32_t cells_x = finest->nodes_x - 1, last = finest->nodes_y - 2;
-    const uint8_t *above = finest->solid + (size_t)(y ? y - 1 : 0) * cells_x;
-    const uint8_t *below = finest->solid + (size_t)(y > last ? last : y) * cells_x;
-    const uint16_t *code = finest->code + (size_t)y * finest->nodes_x + x0;
-    uint8_t any[RUN + 1];     /* of the cells left of each texel */
-    for (uint32_t i = 0; i <= count; ++i)
-        any[i] = 0;
-    const uint32_t from = x0 ? 0 : 1, end = x0 + count > cells_x ? count : count + 1;
-    for (uint32_t i = from; i < end; ++i)
-        any[i] = above[x0 + i - 1] | below[x0 + i - 1];
-    for (uint32_t i = 0; i < count; ++i)
-        out[i] = any[i] | any[i + 1] ? (float)code[i] : NAN;
-}
-
 /* The greatest distance in codes of the texels over cells of a row from lines between the heights
  * at the cells' sides. A cell has `count` of them, from a side on, `width` texels apart from the
  * next. */
@@ -168,14 +147,14 @@ static void compare_run(comparison *c, uint32_t first, uint32_t end, uint32_t y)
     const float f = (float)(y - low) / (float)(low + step < last ? step : last - low);
     const uint16_t *row = grid->code + (size_t)j * grid->nodes_x + first;
     const uint16_t *next = row + grid->nodes_x;
-    float texels[RUN], side[RUN];
+    float texels[GTX_CODES_RUN], side[GTX_CODES_RUN];
     for (uint32_t i = 0; i <= end - first; ++i)
         side[i] = (float)row[i] + f * (float)(next[i] - row[i]);
     /* The last cell of a row may be narrower, and has texels on both of its sides. */
     const bool ends = end == grid->nodes_x - 1;
     const uint32_t x0 = first << grid->level, whole = end - first - ends;
     const uint32_t rest = ends ? c->finest->nodes_x - x0 - whole * step : 0;
-    load_run(c->finest, x0, whole * step + rest, y, texels);
+    gtx_load_codes(c->finest, x0, whole * step + rest, y, texels);
     float apart = apart_over_whole(side, whole, step, texels);
     if (ends)
         apart = fmaxf(apart, apart_over(side + whole, 1, rest - 1, rest, texels + whole * step));
@@ -194,7 +173,7 @@ double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *fi
     /* What the wider limit of the trim lets stick out. */
     c.greatest = 0.3 * ((1u << grid->level) - 1) * fmax(c.step[0], c.step[1]);
     /* The difference of two bilinear sheets is greatest at a corner of the finer cells. */
-    const uint32_t cells = (RUN >> grid->level) - 1, width = grid->nodes_x - 1;
+    const uint32_t cells = (GTX_CODES_RUN >> grid->level) - 1, width = grid->nodes_x - 1;
     for (uint32_t y = 0; grid->level && y < finest->nodes_y; ++y)
         for (uint32_t first = 0; first < width; first += cells)
             compare_run(&c, first, first + cells < width ? first + cells : width, y);

@@ -1,0 +1,19 @@
+/* Codes of the nodes that solid cells have as corners. */
+#include "derive/codes.h"
+
+#include <math.h>
+
+void gtx_load_codes(const gtx_grid *grid, uint32_t x0, uint32_t count, uint32_t y, float *out)
+{
+    const uint32_t cells = grid->nodes_x - 1, last = grid->nodes_y - 2;
+    const uint8_t *above = grid->solid + (size_t)(y ? y - 1 : 0) * cells;
+    const uint8_t *below = grid->solid + (size_t)(y > last ? last : y) * cells;
+    const uint16_t *code = grid->code + (size_t)y * grid->nodes_x + x0;
+    uint8_t beside[GTX_CODES_RUN + 1]; /* whether cells left of each node are solid */
+    beside[0] = beside[count] = 0;
+    const uint32_t from = x0 ? 0 : 1, end = x0 + count > cells ? count : count + 1;
+    for (uint32_t i = from; i < end; ++i)
+        beside[i] = above[x0 + i - 1] | below[x0 + i - 1];
+    for (uint32_t i = 0; i < count; ++i)
+        out[i] = beside[i] | beside[i + 1] ? (float)code[i] : NAN;
+}
