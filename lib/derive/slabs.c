@@ -1,28 +1,24 @@
 /* Slabs: slanted boxes, each close around a block of a level's cells. */
-#include "derive/derive.h"
+#include "derive/moments.h"
 
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 /* How far slabs overlap, in cells, and stand off the sheet, in codes: rounding must neither open a
  * seam between neighbours nor cut the sheet off. */
 static const float cell_overlap = 0.0002f, margin = 0.05f;
 
-/* Cells of a grid, from low to high. */
+/* Cells of a grid, from low to high - 1. */
 typedef struct block {
     const gtx_grid *grid;
-    uint32_t low[2], high[2]; /* inclusive */
+    uint32_t low[2], high[2];
     uint32_t last[2];         /* texel of the patch */
 } block;
 
 static uint32_t min_u32(uint32_t a, uint32_t b)
 {
     return a < b ? a : b;
-}
-
-static uint32_t max_u32(uint32_t a, uint32_t b)
-{
-    return a > b ? a : b;
 }
 
 static uint32_t blocks_along(uint32_t texels, uint32_t level)
@@ -40,67 +36,124 @@ static float texel(const block *b, int axis, uint32_t i)
     return (float)min_u32(i << b->grid->level, b->last[axis]);
 }
 
-static bool is_solid(const block *b, uint32_t i, uint32_t j)
+static const uint8_t *solid_row(const block *b, uint32_t j)
 {
-    return b->grid->solid[(size_t)j * (b->grid->nodes_x - 1) + i];
+    return b->grid->solid + (size_t)j * (b->grid->nodes_x - 1);
 }
 
 /* Narrows the block to its solid cells; false when there is none. */
 static bool narrow(block *b)
 {
-    block tight = {b->grid, {UINT32_MAX, UINT32_MAX}, {0, 0}, {b->last[0], b->last[1]}};
-    for (uint32_t j = b->low[1]; j <= b->high[1]; ++j)
-        for (uint32_t i = b->low[0]; i <= b->high[0]; ++i)
-            if (is_solid(b, i, j)) {
-                tight.low[0] = min_u32(tight.low[0], i);
-                tight.low[1] = min_u32(tight.low[1], j);
-                tight.high[0] = max_u32(tight.high[0], i);
-                tight.high[1] = j;
-            }
-    *b = tight;
-    return b->low[0] != UINT32_MAX;
+    uint8_t any[GTX_SLAB_CELLS] = {0};
+    const uint32_t x0 = b->low[0], width = b->high[0] - x0;
+    uint32_t first = UINT32_MAX, end = 0;
+    for (uint32_t j = b->low[1]; j < b->high[1]; ++j) {
+        const uint8_t *solid = solid_row(b, j) + x0;
+        if (!memchr(solid, 1, width))
+            continue;
+        for (uint32_t i = 0; i < width; ++i)
+            any[i] |= solid[i];
+        first = min_u32(first, j);
+        end = j + 1;
+    }
+    b->low[1] = first;
+    b->high[1] = end;
+    for (; first < end && !any[b->low[0] - x0]; ++b->low[0])
+        continue;
+    for (; first < end && !any[b->high[0] - 1 - x0]; --b->high[0])
+        continue;
+    return first < end;
 }
 
 /* The plane of least squares through the low corners of the solid cells: z = a x + b y + ... Few
  * cells do not tell a slope, and hold it back. */
-static void fit_plane(const block *b, float *a, float *c)
+static void fit_plane(const block *b, float slope[2])
 {
-    double n = 0, x = 0, y = 0, z = 0, xx = 1, xy = 0, yy = 1, xz = 0, yz = 0;
-    for (uint32_t j = b->low[1]; j <= b->high[1]; ++j)
-        for (uint32_t i = b->low[0]; i <= b->high[0]; ++i) {
-            if (!is_solid(b, i, j))
-                continue;
-            const double u = i - b->low[0], v = j - b->low[1];
-            const double w = b->grid->code[(size_t)j * b->grid->nodes_x + i];
-            n += 1, x += u, y += v, z += w;
-            xx += u * u, xy += u * v, yy += v * v, xz += u * w, yz += v * w;
-        }
-    xx -= x * x / n, xy -= x * y / n, yy -= y * y / n, xz -= x * z / n, yz -= y * z / n;
+    const gtx_moments m = gtx_moments_of(b->grid, b->low, b->high);
+    const double xx = 1 + m.xx - m.x * m.x / m.n, xy = m.xy - m.x * m.y / m.n;
+    const double yy = 1 + m.yy - m.y * m.y / m.n, xz = m.xz - m.x * m.z / m.n;
+    const double yz = m.yz - m.y * m.z / m.n;
     const double det = (xx * yy - xy * xy) * (double)(1u << b->grid->level);
-    *a = (float)((xz * yy - yz * xy) / det);
-    *c = (float)((yz * xx - xz * xy) / det);
+    slope[0] = (float)((xz * yy - yz * xy) / det);
+    slope[1] = (float)((yz * xx - xz * xy) / det);
 }
 
-static void extend(float range[2], float value)
-{
-    range[0] = value < range[0] ? value : range[0];
-    range[1] = value > range[1] ? value : range[1];
-}
+/* Nodes along a block, and places for them in vectors, one more on the right. */
+enum { NODES = GTX_SLAB_CELLS + 1, LANES = (NODES + 3) / 4 * 4, STRIDE = LANES + 4 };
 
-/* Takes a cell in: its corners over the plane, and the slopes of its sides against it. */
-static void take_cell(const block *b, uint32_t i, uint32_t j, gtx_slab *s)
+/* A block as vectors take it: codes of nodes, and cells with an empty one all around. */
+typedef struct sample {
+    float code[NODES + 1][STRIDE], x[STRIDE];
+    int32_t solid[NODES + 1][STRIDE];
+} sample;
+
+static void load(const block *b, sample *out)
 {
-    const uint16_t *row = b->grid->code + (size_t)j * b->grid->nodes_x + i;
-    const uint16_t *next = row + b->grid->nodes_x;
-    const float x[2] = {texel(b, 0, i), texel(b, 0, i + 1)};
-    const float y[2] = {texel(b, 1, j), texel(b, 1, j + 1)};
-    const float code[2][2] = {{row[0], row[1]}, {next[0], next[1]}};
-    for (int k = 0; k < 4; ++k)
-        extend(s->height, code[k >> 1][k & 1] - s->slope[0] * x[k & 1] - s->slope[1] * y[k >> 1]);
-    for (int k = 0; k < 2; ++k) {
-        extend(s->rise_x, (code[k][1] - code[k][0]) / (x[1] - x[0]) - s->slope[0]);
-        extend(s->rise_y, (code[1][k] - code[0][k]) / (y[1] - y[0]) - s->slope[1]);
+    const uint32_t cells = b->high[0] - b->low[0], rows = b->high[1] - b->low[1];
+    memset(out, 0, sizeof *out);
+    for (uint32_t j = 0; j <= rows; ++j) {
+        const uint16_t *code =
+            b->grid->code + (size_t)(b->low[1] + j) * b->grid->nodes_x + b->low[0];
+        for (uint32_t i = 0; i <= cells; ++i)
+            out->code[j][i] = code[i];
     }
+    for (uint32_t j = 0; j < rows; ++j) {
+        const uint8_t *solid = solid_row(b, b->low[1] + j) + b->low[0];
+        for (uint32_t i = 0; i < cells; ++i)
+            out->solid[j + 1][i + 1] = solid[i];
+    }
+    for (uint32_t i = 0; i < STRIDE; ++i)
+        out->x[i] = texel(b, 0, b->low[0] + i);
+}
+
+/* The least and the greatest of some values, column by column. */
+typedef struct range {
+    float low[LANES], high[LANES];
+} range;
+
+static inline void extend(range *r, int i, bool take, float value)
+{
+    r->low[i] = take & (value < r->low[i]) ? value : r->low[i];
+    r->high[i] = take & (value > r->high[i]) ? value : r->high[i];
+}
+
+static void store_range(const range *r, float out[2])
+{
+    out[0] = INFINITY;
+    out[1] = -INFINITY;
+    for (int i = 0; i < LANES; ++i) {
+        out[0] = r->low[i] < out[0] ? r->low[i] : out[0];
+        out[1] = r->high[i] > out[1] ? r->high[i] : out[1];
+    }
+}
+
+/* What the solid cells span: heights of their corners over the plane, and slopes of their sides
+ * against it. */
+static void measure(const block *b, gtx_slab *s)
+{
+    sample in;
+    range height, rise_x, rise_y;
+    const float slope[2] = {s->slope[0], s->slope[1]};
+    load(b, &in);
+    for (int i = 0; i < LANES; ++i) {
+        height.low[i] = rise_x.low[i] = rise_y.low[i] = INFINITY;
+        height.high[i] = rise_x.high[i] = rise_y.high[i] = -INFINITY;
+    }
+    for (uint32_t j = 0; j <= b->high[1] - b->low[1]; ++j) {
+        const float *code = in.code[j], *next = in.code[j + 1];
+        const int32_t *above = in.solid[j + 1], *below = in.solid[j];
+        const float y = texel(b, 1, b->low[1] + j), up = texel(b, 1, b->low[1] + j + 1) - y;
+        for (int i = 0; i < LANES; ++i) {
+            const int32_t left = above[i] | below[i], right = above[i + 1] | below[i + 1];
+            const float across = (code[i + 1] - code[i]) / (in.x[i + 1] - in.x[i]);
+            extend(&height, i, (left | right) != 0, code[i] - slope[0] * in.x[i] - slope[1] * y);
+            extend(&rise_x, i, right != 0, across - slope[0]);
+            extend(&rise_y, i, (above[i] | above[i + 1]) != 0, (next[i] - code[i]) / up - slope[1]);
+        }
+    }
+    store_range(&height, s->height);
+    store_range(&rise_x, s->rise_x);
+    store_range(&rise_y, s->rise_y);
 }
 
 static gtx_slab slab_of(block b)
@@ -110,15 +163,12 @@ static gtx_slab slab_of(block b)
                   .rise_y = {INFINITY, -INFINITY}};
     if (!narrow(&b))
         return s;
-    fit_plane(&b, &s.slope[0], &s.slope[1]);
-    for (uint32_t j = b.low[1]; j <= b.high[1]; ++j)
-        for (uint32_t i = b.low[0]; i <= b.high[0]; ++i)
-            if (is_solid(&b, i, j))
-                take_cell(&b, i, j, &s);
+    fit_plane(&b, s.slope);
+    measure(&b, &s);
     const float overlap = cell_overlap * (float)(1u << b.grid->level);
     for (int k = 0; k < 2; ++k) {
         s.low[k] = texel(&b, k, b.low[k]) - overlap;
-        s.high[k] = texel(&b, k, b.high[k] + 1) + overlap;
+        s.high[k] = texel(&b, k, b.high[k]) + overlap;
     }
     /* Within the overlap the sheet goes on as steeply as it may. */
     const float off = margin + overlap * (fmaxf(-s.rise_x[0], s.rise_x[1]) +
@@ -134,7 +184,7 @@ void gtx_grid_slabs(const gtx_patch *patch, const gtx_grid *grid, gtx_slab *out)
     for (uint32_t j = 0; j < cells[1]; j += GTX_SLAB_CELLS)
         for (uint32_t i = 0; i < cells[0]; i += GTX_SLAB_CELLS)
             *out++ = slab_of((block){grid, {i, j},
-                                     {min_u32(i + GTX_SLAB_CELLS, cells[0]) - 1,
-                                      min_u32(j + GTX_SLAB_CELLS, cells[1]) - 1},
+                                     {min_u32(i + GTX_SLAB_CELLS, cells[0]),
+                                      min_u32(j + GTX_SLAB_CELLS, cells[1])},
                                      {patch->rect[2] - 1u, patch->rect[3] - 1u}});
 }
