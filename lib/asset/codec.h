@@ -22,8 +22,8 @@ void gtx_heights_apply(gtx_map_shape image, const uint8_t *in, uint8_t *coded);
 void gtx_heights_undo(gtx_map_shape image, const uint8_t *coded, uint8_t *out);
 
 /* Filter 4, of trim and normals. The asset has its patches, with rectangles that hold, its heights,
- * and what is finer than this level. `scratch` has a byte a texel; to apply, the image's size
- * more. */
+ * and what is finer than this level. `scratch` has what gtx_undo_size, or gtx_apply_size, says beyond
+ * the image's size. */
 void gtx_surface_apply(const gtx_asset *asset, const gtx_section *section, const uint8_t *in,
                        uint8_t *coded, uint8_t *scratch);
 void gtx_surface_undo(const gtx_asset *asset, const gtx_section *section, const uint8_t *coded,

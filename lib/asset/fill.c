@@ -9,14 +9,6 @@
 #define MOST_RINGS 128u
 #define FAR 255u
 
-void gtx_normal_add(gtx_normal_sum *sum, const uint8_t code[2])
-{
-    int32_t a = 2 * code[0] - 255, b = 2 * code[1] - 255;
-    sum->a += a;
-    sum->b += b;
-    sum->z += 255 - (abs(a) > abs(b) ? abs(a) : abs(b)); /* |x| + |y| = max(|x + y|, |x - y|) */
-}
-
 void gtx_normal_mean(const gtx_normal_sum *sum, uint8_t out[2])
 {
     int32_t a = abs(sum->a), b = abs(sum->b), size = (a > b ? a : b) + sum->z;
@@ -78,8 +70,7 @@ static void fill_normal(const gtx_fill *area, const uint8_t *p, int x0, int x1, 
     for (int y = y0; y <= y1; ++y)
         for (int x = x0; x <= x1; ++x) {
             const uint8_t *from = p + y * (ptrdiff_t)area->stride + x;
-            if (*from < *p)
-                gtx_normal_add(&sum, area->codes + 2 * (from - area->ring));
+            gtx_normal_add_if(&sum, area->codes + 2 * (from - area->ring), *from < *p);
         }
     gtx_normal_mean(&sum, area->codes + 2 * (p - area->ring));
 }

@@ -17,7 +17,21 @@ typedef struct gtx_normal_sum {
     int32_t a, b, z;
 } gtx_normal_sum;
 
-void gtx_normal_add(gtx_normal_sum *sum, const uint8_t code[2]);
+/* Adds a normal if `take` is 1, none if it is 0. */
+static inline void gtx_normal_add_if(gtx_normal_sum *sum, const uint8_t code[2], int32_t take)
+{
+    int32_t a = 2 * code[0] - 255, b = 2 * code[1] - 255;
+    int32_t p = a < 0 ? -a : a, q = b < 0 ? -b : b;
+    sum->a += a & -take;
+    sum->b += b & -take;
+    sum->z += (255 - (p > q ? p : q)) & -take; /* |x| + |y| = max(|x + y|, |x - y|) */
+}
+
+static inline void gtx_normal_add(gtx_normal_sum *sum, const uint8_t code[2])
+{
+    gtx_normal_add_if(sum, code, 1);
+}
+
 void gtx_normal_mean(const gtx_normal_sum *sum, uint8_t out[2]);
 
 /* A rectangle of an image with `stride` texels a row: its first texel, and a byte a texel that is 1

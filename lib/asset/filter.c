@@ -19,10 +19,13 @@ bool gtx_filter_fits(gtx_section_kind kind, uint32_t filter)
 
 uint64_t gtx_undo_size(const gtx_section *section, gtx_map_shape image)
 {
+    uint64_t texels = image.texel ? section->size / image.texel : 0;
     switch (section->filter) {
     case GTX_FILTER_NONE:
     case GTX_FILTER_PAETH: return 0;
-    case GTX_FILTER_SURFACE: return section->size + section->size / image.texel;
+    /* A byte a texel, and one for each of level 0. */
+    case GTX_FILTER_SURFACE:
+        return section->size + texels + (section->level ? texels << 2 * section->level : 0);
     default: return section->size;
     }
 }

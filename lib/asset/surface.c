@@ -8,21 +8,23 @@
 
 /* ---- filter 5, heights ---- */
 
-/* Codes of all pages, in a row each; code 0 is no neighbour. */
-static uint32_t load_code(const uint8_t *image, uint32_t bytes, size_t at)
+static inline uint32_t load_code(const uint8_t *image, uint32_t bytes, size_t at)
 {
     return bytes == 1 ? image[at] : gtx_load_u16(image + 2 * at);
 }
 
-/* The plane through three neighbours, or the nearest of what is there. */
-static uint32_t predict_height(const uint8_t *image, gtx_map_shape shape, size_t row, uint32_t x)
+static inline void store_code(uint8_t *image, uint32_t bytes, size_t at, uint32_t code)
 {
-    int32_t most = shape.texel == 1 ? 255 : 65535;
-    size_t at = row * shape.width + x;
-    bool up = row % shape.height != 0;
-    int32_t a = x ? (int32_t)load_code(image, shape.texel, at - 1) : 0;
-    int32_t b = up ? (int32_t)load_code(image, shape.texel, at - shape.width) : 0;
-    int32_t c = x && up ? (int32_t)load_code(image, shape.texel, at - shape.width - 1) : 0;
+    if (bytes == 1)
+        image[at] = (uint8_t)code;
+    else
+        gtx_store_u16(image + 2 * at, (uint16_t)code);
+}
+
+/* What the neighbours left, above and above left lead one to expect, the plane through them or the
+ * nearest of what is there: 0 is no neighbour. */
+static inline uint32_t expected_code(int32_t a, int32_t b, int32_t c, int32_t most)
+{
     if (a && b && c) {
         int32_t plane = a + b - c;
         return (uint32_t)(plane < 1 ? 1 : plane > most ? most : plane);
@@ -31,41 +33,52 @@ static uint32_t predict_height(const uint8_t *image, gtx_map_shape shape, size_t
     return near ? (uint32_t)near : (uint32_t)(most + 1) / 2;
 }
 
-void gtx_heights_apply(gtx_map_shape shape, const uint8_t *in, uint8_t *coded)
+/* Between codes and their differences in planes, row by row, in either direction: one of `plain`
+ * and `coded` grows. */
+static inline void code_heights(gtx_map_shape shape, uint32_t bytes, uint8_t *plain, uint8_t *coded,
+                                bool apply)
 {
-    uint32_t most = shape.texel == 1 ? 255 : 65535;
-    size_t at = 0, texels = (size_t)gtx_shape_size(shape) / shape.texel;
-    for (size_t row = 0; row < (size_t)shape.pages * shape.height; ++row) {
-        for (uint32_t x = 0; x < shape.width; ++x, ++at) {
-            uint32_t code = load_code(in, shape.texel, at);
-            if (code)
-                code = 1 + (code + most - predict_height(in, shape, row, x)) % most;
-            coded[at] = (uint8_t)code;
-            if (shape.texel == 2)
-                coded[texels + at] = (uint8_t)(code >> 8);
+    const uint32_t most = bytes == 1 ? 255 : 65535;
+    const size_t width = shape.width, texels = (size_t)shape.pages * shape.height * width;
+    for (size_t first = 0; first < texels; first += width) {
+        const bool up = first / width % shape.height != 0;
+        uint32_t left = 0, corner = 0;
+        for (size_t at = first; at < first + width; ++at) {
+            const uint32_t above = up ? load_code(plain, bytes, at - width) : 0;
+            uint32_t code = apply ? load_code(plain, bytes, at) : coded[at];
+            if (!apply && bytes == 2)
+                code |= (uint32_t)coded[texels + at] << 8;
+            uint32_t other = code;
+            if (code) {
+                const uint32_t guess = expected_code((int32_t)left, (int32_t)above,
+                                                     (int32_t)corner, (int32_t)most);
+                other = apply ? 1 + (code + most - guess) % most : code + guess - 1;
+                if (!apply && other > most)
+                    other -= most;
+            }
+            if (!apply)
+                store_code(plain, bytes, at, other);
+            else
+                coded[at] = (uint8_t)other;
+            if (apply && bytes == 2)
+                coded[texels + at] = (uint8_t)(other >> 8);
+            left = apply ? code : other;
+            corner = above;
         }
     }
 }
 
+void gtx_heights_apply(gtx_map_shape shape, const uint8_t *in, uint8_t *coded)
+{
+    code_heights(shape, shape.texel, (uint8_t *)in, coded, true);
+}
+
 void gtx_heights_undo(gtx_map_shape shape, const uint8_t *coded, uint8_t *out)
 {
-    uint32_t most = shape.texel == 1 ? 255 : 65535;
-    size_t at = 0, texels = (size_t)gtx_shape_size(shape) / shape.texel;
-    for (size_t row = 0; row < (size_t)shape.pages * shape.height; ++row) {
-        for (uint32_t x = 0; x < shape.width; ++x, ++at) {
-            uint32_t code = coded[at];
-            if (shape.texel == 2)
-                code |= (uint32_t)coded[texels + at] << 8;
-            if (code) {
-                code += predict_height(out, shape, row, x) - 1;
-                code = code > most ? code - most : code;
-            }
-            if (shape.texel == 1)
-                out[at] = (uint8_t)code;
-            else
-                gtx_store_u16(out + 2 * at, (uint16_t)code);
-        }
-    }
+    if (shape.texel == 1)
+        code_heights(shape, 1, out, (uint8_t *)coded, false);
+    else
+        code_heights(shape, 2, out, (uint8_t *)coded, false);
 }
 
 /* ---- filter 4, surface ---- */
@@ -76,102 +89,162 @@ typedef struct layer {
     gtx_section_kind kind;
     uint32_t level;
     gtx_map_shape shape;
-    size_t rows, texels, occupied;
+    size_t rows, texels;
     uint8_t *ring;                /* of gtx_fill, for all pages */
+    const uint8_t *finer;         /* 1 where a texel of the finer level has a height */
 } layer;
 
-static layer layer_of(const gtx_asset *asset, const gtx_section *section, uint8_t *ring)
+/* Marks the texels of level 0 that have a height. */
+static void mark_heights(const gtx_asset *asset, uint8_t *out)
 {
-    layer s = {.asset = asset, .kind = section->kind, .level = section->level, .ring = ring};
+    const size_t texels = gtx_page_texels(asset, 0) * asset->info.page_count;
+    if (asset->info.height_bits == 8) {
+        for (size_t at = 0; at < texels; ++at)
+            out[at] = asset->height[at] != 0;
+    } else {
+        for (size_t at = 0; at < texels; ++at)
+            out[at] = (asset->height[2 * at] | asset->height[2 * at + 1]) != 0;
+    }
+}
+
+/* From marks of a level to those of the next: `rows` of `width` in all. They may be the same. */
+static void halve(const uint8_t *finer, size_t rows, size_t width, uint8_t *out)
+{
+    for (size_t row = 0; row < rows; ++row) {
+        const uint8_t *upper = finer + 4 * row * width, *lower = upper + 2 * width;
+        for (size_t x = 0; x < width; ++x)
+            out[row * width + x] = upper[2 * x] | upper[2 * x + 1] | lower[2 * x] | lower[2 * x + 1];
+    }
+}
+
+/* `scratch` has room for marks of level 0, and those of this level. */
+static layer layer_of(const gtx_asset *asset, const gtx_section *section, uint8_t *scratch)
+{
+    layer s = {.asset = asset, .kind = section->kind, .level = section->level, .ring = scratch};
     s.shape = gtx_section_shape(&asset->info, section->kind, section->level);
     s.rows = (size_t)s.shape.pages * s.shape.height;
     s.texels = s.rows * s.shape.width;
-    uint32_t width = asset->info.page_width, wide = asset->info.height_bits == 16;
-    memset(ring, 0, s.texels);
-    for (size_t row = 0; row < s.rows << s.level; ++row) {
-        uint8_t *to = ring + (row >> s.level) * s.shape.width;
-        const uint8_t *code = asset->height + (row * width << wide);
-        for (uint32_t x = 0; x < width; ++x)
-            to[x >> s.level] |= (code[(size_t)x << wide] | code[((size_t)x << wide) + wide]) != 0;
+    if (section->level == 0) {
+        mark_heights(asset, s.ring);
+        return s;
     }
-    for (size_t at = 0; at < s.texels; ++at)
-        s.occupied += ring[at];
+    uint8_t *finer = scratch + s.texels;
+    mark_heights(asset, finer);
+    for (uint32_t k = 1; k < section->level; ++k)
+        halve(finer, s.rows << (section->level - k), (size_t)asset->info.page_width >> k, finer);
+    halve(finer, s.rows, s.shape.width, s.ring);
+    s.finer = finer;
     return s;
 }
 
-/* Whether a texel of a finer level than this layer's has a height. */
-static bool has_height(const layer *s, uint32_t level, size_t row, uint32_t x)
-{
-    uint32_t bytes = s->asset->info.height_bits / 8, side = 1u << level;
-    size_t at = (row << level) * s->asset->info.page_width + ((size_t)x << level);
-    for (uint32_t j = 0; j < side; ++j, at += s->asset->info.page_width)
-        for (uint32_t i = 0; i < side; ++i)
-            if (load_code(s->asset->height, bytes, at + i))
-                return true;
-    return false;
-}
-
 /* The mean of the occupied texels of the level before. */
-static void predict_mean(const layer *s, size_t row, uint32_t x, uint8_t out[2])
+static void expected_mean(const layer *s, size_t row, size_t x, uint8_t out[2])
 {
-    const uint8_t *finer = s->asset->normal[s->level - 1];
+    const uint8_t *codes = s->asset->normal[s->level - 1];
+    const size_t width = 2 * (size_t)s->shape.width, first = 2 * row * width + 2 * x;
+    const size_t at[4] = {first, first + 1, first + width, first + width + 1};
     gtx_normal_sum sum = {0, 0, 0};
-    for (uint32_t k = 0; k < 4; ++k) {
-        size_t y = 2 * row + k / 2;
-        uint32_t i = 2 * x + k % 2;
-        if (has_height(s, s->level - 1, y, i))
-            gtx_normal_add(&sum, finer + 2 * (y * 2 * s->shape.width + i));
-    }
+    for (int k = 0; k < 4; ++k)
+        gtx_normal_add_if(&sum, codes + 2 * at[k], s->finer[at[k]]);
     gtx_normal_mean(&sum, out);
 }
 
-static int least(int a, int b)
+static inline int least(int a, int b)
 {
     return a < b ? a : b;
 }
 
-static int most(int a, int b)
+static inline int most(int a, int b)
 {
     return a < b ? b : a;
 }
 
 /* The median of left, above and the plane through three neighbours (LOCO-I, Weinberger et al.
- * 2000), of those that have a height. */
-static void predict_near(const layer *s, const uint8_t *image, size_t row, uint32_t x, uint8_t *out)
+ * 2000), of those that have a height: bits 0 to 2 of `there` tell. */
+static inline uint8_t expected_near(unsigned there, int a, int b, int c)
 {
-    size_t width = s->shape.width, at = row * width + x, texel = s->shape.texel;
-    bool up = row % s->shape.height != 0;
-    bool a = x && s->ring[at - 1] == 1, b = up && s->ring[at - width] == 1;
-    bool c = x && up && s->ring[at - width - 1] == 1;
-    const uint8_t *here = image + at * texel;
-    for (size_t k = 0; k < texel; ++k, ++here) {
-        if (a && b && c) {
-            int p = *(here - texel), q = *(here - width * texel);
-            int plane = p + q - *(here - (width + 1) * texel);
-            out[k] = (uint8_t)most(least(p, q), least(most(p, q), plane));
-        } else {
-            size_t back = a ? 1 : b ? width : c ? width + 1 : 0;
-            out[k] = back ? *(here - back * texel) : 128;
-        }
-    }
+    if (there == 7)
+        return (uint8_t)most(least(a, b), least(most(a, b), a + b - c));
+    return (uint8_t)(there & 1 ? a : there & 2 ? b : there & 4 ? c : 128);
 }
 
-static void predict(const layer *s, const uint8_t *image, size_t row, uint32_t x, uint8_t *out)
+/* A row of occupied texels at level 0, in either direction: one of `plain` and `coded` grows.
+ * `coded` is where their first one's byte is in the first plane. Returns how many there are. */
+static inline size_t code_near(const layer *s, size_t row, size_t texel, uint8_t *plain,
+                               uint8_t *coded, bool apply)
 {
-    if (s->level)
-        predict_mean(s, row, x, out);
-    else
-        predict_near(s, image, row, x, out);
+    const size_t width = s->shape.width;
+    const bool up = row % s->shape.height != 0;
+    const uint8_t *ring = s->ring + row * width, *over = up ? ring - width : NULL;
+    uint8_t *here = plain + row * width * texel;
+    size_t count = 0;
+    unsigned left = 0, corner = 0;
+    for (size_t x = 0; x < width; ++x, here += texel) {
+        const unsigned above = up ? over[x] : 0, there = left | above << 1 | corner << 2;
+        left = ring[x];
+        corner = above;
+        if (!left)
+            continue;
+        for (size_t k = 0; k < texel; ++k) {
+            const int a = there & 1 ? here[(ptrdiff_t)(k - texel)] : 0;
+            const int b = there & 2 ? here[(ptrdiff_t)(k - width * texel)] : 0;
+            const int c = there & 4 ? here[(ptrdiff_t)(k - (width + 1) * texel)] : 0;
+            const uint8_t guess = expected_near(there, a, b, c);
+            if (apply)
+                coded[k * s->texels + count] = (uint8_t)(here[k] - guess);
+            else
+                here[k] = (uint8_t)(coded[k * s->texels + count] + guess);
+        }
+        ++count;
+    }
+    return count;
+}
+
+/* The same of another level, whose texels are of two bytes. */
+static inline size_t code_means(const layer *s, size_t row, uint8_t *plain, uint8_t *coded,
+                                bool apply)
+{
+    const size_t width = s->shape.width;
+    size_t count = 0;
+    for (size_t x = 0; x < width; ++x) {
+        if (!s->ring[row * width + x])
+            continue;
+        uint8_t guess[2], *here = plain + 2 * (row * width + x);
+        expected_mean(s, row, x, guess);
+        for (size_t k = 0; k < 2; ++k)
+            if (apply)
+                coded[k * s->texels + count] = (uint8_t)(here[k] - guess[k]);
+            else
+                here[k] = (uint8_t)(coded[k * s->texels + count] + guess[k]);
+        ++count;
+    }
+    return count;
+}
+
+/* All occupied texels. Returns how many there are. */
+static inline size_t code_occupied(const layer *s, uint8_t *plain, uint8_t *coded, bool apply)
+{
+    size_t count = 0;
+    for (size_t row = 0; row < s->rows; ++row)
+        if (s->level)
+            count += code_means(s, row, plain, coded + count, apply);
+        else if (s->shape.texel == 1)
+            count += code_near(s, row, 1, plain, coded + count, apply);
+        else
+            count += code_near(s, row, 2, plain, coded + count, apply);
+    return count;
 }
 
 /* Gives the texels without a height what the rules say; the ring map holds rings afterwards. */
 static void fill(const layer *s, uint8_t *image)
 {
-    bool normal = s->kind == GTX_SECTION_NORMAL;
-    for (size_t at = 0; at < s->texels; ++at)
-        if (!s->ring[at])
-            memset(image + at * s->shape.texel, normal ? GTX_FAR_NORMAL : GTX_FAR_TRIM,
-                   s->shape.texel);
+    const bool normal = s->kind == GTX_SECTION_NORMAL;
+    for (size_t at = 0; !normal && at < s->texels; ++at)
+        image[at] = s->ring[at] ? image[at] : GTX_FAR_TRIM;
+    for (size_t at = 0; normal && at < s->texels; ++at) {
+        image[2 * at] = s->ring[at] ? image[2 * at] : GTX_FAR_NORMAL;
+        image[2 * at + 1] = s->ring[at] ? image[2 * at + 1] : GTX_FAR_NORMAL;
+    }
     for (uint32_t i = 0; i < s->asset->info.patch_count; ++i) {
         const gtx_patch *patch = &s->asset->patches[i];
         size_t row = (size_t)patch->page * s->shape.height + (patch->rect[1] >> s->level);
@@ -189,22 +262,12 @@ static void fill(const layer *s, uint8_t *image)
 void gtx_surface_apply(const gtx_asset *asset, const gtx_section *section, const uint8_t *in,
                        uint8_t *coded, uint8_t *scratch)
 {
-    layer s = layer_of(asset, section, scratch + section->size);
-    size_t texel = s.shape.texel, cursor = 0, at = 0;
-    for (size_t row = 0; row < s.rows; ++row) {
-        for (uint32_t x = 0; x < s.shape.width; ++x, ++at) {
-            if (!s.ring[at])
-                continue;
-            uint8_t guess[2];
-            predict(&s, in, row, x, guess);
-            for (size_t k = 0; k < texel; ++k)
-                coded[k * s.texels + cursor] = (uint8_t)(in[at * texel + k] - guess[k]);
-            ++cursor;
-        }
-    }
+    const layer s = layer_of(asset, section, scratch + section->size);
+    const size_t texel = s.shape.texel;
+    size_t cursor = code_occupied(&s, (uint8_t *)in, coded, true);
     memcpy(scratch, in, (size_t)section->size);
     fill(&s, scratch);
-    for (at = 0; at < s.texels; ++at) {
+    for (size_t at = 0; at < s.texels; ++at) {
         if (s.ring[at] == 1)
             continue;
         for (size_t k = 0; k < texel; ++k)
@@ -213,28 +276,26 @@ void gtx_surface_apply(const gtx_asset *asset, const gtx_section *section, const
     }
 }
 
+static bool all_zero(const uint8_t *bytes, size_t count)
+{
+    unsigned any = 0;
+    for (size_t i = 0; i < count; ++i)
+        any |= bytes[i];
+    return !any;
+}
+
 void gtx_surface_undo(const gtx_asset *asset, const gtx_section *section, const uint8_t *coded,
                       uint8_t *out, uint8_t *scratch)
 {
-    layer s = layer_of(asset, section, scratch);
-    size_t texel = s.shape.texel, cursor = 0, at = 0;
-    for (size_t row = 0; row < s.rows; ++row) {
-        for (uint32_t x = 0; x < s.shape.width; ++x, ++at) {
-            if (!s.ring[at])
-                continue;
-            uint8_t guess[2];
-            predict(&s, out, row, x, guess);
-            for (size_t k = 0; k < texel; ++k)
-                out[at * texel + k] = (uint8_t)(coded[k * s.texels + cursor] + guess[k]);
-            ++cursor;
-        }
-    }
+    const layer s = layer_of(asset, section, scratch);
+    const size_t texel = s.shape.texel, occupied = code_occupied(&s, out, (uint8_t *)coded, false);
     fill(&s, out);
-    for (at = 0; at < s.texels; ++at) {
-        if (s.ring[at] == 1)
+    for (size_t k = 0; k < texel; ++k) {
+        const uint8_t *rest = coded + k * s.texels + occupied;
+        if (all_zero(rest, s.texels - occupied)) /* as the rules would have it */
             continue;
-        for (size_t k = 0; k < texel; ++k)
-            out[at * texel + k] = (uint8_t)(out[at * texel + k] + coded[k * s.texels + cursor]);
-        ++cursor;
+        for (size_t at = 0; at < s.texels; ++at)
+            if (s.ring[at] != 1)
+                out[at * texel + k] = (uint8_t)(out[at * texel + k] + *rest++);
     }
 }
