@@ -65,27 +65,83 @@ typedef struct patch_finding {
     double sphere_point[3], bounds_point[3];
 } patch_finding;
 
-static patch_finding walk_patch(const gtx_asset *asset, const gtx_patch *patch, const box *bounds)
+/* Texels of a row that have codes: how many, from which to which, and their extreme codes. */
+typedef struct row_span {
+    uint32_t coded, first, end, least, most;
+} row_span;
+
+static inline row_span span_of(const uint8_t *row, uint32_t bytes, uint32_t width)
+{
+    const uint32_t top = bytes == 1 ? UINT8_MAX : UINT16_MAX;
+    row_span s = {.end = width, .least = top};
+    uint32_t most = 0, least = top, coded = 0; /* of one less than each code, an empty one wraps */
+    for (uint32_t x = 0; x < width; ++x) {
+        const uint32_t code = bytes == 1 ? row[x] : gtx_load_u16(row + 2 * (size_t)x);
+        const uint32_t wrapped = (code - 1) & top;
+        most = code > most ? code : most;
+        least = wrapped < least ? wrapped : least;
+        coded += code != 0;
+    }
+    s.coded = coded;
+    s.most = most;
+    s.least = least + 1;
+    for (; coded && !row[bytes * (size_t)s.first] && !row[bytes * (size_t)(s.first + 1) - 1];)
+        ++s.first;
+    for (; coded && !row[bytes * (size_t)(s.end - 1)] && !row[bytes * (size_t)s.end - 1];)
+        --s.end;
+    return s;
+}
+
+/* What points are checked against. */
+typedef struct limits {
+    const gtx_patch *patch;
+    const box *bounds;
+    double levels;                /* of heights above the lowest */
+} limits;
+
+static void look_at(const limits *in, uint32_t x, uint32_t y, uint32_t code, patch_finding *found)
+{
+    const gtx_patch *patch = in->patch;
+    double point[3];
+    texel_point(patch, (x + 0.5) / patch->rect[2], (y + 0.5) / patch->rect[3],
+                (code - 1) / in->levels, point);
+    if (!found->outside_sphere && !in_sphere(patch, point)) {
+        found->outside_sphere = true;
+        memcpy(found->sphere_point, point, sizeof point);
+    }
+    if (!found->outside_bounds && !in_box(in->bounds, point)) {
+        found->outside_bounds = true;
+        memcpy(found->bounds_point, point, sizeof point);
+    }
+}
+
+/* Sphere and box are convex: they hold a row where they hold the corners around its points. */
+static bool holds(const limits *in, const row_span *s, uint32_t y)
 {
     patch_finding found = {0};
-    double levels = asset->info.height_bits == 8 ? 254 : 65534;
-    uint32_t w = patch->rect[2], h = patch->rect[3];
-    for (uint32_t y = 0; y < h; ++y) {
-        for (uint32_t x = 0; x < w; ++x) {
-            uint32_t code = gtx_height_code(asset, patch, x, y);
-            if (code == 0)
-                continue;
-            ++found.coded;
-            double point[3];
-            texel_point(patch, (x + 0.5) / w, (y + 0.5) / h, (code - 1) / levels, point);
-            if (!found.outside_sphere && !in_sphere(patch, point)) {
-                found.outside_sphere = true;
-                memcpy(found.sphere_point, point, sizeof point);
-            }
-            if (!found.outside_bounds && !in_box(bounds, point)) {
-                found.outside_bounds = true;
-                memcpy(found.bounds_point, point, sizeof point);
-            }
+    for (uint32_t k = 0; k < 4; ++k)
+        look_at(in, k & 1 ? s->first : s->end - 1, y, k & 2 ? s->least : s->most, &found);
+    return !found.outside_sphere && !found.outside_bounds;
+}
+
+static patch_finding walk_patch(const gtx_asset *asset, const gtx_patch *patch, const box *bounds)
+{
+    const uint32_t bytes = asset->info.height_bits / 8;
+    const limits in = {patch, bounds, bytes == 1 ? 254 : 65534};
+    patch_finding found = {0};
+    for (uint32_t y = 0; y < patch->rect[3]; ++y) {
+        const size_t line = (size_t)patch->page * asset->info.page_height + patch->rect[1] + y;
+        const uint8_t *row =
+            asset->height + (line * asset->info.page_width + patch->rect[0]) * bytes;
+        const row_span s = bytes == 1 ? span_of(row, 1, patch->rect[2])
+                                      : span_of(row, 2, patch->rect[2]);
+        found.coded += s.coded;
+        if (!s.coded || holds(&in, &s, y))
+            continue;
+        for (uint32_t x = s.first; x < s.end; ++x) {
+            const uint32_t code = gtx_height_code(asset, patch, x, y);
+            if (code)
+                look_at(&in, x, y, code, &found);
         }
     }
     return found;
@@ -122,9 +178,10 @@ static void check_patch(gtx_check *check, const gtx_asset *asset, uint32_t index
                   index, p[0], p[1], p[2]);
 }
 
+/* Whether a rectangle lies in block x of a line of blocks. */
 static bool occupied(const gtx_occupancy *occupancy, uint64_t line, uint32_t x)
 {
-    uint64_t bit = line * occupancy->width + (x >> occupancy->shift);
+    uint64_t bit = line * occupancy->width + x;
     return occupancy->words[bit / 64] >> bit % 64 & 1;
 }
 
@@ -132,16 +189,20 @@ static bool occupied(const gtx_occupancy *occupancy, uint64_t line, uint32_t x)
 static bool find_outside(const gtx_asset *asset, const gtx_occupancy *occupancy, uint32_t page,
                          uint32_t *out_x, uint32_t *out_y)
 {
-    uint32_t width = asset->info.page_width, height = asset->info.page_height;
-    const gtx_patch whole = {.page = page};
+    const size_t width = asset->info.page_width, height = asset->info.page_height;
+    const size_t bytes = asset->info.height_bits / 8, block = bytes << occupancy->shift;
     for (uint32_t y = 0; y < height; ++y) {
-        uint64_t line = (uint64_t)page * occupancy->height + (y >> occupancy->shift);
-        for (uint32_t x = 0; x < width; ++x) {
-            if (gtx_height_code(asset, &whole, x, y) && !occupied(occupancy, line, x)) {
-                *out_x = x;
-                *out_y = y;
-                return true;
-            }
+        const uint64_t line = (uint64_t)page * occupancy->height + (y >> occupancy->shift);
+        const uint8_t *row = asset->height + (page * height + y) * width * bytes;
+        for (uint32_t x = 0; x < occupancy->width; ++x) {
+            if (occupied(occupancy, line, x))
+                continue;
+            for (size_t i = x * block; i < (x + 1) * block; ++i)
+                if (row[i]) {
+                    *out_x = (uint32_t)(i / bytes);
+                    *out_y = y;
+                    return true;
+                }
         }
     }
     return false;

@@ -1,6 +1,8 @@
 /* What has a height, continued where there is none: normals ring by ring, trim by sweeps. */
 #include "asset/fill.h"
 
+#include "asset/lanes.h"
+
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,19 +77,51 @@ static void fill_normal(const gtx_fill *area, const uint8_t *p, int x0, int x1, 
     gtx_normal_mean(&sum, area->codes + 2 * (p - area->ring));
 }
 
+/* The same of those texels from `p` on that have the ring `mark`; all have neighbours on both
+ * sides. */
+static void fill_lanes(const gtx_fill *area, const uint8_t *p, uint8_t mark, int y0, int y1)
+{
+    gtx_lane_sums sums = {{0}, {0}, {0}};
+    uint16_t code[GTX_LANES], mean[GTX_LANES];
+    uint8_t take[GTX_LANES];
+    for (int y = y0; y <= y1; ++y)
+        for (int x = -1; x <= 1; ++x) {
+            const uint8_t *from = p + y * (ptrdiff_t)area->stride + x;
+            for (int l = 0; l < GTX_LANES; ++l)
+                take[l] = from[l] < mark;
+            memcpy(code, area->codes + 2 * (from - area->ring), sizeof code);
+            gtx_lanes_add(&sums, code, take);
+        }
+    gtx_lanes_mean(&sums, mean);
+    uint8_t *out = area->codes + 2 * (p - area->ring);
+    memcpy(code, out, sizeof code);
+    for (int l = 0; l < GTX_LANES; ++l)
+        code[l] = p[l] == mark ? mean[l] : code[l];
+    memcpy(out, code, sizeof code);
+}
+
+/* Texels of a row that have the ring `mark`. */
+static void fill_row(const gtx_fill *area, uint32_t j, uint8_t mark)
+{
+    const uint8_t *row = area->ring + j * area->stride, *end = row + area->width, *p = row;
+    const int y0 = j > 0 ? -1 : 0, y1 = j + 1 < area->height ? 1 : 0;
+    while ((p = memchr(p, mark, (size_t)(end - p))) != NULL) {
+        if (p > row && end - p > GTX_LANES) {
+            fill_lanes(area, p, mark, y0, y1);
+            p += GTX_LANES;
+        } else {
+            fill_normal(area, p, p > row ? -1 : 0, p + 1 < end ? 1 : 0, y0, y1);
+            ++p;
+        }
+    }
+}
+
 void gtx_fill_normals(const gtx_fill *area, uint32_t rings)
 {
     measure_rings(area);
-    for (uint32_t ring = 1; ring <= rings; ++ring) {
-        for (uint32_t j = 0; j < area->height; ++j) {
-            const uint8_t *row = area->ring + j * area->stride, *end = row + area->width, *p = row;
-            while ((p = memchr(p, (int)ring + 1, (size_t)(end - p))) != NULL) {
-                fill_normal(area, p, p > row ? -1 : 0, p + 1 < end ? 1 : 0, j > 0 ? -1 : 0,
-                            j + 1 < area->height ? 1 : 0);
-                ++p;
-            }
-        }
-    }
+    for (uint32_t ring = 1; ring <= rings; ++ring)
+        for (uint32_t j = 0; j < area->height; ++j)
+            fill_row(area, j, (uint8_t)(ring + 1));
 }
 
 /* One texel is 16 codes, a diagonal 22.6. `before` is the row swept last, or NULL. */

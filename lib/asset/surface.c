@@ -2,6 +2,7 @@
 #include "asset/codec.h"
 
 #include "asset/fill.h"
+#include "asset/lanes.h"
 #include "base/bytes.h"
 
 #include <string.h>
@@ -159,13 +160,11 @@ static inline int most(int a, int b)
     return a < b ? b : a;
 }
 
-/* The median of left, above and the plane through three neighbours (LOCO-I, Weinberger et al.
- * 2000), of those that have a height: bits 0 to 2 of `there` tell. */
-static inline uint8_t expected_near(unsigned there, int a, int b, int c)
+/* Of three neighbours the median of left, above and the plane through all of them (LOCO-I,
+ * Weinberger et al. 2000). */
+static inline uint8_t expected_near(int a, int b, int c)
 {
-    if (there == 7)
-        return (uint8_t)most(least(a, b), least(most(a, b), a + b - c));
-    return (uint8_t)(there & 1 ? a : there & 2 ? b : there & 4 ? c : 128);
+    return (uint8_t)most(least(a, b), least(most(a, b), a + b - c));
 }
 
 /* A row of occupied texels at level 0, in either direction: one of `plain` and `coded` grows.
@@ -185,11 +184,16 @@ static inline size_t code_near(const layer *s, size_t row, size_t texel, uint8_t
         corner = above;
         if (!left)
             continue;
+        /* Where one is missing, the first that is there. */
+        const size_t back = there & 1 ? texel : (width + (there >> 1 & 1 ? 0 : 1)) * texel;
         for (size_t k = 0; k < texel; ++k) {
-            const int a = there & 1 ? here[(ptrdiff_t)(k - texel)] : 0;
-            const int b = there & 2 ? here[(ptrdiff_t)(k - width * texel)] : 0;
-            const int c = there & 4 ? here[(ptrdiff_t)(k - (width + 1) * texel)] : 0;
-            const uint8_t guess = expected_near(there, a, b, c);
+            const uint8_t *from = here + k;
+            uint8_t guess = 128;
+            if (there == 7)
+                guess = expected_near(*(from - texel), *(from - width * texel),
+                                      *(from - (width + 1) * texel));
+            else if (there)
+                guess = *(from - back);
             if (apply)
                 coded[k * s->texels + count] = (uint8_t)(here[k] - guess);
             else
@@ -200,22 +204,56 @@ static inline size_t code_near(const layer *s, size_t row, size_t texel, uint8_t
     return count;
 }
 
+/* What is expected of up to GTX_LANES texels of a row, of which at least one is occupied. */
+static void expected_means(const layer *s, size_t row, size_t x, size_t count, uint8_t *out)
+{
+    const uint8_t *codes = s->asset->normal[s->level - 1];
+    const size_t width = 2 * (size_t)s->shape.width;
+    uint16_t code[2][GTX_LANES], mean[GTX_LANES];
+    uint8_t take[2][GTX_LANES];
+    gtx_lane_sums sums = {{0}, {0}, {0}};
+    if (count < GTX_LANES) {
+        for (size_t i = 0; i < count; ++i)
+            expected_mean(s, row, x + i, out + 2 * i);
+        return;
+    }
+    for (size_t y = 0; y < 2; ++y) {
+        const size_t first = (2 * row + y) * width + 2 * x;
+        uint32_t pair[GTX_LANES];
+        memcpy(pair, codes + 2 * first, sizeof pair);
+        for (size_t l = 0; l < GTX_LANES; ++l) {
+            code[0][l] = (uint16_t)pair[l];
+            code[1][l] = (uint16_t)(pair[l] >> 16);
+            take[0][l] = s->finer[first + 2 * l];
+            take[1][l] = s->finer[first + 2 * l + 1];
+        }
+        gtx_lanes_add(&sums, code[0], take[0]);
+        gtx_lanes_add(&sums, code[1], take[1]);
+    }
+    gtx_lanes_mean(&sums, mean);
+    memcpy(out, mean, sizeof mean);
+}
+
 /* The same of another level, whose texels are of two bytes. */
 static inline size_t code_means(const layer *s, size_t row, uint8_t *plain, uint8_t *coded,
                                 bool apply)
 {
     const size_t width = s->shape.width;
+    const uint8_t *ring = s->ring + row * width;
+    uint8_t *here = plain + 2 * row * width, guess[2 * GTX_LANES];
     size_t count = 0;
     for (size_t x = 0; x < width; ++x) {
-        if (!s->ring[row * width + x])
+        const size_t lane = x % GTX_LANES, left = width - x;
+        const size_t lanes = left < GTX_LANES ? left : GTX_LANES;
+        if (lane == 0 && memchr(ring + x, 1, lanes))
+            expected_means(s, row, x, lanes, guess);
+        if (!ring[x])
             continue;
-        uint8_t guess[2], *here = plain + 2 * (row * width + x);
-        expected_mean(s, row, x, guess);
         for (size_t k = 0; k < 2; ++k)
             if (apply)
-                coded[k * s->texels + count] = (uint8_t)(here[k] - guess[k]);
+                coded[k * s->texels + count] = (uint8_t)(here[2 * x + k] - guess[2 * lane + k]);
             else
-                here[k] = (uint8_t)(coded[k * s->texels + count] + guess[k]);
+                here[2 * x + k] = (uint8_t)(coded[k * s->texels + count] + guess[2 * lane + k]);
         ++count;
     }
     return count;
