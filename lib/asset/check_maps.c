@@ -70,13 +70,18 @@ typedef struct row_span {
     uint32_t coded, first, end, least, most;
 } row_span;
 
+static inline uint32_t code_at(const uint8_t *row, uint32_t bytes, uint32_t x)
+{
+    return bytes == 1 ? row[x] : gtx_load_u16(row + 2 * (size_t)x);
+}
+
 static inline row_span span_of(const uint8_t *row, uint32_t bytes, uint32_t width)
 {
     const uint32_t top = bytes == 1 ? UINT8_MAX : UINT16_MAX;
     row_span s = {.end = width, .least = top};
     uint32_t most = 0, least = top, coded = 0; /* of one less than each code, an empty one wraps */
     for (uint32_t x = 0; x < width; ++x) {
-        const uint32_t code = bytes == 1 ? row[x] : gtx_load_u16(row + 2 * (size_t)x);
+        const uint32_t code = code_at(row, bytes, x);
         const uint32_t wrapped = (code - 1) & top;
         most = code > most ? code : most;
         least = wrapped < least ? wrapped : least;
@@ -85,9 +90,9 @@ static inline row_span span_of(const uint8_t *row, uint32_t bytes, uint32_t widt
     s.coded = coded;
     s.most = most;
     s.least = least + 1;
-    for (; coded && !row[bytes * (size_t)s.first] && !row[bytes * (size_t)(s.first + 1) - 1];)
+    while (coded && !code_at(row, bytes, s.first))
         ++s.first;
-    for (; coded && !row[bytes * (size_t)(s.end - 1)] && !row[bytes * (size_t)s.end - 1];)
+    while (coded && !code_at(row, bytes, s.end - 1))
         --s.end;
     return s;
 }

@@ -106,7 +106,8 @@ static void fill_row(const gtx_fill *area, uint32_t j, uint8_t mark)
     const uint8_t *row = area->ring + j * area->stride, *end = row + area->width, *p = row;
     const int y0 = j > 0 ? -1 : 0, y1 = j + 1 < area->height ? 1 : 0;
     while ((p = memchr(p, mark, (size_t)(end - p))) != NULL) {
-        if (p > row && end - p > GTX_LANES) {
+        if (p > row && p + 1 < end && area->width > GTX_LANES + 1) {
+            p = end - p > GTX_LANES ? p : end - 1 - GTX_LANES;
             fill_lanes(area, p, mark, y0, y1);
             p += GTX_LANES;
         } else {
@@ -124,24 +125,29 @@ void gtx_fill_normals(const gtx_fill *area, uint32_t rings)
             fill_row(area, j, (uint8_t)(ring + 1));
 }
 
-/* One texel is 16 codes, a diagonal 22.6. `before` is the row swept last, or NULL. */
-static void step_trim(uint8_t *row, const uint8_t *ring, const uint8_t *before, uint32_t width,
-                      int side)
+/* From the row swept last: one texel is 16 codes, a diagonal 22.6. */
+static void step_trim_across(uint8_t *restrict row, const uint8_t *restrict ring,
+                             const uint8_t *restrict before, uint32_t width)
 {
-    for (uint32_t n = 0; n < width; ++n) {
-        uint32_t i = side < 0 ? n : width - 1 - n;
-        if (ring[i])
-            continue;
-        uint8_t best = row[i];
-        if (n)
-            best = least(best, row[(ptrdiff_t)i + side] + 16);
-        if (before) {
-            best = least(best, before[i] + 16);
-            if (i)
-                best = least(best, before[i - 1] + 23);
-            if (i + 1 < width)
-                best = least(best, before[i + 1] + 23);
-        }
+    const uint32_t last = width - 1;
+    for (uint32_t i = 0; i < width; i += last ? last : 1) { /* the ends */
+        const int aside = least(i ? before[i - 1] : FAR, i < last ? before[i + 1] : FAR);
+        row[i] = ring[i] ? row[i] : least(least(row[i], before[i] + 16), aside + 23);
+    }
+    for (uint32_t i = 1; i < last; ++i) {
+        const int aside = least(before[i - 1], before[i + 1]);
+        const uint8_t best = least(least(row[i], before[i] + 16), aside + 23);
+        row[i] = ring[i] ? row[i] : best;
+    }
+}
+
+static void step_trim_along(uint8_t *row, const uint8_t *ring, uint32_t width, int side)
+{
+    uint32_t i = side < 0 ? 0 : width - 1;
+    uint8_t best = row[i];
+    for (uint32_t n = 1; n < width; ++n) {
+        i -= (uint32_t)side;
+        best = ring[i] ? row[i] : least(row[i], best + 16);
         row[i] = best;
     }
 }
@@ -149,15 +155,19 @@ static void step_trim(uint8_t *row, const uint8_t *ring, const uint8_t *before, 
 /* Chamfer distances (Borgefors 1986), by one sweep down and one up. */
 void gtx_fill_trim(const gtx_fill *area)
 {
-    uint32_t height = area->height;
+    const uint32_t height = area->height, width = area->width;
     for (uint32_t j = 0; j < height; ++j) {
         uint8_t *row = area->codes + j * area->stride;
-        step_trim(row, area->ring + j * area->stride, j ? row - area->stride : NULL, area->width,
-                  -1);
+        const uint8_t *ring = area->ring + j * area->stride;
+        if (j)
+            step_trim_across(row, ring, row - area->stride, width);
+        step_trim_along(row, ring, width, -1);
     }
     for (uint32_t j = height; j-- > 0;) {
         uint8_t *row = area->codes + j * area->stride;
-        step_trim(row, area->ring + j * area->stride, j + 1 < height ? row + area->stride : NULL,
-                  area->width, 1);
+        const uint8_t *ring = area->ring + j * area->stride;
+        if (j + 1 < height)
+            step_trim_across(row, ring, row + area->stride, width);
+        step_trim_along(row, ring, width, 1);
     }
 }

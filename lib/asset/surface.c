@@ -96,15 +96,16 @@ typedef struct layer {
 } layer;
 
 /* Marks the texels of level 0 that have a height. */
-static void mark_heights(const gtx_asset *asset, uint8_t *out)
+static void mark_heights(const gtx_asset *asset, uint8_t *restrict out)
 {
     const size_t texels = gtx_page_texels(asset, 0) * asset->info.page_count;
+    const uint8_t *restrict height = asset->height;
     if (asset->info.height_bits == 8) {
         for (size_t at = 0; at < texels; ++at)
-            out[at] = asset->height[at] != 0;
+            out[at] = height[at] != 0;
     } else {
         for (size_t at = 0; at < texels; ++at)
-            out[at] = (asset->height[2 * at] | asset->height[2 * at + 1]) != 0;
+            out[at] = (height[2 * at] | height[2 * at + 1]) != 0;
     }
 }
 
@@ -273,16 +274,25 @@ static inline size_t code_occupied(const layer *s, uint8_t *plain, uint8_t *code
     return count;
 }
 
+/* Gives the texels without a height the far values. */
+static void clear_empty(const uint8_t *restrict ring, size_t texels, bool normal,
+                        uint8_t *restrict image)
+{
+    for (size_t at = 0; !normal && at < texels; ++at)
+        image[at] = ring[at] ? image[at] : GTX_FAR_TRIM;
+    for (size_t at = 0; normal && at < texels; ++at) {
+        uint16_t code;
+        memcpy(&code, image + 2 * at, 2);
+        code = ring[at] ? code : GTX_FAR_NORMAL * 0x101;
+        memcpy(image + 2 * at, &code, 2);
+    }
+}
+
 /* Gives the texels without a height what the rules say; the ring map holds rings afterwards. */
 static void fill(const layer *s, uint8_t *image)
 {
     const bool normal = s->kind == GTX_SECTION_NORMAL;
-    for (size_t at = 0; !normal && at < s->texels; ++at)
-        image[at] = s->ring[at] ? image[at] : GTX_FAR_TRIM;
-    for (size_t at = 0; normal && at < s->texels; ++at) {
-        image[2 * at] = s->ring[at] ? image[2 * at] : GTX_FAR_NORMAL;
-        image[2 * at + 1] = s->ring[at] ? image[2 * at + 1] : GTX_FAR_NORMAL;
-    }
+    clear_empty(s->ring, s->texels, normal, image);
     for (uint32_t i = 0; i < s->asset->info.patch_count; ++i) {
         const gtx_patch *patch = &s->asset->patches[i];
         size_t row = (size_t)patch->page * s->shape.height + (patch->rect[1] >> s->level);
