@@ -77,39 +77,45 @@ static void fill_normal(const gtx_fill *area, const uint8_t *p, int x0, int x1, 
     gtx_normal_mean(&sum, area->codes + 2 * (p - area->ring));
 }
 
-/* The same of those texels from `p` on that have the ring `mark`; all have neighbours on both
- * sides. */
-static void fill_lanes(const gtx_fill *area, const uint8_t *p, uint8_t mark, int y0, int y1)
+/* Texels that are filled together: their neighbours take one lane more on each side. */
+enum { TOGETHER = GTX_LANES - 2 };
+
+/* The same of those among TOGETHER texels from `p` on whose ring is `mark`. */
+static void fill_together(const gtx_fill *area, const uint8_t *p, uint8_t mark, int y0, int y1)
 {
-    gtx_lane_sums sums = {{0}, {0}, {0}};
+    gtx_lane_sums columns = {{0}, {0}, {0}}, sums = {{0}, {0}, {0}};
     uint16_t code[GTX_LANES], mean[GTX_LANES];
     uint8_t take[GTX_LANES];
-    for (int y = y0; y <= y1; ++y)
-        for (int x = -1; x <= 1; ++x) {
-            const uint8_t *from = p + y * (ptrdiff_t)area->stride + x;
-            for (int l = 0; l < GTX_LANES; ++l)
-                take[l] = from[l] < mark;
-            memcpy(code, area->codes + 2 * (from - area->ring), sizeof code);
-            gtx_lanes_add(&sums, code, take);
-        }
+    for (int y = y0; y <= y1; ++y) {
+        const uint8_t *from = p + y * (ptrdiff_t)area->stride - 1;
+        for (int l = 0; l < GTX_LANES; ++l)
+            take[l] = from[l] < mark;
+        memcpy(code, area->codes + 2 * (from - area->ring), sizeof code);
+        gtx_lanes_add(&columns, code, take);
+    }
+    for (int l = 0; l < TOGETHER; ++l) {
+        sums.a[l] = (int16_t)(columns.a[l] + columns.a[l + 1] + columns.a[l + 2]);
+        sums.b[l] = (int16_t)(columns.b[l] + columns.b[l + 1] + columns.b[l + 2]);
+        sums.z[l] = (int16_t)(columns.z[l] + columns.z[l + 1] + columns.z[l + 2]);
+    }
     gtx_lanes_mean(&sums, mean);
     uint8_t *out = area->codes + 2 * (p - area->ring);
-    memcpy(code, out, sizeof code);
-    for (int l = 0; l < GTX_LANES; ++l)
+    memcpy(code, out, TOGETHER * sizeof *code);
+    for (int l = 0; l < TOGETHER; ++l)
         code[l] = p[l] == mark ? mean[l] : code[l];
-    memcpy(out, code, sizeof code);
+    memcpy(out, code, TOGETHER * sizeof *code);
 }
 
-/* Texels of a row that have the ring `mark`. */
+/* Texels of a row whose ring is `mark`. */
 static void fill_row(const gtx_fill *area, uint32_t j, uint8_t mark)
 {
     const uint8_t *row = area->ring + j * area->stride, *end = row + area->width, *p = row;
     const int y0 = j > 0 ? -1 : 0, y1 = j + 1 < area->height ? 1 : 0;
     while ((p = memchr(p, mark, (size_t)(end - p))) != NULL) {
-        if (p > row && p + 1 < end && area->width > GTX_LANES + 1) {
-            p = end - p > GTX_LANES ? p : end - 1 - GTX_LANES;
-            fill_lanes(area, p, mark, y0, y1);
-            p += GTX_LANES;
+        if (p > row && p + 1 < end && area->width >= GTX_LANES) {
+            p = end - p > TOGETHER ? p : end - 1 - TOGETHER;
+            fill_together(area, p, mark, y0, y1);
+            p += TOGETHER;
         } else {
             fill_normal(area, p, p > row ? -1 : 0, p + 1 < end ? 1 : 0, y0, y1);
             ++p;

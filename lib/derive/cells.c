@@ -83,34 +83,27 @@ static double square_to(const gtx_surface *s, const double step[3], const gtx_pa
     return fabs(along) * step[2] / sqrt(length);
 }
 
-/* The greatest distance in codes of the texels over cells of a row from lines between the heights
- * at the cells' sides. A cell has `count` of them, from a side on, `width` texels apart from the
- * next. */
-static inline float apart_over(const float *side, uint32_t cells, uint32_t width, uint32_t count,
-                               const float *texels)
+/* Heights over `count` texels of each of some cells of a row, from the heights at their sides;
+ * a cell is `width` texels wide. */
+static inline void lay_cells(const float *side, uint32_t cells, uint32_t width, uint32_t count,
+                             float *out)
 {
-    float most[(1 << (GTX_MAX_MIPS - 1)) + 1] = {0};
     const float share = 1 / (float)width;
-    for (uint32_t c = 0; c < cells; ++c, texels += count) {
+    for (uint32_t c = 0; c < cells; ++c) {
         const float rise = (side[c + 1] - side[c]) * share;
-        for (uint32_t i = 0; i < count; ++i) {
-            const float apart = fabsf(side[c] + (float)i * rise - texels[i]);
-            most[i] = apart > most[i] ? apart : most[i];
-        }
+        for (uint32_t i = 0; i < count; ++i)
+            *out++ = side[c] + (float)i * rise;
     }
-    for (uint32_t i = 1; i < count; ++i)
-        most[0] = most[i] > most[0] ? most[i] : most[0];
-    return most[0];
 }
 
 /* The same with steps that are known, for vectors. */
-static float apart_over_whole(const float *side, uint32_t cells, uint32_t step, const float *texels)
+static void lay_whole_cells(const float *side, uint32_t cells, uint32_t step, float *out)
 {
     switch (step) {
-    case 2: return apart_over(side, cells, 2, 2, texels);
-    case 4: return apart_over(side, cells, 4, 4, texels);
-    case 8: return apart_over(side, cells, 8, 8, texels);
-    default: return apart_over(side, cells, step, step, texels);
+    case 2: lay_cells(side, cells, 2, 2, out); break;
+    case 4: lay_cells(side, cells, 4, 4, out); break;
+    case 8: lay_cells(side, cells, 8, 8, out); break;
+    default: lay_cells(side, cells, step, step, out);
     }
 }
 
@@ -122,7 +115,7 @@ typedef struct comparison {
     double greatest;          /* so far, object units */
 } comparison;
 
-/* Texels of a row, one by one: those of `texels` that are no NaN. */
+/* Some texels of a row, in turn; NaNs do not count. */
 static void compare_exactly(comparison *c, uint32_t x0, uint32_t count, uint32_t y,
                             const float *texels)
 {
@@ -137,9 +130,19 @@ static void compare_exactly(comparison *c, uint32_t x0, uint32_t count, uint32_t
     }
 }
 
+/* Whether a texel is so far from the sheet. */
+static bool any_beyond(const float *texels, const float *sheet, uint32_t count, float limit)
+{
+    int beyond = 0;
+    for (uint32_t i = 0; i < count; ++i)
+        beyond |= fabsf(sheet[i] - texels[i]) > limit;
+    return beyond;
+}
+
 /* Of a row of texels, those over cells first to end - 1 of the level. */
 static void compare_run(comparison *c, uint32_t first, uint32_t end, uint32_t y)
 {
+    enum { PIECE = 16 };
     const gtx_grid *grid = c->grid;
     const uint32_t step = 1u << grid->level, cells_y = grid->nodes_y - 1;
     const uint32_t j = y >> grid->level < cells_y ? y >> grid->level : cells_y - 1;
@@ -147,20 +150,25 @@ static void compare_run(comparison *c, uint32_t first, uint32_t end, uint32_t y)
     const float f = (float)(y - low) / (float)(low + step < last ? step : last - low);
     const uint16_t *row = grid->code + (size_t)j * grid->nodes_x + first;
     const uint16_t *next = row + grid->nodes_x;
-    float texels[GTX_CODES_RUN], side[GTX_CODES_RUN];
+    float texels[GTX_CODES_RUN], side[GTX_CODES_RUN], sheet[GTX_CODES_RUN];
     for (uint32_t i = 0; i <= end - first; ++i)
         side[i] = (float)row[i] + f * (float)(next[i] - row[i]);
     /* The last cell of a row may be narrower, and has texels on both of its sides. */
     const bool ends = end == grid->nodes_x - 1;
     const uint32_t x0 = first << grid->level, whole = end - first - ends;
     const uint32_t rest = ends ? c->finest->nodes_x - x0 - whole * step : 0;
-    gtx_load_codes(c->finest, x0, whole * step + rest, y, texels);
-    float apart = apart_over_whole(side, whole, step, texels);
+    const uint32_t count = whole * step + rest;
+    gtx_load_codes(c->finest, x0, count, y, texels);
+    lay_whole_cells(side, whole, step, sheet);
     if (ends)
-        apart = fmaxf(apart, apart_over(side + whole, 1, rest - 1, rest, texels + whole * step));
-    /* Floats are off by less than this. */
-    if (apart + 0.05f > 0.9999 * c->greatest / c->step[2])
-        compare_exactly(c, x0, whole * step + rest, y, texels);
+        lay_cells(side + whole, 1, rest - 1, rest, sheet + whole * step);
+    for (uint32_t i = 0; i < count; i += PIECE) {
+        const uint32_t piece = count - i < PIECE ? count - i : PIECE;
+        /* Floats are off by less than this. */
+        const float limit = (float)(0.9999 * c->greatest / c->step[2]) - 0.05f;
+        if (any_beyond(texels + i, sheet + i, piece, limit))
+            compare_exactly(c, x0 + i, piece, y, texels + i);
+    }
 }
 
 double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
