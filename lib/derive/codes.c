@@ -1,7 +1,8 @@
-/* Codes of the nodes that solid cells have as corners. */
+/* Where solid cells are, and codes of the nodes that are their corners. */
 #include "derive/codes.h"
 
 #include <math.h>
+#include <string.h>
 
 void gtx_load_codes(const gtx_grid *grid, uint32_t x0, uint32_t count, uint32_t y, float *out)
 {
@@ -16,4 +17,25 @@ void gtx_load_codes(const gtx_grid *grid, uint32_t x0, uint32_t count, uint32_t 
         beside[i] = above[x0 + i - 1] | below[x0 + i - 1];
     for (uint32_t i = 0; i < count; ++i)
         out[i] = beside[i] | beside[i + 1] ? (float)code[i] : NAN;
+}
+
+bool gtx_solid_extent(const gtx_grid *grid, uint32_t low[2], uint32_t high[2])
+{
+    const uint32_t width = grid->nodes_x - 1, height = grid->nodes_y - 1;
+    low[0] = low[1] = UINT32_MAX;
+    high[0] = high[1] = 0;
+    for (uint32_t j = 0; j < height; ++j) {
+        const uint8_t *row = grid->solid + (size_t)j * width, *first = memchr(row, 1, width);
+        if (!first)
+            continue;
+        const uint32_t at = (uint32_t)(first - row);
+        low[0] = at < low[0] ? at : low[0];
+        low[1] = j < low[1] ? j : low[1];
+        high[1] = j + 1;
+        uint32_t end = width;
+        while (end > high[0] && !row[end - 1])
+            --end;
+        high[0] = end;
+    }
+    return high[1] > 0;
 }

@@ -6,7 +6,6 @@
 #include "derive/codes.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Cells along the side of a block: processors shade small triangles by whole groups of pixels, so
  * that few large ones cost least. */
@@ -21,27 +20,6 @@ static void load_nodes(gtx_hull *h)
         for (uint32_t i = 0; i < width; i += GTX_CODES_RUN)
             gtx_load_codes(h->grid, i, width - i < GTX_CODES_RUN ? width - i : GTX_CODES_RUN, j,
                            h->codes + (size_t)j * width + i);
-}
-
-static void find_extent(gtx_hull *h)
-{
-    const uint32_t width = h->grid->nodes_x - 1, height = h->grid->nodes_y - 1;
-    h->low[0] = h->low[1] = UINT32_MAX;
-    for (uint32_t j = 0; j < height; ++j) {
-        const uint8_t *row = h->grid->solid + (size_t)j * width, *first = memchr(row, 1, width);
-        if (!first)
-            continue;
-        const uint32_t at = (uint32_t)(first - row);
-        h->low[0] = at < h->low[0] ? at : h->low[0];
-        h->low[1] = j < h->low[1] ? j : h->low[1];
-        h->high[1] = j + 1;
-        uint32_t end = width;
-        while (end > h->high[0] && !row[end - 1])
-            --end;
-        h->high[0] = end;
-    }
-    for (int a = 0; a < 2; ++a)
-        h->blocks[a] = h->high[0] ? (h->high[a] - h->low[a] + BLOCK - 1) / BLOCK : 0;
 }
 
 /* Which halves of a block are needed, with a cell to spare, so that the hull follows slanted
@@ -214,9 +192,10 @@ gtx_result gtx_add_hull(const gtx_asset *asset, uint32_t patch, const gtx_grid *
     gtx_hull h = {.grid = grid, .last = {p->rect[2] - 1u, p->rect[3] - 1u},
               .two_sided = p->flags & GTX_PATCH_TWO_SIDED, .grow = grow};
     *thickness = 0;
-    find_extent(&h);
-    if (!h.high[0])
+    if (!gtx_solid_extent(grid, h.low, h.high))
         return GTX_OK;
+    for (int a = 0; a < 2; ++a)
+        h.blocks[a] = (h.high[a] - h.low[a] + BLOCK - 1) / BLOCK;
     const size_t size = allocate(&h, &hooks);
     if (!size)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a hull");

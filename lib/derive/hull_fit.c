@@ -217,7 +217,8 @@ static void sink(gtx_hull *h, const gtx_hull_edge *e, int axis)
             const float wall = (float)at[0][!axis] +
                                share * ((float)at[1][!axis] - (float)at[0][!axis]);
             const float apart = upward ? (float)across - wall : wall - (float)across - 1;
-            const float beyond = gtx_greater(apart, 0) * fall_at(h->grid, i, j, !axis, upward);
+            const float beyond =
+                apart > 0 ? apart * fall_at(h->grid, i, j, !axis, upward) : 0;
             deepest = gtx_greater(deepest, a->z + share * (b->z - a->z) -
                                      least_code(h->grid, i, j) + steeper * beyond);
             break;

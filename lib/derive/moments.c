@@ -1,33 +1,54 @@
 /* Sums over a block of cells, column by column and then over the columns. */
 #include "derive/moments.h"
 
-/* Sums of a column's cells; j counts rows. Below 2^24 all of them are exact: the largest is that of
- * 16 codes times 0 to 15. */
+#include <string.h>
+
+enum { LANES = GTX_MOST_MOMENTS };
+
+/* Sums of a column's cells; j counts rows. All of them are exact: of codes the largest is that of 16
+ * times 0 to 15, which is below 2^24. */
 typedef struct columns {
-    float n[GTX_MOST_MOMENTS], z[GTX_MOST_MOMENTS], jn[GTX_MOST_MOMENTS], jz[GTX_MOST_MOMENTS],
-        jjn[GTX_MOST_MOMENTS];
+    uint16_t n[LANES], jn[LANES], jjn[LANES];
+    float z[LANES], jz[LANES];
 } columns;
+
+/* A row of the block, which may have more after it: cells count where `inside` is 1. */
+static void add_row(columns *c, const uint8_t *solid, const uint16_t *code, const uint8_t *inside,
+                    uint16_t j)
+{
+    for (int i = 0; i < LANES; ++i) {
+        const uint16_t n = solid[i] & inside[i];
+        c->n[i] = (uint16_t)(c->n[i] + n);
+        c->jn[i] = (uint16_t)(c->jn[i] + j * n);
+        c->jjn[i] = (uint16_t)(c->jjn[i] + j * j * n);
+    }
+    for (int i = 0; i < LANES; ++i) {
+        const float z = solid[i] & inside[i] ? (float)code[i] : 0;
+        c->z[i] += z;
+        c->jz[i] += (float)j * z;
+    }
+}
 
 gtx_moments gtx_moments_of(const gtx_grid *grid, const uint32_t low[2], const uint32_t high[2])
 {
     columns c = {{0}, {0}, {0}, {0}, {0}};
-    float n[GTX_MOST_MOMENTS] = {0}, z[GTX_MOST_MOMENTS] = {0};
-    const uint32_t width = high[0] - low[0];
+    const uint32_t width = high[0] - low[0], cells_x = grid->nodes_x - 1;
+    const size_t cells = (size_t)cells_x * (grid->nodes_y - 1);
+    uint8_t inside[LANES], end_solid[LANES] = {0};
+    uint16_t end_code[LANES] = {0};
+    for (uint32_t i = 0; i < LANES; ++i)
+        inside[i] = i < width;
     for (uint32_t j = low[1]; j < high[1]; ++j) {
-        const uint8_t *solid = grid->solid + (size_t)j * (grid->nodes_x - 1) + low[0];
+        const size_t first = (size_t)j * cells_x + low[0];
+        const uint8_t *solid = grid->solid + first;
         const uint16_t *code = grid->code + (size_t)j * grid->nodes_x + low[0];
-        const float y = (float)(j - low[1]);
-        for (uint32_t i = 0; i < width; ++i) {
-            n[i] = solid[i];
-            z[i] = solid[i] ? code[i] : 0;
+        if (first + LANES > cells) { /* the grid ends with the row */
+            memcpy(end_solid, solid, width * sizeof *solid);
+            memcpy(end_code, code, width * sizeof *code);
+            solid = end_solid;
+            code = end_code;
         }
-        for (uint32_t i = 0; i < GTX_MOST_MOMENTS; ++i) {
-            c.n[i] += n[i];
-            c.z[i] += z[i];
-            c.jn[i] += y * n[i];
-            c.jz[i] += y * z[i];
-            c.jjn[i] += y * y * n[i];
-        }
+        add_row(&c, solid, code, inside, (uint16_t)(j - low[1]));
     }
     gtx_moments m = {0};
     for (uint32_t i = 0; i < width; ++i) {

@@ -1,11 +1,10 @@
 /* Proxies: room for them, and the boxes around the solid cells of a patch. */
-#include "derive/derive.h"
+#include "derive/codes.h"
 
 #include "base/alloc.h"
 #include "base/error.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <string.h>
 
 /* Texels and codes of the solid cells of a patch, both ends included; none when max[0] is 0. */
@@ -13,32 +12,20 @@ typedef struct extent {
     uint32_t min[3], max[3];
 } extent;
 
-static void include(extent *e, uint32_t x, uint32_t y)
-{
-    const uint32_t p[2] = {x, y};
-    for (int a = 0; a < 2; ++a) {
-        e->min[a] = p[a] < e->min[a] ? p[a] : e->min[a];
-        e->max[a] = p[a] > e->max[a] ? p[a] : e->max[a];
-    }
-}
-
 static extent solid_extent(const gtx_grid *g)
 {
-    extent e = {{UINT32_MAX, UINT32_MAX, UINT32_MAX}, {0, 0, 0}};
-    for (uint32_t y = 0; y + 1 < g->nodes_y; ++y)
-        for (uint32_t x = 0; x + 1 < g->nodes_x; ++x)
-            if (g->solid[(size_t)y * (g->nodes_x - 1) + x]) {
-                include(&e, x, y);
-                include(&e, x + 1, y + 1);
-            }
+    extent e = {{0, 0, 0}, {0, 0, 0}};
+    if (!gtx_solid_extent(g, e.min, e.max))
+        return e;
     /* Coarse nodes take the codes of texels, with a cell or not, or their means. */
-    for (size_t n = 0; e.max[0] && n < (size_t)g->nodes_x * g->nodes_y; ++n) {
-        const uint32_t code = g->code[n];
-        if (code && code < e.min[2])
-            e.min[2] = code;
-        if (code > e.max[2])
-            e.max[2] = code;
+    uint16_t most = 0, least = UINT16_MAX; /* of one less than each code, an empty one wraps */
+    for (size_t n = 0; n < (size_t)g->nodes_x * g->nodes_y; ++n) {
+        const uint16_t code = g->code[n], wrapped = (uint16_t)(code - 1);
+        most = code > most ? code : most;
+        least = wrapped < least ? wrapped : least;
     }
+    e.min[2] = least + 1u;
+    e.max[2] = most;
     return e;
 }
 
