@@ -12,11 +12,13 @@ void gtx_load_codes(const gtx_grid *grid, uint32_t x0, uint32_t count, uint32_t 
     const uint16_t *code = grid->code + (size_t)y * grid->nodes_x + x0;
     uint8_t beside[GTX_CODES_RUN + 1]; /* whether cells left of each node are solid */
     beside[0] = beside[count] = 0;
-    const uint32_t from = x0 ? 0 : 1, end = x0 + count > cells ? count : count + 1;
-    for (uint32_t i = from; i < end; ++i)
+    const size_t from = x0 ? 0 : 1, end = (size_t)x0 + count > cells ? count : count + 1;
+    for (size_t i = from; i < end; ++i)
         beside[i] = above[x0 + i - 1] | below[x0 + i - 1];
-    for (uint32_t i = 0; i < count; ++i)
-        out[i] = beside[i] | beside[i + 1] ? (float)code[i] : NAN;
+    for (uint32_t i = 0; i < count; ++i) {
+        const float height = code[i];
+        out[i] = beside[i] | beside[i + 1] ? height : NAN;
+    }
 }
 
 bool gtx_solid_extent(const gtx_grid *grid, uint32_t low[2], uint32_t high[2])

@@ -13,17 +13,15 @@ typedef struct columns {
 } columns;
 
 /* A row of the block, which may have more after it: cells count where `inside` is 1. */
-static void add_row(columns *c, const uint8_t *solid, const uint16_t *code, const uint8_t *inside,
-                    uint16_t j)
+static void add_row(columns *restrict c, const uint8_t *restrict solid,
+                    const uint16_t *restrict code, const uint8_t *restrict inside, uint16_t j)
 {
     for (int i = 0; i < LANES; ++i) {
         const uint16_t n = solid[i] & inside[i];
+        const float z = (float)code[i] * n;
         c->n[i] = (uint16_t)(c->n[i] + n);
         c->jn[i] = (uint16_t)(c->jn[i] + j * n);
         c->jjn[i] = (uint16_t)(c->jjn[i] + j * j * n);
-    }
-    for (int i = 0; i < LANES; ++i) {
-        const float z = solid[i] & inside[i] ? (float)code[i] : 0;
         c->z[i] += z;
         c->jz[i] += (float)j * z;
     }
