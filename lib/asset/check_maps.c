@@ -65,36 +65,18 @@ typedef struct patch_finding {
     double sphere_point[3], bounds_point[3];
 } patch_finding;
 
-/* Texels of a row that have codes: how many, from which to which, and their extreme codes. */
-typedef struct row_span {
-    uint32_t coded, first, end, least, most;
-} row_span;
-
-static inline uint32_t code_at(const uint8_t *row, uint32_t bytes, uint32_t x)
+static inline uint64_t count_codes(const uint8_t *row, uint32_t bytes, uint32_t width)
 {
-    return bytes == 1 ? row[x] : gtx_load_u16(row + 2 * (size_t)x);
-}
-
-static inline row_span span_of(const uint8_t *row, uint32_t bytes, uint32_t width)
-{
-    const uint32_t top = bytes == 1 ? UINT8_MAX : UINT16_MAX;
-    row_span s = {.end = width, .least = top};
-    uint32_t most = 0, least = top, coded = 0; /* of one less than each code, an empty one wraps */
-    for (uint32_t x = 0; x < width; ++x) {
-        const uint32_t code = code_at(row, bytes, x);
-        const uint32_t wrapped = (code - 1) & top;
-        most = code > most ? code : most;
-        least = wrapped < least ? wrapped : least;
-        coded += code != 0;
+    enum { MOST = UINT8_MAX };    /* that bytes can count, for vectors of them */
+    uint64_t coded = 0;
+    for (uint32_t x = 0; x < width;) {
+        const uint32_t end = width - x > MOST ? x + MOST : width;
+        uint8_t count = 0;
+        for (; x < end; ++x)
+            count = (uint8_t)(count + ((bytes == 1 ? row[x] : row[2 * x] | row[2 * x + 1]) != 0));
+        coded += count;
     }
-    s.coded = coded;
-    s.most = most;
-    s.least = least + 1;
-    while (coded && !code_at(row, bytes, s.first))
-        ++s.first;
-    while (coded && !code_at(row, bytes, s.end - 1))
-        --s.end;
-    return s;
+    return coded;
 }
 
 /* What points are checked against. */
@@ -102,7 +84,55 @@ typedef struct limits {
     const gtx_patch *patch;
     const box *bounds;
     double levels;                /* of heights above the lowest */
+    /* For a first look, in floats: the box and the square of the radius, somewhat less than they
+     * are, around the sphere's centre; what a texel and a code add to a point. */
+    bool quick;
+    float low[3], high[3], square, along_x[3], along_z[3];
 } limits;
+
+/* Floats tell for points that are as far away as the limits, and not much further. */
+static limits limits_of(const gtx_patch *patch, const box *bounds, double levels)
+{
+    limits in = {.patch = patch, .bounds = bounds, .levels = levels};
+    const double size[3] = {patch->extent_x, patch->extent_y, patch->extent_z};
+    double reach = 0, diagonal = 0, radius = patch->sphere[3] * (1 + SPHERE_TOLERANCE / 2);
+    for (int i = 0; i < 3; ++i) {
+        const double slack = 0.25 * BOUNDS_TOLERANCE * (bounds->high[i] - bounds->low[i]);
+        in.low[i] = (float)(bounds->low[i] + slack - patch->sphere[i]);
+        in.high[i] = (float)(bounds->high[i] - slack - patch->sphere[i]);
+        in.along_x[i] = (float)(patch->extent_x * patch->axis_x[i] / patch->rect[2]);
+        in.along_z[i] = (float)(patch->extent_z * patch->axis_z[i] / levels);
+        reach += size[i] + fabs((double)patch->origin[i] - patch->sphere[i]);
+        diagonal += bounds->high[i] - bounds->low[i];
+    }
+    in.square = (float)(radius * radius);
+    in.quick = isfinite(in.square) && reach < 16 * radius && reach < 16 * diagonal;
+    return in;
+}
+
+/* Whether no point of a row of texels is near a limit, or beyond. */
+static inline bool is_clear(const limits *limit, const uint8_t *row, uint32_t bytes, uint32_t y)
+{
+    const limits in = *limit;
+    const gtx_patch *p = in.patch;
+    double first[3];
+    float from[3];
+    texel_point(p, 0.5 / p->rect[2], (y + 0.5) / p->rect[3], -1 / in.levels, first);
+    for (int i = 0; i < 3; ++i)
+        from[i] = (float)(first[i] - p->sphere[i]);
+    int beyond = 0;
+    for (int32_t x = 0; x < p->rect[2]; ++x) {
+        const int32_t code = bytes == 1 ? row[x] : row[2 * x] | row[2 * x + 1] << 8;
+        const float u = (float)x, h = (float)code;
+        const float a = from[0] + u * in.along_x[0] + h * in.along_z[0];
+        const float b = from[1] + u * in.along_x[1] + h * in.along_z[1];
+        const float c = from[2] + u * in.along_x[2] + h * in.along_z[2];
+        const int out = (a * a + b * b + c * c > in.square) | (a < in.low[0]) | (a > in.high[0]) |
+                        (b < in.low[1]) | (b > in.high[1]) | (c < in.low[2]) | (c > in.high[2]);
+        beyond |= out & (code != 0);
+    }
+    return in.quick && !beyond;
+}
 
 static void look_at(const limits *in, uint32_t x, uint32_t y, uint32_t code, patch_finding *found)
 {
@@ -120,30 +150,19 @@ static void look_at(const limits *in, uint32_t x, uint32_t y, uint32_t code, pat
     }
 }
 
-/* Sphere and box are convex: they hold a row where they hold the corners around its points. */
-static bool holds(const limits *in, const row_span *s, uint32_t y)
-{
-    patch_finding found = {0};
-    for (uint32_t k = 0; k < 4; ++k)
-        look_at(in, k & 1 ? s->first : s->end - 1, y, k & 2 ? s->least : s->most, &found);
-    return !found.outside_sphere && !found.outside_bounds;
-}
-
 static patch_finding walk_patch(const gtx_asset *asset, const gtx_patch *patch, const box *bounds)
 {
-    const uint32_t bytes = asset->info.height_bits / 8;
-    const limits in = {patch, bounds, bytes == 1 ? 254 : 65534};
+    const uint32_t bytes = asset->info.height_bits / 8, width = patch->rect[2];
+    const limits in = limits_of(patch, bounds, bytes == 1 ? 254 : 65534);
     patch_finding found = {0};
     for (uint32_t y = 0; y < patch->rect[3]; ++y) {
         const size_t line = (size_t)patch->page * asset->info.page_height + patch->rect[1] + y;
         const uint8_t *row =
             asset->height + (line * asset->info.page_width + patch->rect[0]) * bytes;
-        const row_span s = bytes == 1 ? span_of(row, 1, patch->rect[2])
-                                      : span_of(row, 2, patch->rect[2]);
-        found.coded += s.coded;
-        if (!s.coded || holds(&in, &s, y))
+        found.coded += bytes == 1 ? count_codes(row, 1, width) : count_codes(row, 2, width);
+        if (bytes == 1 ? is_clear(&in, row, 1, y) : is_clear(&in, row, 2, y))
             continue;
-        for (uint32_t x = s.first; x < s.end; ++x) {
+        for (uint32_t x = 0; x < width; ++x) {
             const uint32_t code = gtx_height_code(asset, patch, x, y);
             if (code)
                 look_at(&in, x, y, code, &found);

@@ -33,7 +33,7 @@ static uint8_t least(int a, int b)
 }
 
 /* One step more than the least of three neighbours in the row swept before. */
-static void step_from_row(uint8_t *row, const uint8_t *before, uint32_t width)
+static void step_from_row(uint8_t *restrict row, const uint8_t *restrict before, uint32_t width)
 {
     uint32_t last = width - 1, next = last ? 1 : 0, next_to_last = last - next;
     row[0] = least(row[0], least(before[0], before[next]) + 1);
@@ -48,20 +48,20 @@ static void measure_rings(const gtx_fill *area)
 {
     uint32_t width = area->width, height = area->height;
     for (uint32_t j = 0; j < height; ++j) {
-        uint8_t *row = area->ring + j * area->stride;
+        uint8_t *row = area->ring + j * area->stride, near = FAR;
         for (uint32_t i = 0; i < width; ++i)
             row[i] = row[i] ? row[i] : FAR;
         if (j)
             step_from_row(row, row - area->stride, width);
-        for (uint32_t i = 1; i < width; ++i)
-            row[i] = least(row[i], row[i - 1] + 1);
+        for (uint32_t i = 0; i < width; ++i)
+            row[i] = near = least(row[i], near + 1);
     }
     for (uint32_t j = height; j-- > 0;) {
-        uint8_t *row = area->ring + j * area->stride;
+        uint8_t *row = area->ring + j * area->stride, near = FAR;
         if (j + 1 < height)
             step_from_row(row, row + area->stride, width);
-        for (uint32_t i = width - 1; i-- > 0;)
-            row[i] = least(row[i], row[i + 1] + 1);
+        for (uint32_t i = width; i-- > 0;)
+            row[i] = near = least(row[i], near + 1);
     }
 }
 
@@ -83,27 +83,22 @@ enum { TOGETHER = GTX_LANES - 2 };
 /* The same of those among TOGETHER texels from `p` on whose ring is `mark`. */
 static void fill_together(const gtx_fill *area, const uint8_t *p, uint8_t mark, int y0, int y1)
 {
-    gtx_lane_sums columns = {{0}, {0}, {0}}, sums = {{0}, {0}, {0}};
-    uint16_t code[GTX_LANES], mean[GTX_LANES];
-    uint8_t take[GTX_LANES];
+    gtx_lane_sums sums = {{0}, {0}, {0}};
+    uint16_t code[GTX_LANES];
+    uint8_t ring[GTX_LANES];
     for (int y = y0; y <= y1; ++y) {
-        const uint8_t *from = p + y * (ptrdiff_t)area->stride - 1;
-        for (int l = 0; l < GTX_LANES; ++l)
-            take[l] = from[l] < mark;
+        const uint8_t *from = p - 1 + y * (ptrdiff_t)area->stride;
+        memcpy(ring, from, sizeof ring);
         memcpy(code, area->codes + 2 * (from - area->ring), sizeof code);
-        gtx_lanes_add(&columns, code, take);
+        gtx_lanes_add(&sums, code, ring, mark - 1);
     }
-    for (int l = 0; l < TOGETHER; ++l) {
-        sums.a[l] = (int16_t)(columns.a[l] + columns.a[l + 1] + columns.a[l + 2]);
-        sums.b[l] = (int16_t)(columns.b[l] + columns.b[l + 1] + columns.b[l + 2]);
-        sums.z[l] = (int16_t)(columns.z[l] + columns.z[l + 1] + columns.z[l + 2]);
-    }
-    gtx_lanes_mean(&sums, mean);
-    uint8_t *out = area->codes + 2 * (p - area->ring);
-    memcpy(code, out, TOGETHER * sizeof *code);
-    for (int l = 0; l < TOGETHER; ++l)
-        code[l] = p[l] == mark ? mean[l] : code[l];
-    memcpy(out, code, TOGETHER * sizeof *code);
+    gtx_lanes_spread(&sums);
+    uint8_t *out = area->codes + 2 * (p - 1 - area->ring);
+    memcpy(ring, p - 1, sizeof ring);
+    memcpy(code, out, sizeof code);
+    ring[0] = ring[GTX_LANES - 1] = 0;
+    gtx_lanes_mean(&sums, ring, mark, code);
+    memcpy(out, code, sizeof code);
 }
 
 /* Texels of a row whose ring is `mark`. */

@@ -210,8 +210,8 @@ static void expected_means(const layer *s, size_t row, size_t x, size_t count, u
 {
     const uint8_t *codes = s->asset->normal[s->level - 1];
     const size_t width = 2 * (size_t)s->shape.width;
-    uint16_t code[2][GTX_LANES], mean[GTX_LANES];
-    uint8_t take[2][GTX_LANES];
+    uint16_t code[2][GTX_LANES];
+    uint8_t mark[2][GTX_LANES];
     gtx_lane_sums sums = {{0}, {0}, {0}};
     if (count < GTX_LANES) {
         for (size_t i = 0; i < count; ++i)
@@ -225,14 +225,14 @@ static void expected_means(const layer *s, size_t row, size_t x, size_t count, u
         for (size_t l = 0; l < GTX_LANES; ++l) {
             code[0][l] = (uint16_t)pair[l];
             code[1][l] = (uint16_t)(pair[l] >> 16);
-            take[0][l] = s->finer[first + 2 * l];
-            take[1][l] = s->finer[first + 2 * l + 1];
+            mark[0][l] = s->finer[first + 2 * l];
+            mark[1][l] = s->finer[first + 2 * l + 1];
         }
-        gtx_lanes_add(&sums, code[0], take[0]);
-        gtx_lanes_add(&sums, code[1], take[1]);
+        gtx_lanes_add(&sums, code[0], mark[0], 1);
+        gtx_lanes_add(&sums, code[1], mark[1], 1);
     }
-    gtx_lanes_mean(&sums, mean);
-    memcpy(out, mean, sizeof mean);
+    gtx_lanes_mean(&sums, s->ring + row * s->shape.width + x, 1, code[0]);
+    memcpy(out, code[0], sizeof code[0]);
 }
 
 /* The same of another level, whose texels are of two bytes. */
