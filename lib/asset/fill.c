@@ -27,19 +27,27 @@ uint32_t gtx_fill_rings(const gtx_patch *patch, uint32_t level)
     return rings < 1 ? 1 : rings < MOST_RINGS ? rings : MOST_RINGS;
 }
 
-static uint8_t least(int a, int b)
+static uint8_t least(uint8_t a, uint8_t b)
 {
-    return (uint8_t)(a < b ? a : b);
+    return a < b ? a : b;
+}
+
+/* A sum that is at most FAR, in bytes all along, for vectors of them. */
+static uint8_t add_steps(uint8_t from, uint8_t steps)
+{
+    return (uint8_t)(least(from, (uint8_t)(FAR - steps)) + steps);
 }
 
 /* One step more than the least of three neighbours in the row swept before. */
 static void step_from_row(uint8_t *restrict row, const uint8_t *restrict before, uint32_t width)
 {
     uint32_t last = width - 1, next = last ? 1 : 0, next_to_last = last - next;
-    row[0] = least(row[0], least(before[0], before[next]) + 1);
-    for (uint32_t i = 1; i < last; ++i)
-        row[i] = least(row[i], least(least(before[i - 1], before[i]), before[i + 1]) + 1);
-    row[last] = least(row[last], least(before[next_to_last], before[last]) + 1);
+    row[0] = least(row[0], add_steps(least(before[0], before[next]), 1));
+    for (uint32_t i = 1; i < last; ++i) {
+        const uint8_t near = least(least(before[i - 1], before[i]), before[i + 1]);
+        row[i] = least(row[i], add_steps(near, 1));
+    }
+    row[last] = least(row[last], add_steps(least(before[next_to_last], before[last]), 1));
 }
 
 /* Distances in steps to any of 8 neighbours, by one sweep down and one up (Rosenfeld and Pfaltz
@@ -48,20 +56,22 @@ static void measure_rings(const gtx_fill *area)
 {
     uint32_t width = area->width, height = area->height;
     for (uint32_t j = 0; j < height; ++j) {
-        uint8_t *row = area->ring + j * area->stride, near = FAR;
+        uint8_t *row = area->ring + j * area->stride;
+        int near = FAR;           /* of the texel before, and one step more */
         for (uint32_t i = 0; i < width; ++i)
             row[i] = row[i] ? row[i] : FAR;
         if (j)
             step_from_row(row, row - area->stride, width);
-        for (uint32_t i = 0; i < width; ++i)
-            row[i] = near = least(row[i], near + 1);
+        for (uint32_t i = 0; i < width; ++i, ++near)
+            row[i] = (uint8_t)(near = row[i] < near ? row[i] : near);
     }
     for (uint32_t j = height; j-- > 0;) {
-        uint8_t *row = area->ring + j * area->stride, near = FAR;
+        uint8_t *row = area->ring + j * area->stride;
+        int near = FAR;
         if (j + 1 < height)
             step_from_row(row, row + area->stride, width);
-        for (uint32_t i = width; i-- > 0;)
-            row[i] = near = least(row[i], near + 1);
+        for (uint32_t i = width; i-- > 0; ++near)
+            row[i] = (uint8_t)(near = row[i] < near ? row[i] : near);
     }
 }
 
@@ -132,24 +142,25 @@ static void step_trim_across(uint8_t *restrict row, const uint8_t *restrict ring
 {
     const uint32_t last = width - 1;
     for (uint32_t i = 0; i < width; i += last ? last : 1) { /* the ends */
-        const int aside = least(i ? before[i - 1] : FAR, i < last ? before[i + 1] : FAR);
-        row[i] = ring[i] ? row[i] : least(least(row[i], before[i] + 16), aside + 23);
+        const uint8_t aside = least(i ? before[i - 1] : FAR, i < last ? before[i + 1] : FAR);
+        const uint8_t best = least(add_steps(before[i], 16), add_steps(aside, 23));
+        row[i] = ring[i] ? row[i] : least(row[i], best);
     }
     for (uint32_t i = 1; i < last; ++i) {
-        const int aside = least(before[i - 1], before[i + 1]);
-        const uint8_t best = least(least(row[i], before[i] + 16), aside + 23);
-        row[i] = ring[i] ? row[i] : best;
+        const uint8_t aside = least(before[i - 1], before[i + 1]), here = row[i];
+        const uint8_t best = least(add_steps(before[i], 16), add_steps(aside, 23));
+        row[i] = ring[i] ? here : least(here, best);
     }
 }
 
 static void step_trim_along(uint8_t *row, const uint8_t *ring, uint32_t width, int side)
 {
     uint32_t i = side < 0 ? 0 : width - 1;
-    uint8_t best = row[i];
+    int best = row[i];
     for (uint32_t n = 1; n < width; ++n) {
         i -= (uint32_t)side;
-        best = ring[i] ? row[i] : least(row[i], best + 16);
-        row[i] = best;
+        best = ring[i] || row[i] < best + 16 ? row[i] : best + 16;
+        row[i] = (uint8_t)best;
     }
 }
 

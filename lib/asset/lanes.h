@@ -6,8 +6,8 @@
 
 enum { GTX_LANES = 16 };
 
-/* What gtx_normal_sum is, of each lane; lane l is number l + 1, between two that stay empty. Of up to
- * 9 normals the sums fit. */
+/* What gtx_normal_sum is, of each lane; lane l is number l + 1, between two that stay empty. Of up
+ * to 9 normals the sums fit. */
 typedef struct gtx_lane_sums {
     int16_t a[GTX_LANES + 2], b[GTX_LANES + 2], z[GTX_LANES + 2];
 } gtx_lane_sums;
@@ -38,8 +38,9 @@ static inline void gtx_lanes_spread(gtx_lane_sums *sums)
     }
 }
 
-/* As gtx_normal_mean, where `ring` has `mark`; the other codes stay. Floats do: no quotient that is not whole is nearer to the whole number above
- * than 1 / 9180, and all are at most 256, which they are off by less than half of that. */
+/* As gtx_normal_mean, where `ring` has `mark`; the other codes stay. Floats do: of 9 normals the
+ * divisor is at most 4590, so that no quotient is nearer below a whole number than 1 / 4590, and
+ * none is off by half of that. */
 static inline void gtx_lanes_mean(const gtx_lane_sums *restrict sums, const uint8_t *restrict ring,
                                   uint8_t mark, uint16_t *restrict code)
 {
@@ -47,7 +48,7 @@ static inline void gtx_lanes_mean(const gtx_lane_sums *restrict sums, const uint
         const int32_t a = sums->a[l + 1], b = sums->b[l + 1];
         const int32_t p = a < 0 ? -a : a, q = b < 0 ? -b : b;
         const int32_t size = (p > q ? p : q) + sums->z[l + 1];
-        const float share = 1 / (float)(size ? 2 * size : 1), half = 0.5f / 9180;
+        const float share = 1 / (float)(size ? 2 * size : 1), half = 0.5f / 4590;
         int32_t x = (int32_t)((float)(256 * size + 255 * a) * share + half);
         int32_t y = (int32_t)((float)(256 * size + 255 * b) * share + half);
         x = size ? x > 255 ? 255 : x : 128;

@@ -115,7 +115,8 @@ static void halve(const uint8_t *finer, size_t rows, size_t width, uint8_t *out)
     for (size_t row = 0; row < rows; ++row) {
         const uint8_t *upper = finer + 4 * row * width, *lower = upper + 2 * width;
         for (size_t x = 0; x < width; ++x)
-            out[row * width + x] = upper[2 * x] | upper[2 * x + 1] | lower[2 * x] | lower[2 * x + 1];
+            out[row * width + x] =
+                upper[2 * x] | upper[2 * x + 1] | lower[2 * x] | lower[2 * x + 1];
     }
 }
 
@@ -170,15 +171,17 @@ static inline uint8_t expected_near(int a, int b, int c)
 
 /* A row of occupied texels at level 0, in either direction: one of `plain` and `coded` grows.
  * `coded` is where their first one's byte is in the first plane. Returns how many there are. */
-static inline size_t code_near(const layer *s, size_t row, size_t texel, uint8_t *plain,
-                               uint8_t *coded, bool apply)
+static inline size_t code_near(const layer *s, size_t row, size_t texel, uint8_t *restrict plain,
+                               uint8_t *restrict coded, bool apply)
 {
-    const size_t width = s->shape.width;
+    const size_t width = s->shape.width, plane = s->texels, line = width * texel;
     const bool up = row % s->shape.height != 0;
-    const uint8_t *ring = s->ring + row * width, *over = up ? ring - width : NULL;
-    uint8_t *here = plain + row * width * texel;
-    size_t count = 0;
+    const uint8_t *restrict ring = s->ring + row * width;
+    const uint8_t *restrict over = up ? ring - width : ring;
+    uint8_t *here = plain + row * line;
+    int value[2] = {0, 0};        /* of the texel on the left */
     unsigned left = 0, corner = 0;
+    size_t count = 0;
     for (size_t x = 0; x < width; ++x, here += texel) {
         const unsigned above = up ? over[x] : 0, there = left | above << 1 | corner << 2;
         left = ring[x];
@@ -186,19 +189,18 @@ static inline size_t code_near(const layer *s, size_t row, size_t texel, uint8_t
         if (!left)
             continue;
         /* Where one is missing, the first that is there. */
-        const size_t back = there & 1 ? texel : (width + (there >> 1 & 1 ? 0 : 1)) * texel;
+        const size_t back = there & 1 ? texel : there & 2 ? line : line + texel;
         for (size_t k = 0; k < texel; ++k) {
-            const uint8_t *from = here + k;
-            uint8_t guess = 128;
+            int guess = 128;
             if (there == 7)
-                guess = expected_near(*(from - texel), *(from - width * texel),
-                                      *(from - (width + 1) * texel));
+                guess = expected_near(value[k], *(here + k - line), *(here + k - line - texel));
             else if (there)
-                guess = *(from - back);
+                guess = *(here + k - back);
+            value[k] = apply ? here[k] : (uint8_t)(coded[k * plane + count] + guess);
             if (apply)
-                coded[k * s->texels + count] = (uint8_t)(here[k] - guess);
+                coded[k * plane + count] = (uint8_t)(value[k] - guess);
             else
-                here[k] = (uint8_t)(coded[k * s->texels + count] + guess);
+                here[k] = (uint8_t)value[k];
         }
         ++count;
     }

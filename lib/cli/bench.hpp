@@ -49,7 +49,8 @@ struct BenchSetup {
     std::string renderer;           /* of OpenGL: the platform */
     uint32_t triangles = 0;
     uint64_t geometry_bytes = 0;    /* of the asset on the GPU, colour apart */
-    double open = 0, upload = 0;    /* milliseconds: file to asset, asset to GPU */
+    /* Milliseconds: file to asset, asset to model, model to GPU. */
+    double open = 0, prepare = 0, upload = 0;
 };
 
 /* Measures every window, instance count and method through EGL, without a window; rows are told

@@ -91,10 +91,13 @@ void BenchScene::load_asset(const std::string &path)
     check(gtx_open_file(path.c_str(), nullptr, &asset, &error), error);
     AssetPointer owner(asset);
     const double opened = milliseconds();
-    check(gtx_model_create(renderer_, asset, &model_, &error), error);
+    check(gtx_model_prepare(asset, nullptr, &model_, &error), error);
+    const double prepared = milliseconds();
+    check(gtx_model_upload(renderer_, model_, 0, nullptr, &error), error);
     gl.Finish();
     setup.open = opened - start;
-    setup.upload = milliseconds() - opened;
+    setup.prepare = prepared - opened;
+    setup.upload = milliseconds() - prepared;
     gtx_get_info(asset, &info);
     setup.geometry_bytes = gtx_model_gpu_size(model_).geometry;
     float square = 0;

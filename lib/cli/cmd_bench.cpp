@@ -146,6 +146,7 @@ int print_json(const char *scene, const gtx::BenchSetup &setup,
     gtx_json_integer(&json, "triangles", setup.triangles);
     gtx_json_integer(&json, "gpu_geometry_bytes", setup.geometry_bytes);
     gtx_json_number(&json, "open_ms", setup.open);
+    gtx_json_number(&json, "prepare_ms", setup.prepare);
     gtx_json_number(&json, "upload_ms", setup.upload);
     for (bool skipped : {false, true}) {
         gtx_json_begin_array(&json, skipped ? "skipped" : "rows");
@@ -164,10 +165,12 @@ int print_json(const char *scene, const gtx::BenchSetup &setup,
 
 void print_head(const char *scene, const gtx::BenchSetup &setup)
 {
-    std::printf("%s: %u triangles, %.2f bytes each on the GPU (colour apart), open %.1f ms, "
-                "upload %.1f ms\n%s, milliseconds, levels within %g pixels\n", scene,
+    std::printf("%s: %u triangles, %.2f bytes each on the GPU (colour apart)\n"
+                "open %.1f ms, prepare %.1f ms, upload %.1f ms, together %.1f ms\n"
+                "%s, milliseconds, levels within %g pixels\n", scene,
                 setup.triangles, double(setup.geometry_bytes) / std::max(1u, setup.triangles),
-                setup.open, setup.upload, setup.renderer.c_str(), max_error);
+                setup.open, setup.prepare, setup.upload,
+                setup.open + setup.prepare + setup.upload, setup.renderer.c_str(), max_error);
     std::printf("| window    | count | method      | median    | least     | mesh/   | work      "
                 "| IoU    | PSNR  | holes | rays     | triang. |\n"
                 "|---|---|---|---|---|---|---|---|---|---|---|---|\n");

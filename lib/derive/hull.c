@@ -11,6 +11,12 @@
  * that few large ones cost least. */
 enum { BLOCK = 16 };
 
+/* Where a block's two triangles are: in the halves beside its diagonal. */
+enum {
+    RISING = 1,               /* the diagonal goes from corner 0 to 3, or else from 1 to 2 */
+    FIRST = 2, SECOND = 4     /* the half of the corners 0, 1 and one more; the other */
+};
+
 static void load_nodes(gtx_hull *h)
 {
     const uint32_t width = h->grid->nodes_x;
@@ -51,18 +57,18 @@ static void look_at_block(gtx_hull *h, uint32_t bi, uint32_t bj)
     const bool below = rise[0] < spare, above = rise[1] > -spare; /* the rising diagonal */
     const bool near = fall[0] < spare, far = fall[1] > -spare;    /* the falling one */
     if (m.n > 0 && below && above && !(near && far))
-        h->block[b] = near ? GTX_HULL_FIRST : GTX_HULL_SECOND;
+        h->block[b] = near ? FIRST : SECOND;
     else if (m.n > 0)
-        h->block[b] = (uint8_t)(GTX_HULL_RISING | (below ? GTX_HULL_FIRST : 0) | (above ? GTX_HULL_SECOND : 0));
+        h->block[b] = (uint8_t)(RISING | (below ? FIRST : 0) | (above ? SECOND : 0));
     h->sums[b] = m;
 }
 
 /* Whether there is a triangle on the inner side of a block's edge: below, right, above, left. */
 static bool has_edge(uint8_t block, uint32_t side)
 {
-    static const uint8_t half[2][4] = {{GTX_HULL_FIRST, GTX_HULL_SECOND, GTX_HULL_SECOND, GTX_HULL_FIRST},
-                                       {GTX_HULL_FIRST, GTX_HULL_FIRST, GTX_HULL_SECOND, GTX_HULL_SECOND}};
-    return block & half[block & GTX_HULL_RISING][side];
+    static const uint8_t half[2][4] = {{FIRST, SECOND, SECOND, FIRST},
+                                       {FIRST, FIRST, SECOND, SECOND}};
+    return block & half[block & RISING][side];
 }
 
 /* The block's triangles, and those of their edges where nothing is beside. */
@@ -74,8 +80,8 @@ static void split_block(gtx_hull *h, uint32_t bi, uint32_t bj)
     const uint32_t row = h->blocks[0] + 1, first = bj * row + bi;
     const uint32_t ring[4] = {first, first + 1, first + row + 1, first + row};
     for (int second = 0; second < 2; ++second) {
-        const uint8_t *c = corners[2 * second + (kind & GTX_HULL_RISING)];
-        if (kind & (second ? GTX_HULL_SECOND : GTX_HULL_FIRST))
+        const uint8_t *c = corners[2 * second + (kind & RISING)];
+        if (kind & (second ? SECOND : FIRST))
             h->triangles[h->triangle_count++] =
                 (gtx_hull_triangle){{ring[c[0]], ring[c[1]], ring[c[2]]}};
     }
@@ -83,10 +89,10 @@ static void split_block(gtx_hull *h, uint32_t bi, uint32_t bj)
         if (has_edge(kind, e) && !has_edge(gtx_hull_block(h, (int64_t)bi + beside[e][0],
                                                     (int64_t)bj + beside[e][1]), (e + 2) % 4))
             h->edges[h->edge_count++] = (gtx_hull_edge){{ring[e], ring[(e + 1) % 4]}, {bi, bj}};
-    const int lower = kind & GTX_HULL_RISING ? 2 : 1, upper = kind & GTX_HULL_RISING ? 0 : 3;
-    if ((kind & GTX_HULL_FIRST) && !(kind & GTX_HULL_SECOND))
+    const int lower = kind & RISING ? 2 : 1, upper = kind & RISING ? 0 : 3;
+    if ((kind & FIRST) && !(kind & SECOND))
         h->edges[h->edge_count++] = (gtx_hull_edge){{ring[lower], ring[upper]}, {bi, bj}};
-    if ((kind & GTX_HULL_SECOND) && !(kind & GTX_HULL_FIRST))
+    if ((kind & SECOND) && !(kind & FIRST))
         h->edges[h->edge_count++] = (gtx_hull_edge){{ring[upper], ring[lower]}, {bi, bj}};
 }
 
@@ -157,7 +163,7 @@ static void build(gtx_hull *h)
     gtx_hull_fit(h);
 }
 
-/* One piece of memory for all arrays, the best aligned first; how many bytes, or 0 without memory. */
+/* One piece of memory for all arrays, the best aligned first. Returns its bytes, 0 without memory. */
 static size_t allocate(gtx_hull *h, const gtx_allocator *hooks)
 {
     h->block_count = (size_t)h->blocks[0] * h->blocks[1];

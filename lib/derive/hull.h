@@ -6,13 +6,6 @@
 
 #include <stdbool.h>
 
-/* Where a block's two triangles are: in the halves beside its diagonal. */
-enum {
-    GTX_HULL_RISING = 1,      /* the diagonal goes from corner 0 to 3, or else from 1 to 2 */
-    GTX_HULL_FIRST = 2,       /* the half of the corners 0, 1 and one more */
-    GTX_HULL_SECOND = 4       /* the other half */
-};
-
 /* A corner of blocks. */
 typedef struct gtx_hull_node {
     float x, y, z;            /* a point near the sheet */
@@ -41,7 +34,7 @@ typedef struct gtx_hull {
     uint32_t low[2], high[2]; /* extent of the solid cells */
     uint32_t blocks[2];       /* how many */
     size_t block_count, node_count, triangle_count, edge_count;
-    uint8_t *block;           /* RISING | FIRST | SECOND each */
+    uint8_t *block;           /* of each, what hull.c has of its triangles; 0 where none is */
     gtx_moments *sums;        /* a block each */
     gtx_hull_node *nodes;     /* blocks[0] + 1 a row */
     gtx_hull_triangle *triangles;
@@ -82,8 +75,8 @@ static inline float gtx_greater(float a, float b)
     return a > b ? a : b;
 }
 
-/* hull_fit.c: places nodes near the sheet, lifts and sinks lid and floor until they are clear of it,
- * and sinks the walls' feet. Columns and codes are filled. */
+/* hull_fit.c: places nodes near the sheet, lifts and sinks lid and floor until they are clear of
+ * it, * and sinks the walls' feet. Columns and codes are filled. */
 void gtx_hull_fit(gtx_hull *h);
 
 #endif

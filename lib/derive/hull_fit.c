@@ -48,8 +48,10 @@ static void place_nodes(gtx_hull *h)
     for (uint32_t i = 0; i < h->node_count; ++i) {
         gtx_hull_node *n = &h->nodes[i];
         const uint32_t bi = i % (h->blocks[0] + 1), bj = i / (h->blocks[0] + 1);
-        n->x = gtx_hull_texel(h, 0, gtx_hull_line(h, 0, bi)) + copysignf(n->away[0] != 0 ? h->grow : 0, n->away[0]);
-        n->y = gtx_hull_texel(h, 1, gtx_hull_line(h, 1, bj)) + copysignf(n->away[1] != 0 ? h->grow : 0, n->away[1]);
+        n->x = gtx_hull_texel(h, 0, gtx_hull_line(h, 0, bi)) +
+               copysignf(n->away[0] != 0 ? h->grow : 0, n->away[0]);
+        n->y = gtx_hull_texel(h, 1, gtx_hull_line(h, 1, bj)) +
+               copysignf(n->away[1] != 0 ? h->grow : 0, n->away[1]);
         n->z = plane_at(h, bi, bj);
         n->up = n->down = 0;
         n->top = n->bottom = GTX_HULL_NONE;
@@ -69,7 +71,8 @@ typedef struct shape {
 
 static shape shape_of(const gtx_hull *h, const gtx_hull_triangle *t)
 {
-    const gtx_hull_node *n[3] = {&h->nodes[t->node[0]], &h->nodes[t->node[1]], &h->nodes[t->node[2]]};
+    const gtx_hull_node *n[3] = {&h->nodes[t->node[0]], &h->nodes[t->node[1]],
+                                 &h->nodes[t->node[2]]};
     const float det = (n[1]->x - n[0]->x) * (n[2]->y - n[0]->y) -
                       (n[2]->x - n[0]->x) * (n[1]->y - n[0]->y);
     shape s = {.height = {0, 0, 0}};
@@ -120,7 +123,8 @@ static void measure_row(const row_shape *row, const float *restrict x, const flo
 }
 
 /* The same over a triangle's columns from `first` on, at most COLUMNS. */
-static void measure(const gtx_hull *h, const shape *s, uint32_t first, float *highest, float *lowest)
+static void measure(const gtx_hull *h, const shape *s, uint32_t first, float *highest,
+                    float *lowest)
 {
     const float cell = (float)(1u << h->grid->level);
     const uint32_t left = s->to[0] - first, count = left < COLUMNS ? left : COLUMNS;
@@ -197,15 +201,21 @@ static void sink(gtx_hull *h, const gtx_hull_edge *e, int axis)
 {
     const uint32_t row = h->blocks[0] + 1, width = h->grid->nodes_x - 1;
     gtx_hull_node *a = &h->nodes[e->node[0]], *b = &h->nodes[e->node[1]];
-    const uint32_t at[2][2] = {{gtx_hull_line(h, 0, e->node[0] % row), gtx_hull_line(h, 1, e->node[0] / row)},
-                               {gtx_hull_line(h, 0, e->node[1] % row), gtx_hull_line(h, 1, e->node[1] / row)}};
+    uint32_t at[2][2];
+    for (int k = 0; k < 2; ++k) {
+        at[k][0] = gtx_hull_line(h, 0, e->node[k] % row);
+        at[k][1] = gtx_hull_line(h, 1, e->node[k] / row);
+    }
     const float along = (float)at[1][axis] - (float)at[0][axis];
     if (along == 0)
         return;
     /* Inward is to the left of the edge: of (dx, dy) that is (-dy, dx). */
     const bool upward = (axis ? -along : along) > 0;
-    const uint32_t first = gtx_hull_line(h, axis, e->block[axis]), end = gtx_hull_line(h, axis, e->block[axis] + 1);
-    const uint32_t from = gtx_hull_line(h, !axis, e->block[!axis]), to = gtx_hull_line(h, !axis, e->block[!axis] + 1);
+    const uint32_t *block = e->block;
+    const uint32_t first = gtx_hull_line(h, axis, block[axis]);
+    const uint32_t end = gtx_hull_line(h, axis, block[axis] + 1);
+    const uint32_t from = gtx_hull_line(h, !axis, block[!axis]);
+    const uint32_t to = gtx_hull_line(h, !axis, block[!axis] + 1);
     float deepest = 0;
     for (uint32_t l = first; l < end; ++l)
         for (uint32_t k = 0; k < to - from; ++k) {

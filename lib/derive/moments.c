@@ -5,8 +5,8 @@
 
 enum { LANES = GTX_MOST_MOMENTS };
 
-/* Sums of a column's cells; j counts rows. All of them are exact: of codes the largest is that of 16
- * times 0 to 15, which is below 2^24. */
+/* Sums of a column's cells; j counts rows. All of them are exact: of codes the largest is that of
+ * 16 times 0 to 15, which is below 2^24. */
 typedef struct columns {
     uint16_t n[LANES], jn[LANES], jjn[LANES];
     float z[LANES], jz[LANES];

@@ -8,6 +8,7 @@
 
 #include "asset/codec.h"
 #include "asset/fill.h"
+#include "asset/lanes.h"
 
 #include <math.h>
 #include <string.h>
@@ -83,6 +84,34 @@ static void test_mean(void **state)
     assert_int_equal(out[1], 128);
 }
 
+/* Side by side they are the same, whatever up to 9 normals sum up to. */
+static void test_mean_of_lanes(void **state)
+{
+    (void)state;
+    const uint8_t ring[GTX_LANES] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 2};
+    for (int32_t size = 0; size <= 9 * 255; ++size) {
+        for (int32_t a = -size; a <= size; a += GTX_LANES - 1) {
+            gtx_lane_sums sums = {{0}, {0}, {0}};
+            uint16_t code[GTX_LANES] = {0};
+            for (int32_t l = 0; l < GTX_LANES; ++l) {
+                const int32_t part = a + l <= size ? a + l : size;
+                sums.a[l + 1] = (int16_t)part;
+                sums.b[l + 1] = (int16_t)-part;
+                sums.z[l + 1] = (int16_t)(size - (part < 0 ? -part : part));
+            }
+            gtx_lanes_mean(&sums, ring, 1, code);
+            for (int l = 0; l + 1 < GTX_LANES; ++l) {
+                const gtx_normal_sum sum = {sums.a[l + 1], sums.b[l + 1], sums.z[l + 1]};
+                uint8_t out[2];
+                gtx_normal_mean(&sum, out);
+                if (code[l] != (out[0] | out[1] << 8))
+                    fail_msg("of %d and %d: %04x", sum.a, size, code[l]);
+            }
+            assert_int_equal(code[GTX_LANES - 1], 0);
+        }
+    }
+}
+
 /* A 4 x 5 rectangle in rows of 6 texels: what lies outside is neither read nor written. */
 static void test_fill(void **state)
 {
@@ -109,6 +138,51 @@ static void test_fill(void **state)
     assert_int_equal(gtx_fill_rings(&(gtx_patch){.dilation = 8}, 3), 1);
     assert_int_equal(gtx_fill_rings(&(gtx_patch){.dilation = 8}, 4), 1);
     assert_int_equal(gtx_fill_rings(&(gtx_patch){.dilation = 65535}, 0), 128);
+}
+
+enum { WIDE = 41, HIGH = 12 };
+
+/* By the letter: the ring of a texel, and the mean of its neighbours of lesser ones. */
+static void fill_plainly(uint8_t codes[HIGH][WIDE][2], uint8_t marks[HIGH][WIDE], int rings)
+{
+    uint8_t ring[HIGH][WIDE];
+    memcpy(ring, marks, sizeof ring);
+    for (int r = 1; r <= rings; ++r)
+        for (int y = 0; y < HIGH; ++y)
+            for (int x = 0; x < WIDE; ++x) {
+                gtx_normal_sum sum = {0, 0, 0};
+                int near = 0;
+                for (int v = y ? y - 1 : 0; v <= y + 1 && v < HIGH; ++v)
+                    for (int u = x ? x - 1 : 0; u <= x + 1 && u < WIDE; ++u)
+                        if (ring[v][u] && ring[v][u] <= r && !ring[y][x]) {
+                            gtx_normal_add(&sum, codes[v][u]);
+                            ++near;
+                        }
+                if (!near)
+                    continue;
+                gtx_normal_mean(&sum, codes[y][x]);
+                ring[y][x] = (uint8_t)(r + 1);
+            }
+}
+
+static void test_fill_of_many(void **state)
+{
+    (void)state;
+    uint32_t seed = 1;
+    for (int sparse = 1; sparse < 200; sparse += 9) {
+        uint8_t codes[HIGH][WIDE][2], right[HIGH][WIDE][2], ring[HIGH][WIDE];
+        for (int i = 0; i < HIGH * WIDE; ++i) {
+            const int y = i / WIDE, x = i % WIDE;
+            seed = seed * 1664525 + 1013904223;
+            ring[y][x] = (seed >> 16) % (uint32_t)sparse == 0;
+            codes[y][x][0] = ring[y][x] ? (uint8_t)(seed >> 24) : GTX_FAR_NORMAL;
+            codes[y][x][1] = ring[y][x] ? (uint8_t)(seed >> 8) : GTX_FAR_NORMAL;
+        }
+        memcpy(right, codes, sizeof right);
+        fill_plainly(right, ring, 5);
+        gtx_fill_normals(&(gtx_fill){codes[0][0], ring[0], WIDE, WIDE, HIGH}, 5);
+        assert_memory_equal(codes, right, sizeof codes);
+    }
 }
 
 static void test_normals(void **state)
@@ -165,7 +239,9 @@ int main(void)
         cmocka_unit_test(test_filters),
         cmocka_unit_test(test_heights),
         cmocka_unit_test(test_mean),
+        cmocka_unit_test(test_mean_of_lanes),
         cmocka_unit_test(test_fill),
+        cmocka_unit_test(test_fill_of_many),
         cmocka_unit_test(test_normals),
         cmocka_unit_test(test_normal_frame),
     };
