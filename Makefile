@@ -62,10 +62,9 @@ cflags_mesh  = $(call pkg,--cflags,openmesh draco tinygltf)
 cflags_chart = $(call pkg,--cflags,openmesh eigen3)
 cflags_image = $(call pkg,--cflags,OpenImageIO)
 cflags_host  = $(call pkg,--cflags,egl glfw3)
-# Loops over texels: their rooms are compiled for vectors.
-fast := $(if $(filter release,$(config)),-O3 -fno-trapping-math)
-cflags_asset  = $(fast)
-cflags_derive = $(fast)
+# Loops over texels become vectors where a comparison of floats may be made in vain.
+cflags_asset  = -fno-trapping-math
+cflags_derive = -fno-trapping-math
 cflags_cli   = -D_POSIX_C_SOURCE=200809L
 libs_asset   = $(if $(filter 1,$(zstd)),$(call pkg,--libs,libzstd))
 libs_mesh    = $(call pkg,--libs,openmesh draco zlib) -lmeshoptimizer -ldl -pthread -lstdc++

@@ -10,6 +10,7 @@
 /* Cells along the side of a block: processors shade small triangles by whole groups of pixels, so
  * that few large ones cost least. */
 enum { BLOCK = 16 };
+_Static_assert((int)BLOCK <= (int)GTX_MOST_MOMENTS, "a block's sums fit");
 
 /* Where a block's two triangles are: in the halves beside its diagonal. */
 enum {

@@ -9,6 +9,8 @@
  * seam between neighbours nor cut the sheet off. */
 static const float cell_overlap = 0.0002f, margin = 0.05f;
 
+_Static_assert((int)GTX_SLAB_CELLS <= (int)GTX_MOST_MOMENTS, "a slab's sums fit");
+
 /* Cells of a grid, from low to high - 1. */
 typedef struct block {
     const gtx_grid *grid;
