@@ -1,22 +1,21 @@
-/* Grid space and object space of a patch. */
+/* Grid space and object space of a patch, and inverses of affine maps. */
 #include "derive/frame.h"
 
-/* Rows of the inverse of grid -> object. */
-static void invert(gtx_patch_frame *f)
+void gtx_invert_affine(double (*map)[4], double (*out)[4])
 {
-    double cross[3][3], det = 0;
+    double cofactor[3][3], det = 0;
     for (int r = 0; r < 3; ++r)
         for (int k = 0; k < 3; ++k) {
-            const double *a = f->axis[(r + 1) % 3], *b = f->axis[(r + 2) % 3];
-            cross[r][k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+            const int k1 = (k + 1) % 3, k2 = (k + 2) % 3, r1 = (r + 1) % 3, r2 = (r + 2) % 3;
+            cofactor[r][k] = map[k1][r1] * map[k2][r2] - map[k2][r1] * map[k1][r2];
         }
     for (int k = 0; k < 3; ++k)
-        det += f->axis[0][k] * cross[0][k];
+        det += map[k][0] * cofactor[0][k];
     for (int r = 0; r < 3; ++r) {
-        f->to_grid[r][3] = 0;
+        out[r][3] = 0;
         for (int k = 0; k < 3; ++k) {
-            f->to_grid[r][k] = cross[r][k] / det;
-            f->to_grid[r][3] -= f->to_grid[r][k] * f->origin[k];
+            out[r][k] = cofactor[r][k] / det;
+            out[r][3] -= out[r][k] * map[k][3];
         }
     }
 }
@@ -28,12 +27,14 @@ gtx_patch_frame gtx_patch_frame_of(const gtx_patch *patch, uint32_t height_bits)
                             (double)patch->extent_y / patch->rect[3],
                             patch->extent_z / (height_bits == 8 ? 254.0 : 65534.0)};
     gtx_patch_frame f;
+    double to_object[3][4];
     for (int k = 0; k < 3; ++k) {
         for (int a = 0; a < 3; ++a)
-            f.axis[a][k] = step[a] * unit[a][k];
+            to_object[k][a] = f.axis[a][k] = step[a] * unit[a][k];
         /* Texel 0 lies half a texel inside the rectangle, and height 0 has code 1. */
         f.origin[k] = patch->origin[k] + 0.5 * f.axis[0][k] + 0.5 * f.axis[1][k] - f.axis[2][k];
+        to_object[k][3] = f.origin[k];
     }
-    invert(&f);
+    gtx_invert_affine(to_object, f.to_grid);
     return f;
 }

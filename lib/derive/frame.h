@@ -1,4 +1,5 @@
-/* The frame of a patch's grid space: texels in x and y (texel i at x = i), height codes in z. */
+/* Inverses of affine maps, and the frame of a patch's grid space: texels in x and y (texel i at
+ * x = i), height codes in z. */
 #ifndef GTX_DERIVE_FRAME_H
 #define GTX_DERIVE_FRAME_H
 
@@ -7,6 +8,10 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* From three rows of an affine map, linear part and translation, to those of its inverse. One that
+ * has none gives numbers that are not finite. */
+void gtx_invert_affine(double (*map)[4], double (*out)[4]);
 
 typedef struct gtx_patch_frame {
     double axis[3][3], origin[3];      /* object = origin + x axis[0] + y axis[1] + z axis[2] */

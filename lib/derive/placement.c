@@ -1,31 +1,9 @@
 /* Affine placements: inverse, stretch and boxes. */
 #include "derive/placement.h"
 
-#include <math.h>
+#include "derive/frame.h"
 
-static bool invert(gtx_placement *p)
-{
-    double det = 0;
-    for (int r = 0; r < 3; ++r)
-        for (int k = 0; k < 3; ++k) {
-            const int k1 = (k + 1) % 3, k2 = (k + 2) % 3, r1 = (r + 1) % 3, r2 = (r + 2) % 3;
-            p->object[r][k] =
-                p->world[k1][r1] * p->world[k2][r2] - p->world[k1][r2] * p->world[k2][r1];
-        }
-    for (int k = 0; k < 3; ++k)
-        det += p->world[k][0] * p->object[0][k];
-    bool finite = det != 0;
-    for (int r = 0; r < 3; ++r) {
-        p->object[r][3] = 0;
-        for (int k = 0; k < 3; ++k) {
-            p->object[r][k] /= det;
-            p->object[r][3] -= p->object[r][k] * p->world[k][3];
-            finite = finite && isfinite((float)p->object[r][k]);
-        }
-        finite = finite && isfinite((float)p->object[r][3]);
-    }
-    return finite;
-}
+#include <math.h>
 
 bool gtx_placement_of(const float transform[16], gtx_placement *out)
 {
@@ -51,7 +29,11 @@ bool gtx_placement_of(const float transform[16], gtx_placement *out)
         most = fmax(most, sum);
     }
     out->stretch = sqrt(most);
-    return invert(out);
+    gtx_invert_affine(out->world, out->object);
+    for (int r = 0; r < 3; ++r)
+        for (int k = 0; k < 4; ++k)
+            finite = finite && isfinite((float)out->object[r][k]);
+    return finite;
 }
 
 gtx_box gtx_placement_box(const gtx_placement *placement, const gtx_box *object)

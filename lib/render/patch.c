@@ -3,6 +3,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "derive/frame.h"
 
 #include <math.h>
 #include <string.h>
@@ -11,49 +12,18 @@
  * the sheet's rim, and a flat sheet must not lie in a face. */
 static const float hull_margin = 0.25f;
 
-/* Rows of the inverse of grid -> object, whose columns are `axis` and `origin`. */
-static void invert(double axis[3][3], const double origin[3], double rows[3][4])
-{
-    double cross[3][3], det = 0;
-    for (int r = 0; r < 3; ++r)
-        for (int k = 0; k < 3; ++k) {
-            const double *a = axis[(r + 1) % 3], *b = axis[(r + 2) % 3];
-            cross[r][k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-        }
-    for (int k = 0; k < 3; ++k)
-        det += axis[0][k] * cross[0][k];
-    for (int r = 0; r < 3; ++r) {
-        rows[r][3] = 0;
-        for (int k = 0; k < 3; ++k) {
-            rows[r][k] = cross[r][k] / det;
-            rows[r][3] -= rows[r][k] * origin[k];
-        }
-    }
-}
-
 /* The part of a record that is the same for all levels. */
 static void fill_frame(float record[GTX_RECORD_TEXELS][4], const gtx_patch *patch,
                        uint32_t height_bits)
 {
-    const float *unit[3] = {patch->axis_x, patch->axis_y, patch->axis_z};
-    const double step[3] = {(double)patch->extent_x / patch->rect[2],
-                            (double)patch->extent_y / patch->rect[3],
-                            patch->extent_z / (height_bits == 8 ? 254.0 : 65534.0)};
-    double axis[3][3], origin[3], rows[3][4];
-    for (int k = 0; k < 3; ++k) {
-        for (int a = 0; a < 3; ++a)
-            axis[a][k] = step[a] * unit[a][k];
-        /* Texel 0 lies half a texel inside the rectangle, and height 0 has code 1. */
-        origin[k] = patch->origin[k] + 0.5 * axis[0][k] + 0.5 * axis[1][k] - axis[2][k];
-    }
-    invert(axis, origin, rows);
+    const gtx_patch_frame frame = gtx_patch_frame_of(patch, height_bits);
     for (int k = 0; k < 4; ++k)
         for (int r = 0; r < 3; ++r)
-            record[r][k] = (float)rows[r][k];
+            record[r][k] = (float)frame.to_grid[r][k];
     for (int k = 0; k < 3; ++k) {
-        record[3][k] = (float)origin[k];
+        record[3][k] = (float)frame.origin[k];
         for (int a = 0; a < 3; ++a)
-            record[4 + a][k] = (float)axis[a][k];
+            record[4 + a][k] = (float)frame.axis[a][k];
     }
     record[5][3] = (float)patch->page;
     record[6][3] = patch->flags & GTX_PATCH_TWO_SIDED ? 1.0f : 0.0f;
