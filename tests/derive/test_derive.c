@@ -154,6 +154,11 @@ static void no_such_patch_or_level(void **state)
     assert_int_equal(gtx_grid_build(asset, 1, 0, NULL, &grid, &error), GTX_ERROR_ARGUMENT);
     assert_int_equal(gtx_grid_build(asset, 0, 8, NULL, &grid, &error), GTX_ERROR_ARGUMENT);
     assert_true(error.message[0]);
+    gtx_grid finest;
+    assert_int_equal(gtx_grid_build(asset, 0, 0, NULL, &finest, &error), GTX_OK);
+    assert_int_equal(gtx_grid_coarsen(&finest, 0, NULL, &grid, &error), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_grid_coarsen(&finest, 8, NULL, &grid, &error), GTX_ERROR_ARGUMENT);
+    gtx_grid_free(&finest, NULL);
     gtx_close(asset);
 }
 
