@@ -17,10 +17,11 @@
  * defined geotex_tiles.glsl comes after it instead. */
 #ifdef GTX_TILES
 /* geotex_tiles.glsl fills these. */
-vec4 gtx_clip_z, gtx_clip_w, gtx_color;
+vec4 gtx_clip_z, gtx_clip_w;
 vec3 gtx_normal_x, gtx_normal_y, gtx_normal_z, gtx_world, gtx_world_eye;
 int gtx_patch_index;
 uint gtx_id;
+GTX_VARYING(1) flat in vec4 gtx_color;
 #else
 GTX_VARYING(0) in vec3 gtx_point;
 GTX_VARYING(1) flat in vec3 gtx_eye;

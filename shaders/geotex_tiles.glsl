@@ -15,7 +15,6 @@ GTX_VARYING(0) in vec2 gtx_pixel;
  *   plane follows from the first (gtx_meets); first cell and last, where its patch's texels are.
  * The lists: where the slab is, least t. */
 uniform highp usamplerBuffer gtx_stream;
-uniform vec4 gtx_tint;
 uniform uint gtx_instance;
 uniform vec4 gtx_place[10];  /* x of 0: tiles a row;
                                 1: the rays' origin in object space; 2, 3: what a pixel in x and in y
@@ -104,10 +103,6 @@ void gtx_place_hit(vec2 pixel, vec2 zw)
     gtx_clip_w = vec4(0.0, 0.0, 0.0, zw.y);
     gtx_world = world * vec4(line.origin, 1.0);
     gtx_world_eye = gtx_world * gtx_depth.w - world * vec4(line.direction, 0.0);
-    gtx_color = gtx_tint;
-#ifdef GTX_PLAIN
-    gtx_color.rgb = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
-#endif
     gtx_id = gtx_instance;
 }
 
