@@ -22,7 +22,8 @@ struct gtx_walk {
 
 /* Looks at the cell; true when the ray crosses the sheet in it, in a way that counts. The side is
  * carried from cell to cell, so that rounding at a border can neither hide a crossing nor find it
- * twice. `height` are its codes. `fit` is that of the last cells, in whose column and row `last` is. */
+ * twice. `height` are its codes, `fit` is that of the last cells, in whose column and row `last`
+ * is. */
 bool gtx_look(inout gtx_walk w, vec4 height, bool two_sided, vec2 last, float fit, vec3 origin,
               vec3 direction)
 {
@@ -54,7 +55,8 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
     float fit = sheet.level > 0 ? width / (width - 1.0) : 1.0;
     float end = (t1 - t0) * speed;
     /* Drivers that draw on the CPU look up by place for less than they fetch. */
-    vec2 texel = 1.0 / vec2(textureSize(gtx_cells, 0).xy), place = (vec2(sheet.cells) + 0.5) * texel;
+    vec2 texel = 1.0 / vec2(textureSize(gtx_cells, 0).xy);
+    vec2 place = (vec2(sheet.cells) + 0.5) * texel;
 
     vec2 way = vec2(d.x < 0.0 ? -1.0 : 1.0, d.y < 0.0 ? -1.0 : 1.0), ahead = max(way, 0.0);
     vec2 inverse = way / max(abs(d.xy), 1e-9);

@@ -2,8 +2,8 @@
  * the nearest hit, so that nothing behind it is cast. The mains find the surface as if a proxy had
  * been drawn.
  *
- * t is the same along the rays of all patches: w of clip space, or for an orthographic camera how far
- * behind the plane that rays begin on. Pixels count from the viewport's corner. Follows
+ * t is the same along the rays of all patches: w of clip space, or for an orthographic camera how
+ * far behind the plane that rays begin on. Pixels count from the viewport's corner. Follows
  * geotex_cast.glsl and geotex_fragment.glsl, with GTX_TILES. */
 GTX_VARYING(0) in vec2 gtx_pixel;
 
@@ -17,18 +17,18 @@ GTX_VARYING(0) in vec2 gtx_pixel;
 uniform highp usamplerBuffer gtx_stream;
 uniform uint gtx_instance;
 uniform vec4 gtx_place[10];  /* x of 0: tiles a row;
-                                1: the rays' origin in object space; 2, 3: what a pixel in x and in y
-                                adds, to the direction of a perspective camera's rays, to the origin of
-                                an orthographic one's; 4: direction;
-                                5: the same four of clip z; x, y of 6: of clip w, origin and direction;
-                                z, w of 6: size of the viewport, in pixels;
+                                1: the rays' origin in object space; 2, 3: what a pixel in x and
+                                in y adds, to the direction of a perspective camera's rays, to the
+                                origin of an orthographic one's; 4: direction;
+                                5: the same four of clip z; x, y of 6: of clip w, origin and
+                                direction; z, w of 6: size of the viewport, in pixels;
                                 7..9: rows of object -> world */
 
 struct gtx_line {
     vec3 origin, direction;
 };
 
-/* The ray through a point of the viewport, from the columns of gtx_place[1..4] taken to some space. */
+/* The ray through a point of the viewport, from columns of gtx_place[1..4] taken to some space. */
 gtx_line gtx_line_of(vec2 pixel, vec3 origin, vec3 direction, vec3 x, vec3 y)
 {
     vec3 aside = x * pixel.x + y * pixel.y;
@@ -51,9 +51,9 @@ gtx_sheet gtx_unpacked(uint corner, uint size, uint page)
                         int(page >> 24 & 127u));
 }
 
-/* Where the ray of a pixel is in a slab, as x to y: of 1 / t when the camera is perspective, for that
- * is linear in the pixel on each plane, and else of t. Of a pair of planes one is a multiple of the
- * other, negative when the eye is between them; or it is a constant behind. */
+/* Where the ray of a pixel is in a slab, as x to y: of 1 / t when the camera is perspective, for
+ * that is linear in the pixel on each plane, and else of t. Of a pair of planes one is a multiple
+ * of the other, negative when the eye is between them; or it is a constant behind. */
 vec2 gtx_meets(int slab, vec2 pixel, vec2 range)
 {
     vec4 x = uintBitsToFloat(texelFetch(gtx_stream, slab));
@@ -75,8 +75,8 @@ vec2 gtx_inverse(vec2 range)
     return gtx_depth.w > 0.0 ? 1.0 / max(range.yx, 1e-30) : range;
 }
 
-/* Casts at the cells of a slab, from and to these t; tells where its patch's texels are, and the ray's
- * direction in its grid space. */
+/* Casts at the cells of a slab, from and to these t; tells where its patch's texels are, and the
+ * ray's direction in its grid space. */
 bool gtx_cast_slab(int slab, vec2 pixel, vec2 t, out gtx_hit hit, out int patch_at, out vec3 ray)
 {
     uvec4 cells = texelFetch(gtx_stream, slab + 3);
