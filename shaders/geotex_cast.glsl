@@ -10,7 +10,7 @@
 
 /* The cell that a ray is in. x and y count in cells of the level. */
 struct gtx_walk {
-    ivec2 cell;
+    vec2 cell;
     float enter, leave;      /* where the ray enters and leaves it */
     bool above, then_above;  /* which side of the sheet the ray is on there */
     bool known;              /* the cell exists: `above` of the next one is `then_above` of this */
@@ -22,15 +22,16 @@ struct gtx_walk {
 
 /* Looks at the cell; true when the ray crosses the sheet in it, in a way that counts. The side is
  * carried from cell to cell, so that rounding at a border can neither hide a crossing nor find it
- * twice. `fit` is that of the last cells, in whose column and row `last` is. */
-bool gtx_look(inout gtx_walk w, gtx_sheet sheet, ivec2 last, float fit, vec3 origin,
+ * twice. `height` are its codes, `fit` is that of the last cells, in whose column and row `last`
+ * is. */
+bool gtx_look(inout gtx_walk w, vec4 height, bool two_sided, vec2 last, float fit, vec3 origin,
               vec3 direction)
 {
     vec3 entry = origin + w.enter * direction;
     float span = w.leave - w.enter;
-    w.height = vec4(texelFetch(gtx_cells, ivec3(sheet.cells + w.cell, sheet.page), 0));
+    w.height = height;
     w.fit = mix(vec2(1.0), vec2(fit), vec2(equal(w.cell, last)));
-    w.gap = gtx_gap(w.height, vec3((entry.xy - vec2(w.cell)) * w.fit, entry.z),
+    w.gap = gtx_gap(w.height, vec3((entry.xy - w.cell) * w.fit, entry.z),
                     vec3(direction.xy * w.fit, direction.z));
     w.above = w.known ? w.then_above : w.gap.x >= 0.0;
     w.then_above = w.gap.x + span * (w.gap.y + span * w.gap.z) >= 0.0;
@@ -39,7 +40,7 @@ bool gtx_look(inout gtx_walk w, gtx_sheet sheet, ivec2 last, float fit, vec3 ori
     bool change = w.above != w.then_above;
     bool bends = (w.gap.y < 0.0) == w.above && (w.gap.y + 2.0 * span * w.gap.z > 0.0) == w.above;
     w.pair = !change && bends && w.gap.y * w.gap.y > 4.0 * w.gap.z * w.gap.x;
-    return w.known && (w.pair || (change && (w.above || sheet.two_sided)));
+    return w.known && (w.pair || (change && (w.above || two_sided)));
 }
 
 bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, out gtx_hit hit)
@@ -49,13 +50,17 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
     vec3 texels = vec3(width, width, 1.0), ray = direction / texels;
     float speed = max(max(abs(ray.x), abs(ray.y)), max(abs(ray.z), 1e-30));
     vec3 o = (origin + t0 * direction) / texels, d = ray / speed;
-    ivec2 last = (sheet.size - 2) >> sheet.level;
+    vec2 first = vec2(sheet.first), final = vec2(sheet.last);
+    vec2 last = vec2((sheet.size - 2) >> sheet.level);
     float fit = sheet.level > 0 ? width / (width - 1.0) : 1.0;
     float end = (t1 - t0) * speed;
+    /* Drivers that draw on the CPU look up by place for less than they fetch. */
+    vec2 texel = 1.0 / vec2(textureSize(gtx_cells, 0).xy);
+    vec2 place = (vec2(sheet.cells) + 0.5) * texel;
 
-    ivec2 way = ivec2(d.x < 0.0 ? -1 : 1, d.y < 0.0 ? -1 : 1), ahead = max(way, ivec2(0));
-    vec2 inverse = vec2(way) / max(abs(d.xy), 1e-9);
-    ivec2 next = clamp(ivec2(floor(o.xy)), sheet.first, sheet.last);
+    vec2 way = vec2(d.x < 0.0 ? -1.0 : 1.0, d.y < 0.0 ? -1.0 : 1.0), ahead = max(way, 0.0);
+    vec2 inverse = way / max(abs(d.xy), 1e-9);
+    vec2 next = clamp(floor(o.xy), first, final);
     gtx_walk w;
     w.leave = 0.0;
     w.known = w.then_above = false;
@@ -67,14 +72,16 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
     while (inside && !found) {
         bool crossing = false;
         while (inside && !crossing) {
-            vec2 planes = (vec2(next + ahead) - o.xy) * inverse;
+            vec2 planes = (next + ahead - o.xy) * inverse;
             w.cell = next;
             w.enter = w.leave;
             w.leave = max(w.enter, min(min(planes.x, planes.y), end));
-            crossing = gtx_look(w, sheet, last, fit, o, d);
-            next += planes.x <= planes.y ? ivec2(way.x, 0) : ivec2(0, way.y);
+            vec4 height =
+                vec4(textureLod(gtx_cells, vec3(place + next * texel, float(sheet.page)), 0.0));
+            crossing = gtx_look(w, height, sheet.two_sided, last, fit, o, d);
+            next += planes.x <= planes.y ? vec2(way.x, 0.0) : vec2(0.0, way.y);
             bool left = w.known && (w.above ? w.gap.x : -w.gap.x) > sheet.reach;
-            inside = w.leave < end && next == clamp(next, sheet.first, sheet.last) && !left;
+            inside = w.leave < end && next == clamp(next, first, final) && !left;
         }
         vec2 root = w.enter + clamp(gtx_roots(w.gap), 0.0, w.leave - w.enter);
         hit.back = sheet.two_sided && !w.above;
@@ -90,7 +97,7 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
     hit.t = t0 + s / speed;
     hit.grid = (o + s * d) * texels;
     hit.level = sheet.level;
-    vec2 at = (o.xy + s * d.xy - vec2(w.cell)) * w.fit;
+    vec2 at = (o.xy + s * d.xy - w.cell) * w.fit;
     vec4 h = w.height;
     hit.slope = vec2(h.y - h.x, h.z - h.x) + (h.x - h.y - h.z + h.w) * at.yx;
     hit.slope *= w.fit / texels.xy;

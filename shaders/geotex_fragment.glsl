@@ -14,13 +14,14 @@
  * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl, geotex_surface.glsl, with
  * GTX_MATERIALS defined geotex_material.glsl, and a gtx_cast (of geotex_cast.glsl or
  * geotex_paper.glsl) before it. The varyings are those of geotex_proxy.vert; with GTX_TILES
- * defined geotex_resolve.glsl comes after it instead. */
+ * defined geotex_tiles.glsl comes after it instead. */
 #ifdef GTX_TILES
-/* What rays met is known already: geotex_resolve.glsl fills these. */
-vec4 gtx_clip_z, gtx_clip_w, gtx_color;
+/* geotex_tiles.glsl fills these. */
+vec4 gtx_clip_z, gtx_clip_w;
 vec3 gtx_normal_x, gtx_normal_y, gtx_normal_z, gtx_world, gtx_world_eye;
 int gtx_patch_index;
 uint gtx_id;
+GTX_VARYING(1) flat in vec4 gtx_color;
 #else
 GTX_VARYING(0) in vec3 gtx_point;
 GTX_VARYING(1) flat in vec3 gtx_eye;

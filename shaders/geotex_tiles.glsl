@@ -1,22 +1,35 @@
-/* Instances cast by tiles: what the kernel and the resolving stages know of one.
+/* gtx_find by tiles: a pixel walks the slabs over its tile of 8 x 8 pixels nearest first and keeps
+ * the nearest hit, so that nothing behind it is cast. The mains find the surface as if a proxy had
+ * been drawn.
  *
- * t is the same along the rays of all patches: w of clip space, or for an orthographic camera how far
- * behind the plane that rays begin on. Pixels count from the viewport's corner. Needs
- * geotex_dialect.glsl, geotex_sheet.glsl and geotex_view.glsl before it. */
-uniform vec4 gtx_place[12];  /* 0..2: rows of the linear part of world -> object;
-                                3: the rays' origin in object space, 4, 5: what a pixel in x and in y
-                                adds, to the direction of a perspective camera's rays, to the origin of
-                                an orthographic one's; 6: direction;
-                                7: the same four of clip z; x, y of 8: of clip w, origin and direction;
-                                z, w of 8: size of the viewport, in pixels;
-                                9..11: rows of object -> world */
+ * t is the same along the rays of all patches: w of clip space, or for an orthographic camera how
+ * far behind the plane that rays begin on. Pixels count from the viewport's corner. Follows
+ * geotex_cast.glsl and geotex_fragment.glsl, with GTX_TILES. */
+GTX_VARYING(0) in vec2 gtx_pixel;
+
+/* Heads of all tiles: where the list begins and ends.
+ * 8 texels a patch: columns to grid space of gtx_place[1], [4], [2], [3]; columns of its normals to
+ *   the world; w of the first and of the last three: corner; size; page + 2^24 * level + 2^31 *
+ *   two-sided; then the index, and the volume that the second, third and fourth column span.
+ * 4 texels a slab: for each pair of its planes a linear function of the pixel, and how the second
+ *   plane follows from the first (gtx_meets); first cell and last, where its patch's texels are.
+ * The lists: where the slab is, least t. */
+uniform highp usamplerBuffer gtx_stream;
+uniform uint gtx_instance;
+uniform vec4 gtx_place[10];  /* x of 0: tiles a row;
+                                1: the rays' origin in object space; 2, 3: what a pixel in x and
+                                in y adds, to the direction of a perspective camera's rays, to the
+                                origin of an orthographic one's; 4: direction;
+                                5: the same four of clip z; x, y of 6: of clip w, origin and
+                                direction; z, w of 6: size of the viewport, in pixels;
+                                7..9: rows of object -> world */
 
 struct gtx_line {
     vec3 origin, direction;
 };
 
-/* The ray through a point of the viewport, from the columns of gtx_place[3..6] taken to some space. */
-gtx_line gtx_line_of(vec2 pixel, vec3 origin, vec3 x, vec3 y, vec3 direction)
+/* The ray through a point of the viewport, from columns of gtx_place[1..4] taken to some space. */
+gtx_line gtx_line_of(vec2 pixel, vec3 origin, vec3 direction, vec3 x, vec3 y)
 {
     vec3 aside = x * pixel.x + y * pixel.y;
     return gtx_line(origin + (1.0 - gtx_depth.w) * aside, direction + gtx_depth.w * aside);
@@ -25,8 +38,127 @@ gtx_line gtx_line_of(vec2 pixel, vec3 origin, vec3 x, vec3 y, vec3 direction)
 /* z and w of the clip position at t = 0, and what t adds. */
 void gtx_clip_along(vec2 pixel, out vec2 zw, out vec2 zw_step)
 {
-    vec4 z = gtx_place[7];
+    vec4 z = gtx_place[5];
     float aside = dot(z.yz, pixel);
-    zw = vec2(z.x + (1.0 - gtx_depth.w) * aside, gtx_place[8].x);
-    zw_step = vec2(z.w + gtx_depth.w * aside, gtx_place[8].y);
+    zw = vec2(z.x + (1.0 - gtx_depth.w) * aside, gtx_place[6].x);
+    zw_step = vec2(z.w + gtx_depth.w * aside, gtx_place[6].y);
+}
+
+gtx_sheet gtx_unpacked(uint corner, uint size, uint page)
+{
+    return gtx_sheet_of(vec4(uvec4(corner & 0xffffu, corner >> 16, size & 0xffffu, size >> 16)),
+                        vec4(0.0, 0.0, float(page & 0xffffffu), float(page >> 31)),
+                        int(page >> 24 & 127u));
+}
+
+/* Where the ray of a pixel is in a slab, as x to y: of 1 / t when the camera is perspective, for
+ * that is linear in the pixel on each plane, and else of t. Of a pair of planes one is a multiple
+ * of the other, negative when the eye is between them; or it is a constant behind. */
+vec2 gtx_meets(int slab, vec2 pixel, vec2 range)
+{
+    vec4 x = uintBitsToFloat(texelFetch(gtx_stream, slab));
+    vec4 y = uintBitsToFloat(texelFetch(gtx_stream, slab + 1));
+    vec4 z = uintBitsToFloat(texelFetch(gtx_stream, slab + 2));
+    vec3 u = vec3(x.x, y.x, z.x) * pixel.x + vec3(x.y, y.y, z.y) * pixel.y + vec3(x.z, y.z, z.z);
+    vec3 other = vec3(x.w, y.w, z.w);
+    bool perspective = gtx_depth.w > 0.0;
+    vec3 v = perspective ? u * other : u + other;
+    bvec3 between = lessThan(perspective ? other : vec3(1.0), vec3(0.0));
+    vec3 low = mix(u, max(u, v), between), high = mix(v, vec3(1e30), between);
+    return vec2(max(max(low.x, low.y), max(low.z, range.x)),
+                min(min(high.x, high.y), min(high.z, range.y)));
+}
+
+/* From t to what gtx_meets has, and back. */
+vec2 gtx_inverse(vec2 range)
+{
+    return gtx_depth.w > 0.0 ? 1.0 / max(range.yx, 1e-30) : range;
+}
+
+/* Casts at the cells of a slab, from and to these t; tells where its patch's texels are, and the
+ * ray's direction in its grid space. */
+bool gtx_cast_slab(int slab, vec2 pixel, vec2 t, out gtx_hit hit, out int patch_at, out vec3 ray)
+{
+    uvec4 cells = texelFetch(gtx_stream, slab + 3);
+    patch_at = int(cells.z);
+    uvec4 origin = texelFetch(gtx_stream, patch_at);
+    uvec4 direction = texelFetch(gtx_stream, patch_at + 1);
+    uvec4 x = texelFetch(gtx_stream, patch_at + 2), y = texelFetch(gtx_stream, patch_at + 3);
+    gtx_line line = gtx_line_of(pixel, uintBitsToFloat(origin.xyz), uintBitsToFloat(direction.xyz),
+                                uintBitsToFloat(x.xyz), uintBitsToFloat(y.xyz));
+    gtx_sheet sheet = gtx_unpacked(origin.w, direction.w, x.w);
+    sheet.first = ivec2(cells.x & 0xffffu, cells.x >> 16);
+    sheet.last = ivec2(cells.y & 0xffffu, cells.y >> 16);
+    ray = line.direction;
+    return gtx_cast(sheet, line.origin, line.direction, t.x, t.y, hit);
+}
+
+/* The camera's side of a hit, and the instance's. */
+void gtx_place_hit(vec2 pixel, vec2 zw)
+{
+    mat4x3 world = transpose(mat3x4(gtx_place[7], gtx_place[8], gtx_place[9]));
+    gtx_line line = gtx_line_of(pixel, gtx_place[1].xyz, gtx_place[4].xyz, gtx_place[2].xyz,
+                                gtx_place[3].xyz);
+    gtx_clip_z = vec4(0.0, 0.0, 0.0, zw.x);
+    gtx_clip_w = vec4(0.0, 0.0, 0.0, zw.y);
+    gtx_world = world * vec4(line.origin, 1.0);
+    gtx_world_eye = gtx_world * gtx_depth.w - world * vec4(line.direction, 0.0);
+    gtx_id = gtx_instance;
+}
+
+bool gtx_find(out gtx_surface s)
+{
+    vec2 pixel = floor(gtx_pixel) + 0.5, zw, zw_step, range = vec2(-1e30, 1e30);
+    gtx_clip_along(pixel, zw, zw_step);
+    gtx_clip(zw.x + gtx_depth.x * zw.y, zw_step.x + gtx_depth.x * zw_step.y, range.x, range.y);
+    gtx_clip(zw.y - zw.x, zw_step.y - zw_step.x, range.x, range.y);
+
+    ivec2 tile = ivec2(pixel) >> 3;
+    uvec4 head = texelFetch(gtx_stream, tile.y * int(gtx_place[0].x) + tile.x);
+    int k = int(head.x), end = int(head.y), patch_at = -1;
+    s.hit.t = 1e30;
+    while (k < end) {
+        /* All rays of a processor look for a slab, and then all cast. */
+        vec2 within, inverse = gtx_inverse(range);
+        int slab = 0;
+        bool meets = false;
+        while (k < end && !meets) {
+            uvec4 entry = texelFetch(gtx_stream, k);
+            slab = int(entry.x);
+            within = gtx_meets(slab, pixel, inverse);
+            meets = within.x <= within.y;
+            k = uintBitsToFloat(entry.y) > range.y ? end : k + 1;
+        }
+        /* A little farther than the slab, for rounding. */
+        within = gtx_inverse(within);
+        within += vec2(-2e-6, 2e-6) * abs(within);
+        within.y = meets ? min(within.y, range.y) : within.x - 1.0;
+        gtx_hit hit;
+        int at;
+        vec3 ray;
+        if (gtx_cast_slab(slab, pixel, within, hit, at, ray) && meets) {
+            range.y = hit.t;
+            patch_at = at;
+            s.ray = ray;
+            s.hit = hit;
+        }
+    }
+    if (patch_at < 0)
+        return false;
+    zw += s.hit.t * zw_step;
+    gtx_place_hit(pixel, zw);
+    uvec4 x = texelFetch(gtx_stream, patch_at + 4), y = texelFetch(gtx_stream, patch_at + 5);
+    uvec4 z = texelFetch(gtx_stream, patch_at + 6), rest = texelFetch(gtx_stream, patch_at + 7);
+    gtx_normal_x = uintBitsToFloat(x.xyz);
+    gtx_normal_y = uintBitsToFloat(y.xyz);
+    gtx_normal_z = uintBitsToFloat(z.xyz);
+    s.sheet = gtx_unpacked(x.w, y.w, z.w);
+    gtx_patch_index = int(rest.x);
+    s.frame = gtx_frame_of(gtx_patch_index);
+    /* As gtx_level_of, with the steps from pixel to pixel at the hit. */
+    float widen = gtx_depth.w > 0.0 ? s.hit.t : 1.0;
+    float descent = abs(dot(vec3(-s.hit.slope, 1.0), s.ray));
+    float area = widen * widen * uintBitsToFloat(rest.y) / max(descent, 1e-20);
+    s.level = 0.5 * log2(max(area, 1e-20));
+    return true;
 }

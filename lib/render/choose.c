@@ -14,7 +14,7 @@ static const gtx_costs *costs_of(const gtx_renderer *renderer, const gtx_view *v
     const gtx_costs *told = &renderer->costs;
     const bool none = told->shell_triangle == 0 && told->shell_pixel == 0 &&
                       told->cast_patch == 0 && told->cast_pixel == 0;
-    return none ? &measured[gtx_kernel_suits(renderer, view)] : told;
+    return none ? &measured[gtx_stream_suits(renderer, view)] : told;
 }
 
 /* For a transform M the root of the largest row sum of M M^T. */

@@ -74,7 +74,7 @@ static gtx_result need_programs(gtx_renderer *renderer, const gtx_view *view, gt
     gtx_result result = gtx_program_need(renderer, method + offset, error);
     if (!result && method == PROGRAM_CAST)
         result = gtx_program_need(renderer, PROGRAM_SHELL + offset, error);
-    if (!result && gtx_kernel_suits(renderer, view))
+    if (!result && gtx_stream_suits(renderer, view))
         result = gtx_program_need(renderer, PROGRAM_TILES + offset, error);
     return result;
 }
@@ -224,7 +224,7 @@ static bool cast_tiles(gtx_renderer *renderer, pass *p, const run *r, uint32_t i
 {
     const gtx_gl *gl = &renderer->gl;
     const gtx_instance_data *placed = &renderer->instances[instance];
-    if (!r->model->slab_texture || !gtx_kernel_suits(renderer, p->view) ||
+    if (!gtx_stream_suits(renderer, p->view) ||
         !gtx_tiles_fill(renderer, p->view, p->frame, r->model, placed))
         return false;
     if (!renderer->tiles.tile_count)
@@ -234,10 +234,8 @@ static bool cast_tiles(gtx_renderer *renderer, pass *p, const run *r, uint32_t i
         kind = PROGRAM_TILES_MATERIAL;
     else if (p->view->pass == GTX_PASS_FORWARD && r->model->has_color)
         kind = PROGRAM_TILES_COLOR;
-    gtx_kernel_cast(renderer, p->frame, r->model);
-    p->current = NULL;
     use_program(gl, p, &renderer->programs[kind], r->model);
-    gtx_kernel_resolve(renderer, p->current, placed);
+    gtx_stream_draw(renderer, p->current, placed);
     gl->BindVertexArray(renderer->vertex_array);
     return true;
 }

@@ -62,17 +62,17 @@ static bool wants_tiles(const gtx_gl *gl, const gtx_renderer_desc *desc)
 }
 
 /* All or none. */
-static void load_compute(gtx_gl *gl, const gtx_renderer_desc *desc)
+static void load_tiles(gtx_gl *gl, const gtx_renderer_desc *desc)
 {
     bool whole = true;
 #define LOAD(result, name, parameters)                                                             \
     gl->name = (result(GTX_GL_CALL *) parameters)desc->load("gl" #name, desc->load_user);          \
     whole = whole && gl->name;
-    GTX_GL_COMPUTE(LOAD)
+    GTX_GL_TILES(LOAD)
 #undef LOAD
 #define CLEAR(result, name, parameters) gl->name = NULL;
     if (!whole) {
-        GTX_GL_COMPUTE(CLEAR)
+        GTX_GL_TILES(CLEAR)
     }
 #undef CLEAR
 }
@@ -101,7 +101,7 @@ gtx_result gtx_gl_init(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *err
         load_debug(gl, desc, gl->es ? "KHR" : "");
     if (!gl->es || has_extension(gl, "GL_EXT_multi_draw_arrays"))
         load_multi(gl, desc, gl->es ? "EXT" : "");
-    if (!gl->es && have >= 43 && wants_tiles(gl, desc))
-        load_compute(gl, desc);
+    if (!gl->es && wants_tiles(gl, desc))
+        load_tiles(gl, desc);
     return result;
 }

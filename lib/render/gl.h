@@ -90,16 +90,6 @@ enum {
     GL_TEXTURE_BUFFER = 0x8C2A,
     GL_TEXTURE_BINDING_BUFFER = 0x8C2C,
     GL_RGBA32UI = 0x8D70,
-    GL_IMAGE_BINDING_NAME = 0x8F3A,
-    GL_IMAGE_BINDING_LEVEL = 0x8F3B,
-    GL_IMAGE_BINDING_LAYERED = 0x8F3C,
-    GL_IMAGE_BINDING_LAYER = 0x8F3D,
-    GL_IMAGE_BINDING_ACCESS = 0x8F3E,
-    GL_IMAGE_BINDING_FORMAT = 0x906E,
-    GL_WRITE_ONLY = 0x88B9,
-    GL_COMPUTE_SHADER = 0x91B9,
-    GL_TEXTURE_FETCH_BARRIER_BIT = 0x0008,
-    GL_SHADER_IMAGE_ACCESS_BARRIER_BIT = 0x0020,
     GL_MAX_DRAW_BUFFERS = 0x8824,
     GL_ARRAY_BUFFER = 0x8892,
     GL_ELEMENT_ARRAY_BUFFER = 0x8893,
@@ -216,18 +206,10 @@ enum {
       (gl_enum mode, const gl_size *counts, gl_enum type, const void *const *offsets,              \
        gl_size draws))
 
-/* Casting by tiles: of OpenGL 4.3. All are NULL where it is not to be used. */
-#define GTX_GL_COMPUTE(X)                                                                          \
-    X(void, BindImageTexture,                                                                      \
-      (gl_uint unit, gl_uint texture, gl_int level, gl_bool layered, gl_int layer, gl_enum access, \
-       gl_enum format))                                                                            \
-    X(void, DispatchCompute, (gl_uint x, gl_uint y, gl_uint z))                                    \
+/* Casting by tiles: of OpenGL. All are NULL where it is not to be used. */
+#define GTX_GL_TILES(X)                                                                            \
     X(void, DrawArrays, (gl_enum mode, gl_int first, gl_size count))                               \
-    X(void, GetIntegeri_v, (gl_enum name, gl_uint index, gl_int *values))                          \
-    X(void, MemoryBarrier, (gl_enum barriers))                                                     \
     X(void, TexBuffer, (gl_enum target, gl_enum inner, gl_uint buffer))                            \
-    X(void, TexStorage2D,                                                                          \
-      (gl_enum target, gl_size levels, gl_enum inner, gl_size width, gl_size height))              \
     X(void, Uniform1ui, (gl_int location, gl_uint value))
 
 typedef struct gtx_gl {
@@ -236,7 +218,7 @@ typedef struct gtx_gl {
     GTX_GL_INDEXED(GTX_GL_FIELD)
     GTX_GL_DEBUG(GTX_GL_FIELD)
     GTX_GL_MULTI(GTX_GL_FIELD)
-    GTX_GL_COMPUTE(GTX_GL_FIELD)
+    GTX_GL_TILES(GTX_GL_FIELD)
 #undef GTX_GL_FIELD
     bool es;                  /* OpenGL ES */
 } gtx_gl;

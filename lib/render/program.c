@@ -21,9 +21,9 @@ typedef struct recipe {
 #define CAST "geotex_cast.glsl", "geotex_fragment.glsl"
 #define PAPER "geotex_paper.glsl", "geotex_fragment.glsl"
 #define POLYGONS "geotex_shell.vert"
-#define RESOLVE "geotex_resolve.vert"
+#define CORNERS "geotex_tiles.vert"
 #define TILES "#define GTX_TILES\n"
-#define HITS "geotex_tiles.glsl", "geotex_fragment.glsl", "geotex_resolve.glsl"
+#define WALK CAST, "geotex_tiles.glsl"
 #define TWO_SIDED "#define GTX_TWO_SIDED\n"
 #define COLORS "#define GTX_COLORS\n"
 #define SHELL "geotex_shell_fragment.glsl"
@@ -64,16 +64,16 @@ static const recipe recipes[PROGRAM_COUNT] = {
                              "geotex shell, colors"},
     [PROGRAM_SHELL_COLOR_TWO_SIDED] = {POLYGONS, COLORS TWO_SIDED, {SHELL, "geotex_shell.frag"},
                                        "geotex shell, colors, two-sided"},
-    [PROGRAM_TILES] = {RESOLVE, TILES PLAIN, {HITS, "geotex_forward.frag"}, "geotex tiles"},
-    [PROGRAM_TILES_COLOR] = {RESOLVE, TILES, {HITS, "geotex_forward.frag"},
+    [PROGRAM_TILES] = {CORNERS, TILES PLAIN, {WALK, "geotex_forward.frag"}, "geotex tiles"},
+    [PROGRAM_TILES_COLOR] = {CORNERS, TILES, {WALK, "geotex_forward.frag"},
                              "geotex tiles, colors"},
-    [PROGRAM_TILES_MATERIAL] = {RESOLVE, TILES MATERIALS,
-                                {"geotex_material.glsl", HITS, "geotex_forward.frag"},
+    [PROGRAM_TILES_MATERIAL] = {CORNERS, TILES MATERIALS,
+                                {"geotex_material.glsl", WALK, "geotex_forward.frag"},
                                 "geotex tiles, materials"},
-    [PROGRAM_TILES_DEPTH] = {RESOLVE, TILES, {HITS, "geotex_depth.frag"}, "geotex tiles, depth"},
-    [PROGRAM_TILES_ID] = {RESOLVE, TILES, {HITS, "geotex_id.frag"}, "geotex tiles, ids"},
-    [PROGRAM_TILES_GBUFFER] = {RESOLVE, TILES MATERIALS,
-                               {"geotex_material.glsl", HITS, "geotex_gbuffer.frag"},
+    [PROGRAM_TILES_DEPTH] = {CORNERS, TILES, {WALK, "geotex_depth.frag"}, "geotex tiles, depth"},
+    [PROGRAM_TILES_ID] = {CORNERS, TILES, {WALK, "geotex_id.frag"}, "geotex tiles, ids"},
+    [PROGRAM_TILES_GBUFFER] = {CORNERS, TILES MATERIALS,
+                               {"geotex_material.glsl", WALK, "geotex_gbuffer.frag"},
                                "geotex tiles, g-buffer"},
 };
 static const recipe own_cast = {PROXY, MATERIALS, {"geotex_material.glsl", CAST, RAYS},
@@ -114,8 +114,6 @@ static source begin(bool es, const recipe *r)
 static source vertex_source(bool es, const recipe *r)
 {
     source s = begin(es, r);
-    if (strcmp(r->vertex, RESOLVE) == 0)
-        add(&s, gtx_shader_source("geotex_tiles.glsl"));
     add(&s, gtx_shader_source(r->vertex));
     return s;
 }
@@ -192,7 +190,7 @@ static void locate(const gtx_gl *gl, gtx_program *program)
     gl->UseProgram(program->object);
     for (gl_int i = 0; i < UNIT_COUNT; ++i)
         gl->Uniform1i(gl->GetUniformLocation(program->object, samplers[i]), i);
-    gl->Uniform1i(gl->GetUniformLocation(program->object, "gtx_seen"), UNIT_SEEN);
+    gl->Uniform1i(gl->GetUniformLocation(program->object, "gtx_stream"), UNIT_STREAM);
     gtx_rays_locate(gl, program->object);
     gl->UseProgram(0);
 }
@@ -216,32 +214,6 @@ static gtx_result build(const gtx_renderer *renderer, const recipe *r, const cha
     return GTX_OK;
 }
 
-gtx_result gtx_program_of_kernel(const gtx_renderer *renderer, gtx_program *out, gtx_error *error)
-{
-    static const char *const files[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
-                                        "geotex_view.glsl", "geotex_tiles.glsl",
-                                        "geotex_cast.glsl", "geotex_tiles.comp"};
-    static const char *const buffers[] = {"gtx_lists", "gtx_tile_rays", "gtx_slabs"};
-    const gtx_gl *gl = &renderer->gl;
-    source s = {.count = 0};
-    add(&s, "#version 430 core\n");
-    for (size_t i = 0; i < sizeof files / sizeof *files; ++i)
-        add(&s, gtx_shader_source(files[i]));
-    const gl_uint shader = compile(renderer, GL_COMPUTE_SHADER, &s);
-    out->object = shader ? link_stages(renderer, &shader, 1) : 0;
-    if (shader)
-        gl->DeleteShader(shader);
-    if (!out->object)
-        return gtx_fail(error, GTX_ERROR_SHADER, "a shader did not compile; the log says why");
-    gtx_gl_label(gl, GL_PROGRAM, out->object, "geotex kernel");
-    locate(gl, out);
-    gl->UseProgram(out->object);
-    for (gl_int i = 0; i < 3; ++i)
-        gl->Uniform1i(gl->GetUniformLocation(out->object, buffers[i]), UNIT_LISTS + i);
-    gl->UseProgram(0);
-    return GTX_OK;
-}
-
 gtx_result gtx_program_need(gtx_renderer *renderer, int program, gtx_error *error)
 {
     gtx_program *out = &renderer->programs[program];
@@ -258,7 +230,7 @@ gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
     static const int tiles[] = {PROGRAM_TILES, PROGRAM_TILES_MATERIAL, PROGRAM_TILES_COLOR};
     for (size_t i = 0; i < sizeof first / sizeof *first && !result; ++i)
         result = gtx_program_need(renderer, first[i], error);
-    for (int i = 0; i < 3 && !result && renderer->gl.DispatchCompute; ++i)
+    for (int i = 0; i < 3 && !result && renderer->gl.TexBuffer; ++i)
         result = gtx_program_need(renderer, tiles[i], error);
     return result;
 }

@@ -11,9 +11,9 @@
 /* Texture units; a model has one texture a unit. Samplers of the shaders carry the same numbers. */
 enum {
     UNIT_CELLS, UNIT_TRIM, UNIT_NORMALS, UNIT_COLORS, UNIT_PATCHES, UNIT_MATERIALS, UNIT_EMISSIONS,
-    UNIT_COUNT, UNIT_SEEN = UNIT_COUNT,
-    UNIT_LISTS = 5, UNIT_TILE_RAYS, UNIT_SLABS, /* buffers, for the kernel that casts by tiles */
+    UNIT_COUNT,
     UNIT_CLEARED = 8, /* units that render.h promises to leave empty */
+    UNIT_STREAM = 8,  /* a buffer's, which leaves the other textures of the unit alone */
     UNIT_RAYS = 13    /* the first of three, which gtx_rays_bind binds */
 };
 
@@ -67,7 +67,7 @@ typedef struct gtx_plan {
 /* A slab in view, and the tiles that it may cover. */
 typedef struct gtx_seen_slab {
     float near;               /* the least t of its points */
-    uint32_t slab, patch;
+    uint32_t slab;            /* its record */
     uint16_t x0, x1, y0, y1;
     float sum[2], difference[2]; /* its extent in x + y and x - y, pixels */
 } gtx_seen_slab;
@@ -78,16 +78,21 @@ typedef struct gtx_scratch {
     size_t size;
 } gtx_scratch;
 
-/* Casting by tiles: what one instance has in each tile of 8 x 8 pixels, as geotex_tiles.comp reads
- * it. */
+/* Rows of gtx_place: see geotex_tiles.glsl. */
+enum {
+    PLACE_STREAM, PLACE_ORIGIN, PLACE_X, PLACE_Y, PLACE_DIRECTION, PLACE_CLIP_Z, PLACE_CLIP_W,
+    PLACE_WORLD, PLACE_ROWS = PLACE_WORLD + 3
+};
+
+/* Casting by tiles: what one instance has in each tile of 8 x 8 pixels. What shaders read of it are
+ * the parts of one stream: heads of the lists, records of patches, slabs, and the lists. */
 typedef struct gtx_tiles {
-    gtx_program kernel;
-    gl_uint vertex_array, corner_buffer, buffers[2], textures[2], image; /* lists, rays */
-    uint32_t image_width, image_height;
-    gl_int max_side, max_texels;
-    gtx_scratch seen, first, lists, rays, corners;
-    uint32_t seen_count, tile_count, list_texels, ray_texels, corner_count;
-    float place[12][4];
+    gl_uint vertex_array, corner_buffer, stream_buffer, stream_texture;
+    gl_int max_texels;
+    gtx_scratch seen, heads, records, slabs, lists, corners;
+    uint32_t seen_count, tile_count, corner_count;
+    uint32_t head_texels, record_texels, slab_texels, list_texels;
+    float place[PLACE_ROWS][4];
 } gtx_tiles;
 
 struct gtx_renderer {
@@ -151,8 +156,6 @@ struct gtx_model {
     gtx_slab *slabs;
     uint32_t *first_slab;
     float (*records)[GTX_RECORD_TEXELS][4];
-    uint64_t slab_bytes_sent;
-    gl_uint slab_buffer, slab_texture; /* 0: this context does not cast by tiles */
     gtx_model_size size;
     gl_uint textures[UNIT_COUNT];
     gl_uint vertices, indices;
@@ -164,8 +167,6 @@ void gtx_renderer_free_scratch(gtx_renderer *renderer);
 /* program.c: those of the forward pass at once, the others when first needed. Errors: SHADER. */
 gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error);
 gtx_result gtx_program_need(gtx_renderer *renderer, int program, gtx_error *error);
-/* The program that casts by tiles. Errors: SHADER. */
-gtx_result gtx_program_of_kernel(const gtx_renderer *renderer, gtx_program *out, gtx_error *error);
 void gtx_programs_destroy(gtx_renderer *renderer);
 
 /* rays.c: tells the program in use where gtx_rays_bind binds. */
@@ -250,16 +251,14 @@ bool gtx_tiles_fill(gtx_renderer *renderer, const gtx_view *view, const gtx_fram
                     const gtx_model *model, const gtx_instance_data *placed);
 void gtx_tiles_free(gtx_renderer *renderer);
 
-/* kernel.c: the kernel and its objects. Where they cannot be made, nothing is cast by tiles. */
-void gtx_kernel_create(gtx_renderer *renderer);
-void gtx_kernel_destroy(gtx_renderer *renderer);
+/* stream.c: the objects of casting by tiles. Where they cannot be made, nothing is cast so. */
+void gtx_stream_create(gtx_renderer *renderer);
+void gtx_stream_destroy(gtx_renderer *renderer);
 /* Whether what a view casts is cast by tiles. */
-bool gtx_kernel_suits(const gtx_renderer *renderer, const gtx_view *view);
-/* Casts what the tiles hold. Uses programs and units UNIT_LISTS..UNIT_SEEN. */
-void gtx_kernel_cast(gtx_renderer *renderer, const gtx_frame *frame, const gtx_model *model);
-/* Draws what was cast by a program in use. Leaves the tiles' vertex array. */
-void gtx_kernel_resolve(gtx_renderer *renderer, const gtx_program *program,
-                        const gtx_instance_data *placed);
+bool gtx_stream_suits(const gtx_renderer *renderer, const gtx_view *view);
+/* Draws what the tiles hold by a program in use. Leaves the tiles' vertex array. */
+void gtx_stream_draw(gtx_renderer *renderer, const gtx_program *program,
+                     const gtx_instance_data *placed);
 
 /* choose.c. */
 /* An upper bound of how much an instance's transform stretches, exact for an even scale. */
@@ -277,7 +276,7 @@ typedef struct gtx_state {
     gl_int textures[UNIT_CLEARED], arrays[UNIT_CLEARED], samplers[UNIT_CLEARED];
     gl_int depth_func, cull_mode, front_face, draw_buffers;
     gl_bool depth_test, depth_mask, cull;
-    gl_int buffers[UNIT_CLEARED], image[6]; /* where the context casts by tiles */
+    gl_int stream;            /* where the context casts by tiles */
     gl_bool blend[GTX_MAX_DRAW_BUFFERS], color_mask[GTX_MAX_DRAW_BUFFERS][4];
 } gtx_state;
 

@@ -1,21 +1,27 @@
 /* The OpenGL state around a draw: the fixed one it leaves, and reading and restoring the host's. */
 #include "render/renderer.h"
 
+/* Leaves unit UNIT_STREAM active. */
+static void bind_stream(const gtx_gl *gl, gl_uint texture)
+{
+    if (!gl->TexBuffer)
+        return;
+    gl->ActiveTexture(GL_TEXTURE0 + UNIT_STREAM);
+    gl->BindTexture(GL_TEXTURE_BUFFER, texture);
+}
+
 void gtx_state_leave(const gtx_gl *gl, bool reversed)
 {
     gl->UseProgram(0);
     gl->BindVertexArray(0);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    bind_stream(gl, 0);
     for (gl_uint i = UNIT_CLEARED; i-- > 0;) {
         gl->ActiveTexture(GL_TEXTURE0 + i);
         gl->BindTexture(GL_TEXTURE_2D, 0);
         gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
-        if (gl->DispatchCompute)
-            gl->BindTexture(GL_TEXTURE_BUFFER, 0);
         gl->BindSampler(i, 0);
     }
-    if (gl->DispatchCompute)
-        gl->BindImageTexture(0, 0, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32UI);
     gl->Enable(GL_DEPTH_TEST);
     gl->DepthFunc(reversed ? GL_GREATER : GL_LESS);
     gl->DepthMask(GL_TRUE);
@@ -25,10 +31,6 @@ void gtx_state_leave(const gtx_gl *gl, bool reversed)
     gl->Disable(GL_BLEND);
     gl->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
-
-static const gl_enum image_values[] = {GL_IMAGE_BINDING_NAME, GL_IMAGE_BINDING_LEVEL,
-                                       GL_IMAGE_BINDING_LAYERED, GL_IMAGE_BINDING_LAYER,
-                                       GL_IMAGE_BINDING_ACCESS, GL_IMAGE_BINDING_FORMAT};
 
 static void read_draw_buffers(const gtx_gl *gl, gtx_state *state)
 {
@@ -57,11 +59,10 @@ void gtx_state_read(const gtx_gl *gl, gtx_state *state)
         gl->GetIntegerv(GL_TEXTURE_BINDING_2D, &state->textures[i]);
         gl->GetIntegerv(GL_TEXTURE_BINDING_2D_ARRAY, &state->arrays[i]);
         gl->GetIntegerv(GL_SAMPLER_BINDING, &state->samplers[i]);
-        if (gl->DispatchCompute)
-            gl->GetIntegerv(GL_TEXTURE_BINDING_BUFFER, &state->buffers[i]);
     }
-    for (int i = 0; gl->DispatchCompute && i < 6; ++i)
-        gl->GetIntegeri_v(image_values[i], 0, &state->image[i]);
+    gl->ActiveTexture(GL_TEXTURE0 + UNIT_STREAM);
+    if (gl->TexBuffer)
+        gl->GetIntegerv(GL_TEXTURE_BINDING_BUFFER, &state->stream);
     gl->GetIntegerv(GL_DEPTH_FUNC, &state->depth_func);
     gl->GetIntegerv(GL_CULL_FACE_MODE, &state->cull_mode);
     gl->GetIntegerv(GL_FRONT_FACE, &state->front_face);
@@ -100,13 +101,8 @@ void gtx_state_restore(const gtx_gl *gl, const gtx_state *state)
         gl->BindTexture(GL_TEXTURE_2D, (gl_uint)state->textures[i]);
         gl->BindTexture(GL_TEXTURE_2D_ARRAY, (gl_uint)state->arrays[i]);
         gl->BindSampler(i, (gl_uint)state->samplers[i]);
-        if (gl->DispatchCompute)
-            gl->BindTexture(GL_TEXTURE_BUFFER, (gl_uint)state->buffers[i]);
     }
-    if (gl->DispatchCompute)
-        gl->BindImageTexture(0, (gl_uint)state->image[0], state->image[1],
-                             (gl_bool)(state->image[2] != 0), state->image[3],
-                             (gl_enum)state->image[4], (gl_enum)state->image[5]);
+    bind_stream(gl, (gl_uint)state->stream);
     gl->ActiveTexture((gl_enum)state->unit);
     set(gl, GL_DEPTH_TEST, state->depth_test);
     gl->DepthFunc((gl_enum)state->depth_func);

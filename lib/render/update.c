@@ -49,18 +49,13 @@ static gtx_slab *make_slabs(const gtx_model *model, const gtx_patch *patch, gtx_
     return slabs;
 }
 
-static void replace_slabs(const gtx_gl *gl, gtx_model *model, const gtx_derived *d, uint32_t patch)
+static void replace_slabs(gtx_model *model, const gtx_derived *d, uint32_t patch)
 {
-    gl->BindBuffer(GL_ARRAY_BUFFER, model->slab_buffer);
     for (uint32_t k = 0; k < model->mip_count; ++k) {
         const uint32_t *first = &model->first_slab[k * model->patch_count + patch];
         const size_t size = (first[1] - first[0]) * sizeof *model->slabs;
         memcpy(model->slabs + first[0], d->slabs[k], size);
-        if (model->slab_buffer)
-            gl->BufferSubData(GL_ARRAY_BUFFER, (gl_pointer)(first[0] * sizeof *model->slabs),
-                              (gl_pointer)size, d->slabs[k]);
     }
-    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     memcpy(model->records[patch], d->record, sizeof d->record);
 }
 
@@ -139,7 +134,7 @@ static gtx_result upload(const gtx_renderer *renderer, gtx_model *model, const g
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     gl->BindTexture(GL_TEXTURE_2D, 0);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
-    replace_slabs(gl, model, d, patch);
+    replace_slabs(model, d, patch);
     model->facts[patch] = d->facts;
     model->facts[patch].boxed = !gtx_replace_proxies(gl, model, d->proxies, patch);
     gtx_model_sum_up(model);

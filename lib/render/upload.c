@@ -206,34 +206,6 @@ static void allocate_shells(const gtx_gl *gl, gtx_shells *s)
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
 }
 
-static uint64_t slab_bytes(const gtx_model *model)
-{
-    return (uint64_t)model->first_slab[model->mip_count * model->patch_count] *
-           sizeof *model->slabs;
-}
-
-/* Where the context casts by tiles, and takes so many. */
-static void allocate_slabs(const gtx_gl *gl, gtx_model *model)
-{
-    gl_int texels = 0;
-    if (!gl->DispatchCompute)
-        return;
-    gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
-    if (slab_bytes(model) / 16 > (uint64_t)texels)
-        return;
-    gl->GenBuffers(1, &model->slab_buffer);
-    gl->BindBuffer(GL_ARRAY_BUFFER, model->slab_buffer);
-    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)slab_bytes(model), NULL, GL_DYNAMIC_DRAW);
-    gtx_gl_label(gl, GL_BUFFER, model->slab_buffer, "geotex slabs");
-    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-    gl->GenTextures(1, &model->slab_texture);
-    gl->BindTexture(GL_TEXTURE_BUFFER, model->slab_texture);
-    gtx_gl_label(gl, GL_TEXTURE, model->slab_texture, "geotex slabs");
-    gl->TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, model->slab_buffer);
-    gl->BindTexture(GL_TEXTURE_BUFFER, 0);
-    model->size.geometry += slab_bytes(model);
-}
-
 /* Names, sizes and labels of all objects, still empty. */
 static void allocate(const gtx_gl *gl, gtx_model *model)
 {
@@ -244,7 +216,6 @@ static void allocate(const gtx_gl *gl, gtx_model *model)
     gl->GenBuffers(1, &model->indices);
     gtx_upload_proxies(gl, model, &empty);
     allocate_shells(gl, &model->shells);
-    allocate_slabs(gl, model);
 }
 
 /* Gives the objects back, so that an upload begins anew. */
@@ -253,12 +224,6 @@ static void release(const gtx_gl *gl, gtx_model *model)
     gl->DeleteTextures(UNIT_COUNT, model->textures);
     gl->DeleteBuffers(1, &model->vertices);
     gl->DeleteBuffers(1, &model->indices);
-    if (model->slab_texture)
-        model->size.geometry -= slab_bytes(model);
-    gl->DeleteTextures(1, &model->slab_texture);
-    gl->DeleteBuffers(1, &model->slab_buffer);
-    model->slab_texture = model->slab_buffer = 0;
-    model->slab_bytes_sent = 0;
     gl->DeleteBuffers(1, &model->shells.vertex_buffer);
     gl->DeleteBuffers(1, &model->shells.index_buffer);
     memset(model->textures, 0, sizeof model->textures);
@@ -282,9 +247,6 @@ static bool upload_slice(const gtx_gl *gl, gtx_model *model, uint64_t budget)
                  &model->vertex_bytes_sent, &budget);
     upload_bytes(gl, model->indices, p->indices, p->index_count * sizeof *p->indices,
                  &model->index_bytes_sent, &budget);
-    if (model->slab_buffer)
-        upload_bytes(gl, model->slab_buffer, model->slabs, slab_bytes(model),
-                     &model->slab_bytes_sent, &budget);
     for (uint32_t i = 0; i < model->level_count; ++i) {
         if (!is_complete(&model->levels[i]) && budget > 0)
             upload_rows(gl, model, &model->levels[i], &budget);
@@ -361,7 +323,8 @@ void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model)
     gtx_free_array(&hooks, model->facts, model->patch_count, sizeof *model->facts);
     gtx_free_array(&hooks, model->records, model->patch_count, sizeof *model->records);
     if (model->first_slab)
-        gtx_free_array(&hooks, model->slabs, slab_bytes(model) / sizeof *model->slabs,
+        gtx_free_array(&hooks, model->slabs,
+                       model->first_slab[model->mip_count * model->patch_count],
                        sizeof *model->slabs);
     gtx_free_array(&hooks, model->first_slab, (size_t)model->mip_count * model->patch_count + 1,
                    sizeof *model->first_slab);

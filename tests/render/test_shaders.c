@@ -107,21 +107,16 @@ static void every_dialect(void **state)
 static void tiles(void **state)
 {
     (void)state;
-    static const char *const kernel[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
-                                         "geotex_view.glsl", "geotex_tiles.glsl",
-                                         "geotex_cast.glsl", "geotex_tiles.comp", NULL};
     static const char *const corners[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
-                                          "geotex_view.glsl", "geotex_tiles.glsl",
-                                          "geotex_resolve.vert", NULL};
+                                          "geotex_view.glsl", "geotex_tiles.vert", NULL};
     if (system("glslangValidator --version >/dev/null 2>&1"))
         skip();
-    compile("#version 430 core", "", "comp", kernel);
     compile("#version 330 core", "", "vert", corners);
     for (int k = 0; k < MAINS; ++k) {
         const char *const parts[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
                                      "geotex_view.glsl", "geotex_surface.glsl",
-                                     "geotex_material.glsl", "geotex_tiles.glsl",
-                                     "geotex_fragment.glsl", "geotex_resolve.glsl", mains[k], NULL};
+                                     "geotex_material.glsl", "geotex_cast.glsl",
+                                     "geotex_fragment.glsl", "geotex_tiles.glsl", mains[k], NULL};
         compile("#version 330 core\n#define GTX_TILES\n#define GTX_MATERIALS", "", "frag", parts);
     }
 }
