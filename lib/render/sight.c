@@ -1,6 +1,8 @@
 /* What a camera sees of patches and slabs: the records that geotex_tiles.glsl reads. */
 #include "render/sight.h"
 
+#include "derive/frame.h"
+
 #include <math.h>
 
 static double dot4(const double row[4], const double p[3], double w)
@@ -11,20 +13,12 @@ static double dot4(const double row[4], const double p[3], double w)
 /* Inverts the rows: origin and columns. */
 static void invert(gtx_camera_rows *c)
 {
-    double cofactor[3][3], det = 0;
-    for (int r = 0; r < 3; ++r)
-        for (int k = 0; k < 3; ++k) {
-            const double *a = c->row[(r + 1) % 3], *b = c->row[(r + 2) % 3];
-            cofactor[r][k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-        }
-    for (int k = 0; k < 3; ++k)
-        det += c->row[0][k] * cofactor[0][k];
+    double inverse[3][4];
+    gtx_invert_affine(c->row, inverse);
     for (int k = 0; k < 3; ++k) {
-        c->origin[k] = 0;
-        for (int r = 0; r < 3; ++r) {
-            c->column[r][k] = cofactor[r][k] / det;
-            c->origin[k] -= c->column[r][k] * c->row[r][3];
-        }
+        c->origin[k] = inverse[k][3];
+        for (int r = 0; r < 3; ++r)
+            c->column[r][k] = inverse[k][r];
     }
 }
 
