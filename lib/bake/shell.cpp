@@ -234,6 +234,7 @@ std::vector<ShellLevel> make_shell(const ShellSource &source, const Maps &maps, 
         simplifier.reduce(wanted, k ? 0 : free, MOST_ERROR * length(size));
         if (k && double(simplifier.triangles().size()) > MOST_SHARE * double(before))
             break;
+        simplifier.settle();
         ShellLevel level = make_level(simplifier, regions, lattice);
         level.error = float(thinned + simplifier.error());
         if (level.indices.empty())

@@ -94,6 +94,10 @@ public:
      * error of `free`; stops where it would cost more than `most`. */
     void reduce(size_t wanted, double free, double most);
 
+    /* Moves the vertices that are left to where they are nearest to the surface that they stand
+     * for: merging alone cuts all that bulges off. */
+    void settle();
+
     const std::vector<Vec3d> &positions() const;
     const std::vector<std::array<uint32_t, 3>> &triangles() const;
     const std::vector<uint32_t> &patch() const;
