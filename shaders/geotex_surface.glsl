@@ -65,10 +65,13 @@ vec3 gtx_to_srgb(vec3 c)
     return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
 }
 
-/* gtx_to_srgb of a colour times a share of light, from the colour's 2.4th root: one power instead of
- * three. Where sRGB is linear, near black, a polynomial is within a tenth of a byte of it. */
+/* gtx_to_srgb of a colour times a share of light in 0..1, from the colour's 2.4th root, without a
+ * power: the share's is a polynomial of its fourth root, within a quarter of a byte of it; where
+ * sRGB is linear, near black, another is within a tenth. */
 vec3 gtx_shaded_to_srgb(vec3 root, float share)
 {
-    vec3 r = min(root * pow(share, 1.0 / 2.4), 1.0);
-    return mix(12.92 * r * r * (0.197 + 2.05 * r), 1.055 * r - 0.055, step(0.0904, r));
+    float s = sqrt(sqrt(share));
+    vec3 r = min(root * (s * (0.08463 + s * (1.40967 + s * (0.27755 * s - 0.77093)))), 1.0);
+    return mix(1.055 * r - 0.055, 12.92 * r * r * (0.197 + 2.05 * r),
+               vec3(lessThan(r, vec3(0.0904))));
 }

@@ -356,7 +356,7 @@ size_t Simplifier::State::round(size_t wanted, double free, double most)
     return taken;
 }
 
-/* Moves a vertex to where its planes are nearest, half as far or less where its triangles need it. */
+/* Moves a vertex to where its planes are nearest, or less far where its triangles need it. */
 void Simplifier::State::settle(uint32_t vertex)
 {
     Vec3d way = quadrics[vertex].way_down(positions[vertex], STAY);

@@ -34,6 +34,22 @@ double gtx_stretch_of(const gtx_instance_data *placed)
     return sqrt(most);
 }
 
+bool gtx_keeps_angles(const gtx_instance_data *placed)
+{
+    const double slack = 1e-3;
+    double product[3][3] = {{0}};
+    for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c)
+            for (int k = 0; k < 3; ++k)
+                product[r][c] += (double)placed->world[r][k] * placed->world[c][k];
+    bool keeps = true;
+    for (int r = 0; r < 3; ++r)
+        for (int c = 0; c <= r; ++c)
+            keeps = keeps && fabs(product[r][c] - (r == c ? product[0][0] : 0)) <=
+                                 slack * product[0][0];
+    return keeps;
+}
+
 /* How large an instance is in the picture, going by the asset's bounds. */
 typedef struct extent {
     double error;             /* object units that are the error allowed, where it is nearest */
