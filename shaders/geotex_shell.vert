@@ -21,8 +21,11 @@ GTX_VARYING(0) out vec2 gtx_at;             /* place in the page, 0..1 */
 GTX_VARYING(1) flat out vec2 gtx_page;      /* page; mip level */
 GTX_VARYING(5) flat out vec4 gtx_color;     /* where no map gives colours, the 2.4th root of rgb */
 #ifdef GTX_FRONT
-GTX_VARYING(2) flat out vec3 gtx_toward;    /* the light among the patch's normals, as long as
-                                               what it adds to the ambient share */
+GTX_VARYING(2) flat out vec3 gtx_toward;    /* the light among the patch's normals; unit */
+#ifdef GTX_MATERIALS
+GTX_VARYING(3) flat out vec3 gtx_eye;       /* the eye, and what gtx_half_way says, there too */
+GTX_VARYING(4) flat out vec4 gtx_between;
+#endif
 #else
 GTX_VARYING(2) flat out vec3 gtx_normal_x;  /* the patch's normals -> world */
 GTX_VARYING(3) flat out vec3 gtx_normal_y;
@@ -67,8 +70,13 @@ void main()
     vec3 z = normalize(axis_z), x = normalize(axis_x - dot(axis_x, z) * z);
     mat3 world_normals = mat3(gtx_object_x.xyz, gtx_object_y.xyz, gtx_object_z.xyz);
 #ifdef GTX_FRONT
-    gtx_toward = (1.0 - gtx_light.w) * normalize(gtx_light.xyz * world_normals) *
-                 mat3(x, cross(z, x), z);
+    mat3 frame = mat3(x, cross(z, x), z);
+    gtx_toward = normalize(gtx_light.xyz * world_normals) * frame;
+#ifdef GTX_MATERIALS
+    vec3 eye = vec3(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w) - object.xyz * gtx_depth.w;
+    gtx_eye = normalize(eye) * frame;
+    gtx_between = gtx_half_way(vec3(0.0, 0.0, 1.0), gtx_eye, gtx_toward);
+#endif
 #else
     gtx_normal_x = world_normals * x;
     gtx_normal_y = world_normals * cross(z, x);

@@ -95,7 +95,7 @@ static const gtx_program *program_of(const gtx_renderer *renderer, const gtx_vie
     if (view->pass != GTX_PASS_FORWARD)
         kind += pass_programs[view->pass];
     else if (shades(model))
-        ++kind;
+        kind = front ? PROGRAM_SHELL_MATERIAL_FRONT : kind + 1;
     else if (shell && model->has_color)
         kind = front ? PROGRAM_SHELL_COLOR_FRONT : PROGRAM_SHELL_COLOR;
     else if (front)

@@ -59,6 +59,9 @@ static const recipe recipes[PROGRAM_COUNT] = {
     [PROGRAM_SHELL_GBUFFER] = {POLYGONS, MATERIALS,
                                {"geotex_material.glsl", SHELL, "geotex_gbuffer.frag"},
                                "geotex shell, g-buffer"},
+    [PROGRAM_SHELL_MATERIAL_FRONT] = {POLYGONS, MATERIALS FRONT,
+                                      {"geotex_material.glsl", "geotex_shell_front.frag"},
+                                      "geotex shell, materials, front"},
     [PROGRAM_SHELL_COLOR] = {POLYGONS, COLORS, {SHELL, "geotex_shell.frag"},
                              "geotex shell, colors"},
     [PROGRAM_SHELL_COLOR_FRONT] = {POLYGONS, COLORS FRONT, {"geotex_shell_front.frag"},
@@ -252,7 +255,8 @@ gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
     static const int first[] = {PROGRAM_CAST, PROGRAM_CAST_MATERIAL, PROGRAM_PAPER,
                                 PROGRAM_PAPER_MATERIAL, PROGRAM_SHELL, PROGRAM_SHELL_MATERIAL,
                                 PROGRAM_SHELL_FRONT, PROGRAM_SHELL_COLOR,
-                                PROGRAM_SHELL_COLOR_FRONT, PROGRAM_CAST_COLOR};
+                                PROGRAM_SHELL_COLOR_FRONT, PROGRAM_SHELL_MATERIAL_FRONT,
+                                PROGRAM_CAST_COLOR};
     gtx_result result = GTX_OK;
     static const int tiles[] = {PROGRAM_TILES, PROGRAM_TILES_MATERIAL, PROGRAM_TILES_COLOR};
     for (size_t i = 0; i < sizeof first / sizeof *first && !result; ++i)
