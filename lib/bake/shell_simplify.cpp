@@ -293,7 +293,6 @@ void Simplifier::State::collapse(const Fan &fan, uint32_t from, uint32_t to)
         if (gone)
             t = {NO_VERTEX, NO_VERTEX, NO_VERTEX};
     }
-    error = std::max(error, quadrics[from].at(positions[to]));
     quadrics[to].add(quadrics[from]);
     touched[from] = 1;
     for (int i = 0; i < fan.ring_count; ++i)
@@ -399,8 +398,10 @@ void Simplifier::reduce(size_t wanted, double free, double most)
 void Simplifier::settle()
 {
     state_->find_around();
-    for (uint32_t v = 0; v < state_->positions.size(); ++v)
+    for (uint32_t v = 0; v < state_->positions.size(); ++v) {
         state_->settle(v);
+        state_->error = std::max(state_->error, state_->quadrics[v].at(state_->positions[v]));
+    }
 }
 
 const std::vector<Vec3d> &Simplifier::positions() const
