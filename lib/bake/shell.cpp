@@ -11,8 +11,9 @@ using Triangle = std::array<uint32_t, 3>;
 
 /* Triangles of the source for one of the finest level: fills the bytes that a shell may take. */
 constexpr size_t FINEST_RATIO = 9;
-/* Every level has this part of the triangles of the one before. */
-constexpr size_t LEVEL_RATIO = 2;
+/* Triangles of a level for one of the next: five levels then reach from windows of a million pixels
+ * to models of a hundred across. */
+constexpr double LEVEL_RATIO = 2.2;
 /* A level is worth its bytes when it has at most this share of them. */
 constexpr double MOST_SHARE = 0.75;
 /* An error that nobody sees: the maps know no better. In texels. */
@@ -240,7 +241,7 @@ std::vector<ShellLevel> make_shell(const ShellSource &source, const Maps &maps, 
         if (level.indices.empty())
             break;
         shell.push_back(std::move(level));
-        wanted = simplifier.triangles().size() / LEVEL_RATIO;
+        wanted = size_t(double(simplifier.triangles().size()) / LEVEL_RATIO);
     }
     return shell;
 }

@@ -50,15 +50,31 @@ bool gtx_keeps_angles(const gtx_instance_data *placed)
     return keeps;
 }
 
-/* How large an instance is in the picture, going by the asset's bounds. */
+/* A box whose nearest corner is nearer than this share of the way to its middle is looked into. */
+static const double near_share = 0.9;
+
+/* How large an instance is in the picture. */
 typedef struct extent {
     double error;             /* object units that are the error allowed, where it is nearest */
     double pixels;            /* that it covers, roughly */
 } extent;
 
-static extent measure(const gtx_view *view, const gtx_frame *frame, const gtx_shells *shells,
+/* The least w of what the patches reach, of w in clip space as a row over object space. */
+static double nearest_patch(const gtx_model *model, const double w[4])
+{
+    const double slope = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+    double least = DBL_MAX;
+    for (uint32_t p = 0; p < model->patch_count; ++p) {
+        const float *s = model->facts[p].sphere;
+        least = fmin(least, w[0] * s[0] + w[1] * s[1] + w[2] * s[2] - slope * s[3]);
+    }
+    return least + w[3];
+}
+
+static extent measure(const gtx_view *view, const gtx_frame *frame, const gtx_model *model,
                       const gtx_instance_data *placed)
 {
+    const gtx_shells *shells = &model->shells;
     const float *clip = frame->clip_from_world;
     double w[4] = {0, 0, 0, clip[15]}, radius = 0; /* w in clip space, as a row over object space */
     for (int k = 0; k < 4; ++k)
@@ -71,6 +87,9 @@ static extent measure(const gtx_view *view, const gtx_frame *frame, const gtx_sh
         middle += w[k] * (low + high) / 2;
         radius += (high - low) * (high - low) / 4;
     }
+    /* Patches tell it more closely than the corner of a box, where that makes a difference. */
+    if (nearest < near_share * middle)
+        nearest = fmax(nearest, nearest_patch(model, w));
     /* detail[0]: pixels a world unit at w = 1, over the error allowed in pixels. */
     const double scale = frame->detail[0] * gtx_stretch_of(placed);
     const double allowed = view->max_error > 0 ? view->max_error : 0.5;
@@ -105,7 +124,7 @@ gtx_result gtx_choose_way(const gtx_renderer *renderer, const gtx_view *view,
         return GTX_OK;
     uint32_t level = view->level < shells->level_count ? view->level : shells->level_count;
     if (by_error) {
-        const extent e = measure(view, frame, shells, placed);
+        const extent e = measure(view, frame, model, placed);
         while (level < shells->level_count && shells->levels[level].error <= e.error)
             ++level;
         if (!level && shells->levels[0].error <= finest_excess * e.error)
