@@ -101,9 +101,9 @@ public:
     const std::vector<Vec3d> &positions() const;
     const std::vector<std::array<uint32_t, 3>> &triangles() const;
     const std::vector<uint32_t> &patch() const;
-    /* The greatest at a vertex, so far, when they settled: root of the mean square of the distances to
-     * the planes that it stands for. About 99.7 of 100 points of the source are nearer than that, the
-     * farthest up to twice as far. */
+    /* The greatest at a vertex, so far, when they settled: root of the mean square of the distances
+     * to the planes that it stands for. About 99.7 of 100 points of the source are nearer than
+     * that, the farthest two to three times as far. */
     double error() const;
 
 private:

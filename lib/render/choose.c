@@ -10,7 +10,7 @@
  * in 449 patches: cast in fragments, cast by tiles. */
 static const gtx_costs *costs_of(const gtx_renderer *renderer, const gtx_view *view)
 {
-    static const gtx_costs measured[2] = {{100, 60, 5000, 1900}, {100, 60, 3500, 190}};
+    static const gtx_costs measured[2] = {{100, 40, 5000, 1900}, {100, 40, 3500, 190}};
     const gtx_costs *told = &renderer->costs;
     const bool none = told->shell_triangle == 0 && told->shell_pixel == 0 &&
                       told->cast_patch == 0 && told->cast_pixel == 0;
