@@ -300,7 +300,7 @@ run-bench:
 	@mkdir -p $(build)/demo
 	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
 	@$(build)/gtx cook $(MODEL) --shell-levels 5 -o $(build)/demo/bench.gtx
-	@$(build)/gtx bench $(build)/demo/bench.gtx $(MODEL) $(BENCH)
+	@$(build)/gtx bench $(build)/demo/bench.gtx $(MODEL) --min-iou 0.99 $(BENCH)
 
 bench-rays: ## rays a second into MODEL (default: the sculpt), and what shadows by ray cost a frame
 	@$(MAKE) --no-print-directory deps

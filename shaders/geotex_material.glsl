@@ -28,18 +28,19 @@ gtx_material gtx_material_of(gtx_sheet sheet, vec2 at, float level, vec3 color)
 }
 
 /* Of one directional light, so bright that a white wall facing it is white, and of light from
- * everywhere, which takes the share `ambient`. n, eye and light are unit, away from the surface. */
-vec3 gtx_shade(gtx_material m, vec3 n, vec3 eye, vec3 light, float ambient)
+ * everywhere, which takes the share `ambient`. n, eye and light are unit, away from the surface, in
+ * one space, and half_way is what gtx_half_way says. */
+vec3 gtx_shade(gtx_material m, vec3 n, vec3 eye, vec3 light, vec4 half_way, float ambient)
 {
     vec3 f0 = mix(vec3(0.04), m.color, m.metallic);
     vec3 diffuse = m.color * (0.96 * (1.0 - m.metallic));
     float alpha = max(m.roughness * m.roughness, 0.002);
-    vec3 h = normalize(light + eye + 1e-5 * n);
-    float nl = max(dot(n, light), 0.0), nv = max(dot(n, eye), 1e-3), nh = max(dot(n, h), 0.0);
+    float nl = max(dot(n, light), 0.0), nv = max(dot(n, eye), 1e-3);
+    float nh = max(dot(n, half_way.xyz), 0.0);
 
     /* Fresnel by Schlick; distribution by Trowbridge and Reitz, times pi; visibility by Smith, with
      * masking and shadowing correlated. */
-    vec3 fresnel = f0 + (1.0 - f0) * pow(clamp(1.0 - dot(eye, h), 0.0, 1.0), 5.0);
+    vec3 fresnel = f0 + (1.0 - f0) * half_way.w;
     float a2 = alpha * alpha, d = nh * nh * (a2 - 1.0) + 1.0;
     float distribution = a2 / (d * d);
     float visibility = 0.5 / max(nl * sqrt(nv * nv * (1.0 - a2) + a2) +
@@ -48,4 +49,9 @@ vec3 gtx_shade(gtx_material m, vec3 n, vec3 eye, vec3 light, float ambient)
     vec3 around = (diffuse + f0) * m.occlusion;
     vec3 shaded = (1.0 - ambient) * direct + ambient * around;
     return mix(m.color, shaded, m.lit) + m.emission;
+}
+
+vec3 gtx_shade(gtx_material m, vec3 n, vec3 eye, vec3 light, float ambient)
+{
+    return gtx_shade(m, n, eye, light, gtx_half_way(n, eye, light), ambient);
 }

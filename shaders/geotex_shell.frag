@@ -1,26 +1,24 @@
 /* The stock forward main of the shell: lit colour in sRGB bytes, from the same maps and by the same
- * light as geotex_forward.frag. Follows geotex_shell_fragment.glsl. GTX_TWO_SIDED lights backs, too,
- * GTX_COLORS says that there is a map of them, and GTX_MATERIALS is as in geotex_forward.frag. */
+ * light as geotex_forward.frag. Follows geotex_shell_fragment.glsl. GTX_COLORS says that there is a
+ * map of colours, and GTX_MATERIALS is as in geotex_forward.frag. */
 layout(location = 0) out vec4 gtx_out_color;
 
 /* Light from the front on a unit normal; on a back, on what gtx_from_behind makes of it. */
 float gtx_lambert(vec3 n)
 {
     float front = dot(n, gtx_light.xyz);
-#ifdef GTX_TWO_SIDED
     if (!gl_FrontFacing) {
         float away = max(dot(n, gtx_ray), 0.0);
         float mirrored = front - 2.0 * away * dot(gtx_ray, gtx_light.xyz);
         front = mix(mirrored, -front, smoothstep(0.2, 0.6, away));
     }
-#endif
     return max(front, 0.0);
 }
 
 void main()
 {
     vec3 place = gtx_place();
-    float level = gtx_at.w;
+    float level = gtx_page.y;
     vec3 p = gtx_decode_normal(textureLod(gtx_normals, place, level).xy);
     vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y + gtx_normal_z * p.z);
     vec4 color = gtx_color;

@@ -5,8 +5,8 @@
  * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl, geotex_surface.glsl and, with
  * GTX_MATERIALS defined, geotex_material.glsl before it. The varyings are those of
  * geotex_shell.vert. */
-GTX_VARYING(0) in vec4 gtx_at;
-GTX_VARYING(1) flat in vec4 gtx_inset;
+GTX_VARYING(0) in vec2 gtx_at;
+GTX_VARYING(1) flat in vec2 gtx_page;
 GTX_VARYING(2) flat in vec3 gtx_normal_x;
 GTX_VARYING(3) flat in vec3 gtx_normal_y;
 GTX_VARYING(4) flat in vec3 gtx_normal_z;
@@ -37,7 +37,7 @@ bool gtx_find(out gtx_surface s)
     s.hit.slope = -facet.xy / facet.z;
     s.hit.level = 0;
     s.hit.back = !gl_FrontFacing;
-    s.level = gtx_at.w;
+    s.level = gtx_page.y;
     return true;
 }
 
@@ -67,12 +67,12 @@ vec3 gtx_world_ray(gtx_surface s)
 
 vec3 gtx_place()
 {
-    return vec3(clamp(gtx_at.xy, gtx_inset.xy, gtx_inset.zw), gtx_at.z);
+    return vec3(gtx_at, gtx_page.x);
 }
 
 vec3 gtx_world_normal(gtx_surface s)
 {
-    vec3 p = gtx_decode_normal(textureLod(gtx_normals, gtx_place(), gtx_at.w).xy);
+    vec3 p = gtx_decode_normal(textureLod(gtx_normals, gtx_place(), gtx_page.y).xy);
     vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y + gtx_normal_z * p.z);
     return gl_FrontFacing ? n : gtx_from_behind(n, gtx_ray);
 }
@@ -81,7 +81,7 @@ vec4 gtx_albedo(gtx_surface s)
 {
     vec4 color = gtx_color;
     if (gtx_maps.y > 0.0)
-        color *= textureLod(gtx_colors, gtx_place(), gtx_at.w);
+        color *= textureLod(gtx_colors, gtx_place(), gtx_page.y);
     return color;
 }
 
@@ -90,11 +90,11 @@ gtx_material gtx_material_of(gtx_surface s, vec3 albedo)
 {
     gtx_material m = gtx_material(albedo, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
     if (gtx_maps.w > 0.0) {
-        vec4 map = textureLod(gtx_materials, gtx_place(), gtx_at.w);
+        vec4 map = textureLod(gtx_materials, gtx_place(), gtx_page.y);
         m = gtx_material(albedo, vec3(0.0), map.x, map.y, map.z, map.w);
     }
     if (gtx_maps.z > 0.0)
-        m.emission = textureLod(gtx_emissions, gtx_place(), gtx_at.w).rgb * gtx_maps.z;
+        m.emission = textureLod(gtx_emissions, gtx_place(), gtx_page.y).rgb * gtx_maps.z;
     return m;
 }
 #endif

@@ -59,16 +59,25 @@ vec3 gtx_from_behind(vec3 n, vec3 ray)
     return mix(n - 2.0 * away * d, -n, smoothstep(0.2, 0.6, away));
 }
 
+/* x^(1 / 2.4) by its fourth root, within a tenth of a byte from 0.003 to 1: two square roots and a
+ * polynomial are a fraction of a power. */
+vec3 gtx_root(vec3 x)
+{
+    vec3 s = sqrt(sqrt(x));
+    return s * (0.11164 + s * (1.27068 + s * (0.17171 * s - 0.55377)));
+}
+
 vec3 gtx_to_srgb(vec3 c)
 {
     c = clamp(c, 0.0, 1.0);
-    return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+    return mix(1.055 * gtx_root(c) - 0.055, 12.92 * c, vec3(lessThan(c, vec3(0.0031308))));
 }
 
-/* gtx_to_srgb of a colour times a share of light, from the colour's 2.4th root: one power instead of
+/* gtx_to_srgb of a colour times a share of light, from the colour's 2.4th root: one root instead of
  * three. Where sRGB is linear, near black, a polynomial is within a tenth of a byte of it. */
 vec3 gtx_shaded_to_srgb(vec3 root, float share)
 {
-    vec3 r = min(root * pow(share, 1.0 / 2.4), 1.0);
-    return mix(12.92 * r * r * (0.197 + 2.05 * r), 1.055 * r - 0.055, step(0.0904, r));
+    vec3 r = min(root * gtx_root(vec3(share)), 1.0);
+    return mix(1.055 * r - 0.055, 12.92 * r * r * (0.197 + 2.05 * r),
+               vec3(lessThan(r, vec3(0.0904))));
 }

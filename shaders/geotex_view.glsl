@@ -17,3 +17,12 @@ GTX_UNIFORM vec4 gtx_maps;              /* x: last mip level of normals and colo
                                            w: 1 when it has materials */
 GTX_UNIFORM vec4 gtx_shell;             /* of the shell's level, xyz: origin; w: step */
 GTX_UNIFORMS_END
+
+/* Half way between light and eye, unit, and what of Schlick's Fresnel term depends on them. Where they
+ * face each other it is n. All are unit and in one space. */
+vec4 gtx_half_way(vec3 n, vec3 eye, vec3 light)
+{
+    vec3 h = normalize(light + eye + 1e-5 * n);
+    float away = clamp(1.0 - dot(eye, h), 0.0, 1.0), square = away * away;
+    return vec4(h, square * square * away);
+}

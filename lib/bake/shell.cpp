@@ -8,11 +8,13 @@
 namespace gtx::baking {
 
 using Triangle = std::array<uint32_t, 3>;
+using Place = std::array<uint16_t, 3>; /* of a vertex, in steps */
 
 /* Triangles of the source for one of the finest level: fills the bytes that a shell may take. */
 constexpr size_t FINEST_RATIO = 9;
-/* Every level has this part of the triangles of the one before. */
-constexpr size_t LEVEL_RATIO = 2;
+/* Triangles of a level for one of the next: five levels then reach from windows of a million pixels
+ * to models of a hundred across. */
+constexpr double LEVEL_RATIO = 2.2;
 /* A level is worth its bytes when it has at most this share of them. */
 constexpr double MOST_SHARE = 0.75;
 /* An error that nobody sees: the maps know no better. In texels. */
@@ -63,15 +65,15 @@ struct Lattice {
         step = float(std::max(wanted, std::max({size.x, size.y, size.z}) / 65534));
         store(origin, low);
     }
-    std::array<uint16_t, 3> round(const Vec3d &point) const
+    Place round(const Vec3d &point) const
     {
-        std::array<uint16_t, 3> place;
+        Place place;
         for (int k = 0; k < 3; ++k)
             place[k] = uint16_t(
                 std::clamp(std::floor((point[k] - origin[k]) / step + 0.5), 0.0, 65535.0));
         return place;
     }
-    Vec3d point(const std::array<uint16_t, 3> &place) const
+    Vec3d point(const Place &place) const
     {
         return {origin[0] + double(step) * place[0], origin[1] + double(step) * place[1],
                 origin[2] + double(step) * place[2]};
@@ -151,13 +153,18 @@ private:
     std::deque<Edge> recent_;
 };
 
+static bool collapses(const Triangle &t, const std::vector<Place> &places)
+{
+    return places[t[0]] == places[t[1]] || places[t[1]] == places[t[2]] ||
+           places[t[2]] == places[t[0]];
+}
+
 /* Whether a level may have the triangle: it has an area, and lies on the rectangle of its patch or
  * next to it. */
 static bool fits(const PatchRegion &region, const Triangle &t, const Lattice &lattice,
-                 const std::vector<std::array<uint16_t, 3>> &places)
+                 const std::vector<Place> &places)
 {
-    if (places[t[0]] == places[t[1]] || places[t[1]] == places[t[2]] ||
-        places[t[2]] == places[t[0]])
+    if (collapses(t, places))
         return false;
     for (uint32_t v : t)
         if (!region.near(region.place(lattice.point(places[v]))))
@@ -165,23 +172,54 @@ static bool fits(const PatchRegion &region, const Triangle &t, const Lattice &la
     return true;
 }
 
+/* The patch of each triangle, or NO_PATCH where none may have it: a triangle that does not fit its own
+ * goes to one that has a neighbour of it, for without it there would be a hole. */
+static std::vector<uint32_t> find_homes(const Simplifier &simplified,
+                                        const std::vector<PatchRegion> &regions,
+                                        const Lattice &lattice, const std::vector<Place> &places)
+{
+    const auto &triangles = simplified.triangles();
+    std::vector<uint32_t> homes = simplified.patch(), homeless;
+    std::vector<std::pair<uint32_t, uint32_t>> beside; /* vertices, and patches that have them */
+    for (uint32_t t = 0; t < triangles.size(); ++t) {
+        if (fits(regions[homes[t]], triangles[t], lattice, places))
+            continue;
+        homes[t] = NO_PATCH;
+        if (!collapses(triangles[t], places))
+            homeless.push_back(t);
+    }
+    for (uint32_t t = 0; t < triangles.size() && !homeless.empty(); ++t)
+        for (uint32_t v : triangles[t])
+            if (homes[t] != NO_PATCH)
+                beside.push_back({v, homes[t]});
+    std::sort(beside.begin(), beside.end());
+    beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+    for (uint32_t t : homeless)
+        for (uint32_t v : triangles[t])
+            for (auto at = std::lower_bound(beside.begin(), beside.end(), std::make_pair(v, 0u));
+                 homes[t] == NO_PATCH && at != beside.end() && at->first == v; ++at)
+                if (fits(regions[at->second], triangles[t], lattice, places))
+                    homes[t] = at->second;
+    return homes;
+}
+
 static ShellLevel make_level(const Simplifier &simplified, const std::vector<PatchRegion> &regions,
                              const Lattice &lattice)
 {
     const auto &triangles = simplified.triangles();
-    const auto &patch = simplified.patch();
-    std::vector<std::array<uint16_t, 3>> places;
+    std::vector<Place> places;
     for (const Vec3d &p : simplified.positions())
         places.push_back(lattice.round(p));
+    const std::vector<uint32_t> patch = find_homes(simplified, regions, lattice, places);
     std::vector<std::vector<uint32_t>> members(regions.size());
     for (size_t t = 0; t < triangles.size(); ++t)
-        if (fits(regions[patch[t]], triangles[t], lattice, places))
+        if (patch[t] != NO_PATCH)
             members[patch[t]].push_back(uint32_t(t));
 
     ShellLevel level;
     std::copy_n(lattice.origin, 3, level.origin);
     level.step = lattice.step;
-    std::map<std::array<uint16_t, 3>, uint32_t> name; /* of the vertex at a place */
+    std::map<Place, uint32_t> name; /* of the vertex at a place */
     std::vector<uint32_t> named(places.size(), NO_VERTEX);
     std::vector<Triangle> ordered;
     Strip strip(triangles, patch, places.size());
@@ -234,12 +272,13 @@ std::vector<ShellLevel> make_shell(const ShellSource &source, const Maps &maps, 
         simplifier.reduce(wanted, k ? 0 : free, MOST_ERROR * length(size));
         if (k && double(simplifier.triangles().size()) > MOST_SHARE * double(before))
             break;
+        simplifier.settle();
         ShellLevel level = make_level(simplifier, regions, lattice);
         level.error = float(thinned + simplifier.error());
         if (level.indices.empty())
             break;
         shell.push_back(std::move(level));
-        wanted = simplifier.triangles().size() / LEVEL_RATIO;
+        wanted = size_t(double(simplifier.triangles().size()) / LEVEL_RATIO);
     }
     return shell;
 }

@@ -32,6 +32,19 @@ struct Quadric {
         double sum = rx * p.x + ry * p.y + rz * p.z + c;
         return weight > 0 ? std::max(sum, 0.0) / weight : 0;
     }
+    /* From a point to where the mean plus `stay` times the squared way from there is least. */
+    Vec3d way_down(const Vec3d &p, double stay) const
+    {
+        if (!(weight > 0))
+            return {0, 0, 0};
+        const double s = stay * weight;
+        const Vec3d a = {xx + s, xy, xz}, b = {xy, yy + s, yz}, d = {xz, yz, zz + s};
+        const Vec3d down = {-(xx * p.x + xy * p.y + xz * p.z + x),
+                            -(xy * p.x + yy * p.y + yz * p.z + y),
+                            -(xz * p.x + yz * p.y + zz * p.z + z)};
+        const double det = dot(cross(a, b), d); /* at least s^3 */
+        return Vec3d{dot(down, cross(b, d)), dot(down, cross(d, a)), dot(down, cross(a, b))} / det;
+    }
 };
 
 } // namespace gtx::baking

@@ -18,8 +18,15 @@ constexpr double LEAST_TURN_COSINE = 0.25;
 /* What moving a vertex along a plane costs, as a share of the squared distance: of two that leave the
  * surface alone, the shorter way makes better triangles. */
 constexpr double SLIDE = 1e-5;
+/* What settling costs for the squared distance, as a share of what leaving the surface does. */
+constexpr double STAY = 0.003;
+/* How often half the way is tried. */
+constexpr int SETTLE_STEPS = 3;
 /* Weight of staying on an open border against staying on the surface. */
 constexpr double BORDER = 10;
+
+/* Of a triangle. */
+using Corners = std::array<Vec3d, 3>;
 
 struct Candidate {
     float cost;                  /* of the cheapest neighbour, whether it may be or not, at first */
@@ -61,14 +68,16 @@ struct Simplifier::State {
                                 start[vertex + 1] - start[vertex], vertex, fan);
     }
     bool keeps_topology(const Fan &fan, uint32_t from, uint32_t to) const;
-    bool keeps_place(uint32_t patch, const Triangle &before, const Triangle &after) const;
-    bool keeps_shape(const Fan &fan, uint32_t from, uint32_t to) const;
+    bool keeps_place(uint32_t patch, const Corners &before, const Corners &after) const;
+    bool keeps_shape(uint32_t triangle, uint32_t vertex, const Vec3d &place) const;
+    bool keeps_shapes(const Fan &fan, uint32_t from, uint32_t to) const;
     Candidate find_candidate(uint32_t vertex, double most) const;
     float least_cost(uint32_t vertex, double most) const;
     void find_candidates(double free, double most);
     void collapse(const Fan &fan, uint32_t from, uint32_t to);
     void compact();
     size_t round(size_t wanted, double free, double most);
+    void settle(uint32_t vertex);
 };
 
 void Simplifier::State::find_around()
@@ -150,38 +159,42 @@ bool Simplifier::State::keeps_topology(const Fan &fan, uint32_t from, uint32_t t
 
 /* Whether a triangle that changes stays where its patch can show it. One that never was there may go
  * anywhere. */
-bool Simplifier::State::keeps_place(uint32_t of, const Triangle &before,
-                                    const Triangle &after) const
+bool Simplifier::State::keeps_place(uint32_t of, const Corners &before, const Corners &after) const
 {
     const PatchRegion &region = regions[of];
     std::array<double, 2> was[3], is[3];
     for (int k = 0; k < 3; ++k)
-        is[k] = region.place(positions[after[k]]);
+        is[k] = region.place(after[k]);
     const bool turned = winding(is) <= 0;
     if (!turned && region.holds(is))
         return true;
     for (int k = 0; k < 3; ++k)
-        was[k] = region.place(positions[before[k]]);
+        was[k] = region.place(before[k]);
     return (!turned || winding(was) <= 0) && (region.holds(is) || !region.holds(was));
 }
 
-bool Simplifier::State::keeps_shape(const Fan &fan, uint32_t from, uint32_t to) const
+/* Whether a triangle does so, and does not turn much, when one of its vertices is at `place`. */
+bool Simplifier::State::keeps_shape(uint32_t triangle, uint32_t vertex, const Vec3d &place) const
 {
-    for (int i = 0; i < fan.count; ++i) {
-        const Triangle &before = triangles[fan.triangle[i]];
-        if (corner_of(before, to) >= 0)
-            continue;
-        Triangle after = before;
-        const int k = corner_of(before, from);
-        after[k] = to;
-        const Vec3d a = positions[before[(k + 1) % 3]], b = positions[before[(k + 2) % 3]] - a;
-        const Vec3d was = cross(b, positions[from] - a), is = cross(b, positions[to] - a);
-        const double sizes = std::sqrt(dot(was, was) * dot(is, is));
-        if (dot(was, was) > 0 && dot(was, is) <= LEAST_TURN_COSINE * sizes)
+    const Triangle &t = triangles[triangle];
+    const Corners before = {positions[t[0]], positions[t[1]], positions[t[2]]};
+    Corners after = before;
+    const int k = corner_of(t, vertex);
+    after[k] = place;
+    const Vec3d a = before[(k + 1) % 3], b = before[(k + 2) % 3] - a;
+    const Vec3d was = cross(b, before[k] - a), is = cross(b, place - a);
+    const double sizes = std::sqrt(dot(was, was) * dot(is, is));
+    if (dot(was, was) > 0 && dot(was, is) <= LEAST_TURN_COSINE * sizes)
+        return false;
+    return keeps_place(patch[triangle], before, after);
+}
+
+bool Simplifier::State::keeps_shapes(const Fan &fan, uint32_t from, uint32_t to) const
+{
+    for (int i = 0; i < fan.count; ++i)
+        if (corner_of(triangles[fan.triangle[i]], to) < 0 &&
+            !keeps_shape(fan.triangle[i], from, positions[to]))
             return false;
-        if (!keeps_place(patch[fan.triangle[i]], before, after))
-            return false;
-    }
     return true;
 }
 
@@ -204,7 +217,7 @@ Candidate Simplifier::State::find_candidate(uint32_t vertex, double most) const
         return a.cost != b.cost ? a.cost < b.cost : a.to < b.to;
     });
     for (int i = 0; i < count; ++i)
-        if (keeps_topology(fan, vertex, options[i].to) && keeps_shape(fan, vertex, options[i].to))
+        if (keeps_topology(fan, vertex, options[i].to) && keeps_shapes(fan, vertex, options[i].to))
             return options[i];
     return none;
 }
@@ -280,7 +293,6 @@ void Simplifier::State::collapse(const Fan &fan, uint32_t from, uint32_t to)
         if (gone)
             t = {NO_VERTEX, NO_VERTEX, NO_VERTEX};
     }
-    error = std::max(error, quadrics[from].at(positions[to]));
     quadrics[to].add(quadrics[from]);
     touched[from] = 1;
     for (int i = 0; i < fan.ring_count; ++i)
@@ -343,6 +355,22 @@ size_t Simplifier::State::round(size_t wanted, double free, double most)
     return taken;
 }
 
+/* Moves a vertex to where its planes are nearest, or less far where its triangles need it. */
+void Simplifier::State::settle(uint32_t vertex)
+{
+    Vec3d way = quadrics[vertex].way_down(positions[vertex], STAY);
+    for (int n = 0; n < SETTLE_STEPS; ++n, way = way * 0.5) {
+        const Vec3d place = positions[vertex] + way;
+        bool keeps = true;
+        for (uint32_t i = start[vertex]; keeps && i < start[vertex + 1]; ++i)
+            keeps = keeps_shape(around[i], vertex, place);
+        if (keeps) {
+            positions[vertex] = place;
+            return;
+        }
+    }
+}
+
 Simplifier::Simplifier(const ShellSource &source, const std::vector<PatchRegion> &regions,
                        Task &task)
 {
@@ -364,6 +392,15 @@ void Simplifier::reduce(size_t wanted, double free, double most)
         /* Past the wanted number a few that still cost nothing are not worth a round. */
         going = left > wanted ? taken > 0 || state_->share < 1 : free > 0 && !few;
         state_->share = few ? std::min(1.0, 2 * state_->share) : ROUND_SHARE;
+    }
+}
+
+void Simplifier::settle()
+{
+    state_->find_around();
+    for (uint32_t v = 0; v < state_->positions.size(); ++v) {
+        state_->settle(v);
+        state_->error = std::max(state_->error, state_->quadrics[v].at(state_->positions[v]));
     }
 }
 

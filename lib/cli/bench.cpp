@@ -39,6 +39,7 @@ public:
 private:
     double time(BenchMethod method, const Shot &shot);
     Quality judge(BenchMethod method, const Shot &one, const std::vector<Picture> &truth);
+    void choose_error(const Shot &one, const std::vector<Picture> &truth);
     void choose_level(const Shot &one, const std::vector<Picture> &truth, const Quality &wanted);
     void judge_all(const std::array<uint32_t, 2> &size, uint32_t instances,
                    std::vector<BenchRow> &rows);
@@ -93,6 +94,16 @@ Quality Bench::judge(BenchMethod method, const Shot &one, const std::vector<Pict
     return quality;
 }
 
+/* The largest error at which AUTO's outline is as good as is asked for, or the least there is. */
+void Bench::choose_error(const Shot &one, const std::vector<Picture> &truth)
+{
+    for (size_t i = std::size(bench_errors); i-- > 0;) {
+        scene.max_error = bench_errors[i];
+        if (judge(BenchMethod::AUTO, one, truth).iou() >= options_.min_iou)
+            break;
+    }
+}
+
 /* The coarsest level that covers and looks as well. */
 void Bench::choose_level(const Shot &one, const std::vector<Picture> &truth, const Quality &wanted)
 {
@@ -117,7 +128,10 @@ void Bench::judge_all(const std::array<uint32_t, 2> &size, uint32_t instances,
         for (int turn = 0; turn < BENCH_TURNS; ++turn)
             truth.push_back(scene.look(BenchMethod::MESH, {one.width, one.height, 1, turn}, target));
     }
+    if (options_.min_iou > 0)
+        choose_error(one, truth);
     for (BenchRow &row : rows) {
+        row.max_error = is_mesh(row.method) ? 0 : scene.max_error;
         if (row.method == BenchMethod::MESH_LOD)
             choose_level(one, truth, judge(BenchMethod::AUTO, one, truth));
         const Quality q = judge(row.method, one, truth);

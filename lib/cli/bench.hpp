@@ -18,6 +18,7 @@ enum class BenchMethod : uint32_t {
 };
 constexpr uint32_t BENCH_METHODS = 10;
 extern const char *const bench_method_names[BENCH_METHODS]; /* as in reports */
+constexpr double bench_errors[] = {0.25, 0.35, 0.5, 0.71, 1, 1.41, 2}; /* pixels */
 
 struct BenchOptions {
     std::vector<std::array<uint32_t, 2>> sizes; /* windows, pixels */
@@ -25,6 +26,8 @@ struct BenchOptions {
     std::vector<BenchMethod> methods;           /* in the table's order */
     uint32_t frames = 12;
     double max_error = 0.5;                     /* pixels */
+    double min_iou = 0;                         /* over 0: max_error is the largest of
+                                                   bench_errors that AUTO keeps it at */
     double budget = 600;                        /* seconds, of all rows */
 };
 
@@ -33,6 +36,7 @@ struct BenchRow {
     uint32_t instances;
     BenchMethod method;
     uint32_t triangles = 0;         /* of a mesh, an instance */
+    double max_error = 0;           /* pixels that it was drawn at; 0: a mesh */
     uint32_t frames = 0;            /* 0: skipped, and why */
     const char *skipped = nullptr;
     double median = 0, least = 0;   /* milliseconds */

@@ -54,7 +54,7 @@ BenchContext::BenchContext()
 }
 
 BenchScene::BenchScene(const std::string &asset_path, const Mesh &mesh, const BenchOptions &options)
-    : options_(options)
+    : max_error(options.max_error), options_(options)
 {
     gtx_error error;
     gtx_renderer_desc desc = {};
@@ -152,7 +152,7 @@ gtx_view BenchScene::view_of(const Shot &shot, std::vector<gtx_instance> &placed
     view.ambient = 0.2f;
     view.viewport_width = shot.width;
     view.viewport_height = shot.height;
-    view.max_error = float(options_.max_error);
+    view.max_error = float(max_error);
     return view;
 }
 

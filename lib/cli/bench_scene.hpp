@@ -68,7 +68,8 @@ public:
     gtx_host_gl gl = {};
     gtx_info info = {};
     MeshLevels levels;
-    size_t level = 0; /* that MESH_LOD draws */
+    size_t level = 0;     /* that MESH_LOD draws */
+    double max_error = 0; /* pixels, of what is no mesh */
 
 private:
     void load_asset(const std::string &path);

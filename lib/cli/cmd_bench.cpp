@@ -14,7 +14,7 @@ const char *sizes = "100x100,200x200,400x400,640x480,800x600,1024x768,1280x1024"
 const char *instances = "1";
 const char *methods = "mesh,mesh_lod,paper,cast,shell,auto";
 uint32_t frames = 12;
-double max_error = 0.5, budget = 600;
+double max_error = 0.5, min_iou, budget = 600;
 bool as_json;
 
 const option options[] = {
@@ -27,6 +27,9 @@ const option options[] = {
     {"frames", 0, OPTION_UINT, &frames, "N", "frames a method [12]", 1, 10000},
     {"max-error", 0, OPTION_NUMBER, &max_error, "PIXELS",
      "how far a level may be from the finest [0.5]", 1e-6, 1e6},
+    {"min-iou", 0, OPTION_NUMBER, &min_iou, "SHARE",
+     "instead, in each window: the largest of 0.25, 0.35, 0.5, 0.71, 1, 1.41 and 2 pixels at which "
+     "auto's outline still has this intersection over union with the mesh's [0: --max-error]", 0, 1},
     {"budget", 0, OPTION_NUMBER, &budget, "SECONDS", "what would take longer is skipped [600]", 0,
      1e9},
     {"json", 0, OPTION_FLAG, &as_json, nullptr, "the whole report as JSON", 0, 0},
@@ -94,15 +97,17 @@ bool parse_lists(gtx::BenchOptions &out)
 /* A line of the table. The ratios are against the mesh's row of the same window. */
 void print_row(const gtx::BenchRow &row, double mesh)
 {
-    char window[32], ratio[32] = "";
+    char window[32], ratio[32] = "", error[32] = "";
     std::snprintf(window, sizeof window, "%ux%u", row.size[0], row.size[1]);
     if (mesh > 0 && row.frames)
         std::snprintf(ratio, sizeof ratio, "%.2f", mesh / row.median);
+    if (row.max_error > 0)
+        std::snprintf(error, sizeof error, "%g", row.max_error);
     std::printf("| %-9s | %5u | %-11s ", window, row.instances,
                 gtx::bench_method_names[uint32_t(row.method)]);
     if (row.frames)
-        std::printf("| %9.2f | %9.2f | %7s | %9.2f | %6.4f | %5.1f | %5llu | %8llu | %7u |\n",
-                    row.median, row.least, ratio, row.work, row.iou, row.psnr,
+        std::printf("| %5s | %9.2f | %9.2f | %7s | %9.2f | %6.4f | %5.1f | %5llu | %8llu | %7u |\n",
+                    error, row.median, row.least, ratio, row.work, row.iou, row.psnr,
                     (unsigned long long)row.holes, (unsigned long long)row.rays, row.triangles);
     else
         std::printf("| skipped: %s |\n", row.skipped);
@@ -131,6 +136,8 @@ void write_row(gtx_json &json, const gtx::BenchSetup &setup, const gtx::BenchRow
         gtx_json_integer(&json, "hole_pixels", row.holes);
         gtx_json_integer(&json, "rays", row.rays);
         gtx_json_integer(&json, "hits", row.hits);
+        if (row.max_error > 0)
+            gtx_json_number(&json, "max_error_px", row.max_error);
         if (row.triangles)
             gtx_json_integer(&json, "triangles", row.triangles);
     }
@@ -167,13 +174,14 @@ void print_head(const char *scene, const gtx::BenchSetup &setup)
 {
     std::printf("%s: %u triangles, %.2f bytes each on the GPU (colour apart)\n"
                 "open %.1f ms, prepare %.1f ms, upload %.1f ms, together %.1f ms\n"
-                "%s, milliseconds, levels within %g pixels\n", scene,
+                "%s, milliseconds; error: pixels, of a level\n", scene,
                 setup.triangles, double(setup.geometry_bytes) / std::max(1u, setup.triangles),
                 setup.open, setup.prepare, setup.upload,
-                setup.open + setup.prepare + setup.upload, setup.renderer.c_str(), max_error);
-    std::printf("| window    | count | method      | median    | least     | mesh/   | work      "
+                setup.open + setup.prepare + setup.upload, setup.renderer.c_str());
+    std::printf("| window    | count | method      | error | median    | least     | mesh/   "
+                "| work      "
                 "| IoU    | PSNR  | holes | rays     | triang. |\n"
-                "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+                "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
 }
 
 } // namespace
@@ -188,6 +196,7 @@ int cmd_bench(int argc, char **argv)
     gtx::BenchOptions wanted;
     wanted.frames = frames;
     wanted.max_error = max_error;
+    wanted.min_iou = min_iou;
     wanted.budget = budget;
     if (!parse_lists(wanted))
         return EXIT_CODE_USAGE;

@@ -10,7 +10,7 @@
  * in 449 patches: cast in fragments, cast by tiles. */
 static const gtx_costs *costs_of(const gtx_renderer *renderer, const gtx_view *view)
 {
-    static const gtx_costs measured[2] = {{100, 60, 5000, 1900}, {100, 60, 3500, 190}};
+    static const gtx_costs measured[2] = {{100, 40, 5000, 1900}, {100, 40, 3500, 190}};
     const gtx_costs *told = &renderer->costs;
     const bool none = told->shell_triangle == 0 && told->shell_pixel == 0 &&
                       told->cast_patch == 0 && told->cast_pixel == 0;
@@ -34,15 +34,47 @@ double gtx_stretch_of(const gtx_instance_data *placed)
     return sqrt(most);
 }
 
-/* How large an instance is in the picture, going by the asset's bounds. */
+bool gtx_keeps_angles(const gtx_instance_data *placed)
+{
+    const double slack = 1e-3;
+    double product[3][3] = {{0}};
+    for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c)
+            for (int k = 0; k < 3; ++k)
+                product[r][c] += (double)placed->world[r][k] * placed->world[c][k];
+    bool keeps = true;
+    for (int r = 0; r < 3; ++r)
+        for (int c = 0; c <= r; ++c)
+            keeps = keeps && fabs(product[r][c] - (r == c ? product[0][0] : 0)) <=
+                                 slack * product[0][0];
+    return keeps;
+}
+
+/* A box whose nearest corner is nearer than this share of the way to its middle is looked into. */
+static const double near_share = 0.9;
+
+/* How large an instance is in the picture. */
 typedef struct extent {
     double error;             /* object units that are the error allowed, where it is nearest */
     double pixels;            /* that it covers, roughly */
 } extent;
 
-static extent measure(const gtx_view *view, const gtx_frame *frame, const gtx_shells *shells,
+/* The least w of what the patches reach, of w in clip space as a row over object space. */
+static double nearest_patch(const gtx_model *model, const double w[4])
+{
+    const double slope = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+    double least = DBL_MAX;
+    for (uint32_t p = 0; p < model->patch_count; ++p) {
+        const float *s = model->facts[p].sphere;
+        least = fmin(least, w[0] * s[0] + w[1] * s[1] + w[2] * s[2] - slope * s[3]);
+    }
+    return least + w[3];
+}
+
+static extent measure(const gtx_view *view, const gtx_frame *frame, const gtx_model *model,
                       const gtx_instance_data *placed)
 {
+    const gtx_shells *shells = &model->shells;
     const float *clip = frame->clip_from_world;
     double w[4] = {0, 0, 0, clip[15]}, radius = 0; /* w in clip space, as a row over object space */
     for (int k = 0; k < 4; ++k)
@@ -55,6 +87,9 @@ static extent measure(const gtx_view *view, const gtx_frame *frame, const gtx_sh
         middle += w[k] * (low + high) / 2;
         radius += (high - low) * (high - low) / 4;
     }
+    /* Patches tell it more closely than the corner of a box, where that makes a difference. */
+    if (nearest < near_share * middle)
+        nearest = fmax(nearest, nearest_patch(model, w));
     /* detail[0]: pixels a world unit at w = 1, over the error allowed in pixels. */
     const double scale = frame->detail[0] * gtx_stretch_of(placed);
     const double allowed = view->max_error > 0 ? view->max_error : 0.5;
@@ -89,7 +124,7 @@ gtx_result gtx_choose_way(const gtx_renderer *renderer, const gtx_view *view,
         return GTX_OK;
     uint32_t level = view->level < shells->level_count ? view->level : shells->level_count;
     if (by_error) {
-        const extent e = measure(view, frame, shells, placed);
+        const extent e = measure(view, frame, model, placed);
         while (level < shells->level_count && shells->levels[level].error <= e.error)
             ++level;
         if (!level && shells->levels[0].error <= finest_excess * e.error)

@@ -85,7 +85,7 @@ static bool shades(const gtx_model *model)
 }
 
 static const gtx_program *program_of(const gtx_renderer *renderer, const gtx_view *view,
-                                     const gtx_model *model, bool shell, bool two_sided)
+                                     const gtx_model *model, bool shell, bool front)
 {
     if (view->shading)
         return shell ? &view->shading->shell : &view->shading->cast;
@@ -95,11 +95,11 @@ static const gtx_program *program_of(const gtx_renderer *renderer, const gtx_vie
     if (view->pass != GTX_PASS_FORWARD)
         kind += pass_programs[view->pass];
     else if (shades(model))
-        ++kind;
+        kind = front ? PROGRAM_SHELL_MATERIAL_FRONT : kind + 1;
     else if (shell && model->has_color)
-        kind = two_sided ? PROGRAM_SHELL_COLOR_TWO_SIDED : PROGRAM_SHELL_COLOR;
-    else if (two_sided)
-        kind = PROGRAM_SHELL_TWO_SIDED;
+        kind = front ? PROGRAM_SHELL_COLOR_FRONT : PROGRAM_SHELL_COLOR;
+    else if (front)
+        kind = PROGRAM_SHELL_FRONT;
     else if (kind == PROGRAM_CAST && model->has_color)
         kind = PROGRAM_CAST_COLOR;
     return &renderer->programs[kind];
@@ -302,12 +302,16 @@ static void draw_shell(const gtx_renderer *renderer, pass *p, const run *r)
     const gtx_gl *gl = &renderer->gl;
     const gtx_shells *shells = &r->model->shells;
     const uint32_t level = r->way - 1u;
+    bool keeps_angles = true;
+    for (uint32_t i = 0; i < r->count; ++i)
+        keeps_angles = keeps_angles && gtx_keeps_angles(&renderer->instances[r->first + i]);
     set_attributes(renderer, r, r->first, true);
     gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
     for (int two_sided = 0; two_sided < 2; ++two_sided) {
         if (shells->one_sided == (two_sided ? shells->patch_count : 0))
             continue;
-        use_program(gl, p, program_of(renderer, p->view, r->model, true, two_sided), r->model);
+        use_program(gl, p, program_of(renderer, p->view, r->model, true,
+                                      keeps_angles && !two_sided), r->model);
         gl->Uniform4fv(p->current->shell, 1, shells->levels[level].place);
         (two_sided ? gl->Disable : gl->Enable)(GL_CULL_FACE);
         gtx_shells_draw(gl, shells, level, two_sided, r->count);

@@ -24,7 +24,7 @@ typedef struct recipe {
 #define CORNERS "geotex_tiles.vert"
 #define TILES "#define GTX_TILES\n"
 #define WALK CAST, "geotex_tiles.glsl"
-#define TWO_SIDED "#define GTX_TWO_SIDED\n"
+#define FRONT "#define GTX_FRONT\n"
 #define COLORS "#define GTX_COLORS\n"
 #define SHELL "geotex_shell_fragment.glsl"
 #define RAYS "geotex_rays.glsl"
@@ -50,6 +50,7 @@ static const recipe recipes[PROGRAM_COUNT] = {
                                {"geotex_material.glsl", PAPER, "geotex_gbuffer.frag"},
                                "geotex paper, g-buffer"},
     [PROGRAM_SHELL] = {POLYGONS, "", {SHELL, "geotex_shell.frag"}, "geotex shell"},
+    [PROGRAM_SHELL_FRONT] = {POLYGONS, FRONT, {"geotex_shell_front.frag"}, "geotex shell, front"},
     [PROGRAM_SHELL_MATERIAL] = {POLYGONS, MATERIALS,
                                 {"geotex_material.glsl", SHELL, "geotex_shell.frag"},
                                 "geotex shell, materials"},
@@ -58,12 +59,13 @@ static const recipe recipes[PROGRAM_COUNT] = {
     [PROGRAM_SHELL_GBUFFER] = {POLYGONS, MATERIALS,
                                {"geotex_material.glsl", SHELL, "geotex_gbuffer.frag"},
                                "geotex shell, g-buffer"},
-    [PROGRAM_SHELL_TWO_SIDED] = {POLYGONS, TWO_SIDED, {SHELL, "geotex_shell.frag"},
-                                 "geotex shell, two-sided"},
+    [PROGRAM_SHELL_MATERIAL_FRONT] = {POLYGONS, MATERIALS FRONT,
+                                      {"geotex_material.glsl", "geotex_shell_front.frag"},
+                                      "geotex shell, materials, front"},
     [PROGRAM_SHELL_COLOR] = {POLYGONS, COLORS, {SHELL, "geotex_shell.frag"},
                              "geotex shell, colors"},
-    [PROGRAM_SHELL_COLOR_TWO_SIDED] = {POLYGONS, COLORS TWO_SIDED, {SHELL, "geotex_shell.frag"},
-                                       "geotex shell, colors, two-sided"},
+    [PROGRAM_SHELL_COLOR_FRONT] = {POLYGONS, COLORS FRONT, {"geotex_shell_front.frag"},
+                                   "geotex shell, colors, front"},
     [PROGRAM_TILES] = {CORNERS, TILES PLAIN, {WALK, "geotex_forward.frag"}, "geotex tiles"},
     [PROGRAM_TILES_COLOR] = {CORNERS, TILES, {WALK, "geotex_forward.frag"},
                              "geotex tiles, colors"},
@@ -224,8 +226,9 @@ gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
 {
     static const int first[] = {PROGRAM_CAST, PROGRAM_CAST_MATERIAL, PROGRAM_PAPER,
                                 PROGRAM_PAPER_MATERIAL, PROGRAM_SHELL, PROGRAM_SHELL_MATERIAL,
-                                PROGRAM_SHELL_TWO_SIDED, PROGRAM_SHELL_COLOR,
-                                PROGRAM_SHELL_COLOR_TWO_SIDED, PROGRAM_CAST_COLOR};
+                                PROGRAM_SHELL_FRONT, PROGRAM_SHELL_COLOR,
+                                PROGRAM_SHELL_COLOR_FRONT, PROGRAM_SHELL_MATERIAL_FRONT,
+                                PROGRAM_CAST_COLOR};
     gtx_result result = GTX_OK;
     static const int tiles[] = {PROGRAM_TILES, PROGRAM_TILES_MATERIAL, PROGRAM_TILES_COLOR};
     for (size_t i = 0; i < sizeof first / sizeof *first && !result; ++i)

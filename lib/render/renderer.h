@@ -23,8 +23,8 @@ enum {
     PROGRAM_PAPER, PROGRAM_PAPER_MATERIAL, PROGRAM_PAPER_DEPTH, PROGRAM_PAPER_ID,
     PROGRAM_PAPER_GBUFFER,
     PROGRAM_SHELL, PROGRAM_SHELL_MATERIAL, PROGRAM_SHELL_DEPTH, PROGRAM_SHELL_ID,
-    PROGRAM_SHELL_GBUFFER, PROGRAM_SHELL_TWO_SIDED, PROGRAM_SHELL_COLOR,
-    PROGRAM_SHELL_COLOR_TWO_SIDED, PROGRAM_CAST_COLOR,
+    PROGRAM_SHELL_GBUFFER, PROGRAM_SHELL_FRONT, PROGRAM_SHELL_COLOR,
+    PROGRAM_SHELL_COLOR_FRONT, PROGRAM_SHELL_MATERIAL_FRONT, PROGRAM_CAST_COLOR,
     /* what was cast by tiles */
     PROGRAM_TILES, PROGRAM_TILES_MATERIAL, PROGRAM_TILES_DEPTH, PROGRAM_TILES_ID,
     PROGRAM_TILES_GBUFFER, PROGRAM_TILES_COLOR, PROGRAM_COUNT
@@ -263,6 +263,8 @@ void gtx_stream_draw(gtx_renderer *renderer, const gtx_program *program,
 /* choose.c. */
 /* An upper bound of how much an instance's transform stretches, exact for an even scale. */
 double gtx_stretch_of(const gtx_instance_data *placed);
+/* Whether it keeps angles: it turns, mirrors, moves and scales evenly, to about a thousandth. */
+bool gtx_keeps_angles(const gtx_instance_data *placed);
 /* What a model's instance is drawn by: 0, or one more than the level of its shell. Errors:
  * UNSUPPORTED (the view wants a shell and there is none). */
 gtx_result gtx_choose_way(const gtx_renderer *renderer, const gtx_view *view,

@@ -18,7 +18,7 @@ static void usage_is_exit_1(void **)
     for (const char *wrong : {"--sizes 100", "--sizes 0x10", "--sizes 10x-3", "--sizes 10x10,",
                               "--sizes 99999x10", "--instances 0", "--instances 1,two",
                               "--instances 99999999999", "--methods best", "--methods ''",
-                              "--frames 0", "--budget -1"})
+                              "--frames 0", "--budget -1", "--min-iou 1.1"})
         expect(gtx("bench sphere.gtx sphere.obj %s", wrong), 1);
     expect(gtx("bench none.gtx sphere.obj"), 2);
     expect(gtx("bench sphere.gtx none.obj"), 2);
@@ -66,6 +66,24 @@ static void every_method_is_measured(void **)
     }
 }
 
+static void the_error_follows_the_outline(void **)
+{
+    double last = 3;
+    for (const char *iou : {"0.5", "0.95", "1"}) {
+        const std::string arguments = std::string("--sizes 64x64 --methods mesh,shell,auto --min-iou ");
+        const json report = bench((arguments + iou).c_str());
+        const json &mesh = report["rows"][0], &row = report["rows"].back();
+        const double error = row["max_error_px"];
+        assert_false(mesh.contains("max_error_px"));
+        assert_true(error <= last);
+        assert_true(error == 0.25 || row["silhouette_iou"] >= std::atof(iou));
+        last = error;
+    }
+    assert_true(last == 0.25); /* no picture is the mesh's own */
+    const json report = bench("--sizes 64x64 --methods cast --max-error 0.75");
+    assert_true(report["rows"][0]["max_error_px"] == 0.75);
+}
+
 static void what_is_not_measured_is_named(void **)
 {
     const json no_shell = bench("--sizes 32x32 --methods mesh,shell");
@@ -88,6 +106,7 @@ int main()
 {
     const CMUnitTest tests[] = {
         cmocka_unit_test(usage_is_exit_1), cmocka_unit_test(every_method_is_measured),
+        cmocka_unit_test(the_error_follows_the_outline),
         cmocka_unit_test(what_is_not_measured_is_named), cmocka_unit_test(the_table_has_a_line_a_row)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -16,6 +16,14 @@ static const char *const shell[] = {"geotex_dialect.glsl", "geotex_sheet.glsl", 
                                     "geotex_surface.glsl", "geotex_shell_fragment.glsl",
                                     "geotex_shell.frag", NULL};
 
+static const char *const shell_front[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                          "geotex_view.glsl", "geotex_surface.glsl",
+                                          "geotex_shell_front.frag", NULL};
+static const char *const shell_front_shaded[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
+                                                 "geotex_view.glsl", "geotex_surface.glsl",
+                                                 "geotex_material.glsl",
+                                                 "geotex_shell_front.frag", NULL};
+
 /* What comes before an engine's own main, and a main. */
 static const char *const rays[] = {"geotex_dialect.glsl", "geotex_sheet.glsl", "geotex_view.glsl",
                                    "geotex_surface.glsl", "geotex_material.glsl",
@@ -63,7 +71,7 @@ static void every_dialect(void **state)
         skip();
     for (size_t i = 0; i < sizeof versions / sizeof *versions; ++i) {
         compile(versions[i][0], versions[i][1], "vert", vertex);
-        char head[64];
+        char head[80];
         snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS", versions[i][0]);
         for (int k = 0; k < MAINS * METHODS; ++k) {
             const char *const parts[] = {"geotex_dialect.glsl", "geotex_sheet.glsl",
@@ -96,10 +104,15 @@ static void every_dialect(void **state)
         }
         snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS", versions[i][0]);
         compile(head, versions[i][1], "frag", rays);
-        snprintf(head, sizeof head, "%s\n#define GTX_TWO_SIDED", versions[i][0]);
-        compile(head, versions[i][1], "frag", shell);
+        compile(head, versions[i][1], "frag", shell_front_shaded);
         snprintf(head, sizeof head, "%s\n#define GTX_COLORS", versions[i][0]);
         compile(head, versions[i][1], "frag", shell);
+        compile(head, versions[i][1], "frag", shell_front);
+        compile(versions[i][0], versions[i][1], "frag", shell_front);
+        snprintf(head, sizeof head, "%s\n#define GTX_FRONT", versions[i][0]);
+        compile(head, versions[i][1], "vert", shell_vertex);
+        snprintf(head, sizeof head, "%s\n#define GTX_FRONT\n#define GTX_MATERIALS", versions[i][0]);
+        compile(head, versions[i][1], "vert", shell_vertex);
     }
 }
 
