@@ -14,6 +14,8 @@ namespace gtx::baking {
 
 /* Texels of depth that a texel is raised at most: more is another sheet, or would be a fin. */
 constexpr double MOST_RAISED = 1;
+/* and that it may miss: a ray that finds the way then is within half a degree of the surface. */
+constexpr double MISSED = 0.01;
 /* Texels from its outline to which a sheet counts, the first ones beyond a cut included. */
 constexpr double REACHED = SHOWN + 0.1;
 /* Parts of a texel along a cut between two places that are looked at. */
@@ -93,7 +95,8 @@ class Cuts {
 public:
     Cuts(const std::vector<const Piece *> &others, const Piece &piece, unsigned most_code)
         : others_(others), piece_(piece), most_code_(most_code),
-          most_(MOST_RAISED * std::max(piece.pitch[0], piece.pitch[1])), codes_(piece.maps->height)
+          most_(MOST_RAISED * std::max(piece.pitch[0], piece.pitch[1])),
+          missed_(MISSED * most_), codes_(piece.maps->height)
     {
     }
     std::vector<uint16_t> close()
@@ -112,13 +115,13 @@ private:
 
     const std::vector<const Piece *> &others_;
     const Piece &piece_;
-    const double most_code_, most_;
+    const double most_code_, most_, missed_;
     std::vector<uint16_t> codes_;
 };
 
 void Cuts::raise(size_t texel, double by)
 {
-    codes_[texel] = uint16_t(std::min(codes_[texel] + std::floor(by / piece_.step + 0.5), most_code_));
+    codes_[texel] = uint16_t(std::min(codes_[texel] + std::ceil(by / piece_.step), most_code_));
 }
 
 /* How far the sheet is below the highest of the others at a place of a line across `axis`; -infinity
@@ -151,11 +154,11 @@ void Cuts::close_line(int axis, int line, int inward)
     for (int at = 0; at <= (length - 1) * PARTS; ++at) {
         const double along = double(at) / PARTS, part = along - at / PARTS;
         const double by = missing(axis, line, along);
-        const double before = by > 0 ? missing(axis, line + inward, along) : 0;
-        if (by <= 0 || (before <= 0 && before > -INFINITY))
+        const double before = by > missed_ ? missing(axis, line + inward, along) : 0;
+        if (by <= missed_ || (before <= missed_ && before > -INFINITY))
             continue;
         /* The least change of both ends that lifts the line between them by as much. */
-        const double share = by / (part * part + (1 - part) * (1 - part));
+        const double share = (by - missed_) / (part * part + (1 - part) * (1 - part));
         for (int end = 0; end <= (part > 0); ++end) {
             const int k = at / PARTS + end;
             raise(axis ? piece_.at(k, line) : piece_.at(line, k), share * (end ? part : 1 - part));

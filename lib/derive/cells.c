@@ -79,6 +79,11 @@ static double square_to(const gtx_surface *s, const double step[3], const gtx_pa
     return fabs(along) * step[2] / sqrt(length);
 }
 
+/* A way between two sheets is seen where a sheet that is a little off is not: from a texel inside
+ * the outline on, distances count this many times. */
+static const double border_counts = 2;
+static const uint32_t border_code = 128 - 16;
+
 double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
                       const gtx_grid *grid)
 {
@@ -91,7 +96,9 @@ double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *fi
     for (uint32_t y = 0; y < finest->nodes_y; ++y)
         for (uint32_t x = 0; x < finest->nodes_x; ++x) {
             const gtx_surface s = surface_at(grid, p, x, y);
-            const double codes = fabs(s.z - finest->code[(size_t)y * finest->nodes_x + x]);
+            const bool border = gtx_trim_code(asset, p, x, y) > border_code;
+            const double codes = fabs(s.z - finest->code[(size_t)y * finest->nodes_x + x]) *
+                                 (border ? border_counts : 1);
             /* or it cannot be greater square to the sheet */
             if (codes * step[2] > greatest && is_corner(finest, x, y))
                 greatest = fmax(greatest, codes * square_to(&s, step, p));
