@@ -18,8 +18,6 @@ constexpr double MOST_RAISED = 1;
 constexpr double MISSED = 0.01;
 /* Texels from its outline to which a sheet counts, the first ones beyond a cut included. */
 constexpr double REACHED = SHOWN + 0.1;
-/* Parts of a texel along a cut between two places that are looked at. */
-constexpr int PARTS = 4;
 /* A neighbour's texels beyond the same cut follow what is raised here. */
 constexpr int ROUNDS = 2;
 /* Of (1, 1, 1), along which pieces are sorted. */
@@ -151,17 +149,17 @@ void Cuts::close_line(int axis, int line, int inward)
     const int lines = axis ? piece_.h : piece_.w, length = axis ? piece_.w : piece_.h;
     if (line < 0 || line >= lines || line + inward < 0 || line + inward >= lines)
         return;
-    for (int at = 0; at <= (length - 1) * PARTS; ++at) {
-        const double along = double(at) / PARTS, part = along - at / PARTS;
-        const double by = missing(axis, line, along);
-        const double before = by > missed_ ? missing(axis, line + inward, along) : 0;
-        if (by <= missed_ || (before <= missed_ && before > -INFINITY))
-            continue;
-        /* The least change of both ends that lifts the line between them by as much. */
-        const double share = (by - missed_) / (part * part + (1 - part) * (1 - part));
-        for (int end = 0; end <= (part > 0); ++end) {
-            const int k = at / PARTS + end;
-            raise(axis ? piece_.at(k, line) : piece_.at(line, k), share * (end ? part : 1 - part));
+    for (double part : {0., 0.5, 0.25, 0.75}) {
+        for (int k = 0; k + (part > 0) < length; ++k) {
+            const double by = missing(axis, line, k + part);
+            const double before = by > missed_ ? missing(axis, line + inward, k + part) : 0;
+            if (by <= missed_ || (before <= missed_ && before > -INFINITY))
+                continue;
+            /* The least change of both ends that lifts the line between them by as much. */
+            const double share = (by - missed_) / (part * part + (1 - part) * (1 - part));
+            for (int end = 0; end <= (part > 0); ++end)
+                raise(axis ? piece_.at(k + end, line) : piece_.at(line, k + end),
+                      share * (end ? part : 1 - part));
         }
     }
 }
