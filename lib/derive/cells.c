@@ -79,9 +79,9 @@ static double square_to(const gtx_surface *s, const double step[3], const gtx_pa
     return fabs(along) * step[2] / sqrt(length);
 }
 
-/* A way between two sheets is seen where a sheet that is a little off is not: from a texel inside
- * the outline on, distances count this many times. */
-static const double border_counts = 2;
+/* From a texel inside the outline on, distances count this many times: neighbours drawn at levels
+ * of their own part by the sum of their errors. */
+static const double border_counts = 4;
 static const uint32_t border_code = 128 - 16;
 
 double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
