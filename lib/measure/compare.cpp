@@ -249,8 +249,8 @@ static std::vector<Scene> make_scenes(const gtx_asset *asset, const Extent &exte
                           options.holes != nullptr});
     for (uint32_t k = 0; k < DETAIL_SIZES && options.size >> k >= LEAST_SIZE; ++k) {
         views = comparison_views(extent, options.size >> k);
-        scenes.push_back({views, AssetView(asset, 0, DETAIL_PIXELS * views[0].pixel), CHOSEN_LEVELS,
-                          false, options.holes != nullptr});
+        scenes.push_back({views, AssetView(asset, 0, DETAIL_PIXELS * views[0].pixel),
+                          CHOSEN_LEVELS, false, options.holes != nullptr});
     }
     return scenes;
 }
