@@ -119,7 +119,8 @@ private:
 
 void Cuts::raise(size_t texel, double by)
 {
-    codes_[texel] = uint16_t(std::min(codes_[texel] + std::ceil(by / piece_.step), most_code_));
+    const double code = codes_[texel] + std::ceil(by / piece_.step);
+    codes_[texel] = uint16_t(std::min(code, most_code_));
 }
 
 /* How far the sheet is below the highest of the others at a place of a line across `axis`; -infinity

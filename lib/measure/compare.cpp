@@ -115,8 +115,8 @@ void Look::hole(uint32_t i, uint32_t j, const gtx_hit &hit, double behind)
     if (!scene.samples)
         return;
     size_t at = size_t(j) * view.size + i;
-    out.samples.push_back({scene.level, view.size, view_index, i, j, image.triangle[at], hit.patch, behind,
-                           view.at(i, j) - view.toward * double(image.depth[at])});
+    out.samples.push_back({scene.level, view.size, view_index, i, j, image.triangle[at], hit.patch,
+                           behind, view.at(i, j) - view.toward * double(image.depth[at])});
 }
 
 void Look::appearance(uint32_t i, uint32_t j, const gtx_hit &hit, bool depths_agree)
