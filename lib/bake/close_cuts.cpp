@@ -123,8 +123,8 @@ void Cuts::raise(size_t texel, double by)
     codes_[texel] = uint16_t(std::min(code, most_code_));
 }
 
-/* How far the sheet is below the highest of the others at a place of a line across `axis`; -infinity
- * where either has none. */
+/* How far the sheet is below the highest of the others at a place of a line across `axis`;
+ * -infinity where either has none. */
 double Cuts::missing(int axis, int line, double along) const
 {
     const int k = int(along);
