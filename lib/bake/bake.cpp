@@ -177,6 +177,8 @@ Maps bake(const Mesh &mesh, const Partition &partition, const BakeOptions &optio
     if (patches.empty())
         throw Error(GTX_ERROR_EMPTY, "the materials cut all of the model away");
 
+    close_cuts(partition, charts, job.anchor, options.height_bits, patches, task);
+
     task.begin("pack");
     Maps maps = place_on_pages(patches, options);
     maps.charts = std::move(charts);

@@ -130,10 +130,7 @@ static void quantise(const Grid &grid, const Crop &crop, const Cover &cover,
             size_t from = size_t(near_y) * grid.w + near_x, to = size_t(j) * crop.w + i;
             maps.trim[to] = trim_code(trim[from]);
             if (x == near_x && y == near_y && support[from]) {
-                /* Beyond a cut codes are rounded up: so the two sheets cross there, and no ray
-                 * finds a way between them. */
-                double rounding = grid.outside(x, y) > 0 ? 1 : 0.5;
-                double code = std::floor((cover.height[from] - low) * steps + rounding);
+                double code = std::floor((cover.height[from] - low) * steps + 0.5);
                 maps.height[to] = uint16_t(1 + std::clamp(code, 0., top));
             }
         }

@@ -259,6 +259,12 @@ void build_mips(Shades shades, unsigned mips, const AppearanceNeeds &needs, Patc
 
 PatchMaps bake_chart(const Job &job, const Chart &chart);
 
+/* Raises texels beyond straight cuts until the sheets on both sides cross. `charts` is that of each
+ * patch. */
+void close_cuts(const Partition &partition, const std::vector<uint32_t> &charts,
+                const Vec3d &anchor, unsigned height_bits, std::vector<PatchMaps> &patches,
+                Task &task);
+
 /* Coverage, sphere and the box of the coded texels. */
 void measure_patch(unsigned height_bits, PatchMaps &maps);
 /* Trim where there is no height, by the rule that readers know. */

@@ -83,6 +83,17 @@ static double square_to(const gtx_surface *s, const double step[3], const gtx_pa
     return fabs(along) * step[2] / sqrt(length);
 }
 
+/* From a texel inside the outline on, distances count this many times: neighbours drawn at levels
+ * of their own part by the sum of their errors. */
+static const float border_counts = 4;
+static const uint8_t border_code = 128 - 16;
+
+static void weigh(const uint8_t *trim, uint32_t count, float *out)
+{
+    for (uint32_t i = 0; i < count; ++i)
+        out[i] = trim[i] > border_code ? border_counts : 1;
+}
+
 /* Heights over `count` texels of each of some cells of a row, from the heights at their sides;
  * a cell is `width` texels wide. */
 static inline void lay_cells(const float *side, uint32_t cells, uint32_t width, uint32_t count,
@@ -111,19 +122,21 @@ static void lay_whole_cells(const float *side, uint32_t cells, uint32_t step, fl
 typedef struct comparison {
     const gtx_patch *patch;
     const gtx_grid *finest, *grid;
+    const uint8_t *trim;      /* code of texel (0, 0) */
+    size_t row_texels;        /* from one code to that below */
     double step[3];           /* object units a texel, and a code */
     double greatest;          /* so far, object units */
 } comparison;
 
 /* Some texels of a row, in turn; NaNs do not count. */
 static void compare_exactly(comparison *c, uint32_t x0, uint32_t count, uint32_t y,
-                            const float *texels)
+                            const float *texels, const float *weights)
 {
     for (uint32_t i = 0; i < count; ++i) {
         if (isnan(texels[i]))
             continue;
         const gtx_surface s = surface_at(c->grid, c->patch, x0 + i, y);
-        const double codes = fabs(s.z - texels[i]);
+        const double codes = fabs(s.z - texels[i]) * (double)weights[i];
         /* or it cannot be greater square to the sheet */
         if (codes * c->step[2] > c->greatest)
             c->greatest = fmax(c->greatest, codes * square_to(&s, c->step, c->patch));
@@ -131,11 +144,12 @@ static void compare_exactly(comparison *c, uint32_t x0, uint32_t count, uint32_t
 }
 
 /* Whether a texel is so far from the sheet. */
-static bool any_beyond(const float *texels, const float *sheet, uint32_t count, float limit)
+static bool any_beyond(const float *texels, const float *sheet, const float *weights,
+                       uint32_t count, float limit)
 {
     int beyond = 0;
     for (uint32_t i = 0; i < count; ++i)
-        beyond |= fabsf(sheet[i] - texels[i]) > limit;
+        beyond |= fabsf(sheet[i] - texels[i]) * weights[i] > limit;
     return beyond;
 }
 
@@ -151,6 +165,7 @@ static void compare_run(comparison *c, uint32_t first, uint32_t end, uint32_t y)
     const uint16_t *row = grid->code + (size_t)j * grid->nodes_x + first;
     const uint16_t *next = row + grid->nodes_x;
     float texels[GTX_CODES_RUN], side[GTX_CODES_RUN], sheet[GTX_CODES_RUN];
+    float weights[GTX_CODES_RUN];
     for (uint32_t i = 0; i <= end - first; ++i)
         side[i] = (float)row[i] + f * (float)(next[i] - row[i]);
     /* The last cell of a row may be narrower, and has texels on both of its sides. */
@@ -159,15 +174,16 @@ static void compare_run(comparison *c, uint32_t first, uint32_t end, uint32_t y)
     const uint32_t rest = ends ? c->finest->nodes_x - x0 - whole * step : 0;
     const uint32_t count = whole * step + rest;
     gtx_load_codes(c->finest, x0, count, y, texels);
+    weigh(c->trim + y * c->row_texels + x0, count, weights);
     lay_whole_cells(side, whole, step, sheet);
     if (ends)
         lay_cells(side + whole, 1, rest - 1, rest, sheet + whole * step);
     for (uint32_t i = 0; i < count; i += PIECE) {
         const uint32_t piece = count - i < PIECE ? count - i : PIECE;
         /* Floats are off by less than this. */
-        const float limit = (float)(0.9999 * c->greatest / c->step[2]) - 0.05f;
-        if (any_beyond(texels + i, sheet + i, piece, limit))
-            compare_exactly(c, x0 + i, piece, y, texels + i);
+        const float limit = (float)(0.9999 * c->greatest / c->step[2]) - 0.05f * border_counts;
+        if (any_beyond(texels + i, sheet + i, weights + i, piece, limit))
+            compare_exactly(c, x0 + i, piece, y, texels + i, weights + i);
     }
 }
 
@@ -175,7 +191,9 @@ double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *fi
                       const gtx_grid *grid)
 {
     const gtx_patch *p = &asset->patches[patch];
-    comparison c = {p, finest, grid,
+    const uint32_t row_texels = asset->info.page_width;
+    const size_t row = (size_t)p->page * asset->info.page_height + p->rect[1];
+    comparison c = {p, finest, grid, asset->trim + row * row_texels + p->rect[0], row_texels,
                     {(double)p->extent_x / p->rect[2], (double)p->extent_y / p->rect[3],
                      p->extent_z / (asset->info.height_bits == 8 ? 254.0 : 65534.0)}, 0};
     /* What the wider limit of the trim lets stick out. */

@@ -38,7 +38,8 @@ void gtx_grid_cells(const gtx_grid *grid, uint32_t height_bits, size_t row_texel
 
 /* How far, in object units, a patch's sheet at a level is from that at level 0, `finest`: the
  * largest distance of a texel from the plane that touches the level's sheet over it, or what the
- * wider trim limit lets stick out, if that is more. */
+ * wider trim limit lets stick out, if that is more. At the border, where a neighbour's sheet goes
+ * on, a distance counts four times: what is too little to be seen opens a hole there. */
 double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
                       const gtx_grid *grid);
 

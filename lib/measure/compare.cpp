@@ -115,8 +115,8 @@ void Look::hole(uint32_t i, uint32_t j, const gtx_hit &hit, double behind)
     if (!scene.samples)
         return;
     size_t at = size_t(j) * view.size + i;
-    out.samples.push_back({scene.level, view_index, i, j, image.triangle[at], hit.patch, behind,
-                           view.at(i, j) - view.toward * double(image.depth[at])});
+    out.samples.push_back({scene.level, view.size, view_index, i, j, image.triangle[at], hit.patch,
+                           behind, view.at(i, j) - view.toward * double(image.depth[at])});
 }
 
 void Look::appearance(uint32_t i, uint32_t j, const gtx_hit &hit, bool depths_agree)
@@ -249,7 +249,8 @@ static std::vector<Scene> make_scenes(const gtx_asset *asset, const Extent &exte
                           options.holes != nullptr});
     for (uint32_t k = 0; k < DETAIL_SIZES && options.size >> k >= LEAST_SIZE; ++k) {
         views = comparison_views(extent, options.size >> k);
-        scenes.push_back({views, AssetView(asset, 0, DETAIL_PIXELS * views[0].pixel)});
+        scenes.push_back({views, AssetView(asset, 0, DETAIL_PIXELS * views[0].pixel),
+                          CHOSEN_LEVELS, false, options.holes != nullptr});
     }
     return scenes;
 }
@@ -278,6 +279,9 @@ CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOpt
     CompareReport report;
     report.views = uint32_t(views);
     for (size_t s = 0; s < scenes.size(); ++s) {
+        for (const Figures &f : figures[s])
+            if (options.holes)
+                options.holes->insert(options.holes->end(), f.samples.begin(), f.samples.end());
         if (s >= options.levels) {
             DetailReport detail;
             detail.size = scenes[s].views[0].size;
@@ -298,9 +302,6 @@ CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOpt
             report.silhouette_iou_min = least;
             summarise(figures[s], report);
         }
-        for (const Figures &f : figures[s])
-            if (options.holes)
-                options.holes->insert(options.holes->end(), f.samples.begin(), f.samples.end());
     }
     if (options.surface) {
         report.error = surface_error(asset, mesh, {}, task);

@@ -62,8 +62,10 @@ struct CompareReport {
 };
 
 /* One hole pixel, to find out why it is there. */
+constexpr uint32_t CHOSEN_LEVELS = 0xffffffffu; /* each patch at its own, as for DetailReport */
 struct HoleSample {
-    uint32_t level, view, x, y;
+    uint32_t level;              /* or CHOSEN_LEVELS */
+    uint32_t size, view, x, y;   /* pixels along a side of the view, which view, and where */
     uint32_t triangle;           /* of the mesh, seen there */
     uint32_t patch;              /* that was hit behind it; UINT32_MAX: none */
     double depth;                /* by how much too deep; infinity: no hit */
@@ -74,7 +76,8 @@ struct CompareOptions {
     uint32_t size = 1024;        /* pixels along a side of a view */
     uint32_t levels = 1;         /* levels of detail to evaluate */
     bool surface = true;         /* measure `error` and `seams` too */
-    std::vector<HoleSample> *holes = nullptr; /* appended to: every hole pixel, views in order */
+    std::vector<HoleSample> *holes = nullptr; /* appended to: every hole pixel of every level
+                                              and detail, views in order */
 };
 
 CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOptions &options,
