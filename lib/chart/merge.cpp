@@ -1,8 +1,8 @@
 /* Merges neighbouring charts, those with the longest common border first.
  *
  * Splitting takes a cluster apart wherever it folds, and knows nothing of its neighbours: what it
- * leaves often folds nowhere together with a piece of another cluster. The longer the outlines of all
- * charts are, the more texels along them stay empty. */
+ * leaves often folds nowhere together with a piece of another cluster. The longer the outlines of
+ * all charts are, the more texels along them stay empty. */
 #include "chart/merge.hpp"
 
 #include <algorithm>
@@ -16,6 +16,7 @@ namespace {
 constexpr double LEAST_COSINE = 0.4;  /* of smoothed normals with the common axis */
 constexpr double STEEP_AREA = 0.01;   /* of both charts, where it may be less */
 constexpr double STEEP_GUESS = 0.1;   /* likewise while the mean of all normals is the axis */
+constexpr double LEAST_CONE = 0.75;   /* of their area, the sum of normals: less across an edge */
 constexpr double LEAST_BORDER = 0.15; /* of one chart's outline: common */
 constexpr double LEAST_TEXELS = 64;   /* of a chart: smaller ones are crumbs */
 constexpr double LEAST_SHARE = 0.02;  /* of the larger chart: less hardly turns its axis */
@@ -133,10 +134,13 @@ Region Merger::join(const Region &a, const Region &b)
 bool Merger::merge(const Offer &offer)
 {
     Vec3d sum;
+    double size = 0;
     for (uint32_t i : {offer.a, offer.b})
-        for (uint32_t t : regions_[i].triangles)
+        for (uint32_t t : regions_[i].triangles) {
             sum += Vec3d(surface_.facets[t].normal) * double(surface_.facets[t].size);
-    if (too_steep(offer, normalize(sum), STEEP_GUESS))
+            size += double(surface_.facets[t].size);
+        }
+    if (length(sum) < LEAST_CONE * size || too_steep(offer, normalize(sum), STEEP_GUESS))
         return false;
     Region both = join(regions_[offer.a], regions_[offer.b]);
     const Vec3d z = cone_axis(surface_, both.triangles);
@@ -195,8 +199,8 @@ std::vector<Region> Merger::run()
     while (!queue_.empty()) {
         Offer best = queue_.top();
         queue_.pop();
-        const bool stale = age_[best.a] + age_[best.b] != best.age || !border_[best.a].count(best.b);
-        if (!stale && merge(best))
+        const bool current = age_[best.a] + age_[best.b] == best.age && border_[best.a].count(best.b);
+        if (current && merge(best))
             adopt(best);
     }
     size_t kept = 0;
