@@ -18,6 +18,10 @@ constexpr float LEAST_CONE = 0.82f;
 constexpr float SIZE_COST = 1e-4f;
 constexpr size_t QUEUED_CLUSTERS = 20000;
 constexpr int REFITS = 10, SWEEPS = 3;
+/* The last refits straighten borders: what a neighbour of the same cluster weighs beside the cosine
+ * between a triangle's normal and the cluster's. */
+constexpr int STRAIGHT_REFITS = 3;
+constexpr float STRAIGHTNESS = 0.3f;
 constexpr size_t CHUNK = 4096; /* clusters a parallel step */
 
 struct Sum {
@@ -223,7 +227,8 @@ std::vector<uint32_t> merge_queued(Clusters &clusters)
     return renamed;
 }
 
-/* Lets triangles change to the neighbouring cluster whose mean normal is nearest to theirs. */
+/* Lets triangles change to the neighbouring cluster whose mean normal is nearest to theirs. Spikes
+ * that noise leaves along the borders would cost texels in every patch there: they go last. */
 void move_borders(const Surface &surface, size_t count, std::vector<uint32_t> &labels, Task &task)
 {
     const auto &neighbours = surface.whole.neighbours;
@@ -241,17 +246,22 @@ void move_borders(const Surface &surface, size_t count, std::vector<uint32_t> &l
                     border.push_back(t);
                     break;
                 }
+        const float straightness = refit < REFITS - STRAIGHT_REFITS ? 0 : STRAIGHTNESS;
+        auto liking = [&](uint32_t t, uint32_t label) {
+            int alike = 0;
+            for (uint32_t n : neighbours[t])
+                alike += n != NO_TRIANGLE && labels[n] == label;
+            return dot(surface.facets[t].normal, proxies[label]) + straightness * float(alike);
+        };
         for (int sweep = 0; sweep < SWEEPS; ++sweep) {
             std::vector<uint32_t> moved;
             for (uint32_t t : border) {
                 uint32_t best = labels[t];
-                float most = dot(surface.facets[t].normal, proxies[best]);
+                float most = liking(t, best);
                 for (uint32_t n : neighbours[t]) {
-                    float cosine = n == NO_TRIANGLE
-                                       ? -INFINITY
-                                       : dot(surface.facets[t].normal, proxies[labels[n]]);
-                    if (cosine > most) {
-                        most = cosine;
+                    float like = n == NO_TRIANGLE ? -INFINITY : liking(t, labels[n]);
+                    if (like > most) {
+                        most = like;
                         best = labels[n];
                     }
                 }

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double DEVIANT_AREA = 0.005;
 constexpr int CONE_STEPS = 100;
+constexpr int CONE_SECTORS = 256;
 constexpr int LAWSON_STEPS = 11;
 /* Steepest tilt of each axis: det(x, y, z) is then at least 1 / (1 + 1.5^2) > 0.3. */
 constexpr double STEEPEST_TILT = 1.5;
@@ -163,6 +164,27 @@ Plane minimax_plane(const std::vector<Point> &points)
     return best;
 }
 
+/* Of many unit vectors those that turn farthest from their mean, one a sector around it: the others
+ * hardly bear on their smallest cone. */
+std::vector<Vec3f> outermost(const std::vector<Vec3f> &normals, const Vec3d &mean)
+{
+    if (normals.size() <= 2 * CONE_SECTORS || mean == Vec3d())
+        return normals;
+    const Vec3f z(normalize(mean)), u(any_perpendicular(Vec3d(z))), v = cross(z, u);
+    std::vector<const Vec3f *> farthest(CONE_SECTORS);
+    for (const Vec3f &n : normals) {
+        const double turns = (std::atan2(dot(n, v), dot(n, u)) / M_PI + 1) / 2;
+        const Vec3f *&sector = farthest[std::min(size_t(turns * CONE_SECTORS), farthest.size() - 1)];
+        if (!sector || dot(n, z) < dot(*sector, z))
+            sector = &n;
+    }
+    std::vector<Vec3f> out;
+    for (const Vec3f *n : farthest)
+        if (n)
+            out.push_back(*n);
+    return out;
+}
+
 /* The centre of the smallest ball around unit vectors points along the axis of their smallest
  * cone while that is narrower than a half-space (Badoiu, Clarkson 2003: step to the farthest). */
 Vec3d ball_axis(const std::vector<Vec3f> &normals)
@@ -170,10 +192,11 @@ Vec3d ball_axis(const std::vector<Vec3f> &normals)
     Vec3f centre;
     for (const Vec3f &n : normals)
         centre += n / float(normals.size());
+    const std::vector<Vec3f> outer = outermost(normals, Vec3d(centre));
     for (int step = 1; step <= CONE_STEPS; ++step) {
-        const Vec3f *farthest = &normals[0];
+        const Vec3f *farthest = &outer[0];
         float least = INFINITY;
-        for (const Vec3f &n : normals)
+        for (const Vec3f &n : outer)
             if (dot(n, centre) < least) {
                 least = dot(n, centre);
                 farthest = &n;

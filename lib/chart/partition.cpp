@@ -2,6 +2,7 @@
 #include "chart/agglomerate.hpp"
 #include "chart/attach.hpp"
 #include "chart/cut.hpp"
+#include "chart/merge.hpp"
 #include "chart/pgp.hpp"
 #include "chart/split.hpp"
 #include "chart/vsa.hpp"
@@ -221,6 +222,17 @@ std::vector<Frame> split_for_length(const Surface &surface, const ChartOptions &
     return frames;
 }
 
+/* Merges what splitting took apart too far. */
+void merge_all(const Surface &surface, std::vector<Region> &regions, std::vector<Frame> &frames,
+               const Bounds &bounds, Task &task)
+{
+    std::vector<Region> loose = merge_charts(surface, bounds, regions, frames);
+    std::vector<Frame> loose_frames;
+    split_all(surface, loose, loose_frames, bounds, task);
+    std::move(loose.begin(), loose.end(), std::back_inserter(regions));
+    frames.insert(frames.end(), loose_frames.begin(), loose_frames.end());
+}
+
 /* Whether more of it has two sides than the crumbs that a scan has everywhere. */
 bool is_two_sided(const Mesh &mesh, const Chart &chart)
 {
@@ -254,7 +266,6 @@ void make_charts(Surface surface, const ChartOptions &options, uint32_t count, T
     const bool cut = options.method == PartitionMethod::CUTS;
     const uint32_t wanted = chart_count(surface.mesh, options);
     std::vector<Region> regions = split_region(surface.whole, out.initial_chart, count);
-    surface.whole.neighbours = {};
     report_initial(surface, regions, task, out);
 
     Bounds bounds = {INFINITY, cut_pitch(surface, wanted, options), true};
@@ -263,6 +274,9 @@ void make_charts(Surface surface, const ChartOptions &options, uint32_t count, T
     out.pitch = bounds.pitch;
 
     task.begin("frame");
+    if (cut)
+        merge_all(surface, regions, frames, bounds, task);
+    surface.whole.neighbours = {};
     attach_crumbs(surface, bounds, regions, frames);
     out.junk = surface.junk;
     report_final(surface, regions, frames, task, out);

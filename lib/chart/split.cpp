@@ -203,6 +203,16 @@ bool is_inverted(const Surface &surface, uint32_t t, const Vec3d &z, double pitc
            -dot(surface.mesh.area_vector(t), z) / 2 > pitch * pitch;
 }
 
+bool fits_along(const Surface &surface, const Region &region, const Vec3d &z, const Bounds &bounds,
+                Verdict &verdict)
+{
+    Candidate candidate = try_axis(surface, region, z, bounds);
+    if (!candidate.fits())
+        return false;
+    verdict = accept(surface, region, candidate.frame, bounds.pitch);
+    return true;
+}
+
 Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds)
 {
     auto too_long = [&](const Frame &frame) {

@@ -17,6 +17,11 @@ struct Verdict {
     std::vector<Region> pieces;  /* connected, at least two; or none: the region is a chart */
 };
 
+/* Whether a region is a chart along unit `z`, but for its walls: `pieces` if there are any, of which
+ * none has another axis yet. */
+bool fits_along(const Surface &surface, const Region &region, const Vec3d &z, const Bounds &bounds,
+                Verdict &verdict);
+
 /* Regions are connected. A region of one triangle is always a chart. */
 Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds);
 
