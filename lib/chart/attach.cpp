@@ -127,7 +127,7 @@ bool Attachment::faces(const Region &crumb, const Vec3d &z) const
     double steep = 0, size = 0;
     const double least = texels(crumb) < CRUMB_TEXELS ? STEEP_COSINE : GUEST_COSINE;
     for (uint32_t t : crumb.triangles) {
-        if (is_inverted(surface_, t, z, bounds_.pitch))
+        if (leans_back(surface_, t, z, bounds_.pitch))
             return false;
         size += surface_.facets[t].size;
         if (dot(Vec3d(surface_.normal[t]), z) < least)

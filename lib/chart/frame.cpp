@@ -173,8 +173,10 @@ std::vector<Vec3f> outermost(const std::vector<Vec3f> &normals, const Vec3d &mea
     const Vec3f z(normalize(mean)), u(any_perpendicular(Vec3d(z))), v = cross(z, u);
     std::vector<const Vec3f *> farthest(CONE_SECTORS);
     for (const Vec3f &n : normals) {
-        const double turns = (std::atan2(dot(n, v), dot(n, u)) / M_PI + 1) / 2;
-        const Vec3f *&sector = farthest[std::min(size_t(turns * CONE_SECTORS), farthest.size() - 1)];
+        const float a = dot(n, u), b = dot(n, v);
+        const float share = b / std::max(std::fabs(a) + std::fabs(b), 1e-30f);
+        const float turn = (a < 0 ? 3 - share : 1 + share) / 4; /* around a square, not a circle */
+        const Vec3f *&sector = farthest[std::min(size_t(turn * CONE_SECTORS), farthest.size() - 1)];
         if (!sector || dot(n, z) < dot(*sector, z))
             sector = &n;
     }
@@ -269,12 +271,14 @@ Vec3d cone_axis(const Surface &surface, const std::vector<uint32_t> &triangles)
     std::vector<std::pair<float, uint32_t>> order;
     for (uint32_t t : triangles)
         order.emplace_back(dot(surface.facets[t].normal, Vec3f(axis)), t);
-    std::sort(order.begin(), order.end());
+    std::make_heap(order.begin(), order.end(), std::greater<>());
+    auto end = order.end(); /* of those that stay */
+    for (float dropped = surface.facets[order[0].second].size; dropped <= DEVIANT_AREA * size;
+         dropped += surface.facets[order[0].second].size)
+        std::pop_heap(order.begin(), end--, std::greater<>());
     normals.clear();
-    float dropped = 0;
-    for (const auto &[cosine, t] : order)
-        if ((dropped += surface.facets[t].size) > DEVIANT_AREA * size)
-            normals.push_back(surface.facets[t].normal);
+    for (auto kept = order.begin(); kept != end; ++kept)
+        normals.push_back(surface.facets[kept->second].normal);
     axis = ball_axis(normals);
     return axis == Vec3d() ? Vec3d(surface.facets[triangles[0]].normal) : axis;
 }

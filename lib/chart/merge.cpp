@@ -21,6 +21,7 @@ constexpr double LEAST_BORDER = 0.15; /* of one chart's outline: common */
 constexpr double LEAST_TEXELS = 64;   /* of a chart: smaller ones are crumbs */
 constexpr double LEAST_SHARE = 0.02;  /* of the larger chart: less hardly turns its axis */
 constexpr double LOOSE_TEXELS = 64, LOOSE_SHARE = 0.1; /* of the smaller chart: set apart at most */
+constexpr size_t BATCH = 8;           /* offers that are tried side by side */
 
 /* Two charts, the lower number first, as they were at some age. */
 struct Offer {
@@ -33,35 +34,52 @@ struct Offer {
     }
 };
 
+/* What two charts have in common. What folds with a part of a chart folds with the whole, or nearly
+ * always: who was refused is not asked again. */
+struct Border {
+    double length = 0;      /* in roots of triangles' sizes */
+    bool refused = false;
+};
+
+/* What became of an offer. */
+struct Trial {
+    bool fits = false;
+    Region both;
+    Frame frame;
+    std::vector<Region> loose; /* set apart */
+};
+
 class Merger {
 public:
     Merger(const Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
            std::vector<Frame> &frames)
         : surface_(surface), bounds_(bounds), regions_(regions), frames_(frames),
           border_(regions.size()), outline_(regions.size()), texels_(regions.size()),
-          age_(regions.size()), place_(surface.whole.size(), NO_TRIANGLE)
+          age_(regions.size()), owner_(surface.whole.size()), place_(surface.whole.size())
     {
     }
 
-    std::vector<Region> run();
+    std::vector<Region> run(Task &task);
 
 private:
     void measure();
     void offer(uint32_t a, uint32_t b);
+    std::vector<Offer> best_offers();
     bool too_steep(const Offer &offer, const Vec3d &z, double most) const;
-    Region join(const Region &a, const Region &b);
-    bool merge(const Offer &offer);
-    void adopt(const Offer &offer);
+    Region join(const Offer &offer);
+    Trial try_offer(const Offer &offer);
+    void adopt(const Offer &offer, Trial &trial);
     double texels(const Region &region) const;
 
     const Surface &surface_;
     const Bounds &bounds_;
     std::vector<Region> &regions_;
     std::vector<Frame> &frames_;
-    std::vector<std::map<uint32_t, double>> border_; /* of a chart with others: triangles' sizes */
+    std::vector<std::map<uint32_t, Border>> border_; /* of a chart with others */
     std::vector<double> outline_, texels_;
     std::vector<uint32_t> age_;
-    std::vector<uint32_t> place_; /* of a triangle in the region that is being made */
+    std::vector<uint32_t> owner_; /* of a triangle: its chart */
+    std::vector<uint32_t> place_; /* likewise in the region that is being made */
     std::priority_queue<Offer> queue_;
     std::vector<Region> loose_;
 };
@@ -76,28 +94,28 @@ double Merger::texels(const Region &region) const
 
 void Merger::measure()
 {
-    std::vector<uint32_t> owner(surface_.whole.size());
     for (uint32_t i = 0; i < regions_.size(); ++i) {
         texels_[i] = texels(regions_[i]);
         for (uint32_t t : regions_[i].triangles)
-            owner[t] = i;
+            owner_[t] = i;
     }
-    for (uint32_t t = 0; t < owner.size(); ++t)
+    for (uint32_t t = 0; t < owner_.size(); ++t)
         for (uint32_t n : surface_.whole.neighbours[t])
-            if (n != NO_TRIANGLE && owner[n] != owner[t]) {
+            if (n != NO_TRIANGLE && owner_[n] != owner_[t]) {
                 double width = std::sqrt(double(std::min(surface_.facets[t].size,
                                                          surface_.facets[n].size)));
-                border_[owner[t]][owner[n]] += width;
-                outline_[owner[t]] += width;
+                border_[owner_[t]][owner_[n]].length += width;
+                outline_[owner_[t]] += width;
             }
 }
 
 void Merger::offer(uint32_t a, uint32_t b)
 {
-    const double border = border_[a][b], less = std::min(texels_[a], texels_[b]);
-    if (less >= LEAST_TEXELS && less >= LEAST_SHARE * std::max(texels_[a], texels_[b]) &&
-        border >= LEAST_BORDER * std::min(outline_[a], outline_[b]))
-        queue_.push({border, std::min(a, b), std::max(a, b), age_[a] + age_[b]});
+    const auto [less, more] = std::minmax(texels_[a], texels_[b]);
+    const Border &border = border_[a][b];
+    if (!border.refused && less >= LEAST_TEXELS && less >= LEAST_SHARE * more &&
+        border.length >= LEAST_BORDER * std::min(outline_[a], outline_[b]))
+        queue_.push({border.length, std::min(a, b), std::max(a, b), age_[a] + age_[b]});
 }
 
 bool Merger::too_steep(const Offer &offer, const Vec3d &z, double most) const
@@ -113,26 +131,45 @@ bool Merger::too_steep(const Offer &offer, const Vec3d &z, double most) const
     return steep > most * size;
 }
 
-Region Merger::join(const Region &a, const Region &b)
+/* The best offers that stand, no chart in two of them. */
+std::vector<Offer> Merger::best_offers()
 {
+    std::vector<Offer> out, later;
+    while (!queue_.empty() && out.size() < BATCH) {
+        const Offer best = queue_.top();
+        queue_.pop();
+        if (age_[best.a] + age_[best.b] != best.age || !border_[best.a].count(best.b))
+            continue;
+        const bool apart = std::none_of(out.begin(), out.end(), [&](const Offer &o) {
+            return o.a == best.a || o.a == best.b || o.b == best.a || o.b == best.b;
+        });
+        (apart ? out : later).push_back(best);
+    }
+    for (const Offer &offer : later)
+        queue_.push(offer);
+    return out;
+}
+
+Region Merger::join(const Offer &offer)
+{
+    const std::vector<uint32_t> &a = regions_[offer.a].triangles, &b = regions_[offer.b].triangles;
     Region out;
-    std::merge(a.triangles.begin(), a.triangles.end(), b.triangles.begin(), b.triangles.end(),
-               std::back_inserter(out.triangles));
+    std::merge(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(out.triangles));
     for (uint32_t i = 0; i < out.size(); ++i)
         place_[out.triangles[i]] = i;
     for (uint32_t t : out.triangles) {
         std::array<uint32_t, 3> own = surface_.whole.neighbours[t];
         for (uint32_t &n : own)
-            n = n == NO_TRIANGLE ? n : place_[n];
+            if (n != NO_TRIANGLE)
+                n = owner_[n] == offer.a || owner_[n] == offer.b ? place_[n] : NO_TRIANGLE;
         out.neighbours.push_back(own);
     }
-    for (uint32_t t : out.triangles)
-        place_[t] = NO_TRIANGLE;
     return out;
 }
 
-bool Merger::merge(const Offer &offer)
+Trial Merger::try_offer(const Offer &offer)
 {
+    Trial trial;
     Vec3d sum;
     double size = 0;
     for (uint32_t i : {offer.a, offer.b})
@@ -141,38 +178,43 @@ bool Merger::merge(const Offer &offer)
             size += double(surface_.facets[t].size);
         }
     if (length(sum) < LEAST_CONE * size || too_steep(offer, normalize(sum), STEEP_GUESS))
-        return false;
-    Region both = join(regions_[offer.a], regions_[offer.b]);
-    const Vec3d z = cone_axis(surface_, both.triangles);
-    if (too_steep(offer, z, STEEP_AREA))
-        return false;
+        return trial;
+    trial.both = join(offer);
+    const Vec3d z = cone_axis(surface_, trial.both.triangles);
     Verdict verdict;
-    if (!fits_along(surface_, both, z, bounds_, verdict))
-        return false;
-    Frame frame = verdict.frame;
+    if (too_steep(offer, z, STEEP_AREA) || !fits_along(surface_, trial.both, z, bounds_, verdict))
+        return trial;
+    trial.frame = verdict.frame;
     if (!verdict.pieces.empty()) {
         auto main = std::max_element(verdict.pieces.begin(), verdict.pieces.end(),
                                      [&](const Region &a, const Region &b) {
                                          return texels(a) < texels(b);
                                      });
         const double less = std::min(texels_[offer.a], texels_[offer.b]);
-        if (texels(both) - texels(*main) > std::min(LOOSE_TEXELS, LOOSE_SHARE * less))
-            return false;
-        both = std::move(*main);
+        if (texels(trial.both) - texels(*main) > std::min(LOOSE_TEXELS, LOOSE_SHARE * less))
+            return trial;
+        trial.both = std::move(*main);
         verdict.pieces.erase(main);
-        frame = make_frame(surface_.mesh, both.triangles, z);
-        std::move(verdict.pieces.begin(), verdict.pieces.end(), std::back_inserter(loose_));
+        trial.frame = make_frame(surface_.mesh, trial.both.triangles, z);
+        trial.loose = std::move(verdict.pieces);
     }
-    frames_[offer.a] = frame;
-    regions_[offer.a] = std::move(both);
-    regions_[offer.b] = {};
-    return true;
+    trial.fits = true;
+    return trial;
 }
 
 /* The second of two charts is now the first's. */
-void Merger::adopt(const Offer &offer)
+void Merger::adopt(const Offer &offer, Trial &trial)
 {
     const auto &[length, a, b, age] = offer;
+    for (uint32_t t : regions_[b].triangles)
+        owner_[t] = a;
+    for (const Region &region : trial.loose)
+        for (uint32_t t : region.triangles)
+            owner_[t] = NO_TRIANGLE;
+    std::move(trial.loose.begin(), trial.loose.end(), std::back_inserter(loose_));
+    frames_[a] = trial.frame;
+    regions_[a] = std::move(trial.both);
+    regions_[b] = {};
     outline_[a] += outline_[b] - 2 * length;
     texels_[a] += texels_[b];
     ++age_[a];
@@ -180,8 +222,10 @@ void Merger::adopt(const Offer &offer)
     border_[a].erase(b);
     border_[b].erase(a);
     for (const auto &[other, border] : border_[b]) {
-        border_[a][other] += border;
-        border_[other][a] += border;
+        Border &ours = border_[a][other];
+        ours.length += border.length;
+        ours.refused |= border.refused;
+        border_[other][a] = ours;
         border_[other].erase(b);
     }
     border_[b].clear();
@@ -189,19 +233,23 @@ void Merger::adopt(const Offer &offer)
         this->offer(a, other);
 }
 
-std::vector<Region> Merger::run()
+std::vector<Region> Merger::run(Task &task)
 {
     measure();
     for (uint32_t a = 0; a < regions_.size(); ++a)
         for (const auto &[b, border] : border_[a])
             if (a < b)
                 offer(a, b);
-    while (!queue_.empty()) {
-        Offer best = queue_.top();
-        queue_.pop();
-        const bool current = age_[best.a] + age_[best.b] == best.age && border_[best.a].count(best.b);
-        if (current && merge(best))
-            adopt(best);
+    for (std::vector<Offer> best; !(best = best_offers()).empty();) {
+        std::vector<Trial> trials(best.size());
+        task.parallel(best.size(), [&](size_t i) { trials[i] = try_offer(best[i]); }, 0, 0);
+        for (size_t i = 0; i < best.size(); ++i) {
+            const auto [a, b] = std::pair(best[i].a, best[i].b);
+            if (trials[i].fits)
+                adopt(best[i], trials[i]);
+            else
+                border_[a][b].refused = border_[b][a].refused = true;
+        }
     }
     size_t kept = 0;
     for (size_t i = 0; i < regions_.size(); ++i) {
@@ -218,9 +266,10 @@ std::vector<Region> Merger::run()
 } // namespace
 
 std::vector<Region> merge_charts(const Surface &surface, const Bounds &bounds,
-                                 std::vector<Region> &regions, std::vector<Frame> &frames)
+                                 std::vector<Region> &regions, std::vector<Frame> &frames,
+                                 Task &task)
 {
-    return Merger(surface, bounds, regions, frames).run();
+    return Merger(surface, bounds, regions, frames).run(task);
 }
 
 } // namespace gtx

@@ -226,7 +226,7 @@ std::vector<Frame> split_for_length(const Surface &surface, const ChartOptions &
 void merge_all(const Surface &surface, std::vector<Region> &regions, std::vector<Frame> &frames,
                const Bounds &bounds, Task &task)
 {
-    std::vector<Region> loose = merge_charts(surface, bounds, regions, frames);
+    std::vector<Region> loose = merge_charts(surface, bounds, regions, frames, task);
     std::vector<Frame> loose_frames;
     split_all(surface, loose, loose_frames, bounds, task);
     std::move(loose.begin(), loose.end(), std::back_inserter(regions));

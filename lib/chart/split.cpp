@@ -37,7 +37,7 @@ Candidate try_axis(const Surface &surface, const Region &region, const Vec3d &z,
         size += surface.facets[t].size;
         if (dot(Vec3d(surface.facets[t].normal), z) < STEEP_COSINE)
             steep += surface.facets[t].size;
-        out.inverted = out.inverted || is_inverted(surface, t, z, bounds.pitch);
+        out.inverted = out.inverted || leans_back(surface, t, z, bounds.pitch);
     }
     out.steep = region.size() > 1 && steep > STEEP_AREA * size;
     out.frame = make_frame(surface.mesh, region.triangles, z);
@@ -201,6 +201,14 @@ bool is_inverted(const Surface &surface, uint32_t t, const Vec3d &z, double pitc
 {
     return dot(Vec3d(surface.normal[t]), z) <= 0 && !surface.junk[t] &&
            -dot(surface.mesh.area_vector(t), z) / 2 > pitch * pitch;
+}
+
+bool leans_back(const Surface &surface, uint32_t t, const Vec3d &z, double pitch)
+{
+    constexpr double WALL = 4; /* texels: their sides are seen, if not their tops */
+    return is_inverted(surface, t, z, pitch) ||
+           (dot(Vec3d(surface.normal[t]), z) <= 0 && !surface.junk[t] &&
+            length(surface.mesh.area_vector(t)) / 2 > WALL * pitch * pitch);
 }
 
 bool fits_along(const Surface &surface, const Region &region, const Vec3d &z, const Bounds &bounds,

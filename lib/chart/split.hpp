@@ -17,8 +17,8 @@ struct Verdict {
     std::vector<Region> pieces;  /* connected, at least two; or none: the region is a chart */
 };
 
-/* Whether a region is a chart along unit `z`, but for its walls: `pieces` if there are any, of which
- * none has another axis yet. */
+/* Whether a region is a chart along unit `z`, but for its walls: `pieces` if there are any, of
+ * which none has another axis yet. */
 bool fits_along(const Surface &surface, const Region &region, const Vec3d &z, const Bounds &bounds,
                 Verdict &verdict);
 
@@ -27,5 +27,8 @@ Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds
 
 /* Core triangles with n.z <= 0 and a projected area over a texel, junk left out. */
 bool is_inverted(const Surface &surface, uint32_t triangle, const Vec3d &z, double pitch);
+
+/* Likewise, or a wall of some texels that leans back: no chart should have it. */
+bool leans_back(const Surface &surface, uint32_t triangle, const Vec3d &z, double pitch);
 
 } // namespace gtx
