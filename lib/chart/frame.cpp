@@ -208,6 +208,23 @@ Vec3d ball_axis(const std::vector<Vec3f> &normals)
     return normalize(Vec3d(centre));
 }
 
+/* Puts triangles that turn farthest from an axis first, which are a small share of `size`, and tells
+ * how many. Only as many are sorted as that takes. */
+size_t drop_deviants(const Surface &surface, float size,
+                     std::vector<std::pair<float, uint32_t>> &order)
+{
+    for (size_t sorted = 64;; sorted *= 4) {
+        const auto end = order.begin() + ptrdiff_t(std::min(sorted, order.size()));
+        std::partial_sort(order.begin(), end, order.end());
+        float dropped = 0;
+        for (auto i = order.begin(); i != end; ++i)
+            if ((dropped += surface.facets[i->second].size) > DEVIANT_AREA * size)
+                return size_t(i - order.begin());
+        if (end == order.end())
+            return 0;
+    }
+}
+
 /* Moves the origin of a frame and sets its extents, so that it holds the triangles. */
 void enclose(const Mesh &mesh, const std::vector<uint32_t> &triangles, Frame &frame)
 {
@@ -271,14 +288,10 @@ Vec3d cone_axis(const Surface &surface, const std::vector<uint32_t> &triangles)
     std::vector<std::pair<float, uint32_t>> order;
     for (uint32_t t : triangles)
         order.emplace_back(dot(surface.facets[t].normal, Vec3f(axis)), t);
-    std::make_heap(order.begin(), order.end(), std::greater<>());
-    auto end = order.end(); /* of those that stay */
-    for (float dropped = surface.facets[order[0].second].size; dropped <= DEVIANT_AREA * size;
-         dropped += surface.facets[order[0].second].size)
-        std::pop_heap(order.begin(), end--, std::greater<>());
+    const size_t first_kept = drop_deviants(surface, size, order);
     normals.clear();
-    for (auto kept = order.begin(); kept != end; ++kept)
-        normals.push_back(surface.facets[kept->second].normal);
+    for (size_t i = first_kept; i < order.size(); ++i)
+        normals.push_back(surface.facets[order[i].second].normal);
     axis = ball_axis(normals);
     return axis == Vec3d() ? Vec3d(surface.facets[triangles[0]].normal) : axis;
 }
