@@ -94,7 +94,7 @@ $(out)/%.o: %.cpp
 	$(Q)$(CXX) $(cxxflags) $(call room_flags,$<) $(CXXFLAGS) -c $< -o $@
 
 # Shaders travel inside the library: one byte array a file and a table of names.
-shaders := $(sort $(wildcard shaders/*.glsl shaders/*.vert shaders/*.frag shaders/*.comp))
+shaders := $(sort $(wildcard shaders/*.glsl shaders/*.vert shaders/*.frag))
 $(out)/gen/shader_sources.c: $(shaders) Makefile
 	@mkdir -p $(@D)
 	$(say) GEN $@
