@@ -180,7 +180,7 @@ static PatchMaps encode_sheet(const Job &job, const Chart &chart, const Sheet &s
 }
 
 /* A few cells less, or more, along a side that rounding to a multiple of `grain` would fill up with
- * empty texels; between two cuts texels stay those of the neighbours. */
+ * empty texels. */
 static bool refit(const Sheet &sheet, int grain, Chart &chart)
 {
     constexpr int MOST_LESS = 3;
@@ -188,8 +188,7 @@ static bool refit(const Sheet &sheet, int grain, Chart &chart)
     bool changed = false;
     for (int axis = 0; axis < 2; ++axis) {
         const int over = (axis ? crop.h : crop.w) % grain, cells = int(chart.cells[axis]);
-        const bool ends = std::isinf(chart.clip_low[axis]) || std::isinf(chart.clip_high[axis]);
-        if (!ends || !over || cells <= grain)
+        if (!over || cells <= grain)
             continue;
         chart.cells[axis] = unsigned(over <= MOST_LESS ? cells - over : cells + grain - over);
         changed = true;

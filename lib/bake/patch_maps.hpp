@@ -21,7 +21,7 @@ constexpr double OVERLAP = 1;
 /* Where the model itself ends, up to this many texels beyond its border: nobody else's sheet starts
  * there. */
 constexpr double BORDER_SHOWN = 0.1;
-/* Beyond a straight cut this is enough: the neighbour's sheet has the same texels. */
+/* Beyond a straight cut this is enough: the neighbour's sheet is along the same axis, and crosses it. */
 constexpr double CUT_OVERLAP = 0.15;
 
 /* Lengths of a record are floats, and readers square them. */

@@ -96,15 +96,12 @@ void Harvest::descend(const CutNode &node, std::vector<Piece> pieces)
         descend(tree_.nodes[size_t(node.child[side])], std::move(inside[side]));
 }
 
-/* Texels that rounding would leave empty where the chart itself ends: they resolve it finer, twice as
- * fine at most. Between two cuts texels stay those of the neighbours. */
+/* Texels that rounding would leave empty: they resolve the chart finer, twice as fine at most. */
 unsigned Harvest::spare_cells(const CutNode &node, int axis) const
 {
     const size_t low = size_t(2 * axis);
     const bool ends[2] = {!node.cuts[low] || node.tight.low[axis] > node.region.low[axis],
                           !node.cuts[low + 1] || node.tight.high[axis] < node.region.high[axis]};
-    if (!ends[0] && !ends[1])
-        return 0;
     const unsigned core = unsigned(node.tight.side(axis));
     const unsigned side = core + plan_.overlap[ends[0]] + plan_.overlap[ends[1]];
     return std::min(core, (plan_.grain - side % plan_.grain) % plan_.grain);
