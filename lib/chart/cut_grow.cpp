@@ -12,8 +12,8 @@ constexpr int LEAST_CELLS = 4;         /* along a side that was cut */
 constexpr double LEAST_SIDE = 0.1;     /* of a square patch's */
 constexpr double RELIEF_COST = 20;     /* of height steps beside texels, both squared */
 constexpr double RANGE = 4;            /* heights lie within as many standard deviations */
-constexpr double SMALLEST_SHARE = 1.0 / 16; /* of a patch's texels: cut no further */
-constexpr double SMALLEST_TRIED = 1.0 / 4;  /* likewise, where a turn of the frame is only tried */
+constexpr double SMALLEST_SHARE = 1.0 / 4; /* of a patch's texels: cut no further */
+constexpr double SMALLEST_TRIED = 1.0 / 4; /* likewise, where a turn of the frame is only tried */
 constexpr double PATCH_PRICE = 0.1;    /* likewise: what one more patch has to save */
 constexpr double AHEAD_SHARE = 16;     /* likewise: larger nodes are far from their leaves yet */
 constexpr size_t CANDIDATES = 6;       /* cuts whose next cuts are looked at */
@@ -126,7 +126,7 @@ struct Lines {
 class Grower {
 public:
     Grower(const Relief &relief, const CutPlan &plan, double share)
-        : relief_(relief), plan_(plan), smallest_((relief.coarse > 1 ? SMALLEST_TRIED : SMALLEST_SHARE) * share),
+        : relief_(relief), plan_(plan), smallest_(SMALLEST_SHARE * share),
           price_(PATCH_PRICE * share), ahead_(relief.coarse > 1 ? 0 : AHEAD_SHARE * share),
           least_(std::max(LEAST_CELLS, int(LEAST_SIDE * std::sqrt(share))) / relief.coarse)
     {
