@@ -38,8 +38,20 @@ std::vector<uint32_t> vertices_of(const Mesh &mesh, const std::vector<uint32_t> 
     out.reserve(triangles.size() * 3);
     for (uint32_t t : triangles)
         out.insert(out.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
-    std::sort(out.begin(), out.end());
-    out.erase(std::unique(out.begin(), out.end()), out.end());
+    const auto [least, greatest] = std::minmax_element(out.begin(), out.end());
+    const uint32_t low = *least, high = *greatest;
+    if ((high - low) / 64 > out.size()) {
+        std::sort(out.begin(), out.end());
+        out.erase(std::unique(out.begin(), out.end()), out.end());
+        return out;
+    }
+    std::vector<uint64_t> used((high - low) / 64 + 1); /* a bit each: indices lie close together */
+    for (uint32_t vertex : out)
+        used[(vertex - low) / 64] |= uint64_t(1) << (vertex - low) % 64;
+    out.clear();
+    for (uint32_t word = 0; word < used.size(); ++word)
+        for (uint64_t bits = used[word]; bits; bits &= bits - 1)
+            out.push_back(low + 64 * word + uint32_t(__builtin_ctzll(bits)));
     return out;
 }
 
