@@ -83,12 +83,17 @@ static Grid fit_grid(const Mesh &mesh, const Chart &chart, double pitch, double 
     return grid;
 }
 
+static void lay_corners(const Mesh &mesh, const Grid &grid, FlatTriangle &flat)
+{
+    for (int k = 0; k < 3; ++k)
+        flat.corner[k] = grid.texel(mesh.position(flat.source, k));
+}
+
 static FlatTriangle flat_triangle(const Mesh &mesh, const Grid &grid, uint32_t source)
 {
     FlatTriangle flat;
     flat.source = source;
-    for (int k = 0; k < 3; ++k)
-        flat.corner[k] = grid.texel(mesh.position(source, k));
+    lay_corners(mesh, grid, flat);
     flat.front = flat.signed_area() > 0;
     return flat;
 }
@@ -138,6 +143,13 @@ FlatChart flatten(const Mesh &mesh, const Neighbours &neighbours, const Chart &c
         }
     }
     return flat;
+}
+
+void flatten_again(const Mesh &mesh, const Chart &chart, FlatChart &flat)
+{
+    flat.grid = fit_grid(mesh, chart, 0, 1);
+    for (FlatTriangle &t : flat.triangles)
+        lay_corners(mesh, flat.grid, t);
 }
 
 } // namespace gtx::baking

@@ -138,10 +138,10 @@ static void quantise(const Grid &grid, const Crop &crop, const Cover &cover,
     fill_trim(maps);
 }
 
-static Sheet lay_sheet(const Job &job, const Chart &chart, double finer)
+static Sheet lay_sheet(const Job &job, FlatChart flat)
 {
     Sheet s;
-    s.flat = flatten(job.mesh, job.neighbours, chart, job.pitch, finer);
+    s.flat = std::move(flat);
     if (job.options.extractor)
         s.rendering = job.options.extractor->render(job.mesh, s.flat);
     Cover core = job.options.extractor ? core_of(s.flat, s.rendering) : raster_core(s.flat);
@@ -200,12 +200,17 @@ static bool refit(const Sheet &sheet, int grain, Chart &chart)
 PatchMaps bake_chart(const Job &job, const Chart &chart)
 {
     constexpr double ALLOWED = 0.01, FINER = 1.4;
-    Sheet sheet = lay_sheet(job, chart, 1);
+    auto flat = [&](double finer) {
+        return flatten(job.mesh, job.neighbours, chart, job.pitch, finer);
+    };
+    Sheet sheet = lay_sheet(job, flat(1));
     Chart fitted = chart;
-    if (refit(sheet, 1 << (job.options.mips - 1), fitted))
-        sheet = lay_sheet(job, fitted, 1);
+    if (refit(sheet, 1 << (job.options.mips - 1), fitted)) {
+        flatten_again(job.mesh, fitted, sheet.flat);
+        sheet = lay_sheet(job, std::move(sheet.flat));
+    }
     if (fit_heights(sheet.flat, sheet.support, sheet.cover) > ALLOWED) {
-        sheet = lay_sheet(job, chart, FINER);
+        sheet = lay_sheet(job, flat(FINER));
         fit_heights(sheet.flat, sheet.support, sheet.cover);
     }
     return encode_sheet(job, chart, sheet);

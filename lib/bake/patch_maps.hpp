@@ -81,6 +81,8 @@ struct FlatChart {
 /* Lays a chart out at the model's pitch, or `finer` times as fine. */
 FlatChart flatten(const Mesh &mesh, const Neighbours &neighbours, const Chart &chart, double pitch,
                   double finer);
+/* The same triangles in another number of cells, those that the chart has now. */
+void flatten_again(const Mesh &mesh, const Chart &chart, FlatChart &flat);
 
 /* Texels of depth between neighbouring texels beyond which the surface must be seen to lead from
  * one to the other: they may lie on two sheets, side by side only in projection. */
