@@ -58,7 +58,7 @@ private:
     void descend(const CutNode &node, std::vector<Piece> pieces);
     void make_patch(const CutNode &node, const std::vector<Piece> &pieces);
     void lay_frame(const CutNode &node, Chart &chart) const;
-    unsigned spare_cells(const CutNode &node, int axis) const;
+    unsigned fitted_cells(const CutNode &node, int axis) const;
     void clip(const CutNode &node, Chart &chart) const;
 
     const Surface &surface_;
@@ -96,15 +96,19 @@ void Harvest::descend(const CutNode &node, std::vector<Piece> pieces)
         descend(tree_.nodes[size_t(node.child[side])], std::move(inside[side]));
 }
 
-/* Texels that rounding would leave empty: they resolve the chart finer, twice as fine at most. */
-unsigned Harvest::spare_cells(const CutNode &node, int axis) const
+/* Sides come in multiples of the grain: the core in a few cells less, or in so many more that its
+ * texels fill them. */
+unsigned Harvest::fitted_cells(const CutNode &node, int axis) const
 {
     const size_t low = size_t(2 * axis);
     const bool ends[2] = {!node.cuts[low] || node.tight.low[axis] > node.region.low[axis],
                           !node.cuts[low + 1] || node.tight.high[axis] < node.region.high[axis]};
     const unsigned core = unsigned(node.tight.side(axis));
     const unsigned side = core + plan_.overlap[ends[0]] + plan_.overlap[ends[1]];
-    return std::min(core, (plan_.grain - side % plan_.grain) % plan_.grain);
+    const unsigned over = side % plan_.grain;
+    if (8 * over < 3 * plan_.grain && core > plan_.grain)
+        return core - over;
+    return core + std::min(core, (plan_.grain - over) % plan_.grain);
 }
 
 void Harvest::lay_frame(const CutNode &node, Chart &chart) const
@@ -122,7 +126,7 @@ void Harvest::lay_frame(const CutNode &node, Chart &chart) const
     for (int a = 0; a < 2; ++a) {
         low[a] = relief.corner[a] + node.tight.low[a] * pitch_;
         high[a] = relief.corner[a] + node.tight.high[a] * pitch_;
-        chart.cells[a] = unsigned(node.tight.side(a)) + spare_cells(node, a);
+        chart.cells[a] = fitted_cells(node, a);
     }
     chart.frame = part_of_frame(frame_, low, high, points);
 }
@@ -134,10 +138,10 @@ void Harvest::clip(const CutNode &node, Chart &chart) const
         const int low = node.tight.low[a] - node.region.low[a];
         const int high = node.region.high[a] - node.tight.high[a];
         if (node.cuts[size_t(2 * a)])
-            chart.clip_low[a] = -(low ? std::max<double>(low, ROOM) : 0) * cell;
+            chart.clip_low[a] = low ? -std::max(low * pitch_, ROOM * cell) : 0;
         if (node.cuts[size_t(2 * a + 1)])
             chart.clip_high[a] =
-                chart.frame.extent[a] + (high ? std::max<double>(high, ROOM) : 0) * cell;
+                chart.frame.extent[a] + (high ? std::max(high * pitch_, ROOM * cell) : 0);
     }
 }
 

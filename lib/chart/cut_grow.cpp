@@ -1,7 +1,7 @@
 /* Grows k-d trees over charts, trading texels against relief.
  *
  * A node's cut is the one whose two sides would take the fewest texels, after the best next cut of
- * each: what counts is how the sides will fill their rectangles, whose sizes come in steps. */
+ * each: what counts is how the sides will fill their rectangles. */
 #include "chart/cut_tree.hpp"
 
 namespace gtx {
@@ -130,8 +130,6 @@ public:
           price_(PATCH_PRICE * share), ahead_(relief.coarse > 1 ? 0 : AHEAD_SHARE * share),
           least_(std::max(LEAST_CELLS, int(LEAST_SIDE * std::sqrt(share))) / relief.coarse)
     {
-        for (unsigned n = 0; n <= plan.side; ++n)
-            rounded_.push_back(rounded(n));
     }
 
     std::vector<CutNode> grow()
@@ -160,17 +158,11 @@ private:
         double patches, texels = area(s, region, cuts, patches);
         return texels * relief(s) + patches * price_;
     }
-    double rounded(unsigned n) const /* on average, where the grid is too coarse to tell */
-    {
-        const unsigned grain = plan_.grain;
-        return relief_.coarse > 1 ? n + (grain - 1) / 2. : (n + grain - 1) / grain * grain;
-    }
 
     const Relief &relief_;
     const CutPlan &plan_;
     double smallest_, price_, ahead_;
     int least_;
-    std::vector<double> rounded_;
     std::vector<Slice> above_; /* of the sweep at hand */
 };
 
@@ -183,10 +175,10 @@ double Grower::texels(const Rect &box, const Cuts &cuts, double &patches) const
         unsigned n = unsigned(box.side(axis) * relief_.coarse) +
                      plan_.overlap[!cuts[size_t(2 * axis)]] +
                      plan_.overlap[!cuts[size_t(2 * axis + 1)]];
-        double side = n < rounded_.size() ? rounded_[n] : INFINITY;
-        if (side > plan_.side) {
-            unsigned rest = 2 * plan_.overlap[0], parts = 1 + (n - 1) / (plan_.side - rest);
-            side = parts * rounded((n + parts - 1) / parts + rest);
+        double side = n;
+        if (n > plan_.side) {
+            const unsigned rest = 2 * plan_.overlap[0], parts = 1 + (n - 1) / (plan_.side - rest);
+            side += parts * rest;
             patches *= parts;
         }
         total *= side;

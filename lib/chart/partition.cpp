@@ -282,7 +282,7 @@ void make_charts(Surface surface, const ChartOptions &options, uint32_t count, T
     report_final(surface, regions, frames, task, out);
     CutPlan plan = {wanted,
                     bounds.pitch,
-                    std::max(options.resolution, options.grain),
+                    std::max(options.resolution / options.grain, 1u) * options.grain,
                     options.grain,
                     {options.overlap[0], options.overlap[1]},
                     options.height_bits == 8 ? 254. : 65534.};
