@@ -135,13 +135,14 @@ void Harvest::clip(const CutNode &node, Chart &chart) const
 {
     for (int a = 0; a < 2; ++a) {
         const double cell = chart.frame.extent[a] / chart.cells[a];
+        const double texel = chart.frame.extent[a] / node.tight.side(a); /* of the tree's grid */
         const int low = node.tight.low[a] - node.region.low[a];
         const int high = node.region.high[a] - node.tight.high[a];
         if (node.cuts[size_t(2 * a)])
-            chart.clip_low[a] = low ? -std::max(low * pitch_, ROOM * cell) : 0;
+            chart.clip_low[a] = low ? -std::max(low * texel, ROOM * cell) : 0;
         if (node.cuts[size_t(2 * a + 1)])
             chart.clip_high[a] =
-                chart.frame.extent[a] + (high ? std::max(high * pitch_, ROOM * cell) : 0);
+                chart.frame.extent[a] + (high ? std::max(high * texel, ROOM * cell) : 0);
     }
 }
 
