@@ -117,18 +117,23 @@ bool gtx_find(out gtx_surface s)
     uvec4 head = texelFetch(gtx_stream, tile.y * int(gtx_place[0].x) + tile.x);
     int k = int(head.x), end = int(head.y), patch_at = -1;
     s.hit.t = 1e30;
-    while (k < end) {
+    do {
         /* All rays of a processor look for a slab, and then all cast. */
-        vec2 within, inverse = gtx_inverse(range);
-        int slab = 0;
-        bool meets = false;
-        while (k < end && !meets) {
+        vec2 within = vec2(1.0, 0.0), inverse = gtx_inverse(range);
+        int slab = 0, stop = end;
+        do {
             uvec4 entry = texelFetch(gtx_stream, k);
-            slab = int(entry.x);
-            within = gtx_meets(slab, pixel, inverse);
-            meets = within.x <= within.y;
-            k = uintBitsToFloat(entry.y) > range.y ? end : k + 1;
-        }
+            vec2 meeting = gtx_meets(int(entry.x), pixel, inverse);
+            bool look = k < stop, meets = look && meeting.x <= meeting.y;
+            if (meets) {
+                slab = int(entry.x);
+                within = meeting;
+            }
+            if (look)
+                k = uintBitsToFloat(entry.y) > range.y ? end : k + 1;
+            stop = meets ? k : stop;
+        } while (k < stop);
+        bool meets = within.x <= within.y;
         /* A little farther than the slab, for rounding. */
         within = gtx_inverse(within);
         within += vec2(-2e-6, 2e-6) * abs(within);
@@ -142,7 +147,7 @@ bool gtx_find(out gtx_surface s)
             s.ray = ray;
             s.hit = hit;
         }
-    }
+    } while (k < end);
     if (patch_at < 0)
         return false;
     zw += s.hit.t * zw_step;
