@@ -187,30 +187,60 @@ static void list_slabs(const gtx_tiles *t, uint32_t columns, uint32_t (*heads)[4
         }
 }
 
-/* Two triangles over tiles x0..x1 of a row. */
-static void add_corners(gtx_tiles *t, uint32_t x0, uint32_t x1, uint32_t y)
+/* Two triangles over tiles x0..x1 of rows y0..y1. */
+static void add_corners(gtx_tiles *t, uint32_t x0, uint32_t x1, uint32_t y0, uint32_t y1)
 {
     static const uint8_t order[6][2] = {{0, 0}, {1, 0}, {0, 1}, {0, 1}, {1, 0}, {1, 1}};
     uint16_t (*corner)[2] = (uint16_t (*)[2])t->corners.data + t->corner_count;
     for (int k = 0; k < 6; ++k) {
         corner[k][0] = (uint16_t)(TILE * (order[k][0] ? x1 + 1 : x0));
-        corner[k][1] = (uint16_t)(TILE * (y + order[k][1]));
+        corner[k][1] = (uint16_t)(TILE * (order[k][1] ? y1 + 1 : y0));
     }
     t->corner_count += 6;
 }
 
-/* Outlines the tiles that have a slab. */
+/* A tile in rows y0..y1 of tiles. */
+typedef struct band {
+    const uint32_t (*heads)[4];
+    uint32_t columns, y0, y1;
+} band;
+
+static bool is_empty(const band *b, uint32_t x, uint32_t y)
+{
+    return !b->heads[y * b->columns + x][2];
+}
+
+/* Whether all of a column have a slab. */
+static bool is_full(const band *b, uint32_t x)
+{
+    uint32_t y = b->y0;
+    while (y <= b->y1 && !is_empty(b, x, y))
+        ++y;
+    return y > b->y1;
+}
+
+/* Outlines the tiles that have a slab. Along the diagonals of two triangles processors cast twice:
+ * rectangles are as high as a band where they can be. */
 static void outline(gtx_tiles *t, uint32_t columns, uint32_t rows, const uint32_t (*heads)[4])
 {
+    enum { BAND = 8 };
     t->corner_count = 0;
-    for (uint32_t y = 0; y < rows; ++y)
-        for (uint32_t x = 0, from = 0; x < columns; ++x) {
-            const uint32_t (*head)[4] = &heads[y * columns + x];
-            if (!head[0][2])
-                from = x + 1;
-            else if (x + 1 == columns || !head[1][2])
-                add_corners(t, from, x, y);
+    for (band b = {heads, columns, 0, 0}; b.y0 < rows; b.y0 += BAND) {
+        b.y1 = (b.y0 + BAND < rows ? b.y0 + BAND : rows) - 1;
+        for (uint32_t x = 0, end; x < columns; x = end) {
+            const bool full = is_full(&b, x);
+            for (end = x + 1; end < columns && is_full(&b, end) == full; ++end)
+                continue;
+            if (full)
+                add_corners(t, x, end - 1, b.y0, b.y1);
+            for (uint32_t y = b.y0; y <= b.y1 && !full; ++y)
+                for (uint32_t i = x, from = x; i < end; ++i)
+                    if (is_empty(&b, i, y))
+                        from = i + 1;
+                    else if (i + 1 == end || is_empty(&b, i + 1, y))
+                        add_corners(t, from, i, y, y);
         }
+    }
 }
 
 bool gtx_tiles_fill(gtx_renderer *renderer, const gtx_view *view, const gtx_frame *frame,
