@@ -38,8 +38,8 @@ void gtx_tiles_free(gtx_renderer *renderer)
 
 static void extend(float range[2], float value)
 {
-    range[0] = fminf(range[0], value);
-    range[1] = fmaxf(range[1], value);
+    range[0] = value < range[0] ? value : range[0];
+    range[1] = value > range[1] ? value : range[1];
 }
 
 /* The tiles along an axis of which some pixel's centre is within; false when there is none. */
