@@ -29,7 +29,7 @@ static void *reserve(gtx_renderer *renderer, gtx_scratch *scratch, size_t count,
 void gtx_tiles_free(gtx_renderer *renderer)
 {
     gtx_tiles *t = &renderer->tiles;
-    gtx_scratch *all[] = {&t->seen, &t->heads, &t->records, &t->slabs, &t->lists, &t->corners};
+    gtx_scratch *all[] = {&t->seen, &t->heads, &t->records, &t->slabs, &t->lists, &t->centres};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
         gtx_free_array(&renderer->allocator, all[i]->data, all[i]->size, 1);
         *all[i] = (gtx_scratch){0};
@@ -187,60 +187,23 @@ static void list_slabs(const gtx_tiles *t, uint32_t columns, uint32_t (*heads)[4
         }
 }
 
-/* Two triangles over tiles x0..x1 of rows y0..y1. */
-static void add_corners(gtx_tiles *t, uint32_t x0, uint32_t x1, uint32_t y0, uint32_t y1)
+static uint16_t centre_of(uint32_t tile, uint32_t pixels)
 {
-    static const uint8_t order[6][2] = {{0, 0}, {1, 0}, {0, 1}, {0, 1}, {1, 0}, {1, 1}};
-    uint16_t (*corner)[2] = (uint16_t (*)[2])t->corners.data + t->corner_count;
-    for (int k = 0; k < 6; ++k) {
-        corner[k][0] = (uint16_t)(TILE * (order[k][0] ? x1 + 1 : x0));
-        corner[k][1] = (uint16_t)(TILE * (order[k][1] ? y1 + 1 : y0));
-    }
-    t->corner_count += 6;
+    const uint32_t centre = TILE * tile + TILE / 2;
+    return (uint16_t)(centre < pixels ? centre : pixels - 1); /* outside points are not drawn */
 }
 
-/* A tile in rows y0..y1 of tiles. */
-typedef struct band {
-    const uint32_t (*heads)[4];
-    uint32_t columns, y0, y1;
-} band;
-
-static bool is_empty(const band *b, uint32_t x, uint32_t y)
+/* Centres of the tiles that have a slab. */
+static void find_centres(gtx_tiles *t, const gtx_camera_rows *c, uint32_t columns, uint32_t rows)
 {
-    return !b->heads[y * b->columns + x][2];
-}
-
-/* Whether all of a column have a slab. */
-static bool is_full(const band *b, uint32_t x)
-{
-    uint32_t y = b->y0;
-    while (y <= b->y1 && !is_empty(b, x, y))
-        ++y;
-    return y > b->y1;
-}
-
-/* Outlines the tiles that have a slab. Along the diagonals of two triangles processors cast twice:
- * rectangles are as high as a band where they can be. */
-static void outline(gtx_tiles *t, uint32_t columns, uint32_t rows, const uint32_t (*heads)[4])
-{
-    enum { BAND = 8 };
-    t->corner_count = 0;
-    for (band b = {heads, columns, 0, 0}; b.y0 < rows; b.y0 += BAND) {
-        b.y1 = (b.y0 + BAND < rows ? b.y0 + BAND : rows) - 1;
-        for (uint32_t x = 0, end; x < columns; x = end) {
-            const bool full = is_full(&b, x);
-            for (end = x + 1; end < columns && is_full(&b, end) == full; ++end)
-                continue;
-            if (full)
-                add_corners(t, x, end - 1, b.y0, b.y1);
-            for (uint32_t y = b.y0; y <= b.y1 && !full; ++y)
-                for (uint32_t i = x, from = x; i < end; ++i)
-                    if (is_empty(&b, i, y))
-                        from = i + 1;
-                    else if (i + 1 == end || is_empty(&b, i + 1, y))
-                        add_corners(t, from, i, y, y);
-        }
-    }
+    const uint32_t (*head)[4] = t->heads.data;
+    uint16_t (*centre)[2] = t->centres.data;
+    for (uint32_t y = 0; y < rows; ++y)
+        for (uint32_t x = 0; x < columns; ++x, ++head)
+            if ((*head)[2]) {
+                (*centre)[0] = centre_of(x, c->width);
+                (*centre++)[1] = centre_of(y, c->height);
+            }
 }
 
 bool gtx_tiles_fill(gtx_renderer *renderer, const gtx_view *view, const gtx_frame *frame,
@@ -264,11 +227,10 @@ bool gtx_tiles_fill(gtx_renderer *renderer, const gtx_view *view, const gtx_fram
         return false;
     t->list_texels = (uint32_t)(texels - before);
     uint32_t (*lists)[4] = reserve(renderer, &t->lists, t->list_texels, sizeof *lists);
-    if (!lists ||
-        !reserve(renderer, &t->corners, 6 * (size_t)t->tile_count, 2 * sizeof(uint16_t)))
+    if (!lists || !reserve(renderer, &t->centres, t->tile_count, 2 * sizeof(uint16_t)))
         return false;
     list_slabs(t, columns, heads, lists);
-    outline(t, columns, rows, (const uint32_t (*)[4])heads);
+    find_centres(t, &c, columns, rows);
     t->place[PLACE_STREAM][0] = (float)columns;
     return true;
 }
