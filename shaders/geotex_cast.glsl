@@ -8,8 +8,8 @@
  * above count, from below only when the sheet is two-sided; a point outside the outline does not
  * count and the search goes on behind it. Takes no derivative.
  *
- * Processors that run rays side by side run the body of a loop until the last of them leaves it, and
- * some run it once more to see that all have left. So loops end with their condition, and a ray that
+ * Processors that run rays side by side run the body of a loop until the last of them leaves it,
+ * and some once more to see that all have left. So loops end with their condition, and a ray that
  * is through changes nothing any more: the condition is asked at the top too, from other values,
  * for compilers may not keep for such a ray what a loop merely computes. */
 

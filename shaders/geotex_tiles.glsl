@@ -1,4 +1,4 @@
-/* gtx_find by tiles: a pixel walks the slabs over its tile of 8 x 8 pixels nearest first and keeps
+/* gtx_find by tiles: a pixel walks the slabs over its tile of 4 x 4 pixels nearest first and keeps
  * the nearest hit, so that nothing behind it is cast. The mains find the surface as if a proxy had
  * been drawn.
  *
@@ -113,7 +113,7 @@ bool gtx_find(out gtx_surface s)
     gtx_clip(zw.x + gtx_depth.x * zw.y, zw_step.x + gtx_depth.x * zw_step.y, range.x, range.y);
     gtx_clip(zw.y - zw.x, zw_step.y - zw_step.x, range.x, range.y);
 
-    ivec2 tile = ivec2(pixel) >> 3;
+    ivec2 tile = ivec2(pixel) >> 2;
     uvec4 head = texelFetch(gtx_stream, tile.y * int(gtx_place[0].x) + tile.x);
     int k = int(head.x), end = int(head.y), patch_at = -1;
     s.hit.t = 1e30;

@@ -1,5 +1,5 @@
-/* Tiles over which an instance may be, as points: processors cast twice along the diagonal between
- * two triangles. Needs geotex_dialect.glsl, geotex_sheet.glsl and
+/* Points over the tiles that an instance may cover, four a point: along the diagonal between two
+ * triangles processors would cast twice. Needs geotex_dialect.glsl, geotex_sheet.glsl and
  * geotex_view.glsl before it. */
 uniform vec4 gtx_place[10];               /* as in geotex_tiles.glsl */
 

@@ -43,7 +43,7 @@ typedef struct gtx_costs {
     float cast_patch, cast_pixel;
 } gtx_costs;
 
-/* Casting by tiles: what an instance has in each square of 8 x 8 pixels is listed, nearest first, and
+/* Casting by tiles: what an instance has in each square of 4 x 4 pixels is listed, nearest first, and
  * a pixel casts its ray once and to the nearest patch alone. It takes what GTX_METHOD_CAST and AUTO
  * cast in views that tell their viewport_width, of instances one by one, in every pass but with an
  * engine's own shading; anything else, and OpenGL ES, is cast in fragments of proxies. */

@@ -16,6 +16,8 @@ void gtx_state_leave(const gtx_gl *gl, bool reversed)
     gl->BindVertexArray(0);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     bind_stream(gl, 0);
+    if (gl->TexBuffer)
+        gl->Disable(GL_PROGRAM_POINT_SIZE);
     for (gl_uint i = UNIT_CLEARED; i-- > 0;) {
         gl->ActiveTexture(GL_TEXTURE0 + i);
         gl->BindTexture(GL_TEXTURE_2D, 0);

@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TILE = 8 };
+/* Pixels along a tile, and along a point, which draws four tiles. */
+enum { TILE = 4, POINT = 2 * TILE };
 
 /* How far, in pixels, rounding may move a slab's outline. */
 static const float slack = 0.03f;
@@ -29,7 +30,7 @@ static void *reserve(gtx_renderer *renderer, gtx_scratch *scratch, size_t count,
 void gtx_tiles_free(gtx_renderer *renderer)
 {
     gtx_tiles *t = &renderer->tiles;
-    gtx_scratch *all[] = {&t->seen, &t->heads, &t->records, &t->slabs, &t->lists, &t->centres};
+    gtx_scratch *all[] = {&t->seen, &t->heads, &t->records, &t->slabs, &t->lists, &t->points};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
         gtx_free_array(&renderer->allocator, all[i]->data, all[i]->size, 1);
         *all[i] = (gtx_scratch){0};
@@ -187,22 +188,33 @@ static void list_slabs(const gtx_tiles *t, uint32_t columns, uint32_t (*heads)[4
         }
 }
 
-static uint16_t centre_of(uint32_t tile, uint32_t pixels)
+static uint16_t centre_of(uint32_t point, uint32_t pixels)
 {
-    const uint32_t centre = TILE * tile + TILE / 2;
+    const uint32_t centre = POINT * point + POINT / 2;
     return (uint16_t)(centre < pixels ? centre : pixels - 1); /* outside points are not drawn */
 }
 
-/* Centres of the tiles that have a slab. */
-static void find_centres(gtx_tiles *t, const gtx_camera_rows *c, uint32_t columns, uint32_t rows)
+/* Whether a point's tiles have a slab. */
+static bool has_slabs(const gtx_tiles *t, uint32_t x, uint32_t y, uint32_t columns, uint32_t rows)
 {
-    const uint32_t (*head)[4] = t->heads.data;
-    uint16_t (*centre)[2] = t->centres.data;
-    for (uint32_t y = 0; y < rows; ++y)
-        for (uint32_t x = 0; x < columns; ++x, ++head)
-            if ((*head)[2]) {
-                (*centre)[0] = centre_of(x, c->width);
-                (*centre++)[1] = centre_of(y, c->height);
+    const uint32_t (*heads)[4] = t->heads.data;
+    uint32_t any = 0;
+    for (uint32_t j = 2 * y; j < rows && j < 2 * y + 2; ++j)
+        for (uint32_t i = 2 * x; i < columns && i < 2 * x + 2; ++i)
+            any |= heads[j * columns + i][2];
+    return any > 0;
+}
+
+/* Centres of the points that draw the tiles that have a slab. */
+static void find_points(gtx_tiles *t, const gtx_camera_rows *c, uint32_t columns, uint32_t rows)
+{
+    uint16_t (*points)[2] = t->points.data;
+    t->point_count = 0;
+    for (uint32_t y = 0; 2 * y < rows; ++y)
+        for (uint32_t x = 0; 2 * x < columns; ++x)
+            if (has_slabs(t, x, y, columns, rows)) {
+                points[t->point_count][0] = centre_of(x, c->width);
+                points[t->point_count++][1] = centre_of(y, c->height);
             }
 }
 
@@ -227,10 +239,10 @@ bool gtx_tiles_fill(gtx_renderer *renderer, const gtx_view *view, const gtx_fram
         return false;
     t->list_texels = (uint32_t)(texels - before);
     uint32_t (*lists)[4] = reserve(renderer, &t->lists, t->list_texels, sizeof *lists);
-    if (!lists || !reserve(renderer, &t->centres, t->tile_count, 2 * sizeof(uint16_t)))
+    if (!lists || !reserve(renderer, &t->points, t->tile_count, 2 * sizeof(uint16_t)))
         return false;
     list_slabs(t, columns, heads, lists);
-    find_centres(t, &c, columns, rows);
+    find_points(t, &c, columns, rows);
     t->place[PLACE_STREAM][0] = (float)columns;
     return true;
 }
