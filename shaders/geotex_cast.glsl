@@ -6,7 +6,12 @@
  * First point of the sheet on origin + t * direction, t0 <= t <= t1, all in grid space, with
  * [t0, t1] within the sheet's box (gtx_clip_box). `direction` may have any length. Crossings from
  * above count, from below only when the sheet is two-sided; a point outside the outline does not
- * count and the search goes on behind it. Takes no derivative. */
+ * count and the search goes on behind it. Takes no derivative.
+ *
+ * Processors that run rays side by side run the body of a loop until the last of them leaves it,
+ * and some once more to see that all have left. So loops end with their condition, and a ray that
+ * is through changes nothing any more: the condition is asked at the top too, from other values,
+ * for compilers may not keep for such a ray what a loop merely computes. */
 
 /* The cell that a ray is in. x and y count in cells of the level. */
 struct gtx_walk {
@@ -53,7 +58,7 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
     vec2 first = vec2(sheet.first), final = vec2(sheet.last);
     vec2 last = vec2((sheet.size - 2) >> sheet.level);
     float fit = sheet.level > 0 ? width / (width - 1.0) : 1.0;
-    float end = (t1 - t0) * speed;
+    float limit = (t1 - t0) * speed;
     /* Drivers that draw on the CPU look up by place for less than they fetch. */
     vec2 texel = 1.0 / vec2(textureSize(gtx_cells, 0).xy);
     vec2 place = (vec2(sheet.cells) + 0.5) * texel;
@@ -63,37 +68,52 @@ bool gtx_cast(gtx_sheet sheet, vec3 origin, vec3 direction, float t0, float t1, 
     vec2 next = clamp(floor(o.xy), first, final);
     gtx_walk w;
     w.leave = 0.0;
-    w.known = w.then_above = false;
-    bool inside = true, found = false;
-    float s = 0.0;
+    w.known = w.then_above = w.pair = w.above = false;
+    bool inside = false, found = false;
+    float s = 0.0, end = limit; /* end: below 0 when there is no more to walk */
     hit.back = false;
-    /* The inner loop finds the next crossing and does no more: wide processors run the whole body
-     * of a loop, for all their rays, until the last of them is through. */
-    while (inside && !found) {
+    do {
+        /* The inner loop finds the next crossing and does no more. */
         bool crossing = false;
-        while (inside && !crossing) {
+        do {
+            bool going = end >= 0.0;
+            gtx_walk v = w;
             vec2 planes = (next + ahead - o.xy) * inverse;
-            w.cell = next;
-            w.enter = w.leave;
-            w.leave = max(w.enter, min(min(planes.x, planes.y), end));
+            v.cell = next;
+            v.enter = w.leave;
+            v.leave = max(v.enter, min(min(planes.x, planes.y), limit));
             vec4 height =
                 vec4(textureLod(gtx_cells, vec3(place + next * texel, float(sheet.page)), 0.0));
-            crossing = gtx_look(w, height, sheet.two_sided, last, fit, o, d);
-            next += planes.x <= planes.y ? vec2(way.x, 0.0) : vec2(0.0, way.y);
-            bool left = w.known && (w.above ? w.gap.x : -w.gap.x) > sheet.reach;
-            inside = w.leave < end && next == clamp(next, first, final) && !left;
-        }
+            bool crosses = gtx_look(v, height, sheet.two_sided, last, fit, o, d);
+            vec2 then = next + (planes.x <= planes.y ? vec2(way.x, 0.0) : vec2(0.0, way.y));
+            bool left = v.known && (v.above ? v.gap.x : -v.gap.x) > sheet.reach;
+            bool stays = v.leave < limit && then == clamp(then, first, final) && !left;
+            if (going) {
+                w = v;
+                next = then;
+                crossing = crosses;
+                inside = stays;
+            }
+            end = going && stays && !crosses ? end : -1.0;
+        } while (end >= 0.0);
         vec2 root = w.enter + clamp(gtx_roots(w.gap), 0.0, w.leave - w.enter);
-        hit.back = sheet.two_sided && !w.above;
-        s = hit.back ? root.y : root.x;
-        found = crossing && gtx_shows(sheet, (o.xy + s * d.xy) * texels.xy);
-        if (crossing && !found && w.pair && sheet.two_sided) { /* the other one is still to come */
+        bool back = sheet.two_sided && !w.above;
+        float at = back ? root.y : root.x;
+        bool shows = crossing && gtx_shows(sheet, (o.xy + at * d.xy) * texels.xy);
+        if (crossing) {
+            s = at;
+            hit.back = back;
+            found = shows;
+        }
+        bool again = crossing && !shows;
+        if (again && w.pair && sheet.two_sided) { /* the other one is still to come */
             next = w.cell;
             w.leave = s;
             w.then_above = hit.back;
             inside = true;
         }
-    }
+        end = again && inside ? limit : -1.0;
+    } while (end >= 0.0);
     hit.t = t0 + s / speed;
     hit.grid = (o + s * d) * texels;
     hit.level = sheet.level;

@@ -9,7 +9,8 @@
  *   program 0, vertex array 0, array and element buffers 0, active texture unit 0, textures (2D and
  *   2D array) and samplers 0 on units 0..7, depth test on, depth func LESS (GREATER when reversed),
  *   depth mask on, cull face off, cull mode BACK, front face CCW, blend off, colour mask all on.
- * Of OpenGL also, where gtx_tiling has it: buffer texture 0 on unit 8.
+ * Of OpenGL also, where gtx_tiling has it: buffer texture 0 on unit 8, program point size off; and
+ * the viewport is read.
  * It does not touch the framebuffer binding, viewport, scissor, stencil or clip control.
  *
  * OpenGL ES is recognised by its version string; there is nothing to tell. It encodes what is
@@ -42,7 +43,7 @@ typedef struct gtx_costs {
     float cast_patch, cast_pixel;
 } gtx_costs;
 
-/* Casting by tiles: what an instance has in each square of 8 x 8 pixels is listed, nearest first, and
+/* Casting by tiles: what an instance has in each square of 4 x 4 pixels is listed, nearest first, and
  * a pixel casts its ray once and to the nearest patch alone. It takes what GTX_METHOD_CAST and AUTO
  * cast in views that tell their viewport_width, of instances one by one, in every pass but with an
  * engine's own shading; anything else, and OpenGL ES, is cast in fragments of proxies. */

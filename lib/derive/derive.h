@@ -87,7 +87,7 @@ typedef struct gtx_slab {
     float low[2], high[2], slope[2], height[2], rise_x[2], rise_y[2];
 } gtx_slab;
 
-enum { GTX_SLAB_CELLS = 12 };
+enum { GTX_SLAB_CELLS = 8 };
 
 /* Slabs of a patch's level, one around each block of GTX_SLAB_CELLS^2 cells, in rows. The solid cells
  * are held, and neighbours overlap a little. gtx_slab_count says how many; it goes by the rectangle

@@ -112,6 +112,33 @@ static void viewports_of_any_place(void **state)
     subject_close(s, &shown);
 }
 
+/* With glClipControl, where the context has it. */
+static void pictures_that_stand_on_their_heads(void **state)
+{
+    STAGE_OR_SKIP(state);
+    const PFNGLCLIPCONTROLPROC clip_control =
+        (PFNGLCLIPCONTROLPROC)gtx_offscreen_load("glClipControl", NULL);
+    if (!clip_control)
+        skip();
+    subject shown = subject_open(s, fixture_sphere(2, 64, 8));
+    gtx_camera camera = camera_around(shown.asset);
+    gtx_view view = view_of(&camera);
+    view.level = 1;
+    view.method = GTX_METHOD_CAST;
+    clip_control(GL_UPPER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    stage_draw(s, &view, &shown.instance, 1);
+    keep(s);
+    by_tiles(&view);
+    stage_draw(s, &view, &shown.instance, 1);
+    clip_control(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    const int turned = differences(s);
+    keep(s);
+    stage_draw(s, &view, &shown.instance, 1);
+    if (turned > 10 || differences(s) < 100)
+        fail_msg("%d pixels differ, %d from the upright picture", turned, differences(s));
+    subject_close(s, &shown);
+}
+
 static void what_was_drawn_before_stays_in_front(void **state)
 {
     STAGE_OR_SKIP(state);
@@ -204,6 +231,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_same_picture),
         cmocka_unit_test(viewports_of_any_place),
+        cmocka_unit_test(pictures_that_stand_on_their_heads),
         cmocka_unit_test(what_was_drawn_before_stays_in_front),
         cmocka_unit_test(passes_have_one_depth),
         cmocka_unit_test(others_cast_in_fragments),
