@@ -17,24 +17,18 @@ bool gtx_filter_fits(gtx_section_kind kind, uint32_t filter)
            (filter <= GTX_FILTER_PLANES_PAETH && gtx_section_is_image(kind));
 }
 
-uint64_t gtx_undo_size(const gtx_section *section, gtx_map_shape image)
+uint64_t gtx_coded_size(const gtx_section *section)
 {
-    uint64_t texels = image.texel ? section->size / image.texel : 0;
-    switch (section->filter) {
-    case GTX_FILTER_NONE:
-    case GTX_FILTER_PAETH: return 0;
-    /* A byte a texel, and one for each of level 0. */
-    case GTX_FILTER_SURFACE:
-        return section->size + texels + (section->level ? texels << 2 * section->level : 0);
-    default: return section->size;
-    }
+    return section->filter > GTX_FILTER_PAETH ? section->size : 0;
 }
 
 uint64_t gtx_apply_size(const gtx_section *section, gtx_map_shape image)
 {
-    if (section->filter == GTX_FILTER_SURFACE)
-        return section->size + gtx_undo_size(section, image);
-    return section->filter ? section->size : 0;
+    if (section->filter != GTX_FILTER_SURFACE)
+        return section->filter ? section->size : 0;
+    /* The image with empty texels as the rules have them, marks of the level and of level 0. */
+    const uint64_t texels = section->size / image.texel;
+    return 2 * section->size + texels + (section->level ? texels << 2 * section->level : 0);
 }
 
 /* Images of bytes that are predicted on their own: pages, or planes of pages. */
