@@ -97,6 +97,7 @@ typedef struct gtx_tiles {
 
 struct gtx_renderer {
     gtx_allocator allocator;
+    gtx_jobs jobs;            /* the host's, or zeros */
     gtx_gl gl;
     void (*log)(const char *message, void *user);
     void *log_user;
