@@ -77,11 +77,13 @@ GTX_API void gtx_renderer_destroy(gtx_renderer *renderer);
 typedef struct gtx_model_desc {
     const gtx_allocator *allocator;   /* of the model; NULL = malloc */
     const gtx_jobs *jobs;             /* used during the call; may be NULL */
+    uint32_t borrow;                  /* 1: the asset stays open until the model is uploaded, or
+                                         destroyed: its maps are not copied */
     uint32_t reserved[4];
 } gtx_model_desc;
 
-/* Derives what the GPU needs, without GL: any thread. Keeps no reference to the asset. `desc` may be
- * NULL. The model is of the descriptor's allocator, and freed by gtx_model_destroy; most of it once
+/* Derives what the GPU needs, without GL: any thread. Keeps no reference to the asset, unless it
+ * borrows its maps. `desc` may be NULL. The model is of the descriptor's allocator, and freed by gtx_model_destroy; most of it once
  * it is uploaded. Errors: ARGUMENT, NOT_ZEROED, MEMORY. */
 GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc,
                                      gtx_model **out, gtx_error *error);

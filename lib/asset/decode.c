@@ -46,8 +46,8 @@ static uint64_t place(gtx_decoding *d, const gtx_info *info, uint8_t *block)
     d->marks = block && texels ? block + at : NULL;
     for (uint32_t k = 0; k < info->mip_count; ++k)
         at += texels >> 2 * k;
-    d->holds = block ? block + at + texels : NULL;
-    return at + texels + info->patch_count;
+    d->holds = block ? block + at : NULL;
+    return at + info->patch_count;
 }
 
 void gtx_decoding_plan(gtx_decoding *out, const gtx_section *sections, uint32_t count,
@@ -63,7 +63,7 @@ void gtx_decoding_plan(gtx_decoding *out, const gtx_section *sections, uint32_t 
     out->size = place(out, info, NULL);
 }
 
-/* The marks of a level, of normals. */
+/* The marks of a level. */
 static uint8_t *marks_of(const gtx_decoding *d, uint32_t level)
 {
     uint8_t *marks = d->marks;
@@ -86,9 +86,7 @@ bool gtx_decoding_begin(gtx_decoding *d, gtx_asset *asset, const uint8_t *data)
         part->out = gtx_asset_data(asset, section->kind, section->level);
         if (section->filter != GTX_FILTER_SURFACE)
             continue;
-        const bool trim = section->kind == GTX_SECTION_TRIM;
-        uint8_t *ring = marks_of(d, trim ? asset->info.mip_count : section->level);
-        part->layer = gtx_layer_of(asset, section, ring,
+        part->layer = gtx_layer_of(asset, section, marks_of(d, section->level),
                                    section->level ? marks_of(d, section->level - 1) : NULL);
     }
     return true;
@@ -152,7 +150,8 @@ static void undo_normals(gtx_decoding *d)
 {
     const uint32_t mips = d->asset->info.mip_count;
     for (uint32_t k = 0; k < mips; ++k) {
-        gtx_mark_level(d->asset, k, k ? marks_of(d, k - 1) : NULL, marks_of(d, k));
+        if (k)
+            gtx_mark_level(d->asset, k, marks_of(d, k - 1), marks_of(d, k));
         for (uint32_t i = 0; i < d->part_count; ++i) {
             gtx_part *part = &d->parts[i];
             const gtx_section *section = part->section;
@@ -178,7 +177,6 @@ static void occupied(uint32_t index, void *data)
         undo_normals(t->d);
     } else if (t->surfaces && section->kind == GTX_SECTION_TRIM &&
                section->filter == GTX_FILTER_SURFACE && !part->wrong) {
-        gtx_mark_level(t->d->asset, 0, NULL, part->layer.ring);
         gtx_surface_undo_occupied(&part->layer, part->coded, part->out);
     } else if (t->shells && section->kind == GTX_SECTION_SHELL && !part->wrong) {
         gtx_check quiet = {0};
@@ -187,6 +185,7 @@ static void occupied(uint32_t index, void *data)
     }
 }
 
+/* Trim, which is before normals in the file, finds the marks that these make into rings. */
 static void patches(uint32_t index, void *data)
 {
     gtx_decoding *d = data;
@@ -226,6 +225,8 @@ void gtx_decode_rest(gtx_decoding *d, bool rectangles_hold, bool patches_hold)
 {
     gtx_run_jobs(d->jobs, d->part_count - 1, alone, d);
     const bool surfaces = rectangles_hold && heights_known(d);
+    if (surfaces && d->marks)
+        gtx_mark_level(d->asset, 0, NULL, d->marks);
     gtx_run_jobs(d->jobs, d->part_count, occupied, &(together){d, surfaces, patches_hold});
     if (!surfaces)
         return;

@@ -26,7 +26,7 @@ typedef struct gtx_decoding {
     bool hashed, zstd;            /* hashes are wanted; some part is compressed */
     uint64_t size;                /* of the block */
     uint8_t *block;
-    uint8_t *marks;               /* of filter 4, or NULL: all levels, then level 0 for trim */
+    uint8_t *marks;               /* of filter 4, all levels, or NULL */
     uint8_t *holds;               /* a byte a patch: 1 where gtx_patch_holds */
     gtx_asset *asset;
 } gtx_decoding;

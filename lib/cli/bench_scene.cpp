@@ -92,6 +92,7 @@ void BenchScene::load_asset(const std::string &path)
     gtx_open_desc open = {};
     gtx_model_desc model = {};
     open.jobs = model.jobs = &jobs;
+    model.borrow = 1;
     const double start = milliseconds();
     check(gtx_open_file(path.c_str(), &open, &asset, &error), error);
     AssetPointer owner(asset);

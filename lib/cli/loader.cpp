@@ -60,7 +60,7 @@ void Loader::load(const std::string &path)
     result_.path = path;
     PlacedAsset placed = {is_asset(path) ? open_asset(path) : cook(path), identity_transform};
     const gtx_jobs jobs = gtx_host_jobs(0);
-    const gtx_model_desc desc = {nullptr, &jobs, {}};
+    const gtx_model_desc desc = {nullptr, &jobs, 0, {}};
     gtx_model *model;
     gtx_error error;
     if (gtx_model_prepare(placed.asset.get(), &desc, &model, &error) != GTX_OK)

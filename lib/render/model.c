@@ -25,6 +25,7 @@ typedef struct making {
     uint8_t *pages;               /* of cells */
     batch *batches;
     uint32_t batch_count;
+    bool borrow;
     const void *sources[GTX_MAX_LEVELS]; /* of levels that are copies, or NULL */
     gtx_result shells;
     gtx_error shells_error;
@@ -33,13 +34,17 @@ typedef struct making {
 /* Enough for many threads to end together, and each to have enough to do. */
 enum { MOST_BATCHES = 64 };
 
-/* Adds a level of `unit` and its memory, not yet written; NULL when there is none. */
+/* Adds a level of `unit` and its memory, not yet written, unless it borrows what is there already.
+ * NULL without memory. */
 static uint8_t *add_level(gtx_model *model, uint32_t unit, uint32_t level, uint32_t width,
-                          uint32_t height, uint32_t layers, uint32_t texel_size)
+                          uint32_t height, uint32_t layers, uint32_t texel_size,
+                          const void *borrowed)
 {
     gtx_level *l = &model->levels[model->level_count++];
-    *l = (gtx_level){unit, level, width, height, layers, texel_size, 0, NULL};
-    l->data = gtx_alloc_raw(&model->allocator, (size_t)width * height * layers, texel_size);
+    *l = (gtx_level){unit, level, width, height, layers, texel_size, 0, (uint8_t *)borrowed,
+                     borrowed != NULL};
+    if (!borrowed)
+        l->data = gtx_alloc_raw(&model->allocator, (size_t)width * height * layers, texel_size);
     const bool looks = unit == UNIT_COLORS || unit == UNIT_MATERIALS || unit == UNIT_EMISSIONS;
     uint64_t *size = looks ? &model->size.color : &model->size.geometry;
     *size += (uint64_t)width * height * layers * texel_size;
@@ -51,17 +56,17 @@ static size_t level_size(const gtx_level *l)
     return (size_t)l->width * l->height * l->layers * l->texel_size;
 }
 
-/* Levels that are to be copies of a map's. */
-static bool add_copies(making *m, gtx_map map, uint32_t unit, uint32_t count, uint32_t texel_size)
+/* Levels that are a map's, or are to be copies of them. */
+static bool add_maps(making *m, gtx_map map, uint32_t unit, uint32_t count, uint32_t texel_size)
 {
     const gtx_info *info = &m->asset->info;
     for (uint32_t k = 0; k < count; ++k) {
         const void *texels = gtx_map_data(m->asset, map, k, NULL);
         if (!texels) /* an optional map */
             return true;
-        m->sources[m->model->level_count] = texels;
+        m->sources[m->model->level_count] = m->borrow ? NULL : texels;
         if (!add_level(m->model, unit, k, info->page_width >> k, info->page_height >> k,
-                       info->page_count, texel_size))
+                       info->page_count, texel_size, m->borrow ? texels : NULL))
             return false;
     }
     return true;
@@ -251,22 +256,22 @@ static bool reserve(making *m)
     const size_t slots = (size_t)model->kind_count * model->patch_count + 1;
     const uint32_t rows = gtx_model_record_rows(model->patch_count), mips = model->mip_count;
     m->records = (void *)add_level(model, UNIT_PATCHES, 0, GTX_RECORD_TEXELS * GTX_RECORDS_A_ROW,
-                                   rows, 1, 4 * sizeof(float));
+                                   rows, 1, 4 * sizeof(float), NULL);
     model->first_vertex = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_vertex);
     model->first_index = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_index);
     model->facts = gtx_alloc_array(&model->allocator, model->patch_count, sizeof *model->facts);
     m->pages = add_level(model, UNIT_CELLS, 0, info->page_width, gtx_model_cell_rows(model),
-                         info->page_count, info->height_bits / 2);
+                         info->page_count, info->height_bits / 2, NULL);
     if (!reserve_slabs(model, m->asset) || !m->records || !m->pages || !model->first_vertex ||
         !model->first_index || !model->facts)
         return false;
     for (uint32_t i = 0; i < model->level_count; ++i) /* what lies between patches */
         memset(model->levels[i].data, 0, level_size(&model->levels[i]));
-    return add_copies(m, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
-           add_copies(m, GTX_MAP_NORMAL, UNIT_NORMALS, mips, 2) &&
-           add_copies(m, GTX_MAP_COLOR, UNIT_COLORS, mips, 4) &&
-           add_copies(m, GTX_MAP_MATERIAL, UNIT_MATERIALS, mips, 4) &&
-           add_copies(m, GTX_MAP_EMISSION, UNIT_EMISSIONS, mips, 3);
+    return add_maps(m, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
+           add_maps(m, GTX_MAP_NORMAL, UNIT_NORMALS, mips, 2) &&
+           add_maps(m, GTX_MAP_COLOR, UNIT_COLORS, mips, 4) &&
+           add_maps(m, GTX_MAP_MATERIAL, UNIT_MATERIALS, mips, 4) &&
+           add_maps(m, GTX_MAP_EMISSION, UNIT_EMISSIONS, mips, 3);
 }
 
 static gtx_model *new_model(const gtx_asset *asset, const gtx_allocator *hooks)
@@ -303,7 +308,7 @@ gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc,
     if (result)
         return result;
     const gtx_allocator hooks = gtx_allocator_or_default(desc ? desc->allocator : NULL);
-    making m = {.asset = asset, .model = new_model(asset, &hooks)};
+    making m = {.asset = asset, .model = new_model(asset, &hooks), .borrow = desc && desc->borrow};
     if (!m.model)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a model");
     if (reserve(&m))
@@ -327,8 +332,9 @@ void gtx_model_free_staging(gtx_model *model)
 {
     for (uint32_t i = 0; i < model->level_count; ++i) {
         gtx_level *l = &model->levels[i];
-        gtx_free_array(&model->allocator, l->data, (size_t)l->width * l->height * l->layers,
-                       l->texel_size);
+        if (!l->borrowed)
+            gtx_free_array(&model->allocator, l->data, (size_t)l->width * l->height * l->layers,
+                           l->texel_size);
         l->data = NULL;
     }
     gtx_proxies_free(&model->proxies, &model->allocator);

@@ -297,7 +297,7 @@ gtx_result gtx_model_create(gtx_renderer *renderer, const gtx_asset *asset, gtx_
 {
     if (!renderer)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a model needs a renderer");
-    const gtx_model_desc desc = {&renderer->allocator, &renderer->jobs, {0}};
+    const gtx_model_desc desc = {&renderer->allocator, &renderer->jobs, 1, {0}};
     gtx_result result = gtx_model_prepare(asset, &desc, out, error);
     if (result)
         return result;

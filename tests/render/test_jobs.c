@@ -12,9 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static gtx_model *prepare(const gtx_asset *asset, const gtx_jobs *jobs)
+static gtx_model *prepare(const gtx_asset *asset, const gtx_jobs *jobs, uint32_t borrow)
 {
-    const gtx_model_desc desc = {.jobs = jobs};
+    const gtx_model_desc desc = {.jobs = jobs, .borrow = borrow};
     gtx_model *model;
     assert_int_equal(gtx_model_prepare(asset, &desc, &model, NULL), GTX_OK);
     return model;
@@ -51,12 +51,14 @@ static void expect_equal(const gtx_model *a, const gtx_model *b)
 
 static void expect_alike(gtx_asset *asset)
 {
-    gtx_model *alone = prepare(asset, NULL);
+    gtx_model *alone = prepare(asset, NULL, 0);
     for (int i = 0; i < RUNNERS; ++i) {
         runner_log log;
         const gtx_jobs jobs = runner_of(i, &log);
-        gtx_model *other = prepare(asset, &jobs);
+        gtx_model *other = prepare(asset, &jobs, (uint32_t)i);
         assert_int_not_equal(log.runs, 0);
+        const bool own = other->levels[2].data != gtx_map_data(asset, GTX_MAP_TRIM, 0, NULL);
+        assert_int_equal(own, !i);
         expect_equal(alone, other);
         gtx_model_destroy(NULL, other);
     }
