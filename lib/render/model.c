@@ -89,14 +89,20 @@ static gtx_result join_proxies(const making *m, gtx_error *error)
 {
     gtx_model *model = m->model;
     gtx_proxies *all = &model->proxies;
+    size_t most_vertices = 0, most_indices = 0;
+    for (uint32_t kind = 0; kind < model->kind_count; ++kind)
+        for (uint32_t b = 0; b < m->batch_count; ++b) {
+            most_vertices += m->batches[b].derived.proxies[kind].vertex_count;
+            most_indices += m->batches[b].derived.proxies[kind].index_count;
+        }
+    gtx_result result = gtx_proxies_reserve(all, most_vertices, most_indices, &model->allocator,
+                                            error);
+    if (result)
+        return result;
     for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
         for (uint32_t b = 0; b < m->batch_count; ++b) {
             const gtx_proxies *p = &m->batches[b].derived.proxies[kind];
             const uint32_t vertices = all->vertex_count, indices = all->index_count;
-            gtx_result result = gtx_proxies_reserve(all, p->vertex_count, p->index_count,
-                                                    &model->allocator, error);
-            if (result)
-                return result;
             if (p->vertex_count)
                 memcpy(all->vertices + vertices, p->vertices,
                        p->vertex_count * sizeof *p->vertices);
