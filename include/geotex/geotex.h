@@ -97,11 +97,11 @@ typedef struct gtx_allocator {
 
 /* A host's threads, such as an engine's job system, for calls that can use several. `run` calls
  * job(i, data) once for every i below `count`, in any order and on any threads, at once or not, and
- * returns when all have returned. A job neither waits for another nor calls `run`, and does not fail
- * half-way. Jobs take memory from the call's allocator, which must then be safe to call from several
- * threads at once, as malloc is. Results are the same, byte by byte and error by error, however jobs
- * are run. Zeros, like NULL, mean one after the other on the calling thread; the library has no
- * threads of its own. */
+ * returns when all have returned. A job neither waits for another nor calls `run`. Jobs may take
+ * memory from the call's allocator, which must then be safe to call from several threads at once,
+ * as malloc is. Results are the same, byte by byte and error by error, however jobs are run.
+ * Zeros, like NULL, mean one after the other on the calling thread; the library has no threads of
+ * its own. */
 typedef struct gtx_jobs {
     void (*run)(uint32_t count, void (*job)(uint32_t index, void *data), void *data, void *user);
     void *user;

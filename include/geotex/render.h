@@ -83,8 +83,8 @@ typedef struct gtx_model_desc {
 } gtx_model_desc;
 
 /* Derives what the GPU needs, without GL: any thread. Keeps no reference to the asset, unless it
- * borrows its maps. `desc` may be NULL. The model is of the descriptor's allocator, and freed by gtx_model_destroy; most of it once
- * it is uploaded. Errors: ARGUMENT, NOT_ZEROED, MEMORY. */
+ * borrows its maps. `desc` may be NULL. The model is of the descriptor's allocator, and freed by
+ * gtx_model_destroy; most of it once it is uploaded. Errors: ARGUMENT, NOT_ZEROED, MEMORY. */
 GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc,
                                      gtx_model **out, gtx_error *error);
 

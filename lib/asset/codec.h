@@ -22,7 +22,7 @@ void gtx_heights_apply(gtx_map_shape image, const uint8_t *in, uint8_t *coded);
 void gtx_heights_undo(gtx_map_shape image, const uint8_t *coded, uint8_t *out);
 
 /* Filter 4, of trim and normals. The asset has its patches, with rectangles that hold, its heights,
- * and what is finer than this level. `scratch` has what gtx_apply_size says beyond the image's size. */
+ * and what is finer than this level. `scratch` has what gtx_apply_size says beyond the image. */
 void gtx_surface_apply(const gtx_asset *asset, const gtx_section *section, const uint8_t *in,
                        uint8_t *coded, uint8_t *scratch);
 
@@ -37,17 +37,17 @@ typedef struct gtx_layer {
     const uint8_t *finer;         /* 1 where a texel of the finer level has a height */
 } gtx_layer;
 
-/* Marks the texels of a level that have a height: 1, and 0 elsewhere. `finer` has those of the level
- * before, and is not looked at for level 0. The two may be the same. */
+/* Marks the texels of a level that have a height: 1, and 0 elsewhere. `finer` has those of the
+ * level before, and is not looked at for level 0. The two may be the same. */
 void gtx_mark_level(const gtx_asset *asset, uint32_t level, const uint8_t *finer, uint8_t *out);
 
 /* A layer of marked levels; finer and asset as above. */
 gtx_layer gtx_layer_of(const gtx_asset *asset, const gtx_section *section, uint8_t *ring,
                        const uint8_t *finer);
 
-/* Undoes the filter, in this order: texels with a height, once those of the finer level are there; the
- * others of each patch, in any order; what differs from the rules. Marks become rings by the second:
- * all levels must have had the first. */
+/* Undoes the filter, in this order: texels with a height, once those of the finer level are there;
+ * the others of each patch, in any order; what differs from the rules. Marks become rings by the
+ * second: all levels, and trim, must have had theirs. */
 void gtx_surface_undo_occupied(gtx_layer *layer, const uint8_t *coded, uint8_t *out);
 void gtx_surface_undo_patch(const gtx_layer *layer, uint32_t patch, uint8_t *out);
 void gtx_surface_undo_rest(const gtx_layer *layer, const uint8_t *coded, uint8_t *out);

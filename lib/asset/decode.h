@@ -21,7 +21,7 @@ typedef struct gtx_part {
 /* What is decoded, and one block of memory for it. */
 typedef struct gtx_decoding {
     const gtx_jobs *jobs;         /* or NULL */
-    gtx_part parts[GTX_MAX_KNOWN_SECTIONS]; /* in the order of the file; the first is the patches' */
+    gtx_part parts[GTX_MAX_KNOWN_SECTIONS]; /* in the order of the file, that of patches first */
     uint32_t part_count;
     bool hashed, zstd;            /* hashes are wanted; some part is compressed */
     uint64_t size;                /* of the block */

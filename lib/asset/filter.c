@@ -95,8 +95,8 @@ void gtx_filter_apply(gtx_map_shape image, uint32_t filter, const uint8_t *in, u
         paeth_apply(blocks_of(image, filter), out);
 }
 
-/* Planes and Paeth's predictor at once: texels of `size` bytes, whose predictions do not wait for one
- * another. */
+/* Planes and Paeth's predictor at once: texels of `size` bytes, whose predictions do not wait for
+ * one another. */
 static inline void undo_texels(gtx_map_shape image, size_t size, const uint8_t *restrict coded,
                                uint8_t *restrict out)
 {

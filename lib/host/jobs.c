@@ -43,6 +43,6 @@ gtx_jobs gtx_host_jobs(uint32_t threads)
     const long processors = sysconf(_SC_NPROCESSORS_ONLN);
     if (!threads)
         threads = processors > 0 ? (uint32_t)processors : 1;
-    return (gtx_jobs){run_jobs, (void *)(uintptr_t)(threads < MOST_THREADS ? threads
-                                                                           : MOST_THREADS)};
+    threads = threads < MOST_THREADS ? threads : MOST_THREADS;
+    return (gtx_jobs){run_jobs, (void *)(uintptr_t)threads};
 }

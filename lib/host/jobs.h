@@ -8,8 +8,8 @@
 extern "C" {
 #endif
 
-/* Runs jobs on the calling thread and others that live as long as the run, `threads` in all or fewer;
- * 0 = as many as there are processors. */
+/* Runs jobs on the calling thread and others that live as long as the run: `threads` in all, at
+ * most 64; 0 = as many as there are processors. Any thread. */
 gtx_jobs gtx_host_jobs(uint32_t threads);
 
 #ifdef __cplusplus

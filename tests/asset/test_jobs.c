@@ -98,10 +98,11 @@ static void test_mutated(void **state)
         for (int turn = 0; turn < 150; ++turn) {
             bytes mutated = {need(malloc(file.size)), file.size};
             memcpy(mutated.data, file.data, file.size);
+            const size_t from = GTX_HEADER_SIZE + (size_t)gtx_load_u32(file.data + 28) * 64;
             for (int k = 0; k < 1 + turn % 5; ++k) {
                 random = random * 1664525 + 1013904223;
-                const size_t from = GTX_HEADER_SIZE + (size_t)gtx_load_u32(file.data + 28) * 64;
-                mutated.data[from + (random >> 8) % (file.size - from)] ^= (uint8_t)(1 + random % 255);
+                const size_t at = from + (random >> 8) % (file.size - from);
+                mutated.data[at] ^= (uint8_t)(1 + random % 255);
             }
             expect_alike(mutated, names[n]);
             free(mutated.data);
