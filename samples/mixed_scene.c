@@ -5,6 +5,7 @@
  * Columns, crates and a tiled floor are ordinary polygons and cut through instances of the asset.
  * Nothing is sorted and nothing is clipped: both renderers write true depth. */
 #include "host/backdrop.h"
+#include "host/jobs.h"
 #include "host/shapes.h"
 #include "host/sample.h"
 
@@ -101,11 +102,13 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
 static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, gtx_error *error)
 {
     world *w = user;
-    const gtx_renderer_desc desc = {.load = loader};
+    const gtx_jobs jobs = gtx_host_jobs(0); /* an engine would lend its own threads */
+    const gtx_open_desc open = {.jobs = &jobs};
+    const gtx_renderer_desc desc = {.load = loader, .jobs = &jobs};
     gtx_asset *asset = NULL;
     gtx_result result;
     w->gl = gl;
-    if ((result = gtx_open_file(w->path, NULL, &asset, error)) ||
+    if ((result = gtx_open_file(w->path, &open, &asset, error)) ||
         (result = gtx_polygon_program_create(gl, &w->program, error)) ||
         (result = gtx_renderer_create(&desc, &w->renderer, error)) ||
         (result = gtx_model_create(w->renderer, asset, &w->model, error)) ||

@@ -95,6 +95,18 @@ typedef struct gtx_allocator {
     void *user;
 } gtx_allocator;
 
+/* A host's threads, such as an engine's job system, for calls that can use several. `run` calls
+ * job(i, data) once for every i below `count`, in any order and on any threads, at once or not, and
+ * returns when all have returned. A job neither waits for another nor calls `run`. Jobs may take
+ * memory from the call's allocator, which must then be safe to call from several threads at once,
+ * as malloc is. Results are the same, byte by byte and error by error, however jobs are run.
+ * Zeros, like NULL, mean one after the other on the calling thread; the library has no threads of
+ * its own. */
+typedef struct gtx_jobs {
+    void (*run)(uint32_t count, void (*job)(uint32_t index, void *data), void *data, void *user);
+    void *user;
+} gtx_jobs;
+
 /* How far a long call has come. `stage` is a static string such as "bake". */
 typedef struct gtx_progress {
     const char *stage;
@@ -165,6 +177,8 @@ typedef struct gtx_info {
 
 typedef struct gtx_open_desc {
     const gtx_allocator *allocator;
+    const gtx_jobs *jobs;         /* used during the call; opening then holds all sections, as they
+                                     are coded, in memory at once */
     uint64_t max_bytes;           /* most that opening may allocate; 0 = 4 GiB */
     uint32_t flags;
     uint32_t reserved[5];

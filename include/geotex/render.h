@@ -60,6 +60,8 @@ typedef struct gtx_renderer_desc {
                                                             may be NULL */
     void *log_user;
     const gtx_allocator *allocator;
+    const gtx_jobs *jobs;                                /* copied, for gtx_model_create; may be
+                                                            NULL */
     gtx_costs costs;                                     /* none below 0 */
     gtx_tiling tiles;
     uint32_t reserved[3];
@@ -73,10 +75,18 @@ GTX_API gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_render
                                        gtx_error *error);
 GTX_API void gtx_renderer_destroy(gtx_renderer *renderer);
 
-/* Derives what the GPU needs, without GL: any thread. Keeps no reference to the asset. The model is
- * of `allocator` (NULL = malloc), and freed by gtx_model_destroy; most of it once it is uploaded.
- * Errors: ARGUMENT, MEMORY. */
-GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *allocator,
+typedef struct gtx_model_desc {
+    const gtx_allocator *allocator;   /* of the model; NULL = malloc */
+    const gtx_jobs *jobs;             /* used during the call; may be NULL */
+    uint32_t borrow;                  /* 1: the asset stays open until the model is uploaded, or
+                                         destroyed: its maps are not copied */
+    uint32_t reserved[4];
+} gtx_model_desc;
+
+/* Derives what the GPU needs, without GL: any thread. Keeps no reference to the asset, unless it
+ * borrows its maps. `desc` may be NULL. The model is of the descriptor's allocator, and freed by
+ * gtx_model_destroy; most of it once it is uploaded. Errors: ARGUMENT, NOT_ZEROED, MEMORY. */
+GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc,
                                      gtx_model **out, gtx_error *error);
 
 /* Uploads up to `max_bytes` (0 = everything) and sets *done to 1 once the model can be drawn.
@@ -88,7 +98,7 @@ GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator
 GTX_API gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t max_bytes,
                                     uint32_t *done, gtx_error *error);
 
-/* Both at once, with the renderer's allocator. */
+/* Both at once, with the renderer's allocator and jobs. */
 GTX_API gtx_result gtx_model_create(gtx_renderer *renderer, const gtx_asset *asset,
                                     gtx_model **out, gtx_error *error);
 

@@ -30,12 +30,12 @@ uint64_t gtx_asset_bytes(const gtx_info *info, const gtx_sizes *sizes)
 }
 
 /* False when memory is out. */
-static bool new_maps(gtx_asset *asset)
+static bool new_maps(gtx_asset *asset, bool clear)
 {
     for (gtx_section_kind kind = GTX_SECTION_FIRST_IMAGE; kind <= GTX_SECTION_LAST_IMAGE; ++kind) {
         for (uint32_t k = 0; k < gtx_map_levels(&asset->info, kind); ++k) {
-            uint8_t *map = gtx_alloc_array(&asset->allocator,
-                                           (size_t)map_size(&asset->info, kind, k), 1);
+            const size_t size = (size_t)map_size(&asset->info, kind, k);
+            uint8_t *map = (clear ? gtx_alloc_array : gtx_alloc_raw)(&asset->allocator, size, 1);
             *gtx_asset_map(asset, kind, k) = map;
             if (!map)
                 return false;
@@ -45,12 +45,13 @@ static bool new_maps(gtx_asset *asset)
 }
 
 /* False when memory is out. */
-static bool new_shell(gtx_asset *asset, const gtx_sizes *sizes)
+static bool new_shell(gtx_asset *asset, const gtx_sizes *sizes, bool clear)
 {
     for (uint32_t k = 0; k < GTX_MAX_SHELLS; ++k) {
         asset->shell_size[k] = (size_t)sizes->shell[k];
         if (sizes->shell[k])
-            asset->shell[k] = gtx_alloc_array(&asset->allocator, asset->shell_size[k], 1);
+            asset->shell[k] = (clear ? gtx_alloc_array : gtx_alloc_raw)(
+                &asset->allocator, asset->shell_size[k], 1);
         if (sizes->shell[k] && !asset->shell[k])
             return false;
     }
@@ -58,7 +59,7 @@ static bool new_shell(gtx_asset *asset, const gtx_sizes *sizes)
 }
 
 gtx_asset *gtx_asset_new(const gtx_allocator *allocator, const gtx_info *info,
-                         const gtx_sizes *sizes)
+                         const gtx_sizes *sizes, bool clear)
 {
     if (gtx_asset_bytes(info, sizes) > SIZE_MAX)
         return NULL;
@@ -68,7 +69,7 @@ gtx_asset *gtx_asset_new(const gtx_allocator *allocator, const gtx_info *info,
     asset->allocator = *allocator;
     asset->info = *info;
     asset->patches = gtx_alloc_array(allocator, info->patch_count, sizeof(gtx_patch));
-    bool whole = asset->patches && new_maps(asset) && new_shell(asset, sizes);
+    bool whole = asset->patches && new_maps(asset, clear) && new_shell(asset, sizes, clear);
     if (whole && sizes->meta) {
         asset->meta_size = (size_t)sizes->meta;
         asset->meta = gtx_alloc_array(allocator, asset->meta_size, 1);

@@ -232,13 +232,23 @@ static bool find_outside(const gtx_asset *asset, const gtx_occupancy *occupancy,
     return false;
 }
 
+bool gtx_patch_holds(const gtx_asset *asset, uint32_t index)
+{
+    gtx_check quiet = {0};
+    const box bounds = grown_bounds(&asset->info);
+    check_patch(&quiet, asset, index, &bounds, 0);
+    return quiet.broken == 0;
+}
+
 void gtx_check_maps(gtx_check *check, const gtx_asset *asset, const gtx_occupancy *occupancy,
-                    uint64_t patch_offset, uint64_t height_offset, bool height_stored)
+                    const uint8_t *holds, uint64_t patch_offset, uint64_t height_offset,
+                    bool height_stored)
 {
     const gtx_info *info = &asset->info;
     box bounds = grown_bounds(info);
     for (uint32_t i = 0; i < info->patch_count; ++i)
-        check_patch(check, asset, i, &bounds, patch_offset + sizeof(gtx_patch) * i);
+        if (!holds || !holds[i])
+            check_patch(check, asset, i, &bounds, patch_offset + sizeof(gtx_patch) * i);
     for (uint32_t page = 0; page < info->page_count; ++page) {
         uint32_t x, y;
         if (!find_outside(asset, occupancy, page, &x, &y))

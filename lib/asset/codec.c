@@ -21,40 +21,14 @@ size_t gtx_decoder_size(void)
     return ZSTD_estimateDCtxSize();
 }
 
-static bool begin(gtx_codec *codec, const gtx_allocator *allocator, size_t context_size,
-                  size_t filtered_size)
-{
-    *codec = (gtx_codec){.allocator = *allocator, .context_size = context_size,
-                         .filtered_size = filtered_size};
-    codec->context = gtx_alloc_array(allocator, context_size, 1);
-    codec->filtered = gtx_alloc_array(allocator, filtered_size, 1);
-    return codec->context && (codec->filtered || !filtered_size);
-}
-
-bool gtx_decoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t filtered_size)
-{
-    return begin(codec, allocator, ZSTD_estimateDCtxSize(), filtered_size);
-}
-
 bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t filtered_size,
                        int level)
 {
-    return begin(codec, allocator, ZSTD_estimateCCtxSize(level), filtered_size);
-}
-
-/* False when the bytes are none that the filter makes. */
-static bool undo(const gtx_section *section, const gtx_asset *asset, uint8_t *coded, uint8_t *out)
-{
-    if (section->filter == GTX_FILTER_STEPS)
-        return gtx_shell_filter_undo(coded, (size_t)section->size, out);
-    gtx_map_shape image = gtx_section_shape(&asset->info, section->kind, section->level);
-    if (section->filter == GTX_FILTER_SURFACE)
-        gtx_surface_undo(asset, section, coded, out, coded + section->size);
-    else if (section->filter == GTX_FILTER_HEIGHTS)
-        gtx_heights_undo(image, coded, out);
-    else if (section->filter)
-        gtx_filter_undo(image, section->filter, coded, out);
-    return true;
+    *codec = (gtx_codec){.allocator = *allocator, .context_size = ZSTD_estimateCCtxSize(level),
+                         .filtered_size = filtered_size};
+    codec->context = gtx_alloc_array(allocator, codec->context_size, 1);
+    codec->filtered = gtx_alloc_array(allocator, filtered_size, 1);
+    return codec->context && (codec->filtered || !filtered_size);
 }
 
 static void apply(const gtx_section *section, const gtx_asset *asset, const uint8_t *data,
@@ -71,8 +45,8 @@ static void apply(const gtx_section *section, const gtx_asset *asset, const uint
         gtx_filter_apply(image, section->filter, data, coded);
 }
 
-const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section,
-                               const gtx_asset *asset, const uint8_t *bytes, uint8_t *out)
+const char *gtx_decompress(void *decoder, const gtx_section *section, const uint8_t *bytes,
+                           uint8_t *coded)
 {
     ZSTD_frameHeader frame;
     size_t stored = (size_t)section->stored_size, size = (size_t)section->size;
@@ -85,12 +59,9 @@ const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section,
     if (ZSTD_findFrameCompressedSize(bytes, stored) != stored)
         return "the frame does not fill the section";
 
-    ZSTD_DCtx *context = ZSTD_initStaticDCtx(codec->context, codec->context_size);
-    uint8_t *coded = section->filter > GTX_FILTER_PAETH ? codec->filtered : out;
+    ZSTD_DCtx *context = ZSTD_initStaticDCtx(decoder, gtx_decoder_size());
     if (!context || ZSTD_decompressDCtx(context, coded, size, bytes, stored) != size)
         return "the frame does not decode";
-    if (!undo(section, asset, coded, out))
-        return "the counts do not fit the size";
     return NULL;
 }
 
@@ -121,24 +92,18 @@ size_t gtx_decoder_size(void)
     return 0;
 }
 
-bool gtx_decoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t filtered_size)
+bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t filtered_size,
+                       int level)
 {
-    (void)filtered_size;
+    (void)filtered_size, (void)level;
     *codec = (gtx_codec){.allocator = *allocator};
     return true;
 }
 
-bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t filtered_size,
-                       int level)
+const char *gtx_decompress(void *decoder, const gtx_section *section, const uint8_t *bytes,
+                           uint8_t *coded)
 {
-    (void)level;
-    return gtx_decoder_begin(codec, allocator, filtered_size);
-}
-
-const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section,
-                               const gtx_asset *asset, const uint8_t *bytes, uint8_t *out)
-{
-    (void)codec, (void)section, (void)asset, (void)bytes, (void)out;
+    (void)decoder, (void)section, (void)bytes, (void)coded;
     return "this build has no zstd";
 }
 
@@ -150,6 +115,20 @@ size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, const gt
 }
 
 #endif
+
+const char *gtx_undo_filter(const gtx_asset *asset, const gtx_section *section, uint8_t *coded,
+                            uint8_t *out)
+{
+    gtx_map_shape image = gtx_section_shape(&asset->info, section->kind, section->level);
+    if (section->filter == GTX_FILTER_STEPS &&
+        !gtx_shell_filter_undo(coded, (size_t)section->size, out))
+        return "the counts do not fit the size";
+    if (section->filter == GTX_FILTER_HEIGHTS)
+        gtx_heights_undo(image, coded, out);
+    else if (section->filter && section->filter <= GTX_FILTER_PLANES_PAETH)
+        gtx_filter_undo(image, section->filter, coded, out);
+    return NULL;
+}
 
 void gtx_codec_end(gtx_codec *codec)
 {

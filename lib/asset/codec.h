@@ -13,8 +13,8 @@ bool gtx_filter_fits(gtx_section_kind kind, uint32_t filter);
 /* Filters 0 to 3. Writes the filtered image to `out`; both have gtx_shape_size(image) bytes. */
 void gtx_filter_apply(gtx_map_shape image, uint32_t filter, const uint8_t *in, uint8_t *out);
 
-/* Turns `coded` back into the image, in `out`. With GTX_FILTER_PLANES the two must be distinct and
- * `coded` is overwritten; otherwise they may be the same. */
+/* Turns `coded` back into the image, in `out`. The two are distinct with GTX_FILTER_PLANES, and may
+ * be the same otherwise; `coded` is overwritten. */
 void gtx_filter_undo(gtx_map_shape image, uint32_t filter, uint8_t *coded, uint8_t *out);
 
 /* Filter 5, of heights. */
@@ -22,18 +22,53 @@ void gtx_heights_apply(gtx_map_shape image, const uint8_t *in, uint8_t *coded);
 void gtx_heights_undo(gtx_map_shape image, const uint8_t *coded, uint8_t *out);
 
 /* Filter 4, of trim and normals. The asset has its patches, with rectangles that hold, its heights,
- * and what is finer than this level. `scratch` has what gtx_undo_size, or gtx_apply_size, says beyond
- * the image's size. */
+ * and what is finer than this level. `scratch` has what gtx_apply_size says beyond the image. */
 void gtx_surface_apply(const gtx_asset *asset, const gtx_section *section, const uint8_t *in,
                        uint8_t *coded, uint8_t *scratch);
-void gtx_surface_undo(const gtx_asset *asset, const gtx_section *section, const uint8_t *coded,
-                      uint8_t *out, uint8_t *scratch);
 
-/* Bytes that undoing, or applying, a section's filter takes beside the image. */
-uint64_t gtx_undo_size(const gtx_section *section, gtx_map_shape image);
+/* An image of filter 4, and which of its texels have a height. */
+typedef struct gtx_layer {
+    const gtx_asset *asset;
+    gtx_section_kind kind;
+    uint32_t level;
+    gtx_map_shape shape;
+    size_t rows, texels, occupied;
+    uint8_t *ring;                /* of gtx_fill, for all pages */
+    const uint8_t *finer;         /* 1 where a texel of the finer level has a height */
+} gtx_layer;
+
+/* Marks the texels of a level that have a height: 1, and 0 elsewhere. `finer` has those of the
+ * level before, and is not looked at for level 0. The two may be the same. */
+void gtx_mark_level(const gtx_asset *asset, uint32_t level, const uint8_t *finer, uint8_t *out);
+
+/* A layer of marked levels; finer and asset as above. */
+gtx_layer gtx_layer_of(const gtx_asset *asset, const gtx_section *section, uint8_t *ring,
+                       const uint8_t *finer);
+
+/* Undoes the filter, in this order: texels with a height, once those of the finer level are there;
+ * the others of each patch, in any order; what differs from the rules. Marks become rings by the
+ * second: all levels, and trim, must have had theirs. */
+void gtx_surface_undo_occupied(gtx_layer *layer, const uint8_t *coded, uint8_t *out);
+void gtx_surface_undo_patch(const gtx_layer *layer, uint32_t patch, uint8_t *out);
+void gtx_surface_undo_rest(const gtx_layer *layer, const uint8_t *coded, uint8_t *out);
+
+/* Bytes of a section between zstd and its filter, where they are not undone in place; and what
+ * applying the filter takes beside the image. */
+uint64_t gtx_coded_size(const gtx_section *section);
 uint64_t gtx_apply_size(const gtx_section *section, gtx_map_shape image);
 
-/* A zstd context and a buffer for filtered images, from the caller's allocator. */
+/* Bytes of a zstd decoder's memory, aligned to 8; 0 without zstd. */
+size_t gtx_decoder_size(void);
+
+/* Decompresses a section of scheme 2 into `coded` (section->size bytes). NULL, or what is wrong. */
+const char *gtx_decompress(void *decoder, const gtx_section *section, const uint8_t *bytes,
+                           uint8_t *coded);
+
+/* Undoes a section's filter, any but 4. NULL, or what is wrong. */
+const char *gtx_undo_filter(const gtx_asset *asset, const gtx_section *section, uint8_t *coded,
+                            uint8_t *out);
+
+/* A zstd encoder and a buffer for filtered images, from the caller's allocator. */
 typedef struct gtx_codec {
     gtx_allocator allocator;
     void *context;
@@ -42,20 +77,11 @@ typedef struct gtx_codec {
     size_t filtered_size;
 } gtx_codec;
 
-/* Bytes of a decoder's context; 0 without zstd. */
-size_t gtx_decoder_size(void);
-
-/* A decoder, or an encoder of up to `level`; filtered_size may be 0. False when memory is out. Both
- * are freed with gtx_codec_end, also after a failure. */
-bool gtx_decoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t filtered_size);
+/* An encoder of up to `level`; filtered_size may be 0. False when memory is out. Freed with
+ * gtx_codec_end, also after a failure. */
 bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t filtered_size,
                        int level);
 void gtx_codec_end(gtx_codec *codec);
-
-/* Decodes a section of scheme 2 into `out` (section->size bytes), with what the asset has already.
- * NULL, or what is wrong. */
-const char *gtx_decode_section(gtx_codec *codec, const gtx_section *section,
-                               const gtx_asset *asset, const uint8_t *bytes, uint8_t *out);
 
 /* Encodes a section of the asset, whose bytes are `data`, into `out`. Returns the bytes
  * written, 0 when they are not fewer than section->size. */

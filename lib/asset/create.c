@@ -93,7 +93,7 @@ static void check_content(gtx_check *check, const gtx_asset *asset)
     gtx_occupancy occupancy;
     gtx_check_patches(check, asset, 0, &occupancy);
     if (!gtx_check_over(check))
-        gtx_check_maps(check, asset, &occupancy, 0, 0, false);
+        gtx_check_maps(check, asset, &occupancy, NULL, 0, 0, false);
     gtx_occupancy_free(&occupancy, &asset->allocator);
     for (uint32_t k = 0; k < asset->info.shell_levels && !gtx_check_over(check); ++k)
         gtx_check_shell(check, asset, k, 0);
@@ -125,7 +125,7 @@ gtx_result gtx_create(const gtx_asset_desc *desc, gtx_asset **out, gtx_error *er
     for (uint32_t k = 0; k < desc->shell_levels; ++k)
         sizes.shell[k] = gtx_shell_size(desc->patch_count, desc->shell[k].vertex_count,
                                         desc->shell[k].triangle_count);
-    gtx_asset *asset = gtx_asset_new(&allocator, &info, &sizes);
+    gtx_asset *asset = gtx_asset_new(&allocator, &info, &sizes, false);
     if (!asset)
         return gtx_fail(error, GTX_ERROR_MEMORY, "out of memory for the maps of an asset");
     copy_maps(asset, desc);

@@ -93,16 +93,16 @@ enum { TOGETHER = GTX_LANES - 2 };
 /* The same of those among TOGETHER texels from `p` on whose ring is `mark`. */
 static void fill_together(const gtx_fill *area, const uint8_t *p, uint8_t mark, int y0, int y1)
 {
-    gtx_lane_sums sums = {{0}, {0}, {0}};
+    gtx_lane_sums column = {{0}, {0}, {0}}, sums;
     uint16_t code[GTX_LANES];
     uint8_t ring[GTX_LANES];
     for (int y = y0; y <= y1; ++y) {
         const uint8_t *from = p - 1 + y * (ptrdiff_t)area->stride;
         memcpy(ring, from, sizeof ring);
         memcpy(code, area->codes + 2 * (from - area->ring), sizeof code);
-        gtx_lanes_add(&sums, code, ring, mark - 1);
+        gtx_lanes_add(&column, code, ring, mark - 1);
     }
-    gtx_lanes_spread(&sums);
+    gtx_lanes_spread(&column, &sums);
     uint8_t *out = area->codes + 2 * (p - 1 - area->ring);
     memcpy(ring, p - 1, sizeof ring);
     memcpy(code, out, sizeof code);

@@ -17,24 +17,18 @@ bool gtx_filter_fits(gtx_section_kind kind, uint32_t filter)
            (filter <= GTX_FILTER_PLANES_PAETH && gtx_section_is_image(kind));
 }
 
-uint64_t gtx_undo_size(const gtx_section *section, gtx_map_shape image)
+uint64_t gtx_coded_size(const gtx_section *section)
 {
-    uint64_t texels = image.texel ? section->size / image.texel : 0;
-    switch (section->filter) {
-    case GTX_FILTER_NONE:
-    case GTX_FILTER_PAETH: return 0;
-    /* A byte a texel, and one for each of level 0. */
-    case GTX_FILTER_SURFACE:
-        return section->size + texels + (section->level ? texels << 2 * section->level : 0);
-    default: return section->size;
-    }
+    return section->filter > GTX_FILTER_PAETH ? section->size : 0;
 }
 
 uint64_t gtx_apply_size(const gtx_section *section, gtx_map_shape image)
 {
-    if (section->filter == GTX_FILTER_SURFACE)
-        return section->size + gtx_undo_size(section, image);
-    return section->filter ? section->size : 0;
+    if (section->filter != GTX_FILTER_SURFACE)
+        return section->filter ? section->size : 0;
+    /* The image with empty texels as the rules have them, marks of the level and of level 0. */
+    const uint64_t texels = section->size / image.texel;
+    return 2 * section->size + texels + (section->level ? texels << 2 * section->level : 0);
 }
 
 /* Images of bytes that are predicted on their own: pages, or planes of pages. */
@@ -51,8 +45,9 @@ static blocks blocks_of(gtx_map_shape image, uint32_t filter)
 
 static uint8_t predict(int a, int b, int c)
 {
-    int pa = abs(b - c), pb = abs(a - c), pc = abs(a + b - 2 * c);
-    return (uint8_t)(pa <= pb && pa <= pc ? a : pb <= pc ? b : c);
+    const int pa = abs(b - c), pb = abs(a - c), pc = abs(a + b - 2 * c);
+    const int other = pb <= pc ? b : c; /* without a branch, which noise would mislead */
+    return (uint8_t)((pa <= pb) & (pa <= pc) ? a : other);
 }
 
 /* From the last byte to the first: a predictor needs what is not yet replaced. */
@@ -71,12 +66,12 @@ static void paeth_apply(blocks shape, uint8_t *data)
     }
 }
 
-static void paeth_undo(blocks shape, uint8_t *data)
+static void paeth_undo(gtx_map_shape image, uint8_t *data)
 {
-    size_t row_bytes = shape.row_bytes, stride = shape.stride;
-    for (size_t line = 0; line < shape.count * shape.rows; ++line) {
+    const size_t row_bytes = (size_t)image.width * image.texel, stride = image.texel;
+    for (size_t line = 0; line < (size_t)image.pages * image.height; ++line) {
         uint8_t *row = data + line * row_bytes;
-        bool top = line % shape.rows == 0;
+        bool top = line % image.height == 0;
         for (size_t i = 0; i < row_bytes; ++i) {
             int a = i >= stride ? row[i - stride] : 0;
             int b = top ? 0 : *(row + i - row_bytes);
@@ -100,16 +95,46 @@ void gtx_filter_apply(gtx_map_shape image, uint32_t filter, const uint8_t *in, u
         paeth_apply(blocks_of(image, filter), out);
 }
 
+/* Planes and Paeth's predictor at once: texels of `size` bytes, whose predictions do not wait for
+ * one another. */
+static inline void undo_texels(gtx_map_shape image, size_t size, const uint8_t *restrict coded,
+                               uint8_t *restrict out)
+{
+    const size_t width = image.width, row_bytes = width * size;
+    const size_t texels = (size_t)image.pages * image.height * width;
+    for (size_t first = 0; first < texels; first += width, out += row_bytes) {
+        const bool top = first / width % image.height == 0;
+        int left[4] = {0}, corner[4] = {0};
+        for (size_t x = 0; x < width; ++x)
+            for (size_t k = 0; k < size; ++k) {
+                uint8_t *at = out + x * size + k;
+                const int above = top ? 0 : *(at - row_bytes);
+                const uint8_t guess = predict(left[k], above, corner[k]);
+                *at = (uint8_t)(coded[k * texels + first + x] + guess);
+                left[k] = *at;
+                corner[k] = above;
+            }
+    }
+}
+
 void gtx_filter_undo(gtx_map_shape image, uint32_t filter, uint8_t *coded, uint8_t *out)
 {
     size_t size = (size_t)gtx_shape_size(image), texels = size / image.texel;
-    if (filter & GTX_FILTER_PAETH)
-        paeth_undo(blocks_of(image, filter), coded);
-    if (filter & GTX_FILTER_PLANES) {
+    if (filter == GTX_FILTER_PLANES_PAETH) {
+        switch (image.texel) {
+        case 1: undo_texels(image, 1, coded, out); break;
+        case 2: undo_texels(image, 2, coded, out); break;
+        case 3: undo_texels(image, 3, coded, out); break;
+        default: undo_texels(image, 4, coded, out);
+        }
+    } else if (filter == GTX_FILTER_PLANES) {
         for (size_t plane = 0; plane < image.texel; ++plane)
             for (size_t i = 0; i < texels; ++i)
                 out[i * image.texel + plane] = coded[plane * texels + i];
-    } else if (out != coded) {
-        memcpy(out, coded, size);
+    } else {
+        if (filter == GTX_FILTER_PAETH)
+            paeth_undo(image, coded);
+        if (out != coded)
+            memcpy(out, coded, size);
     }
 }

@@ -27,14 +27,14 @@ static inline void gtx_lanes_add(gtx_lane_sums *restrict sums, const uint16_t *r
     }
 }
 
-/* Each lane becomes the sum of itself and its neighbours. */
-static inline void gtx_lanes_spread(gtx_lane_sums *sums)
+/* Sums of each lane and its neighbours. */
+static inline void gtx_lanes_spread(const gtx_lane_sums *restrict from,
+                                    gtx_lane_sums *restrict sums)
 {
-    const gtx_lane_sums from = *sums;
     for (int l = 0; l < GTX_LANES; ++l) {
-        sums->a[l + 1] = (int16_t)(from.a[l] + from.a[l + 1] + from.a[l + 2]);
-        sums->b[l + 1] = (int16_t)(from.b[l] + from.b[l + 1] + from.b[l + 2]);
-        sums->z[l + 1] = (int16_t)(from.z[l] + from.z[l + 1] + from.z[l + 2]);
+        sums->a[l + 1] = (int16_t)(from->a[l] + from->a[l + 1] + from->a[l + 2]);
+        sums->b[l + 1] = (int16_t)(from->b[l] + from->b[l + 1] + from->b[l + 2]);
+        sums->z[l + 1] = (int16_t)(from->z[l] + from->z[l + 1] + from->z[l + 2]);
     }
 }
 

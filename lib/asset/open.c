@@ -31,6 +31,7 @@ static gtx_result open_bytes(const void *data, size_t size, const gtx_open_desc 
     gtx_check check = {.error = error};
     const gtx_read_options options = {
         .allocator = gtx_allocator_or_default(desc ? desc->allocator : NULL),
+        .jobs = desc ? desc->jobs : NULL,
         .limit = limit,
         .skip_hash = desc && desc->flags & GTX_OPEN_SKIP_HASH,
     };

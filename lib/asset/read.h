@@ -6,6 +6,7 @@
 
 typedef struct gtx_read_options {
     gtx_allocator allocator;
+    const gtx_jobs *jobs;         /* or NULL */
     uint64_t limit;               /* most bytes that may be allocated at once */
     bool skip_hash;               /* trust the section hashes */
 } gtx_read_options;

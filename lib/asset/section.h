@@ -104,9 +104,10 @@ typedef struct gtx_sizes {
     uint64_t meta;
 } gtx_sizes;
 
-/* An asset with all its arrays, zeroed; freed with gtx_close. NULL when memory is out. */
+/* An asset with all its arrays; those of maps and shells are zeroed if `clear`, or else still to be
+ * written. Freed with gtx_close. NULL when memory is out. */
 gtx_asset *gtx_asset_new(const gtx_allocator *allocator, const gtx_info *info,
-                         const gtx_sizes *sizes);
+                         const gtx_sizes *sizes, bool clear);
 
 /* Bytes that gtx_asset_new takes. */
 uint64_t gtx_asset_bytes(const gtx_info *info, const gtx_sizes *sizes);

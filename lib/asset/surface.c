@@ -84,17 +84,6 @@ void gtx_heights_undo(gtx_map_shape shape, const uint8_t *coded, uint8_t *out)
 
 /* ---- filter 4, surface ---- */
 
-/* An image that is coded, and which of its texels have a height. */
-typedef struct layer {
-    const gtx_asset *asset;
-    gtx_section_kind kind;
-    uint32_t level;
-    gtx_map_shape shape;
-    size_t rows, texels;
-    uint8_t *ring;                /* of gtx_fill, for all pages */
-    const uint8_t *finer;         /* 1 where a texel of the finer level has a height */
-} layer;
-
 /* Marks the texels of level 0 that have a height. */
 static void mark_heights(const gtx_asset *asset, uint8_t *restrict out)
 {
@@ -120,28 +109,28 @@ static void halve(const uint8_t *finer, size_t rows, size_t width, uint8_t *out)
     }
 }
 
-/* `scratch` has room for marks of level 0, and those of this level. */
-static layer layer_of(const gtx_asset *asset, const gtx_section *section, uint8_t *scratch)
+void gtx_mark_level(const gtx_asset *asset, uint32_t level, const uint8_t *finer, uint8_t *out)
 {
-    layer s = {.asset = asset, .kind = section->kind, .level = section->level, .ring = scratch};
+    const size_t rows = (size_t)asset->info.page_count * (asset->info.page_height >> level);
+    if (level)
+        halve(finer, rows, asset->info.page_width >> level, out);
+    else
+        mark_heights(asset, out);
+}
+
+gtx_layer gtx_layer_of(const gtx_asset *asset, const gtx_section *section, uint8_t *ring,
+                       const uint8_t *finer)
+{
+    gtx_layer s = {.asset = asset, .kind = section->kind, .level = section->level, .ring = ring,
+                   .finer = finer};
     s.shape = gtx_section_shape(&asset->info, section->kind, section->level);
     s.rows = (size_t)s.shape.pages * s.shape.height;
     s.texels = s.rows * s.shape.width;
-    if (section->level == 0) {
-        mark_heights(asset, s.ring);
-        return s;
-    }
-    uint8_t *finer = scratch + s.texels;
-    mark_heights(asset, finer);
-    for (uint32_t k = 1; k < section->level; ++k)
-        halve(finer, s.rows << (section->level - k), (size_t)asset->info.page_width >> k, finer);
-    halve(finer, s.rows, s.shape.width, s.ring);
-    s.finer = finer;
     return s;
 }
 
 /* The mean of the occupied texels of the level before. */
-static void expected_mean(const layer *s, size_t row, size_t x, uint8_t out[2])
+static void expected_mean(const gtx_layer *s, size_t row, size_t x, uint8_t out[2])
 {
     const uint8_t *codes = s->asset->normal[s->level - 1];
     const size_t width = 2 * (size_t)s->shape.width, first = 2 * row * width + 2 * x;
@@ -171,7 +160,7 @@ static inline uint8_t expected_near(int a, int b, int c)
 
 /* A row of occupied texels at level 0, in either direction: one of `plain` and `coded` grows.
  * `coded` is where their first one's byte is in the first plane. Returns how many there are. */
-static inline size_t code_near(const layer *s, size_t row, size_t texel, uint8_t *restrict plain,
+static inline size_t code_near(const gtx_layer *s, size_t row, size_t texel, uint8_t *restrict plain,
                                uint8_t *restrict coded, bool apply)
 {
     const size_t width = s->shape.width, plane = s->texels, line = width * texel;
@@ -208,7 +197,7 @@ static inline size_t code_near(const layer *s, size_t row, size_t texel, uint8_t
 }
 
 /* What is expected of up to GTX_LANES texels of a row, of which at least one is occupied. */
-static void expected_means(const layer *s, size_t row, size_t x, size_t count, uint8_t *out)
+static void expected_means(const gtx_layer *s, size_t row, size_t x, size_t count, uint8_t *out)
 {
     const uint8_t *codes = s->asset->normal[s->level - 1];
     const size_t width = 2 * (size_t)s->shape.width;
@@ -238,7 +227,7 @@ static void expected_means(const layer *s, size_t row, size_t x, size_t count, u
 }
 
 /* The same of another level, whose texels are of two bytes. */
-static inline size_t code_means(const layer *s, size_t row, uint8_t *plain, uint8_t *coded,
+static inline size_t code_means(const gtx_layer *s, size_t row, uint8_t *plain, uint8_t *coded,
                                 bool apply)
 {
     const size_t width = s->shape.width;
@@ -263,7 +252,7 @@ static inline size_t code_means(const layer *s, size_t row, uint8_t *plain, uint
 }
 
 /* All occupied texels. Returns how many there are. */
-static inline size_t code_occupied(const layer *s, uint8_t *plain, uint8_t *coded, bool apply)
+static inline size_t code_occupied(const gtx_layer *s, uint8_t *plain, uint8_t *coded, bool apply)
 {
     size_t count = 0;
     for (size_t row = 0; row < s->rows; ++row)
@@ -290,35 +279,44 @@ static void clear_empty(const uint8_t *restrict ring, size_t texels, bool normal
     }
 }
 
-/* Gives the texels without a height what the rules say; the ring map holds rings afterwards. */
-static void fill(const layer *s, uint8_t *image)
+void gtx_surface_undo_occupied(gtx_layer *s, const uint8_t *coded, uint8_t *out)
 {
-    const bool normal = s->kind == GTX_SECTION_NORMAL;
-    clear_empty(s->ring, s->texels, normal, image);
-    for (uint32_t i = 0; i < s->asset->info.patch_count; ++i) {
-        const gtx_patch *patch = &s->asset->patches[i];
-        size_t row = (size_t)patch->page * s->shape.height + (patch->rect[1] >> s->level);
-        size_t at = row * s->shape.width + (patch->rect[0] >> s->level);
-        const gtx_fill area = {image + at * s->shape.texel, s->ring + at, s->shape.width,
-                               (uint32_t)patch->rect[2] >> s->level,
-                               (uint32_t)patch->rect[3] >> s->level};
-        if (normal)
-            gtx_fill_normals(&area, gtx_fill_rings(patch, s->level));
-        else
-            gtx_fill_trim(&area);
-    }
+    s->occupied = code_occupied(s, out, (uint8_t *)coded, false);
+    clear_empty(s->ring, s->texels, s->kind == GTX_SECTION_NORMAL, out);
+}
+
+void gtx_surface_undo_patch(const gtx_layer *s, uint32_t index, uint8_t *out)
+{
+    const gtx_patch *patch = &s->asset->patches[index];
+    size_t row = (size_t)patch->page * s->shape.height + (patch->rect[1] >> s->level);
+    size_t at = row * s->shape.width + (patch->rect[0] >> s->level);
+    const gtx_fill area = {out + at * s->shape.texel, s->ring + at, s->shape.width,
+                           (uint32_t)patch->rect[2] >> s->level,
+                           (uint32_t)patch->rect[3] >> s->level};
+    if (s->kind == GTX_SECTION_NORMAL)
+        gtx_fill_normals(&area, gtx_fill_rings(patch, s->level));
+    else
+        gtx_fill_trim(&area);
 }
 
 void gtx_surface_apply(const gtx_asset *asset, const gtx_section *section, const uint8_t *in,
                        uint8_t *coded, uint8_t *scratch)
 {
-    const layer s = layer_of(asset, section, scratch + section->size);
+    uint8_t *ring = scratch + section->size;
+    gtx_layer s = gtx_layer_of(asset, section, ring, NULL);
+    uint8_t *finer = ring + s.texels;
+    for (uint32_t k = 0; k < s.level; ++k)
+        gtx_mark_level(asset, k, finer, finer);
+    gtx_mark_level(asset, s.level, finer, ring);
+    s.finer = finer;
     const size_t texel = s.shape.texel;
     size_t cursor = code_occupied(&s, (uint8_t *)in, coded, true);
     memcpy(scratch, in, (size_t)section->size);
-    fill(&s, scratch);
+    clear_empty(ring, s.texels, s.kind == GTX_SECTION_NORMAL, scratch);
+    for (uint32_t i = 0; i < asset->info.patch_count; ++i)
+        gtx_surface_undo_patch(&s, i, scratch);
     for (size_t at = 0; at < s.texels; ++at) {
-        if (s.ring[at] == 1)
+        if (ring[at] == 1)
             continue;
         for (size_t k = 0; k < texel; ++k)
             coded[k * s.texels + cursor] = (uint8_t)(in[at * texel + k] - scratch[at * texel + k]);
@@ -334,18 +332,15 @@ static bool all_zero(const uint8_t *bytes, size_t count)
     return !any;
 }
 
-void gtx_surface_undo(const gtx_asset *asset, const gtx_section *section, const uint8_t *coded,
-                      uint8_t *out, uint8_t *scratch)
+void gtx_surface_undo_rest(const gtx_layer *s, const uint8_t *coded, uint8_t *out)
 {
-    const layer s = layer_of(asset, section, scratch);
-    const size_t texel = s.shape.texel, occupied = code_occupied(&s, out, (uint8_t *)coded, false);
-    fill(&s, out);
+    const size_t texel = s->shape.texel;
     for (size_t k = 0; k < texel; ++k) {
-        const uint8_t *rest = coded + k * s.texels + occupied;
-        if (all_zero(rest, s.texels - occupied)) /* as the rules would have it */
+        const uint8_t *rest = coded + k * s->texels + s->occupied;
+        if (all_zero(rest, s->texels - s->occupied)) /* as the rules would have it */
             continue;
-        for (size_t at = 0; at < s.texels; ++at)
-            if (s.ring[at] != 1)
+        for (size_t at = 0; at < s->texels; ++at)
+            if (s->ring[at] != 1)
                 out[at * texel + k] = (uint8_t)(out[at * texel + k] + *rest++);
     }
 }

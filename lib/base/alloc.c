@@ -26,14 +26,19 @@ gtx_allocator gtx_allocator_or_default(const gtx_allocator *allocator)
     return (gtx_allocator){default_alloc, default_free, NULL};
 }
 
-void *gtx_alloc_array(const gtx_allocator *allocator, size_t count, size_t size)
+void *gtx_alloc_raw(const gtx_allocator *allocator, size_t count, size_t size)
 {
     uint64_t bytes;
     if (!gtx_mul_u64(count, size, &bytes) || bytes == 0 || bytes > SIZE_MAX)
         return NULL;
-    void *memory = allocator->alloc((size_t)bytes, allocator->user);
+    return allocator->alloc((size_t)bytes, allocator->user);
+}
+
+void *gtx_alloc_array(const gtx_allocator *allocator, size_t count, size_t size)
+{
+    void *memory = gtx_alloc_raw(allocator, count, size);
     if (memory)
-        memset(memory, 0, (size_t)bytes);
+        memset(memory, 0, count * size);
     return memory;
 }
 

@@ -15,7 +15,10 @@ gtx_allocator gtx_allocator_or_default(const gtx_allocator *allocator);
  * is out. */
 void *gtx_alloc_array(const gtx_allocator *allocator, size_t count, size_t size);
 
-/* Gives back what gtx_alloc_array(allocator, count, size) returned. NULL is fine. */
+/* The same, not zeroed, for what is written before it is read. */
+void *gtx_alloc_raw(const gtx_allocator *allocator, size_t count, size_t size);
+
+/* Gives back what either returned for (allocator, count, size). NULL is fine. */
 void gtx_free_array(const gtx_allocator *allocator, void *memory, size_t count, size_t size);
 
 #ifdef __cplusplus

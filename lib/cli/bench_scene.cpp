@@ -3,6 +3,7 @@
 
 #include "cli/stage.hpp"
 #include "host/camera.h"
+#include "host/jobs.h"
 
 #include <algorithm>
 #include <chrono>
@@ -87,11 +88,16 @@ void BenchScene::load_asset(const std::string &path)
 {
     gtx_error error;
     gtx_asset *asset;
+    const gtx_jobs jobs = gtx_host_jobs(0);
+    gtx_open_desc open = {};
+    gtx_model_desc model = {};
+    open.jobs = model.jobs = &jobs;
+    model.borrow = 1;
     const double start = milliseconds();
-    check(gtx_open_file(path.c_str(), nullptr, &asset, &error), error);
+    check(gtx_open_file(path.c_str(), &open, &asset, &error), error);
     AssetPointer owner(asset);
     const double opened = milliseconds();
-    check(gtx_model_prepare(asset, nullptr, &model_, &error), error);
+    check(gtx_model_prepare(asset, &model, &model_, &error), error);
     const double prepared = milliseconds();
     check(gtx_model_upload(renderer_, model_, 0, nullptr, &error), error);
     gl.Finish();

@@ -1,6 +1,8 @@
 /* A thread that opens assets and cooks models. */
 #include "cli/loader.hpp"
 
+#include "host/jobs.h"
+
 #include <geotex/cook.h>
 
 #include <cerrno>
@@ -28,15 +30,6 @@ struct TemporaryFile {
         rmdir(folder.c_str());
     }
 };
-
-static AssetPointer open_asset(const std::string &path)
-{
-    gtx_asset *asset;
-    gtx_error error;
-    if (gtx_open_file(path.c_str(), nullptr, &asset, &error) != GTX_OK)
-        throw Error(error.result, error.message);
-    return AssetPointer(asset);
-}
 
 int Loader::on_progress(const gtx_progress *progress, void *user)
 {
@@ -66,9 +59,11 @@ void Loader::load(const std::string &path)
 {
     result_.path = path;
     PlacedAsset placed = {is_asset(path) ? open_asset(path) : cook(path), identity_transform};
+    const gtx_jobs jobs = gtx_host_jobs(0);
+    const gtx_model_desc desc = {nullptr, &jobs, 0, {}};
     gtx_model *model;
     gtx_error error;
-    if (gtx_model_prepare(placed.asset.get(), nullptr, &model, &error) != GTX_OK)
+    if (gtx_model_prepare(placed.asset.get(), &desc, &model, &error) != GTX_OK)
         throw Error(error.result, error.message);
     result_.models.push_back(model);
     result_.scene.assets.push_back(std::move(placed));

@@ -1,6 +1,8 @@
 /* Files -> a scene: assets, polygon models, and glTF scenes that place assets. */
 #include "cli/scene.hpp"
 
+#include "host/jobs.h"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -43,13 +45,21 @@ static Transform node_transform(const json &node)
             t[0], t[1], t[2], 1};
 }
 
-static void add_asset(Scene &scene, const std::string &path, const Transform &transform)
+AssetPointer open_asset(const std::string &path)
 {
+    const gtx_jobs jobs = gtx_host_jobs(0);
+    gtx_open_desc desc = {};
+    desc.jobs = &jobs;
     gtx_asset *asset;
     gtx_error error;
-    if (gtx_open_file(path.c_str(), nullptr, &asset, &error) != GTX_OK)
+    if (gtx_open_file(path.c_str(), &desc, &asset, &error) != GTX_OK)
         throw Error(error.result, error.message);
-    scene.assets.push_back({AssetPointer(asset), transform});
+    return AssetPointer(asset);
+}
+
+static void add_asset(Scene &scene, const std::string &path, const Transform &transform)
+{
+    scene.assets.push_back({open_asset(path), transform});
 }
 
 /* Places the assets that the nodes of a glTF scene name; false when no node names one. */

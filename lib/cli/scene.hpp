@@ -17,6 +17,9 @@ struct AssetCloser {
 };
 using AssetPointer = std::unique_ptr<gtx_asset, AssetCloser>;
 
+/* Opens an asset, with the help of all processors. Throws Error. */
+AssetPointer open_asset(const std::string &path);
+
 /* A column-major affine transform in double. */
 using Transform = std::array<double, 16>;
 constexpr Transform identity_transform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};

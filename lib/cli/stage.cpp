@@ -2,14 +2,17 @@
 #include "cli/stage.hpp"
 
 #include "cli/polygons.hpp"
+#include "host/jobs.h"
 
 namespace gtx {
 
 Stage::Stage(gtx_host_load load)
 {
     gtx_error error;
+    const gtx_jobs jobs = gtx_host_jobs(0);
     gtx_renderer_desc desc = {};
     desc.load = load;
+    desc.jobs = &jobs;
     check(gtx_host_gl_init(&gl, load, nullptr, &error), error);
     check(gtx_polygon_program_create(&gl, &program, &error), error);
     if (gtx_renderer_create(&desc, &renderer, &error) != GTX_OK) {

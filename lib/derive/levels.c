@@ -157,7 +157,7 @@ void gtx_grid_trim(const gtx_asset *asset, uint32_t patch, gtx_grid *grid)
     }
 }
 
-/* A grid of the level with room, and nothing in it. */
+/* A grid of the level with room, still to be written. */
 static gtx_result new_grid(const uint32_t texels[2], uint32_t level, const gtx_allocator *hooks,
                            gtx_grid *out, gtx_error *error)
 {
@@ -166,8 +166,8 @@ static gtx_result new_grid(const uint32_t texels[2], uint32_t level, const gtx_a
                       .nodes_y = (texels[1] - 2u + step) / step + 1};
     const size_t nodes = (size_t)out->nodes_x * out->nodes_y;
     const size_t cells = (size_t)(out->nodes_x - 1) * (out->nodes_y - 1);
-    out->code = gtx_alloc_array(hooks, nodes, sizeof *out->code);
-    out->solid = gtx_alloc_array(hooks, cells, sizeof *out->solid);
+    out->code = gtx_alloc_raw(hooks, nodes, sizeof *out->code);
+    out->solid = gtx_alloc_raw(hooks, cells, sizeof *out->solid);
     if (out->code && out->solid)
         return GTX_OK;
     gtx_grid_free(out, hooks);

@@ -52,7 +52,7 @@ static void append_box(gtx_proxies *out, uint32_t patch, const extent *e, float 
 static void *enlarge(void *old, size_t count, size_t room, size_t wanted, size_t size,
                      const gtx_allocator *hooks)
 {
-    void *grown = gtx_alloc_array(hooks, wanted, size);
+    void *grown = gtx_alloc_raw(hooks, wanted, size);
     if (grown && count)
         memcpy(grown, old, count * size);
     if (grown)

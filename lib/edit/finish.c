@@ -17,7 +17,7 @@ static gtx_asset *new_asset(const gtx_edit *edit, const gtx_info *info, const gt
     bare.shell_levels = 0;
     bare.content_hash = bare.file_size = 0;
     const gtx_sizes sizes = {.meta = source->meta_size};
-    gtx_asset *asset = gtx_asset_new(&edit->allocator, &bare, &sizes);
+    gtx_asset *asset = gtx_asset_new(&edit->allocator, &bare, &sizes, true);
     if (!asset)
         return NULL;
     memcpy(asset->patches, patches, bare.patch_count * sizeof *patches);

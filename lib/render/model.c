@@ -4,36 +4,70 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/jobs.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Adds a level of `unit` and its memory; NULL when there is none. */
+/* What one job derives: some patches, one after the other. */
+typedef struct batch {
+    uint32_t first, end;
+    gtx_derived derived;
+    gtx_result result;
+    gtx_error error;
+} batch;
+
+/* A model in the making. */
+typedef struct making {
+    gtx_model *model;
+    const gtx_asset *asset;
+    float (*records)[GTX_RECORD_TEXELS][4];
+    uint8_t *pages;               /* of cells */
+    batch *batches;
+    uint32_t batch_count;
+    bool borrow;
+    const void *sources[GTX_MAX_LEVELS]; /* of levels that are copies, or NULL */
+    gtx_result shells;
+    gtx_error shells_error;
+} making;
+
+/* Enough for many threads to end together, and each to have enough to do. */
+enum { MOST_BATCHES = 64 };
+
+/* Adds a level of `unit` and its memory, not yet written, unless it borrows what is there already.
+ * NULL without memory. */
 static uint8_t *add_level(gtx_model *model, uint32_t unit, uint32_t level, uint32_t width,
-                          uint32_t height, uint32_t layers, uint32_t texel_size)
+                          uint32_t height, uint32_t layers, uint32_t texel_size,
+                          const void *borrowed)
 {
     gtx_level *l = &model->levels[model->level_count++];
-    *l = (gtx_level){unit, level, width, height, layers, texel_size, 0, NULL};
-    l->data = gtx_alloc_array(&model->allocator, (size_t)width * height * layers, texel_size);
+    *l = (gtx_level){unit, level, width, height, layers, texel_size, 0, (uint8_t *)borrowed,
+                     borrowed != NULL};
+    if (!borrowed)
+        l->data = gtx_alloc_raw(&model->allocator, (size_t)width * height * layers, texel_size);
     const bool looks = unit == UNIT_COLORS || unit == UNIT_MATERIALS || unit == UNIT_EMISSIONS;
     uint64_t *size = looks ? &model->size.color : &model->size.geometry;
     *size += (uint64_t)width * height * layers * texel_size;
     return l->data;
 }
 
-static bool copy_levels(gtx_model *model, const gtx_asset *asset, gtx_map map, uint32_t unit,
-                        uint32_t count, uint32_t texel_size)
+static size_t level_size(const gtx_level *l)
 {
+    return (size_t)l->width * l->height * l->layers * l->texel_size;
+}
+
+/* Levels that are a map's, or are to be copies of them. */
+static bool add_maps(making *m, gtx_map map, uint32_t unit, uint32_t count, uint32_t texel_size)
+{
+    const gtx_info *info = &m->asset->info;
     for (uint32_t k = 0; k < count; ++k) {
-        size_t size;
-        const void *texels = gtx_map_data(asset, map, k, &size);
+        const void *texels = gtx_map_data(m->asset, map, k, NULL);
         if (!texels) /* an optional map */
             return true;
-        uint8_t *copy = add_level(model, unit, k, asset->info.page_width >> k,
-                                  asset->info.page_height >> k, asset->info.page_count, texel_size);
-        if (!copy)
+        m->sources[m->model->level_count] = m->borrow ? NULL : texels;
+        if (!add_level(m->model, unit, k, info->page_width >> k, info->page_height >> k,
+                       info->page_count, texel_size, m->borrow ? texels : NULL))
             return false;
-        memcpy(copy, texels, size);
     }
     return true;
 }
@@ -51,29 +85,39 @@ uint64_t gtx_model_layout(const gtx_asset *asset)
 }
 
 /* One array of each, in order of the kinds. */
-static gtx_result join_proxies(gtx_model *model, gtx_derived *derived, gtx_error *error)
+static gtx_result join_proxies(const making *m, gtx_error *error)
 {
-    uint32_t vertices = 0, indices = 0;
-    for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
-        const gtx_proxies *p = &derived->proxies[kind];
-        gtx_result result = gtx_proxies_reserve(&model->proxies, p->vertex_count, p->index_count,
-                                                &model->allocator, error);
-        if (result)
-            return result;
-        if (p->vertex_count)
-            memcpy(model->proxies.vertices + vertices, p->vertices,
-                   p->vertex_count * sizeof *p->vertices);
-        for (uint32_t i = 0; i < p->index_count; ++i)
-            model->proxies.indices[indices + i] = p->indices[i] + vertices;
-        for (uint32_t i = 0; i < model->patch_count; ++i) {
-            model->first_vertex[kind * model->patch_count + i] += vertices;
-            model->first_index[kind * model->patch_count + i] += indices;
+    gtx_model *model = m->model;
+    gtx_proxies *all = &model->proxies;
+    size_t most_vertices = 0, most_indices = 0;
+    for (uint32_t kind = 0; kind < model->kind_count; ++kind)
+        for (uint32_t b = 0; b < m->batch_count; ++b) {
+            most_vertices += m->batches[b].derived.proxies[kind].vertex_count;
+            most_indices += m->batches[b].derived.proxies[kind].index_count;
         }
-        model->proxies.vertex_count = vertices += p->vertex_count;
-        model->proxies.index_count = indices += p->index_count;
+    gtx_result result = gtx_proxies_reserve(all, most_vertices, most_indices, &model->allocator,
+                                            error);
+    if (result)
+        return result;
+    for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
+        for (uint32_t b = 0; b < m->batch_count; ++b) {
+            const gtx_proxies *p = &m->batches[b].derived.proxies[kind];
+            const uint32_t vertices = all->vertex_count, indices = all->index_count;
+            if (p->vertex_count)
+                memcpy(all->vertices + vertices, p->vertices,
+                       p->vertex_count * sizeof *p->vertices);
+            for (uint32_t i = 0; i < p->index_count; ++i)
+                all->indices[indices + i] = p->indices[i] + vertices;
+            for (uint32_t i = m->batches[b].first; i < m->batches[b].end; ++i) {
+                model->first_vertex[kind * model->patch_count + i] += vertices;
+                model->first_index[kind * model->patch_count + i] += indices;
+            }
+            all->vertex_count += p->vertex_count;
+            all->index_count += p->index_count;
+        }
     }
-    model->first_vertex[model->kind_count * model->patch_count] = vertices;
-    model->first_index[model->kind_count * model->patch_count] = indices;
+    model->first_vertex[model->kind_count * model->patch_count] = all->vertex_count;
+    model->first_index[model->kind_count * model->patch_count] = all->index_count;
     return GTX_OK;
 }
 
@@ -109,37 +153,84 @@ void gtx_model_cells_at(const gtx_model *model, const gtx_patch *patch, uint32_t
     at[1] = (patch->rect[1] >> level) + (level ? model->page_height : 0);
 }
 
-/* Cells of all levels, records and proxies. `records` and `pages` are where they go. */
-static gtx_result derive_patches(gtx_model *model, const gtx_asset *asset,
-                                 float (*records)[GTX_RECORD_TEXELS][4], uint8_t *pages,
-                                 gtx_derived *derived, gtx_error *error)
+/* Cells of all levels, record and proxies of a patch. */
+static gtx_result derive_patch(const making *m, uint32_t i, gtx_derived *derived, gtx_error *error)
 {
-    const gtx_info *info = &asset->info;
-    const size_t cell_size = info->height_bits / 2;
-    gtx_result result = GTX_OK;
-    for (uint32_t i = 0; !result && i < info->patch_count; ++i) {
-        const gtx_patch *p = &asset->patches[i];
-        for (uint32_t k = 0; k < info->mip_count; ++k) {
-            uint32_t at[2];
-            gtx_model_cells_at(model, p, k, at);
-            const size_t row = (size_t)p->page * gtx_model_cell_rows(model) + at[1];
-            derived->row_texels[k] = info->page_width;
-            derived->cells[k] = pages + (row * info->page_width + at[0]) * cell_size;
-            derived->slabs[k] = model->slabs + model->first_slab[k * info->patch_count + i];
-        }
-        for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
-            model->first_vertex[kind * info->patch_count + i] = derived->proxies[kind].vertex_count;
-            model->first_index[kind * info->patch_count + i] = derived->proxies[kind].index_count;
-        }
-        result = gtx_patch_derive(asset, i, &model->allocator, derived, error);
-        memcpy(records[i], derived->record, sizeof derived->record);
-        memcpy(model->records[i], derived->record, sizeof derived->record);
-        model->facts[i] = derived->facts;
+    gtx_model *model = m->model;
+    const gtx_info *info = &m->asset->info;
+    const gtx_patch *p = &m->asset->patches[i];
+    for (uint32_t k = 0; k < info->mip_count; ++k) {
+        uint32_t at[2];
+        gtx_model_cells_at(model, p, k, at);
+        const size_t row = (size_t)p->page * gtx_model_cell_rows(model) + at[1];
+        derived->row_texels[k] = info->page_width;
+        derived->cells[k] = m->pages + (row * info->page_width + at[0]) * (info->height_bits / 2);
+        derived->slabs[k] = model->slabs + model->first_slab[k * info->patch_count + i];
     }
+    for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
+        model->first_vertex[kind * info->patch_count + i] = derived->proxies[kind].vertex_count;
+        model->first_index[kind * info->patch_count + i] = derived->proxies[kind].index_count;
+    }
+    gtx_result result = gtx_patch_derive(m->asset, i, &model->allocator, derived, error);
+    memcpy(m->records[i], derived->record, sizeof derived->record);
+    memcpy(model->records[i], derived->record, sizeof derived->record);
+    model->facts[i] = derived->facts;
+    return result;
+}
+
+/* The shells, then copies of maps, then patches. */
+static void make_part(uint32_t index, void *data)
+{
+    making *m = data;
+    gtx_model *model = m->model;
+    if (index == 0) {
+        m->shells = gtx_shells_prepare(m->asset, &model->allocator, &model->shells,
+                                       &m->shells_error);
+    } else if (index <= model->level_count) {
+        const gtx_level *l = &model->levels[index - 1];
+        if (m->sources[index - 1])
+            memcpy(l->data, m->sources[index - 1], level_size(l));
+    } else {
+        batch *b = &m->batches[index - 1 - model->level_count];
+        for (uint32_t i = b->first; i < b->end && !b->result; ++i)
+            b->result = derive_patch(m, i, &b->derived, &b->error);
+    }
+}
+
+/* What went wrong first, in the order that serial work would have. */
+static gtx_result first_failure(const making *m, gtx_error *error)
+{
+    gtx_result result = m->shells;
+    const gtx_error *of = &m->shells_error;
+    for (uint32_t b = m->batch_count; b-- > 0;) {
+        result = m->batches[b].result ? m->batches[b].result : result;
+        of = m->batches[b].result ? &m->batches[b].error : of;
+    }
+    if (result && error)
+        *error = *of;
+    return result;
+}
+
+static gtx_result make_parts(making *m, const gtx_jobs *jobs, gtx_error *error)
+{
+    const gtx_allocator *hooks = &m->model->allocator;
+    const uint32_t patches = m->model->patch_count;
+    m->batch_count = patches < MOST_BATCHES ? patches : MOST_BATCHES;
+    m->batches = gtx_alloc_array(hooks, m->batch_count, sizeof *m->batches);
+    if (!m->batches)
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's patches");
+    for (uint32_t b = 0; b < m->batch_count; ++b) {
+        m->batches[b].first = (uint32_t)((uint64_t)patches * b / m->batch_count);
+        m->batches[b].end = (uint32_t)((uint64_t)patches * (b + 1) / m->batch_count);
+    }
+    gtx_run_jobs(jobs, 1 + m->model->level_count + m->batch_count, make_part, m);
+    gtx_result result = first_failure(m, error);
     if (!result)
-        result = join_proxies(model, derived, error);
-    for (uint32_t kind = 0; kind < model->kind_count; ++kind)
-        gtx_proxies_free(&derived->proxies[kind], &model->allocator);
+        result = join_proxies(m, error);
+    for (uint32_t b = 0; b < m->batch_count; ++b)
+        for (uint32_t kind = 0; kind < m->model->kind_count; ++kind)
+            gtx_proxies_free(&m->batches[b].derived.proxies[kind], hooks);
+    gtx_free_array(hooks, m->batches, m->batch_count, sizeof *m->batches);
     return result;
 }
 
@@ -163,66 +254,79 @@ static bool reserve_slabs(gtx_model *model, const gtx_asset *asset)
     return model->slabs;
 }
 
-static gtx_result derive_sheets(gtx_model *model, const gtx_asset *asset, gtx_error *error)
+/* Memory for everything that has a size before it is derived. */
+static bool reserve(making *m)
 {
-    const gtx_info *info = &asset->info;
+    gtx_model *model = m->model;
+    const gtx_info *info = &m->asset->info;
     const size_t slots = (size_t)model->kind_count * model->patch_count + 1;
-    float (*records)[GTX_RECORD_TEXELS][4] =
-        (void *)add_level(model, UNIT_PATCHES, 0, GTX_RECORD_TEXELS * GTX_RECORDS_A_ROW,
-                          gtx_model_record_rows(model->patch_count), 1, 4 * sizeof(float));
-    gtx_derived derived = {0};
+    const uint32_t rows = gtx_model_record_rows(model->patch_count), mips = model->mip_count;
+    m->records = (void *)add_level(model, UNIT_PATCHES, 0, GTX_RECORD_TEXELS * GTX_RECORDS_A_ROW,
+                                   rows, 1, 4 * sizeof(float), NULL);
     model->first_vertex = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_vertex);
     model->first_index = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_index);
     model->facts = gtx_alloc_array(&model->allocator, model->patch_count, sizeof *model->facts);
-    uint8_t *pages = add_level(model, UNIT_CELLS, 0, info->page_width, gtx_model_cell_rows(model),
-                               info->page_count, info->height_bits / 2);
-    if (!reserve_slabs(model, asset) || !records || !pages || !model->first_vertex ||
+    m->pages = add_level(model, UNIT_CELLS, 0, info->page_width, gtx_model_cell_rows(model),
+                         info->page_count, info->height_bits / 2, NULL);
+    if (!reserve_slabs(model, m->asset) || !m->records || !m->pages || !model->first_vertex ||
         !model->first_index || !model->facts)
-        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's maps");
-    gtx_result result = derive_patches(model, asset, records, pages, &derived, error);
-    for (int k = 0; k < 3; ++k)
-        model->sphere[k] = (info->bounds_min[k] + info->bounds_max[k]) / 2;
-    gtx_model_sum_up(model);
-    return result;
+        return false;
+    for (uint32_t i = 0; i < model->level_count; ++i) /* what lies between patches */
+        memset(model->levels[i].data, 0, level_size(&model->levels[i]));
+    return add_maps(m, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
+           add_maps(m, GTX_MAP_NORMAL, UNIT_NORMALS, mips, 2) &&
+           add_maps(m, GTX_MAP_COLOR, UNIT_COLORS, mips, 4) &&
+           add_maps(m, GTX_MAP_MATERIAL, UNIT_MATERIALS, mips, 4) &&
+           add_maps(m, GTX_MAP_EMISSION, UNIT_EMISSIONS, mips, 3);
 }
 
-gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_allocator *allocator,
-                             gtx_model **out, gtx_error *error)
+static gtx_model *new_model(const gtx_asset *asset, const gtx_allocator *hooks)
+{
+    gtx_model *model = gtx_alloc_array(hooks, 1, sizeof *model);
+    if (!model)
+        return NULL;
+    const gtx_info *info = &asset->info;
+    model->allocator = *hooks;
+    model->height_bits = info->height_bits;
+    model->mip_count = info->mip_count;
+    model->kind_count = 1 + info->mip_count;
+    model->patch_count = info->patch_count;
+    model->has_color = info->has_color;
+    model->has_material = info->has_material;
+    model->has_emission = info->has_emission;
+    model->emission_scale = info->has_emission ? info->emission_scale : 0;
+    model->page_count = info->page_count;
+    model->page_width = info->page_width;
+    model->page_height = info->page_height;
+    model->layout = gtx_model_layout(asset);
+    for (int k = 0; k < 3; ++k)
+        model->sphere[k] = (info->bounds_min[k] + info->bounds_max[k]) / 2;
+    return model;
+}
+
+gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc, gtx_model **out,
+                             gtx_error *error)
 {
     if (!asset || !out)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a model needs an asset");
     *out = NULL;
-    const gtx_allocator hooks = gtx_allocator_or_default(allocator);
-    gtx_model *model = gtx_alloc_array(&hooks, 1, sizeof *model);
-    if (!model)
+    gtx_result result = desc ? gtx_check_reserved(desc->reserved, 4, error) : GTX_OK;
+    if (result)
+        return result;
+    const gtx_allocator hooks = gtx_allocator_or_default(desc ? desc->allocator : NULL);
+    making m = {.asset = asset, .model = new_model(asset, &hooks), .borrow = desc && desc->borrow};
+    if (!m.model)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a model");
-    model->allocator = hooks;
-    model->height_bits = asset->info.height_bits;
-    model->mip_count = asset->info.mip_count;
-    model->patch_count = asset->info.patch_count;
-    model->has_color = asset->info.has_color;
-    model->has_material = asset->info.has_material;
-    model->has_emission = asset->info.has_emission;
-    model->emission_scale = asset->info.has_emission ? asset->info.emission_scale : 0;
-    model->page_count = asset->info.page_count;
-    model->page_width = asset->info.page_width;
-    model->page_height = asset->info.page_height;
-    model->layout = gtx_model_layout(asset);
-    const uint32_t mips = model->mip_count;
-    model->kind_count = 1 + mips;
-    gtx_result result = derive_sheets(model, asset, error);
-    if (!result)
-        result = gtx_shells_prepare(asset, &hooks, &model->shells, error);
-    if (!result && !(copy_levels(model, asset, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
-                     copy_levels(model, asset, GTX_MAP_NORMAL, UNIT_NORMALS, mips, 2) &&
-                     copy_levels(model, asset, GTX_MAP_COLOR, UNIT_COLORS, mips, 4) &&
-                     copy_levels(model, asset, GTX_MAP_MATERIAL, UNIT_MATERIALS, mips, 4) &&
-                     copy_levels(model, asset, GTX_MAP_EMISSION, UNIT_EMISSIONS, mips, 3)))
+    if (reserve(&m))
+        result = make_parts(&m, desc ? desc->jobs : NULL, error);
+    else
         result = gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's maps");
+    gtx_model *model = m.model;
     if (result) {
         gtx_model_destroy(NULL, model);
         return result;
     }
+    gtx_model_sum_up(model);
     model->size.geometry += (uint64_t)model->proxies.index_count * sizeof *model->proxies.indices +
                             (uint64_t)model->proxies.vertex_count * sizeof *model->proxies.vertices +
                             model->shells.vertex_bytes + model->shells.index_bytes;
@@ -234,8 +338,9 @@ void gtx_model_free_staging(gtx_model *model)
 {
     for (uint32_t i = 0; i < model->level_count; ++i) {
         gtx_level *l = &model->levels[i];
-        gtx_free_array(&model->allocator, l->data, (size_t)l->width * l->height * l->layers,
-                       l->texel_size);
+        if (!l->borrowed)
+            gtx_free_array(&model->allocator, l->data, (size_t)l->width * l->height * l->layers,
+                           l->texel_size);
         l->data = NULL;
     }
     gtx_proxies_free(&model->proxies, &model->allocator);

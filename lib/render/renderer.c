@@ -53,6 +53,7 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
     if (!renderer)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a renderer");
     renderer->allocator = hooks;
+    renderer->jobs = desc->jobs ? *desc->jobs : (gtx_jobs){0};
     renderer->log = desc->log;
     renderer->log_user = desc->log_user;
     renderer->costs = desc->costs;

@@ -97,6 +97,7 @@ typedef struct gtx_tiles {
 
 struct gtx_renderer {
     gtx_allocator allocator;
+    gtx_jobs jobs;            /* the host's, or zeros */
     gtx_gl gl;
     void (*log)(const char *message, void *user);
     void *log_user;
@@ -117,7 +118,8 @@ typedef struct gtx_level {
     uint32_t unit, level, width, height, layers;
     uint32_t texel_size;
     uint32_t next_row;        /* of height * layers rows, the first one not uploaded yet */
-    uint8_t *data;            /* freed once it is uploaded */
+    uint8_t *data;            /* freed once it is uploaded, unless it is the asset's */
+    bool borrowed;
 } gtx_level;
 
 enum { GTX_MAX_LEVELS = 2 + 5 * GTX_MAX_MIPS };

@@ -111,7 +111,7 @@ static bool fill_levels(const gtx_asset *asset, gtx_shells *out, split_vertex *s
         out->index_bytes += 3 * (uint64_t)level->triangle_count * level->index_size;
         out->index_bytes = (out->index_bytes + 3) / 4 * 4;
     }
-    out->vertices = gtx_alloc_array(hooks, (size_t)out->vertex_bytes, 1);
+    out->vertices = gtx_alloc_raw(hooks, (size_t)out->vertex_bytes, 1);
     out->indices = gtx_alloc_array(hooks, (size_t)out->index_bytes, 1);
     if (!out->vertices || !out->indices)
         return false;
@@ -141,7 +141,7 @@ gtx_result gtx_shells_prepare(const gtx_asset *asset, const gtx_allocator *alloc
         sound = sound && is_sound(&source, out->patch_count);
         most = source.vertex_count > most ? source.vertex_count : most;
     }
-    split_vertex *seen = gtx_alloc_array(allocator, most, sizeof *seen);
+    split_vertex *seen = gtx_alloc_raw(allocator, most, sizeof *seen);
     bool made = out->order && out->edited && seen;
     if (made && sound) {
         put_in_order(asset, out);

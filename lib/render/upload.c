@@ -297,7 +297,8 @@ gtx_result gtx_model_create(gtx_renderer *renderer, const gtx_asset *asset, gtx_
 {
     if (!renderer)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a model needs a renderer");
-    gtx_result result = gtx_model_prepare(asset, &renderer->allocator, out, error);
+    const gtx_model_desc desc = {&renderer->allocator, &renderer->jobs, 1, {0}};
+    gtx_result result = gtx_model_prepare(asset, &desc, out, error);
     if (result)
         return result;
     result = gtx_model_upload(renderer, *out, 0, NULL, error);

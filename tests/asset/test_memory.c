@@ -9,6 +9,7 @@
 #include "asset/codec.h"
 #include "asset/golden.h"
 #include "asset/read.h"
+#include "common/runners.h"
 
 #include <unistd.h>
 
@@ -200,11 +201,11 @@ static gtx_result open_golden_file(const golden *g, const gtx_open_desc *desc, g
 }
 
 /* What opening takes is said before, and is all that it takes. */
-static void check_limit(const golden *g, open_fn open, size_t most_calls)
+static void check_limit(const golden *g, open_fn open, const gtx_jobs *jobs, size_t most_calls)
 {
     meter m = {0};
     gtx_allocator allocator = hooks(&m);
-    gtx_open_desc desc = {.allocator = &allocator};
+    gtx_open_desc desc = {.allocator = &allocator, .jobs = jobs};
     gtx_asset *asset;
     assert_int_equal(open(g, &desc, &asset, NULL), GTX_OK);
     gtx_close(asset);
@@ -227,11 +228,14 @@ static void check_limit(const golden *g, open_fn open, size_t most_calls)
 static void test_max_bytes(void **state)
 {
     (void)state;
+    runner_log log;
+    const gtx_jobs jobs = runner_of(0, &log);
     for (int i = 0; i < GOLDEN_COUNT; ++i) {
         if (!readable(&goldens[i]))
             continue;
-        check_limit(&goldens[i], open_golden_memory, 0);
-        check_limit(&goldens[i], open_golden_file, 1); /* the bytes of the file */
+        check_limit(&goldens[i], open_golden_memory, NULL, 0);
+        check_limit(&goldens[i], open_golden_file, NULL, 1); /* the bytes of the file */
+        check_limit(&goldens[i], open_golden_memory, &jobs, 0);
     }
 }
 

@@ -177,8 +177,9 @@ static void every_failed_allocation_is_reported(void **state)
     for (long n = 0;; ++n) {
         counter c = {n, 0};
         const gtx_allocator hooks = {counted_alloc, counted_free, &c};
+        const gtx_model_desc desc = {.allocator = &hooks};
         gtx_model *model = NULL;
-        const gtx_result result = gtx_model_prepare(asset, &hooks, &model, NULL);
+        const gtx_result result = gtx_model_prepare(asset, &desc, &model, NULL);
         if (result == GTX_OK)
             gtx_model_destroy(NULL, model);
         else
