@@ -8,14 +8,23 @@ GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;
 
 layout(location = 0) in vec3 gtx_position;  /* in steps of the level */
 layout(location = 1) in uint gtx_patch;
+#ifdef GTX_ALONE
+uniform vec4 gtx_place[3];                  /* what follows, of the only instance */
+#define gtx_world_x gtx_place[0]
+#define gtx_world_y gtx_place[1]
+#define gtx_world_z gtx_place[2]
+#else
 layout(location = 2) in vec4 gtx_world_x;   /* as in geotex_proxy.vert */
 layout(location = 3) in vec4 gtx_world_y;
 layout(location = 4) in vec4 gtx_world_z;
+#endif
 layout(location = 5) in vec4 gtx_object_x;
 layout(location = 6) in vec4 gtx_object_y;
 layout(location = 7) in vec4 gtx_object_z;
 layout(location = 8) in vec4 gtx_tint;
 layout(location = 9) in uint gtx_instance;
+
+invariant gl_Position;                      /* bit for bit what a depth prepass has */
 
 GTX_VARYING(0) out vec2 gtx_at;             /* place in the page, 0..1 */
 GTX_VARYING(1) flat out vec2 gtx_page;      /* page; mip level */

@@ -189,7 +189,7 @@ void BenchScene::draw(BenchMethod method, const Shot &shot)
     gtx_view view = view_of(shot, placed);
     gl.DepthMask(GL_TRUE);
     gl.ClearDepthf(1);
-    gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    gl.Clear(GL_DEPTH_BUFFER_BIT | (is_depth_pass(method) ? 0 : GL_COLOR_BUFFER_BIT));
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_LESS);
     if (is_mesh(method)) {

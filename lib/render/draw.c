@@ -74,6 +74,8 @@ static gtx_result need_programs(gtx_renderer *renderer, const gtx_view *view, gt
     gtx_result result = gtx_program_need(renderer, method + offset, error);
     if (!result && method == PROGRAM_CAST)
         result = gtx_program_need(renderer, PROGRAM_SHELL + offset, error);
+    if (!result && view->pass == GTX_PASS_DEPTH)
+        result = gtx_program_need(renderer, PROGRAM_SHELL_DEPTH_ALONE, error);
     if (!result && gtx_stream_suits(renderer, view))
         result = gtx_program_need(renderer, PROGRAM_TILES + offset, error);
     return result;
@@ -131,10 +133,8 @@ static const void *at(size_t offset)
     return (const char *)NULL + offset;
 }
 
-/* Points the attributes at the vertices of proxies, or of a level of the shell, and at the data of
- * instances from one on. */
-static void set_attributes(const gtx_renderer *renderer, const run *r, uint32_t instance,
-                           bool shell)
+/* Points the attributes at the data of instances from one on. */
+static void set_instances(const gtx_renderer *renderer, uint32_t instance)
 {
     const gtx_gl *gl = &renderer->gl;
     enum {
@@ -143,17 +143,6 @@ static void set_attributes(const gtx_renderer *renderer, const run *r, uint32_t 
         ID_ATTRIBUTE = FIRST_INSTANCE_ATTRIBUTE + INSTANCE_ATTRIBUTES
     };
     const size_t base = instance * sizeof(gtx_instance_data);
-    if (shell) {
-        gtx_shells_bind(gl, &r->model->shells, r->way - 1u);
-    } else {
-        gl->BindBuffer(GL_ARRAY_BUFFER, r->model->vertices);
-        gl->VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(gtx_proxy_vertex), at(0));
-        gl->VertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(gtx_proxy_vertex),
-                                 at(offsetof(gtx_proxy_vertex, patch)));
-        gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->model->indices);
-    }
-    gl->EnableVertexAttribArray(0);
-    gl->EnableVertexAttribArray(1);
     gl->BindBuffer(GL_ARRAY_BUFFER, renderer->instance_buffer);
     for (gl_uint i = 0; i < INSTANCE_ATTRIBUTES; ++i) {
         const gl_uint index = FIRST_INSTANCE_ATTRIBUTE + i;
@@ -166,6 +155,20 @@ static void set_attributes(const gtx_renderer *renderer, const run *r, uint32_t 
                              at(base + offsetof(gtx_instance_data, id)));
     gl->VertexAttribDivisor(ID_ATTRIBUTE, 1);
     gl->EnableVertexAttribArray(ID_ATTRIBUTE);
+}
+
+/* The same, and at the vertices of proxies. */
+static void set_attributes(const gtx_renderer *renderer, const run *r, uint32_t instance)
+{
+    const gtx_gl *gl = &renderer->gl;
+    gl->BindBuffer(GL_ARRAY_BUFFER, r->model->vertices);
+    gl->VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(gtx_proxy_vertex), at(0));
+    gl->VertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(gtx_proxy_vertex),
+                             at(offsetof(gtx_proxy_vertex, patch)));
+    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->model->indices);
+    gl->EnableVertexAttribArray(0);
+    gl->EnableVertexAttribArray(1);
+    set_instances(renderer, instance);
 }
 
 /* Takes a program into use, with the model's uniforms. */
@@ -202,7 +205,7 @@ static void cast_whole(const gtx_renderer *renderer, const run *r, uint32_t kind
     const uint32_t indices = first[model->patch_count] - first[0];
     if (!indices)
         return;
-    set_attributes(renderer, r, instance, false);
+    set_attributes(renderer, r, instance);
     face(&renderer->gl, r, kind == 0);
     renderer->gl.DrawElementsInstanced(GL_TRIANGLES, (gl_size)indices, GL_UNSIGNED_INT,
                                        at(first[0] * sizeof(uint32_t)), (gl_size)count);
@@ -252,7 +255,7 @@ static void cast_sorted(gtx_renderer *renderer, pass *p, const run *r, uint32_t 
     if (cast_tiles(renderer, p, r, instance))
         return;
     use_program(gl, p, program_of(renderer, p->view, r->model, false, false), r->model);
-    set_attributes(renderer, r, instance, false);
+    set_attributes(renderer, r, instance);
     face(gl, r, true);
     for (uint32_t level = 0; level < r->model->mip_count; ++level) {
         const float *d = p->frame->detail, detail[4] = {d[0], d[1], (float)level, d[3]};
@@ -302,19 +305,24 @@ static void draw_shell(const gtx_renderer *renderer, pass *p, const run *r)
     const gtx_gl *gl = &renderer->gl;
     const gtx_shells *shells = &r->model->shells;
     const uint32_t level = r->way - 1u;
+    const bool alone = p->view->pass == GTX_PASS_DEPTH && r->count == 1;
     bool keeps_angles = true;
     for (uint32_t i = 0; i < r->count; ++i)
         keeps_angles = keeps_angles && gtx_keeps_angles(&renderer->instances[r->first + i]);
-    set_attributes(renderer, r, r->first, true);
+    if (!alone)
+        set_instances(renderer, r->first);
     gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
     for (int two_sided = 0; two_sided < 2; ++two_sided) {
         if (shells->one_sided == (two_sided ? shells->patch_count : 0))
             continue;
-        use_program(gl, p, program_of(renderer, p->view, r->model, true,
-                                      keeps_angles && !two_sided), r->model);
+        use_program(gl, p, alone ? &renderer->programs[PROGRAM_SHELL_DEPTH_ALONE]
+                                 : program_of(renderer, p->view, r->model, true,
+                                              keeps_angles && !two_sided), r->model);
+        if (alone)
+            gl->Uniform4fv(p->current->place, 3, renderer->instances[r->first].world[0]);
         gl->Uniform4fv(p->current->shell, 1, shells->levels[level].place);
         (two_sided ? gl->Disable : gl->Enable)(GL_CULL_FACE);
-        gtx_shells_draw(gl, shells, level, two_sided, r->count);
+        gtx_shells_draw(gl, shells, level, two_sided, alone ? 0 : r->count);
     }
 }
 

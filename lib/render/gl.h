@@ -146,6 +146,9 @@ enum {
     X(void, Disable, (gl_enum cap))                                                                \
     X(void, DrawElementsInstanced,                                                                 \
       (gl_enum mode, gl_size count, gl_enum type, const void *indices, gl_size instances))         \
+    X(void, DrawRangeElements,                                                                     \
+      (gl_enum mode, gl_uint first, gl_uint last, gl_size count, gl_enum type,                     \
+       const void *indices))                                                                       \
     X(void, Enable, (gl_enum cap))                                                                 \
     X(void, EnableVertexAttribArray, (gl_uint index))                                              \
     X(void, FrontFace, (gl_enum mode))                                                             \

@@ -25,6 +25,7 @@ typedef struct recipe {
 #define TILES "#define GTX_TILES\n"
 #define WALK CAST, "geotex_tiles.glsl"
 #define FRONT "#define GTX_FRONT\n"
+#define ALONE "#define GTX_ALONE\n"
 #define COLORS "#define GTX_COLORS\n"
 #define SHELL "geotex_shell_fragment.glsl"
 #define RAYS "geotex_rays.glsl"
@@ -55,6 +56,8 @@ static const recipe recipes[PROGRAM_COUNT] = {
                                 {"geotex_material.glsl", SHELL, "geotex_shell.frag"},
                                 "geotex shell, materials"},
     [PROGRAM_SHELL_DEPTH] = {POLYGONS, "", {SHELL, "geotex_depth.frag"}, "geotex shell, depth"},
+    [PROGRAM_SHELL_DEPTH_ALONE] = {POLYGONS, ALONE, {SHELL, "geotex_depth.frag"},
+                                   "geotex shell, depth, alone"},
     [PROGRAM_SHELL_ID] = {POLYGONS, "", {SHELL, "geotex_id.frag"}, "geotex shell, ids"},
     [PROGRAM_SHELL_GBUFFER] = {POLYGONS, MATERIALS,
                                {"geotex_material.glsl", SHELL, "geotex_gbuffer.frag"},

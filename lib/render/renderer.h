@@ -27,13 +27,16 @@ enum {
     PROGRAM_SHELL_COLOR_FRONT, PROGRAM_SHELL_MATERIAL_FRONT, PROGRAM_CAST_COLOR,
     /* what was cast by tiles */
     PROGRAM_TILES, PROGRAM_TILES_MATERIAL, PROGRAM_TILES_DEPTH, PROGRAM_TILES_ID,
-    PROGRAM_TILES_GBUFFER, PROGRAM_TILES_COLOR, PROGRAM_COUNT
+    PROGRAM_TILES_GBUFFER, PROGRAM_TILES_COLOR,
+    PROGRAM_SHELL_DEPTH_ALONE, /* of an instance whose place is a uniform */
+    PROGRAM_COUNT
 };
 
 typedef struct gtx_program {
     gl_uint object;
     gl_int clip_from_world, depth, light, detail, search, maps, shell;
-    gl_int place, tint, instance; /* of what is cast by tiles */
+    gl_int place;             /* of the only instance */
+    gl_int tint, instance;    /* of what is cast by tiles */
 } gtx_program;
 
 struct gtx_shading {

@@ -6,14 +6,29 @@
 
 #include <string.h>
 
-/* The greatest index is left to hosts that restart primitives by it. */
-enum { MOST_NARROW_VERTICES = 65535 };
+/* The greatest index is left to hosts that restart primitives by it. A run's indices are no more
+ * than what llvmpipe draws at once. */
+enum { MOST_NARROW_VERTICES = 65535, MOST_RUN_TRIANGLES = 4095 / 3 };
 
 /* Which of a patch's vertices a vertex of the level has become. */
 typedef struct split_vertex {
     uint32_t patch;           /* one more than the patch that met it last */
     uint32_t index;
 } split_vertex;
+
+/* Begins a run where the last one is full, and where culling changes. */
+static gtx_shell_run *run_of(const gtx_shells *shells, gtx_shell_level *level, uint32_t i,
+                             uint32_t vertex)
+{
+    uint32_t *count = &level->run_count;
+    const uint32_t start = *count > 1 ? level->runs[*count - 2].end : 0;
+    if (*count == 0 || i == shells->one_sided ||
+        level->first[i + 1] - start > MOST_RUN_TRIANGLES)
+        level->runs[(*count)++].first_vertex = vertex;
+    gtx_shell_run *run = &level->runs[*count - 1];
+    run->end = level->first[i + 1];
+    return run;
+}
 
 static void store_index(const gtx_shells *shells, const gtx_shell_level *level, uint32_t at,
                         uint32_t index)
@@ -27,14 +42,16 @@ static void store_index(const gtx_shells *shells, const gtx_shell_level *level, 
 /* Gives each vertex a copy for each patch that uses it, patch by patch in the order of drawing.
  * Without memory for them it only counts. `seen` has an entry for each vertex of the asset's level.
  * Returns how many copies there are. */
-static uint32_t split(const gtx_shells *shells, const gtx_shell_level *level,
-                      const gtx_shell *source, split_vertex *seen)
+static uint32_t split(const gtx_shells *shells, gtx_shell_level *level, const gtx_shell *source,
+                      split_vertex *seen)
 {
     gtx_shell_vertex *vertices =
         shells->vertices ? shells->vertices + level->vertex_offset / sizeof *vertices : NULL;
     uint32_t count = 0, met = 0;
     memset(seen, 0, source->vertex_count * sizeof *seen);
+    level->run_count = 0;
     for (uint32_t i = 0; i < shells->patch_count; ++i) {
+        gtx_shell_run *run = run_of(shells, level, i, count);
         const uint32_t patch = shells->order[i], last = source->first[patch + 1];
         for (uint64_t c = 3 * (uint64_t)source->first[patch]; c < 3 * (uint64_t)last; ++c) {
             split_vertex *s = &seen[source->indices[c]];
@@ -45,8 +62,9 @@ static uint32_t split(const gtx_shells *shells, const gtx_shell_level *level,
                     vertices[s->index] = (gtx_shell_vertex){{q[0], q[1], q[2]}, 0, patch};
             }
             if (vertices)
-                store_index(shells, level, met++, s->index);
+                store_index(shells, level, met++, s->index - run->first_vertex);
         }
+        run->vertex_count = count - run->first_vertex;
     }
     return count;
 }
@@ -84,7 +102,8 @@ static bool measure_level(gtx_shells *out, gtx_shell_level *level, const gtx_she
     level->error = source->error;
     level->triangle_count = source->triangle_count;
     level->first = gtx_alloc_array(hooks, out->patch_count + 1, sizeof *level->first);
-    if (!level->first)
+    level->runs = gtx_alloc_array(hooks, out->patch_count, sizeof *level->runs);
+    if (!level->first || !level->runs)
         return false;
     for (uint32_t i = 0; i < out->patch_count; ++i) {
         const uint32_t *of = source->first + out->order[i];
@@ -104,7 +123,10 @@ static bool fill_levels(const gtx_asset *asset, gtx_shells *out, split_vertex *s
         if (!measure_level(out, level, &source, hooks))
             return false;
         const uint32_t count = split(out, level, &source, seen);
-        level->index_size = count > MOST_NARROW_VERTICES ? 4 : 2;
+        level->index_size = 2;
+        for (uint32_t r = 0; r < level->run_count; ++r)
+            if (level->runs[r].vertex_count > MOST_NARROW_VERTICES)
+                level->index_size = 4;
         level->vertex_offset = out->vertex_bytes;
         level->index_offset = out->index_bytes;
         out->vertex_bytes += (uint64_t)count * sizeof *out->vertices;
@@ -167,9 +189,12 @@ void gtx_shells_free_staging(gtx_shells *shells, const gtx_allocator *allocator)
 void gtx_shells_free(gtx_shells *shells, const gtx_allocator *allocator)
 {
     gtx_shells_free_staging(shells, allocator);
-    for (uint32_t k = 0; k < shells->level_count; ++k)
+    for (uint32_t k = 0; k < shells->level_count; ++k) {
         gtx_free_array(allocator, shells->levels[k].first, shells->patch_count + 1,
                        sizeof *shells->levels[k].first);
+        gtx_free_array(allocator, shells->levels[k].runs, shells->patch_count,
+                       sizeof *shells->levels[k].runs);
+    }
     gtx_free_array(allocator, shells->order, shells->patch_count, sizeof *shells->order);
     gtx_free_array(allocator, shells->edited, shells->patch_count, sizeof *shells->edited);
     *shells = (gtx_shells){0};
@@ -180,24 +205,35 @@ static const void *at(uint64_t offset)
     return (const char *)NULL + offset;
 }
 
-void gtx_shells_bind(const gtx_gl *gl, const gtx_shells *shells, uint32_t level)
+/* Triangles of a run. */
+static void draw_run(const gtx_gl *gl, const gtx_shell_level *level, const gtx_shell_run *run,
+                     uint32_t first, uint32_t last, uint32_t instances)
 {
-    const uint64_t first = shells->levels[level].vertex_offset;
-    gl->BindBuffer(GL_ARRAY_BUFFER, shells->vertex_buffer);
-    gl->VertexAttribPointer(0, 3, GL_UNSIGNED_SHORT, GL_FALSE, sizeof(gtx_shell_vertex), at(first));
+    const gl_enum type = level->index_size == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
+    const gl_size count = (gl_size)(3 * (last - first));
+    const void *indices = at(level->index_offset + 3 * (uint64_t)first * level->index_size);
+    const uint64_t vertex =
+        level->vertex_offset + run->first_vertex * (uint64_t)sizeof(gtx_shell_vertex);
+    gl->VertexAttribPointer(0, 3, GL_UNSIGNED_SHORT, GL_FALSE, sizeof(gtx_shell_vertex),
+                            at(vertex));
     gl->VertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(gtx_shell_vertex),
-                             at(first + offsetof(gtx_shell_vertex, patch)));
-    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, shells->index_buffer);
+                             at(vertex + offsetof(gtx_shell_vertex, patch)));
+    if (instances)
+        gl->DrawElementsInstanced(GL_TRIANGLES, count, type, indices, (gl_size)instances);
+    else
+        gl->DrawRangeElements(GL_TRIANGLES, 0, run->vertex_count - 1, count, type, indices);
 }
 
 static void draw_range(const gtx_gl *gl, const gtx_shell_level *level, uint32_t first,
                        uint32_t last, uint32_t instances)
 {
-    const gl_enum type = level->index_size == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
-    if (first < last)
-        gl->DrawElementsInstanced(GL_TRIANGLES, (gl_size)(3 * (last - first)), type,
-                                  at(level->index_offset + 3 * (uint64_t)first * level->index_size),
-                                  (gl_size)instances);
+    uint32_t start = 0;
+    for (uint32_t r = 0; r < level->run_count; start = level->runs[r++].end) {
+        const gtx_shell_run *run = &level->runs[r];
+        const uint32_t from = first > start ? first : start, to = last < run->end ? last : run->end;
+        if (from < to)
+            draw_run(gl, level, run, from, to, instances);
+    }
 }
 
 void gtx_shells_draw(const gtx_gl *gl, const gtx_shells *shells, uint32_t level, bool two_sided,
@@ -206,6 +242,10 @@ void gtx_shells_draw(const gtx_gl *gl, const gtx_shells *shells, uint32_t level,
     const gtx_shell_level *l = &shells->levels[level];
     uint32_t from = two_sided ? shells->one_sided : 0;
     const uint32_t end = two_sided ? shells->patch_count : shells->one_sided;
+    gl->BindBuffer(GL_ARRAY_BUFFER, shells->vertex_buffer);
+    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, shells->index_buffer);
+    gl->EnableVertexAttribArray(0);
+    gl->EnableVertexAttribArray(1);
     for (uint32_t i = from; shells->edited_count && i < end; ++i)
         if (shells->edited[shells->order[i]]) {
             draw_range(gl, l, l->first[from], l->first[i], instances);

@@ -13,11 +13,20 @@ typedef struct gtx_shell_vertex {
     uint32_t patch;
 } gtx_shell_vertex;
 
+/* Consecutive patches with vertices of their own, few enough to be one draw: llvmpipe then takes
+ * indices as they are and shades each vertex once. */
+typedef struct gtx_shell_run {
+    uint32_t end;             /* triangles of the level up to its own last one */
+    uint32_t first_vertex, vertex_count;
+} gtx_shell_run;
+
 typedef struct gtx_shell_level {
     float place[4];           /* origin and step of the positions */
     float error;              /* object units */
     uint32_t triangle_count;
     uint32_t *first;          /* triangles first[i]..first[i + 1] - 1 are those of patch order[i] */
+    gtx_shell_run *runs;      /* room for a patch each; indices count from a run's first vertex */
+    uint32_t run_count;
     uint32_t index_size;      /* bytes */
     uint64_t vertex_offset, index_offset;
 } gtx_shell_level;
@@ -50,11 +59,9 @@ static inline void gtx_shells_mark(gtx_shells *shells, uint32_t patch)
     shells->edited[patch] = true;
 }
 
-/* Points attributes 0 and 1 at a level, and binds its indices. */
-void gtx_shells_bind(const gtx_gl *gl, const gtx_shells *shells, uint32_t level);
-
 /* Draws the patches that are not edited. The program, the textures and the attributes of instances
- * are set, the vertex array is bound. `two_sided` picks the patches, and whether to cull. */
+ * are set, the vertex array is bound. `two_sided` picks the patches. `instances` is 0 for a program
+ * that knows the place of its only one. Sets attributes 0 and 1 and binds the indices. */
 void gtx_shells_draw(const gtx_gl *gl, const gtx_shells *shells, uint32_t level, bool two_sided,
                      uint32_t instances);
 

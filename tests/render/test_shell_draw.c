@@ -220,6 +220,10 @@ nearer += second.depth[i] < first.depth[i];
     }
     assert_true(farther > 1000);
     assert_int_equal(nearer, 0);
+    view.pass = GTX_PASS_DEPTH;
+    draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &first);
+    assert_memory_equal(first.depth, second.depth, sizeof first.depth);
+    view.pass = GTX_PASS_FORWARD;
     view.level = 0;
     view.viewport_height = STAGE_HEIGHT;
     view.max_error = 2;
