@@ -93,7 +93,7 @@ static bool nearer_all_around(const Mesh &mesh, const double anchor[3], const gt
 
 /* Rays that pass where the surface is: nothing hit, or only something behind it. `erode` moves all
  * outlines inwards, in sixteenths of a texel. */
-static size_t holes(const Mesh &mesh, const Partition &partition, size_t count, int erode = 0)
+static size_t holes(const Mesh &mesh, Partition partition, size_t count, int erode = 0)
 {
     Task task(2, nullptr, nullptr, {"bake", "pack"});
     Maps maps = bake(mesh, partition, {}, task);
