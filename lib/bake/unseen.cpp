@@ -12,15 +12,15 @@
 
 namespace gtx::baking {
 
-/* A sheet shows what it lies no deeper below than this, nor higher above, in texels along the
- * source's normal. */
+/* A sheet shows what it lies no deeper below than this, nor, when it is another chart's, higher
+ * above, in texels along the source's normal. */
 constexpr double MOST_BELOW = 0.5, MOST_ABOVE = 1;
 /* and what faces its axis as much: a wall shows well inside the outline only, this many texels. */
 constexpr double LEAST_FACING = 0.15, INSIDE = 0.1;
 /* What faces away from its own chart by more is twisted inside out: seen from nowhere. */
 constexpr double TWISTED = -0.4;
 /* Texels: longer triangles are resolved by their charts, or are no detail of a scan. */
-constexpr double LONGEST = 8;
+constexpr double LONGEST = 8, SAMPLES = 2; /* a texel */
 /* Square texels of surface that are worth a patch: less is hardly a pixel. */
 constexpr double LEAST_AREA = 0.05;
 /* Texels of surface around it that its patch shows too, and how far the normals of one patch may
@@ -31,7 +31,7 @@ constexpr size_t ONE_TO = 6;
 
 namespace {
 
-/* A triangle that is not seen, of which chart, and its size in square texels. */
+/* A triangle that is not seen, of which chart, and how many square texels of it are not. */
 struct Lost {
     uint32_t triangle, chart;
     double area;
@@ -59,8 +59,9 @@ public:
     std::vector<Lost> run(Task &task) const;
 
 private:
-    bool is_lost(const Decoded &own, const Chart &chart, uint32_t triangle) const;
-    bool shown_by(const Decoded &sheet, const Vec3d &point, const Vec3d &normal) const;
+    double lost_share(const Decoded &own, const Chart &chart, uint32_t triangle) const;
+    bool shown_by(const Decoded &sheet, const Vec3d &point, const Vec3d &normal,
+                  double most_above) const;
     bool shown(const Vec3d &point, const Vec3d &normal) const;
 
     const Job &job_;
@@ -71,7 +72,8 @@ private:
     double farthest_ = 0;                 /* the largest sphere's radius */
 };
 
-bool Search::shown_by(const Decoded &sheet, const Vec3d &point, const Vec3d &normal) const
+bool Search::shown_by(const Decoded &sheet, const Vec3d &point, const Vec3d &normal,
+                      double most_above) const
 {
     const double facing = dot(normal, sheet.axis[2]);
     double above, trim;
@@ -79,7 +81,7 @@ bool Search::shown_by(const Decoded &sheet, const Vec3d &point, const Vec3d &nor
         trim > (facing < LEAST_FACING ? -INSIDE : SHOWN))
         return false;
     const double off = above * facing / job_.pitch;
-    return off >= -MOST_BELOW && off <= MOST_ABOVE;
+    return off >= -MOST_BELOW && off <= most_above;
 }
 
 bool Search::shown(const Vec3d &point, const Vec3d &normal) const
@@ -90,7 +92,7 @@ bool Search::shown(const Vec3d &point, const Vec3d &normal) const
     for (; at != order_.end() && (*at)->place <= place + reach; ++at) {
         const float *sphere = (*at)->maps->record.sphere;
         if (length(point - Vec3d(sphere[0], sphere[1], sphere[2])) <= sphere[3] &&
-            shown_by(**at, point, normal))
+            shown_by(**at, point, normal, MOST_ABOVE))
             return true;
     }
     return false;
@@ -103,7 +105,8 @@ static bool is_masked(const Mesh &mesh, uint32_t triangle)
     return !a.material.empty() && a.materials[a.material[triangle]].alpha_cutoff > 0;
 }
 
-bool Search::is_lost(const Decoded &own, const Chart &chart, uint32_t triangle) const
+/* How much of a triangle no sheet shows, 0..1. */
+double Search::lost_share(const Decoded &own, const Chart &chart, uint32_t triangle) const
 {
     const Mesh &mesh = job_.mesh;
     Vec3d corner[3];
@@ -113,21 +116,21 @@ bool Search::is_lost(const Decoded &own, const Chart &chart, uint32_t triangle) 
     const double longest = std::max({length(e), length(f), length(f - e)}) / job_.pitch;
     const Vec3d normal = normalize(cross(e, f));
     if (longest > LONGEST || !(dot(normal, own.axis[2]) > TWISTED) || is_masked(mesh, triangle))
-        return false;
-    const int parts = std::max(1, int(std::ceil(longest)));
+        return 0;
+    const int parts = std::max(1, int(std::ceil(SAMPLES * longest)));
+    int lost = 0;
     for (int j = 0; j < parts; ++j) {
         for (int i = 0; i + j < parts; ++i) {
             const Vec3d point = corner[0] + e * ((i + 1 / 3.) / parts) + f * ((j + 1 / 3.) / parts);
-            if (shown_by(own, point, normal))
+            if (shown_by(own, point, normal, INFINITY))
                 continue;
             const Vec3d local = chart.frame.local(point + job_.anchor);
             const bool mine = local.x >= chart.clip_low[0] && local.x <= chart.clip_high[0] &&
                               local.y >= chart.clip_low[1] && local.y <= chart.clip_high[1];
-            if (mine && !shown(point, normal))
-                return true;
+            lost += mine && !shown(point, normal);
         }
     }
-    return false;
+    return lost / (parts * (parts + 1) / 2.);
 }
 
 std::vector<Lost> Search::run(Task &task) const
@@ -136,10 +139,11 @@ std::vector<Lost> Search::run(Task &task) const
     task.parallel(sheets_.size(), [&](size_t s) {
         const Chart &chart = partition_.charts[chart_[s]];
         for (uint32_t t : chart.triangles) {
-            if (!is_lost(sheets_[s], chart, t))
+            const double share = lost_share(sheets_[s], chart, t);
+            if (!(share > 0))
                 continue;
-            const double area = length(job_.mesh.area_vector(t)) / 2;
-            of_sheet[s].push_back({t, chart_[s], area / (job_.pitch * job_.pitch)});
+            const double area = length(job_.mesh.area_vector(t)) / (2 * job_.pitch * job_.pitch);
+            of_sheet[s].push_back({t, chart_[s], share * area});
         }
     });
     std::vector<Lost> out;
@@ -161,7 +165,8 @@ public:
     {
     }
 
-    /* From this one on; its charts' lost area. */
+    /* From this one on; the lost area of the chart, none where that is all of its component: dust
+     * that was never anyone's surface. */
     Chart gather(size_t first, double &area);
     bool taken(size_t lost) const { return taken_[lost]; }
 
@@ -197,6 +202,7 @@ Chart Gatherer::gather(size_t first, double &area)
     Chart chart;
     Vec3d sum;
     area = 0;
+    bool goes_on = false;
     for (size_t next = 0; next < queue.size(); ++next) {
         const Reached at = queue[next];
         const size_t lost = find(at.triangle);
@@ -207,17 +213,22 @@ Chart Gatherer::gather(size_t first, double &area)
         chart.triangles.push_back(at.triangle);
         sum += job_.mesh.area_vector(at.triangle);
         for (uint32_t n : job_.neighbours[at.triangle]) {
-            if (n == NO_TRIANGLE || !seen.insert(n).second ||
-                !(dot(normalize(job_.mesh.area_vector(n)), axis) >= LEAST_COSINE))
+            if (n == NO_TRIANGLE || !seen.insert(n).second)
                 continue;
             const Vec3d middle = centre(n);
             const size_t of = find(n);
-            if (of < lost_.size() && !taken_[of])
+            if (!(dot(normalize(job_.mesh.area_vector(n)), axis) >= LEAST_COSINE))
+                goes_on = true;
+            else if (of < lost_.size() && !taken_[of])
                 queue.push_back({n, middle});
             else if (length(middle - at.from) <= RING * job_.pitch)
                 queue.push_back({n, at.from});
+            else
+                goes_on = true;
         }
     }
+    if (!goes_on)
+        area = 0;
     std::sort(chart.triangles.begin(), chart.triangles.end());
     chart.frame = make_frame(job_.mesh, chart.triangles, normalize(sum));
     chart.two_sided = partition_.charts[lost_[first].chart].two_sided;
@@ -244,7 +255,7 @@ std::vector<Chart> chart_unseen(const Job &job, const Partition &partition,
         charts.push_back(std::move(chart));
     }
     std::sort(size.begin(), size.end());
-    size.resize(std::min(size.size(), partition.charts.size() / ONE_TO));
+    size.resize(std::min(size.size(), 1 + partition.charts.size() / ONE_TO));
     std::vector<Chart> out;
     for (const auto &[area, i] : size)
         out.push_back(std::move(charts[i]));
