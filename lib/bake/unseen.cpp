@@ -113,7 +113,8 @@ double Search::lost_share(const Decoded &own, const Chart &chart, uint32_t trian
     for (int k = 0; k < 3; ++k)
         corner[k] = mesh.position(triangle, k) - job_.anchor;
     const Vec3d e = corner[1] - corner[0], f = corner[2] - corner[0];
-    const double longest = std::max({length(e), length(f), length(f - e)}) / job_.pitch;
+    const double square = std::max({dot(e, e), dot(f, f), dot(f - e, f - e)});
+    const double longest = std::sqrt(square) / job_.pitch;
     const Vec3d normal = normalize(cross(e, f));
     if (longest > LONGEST || !(dot(normal, own.axis[2]) > TWISTED) || is_masked(mesh, triangle))
         return 0;
