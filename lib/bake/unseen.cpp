@@ -257,6 +257,7 @@ std::vector<Chart> chart_unseen(const Job &job, const Partition &partition,
     }
     std::sort(size.begin(), size.end());
     size.resize(std::min(size.size(), 1 + partition.charts.size() / ONE_TO));
+    std::sort(size.begin(), size.end(), [](auto &a, auto &b) { return a.second < b.second; });
     std::vector<Chart> out;
     for (const auto &[area, i] : size)
         out.push_back(std::move(charts[i]));
