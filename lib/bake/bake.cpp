@@ -157,16 +157,25 @@ namespace gtx {
 
 using namespace baking;
 
-Maps bake(const Mesh &mesh, const Partition &partition, const BakeOptions &options, Task &task)
+Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Task &task)
 {
     check(mesh, partition, options);
     task.begin("bake");
     Neighbours neighbours = triangle_neighbours(mesh);
     Job job = {mesh,            neighbours,      options, appearance_needs(mesh),
                partition.pitch, find_anchor(mesh)};
-    std::vector<PatchMaps> patches(partition.charts.size());
-    task.parallel(patches.size(),
-                  [&](size_t i) { patches[i] = bake_chart(job, partition.charts[i]); });
+    std::vector<PatchMaps> patches;
+    auto bake_rest = [&](double from, double to) {
+        const size_t done = patches.size();
+        patches.resize(partition.charts.size());
+        task.parallel(patches.size() - done, [&](size_t i) {
+            patches[done + i] = bake_chart(job, partition.charts[done + i]);
+        }, from, to);
+    };
+    bake_rest(0, 0.9);
+    std::vector<Chart> unseen = chart_unseen(job, partition, patches, task);
+    std::move(unseen.begin(), unseen.end(), std::back_inserter(partition.charts));
+    bake_rest(0.9, 1);
     std::vector<uint32_t> charts;
     for (size_t i = 0; i < patches.size(); ++i)
         if (patches[i].coded)

@@ -5,7 +5,7 @@
  * are not the same where a chart ends, and rounded to codes, they may miss that by as much as the
  * relief between two texels. So the texels beyond a cut are raised to the neighbour's sheet, as a
  * reader decodes it. Pieces of a chart share its axis of projection, along which that is exact. */
-#include "bake/patch_maps.hpp"
+#include "bake/decoded.hpp"
 
 #include <algorithm>
 #include <tuple>
@@ -25,75 +25,26 @@ const double DIAGONAL = std::sqrt(3.);
 
 namespace {
 
-/* A patch as a reader decodes it: texel (i, j) lies at u = i, v = j, heights along the axis. */
-struct Piece {
-    const PatchMaps *maps;
-    Vec3d origin, axis[3], dual[3];
-    double pitch[2], step;       /* of a texel, and of a code */
+/* A patch, and where its chart is cut. */
+struct Piece : Decoded {
     double cut_low[2], cut_high[2];
-    double place;                /* of its sphere, along a line */
-    int w, h;
 
-    Piece(const PatchMaps &patch, const Chart &chart, const Vec3d &anchor, unsigned height_bits);
-    Vec3d point(double u, double v, double height) const
+    Piece(const PatchMaps &patch, const Chart &chart, const Vec3d &anchor, unsigned height_bits)
+        : Decoded(patch, height_bits)
     {
-        return origin + axis[0] * ((u + 0.5) * pitch[0]) + axis[1] * ((v + 0.5) * pitch[1]) +
-               axis[2] * height;
+        const Vec3d corner = chart.frame.local(origin + anchor);
+        for (int k = 0; k < 2; ++k) {
+            cut_low[k] = (chart.clip_low[k] - corner[k]) / pitch[k] - 0.5;
+            cut_high[k] = (chart.clip_high[k] - corner[k]) / pitch[k] - 0.5;
+        }
     }
-    size_t at(int i, int j) const { return size_t(j) * size_t(w) + size_t(i); }
-    double height(double code) const { return (code - 1) * step; }
-    bool sheet_above(const Vec3d &point, double &above) const;
 };
-
-Piece::Piece(const PatchMaps &patch, const Chart &chart, const Vec3d &anchor, unsigned height_bits)
-    : maps(&patch), w(patch.record.rect[2]), h(patch.record.rect[3])
-{
-    const gtx_patch &r = patch.record;
-    const float *from[3] = {r.axis_x, r.axis_y, r.axis_z};
-    for (int k = 0; k < 3; ++k)
-        axis[k] = {from[k][0], from[k][1], from[k][2]};
-    origin = {r.origin[0], r.origin[1], r.origin[2]};
-    const double det = dot(cross(axis[0], axis[1]), axis[2]);
-    for (int k = 0; k < 3; ++k)
-        dual[k] = cross(axis[(k + 1) % 3], axis[(k + 2) % 3]) / det;
-    pitch[0] = double(r.extent_x) / w;
-    pitch[1] = double(r.extent_y) / h;
-    step = r.extent_z / (height_bits == 8 ? 254. : 65534.);
-    place = double(r.sphere[0]) + r.sphere[1] + r.sphere[2];
-    const Vec3d corner = chart.frame.local(origin + anchor);
-    for (int k = 0; k < 2; ++k) {
-        cut_low[k] = (chart.clip_low[k] - corner[k]) / pitch[k] - 0.5;
-        cut_high[k] = (chart.clip_high[k] - corner[k]) / pitch[k] - 0.5;
-    }
-}
-
-/* How far above a point the sheet is seen, along the axis. */
-bool Piece::sheet_above(const Vec3d &point, double &above) const
-{
-    const Vec3d p = point - origin;
-    const double u = dot(dual[0], p) / pitch[0] - 0.5, v = dot(dual[1], p) / pitch[1] - 0.5;
-    if (!(u >= 0 && v >= 0 && u < w - 1 && v < h - 1))
-        return false;
-    const int i = int(u), j = int(v);
-    const double x = u - i, y = v - j;
-    const double weight[4] = {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
-    const size_t corner[4] = {at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)};
-    double code = 0, trim = 0;
-    for (int k = 0; k < 4; ++k) {
-        if (!maps->height[corner[k]])
-            return false;
-        code += weight[k] * maps->height[corner[k]];
-        trim += weight[k] * (maps->trim[corner[k]] - 128.) / 16;
-    }
-    above = height(code) - dot(dual[2], p);
-    return trim <= REACHED;
-}
 
 class Cuts {
 public:
     Cuts(const std::vector<const Piece *> &others, const Piece &piece, unsigned most_code)
         : others_(others), piece_(piece), most_code_(most_code),
-          most_(MOST_RAISED * std::max(piece.pitch[0], piece.pitch[1])),
+          most_(MOST_RAISED * piece.texel()),
           missed_(MISSED * most_), codes_(piece.maps->height)
     {
     }
@@ -136,9 +87,9 @@ double Cuts::missing(int axis, int line, double along) const
                                                  : code(k));
     const Vec3d point = axis ? piece_.point(along, line, height)
                              : piece_.point(line, along, height);
-    double missing = -INFINITY, above;
+    double missing = -INFINITY, above, trim;
     for (const Piece *other : others_)
-        if (other->sheet_above(point, above) && above <= most_)
+        if (other->sheet_above(point, above, trim) && trim <= REACHED && above <= most_)
             missing = std::max(missing, above);
     return missing;
 }

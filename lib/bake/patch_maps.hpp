@@ -261,6 +261,10 @@ void build_mips(Shades shades, unsigned mips, const AppearanceNeeds &needs, Patc
 
 PatchMaps bake_chart(const Job &job, const Chart &chart);
 
+/* Charts of the surface that none of the patches shows, those of `partition` in their order. */
+std::vector<Chart> chart_unseen(const Job &job, const Partition &partition,
+                                const std::vector<PatchMaps> &patches, Task &task);
+
 /* Raises texels beyond straight cuts until the sheets on both sides cross. `charts` is that of each
  * patch. */
 void close_cuts(const Partition &partition, const std::vector<uint32_t> &charts,

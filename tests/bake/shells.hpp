@@ -16,7 +16,7 @@ struct Shell {
     std::vector<ShellLevel> levels;
 };
 
-inline Shell shell_of(const Mesh &mesh, const Partition &partition, unsigned levels = 5,
+inline Shell shell_of(const Mesh &mesh, Partition partition, unsigned levels = 5,
                       unsigned threads = 2, BakeOptions options = {})
 {
     Task task(threads, nullptr, nullptr, {"bake", "pack", "shell"}, {1, 1, 1});

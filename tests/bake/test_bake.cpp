@@ -16,7 +16,7 @@ extern "C" {
 using namespace gtx;
 using shapes::describe;
 
-static Maps bake_with(const Mesh &mesh, const Partition &partition, BakeOptions options = {},
+static Maps bake_with(const Mesh &mesh, Partition partition, BakeOptions options = {},
                       unsigned threads = 1)
 {
     Task task(threads, nullptr, nullptr, {"bake", "pack"});
@@ -35,7 +35,7 @@ static gtx_asset *create(const Maps &maps)
     return asset;
 }
 
-static Maps bake_valid(const Mesh &mesh, const Partition &partition, BakeOptions options = {})
+static Maps bake_valid(const Mesh &mesh, Partition partition, BakeOptions options = {})
 {
     Maps maps = bake_with(mesh, partition, options);
     gtx_close(create(maps));
@@ -373,7 +373,7 @@ static void every_option_gives_a_valid_asset(void **)
     }
 }
 
-static gtx_result failure(const Mesh &mesh, const Partition &partition, BakeOptions options)
+static gtx_result failure(const Mesh &mesh, Partition partition, BakeOptions options)
 {
     try {
         bake_with(mesh, partition, options);

@@ -93,7 +93,7 @@ static bool nearer_all_around(const Mesh &mesh, const double anchor[3], const gt
 
 /* Rays that pass where the surface is: nothing hit, or only something behind it. `erode` moves all
  * outlines inwards, in sixteenths of a texel. */
-static size_t holes(const Mesh &mesh, const Partition &partition, size_t count, int erode = 0)
+static size_t holes(const Mesh &mesh, Partition partition, size_t count, int erode = 0)
 {
     Task task(2, nullptr, nullptr, {"bake", "pack"});
     Maps maps = bake(mesh, partition, {}, task);
@@ -106,9 +106,6 @@ static size_t holes(const Mesh &mesh, const Partition &partition, size_t count, 
     if (gtx_create(&desc, &asset, &error))
         fail_msg("%s (rule %u)", error.message, error.rule);
     gtx_caster *caster = nullptr;
-    for (const Chart &chart : partition.charts) /* or nothing could show all of it */
-        for (uint32_t t : chart.triangles)
-            assert_true(dot(normalize(mesh.area_vector(t)), chart.frame.z) > 0.02);
     assert_int_equal(gtx_caster_create(asset, nullptr, &caster, &error), GTX_OK);
 
     std::vector<Shot> shots = aim(mesh, maps.anchor, count);
@@ -209,6 +206,19 @@ static void an_open_sheet_is_whole_up_to_its_border(void **)
     assert_int_equal(holes(mesh, shapes::split(mesh, scattered(mesh, 12), 48), 100000), 0);
 }
 
+/* A wall of six texels, too steep by a third of one for the chart that it is in. */
+static void a_wall_that_leans_back_is_whole(void **)
+{
+    const double texel = 1 / 48., height = 6 * texel, back = texel / 3;
+    Mesh mesh = shapes::sheet(60, [&](double u, double v) {
+        const double up = std::clamp((u - 0.4) / 0.2, 0., 1.);
+        return Vec3d(u < 0.4 ? u : u > 0.6 ? u - 0.2 - back : 0.4 - back * up, v, height * up);
+    });
+    Partition partition = shapes::split(mesh, shapes::all_in_one(), 48 * 0.8);
+    partition.charts[0].frame = shapes::frame_along(mesh, partition.charts[0].triangles, {0, 0, 1});
+    assert_int_equal(holes(mesh, partition, 100000), 0);
+}
+
 /* The counter must see seams that are open. */
 static void eroded_patches_have_cracks(void **)
 {
@@ -225,6 +235,7 @@ int main()
         cmocka_unit_test(a_torus_of_ragged_patches),
         cmocka_unit_test(a_cube_closes_at_its_edges),
         cmocka_unit_test(an_open_sheet_is_whole_up_to_its_border),
+        cmocka_unit_test(a_wall_that_leans_back_is_whole),
         cmocka_unit_test(eroded_patches_have_cracks),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -40,7 +40,7 @@ static GlContext lent_context()
     return {[](const char *name) { return gtx_offscreen_load(name, nullptr); }, [] {}, [] {}};
 }
 
-static Maps bake_with(const Mesh &mesh, const Partition &partition, Extractor *extractor)
+static Maps bake_with(const Mesh &mesh, Partition partition, Extractor *extractor)
 {
     Task task(1, nullptr, nullptr, {"bake", "pack"});
     BakeOptions options;
@@ -59,7 +59,7 @@ static Asset asset_of(const Maps &maps)
     return Asset(asset, gtx_close);
 }
 
-static void expect_the_same(const Mesh &mesh, const Partition &partition)
+static void expect_the_same(const Mesh &mesh, Partition partition)
 {
     if (!offscreen)
         skip();

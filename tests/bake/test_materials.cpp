@@ -17,7 +17,7 @@ extern "C" {
 
 using namespace gtx;
 
-static Maps bake_with(const Mesh &mesh, const Partition &partition, BakeOptions options = {},
+static Maps bake_with(const Mesh &mesh, Partition partition, BakeOptions options = {},
                       unsigned threads = 1)
 {
     Task task(threads, nullptr, nullptr, {"bake", "pack"});

@@ -23,7 +23,7 @@ static Partition cut(const Mesh &mesh, unsigned charts, double pitch = 0)
     return make_partition(mesh, options, task);
 }
 
-static ShellSource source_of(const Mesh &mesh, const Partition &partition, Maps &maps,
+static ShellSource source_of(const Mesh &mesh, Partition partition, Maps &maps,
                              unsigned threads = 2)
 {
     Task task(threads, nullptr, nullptr, {"bake", "pack", "shell"}, {1, 1, 1});

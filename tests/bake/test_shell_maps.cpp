@@ -11,7 +11,7 @@ extern "C" {
 
 using namespace shells;
 
-static Shell remade(const Mesh &mesh, const Partition &partition, BakeOptions options = {},
+static Shell remade(const Mesh &mesh, Partition partition, BakeOptions options = {},
                     unsigned threads = 2)
 {
     Task task(threads, nullptr, nullptr, {"bake", "pack", "shell"}, {1, 1, 1});
@@ -23,7 +23,7 @@ static Shell remade(const Mesh &mesh, const Partition &partition, BakeOptions op
 }
 
 /* Everything that the maps show, as one level. */
-static Edges edges_of_surface(const Mesh &mesh, const Partition &partition)
+static Edges edges_of_surface(const Mesh &mesh, Partition partition)
 {
     Task task(2, nullptr, nullptr, {"bake", "pack", "shell"}, {1, 1, 1});
     const Maps maps = bake(mesh, partition, {}, task);

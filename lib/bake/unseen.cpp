@@ -1,0 +1,267 @@
+/* Makes charts of what no sheet shows.
+ *
+ * A chart loses surface of its own where a cell would bridge two sheets, and where a wall leans
+ * back from its axis that is too small to be split off. Whoever looks there from the side sees
+ * through. So the source is looked up in the sheets as readers decode them, and what is in none of
+ * them gets patches of its own, with as much around it as their borders need. */
+#include "bake/decoded.hpp"
+#include "chart/frame.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace gtx::baking {
+
+/* A sheet shows what it lies no deeper below than this, nor, when it is another chart's, higher
+ * above, in texels along the source's normal. */
+constexpr double MOST_BELOW = 0.5, MOST_ABOVE = 1;
+/* and what faces its axis as much: a wall shows well inside the outline only, this many texels. */
+constexpr double LEAST_FACING = 0.15, INSIDE = 0.1;
+/* What faces away from its own chart by more is twisted inside out: seen from nowhere. */
+constexpr double TWISTED = -0.4;
+/* Texels: longer triangles are resolved by their charts, or are no detail of a scan. */
+constexpr double LONGEST = 8, SAMPLES = 2; /* a texel */
+/* Square texels of surface that are worth a patch: less is hardly a pixel. */
+constexpr double LEAST_AREA = 0.05;
+/* Texels of surface around it that its patch shows too, and how far the normals of one patch may
+ * differ. */
+constexpr double RING = 1.25, LEAST_COSINE = 0.5;
+/* Patches that are added at most: one to so many that there are. */
+constexpr size_t ONE_TO = 10;
+
+namespace {
+
+/* A triangle that is not seen, of which chart, and how many square texels of it are not. */
+struct Lost {
+    uint32_t triangle, chart;
+    double area;
+};
+
+class Search {
+public:
+    Search(const Job &job, const Partition &partition, const std::vector<PatchMaps> &patches)
+        : job_(job), partition_(partition)
+    {
+        for (size_t i = 0; i < patches.size(); ++i) {
+            if (!patches[i].coded)
+                continue;
+            sheets_.emplace_back(patches[i], job.options.height_bits);
+            chart_.push_back(uint32_t(i));
+            farthest_ = std::max(farthest_, double(patches[i].record.sphere[3]));
+        }
+        for (const Decoded &sheet : sheets_)
+            order_.push_back(&sheet);
+        std::sort(order_.begin(), order_.end(), [](const Decoded *a, const Decoded *b) {
+            return std::tie(a->place, a) < std::tie(b->place, b);
+        });
+    }
+
+    std::vector<Lost> run(Task &task) const;
+
+private:
+    double lost_share(const Decoded &own, const Chart &chart, uint32_t triangle) const;
+    bool shown_by(const Decoded &sheet, const Vec3d &point, const Vec3d &normal,
+                  double most_above) const;
+    bool shown(const Vec3d &point, const Vec3d &normal) const;
+
+    const Job &job_;
+    const Partition &partition_;
+    std::vector<Decoded> sheets_;
+    std::vector<uint32_t> chart_;         /* of a sheet */
+    std::vector<const Decoded *> order_;  /* by place */
+    double farthest_ = 0;                 /* the largest sphere's radius */
+};
+
+bool Search::shown_by(const Decoded &sheet, const Vec3d &point, const Vec3d &normal,
+                      double most_above) const
+{
+    const double facing = dot(normal, sheet.axis[2]);
+    double above, trim;
+    if (facing < 0 || !sheet.sheet_above(point, above, trim) ||
+        trim > (facing < LEAST_FACING ? -INSIDE : SHOWN))
+        return false;
+    const double off = above * facing / job_.pitch;
+    return off >= -MOST_BELOW && off <= most_above;
+}
+
+bool Search::shown(const Vec3d &point, const Vec3d &normal) const
+{
+    const double place = point.x + point.y + point.z, reach = std::sqrt(3.) * farthest_;
+    auto at = std::lower_bound(order_.begin(), order_.end(), place - reach,
+                               [](const Decoded *a, double b) { return a->place < b; });
+    for (; at != order_.end() && (*at)->place <= place + reach; ++at) {
+        const float *sphere = (*at)->maps->record.sphere;
+        if (length(point - Vec3d(sphere[0], sphere[1], sphere[2])) <= sphere[3] &&
+            shown_by(**at, point, normal, MOST_ABOVE))
+            return true;
+    }
+    return false;
+}
+
+/* What a material cuts away is not lost. */
+static bool is_masked(const Mesh &mesh, uint32_t triangle)
+{
+    const Appearance &a = mesh.appearance;
+    return !a.material.empty() && a.materials[a.material[triangle]].alpha_cutoff > 0;
+}
+
+/* How much of a triangle no sheet shows, 0..1. */
+double Search::lost_share(const Decoded &own, const Chart &chart, uint32_t triangle) const
+{
+    const Mesh &mesh = job_.mesh;
+    Vec3d corner[3];
+    for (int k = 0; k < 3; ++k)
+        corner[k] = mesh.position(triangle, k) - job_.anchor;
+    const Vec3d e = corner[1] - corner[0], f = corner[2] - corner[0];
+    const double square = std::max({dot(e, e), dot(f, f), dot(f - e, f - e)});
+    const double longest = std::sqrt(square) / job_.pitch;
+    const Vec3d normal = normalize(cross(e, f));
+    if (longest > LONGEST || !(dot(normal, own.axis[2]) > TWISTED) || is_masked(mesh, triangle))
+        return 0;
+    const int parts = std::max(1, int(std::ceil(SAMPLES * longest)));
+    int lost = 0;
+    for (int j = 0; j < parts; ++j) {
+        for (int i = 0; i + j < parts; ++i) {
+            const Vec3d point = corner[0] + e * ((i + 1 / 3.) / parts) + f * ((j + 1 / 3.) / parts);
+            if (shown_by(own, point, normal, INFINITY))
+                continue;
+            const Vec3d local = chart.frame.local(point + job_.anchor);
+            const bool mine = local.x >= chart.clip_low[0] && local.x <= chart.clip_high[0] &&
+                              local.y >= chart.clip_low[1] && local.y <= chart.clip_high[1];
+            lost += mine && !shown(point, normal);
+        }
+    }
+    return lost / (parts * (parts + 1) / 2.);
+}
+
+std::vector<Lost> Search::run(Task &task) const
+{
+    std::vector<std::vector<Lost>> of_sheet(sheets_.size());
+    task.parallel(sheets_.size(), [&](size_t s) {
+        const Chart &chart = partition_.charts[chart_[s]];
+        for (uint32_t t : chart.triangles) {
+            const double share = lost_share(sheets_[s], chart, t);
+            if (!(share > 0))
+                continue;
+            const double area = length(job_.mesh.area_vector(t)) / (2 * job_.pitch * job_.pitch);
+            of_sheet[s].push_back({t, chart_[s], share * area});
+        }
+    });
+    std::vector<Lost> out;
+    for (const std::vector<Lost> &some : of_sheet)
+        out.insert(out.end(), some.begin(), some.end());
+    std::sort(out.begin(), out.end(), [](const Lost &a, const Lost &b) {
+        return std::tie(a.triangle, a.chart) < std::tie(b.triangle, b.chart);
+    });
+    auto same = [](const Lost &a, const Lost &b) { return a.triangle == b.triangle; };
+    out.erase(std::unique(out.begin(), out.end(), same), out.end());
+    return out;
+}
+
+/* Gathers lost triangles that lie together into charts. */
+class Gatherer {
+public:
+    Gatherer(const Job &job, const Partition &partition, const std::vector<Lost> &lost)
+        : job_(job), partition_(partition), lost_(lost), taken_(lost.size(), 0)
+    {
+    }
+
+    /* From this one on; the lost area of the chart, none where that is all of its component: dust
+     * that was never anyone's surface. */
+    Chart gather(size_t first, double &area);
+    bool taken(size_t lost) const { return taken_[lost]; }
+
+private:
+    size_t find(uint32_t triangle) const
+    {
+        auto at = std::lower_bound(lost_.begin(), lost_.end(), triangle,
+                                   [](const Lost &a, uint32_t b) { return a.triangle < b; });
+        return at != lost_.end() && at->triangle == triangle ? size_t(at - lost_.begin())
+                                                             : lost_.size();
+    }
+    Vec3d centre(uint32_t t) const
+    {
+        const Mesh &mesh = job_.mesh;
+        return (mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) / 3;
+    }
+
+    const Job &job_;
+    const Partition &partition_;
+    const std::vector<Lost> &lost_;
+    std::vector<uint8_t> taken_;
+};
+
+Chart Gatherer::gather(size_t first, double &area)
+{
+    struct Reached {
+        uint32_t triangle;
+        Vec3d from;              /* the lost surface it was reached from */
+    };
+    const Vec3d axis = normalize(job_.mesh.area_vector(lost_[first].triangle));
+    std::vector<Reached> queue = {{lost_[first].triangle, centre(lost_[first].triangle)}};
+    std::unordered_set<uint32_t> seen = {queue[0].triangle};
+    Chart chart;
+    Vec3d sum;
+    area = 0;
+    bool goes_on = false;
+    for (size_t next = 0; next < queue.size(); ++next) {
+        const Reached at = queue[next];
+        const size_t lost = find(at.triangle);
+        if (lost < lost_.size() && !taken_[lost]) {
+            taken_[lost] = 1;
+            area += lost_[lost].area;
+        }
+        chart.triangles.push_back(at.triangle);
+        sum += job_.mesh.area_vector(at.triangle);
+        for (uint32_t n : job_.neighbours[at.triangle]) {
+            if (n == NO_TRIANGLE || !seen.insert(n).second)
+                continue;
+            const Vec3d middle = centre(n);
+            const size_t of = find(n);
+            if (!(dot(normalize(job_.mesh.area_vector(n)), axis) >= LEAST_COSINE))
+                goes_on = true;
+            else if (of < lost_.size() && !taken_[of])
+                queue.push_back({n, middle});
+            else if (length(middle - at.from) <= RING * job_.pitch)
+                queue.push_back({n, at.from});
+            else
+                goes_on = true;
+        }
+    }
+    if (!goes_on)
+        area = 0;
+    std::sort(chart.triangles.begin(), chart.triangles.end());
+    chart.frame = make_frame(job_.mesh, chart.triangles, normalize(sum));
+    chart.two_sided = partition_.charts[lost_[first].chart].two_sided;
+    return chart;
+}
+
+} // namespace
+
+std::vector<Chart> chart_unseen(const Job &job, const Partition &partition,
+                                const std::vector<PatchMaps> &patches, Task &task)
+{
+    const std::vector<Lost> lost = Search(job, partition, patches).run(task);
+    Gatherer gatherer(job, partition, lost);
+    std::vector<Chart> charts;
+    std::vector<std::pair<double, size_t>> size; /* largest first */
+    for (size_t i = 0; i < lost.size(); ++i) {
+        double area;
+        if (gatherer.taken(i))
+            continue;
+        Chart chart = gatherer.gather(i, area);
+        if (area < LEAST_AREA)
+            continue;
+        size.emplace_back(-area, charts.size());
+        charts.push_back(std::move(chart));
+    }
+    std::sort(size.begin(), size.end());
+    size.resize(std::min(size.size(), 1 + partition.charts.size() / ONE_TO));
+    std::sort(size.begin(), size.end(), [](auto &a, auto &b) { return a.second < b.second; });
+    std::vector<Chart> out;
+    for (const auto &[area, i] : size)
+        out.push_back(std::move(charts[i]));
+    return out;
+}
+
+} // namespace gtx::baking
