@@ -138,13 +138,13 @@ static void quantise(const Grid &grid, const Crop &crop, const Cover &cover,
     fill_trim(maps);
 }
 
-static Sheet lay_sheet(const Job &job, FlatChart flat)
+static Sheet lay_sheet(const Job &job, FlatChart flat, Extractor *extractor)
 {
     Sheet s;
     s.flat = std::move(flat);
-    if (job.options.extractor)
-        s.rendering = job.options.extractor->render(job.mesh, s.flat);
-    Cover core = job.options.extractor ? core_of(s.flat, s.rendering) : raster_core(s.flat);
+    if (extractor)
+        s.rendering = extractor->render(job.mesh, s.flat);
+    Cover core = extractor ? core_of(s.flat, s.rendering) : raster_core(s.flat);
     Outline core_outline = find_outline(job.neighbours, s.flat, s.flat.core);
     s.cover = core;
     Paths paths(job.mesh, job.neighbours, s.flat);
@@ -203,14 +203,16 @@ PatchMaps bake_chart(const Job &job, const Chart &chart)
     auto flat = [&](double finer) {
         return flatten(job.mesh, job.neighbours, chart, job.pitch, finer);
     };
-    Sheet sheet = lay_sheet(job, flat(1));
+    Extractor *extractor = job.options.extractor;
+    Sheet sheet = lay_sheet(job, flat(1), nullptr); /* cells do not depend on what reads the maps */
     Chart fitted = chart;
-    if (refit(sheet, 1 << (job.options.mips - 1), fitted)) {
+    const bool again = refit(sheet, 1 << (job.options.mips - 1), fitted);
+    if (again)
         flatten_again(job.mesh, fitted, sheet.flat);
-        sheet = lay_sheet(job, std::move(sheet.flat));
-    }
+    if (again || extractor)
+        sheet = lay_sheet(job, std::move(sheet.flat), extractor);
     if (fit_heights(sheet.flat, sheet.support, sheet.cover) > ALLOWED) {
-        sheet = lay_sheet(job, flat(FINER));
+        sheet = lay_sheet(job, flat(FINER), extractor);
         fit_heights(sheet.flat, sheet.support, sheet.cover);
     }
     return encode_sheet(job, chart, sheet);
