@@ -5,6 +5,8 @@
  * t is the same along the rays of all patches: w of clip space, or for an orthographic camera how
  * far behind the plane that rays begin on. Pixels count from the viewport's corner. Follows
  * geotex_cast.glsl and geotex_fragment.glsl, with GTX_TILES. */
+GTX_VARYING(0) in vec2 gtx_pixel;
+
 /* Heads of all tiles: where the list begins and ends.
  * 8 texels a patch: columns to grid space of gtx_place[1], [4], [2], [3]; columns of its normals to
  *   the world; w of the first and of the last three: corner; size; page + 2^24 * level + 2^31 *
@@ -14,7 +16,7 @@
  * The lists: where the slab is, least t. */
 uniform highp usamplerBuffer gtx_stream;
 uniform uint gtx_instance;
-uniform vec4 gtx_place[10];  /* 0: tiles a row; x of the viewport's corner; y as a + b * window y;
+uniform vec4 gtx_place[10];  /* x of 0: tiles a row;
                                 1: the rays' origin in object space; 2, 3: what a pixel in x and
                                 in y adds, to the direction of a perspective camera's rays, to the
                                 origin of an orthographic one's; 4: direction;
@@ -106,9 +108,7 @@ void gtx_place_hit(vec2 pixel, vec2 zw)
 
 bool gtx_find(out gtx_surface s)
 {
-    vec2 corner = vec2(gl_FragCoord.x - gtx_place[0].y,
-                       gtx_place[0].z + gtx_place[0].w * gl_FragCoord.y);
-    vec2 pixel = floor(corner) + 0.5, zw, zw_step, range = vec2(-1e30, 1e30);
+    vec2 pixel = floor(gtx_pixel) + 0.5, zw, zw_step, range = vec2(-1e30, 1e30);
     gtx_clip_along(pixel, zw, zw_step);
     gtx_clip(zw.x + gtx_depth.x * zw.y, zw_step.x + gtx_depth.x * zw_step.y, range.x, range.y);
     gtx_clip(zw.y - zw.x, zw_step.y - zw_step.x, range.x, range.y);
@@ -116,6 +116,8 @@ bool gtx_find(out gtx_surface s)
     ivec2 tile = ivec2(pixel) >> 2;
     uvec4 head = texelFetch(gtx_stream, tile.y * int(gtx_place[0].x) + tile.x);
     int k = int(head.x), end = int(head.y), patch_at = -1;
+    if (k == end)
+        return false;
     s.hit.t = 1e30;
     do {
         /* All rays of a processor look for a slab, and then all cast. */

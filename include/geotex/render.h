@@ -9,8 +9,7 @@
  *   program 0, vertex array 0, array and element buffers 0, active texture unit 0, textures (2D and
  *   2D array) and samplers 0 on units 0..7, depth test on, depth func LESS (GREATER when reversed),
  *   depth mask on, cull face off, cull mode BACK, front face CCW, blend off, colour mask all on.
- * Of OpenGL also, where gtx_tiling has it: buffer texture 0 on unit 8, program point size off; and
- * the viewport is read.
+ * Of OpenGL also, where gtx_tiling has it: buffer texture 0 on unit 8.
  * It does not touch the framebuffer binding, viewport, scissor, stencil or clip control.
  *
  * OpenGL ES is recognised by its version string; there is nothing to tell. It encodes what is

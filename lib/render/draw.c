@@ -230,7 +230,7 @@ static bool cast_tiles(gtx_renderer *renderer, pass *p, const run *r, uint32_t i
     if (!gtx_stream_suits(renderer, p->view) ||
         !gtx_tiles_fill(renderer, p->view, p->frame, r->model, placed))
         return false;
-    if (!renderer->tiles.point_count)
+    if (!renderer->tiles.tile_count)
         return true;
     int kind = PROGRAM_TILES + pass_programs[p->view->pass];
     if (p->view->pass == GTX_PASS_FORWARD && shades(r->model))

@@ -101,7 +101,6 @@ gtx_result gtx_gl_init(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *err
         load_debug(gl, desc, gl->es ? "KHR" : "");
     if (!gl->es || has_extension(gl, "GL_EXT_multi_draw_arrays"))
         load_multi(gl, desc, gl->es ? "EXT" : "");
-    gl->clip_control = !gl->es && (have >= 45 || has_extension(gl, "GL_ARB_clip_control"));
     if (!gl->es && wants_tiles(gl, desc))
         load_tiles(gl, desc);
     return result;

@@ -21,7 +21,6 @@ typedef ptrdiff_t gl_pointer;
 enum {
     GL_FALSE = 0,
     GL_TRUE = 1,
-    GL_POINTS = 0x0000,
     GL_TRIANGLES = 0x0004,
     GL_LESS = 0x0201,
     GL_GREATER = 0x0204,
@@ -35,7 +34,6 @@ enum {
     GL_DEPTH_TEST = 0x0B71,
     GL_DEPTH_WRITEMASK = 0x0B72,
     GL_DEPTH_FUNC = 0x0B74,
-    GL_VIEWPORT = 0x0BA2,
     GL_BLEND = 0x0BE2,
     GL_COLOR_WRITEMASK = 0x0C23,
     GL_UNPACK_SWAP_BYTES = 0x0CF0,
@@ -72,10 +70,6 @@ enum {
     GL_MINOR_VERSION = 0x821C,
     GL_NUM_EXTENSIONS = 0x821D,
     GL_DEBUG_SOURCE_THIRD_PARTY = 0x8249,
-    GL_PROGRAM_POINT_SIZE = 0x8642,
-    GL_LOWER_LEFT = 0x8CA1,
-    GL_UPPER_LEFT = 0x8CA2,
-    GL_CLIP_ORIGIN = 0x935C,
     GL_VENDOR = 0x1F00,
     GL_RENDERER = 0x1F01,
     GL_VERSION = 0x1F02,
@@ -230,7 +224,6 @@ typedef struct gtx_gl {
     GTX_GL_TILES(GTX_GL_FIELD)
 #undef GTX_GL_FIELD
     bool es;                  /* OpenGL ES */
-    bool clip_control;        /* the host may have turned y round */
 } gtx_gl;
 
 /* Labels an object, where the context takes labels. */

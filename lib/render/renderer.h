@@ -90,10 +90,10 @@ enum {
 /* Casting by tiles: what one instance has in each tile of 4 x 4 pixels. What shaders read of it are
  * the parts of one stream: heads of the lists, records of patches, slabs, and the lists. */
 typedef struct gtx_tiles {
-    gl_uint vertex_array, point_buffer, stream_buffer, stream_texture;
+    gl_uint vertex_array, corner_buffer, stream_buffer, stream_texture;
     gl_int max_texels;
-    gtx_scratch seen, heads, records, slabs, lists, points;
-    uint32_t seen_count, tile_count, point_count;
+    gtx_scratch seen, heads, records, slabs, lists, corners;
+    uint32_t seen_count, tile_count, corner_count;
     uint32_t head_texels, record_texels, slab_texels, list_texels;
     float place[PLACE_ROWS][4];
 } gtx_tiles;
@@ -282,8 +282,8 @@ typedef struct gtx_state {
     gl_int program, vertex_array, array_buffer, unit;
     gl_int textures[UNIT_CLEARED], arrays[UNIT_CLEARED], samplers[UNIT_CLEARED];
     gl_int depth_func, cull_mode, front_face, draw_buffers;
-    gl_bool depth_test, depth_mask, cull, point_size;
-    gl_int stream;            /* this and point_size where the context casts by tiles */
+    gl_bool depth_test, depth_mask, cull;
+    gl_int stream;            /* where the context casts by tiles */
     gl_bool blend[GTX_MAX_DRAW_BUFFERS], color_mask[GTX_MAX_DRAW_BUFFERS][4];
 } gtx_state;
 

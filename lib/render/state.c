@@ -16,8 +16,6 @@ void gtx_state_leave(const gtx_gl *gl, bool reversed)
     gl->BindVertexArray(0);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     bind_stream(gl, 0);
-    if (gl->TexBuffer)
-        gl->Disable(GL_PROGRAM_POINT_SIZE);
     for (gl_uint i = UNIT_CLEARED; i-- > 0;) {
         gl->ActiveTexture(GL_TEXTURE0 + i);
         gl->BindTexture(GL_TEXTURE_2D, 0);
@@ -63,10 +61,8 @@ void gtx_state_read(const gtx_gl *gl, gtx_state *state)
         gl->GetIntegerv(GL_SAMPLER_BINDING, &state->samplers[i]);
     }
     gl->ActiveTexture(GL_TEXTURE0 + UNIT_STREAM);
-    if (gl->TexBuffer) {
+    if (gl->TexBuffer)
         gl->GetIntegerv(GL_TEXTURE_BINDING_BUFFER, &state->stream);
-        state->point_size = gl->IsEnabled(GL_PROGRAM_POINT_SIZE);
-    }
     gl->GetIntegerv(GL_DEPTH_FUNC, &state->depth_func);
     gl->GetIntegerv(GL_CULL_FACE_MODE, &state->cull_mode);
     gl->GetIntegerv(GL_FRONT_FACE, &state->front_face);
@@ -107,8 +103,6 @@ void gtx_state_restore(const gtx_gl *gl, const gtx_state *state)
         gl->BindSampler(i, (gl_uint)state->samplers[i]);
     }
     bind_stream(gl, (gl_uint)state->stream);
-    if (gl->TexBuffer)
-        set(gl, GL_PROGRAM_POINT_SIZE, state->point_size);
     gl->ActiveTexture((gl_enum)state->unit);
     set(gl, GL_DEPTH_TEST, state->depth_test);
     gl->DepthFunc((gl_enum)state->depth_func);

@@ -10,10 +10,10 @@ void gtx_stream_create(gtx_renderer *renderer)
     gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &t->max_texels);
     gl->GenVertexArrays(1, &t->vertex_array);
     gl->BindVertexArray(t->vertex_array);
-    gtx_gl_label(gl, GL_VERTEX_ARRAY, t->vertex_array, "geotex tiles, points");
-    gl->GenBuffers(1, &t->point_buffer);
-    gl->BindBuffer(GL_ARRAY_BUFFER, t->point_buffer);
-    gtx_gl_label(gl, GL_BUFFER, t->point_buffer, "geotex tiles, points");
+    gtx_gl_label(gl, GL_VERTEX_ARRAY, t->vertex_array, "geotex tile corners");
+    gl->GenBuffers(1, &t->corner_buffer);
+    gl->BindBuffer(GL_ARRAY_BUFFER, t->corner_buffer);
+    gtx_gl_label(gl, GL_BUFFER, t->corner_buffer, "geotex tile corners");
     gl->VertexAttribPointer(0, 2, GL_UNSIGNED_SHORT, GL_FALSE, 0, NULL);
     gl->EnableVertexAttribArray(0);
     gl->BindVertexArray(0);
@@ -35,14 +35,14 @@ void gtx_stream_destroy(gtx_renderer *renderer)
     if (!t->vertex_array)
         return;
     gl->DeleteVertexArrays(1, &t->vertex_array);
-    gl->DeleteBuffers(1, &t->point_buffer);
+    gl->DeleteBuffers(1, &t->corner_buffer);
     gl->DeleteBuffers(1, &t->stream_buffer);
     gl->DeleteTextures(1, &t->stream_texture);
 }
 
 bool gtx_stream_suits(const gtx_renderer *renderer, const gtx_view *view)
 {
-    const uint32_t most = 65528; /* they are counted in 16 bits */
+    const uint32_t most = 65528; /* corners are counted in 16 bits */
     return renderer->gl.TexBuffer && !view->shading && view->method != GTX_METHOD_PAPER &&
            view->viewport_width > 0 && view->viewport_width <= most &&
            view->viewport_height > 0 && view->viewport_height <= most;
@@ -76,25 +76,18 @@ void gtx_stream_draw(gtx_renderer *renderer, const gtx_program *program,
 {
     const gtx_gl *gl = &renderer->gl;
     const gtx_tiles *t = &renderer->tiles;
-    gl_int at[4], origin = GL_LOWER_LEFT;
-    gl->GetIntegerv(GL_VIEWPORT, at);
-    if (gl->clip_control)
-        gl->GetIntegerv(GL_CLIP_ORIGIN, &origin);
-    const bool down = origin == GL_UPPER_LEFT;
-    const float window[4] = {t->place[PLACE_STREAM][0], (float)at[0],
-                             (float)(down ? at[1] + at[3] : -at[1]), down ? -1.0f : 1.0f};
     send(gl, t);
-    gl->BindBuffer(GL_ARRAY_BUFFER, t->point_buffer);
-    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)t->point_count * 4, t->points.data,
+    gl->BindBuffer(GL_ARRAY_BUFFER, t->corner_buffer);
+    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)t->corner_count * 4, t->corners.data,
                    GL_STREAM_DRAW);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     gl->ActiveTexture(GL_TEXTURE0 + UNIT_STREAM);
     gl->BindTexture(GL_TEXTURE_BUFFER, t->stream_texture);
     gl->Uniform4fv(program->place, PLACE_ROWS, t->place[0]);
-    gl->Uniform4fv(program->place, 1, window);
     gl->Uniform4fv(program->tint, 1, placed->tint);
     gl->Uniform1ui(program->instance, placed->id);
     gl->BindVertexArray(t->vertex_array);
-    gl->Enable(GL_PROGRAM_POINT_SIZE);
-    gl->DrawArrays(GL_POINTS, 0, (gl_size)t->point_count);
+    gl->Disable(GL_CULL_FACE);
+    gl->DrawArrays(GL_TRIANGLES, 0, (gl_size)t->corner_count);
+    gl->Enable(GL_CULL_FACE);
 }

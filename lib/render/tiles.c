@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pixels along a tile, and along a point, which draws four tiles. */
-enum { TILE = 4, POINT = 2 * TILE };
+/* Pixels along a tile, and tiles along the height of a rectangle of them. */
+enum { TILE = 4, BAND = 16 };
 
 /* How far, in pixels, rounding may move a slab's outline. */
 static const float slack = 0.03f;
@@ -30,7 +30,7 @@ static void *reserve(gtx_renderer *renderer, gtx_scratch *scratch, size_t count,
 void gtx_tiles_free(gtx_renderer *renderer)
 {
     gtx_tiles *t = &renderer->tiles;
-    gtx_scratch *all[] = {&t->seen, &t->heads, &t->records, &t->slabs, &t->lists, &t->points};
+    gtx_scratch *all[] = {&t->seen, &t->heads, &t->records, &t->slabs, &t->lists, &t->corners};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
         gtx_free_array(&renderer->allocator, all[i]->data, all[i]->size, 1);
         *all[i] = (gtx_scratch){0};
@@ -188,34 +188,41 @@ static void list_slabs(const gtx_tiles *t, uint32_t columns, uint32_t (*heads)[4
         }
 }
 
-static uint16_t centre_of(uint32_t point, uint32_t pixels)
+/* Two triangles over tiles x0..x1 of rows y0..y1. */
+static void add_corners(gtx_tiles *t, uint32_t x0, uint32_t x1, uint32_t y0, uint32_t y1)
 {
-    const uint32_t centre = POINT * point + POINT / 2;
-    return (uint16_t)(centre < pixels ? centre : pixels - 1); /* outside points are not drawn */
+    static const uint8_t order[6][2] = {{0, 0}, {1, 0}, {0, 1}, {0, 1}, {1, 0}, {1, 1}};
+    uint16_t (*corner)[2] = (uint16_t (*)[2])t->corners.data + t->corner_count;
+    for (int k = 0; k < 6; ++k) {
+        corner[k][0] = (uint16_t)(TILE * (order[k][0] ? x1 + 1 : x0));
+        corner[k][1] = (uint16_t)(TILE * (order[k][1] ? y1 + 1 : y0));
+    }
+    t->corner_count += 6;
 }
 
-/* Whether a point's tiles have a slab. */
-static bool has_slabs(const gtx_tiles *t, uint32_t x, uint32_t y, uint32_t columns, uint32_t rows)
+/* Whether any of rows y0..y1 of a column of tiles has a slab. */
+static bool has_slabs(const gtx_tiles *t, uint32_t columns, uint32_t x, uint32_t y0, uint32_t y1)
 {
     const uint32_t (*heads)[4] = t->heads.data;
-    uint32_t any = 0;
-    for (uint32_t j = 2 * y; j < rows && j < 2 * y + 2; ++j)
-        for (uint32_t i = 2 * x; i < columns && i < 2 * x + 2; ++i)
-            any |= heads[j * columns + i][2];
-    return any > 0;
+    for (uint32_t y = y0; y <= y1; ++y)
+        if (heads[y * columns + x][2])
+            return true;
+    return false;
 }
 
-/* Centres of the points that draw the tiles that have a slab. */
-static void find_points(gtx_tiles *t, const gtx_camera_rows *c, uint32_t columns, uint32_t rows)
+/* Outlines the tiles that have a slab. Along the diagonal between two triangles processors cast
+ * twice: rectangles are as high as a band of rows, with empty tiles in them, which cost less. */
+static void outline(gtx_tiles *t, uint32_t columns, uint32_t rows)
 {
-    uint16_t (*points)[2] = t->points.data;
-    t->point_count = 0;
-    for (uint32_t y = 0; 2 * y < rows; ++y)
-        for (uint32_t x = 0; 2 * x < columns; ++x)
-            if (has_slabs(t, x, y, columns, rows)) {
-                points[t->point_count][0] = centre_of(x, c->width);
-                points[t->point_count++][1] = centre_of(y, c->height);
-            }
+    t->corner_count = 0;
+    for (uint32_t y0 = 0; y0 < rows; y0 += BAND) {
+        const uint32_t y1 = (y0 + BAND < rows ? y0 + BAND : rows) - 1;
+        for (uint32_t x = 0, from = 0; x < columns; ++x)
+            if (!has_slabs(t, columns, x, y0, y1))
+                from = x + 1;
+            else if (x + 1 == columns || !has_slabs(t, columns, x + 1, y0, y1))
+                add_corners(t, from, x, y0, y1);
+    }
 }
 
 bool gtx_tiles_fill(gtx_renderer *renderer, const gtx_view *view, const gtx_frame *frame,
@@ -239,10 +246,10 @@ bool gtx_tiles_fill(gtx_renderer *renderer, const gtx_view *view, const gtx_fram
         return false;
     t->list_texels = (uint32_t)(texels - before);
     uint32_t (*lists)[4] = reserve(renderer, &t->lists, t->list_texels, sizeof *lists);
-    if (!lists || !reserve(renderer, &t->points, t->tile_count, 2 * sizeof(uint16_t)))
+    if (!lists || !reserve(renderer, &t->corners, 6 * (size_t)t->tile_count, 2 * sizeof(uint16_t)))
         return false;
     list_slabs(t, columns, heads, lists);
-    find_points(t, &c, columns, rows);
+    outline(t, columns, rows);
     t->place[PLACE_STREAM][0] = (float)columns;
     return true;
 }
