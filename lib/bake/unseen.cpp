@@ -27,7 +27,7 @@ constexpr double LEAST_AREA = 0.05;
  * differ. */
 constexpr double RING = 1.25, LEAST_COSINE = 0.5;
 /* Patches that are added at most: one to so many that there are. */
-constexpr size_t ONE_TO = 10;
+constexpr size_t ONE_TO = 6;
 
 namespace {
 
