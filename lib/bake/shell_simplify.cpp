@@ -61,6 +61,7 @@ struct Simplifier::State {
     {
     }
     void find_around();
+    void add_borders(uint32_t v);
     void make_quadrics();
     bool find_fan(uint32_t vertex, Fan &fan) const
     {
@@ -74,7 +75,7 @@ struct Simplifier::State {
     Candidate find_candidate(uint32_t vertex, double most) const;
     float least_cost(uint32_t vertex, double most) const;
     void find_candidates(double free, double most);
-    void collapse(const Fan &fan, uint32_t from, uint32_t to);
+    size_t collapse(const Fan &fan, uint32_t from, uint32_t to);
     void compact();
     size_t round(size_t wanted, double free, double most);
     void settle(uint32_t vertex);
@@ -95,40 +96,49 @@ void Simplifier::State::find_around()
             around[next[v]++] = uint32_t(t);
 }
 
+/* Planes that stand on the edges of a vertex that only one triangle has. */
+void Simplifier::State::add_borders(uint32_t v)
+{
+    for (uint32_t i = start[v]; i < start[v + 1]; ++i) {
+        const Triangle &t = triangles[around[i]];
+        const int k = corner_of(t, v);
+        for (int other = 1; other < 3; ++other) {
+            const uint32_t end = t[(k + other) % 3];
+            const auto has_end = [&](uint32_t n) { return corner_of(triangles[n], end) >= 0; };
+            if (std::count_if(&around[start[v]], &around[start[v]] + (start[v + 1] - start[v]),
+                              has_end) > 1)
+                continue;
+            const Vec3d a = positions[t[0]], edge = positions[end] - positions[v];
+            const Vec3d normal = cross(positions[t[1]] - a, positions[t[2]] - a);
+            const Vec3d across = normalize(cross(edge, normal));
+            quadrics[v].add_plane(across, -dot(across, positions[v]), BORDER * dot(edge, edge));
+        }
+    }
+}
+
 /* Planes of triangles by their area; at open borders also planes that stand on the edge. */
 void Simplifier::State::make_quadrics()
 {
     quadrics.resize(positions.size());
     const size_t chunk = 4096, chunks = (positions.size() + chunk - 1) / chunk;
     task.parallel(chunks, [&](size_t n) {
-        Fan fan;
         for (size_t v = n * chunk; v < std::min(positions.size(), (n + 1) * chunk); ++v) {
             Quadric &q = quadrics[v];
-            auto add = [&](const Vec3d &normal, const Vec3d &on, double weight) {
-                q.add_plane(normal, -dot(normal, on), weight);
-            };
             for (uint32_t i = start[v]; i < start[v + 1]; ++i) {
                 const Triangle &t = triangles[around[i]];
                 const Vec3d a = positions[t[0]];
                 const Vec3d area = cross(positions[t[1]] - a, positions[t[2]] - a);
-                add(normalize(area), a, length(area));
+                const Vec3d normal = normalize(area);
+                q.add_plane(normal, -dot(normal, a), length(area));
                 q.weight += length(area);
             }
-            if (!find_fan(uint32_t(v), fan) || !fan.open)
-                continue;
-            const uint32_t ends[] = {fan.ring[0], fan.ring[fan.ring_count - 1]};
-            const uint32_t sides[] = {fan.triangle[0], fan.triangle[fan.count - 1]};
-            for (int k = 0; k < 2; ++k) {
-                const Triangle &t = triangles[sides[k]];
-                const Vec3d a = positions[t[0]], edge = positions[ends[k]] - positions[v];
-                const Vec3d normal = cross(positions[t[1]] - a, positions[t[2]] - a);
-                add(normalize(cross(edge, normal)), positions[v], BORDER * dot(edge, edge));
-            }
+            add_borders(uint32_t(v));
         }
     }, 0, 0);
 }
 
-/* The link condition (Dey et al. 1999): the surface stays what it is, and nothing vanishes whole. */
+/* The link condition (Dey et al. 1999): the surface stays what it is, and nothing vanishes whole.
+ * Where sheets meet it is no surface, and only the latter counts. */
 bool Simplifier::State::keeps_topology(const Fan &fan, uint32_t from, uint32_t to) const
 {
     if (start[to + 1] - start[to] > MOST_FAN)
@@ -144,6 +154,8 @@ bool Simplifier::State::keeps_topology(const Fan &fan, uint32_t from, uint32_t t
         if (corner_of(t, from) >= 0)
             continue;
         remains = true;
+        if (fan.meeting)
+            break;
         int common = 0;
         for (uint32_t v : t) {
             const bool beside = v == before || v == after;
@@ -284,19 +296,23 @@ void Simplifier::State::find_candidates(double free, double most)
     std::sort(paid, candidates.end(), is_cheaper);
 }
 
-void Simplifier::State::collapse(const Fan &fan, uint32_t from, uint32_t to)
+/* Returns how many triangles are gone. */
+size_t Simplifier::State::collapse(const Fan &fan, uint32_t from, uint32_t to)
 {
+    size_t count = 0;
     for (int i = 0; i < fan.count; ++i) {
         Triangle &t = triangles[fan.triangle[i]];
         const bool gone = corner_of(t, to) >= 0;
         t[corner_of(t, from)] = to;
         if (gone)
             t = {NO_VERTEX, NO_VERTEX, NO_VERTEX};
+        count += gone;
     }
     quadrics[to].add(quadrics[from]);
     touched[from] = 1;
     for (int i = 0; i < fan.ring_count; ++i)
         touched[fan.ring[i]] = 1;
+    return count;
 }
 
 /* Takes out what is gone: triangles, and the vertices that none has. */
@@ -347,8 +363,7 @@ size_t Simplifier::State::round(size_t wanted, double free, double most)
         if (touched[c.from] || touched[c.to])
             continue;
         find_fan(c.from, fan);
-        left -= fan.open ? 1 : 2;
-        collapse(fan, c.from, c.to);
+        left -= collapse(fan, c.from, c.to);
         ++taken;
     }
     compact();
