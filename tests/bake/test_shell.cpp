@@ -36,7 +36,7 @@ static void a_ball_stays_closed_and_near(void **)
         size_t outside = 0;
         for_each(level, [&](size_t, const std::array<Vec3d, 3> &c) {
             for (const Vec3d &p : c) {
-                assert_true(std::fabs(length(p) - 1) < 2 * level.error + 2 * level.step);
+                assert_true(std::fabs(length(p) - 1) < 3 * level.error + 2 * level.step);
                 outside += length(p) > 1;
             }
             deepest = std::max(deepest, 1 - length((c[0] + c[1] + c[2]) / 3));
