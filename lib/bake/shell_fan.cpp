@@ -3,6 +3,21 @@
 
 namespace gtx::baking {
 
+/* All triangles and vertices as they come. */
+static void gather(const std::vector<Triangle> &triangles, const uint32_t *around, int count,
+                   uint32_t vertex, Fan &fan)
+{
+    fan.count = count;
+    fan.ring_count = 0;
+    fan.open = false;
+    fan.meeting = true;
+    std::copy_n(around, count, fan.triangle);
+    for (int i = 0; i < count; ++i)
+        for (uint32_t v : triangles[around[i]])
+            if (v != vertex && !fan.has(v))
+                fan.ring[fan.ring_count++] = v;
+}
+
 bool find_fan(const std::vector<Triangle> &triangles, const uint32_t *around, size_t triangle_count,
               uint32_t vertex, Fan &fan)
 {
@@ -23,6 +38,7 @@ bool find_fan(const std::vector<Triangle> &triangles, const uint32_t *around, si
             first = i;
     fan.count = 0;
     fan.ring_count = 0;
+    fan.meeting = false;
     for (int i = first; i < count && fan.count < count;) {
         fan.triangle[fan.count++] = of[i];
         fan.ring[fan.ring_count++] = after[i];
@@ -34,7 +50,9 @@ bool find_fan(const std::vector<Triangle> &triangles, const uint32_t *around, si
         else if (i == first)
             break;
     }
-    return fan.count == count && (fan.open == (fan.ring_count == count + 1));
+    if (fan.count != count || fan.open != (fan.ring_count == count + 1))
+        gather(triangles, around, count, vertex, fan);
+    return true;
 }
 
 } // namespace gtx::baking

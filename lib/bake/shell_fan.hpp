@@ -15,11 +15,12 @@ using Triangle = std::array<uint32_t, 3>;
 constexpr int MOST_FAN = 40;
 
 /* The triangles around a vertex in order: `ring` holds their other vertices, one more than there are
- * triangles where the fan is open. */
+ * triangles where the fan is open. Where sheets meet there is no order, and each other vertex is in
+ * the ring once. */
 struct Fan {
     int count = 0, ring_count = 0;
-    bool open = false;
-    uint32_t triangle[MOST_FAN], ring[MOST_FAN + 1];
+    bool open = false, meeting = false;
+    uint32_t triangle[MOST_FAN], ring[2 * MOST_FAN];
 
     bool has(uint32_t vertex) const
     {
@@ -32,8 +33,7 @@ inline int corner_of(const Triangle &triangle, uint32_t vertex)
     return triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : triangle[2] == vertex ? 2 : -1;
 }
 
-/* Puts those `around` a vertex in order. False when it is none that could go: without triangles, with
- * too many, or with several fans. */
+/* Puts those `around` a vertex in order. False when there are none or too many. */
 bool find_fan(const std::vector<Triangle> &triangles, const uint32_t *around, size_t triangle_count,
               uint32_t vertex, Fan &fan);
 

@@ -1,6 +1,8 @@
 /* What it costs to move a vertex: squared distances to planes (Garland and Heckbert 1997). */
 #pragma once
 
+#include "bake/shell_fan.hpp"
+#include "mesh/task.hpp"
 #include "mesh/vec.hpp"
 
 #include <algorithm>
@@ -46,5 +48,12 @@ struct Quadric {
         return Vec3d{dot(down, cross(b, d)), dot(down, cross(d, a)), dot(down, cross(a, b))} / det;
     }
 };
+
+/* Of each vertex the planes of its triangles, by their area; at open borders also planes that stand
+ * on the edge. Vertex v has the triangles around[start[v]] to around[start[v + 1] - 1]. */
+std::vector<Quadric> vertex_quadrics(const std::vector<Vec3d> &positions,
+                                     const std::vector<Triangle> &triangles,
+                                     const std::vector<uint32_t> &start,
+                                     const std::vector<uint32_t> &around, Task &task);
 
 } // namespace gtx::baking

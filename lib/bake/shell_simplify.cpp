@@ -3,6 +3,7 @@
  * need no care: both sides share their vertices, and a triangle may reach as far as the maps of its
  * patch do. */
 #include "bake/shell_fan.hpp"
+#include "bake/shell_outlier.hpp"
 #include "bake/shell_parts.hpp"
 #include "bake/shell_quadric.hpp"
 
@@ -21,9 +22,14 @@ constexpr double SLIDE = 1e-5;
 /* What settling costs for the squared distance, as a share of what leaving the surface does. */
 constexpr double STAY = 0.003;
 /* How often half the way is tried. */
-constexpr int SETTLE_STEPS = 3;
-/* Weight of staying on an open border against staying on the surface. */
-constexpr double BORDER = 10;
+constexpr int MOVE_STEPS = 3;
+/* What a level may leave outside, as a share of its error. At 0 outlines only grow, and are half as
+ * good; at 1 sight passes between parts of a model that nearly touch. */
+constexpr double MOST_OUTSIDE = 0.5;
+/* Rounds of moving vertices outwards, and the share of the way by which they at least bring the
+ * surface there. */
+constexpr int REACH_ROUNDS = 2;
+constexpr double LEAST_SHARE = 0.5;
 
 /* Of a triangle. */
 using Corners = std::array<Vec3d, 3>;
@@ -45,6 +51,8 @@ struct Simplifier::State {
     std::vector<Triangle> triangles;
     std::vector<uint32_t> patch;
     std::vector<Quadric> quadrics;
+    std::vector<Vec3d> settled;  /* where the vertices go on from for the next level */
+    std::vector<Vec3d> farthest; /* of the vertices that each stands for, that most outside */
     std::vector<uint32_t> start, around; /* triangles of each vertex */
     std::vector<uint8_t> touched;
     /* What each vertex costs at least, as far as is known: NAN where it has to be found out,
@@ -57,11 +65,10 @@ struct Simplifier::State {
 
     State(const ShellSource &source, const std::vector<PatchRegion> &regions, Task &task)
         : regions(regions), task(task), positions(source.positions), triangles(source.triangles),
-          patch(source.patch), first_count(triangles.size())
+          patch(source.patch), farthest(positions), first_count(triangles.size())
     {
     }
     void find_around();
-    void make_quadrics();
     bool find_fan(uint32_t vertex, Fan &fan) const
     {
         return baking::find_fan(triangles, around.data() + start[vertex],
@@ -74,10 +81,12 @@ struct Simplifier::State {
     Candidate find_candidate(uint32_t vertex, double most) const;
     float least_cost(uint32_t vertex, double most) const;
     void find_candidates(double free, double most);
-    void collapse(const Fan &fan, uint32_t from, uint32_t to);
+    size_t collapse(const Fan &fan, uint32_t from, uint32_t to);
     void compact();
     size_t round(size_t wanted, double free, double most);
-    void settle(uint32_t vertex);
+    void choose_farthest(uint32_t from, uint32_t to);
+    void move(uint32_t vertex, Vec3d way);
+    void settle();
 };
 
 void Simplifier::State::find_around()
@@ -95,40 +104,8 @@ void Simplifier::State::find_around()
             around[next[v]++] = uint32_t(t);
 }
 
-/* Planes of triangles by their area; at open borders also planes that stand on the edge. */
-void Simplifier::State::make_quadrics()
-{
-    quadrics.resize(positions.size());
-    const size_t chunk = 4096, chunks = (positions.size() + chunk - 1) / chunk;
-    task.parallel(chunks, [&](size_t n) {
-        Fan fan;
-        for (size_t v = n * chunk; v < std::min(positions.size(), (n + 1) * chunk); ++v) {
-            Quadric &q = quadrics[v];
-            auto add = [&](const Vec3d &normal, const Vec3d &on, double weight) {
-                q.add_plane(normal, -dot(normal, on), weight);
-            };
-            for (uint32_t i = start[v]; i < start[v + 1]; ++i) {
-                const Triangle &t = triangles[around[i]];
-                const Vec3d a = positions[t[0]];
-                const Vec3d area = cross(positions[t[1]] - a, positions[t[2]] - a);
-                add(normalize(area), a, length(area));
-                q.weight += length(area);
-            }
-            if (!find_fan(uint32_t(v), fan) || !fan.open)
-                continue;
-            const uint32_t ends[] = {fan.ring[0], fan.ring[fan.ring_count - 1]};
-            const uint32_t sides[] = {fan.triangle[0], fan.triangle[fan.count - 1]};
-            for (int k = 0; k < 2; ++k) {
-                const Triangle &t = triangles[sides[k]];
-                const Vec3d a = positions[t[0]], edge = positions[ends[k]] - positions[v];
-                const Vec3d normal = cross(positions[t[1]] - a, positions[t[2]] - a);
-                add(normalize(cross(edge, normal)), positions[v], BORDER * dot(edge, edge));
-            }
-        }
-    }, 0, 0);
-}
-
-/* The link condition (Dey et al. 1999): the surface stays what it is, and nothing vanishes whole. */
+/* The link condition (Dey et al. 1999): the surface stays what it is, and nothing vanishes whole.
+ * Where sheets meet it is no surface, and only the latter counts. */
 bool Simplifier::State::keeps_topology(const Fan &fan, uint32_t from, uint32_t to) const
 {
     if (start[to + 1] - start[to] > MOST_FAN)
@@ -144,6 +121,8 @@ bool Simplifier::State::keeps_topology(const Fan &fan, uint32_t from, uint32_t t
         if (corner_of(t, from) >= 0)
             continue;
         remains = true;
+        if (fan.meeting)
+            break;
         int common = 0;
         for (uint32_t v : t) {
             const bool beside = v == before || v == after;
@@ -284,19 +263,44 @@ void Simplifier::State::find_candidates(double free, double most)
     std::sort(paid, candidates.end(), is_cheaper);
 }
 
-void Simplifier::State::collapse(const Fan &fan, uint32_t from, uint32_t to)
+/* Which of the vertices that `to` stands for, once it also stands for those of `from`, is now the
+ * farthest outside. One is remembered: of the others few are much farther out. */
+void Simplifier::State::choose_farthest(uint32_t from, uint32_t to)
 {
+    uint32_t star[2 * MOST_FAN];
+    size_t count = 0;
+    for (uint32_t v : {from, to})
+        for (uint32_t i = start[v]; i < start[v + 1]; ++i)
+            if (triangles[around[i]][0] != NO_VERTEX)
+                star[count++] = around[i];
+    const Vec3d points[] = {farthest[to], farthest[from], positions[from]};
+    double most = -1;
+    for (const Vec3d &point : points) {
+        const double height = find_outlier(positions, triangles, star, count, to, point).height;
+        if (height <= most)
+            continue;
+        most = height;
+        farthest[to] = point;
+    }
+}
+
+/* Returns how many triangles are gone. */
+size_t Simplifier::State::collapse(const Fan &fan, uint32_t from, uint32_t to)
+{
+    size_t count = 0;
     for (int i = 0; i < fan.count; ++i) {
         Triangle &t = triangles[fan.triangle[i]];
         const bool gone = corner_of(t, to) >= 0;
         t[corner_of(t, from)] = to;
         if (gone)
             t = {NO_VERTEX, NO_VERTEX, NO_VERTEX};
+        count += gone;
     }
     quadrics[to].add(quadrics[from]);
     touched[from] = 1;
     for (int i = 0; i < fan.ring_count; ++i)
         touched[fan.ring[i]] = 1;
+    return count;
 }
 
 /* Takes out what is gone: triangles, and the vertices that none has. */
@@ -320,11 +324,13 @@ void Simplifier::State::compact()
             continue;
         positions[vertices] = positions[v];
         quadrics[vertices] = quadrics[v];
+        farthest[vertices] = farthest[v];
         costs[vertices] = touched[v] ? NAN : costs[v];
         renamed[v] = vertices++;
     }
     positions.resize(vertices);
     quadrics.resize(vertices);
+    farthest.resize(vertices);
     costs.resize(vertices);
     for (Triangle &t : triangles)
         for (uint32_t &v : t)
@@ -347,19 +353,19 @@ size_t Simplifier::State::round(size_t wanted, double free, double most)
         if (touched[c.from] || touched[c.to])
             continue;
         find_fan(c.from, fan);
-        left -= fan.open ? 1 : 2;
-        collapse(fan, c.from, c.to);
+        left -= collapse(fan, c.from, c.to);
+        if (c.cost > free)
+            choose_farthest(c.from, c.to);
         ++taken;
     }
     compact();
     return taken;
 }
 
-/* Moves a vertex to where its planes are nearest, or less far where its triangles need it. */
-void Simplifier::State::settle(uint32_t vertex)
+/* Moves a vertex, less far where its triangles need it. */
+void Simplifier::State::move(uint32_t vertex, Vec3d way)
 {
-    Vec3d way = quadrics[vertex].way_down(positions[vertex], STAY);
-    for (int n = 0; n < SETTLE_STEPS; ++n, way = way * 0.5) {
+    for (int n = 0; n < MOVE_STEPS; ++n, way = way * 0.5) {
         const Vec3d place = positions[vertex] + way;
         bool keeps = true;
         for (uint32_t i = start[vertex]; keeps && i < start[vertex + 1]; ++i)
@@ -371,18 +377,43 @@ void Simplifier::State::settle(uint32_t vertex)
     }
 }
 
+/* First to where the planes are nearest, from where the next level goes on; then, for this level
+ * alone, outwards again where something stands out: there an outline would be seen to shrink, and
+ * sight would pass where it must not. */
+void Simplifier::State::settle()
+{
+    find_around();
+    for (uint32_t v = 0; v < positions.size(); ++v) {
+        move(v, quadrics[v].way_down(positions[v], STAY));
+        error = std::max(error, quadrics[v].at(positions[v]));
+    }
+    settled = positions;
+    const double most = MOST_OUTSIDE * std::sqrt(error);
+    for (int n = 0; n < REACH_ROUNDS; ++n) {
+        for (uint32_t v = 0; v < positions.size(); ++v) {
+            const Outlier o = find_outlier(positions, triangles, around.data() + start[v],
+                                           start[v + 1] - start[v], v, farthest[v]);
+            if (o.height > most)
+                move(v, o.way * ((1 - most / o.height) / std::max(o.share, LEAST_SHARE)));
+        }
+    }
+}
+
 Simplifier::Simplifier(const ShellSource &source, const std::vector<PatchRegion> &regions,
                        Task &task)
 {
     state_ = std::make_unique<State>(source, regions, task);
     state_->find_around();
-    state_->make_quadrics();
+    state_->quadrics = vertex_quadrics(state_->positions, state_->triangles, state_->start,
+                                       state_->around, task);
 }
 
 Simplifier::~Simplifier() = default;
 
 void Simplifier::reduce(size_t wanted, double free, double most)
 {
+    if (!state_->settled.empty())
+        state_->positions.swap(state_->settled);
     state_->share = ROUND_SHARE;
     state_->costs.assign(state_->positions.size(), NAN);
     for (bool going = true; going;) {
@@ -397,11 +428,7 @@ void Simplifier::reduce(size_t wanted, double free, double most)
 
 void Simplifier::settle()
 {
-    state_->find_around();
-    for (uint32_t v = 0; v < state_->positions.size(); ++v) {
-        state_->settle(v);
-        state_->error = std::max(state_->error, state_->quadrics[v].at(state_->positions[v]));
-    }
+    state_->settle();
 }
 
 const std::vector<Vec3d> &Simplifier::positions() const

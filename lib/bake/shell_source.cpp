@@ -1,5 +1,6 @@
 /* Which surface the shell is made of: the triangles that the maps show, each with its patch. */
 #include "bake/shell_sheets.hpp"
+#include "mesh/clean.hpp"
 
 #include <algorithm>
 
@@ -65,15 +66,28 @@ static void drop_hidden(const std::vector<PatchRegion> &regions, ShellSource &so
     source.patch.resize(left);
 }
 
+/* Sheets that meet have vertices of their own in a mesh. Here they have the same: they must not part
+ * when they get fewer triangles. */
+static ShellSource joined(const Mesh &mesh, const Vec3d &anchor)
+{
+    Mesh places;
+    places.positions = mesh.positions;
+    places.triangles = mesh.triangles;
+    weld(places);
+    for (Vec3d &p : places.positions)
+        p = p - anchor;
+    ShellSource source;
+    source.positions = std::move(places.positions);
+    source.triangles = std::move(places.triangles);
+    return source;
+}
+
 ShellSource shell_source(const Mesh &mesh, const Partition &partition, const Maps &maps,
                          Task &task)
 {
     task.begin("shell");
     const Vec3d anchor(maps.anchor[0], maps.anchor[1], maps.anchor[2]);
-    ShellSource source;
-    for (const Vec3d &p : mesh.positions)
-        source.positions.push_back(p - anchor);
-    source.triangles = mesh.triangles;
+    ShellSource source = joined(mesh, anchor);
     std::vector<ChartCuts> cuts;
     for (uint32_t chart : maps.charts)
         cuts.emplace_back(partition.charts[chart], anchor);
