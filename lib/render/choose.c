@@ -11,7 +11,7 @@
  * have to choose the same for the same depth. */
 static const gtx_costs *costs_of(const gtx_renderer *renderer, const gtx_view *view)
 {
-    static const gtx_costs measured[2] = {{100, 40, 5000, 1900}, {100, 40, 12000, 210}};
+    static const gtx_costs measured[2] = {{100, 40, 5000, 1900}, {100, 40, 10500, 160}};
     const gtx_costs *told = &renderer->costs;
     const bool none = told->shell_triangle == 0 && told->shell_pixel == 0 &&
                       told->cast_patch == 0 && told->cast_pixel == 0;
