@@ -6,6 +6,8 @@
 #include "chart/cut_tree.hpp"
 #include "chart/frame.hpp"
 
+#include <numeric>
+
 namespace gtx {
 
 namespace {
@@ -21,7 +23,6 @@ constexpr int COARSE = 6;
 /* A triangle of a chart as its patches see it, in texels. */
 struct Piece {
     uint32_t triangle;
-    bool own; /* its centre lies in the region */
     float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, middle[2] = {0, 0};
 };
 
@@ -35,10 +36,11 @@ public:
     std::vector<Chart> reap(const Region &region)
     {
         FrameInverse inverse(frame_);
-        std::vector<Piece> pieces;
-        pieces.reserve(region.size());
+        pieces_.reserve(region.size());
+        std::vector<uint32_t> all(region.size());
+        std::iota(all.begin(), all.end(), 0u);
         for (uint32_t t : region.triangles) {
-            Piece piece = {t, true};
+            Piece piece = {t};
             for (int k = 0; k < 3; ++k) {
                 Vec3d p = inverse(surface_.mesh.position(t, k));
                 for (int a = 0; a < 2; ++a) {
@@ -48,15 +50,16 @@ public:
                     piece.middle[a] += x / 3;
                 }
             }
-            pieces.push_back(piece);
+            pieces_.push_back(piece);
         }
-        descend(tree_.nodes[0], std::move(pieces));
+        descend(tree_.nodes[0], std::move(all));
         return std::move(out_);
     }
 
 private:
-    void descend(const CutNode &node, std::vector<Piece> pieces);
-    void make_patch(const CutNode &node, const std::vector<Piece> &pieces);
+    void descend(const CutNode &node, std::vector<uint32_t> pieces);
+    void make_patch(const CutNode &node, const std::vector<uint32_t> &pieces);
+    bool is_own(const CutNode &node, const Piece &piece) const;
     void lay_frame(const CutNode &node, Chart &chart) const;
     unsigned fitted_cells(const CutNode &node, int axis) const;
     void clip(const CutNode &node, Chart &chart) const;
@@ -66,34 +69,43 @@ private:
     const CutPlan &plan_;
     const double pitch_;
     const CutTree &tree_;
+    std::vector<Piece> pieces_;
     std::vector<Chart> out_;
 };
 
-void Harvest::descend(const CutNode &node, std::vector<Piece> pieces)
+void Harvest::descend(const CutNode &node, std::vector<uint32_t> pieces)
 {
     if (!node.divided) {
         make_patch(node, pieces);
         return;
     }
-    std::vector<Piece> inside[2];
+    std::vector<uint32_t> inside[2];
     for (int side = 0; side < 2; ++side) {
         const Rect &half = tree_.nodes[size_t(node.child[side])].region;
-        for (Piece piece : pieces) {
+        for (uint32_t index : pieces) {
+            const Piece &piece = pieces_[index];
             bool meets = true;
-            for (int a = 0; a < 2; ++a) {
-                float low = float(half.low[a]), high = float(half.high[a]);
-                meets = meets && piece.high[a] >= low - MARGIN && piece.low[a] <= high + MARGIN;
-                piece.own = piece.own && /* what rounding puts off the grid belongs to its edge */
-                            (piece.middle[a] >= low || !half.low[a]) &&
-                            (piece.middle[a] < high || half.high[a] == tree_.relief.size[a]);
-            }
+            for (int a = 0; a < 2; ++a)
+                meets = meets && piece.high[a] >= float(half.low[a]) - MARGIN &&
+                        piece.low[a] <= float(half.high[a]) + MARGIN;
             if (meets)
-                inside[side].push_back(piece);
+                inside[side].push_back(index);
         }
     }
     pieces = {}; /* of a terrain they are many */
     for (int side = 0; side < 2; ++side)
         descend(tree_.nodes[size_t(node.child[side])], std::move(inside[side]));
+}
+
+/* Whether its centre lies in the region; what rounding puts off the grid belongs to its edge. */
+bool Harvest::is_own(const CutNode &node, const Piece &piece) const
+{
+    bool own = true;
+    for (int a = 0; a < 2; ++a)
+        own = own && (piece.middle[a] >= float(node.region.low[a]) || !node.region.low[a]) &&
+              (piece.middle[a] < float(node.region.high[a]) ||
+               node.region.high[a] == tree_.relief.size[a]);
+    return own;
 }
 
 /* Sides come in multiples of the grain: the core in a few cells less, or in so many more that its
@@ -146,12 +158,12 @@ void Harvest::clip(const CutNode &node, Chart &chart) const
     }
 }
 
-void Harvest::make_patch(const CutNode &node, const std::vector<Piece> &pieces)
+void Harvest::make_patch(const CutNode &node, const std::vector<uint32_t> &pieces)
 {
     Chart chart;
-    for (const Piece &piece : pieces) {
-        chart.triangles.push_back(piece.triangle);
-        chart.source_triangles += piece.own;
+    for (uint32_t index : pieces) {
+        chart.triangles.push_back(pieces_[index].triangle);
+        chart.source_triangles += is_own(node, pieces_[index]);
     }
     lay_frame(node, chart);
     clip(node, chart);
