@@ -47,6 +47,14 @@ struct Around {
     float nearest = 0, deepest = 0;
 };
 
+/* A pixel whose nine all show the source, while the asset is deeper there by more than it may. */
+struct Suspect {
+    uint32_t i, j;
+    gtx_hit hit;
+    float deepest;
+    double tolerance;
+};
+
 /* One view at one level while it is measured. */
 struct Look {
     const Comparison &all;
@@ -56,9 +64,11 @@ struct Look {
     const MeshImage &image;
     const AssetView &asset;
     Figures &out;
+    std::vector<Suspect> suspects = {};
 
     void pixel(uint32_t i, uint32_t j, const gtx_hit &hit);
-    void hole(uint32_t i, uint32_t j, const gtx_hit &hit, double behind);
+    void holes();
+    void hole(const Suspect &suspect);
     void appearance(uint32_t i, uint32_t j, const gtx_hit &hit, bool depths_agree);
     void leaks(const std::vector<Crossing> &crossings);
 };
@@ -109,14 +119,41 @@ static double degrees_between(const Vec3d &a, const Vec3d &b)
     return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / PI;
 }
 
-void Look::hole(uint32_t i, uint32_t j, const gtx_hit &hit, double behind)
+void Look::hole(const Suspect &s)
 {
     ++out.holes;
     if (!scene.samples)
         return;
-    size_t at = size_t(j) * view.size + i;
-    out.samples.push_back({scene.level, view.size, view_index, i, j, image.triangle[at], hit.patch,
-                           behind, view.at(i, j) - view.toward * double(image.depth[at])});
+    size_t at = size_t(s.j) * view.size + s.i;
+    out.samples.push_back({scene.level, view.size, view_index, s.i, s.j, image.triangle[at],
+                           s.hit.patch, double(s.hit.t) - s.deepest,
+                           view.at(s.i, s.j) - view.toward * double(image.depth[at])});
+}
+
+/* Whether the source, too, shows something as deep: past an outline that runs between the centres
+ * of pixels, where no more than that has moved. */
+static bool shows_as_deep(const MeshImage &close, const Suspect &s)
+{
+    for (size_t at = 0; at < close.depth.size(); ++at)
+        if (!close.front[at] || s.hit.t - close.depth[at] <= s.tolerance)
+            return true;
+    return false;
+}
+
+/* Suspects are looked at more closely, so many at a time that their images take little room. */
+void Look::holes()
+{
+    constexpr size_t AT_ONCE = 4096;
+    for (size_t first = 0; first < suspects.size(); first += AT_ONCE) {
+        const size_t end = std::min(first + AT_ONCE, suspects.size());
+        std::vector<std::array<uint32_t, 2>> pixels;
+        for (size_t k = first; k < end; ++k)
+            pixels.push_back({suspects[k].i, suspects[k].j});
+        const std::vector<MeshImage> close = rasterise_close(all.mesh, view, pixels);
+        for (size_t k = first; k < end; ++k)
+            if (!shows_as_deep(close[k - first], suspects[k]))
+                hole(suspects[k]);
+    }
 }
 
 void Look::appearance(uint32_t i, uint32_t j, const gtx_hit &hit, bool depths_agree)
@@ -152,7 +189,7 @@ void Look::pixel(uint32_t i, uint32_t j, const gtx_hit &hit)
     if (around.surface) {
         ++out.surface;
         if (!in_asset || hit.t - around.deepest > tolerance)
-            hole(i, j, hit, double(hit.t) - around.deepest);
+            suspects.push_back({i, j, hit, around.deepest, tolerance});
     }
     if (!scene.appearance)
         return;
@@ -192,6 +229,7 @@ static void measure_view(const Comparison &all, const Scene &scene, uint32_t vie
         for (uint32_t i = 0; i < view.size; ++i)
             look.pixel(i, j, hits[i]);
     }
+    look.holes();
     look.leaks(crossings);
 }
 

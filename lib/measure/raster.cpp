@@ -1,4 +1,4 @@
-/* An orthographic z-buffer of the mesh, sampled at pixel centres. */
+/* An orthographic z-buffer of the mesh, sampled at pixel centres, or finer around some of them. */
 #include "measure/view.hpp"
 
 #include <algorithm>
@@ -74,29 +74,82 @@ static bool is_two_sided(const Mesh &mesh, uint32_t triangle)
     return !mesh.flags.empty() && (mesh.flags[triangle] & TRIANGLE_TWO_SIDED);
 }
 
-MeshImage rasterise(const Mesh &mesh, const View &view)
+static MeshImage blank_image(uint32_t size)
 {
+    const size_t pixels = size_t(size) * size;
     MeshImage image;
-    size_t pixels = size_t(view.size) * view.size;
     image.depth.assign(pixels, std::numeric_limits<float>::infinity());
     image.triangle.assign(pixels, NO_HIT);
     image.front.assign(pixels, 0);
+    return image;
+}
 
+static void find_fronts(const Mesh &mesh, const View &view, MeshImage &image)
+{
+    for (size_t at = 0; at < image.triangle.size(); ++at) {
+        uint32_t t = image.triangle[at];
+        if (t != NO_HIT)
+            image.front[at] = is_two_sided(mesh, t) || dot(mesh.area_vector(t), view.toward) > 0;
+    }
+}
+
+static std::vector<Vec3d> project(const Mesh &mesh, const View &view)
+{
     std::vector<Vec3d> projected(mesh.positions.size());
     for (size_t i = 0; i < projected.size(); ++i)
         projected[i] = view.project(mesh.positions[i]);
+    return projected;
+}
+
+MeshImage rasterise(const Mesh &mesh, const View &view)
+{
+    MeshImage image = blank_image(view.size);
+    const std::vector<Vec3d> projected = project(mesh, view);
     for (size_t t = 0; t < mesh.triangle_count(); ++t) {
         Vec3d v[3];
         for (int k = 0; k < 3; ++k)
             v[k] = projected[mesh.triangles[t][k]];
         draw(mesh, view, v, uint32_t(t), image);
     }
-    for (size_t at = 0; at < pixels; ++at) {
-        uint32_t t = image.triangle[at];
-        if (t != NO_HIT)
-            image.front[at] = is_two_sided(mesh, t) || dot(mesh.area_vector(t), view.toward) > 0;
-    }
+    find_fronts(mesh, view, image);
     return image;
+}
+
+std::vector<MeshImage> rasterise_close(const Mesh &mesh, const View &view,
+                                       const std::vector<std::array<uint32_t, 2>> &pixels)
+{
+    View close = view;
+    close.size = CLOSE_SIDE;
+    close.pixel = view.pixel / CLOSER;
+    /* Which of the pixels one is, NO_HIT for none. */
+    std::vector<uint32_t> which(size_t(view.size) * view.size, NO_HIT);
+    for (size_t k = 0; k < pixels.size(); ++k)
+        which[size_t(pixels[k][1]) * view.size + pixels[k][0]] = uint32_t(k);
+
+    std::vector<MeshImage> images(pixels.size(), blank_image(CLOSE_SIDE));
+    const std::vector<Vec3d> projected = project(mesh, view);
+    for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+        Vec3d v[3], near[3];
+        for (int k = 0; k < 3; ++k)
+            v[k] = projected[mesh.triangles[t][k]];
+        const auto x = std::minmax({v[0].x, v[1].x, v[2].x});
+        const auto y = std::minmax({v[0].y, v[1].y, v[2].y});
+        const uint32_t end_x = end_pixel(x.second + 1, view.size);
+        const uint32_t end_y = end_pixel(y.second + 1, view.size);
+        for (uint32_t j = first_pixel(y.first - 1); j < end_y; ++j)
+            for (uint32_t i = first_pixel(x.first - 1); i < end_x; ++i) {
+                const uint32_t at = which[size_t(j) * view.size + i];
+                if (at == NO_HIT)
+                    continue;
+                for (int k = 0; k < 3; ++k)
+                    near[k] = {(v[k].x - i - 0.5) * CLOSER + 0.5 * CLOSE_SIDE,
+                               (v[k].y - j - 0.5) * CLOSER + 0.5 * CLOSE_SIDE, v[k].z};
+                draw(mesh, close, near, uint32_t(t), images[at]);
+            }
+    }
+    for (MeshImage &image : images)
+        find_fronts(mesh, close, image);
+    return images;
 }
 
 /* Attributes of the corners, as they are. */
