@@ -25,6 +25,12 @@ struct Decoded {
     /* How far above a point the sheet is, along the axis, and the trim there; false where it has
      * no cell. */
     bool sheet_above(const Vec3d &point, double &above, double &trim) const;
+    /* The first corner of the cell that it is in there. */
+    size_t cell(const Vec3d &point) const
+    {
+        const Vec3d p = point - origin;
+        return at(int(dot(dual[0], p) / pitch[0] - 0.5), int(dot(dual[1], p) / pitch[1] - 0.5));
+    }
 };
 
 } // namespace gtx::baking

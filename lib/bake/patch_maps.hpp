@@ -261,9 +261,10 @@ void build_mips(Shades shades, unsigned mips, const AppearanceNeeds &needs, Patc
 
 PatchMaps bake_chart(const Job &job, const Chart &chart);
 
-/* Charts of the surface that none of the patches shows, those of `partition` in their order. */
+/* Lowers the trim of patches, those of `partition` in their order, that hide what no other shows;
+ * returns charts of the surface that none of them has. */
 std::vector<Chart> chart_unseen(const Job &job, const Partition &partition,
-                                const std::vector<PatchMaps> &patches, Task &task);
+                                std::vector<PatchMaps> &patches, Task &task);
 
 /* Raises texels beyond straight cuts until the sheets on both sides cross. `charts` is that of each
  * patch. */

@@ -1,9 +1,10 @@
-/* Makes charts of what no sheet shows.
+/* Makes what no sheet shows be shown: by one whose trim ends too early, or by a chart of its own.
  *
  * A chart loses surface of its own where a cell would bridge two sheets, and where a wall leans
  * back from its axis that is too small to be split off. Whoever looks there from the side sees
  * through. So the source is looked up in the sheets as readers decode them, and what is in none of
- * them gets patches of its own, with as much around it as their borders need. */
+ * them, nor lies hidden in one a little beyond its outline, gets patches of its own, with as much
+ * around it as their borders need. */
 #include "bake/decoded.hpp"
 #include "chart/frame.hpp"
 
@@ -19,6 +20,8 @@ constexpr double MOST_BELOW = 0.5, MOST_ABOVE = 1;
 constexpr double LEAST_FACING = 0.15, INSIDE = 0.1;
 /* What faces away from its own chart by more is twisted inside out: seen from nowhere. */
 constexpr double TWISTED = -0.4;
+/* A sheet that is as near as this along the normal is let show that ends so many texels early. */
+constexpr double MOST_OFF = 0.25, MOST_EASED = 1;
 /* Texels: longer triangles are resolved by their charts, or are no detail of a scan. */
 constexpr double LONGEST = 8, SAMPLES = 2; /* a texel */
 /* Square texels of surface that are worth a patch: less is hardly a pixel. */
@@ -35,6 +38,12 @@ namespace {
 struct Lost {
     uint32_t triangle, chart;
     double area;
+};
+
+/* A cell of a patch that would show something if its trim were lower by so many codes. */
+struct Eased {
+    size_t patch, corner;
+    int by;
 };
 
 class Search {
@@ -56,10 +65,15 @@ public:
         });
     }
 
-    std::vector<Lost> run(Task &task) const;
+    std::vector<Lost> run(Task &task);
+    /* What would show if its trim ended less early. */
+    const std::vector<Eased> &eased() const { return eased_; }
 
 private:
-    double lost_share(const Decoded &own, const Chart &chart, uint32_t triangle) const;
+    double lost_share(const Decoded &own, const Chart &chart, uint32_t triangle,
+                      std::vector<Eased> &eased) const;
+    bool shown_eased(const Vec3d &point, const Vec3d &normal, std::vector<Eased> &eased) const;
+    template <class Visit> bool any_near(const Vec3d &point, Visit visit) const;
     bool shown_by(const Decoded &sheet, const Vec3d &point, const Vec3d &normal,
                   double most_above) const;
     bool shown(const Vec3d &point, const Vec3d &normal) const;
@@ -70,6 +84,7 @@ private:
     std::vector<uint32_t> chart_;         /* of a sheet */
     std::vector<const Decoded *> order_;  /* by place */
     double farthest_ = 0;                 /* the largest sphere's radius */
+    std::vector<Eased> eased_;
 };
 
 bool Search::shown_by(const Decoded &sheet, const Vec3d &point, const Vec3d &normal,
@@ -84,18 +99,48 @@ bool Search::shown_by(const Decoded &sheet, const Vec3d &point, const Vec3d &nor
     return off >= -MOST_BELOW && off <= most_above;
 }
 
-bool Search::shown(const Vec3d &point, const Vec3d &normal) const
+/* Calls `visit` with every sheet whose sphere a point is in, until it returns true. */
+template <class Visit> bool Search::any_near(const Vec3d &point, Visit visit) const
 {
     const double place = point.x + point.y + point.z, reach = std::sqrt(3.) * farthest_;
     auto at = std::lower_bound(order_.begin(), order_.end(), place - reach,
                                [](const Decoded *a, double b) { return a->place < b; });
     for (; at != order_.end() && (*at)->place <= place + reach; ++at) {
         const float *sphere = (*at)->maps->record.sphere;
-        if (length(point - Vec3d(sphere[0], sphere[1], sphere[2])) <= sphere[3] &&
-            shown_by(**at, point, normal, MOST_ABOVE))
+        if (length(point - Vec3d(sphere[0], sphere[1], sphere[2])) <= sphere[3] && visit(**at))
             return true;
     }
     return false;
+}
+
+bool Search::shown(const Vec3d &point, const Vec3d &normal) const
+{
+    return any_near(point, [&](const Decoded &sheet) {
+        return shown_by(sheet, point, normal, MOST_ABOVE);
+    });
+}
+
+/* Whether a sheet is right there, and hidden by its trim alone: the one that is hidden least. */
+bool Search::shown_eased(const Vec3d &point, const Vec3d &normal,
+                         std::vector<Eased> &eased) const
+{
+    const Decoded *found = nullptr;
+    double least = MOST_EASED;
+    any_near(point, [&](const Decoded &sheet) {
+        const double facing = dot(normal, sheet.axis[2]);
+        double above, trim;
+        if (facing >= LEAST_FACING && sheet.sheet_above(point, above, trim) && trim <= least &&
+            std::abs(above * facing) <= MOST_OFF * job_.pitch) {
+            least = trim;
+            found = &sheet;
+        }
+        return false;
+    });
+    if (!found)
+        return false;
+    const int by = int(std::ceil((least - SHOWN) * 16)) + 1;
+    eased.push_back({chart_[size_t(found - sheets_.data())], found->cell(point), by});
+    return true;
 }
 
 /* What a material cuts away is not lost. */
@@ -106,7 +151,8 @@ static bool is_masked(const Mesh &mesh, uint32_t triangle)
 }
 
 /* How much of a triangle no sheet shows, 0..1. */
-double Search::lost_share(const Decoded &own, const Chart &chart, uint32_t triangle) const
+double Search::lost_share(const Decoded &own, const Chart &chart, uint32_t triangle,
+                          std::vector<Eased> &eased) const
 {
     const Mesh &mesh = job_.mesh;
     Vec3d corner[3];
@@ -128,25 +174,28 @@ double Search::lost_share(const Decoded &own, const Chart &chart, uint32_t trian
             const Vec3d local = chart.frame.local(point + job_.anchor);
             const bool mine = local.x >= chart.clip_low[0] && local.x <= chart.clip_high[0] &&
                               local.y >= chart.clip_low[1] && local.y <= chart.clip_high[1];
-            lost += mine && !shown(point, normal);
+            lost += mine && !shown(point, normal) && !shown_eased(point, normal, eased);
         }
     }
     return lost / (parts * (parts + 1) / 2.);
 }
 
-std::vector<Lost> Search::run(Task &task) const
+std::vector<Lost> Search::run(Task &task)
 {
     std::vector<std::vector<Lost>> of_sheet(sheets_.size());
+    std::vector<std::vector<Eased>> eased(sheets_.size());
     task.parallel(sheets_.size(), [&](size_t s) {
         const Chart &chart = partition_.charts[chart_[s]];
         for (uint32_t t : chart.triangles) {
-            const double share = lost_share(sheets_[s], chart, t);
+            const double share = lost_share(sheets_[s], chart, t, eased[s]);
             if (!(share > 0))
                 continue;
             const double area = length(job_.mesh.area_vector(t)) / (2 * job_.pitch * job_.pitch);
             of_sheet[s].push_back({t, chart_[s], share * area});
         }
     });
+    for (const std::vector<Eased> &some : eased)
+        eased_.insert(eased_.end(), some.begin(), some.end());
     std::vector<Lost> out;
     for (const std::vector<Lost> &some : of_sheet)
         out.insert(out.end(), some.begin(), some.end());
@@ -238,10 +287,33 @@ Chart Gatherer::gather(size_t first, double &area)
 
 } // namespace
 
-std::vector<Chart> chart_unseen(const Job &job, const Partition &partition,
-                                const std::vector<PatchMaps> &patches, Task &task)
+/* Lowers the trim of the corners of cells, not into the patch's own chart. */
+static void ease(const std::vector<Eased> &cells, std::vector<PatchMaps> &patches)
 {
-    const std::vector<Lost> lost = Search(job, partition, patches).run(task);
+    constexpr int LEAST_CODE = 129;
+    std::vector<std::vector<uint8_t>> before(patches.size());
+    for (const Eased &cell : cells) {
+        PatchMaps &maps = patches[cell.patch];
+        std::vector<uint8_t> &old = before[cell.patch];
+        if (old.empty())
+            old = maps.trim;
+        const size_t w = maps.record.rect[2];
+        for (size_t at : {cell.corner, cell.corner + 1, cell.corner + w, cell.corner + w + 1})
+            if (old[at] > LEAST_CODE)
+                maps.trim[at] = std::min(maps.trim[at],
+                                         uint8_t(std::max(LEAST_CODE, old[at] - cell.by)));
+    }
+    for (size_t i = 0; i < patches.size(); ++i)
+        if (!before[i].empty())
+            fill_trim(patches[i]);
+}
+
+std::vector<Chart> chart_unseen(const Job &job, const Partition &partition,
+                                std::vector<PatchMaps> &patches, Task &task)
+{
+    Search search(job, partition, patches);
+    const std::vector<Lost> lost = search.run(task);
+    ease(search.eased(), patches);
     Gatherer gatherer(job, partition, lost);
     std::vector<Chart> charts;
     std::vector<std::pair<double, size_t>> size; /* largest first */
