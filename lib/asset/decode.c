@@ -12,6 +12,13 @@
 /* Patches of a job. */
 enum { PATCHES = 16 };
 
+/* Bytes for a part while it is decoded: none where its place in the asset will do. */
+static uint64_t room_of(const gtx_section *section, const gtx_info *info)
+{
+    const bool in_place = section->filter == GTX_FILTER_HEIGHTS && info->height_bits == 8;
+    return in_place ? 0 : gtx_align64(gtx_coded_size(section));
+}
+
 /* The places of everything in the block, which may be NULL. Returns its size. Where one part comes
  * after another, they share what they need for a moment. */
 static uint64_t place(gtx_decoding *d, const gtx_info *info, uint8_t *block)
@@ -29,14 +36,14 @@ static uint64_t place(gtx_decoding *d, const gtx_info *info, uint8_t *block)
     const uint64_t first = at;
     for (uint32_t i = 0; i < d->part_count && !apart; ++i) {
         const gtx_section *section = d->parts[i].section;
-        const uint64_t size = gtx_align64(gtx_coded_size(section));
+        const uint64_t size = room_of(section, info);
         if (section->filter != GTX_FILTER_SURFACE && size > shared)
             shared = size;
     }
     at += shared;
     for (uint32_t i = 0; i < d->part_count; ++i) {
         gtx_part *part = &d->parts[i];
-        const uint64_t size = gtx_align64(gtx_coded_size(part->section));
+        const uint64_t size = room_of(part->section, info);
         const bool own = apart || part->section->filter == GTX_FILTER_SURFACE;
         part->coded = size && block ? block + (own ? at : first) : NULL;
         at += own ? size : 0;
@@ -98,6 +105,13 @@ void gtx_decoding_end(gtx_decoding *d, const gtx_allocator *allocator)
     d->block = NULL;
 }
 
+/* Marks of all levels: where there are heights. */
+static void mark_levels(const gtx_decoding *d)
+{
+    for (uint32_t k = 0; k < d->asset->info.mip_count; ++k)
+        gtx_mark_level(d->asset, k, k ? marks_of(d, k - 1) : NULL, marks_of(d, k));
+}
+
 static void hash_part(const gtx_decoding *d, gtx_part *part)
 {
     if (d->hashed && !part->wrong)
@@ -121,6 +135,8 @@ static void decode_alone(const gtx_decoding *d, gtx_part *part)
     if (part->wrong)
         memset(part->out, 0, size);
     hash_part(d, part);
+    if (section->kind == GTX_SECTION_HEIGHT && d->marks)
+        mark_levels(d);
 }
 
 void gtx_decode_patches(gtx_decoding *d)
@@ -130,16 +146,22 @@ void gtx_decode_patches(gtx_decoding *d)
 
 /* ---- the stages, as jobs ---- */
 
-/* The largest come first, for the others to fill up the time. */
+/* About how long a part takes alone: heights are predicted and marked. */
+static uint64_t work_of(const gtx_part *part)
+{
+    return part->section->size * (part->section->kind == GTX_SECTION_HEIGHT ? 4 : 1);
+}
+
+/* The longest come first, for the others to fill up the time. */
 static void alone(uint32_t index, void *data)
 {
     gtx_decoding *d = data;
     uint32_t wanted = 0;
     for (uint32_t i = 1; i < d->part_count; ++i) {
+        const uint64_t work = work_of(&d->parts[i]);
         uint32_t before = 0;
         for (uint32_t k = 1; k < d->part_count; ++k)
-            before += d->parts[k].section->size > d->parts[i].section->size ||
-                      (d->parts[k].section->size == d->parts[i].section->size && k < i);
+            before += work_of(&d->parts[k]) > work || (work_of(&d->parts[k]) == work && k < i);
         wanted = before == index ? i : wanted;
     }
     decode_alone(d, &d->parts[wanted]);
@@ -150,8 +172,6 @@ static void undo_normals(gtx_decoding *d)
 {
     const uint32_t mips = d->asset->info.mip_count;
     for (uint32_t k = 0; k < mips; ++k) {
-        if (k)
-            gtx_mark_level(d->asset, k, marks_of(d, k - 1), marks_of(d, k));
         for (uint32_t i = 0; i < d->part_count; ++i) {
             gtx_part *part = &d->parts[i];
             const gtx_section *section = part->section;
@@ -225,8 +245,6 @@ void gtx_decode_rest(gtx_decoding *d, bool rectangles_hold, bool patches_hold)
 {
     gtx_run_jobs(d->jobs, d->part_count - 1, alone, d);
     const bool surfaces = rectangles_hold && heights_known(d);
-    if (surfaces && d->marks)
-        gtx_mark_level(d->asset, 0, NULL, d->marks);
     gtx_run_jobs(d->jobs, d->part_count, occupied, &(together){d, surfaces, patches_hold});
     if (!surfaces)
         return;

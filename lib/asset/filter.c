@@ -95,8 +95,34 @@ void gtx_filter_apply(gtx_map_shape image, uint32_t filter, const uint8_t *in, u
         paeth_apply(blocks_of(image, filter), out);
 }
 
-/* Planes and Paeth's predictor at once: texels of `size` bytes, whose predictions do not wait for
- * one another. */
+/* A texel's bytes as numbers, for vectors of the compiler: those of a texel do not wait for one
+ * another. */
+typedef int16_t lanes __attribute__((vector_size(16)));
+typedef uint8_t lane_bytes __attribute__((vector_size(8)));
+
+static inline lanes load_lanes(const uint8_t *texel, size_t size)
+{
+    lane_bytes bytes = {0};
+    memcpy(&bytes, texel, size);
+    return __builtin_convertvector(bytes, lanes);
+}
+
+static inline lanes absolute(lanes v)
+{
+    const lanes sign = v >> 15;
+    return (v ^ sign) - sign;
+}
+
+/* As predict, lane by lane. */
+static inline lanes predict_lanes(lanes a, lanes b, lanes c)
+{
+    const lanes pa = absolute(b - c), pb = absolute(a - c), pc = absolute(a + (b - 2 * c));
+    const lanes not_b = pb > pc, not_a = (pa > pb) | (pa > pc);
+    const lanes other = (b & ~not_b) | (c & not_b);
+    return (a & ~not_a) | (other & not_a);
+}
+
+/* Planes and Paeth's predictor at once, of texels of `size` bytes. */
 static inline void undo_texels(gtx_map_shape image, size_t size, const uint8_t *restrict coded,
                                uint8_t *restrict out)
 {
@@ -104,16 +130,17 @@ static inline void undo_texels(gtx_map_shape image, size_t size, const uint8_t *
     const size_t texels = (size_t)image.pages * image.height * width;
     for (size_t first = 0; first < texels; first += width, out += row_bytes) {
         const bool top = first / width % image.height == 0;
-        int left[4] = {0}, corner[4] = {0};
+        lanes left = {0}, corner = {0};
         for (size_t x = 0; x < width; ++x)
-            for (size_t k = 0; k < size; ++k) {
-                uint8_t *at = out + x * size + k;
-                const int above = top ? 0 : *(at - row_bytes);
-                const uint8_t guess = predict(left[k], above, corner[k]);
-                *at = (uint8_t)(coded[k * texels + first + x] + guess);
-                left[k] = *at;
-                corner[k] = above;
-            }
+            for (size_t k = 0; k < size; ++k)
+                out[x * size + k] = coded[k * texels + first + x];
+        for (uint8_t *at = out; at < out + row_bytes; at += size) {
+            const lanes above = top ? (lanes){0} : load_lanes(at - row_bytes, size);
+            left = (load_lanes(at, size) + predict_lanes(left, above, corner)) & 255;
+            corner = above;
+            const lane_bytes bytes = __builtin_convertvector(left, lane_bytes);
+            memcpy(at, &bytes, size);
+        }
     }
 }
 

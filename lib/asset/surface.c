@@ -27,8 +27,10 @@ static inline void store_code(uint8_t *image, uint32_t bytes, size_t at, uint32_
 static inline uint32_t expected_code(int32_t a, int32_t b, int32_t c, int32_t most)
 {
     if (a && b && c) {
-        int32_t plane = a + b - c;
-        return (uint32_t)(plane < 1 ? 1 : plane > most ? most : plane);
+        const int32_t plane = a + (b - c); /* `a` was found last */
+        if (plane >= 1 && plane <= most) /* nearly always: a branch, which is not waited for */
+            return (uint32_t)plane;
+        return (uint32_t)(plane < 1 ? 1 : most);
     }
     int32_t near = a ? a : b ? b : c;
     return near ? (uint32_t)near : (uint32_t)(most + 1) / 2;
@@ -53,9 +55,9 @@ static inline void code_heights(gtx_map_shape shape, uint32_t bytes, uint8_t *pl
             if (code) {
                 const uint32_t guess = expected_code((int32_t)left, (int32_t)above,
                                                      (int32_t)corner, (int32_t)most);
-                other = apply ? 1 + (code + most - guess) % most : code + guess - 1;
-                if (!apply && other > most)
-                    other -= most;
+                const uint32_t sum = code + guess - 1;
+                /* Without a branch, which noise would mislead. */
+                other = apply ? 1 + (code + most - guess) % most : sum - (most & -(sum > most));
             }
             if (!apply)
                 store_code(plain, bytes, at, other);
@@ -158,8 +160,17 @@ static inline uint8_t expected_near(int a, int b, int c)
     return (uint8_t)most(least(a, b), least(most(a, b), a + b - c));
 }
 
-/* A row of occupied texels at level 0, in either direction: one of `plain` and `coded` grows.
- * `coded` is where their first one's byte is in the first plane. Returns how many there are. */
+/* What a texel without a height holds before it is filled. */
+static inline void store_far(uint8_t *here, size_t texel)
+{
+    here[0] = texel == 1 ? GTX_FAR_TRIM : GTX_FAR_NORMAL;
+    if (texel == 2)
+        here[1] = GTX_FAR_NORMAL;
+}
+
+/* A row of occupied texels at level 0, in either direction: one of `plain` and `coded` grows, and
+ * where it is `plain`, it has the far values elsewhere. `coded` is where their first one's byte is
+ * in the first plane. Returns how many there are. */
 static inline size_t code_near(const gtx_layer *s, size_t row, size_t texel, uint8_t *restrict plain,
                                uint8_t *restrict coded, bool apply)
 {
@@ -175,8 +186,11 @@ static inline size_t code_near(const gtx_layer *s, size_t row, size_t texel, uin
         const unsigned above = up ? over[x] : 0, there = left | above << 1 | corner << 2;
         left = ring[x];
         corner = above;
-        if (!left)
+        if (!left) {
+            if (!apply)
+                store_far(here, texel);
             continue;
+        }
         /* Where one is missing, the first that is there. */
         const size_t back = there & 1 ? texel : there & 2 ? line : line + texel;
         for (size_t k = 0; k < texel; ++k) {
@@ -239,8 +253,11 @@ static inline size_t code_means(const gtx_layer *s, size_t row, uint8_t *plain, 
         const size_t lanes = left < GTX_LANES ? left : GTX_LANES;
         if (lane == 0 && memchr(ring + x, 1, lanes))
             expected_means(s, row, x, lanes, guess);
-        if (!ring[x])
+        if (!ring[x]) {
+            if (!apply)
+                store_far(here + 2 * x, 2);
             continue;
+        }
         for (size_t k = 0; k < 2; ++k)
             if (apply)
                 coded[k * s->texels + count] = (uint8_t)(here[2 * x + k] - guess[2 * lane + k]);
@@ -282,7 +299,6 @@ static void clear_empty(const uint8_t *restrict ring, size_t texels, bool normal
 void gtx_surface_undo_occupied(gtx_layer *s, const uint8_t *coded, uint8_t *out)
 {
     s->occupied = code_occupied(s, out, (uint8_t *)coded, false);
-    clear_empty(s->ring, s->texels, s->kind == GTX_SECTION_NORMAL, out);
 }
 
 void gtx_surface_undo_patch(const gtx_layer *s, uint32_t index, uint8_t *out)

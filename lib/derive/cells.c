@@ -128,12 +128,19 @@ typedef struct comparison {
     double greatest;          /* so far, object units */
 } comparison;
 
-/* Some texels of a row, in turn; NaNs do not count. */
+/* The distance of a texel from the sheet as floats have it. NaNs are not beyond any limit. */
+static inline float distance_of(float texel, float sheet, float weight)
+{
+    return fabsf(sheet - texel) * weight;
+}
+
+/* Some texels of a row, in turn: those beyond the limit. */
 static void compare_exactly(comparison *c, uint32_t x0, uint32_t count, uint32_t y,
-                            const float *texels, const float *weights)
+                            const float *texels, const float *sheet, const float *weights,
+                            float limit)
 {
     for (uint32_t i = 0; i < count; ++i) {
-        if (isnan(texels[i]))
+        if (!(distance_of(texels[i], sheet[i], weights[i]) > limit))
             continue;
         const gtx_surface s = surface_at(c->grid, c->patch, x0 + i, y);
         const double codes = fabs(s.z - texels[i]) * (double)weights[i];
@@ -149,7 +156,7 @@ static bool any_beyond(const float *texels, const float *sheet, const float *wei
 {
     int beyond = 0;
     for (uint32_t i = 0; i < count; ++i)
-        beyond |= fabsf(sheet[i] - texels[i]) * weights[i] > limit;
+        beyond |= distance_of(texels[i], sheet[i], weights[i]) > limit;
     return beyond;
 }
 
@@ -183,7 +190,7 @@ static void compare_run(comparison *c, uint32_t first, uint32_t end, uint32_t y)
         /* Floats are off by less than this. */
         const float limit = (float)(0.9999 * c->greatest / c->step[2]) - 0.05f * border_counts;
         if (any_beyond(texels + i, sheet + i, weights + i, piece, limit))
-            compare_exactly(c, x0 + i, piece, y, texels + i, weights + i);
+            compare_exactly(c, x0 + i, piece, y, texels + i, sheet + i, weights + i, limit);
     }
 }
 

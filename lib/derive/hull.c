@@ -10,6 +10,8 @@
 /* Cells along the side of a block: processors shade small triangles by whole groups of pixels, so
  * that few large ones cost least. */
 enum { BLOCK = 16 };
+/* Codes that vectors may read beyond the last one. */
+enum { SPARE = 3 };
 _Static_assert((int)BLOCK <= (int)GTX_MOST_MOMENTS, "a block's sums fit");
 
 /* Where a block's two triangles are: in the halves beside its diagonal. */
@@ -173,7 +175,7 @@ static size_t allocate(gtx_hull *h, const gtx_allocator *hooks)
     const size_t size =
         h->block_count * (sizeof *h->sums + 2 * sizeof *h->triangles + 5 * sizeof *h->edges +
                           sizeof *h->block) + h->node_count * sizeof *h->nodes +
-        (h->grid->nodes_x + level_nodes) * sizeof *h->codes;
+        (h->grid->nodes_x + level_nodes + SPARE) * sizeof *h->codes;
     h->sums = gtx_alloc_array(hooks, size, 1);
     if (!h->sums)
         return 0;
@@ -182,7 +184,7 @@ static size_t allocate(gtx_hull *h, const gtx_allocator *hooks)
     h->edges = (gtx_hull_edge *)(h->triangles + 2 * h->block_count);
     h->columns = (float *)(h->edges + 5 * h->block_count);
     h->codes = h->columns + h->grid->nodes_x;
-    h->block = (uint8_t *)(h->codes + level_nodes);
+    h->block = (uint8_t *)(h->codes + level_nodes + SPARE);
     return size;
 }
 

@@ -128,13 +128,14 @@ static void measure(const gtx_hull *h, const shape *s, uint32_t first, float *hi
 {
     const float cell = (float)(1u << h->grid->level);
     const uint32_t left = s->to[0] - first, count = left < COLUMNS ? left : COLUMNS;
+    const uint32_t lanes = (count + 3) / 4 * 4; /* the last of them in vain */
     row_shape row = {.rise = s->height.b};
     float slack[3], up[COLUMNS], down[COLUMNS];
     for (int k = 0; k < 3; ++k) {
         slack[k] = -cell * (fabsf(s->share[k].b) + fabsf(s->share[k].c)) - 1e-4f;
         row.slope[k] = s->share[k].b;
     }
-    for (uint32_t i = 0; i < count; ++i)
+    for (uint32_t i = 0; i < lanes; ++i)
         up[i] = -INFINITY, down[i] = INFINITY;
     for (uint32_t j = s->from[1]; j < s->to[1]; ++j) {
         const float y = gtx_hull_texel(h, 1, j);
@@ -142,7 +143,7 @@ static void measure(const gtx_hull *h, const shape *s, uint32_t first, float *hi
         for (int k = 0; k < 3; ++k)
             row.base[k] = s->share[k].a + s->share[k].c * y - slack[k];
         measure_row(&row, h->columns + first, h->codes + (size_t)j * h->grid->nodes_x + first,
-                    count, up, down);
+                    lanes, up, down);
     }
     for (uint32_t i = 0; i < count; ++i) {
         *highest = gtx_greater(*highest, up[i]);

@@ -27,12 +27,11 @@ typedef struct making {
     uint32_t batch_count;
     bool borrow;
     const void *sources[GTX_MAX_LEVELS]; /* of levels that are copies, or NULL */
-    gtx_result shells;
-    gtx_error shells_error;
 } making;
 
-/* Enough for many threads to end together, and each to have enough to do. */
-enum { MOST_BATCHES = 64 };
+/* Batches of patches, and pieces of each map: enough for many threads to end together, and each to
+ * have enough to do. */
+enum { MOST_BATCHES = 64, PIECES = 4 };
 
 /* Adds a level of `unit` and its memory, not yet written, unless it borrows what is there already.
  * NULL without memory. */
@@ -178,37 +177,56 @@ static gtx_result derive_patch(const making *m, uint32_t i, gtx_derived *derived
     return result;
 }
 
-/* The shells, then copies of maps, then patches. */
+/* A piece of a level of a map: a copy of the asset's, or empty, for what lies between patches. */
+static void begin_level(const making *m, uint32_t index, uint32_t piece)
+{
+    const gtx_level *l = &m->model->levels[index];
+    const uint8_t *source = m->sources[index];
+    const size_t size = level_size(l), first = size * piece / PIECES;
+    const size_t count = size * (piece + 1) / PIECES - first;
+    if (source)
+        memcpy(l->data + first, source + first, count);
+    else if (!l->borrowed)
+        memset(l->data + first, 0, count);
+}
+
+/* What has to be there first: sizes of the shells, and maps. */
+static void begin_part(uint32_t index, void *data)
+{
+    making *m = data;
+    gtx_model *model = m->model;
+    const uint32_t shells = model->shells.level_count;
+    if (index < shells)
+        gtx_shells_measure(m->asset, index, &model->allocator, &model->shells);
+    else
+        begin_level(m, (index - shells) / PIECES, (index - shells) % PIECES);
+}
+
+/* The shells, then patches. */
 static void make_part(uint32_t index, void *data)
 {
     making *m = data;
     gtx_model *model = m->model;
-    if (index == 0) {
-        m->shells = gtx_shells_prepare(m->asset, &model->allocator, &model->shells,
-                                       &m->shells_error);
-    } else if (index <= model->level_count) {
-        const gtx_level *l = &model->levels[index - 1];
-        if (m->sources[index - 1])
-            memcpy(l->data, m->sources[index - 1], level_size(l));
-    } else {
-        batch *b = &m->batches[index - 1 - model->level_count];
-        for (uint32_t i = b->first; i < b->end && !b->result; ++i)
-            b->result = derive_patch(m, i, &b->derived, &b->error);
+    const uint32_t shells = model->shells.level_count;
+    if (index < shells) {
+        gtx_shells_fill(m->asset, index, &model->allocator, &model->shells);
+        return;
     }
+    batch *b = &m->batches[index - shells];
+    for (uint32_t i = b->first; i < b->end && !b->result; ++i)
+        b->result = derive_patch(m, i, &b->derived, &b->error);
 }
 
 /* What went wrong first, in the order that serial work would have. */
 static gtx_result first_failure(const making *m, gtx_error *error)
 {
-    gtx_result result = m->shells;
-    const gtx_error *of = &m->shells_error;
-    for (uint32_t b = m->batch_count; b-- > 0;) {
-        result = m->batches[b].result ? m->batches[b].result : result;
-        of = m->batches[b].result ? &m->batches[b].error : of;
-    }
-    if (result && error)
-        *error = *of;
-    return result;
+    for (uint32_t b = 0; b < m->batch_count; ++b)
+        if (m->batches[b].result) {
+            if (error)
+                *error = m->batches[b].error;
+            return m->batches[b].result;
+        }
+    return GTX_OK;
 }
 
 static gtx_result make_parts(making *m, const gtx_jobs *jobs, gtx_error *error)
@@ -223,7 +241,7 @@ static gtx_result make_parts(making *m, const gtx_jobs *jobs, gtx_error *error)
         m->batches[b].first = (uint32_t)((uint64_t)patches * b / m->batch_count);
         m->batches[b].end = (uint32_t)((uint64_t)patches * (b + 1) / m->batch_count);
     }
-    gtx_run_jobs(jobs, 1 + m->model->level_count + m->batch_count, make_part, m);
+    gtx_run_jobs(jobs, m->model->shells.level_count + m->batch_count, make_part, m);
     gtx_result result = first_failure(m, error);
     if (!result)
         result = join_proxies(m, error);
@@ -232,6 +250,15 @@ static gtx_result make_parts(making *m, const gtx_jobs *jobs, gtx_error *error)
             gtx_proxies_free(&m->batches[b].derived.proxies[kind], hooks);
     gtx_free_array(hooks, m->batches, m->batch_count, sizeof *m->batches);
     return result;
+}
+
+static gtx_result begin_parts(making *m, const gtx_jobs *jobs, gtx_error *error)
+{
+    gtx_model *model = m->model;
+    if (!gtx_shells_begin(m->asset, &model->allocator, &model->shells))
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's shell");
+    gtx_run_jobs(jobs, model->shells.level_count + PIECES * model->level_count, begin_part, m);
+    return gtx_shells_place(&model->allocator, &model->shells, error);
 }
 
 /* Makes room for the slabs. */
@@ -250,7 +277,7 @@ static bool reserve_slabs(gtx_model *model, const gtx_asset *asset)
     if (!model->first_slab || !model->records || count > UINT32_MAX)
         return false;
     model->first_slab[slots] = (uint32_t)count;
-    model->slabs = gtx_alloc_array(&model->allocator, (size_t)count, sizeof *model->slabs);
+    model->slabs = gtx_alloc_raw(&model->allocator, (size_t)count, sizeof *model->slabs);
     return model->slabs;
 }
 
@@ -271,8 +298,6 @@ static bool reserve(making *m)
     if (!reserve_slabs(model, m->asset) || !m->records || !m->pages || !model->first_vertex ||
         !model->first_index || !model->facts)
         return false;
-    for (uint32_t i = 0; i < model->level_count; ++i) /* what lies between patches */
-        memset(model->levels[i].data, 0, level_size(&model->levels[i]));
     return add_maps(m, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
            add_maps(m, GTX_MAP_NORMAL, UNIT_NORMALS, mips, 2) &&
            add_maps(m, GTX_MAP_COLOR, UNIT_COLORS, mips, 4) &&
@@ -317,10 +342,13 @@ gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc,
     making m = {.asset = asset, .model = new_model(asset, &hooks), .borrow = desc && desc->borrow};
     if (!m.model)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a model");
+    const gtx_jobs *jobs = desc ? desc->jobs : NULL;
     if (reserve(&m))
-        result = make_parts(&m, desc ? desc->jobs : NULL, error);
+        result = begin_parts(&m, jobs, error);
     else
         result = gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's maps");
+    if (!result)
+        result = make_parts(&m, jobs, error);
     gtx_model *model = m.model;
     if (result) {
         gtx_model_destroy(NULL, model);

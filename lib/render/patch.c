@@ -47,7 +47,7 @@ static void fill_box(float record[GTX_RECORD_TEXELS][4], const gtx_proxy_vertex 
 static void hold(float sphere[4], float record[GTX_RECORD_TEXELS][4], const gtx_proxies *proxies,
                  uint32_t first)
 {
-    double radius = sphere[3];
+    double most = 0;
     for (uint32_t v = first; v < proxies->vertex_count; ++v) {
         const gtx_proxy_vertex *p = &proxies->vertices[v];
         double square = 0;
@@ -56,9 +56,9 @@ static void hold(float sphere[4], float record[GTX_RECORD_TEXELS][4], const gtx_
                               (double)record[5][k] * p->y + (double)record[6][k] * p->z;
             square += (at - sphere[k]) * (at - sphere[k]);
         }
-        radius = fmax(radius, sqrt(square));
+        most = square > most ? square : most;
     }
-    sphere[3] = (float)(radius * 1.0001);
+    sphere[3] = (float)(fmax(sphere[3], sqrt(most)) * 1.0001);
 }
 
 /* Trims a level, and derives its cells, its slabs and its hull. */

@@ -11,10 +11,10 @@
 enum { MOST_NARROW_VERTICES = 65535, MOST_RUN_TRIANGLES = 4095 / 3 };
 
 /* Which of a patch's vertices a vertex of the level has become. */
-typedef struct split_vertex {
+typedef struct gtx_shell_copy {
     uint32_t patch;           /* one more than the patch that met it last */
     uint32_t index;
-} split_vertex;
+} gtx_shell_copy;
 
 /* Begins a run where the last one is full, and where culling changes. */
 static gtx_shell_run *run_of(const gtx_shells *shells, gtx_shell_level *level, uint32_t i,
@@ -40,24 +40,22 @@ static void store_index(const gtx_shells *shells, const gtx_shell_level *level, 
 }
 
 /* Gives each vertex a copy for each patch that uses it, patch by patch in the order of drawing.
- * Without memory for them it only counts. `seen` has an entry for each vertex of the asset's level.
- * Returns how many copies there are. */
-static uint32_t split(const gtx_shells *shells, gtx_shell_level *level, const gtx_shell *source,
-                      split_vertex *seen)
+ * Without memory for them it only counts. Returns how many copies there are. */
+static uint32_t split(const gtx_shells *shells, gtx_shell_level *level, const gtx_shell *source)
 {
     gtx_shell_vertex *vertices =
         shells->vertices ? shells->vertices + level->vertex_offset / sizeof *vertices : NULL;
     uint32_t count = 0, met = 0;
-    memset(seen, 0, source->vertex_count * sizeof *seen);
+    memset(level->copies, 0, source->vertex_count * sizeof *level->copies);
     level->run_count = 0;
     for (uint32_t i = 0; i < shells->patch_count; ++i) {
         gtx_shell_run *run = run_of(shells, level, i, count);
         const uint32_t patch = shells->order[i], last = source->first[patch + 1];
         for (uint64_t c = 3 * (uint64_t)source->first[patch]; c < 3 * (uint64_t)last; ++c) {
-            split_vertex *s = &seen[source->indices[c]];
+            gtx_shell_copy *s = &level->copies[source->indices[c]];
             const uint16_t *q = source->positions + 3 * (size_t)source->indices[c];
             if (s->patch != patch + 1) {
-                *s = (split_vertex){patch + 1, count++};
+                *s = (gtx_shell_copy){patch + 1, count++};
                 if (vertices)
                     vertices[s->index] = (gtx_shell_vertex){{q[0], q[1], q[2]}, 0, patch};
             }
@@ -93,89 +91,99 @@ static bool is_sound(const gtx_shell *source, uint32_t patches)
     return sound;
 }
 
-/* What is known of a level before its vertices are: all but its place in the buffer of vertices. */
-static bool measure_level(gtx_shells *out, gtx_shell_level *level, const gtx_shell *source,
-                          const gtx_allocator *hooks)
+/* What the asset says of a level, and room to make it. */
+static bool begin_level(const gtx_shells *shells, gtx_shell_level *level, const gtx_shell *source,
+                        const gtx_allocator *hooks)
 {
+    const uint32_t patches = shells->patch_count;
     memcpy(level->place, source->origin, sizeof source->origin);
     level->place[3] = source->step;
     level->error = source->error;
     level->triangle_count = source->triangle_count;
-    level->first = gtx_alloc_array(hooks, out->patch_count + 1, sizeof *level->first);
-    level->runs = gtx_alloc_array(hooks, out->patch_count, sizeof *level->runs);
-    if (!level->first || !level->runs)
-        return false;
-    for (uint32_t i = 0; i < out->patch_count; ++i) {
-        const uint32_t *of = source->first + out->order[i];
-        level->first[i + 1] = level->first[i] + of[1] - of[0];
-    }
-    return true;
+    level->first = gtx_alloc_array(hooks, patches + 1, sizeof *level->first);
+    level->runs = gtx_alloc_array(hooks, patches, sizeof *level->runs);
+    level->source_vertices = source->vertex_count;
+    level->copies = gtx_alloc_raw(hooks, source->vertex_count, sizeof *level->copies);
+    return level->first && level->runs && level->copies;
 }
 
-/* Counts, makes room and fills, with `seen` as split has it. */
-static bool fill_levels(const gtx_asset *asset, gtx_shells *out, split_vertex *seen,
-                        const gtx_allocator *hooks)
-{
-    gtx_shell source;
-    for (uint32_t k = 0; k < out->level_count; ++k) {
-        gtx_shell_level *level = &out->levels[k];
-        gtx_get_shell(asset, k, &source);
-        if (!measure_level(out, level, &source, hooks))
-            return false;
-        const uint32_t count = split(out, level, &source, seen);
-        level->index_size = 2;
-        for (uint32_t r = 0; r < level->run_count; ++r)
-            if (level->runs[r].vertex_count > MOST_NARROW_VERTICES)
-                level->index_size = 4;
-        level->vertex_offset = out->vertex_bytes;
-        level->index_offset = out->index_bytes;
-        out->vertex_bytes += (uint64_t)count * sizeof *out->vertices;
-        out->index_bytes += 3 * (uint64_t)level->triangle_count * level->index_size;
-        out->index_bytes = (out->index_bytes + 3) / 4 * 4;
-    }
-    out->vertices = gtx_alloc_raw(hooks, (size_t)out->vertex_bytes, 1);
-    out->indices = gtx_alloc_array(hooks, (size_t)out->index_bytes, 1);
-    if (!out->vertices || !out->indices)
-        return false;
-    for (uint32_t k = 0; k < out->level_count; ++k) {
-        gtx_get_shell(asset, k, &source);
-        split(out, &out->levels[k], &source, seen);
-    }
-    return true;
-}
-
-gtx_result gtx_shells_prepare(const gtx_asset *asset, const gtx_allocator *allocator,
-                              gtx_shells *out, gtx_error *error)
+bool gtx_shells_begin(const gtx_asset *asset, const gtx_allocator *allocator, gtx_shells *out)
 {
     *out = (gtx_shells){.level_count = asset->info.shell_levels,
                         .patch_count = asset->info.patch_count};
     if (!out->level_count)
-        return GTX_OK;
+        return true;
     memcpy(out->low, asset->info.bounds_min, sizeof out->low);
     memcpy(out->high, asset->info.bounds_max, sizeof out->high);
     out->order = gtx_alloc_array(allocator, out->patch_count, sizeof *out->order);
     out->edited = gtx_alloc_array(allocator, out->patch_count, sizeof *out->edited);
-    uint32_t most = 0;
-    bool sound = true;
-    for (uint32_t k = 0; k < out->level_count; ++k) {
-        gtx_shell source;
-        gtx_get_shell(asset, k, &source);
-        sound = sound && is_sound(&source, out->patch_count);
-        most = source.vertex_count > most ? source.vertex_count : most;
-    }
-    split_vertex *seen = gtx_alloc_raw(allocator, most, sizeof *seen);
-    bool made = out->order && out->edited && seen;
-    if (made && sound) {
+    if (out->order)
         put_in_order(asset, out);
-        made = fill_levels(asset, out, seen, allocator);
+    return out->order && out->edited;
+}
+
+void gtx_shells_measure(const gtx_asset *asset, uint32_t k, const gtx_allocator *allocator,
+                        gtx_shells *out)
+{
+    gtx_shell_level *level = &out->levels[k];
+    gtx_shell source;
+    gtx_get_shell(asset, k, &source);
+    level->result = is_sound(&source, out->patch_count) ? GTX_OK : GTX_ERROR_CORRUPT;
+    if (!level->result && !begin_level(out, level, &source, allocator))
+        level->result = GTX_ERROR_MEMORY;
+    if (level->result)
+        return;
+    for (uint32_t i = 0; i < out->patch_count; ++i) {
+        const uint32_t *of = source.first + out->order[i];
+        level->first[i + 1] = level->first[i] + of[1] - of[0];
     }
-    gtx_free_array(allocator, seen, most, sizeof *seen);
-    if (made && sound)
-        return GTX_OK;
-    gtx_shells_free(out, allocator);
-    if (!sound)
-        return gtx_fail(error, GTX_ERROR_CORRUPT, "a level of the shell refers beyond its end");
-    return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's shell");
+    const uint32_t count = split(out, level, &source);
+    level->index_size = 2;
+    for (uint32_t r = 0; r < level->run_count; ++r)
+        if (level->runs[r].vertex_count > MOST_NARROW_VERTICES)
+            level->index_size = 4;
+    level->vertex_bytes = count * (uint64_t)sizeof *out->vertices;
+}
+
+gtx_result gtx_shells_place(const gtx_allocator *allocator, gtx_shells *out, gtx_error *error)
+{
+    gtx_result result = GTX_OK;
+    for (uint32_t k = 0; k < out->level_count; ++k) {
+        gtx_shell_level *level = &out->levels[k];
+        result = level->result > result ? level->result : result;
+        level->vertex_offset = out->vertex_bytes;
+        level->index_offset = out->index_bytes;
+        out->vertex_bytes += level->vertex_bytes;
+        out->index_bytes += 3 * (uint64_t)level->triangle_count * level->index_size;
+        out->index_bytes = (out->index_bytes + 3) / 4 * 4;
+    }
+    if (result == GTX_ERROR_CORRUPT)
+        return gtx_fail(error, result, "a level of the shell refers beyond its end");
+    if (!result && out->level_count) {
+        out->vertices = gtx_alloc_raw(allocator, (size_t)out->vertex_bytes, 1);
+        out->indices = gtx_alloc_raw(allocator, (size_t)out->index_bytes, 1);
+        result = out->vertices && out->indices ? GTX_OK : GTX_ERROR_MEMORY;
+    }
+    return result ? gtx_fail(error, result, "no memory for the model's shell") : GTX_OK;
+}
+
+static void free_copies(gtx_shell_level *level, const gtx_allocator *allocator)
+{
+    gtx_free_array(allocator, level->copies, level->source_vertices, sizeof *level->copies);
+    level->copies = NULL;
+}
+
+void gtx_shells_fill(const gtx_asset *asset, uint32_t k, const gtx_allocator *allocator,
+                     gtx_shells *out)
+{
+    gtx_shell_level *level = &out->levels[k];
+    gtx_shell source;
+    gtx_get_shell(asset, k, &source);
+    split(out, level, &source);
+    free_copies(level, allocator);
+    /* The next level's indices are aligned. */
+    const size_t end = 3 * (size_t)level->triangle_count * level->index_size;
+    memset(out->indices + level->index_offset + end, 0, (4 - end % 4) % 4);
 }
 
 void gtx_shells_free_staging(gtx_shells *shells, const gtx_allocator *allocator)
@@ -190,6 +198,7 @@ void gtx_shells_free(gtx_shells *shells, const gtx_allocator *allocator)
 {
     gtx_shells_free_staging(shells, allocator);
     for (uint32_t k = 0; k < shells->level_count; ++k) {
+        free_copies(&shells->levels[k], allocator);
         gtx_free_array(allocator, shells->levels[k].first, shells->patch_count + 1,
                        sizeof *shells->levels[k].first);
         gtx_free_array(allocator, shells->levels[k].runs, shells->patch_count,

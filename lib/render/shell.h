@@ -29,6 +29,10 @@ typedef struct gtx_shell_level {
     uint32_t run_count;
     uint32_t index_size;      /* bytes */
     uint64_t vertex_offset, index_offset;
+    uint64_t vertex_bytes;
+    uint32_t source_vertices; /* in the asset's level */
+    struct gtx_shell_copy *copies; /* of each of these, while the level is made */
+    gtx_result result;        /* of measuring it */
 } gtx_shell_level;
 
 /* All levels share one buffer of vertices and one of indices, the finest first. */
@@ -46,9 +50,16 @@ typedef struct gtx_shells {
     gl_uint vertex_buffer, index_buffer;
 } gtx_shells;
 
-/* Of an asset without a shell: no levels. Errors: MEMORY, CORRUPT. */
-gtx_result gtx_shells_prepare(const gtx_asset *asset, const gtx_allocator *allocator,
-                              gtx_shells *out, gtx_error *error);
+/* Made in four steps, of which the second and the last are done for every level, in any order or at
+ * the same time: what a level needs is found, room is made for all, and buffers are filled. Whatever
+ * fails, gtx_shells_free gives back what was allocated. An asset without a shell has no levels. */
+bool gtx_shells_begin(const gtx_asset *asset, const gtx_allocator *allocator, gtx_shells *out);
+void gtx_shells_measure(const gtx_asset *asset, uint32_t level, const gtx_allocator *allocator,
+                        gtx_shells *out);
+/* Errors: MEMORY, CORRUPT. */
+gtx_result gtx_shells_place(const gtx_allocator *allocator, gtx_shells *out, gtx_error *error);
+void gtx_shells_fill(const gtx_asset *asset, uint32_t level, const gtx_allocator *allocator,
+                     gtx_shells *out);
 void gtx_shells_free_staging(gtx_shells *shells, const gtx_allocator *allocator);
 void gtx_shells_free(gtx_shells *shells, const gtx_allocator *allocator);
 

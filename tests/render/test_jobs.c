@@ -110,10 +110,8 @@ static void counted_free(void *memory, size_t size, void *user)
 }
 
 /* Jobs after one that failed go on, and the first patch's failure is told. */
-static void failed_allocations_are_reported(void **state)
+static void expect_reports(gtx_asset *asset)
 {
-    (void)state;
-    gtx_asset *asset = fixture_sphere(2, 48, 8);
     runner_log log;
     const gtx_jobs jobs = runner_of(0, &log);
     gtx_result result = GTX_ERROR_MEMORY;
@@ -133,6 +131,15 @@ static void failed_allocations_are_reported(void **state)
         assert_int_equal(c.live, 0);
     }
     gtx_close(asset);
+}
+
+static void failed_allocations_are_reported(void **state)
+{
+    (void)state;
+    gtx_asset *shell;
+    assert_int_equal(gtx_open_file("tests/golden/good/shell.gtx", NULL, &shell, NULL), GTX_OK);
+    expect_reports(shell);
+    expect_reports(fixture_sphere(2, 48, 8));
 }
 
 static void reserved_fields_are_zero(void **state)
