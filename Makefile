@@ -334,7 +334,7 @@ figures := figure2 figure7 figure9
 reek    := $(wildcard $(GEOTEX_MODELS)/heightfields/reek_1588x1188)
 arguments_figure7 = $(MODEL)
 arguments_figure9 := $(or $(reek),own)
-bench_objects := $(addprefix $(out)/lib/cli/,bench.o bench_mesh.o bench_scene.o polygons.o)
+bench_objects := $(addprefix $(out)/lib/cli/,bench.o bench_mesh.o bench_scene.o bench_shading.o polygons.o)
 paper-figures: ## the paper's figures of frame rates, measured here: tables, JSON and curves in build/paper
 	@$(MAKE) --no-print-directory deps
 	@$(MAKE) --no-print-directory -j$$(nproc) all $(figures:%=$(out)/tests/bench/%)

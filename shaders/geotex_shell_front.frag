@@ -1,6 +1,7 @@
 /* geotex_shell.frag for what the shell mostly is: patches that are seen from the front alone, of
  * instances whose transform keeps angles. All is done in the patch's own frame, where its normals
- * are. Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl, geotex_surface.glsl and, with
+ * are. GTX_EVEN says that one material is all there is, and no emission. Needs
+ * geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl, geotex_surface.glsl and, with
  * GTX_MATERIALS defined, geotex_material.glsl before it, and GTX_FRONT in the vertex shader. */
 GTX_VARYING(0) in vec2 gtx_at;
 GTX_VARYING(1) flat in vec2 gtx_page;
@@ -22,6 +23,10 @@ void main()
 #ifdef GTX_MATERIALS
     if (gtx_maps.y > 0.0)
         color *= textureLod(gtx_colors, place, level);
+#ifdef GTX_EVEN
+    gtx_material material =
+        gtx_material(color.rgb, vec3(0.0), gtx_even.x, gtx_even.y, gtx_even.z, gtx_even.w);
+#else
     gtx_material material = gtx_material(color.rgb, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
     if (gtx_maps.w > 0.0) {
         vec4 map = textureLod(gtx_materials, place, level);
@@ -29,6 +34,7 @@ void main()
     }
     if (gtx_maps.z > 0.0)
         material.emission = textureLod(gtx_emissions, place, level).rgb * gtx_maps.z;
+#endif
     color.rgb = gtx_to_srgb(gtx_shade(material, n, gtx_eye, gtx_toward, gtx_between, gtx_light.w));
 #else
     float share = gtx_light.w + (1.0 - gtx_light.w) * max(dot(n, gtx_toward), 0.0);

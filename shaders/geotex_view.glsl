@@ -16,6 +16,7 @@ GTX_UNIFORM vec4 gtx_maps;              /* x: last mip level of normals and colo
                                            model has colours; z: scale of its emission, or 0;
                                            w: 1 when it has materials */
 GTX_UNIFORM vec4 gtx_shell;             /* of the shell's level, xyz: origin; w: step */
+GTX_UNIFORM vec4 gtx_even;              /* of geotex_shell_front.frag: the only material */
 GTX_UNIFORMS_END
 
 /* Half way between light and eye, unit, and what of Schlick's Fresnel term depends on them. Where they

@@ -1,19 +1,27 @@
-/* Points that a simplified surface leaves outside. */
+/* Points that a simplified surface leaves outside, and how it is drawn out to them. */
 #pragma once
 
 #include "bake/shell_fan.hpp"
+#include "mesh/task.hpp"
 #include "mesh/vec.hpp"
+
+#include <functional>
 
 namespace gtx::baking {
 
-struct Outlier {
-    double height = 0; /* above the nearest point of the surface; 0: inside */
-    Vec3d way;         /* from there */
-    double share = 0;  /* of a vertex's movement, by which the surface there follows it */
+/* Vertex v has the triangles around[start[v]] to around[start[v + 1] - 1], and stands for the points
+ * points[first[v]] to points[first[v + 1] - 1] of what was simplified. */
+struct Simplified {
+    const std::vector<Vec3d> &positions;
+    const std::vector<Triangle> &triangles;
+    const std::vector<uint32_t> &start, &around;
+    std::vector<uint32_t> first;
+    std::vector<Vec3d> points;
 };
 
-/* A point and the `count` triangles of `star`, which have a vertex in common. */
-Outlier find_outlier(const std::vector<Vec3d> &positions, const std::vector<Triangle> &triangles,
-                     const uint32_t *star, size_t count, uint32_t vertex, const Vec3d &point);
+/* Draws the surface out to where no point is farther outside than `most`, as far as `move` lets it,
+ * which changes the position of a vertex. The task is then done to the share given. */
+void draw_out(const Simplified &surface, double most,
+              const std::function<void(uint32_t, const Vec3d &)> &move, Task &task, double done);
 
 } // namespace gtx::baking

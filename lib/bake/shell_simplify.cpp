@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <numeric>
+#include <utility>
 
 namespace gtx::baking {
 
@@ -26,10 +28,6 @@ constexpr int MOVE_STEPS = 3;
 /* What a level may leave outside, as a share of its error. At 0 outlines only grow, and are half as
  * good; at 1 sight passes between parts of a model that nearly touch. */
 constexpr double MOST_OUTSIDE = 0.5;
-/* Rounds of moving vertices outwards, and the share of the way by which they at least bring the
- * surface there. */
-constexpr int REACH_ROUNDS = 2;
-constexpr double LEAST_SHARE = 0.5;
 
 /* Of a triangle. */
 using Corners = std::array<Vec3d, 3>;
@@ -52,7 +50,9 @@ struct Simplifier::State {
     std::vector<uint32_t> patch;
     std::vector<Quadric> quadrics;
     std::vector<Vec3d> settled;  /* where the vertices go on from for the next level */
-    std::vector<Vec3d> farthest; /* of the vertices that each stands for, that most outside */
+    const std::vector<Vec3d> points; /* vertices at the start */
+    std::vector<uint32_t> point;     /* of each vertex, the one that it was */
+    std::vector<uint32_t> merged;    /* of each point, that which it went into; itself: it is left */
     std::vector<uint32_t> start, around; /* triangles of each vertex */
     std::vector<uint8_t> touched;
     /* What each vertex costs at least, as far as is known: NAN where it has to be found out,
@@ -65,8 +65,11 @@ struct Simplifier::State {
 
     State(const ShellSource &source, const std::vector<PatchRegion> &regions, Task &task)
         : regions(regions), task(task), positions(source.positions), triangles(source.triangles),
-          patch(source.patch), farthest(positions), first_count(triangles.size())
+          patch(source.patch), points(positions), point(positions.size()),
+          first_count(triangles.size())
     {
+        std::iota(point.begin(), point.end(), 0u);
+        merged = point;
     }
     void find_around();
     bool find_fan(uint32_t vertex, Fan &fan) const
@@ -84,9 +87,9 @@ struct Simplifier::State {
     size_t collapse(const Fan &fan, uint32_t from, uint32_t to);
     void compact();
     size_t round(size_t wanted, double free, double most);
-    void choose_farthest(uint32_t from, uint32_t to);
     void move(uint32_t vertex, Vec3d way);
     void settle();
+    void find_members(std::vector<uint32_t> &first, std::vector<Vec3d> &members);
 };
 
 void Simplifier::State::find_around()
@@ -263,27 +266,6 @@ void Simplifier::State::find_candidates(double free, double most)
     std::sort(paid, candidates.end(), is_cheaper);
 }
 
-/* Which of the vertices that `to` stands for, once it also stands for those of `from`, is now the
- * farthest outside. One is remembered: of the others few are much farther out. */
-void Simplifier::State::choose_farthest(uint32_t from, uint32_t to)
-{
-    uint32_t star[2 * MOST_FAN];
-    size_t count = 0;
-    for (uint32_t v : {from, to})
-        for (uint32_t i = start[v]; i < start[v + 1]; ++i)
-            if (triangles[around[i]][0] != NO_VERTEX)
-                star[count++] = around[i];
-    const Vec3d points[] = {farthest[to], farthest[from], positions[from]};
-    double most = -1;
-    for (const Vec3d &point : points) {
-        const double height = find_outlier(positions, triangles, star, count, to, point).height;
-        if (height <= most)
-            continue;
-        most = height;
-        farthest[to] = point;
-    }
-}
-
 /* Returns how many triangles are gone. */
 size_t Simplifier::State::collapse(const Fan &fan, uint32_t from, uint32_t to)
 {
@@ -297,6 +279,7 @@ size_t Simplifier::State::collapse(const Fan &fan, uint32_t from, uint32_t to)
         count += gone;
     }
     quadrics[to].add(quadrics[from]);
+    merged[point[from]] = point[to];
     touched[from] = 1;
     for (int i = 0; i < fan.ring_count; ++i)
         touched[fan.ring[i]] = 1;
@@ -324,13 +307,13 @@ void Simplifier::State::compact()
             continue;
         positions[vertices] = positions[v];
         quadrics[vertices] = quadrics[v];
-        farthest[vertices] = farthest[v];
+        point[vertices] = point[v];
         costs[vertices] = touched[v] ? NAN : costs[v];
         renamed[v] = vertices++;
     }
     positions.resize(vertices);
     quadrics.resize(vertices);
-    farthest.resize(vertices);
+    point.resize(vertices);
     costs.resize(vertices);
     for (Triangle &t : triangles)
         for (uint32_t &v : t)
@@ -354,8 +337,6 @@ size_t Simplifier::State::round(size_t wanted, double free, double most)
             continue;
         find_fan(c.from, fan);
         left -= collapse(fan, c.from, c.to);
-        if (c.cost > free)
-            choose_farthest(c.from, c.to);
         ++taken;
     }
     compact();
@@ -377,6 +358,32 @@ void Simplifier::State::move(uint32_t vertex, Vec3d way)
     }
 }
 
+/* Sorts the points by the vertex that stands for them: `first` of each, and the end. */
+void Simplifier::State::find_members(std::vector<uint32_t> &first, std::vector<Vec3d> &members)
+{
+    std::vector<uint32_t> vertex(points.size(), NO_VERTEX);
+    for (uint32_t v = 0; v < point.size(); ++v)
+        vertex[point[v]] = v;
+    first.assign(positions.size() + 1, 0);
+    for (uint32_t p = 0; p < points.size(); ++p) {
+        uint32_t last = p;
+        while (merged[last] != last)
+            last = merged[last];
+        for (uint32_t q = p; q != last;)
+            q = std::exchange(merged[q], last);
+        vertex[p] = vertex[last];
+        if (vertex[p] != NO_VERTEX)
+            ++first[vertex[p] + 1];
+    }
+    for (size_t v = 0; v < positions.size(); ++v)
+        first[v + 1] += first[v];
+    members.resize(first.back());
+    std::vector<uint32_t> next(first.begin(), first.end() - 1);
+    for (uint32_t p = 0; p < points.size(); ++p)
+        if (vertex[p] != NO_VERTEX)
+            members[next[vertex[p]]++] = points[p];
+}
+
 /* First to where the planes are nearest, from where the next level goes on; then, for this level
  * alone, outwards again where something stands out: there an outline would be seen to shrink, and
  * sight would pass where it must not. */
@@ -388,15 +395,11 @@ void Simplifier::State::settle()
         error = std::max(error, quadrics[v].at(positions[v]));
     }
     settled = positions;
-    const double most = MOST_OUTSIDE * std::sqrt(error);
-    for (int n = 0; n < REACH_ROUNDS; ++n) {
-        for (uint32_t v = 0; v < positions.size(); ++v) {
-            const Outlier o = find_outlier(positions, triangles, around.data() + start[v],
-                                           start[v + 1] - start[v], v, farthest[v]);
-            if (o.height > most)
-                move(v, o.way * ((1 - most / o.height) / std::max(o.share, LEAST_SHARE)));
-        }
-    }
+    Simplified surface = {positions, triangles, start, around, {}, {}};
+    find_members(surface.first, surface.points);
+    draw_out(surface, MOST_OUTSIDE * std::sqrt(error),
+             [&](uint32_t vertex, const Vec3d &way) { move(vertex, way); }, task,
+             1 - 0.7 * double(triangles.size()) / double(first_count));
 }
 
 Simplifier::Simplifier(const ShellSource &source, const std::vector<PatchRegion> &regions,

@@ -1,6 +1,7 @@
 /* Loads an asset and its mesh onto the GPU and draws them for `gtx bench`. */
 #include "cli/bench_scene.hpp"
 
+#include "cli/bench_shading.hpp"
 #include "cli/stage.hpp"
 #include "host/camera.h"
 #include "host/jobs.h"
@@ -61,7 +62,6 @@ BenchScene::BenchScene(const std::string &asset_path, const Mesh &mesh, const Be
     gtx_renderer_desc desc = {};
     desc.load = gtx_offscreen_load;
     check(gtx_host_gl_init(&gl, gtx_offscreen_load, nullptr, &error), error);
-    check(gtx_polygon_program_create(&gl, &program_, &error), error);
     check(gtx_renderer_create(&desc, &renderer_, &error), error);
     setup.renderer = reinterpret_cast<const char *>(gl.GetString(GL_RENDERER));
     GLuint query;
@@ -72,6 +72,7 @@ BenchScene::BenchScene(const std::string &asset_path, const Mesh &mesh, const Be
         gl.EndQuery(INVOCATIONS);
     gl.DeleteQueries(1, &query);
     load_asset(asset_path);
+    program_ = make_bench_program(gl, info.has_material || info.has_emission);
     load_mesh(mesh);
 }
 
@@ -177,6 +178,7 @@ void BenchScene::draw_mesh(BenchMethod method, const gtx_view &view,
     }
     gl.Enable(GL_CULL_FACE);
     gl.CullFace(GL_BACK);
+    set_bench_eye(gl, program_, view.view);
     for (const gtx_instance &instance : placed)
         gtx_polygons_draw(&gl, &program_, &drawn, instance.transform, view.view, view.projection,
                           view.light_direction, view.ambient);

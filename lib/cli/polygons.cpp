@@ -29,6 +29,11 @@ static double find_side(const Mesh &mesh)
     return std::sqrt(square / WANTED);
 }
 
+static uint8_t to_byte(float share)
+{
+    return uint8_t(std::clamp(share, 0.f, 1.f) * 255 + 0.5f);
+}
+
 /* `pieces` x `pieces` small triangles in place of one. */
 static void add_triangle(const Mesh &mesh, size_t t, uint32_t pieces, double side,
                          const Vec3d &centre, std::vector<float> &cut, Polygons &out)
@@ -44,7 +49,9 @@ static void add_triangle(const Mesh &mesh, size_t t, uint32_t pieces, double sid
                     mesh.position(t, 2) * double(c) - centre);
             out.vertices.push_back({{p.x, p.y, p.z}, {s.normal.x, s.normal.y, s.normal.z},
                                     {linear_to_srgb(s.color[0]), linear_to_srgb(s.color[1]),
-                                     linear_to_srgb(s.color[2]), uint8_t(s.lit > 0 ? 255 : 0)}});
+                                     linear_to_srgb(s.color[2]), uint8_t(s.lit > 0 ? 255 : 0)},
+                                    {to_byte(s.occlusion), to_byte(s.roughness),
+                                     to_byte(s.metallic), 0}});
             cut.push_back(s.cut);
         }
     }

@@ -81,8 +81,8 @@ static gtx_result draw_shadow(const gtx_host_gl *gl, shadow *s, const float ligh
  * to the horizon, into which the floor fades. */
 static gtx_result create_sky(const gtx_host_gl *gl, gtx_polygons *out, gtx_error *error)
 {
-    gtx_polygon_vertex corners[4] = {{{-1, 0, 0}, {0}, {0}}, {{1, 0, 0}, {0}, {0}},
-                                     {{1, 1, 0}, {0}, {0}}, {{-1, 1, 0}, {0}, {0}}};
+    gtx_polygon_vertex corners[4] = {{{-1, 0, 0}, {0}, {0}, {0}}, {{1, 0, 0}, {0}, {0}, {0}},
+                                     {{1, 1, 0}, {0}, {0}, {0}}, {{-1, 1, 0}, {0}, {0}, {0}}};
     static const uint32_t order[6] = {0, 1, 2, 0, 2, 3};
     for (int i = 0; i < 4; ++i)
         for (int k = 0; k < 3; ++k)

@@ -11,13 +11,15 @@ static const char vertex_text[] =
     "layout(location = 0) in vec3 position;\n"
     "layout(location = 1) in vec3 normal;\n"
     "layout(location = 2) in vec4 color;\n"
+    "layout(location = 3) in vec4 surface;\n"
     "uniform mat4 model, view_projection;\n"
     "out vec3 world_point, world_normal;\n"
-    "out vec4 srgb;\n"
+    "out vec4 srgb, material;\n"
     "void main()\n"
     "{\n"
     "    world_normal = transpose(inverse(mat3(model))) * normal;\n"
     "    srgb = color;\n"
+    "    material = surface;\n"
     "    vec4 point = model * vec4(position, 1.0);\n"
     "    world_point = point.xyz;\n"
     "    gl_Position = view_projection * point;\n"
@@ -64,7 +66,9 @@ gtx_result gtx_polygons_create(const gtx_host_gl *gl, const gtx_polygon_vertex *
                             (const void *)offsetof(gtx_polygon_vertex, normal));
     gl->VertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride,
                             (const void *)offsetof(gtx_polygon_vertex, color));
-    for (GLuint i = 0; i < 3; ++i)
+    gl->VertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride,
+                            (const void *)offsetof(gtx_polygon_vertex, material));
+    for (GLuint i = 0; i < 4; ++i)
         gl->EnableVertexAttribArray(i);
     gl->BindVertexArray(0);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);

@@ -11,6 +11,7 @@ extern "C" {
 typedef struct gtx_polygon_vertex {
     float position[3], normal[3];
     uint8_t color[4];         /* sRGB; alpha 0: unlit */
+    uint8_t material[4];      /* occlusion, roughness, metallic: for shaders of the caller's */
 } gtx_polygon_vertex;
 
 /* Triangles in buffers on the GPU; or, after a host set `mode` to GL_LINES, pairs of ends. */
@@ -36,7 +37,7 @@ typedef struct gtx_polygon_program {
 gtx_result gtx_polygon_program_create(const gtx_host_gl *gl, gtx_polygon_program *out,
                                       gtx_error *error);
 /* The same with a fragment shader of the caller's, without #version: in vec3 world_point,
- * world_normal (not normalised), in vec4 srgb (0..1). */
+ * world_normal (not normalised), in vec4 srgb, material (0..1). */
 gtx_result gtx_polygon_program_create_with(const gtx_host_gl *gl, const char *fragment,
                                            gtx_polygon_program *out, gtx_error *error);
 void gtx_polygon_program_destroy(const gtx_host_gl *gl, gtx_polygon_program *program);

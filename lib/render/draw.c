@@ -86,6 +86,11 @@ static bool shades(const gtx_model *model)
     return model->has_material || model->emission_scale > 0;
 }
 
+static bool has_even_material(const gtx_model *model)
+{
+    return model->has_even_material && !(model->emission_scale > 0);
+}
+
 static const gtx_program *program_of(const gtx_renderer *renderer, const gtx_view *view,
                                      const gtx_model *model, bool shell, bool front)
 {
@@ -97,7 +102,9 @@ static const gtx_program *program_of(const gtx_renderer *renderer, const gtx_vie
     if (view->pass != GTX_PASS_FORWARD)
         kind += pass_programs[view->pass];
     else if (shades(model))
-        kind = front ? PROGRAM_SHELL_MATERIAL_FRONT : kind + 1;
+        kind = !front                     ? kind + 1
+               : has_even_material(model) ? PROGRAM_SHELL_EVEN_FRONT
+                                          : PROGRAM_SHELL_MATERIAL_FRONT;
     else if (shell && model->has_color)
         kind = front ? PROGRAM_SHELL_COLOR_FRONT : PROGRAM_SHELL_COLOR;
     else if (front)
@@ -187,6 +194,7 @@ static void use_program(const gtx_gl *gl, pass *p, const gtx_program *program,
         p->current = program;
     }
     gl->Uniform4fv(program->maps, 1, maps);
+    gl->Uniform4fv(program->even, 1, model->even_material);
 }
 
 /* Which faces a run of proxies is drawn by: boxes by their back faces, so that a camera inside still

@@ -320,6 +320,8 @@ static gtx_model *new_model(const gtx_asset *asset, const gtx_allocator *hooks)
     model->has_material = info->has_material;
     model->has_emission = info->has_emission;
     model->emission_scale = info->has_emission ? info->emission_scale : 0;
+    model->has_even_material = info->has_material && info->shell_levels &&
+                               gtx_find_even_material(asset, model->even_material);
     model->page_count = info->page_count;
     model->page_width = info->page_width;
     model->page_height = info->page_height;

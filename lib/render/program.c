@@ -65,6 +65,9 @@ static const recipe recipes[PROGRAM_COUNT] = {
     [PROGRAM_SHELL_MATERIAL_FRONT] = {POLYGONS, MATERIALS FRONT,
                                       {"geotex_material.glsl", "geotex_shell_front.frag"},
                                       "geotex shell, materials, front"},
+    [PROGRAM_SHELL_EVEN_FRONT] = {POLYGONS, MATERIALS FRONT "#define GTX_EVEN\n",
+                                  {"geotex_material.glsl", "geotex_shell_front.frag"},
+                                  "geotex shell, one material, front"},
     [PROGRAM_SHELL_COLOR] = {POLYGONS, COLORS, {SHELL, "geotex_shell.frag"},
                              "geotex shell, colors"},
     [PROGRAM_SHELL_COLOR_FRONT] = {POLYGONS, COLORS FRONT, {"geotex_shell_front.frag"},
@@ -191,6 +194,7 @@ static void locate(const gtx_gl *gl, gtx_program *program)
     program->detail = gl->GetUniformLocation(program->object, "gtx_detail");
     program->search = gl->GetUniformLocation(program->object, "gtx_search");
     program->maps = gl->GetUniformLocation(program->object, "gtx_maps");
+    program->even = gl->GetUniformLocation(program->object, "gtx_even");
     program->shell = gl->GetUniformLocation(program->object, "gtx_shell");
     gl->UseProgram(program->object);
     for (gl_int i = 0; i < UNIT_COUNT; ++i)
@@ -231,7 +235,7 @@ gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
                                 PROGRAM_PAPER_MATERIAL, PROGRAM_SHELL, PROGRAM_SHELL_MATERIAL,
                                 PROGRAM_SHELL_FRONT, PROGRAM_SHELL_COLOR,
                                 PROGRAM_SHELL_COLOR_FRONT, PROGRAM_SHELL_MATERIAL_FRONT,
-                                PROGRAM_CAST_COLOR};
+                                PROGRAM_SHELL_EVEN_FRONT, PROGRAM_CAST_COLOR};
     gtx_result result = GTX_OK;
     static const int tiles[] = {PROGRAM_TILES, PROGRAM_TILES_MATERIAL, PROGRAM_TILES_COLOR};
     for (size_t i = 0; i < sizeof first / sizeof *first && !result; ++i)

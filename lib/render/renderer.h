@@ -24,7 +24,8 @@ enum {
     PROGRAM_PAPER_GBUFFER,
     PROGRAM_SHELL, PROGRAM_SHELL_MATERIAL, PROGRAM_SHELL_DEPTH, PROGRAM_SHELL_ID,
     PROGRAM_SHELL_GBUFFER, PROGRAM_SHELL_FRONT, PROGRAM_SHELL_COLOR,
-    PROGRAM_SHELL_COLOR_FRONT, PROGRAM_SHELL_MATERIAL_FRONT, PROGRAM_CAST_COLOR,
+    PROGRAM_SHELL_COLOR_FRONT, PROGRAM_SHELL_MATERIAL_FRONT, PROGRAM_SHELL_EVEN_FRONT,
+    PROGRAM_CAST_COLOR,
     /* what was cast by tiles */
     PROGRAM_TILES, PROGRAM_TILES_MATERIAL, PROGRAM_TILES_DEPTH, PROGRAM_TILES_ID,
     PROGRAM_TILES_GBUFFER, PROGRAM_TILES_COLOR,
@@ -34,7 +35,7 @@ enum {
 
 typedef struct gtx_program {
     gl_uint object;
-    gl_int clip_from_world, depth, light, detail, search, maps, shell;
+    gl_int clip_from_world, depth, light, detail, search, maps, shell, even;
     gl_int place;             /* of the only instance */
     gl_int tint, instance;    /* of what is cast by tiles */
 } gtx_program;
@@ -145,6 +146,8 @@ struct gtx_model {
     uint64_t layout;          /* gtx_model_layout of the asset */
     bool has_color, has_material, has_emission, ready;
     float emission_scale;     /* 0: no emission */
+    bool has_even_material;   /* all over, but for patches that were edited: */
+    float even_material[4];
     gtx_level levels[GTX_MAX_LEVELS];
     uint32_t level_count;
     gtx_proxies proxies;      /* freed once they are uploaded */
@@ -165,6 +168,9 @@ struct gtx_model {
     gl_uint textures[UNIT_COUNT];
     gl_uint vertices, indices;
 };
+
+/* even.c: whether all that the asset shows has one material, and which: 0..1. */
+bool gtx_find_even_material(const gtx_asset *asset, float material[4]);
 
 /* renderer.c: gives the scratch back. */
 void gtx_renderer_free_scratch(gtx_renderer *renderer);

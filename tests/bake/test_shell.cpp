@@ -163,6 +163,48 @@ static void two_components_both_stay(void **)
     }
 }
 
+/* From a point to a triangle. */
+static double distance_to(const std::array<Vec3d, 3> &c, const Vec3d &p)
+{
+    const Vec3d n = cross(c[1] - c[0], c[2] - c[0]);
+    bool above = true;
+    double least = INFINITY;
+    for (int k = 0; k < 3; ++k) {
+        const Vec3d edge = c[(k + 1) % 3] - c[k], from = p - c[k];
+        above = above && dot(cross(n, edge), from) >= 0;
+        const double at = std::clamp(dot(from, edge) / dot(edge, edge), 0.0, 1.0);
+        least = std::min(least, length(from - edge * at));
+    }
+    return above ? std::fabs(dot(n, p - c[0])) / length(n) : least;
+}
+
+/* Narrow tips, which a mean of distances would give up: hardly a vertex of the source is farther
+ * outside than half a level's error, and none is by much. */
+static void tips_are_reached(void **)
+{
+    Mesh mesh = shapes::ball(40, [](const Vec3d &d) {
+        return 1 + 0.25 * std::pow(std::sin(8 * d.x) * std::sin(9 * d.y) * std::sin(7 * d.z), 6);
+    });
+    Shell shell = shell_of(mesh, shapes::split(mesh, shapes::by_axis(mesh), 96));
+    assert_true(shell.levels.size() >= 4);
+    for (const ShellLevel &level : shell.levels) {
+        size_t outside = 0;
+        for (const Vec3d &p : mesh.positions) {
+            double least = INFINITY, height = 0;
+            for_each(level, [&](size_t, const std::array<Vec3d, 3> &c) {
+                const double distance = distance_to(c, p);
+                if (distance >= least)
+                    return;
+                least = distance;
+                height = dot(cross(c[1] - c[0], c[2] - c[0]), p - c[0]) > 0 ? distance : 0;
+            });
+            outside += height > 0.5 * level.error + level.step;
+            assert_true(height < level.error + level.step);
+        }
+        assert_true(outside <= mesh.positions.size() / 200);
+    }
+}
+
 static void one_triangle_is_its_own_shell(void **)
 {
     Mesh mesh;
@@ -274,6 +316,7 @@ int main()
         cmocka_unit_test(an_open_border_stays),
         cmocka_unit_test(a_two_sided_strip_stays),
         cmocka_unit_test(two_components_both_stay),
+        cmocka_unit_test(tips_are_reached),
         cmocka_unit_test(one_triangle_is_its_own_shell),
         cmocka_unit_test(none_and_fewer_levels_can_be_asked_for),
         cmocka_unit_test(any_thread_count_gives_the_same),

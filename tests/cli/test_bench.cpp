@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 
 extern "C" {
 #include "cli/command.h"
@@ -84,6 +85,18 @@ static void the_error_follows_the_outline(void **)
     assert_true(report["rows"][0]["max_error_px"] == 0.75);
 }
 
+/* The mesh pays for the same shading, or pictures and times could not be compared. */
+static void the_mesh_has_the_materials(void **)
+{
+    std::ofstream(in_folder("metal.mtl")) << "newmtl metal\nKd 0.8 0.5 0.2\nPr 0.4\nPm 1\n";
+    std::ofstream(in_folder("metal.obj")) << "mtllib metal.mtl\nusemtl metal\n"
+                                          << std::ifstream(in_folder("sphere.obj")).rdbuf();
+    expect(gtx("cook metal.obj -o metal.gtx"), 0);
+    expect(gtx("bench metal.gtx metal.obj --json --frames 1 --sizes 96x96 --methods cast"), 0);
+    const json report = json::parse(std::string(output));
+    assert_true(report["rows"][0]["psnr_db"].get<double>() > 30);
+}
+
 static void what_is_not_measured_is_named(void **)
 {
     const json no_shell = bench("--sizes 32x32 --methods mesh,shell");
@@ -107,6 +120,7 @@ int main()
     const CMUnitTest tests[] = {
         cmocka_unit_test(usage_is_exit_1), cmocka_unit_test(every_method_is_measured),
         cmocka_unit_test(the_error_follows_the_outline),
+        cmocka_unit_test(the_mesh_has_the_materials),
         cmocka_unit_test(what_is_not_measured_is_named), cmocka_unit_test(the_table_has_a_line_a_row)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

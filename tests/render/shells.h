@@ -70,8 +70,12 @@ static inline void make_shell_level(const gtx_patch *patches, uint32_t count, do
     l->shell.error = (float)(radius - sqrt(middle)) + 2 * l->shell.step;
 }
 
-/* What a sphere with a shell has of appearance. */
-typedef enum shell_looks { SHELL_COLORED, SHELL_PLAIN, SHELL_SHINY } shell_looks;
+/* What a sphere with a shell has of appearance: EVEN is of one material without emission, UNEVEN of
+ * two; the DARK ones have a map of emission, but nothing in it. */
+typedef enum shell_looks {
+    SHELL_COLORED, SHELL_PLAIN, SHELL_SHINY, SHELL_EVEN, SHELL_UNEVEN, SHELL_EVEN_DARK,
+    SHELL_UNEVEN_DARK
+} shell_looks;
 
 /* A copy of an asset with this shell, and the flags in all patches. Closes the asset. */
 static inline gtx_asset *with_shell(gtx_asset *plain, const gtx_shell *shells, uint32_t levels,
@@ -84,12 +88,17 @@ static inline gtx_asset *with_shell(gtx_asset *plain, const gtx_shell *shells, u
     memcpy(patches, gtx_patches(plain), info.patch_count * sizeof *patches);
     for (uint32_t p = 0; p < info.patch_count; ++p)
         patches[p].flags |= flags;
-    const uint8_t *normal[8], *color[8], *material[8];
+    const uint8_t *normal[8], *color[8], *material[8], *dark[8];
     const size_t texels = (size_t)info.page_width * info.page_height * info.page_count;
-    uint8_t *halves = malloc(4 * texels);
-    memset(halves, 128, 4 * texels);
+    uint8_t *halves = malloc(8 * texels), *next = halves, *nothing = calloc(3, texels);
+    memset(halves, 128, 8 * texels);
     for (uint32_t k = 0; k < info.mip_count; ++k) {
-        material[k] = halves;
+        const size_t count = texels >> 2 * k;
+        material[k] = next;
+        dark[k] = nothing;
+        next += 4 * count;
+        if (looks == SHELL_UNEVEN || looks == SHELL_UNEVEN_DARK) /* the lower half of the page */
+            memset(next - 2 * count, 30, 2 * count);
         normal[k] = gtx_map_data(plain, GTX_MAP_NORMAL, k, NULL);
         color[k] = gtx_map_data(plain, GTX_MAP_COLOR, k, NULL);
     }
@@ -100,8 +109,10 @@ static inline gtx_asset *with_shell(gtx_asset *plain, const gtx_shell *shells, u
                            .height = gtx_map_data(plain, GTX_MAP_HEIGHT, 0, NULL),
                            .trim = gtx_map_data(plain, GTX_MAP_TRIM, 0, NULL),
                            .normal = normal, .color = looks == SHELL_PLAIN ? NULL : color,
-                           .material = looks == SHELL_SHINY ? material : NULL,
-                           .emission = looks == SHELL_SHINY ? material : NULL,
+                           .material = looks >= SHELL_SHINY ? material : NULL,
+                           .emission = looks == SHELL_SHINY       ? material
+                                       : looks >= SHELL_EVEN_DARK ? dark
+                                                                  : NULL,
                            .shell = shells, .shell_levels = levels};
     memcpy(desc.bounds_min, info.bounds_min, sizeof desc.bounds_min);
     memcpy(desc.bounds_max, info.bounds_max, sizeof desc.bounds_max);
@@ -110,6 +121,7 @@ static inline gtx_asset *with_shell(gtx_asset *plain, const gtx_shell *shells, u
     must(gtx_create(&desc, &out, &error), &error);
     gtx_close(plain);
     free(halves);
+    free(nothing);
     return out;
 }
 

@@ -54,8 +54,8 @@ static void objects_carry_labels(void **state)
     if (!has_debug(s))
         skip();
     subject shown = subject_open(s, shelled(fixture_sphere(2, 48, 8), 2, 2, 0));
-    const int tiles = labelled(GL_PROGRAM) > 11; /* cast by tiles */
-    assert_int_equal(labelled(GL_PROGRAM), tiles ? 14 : 11);
+    const int tiles = labelled(GL_PROGRAM) > 12; /* cast by tiles */
+    assert_int_equal(labelled(GL_PROGRAM), tiles ? 15 : 12);
     assert_int_equal(labelled(GL_TEXTURE), tiles ? 6 : 5);
     assert_int_equal(labelled(GL_BUFFER), tiles ? 7 : 5);
     subject_close(s, &shown);

@@ -127,10 +127,10 @@ static void polygons_share_the_depth_buffer(void **state)
     STAGE_OR_SKIP(state);
     gtx_error error = {0};
     subject shown = subject_open(s, fixture_sphere(2, 64, 8));
-    const gtx_polygon_vertex corners[4] = {{{-3, -3, 1}, {0, 0, 1}, {255, 0, 255, 255}},
-                                           {{3, -3, 1}, {0, 0, 1}, {255, 0, 255, 255}},
-                                           {{3, 3, 1}, {0, 0, 1}, {255, 0, 255, 255}},
-                                           {{-3, 3, 1}, {0, 0, 1}, {255, 0, 255, 255}}};
+    const gtx_polygon_vertex corners[4] = {{{-3, -3, 1}, {0, 0, 1}, {255, 0, 255, 255}, {0}},
+                                           {{3, -3, 1}, {0, 0, 1}, {255, 0, 255, 255}, {0}},
+                                           {{3, 3, 1}, {0, 0, 1}, {255, 0, 255, 255}, {0}},
+                                           {{-3, 3, 1}, {0, 0, 1}, {255, 0, 255, 255}, {0}}};
     const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
     const float light[3] = {0, 0, 1};
     gtx_polygons plane;

@@ -53,9 +53,10 @@ static void draw_scene(stage *s, const gtx_view *view, const gtx_instance *insta
                        uint32_t count)
 {
     gtx_error error = {0};
-    const gtx_polygon_vertex corners[3] = {{{-9, -3, -1.5f}, {0, 0.6f, 0.8f}, {200, 220, 90, 255}},
-                                           {{9, -3, 1}, {0, 0.6f, 0.8f}, {90, 220, 200, 255}},
-                                           {{0, 5, 0}, {0, 0.6f, 0.8f}, {220, 90, 200, 255}}};
+    const gtx_polygon_vertex corners[3] = {
+        {{-9, -3, -1.5f}, {0, 0.6f, 0.8f}, {200, 220, 90, 255}, {0}},
+        {{9, -3, 1}, {0, 0.6f, 0.8f}, {90, 220, 200, 255}, {0}},
+        {{0, 5, 0}, {0, 0.6f, 0.8f}, {220, 90, 200, 255}, {0}}};
     const uint32_t order[3] = {0, 1, 2};
     const float light[3] = {0.6f, 0, 0.8f};
     gtx_polygons plane;

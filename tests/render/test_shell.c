@@ -44,6 +44,26 @@ static void all_looks(void **state)
     }
 }
 
+/* One material all over is not looked up, and looks the same; two are. */
+static void one_material_looks_the_same(void **state)
+{
+    STAGE_OR_SKIP(state);
+    for (int i = 0; i < 2; ++i) {
+        const shell_looks looks[2] = {i ? SHELL_UNEVEN : SHELL_EVEN,
+                                      i ? SHELL_UNEVEN_DARK : SHELL_EVEN_DARK};
+        for (int k = 0; k < 2; ++k) {
+            subject shown = subject_open(s, shelled_as(fixture_sphere(radius, TEXELS, 8), radius,
+                                                       SHELL_LEVELS, 0, looks[k]));
+            gtx_camera camera = camera_around(shown.asset);
+            gtx_view view = view_of(&camera);
+            draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, k ? &second : &first);
+            subject_close(s, &shown);
+        }
+        const difference d = compare(&first, &second);
+        expect_alike(&d, 1, 0.01, 1);
+    }
+}
+
 /* Within an error of half a pixel, whatever level of the shell and of the maps that takes. */
 static void levels_keep_the_looks(void **state)
 {
@@ -257,6 +277,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(as_cast),
         cmocka_unit_test(all_looks),
+        cmocka_unit_test(one_material_looks_the_same),
         cmocka_unit_test(levels_keep_the_looks),
         cmocka_unit_test(the_coarsest_within_the_error),
         cmocka_unit_test(casts_when_it_must),
