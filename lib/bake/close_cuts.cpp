@@ -12,10 +12,11 @@
 
 namespace gtx::baking {
 
-/* Texels of depth that a texel is raised at most: more is another sheet, or would be a fin. */
-constexpr double MOST_RAISED = 1;
-/* and that it may miss: a ray that finds the way then is within half a degree of the surface. */
-constexpr double MISSED = 0.01;
+/* Texels of depth that a texel is raised at most: more is another sheet, or would be a fin that a
+ * third patch does not meet. */
+constexpr double MOST_RAISED = 0.2;
+/* and that it may miss: a ray that finds the way then is within a tenth of a degree of the surface. */
+constexpr double MISSED = 0.002;
 /* Texels from its outline to which a sheet counts, the first ones beyond a cut included. */
 constexpr double REACHED = SHOWN + 0.1;
 /* A neighbour's texels beyond the same cut follow what is raised here. */
@@ -44,8 +45,8 @@ class Cuts {
 public:
     Cuts(const std::vector<const Piece *> &others, const Piece &piece, unsigned most_code)
         : others_(others), piece_(piece), most_code_(most_code),
-          most_(MOST_RAISED * piece.texel()),
-          missed_(MISSED * most_), codes_(piece.maps->height)
+          most_(MOST_RAISED * piece.texel()), missed_(MISSED * piece.texel()),
+          codes_(piece.maps->height)
     {
     }
     std::vector<uint16_t> close()
