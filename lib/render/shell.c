@@ -100,6 +100,7 @@ static bool measure_level(gtx_shells *out, gtx_shell_level *level, const gtx_she
     memcpy(level->place, source->origin, sizeof source->origin);
     level->place[3] = source->step;
     level->error = source->error;
+    level->far = source->flags & GTX_SHELL_FAR;
     level->triangle_count = source->triangle_count;
     level->first = gtx_alloc_array(hooks, out->patch_count + 1, sizeof *level->first);
     level->runs = gtx_alloc_array(hooks, out->patch_count, sizeof *level->runs);
