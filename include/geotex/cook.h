@@ -63,7 +63,8 @@ typedef struct gtx_cook_desc {
     uint32_t measure;             /* 1: measure the error (report, `error`) */
     gtx_progress_fn progress;     /* may be NULL */
     void *progress_user;
-    uint32_t shell_levels;        /* polygon levels of detail, at most 5 */
+    uint32_t shell_levels;        /* polygon levels of detail, at most 5; up to 3 more
+                                     follow for models of a few pixels */
     const char *charts_ply;       /* path for the partition before splitting as a PLY, a colour a
                                      chart, inverted triangles green; or NULL */
     const char *const *more;      /* paths of further models that are cooked into the same asset */
@@ -123,7 +124,7 @@ GTX_API gtx_result gtx_cook_memory(const void *data, size_t size, const char *na
 /* A shell for an asset that has no source mesh: one whose maps were edited or filtered, or that was
  * made of height grids. */
 typedef struct gtx_shell_desc {
-    uint32_t levels;              /* at most, 1..5; 0 = 5 */
+    uint32_t levels;              /* at most, 1..5; 0 = 5; and those for models of a few pixels */
     uint32_t threads;             /* up to 1024; 0 = all processors */
     gtx_progress_fn progress;     /* may be NULL */
     void *progress_user;

@@ -213,6 +213,10 @@ GTX_API const gtx_patch *gtx_patches(const gtx_asset *asset);
  * (page_width >> k) x (page_height >> k). */
 GTX_API const void *gtx_map_data(const gtx_asset *asset, gtx_map map, uint32_t level, size_t *size);
 
+/* Of gtx_shell.flags: for models of a few pixels; a triangle may be larger than its patch, and is
+ * looked up in its map as far as that reaches. */
+#define GTX_SHELL_FAR 1u
+
 /* A level of the shell: the whole surface as triangles, for drawing it where it is small. A vertex
  * is its position alone; it may be shared by triangles of several patches, and its texel coordinates
  * in each follow from that patch's frame. Position q of a vertex stands for the point
@@ -221,6 +225,7 @@ typedef struct gtx_shell {
     float origin[3], step;
     float error;                  /* how far the level strays from the source, object units */
     uint32_t vertex_count, triangle_count;
+    uint32_t flags;               /* GTX_SHELL_FAR */
     const uint32_t *first;        /* patch_count + 1: triangles first[p]..first[p + 1] - 1 are p's */
     const uint32_t *indices;      /* 3 a triangle */
     const uint16_t *positions;    /* 3 a vertex */

@@ -15,7 +15,7 @@ typedef struct walk {
     uint64_t offset;
 } walk;
 
-static void check_header(const walk *w, const uint8_t *bytes)
+static void check_header(const walk *w)
 {
     const gtx_shell *s = &w->shell;
     for (uint32_t k = 0; k < 3; ++k)
@@ -28,9 +28,9 @@ static void check_header(const walk *w, const uint8_t *bytes)
     if (!(s->error >= 0) || !isfinite(s->error))
         gtx_break(w->check, GTX_RULE_SHELL_HEADER, w->offset + 16, "its error is %g",
                   (double)s->error);
-    if (gtx_load_u32(bytes + 28))
-        gtx_break(w->check, GTX_RULE_SHELL_HEADER, w->offset + 28, "reserved bytes are 0x%08x",
-                  gtx_load_u32(bytes + 28));
+    if (s->flags & ~(uint32_t)GTX_SHELL_FAR)
+        gtx_break(w->check, GTX_RULE_SHELL_HEADER, w->offset + 28, "its flags are 0x%08x",
+                  s->flags);
 }
 
 static void check_first(const walk *w)
@@ -142,7 +142,7 @@ void gtx_check_shell(gtx_check *check, const gtx_asset *asset, uint32_t level, u
         return;
     }
     uint64_t before = check->broken;
-    check_header(&w, bytes);
+    check_header(&w);
     gtx_shell finer;
     if (level > 0 &&
         gtx_shell_load(asset->shell[level - 1], asset->shell_size[level - 1], patches, &finer) &&
@@ -151,6 +151,6 @@ void gtx_check_shell(gtx_check *check, const gtx_asset *asset, uint32_t level, u
                   (double)w.shell.error, (double)finer.error);
     check_first(&w);
     check_indices(&w);
-    if (check->broken == before)
+    if (check->broken == before && !(w.shell.flags & GTX_SHELL_FAR))
         check_places(&w);
 }

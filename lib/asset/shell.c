@@ -10,7 +10,8 @@ bool gtx_shell_load(const uint8_t *bytes, uint64_t size, uint32_t patches, gtx_s
         return false;
     *out = (gtx_shell){.step = gtx_load_f32(bytes + 12), .error = gtx_load_f32(bytes + 16),
                        .vertex_count = gtx_load_u32(bytes + 20),
-                       .triangle_count = gtx_load_u32(bytes + 24)};
+                       .triangle_count = gtx_load_u32(bytes + 24),
+                     .flags = gtx_load_u32(bytes + 28)};
     for (int k = 0; k < 3; ++k)
         out->origin[k] = gtx_load_f32(bytes + 4 * k);
     if (size != gtx_shell_size(patches, out->vertex_count, out->triangle_count))
@@ -32,7 +33,7 @@ void gtx_shell_store(const gtx_shell *shell, uint32_t patches, uint8_t *out)
     gtx_store_f32(out + 16, shell->error);
     gtx_store_u32(out + 20, shell->vertex_count);
     gtx_store_u32(out + 24, shell->triangle_count);
-    gtx_store_u32(out + 28, 0);
+    gtx_store_u32(out + 28, shell->flags);
     const size_t first = 4 * ((size_t)patches + 1), indices = 12 * (size_t)shell->triangle_count;
     memcpy(out + GTX_SHELL_HEADER, shell->first, first);
     memcpy(out + GTX_SHELL_HEADER + first, shell->indices, indices);

@@ -23,6 +23,11 @@ constexpr double FREE_ERROR = 1.0 / 16;
 constexpr double THIN_ERROR = 1.0 / 8;
 /* What is seen from so far that this is a pixel is a handful of pixels. Share of the diagonal. */
 constexpr double MOST_ERROR = 1.0 / 64;
+/* The coarsest level beyond, for models of ten to twenty pixels, and how far it may stray. */
+constexpr double FAR_TRIANGLES = 160, MOST_FAR_ERROR = 1.0 / 20;
+/* How many lead there, and triangles of one for one of the next where fewer of them do. */
+constexpr unsigned FAR_LEVELS = 3;
+constexpr double FAR_RATIO = 2.5;
 /* Positions are rounded to this part of a texel. */
 constexpr double STEP = 1.0 / 16;
 /* Edges among which the next triangle is looked for, as the asset's coding does. */
@@ -203,17 +208,23 @@ static std::vector<uint32_t> find_homes(const Simplifier &simplified,
     return homes;
 }
 
-static ShellLevel make_level(const Simplifier &simplified, const std::vector<PatchRegion> &regions,
-                             const Lattice &lattice)
+static std::vector<Place> round_all(const Simplifier &simplified, const Lattice &lattice)
 {
-    const auto &triangles = simplified.triangles();
     std::vector<Place> places;
     for (const Vec3d &p : simplified.positions())
         places.push_back(lattice.round(p));
-    const std::vector<uint32_t> patch = find_homes(simplified, regions, lattice, places);
-    std::vector<std::vector<uint32_t>> members(regions.size());
+    return places;
+}
+
+/* `patch` has NO_PATCH for triangles that are left out. */
+static ShellLevel make_level(const Simplifier &simplified, const std::vector<uint32_t> &patch,
+                             const std::vector<Place> &places, size_t patches,
+                             const Lattice &lattice)
+{
+    const auto &triangles = simplified.triangles();
+    std::vector<std::vector<uint32_t>> members(patches);
     for (size_t t = 0; t < triangles.size(); ++t)
-        if (patch[t] != NO_PATCH)
+        if (patch[t] != NO_PATCH && !collapses(triangles[t], places))
             members[patch[t]].push_back(uint32_t(t));
 
     ShellLevel level;
@@ -241,6 +252,33 @@ static ShellLevel make_level(const Simplifier &simplified, const std::vector<Pat
         }
     }
     return level;
+}
+
+/* Goes on without regard to patches: where each is a pixel, a triangle may show several. */
+static void add_far_levels(Simplifier &simplifier, const std::vector<PatchRegion> &regions,
+                           const Maps &maps, const Lattice &lattice, double thinned, double most,
+                           std::vector<ShellLevel> &shell, Task &task)
+{
+    simplifier.cross_patches();
+    const double ways = std::log(double(simplifier.triangles().size()) / FAR_TRIANGLES);
+    const unsigned count = unsigned(std::clamp(std::ceil(ways / std::log(FAR_RATIO)), 0.0,
+                                               double(FAR_LEVELS)));
+    for (unsigned k = count; k-- > 0;) {
+        const double before = double(simplifier.triangles().size());
+        const double ratio = std::pow(before / FAR_TRIANGLES, 1.0 / (k + 1));
+        simplifier.reduce(size_t(before / ratio), 0, most);
+        simplifier.settle();
+        simplifier.drop(find_specks(simplifier, simplifier.error()));
+        if (double(simplifier.triangles().size()) > MOST_SHARE * before)
+            return;
+        ShellLevel level = make_level(simplifier, find_far_homes(simplifier, maps, regions, task),
+                                      round_all(simplifier, lattice), regions.size(), lattice);
+        level.error = float(thinned + simplifier.error());
+        level.far = true;
+        if (level.indices.empty())
+            return;
+        shell.push_back(std::move(level));
+    }
 }
 
 } // namespace gtx::baking
@@ -273,13 +311,18 @@ std::vector<ShellLevel> make_shell(const ShellSource &source, const Maps &maps, 
         if (k && double(simplifier.triangles().size()) > MOST_SHARE * double(before))
             break;
         simplifier.settle();
-        ShellLevel level = make_level(simplifier, regions, lattice);
+        const std::vector<Place> places = round_all(simplifier, lattice);
+        ShellLevel level =
+            make_level(simplifier, find_homes(simplifier, regions, lattice, places), places,
+                       regions.size(), lattice);
         level.error = float(thinned + simplifier.error());
         if (level.indices.empty())
             break;
         shell.push_back(std::move(level));
         wanted = size_t(double(simplifier.triangles().size()) / LEVEL_RATIO);
     }
+    add_far_levels(simplifier, regions, maps, lattice, thinned, MOST_FAR_ERROR * length(size),
+                   shell, task);
     return shell;
 }
 

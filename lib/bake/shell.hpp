@@ -22,6 +22,7 @@ struct ShellSource {
 /* One level as the asset keeps it (format/gtx.md, "Shell"). */
 struct ShellLevel {
     float origin[3] = {0, 0, 0}, step = 0, error = 0;
+    bool far = false;                /* triangles reach across patches */
     std::vector<uint32_t> first;     /* of each patch, and the end */
     std::vector<uint32_t> indices;   /* 3 a triangle */
     std::vector<uint16_t> positions; /* 3 a vertex */
@@ -41,7 +42,8 @@ ShellSource shell_source(const Mesh &mesh, const Partition &partition, const Map
 ShellSource shell_source(const Maps &maps, Task &task);
 
 /* Simplifies the surface across all patches at once, down to at most `levels` levels, the finest
- * first. Deterministic for any thread count. Stage of `task`: "shell". */
+ * first, and to at most three more for models of a few pixels, whose triangles reach across patches.
+ * Deterministic for any thread count. Stage of `task`: "shell". */
 std::vector<ShellLevel> make_shell(const ShellSource &source, const Maps &maps, unsigned levels,
                                    Task &task);
 

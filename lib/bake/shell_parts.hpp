@@ -94,9 +94,15 @@ public:
      * error of `free`; stops where it would cost more than `most`. */
     void reduce(size_t wanted, double free, double most);
 
+    /* From now on triangles need not lie in their patches. */
+    void cross_patches();
+
     /* Moves the vertices that are left to where they are nearest to the surface that they stand
      * for: merging alone cuts all that bulges off. */
     void settle();
+
+    /* Takes triangles away, a value each. */
+    void drop(const std::vector<uint8_t> &dropped);
 
     const std::vector<Vec3d> &positions() const;
     const std::vector<std::array<uint32_t, 3>> &triangles() const;
@@ -110,5 +116,12 @@ private:
     struct State;
     std::unique_ptr<State> state_;
 };
+
+/* Of triangles that cross patches: in which patch each is looked up. */
+std::vector<uint32_t> find_far_homes(const Simplifier &simplified, const Maps &maps,
+                                     const std::vector<PatchRegion> &regions, Task &task);
+
+/* Which triangles are of connected parts no longer than `most`; none where all are. */
+std::vector<uint8_t> find_specks(const Simplifier &simplified, double most);
 
 } // namespace gtx::baking

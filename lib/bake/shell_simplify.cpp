@@ -61,6 +61,7 @@ struct Simplifier::State {
     std::vector<Candidate> candidates;
     size_t first_count;          /* triangles at the start */
     double share = ROUND_SHARE;  /* of the candidates that a round takes */
+    bool crossing = false;       /* triangles may leave their patches */
     double error = 0;            /* squared */
 
     State(const ShellSource &source, const std::vector<PatchRegion> &regions, Task &task)
@@ -168,7 +169,7 @@ bool Simplifier::State::keeps_shape(uint32_t triangle, uint32_t vertex, const Ve
     const double sizes = std::sqrt(dot(was, was) * dot(is, is));
     if (dot(was, was) > 0 && dot(was, is) <= LEAST_TURN_COSINE * sizes)
         return false;
-    return keeps_place(patch[triangle], before, after);
+    return crossing || keeps_place(patch[triangle], before, after);
 }
 
 bool Simplifier::State::keeps_shapes(const Fan &fan, uint32_t from, uint32_t to) const
@@ -416,7 +417,7 @@ Simplifier::~Simplifier() = default;
 void Simplifier::reduce(size_t wanted, double free, double most)
 {
     if (!state_->settled.empty())
-        state_->positions.swap(state_->settled);
+        state_->positions = std::exchange(state_->settled, {});
     state_->share = ROUND_SHARE;
     state_->costs.assign(state_->positions.size(), NAN);
     for (bool going = true; going;) {
@@ -429,9 +430,27 @@ void Simplifier::reduce(size_t wanted, double free, double most)
     }
 }
 
+void Simplifier::cross_patches()
+{
+    state_->crossing = true;
+}
+
 void Simplifier::settle()
 {
     state_->settle();
+}
+
+void Simplifier::drop(const std::vector<uint8_t> &dropped)
+{
+    size_t left = 0;
+    for (size_t t = 0; t < dropped.size(); ++t) {
+        if (dropped[t])
+            continue;
+        state_->triangles[left] = state_->triangles[t];
+        state_->patch[left++] = state_->patch[t];
+    }
+    state_->triangles.resize(left);
+    state_->patch.resize(left);
 }
 
 const std::vector<Vec3d> &Simplifier::positions() const

@@ -49,6 +49,7 @@ static void shell(gtx_json *json, const gtx_asset *asset, const gtx_info *info)
         gtx_json_integer(json, "triangles", level.triangle_count);
         gtx_json_integer(json, "vertices", level.vertex_count);
         gtx_json_number(json, "error", (double)level.error);
+        gtx_json_bool(json, "far", level.flags & GTX_SHELL_FAR);
         gtx_json_end_object(json);
     }
     gtx_json_end_array(json);
@@ -102,8 +103,9 @@ static int print_text(const gtx_asset *asset, const gtx_info *info)
     for (uint32_t k = 0; k < info->shell_levels; ++k) {
         gtx_shell level;
         gtx_get_shell(asset, k, &level);
-        printf("%s%u triangles, error %g\n", k ? "                " : "shell           ",
-               level.triangle_count, (double)level.error);
+        printf("%s%u triangles, error %g%s\n", k ? "                " : "shell           ",
+               level.triangle_count, (double)level.error,
+               level.flags & GTX_SHELL_FAR ? ", across patches" : "");
     }
     printf("bounds          %g %g %g .. %g %g %g\n", (double)info->bounds_min[0],
            (double)info->bounds_min[1], (double)info->bounds_min[2], (double)info->bounds_max[0],

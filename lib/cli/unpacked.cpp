@@ -104,7 +104,8 @@ static void write_shell(const gtx_asset *asset, const gtx_info &info, const std:
                                  {"step", level.step},
                                  {"error", level.error},
                                  {"triangles", level.triangle_count},
-                                 {"vertices", level.vertex_count}});
+                                 {"vertices", level.vertex_count},
+                                 {"flags", level.flags}});
     }
 }
 
@@ -292,6 +293,7 @@ static void read_shell(const Reader &reader, const Json &levels, const std::stri
         level.error = float(reader.number(reader.at(json, "error"), "error"));
         level.triangle_count = uint32_t(reader.whole(json, "triangles", UINT32_MAX));
         level.vertex_count = uint32_t(reader.whole(json, "vertices", UINT32_MAX));
+        level.flags = uint32_t(reader.whole(json, "flags", UINT32_MAX));
         const uint32_t k = uint32_t(out.shell.size());
         about = in_folder(folder, unpacked_shell_name(k));
         read_unpacked_shell(about, uint32_t(out.patches.size()), level, out.shell_arrays[k]);

@@ -30,6 +30,7 @@ static std::vector<gtx_shell> shell_levels(const std::vector<ShellLevel> &shell)
         out.error = level.error;
         out.vertex_count = uint32_t(level.positions.size() / 3);
         out.triangle_count = uint32_t(level.triangle_count());
+        out.flags = level.far ? GTX_SHELL_FAR : 0;
         out.first = level.first.data();
         out.indices = level.indices.data();
         out.positions = level.positions.data();

@@ -107,6 +107,15 @@ static bool is_casting_cheaper(const gtx_costs *costs, const gtx_model *model, u
            costs->shell_triangle * triangles + costs->shell_pixel * pixels;
 }
 
+/* How many levels there are, of which far ones leave no room for patches that are edited. */
+static uint32_t usable_levels(const gtx_shells *shells)
+{
+    uint32_t count = 0;
+    while (count < shells->level_count && !(shells->edited_count && shells->levels[count].far))
+        ++count;
+    return count;
+}
+
 /* The finest level may be off by so many times the error allowed before an instance is cast, which
  * takes several times as long. */
 static const double finest_excess = 1.5;
@@ -123,17 +132,18 @@ gtx_result gtx_choose_way(const gtx_renderer *renderer, const gtx_view *view,
         return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "the asset has no shell to be drawn by");
     if (!shells->level_count || !(forced || (view->method == GTX_METHOD_AUTO && by_error)))
         return GTX_OK;
-    uint32_t level = view->level < shells->level_count ? view->level : shells->level_count;
+    const uint32_t usable = usable_levels(shells);
+    uint32_t level = view->level < usable ? view->level : usable;
     if (by_error) {
         const extent e = measure(view, frame, model, placed);
-        while (level < shells->level_count && shells->levels[level].error <= e.error)
+        while (level < usable && shells->levels[level].error <= e.error)
             ++level;
-        if (!level && shells->levels[0].error <= finest_excess * e.error)
+        if (!level && usable && shells->levels[0].error <= finest_excess * e.error)
             level = 1;
         if (!forced && level &&
             is_casting_cheaper(costs_of(renderer, view), model, level - 1, e.pixels))
             level = 0;
     }
-    *way = (uint8_t)(forced && !level ? 1 : level);
+    *way = (uint8_t)(forced && !level && usable ? 1 : level);
     return GTX_OK;
 }

@@ -99,6 +99,7 @@ static bool begin_level(const gtx_shells *shells, gtx_shell_level *level, const 
     memcpy(level->place, source->origin, sizeof source->origin);
     level->place[3] = source->step;
     level->error = source->error;
+    level->far = source->flags & GTX_SHELL_FAR;
     level->triangle_count = source->triangle_count;
     level->first = gtx_alloc_array(hooks, patches + 1, sizeof *level->first);
     level->runs = gtx_alloc_array(hooks, patches, sizeof *level->runs);

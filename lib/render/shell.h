@@ -23,6 +23,7 @@ typedef struct gtx_shell_run {
 typedef struct gtx_shell_level {
     float place[4];           /* origin and step of the positions */
     float error;              /* object units */
+    bool far;                 /* triangles show several patches: not beside edited ones */
     uint32_t triangle_count;
     uint32_t *first;          /* triangles first[i]..first[i + 1] - 1 are those of patch order[i] */
     gtx_shell_run *runs;      /* room for a patch each; indices count from a run's first vertex */

@@ -197,6 +197,14 @@ static void test_shell(void **state)
     levels[1].error = 0.5f;
     positions[3] = 4000;
     assert_int_equal(broken_rule(&s), 505);
+    levels[0].flags = levels[1].flags = GTX_SHELL_FAR; /* corners may lie anywhere */
+    assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_OK);
+    assert_int_equal(gtx_get_shell(asset, 1, &shown), GTX_OK);
+    assert_int_equal(shown.flags, GTX_SHELL_FAR);
+    gtx_close(asset);
+    levels[0].flags = levels[1].flags = 2;
+    assert_int_equal(broken_rule(&s), 501);
+    levels[0].flags = levels[1].flags = 0;
     positions[3] = 4;
     indices[1] = 7;
     assert_int_equal(broken_rule(&s), 504);

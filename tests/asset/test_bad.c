@@ -233,7 +233,7 @@ static const bad variants[] = {
     {500, "shell-size", "shell", COARSE + 20, 4, 0xFFFFFFFF, SECTIONS, COARSE + 20, NULL},
     {501, "shell-header", "shell", COARSE + 4, 4, 0x7FC00000, SECTIONS, COARSE + 4, NULL},   /* NaN */
     {501, "shell-header", "shell", FINE + 16, 4, 0xBF800000, SECTIONS, FINE + 16, NULL},     /* -1 */
-    {501, "shell-header", "shell", COARSE + 28, 4, 1, SECTIONS, COARSE + 28, NULL},
+    {501, "shell-header", "shell", COARSE + 28, 4, 2, SECTIONS, COARSE + 28, NULL},
     {503, "shell-first", "shell", COARSE + 32, 4, 1, SECTIONS, COARSE + 32, NULL},
     {504, "shell-index", "shell", COARSE + 40, 4, 3, SECTIONS, COARSE + 40, NULL},
     {504, "shell-index", "shell", COARSE + 52, 4, 0xFFFFFFFF, SECTIONS, COARSE + 52, NULL},

@@ -4,6 +4,7 @@
 #include "bake/shapes.hpp"
 #include "bake/shell.hpp"
 
+#include <iterator>
 #include <map>
 #include <memory>
 
@@ -25,6 +26,15 @@ inline Shell shell_of(const Mesh &mesh, Partition partition, unsigned levels = 5
     return out;
 }
 
+/* Without those for models of a few pixels. */
+inline std::vector<ShellLevel> near_levels(const Shell &shell)
+{
+    std::vector<ShellLevel> out;
+    std::copy_if(shell.levels.begin(), shell.levels.end(), std::back_inserter(out),
+                 [](const ShellLevel &level) { return !level.far; });
+    return out;
+}
+
 inline std::vector<gtx_shell> describe(const std::vector<ShellLevel> &levels)
 {
     std::vector<gtx_shell> out;
@@ -35,6 +45,7 @@ inline std::vector<gtx_shell> describe(const std::vector<ShellLevel> &levels)
         shell.error = level.error;
         shell.vertex_count = uint32_t(level.positions.size() / 3);
         shell.triangle_count = uint32_t(level.triangle_count());
+        shell.flags = level.far ? GTX_SHELL_FAR : 0;
         shell.first = level.first.data();
         shell.indices = level.indices.data();
         shell.positions = level.positions.data();
@@ -169,7 +180,7 @@ inline void assert_placed(const Maps &maps, size_t patch, const std::array<Vec3d
 
 inline void assert_placed(const Shell &shell)
 {
-    for (const ShellLevel &level : shell.levels)
+    for (const ShellLevel &level : near_levels(shell))
         for_each(level, [&](size_t n, const std::array<Vec3d, 3> &corner) {
             assert_placed(shell.maps, n, corner);
         });

@@ -61,22 +61,27 @@ static void square_sheet(const gtx_patch *patch, double x, double y, const void 
     out->color[1 - *(const int *)user] = out->color[2] = 0;
 }
 
-static gtx_asset *two_squares(void)
+static gtx_asset *two_sheets(void)
 {
     static const int channels[2] = {0, 1};
-    static const uint32_t first_triangle[3] = {0, 2, 4};
-    static const uint32_t indices[12] = {0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2};
-    static const uint16_t positions[18] = {0, 0, 0, 4, 0, 0, 4, 4, 0, 0, 4, 0, 8, 0, 0, 8, 4, 0};
     fixture_patch squares[2];
     for (int i = 0; i < 2; ++i) {
         const double corner[3] = {4 * i + 0.0625, 0.0625, 0};
         squares[i] = (fixture_patch){fixture_frame(corner, 32, 32, 0.125, 1), square_sheet,
                                      &channels[i]};
     }
+    return fixture_build(squares, 2, 8, 4);
+}
+
+static gtx_asset *two_squares(void)
+{
+    static const uint32_t first_triangle[3] = {0, 2, 4};
+    static const uint32_t indices[12] = {0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2};
+    static const uint16_t positions[18] = {0, 0, 0, 4, 0, 0, 4, 4, 0, 0, 4, 0, 8, 0, 0, 8, 4, 0};
     const gtx_shell shell = {.origin = {0, 0, 0.5f}, .step = 1, .vertex_count = 6,
                              .triangle_count = 4, .first = first_triangle, .indices = indices,
                              .positions = positions};
-    return with_shell(fixture_build(squares, 2, 8, 4), &shell, 1, 0, SHELL_COLORED);
+    return with_shell(two_sheets(), &shell, 1, 0, SHELL_COLORED);
 }
 
 /* No texel of the one in the picture of the other, at no mip level; and the right level. */
@@ -103,6 +108,38 @@ static void maps_end_at_their_rectangles(void **state)
         }
         const double each = 16 / (pixel * pixel);
         assert_true((double)counts[0] > 0.7 * each && (double)counts[1] > 0.7 * each);
+    }
+    subject_close(s, &shown);
+}
+
+/* One square of a far level across both patches is all of the first one's colour. */
+static void far_triangles_show_one_patch(void **state)
+{
+    STAGE_OR_SKIP(state);
+    static const uint32_t first_triangle[3] = {0, 2, 2};
+    static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
+    static const uint16_t positions[12] = {0, 0, 0, 8, 0, 0, 8, 4, 0, 0, 4, 0};
+    const gtx_shell shell = {.origin = {0, 0, 0.5f}, .step = 1, .vertex_count = 4,
+                             .triangle_count = 2, .flags = GTX_SHELL_FAR, .first = first_triangle,
+                             .indices = indices, .positions = positions};
+    subject shown = subject_open(s, with_shell(two_sheets(), &shell, 1, 0, SHELL_COLORED));
+    for (int level = 0; level < 4; ++level) {
+        const double pixel = 0.125 * (1 << level) * 1.2;
+        gtx_camera camera = {.target = {4, 2, 0.5f}, .orthographic = 1, .distance = 3,
+                             .radius = (float)(pixel * STAGE_HEIGHT / 2 * 0.96)};
+        gtx_view view = view_of(&camera);
+        view.viewport_height = STAGE_HEIGHT;
+        view.ambient = 1;
+        draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &first);
+        long count = 0;
+        for (int i = 0; i < STAGE_PIXELS; ++i) {
+            const uint8_t *c = first.color + 4 * i;
+            if (first.depth[i] == first.empty)
+                continue;
+            ++count;
+            assert_true(abs(c[0] - 60 - 60 * level) <= 1 && !c[1] && !c[2]);
+        }
+        assert_true((double)count > 0.85 * 32 / (pixel * pixel));
     }
     subject_close(s, &shown);
 }
@@ -237,6 +274,43 @@ nearer += second.depth[i] < first.depth[i];
     subject_close(s, &shown);
 }
 
+/* A far level has no place for a patch that is edited: the coarsest of the others is drawn then. */
+static void no_far_level_beside_edited_patches(void **state)
+{
+    STAGE_OR_SKIP(state);
+    static shell_level made[2];
+    gtx_asset *sphere = fixture_sphere(radius, TEXELS, 8);
+    gtx_shell shells[2];
+    for (int k = 0; k < 2; ++k) {
+        make_shell_level(gtx_patches(sphere), 6, radius, k ? 4 : 8, &made[k]);
+        shells[k] = made[k].shell;
+    }
+    shells[1].flags = GTX_SHELL_FAR;
+    subject shown = subject_open(s, with_shell(sphere, shells, 2, 0, SHELL_COLORED));
+    gtx_camera camera = camera_around(shown.asset);
+    camera.azimuth = 180; /* behind the one that is edited */
+    gtx_view view = view_of(&camera);
+    view.viewport_height = STAGE_HEIGHT;
+    view.max_error = 50;
+    gtx_view levels[2] = {view, view};
+    levels[0].level = 1;
+    levels[1].level = 2;
+    for (int edited = 0; edited < 2; ++edited) {
+        if (edited)
+            must(gtx_model_update(s->renderer, shown.model, shown.asset, 4, &(gtx_error){0}),
+                 &(gtx_error){0});
+        for (int k = 0; k < 2; ++k) {
+            draw(s, &view, k ? GTX_METHOD_AUTO : GTX_METHOD_SHELL, &shown.instance, 1, &first);
+            draw(s, &levels[1 - edited], GTX_METHOD_SHELL, &shown.instance, 1, &second);
+            assert_memory_equal(first.color, second.color, sizeof first.color);
+        }
+    }
+    draw(s, &levels[0], GTX_METHOD_SHELL, &shown.instance, 1, &first);
+    draw(s, &levels[1], GTX_METHOD_SHELL, &shown.instance, 1, &second); /* not even if asked for */
+    assert_memory_equal(first.color, second.color, sizeof first.color);
+    subject_close(s, &shown);
+}
+
 /* Pixels of the outline are in between: covered by some samples of four. */
 static void multisampling_smooths_edges(void **state)
 {
@@ -328,9 +402,11 @@ int main(void)
         cmocka_unit_test(a_draw_asks_nothing),
         cmocka_unit_test(backs_of_two_sided_patches),
         cmocka_unit_test(an_edited_patch_is_cast),
+        cmocka_unit_test(no_far_level_beside_edited_patches),
         cmocka_unit_test(multisampling_smooths_edges),
         cmocka_unit_test(slices_and_size),
         cmocka_unit_test(maps_end_at_their_rectangles),
+        cmocka_unit_test(far_triangles_show_one_patch),
     };
     return cmocka_run_group_tests(tests, open_stage, stage_close);
 }
