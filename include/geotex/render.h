@@ -251,10 +251,17 @@ typedef struct gtx_ray_instance {
 } gtx_ray_instance;
 
 /* Puts these instances in place of those before, as often as they move; their hierarchy is built
- * anew. State is left as by gtx_model_upload. Errors: ARGUMENT, MEMORY. */
+ * anew. State is left as by gtx_model_upload. Errors: ARGUMENT, MEMORY (nothing has moved). */
 GTX_API gtx_result gtx_rays_place(gtx_renderer *renderer, gtx_rays *rays,
                                   const gtx_ray_instance *instances, uint32_t count,
                                   gtx_error *error);
+
+/* Takes one patch from an edited asset, which has the rectangles of number `asset` of the descriptor
+ * and is not kept: as gtx_model_update, a call for each. Rays meet what was taken, whole, from the
+ * next gtx_rays_place on, which builds that asset's hierarchy anew. State is left as by
+ * gtx_model_upload. Errors: ARGUMENT, MEMORY (nothing has changed). */
+GTX_API gtx_result gtx_rays_update(gtx_renderer *renderer, gtx_rays *rays, uint32_t asset,
+                                   const gtx_asset *edited, uint32_t patch, gtx_error *error);
 
 /* Binds the textures to units 13, 14 and 15, where gtx_draw leaves them, and tells the program, a
  * shading's or one of the engine's own that includes geotex_rays.glsl; 0 binds alone. Leaves the

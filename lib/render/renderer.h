@@ -174,7 +174,7 @@ gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error);
 gtx_result gtx_program_need(gtx_renderer *renderer, int program, gtx_error *error);
 void gtx_programs_destroy(gtx_renderer *renderer);
 
-/* rays.c: tells the program in use where gtx_rays_bind binds. */
+/* rays_textures.c: tells the program in use where gtx_rays_bind binds. */
 void gtx_rays_locate(const gtx_gl *gl, gl_uint program);
 
 /* model.c: gives the CPU's copy of the maps and proxies back. */
