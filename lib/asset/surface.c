@@ -160,8 +160,8 @@ static inline uint8_t expected_near(int a, int b, int c)
 
 /* A row of occupied texels at level 0, in either direction: one of `plain` and `coded` grows.
  * `coded` is where their first one's byte is in the first plane. Returns how many there are. */
-static inline size_t code_near(const gtx_layer *s, size_t row, size_t texel, uint8_t *restrict plain,
-                               uint8_t *restrict coded, bool apply)
+static inline size_t code_near(const gtx_layer *s, size_t row, size_t texel,
+                               uint8_t *restrict plain, uint8_t *restrict coded, bool apply)
 {
     const size_t width = s->shape.width, plane = s->texels, line = width * texel;
     const bool up = row % s->shape.height != 0;

@@ -157,7 +157,8 @@ struct gtx_model {
     float coarsest_error;     /* of all patches at the last level */
     uint32_t boxed_count;
     gtx_shells shells;
-    /* Slabs of all levels, and where those of a patch's level begin: mip_count * patch_count + 1. */
+    /* Slabs of all levels, and where those of a patch's level begin: mip_count * patch_count + 1
+     * numbers. */
     gtx_slab *slabs;
     uint32_t *first_slab;
     float (*records)[GTX_RECORD_TEXELS][4];
@@ -181,8 +182,8 @@ void gtx_rays_locate(const gtx_gl *gl, gl_uint program);
 void gtx_model_free_staging(gtx_model *model);
 /* A hash of where the patches' rectangles lie. */
 uint64_t gtx_model_layout(const gtx_asset *asset);
-/* Rows of a page of cells, and where the cells of a patch's level are in it: level 1 and the coarser
- * ones lie side by side under level 0. */
+/* Rows of a page of cells, and where the cells of a patch's level are in it: level 1 and the
+ * coarser ones lie side by side under level 0. */
 uint32_t gtx_model_cell_rows(const gtx_model *model);
 void gtx_model_cells_at(const gtx_model *model, const gtx_patch *patch, uint32_t level,
                         uint32_t at[2]);
