@@ -929,8 +929,8 @@ static unsigned check_triangles(const struct file *f, const struct section *s, c
         return 504;
     int far = u32(h + 28) & 1; /* corners may lie anywhere */
     for (uint32_t n = 0; !far && n < f->patches; ++n)
-        for (uint64_t i = 3 * (uint64_t)u32(first + 4 * n); i < 3 * (uint64_t)u32(first + 4 * n + 4);
-             ++i)
+        for (uint64_t i = 3 * (uint64_t)u32(first + 4 * n);
+             i < 3 * (uint64_t)u32(first + 4 * n + 4); ++i)
             if (!is_beside(h, positions + 6 * (uint64_t)u32(index + 4 * i),
                            records + RECORD * (uint64_t)n))
                 return 505;

@@ -20,7 +20,7 @@ extern "C" {
 
 typedef enum gtx_partition {
     GTX_PARTITION_DEFAULT = 0,    /* cuts */
-    GTX_PARTITION_CUTS = 1,       /* few large charts that fold nowhere, cut straight into patches */
+    GTX_PARTITION_CUTS = 1,       /* few large charts that fold nowhere, cut straight */
     GTX_PARTITION_VSA = 2,        /* variational shape approximation (paper, section 5.2) */
     GTX_PARTITION_PGP = 3         /* periodic global parameterization: squares along the principal
                                      directions of curvature (paper, section 5.1) */
@@ -55,8 +55,8 @@ typedef struct gtx_cook_desc {
     uint32_t threads;             /* up to 1024; 0 = all processors */
     float unit;                   /* metres per object unit; 0 = 1 */
     uint32_t z_up;                /* 1: the models' +Z becomes +Y, and their +Y -Z */
-    double error;                 /* greatest RMS distance from the source to the asset, as a fraction
-                                     of the source's bounding diagonal; 0 = none asked for. The
+    double error;                 /* greatest RMS distance from the source to the asset, as a
+                                     fraction of the source's bounding diagonal; 0 = none. The
                                      density, and bits and charts where they are 0, become what
                                      takes the fewest bytes. LIMIT where no density reaches it. For
                                      the partition cuts. */
@@ -115,8 +115,8 @@ GTX_API gtx_result gtx_cook_file(const char *input, const char *output, const gt
 
 /* The same of the `size` bytes of a model file, into memory: gtx_close frees the asset, which is of
  * the descriptor's allocator, and gtx_encode makes a file of it. `name` is a path that need not
- * exist: its extension says what the bytes are where they do not, and files that the model refers to
- * are looked for beside it. */
+ * exist: its extension says what the bytes are where they do not, and files that the model refers
+ * to are looked for beside it. */
 GTX_API gtx_result gtx_cook_memory(const void *data, size_t size, const char *name,
                                    const gtx_cook_desc *desc, gtx_asset **out, gtx_report *report,
                                    gtx_error *error);
@@ -133,11 +133,11 @@ typedef struct gtx_shell_desc {
 } gtx_shell_desc;
 
 /* Makes a copy of `asset` whose shell is simplified from what its maps show, in place of any that
- * it had; gtx_close frees it. Sheets that overlap are cut where each is as deep inside its outline as
- * the other and welded along that line, so that neighbours share their border vertices. The finest
- * level aims at a ninth of the asset's source_triangles (of two triangles a texel where that is 0);
- * an `error` is a distance from the maps' own surface. The same asset and options give the same
- * bytes. `desc` may be NULL. Any thread.
+ * it had; gtx_close frees it. Sheets that overlap are cut where each is as deep inside its outline
+ * as the other and welded along that line, so that neighbours share their border vertices. The
+ * finest level aims at a ninth of the asset's source_triangles (of two triangles a texel where that
+ * is 0); an `error` is a distance from the maps' own surface. The same asset and options give the
+ * same bytes. `desc` may be NULL. Any thread.
  * Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, INTERNAL. */
 GTX_API gtx_result gtx_cook_shell(const gtx_asset *asset, const gtx_shell_desc *desc,
                                   gtx_asset **out, gtx_error *error);
@@ -216,16 +216,18 @@ typedef struct gtx_horizons_result {
 /* Makes one asset of grids, tile by tile, without a mesh between (paper, section 6.2). East is +X,
  * up +Y, north -Z; the asset's anchor is in the middle of the grids. Every tile has a step of
  * heights of its own, and neighbours the same heights where they meet, so that no border shows.
- * Nodes without a value are empty texels; both sides are seen. Grids have the same numbers of nodes, unless they
- * are parts of one surface. Where a property is NaN the surface is grey. The same grids and options
- * give the same bytes. `desc`, `result` and `error` may be NULL; gtx_close frees the asset.
+ * Nodes without a value are empty texels; both sides are seen. Grids have the same numbers of
+ * nodes, unless they are parts of one surface. Where a property is NaN the surface is grey. The
+ * same grids and options give the same bytes. `desc`, `result` and `error` may be NULL; gtx_close
+ * frees the asset.
  * Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, INPUT, EMPTY (a grid without four
  * neighbouring values). Any thread. */
 GTX_API gtx_result gtx_horizons(const gtx_height_grid *grids, uint32_t count,
                                 const gtx_horizons_desc *desc, gtx_asset **out,
                                 gtx_horizons_result *result, gtx_error *error);
 
-/* The measures of an asset against its source model, as JSON (format/compare-report.schema.json). */
+/* The measures of an asset against its source model, as JSON
+ * (format/compare-report.schema.json). */
 typedef struct gtx_compare_desc {
     uint32_t size;                /* pixels along a side of the 26 views, up to 4096; 0 = 1024 */
     uint32_t levels;              /* levels of detail to evaluate, up to 8; 0 = the mip count */

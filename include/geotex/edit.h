@@ -142,8 +142,9 @@ GTX_API gtx_result gtx_edit_finish(const gtx_edit *edit, gtx_asset **out, gtx_er
 /* The same while it is drawn: rectangles stay where they are, and only patches that have changed
  * since the last call are done again. *asset belongs to the edit, is valid until gtx_edit_end
  * and is changed by the next call; its content_hash is 0. *patches gets the `*count` indices of
- * changed patches, valid until the next call: give each to gtx_model_update. What moved out of
- * its rectangle is lost: sideways there is room for a texel or two.
+ * changed patches, valid until the next call: give each to gtx_model_update, and to
+ * gtx_rays_update where shaders cast rays into it. What moved out of its rectangle is lost:
+ * sideways there is room for a texel or two.
  * Errors: ARGUMENT, MEMORY. */
 GTX_API gtx_result gtx_edit_refresh(gtx_edit *edit, const gtx_asset **asset,
                                     const uint32_t **patches, uint32_t *count, gtx_error *error);

@@ -1,12 +1,13 @@
 /* geotex: finely tessellated models as oriented height-map patches, cast beside polygons.
  *
  * This header opens, inspects, validates, creates and encodes `.gtx` assets and casts rays into
- * them. It needs libc only. Drawing is in render.h, cooking from meshes in cook.h.
+ * them. It needs libc and libm, and zstd unless that is left out of the build. Drawing is in
+ * render.h, editing in edit.h, cooking from meshes in cook.h.
  *
  * Rules that hold everywhere
  *   - A descriptor struct filled with zeros asks for the defaults; `reserved` fields must be zero.
- *   - Functions that can fail return a gtx_result and take an optional, caller-owned gtx_error last.
- *     On failure the outputs are left NULL or untouched.
+ *   - Functions that can fail return a gtx_result and take an optional, caller-owned gtx_error
+ *     last. On failure the outputs are left NULL or untouched.
  *   - There is no global state. Distinct objects may be used from distinct threads at once; one
  *     object may be read (every function taking a const pointer) from many threads at once.
  *   - Nothing prints, exits or throws.
@@ -57,7 +58,7 @@ typedef enum gtx_result {
     GTX_ERROR_ARGUMENT = 10,      /* a NULL or an out-of-range argument */
     GTX_ERROR_NOT_ZEROED = 11,    /* a descriptor's reserved field is not zero */
     GTX_ERROR_MEMORY = 20,        /* the allocator returned NULL */
-    GTX_ERROR_LIMIT = 21,         /* a stated limit (memory, texture size, patch count) is exceeded */
+    GTX_ERROR_LIMIT = 21,         /* a stated limit (memory, texture size, patches) is exceeded */
     GTX_ERROR_READ = 30,          /* a file cannot be opened or read */
     GTX_ERROR_WRITE = 31,         /* a file cannot be written */
     GTX_ERROR_NOT_GTX = 40,       /* the bytes do not start with the .gtx identifier */
@@ -114,7 +115,8 @@ typedef struct gtx_progress {
     float fraction;               /* of the whole call, 0..1, never falling */
 } gtx_progress;
 
-/* Called from the calling thread. Return non-zero to cancel: the call then returns GTX_CANCELLED. */
+/* Called from the calling thread. Return non-zero to cancel: the call then returns
+ * GTX_CANCELLED. */
 typedef int (*gtx_progress_fn)(const gtx_progress *progress, void *user);
 
 /* ---- assets ----------------------------------------------------------------------------- */
@@ -150,7 +152,7 @@ typedef struct gtx_patch {
 
 typedef enum gtx_map {
     GTX_MAP_HEIGHT = 0,           /* level 0 only; uint8_t or uint16_t codes, 0 = empty */
-    GTX_MAP_TRIM = 1,             /* level 0 only; uint8_t, (c - 128) / 16 texels outside the outline */
+    GTX_MAP_TRIM = 1,             /* level 0 only; uint8_t, (c - 128) / 16 texels outside outline */
     GTX_MAP_NORMAL = 2,           /* 2 x uint8_t, hemi-octahedral in the patch's normal frame */
     GTX_MAP_COLOR = 3,            /* 4 x uint8_t, sRGB colour and linear alpha; may be absent */
     GTX_MAP_MATERIAL = 4,         /* 4 x uint8_t: occlusion, roughness, metallic, share of lighting
@@ -171,7 +173,7 @@ typedef struct gtx_info {
     float emission_scale;         /* light of a full emission texel; 0 without emission */
     double anchor[3];             /* object-space position of the asset's origin */
     uint64_t source_triangles;
-    uint64_t content_hash;        /* of the decoded sections: equal for stored and compressed files */
+    uint64_t content_hash;        /* of the decoded sections: the same for any compression */
     uint64_t file_size;           /* bytes that were opened, 0 for a created asset */
 } gtx_info;
 
@@ -191,7 +193,8 @@ enum { /* gtx_open_desc.flags */
 /* Reads an asset from `size` bytes, which may be freed afterwards. Every rule of format/gtx.md is
  * checked; hostile bytes end in an error, never in a fault. `desc` may be NULL. The asset is of the
  * descriptor's allocator, and freed by gtx_close.
- * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, NOT_GTX, VERSION, TRUNCATED, CORRUPT, UNSUPPORTED. */
+ * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, NOT_GTX, VERSION, TRUNCATED, CORRUPT,
+ * UNSUPPORTED. */
 GTX_API gtx_result gtx_open_memory(const void *data, size_t size, const gtx_open_desc *desc,
                                    gtx_asset **out, gtx_error *error);
 
@@ -218,15 +221,15 @@ GTX_API const void *gtx_map_data(const gtx_asset *asset, gtx_map map, uint32_t l
 #define GTX_SHELL_FAR 1u
 
 /* A level of the shell: the whole surface as triangles, for drawing it where it is small. A vertex
- * is its position alone; it may be shared by triangles of several patches, and its texel coordinates
- * in each follow from that patch's frame. Position q of a vertex stands for the point
- *   origin + step * q                                             relative to the asset's anchor. */
+ * is its position alone; it may be shared by triangles of several patches, and its texel
+ * coordinates in each follow from that patch's frame. Position q of a vertex stands for the point
+ *   origin + step * q                                            relative to the asset's anchor. */
 typedef struct gtx_shell {
     float origin[3], step;
     float error;                  /* how far the level strays from the source, object units */
     uint32_t vertex_count, triangle_count;
     uint32_t flags;               /* GTX_SHELL_FAR */
-    const uint32_t *first;        /* patch_count + 1: triangles first[p]..first[p + 1] - 1 are p's */
+    const uint32_t *first;        /* patch_count + 1: first[p]..first[p + 1] - 1 are p's */
     const uint32_t *indices;      /* 3 a triangle */
     const uint16_t *positions;    /* 3 a vertex */
 } gtx_shell;
@@ -299,7 +302,8 @@ typedef struct gtx_encode_desc {
 
 /* Encodes the asset as the bytes of a `.gtx`. *data comes from the descriptor's allocator (malloc
  * when none) and is freed with it, as *size bytes. The same asset and options give the same bytes
- * (for one zstd version). Errors: ARGUMENT, NOT_ZEROED, MEMORY, UNSUPPORTED (built without zstd). */
+ * (for one zstd version). Errors: ARGUMENT, NOT_ZEROED, MEMORY, UNSUPPORTED (built without
+ * zstd). */
 GTX_API gtx_result gtx_encode(const gtx_asset *asset, const gtx_encode_desc *desc, void **data,
                               size_t *size, gtx_error *error);
 
@@ -341,7 +345,7 @@ typedef struct gtx_hit {
 } gtx_hit;
 
 enum { /* flags of gtx_raycast */
-    GTX_RAY_ANY = 1,              /* any hit will do (shadows); t and normal are those of that hit */
+    GTX_RAY_ANY = 1,              /* any hit will do (shadows); t and normal are that hit's */
     GTX_RAY_TWO_SIDED = 2,        /* accept crossings from below in every patch */
     GTX_RAY_EXHAUSTIVE = 4        /* visit every cell of every patch: the slow reference */
 };
@@ -375,8 +379,8 @@ GTX_API gtx_result gtx_hit_colors(const gtx_asset *asset, const gtx_hit *hits,
 
 /* ---- scenes: rays among instances ------------------------------------------------------------ */
 
-/* Casters placed in a world, with a hierarchy over them. Keeps references to the casters, which must
- * outlive it. Immutable; any number of threads may use it at once. */
+/* Casters placed in a world, with a hierarchy over them. Keeps references to the casters, which
+ * must outlive it. Immutable; any number of threads may use it at once. */
 typedef struct gtx_scene gtx_scene;
 
 /* `transform` is column-major and affine, and takes the asset's coordinates (relative to its
@@ -410,7 +414,7 @@ typedef struct gtx_lit_point {
 typedef struct gtx_light_desc {
     float direction[3];           /* world, towards the light; zero: the sky, of which each point
                                      sees the half above it, weighted by the cosine */
-    float spread;                 /* tangent of half the angle that the disc spans; 0: hard shadows */
+    float spread;                 /* tangent of half the disc's angle; 0: hard shadows */
     float reach;                  /* rays end there, world units; 0 = never. With the sky: what is
                                      farther away does not occlude */
     uint32_t rays;                /* for each point; 0 = 1 */
@@ -418,18 +422,18 @@ typedef struct gtx_light_desc {
     uint32_t reserved[5];
 } gtx_light_desc;
 
-/* The share of the light, 0..1, that reaches each point past all patches of all instances: of a disc
- * a shadow, hard or soft, which the cosine is still to be multiplied with; of the sky its ambient
- * occlusion. Rays of a disc that begin under the horizon of the normal count as dark. The same
- * arguments give the same shares; shaders have the same patterns (geotex_rays.glsl).
+/* The share of the light, 0..1, that reaches each point past all patches of all instances: of a
+ * disc a shadow, hard or soft, which the cosine is still to be multiplied with; of the sky its
+ * ambient occlusion. Rays of a disc that begin under the horizon of the normal count as dark. The
+ * same arguments give the same shares; shaders have the same patterns (geotex_rays.glsl).
  * Errors: ARGUMENT, NOT_ZEROED. */
 GTX_API gtx_result gtx_scene_light(const gtx_scene *scene, const gtx_light_desc *light,
                                    const gtx_lit_point *points, float *shares, size_t count);
 
-/* How far off the surface rays begin, in world units: two height steps of the coarsest patch, or the
- * 32nd part of a texel if that is more. A sheet rounds the surface that it stands for by half a step
- * up or down, and its cells cut a little into what is round; from there no ray that leaves a surface
- * without hollows meets them, however grazing. Nothing else is left out. */
+/* How far off the surface rays begin, in world units: two height steps of the coarsest patch, or
+ * the 32nd part of a texel if that is more. A sheet rounds the surface that it stands for by half a
+ * step up or down, and its cells cut a little into what is round; from there no ray that leaves a
+ * surface without hollows meets them, however grazing. Nothing else is left out. */
 GTX_API float gtx_scene_offset(const gtx_scene *scene);
 
 #ifdef __cplusplus

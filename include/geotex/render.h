@@ -42,10 +42,10 @@ typedef struct gtx_costs {
     float cast_patch, cast_pixel;
 } gtx_costs;
 
-/* Casting by tiles: what an instance has in each square of 4 x 4 pixels is listed, nearest first, and
- * a pixel casts its ray once and to the nearest patch alone. It takes what GTX_METHOD_CAST and AUTO
- * cast in views that tell their viewport_width, of instances one by one, in every pass but with an
- * engine's own shading; anything else, and OpenGL ES, is cast in fragments of proxies. */
+/* Casting by tiles: what an instance has in each square of 4 x 4 pixels is listed, nearest first,
+ * and a pixel casts its ray once and to the nearest patch alone. It takes what GTX_METHOD_CAST and
+ * AUTO cast in views that tell their viewport_width, of instances one by one, in every pass but
+ * with an engine's own shading; anything else, and OpenGL ES, is cast in fragments of proxies. */
 typedef enum gtx_tiling {
     GTX_TILES_AUTO = 0,           /* where it is known to be faster: with llvmpipe */
     GTX_TILES_NEVER = 1,
@@ -144,9 +144,9 @@ typedef enum gtx_pass {
 typedef struct gtx_shading gtx_shading;
 
 /* `text` is GLSL that follows geotex_fragment.glsl, which says what there is to call; for shells it
- * follows geotex_shell_fragment.glsl, with GTX_SHELL defined. geotex_material.glsl comes before, and
- * geotex_rays.glsl, whose rays gtx_rays_bind provides. It has no #version, its samplers begin at
- * unit 8, and it is not kept. The shading is of the renderer's allocator, freed by
+ * follows geotex_shell_fragment.glsl, with GTX_SHELL defined. geotex_material.glsl comes before,
+ * and geotex_rays.glsl, whose rays gtx_rays_bind provides. It has no #version, its samplers begin
+ * at unit 8, and it is not kept. The shading is of the renderer's allocator, freed by
  * gtx_shading_destroy. Errors: ARGUMENT, MEMORY, SHADER (the renderer's log says why). */
 GTX_API gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
                                       gtx_error *error);
@@ -170,15 +170,14 @@ enum { /* gtx_view.flags */
  * neighbours of different levels meet within that error. Pixels are square. GTX_METHOD_PAPER always
  * draws level 0.
  *
- * The shell. GTX_METHOD_SHELL draws an instance as the coarsest level of its shell whose error is at
- * most `max_error` pixels where the asset's bounds are nearest to the camera, or as the finest when
- * there is none; `level` counts levels of the shell. It writes no depth of its own, so that the depth
- * test comes first and multisampling smooths its edges; `viewport_height` also tells the
- * mip level of its maps. GTX_METHOD_AUTO draws the same level if there is one
- * within the error, or else the finest if that is within one and a half times the error, if gtx_costs
- * has it for cheaper, and casts otherwise, as it does when `viewport_height` is unknown or `level`
- * given. Patches taken by gtx_model_update are cast from then
- * on, by either method. */
+ * The shell. GTX_METHOD_SHELL draws an instance as the coarsest level of its shell whose error is
+ * at most `max_error` pixels where the asset's bounds are nearest to the camera, or as the finest
+ * when there is none; `level` counts levels of the shell. It writes no depth of its own, so that
+ * the depth test comes first and multisampling smooths its edges; `viewport_height` also tells the
+ * mip level of its maps. GTX_METHOD_AUTO draws the same level if there is one within the error, or
+ * else the finest if that is within one and a half times the error, if gtx_costs has it for
+ * cheaper, and casts otherwise, as it does when `viewport_height` is unknown or `level` given.
+ * Patches taken by gtx_model_update are cast from then on, by either method. */
 typedef struct gtx_view {
     float view[16], projection[16];   /* column-major; world -> eye -> clip */
     float light_direction[3];         /* world space, towards the light; zero = headlight */
@@ -186,15 +185,15 @@ typedef struct gtx_view {
     gtx_method method;
     uint32_t flags;
     float depth_range[2];             /* of glDepthRange; both 0 = 0..1 */
-    uint32_t viewport_height;         /* pixels; 0 = unknown: level 0, unless `level` says another */
+    uint32_t viewport_height;         /* pixels; 0 = unknown: level 0, unless `level` is given */
     float max_error;                  /* pixels; 0 = 0.5 */
-    uint32_t level;                   /* 0 = by the error, n = level n - 1 or the coarsest there is */
+    uint32_t level;                   /* 0 = by the error, n = level n - 1 or the coarsest */
     gtx_pass pass;
     const gtx_shading *shading;       /* in place of the forward pass's; not with PAPER */
     uint32_t search_steps[2];         /* of PAPER: linear (1..1000), then binary (0..100); both 0 =
                                          balanced by how slanted the view is */
-    uint32_t viewport_width;          /* pixels; 0 = unknown. Given, this and viewport_height are the
-                                         size of glViewport: see gtx_tiling */
+    uint32_t viewport_width;          /* pixels; 0 = unknown. Given, this and viewport_height
+                                         are the size of glViewport: see gtx_tiling */
     uint32_t reserved[1];
 } gtx_view;
 
@@ -209,8 +208,8 @@ typedef struct gtx_instance {
     uint32_t reserved[3];
 } gtx_instance;
 
-/* Draws the instances into the bound framebuffer, which has a depth buffer: what view->pass says, and
- * depth. In the forward pass a model with materials or emission is shaded by metallic-roughness
+/* Draws the instances into the bound framebuffer, which has a depth buffer: what view->pass says,
+ * and depth. In the forward pass a model with materials or emission is shaded by metallic-roughness
  * (glTF 2.0, appendix B), another by Lambert. An instance that is cast is drawn patch by patch,
  * nearest first, those out of view left out; of a run of instances of one model those far away are
  * one instanced draw, as are runs that are not cast. Room for the most instances and patches so far
@@ -222,11 +221,12 @@ GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,
 
 /* ---- rays in shaders --------------------------------------------------------------------- */
 
-/* The patches of some assets where any shader can cast rays at them: heights and outlines in textures
- * of their own (5 bytes a texel, 9 with 16-bit heights), a hierarchy over blocks of their cells, and
- * one over their instances above it. geotex_rays.glsl says what there is to call: shadows, hard and
- * soft, and ambient occlusion across all patches of all instances. It needs no more than OpenGL 3.3
- * or OpenGL ES 3.0, and is part of every gtx_shading. Sheets are those of level 0. */
+/* The patches of some assets where any shader can cast rays at them: heights and outlines in
+ * textures of their own (5 bytes a texel, 9 with 16-bit heights), a hierarchy over blocks of their
+ * cells, and one over their instances above it. geotex_rays.glsl says what there is to call:
+ * shadows, hard and soft, and ambient occlusion across all patches of all instances. It needs no
+ * more than OpenGL 3.3 or OpenGL ES 3.0, and is part of every gtx_shading. Sheets are those of
+ * level 0. */
 typedef struct gtx_rays gtx_rays;
 
 typedef struct gtx_rays_desc {
@@ -251,10 +251,17 @@ typedef struct gtx_ray_instance {
 } gtx_ray_instance;
 
 /* Puts these instances in place of those before, as often as they move; their hierarchy is built
- * anew. State is left as by gtx_model_upload. Errors: ARGUMENT, MEMORY. */
+ * anew. State is left as by gtx_model_upload. Errors: ARGUMENT, MEMORY (nothing has moved). */
 GTX_API gtx_result gtx_rays_place(gtx_renderer *renderer, gtx_rays *rays,
                                   const gtx_ray_instance *instances, uint32_t count,
                                   gtx_error *error);
+
+/* Takes one patch from an edited asset, which has the rectangles of number `asset` of the
+ * descriptor and is not kept: as gtx_model_update, a call for each. Rays meet what was taken,
+ * whole, from the next gtx_rays_place on, which builds that asset's hierarchy anew. State is left
+ * as by gtx_model_upload. Errors: ARGUMENT, MEMORY (nothing has changed). */
+GTX_API gtx_result gtx_rays_update(gtx_renderer *renderer, gtx_rays *rays, uint32_t asset,
+                                   const gtx_asset *edited, uint32_t patch, gtx_error *error);
 
 /* Binds the textures to units 13, 14 and 15, where gtx_draw leaves them, and tells the program, a
  * shading's or one of the engine's own that includes geotex_rays.glsl; 0 binds alone. Leaves the

@@ -171,8 +171,8 @@ static inline void store_far(uint8_t *here, size_t texel)
 /* A row of occupied texels at level 0, in either direction: one of `plain` and `coded` grows, and
  * where it is `plain`, it has the far values elsewhere. `coded` is where their first one's byte is
  * in the first plane. Returns how many there are. */
-static inline size_t code_near(const gtx_layer *s, size_t row, size_t texel, uint8_t *restrict plain,
-                               uint8_t *restrict coded, bool apply)
+static inline size_t code_near(const gtx_layer *s, size_t row, size_t texel,
+                               uint8_t *restrict plain, uint8_t *restrict coded, bool apply)
 {
     const size_t width = s->shape.width, plane = s->texels, line = width * texel;
     const bool up = row % s->shape.height != 0;

@@ -1,4 +1,4 @@
-/* Continues the height sheet past the true surface, so that every cell that shows has its corners. */
+/* Continues the height sheet past the true surface: every cell that shows has its corners. */
 #include "bake/patch_maps.hpp"
 
 #include <algorithm>

@@ -68,7 +68,8 @@ static std::vector<Observation> observe_edges(const FlatChart &chart,
             int steps = std::max(1, int(std::hypot(along.x, along.y) / STEP));
             double counts = t < chart.core ? 1 : OVERLAP_COUNTS;
             for (int s = 0; s < steps; ++s)
-                observe(chart.grid, support, cover, from + along * ((s + 0.5) / steps), counts, out);
+                observe(chart.grid, support, cover, from + along * ((s + 0.5) / steps), counts,
+                        out);
         }
     }
     return out;
@@ -114,7 +115,7 @@ double fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, 
             double trust = o.counts * (residual > leeway ? BELOW : 1);
             for (int k = 0; k < 4; ++k) {
                 pull[corner[k]] += trust * o.weight[k] * residual;
-                weight[corner[k]] += trust * o.weight[k]; /* row sums: a step that cannot overshoot */
+                weight[corner[k]] += trust * o.weight[k]; /* row sums: no step overshoots */
             }
         }
         for (size_t i = 0; i < sampled.size(); ++i)

@@ -23,7 +23,8 @@ static Grid reciprocal_grid(const Frame &frame)
     return grid;
 }
 
-/* The core's sides: from where to where along an axis, at the pitch of a texel, in how many cells. */
+/* The core's sides: from where to where along an axis, at the pitch of a texel, in how many
+ * cells. */
 struct Side {
     double low = INFINITY, high = -INFINITY, pitch = 0;
     int cells = 0;

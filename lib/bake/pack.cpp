@@ -66,7 +66,7 @@ private:
             y = std::max(y, segments_[end].y);
         buried = 0;
         for (size_t k = i; k < end; ++k) {
-            uint32_t covered = std::min(segments_[k].x + segments_[k].width, right) - segments_[k].x;
+            uint32_t x = segments_[k].x, covered = std::min(x + segments_[k].width, right) - x;
             buried += uint64_t(covered) * (y - segments_[k].y);
         }
         return y;

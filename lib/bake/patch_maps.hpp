@@ -1,4 +1,4 @@
-/* The inside of this room: a chart laid out in texels, what is found there, the maps that follow. */
+/* The inside of this room: a chart laid out in texels, what is found there, the maps of it. */
 #pragma once
 
 #include "bake/bake.hpp"
@@ -21,7 +21,8 @@ constexpr double OVERLAP = 1;
 /* Where the model itself ends, up to this many texels beyond its border: nobody else's sheet starts
  * there. */
 constexpr double BORDER_SHOWN = 0.1;
-/* Beyond a straight cut this is enough: the neighbour's sheet is along the same axis, and crosses it. */
+/* Beyond a straight cut this is enough: the neighbour's sheet is along the same axis, and crosses
+ * it. */
 constexpr double CUT_OVERLAP = 0.15;
 
 /* Lengths of a record are floats, and readers square them. */
@@ -184,7 +185,8 @@ void cut_cliffs(const FlatChart &chart, const Outline &core_outline, const Outli
                 std::vector<uint8_t> &support);
 
 /* Moves the heights of the supported texels so that the sheet between them follows the source.
- * Returns the share of the core's samples that it still passes below by a visible part of a texel. */
+ * Returns the share of the core's samples that it still passes below by a visible part of a
+ * texel. */
 double fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, Cover &cover);
 
 using Levels = std::vector<std::vector<uint8_t>>;
@@ -282,7 +284,8 @@ uint8_t trim_code(float distance);
  * emission scale are left to the caller. Throws Error: LIMIT. */
 Maps place_on_pages(std::vector<PatchMaps> &patches, const BakeOptions &options);
 
-/* Places rectangles whose sides are multiples of `grain` on pages of one size, as full as it can. */
+/* Places rectangles whose sides are multiples of `grain` on pages of one size, as full as it
+ * can. */
 struct Packing {
     struct Place {
         uint32_t page, x, y;

@@ -177,8 +177,8 @@ static bool fits(const PatchRegion &region, const Triangle &t, const Lattice &la
     return true;
 }
 
-/* The patch of each triangle, or NO_PATCH where none may have it: a triangle that does not fit its own
- * goes to one that has a neighbour of it, for without it there would be a hole. */
+/* The patch of each triangle, or NO_PATCH where none may have it: a triangle that does not fit its
+ * own goes to one that has a neighbour of it, for without it there would be a hole. */
 static std::vector<uint32_t> find_homes(const Simplifier &simplified,
                                         const std::vector<PatchRegion> &regions,
                                         const Lattice &lattice, const std::vector<Place> &places)

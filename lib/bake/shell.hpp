@@ -10,7 +10,7 @@ struct ShellSource {
     std::vector<Vec3d> positions;
     std::vector<std::array<uint32_t, 3>> triangles;
     std::vector<uint32_t> patch; /* a triangle each */
-    size_t model = 0;            /* triangles of the model, of which a shell has a share; 0: these */
+    size_t model = 0;            /* triangles of the model, that levels are a share of; 0: these */
 
     Vec3d centre(size_t triangle) const
     {

@@ -22,7 +22,8 @@ typedef struct gtx_json {
     bool comma, failed;
 } gtx_json;
 
-/* Members: `key` names a member of the enclosing object and is NULL inside arrays and at the top. */
+/* Members: `key` names a member of the enclosing object and is NULL inside arrays and at the
+ * top. */
 void gtx_json_begin_object(gtx_json *json, const char *key);
 void gtx_json_end_object(gtx_json *json);
 void gtx_json_begin_array(gtx_json *json, const char *key);

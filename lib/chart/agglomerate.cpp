@@ -278,7 +278,8 @@ void move_borders(const Surface &surface, size_t count, std::vector<uint32_t> &l
     }
 }
 
-/* Gives each piece of a cluster but the largest to the neighbour with which it shares most edges. */
+/* Gives each piece of a cluster but the largest to the neighbour with which it shares most
+ * edges. */
 void absorb_islands(const Surface &surface, size_t count, std::vector<uint32_t> &labels)
 {
     std::vector<uint32_t> piece = labels;

@@ -113,7 +113,8 @@ void Attachment::find_near()
         each_vertex(i, [&](uint32_t v) {
             if (std::exchange(seen[v], i) == i)
                 return;
-            auto at = std::lower_bound(wanted.begin(), wanted.end(), std::make_pair(cell_of(v), 0u));
+            auto at =
+                std::lower_bound(wanted.begin(), wanted.end(), std::make_pair(cell_of(v), 0u));
             for (; at != wanted.end() && at->first == cell_of(v); ++at)
                 if (at->second != i)
                     near_.emplace_back(at->second, i);

@@ -14,7 +14,10 @@ struct Frame {
 
     /* (a, b, c) of a point. */
     Vec3d local(const Vec3d &point) const;
-    Vec3d point(const Vec3d &local) const { return origin + x * local.x + y * local.y + z * local.z; }
+    Vec3d point(const Vec3d &local) const
+    {
+        return origin + x * local.x + y * local.y + z * local.z;
+    }
 };
 
 struct Chart {
@@ -75,7 +78,10 @@ struct Partition {
     ChartReport report;
 
     const Mesh &charted(const Mesh &source_mesh) const;
-    uint32_t source_of(uint32_t triangle) const { return source.empty() ? triangle : source[triangle]; }
+    uint32_t source_of(uint32_t triangle) const
+    {
+        return source.empty() ? triangle : source[triangle];
+    }
 };
 
 /* Clusters the triangles (on OpenMesh connectivity), splits clusters until none folds, and gives

@@ -220,8 +220,8 @@ Vec3d ball_axis(const std::vector<Vec3f> &normals)
     return normalize(Vec3d(centre));
 }
 
-/* Puts triangles that turn farthest from an axis first, which are a small share of `size`, and tells
- * how many. Only as many are sorted as that takes. */
+/* Puts triangles that turn farthest from an axis first, which are a small share of `size`, and
+ * tells how many. Only as many are sorted as that takes. */
 size_t drop_deviants(const Surface &surface, float size,
                      std::vector<std::pair<float, uint32_t>> &order)
 {

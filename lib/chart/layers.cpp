@@ -259,7 +259,8 @@ bool fold_together(const LayerGrid &host, const LayerGrid &guest, const LayerRul
     LayerGrid both = blank_grid(low, high);
     for (int j = low[1]; j < high[1]; ++j)
         for (int i = low[0]; i < high[0]; ++i) {
-            Sample &s = both.samples[size_t(j - low[1]) * size_t(both.size[0]) + size_t(i - low[0])];
+            const size_t row = size_t(j - low[1]) * size_t(both.size[0]);
+            Sample &s = both.samples[row + size_t(i - low[0])];
             const Sample *there = host.at(i, j), *here = guest.at(i, j);
             if (there)
                 s = *there;

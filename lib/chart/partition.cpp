@@ -20,8 +20,8 @@ constexpr double LONGEST_SIDE = 2.5;
 constexpr size_t MOST_TRIANGLES = 300000000;
 /* Texels of `resolution` that are left to the overlap. */
 constexpr unsigned OVERLAP_TEXELS = 8;
-/* At a resolution of 128, texels of surface in a patch that is cut; at least in a chart, on average,
- * for a model may be of thousands of small components; in its rectangle at most. */
+/* At a resolution of 128, texels of surface in a patch that is cut; at least in a chart, on
+ * average, for a model may be of thousands of small components; in its rectangle at most. */
 constexpr double CUT_TEXELS = 1400, CHART_TEXELS = 100, MOST_TEXELS = 4 * CUT_TEXELS;
 constexpr double TWO_SIDED_AREA = 0.05; /* of a chart: it is two-sided */
 constexpr double RIM = 4; /* texels of a rectangle beyond its chart's sides */
@@ -181,8 +181,8 @@ double pitch_for(const std::vector<Frame> &frames, double texels)
     return (sides + std::sqrt(sides * sides + 4 * area * left)) / (2 * left);
 }
 
-/* Splits the clusters until each is a chart, at the pitch asked for, or else one that is fine enough
- * for all of them, but not finer than a blade can pay for, whose rectangles are all rim. */
+/* Splits the clusters until each is a chart, at the pitch asked for, or else one that is fine
+ * enough for all of them, but not finer than a blade can pay for, whose rectangles are all rim. */
 std::vector<Frame> split_for_count(const Surface &surface, const ChartOptions &options,
                                    std::vector<Region> &regions, Bounds &bounds, Task &task)
 {
@@ -269,8 +269,8 @@ void make_charts(Surface surface, const ChartOptions &options, uint32_t count, T
     report_initial(surface, regions, task, out);
 
     Bounds bounds = {INFINITY, cut_pitch(surface, wanted, options), true};
-    std::vector<Frame> frames = (cut ? split_for_count : split_for_length)(surface, options, regions,
-                                                                           bounds, task);
+    const auto split = cut ? split_for_count : split_for_length;
+    std::vector<Frame> frames = split(surface, options, regions, bounds, task);
     out.pitch = bounds.pitch;
 
     task.begin("frame");

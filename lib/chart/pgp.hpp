@@ -47,8 +47,8 @@ CrossField make_cross_field(const Surface &surface, const HalfEdges &edges, Task
 
 /* How long a cell is to be at each vertex, against the mean, for the directions to be gradients. */
 std::vector<double> make_scale(const HalfEdges &edges, const CrossField &field);
-/* Makes them shorter where the surface is more curved, down to half, and longer where it is less, up
- * to twice; for cells of about this mean length. */
+/* Makes them shorter where the surface is more curved, down to half, and longer where it is less,
+ * up to twice; for cells of about this mean length. */
 void adapt_scale(const Surface &surface, const HalfEdges &edges, double cell,
                  std::vector<double> &scale);
 

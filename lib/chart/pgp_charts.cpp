@@ -171,8 +171,9 @@ std::vector<double> piece_areas(const Pieces &pieces, const std::vector<double> 
         double twice = 0; /* of the triangle's area, in its weights */
         const PieceCorner *first = &pieces.corners[pieces.first[i]];
         for (const PieceCorner *c = first; c + 1 < &pieces.corners[0] + pieces.first[i + 1]; ++c)
-            twice += double((c[0].weight[1] - first->weight[1]) * (c[1].weight[2] - first->weight[2]) -
-                            (c[0].weight[2] - first->weight[2]) * (c[1].weight[1] - first->weight[1]));
+            twice +=
+                double((c[0].weight[1] - first->weight[1]) * (c[1].weight[2] - first->weight[2]) -
+                       (c[0].weight[2] - first->weight[2]) * (c[1].weight[1] - first->weight[1]));
         out.push_back(of_triangle[pieces.triangle[i]] * twice);
     }
     return out;

@@ -1,7 +1,8 @@
 /* Cuts triangles along the integer lines of a parameterization (Ray et al. 2006, section 5).
  *
- * Coordinates are multiples of a power of two, no end of an edge is near a line without being on it,
- * and an edge is cut once for both its sides: so tests for equality are exact and pieces meet. */
+ * Coordinates are multiples of a power of two, no end of an edge is near a line without being on
+ * it, and an edge is cut once for both its sides: so tests for equality are exact and pieces
+ * meet. */
 #include "chart/pgp.hpp"
 
 #include <algorithm>
@@ -10,8 +11,8 @@ namespace gtx {
 
 namespace {
 
-/* Cells in a triangle, at most: what is larger stays whole. A cell's lines are meant to be far apart
- * on triangles; of needles there may be more than could be stored. */
+/* Cells in a triangle, at most: what is larger stays whole. A cell's lines are meant to be far
+ * apart on triangles; of needles there may be more than could be stored. */
 constexpr double MOST_CELLS = 1024, MOST_PIECES = 3e7;
 /* Two lines that cross an edge closer than this, as a share of its length, cross in one point. */
 constexpr double SAME_POINT = 1e-6;
@@ -156,7 +157,8 @@ std::vector<EdgePoint> LineCutter::crossings(uint32_t h) const
 
 void LineCutter::cut_edge(uint32_t h)
 {
-    uint32_t o = edges_.opposite[h], start = start_of(mesh_, h), end = start_of(mesh_, next_edge(h));
+    uint32_t o = edges_.opposite[h];
+    uint32_t start = start_of(mesh_, h), end = start_of(mesh_, next_edge(h));
     std::vector<EdgePoint> points = crossings(h);
     bool apart = o != NO_EDGE && whole_[h / 3] != whole_[o / 3];
     bool line = apart || (!whole_[h / 3] && on_one_line(map_.uv[h], map_.uv[next_edge(h)]));

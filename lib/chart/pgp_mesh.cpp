@@ -11,7 +11,8 @@ namespace {
 /* A part of a piece: places in its list of corners. */
 using Part = std::vector<uint32_t>;
 
-/* Of the corner `at` of a part, which turns to the left everywhere: how much it turns, as a sine. */
+/* Of the corner `at` of a part, which turns to the left everywhere: how much it turns, as a
+ * sine. */
 double turn_at(const std::vector<Vec3d> &position, const Part &part, size_t at)
 {
     size_t n = part.size();
@@ -54,8 +55,9 @@ void triangulate(const std::vector<Vec3d> &position, const Part &part,
 
 /* An attribute of the triangle's corners, between them. */
 template <size_t N>
-void add_between(std::vector<std::array<float, N>> &to, const std::vector<std::array<float, N>> &from,
-                 uint32_t triangle, const std::array<float, 3> &weight)
+void add_between(std::vector<std::array<float, N>> &to,
+                 const std::vector<std::array<float, N>> &from, uint32_t triangle,
+                 const std::array<float, 3> &weight)
 {
     if (from.empty())
         return;

@@ -25,7 +25,10 @@ struct Candidate {
     bool steep = false, inverted = false;
     Layers layers;
 
-    bool fits() const { return !steep && !inverted && layers.folds.empty() && layers.cliffs.empty(); }
+    bool fits() const
+    {
+        return !steep && !inverted && layers.folds.empty() && layers.cliffs.empty();
+    }
 };
 
 Candidate try_axis(const Surface &surface, const Region &region, const Vec3d &z,
@@ -227,8 +230,9 @@ Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds
         return region.size() > 1 && std::max(frame.extent[0], frame.extent[1]) > bounds.side;
     };
     auto try_kind = [&](bool cone) {
-        return try_axis(surface, region, cone ? cone_axis(surface, region.triangles)
-                                              : median_axis(surface.mesh, region.triangles), bounds);
+        const Vec3d z = cone ? cone_axis(surface, region.triangles)
+                             : median_axis(surface.mesh, region.triangles);
+        return try_axis(surface, region, z, bounds);
     };
     /* A triangle alone is a height map along its own normal, whatever its neighbours' are. */
     Candidate first = try_kind(bounds.cone && region.size() > 1);
@@ -244,7 +248,8 @@ Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds
         for (const std::vector<DoubleSample> *samples : {&c->layers.folds, &c->layers.cliffs})
             if (!samples->empty())
                 return {{}, pieces_of(region, split_layers(surface, region, *samples))};
-    return {{}, pieces_of(region, split_normals(surface, region, (bounds.cone ? first : second).frame.z))};
+    const Frame &narrow = (bounds.cone ? first : second).frame;
+    return {{}, pieces_of(region, split_normals(surface, region, narrow.z))};
 }
 
 } // namespace gtx

@@ -29,16 +29,17 @@ const option options[] = {
      "how far a level may be from the finest [0.5]", 1e-6, 1e6},
     {"min-iou", 0, OPTION_NUMBER, &min_iou, "SHARE",
      "instead, in each window: the largest of 0.25, 0.35, 0.5, 0.71, 1, 1.41 and 2 pixels at which "
-     "auto's outline still has this intersection over union with the mesh's [0: --max-error]", 0, 1},
+     "auto's outline still has this intersection over union with the mesh's [0: --max-error]", 0,
+     1},
     {"budget", 0, OPTION_NUMBER, &budget, "SECONDS", "what would take longer is skipped [600]", 0,
      1e9},
     {"json", 0, OPTION_FLAG, &as_json, nullptr, "the whole report as JSON", 0, 0},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
 const verb bench = {"bench", "ASSET MODEL",
-                    "Times how an asset draws beside the mesh it was cooked from: the mesh culled, sent "
-                    "anew\neach frame, simplified until it looks as good as auto; and the asset by each "
-                    "method.", 2, 2, options};
+                    "Times how an asset draws beside the mesh it was cooked from: the mesh culled, "
+                    "sent anew\neach frame, simplified until it looks as good as auto; and the "
+                    "asset by each method.", 2, 2, options};
 
 bool usage(const char *what, const std::string &word)
 {

@@ -22,8 +22,8 @@ static const option options[] = {
     PROGRESS_OPTION,
     {"max-holes", 0, OPTION_NUMBER, &max_holes, "N", "exit 7 above N hole pixels", 0, 1e18},
     {"min-iou", 0, OPTION_NUMBER, &min_iou, "X", "exit 7 below this silhouette IoU", 0, 1},
-    {"max-rms", 0, OPTION_NUMBER, &max_rms, "X", "exit 7 above this forward RMS, of the diagonal", 0,
-     1},
+    {"max-rms", 0, OPTION_NUMBER, &max_rms, "X", "exit 7 above this forward RMS, of the diagonal",
+     0, 1},
     {0}};
 
 static const verb compare_verb = {

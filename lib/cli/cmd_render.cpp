@@ -20,7 +20,8 @@ static const option options[] = {
      "degrees, degrees, bounding-sphere radii [30,20,2.8]", 0, 0},
     {"depth", 0, OPTION_STRING, &depth_path, "OUT.exr",
      "distance along the view axis too, infinity where nothing is", 0, 0},
-    {"method", 0, OPTION_CHOICE, &method, "auto|cast|shell|paper", "how patches are drawn [auto]", 0, 0},
+    {"method", 0, OPTION_CHOICE, &method, "auto|cast|shell|paper",
+     "how patches are drawn [auto]", 0, 0},
     {"level", 0, OPTION_CHOICE, &still_options.level, "auto|0|1|2|3|4|5|6|7",
      "level of detail, or the coarsest there is; auto: by error [auto]", 0, 0},
     {"max-error", 0, OPTION_NUMBER, &still_options.max_error, "PIXELS",
@@ -30,7 +31,8 @@ static const option options[] = {
 
 static const verb render = {
     "render", "FILE... -o OUT.png",
-    "Draws assets, polygon models and glTF scenes (node extras {\"geotex\": \"a.gtx\"} place assets).",
+    "Draws assets, polygon models and glTF scenes (node extras {\"geotex\": \"a.gtx\"} place "
+    "assets).",
     1, 64, options};
 
 static int write_images(const gtx::Still &still)

@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 /* The compression level that gives the file again, the likely ones first; -1 when none does. */
 static int find_zstd(const gtx_asset *asset, const void *data, size_t size)
 {
-    static const int levels[] = {3, 0, 1, 2, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19};
+    static const int levels[] = {3,  0,  1,  2,  4,  5,  6,  7,  8,  9,
+                                 10, 11, 12, 13, 14, 15, 16, 17, 18, 19};
     for (int level : levels) {
         gtx_encode_desc desc = {};
         desc.zstd_level = level;
@@ -41,12 +42,14 @@ static void write_folder(const gtx_asset *asset, int zstd, const std::string &fo
                          std::string &about)
 {
     std::error_code error;
-    if (fs::exists(folder, error) && !(fs::is_directory(folder, error) && fs::is_empty(folder, error)))
+    if (fs::exists(folder, error) &&
+        !(fs::is_directory(folder, error) && fs::is_empty(folder, error)))
         throw gtx::Error(GTX_ERROR_WRITE, "is there and not an empty folder");
     const std::string temporary = (fs::path(folder) / "").parent_path().string() + ".tmp";
     about = temporary;
     if (!fs::create_directory(temporary, error))
-        throw gtx::Error(GTX_ERROR_WRITE, error ? "cannot be made" : "is left from before: remove it");
+        throw gtx::Error(GTX_ERROR_WRITE,
+                         error ? "cannot be made" : "is left from before: remove it");
     try {
         gtx::write_unpacked(asset, zstd, temporary, about);
         about = folder;

@@ -5,7 +5,8 @@
 #include <string.h>
 
 /* A path as a word: what the two read otherwise is escaped, backslashes only where they would
- * escape what follows. No way to write a line break is known to both. Returns the end, NULL for those. */
+ * escape what follows. No way to write a line break is known to both. Returns the end, NULL for
+ * those. */
 static char *put_word(char *out, const char *path)
 {
     size_t backslashes = 0;

@@ -133,7 +133,8 @@ static const option *find(const option *options, const char *name, size_t length
 {
     for (; options->name; ++options) {
         bool is_long = length > 1 && strlen(options->name) == length;
-        if (is_long ? !memcmp(options->name, name, length) : length == 1 && options->letter == *name)
+        if (is_long ? !memcmp(options->name, name, length)
+                    : length == 1 && options->letter == *name)
             return options;
     }
     return NULL;

@@ -39,9 +39,12 @@ static Transform node_transform(const json &node)
     auto q = node.value("rotation", std::array<double, 4>{0, 0, 0, 1});
     auto s = node.value("scale", std::array<double, 3>{1, 1, 1});
     double x = q[0], y = q[1], z = q[2], w = q[3];
-    return {s[0] * (1 - 2 * (y * y + z * z)), s[0] * 2 * (x * y + z * w), s[0] * 2 * (x * z - y * w), 0,
-            s[1] * 2 * (x * y - z * w), s[1] * (1 - 2 * (x * x + z * z)), s[1] * 2 * (y * z + x * w), 0,
-            s[2] * 2 * (x * z + y * w), s[2] * 2 * (y * z - x * w), s[2] * (1 - 2 * (x * x + y * y)), 0,
+    return {s[0] * (1 - 2 * (y * y + z * z)), s[0] * 2 * (x * y + z * w),
+            s[0] * 2 * (x * z - y * w), 0,
+            s[1] * 2 * (x * y - z * w), s[1] * (1 - 2 * (x * x + z * z)),
+            s[1] * 2 * (y * z + x * w), 0,
+            s[2] * 2 * (x * z + y * w), s[2] * 2 * (y * z - x * w),
+            s[2] * (1 - 2 * (x * x + y * y)), 0,
             t[0], t[1], t[2], 1};
 }
 
@@ -116,7 +119,8 @@ static void add_gltf(Scene &scene, const std::string &path, Task &task)
     try {
         json gltf = json::parse(text.str());
         size_t slash = path.rfind('/');
-        placed = add_placed_assets(scene, gltf, slash == path.npos ? "" : path.substr(0, slash + 1));
+        placed =
+            add_placed_assets(scene, gltf, slash == path.npos ? "" : path.substr(0, slash + 1));
     } catch (const json::exception &e) {
         throw Error(GTX_ERROR_INPUT, e.what());
     }
@@ -169,7 +173,8 @@ void measure_bounds(Scene &scene)
         for (int corner = 0; corner < 8; ++corner) {
             double p[3];
             for (int i = 0; i < 3; ++i)
-                p[i] = info.anchor[i] + double(corner >> i & 1 ? info.bounds_max[i] : info.bounds_min[i]);
+                p[i] = info.anchor[i] +
+                       double(corner >> i & 1 ? info.bounds_max[i] : info.bounds_min[i]);
             add({m[0] * p[0] + m[4] * p[1] + m[8] * p[2] + m[12],
                  m[1] * p[0] + m[5] * p[1] + m[9] * p[2] + m[13],
                  m[2] * p[0] + m[6] * p[1] + m[10] * p[2] + m[14]});

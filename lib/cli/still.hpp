@@ -18,7 +18,7 @@ struct StillOptions {
 
 struct Still {
     std::vector<uint8_t> color; /* RGBA, rows from the top */
-    std::vector<float> depth;   /* distance along the view axis in object units; infinity = nothing */
+    std::vector<float> depth;   /* along the view axis in object units; infinity = nothing */
 };
 
 /* Throws Error: GL, SHADER, MEMORY, LIMIT. */

@@ -172,7 +172,8 @@ struct Reader {
             fail(std::string(name) + " is neither true nor false");
         return value.get<bool>();
     }
-    template <class T> void numbers(const Json &object, const char *name, T *out, size_t count) const
+    template <class T>
+    void numbers(const Json &object, const char *name, T *out, size_t count) const
     {
         const Json &value = at(object, name);
         if (!value.is_array() || value.size() != count)

@@ -1,5 +1,5 @@
-/* An asset as a folder of images, a file a level of the shell, and one JSON file: what unpack writes
- * and pack reads. */
+/* An asset as a folder of images, a file a level of the shell, and one JSON file: what unpack
+ * writes and pack reads. */
 #pragma once
 
 #include "mesh/task.hpp"
@@ -65,8 +65,8 @@ struct Unpacked {
 /* Fills `out`, which must stay where it is. */
 void read_unpacked(const std::string &folder, Unpacked &out, std::string &about);
 
-/* Computes coverage, spheres and bounds anew from the heights, and leaves out the shell, which does not
- * follow them. */
+/* Computes coverage, spheres and bounds anew from the heights, and leaves out the shell, which does
+ * not follow them. */
 void derive_again(Unpacked &unpacked);
 
 } // namespace gtx

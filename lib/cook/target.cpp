@@ -132,8 +132,8 @@ Attempt Search::take()
     if (best_)
         return std::move(*best_);
     char text[128];
-    snprintf(text, sizeof text, "an RMS of %.3g of the diagonal is out of reach: %.3g was the least",
-             error_, least_);
+    snprintf(text, sizeof text,
+             "an RMS of %.3g of the diagonal is out of reach: %.3g was the least", error_, least_);
     throw Error(GTX_ERROR_LIMIT, text);
 }
 

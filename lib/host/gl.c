@@ -3,8 +3,6 @@
 
 #include "base/error.h"
 
-#include <string.h>
-
 gtx_result gtx_host_gl_init(gtx_host_gl *gl, gtx_host_load load, void *user, gtx_error *error)
 {
 #define LOAD(type, name)                                                                           \
@@ -14,12 +12,4 @@ gtx_result gtx_host_gl_init(gtx_host_gl *gl, gtx_host_load load, void *user, gtx
     GTX_HOST_GL(LOAD)
 #undef LOAD
     return GTX_OK;
-}
-
-const char *gtx_host_glsl(const gtx_host_gl *gl)
-{
-    const char *version = (const char *)gl->GetString(GL_VERSION);
-    return version && !strncmp(version, "OpenGL ES", 9)
-               ? "#version 300 es\nprecision highp float;\nprecision highp int;\n"
-               : "#version 330 core\n";
 }

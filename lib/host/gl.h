@@ -98,9 +98,6 @@ typedef gtx_host_proc (*gtx_host_load)(const char *name, void *user);
 /* Needs a current context. Errors: GL, which names the first missing function. */
 gtx_result gtx_host_gl_init(gtx_host_gl *gl, gtx_host_load load, void *user, gtx_error *error);
 
-/* What a shader begins with in the current context: the version, and OpenGL ES's precisions. */
-const char *gtx_host_glsl(const gtx_host_gl *gl);
-
 #ifdef __cplusplus
 }
 #endif

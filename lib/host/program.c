@@ -3,6 +3,9 @@
 
 #include "base/error.h"
 
+#include <stdbool.h>
+#include <string.h>
+
 const char gtx_screen_vertex[] =
     "out vec2 at;\n"
     "void main()\n"
@@ -11,11 +14,18 @@ const char gtx_screen_vertex[] =
     "    gl_Position = vec4(at * 2.0 - 1.0, 0.0, 1.0);\n"
     "}\n";
 
+/* Nothing stands before the extensions that a text asks for but #version. */
 static void attach(const gtx_host_gl *gl, GLuint program, GLenum stage, const char *text)
 {
-    const char *const texts[2] = {gtx_host_glsl(gl), text};
+    const char *version = (const char *)gl->GetString(GL_VERSION);
+    const bool es = version && !strncmp(version, "OpenGL ES", 9);
+    const char *const texts[3] = {
+        es ? "#version 300 es\n" : "#version 330 core\n",
+        es && !strstr(text, "\nprecision ") ? "precision highp float;\nprecision highp int;\n"
+                                             : "",
+        text};
     const GLuint shader = gl->CreateShader(stage);
-    gl->ShaderSource(shader, 2, texts, NULL);
+    gl->ShaderSource(shader, 3, texts, NULL);
     gl->CompileShader(shader);
     gl->AttachShader(program, shader);
     gl->DeleteShader(shader);

@@ -8,7 +8,9 @@
 extern "C" {
 #endif
 
-/* Texts without #version, which gtx_host_glsl gives. Errors: SHADER, with the driver's words. */
+/* Texts without #version: of the current context's kind. Those that state no precision of their
+ * own, as geotex_dialect.glsl does, get OpenGL ES's highest. Errors: SHADER, with the driver's
+ * words. */
 gtx_result gtx_host_program_create(const gtx_host_gl *gl, const char *vertex,
                                    const char *fragment, GLuint *out, gtx_error *error);
 

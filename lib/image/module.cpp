@@ -164,7 +164,8 @@ int read_raw(const char *path, uint64_t max_pixels, uint32_t *width, uint32_t *h
     return 0;
 }
 
-/* The types that numbers are read from. OpenImageIO scales whole ones when it converts them itself. */
+/* The types that numbers are read from. OpenImageIO scales whole ones when it converts them
+ * itself. */
 template <class T> void widen(const std::vector<char> &bytes, float *out, size_t count)
 {
     for (size_t i = 0; i < count; ++i) {

@@ -122,7 +122,8 @@ SeamReport measure_seams(const gtx_asset *asset, const Mesh &mesh, Task &task)
                 p.at, &near, [&](uint32_t cell) { return cells.patch(cell) != p.patch; });
             if (!std::isfinite(square)) /* one patch alone */
                 continue;
-            double step = std::max(cells.height_step(p.patch), cells.height_step(cells.patch(near)));
+            double step =
+                std::max(cells.height_step(p.patch), cells.height_step(cells.patch(near)));
             gaps[i] = {std::sqrt(square), std::sqrt(square) / step};
         }
     });

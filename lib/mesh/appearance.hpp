@@ -1,4 +1,4 @@
-/* Materials and textures of a mesh, and what they make of a point of its surface (glTF 2.0, 3.9). */
+/* Materials and textures of a mesh, and what they make of a point of it (glTF 2.0, 3.9). */
 #pragma once
 
 #include "mesh/vec.hpp"
@@ -74,7 +74,7 @@ struct SurfaceSample {
     float color[4] = {1, 1, 1, 1};                 /* vertex colour x factor x texture; alpha */
     float emission[3] = {0, 0, 0};
     float occlusion = 1, roughness = 1, metallic = 0, lit = 1;
-    float cut = 1;                                 /* alpha less its cutoff; < 0: nothing is there */
+    float cut = 1;                                 /* alpha less its cutoff; < 0: nothing there */
 };
 
 /* What the corners of a triangle make of a point between them. */

@@ -76,7 +76,8 @@ Mesh import_model(const ModelFile &file, Task &task);
  * first). */
 Mesh import_mesh(const std::string &path, Task &task, std::vector<std::string> *sources = nullptr);
 
-/* Welds, repairs and orients; the result keeps the promises above. Throws Error: EMPTY, CANCELLED. */
+/* Welds, repairs and orients; the result keeps the promises above. Throws Error: EMPTY,
+ * CANCELLED. */
 Mesh clean_mesh(Mesh mesh, Task &task, CleanReport &report);
 
 /* Three neighbours a triangle: neighbour[t][k] shares the edge from corner k to corner k + 1, or is

@@ -197,8 +197,8 @@ static void use_program(const gtx_gl *gl, pass *p, const gtx_program *program,
     gl->Uniform4fv(program->even, 1, model->even_material);
 }
 
-/* Which faces a run of proxies is drawn by: boxes by their back faces, so that a camera inside still
- * sees the patch, hulls by their front faces, where rays begin. */
+/* Which faces a run of proxies is drawn by: boxes by their back faces, so that a camera inside
+ * still sees the patch, hulls by their front faces, where rays begin. */
 static void face(const gtx_gl *gl, const run *r, bool back)
 {
     gl->FrontFace(r->mirrored != back ? GL_CW : GL_CCW);

@@ -160,7 +160,8 @@ struct gtx_model {
     float coarsest_error;     /* of all patches at the last level */
     uint32_t boxed_count;
     gtx_shells shells;
-    /* Slabs of all levels, and where those of a patch's level begin: mip_count * patch_count + 1. */
+    /* Slabs of all levels, and where those of a patch's level begin: mip_count * patch_count + 1
+     * numbers. */
     gtx_slab *slabs;
     uint32_t *first_slab;
     float (*records)[GTX_RECORD_TEXELS][4];
@@ -180,15 +181,15 @@ gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error);
 gtx_result gtx_program_need(gtx_renderer *renderer, int program, gtx_error *error);
 void gtx_programs_destroy(gtx_renderer *renderer);
 
-/* rays.c: tells the program in use where gtx_rays_bind binds. */
+/* rays_textures.c: tells the program in use where gtx_rays_bind binds. */
 void gtx_rays_locate(const gtx_gl *gl, gl_uint program);
 
 /* model.c: gives the CPU's copy of the maps and proxies back. */
 void gtx_model_free_staging(gtx_model *model);
 /* A hash of where the patches' rectangles lie. */
 uint64_t gtx_model_layout(const gtx_asset *asset);
-/* Rows of a page of cells, and where the cells of a patch's level are in it: level 1 and the coarser
- * ones lie side by side under level 0. */
+/* Rows of a page of cells, and where the cells of a patch's level are in it: level 1 and the
+ * coarser ones lie side by side under level 0. */
 uint32_t gtx_model_cell_rows(const gtx_model *model);
 void gtx_model_cells_at(const gtx_model *model, const gtx_patch *patch, uint32_t level,
                         uint32_t at[2]);

@@ -72,8 +72,8 @@ static gtx_result derive(const gtx_model *model, const gtx_asset *asset, uint32_
     return result ? result : gtx_patch_derive(asset, patch, &model->allocator, d, error);
 }
 
-/* As much as the patch's rectangle has at `level`, to a place in its page at a mip level, out of rows
- * of `width` texels. */
+/* As much as the patch's rectangle has at `level`, to a place in its page at a mip level, out of
+ * rows of `width` texels. */
 static void upload_rect(const gtx_gl *gl, const gtx_model *model, uint32_t unit,
                         const gtx_patch *patch, uint32_t level, uint32_t mip,
                         const uint32_t at[2], const void *data, uint32_t width)

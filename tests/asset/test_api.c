@@ -428,7 +428,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_create_rules), cmocka_unit_test(test_material_and_emission),
-        cmocka_unit_test(test_huge_values),  cmocka_unit_test(test_shell), cmocka_unit_test(test_arguments),
+        cmocka_unit_test(test_huge_values),  cmocka_unit_test(test_shell),
+        cmocka_unit_test(test_arguments),
         cmocka_unit_test(test_accessors),    cmocka_unit_test(test_skip_hash),
         cmocka_unit_test(test_files),        cmocka_unit_test(test_full_disk),
         cmocka_unit_test(test_many_patches),

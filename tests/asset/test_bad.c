@@ -231,8 +231,8 @@ static const bad variants[] = {
     {214, "section-missing", "shell", 0, 0, 0, CONTENT, ENTRY, rename_fine_shell},
     {500, "shell-size", "zstd-shell", ZSTD_SHEL + 32, 8, 81, HEADER, ZSTD_SHEL + 32, NULL},
     {500, "shell-size", "shell", COARSE + 20, 4, 0xFFFFFFFF, SECTIONS, COARSE + 20, NULL},
-    {501, "shell-header", "shell", COARSE + 4, 4, 0x7FC00000, SECTIONS, COARSE + 4, NULL},   /* NaN */
-    {501, "shell-header", "shell", FINE + 16, 4, 0xBF800000, SECTIONS, FINE + 16, NULL},     /* -1 */
+    {501, "shell-header", "shell", COARSE + 4, 4, 0x7FC00000, SECTIONS, COARSE + 4, NULL}, /* NaN */
+    {501, "shell-header", "shell", FINE + 16, 4, 0xBF800000, SECTIONS, FINE + 16, NULL},   /* -1 */
     {501, "shell-header", "shell", COARSE + 28, 4, 2, SECTIONS, COARSE + 28, NULL},
     {503, "shell-first", "shell", COARSE + 32, 4, 1, SECTIONS, COARSE + 32, NULL},
     {504, "shell-index", "shell", COARSE + 40, 4, 3, SECTIONS, COARSE + 40, NULL},

@@ -154,7 +154,8 @@ static void test_steps_agree(void **state)
         for (size_t i = 0; i < size; ++i) {
             seed = seed * 6364136223846793005u + 1442695040888963407u;
             /* Words that mean something, now and then one that does not. */
-            coded[i] = (uint8_t)(seed >> 62 || i % 4 ? (seed >> 40) % (seed >> 61 ? 3 : 20) : seed >> 50);
+            coded[i] = (uint8_t)(seed >> 62 || i % 4 ? (seed >> 40) % (seed >> 61 ? 3 : 20)
+                                                     : seed >> 50);
         }
         gtx_store_u32(coded + 20, vertices + (round % 50 == 49));
         gtx_store_u32(coded + 24, triangles + 100 * (round % 70 == 69));

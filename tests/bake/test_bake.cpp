@@ -48,7 +48,8 @@ static Vec3d point_of(const Maps &maps, const gtx_patch &p, unsigned i, unsigned
     double c = (code - 1) / (maps.height_bits == 8 ? 254. : 65534.) * p.extent_z;
     Vec3d point;
     for (int k = 0; k < 3; ++k)
-        point[k] = maps.anchor[k] + p.origin[k] + a * p.axis_x[k] + b * p.axis_y[k] + c * p.axis_z[k];
+        point[k] = maps.anchor[k] + p.origin[k] + a * p.axis_x[k] + b * p.axis_y[k] +
+                   c * p.axis_z[k];
     return point;
 }
 

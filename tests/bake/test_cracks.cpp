@@ -126,7 +126,8 @@ static size_t holes(const Mesh &mesh, Partition partition, size_t count, int ero
     return found;
 }
 
-/* Ragged charts: each triangle goes to the nearest of `count` scattered seeds whose normal agrees. */
+/* Ragged charts: each triangle goes to the nearest of `count` scattered seeds whose normal
+ * agrees. */
 static std::function<int(size_t)> scattered(const Mesh &mesh, int count)
 {
     std::mt19937 random(5);
@@ -157,8 +158,8 @@ static void a_bumpy_ball_of_six_patches(void **)
 {
     Mesh mesh = shapes::ball(64, shapes::bumps);
     for (double resolution : {32., 96., 200.})
-        assert_int_equal(holes(mesh, shapes::split(mesh, shapes::by_axis(mesh), resolution), 100000),
-                         0);
+        assert_int_equal(
+            holes(mesh, shapes::split(mesh, shapes::by_axis(mesh), resolution), 100000), 0);
 }
 
 static void a_ball_of_ragged_patches(void **)
@@ -194,8 +195,8 @@ static void a_cube_closes_at_its_edges(void **)
         return 1 / std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)});
     });
     for (double resolution : {20., 64.})
-        assert_int_equal(holes(mesh, shapes::split(mesh, shapes::by_axis(mesh), resolution), 100000),
-                         0);
+        assert_int_equal(
+            holes(mesh, shapes::split(mesh, shapes::by_axis(mesh), resolution), 100000), 0);
 }
 
 static void an_open_sheet_is_whole_up_to_its_border(void **)

@@ -29,7 +29,7 @@ static void a_ball_stays_closed_and_near(void **)
         assert_true(level.error >= error);
         before = level.triangle_count();
         error = level.error;
-        Edges edges = count_edges(level); /* neighbours share their vertices, and so their borders */
+        Edges edges = count_edges(level); /* neighbours share their vertices, so their borders */
         assert_int_equal(edges.open, 0);
         assert_int_equal(edges.crowded, 0);
         double deepest = 0;

@@ -13,8 +13,8 @@ struct AssetFigures {
     uint64_t holes = 0, pixels = 0; /* in 26 views */
 };
 
-/* Cooks the model with each partition, at the resolution at which it has about as many texels as the
- * first has at 128. Leaves the assets in `folder`. Exits on an error. */
+/* Cooks the model with each partition, at the resolution at which it has about as many texels as
+ * the first has at 128. Leaves the assets in `folder`. Exits on an error. */
 std::vector<AssetFigures> equal_texels(const std::string &model, unsigned charts,
                                        const std::vector<gtx_partition> &partitions,
                                        const std::string &folder);

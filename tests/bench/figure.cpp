@@ -7,10 +7,10 @@
 void print_row(const FigureRow &row, bool first)
 {
     if (first)
-        std::printf("| scene   | window    | pixels  | method      | frames | median ms | least ms | "
-                    "frames/s |\n|---|---|---|---|---|---|---|---|\n");
-    std::printf("| %-7s | %-9s | %7llu | %-11s | %6d | %9.2f | %8.2f | %8.2f |\n", row.scene.c_str(),
-                row.window.c_str(), static_cast<unsigned long long>(row.pixels),
+        std::printf("| scene   | window    | pixels  | method      | frames | median ms | "
+                    "least ms | frames/s |\n|---|---|---|---|---|---|---|---|\n");
+    std::printf("| %-7s | %-9s | %7llu | %-11s | %6d | %9.2f | %8.2f | %8.2f |\n",
+                row.scene.c_str(), row.window.c_str(), static_cast<unsigned long long>(row.pixels),
                 row.method.c_str(), row.frames, row.median, row.least, 1000 / row.median);
     std::fflush(stdout);
 }

@@ -1,10 +1,10 @@
-/* Figure 2: the paper's search balanced by the slant of the view and not, from above and in profile,
- * beside the exact cast: frames a second, wrong rays and PSNR.
+/* Figure 2: the paper's search balanced by the slant of the view and not, from above and in
+ * profile, beside the exact cast: frames a second, wrong rays and PSNR.
  *
  *   figure2 OUT_FOLDER
  *
- * Writes a picture of each beside the curves. One patch of 256 x 256 texels. A ray is wrong where one
- * way hits and the exact cast does not, or where they differ by more than a height step and an
+ * Writes a picture of each beside the curves. One patch of 256 x 256 texels. A ray is wrong where
+ * one way hits and the exact cast does not, or where they differ by more than a height step and an
  * eighth of a texel. */
 #include "bench/figure.hpp"
 
@@ -210,7 +210,8 @@ int main(int argc, char **argv)
             }
             gtx_framebuffer_destroy(&stage.gl, &target);
         }
-    if (!write_figure(argv[1], "figure2", "Figure 2: the search balanced and not", platform, rows)) {
+    if (!write_figure(argv[1], "figure2", "Figure 2: the search balanced and not", platform,
+                      rows)) {
         std::fprintf(stderr, "figure2: error: %s cannot be written\n", argv[1]);
         return 1;
     }

@@ -73,8 +73,8 @@ int main(int argc, char **argv)
         std::fprintf(stderr, "figure7: error: %s\n", e.what());
         return 1;
     }
-    if (!write_figure(argv[1], "figure7", "Figure 7: maps of three sizes against the mesh", platform,
-                      rows)) {
+    if (!write_figure(argv[1], "figure7", "Figure 7: maps of three sizes against the mesh",
+                      platform, rows)) {
         std::fprintf(stderr, "figure7: error: %s cannot be written\n", argv[1]);
         return 1;
     }

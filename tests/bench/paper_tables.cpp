@@ -2,8 +2,8 @@
  *
  * By its rules (section 5.4): one density for the model, 128 texels along the longest side of any
  * chart, sides rounded up to powers of two and charts stretched to fill them, texel centres, no
- * overlap, no dilation. Then as a user has them, at equal texels. Prints text; writes the rows as JSON
- * beside the assets. */
+ * overlap, no dilation. Then as a user has them, at equal texels. Prints text; writes the rows as
+ * JSON beside the assets. */
 #include "equal_texels.hpp"
 
 #include "chart/frame.hpp"
@@ -206,8 +206,8 @@ void print_rows(const std::vector<Row> &rows)
 
 void print_notes()
 {
-    std::printf("\nbefore splitting: as the paper counts; then folding charts are split until none\n"
-                "is left, and crumbs are attached, which the paper leaves open\n"
+    std::printf("\nbefore splitting: as the paper counts; then folding charts are split until "
+                "none\nis left, and crumbs are attached, which the paper leaves open\n"
                 "texels: the longest side of all charts sets the density, so one chart decides;\n"
                 "the paper does not say how it finds rectangles: these are of least area\n"
                 "range: of heights in a patch, mean over texels; as RMS, of the diagonal\n");

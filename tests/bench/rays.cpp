@@ -4,7 +4,8 @@
  *
  * Chords join two points of the asset's bounding sphere, inner rays start anywhere in it towards
  * anywhere: no two rays have anything in common. Each row is the best of three runs, in time of the
- * processor. Frames are 640 x 480 of the asset alone, the median of five, finished with glFinish. */
+ * processor. Frames are 640 x 480 of the asset alone, the median of five, finished with
+ * glFinish. */
 #include "host/camera.h"
 #include "host/framebuffer.h"
 #include "host/offscreen.h"

@@ -14,7 +14,8 @@ struct Mapped {
     std::vector<double> scale;
 
     explicit Mapped(gtx::Mesh of)
-        : mesh(std::move(of)), surface(gtx::make_surface(mesh, gtx::expected_pitch(mesh, 50), task)),
+        : mesh(std::move(of)),
+          surface(gtx::make_surface(mesh, gtx::expected_pitch(mesh, 50), task)),
           edges(gtx::make_half_edges(surface)), field(gtx::make_cross_field(surface, edges, task)),
           scale(gtx::make_scale(edges, field))
     {

@@ -47,7 +47,8 @@ static std::pair<double, int> border_and_characteristic(const Mesh &mesh)
     for (auto [a, b] : edges)
         used.insert(a);
     assert_int_equal(used.size(), mesh.positions.size());
-    return {border, int(used.size()) - int((edges.size() + single) / 2) + int(mesh.triangle_count())};
+    const int count = int((edges.size() + single) / 2);
+    return {border, int(used.size()) - count + int(mesh.triangle_count())};
 }
 
 /* A mesh in pieces is the same surface: every edge cut alike from both sides, none lost. */
@@ -77,7 +78,8 @@ static void cuts_keep_the_surface(void **)
     for (const Mesh &mesh :
          {shapes::sphere(30), shapes::torus(40, 0.4), shapes::cube(1), shapes::cube(7),
           shapes::cylinder(40), shapes::bumpy_sphere(30), shapes::plane(1), shapes::plane(37),
-          shapes::helicoid(30, 3), shapes::both(shapes::sphere(16), shapes::plane(20), {4, 0, 0})}) {
+          shapes::helicoid(30, 3),
+          shapes::both(shapes::sphere(16), shapes::plane(20), {4, 0, 0})}) {
         Mapped m(mesh);
         for (double count : {10., 100., 1000.}) {
             Periodic map = m.parameterize(m.cell_for(count));

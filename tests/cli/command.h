@@ -117,7 +117,8 @@ static inline void write_sphere(const char *name, unsigned n)
         for (unsigned j = 0; j < columns; ++j) {
             double a = pi * i / n, b = 2 * pi * j / columns;
             double r = 1 + 0.03 * sin(7 * a) * cos(6 * b);
-            fprintf(file, "v %.9g %.9g %.9g\n", r * sin(a) * cos(b), r * cos(a), r * sin(a) * sin(b));
+            fprintf(file, "v %.9g %.9g %.9g\n", r * sin(a) * cos(b), r * cos(a),
+                    r * sin(a) * sin(b));
         }
     for (unsigned j = 0; j < columns; ++j) {
         unsigned k = (j + 1) % columns, last = 3 + (n - 2) * columns;

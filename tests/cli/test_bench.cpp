@@ -71,7 +71,7 @@ static void the_error_follows_the_outline(void **)
 {
     double last = 3;
     for (const char *iou : {"0.5", "0.95", "1"}) {
-        const std::string arguments = std::string("--sizes 64x64 --methods mesh,shell,auto --min-iou ");
+        const std::string arguments = "--sizes 64x64 --methods mesh,shell,auto --min-iou ";
         const json report = bench((arguments + iou).c_str());
         const json &mesh = report["rows"][0], &row = report["rows"].back();
         const double error = row["max_error_px"];
@@ -121,6 +121,7 @@ int main()
         cmocka_unit_test(usage_is_exit_1), cmocka_unit_test(every_method_is_measured),
         cmocka_unit_test(the_error_follows_the_outline),
         cmocka_unit_test(the_mesh_has_the_materials),
-        cmocka_unit_test(what_is_not_measured_is_named), cmocka_unit_test(the_table_has_a_line_a_row)};
+        cmocka_unit_test(what_is_not_measured_is_named),
+        cmocka_unit_test(the_table_has_a_line_a_row)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

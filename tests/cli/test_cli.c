@@ -69,8 +69,9 @@ static void bad_models_are_exit_3_and_write_nothing(void **state)
                       "property float x\nproperty float y\nproperty float z\n"
                       "element face 1\nproperty list uchar int vertex_indices\nend_header\nabc", 3},
         {"empty.glb", "glTF", 3},
-        {"bad.gltf", "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[{\"attributes\":"
-                     "{\"POSITION\":7}}]}],\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}]}", 3},
+        {"bad.gltf", "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":["
+                     "{\"attributes\":{\"POSITION\":7}}]}],\"nodes\":[{\"mesh\":0}],"
+                     "\"scenes\":[{\"nodes\":[0]}]}", 3},
         {"ext.gltf", "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"ACME_x\"],"
                      "\"extensionsUsed\":[\"ACME_x\"]}", 5},
         {"noise.drc", "DRACO\002\002\001\001abcdefgh", 3},
@@ -158,7 +159,8 @@ static void comparing_judges_only_stated_limits(void **state)
     (void)state;
     expect(gtx("compare sphere.gtx sphere.obj --size 256 --levels 1"), 0);
     expect_text("silhouette IoU");
-    expect(gtx("compare sphere.gtx sphere.obj --size 256 --levels 1 --max-holes 0 --min-iou 0.98"), 0);
+    expect(gtx("compare sphere.gtx sphere.obj --size 256 --levels 1 --max-holes 0 --min-iou 0.98"),
+           0);
     expect(gtx("compare sphere.gtx sphere.obj --size 256 --levels 1 --max-rms 1e-12"), 7);
     expect(gtx("compare sphere.gtx sphere.obj --size 256 --levels 1 --json"), 0);
     expect_text("\"hole_pixels\"");

@@ -11,7 +11,8 @@ static const char gltf[] =
     "{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{\"byteLength\": 60, \"uri\": \"tri.bin\"}],"
     "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 36},"
     "{\"buffer\": 0, \"byteOffset\": 36, \"byteLength\": 24}],"
-    "\"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\"},"
+    "\"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 3, "
+    "\"type\": \"VEC3\"},"
     "{\"bufferView\": 1, \"componentType\": 5126, \"count\": 3, \"type\": \"VEC2\"}],"
     "\"images\": [{\"uri\": \"my%20skin.png\"}], \"textures\": [{\"source\": 0}],"
     "\"materials\": [{\"pbrMetallicRoughness\": {\"baseColorTexture\": {\"index\": 0}}}],"
@@ -131,7 +132,8 @@ static void ninja_cooks_what_changed(void **state)
     (void)state;
     need("ninja");
     make_models();
-    expect(shell("%s/samples/pipeline/ninja.sh models out '%s' >build.ninja", root, getenv("GTX")), 0);
+    expect(shell("%s/samples/pipeline/ninja.sh models out '%s' >build.ninja", root, getenv("GTX")),
+           0);
     follow_changes("ninja", "out/tri.gltf.gtx", "out/sub/ball one.obj.gtx", true);
 }
 
@@ -141,7 +143,8 @@ static void ninja_takes_odd_names(void **state)
     need("ninja");
     expect(shell("rm -rf 'odd $1' out && mkdir 'odd $1'"), 0);
     write_sphere("odd $1/a #1 $(x) b.obj", 12);
-    expect(shell("%s/samples/pipeline/ninja.sh 'odd $1' out '%s' >build.ninja", root, getenv("GTX")), 0);
+    expect(shell("%s/samples/pipeline/ninja.sh 'odd $1' out '%s' >build.ninja", root,
+                 getenv("GTX")), 0);
     expect(shell("ninja"), 0);
     expect_text("COOK");
     expect(shell("ninja"), 0);

@@ -1,4 +1,4 @@
-/* gtx horizons; gtx unpack and gtx pack: there and back again, edits, and folders that are no asset. */
+/* gtx horizons; gtx unpack and gtx pack: there and back again, edits, folders of no asset. */
 #include "cli/command.h"
 
 #include "image/image.h"

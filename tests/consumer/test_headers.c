@@ -15,8 +15,8 @@ static void compile(const char *compiler, const char *language, const char *stan
     for (size_t i = 0; i < sizeof headers / sizeof *headers; ++i) {
         char command[512];
         snprintf(command, sizeof command,
-                 "echo '#include <geotex/%s.h>' | %s -x %s -std=%s -Wall -Wextra -Wpedantic -Werror "
-                 "-Iinclude -fsyntax-only -", headers[i], compiler, language, standard);
+                 "echo '#include <geotex/%s.h>' | %s -x %s -std=%s -Wall -Wextra -Wpedantic "
+                 "-Werror -Iinclude -fsyntax-only -", headers[i], compiler, language, standard);
         assert_int_equal(system(command), 0);
     }
 }

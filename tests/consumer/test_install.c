@@ -67,8 +67,8 @@ static void nothing_is_left_unfilled(void **state)
 {
     (void)state;
     need_stage();
-    assert_true(shell("! grep -rn '@[A-Z_]*@' \"$STAGE\"/usr/lib/pkgconfig \"$STAGE\"/usr/lib/cmake "
-                      "\"$STAGE\"/usr/share/man"));
+    assert_true(shell("! grep -rn '@[A-Z_]*@' \"$STAGE\"/usr/lib/pkgconfig "
+                      "\"$STAGE\"/usr/lib/cmake \"$STAGE\"/usr/share/man"));
     assert_true(shell("for verb in cook horizons info validate filter render compare bench; do "
                       "grep -q \"^.SS gtx $verb\" \"$STAGE\"/usr/share/man/man1/gtx.1 || exit 1; "
                       "done"));
@@ -83,9 +83,11 @@ static void libraries_export_what_headers_declare(void **state)
         "for pair in 'libgeotex.so geotex.h edit.h render.h' 'libgeotex-cook.so cook.h'; "
         "do set -- $pair; so=$1; shift; (cd include/geotex && cat \"$@\") | "
         "grep -o 'gtx_[a-z_]*(' | tr -d '(' | sort -u > \"$STAGE/declared\"; "
-        "nm -D --defined-only lib/$so | awk '$3 ~ /^gtx_/ {print $3}' | sort > \"$STAGE/exported\"; "
+        "nm -D --defined-only lib/$so | awk '$3 ~ /^gtx_/ {print $3}' | sort "
+        "> \"$STAGE/exported\"; "
         "grep -vxF -f \"$STAGE/declared\" \"$STAGE/exported\" && exit 1; "
-        "nm -D --defined-only lib/$so | awk '$3 !~ /^gtx_/ {print; bad = 1} END {exit bad}' || exit 1; "
+        "nm -D --defined-only lib/$so | awk '$3 !~ /^gtx_/ {print; bad = 1} END {exit bad}' "
+        "|| exit 1; "
         "done; exit 0"));
     /* and the other way: every GTX_API function is there */
     assert_true(shell(
@@ -104,7 +106,8 @@ static void consume(const char *build)
     char command[1024];
     need_stage();
     snprintf(command, sizeof command,
-             "export PKG_CONFIG_PATH=\"$STAGE/usr/lib/pkgconfig\" LD_LIBRARY_PATH=\"$STAGE/usr/lib\"; "
+             "export PKG_CONFIG_PATH=\"$STAGE/usr/lib/pkgconfig\" "
+             "LD_LIBRARY_PATH=\"$STAGE/usr/lib\"; "
              "%s && rm -f \"$STAGE/out.gtx\" && "
              "\"$STAGE/consumer\" \"$STAGE/model.obj\" \"$STAGE/out.gtx\" | grep -q 'hit at [01]'",
              build);
@@ -114,8 +117,8 @@ static void consume(const char *build)
 static void pkg_config_shared(void **state)
 {
     (void)state;
-    consume("${CC:-cc} -std=c11 -Wall -Wextra -Werror tests/consumer/consumer.c -o \"$STAGE/consumer\" "
-            "$(pkg-config --cflags --libs geotex-cook)");
+    consume("${CC:-cc} -std=c11 -Wall -Wextra -Werror tests/consumer/consumer.c "
+            "-o \"$STAGE/consumer\" $(pkg-config --cflags --libs geotex-cook)");
     consume("${CXX:-c++} -x c++ -std=c++11 -Wall -Wextra -Werror tests/consumer/consumer.c "
             "-o \"$STAGE/consumer\" $(pkg-config --cflags --libs geotex-cook)");
 }
@@ -140,7 +143,8 @@ static void cmake_finds_it(void **state)
                       ">\"$STAGE/cmake.log\" 2>&1 && cmake --build \"$STAGE/cmake\" "
                       ">>\"$STAGE/cmake.log\" 2>&1 || { cat \"$STAGE/cmake.log\"; exit 1; }"));
     assert_true(shell("for p in shared_c shared_cpp static_c static_cpp; do "
-                      "\"$STAGE/cmake/$p\" \"$STAGE/model.obj\" \"$STAGE/$p.gtx\" || exit 1; done"));
+                      "\"$STAGE/cmake/$p\" \"$STAGE/model.obj\" \"$STAGE/$p.gtx\" || exit 1; "
+                      "done"));
 }
 
 /* The installed command finds its image module, and draws without a display. */
@@ -148,7 +152,8 @@ static void the_installed_command_works(void **state)
 {
     (void)state;
     need_stage();
-    assert_true(shell("cd / && \"$STAGE/usr/bin/gtx\" cook -q \"$STAGE/model.obj\" -o \"$STAGE/m.gtx\""));
+    assert_true(shell("cd / && \"$STAGE/usr/bin/gtx\" cook -q \"$STAGE/model.obj\" "
+                      "-o \"$STAGE/m.gtx\""));
     assert_true(shell("cd / && \"$STAGE/usr/bin/gtx\" render \"$STAGE/m.gtx\" -o \"$STAGE/m.png\" "
                       "--size 64x64 && test -s \"$STAGE/m.png\""));
 }
@@ -169,7 +174,8 @@ static void the_tarball_is_reproducible(void **state)
     if (system("git rev-parse HEAD >/dev/null 2>&1"))
         skip();
     assert_true(shell("make -s build=\"$STAGE/a\" dist >/dev/null && "
-                      "(umask 077; TZ=Asia/Tokyo LC_ALL=C make -s build=\"$STAGE/b\" dist >/dev/null) && "
+                      "(umask 077; TZ=Asia/Tokyo LC_ALL=C make -s build=\"$STAGE/b\" dist "
+                      ">/dev/null) && "
                       "cmp \"$STAGE\"/a/*.tar.gz \"$STAGE\"/b/*.tar.gz"));
     assert_true(shell("cd \"$STAGE\" && tar xzf a/*.tar.gz && cd geotex-* && "
                       "make -s build=out out/release/libgeotex.a >/dev/null"));

@@ -51,7 +51,8 @@ static void core_needs_libc_only(void **state)
 {
     (void)state;
     lines = 0;
-    each_line("readelf -d libgeotex.so | sed -n 's/.*NEEDED.*\\[\\(.*\\)\\]/\\1/p'", needed_by_core);
+    each_line("readelf -d libgeotex.so | sed -n 's/.*NEEDED.*\\[\\(.*\\)\\]/\\1/p'",
+              needed_by_core);
     assert_true(lines > 0);
 }
 
@@ -68,7 +69,8 @@ static void cook_needs_no_images_and_no_windows(void **state)
 {
     (void)state;
     lines = 0;
-    each_line("readelf -d libgeotex-cook.so | sed -n 's/.*NEEDED.*\\[\\(.*\\)\\]/\\1/p'", needed_by_cook);
+    each_line("readelf -d libgeotex-cook.so | sed -n 's/.*NEEDED.*\\[\\(.*\\)\\]/\\1/p'",
+              needed_by_cook);
     assert_true(lines > 0);
 }
 
@@ -85,8 +87,8 @@ static void only_gtx_symbols_are_exported(void **state)
     lines = 0;
     each_line("nm -D --defined-only libgeotex.so | awk '{print $3}'", exported);
     assert_true(lines > 10);
-    each_line("nm -D --defined-only libgeotex-cook.so | awk '$2 != \"W\" && $2 != \"V\" && $2 != \"u\" {print $3}'",
-              exported);
+    each_line("nm -D --defined-only libgeotex-cook.so | "
+              "awk '$2 != \"W\" && $2 != \"V\" && $2 != \"u\" {print $3}'", exported);
 }
 
 static void asked_for(char *line)
@@ -95,7 +97,8 @@ static void asked_for(char *line)
     ++lines;
     if (starts_with_any(line, refused))
         fail_msg("libgeotex asks for %s", line);
-    for (const char *const *bad = (const char *const[]){"exit", "abort", "printf", "puts", "putchar", NULL}; *bad; ++bad)
+    static const char *const never[] = {"exit", "abort", "printf", "puts", "putchar", NULL};
+    for (const char *const *bad = never; *bad; ++bad)
         if (!strcmp(line, *bad))
             fail_msg("libgeotex calls %s", line);
 }
@@ -106,7 +109,8 @@ static void core_prints_nothing_and_calls_no_gl(void **state)
     if (getenv("GTX_CONFIG") && strcmp(getenv("GTX_CONFIG"), "release"))
         skip(); /* instrumented code asks for more */
     lines = 0;
-    each_line("nm -D --undefined-only libgeotex.so | awk '{sub(/@.*/, \"\", $2); print $2}'", asked_for);
+    each_line("nm -D --undefined-only libgeotex.so | awk '{sub(/@.*/, \"\", $2); print $2}'",
+              asked_for);
     assert_true(lines > 0);
 }
 

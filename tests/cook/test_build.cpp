@@ -32,7 +32,8 @@ struct Cooked {
     bool unchanged = false;
 };
 
-static Cooked try_cook(const std::string &input, const std::string &output, const gtx_cook_desc &desc)
+static Cooked try_cook(const std::string &input, const std::string &output,
+                       const gtx_cook_desc &desc)
 {
     Cooked out;
     gtx_report report = {};
@@ -50,7 +51,8 @@ static Cooked try_cook(const std::string &input, const std::string &output, cons
     return out;
 }
 
-static Cooked cook(const std::string &input, const std::string &output, const gtx_cook_desc &desc = {})
+static Cooked cook(const std::string &input, const std::string &output,
+                   const gtx_cook_desc &desc = {})
 {
     Cooked out = try_cook(input, output, desc);
     if (out.result)
@@ -148,11 +150,13 @@ static Files gltf_files()
     float numbers[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1};
     std::string buffer(reinterpret_cast<const char *>(numbers), sizeof numbers);
     return {{"it.gltf",
-             R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 60, "uri": "a%20buffer.bin"}],
+             R"({"asset": {"version": "2.0"},
+                 "buffers": [{"byteLength": 60, "uri": "a%20buffer.bin"}],
                  "bufferViews": [{"buffer": 0, "byteLength": 36},
                                  {"buffer": 0, "byteOffset": 36, "byteLength": 24}],
-                 "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
-                               {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}],
+                 "accessors": [
+                     {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+                     {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}],
                  "images": [{"uri": "skin/color.png"}], "textures": [{"source": 0}],
                  "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
                  "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1},
@@ -278,8 +282,8 @@ static void other_files_are_not_looked_at(void **)
 {
     Files files = obj_files();
     write_file(in_folder("outside.png"), "secret");
-    files["my library.mtl"] = "newmtl m\nmap_Kd ../outside.png\nmap_Ks " + in_folder("outside.png") +
-                              "\nmap_Ka /dev/zero\n";
+    files["my library.mtl"] = "newmtl m\nmap_Kd ../outside.png\nmap_Ks " +
+                              in_folder("outside.png") + "\nmap_Ka /dev/zero\n";
     write_files("here", files);
     std::string output = in_folder("a.gtx");
     assert_int_equal(cook((folder / "here" / "it.obj").string(), output).sources.size(), 2);
@@ -432,11 +436,13 @@ static void colours_stay_with_their_model(void **)
         gtx_info info;
         gtx_get_info(asset, &info);
         assert_int_equal(info.has_color, 1);
-        const uint8_t *color = static_cast<const uint8_t *>(gtx_map_data(asset, GTX_MAP_COLOR, 0, nullptr));
+        const auto *color =
+            static_cast<const uint8_t *>(gtx_map_data(asset, GTX_MAP_COLOR, 0, nullptr));
         for (uint32_t i = 0; i < info.patch_count; ++i) {
             const gtx_patch &p = gtx_patches(asset)[i];
             uint32_t x = p.rect[0] + p.rect[2] / 4, y = p.rect[1] + p.rect[3] / 4;
-            const uint8_t *c = color + 4 * ((size_t(p.page) * info.page_height + y) * info.page_width + x);
+            const size_t row = size_t(p.page) * info.page_height + y;
+            const uint8_t *c = color + 4 * (row * info.page_width + x);
             bool red = p.sphere[0] + info.anchor[0] > 3;
             assert_int_equal(c[0], 255);
             assert_int_equal(c[1], red ? 0 : 255);
@@ -555,7 +561,8 @@ static void the_report_is_right(void **)
     const schema::json &json = cooked.json;
     assert_int_equal(json["texels_total"], total);
     assert_int_equal(json["texels_empty"], empty);
-    assert_true(std::abs(json["empty_fraction"].get<double>() - double(empty) / double(total)) < 1e-9);
+    const double share = double(empty) / double(total);
+    assert_true(std::abs(json["empty_fraction"].get<double>() - share) < 1e-9);
     double pages = double(info.page_count) * info.page_width * info.page_height;
     assert_true(std::abs(json["page_fill"].get<double>() - double(total) / pages) < 1e-9);
     assert_int_equal(json["charts"], info.patch_count);

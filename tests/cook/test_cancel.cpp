@@ -127,8 +127,8 @@ static void a_cancelled_comparison_gives_nothing(void **)
     std::string output = in_folder("c.gtx");
     gtx_cook_desc cook = {};
     cook.charts = 12;
-    assert_int_equal(gtx_cook_file(small_ball_file().c_str(), output.c_str(), &cook, nullptr, nullptr),
-                     GTX_OK);
+    assert_int_equal(
+        gtx_cook_file(small_ball_file().c_str(), output.c_str(), &cook, nullptr, nullptr), GTX_OK);
     cancel_everywhere(
         [&](Watch &watch, gtx_error *error) {
             gtx_compare_desc desc = {};
@@ -155,8 +155,8 @@ static void several_threads_stop(void **)
     std::string output = in_folder("d.gtx");
     gtx_cook_desc cook = {};
     cook.charts = 12;
-    assert_int_equal(gtx_cook_file(small_ball_file().c_str(), output.c_str(), &cook, nullptr, nullptr),
-                     GTX_OK);
+    assert_int_equal(
+        gtx_cook_file(small_ball_file().c_str(), output.c_str(), &cook, nullptr, nullptr), GTX_OK);
     for (int at = 12; at < 100; at += 29) {
         Watch watch;
         watch.at = at;
@@ -165,8 +165,8 @@ static void several_threads_stop(void **)
         desc.threads = 3;
         desc.progress = watch_progress;
         desc.progress_user = &watch;
-        assert_int_equal(gtx_compare_files(output.c_str(), small_ball_file().c_str(), &desc, nullptr,
-                                           nullptr, nullptr),
+        assert_int_equal(gtx_compare_files(output.c_str(), small_ball_file().c_str(), &desc,
+                                           nullptr, nullptr, nullptr),
                          GTX_CANCELLED);
         assert_int_equal(watch.calls, at + 1);
     }
@@ -183,8 +183,8 @@ static void long_imports_are_cancelled(void **)
     add(off, snprintf(line, sizeof line, "OFF %zu %zu 0\n", mesh.positions.size(),
                       mesh.triangle_count()));
     add(ply, snprintf(line, sizeof line,
-                      "ply\nformat ascii 1.0\nelement vertex %zu\nproperty double x\nproperty double "
-                      "y\nproperty double z\n", mesh.positions.size()));
+                      "ply\nformat ascii 1.0\nelement vertex %zu\nproperty double x\n"
+                      "property double y\nproperty double z\n", mesh.positions.size()));
     add(ply, snprintf(line, sizeof line, "element face %zu\nproperty list uchar uint vertex_index\n"
                       "end_header\n", mesh.triangle_count()));
     std::string body;

@@ -80,13 +80,15 @@ static void an_error_is_kept_with_few_bytes(void **)
     desc.error = 1e-9;
     std::string output = in_folder("e.gtx");
     gtx_error error;
-    assert_int_equal(gtx_cook_file(small_ball_file().c_str(), output.c_str(), &desc, nullptr, &error),
-                     GTX_ERROR_LIMIT);
+    assert_int_equal(
+        gtx_cook_file(small_ball_file().c_str(), output.c_str(), &desc, nullptr, &error),
+        GTX_ERROR_LIMIT);
     assert_non_null(strstr(error.message, "out of reach"));
     assert_false(fs::exists(output));
     desc.error = -1;
-    assert_int_equal(gtx_cook_file(small_ball_file().c_str(), output.c_str(), &desc, nullptr, &error),
-                     GTX_ERROR_ARGUMENT);
+    assert_int_equal(
+        gtx_cook_file(small_ball_file().c_str(), output.c_str(), &desc, nullptr, &error),
+        GTX_ERROR_ARGUMENT);
     desc.error = 0.01;
     for (gtx_partition partition : {GTX_PARTITION_VSA, GTX_PARTITION_PGP}) {
         desc.partition = partition;
@@ -152,7 +154,8 @@ static void wrong_arguments_are_refused(void **)
         gtx_result result;
         Change change;
     } cases[] = {
-        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { memset(&d.partition, 77, sizeof d.partition); }},
+        {GTX_ERROR_ARGUMENT,
+         [](gtx_cook_desc &d) { memset(&d.partition, 77, sizeof d.partition); }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.resolution = 63; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.resolution = 513; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.height_bits = 12; }},

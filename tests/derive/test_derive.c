@@ -6,6 +6,7 @@
 
 #include <cmocka.h>
 
+#include "common/counter.h"
 #include "common/fixture.h"
 #include "derive/derive.h"
 
@@ -528,51 +529,25 @@ static void hulls_are_thin(void **state)
     gtx_close(asset);
 }
 
-/* Hooks that run out of memory after a number of allocations and count what is not given back. */
-typedef struct meter {
-    int left;
-    size_t live;
-} meter;
-
-static void *metered_alloc(size_t size, void *user)
-{
-    meter *m = user;
-    if (m->left-- <= 0)
-        return NULL;
-    size_t *block = malloc(size + 16); /* the size in front: it must come back */
-    assert_non_null(block);
-    *block = size;
-    m->live += size;
-    return (char *)block + 16;
-}
-
-static void metered_free(void *memory, size_t size, void *user)
-{
-    size_t *block = (size_t *)((char *)memory - 16);
-    assert_int_equal(*block, size);
-    ((meter *)user)->live -= size;
-    free(block);
-}
-
 static void memory_may_run_out(void **state)
 {
     (void)state;
     gtx_asset *asset = make(&RAGGED, 7, 5);
-    meter m = {0};
-    const gtx_allocator hooks = {metered_alloc, metered_free, &m};
+    counter c = {0};
+    const gtx_allocator hooks = {counted_alloc, counted_free, &c};
     gtx_grid grid;
     for (int n = 0;; ++n) {
-        m.left = n;
+        c.until_failure = n;
         gtx_result result = gtx_grid_build(asset, 0, 2, &hooks, &grid, NULL);
         if (result == GTX_OK)
             break;
         assert_int_equal(result, GTX_ERROR_MEMORY);
-        assert_int_equal(m.live, 0);
+        assert_int_equal(c.bytes, 0);
     }
     for (int n = 0;; ++n) {
         gtx_proxies proxies = {0};
         float thickness;
-        m.left = n;
+        c.until_failure = n;
         gtx_result result = add_box(asset, 0, &hooks, &proxies);
         if (!result)
             result = gtx_add_hull(asset, 0, &grid, 0, &hooks, &proxies, &thickness, NULL);
@@ -582,7 +557,7 @@ static void memory_may_run_out(void **state)
         assert_int_equal(result, GTX_ERROR_MEMORY);
     }
     gtx_grid_free(&grid, &hooks);
-    assert_int_equal(m.live, 0);
+    assert_int_equal(c.bytes, 0);
     gtx_close(asset);
 }
 

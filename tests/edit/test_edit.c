@@ -5,6 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "common/counter.h"
 #include "common/fixture.h"
 
 #include <geotex/edit.h>
@@ -514,34 +515,13 @@ static void neighbours_follow_a_rectangle(void **state)
     gtx_close(asset);
 }
 
-/* ---- memory ---- */
-
-typedef struct meter {
-    size_t live, calls, fail_at;
-} meter;
-
-static void *meter_alloc(size_t size, void *user)
-{
-    meter *m = user;
-    if (++m->calls == m->fail_at)
-        return NULL;
-    m->live += size;
-    return malloc(size);
-}
-
-static void meter_free(void *memory, size_t size, void *user)
-{
-    ((meter *)user)->live -= size;
-    free(memory);
-}
-
 static void running_out_of_memory_is_a_result(void **state)
 {
     (void)state;
     gtx_asset *asset = fixture_flat(0.5, 8);
-    for (size_t fail_at = 1;; ++fail_at) {
-        meter m = {.fail_at = fail_at};
-        const gtx_allocator hooks = {meter_alloc, meter_free, &m};
+    for (long n = 0;; ++n) {
+        counter c = {n, 0};
+        const gtx_allocator hooks = {counted_alloc, counted_free, &c};
         const gtx_edit_desc desc = {.allocator = &hooks};
         const gtx_edit_blur blur = {.radius = 1}, alone = {.radius = 1, .flags = GTX_EDIT_ALONE};
         const gtx_edit_stamp_desc stamp = {.centre = {2, 1, 0.5f}, .radius = 1, .depth = 0.1f,
@@ -559,11 +539,11 @@ static void running_out_of_memory_is_a_result(void **state)
         result = result ? result : gtx_edit_finish(edit, &out, NULL);
         gtx_close(out);
         gtx_edit_end(edit);
-        assert_int_equal(m.live, 0);
-        assert_int_equal(result, m.calls < fail_at ? GTX_OK : GTX_ERROR_MEMORY);
+        assert_int_equal(c.bytes, 0);
+        assert_int_equal(result, c.until_failure >= 0 ? GTX_OK : GTX_ERROR_MEMORY);
         if (!result)
             break;
-        assert_true(fail_at < 1000);
+        assert_true(n < 1000);
     }
     gtx_close(asset);
 }

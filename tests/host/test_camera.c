@@ -131,7 +131,8 @@ static void placing(void **state)
     gtx_matrix_stand(low, high, foot, 90, 2, m);
     const float at[3] = {m[0] + 2 * m[4] + 7 * m[8] + m[12], m[1] + 2 * m[5] + 7 * m[9] + m[13],
                          m[2] + 2 * m[6] + 7 * m[10] + m[14]}; /* the middle of its side at x = 1 */
-    assert_true(fabsf(at[0] - 7) < 1e-5f && fabsf(at[1] - 8) < 1e-5f && fabsf(at[2] - 9.5f) < 1e-5f);
+    assert_true(fabsf(at[0] - 7) < 1e-5f && fabsf(at[1] - 8) < 1e-5f &&
+                fabsf(at[2] - 9.5f) < 1e-5f);
 }
 
 /* Panned, the eye moves and looks along the same axis, and the planes still enclose the sphere. */

@@ -68,7 +68,8 @@ static void options_stand_before_the_name(void **)
 {
     Folder folder;
     write_png(folder, "t.png", 1, 1, {9, 9, 9, 255});
-    Imported i = import_square(folder, "newmtl one\nmap_Kd -clamp on -s 2 3 -o 0.5 0.25 0 -bm 1 t.png\n"
+    Imported i = import_square(folder, "newmtl one\nmap_Kd -clamp on -s 2 3 -o 0.5 0.25 0 -bm 1 "
+                                       "t.png\n"
                                        "newmtl two\nmap_Kd -strange t.png\nKd 1 1 1\n");
     assert_works(i, 4, 2);
     const gtx::Appearance &look = i.mesh.appearance;

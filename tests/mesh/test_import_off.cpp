@@ -52,7 +52,8 @@ static void test_colors(void **)
     assert_works(i, 3, 1);
     assert_color(i.mesh, 0, 255, 0, 51, 128);
     assert_color(i.mesh, 2, 1, 2, 3, 4);
-    i = import_text("none", "COFF\n3 1 0\n0 0 0 1.0 0 0.2 0.5\n1 0 0 0 1 0\n0 1 0 0 0 1\n3 0 1 2\n");
+    i = import_text("none", "COFF\n3 1 0\n0 0 0 1.0 0 0.2 0.5\n1 0 0 0 1 0\n0 1 0 0 0 1\n"
+                            "3 0 1 2\n");
     assert_works(i, 3, 1);
     assert_color(i.mesh, 0, 255, 0, 51, 128);
     assert_color(i.mesh, 1, 0, 255, 0, 255);
@@ -62,14 +63,15 @@ static void test_colors(void **)
     assert_works(i, 3, 1);
     assert_true(i.warns("colours of faces were ignored") && i.mesh.colors.empty());
     assert_fails(import_text("a.off", "COFF\n3 1 0\n0 0 0 1 1\n"), GTX_ERROR_INPUT, "line 3");
-    assert_fails(import_text("a.off", "COFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), GTX_ERROR_INPUT,
-                 "colour");
+    assert_fails(import_text("a.off", "COFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+                 GTX_ERROR_INPUT, "colour");
     assert_fails(import_text("a.off", "COFF\n3 1 0\n0 0 0 1 2 3 4 5\n"), GTX_ERROR_INPUT, "colour");
 }
 
 static void test_other_attributes(void **)
 {
-    Imported i = import_text("a.off", "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 1 0\n3 0 1 2\n");
+    Imported i = import_text("a.off", "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 1 0\n"
+                                      "3 0 1 2\n");
     assert_works(i, 3, 1);
     assert_true(i.mesh.normals[0] == Vec3f(0, 0, 1) && i.mesh.normals[2] == Vec3f(0, 1, 0));
     i = import_text("a.off", "STOFF\n3 1 0\n0 0 0 .5 .5\n1 0 0 .5 .5\n0 1 0 .5 .5\n3 0 1 2\n");

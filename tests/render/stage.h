@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "common/counter.h"
 #include "common/fixture.h"
 #include "host/camera.h"
 #include "host/framebuffer.h"
@@ -133,28 +134,6 @@ static inline void stage_draw(stage *s, const gtx_view *view, const gtx_instance
     assert_int_equal(s->gl.GetError(), GL_NO_ERROR);
     gtx_framebuffer_read_color(&s->gl, &s->framebuffer, s->color);
     gtx_framebuffer_read_depth(&s->gl, &s->framebuffer, s->depth);
-}
-
-/* ---- memory hooks ------------------------------------------------------------------------- */
-
-/* Fails the n-th allocation, and counts what is not given back. */
-typedef struct counter {
-    long until_failure, bytes;
-} counter;
-
-static inline void *counted_alloc(size_t size, void *user)
-{
-    counter *c = user;
-    if (c->until_failure-- == 0)
-        return NULL;
-    c->bytes += (long)size;
-    return malloc(size);
-}
-
-static inline void counted_free(void *memory, size_t size, void *user)
-{
-    ((counter *)user)->bytes -= (long)size;
-    free(memory);
 }
 
 /* ---- 4x4 matrices in double, column-major ------------------------------------------------ */
@@ -303,8 +282,8 @@ static inline int agrees(double expected, double texels, double codes, double dr
     return expected > 1 || (change * texels <= 0.125 && change * codes <= 1);
 }
 
-/* Draws and compares each pixel with the ray through its centre, cast at the view's level. A difference is excluded when a
- * ray less than 1/70 pixel away agrees. */
+/* Draws and compares each pixel with the ray through its centre, cast at the view's level. A
+ * difference is excluded when a ray less than 1/70 pixel away agrees. */
 static inline agreement stage_compare(stage *s, const gtx_asset *asset, const gtx_view *view,
                                       const gtx_instance *instances, uint32_t count)
 {

@@ -1,11 +1,11 @@
-/* A camera that flies through a patch: in every frame of the way each pixel is what the caster finds,
- * in ordinary and in reversed depth. */
+/* A camera that flies through a patch: in every frame of the way each pixel is what the caster
+ * finds, in ordinary and in reversed depth. */
 #include "stage.h"
 
 enum { FRAMES = 24 };
 
-/* On a line through the middle of the bounds, `way` radii from it. The near plane is so far off that
- * it cuts the sheet in some frames while the eye is outside in others. */
+/* On a line through the middle of the bounds, `way` radii from it. The near plane is so far off
+ * that it cuts the sheet in some frames while the eye is outside in others. */
 static gtx_view view_on_line(const gtx_asset *asset, double way, int reversed)
 {
     gtx_camera camera = camera_around(asset);

@@ -72,8 +72,8 @@ static void draw_scene(stage *s, const gtx_view *view, const gtx_instance *insta
     gtx_polygon_program_destroy(&s->gl, &program);
 }
 
-/* Shell or cast by error, cast coarse and orthographic, the paper's search, reversed depth, after an
- * edit on the GPU, and with the state read back. */
+/* Shell or cast by error, cast coarse and orthographic, the paper's search, reversed depth, after
+ * an edit on the GPU, and with the state read back. */
 static void draw_album(void **state)
 {
     static const look steel = {{150, 160, 200, 255}, {230, 90, 200, 255}, {40, 10, 0}};

@@ -1,8 +1,7 @@
 /* Rays in shaders: bad arguments, the same answers as rays on the CPU, in a shading and in a
  * program of the engine's own, by either kind of heights, as instances move; and no acne. */
-#include "host/program.h"
+#include "floor.h"
 #include "host/target.h"
-#include "stage.h"
 
 enum { ASSETS = 2, INSTANCES = 3 };
 
@@ -304,37 +303,17 @@ static void no_acne(void **state)
     subject_close(s, &shown);
 }
 
-/* A program of the engine's own: a floor under a sphere is dark where the CPU says so. */
+/* A floor under a sphere is dark where the CPU says so. */
 static void a_floor_of_polygons(void **state)
 {
     STAGE_OR_SKIP(state);
-    static const char floor_main[] =
-        "in vec2 at;\n"
-        "layout(location = 0) out vec4 color;\n"
-        "void main() {\n"
-        "    vec3 point = vec3(at * 6.0 - 3.0, -1.5);\n"
-        "    color = vec4(vec3(gtx_sunlight(point, vec3(0.0, 0.0, 1.0), vec3(0.6, 0.0, 0.8),\n"
-        "                                   0.0, 1, 0.0)), 1.0);\n"
-        "}\n";
-    static char text[32768];
-    gtx_error error = {0};
-    GLuint program;
     scene c;
     gtx_instance shown[INSTANCES];
     static const uint32_t kinds[INSTANCES] = {0, 0, 1};
-    snprintf(text, sizeof text, "%s%s%s%s", gtx_shader_source("geotex_dialect.glsl"),
-             gtx_shader_source("geotex_sheet.glsl"), gtx_shader_source("geotex_rays.glsl"),
-             floor_main);
-    must(gtx_host_program_create(&s->gl, gtx_screen_vertex, text, &program, &error), &error);
+    const GLuint program = make_floor(s);
     scene_open(s, 8, &c);
     gtx_scene *known = place(s, &c, kinds, transforms[0], shown);
-    gtx_rays_bind(s->renderer, c.rays, program);
-    gtx_framebuffer_bind(&s->gl, &s->framebuffer);
-    s->gl.Disable(GL_DEPTH_TEST);
-    s->gl.UseProgram(program);
-    gtx_screen_draw(&s->gl);
-    assert_int_equal(s->gl.GetError(), GL_NO_ERROR);
-    gtx_framebuffer_read_color(&s->gl, &s->framebuffer, s->color);
+    draw_floor(s, c.rays, program);
     const gtx_light_desc light = {.direction = {0.6f, 0, 0.8f}};
     long dark = 0, differ = 0;
     for (int i = 0; i < STAGE_PIXELS; ++i) {

@@ -1,5 +1,5 @@
-/* Casting by tiles against casting in fragments: the same picture, whatever is drawn. That it is the
- * caster's is looked at where casting in fragments is. */
+/* Casting by tiles against casting in fragments: the same picture, whatever is drawn. That it is
+ * the caster's is looked at where casting in fragments is. */
 #include "stage.h"
 
 static uint8_t other_color[4 * STAGE_PIXELS];
@@ -180,8 +180,8 @@ static void passes_have_one_depth(void **state)
     subject_close(s, &shown);
 }
 
-/* A renderer that may not, and viewports that are none, cast in fragments; so do those without memory
- * for tiles. */
+/* A renderer that may not, and viewports that are none, cast in fragments; so do those without
+ * memory for tiles. */
 static void others_cast_in_fragments(void **state)
 {
     STAGE_OR_SKIP(state);

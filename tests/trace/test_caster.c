@@ -6,6 +6,7 @@
 
 #include <cmocka.h>
 
+#include "common/counter.h"
 #include "common/fixture.h"
 
 #include <math.h>
@@ -566,55 +567,30 @@ static void bad_arguments(void **state)
     gtx_close(asset);
 }
 
-typedef struct meter {
-    int left;
-    size_t live;
-} meter;
-
-static void *metered_alloc(size_t size, void *user)
-{
-    meter *m = user;
-    if (m->left-- <= 0)
-        return NULL;
-    size_t *block = malloc(size + 16); /* the size in front: it must come back */
-    assert_non_null(block);
-    *block = size;
-    m->live += size;
-    return (char *)block + 16;
-}
-
-static void metered_free(void *memory, size_t size, void *user)
-{
-    size_t *block = (size_t *)((char *)memory - 16);
-    assert_int_equal(*block, size);
-    ((meter *)user)->live -= size;
-    free(block);
-}
-
 static void memory_may_run_out(void **state)
 {
     (void)state;
     gtx_asset *asset = fixture_sphere(1, 48, 8);
-    meter m = {0};
-    const gtx_allocator hooks = {metered_alloc, metered_free, &m};
+    counter c = {0};
+    const gtx_allocator hooks = {counted_alloc, counted_free, &c};
     gtx_caster *caster = NULL;
     int failures = 0;
     for (;; ++failures) {
-        m.left = failures;
+        c.until_failure = failures;
         gtx_result result = gtx_caster_create(
             asset, &(gtx_caster_desc){.allocator = &hooks, .level = 1}, &caster, NULL);
         if (result == GTX_OK)
             break;
         assert_int_equal(result, GTX_ERROR_MEMORY);
         assert_null(caster);
-        assert_int_equal(m.live, 0);
+        assert_int_equal(c.bytes, 0);
     }
     assert_true(failures > 8);
     gtx_close(asset); /* a caster needs no asset */
     assert_int_equal(cast(caster, (gtx_ray){.origin = {0.1f, 0.2f, 5}, .direction = {0, 0, -1}}, 0)
                          .patch, 4);
     gtx_caster_destroy(caster);
-    assert_int_equal(m.live, 0);
+    assert_int_equal(c.bytes, 0);
 }
 
 int main(void)

@@ -174,13 +174,14 @@ static void shadows_agree(const Target &target, const Vec3d &centre, double radi
         lit_alone += shaded && share > 0;
     }
     gtx_scene_destroy(scene);
-    print_message("# of %zu points in grazing light %zu are dark by the mesh; %zu only by the asset, "
-                  "%zu only by the mesh\n", points, dark, dark_alone, lit_alone);
+    print_message("# of %zu points in grazing light %zu are dark by the mesh; %zu only by the "
+                  "asset, %zu only by the mesh\n", points, dark, dark_alone, lit_alone);
     assert_true(dark_alone + lit_alone < points / 200);
 }
 
-/* One in 50,000 may differ beyond the band: cells may bridge what is up to 12 texels apart in depth,
- * as at the folds of a scan, and rays almost along such a cell see it where the mesh has nothing. */
+/* One in 50,000 may differ beyond the band: cells may bridge what is up to 12 texels apart in
+ * depth, as at the folds of a scan, and rays almost along such a cell see it where the mesh has
+ * nothing. */
 static void chords_agree(const char *model, size_t count)
 {
     const char *models = std::getenv("GEOTEX_MODELS");

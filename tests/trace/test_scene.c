@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "common/counter.h"
 #include "common/fixture.h"
 
 #include <math.h>
@@ -88,25 +89,6 @@ static void bad_scenes_are_refused(void **state)
     gtx_scene_destroy(scene);
     gtx_caster_destroy(caster);
     gtx_close(asset);
-}
-
-typedef struct counter {
-    long until_failure, bytes;
-} counter;
-
-static void *counted_alloc(size_t size, void *user)
-{
-    counter *c = user;
-    if (c->until_failure-- == 0)
-        return NULL;
-    c->bytes += (long)size;
-    return malloc(size);
-}
-
-static void counted_free(void *memory, size_t size, void *user)
-{
-    ((counter *)user)->bytes -= (long)size;
-    free(memory);
 }
 
 static void memory_may_run_out(void **state)

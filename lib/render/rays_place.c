@@ -1,0 +1,149 @@
+/* The hierarchies of rays in shaders: one over the blocks of each asset, one over the instances
+ * above them. geotex_rays.glsl walks both. */
+#include "render/rays.h"
+
+#include "base/alloc.h"
+#include "base/error.h"
+#include "render/renderer.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Nodes as texels, those before them counted by `first`: low and what lies behind the subtree, high
+ * and -1; or in a leaf low and `at[0]`, high and `at[1]`, of what `leaf` says of its box. */
+static void put_nodes(const gtx_hierarchy *tree, size_t first, float (*out)[4],
+                      void (*leaf)(uint32_t box, float at[2], const void *user), const void *user)
+{
+    for (uint32_t i = 0; i < tree->node_count; ++i) {
+        const gtx_node *node = &tree->nodes[i];
+        float(*texel)[4] = &out[GTX_RAY_NODE * (size_t)i];
+        float at[2] = {(float)(first + GTX_RAY_NODE * (size_t)node->skip), -1};
+        if (node->link & GTX_LEAF)
+            leaf(node->link - GTX_LEAF, at, user);
+        memcpy(texel[0], node->low, sizeof node->low);
+        memcpy(texel[1], node->high, sizeof node->high);
+        texel[0][3] = at[0];
+        texel[1][3] = at[1];
+    }
+}
+
+static void put_block(uint32_t box, float at[2], const void *user)
+{
+    memcpy(at, ((const float(*)[2])user)[box], 2 * sizeof *at);
+}
+
+static size_t fresh_texels(const gtx_ray_member *m)
+{
+    return m->end - m->nodes + GTX_RAY_SHEET * (size_t)m->patch_count;
+}
+
+static void free_fresh(gtx_ray_member *m, const gtx_allocator *hooks)
+{
+    gtx_free_array(hooks, m->fresh, fresh_texels(m), sizeof *m->fresh);
+    m->fresh = NULL;
+}
+
+/* The nodes and sheets of an asset whose boxes are not those of its nodes any more. */
+static gtx_result derive_nodes(gtx_ray_member *m, const gtx_allocator *hooks, gtx_error *error)
+{
+    gtx_hierarchy tree;
+    gtx_result result = gtx_hierarchy_build(m->boxes, m->block_count, hooks, &tree, error);
+    if (result)
+        return result;
+    m->end = m->nodes + GTX_RAY_NODE * (size_t)tree.node_count;
+    m->fresh = gtx_alloc_array(hooks, fresh_texels(m), sizeof *m->fresh);
+    m->box = gtx_box_empty;
+    for (int k = 0; tree.node_count && k < 3; ++k) {
+        m->box.low[k] = tree.nodes[0].low[k];
+        m->box.high[k] = tree.nodes[0].high[k];
+    }
+    if (m->fresh) {
+        put_nodes(&tree, m->nodes, m->fresh, put_block, m->blocks);
+        memcpy(m->fresh + (m->end - m->nodes), m->sheets, m->patch_count * sizeof *m->sheets);
+    }
+    gtx_hierarchy_free(&tree, hooks);
+    return m->fresh ? GTX_OK
+                    : gtx_fail(error, GTX_ERROR_MEMORY, "no memory to cast into %u patches",
+                               m->patch_count);
+}
+
+/* Boxes of the instances, and how far off the surfaces of all rays begin. */
+static gtx_result find_places(gtx_rays *rays, const gtx_ray_instance *instances, uint32_t count,
+                              double *offset, gtx_error *error)
+{
+    *offset = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        gtx_placement *place = &rays->places[i];
+        if (instances[i].asset >= rays->member_count ||
+            !gtx_placement_of(instances[i].transform, place))
+            return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                            "instance %u has no asset, or a transform that is not affine or has "
+                            "no inverse", i);
+        const gtx_ray_member *m = &rays->members[instances[i].asset];
+        rays->boxes[i] = gtx_placement_box(place, &m->box);
+        *offset = fmax(*offset, m->offset * place->stretch);
+    }
+    return GTX_OK;
+}
+
+/* A leaf of the hierarchy over instances: where the instance's record lies. */
+static void put_instance(uint32_t box, float at[2], const void *user)
+{
+    at[0] = 0;
+    at[1] = (float)(*(const size_t *)user + GTX_RAY_INSTANCE * (size_t)box);
+}
+
+/* Fills the front of the nodes' texture; *texels becomes how many texels that takes. */
+static gtx_result derive_front(gtx_rays *rays, const gtx_ray_instance *instances, uint32_t count,
+                               size_t *texels, gtx_error *error)
+{
+    double offset;
+    gtx_hierarchy tree;
+    gtx_result result = find_places(rays, instances, count, &offset, error);
+    if (!result)
+        result = gtx_hierarchy_build(rays->boxes, count, &rays->allocator, &tree, error);
+    if (result)
+        return result;
+    const size_t end = 1 + GTX_RAY_NODE * (size_t)tree.node_count;
+    put_nodes(&tree, 1, rays->front + 1, put_instance, &end);
+    gtx_hierarchy_free(&tree, &rays->allocator);
+    rays->front[0][0] = (float)end;
+    rays->front[0][1] = (float)offset;
+    for (uint32_t i = 0; i < count; ++i) {
+        float(*record)[4] = rays->front + end + GTX_RAY_INSTANCE * (size_t)i;
+        const gtx_ray_member *m = &rays->members[instances[i].asset];
+        for (int r = 0; r < 3; ++r)
+            for (int k = 0; k < 4; ++k)
+                record[r][k] = (float)rays->places[i].object[r][k];
+        record[3][0] = (float)m->nodes;
+        record[3][1] = (float)m->end;
+    }
+    *texels = end + GTX_RAY_INSTANCE * (size_t)count;
+    return GTX_OK;
+}
+
+gtx_result gtx_rays_place(gtx_renderer *renderer, gtx_rays *rays,
+                          const gtx_ray_instance *instances, uint32_t count, gtx_error *error)
+{
+    if (!renderer || !rays || (count && !instances) || count > rays->max_instances)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "placing needs a renderer, rays and as many instances as they allow");
+    gtx_result result = GTX_OK;
+    size_t texels = 0;
+    for (uint32_t i = 0; !result && i < rays->member_count; ++i)
+        if (rays->members[i].edited)
+            result = derive_nodes(&rays->members[i], &rays->allocator, error);
+    if (!result)
+        result = derive_front(rays, instances, count, &texels, error);
+    for (uint32_t i = 0; i < rays->member_count; ++i) {
+        gtx_ray_member *m = &rays->members[i];
+        if (!result && m->edited) {
+            gtx_rays_send(&renderer->gl, rays, GTX_RAY_NODES, m->nodes, fresh_texels(m), m->fresh);
+            m->edited = false;
+        }
+        free_fresh(m, &rays->allocator);
+    }
+    if (!result)
+        gtx_rays_send(&renderer->gl, rays, GTX_RAY_NODES, 0, texels, rays->front);
+    return result;
+}

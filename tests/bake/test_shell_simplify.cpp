@@ -1,0 +1,188 @@
+/* Fewer triangles: what stands out is drawn out again, and sheets that meet stay together. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+extern "C" {
+#include <cmocka.h>
+}
+
+#include "bake/shell_outlier.hpp"
+#include "bake/shell_parts.hpp"
+#include "bake/shapes.hpp"
+
+#include <map>
+
+using namespace gtx;
+using namespace gtx::baking;
+
+static bool is_near(double a, double b)
+{
+    return std::fabs(a - b) < 1e-12;
+}
+
+/* Around vertex 0: a roof, 1 high along y = 0, that falls to 0 at y = -1 and 1. */
+struct Roof {
+    std::vector<Vec3d> positions = {{0, 0, 1}, {-1, 0, 1}, {0, -1, 0}, {1, 0, 1}, {0, 1, 0}};
+    std::vector<Triangle> triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}};
+    uint32_t star[4] = {0, 1, 2, 3};
+
+    Outlier find(const Vec3d &point) const
+    {
+        return find_outlier(positions, triangles, star, 4, 0, point);
+    }
+};
+
+static void outliers_are_above(void **)
+{
+    const Roof roof;
+    const Vec3d up = normalize(Vec3d(0, -1, 1)), on = {-0.25, -0.5, 0.5};
+    const Outlier above = roof.find(on + up * 0.1);
+    assert_true(is_near(above.height, 0.1) && length(above.way - up * 0.1) < 1e-12);
+    assert_true(is_near(above.share, 0.25)); /* of 1/4 of corner 1 and 1/2 of corner 2 */
+    const Outlier below = roof.find(on - up * 0.1);
+    assert_true(below.height == 0);
+    /* Nearest to the ridge, to a corner, and beyond an edge that no other triangle has. */
+    assert_true(is_near(roof.find({0.5, 0, 3}).height, 2));
+    assert_true(is_near(roof.find({0.5, 0, 3}).share, 0.5));
+    assert_true(is_near(roof.find({-2, 0, 2}).height, std::sqrt(2)));
+    assert_true(is_near(roof.find({-2, 0, 2}).share, 0));
+    assert_true(is_near(roof.find({0, 0, 2}).share, 1));
+}
+
+/* A corner that is where another is, as rounding may leave it. */
+static void slivers_have_nearest_points(void **)
+{
+    Roof roof;
+    roof.positions[2] = roof.positions[1];
+    const Outlier found = roof.find({-0.5, 0, 1.5});
+    assert_true(is_near(found.height, 0.5) && is_near(found.share, 0.5));
+}
+
+static ShellSource source_of(const Mesh &mesh)
+{
+    ShellSource source;
+    for (const auto &p : mesh.positions)
+        source.positions.push_back(Vec3d(p));
+    source.triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
+    source.patch.assign(mesh.triangle_count(), 0);
+    return source;
+}
+
+struct Level {
+    std::vector<Vec3d> positions;
+    std::vector<Triangle> triangles;
+    double error;
+};
+
+/* A level of `share` of the triangles, of a surface that its only patch shows everywhere. */
+static Level reduced(const ShellSource &source, double share, Task &task)
+{
+    const std::vector<PatchRegion> anywhere(1);
+    Simplifier level(source, anywhere, task);
+    level.reduce(size_t(share * double(source.triangles.size())), 0, INFINITY);
+    level.settle();
+    return {level.positions(), level.triangles(), level.error()};
+}
+
+/* Along the ray from the middle of a star-shaped surface. */
+static double radius_along(const Level &level, const Vec3d &way)
+{
+    double most = 0;
+    for (const Triangle &t : level.triangles) {
+        const Vec3d &a = level.positions[t[0]], &b = level.positions[t[1]];
+        const Vec3d &c = level.positions[t[2]];
+        const double u = dot(way, cross(b, c)), v = dot(way, cross(c, a));
+        const double w = dot(way, cross(a, b));
+        const double sum = u + v + w; /* a ray along an edge meets both its triangles */
+        if (sum > 0 && std::min({u, v, w}) >= -1e-9 * sum)
+            most = std::max(most, dot(a, cross(b, c)) / sum);
+    }
+    return most;
+}
+
+static void little_is_left_outside(void **)
+{
+    Task task(2, nullptr, nullptr, {"shell"}, {1});
+    const ShellSource source = source_of(shapes::ball(32, shapes::bumps));
+    for (double share : {0.2, 0.05, 0.02}) {
+        const Level level = reduced(source, share, task);
+        double most = 0, mean = 0;
+        for (const Vec3d &p : source.positions) {
+            const double out = length(p) - radius_along(level, normalize(p));
+            most = std::max(most, out);
+            mean += out / double(source.positions.size());
+        }
+        assert_true(most < 1.7 * level.error);
+        assert_true(mean <= 0); /* half of it inside, and more */
+    }
+}
+
+/* Three leaves of a book, 16 x 16 squares each, along the z axis. */
+static ShellSource book()
+{
+    ShellSource source;
+    constexpr uint32_t N = 16, LEAVES = 3;
+    auto at = [](uint32_t leaf, uint32_t i, uint32_t j) {
+        return i ? (N + 1) + (leaf * N + i - 1) * (N + 1) + j : j;
+    };
+    for (uint32_t j = 0; j <= N; ++j)
+        source.positions.push_back({0, 0, double(j) / N});
+    for (uint32_t leaf = 0; leaf < LEAVES; ++leaf) {
+        const double angle = 2 * M_PI / LEAVES * leaf;
+        for (uint32_t i = 1; i <= N; ++i)
+            for (uint32_t j = 0; j <= N; ++j)
+                source.positions.push_back({std::cos(angle) * i / N, std::sin(angle) * i / N,
+                                            double(j) / N});
+        for (uint32_t i = 0; i < N; ++i)
+            for (uint32_t j = 0; j < N; ++j) {
+                const uint32_t a = at(leaf, i, j), b = at(leaf, i + 1, j);
+                const uint32_t c = at(leaf, i, j + 1), d = at(leaf, i + 1, j + 1);
+                source.triangles.push_back({a, b, d});
+                source.triangles.push_back({a, d, c});
+            }
+    }
+    source.patch.assign(source.triangles.size(), 0);
+    return source;
+}
+
+static bool is_on_axis(const Vec3d &p)
+{
+    return std::hypot(p.x, p.y) < 1e-9;
+}
+
+/* Where the leaves meet vertices go as they do elsewhere, and no leaf comes off. */
+static void leaves_stay_bound(void **)
+{
+    Task task(2, nullptr, nullptr, {"shell"}, {1});
+    const Level level = reduced(book(), 0.1, task);
+    std::map<std::array<uint32_t, 2>, int> uses; /* of edges on the axis */
+    for (const Triangle &t : level.triangles)
+        for (int k = 0; k < 3; ++k) {
+            const auto [a, b] = std::minmax(t[k], t[(k + 1) % 3]);
+            if (is_on_axis(level.positions[a]) && is_on_axis(level.positions[b]))
+                ++uses[{a, b}];
+        }
+    double bound = 0;
+    for (const auto &[edge, count] : uses) {
+        assert_int_equal(count, 3);
+        bound += std::fabs(level.positions[edge[0]].z - level.positions[edge[1]].z);
+    }
+    double area = 0;
+    for (const auto &[a, b, c] : level.triangles)
+        area += length(cross(level.positions[b] - level.positions[a],
+                             level.positions[c] - level.positions[a])) / 2;
+    assert_true(uses.size() < 8);
+    assert_true(std::fabs(bound - 1) < 1e-6 && std::fabs(area - 3) < 1e-6);
+}
+
+int main()
+{
+    const CMUnitTest tests[] = {
+        cmocka_unit_test(outliers_are_above),
+        cmocka_unit_test(slivers_have_nearest_points),
+        cmocka_unit_test(little_is_left_outside),
+        cmocka_unit_test(leaves_stay_bound),
+    };
+    return cmocka_run_group_tests_name("shell simplification", tests, nullptr, nullptr);
+}
