@@ -93,6 +93,31 @@ bool gtx_cast_slab(int slab, vec2 pixel, vec2 t, out gtx_hit hit, out int patch_
     return gtx_cast(sheet, line.origin, line.direction, t.x, t.y, hit);
 }
 
+/* The next slab of a list, from the one at k on, that the ray meets within a range of t, and where
+ * the ray is in it; 0 when there is none, for heads come first. */
+int gtx_next_slab(vec2 pixel, vec2 range, int end, inout int k, out vec2 within)
+{
+    vec2 inverse = gtx_inverse(range), meeting = vec2(1.0, 0.0);
+    int slab = 0, stop = end;
+    do {
+        uvec4 entry = texelFetch(gtx_stream, k);
+        vec2 met = gtx_meets(int(entry.x), pixel, inverse);
+        bool look = k < stop, meets = look && met.x <= met.y;
+        if (meets) {
+            slab = int(entry.x);
+            meeting = met;
+        }
+        if (look)
+            k = uintBitsToFloat(entry.y) > range.y ? end : k + 1;
+        stop = meets ? k : stop;
+    } while (k < stop);
+    /* A little farther than the slab, for rounding. */
+    within = gtx_inverse(meeting);
+    within += vec2(-2e-6, 2e-6) * abs(within);
+    within.y = slab > 0 ? min(within.y, range.y) : within.x - 1.0;
+    return slab;
+}
+
 /* The camera's side of a hit, and the instance's. */
 void gtx_place_hit(vec2 pixel, vec2 zw)
 {
@@ -119,37 +144,20 @@ bool gtx_find(out gtx_surface s)
     if (k == end)
         return false;
     s.hit.t = 1e30;
+    vec2 within;
+    int slab = gtx_next_slab(pixel, range, end, k, within);
     do {
-        /* All rays of a processor look for a slab, and then all cast. */
-        vec2 within = vec2(1.0, 0.0), inverse = gtx_inverse(range);
-        int slab = 0, stop = end;
-        do {
-            uvec4 entry = texelFetch(gtx_stream, k);
-            vec2 meeting = gtx_meets(int(entry.x), pixel, inverse);
-            bool look = k < stop, meets = look && meeting.x <= meeting.y;
-            if (meets) {
-                slab = int(entry.x);
-                within = meeting;
-            }
-            if (look)
-                k = uintBitsToFloat(entry.y) > range.y ? end : k + 1;
-            stop = meets ? k : stop;
-        } while (k < stop);
-        bool meets = within.x <= within.y;
-        /* A little farther than the slab, for rounding. */
-        within = gtx_inverse(within);
-        within += vec2(-2e-6, 2e-6) * abs(within);
-        within.y = meets ? min(within.y, range.y) : within.x - 1.0;
         gtx_hit hit;
         int at;
         vec3 ray;
-        if (gtx_cast_slab(slab, pixel, within, hit, at, ray) && meets) {
+        if (gtx_cast_slab(slab, pixel, within, hit, at, ray) && slab > 0) {
             range.y = hit.t;
             patch_at = at;
             s.ray = ray;
             s.hit = hit;
         }
-    } while (k < end);
+        slab = gtx_next_slab(pixel, range, end, k, within);
+    } while (slab > 0);
     if (patch_at < 0)
         return false;
     zw += s.hit.t * zw_step;

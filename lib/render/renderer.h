@@ -71,9 +71,8 @@ typedef struct gtx_plan {
 /* A slab in view, and the tiles that it may cover. */
 typedef struct gtx_seen_slab {
     float near;               /* the least t of its points */
-    uint32_t slab;            /* its record */
     uint16_t x0, x1, y0, y1;
-    float sum[2], difference[2]; /* its extent in x + y and x - y, pixels */
+    int32_t sum[2], difference[2]; /* of x and y */
 } gtx_seen_slab;
 
 /* An array of scratch that grows and does not keep what it held. */
@@ -93,7 +92,7 @@ enum {
 typedef struct gtx_tiles {
     gl_uint vertex_array, corner_buffer, stream_buffer, stream_texture;
     gl_int max_texels;
-    gtx_scratch seen, heads, records, slabs, lists, corners;
+    gtx_scratch seen, order, heads, records, slabs, lists, corners;
     uint32_t seen_count, tile_count, corner_count;
     uint32_t head_texels, record_texels, slab_texels, list_texels;
     float place[PLACE_ROWS][4];

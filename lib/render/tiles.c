@@ -2,9 +2,9 @@
 #include "render/sight.h"
 
 #include "base/alloc.h"
+#include "render/order.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Pixels along a tile, and tiles along the height of a rectangle of them. */
@@ -30,7 +30,8 @@ static void *reserve(gtx_renderer *renderer, gtx_scratch *scratch, size_t count,
 void gtx_tiles_free(gtx_renderer *renderer)
 {
     gtx_tiles *t = &renderer->tiles;
-    gtx_scratch *all[] = {&t->seen, &t->heads, &t->records, &t->slabs, &t->lists, &t->corners};
+    gtx_scratch *all[] = {&t->seen,    &t->order, &t->heads,  &t->records,
+                          &t->slabs, &t->lists, &t->corners};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
         gtx_free_array(&renderer->allocator, all[i]->data, all[i]->size, 1);
         *all[i] = (gtx_scratch){0};
@@ -53,6 +54,15 @@ static bool tiles_of(const float range[2], uint32_t pixels, uint16_t *first, uin
     *first = (uint16_t)((uint32_t)low / TILE);
     *last = (uint16_t)((uint32_t)high / TILE);
     return true;
+}
+
+/* Which tiles have a pixel in a range of x + y, or of x - y, by the sum or the difference of the
+ * tiles' own x and y. `middle`: that of the middle of tile 0, in pixels. */
+static void diagonals_of(const float range[2], float middle, int32_t out[2])
+{
+    const float reach = TILE - 1 + 2 * slack, most = 1 << 20;
+    out[0] = (int32_t)fmaxf(fminf(ceilf((range[0] - middle - reach) / TILE), most), -most);
+    out[1] = (int32_t)fmaxf(fminf(floorf((range[1] - middle + reach) / TILE), most), -most);
 }
 
 /* Where a slab is in the picture; false when it is not. One that the eye's plane cuts may be
@@ -89,20 +99,14 @@ static bool project(const gtx_camera_rows *c, const gtx_sight *s, const gtx_slab
         memcpy(sum, all, sizeof all);
         memcpy(difference, all, sizeof all);
     }
-    memcpy(out->sum, sum, sizeof sum);
-    memcpy(out->difference, difference, sizeof difference);
-    return tiles_of(x, c->width, &out->x0, &out->x1) && tiles_of(y, c->height, &out->y0, &out->y1);
+    if (!tiles_of(x, c->width, &out->x0, &out->x1) || !tiles_of(y, c->height, &out->y0, &out->y1))
+        return false;
+    diagonals_of(sum, TILE, out->sum);
+    diagonals_of(difference, 0, out->difference);
+    return true;
 }
 
-static int compare(const void *a, const void *b)
-{
-    const gtx_seen_slab *x = a, *y = b;
-    if (x->near != y->near)
-        return x->near < y->near ? -1 : 1;
-    return x->slab < y->slab ? -1 : x->slab > y->slab;
-}
-
-/* Finds the slabs in view, nearest first, and the records of their patches. */
+/* Finds the slabs in view, their order from the nearest on, and the records of their patches. */
 static bool find_slabs(gtx_renderer *renderer, const gtx_camera_rows *c, const gtx_model *model,
                        const gtx_instance_data *placed, uint32_t records_at)
 {
@@ -120,7 +124,8 @@ static bool find_slabs(gtx_renderer *renderer, const gtx_camera_rows *c, const g
     uint32_t (*records)[GTX_TILE_RECORD_TEXELS][4] =
         reserve(renderer, &t->records, model->patch_count, sizeof *records);
     uint32_t (*slabs)[GTX_TILE_SLAB_TEXELS][4] = reserve(renderer, &t->slabs, most, sizeof *slabs);
-    if (!seen || !records || !slabs)
+    gtx_rank *order = reserve(renderer, &t->order, 2 * most, sizeof *order);
+    if (!seen || !records || !slabs || !order)
         return false;
     for (uint32_t i = 0; i < plan->count; ++i) {
         const gtx_plan_entry *entry = &plan->entries[i];
@@ -133,27 +138,35 @@ static bool find_slabs(gtx_renderer *renderer, const gtx_camera_rows *c, const g
                 continue;
             gtx_sight_put_slab(&s, slab, records_at + GTX_TILE_RECORD_TEXELS * s.patch,
                                slabs[t->seen_count]);
-            out->slab = t->seen_count++;
+            order[t->seen_count] = gtx_rank_of(out->near, t->seen_count);
+            ++t->seen_count;
         }
     }
-    qsort(seen, t->seen_count, sizeof *seen, compare);
+    gtx_order(order, order + t->seen_count, t->seen_count);
     return true;
 }
 
-static bool covers(const gtx_seen_slab *s, uint32_t x, uint32_t y)
+static int32_t greatest(int32_t a, int32_t b, int32_t c)
 {
-    const float half = TILE / 2.0f, reach = TILE - 1 + 2 * slack;
-    const float sum = (float)(TILE * (x + y)) + 2 * half;
-    const float difference = (float)TILE * ((float)x - (float)y);
-    return sum + reach >= s->sum[0] && sum - reach <= s->sum[1] &&
-           difference + reach >= s->difference[0] && difference - reach <= s->difference[1];
+    const int32_t ab = a > b ? a : b;
+    return ab > c ? ab : c;
+}
+
+/* In row y of the tiles that a slab may cover. */
+static int32_t first_tile(const gtx_seen_slab *s, int32_t y)
+{
+    return greatest(s->x0, s->sum[0] - y, s->difference[0] + y);
+}
+
+static int32_t last_tile(const gtx_seen_slab *s, int32_t y)
+{
+    return -greatest(-s->x1, y - s->sum[1], -s->difference[1] - y);
 }
 
 /* Each tile that a slab may cover. */
 #define FOR_EACH_TILE(s, x, y)                                                                     \
-    for (uint32_t y = (s)->y0; y <= (s)->y1; ++y)                                                  \
-        for (uint32_t x = (s)->x0; x <= (s)->x1; ++x)                                              \
-            if (covers(s, x, y))
+    for (int32_t y = (s)->y0; y <= (s)->y1; ++y)                                                   \
+        for (int32_t x = first_tile(s, y), last_##x = last_tile(s, y); x <= last_##x; ++x)
 
 /* Heads of the lists: where each begins and ends in the stream, whose first texels they are.
  * Returns where the last one ends, and counts the tiles that have any. */
@@ -164,7 +177,7 @@ static uint64_t make_heads(gtx_tiles *t, uint32_t columns, uint32_t (*heads)[4],
     memset(heads, 0, count * sizeof *heads);
     for (const gtx_seen_slab *s = seen; s < seen + t->seen_count; ++s)
         FOR_EACH_TILE(s, x, y)
-            ++heads[y * columns + x][2];
+            ++heads[(uint32_t)y * columns + (uint32_t)x][2];
     t->tile_count = 0;
     for (size_t i = 0; i < count; ++i) {
         heads[i][0] = heads[i][1] = (uint32_t)begin; /* the end moves on as the list fills up */
@@ -174,18 +187,21 @@ static uint64_t make_heads(gtx_tiles *t, uint32_t columns, uint32_t (*heads)[4],
     return begin;
 }
 
-/* Puts each slab into the lists of its tiles. */
+/* Puts each slab into the lists of its tiles, nearest first. */
 static void list_slabs(const gtx_tiles *t, uint32_t columns, uint32_t (*heads)[4],
                        uint32_t (*lists)[4])
 {
     const gtx_seen_slab *seen = t->seen.data;
+    const gtx_rank *order = t->order.data;
     const uint32_t first = t->head_texels + t->record_texels, begin = first + t->slab_texels;
-    for (const gtx_seen_slab *s = seen; s < seen + t->seen_count; ++s)
+    for (uint32_t i = 0; i < t->seen_count; ++i) {
+        const gtx_seen_slab *s = &seen[order[i].place];
         FOR_EACH_TILE(s, x, y) {
-            uint32_t *entry = lists[heads[y * columns + x][1]++ - begin];
-            entry[0] = first + GTX_TILE_SLAB_TEXELS * s->slab;
+            uint32_t *entry = lists[heads[(uint32_t)y * columns + (uint32_t)x][1]++ - begin];
+            entry[0] = first + GTX_TILE_SLAB_TEXELS * order[i].place;
             entry[1] = gtx_bits_of(s->near);
         }
+    }
 }
 
 /* Two triangles over tiles x0..x1 of rows y0..y1. */
