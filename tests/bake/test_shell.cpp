@@ -179,7 +179,7 @@ static double distance_to(const std::array<Vec3d, 3> &c, const Vec3d &p)
 }
 
 /* Narrow tips, which a mean of distances would give up: hardly a vertex of the source is farther
- * outside than half a level's error, and none is by much. */
+ * outside than half a level's error, of far levels a few are, and none is by much. */
 static void tips_are_reached(void **)
 {
     Mesh mesh = shapes::ball(40, [](const Vec3d &d) {
@@ -201,7 +201,7 @@ static void tips_are_reached(void **)
             outside += height > 0.5 * level.error + level.step;
             assert_true(height < level.error + level.step);
         }
-        assert_true(outside <= mesh.positions.size() / 200);
+        assert_true(outside <= mesh.positions.size() / (level.far ? 50 : 200));
     }
 }
 
