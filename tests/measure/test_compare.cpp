@@ -77,6 +77,40 @@ static void raster_is_tight(void **)
     }
 }
 
+/* Two rectangles with a slit of a fifth of a pixel between them, between the centres of pixels. */
+static void slits_are_seen_from_close(void **)
+{
+    Extent extent;
+    extent.radius = 1;
+    for (const View &view : comparison_views(extent, 32)) {
+        if (view.toward.z < 0.999)
+            continue;
+        const double slit = view.at(15, 0).x + view.pixel / 2, half = view.pixel / 10;
+        Mesh mesh;
+        for (const auto &[from, to] : {std::array{-0.9, slit - half}, std::array{slit + half, 0.9}}) {
+            const uint32_t at = uint32_t(mesh.positions.size());
+            for (double y : {-0.9, 0.9})
+                for (double x : {from, to})
+                    mesh.positions.push_back({x, y, 0.25});
+            mesh.triangles.push_back({at, at + 1, at + 3});
+            mesh.triangles.push_back({at, at + 3, at + 2});
+        }
+        const MeshImage image = rasterise(mesh, view);
+        const std::vector<std::array<uint32_t, 2>> pixels = {{15, 16}, {16, 9}, {9, 16}};
+        const std::vector<MeshImage> close = rasterise_close(mesh, view, pixels);
+        assert_int_equal(close.size(), 3);
+        for (size_t k = 0; k < 3; ++k) {
+            const size_t centre = CLOSER * CLOSE_SIDE + CLOSER;
+            const size_t pixel = pixels[k][1] * 32 + pixels[k][0];
+            assert_int_equal(image.front[pixel], 1);
+            assert_int_equal(close[k].triangle[centre], image.triangle[pixel]);
+            assert_float_equal(close[k].depth[centre], image.depth[pixel], 1e-6);
+            const auto &front = close[k].front;
+            assert_int_equal(std::count(front.begin(), front.end(), 0), k < 2 ? CLOSE_SIDE : 0);
+        }
+    }
+}
+
 /* A rectangle seen along its normal covers the pixels whose centres are in it; the view from behind
  * shows a back, unless it is two-sided. */
 static void facing_is_told(void **)
@@ -245,6 +279,7 @@ int main()
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(views_are_26),
         cmocka_unit_test(raster_is_tight),
+        cmocka_unit_test(slits_are_seen_from_close),
         cmocka_unit_test(facing_is_told),
         cmocka_unit_test(a_good_sphere_has_no_fault),
         cmocka_unit_test(a_missing_patch_is_a_hole),
