@@ -57,10 +57,10 @@ float gtx_depth_of(vec2 zw)
 }
 
 #ifndef GTX_TILES
-/* Shortens the ray to what the engine's near and far planes leave of it and, where the driver tells
- * it, to what has been drawn before: a shader that writes depth comes before the depth test. Of
- * several samples the driver tells of one. Boxes, which the paper's search has, do without. `zw` and
- * `zw_step` are linear along the ray. */
+/* Shortens the ray to what the engine's near and far planes leave of it and, where the driver
+ * tells it, to what has been drawn before: a shader that writes depth comes before the depth
+ * test. Of several samples the driver tells of one. Boxes, which the paper's search has, do
+ * without. `zw` and `zw_step` are linear along the ray. */
 void gtx_clip_depth(vec2 zw, vec2 zw_step, inout float t0, inout float t1)
 {
     float low = -gtx_depth.x, high = 1.0;

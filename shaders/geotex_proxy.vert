@@ -6,7 +6,7 @@
  * by their back faces, so that a camera inside still sees the patch; their rays are cut to the box
  * and to the near plane in the fragment. */
 layout(location = 0) in vec3 gtx_position;  /* grid space */
-layout(location = 1) in uint gtx_patch;     /* index + 2^28 * kind: 0: box; n: hull of level n - 1 */
+layout(location = 1) in uint gtx_patch;     /* index + 2^28 * kind: 0 box, n hull of level n - 1 */
 layout(location = 2) in vec4 gtx_world_x;   /* rows of object -> world, one set an instance */
 layout(location = 3) in vec4 gtx_world_y;
 layout(location = 4) in vec4 gtx_world_z;

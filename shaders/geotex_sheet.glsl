@@ -5,9 +5,9 @@
  * bilinear patch through them (format/gtx.md, section 4.1). At level k cell (i, j) spans 2^k texels
  * from texel 2^k i, 2^k j on, the last ones of a row or column a texel less (section 5); grid space
  * is the same at all levels. */
-GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* four codes a cell: (0,0) (1,0) (0,1) (1,1); under
-                                                     level 0 the others side by side, for lookups
-                                                     by level cost more */
+GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* four codes a cell: (0,0) (1,0) (0,1) (1,1);
+                                                     under level 0 the others side by side, for
+                                                     lookups by level cost more */
 GTX_SAMPLER(1, highp sampler2DArray) gtx_trim;    /* distance to the outline, as stored */
 GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* 11 texels a patch, 128 patches a row */
 
@@ -50,8 +50,8 @@ gtx_frame gtx_frame_of(int patch_index)
                      gtx_record(patch_index, 5).xyz, gtx_record(patch_index, 6).xyz);
 }
 
-/* From the rectangle (x, y, w, h) and (lowest z, highest z, page, two-sided), which are those of all
- * levels, for a ray from anywhere. */
+/* From the rectangle (x, y, w, h) and (lowest z, highest z, page, two-sided), which are those of
+ * all levels, for a ray from anywhere. */
 gtx_sheet gtx_sheet_of(vec4 rect, vec4 span, int level)
 {
     ivec2 page = textureSize(gtx_cells, 0).xy;
@@ -83,8 +83,8 @@ vec3 gtx_facet(gtx_frame frame, gtx_hit hit)
            hit.slope.y * cross(frame.axis_z, frame.axis_x);
 }
 
-/* Whether the sheet shows at a point: at most 0.3 * 2^level texels outside its outline (section 4.2:
- * stored code 128 + 16 * 0.3). */
+/* Whether the sheet shows at a point: at most 0.3 * 2^level texels outside its outline (section
+ * 4.2: stored code 128 + 16 * 0.3). */
 bool gtx_shows(gtx_sheet sheet, vec2 at)
 {
     ivec2 cell = clamp(ivec2(floor(at)), ivec2(0), sheet.size - 2);

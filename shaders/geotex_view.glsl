@@ -19,8 +19,8 @@ GTX_UNIFORM vec4 gtx_shell;             /* of the shell's level, xyz: origin; w:
 GTX_UNIFORM vec4 gtx_even;              /* of geotex_shell_front.frag: the only material */
 GTX_UNIFORMS_END
 
-/* Half way between light and eye, unit, and what of Schlick's Fresnel term depends on them. Where they
- * face each other it is n. All are unit and in one space. */
+/* Half way between light and eye, unit, and what of Schlick's Fresnel term depends on them.
+ * Where they face each other it is n. All are unit and in one space. */
 vec4 gtx_half_way(vec3 n, vec3 eye, vec3 light)
 {
     vec3 h = normalize(light + eye + 1e-5 * n);

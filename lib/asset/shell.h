@@ -1,4 +1,5 @@
-/* Shell sections: how their bytes lie, and how they are coded (format/gtx.md, sections 1.2 and 6). */
+/* Shell sections: how their bytes lie, and how they are coded (format/gtx.md, sections 1.2 and
+ * 6). */
 #ifndef GTX_ASSET_SHELL_H
 #define GTX_ASSET_SHELL_H
 

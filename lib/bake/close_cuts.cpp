@@ -15,7 +15,8 @@ namespace gtx::baking {
 /* Texels of depth that a texel is raised at most: more is another sheet, or would be a fin that a
  * third patch does not meet. */
 constexpr double MOST_RAISED = 0.2;
-/* and that it may miss: a ray that finds the way then is within a tenth of a degree of the surface. */
+/* and that it may miss: a ray that finds the way then is within a tenth of a degree of the
+ * surface. */
 constexpr double MISSED = 0.002;
 /* Texels from its outline to which a sheet counts, the first ones beyond a cut included. */
 constexpr double REACHED = SHOWN + 0.1;

@@ -42,8 +42,8 @@ ShellSource shell_source(const Mesh &mesh, const Partition &partition, const Map
 ShellSource shell_source(const Maps &maps, Task &task);
 
 /* Simplifies the surface across all patches at once, down to at most `levels` levels, the finest
- * first, and to at most three more for models of a few pixels, whose triangles reach across patches.
- * Deterministic for any thread count. Stage of `task`: "shell". */
+ * first, and to at most three more for models of a few pixels, whose triangles reach across
+ * patches. Deterministic for any thread count. Stage of `task`: "shell". */
 std::vector<ShellLevel> make_shell(const ShellSource &source, const Maps &maps, unsigned levels,
                                    Task &task);
 

@@ -14,9 +14,9 @@ using Triangle = std::array<uint32_t, 3>;
 /* Triangles around a vertex beyond which it stays. */
 constexpr int MOST_FAN = 40;
 
-/* The triangles around a vertex in order: `ring` holds their other vertices, one more than there are
- * triangles where the fan is open. Where sheets meet there is no order, and each other vertex is in
- * the ring once. */
+/* The triangles around a vertex in order: `ring` holds their other vertices, one more than there
+ * are triangles where the fan is open. Where sheets meet there is no order, and each other
+ * vertex is in the ring once. */
 struct Fan {
     int count = 0, ring_count = 0;
     bool open = false, meeting = false;

@@ -9,8 +9,8 @@
 
 namespace gtx::baking {
 
-/* Vertex v has the triangles around[start[v]] to around[start[v + 1] - 1], and stands for the points
- * points[first[v]] to points[first[v + 1] - 1] of what was simplified. */
+/* Vertex v has the triangles around[start[v]] to around[start[v + 1] - 1], and stands for the
+ * points points[first[v]] to points[first[v + 1] - 1] of what was simplified. */
 struct Simplified {
     const std::vector<Vec3d> &positions;
     const std::vector<Triangle> &triangles;

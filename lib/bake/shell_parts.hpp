@@ -59,7 +59,8 @@ public:
     }
     /* How far a place lies outside the core; negative inside. */
     double outside(const std::array<double, 2> &place) const;
-    /* How far it lies beyond a side, the low or high one along an axis; -infinity: not cut there. */
+    /* How far it lies beyond a side, the low or high one along an axis; -infinity: not cut
+     * there. */
     double beyond(const std::array<double, 2> &place, int axis, bool high) const
     {
         return high ? place[axis] - high_[axis] : low_[axis] - place[axis];

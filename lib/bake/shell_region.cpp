@@ -44,7 +44,8 @@ PatchRegion::PatchRegion(const gtx_patch &patch, const Maps &maps)
 
     /* Texels of distance to a code, then to one too far from any. Vertices are rounded by parts of
      * a texel later: the last ring of dilation is left alone. */
-    const unsigned reach = std::min<unsigned>(MOST_REACH, std::max<unsigned>(patch.dilation, 1) - 1);
+    const unsigned reach =
+        std::min<unsigned>(MOST_REACH, std::max<unsigned>(patch.dilation, 1) - 1);
     clear_.resize(size_t(w_) * h_);
     for (int j = 0; j < h_; ++j) {
         const size_t row = size_t(patch.page) * maps.page_height + patch.rect[1] + j;

@@ -1,7 +1,7 @@
-/* Fewer triangles: vertices are merged into a neighbour, cheapest first (Garland and Heckbert 1997),
- * in rounds of many at once that do not touch each other. Borders between patches cost nothing and
- * need no care: both sides share their vertices, and a triangle may reach as far as the maps of its
- * patch do. */
+/* Fewer triangles: vertices are merged into a neighbour, cheapest first (Garland and Heckbert
+ * 1997), in rounds of many at once that do not touch each other. Borders between patches cost
+ * nothing and need no care: both sides share their vertices, and a triangle may reach as far as
+ * the maps of its patch do. */
 #include "bake/shell_fan.hpp"
 #include "bake/shell_outlier.hpp"
 #include "bake/shell_parts.hpp"
@@ -18,8 +18,8 @@ namespace gtx::baking {
 constexpr double ROUND_SHARE = 0.4, FEW = 0.02;
 /* A triangle may turn by as much as has this cosine. */
 constexpr double LEAST_TURN_COSINE = 0.25;
-/* What moving a vertex along a plane costs, as a share of the squared distance: of two that leave the
- * surface alone, the shorter way makes better triangles. */
+/* What moving a vertex along a plane costs, as a share of the squared distance: of two that
+ * leave the surface alone, the shorter way makes better triangles. */
 constexpr double SLIDE = 1e-5;
 /* What settling costs for the squared distance, as a share of what leaving the surface does. */
 constexpr double STAY = 0.003;
@@ -52,7 +52,7 @@ struct Simplifier::State {
     std::vector<Vec3d> settled;  /* where the vertices go on from for the next level */
     const std::vector<Vec3d> points; /* vertices at the start */
     std::vector<uint32_t> point;     /* of each vertex, the one that it was */
-    std::vector<uint32_t> merged;    /* of each point, that which it went into; itself: it is left */
+    std::vector<uint32_t> merged;    /* of each point, what it went into; itself: it is left */
     std::vector<uint32_t> start, around; /* triangles of each vertex */
     std::vector<uint8_t> touched;
     /* What each vertex costs at least, as far as is known: NAN where it has to be found out,
@@ -140,8 +140,8 @@ bool Simplifier::State::keeps_topology(const Fan &fan, uint32_t from, uint32_t t
     return remains;
 }
 
-/* Whether a triangle that changes stays where its patch can show it. One that never was there may go
- * anywhere. */
+/* Whether a triangle that changes stays where its patch can show it. One that never was there
+ * may go anywhere. */
 bool Simplifier::State::keeps_place(uint32_t of, const Corners &before, const Corners &after) const
 {
     const PatchRegion &region = regions[of];
@@ -181,7 +181,8 @@ bool Simplifier::State::keeps_shapes(const Fan &fan, uint32_t from, uint32_t to)
     return true;
 }
 
-/* The cheapest neighbour that the vertex may be merged into; `to` is NO_VERTEX when there is none. */
+/* The cheapest neighbour that the vertex may be merged into; `to` is NO_VERTEX when there is
+ * none. */
 Candidate Simplifier::State::find_candidate(uint32_t vertex, double most) const
 {
     Candidate none = {0, vertex, NO_VERTEX};

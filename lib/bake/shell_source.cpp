@@ -66,8 +66,8 @@ static void drop_hidden(const std::vector<PatchRegion> &regions, ShellSource &so
     source.patch.resize(left);
 }
 
-/* Sheets that meet have vertices of their own in a mesh. Here they have the same: they must not part
- * when they get fewer triangles. */
+/* Sheets that meet have vertices of their own in a mesh. Here they have the same: they must not
+ * part when they get fewer triangles. */
 static ShellSource joined(const Mesh &mesh, const Vec3d &anchor)
 {
     Mesh places;

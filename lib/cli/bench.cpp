@@ -80,7 +80,8 @@ void compare(const Picture &truth, const Picture &picture, size_t width, Quality
         quality.covered += covered;
         quality.holes += !covered && is_inside(truth, p, width);
         for (size_t k = 0; k < 3 && (wanted || covered); ++k)
-            quality.square += std::pow(double(truth.color[4 * p + k]) - picture.color[4 * p + k], 2);
+            quality.square +=
+                std::pow(double(truth.color[4 * p + k]) - picture.color[4 * p + k], 2);
     }
 }
 
@@ -126,7 +127,8 @@ void Bench::judge_all(const std::array<uint32_t, 2> &size, uint32_t instances,
     {
         const Target target(scene.gl, one.width, one.height);
         for (int turn = 0; turn < BENCH_TURNS; ++turn)
-            truth.push_back(scene.look(BenchMethod::MESH, {one.width, one.height, 1, turn}, target));
+            truth.push_back(
+                scene.look(BenchMethod::MESH, {one.width, one.height, 1, turn}, target));
     }
     if (options_.min_iou > 0)
         choose_error(one, truth);

@@ -46,7 +46,7 @@ struct BenchRow {
     double psnr = 0;                /* decibels, over what either covers; infinite: the same */
     uint64_t pixels = 0;            /* covered, a view */
     uint64_t holes = 0;             /* pixels not covered inside what the mesh covers */
-    uint64_t rays = 0, hits = 0;    /* fragments shaded and kept, a view; 0: the driver cannot tell */
+    uint64_t rays = 0, hits = 0;    /* fragments shaded and kept, a view; 0: not told */
 };
 
 struct BenchSetup {
@@ -58,10 +58,10 @@ struct BenchSetup {
 };
 
 /* Measures every window, instance count and method through EGL, without a window; rows are told
- * one by one as they are done. The methods of a window take turns frame by frame, each frame ended by
- * glFinish, so that a machine that slows down slows all of them. A method whose first frame takes
- * over two seconds is measured once. Throws Error: GL, SHADER, MEMORY, LIMIT, and what opening the
- * files says. */
+ * one by one as they are done. The methods of a window take turns frame by frame, each frame
+ * ended by glFinish, so that a machine that slows down slows all of them. A method whose first
+ * frame takes over two seconds is measured once. Throws Error: GL, SHADER, MEMORY, LIMIT, and
+ * what opening the files says. */
 void run_bench(const std::string &asset_path, const Mesh &mesh, const BenchOptions &options,
                const std::function<void(const BenchSetup &)> &begin,
                const std::function<void(const BenchRow &)> &tell);

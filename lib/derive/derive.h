@@ -30,10 +30,10 @@ void gtx_grid_free(gtx_grid *grid, const gtx_allocator *allocator);
 void gtx_grid_trim(const gtx_asset *asset, uint32_t patch, gtx_grid *grid);
 
 /* Corner cells of a level, for kernels that fetch a cell at once: texel (i, j) gets the codes of
- * the nodes (i, j), (i+1, j), (i, j+1), (i+1, j+1), as 4 x uint8_t or 4 x uint16_t; all four are zero
- * where the cell does not exist. `out` is the first of rows of `row_texels` texels. Every level has
- * at most rect[2] >> level by rect[3] >> level cells, so level k of a patch fits its rectangle at
- * mip level k. */
+ * the nodes (i, j), (i+1, j), (i, j+1), (i+1, j+1), as 4 x uint8_t or 4 x uint16_t; all four are
+ * zero where the cell does not exist. `out` is the first of rows of `row_texels` texels. Every
+ * level has at most rect[2] >> level by rect[3] >> level cells, so level k of a patch fits its
+ * rectangle at mip level k. */
 void gtx_grid_cells(const gtx_grid *grid, uint32_t height_bits, size_t row_texels, void *out);
 
 /* How far, in object units, a patch's sheet at a level is from that at level 0, `finest`: the
@@ -43,10 +43,10 @@ void gtx_grid_cells(const gtx_grid *grid, uint32_t height_bits, size_t row_texel
 double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
                       const gtx_grid *grid);
 
-/* Proxies: triangles around a patch's solid cells, to be rasterised so that rays are cast where they
- * may hit. Front faces point outward in the patch's own space. Coordinates: texels in x and y (texel
- * i at x = i), height codes in z (the surface of code c at z = c). `patch` is the patch's index, and
- * above it 0 for a box or one more than the level that a hull is made for. */
+/* Proxies: triangles around a patch's solid cells, to be rasterised so that rays are cast where
+ * they may hit. Front faces point outward in the patch's own space. Coordinates: texels in x and
+ * y (texel i at x = i), height codes in z (the surface of code c at z = c). `patch` is the
+ * patch's index, and above it 0 for a box or one more than the level that a hull is made for. */
 typedef struct gtx_proxy_vertex {
     float x, y, z;
     uint32_t patch;
@@ -70,12 +70,12 @@ enum { GTX_BOX_VERTICES = 8, GTX_BOX_INDICES = 36 };
 gtx_result gtx_add_box(uint32_t patch, const gtx_grid *finest, float grow,
                        const gtx_allocator *allocator, gtx_proxies *out, gtx_error *error);
 
-/* Adds a tight hull of the solid cells of a level: over blocks of cells a lid above the sheet, and
- * walls where the blocks end, down to below it. Two-sided patches have a floor too, and a closed
- * hull. Every ray from outside that crosses the sheet from above, and if it is two-sided from below,
- * passes a front face before. The hull stands off by `grow` codes, and texels at the outline.
- * `*thickness`, in codes, is more than a point in the hull lies above the sheet, or below. A sheet
- * without a solid cell has no triangle. Errors: ARGUMENT, MEMORY. */
+/* Adds a tight hull of the solid cells of a level: over blocks of cells a lid above the sheet,
+ * and walls where the blocks end, down to below it. Two-sided patches have a floor too, and a
+ * closed hull. Every ray from outside that crosses the sheet from above, and if it is two-sided
+ * from below, passes a front face before. The hull stands off by `grow` codes, and texels at the
+ * outline. `*thickness`, in codes, is more than a point in the hull lies above the sheet, or
+ * below. A sheet without a solid cell has no triangle. Errors: ARGUMENT, MEMORY. */
 gtx_result gtx_add_hull(const gtx_asset *asset, uint32_t patch, const gtx_grid *grid, float grow,
                         const gtx_allocator *allocator, gtx_proxies *out, float *thickness,
                         gtx_error *error);
@@ -89,9 +89,9 @@ typedef struct gtx_slab {
 
 enum { GTX_SLAB_CELLS = 8 };
 
-/* Slabs of a patch's level, one around each block of GTX_SLAB_CELLS^2 cells, in rows. The solid cells
- * are held, and neighbours overlap a little. gtx_slab_count says how many; it goes by the rectangle
- * alone. */
+/* Slabs of a patch's level, one around each block of GTX_SLAB_CELLS^2 cells, in rows. The solid
+ * cells are held, and neighbours overlap a little. gtx_slab_count says how many; it goes by the
+ * rectangle alone. */
 uint32_t gtx_slab_count(const gtx_patch *patch, uint32_t level);
 void gtx_grid_slabs(const gtx_patch *patch, const gtx_grid *grid, gtx_slab *out);
 

@@ -166,7 +166,8 @@ static void build(gtx_hull *h)
     gtx_hull_fit(h);
 }
 
-/* One piece of memory for all arrays, the best aligned first. Returns its bytes, 0 without memory. */
+/* One piece of memory for all arrays, the best aligned first. Returns its bytes, 0 without
+ * memory. */
 static size_t allocate(gtx_hull *h, const gtx_allocator *hooks)
 {
     h->block_count = (size_t)h->blocks[0] * h->blocks[1];

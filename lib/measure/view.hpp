@@ -55,8 +55,8 @@ struct MeshImage {
 };
 MeshImage rasterise(const Mesh &mesh, const View &view);
 
-/* The square that a pixel's centre and those of its neighbours span, so many times finer: CLOSE_SIDE
- * x CLOSE_SIDE fragments for each of these pixels. */
+/* The square that a pixel's centre and those of its neighbours span, so many times finer:
+ * CLOSE_SIDE x CLOSE_SIDE fragments for each of these pixels. */
 constexpr uint32_t CLOSER = 8, CLOSE_SIDE = 2 * CLOSER + 1;
 std::vector<MeshImage> rasterise_close(const Mesh &mesh, const View &view,
                                        const std::vector<std::array<uint32_t, 2>> &pixels);

@@ -357,8 +357,9 @@ gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc,
         return result;
     }
     gtx_model_sum_up(model);
-    model->size.geometry += (uint64_t)model->proxies.index_count * sizeof *model->proxies.indices +
-                            (uint64_t)model->proxies.vertex_count * sizeof *model->proxies.vertices +
+    const gtx_proxies *proxies = &model->proxies;
+    model->size.geometry += (uint64_t)proxies->index_count * sizeof *proxies->indices +
+                            (uint64_t)proxies->vertex_count * sizeof *proxies->vertices +
                             model->shells.vertex_bytes + model->shells.index_bytes;
     *out = model;
     return GTX_OK;

@@ -51,9 +51,10 @@ typedef struct gtx_shells {
     gl_uint vertex_buffer, index_buffer;
 } gtx_shells;
 
-/* Made in four steps, of which the second and the last are done for every level, in any order or at
- * the same time: what a level needs is found, room is made for all, and buffers are filled. Whatever
- * fails, gtx_shells_free gives back what was allocated. An asset without a shell has no levels. */
+/* Made in four steps, of which the second and the last are done for every level, in any order or
+ * at the same time: what a level needs is found, room is made for all, and buffers are filled.
+ * Whatever fails, gtx_shells_free gives back what was allocated. An asset without a shell has no
+ * levels. */
 bool gtx_shells_begin(const gtx_asset *asset, const gtx_allocator *allocator, gtx_shells *out);
 void gtx_shells_measure(const gtx_asset *asset, uint32_t level, const gtx_allocator *allocator,
                         gtx_shells *out);

@@ -132,7 +132,8 @@ gtx_result gtx_frame_from_view(const gtx_view *view, gtx_frame *out, gtx_error *
     const uint32_t *steps = view->search_steps;
     if (steps[0] > 1000 || steps[1] > 100 || (steps[1] && !steps[0]))
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
-                        "the view's search has over 1000 linear or 100 binary steps, or no linear ones");
+                        "the view's search has over 1000 linear or 100 binary steps, "
+                        "or no linear ones");
     memset(out, 0, sizeof *out);
     out->search[0] = (float)steps[0];
     out->search[1] = (float)steps[1];

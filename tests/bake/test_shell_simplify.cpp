@@ -25,7 +25,8 @@ static bool is_near(double a, double b)
 struct Roof {
     std::vector<Vec3d> positions = {{0, 0, 1}, {-1, 0, 1}, {0, -1, 0}, {1, 0, 1}, {0, 1, 0}};
     std::vector<Triangle> triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}};
-    std::vector<uint32_t> start = {0, 4, 6, 8, 10, 12}, around = {0, 1, 2, 3, 0, 3, 0, 1, 1, 2, 2, 3};
+    std::vector<uint32_t> start = {0, 4, 6, 8, 10, 12};
+    std::vector<uint32_t> around = {0, 1, 2, 3, 0, 3, 0, 1, 1, 2, 2, 3};
 
     /* To a point that vertex 0 stands for; returns how often a vertex was moved. */
     int draw_out_to(const Vec3d &point, double most)

@@ -1,4 +1,5 @@
-/* Memory hooks that fail one allocation, and count what is not given back. Needs cmocka before it. */
+/* Memory hooks that fail one allocation, and count what is not given back. Needs cmocka before
+ * it. */
 #ifndef GTX_TESTS_COUNTER_H
 #define GTX_TESTS_COUNTER_H
 

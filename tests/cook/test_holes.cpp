@@ -8,9 +8,9 @@ static void closed_models_stay_closed(void **)
     const char *models = getenv("GEOTEX_MODELS");
     if (!models || !*models)
         skip();
-    for (const char *name : {"/gltf/venus.gltf", "/scans/armadillo_86k.obj.gz", "/scans/horse.ply.gz",
-                             "/scans/gargo_3dhop.ply.gz", "/scans/ogre.obj.gz",
-                             "/scans/rocker-arm.obj"}) {
+    for (const char *name :
+         {"/gltf/venus.gltf", "/scans/armadillo_86k.obj.gz", "/scans/horse.ply.gz",
+          "/scans/gargo_3dhop.ply.gz", "/scans/ogre.obj.gz", "/scans/rocker-arm.obj"}) {
         const std::string input = models + std::string(name), output = in_folder("closed.gtx");
         gtx_error error = {};
         if (gtx_cook_file(input.c_str(), output.c_str(), nullptr, nullptr, &error))

@@ -87,7 +87,8 @@ static void slits_are_seen_from_close(void **)
             continue;
         const double slit = view.at(15, 0).x + view.pixel / 2, half = view.pixel / 10;
         Mesh mesh;
-        for (const auto &[from, to] : {std::array{-0.9, slit - half}, std::array{slit + half, 0.9}}) {
+        const std::array<double, 2> sides[] = {{-0.9, slit - half}, {slit + half, 0.9}};
+        for (const auto &[from, to] : sides) {
             const uint32_t at = uint32_t(mesh.positions.size());
             for (double y : {-0.9, 0.9})
                 for (double x : {from, to})
