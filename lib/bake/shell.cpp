@@ -25,6 +25,9 @@ constexpr double THIN_ERROR = 1.0 / 8;
 constexpr double MOST_ERROR = 1.0 / 64;
 /* The coarsest level beyond, for models of ten to twenty pixels, and how far it may stray. */
 constexpr double FAR_TRIANGLES = 160, MOST_FAR_ERROR = 1.0 / 20;
+/* Their errors are stated so many times as large: an outline of few triangles is off by the farthest
+ * of its points, not by the mean. */
+constexpr double FAR_STATED = 1.5;
 /* How many lead there, and triangles of one for one of the next where fewer of them do. */
 constexpr unsigned FAR_LEVELS = 3;
 constexpr double FAR_RATIO = 2.5;
@@ -273,7 +276,7 @@ static void add_far_levels(Simplifier &simplifier, const std::vector<PatchRegion
             return;
         ShellLevel level = make_level(simplifier, find_far_homes(simplifier, maps, regions, task),
                                       round_all(simplifier, lattice), regions.size(), lattice);
-        level.error = float(thinned + simplifier.error());
+        level.error = float(thinned + FAR_STATED * simplifier.error());
         level.far = true;
         if (level.indices.empty())
             return;

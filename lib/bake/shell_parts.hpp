@@ -99,7 +99,8 @@ public:
     void cross_patches();
 
     /* Moves the vertices that are left to where they are nearest to the surface that they stand
-     * for: merging alone cuts all that bulges off. */
+     * for: merging alone cuts all that bulges off. Then, while triangles lie in their patches, out
+     * to what is still outside. */
     void settle();
 
     /* Takes triangles away, a value each. */

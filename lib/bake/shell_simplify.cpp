@@ -397,6 +397,8 @@ void Simplifier::State::settle()
         error = std::max(error, quadrics[v].at(positions[v]));
     }
     settled = positions;
+    if (crossing) /* what is a handful of pixels would only look fatter */
+        return;
     Simplified surface = {positions, triangles, start, around, {}, {}};
     find_members(surface.first, surface.points);
     draw_out(surface, MOST_OUTSIDE * std::sqrt(error),
