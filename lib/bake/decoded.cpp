@@ -22,8 +22,7 @@ Decoded::Decoded(const PatchMaps &patch, unsigned height_bits)
 
 bool Decoded::sheet_above(const Vec3d &point, double &above, double &trim) const
 {
-    const Vec3d p = point - origin;
-    const double u = dot(dual[0], p) / pitch[0] - 0.5, v = dot(dual[1], p) / pitch[1] - 0.5;
+    const double u = across(0, point), v = across(1, point);
     if (!(u >= 0 && v >= 0 && u < w - 1 && v < h - 1))
         return false;
     const int i = int(u), j = int(v);
@@ -38,7 +37,7 @@ bool Decoded::sheet_above(const Vec3d &point, double &above, double &trim) const
         code += weight[k] * maps->height[corner[k]];
         trim += weight[k] * (maps->trim[corner[k]] - 128.) / 16;
     }
-    above = height(code) - dot(dual[2], p);
+    above = height(code) - dot(dual[2], point - origin);
     return true;
 }
 

@@ -28,8 +28,14 @@ struct Decoded {
     /* The first corner of the cell that it is in there. */
     size_t cell(const Vec3d &point) const
     {
-        const Vec3d p = point - origin;
-        return at(int(dot(dual[0], p) / pitch[0] - 0.5), int(dot(dual[1], p) / pitch[1] - 0.5));
+        return at(int(across(0, point)), int(across(1, point)));
+    }
+
+private:
+    /* Texels along an axis. */
+    double across(int k, const Vec3d &point) const
+    {
+        return dot(dual[k], point - origin) / pitch[k] - 0.5;
     }
 };
 

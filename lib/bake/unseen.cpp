@@ -150,7 +150,7 @@ static bool is_masked(const Mesh &mesh, uint32_t triangle)
     return !a.material.empty() && a.materials[a.material[triangle]].alpha_cutoff > 0;
 }
 
-/* How much of a triangle no sheet shows, 0..1. */
+/* How much of a triangle no sheet shows, 0..1, what shows once it is eased aside. */
 double Search::lost_share(const Decoded &own, const Chart &chart, uint32_t triangle,
                           std::vector<Eased> &eased) const
 {

@@ -84,19 +84,26 @@ static gtx_asset *two_squares(void)
     return with_shell(two_sheets(), &shell, 1, 0, SHELL_COLORED);
 }
 
+/* Two sheets from above, where their maps are seen at a level; returns the side of a pixel. */
+static double draw_from_above(stage *s, const subject *shown, int level)
+{
+    const double pixel = 0.125 * (1 << level) * 1.2;
+    gtx_camera camera = {.target = {4, 2, 0.5f}, .orthographic = 1, .distance = 3,
+                         .radius = (float)(pixel * STAGE_HEIGHT / 2 * 0.96)};
+    gtx_view view = view_of(&camera);
+    view.viewport_height = STAGE_HEIGHT;
+    view.ambient = 1;
+    draw(s, &view, GTX_METHOD_SHELL, &shown->instance, 1, &first);
+    return pixel;
+}
+
 /* No texel of the one in the picture of the other, at no mip level; and the right level. */
 static void maps_end_at_their_rectangles(void **state)
 {
     STAGE_OR_SKIP(state);
     subject shown = subject_open(s, two_squares());
     for (int level = 0; level < 4; ++level) {
-        const double pixel = 0.125 * (1 << level) * 1.2;
-        gtx_camera camera = {.target = {4, 2, 0.5f}, .orthographic = 1, .distance = 3,
-                             .radius = (float)(pixel * STAGE_HEIGHT / 2 * 0.96)};
-        gtx_view view = view_of(&camera);
-        view.viewport_height = STAGE_HEIGHT;
-        view.ambient = 1;
-        draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &first);
+        const double pixel = draw_from_above(s, &shown, level);
         long counts[2] = {0, 0};
         for (int i = 0; i < STAGE_PIXELS; ++i) {
             const uint8_t *c = first.color + 4 * i;
@@ -124,13 +131,7 @@ static void far_triangles_show_one_patch(void **state)
                              .indices = indices, .positions = positions};
     subject shown = subject_open(s, with_shell(two_sheets(), &shell, 1, 0, SHELL_COLORED));
     for (int level = 0; level < 4; ++level) {
-        const double pixel = 0.125 * (1 << level) * 1.2;
-        gtx_camera camera = {.target = {4, 2, 0.5f}, .orthographic = 1, .distance = 3,
-                             .radius = (float)(pixel * STAGE_HEIGHT / 2 * 0.96)};
-        gtx_view view = view_of(&camera);
-        view.viewport_height = STAGE_HEIGHT;
-        view.ambient = 1;
-        draw(s, &view, GTX_METHOD_SHELL, &shown.instance, 1, &first);
+        const double pixel = draw_from_above(s, &shown, level);
         long count = 0;
         for (int i = 0; i < STAGE_PIXELS; ++i) {
             const uint8_t *c = first.color + 4 * i;
