@@ -186,6 +186,7 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
     if (patches.empty())
         throw Error(GTX_ERROR_EMPTY, "the materials cut all of the model away");
 
+    stitch(options.height_bits, patches, task);
     close_cuts(partition, charts, job.anchor, options.height_bits, patches, task);
 
     task.begin("pack");

@@ -8,7 +8,6 @@
 #include "bake/decoded.hpp"
 
 #include <algorithm>
-#include <tuple>
 
 namespace gtx::baking {
 
@@ -22,30 +21,28 @@ constexpr double MISSED = 0.002;
 constexpr double REACHED = SHOWN + 0.1;
 /* A neighbour's texels beyond the same cut follow what is raised here. */
 constexpr int ROUNDS = 2;
-/* Of (1, 1, 1), along which pieces are sorted. */
-const double DIAGONAL = std::sqrt(3.);
 
 namespace {
 
-/* A patch, and where its chart is cut. */
-struct Piece : Decoded {
-    double cut_low[2], cut_high[2];
+/* Where the chart of a patch is cut, in texels. */
+struct Clip {
+    double low[2], high[2];
 
-    Piece(const PatchMaps &patch, const Chart &chart, const Vec3d &anchor, unsigned height_bits)
-        : Decoded(patch, height_bits)
+    Clip(const Decoded &sheet, const Chart &chart, const Vec3d &anchor)
     {
-        const Vec3d corner = chart.frame.local(origin + anchor);
+        const Vec3d corner = chart.frame.local(sheet.origin + anchor);
         for (int k = 0; k < 2; ++k) {
-            cut_low[k] = (chart.clip_low[k] - corner[k]) / pitch[k] - 0.5;
-            cut_high[k] = (chart.clip_high[k] - corner[k]) / pitch[k] - 0.5;
+            low[k] = (chart.clip_low[k] - corner[k]) / sheet.pitch[k] - 0.5;
+            high[k] = (chart.clip_high[k] - corner[k]) / sheet.pitch[k] - 0.5;
         }
     }
 };
 
 class Cuts {
 public:
-    Cuts(const std::vector<const Piece *> &others, const Piece &piece, unsigned most_code)
-        : others_(others), piece_(piece), most_code_(most_code),
+    Cuts(const std::vector<const Decoded *> &others, const Decoded &piece, const Clip &clip,
+         unsigned most_code)
+        : others_(others), piece_(piece), clip_(clip), most_code_(most_code),
           most_(MOST_RAISED * piece.texel()), missed_(MISSED * piece.texel()),
           codes_(piece.maps->height)
     {
@@ -53,8 +50,8 @@ public:
     std::vector<uint16_t> close()
     {
         for (int axis = 0; axis < 2; ++axis) {
-            close_line(axis, int(std::ceil(std::max(piece_.cut_low[axis], 0.))) - 1, 1);
-            close_line(axis, int(std::floor(std::min(piece_.cut_high[axis], 1e5))) + 1, -1);
+            close_line(axis, int(std::ceil(std::max(clip_.low[axis], 0.))) - 1, 1);
+            close_line(axis, int(std::floor(std::min(clip_.high[axis], 1e5))) + 1, -1);
         }
         return std::move(codes_);
     }
@@ -64,8 +61,9 @@ private:
     double missing(int axis, int line, double along) const;
     void raise(size_t texel, double by);
 
-    const std::vector<const Piece *> &others_;
-    const Piece &piece_;
+    const std::vector<const Decoded *> &others_;
+    const Decoded &piece_;
+    const Clip clip_;
     const double most_code_, most_, missed_;
     std::vector<uint16_t> codes_;
 };
@@ -90,7 +88,7 @@ double Cuts::missing(int axis, int line, double along) const
     const Vec3d point = axis ? piece_.point(along, line, height)
                              : piece_.point(line, along, height);
     double missing = -INFINITY, above, trim;
-    for (const Piece *other : others_)
+    for (const Decoded *other : others_)
         if (other->sheet_above(point, above, trim) && trim <= REACHED && above <= most_)
             missing = std::max(missing, above);
     return missing;
@@ -118,38 +116,13 @@ void Cuts::close_line(int axis, int line, int inward)
     }
 }
 
-/* Of each piece those of the same axis that its sphere meets. */
-std::vector<std::vector<const Piece *>> find_others(const std::vector<Piece> &pieces)
+/* The others of the same axis that its sphere meets. */
+std::vector<const Decoded *> find_others(const Sheets &sheets, const Decoded &piece)
 {
-    auto key = [](const Piece &p) {
-        return std::make_tuple(p.axis[2].x, p.axis[2].y, p.axis[2].z, p.place);
-    };
-    auto same_axis = [](const Piece &a, const Piece &b) { return a.axis[2] == b.axis[2]; };
-    std::vector<const Piece *> order;
-    double farthest = 0;
-    for (const Piece &p : pieces) {
-        order.push_back(&p);
-        farthest = std::max(farthest, double(p.maps->record.sphere[3]));
-    }
-    std::sort(order.begin(), order.end(),
-              [&](const Piece *a, const Piece *b) { return key(*a) < key(*b); });
-    std::vector<std::vector<const Piece *>> others(pieces.size());
-    for (size_t i = 0; i < order.size(); ++i) {
-        const Piece &p = *order[i];
-        const gtx_patch &r = p.maps->record;
-        for (size_t k = i + 1; k < order.size(); ++k) {
-            const Piece &q = *order[k];
-            const gtx_patch &s = q.maps->record;
-            if (!same_axis(p, q) || q.place - p.place > DIAGONAL * (r.sphere[3] + farthest))
-                break;
-            const Vec3d apart(double(r.sphere[0]) - s.sphere[0], double(r.sphere[1]) - s.sphere[1],
-                              double(r.sphere[2]) - s.sphere[2]);
-            if (length(apart) > r.sphere[3] + s.sphere[3])
-                continue;
-            others[size_t(&p - pieces.data())].push_back(&q);
-            others[size_t(&q - pieces.data())].push_back(&p);
-        }
-    }
+    std::vector<const Decoded *> others = sheets.around(piece);
+    others.erase(std::remove_if(others.begin(), others.end(),
+                                [&](const Decoded *o) { return !(o->axis[2] == piece.axis[2]); }),
+                 others.end());
     return others;
 }
 
@@ -159,15 +132,17 @@ void close_cuts(const Partition &partition, const std::vector<uint32_t> &charts,
                 const Vec3d &anchor, unsigned height_bits, std::vector<PatchMaps> &patches,
                 Task &task)
 {
-    std::vector<Piece> pieces;
-    for (size_t i = 0; i < patches.size(); ++i)
-        pieces.emplace_back(patches[i], partition.charts[charts[i]], anchor, height_bits);
-    const std::vector<std::vector<const Piece *>> others = find_others(pieces);
+    const Sheets pieces(patches, height_bits);
+    std::vector<std::vector<const Decoded *>> others(patches.size());
+    task.parallel(patches.size(), [&](size_t i) { others[i] = find_others(pieces, pieces[i]); });
     std::vector<std::vector<uint16_t>> closed(patches.size());
     for (int round = 0; round < ROUNDS; ++round) {
         task.parallel(patches.size(), [&](size_t i) {
             if (!others[i].empty())
-                closed[i] = Cuts(others[i], pieces[i], height_bits == 8 ? 255 : 65535).close();
+                closed[i] = Cuts(others[i], pieces[i],
+                                 Clip(pieces[i], partition.charts[charts[i]], anchor),
+                                 height_bits == 8 ? 255 : 65535)
+                                .close();
         });
         for (size_t i = 0; i < patches.size(); ++i)
             if (!others[i].empty())

@@ -1,4 +1,4 @@
-/* Decodes the maps of a patch again: what a reader sees at a point. */
+/* Decodes the maps of patches again: what a reader sees at a point. */
 #include "bake/decoded.hpp"
 
 namespace gtx::baking {
@@ -17,7 +17,8 @@ Decoded::Decoded(const PatchMaps &patch, unsigned height_bits)
     pitch[0] = double(r.extent_x) / w;
     pitch[1] = double(r.extent_y) / h;
     step = r.extent_z / (height_bits == 8 ? 254. : 65534.);
-    place = double(r.sphere[0]) + r.sphere[1] + r.sphere[2];
+    centre = {r.sphere[0], r.sphere[1], r.sphere[2]};
+    radius = r.sphere[3];
 }
 
 bool Decoded::sheet_above(const Vec3d &point, double &above, double &trim) const
@@ -25,20 +26,72 @@ bool Decoded::sheet_above(const Vec3d &point, double &above, double &trim) const
     const double u = across(0, point), v = across(1, point);
     if (!(u >= 0 && v >= 0 && u < w - 1 && v < h - 1))
         return false;
-    const int i = int(u), j = int(v);
-    const double x = u - i, y = v - j;
-    const double weight[4] = {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
-    const size_t corner[4] = {at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)};
+    const Place place = {at(int(u), int(v)), u - int(u), v - int(v)};
     double code = 0;
     trim = 0;
-    for (int k = 0; k < 4; ++k) {
-        if (!maps->height[corner[k]])
+    for (size_t k = 0; k < 4; ++k) {
+        const size_t texel = corner(place, k);
+        if (!maps->height[texel])
             return false;
-        code += weight[k] * maps->height[corner[k]];
-        trim += weight[k] * (maps->trim[corner[k]] - 128.) / 16;
+        code += place.weight(k) * maps->height[texel];
+        trim += place.weight(k) * (maps->trim[texel] - 128.) / 16;
     }
     above = height(code) - dot(dual[2], point - origin);
     return true;
+}
+
+Place Decoded::place_of(const Vec3d &point) const
+{
+    const double u = across(0, point), v = across(1, point);
+    const int i = int(u), j = int(v);
+    return {at(i, j), u - i, v - j};
+}
+
+Vec3d Decoded::point(const Place &place) const
+{
+    double code = 0;
+    for (size_t k = 0; k < 4; ++k)
+        code += place.weight(k) * maps->height[corner(place, k)];
+    return point(double(place.cell % size_t(w)) + place.x, double(place.cell / size_t(w)) + place.y,
+                 height(code));
+}
+
+Vec3d Decoded::normal(const Place &place) const
+{
+    double code[4];
+    for (size_t k = 0; k < 4; ++k)
+        code[k] = maps->height[corner(place, k)];
+    const double x = place.x, y = place.y;
+    const double along_u = (code[1] - code[0]) * (1 - y) + (code[3] - code[2]) * y;
+    const double along_v = (code[2] - code[0]) * (1 - x) + (code[3] - code[1]) * x;
+    return normalize(cross(axis[0] * pitch[0] + axis[2] * (along_u * step),
+                           axis[1] * pitch[1] + axis[2] * (along_v * step)));
+}
+
+Sheets::Sheets(const std::vector<PatchMaps> &patches, unsigned height_bits)
+{
+    for (const PatchMaps &patch : patches)
+        if (patch.coded)
+            sheets_.emplace_back(patch, height_bits);
+    for (const Decoded &sheet : sheets_) {
+        order_.push_back(&sheet);
+        farthest_ = std::max(farthest_, sheet.radius);
+    }
+    std::sort(order_.begin(), order_.end(), [](const Decoded *a, const Decoded *b) {
+        const double first = along(a->centre), second = along(b->centre);
+        return first != second ? first < second : a < b;
+    });
+}
+
+std::vector<const Decoded *> Sheets::around(const Decoded &sheet) const
+{
+    std::vector<const Decoded *> out;
+    any_near(sheet.centre, sheet.radius, [&](const Decoded &other) {
+        if (&other != &sheet)
+            out.push_back(&other);
+        return false;
+    });
+    return out;
 }
 
 } // namespace gtx::baking

@@ -1,16 +1,28 @@
-/* A patch's sheet as a reader decodes it. */
+/* The sheets of patches as a reader decodes them. */
 #pragma once
 
 #include "bake/patch_maps.hpp"
 
+#include <algorithm>
+
 namespace gtx::baking {
+
+/* A place in the map of a patch: the first corner of a cell, and how far beyond it, 0..1. */
+struct Place {
+    size_t cell;
+    double x, y;
+
+    /* Of texel k of 0..3 around it, by rows. */
+    double weight(size_t k) const { return (k & 1 ? x : 1 - x) * (k & 2 ? y : 1 - y); }
+};
 
 /* Texel (i, j) lies at u = i, v = j, heights along the axis. Points are relative to the anchor. */
 struct Decoded {
     const PatchMaps *maps;
     Vec3d origin, axis[3], dual[3];
     double pitch[2], step;       /* of a texel, and of a code */
-    double place;                /* of its sphere, along (1, 1, 1) */
+    Vec3d centre;                /* of its sphere */
+    double radius;
     int w, h;
 
     Decoded(const PatchMaps &patch, unsigned height_bits);
@@ -22,14 +34,20 @@ struct Decoded {
     size_t at(int i, int j) const { return size_t(j) * size_t(w) + size_t(i); }
     double height(double code) const { return (code - 1) * step; }
     double texel() const { return std::max(pitch[0], pitch[1]); }
+
     /* How far above a point the sheet is, along the axis, and the trim there; false where it has
      * no cell. */
     bool sheet_above(const Vec3d &point, double &above, double &trim) const;
-    /* The first corner of the cell that it is in there. */
-    size_t cell(const Vec3d &point) const
+    /* Where it is in the map, if it has a cell there. */
+    Place place_of(const Vec3d &point) const;
+    /* Texel k of 0..3 around a place, by rows. */
+    size_t corner(const Place &place, size_t k) const
     {
-        return at(int(across(0, point)), int(across(1, point)));
+        return place.cell + (k & 1) + (k >> 1) * size_t(w);
     }
+    /* The sheet at a place of a cell with codes. */
+    Vec3d point(const Place &place) const;
+    Vec3d normal(const Place &place) const;
 
 private:
     /* Texels along an axis. */
@@ -37,6 +55,43 @@ private:
     {
         return dot(dual[k], point - origin) / pitch[k] - 0.5;
     }
+};
+
+/* Sheets, found by their spheres. */
+class Sheets {
+public:
+    /* Those of the patches that have codes. */
+    Sheets(const std::vector<PatchMaps> &patches, unsigned height_bits);
+    Sheets(const Sheets &) = delete;
+    Sheets &operator=(const Sheets &) = delete;
+
+    size_t size() const { return sheets_.size(); }
+    const Decoded &operator[](size_t i) const { return sheets_[i]; }
+    size_t index(const Decoded &sheet) const { return size_t(&sheet - sheets_.data()); }
+
+    /* Calls `visit` with every sheet whose sphere comes as near to a point as `reach`, until it
+     * returns true; whether it did. */
+    template <class Visit> bool any_near(const Vec3d &point, double reach, Visit visit) const
+    {
+        const double far = DIAGONAL * (farthest_ + reach), place = along(point);
+        auto at = std::lower_bound(order_.begin(), order_.end(), place - far,
+                                   [](const Decoded *a, double b) { return along(a->centre) < b; });
+        for (; at != order_.end() && along((*at)->centre) <= place + far; ++at)
+            if (length(point - (*at)->centre) <= (*at)->radius + reach && visit(**at))
+                return true;
+        return false;
+    }
+    /* The others whose spheres that of a sheet meets. */
+    std::vector<const Decoded *> around(const Decoded &sheet) const;
+
+private:
+    /* They are sorted along (1, 1, 1), whose length this is. */
+    static constexpr double DIAGONAL = 1.7320508075688772;
+    static double along(const Vec3d &point) { return point.x + point.y + point.z; }
+
+    std::vector<Decoded> sheets_;
+    std::vector<const Decoded *> order_;
+    double farthest_ = 0; /* the largest radius */
 };
 
 } // namespace gtx::baking

