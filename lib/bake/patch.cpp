@@ -115,22 +115,24 @@ uint8_t trim_code(float distance)
     return uint8_t(std::clamp(128 + 16 * distance, DEEP_TRIM, 255.f) + 0.5f);
 }
 
-static void quantise(const Grid &grid, const Crop &crop, const Cover &cover,
-                     const std::vector<uint8_t> &support, const std::vector<float> &trim,
-                     double low, unsigned height_bits, PatchMaps &maps)
+static void quantise(const Sheet &s, const Crop &crop, double low, unsigned height_bits,
+                     PatchMaps &maps)
 {
+    const Grid &grid = s.flat.grid;
     double steps = (height_bits == 8 ? 254 : 65534) / double(maps.record.extent_z);
     double top = height_bits == 8 ? 254 : 65534;
     maps.height.assign(size_t(crop.w) * crop.h, 0);
     maps.trim.resize(maps.height.size());
+    maps.border.resize(maps.height.size());
     for (int j = 0; j < crop.h; ++j) {
         for (int i = 0; i < crop.w; ++i) {
             int x = crop.x + i, y = crop.y + j;
             int near_x = std::clamp(x, 0, grid.w - 1), near_y = std::clamp(y, 0, grid.h - 1);
             size_t from = size_t(near_y) * grid.w + near_x, to = size_t(j) * crop.w + i;
-            maps.trim[to] = trim_code(trim[from]);
-            if (x == near_x && y == near_y && support[from]) {
-                double code = std::floor((cover.height[from] - low) * steps + 0.5);
+            maps.trim[to] = trim_code(s.trim[from]);
+            maps.border[to] = s.outline.edges[s.outline.nearest[from]].border;
+            if (x == near_x && y == near_y && s.support[from]) {
+                double code = std::floor((s.cover.height[from] - low) * steps + 0.5);
                 maps.height[to] = uint16_t(1 + std::clamp(code, 0., top));
             }
         }
@@ -173,7 +175,7 @@ static PatchMaps encode_sheet(const Job &job, const Chart &chart, const Sheet &s
         return maps;
     Crop crop = crop_support(s.flat.grid, s.support, 1 << (job.options.mips - 1));
     maps.record = make_record(job, chart, s.flat.grid, crop, low, high);
-    quantise(s.flat.grid, crop, s.cover, s.support, s.trim, low, job.options.height_bits, maps);
+    quantise(s, crop, low, job.options.height_bits, maps);
     measure_patch(job.options.height_bits, maps);
     build_mips(shade_texels(job, s, crop, maps.height), job.options.mips, job.needs, maps);
     return maps;

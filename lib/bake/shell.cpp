@@ -25,7 +25,7 @@ constexpr double THIN_ERROR = 1.0 / 8;
 constexpr double MOST_ERROR = 1.0 / 64;
 /* The coarsest level beyond, for models of ten to twenty pixels, and how far it may stray. */
 constexpr double FAR_TRIANGLES = 160, MOST_FAR_ERROR = 1.0 / 20;
-/* Their errors are stated so many times as large: an outline of few triangles is off by the farthest
+/* Their errors are stated so many times as large: few triangles put an outline off by the farthest
  * of its points, not by the mean. */
 constexpr double FAR_STATED = 1.5;
 /* How many lead there, and triangles of one for one of the next where fewer of them do. */

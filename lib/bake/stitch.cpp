@@ -38,14 +38,15 @@ struct Tie {
     double gap, slack;           /* along the normal of the other */
 };
 
-/* Where the outline crosses a cell with codes: from one of its sides to another. */
+/* Where an outline that is not the model's own border crosses a cell with codes: from one of its
+ * sides to another. */
 bool find_crossing(const Decoded &sheet, int i, int j, double from[2], double to[2])
 {
     static const int RING[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
     double trim[5];
     for (int k = 0; k < 5; ++k) {
         const size_t texel = sheet.at(i + RING[k][0], j + RING[k][1]);
-        if (!sheet.maps->height[texel])
+        if (!sheet.maps->height[texel] || sheet.maps->border[texel])
             return false;
         trim[k] = sheet.maps->trim[texel] - 128.;
     }
