@@ -37,11 +37,12 @@ struct Maps {
     BakeReport report;
 };
 
-/* Overlap, rasterise, trim, extrapolate, dilate, mip and pack. What no patch shows becomes charts
- * of its own, appended to the partition. Patches come in the order of the charts; one that its
- * material cuts away whole has none. The anchor is the centre of the mesh's bounding box, rounded
- * to a multiple of a power of two. Deterministic for any thread count. Stages of `task`: "bake",
- * "pack". Throws Error: EMPTY, LIMIT, INPUT, ARGUMENT, CANCELLED, and what the extractor throws. */
+/* Overlap, rasterise, trim, extrapolate, dilate, mip, stitch, pack. What no patch shows becomes
+ * charts of its own, appended to the partition. Patches come in the order of the charts; one that
+ * its material cuts away whole has none. The anchor is the centre of the mesh's bounding box,
+ * rounded to a multiple of a power of two. Deterministic for any thread count. Stages of `task`:
+ * "bake", "pack". Throws Error: EMPTY, LIMIT, INPUT, ARGUMENT, CANCELLED, and what the extractor
+ * throws. */
 Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Task &task);
 
 } // namespace gtx

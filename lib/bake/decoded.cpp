@@ -16,6 +16,8 @@ Decoded::Decoded(const PatchMaps &patch, unsigned height_bits)
         dual[k] = cross(axis[(k + 1) % 3], axis[(k + 2) % 3]) / det;
     pitch[0] = double(r.extent_x) / w;
     pitch[1] = double(r.extent_y) / h;
+    for (int k = 0; k < 2; ++k)
+        per_texel_[k] = dual[k] / pitch[k];
     step = r.extent_z / (height_bits == 8 ? 254. : 65534.);
     centre = {r.sphere[0], r.sphere[1], r.sphere[2]};
     radius = r.sphere[3];
@@ -23,7 +25,8 @@ Decoded::Decoded(const PatchMaps &patch, unsigned height_bits)
 
 bool Decoded::sheet_above(const Vec3d &point, double &above, double &trim) const
 {
-    const double u = across(0, point), v = across(1, point);
+    const Vec3d from = point - origin;
+    const double u = across(0, from), v = across(1, from);
     if (!(u >= 0 && v >= 0 && u < w - 1 && v < h - 1))
         return false;
     const Place place = {at(int(u), int(v)), u - int(u), v - int(v)};
@@ -36,13 +39,14 @@ bool Decoded::sheet_above(const Vec3d &point, double &above, double &trim) const
         code += place.weight(k) * maps->height[texel];
         trim += place.weight(k) * (maps->trim[texel] - 128.) / 16;
     }
-    above = height(code) - dot(dual[2], point - origin);
+    above = height(code) - dot(dual[2], from);
     return true;
 }
 
 Place Decoded::place_of(const Vec3d &point) const
 {
-    const double u = across(0, point), v = across(1, point);
+    const Vec3d from = point - origin;
+    const double u = across(0, from), v = across(1, from);
     const int i = int(u), j = int(v);
     return {at(i, j), u - i, v - j};
 }

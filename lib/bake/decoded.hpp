@@ -50,10 +50,12 @@ struct Decoded {
     Vec3d normal(const Place &place) const;
 
 private:
+    Vec3d per_texel_[2];         /* dual, in texels */
+
     /* Texels along an axis. */
-    double across(int k, const Vec3d &point) const
+    double across(int k, const Vec3d &from_origin) const
     {
-        return dot(dual[k], point - origin) / pitch[k] - 0.5;
+        return dot(per_texel_[k], from_origin) - 0.5;
     }
 };
 
