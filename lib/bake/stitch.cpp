@@ -29,7 +29,6 @@ namespace {
 /* A point where a sheet ends, and the place of the other that it should lie on. */
 struct End {
     const Decoded *sheet;
-    size_t index;
     Place place;
     double lever;                /* how far the gap opens as it rises */
 };
@@ -63,12 +62,12 @@ bool find_crossing(const Decoded &sheet, int i, int j, double from[2], double to
 }
 
 /* The sheet that goes on where one ends: of those that face alike the nearest, else of all. */
-bool find_tie(const Sheets &sheets, const std::vector<const Decoded *> &others, const Decoded &own,
-              const Place &place, Tie &tie)
+bool find_tie(const std::vector<const Decoded *> &others, const Decoded &own, const Place &place,
+              Tie &tie)
 {
     const Vec3d end = own.point(place), normal = own.normal(place);
-    double least = MOST_APART * own.texel();
-    bool found = false, found_alike = false;
+    std::pair<bool, double> best = {true, MOST_APART * own.texel()}; /* not alike, how far */
+    bool found = false;
     for (const Decoded *other : others) {
         double above, trim;
         if (length(end - other->centre) > other->radius || !other->sheet_above(end, above, trim) ||
@@ -77,17 +76,13 @@ bool find_tie(const Sheets &sheets, const std::vector<const Decoded *> &others, 
         const Place there = other->place_of(end);
         const Vec3d facing = other->normal(there);
         const double rises = dot(facing, other->axis[2]), sinks = dot(facing, own.axis[2]);
-        const double gap = above * rises;
-        const bool alike = dot(facing, normal) >= ALIKE, better = alike && !found_alike;
-        if (std::abs(gap) >= (better ? MOST_APART * own.texel() : least) ||
-            (found_alike && !alike) || std::abs(sinks) < LEAST_LEVER)
+        const double gap = above * rises, apart = std::abs(gap);
+        const std::pair<bool, double> rank = {dot(facing, normal) < ALIKE, apart};
+        if (apart >= MOST_APART * own.texel() || std::abs(sinks) < LEAST_LEVER || !(rank < best))
             continue;
-        least = std::abs(gap);
+        best = rank;
         found = true;
-        found_alike = alike;
-        tie.end[0] = {&own, sheets.index(own), place, -sinks};
-        tie.end[1] = {other, sheets.index(*other), there, rises};
-        tie.gap = gap;
+        tie = {{{&own, place, -sinks}, {other, there, rises}}, gap, 0};
     }
     return found;
 }
@@ -105,7 +100,7 @@ std::vector<Tie> find_ties(const Sheets &sheets, const Decoded &own, double code
                 const Place place = {own.at(i, j), from[0] + (to[0] - from[0]) * along,
                                      from[1] + (to[1] - from[1]) * along};
                 Tie tie;
-                if (!find_tie(sheets, others, own, place, tie))
+                if (!find_tie(others, own, place, tie))
                     continue;
                 tie.slack = SLACK * codes * std::max(own.step, tie.end[1].sheet->step);
                 ties.push_back(tie);
@@ -118,7 +113,7 @@ std::vector<Tie> find_ties(const Sheets &sheets, const Decoded &own, double code
 /* How far the texels of every sheet have moved along its axis, object units. */
 class Moves {
 public:
-    Moves(const Sheets &sheets)
+    explicit Moves(const Sheets &sheets) : sheets_(sheets)
     {
         for (size_t i = 0; i < sheets.size(); ++i)
             moved_.emplace_back(sheets[i].maps->height.size(), 0.f);
@@ -127,6 +122,7 @@ public:
     const std::vector<float> &of(size_t sheet) const { return moved_[sheet]; }
 
 private:
+    const Sheets &sheets_;
     std::vector<std::vector<float>> moved_;
 };
 
@@ -137,7 +133,7 @@ void Moves::project(const Tie &tie)
     double lever[8], gap = tie.gap;
     for (size_t n = 0; n < 8; ++n) {
         const End &end = tie.end[n / 4];
-        moved[n] = &moved_[end.index][end.sheet->corner(end.place, n % 4)];
+        moved[n] = &moved_[sheets_.index(*end.sheet)][end.sheet->corner(end.place, n % 4)];
         lever[n] = end.lever * end.place.weight(n % 4);
         gap += lever[n] * double(*moved[n]);
     }
