@@ -13,7 +13,7 @@ namespace gtx::baking {
 
 /* Texels of depth that a texel is raised at most: more is another sheet, or would be a fin that a
  * third patch does not meet. */
-constexpr double MOST_RAISED = 0.2;
+constexpr double MOST_RAISED = 0.3;
 /* and that it may miss: a ray that finds the way then is within a tenth of a degree of the
  * surface. */
 constexpr double MISSED = 0.002;
@@ -148,10 +148,6 @@ void close_cuts(const Partition &partition, const std::vector<uint32_t> &charts,
             if (!others[i].empty())
                 patches[i].height.swap(closed[i]);
     }
-    task.parallel(patches.size(), [&](size_t i) {
-        if (!others[i].empty())
-            measure_patch(height_bits, patches[i]);
-    });
 }
 
 } // namespace gtx::baking

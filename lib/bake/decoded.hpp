@@ -38,6 +38,14 @@ struct Decoded {
     /* How far above a point the sheet is, along the axis, and the trim there; false where it has
      * no cell. */
     bool sheet_above(const Vec3d &point, double &above, double &trim) const;
+    /* Whether the map comes within a texel of the box, along its sides, around two points. */
+    bool reaches(const Vec3d &a, const Vec3d &b) const
+    {
+        const double u[2] = {across(0, a - origin), across(0, b - origin)};
+        const double v[2] = {across(1, a - origin), across(1, b - origin)};
+        return std::max(u[0], u[1]) > -1 && std::min(u[0], u[1]) < w &&
+               std::max(v[0], v[1]) > -1 && std::min(v[0], v[1]) < h;
+    }
     /* Where it is in the map, if it has a cell there. */
     Place place_of(const Vec3d &point) const;
     /* Texel k of 0..3 around a place, by rows. */

@@ -270,11 +270,11 @@ std::vector<Chart> chart_unseen(const Job &job, const Partition &partition,
                                 std::vector<PatchMaps> &patches, Task &task);
 
 /* Moves heights around outlines until sheets that meet lie on each other; all patches have
- * codes. */
+ * codes. They are to be measured again then. */
 void stitch(unsigned height_bits, std::vector<PatchMaps> &patches, Task &task);
 
-/* Raises texels beyond straight cuts until the sheets on both sides cross. `charts` is that of each
- * patch. */
+/* Raises texels beyond straight cuts until the sheets on both sides cross; likewise. `charts` is
+ * that of each patch. */
 void close_cuts(const Partition &partition, const std::vector<uint32_t> &charts,
                 const Vec3d &anchor, unsigned height_bits, std::vector<PatchMaps> &patches,
                 Task &task);

@@ -3,38 +3,38 @@
  * Each is fitted to the source alone, and between its texels it misses that by as much as there is
  * relief. Where one ends on another, what the two miss adds up to a step. So heights around
  * outlines move, as little as they can, until the end of each sheet lies on the other: a system of
- * one equation for every point of an outline, solved by projections (Kaczmarz 1937). Texels beyond
- * an outline move first, for nobody sees what they lie on. */
+ * one equation for every point of an outline, solved by projections (Kaczmarz 1937) and set up
+ * again where the sheets then are. Texels beyond an outline move first, for nobody sees what they
+ * lie on. */
 #include "bake/decoded.hpp"
 
 namespace gtx::baking {
 
 /* Texels along the normal between two sheets of one surface, and outside its outline to which a
  * sheet counts. */
-constexpr double MOST_APART = 0.5, REACHED = SHOWN + 0.2;
-/* What faces alike as much is the same surface; what does not may be across an edge. */
-constexpr double ALIKE = 0.2;
-/* A sheet that moves along the seam less, as it rises, is of no use there. */
-constexpr double LEAST_LEVER = 0.1;
+constexpr double MOST_APART = 0.6, REACHED = SHOWN + 0.2;
 /* What may stay between them, in codes of eight bits: rounding moves either by half of one. */
 constexpr double SLACK = 1;
-/* Texels of depth that a height moves at most, and how readily one inside an outline does. */
-constexpr double FARTHEST = 0.5, STIFF = 0.02;
-/* Points of an outline in a cell. */
-constexpr double ALONG[] = {1 / 6., 1 / 2., 5 / 6.};
-constexpr int ROUNDS = 8;
+/* Texels of depth that a height moves at most, and how readily one inside an outline does, from
+ * the first pass to the last. */
+constexpr double FARTHEST = 0.75, EASE[] = {0.1, 0.3, 1};
+constexpr int ROUNDS = 8; /* in a pass */
+/* Of an outline, for a texel of its length, and texels to which that counts in a cell. */
+constexpr int POINTS = 4, LONGEST = 8;
 
 namespace {
 
 /* A point where a sheet ends, and the place of the other that it should lie on. */
 struct End {
-    const Decoded *sheet;
-    Place place;
-    double lever;                /* how far the gap opens as it rises */
+    const Decoded *sheet = nullptr;
+    Place place = {};
+    double lever = 0;            /* how far the gap opens as it rises */
 };
 struct Tie {
     End end[2];
-    double gap, slack;           /* along the normal of the other */
+    double gap = 0, slack = 0;   /* along the normal of the other */
+
+    bool is_open() const { return std::abs(gap) > slack; }
 };
 
 /* Where an outline that is not the model's own border crosses a cell with codes: from one of its
@@ -61,81 +61,155 @@ bool find_crossing(const Decoded &sheet, int i, int j, double from[2], double to
     return count > 0;
 }
 
-/* The sheet that goes on where one ends: of those that face alike the nearest, else of all. */
-bool find_tie(const std::vector<const Decoded *> &others, const Decoded &own, const Place &place,
-              Tie &tie)
+/* How far apart the ends of a tie are now; false where the other sheet has no cell there. */
+bool measure(Tie &tie)
 {
-    const Vec3d end = own.point(place), normal = own.normal(place);
-    std::pair<bool, double> best = {true, MOST_APART * own.texel()}; /* not alike, how far */
-    bool found = false;
-    for (const Decoded *other : others) {
-        double above, trim;
-        if (length(end - other->centre) > other->radius || !other->sheet_above(end, above, trim) ||
-            trim > REACHED)
-            continue;
-        const Place there = other->place_of(end);
-        const Vec3d facing = other->normal(there);
-        const double rises = dot(facing, other->axis[2]), sinks = dot(facing, own.axis[2]);
-        const double gap = above * rises, apart = std::abs(gap);
-        const std::pair<bool, double> rank = {dot(facing, normal) < ALIKE, apart};
-        if (apart >= MOST_APART * own.texel() || std::abs(sinks) < LEAST_LEVER || !(rank < best))
-            continue;
-        best = rank;
-        found = true;
-        tie = {{{&own, place, -sinks}, {other, there, rises}}, gap, 0};
-    }
-    return found;
+    End &end = tie.end[0], &on = tie.end[1];
+    const Vec3d point = end.sheet->point(end.place);
+    double above, trim;
+    if (!on.sheet || !on.sheet->sheet_above(point, above, trim) || trim > REACHED)
+        return false;
+    on.place = on.sheet->place_of(point);
+    const Vec3d facing = on.sheet->normal(on.place);
+    on.lever = dot(facing, on.sheet->axis[2]);
+    end.lever = -dot(facing, end.sheet->axis[2]);
+    tie.gap = above * on.lever;
+    return true;
 }
 
-std::vector<Tie> find_ties(const Sheets &sheets, const Decoded &own, double codes)
+/* The end of a tie on the nearest sheet; none where all are too far. */
+void find_end(const std::vector<const Decoded *> &others, double slack, Tie &tie)
 {
-    const std::vector<const Decoded *> others = sheets.around(own);
+    const Decoded &own = *tie.end[0].sheet;
+    double nearest = MOST_APART * own.texel();
+    Tie found = {{tie.end[0], {}}};
+    for (const Decoded *other : others) {
+        Tie trial = {{tie.end[0], {other}}};
+        if (!measure(trial) || std::abs(trial.gap) >= nearest)
+            continue;
+        nearest = std::abs(trial.gap);
+        found = trial;
+        found.slack = slack * std::max(own.step, other->step);
+    }
+    tie = found;
+}
+
+/* Points along the outline of a sheet, tied to nothing yet. */
+std::vector<Tie> sample_outline(const Decoded &own)
+{
     std::vector<Tie> ties;
     for (int j = 0; j + 1 < own.h; ++j) {
         for (int i = 0; i + 1 < own.w; ++i) {
             double from[2], to[2];
             if (!find_crossing(own, i, j, from, to))
                 continue;
-            for (double along : ALONG) {
+            const Vec3d span = own.point({own.at(i, j), to[0], to[1]}) -
+                               own.point({own.at(i, j), from[0], from[1]});
+            const double texels = length(span) / own.texel() + 0.5;
+            const int points = POINTS * int(std::clamp(texels, 1., double(LONGEST)));
+            for (int n = 0; n < points; ++n) {
+                const double along = (n + 0.5) / points;
                 const Place place = {own.at(i, j), from[0] + (to[0] - from[0]) * along,
                                      from[1] + (to[1] - from[1]) * along};
-                Tie tie;
-                if (!find_tie(others, own, place, tie))
-                    continue;
-                tie.slack = SLACK * codes * std::max(own.step, tie.end[1].sheet->step);
-                ties.push_back(tie);
+                ties.push_back({{{&own, place}, {}}});
             }
         }
     }
     return ties;
 }
 
+/* Those whose maps reach to the part of an outline between two ties. */
+std::vector<const Decoded *> reaching(const std::vector<const Decoded *> &others, const Tie &first,
+                                      const Tie &last)
+{
+    const Decoded &own = *first.end[0].sheet;
+    const Vec3d from = own.point(first.end[0].place), to = own.point(last.end[0].place);
+    std::vector<const Decoded *> out;
+    std::copy_if(others.begin(), others.end(), std::back_inserter(out),
+                 [&](const Decoded *other) { return other->reaches(from, to); });
+    return out;
+}
+
+/* Ties what is tied to nothing, or to what it does not lie on; measures the others. */
+void update_ties(const std::vector<const Decoded *> &others, double slack, std::vector<Tie> &ties)
+{
+    std::vector<Tie *> loose;
+    for (auto from = ties.begin(), to = from; from != ties.end(); from = to) {
+        loose.clear();
+        for (; to != ties.end() && to->end[0].place.cell == from->end[0].place.cell; ++to)
+            if (!measure(*to) || to->is_open())
+                loose.push_back(&*to);
+        if (loose.empty())
+            continue;
+        const std::vector<const Decoded *> near = reaching(others, *from, *(to - 1));
+        for (Tie *tie : loose)
+            find_end(near, slack, *tie);
+    }
+}
+
 /* How far the texels of every sheet have moved along its axis, object units. */
 class Moves {
 public:
-    explicit Moves(const Sheets &sheets) : sheets_(sheets)
+    Moves(const Sheets &sheets, std::vector<PatchMaps> &patches, unsigned height_bits)
+        : sheets_(sheets), patches_(patches), top_(height_bits == 8 ? 255 : 65535)
     {
-        for (size_t i = 0; i < sheets.size(); ++i)
-            moved_.emplace_back(sheets[i].maps->height.size(), 0.f);
+        for (const PatchMaps &patch : patches)
+            texels_.emplace_back(patch.height.size());
     }
-    void project(const Tie &tie);
-    const std::vector<float> &of(size_t sheet) const { return moved_[sheet]; }
+    void solve(const std::vector<std::vector<Tie>> &ties, double ease, Task &task);
+    /* Rounds a sheet to codes. */
+    void apply(size_t sheet);
 
 private:
+    struct Texel {
+        float moved = 0, applied = 0; /* all, and what of it is in the maps */
+        bool eased = false;           /* by the end of a tie that is open, in this pass */
+    };
+    Texel &texel(const Tie &tie, size_t n)
+    {
+        const End &end = tie.end[n / 4];
+        return texels_[sheets_.index(*end.sheet)][end.sheet->corner(end.place, n % 4)];
+    }
+    void project(const Tie &tie, double ease);
+
     const Sheets &sheets_;
-    std::vector<std::vector<float>> moved_;
+    std::vector<PatchMaps> &patches_;
+    const double top_;
+    std::vector<std::vector<Texel>> texels_;
 };
 
-/* Moves the texels around both ends, by the least squares that close the gap but for its slack. */
-void Moves::project(const Tie &tie)
+/* Ties that are closed, and stay so whatever the open ones do, are no part of it. */
+void Moves::solve(const std::vector<std::vector<Tie>> &ties, double ease, Task &task)
 {
-    float *moved[8];
+    for (const std::vector<Tie> &some : ties)
+        for (const Tie &tie : some)
+            for (size_t n = 0; n < 8 && tie.is_open(); ++n)
+                texel(tie, n).eased = true;
+    std::vector<std::vector<const Tie *>> concerned(ties.size());
+    task.parallel(ties.size(), [&](size_t i) {
+        for (const Tie &tie : ties[i])
+            for (size_t n = 0; n < 8 && tie.end[1].sheet; ++n)
+                if (texel(tie, n).eased) {
+                    concerned[i].push_back(&tie);
+                    break;
+                }
+    });
+    for (int round = 0; round < ROUNDS; ++round)
+        for (const std::vector<const Tie *> &some : concerned)
+            for (const Tie *tie : some)
+                project(*tie, ease);
+}
+
+/* Closes a gap, but for its slack, by the least squares of what the texels around both ends move.
+ */
+void Moves::project(const Tie &tie, double ease)
+{
+    Texel *moving[8];
     double lever[8], gap = tie.gap;
     for (size_t n = 0; n < 8; ++n) {
-        const End &end = tie.end[n / 4];
-        moved[n] = &moved_[sheets_.index(*end.sheet)][end.sheet->corner(end.place, n % 4)];
-        lever[n] = end.lever * end.place.weight(n % 4);
-        gap += lever[n] * double(*moved[n]);
+        moving[n] = &texel(tie, n);
+        lever[n] = tie.end[n / 4].lever * tie.end[n / 4].place.weight(n % 4);
+        gap += lever[n] * double(moving[n]->moved - moving[n]->applied);
     }
     if (std::abs(gap) <= tie.slack)
         return;
@@ -143,13 +217,30 @@ void Moves::project(const Tie &tie)
     for (size_t n = 0; n < 8; ++n) {
         const End &end = tie.end[n / 4];
         const bool outside = end.sheet->maps->trim[end.sheet->corner(end.place, n % 4)] > 128;
-        eased[n] = outside ? lever[n] : STIFF * lever[n];
+        eased[n] = outside ? lever[n] : ease * lever[n];
         give += lever[n] * eased[n];
     }
     const double share = (gap - std::copysign(tie.slack, gap)) / give;
     for (size_t n = 0; n < 8; ++n) {
         const double most = FARTHEST * tie.end[n / 4].sheet->texel();
-        *moved[n] = float(std::clamp(*moved[n] - share * eased[n], -most, most));
+        moving[n]->moved = float(std::clamp(moving[n]->moved - share * eased[n], -most, most));
+    }
+}
+
+void Moves::apply(size_t sheet)
+{
+    const double step = sheets_[sheet].step;
+    for (size_t k = 0; k < texels_[sheet].size(); ++k) {
+        Texel &texel = texels_[sheet][k];
+        uint16_t &code = patches_[sheet].height[k];
+        if (code && texel.moved != texel.applied) {
+            const double wanted = code + (texel.moved - texel.applied) / step;
+            const double got = std::clamp(std::floor(wanted + 0.5), 1., top_);
+            texel.applied += float((got - code) * step);
+            texel.moved = texel.applied;
+            code = uint16_t(got);
+        }
+        texel.eased = false;
     }
 }
 
@@ -157,26 +248,20 @@ void Moves::project(const Tie &tie)
 
 void stitch(unsigned height_bits, std::vector<PatchMaps> &patches, Task &task)
 {
-    const double top = height_bits == 8 ? 255 : 65535, codes = (top - 1) / 254;
+    const double slack = SLACK * (height_bits == 8 ? 1 : 65534 / 254.);
     const Sheets sheets(patches, height_bits);
+    std::vector<std::vector<const Decoded *>> others(sheets.size());
     std::vector<std::vector<Tie>> ties(sheets.size());
-    task.parallel(sheets.size(),
-                  [&](size_t i) { ties[i] = find_ties(sheets, sheets[i], codes); });
-    Moves moves(sheets);
-    for (int round = 0; round < ROUNDS; ++round)
-        for (const std::vector<Tie> &some : ties)
-            for (const Tie &tie : some)
-                moves.project(tie);
     task.parallel(sheets.size(), [&](size_t i) {
-        const std::vector<float> &moved = moves.of(i);
-        for (size_t k = 0; k < moved.size(); ++k) {
-            uint16_t &code = patches[i].height[k];
-            if (code && moved[k] != 0)
-                code = uint16_t(
-                    std::clamp(std::floor(code + moved[k] / sheets[i].step + 0.5), 1., top));
-        }
-        measure_patch(height_bits, patches[i]);
+        others[i] = sheets.around(sheets[i]);
+        ties[i] = sample_outline(sheets[i]);
     });
+    Moves moves(sheets, patches, height_bits);
+    for (const double ease : EASE) {
+        task.parallel(sheets.size(), [&](size_t i) { update_ties(others[i], slack, ties[i]); });
+        moves.solve(ties, ease, task);
+        task.parallel(sheets.size(), [&](size_t i) { moves.apply(i); });
+    }
 }
 
 } // namespace gtx::baking
