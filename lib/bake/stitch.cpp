@@ -33,6 +33,7 @@ struct End {
 struct Tie {
     End end[2];
     double gap = 0, slack = 0;   /* along the normal of the other */
+    bool moves = true;           /* what is around its ends, in this pass */
 
     bool is_open() const { return std::abs(gap) > slack; }
 };
@@ -130,21 +131,28 @@ std::vector<const Decoded *> reaching(const std::vector<const Decoded *> &others
     return out;
 }
 
-/* Ties what is tied to nothing, or to what it does not lie on; measures the others. */
-void update_ties(const std::vector<const Decoded *> &others, double slack, std::vector<Tie> &ties)
+/* Ties what is tied to nothing, or to what it does not lie on; measures the others that moved.
+ * Returns those that are open. */
+std::vector<const Tie *> update_ties(const std::vector<const Decoded *> &others, double slack,
+                                     std::vector<Tie> &ties)
 {
+    std::vector<const Tie *> open;
     std::vector<Tie *> loose;
     for (auto from = ties.begin(), to = from; from != ties.end(); from = to) {
         loose.clear();
         for (; to != ties.end() && to->end[0].place.cell == from->end[0].place.cell; ++to)
-            if (!measure(*to) || to->is_open())
+            if (to->moves && (!measure(*to) || to->is_open()))
                 loose.push_back(&*to);
         if (loose.empty())
             continue;
         const std::vector<const Decoded *> near = reaching(others, *from, *(to - 1));
-        for (Tie *tie : loose)
+        for (Tie *tie : loose) {
             find_end(near, slack, *tie);
+            if (tie->is_open())
+                open.push_back(tie);
+        }
     }
+    return open;
 }
 
 /* How far the texels of every sheet have moved along its axis, object units. */
@@ -156,7 +164,9 @@ public:
         for (const PatchMaps &patch : patches)
             texels_.emplace_back(patch.height.size());
     }
-    void solve(const std::vector<std::vector<Tie>> &ties, double ease, Task &task);
+    /* `open` are those of the ties that are. */
+    void solve(const std::vector<std::vector<const Tie *>> &open,
+               std::vector<std::vector<Tie>> &ties, double ease, Task &task);
     /* Rounds a sheet to codes. */
     void apply(size_t sheet);
 
@@ -179,23 +189,25 @@ private:
 };
 
 /* Ties that are closed, and stay so whatever the open ones do, are no part of it. */
-void Moves::solve(const std::vector<std::vector<Tie>> &ties, double ease, Task &task)
+void Moves::solve(const std::vector<std::vector<const Tie *>> &open,
+                  std::vector<std::vector<Tie>> &ties, double ease, Task &task)
 {
-    for (const std::vector<Tie> &some : ties)
-        for (const Tie &tie : some)
-            for (size_t n = 0; n < 8 && tie.is_open(); ++n)
-                texel(tie, n).eased = true;
-    std::vector<std::vector<const Tie *>> concerned(ties.size());
+    for (const std::vector<const Tie *> &some : open)
+        for (const Tie *tie : some)
+            for (size_t n = 0; n < 8; ++n)
+                texel(*tie, n).eased = true;
+    std::vector<std::vector<const Tie *>> moving(ties.size());
     task.parallel(ties.size(), [&](size_t i) {
-        for (const Tie &tie : ties[i])
-            for (size_t n = 0; n < 8 && tie.end[1].sheet; ++n)
-                if (texel(tie, n).eased) {
-                    concerned[i].push_back(&tie);
-                    break;
-                }
+        for (Tie &tie : ties[i]) {
+            tie.moves = !tie.end[1].sheet;
+            for (size_t n = 0; n < 8 && !tie.moves; ++n)
+                tie.moves = texel(tie, n).eased;
+            if (tie.moves && tie.end[1].sheet)
+                moving[i].push_back(&tie);
+        }
     });
     for (int round = 0; round < ROUNDS; ++round)
-        for (const std::vector<const Tie *> &some : concerned)
+        for (const std::vector<const Tie *> &some : moving)
             for (const Tie *tie : some)
                 project(*tie, ease);
 }
@@ -256,10 +268,12 @@ void stitch(unsigned height_bits, std::vector<PatchMaps> &patches, Task &task)
         others[i] = sheets.around(sheets[i]);
         ties[i] = sample_outline(sheets[i]);
     });
+    std::vector<std::vector<const Tie *>> open(sheets.size());
     Moves moves(sheets, patches, height_bits);
     for (const double ease : EASE) {
-        task.parallel(sheets.size(), [&](size_t i) { update_ties(others[i], slack, ties[i]); });
-        moves.solve(ties, ease, task);
+        task.parallel(sheets.size(),
+                      [&](size_t i) { open[i] = update_ties(others[i], slack, ties[i]); });
+        moves.solve(open, ties, ease, task);
         task.parallel(sheets.size(), [&](size_t i) { moves.apply(i); });
     }
 }
