@@ -5,7 +5,7 @@
  * outlines move, as little as they can, until the end of each sheet lies on the other: a system of
  * one equation for every point of an outline, solved by projections (Kaczmarz 1937) and set up
  * again where the sheets then are. Texels beyond an outline move first, for nobody sees what they
- * lie on. */
+ * lie on, and those deep inside one last. */
 #include "bake/decoded.hpp"
 
 namespace gtx::baking {
@@ -15,14 +15,28 @@ namespace gtx::baking {
 constexpr double MOST_APART = 0.6, REACHED = SHOWN + 0.2;
 /* What may stay between them, in codes of eight bits: rounding moves either by half of one. */
 constexpr double SLACK = 1;
-/* Texels of depth that a height moves at most, and how readily one inside an outline does, from
- * the first pass to the last. */
-constexpr double FARTHEST = 0.75, EASE[] = {0.1, 0.3, 1};
+/* How readily texels move that are not beyond an outline, from the first pass to the last. */
+constexpr double EASE[] = {0.1, 0.3, 1};
 constexpr int ROUNDS = 8; /* in a pass */
 /* Of an outline, for a texel of its length, and texels to which that counts in a cell. */
 constexpr int POINTS = 4, LONGEST = 8;
 
 namespace {
+
+/* How readily a texel moves, and how many texels along the axis at most. */
+struct Mobility {
+    double ease, most;
+};
+
+Mobility mobility_of(uint8_t trim, double ease)
+{
+    constexpr uint8_t OUTLINE = 128, TEXEL = 16;
+    if (trim > OUTLINE)
+        return {1, 1.5};
+    if (trim > OUTLINE - TEXEL)
+        return {ease, 1};
+    return {0.1 * ease, 0.75};
+}
 
 /* A point where a sheet ends, and the place of the other that it should lie on. */
 struct End {
@@ -225,18 +239,19 @@ void Moves::project(const Tie &tie, double ease)
     }
     if (std::abs(gap) <= tie.slack)
         return;
-    double eased[8], give = 0;
+    double eased[8], most[8], give = 0;
     for (size_t n = 0; n < 8; ++n) {
         const End &end = tie.end[n / 4];
-        const bool outside = end.sheet->maps->trim[end.sheet->corner(end.place, n % 4)] > 128;
-        eased[n] = outside ? lever[n] : ease * lever[n];
+        const Mobility mobility =
+            mobility_of(end.sheet->maps->trim[end.sheet->corner(end.place, n % 4)], ease);
+        most[n] = mobility.most * end.sheet->texel();
+        eased[n] = mobility.ease * lever[n];
         give += lever[n] * eased[n];
     }
     const double share = (gap - std::copysign(tie.slack, gap)) / give;
-    for (size_t n = 0; n < 8; ++n) {
-        const double most = FARTHEST * tie.end[n / 4].sheet->texel();
-        moving[n]->moved = float(std::clamp(moving[n]->moved - share * eased[n], -most, most));
-    }
+    for (size_t n = 0; n < 8; ++n)
+        moving[n]->moved =
+            float(std::clamp(moving[n]->moved - share * eased[n], -most[n], most[n]));
 }
 
 void Moves::apply(size_t sheet)
