@@ -18,6 +18,9 @@ constexpr double SLACK = 1;
 /* How readily texels move that are not beyond an outline, from the first pass to the last. */
 constexpr double EASE[] = {0.1, 0.3, 1};
 constexpr int ROUNDS = 8; /* in a pass */
+/* A coarser texel, as a share of the diagonal, lets heights move no farther: they would be seen as
+ * dents. */
+constexpr double COARSE = 0.002;
 /* Of an outline, for a texel of its length, and texels to which that counts in a cell. */
 constexpr int POINTS = 4, LONGEST = 8;
 
@@ -172,8 +175,10 @@ std::vector<const Tie *> update_ties(const std::vector<const Decoded *> &others,
 /* How far the texels of every sheet have moved along its axis, object units. */
 class Moves {
 public:
-    Moves(const Sheets &sheets, std::vector<PatchMaps> &patches, unsigned height_bits)
-        : sheets_(sheets), patches_(patches), top_(height_bits == 8 ? 255 : 65535)
+    Moves(const Sheets &sheets, std::vector<PatchMaps> &patches, unsigned height_bits,
+          double coarse)
+        : sheets_(sheets), patches_(patches), top_(height_bits == 8 ? 255 : 65535),
+          coarse_(coarse)
     {
         for (const PatchMaps &patch : patches)
             texels_.emplace_back(patch.height.size());
@@ -198,7 +203,7 @@ private:
 
     const Sheets &sheets_;
     std::vector<PatchMaps> &patches_;
-    const double top_;
+    const double top_, coarse_; /* the largest code; the texel that counts at most */
     std::vector<std::vector<Texel>> texels_;
 };
 
@@ -244,7 +249,7 @@ void Moves::project(const Tie &tie, double ease)
         const End &end = tie.end[n / 4];
         const Mobility mobility =
             mobility_of(end.sheet->maps->trim[end.sheet->corner(end.place, n % 4)], ease);
-        most[n] = mobility.most * end.sheet->texel();
+        most[n] = mobility.most * std::min(end.sheet->texel(), coarse_);
         eased[n] = mobility.ease * lever[n];
         give += lever[n] * eased[n];
     }
@@ -271,6 +276,18 @@ void Moves::apply(size_t sheet)
     }
 }
 
+/* Of the box around them. */
+double diagonal_of(const std::vector<PatchMaps> &patches)
+{
+    Vec3d low = patches[0].low, high = patches[0].high;
+    for (const PatchMaps &patch : patches)
+        for (int k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], patch.low[k]);
+            high[k] = std::max(high[k], patch.high[k]);
+        }
+    return length(high - low);
+}
+
 } // namespace
 
 void stitch(unsigned height_bits, std::vector<PatchMaps> &patches, Task &task)
@@ -284,7 +301,7 @@ void stitch(unsigned height_bits, std::vector<PatchMaps> &patches, Task &task)
         ties[i] = sample_outline(sheets[i]);
     });
     std::vector<std::vector<const Tie *>> open(sheets.size());
-    Moves moves(sheets, patches, height_bits);
+    Moves moves(sheets, patches, height_bits, COARSE * diagonal_of(patches));
     for (const double ease : EASE) {
         task.parallel(sheets.size(),
                       [&](size_t i) { open[i] = update_ties(others[i], slack, ties[i]); });
