@@ -21,7 +21,7 @@ constexpr int ROUNDS = 8; /* in a pass */
 /* A coarser texel, as a share of the diagonal, lets heights move no farther: they would be seen as
  * dents. */
 constexpr double COARSE = 0.002;
-/* Of an outline, for a texel of its length, and texels to which that counts in a cell. */
+/* Points for a texel of an outline's length, and texels of it that count in a cell. */
 constexpr int POINTS = 4, LONGEST = 8;
 
 namespace {
