@@ -12,7 +12,9 @@ namespace gtx::baking {
 constexpr double STEP = 0.5;    /* texels between samples on an edge */
 constexpr double OUTLIER = 4; /* texels of depth: farther samples are of another sheet */
 constexpr double FARTHEST = 1; /* texels of depth that a height may move: no fins */
-constexpr double MISSED = 0.3;   /* texels of depth below the source that count as missed */
+/* Depth below the source that counts as missed, in texels of the model, or of the chart's own where
+ * these are finer. */
+constexpr double MISSED = 0.3;
 constexpr int ROUNDS = 6;
 /* A sheet below the source lets a grazing ray pass over a crest and open a hole, one above it only
  * moves an outline by as much: being below by more than `LEEWAY` texels of depth weighs this many
@@ -75,9 +77,9 @@ static std::vector<Observation> observe_edges(const FlatChart &chart,
     return out;
 }
 
-/* The share of the core's observations that the sheet passes below. */
+/* The share of the core's observations that the sheet passes below, `missed` or more. */
 static double missed_share(const FlatChart &chart, const std::vector<Observation> &observations,
-                           const Cover &cover)
+                           const Cover &cover, double missed)
 {
     const uint32_t row = uint32_t(chart.grid.w);
     size_t core = 0, below = 0;
@@ -89,12 +91,13 @@ static double missed_share(const FlatChart &chart, const std::vector<Observation
         for (int k = 0; k < 4; ++k)
             residual -= o.weight[k] * cover.height[corner[k]];
         ++core;
-        below += residual > MISSED * chart.grid.coarse_pitch();
+        below += residual > missed;
     }
     return core ? double(below) / double(core) : 0;
 }
 
-double fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, Cover &cover)
+double fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, double pitch,
+                   Cover &cover)
 {
     const std::vector<Observation> observations = observe_edges(chart, support, cover);
     const std::vector<double> sampled = cover.height;
@@ -122,7 +125,8 @@ double fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, 
             cover.height[i] = std::clamp(cover.height[i] + pull[i] / weight[i],
                                          sampled[i] - farthest, sampled[i] + farthest);
     }
-    return missed_share(chart, observations, cover);
+    return missed_share(chart, observations, cover,
+                        MISSED * std::min(pitch, chart.grid.coarse_pitch()));
 }
 
 } // namespace gtx::baking

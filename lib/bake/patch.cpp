@@ -213,9 +213,9 @@ PatchMaps bake_chart(const Job &job, const Chart &chart)
         flatten_again(job.mesh, fitted, sheet.flat);
     if (again || extractor)
         sheet = lay_sheet(job, std::move(sheet.flat), extractor);
-    if (fit_heights(sheet.flat, sheet.support, sheet.cover) > ALLOWED) {
+    if (fit_heights(sheet.flat, sheet.support, job.pitch, sheet.cover) > ALLOWED) {
         sheet = lay_sheet(job, flat(FINER), extractor);
-        fit_heights(sheet.flat, sheet.support, sheet.cover);
+        fit_heights(sheet.flat, sheet.support, job.pitch, sheet.cover);
     }
     return encode_sheet(job, chart, sheet);
 }

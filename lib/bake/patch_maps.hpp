@@ -186,8 +186,9 @@ void cut_cliffs(const FlatChart &chart, const Outline &core_outline, const Outli
 
 /* Moves the heights of the supported texels so that the sheet between them follows the source.
  * Returns the share of the core's samples that it still passes below by a visible part of a
- * texel. */
-double fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, Cover &cover);
+ * texel, `pitch` being the model's. */
+double fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, double pitch,
+                   Cover &cover);
 
 using Levels = std::vector<std::vector<uint8_t>>;
 

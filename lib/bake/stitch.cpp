@@ -10,14 +10,14 @@
 
 namespace gtx::baking {
 
-/* Texels along the normal between two sheets of one surface, and outside its outline to which a
- * sheet counts. */
+/* Texels of the model along the normal between two sheets of one surface, and texels outside its
+ * outline to which a sheet counts. */
 constexpr double MOST_APART = 0.6, REACHED = SHOWN + 0.2;
 /* What may stay between them, in codes of eight bits: rounding moves either by half of one. */
 constexpr double SLACK = 1;
 /* How readily texels move that are not beyond an outline, from the first pass to the last. */
 constexpr double EASE[] = {0.1, 0.3, 1};
-constexpr int ROUNDS = 8; /* in a pass */
+constexpr int ROUNDS = 9; /* in a pass */
 /* A coarser texel, as a share of the diagonal, lets heights move no farther: they would be seen as
  * dents. */
 constexpr double COARSE = 0.002;
@@ -26,19 +26,20 @@ constexpr int POINTS = 4, LONGEST = 8;
 
 namespace {
 
-/* How readily a texel moves, and how many texels along the axis at most. */
+/* How readily a texel moves, and how many of the model's texels up and down its axis at most. What
+ * shows goes down less far: over a crest that lies too low a grazing ray passes. */
 struct Mobility {
-    double ease, most;
+    double ease, up, down;
 };
 
 Mobility mobility_of(uint8_t trim, double ease)
 {
     constexpr uint8_t OUTLINE = 128, TEXEL = 16;
     if (trim > OUTLINE)
-        return {1, 1.5};
+        return {1, 1.5, 1.5};
     if (trim > OUTLINE - TEXEL)
-        return {ease, 1};
-    return {0.1 * ease, 0.75};
+        return {ease, 1, 0.9};
+    return {0.1 * ease, 0.75, 0.68};
 }
 
 /* A point where a sheet ends, and the place of the other that it should lie on. */
@@ -95,11 +96,17 @@ bool measure(Tie &tie)
     return true;
 }
 
+/* What ties go by. */
+struct Limits {
+    double apart;                /* object units between two sheets that are tied */
+    double slack;                /* codes */
+};
+
 /* The end of a tie on the nearest sheet; none where all are too far. */
-void find_end(const std::vector<const Decoded *> &others, double slack, Tie &tie)
+void find_end(const std::vector<const Decoded *> &others, const Limits &limits, Tie &tie)
 {
     const Decoded &own = *tie.end[0].sheet;
-    double nearest = MOST_APART * own.texel();
+    double nearest = limits.apart;
     Tie found = {{tie.end[0], {}}};
     for (const Decoded *other : others) {
         Tie trial = {{tie.end[0], {other}}};
@@ -107,7 +114,7 @@ void find_end(const std::vector<const Decoded *> &others, double slack, Tie &tie
             continue;
         nearest = std::abs(trial.gap);
         found = trial;
-        found.slack = slack * std::max(own.step, other->step);
+        found.slack = limits.slack * std::max(own.step, other->step);
     }
     tie = found;
 }
@@ -150,8 +157,8 @@ std::vector<const Decoded *> reaching(const std::vector<const Decoded *> &others
 
 /* Ties what is tied to nothing, or to what it does not lie on; measures the others that moved.
  * Returns those that are open. */
-std::vector<const Tie *> update_ties(const std::vector<const Decoded *> &others, double slack,
-                                     std::vector<Tie> &ties)
+std::vector<const Tie *> update_ties(const std::vector<const Decoded *> &others,
+                                     const Limits &limits, std::vector<Tie> &ties)
 {
     std::vector<const Tie *> open;
     std::vector<Tie *> loose;
@@ -164,7 +171,7 @@ std::vector<const Tie *> update_ties(const std::vector<const Decoded *> &others,
             continue;
         const std::vector<const Decoded *> near = reaching(others, *from, *(to - 1));
         for (Tie *tie : loose) {
-            find_end(near, slack, *tie);
+            find_end(near, limits, *tie);
             if (tie->is_open())
                 open.push_back(tie);
         }
@@ -176,9 +183,9 @@ std::vector<const Tie *> update_ties(const std::vector<const Decoded *> &others,
 class Moves {
 public:
     Moves(const Sheets &sheets, std::vector<PatchMaps> &patches, unsigned height_bits,
-          double coarse)
+          double texel)
         : sheets_(sheets), patches_(patches), top_(height_bits == 8 ? 255 : 65535),
-          coarse_(coarse)
+          texel_(texel)
     {
         for (const PatchMaps &patch : patches)
             texels_.emplace_back(patch.height.size());
@@ -203,7 +210,7 @@ private:
 
     const Sheets &sheets_;
     std::vector<PatchMaps> &patches_;
-    const double top_, coarse_; /* the largest code; the texel that counts at most */
+    const double top_, texel_; /* the largest code; how far a texel is */
     std::vector<std::vector<Texel>> texels_;
 };
 
@@ -244,19 +251,20 @@ void Moves::project(const Tie &tie, double ease)
     }
     if (std::abs(gap) <= tie.slack)
         return;
-    double eased[8], most[8], give = 0;
+    double eased[8], up[8], down[8], give = 0;
     for (size_t n = 0; n < 8; ++n) {
         const End &end = tie.end[n / 4];
         const Mobility mobility =
             mobility_of(end.sheet->maps->trim[end.sheet->corner(end.place, n % 4)], ease);
-        most[n] = mobility.most * std::min(end.sheet->texel(), coarse_);
+        up[n] = mobility.up * texel_;
+        down[n] = mobility.down * texel_;
         eased[n] = mobility.ease * lever[n];
         give += lever[n] * eased[n];
     }
     const double share = (gap - std::copysign(tie.slack, gap)) / give;
     for (size_t n = 0; n < 8; ++n)
         moving[n]->moved =
-            float(std::clamp(moving[n]->moved - share * eased[n], -most[n], most[n]));
+            float(std::clamp(moving[n]->moved - share * eased[n], -down[n], up[n]));
 }
 
 void Moves::apply(size_t sheet)
@@ -288,12 +296,24 @@ double diagonal_of(const std::vector<PatchMaps> &patches)
     return length(high - low);
 }
 
+/* The middle one of all sheets': patches differ by what their relief needs. */
+double middle_texel(const Sheets &sheets)
+{
+    std::vector<double> texels;
+    for (size_t i = 0; i < sheets.size(); ++i)
+        texels.push_back(sheets[i].texel());
+    const auto middle = texels.begin() + ptrdiff_t(texels.size() / 2);
+    std::nth_element(texels.begin(), middle, texels.end());
+    return *middle;
+}
+
 } // namespace
 
 void stitch(unsigned height_bits, std::vector<PatchMaps> &patches, Task &task)
 {
-    const double slack = SLACK * (height_bits == 8 ? 1 : 65534 / 254.);
     const Sheets sheets(patches, height_bits);
+    const double texel = middle_texel(sheets);
+    const Limits limits = {MOST_APART * texel, SLACK * (height_bits == 8 ? 1 : 65534 / 254.)};
     std::vector<std::vector<const Decoded *>> others(sheets.size());
     std::vector<std::vector<Tie>> ties(sheets.size());
     task.parallel(sheets.size(), [&](size_t i) {
@@ -301,10 +321,10 @@ void stitch(unsigned height_bits, std::vector<PatchMaps> &patches, Task &task)
         ties[i] = sample_outline(sheets[i]);
     });
     std::vector<std::vector<const Tie *>> open(sheets.size());
-    Moves moves(sheets, patches, height_bits, COARSE * diagonal_of(patches));
+    Moves moves(sheets, patches, height_bits, std::min(texel, COARSE * diagonal_of(patches)));
     for (const double ease : EASE) {
         task.parallel(sheets.size(),
-                      [&](size_t i) { open[i] = update_ties(others[i], slack, ties[i]); });
+                      [&](size_t i) { open[i] = update_ties(others[i], limits, ties[i]); });
         moves.solve(open, ties, ease, task);
         task.parallel(sheets.size(), [&](size_t i) { moves.apply(i); });
     }

@@ -16,8 +16,9 @@ namespace gtx::baking {
 /* A sheet shows what it lies no deeper below than this, nor, when it is another chart's, higher
  * above, in texels along the source's normal. */
 constexpr double MOST_BELOW = 0.5, MOST_ABOVE = 1;
-/* and what faces its axis as much: a wall shows well inside the outline only, this many texels. */
-constexpr double LEAST_FACING = 0.15, INSIDE = 0.1;
+/* Texels outside its outline to which a sheet shows what faces its axis as much, from the side too;
+ * a wall shows well inside the outline only. */
+constexpr double SEEN = 0.15, LEAST_FACING = 0.15, INSIDE = 0.1;
 /* What faces away from its own chart by more is twisted inside out: seen from nowhere. */
 constexpr double TWISTED = -0.4;
 /* A sheet that is as near as this along the normal is let show that ends so many texels early. */
@@ -83,7 +84,7 @@ bool Search::shown_by(const Decoded &sheet, const Vec3d &point, const Vec3d &nor
     const double facing = dot(normal, sheet.axis[2]);
     double above, trim;
     if (facing < 0 || !sheet.sheet_above(point, above, trim) ||
-        trim > (facing < LEAST_FACING ? -INSIDE : SHOWN))
+        trim > (facing < LEAST_FACING ? -INSIDE : SEEN))
         return false;
     const double off = above * facing / job_.pitch;
     return off >= -MOST_BELOW && off <= most_above;
@@ -116,7 +117,7 @@ bool Search::shown_eased(const Vec3d &point, const Vec3d &normal,
     });
     if (!found)
         return false;
-    const int by = int(std::ceil((least - SHOWN) * 16)) + 1;
+    const int by = int(std::ceil((least - SEEN) * 16)) + 1;
     eased.push_back({chart_[sheets_.index(*found)], found->place_of(point).cell, by});
     return true;
 }

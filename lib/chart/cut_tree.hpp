@@ -43,6 +43,7 @@ struct CutNode {
     double least = 0;
     size_t leaves = 1;
     bool divided = false;             /* its children are what to go by */
+    double density[2] = {1, 1};       /* texels of its patch along each axis for one of the tree's */
 };
 
 struct CutTree {
@@ -57,6 +58,10 @@ CutTree grow_cut_tree(Relief relief, const CutPlan &plan, double share);
 /* Divides nodes so that all trees together have at most `wanted` leaves, if they can, and the
  * fewest texels. */
 void divide_trees(std::vector<CutTree> &trees, size_t wanted);
+
+/* Sets the density of each leaf so that, with as many texels in all, patches miss their relief by
+ * the least mean square. */
+void spread_texels(std::vector<CutTree> &trees, const CutPlan &plan);
 
 /* Of each run of `turns` trees, which are of one chart, the index of the one that takes the fewest
  * texels when all charts together have at most `wanted` leaves. Of a run all but the first may have

@@ -31,7 +31,18 @@ static ChartOptions with(PartitionMethod method, unsigned charts = 0)
 
 static bool is_cut(const Chart &chart)
 {
-    return chart.cells[0] > 0;
+    return std::isfinite(chart.clip_low[0]) || std::isfinite(chart.clip_high[0]) ||
+           std::isfinite(chart.clip_low[1]) || std::isfinite(chart.clip_high[1]);
+}
+
+/* Texels, not more than a patch may have, are as long as relief and the two tilts make them. */
+static void check_cells(const Chart &chart, double pitch)
+{
+    for (int a = 0; a < 2; ++a) {
+        assert_in_range(chart.cells[a], 1, 128);
+        assert_in_range(std::lround(1e6 * chart.frame.extent[a] / chart.cells[a] / pitch), 250000,
+                        4000000);
+    }
 }
 
 /* Areas of the connected pieces of a chart, ascending. */
@@ -65,16 +76,10 @@ static std::vector<double> pieces(const Mesh &mesh, const Chart &chart,
 static void check_cut(const Mesh &mesh, const Chart &chart, double pitch)
 {
     const Frame &f = chart.frame;
-    bool cut = false;
     for (int a = 0; a < 2; ++a) {
         assert_true(chart.clip_low[a] <= 1e-9 * pitch);
         assert_true(chart.clip_high[a] >= f.extent[a] - 1e-9 * pitch);
-        assert_true(chart.cells[a] <= 128);
-        /* texels are as long as the two tilts make them */
-        assert_in_range(std::lround(1e6 * f.extent[a] / chart.cells[a] / pitch), 250000, 4000000);
-        cut = cut || std::isfinite(chart.clip_low[a]) || std::isfinite(chart.clip_high[a]);
     }
-    assert_true(cut);
     for (uint32_t t : chart.triangles) {
         Vec3d middle;
         for (int k = 0; k < 3; ++k)
@@ -95,6 +100,9 @@ static void check_frame(const Mesh &mesh, const Chart &chart, double pitch)
         assert_true(std::abs(length(axis) - 1) < 1e-9);
     assert_true(dot(f.x, cross(f.y, f.z)) >= 0.1);
     double slack = 1e-6 * (pitch + f.extent[0] + f.extent[1] + f.extent[2]);
+    assert_int_equal(chart.cells[0] > 0, chart.cells[1] > 0);
+    if (chart.cells[0])
+        check_cells(chart, pitch);
     if (is_cut(chart))
         return check_cut(mesh, chart, pitch);
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -379,6 +387,41 @@ static void test_density(void **)
                 1e-9 * pitch);
 }
 
+/* The side of a texel along an axis of a chart. */
+static double texel(const Chart &chart, int axis)
+{
+    return chart.frame.extent[axis] / chart.cells[axis];
+}
+
+/* Texels go where the surface bends, and along the axis along which it does; as many in all. */
+static void test_spread(void **)
+{
+    auto square = [](double height, double k, double l) {
+        return shapes::sheet(200, 200, [=](double u, double v) {
+            return Vec3d(u, v, height * std::cos(k * u) * std::cos(l * v));
+        });
+    };
+    Mesh mesh = shapes::both(square(0, 0, 0), square(0.005, 150, 75), {2, 0, 0});
+    ChartOptions options;
+    options.pitch = 1 / 50.;
+    Partition p = partition(mesh, 2, options);
+    check(mesh, p);
+    assert_int_equal(p.charts.size(), 2);
+    const bool first = p.charts[0].frame.origin.x < 1.5;
+    const Chart &flat = p.charts[!first], &rough = p.charts[first];
+    const double texels[] = {double(flat.cells[0]) * flat.cells[1],
+                             double(rough.cells[0]) * rough.cells[1]};
+    print_message("texels of a flat square: %.0f, of a rough one: %.0f\n", texels[0], texels[1]);
+    assert_true(texels[1] > 2 * texels[0]);
+    assert_in_range(texels[0] + texels[1], 0.95 * 2 * 50 * 50, 1.05 * 2 * 50 * 50);
+
+    p = partition(square(0.005, 150, 0), 2, options); /* it bends along x alone */
+    assert_int_equal(p.charts.size(), 1);
+    const Chart &c = p.charts[0];
+    const int along = std::abs(c.frame.x.x) > std::abs(c.frame.y.x) ? 0 : 1;
+    assert_true(texel(c, !along) > 1.2 * texel(c, along));
+}
+
 /* Crumbs that touch a chart beside it join it; those that hang over it do not. */
 static void test_crumbs(void **)
 {
@@ -560,7 +603,7 @@ int main(void)
         cmocka_unit_test(test_shapes), cmocka_unit_test(test_small), cmocka_unit_test(test_empty),
         cmocka_unit_test(test_folds_are_split), cmocka_unit_test(test_single_layer),
         cmocka_unit_test(test_wanted_count), cmocka_unit_test(test_components),
-        cmocka_unit_test(test_density), cmocka_unit_test(test_crumbs),
+        cmocka_unit_test(test_density), cmocka_unit_test(test_spread), cmocka_unit_test(test_crumbs),
         cmocka_unit_test(test_two_sided), cmocka_unit_test(test_deterministic),
         cmocka_unit_test(test_junk), cmocka_unit_test(test_cancel),
         cmocka_unit_test(test_charts_ply), cmocka_unit_test(test_charts_ply_of_pieces),
