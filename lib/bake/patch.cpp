@@ -198,23 +198,29 @@ static bool refit(const Sheet &sheet, int grain, Chart &chart)
     return changed;
 }
 
+/* A sheet with `finer` times as many cells along its sides, or so many that they fill them. */
+static Sheet lay_fitted(const Job &job, const Chart &chart, double finer)
+{
+    Extractor *extractor = job.options.extractor;
+    FlatChart flat = flatten(job.mesh, job.neighbours, chart, job.pitch, finer);
+    Sheet sheet = lay_sheet(job, std::move(flat), nullptr); /* whatever reads the maps */
+    Chart fitted = chart;
+    for (unsigned &cells : fitted.cells)
+        cells = unsigned(std::ceil(cells * finer));
+    const bool again = refit(sheet, 1 << (job.options.mips - 1), fitted);
+    if (again)
+        flatten_again(job.mesh, fitted, sheet.flat);
+    return again || extractor ? lay_sheet(job, std::move(sheet.flat), extractor)
+                              : std::move(sheet);
+}
+
 /* A chart whose relief is finer than the model's pitch gets a finer one. */
 PatchMaps bake_chart(const Job &job, const Chart &chart)
 {
     constexpr double ALLOWED = 0.01, FINER = 1.4;
-    auto flat = [&](double finer) {
-        return flatten(job.mesh, job.neighbours, chart, job.pitch, finer);
-    };
-    Extractor *extractor = job.options.extractor;
-    Sheet sheet = lay_sheet(job, flat(1), nullptr); /* cells do not depend on what reads the maps */
-    Chart fitted = chart;
-    const bool again = refit(sheet, 1 << (job.options.mips - 1), fitted);
-    if (again)
-        flatten_again(job.mesh, fitted, sheet.flat);
-    if (again || extractor)
-        sheet = lay_sheet(job, std::move(sheet.flat), extractor);
+    Sheet sheet = lay_fitted(job, chart, 1);
     if (fit_heights(sheet.flat, sheet.support, job.pitch, sheet.cover) > ALLOWED) {
-        sheet = lay_sheet(job, flat(FINER), extractor);
+        sheet = lay_fitted(job, chart, FINER);
         fit_heights(sheet.flat, sheet.support, job.pitch, sheet.cover);
     }
     return encode_sheet(job, chart, sheet);

@@ -210,7 +210,7 @@ private:
 
     const Sheets &sheets_;
     std::vector<PatchMaps> &patches_;
-    const double top_, texel_; /* the largest code; how far a texel is */
+    const double top_, texel_; /* the largest code; a texel of the model, object units */
     std::vector<std::vector<Texel>> texels_;
 };
 
