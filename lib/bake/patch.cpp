@@ -203,7 +203,7 @@ static Sheet lay_fitted(const Job &job, const Chart &chart, double finer)
 {
     Extractor *extractor = job.options.extractor;
     FlatChart flat = flatten(job.mesh, job.neighbours, chart, job.pitch, finer);
-    Sheet sheet = lay_sheet(job, std::move(flat), nullptr); /* whatever reads the maps */
+    Sheet sheet = lay_sheet(job, std::move(flat), nullptr); /* cells do not depend on a driver */
     Chart fitted = chart;
     for (unsigned &cells : fitted.cells)
         cells = unsigned(std::ceil(cells * finer));

@@ -23,10 +23,9 @@ constexpr int COARSE = 6;
 constexpr int LEAST_CELLS = 4;
 
 /* Texels of a patch's core along an axis. */
-unsigned cells_of(const CutNode &node, int axis, unsigned most)
+unsigned cells_of(const CutNode &node, int axis)
 {
-    const double cells = node.tight.side(axis) * node.density[axis];
-    return unsigned(std::clamp(std::floor(cells + 0.5), 1., double(most)));
+    return unsigned(std::max(1., std::floor(node.tight.side(axis) * node.density[axis] + 0.5)));
 }
 
 /* A triangle of a chart as its patches see it, in texels. */
@@ -124,9 +123,8 @@ unsigned Harvest::fitted_cells(const CutNode &node, int axis) const
     const size_t low = size_t(2 * axis);
     const bool ends[2] = {!node.cuts[low] || node.tight.low[axis] > node.region.low[axis],
                           !node.cuts[low + 1] || node.tight.high[axis] < node.region.high[axis]};
-    const unsigned overlap = plan_.overlap[ends[0]] + plan_.overlap[ends[1]];
-    const unsigned core = cells_of(node, axis, plan_.side - overlap);
-    const unsigned side = core + overlap;
+    const unsigned core = cells_of(node, axis);
+    const unsigned side = core + plan_.overlap[ends[0]] + plan_.overlap[ends[1]];
     const unsigned over = side % plan_.grain;
     if (8 * over < 3 * plan_.grain && core > plan_.grain)
         return core - over;
@@ -181,12 +179,12 @@ void Harvest::make_patch(const CutNode &node, const std::vector<uint32_t> &piece
 }
 
 /* Of a chart that stays whole; a blade gets cells where it is baked. */
-void set_cells(const CutNode &node, const CutPlan &plan, Chart &chart)
+void set_cells(const CutNode &node, Chart &chart)
 {
     if (std::min(node.tight.side(0), node.tight.side(1)) < LEAST_CELLS)
         return;
     for (int axis = 0; axis < 2; ++axis)
-        chart.cells[axis] = cells_of(node, axis, plan.side - 2 * plan.overlap[1]);
+        chart.cells[axis] = cells_of(node, axis);
 }
 
 /* Turns the frames of charts that will be cut as their patches fill rectangles best, for the least
@@ -235,7 +233,7 @@ std::vector<Chart> cut_charts(const Surface &surface, std::vector<Region> region
             cut[i][0].source_triangles = regions[i].size();
             cut[i][0].triangles = std::move(regions[i].triangles);
             cut[i][0].frame = frames[i];
-            set_cells(trees[i].nodes[0], plan, cut[i][0]);
+            set_cells(trees[i].nodes[0], cut[i][0]);
         }
         trees[i] = {};
     }, 0.8, 1);
