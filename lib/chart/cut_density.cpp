@@ -1,9 +1,9 @@
-/* Gives each patch texels as its relief needs them.
+/* Gives each patch texels as its relief needs them, and cuts where those are few.
  *
  * What cells leave of a surface grows with how much it bends within a texel, and with the size of
  * texels to some power. All patches together lose least, in the mean square, where each has its
- * share of texels by that: finer ones where the surface is rough, and along the axis in which it
- * bends more. */
+ * share of texels by that: finer ones where the surface is rough and fills the rectangle, and along
+ * the axis in which it bends more. */
 #include "chart/cut_tree.hpp"
 
 namespace gtx {
@@ -12,28 +12,28 @@ namespace {
 
 /* Of the size of texels, in the error: 2 on a smooth surface, 1 at a crease. */
 constexpr double POWER = 1.5;
+/* Of the mean square of bends, then, in a density. */
+constexpr double SHARE = 0.5 / (POWER + 1);
+/* Of the filled share of a rectangle, beside bends: 1 were best for the error, but sheets meet
+ * better where the texels of neighbours are more alike. */
+constexpr double FILLED = 0.7;
 /* Texels of a patch are as many times finer or coarser than the model's at most, and from that as
  * many times shorter along one axis and longer along the other. */
 constexpr double RANGE = 1.5, STRETCH = 1.25;
 /* Bends between neighbouring cells, in texels: of any surface, and what counts of one. */
 constexpr double LEAST_BEND = 0.03, MOST_BEND = 0.5;
 
-/* A leaf, and the mean square of how much its relief bends along each axis, seen along the
- * normal. */
-struct Leaf {
-    CutNode *node;
-    double bend2[2];
-};
-
-Leaf measure_leaf(const Relief &relief, CutNode &node)
+Bends measure_bends(const Relief &relief, const Rect &box)
 {
-    constexpr double LEAST = LEAST_BEND * LEAST_BEND, MOST = MOST_BEND * MOST_BEND;
-    double sum[2] = {0, 0};
-    size_t count[2] = {0, 0};
+    constexpr double MOST = MOST_BEND * MOST_BEND;
     const int stride[2] = {1, relief.size[0]};
-    for (int j = node.tight.low[1]; j < node.tight.high[1]; ++j)
-        for (int i = node.tight.low[0]; i < node.tight.high[0]; ++i) {
+    Bends out;
+    for (int j = box.low[1]; j < box.high[1]; ++j)
+        for (int i = box.low[0]; i < box.high[0]; ++i) {
             const float *at = &relief.height[relief.at(i, j)];
+            if (std::isnan(*at))
+                continue;
+            out.filled += 1;
             double bend[2], slope2 = 0;
             for (int axis = 0; axis < 2; ++axis) {
                 const int along = axis ? j : i;
@@ -46,42 +46,74 @@ Leaf measure_leaf(const Relief &relief, CutNode &node)
             }
             for (int axis = 0; axis < 2; ++axis)
                 if (!std::isnan(bend[axis])) {
-                    sum[axis] += std::min(bend[axis] * bend[axis], MOST) / std::sqrt(1 + slope2);
-                    ++count[axis];
+                    out.square[axis] +=
+                        std::min(bend[axis] * bend[axis], MOST) / std::sqrt(1 + slope2);
+                    out.count[axis] += 1;
                 }
         }
-    Leaf leaf = {&node, {LEAST, LEAST}};
-    for (int axis = 0; axis < 2; ++axis)
-        if (count[axis])
-            leaf.bend2[axis] += sum[axis] / double(count[axis]);
-    return leaf;
+    return out;
+}
+
+/* Of both axes, the geometric mean. */
+double mean_square(const Bends &bends)
+{
+    return std::sqrt(bends.mean_square(0) * bends.mean_square(1));
 }
 
 /* Texels of a leaf's rectangle, at most `longest` on a side, when the model's are `fine`; sets its
  * density. */
-double set_density(const Leaf &leaf, double fine, double longest)
+double set_density(CutNode &leaf, double fine, double longest)
 {
-    const auto [x, y] = leaf.bend2;
-    const double both = std::clamp(fine * std::pow(x * y, 0.25 / (POWER + 1)), 1 / RANGE, RANGE);
-    const double stretch = std::clamp(std::pow(x / y, 0.25 / POWER), 1 / STRETCH, STRETCH);
+    const double area = double(leaf.tight.side(0)) * leaf.tight.side(1);
+    const double filled = std::max(1., leaf.bends.filled) / area;
+    const double share = std::pow(mean_square(leaf.bends) * std::pow(filled, FILLED), SHARE);
+    const double both = std::clamp(fine * share, 1 / RANGE, RANGE);
+    const double ratio = leaf.bends.mean_square(0) / leaf.bends.mean_square(1);
+    const double stretch = std::clamp(std::pow(ratio, 0.25 / POWER), 1 / STRETCH, STRETCH);
     double texels = 1;
     for (int axis = 0; axis < 2; ++axis) {
-        const double side = leaf.node->tight.side(axis);
-        double &density = leaf.node->density[axis];
-        density = std::min(axis ? both / stretch : both * stretch, longest / side);
-        texels *= side * density;
+        const double side = leaf.tight.side(axis);
+        leaf.density[axis] = std::min(axis ? both / stretch : both * stretch, longest / side);
+        texels *= side * leaf.density[axis];
     }
     return texels;
 }
 
 } // namespace
 
+void Bends::add(const Bends &other)
+{
+    for (int axis = 0; axis < 2; ++axis) {
+        square[axis] += other.square[axis];
+        count[axis] += other.count[axis];
+    }
+    filled += other.filled;
+}
+
+double Bends::mean_square(int axis) const
+{
+    return LEAST_BEND * LEAST_BEND + (count[axis] > 0 ? square[axis] / count[axis] : 0);
+}
+
+void weigh_bends(CutTree &tree)
+{
+    for (size_t n = tree.nodes.size(); n-- > 0;) {
+        CutNode &node = tree.nodes[n];
+        if (node.child[0] < 0)
+            node.bends = measure_bends(tree.relief, node.tight);
+        else
+            for (int child : node.child)
+                node.bends.add(tree.nodes[size_t(child)].bends);
+        node.cost *= std::pow(mean_square(node.bends), 2 * SHARE);
+    }
+}
+
 void spread_texels(std::vector<CutTree> &trees, const CutPlan &plan)
 {
     constexpr double FINEST = 1e6;
     constexpr int STEPS = 60;
     const double longest = plan.side - 2 * plan.overlap[1];
-    std::vector<Leaf> leaves;
+    std::vector<CutNode *> leaves;
     double texels = 0;
     for (CutTree &tree : trees) {
         std::vector<size_t> open(1, 0);
@@ -91,7 +123,7 @@ void spread_texels(std::vector<CutTree> &trees, const CutPlan &plan)
                 open.insert(open.end(), {size_t(node.child[0]), size_t(node.child[1])});
                 continue;
             }
-            leaves.push_back(measure_leaf(tree.relief, node));
+            leaves.push_back(&node);
             texels += double(node.tight.side(0)) * node.tight.side(1);
         }
     }
@@ -99,8 +131,8 @@ void spread_texels(std::vector<CutTree> &trees, const CutPlan &plan)
     for (int step = 0; step < STEPS; ++step) {
         const double middle = std::sqrt(low * high);
         double sum = 0;
-        for (const Leaf &leaf : leaves)
-            sum += set_density(leaf, middle, longest);
+        for (CutNode *leaf : leaves)
+            sum += set_density(*leaf, middle, longest);
         (sum > texels ? high : low) = middle;
     }
 }

@@ -33,11 +33,22 @@ struct Rect {
 /* The sides of a rectangle that are cuts: low, high of the first axis, then of the second. */
 using Cuts = std::array<bool, 4>;
 
+/* How much the relief of some texels bends between neighbours, seen along the normal. */
+struct Bends {
+    double square[2] = {0, 0};        /* sums of squares along each axis, texels */
+    double count[2] = {0, 0};         /* texels with neighbours along it */
+    double filled = 0;                /* texels with heights */
+
+    void add(const Bends &other);
+    double mean_square(int axis) const;
+};
+
 /* A rectangle of the grid and what of the chart lies there. */
 struct CutNode {
     Rect region, tight;
     Cuts cuts = {};
     double cost = 0;                  /* texels as one patch; infinite where it would be too long */
+    Bends bends;
     int child[2] = {-1, -1};
     /* With its descendants, under the price of a patch at hand: */
     double least = 0;
@@ -55,8 +66,11 @@ struct CutTree {
  * how many texels of surface a wanted patch has. */
 CutTree grow_cut_tree(Relief relief, const CutPlan &plan, double share);
 
+/* Measures the bends of all nodes, and weighs their costs by them: as texels will be spread. */
+void weigh_bends(CutTree &tree);
+
 /* Divides nodes so that all trees together have at most `wanted` leaves, if they can, and the
- * fewest texels. */
+ * least cost. */
 void divide_trees(std::vector<CutTree> &trees, size_t wanted);
 
 /* Sets the density of each leaf so that, with as many texels in all, patches miss their relief by

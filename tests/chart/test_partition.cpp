@@ -72,13 +72,18 @@ static std::vector<double> pieces(const Mesh &mesh, const Chart &chart,
     return areas;
 }
 
-/* A cut chart's frame holds what of its triangles lies between the cuts, in whole texels. */
+/* A cut chart's frame holds what of its triangles lies between the cuts, in whole texels. Where it
+ * ends before a cut, room for its overlap may reach over that. */
 static void check_cut(const Mesh &mesh, const Chart &chart, double pitch)
 {
     const Frame &f = chart.frame;
+    double low[2], high[2];
     for (int a = 0; a < 2; ++a) {
         assert_true(chart.clip_low[a] <= 1e-9 * pitch);
         assert_true(chart.clip_high[a] >= f.extent[a] - 1e-9 * pitch);
+        const double room = 2 * f.extent[a] / chart.cells[a];
+        low[a] = std::min(0., chart.clip_low[a] + room);
+        high[a] = std::max(f.extent[a], chart.clip_high[a] - room);
     }
     for (uint32_t t : chart.triangles) {
         Vec3d middle;
@@ -86,7 +91,7 @@ static void check_cut(const Mesh &mesh, const Chart &chart, double pitch)
             middle += f.local(mesh.position(t, k)) / 3;
         bool inside = true;
         for (int a = 0; a < 2; ++a)
-            inside = inside && middle[a] > chart.clip_low[a] && middle[a] < chart.clip_high[a];
+            inside = inside && middle[a] > low[a] && middle[a] < high[a];
         if (inside)
             for (int a = 0; a < 2; ++a)
                 assert_true(middle[a] >= -3 * pitch && middle[a] <= f.extent[a] + 3 * pitch);
@@ -422,6 +427,27 @@ static void test_spread(void **)
     assert_true(texel(c, !along) > 1.2 * texel(c, along));
 }
 
+/* Where texels are finer, empty ones cost more: cuts go there. */
+static void test_cuts_by_relief(void **)
+{
+    auto wedge = [](double height) {
+        return shapes::sheet(200, 200, [=](double u, double v) {
+            return Vec3d(u, u * v, height * std::cos(150 * u) * std::cos(150 * u * v));
+        });
+    };
+    ChartOptions options;
+    options.pitch = 1 / 100.;
+    options.charts = 12;
+    Partition p = partition(shapes::both(wedge(0), wedge(0.005), {2, 0, 0}), 2, options);
+    size_t rough = 0;
+    for (const Chart &chart : p.charts)
+        rough += chart.frame.origin.x > 1.5;
+    print_message("patches of a flat wedge: %zu, of a rough one: %zu\n", p.charts.size() - rough,
+                  rough);
+    assert_true(p.charts.size() <= 12);
+    assert_true(rough > p.charts.size() - rough);
+}
+
 /* Crumbs that touch a chart beside it join it; those that hang over it do not. */
 static void test_crumbs(void **)
 {
@@ -603,7 +629,8 @@ int main(void)
         cmocka_unit_test(test_shapes), cmocka_unit_test(test_small), cmocka_unit_test(test_empty),
         cmocka_unit_test(test_folds_are_split), cmocka_unit_test(test_single_layer),
         cmocka_unit_test(test_wanted_count), cmocka_unit_test(test_components),
-        cmocka_unit_test(test_density), cmocka_unit_test(test_spread), cmocka_unit_test(test_crumbs),
+        cmocka_unit_test(test_density), cmocka_unit_test(test_spread),
+        cmocka_unit_test(test_cuts_by_relief), cmocka_unit_test(test_crumbs),
         cmocka_unit_test(test_two_sided), cmocka_unit_test(test_deterministic),
         cmocka_unit_test(test_junk), cmocka_unit_test(test_cancel),
         cmocka_unit_test(test_charts_ply), cmocka_unit_test(test_charts_ply_of_pieces),
