@@ -50,6 +50,7 @@ struct ChartOptions {
                                     their texels at this resolution */
     unsigned grain = 8;          /* sides will be multiples of as many texels */
     unsigned height_bits = 8;    /* heights will have */
+    bool one_density = false;    /* CUTS: texels alike in all patches, as the paper has them */
     /* Texels that a patch needs beyond its core: at a straight cut, and where its chart ends. */
     unsigned overlap[2] = {1, 2};
 };

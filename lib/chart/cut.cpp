@@ -220,10 +220,12 @@ std::vector<Chart> cut_charts(const Surface &surface, std::vector<Region> region
     task.parallel(regions.size(), [&](size_t i) {
         trees[i] = grow_cut_tree(make_relief(surface, regions[i], frames[i], plan.pitch), plan,
                                  share);
-        weigh_bends(trees[i]);
+        if (!plan.one_density)
+            weigh_bends(trees[i]);
     }, 0.4, 0.8);
     divide_trees(trees, plan.patches);
-    spread_texels(trees, plan);
+    if (!plan.one_density)
+        spread_texels(trees, plan);
 
     std::vector<std::vector<Chart>> cut(regions.size());
     task.parallel(regions.size(), [&](size_t i) {

@@ -13,6 +13,7 @@ struct CutPlan {
     unsigned grain;       /* sides become multiples of as many texels */
     unsigned overlap[2];  /* texels that a patch has beyond its core: at a cut, at another side */
     double steps;         /* height codes; relief that they resolve worse than texels costs */
+    bool one_density;     /* texels are alike in all patches */
 };
 
 /* Cuts the charts of `regions` and `frames`, which fold nowhere. Deterministic for any thread

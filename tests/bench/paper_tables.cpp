@@ -144,6 +144,7 @@ Row make_row(const Mesh &mesh, const char *name, PartitionMethod method, unsigne
     options.charts = charts;
     options.grain = 1;
     options.overlap[0] = options.overlap[1] = 0;
+    options.one_density = true;
     options.height_bits = 16; /* the rules ask for full maps, not for flat ones */
     Task task(0, nullptr, nullptr);
     Partition p = make_partition(mesh, options, task);
