@@ -7,13 +7,13 @@
  * geotex_cast.glsl and geotex_fragment.glsl, with GTX_TILES. */
 GTX_VARYING(0) in vec2 gtx_pixel;
 
-/* Heads of all tiles: where the list begins and ends.
+/* Heads of all tiles, two a texel: where the list begins and ends, in half texels.
  * 8 texels a patch: columns to grid space of gtx_place[1], [4], [2], [3]; columns of its normals to
  *   the world; w of the first and of the last three: corner; size; page + 2^24 * level + 2^31 *
  *   two-sided; then the index, and the volume that the second, third and fourth column span.
  * 4 texels a slab: for each pair of its planes a linear function of the pixel, and how the second
  *   plane follows from the first (gtx_meets); first cell and last, where its patch's texels are.
- * The lists: where the slab is, least t. */
+ * The lists, two slabs a texel: where the slab is, least t. */
 uniform highp usamplerBuffer gtx_stream;
 uniform uint gtx_instance;
 uniform vec4 gtx_place[10];  /* x of 0: tiles a row;
@@ -93,6 +93,13 @@ bool gtx_cast_slab(int slab, vec2 pixel, vec2 t, out gtx_hit hit, out int patch_
     return gtx_cast(sheet, line.origin, line.direction, t.x, t.y, hit);
 }
 
+/* The half of the stream at k, of which a texel has two. */
+uvec2 gtx_half(int k)
+{
+    uvec4 both = texelFetch(gtx_stream, k >> 1);
+    return (k & 1) != 0 ? both.zw : both.xy;
+}
+
 /* The next slab of a list, from the one at k on, that the ray meets within a range of t, and where
  * the ray is in it; 0 when there is none, for heads come first. */
 int gtx_next_slab(vec2 pixel, vec2 range, int end, inout int k, out vec2 within)
@@ -100,7 +107,7 @@ int gtx_next_slab(vec2 pixel, vec2 range, int end, inout int k, out vec2 within)
     vec2 inverse = gtx_inverse(range), meeting = vec2(1.0, 0.0);
     int slab = 0, stop = end;
     do {
-        uvec4 entry = texelFetch(gtx_stream, k);
+        uvec2 entry = gtx_half(k);
         vec2 met = gtx_meets(int(entry.x), pixel, inverse);
         bool look = k < stop, meets = look && met.x <= met.y;
         if (meets) {
@@ -139,7 +146,7 @@ bool gtx_find(out gtx_surface s)
     gtx_clip(zw.y - zw.x, zw_step.y - zw_step.x, range.x, range.y);
 
     ivec2 tile = ivec2(pixel) >> 2;
-    uvec4 head = texelFetch(gtx_stream, tile.y * int(gtx_place[0].x) + tile.x);
+    uvec2 head = gtx_half(tile.y * int(gtx_place[0].x) + tile.x);
     int k = int(head.x), end = int(head.y), patch_at = -1;
     if (k == end)
         return false;

@@ -8,6 +8,8 @@ void gtx_stream_create(gtx_renderer *renderer)
     if (!gl->TexBuffer)
         return;
     gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &t->max_texels);
+    if (t->max_texels > 1 << 29) /* halves of texels are counted, in ints */
+        t->max_texels = 1 << 29;
     gl->GenVertexArrays(1, &t->vertex_array);
     gl->BindVertexArray(t->vertex_array);
     gtx_gl_label(gl, GL_VERTEX_ARRAY, t->vertex_array, "geotex tile corners");

@@ -163,43 +163,51 @@ static int32_t last_tile(const gtx_seen_slab *s, int32_t y)
     return -greatest(-s->x1, y - s->sum[1], -s->difference[1] - y);
 }
 
-/* Each tile that a slab may cover. */
-#define FOR_EACH_TILE(s, x, y)                                                                     \
-    for (int32_t y = (s)->y0; y <= (s)->y1; ++y)                                                   \
-        for (int32_t x = first_tile(s, y), last_##x = last_tile(s, y); x <= last_##x; ++x)
-
-/* Heads of the lists: where each begins and ends in the stream, whose first texels they are.
- * Returns where the last one ends, and counts the tiles that have any. */
-static uint64_t make_heads(gtx_tiles *t, uint32_t columns, uint32_t (*heads)[4], size_t count,
+/* Heads of the lists: where each begins and ends in the stream, in half texels. Returns where the
+ * last one ends, and counts the tiles that have any. */
+static uint64_t make_heads(gtx_tiles *t, uint32_t columns, uint32_t (*heads)[2], size_t count,
                            uint64_t begin)
 {
     const gtx_seen_slab *seen = t->seen.data;
+    /* Counts from tile to tile first: how many slabs more each has, and how many less. */
     memset(heads, 0, count * sizeof *heads);
     for (const gtx_seen_slab *s = seen; s < seen + t->seen_count; ++s)
-        FOR_EACH_TILE(s, x, y)
-            ++heads[(uint32_t)y * columns + (uint32_t)x][2];
+        for (int32_t y = s->y0; y <= s->y1; ++y) {
+            const int32_t first = first_tile(s, y), last = last_tile(s, y);
+            if (first <= last) {
+                ++heads[(uint32_t)y * columns + (uint32_t)first][0];
+                ++heads[(uint32_t)y * columns + (uint32_t)last][1];
+            }
+        }
     t->tile_count = 0;
+    uint32_t slabs = 0;
     for (size_t i = 0; i < count; ++i) {
+        slabs += heads[i][0];
+        const uint32_t less = heads[i][1];
         heads[i][0] = heads[i][1] = (uint32_t)begin; /* the end moves on as the list fills up */
-        begin += heads[i][2];
-        t->tile_count += heads[i][2] > 0;
+        begin += slabs;
+        t->tile_count += slabs > 0;
+        slabs -= less;
     }
     return begin;
 }
 
 /* Puts each slab into the lists of its tiles, nearest first. */
-static void list_slabs(const gtx_tiles *t, uint32_t columns, uint32_t (*heads)[4],
-                       uint32_t (*lists)[4])
+static void list_slabs(const gtx_tiles *t, uint32_t columns, uint32_t (*heads)[2],
+                       uint32_t (*lists)[2])
 {
     const gtx_seen_slab *seen = t->seen.data;
     const gtx_rank *order = t->order.data;
-    const uint32_t first = t->head_texels + t->record_texels, begin = first + t->slab_texels;
+    const uint32_t first = t->head_texels + t->record_texels, begin = 2 * (first + t->slab_texels);
     for (uint32_t i = 0; i < t->seen_count; ++i) {
         const gtx_seen_slab *s = &seen[order[i].place];
-        FOR_EACH_TILE(s, x, y) {
-            uint32_t *entry = lists[heads[(uint32_t)y * columns + (uint32_t)x][1]++ - begin];
-            entry[0] = first + GTX_TILE_SLAB_TEXELS * order[i].place;
-            entry[1] = gtx_bits_of(s->near);
+        const uint32_t entry[2] = {first + GTX_TILE_SLAB_TEXELS * order[i].place,
+                                   gtx_bits_of(s->near)};
+        for (int32_t y = s->y0; y <= s->y1; ++y) {
+            const int32_t last = last_tile(s, y);
+            for (int32_t x = first_tile(s, y); x <= last; ++x)
+                memcpy(lists[heads[(uint32_t)y * columns + (uint32_t)x][1]++ - begin], entry,
+                       sizeof entry);
         }
     }
 }
@@ -219,9 +227,9 @@ static void add_corners(gtx_tiles *t, uint32_t x0, uint32_t x1, uint32_t y0, uin
 /* Whether any of rows y0..y1 of a column of tiles has a slab. */
 static bool has_slabs(const gtx_tiles *t, uint32_t columns, uint32_t x, uint32_t y0, uint32_t y1)
 {
-    const uint32_t (*heads)[4] = t->heads.data;
+    const uint32_t (*heads)[2] = t->heads.data;
     for (uint32_t y = y0; y <= y1; ++y)
-        if (heads[y * columns + x][2])
+        if (heads[y * columns + x][0] < heads[y * columns + x][1])
             return true;
     return false;
 }
@@ -247,21 +255,21 @@ bool gtx_tiles_fill(gtx_renderer *renderer, const gtx_view *view, const gtx_fram
     gtx_tiles *t = &renderer->tiles;
     const gtx_camera_rows c = gtx_sight_camera_of(view, frame, placed, t->place);
     const uint32_t columns = (c.width + TILE - 1) / TILE, rows = (c.height + TILE - 1) / TILE;
-    const size_t tiles = (size_t)columns * rows;
-    if (tiles > (size_t)t->max_texels ||
-        !find_slabs(renderer, &c, model, placed, (uint32_t)tiles))
+    const size_t head_texels = ((size_t)columns * rows + 1) / 2, tiles = 2 * head_texels;
+    if (head_texels > (size_t)t->max_texels ||
+        !find_slabs(renderer, &c, model, placed, (uint32_t)head_texels))
         return false;
-    uint32_t (*heads)[4] = reserve(renderer, &t->heads, tiles, sizeof *heads);
+    uint32_t (*heads)[2] = reserve(renderer, &t->heads, tiles, sizeof *heads);
     if (!heads)
         return false;
-    t->head_texels = (uint32_t)tiles;
+    t->head_texels = (uint32_t)head_texels;
     t->slab_texels = GTX_TILE_SLAB_TEXELS * t->seen_count;
-    const uint64_t before = (uint64_t)tiles + t->record_texels + t->slab_texels;
-    const uint64_t texels = make_heads(t, columns, heads, tiles, before);
+    const uint64_t before = (uint64_t)t->head_texels + t->record_texels + t->slab_texels;
+    const uint64_t texels = (make_heads(t, columns, heads, tiles, 2 * before) + 1) / 2;
     if (texels > (uint64_t)t->max_texels)
         return false;
     t->list_texels = (uint32_t)(texels - before);
-    uint32_t (*lists)[4] = reserve(renderer, &t->lists, t->list_texels, sizeof *lists);
+    uint32_t (*lists)[2] = reserve(renderer, &t->lists, 2 * t->list_texels, sizeof *lists);
     if (!lists || !reserve(renderer, &t->corners, 6 * (size_t)t->tile_count, 2 * sizeof(uint16_t)))
         return false;
     list_slabs(t, columns, heads, lists);
