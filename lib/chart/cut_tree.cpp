@@ -138,8 +138,11 @@ std::vector<size_t> choose_turns(std::vector<CutTree> &trees, size_t turns, size
     while (high < HIGHEST && prune_all(trees, turns, high, best) > wanted)
         high *= 2;
     for (int step = 0; step < STEPS; ++step) {
-        double middle = (low + high) / 2;
-        (prune_all(trees, turns, middle, best) > wanted ? low : high) = middle;
+        const double middle = (low + high) / 2;
+        const size_t leaves = prune_all(trees, turns, middle, best);
+        if (leaves == wanted)
+            return best;
+        (leaves > wanted ? low : high) = middle;
     }
     prune_all(trees, turns, high, best);
     return best;
