@@ -1,4 +1,4 @@
-/* Gives each patch texels as its relief needs them, and cuts where those are few.
+/* Gives each patch texels as its relief needs them, and weighs by that where cuts pay.
  *
  * What cells leave of a surface grows with how much it bends within a texel, and with the size of
  * texels to some power. All patches together lose least, in the mean square, where each has its
@@ -54,8 +54,8 @@ Bends measure_bends(const Relief &relief, const Rect &box)
     return out;
 }
 
-/* Of both axes, the geometric mean. */
-double mean_square(const Bends &bends)
+/* Mean square of bends, of both axes. */
+double roughness(const Bends &bends)
 {
     return std::sqrt(bends.mean_square(0) * bends.mean_square(1));
 }
@@ -66,7 +66,7 @@ double set_density(CutNode &leaf, double fine, double longest)
 {
     const double area = double(leaf.tight.side(0)) * leaf.tight.side(1);
     const double filled = std::max(1., leaf.bends.filled) / area;
-    const double share = std::pow(mean_square(leaf.bends) * std::pow(filled, FILLED), SHARE);
+    const double share = std::pow(roughness(leaf.bends) * std::pow(filled, FILLED), SHARE);
     const double both = std::clamp(fine * share, 1 / RANGE, RANGE);
     const double ratio = leaf.bends.mean_square(0) / leaf.bends.mean_square(1);
     const double stretch = std::clamp(std::pow(ratio, 0.25 / POWER), 1 / STRETCH, STRETCH);
@@ -104,7 +104,7 @@ void weigh_bends(CutTree &tree)
         else
             for (int child : node.child)
                 node.bends.add(tree.nodes[size_t(child)].bends);
-        node.cost *= std::pow(mean_square(node.bends), 2 * SHARE);
+        node.cost *= std::pow(roughness(node.bends), 2 * SHARE);
     }
 }
 

@@ -47,14 +47,14 @@ struct Bends {
 struct CutNode {
     Rect region, tight;
     Cuts cuts = {};
-    double cost = 0;                  /* texels as one patch; infinite where it would be too long */
+    double cost = 0;                  /* texels as one patch; infinite where it is too long */
     Bends bends;
     int child[2] = {-1, -1};
     /* With its descendants, under the price of a patch at hand: */
     double least = 0;
     size_t leaves = 1;
     bool divided = false;             /* its children are what to go by */
-    double density[2] = {1, 1};       /* texels of its patch along each axis for one of the tree's */
+    double density[2] = {1, 1};       /* texels of its patch, along each axis, for one here */
 };
 
 struct CutTree {
