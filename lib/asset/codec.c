@@ -26,8 +26,8 @@ bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t 
 {
     *codec = (gtx_codec){.allocator = *allocator, .context_size = ZSTD_estimateCCtxSize(level),
                          .filtered_size = filtered_size};
-    codec->context = gtx_alloc_array(allocator, codec->context_size, 1);
-    codec->filtered = gtx_alloc_array(allocator, filtered_size, 1);
+    codec->context = gtx_alloc_raw(allocator, codec->context_size, 1);
+    codec->filtered = gtx_alloc_raw(allocator, filtered_size, 1);
     return codec->context && (codec->filtered || !filtered_size);
 }
 

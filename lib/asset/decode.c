@@ -152,19 +152,26 @@ static uint64_t work_of(const gtx_part *part)
     return part->section->size * (part->section->kind == GTX_SECTION_HEIGHT ? 4 : 1);
 }
 
-/* The longest come first, for the others to fill up the time. */
+/* All parts but the patches, which are there. */
+typedef struct apart {
+    gtx_decoding *d;
+    uint32_t order[GTX_MAX_KNOWN_SECTIONS]; /* of those behind the patches */
+} apart;
+
 static void alone(uint32_t index, void *data)
 {
-    gtx_decoding *d = data;
-    uint32_t wanted = 0;
-    for (uint32_t i = 1; i < d->part_count; ++i) {
-        const uint64_t work = work_of(&d->parts[i]);
-        uint32_t before = 0;
-        for (uint32_t k = 1; k < d->part_count; ++k)
-            before += work_of(&d->parts[k]) > work || (work_of(&d->parts[k]) == work && k < i);
-        wanted = before == index ? i : wanted;
-    }
-    decode_alone(d, &d->parts[wanted]);
+    const apart *a = data;
+    decode_alone(a->d, &a->d->parts[1 + a->order[index]]);
+}
+
+static void decode_all_alone(gtx_decoding *d)
+{
+    apart a = {.d = d};
+    uint64_t work[GTX_MAX_KNOWN_SECTIONS];
+    for (uint32_t i = 1; i < d->part_count; ++i)
+        work[i - 1] = work_of(&d->parts[i]);
+    gtx_longest_first(work, d->part_count - 1, a.order);
+    gtx_run_jobs(d->jobs, d->part_count - 1, alone, &a);
 }
 
 /* Levels of normals one after the other, from the finest on. */
@@ -243,7 +250,7 @@ bool gtx_part_known(const gtx_decoding *d, const gtx_part *part, bool rectangles
 
 void gtx_decode_rest(gtx_decoding *d, bool rectangles_hold, bool patches_hold)
 {
-    gtx_run_jobs(d->jobs, d->part_count - 1, alone, d);
+    decode_all_alone(d);
     const bool surfaces = rectangles_hold && heights_known(d);
     gtx_run_jobs(d->jobs, d->part_count, occupied, &(together){d, surfaces, patches_hold});
     if (!surfaces)

@@ -4,6 +4,7 @@
 #include "asset/header.h"
 #include "base/alloc.h"
 #include "base/error.h"
+#include "base/jobs.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -12,11 +13,13 @@
 typedef struct writer {
     const gtx_asset *asset;
     gtx_allocator allocator;
+    const gtx_jobs *jobs;
     int level;                    /* of zstd; 0 = stored */
-    gtx_codec codec;
     uint32_t count;
     gtx_section sections[GTX_MAX_KNOWN_SECTIONS];
     uint8_t *coded[GTX_MAX_KNOWN_SECTIONS]; /* NULL where stored */
+    uint32_t order[GTX_MAX_KNOWN_SECTIONS]; /* in which they are compressed */
+    bool done[GTX_MAX_KNOWN_SECTIONS];
 } writer;
 
 /* The filter that made cooked scans and photographic textures smallest, at zstd levels 3 and 19.
@@ -34,44 +37,51 @@ static uint32_t filter_of(gtx_section_kind kind)
     }
 }
 
-/* Compresses section `i` through `buffer`, which holds the largest one. False: out of memory. */
-static bool compress(writer *w, uint32_t i, uint8_t *buffer)
+/* Compresses section `i` in `buffer`, which has its size. False: out of memory. */
+static bool compress(writer *w, uint32_t i, gtx_codec *codec, uint8_t *buffer)
 {
     gtx_section *section = &w->sections[i];
     const uint8_t *data = gtx_asset_data(w->asset, section->kind, section->level);
-    size_t size = gtx_encode_section(&w->codec, section, w->asset, w->level, data, buffer);
+    size_t size = gtx_encode_section(codec, section, w->asset, w->level, data, buffer);
     if (size == 0) { /* would not get smaller */
         section->filter = 0;
         return true;
     }
-    section->scheme = GTX_SCHEME_ZSTD;
-    section->stored_size = size;
-    w->coded[i] = gtx_alloc_array(&w->allocator, size, 1);
+    w->coded[i] = gtx_alloc_raw(&w->allocator, size, 1);
     if (!w->coded[i])
         return false;
     memcpy(w->coded[i], buffer, size);
+    section->scheme = GTX_SCHEME_ZSTD;
+    section->stored_size = size;
     return true;
+}
+
+static void compress_job(uint32_t index, void *data)
+{
+    writer *w = data;
+    const uint32_t i = w->order[index];
+    gtx_section *section = &w->sections[i];
+    section->filter = filter_of(section->kind);
+    const size_t size = (size_t)section->size, filtered = (size_t)gtx_apply_size(
+        section, gtx_section_shape(&w->asset->info, section->kind, section->level));
+    gtx_codec codec;
+    uint8_t *buffer = gtx_alloc_raw(&w->allocator, size, 1);
+    w->done[i] = gtx_encoder_begin(&codec, &w->allocator, filtered, w->level) && buffer &&
+                 compress(w, i, &codec, buffer);
+    gtx_codec_end(&codec);
+    gtx_free_array(&w->allocator, buffer, size, 1);
 }
 
 static bool compress_all(writer *w)
 {
-    size_t largest = 0, filtered = 0;
-    for (uint32_t i = 0; i < w->count; ++i) {
-        gtx_section *section = &w->sections[i];
-        section->filter = filter_of(section->kind);
-        size_t apply = (size_t)gtx_apply_size(
-            section, gtx_section_shape(&w->asset->info, section->kind, section->level));
-        filtered = apply > filtered ? apply : filtered;
-        largest = section->size > largest ? (size_t)section->size : largest;
-    }
-    uint8_t *buffer = gtx_alloc_array(&w->allocator, largest, 1);
-    bool whole = buffer && gtx_encoder_begin(&w->codec, &w->allocator, filtered,
-                                             w->level);
-    for (uint32_t i = 0; whole && i < w->count; ++i)
-        whole = compress(w, i, buffer);
-    if (buffer)
-        gtx_codec_end(&w->codec);
-    gtx_free_array(&w->allocator, buffer, largest, 1);
+    uint64_t work[GTX_MAX_KNOWN_SECTIONS];
+    bool whole = true;
+    for (uint32_t i = 0; i < w->count; ++i)
+        work[i] = w->sections[i].size;
+    gtx_longest_first(work, w->count, w->order);
+    gtx_run_jobs(w->jobs, w->count, compress_job, w);
+    for (uint32_t i = 0; i < w->count; ++i)
+        whole = whole && w->done[i];
     return whole;
 }
 
@@ -134,8 +144,9 @@ gtx_result gtx_encode(const gtx_asset *asset, const gtx_encode_desc *desc, void 
         return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "this build has no zstd");
 
     writer w = {.asset = asset,
-                     .allocator = gtx_allocator_or_default(desc->allocator),
-                     .level = desc->zstd_level};
+                .allocator = gtx_allocator_or_default(desc->allocator),
+                .jobs = desc->jobs,
+                .level = desc->zstd_level};
     result = write_all(&w, data, size, error);
     for (uint32_t i = 0; i < w.count; ++i)
         gtx_free_array(&w.allocator, w.coded[i], (size_t)w.sections[i].stored_size, 1);

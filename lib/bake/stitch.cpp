@@ -31,15 +31,18 @@ namespace {
 struct Mobility {
     double ease, up, down;
 };
+enum Ground : uint8_t { BEYOND, AT_OUTLINE, INSIDE }; /* where a texel is */
+using Mobilities = std::array<Mobility, 3>;
 
-Mobility mobility_of(uint8_t trim, double ease)
+Ground ground_of(uint8_t trim)
 {
     constexpr uint8_t OUTLINE = 128, TEXEL = 16;
-    if (trim > OUTLINE)
-        return {1, 1.5, 1.5};
-    if (trim > OUTLINE - TEXEL)
-        return {ease, 1, 0.9};
-    return {0.1 * ease, 0.75, 0.68};
+    return trim > OUTLINE ? BEYOND : trim > OUTLINE - TEXEL ? AT_OUTLINE : INSIDE;
+}
+
+Mobilities mobilities(double ease)
+{
+    return {{{1, 1.5, 1.5}, {ease, 1, 0.9}, {0.1 * ease, 0.75, 0.68}}};
 }
 
 /* A point where a sheet ends, and the place of the other that it should lie on. */
@@ -183,12 +186,15 @@ std::vector<const Tie *> update_ties(const std::vector<const Decoded *> &others,
 class Moves {
 public:
     Moves(const Sheets &sheets, std::vector<PatchMaps> &patches, unsigned height_bits,
-          double texel)
+          double texel, Task &task)
         : sheets_(sheets), patches_(patches), top_(height_bits == 8 ? 255 : 65535),
-          texel_(texel)
+          texel_(texel), texels_(patches.size()), equations_(patches.size())
     {
-        for (const PatchMaps &patch : patches)
-            texels_.emplace_back(patch.height.size());
+        task.parallel(patches.size(), [&](size_t i) {
+            texels_[i].reserve(patches[i].trim.size());
+            for (uint8_t trim : patches[i].trim)
+                texels_[i].push_back({0, 0, false, ground_of(trim)});
+        });
     }
     /* `open` are those of the ties that are. */
     void solve(const std::vector<std::vector<const Tie *>> &open,
@@ -200,71 +206,82 @@ private:
     struct Texel {
         float moved = 0, applied = 0; /* all, and what of it is in the maps */
         bool eased = false;           /* by the end of a tie that is open, in this pass */
+        Ground ground = BEYOND;
+    };
+    /* A tie as rounds need it: how far its gap opens as each texel around its ends rises. */
+    struct Equation {
+        Texel *texels[8];
+        double lever[8], gap, slack;
+        double give;                  /* how far the gap opens as all move as they like to */
     };
     Texel &texel(const Tie &tie, size_t n)
     {
         const End &end = tie.end[n / 4];
         return texels_[sheets_.index(*end.sheet)][end.sheet->corner(end.place, n % 4)];
     }
-    void project(const Tie &tie, double ease);
+    Equation equation_of(const Tie &tie, const Mobilities &mobility);
+    void project(const Equation &equation, const Mobilities &mobility) const;
 
     const Sheets &sheets_;
     std::vector<PatchMaps> &patches_;
     const double top_, texel_; /* the largest code; a texel of the model, object units */
     std::vector<std::vector<Texel>> texels_;
+    std::vector<std::vector<Equation>> equations_; /* of this pass, by the sheets that end */
 };
+
+Moves::Equation Moves::equation_of(const Tie &tie, const Mobilities &mobility)
+{
+    Equation out = {{}, {}, tie.gap, tie.slack, 0};
+    for (size_t n = 0; n < 8; ++n) {
+        const End &end = tie.end[n / 4];
+        out.texels[n] = &texel(tie, n);
+        out.lever[n] = end.lever * end.place.weight(n % 4);
+        out.give += out.lever[n] * (mobility[out.texels[n]->ground].ease * out.lever[n]);
+    }
+    return out;
+}
 
 /* Ties that are closed, and stay so whatever the open ones do, are no part of it. */
 void Moves::solve(const std::vector<std::vector<const Tie *>> &open,
                   std::vector<std::vector<Tie>> &ties, double ease, Task &task)
 {
+    const Mobilities mobility = mobilities(ease);
     for (const std::vector<const Tie *> &some : open)
         for (const Tie *tie : some)
             for (size_t n = 0; n < 8; ++n)
                 texel(*tie, n).eased = true;
-    std::vector<std::vector<const Tie *>> moving(ties.size());
     task.parallel(ties.size(), [&](size_t i) {
+        equations_[i].clear();
         for (Tie &tie : ties[i]) {
             tie.moves = !tie.end[1].sheet;
             for (size_t n = 0; n < 8 && !tie.moves; ++n)
                 tie.moves = texel(tie, n).eased;
             if (tie.moves && tie.end[1].sheet)
-                moving[i].push_back(&tie);
+                equations_[i].push_back(equation_of(tie, mobility));
         }
     });
     for (int round = 0; round < ROUNDS; ++round)
-        for (const std::vector<const Tie *> &some : moving)
-            for (const Tie *tie : some)
-                project(*tie, ease);
+        for (const std::vector<Equation> &some : equations_)
+            for (const Equation &equation : some)
+                project(equation, mobility);
 }
 
 /* Closes a gap, but for its slack, by the least squares of what the texels around both ends move.
  */
-void Moves::project(const Tie &tie, double ease)
+void Moves::project(const Equation &e, const Mobilities &mobility) const
 {
-    Texel *moving[8];
-    double lever[8], gap = tie.gap;
-    for (size_t n = 0; n < 8; ++n) {
-        moving[n] = &texel(tie, n);
-        lever[n] = tie.end[n / 4].lever * tie.end[n / 4].place.weight(n % 4);
-        gap += lever[n] * double(moving[n]->moved - moving[n]->applied);
-    }
-    if (std::abs(gap) <= tie.slack)
-        return;
-    double eased[8], up[8], down[8], give = 0;
-    for (size_t n = 0; n < 8; ++n) {
-        const End &end = tie.end[n / 4];
-        const Mobility mobility =
-            mobility_of(end.sheet->maps->trim[end.sheet->corner(end.place, n % 4)], ease);
-        up[n] = mobility.up * texel_;
-        down[n] = mobility.down * texel_;
-        eased[n] = mobility.ease * lever[n];
-        give += lever[n] * eased[n];
-    }
-    const double share = (gap - std::copysign(tie.slack, gap)) / give;
+    double gap = e.gap;
     for (size_t n = 0; n < 8; ++n)
-        moving[n]->moved =
-            float(std::clamp(moving[n]->moved - share * eased[n], -down[n], up[n]));
+        gap += e.lever[n] * double(e.texels[n]->moved - e.texels[n]->applied);
+    if (std::abs(gap) <= e.slack)
+        return;
+    const double share = (gap - std::copysign(e.slack, gap)) / e.give;
+    for (size_t n = 0; n < 8; ++n) {
+        Texel &texel = *e.texels[n];
+        const Mobility &own = mobility[texel.ground];
+        texel.moved = float(std::clamp(texel.moved - share * (own.ease * e.lever[n]),
+                                       -own.down * texel_, own.up * texel_));
+    }
 }
 
 void Moves::apply(size_t sheet)
@@ -321,7 +338,8 @@ void stitch(unsigned height_bits, std::vector<PatchMaps> &patches, Task &task)
         ties[i] = sample_outline(sheets[i]);
     });
     std::vector<std::vector<const Tie *>> open(sheets.size());
-    Moves moves(sheets, patches, height_bits, std::min(texel, COARSE * diagonal_of(patches)));
+    Moves moves(sheets, patches, height_bits, std::min(texel, COARSE * diagonal_of(patches)),
+                task);
     for (const double ease : EASE) {
         task.parallel(sheets.size(),
                       [&](size_t i) { open[i] = update_ties(others[i], limits, ties[i]); });

@@ -19,6 +19,18 @@ static inline void gtx_run_jobs(const gtx_jobs *jobs, uint32_t count,
             job(i, data);
 }
 
+/* The order in which jobs that take `work` begin: the longest first, for the others to fill up the
+ * time. */
+static inline void gtx_longest_first(const uint64_t *work, uint32_t count, uint32_t *order)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        uint32_t at = i;
+        for (; at > 0 && work[order[at - 1]] < work[i]; --at)
+            order[at] = order[at - 1];
+        order[at] = i;
+    }
+}
+
 #ifdef __cplusplus
 }
 #endif

@@ -6,6 +6,7 @@
 #include "chart/agglomerate.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <queue>
 
 namespace gtx {
@@ -158,72 +159,130 @@ std::vector<uint32_t> merge_pairs(Clusters &clusters, const std::vector<uint32_t
     return renamed;
 }
 
-/* Merges the cheapest pair, again and again. Returns the new cluster of each old one. */
-std::vector<uint32_t> merge_queued(Clusters &clusters)
-{
-    struct Offer {
-        float cost;
-        uint32_t a, b, age_a, age_b;
-        bool operator<(const Offer &o) const
-        {
-            return cost != o.cost ? cost > o.cost : a != o.a ? a > o.a : b > o.b;
-        }
-    };
-    size_t count = clusters.size();
-    std::vector<uint32_t> parent(count), age(count);
-    std::vector<std::vector<uint32_t>> touching(count);
-    std::priority_queue<Offer> queue;
-    auto offer = [&](uint32_t a, uint32_t b) {
-        float cost = merge_cost(clusters.sums[a], clusters.sums[b]);
-        if (cost < INFINITY)
-            queue.push({cost, std::min(a, b), std::max(a, b), age[std::min(a, b)],
-                        age[std::max(a, b)]});
-    };
-    for (uint32_t c = 0; c < count; ++c) {
-        parent[c] = c;
-        touching[c].assign(clusters.touching.begin() + clusters.first[c],
-                           clusters.touching.begin() + clusters.first[c + 1]);
-        for (uint32_t other : touching[c])
-            if (other > c)
-                offer(c, other);
+/* The cheapest merge a cluster saw when it last looked. Those of equal cost have an order. */
+struct Offer {
+    float cost = INFINITY;
+    uint32_t a = 0, b = 0;        /* a < b; one of them is the owner */
+    uint32_t age_a = 0, age_b = 0, owner = 0;
+
+    bool is_before(const Offer &o) const
+    {
+        return cost != o.cost ? cost < o.cost : a != o.a ? a < o.a : b < o.b;
     }
-    auto root = [&](uint32_t c) {
-        while (parent[c] != c)
-            c = parent[c] = parent[parent[c]];
+    bool operator<(const Offer &o) const { return o.is_before(*this); } /* the queue's top is last */
+};
+
+/* Merges the cheapest pair, again and again. The queue holds the cheapest offer of each cluster, or
+ * an old one that was as cheap: only a cluster just made can lower what its neighbours pay. */
+class Merger {
+public:
+    explicit Merger(Clusters &clusters);
+    /* Returns the new cluster of each old one. */
+    std::vector<uint32_t> run();
+
+private:
+    uint32_t root(uint32_t c)
+    {
+        while (parent_[c] != c)
+            c = parent_[c] = parent_[parent_[c]];
         return c;
-    };
-    while (!queue.empty()) {
-        Offer best = queue.top();
-        queue.pop();
-        auto [cost, a, b, age_a, age_b] = best;
-        if (parent[a] != a || parent[b] != b || age[a] != age_a || age[b] != age_b)
-            continue;
-        parent[b] = a;
-        ++age[a];
-        clusters.sums[a] = clusters.sums[a] + clusters.sums[b];
-        std::vector<uint32_t> all = std::move(touching[a]);
-        all.insert(all.end(), touching[b].begin(), touching[b].end());
-        touching[b] = {};
-        for (uint32_t &c : all)
-            c = root(c);
-        std::sort(all.begin(), all.end());
-        all.erase(std::unique(all.begin(), all.end()), all.end());
-        all.erase(std::find(all.begin(), all.end(), a));
-        for (uint32_t other : all)
-            offer(a, other);
-        touching[a] = std::move(all);
+    }
+    bool is_now(uint32_t c, uint32_t age) const { return parent_[c] == c && age_[c] == age; }
+    Offer offer(uint32_t owner, uint32_t other) const;
+    void keep(const Offer &best);
+    void look(uint32_t owner);
+    void merge(uint32_t a, uint32_t b);
+
+    Clusters &clusters_;
+    std::vector<uint32_t> parent_, age_;
+    std::vector<std::vector<uint32_t>> touching_;
+    std::vector<Offer> best_;
+    std::priority_queue<Offer> queue_;
+};
+
+Merger::Merger(Clusters &clusters)
+    : clusters_(clusters), parent_(clusters.size()), age_(clusters.size()),
+      touching_(clusters.size()), best_(clusters.size())
+{
+    std::iota(parent_.begin(), parent_.end(), 0u);
+    for (uint32_t c = 0; c < clusters.size(); ++c)
+        touching_[c].assign(clusters.touching.begin() + clusters.first[c],
+                            clusters.touching.begin() + clusters.first[c + 1]);
+}
+
+Offer Merger::offer(uint32_t owner, uint32_t other) const
+{
+    const uint32_t a = std::min(owner, other), b = std::max(owner, other);
+    return {merge_cost(clusters_.sums[a], clusters_.sums[b]), a, b, age_[a], age_[b], owner};
+}
+
+void Merger::keep(const Offer &best)
+{
+    best_[best.owner] = best;
+    if (best.cost < INFINITY)
+        queue_.push(best);
+}
+
+void Merger::look(uint32_t owner)
+{
+    Offer best;
+    best.owner = owner;
+    for (uint32_t &other : touching_[owner]) {
+        other = root(other);
+        const Offer one = offer(owner, other);
+        if (other != owner && one.is_before(best))
+            best = one;
+    }
+    keep(best);
+}
+
+void Merger::merge(uint32_t a, uint32_t b)
+{
+    parent_[b] = a;
+    ++age_[a];
+    clusters_.sums[a] = clusters_.sums[a] + clusters_.sums[b];
+    std::vector<uint32_t> &all = touching_[a];
+    all.insert(all.end(), touching_[b].begin(), touching_[b].end());
+    touching_[b] = {};
+    for (uint32_t &c : all)
+        c = root(c);
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    all.erase(std::find(all.begin(), all.end(), a));
+    look(a);
+    for (uint32_t other : all) {
+        const Offer one = offer(other, a);
+        if (one.is_before(best_[other]))
+            keep(one);
+    }
+}
+
+std::vector<uint32_t> Merger::run()
+{
+    const auto count = uint32_t(clusters_.size());
+    for (uint32_t c = 0; c < count; ++c)
+        look(c);
+    while (!queue_.empty()) {
+        const Offer o = queue_.top();
+        const Offer &best = best_[o.owner];
+        queue_.pop();
+        if (is_now(o.a, o.age_a) && is_now(o.b, o.age_b))
+            merge(o.a, o.b);
+        else if (parent_[o.owner] == o.owner && best.a == o.a && best.b == o.b &&
+                 best.age_a == o.age_a && best.age_b == o.age_b)
+            look(o.owner);
     }
     std::vector<uint32_t> renamed(count);
     uint32_t kept = 0;
     for (uint32_t c = 0; c < count; ++c) {
         if (root(c) == c) {
-            clusters.sums[kept] = clusters.sums[c];
+            clusters_.sums[kept] = clusters_.sums[c];
             renamed[c] = kept++;
         } else {
             renamed[c] = renamed[root(c)]; /* the lower number stays the root */
         }
     }
-    clusters.sums.resize(kept);
+    clusters_.sums.resize(kept);
     return renamed;
 }
 
@@ -329,7 +388,7 @@ std::vector<uint32_t> agglomerate(const Surface &surface, uint32_t &count, Task 
         rename(merge_pairs(clusters, match(cheapest_partners(clusters, task))));
         task.advance(0.4 * (1 - double(clusters.size()) / double(labels.size())));
     }
-    rename(merge_queued(clusters));
+    rename(Merger(clusters).run());
     move_borders(surface, clusters.size(), labels, task);
     absorb_islands(surface, clusters.size(), labels);
     count = connected_pieces(surface.whole, labels);

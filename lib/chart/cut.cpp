@@ -195,14 +195,14 @@ void turn_frames(const Surface &surface, const std::vector<Region> &regions, con
 {
     auto radians = [](size_t turn) { return M_PI / 2 * double(turn) / TURNS; };
     std::vector<CutTree> trees(regions.size() * TURNS);
-    task.parallel(regions.size(), [&](size_t i) {
+    for_each_region(regions, task, [&](size_t i) {
         Relief relief = make_relief(surface, regions[i], frames[i], plan.pitch);
         for (size_t turn = 0; turn < TURNS; ++turn)
             trees[i * TURNS + turn] =
                 grow_cut_tree(turn_relief(relief, radians(turn), COARSE), plan, share);
     }, 0.2, 0.4);
     std::vector<size_t> best = choose_turns(trees, TURNS, plan.patches);
-    task.parallel(regions.size(), [&](size_t i) {
+    for_each_region(regions, task, [&](size_t i) {
         if (trees[i * TURNS + best[i]].nodes[0].divided)
             frames[i] = turned_frame(surface.mesh, regions[i].triangles, frames[i],
                                      radians(best[i]));
@@ -217,7 +217,7 @@ std::vector<Chart> cut_charts(const Surface &surface, std::vector<Region> region
     double share = surface.area / (plan.pitch * plan.pitch) / double(plan.patches);
     turn_frames(surface, regions, plan, share, frames, task);
     std::vector<CutTree> trees(regions.size());
-    task.parallel(regions.size(), [&](size_t i) {
+    for_each_region(regions, task, [&](size_t i) {
         trees[i] = grow_cut_tree(make_relief(surface, regions[i], frames[i], plan.pitch), plan,
                                  share);
         if (!plan.one_density)
@@ -228,7 +228,7 @@ std::vector<Chart> cut_charts(const Surface &surface, std::vector<Region> region
         spread_texels(trees, plan);
 
     std::vector<std::vector<Chart>> cut(regions.size());
-    task.parallel(regions.size(), [&](size_t i) {
+    for_each_region(regions, task, [&](size_t i) {
         if (trees[i].nodes[0].divided) {
             cut[i] = Harvest(surface, frames[i], plan, trees[i]).reap(regions[i]);
         } else {

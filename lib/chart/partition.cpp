@@ -75,7 +75,7 @@ void report_initial(const Surface &surface, const std::vector<Region> &regions, 
                     Partition &out)
 {
     std::vector<std::vector<uint32_t>> inverted(regions.size());
-    task.parallel(regions.size(), [&](size_t i) {
+    for_each_region(regions, task, [&](size_t i) {
         Vec3d z = median_axis(surface.mesh, regions[i].triangles);
         for (uint32_t t : regions[i].triangles)
             if (dot(surface.mesh.area_vector(t), z) <= 0)
@@ -94,7 +94,7 @@ void report_initial(const Surface &surface, const std::vector<Region> &regions, 
 double side_limit(const Surface &surface, const std::vector<Region> &regions, Task &task)
 {
     std::vector<std::pair<double, double>> sides(regions.size()); /* length, area */
-    task.parallel(regions.size(), [&](size_t i) {
+    for_each_region(regions, task, [&](size_t i) {
         const std::vector<uint32_t> &triangles = regions[i].triangles;
         Frame frame = make_frame(surface.mesh, triangles, median_axis(surface.mesh, triangles));
         sides[i].first = long_side(frame);
@@ -119,7 +119,7 @@ bool split_all(const Surface &surface, std::vector<Region> &regions, std::vector
     frames.clear();
     while (!pending.empty()) {
         std::vector<Verdict> verdicts(pending.size());
-        task.parallel(pending.size(), [&](size_t i) {
+        for_each_region(pending, task, [&](size_t i) {
             verdicts[i] = judge(surface, pending[i], bounds);
         }, 0.75, 1);
         std::vector<Region> next;
@@ -145,7 +145,7 @@ void report_final(const Surface &surface, const std::vector<Region> &regions,
         bool folding;
     };
     std::vector<Count> counts(regions.size());
-    task.parallel(regions.size(), [&](size_t i) {
+    for_each_region(regions, task, [&](size_t i) {
         Layers layers = find_layers(surface, regions[i], frames[i], out.pitch);
         counts[i] = {0, layers.samples, layers.doubled, !layers.folds.empty()};
         for (uint32_t t : regions[i].triangles)

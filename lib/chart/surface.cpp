@@ -155,6 +155,17 @@ Surface make_surface(const Mesh &mesh, double pitch, Task &task)
     return surface;
 }
 
+void for_each_region(const std::vector<Region> &regions, Task &task,
+                     const std::function<void(size_t)> &body, double from, double to)
+{
+    std::vector<uint32_t> order(regions.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        return regions[a].size() > regions[b].size();
+    });
+    task.parallel(order.size(), [&](size_t n) { body(order[n]); }, from, to);
+}
+
 std::vector<Region> split_region(const Region &parent, const std::vector<uint32_t> &labels,
                                  uint32_t count)
 {

@@ -37,6 +37,11 @@ Surface make_surface(const Mesh &mesh, double pitch, Task &task);
 /* The expected size of a texel when `charts` of them cover the mesh. */
 double expected_pitch(const Mesh &mesh, size_t charts);
 
+/* Runs body(i) for every region on the task's threads, as Task::parallel does, but the largest
+ * first: one that begins last is waited for. */
+void for_each_region(const std::vector<Region> &regions, Task &task,
+                     const std::function<void(size_t)> &body, double from = 0, double to = 1);
+
 /* The triangles of `parent` whose label is below `count`, a region a label. Labels are local. */
 std::vector<Region> split_region(const Region &parent, const std::vector<uint32_t> &labels,
                                  uint32_t count);

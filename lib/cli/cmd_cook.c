@@ -1,6 +1,8 @@
 /* gtx cook: triangle meshes -> an asset. */
 #include "cli/cli.h"
 
+#include "host/jobs.h"
+
 #include <geotex/cook.h>
 
 #include <stdlib.h>
@@ -91,12 +93,11 @@ static int check(const char *const *models, int count)
 /* To stdout once it is whole, or to a file as gtx_cook_file would. */
 static int write_asset(const gtx_asset *asset)
 {
-    gtx_encode_desc encode;
+    const gtx_jobs jobs = gtx_host_jobs(desc.threads);
+    const gtx_encode_desc encode = {.jobs = &jobs, .zstd_level = zstd_level};
     gtx_error error;
     void *data;
     size_t size;
-    memset(&encode, 0, sizeof encode);
-    encode.zstd_level = zstd_level;
     if (!is_stream(output))
         return gtx_save_file(asset, output, &encode, &error) ? report_error(output, &error)
                                                              : EXIT_CODE_OK;

@@ -57,19 +57,45 @@ static Asset make_asset(const Maps &maps, const std::vector<ShellLevel> &shell,
                                   facts.source_triangles, options.allocator});
 }
 
+/* Jobs of the C rooms on a task's threads. What ends them early must not pass through C: it is kept
+ * for whoever made the call. */
+struct TaskJobs {
+    Task &task;
+    std::exception_ptr thrown = nullptr;
+
+    static void run(uint32_t count, void (*job)(uint32_t, void *), void *data, void *user)
+    {
+        auto *self = static_cast<TaskJobs *>(user);
+        try {
+            self->task.parallel(count, [&](size_t i) { job(uint32_t(i), data); });
+        } catch (...) {
+            self->thrown = std::current_exception();
+        }
+    }
+};
+
 /* The bytes of a file. */
 struct Encoded {
     gtx_allocator allocator;
     void *data = nullptr;
     size_t size = 0;
 
-    Encoded(const gtx_asset *asset, const Options &options) : allocator(options.allocator)
+    Encoded(const gtx_asset *asset, const Options &options, Task &task)
+        : allocator(options.allocator)
     {
+        TaskJobs on_task = {task};
+        const gtx_jobs jobs = {TaskJobs::run, &on_task};
         gtx_encode_desc desc = {};
         desc.allocator = &allocator;
+        desc.jobs = &jobs;
         desc.zstd_level = options.zstd;
         gtx_error error;
-        require_ok(gtx_encode(asset, &desc, &data, &size, &error), error);
+        const gtx_result result = gtx_encode(asset, &desc, &data, &size, &error);
+        if (on_task.thrown) {
+            gtx_free_array(&allocator, data, size, 1);
+            std::rethrow_exception(on_task.thrown);
+        }
+        require_ok(result, error);
     }
     ~Encoded() { gtx_free_array(&allocator, data, size, 1); }
     Encoded(const Encoded &) = delete;
@@ -149,7 +175,7 @@ static Attempt attempt(const Mesh &mesh, const gtx_cook_desc &desc, const Option
         out.error = surface_error(out.asset.get(), charted, out.partition.junk, task);
     }
     if (desc.error > 0)
-        out.bytes = Encoded(out.asset.get(), options).size;
+        out.bytes = Encoded(out.asset.get(), options, task).size;
     out.warnings.assign(task.warnings.begin() + ptrdiff_t(before), task.warnings.end());
     task.warnings.resize(before);
     return out;
@@ -244,7 +270,7 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
         asset = cook_models(models, desc, options, task, facts);
     std::optional<Encoded> file;
     if (!unchanged && (output || report))
-        file.emplace(asset.get(), options);
+        file.emplace(asset.get(), options, task);
     task.end();
 
     /* The file comes last: a report that finds no memory must not leave one behind. */

@@ -89,7 +89,7 @@ void make_normals(Draft &surface, Task &task)
     for (uint32_t c = uint32_t(surface.twin.size()); c-- > 0;)
         corner_of[start_of(mesh, c)] = c;
 
-    constexpr size_t block = 1 << 14;
+    constexpr size_t block = 1 << 12;
     size_t blocks = (corner_of.size() + block - 1) / block;
     std::vector<uint64_t> replaced(blocks, 0);
     task.parallel(blocks, [&](size_t b) {
