@@ -61,8 +61,23 @@ std::string printable(std::string_view text, size_t longest)
     return text.size() > longest ? out + "..." : out;
 }
 
+/* A whole number of few digits, as indices are: it needs no rounding. */
+static bool parse_whole(const char *&at, const char *end, double &value)
+{
+    constexpr int MOST_DIGITS = 15;
+    const char *p = at;
+    for (value = 0; p < end && *p >= '0' && *p <= '9'; ++p)
+        value = 10 * value + (*p - '0');
+    const bool whole = p > at && p - at <= MOST_DIGITS &&
+                       (p == end || (*p != '.' && *p != 'e' && *p != 'E'));
+    at = whole ? p : at;
+    return whole;
+}
+
 bool parse_number(const char *&at, const char *end, double &value)
 {
+    if (parse_whole(at, end, value))
+        return true;
     const char *start = at + (at < end && *at == '+');
     auto [stop, error] = std::from_chars(start, end, value);
     if (error == std::errc::result_out_of_range) { /* too large or too small? */

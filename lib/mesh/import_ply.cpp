@@ -247,6 +247,8 @@ void PlyReader::read_lists(const PlyElement &element, size_t list, Lists &lists)
     for (size_t i = 0; i < element.properties.size(); ++i)
         if (i != list && !(colored && roles.of[i] < ROLE_COUNT))
             ignored(element, element.properties[i]);
+    lists.values.reserve(lists.values.size() + 4 * element.count); /* of triangles */
+    lists.colors.reserve(lists.colors.size() + element.count);
     double v[ROLE_COUNT + 1] = {};
     for (uint64_t row = 0; row < element.count; ++row) {
         progress(row);
@@ -313,7 +315,8 @@ void PlyReader::cut_faces()
         } else {
             ++dropped;
         }
-        colors_.resize(mesh_.triangles.size(), faces_.colors[row]);
+        if (faces_colored_)
+            colors_.resize(mesh_.triangles.size(), faces_.colors[row]);
         if (row % 0x8000 == 0)
             task_.advance(1); /* for the chance to stop */
     }
@@ -342,7 +345,8 @@ void PlyReader::cut_strips()
             a = b;
             b = c;
         }
-        colors_.resize(mesh_.triangles.size(), strips_.colors[row]);
+        if (faces_colored_)
+            colors_.resize(mesh_.triangles.size(), strips_.colors[row]);
     }
 }
 
