@@ -46,32 +46,43 @@ static gtx_result check_limits(const gtx_gl *gl, const gtx_model *model, gtx_err
     return GTX_OK;
 }
 
-static void allocate_textures(const gtx_gl *gl, gtx_model *model)
+/* Before there are images: drivers make room for the levels that can be asked for. */
+static void begin_texture(const gtx_gl *gl, gtx_model *model, uint32_t unit, uint32_t last_level)
 {
     static const char *const labels[UNIT_COUNT] = {
         [UNIT_CELLS] = "geotex cells",         [UNIT_TRIM] = "geotex trim",
         [UNIT_NORMALS] = "geotex normals",     [UNIT_COLORS] = "geotex colors",
         [UNIT_PATCHES] = "geotex patches",     [UNIT_MATERIALS] = "geotex materials",
         [UNIT_EMISSIONS] = "geotex emissions"};
+    const gtx_texture_kind kind = gtx_texture_kind_of(model, unit);
+    gl->GenTextures(1, &model->textures[unit]);
+    gl->BindTexture(kind.target, model->textures[unit]);
+    gtx_gl_label(gl, GL_TEXTURE, model->textures[unit], labels[unit]);
+    gl->TexParameteri(kind.target, GL_TEXTURE_BASE_LEVEL, 0);
+    gl->TexParameteri(kind.target, GL_TEXTURE_MAX_LEVEL, (gl_int)last_level);
+    gl->TexParameteri(kind.target, GL_TEXTURE_MIN_FILTER, (gl_int)kind.min_filter);
+    gl->TexParameteri(kind.target, GL_TEXTURE_MAG_FILTER, (gl_int)kind.mag_filter);
+    gl->TexParameteri(kind.target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    gl->TexParameteri(kind.target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+/* The levels of a unit follow one another. */
+static void allocate_textures(const gtx_gl *gl, gtx_model *model)
+{
     for (uint32_t i = 0; i < model->level_count; ++i) {
         const gtx_level *l = &model->levels[i];
         const gtx_texture_kind kind = gtx_texture_kind_of(model, l->unit);
-        if (!model->textures[l->unit])
-            gl->GenTextures(1, &model->textures[l->unit]);
-        gl->BindTexture(kind.target, model->textures[l->unit]);
-        gtx_gl_label(gl, GL_TEXTURE, model->textures[l->unit], labels[l->unit]);
+        uint32_t last = i;
+        while (last + 1 < model->level_count && model->levels[last + 1].unit == l->unit)
+            ++last;
+        if (l->level == 0)
+            begin_texture(gl, model, l->unit, last - i);
         if (kind.target == GL_TEXTURE_2D)
             gl->TexImage2D(kind.target, (gl_int)l->level, (gl_int)kind.inner, (gl_size)l->width,
                            (gl_size)l->height, 0, kind.format, kind.type, NULL);
         else
             gl->TexImage3D(kind.target, (gl_int)l->level, (gl_int)kind.inner, (gl_size)l->width,
                            (gl_size)l->height, (gl_size)l->layers, 0, kind.format, kind.type, NULL);
-        gl->TexParameteri(kind.target, GL_TEXTURE_BASE_LEVEL, 0);
-        gl->TexParameteri(kind.target, GL_TEXTURE_MAX_LEVEL, (gl_int)l->level);
-        gl->TexParameteri(kind.target, GL_TEXTURE_MIN_FILTER, (gl_int)kind.min_filter);
-        gl->TexParameteri(kind.target, GL_TEXTURE_MAG_FILTER, (gl_int)kind.mag_filter);
-        gl->TexParameteri(kind.target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-        gl->TexParameteri(kind.target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     }
 }
 
