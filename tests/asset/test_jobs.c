@@ -1,4 +1,4 @@
-/* Opening in a host's jobs: the same asset, or the same error, however they are run. */
+/* Opening and encoding in a host's jobs: the same asset, bytes or error, however they are run. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -123,10 +123,62 @@ static void test_zeros(void **state)
     free(file.data);
 }
 
+static void test_encoding(void **state)
+{
+    (void)state;
+    if (!gtx_has_zstd())
+        skip();
+    for (int i = 0; i < GOLDEN_COUNT; ++i) {
+        gtx_asset *asset;
+        gtx_encode_desc desc = {.zstd_level = 3};
+        void *alone, *other;
+        size_t size, other_size;
+        assert_int_equal(golden_create(&goldens[i], NULL, &asset, NULL), GTX_OK);
+        assert_int_equal(gtx_encode(asset, &desc, &alone, &size, NULL), GTX_OK);
+        runner_log log = {0, 0};
+        for (int k = 0; k < RUNNERS; ++k) {
+            const gtx_jobs jobs = runner_of(k, &log);
+            desc.jobs = &jobs;
+            assert_int_equal(gtx_encode(asset, &desc, &other, &other_size, NULL), GTX_OK);
+            assert_int_equal(size, other_size);
+            assert_memory_equal(alone, other, size);
+            free(other);
+        }
+        assert_true(log.runs > 0);
+        free(alone);
+        gtx_close(asset);
+    }
+}
+
+/* A host that stops half-way, as a cancelled cook does, gets no file. */
+static void run_half(uint32_t count, void (*job)(uint32_t, void *), void *data, void *user)
+{
+    (void)user;
+    for (uint32_t i = 0; i < count / 2; ++i)
+        job(i, data);
+}
+
+static void test_stopped(void **state)
+{
+    (void)state;
+    if (!gtx_has_zstd())
+        skip();
+    const gtx_jobs jobs = {run_half, NULL};
+    const gtx_encode_desc desc = {.jobs = &jobs, .zstd_level = 3};
+    gtx_asset *asset;
+    void *data = NULL;
+    size_t size = 0;
+    assert_int_equal(golden_create(&goldens[0], NULL, &asset, NULL), GTX_OK);
+    assert_int_equal(gtx_encode(asset, &desc, &data, &size, NULL), GTX_ERROR_MEMORY);
+    assert_null(data);
+    gtx_close(asset);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_good), cmocka_unit_test(test_bad),
-                                       cmocka_unit_test(test_mutated),
-                                       cmocka_unit_test(test_zeros)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_good),     cmocka_unit_test(test_bad),
+        cmocka_unit_test(test_mutated),  cmocka_unit_test(test_zeros),
+        cmocka_unit_test(test_encoding), cmocka_unit_test(test_stopped)};
     return cmocka_run_group_tests_name("jobs", tests, NULL, NULL);
 }
