@@ -296,7 +296,8 @@ GTX_API gtx_result gtx_create(const gtx_asset_desc *desc, gtx_asset **out, gtx_e
 
 typedef struct gtx_encode_desc {
     const gtx_allocator *allocator;
-    const gtx_jobs *jobs;         /* used during the call, a section each; may be NULL */
+    const gtx_jobs *jobs;         /* used during the call; encoding then has memory for all sections
+                                     at once */
     int32_t zstd_level;           /* 0 = stored, 1..19 */
     uint32_t reserved[5];
 } gtx_encode_desc;

@@ -21,14 +21,9 @@ size_t gtx_decoder_size(void)
     return ZSTD_estimateDCtxSize();
 }
 
-bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t filtered_size,
-                       int level)
+size_t gtx_encoder_size(int level, uint64_t size)
 {
-    *codec = (gtx_codec){.allocator = *allocator, .context_size = ZSTD_estimateCCtxSize(level),
-                         .filtered_size = filtered_size};
-    codec->context = gtx_alloc_raw(allocator, codec->context_size, 1);
-    codec->filtered = gtx_alloc_raw(allocator, filtered_size, 1);
-    return codec->context && (codec->filtered || !filtered_size);
+    return ZSTD_estimateCCtxSize_usingCParams(ZSTD_getCParams(level, size, 0));
 }
 
 static void apply(const gtx_section *section, const gtx_asset *asset, const uint8_t *data,
@@ -65,18 +60,18 @@ const char *gtx_decompress(void *decoder, const gtx_section *section, const uint
     return NULL;
 }
 
-size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, const gtx_asset *asset,
-                          int level, const uint8_t *data, uint8_t *out)
+size_t gtx_encode_section(const gtx_encoder *encoder, const gtx_section *section,
+                          const gtx_asset *asset, const uint8_t *data, uint8_t *out)
 {
     size_t size = (size_t)section->size;
     if (section->filter) {
-        apply(section, asset, data, codec->filtered);
-        data = codec->filtered;
+        apply(section, asset, data, encoder->filtered);
+        data = encoder->filtered;
     }
-    ZSTD_CCtx *context = ZSTD_initStaticCCtx(codec->context, codec->context_size);
+    ZSTD_CCtx *context = ZSTD_initStaticCCtx(encoder->memory, encoder->size);
     if (!context || size < 2)
         return 0;
-    size_t written = ZSTD_compressCCtx(context, out, size - 1, data, size, level);
+    size_t written = ZSTD_compressCCtx(context, out, size - 1, data, size, encoder->level);
     return ZSTD_isError(written) ? 0 : written;
 }
 
@@ -92,12 +87,10 @@ size_t gtx_decoder_size(void)
     return 0;
 }
 
-bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t filtered_size,
-                       int level)
+size_t gtx_encoder_size(int level, uint64_t size)
 {
-    (void)filtered_size, (void)level;
-    *codec = (gtx_codec){.allocator = *allocator};
-    return true;
+    (void)level, (void)size;
+    return 0;
 }
 
 const char *gtx_decompress(void *decoder, const gtx_section *section, const uint8_t *bytes,
@@ -107,10 +100,10 @@ const char *gtx_decompress(void *decoder, const gtx_section *section, const uint
     return "this build has no zstd";
 }
 
-size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, const gtx_asset *asset,
-                          int level, const uint8_t *data, uint8_t *out)
+size_t gtx_encode_section(const gtx_encoder *encoder, const gtx_section *section,
+                          const gtx_asset *asset, const uint8_t *data, uint8_t *out)
 {
-    (void)codec, (void)section, (void)asset, (void)level, (void)data, (void)out;
+    (void)encoder, (void)section, (void)asset, (void)data, (void)out;
     return 0;
 }
 
@@ -128,10 +121,4 @@ const char *gtx_undo_filter(const gtx_asset *asset, const gtx_section *section, 
     else if (section->filter && section->filter <= GTX_FILTER_PLANES_PAETH)
         gtx_filter_undo(image, section->filter, coded, out);
     return NULL;
-}
-
-void gtx_codec_end(gtx_codec *codec)
-{
-    gtx_free_array(&codec->allocator, codec->context, codec->context_size, 1);
-    gtx_free_array(&codec->allocator, codec->filtered, codec->filtered_size, 1);
 }

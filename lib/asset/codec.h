@@ -68,24 +68,21 @@ const char *gtx_decompress(void *decoder, const gtx_section *section, const uint
 const char *gtx_undo_filter(const gtx_asset *asset, const gtx_section *section, uint8_t *coded,
                             uint8_t *out);
 
-/* A zstd encoder and a buffer for filtered images, from the caller's allocator. */
-typedef struct gtx_codec {
-    gtx_allocator allocator;
-    void *context;
-    size_t context_size;
+/* Bytes of a zstd encoder's memory, aligned to 8, for sections of `size`; 0 without zstd. */
+size_t gtx_encoder_size(int level, uint64_t size);
+
+/* What encoding takes from the caller: an encoder's memory, and gtx_apply_size bytes for the
+ * filter. */
+typedef struct gtx_encoder {
+    int level;
+    void *memory;
+    size_t size;
     uint8_t *filtered;
-    size_t filtered_size;
-} gtx_codec;
+} gtx_encoder;
 
-/* An encoder of up to `level`; filtered_size may be 0. False when memory is out. Freed with
- * gtx_codec_end, also after a failure. */
-bool gtx_encoder_begin(gtx_codec *codec, const gtx_allocator *allocator, size_t filtered_size,
-                       int level);
-void gtx_codec_end(gtx_codec *codec);
-
-/* Encodes a section of the asset, whose bytes are `data`, into `out`. Returns the bytes
- * written, 0 when they are not fewer than section->size. */
-size_t gtx_encode_section(gtx_codec *codec, const gtx_section *section, const gtx_asset *asset,
-                          int level, const uint8_t *data, uint8_t *out);
+/* Encodes a section of the asset, whose bytes are `data`, into `out`, which has as many. Returns
+ * the bytes written, 0 when they are not fewer. */
+size_t gtx_encode_section(const gtx_encoder *encoder, const gtx_section *section,
+                          const gtx_asset *asset, const uint8_t *data, uint8_t *out);
 
 #endif

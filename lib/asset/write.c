@@ -17,9 +17,12 @@ typedef struct writer {
     int level;                    /* of zstd; 0 = stored */
     uint32_t count;
     gtx_section sections[GTX_MAX_KNOWN_SECTIONS];
-    uint8_t *coded[GTX_MAX_KNOWN_SECTIONS]; /* NULL where stored */
-    uint32_t order[GTX_MAX_KNOWN_SECTIONS]; /* in which they are compressed */
+    uint8_t *coded[GTX_MAX_KNOWN_SECTIONS];
+    gtx_encoder encoders[GTX_MAX_KNOWN_SECTIONS];
+    uint32_t order[GTX_MAX_KNOWN_SECTIONS]; /* in which they are encoded */
     bool done[GTX_MAX_KNOWN_SECTIONS];
+    uint8_t *block;               /* of all that encoding takes */
+    size_t block_size;
 } writer;
 
 /* The filter that made cooked scans and photographic textures smallest, at zstd levels 3 and 19.
@@ -37,51 +40,64 @@ static uint32_t filter_of(gtx_section_kind kind)
     }
 }
 
-/* Compresses section `i` in `buffer`, which has its size. False: out of memory. */
-static bool compress(writer *w, uint32_t i, gtx_codec *codec, uint8_t *buffer)
+/* The places of everything in the block, which may be NULL. Returns its size. Sections that are
+ * encoded one after the other share what they need for a moment. */
+static uint64_t find_rooms(writer *w, uint8_t *block)
 {
-    gtx_section *section = &w->sections[i];
-    const uint8_t *data = gtx_asset_data(w->asset, section->kind, section->level);
-    size_t size = gtx_encode_section(codec, section, w->asset, w->level, data, buffer);
-    if (size == 0) { /* would not get smaller */
-        section->filter = 0;
-        return true;
+    const bool apart = w->jobs && w->jobs->run;
+    uint64_t end = 0, most = 0;
+    for (uint32_t i = 0; i < w->count; ++i) {
+        w->coded[i] = block ? block + end : NULL;
+        end += gtx_align64(w->sections[i].size);
     }
-    w->coded[i] = gtx_alloc_raw(&w->allocator, size, 1);
-    if (!w->coded[i])
-        return false;
-    memcpy(w->coded[i], buffer, size);
-    section->scheme = GTX_SCHEME_ZSTD;
-    section->stored_size = size;
-    return true;
+    for (uint32_t i = 0; i < w->count; ++i) {
+        const gtx_section *s = &w->sections[i];
+        const gtx_map_shape shape = gtx_section_shape(&w->asset->info, s->kind, s->level);
+        const size_t memory = gtx_encoder_size(w->level, s->size);
+        const uint64_t room = gtx_align64(memory) + gtx_align64(gtx_apply_size(s, shape));
+        w->encoders[i] = (gtx_encoder){w->level, block ? block + end : NULL, memory,
+                                       block ? block + end + gtx_align64(memory) : NULL};
+        end += apart ? room : 0;
+        most = room > most ? room : most;
+    }
+    return apart ? end : end + most;
 }
 
-static void compress_job(uint32_t index, void *data)
+static void compress(uint32_t index, void *data)
 {
     writer *w = data;
     const uint32_t i = w->order[index];
     gtx_section *section = &w->sections[i];
-    section->filter = filter_of(section->kind);
-    const size_t size = (size_t)section->size, filtered = (size_t)gtx_apply_size(
-        section, gtx_section_shape(&w->asset->info, section->kind, section->level));
-    gtx_codec codec;
-    uint8_t *buffer = gtx_alloc_raw(&w->allocator, size, 1);
-    w->done[i] = gtx_encoder_begin(&codec, &w->allocator, filtered, w->level) && buffer &&
-                 compress(w, i, &codec, buffer);
-    gtx_codec_end(&codec);
-    gtx_free_array(&w->allocator, buffer, size, 1);
+    const uint8_t *bytes = gtx_asset_data(w->asset, section->kind, section->level);
+    const size_t size =
+        gtx_encode_section(&w->encoders[i], section, w->asset, bytes, w->coded[i]);
+    if (size) {
+        section->scheme = GTX_SCHEME_ZSTD;
+        section->stored_size = size;
+    } else { /* would not get smaller */
+        section->filter = 0;
+    }
+    w->done[i] = true;
 }
 
 static bool compress_all(writer *w)
 {
     uint64_t work[GTX_MAX_KNOWN_SECTIONS];
     bool whole = true;
-    for (uint32_t i = 0; i < w->count; ++i)
+    for (uint32_t i = 0; i < w->count; ++i) {
+        w->sections[i].filter = filter_of(w->sections[i].kind);
         work[i] = w->sections[i].size;
+    }
+    const uint64_t size = find_rooms(w, NULL);
+    w->block = size > SIZE_MAX ? NULL : gtx_alloc_raw(&w->allocator, (size_t)size, 1);
+    if (!w->block)
+        return false;
+    w->block_size = (size_t)size;
+    find_rooms(w, w->block);
     gtx_longest_first(work, w->count, w->order);
-    gtx_run_jobs(w->jobs, w->count, compress_job, w);
+    gtx_run_jobs(w->jobs, w->count, compress, w);
     for (uint32_t i = 0; i < w->count; ++i)
-        whole = whole && w->done[i];
+        whole = whole && w->done[i]; /* a host may have stopped */
     return whole;
 }
 
@@ -104,9 +120,9 @@ static void emit(const writer *w, uint8_t *bytes, uint64_t size)
     gtx_header_store(bytes, &w->asset->info, w->sections, w->count, size);
     for (uint32_t i = 0; i < w->count; ++i) {
         const gtx_section *section = &w->sections[i];
-        const void *data = w->coded[i];
-        if (!data)
-            data = gtx_asset_data(w->asset, section->kind, section->level);
+        const void *data = section->scheme == GTX_SCHEME_ZSTD
+                               ? w->coded[i]
+                               : gtx_asset_data(w->asset, section->kind, section->level);
         memcpy(bytes + section->offset, data, (size_t)section->stored_size);
     }
 }
@@ -148,8 +164,7 @@ gtx_result gtx_encode(const gtx_asset *asset, const gtx_encode_desc *desc, void 
                 .jobs = desc->jobs,
                 .level = desc->zstd_level};
     result = write_all(&w, data, size, error);
-    for (uint32_t i = 0; i < w.count; ++i)
-        gtx_free_array(&w.allocator, w.coded[i], (size_t)w.sections[i].stored_size, 1);
+    gtx_free_array(&w.allocator, w.block, w.block_size, 1);
     return result;
 }
 

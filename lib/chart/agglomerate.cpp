@@ -174,9 +174,9 @@ struct Offer {
 
 /* Merges the cheapest pair, again and again. The queue holds the cheapest offer of each cluster, or
  * an old one that was as cheap: only a cluster just made can lower what its neighbours pay. */
-class Merger {
+class MergeQueue {
 public:
-    explicit Merger(Clusters &clusters);
+    explicit MergeQueue(Clusters &clusters);
     /* Returns the new cluster of each old one. */
     std::vector<uint32_t> run();
 
@@ -200,7 +200,7 @@ private:
     std::priority_queue<Offer> queue_;
 };
 
-Merger::Merger(Clusters &clusters)
+MergeQueue::MergeQueue(Clusters &clusters)
     : clusters_(clusters), parent_(clusters.size()), age_(clusters.size()),
       touching_(clusters.size()), best_(clusters.size())
 {
@@ -210,20 +210,20 @@ Merger::Merger(Clusters &clusters)
                             clusters.touching.begin() + clusters.first[c + 1]);
 }
 
-Offer Merger::offer(uint32_t owner, uint32_t other) const
+Offer MergeQueue::offer(uint32_t owner, uint32_t other) const
 {
     const uint32_t a = std::min(owner, other), b = std::max(owner, other);
     return {merge_cost(clusters_.sums[a], clusters_.sums[b]), a, b, age_[a], age_[b], owner};
 }
 
-void Merger::keep(const Offer &best)
+void MergeQueue::keep(const Offer &best)
 {
     best_[best.owner] = best;
     if (best.cost < INFINITY)
         queue_.push(best);
 }
 
-void Merger::look(uint32_t owner)
+void MergeQueue::look(uint32_t owner)
 {
     Offer best;
     best.owner = owner;
@@ -236,7 +236,7 @@ void Merger::look(uint32_t owner)
     keep(best);
 }
 
-void Merger::merge(uint32_t a, uint32_t b)
+void MergeQueue::merge(uint32_t a, uint32_t b)
 {
     parent_[b] = a;
     ++age_[a];
@@ -257,7 +257,7 @@ void Merger::merge(uint32_t a, uint32_t b)
     }
 }
 
-std::vector<uint32_t> Merger::run()
+std::vector<uint32_t> MergeQueue::run()
 {
     const auto count = uint32_t(clusters_.size());
     for (uint32_t c = 0; c < count; ++c)
@@ -388,7 +388,7 @@ std::vector<uint32_t> agglomerate(const Surface &surface, uint32_t &count, Task 
         rename(merge_pairs(clusters, match(cheapest_partners(clusters, task))));
         task.advance(0.4 * (1 - double(clusters.size()) / double(labels.size())));
     }
-    rename(Merger(clusters).run());
+    rename(MergeQueue(clusters).run());
     move_borders(surface, clusters.size(), labels, task);
     absorb_islands(surface, clusters.size(), labels);
     count = connected_pieces(surface.whole, labels);

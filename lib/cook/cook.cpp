@@ -14,7 +14,7 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
-#include <optional>
+#include <memory>
 
 namespace gtx {
 
@@ -181,9 +181,15 @@ static Attempt attempt(const Mesh &mesh, const gtx_cook_desc &desc, const Option
     return out;
 }
 
+/* An asset, and its bytes where they are wanted. */
+struct Cooked {
+    Asset asset = Asset(nullptr, gtx_close);
+    std::unique_ptr<Encoded> file;
+};
+
 /* Everything from the clean mesh on; fills the rest of `facts`. */
-static Asset cook_mesh(const Mesh &mesh, const gtx_cook_desc &desc, const Options &options,
-                       Task &task, CookFacts &facts)
+static Cooked cook_mesh(const Mesh &mesh, const gtx_cook_desc &desc, const Options &options,
+                        bool encoded, Task &task, CookFacts &facts)
 {
     auto cook_with = [&](const Options &o) { return attempt(mesh, desc, o, task, facts); };
     Attempt made = desc.error > 0
@@ -199,14 +205,18 @@ static Asset cook_mesh(const Mesh &mesh, const gtx_cook_desc &desc, const Option
     facts.measured = desc.measure || desc.error > 0;
     facts.error = made.error;
     task.begin("write");
+    Cooked out;
+    if (encoded)
+        out.file = std::make_unique<Encoded>(made.asset.get(), options, task);
     if (desc.charts_ply)
         write_charts_ply(desc.charts_ply, made.partition.charted(mesh), made.partition);
-    return std::move(made.asset);
+    out.asset = std::move(made.asset);
+    return out;
 }
 
 /* Everything from the models on; fills `facts`. */
-static Asset cook_models(Models &models, const gtx_cook_desc &desc, const Options &options,
-                         Task &task, CookFacts &facts)
+static Cooked cook_models(Models &models, const gtx_cook_desc &desc, const Options &options,
+                          bool encoded, Task &task, CookFacts &facts)
 {
     Mesh mesh = import_models(models, options.z_up, task);
     facts.source_triangles = mesh.triangle_count();
@@ -216,7 +226,7 @@ static Asset cook_models(Models &models, const gtx_cook_desc &desc, const Option
     task.begin("clean");
     mesh = clean_mesh(std::move(mesh), task, facts.clean);
     refuse_warnings(desc, task);
-    return cook_mesh(mesh, desc, options, task, facts);
+    return cook_mesh(mesh, desc, options, encoded, task, facts);
 }
 
 static std::unique_ptr<Report> report_on(const gtx_asset *asset, const Options &options,
@@ -260,32 +270,29 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
         facts.version = gpu->version();
     }
     facts.key = content_key(options, models.hash);
-    Asset asset(nullptr, gtx_close);
+    Cooked cooked;
     if (output) {
         refuse_overwriting_source(models.sources, output);
-        asset = find_cooked(output, desc, facts.key);
+        cooked.asset = find_cooked(output, desc, facts.key);
     }
-    const bool unchanged = asset != nullptr;
+    const bool unchanged = cooked.asset != nullptr;
     if (!unchanged)
-        asset = cook_models(models, desc, options, task, facts);
-    std::optional<Encoded> file;
-    if (!unchanged && (output || report))
-        file.emplace(asset.get(), options, task);
+        cooked = cook_models(models, desc, options, output || report, task, facts);
     task.end();
 
     /* The file comes last: a report that finds no memory must not leave one behind. */
     std::unique_ptr<Report> made;
     if (report) {
-        facts.bytes = file ? file->size : std::filesystem::file_size(output);
+        facts.bytes = cooked.file ? cooked.file->size : std::filesystem::file_size(output);
         facts.total_seconds =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        made = report_on(asset.get(), options, facts, unchanged, models.sources, task);
+        made = report_on(cooked.asset.get(), options, facts, unchanged, models.sources, task);
     }
-    if (file && output)
-        file->save(output);
+    if (cooked.file && output)
+        cooked.file->save(output);
     if (report)
         made->hand_over(report);
-    return asset;
+    return std::move(cooked.asset);
 }
 
 } // namespace gtx
