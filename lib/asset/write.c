@@ -9,6 +9,9 @@
 #include <stdio.h>
 #include <string.h>
 
+/* An encoder each: more would take more memory than time. */
+enum { MOST_JOBS = 4 };
+
 /* A file in the making. */
 typedef struct writer {
     const gtx_asset *asset;
@@ -18,9 +21,9 @@ typedef struct writer {
     uint32_t count;
     gtx_section sections[GTX_MAX_KNOWN_SECTIONS];
     uint8_t *coded[GTX_MAX_KNOWN_SECTIONS];
-    gtx_encoder encoders[GTX_MAX_KNOWN_SECTIONS];
-    uint32_t order[GTX_MAX_KNOWN_SECTIONS]; /* in which they are encoded */
-    bool done[GTX_MAX_KNOWN_SECTIONS];
+    uint32_t job[GTX_MAX_KNOWN_SECTIONS], job_count;
+    gtx_encoder encoders[MOST_JOBS];
+    bool done[MOST_JOBS];
     uint8_t *block;               /* of all that encoding takes */
     size_t block_size;
 } writer;
@@ -40,64 +43,86 @@ static uint32_t filter_of(gtx_section_kind kind)
     }
 }
 
-/* The places of everything in the block, which may be NULL. Returns its size. Sections that are
- * encoded one after the other share what they need for a moment. */
+/* Gives every section to a job, the longest first, to the one that has least to do. */
+static void share_out(writer *w)
+{
+    uint64_t work[GTX_MAX_KNOWN_SECTIONS], load[MOST_JOBS] = {0};
+    uint32_t order[GTX_MAX_KNOWN_SECTIONS];
+    for (uint32_t i = 0; i < w->count; ++i)
+        work[i] = w->sections[i].size;
+    gtx_longest_first(work, w->count, order);
+    w->job_count = w->jobs && w->jobs->run ? MOST_JOBS : 1;
+    for (uint32_t i = 0; i < w->count; ++i) {
+        uint32_t least = 0;
+        for (uint32_t j = 1; j < w->job_count; ++j)
+            least = load[j] < load[least] ? j : least;
+        load[least] += work[order[i]];
+        w->job[order[i]] = least;
+    }
+}
+
+/* The places of everything in the block, which may be NULL. Returns its size. */
 static uint64_t find_rooms(writer *w, uint8_t *block)
 {
-    const bool apart = w->jobs && w->jobs->run;
-    uint64_t end = 0, most = 0;
+    uint64_t end = 0;
     for (uint32_t i = 0; i < w->count; ++i) {
         w->coded[i] = block ? block + end : NULL;
         end += gtx_align64(w->sections[i].size);
     }
-    for (uint32_t i = 0; i < w->count; ++i) {
-        const gtx_section *s = &w->sections[i];
-        const gtx_map_shape shape = gtx_section_shape(&w->asset->info, s->kind, s->level);
-        const size_t memory = gtx_encoder_size(w->level, s->size);
-        const uint64_t room = gtx_align64(memory) + gtx_align64(gtx_apply_size(s, shape));
-        w->encoders[i] = (gtx_encoder){w->level, block ? block + end : NULL, memory,
-                                       block ? block + end + gtx_align64(memory) : NULL};
-        end += apart ? room : 0;
-        most = room > most ? room : most;
+    for (uint32_t j = 0; j < w->job_count; ++j) {
+        uint64_t memory = 0, filtered = 0;
+        for (uint32_t i = 0; i < w->count; ++i) {
+            const gtx_section *s = &w->sections[i];
+            const uint64_t coder = gtx_align64(gtx_encoder_size(w->level, s->size));
+            const uint64_t image = gtx_align64(gtx_apply_size(
+                s, gtx_section_shape(&w->asset->info, s->kind, s->level)));
+            memory = w->job[i] == j && coder > memory ? coder : memory;
+            filtered = w->job[i] == j && image > filtered ? image : filtered;
+        }
+        w->encoders[j] = (gtx_encoder){w->level, block ? block + end : NULL, (size_t)memory,
+                                       block ? block + end + memory : NULL};
+        end += memory + filtered;
     }
-    return apart ? end : end + most;
+    return end;
 }
 
-static void compress(uint32_t index, void *data)
+static void compress(writer *w, uint32_t i, const gtx_encoder *encoder)
 {
-    writer *w = data;
-    const uint32_t i = w->order[index];
     gtx_section *section = &w->sections[i];
-    const uint8_t *bytes = gtx_asset_data(w->asset, section->kind, section->level);
-    const size_t size =
-        gtx_encode_section(&w->encoders[i], section, w->asset, bytes, w->coded[i]);
+    const uint8_t *data = gtx_asset_data(w->asset, section->kind, section->level);
+    const size_t size = gtx_encode_section(encoder, section, w->asset, data, w->coded[i]);
     if (size) {
         section->scheme = GTX_SCHEME_ZSTD;
         section->stored_size = size;
     } else { /* would not get smaller */
         section->filter = 0;
     }
-    w->done[i] = true;
+}
+
+static void compress_share(uint32_t job, void *data)
+{
+    writer *w = data;
+    for (uint32_t i = 0; i < w->count; ++i)
+        if (w->job[i] == job)
+            compress(w, i, &w->encoders[job]);
+    w->done[job] = true;
 }
 
 static bool compress_all(writer *w)
 {
-    uint64_t work[GTX_MAX_KNOWN_SECTIONS];
     bool whole = true;
-    for (uint32_t i = 0; i < w->count; ++i) {
+    for (uint32_t i = 0; i < w->count; ++i)
         w->sections[i].filter = filter_of(w->sections[i].kind);
-        work[i] = w->sections[i].size;
-    }
+    share_out(w);
     const uint64_t size = find_rooms(w, NULL);
     w->block = size > SIZE_MAX ? NULL : gtx_alloc_raw(&w->allocator, (size_t)size, 1);
     if (!w->block)
         return false;
     w->block_size = (size_t)size;
     find_rooms(w, w->block);
-    gtx_longest_first(work, w->count, w->order);
-    gtx_run_jobs(w->jobs, w->count, compress, w);
-    for (uint32_t i = 0; i < w->count; ++i)
-        whole = whole && w->done[i]; /* a host may have stopped */
+    gtx_run_jobs(w->jobs, w->job_count, compress_share, w);
+    for (uint32_t j = 0; j < w->job_count; ++j)
+        whole = whole && w->done[j]; /* a host may have stopped */
     return whole;
 }
 

@@ -208,11 +208,19 @@ private:
         bool eased = false;           /* by the end of a tie that is open, in this pass */
         Ground ground = BEYOND;
     };
-    /* A tie as rounds need it: how far its gap opens as each texel around its ends rises. */
+    /* A tie, and where the texels around its ends are: the first of two rows of two. */
     struct Equation {
-        Texel *texels[8];
-        double lever[8], gap, slack;
+        const Tie *tie;
+        Texel *first[2];
+        uint32_t width[2];
         double give;                  /* how far the gap opens as all move as they like to */
+
+        Texel &texel(size_t n) const { return first[n / 4][(n & 1) + (n >> 1 & 1) * width[n / 4]]; }
+        /* How far the gap opens as a texel rises. */
+        double lever(size_t n) const
+        {
+            return tie->end[n / 4].lever * tie->end[n / 4].place.weight(n % 4);
+        }
     };
     Texel &texel(const Tie &tie, size_t n)
     {
@@ -231,12 +239,12 @@ private:
 
 Moves::Equation Moves::equation_of(const Tie &tie, const Mobilities &mobility)
 {
-    Equation out = {{}, {}, tie.gap, tie.slack, 0};
+    Equation out = {&tie, {&texel(tie, 0), &texel(tie, 4)}, {}, 0};
+    for (size_t k = 0; k < 2; ++k)
+        out.width[k] = uint32_t(tie.end[k].sheet->w);
     for (size_t n = 0; n < 8; ++n) {
-        const End &end = tie.end[n / 4];
-        out.texels[n] = &texel(tie, n);
-        out.lever[n] = end.lever * end.place.weight(n % 4);
-        out.give += out.lever[n] * (mobility[out.texels[n]->ground].ease * out.lever[n]);
+        const double lever = out.lever(n);
+        out.give += lever * (mobility[out.texel(n).ground].ease * lever);
     }
     return out;
 }
@@ -270,16 +278,19 @@ void Moves::solve(const std::vector<std::vector<const Tie *>> &open,
  */
 void Moves::project(const Equation &e, const Mobilities &mobility) const
 {
-    double gap = e.gap;
-    for (size_t n = 0; n < 8; ++n)
-        gap += e.lever[n] * double(e.texels[n]->moved - e.texels[n]->applied);
-    if (std::abs(gap) <= e.slack)
-        return;
-    const double share = (gap - std::copysign(e.slack, gap)) / e.give;
+    const double slack = e.tie->slack;
+    double lever[8], gap = e.tie->gap;
     for (size_t n = 0; n < 8; ++n) {
-        Texel &texel = *e.texels[n];
+        lever[n] = e.lever(n);
+        gap += lever[n] * double(e.texel(n).moved - e.texel(n).applied);
+    }
+    if (std::abs(gap) <= slack)
+        return;
+    const double share = (gap - std::copysign(slack, gap)) / e.give;
+    for (size_t n = 0; n < 8; ++n) {
+        Texel &texel = e.texel(n);
         const Mobility &own = mobility[texel.ground];
-        texel.moved = float(std::clamp(texel.moved - share * (own.ease * e.lever[n]),
+        texel.moved = float(std::clamp(texel.moved - share * (own.ease * lever[n]),
                                        -own.down * texel_, own.up * texel_));
     }
 }

@@ -181,15 +181,9 @@ static Attempt attempt(const Mesh &mesh, const gtx_cook_desc &desc, const Option
     return out;
 }
 
-/* An asset, and its bytes where they are wanted. */
-struct Cooked {
-    Asset asset = Asset(nullptr, gtx_close);
-    std::unique_ptr<Encoded> file;
-};
-
 /* Everything from the clean mesh on; fills the rest of `facts`. */
-static Cooked cook_mesh(const Mesh &mesh, const gtx_cook_desc &desc, const Options &options,
-                        bool encoded, Task &task, CookFacts &facts)
+static Attempt cook_mesh(const Mesh &mesh, const gtx_cook_desc &desc, const Options &options,
+                         Task &task, CookFacts &facts)
 {
     auto cook_with = [&](const Options &o) { return attempt(mesh, desc, o, task, facts); };
     Attempt made = desc.error > 0
@@ -204,15 +198,14 @@ static Cooked cook_mesh(const Mesh &mesh, const gtx_cook_desc &desc, const Optio
     facts.requested = desc.error;
     facts.measured = desc.measure || desc.error > 0;
     facts.error = made.error;
-    task.begin("write");
-    Cooked out;
-    if (encoded)
-        out.file = std::make_unique<Encoded>(made.asset.get(), options, task);
-    if (desc.charts_ply)
-        write_charts_ply(desc.charts_ply, made.partition.charted(mesh), made.partition);
-    out.asset = std::move(made.asset);
-    return out;
+    return made;
 }
+
+/* An asset, and its bytes where they are wanted. */
+struct Cooked {
+    Asset asset = Asset(nullptr, gtx_close);
+    std::unique_ptr<Encoded> file;
+};
 
 /* Everything from the models on; fills `facts`. */
 static Cooked cook_models(Models &models, const gtx_cook_desc &desc, const Options &options,
@@ -226,7 +219,20 @@ static Cooked cook_models(Models &models, const gtx_cook_desc &desc, const Optio
     task.begin("clean");
     mesh = clean_mesh(std::move(mesh), task, facts.clean);
     refuse_warnings(desc, task);
-    return cook_mesh(mesh, desc, options, encoded, task, facts);
+    Attempt made = cook_mesh(mesh, desc, options, task, facts);
+
+    task.begin("write");
+    if (!desc.charts_ply) { /* encoding takes its memory */
+        mesh = {};
+        made.partition = {};
+    }
+    Cooked out;
+    if (encoded)
+        out.file = std::make_unique<Encoded>(made.asset.get(), options, task);
+    if (desc.charts_ply)
+        write_charts_ply(desc.charts_ply, made.partition.charted(mesh), made.partition);
+    out.asset = std::move(made.asset);
+    return out;
 }
 
 static std::unique_ptr<Report> report_on(const gtx_asset *asset, const Options &options,
