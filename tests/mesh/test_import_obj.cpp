@@ -37,6 +37,14 @@ static void test_numbers(void **)
     assert_position(i.mesh, 0, 1000, -0.5, 2);
     assert_true(i.mesh.positions[1] == Vec3d(HUGE_VAL, -HUGE_VAL, 0));
     assert_true(std::isnan(i.mesh.positions[2].x));
+    /* Whole ones, of digits that a double holds and of more. */
+    i = import_text("a.obj", "v +12 007 999999999999999\nv 12e1 9007199254740993 4E0\n"
+                             "v 18446744073709551617 -0 0\nf 1 2 3\n");
+    assert_works(i, 3, 1);
+    assert_position(i.mesh, 0, 12, 7, 999999999999999.);
+    assert_position(i.mesh, 1, 120, 9007199254740992., 4);
+    assert_position(i.mesh, 2, 18446744073709551616., 0, 0);
+    assert_int_not_equal(import_text("a.obj", "v 1 2 3x\nf 1 1 1\n").result, GTX_OK);
 }
 
 static void test_negative_indices(void **)
