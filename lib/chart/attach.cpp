@@ -108,14 +108,24 @@ void Attachment::find_near()
     std::sort(wanted.begin(), wanted.end());
     wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
 
+    /* Most vertices are near no crumb, as few bits tell. */
+    auto bit_of = [](const Cell &c) {
+        return uint16_t(uint64_t(c[0]) * 73856093 ^ uint64_t(c[1]) * 19349663 ^
+                        uint64_t(c[2]) * 83492791);
+    };
+    std::vector<bool> marked(1 << 16);
+    for (const auto &[cell, crumb] : wanted)
+        marked[bit_of(cell)] = true;
     std::vector<uint32_t> seen(mesh.positions.size(), NO_TRIANGLE); /* by which region, last */
     for (uint32_t i = 0; i < regions_.size(); ++i)
         each_vertex(i, [&](uint32_t v) {
             if (std::exchange(seen[v], i) == i)
                 return;
-            auto at =
-                std::lower_bound(wanted.begin(), wanted.end(), std::make_pair(cell_of(v), 0u));
-            for (; at != wanted.end() && at->first == cell_of(v); ++at)
+            const Cell cell = cell_of(v);
+            if (!marked[bit_of(cell)])
+                return;
+            auto at = std::lower_bound(wanted.begin(), wanted.end(), std::make_pair(cell, 0u));
+            for (; at != wanted.end() && at->first == cell; ++at)
                 if (at->second != i)
                     near_.emplace_back(at->second, i);
         });
