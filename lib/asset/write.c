@@ -9,7 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* An encoder each: more would take more memory than time. */
+/* Each takes an encoder's memory. The largest map has a fifth of all bytes or more: with more jobs
+ * than this, the others would wait for it. */
 enum { MOST_JOBS = 4 };
 
 /* A file in the making. */
