@@ -8,7 +8,7 @@
 GTX_VARYING(0) in vec2 gtx_pixel;
 
 /* Heads of all tiles, two a texel: where the list begins and ends, in half texels.
- * 8 texels a patch: columns to grid space of gtx_place[1], [4], [2], [3]; columns of its normals to
+ * 8 texels a patch: columns to grid space of rows 0, 3, 1 and 2 of gtx_place; columns of its normals to
  *   the world; w of the first and of the last three: corner; size; page + 2^24 * level + 2^31 *
  *   two-sided; then the index, and the volume that the second, third and fourth column span.
  * 4 texels a slab: for each pair of its planes a linear function of the pixel, and how the second
@@ -16,19 +16,17 @@ GTX_VARYING(0) in vec2 gtx_pixel;
  * The lists, two slabs a texel: where the slab is, least t. */
 uniform highp usamplerBuffer gtx_stream;
 uniform uint gtx_instance;
-uniform vec4 gtx_place[10];  /* x of 0: tiles a row;
-                                1: the rays' origin in object space; 2, 3: what a pixel in x and
-                                in y adds, to the direction of a perspective camera's rays, to the
-                                origin of an orthographic one's; 4: direction;
-                                5: the same four of clip z; x, y of 6: of clip w, origin and
-                                direction; z, w of 6: size of the viewport, in pixels;
-                                7..9: rows of object -> world */
+/* xyz of 0: the rays' origin in object space; w: tiles a row; 1, 2: what a pixel in x and in y adds,
+ * to the direction of a perspective camera's rays, to the origin of an orthographic one's;
+ * 3: direction; 4: the same four of clip z; x, y of 5: of clip w, origin and direction; z, w of 5:
+ * size of the viewport, in pixels; 6..8: rows of object -> world. */
+#define gtx_place(i) gtx_flat[3 + i]
 
 struct gtx_line {
     vec3 origin, direction;
 };
 
-/* The ray through a point of the viewport, from columns of gtx_place[1..4] taken to some space. */
+/* The ray through a point of the viewport, from rows 0, 3, 1 and 2 of gtx_place taken to some space. */
 gtx_line gtx_line_of(vec2 pixel, vec3 origin, vec3 direction, vec3 x, vec3 y)
 {
     vec3 aside = x * pixel.x + y * pixel.y;
@@ -38,10 +36,10 @@ gtx_line gtx_line_of(vec2 pixel, vec3 origin, vec3 direction, vec3 x, vec3 y)
 /* z and w of the clip position at t = 0, and what t adds. */
 void gtx_clip_along(vec2 pixel, out vec2 zw, out vec2 zw_step)
 {
-    vec4 z = gtx_place[5];
+    vec4 z = gtx_place(4);
     float aside = dot(z.yz, pixel);
-    zw = vec2(z.x + (1.0 - gtx_depth.w) * aside, gtx_place[6].x);
-    zw_step = vec2(z.w + gtx_depth.w * aside, gtx_place[6].y);
+    zw = vec2(z.x + (1.0 - gtx_depth.w) * aside, gtx_place(5).x);
+    zw_step = vec2(z.w + gtx_depth.w * aside, gtx_place(5).y);
 }
 
 gtx_sheet gtx_unpacked(uint corner, uint size, uint page)
@@ -128,9 +126,9 @@ int gtx_next_slab(vec2 pixel, vec2 range, int end, inout int k, out vec2 within)
 /* The camera's side of a hit, and the instance's. */
 void gtx_place_hit(vec2 pixel, vec2 zw)
 {
-    mat4x3 world = transpose(mat3x4(gtx_place[7], gtx_place[8], gtx_place[9]));
-    gtx_line line = gtx_line_of(pixel, gtx_place[1].xyz, gtx_place[4].xyz, gtx_place[2].xyz,
-                                gtx_place[3].xyz);
+    mat4x3 world = transpose(mat3x4(gtx_place(6), gtx_place(7), gtx_place(8)));
+    gtx_line line = gtx_line_of(pixel, gtx_place(0).xyz, gtx_place(3).xyz, gtx_place(1).xyz,
+                                gtx_place(2).xyz);
     gtx_clip_z = vec4(0.0, 0.0, 0.0, zw.x);
     gtx_clip_w = vec4(0.0, 0.0, 0.0, zw.y);
     gtx_world = world * vec4(line.origin, 1.0);
@@ -146,7 +144,7 @@ bool gtx_find(out gtx_surface s)
     gtx_clip(zw.y - zw.x, zw_step.y - zw_step.x, range.x, range.y);
 
     ivec2 tile = ivec2(pixel) >> 2;
-    uvec2 head = gtx_half(tile.y * int(gtx_place[0].x) + tile.x);
+    uvec2 head = gtx_half(tile.y * int(gtx_place(0).w) + tile.x);
     int k = int(head.x), end = int(head.y), patch_at = -1;
     if (k == end)
         return false;

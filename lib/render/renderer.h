@@ -83,7 +83,7 @@ typedef struct gtx_scratch {
 
 /* Rows of gtx_place: see geotex_tiles.glsl. */
 enum {
-    PLACE_STREAM, PLACE_ORIGIN, PLACE_X, PLACE_Y, PLACE_DIRECTION, PLACE_CLIP_Z, PLACE_CLIP_W,
+    PLACE_ORIGIN, PLACE_X, PLACE_Y, PLACE_DIRECTION, PLACE_CLIP_Z, PLACE_CLIP_W,
     PLACE_WORLD, PLACE_ROWS = PLACE_WORLD + 3
 };
 

@@ -274,6 +274,6 @@ bool gtx_tiles_fill(gtx_renderer *renderer, const gtx_view *view, const gtx_fram
         return false;
     list_slabs(t, columns, heads, lists);
     outline(t, columns, rows);
-    t->place[PLACE_STREAM][0] = (float)columns;
+    t->place[PLACE_ORIGIN][3] = (float)columns;
     return true;
 }
