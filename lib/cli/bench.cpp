@@ -162,17 +162,41 @@ const char *Bench::reason_to_skip(const BenchRow &row) const
     return left < expected ? "past the budget" : nullptr;
 }
 
+/* Times at each azimuth. */
+using Turns = std::array<std::vector<double>, BENCH_TURNS>;
+
+/* The median at each azimuth, averaged over those that have any: from one to the next times may
+ * differ twofold, and one median of all would take those of either kind by chance. */
+double mean_median(Turns turns)
+{
+    double sum = 0;
+    int count = 0;
+    for (std::vector<double> &times : turns)
+        if (!times.empty()) {
+            const size_t n = times.size();
+            std::sort(times.begin(), times.end());
+            sum += 0.5 * (times[(n - 1) / 2] + times[n / 2]);
+            ++count;
+        }
+    return sum / count;
+}
+
+double least(const Turns &turns)
+{
+    double out = INFINITY;
+    for (const std::vector<double> &times : turns)
+        for (double time : times)
+            out = std::min(out, time);
+    return out;
+}
+
 void Bench::time_all(std::vector<BenchRow> &rows)
 {
     struct Times {
         BenchRow *row;
-        std::vector<double> wall, work;
+        Turns wall, work;
     };
     std::vector<Times> quick;
-    auto median = [](std::vector<double> values) {
-        std::sort(values.begin(), values.end());
-        return values[values.size() / 2];
-    };
     for (BenchRow &row : rows) {
         const Shot shot = {row.size[0], row.size[1], row.instances, 0};
         if (row.skipped)
@@ -188,16 +212,17 @@ void Bench::time_all(std::vector<BenchRow> &rows)
     for (uint32_t frame = 0; frame < options_.frames; ++frame)
         for (Times &t : quick) {
             const BenchRow &row = *t.row;
+            const int turn = int(frame) % BENCH_TURNS;
             const std::clock_t work = std::clock();
-            t.wall.push_back(time(row.method, {row.size[0], row.size[1], row.instances,
-                                               int(frame) % BENCH_TURNS}));
-            t.work.push_back(1e3 * double(std::clock() - work) / CLOCKS_PER_SEC);
+            t.wall[turn].push_back(
+                time(row.method, {row.size[0], row.size[1], row.instances, turn}));
+            t.work[turn].push_back(1e3 * double(std::clock() - work) / CLOCKS_PER_SEC);
         }
     for (Times &t : quick) {
         t.row->frames = options_.frames;
-        t.row->median = median(t.wall);
-        t.row->least = *std::min_element(t.wall.begin(), t.wall.end());
-        t.row->work = median(t.work);
+        t.row->median = mean_median(t.wall);
+        t.row->least = least(t.wall);
+        t.row->work = mean_median(t.work);
     }
 }
 

@@ -39,8 +39,8 @@ struct BenchRow {
     double max_error = 0;           /* pixels that it was drawn at; 0: a mesh */
     uint32_t frames = 0;            /* 0: skipped, and why */
     const char *skipped = nullptr;
-    double median = 0, least = 0;   /* milliseconds */
-    double work = 0;                /* the median of all processors together */
+    double median = 0, least = 0;   /* milliseconds; the median of each azimuth, averaged */
+    double work = 0;                /* the same of all processors together */
     /* One instance at its share of the window, over four azimuths, against the mesh: */
     double iou = 0;                 /* of what is covered */
     double psnr = 0;                /* decibels, over what either covers; infinite: the same */
