@@ -7,26 +7,27 @@
  * geotex_cast.glsl and geotex_fragment.glsl, with GTX_TILES. */
 GTX_VARYING(0) in vec2 gtx_pixel;
 
-/* Heads of all tiles, two a texel: where the list begins and ends, in half texels.
- * 8 texels a patch: columns to grid space of rows 0, 3, 1 and 2 of gtx_place; columns of its normals to
- *   the world; w of the first and of the last three: corner; size; page + 2^24 * level + 2^31 *
+/* 8 texels a patch: columns to grid space of rows 0, 3, 1 and 2 of gtx_place; columns of its normals
+ *   to the world; w of the first and of the last three: corner; size; page + 2^24 * level + 2^31 *
  *   two-sided; then the index, and the volume that the second, third and fourth column span.
  * 4 texels a slab: for each pair of its planes a linear function of the pixel, and how the second
  *   plane follows from the first (gtx_meets); first cell and last, where its patch's texels are.
+ * Heads of a rectangle of tiles, two a texel: where the list begins and ends, in half texels.
  * The lists, two slabs a texel: where the slab is, least t. */
 uniform highp usamplerBuffer gtx_stream;
 uniform uint gtx_instance;
-/* xyz of 0: the rays' origin in object space; w: tiles a row; 1, 2: what a pixel in x and in y adds,
- * to the direction of a perspective camera's rays, to the origin of an orthographic one's;
- * 3: direction; 4: the same four of clip z; x, y of 5: of clip w, origin and direction; z, w of 5:
- * size of the viewport, in pixels; 6..8: rows of object -> world. */
+/* xyz of 0: the rays' origin in object space; 1, 2: what a pixel in x and in y adds, to the
+ * direction of a perspective camera's rays, to the origin of an orthographic one's; 3: direction;
+ * w of 0: tiles a row of the rectangle; 1: texels before the heads; 2, 3: its first column and row;
+ * 4: the same four of clip z; x, y of 5: of clip w, origin and direction; z, w of 5: size of the
+ * viewport, in pixels; 6..8: rows of object -> world. */
 #define gtx_place(i) gtx_flat[3 + i]
 
 struct gtx_line {
     vec3 origin, direction;
 };
 
-/* The ray through a point of the viewport, from rows 0, 3, 1 and 2 of gtx_place taken to some space. */
+/* The ray through a point of the viewport, from rows of gtx_place taken to some space. */
 gtx_line gtx_line_of(vec2 pixel, vec3 origin, vec3 direction, vec3 x, vec3 y)
 {
     vec3 aside = x * pixel.x + y * pixel.y;
@@ -99,7 +100,7 @@ uvec2 gtx_half(int k)
 }
 
 /* The next slab of a list, from the one at k on, that the ray meets within a range of t, and where
- * the ray is in it; 0 when there is none, for heads come first. */
+ * the ray is in it; 0 when there is none, for records come first. */
 int gtx_next_slab(vec2 pixel, vec2 range, int end, inout int k, out vec2 within)
 {
     vec2 inverse = gtx_inverse(range), meeting = vec2(1.0, 0.0);
@@ -143,8 +144,8 @@ bool gtx_find(out gtx_surface s)
     gtx_clip(zw.x + gtx_depth.x * zw.y, zw_step.x + gtx_depth.x * zw_step.y, range.x, range.y);
     gtx_clip(zw.y - zw.x, zw_step.y - zw_step.x, range.x, range.y);
 
-    ivec2 tile = ivec2(pixel) >> 2;
-    uvec2 head = gtx_half(tile.y * int(gtx_place(0).w) + tile.x);
+    ivec2 tile = (ivec2(pixel) >> 2) - ivec2(gtx_place(2).w, gtx_place(3).w);
+    uvec2 head = gtx_half(2 * int(gtx_place(1).w) + tile.y * int(gtx_place(0).w) + tile.x);
     int k = int(head.x), end = int(head.y), patch_at = -1;
     if (k == end)
         return false;

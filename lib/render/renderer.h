@@ -88,13 +88,14 @@ enum {
 };
 
 /* Casting by tiles: what one instance has in each tile of 4 x 4 pixels. What shaders read of it are
- * the parts of one stream: heads of the lists, records of patches, slabs, and the lists. */
+ * the parts of one stream: records of patches, slabs, heads of the lists, and the lists. */
 typedef struct gtx_tiles {
     gl_uint vertex_array, corner_buffer, stream_buffer, stream_texture;
     gl_int max_texels;
     gtx_scratch seen, order, heads, records, slabs, lists, corners;
     uint32_t seen_count, tile_count, corner_count;
-    uint32_t head_texels, record_texels, slab_texels, list_texels;
+    uint32_t first_column, first_row, columns, rows; /* the rectangle of tiles that have heads */
+    uint32_t record_texels, slab_texels, head_texels, list_texels;
     float place[PLACE_ROWS][4];
 } gtx_tiles;
 

@@ -56,9 +56,9 @@ static void send(const gtx_gl *gl, const gtx_tiles *t)
     const struct {
         const void *data;
         uint32_t texels;
-    } parts[4] = {{t->heads.data, t->head_texels},
-                  {t->records.data, t->record_texels},
+    } parts[4] = {{t->records.data, t->record_texels},
                   {t->slabs.data, t->slab_texels},
+                  {t->heads.data, t->head_texels},
                   {t->lists.data, t->list_texels}};
     gl_pointer at = 0;
     for (int i = 0; i < 4; ++i)

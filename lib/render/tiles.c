@@ -10,6 +10,8 @@
 /* Pixels along a tile, and tiles along the height of a rectangle of them. */
 enum { TILE = 4, BAND = 16 };
 
+enum { CORNERS = 8 };
+
 /* How far, in pixels, rounding may move a slab's outline. */
 static const float slack = 0.03f;
 
@@ -38,31 +40,57 @@ void gtx_tiles_free(gtx_renderer *renderer)
     }
 }
 
-static void extend(float range[2], float value)
+/* The least and the greatest of the values at the corners. */
+static void range_of(const float value[CORNERS], float range[2])
 {
-    range[0] = value < range[0] ? value : range[0];
-    range[1] = value > range[1] ? value : range[1];
+    float low[CORNERS / 2], high[CORNERS / 2];
+    for (int n = 0; n < CORNERS / 2; ++n) {
+        const float a = value[n], b = value[n + CORNERS / 2];
+        low[n] = a < b ? a : b;
+        high[n] = a < b ? b : a;
+    }
+    range[0] = low[0];
+    range[1] = high[0];
+    for (int n = 1; n < CORNERS / 2; ++n) {
+        range[0] = low[n] < range[0] ? low[n] : range[0];
+        range[1] = high[n] > range[1] ? high[n] : range[1];
+    }
+}
+
+/* Within bounds of at most 2^20, rounded down or up; the lower bound when it is no number. The C
+ * library's own are calls, which took half the time of this file. */
+static int32_t floor_within(float value, int32_t low, int32_t high)
+{
+    value = value > (float)low ? value : (float)low;
+    value = value < (float)high ? value : (float)high;
+    const int32_t whole = (int32_t)value;
+    return whole - (value < (float)whole);
+}
+
+static int32_t ceil_within(float value, int32_t low, int32_t high)
+{
+    return -floor_within(-value, -high, -low);
 }
 
 /* The tiles along an axis of which some pixel's centre is within; false when there is none. */
 static bool tiles_of(const float range[2], uint32_t pixels, uint16_t *first, uint16_t *last)
 {
-    const float low = fmaxf(ceilf(range[0] - 0.5f - slack), 0);
-    const float high = fminf(floorf(range[1] - 0.5f + slack), (float)pixels - 1);
-    if (!(low <= high))
-        return false;
-    *first = (uint16_t)((uint32_t)low / TILE);
-    *last = (uint16_t)((uint32_t)high / TILE);
-    return true;
+    const int32_t end = (int32_t)pixels;
+    const int32_t low = ceil_within(range[0] - 0.5f - slack, 0, end);
+    const int32_t high = floor_within(range[1] - 0.5f + slack, -1, end - 1);
+    *first = (uint16_t)(low / TILE);
+    *last = (uint16_t)(high / TILE);
+    return low <= high;
 }
 
 /* Which tiles have a pixel in a range of x + y, or of x - y, by the sum or the difference of the
  * tiles' own x and y. `middle`: that of the middle of tile 0, in pixels. */
 static void diagonals_of(const float range[2], float middle, int32_t out[2])
 {
-    const float reach = TILE - 1 + 2 * slack, most = 1 << 20;
-    out[0] = (int32_t)fmaxf(fminf(ceilf((range[0] - middle - reach) / TILE), most), -most);
-    out[1] = (int32_t)fmaxf(fminf(floorf((range[1] - middle + reach) / TILE), most), -most);
+    const float reach = TILE - 1 + 2 * slack;
+    const int32_t most = 1 << 20;
+    out[0] = ceil_within((range[0] - middle - reach) / TILE, -most, most);
+    out[1] = floor_within((range[1] - middle + reach) / TILE, -most, most);
 }
 
 /* Where a slab is in the picture; false when it is not. One that the eye's plane cuts may be
@@ -70,24 +98,30 @@ static void diagonals_of(const float range[2], float middle, int32_t out[2])
 static bool project(const gtx_camera_rows *c, const gtx_sight *s, const gtx_slab *slab,
                     gtx_seen_slab *out)
 {
-    float x[2] = {INFINITY, -INFINITY}, y[2] = {INFINITY, -INFINITY}, t[2] = {INFINITY, -INFINITY};
-    float sum[2] = {INFINITY, -INFINITY}, difference[2] = {INFINITY, -INFINITY};
-    for (int n = 0; n < 8; ++n) {
-        const float gx = n & 1 ? slab->high[0] : slab->low[0];
-        const float gy = n & 2 ? slab->high[1] : slab->low[1];
-        const float gz = slab->slope[0] * gx + slab->slope[1] * gy + slab->height[n >> 2];
-        float p[3];
-        for (int k = 0; k < 3; ++k)
-            p[k] = s->row[k][0] * gx + s->row[k][1] * gy + s->row[k][2] * gz + s->row[k][3];
-        const float inverse = c->perspective ? 1 / p[2] : 1;
-        p[0] *= inverse;
-        p[1] *= inverse;
-        extend(x, p[0]);
-        extend(y, p[1]);
-        extend(t, p[2]);
-        extend(sum, p[0] + p[1]);
-        extend(difference, p[0] - p[1]);
+    float p[3][CORNERS], sums[CORNERS], differences[CORNERS];
+    float x[2], y[2], t[2], sum[2], difference[2];
+    for (int k = 0; k < 3; ++k) {
+        const float *row = s->row[k];
+        const float along_x = row[0] + row[2] * slab->slope[0];
+        const float along_y = row[1] + row[2] * slab->slope[1];
+        const float from_x[2] = {along_x * slab->low[0], along_x * slab->high[0]};
+        const float from_y[2] = {along_y * slab->low[1], along_y * slab->high[1]};
+        for (int n = 0; n < CORNERS; ++n)
+            p[k][n] = from_x[n & 1] + from_y[n >> 1 & 1] +
+                      (row[2] * slab->height[n >> 2] + row[3]);
     }
+    for (int n = 0; n < CORNERS; ++n) {
+        const float inverse = c->perspective ? 1 / p[2][n] : 1;
+        p[0][n] *= inverse;
+        p[1][n] *= inverse;
+        sums[n] = p[0][n] + p[1][n];
+        differences[n] = p[0][n] - p[1][n];
+    }
+    range_of(p[0], x);
+    range_of(p[1], y);
+    range_of(p[2], t);
+    range_of(sums, sum);
+    range_of(differences, difference);
     if (c->perspective && !(t[1] > 0))
         return false;
     out->near = t[0];
@@ -106,14 +140,16 @@ static bool project(const gtx_camera_rows *c, const gtx_sight *s, const gtx_slab
     return true;
 }
 
-/* Finds the slabs in view, their order from the nearest on, and the records of their patches. */
+/* Finds the slabs in view, their order from the nearest on, the records of their patches, and the
+ * rectangle of tiles that they may cover. */
 static bool find_slabs(gtx_renderer *renderer, const gtx_camera_rows *c, const gtx_model *model,
-                       const gtx_instance_data *placed, uint32_t records_at)
+                       const gtx_instance_data *placed)
 {
     gtx_tiles *t = &renderer->tiles;
     const gtx_plan *plan = &renderer->plan;
     t->record_texels = GTX_TILE_RECORD_TEXELS * model->patch_count;
     t->seen_count = 0;
+    uint16_t x0 = UINT16_MAX, x1 = 0, y0 = UINT16_MAX, y1 = 0;
     size_t most = 0;
     for (uint32_t i = 0; i < plan->count; ++i) {
         const gtx_plan_entry *e = &plan->entries[i];
@@ -136,13 +172,21 @@ static bool find_slabs(gtx_renderer *renderer, const gtx_camera_rows *c, const g
             if (slab->low[0] > slab->high[0] || gtx_sight_faces_away(&s, slab) ||
                 !project(c, &s, slab, out))
                 continue;
-            gtx_sight_put_slab(&s, slab, records_at + GTX_TILE_RECORD_TEXELS * s.patch,
-                               slabs[t->seen_count]);
+            gtx_sight_put_slab(&s, slab, GTX_TILE_RECORD_TEXELS * s.patch, slabs[t->seen_count]);
+            x0 = out->x0 < x0 ? out->x0 : x0;
+            x1 = out->x1 > x1 ? out->x1 : x1;
+            y0 = out->y0 < y0 ? out->y0 : y0;
+            y1 = out->y1 > y1 ? out->y1 : y1;
             order[t->seen_count] = gtx_rank_of(out->near, t->seen_count);
             ++t->seen_count;
         }
     }
     gtx_order(order, order + t->seen_count, t->seen_count);
+    t->slab_texels = GTX_TILE_SLAB_TEXELS * t->seen_count;
+    t->first_column = x0;
+    t->first_row = y0;
+    t->columns = t->seen_count ? x1 - x0 + 1u : 0;
+    t->rows = t->seen_count ? y1 - y0 + 1u : 0;
     return true;
 }
 
@@ -163,10 +207,15 @@ static int32_t last_tile(const gtx_seen_slab *s, int32_t y)
     return -greatest(-s->x1, y - s->sum[1], -s->difference[1] - y);
 }
 
+/* The index of the head of column 0 in a row, both of the viewport's. */
+static size_t head_of(const gtx_tiles *t, int32_t row)
+{
+    return ((uint32_t)row - t->first_row) * (size_t)t->columns - t->first_column;
+}
+
 /* Heads of the lists: where each begins and ends in the stream, in half texels. Returns where the
  * last one ends, and counts the tiles that have any. */
-static uint64_t make_heads(gtx_tiles *t, uint32_t columns, uint32_t (*heads)[2], size_t count,
-                           uint64_t begin)
+static uint64_t make_heads(gtx_tiles *t, uint32_t (*heads)[2], size_t count, uint64_t begin)
 {
     const gtx_seen_slab *seen = t->seen.data;
     /* Counts from tile to tile first: how many slabs more each has, and how many less. */
@@ -175,8 +224,8 @@ static uint64_t make_heads(gtx_tiles *t, uint32_t columns, uint32_t (*heads)[2],
         for (int32_t y = s->y0; y <= s->y1; ++y) {
             const int32_t first = first_tile(s, y), last = last_tile(s, y);
             if (first <= last) {
-                ++heads[(uint32_t)y * columns + (uint32_t)first][0];
-                ++heads[(uint32_t)y * columns + (uint32_t)last][1];
+                ++heads[head_of(t, y) + (uint32_t)first][0];
+                ++heads[head_of(t, y) + (uint32_t)last][1];
             }
         }
     t->tile_count = 0;
@@ -193,60 +242,68 @@ static uint64_t make_heads(gtx_tiles *t, uint32_t columns, uint32_t (*heads)[2],
 }
 
 /* Puts each slab into the lists of its tiles, nearest first. */
-static void list_slabs(const gtx_tiles *t, uint32_t columns, uint32_t (*heads)[2],
-                       uint32_t (*lists)[2])
+static void list_slabs(const gtx_tiles *t, uint32_t (*heads)[2], uint32_t (*lists)[2])
 {
     const gtx_seen_slab *seen = t->seen.data;
     const gtx_rank *order = t->order.data;
-    const uint32_t first = t->head_texels + t->record_texels, begin = 2 * (first + t->slab_texels);
+    const uint32_t begin = 2 * (t->record_texels + t->slab_texels + t->head_texels);
     for (uint32_t i = 0; i < t->seen_count; ++i) {
         const gtx_seen_slab *s = &seen[order[i].place];
-        const uint32_t entry[2] = {first + GTX_TILE_SLAB_TEXELS * order[i].place,
-                                   gtx_bits_of(s->near)};
+        const uint32_t entry[2] = {
+            t->record_texels + GTX_TILE_SLAB_TEXELS * order[i].place, gtx_bits_of(s->near)};
         for (int32_t y = s->y0; y <= s->y1; ++y) {
             const int32_t last = last_tile(s, y);
+            const size_t head = head_of(t, y);
             for (int32_t x = first_tile(s, y); x <= last; ++x)
-                memcpy(lists[heads[(uint32_t)y * columns + (uint32_t)x][1]++ - begin], entry,
-                       sizeof entry);
+                memcpy(lists[heads[head + (uint32_t)x][1]++ - begin], entry, sizeof entry);
         }
     }
 }
 
-/* Two triangles over tiles x0..x1 of rows y0..y1. */
+/* Two triangles over columns x0..x1 and rows y0..y1 of the rectangle of tiles. */
 static void add_corners(gtx_tiles *t, uint32_t x0, uint32_t x1, uint32_t y0, uint32_t y1)
 {
     static const uint8_t order[6][2] = {{0, 0}, {1, 0}, {0, 1}, {0, 1}, {1, 0}, {1, 1}};
     uint16_t (*corner)[2] = (uint16_t (*)[2])t->corners.data + t->corner_count;
     for (int k = 0; k < 6; ++k) {
-        corner[k][0] = (uint16_t)(TILE * (order[k][0] ? x1 + 1 : x0));
-        corner[k][1] = (uint16_t)(TILE * (order[k][1] ? y1 + 1 : y0));
+        corner[k][0] = (uint16_t)(TILE * (t->first_column + (order[k][0] ? x1 + 1 : x0)));
+        corner[k][1] = (uint16_t)(TILE * (t->first_row + (order[k][1] ? y1 + 1 : y0)));
     }
     t->corner_count += 6;
 }
 
-/* Whether any of rows y0..y1 of a column of tiles has a slab. */
-static bool has_slabs(const gtx_tiles *t, uint32_t columns, uint32_t x, uint32_t y0, uint32_t y1)
+/* Whether any of rows y0..y1 of a column has a slab. */
+static bool has_slabs(const gtx_tiles *t, uint32_t x, uint32_t y0, uint32_t y1)
 {
     const uint32_t (*heads)[2] = t->heads.data;
     for (uint32_t y = y0; y <= y1; ++y)
-        if (heads[y * columns + x][0] < heads[y * columns + x][1])
+        if (heads[y * t->columns + x][0] < heads[y * t->columns + x][1])
             return true;
     return false;
 }
 
 /* Outlines the tiles that have a slab. Along the diagonal between two triangles processors cast
  * twice: rectangles are as high as a band of rows, with empty tiles in them, which cost less. */
-static void outline(gtx_tiles *t, uint32_t columns, uint32_t rows)
+static void outline(gtx_tiles *t)
 {
     t->corner_count = 0;
-    for (uint32_t y0 = 0; y0 < rows; y0 += BAND) {
-        const uint32_t y1 = (y0 + BAND < rows ? y0 + BAND : rows) - 1;
-        for (uint32_t x = 0, from = 0; x < columns; ++x)
-            if (!has_slabs(t, columns, x, y0, y1))
+    for (uint32_t y0 = 0; y0 < t->rows; y0 += BAND) {
+        const uint32_t y1 = (y0 + BAND < t->rows ? y0 + BAND : t->rows) - 1;
+        for (uint32_t x = 0, from = 0; x < t->columns; ++x)
+            if (!has_slabs(t, x, y0, y1))
                 from = x + 1;
-            else if (x + 1 == columns || !has_slabs(t, columns, x + 1, y0, y1))
+            else if (x + 1 == t->columns || !has_slabs(t, x + 1, y0, y1))
                 add_corners(t, from, x, y0, y1);
     }
+}
+
+/* Tells shaders where the heads are. Floats count to 2^24, and so do the texels before them. */
+static void place_heads(gtx_tiles *t)
+{
+    t->place[PLACE_ORIGIN][3] = (float)t->columns;
+    t->place[PLACE_X][3] = (float)(t->record_texels + t->slab_texels);
+    t->place[PLACE_Y][3] = (float)t->first_column;
+    t->place[PLACE_DIRECTION][3] = (float)t->first_row;
 }
 
 bool gtx_tiles_fill(gtx_renderer *renderer, const gtx_view *view, const gtx_frame *frame,
@@ -254,26 +311,26 @@ bool gtx_tiles_fill(gtx_renderer *renderer, const gtx_view *view, const gtx_fram
 {
     gtx_tiles *t = &renderer->tiles;
     const gtx_camera_rows c = gtx_sight_camera_of(view, frame, placed, t->place);
-    const uint32_t columns = (c.width + TILE - 1) / TILE, rows = (c.height + TILE - 1) / TILE;
-    const size_t head_texels = ((size_t)columns * rows + 1) / 2, tiles = 2 * head_texels;
-    if (head_texels > (size_t)t->max_texels ||
-        !find_slabs(renderer, &c, model, placed, (uint32_t)head_texels))
+    if (!find_slabs(renderer, &c, model, placed))
+        return false;
+    const size_t head_texels = ((size_t)t->columns * t->rows + 1) / 2, tiles = 2 * head_texels;
+    const uint64_t before = (uint64_t)t->record_texels + t->slab_texels;
+    if (before + head_texels > (uint64_t)t->max_texels || before > 1 << 24)
         return false;
     uint32_t (*heads)[2] = reserve(renderer, &t->heads, tiles, sizeof *heads);
     if (!heads)
         return false;
     t->head_texels = (uint32_t)head_texels;
-    t->slab_texels = GTX_TILE_SLAB_TEXELS * t->seen_count;
-    const uint64_t before = (uint64_t)t->head_texels + t->record_texels + t->slab_texels;
-    const uint64_t texels = (make_heads(t, columns, heads, tiles, 2 * before) + 1) / 2;
+    const uint64_t lists_at = before + head_texels;
+    const uint64_t texels = (make_heads(t, heads, tiles, 2 * lists_at) + 1) / 2;
     if (texels > (uint64_t)t->max_texels)
         return false;
-    t->list_texels = (uint32_t)(texels - before);
+    t->list_texels = (uint32_t)(texels - lists_at);
     uint32_t (*lists)[2] = reserve(renderer, &t->lists, 2 * t->list_texels, sizeof *lists);
     if (!lists || !reserve(renderer, &t->corners, 6 * (size_t)t->tile_count, 2 * sizeof(uint16_t)))
         return false;
-    list_slabs(t, columns, heads, lists);
-    outline(t, columns, rows);
-    t->place[PLACE_ORIGIN][3] = (float)columns;
+    list_slabs(t, heads, lists);
+    outline(t);
+    place_heads(t);
     return true;
 }
