@@ -144,8 +144,9 @@ static void put_planes(const double value[4], double low, double high, bool pers
     const double a = low - value[0], b = high - value[0];
     if (perspective) {
         const double far = fabs(a) > fabs(b) ? a : b, near = fabs(a) > fabs(b) ? b : a;
-        const double linear[3] = {value[2] / far, value[3] / far, value[1] / far};
-        put(out, linear, gtx_bits_of(fmax(fmin(far / near, 1e30), -1e30)));
+        const double per = 1 / far, most = 1e30, other = far / near;
+        const double linear[3] = {value[2] * per, value[3] * per, value[1] * per};
+        put(out, linear, gtx_bits_of(!(other < most) ? most : other < -most ? -most : other));
     } else {
         const double along = copysign(fmax(fabs(value[1]), 1e-20), value[1]);
         const double linear[3] = {-value[2] / along, -value[3] / along,
@@ -175,7 +176,12 @@ void gtx_sight_put_slab(const gtx_sight *s, const gtx_slab *slab, uint32_t recor
 
 static float greatest(const float a[2], const float b[2])
 {
-    return fmaxf(fmaxf(a[0] * b[0], a[0] * b[1]), fmaxf(a[1] * b[0], a[1] * b[1]));
+    float most = a[0] * b[0];
+    for (int i = 1; i < 4; ++i) {
+        const float value = a[i >> 1] * b[i & 1];
+        most = value > most ? value : most;
+    }
+    return most;
 }
 
 bool gtx_sight_faces_away(const gtx_sight *s, const gtx_slab *slab)

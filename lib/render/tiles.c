@@ -41,7 +41,7 @@ void gtx_tiles_free(gtx_renderer *renderer)
 }
 
 /* The least and the greatest of the values at the corners. */
-static void range_of(const float value[CORNERS], float range[2])
+static inline void range_of(const float value[CORNERS], float range[2])
 {
     float low[CORNERS / 2], high[CORNERS / 2];
     for (int n = 0; n < CORNERS / 2; ++n) {
