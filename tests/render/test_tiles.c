@@ -112,6 +112,42 @@ static void viewports_of_any_place(void **state)
     subject_close(s, &shown);
 }
 
+/* Across each border of the picture and every corner, and nowhere in it: the tiles that have lists
+ * are a rectangle of its own each time. */
+static void across_the_borders(void **state)
+{
+    STAGE_OR_SKIP(state);
+    subject shown = subject_open(s, fixture_sphere(2, 64, 8));
+    gtx_camera camera = camera_around(shown.asset);
+    camera.azimuth = camera.elevation = 0;
+    gtx_view view = view_of(&camera);
+    view.level = 1;
+    const float aside[4] = {-1.5f, 0, 1.5f, 40}; /* radii */
+    for (int i = 0; i < 16; ++i) {
+        gtx_instance moved = shown.instance;
+        gtx_matrix_place(aside[i & 3] * camera.radius, aside[i >> 2] * camera.radius, 0, 0, 1,
+                         moved.transform);
+        view.viewport_width = 0;
+        stage_draw(s, &view, &moved, 1);
+        keep(s);
+        by_tiles(&view);
+        stage_draw(s, &view, &moved, 1);
+        int covered = 0, at_border = 0;
+        for (int k = 0; k < STAGE_PIXELS; ++k) {
+            const int x = k % STAGE_WIDTH, y = k / STAGE_WIDTH;
+            covered += s->depth[k] < 1;
+            at_border += s->depth[k] < 1 && (x == 0 || y == 0 || x == STAGE_WIDTH - 1 ||
+                                             y == STAGE_HEIGHT - 1);
+        }
+        const int outside = (i & 3) == 3 || i >> 2 == 3, whole = (i & 3) == 1 && i >> 2 == 1;
+        if (differences(s) > 40 || (covered > 0) == outside ||
+            (at_border > 0) == (outside || whole))
+            fail_msg("place %d: %d pixels covered, %d at a border, %d differ", i, covered,
+                     at_border, differences(s));
+    }
+    subject_close(s, &shown);
+}
+
 /* With glClipControl, where the context has it. */
 static void pictures_that_stand_on_their_heads(void **state)
 {
@@ -231,6 +267,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_same_picture),
         cmocka_unit_test(viewports_of_any_place),
+        cmocka_unit_test(across_the_borders),
         cmocka_unit_test(pictures_that_stand_on_their_heads),
         cmocka_unit_test(what_was_drawn_before_stays_in_front),
         cmocka_unit_test(passes_have_one_depth),
