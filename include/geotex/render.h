@@ -35,8 +35,7 @@ typedef void (*gtx_gl_proc)(void);
 
 /* What drawing a model takes, for GTX_METHOD_AUTO to compare: a triangle of its shell and a pixel
  * that this covers; a patch that is cast and a pixel that its proxy covers. In any unit; all 0 = as
- * measured with llvmpipe, where of a shell that is fine enough the finer levels alone can lose, and
- * only to casting by tiles. */
+ * measured with llvmpipe, where of a shell that is fine enough the finer levels alone can lose. */
 typedef struct gtx_costs {
     float shell_triangle, shell_pixel;
     float cast_patch, cast_pixel;

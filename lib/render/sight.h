@@ -26,7 +26,7 @@ typedef struct gtx_sight {
     bool two_sided, perspective;
 } gtx_sight;
 
-/* Fills `place` but for the tiles a row. */
+/* Fills `place` but for w of the first four rows, which tell where the heads are. */
 gtx_camera_rows gtx_sight_camera_of(const gtx_view *view, const gtx_frame *frame,
                                     const gtx_instance_data *placed, float place[PLACE_ROWS][4]);
 /* Looks at a patch at a level, and writes its record. */

@@ -10,7 +10,7 @@
 /* Pixels along a tile, and tiles along the height of a rectangle of them. */
 enum { TILE = 4, BAND = 16 };
 
-enum { CORNERS = 8 };
+enum { CORNERS = 8 }; /* of a slab */
 
 /* How far, in pixels, rounding may move a slab's outline. */
 static const float slack = 0.03f;
@@ -57,8 +57,8 @@ static inline void range_of(const float value[CORNERS], float range[2])
     }
 }
 
-/* Within bounds of at most 2^20, rounded down or up; the lower bound when it is no number. The C
- * library's own are calls, which took half the time of this file. */
+/* Within bounds of at most 2^20, rounded down or up; a bound when it is no number. The C library's
+ * own are calls where processors need not have the instruction. */
 static int32_t floor_within(float value, int32_t low, int32_t high)
 {
     value = value > (float)low ? value : (float)low;
