@@ -173,15 +173,31 @@ void gtx_walk_block(const gtx_caster *caster, const gtx_block *block, const gtx_
                entry_cell(s, first[1], last[1], w.origin[1]));
 }
 
+/* The first and the last block along an axis that a line passes over up to t, with a texel to either
+ * side for what is rounded; all where that is no number. */
+static void blocks_along(const gtx_line *line, int axis, double t, double size, uint32_t count,
+                         uint32_t out[2])
+{
+    const double o = line->origin[axis], d = line->direction[axis];
+    const double from = d == 0 ? o : o + line->t_min * d, to = d == 0 ? o : o + t * d;
+    const double first = (fmin(from, to) - 1) / size, last = (fmax(from, to) + 1) / size;
+    out[0] = !(first > 0) ? 0 : first < count ? (uint32_t)first : count - 1;
+    out[1] = !(last < count) ? count - 1 : last > 0 ? (uint32_t)last : 0;
+}
+
 void gtx_walk_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *ray, bool both,
                     gtx_crossing *best)
 {
     const gtx_sheet *s = &caster->sheets[sheet];
     const gtx_line line = gtx_sheet_line(s, ray);
-    const uint32_t count = s->blocks_x * gtx_blocks_of(s->nodes_y - 1);
-    for (uint32_t i = 0; i < count; ++i) {
-        const gtx_block *block = &caster->blocks[s->first_block + i];
-        if (block->solid)
-            gtx_walk_block(caster, block, &line, both, best);
-    }
+    const double size = (double)(GTX_BLOCK << s->level);
+    uint32_t x[2], y[2];
+    blocks_along(&line, 0, best->t, size, s->blocks_x, x);
+    blocks_along(&line, 1, best->t, size, gtx_blocks_of(s->nodes_y - 1), y);
+    for (uint32_t j = y[0]; j <= y[1]; ++j)
+        for (uint32_t i = x[0]; i <= x[1]; ++i) {
+            const gtx_block *block = &caster->blocks[s->first_block + j * s->blocks_x + i];
+            if (block->solid)
+                gtx_walk_block(caster, block, &line, both, best);
+        }
 }
