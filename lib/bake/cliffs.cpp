@@ -44,7 +44,9 @@ public:
     {
     }
 
-    void find(const std::vector<uint8_t> &support);
+    /* Which drops are bridges when a cell spans them. */
+    enum Drop { UNJOINED, BESIDE_CORE };
+    void find(Drop drop, const std::vector<uint8_t> &support);
     void give_to_core(const Outline &core);
     void cut(std::vector<uint8_t> &support);
 
@@ -60,7 +62,7 @@ private:
         size_t w = size_t(chart_.grid.w);
         return {texel - w - 1, texel - w, texel - 1, texel};
     }
-    bool bridges(size_t cell);
+    bool bridges(Drop drop, size_t cell);
     /* What is lost with a texel: the share of the surface, not of what continues it, in the good
      * cells around it; for each of the bad ones that go too. */
     double loss(size_t texel) const;
@@ -77,8 +79,9 @@ private:
     std::vector<uint8_t> cells_;
 };
 
-/* Whether a step between corners of a cell is more than a slope, with no surface along it. */
-bool Bridges::bridges(size_t cell)
+/* Whether a step between corners of a cell is more than a slope, with no surface along it: or even
+ * with that where it leaves the core, for a wall that begins there is another chart's. */
+bool Bridges::bridges(Drop drop, size_t cell)
 {
     constexpr double REACH = 1.5; /* from the middle of the cell */
     std::array<size_t, 4> corner = corners(cell);
@@ -90,8 +93,11 @@ bool Bridges::bridges(size_t cell)
     for (int a = 0; a < 4; ++a) {
         for (int b = a + 1; b < 4; ++b) {
             double step = std::fabs(cover_.height[corner[a]] - cover_.height[corner[b]]);
-            if (step > CLIFF * chart_.grid.coarse_pitch() &&
-                !paths_.joined(triangle(corner[a]), triangle(corner[b]), u, v, REACH))
+            if (step <= CLIFF * chart_.grid.coarse_pitch())
+                continue;
+            if (drop == BESIDE_CORE && is_core(corner[a]) != is_core(corner[b]))
+                return true;
+            if (!paths_.joined(triangle(corner[a]), triangle(corner[b]), u, v, REACH))
                 return true;
         }
     }
@@ -143,15 +149,22 @@ bool Bridges::continue_core(size_t texel, double &height) const
 }
 
 /* A texel beyond the core that makes a bridge with it may as well continue the core: what lies
- * there is shown by another chart. So the core keeps its last cell. */
+ * there is shown by another chart. So the core keeps its last cell. But where the core itself rises
+ * as steeply, the surface beyond is its best continuation. */
 void Bridges::give_to_core(const Outline &core)
 {
+    constexpr double RISE = 3; /* texels of depth above the continued core: a wall begins */
+    const double rise = RISE * chart_.grid.coarse_pitch();
+    auto leaves_core = [&](double beyond, double continued) {
+        return beyond < continued || beyond >= continued + rise;
+    };
     std::vector<std::pair<size_t, double>> given;
     for (size_t cell = 0; cell < cells_.size(); ++cell) {
         double height;
         if (cells_[cell] == BAD)
             for (size_t texel : corners(cell))
-                if (!is_core(texel) && continue_core(texel, height))
+                if (!is_core(texel) && continue_core(texel, height) &&
+                    leaves_core(cover_.height[texel], height))
                     given.emplace_back(texel, height);
     }
     for (auto [texel, height] : given) {
@@ -161,7 +174,7 @@ void Bridges::give_to_core(const Outline &core)
     }
 }
 
-void Bridges::find(const std::vector<uint8_t> &support)
+void Bridges::find(Drop drop, const std::vector<uint8_t> &support)
 {
     const Grid &grid = chart_.grid;
     cells_.assign(grid.texels(), NONE);
@@ -172,7 +185,7 @@ void Bridges::find(const std::vector<uint8_t> &support)
             bool shows = std::any_of(c.begin(), c.end(), [&](size_t t) { return shown(trim_[t]); });
             bool exists = std::all_of(c.begin(), c.end(), [&](size_t t) { return support[t]; });
             if (shows && exists)
-                cells_[cell] = bridges(cell) ? BAD : GOOD;
+                cells_[cell] = bridges(drop, cell) ? BAD : GOOD;
         }
     }
 }
@@ -203,9 +216,9 @@ void cut_cliffs(const FlatChart &chart, const Outline &core_outline, const Outli
                 Paths &paths, std::vector<float> &trim, Cover &cover, std::vector<uint8_t> &support)
 {
     Bridges bridges(chart, outline, trim, cover, paths);
-    bridges.find(support);
+    bridges.find(Bridges::BESIDE_CORE, support);
     bridges.give_to_core(core_outline);
-    bridges.find(support);
+    bridges.find(Bridges::UNJOINED, support);
     bridges.cut(support);
 }
 

@@ -20,6 +20,8 @@ constexpr int ROUNDS = 6;
  * moves an outline by as much: being below by more than `LEEWAY` texels of depth weighs this many
  * times more. */
 constexpr double BELOW = 6, LEEWAY = 0.1;
+/* The same of a texel below its own sample: into a groove beside it, it would sink. */
+constexpr double SUNK = 3;
 /* The overlap is another chart's core and better shown there: it counts this much. So across a
  * crease the sheet follows the core to its very edge. */
 constexpr double OVERLAP_COUNTS = 0.1;
@@ -107,8 +109,10 @@ double fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, 
     std::vector<double> pull(sampled.size()), weight(sampled.size());
     for (int round = 0; round < ROUNDS; ++round) {
         for (size_t i = 0; i < sampled.size(); ++i) {
-            weight[i] = cover.triangle[i] < chart.core ? 1 : OVERLAP_COUNTS;
-            pull[i] = weight[i] * (sampled[i] - cover.height[i]);
+            const double residual = sampled[i] - cover.height[i];
+            const bool sunk = residual > leeway && cover.triangle[i] != NO_TRIANGLE;
+            weight[i] = (cover.triangle[i] < chart.core ? 1 : OVERLAP_COUNTS) * (sunk ? SUNK : 1);
+            pull[i] = weight[i] * residual;
         }
         for (const Observation &o : observations) {
             const uint32_t corner[4] = {o.texel, o.texel + 1, o.texel + row, o.texel + row + 1};

@@ -235,6 +235,27 @@ static void a_cliff_is_not_bridged_but_a_slope_is(void **)
     assert_true(parted.area + 4 * 34 / (32. * 32) >= whole.area);
 }
 
+/* A terrace over a slope, at one end of their border as high as that: what lies below is reached
+ * from there, and joined by a wall besides, but no cell of the terrace goes down to it. */
+static void a_core_ends_at_a_drop(void **)
+{
+    const Mesh mesh = shapes::sheet(64, [](double u, double v) {
+        return Vec3d(u, v, u <= 0.5 ? 0 : -v);
+    });
+    auto is_below = [&](size_t t) {
+        const auto &corners = mesh.triangles[t];
+        return int(std::any_of(corners.begin(), corners.end(),
+                               [&](uint32_t v) { return mesh.positions[v].x > 0.5; }));
+    };
+    Partition partition = shapes::split(mesh, is_below, 32);
+    for (Chart &chart : partition.charts)
+        chart.frame = shapes::frame_along(mesh, chart.triangles, {0, 0, 1});
+    partition.pitch = 1 / 32.;
+    const Shown terrace = count_steps(bake_valid(mesh, partition));
+    assert_int_equal(terrace.steps, 0);
+    assert_true(terrace.area >= 0.5);
+}
+
 static void a_needle_and_a_speck_bake(void **)
 {
     for (const Vec3d &tip : {Vec3d(1, 1e-4, 0), Vec3d(1e-6, 1e-6, 0)}) {
@@ -430,6 +451,7 @@ int main()
         cmocka_unit_test(any_thread_count_gives_the_same_bytes),
         cmocka_unit_test(one_triangle_bakes),
         cmocka_unit_test(a_cliff_is_not_bridged_but_a_slope_is),
+        cmocka_unit_test(a_core_ends_at_a_drop),
         cmocka_unit_test(a_needle_and_a_speck_bake),
         cmocka_unit_test(a_chart_that_faces_away_bakes),
         cmocka_unit_test(an_edge_on_closed_shred_bakes),
