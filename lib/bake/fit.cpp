@@ -20,8 +20,9 @@ constexpr int ROUNDS = 6;
  * moves an outline by as much: being below by more than `LEEWAY` texels of depth weighs this many
  * times more. */
 constexpr double BELOW = 6, LEEWAY = 0.1;
-/* The same of a texel below its own sample: into a groove beside it, it would sink. */
-constexpr double SUNK = 3;
+/* So does, this many times more, a texel that sinks below its own sample to follow the foot of a wall
+ * beside it. */
+constexpr double SUNK = 5;
 /* The overlap is another chart's core and better shown there: it counts this much. So across a
  * crease the sheet follows the core to its very edge. */
 constexpr double OVERLAP_COUNTS = 0.1;

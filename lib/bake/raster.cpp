@@ -57,9 +57,6 @@ void raster_overlap(const FlatChart &chart, const Outline &core, Paths &paths, C
 {
     /* Texels around the border within which surface must lead on from it. */
     constexpr double REACH = 2.5;
-    /* Texels of depth within which it does across an edge that overhangs: what faces the frame
-     * beyond lies under it. */
-    constexpr double OVERHANG = 0.25;
     const Grid &grid = chart.grid;
     double cliff = CLIFF * grid.coarse_pitch();
     for (size_t t = chart.core; t < chart.triangles.size(); ++t) {
@@ -75,9 +72,6 @@ void raster_overlap(const FlatChart &chart, const Outline &core, Paths &paths, C
             double off = std::fabs(c - border.z);
             /* Of several layers the one nearest to the border's depth continues it. */
             if (triangle != NO_TRIANGLE && off >= std::fabs(cover.height[texel] - border.z))
-                return;
-            const bool overhangs = chart.mate[edge.triangle][size_t(edge.side)] == NO_TRIANGLE;
-            if (overhangs && off > OVERHANG * grid.coarse_pitch())
                 return;
             /* What no short way leads to is another sheet that passes above or below. */
             double reach = REACH + core.distance[texel];

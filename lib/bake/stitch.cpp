@@ -42,7 +42,7 @@ Ground ground_of(uint8_t trim)
 
 Mobilities mobilities(double ease)
 {
-    return {{{1, 1.5, 1.5}, {ease, 1, 0.5}, {0.1 * ease, 0.75, 0.5}}};
+    return {{{1, 1.5, 1.5}, {ease, 1, 0.4}, {0.1 * ease, 0.75, 0.4}}};
 }
 
 /* A point where a sheet ends, and the place of the other that it should lie on. */

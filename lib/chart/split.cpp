@@ -14,10 +14,10 @@ namespace {
  * chart: a steep texel stands for much surface, and its height error shows. */
 constexpr double STEEP_COSINE = 0.25;
 constexpr double STEEP_AREA = 0.01;
-/* Raw normals that count as a wall's, those of triangles so large that they were designed, and how
- * much of a wall matters. */
+/* Raw normals that count as a wall's, in scans and where triangles are so large on average that
+ * they were designed, and how much of a wall matters. */
 constexpr double WALL_COSINE = 0.05, DESIGNED_WALL_COSINE = 0.15;
-constexpr double DESIGNED_TEXELS = 32;
+constexpr double DESIGNED_TEXELS = 64;
 constexpr double WALL_TEXELS = 1;
 /* How much longer a step of the watershed is across a bend of 90 degrees. */
 constexpr float CREASE = 8;
@@ -52,31 +52,25 @@ Candidate try_axis(const Surface &surface, const Region &region, const Vec3d &z,
     return out;
 }
 
-double wall_cosine(double texels)
-{
-    return texels > DESIGNED_TEXELS ? DESIGNED_WALL_COSINE : WALL_COSINE;
-}
-
 /* Sets apart what stands upright in a frame, or hangs over by less than a texel: a height map shows
  * nothing of it, and there would be a hole where nobody else does. Empty where there is none. */
 std::vector<uint32_t> find_walls(const Surface &surface, const Region &region, const Vec3d &z,
                                  double pitch)
 {
-    auto texels = [&](uint32_t t) {
-        return length(surface.mesh.area_vector(t)) / 2 / (pitch * pitch);
-    };
+    const double texel = pitch * pitch, mean = surface.area / double(surface.facets.size());
+    const double least = mean > DESIGNED_TEXELS * texel ? DESIGNED_WALL_COSINE : WALL_COSINE;
     std::vector<uint32_t> wall(region.size());
     for (size_t i = 0; i < region.size(); ++i) {
         uint32_t t = region.triangles[i];
-        wall[i] = !surface.junk[t] && dot(Vec3d(surface.normal[t]), z) < wall_cosine(texels(t));
+        wall[i] = !surface.junk[t] && dot(Vec3d(surface.normal[t]), z) < least;
     }
     std::vector<uint32_t> group = wall;
     std::vector<double> area(connected_pieces(region, group));
     for (size_t i = 0; i < region.size(); ++i)
-        area[group[i]] += texels(region.triangles[i]);
+        area[group[i]] += length(surface.mesh.area_vector(region.triangles[i])) / 2;
     bool any = false;
     for (size_t i = 0; i < region.size(); ++i) {
-        wall[i] = wall[i] && area[group[i]] > WALL_TEXELS;
+        wall[i] = wall[i] && area[group[i]] > WALL_TEXELS * texel;
         any = any || wall[i];
     }
     return any ? wall : std::vector<uint32_t>();

@@ -12,7 +12,9 @@ static void closed_models_stay_closed(void **)
          {"/gltf/venus.gltf", "/scans/armadillo_86k.obj.gz", "/scans/horse.ply.gz",
           "/scans/gargo_3dhop.ply.gz", "/scans/ogre.obj.gz", "/scans/rocker-arm.obj",
           "/scans/nefertiti.obj.gz", "/gltf/bunny_draco.glb",
-          "/textured/spot/spot/spot_triangulated.obj", "/textured/spot/spot/spot_control_mesh.obj",
+          "/textured/spot/spot/spot_triangulated.obj",
+          "/textured/spot/spot/spot_quadrangulated.obj",
+          "/textured/spot/spot/spot_control_mesh.obj",
           "/gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb"}) {
         const std::string input = models + std::string(name), output = in_folder("closed.gtx");
         gtx_error error = {};
