@@ -20,8 +20,8 @@ constexpr int ROUNDS = 6;
  * moves an outline by as much: being below by more than `LEEWAY` texels of depth weighs this many
  * times more. */
 constexpr double BELOW = 6, LEEWAY = 0.1;
-/* So does, this many times more, a texel that sinks below its own sample to follow the foot of a wall
- * beside it. */
+/* So does, this many times more, a texel that sinks below its own sample to follow the foot of a
+ * wall beside it. */
 constexpr double SUNK = 5;
 /* The overlap is another chart's core and better shown there: it counts this much. So across a
  * crease the sheet follows the core to its very edge. */
