@@ -26,8 +26,7 @@ constexpr double MOST_OFF = 0.25, MOST_EASED = 1;
 /* What faces its axis less is steep: cells miss it, and where another sheet is right there, that
  * shows it too. */
 constexpr double STEEP = 0.35;
-/* Texels: longer triangles are resolved by their charts, or are no detail of a scan. */
-constexpr double LONGEST = 8, SAMPLES = 2; /* a texel */
+constexpr double SAMPLES = 2;  /* along a texel */
 /* Square texels of surface that are worth a patch: less is hardly a pixel. */
 constexpr double LEAST_AREA = 0.05;
 /* Texels of surface around it that its patch shows too, and how far the normals of one patch may
@@ -141,7 +140,7 @@ double Search::lost_share(const Decoded &own, const Chart &chart, uint32_t trian
     const double square = std::max({dot(e, e), dot(f, f), dot(f - e, f - e)});
     const double longest = std::sqrt(square) / job_.pitch;
     const Vec3d normal = normalize(cross(e, f));
-    if (longest > LONGEST || !(dot(normal, own.axis[2]) > TWISTED) || is_masked(mesh, triangle))
+    if (!(dot(normal, own.axis[2]) > TWISTED) || is_masked(mesh, triangle))
         return 0;
     const bool steep = dot(normal, own.axis[2]) < STEEP;
     const int parts = std::max(1, int(std::ceil(SAMPLES * longest)));

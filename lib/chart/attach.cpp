@@ -19,6 +19,7 @@ constexpr double PATCH = 256;           /* what a patch costs for being one, in 
 constexpr double STEEP_COSINE = 0.1;    /* of raw normals, on at most a small share of the area */
 constexpr double GUEST_COSINE = 0.3;
 constexpr double STEEP_AREA = 0.05;
+constexpr double WALL_TEXELS = 16;      /* of a wall that a host may get: scans have small ones */
 constexpr int PASSES = 4;               /* crumbs may lead to crumbs; trifles wait for the last */
 
 class Attachment {
@@ -144,7 +145,7 @@ bool Attachment::faces(const Region &crumb, const Vec3d &z) const
         if (dot(Vec3d(surface_.normal[t]), z) < least)
             steep += surface_.facets[t].size;
     }
-    return steep <= STEEP_AREA * size;
+    return steep <= STEEP_AREA * size && !has_wall(surface_, crumb, z, bounds_.pitch, WALL_TEXELS);
 }
 
 Frame Attachment::widened(const Frame &frame, const Region &crumb) const

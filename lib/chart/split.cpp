@@ -53,9 +53,10 @@ Candidate try_axis(const Surface &surface, const Region &region, const Vec3d &z,
 }
 
 /* Sets apart what stands upright in a frame, or hangs over by less than a texel: a height map shows
- * nothing of it, and there would be a hole where nobody else does. Empty where there is none. */
+ * nothing of it, and there would be a hole where nobody else does. Empty where there is none of
+ * more than so many texels of surface. */
 std::vector<uint32_t> find_walls(const Surface &surface, const Region &region, const Vec3d &z,
-                                 double pitch)
+                                 double pitch, double most_texels)
 {
     const double texel = pitch * pitch, mean = surface.area / double(surface.facets.size());
     const double least = mean > DESIGNED_TEXELS * texel ? DESIGNED_WALL_COSINE : WALL_COSINE;
@@ -70,7 +71,7 @@ std::vector<uint32_t> find_walls(const Surface &surface, const Region &region, c
         area[group[i]] += length(surface.mesh.area_vector(region.triangles[i])) / 2;
     bool any = false;
     for (size_t i = 0; i < region.size(); ++i) {
-        wall[i] = wall[i] && area[group[i]] > WALL_TEXELS * texel;
+        wall[i] = wall[i] && area[group[i]] > most_texels * texel;
         any = any || wall[i];
     }
     return any ? wall : std::vector<uint32_t>();
@@ -80,18 +81,6 @@ std::vector<Region> pieces_of(const Region &region, std::vector<uint32_t> labels
 {
     uint32_t count = connected_pieces(region, labels);
     return split_region(region, labels, count);
-}
-
-/* What fits is a chart, but for its walls. */
-Verdict accept(const Surface &surface, const Region &region, const Frame &frame, double pitch)
-{
-    std::vector<uint32_t> wall = find_walls(surface, region, frame.z, pitch);
-    Verdict verdict = {frame, {}};
-    if (!wall.empty())
-        verdict.pieces = pieces_of(region, wall);
-    if (verdict.pieces.size() == 1) /* all of it */
-        verdict.pieces.clear();
-    return verdict;
 }
 
 /* Straight across the middle of the longer side. What the cut leaves apart from the main piece of
@@ -153,6 +142,18 @@ std::vector<uint32_t> split_normals(const Surface &surface, const Region &region
     return cluster_pair(surface, region, a, b);
 }
 
+/* What fits is a chart, but for its walls; a ring of them faces nowhere, and is taken apart. */
+Verdict accept(const Surface &surface, const Region &region, const Frame &frame, double pitch)
+{
+    const std::vector<uint32_t> wall = find_walls(surface, region, frame.z, pitch, WALL_TEXELS);
+    if (wall.empty())
+        return {frame, {}};
+    std::vector<Region> pieces = pieces_of(region, wall);
+    if (pieces.size() == 1 && region.size() > 1)
+        pieces = pieces_of(region, split_normals(surface, region, frame.z));
+    return {frame, pieces.size() > 1 ? std::move(pieces) : std::vector<Region>()};
+}
+
 /* Watershed between what lies in front and what lies behind: triangles vote by their doubled
  * samples, the deepest of which decides its own two. Crossing a crease costs most. */
 std::vector<uint32_t> split_layers(const Surface &surface, const Region &region,
@@ -208,6 +209,12 @@ bool is_inverted(const Surface &surface, uint32_t t, const Vec3d &z, double pitc
 {
     return dot(Vec3d(surface.normal[t]), z) <= 0 && !surface.junk[t] &&
            -dot(surface.mesh.area_vector(t), z) / 2 > pitch * pitch;
+}
+
+bool has_wall(const Surface &surface, const Region &region, const Vec3d &z, double pitch,
+              double most_texels)
+{
+    return !find_walls(surface, region, z, pitch, most_texels).empty();
 }
 
 bool leans_back(const Surface &surface, uint32_t t, const Vec3d &z, double pitch)

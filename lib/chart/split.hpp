@@ -31,4 +31,9 @@ bool is_inverted(const Surface &surface, uint32_t triangle, const Vec3d &z, doub
 /* Likewise, or a wall of some texels that leans back: no chart should have it. */
 bool leans_back(const Surface &surface, uint32_t triangle, const Vec3d &z, double pitch);
 
+/* Whether a part of the region, of more than so many texels, stands so upright along unit `z` that
+ * no height map shows it. */
+bool has_wall(const Surface &surface, const Region &region, const Vec3d &z, double pitch,
+              double most_texels);
+
 } // namespace gtx

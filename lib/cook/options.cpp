@@ -14,7 +14,7 @@
 namespace gtx {
 
 /* Raised with every change that makes other assets of the same models and options. */
-constexpr int COOKER_REVISION = 15;
+constexpr int COOKER_REVISION = 16;
 
 constexpr uint32_t MOST_CHARTS = 1u << 20, MOST_THREADS = 1024, MOST_DILATION = 128;
 #ifdef GTX_ZSTD

@@ -473,6 +473,28 @@ static void test_crumbs(void **)
     assert_int_equal(p.report.junk_triangles, 0);
 }
 
+/* No chart of a model of few, large triangles has one that stands upright, whoever it was given to
+ * and however few charts face it. */
+static void test_walls(void **)
+{
+    for (uint32_t seed = 0; seed < 40; ++seed) {
+        uint32_t random = seed;
+        Mesh mesh = shapes::sphere(5);
+        for (Vec3d &v : mesh.positions) {
+            random = random * 1664525 + 1013904223;
+            const double radii[] = {0.5, 0.7, 1, 1, 1.3, 1.8};
+            v *= radii[(random >> 16) % 6];
+        }
+        const Partition p = partition(mesh, 2, with(PartitionMethod::CUTS));
+        for (const Chart &chart : p.charts)
+            for (uint32_t t : chart.triangles) {
+                const Vec3d area = mesh.area_vector(t) / 2;
+                if (!p.junk[t] && length(area) > 16 * p.pitch * p.pitch)
+                    assert_true(dot(normalize(area), chart.frame.z) > 0.1);
+            }
+    }
+}
+
 static void test_two_sided(void **)
 {
     Mesh mesh = shapes::both(shapes::sphere(8), shapes::plane(10), {3, 0, 0});
@@ -631,8 +653,9 @@ int main(void)
         cmocka_unit_test(test_wanted_count), cmocka_unit_test(test_components),
         cmocka_unit_test(test_density), cmocka_unit_test(test_spread),
         cmocka_unit_test(test_cuts_by_relief), cmocka_unit_test(test_crumbs),
-        cmocka_unit_test(test_two_sided), cmocka_unit_test(test_deterministic),
-        cmocka_unit_test(test_junk), cmocka_unit_test(test_cancel),
+        cmocka_unit_test(test_walls), cmocka_unit_test(test_two_sided),
+        cmocka_unit_test(test_deterministic), cmocka_unit_test(test_junk),
+        cmocka_unit_test(test_cancel),
         cmocka_unit_test(test_charts_ply), cmocka_unit_test(test_charts_ply_of_pieces),
         cmocka_unit_test(test_models)};
     return cmocka_run_group_tests(tests, nullptr, nullptr);
