@@ -26,7 +26,9 @@ constexpr double MOST_OFF = 0.25, MOST_EASED = 1;
 /* What faces its axis less is steep: cells miss it, and where another sheet is right there, that
  * shows it too. */
 constexpr double STEEP = 0.35;
-constexpr double SAMPLES = 2;  /* along a texel */
+/* Samples along a texel. A needle may be as long as its chart: it gets as many as a triangle whose
+ * sides are so many texels longer than those of a square of its area. */
+constexpr double SAMPLES = 2, NEEDLE = 8;
 /* Square texels of surface that are worth a patch: less is hardly a pixel. */
 constexpr double LEAST_AREA = 0.05;
 /* Texels of surface around it that its patch shows too, and how far the normals of one patch may
@@ -143,7 +145,8 @@ double Search::lost_share(const Decoded &own, const Chart &chart, uint32_t trian
     if (!(dot(normal, own.axis[2]) > TWISTED) || is_masked(mesh, triangle))
         return 0;
     const bool steep = dot(normal, own.axis[2]) < STEEP;
-    const int parts = std::max(1, int(std::ceil(SAMPLES * longest)));
+    const double sides = NEEDLE + std::sqrt(length(cross(e, f)) / 2) / job_.pitch;
+    const int parts = std::max(1, int(std::ceil(SAMPLES * std::min(longest, sides))));
     int lost = 0;
     for (int j = 0; j < parts; ++j) {
         for (int i = 0; i + j < parts; ++i) {
