@@ -36,6 +36,10 @@ needs_chart   := $(needs_mesh) chart
 needs_bake    := $(needs_asset) image mesh grid chart bake
 needs_measure := $(needs_trace) image mesh measure
 needs_cook    := $(needs_trace) image mesh grid chart bake measure cook
+needs_cli     := $(needs_cook) edit render host cli
+
+rooms := $(ROOMS_CORE) $(ROOMS_COOK) host cli
+tests := $(filter-out bench common golden,$(notdir $(wildcard tests/*)))
 
 # ---- flags ---------------------------------------------------------------------------------------
 CC  ?= cc
@@ -52,7 +56,7 @@ warnings := -Wall -Wextra $(if $(filter 1,$(werror)),-Werror)
 
 # Contraction to fused multiply-adds would make the bytes depend on the processor.
 common   := $(flags) $(warnings) -fPIC -fvisibility=hidden -ffp-contract=off -MMD -MP \
-            -Iinclude -Ilib -DGTX_BUILDING $(if $(filter 1,$(zstd)),-DGTX_ZSTD)
+            -Iinclude -DGTX_BUILDING $(if $(filter 1,$(zstd)),-DGTX_ZSTD)
 cflags   := -std=c11 -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes $(common)
 cxxflags := -std=c++17 -Wshadow=local $(common)
 
@@ -77,18 +81,29 @@ out := $(build)/$(config)
 Q   := $(if $(V),,@)
 say  = @printf '  %-5s %s\n'
 
-sources    = $(filter-out %/module.cpp,$(wildcard lib/$(1)/*.c lib/$(1)/*.cpp))
+sources    = $(filter-out %/module.cpp,$(wildcard $(foreach d,lib/$(1) lib/$(1)/*,$(d)/*.c $(d)/*.cpp)))
 objects    = $(patsubst %,$(out)/%.o,$(basename $(call sources,$(1)))) \
              $(if $(filter render,$(1)),$(out)/gen/shader_sources.o)
 objects_of = $(foreach r,$(1),$(call objects,$(r)))
-room_flags = $(cflags_$(word 2,$(subst /, ,$(1))))
+room       = $(word 2,$(subst /, ,$(1)))
 
-$(out)/%.o: %.c
+# What a file may include: headers of the rooms that its own needs, and the public ones. An include
+# path is a folder of links to those rooms; benchmarks, samples and what is generated see all.
+path_of    = $(out)/sees/$(or $(filter $(rooms:%=lib/%) $(tests:%=tests/%),$(call folder,$(1))),all)
+folder     = $(word 1,$(subst /, ,$(1)))/$(room)
+room_flags = -I$(path_of) $(cflags_$(room))
+link_rooms = mkdir -p $(out)/sees/$(1) && ln -sfn $(foreach r,$(2),$(CURDIR)/lib/$(r)) $(out)/sees/$(1) &&
+$(out)/sees/.made: Makefile
+	$(Q)rm -rf $(@D)
+	$(Q)$(call link_rooms,all,$(rooms)) $(foreach r,$(rooms),$(call link_rooms,lib/$(r),$(needs_$(r)))) \
+	  $(foreach t,$(tests),$(call link_rooms,tests/$(t),$(call test_needs,$(t)))) touch $@
+
+$(out)/%.o: %.c | $(out)/sees/.made
 	@mkdir -p $(@D)
 	$(say) CC $<
 	$(Q)$(CC) $(cflags) $(call room_flags,$<) $(CFLAGS) -c $< -o $@
 
-$(out)/%.o: %.cpp
+$(out)/%.o: %.cpp | $(out)/sees/.made
 	@mkdir -p $(@D)
 	$(say) CXX $<
 	$(Q)$(CXX) $(cxxflags) $(call room_flags,$<) $(CXXFLAGS) -c $< -o $@
@@ -104,8 +119,8 @@ $(out)/gen/shader_sources.c: $(shaders) Makefile
 	echo 'const gtx_shader_file gtx_shader_files[] = {'; n=0; \
 	for f in $(shaders); do echo "{\"$${f#shaders/}\", text_$$n},"; n=$$((n+1)); done; \
 	echo '{0, 0}};'; } > $@
-$(out)/gen/shader_sources.o: $(out)/gen/shader_sources.c
-	$(Q)$(CC) $(cflags) -c $< -o $@
+$(out)/gen/shader_sources.o: $(out)/gen/shader_sources.c | $(out)/sees/.made
+	$(Q)$(CC) $(cflags) -I$(out)/sees/lib/render -c $< -o $@
 
 # ---- products ------------------------------------------------------------------------------------
 lib_core := $(out)/libgeotex.a
@@ -121,11 +136,11 @@ all: $(build)/gtx $(so_core) $(so_cook) $(sample_bins) ## the libraries, the com
 
 $(lib_core): $(call objects_of,$(ROOMS_CORE))
 	$(say) AR $@
-	$(Q)rm -f $@ && $(AR) rcs $@ $^
+	$(Q)rm -f $@ && $(AR) qcs $@ $^
 
 $(lib_cook): $(call objects_of,$(ROOMS_COOK))
 	$(say) AR $@
-	$(Q)rm -f $@ && $(AR) rcs $@ $^
+	$(Q)rm -f $@ && $(AR) qcs $@ $^
 
 # What a shared library exports: the functions that its headers declare, and nothing else.
 $(out)/gen/libgeotex.map: include/geotex/geotex.h include/geotex/edit.h include/geotex/render.h
@@ -149,10 +164,10 @@ $(so_cook): $(call objects_of,$(ROOMS_COOK)) $(so_core) | $(out)/gen/libgeotex-c
 	$(Q)ln -sf $(@F) $(out)/libgeotex-cook.so.$(SOVERSION) && ln -sf $(@F) $(out)/libgeotex-cook.so
 
 # It is looked for beside the program that asks: links for those that lie elsewhere.
-$(module): lib/image/module.cpp lib/image/module.h Makefile
+$(module): lib/image/module.cpp lib/image/module.h Makefile | $(out)/sees/.made
 	@mkdir -p $(@D)
 	$(say) LINK $@
-	$(Q)$(CXX) $(cxxflags) $(cflags_image) $(CXXFLAGS) -shared -o $@ $< $(call pkg,--libs,OpenImageIO)
+	$(Q)$(CXX) $(cxxflags) $(call room_flags,$<) $(CXXFLAGS) -shared -o $@ $< $(call pkg,--libs,OpenImageIO)
 	$(Q)for d in $(out)/samples $(sort $(dir $(test_bins))); do mkdir -p $$d && ln -sf $(abspath $@) $$d; done
 
 $(command): $(call objects_of,cli host image) $(lib_cook) $(lib_core) | $(module)
@@ -213,25 +228,24 @@ dist: ## the committed sources as build/geotex-VERSION.tar.gz
 test_sources := $(wildcard tests/*/test_*.c tests/*/test_*.cpp)
 test_bins    := $(patsubst %,$(out)/%,$(basename $(test_sources)))
 test_room     = $(word 2,$(subst /, ,$(1)))
-test_needs    = $(needs_$(1)) $(extra_needs_$(1))
+test_needs    = $(or $(links_$(1)),$(needs_$(1)) $(extra_needs_$(1)))
 # These run the command and the products; they link nothing of ours but the smallest room.
-needs_cli := base image
-needs_consumer := base
-needs_corpus := base
-needs_samples := $(needs_image)
-needs_threads := $(needs_cook)
+links_cli      := base image
+links_consumer := base
+links_corpus   := base
+links_samples  := $(needs_image)
+links_threads  := $(needs_cook)
 extra_needs_render  := trace edit host image
 extra_needs_trace   := image mesh grid chart bake measure cook
 extra_needs_bake    := derive trace measure host
 extra_needs_cook    := host
-extra_needs_chart   :=
 extra_needs_measure := grid chart bake cook
 # Embree ships no pkg-config file; its test asks for the header in the same way.
 libs_test_embree = $(shell printf '\043include <embree3/rtcore.h>' | $(CXX) -E -x c++ - >/dev/null 2>&1 && echo -lembree3)
 # An archive: a test takes from it only what it asks for, and so needs no room but its own.
 common_tests := $(out)/tests/common.a
 $(common_tests): $(patsubst %,$(out)/%.o,$(basename $(wildcard tests/common/*.c)))
-	$(Q)rm -f $@ && $(AR) rcs $@ $^
+	$(Q)rm -f $@ && $(AR) qcs $@ $^
 
 define test_rule
 $(out)/$(basename $(1)): $(out)/$(basename $(1)).o $(common_tests) \
@@ -299,7 +313,7 @@ bench: ## frame times of MODEL (default: the sculpt) by every method, BENCH="--i
 run-bench:
 	@mkdir -p $(build)/demo
 	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
-	@$(build)/gtx cook $(MODEL) --shell-levels 5 -o $(build)/demo/bench.gtx
+	@$(build)/gtx cook $(MODEL) --lod-levels 5 -o $(build)/demo/bench.gtx
 	@$(build)/gtx bench $(build)/demo/bench.gtx $(MODEL) --min-iou 0.99 $(BENCH)
 
 bench-rays: ## rays a second into MODEL (default: the sculpt), and what shadows by ray cost a frame
@@ -334,7 +348,7 @@ figures := figure2 figure7 figure9
 reek    := $(wildcard $(GEOTEX_MODELS)/heightfields/reek_1588x1188)
 arguments_figure7 = $(MODEL)
 arguments_figure9 := $(or $(reek),own)
-bench_objects := $(addprefix $(out)/lib/cli/,bench.o bench_mesh.o bench_scene.o bench_shading.o polygons.o)
+bench_objects := $(addprefix $(out)/lib/cli/,bench/bench.o bench/mesh.o bench/scene.o bench/shading.o view/polygons.o)
 paper-figures: ## the paper's figures of frame rates, measured here: tables, JSON and curves in build/paper
 	@$(MAKE) --no-print-directory deps
 	@$(MAKE) --no-print-directory -j$$(nproc) all $(figures:%=$(out)/tests/bench/%)

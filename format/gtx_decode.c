@@ -18,8 +18,8 @@
 
 enum { HEADER = 192, ENTRY = 64, RECORD = 128, MAX_SECTIONS = 256 };
 enum { NO_MEMORY = 1, UNSUPPORTED = 2 }; /* in place of a rule */
-enum { SHELL_HEADER = 32, MAX_SHELLS = 8 };
-enum { SHELL = 112, UNKNOWN = 500 };     /* the order of shell sections, and of those to skip */
+enum { LOD_HEADER = 32, MAX_LODS = 8 };
+enum { LOD = 112, UNKNOWN = 500 };       /* the order of LOD mesh sections, and of those to skip */
 
 typedef unsigned char byte;
 struct section {
@@ -118,7 +118,7 @@ static unsigned check_header(struct file *f)
         return 100;
     if (f->size < HEADER)
         return 118;
-    if (u16(h + 12) != 0 || u16(h + 14) != 3)
+    if (u16(h + 12) != 0 || u16(h + 14) != 4)
         return 101;
     if (u32(h + 16) != HEADER)
         return 102;
@@ -183,7 +183,7 @@ static unsigned check_header_hash(struct file *f)
 /* In file order; those from NRML on have levels, those from COLR on may be absent. META is last. */
 enum { KNOWN = 8 };
 static const char *const types[KNOWN] = {"PTCH", "HGHT", "TRIM", "NRML",
-                                         "COLR", "MATL", "EMIT", "SHEL"};
+                                         "COLR", "MATL", "EMIT", "LODM"};
 
 static int is_type(const struct section *s, const char *type) { return !strcmp(s->type, type); }
 
@@ -198,7 +198,7 @@ static int order_of(const struct section *s)
 static unsigned check_known(struct file *f, struct section *s)
 {
     int levels = order_of(s) > 16 * 3 && order_of(s) < UNKNOWN;
-    if (s->level >= (is_type(s, "SHEL") ? MAX_SHELLS : levels ? f->mips : 1))
+    if (s->level >= (is_type(s, "LODM") ? MAX_LODS : levels ? f->mips : 1))
         return 203;
     static const struct {
         const char *type;
@@ -206,7 +206,7 @@ static unsigned check_known(struct file *f, struct section *s)
     } images[] = {
         {"HGHT", 13, 1}, {"HGHT", 74, 2}, {"TRIM", 9, 1}, {"NRML", 16, 2}, {"COLR", 43, 4},
         {"MATL", 37, 4}, {"EMIT", 29, 3}};
-    int image = !is_type(s, "PTCH") && !is_type(s, "SHEL") && !is_type(s, "META");
+    int image = !is_type(s, "PTCH") && !is_type(s, "LODM") && !is_type(s, "META");
     for (int i = 0; i < 7; ++i)
         if (is_type(s, images[i].type) && s->format == images[i].format)
             s->texel = images[i].texel;
@@ -216,7 +216,7 @@ static unsigned check_known(struct file *f, struct section *s)
         f->bits = 8 * s->texel;
     if (is_type(s, "META"))
         return s->size >= 1 && s->size <= 1u << 20 ? 0 : 600;
-    if (is_type(s, "SHEL"))
+    if (is_type(s, "LODM"))
         return s->size >= 36 + 4 * (uint64_t)f->patches + 12 + 18 ? 0 : 500;
     s->width = s->texel ? f->width >> s->level : 0;
     s->height = s->texel ? f->height >> s->level : 0;
@@ -230,7 +230,7 @@ static int has_filter(const struct section *s)
     if (s->filter == 4)
         return is_type(s, "TRIM") || is_type(s, "NRML");
     if (s->filter >= 5)
-        return s->filter == 5 ? is_type(s, "HGHT") : s->filter == 6 && is_type(s, "SHEL");
+        return s->filter == 5 ? is_type(s, "HGHT") : s->filter == 6 && is_type(s, "LODM");
     return s->texel != 0;
 }
 
@@ -302,9 +302,9 @@ static unsigned check_presence(const struct file *f)
         if (i < 7 && count != all && (count || i < 4))
             return 214;
     }
-    uint32_t shells = count_of(f, "SHEL");
+    uint32_t lods = count_of(f, "LODM");
     for (uint32_t i = 0; i < f->section_count; ++i)
-        if (is_type(&f->section[i], "SHEL") && f->section[i].level >= shells)
+        if (is_type(&f->section[i], "LODM") && f->section[i].level >= lods)
             return 214;
     double scale = f32(f->data + 144);
     int right = count_of(f, "EMIT") ? isfinite(scale) && scale > 0 : all_zero(f->data + 144, 4);
@@ -644,7 +644,7 @@ static unsigned undo_filter(const struct file *f, struct section *s)
     return 0;
 }
 
-/* ---- 6: the shell ---- */
+/* ---- 6: the LOD mesh ---- */
 
 struct edge {
     uint32_t from, to, across;
@@ -722,19 +722,19 @@ static unsigned undo_steps(struct section *s)
 {
     struct steps steps = {.vertices = u32(s->bytes + 20), .triangles = u32(s->bytes + 24)};
     uint64_t arrays = 6 * (uint64_t)steps.vertices + 12 * (uint64_t)steps.triangles;
-    uint64_t left = s->size - SHELL_HEADER;
+    uint64_t left = s->size - LOD_HEADER;
     if (arrays > left || (left - arrays) % 4)
         return 213;
     byte *out = malloc((size_t)s->size);
     if (!out)
         return NO_MEMORY;
-    memcpy(out, s->bytes, SHELL_HEADER);
-    uint64_t firsts = (left - arrays) / 4, indices = SHELL_HEADER + 4 * firsts;
+    memcpy(out, s->bytes, LOD_HEADER);
+    uint64_t firsts = (left - arrays) / 4, indices = LOD_HEADER + 4 * firsts;
     uint32_t first = 0;
     for (uint64_t i = 0; i < firsts; ++i) {
-        first += from_planes(s->bytes + SHELL_HEADER, firsts, i, 4);
+        first += from_planes(s->bytes + LOD_HEADER, firsts, i, 4);
         for (int k = 0; k < 4; ++k)
-            out[SHELL_HEADER + 4 * i + (uint64_t)k] = (byte)(first >> 8 * k);
+            out[LOD_HEADER + 4 * i + (uint64_t)k] = (byte)(first >> 8 * k);
     }
     steps.words = s->bytes + indices;
     steps.indices = out + indices;
@@ -766,7 +766,7 @@ static unsigned decode_section(const struct file *f, struct section *s)
     else
         memcpy(s->bytes, stored, (size_t)s->size);
     if (!rule && s->filter)
-        rule = is_type(s, "SHEL") ? undo_steps(s) : undo_filter(f, s);
+        rule = is_type(s, "LODM") ? undo_steps(s) : undo_filter(f, s);
     if (!rule && xxh64(s->bytes, s->size) != s->hash)
         rule = 210;
     return rule;
@@ -890,11 +890,11 @@ static unsigned check_maps(const struct file *f, const byte *records, const byte
 }
 
 /* Whether a corner is at most a texel beside the rectangle of record `r`. */
-static int is_beside(const byte *shell, const byte *position, const byte *r)
+static int is_beside(const byte *lod, const byte *position, const byte *r)
 {
     double p[3], det = determinant(r + 16, r + 32, r + 48);
     for (int k = 0; k < 3; ++k)
-        p[k] = f32(shell + 4 * k) + f32(shell + 12) * u16(position + 2 * k) - f32(r + 4 * k);
+        p[k] = f32(lod + 4 * k) + f32(lod + 12) * u16(position + 2 * k) - f32(r + 4 * k);
     for (int axis = 0; axis < 2; ++axis) {
         const byte *a = r + (axis ? 48 : 32), *b = r + (axis ? 16 : 48);
         double at = 0, size = u16(r + 72 + 2 * axis);
@@ -911,7 +911,7 @@ static int is_beside(const byte *shell, const byte *position, const byte *r)
 
 static unsigned check_triangles(const struct file *f, const struct section *s, const byte *records)
 {
-    const byte *h = s->bytes, *first = h + SHELL_HEADER, *index = first + 4 * (f->patches + 1);
+    const byte *h = s->bytes, *first = h + LOD_HEADER, *index = first + 4 * (f->patches + 1);
     uint32_t vertices = u32(h + 20), triangles = u32(h + 24), met = 0;
     const byte *positions = index + 12 * (uint64_t)triangles;
     for (uint64_t t = 0; t < triangles; ++t) {
@@ -938,10 +938,10 @@ static unsigned check_triangles(const struct file *f, const struct section *s, c
 }
 
 /* `finer` is the level after it in the file, or NULL. */
-static unsigned check_shell(const struct file *f, const struct section *s,
-                            const struct section *finer, const byte *records)
+static unsigned check_lod(const struct file *f, const struct section *s,
+                          const struct section *finer, const byte *records)
 {
-    const byte *h = s->bytes, *first = h + SHELL_HEADER;
+    const byte *h = s->bytes, *first = h + LOD_HEADER;
     uint64_t vertices = u32(h + 20), triangles = u32(h + 24);
     if (!triangles || vertices > 1u << 28 ||
         s->size != 36 + 4 * (uint64_t)f->patches + 12 * triangles + 6 * vertices)
@@ -994,9 +994,9 @@ static unsigned decode_content(struct file *f, byte *taken)
         unsigned rule = decode_section(f, s);
         if (!rule && is_type(s, "PTCH"))
             rule = check_patches(f, s->bytes, taken);
-        if (!rule && is_type(s, "SHEL"))
-            rule = check_shell(f, s, s->level ? s + 1 : NULL,
-                               find(f, "PTCH")->bytes);
+        if (!rule && is_type(s, "LODM"))
+            rule = check_lod(f, s, s->level ? s + 1 : NULL,
+                             find(f, "PTCH")->bytes);
         if (!rule && is_type(s, "META"))
             rule = check_meta(s);
         if (rule)

@@ -14,7 +14,7 @@
  * which are turned round so that borders keep moving (Vichniac 1984). */
 static const float vote[10] = {0, 0, 0, 0, 1, 0, 1, 1, 1, 1};
 
-static int around(const gtx_edit_sheet *s, uint32_t t, float *sum)
+static int around(const gtx_edit_field *s, uint32_t t, float *sum)
 {
     *sum = 0;
     for (int k = 0; k < 9; ++k) {
@@ -26,7 +26,7 @@ static int around(const gtx_edit_sheet *s, uint32_t t, float *sum)
     return 1;
 }
 
-static void seed(const gtx_edit_sheet *s, void *user)
+static void seed(const gtx_edit_field *s, void *user)
 {
     uint32_t random = s->patch * 2654435761u + 1;
     (void)user;
@@ -36,7 +36,7 @@ static void seed(const gtx_edit_sheet *s, void *user)
     }
 }
 
-static void grow(const gtx_edit_sheet *s, void *user)
+static void grow(const gtx_edit_field *s, void *user)
 {
     const float *blend = user; /* 0: vote; 1: take the mean, which rounds the steps off */
     float sum;
@@ -45,7 +45,7 @@ static void grow(const gtx_edit_sheet *s, void *user)
             s->next[t] = *blend > 0 ? sum / 9 : vote[(int)(sum + 0.5f)];
 }
 
-static void raise(const gtx_edit_sheet *s, void *height)
+static void raise(const gtx_edit_field *s, void *height)
 {
     for (uint32_t t = 0; t < s->width * s->height; ++t)
         for (int k = 0; k < 3 && s->kind[t] == GTX_TEXEL_OWN; ++k)

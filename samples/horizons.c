@@ -4,7 +4,7 @@
  *
  * `own` makes four grids, FOLDER holds those of the table below, and an asset is one that
  * `gtx horizons` has made. A well path and a cutting plane are polygons in the same depth buffer.
- * Where there is a shell, made of the maps, the right half of the picture is drawn by it. */
+ * Where there is an LOD mesh, made of the maps, the right half of the picture is drawn by it. */
 #include "horizons.h"
 #include "host/sample.h"
 #include "host/text.h"
@@ -45,7 +45,7 @@ static gtx_result make_asset(world *w, gtx_asset **asset, gtx_error *error)
     }
     gtx_height_grid grids[LAYERS];
     const int own = !strcmp(w->path, "own");
-    gtx_horizons_desc desc = {.depths = 1, .vertical = 4, .shell_levels = own ? 5 : 0};
+    gtx_horizons_desc desc = {.depths = 1, .vertical = 4, .lod_levels = own ? 5 : 0};
     gtx_horizons_result made;
     for (int k = 0; k < LAYERS && !result; ++k)
         result = own ? make_layer(k, &grids[k]) : read_layer(w->path, k, &grids[k], error);
@@ -107,8 +107,8 @@ static gtx_result draw_legend(const gtx_host_gl *gl, const world *w, int width, 
     }
     gtx_text_add(&s, x, y - 14 * dot, &style, "thickness");
     gtx_text_add(&s, x, x, &style, "cast");
-    if (w->info.shell_levels)
-        gtx_text_add(&s, (float)width / 2 + x, x, &style, "shell");
+    if (w->info.lod_levels)
+        gtx_text_add(&s, (float)width / 2 + x, x, &style, "lod");
     return gtx_text_draw(gl, &w->program, &s, width, height, error);
 }
 
@@ -129,9 +129,9 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
     gtx_polygons_draw(gl, &w->program, &w->solids, NULL, view, projection, v.light_direction,
                       v.ambient);
     gtx_result result = GTX_OK;
-    const int halves = w->info.shell_levels ? 2 : 1;
+    const int halves = w->info.lod_levels ? 2 : 1;
     for (int half = 0; half < halves && !result; ++half) {
-        v.method = half ? GTX_METHOD_SHELL : GTX_METHOD_CAST;
+        v.method = half ? GTX_METHOD_LOD : GTX_METHOD_CAST;
         gl->Enable(GL_SCISSOR_TEST);
         gl->Scissor(half ? box[2] / 2 : 0, 0, half || halves < 2 ? box[2] : box[2] / 2, box[3]);
         result = gtx_draw(w->renderer, &v, &w->instance, 1, error);

@@ -6,7 +6,7 @@
 enum { HOLES = 4 };
 
 static const char patch_main[] =
-    "#ifdef GTX_SHELL\n" /* polygons have no ray to go on with */
+    "#ifdef GTX_LOD\n" /* polygons have no ray to go on with */
     "void main() { discard; }\n"
     "#else\n"
     "uniform vec4 holes[4];\n" /* centre and radius */
@@ -26,7 +26,7 @@ static const char patch_main[] =
     "    if (!gtx_find(s)) discard;\n"
     "    ray = gtx_world * gtx_depth.w - gtx_world_eye;\n"
     "    origin = gtx_world;\n"
-    "    s.sheet.reach = 1e30;\n" /* past what the hull tells of */
+    "    s.field.reach = 1e30;\n" /* past what the hull tells of */
     "    vec3 n = vec3(0.0), base = vec3(0.60, 0.16, 0.10), point;\n"
     "    for (int i = 0; i < 8 && n == vec3(0.0); ++i) {\n"
     "        float t = leave(s.hit.t), t0 = s.hit.t + 1e-5, t1 = 1e30;\n"
@@ -42,8 +42,8 @@ static const char patch_main[] =
     "            point = wall;\n"
     "            base *= 0.7 + 0.3 * step(0.5, fract(12.0 * wall.y));\n"
     "        } else {\n" /* the ray came out again before: on to where it goes in next */
-    "            gtx_clip_box(s.sheet, gtx_point, s.ray, t0, t1);\n"
-    "            if (t0 > t1 || !gtx_cast(s.sheet, gtx_point, s.ray, t0, t1, s.hit)) discard;\n"
+    "            gtx_clip_box(s.field, gtx_point, s.ray, t0, t1);\n"
+    "            if (t0 > t1 || !gtx_cast(s.field, gtx_point, s.ray, t0, t1, s.hit)) discard;\n"
     "        }\n"
     "    }\n"
     "    color = vec4(sqrt(base * (0.25 + 0.75 * max(dot(n, gtx_light.xyz), 0.0))), 1.0);\n"

@@ -86,7 +86,8 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
                    (gtx_rgb){222, 214, 200});
     snprintf(patch_text, sizeof patch_text, "%s%s", lighting, patch_main);
     snprintf(polygon_text, sizeof polygon_text, "%s%s%s%s%s",
-             gtx_shader_source("geotex_dialect.glsl"), gtx_shader_source("geotex_sheet.glsl"),
+             gtx_shader_source("geotex_dialect.glsl"),
+             gtx_shader_source("geotex_height_field.glsl"),
              gtx_shader_source("geotex_rays.glsl"), lighting, polygon_main);
     if ((result = gtx_open_file(w->path, NULL, &asset, error)) ||
         (result = gtx_renderer_create(&desc, &w->renderer, error)) ||
@@ -105,7 +106,7 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
     }
     w->programs[0] = w->polygon.program;
     w->programs[1] = gtx_shading_program(w->shading, GTX_METHOD_CAST);
-    w->programs[2] = gtx_shading_program(w->shading, GTX_METHOD_SHELL);
+    w->programs[2] = gtx_shading_program(w->shading, GTX_METHOD_LOD);
     result = make_rays(w, asset, error);
     gtx_close(asset);
     return result ? result : shine(gl, w, error);

@@ -85,7 +85,7 @@ static gtx_result shine(const gtx_host_gl *gl, const world *w, gtx_error *error)
     gtx_target_begin(gl, &map);
     result = draw_all(gl, w, &v, &plain, error);
     const GLuint readers[] = {w->polygon.program, gtx_shading_program(w->shading, GTX_METHOD_CAST),
-                              gtx_shading_program(w->shading, GTX_METHOD_SHELL)};
+                              gtx_shading_program(w->shading, GTX_METHOD_LOD)};
     for (int i = 0; i < 3; ++i) {
         gl->UseProgram(readers[i]);
         gtx_set_matrix(gl, readers[i], "sun_clip", clip);

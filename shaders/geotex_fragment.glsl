@@ -11,7 +11,7 @@
  *       gtx_write_depth(s);
  *   }
  *
- * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl, geotex_surface.glsl, with
+ * Needs geotex_dialect.glsl, geotex_height_field.glsl, geotex_view.glsl, geotex_surface.glsl, with
  * GTX_MATERIALS defined geotex_material.glsl, and a gtx_cast (of geotex_cast.glsl or
  * geotex_paper.glsl) before it. The varyings are those of geotex_proxy.vert; with GTX_TILES
  * defined geotex_tiles.glsl comes after it instead. */
@@ -50,7 +50,7 @@ GTX_VARYING(15) flat in vec3 gtx_world_eye;
 /* Where the ray of a fragment meets its patch, whose index is gtx_patch_index. */
 struct gtx_surface {
     gtx_hit hit;        /* hit.grid.xy: texel coordinates in the patch */
-    gtx_sheet sheet;
+    gtx_height_field field;
     gtx_frame frame;    /* grid space -> object space */
     vec3 ray;           /* away from the camera, in grid space; of any length */
     float level;        /* mip level whose texels are as large as the pixel */
@@ -88,14 +88,14 @@ bool gtx_find(out gtx_surface s)
     vec3 dx = dFdx(gtx_point), dy = dFdy(gtx_point);
     /* z and w of the clip position are linear along the ray: zw + t * step. */
     vec2 zw = vec2(dot(gtx_clip_z, vec4(gtx_point, 1.0)), dot(gtx_clip_w, vec4(gtx_point, 1.0)));
-    s.sheet = gtx_sheet_of(gtx_rect, gtx_span, gtx_level);
+    s.field = gtx_field_of(gtx_rect, gtx_span, gtx_level);
     s.ray = gtx_point * gtx_depth.w - gtx_eye;
     vec2 zw_step = vec2(dot(gtx_clip_z.xyz, s.ray), dot(gtx_clip_w.xyz, s.ray));
     float t0 = gtx_reach < 0.0 ? -1e30 : 0.0, t1 = 1e30;
-    s.sheet.reach = gtx_reach < 0.0 ? 1e30 : gtx_reach;
+    s.field.reach = gtx_reach < 0.0 ? 1e30 : gtx_reach;
     gtx_clip_depth(zw, zw_step, t0, t1);
-    gtx_clip_box(s.sheet, gtx_point, s.ray, t0, t1);
-    if (t0 > t1 || !gtx_cast(s.sheet, gtx_point, s.ray, t0, t1, s.hit))
+    gtx_clip_box(s.field, gtx_point, s.ray, t0, t1);
+    if (t0 > t1 || !gtx_cast(s.field, gtx_point, s.ray, t0, t1, s.hit))
         return false;
 
     float widen = 1.0 + s.hit.t * gtx_depth.w;
@@ -140,11 +140,11 @@ vec3 gtx_world_ray(gtx_surface s)
     return normalize(gtx_world * gtx_depth.w - gtx_world_eye);
 }
 
-/* Unit; towards the camera where the sheet is seen from behind. */
+/* Unit; towards the camera where the height field is seen from behind. */
 vec3 gtx_world_normal(gtx_surface s)
 {
     vec3 p = gtx_decode_normal(
-        gtx_lookup(gtx_normals, s.sheet, s.hit.grid.xy, s.level, gtx_maps.x).xy);
+        gtx_lookup(gtx_normals, s.field, s.hit.grid.xy, s.level, gtx_maps.x).xy);
     vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y + gtx_normal_z * p.z);
     return s.hit.back ? gtx_from_behind(n, gtx_world_ray(s)) : n;
 }
@@ -154,7 +154,7 @@ vec4 gtx_albedo(gtx_surface s)
 {
     vec4 color = gtx_color;
     if (gtx_maps.y > 0.0)
-        color *= gtx_lookup(gtx_colors, s.sheet, s.hit.grid.xy, s.level, gtx_maps.x);
+        color *= gtx_lookup(gtx_colors, s.field, s.hit.grid.xy, s.level, gtx_maps.x);
     return color;
 }
 
@@ -162,6 +162,6 @@ vec4 gtx_albedo(gtx_surface s)
 /* With the albedo as its colour. A model without a material map is rough and no metal. */
 gtx_material gtx_material_of(gtx_surface s, vec3 albedo)
 {
-    return gtx_material_of(s.sheet, s.hit.grid.xy, s.level, albedo);
+    return gtx_material_of(s.field, s.hit.grid.xy, s.level, albedo);
 }
 #endif

@@ -6,7 +6,7 @@ void main()
     gtx_surface s;
     if (!gtx_find(s))
         discard;
-    ivec2 cell = clamp(ivec2(floor(s.hit.grid.xy)), ivec2(0), s.sheet.size - 2);
+    ivec2 cell = clamp(ivec2(floor(s.hit.grid.xy)), ivec2(0), s.field.size - 2);
     gtx_out_id = uvec4(gtx_id, gtx_patch_index, cell);
     gtx_write_depth(s);
 }

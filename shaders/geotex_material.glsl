@@ -1,6 +1,7 @@
 /* The material of a hit, and its stock shading: metallic-roughness as in glTF 2.0, appendix B.
  *
- * Needs geotex_dialect.glsl, geotex_sheet.glsl, geotex_view.glsl and geotex_surface.glsl before. */
+ * Needs geotex_dialect.glsl, geotex_height_field.glsl, geotex_view.glsl and geotex_surface.glsl
+ * before. */
 GTX_SAMPLER(5, highp sampler2DArray) gtx_materials;  /* occlusion, roughness, metallic, lit; mips */
 GTX_SAMPLER(6, highp sampler2DArray) gtx_emissions;  /* sRGB, mips; decoded when sampled */
 
@@ -12,18 +13,18 @@ struct gtx_material {
 };
 
 /* gtx_maps.z scales the emission, 0 when there is none; .w is 1 when the model has materials. */
-gtx_material gtx_material_of(gtx_sheet sheet, vec2 at, float level, vec3 color)
+gtx_material gtx_material_of(gtx_height_field field, vec2 at, float level, vec3 color)
 {
     gtx_material m = gtx_material(color, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
     if (gtx_maps.w > 0.0) {
-        vec4 map = gtx_lookup(gtx_materials, sheet, at, level, gtx_maps.x);
+        vec4 map = gtx_lookup(gtx_materials, field, at, level, gtx_maps.x);
         m.occlusion = map.x;
         m.roughness = map.y;
         m.metallic = map.z;
         m.lit = map.w;
     }
     if (gtx_maps.z > 0.0)
-        m.emission = gtx_lookup(gtx_emissions, sheet, at, level, gtx_maps.x).rgb * gtx_maps.z;
+        m.emission = gtx_lookup(gtx_emissions, field, at, level, gtx_maps.x).rgb * gtx_maps.z;
     return m;
 }
 

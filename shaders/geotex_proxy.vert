@@ -1,10 +1,10 @@
 /* Proxies of instances: every fragment of a patch's hull or box gets its ray, in the patch's grid
  * space.
  *
- * Needs geotex_dialect.glsl, geotex_sheet.glsl and geotex_view.glsl before it. Hulls are rasterised
- * by their front faces, where the rays begin. Patches that the near plane cuts have boxes instead,
- * by their back faces, so that a camera inside still sees the patch; their rays are cut to the box
- * and to the near plane in the fragment. */
+ * Needs geotex_dialect.glsl, geotex_height_field.glsl and geotex_view.glsl before it. Hulls are
+ * rasterised by their front faces, where the rays begin. Patches that the near plane cuts have
+ * boxes instead, by their back faces, so that a camera inside still sees the patch; their rays are
+ * cut to the box and to the near plane in the fragment. */
 layout(location = 0) in vec3 gtx_position;  /* grid space */
 layout(location = 1) in uint gtx_patch;     /* index + 2^28 * kind: 0 box, n hull of level n - 1 */
 layout(location = 2) in vec4 gtx_world_x;   /* rows of object -> world, one set an instance */
@@ -25,7 +25,7 @@ GTX_VARYING(5) flat out vec3 gtx_normal_y;
 GTX_VARYING(6) flat out vec3 gtx_normal_z;
 GTX_VARYING(7) flat out vec4 gtx_color;     /* where no map gives colours, the 2.4th root of rgb */
 GTX_VARYING(8) flat out int gtx_patch_index;
-GTX_VARYING(9) flat out vec4 gtx_rect;      /* what gtx_sheet_of takes: a fragment that misses */
+GTX_VARYING(9) flat out vec4 gtx_rect;      /* what gtx_field_of takes: a fragment that misses */
 GTX_VARYING(10) flat out vec4 gtx_span;     /* need not fetch the record */
 GTX_VARYING(11) flat out int gtx_level;     /* of detail, the same all over the patch */
 GTX_VARYING(12) flat out uint gtx_id;       /* of the instance */

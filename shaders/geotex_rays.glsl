@@ -1,5 +1,5 @@
 /* Rays among all patches of all instances of a set: shadows and ambient occlusion, in any shader of
- * geotex or of the engine. Needs geotex_dialect.glsl and geotex_sheet.glsl before it;
+ * geotex or of the engine. Needs geotex_dialect.glsl and geotex_height_field.glsl before it;
  * gtx_shading_create puts it before an engine's own main, gtx_rays_bind gives a program its
  * textures. Without them nothing occludes.
  *
@@ -39,7 +39,7 @@ ivec3 gtx_ray_address(int at)
     return ivec3(at & 1023, (at >> 10) & 1023, at >> 20);
 }
 
-/* gtx_shows, of level 0, for a sheet whose texels begin at `first`, `width` in a row. */
+/* gtx_shows, of level 0, for a height field whose texels begin at `first`, `width` in a row. */
 bool gtx_ray_shows(int first, ivec2 size, vec2 at)
 {
     ivec2 cell = clamp(ivec2(floor(at)), ivec2(0), size - 2);
@@ -52,11 +52,12 @@ bool gtx_ray_shows(int first, ivec2 size, vec2 at)
     return mix(mix(a, b, f.x), mix(c, d, f.x), f.y) * 255.0 <= 132.8;
 }
 
-/* Whether the ray crosses a block of 8 x 8 cells of the sheet whose record begins at `sheet`. */
-bool gtx_crosses(int sheet, int block, vec3 origin, vec3 direction, float t_max)
+/* Whether the ray crosses a block of 8 x 8 cells of the height field whose record begins at `height
+ * field`. */
+bool gtx_crosses(int field, int block, vec3 origin, vec3 direction, float t_max)
 {
-    gtx_ray_rows to_grid = gtx_rows_at(sheet);
-    vec4 record = gtx_ray_texel(sheet + 3); /* width, height, first texel / 256, two-sided */
+    gtx_ray_rows to_grid = gtx_rows_at(field);
+    vec4 record = gtx_ray_texel(field + 3); /* width, height, first texel / 256, two-sided */
     ivec2 size = ivec2(record.xy);
     int first = int(record.z) * 256;
     vec3 o = gtx_mapped(to_grid, vec4(origin, 1.0)), d = gtx_mapped(to_grid, vec4(direction, 0.0));
@@ -117,7 +118,7 @@ bool gtx_occluded(vec3 origin, vec3 direction, float t_max)
     vec3 o = origin, d = direction, inverse = gtx_ray_inverse(d);
     int top = int(gtx_ray_texel(0).x), node = 1, end = top;
     int behind = 0;                       /* the node after an instance's; 0: in the world */
-    int sheets = 0;
+    int fields = 0;
     bool found = false, more = true;
     while (more && !found) {
         /* The inner loop finds the next leaf and does no more (Aila and Laine 2009). */
@@ -143,10 +144,10 @@ bool gtx_occluded(vec3 origin, vec3 direction, float t_max)
             behind = node;
             node = int(asset.x);
             end = int(asset.y);
-            sheets = end;
+            fields = end;
             inverse = gtx_ray_inverse(d);
         } else if (leaf) {
-            found = gtx_crosses(sheets + 4 * int(high.w), int(low.w), o, d, t_max);
+            found = gtx_crosses(fields + 4 * int(high.w), int(low.w), o, d, t_max);
         } else {                          /* back to the world, or through */
             more = behind > 0;
             node = behind;
@@ -161,9 +162,9 @@ bool gtx_occluded(vec3 origin, vec3 direction, float t_max)
 }
 
 /* How far off the surface rays begin: two height steps of the coarsest patch, or the 32nd part of a
- * texel if that is more. A sheet rounds the surface that it stands for by half a step up or down,
- * and its cells cut a little into what is round; from there no ray that leaves a surface without
- * hollows meets them, however grazing. Nothing else is left out. */
+ * texel if that is more. A height field rounds the surface that it stands for by half a step up or
+ * down, and its cells cut a little into what is round; from there no ray that leaves a surface
+ * without hollows meets them, however grazing. Nothing else is left out. */
 float gtx_ray_offset()
 {
     return gtx_ray_texel(0).y;

@@ -1,4 +1,4 @@
-/* Normal and colour of a hit. Needs geotex_dialect.glsl and geotex_sheet.glsl before it. */
+/* Normal and colour of a hit. Needs geotex_dialect.glsl and geotex_height_field.glsl before it. */
 GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;  /* hemi-octahedral, two channels, mips */
 GTX_SAMPLER(3, highp sampler2DArray) gtx_colors;   /* sRGB, mips; decoded when sampled */
 
@@ -7,29 +7,29 @@ GTX_SAMPLER(3, highp sampler2DArray) gtx_colors;   /* sRGB, mips; decoded when s
  * of the hit, so that they may be taken before any loop or branch. */
 float gtx_level_of(gtx_hit hit, vec3 direction, vec3 dx, vec3 dy)
 {
-    /* Both steps slide along the ray onto the sheet's tangent plane. The area that they span in x
-     * and y is the triple product of them with the ray over the ray's rate of descent. */
+    /* Both steps slide along the ray onto the height field's tangent plane. The area that they span
+     * in x and y is the triple product of them with the ray over the ray's rate of descent. */
     vec3 n = vec3(-hit.slope, 1.0);
     float area = abs(dot(cross(dx, dy), direction)) / max(abs(dot(n, direction)), 1e-20);
     return 0.5 * log2(max(area, 1e-20));
 }
 
-vec4 gtx_lookup_level(highp sampler2DArray map, gtx_sheet sheet, vec2 at, float level)
+vec4 gtx_lookup_level(highp sampler2DArray map, gtx_height_field field, vec2 at, float level)
 {
     /* In texels of level 0, where the size is known: some drivers answer textureSize for a level
      * that differs from pixel to pixel as if it did not. */
     float half_texel = 0.5 * exp2(level);
-    vec2 low = vec2(sheet.corner) + half_texel;
-    vec2 high = vec2(sheet.corner + sheet.size) - half_texel;
-    vec2 texel = clamp(vec2(sheet.corner) + at + 0.5, low, high);
-    return textureLod(map, vec3(texel / vec2(textureSize(map, 0).xy), float(sheet.page)), level);
+    vec2 low = vec2(field.corner) + half_texel;
+    vec2 high = vec2(field.corner + field.size) - half_texel;
+    vec2 texel = clamp(vec2(field.corner) + at + 0.5, low, high);
+    return textureLod(map, vec3(texel / vec2(textureSize(map, 0).xy), float(field.page)), level);
 }
 
 /* At the nearest whole level, clamped there to the patch's own texels: patches are packed without a
  * gutter (section 4.5). */
-vec4 gtx_lookup(highp sampler2DArray map, gtx_sheet sheet, vec2 at, float level, float last)
+vec4 gtx_lookup(highp sampler2DArray map, gtx_height_field field, vec2 at, float level, float last)
 {
-    return gtx_lookup_level(map, sheet, at, floor(clamp(level, 0.0, last) + 0.5));
+    return gtx_lookup_level(map, field, at, floor(clamp(level, 0.0, last) + 0.5));
 }
 
 /* The patch's normal frame in object space: the columns x', y', z' (section 4.3). */
@@ -48,10 +48,10 @@ vec3 gtx_decode_normal(vec2 code)
     return vec3(p, 1.0 - abs(p.x) - abs(p.y));
 }
 
-/* The normal of a sheet seen from behind along `ray`. Plainly behind, it turns round. Near an
- * outline, where the sheet sticks out a little from behind the visible one, turning round would
- * light it from the wrong side: there it is mirrored in the picture plane, which is continuous
- * across the outline. */
+/* The normal of a height field seen from behind along `ray`. Plainly behind, it turns round. Near
+ * an outline, where the height field sticks out a little from behind the visible one, turning round
+ * would light it from the wrong side: there it is mirrored in the picture plane, which is
+ * continuous across the outline. */
 vec3 gtx_from_behind(vec3 n, vec3 ray)
 {
     vec3 d = normalize(ray);

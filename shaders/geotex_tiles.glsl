@@ -7,7 +7,8 @@
  * geotex_cast.glsl and geotex_fragment.glsl, with GTX_TILES. */
 GTX_VARYING(0) in vec2 gtx_pixel;
 
-/* 8 texels a patch: columns to grid space of rows 0, 3, 1 and 2 of gtx_place; columns of its normals
+/* 8 texels a patch: columns to grid space of rows 0, 3, 1 and 2 of gtx_place; columns of its
+ * normals
  *   to the world; w of the first and of the last three: corner; size; page + 2^24 * level + 2^31 *
  *   two-sided; then the index, and the volume that the second, third and fourth column span.
  * 4 texels a slab: for each pair of its planes a linear function of the pixel, and how the second
@@ -43,9 +44,9 @@ void gtx_clip_along(vec2 pixel, out vec2 zw, out vec2 zw_step)
     zw_step = vec2(z.w + gtx_depth.w * aside, gtx_place(5).y);
 }
 
-gtx_sheet gtx_unpacked(uint corner, uint size, uint page)
+gtx_height_field gtx_unpacked(uint corner, uint size, uint page)
 {
-    return gtx_sheet_of(vec4(uvec4(corner & 0xffffu, corner >> 16, size & 0xffffu, size >> 16)),
+    return gtx_field_of(vec4(uvec4(corner & 0xffffu, corner >> 16, size & 0xffffu, size >> 16)),
                         vec4(0.0, 0.0, float(page & 0xffffffu), float(page >> 31)),
                         int(page >> 24 & 127u));
 }
@@ -85,11 +86,11 @@ bool gtx_cast_slab(int slab, vec2 pixel, vec2 t, out gtx_hit hit, out int patch_
     uvec4 x = texelFetch(gtx_stream, patch_at + 2), y = texelFetch(gtx_stream, patch_at + 3);
     gtx_line line = gtx_line_of(pixel, uintBitsToFloat(origin.xyz), uintBitsToFloat(direction.xyz),
                                 uintBitsToFloat(x.xyz), uintBitsToFloat(y.xyz));
-    gtx_sheet sheet = gtx_unpacked(origin.w, direction.w, x.w);
-    sheet.first = ivec2(cells.x & 0xffffu, cells.x >> 16);
-    sheet.last = ivec2(cells.y & 0xffffu, cells.y >> 16);
+    gtx_height_field field = gtx_unpacked(origin.w, direction.w, x.w);
+    field.first = ivec2(cells.x & 0xffffu, cells.x >> 16);
+    field.last = ivec2(cells.y & 0xffffu, cells.y >> 16);
     ray = line.direction;
-    return gtx_cast(sheet, line.origin, line.direction, t.x, t.y, hit);
+    return gtx_cast(field, line.origin, line.direction, t.x, t.y, hit);
 }
 
 /* The half of the stream at k, of which a texel has two. */
@@ -173,7 +174,7 @@ bool gtx_find(out gtx_surface s)
     gtx_normal_x = uintBitsToFloat(x.xyz);
     gtx_normal_y = uintBitsToFloat(y.xyz);
     gtx_normal_z = uintBitsToFloat(z.xyz);
-    s.sheet = gtx_unpacked(x.w, y.w, z.w);
+    s.field = gtx_unpacked(x.w, y.w, z.w);
     gtx_patch_index = int(rest.x);
     s.frame = gtx_frame_of(gtx_patch_index);
     /* As gtx_level_of, with the steps from pixel to pixel at the hit. */

@@ -1,4 +1,4 @@
-/* Tiles over which an instance may be. Needs geotex_dialect.glsl, geotex_sheet.glsl and
+/* Tiles over which an instance may be. Needs geotex_dialect.glsl, geotex_height_field.glsl and
  * geotex_view.glsl before it. */
 uniform vec4 gtx_place[9];                /* as in geotex_tiles.glsl */
 uniform vec4 gtx_tint;

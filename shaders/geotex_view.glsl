@@ -15,8 +15,8 @@ GTX_UNIFORM vec4 gtx_search;            /* of geotex_paper.glsl, x, y: linear an
 GTX_UNIFORM vec4 gtx_maps;              /* x: last mip level of normals and colours; y: 1 when the
                                            model has colours; z: scale of its emission, or 0;
                                            w: 1 when it has materials */
-GTX_UNIFORM vec4 gtx_shell;             /* of the shell's level, xyz: origin; w: step */
-GTX_UNIFORM vec4 gtx_even;              /* of geotex_shell_front.frag: the only material */
+GTX_UNIFORM vec4 gtx_lod_mesh;          /* of the LOD mesh's level, xyz: origin; w: step */
+GTX_UNIFORM vec4 gtx_even;              /* of geotex_lod_front.frag: the only material */
 GTX_UNIFORMS_END
 
 /* Half way between light and eye, unit, and what of Schlick's Fresnel term depends on them.

@@ -1,7 +1,8 @@
 /* Cooking: triangle meshes and height grids -> `.gtx` assets. Links libgeotex-cook (C++17 inside).
  *
  * The line is the paper's (section 5): import, clean, partition, overlap, frame, bake, dilate,
- * pack, shell, measure. The same input and options give the same bytes, whatever the thread count.
+ * pack, LOD mesh, measure. The same input and options give the same bytes, whatever the thread
+ * count.
  *
  * Memory. The descriptors' `allocator` (NULL = malloc) gives everything that outlives a call, the
  * asset and the report, and what libgeotex takes on the way: opening, encoding, casting, writing
@@ -63,7 +64,7 @@ typedef struct gtx_cook_desc {
     uint32_t measure;             /* 1: measure the error (report, `error`) */
     gtx_progress_fn progress;     /* may be NULL */
     void *progress_user;
-    uint32_t shell_levels;        /* polygon levels of detail, at most 5; up to 3 more
+    uint32_t lod_levels;          /* polygon levels of detail, at most 5; up to 3 more
                                      follow for models of a few pixels */
     const char *charts_ply;       /* path for the partition before splitting as a PLY, a colour a
                                      chart, inverted triangles green; or NULL */
@@ -82,7 +83,7 @@ typedef struct gtx_cook_desc {
  *   - the content of every file behind the models: themselves, and the buffers, material libraries
  *     and images that they refer to, one that is missing included; not their paths or times;
  *   - the options that change what comes out: partition, extract (and the driver, where it is GPU),
- *     charts, resolution, height_bits, dilation, mips, shell_levels, zstd_level, unit, error, z_up
+ *     charts, resolution, height_bits, dilation, mips, lod_levels, zstd_level, unit, error, z_up
  *     and adaptive; not threads, measure, progress, strict or allocator;
  *   - geotex's version and the revision of its cooker,
  * but not the library that decodes images. Where `strict` is asked for, an asset that was cooked
@@ -121,26 +122,26 @@ GTX_API gtx_result gtx_cook_memory(const void *data, size_t size, const char *na
                                    const gtx_cook_desc *desc, gtx_asset **out, gtx_report *report,
                                    gtx_error *error);
 
-/* A shell for an asset that has no source mesh: one whose maps were edited or filtered, or that was
- * made of height grids. */
-typedef struct gtx_shell_desc {
+/* An LOD mesh for an asset that has no source mesh: one whose maps were edited or filtered, or that
+ * was made of height grids. */
+typedef struct gtx_lod_desc {
     uint32_t levels;              /* at most, 1..5; 0 = 5; and those for models of a few pixels */
     uint32_t threads;             /* up to 1024; 0 = all processors */
     gtx_progress_fn progress;     /* may be NULL */
     void *progress_user;
     const gtx_allocator *allocator;   /* of the asset that comes out */
     uint32_t reserved[6];
-} gtx_shell_desc;
+} gtx_lod_desc;
 
-/* Makes a copy of `asset` whose shell is simplified from what its maps show, in place of any that
- * it had; gtx_close frees it. Sheets that overlap are cut where each is as deep inside its outline
- * as the other and welded along that line, so that neighbours share their border vertices. The
- * finest level aims at a ninth of the asset's source_triangles (of two triangles a texel where that
- * is 0); an `error` is a distance from the maps' own surface. The same asset and options give the
- * same bytes. `desc` may be NULL. Any thread.
+/* Makes a copy of `asset` whose LOD mesh is simplified from what its maps show, in place of any
+ * that it had; gtx_close frees it. Height fields that overlap are cut where each is as deep inside
+ * its outline as the other and welded along that line, so that neighbours share their border
+ * vertices. The finest level aims at a ninth of the asset's source_triangles (of two triangles a
+ * texel where that is 0); an `error` is a distance from the maps' own surface. The same asset and
+ * options give the same bytes. `desc` may be NULL. Any thread.
  * Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, INTERNAL. */
-GTX_API gtx_result gtx_cook_shell(const gtx_asset *asset, const gtx_shell_desc *desc,
-                                  gtx_asset **out, gtx_error *error);
+GTX_API gtx_result gtx_cook_lod_meshes(const gtx_asset *asset, const gtx_lod_desc *desc,
+                                       gtx_asset **out, gtx_error *error);
 
 /* ---- height grids ------------------------------------------------------------------------- */
 
@@ -197,7 +198,7 @@ typedef struct gtx_horizons_desc {
     uint32_t tile;                /* most texels along a patch, 16..512; 0 = 128 */
     uint32_t height_bits;         /* 8 or 16; 0 = 8 */
     uint32_t mips;                /* 1..8; 0 = 4 */
-    uint32_t shell_levels;        /* polygon levels of detail, 0..5, made of the maps */
+    uint32_t lod_levels;          /* polygon levels of detail, 0..5, made of the maps */
     uint32_t threads;             /* up to 1024; 0 = all processors */
     float unit;                   /* metres per object unit; 0 = 1 */
     gtx_progress_fn progress;     /* may be NULL */

@@ -1,11 +1,11 @@
 /* Image operations on the surface of an asset: blur, boost, patterns, operations of one's own,
  * and edits while it is drawn.
  *
- * An edit spreads an asset out as one *sheet* a patch: a grid of points with normals. A texel of
- * a sheet belongs to the patch (it is inside its outline), or is borrowed: the surface there
- * belongs to a neighbour, and moves as that one's points do. So all patches see one surface,
- * across their borders, and what moves it opens no seam. (In the paper, section 6.3, every patch
- * is filtered by itself; GTX_EDIT_ALONE does the same, for comparison.)
+ * An edit spreads an asset out as one *height field* a patch: a grid of points with normals. A
+ * texel of a height field belongs to the patch (it is inside its outline), or is borrowed: the
+ * surface there belongs to a neighbour, and moves as that one's points do. So all patches see one
+ * surface, across their borders, and what moves it opens no seam. (In the paper, section 6.3, every
+ * patch is filtered by itself; GTX_EDIT_ALONE does the same, for comparison.)
  *
  * What would turn part of a patch's surface away from its axis_z, where no height map can show
  * it, is held back there, and less and less around: the tip of a claw is rounded off a little
@@ -16,7 +16,8 @@
  * there are.
  *
  * The rules of geotex.h hold here too. An operation that fails leaves the edit as it was. Levels
- * of a shell do not follow: edited assets have none until gtx_cook_shell makes them one. */
+ * of an LOD mesh do not follow: edited assets have none until gtx_cook_lod_meshes makes them
+ * one. */
 #ifndef GEOTEX_EDIT_H
 #define GEOTEX_EDIT_H
 
@@ -82,28 +83,28 @@ typedef struct gtx_edit_image {
 GTX_API gtx_result gtx_edit_pattern(gtx_edit *edit, const gtx_edit_image *image, float height,
                                     float size, gtx_error *error);
 
-enum { /* gtx_edit_sheet.kind */
+enum { /* gtx_edit_field.kind */
     GTX_TEXEL_NONE = 0,           /* no surface; the other arrays mean nothing here */
     GTX_TEXEL_OWN = 1,            /* the patch's own: an operation acts here */
     GTX_TEXEL_BORROWED = 2,       /* a neighbour's: follows by itself */
     GTX_TEXEL_LOOSE = 3           /* past a border without neighbour: follows by itself */
 };
 
-/* A patch's sheet: arrays of width * height, row by row. It is the patch's rectangle and some
- * texels more on each side. */
-typedef struct gtx_edit_sheet {
+/* A patch's height field: arrays of width * height, row by row. It is the patch's rectangle and
+ * some texels more on each side. */
+typedef struct gtx_edit_field {
     uint32_t patch, width, height;
     const uint8_t *kind;
     float (*point)[3];            /* relative to the anchor; may be moved */
     const float (*normal)[3];     /* unit; follows the points after the operation */
     const float *value;           /* a number of the operations' own, 0 at first */
     float *next;                  /* what `value` will be: a copy of it now */
-} gtx_edit_sheet;
+} gtx_edit_field;
 
-typedef void (*gtx_edit_fn)(const gtx_edit_sheet *sheet, void *user);
+typedef void (*gtx_edit_fn)(const gtx_edit_field *field, void *user);
 
-/* An operation of one's own: calls `fn` for every sheet, then makes borrowed texels follow. `fn`
- * reads any texel and writes `point` and `next` at own ones: neighbours' texels are there to
+/* An operation of one's own: calls `fn` for every height field, then makes borrowed texels follow.
+ * `fn` reads any texel and writes `point` and `next` at own ones: neighbours' texels are there to
  * read, 3 past the outline at least. Values and points that are not finite end it: ARGUMENT,
  * nothing changed.
  * Errors: ARGUMENT, MEMORY. */

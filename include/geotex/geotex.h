@@ -13,7 +13,7 @@
  *   - Nothing prints, exits or throws.
  *   - Strings are UTF-8, matrices column-major, coordinates right-handed.
  *
- * Words: a patch is an oriented box with a height map; a texel is a vertex of the height sheet; a
+ * Words: a patch is an oriented box with a height map; a texel is a vertex of the height field; a
  * cell is the square between 2x2 texels. The format is specified in format/gtx.md, and the
  * technique in de Toledo, Wang, Levy, "Geometry Textures and Applications", CGF 27(8), 2008. */
 #ifndef GEOTEX_GEOTEX_H
@@ -125,7 +125,7 @@ typedef int (*gtx_progress_fn)(const gtx_progress *progress, void *user);
 typedef struct gtx_asset gtx_asset;
 
 enum { /* gtx_patch.flags */
-    GTX_PATCH_TWO_SIDED = 1u << 8 /* the sheet is seen from below too */
+    GTX_PATCH_TWO_SIDED = 1u << 8 /* the height field is seen from below too */
 };
 
 /* A patch: the frame of its parallelepiped and the rectangle of its maps. 128 bytes, the layout of
@@ -167,7 +167,7 @@ typedef struct gtx_info {
     uint32_t mip_count;           /* levels of every map but height and trim, 1..8 */
     uint32_t height_bits;         /* 8 or 16 */
     uint32_t has_color, has_material, has_emission;   /* 0 or 1 */
-    uint32_t shell_levels;        /* 0..8 */
+    uint32_t lod_levels;          /* 0..8 */
     float bounds_min[3], bounds_max[3];       /* relative to the anchor */
     float unit;                   /* metres per object unit */
     float emission_scale;         /* light of a full emission texel; 0 without emission */
@@ -216,27 +216,27 @@ GTX_API const gtx_patch *gtx_patches(const gtx_asset *asset);
  * (page_width >> k) x (page_height >> k). */
 GTX_API const void *gtx_map_data(const gtx_asset *asset, gtx_map map, uint32_t level, size_t *size);
 
-/* Of gtx_shell.flags: for models of a few pixels; a triangle may be larger than its patch, and is
- * looked up in its map as far as that reaches. */
-#define GTX_SHELL_FAR 1u
+/* Of gtx_lod_mesh.flags: for models of a few pixels; a triangle may be larger than its patch, and
+ * is looked up in its map as far as that reaches. */
+#define GTX_LOD_FAR 1u
 
-/* A level of the shell: the whole surface as triangles, for drawing it where it is small. A vertex
+/* An LOD mesh: the whole surface as triangles, for drawing it where it is small. A vertex
  * is its position alone; it may be shared by triangles of several patches, and its texel
  * coordinates in each follow from that patch's frame. Position q of a vertex stands for the point
  *   origin + step * q                                            relative to the asset's anchor. */
-typedef struct gtx_shell {
+typedef struct gtx_lod_mesh {
     float origin[3], step;
     float error;                  /* how far the level strays from the source, object units */
     uint32_t vertex_count, triangle_count;
-    uint32_t flags;               /* GTX_SHELL_FAR */
+    uint32_t flags;               /* GTX_LOD_FAR */
     const uint32_t *first;        /* patch_count + 1: first[p]..first[p + 1] - 1 are p's */
     const uint32_t *indices;      /* 3 a triangle */
     const uint16_t *positions;    /* 3 a vertex */
-} gtx_shell;
+} gtx_lod_mesh;
 
-/* Shows a level of the shell; 0 is the finest. The arrays are owned by the asset.
+/* Shows an LOD mesh; 0 is the finest. The arrays are owned by the asset.
  * Errors: ARGUMENT (there is no such level). */
-GTX_API gtx_result gtx_get_shell(const gtx_asset *asset, uint32_t level, gtx_shell *out);
+GTX_API gtx_result gtx_get_lod_mesh(const gtx_asset *asset, uint32_t level, gtx_lod_mesh *out);
 
 /* The META section: JSON text of *size bytes, not terminated; NULL when absent. Informative. */
 GTX_API const char *gtx_meta(const gtx_asset *asset, size_t *size);
@@ -278,8 +278,8 @@ typedef struct gtx_asset_desc {
     const uint8_t *const *material;
     const uint8_t *const *emission;
     float emission_scale;         /* 0 = 1, where there is emission */
-    const gtx_shell *shell;       /* shell_levels levels, the finest first; or NULL */
-    uint32_t shell_levels;        /* up to 8 */
+    const gtx_lod_mesh *lod;      /* lod_levels levels, the finest first; or NULL */
+    uint32_t lod_levels;          /* up to 8 */
     const char *meta;             /* JSON text, or NULL */
     size_t meta_size;
     float bounds_min[3], bounds_max[3];
@@ -324,8 +324,8 @@ typedef struct gtx_caster_desc {
     const gtx_allocator *allocator;
     uint32_t level;               /* level of detail to cast, 0 = finest .. 7 */
     /* Object units; > 0: each patch at its coarsest level, of as many as there are mip levels,
-     * whose sheet strays no farther from that of level 0, as the runtime chooses them. `level` is
-     * 0 then. */
+     * whose height field strays no farther from that of level 0, as the runtime chooses them.
+     * `level` is 0 then. */
     float max_error;
     uint32_t reserved[4];
 } gtx_caster_desc;
@@ -342,8 +342,9 @@ typedef struct gtx_hit {
     uint32_t patch;               /* index of the patch, UINT32_MAX when nothing was hit */
     float x, y;                   /* texel coordinates in the patch: texel i is at x = i */
     float normal[3];              /* unit normal from the normal map, object space */
-    float facet[3];               /* unit geometric normal of the sheet, on the side of axis_z */
-    uint32_t back;                /* 1: the sheet was crossed from below */
+    float facet[3];               /* unit geometric normal of the height field, on the side of
+                                     axis_z */
+    uint32_t back;                /* 1: the height field was crossed from below */
 } gtx_hit;
 
 enum { /* flags of gtx_raycast */
@@ -433,9 +434,9 @@ GTX_API gtx_result gtx_scene_light(const gtx_scene *scene, const gtx_light_desc 
                                    const gtx_lit_point *points, float *shares, size_t count);
 
 /* How far off the surface rays begin, in world units: two height steps of the coarsest patch, or
- * the 32nd part of a texel if that is more. A sheet rounds the surface that it stands for by half a
- * step up or down, and its cells cut a little into what is round; from there no ray that leaves a
- * surface without hollows meets them, however grazing. Nothing else is left out. */
+ * the 32nd part of a texel if that is more. A height field rounds the surface that it stands for by
+ * half a step up or down, and its cells cut a little into what is round; from there no ray that
+ * leaves a surface without hollows meets them, however grazing. Nothing else is left out. */
 GTX_API float gtx_scene_offset(const gtx_scene *scene);
 
 #ifdef __cplusplus

@@ -33,11 +33,12 @@ typedef struct gtx_model gtx_model;
 
 typedef void (*gtx_gl_proc)(void);
 
-/* What drawing a model takes, for GTX_METHOD_AUTO to compare: a triangle of its shell and a pixel
- * that this covers; a patch that is cast and a pixel that its proxy covers. In any unit; all 0 = as
- * measured with llvmpipe, where of a shell that is fine enough the finer levels alone can lose. */
+/* What drawing a model takes, for GTX_METHOD_AUTO to compare: a triangle of its LOD mesh and a
+ * pixel that this covers; a patch that is cast and a pixel that its proxy covers. In any unit; all
+ * 0 = as measured with llvmpipe, where of an LOD mesh that is fine enough the finer levels alone
+ * can lose. */
 typedef struct gtx_costs {
-    float shell_triangle, shell_pixel;
+    float lod_triangle, lod_pixel;
     float cast_patch, cast_pixel;
 } gtx_costs;
 
@@ -118,10 +119,10 @@ typedef struct gtx_model_size {
 GTX_API gtx_model_size gtx_model_gpu_size(const gtx_model *model);
 
 typedef enum gtx_method {
-    GTX_METHOD_AUTO = 0,          /* what is fastest within the error budget: shell or cast */
+    GTX_METHOD_AUTO = 0,          /* what is fastest within the error budget: LOD mesh or cast */
     GTX_METHOD_CAST = 1,          /* exact: cells walked, bilinear patches solved */
     GTX_METHOD_PAPER = 2,         /* linear then binary search, balanced by slant (paper, 4.1) */
-    GTX_METHOD_SHELL = 3          /* polygons of a level of the shell, which the asset must have */
+    GTX_METHOD_LOD = 3            /* polygons of an LOD mesh, which the asset must have */
 } gtx_method;
 
 /* What a draw writes, besides depth: location, what. The programs of the forward pass are compiled
@@ -142,17 +143,17 @@ typedef enum gtx_pass {
 /* An engine's own fragment main, which finds the surface by a call and does as it likes with it. */
 typedef struct gtx_shading gtx_shading;
 
-/* `text` is GLSL that follows geotex_fragment.glsl, which says what there is to call; for shells it
- * follows geotex_shell_fragment.glsl, with GTX_SHELL defined. geotex_material.glsl comes before,
- * and geotex_rays.glsl, whose rays gtx_rays_bind provides. It has no #version, its samplers begin
- * at unit 8, and it is not kept. The shading is of the renderer's allocator, freed by
+/* `text` is GLSL that follows geotex_fragment.glsl, which says what there is to call; for LOD
+ * meshes it follows geotex_lod_fragment.glsl, with GTX_LOD defined. geotex_material.glsl comes
+ * before, and geotex_rays.glsl, whose rays gtx_rays_bind provides. It has no #version, its samplers
+ * begin at unit 8, and it is not kept. The shading is of the renderer's allocator, freed by
  * gtx_shading_destroy. Errors: ARGUMENT, MEMORY, SHADER (the renderer's log says why). */
 GTX_API gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
                                       gtx_error *error);
 /* A NULL shading is fine. */
 GTX_API void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading);
-/* The name of its program that casts, or with GTX_METHOD_SHELL of the one that draws shells, to set
- * uniforms of its own between draws. */
+/* The name of its program that casts, or with GTX_METHOD_LOD of the one that draws LOD meshes, to
+ * set uniforms of its own between draws. */
 GTX_API uint32_t gtx_shading_program(const gtx_shading *shading, gtx_method method);
 
 enum { /* gtx_view.flags */
@@ -163,15 +164,15 @@ enum { /* gtx_view.flags */
 
 /* One camera and one light.
  *
- * Level of detail. Each patch of an instance is cast at the coarsest level of its sheet whose
- * distance from level 0, measured by gtx_model_prepare, is at most `max_error` pixels at the point
- * of the patch's sphere that is nearest to the camera. Coverage only grows from level to level, and
- * neighbours of different levels meet within that error. Pixels are square. GTX_METHOD_PAPER always
- * draws level 0.
+ * Level of detail. Each patch of an instance is cast at the coarsest level of its height field
+ * whose distance from level 0, measured by gtx_model_prepare, is at most `max_error` pixels at the
+ * point of the patch's sphere that is nearest to the camera. Coverage only grows from level to
+ * level, and neighbours of different levels meet within that error. Pixels are square.
+ * GTX_METHOD_PAPER always draws level 0.
  *
- * The shell. GTX_METHOD_SHELL draws an instance as the coarsest level of its shell whose error is
+ * The LOD mesh. GTX_METHOD_LOD draws an instance as the coarsest LOD mesh whose error is
  * at most `max_error` pixels where the asset's bounds are nearest to the camera, or as the finest
- * when there is none; `level` counts levels of the shell. It writes no depth of its own, so that
+ * when there is none; `level` counts LOD meshes. It writes no depth of its own, so that
  * the depth test comes first and multisampling smooths its edges; `viewport_height` also tells the
  * mip level of its maps. GTX_METHOD_AUTO draws the same level if there is one within the error, or
  * else the finest if that is within one and a half times the error, if gtx_costs has it for
@@ -214,7 +215,7 @@ typedef struct gtx_instance {
  * one instanced draw, as are runs that are not cast. Room for the most instances and patches so far
  * is kept, of the renderer's allocator, until gtx_renderer_destroy.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL, SHADER (a pass's first draw), UNSUPPORTED
- * (GTX_METHOD_SHELL, and an asset without). */
+ * (GTX_METHOD_LOD, and an asset without). */
 GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,
                             const gtx_instance *instances, uint32_t count, gtx_error *error);
 
@@ -224,8 +225,8 @@ GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,
  * textures of their own (5 bytes a texel, 9 with 16-bit heights), a hierarchy over blocks of their
  * cells, and one over their instances above it. geotex_rays.glsl says what there is to call:
  * shadows, hard and soft, and ambient occlusion across all patches of all instances. It needs no
- * more than OpenGL 3.3 or OpenGL ES 3.0, and is part of every gtx_shading. Sheets are those of
- * level 0. */
+ * more than OpenGL 3.3 or OpenGL ES 3.0, and is part of every gtx_shading. Height fields are those
+ * of level 0. */
 typedef struct gtx_rays gtx_rays;
 
 typedef struct gtx_rays_desc {

@@ -20,8 +20,8 @@ static uint64_t map_size(const gtx_info *info, gtx_section_kind kind, uint32_t l
 uint64_t gtx_asset_bytes(const gtx_info *info, const gtx_sizes *sizes)
 {
     uint64_t bytes = sizeof(gtx_asset) + sizes->meta;
-    for (uint32_t k = 0; k < GTX_MAX_SHELLS; ++k)
-        bytes += sizes->shell[k];
+    for (uint32_t k = 0; k < GTX_MAX_LODS; ++k)
+        bytes += sizes->lod[k];
     bytes += (uint64_t)info->patch_count * sizeof(gtx_patch);
     for (gtx_section_kind kind = GTX_SECTION_FIRST_IMAGE; kind <= GTX_SECTION_LAST_IMAGE; ++kind)
         for (uint32_t k = 0; k < gtx_map_levels(info, kind); ++k)
@@ -45,14 +45,14 @@ static bool new_maps(gtx_asset *asset, bool clear)
 }
 
 /* False when memory is out. */
-static bool new_shell(gtx_asset *asset, const gtx_sizes *sizes, bool clear)
+static bool new_lod(gtx_asset *asset, const gtx_sizes *sizes, bool clear)
 {
-    for (uint32_t k = 0; k < GTX_MAX_SHELLS; ++k) {
-        asset->shell_size[k] = (size_t)sizes->shell[k];
-        if (sizes->shell[k])
-            asset->shell[k] = (clear ? gtx_alloc_array : gtx_alloc_raw)(
-                &asset->allocator, asset->shell_size[k], 1);
-        if (sizes->shell[k] && !asset->shell[k])
+    for (uint32_t k = 0; k < GTX_MAX_LODS; ++k) {
+        asset->lod_size[k] = (size_t)sizes->lod[k];
+        if (sizes->lod[k])
+            asset->lod[k] = (clear ? gtx_alloc_array : gtx_alloc_raw)(
+                &asset->allocator, asset->lod_size[k], 1);
+        if (sizes->lod[k] && !asset->lod[k])
             return false;
     }
     return true;
@@ -69,7 +69,7 @@ gtx_asset *gtx_asset_new(const gtx_allocator *allocator, const gtx_info *info,
     asset->allocator = *allocator;
     asset->info = *info;
     asset->patches = gtx_alloc_array(allocator, info->patch_count, sizeof(gtx_patch));
-    bool whole = asset->patches && new_maps(asset, clear) && new_shell(asset, sizes, clear);
+    bool whole = asset->patches && new_maps(asset, clear) && new_lod(asset, sizes, clear);
     if (whole && sizes->meta) {
         asset->meta_size = (size_t)sizes->meta;
         asset->meta = gtx_alloc_array(allocator, asset->meta_size, 1);
@@ -92,8 +92,8 @@ void gtx_close(gtx_asset *asset)
         for (uint32_t k = 0; k < gtx_map_levels(info, kind); ++k)
             gtx_free_array(&allocator, *gtx_asset_map(asset, kind, k),
                            (size_t)map_size(info, kind, k), 1);
-    for (uint32_t k = 0; k < GTX_MAX_SHELLS; ++k)
-        gtx_free_array(&allocator, asset->shell[k], asset->shell_size[k], 1);
+    for (uint32_t k = 0; k < GTX_MAX_LODS; ++k)
+        gtx_free_array(&allocator, asset->lod[k], asset->lod_size[k], 1);
     gtx_free_array(&allocator, asset->meta, asset->meta_size, 1);
     gtx_free_array(&allocator, asset, 1, sizeof *asset);
 }

@@ -10,7 +10,7 @@ extern "C" {
 
 #define GTX_MAX_MIPS 8
 #define GTX_MAX_SECTIONS 256
-#define GTX_MAX_SHELLS 8
+#define GTX_MAX_LODS 8
 #define GTX_MAX_PATCHES (1u << 20)
 #define GTX_MAX_PAGES 2048
 #define GTX_MAX_PAGE_SIDE 16384
@@ -23,8 +23,8 @@ struct gtx_asset {
     uint8_t *height, *trim;
     uint8_t *normal[GTX_MAX_MIPS], *color[GTX_MAX_MIPS];
     uint8_t *material[GTX_MAX_MIPS], *emission[GTX_MAX_MIPS];
-    uint8_t *shell[GTX_MAX_SHELLS]; /* as a section holds them: lib/asset/shell.h */
-    size_t shell_size[GTX_MAX_SHELLS];
+    uint8_t *lod[GTX_MAX_LODS]; /* as a section holds them: lib/asset/lod.h */
+    size_t lod_size[GTX_MAX_LODS];
     char *meta;
     size_t meta_size;
 };

@@ -85,9 +85,9 @@ void gtx_check_maps(gtx_check *check, const gtx_asset *asset, const gtx_occupanc
                     const uint8_t *holds, uint64_t patch_offset, uint64_t height_offset,
                     bool height_stored);
 
-/* A level of the shell, once the finer one is there, and patches that broke no rule. `offset`
+/* An LOD mesh, once the finer one is there, and patches that broke no rule. `offset`
  * is that of its section. */
-void gtx_check_shell(gtx_check *check, const gtx_asset *asset, uint32_t level, uint64_t offset);
+void gtx_check_lod(gtx_check *check, const gtx_asset *asset, uint32_t level, uint64_t offset);
 
 /* META's text. */
 void gtx_check_meta(gtx_check *check, const char *meta, size_t size, uint64_t offset);

@@ -3,7 +3,7 @@
 
 #include "asset/codec.h"
 #include "asset/header.h"
-#include "asset/shell.h"
+#include "asset/lod.h"
 #include "base/bytes.h"
 
 #include <inttypes.h>
@@ -11,7 +11,7 @@
 
 /* A zstd block holds at most 128 KiB and takes at least 4 bytes: a file that claims more would
  * make its reader allocate for nothing. */
-#define ZSTD_MOST_RATIO 32768u
+#define ZSTD_MAX_RATIO 32768u
 
 /* Whether the bytes are a .gtx of this version at all. */
 static bool check_start(gtx_check *check, const uint8_t *data, uint64_t size)
@@ -121,10 +121,10 @@ static void check_format(table_walk *walk, gtx_section *section, uint64_t at)
                   section->name, section->format);
     if (section->kind == GTX_SECTION_META && (section->size < 1 || section->size > GTX_META_LIMIT))
         gtx_break(walk->check, GTX_RULE_META, at + 32, "it has %" PRIu64 " bytes", section->size);
-    bool free_size = section->kind >= GTX_SECTION_SHELL;
-    if (section->kind == GTX_SECTION_SHELL &&
-        section->size < gtx_shell_size(info->patch_count, 3, 1))
-        gtx_break(walk->check, GTX_RULE_SHELL_SIZE, at + 32, "level %u has %" PRIu64 " bytes",
+    bool free_size = section->kind >= GTX_SECTION_LOD;
+    if (section->kind == GTX_SECTION_LOD &&
+        section->size < gtx_lod_size(info->patch_count, 3, 1))
+        gtx_break(walk->check, GTX_RULE_LOD_SIZE, at + 32, "level %u has %" PRIu64 " bytes",
                   section->level, section->size);
     if (!free_size && section->size != right.size)
         gtx_break(walk->check, GTX_RULE_SECTION_SIZE, at + 32, "that of %s is %" PRIu64
@@ -143,7 +143,7 @@ static void check_coding(table_walk *walk, const gtx_section *section, uint64_t 
         gtx_break(check, GTX_RULE_SECTION_FILTER, at + 44, "that of %s is %u",
                   section->name, section->filter);
     if (zstd && section->kind != GTX_SECTION_UNKNOWN &&
-        section->size / ZSTD_MOST_RATIO > section->stored_size)
+        section->size / ZSTD_MAX_RATIO > section->stored_size)
         gtx_break(check, GTX_RULE_SECTION_ZSTD, at + 24, "%s cannot hold %" PRIu64 " bytes in %"
                   PRIu64, section->name, section->size, section->stored_size);
 }
@@ -213,9 +213,9 @@ static bool check_presence(const table_walk *walk)
     }
     for (uint32_t i = 0; i < walk->layout->section_count; ++i) {
         const gtx_section *section = &walk->layout->sections[i];
-        if (section->kind == GTX_SECTION_SHELL && section->level >= info->shell_levels) {
+        if (section->kind == GTX_SECTION_LOD && section->level >= info->lod_levels) {
             gtx_break(walk->check, GTX_RULE_SECTION_MISSING, GTX_HEADER_SIZE,
-                      "SHEL has level %u, but only %u in all", section->level, info->shell_levels);
+                      "LODM has level %u, but only %u in all", section->level, info->lod_levels);
             return false;
         }
     }
@@ -247,7 +247,7 @@ static void check_table(gtx_check *check, const uint8_t *data, uint64_t size, gt
     layout->info.has_color = walk.seen[GTX_SECTION_COLOR] > 0;
     layout->info.has_material = walk.seen[GTX_SECTION_MATERIAL] > 0;
     layout->info.has_emission = walk.seen[GTX_SECTION_EMISSION] > 0;
-    layout->info.shell_levels = walk.seen[GTX_SECTION_SHELL];
+    layout->info.lod_levels = walk.seen[GTX_SECTION_LOD];
     if (readable)
         readable = check_presence(&walk);
     gtx_check_emission(check, &layout->info);

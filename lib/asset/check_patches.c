@@ -6,8 +6,8 @@
 #include <math.h>
 
 #define UNIT_TOLERANCE 1e-3
-#define LEAST_DETERMINANT 0.099
-#define LEAST_DEPTH (0.999 / 4096)
+#define MIN_DETERMINANT 0.099
+#define MIN_DEPTH (0.999 / 4096)
 
 static double dot(const float a[3], const float b[3])
 {
@@ -52,7 +52,7 @@ static void check_frame(gtx_check *check, const gtx_patch *patch, uint32_t index
     if (ey <= 0)
         gtx_break(check, GTX_RULE_PATCH_EXTENT, offset + 28, "extent_y of patch %u is %g", index,
                   ey);
-    if (ez <= 0 || ez < LEAST_DEPTH * fmax(ex, ey))
+    if (ez <= 0 || ez < MIN_DEPTH * fmax(ex, ey))
         gtx_break(check, GTX_RULE_PATCH_EXTENT, offset + 44, "extent_z of patch %u is %g", index,
                   ez);
 
@@ -64,7 +64,7 @@ static void check_frame(gtx_check *check, const gtx_patch *patch, uint32_t index
                       "axis_%c of patch %u has length %g", "xyz"[i], index, length);
     }
     double det = determinant(patch);
-    if (det < LEAST_DETERMINANT)
+    if (det < MIN_DETERMINANT)
         gtx_break(check, GTX_RULE_PATCH_HANDEDNESS, offset + 16, "that of patch %u is %g", index,
                   det);
     if (patch->sphere[3] <= 0)

@@ -1,7 +1,7 @@
 /* Sections of scheme 2: one zstd frame, with contexts in the caller's memory. */
 #include "asset/codec.h"
 
-#include "asset/shell.h"
+#include "asset/lod.h"
 #include "base/alloc.h"
 
 #ifdef GTX_ZSTD
@@ -35,7 +35,7 @@ static void apply(const gtx_section *section, const gtx_asset *asset, const uint
     else if (section->filter == GTX_FILTER_HEIGHTS)
         gtx_heights_apply(image, data, coded);
     else if (section->filter == GTX_FILTER_STEPS)
-        gtx_shell_filter_apply(data, (size_t)section->size, coded);
+        gtx_lod_filter_apply(data, (size_t)section->size, coded);
     else
         gtx_filter_apply(image, section->filter, data, coded);
 }
@@ -114,7 +114,7 @@ const char *gtx_undo_filter(const gtx_asset *asset, const gtx_section *section, 
 {
     gtx_map_shape image = gtx_section_shape(&asset->info, section->kind, section->level);
     if (section->filter == GTX_FILTER_STEPS &&
-        !gtx_shell_filter_undo(coded, (size_t)section->size, out))
+        !gtx_lod_filter_undo(coded, (size_t)section->size, out))
         return "the counts do not fit the size";
     if (section->filter == GTX_FILTER_HEIGHTS)
         gtx_heights_undo(image, coded, out);

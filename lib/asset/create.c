@@ -1,6 +1,6 @@
 /* Making an asset from maps in memory. */
 #include "asset/check.h"
-#include "asset/shell.h"
+#include "asset/lod.h"
 
 #include "base/alloc.h"
 
@@ -20,8 +20,8 @@ static gtx_result check_arguments(const gtx_asset_desc *desc, gtx_asset **out, g
                         desc->height_bits);
     if (!desc->meta && desc->meta_size)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "meta_size is given without meta");
-    if ((desc->shell_levels && !desc->shell) || desc->shell_levels > GTX_MAX_SHELLS)
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "shell_levels is at most 8, and 0 without them");
+    if ((desc->lod_levels && !desc->lod) || desc->lod_levels > GTX_MAX_LODS)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "lod_levels is at most 8, and 0 without them");
     return GTX_OK;
 }
 
@@ -31,9 +31,9 @@ static gtx_result check_levels(const gtx_asset_desc *desc, gtx_error *error)
         if (!desc->normal[k] || (desc->color && !desc->color[k]) ||
             (desc->material && !desc->material[k]) || (desc->emission && !desc->emission[k]))
             return gtx_fail(error, GTX_ERROR_ARGUMENT, "level %u of a map is missing", k);
-    for (uint32_t k = 0; k < desc->shell_levels; ++k)
-        if (!desc->shell[k].first || !desc->shell[k].indices || !desc->shell[k].positions)
-            return gtx_fail(error, GTX_ERROR_ARGUMENT, "an array of shell level %u is missing", k);
+    for (uint32_t k = 0; k < desc->lod_levels; ++k)
+        if (!desc->lod[k].first || !desc->lod[k].indices || !desc->lod[k].positions)
+            return gtx_fail(error, GTX_ERROR_ARGUMENT, "an array of LOD mesh %u is missing", k);
     return GTX_OK;
 }
 
@@ -51,7 +51,7 @@ static gtx_info info_of(const gtx_asset_desc *desc)
         .has_color = desc->color != NULL,
         .has_material = desc->material != NULL,
         .has_emission = desc->emission != NULL,
-        .shell_levels = desc->shell_levels,
+        .lod_levels = desc->lod_levels,
         .unit = desc->unit == 0 ? 1 : desc->unit,
         .source_triangles = desc->source_triangles,
     };
@@ -81,8 +81,8 @@ static void copy_maps(gtx_asset *asset, const gtx_asset_desc *desc)
     copy_levels(asset, GTX_SECTION_COLOR, desc->color);
     copy_levels(asset, GTX_SECTION_MATERIAL, desc->material);
     copy_levels(asset, GTX_SECTION_EMISSION, desc->emission);
-    for (uint32_t k = 0; k < desc->shell_levels; ++k)
-        gtx_shell_store(&desc->shell[k], desc->patch_count, asset->shell[k]);
+    for (uint32_t k = 0; k < desc->lod_levels; ++k)
+        gtx_lod_store(&desc->lod[k], desc->patch_count, asset->lod[k]);
     if (asset->meta)
         memcpy(asset->meta, desc->meta, asset->meta_size);
 }
@@ -95,8 +95,8 @@ static void check_content(gtx_check *check, const gtx_asset *asset)
     if (!gtx_check_over(check))
         gtx_check_maps(check, asset, &occupancy, NULL, 0, 0, false);
     gtx_occupancy_free(&occupancy, &asset->allocator);
-    for (uint32_t k = 0; k < asset->info.shell_levels && !gtx_check_over(check); ++k)
-        gtx_check_shell(check, asset, k, 0);
+    for (uint32_t k = 0; k < asset->info.lod_levels && !gtx_check_over(check); ++k)
+        gtx_check_lod(check, asset, k, 0);
     if (!gtx_check_over(check) && asset->meta)
         gtx_check_meta(check, asset->meta, asset->meta_size, 0);
 }
@@ -122,9 +122,9 @@ gtx_result gtx_create(const gtx_asset_desc *desc, gtx_asset **out, gtx_error *er
 
     gtx_allocator allocator = gtx_allocator_or_default(desc->allocator);
     gtx_sizes sizes = {.meta = desc->meta_size};
-    for (uint32_t k = 0; k < desc->shell_levels; ++k)
-        sizes.shell[k] = gtx_shell_size(desc->patch_count, desc->shell[k].vertex_count,
-                                        desc->shell[k].triangle_count);
+    for (uint32_t k = 0; k < desc->lod_levels; ++k)
+        sizes.lod[k] = gtx_lod_size(desc->patch_count, desc->lod[k].vertex_count,
+                                    desc->lod[k].triangle_count);
     gtx_asset *asset = gtx_asset_new(&allocator, &info, &sizes, false);
     if (!asset)
         return gtx_fail(error, GTX_ERROR_MEMORY, "out of memory for the maps of an asset");

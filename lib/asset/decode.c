@@ -189,10 +189,10 @@ static void undo_normals(gtx_decoding *d)
     }
 }
 
-/* Normals in the place of the patches, which are there; trim; levels of the shell. */
+/* Normals in the place of the patches, which are there; trim; LOD meshes. */
 typedef struct together {
     gtx_decoding *d;
-    bool surfaces, shells;
+    bool surfaces, lods;
 } together;
 
 static void occupied(uint32_t index, void *data)
@@ -205,9 +205,9 @@ static void occupied(uint32_t index, void *data)
     } else if (t->surfaces && section->kind == GTX_SECTION_TRIM &&
                section->filter == GTX_FILTER_SURFACE && !part->wrong) {
         gtx_surface_undo_occupied(&part->layer, part->coded, part->out);
-    } else if (t->shells && section->kind == GTX_SECTION_SHELL && !part->wrong) {
+    } else if (t->lods && section->kind == GTX_SECTION_LOD && !part->wrong) {
         gtx_check quiet = {0};
-        gtx_check_shell(&quiet, t->d->asset, section->level, 0);
+        gtx_check_lod(&quiet, t->d->asset, section->level, 0);
         part->holds = !quiet.broken;
     }
 }

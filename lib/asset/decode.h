@@ -14,7 +14,7 @@ typedef struct gtx_part {
     uint8_t *out;                 /* in the asset; zeros once something is wrong */
     const char *wrong;            /* why it cannot be decoded, or NULL */
     uint64_t hash;                /* of what was decoded */
-    bool holds;                   /* a level of a shell: it breaks no rule */
+    bool holds;                   /* an LOD mesh: it breaks no rule */
     gtx_layer layer;              /* of filter 4 */
 } gtx_part;
 
@@ -42,9 +42,9 @@ void gtx_decoding_end(gtx_decoding *decoding, const gtx_allocator *allocator);
 /* Decodes the patches. */
 void gtx_decode_patches(gtx_decoding *decoding);
 
-/* Decodes all others; and finds which patches and levels of the shell hold, for their checks to be
- * left out. Filter 4 needs rectangles that hold and heights: maps stay as they are without. Shells
- * hold only where the patches do. */
+/* Decodes all others; and finds which patches and LOD meshes hold, for their checks to be
+ * left out. Filter 4 needs rectangles that hold and heights: maps stay as they are without. LOD
+ * meshes hold only where the patches do. */
 void gtx_decode_rest(gtx_decoding *decoding, bool rectangles_hold, bool patches_hold);
 
 /* Whether the part was, or will be, decoded. */

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* What eight levels of mips call for; it also bounds the work on hostile bytes. */
-#define MOST_RINGS 128u
+#define MAX_RINGS 128u
 #define FAR 255u
 
 void gtx_normal_mean(const gtx_normal_sum *sum, uint8_t out[2])
@@ -24,7 +24,7 @@ void gtx_normal_mean(const gtx_normal_sum *sum, uint8_t out[2])
 uint32_t gtx_fill_rings(const gtx_patch *patch, uint32_t level)
 {
     uint32_t rings = (uint32_t)patch->dilation >> level;
-    return rings < 1 ? 1 : rings < MOST_RINGS ? rings : MOST_RINGS;
+    return rings < 1 ? 1 : rings < MAX_RINGS ? rings : MAX_RINGS;
 }
 
 static uint8_t least(uint8_t a, uint8_t b)

@@ -12,7 +12,7 @@ bool gtx_filter_fits(gtx_section_kind kind, uint32_t filter)
     if (filter == GTX_FILTER_HEIGHTS)
         return kind == GTX_SECTION_HEIGHT;
     if (filter == GTX_FILTER_STEPS)
-        return kind == GTX_SECTION_SHELL;
+        return kind == GTX_SECTION_LOD;
     return filter == GTX_FILTER_NONE ||
            (filter <= GTX_FILTER_PLANES_PAETH && gtx_section_is_image(kind));
 }

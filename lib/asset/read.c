@@ -25,8 +25,8 @@ static gtx_sizes sizes_of(const gtx_layout *layout)
         const gtx_section *section = &layout->sections[i];
         if (section->kind == GTX_SECTION_META)
             out.meta = section->size;
-        if (section->kind == GTX_SECTION_SHELL)
-            out.shell[section->level] = section->size;
+        if (section->kind == GTX_SECTION_LOD)
+            out.lod[section->level] = section->size;
     }
     return out;
 }
@@ -87,8 +87,8 @@ static void check_rest(const reader *r, bool patches_hold)
                 continue; /* a rule is broken already */
             if (section->kind == GTX_SECTION_HEIGHT)
                 height = part;
-            else if (section->kind == GTX_SECTION_SHELL && patches_hold && !part->holds)
-                gtx_check_shell(r->check, asset, section->level, section->offset);
+            else if (section->kind == GTX_SECTION_LOD && patches_hold && !part->holds)
+                gtx_check_lod(r->check, asset, section->level, section->offset);
             else if (section->kind == GTX_SECTION_META)
                 gtx_check_meta(r->check, asset->meta, asset->meta_size, section->offset);
         }

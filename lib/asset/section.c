@@ -23,7 +23,7 @@ static const kind_row kinds[] = {
     [GTX_SECTION_COLOR] = {"COLR", 0, 43, 4, true},
     [GTX_SECTION_MATERIAL] = {"MATL", 0, 37, 4, true},
     [GTX_SECTION_EMISSION] = {"EMIT", 0, 29, 3, true},
-    [GTX_SECTION_SHELL] = {"SHEL", 0, 0, 0, false},
+    [GTX_SECTION_LOD] = {"LODM", 0, 0, 0, false},
     [GTX_SECTION_UNKNOWN] = {"", 0, 0, 0, false},
     [GTX_SECTION_META] = {"META", 0, 0, 0, false},
 };
@@ -38,8 +38,8 @@ gtx_section_kind gtx_section_kind_of(const uint8_t type[4])
 
 uint32_t gtx_section_levels(gtx_section_kind kind, uint32_t mip_count)
 {
-    if (kind == GTX_SECTION_SHELL)
-        return GTX_MAX_SHELLS;
+    if (kind == GTX_SECTION_LOD)
+        return GTX_MAX_LODS;
     return kinds[kind].levels ? mip_count : 1;
 }
 
@@ -93,8 +93,8 @@ uint32_t gtx_asset_sections(const gtx_asset *asset, gtx_section out[GTX_MAX_KNOW
             *section = gtx_section_describe(&asset->info, (gtx_section_kind)kind, level);
             if (kind == GTX_SECTION_META)
                 section->size = asset->meta_size;
-            if (kind == GTX_SECTION_SHELL)
-                section->size = asset->shell_size[level];
+            if (kind == GTX_SECTION_LOD)
+                section->size = asset->lod_size[level];
             section->hash = gtx_hash_bytes(data, (size_t)section->size);
         }
     }
@@ -121,8 +121,8 @@ void *gtx_asset_data(const gtx_asset *asset, gtx_section_kind kind, uint32_t lev
         return *map;
     if (kind == GTX_SECTION_PATCHES)
         return asset->patches;
-    if (kind == GTX_SECTION_SHELL)
-        return asset->shell[level];
+    if (kind == GTX_SECTION_LOD)
+        return asset->lod[level];
     return kind == GTX_SECTION_META ? asset->meta : NULL;
 }
 

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 #define GTX_FORMAT_MAJOR 0u
-#define GTX_FORMAT_MINOR 3u
+#define GTX_FORMAT_MINOR 4u
 #define GTX_HEADER_SIZE 192u
 #define GTX_ENTRY_SIZE 64u
 #define GTX_META_LIMIT (1u << 20)
@@ -21,7 +21,7 @@ typedef enum gtx_section_kind {
     GTX_SECTION_COLOR,
     GTX_SECTION_MATERIAL,
     GTX_SECTION_EMISSION,
-    GTX_SECTION_SHELL,
+    GTX_SECTION_LOD,
     GTX_SECTION_UNKNOWN,
     GTX_SECTION_META,
     GTX_SECTION_FIRST_IMAGE = GTX_SECTION_HEIGHT,
@@ -78,12 +78,12 @@ static inline uint64_t gtx_shape_size(gtx_map_shape image)
     return (uint64_t)image.pages * image.width * image.height * image.texel;
 }
 
-/* The one entry that is right for a known kind: type, flags, level, format and size (0 for SHEL and
+/* The one entry that is right for a known kind: type, flags, level, format and size (0 for LODM and
  * META); the other fields are 0. */
 gtx_section gtx_section_describe(const gtx_info *info, gtx_section_kind kind, uint32_t level);
 
 /* Entries of all sections of an asset in file order, with their hashes. Returns how many. */
-#define GTX_MAX_KNOWN_SECTIONS (4 + 4 * GTX_MAX_MIPS + GTX_MAX_SHELLS)
+#define GTX_MAX_KNOWN_SECTIONS (4 + 4 * GTX_MAX_MIPS + GTX_MAX_LODS)
 uint32_t gtx_asset_sections(const gtx_asset *asset, gtx_section out[GTX_MAX_KNOWN_SECTIONS]);
 
 /* Where the asset keeps the image of a level; NULL when the kind is no image. */
@@ -100,12 +100,12 @@ uint32_t gtx_section_levels(gtx_section_kind kind, uint32_t mip_count);
 
 /* Sizes that do not follow from a gtx_info; 0 for what is not there. */
 typedef struct gtx_sizes {
-    uint64_t shell[GTX_MAX_SHELLS];
+    uint64_t lod[GTX_MAX_LODS];
     uint64_t meta;
 } gtx_sizes;
 
-/* An asset with all its arrays; those of maps and shells are zeroed if `clear`, or else still to be
- * written. Freed with gtx_close. NULL when memory is out. */
+/* An asset with all its arrays; those of maps and LOD meshes are zeroed if `clear`, or else still
+ * to be written. Freed with gtx_close. NULL when memory is out. */
 gtx_asset *gtx_asset_new(const gtx_allocator *allocator, const gtx_info *info,
                          const gtx_sizes *sizes, bool clear);
 

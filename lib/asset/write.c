@@ -11,7 +11,7 @@
 
 /* Each takes an encoder's memory. The largest map has a fifth of all bytes or more: with more jobs
  * than this, the others would wait for it. */
-enum { MOST_JOBS = 4 };
+enum { MAX_JOBS = 4 };
 
 /* A file in the making. */
 typedef struct writer {
@@ -23,8 +23,8 @@ typedef struct writer {
     gtx_section sections[GTX_MAX_KNOWN_SECTIONS];
     uint8_t *coded[GTX_MAX_KNOWN_SECTIONS];
     uint32_t job[GTX_MAX_KNOWN_SECTIONS], job_count;
-    gtx_encoder encoders[MOST_JOBS];
-    bool done[MOST_JOBS];
+    gtx_encoder encoders[MAX_JOBS];
+    bool done[MAX_JOBS];
     uint8_t *block;               /* of all that encoding takes */
     size_t block_size;
 } writer;
@@ -39,7 +39,7 @@ static uint32_t filter_of(gtx_section_kind kind)
     case GTX_SECTION_NORMAL: return GTX_FILTER_SURFACE;
     case GTX_SECTION_COLOR:
     case GTX_SECTION_MATERIAL: return GTX_FILTER_PLANES_PAETH;
-    case GTX_SECTION_SHELL: return GTX_FILTER_STEPS;
+    case GTX_SECTION_LOD: return GTX_FILTER_STEPS;
     default: return GTX_FILTER_NONE;
     }
 }
@@ -47,12 +47,12 @@ static uint32_t filter_of(gtx_section_kind kind)
 /* Gives every section to a job, the longest first, to the one that has least to do. */
 static void share_out(writer *w)
 {
-    uint64_t work[GTX_MAX_KNOWN_SECTIONS], load[MOST_JOBS] = {0};
+    uint64_t work[GTX_MAX_KNOWN_SECTIONS], load[MAX_JOBS] = {0};
     uint32_t order[GTX_MAX_KNOWN_SECTIONS];
     for (uint32_t i = 0; i < w->count; ++i)
         work[i] = w->sections[i].size;
     gtx_longest_first(work, w->count, order);
-    w->job_count = w->jobs && w->jobs->run ? MOST_JOBS : 1;
+    w->job_count = w->jobs && w->jobs->run ? MAX_JOBS : 1;
     for (uint32_t i = 0; i < w->count; ++i) {
         uint32_t least = 0;
         for (uint32_t j = 1; j < w->job_count; ++j)

@@ -5,7 +5,7 @@
 
 namespace gtx::baking {
 
-constexpr uint64_t MOST_PATCHES = 1u << 20, MOST_PAGES = 2048;
+constexpr uint64_t MAX_PATCHES = 1u << 20, MAX_PAGES = 2048;
 
 /* The centre of the bounding box, to a multiple of the largest power of two that is not above its
  * diagonal: a model near the origin keeps its coordinates. */
@@ -19,7 +19,7 @@ static Vec3d find_anchor(const Mesh &mesh)
         }
     }
     double diagonal = length(high - low);
-    if (!(diagonal >= LEAST_DIAGONAL && diagonal <= MOST_DIAGONAL))
+    if (!(diagonal >= MIN_DIAGONAL && diagonal <= MAX_DIAGONAL))
         throw Error(GTX_ERROR_INPUT, "the model is smaller than 1e-15 or larger than 1e15");
     double step = std::exp2(std::floor(std::log2(diagonal)));
     Vec3d anchor;
@@ -126,7 +126,7 @@ Maps place_on_pages(std::vector<PatchMaps> &patches, const BakeOptions &options)
     for (const PatchMaps &p : patches)
         sizes.push_back({p.record.rect[2], p.record.rect[3]});
     Packing packing = pack(sizes, 1u << (options.mips - 1));
-    if (packing.page_count > MOST_PAGES)
+    if (packing.page_count > MAX_PAGES)
         throw Error(GTX_ERROR_LIMIT, "the maps fill more than 2048 pages");
     Maps maps;
     allocate_pages(packing, options, patches[0], maps);
@@ -140,7 +140,7 @@ static void check(const Mesh &mesh, const Partition &partition, const BakeOption
 {
     if (partition.charts.empty())
         throw Error(GTX_ERROR_EMPTY, "there is no chart to bake");
-    if (partition.charts.size() > MOST_PATCHES)
+    if (partition.charts.size() > MAX_PATCHES)
         throw Error(GTX_ERROR_LIMIT, "more than 2^20 charts");
     if (mesh.normals.size() != 3 * mesh.triangle_count())
         throw Error(GTX_ERROR_INTERNAL, "the mesh to bake has no corner normals");

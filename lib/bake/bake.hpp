@@ -1,7 +1,7 @@
 /* Baking: charts with frames -> the maps of one asset. */
 #pragma once
 
-#include "bake/extract.hpp"
+#include "bake/field/extract.hpp"
 #include "chart/chart.hpp"
 
 #include <geotex/geotex.h>

@@ -6,7 +6,7 @@
 
 namespace gtx::baking {
 
-constexpr uint32_t MOST_SIDE = 4096, LEAST_SIDE = 8;
+constexpr uint32_t MAX_SIDE = 4096, MIN_SIDE = 8;
 
 /* The upper edge of what a page holds: segments from left to right. */
 class Skyline {
@@ -188,7 +188,7 @@ Packing pack(const Sizes &texels, uint32_t grain)
         return a < b;
     });
 
-    uint32_t most = MOST_SIDE / grain, least = std::max(1u, LEAST_SIDE / grain);
+    uint32_t most = MAX_SIDE / grain, least = std::max(1u, MIN_SIDE / grain);
     Packing packing;
     if (area <= uint64_t(most) * most)
         packing = pack_one(sizes, order, area, widest, least, most);

@@ -18,15 +18,15 @@ inline bool shown(float trim)
 }
 /* Source surface beyond a chart's border counts as true up to this many texels from it. */
 constexpr double OVERLAP = 1;
-/* Where the model itself ends, up to this many texels beyond its border: nobody else's sheet starts
- * there. */
+/* Where the model itself ends, up to this many texels beyond its border: nobody else's height field
+ * starts there. */
 constexpr double BORDER_SHOWN = 0.1;
-/* Beyond a straight cut this is enough: the neighbour's sheet is along the same axis, and crosses
- * it. */
+/* Beyond a straight cut this is enough: the neighbour's height field is along the same axis, and
+ * crosses it. */
 constexpr double CUT_OVERLAP = 0.15;
 
 /* Lengths of a record are floats, and readers square them. */
-constexpr double LEAST_DIAGONAL = 1e-15, MOST_DIAGONAL = 1e15;
+constexpr double MIN_DIAGONAL = 1e-15, MAX_DIAGONAL = 1e15;
 
 using Neighbours = std::vector<std::array<uint32_t, 3>>;
 
@@ -86,7 +86,7 @@ FlatChart flatten(const Mesh &mesh, const Neighbours &neighbours, const Chart &c
 void flatten_again(const Mesh &mesh, const Chart &chart, FlatChart &flat);
 
 /* Texels of depth between neighbouring texels beyond which the surface must be seen to lead from
- * one to the other: they may lie on two sheets, side by side only in projection. */
+ * one to the other: they may lie on two height fields, side by side only in projection. */
 constexpr double CLIFF = 4;
 
 /* Whether the source leads from one place of a chart to another without a detour, be it over
@@ -179,13 +179,13 @@ std::vector<uint8_t> find_support(const Grid &grid, const std::vector<float> &tr
 void extrapolate(const FlatChart &chart, const Outline &outline, Paths &paths,
                  const std::vector<uint8_t> &support, Cover &cover);
 /* Lets texels beyond the core continue it, then takes texels out of the support, until no cell that
- * shows bridges two sheets. */
+ * shows bridges two height fields. */
 void cut_cliffs(const FlatChart &chart, const Outline &core_outline, const Outline &outline,
                 Paths &paths, std::vector<float> &trim, Cover &cover,
                 std::vector<uint8_t> &support);
 
-/* Moves the heights of the supported texels so that the sheet between them follows the source.
- * Returns the share of the core's samples that it still passes below by a visible part of a
+/* Moves the heights of the supported texels so that the height field between them follows the
+ * source. Returns the share of the core's samples that it still passes below by a visible part of a
  * texel, `pitch` being the model's. */
 double fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, double pitch,
                    Cover &cover);
@@ -230,7 +230,7 @@ struct Shades {
     }
 };
 /* Floats of each kind: light and alpha; occlusion, roughness, metallic and lit; light. */
-constexpr int COLOR_CHANNELS = 4, MATERIAL_CHANNELS = 4, EMISSION_CHANNELS = 3, MOST_CHANNELS = 11;
+constexpr int COLOR_CHANNELS = 4, MATERIAL_CHANNELS = 4, EMISSION_CHANNELS = 3, MAX_CHANNELS = 11;
 
 /* What every chart's bake reads. */
 struct Job {
@@ -242,8 +242,8 @@ struct Job {
     Vec3d anchor;
 };
 
-/* The height sheet of a chart over its working grid. */
-struct Sheet {
+/* The height field of a chart over its working grid. */
+struct HeightField {
     FlatChart flat;
     Rendering rendering;         /* empty without a GPU */
     Outline outline;
@@ -253,7 +253,7 @@ struct Sheet {
 };
 
 /* The shades of the texels with a code. */
-Shades shade_texels(const Job &job, const Sheet &sheet, const Crop &crop,
+Shades shade_texels(const Job &job, const HeightField &field, const Crop &crop,
                     const std::vector<uint16_t> &height);
 
 /* Fills empty texels ring by ring with the mean of the neighbours that the ring before had. */
@@ -270,12 +270,12 @@ PatchMaps bake_chart(const Job &job, const Chart &chart);
 std::vector<Chart> chart_unseen(const Job &job, const Partition &partition,
                                 std::vector<PatchMaps> &patches, Task &task);
 
-/* Moves heights around outlines until sheets that meet lie on each other; all patches have
+/* Moves heights around outlines until height fields that meet lie on each other; all patches have
  * codes. They are to be measured again then. */
 void stitch(unsigned height_bits, std::vector<PatchMaps> &patches, Task &task);
 
-/* Raises texels beyond straight cuts until the sheets on both sides cross; likewise. `charts` is
- * that of each patch. */
+/* Raises texels beyond straight cuts until the height fields on both sides cross; likewise.
+ * `charts` is that of each patch. */
 void close_cuts(const Partition &partition, const std::vector<uint32_t> &charts,
                 const Vec3d &anchor, unsigned height_bits, std::vector<PatchMaps> &patches,
                 Task &task);

@@ -2,7 +2,7 @@
 #include "bake/tiles.hpp"
 
 #include "bake/patch_maps.hpp"
-#include "mesh/srgb.hpp"
+#include "mesh/material/srgb.hpp"
 
 #include <algorithm>
 
@@ -11,7 +11,7 @@ namespace gtx::baking {
 /* A tile shows so many texels beyond its border: its neighbour has the same texels. */
 constexpr double TILE_OVERLAP = 0.15;
 /* Steps of heights are halves of halves of the coarsest, so often at most. */
-constexpr int MOST_HALVINGS = 12;
+constexpr int MAX_HALVINGS = 12;
 
 /* Nodes of a layer: from..to are the tile's own, borders included; low..high are stored. */
 struct Tile {
@@ -116,11 +116,11 @@ static void choose_steps(std::vector<Tile *> &tiles, const TileOptions &options,
     for (Tile *tile : tiles) {
         const double range = std::max(tile->top - tile->bottom, least);
         tile->halvings = std::clamp(int(std::floor(std::log2(layer.step * (top - 2) / range))), 0,
-                                    std::min(MOST_HALVINGS,
+                                    std::min(MAX_HALVINGS,
                                              int(std::floor(std::log2(layer.step / least)))));
     }
     for (bool again = true; again;) {
-        layer.halvings.assign(layer.grid->count(), MOST_HALVINGS);
+        layer.halvings.assign(layer.grid->count(), MAX_HALVINGS);
         for (const Tile *tile : tiles)
             for_nodes(*tile, layer, [&](int i, int j) {
                 uint8_t &node = layer.halvings[size_t(j) * layer.grid->nx + i];
@@ -266,7 +266,7 @@ static Vec3d find_anchor(const std::vector<LayerHeights> &layers, const std::vec
             }
         }
     const double diagonal = length(high - low);
-    if (!(diagonal >= LEAST_DIAGONAL && diagonal <= MOST_DIAGONAL))
+    if (!(diagonal >= MIN_DIAGONAL && diagonal <= MAX_DIAGONAL))
         throw Error(GTX_ERROR_INPUT, "the grids are smaller than 1e-15 or larger than 1e15");
     const double step = std::exp2(std::floor(std::log2(diagonal)));
     Vec3d anchor;

@@ -26,8 +26,8 @@ struct TileReport {
 /* The grid's x goes along +X, its y along -Z. Large grids are cut into tiles, each with a step of
  * heights of its own that fits its relief: the common nodes of neighbours are rounded to the
  * coarser of their steps, so that both have them at the same height. A tile reaches a texel beyond
- * its border. Normals follow from the values at full precision. The sheets are seen from both
- * sides. Deterministic for any thread count. Stages of `task`: "bake", "pack".
+ * its border. Normals follow from the values at full precision. The height fields are seen from
+ * both sides. Deterministic for any thread count. Stages of `task`: "bake", "pack".
  * Throws Error: INPUT, EMPTY, LIMIT. */
 Maps bake_tiles(const std::vector<GridLayer> &layers, const TileOptions &options,
                 TileReport &report, Task &task);

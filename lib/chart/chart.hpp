@@ -27,7 +27,7 @@ struct Chart {
     bool two_sided = false;
     /* The core is what of the triangles lies inside, along the frame's x and y, object units:
      * straight cuts from a larger chart, whose triangles several charts then share. Where there is
-     * a cut, the sheet continues in a chart of the same axis. */
+     * a cut, the height field continues in a chart of the same axis. */
     double clip_low[2] = {-INFINITY, -INFINITY}, clip_high[2] = {INFINITY, INFINITY};
     /* Texels of the grid along the frame's sides; 0 = as many as the pitch gives. */
     unsigned cells[2] = {0, 0};

@@ -13,7 +13,7 @@ constexpr int CONE_SECTORS = 256;
 constexpr int LAWSON_STEPS = 11;
 /* Steepest tilt of each axis: det(x, y, z) is then at least 1 / (1 + 1.5^2) > 0.3. */
 constexpr double STEEPEST_TILT = 1.5;
-constexpr double LEAST_DETERMINANT = 0.15; /* a reader asks for 0.1 */
+constexpr double MIN_DETERMINANT = 0.15; /* a reader asks for 0.1 */
 
 struct Point {
     double u, v, h;
@@ -355,7 +355,7 @@ Frame part_of_frame(const Frame &whole, const double low[2], const double high[2
         heights.push_back({p.x, p.y, p.z});
     Plane plane = heights.empty() ? Plane{} : minimax_plane(heights);
     Vec3d x = whole.x + whole.z * plane.a, y = whole.y + whole.z * plane.b;
-    if (dot(normalize(x), cross(normalize(y), whole.z)) < LEAST_DETERMINANT) {
+    if (dot(normalize(x), cross(normalize(y), whole.z)) < MIN_DETERMINANT) {
         plane = {}; /* the whole is tilted already */
         x = whole.x;
         y = whole.y;

@@ -116,7 +116,7 @@ private:
     double pitch_;
 };
 
-/* Samples side by side that are sheets of their own: no cell between them shows either. */
+/* Samples side by side that are height fields of their own: no cell between them shows either. */
 void find_cliffs(const FlatRegion &flat, const LayerGrid &grid, float cliff,
                  std::vector<DoubleSample> &out)
 {

@@ -13,13 +13,13 @@ namespace gtx {
 
 namespace {
 
-constexpr double LEAST_COSINE = 0.4;  /* of smoothed normals with the common axis */
+constexpr double MIN_COSINE = 0.4;    /* of smoothed normals with the common axis */
 constexpr double STEEP_AREA = 0.01;   /* of both charts, where it may be less */
 constexpr double STEEP_GUESS = 0.1;   /* likewise while the mean of all normals is the axis */
-constexpr double LEAST_CONE = 0.75;   /* of their area, the sum of normals: less across an edge */
-constexpr double LEAST_BORDER = 0.15; /* of one chart's outline: common */
-constexpr double LEAST_TEXELS = 64;   /* of a chart: smaller ones are crumbs */
-constexpr double LEAST_SHARE = 0.02;  /* of the larger chart: less hardly turns its axis */
+constexpr double MIN_CONE = 0.75;     /* of their area, the sum of normals: less across an edge */
+constexpr double MIN_BORDER = 0.15; /* of one chart's outline: common */
+constexpr double MIN_TEXELS = 64;     /* of a chart: smaller ones are crumbs */
+constexpr double MIN_SHARE = 0.02;    /* of the larger chart: less hardly turns its axis */
 constexpr double LOOSE_TEXELS = 64, LOOSE_SHARE = 0.1; /* of the smaller chart: set apart at most */
 constexpr size_t BATCH = 8;           /* offers that are tried side by side */
 
@@ -113,8 +113,8 @@ void Merger::offer(uint32_t a, uint32_t b)
 {
     const auto [less, more] = std::minmax(texels_[a], texels_[b]);
     const Border &border = border_[a][b];
-    if (!border.refused && less >= LEAST_TEXELS && less >= LEAST_SHARE * more &&
-        border.length >= LEAST_BORDER * std::min(outline_[a], outline_[b]))
+    if (!border.refused && less >= MIN_TEXELS && less >= MIN_SHARE * more &&
+        border.length >= MIN_BORDER * std::min(outline_[a], outline_[b]))
         queue_.push({border.length, std::min(a, b), std::max(a, b), age_[a] + age_[b]});
 }
 
@@ -125,7 +125,7 @@ bool Merger::too_steep(const Offer &offer, const Vec3d &z, double most) const
         for (uint32_t t : regions_[i].triangles) {
             const Facet &facet = surface_.facets[t];
             size += double(facet.size);
-            if (dot(Vec3d(facet.normal), z) < LEAST_COSINE)
+            if (dot(Vec3d(facet.normal), z) < MIN_COSINE)
                 steep += double(facet.size);
         }
     return steep > most * size;
@@ -177,7 +177,7 @@ Trial Merger::try_offer(const Offer &offer)
             sum += Vec3d(surface_.facets[t].normal) * double(surface_.facets[t].size);
             size += double(surface_.facets[t].size);
         }
-    if (length(sum) < LEAST_CONE * size || too_steep(offer, normalize(sum), STEEP_GUESS))
+    if (length(sum) < MIN_CONE * size || too_steep(offer, normalize(sum), STEEP_GUESS))
         return trial;
     trial.both = join(offer);
     const Vec3d z = cone_axis(surface_, trial.both.triangles);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double FACING = 0.24; /* least n.z: what is steeper, others show better */
 /* Surface is reached from one edge of the border, and stays within this many reaches of it: the
- * sheet that passes below a silhouette is not followed from where the two meet. */
+ * height field that passes below a silhouette is not followed from where the two meet. */
 constexpr double TETHER = 1.5;
 
 struct Point {

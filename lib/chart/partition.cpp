@@ -1,9 +1,9 @@
 /* The order of partitioning: cluster, split what is no height map, set the density, report. */
-#include "chart/agglomerate.hpp"
+#include "chart/cuts/agglomerate.hpp"
 #include "chart/attach.hpp"
-#include "chart/cut.hpp"
+#include "chart/cuts/cut.hpp"
 #include "chart/merge.hpp"
-#include "chart/pgp.hpp"
+#include "chart/pgp/pgp.hpp"
 #include "chart/split.hpp"
 #include "chart/vsa.hpp"
 
@@ -17,12 +17,12 @@ namespace {
  * side sets the density of the whole model. */
 constexpr double LONGEST_SIDE = 2.5;
 /* Half-edges are counted in ints. */
-constexpr size_t MOST_TRIANGLES = 300000000;
+constexpr size_t MAX_TRIANGLES = 300000000;
 /* Texels of `resolution` that are left to the overlap. */
 constexpr unsigned OVERLAP_TEXELS = 8;
 /* At a resolution of 128, texels of surface in a patch that is cut; at least in a chart, on
  * average, for a model may be of thousands of small components; in its rectangle at most. */
-constexpr double CUT_TEXELS = 1400, CHART_TEXELS = 100, MOST_TEXELS = 4 * CUT_TEXELS;
+constexpr double CUT_TEXELS = 1400, CHART_TEXELS = 100, MAX_TEXELS = 4 * CUT_TEXELS;
 constexpr double TWO_SIDED_AREA = 0.05; /* of a chart: it is two-sided */
 constexpr double RIM = 4; /* texels of a rectangle beyond its chart's sides */
 
@@ -195,7 +195,7 @@ std::vector<Frame> split_for_count(const Surface &surface, const ChartOptions &o
             return frames;
         double charts = double(regions.size());
         double least = scale * CHART_TEXELS * charts;
-        double most = scale * MOST_TEXELS * std::max(charts, wanted);
+        double most = scale * MAX_TEXELS * std::max(charts, wanted);
         double fine = std::min(bounds.pitch, std::sqrt(surface.area / least));
         double pitch = std::max(fine, pitch_for(frames, most));
         if (pitch >= bounds.pitch) {
@@ -304,7 +304,7 @@ Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &ta
 {
     if (!mesh.triangle_count())
         throw Error(GTX_ERROR_EMPTY, "the mesh has no triangle to partition");
-    if (mesh.triangle_count() > MOST_TRIANGLES)
+    if (mesh.triangle_count() > MAX_TRIANGLES)
         throw Error(GTX_ERROR_LIMIT, "the mesh has more than 300 million triangles");
     task.begin("partition");
     uint32_t count = chart_count(mesh, options);

@@ -41,9 +41,9 @@ typedef struct step {
     const char *name, *text;  /* of the option, and its value */
     double number;
 } step;
-enum { MOST_STEPS = 64 };
+enum { MAX_STEPS = 64 };
 typedef struct steps {
-    step list[MOST_STEPS];
+    step list[MAX_STEPS];
     uint32_t count;
 } steps;
 

@@ -1,6 +1,6 @@
 /* gtx bench: frame times of an asset, its source mesh and what stands between them. */
 #include "base/json.h"
-#include "cli/bench.hpp"
+#include "cli/bench/bench.hpp"
 #include "cli/guard.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 const char *sizes = "100x100,200x200,400x400,640x480,800x600,1024x768,1280x1024";
 const char *instances = "1";
-const char *methods = "mesh,mesh_lod,paper,cast,shell,auto";
+const char *methods = "mesh,simplified,paper,cast,lod,auto";
 uint32_t frames = 12;
 double max_error = 0.5, min_iou, budget = 600;
 bool as_json;
@@ -22,8 +22,8 @@ const option options[] = {
      "windows [100x100,200x200,400x400,640x480,800x600,1024x768,1280x1024]", 0, 0},
     {"instances", 0, OPTION_STRING, &instances, "N,...", "models in view, in one draw [1]", 0, 0},
     {"methods", 0, OPTION_STRING, &methods, "NAME,...",
-     "mesh mesh_stream mesh_lod paper cast shell auto cast_depth auto_depth cast_fragment "
-     "[mesh,mesh_lod,paper,cast,shell,auto]", 0, 0},
+     "mesh mesh_stream simplified paper cast lod auto cast_depth auto_depth cast_fragment "
+     "[mesh,simplified,paper,cast,lod,auto]", 0, 0},
     {"frames", 0, OPTION_UINT, &frames, "N", "frames a method [12]", 1, 10000},
     {"max-error", 0, OPTION_NUMBER, &max_error, "PIXELS",
      "how far a level may be from the finest [0.5]", 1e-6, 1e6},

@@ -6,7 +6,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-enum { MOST_FILES = 4097 };
+enum { MAX_FILES = 4097 };
 
 static gtx_compare_desc desc;
 static bool as_json;
@@ -28,11 +28,11 @@ static const option options[] = {
 
 static const verb compare_verb = {
     "compare", "ASSET MODEL...",
-    "Measures an asset against the models it was cooked from, on the CPU.", 2, MOST_FILES, options};
+    "Measures an asset against the models it was cooked from, on the CPU.", 2, MAX_FILES, options};
 
 int cmd_compare(int argc, char **argv)
 {
-    static const char *files[MOST_FILES];
+    static const char *files[MAX_FILES];
     int count;
     int code = parse_options(&compare_verb, argc, argv, files, &count);
     if (code >= 0)

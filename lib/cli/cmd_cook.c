@@ -9,7 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_MODELS = 4096 };
+enum { MAX_MODELS = 4096 };
 
 static gtx_cook_desc desc;
 static const char *output, *name, *report_path, *depfile_path;
@@ -34,7 +34,7 @@ static const option options[] = {
     {"height-bits", 0, OPTION_UINT, &desc.height_bits, "8|16", "bits of a height [8]", 8, 16},
     {"mips", 0, OPTION_UINT, &desc.mips, "N", "levels of normal and colour [4]", 1, 8},
     {"dilation", 0, OPTION_UINT, &desc.dilation, "N", "texels of dilation [2^(mips-1)]", 1, 128},
-    {"shell-levels", 0, OPTION_UINT, &desc.shell_levels, "N", "polygon levels of detail [0]", 0, 5},
+    {"lod-levels", 0, OPTION_UINT, &desc.lod_levels, "N", "polygon levels of detail [0]", 0, 5},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
     {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z", "z: the model's +Z becomes +Y [y]", 0, 0},
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the model [1]", 1e-30, 1e30},
@@ -59,7 +59,7 @@ static const verb cook = {
     "one .gtx asset. It keeps a key, for --if-changed: of the content of the models and of every\n"
     "file they refer to, the options from --charts to --unit, and the cooker's revision; paths,\n"
     "times, threads and reports are not in it.",
-    1, MOST_MODELS, options};
+    1, MAX_MODELS, options};
 
 static int usage(const char *sentence)
 {
@@ -155,7 +155,7 @@ static int tell(const char *label, const gtx_report *report)
 
 int cmd_cook(int argc, char **argv)
 {
-    static const char *models[MOST_MODELS];
+    static const char *models[MAX_MODELS];
     int count;
     int code = parse_options(&cook, argc, argv, models, &count);
     if (code >= 0)

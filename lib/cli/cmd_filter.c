@@ -123,9 +123,9 @@ int cmd_filter(int argc, char **argv)
     gtx_result result = gtx_open_file(file, NULL, &asset, &error);
     if (!result) {
         gtx_get_info(asset, &info);
-        if (info.shell_levels)
-            report_warning(file, "the shell is that of the surface as it was, and is left out "
-                                 "(gtx pack --shell-levels makes one of the maps)");
+        if (info.lod_levels)
+            report_warning(file, "the LOD mesh is that of the surface as it was, and is left out "
+                                 "(gtx pack --lod-levels makes one of the maps)");
         result = run(asset, &file, &error);
     }
     gtx_close(asset);

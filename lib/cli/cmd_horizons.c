@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_GRIDS = 4096, MOST_NAME = 4096 };
+enum { MAX_GRIDS = 4096, MAX_NAME = 4096 };
 
 static gtx_horizons_desc desc;
 static gtx_height_grid_desc reading, reading_property;
@@ -43,7 +43,7 @@ static const option options[] = {
     {"tile", 0, OPTION_UINT, &desc.tile, "N", "most texels along a patch [128]", 16, 512},
     {"height-bits", 0, OPTION_UINT, &desc.height_bits, "8|16", "bits of a height [8]", 8, 16},
     {"mips", 0, OPTION_UINT, &desc.mips, "N", "levels of normal and colour [4]", 1, 8},
-    {"shell-levels", 0, OPTION_UINT, &desc.shell_levels, "N", "polygon levels of detail [0]", 0, 5},
+    {"lod-levels", 0, OPTION_UINT, &desc.lod_levels, "N", "polygon levels of detail [0]", 0, 5},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the grids [1]", 1e-30, 1e30},
     {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
@@ -55,7 +55,7 @@ static const verb horizons = {
     "Makes one asset of height grids: IRAP classic or binary and ZMAP+ (also gzipped), or images\n"
     "(PNG, TIFF, EXR: 8 or 16 bits, or floats). @X,Y puts the first node of a grid elsewhere;\n"
     "=PROPERTY is a grid of the same size to colour by. East becomes +X, up +Y, north -Z.",
-    1, MOST_GRIDS, options};
+    1, MAX_GRIDS, options};
 
 static int usage(const char *sentence)
 {
@@ -96,7 +96,7 @@ static int check(void)
 /* The operand "GRID[@X,Y][=PROPERTY]", cut at its marks; an @ in a folder's name is none. */
 static int read_operand(const char *operand, gtx_height_grid *grid)
 {
-    char name[MOST_NAME];
+    char name[MAX_NAME];
     gtx_height_grid property = {0};
     gtx_error error;
     if (strlen(operand) >= sizeof name)
@@ -170,7 +170,7 @@ static int make(const gtx_height_grid *grids, int count)
 
 int cmd_horizons(int argc, char **argv)
 {
-    static const char *operands[MOST_GRIDS];
+    static const char *operands[MAX_GRIDS];
     int count;
     int code = parse_options(&horizons, argc, argv, operands, &count);
     if (code >= 0)

@@ -39,17 +39,17 @@ static void vector(gtx_json *json, const char *key, const float *f, const double
     gtx_json_end_array(json);
 }
 
-static void shell(gtx_json *json, const gtx_asset *asset, const gtx_info *info)
+static void lod(gtx_json *json, const gtx_asset *asset, const gtx_info *info)
 {
-    gtx_json_begin_array(json, "shell");
-    for (uint32_t k = 0; k < info->shell_levels; ++k) {
-        gtx_shell level;
-        gtx_get_shell(asset, k, &level);
+    gtx_json_begin_array(json, "lod_meshes");
+    for (uint32_t k = 0; k < info->lod_levels; ++k) {
+        gtx_lod_mesh level;
+        gtx_get_lod_mesh(asset, k, &level);
         gtx_json_begin_object(json, NULL);
         gtx_json_integer(json, "triangles", level.triangle_count);
         gtx_json_integer(json, "vertices", level.vertex_count);
         gtx_json_number(json, "error", (double)level.error);
-        gtx_json_bool(json, "far", level.flags & GTX_SHELL_FAR);
+        gtx_json_bool(json, "far", level.flags & GTX_LOD_FAR);
         gtx_json_end_object(json);
     }
     gtx_json_end_array(json);
@@ -74,7 +74,7 @@ static int print_json(const gtx_asset *asset, const gtx_info *info)
     gtx_json_bool(&json, "material", info->has_material);
     gtx_json_bool(&json, "emission", info->has_emission);
     gtx_json_number(&json, "emission_scale", (double)info->emission_scale);
-    shell(&json, asset, info);
+    lod(&json, asset, info);
     vector(&json, "anchor", NULL, info->anchor);
     vector(&json, "bounds_min", info->bounds_min, NULL);
     vector(&json, "bounds_max", info->bounds_max, NULL);
@@ -100,12 +100,12 @@ static int print_text(const gtx_asset *asset, const gtx_info *info)
            info->mip_count, info->mip_count == 1 ? "" : "s");
     if (info->has_emission)
         printf("emission        times %g\n", (double)info->emission_scale);
-    for (uint32_t k = 0; k < info->shell_levels; ++k) {
-        gtx_shell level;
-        gtx_get_shell(asset, k, &level);
-        printf("%s%u triangles, error %g%s\n", k ? "                " : "shell           ",
+    for (uint32_t k = 0; k < info->lod_levels; ++k) {
+        gtx_lod_mesh level;
+        gtx_get_lod_mesh(asset, k, &level);
+        printf("%s%u triangles, error %g%s\n", k ? "                " : "LOD meshes      ",
                level.triangle_count, (double)level.error,
-               level.flags & GTX_SHELL_FAR ? ", across patches" : "");
+               level.flags & GTX_LOD_FAR ? ", across patches" : "");
     }
     printf("bounds          %g %g %g .. %g %g %g\n", (double)info->bounds_min[0],
            (double)info->bounds_min[1], (double)info->bounds_min[2], (double)info->bounds_max[0],

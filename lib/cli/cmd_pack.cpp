@@ -1,6 +1,6 @@
 /* gtx pack: what gtx unpack wrote, edited or not, or an asset -> an asset. */
 #include "cli/guard.hpp"
-#include "cli/unpacked.hpp"
+#include "cli/unpack/unpacked.hpp"
 
 #include <geotex/cook.h>
 
@@ -9,12 +9,12 @@
 
 static const char *output;
 static int32_t zstd_level = -1;
-static uint32_t shell_levels;
+static uint32_t lod_levels;
 
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes (required)", 0, 0},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [as it was]", 0, 19},
-    {"shell-levels", 0, OPTION_UINT, &shell_levels, "N",
+    {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
      "polygon levels of detail, made of the maps [those that are there]", 1, 5},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
@@ -22,7 +22,7 @@ static const verb pack = {
     "pack", "DIR|ASSET -o OUT.gtx",
     "Makes an asset of a folder that gtx unpack wrote: the same bytes, or an edited asset. Levels\n"
     "of normal, colour, material and emission are taken as their images are. An asset is packed\n"
-    "anew, for another shell or compression.",
+    "anew, for another LOD mesh or compression.",
     1, 1, options};
 
 /* Rules that only tell of heights that have changed: coverage, sphere, bounds. */
@@ -67,15 +67,15 @@ static Asset open_asset(const char *path)
     return Asset(asset, gtx_close);
 }
 
-static Asset with_shell(const Asset &asset)
+static Asset with_lod(const Asset &asset)
 {
-    gtx_shell_desc desc = {};
-    desc.levels = shell_levels;
+    gtx_lod_desc desc = {};
+    desc.levels = lod_levels;
     desc.progress = show_progress;
     gtx_asset *out = nullptr;
     gtx_error error = {};
     catch_interrupt();
-    gtx_result result = gtx_cook_shell(asset.get(), &desc, &out, &error);
+    gtx_result result = gtx_cook_lod_meshes(asset.get(), &desc, &out, &error);
     end_progress();
     require(result, error);
     return Asset(out, gtx_close);
@@ -97,8 +97,8 @@ int cmd_pack(int argc, char **argv)
         std::error_code ignored;
         const bool is_file = std::filesystem::is_regular_file(input, ignored);
         Asset asset = is_file ? open_asset(input) : open_folder(input, about);
-        if (shell_levels)
-            asset = with_shell(asset);
+        if (lod_levels)
+            asset = with_lod(asset);
         gtx_encode_desc desc = {};
         desc.zstd_level = zstd_level >= 0 ? zstd_level : 3;
         gtx_error error = {};

@@ -1,6 +1,6 @@
 /* gtx render: assets, meshes and scenes into a PNG, without a window. */
 #include "cli/guard.hpp"
-#include "cli/still.hpp"
+#include "cli/view/still.hpp"
 #include "image/image.h"
 
 #include <cstring>
@@ -10,7 +10,7 @@ static gtx::StillOptions still_options;
 static uint32_t size[2] = {1024, 768};
 static uint32_t method;
 static bool gles;
-static const gtx_method methods[] = {GTX_METHOD_AUTO, GTX_METHOD_CAST, GTX_METHOD_SHELL,
+static const gtx_method methods[] = {GTX_METHOD_AUTO, GTX_METHOD_CAST, GTX_METHOD_LOD,
                                      GTX_METHOD_PAPER};
 
 static const option options[] = {
@@ -20,7 +20,7 @@ static const option options[] = {
      "degrees, degrees, bounding-sphere radii [30,20,2.8]", 0, 0},
     {"depth", 0, OPTION_STRING, &depth_path, "OUT.exr",
      "distance along the view axis too, infinity where nothing is", 0, 0},
-    {"method", 0, OPTION_CHOICE, &method, "auto|cast|shell|paper",
+    {"method", 0, OPTION_CHOICE, &method, "auto|cast|lod|paper",
      "how patches are drawn [auto]", 0, 0},
     {"level", 0, OPTION_CHOICE, &still_options.level, "auto|0|1|2|3|4|5|6|7",
      "level of detail, or the coarsest there is; auto: by error [auto]", 0, 0},

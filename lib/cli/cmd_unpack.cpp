@@ -1,6 +1,6 @@
 /* gtx unpack: an asset -> a folder of images and one JSON file. */
 #include "cli/guard.hpp"
-#include "cli/unpacked.hpp"
+#include "cli/unpack/unpacked.hpp"
 
 #include <cstdlib>
 #include <cstring>

@@ -1,6 +1,6 @@
 /* gtx view: assets, meshes and scenes in a window. */
 #include "cli/guard.hpp"
-#include "cli/viewer.hpp"
+#include "cli/view/viewer.hpp"
 
 static double camera[3] = {30, 20, 2.8};
 static uint32_t size[2] = {1024, 768};
@@ -11,7 +11,7 @@ static const option options[] = {
     {"size", 0, OPTION_SIZE, size, "WxH", "of the window [1024x768]", 16, 8192},
     {"camera", 0, OPTION_TRIPLE, camera, "AZ,EL,DIST",
      "degrees, degrees, bounding-sphere radii [30,20,2.8]", 0, 0},
-    {"method", 0, OPTION_CHOICE, &method, "auto|cast|shell|paper",
+    {"method", 0, OPTION_CHOICE, &method, "auto|cast|lod|paper",
      "how patches are drawn [auto]", 0, 0},
     {"frames", 0, OPTION_UINT, &script.frames, "N",
      "close after N frames, once all is pressed and cooked", 1, 1e9},

@@ -93,7 +93,7 @@ static bool parse_step(const option *o, const char *text)
     char *end;
     step next = {.name = o->name, .text = text};
     const bool is_number = o->max > o->min;
-    if (!*text || all->count == MOST_STEPS)
+    if (!*text || all->count == MAX_STEPS)
         return false;
     if (is_number && (!parse_number(text, &end, &next.number) || *end || next.number < o->min ||
                       next.number > o->max))

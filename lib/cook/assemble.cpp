@@ -1,4 +1,4 @@
-/* Maps and shell -> an asset; the shell of an asset without a mesh, behind the C API. */
+/* Maps and LOD mesh -> an asset; the LOD mesh of an asset without a mesh, behind the C API. */
 #include "cook/assemble.hpp"
 
 #include "cook/guard.hpp"
@@ -20,17 +20,17 @@ static std::vector<const uint8_t *> level_pointers(const std::vector<std::vector
     return pointers;
 }
 
-static std::vector<gtx_shell> shell_levels(const std::vector<ShellLevel> &shell)
+static std::vector<gtx_lod_mesh> lod_levels(const std::vector<LodLevel> &lod)
 {
-    std::vector<gtx_shell> levels;
-    for (const ShellLevel &level : shell) {
-        gtx_shell out = {};
+    std::vector<gtx_lod_mesh> levels;
+    for (const LodLevel &level : lod) {
+        gtx_lod_mesh out = {};
         std::copy_n(level.origin, 3, out.origin);
         out.step = level.step;
         out.error = level.error;
         out.vertex_count = uint32_t(level.positions.size() / 3);
         out.triangle_count = uint32_t(level.triangle_count());
-        out.flags = level.far ? GTX_SHELL_FAR : 0;
+        out.flags = level.far ? GTX_LOD_FAR : 0;
         out.first = level.first.data();
         out.indices = level.indices.data();
         out.positions = level.positions.data();
@@ -39,13 +39,13 @@ static std::vector<gtx_shell> shell_levels(const std::vector<ShellLevel> &shell)
     return levels;
 }
 
-Asset assemble(const Maps &maps, const std::vector<ShellLevel> &shell, const AssetFacts &facts)
+Asset assemble(const Maps &maps, const std::vector<LodLevel> &lod, const AssetFacts &facts)
 {
     const std::vector<const uint8_t *> normal = level_pointers(maps.normal),
                                        color = level_pointers(maps.color),
                                        material = level_pointers(maps.material),
                                        emission = level_pointers(maps.emission);
-    const std::vector<gtx_shell> levels = shell_levels(shell);
+    const std::vector<gtx_lod_mesh> levels = lod_levels(lod);
 
     gtx_asset_desc desc = {};
     desc.patches = maps.patches.data();
@@ -62,8 +62,8 @@ Asset assemble(const Maps &maps, const std::vector<ShellLevel> &shell, const Ass
     desc.material = material.empty() ? nullptr : material.data();
     desc.emission = emission.empty() ? nullptr : emission.data();
     desc.emission_scale = maps.emission_scale;
-    desc.shell = levels.data();
-    desc.shell_levels = uint32_t(levels.size());
+    desc.lod = levels.data();
+    desc.lod_levels = uint32_t(levels.size());
     desc.meta = facts.meta.empty() ? nullptr : facts.meta.data();
     desc.meta_size = facts.meta.size();
     std::copy_n(maps.bounds_min, 3, desc.bounds_min);
@@ -118,32 +118,32 @@ Maps maps_of(const gtx_asset *asset)
     return maps;
 }
 
-static Asset with_shell(const gtx_asset *asset, const gtx_shell_desc &desc)
+static Asset with_lod(const gtx_asset *asset, const gtx_lod_desc &desc)
 {
     require_zeroed(desc.reserved);
-    require_argument(desc.levels <= MOST_SHELL_LEVELS, "levels is at most 5");
+    require_argument(desc.levels <= MAX_LOD_LEVELS, "levels is at most 5");
     require_argument(desc.threads <= 1024, "threads is at most 1024");
     gtx_info info;
     gtx_get_info(asset, &info);
-    Task task(desc.threads, desc.progress, desc.progress_user, {"shell"}, {1});
+    Task task(desc.threads, desc.progress, desc.progress_user, {"lod"}, {1});
     const Maps maps = maps_of(asset);
-    ShellSource source = shell_source(maps, task);
+    LodSource source = lod_source(maps, task);
     source.model = info.source_triangles;
     size_t size;
     const char *meta = gtx_meta(asset, &size);
     const AssetFacts facts = {meta ? std::string(meta, size) : std::string(), info.unit,
                               info.source_triangles, gtx_allocator_or_default(desc.allocator)};
-    return assemble(maps, make_shell(source, maps, desc.levels ? desc.levels : MOST_SHELL_LEVELS,
-                                     task), facts);
+    return assemble(maps, make_lod(source, maps, desc.levels ? desc.levels : MAX_LOD_LEVELS,
+                                   task), facts);
 }
 
 } // namespace gtx
 
-gtx_result gtx_cook_shell(const gtx_asset *asset, const gtx_shell_desc *desc, gtx_asset **out,
-                          gtx_error *error)
+gtx_result gtx_cook_lod_meshes(const gtx_asset *asset, const gtx_lod_desc *desc, gtx_asset **out,
+                               gtx_error *error)
 {
     return gtx::guard(error, [&] {
-        gtx::require_argument(asset && out, "gtx_cook_shell needs an asset and a result");
-        *out = gtx::with_shell(asset, desc ? *desc : gtx_shell_desc{}).release();
+        gtx::require_argument(asset && out, "gtx_cook_lod_meshes needs an asset and a result");
+        *out = gtx::with_lod(asset, desc ? *desc : gtx_lod_desc{}).release();
     });
 }

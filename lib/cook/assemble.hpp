@@ -1,7 +1,7 @@
-/* Maps and shell -> an asset, and an asset's maps back. */
+/* Maps and LOD mesh -> an asset, and an asset's maps back. */
 #pragma once
 
-#include "bake/shell.hpp"
+#include "bake/lod/lod.hpp"
 
 #include <memory>
 #include <string>
@@ -19,7 +19,7 @@ struct AssetFacts {
 };
 
 /* Throws Error: what gtx_create reports. */
-Asset assemble(const Maps &maps, const std::vector<ShellLevel> &shell, const AssetFacts &facts);
+Asset assemble(const Maps &maps, const std::vector<LodLevel> &lod, const AssetFacts &facts);
 
 /* The maps of an asset; its charts are its patches. */
 Maps maps_of(const gtx_asset *asset);

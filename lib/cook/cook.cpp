@@ -7,7 +7,7 @@
 #include "cook/target.hpp"
 
 #include "asset/asset.h"
-#include "bake/shell.hpp"
+#include "bake/lod/lod.hpp"
 #include "base/alloc.h"
 
 #include <algorithm>
@@ -25,9 +25,9 @@ struct Stage {
     float weight;
 };
 constexpr Stage STAGES[] = {{"import", 6}, {"clean", 14}, {"partition", 40}, {"frame", 10},
-                            {"bake", 22},  {"pack", 2},   {"shell", 0},      {"measure", 0},
+                            {"bake", 22},  {"pack", 2},   {"lod", 0},      {"measure", 0},
                             {"write", 6}};
-constexpr float SHELL_WEIGHT = 18, MEASURE_WEIGHT = 60;
+constexpr float LOD_WEIGHT = 18, MEASURE_WEIGHT = 60;
 
 static Task make_task(const gtx_cook_desc &desc)
 {
@@ -38,23 +38,23 @@ static Task make_task(const gtx_cook_desc &desc)
         weights.push_back(stage.weight);
         if (!std::strcmp(stage.name, "measure") && (desc.measure || desc.error > 0))
             weights.back() = MEASURE_WEIGHT;
-        if (!std::strcmp(stage.name, "shell") && desc.shell_levels)
-            weights.back() = SHELL_WEIGHT;
+        if (!std::strcmp(stage.name, "lod") && desc.lod_levels)
+            weights.back() = LOD_WEIGHT;
     }
     return Task(desc.threads, desc.progress, desc.progress_user, names, weights);
 }
 
-static Asset make_asset(const Maps &maps, const std::vector<ShellLevel> &shell,
+static Asset make_asset(const Maps &maps, const std::vector<LodLevel> &lod,
                         const Options &options, const CookFacts &facts)
 {
     Json meta(options.allocator);
     write_meta({partition_name(options), facts.chart_count, options.chart.resolution,
-                maps.height_bits, maps.mip_count, options.bake.dilation, options.shell_levels,
+                maps.height_bits, maps.mip_count, options.bake.dilation, options.lod_levels,
                 options.z_up, options.bake.extractor != nullptr, options.chart.adaptive,
                 facts.source_triangles, facts.source_hash, facts.key, facts.warnings},
                meta);
-    return assemble(maps, shell, {std::string(meta.text, meta.size), options.unit,
-                                  facts.source_triangles, options.allocator});
+    return assemble(maps, lod, {std::string(meta.text, meta.size), options.unit,
+                                facts.source_triangles, options.allocator});
 }
 
 /* Jobs of the C rooms on a task's threads. What ends them early must not pass through C: it is kept
@@ -159,16 +159,16 @@ static Attempt attempt(const Mesh &mesh, const gtx_cook_desc &desc, const Option
     const Mesh &charted = out.partition.charted(mesh);
     {
         Maps maps = bake(charted, out.partition, options.bake, task);
-        std::vector<ShellLevel> shell;
-        if (options.shell_levels)
-            shell = make_shell(shell_source(charted, out.partition, maps, task), maps,
-                               options.shell_levels, task);
+        std::vector<LodLevel> lod;
+        if (options.lod_levels)
+            lod = make_lod(lod_source(charted, out.partition, maps, task), maps,
+                           options.lod_levels, task);
         refuse_warnings(desc, task);
         CookFacts of_asset = facts;
         of_asset.chart_count = out.partition.charts.size();
         of_asset.warnings = task.warnings.size();
         out.bake = maps.report;
-        out.asset = make_asset(maps, shell, options, of_asset);
+        out.asset = make_asset(maps, lod, options, of_asset);
     }
     if (desc.measure || desc.error > 0) {
         task.begin("measure");
@@ -245,9 +245,9 @@ static std::unique_ptr<Report> report_on(const gtx_asset *asset, const Options &
     facts.chart_count = info.patch_count;
     facts.content_hash = info.content_hash;
     facts.gpu_bytes = gpu_bytes(info);
-    facts.shell.resize(info.shell_levels);
-    for (uint32_t k = 0; k < info.shell_levels; ++k)
-        gtx_get_shell(asset, k, &facts.shell[k]);
+    facts.lod.resize(info.lod_levels);
+    for (uint32_t k = 0; k < info.lod_levels; ++k)
+        gtx_get_lod_mesh(asset, k, &facts.lod[k]);
     facts.stages = task.stages();
     facts.seconds = task.seconds();
     Json json(options.allocator);

@@ -95,16 +95,16 @@ bool Driver::Context::make(EGLDisplay on)
 
 Driver::Context::Context()
 {
-    constexpr EGLint MOST_DEVICES = 16;
+    constexpr EGLint MAX_DEVICES = 16;
     auto display_of =
         egl.extension<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
     auto query_devices = egl.extension<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
     const EGLenum api_before = egl.QueryAPI();
-    EGLDeviceEXT devices[MOST_DEVICES];
+    EGLDeviceEXT devices[MAX_DEVICES];
     EGLint count = 0;
     bool made = false;
     if (display_of && egl.BindAPI(EGL_OPENGL_API)) {
-        if (query_devices && query_devices(MOST_DEVICES, devices, &count))
+        if (query_devices && query_devices(MAX_DEVICES, devices, &count))
             for (EGLint i = 0; i < count && !made; ++i)
                 made = make(display_of(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr));
         if (!made)

@@ -1,7 +1,7 @@
 /* The OpenGL driver that maps are extracted with. */
 #pragma once
 
-#include "bake/extract.hpp"
+#include "bake/field/extract.hpp"
 
 namespace gtx {
 

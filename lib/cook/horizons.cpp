@@ -75,7 +75,7 @@ static void check(const gtx_height_grid *grids, uint32_t count, const gtx_horizo
     require_argument(!desc.height_bits || desc.height_bits == 8 || desc.height_bits == 16,
                      "height_bits is 8 or 16");
     require_argument(desc.mips <= 8, "mips is 1 to 8");
-    require_argument(desc.shell_levels <= MOST_SHELL_LEVELS, "shell_levels is 0 to 5");
+    require_argument(desc.lod_levels <= MAX_LOD_LEVELS, "lod_levels is 0 to 5");
     require_argument(desc.threads <= 1024, "threads is at most 1024");
     require_argument(desc.unit >= 0 && std::isfinite(desc.unit), "unit is a positive number");
     for (uint32_t n = 0; n < count; ++n) {
@@ -206,9 +206,9 @@ static Asset make_horizons(const gtx_height_grid *grids, uint32_t count,
                            const gtx_horizons_desc &desc, gtx_horizons_result *result)
 {
     check(grids, count, desc);
-    const float shell = desc.shell_levels ? 60 : 0;
-    Task task(desc.threads, desc.progress, desc.progress_user, {"bake", "pack", "shell", "write"},
-              {35, 3, shell, 2});
+    const float lod = desc.lod_levels ? 60 : 0;
+    Task task(desc.threads, desc.progress, desc.progress_user, {"bake", "pack", "lod", "write"},
+              {35, 3, lod, 2});
     const Surfaces surfaces(grids, count, desc.one_surface);
     double range[2] = {0, 0};
     std::vector<GridLayer> layers;
@@ -221,9 +221,9 @@ static Asset make_horizons(const gtx_height_grid *grids, uint32_t count,
     }
     TileReport report;
     const Maps maps = bake_tiles(layers, options_of(desc), report, task);
-    std::vector<ShellLevel> levels;
-    if (desc.shell_levels)
-        levels = make_shell(shell_source(maps, task), maps, desc.shell_levels, task);
+    std::vector<LodLevel> levels;
+    if (desc.lod_levels)
+        levels = make_lod(lod_source(maps, task), maps, desc.lod_levels, task);
     task.begin("write");
     const gtx_allocator allocator = gtx_allocator_or_default(desc.allocator);
     Asset asset = assemble(maps, levels, {meta_of(desc, range, allocator),

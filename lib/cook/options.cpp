@@ -16,7 +16,7 @@ namespace gtx {
 /* Raised with every change that makes other assets of the same models and options. */
 constexpr int COOKER_REVISION = 16;
 
-constexpr uint32_t MOST_CHARTS = 1u << 20, MOST_THREADS = 1024, MOST_DILATION = 128;
+constexpr uint32_t MAX_CHARTS = 1u << 20, MAX_THREADS = 1024, MAX_DILATION = 128;
 #ifdef GTX_ZSTD
 constexpr int DEFAULT_ZSTD = 3;
 #else
@@ -40,16 +40,16 @@ void check(const gtx_cook_desc &desc)
     require_zeroed(desc.reserved);
     require_argument(number_of(desc.partition) <= GTX_PARTITION_PGP, "unknown partition");
     require_argument(number_of(desc.extract) <= GTX_EXTRACT_GPU, "unknown extraction");
-    require_argument(desc.charts <= MOST_CHARTS, "charts is at most 2^20");
+    require_argument(desc.charts <= MAX_CHARTS, "charts is at most 2^20");
     require_argument(!desc.resolution || (desc.resolution >= 64 && desc.resolution <= 512),
                      "resolution is 64 to 512");
     require_argument(!desc.height_bits || desc.height_bits == 8 || desc.height_bits == 16,
                      "height_bits is 8 or 16");
-    require_argument(desc.dilation <= MOST_DILATION, "dilation is at most 128");
+    require_argument(desc.dilation <= MAX_DILATION, "dilation is at most 128");
     require_argument(desc.mips <= 8, "mips is 1 to 8");
-    require_argument(desc.shell_levels <= MOST_SHELL_LEVELS, "shell_levels is 0 to 5");
+    require_argument(desc.lod_levels <= MAX_LOD_LEVELS, "lod_levels is 0 to 5");
     require_argument(desc.zstd_level >= -1 && desc.zstd_level <= 19, "zstd_level is -1 to 19");
-    require_argument(desc.threads <= MOST_THREADS, "threads is at most 1024");
+    require_argument(desc.threads <= MAX_THREADS, "threads is at most 1024");
     require_argument(desc.unit >= 0 && std::isfinite(desc.unit), "unit is a positive number");
     require_argument(desc.error >= 0 && desc.error < 1, "error is a fraction of the diagonal");
     require_argument(desc.error == 0 || number_of(desc.partition) <= GTX_PARTITION_CUTS,
@@ -83,7 +83,7 @@ Options options_of(const gtx_cook_desc &desc)
         options.driver = std::make_shared<const Driver>();
         options.bake.extractor = &options.driver->extractor();
     }
-    options.shell_levels = desc.shell_levels;
+    options.lod_levels = desc.lod_levels;
     options.zstd = desc.zstd_level == 0 ? DEFAULT_ZSTD : std::max(desc.zstd_level, 0);
     options.unit = desc.unit > 0 ? desc.unit : 1;
     options.z_up = desc.z_up;
@@ -111,12 +111,12 @@ uint64_t content_key(const Options &options, uint64_t source_hash)
     char numbers[512]; /* more than the longest take */
     int size = snprintf(numbers, sizeof numbers,
                         "geotex %d revision %d source %016" PRIx64 " partition %s charts %u "
-                        "resolution %u bits %u mips %u dilation %u shell %u zstd %d unit %08"
+                        "resolution %u bits %u mips %u dilation %u LOD mesh %u zstd %d unit %08"
                         PRIx32 " error %016" PRIx64 " up %c",
                         GTX_VERSION, COOKER_REVISION, source_hash, partition_name(options),
                         options.chart.charts, options.chart.resolution,
                         options.free_bits ? 0 : options.bake.height_bits, options.bake.mips,
-                        options.bake.dilation, options.shell_levels, options.zstd, unit_bits,
+                        options.bake.dilation, options.lod_levels, options.zstd, unit_bits,
                         error_bits,
                         options.z_up ? 'z' : 'y');
     std::string text(numbers, size_t(size));

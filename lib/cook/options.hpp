@@ -8,13 +8,13 @@
 
 namespace gtx {
 
-constexpr uint32_t MOST_SHELL_LEVELS = 5;
+constexpr uint32_t MAX_LOD_LEVELS = 5;
 
 struct Options {
     ChartOptions chart;
     BakeOptions bake;
     std::shared_ptr<const Driver> driver; /* null: the CPU extracts the maps */
-    unsigned shell_levels = 0;
+    unsigned lod_levels = 0;
     int zstd = 0;
     float unit = 1;
     double error = 0;            /* asked for; 0: none */

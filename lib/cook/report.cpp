@@ -76,10 +76,10 @@ static void write_error(Json &json, const CookFacts &facts)
     gtx_json_end_object(&json);
 }
 
-static void write_shell(Json &json, const CookFacts &facts)
+static void write_lod(Json &json, const CookFacts &facts)
 {
-    gtx_json_begin_array(&json, "shell");
-    for (const gtx_shell &level : facts.shell) {
+    gtx_json_begin_array(&json, "lod_meshes");
+    for (const gtx_lod_mesh &level : facts.lod) {
         gtx_json_begin_object(&json, nullptr);
         gtx_json_integer(&json, "triangles", level.triangle_count);
         gtx_json_integer(&json, "vertices", level.vertex_count);
@@ -140,7 +140,7 @@ std::string write_cook_report(const CookFacts &facts, const std::vector<std::str
     gtx_json_integer(&json, "bytes", facts.bytes);
     gtx_json_number(&json, "bytes_per_triangle", per_triangle(facts));
     gtx_json_integer(&json, "gpu_bytes", facts.gpu_bytes);
-    write_shell(json, facts);
+    write_lod(json, facts);
     gtx_json_begin_object(&json, "seconds");
     for (size_t i = 0; i < facts.stages.size(); ++i)
         gtx_json_number(&json, facts.stages[i], facts.seconds[i]);
@@ -166,7 +166,7 @@ std::string write_unchanged_report(const CookFacts &facts, Json &json)
     gtx_json_integer(&json, "bytes", facts.bytes);
     gtx_json_number(&json, "bytes_per_triangle", per_triangle(facts));
     gtx_json_integer(&json, "gpu_bytes", facts.gpu_bytes);
-    write_shell(json, facts);
+    write_lod(json, facts);
     gtx_json_begin_object(&json, "seconds");
     gtx_json_number(&json, "total", facts.total_seconds);
     gtx_json_end_object(&json);
@@ -258,7 +258,7 @@ void write_meta(const MetaFacts &facts, Json &json)
     gtx_json_integer(&json, "height_bits", facts.height_bits);
     gtx_json_integer(&json, "mips", facts.mips);
     gtx_json_integer(&json, "dilation", facts.dilation);
-    gtx_json_integer(&json, "shell_levels", facts.shell_levels);
+    gtx_json_integer(&json, "lod_levels", facts.lod_levels);
     gtx_json_string(&json, "up", facts.z_up ? "z" : "y");
     if (facts.by_gpu)
         gtx_json_string(&json, "extract", "gpu");

@@ -24,7 +24,7 @@ struct CookFacts {
     bool measured = false;
     SurfaceError error;
     uint64_t source_hash = 0, key = 0, warnings = 0;
-    std::vector<gtx_shell> shell; /* the levels of the asset */
+    std::vector<gtx_lod_mesh> lod; /* the levels of the asset */
     uint64_t bytes = 0, gpu_bytes = 0, content_hash = 0;
     std::vector<const char *> stages;
     std::vector<double> seconds; /* a stage each */
@@ -65,7 +65,7 @@ struct Report : gtx_report {
 /* The META section: what made the asset, from what. Nothing of when, where or by how many. */
 struct MetaFacts {
     const char *partition;
-    uint64_t charts, resolution, height_bits, mips, dilation, shell_levels;
+    uint64_t charts, resolution, height_bits, mips, dilation, lod_levels;
     bool z_up, by_gpu, adaptive;
     uint64_t source_triangles, source_hash, key, warnings;
 };

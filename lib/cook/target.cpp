@@ -16,7 +16,7 @@ constexpr double AIM = 0.97;           /* of the error that is asked for */
 constexpr double CLOSE_ENOUGH = 0.94;  /* likewise: no coarser pitch is looked for */
 constexpr double NARROW = 1.03;        /* ratio of pitches between which the search ends */
 constexpr double LONGEST_STEP = 4;
-constexpr int MOST_ATTEMPTS = 12;
+constexpr int MAX_ATTEMPTS = 12;
 /* Pitches beyond these parts of the default one are not tried. */
 constexpr double COARSEST = 16, FINEST = 1.0 / 8;
 /* Sixteen bits are tried where they take as much from the error at the same pitch. */
@@ -84,7 +84,7 @@ void Search::find_pitch()
 {
     std::optional<Point> good, bad;
     Options options = options_;
-    for (int n = 0; n < MOST_ATTEMPTS; ++n) {
+    for (int n = 0; n < MAX_ATTEMPTS; ++n) {
         double rms = attempt(options);
         Point here = {options.chart.pitch > 0 ? options.chart.pitch : first_pitch_, rms};
         (rms <= error_ ? good : bad) = here;

@@ -1,5 +1,5 @@
 /* What kernels on the GPU take of a level: corner cells, the four codes of a cell in one texel, and
- * how far the level's sheet lies from the finest one. */
+ * how far the level's height field lies from the finest one. */
 #include "derive/codes.h"
 
 #include <math.h>
@@ -40,7 +40,8 @@ void gtx_grid_cells(const gtx_grid *grid, uint32_t height_bits, size_t row_texel
     }
 }
 
-/* A level's sheet over texel (x, y): its height in codes, and its slopes in codes a texel. */
+/* A level's height field over texel (x, y): its height in codes, and its slopes in codes a
+ * texel. */
 typedef struct gtx_surface {
     double z, dx, dy;
 } gtx_surface;
@@ -65,8 +66,8 @@ static gtx_surface surface_at(const gtx_grid *grid, const gtx_patch *patch, uint
     return (gtx_surface){(1 - f[1]) * low + f[1] * high, dx / width[0], (high - low) / width[1]};
 }
 
-/* Of a code along the frame's Z in object space, square to the sheet: the share of the step that
- * leads away from the plane of its tangents. */
+/* Of a code along the frame's Z in object space, square to the height field: the share of the step
+ * that leads away from the plane of its tangents. */
 static double square_to(const gtx_surface *s, const double step[3], const gtx_patch *p)
 {
     double u[3], v[3], along = 0, length = 0;
@@ -118,7 +119,7 @@ static void lay_whole_cells(const float *side, uint32_t cells, uint32_t step, fl
     }
 }
 
-/* What is measured between a patch's sheet at a level and at level 0. */
+/* What is measured between a patch's height field at a level and at level 0. */
 typedef struct comparison {
     const gtx_patch *patch;
     const gtx_grid *finest, *grid;
@@ -128,35 +129,36 @@ typedef struct comparison {
     double greatest;          /* so far, object units */
 } comparison;
 
-/* The distance of a texel from the sheet as floats have it. NaNs are not beyond any limit. */
-static inline float distance_of(float texel, float sheet, float weight)
+/* The distance of a texel from the height field as floats have it. NaNs are not beyond any
+ * limit. */
+static inline float distance_of(float texel, float field, float weight)
 {
-    return fabsf(sheet - texel) * weight;
+    return fabsf(field - texel) * weight;
 }
 
 /* Some texels of a row, in turn: those beyond the limit. */
 static void compare_exactly(comparison *c, uint32_t x0, uint32_t count, uint32_t y,
-                            const float *texels, const float *sheet, const float *weights,
+                            const float *texels, const float *field, const float *weights,
                             float limit)
 {
     for (uint32_t i = 0; i < count; ++i) {
-        if (!(distance_of(texels[i], sheet[i], weights[i]) > limit))
+        if (!(distance_of(texels[i], field[i], weights[i]) > limit))
             continue;
         const gtx_surface s = surface_at(c->grid, c->patch, x0 + i, y);
         const double codes = fabs(s.z - texels[i]) * (double)weights[i];
-        /* or it cannot be greater square to the sheet */
+        /* or it cannot be greater square to the height field */
         if (codes * c->step[2] > c->greatest)
             c->greatest = fmax(c->greatest, codes * square_to(&s, c->step, c->patch));
     }
 }
 
-/* Whether a texel is so far from the sheet. */
-static bool any_beyond(const float *texels, const float *sheet, const float *weights,
+/* Whether a texel is so far from the height field. */
+static bool any_beyond(const float *texels, const float *field, const float *weights,
                        uint32_t count, float limit)
 {
     int beyond = 0;
     for (uint32_t i = 0; i < count; ++i)
-        beyond |= distance_of(texels[i], sheet[i], weights[i]) > limit;
+        beyond |= distance_of(texels[i], field[i], weights[i]) > limit;
     return beyond;
 }
 
@@ -171,7 +173,7 @@ static void compare_run(comparison *c, uint32_t first, uint32_t end, uint32_t y)
     const float f = (float)(y - low) / (float)(low + step < last ? step : last - low);
     const uint16_t *row = grid->code + (size_t)j * grid->nodes_x + first;
     const uint16_t *next = row + grid->nodes_x;
-    float texels[GTX_CODES_RUN], side[GTX_CODES_RUN], sheet[GTX_CODES_RUN];
+    float texels[GTX_CODES_RUN], side[GTX_CODES_RUN], field[GTX_CODES_RUN];
     float weights[GTX_CODES_RUN];
     for (uint32_t i = 0; i <= end - first; ++i)
         side[i] = (float)row[i] + f * (float)(next[i] - row[i]);
@@ -182,15 +184,15 @@ static void compare_run(comparison *c, uint32_t first, uint32_t end, uint32_t y)
     const uint32_t count = whole * step + rest;
     gtx_load_codes(c->finest, x0, count, y, texels);
     weigh(c->trim + y * c->row_texels + x0, count, weights);
-    lay_whole_cells(side, whole, step, sheet);
+    lay_whole_cells(side, whole, step, field);
     if (ends)
-        lay_cells(side + whole, 1, rest - 1, rest, sheet + whole * step);
+        lay_cells(side + whole, 1, rest - 1, rest, field + whole * step);
     for (uint32_t i = 0; i < count; i += PIECE) {
         const uint32_t piece = count - i < PIECE ? count - i : PIECE;
         /* Floats are off by less than this. */
         const float limit = (float)(0.9999 * c->greatest / c->step[2]) - 0.05f * border_counts;
-        if (any_beyond(texels + i, sheet + i, weights + i, piece, limit))
-            compare_exactly(c, x0 + i, piece, y, texels + i, sheet + i, weights + i, limit);
+        if (any_beyond(texels + i, field + i, weights + i, piece, limit))
+            compare_exactly(c, x0 + i, piece, y, texels + i, field + i, weights + i, limit);
     }
 }
 
@@ -205,7 +207,7 @@ double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *fi
                      p->extent_z / (asset->info.height_bits == 8 ? 254.0 : 65534.0)}, 0};
     /* What the wider limit of the trim lets stick out. */
     c.greatest = 0.3 * ((1u << grid->level) - 1) * fmax(c.step[0], c.step[1]);
-    /* The difference of two bilinear sheets is greatest at a corner of the finer cells. */
+    /* The difference of two bilinear height fields is greatest at a corner of the finer cells. */
     const uint32_t cells = (GTX_CODES_RUN >> grid->level) - 1, width = grid->nodes_x - 1;
     for (uint32_t y = 0; grid->level && y < finest->nodes_y; ++y)
         for (uint32_t first = 0; first < width; first += cells)

@@ -36,10 +36,11 @@ void gtx_grid_trim(const gtx_asset *asset, uint32_t patch, gtx_grid *grid);
  * rectangle at mip level k. */
 void gtx_grid_cells(const gtx_grid *grid, uint32_t height_bits, size_t row_texels, void *out);
 
-/* How far, in object units, a patch's sheet at a level is from that at level 0, `finest`: the
- * largest distance of a texel from the plane that touches the level's sheet over it, or what the
- * wider trim limit lets stick out, if that is more. At the border, where a neighbour's sheet goes
- * on, a distance counts four times: what is too little to be seen opens a hole there. */
+/* How far, in object units, a patch's height field at a level is from that at level 0, `finest`:
+ * the largest distance of a texel from the plane that touches the level's height field over it, or
+ * what the wider trim limit lets stick out, if that is more. At the border, where a neighbour's
+ * height field goes on, a distance counts four times: what is too little to be seen opens a hole
+ * there. */
 double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
                       const gtx_grid *grid);
 
@@ -70,19 +71,20 @@ enum { GTX_BOX_VERTICES = 8, GTX_BOX_INDICES = 36 };
 gtx_result gtx_add_box(uint32_t patch, const gtx_grid *finest, float grow,
                        const gtx_allocator *allocator, gtx_proxies *out, gtx_error *error);
 
-/* Adds a tight hull of the solid cells of a level: over blocks of cells a lid above the sheet,
- * and walls where the blocks end, down to below it. Two-sided patches have a floor too, and a
- * closed hull. Every ray from outside that crosses the sheet from above, and if it is two-sided
- * from below, passes a front face before. The hull stands off by `grow` codes, and texels at the
- * outline. `*thickness`, in codes, is more than a point in the hull lies above the sheet, or
- * below. A sheet without a solid cell has no triangle. Errors: ARGUMENT, MEMORY. */
+/* Adds a tight hull of the solid cells of a level: over blocks of cells a lid above the height
+ * field, and walls where the blocks end, down to below it. Two-sided patches have a floor too, and
+ * a closed hull. Every ray from outside that crosses the height field from above, and if it is
+ * two-sided from below, passes a front face before. The hull stands off by `grow` codes, and texels
+ * at the outline. `*thickness`, in codes, is more than a point in the hull lies above the height
+ * field, or below. A height field without a solid cell has no triangle. Errors: ARGUMENT,
+ * MEMORY. */
 gtx_result gtx_add_hull(const gtx_asset *asset, uint32_t patch, const gtx_grid *grid, float grow,
                         const gtx_allocator *allocator, gtx_proxies *out, float *thickness,
                         gtx_error *error);
 
 /* A slab: low <= (x, y) <= high, and height[0] <= z - slope[0] x - slope[1] y <= height[1], in the
  * coordinates of proxies. Of a block without a solid cell low is above high. `rise` bounds the
- * sheet's slopes over those of the slab. Three texels of four floats. */
+ * height field's slopes over those of the slab. Three texels of four floats. */
 typedef struct gtx_slab {
     float low[2], high[2], slope[2], height[2], rise_x[2], rise_y[2];
 } gtx_slab;

@@ -184,7 +184,7 @@ static uint32_t min_u32(uint32_t a, uint32_t b)
     return a < b ? a : b;
 }
 
-/* A bilinear sheet lies in the hull of its corners. */
+/* A bilinear height field lies in the hull of its corners. */
 static void include_cell(gtx_box *box, const gtx_patch_frame *f, const gtx_patch *patch,
                          const gtx_grid *grid, uint32_t i, uint32_t j)
 {

@@ -12,7 +12,7 @@
 enum { BLOCK = 16 };
 /* Codes that vectors may read beyond the last one. */
 enum { SPARE = 3 };
-_Static_assert((int)BLOCK <= (int)GTX_MOST_MOMENTS, "a block's sums fit");
+_Static_assert((int)BLOCK <= (int)GTX_MAX_MOMENTS, "a block's sums fit");
 
 /* Where a block's two triangles are: in the halves beside its diagonal. */
 enum {
@@ -99,7 +99,7 @@ static void split_block(gtx_hull *h, uint32_t bi, uint32_t bj)
         h->edges[h->edge_count++] = (gtx_hull_edge){{ring[upper], ring[lower]}, {bi, bj}};
 }
 
-/* More than the sheet is under the lid, or over the floor. */
+/* More than the height field is under the lid, or over the floor. */
 static float thickness_of(const gtx_hull *h)
 {
     float lid = 0, floor = 0;

@@ -8,7 +8,7 @@
 
 /* A corner of blocks. */
 typedef struct gtx_hull_node {
-    float x, y, z;            /* a point near the sheet */
+    float x, y, z;            /* a point near the height field */
     float away[2];            /* from the blocks, where they end */
     float up, down;           /* how far lid and floor are from the point */
     uint32_t top, bottom;     /* vertices, or GTX_HULL_NONE */
@@ -41,7 +41,7 @@ typedef struct gtx_hull {
     gtx_hull_edge *edges;     /* the outline */
     float *columns;           /* texels of the level's nodes */
     float *codes;             /* of its nodes, NaN where no solid cell has a corner */
-    float highest, lowest;    /* of the sheet against the planes of the triangles */
+    float highest, lowest;    /* of the height field against the planes of the triangles */
 } gtx_hull;
 
 /* First cell of block column or row i. */
@@ -75,8 +75,8 @@ static inline float gtx_greater(float a, float b)
     return a > b ? a : b;
 }
 
-/* hull_fit.c: places nodes near the sheet, lifts and sinks lid and floor until they are clear of
- * it, * and sinks the walls' feet. Columns and codes are filled. */
+/* hull_fit.c: places nodes near the height field, lifts and sinks lid and floor until they are
+ * clear of it, * and sinks the walls' feet. Columns and codes are filled. */
 void gtx_hull_fit(gtx_hull *h);
 
 #endif

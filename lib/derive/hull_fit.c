@@ -1,13 +1,14 @@
-/* Hulls close to the sheet: where their nodes are, how high the lid, how deep walls and floor. */
+/* Hulls close to the height field: where their nodes are, how high the lid, how deep walls and
+ * floor. */
 #include "derive/hull.h"
 
 #include <math.h>
 
-/* How much steeper than the sheet at its outline what lies beyond may be. */
+/* How much steeper than the height field at its outline what lies beyond may be. */
 static const float steeper = 1.5f;
 
-/* The height at node (bi, bj) of a plane that is as near as can be to the sheet of the blocks
- * around. Slopes are held back a little, where few cells do not tell them. */
+/* The height at node (bi, bj) of a plane that is as near as can be to the height field of the
+ * blocks around. Slopes are held back a little, where few cells do not tell them. */
 static float plane_at(const gtx_hull *h, uint32_t bi, uint32_t bj)
 {
     gtx_moments m = {.xx = 1, .yy = 1};
@@ -106,8 +107,8 @@ typedef struct row_shape {
     float base[3], slope[3], height, rise;
 } row_shape;
 
-/* How far the sheet's nodes in a row that the triangle meets, by the bases of its shares, are above
- * its plane, and below; column by column, which makes vectors of it. */
+/* How far the height field's nodes in a row that the triangle meets, by the bases of its shares,
+ * are above its plane, and below; column by column, which makes vectors of it. */
 static void measure_row(const row_shape *row, const float *restrict x, const float *restrict code,
                         size_t count, float *restrict highest, float *restrict lowest)
 {
@@ -151,8 +152,8 @@ static void measure(const gtx_hull *h, const shape *s, uint32_t first, float *hi
     }
 }
 
-/* Lifts and sinks the nodes of a triangle until lid and floor are clear of the sheet over all cells
- * that it meets: over a cell the difference is bilinear, and greatest in a corner. */
+/* Lifts and sinks the nodes of a triangle until lid and floor are clear of the height field over
+ * all cells that it meets: over a cell the difference is bilinear, and greatest in a corner. */
 static void lift(gtx_hull *h, const gtx_hull_triangle *t)
 {
     const shape s = shape_of(h, t);
@@ -175,7 +176,8 @@ static float least_code(const gtx_grid *grid, uint32_t i, uint32_t j)
     return gtx_lesser(gtx_lesser(row[0], row[1]), gtx_lesser(next[0], next[1]));
 }
 
-/* How much the sheet falls outward over a cell, in the mean of the first few behind cell (i, j). */
+/* How much the height field falls outward over a cell, in the mean of the first few behind cell (i,
+ * j). */
 static float fall_at(const gtx_grid *grid, uint32_t i, uint32_t j, int axis, bool upward)
 {
     enum { CELLS = 4 };
@@ -196,8 +198,8 @@ static float fall_at(const gtx_grid *grid, uint32_t i, uint32_t j, int axis, boo
 
 /* Sinks the foot of the wall on an edge of the outline. It is below the first cells behind it,
  * wherever their lines meet the wall: as columns if `axis` is 0, or else as rows; and where they
- * begin some way behind, below where the sheet would go on to, a half more steeply: rays that graze
- * it come from there. */
+ * begin some way behind, below where the height field would go on to, a half more steeply: rays
+ * that graze it come from there. */
 static void sink(gtx_hull *h, const gtx_hull_edge *e, int axis)
 {
     const uint32_t row = h->blocks[0] + 1, width = h->grid->nodes_x - 1;

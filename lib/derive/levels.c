@@ -1,4 +1,4 @@
-/* Levels of the height sheet, derived by the rule of format/gtx.md, section 5. */
+/* Levels of the height field, derived by the rule of format/gtx.md, section 5. */
 #include "derive/derive.h"
 
 #include "base/alloc.h"
@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* What a fold over rectangles of texels keeps at hand: a row, and what is read beyond its end. */
-enum { MOST_STEP = 1 << (GTX_MAX_MIPS - 1), ROW_ROOM = GTX_MAX_PAGE_SIDE + 2 * MOST_STEP };
+enum { MAX_STEP = 1 << (GTX_MAX_MIPS - 1), ROW_ROOM = GTX_MAX_PAGE_SIDE + 2 * MAX_STEP };
 
 static uint32_t min_u32(uint32_t a, uint32_t b)
 {

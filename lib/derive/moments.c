@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-enum { LANES = GTX_MOST_MOMENTS };
+enum { LANES = GTX_MAX_MOMENTS };
 
 /* Sums of a column's cells; j counts rows. All of them are exact: of codes the largest is that of
  * 16 times 0 to 15, which is below 2^24. */

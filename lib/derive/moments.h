@@ -10,9 +10,9 @@ typedef struct gtx_moments {
     double n, x, y, z, xx, xy, yy, xz, yz;
 } gtx_moments;
 
-enum { GTX_MOST_MOMENTS = 16 };
+enum { GTX_MAX_MOMENTS = 16 };
 
-/* Of the cells low to high - 1, at most GTX_MOST_MOMENTS on a side. */
+/* Of the cells low to high - 1, at most GTX_MAX_MOMENTS on a side. */
 gtx_moments gtx_moments_of(const gtx_grid *grid, const uint32_t low[2], const uint32_t high[2]);
 
 #endif

@@ -22,9 +22,9 @@ bool gtx_placement_of(const float transform[16], gtx_placement *out);
 gtx_box gtx_placement_box(const gtx_placement *placement, const gtx_box *object);
 
 /* How far off an asset's surface rays begin that must not meet its ripples, in object units: two of
- * its height steps, for a sheet rounds the surface by half a step up or down, or the 32nd part of
- * a texel, which is how far its cells cut into what is as round as 4 texels. Of the coarsest
- * patch. */
+ * its height steps, for a height field rounds the surface by half a step up or down, or the 32nd
+ * part of a texel, which is how far its cells cut into what is as round as 4 texels. Of the
+ * coarsest patch. */
 double gtx_ray_offset(const gtx_asset *asset);
 
 #ifdef __cplusplus

@@ -5,11 +5,11 @@
 #include <stdbool.h>
 #include <string.h>
 
-/* How far slabs overlap, in cells, and stand off the sheet, in codes: rounding must neither open a
- * seam between neighbours nor cut the sheet off. */
+/* How far slabs overlap, in cells, and stand off the height field, in codes: rounding must neither
+ * open a seam between neighbours nor cut the height field off. */
 static const float cell_overlap = 0.0002f, margin = 0.05f;
 
-_Static_assert((int)GTX_SLAB_CELLS <= (int)GTX_MOST_MOMENTS, "a slab's sums fit");
+_Static_assert((int)GTX_SLAB_CELLS <= (int)GTX_MAX_MOMENTS, "a slab's sums fit");
 
 /* Cells of a grid, from low to high - 1. */
 typedef struct block {
@@ -172,7 +172,7 @@ static gtx_slab slab_of(block b)
         s.low[k] = texel(&b, k, b.low[k]) - overlap;
         s.high[k] = texel(&b, k, b.high[k]) + overlap;
     }
-    /* Within the overlap the sheet goes on as steeply as it may. */
+    /* Within the overlap the height field goes on as steeply as it may. */
     const float off = margin + overlap * (fmaxf(-s.rise_x[0], s.rise_x[1]) +
                                           fmaxf(-s.rise_y[0], s.rise_y[1]));
     s.height[0] -= off;

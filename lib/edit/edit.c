@@ -8,22 +8,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const float MOST_BOOST = 16;
+static const float MAX_BOOST = 16;
 
 static gtx_result allocate(gtx_edit *edit, gtx_error *error)
 {
     const gtx_allocator *hooks = &edit->allocator;
     const gtx_asset *asset = edit->source;
-    edit->sheets = gtx_alloc_array(hooks, edit->count, sizeof *edit->sheets);
+    edit->fields = gtx_alloc_array(hooks, edit->count, sizeof *edit->fields);
     edit->changed = gtx_alloc_array(hooks, edit->count, sizeof *edit->changed);
-    if (!edit->sheets || !edit->changed)
+    if (!edit->fields || !edit->changed)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory to edit %u patches", edit->count);
     for (uint32_t p = 0; p < edit->count; ++p) {
-        edit->sheets[p] = (gtx_spread){.width = asset->patches[p].rect[2] + 2u * GTX_EDIT_MARGIN,
+        edit->fields[p] = (gtx_spread){.width = asset->patches[p].rect[2] + 2u * GTX_EDIT_MARGIN,
                                        .height = asset->patches[p].rect[3] + 2u * GTX_EDIT_MARGIN,
                                        .first = edit->texels,
                                        .shown = true};
-        edit->texels += (size_t)edit->sheets[p].width * edit->sheets[p].height;
+        edit->texels += (size_t)edit->fields[p].width * edit->fields[p].height;
     }
     const size_t n = edit->texels;
     edit->kind = gtx_alloc_array(hooks, n, 1);
@@ -107,7 +107,7 @@ void gtx_edit_end(gtx_edit *edit)
     const gtx_allocator hooks = edit->allocator;
     const size_t n = edit->texels;
     gtx_close(edit->live);
-    gtx_free_array(&hooks, edit->sheets, edit->count, sizeof *edit->sheets);
+    gtx_free_array(&hooks, edit->fields, edit->count, sizeof *edit->fields);
     gtx_free_array(&hooks, edit->changed, edit->count, sizeof *edit->changed);
     gtx_free_array(&hooks, edit->kind, n, 1);
     gtx_free_array(&hooks, edit->ring, n, 1);
@@ -133,28 +133,28 @@ float gtx_edit_texel_size(const gtx_edit *edit)
 void gtx_edit_touch_all(gtx_edit *edit)
 {
     for (uint32_t p = 0; p < edit->count; ++p)
-        edit->sheets[p].touched = true;
+        edit->fields[p].touched = true;
 }
 
 void gtx_edit_touch(gtx_edit *edit, const float low[3], const float high[3], float slack)
 {
     for (uint32_t p = 0; p < edit->count; ++p) {
-        gtx_spread *sheet = &edit->sheets[p];
+        gtx_spread *field = &edit->fields[p];
         bool meets = true;
         for (int k = 0; k < 3; ++k)
-            meets &= sheet->low[k] - slack <= high[k] && sheet->high[k] + slack >= low[k];
-        sheet->touched |= meets;
+            meets &= field->low[k] - slack <= high[k] && field->high[k] + slack >= low[k];
+        field->touched |= meets;
     }
 }
 
 static void forget_changes(gtx_edit *edit)
 {
     for (uint32_t p = 0; p < edit->count; ++p) {
-        gtx_spread *sheet = &edit->sheets[p];
-        if (sheet->touched)
-            memset(edit->changes + sheet->first, 0,
-                   (size_t)sheet->width * sheet->height * sizeof *edit->changes);
-        sheet->touched = false;
+        gtx_spread *field = &edit->fields[p];
+        if (field->touched)
+            memset(edit->changes + field->first, 0,
+                   (size_t)field->width * field->height * sizeof *edit->changes);
+        field->touched = false;
     }
 }
 
@@ -226,37 +226,37 @@ gtx_result gtx_edit_gaussian(gtx_edit *edit, const gtx_edit_blur *blur, gtx_erro
 gtx_result gtx_edit_high_boost(gtx_edit *edit, const gtx_edit_blur *blur, float amount,
                                gtx_error *error)
 {
-    if (!(amount > 0 && amount <= MOST_BOOST))
+    if (!(amount > 0 && amount <= MAX_BOOST))
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "high-boost takes an amount above 0, up to %g",
-                        (double)MOST_BOOST);
+                        (double)MAX_BOOST);
     return filter(edit, blur, -amount, error);
 }
 
 /* Calls the operation, and takes what it did to own texels. False where that is not finite. */
 static bool call(gtx_edit *edit, uint32_t patch, gtx_edit_fn fn, void *user)
 {
-    const gtx_spread *s = &edit->sheets[patch];
+    const gtx_spread *s = &edit->fields[patch];
     const size_t count = (size_t)s->width * s->height;
     float (*point)[3] = edit->point + s->first;
-    const gtx_edit_sheet sheet = {.patch = patch, .width = s->width, .height = s->height,
+    const gtx_edit_field field = {.patch = patch, .width = s->width, .height = s->height,
                                   .kind = edit->kind + s->first, .point = point,
                                   .normal = (const float (*)[3])edit->normal + s->first,
                                   .value = edit->value + s->first, .next = edit->next + s->first};
     for (size_t t = 0; t < count; ++t)
         memcpy(edit->changes[s->first + t], point[t], sizeof *point);
-    fn(&sheet, user);
+    fn(&field, user);
     bool finite = true;
     for (size_t t = 0; t < count; ++t) {
         float *c = edit->changes[s->first + t];
         for (int k = 0; k < 3; ++k) {
             const float before = c[k], after = point[t][k];
-            const bool own = sheet.kind[t] == GTX_TEXEL_OWN;
+            const bool own = field.kind[t] == GTX_TEXEL_OWN;
             c[k] = own ? after - before : 0;
             point[t][k] = before;
             finite &= !own || isfinite(after);
         }
-        c[GTX_CHANGE_VALUE] = sheet.next[t];
-        finite &= isfinite(sheet.next[t]) != 0;
+        c[GTX_CHANGE_VALUE] = field.next[t];
+        finite &= isfinite(field.next[t]) != 0;
     }
     return finite;
 }

@@ -8,21 +8,21 @@
 
 #include <stdbool.h>
 
-/* Rings of texels around those with a code, and texels that a sheet is larger on each side: what
- * moves by half a texel still covers every cell that shows. */
+/* Rings of texels around those with a code, and texels that a height field is larger on each side:
+ * what moves by half a texel still covers every cell that shows. */
 enum { GTX_EDIT_MARGIN = 3 };
 
 /* Trim up to which a cell shows, in texels (format/gtx.md, 4.2). */
 #define GTX_EDIT_SHOWN 0.3f
 
-/* A texel that is a neighbour's: a place in a cell of that one's sheet. */
+/* A texel that is a neighbour's: a place in a cell of that one's height field. */
 typedef struct gtx_link {
     uint32_t texel;
-    uint32_t patch, source;   /* of the neighbour; the cell's low corner in its sheet */
+    uint32_t patch, source;   /* of the neighbour; the cell's low corner in its height field */
     float u, v;               /* 0..1 in the cell */
 } gtx_link;
 
-/* A sheet, `texels` of them. Arrays lie in the edit's. */
+/* A height field, `texels` of them. Arrays lie in the edit's. */
 typedef struct gtx_spread {
     uint32_t width, height;
     size_t first;             /* texel of the edit */
@@ -43,9 +43,9 @@ enum { GTX_CHANGE_MOVE = 0, GTX_CHANGE_DETAIL = 3, GTX_CHANGE_VALUE = 6 };
 struct gtx_edit {
     gtx_allocator allocator;
     const gtx_asset *source;
-    uint32_t count;           /* of sheets */
-    gtx_spread *sheets;
-    size_t texels;            /* of all sheets */
+    uint32_t count;           /* of height fields */
+    gtx_spread *fields;
+    size_t texels;            /* of all height fields */
     float texel_size;
     uint8_t *kind;
     float (*rest)[3];         /* where points were */
@@ -58,45 +58,46 @@ struct gtx_edit {
     gtx_change *changes;      /* all 0 between operations */
     gtx_link *links;
     size_t link_count;
-    uint32_t *loose;          /* texels of their sheets */
+    uint32_t *loose;          /* texels of their height fields */
     uint8_t *ring;            /* steps from texels that are own or borrowed; 255: no surface */
     size_t loose_count;
     gtx_asset *live;          /* what gtx_edit_refresh shows */
     uint32_t *changed;        /* patches */
 };
 
-/* sheet.c: reads the asset's maps into the sheets and continues them past the coded texels. */
+/* field.c: reads the asset's maps into the height fields and continues them past the coded
+ * texels. */
 gtx_result gtx_edit_spread(gtx_edit *edit, gtx_error *error);
 
-/* links.c: finds whose the texels are that are not their patch's own. Errors: MEMORY. */
+/* correspondences.c: finds whose the texels are that are not their patch's own. Errors: MEMORY. */
 gtx_result gtx_edit_link(gtx_edit *edit, gtx_error *error);
 /* Gives borrowed texels what their owners have, loose ones what is beside them; in touched
- * sheets. */
+ * height fields. */
 void gtx_edit_follow(const gtx_edit *edit, gtx_change *changes);
 
 /* normals.c: fills in details and boxes, once points and normals are there. */
 void gtx_edit_begin_details(gtx_edit *edit);
-/* Moves the points of touched sheets by edit->changes and gives them their normals. */
+/* Moves the points of touched height fields by edit->changes and gives them their normals. */
 void gtx_edit_commit(gtx_edit *edit);
 
-/* hold.c: takes back from edit->changes, with the neighbours in mind, what would turn cells away
- * from their patch's z. Errors: MEMORY. */
+/* fold_limit.c: takes back from edit->changes, with the neighbours in mind, what would turn cells
+ * away from their patch's z. Errors: MEMORY. */
 gtx_result gtx_edit_hold(gtx_edit *edit, gtx_error *error);
 
-/* edit.c: touches all sheets; ends an operation whose changes are those of own texels. Errors:
- * MEMORY (nothing has changed). */
+/* edit.c: touches all height fields; ends an operation whose changes are those of own texels.
+ * Errors: MEMORY (nothing has changed). */
 void gtx_edit_touch_all(gtx_edit *edit);
 gtx_result gtx_edit_done(gtx_edit *edit, gtx_error *error);
-/* Touches the sheets whose boxes, grown by `slack`, meet the box. */
+/* Touches the height fields whose boxes, grown by `slack`, meet the box. */
 void gtx_edit_touch(gtx_edit *edit, const float low[3], const float high[3], float slack);
 
-/* diffuse.c: what a Gaussian of `radius` object units changes, into edit->changes; all sheets are
- * touched. Errors: MEMORY. */
+/* heat_flow.c: what a Gaussian of `radius` object units changes, into edit->changes; all height
+ * fields are touched. Errors: MEMORY. */
 gtx_result gtx_edit_diffuse(gtx_edit *edit, double radius, gtx_error *error);
-/* alone.c: the same of heights and normals, patch by patch; nothing is left to follow. */
+/* per_patch.c: the same of heights and normals, patch by patch; nothing is left to follow. */
 gtx_result gtx_edit_diffuse_alone(gtx_edit *edit, double radius, gtx_error *error);
 
-/* warp.c: a sheet put back on texels. */
+/* warp.c: a height field put back on texels. */
 typedef struct gtx_texel {
     float height;             /* object units along z */
     float trim;
@@ -111,10 +112,10 @@ typedef struct gtx_window {
     uint32_t size[2];
 } gtx_window;
 
-/* The texels that the shown part of a sheet takes; of size 0 when nothing shows. */
-gtx_window gtx_edit_window(const gtx_edit *edit, const gtx_spread *sheet);
+/* The texels that the shown part of a height field takes; of size 0 when nothing shows. */
+gtx_window gtx_edit_window(const gtx_edit *edit, const gtx_spread *field);
 /* Fills the texels of a window, all 0, row by row. */
-void gtx_edit_warp(const gtx_edit *edit, const gtx_spread *sheet, const gtx_window *window,
+void gtx_edit_warp(const gtx_edit *edit, const gtx_spread *field, const gtx_window *window,
                    gtx_texel *out);
 
 /* maps.c: writes a patch, whose record has its page and rectangle, into the maps of `out`, which

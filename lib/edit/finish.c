@@ -8,13 +8,13 @@
 #include <math.h>
 #include <string.h>
 
-/* An asset with the edit's maps and none of their texels. Levels of a shell are those of the
+/* An asset with the edit's maps and none of their texels. Levels of an LOD mesh are those of the
  * surface as it was, and stay behind. NULL when memory is out. */
 static gtx_asset *new_asset(const gtx_edit *edit, const gtx_info *info, const gtx_patch *patches)
 {
     const gtx_asset *source = edit->source;
     gtx_info bare = *info;
-    bare.shell_levels = 0;
+    bare.lod_levels = 0;
     bare.content_hash = bare.file_size = 0;
     const gtx_sizes sizes = {.meta = source->meta_size};
     gtx_asset *asset = gtx_asset_new(&edit->allocator, &bare, &sizes, true);
@@ -64,9 +64,9 @@ static gtx_window choose_window(const gtx_edit *edit, uint32_t patch)
     const uint16_t *rect = edit->source->patches[patch].rect;
     const uint32_t grain = 1u << (edit->source->info.mip_count - 1);
     const gtx_window same = {.low = {0, 0}, .size = {rect[2], rect[3]}};
-    if (!edit->sheets[patch].moved)
+    if (!edit->fields[patch].moved)
         return same;
-    gtx_window window = gtx_edit_window(edit, &edit->sheets[patch]);
+    gtx_window window = gtx_edit_window(edit, &edit->fields[patch]);
     for (int a = 0; a < 2; ++a) {
         const int64_t end = (int64_t)window.low[a] + window.size[a];
         if (!window.size[a] || (window.low[a] >= 0 && end <= same.size[a])) {
@@ -133,7 +133,7 @@ static gtx_result write_all(const gtx_edit *edit, const gtx_window *windows, gtx
     gtx_result result = GTX_OK;
     fill_far(asset);
     for (uint32_t p = 0; !result && p < edit->count; ++p)
-        if (edit->sheets[p].moved)
+        if (edit->fields[p].moved)
             result = gtx_edit_write_patch(edit, p, &windows[p], asset, error);
         else
             gtx_edit_copy_patch(edit, p, asset);
@@ -191,7 +191,7 @@ gtx_result gtx_edit_refresh(gtx_edit *edit, const gtx_asset **asset, const uint3
         return result;
     uint32_t changed = 0;
     for (uint32_t p = 0; p < edit->count; ++p) {
-        if (edit->sheets[p].shown)
+        if (edit->fields[p].shown)
             continue;
         const uint16_t *rect = edit->source->patches[p].rect;
         const gtx_window window = {.low = {0, 0}, .size = {rect[2], rect[3]}};
@@ -202,7 +202,7 @@ gtx_result gtx_edit_refresh(gtx_edit *edit, const gtx_asset **asset, const uint3
     }
     /* Only now: a call that failed is repeated from its beginning. */
     for (uint32_t i = 0; i < changed; ++i)
-        edit->sheets[edit->changed[i]].shown = true;
+        edit->fields[edit->changed[i]].shown = true;
     /* Bounds grow only: there is no time to look at the other patches. */
     for (uint32_t i = 0; i < changed; ++i)
         grow_box(edit->live, &edit->live->patches[edit->changed[i]], edit->live->info.bounds_min,

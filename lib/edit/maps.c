@@ -278,7 +278,7 @@ gtx_result gtx_edit_write_patch(const gtx_edit *edit, uint32_t patch, const gtx_
         w.occupied = bytes + count;
         w.normals = bytes + 2 * count;
         w.codes = bytes + 4 * count;
-        gtx_edit_warp(edit, &edit->sheets[patch], window, w.texels);
+        gtx_edit_warp(edit, &edit->fields[patch], window, w.texels);
         find_shifts(&w, window);
         fit_frame(&w, window);
         write_heights(&w);

@@ -6,15 +6,15 @@
 #include <math.h>
 #include <string.h>
 
-enum { LEAST_SIDE = 2, MOST_SIDE = 16384 };
+enum { MIN_SIDE = 2, MAX_SIDE = 16384 };
 
 static gtx_result check_image(const gtx_edit_image *image, gtx_error *error)
 {
-    if (!image->values || image->width < LEAST_SIDE || image->height < LEAST_SIDE ||
-        image->width > MOST_SIDE || image->height > MOST_SIDE)
+    if (!image->values || image->width < MIN_SIDE || image->height < MIN_SIDE ||
+        image->width > MAX_SIDE || image->height > MAX_SIDE)
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "an image of heights is %d to %d texels wide and high, not %u x %u",
-                        LEAST_SIDE, MOST_SIDE, image->width, image->height);
+                        MIN_SIDE, MAX_SIDE, image->width, image->height);
     for (size_t i = 0; i < (size_t)image->width * image->height; ++i)
         if (!isfinite(image->values[i]))
             return gtx_fail(error, GTX_ERROR_ARGUMENT, "height %zu of the image is not finite", i);
@@ -162,9 +162,9 @@ gtx_result gtx_edit_stamp(gtx_edit *edit, const gtx_edit_stamp_desc *stamp, gtx_
     }
     gtx_edit_touch(edit, low, high, 2 * edit->texel_size);
     for (uint32_t i = 0; i < edit->count; ++i) {
-        const gtx_spread *sheet = &edit->sheets[i];
-        const size_t last = sheet->first + (size_t)sheet->width * sheet->height;
-        for (size_t t = sheet->first; sheet->touched && t < last; ++t) {
+        const gtx_spread *field = &edit->fields[i];
+        const size_t last = field->first + (size_t)field->width * field->height;
+        for (size_t t = field->first; field->touched && t < last; ++t) {
             if (edit->kind[t] != GTX_TEXEL_OWN || !(dot(edit->normal[t], p.axis[2]) < 0))
                 continue;
             const float by = stamp->depth * depth_at(&p, edit->point[t]);
@@ -176,11 +176,11 @@ gtx_result gtx_edit_stamp(gtx_edit *edit, const gtx_edit_stamp_desc *stamp, gtx_
 }
 
 /* How high a texel's point stands, object units along z. */
-static float standing(const gtx_edit *edit, const gtx_spread *sheet, size_t at)
+static float standing(const gtx_edit *edit, const gtx_spread *field, size_t at)
 {
     double height = edit->height[at];
     for (int k = 0; k < 3; ++k)
-        height += sheet->to_grid[2][k] * (edit->point[at][k] - edit->rest[at][k]);
+        height += field->to_grid[2][k] * (edit->point[at][k] - edit->rest[at][k]);
     return (float)height;
 }
 
@@ -199,17 +199,17 @@ gtx_result gtx_edit_set_heights(gtx_edit *edit, uint32_t patch, const uint32_t r
     for (size_t i = 0; i < (size_t)r[2] * r[3]; ++i)
         if (!isfinite(heights[i]) || !isfinite(heights[i] * record->extent_z))
             return gtx_fail(error, GTX_ERROR_ARGUMENT, "height %zu is not finite", i);
-    gtx_spread *sheet = &edit->sheets[patch];
-    gtx_edit_touch(edit, sheet->low, sheet->high, 2 * edit->texel_size);
-    sheet->touched = true;
+    gtx_spread *field = &edit->fields[patch];
+    gtx_edit_touch(edit, field->low, field->high, 2 * edit->texel_size);
+    field->touched = true;
     for (uint32_t j = 0; j < r[3]; ++j)
         for (uint32_t i = 0; i < r[2]; ++i) {
-            const size_t at = sheet->first + i + r[0] + GTX_EDIT_MARGIN +
-                              (size_t)(j + r[1] + GTX_EDIT_MARGIN) * sheet->width;
+            const size_t at = field->first + i + r[0] + GTX_EDIT_MARGIN +
+                              (size_t)(j + r[1] + GTX_EDIT_MARGIN) * field->width;
             if (edit->kind[at] != GTX_TEXEL_OWN)
                 continue;
             const float by = heights[(size_t)j * r[2] + i] * record->extent_z -
-                             standing(edit, sheet, at);
+                             standing(edit, field, at);
             for (int k = 0; k < 3; ++k)
                 edit->changes[at][GTX_CHANGE_MOVE + k] = by * record->axis_z[k];
         }

@@ -5,10 +5,10 @@
 #include <string.h>
 
 /* The step from the texel before to the one after, of those that are there. */
-static bool difference(const gtx_edit *edit, const gtx_spread *sheet, size_t texel, size_t step,
+static bool difference(const gtx_edit *edit, const gtx_spread *field, size_t texel, size_t step,
                        bool before, bool after, float out[3])
 {
-    const size_t at = sheet->first + texel;
+    const size_t at = field->first + texel;
     const size_t a = before && edit->kind[at - step] ? at - step : at;
     const size_t b = after && edit->kind[at + step] ? at + step : at;
     for (int k = 0; k < 3; ++k)
@@ -17,13 +17,13 @@ static bool difference(const gtx_edit *edit, const gtx_spread *sheet, size_t tex
 }
 
 /* The unit normal of the points alone; false where they make no surface. */
-static bool facet(const gtx_edit *edit, const gtx_spread *sheet, uint32_t i, uint32_t j,
+static bool facet(const gtx_edit *edit, const gtx_spread *field, uint32_t i, uint32_t j,
                   float out[3])
 {
-    const size_t texel = (size_t)j * sheet->width + i;
+    const size_t texel = (size_t)j * field->width + i;
     float u[3], v[3], square = 0;
-    if (!difference(edit, sheet, texel, 1, i > 0, i + 1 < sheet->width, u) ||
-        !difference(edit, sheet, texel, sheet->width, j > 0, j + 1 < sheet->height, v))
+    if (!difference(edit, field, texel, 1, i > 0, i + 1 < field->width, u) ||
+        !difference(edit, field, texel, field->width, j > 0, j + 1 < field->height, v))
         return false;
     for (int k = 0; k < 3; ++k) {
         const int a = (k + 1) % 3, b = (k + 2) % 3;
@@ -37,43 +37,43 @@ static bool facet(const gtx_edit *edit, const gtx_spread *sheet, uint32_t i, uin
     return true;
 }
 
-static void find_box(const gtx_edit *edit, gtx_spread *sheet)
+static void find_box(const gtx_edit *edit, gtx_spread *field)
 {
-    const size_t last = sheet->first + (size_t)sheet->width * sheet->height;
+    const size_t last = field->first + (size_t)field->width * field->height;
     for (int k = 0; k < 3; ++k) {
-        sheet->low[k] = INFINITY;
-        sheet->high[k] = -INFINITY;
+        field->low[k] = INFINITY;
+        field->high[k] = -INFINITY;
     }
-    for (size_t t = sheet->first; t < last; ++t)
+    for (size_t t = field->first; t < last; ++t)
         for (int k = 0; k < 3 && edit->kind[t]; ++k) {
-            sheet->low[k] = fminf(sheet->low[k], edit->point[t][k]);
-            sheet->high[k] = fmaxf(sheet->high[k], edit->point[t][k]);
+            field->low[k] = fminf(field->low[k], edit->point[t][k]);
+            field->high[k] = fmaxf(field->high[k], edit->point[t][k]);
         }
 }
 
 void gtx_edit_begin_details(gtx_edit *edit)
 {
     for (uint32_t p = 0; p < edit->count; ++p) {
-        gtx_spread *sheet = &edit->sheets[p];
-        find_box(edit, sheet);
-        for (uint32_t j = 0; j < sheet->height; ++j)
-            for (uint32_t i = 0; i < sheet->width; ++i) {
-                const size_t at = sheet->first + (size_t)j * sheet->width + i;
+        gtx_spread *field = &edit->fields[p];
+        find_box(edit, field);
+        for (uint32_t j = 0; j < field->height; ++j)
+            for (uint32_t i = 0; i < field->width; ++i) {
+                const size_t at = field->first + (size_t)j * field->width + i;
                 float n[3];
-                if (edit->kind[at] && facet(edit, sheet, i, j, n))
+                if (edit->kind[at] && facet(edit, field, i, j, n))
                     for (int k = 0; k < 3; ++k)
                         edit->detail[at][k] = edit->normal[at][k] - n[k];
             }
     }
 }
 
-static void turn_normals(gtx_edit *edit, const gtx_spread *sheet)
+static void turn_normals(gtx_edit *edit, const gtx_spread *field)
 {
-    for (uint32_t j = 0; j < sheet->height; ++j)
-        for (uint32_t i = 0; i < sheet->width; ++i) {
-            const size_t at = sheet->first + (size_t)j * sheet->width + i;
+    for (uint32_t j = 0; j < field->height; ++j)
+        for (uint32_t i = 0; i < field->width; ++i) {
+            const size_t at = field->first + (size_t)j * field->width + i;
             float n[3], square = 0;
-            if (!edit->kind[at] || !facet(edit, sheet, i, j, n))
+            if (!edit->kind[at] || !facet(edit, field, i, j, n))
                 continue;
             for (int k = 0; k < 3; ++k) {
                 n[k] += edit->detail[at][k];
@@ -87,11 +87,11 @@ static void turn_normals(gtx_edit *edit, const gtx_spread *sheet)
 }
 
 /* Borrowed texels have the normals of their owners. */
-static void borrow_normals(gtx_edit *edit, const gtx_spread *sheet)
+static void borrow_normals(gtx_edit *edit, const gtx_spread *field)
 {
-    for (size_t i = 0; i < sheet->link_count; ++i) {
-        const gtx_link *link = &edit->links[sheet->first_link + i];
-        const gtx_spread *other = &edit->sheets[link->patch];
+    for (size_t i = 0; i < field->link_count; ++i) {
+        const gtx_link *link = &edit->links[field->first_link + i];
+        const gtx_spread *other = &edit->fields[link->patch];
         const size_t a = other->first + link->source, b = a + other->width;
         const float u = link->u, v = link->v;
         float n[3], square = 0;
@@ -101,17 +101,17 @@ static void borrow_normals(gtx_edit *edit, const gtx_spread *sheet)
             square += n[k] * n[k];
         }
         for (int k = 0; k < 3 && square > 1e-6f; ++k)
-            edit->normal[sheet->first + link->texel][k] = n[k] / sqrtf(square);
+            edit->normal[field->first + link->texel][k] = n[k] / sqrtf(square);
     }
 }
 
 void gtx_edit_commit(gtx_edit *edit)
 {
     for (uint32_t p = 0; p < edit->count; ++p) {
-        gtx_spread *sheet = &edit->sheets[p];
-        const size_t last = sheet->first + (size_t)sheet->width * sheet->height;
+        gtx_spread *field = &edit->fields[p];
+        const size_t last = field->first + (size_t)field->width * field->height;
         bool moves = false;
-        for (size_t t = sheet->first; sheet->touched && t < last; ++t) {
+        for (size_t t = field->first; field->touched && t < last; ++t) {
             const float *c = edit->changes[t];
             /* Farther out nothing of it is ever shown. */
             const bool counts = edit->trim[t] < GTX_EDIT_SHOWN + GTX_EDIT_MARGIN;
@@ -123,12 +123,12 @@ void gtx_edit_commit(gtx_edit *edit)
         }
         if (!moves)
             continue;
-        sheet->moved = true;
-        sheet->shown = false;
-        turn_normals(edit, sheet);
-        find_box(edit, sheet);
+        field->moved = true;
+        field->shown = false;
+        turn_normals(edit, field);
+        find_box(edit, field);
     }
     for (uint32_t p = 0; p < edit->count; ++p)
-        if (edit->sheets[p].touched && edit->sheets[p].moved)
-            borrow_normals(edit, &edit->sheets[p]);
+        if (edit->fields[p].touched && edit->fields[p].moved)
+            borrow_normals(edit, &edit->fields[p]);
 }

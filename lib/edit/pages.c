@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const uint32_t MOST_SIDE = 4096, LEAST_SIDE = 8;
+static const uint32_t MAX_SIDE = 4096, MIN_SIDE = 8;
 
 typedef struct item {
     uint32_t patch, width, height;
@@ -57,7 +57,7 @@ gtx_result gtx_edit_place(gtx_patch *patches, const gtx_allocator *hooks, gtx_in
     if (!items || !shelves)
         result = gtx_fail(error, GTX_ERROR_MEMORY, "no memory to lay out %u patches", n);
     double area = 0;
-    uint32_t widest = LEAST_SIDE, most = MOST_SIDE, count = 0;
+    uint32_t widest = MIN_SIDE, most = MAX_SIDE, count = 0;
     for (uint32_t p = 0; !result && p < n; ++p) {
         items[p] = (item){p, patches[p].rect[2], patches[p].rect[3]};
         area += (double)items[p].width * items[p].height;
@@ -66,10 +66,10 @@ gtx_result gtx_edit_place(gtx_patch *patches, const gtx_allocator *hooks, gtx_in
     }
     if (!result) {
         qsort(items, n, sizeof *items, by_height);
-        uint32_t width = (uint32_t)fmin(sqrt(area * 1.05), MOST_SIDE);
+        uint32_t width = (uint32_t)fmin(sqrt(area * 1.05), MAX_SIDE);
         width = width > widest ? width : widest;
         width = (width + grain - 1) / grain * grain;
-        uint32_t used = LEAST_SIDE > grain ? LEAST_SIDE : grain, pages = 1;
+        uint32_t used = MIN_SIDE > grain ? MIN_SIDE : grain, pages = 1;
         for (uint32_t k = 0; k < n; ++k) {
             shelf *s = find_shelf(shelves, &count, &items[k], width, most);
             gtx_patch *p = &patches[items[k].patch];

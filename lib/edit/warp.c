@@ -1,51 +1,51 @@
-/* A sheet whose points have moved, put back on the texels of its patch: its cells are drawn, as two
- * triangles each, along the patch's z. */
+/* A height field whose points have moved, put back on the texels of its patch: its cells are drawn,
+ * as two triangles each, along the patch's z. */
 #include "edit/edit.h"
 
 #include <math.h>
 
 /* Cells must show by this much, in texels, to be drawn; texels may lie this much outside. */
-static const float LEAST_SHOWN = 0.01f;
+static const float MIN_SHOWN = 0.01f;
 static const double SLACK = 1e-3;
 
-/* A sheet's texel where it is now: texels of the source in x and y, object units in z. */
+/* A height field's texel where it is now: texels of the source in x and y, object units in z. */
 typedef struct corner {
     double x, y;
     size_t at;
 } corner;
 
-static corner find_corner(const gtx_edit *edit, const gtx_spread *sheet, uint32_t i, uint32_t j)
+static corner find_corner(const gtx_edit *edit, const gtx_spread *field, uint32_t i, uint32_t j)
 {
-    const size_t at = sheet->first + (size_t)j * sheet->width + i;
+    const size_t at = field->first + (size_t)j * field->width + i;
     corner c = {(double)i - GTX_EDIT_MARGIN, (double)j - GTX_EDIT_MARGIN, at};
     for (int k = 0; k < 3; ++k) {
         const double move = (double)edit->point[at][k] - edit->rest[at][k];
-        c.x += sheet->to_grid[0][k] * move;
-        c.y += sheet->to_grid[1][k] * move;
+        c.x += field->to_grid[0][k] * move;
+        c.y += field->to_grid[1][k] * move;
     }
     return c;
 }
 
-static double height_of(const gtx_edit *edit, const gtx_spread *sheet, size_t at)
+static double height_of(const gtx_edit *edit, const gtx_spread *field, size_t at)
 {
     double height = edit->height[at];
     for (int k = 0; k < 3; ++k)
-        height += sheet->to_grid[2][k] * ((double)edit->point[at][k] - edit->rest[at][k]);
+        height += field->to_grid[2][k] * ((double)edit->point[at][k] - edit->rest[at][k]);
     return height;
 }
 
-gtx_window gtx_edit_window(const gtx_edit *edit, const gtx_spread *sheet)
+gtx_window gtx_edit_window(const gtx_edit *edit, const gtx_spread *field)
 {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (uint32_t j = 0; j < sheet->height; ++j)
-        for (uint32_t i = 0; i < sheet->width; ++i) {
-            const size_t at = sheet->first + (size_t)j * sheet->width + i;
+    for (uint32_t j = 0; j < field->height; ++j)
+        for (uint32_t i = 0; i < field->width; ++i) {
+            const size_t at = field->first + (size_t)j * field->width + i;
             const double shown = (double)GTX_EDIT_SHOWN - edit->trim[at];
-            if (!edit->kind[at] || shown < LEAST_SHOWN)
+            if (!edit->kind[at] || shown < MIN_SHOWN)
                 continue;
             /* So far from the outline, the next texel shows too. */
-            const double beyond = fmin(shown, 1) - 2 * LEAST_SHOWN;
-            const corner c = find_corner(edit, sheet, i, j);
+            const double beyond = fmin(shown, 1) - 2 * MIN_SHOWN;
+            const corner c = find_corner(edit, field, i, j);
             low[0] = fmin(low[0], floor(c.x - beyond));
             low[1] = fmin(low[1], floor(c.y - beyond));
             high[0] = fmax(high[0], ceil(c.x + beyond));
@@ -62,8 +62,9 @@ gtx_window gtx_edit_window(const gtx_edit *edit, const gtx_spread *sheet)
     return window;
 }
 
-/* Takes a texel for a triangle of the sheet if none that is deeper inside the outline has it. */
-static void offer(const gtx_edit *edit, const gtx_spread *sheet, const corner corners[3],
+/* Takes a texel for a triangle of the height field if none that is deeper inside the outline has
+ * it. */
+static void offer(const gtx_edit *edit, const gtx_spread *field, const corner corners[3],
                   const double weight[3], gtx_texel *out)
 {
     double trim = 0;
@@ -73,16 +74,16 @@ static void offer(const gtx_edit *edit, const gtx_spread *sheet, const corner co
         return;
     *out = (gtx_texel){.trim = (float)trim, .covered = 1};
     for (int k = 0; k < 3; ++k) {
-        const size_t at = corners[k].at, own = at - sheet->first;
-        out->height += (float)(weight[k] * height_of(edit, sheet, at));
-        out->from[0] += (float)(weight[k] * ((double)(own % sheet->width) - GTX_EDIT_MARGIN));
-        out->from[1] += (float)(weight[k] * ((double)(own / sheet->width) - GTX_EDIT_MARGIN));
+        const size_t at = corners[k].at, own = at - field->first;
+        out->height += (float)(weight[k] * height_of(edit, field, at));
+        out->from[0] += (float)(weight[k] * ((double)(own % field->width) - GTX_EDIT_MARGIN));
+        out->from[1] += (float)(weight[k] * ((double)(own / field->width) - GTX_EDIT_MARGIN));
         for (int c = 0; c < 3; ++c)
             out->normal[c] += (float)weight[k] * edit->normal[at][c];
     }
 }
 
-static void draw_triangle(const gtx_edit *edit, const gtx_spread *sheet, const corner c[3],
+static void draw_triangle(const gtx_edit *edit, const gtx_spread *field, const corner c[3],
                           const gtx_window *window, gtx_texel *out)
 {
     const double ux = c[1].x - c[0].x, uy = c[1].y - c[0].y;
@@ -104,7 +105,7 @@ static void draw_triangle(const gtx_edit *edit, const gtx_spread *sheet, const c
             const double weight[3] = {1 - s - t, s, t};
             if (weight[0] < -SLACK || s < -SLACK || t < -SLACK)
                 continue;
-            offer(edit, sheet, c, weight,
+            offer(edit, field, c, weight,
                   &out[(size_t)(y - window->low[1]) * window->size[0] +
                        (size_t)(x - window->low[0])]);
         }
@@ -119,25 +120,25 @@ static void mark_coded(const gtx_window *window, gtx_texel *texels)
             gtx_texel *a = texels + j * width + i, *b = a + width;
             const float trim = fminf(fminf(a[0].trim, a[1].trim), fminf(b[0].trim, b[1].trim));
             if (a[0].covered && a[1].covered && b[0].covered && b[1].covered &&
-                trim <= GTX_EDIT_SHOWN - LEAST_SHOWN)
+                trim <= GTX_EDIT_SHOWN - MIN_SHOWN)
                 a[0].coded = a[1].coded = b[0].coded = b[1].coded = 1;
         }
 }
 
-void gtx_edit_warp(const gtx_edit *edit, const gtx_spread *sheet, const gtx_window *window,
+void gtx_edit_warp(const gtx_edit *edit, const gtx_spread *field, const gtx_window *window,
                    gtx_texel *out)
 {
-    for (uint32_t j = 0; j + 1 < sheet->height; ++j)
-        for (uint32_t i = 0; i + 1 < sheet->width; ++i) {
-            const size_t a = sheet->first + (size_t)j * sheet->width + i, b = a + sheet->width;
+    for (uint32_t j = 0; j + 1 < field->height; ++j)
+        for (uint32_t i = 0; i + 1 < field->width; ++i) {
+            const size_t a = field->first + (size_t)j * field->width + i, b = a + field->width;
             if (!edit->kind[a] || !edit->kind[a + 1] || !edit->kind[b] || !edit->kind[b + 1])
                 continue;
-            const corner c[4] = {find_corner(edit, sheet, i, j),
-                                 find_corner(edit, sheet, i + 1, j),
-                                 find_corner(edit, sheet, i + 1, j + 1),
-                                 find_corner(edit, sheet, i, j + 1)};
-            draw_triangle(edit, sheet, (const corner[3]){c[0], c[1], c[2]}, window, out);
-            draw_triangle(edit, sheet, (const corner[3]){c[0], c[2], c[3]}, window, out);
+            const corner c[4] = {find_corner(edit, field, i, j),
+                                 find_corner(edit, field, i + 1, j),
+                                 find_corner(edit, field, i + 1, j + 1),
+                                 find_corner(edit, field, i, j + 1)};
+            draw_triangle(edit, field, (const corner[3]){c[0], c[1], c[2]}, window, out);
+            draw_triangle(edit, field, (const corner[3]){c[0], c[2], c[3]}, window, out);
         }
     mark_coded(window, out);
 }

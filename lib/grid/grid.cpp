@@ -130,9 +130,9 @@ HeightGrid mosaic(const std::vector<HeightGrid> &parts)
         }
         at.push_back(place);
     }
-    constexpr int64_t MOST = 1 << 24, MOST_NODES = int64_t(1) << 28;
+    constexpr int64_t MOST = 1 << 24, MAX_NODES = int64_t(1) << 28;
     if (high[0] - low[0] > MOST || high[1] - low[1] > MOST ||
-        (high[0] - low[0]) * (high[1] - low[1]) > MOST_NODES)
+        (high[0] - low[0]) * (high[1] - low[1]) > MAX_NODES)
         throw Error(GTX_ERROR_LIMIT, "the parts of the surface span more than 2^28 nodes");
     HeightGrid out = first;
     const auto origin = first.place(double(low[0]), double(low[1]));

@@ -6,7 +6,7 @@
 #include <stdatomic.h>
 #include <unistd.h>
 
-enum { MOST_THREADS = 64 };
+enum { MAX_THREADS = 64 };
 
 typedef struct run {
     void (*job)(uint32_t index, void *data);
@@ -27,7 +27,7 @@ static void run_jobs(uint32_t count, void (*job)(uint32_t index, void *data), vo
                      void *user)
 {
     run r = {job, data, count, 0};
-    pthread_t helpers[MOST_THREADS];
+    pthread_t helpers[MAX_THREADS];
     const uintptr_t threads = (uintptr_t)user;
     uint32_t started = 0;
     while (started + 1 < threads && started + 1 < count &&
@@ -43,6 +43,6 @@ gtx_jobs gtx_host_jobs(uint32_t threads)
     const long processors = sysconf(_SC_NPROCESSORS_ONLN);
     if (!threads)
         threads = processors > 0 ? (uint32_t)processors : 1;
-    threads = threads < MOST_THREADS ? threads : MOST_THREADS;
+    threads = threads < MAX_THREADS ? threads : MAX_THREADS;
     return (gtx_jobs){run_jobs, (void *)(uintptr_t)threads};
 }

@@ -12,8 +12,8 @@ namespace gtx {
 /* Nearest crossing of a pixel's ray, seen from either side. */
 enum class Crossing : uint8_t {
     none,
-    shown,                       /* the sheet is seen: from above, or of a two-sided patch */
-    leak                         /* from below, with no sheet seen right behind it */
+    shown,                       /* the height field is seen: from above, or of a two-sided patch */
+    leak                         /* from below, with no height field seen right behind it */
 };
 
 /* An asset at one level of detail, or where `max_error` (object units) is given each patch at its

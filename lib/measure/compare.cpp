@@ -11,7 +11,7 @@ namespace gtx {
 static const double HOLE_PIXELS = 2, HOLE_STEPS = 4, HOLE_DIAGONAL = 0.001, FLAT_DIAGONAL = 0.01;
 /* Pixels that the runtime's levels may be off, and how many sizes of images are looked at. */
 static const double DETAIL_PIXELS = 0.5;
-static const uint32_t DETAIL_SIZES = 5, LEAST_SIZE = 16;
+static const uint32_t DETAIL_SIZES = 5, MIN_SIZE = 16;
 static const double PI = 3.14159265358979323846;
 
 namespace {
@@ -285,7 +285,7 @@ static std::vector<Scene> make_scenes(const gtx_asset *asset, const Extent &exte
     for (uint32_t level = 0; level < options.levels; ++level)
         scenes.push_back({views, AssetView(asset, level), level, level == 0,
                           options.holes != nullptr});
-    for (uint32_t k = 0; k < DETAIL_SIZES && options.size >> k >= LEAST_SIZE; ++k) {
+    for (uint32_t k = 0; k < DETAIL_SIZES && options.size >> k >= MIN_SIZE; ++k) {
         views = comparison_views(extent, options.size >> k);
         scenes.push_back({views, AssetView(asset, 0, DETAIL_PIXELS * views[0].pixel),
                           CHOSEN_LEVELS, false, options.holes != nullptr});

@@ -1,4 +1,4 @@
-/* How far apart the sheets of neighbouring patches are where they meet. */
+/* How far apart the height fields of neighbouring patches are where they meet. */
 #include "measure/cells.hpp"
 #include "measure/measure.hpp"
 #include "measure/sample.hpp"
@@ -103,7 +103,7 @@ SeamReport measure_seams(const gtx_asset *asset, const Mesh &mesh, Task &task)
     const Vec3d anchor(info.anchor[0], info.anchor[1], info.anchor[2]);
     const Cells cells(asset);
     const BorderEdges border(mesh, anchor);
-    const NearestTree<Cells> sheets(cells);
+    const NearestTree<Cells> fields(cells);
     const NearestTree<BorderEdges> ends(border);
     const std::vector<SeamPoint> points = sample_outlines(cells);
 
@@ -118,7 +118,7 @@ SeamReport measure_seams(const gtx_asset *asset, const Mesh &mesh, Task &task)
             double reach = BORDER_TEXELS * cells.texel(p.patch);
             if (ends.distance2(p.at, &near_end) <= reach * reach)
                 continue;
-            double square = sheets.distance2(
+            double square = fields.distance2(
                 p.at, &near, [&](uint32_t cell) { return cells.patch(cell) != p.patch; });
             if (!std::isfinite(square)) /* one patch alone */
                 continue;

@@ -1,7 +1,7 @@
 /* The triangle mesh that flows through the cooker, and how to get one. */
 #pragma once
 
-#include "mesh/appearance.hpp"
+#include "mesh/material/appearance.hpp"
 #include "mesh/task.hpp"
 #include "mesh/vec.hpp"
 

@@ -1,4 +1,4 @@
-/* The choice between casting and the shell, for an instance at a time. */
+/* The choice between casting and the LOD mesh, for an instance at a time. */
 #include "render/renderer.h"
 
 #include "base/error.h"
@@ -13,7 +13,7 @@ static const gtx_costs *costs_of(const gtx_renderer *renderer, const gtx_view *v
 {
     static const gtx_costs measured[2] = {{100, 25, 15000, 160}, {100, 25, 5500, 75}};
     const gtx_costs *told = &renderer->costs;
-    const bool none = told->shell_triangle == 0 && told->shell_pixel == 0 &&
+    const bool none = told->lod_triangle == 0 && told->lod_pixel == 0 &&
                       told->cast_patch == 0 && told->cast_pixel == 0;
     return none ? &measured[gtx_stream_suits(renderer, view)] : told;
 }
@@ -75,7 +75,7 @@ static double nearest_patch(const gtx_model *model, const double w[4])
 static extent measure(const gtx_view *view, const gtx_frame *frame, const gtx_model *model,
                       const gtx_instance_data *placed)
 {
-    const gtx_shells *shells = &model->shells;
+    const gtx_lod_meshes *lods = &model->lods;
     const float *clip = frame->clip_from_world;
     double w[4] = {0, 0, 0, clip[15]}, radius = 0; /* w in clip space, as a row over object space */
     for (int k = 0; k < 4; ++k)
@@ -83,7 +83,7 @@ static extent measure(const gtx_view *view, const gtx_frame *frame, const gtx_mo
             w[k] += (double)clip[4 * r + 3] * placed->world[r][k];
     double nearest = w[3], middle = w[3];
     for (int k = 0; k < 3; ++k) {
-        const double low = shells->low[k], high = shells->high[k];
+        const double low = lods->low[k], high = lods->high[k];
         nearest += fmin(w[k] * low, w[k] * high);
         middle += w[k] * (low + high) / 2;
         radius += (high - low) * (high - low) / 4;
@@ -102,16 +102,16 @@ static extent measure(const gtx_view *view, const gtx_frame *frame, const gtx_mo
 static bool is_casting_cheaper(const gtx_costs *costs, const gtx_model *model, uint32_t level,
                                double pixels)
 {
-    const double triangles = model->shells.levels[level].triangle_count;
+    const double triangles = model->lods.levels[level].triangle_count;
     return costs->cast_patch * model->patch_count + costs->cast_pixel * pixels <
-           costs->shell_triangle * triangles + costs->shell_pixel * pixels;
+           costs->lod_triangle * triangles + costs->lod_pixel * pixels;
 }
 
 /* How many levels there are, of which far ones leave no room for patches that are edited. */
-static uint32_t usable_levels(const gtx_shells *shells)
+static uint32_t usable_levels(const gtx_lod_meshes *lods)
 {
     uint32_t count = 0;
-    while (count < shells->level_count && !(shells->edited_count && shells->levels[count].far))
+    while (count < lods->level_count && !(lods->edited_count && lods->levels[count].far))
         ++count;
     return count;
 }
@@ -124,21 +124,21 @@ gtx_result gtx_choose_way(const gtx_renderer *renderer, const gtx_view *view,
                           const gtx_frame *frame, const gtx_model *model,
                           const gtx_instance_data *placed, uint8_t *way, gtx_error *error)
 {
-    const gtx_shells *shells = &model->shells;
-    const bool forced = view->method == GTX_METHOD_SHELL;
+    const gtx_lod_meshes *lods = &model->lods;
+    const bool forced = view->method == GTX_METHOD_LOD;
     const bool by_error = view->level == 0 && view->viewport_height > 0;
     *way = 0;
-    if (forced && !shells->level_count)
-        return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "the asset has no shell to be drawn by");
-    if (!shells->level_count || !(forced || (view->method == GTX_METHOD_AUTO && by_error)))
+    if (forced && !lods->level_count)
+        return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "the asset has no LOD mesh to be drawn by");
+    if (!lods->level_count || !(forced || (view->method == GTX_METHOD_AUTO && by_error)))
         return GTX_OK;
-    const uint32_t usable = usable_levels(shells);
+    const uint32_t usable = usable_levels(lods);
     uint32_t level = view->level < usable ? view->level : usable;
     if (by_error) {
         const extent e = measure(view, frame, model, placed);
-        while (level < usable && shells->levels[level].error <= e.error)
+        while (level < usable && lods->levels[level].error <= e.error)
             ++level;
-        if (!level && usable && shells->levels[0].error <= finest_excess * e.error)
+        if (!level && usable && lods->levels[0].error <= finest_excess * e.error)
             level = 1;
         if (!forced && level &&
             is_casting_cheaper(costs_of(renderer, view), model, level - 1, e.pixels))

@@ -19,7 +19,7 @@ static gtx_result check(const gtx_renderer *renderer, const gtx_view *view,
         GTX_VIEW_REVERSED_Z | GTX_VIEW_DEPTH_ZERO_TO_ONE | GTX_VIEW_RESTORE_STATE;
     if (!renderer || !view || (count && !instances))
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a draw needs a renderer, a view and instances");
-    if (view->flags & ~flags || (unsigned)view->method > GTX_METHOD_SHELL ||
+    if (view->flags & ~flags || (unsigned)view->method > GTX_METHOD_LOD ||
         (unsigned)view->pass > GTX_PASS_GBUFFER)
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "the view asks for an unknown flag, method or pass");
@@ -73,9 +73,9 @@ static gtx_result need_programs(gtx_renderer *renderer, const gtx_view *view, gt
     const int method = view->method == GTX_METHOD_PAPER ? PROGRAM_PAPER : PROGRAM_CAST;
     gtx_result result = gtx_program_need(renderer, method + offset, error);
     if (!result && method == PROGRAM_CAST)
-        result = gtx_program_need(renderer, PROGRAM_SHELL + offset, error);
+        result = gtx_program_need(renderer, PROGRAM_LOD + offset, error);
     if (!result && view->pass == GTX_PASS_DEPTH)
-        result = gtx_program_need(renderer, PROGRAM_SHELL_DEPTH_ALONE, error);
+        result = gtx_program_need(renderer, PROGRAM_LOD_DEPTH_ALONE, error);
     if (!result && gtx_stream_suits(renderer, view))
         result = gtx_program_need(renderer, PROGRAM_TILES + offset, error);
     return result;
@@ -92,23 +92,23 @@ static bool has_even_material(const gtx_model *model)
 }
 
 static const gtx_program *program_of(const gtx_renderer *renderer, const gtx_view *view,
-                                     const gtx_model *model, bool shell, bool front)
+                                     const gtx_model *model, bool lod, bool front)
 {
     if (view->shading)
-        return shell ? &view->shading->shell : &view->shading->cast;
-    int kind = shell                              ? PROGRAM_SHELL
+        return lod ? &view->shading->lod : &view->shading->cast;
+    int kind = lod                              ? PROGRAM_LOD
                : view->method == GTX_METHOD_PAPER ? PROGRAM_PAPER
                                                   : PROGRAM_CAST;
     if (view->pass != GTX_PASS_FORWARD)
         kind += pass_programs[view->pass];
     else if (shades(model))
         kind = !front                     ? kind + 1
-               : has_even_material(model) ? PROGRAM_SHELL_EVEN_FRONT
-                                          : PROGRAM_SHELL_MATERIAL_FRONT;
-    else if (shell && model->has_color)
-        kind = front ? PROGRAM_SHELL_COLOR_FRONT : PROGRAM_SHELL_COLOR;
+               : has_even_material(model) ? PROGRAM_LOD_EVEN_FRONT
+                                          : PROGRAM_LOD_MATERIAL_FRONT;
+    else if (lod && model->has_color)
+        kind = front ? PROGRAM_LOD_COLOR_FRONT : PROGRAM_LOD_COLOR;
     else if (front)
-        kind = PROGRAM_SHELL_FRONT;
+        kind = PROGRAM_LOD_FRONT;
     else if (kind == PROGRAM_CAST && model->has_color)
         kind = PROGRAM_CAST_COLOR;
     return &renderer->programs[kind];
@@ -307,11 +307,11 @@ static void cast_run(gtx_renderer *renderer, pass *p, const run *r, bool edited_
     }
 }
 
-/* Draws a level of the shell: patches with a back face culled, then those without. */
-static void draw_shell(const gtx_renderer *renderer, pass *p, const run *r)
+/* Draws an LOD mesh: patches with a back face culled, then those without. */
+static void draw_lod(const gtx_renderer *renderer, pass *p, const run *r)
 {
     const gtx_gl *gl = &renderer->gl;
-    const gtx_shells *shells = &r->model->shells;
+    const gtx_lod_meshes *lods = &r->model->lods;
     const uint32_t level = r->way - 1u;
     const bool alone = p->view->pass == GTX_PASS_DEPTH && r->count == 1;
     bool keeps_angles = true;
@@ -321,16 +321,16 @@ static void draw_shell(const gtx_renderer *renderer, pass *p, const run *r)
         set_instances(renderer, r->first);
     gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
     for (int two_sided = 0; two_sided < 2; ++two_sided) {
-        if (shells->one_sided == (two_sided ? shells->patch_count : 0))
+        if (lods->one_sided == (two_sided ? lods->patch_count : 0))
             continue;
-        use_program(gl, p, alone ? &renderer->programs[PROGRAM_SHELL_DEPTH_ALONE]
+        use_program(gl, p, alone ? &renderer->programs[PROGRAM_LOD_DEPTH_ALONE]
                                  : program_of(renderer, p->view, r->model, true,
                                               keeps_angles && !two_sided), r->model);
         if (alone)
             gl->Uniform4fv(p->current->place, 3, renderer->instances[r->first].world[0]);
-        gl->Uniform4fv(p->current->shell, 1, shells->levels[level].place);
+        gl->Uniform4fv(p->current->lod, 1, lods->levels[level].place);
         (two_sided ? gl->Disable : gl->Enable)(GL_CULL_FACE);
-        gtx_shells_draw(gl, shells, level, two_sided, alone ? 0 : r->count);
+        gtx_lod_draw(gl, lods, level, two_sided, alone ? 0 : r->count);
     }
 }
 
@@ -340,8 +340,8 @@ static void draw_run(gtx_renderer *renderer, pass *p, const run *r)
         return;
     bind_textures(&renderer->gl, r->model);
     if (r->way)
-        draw_shell(renderer, p, r);
-    if (!r->way || r->model->shells.edited_count)
+        draw_lod(renderer, p, r);
+    if (!r->way || r->model->lods.edited_count)
         cast_run(renderer, p, r, r->way);
 }
 

@@ -31,7 +31,7 @@ typedef struct making {
 
 /* Batches of patches, and pieces of each map: enough for many threads to end together, and each to
  * have enough to do. */
-enum { MOST_BATCHES = 64, PIECES = 4 };
+enum { MAX_BATCHES = 64, PIECES = 4 };
 
 /* Adds a level of `unit` and its memory, not yet written, unless it borrows what is there already.
  * NULL without memory. */
@@ -190,29 +190,29 @@ static void begin_level(const making *m, uint32_t index, uint32_t piece)
         memset(l->data + first, 0, count);
 }
 
-/* What has to be there first: sizes of the shells, and maps. */
+/* What has to be there first: sizes of the LOD meshes, and maps. */
 static void begin_part(uint32_t index, void *data)
 {
     making *m = data;
     gtx_model *model = m->model;
-    const uint32_t shells = model->shells.level_count;
-    if (index < shells)
-        gtx_shells_measure(m->asset, index, &model->allocator, &model->shells);
+    const uint32_t lods = model->lods.level_count;
+    if (index < lods)
+        gtx_lod_measure(m->asset, index, &model->allocator, &model->lods);
     else
-        begin_level(m, (index - shells) / PIECES, (index - shells) % PIECES);
+        begin_level(m, (index - lods) / PIECES, (index - lods) % PIECES);
 }
 
-/* The shells, then patches. */
+/* The LOD meshes, then patches. */
 static void make_part(uint32_t index, void *data)
 {
     making *m = data;
     gtx_model *model = m->model;
-    const uint32_t shells = model->shells.level_count;
-    if (index < shells) {
-        gtx_shells_fill(m->asset, index, &model->allocator, &model->shells);
+    const uint32_t lods = model->lods.level_count;
+    if (index < lods) {
+        gtx_lod_fill(m->asset, index, &model->allocator, &model->lods);
         return;
     }
-    batch *b = &m->batches[index - shells];
+    batch *b = &m->batches[index - lods];
     for (uint32_t i = b->first; i < b->end && !b->result; ++i)
         b->result = derive_patch(m, i, &b->derived, &b->error);
 }
@@ -233,7 +233,7 @@ static gtx_result make_parts(making *m, const gtx_jobs *jobs, gtx_error *error)
 {
     const gtx_allocator *hooks = &m->model->allocator;
     const uint32_t patches = m->model->patch_count;
-    m->batch_count = patches < MOST_BATCHES ? patches : MOST_BATCHES;
+    m->batch_count = patches < MAX_BATCHES ? patches : MAX_BATCHES;
     m->batches = gtx_alloc_array(hooks, m->batch_count, sizeof *m->batches);
     if (!m->batches)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's patches");
@@ -241,7 +241,7 @@ static gtx_result make_parts(making *m, const gtx_jobs *jobs, gtx_error *error)
         m->batches[b].first = (uint32_t)((uint64_t)patches * b / m->batch_count);
         m->batches[b].end = (uint32_t)((uint64_t)patches * (b + 1) / m->batch_count);
     }
-    gtx_run_jobs(jobs, m->model->shells.level_count + m->batch_count, make_part, m);
+    gtx_run_jobs(jobs, m->model->lods.level_count + m->batch_count, make_part, m);
     gtx_result result = first_failure(m, error);
     if (!result)
         result = join_proxies(m, error);
@@ -255,10 +255,10 @@ static gtx_result make_parts(making *m, const gtx_jobs *jobs, gtx_error *error)
 static gtx_result begin_parts(making *m, const gtx_jobs *jobs, gtx_error *error)
 {
     gtx_model *model = m->model;
-    if (!gtx_shells_begin(m->asset, &model->allocator, &model->shells))
-        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's shell");
-    gtx_run_jobs(jobs, model->shells.level_count + PIECES * model->level_count, begin_part, m);
-    return gtx_shells_place(&model->allocator, &model->shells, error);
+    if (!gtx_lod_begin(m->asset, &model->allocator, &model->lods))
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's LOD mesh");
+    gtx_run_jobs(jobs, model->lods.level_count + PIECES * model->level_count, begin_part, m);
+    return gtx_lod_place(&model->allocator, &model->lods, error);
 }
 
 /* Makes room for the slabs. */
@@ -320,7 +320,7 @@ static gtx_model *new_model(const gtx_asset *asset, const gtx_allocator *hooks)
     model->has_material = info->has_material;
     model->has_emission = info->has_emission;
     model->emission_scale = info->has_emission ? info->emission_scale : 0;
-    model->has_even_material = info->has_material && info->shell_levels &&
+    model->has_even_material = info->has_material && info->lod_levels &&
                                gtx_find_even_material(asset, model->even_material);
     model->page_count = info->page_count;
     model->page_width = info->page_width;
@@ -360,7 +360,7 @@ gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc,
     const gtx_proxies *proxies = &model->proxies;
     model->size.geometry += (uint64_t)proxies->index_count * sizeof *proxies->indices +
                             (uint64_t)proxies->vertex_count * sizeof *proxies->vertices +
-                            model->shells.vertex_bytes + model->shells.index_bytes;
+                            model->lods.vertex_bytes + model->lods.index_bytes;
     *out = model;
     return GTX_OK;
 }
@@ -375,7 +375,7 @@ void gtx_model_free_staging(gtx_model *model)
         l->data = NULL;
     }
     gtx_proxies_free(&model->proxies, &model->allocator);
-    gtx_shells_free_staging(&model->shells, &model->allocator);
+    gtx_lod_free_staging(&model->lods, &model->allocator);
 }
 
 gtx_model_size gtx_model_gpu_size(const gtx_model *model)

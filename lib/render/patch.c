@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-/* How far, in texels and codes, hulls stand off the sheet: rounding in the rasteriser must not cut
- * the sheet's rim, and a flat sheet must not lie in a face. */
+/* How far, in texels and codes, hulls stand off the height field: rounding in the rasteriser must
+ * not cut the height field's rim, and a flat height field must not lie in a face. */
 static const float hull_margin = 0.25f;
 
 /* The part of a record that is the same for all levels. */

@@ -152,7 +152,7 @@ void gtx_plan_patches(gtx_renderer *renderer, const gtx_view *view, const gtx_fr
     memset(plan->box_count, 0, sizeof plan->box_count);
     for (uint32_t i = 0; i < model->patch_count; ++i) {
         const gtx_patch_facts *facts = &model->facts[i];
-        if ((edited_only && !model->shells.edited[i]) || is_outside(&s, facts->hull))
+        if ((edited_only && !model->lods.edited[i]) || is_outside(&s, facts->hull))
             continue;
         const bool box = facts->boxed || is_before_near(&s, facts->hull);
         const uint32_t level = level_of(&s, model, facts);

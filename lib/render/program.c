@@ -20,14 +20,14 @@ typedef struct recipe {
 #define PLAIN "#define GTX_PLAIN\n"
 #define CAST "geotex_cast.glsl", "geotex_fragment.glsl"
 #define PAPER "geotex_paper.glsl", "geotex_fragment.glsl"
-#define POLYGONS "geotex_shell.vert"
+#define POLYGONS "geotex_lod.vert"
 #define CORNERS "geotex_tiles.vert"
 #define TILES "#define GTX_TILES\n"
 #define WALK CAST, "geotex_tiles.glsl"
 #define FRONT "#define GTX_FRONT\n"
 #define ALONE "#define GTX_ALONE\n"
 #define COLORS "#define GTX_COLORS\n"
-#define SHELL "geotex_shell_fragment.glsl"
+#define LOD "geotex_lod_fragment.glsl"
 #define RAYS "geotex_rays.glsl"
 
 static const recipe recipes[PROGRAM_COUNT] = {
@@ -50,28 +50,28 @@ static const recipe recipes[PROGRAM_COUNT] = {
     [PROGRAM_PAPER_GBUFFER] = {PROXY, MATERIALS,
                                {"geotex_material.glsl", PAPER, "geotex_gbuffer.frag"},
                                "geotex paper, g-buffer"},
-    [PROGRAM_SHELL] = {POLYGONS, "", {SHELL, "geotex_shell.frag"}, "geotex shell"},
-    [PROGRAM_SHELL_FRONT] = {POLYGONS, FRONT, {"geotex_shell_front.frag"}, "geotex shell, front"},
-    [PROGRAM_SHELL_MATERIAL] = {POLYGONS, MATERIALS,
-                                {"geotex_material.glsl", SHELL, "geotex_shell.frag"},
-                                "geotex shell, materials"},
-    [PROGRAM_SHELL_DEPTH] = {POLYGONS, "", {SHELL, "geotex_depth.frag"}, "geotex shell, depth"},
-    [PROGRAM_SHELL_DEPTH_ALONE] = {POLYGONS, ALONE, {SHELL, "geotex_depth.frag"},
-                                   "geotex shell, depth, alone"},
-    [PROGRAM_SHELL_ID] = {POLYGONS, "", {SHELL, "geotex_id.frag"}, "geotex shell, ids"},
-    [PROGRAM_SHELL_GBUFFER] = {POLYGONS, MATERIALS,
-                               {"geotex_material.glsl", SHELL, "geotex_gbuffer.frag"},
-                               "geotex shell, g-buffer"},
-    [PROGRAM_SHELL_MATERIAL_FRONT] = {POLYGONS, MATERIALS FRONT,
-                                      {"geotex_material.glsl", "geotex_shell_front.frag"},
-                                      "geotex shell, materials, front"},
-    [PROGRAM_SHELL_EVEN_FRONT] = {POLYGONS, MATERIALS FRONT "#define GTX_EVEN\n",
-                                  {"geotex_material.glsl", "geotex_shell_front.frag"},
-                                  "geotex shell, one material, front"},
-    [PROGRAM_SHELL_COLOR] = {POLYGONS, COLORS, {SHELL, "geotex_shell.frag"},
-                             "geotex shell, colors"},
-    [PROGRAM_SHELL_COLOR_FRONT] = {POLYGONS, COLORS FRONT, {"geotex_shell_front.frag"},
-                                   "geotex shell, colors, front"},
+    [PROGRAM_LOD] = {POLYGONS, "", {LOD, "geotex_lod.frag"}, "geotex LOD mesh"},
+    [PROGRAM_LOD_FRONT] = {POLYGONS, FRONT, {"geotex_lod_front.frag"}, "geotex LOD mesh, front"},
+    [PROGRAM_LOD_MATERIAL] = {POLYGONS, MATERIALS,
+                              {"geotex_material.glsl", LOD, "geotex_lod.frag"},
+                              "geotex LOD mesh, materials"},
+    [PROGRAM_LOD_DEPTH] = {POLYGONS, "", {LOD, "geotex_depth.frag"}, "geotex LOD mesh, depth"},
+    [PROGRAM_LOD_DEPTH_ALONE] = {POLYGONS, ALONE, {LOD, "geotex_depth.frag"},
+                                 "geotex LOD mesh, depth, alone"},
+    [PROGRAM_LOD_ID] = {POLYGONS, "", {LOD, "geotex_id.frag"}, "geotex LOD mesh, ids"},
+    [PROGRAM_LOD_GBUFFER] = {POLYGONS, MATERIALS,
+                             {"geotex_material.glsl", LOD, "geotex_gbuffer.frag"},
+                             "geotex LOD mesh, g-buffer"},
+    [PROGRAM_LOD_MATERIAL_FRONT] = {POLYGONS, MATERIALS FRONT,
+                                    {"geotex_material.glsl", "geotex_lod_front.frag"},
+                                    "geotex LOD mesh, materials, front"},
+    [PROGRAM_LOD_EVEN_FRONT] = {POLYGONS, MATERIALS FRONT "#define GTX_EVEN\n",
+                                {"geotex_material.glsl", "geotex_lod_front.frag"},
+                                "geotex LOD mesh, one material, front"},
+    [PROGRAM_LOD_COLOR] = {POLYGONS, COLORS, {LOD, "geotex_lod.frag"},
+                           "geotex LOD mesh, colors"},
+    [PROGRAM_LOD_COLOR_FRONT] = {POLYGONS, COLORS FRONT, {"geotex_lod_front.frag"},
+                                 "geotex LOD mesh, colors, front"},
     [PROGRAM_TILES] = {CORNERS, TILES PLAIN, {WALK, "geotex_forward.frag"}, "geotex tiles"},
     [PROGRAM_TILES_COLOR] = {CORNERS, TILES, {WALK, "geotex_forward.frag"},
                              "geotex tiles, colors"},
@@ -86,8 +86,8 @@ static const recipe recipes[PROGRAM_COUNT] = {
 };
 static const recipe own_cast = {PROXY, MATERIALS, {"geotex_material.glsl", CAST, RAYS},
                                 "geotex cast, own"};
-static const recipe own_shell = {POLYGONS, MATERIALS "#define GTX_SHELL\n",
-                                 {"geotex_material.glsl", SHELL, RAYS}, "geotex shell, own"};
+static const recipe own_lod = {POLYGONS, MATERIALS "#define GTX_LOD\n",
+                               {"geotex_material.glsl", LOD, RAYS}, "geotex LOD mesh, own"};
 
 const char *gtx_shader_source(const char *name)
 {
@@ -114,7 +114,7 @@ static source begin(bool es, const recipe *r)
     add(&s, es ? "#version 300 es\n" : "#version 330 core\n");
     add(&s, r->defines);
     add(&s, gtx_shader_source("geotex_dialect.glsl"));
-    add(&s, gtx_shader_source("geotex_sheet.glsl"));
+    add(&s, gtx_shader_source("geotex_height_field.glsl"));
     add(&s, gtx_shader_source("geotex_view.glsl"));
     return s;
 }
@@ -195,7 +195,7 @@ static void locate(const gtx_gl *gl, gtx_program *program)
     program->search = gl->GetUniformLocation(program->object, "gtx_search");
     program->maps = gl->GetUniformLocation(program->object, "gtx_maps");
     program->even = gl->GetUniformLocation(program->object, "gtx_even");
-    program->shell = gl->GetUniformLocation(program->object, "gtx_shell");
+    program->lod = gl->GetUniformLocation(program->object, "gtx_lod_mesh");
     gl->UseProgram(program->object);
     for (gl_int i = 0; i < UNIT_COUNT; ++i)
         gl->Uniform1i(gl->GetUniformLocation(program->object, samplers[i]), i);
@@ -232,10 +232,10 @@ gtx_result gtx_program_need(gtx_renderer *renderer, int program, gtx_error *erro
 gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
 {
     static const int first[] = {PROGRAM_CAST, PROGRAM_CAST_MATERIAL, PROGRAM_PAPER,
-                                PROGRAM_PAPER_MATERIAL, PROGRAM_SHELL, PROGRAM_SHELL_MATERIAL,
-                                PROGRAM_SHELL_FRONT, PROGRAM_SHELL_COLOR,
-                                PROGRAM_SHELL_COLOR_FRONT, PROGRAM_SHELL_MATERIAL_FRONT,
-                                PROGRAM_SHELL_EVEN_FRONT, PROGRAM_CAST_COLOR};
+                                PROGRAM_PAPER_MATERIAL, PROGRAM_LOD, PROGRAM_LOD_MATERIAL,
+                                PROGRAM_LOD_FRONT, PROGRAM_LOD_COLOR,
+                                PROGRAM_LOD_COLOR_FRONT, PROGRAM_LOD_MATERIAL_FRONT,
+                                PROGRAM_LOD_EVEN_FRONT, PROGRAM_CAST_COLOR};
     gtx_result result = GTX_OK;
     static const int tiles[] = {PROGRAM_TILES, PROGRAM_TILES_MATERIAL, PROGRAM_TILES_COLOR};
     for (size_t i = 0; i < sizeof first / sizeof *first && !result; ++i)
@@ -263,7 +263,7 @@ gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shad
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a shading");
     gtx_result result = build(renderer, &own_cast, text, &shading->cast, error);
     if (!result)
-        result = build(renderer, &own_shell, text, &shading->shell, error);
+        result = build(renderer, &own_lod, text, &shading->lod, error);
     if (result)
         gtx_shading_destroy(renderer, shading);
     else
@@ -276,11 +276,11 @@ void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading)
     if (!shading)
         return;
     renderer->gl.DeleteProgram(shading->cast.object);
-    renderer->gl.DeleteProgram(shading->shell.object);
+    renderer->gl.DeleteProgram(shading->lod.object);
     gtx_free_array(&renderer->allocator, shading, 1, sizeof *shading);
 }
 
 uint32_t gtx_shading_program(const gtx_shading *shading, gtx_method method)
 {
-    return method == GTX_METHOD_SHELL ? shading->shell.object : shading->cast.object;
+    return method == GTX_METHOD_LOD ? shading->lod.object : shading->cast.object;
 }

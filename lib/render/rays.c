@@ -9,10 +9,10 @@
 
 #include <string.h>
 
-/* Texels that a sheet's first is a multiple of: such numbers are exact as floats. */
-enum { SHEET_ALIGN = 256 };
+/* Texels that a height field's first is a multiple of: such numbers are exact as floats. */
+enum { FIELD_ALIGN = 256 };
 /* What floats count to, and what ints of shaders do. */
-static const size_t MOST_NODES = 1u << 24, MOST_TEXELS = 1u << 30;
+static const size_t MAX_NODES = 1u << 24, MAX_TEXELS = 1u << 30;
 
 static size_t align(size_t n, size_t to)
 {
@@ -42,12 +42,12 @@ static gtx_result measure(gtx_rays *rays, const gtx_rays_desc *desc, gtx_error *
         gtx_ray_member *m = &rays->members[a];
         size_t blocks = 0;
         for (uint32_t i = 0; i < info->patch_count; ++i) {
-            rays->cells += align(texels_of(&asset->patches[i]), SHEET_ALIGN);
+            rays->cells += align(texels_of(&asset->patches[i]), FIELD_ALIGN);
             blocks += blocks_of(&asset->patches[i]);
         }
         m->nodes = rays->nodes;
-        rays->nodes += 2 * GTX_RAY_NODE * blocks + GTX_RAY_SHEET * (size_t)info->patch_count;
-        if (rays->nodes > MOST_NODES || rays->cells > MOST_TEXELS)
+        rays->nodes += 2 * GTX_RAY_NODE * blocks + GTX_RAY_FIELD * (size_t)info->patch_count;
+        if (rays->nodes > MAX_NODES || rays->cells > MAX_TEXELS)
             return gtx_fail(error, GTX_ERROR_LIMIT, "the assets are too large to cast into");
         m->layout = gtx_model_layout(asset);
         m->height_bits = info->height_bits;
@@ -70,8 +70,8 @@ static bool reserve(gtx_rays *rays)
         gtx_ray_member *m = &rays->members[a];
         m->boxes = gtx_alloc_array(hooks, m->block_count, sizeof *m->boxes);
         m->blocks = gtx_alloc_array(hooks, m->block_count, sizeof *m->blocks);
-        m->sheets = gtx_alloc_array(hooks, m->patch_count, sizeof *m->sheets);
-        all = all && m->boxes && m->blocks && m->sheets;
+        m->fields = gtx_alloc_array(hooks, m->patch_count, sizeof *m->fields);
+        all = all && m->boxes && m->blocks && m->fields;
     }
     rays->front = gtx_alloc_array(hooks, rays->front_texels, sizeof *rays->front);
     rays->boxes = gtx_alloc_array(hooks, rays->max_instances, sizeof *rays->boxes);
@@ -79,7 +79,7 @@ static bool reserve(gtx_rays *rays)
     return all && rays->front && (!rays->max_instances || (rays->boxes && rays->places));
 }
 
-/* A patch's cells and outline, its record with the sheet's first texel, and the boxes of its
+/* A patch's cells and outline, its record with the height field's first texel, and the boxes of its
  * blocks. */
 static gtx_result derive_patch(const gtx_rays *rays, const gtx_asset *asset, uint32_t index,
                                size_t first, void *cells, uint8_t *trim,
@@ -104,7 +104,7 @@ static gtx_result derive_patch(const gtx_rays *rays, const gtx_asset *asset, uin
             record[r][k] = (float)frame.to_grid[r][k];
     record[3][0] = p->rect[2];
     record[3][1] = p->rect[3];
-    record[3][2] = (float)(first / SHEET_ALIGN);
+    record[3][2] = (float)(first / FIELD_ALIGN);
     record[3][3] = p->flags & GTX_PATCH_TWO_SIDED ? 1 : 0;
     return GTX_OK;
 }
@@ -117,7 +117,7 @@ static gtx_result derive_asset(gtx_rays *rays, const gtx_asset *asset, gtx_ray_m
     for (uint32_t i = 0; i < m->patch_count; ++i) {
         const gtx_patch *p = &asset->patches[i];
         gtx_result result = derive_patch(rays, asset, i, *next, cells + *next * (rays->bits / 2),
-                                         trim + *next, m->sheets[i], m->boxes + block, error);
+                                         trim + *next, m->fields[i], m->boxes + block, error);
         if (result)
             return result;
         const uint32_t wide = gtx_blocks_of(p->rect[2] - 1u);
@@ -125,7 +125,7 @@ static gtx_result derive_asset(gtx_rays *rays, const gtx_asset *asset, gtx_ray_m
             m->blocks[block][0] = (float)(b % wide + (b / wide << 11));
             m->blocks[block][1] = (float)i;
         }
-        *next += align(texels_of(p), SHEET_ALIGN);
+        *next += align(texels_of(p), FIELD_ALIGN);
     }
     m->offset = gtx_ray_offset(asset);
     m->edited = true;
@@ -197,7 +197,7 @@ void gtx_rays_destroy(gtx_renderer *renderer, gtx_rays *rays)
         const gtx_ray_member *m = &rays->members[i];
         gtx_free_array(&hooks, m->boxes, m->block_count, sizeof *m->boxes);
         gtx_free_array(&hooks, m->blocks, m->block_count, sizeof *m->blocks);
-        gtx_free_array(&hooks, m->sheets, m->patch_count, sizeof *m->sheets);
+        gtx_free_array(&hooks, m->fields, m->patch_count, sizeof *m->fields);
     }
     gtx_free_array(&hooks, rays->members, rays->member_count, sizeof *rays->members);
     gtx_free_array(&hooks, rays->front, rays->front_texels, sizeof *rays->front);
@@ -224,7 +224,7 @@ gtx_result gtx_rays_update(gtx_renderer *renderer, gtx_rays *rays, uint32_t asse
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "patch %u is not one of an asset with the rectangles of that cast into",
                         patch);
-    const size_t first = (size_t)m->sheets[patch][3][2] * SHEET_ALIGN;
+    const size_t first = (size_t)m->fields[patch][3][2] * FIELD_ALIGN;
     const size_t texels = texels_of(&edited->patches[patch]);
     uint32_t block = 0;
     for (uint32_t i = 0; i < patch; ++i)
@@ -232,7 +232,7 @@ gtx_result gtx_rays_update(gtx_renderer *renderer, gtx_rays *rays, uint32_t asse
     void *cells = gtx_alloc_array(&rays->allocator, texels, rays->bits / 2);
     uint8_t *trim = gtx_alloc_array(&rays->allocator, texels, 1);
     gtx_result result =
-        cells && trim ? derive_patch(rays, edited, patch, first, cells, trim, m->sheets[patch],
+        cells && trim ? derive_patch(rays, edited, patch, first, cells, trim, m->fields[patch],
                                      m->boxes + block, error)
                       : gtx_fail(error, GTX_ERROR_MEMORY, "no memory for an update");
     if (!result) {

@@ -5,8 +5,8 @@
 #include "derive/placement.h"
 #include "render/gl.h"
 
-/* Texels of a node, of an instance's record and of a sheet's. */
-enum { GTX_RAY_NODE = 2, GTX_RAY_INSTANCE = 4, GTX_RAY_SHEET = 4 };
+/* Texels of a node, of an instance's record and of a height field's. */
+enum { GTX_RAY_NODE = 2, GTX_RAY_INSTANCE = 4, GTX_RAY_FIELD = 4 };
 /* Texels of a row of any of the textures, and rows of a layer. */
 enum { GTX_RAY_ROW = 1024, GTX_RAY_LAYER_ROWS = 1024 };
 
@@ -19,15 +19,15 @@ typedef struct gtx_ray_member {
     uint64_t layout;          /* gtx_model_layout of it */
     uint32_t height_bits, patch_count;
     double offset;            /* gtx_ray_offset */
-    /* Blocks of its cells: their boxes, and what the leaves of its nodes say: block in the sheet,
-     * sheet. */
+    /* Blocks of its cells: their boxes, and what the leaves of its nodes say: block in the height
+     * field, height field. */
     gtx_box *boxes;
     float (*blocks)[2];
     uint32_t block_count;
-    float (*sheets)[GTX_RAY_SHEET][4]; /* as geotex_rays.glsl reads them */
+    float (*fields)[GTX_RAY_FIELD][4]; /* as geotex_rays.glsl reads them */
     gtx_box box;              /* around all */
-    size_t nodes, end;        /* texels of its hierarchy; its sheets follow */
-    /* Nodes and sheets, from when they are derived until they are sent. */
+    size_t nodes, end;        /* texels of its hierarchy; its height fields follow */
+    /* Nodes and height fields, from when they are derived until they are sent. */
     float (*fresh)[4];
     bool edited;              /* its nodes are not those of its boxes */
 } gtx_ray_member;

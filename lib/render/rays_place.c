@@ -34,7 +34,7 @@ static void put_block(uint32_t box, float at[2], const void *user)
 
 static size_t fresh_texels(const gtx_ray_member *m)
 {
-    return m->end - m->nodes + GTX_RAY_SHEET * (size_t)m->patch_count;
+    return m->end - m->nodes + GTX_RAY_FIELD * (size_t)m->patch_count;
 }
 
 static void free_fresh(gtx_ray_member *m, const gtx_allocator *hooks)
@@ -43,7 +43,7 @@ static void free_fresh(gtx_ray_member *m, const gtx_allocator *hooks)
     m->fresh = NULL;
 }
 
-/* The nodes and sheets of an asset whose boxes are not those of its nodes any more. */
+/* The nodes and height fields of an asset whose boxes are not those of its nodes any more. */
 static gtx_result derive_nodes(gtx_ray_member *m, const gtx_allocator *hooks, gtx_error *error)
 {
     gtx_hierarchy tree;
@@ -59,7 +59,7 @@ static gtx_result derive_nodes(gtx_ray_member *m, const gtx_allocator *hooks, gt
     }
     if (m->fresh) {
         put_nodes(&tree, m->nodes, m->fresh, put_block, m->blocks);
-        memcpy(m->fresh + (m->end - m->nodes), m->sheets, m->patch_count * sizeof *m->sheets);
+        memcpy(m->fresh + (m->end - m->nodes), m->fields, m->patch_count * sizeof *m->fields);
     }
     gtx_hierarchy_free(&tree, hooks);
     return m->fresh ? GTX_OK

@@ -43,7 +43,7 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
         return result;
     if ((unsigned)desc->tiles > GTX_TILES_ALWAYS)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "the renderer asks for an unknown tiling");
-    const float costs[] = {desc->costs.shell_triangle, desc->costs.shell_pixel,
+    const float costs[] = {desc->costs.lod_triangle, desc->costs.lod_pixel,
                            desc->costs.cast_patch, desc->costs.cast_pixel};
     for (int i = 0; i < 4; ++i)
         if (!(costs[i] >= 0))

@@ -4,7 +4,7 @@
 
 #include "derive/derive.h"
 #include "render/gl.h"
-#include "render/shell.h"
+#include "render/lod.h"
 
 #include <stdbool.h>
 
@@ -22,26 +22,26 @@ enum {
     PROGRAM_CAST, PROGRAM_CAST_MATERIAL, PROGRAM_CAST_DEPTH, PROGRAM_CAST_ID, PROGRAM_CAST_GBUFFER,
     PROGRAM_PAPER, PROGRAM_PAPER_MATERIAL, PROGRAM_PAPER_DEPTH, PROGRAM_PAPER_ID,
     PROGRAM_PAPER_GBUFFER,
-    PROGRAM_SHELL, PROGRAM_SHELL_MATERIAL, PROGRAM_SHELL_DEPTH, PROGRAM_SHELL_ID,
-    PROGRAM_SHELL_GBUFFER, PROGRAM_SHELL_FRONT, PROGRAM_SHELL_COLOR,
-    PROGRAM_SHELL_COLOR_FRONT, PROGRAM_SHELL_MATERIAL_FRONT, PROGRAM_SHELL_EVEN_FRONT,
+    PROGRAM_LOD, PROGRAM_LOD_MATERIAL, PROGRAM_LOD_DEPTH, PROGRAM_LOD_ID,
+    PROGRAM_LOD_GBUFFER, PROGRAM_LOD_FRONT, PROGRAM_LOD_COLOR,
+    PROGRAM_LOD_COLOR_FRONT, PROGRAM_LOD_MATERIAL_FRONT, PROGRAM_LOD_EVEN_FRONT,
     PROGRAM_CAST_COLOR,
     /* what was cast by tiles */
     PROGRAM_TILES, PROGRAM_TILES_MATERIAL, PROGRAM_TILES_DEPTH, PROGRAM_TILES_ID,
     PROGRAM_TILES_GBUFFER, PROGRAM_TILES_COLOR,
-    PROGRAM_SHELL_DEPTH_ALONE, /* of an instance whose place is a uniform */
+    PROGRAM_LOD_DEPTH_ALONE, /* of an instance whose place is a uniform */
     PROGRAM_COUNT
 };
 
 typedef struct gtx_program {
     gl_uint object;
-    gl_int clip_from_world, depth, light, detail, search, maps, shell, even;
+    gl_int clip_from_world, depth, light, detail, search, maps, lod, even;
     gl_int place;             /* of the only instance */
     gl_int tint, instance;    /* of what is cast by tiles */
 } gtx_program;
 
 struct gtx_shading {
-    gtx_program cast, shell;
+    gtx_program cast, lod;
 };
 
 /* What the proxy's vertex shader reads for each instance. */
@@ -110,7 +110,7 @@ struct gtx_renderer {
     /* Scratch of gtx_draw: what is uploaded, and whose winding is turned. */
     gtx_instance_data *instances;
     bool *mirrored;
-    uint8_t *ways;            /* 0: by casting; n: by level n - 1 of the shell */
+    uint8_t *ways;            /* 0: by casting; n: by level n - 1 of the LOD mesh */
     uint32_t instance_capacity;
     gtx_plan plan;
     gtx_tiles tiles;
@@ -128,14 +128,14 @@ typedef struct gtx_level {
 
 enum { GTX_MAX_LEVELS = 2 + 5 * GTX_MAX_MIPS };
 
-/* A patch's record, as geotex_sheet.glsl reads them: rows of GTX_RECORDS_A_ROW of them. */
+/* A patch's record, as geotex_height_field.glsl reads them: rows of GTX_RECORDS_A_ROW of them. */
 enum { GTX_RECORD_TEXELS = 11, GTX_RECORDS_A_ROW = 128 };
 
 enum { GTX_MAX_PROXY_KINDS = 1 + GTX_MAX_MIPS };
 
 /* What the choice of a patch's proxy goes by. */
 typedef struct gtx_patch_facts {
-    float sphere[4], hull[4]; /* around the sheet; around the proxies */
+    float sphere[4], hull[4]; /* around the height field; around the proxies */
     float error[GTX_MAX_MIPS]; /* of each level, as gtx_grid_error has it, never falling */
     bool boxed;               /* edited, and its hulls do not fit their place: cast by its box */
 } gtx_patch_facts;
@@ -159,7 +159,7 @@ struct gtx_model {
     float sphere[4];          /* around all proxies */
     float coarsest_error;     /* of all patches at the last level */
     uint32_t boxed_count;
-    gtx_shells shells;
+    gtx_lod_meshes lods;
     /* Slabs of all levels, and where those of a patch's level begin: mip_count * patch_count + 1
      * numbers. */
     gtx_slab *slabs;
@@ -170,7 +170,7 @@ struct gtx_model {
     gl_uint vertices, indices;
 };
 
-/* even.c: whether all that the asset shows has one material, and which: 0..1. */
+/* constant_material.c: whether all that the asset shows has one material, and which: 0..1. */
 bool gtx_find_even_material(const gtx_asset *asset, float material[4]);
 
 /* renderer.c: gives the scratch back. */
@@ -277,8 +277,8 @@ void gtx_stream_draw(gtx_renderer *renderer, const gtx_program *program,
 double gtx_stretch_of(const gtx_instance_data *placed);
 /* Whether it keeps angles: it turns, mirrors, moves and scales evenly, to about a thousandth. */
 bool gtx_keeps_angles(const gtx_instance_data *placed);
-/* What a model's instance is drawn by: 0, or one more than the level of its shell. Errors:
- * UNSUPPORTED (the view wants a shell and there is none). */
+/* What a model's instance is drawn by: 0, or one more than the LOD mesh. Errors:
+ * UNSUPPORTED (the view wants an LOD mesh and there is none). */
 gtx_result gtx_choose_way(const gtx_renderer *renderer, const gtx_view *view,
                           const gtx_frame *frame, const gtx_model *model,
                           const gtx_instance_data *placed, uint8_t *way, gtx_error *error);

@@ -1,5 +1,5 @@
 /* Tiles: which slabs of an instance may cover which squares of pixels, nearest first. */
-#include "render/sight.h"
+#include "render/patch_view.h"
 
 #include "base/alloc.h"
 #include "render/order.h"

@@ -138,8 +138,8 @@ static gtx_result upload(const gtx_renderer *renderer, gtx_model *model, const g
     model->facts[patch] = d->facts;
     model->facts[patch].boxed = !gtx_replace_proxies(gl, model, d->proxies, patch);
     gtx_model_sum_up(model);
-    if (model->shells.level_count)
-        gtx_shells_mark(&model->shells, patch);
+    if (model->lods.level_count)
+        gtx_lod_mark(&model->lods, patch);
     model->emission_scale = edited->info.has_emission ? edited->info.emission_scale : 0;
     return gtx_check_gl_memory(gl, error);
 }

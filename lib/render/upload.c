@@ -202,7 +202,7 @@ gtx_result gtx_check_gl_memory(const gtx_gl *gl, gtx_error *error)
     return GTX_OK;
 }
 
-static void allocate_shells(const gtx_gl *gl, gtx_shells *s)
+static void allocate_lods(const gtx_gl *gl, gtx_lod_meshes *s)
 {
     if (!s->level_count)
         return;
@@ -210,10 +210,10 @@ static void allocate_shells(const gtx_gl *gl, gtx_shells *s)
     gl->GenBuffers(1, &s->index_buffer);
     gl->BindBuffer(GL_ARRAY_BUFFER, s->vertex_buffer);
     gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)s->vertex_bytes, NULL, GL_STATIC_DRAW);
-    gtx_gl_label(gl, GL_BUFFER, s->vertex_buffer, "geotex shell vertices");
+    gtx_gl_label(gl, GL_BUFFER, s->vertex_buffer, "geotex LOD mesh vertices");
     gl->BindBuffer(GL_ARRAY_BUFFER, s->index_buffer);
     gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)s->index_bytes, NULL, GL_STATIC_DRAW);
-    gtx_gl_label(gl, GL_BUFFER, s->index_buffer, "geotex shell indices");
+    gtx_gl_label(gl, GL_BUFFER, s->index_buffer, "geotex LOD mesh indices");
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
 }
 
@@ -226,7 +226,7 @@ static void allocate(const gtx_gl *gl, gtx_model *model)
     gl->GenBuffers(1, &model->vertices);
     gl->GenBuffers(1, &model->indices);
     gtx_upload_proxies(gl, model, &empty);
-    allocate_shells(gl, &model->shells);
+    allocate_lods(gl, &model->lods);
 }
 
 /* Gives the objects back, so that an upload begins anew. */
@@ -235,13 +235,13 @@ static void release(const gtx_gl *gl, gtx_model *model)
     gl->DeleteTextures(UNIT_COUNT, model->textures);
     gl->DeleteBuffers(1, &model->vertices);
     gl->DeleteBuffers(1, &model->indices);
-    gl->DeleteBuffers(1, &model->shells.vertex_buffer);
-    gl->DeleteBuffers(1, &model->shells.index_buffer);
+    gl->DeleteBuffers(1, &model->lods.vertex_buffer);
+    gl->DeleteBuffers(1, &model->lods.index_buffer);
     memset(model->textures, 0, sizeof model->textures);
     model->vertices = model->indices = 0;
     model->vertex_bytes_sent = model->index_bytes_sent = 0;
-    model->shells.vertex_buffer = model->shells.index_buffer = 0;
-    model->shells.vertex_bytes_sent = model->shells.index_bytes_sent = 0;
+    model->lods.vertex_buffer = model->lods.index_buffer = 0;
+    model->lods.vertex_bytes_sent = model->lods.index_bytes_sent = 0;
     for (uint32_t i = 0; i < model->level_count; ++i)
         model->levels[i].next_row = 0;
 }
@@ -250,7 +250,7 @@ static void release(const gtx_gl *gl, gtx_model *model)
 static bool upload_slice(const gtx_gl *gl, gtx_model *model, uint64_t budget)
 {
     const gtx_proxies *p = &model->proxies;
-    gtx_shells *s = &model->shells;
+    gtx_lod_meshes *s = &model->lods;
     upload_bytes(gl, s->vertex_buffer, s->vertices, s->vertex_bytes, &s->vertex_bytes_sent,
                  &budget);
     upload_bytes(gl, s->index_buffer, s->indices, s->index_bytes, &s->index_bytes_sent, &budget);
@@ -328,7 +328,7 @@ void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model)
         release(&renderer->gl, model);
     gtx_model_free_staging(model);
     const gtx_allocator hooks = model->allocator;
-    gtx_shells_free(&model->shells, &hooks);
+    gtx_lod_free(&model->lods, &hooks);
     const size_t slots = (size_t)model->kind_count * model->patch_count + 1;
     gtx_free_array(&hooks, model->first_vertex, slots, sizeof *model->first_vertex);
     gtx_free_array(&hooks, model->first_index, slots, sizeof *model->first_index);

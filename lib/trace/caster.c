@@ -28,9 +28,9 @@ gtx_result gtx_caster_create(const gtx_asset *asset, const gtx_caster_desc *desc
     if (!caster)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a caster");
     caster->allocator = hooks;
-    caster->sheet_count = asset->info.patch_count;
+    caster->field_count = asset->info.patch_count;
     caster->ray_offset = gtx_ray_offset(asset);
-    result = gtx_sheets_build(caster, asset, d->level, d->max_error, error);
+    result = gtx_fields_build(caster, asset, d->level, d->max_error, error);
     if (result) {
         gtx_caster_destroy(caster);
         return result;
@@ -44,7 +44,7 @@ void gtx_caster_destroy(gtx_caster *caster)
     if (!caster)
         return;
     const gtx_allocator hooks = caster->allocator;
-    gtx_sheets_free(caster);
+    gtx_fields_free(caster);
     gtx_free_array(&hooks, caster, 1, sizeof *caster);
 }
 
@@ -67,21 +67,21 @@ static gtx_crossing cast_tree(const gtx_caster *caster, const gtx_line *ray, uin
 {
     const gtx_node *nodes = caster->tree.nodes, *leaf;
     const gtx_slabs s = gtx_slabs_of(ray);
-    gtx_crossing best = {.t = ray->t_max, .sheet = UINT32_MAX};
+    gtx_crossing best = {.t = ray->t_max, .field = UINT32_MAX};
     float limit = gtx_slabs_limit(&s, best.t);
-    gtx_line line; /* in the grid space of the sheet met last */
-    uint32_t sheet = UINT32_MAX;
+    gtx_line line; /* in the grid space of the height field met last */
+    uint32_t field = UINT32_MAX;
     gtx_subtree stack[GTX_HIERARCHY_DEPTH];
     gtx_subtree at = {0, caster->tree.node_count ? gtx_enter(nodes, &s, limit) : INFINITY};
     int size = 0;
     while ((leaf = gtx_next_leaf(nodes, &s, limit, &at, stack, &size))) {
         const gtx_block *block = &caster->blocks[leaf->link - GTX_LEAF];
-        if (block->sheet != sheet) {
-            sheet = block->sheet;
-            line = gtx_sheet_line(&caster->sheets[sheet], ray);
+        if (block->field != field) {
+            field = block->field;
+            line = gtx_field_line(&caster->fields[field], ray);
         }
         gtx_walk_block(caster, block, &line, flags & GTX_RAY_TWO_SIDED, &best);
-        if (best.sheet != UINT32_MAX && (flags & GTX_RAY_ANY))
+        if (best.field != UINT32_MAX && (flags & GTX_RAY_ANY))
             break;
         limit = gtx_slabs_limit(&s, best.t);
     }
@@ -91,9 +91,9 @@ static gtx_crossing cast_tree(const gtx_caster *caster, const gtx_line *ray, uin
 static gtx_crossing cast_exhaustively(const gtx_caster *caster, const gtx_line *ray,
                                       uint32_t flags)
 {
-    gtx_crossing best = {.t = ray->t_max, .sheet = UINT32_MAX};
-    for (uint32_t i = 0; i < caster->sheet_count; ++i)
-        gtx_search_sheet(caster, i, ray, flags & GTX_RAY_TWO_SIDED, &best);
+    gtx_crossing best = {.t = ray->t_max, .field = UINT32_MAX};
+    for (uint32_t i = 0; i < caster->field_count; ++i)
+        gtx_search_field(caster, i, ray, flags & GTX_RAY_TWO_SIDED, &best);
     return best;
 }
 
@@ -105,17 +105,17 @@ gtx_crossing gtx_cast_line(const gtx_caster *caster, const gtx_line *line, uint3
 
 gtx_hit gtx_describe(const gtx_caster *caster, const gtx_crossing *crossing)
 {
-    const gtx_sheet *sheet = &caster->sheets[crossing->sheet];
+    const gtx_height_field *field = &caster->fields[crossing->field];
     /* The cell behind the coordinates; a crossing may lie a rounding error outside. */
-    const double right = sheet->width - 1, top = sheet->height - 1;
+    const double right = field->width - 1, top = field->height - 1;
     const double x = fmin(fmax(crossing->x, 0), right), y = fmin(fmax(crossing->y, 0), top);
-    uint32_t i = (uint32_t)fmin(x, right - 1) >> sheet->level;
-    uint32_t j = (uint32_t)fmin(y, top - 1) >> sheet->level;
-    gtx_cell cell = gtx_sheet_cell(sheet, i, j);
-    gtx_hit hit = {.t = (float)crossing->t, .patch = crossing->sheet, .x = (float)x,
+    uint32_t i = (uint32_t)fmin(x, right - 1) >> field->level;
+    uint32_t j = (uint32_t)fmin(y, top - 1) >> field->level;
+    gtx_cell cell = gtx_field_cell(field, i, j);
+    gtx_hit hit = {.t = (float)crossing->t, .patch = crossing->field, .x = (float)x,
                    .y = (float)y, .back = crossing->back};
-    gtx_sheet_normal(sheet, x, y, hit.normal);
-    gtx_sheet_facet(sheet, &cell, x, y, hit.facet);
+    gtx_field_normal(field, x, y, hit.normal);
+    gtx_field_facet(field, &cell, x, y, hit.facet);
     return hit;
 }
 
@@ -127,10 +127,10 @@ gtx_result gtx_raycast(const gtx_caster *caster, const gtx_ray *rays, gtx_hit *h
         return GTX_ERROR_ARGUMENT;
     for (size_t i = 0; i < count; ++i) {
         gtx_line ray;
-        gtx_crossing crossing = {.sheet = UINT32_MAX};
+        gtx_crossing crossing = {.field = UINT32_MAX};
         if (gtx_read_ray(&rays[i], &ray))
             crossing = gtx_cast_line(caster, &ray, flags);
-        hits[i] = crossing.sheet == UINT32_MAX
+        hits[i] = crossing.field == UINT32_MAX
                       ? (gtx_hit){.t = INFINITY, .patch = UINT32_MAX}
                       : gtx_describe(caster, &crossing);
     }

@@ -1,4 +1,5 @@
-/* The inside of a gtx_caster: sheets (one a patch), and a hierarchy over blocks of their cells. */
+/* The inside of a gtx_caster: height fields (one a patch), and a hierarchy over blocks of their
+ * cells. */
 #ifndef GTX_TRACE_CASTER_H
 #define GTX_TRACE_CASTER_H
 
@@ -9,7 +10,7 @@
 
 /* One patch, cast at its level of detail. Grid space: x and y in texels of level 0 (texel i at
  * x = i), z in codes. The map from object space is affine, so t means the same in both. */
-typedef struct gtx_sheet {
+typedef struct gtx_height_field {
     double to_grid[3][4];       /* rows: linear part and translation */
     float normal_frame[3][3];   /* rows x', y', z' */
     uint32_t width, height;     /* texels of level 0 */
@@ -20,24 +21,25 @@ typedef struct gtx_sheet {
     uint16_t *code;             /* nodes of the detail level */
     uint8_t *trim, *normal;     /* texels of level 0 */
     bool two_sided;
-} gtx_sheet;
+} gtx_height_field;
 
-/* A block of a sheet's cells: GTX_BLOCK x GTX_BLOCK, or fewer at its far edges. */
+/* A block of a height field's cells: GTX_BLOCK x GTX_BLOCK, or fewer at its far edges. */
 typedef struct gtx_block {
     uint64_t solid;             /* bit GTX_BLOCK * j + i: the cell (x + i, y + j) exists */
-    uint32_t sheet;
+    uint32_t field;
     uint16_t x, y;
     uint16_t low, high;         /* codes of its cells */
 } gtx_block;
 
 struct gtx_caster {
     gtx_allocator allocator;
-    uint32_t sheet_count, block_count;
-    gtx_sheet *sheets;
-    gtx_block *blocks;          /* a sheet's in rows; the hierarchy is over those with a cell */
+    uint32_t field_count, block_count;
+    gtx_height_field *fields;
+    gtx_block *blocks;          /* a height field's in rows; the hierarchy is over those with a
+                                   cell */
     gtx_hierarchy tree;
     double ray_offset;          /* of the asset, in object units */
-    /* What the sheets point into. */
+    /* What the height fields point into. */
     uint16_t *code;
     uint8_t *trim, *normal;
     size_t code_count, texel_count;
@@ -45,7 +47,7 @@ struct gtx_caster {
 
 enum { GTX_RAY_FLAGS = GTX_RAY_ANY | GTX_RAY_TWO_SIDED | GTX_RAY_EXHAUSTIVE };
 
-/* A ray in double; in object space, or in the grid space of a sheet. */
+/* A ray in double; in object space, or in the grid space of a height field. */
 typedef struct gtx_line {
     double origin[3], direction[3];
     double t_min, t_max;
@@ -54,7 +56,7 @@ typedef struct gtx_line {
 /* A crossing that was accepted. */
 typedef struct gtx_crossing {
     double t;                   /* the ray's t_max when there is none */
-    uint32_t sheet;             /* UINT32_MAX when there is none */
+    uint32_t field;             /* UINT32_MAX when there is none */
     double x, y;                /* texels of level 0 */
     bool back;
 } gtx_crossing;
@@ -66,30 +68,31 @@ typedef struct gtx_cell {
     double c, cx, cy, cxy;
 } gtx_cell;
 
-/* sheet.c: sheets, all at one level or each at its coarsest within an error, and what is looked up
- * in them. */
-gtx_result gtx_sheets_build(gtx_caster *caster, const gtx_asset *asset, uint32_t level,
+/* field.c: height fields, all at one level or each at its coarsest within an error, and what is
+ * looked up in them. */
+gtx_result gtx_fields_build(gtx_caster *caster, const gtx_asset *asset, uint32_t level,
                             double max_error, gtx_error *error);
-void gtx_sheets_free(gtx_caster *caster);
-gtx_line gtx_sheet_line(const gtx_sheet *sheet, const gtx_line *ray);
-gtx_cell gtx_sheet_cell(const gtx_sheet *sheet, uint32_t i, uint32_t j);
-bool gtx_sheet_solid(const gtx_caster *caster, const gtx_sheet *sheet, uint32_t i, uint32_t j);
-/* Whether the trim map shows the sheet at (x, y). */
-bool gtx_sheet_shows(const gtx_sheet *sheet, double x, double y);
+void gtx_fields_free(gtx_caster *caster);
+gtx_line gtx_field_line(const gtx_height_field *field, const gtx_line *ray);
+gtx_cell gtx_field_cell(const gtx_height_field *field, uint32_t i,
+                     uint32_t j);
+bool gtx_field_solid(const gtx_caster *caster, const gtx_height_field *field, uint32_t i, uint32_t j);
+/* Whether the trim map shows the height field at (x, y). */
+bool gtx_field_shows(const gtx_height_field *field, double x, double y);
 /* The unit normals at (x, y) in object space: of the map, and of the surface of a cell. */
-void gtx_sheet_normal(const gtx_sheet *sheet, double x, double y, float out[3]);
-void gtx_sheet_facet(const gtx_sheet *sheet, const gtx_cell *cell, double x, double y,
+void gtx_field_normal(const gtx_height_field *field, double x, double y, float out[3]);
+void gtx_field_facet(const gtx_height_field *field, const gtx_cell *cell, double x, double y,
                      float out[3]);
 
-/* walk.c and exhaustive.c: the first accepted crossing of one block or sheet, with
- * t_min <= t < best->t (t = best->t too, when the sheet's index is lower), replaces *best. `both`
- * accepts crossings from below. `line` is the ray in the sheet's grid space, `ray` in object
- * space. */
+/* walk.c and exhaustive.c: the first accepted crossing of one block or height field, with
+ * t_min <= t < best->t (t = best->t too, when the height field's index is lower), replaces *best.
+ * `both` accepts crossings from below. `line` is the ray in the height field's grid space, `ray` in
+ * object space. */
 void gtx_walk_block(const gtx_caster *caster, const gtx_block *block, const gtx_line *line,
                     bool both, gtx_crossing *best);
-void gtx_walk_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *ray, bool both,
+void gtx_walk_field(const gtx_caster *caster, uint32_t field, const gtx_line *ray, bool both,
                     gtx_crossing *best);
-void gtx_search_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *ray, bool both,
+void gtx_search_field(const gtx_caster *caster, uint32_t field, const gtx_line *ray, bool both,
                       gtx_crossing *best);
 
 /* caster.c: a ray in double, false when it hits nothing by rule; its nearest crossing, or any by

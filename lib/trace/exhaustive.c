@@ -1,5 +1,5 @@
-/* The slow reference: every cell of a sheet, crossings found by bisection. It shares with the walk
- * only what defines the surface: the cell's corners and the trim. */
+/* The slow reference: every cell of a height field, crossings found by bisection. It shares with
+ * the walk only what defines the surface: the cell's corners and the trim. */
 #include "trace/caster.h"
 
 typedef struct interval {
@@ -54,7 +54,7 @@ static double turn(double t0, double t1, double f0, double middle, double f1)
 static void search_cell(const gtx_caster *caster, uint32_t index, const gtx_line *line,
                         const gtx_cell *cell, bool both, interval i, gtx_crossing *best)
 {
-    const gtx_sheet *sheet = &caster->sheets[index];
+    const gtx_height_field *field = &caster->fields[index];
     double f0 = above(line, cell, i.t0), f1 = above(line, cell, i.t1);
     double middle = above(line, cell, i.t0 + (i.t1 - i.t0) / 2);
     double split = turn(i.t0, i.t1, f0, middle, f1);
@@ -66,8 +66,8 @@ static void search_cell(const gtx_caster *caster, uint32_t index, const gtx_line
         double t = bisect(line, cell, end[k], end[k + 1]);
         double x = line->origin[0] + t * line->direction[0];
         double y = line->origin[1] + t * line->direction[1];
-        if (!(t < best->t || (t == best->t && index < best->sheet)) ||
-            !gtx_sheet_shows(sheet, x, y))
+        if (!(t < best->t || (t == best->t && index < best->field)) ||
+            !gtx_field_shows(field, x, y))
             continue;
         *best = (gtx_crossing){t, index, x, y, !from};
         return;
@@ -75,10 +75,11 @@ static void search_cell(const gtx_caster *caster, uint32_t index, const gtx_line
 }
 
 /* The codes at the corners of a cell, and a code more on both sides. */
-static void code_range(const gtx_sheet *sheet, uint32_t i, uint32_t j, double *low, double *high)
+static void code_range(const gtx_height_field *field, uint32_t i, uint32_t j, double *low,
+                       double *high)
 {
-    const uint16_t *row = sheet->code + (size_t)j * sheet->nodes_x + i;
-    const uint16_t *next = row + sheet->nodes_x;
+    const uint16_t *row = field->code + (size_t)j * field->nodes_x + i;
+    const uint16_t *next = row + field->nodes_x;
     const uint16_t corner[4] = {row[0], row[1], next[0], next[1]};
     uint16_t least = corner[0], most = corner[0];
     for (int k = 1; k < 4; ++k) {
@@ -89,29 +90,29 @@ static void code_range(const gtx_sheet *sheet, uint32_t i, uint32_t j, double *l
     *high = most + 1.0;
 }
 
-void gtx_search_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *ray, bool both,
+void gtx_search_field(const gtx_caster *caster, uint32_t field, const gtx_line *ray, bool both,
                       gtx_crossing *best)
 {
-    const gtx_sheet *s = &caster->sheets[sheet];
-    const gtx_line line = gtx_sheet_line(s, ray);
+    const gtx_height_field *s = &caster->fields[field];
+    const gtx_line line = gtx_field_line(s, ray);
     const double inverse[3] = {1 / line.direction[0], 1 / line.direction[1],
                                1 / line.direction[2]};
     for (uint32_t j = 0; j + 1 < s->nodes_y; ++j) {
-        gtx_cell first = gtx_sheet_cell(s, 0, j);
+        gtx_cell first = gtx_field_cell(s, 0, j);
         interval row = {ray->t_min, best->t};
         row = cut(row, &line, 1, inverse[1], first.y0, first.y1);
         for (uint32_t i = 0; row.t0 <= row.t1 && i + 1 < s->nodes_x; ++i) {
             double low, high;
-            if (!gtx_sheet_solid(caster, s, i, j))
+            if (!gtx_field_solid(caster, s, i, j))
                 continue;
             code_range(s, i, j, &low, &high);
             interval inside = cut(row, &line, 2, inverse[2], low, high);
             if (inside.t0 > inside.t1)
                 continue;
-            gtx_cell cell = gtx_sheet_cell(s, i, j);
+            gtx_cell cell = gtx_field_cell(s, i, j);
             inside = cut(inside, &line, 0, inverse[0], cell.x0, cell.x1);
             if (inside.t0 <= inside.t1)
-                search_cell(caster, sheet, &line, &cell, both || s->two_sided, inside, best);
+                search_cell(caster, field, &line, &cell, both || s->two_sided, inside, best);
         }
     }
 }

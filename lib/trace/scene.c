@@ -109,7 +109,7 @@ static gtx_crossing cast(const gtx_scene *scene, const gtx_line *ray, uint32_t f
 {
     const gtx_node *nodes = scene->tree.nodes, *leaf;
     const gtx_slabs s = gtx_slabs_of(ray);
-    gtx_crossing best = {.t = ray->t_max, .sheet = UINT32_MAX};
+    gtx_crossing best = {.t = ray->t_max, .field = UINT32_MAX};
     float limit = gtx_slabs_limit(&s, best.t);
     gtx_subtree stack[GTX_HIERARCHY_DEPTH];
     gtx_subtree at = {0, scene->tree.node_count ? gtx_enter(nodes, &s, limit) : INFINITY};
@@ -120,7 +120,7 @@ static gtx_crossing cast(const gtx_scene *scene, const gtx_line *ray, uint32_t f
         const member *m = &scene->members[index];
         const gtx_line line = to_object(&m->place, ray, best.t);
         const gtx_crossing found = gtx_cast_line(m->caster, &line, flags);
-        if (found.sheet == UINT32_MAX || !(found.t < best.t || index < *which))
+        if (found.field == UINT32_MAX || !(found.t < best.t || index < *which))
             continue;
         best = found;
         *which = index;

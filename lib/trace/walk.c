@@ -1,5 +1,5 @@
-/* Casting into one block of a sheet: from cell to cell along the ray (Amanatides and Woo 1987), to
- * exact bilinear crossings.
+/* Casting into one block of a height field: from cell to cell along the ray (Amanatides and Woo
+ * 1987), to exact bilinear crossings.
  *
  * The time at which the ray meets a plane comes from one expression, in a block and in its
  * neighbour, so no cell is skipped or met twice. */
@@ -13,7 +13,7 @@ static const double OVERLAP = 1e-7;
 static const double RANGE_SLACK = 1e-3;
 
 typedef struct walk {
-    const gtx_sheet *sheet;
+    const gtx_height_field *field;
     const gtx_block *block;
     bool both;
     double origin[3], direction[3]; /* grid space, from where the ray enters the block */
@@ -24,10 +24,10 @@ typedef struct walk {
     gtx_crossing *best;
 } walk;
 
-/* The plane before cell `n` of the sheet, in texels. */
-static double plane(const gtx_sheet *sheet, int axis, uint32_t n)
+/* The plane before cell `n` of the height field, in texels. */
+static double plane(const gtx_height_field *field, int axis, uint32_t n)
 {
-    uint32_t last = (axis ? sheet->height : sheet->width) - 1, texel = n << sheet->level;
+    uint32_t last = (axis ? field->height : field->width) - 1, texel = n << field->level;
     return texel < last ? texel : last;
 }
 
@@ -36,12 +36,12 @@ static bool accept(const walk *w, double t, double s, bool back)
 {
     double when = w->start + (t + s);
     gtx_crossing *best = w->best;
-    const uint32_t index = w->block->sheet;
-    if (when < w->t_min || !(when < best->t || (when == best->t && index < best->sheet)))
+    const uint32_t index = w->block->field;
+    if (when < w->t_min || !(when < best->t || (when == best->t && index < best->field)))
         return false;
     double x = w->origin[0] + (t + s) * w->direction[0];
     double y = w->origin[1] + (t + s) * w->direction[1];
-    if (!gtx_sheet_shows(w->sheet, x, y))
+    if (!gtx_field_shows(w->field, x, y))
         return false;
     *best = (gtx_crossing){when, index, x, y, back};
     return true;
@@ -101,7 +101,7 @@ static void walk_cells(const walk *w, uint32_t x, uint32_t y)
     for (;;) {
         double leave[2];
         for (int a = 0; a < 2; ++a) {
-            const double edge = plane(w->sheet, a, cell[a] + ahead[a]);
+            const double edge = plane(w->field, a, cell[a] + ahead[a]);
             leave[a] = w->direction[a] == 0 ? INFINITY : (edge - w->origin[a]) * w->inverse[a];
         }
         const int axis = leave[1] < leave[0];
@@ -109,7 +109,7 @@ static void walk_cells(const walk *w, uint32_t x, uint32_t y)
         exit = exit > t ? exit : t;
         const uint32_t i = cell[0] - w->block->x, j = cell[1] - w->block->y;
         if (w->block->solid >> (j * GTX_BLOCK + i) & 1) {
-            const gtx_cell c = gtx_sheet_cell(w->sheet, cell[0], cell[1]);
+            const gtx_cell c = gtx_field_cell(w->field, cell[0], cell[1]);
             if (range_met(w, &c, t, exit) && cross_cell(w, &c, t, exit))
                 return;
         }
@@ -123,9 +123,9 @@ static void walk_cells(const walk *w, uint32_t x, uint32_t y)
 }
 
 /* The cell of the block that the ray is in where it enters. */
-static uint32_t entry_cell(const gtx_sheet *sheet, uint32_t first, uint32_t last, double at)
+static uint32_t entry_cell(const gtx_height_field *field, uint32_t first, uint32_t last, double at)
 {
-    const double cell = at / (1u << sheet->level);
+    const double cell = at / (1u << field->level);
     return cell <= first ? first : cell >= last ? last : (uint32_t)cell;
 }
 
@@ -145,10 +145,10 @@ static bool cut(const gtx_line *line, int axis, double low, double high, double 
 void gtx_walk_block(const gtx_caster *caster, const gtx_block *block, const gtx_line *line,
                     bool both, gtx_crossing *best)
 {
-    const gtx_sheet *s = &caster->sheets[block->sheet];
+    const gtx_height_field *s = &caster->fields[block->field];
     const uint32_t first[2] = {block->x, block->y};
     const uint32_t cells[2] = {s->nodes_x - 1, s->nodes_y - 1};
-    walk w = {.sheet = s, .block = block, .both = both || s->two_sided, .t_min = line->t_min,
+    walk w = {.field = s, .block = block, .both = both || s->two_sided, .t_min = line->t_min,
               .best = best};
     double t0 = line->t_min, t1 = best->t, fastest = 1e-300; /* along z no cell is ever left */
     uint32_t last[2];
@@ -159,7 +159,8 @@ void gtx_walk_block(const gtx_caster *caster, const gtx_block *block, const gtx_
         w.inverse[a] = 1 / line->direction[a];
         fastest = fmax(fastest, fabs(line->direction[a]));
     }
-    /* A code more on both sides, so that a flat sheet does not lie in the faces of its box. */
+    /* A code more on both sides, so that a flat height field does not lie in the faces of its
+     * box. */
     if (!cut(line, 2, block->low - 1.0, block->high + 1.0, &t0, &t1))
         return;
     for (int a = 0; a < 3; ++a) {
@@ -173,8 +174,8 @@ void gtx_walk_block(const gtx_caster *caster, const gtx_block *block, const gtx_
                entry_cell(s, first[1], last[1], w.origin[1]));
 }
 
-/* The first and the last block along an axis that a line passes over up to t, with a texel to either
- * side for what is rounded; all where that is no number. */
+/* The first and the last block along an axis that a line passes over up to t, with a texel to
+ * either side for what is rounded; all where that is no number. */
 static void blocks_along(const gtx_line *line, int axis, double t, double size, uint32_t count,
                          uint32_t out[2])
 {
@@ -185,11 +186,11 @@ static void blocks_along(const gtx_line *line, int axis, double t, double size, 
     out[1] = !(last < count) ? count - 1 : last > 0 ? (uint32_t)last : 0;
 }
 
-void gtx_walk_sheet(const gtx_caster *caster, uint32_t sheet, const gtx_line *ray, bool both,
+void gtx_walk_field(const gtx_caster *caster, uint32_t field, const gtx_line *ray, bool both,
                     gtx_crossing *best)
 {
-    const gtx_sheet *s = &caster->sheets[sheet];
-    const gtx_line line = gtx_sheet_line(s, ray);
+    const gtx_height_field *s = &caster->fields[field];
+    const gtx_line line = gtx_field_line(s, ray);
     const double size = (double)(GTX_BLOCK << s->level);
     uint32_t x[2], y[2];
     blocks_along(&line, 0, best->t, size, s->blocks_x, x);

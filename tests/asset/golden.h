@@ -25,37 +25,37 @@ typedef struct golden {
     int zstd_level;
     bool unknown;                 /* a section that readers skip is put in */
     uint64_t content_hash, file_hash;
-    uint32_t shells;
+    uint32_t lods;
 } golden;
 
 /* Hashes are literals: a change of the format must be made knowingly. */
 static const golden goldens[] = {
     {"minimal", 8, 1, 1, 8, NO_MAP, false, NULL, 0, false,
-     0xa1ada67a311afbb8, 0xa21f8e01c53ba3e6, 0},
+     0xa1ada67a311afbb8, 0xc5edd6fb99136797, 0},
     {"two-sided", 8, 1, 1, 8, NO_MAP, true, NULL, 0, false,
-     0x2a060121eecc877a, 0x15a1a1c1477fa92f, 0},
+     0x2a060121eecc877a, 0xbdf3a83d5f130952, 0},
     {"height16", 16, 1, 1, 16, NO_MAP, false, NULL, 0, false,
-     0x203462dc802c36e8, 0x7d420d8955818755, 0},
+     0x203462dc802c36e8, 0x3eab0561b1ad29c1, 0},
     {"color", 16, 1, 3, 8, COLOR, false, "{\"generator\":\"golden\"}", 0, false,
-     0x2d0c8982ac6de85c, 0x03d1345ccbff164d, 0},
+     0x2d0c8982ac6de85c, 0xd7d345083a24df33, 0},
     {"two-pages", 16, 2, 1, 8, NO_MAP, false, NULL, 0, false,
-     0x3c7934d87b3b52d9, 0x678006faa68fd560, 0},
+     0x3c7934d87b3b52d9, 0x28a7cebb7e02f3f8, 0},
     {"unknown", 8, 1, 1, 8, NO_MAP, false, NULL, 0, true,
-     0x99111e7725385c91, 0xcd28f8679ffb236f, 0},
+     0x99111e7725385c91, 0xa938cb8c54f88753, 0},
     {"zstd", 64, 1, 4, 8, COLOR, false, "{\"generator\":\"golden\"}", 3, false,
-     0x2c9eff3911803ffc, 0x6f8588edbfd28db7, 0},
+     0x2c9eff3911803ffc, 0xbc8c22aac7c71a1e, 0},
     {"zstd16", 64, 2, 2, 16, NO_MAP, false, NULL, 19, false,
-     0x725a3d49f50dad05, 0x3279c1f7bb19c7a8, 0},
+     0x725a3d49f50dad05, 0xf648d86a714e05e0, 0},
     {"material", 8, 1, 2, 8, MATERIAL, false, NULL, 0, false,
-     0x9cbc61974bba266a, 0x466ea65cd8922748, 0},
+     0x9cbc61974bba266a, 0x9ee543ee2003ab49, 0},
     {"emission", 8, 1, 2, 8, EMISSION, false, NULL, 0, false,
-     0x2e1f08ad6478c029, 0x97ecce8e2e76aada, 0},
+     0x2e1f08ad6478c029, 0x732e553fe4f4a170, 0},
     {"zstd-material", 64, 2, 4, 8, EVERY_MAP, false, NULL, 3, false,
-     0x81bc44e2a270d991, 0xe05ee4f6e6b70e3e, 0},
-    {"shell", 8, 1, 1, 8, NO_MAP, false, NULL, 0, false,
-     0xf051600856bc8501, 0x2ca8a12e34dc571a, 2},
-    {"zstd-shell", 64, 2, 1, 8, NO_MAP, false, NULL, 3, false,
-     0xbce458ad33a524ab, 0x869a6f999f93458f, 3},
+     0x81bc44e2a270d991, 0x7fb9f786785e43cd, 0},
+    {"lod", 8, 1, 1, 8, NO_MAP, false, NULL, 0, false,
+     0xf051600856bc8501, 0x067639d7ceec8dde, 2},
+    {"zstd-lod", 64, 2, 1, 8, NO_MAP, false, NULL, 3, false,
+     0xbce458ad33a524ab, 0x3eac3dc7cb7115aa, 3},
 };
 enum { GOLDEN_COUNT = sizeof goldens / sizeof goldens[0] };
 
@@ -128,7 +128,7 @@ static inline void golden_fill(const golden *g, gtx_patch *patch, uint8_t *heigh
 
 /* A level in memory of its own: a square of 2^n x 2^n cells on every patch, whose first corners are
  * those of the patch before, so that patches share vertices. */
-static inline gtx_shell golden_shell(uint32_t patches, uint32_t level, uint32_t levels)
+static inline gtx_lod_mesh golden_lod(uint32_t patches, uint32_t level, uint32_t levels)
 {
     const uint32_t side = 1u << (levels - 1 - level), row = side + 1;
     const uint32_t triangles = 2 * side * side, own = row * row;
@@ -157,16 +157,16 @@ static inline gtx_shell golden_shell(uint32_t patches, uint32_t level, uint32_t 
         }
     }
     first[patches] = patches * triangles;
-    return (gtx_shell){.step = 1.0f / 1024, .error = 0.25f * (float)level, .vertex_count = met,
-                       .triangle_count = patches * triangles, .first = first, .indices = indices,
-                       .positions = positions};
+    return (gtx_lod_mesh){.step = 1.0f / 1024, .error = 0.25f * (float)level, .vertex_count = met,
+                          .triangle_count = patches * triangles, .first = first, .indices = indices,
+                          .positions = positions};
 }
 
-static inline void golden_free_shell(gtx_shell *shell)
+static inline void golden_free_lod(gtx_lod_mesh *lod)
 {
-    free((void *)shell->first);
-    free((void *)shell->indices);
-    free((void *)shell->positions);
+    free((void *)lod->first);
+    free((void *)lod->indices);
+    free((void *)lod->positions);
 }
 
 static inline gtx_result golden_create(const golden *g, const gtx_allocator *allocator,
@@ -196,9 +196,9 @@ static inline gtx_result golden_create(const golden *g, const gtx_allocator *all
         for (size_t i = 0; i < 3 * count; ++i)
             emission[k][i] = (uint8_t)(i / 3 % 48 + 60 * (i % 3) + k);
     }
-    gtx_shell shell[4];
-    for (uint32_t k = 0; k < g->shells; ++k)
-        shell[k] = golden_shell(patch_count, k, g->shells);
+    gtx_lod_mesh lod[4];
+    for (uint32_t k = 0; k < g->lods; ++k)
+        lod[k] = golden_lod(patch_count, k, g->lods);
     gtx_asset_desc desc = {
         .patches = patches, .patch_count = patch_count, .page_count = g->pages,
         .page_width = g->side, .page_height = g->side, .mip_count = g->mips,
@@ -208,13 +208,13 @@ static inline gtx_result golden_create(const golden *g, const gtx_allocator *all
         .material = g->maps & MATERIAL ? (const uint8_t *const *)material : NULL,
         .emission = g->maps & EMISSION ? (const uint8_t *const *)emission : NULL,
         .emission_scale = g->maps & EMISSION ? 2.5f : 0,
-        .shell = shell, .shell_levels = g->shells,
+        .lod = lod, .lod_levels = g->lods,
         .meta = g->meta, .meta_size = g->meta ? strlen(g->meta) : 0,
         .bounds_min = {-1, -1, -1}, .bounds_max = {2, 2, 2}, .unit = 0.5f,
         .anchor = {1e7, -2, 0.25}, .source_triangles = 1234, .allocator = allocator};
     gtx_result result = gtx_create(&desc, out, error);
-    for (uint32_t k = 0; k < g->shells; ++k)
-        golden_free_shell(&shell[k]);
+    for (uint32_t k = 0; k < g->lods; ++k)
+        golden_free_lod(&lod[k]);
     for (uint32_t k = 0; k < g->mips; ++k) {
         free(normal[k]);
         free(color[k]);

@@ -14,16 +14,16 @@
 
 /* ---- a small descriptor that tests bend ---- */
 
-typedef struct sheet {
+typedef struct field {
     gtx_patch patches[2];
     uint8_t height[256], trim[256], normal[512];
     const uint8_t *levels[1];
     gtx_asset_desc desc;
-} sheet;
+} field;
 
-static void make_sheet(sheet *s)
+static void make_field(field *s)
 {
-    *s = (sheet){0};
+    *s = (field){0};
     for (uint32_t i = 0; i < 2; ++i)
         s->patches[i] = (gtx_patch){.extent_x = 1, .axis_x = {1, 0, 0}, .extent_y = 1,
                                     .axis_y = {0, 1, 0}, .extent_z = 1, .axis_z = {0, 0, 1},
@@ -38,7 +38,7 @@ static void make_sheet(sheet *s)
                                .normal = s->levels, .bounds_max = {1, 1, 1}};
 }
 
-static uint32_t broken_rule(const sheet *s)
+static uint32_t broken_rule(const field *s)
 {
     gtx_asset *asset = NULL;
     gtx_error error = {0};
@@ -54,8 +54,8 @@ static uint32_t broken_rule(const sheet *s)
 
 #define EXPECT_RULE(number, change)           \
     do {                                      \
-        sheet s;                              \
-        make_sheet(&s);                       \
+        field s;                              \
+        make_field(&s);                       \
         change;                               \
         assert_int_equal(broken_rule(&s), number); \
     } while (0)
@@ -102,8 +102,8 @@ static void test_create_rules(void **state)
 static void test_material_and_emission(void **state)
 {
     (void)state;
-    sheet s;
-    make_sheet(&s);
+    field s;
+    make_field(&s);
     uint8_t material[1024], emission[768];
     for (size_t i = 0; i < sizeof material; ++i)
         material[i] = (uint8_t)(i * 7);
@@ -161,35 +161,35 @@ static void test_huge_values(void **state)
 }
 
 /* Two levels of one triangle each, the coarser on the second patch. */
-static void test_shell(void **state)
+static void test_lod(void **state)
 {
     (void)state;
-    sheet s;
-    make_sheet(&s);
+    field s;
+    make_field(&s);
     const uint32_t on_first[] = {0, 1, 1}, on_second[] = {0, 0, 1};
     uint32_t indices[] = {0, 1, 2};
     uint16_t positions[] = {0, 0, 0, 4, 0, 1, 0, 4, 2};
-    gtx_shell levels[2] = {{.step = 0.125f, .error = 0.5f, .vertex_count = 3, .triangle_count = 1,
-                            .first = on_first, .indices = indices, .positions = positions}};
+    gtx_lod_mesh levels[2] = {{.step = 0.125f, .error = 0.5f,
+                               .vertex_count = 3, .triangle_count = 1, .first = on_first, .indices = indices, .positions = positions}};
     levels[1] = levels[0];
     levels[1].first = on_second;
     for (int k = 0; k < 3; ++k)
         levels[1].origin[k] = s.patches[1].origin[k];
-    s.desc.shell = levels;
-    s.desc.shell_levels = 2;
+    s.desc.lod = levels;
+    s.desc.lod_levels = 2;
     gtx_asset *asset = NULL;
     gtx_info info;
-    gtx_shell shown;
+    gtx_lod_mesh shown;
     assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_OK);
     gtx_get_info(asset, &info);
-    assert_int_equal(info.shell_levels, 2);
-    assert_int_equal(gtx_get_shell(asset, 1, &shown), GTX_OK);
+    assert_int_equal(info.lod_levels, 2);
+    assert_int_equal(gtx_get_lod_mesh(asset, 1, &shown), GTX_OK);
     assert_memory_equal(shown.first, on_second, sizeof on_second);
     assert_memory_equal(shown.indices, indices, sizeof indices);
     assert_memory_equal(shown.positions, positions, sizeof positions);
     assert_true(shown.step == 0.125f && shown.error == 0.5f);
-    assert_int_equal(gtx_get_shell(asset, 2, &shown), GTX_ERROR_ARGUMENT);
-    assert_int_equal(gtx_get_shell(asset, 0, NULL), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_get_lod_mesh(asset, 2, &shown), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_get_lod_mesh(asset, 0, NULL), GTX_ERROR_ARGUMENT);
     gtx_close(asset);
 
     levels[1].error = 0.25f;
@@ -197,10 +197,10 @@ static void test_shell(void **state)
     levels[1].error = 0.5f;
     positions[3] = 4000;
     assert_int_equal(broken_rule(&s), 505);
-    levels[0].flags = levels[1].flags = GTX_SHELL_FAR; /* corners may lie anywhere */
+    levels[0].flags = levels[1].flags = GTX_LOD_FAR; /* corners may lie anywhere */
     assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_OK);
-    assert_int_equal(gtx_get_shell(asset, 1, &shown), GTX_OK);
-    assert_int_equal(shown.flags, GTX_SHELL_FAR);
+    assert_int_equal(gtx_get_lod_mesh(asset, 1, &shown), GTX_OK);
+    assert_int_equal(shown.flags, GTX_LOD_FAR);
     gtx_close(asset);
     levels[0].flags = levels[1].flags = 2;
     assert_int_equal(broken_rule(&s), 501);
@@ -214,18 +214,18 @@ static void test_shell(void **state)
     levels[0].triangle_count = 1;
     levels[0].indices = NULL;
     assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_ERROR_ARGUMENT);
-    s.desc.shell_levels = 9;
+    s.desc.lod_levels = 9;
     assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_ERROR_ARGUMENT);
-    s.desc.shell = NULL;
-    s.desc.shell_levels = 1;
+    s.desc.lod = NULL;
+    s.desc.lod_levels = 1;
     assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_ERROR_ARGUMENT);
 }
 
 static void test_arguments(void **state)
 {
     (void)state;
-    sheet s;
-    make_sheet(&s);
+    field s;
+    make_field(&s);
     gtx_asset *asset = NULL;
     gtx_error error;
     assert_int_equal(gtx_create(NULL, &asset, &error), GTX_ERROR_ARGUMENT);
@@ -274,8 +274,8 @@ static void test_arguments(void **state)
 static void test_accessors(void **state)
 {
     (void)state;
-    sheet s;
-    make_sheet(&s);
+    field s;
+    make_field(&s);
     gtx_asset *asset;
     assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_OK);
     gtx_info info;
@@ -428,7 +428,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_create_rules), cmocka_unit_test(test_material_and_emission),
-        cmocka_unit_test(test_huge_values),  cmocka_unit_test(test_shell),
+        cmocka_unit_test(test_huge_values),  cmocka_unit_test(test_lod),
         cmocka_unit_test(test_arguments),
         cmocka_unit_test(test_accessors),    cmocka_unit_test(test_skip_hash),
         cmocka_unit_test(test_files),        cmocka_unit_test(test_full_disk),

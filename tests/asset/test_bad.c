@@ -21,8 +21,8 @@ enum { ENTRY = 192, HGHT = ENTRY + 64, TRIM = ENTRY + 128, NRML = ENTRY + 192, R
 enum { SMALL = ENTRY + 5 * 64, LARGE = ENTRY + 6 * 64 };
 enum { COLR = ENTRY + 10 * 64, MATL = ENTRY + 14 * 64, EMIT = ENTRY + 15 * 64 };
 
-/* The two levels in `shell`; the entries of its finer and of the coarsest in `zstd-shell`. */
-enum { COARSE = 960, FINE = 1088, SHEL = ENTRY + 5 * 64, ZSTD_SHEL = ENTRY + 4 * 64 };
+/* The two levels in `LOD mesh`; the entries of its finer and of the coarsest in `zstd-lod`. */
+enum { COARSE = 960, FINE = 1088, LODM = ENTRY + 5 * 64, ZSTD_SHEL = ENTRY + 4 * 64 };
 
 typedef enum rehash {
     NOTHING, HEADER, CONTENT, SECTIONS
@@ -97,9 +97,9 @@ static void rename_large_level(bytes *file)
     forget(file, LARGE);
 }
 
-static void rename_fine_shell(bytes *file)
+static void rename_fine_lod(bytes *file)
 {
-    forget(file, SHEL);
+    forget(file, LODM);
 }
 
 /* Colour and material have one size: only the names change place. */
@@ -174,12 +174,12 @@ static const bad bads[] = {
     {310, "patch-overlap", "two-pages", RECORD + 128 + 68, 2, 7, SECTIONS, RECORD + 128 + 68, NULL},
     {311, "patch-bounds", "minimal", 84, 4, 0x3F000000, HEADER, RECORD, NULL},       /* 0.5 */
     {400, "height-outside", "two-pages", 1347, 1, 9, SECTIONS, 1347, NULL},
-    {500, "shell-size", "shell", COARSE + 24, 4, 3, SECTIONS, COARSE + 20, NULL},
-    {501, "shell-header", "shell", COARSE + 12, 4, 0, SECTIONS, COARSE + 12, NULL},
-    {502, "shell-order", "shell", FINE + 16, 4, 0x3F800000, SECTIONS, COARSE + 16, NULL},
-    {503, "shell-first", "shell", COARSE + 36, 4, 1, SECTIONS, COARSE + 36, NULL},
-    {504, "shell-index", "shell", COARSE + 40, 4, 1, SECTIONS, COARSE + 40, NULL},
-    {505, "shell-place", "shell", COARSE + 64, 2, 3000, SECTIONS, COARSE + 40, NULL},
+    {500, "lod-size", "lod", COARSE + 24, 4, 3, SECTIONS, COARSE + 20, NULL},
+    {501, "lod-header", "lod", COARSE + 12, 4, 0, SECTIONS, COARSE + 12, NULL},
+    {502, "lod-order", "lod", FINE + 16, 4, 0x3F800000, SECTIONS, COARSE + 16, NULL},
+    {503, "lod-first", "lod", COARSE + 36, 4, 1, SECTIONS, COARSE + 36, NULL},
+    {504, "lod-index", "lod", COARSE + 40, 4, 1, SECTIONS, COARSE + 40, NULL},
+    {505, "lod-place", "lod", COARSE + 64, 2, 3000, SECTIONS, COARSE + 40, NULL},
     {600, "meta", "color", 3648, 1, 0xFF, SECTIONS, 3648, NULL},
 };
 enum { BAD_COUNT = sizeof bads / sizeof bads[0] };
@@ -225,18 +225,18 @@ static const bad variants[] = {
     {301, "patch-extent", "minimal", RECORD + 12, 4, 0, SECTIONS, RECORD + 12, NULL},
     {306, "patch-rectangle", "minimal", RECORD + 72, 2, 1, SECTIONS, RECORD + 68, NULL},
     {308, "patch-sphere", "minimal", RECORD + 92, 4, 0xBF800000, SECTIONS, RECORD + 92, NULL},
-    {200, "section-order", "shell", SHEL + 8, 4, 1, HEADER, SHEL, NULL},
-    {203, "section-level", "shell", SHEL + 8, 4, 8, HEADER, SHEL + 8, NULL},
-    {209, "section-filter", "zstd-shell", ZSTD_SHEL + 44, 4, 1, HEADER, ZSTD_SHEL + 44, NULL},
-    {214, "section-missing", "shell", 0, 0, 0, CONTENT, ENTRY, rename_fine_shell},
-    {500, "shell-size", "zstd-shell", ZSTD_SHEL + 32, 8, 81, HEADER, ZSTD_SHEL + 32, NULL},
-    {500, "shell-size", "shell", COARSE + 20, 4, 0xFFFFFFFF, SECTIONS, COARSE + 20, NULL},
-    {501, "shell-header", "shell", COARSE + 4, 4, 0x7FC00000, SECTIONS, COARSE + 4, NULL}, /* NaN */
-    {501, "shell-header", "shell", FINE + 16, 4, 0xBF800000, SECTIONS, FINE + 16, NULL},   /* -1 */
-    {501, "shell-header", "shell", COARSE + 28, 4, 2, SECTIONS, COARSE + 28, NULL},
-    {503, "shell-first", "shell", COARSE + 32, 4, 1, SECTIONS, COARSE + 32, NULL},
-    {504, "shell-index", "shell", COARSE + 40, 4, 3, SECTIONS, COARSE + 40, NULL},
-    {504, "shell-index", "shell", COARSE + 52, 4, 0xFFFFFFFF, SECTIONS, COARSE + 52, NULL},
+    {200, "section-order", "lod", LODM + 8, 4, 1, HEADER, LODM, NULL},
+    {203, "section-level", "lod", LODM + 8, 4, 8, HEADER, LODM + 8, NULL},
+    {209, "section-filter", "zstd-lod", ZSTD_SHEL + 44, 4, 1, HEADER, ZSTD_SHEL + 44, NULL},
+    {214, "section-missing", "lod", 0, 0, 0, CONTENT, ENTRY, rename_fine_lod},
+    {500, "lod-size", "zstd-lod", ZSTD_SHEL + 32, 8, 81, HEADER, ZSTD_SHEL + 32, NULL},
+    {500, "lod-size", "lod", COARSE + 20, 4, 0xFFFFFFFF, SECTIONS, COARSE + 20, NULL},
+    {501, "lod-header", "lod", COARSE + 4, 4, 0x7FC00000, SECTIONS, COARSE + 4, NULL}, /* NaN */
+    {501, "lod-header", "lod", FINE + 16, 4, 0xBF800000, SECTIONS, FINE + 16, NULL},       /* -1 */
+    {501, "lod-header", "lod", COARSE + 28, 4, 2, SECTIONS, COARSE + 28, NULL},
+    {503, "lod-first", "lod", COARSE + 32, 4, 1, SECTIONS, COARSE + 32, NULL},
+    {504, "lod-index", "lod", COARSE + 40, 4, 3, SECTIONS, COARSE + 40, NULL},
+    {504, "lod-index", "lod", COARSE + 52, 4, 0xFFFFFFFF, SECTIONS, COARSE + 52, NULL},
 };
 enum { VARIANT_COUNT = sizeof variants / sizeof variants[0] };
 

@@ -167,7 +167,7 @@ static void test_exhaustion(void **state)
         /* An asset, its records, a section each, and which texels are taken. */
         size_t levels = 1 + (g->maps & COLOR ? 1 : 0) + (g->maps & MATERIAL ? 1 : 0) +
                         (g->maps & EMISSION ? 1 : 0);
-        size_t created = 2 + 2 + levels * g->mips + g->shells + (g->meta ? 1 : 0) + 1;
+        size_t created = 2 + 2 + levels * g->mips + g->lods + (g->meta ? 1 : 0) + 1;
         assert_int_equal(exhaust(attempt_create, g), created);
         assert_in_range(exhaust(attempt_open, g), created, created + 2);
         assert_in_range(exhaust(attempt_validate, g), created, created + 2);

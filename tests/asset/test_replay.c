@@ -8,7 +8,7 @@
 
 #include "asset/codec.h"
 #include "asset/golden.h"
-#include "asset/shell.h"
+#include "asset/lod.h"
 
 #define GTX_DECODE_NO_MAIN
 #ifndef GTX_ZSTD
@@ -148,9 +148,9 @@ static void test_steps_agree(void **state)
     uint64_t seed = 7;
     for (uint32_t round = 0; round < 3000; ++round) {
         uint32_t patches = round % 4, vertices = round / 4 % 30, triangles = round / 120;
-        size_t size = (size_t)gtx_shell_size(patches, vertices, triangles);
+        size_t size = (size_t)gtx_lod_size(patches, vertices, triangles);
         uint8_t *coded = need(malloc(size)), *out = need(malloc(size));
-        struct section section = {.type = "SHEL", .size = size, .bytes = need(malloc(size))};
+        struct section section = {.type = "LODM", .size = size, .bytes = need(malloc(size))};
         for (size_t i = 0; i < size; ++i) {
             seed = seed * 6364136223846793005u + 1442695040888963407u;
             /* Words that mean something, now and then one that does not. */
@@ -160,7 +160,7 @@ static void test_steps_agree(void **state)
         gtx_store_u32(coded + 20, vertices + (round % 50 == 49));
         gtx_store_u32(coded + 24, triangles + 100 * (round % 70 == 69));
         memcpy(section.bytes, coded, size);
-        bool undone = gtx_shell_filter_undo(coded, size, out);
+        bool undone = gtx_lod_filter_undo(coded, size, out);
         assert_int_equal(undone, undo_steps(&section) == 0);
         if (undone)
             assert_memory_equal(section.bytes, out, size);
@@ -226,7 +226,7 @@ static void test_flips(void **state)
     assert_int_equal(flip("minimal", 0, SIZE_MAX / 8, 1, NO_REPAIR), 0);
     assert_int_equal(flip("color", 0, SIZE_MAX / 8, 5, NO_REPAIR), 0);
     assert_int_equal(flip("emission", 0, SIZE_MAX / 8, 3, NO_REPAIR), 0);
-    assert_int_equal(flip("shell", 0, SIZE_MAX / 8, 3, NO_REPAIR), 0);
+    assert_int_equal(flip("lod", 0, SIZE_MAX / 8, 3, NO_REPAIR), 0);
     assert_int_equal(flip("unknown", 0, table_end("unknown"), 1, NO_REPAIR), 0);
 }
 
@@ -236,8 +236,8 @@ static void test_repaired_flips(void **state)
 {
     (void)state;
     static const char *const names[] = {"minimal", "two-pages", "unknown", "color",
-                                        "material", "emission", "shell",
-                                        "zstd", "zstd-material", "zstd-shell"};
+                                        "material", "emission", "lod",
+                                        "zstd", "zstd-material", "zstd-lod"};
     for (int i = 0; i < (gtx_has_zstd() ? 10 : 7); ++i) {
         uint32_t accepted = flip(names[i], 0, table_end(names[i]), 1, REPAIR_HEADER);
         assert_in_range(accepted, 100, 1000);
@@ -249,7 +249,7 @@ static void test_repaired_content(void **state)
     (void)state;
     assert_in_range(flip("minimal", 448, 448 + 128 + 64, 1, REPAIR_ALL), 100, 1200);
     assert_in_range(flip("two-pages", 448, 448 + 512, 3, REPAIR_ALL), 150, 1000);
-    assert_in_range(flip("shell", 960, SIZE_MAX / 8, 1, REPAIR_ALL), 100, 1000);
+    assert_in_range(flip("lod", 960, SIZE_MAX / 8, 1, REPAIR_ALL), 100, 1000);
     assert_in_range(flip("color", 3648, SIZE_MAX / 8, 1, REPAIR_ALL), 50, 200); /* META */
 }
 

@@ -24,7 +24,7 @@ inline void add_normals(gtx::Mesh &mesh)
 }
 
 /* A grid of n x n squares over [0, 1]^2; wrap closes it along u or v. */
-inline gtx::Mesh sheet(unsigned n, const std::function<Vec3d(double, double)> &point,
+inline gtx::Mesh field(unsigned n, const std::function<Vec3d(double, double)> &point,
                        bool wrap = false)
 {
     gtx::Mesh mesh;

@@ -210,7 +210,7 @@ static Shown count_steps(const Maps &maps)
  * is surface, and without it no cell may look like one. */
 static void a_cliff_is_not_bridged_but_a_slope_is(void **)
 {
-    Mesh slope = shapes::sheet(64, [](double u, double v) {
+    Mesh slope = shapes::field(64, [](double u, double v) {
         return Vec3d(u, v, u <= 0.5 ? 0 : 0.5);
     });
     Mesh cliff = slope;
@@ -239,7 +239,7 @@ static void a_cliff_is_not_bridged_but_a_slope_is(void **)
  * from there, and joined by a wall besides, but no cell of the terrace goes down to it. */
 static void a_core_ends_at_a_drop(void **)
 {
-    const Mesh mesh = shapes::sheet(64, [](double u, double v) {
+    const Mesh mesh = shapes::field(64, [](double u, double v) {
         return Vec3d(u, v, u <= 0.5 ? 0 : -v);
     });
     auto is_below = [&](size_t t) {
@@ -269,7 +269,7 @@ static void a_needle_and_a_speck_bake(void **)
 
 static void a_chart_that_faces_away_bakes(void **)
 {
-    Mesh mesh = shapes::sheet(4, [](double u, double v) { return Vec3d(u, v, 0); });
+    Mesh mesh = shapes::field(4, [](double u, double v) { return Vec3d(u, v, 0); });
     Partition partition = shapes::split(mesh, shapes::all_in_one(), 16);
     partition.charts[0].frame =
         shapes::frame_along(mesh, partition.charts[0].triangles, Vec3d(0, 0, -1));
@@ -294,7 +294,7 @@ static void an_edge_on_closed_shred_bakes(void **)
 static void far_away_keeps_its_precision(void **)
 {
     Vec3d far(1e7, -2e7, 3e7);
-    Mesh mesh = shapes::sheet(16, [&](double u, double v) {
+    Mesh mesh = shapes::field(16, [&](double u, double v) {
         return far + Vec3d(u, v, 0.1 * std::sin(6 * u) * std::cos(5 * v));
     });
     Maps maps = bake_valid(mesh, shapes::split(mesh, shapes::all_in_one(), 64));
@@ -310,7 +310,7 @@ static void far_away_keeps_its_precision(void **)
 
 static void a_tilted_frame_is_followed(void **)
 {
-    Mesh mesh = shapes::sheet(16, [](double u, double v) { return Vec3d(u, v, 0.5 * u); });
+    Mesh mesh = shapes::field(16, [](double u, double v) { return Vec3d(u, v, 0.5 * u); });
     Partition partition = shapes::split(mesh, shapes::all_in_one(), 64);
     Frame &frame = partition.charts[0].frame;
     frame.origin = {0, 0, 0};
@@ -326,7 +326,7 @@ static void a_tilted_frame_is_followed(void **)
 
 static void colours_stay_and_are_averaged_in_light(void **)
 {
-    Mesh mesh = shapes::sheet(8, [](double u, double v) { return Vec3d(u, v, 0); });
+    Mesh mesh = shapes::field(8, [](double u, double v) { return Vec3d(u, v, 0); });
     Partition partition = shapes::split(mesh, shapes::all_in_one(), 32);
     mesh.colors.assign(3 * mesh.triangle_count(), Rgba8{10, 100, 200, 77});
     Maps maps = bake_valid(mesh, partition);
@@ -407,7 +407,7 @@ static gtx_result failure(const Mesh &mesh, Partition partition, BakeOptions opt
 
 static void nonsense_is_refused(void **)
 {
-    Mesh mesh = shapes::sheet(2, [](double u, double v) { return Vec3d(u, v, 0); });
+    Mesh mesh = shapes::field(2, [](double u, double v) { return Vec3d(u, v, 0); });
     Partition partition = shapes::split(mesh, shapes::all_in_one(), 8);
     BakeOptions options;
     options.mips = 9;

@@ -185,7 +185,7 @@ static void a_coarse_ball_with_long_triangles(void **)
 
 static void a_torus_of_ragged_patches(void **)
 {
-    Mesh mesh = shapes::sheet(
+    Mesh mesh = shapes::field(
         96,
         [](double u, double v) {
             double a = 2 * M_PI * u, b = 2 * M_PI * v, r = 0.35 + 0.03 * std::sin(5 * a + 3 * b);
@@ -207,9 +207,9 @@ static void a_cube_closes_at_its_edges(void **)
             holes(mesh, shapes::split(mesh, shapes::by_axis(mesh), resolution), 100000), 0);
 }
 
-static void an_open_sheet_is_whole_up_to_its_border(void **)
+static void an_open_field_is_whole_up_to_its_border(void **)
 {
-    Mesh mesh = shapes::sheet(40, [](double u, double v) {
+    Mesh mesh = shapes::field(40, [](double u, double v) {
         return Vec3d(u, v, 0.1 * std::sin(9 * u) * std::cos(7 * v));
     });
     assert_int_equal(holes(mesh, shapes::split(mesh, scattered(mesh, 12), 48), 100000), 0);
@@ -219,7 +219,7 @@ static void an_open_sheet_is_whole_up_to_its_border(void **)
 static void a_wall_that_leans_back_is_whole(void **)
 {
     const double texel = 1 / 48., height = 6 * texel, back = texel / 3;
-    Mesh mesh = shapes::sheet(60, [&](double u, double v) {
+    Mesh mesh = shapes::field(60, [&](double u, double v) {
         const double up = std::clamp((u - 0.4) / 0.2, 0., 1.);
         return Vec3d(u < 0.4 ? u : u > 0.6 ? u - 0.2 - back : 0.4 - back * up, v, height * up);
     });
@@ -241,9 +241,9 @@ static void check_seams(const Mesh &mesh, int charts, double within)
     gtx_close(asset);
 }
 
-/* Relief of two texels, and of four, whose sides are steep: each sheet alone misses it by more than
- * a step. */
-static void sheets_meet_where_they_end(void **)
+/* Relief of two texels, and of four, whose sides are steep: each height field alone misses it by
+ * more than a step. */
+static void fields_meet_where_they_end(void **)
 {
     auto bumpy = [](double relief) {
         return shapes::ball(64, [&](const Vec3d &d) {
@@ -271,9 +271,9 @@ int main()
         cmocka_unit_test(a_coarse_ball_with_long_triangles),
         cmocka_unit_test(a_torus_of_ragged_patches),
         cmocka_unit_test(a_cube_closes_at_its_edges),
-        cmocka_unit_test(an_open_sheet_is_whole_up_to_its_border),
+        cmocka_unit_test(an_open_field_is_whole_up_to_its_border),
         cmocka_unit_test(a_wall_that_leans_back_is_whole),
-        cmocka_unit_test(sheets_meet_where_they_end),
+        cmocka_unit_test(fields_meet_where_they_end),
         cmocka_unit_test(eroded_patches_have_cracks),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

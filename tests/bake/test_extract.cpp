@@ -101,7 +101,7 @@ static Partition one_chart(const Mesh &mesh, double resolution)
 
 static void a_chart_of_many_triangles(void **)
 {
-    Mesh mesh = shapes::sheet(220, [](double u, double v) { return Vec3d(u, v, hills(u, v)); });
+    Mesh mesh = shapes::field(220, [](double u, double v) { return Vec3d(u, v, hills(u, v)); });
     paint(mesh);
     assert_true(mesh.triangle_count() > 1 << 16);
     expect_the_same(mesh, one_chart(mesh, 100));
@@ -109,7 +109,7 @@ static void a_chart_of_many_triangles(void **)
 
 static void a_chart_of_two_triangles(void **)
 {
-    Mesh mesh = shapes::sheet(1, [](double u, double v) { return Vec3d(u, v, 0.3 * u - 0.1 * v); });
+    Mesh mesh = shapes::field(1, [](double u, double v) { return Vec3d(u, v, 0.3 * u - 0.1 * v); });
     paint(mesh);
     expect_the_same(mesh, one_chart(mesh, 60));
 }
@@ -127,16 +127,16 @@ static Mesh joined(Mesh mesh, const Mesh &other)
     return mesh;
 }
 
-/* A second sheet hovers over part of the first, and is drawn before and after it; then one that
- * faces away, which hides nothing. */
+/* A second height field hovers over part of the first, and is drawn before and after it; then one
+ * that faces away, which hides nothing. */
 static void the_topmost_of_two_layers(void **)
 {
-    const Mesh low = shapes::sheet(20, [](double u, double v) { return Vec3d(u, v, hills(u, v)); });
+    const Mesh low = shapes::field(20, [](double u, double v) { return Vec3d(u, v, hills(u, v)); });
     auto above = [](double u, double v) {
         return Vec3d(0.3 + 0.4 * u, 0.2 + 0.5 * v, 0.3 - hills(u, v));
     };
-    const Mesh high = shapes::sheet(10, above);
-    const Mesh away = shapes::sheet(10, [&](double u, double v) { return above(v, u); });
+    const Mesh high = shapes::field(10, above);
+    const Mesh away = shapes::field(10, [&](double u, double v) { return above(v, u); });
     for (const Mesh &mesh : {joined(low, high), joined(high, low), joined(low, away)})
         expect_the_same(mesh, one_chart(mesh, 80));
 }
@@ -144,7 +144,7 @@ static void the_topmost_of_two_layers(void **)
 /* Rows a thousandth of a texel thin between rows of several texels, on a steep slope. */
 static void slivers_on_a_slope(void **)
 {
-    Mesh mesh = shapes::sheet(41, [](double u, double v) {
+    Mesh mesh = shapes::field(41, [](double u, double v) {
         double row = v * 41, pair = std::floor(row / 2);
         double y = (pair + (row - 2 * pair > 0.5 ? 0.9995 : 0)) / 20.5;
         return Vec3d(u, y, 2 * y + hills(u, y));
@@ -168,10 +168,10 @@ static void a_place_beside_a_sliver_is_on_its_edge(void **)
     assert_true(length(inside - Vec3d(0.5, 0.25, 0.25)) < 1e-9);
 }
 
-/* Its relief is too fine for the pitch, so that the sheet is laid and drawn twice. */
+/* Its relief is too fine for the pitch, so that the height field is laid and drawn twice. */
 static void relief_that_wants_a_finer_pitch(void **)
 {
-    Mesh mesh = shapes::sheet(160, [](double u, double v) {
+    Mesh mesh = shapes::field(160, [](double u, double v) {
         return Vec3d(u, v, 0.06 * std::sin(100 * u) * std::sin(90 * v));
     });
     paint(mesh);
@@ -185,7 +185,7 @@ static void relief_that_wants_a_finer_pitch(void **)
  * walls meet the chart everywhere, and where one differs the other follows. */
 static void a_chart_that_folds(void **)
 {
-    Mesh mesh = shapes::sheet(60, [](double u, double v) {
+    Mesh mesh = shapes::field(60, [](double u, double v) {
         double t = 20 * u + 2.9;
         return Vec3d(u + 0.07 * std::sin(t), v, 0.1 * std::cos(t) + hills(u, v));
     });
@@ -197,7 +197,7 @@ static void a_chart_that_folds(void **)
 /* Junk is shown whole, though it faces away. */
 static void a_chart_that_faces_away(void **)
 {
-    Mesh mesh = shapes::sheet(12, [](double u, double v) { return Vec3d(v, u, hills(u, v)); });
+    Mesh mesh = shapes::field(12, [](double u, double v) { return Vec3d(v, u, hills(u, v)); });
     paint(mesh);
     expect_the_same(mesh, one_chart(mesh, 40));
 }

@@ -10,7 +10,7 @@ extern "C" {
 
 #include "asset/asset.h"
 #include "bake/shapes.hpp"
-#include "mesh/texture.hpp"
+#include "mesh/material/texture.hpp"
 
 #include <cstring>
 #include <memory>
@@ -24,15 +24,15 @@ static Maps bake_with(const Mesh &mesh, Partition partition, BakeOptions options
     return bake(mesh, partition, options, task);
 }
 
-/* A flat sheet over the unit square, seen from above in `resolution` texels; texture coordinates
- * are the square's. */
-struct Sheet {
+/* A flat height field over the unit square, seen from above in `resolution` texels; texture
+ * coordinates are the square's. */
+struct HeightField {
     Mesh mesh;
     Partition partition;
 
-    Sheet(unsigned squares, unsigned resolution, size_t materials = 1)
+    HeightField(unsigned squares, unsigned resolution, size_t materials = 1)
     {
-        mesh = shapes::sheet(squares, [](double u, double v) { return Vec3d(u, v, 0); });
+        mesh = shapes::field(squares, [](double u, double v) { return Vec3d(u, v, 0); });
         Appearance &look = mesh.appearance;
         look.materials.resize(materials);
         look.material.assign(mesh.triangle_count(), 0);
@@ -77,7 +77,7 @@ struct Sheet {
 };
 
 /* Calls visit(x, y, index of the texel in the maps, whether it has a code) for the texels of all
- * rectangles, at their places on the sheet. */
+ * rectangles, at their places on the height field. */
 template <class Visit> static void each_texel(const Maps &maps, Visit visit)
 {
     for (const gtx_patch &p : maps.patches) {
@@ -95,7 +95,8 @@ template <class Visit> static void each_texel(const Maps &maps, Visit visit)
     }
 }
 
-/* Whether the sheet is hit where a grid of side x side vertical rays meets the unit square. */
+/* Whether the height field is hit where a grid of side x side vertical rays meets the unit
+ * square. */
 static std::vector<bool> look_down(const Maps &maps, unsigned side)
 {
     std::vector<const uint8_t *> levels;
@@ -120,8 +121,8 @@ static std::vector<bool> look_down(const Maps &maps, unsigned side)
     return seen;
 }
 
-/* Rays that see the sheet where `off`, the distance to it in object units, is more than `more`, or
- * miss it where it is less than -`less`. */
+/* Rays that see the height field where `off`, the distance to it in object units, is more than
+ * `more`, or miss it where it is less than -`less`. */
 static int wrong_rays(const Maps &maps, double less, double more,
                       const std::function<double(double, double)> &off)
 {
@@ -145,9 +146,9 @@ static double outside_of_disc(double x, double y)
 static void a_disc_is_cut_out(void **)
 {
     for (uint32_t size : {32u, 256u}) { /* a coarse texture and a fine one */
-        Sheet sheet(6, 64);
-        sheet.mask(size, [](double x, double y) { return outside_of_disc(x, y) < 0; });
-        Maps maps = bake_with(sheet.mesh, sheet.partition);
+        HeightField field(6, 64);
+        field.mask(size, [](double x, double y) { return outside_of_disc(x, y) < 0; });
+        Maps maps = bake_with(field.mesh, field.partition);
         double blur = size < 64 ? 0.5 / size : 0;
         assert_int_equal(wrong_rays(maps, 0.15 / 64 + blur, 0.15 / 64 + blur, outside_of_disc), 0);
         int empty = 0;
@@ -173,14 +174,14 @@ static double outside_of_fence(double x, double y)
 /* Five by five bars of 0.08, which is five texels; cut into four charts right across the bars. */
 static void a_fence_stays_open_across_charts(void **)
 {
-    Sheet sheet(8, 64);
-    sheet.mask(512, [](double x, double y) { return outside_of_fence(x, y) < 0; });
+    HeightField field(8, 64);
+    field.mask(512, [](double x, double y) { return outside_of_fence(x, y) < 0; });
     for (int charts : {1, 4}) {
-        sheet.divide(64, [&](size_t t) {
-            Vec3d m = sheet.middle(t);
+        field.divide(64, [&](size_t t) {
+            Vec3d m = field.middle(t);
             return charts == 1 ? 0 : 2 * (m.x > 0.5) + (m.y > 0.5);
         });
-        Maps maps = bake_with(sheet.mesh, sheet.partition);
+        Maps maps = bake_with(field.mesh, field.partition);
         assert_int_equal(maps.patches.size(), charts);
         /* Where two outlines cross, a corner is rounded. */
         assert_int_equal(wrong_rays(maps, 0.25 / 64, 0.5 / 64, outside_of_fence), 0);
@@ -189,23 +190,23 @@ static void a_fence_stays_open_across_charts(void **)
 
 static void what_is_cut_away_whole_has_no_patch(void **)
 {
-    Sheet sheet(4, 32, 2);
-    auto right = [&](size_t t) { return int(sheet.middle(t).x > 0.5); };
-    for (size_t t = 0; t < sheet.mesh.triangle_count(); ++t)
-        sheet.mesh.appearance.material[t] = uint32_t(right(t));
-    Material &gone = sheet.mesh.appearance.materials[1];
+    HeightField field(4, 32, 2);
+    auto right = [&](size_t t) { return int(field.middle(t).x > 0.5); };
+    for (size_t t = 0; t < field.mesh.triangle_count(); ++t)
+        field.mesh.appearance.material[t] = uint32_t(right(t));
+    Material &gone = field.mesh.appearance.materials[1];
     gone.color[3] = 0.2f;
     gone.alpha_cutoff = 0.5f;
-    sheet.divide(32, right);
-    Maps maps = bake_with(sheet.mesh, sheet.partition);
+    field.divide(32, right);
+    Maps maps = bake_with(field.mesh, field.partition);
     assert_int_equal(maps.patches.size(), 1);
     assert_int_equal(wrong_rays(maps, 0.3 / 32, 0.6 / 32,
                                 [](double x, double) { return x - 0.5; }), 0);
 
-    std::fill(sheet.mesh.appearance.material.begin(), sheet.mesh.appearance.material.end(), 1u);
+    std::fill(field.mesh.appearance.material.begin(), field.mesh.appearance.material.end(), 1u);
     gtx_result result = GTX_OK;
     try {
-        bake_with(sheet.mesh, sheet.partition);
+        bake_with(field.mesh, field.partition);
     } catch (const Error &error) {
         result = error.result;
     }
@@ -214,13 +215,13 @@ static void what_is_cut_away_whole_has_no_patch(void **)
 
 static void a_texture_is_seen(void **)
 {
-    Sheet sheet(3, 64);
+    HeightField field(3, 64);
     auto red = [](double x) { return uint8_t(200 * x + 20); };
-    sheet.mesh.appearance.materials[0].color_map =
-        sheet.paint(128, Texels::COLOR, [&](double x, double y) {
+    field.mesh.appearance.materials[0].color_map =
+        field.paint(128, Texels::COLOR, [&](double x, double y) {
             return Rgba8{red(x), red(y), uint8_t(x > 0.5 ? 255 : 0), 255};
         });
-    Maps maps = bake_with(sheet.mesh, sheet.partition);
+    Maps maps = bake_with(field.mesh, field.partition);
     assert_true(maps.material.empty() && maps.emission.empty());
     each_texel(maps, [&](double x, double y, size_t at, bool coded) {
         if (!coded || std::fabs(x - 0.5) < 0.02)
@@ -232,19 +233,19 @@ static void a_texture_is_seen(void **)
     });
 }
 
-/* The two halves of the sheet lie apart in the texture, with another colour between: it shows
- * nowhere, however far the maps are dilated. */
+/* The two halves of the height field lie apart in the texture, with another colour between: it
+ * shows nowhere, however far the maps are dilated. */
 static void a_gutter_does_not_bleed(void **)
 {
-    Sheet sheet(8, 64);
-    Appearance &look = sheet.mesh.appearance;
-    for (size_t t = 0; t < sheet.mesh.triangle_count(); ++t)
+    HeightField field(8, 64);
+    Appearance &look = field.mesh.appearance;
+    for (size_t t = 0; t < field.mesh.triangle_count(); ++t)
         for (size_t k = 0; k < 3; ++k) {
             auto &uv = look.uv[0][3 * t + k];
             uv = {0.1f + 0.6f * uv[0], 0.1f + 0.8f * uv[1]};
-            uv[0] += sheet.middle(t).x > 0.5 ? 0.2f : 0;
+            uv[0] += field.middle(t).x > 0.5 ? 0.2f : 0;
         }
-    look.materials[0].color_map = sheet.paint(128, Texels::COLOR, [](double x, double y) {
+    look.materials[0].color_map = field.paint(128, Texels::COLOR, [](double x, double y) {
         bool gutter = y < 0.07 || y > 0.93 || x < 0.07 || x > 0.93 || (x > 0.43 && x < 0.57);
         if (gutter)
             return Rgba8{0, 255, 0, 255};
@@ -252,7 +253,7 @@ static void a_gutter_does_not_bleed(void **)
     });
     BakeOptions options;
     options.dilation = 12;
-    Maps maps = bake_with(sheet.mesh, sheet.partition, options);
+    Maps maps = bake_with(field.mesh, field.partition, options);
     int red = 0, blue = 0;
     each_texel(maps, [&](double x, double, size_t at, bool coded) {
         const uint8_t *c = &maps.color[0][4 * at];
@@ -272,10 +273,10 @@ static void a_gutter_does_not_bleed(void **)
  * level the mean. */
 static void materials_and_emission_are_stored(void **)
 {
-    Sheet sheet(8, 64, 2);
-    Appearance &look = sheet.mesh.appearance;
-    for (size_t t = 0; t < sheet.mesh.triangle_count(); ++t)
-        look.material[t] = sheet.middle(t).x > 0.5;
+    HeightField field(8, 64, 2);
+    Appearance &look = field.mesh.appearance;
+    for (size_t t = 0; t < field.mesh.triangle_count(); ++t)
+        look.material[t] = field.middle(t).x > 0.5;
     look.materials[0].roughness = 0.2f;
     look.materials[0].metallic = 1;
     look.materials[1].unlit = true;
@@ -283,7 +284,7 @@ static void materials_and_emission_are_stored(void **)
     look.materials[1].emission[1] = 2;
     BakeOptions options;
     options.mips = 8;
-    Maps maps = bake_with(sheet.mesh, sheet.partition, options);
+    Maps maps = bake_with(field.mesh, field.partition, options);
     assert_true(maps.color.empty());
     assert_true(maps.material.size() == 8 && maps.emission.size() == 8);
     assert_true(maps.emission_scale == 4);
@@ -304,12 +305,12 @@ static void materials_and_emission_are_stored(void **)
 /* Straight on the left, 45 degrees towards u on the right. */
 static void a_normal_texture_bends_the_normals(void **)
 {
-    Sheet sheet(4, 32);
-    Material &m = sheet.mesh.appearance.materials[0];
-    m.normal_map = sheet.paint(64, Texels::DATA, [](double x, double) {
+    HeightField field(4, 32);
+    Material &m = field.mesh.appearance.materials[0];
+    m.normal_map = field.paint(64, Texels::DATA, [](double x, double) {
         return Rgba8{uint8_t(x < 0.5 ? 128 : 218), 128, uint8_t(x < 0.5 ? 255 : 218), 255};
     });
-    Maps maps = bake_with(sheet.mesh, sheet.partition);
+    Maps maps = bake_with(field.mesh, field.partition);
     each_texel(maps, [&](double x, double, size_t at, bool coded) {
         float rows[3][3], n[3];
         if (!coded || std::fabs(x - 0.5) < 0.05)
@@ -325,14 +326,14 @@ static void a_normal_texture_bends_the_normals(void **)
 
 static void any_thread_count_gives_the_same_bytes(void **)
 {
-    Sheet sheet(8, 96);
-    Material &m = sheet.mesh.appearance.materials[0];
-    sheet.mask(100, [](double x, double y) { return std::sin(40 * x) * std::sin(30 * y) < 0.3; });
+    HeightField field(8, 96);
+    Material &m = field.mesh.appearance.materials[0];
+    field.mask(100, [](double x, double y) { return std::sin(40 * x) * std::sin(30 * y) < 0.3; });
     m.emission[1] = 2;
     m.metallic = 0.5f;
-    sheet.divide(96, [&](size_t t) { return int(t % 64) / 7; });
-    Maps one = bake_with(sheet.mesh, sheet.partition);
-    Maps many = bake_with(sheet.mesh, sheet.partition, {}, 5);
+    field.divide(96, [&](size_t t) { return int(t % 64) / 7; });
+    Maps one = bake_with(field.mesh, field.partition);
+    Maps many = bake_with(field.mesh, field.partition, {}, 5);
     assert_true(one.height == many.height && one.trim == many.trim);
     assert_true(one.normal == many.normal && one.color == many.color);
     assert_true(one.material == many.material && one.emission == many.emission);
@@ -340,9 +341,9 @@ static void any_thread_count_gives_the_same_bytes(void **)
 
 static void materials_that_say_nothing_cost_nothing(void **)
 {
-    Sheet sheet(4, 32), bare(4, 32);
+    HeightField field(4, 32), bare(4, 32);
     bare.mesh.appearance = Appearance();
-    Maps maps = bake_with(sheet.mesh, sheet.partition);
+    Maps maps = bake_with(field.mesh, field.partition);
     Maps same = bake_with(bare.mesh, bare.partition);
     assert_true(maps.color.empty() && maps.material.empty() && maps.emission.empty());
     assert_true(maps.emission_scale == 0);

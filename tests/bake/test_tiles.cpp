@@ -8,7 +8,7 @@ extern "C" {
 #include <cmocka.h>
 }
 
-#include "bake/shells.hpp"
+#include "bake/lods.hpp"
 #include "bake/tiles.hpp"
 
 using namespace gtx;
@@ -40,7 +40,7 @@ struct Made {
 };
 static Made make(const HeightGrid &grid, TileOptions options = {}, unsigned threads = 2)
 {
-    Task task(threads, nullptr, nullptr, {"bake", "pack", "shell"}, {1, 1, 1});
+    Task task(threads, nullptr, nullptr, {"bake", "pack", "lod"}, {1, 1, 1});
     Made out;
     GridLayer layer{&grid, {}};
     layer.colors.assign(grid.count(), {200, 100, 50});
@@ -172,18 +172,18 @@ static void no_ray_passes_between_tiles(void **)
     gtx_close(asset);
 }
 
-/* The shell of the maps has one border around everything and one around the hole. */
-static void the_shell_is_whole_across_tiles(void **)
+/* The LOD mesh of the maps has one border around everything and one around the hole. */
+static void the_lod_is_whole_across_tiles(void **)
 {
     const HeightGrid grid = hills(300, 260);
     const Made made = make(grid);
-    Task task(2, nullptr, nullptr, {"shell"}, {1});
-    ShellSource source = shell_source(made.maps, task);
+    Task task(2, nullptr, nullptr, {"lod"}, {1});
+    LodSource source = lod_source(made.maps, task);
     assert_int_equal(source.triangles.size(), made.report.triangles);
-    ShellLevel all;
+    LodLevel all;
     for (const auto &t : source.triangles)
         all.indices.insert(all.indices.end(), t.begin(), t.end());
-    const shells::Edges edges = shells::count_edges(all);
+    const lods::Edges edges = lods::count_edges(all);
     assert_int_equal(edges.crowded, 0);
     size_t rim = 0;
     auto cell = [&](int64_t i, int64_t j) {
@@ -258,7 +258,7 @@ int main()
     const CMUnitTest tests[] = {
         cmocka_unit_test(neighbours_have_the_same_heights),
         cmocka_unit_test(no_ray_passes_between_tiles),
-        cmocka_unit_test(the_shell_is_whole_across_tiles),
+        cmocka_unit_test(the_lod_is_whole_across_tiles),
         cmocka_unit_test(normals_follow_the_values),
         cmocka_unit_test(bad_grids_are_refused),
         cmocka_unit_test(any_thread_count_gives_the_same),

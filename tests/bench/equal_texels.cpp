@@ -11,7 +11,7 @@
 namespace {
 
 /* What a density may be searched in, and when it is found. */
-constexpr uint32_t LEAST_RESOLUTION = 64, MOST_RESOLUTION = 512;
+constexpr uint32_t MIN_RESOLUTION = 64, MAX_RESOLUTION = 512;
 constexpr double CLOSE = 0.01;
 constexpr int ROUNDS = 5;
 
@@ -76,7 +76,7 @@ AssetFigures cook_to_texels(const std::string &model, gtx_partition partition, u
             best = resolution;
         }
         const double next = resolution * std::sqrt(texels / double(out.texels));
-        resolution = std::clamp(uint32_t(std::lround(next)), LEAST_RESOLUTION, MOST_RESOLUTION);
+        resolution = std::clamp(uint32_t(std::lround(next)), MIN_RESOLUTION, MAX_RESOLUTION);
     }
     return best == last ? out : cook(model, partition, charts, best, path);
 }

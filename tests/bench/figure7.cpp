@@ -4,7 +4,7 @@
  *   figure7 OUT_FOLDER MODEL [BUDGET_SECONDS] */
 #include "bench/figure.hpp"
 
-#include "cli/bench.hpp"
+#include "cli/bench/bench.hpp"
 
 #include <geotex/cook.h>
 

@@ -39,7 +39,7 @@ static const struct {
 static const struct {
     const char *name;
     gtx_method method;
-} methods[] = {{"mesh", GTX_METHOD_AUTO}, {"cast", GTX_METHOD_CAST}, {"shell", GTX_METHOD_SHELL},
+} methods[] = {{"mesh", GTX_METHOD_AUTO}, {"cast", GTX_METHOD_CAST}, {"lod", GTX_METHOD_LOD},
                {"auto", GTX_METHOD_AUTO}, {"paper", GTX_METHOD_PAPER}};
 
 struct Stage {
@@ -120,7 +120,7 @@ static void load(Stage &stage, const char *folder)
     gtx_horizons_desc desc = {};
     desc.depths = 1;
     desc.vertical = VERTICAL;
-    desc.shell_levels = 5;
+    desc.lod_levels = 5;
     gtx_asset *asset;
     check(gtx_horizons(grids, LAYERS, &desc, &asset, nullptr, &error), error);
     gtx_get_info(asset, &stage.info);

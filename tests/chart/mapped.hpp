@@ -1,7 +1,7 @@
 /* What tests of the partition pgp share: a mesh parameterized, and its charts. */
 #pragma once
 
-#include "chart/pgp.hpp"
+#include "chart/pgp/pgp.hpp"
 #include "shapes.hpp"
 
 /* A mesh with all that comes before its charts. */

@@ -13,7 +13,7 @@ using gtx::Vec3d;
 constexpr double PI = 3.14159265358979;
 
 /* A grid of columns x rows squares under (u, v) in [0, 1]^2, closed along u or v on request. */
-inline Mesh sheet(unsigned columns, unsigned rows, const std::function<Vec3d(double, double)> &at,
+inline Mesh field(unsigned columns, unsigned rows, const std::function<Vec3d(double, double)> &at,
                   bool close_u = false, bool close_v = false)
 {
     Mesh mesh;
@@ -33,12 +33,12 @@ inline Mesh sheet(unsigned columns, unsigned rows, const std::function<Vec3d(dou
 
 inline Mesh plane(unsigned n, double width = 1, double height = 1)
 {
-    return sheet(n, n, [=](double u, double v) { return Vec3d(width * u, height * v, 0); });
+    return field(n, n, [=](double u, double v) { return Vec3d(width * u, height * v, 0); });
 }
 
 inline Mesh torus(unsigned n, double thickness)
 {
-    return sheet(2 * n, n, [=](double u, double v) {
+    return field(2 * n, n, [=](double u, double v) {
         double r = 1 + thickness * std::cos(2 * PI * v);
         return Vec3d(r * std::cos(2 * PI * u), r * std::sin(2 * PI * u),
                      thickness * std::sin(2 * PI * v));
@@ -47,7 +47,7 @@ inline Mesh torus(unsigned n, double thickness)
 
 inline Mesh cylinder(unsigned n)
 {
-    return sheet(n, n, [](double u, double v) {
+    return field(n, n, [](double u, double v) {
         return Vec3d(std::cos(2 * PI * u), std::sin(2 * PI * u), 3 * v);
     }, true);
 }
@@ -55,16 +55,16 @@ inline Mesh cylinder(unsigned n)
 /* A ramp that winds `turns` times around the z axis, above itself. */
 inline Mesh helicoid(unsigned n, double turns)
 {
-    return sheet(unsigned(n * turns), 8, [=](double u, double v) {
+    return field(unsigned(n * turns), 8, [=](double u, double v) {
         double angle = 2 * PI * turns * u, r = 1.5 - v;
         return Vec3d(r * std::cos(angle), r * std::sin(angle), 0.3 * turns * u);
     });
 }
 
-/* A sheet folded over itself: two layers `gap` apart, joined by a half turn. */
-inline Mesh folded_sheet(unsigned n, double gap)
+/* A height field folded over itself: two layers `gap` apart, joined by a half turn. */
+inline Mesh folded_field(unsigned n, double gap)
 {
-    return sheet(3 * n, n, [=](double u, double v) {
+    return field(3 * n, n, [=](double u, double v) {
         double r = gap / 2, arc = PI * r, flat = 1, s = u * (2 * flat + arc);
         if (s < flat)
             return Vec3d(s, v, 0);

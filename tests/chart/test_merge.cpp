@@ -96,7 +96,7 @@ static void what_is_flat_becomes_one(void **)
     check(plane, merged);
     assert_int_equal(merged.before, 8);
     assert_int_equal(merged.regions.size(), 1);
-    const Mesh hill = shapes::sheet(32, 32, [](double u, double v) {
+    const Mesh hill = shapes::field(32, 32, [](double u, double v) {
         return Vec3d(u, v, 0.3 * std::sin(3 * u) * std::sin(3 * v));
     });
     merged = merge(hill, 0.01, [](const Vec3d &p) {
@@ -154,7 +154,7 @@ static void crumbs_are_left(void **)
 static Mesh square_with_block(double height)
 {
     constexpr double SIDE = 2. / 32, FOOT = 3. / 32; /* from the middle, 0 to 1 */
-    return shapes::sheet(64, 64, [=](double u, double v) {
+    return shapes::field(64, 64, [=](double u, double v) {
         const Vec3d from = {2 * u - 1, 2 * v - 1, 0};
         const double r = std::max(std::fabs(from.x), std::fabs(from.y));
         if (r <= SIDE)

@@ -37,7 +37,7 @@ static Chart block(unsigned i0, unsigned i1, unsigned j0, unsigned j1)
 
 static Mesh grid(double (*height)(double, double))
 {
-    return shapes::sheet(SIDE, SIDE, [=](double u, double v) {
+    return shapes::field(SIDE, SIDE, [=](double u, double v) {
         return Vec3d(SIDE * u, SIDE * v, height(SIDE * u, SIDE * v));
     });
 }
@@ -104,7 +104,7 @@ static void test_cliff(void **)
 /* Reach is measured in the frame's plane: on a slope of 60 degrees a ring is half as wide. */
 static void test_slope(void **)
 {
-    Mesh mesh = shapes::sheet(SIDE, SIDE, [](double u, double v) {
+    Mesh mesh = shapes::field(SIDE, SIDE, [](double u, double v) {
         return Vec3d(SIDE * u / 2, SIDE * v, SIDE * u * 0.8660254);
     });
     Chart chart = block(8, 12, 8, 12);

@@ -197,8 +197,8 @@ static void test_shapes(void **)
                  {"ring", shapes::torus(40, 0.02)},
                  {"cylinder", shapes::cylinder(40)},
                  {"helicoid", shapes::helicoid(60, 5)},
-                 {"folded", shapes::folded_sheet(30, 0.01)},
-                 {"flat fold", shapes::folded_sheet(30, 1e-5)},
+                 {"folded", shapes::folded_field(30, 0.01)},
+                 {"flat fold", shapes::folded_field(30, 1e-5)},
                  {"cube", shapes::cube(1)},
                  {"fine cube", shapes::cube(20)},
                  {"two", shapes::both(shapes::sphere(10), shapes::torus(20, 0.3), {5, 0, 0})},
@@ -257,7 +257,7 @@ static void test_folds_are_split(void **)
 {
     const ChartOptions one = with(PartitionMethod::VSA, 1);
     for (const Mesh &mesh : {shapes::sphere(16), shapes::torus(30, 0.4), shapes::helicoid(60, 5),
-                             shapes::folded_sheet(30, 0.02), shapes::cylinder(40),
+                             shapes::folded_field(30, 0.02), shapes::cylinder(40),
                              shapes::bumpy_sphere(30)}) {
         Partition p = partition(mesh, 2, one);
         check(mesh, p);
@@ -314,7 +314,7 @@ static void check_single_layer(const Mesh &source, const Partition &p)
 /* No line along z may meet a chart twice, but for what the rules call one layer. */
 static void test_single_layer(void **)
 {
-    Mesh mesh = shapes::both(shapes::helicoid(50, 4), shapes::folded_sheet(20, 0.03), {4, 0, 0});
+    Mesh mesh = shapes::both(shapes::helicoid(50, 4), shapes::folded_field(20, 0.03), {4, 0, 0});
     for (PartitionMethod method :
          {PartitionMethod::VSA, PartitionMethod::PGP, PartitionMethod::CUTS}) {
         Partition p = partition(mesh, 2, with(method, 2));
@@ -402,7 +402,7 @@ static double texel(const Chart &chart, int axis)
 static void test_spread(void **)
 {
     auto square = [](double height, double k, double l) {
-        return shapes::sheet(200, 200, [=](double u, double v) {
+        return shapes::field(200, 200, [=](double u, double v) {
             return Vec3d(u, v, height * std::cos(k * u) * std::cos(l * v));
         });
     };
@@ -431,7 +431,7 @@ static void test_spread(void **)
 static void test_cuts_by_relief(void **)
 {
     auto wedge = [](double height) {
-        return shapes::sheet(200, 200, [=](double u, double v) {
+        return shapes::field(200, 200, [=](double u, double v) {
             return Vec3d(u, u * v, height * std::cos(150 * u) * std::cos(150 * u * v));
         });
     };

@@ -92,7 +92,8 @@ static void quarters_turn_back(void **)
             assert_true(turned(turned(uv, a), b) == turned(uv, a + b));
 }
 
-/* On a curved sheet with a border the directions are those of its curvature: across and along. */
+/* On a curved height field with a border the directions are those of its curvature: across and
+ * along. */
 static void the_field_follows_the_curvature(void **)
 {
     Mapped m(shapes::cylinder(40));

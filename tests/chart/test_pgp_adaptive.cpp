@@ -75,7 +75,7 @@ static void alike_everywhere_stays_so(void **)
 /* Most of a cube has no curvature, and its edges have all there can be. */
 static void factors_are_bounded(void **)
 {
-    for (const Mesh &mesh : {shapes::cube(20), shapes::cube(1), shapes::folded_sheet(30, 0.1),
+    for (const Mesh &mesh : {shapes::cube(20), shapes::cube(1), shapes::folded_field(30, 0.1),
                              shapes::bumpy_sphere(30), ellipsoid(30)})
         for (double cells : {5., 60., 2000.}) {
             std::vector<double> factor = factors(Mapped(mesh), cells);
@@ -104,9 +104,9 @@ static double mean_area(const CutMesh &cut, uint32_t count, int axis, double low
     return sum / charts;
 }
 
-/* Charts where the surface is curved against those where it is not, by their area. A sheet that
- * bends has cells of one length without the option; an ellipsoid's field draws them together at the
- * tips. */
+/* Charts where the surface is curved against those where it is not, by their area. A height field
+ * that bends has cells of one length without the option; an ellipsoid's field draws them together
+ * at the tips. */
 static void curved_parts_get_smaller_charts(void **)
 {
     const struct {
@@ -115,7 +115,7 @@ static void curved_parts_get_smaller_charts(void **)
         int axis;
         double flat[2], curved[2]; /* along the axis */
         double ratio[2];           /* at least, without the option; at most, with it */
-    } cases[] = {{"bent", shapes::folded_sheet(40, 0.6), 0, {0, 0.8}, {1, 2}, {0.9, 0.45}},
+    } cases[] = {{"bent", shapes::folded_field(40, 0.6), 0, {0, 0.8}, {1, 2}, {0.9, 0.45}},
                  {"ellipsoid", ellipsoid(60), 2, {0, 1}, {2.6, 4}, {0.45, 0.41}}};
     for (auto &c : cases) {
         double ratio[2];

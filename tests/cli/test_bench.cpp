@@ -41,7 +41,7 @@ static json bench(const char *arguments)
 static void every_method_is_measured(void **)
 {
     const json report = bench("--sizes 64x48,96x96 --instances 1,5 --methods mesh,mesh_stream,"
-                              "mesh_lod,paper,cast,auto,cast_depth,auto_depth,cast_fragment");
+                              "simplified,paper,cast,auto,cast_depth,auto_depth,cast_fragment");
     assert_int_equal(report["rows"].size(), 2 * 2 * 9);
     assert_true(report["skipped"].empty());
     double full = 0;
@@ -54,7 +54,7 @@ static void every_method_is_measured(void **)
             assert_true(row["psnr_db"].is_null());
             full = row["triangles"].get<double>();
         }
-        if (method == "mesh_lod") {
+        if (method == "simplified") {
             assert_true(row["triangles"].get<double>() <= full);
             for (const json &other : report["rows"])
                 if (other["method"] == "auto" && other["zoom"] == row["zoom"] &&
@@ -71,7 +71,7 @@ static void the_error_follows_the_outline(void **)
 {
     double last = 3;
     for (const char *iou : {"0.5", "0.95", "1"}) {
-        const std::string arguments = "--sizes 64x64 --methods mesh,shell,auto --min-iou ";
+        const std::string arguments = "--sizes 64x64 --methods mesh,lod,auto --min-iou ";
         const json report = bench((arguments + iou).c_str());
         const json &mesh = report["rows"][0], &row = report["rows"].back();
         const double error = row["max_error_px"];
@@ -99,10 +99,10 @@ static void the_mesh_has_the_materials(void **)
 
 static void what_is_not_measured_is_named(void **)
 {
-    const json no_shell = bench("--sizes 32x32 --methods mesh,shell");
-    assert_int_equal(no_shell["rows"].size(), 1);
-    assert_string_equal(no_shell["skipped"][0]["reason"].get<std::string>().c_str(),
-                        "the asset has no shell");
+    const json no_lod = bench("--sizes 32x32 --methods mesh,lod");
+    assert_int_equal(no_lod["rows"].size(), 1);
+    assert_string_equal(no_lod["skipped"][0]["reason"].get<std::string>().c_str(),
+                        "the asset has no LOD mesh");
     const json no_time = bench("--sizes 32x32 --budget 0");
     assert_true(no_time["rows"].empty());
     assert_int_equal(no_time["skipped"].size(), 6);

@@ -182,9 +182,9 @@ static void rendering_writes_a_png(void **state)
     assert_true((code == 0 && exists("es.png")) || code == 5);
     expect(gtx("render none.gtx -o x.png"), 2);
     expect(gtx("render sphere.gtx"), 1);
-    expect(gtx("render sphere.gtx --method shell -o x.png"), 5); /* it has none */
-    expect(gtx("cook sphere.obj --shell-levels 3 -o shelled.gtx"), 0);
-    expect(gtx("render shelled.gtx --method shell -o shelled.png --size 64x64"), 0);
+    expect(gtx("render sphere.gtx --method lod -o x.png"), 5); /* it has none */
+    expect(gtx("cook sphere.obj --lod-levels 3 -o with_lod.gtx"), 0);
+    expect(gtx("render with_lod.gtx --method lod -o with_lod.png --size 64x64"), 0);
     assert_false(exists("x.png"));
 }
 

@@ -98,14 +98,14 @@ static void a_scan_stays_closed_where_patches_alone_come_apart(void **state)
     assert_true(alone > 100 * (after + 1));
 }
 
-static void the_shell_stays_behind(void **state)
+static void the_lod_stays_behind(void **state)
 {
     (void)state;
-    expect(gtx("cook sphere.obj -o shell.gtx --shell-levels 2"), 0);
-    expect(gtx("filter shell.gtx -o bare.gtx --gaussian 1"), 0);
-    expect_text("warning: the shell");
+    expect(gtx("cook sphere.obj -o lod.gtx --lod-levels 2"), 0);
+    expect(gtx("filter lod.gtx -o bare.gtx --gaussian 1"), 0);
+    expect_text("warning: the LOD mesh");
     expect(gtx("info bare.gtx --json"), 0);
-    expect_text("\"shell\": []");
+    expect_text("\"LOD mesh\": []");
 }
 
 int main(void)
@@ -115,7 +115,7 @@ int main(void)
         cmocka_unit_test(operations_run_in_order),
         cmocka_unit_test(a_blurred_model_stays_closed),
         cmocka_unit_test(a_scan_stays_closed_where_patches_alone_come_apart),
-        cmocka_unit_test(the_shell_stays_behind),
+        cmocka_unit_test(the_lod_stays_behind),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -6,7 +6,7 @@
 #include <glob.h>
 #include <unistd.h>
 
-/* Runs a shell command in the test's folder. */
+/* Runs an LOD mesh command in the test's folder. */
 static void shell(const char *command)
 {
     char full[1024];
@@ -63,26 +63,26 @@ static void cooked_assets_come_back(void **state)
 {
     (void)state;
     static const char *const options[] = {"", "--zstd 0", "--zstd 9 --mips 1", "--height-bits 16",
-                                          "--shell-levels 5"};
+                                          "--lod-levels 5"};
     for (size_t i = 0; i < sizeof options / sizeof *options; ++i) {
         expect(gtx("cook -q sphere.obj -o c.gtx %s", options[i]), 0);
         there_and_back_again("c.gtx");
     }
 }
 
-/* An asset in place of a folder, and a shell that needs no mesh. */
+/* An asset in place of a folder, and an LOD mesh that needs no mesh. */
 static void an_asset_is_packed_anew(void **state)
 {
     (void)state;
     expect(gtx("cook -q sphere.obj -o c.gtx"), 0);
     expect(gtx("pack c.gtx -o same.gtx"), 0);
     same_files("c.gtx", "same.gtx");
-    expect(gtx("pack c.gtx -o shell.gtx --shell-levels 3"), 0);
-    expect(gtx("validate shell.gtx"), 0);
-    expect(gtx("info shell.gtx"), 0);
-    expect_text("shell ");
+    expect(gtx("pack c.gtx -o lod.gtx --lod-levels 3"), 0);
+    expect(gtx("validate lod.gtx"), 0);
+    expect(gtx("info lod.gtx"), 0);
+    expect_text("LOD mesh ");
     expect(gtx("pack sphere.obj -o no.gtx"), 3);
-    expect(gtx("pack c.gtx -o no.gtx --shell-levels 6"), 1);
+    expect(gtx("pack c.gtx -o no.gtx --lod-levels 6"), 1);
 }
 
 static const char classic[] = "-996 3 10 10\n0 20 0 20\n3 0 0 0\n0 0 0 0 0 0 0\n"
@@ -189,14 +189,14 @@ static void what_is_no_asset_is_refused(void **state)
         {"\"flags\": 0", "\"flags\": 70000", "flags is not", 3},
         {"\"unit\": 1.0", "\"unit\": 1e400", "is not a JSON object", 3},
         {"\"unit\": 1.0", "\"unit\": -1.0", "unit", 3},
-        {"\"shell\": [", "\"shells\": [", "shell is missing", 3},
-        {"\"shell\": [", "\"shell\": [7,", "a level of shell is not an object", 3},
+        {"\"LOD mesh\": [", "\"LOD meshes\": [", "LOD mesh is missing", 3},
+        {"\"LOD mesh\": [", "\"LOD mesh\": [7,", "a level of LOD mesh is not an object", 3},
         {"\"step\": ", "\"step\": -", "step positive", 3},
-        {"\"triangles\": ", "\"triangles\": 1", "shell-0.bin: error[input]: has not the size", 3},
+        {"\"triangles\": ", "\"triangles\": 1", "lod-0.bin: error[input]: has not the size", 3},
         {"\"vertices\": ", "\"vertices\": -", "vertices is not a whole number", 3},
     };
     shell("rm -rf maps");
-    expect(gtx("cook -q sphere.obj --shell-levels 3 -o s.gtx"), 0);
+    expect(gtx("cook -q sphere.obj --lod-levels 3 -o s.gtx"), 0);
     expect(gtx("unpack s.gtx maps"), 0);
     shell("cp maps/asset.json good.json && rm -f no.gtx");
     for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {

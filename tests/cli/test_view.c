@@ -132,7 +132,7 @@ static void every_mode_shows_something_else(void **state)
     gtx_image twice = view("sphere.gtx", "tppnnbbhhmmmm");
     assert_int_equal(difference(&plain, &twice, false), 0);
     gtx_image_free(&twice);
-    twice = view("sphere.gtx", "tmm"); /* the shell, which it has not */
+    twice = view("sphere.gtx", "tmm"); /* the LOD mesh, which it has not */
     assert_int_equal(difference(&plain, &twice, false), 0);
     gtx_image_free(&twice);
     gtx_image_free(&plain);

@@ -1,4 +1,4 @@
-/* Small assets made in memory: sheets are sampled, packed one under another and created. */
+/* Small assets made in memory: height fields are sampled, packed one under another and created. */
 #include "common/fixture.h"
 
 #include "asset/asset.h"
@@ -54,7 +54,7 @@ static void sample_level(maps *m, const fixture_patch *from, const gtx_patch *pa
         for (uint32_t i = 0; i < patch->rect[2] / step; ++i) {
             fixture_texel texel = {.normal = {0, 0, 1}, .color = {200, 200, 200, 255}};
             double x = (i + 0.5) * step - 0.5, y = (j + 0.5) * step - 0.5;
-            from->sheet(patch, x, y, from->user, &texel);
+            from->field(patch, x, y, from->user, &texel);
             size_t at = (size_t)(patch->rect[1] / step + j) * page_width +
                         patch->rect[0] / step + i;
             put_normal(patch, texel.normal, m->normal[level] + 2 * at);
@@ -193,7 +193,7 @@ gtx_patch fixture_frame(const double corner[3], uint32_t width, uint32_t height,
         .rect = {0, 0, (uint16_t)width, (uint16_t)height}};
 }
 
-static void flat_sheet(const gtx_patch *patch, double x, double y, const void *user,
+static void flat_field(const gtx_patch *patch, double x, double y, const void *user,
                        fixture_texel *out)
 {
     (void)patch;
@@ -206,12 +206,12 @@ static void flat_sheet(const gtx_patch *patch, double x, double y, const void *u
 gtx_asset *fixture_flat(double z, uint32_t height_bits)
 {
     const double corner[3] = {0, 0, 0};
-    fixture_patch patch = {fixture_frame(corner, 32, 24, 0.125, 1), flat_sheet, &z};
+    fixture_patch patch = {fixture_frame(corner, 32, 24, 0.125, 1), flat_field, &z};
     return fixture_build(&patch, 1, height_bits, 4);
 }
 
 /* Distance in texels to an outline that wobbles around an ellipse and to two holes in it. */
-static void bumpy_sheet(const gtx_patch *patch, double x, double y, const void *user,
+static void bumpy_field(const gtx_patch *patch, double x, double y, const void *user,
                         fixture_texel *out)
 {
     (void)user;
@@ -235,13 +235,13 @@ gtx_asset *fixture_bumpy(uint32_t height_bits, uint16_t flags)
         {.origin = {-3, 1, 2}, .extent_x = 4, .axis_x = {0.8f, 0.6f, 0},
          .extent_y = 3, .axis_y = {-0.48f, 0.64f, 0.6f},
          .extent_z = 1.2f, .axis_z = {0.6f, 0, 0.8f}, .rect = {0, 0, 64, 48}, .flags = flags},
-        bumpy_sheet, NULL};
+        bumpy_field, NULL};
     return fixture_build(&patch, 1, height_bits, 4);
 }
 
 /* The side of a sphere where the frame's z is the longest coordinate is bounded by the ellipses
  * 2 x^2 + y^2 = r^2 and x^2 + 2 y^2 = r^2; distances to them are to first order. */
-static void sphere_sheet(const gtx_patch *patch, double x, double y, const void *user,
+static void sphere_field(const gtx_patch *patch, double x, double y, const void *user,
                          fixture_texel *out)
 {
     const double radius = *(const double *)user, pitch = patch->extent_x / patch->rect[2];
@@ -271,7 +271,7 @@ gtx_asset *fixture_sphere_without(double radius, uint32_t texels, uint32_t heigh
         fixture_patch *patch = &patches[count++];
         int z = face / 2, x = (z + 1) % 3, y = (z + 2) % 3;
         float side = face & 1 ? -1.f : 1.f;
-        *patch = (fixture_patch){.sheet = sphere_sheet, .user = &radius};
+        *patch = (fixture_patch){.field = sphere_field, .user = &radius};
         patch->frame.axis_x[x] = side;
         patch->frame.axis_y[y] = 1;
         patch->frame.axis_z[z] = side;

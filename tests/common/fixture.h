@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-/* What a sheet is at one place. */
+/* What a height field is at one place. */
 typedef struct fixture_texel {
     double height;              /* 0..1 of extent_z; negative: empty */
     double trim;                /* texels outside the outline, negative inside */
@@ -17,19 +17,19 @@ typedef struct fixture_texel {
 } fixture_texel;
 
 /* Fills *out at texel coordinates (x, y) of a patch, which are fractional at mip levels. */
-typedef void (*fixture_sheet)(const gtx_patch *patch, double x, double y, const void *user,
+typedef void (*fixture_field)(const gtx_patch *patch, double x, double y, const void *user,
                               fixture_texel *out);
 
 /* `frame` gives origin, axes, extents, width and height (rect[2] and rect[3], multiples of
  * 2^(mips - 1)) and flags; the rest of the record is filled in. */
 typedef struct fixture_patch {
     gtx_patch frame;
-    fixture_sheet sheet;
+    fixture_field field;
     const void *user;
 } fixture_patch;
 
-/* Samples the sheets, packs them into one page and makes an asset; gtx_close frees it. Ends the
- * program when the asset breaks a rule. */
+/* Samples the height fields, packs them into one page and makes an asset; gtx_close frees it. Ends
+ * the program when the asset breaks a rule. */
 gtx_asset *fixture_build(const fixture_patch *patches, uint32_t count, uint32_t height_bits,
                          uint32_t mips);
 
@@ -46,7 +46,7 @@ gtx_patch fixture_frame(const double corner[3], uint32_t width, uint32_t height,
  * the codes of the middle for z = 0.5. */
 gtx_asset *fixture_flat(double z, uint32_t height_bits);
 
-/* One bumpy sheet of 64 x 48 texels in a tilted frame, with a ragged outline and two holes.
+/* One bumpy height field of 64 x 48 texels in a tilted frame, with a ragged outline and two holes.
  * `flags` are those of the patch. */
 gtx_asset *fixture_bumpy(uint32_t height_bits, uint16_t flags);
 

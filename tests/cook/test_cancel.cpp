@@ -63,7 +63,7 @@ static gtx_cook_desc watched(Watch &watch)
 {
     gtx_cook_desc desc = {};
     desc.charts = 12;
-    desc.shell_levels = 3;
+    desc.lod_levels = 3;
     desc.threads = 1;
     desc.progress = watch_progress;
     desc.progress_user = &watch;
@@ -71,7 +71,7 @@ static gtx_cook_desc watched(Watch &watch)
 }
 
 static const std::vector<std::string> cook_stages = {"import", "clean", "partition", "frame",
-                                                     "bake",   "pack",  "shell",     "write"};
+                                                     "bake",   "pack",  "lod",     "write"};
 
 static void a_cancelled_cook_overwrites_nothing(void **)
 {

@@ -161,7 +161,7 @@ static void wrong_arguments_are_refused(void **)
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.height_bits = 12; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.dilation = 129; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.mips = 9; }},
-        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.shell_levels = 6; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.lod_levels = 6; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.zstd_level = 20; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.zstd_level = -2; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.charts = (1u << 20) + 1; }},

@@ -1,4 +1,5 @@
-/* gtx_horizons and gtx_cook_shell: bad input ends in a sentence, good input in a valid asset. */
+/* gtx_horizons and gtx_cook_lod_meshes: bad input ends in a sentence, good input in a valid
+ * asset. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -93,7 +94,7 @@ static void bad_options_are_refused(void **)
     assert_int_equal(refuse([](auto &d) { d.mips = 9; }), GTX_ERROR_ARGUMENT);
     assert_int_equal(refuse([](auto &d) { d.vertical = -1; }), GTX_ERROR_ARGUMENT);
     assert_int_equal(refuse([](auto &d) { d.vertical = NAN; }), GTX_ERROR_ARGUMENT);
-    assert_int_equal(refuse([](auto &d) { d.shell_levels = 6; }), GTX_ERROR_ARGUMENT);
+    assert_int_equal(refuse([](auto &d) { d.lod_levels = 6; }), GTX_ERROR_ARGUMENT);
     assert_int_equal(refuse([](auto &d) { d.color_range[0] = INFINITY; }), GTX_ERROR_ARGUMENT);
     assert_int_equal(refuse([](auto &d) { d.reserved[0] = 1; }), GTX_ERROR_NOT_ZEROED);
 }
@@ -109,7 +110,7 @@ static void a_stack_is_an_asset(void **)
     gtx_horizons_desc desc = {};
     desc.depths = 1;
     desc.vertical = 2;
-    desc.shell_levels = 3;
+    desc.lod_levels = 3;
     gtx_asset *asset;
     gtx_horizons_result result;
     assert_int_equal(make(grids, 2, &desc, &asset, &result), GTX_OK);
@@ -120,7 +121,7 @@ static void a_stack_is_an_asset(void **)
     assert_int_equal(info.source_triangles, result.triangles);
     assert_int_equal(info.patch_count, result.patches);
     assert_true(result.color_range[0] == 0 && result.color_range[1] == 199);
-    assert_true(result.height_max < 0.2 && info.has_color && info.shell_levels >= 1);
+    assert_true(result.height_max < 0.2 && info.has_color && info.lod_levels >= 1);
     const double top = info.bounds_max[1] + info.anchor[1];
     const double low = info.bounds_min[1] + info.anchor[1];
     assert_true(std::fabs(top - 40) < 1 && std::fabs(low + 240) < 1); /* depths, twice as deep */
@@ -154,32 +155,32 @@ static int stop(const gtx_progress *, void *)
     return 1;
 }
 
-static void cancelling_and_shells(void **)
+static void cancelling_and_lods(void **)
 {
     Field field(100, 100);
     gtx_horizons_desc desc = {};
     desc.progress = stop;
     assert_int_equal(make(&field.grid, 1, &desc), GTX_CANCELLED);
-    gtx_asset *asset, *shelled = nullptr, *again = nullptr;
+    gtx_asset *asset, *with_lod = nullptr, *again = nullptr;
     assert_int_equal(make(&field.grid, 1, nullptr, &asset), GTX_OK);
-    gtx_shell_desc shell = {};
-    shell.levels = 2;
-    assert_int_equal(gtx_cook_shell(asset, &shell, &shelled, nullptr), GTX_OK);
+    gtx_lod_desc lod = {};
+    lod.levels = 2;
+    assert_int_equal(gtx_cook_lod_meshes(asset, &lod, &with_lod, nullptr), GTX_OK);
     gtx_info info;
-    gtx_get_info(shelled, &info);
-    assert_in_range(info.shell_levels, 1, 2 + 3); /* and those for a few pixels */
-    assert_int_equal(gtx_cook_shell(shelled, &shell, &again, nullptr), GTX_OK); /* replaced */
+    gtx_get_info(with_lod, &info);
+    assert_in_range(info.lod_levels, 1, 2 + 3); /* and those for a few pixels */
+    assert_int_equal(gtx_cook_lod_meshes(with_lod, &lod, &again, nullptr), GTX_OK); /* replaced */
     gtx_info other;
     gtx_get_info(again, &other);
     assert_true(info.content_hash == other.content_hash);
-    shell.levels = 6;
-    assert_int_equal(gtx_cook_shell(asset, &shell, &again, nullptr), GTX_ERROR_ARGUMENT);
-    shell.levels = 0;
-    shell.progress = stop;
-    assert_int_equal(gtx_cook_shell(asset, &shell, &again, nullptr), GTX_CANCELLED);
-    assert_int_equal(gtx_cook_shell(nullptr, nullptr, &again, nullptr), GTX_ERROR_ARGUMENT);
+    lod.levels = 6;
+    assert_int_equal(gtx_cook_lod_meshes(asset, &lod, &again, nullptr), GTX_ERROR_ARGUMENT);
+    lod.levels = 0;
+    lod.progress = stop;
+    assert_int_equal(gtx_cook_lod_meshes(asset, &lod, &again, nullptr), GTX_CANCELLED);
+    assert_int_equal(gtx_cook_lod_meshes(nullptr, nullptr, &again, nullptr), GTX_ERROR_ARGUMENT);
     gtx_close(asset);
-    gtx_close(shelled);
+    gtx_close(with_lod);
     gtx_close(again);
 }
 
@@ -202,7 +203,7 @@ int main()
         cmocka_unit_test(bad_options_are_refused),
         cmocka_unit_test(a_stack_is_an_asset),
         cmocka_unit_test(parts_are_one_surface),
-        cmocka_unit_test(cancelling_and_shells),
+        cmocka_unit_test(cancelling_and_lods),
         cmocka_unit_test(missing_files_are_told_of),
     };
     return cmocka_run_group_tests_name("horizons", tests, nullptr, nullptr);

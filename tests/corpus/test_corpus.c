@@ -211,7 +211,7 @@ static void nasty_models_give_sensible_assets(void **state)
         {"gen_scale_1e-6.ply", "0.999", "0"},
         {"gen_mirrored_negative_scale.glb", "0.999", "0"},
         {"gen_moebius.ply", "0.99", "0"},
-        {"gen_klein_bottle_figure8.ply", "0.99", "4"}, /* sheets that cross */
+        {"gen_klein_bottle_figure8.ply", "0.99", "4"}, /* height fields that cross */
         {"gen_nan_vertices.ply", "0.999", "0"},
         {"gen_hemisphere_open.ply", "0.99", "0"},
         {"gen_self_intersecting_tori.ply", "0.99", "0"},

@@ -15,12 +15,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A sheet given by a string of digits a row: '0' is empty, n is code 1 + n. */
+/* A height field given by a string of digits a row: '0' is empty, n is code 1 + n. */
 typedef struct picture {
     const char *rows[8];
 } picture;
 
-static void picture_sheet(const gtx_patch *patch, double x, double y, const void *user,
+static void picture_field(const gtx_patch *patch, double x, double y, const void *user,
                           fixture_texel *out)
 {
     const picture *p = user;
@@ -33,7 +33,7 @@ static void picture_sheet(const gtx_patch *patch, double x, double y, const void
 static gtx_asset *make(const picture *p, uint32_t width, uint32_t height)
 {
     const double corner[3] = {0, 0, 0};
-    fixture_patch patch = {fixture_frame(corner, width, height, 1, 8), picture_sheet, p};
+    fixture_patch patch = {fixture_frame(corner, width, height, 1, 8), picture_field, p};
     return fixture_build(&patch, 1, 8, 1);
 }
 
@@ -216,7 +216,7 @@ static void wave(const gtx_patch *patch, double x, double y, const void *user, f
 static void check_errors(const void *ramp, double pitch, const double codes[4])
 {
     const double corner[3] = {0, 0, 0};
-    fixture_patch patch = {.frame = fixture_frame(corner, 32, 24, pitch, 1), .sheet = wave,
+    fixture_patch patch = {.frame = fixture_frame(corner, 32, 24, pitch, 1), .field = wave,
                            .user = ramp};
     gtx_asset *asset = fixture_build(&patch, 1, 8, 4);
     gtx_grid finest, grid;
@@ -320,7 +320,7 @@ static void boxes_hold_the_nodes_of_all_levels(void **state)
 {
     (void)state;
     const double corner[3] = {0, 0, 0};
-    fixture_patch patch = {.frame = fixture_frame(corner, 32, 24, 0.1, 1), .sheet = lonely};
+    fixture_patch patch = {.frame = fixture_frame(corner, 32, 24, 0.1, 1), .field = lonely};
     gtx_asset *asset = fixture_build(&patch, 1, 8, 4);
     gtx_proxies boxes = {0};
     uint32_t highest = 0;

@@ -63,7 +63,7 @@ static void expect_unchanged(const gtx_edit *edit, const gtx_asset *asset)
 
 /* ---- what is refused ---- */
 
-static void empty_sheet(const gtx_patch *patch, double x, double y, const void *user,
+static void empty_field(const gtx_patch *patch, double x, double y, const void *user,
                         fixture_texel *out)
 {
     (void)patch, (void)x, (void)y, (void)user;
@@ -74,7 +74,7 @@ static void an_empty_asset_is_refused(void **state)
 {
     (void)state;
     const double corner[3] = {0, 0, 0};
-    fixture_patch patch = {fixture_frame(corner, 16, 16, 1, 1), empty_sheet, NULL};
+    fixture_patch patch = {fixture_frame(corner, 16, 16, 1, 1), empty_field, NULL};
     gtx_asset *asset = fixture_build(&patch, 1, 8, 4);
     gtx_edit *edit = NULL;
     gtx_error error = {0};
@@ -165,13 +165,13 @@ static void bad_marks_change_nothing(void **state)
     gtx_close(asset);
 }
 
-static void throw_away(const gtx_edit_sheet *sheet, void *user)
+static void throw_away(const gtx_edit_field *field, void *user)
 {
     (void)user;
-    for (uint32_t t = 0; t < sheet->width * sheet->height; ++t)
-        if (sheet->kind[t] == GTX_TEXEL_OWN) {
-            sheet->point[t][0] += 1;
-            sheet->point[t][2] = NAN;
+    for (uint32_t t = 0; t < field->width * field->height; ++t)
+        if (field->kind[t] == GTX_TEXEL_OWN) {
+            field->point[t][0] += 1;
+            field->point[t][2] = NAN;
         }
 }
 
@@ -343,25 +343,25 @@ static void a_pattern_has_its_height(void **state)
     gtx_close(asset);
 }
 
-static void swell(const gtx_edit_sheet *sheet, void *user)
+static void swell(const gtx_edit_field *field, void *user)
 {
-    for (uint32_t t = 0; t < sheet->width * sheet->height; ++t)
-        if (sheet->kind[t] == GTX_TEXEL_OWN) {
+    for (uint32_t t = 0; t < field->width * field->height; ++t)
+        if (field->kind[t] == GTX_TEXEL_OWN) {
             for (int k = 0; k < 3; ++k)
-                sheet->point[t][k] *= *(const float *)user;
-            sheet->next[t] = sheet->value[t] + 1;
-        } else if (sheet->kind[t] != GTX_TEXEL_NONE) { /* what is written here does not count */
-            sheet->point[t][0] = 1e30f;
-            sheet->next[t] = -1;
+                field->point[t][k] *= *(const float *)user;
+            field->next[t] = field->value[t] + 1;
+        } else if (field->kind[t] != GTX_TEXEL_NONE) { /* what is written here does not count */
+            field->point[t][0] = 1e30f;
+            field->next[t] = -1;
         }
 }
 
-static void values_are_two(const gtx_edit_sheet *sheet, void *user)
+static void values_are_two(const gtx_edit_field *field, void *user)
 {
     unsigned *texels = user;
-    for (uint32_t t = 0; t < sheet->width * sheet->height; ++t)
-        if (sheet->kind[t] != GTX_TEXEL_NONE) {
-            assert_float_equal(sheet->value[t], 2, 1e-5);
+    for (uint32_t t = 0; t < field->width * field->height; ++t)
+        if (field->kind[t] != GTX_TEXEL_NONE) {
+            assert_float_equal(field->value[t], 2, 1e-5);
             ++*texels;
         }
 }

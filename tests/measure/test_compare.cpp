@@ -199,9 +199,9 @@ static void levels_are_measured(void **)
     gtx_close(asset);
 }
 
-/* An open sheet is seen from behind when mesh and patch are two-sided; otherwise its back is no
- * surface, and the asset shows nothing there. */
-static void two_sided_sheets(void **)
+/* An open height field is seen from behind when mesh and patch are two-sided; otherwise its back is
+ * no surface, and the asset shows nothing there. */
+static void two_sided_fields(void **)
 {
     Mesh plane = plane_mesh(3.875, 2.875, 0.5, 4);
     plane.flags.assign(plane.triangle_count(), TRIANGLE_TWO_SIDED);
@@ -285,7 +285,7 @@ int main()
         cmocka_unit_test(a_good_sphere_has_no_fault),
         cmocka_unit_test(a_missing_patch_is_a_hole),
         cmocka_unit_test(levels_are_measured),
-        cmocka_unit_test(two_sided_sheets),
+        cmocka_unit_test(two_sided_fields),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(far_from_the_origin),
         cmocka_unit_test(can_be_cancelled_and_refuses_nothing_to_measure),

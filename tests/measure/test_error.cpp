@@ -109,17 +109,18 @@ static void an_offset_plane_is_off_by_its_offset(void **)
     gtx_close(asset);
 }
 
-static void half_sheet(const gtx_patch *, double x, double, const void *, fixture_texel *out)
+static void half_field(const gtx_patch *, double x, double, const void *, fixture_texel *out)
 {
     out->height = 0.5;
     out->trim = x - 7.5;
 }
 
-/* The sheet is shown up to 0.3 texels past its outline at x = 7.5, and nothing of it beyond. */
+/* The height field is shown up to 0.3 texels past its outline at x = 7.5, and nothing of it
+ * beyond. */
 static void trim_is_honoured(void **)
 {
     const double corner[3] = {0, 0, 0};
-    fixture_patch patch = {fixture_frame(corner, 16, 16, 1, 1), half_sheet, nullptr};
+    fixture_patch patch = {fixture_frame(corner, 16, 16, 1, 1), half_field, nullptr};
     gtx_asset *asset = fixture_build(&patch, 1, 8, 1);
     Cells cells(asset);
     NearestTree<Cells> tree(cells);
@@ -184,7 +185,7 @@ static void a_step_between_patches_is_seen(void **)
 {
     for (double step : {0., 0.05}) {
         const double corner[3] = {10, 10, 0}, raised[3] = {10, 10, step};
-        fixture_patch patches[] = {{fixture_frame(corner, 16, 16, 1, 1), half_sheet, nullptr},
+        fixture_patch patches[] = {{fixture_frame(corner, 16, 16, 1, 1), half_field, nullptr},
                                    {fixture_frame(raised, 16, 16, 1, 1), other_half, nullptr}};
         gtx_asset *asset = fixture_build(patches, 2, 8, 1);
         Task task(2, nullptr, nullptr);
@@ -201,7 +202,7 @@ static void a_step_between_patches_is_seen(void **)
     }
 }
 
-static void empty_sheet(const gtx_patch *, double, double, const void *, fixture_texel *out)
+static void empty_field(const gtx_patch *, double, double, const void *, fixture_texel *out)
 {
     out->height = -1;
     out->trim = 7;
@@ -210,7 +211,7 @@ static void empty_sheet(const gtx_patch *, double, double, const void *, fixture
 static void an_asset_without_surface_is_infinitely_far(void **)
 {
     const double corner[3] = {0, 0, 0};
-    fixture_patch patch = {fixture_frame(corner, 8, 8, 1, 1), empty_sheet, nullptr};
+    fixture_patch patch = {fixture_frame(corner, 8, 8, 1, 1), empty_field, nullptr};
     gtx_asset *asset = fixture_build(&patch, 1, 8, 1);
     SurfaceError e = error_of(asset, plane_mesh(1, 1, 0, 1));
     assert_true(std::isinf(e.forward.rms) && std::isinf(e.forward.max));

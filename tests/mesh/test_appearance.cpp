@@ -2,8 +2,8 @@
  * normals, masks; and coordinates that are no numbers. */
 #include "test_import.hpp"
 
-#include "mesh/srgb.hpp"
-#include "mesh/texture.hpp"
+#include "mesh/material/srgb.hpp"
+#include "mesh/material/texture.hpp"
 
 using gtx::Image;
 using gtx::Material;

@@ -128,7 +128,7 @@ static void test_duplicates(void **)
     assert_int_equal(c.report.components, 2);
     assert_int_equal(c.report.boundary_edges, 48);
     assert_int_equal(c.mesh.flags[0], 0);
-    /* a sheet of two sides alone keeps one */
+    /* a height field of two sides alone keeps one */
     assert_int_equal(clean(moved(torus(), {1, 1, 0}, {0, 0, 0})).report.components, 1);
 
     /* the copy that stays winds as most do */
@@ -212,20 +212,20 @@ static void test_winding(void **)
 
 static void test_nested(void **)
 {
-    auto shell = [](double radius, bool inward) {
+    auto lod = [](double radius, bool inward) {
         Mesh mesh = moved(sphere(), {radius, radius, radius}, {0.01, 0.02, 0.03});
         return inward ? turned(mesh) : mesh;
     };
-    Mesh hollow = shell(2, false);
-    append(hollow, shell(1, true));
-    append(hollow, shell(0.5, false));
+    Mesh hollow = lod(2, false);
+    append(hollow, lod(1, true));
+    append(hollow, lod(0.5, false));
     Cleaned c = clean(hollow);
     assert_int_equal(c.report.flipped, 0);
     assert_int_equal(c.report.components, 3);
 
     /* the outermost is turned, the wall of its cavity is left alone */
-    Mesh both = shell(2, true);
-    append(both, shell(1, true));
+    Mesh both = lod(2, true);
+    append(both, lod(1, true));
     assert_int_equal(clean(both).report.flipped, c.mesh.triangle_count() / 3);
 
     /* beside each other, in one another's shadow, nothing encloses anything */
@@ -234,7 +234,7 @@ static void test_nested(void **)
         append(row, turned(moved(cube(), {1, 1, 1}, {2. * i, 0, 0})));
     assert_int_equal(clean(row).report.flipped, row.triangle_count());
 
-    /* a ring around it is no shell around it */
+    /* a ring around it is no LOD mesh around it */
     Mesh ring = torus();
     append(ring, turned(sphere()));
     c = clean(ring);
@@ -319,8 +319,8 @@ static void test_touching(void **)
     assert_true(area(c.mesh) >= 10);
 }
 
-/* A torus whose tube is pinched so that all of one edge ring coincides with another: sheets pass
- * the same edges within the same fans. */
+/* A torus whose tube is pinched so that all of one edge ring coincides with another: height fields
+ * pass the same edges within the same fans. */
 static void test_pinched(void **)
 {
     Mesh pinched = torus(24, 12);

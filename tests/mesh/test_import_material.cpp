@@ -1,7 +1,7 @@
 /* glTF materials: factors, textures, their images wherever they lie, and images that are none. */
 #include "test_import_gltf.hpp"
 
-#include "mesh/srgb.hpp"
+#include "mesh/material/srgb.hpp"
 
 #include <zlib.h>
 

@@ -1,15 +1,15 @@
-/* Pictures of the shell and of what is cast, and how they differ. */
+/* Pictures of the LOD mesh and of what is cast, and how they differ. */
 #ifndef GTX_TESTS_PICTURES_H
 #define GTX_TESTS_PICTURES_H
 
-#include "shells.h"
+#include "lods.h"
 
 #include <stdbool.h>
 
 enum { TEXELS = 96 };
 static const double radius = 2;
 
-/* With a shell that always wins where it is fine enough. */
+/* With an LOD mesh that always wins where it is fine enough. */
 static inline int open_stage(void **state)
 {
     const int result = stage_open(state);
@@ -24,7 +24,7 @@ static inline int open_stage(void **state)
 
 static inline subject sphere_open(stage *s)
 {
-    return subject_open(s, shelled(fixture_sphere(radius, TEXELS, 8), radius, SHELL_LEVELS, 0));
+    return subject_open(s, with_lod(fixture_sphere(radius, TEXELS, 8), radius, LOD_LEVELS, 0));
 }
 
 /* How two pictures of the same view differ. */

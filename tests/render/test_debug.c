@@ -1,5 +1,5 @@
 /* What a debugger sees: labels on every object, a group around a draw, and no complaint. */
-#include "shells.h"
+#include "lods.h"
 #include "witness.h"
 
 static void a_draw_is_a_silent_group(void **state)
@@ -8,9 +8,9 @@ static void a_draw_is_a_silent_group(void **state)
     if (!has_debug(s))
         skip();
     witness w = {0};
-    static const gtx_method methods[] = {GTX_METHOD_CAST, GTX_METHOD_PAPER, GTX_METHOD_SHELL};
+    static const gtx_method methods[] = {GTX_METHOD_CAST, GTX_METHOD_PAPER, GTX_METHOD_LOD};
     witness_call(s, &w);
-    subject shown = subject_open(s, shelled(fixture_sphere(2, 48, 8), 2, 2, 0));
+    subject shown = subject_open(s, with_lod(fixture_sphere(2, 48, 8), 2, 2, 0));
     gtx_camera camera = camera_around(shown.asset);
     gtx_view view = view_of(&camera);
     for (int i = 0; i < 6; ++i) {
@@ -53,7 +53,7 @@ static void objects_carry_labels(void **state)
     STAGE_OR_SKIP(state);
     if (!has_debug(s))
         skip();
-    subject shown = subject_open(s, shelled(fixture_sphere(2, 48, 8), 2, 2, 0));
+    subject shown = subject_open(s, with_lod(fixture_sphere(2, 48, 8), 2, 2, 0));
     const int tiles = labelled(GL_PROGRAM) > 12; /* cast by tiles */
     assert_int_equal(labelled(GL_PROGRAM), tiles ? 15 : 12);
     assert_int_equal(labelled(GL_TEXTURE), tiles ? 6 : 5);
@@ -107,7 +107,7 @@ static gtx_result use(stage *s, const gtx_asset *asset, const gtx_allocator *hoo
 static void every_allocation_goes_through_the_hooks(void **state)
 {
     STAGE_OR_SKIP(state);
-    gtx_asset *asset = shelled(fixture_sphere(2, 48, 8), 2, 2, 0);
+    gtx_asset *asset = with_lod(fixture_sphere(2, 48, 8), 2, 2, 0);
     gtx_result result = GTX_ERROR_MEMORY;
     const GLenum kinds[3] = {GL_PROGRAM, GL_TEXTURE, GL_BUFFER};
     int objects[3];

@@ -5,7 +5,7 @@
 enum { FRAMES = 24 };
 
 /* On a line through the middle of the bounds, `way` radii from it. The near plane is so far off
- * that it cuts the sheet in some frames while the eye is outside in others. */
+ * that it cuts the height field in some frames while the eye is outside in others. */
 static gtx_view view_on_line(const gtx_asset *asset, double way, int reversed)
 {
     gtx_camera camera = camera_around(asset);
@@ -41,7 +41,7 @@ static void fly(stage *s, gtx_asset *asset, uint32_t level, int tiles)
     subject_close(s, &shown);
 }
 
-static void through_a_sheet(void **state)
+static void through_a_field(void **state)
 {
     STAGE_OR_SKIP(state);
     for (int tiles = 0; tiles < 2; ++tiles) {
@@ -60,7 +60,7 @@ static void through_a_closed_model(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(through_a_sheet),
+        cmocka_unit_test(through_a_field),
         cmocka_unit_test(through_a_closed_model),
     };
     return cmocka_run_group_tests(tests, stage_open, stage_close);

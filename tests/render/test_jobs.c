@@ -40,11 +40,11 @@ static void expect_equal(const gtx_model *a, const gtx_model *b)
     SAME(records, a->patch_count);
     SAME(facts, a->patch_count);
     SAME(sphere, 4);
-    assert_int_equal(a->shells.vertex_bytes, b->shells.vertex_bytes);
-    assert_int_equal(a->shells.index_bytes, b->shells.index_bytes);
-    if (a->shells.level_count) {
-        SAME(shells.vertices, a->shells.vertex_bytes / sizeof *a->shells.vertices);
-        assert_memory_equal(a->shells.indices, b->shells.indices, a->shells.index_bytes);
+    assert_int_equal(a->lods.vertex_bytes, b->lods.vertex_bytes);
+    assert_int_equal(a->lods.index_bytes, b->lods.index_bytes);
+    if (a->lods.level_count) {
+        SAME(lods.vertices, a->lods.vertex_bytes / sizeof *a->lods.vertices);
+        assert_memory_equal(a->lods.indices, b->lods.indices, a->lods.index_bytes);
     }
     assert_memory_equal(&a->size, &b->size, sizeof a->size);
 }
@@ -74,11 +74,11 @@ static void models_are_the_same(void **state)
     expect_alike(fixture_sphere(2, 96, 8));
 }
 
-/* Levels of a shell, and maps that may be absent. */
+/* Levels of an LOD mesh, and maps that may be absent. */
 static void golden_models_are_the_same(void **state)
 {
     (void)state;
-    static const char *const paths[] = {"tests/golden/good/shell.gtx",
+    static const char *const paths[] = {"tests/golden/good/lod.gtx",
                                         "tests/golden/good/color.gtx",
                                         "tests/golden/good/material.gtx",
                                         "tests/golden/good/two-pages.gtx"};
@@ -136,9 +136,9 @@ static void expect_reports(gtx_asset *asset)
 static void failed_allocations_are_reported(void **state)
 {
     (void)state;
-    gtx_asset *shell;
-    assert_int_equal(gtx_open_file("tests/golden/good/shell.gtx", NULL, &shell, NULL), GTX_OK);
-    expect_reports(shell);
+    gtx_asset *lod;
+    assert_int_equal(gtx_open_file("tests/golden/good/lod.gtx", NULL, &lod, NULL), GTX_OK);
+    expect_reports(lod);
     expect_reports(fixture_sphere(2, 48, 8));
 }
 

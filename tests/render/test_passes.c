@@ -2,7 +2,7 @@
  * context. */
 #include "host/target.h"
 #include "look.h"
-#include "shells.h"
+#include "lods.h"
 #include "witness.h"
 
 enum { COUNT = 3, IDS_COUNT = 4 * STAGE_PIXELS };
@@ -46,10 +46,10 @@ static void depth_alone_is_the_same_depth(void **state)
 {
     STAGE_OR_SKIP(state);
     static float expected[STAGE_PIXELS];
-    static const gtx_method methods[] = {GTX_METHOD_CAST, GTX_METHOD_SHELL, GTX_METHOD_CAST,
-                                         GTX_METHOD_SHELL, GTX_METHOD_CAST, GTX_METHOD_PAPER,
-                                         GTX_METHOD_SHELL, GTX_METHOD_AUTO};
-    subject shown[2] = {subject_open(s, shelled(fixture_sphere(2, 64, 8), 2, 2, 0)),
+    static const gtx_method methods[] = {GTX_METHOD_CAST, GTX_METHOD_LOD, GTX_METHOD_CAST,
+                                         GTX_METHOD_LOD, GTX_METHOD_CAST, GTX_METHOD_PAPER,
+                                         GTX_METHOD_LOD, GTX_METHOD_AUTO};
+    subject shown[2] = {subject_open(s, with_lod(fixture_sphere(2, 64, 8), 2, 2, 0)),
                         subject_open(s, fixture_bumpy(16, GTX_PATCH_TWO_SIDED))};
     for (int i = 0; i < 16; ++i) {
         gtx_instance three[COUNT];
@@ -163,8 +163,9 @@ static void ids_are_those_of_the_caster(void **state)
     subject_close(s, &shown);
 }
 
-/* By the shell the instance is the same, and but for the rims of patches the patch and its cell. */
-static void ids_of_the_shell(void **state)
+/* By the LOD mesh the instance is the same, and but for the rims of patches the patch and its
+ * cell. */
+static void ids_of_the_lod(void **state)
 {
     STAGE_OR_SKIP(state);
     static uint32_t drawn[2][IDS_COUNT];
@@ -172,14 +173,14 @@ static void ids_of_the_shell(void **state)
     gtx_error error = {0};
     gtx_target target;
     gtx_instance three[COUNT];
-    subject shown = subject_open(s, shelled(fixture_sphere(2, 64, 8), 2, 2, 0));
+    subject shown = subject_open(s, with_lod(fixture_sphere(2, 64, 8), 2, 2, 0));
     place_three(&shown, three);
     gtx_view view = look_at_three(0);
     view.pass = GTX_PASS_ID;
     must(gtx_target_create(&s->gl, STAGE_WIDTH, STAGE_HEIGHT, (GLenum[]){GL_RGBA32UI, 0}, &target,
                            &error), &error);
     for (int i = 0; i < 2; ++i) {
-        view.method = i ? GTX_METHOD_SHELL : GTX_METHOD_CAST;
+        view.method = i ? GTX_METHOD_LOD : GTX_METHOD_CAST;
         s->gl.Clear(GL_DEPTH_BUFFER_BIT);
         s->gl.ClearBufferuiv(GL_COLOR, 0, nothing);
         must(gtx_draw(s->renderer, &view, three, COUNT, &error), &error);
@@ -219,7 +220,7 @@ static void g_buffer_shades_as_forward(stage *s, gtx_method method)
     gtx_error error = {0};
     gtx_target target;
     gtx_instance three[COUNT];
-    subject shown = subject_open(s, shelled(fixture_sphere(2, 64, 8), 2, 2, 0));
+    subject shown = subject_open(s, with_lod(fixture_sphere(2, 64, 8), 2, 2, 0));
     place_three(&shown, three);
     gtx_view view = look_at_three(0);
     view.method = method;
@@ -261,10 +262,10 @@ static void g_buffer_by_casting(void **state)
     g_buffer_shades_as_forward(s, GTX_METHOD_CAST);
 }
 
-static void g_buffer_by_the_shell(void **state)
+static void g_buffer_by_the_lod(void **state)
 {
     STAGE_OR_SKIP(state);
-    g_buffer_shades_as_forward(s, GTX_METHOD_SHELL);
+    g_buffer_shades_as_forward(s, GTX_METHOD_LOD);
 }
 
 static void g_buffer_holds_the_material(void **state)
@@ -313,7 +314,7 @@ static void a_main_of_the_engines_own(void **state)
         "}\n";
     gtx_error error = {0};
     gtx_shading *shading;
-    subject shown = subject_open(s, shelled(fixture_sphere(2, 64, 8), 2, 2, 0));
+    subject shown = subject_open(s, with_lod(fixture_sphere(2, 64, 8), 2, 2, 0));
     gtx_instance instance = shown.instance;
     const float linear[9] = {0, 0.8f, 0.1f, -0.7f, 0, 0, 0, 0.2f, 0.9f};
     const float move[3] = {0.3f, -0.2f, 0.5f};
@@ -332,7 +333,7 @@ static void a_main_of_the_engines_own(void **state)
         const int world = i % 2;
         const float scale[4] = {0.2f, 0, 0, (float)world};
         long checked = 0;
-        view.method = i < 2 ? GTX_METHOD_CAST : GTX_METHOD_SHELL;
+        view.method = i < 2 ? GTX_METHOD_CAST : GTX_METHOD_LOD;
         const GLuint program = gtx_shading_program(shading, view.method);
         s->gl.UseProgram(program);
         s->gl.Uniform4fv(s->gl.GetUniformLocation(program, "scale"), 1, scale);
@@ -421,9 +422,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(depth_alone_is_the_same_depth),
         cmocka_unit_test(ids_are_those_of_the_caster),
-        cmocka_unit_test(ids_of_the_shell),
+        cmocka_unit_test(ids_of_the_lod),
         cmocka_unit_test(g_buffer_by_casting),
-        cmocka_unit_test(g_buffer_by_the_shell),
+        cmocka_unit_test(g_buffer_by_the_lod),
         cmocka_unit_test(g_buffer_holds_the_material),
         cmocka_unit_test(a_main_of_the_engines_own),
         cmocka_unit_test(nobody_complained),

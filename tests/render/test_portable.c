@@ -5,7 +5,7 @@
  * to code that rounds differently. */
 #define _DEFAULT_SOURCE
 #include "look.h"
-#include "shells.h"
+#include "lods.h"
 
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -72,8 +72,8 @@ static void draw_scene(stage *s, const gtx_view *view, const gtx_instance *insta
     gtx_polygon_program_destroy(&s->gl, &program);
 }
 
-/* Shell or cast by error, cast coarse and orthographic, the paper's search, reversed depth, after
- * an edit on the GPU, and with the state read back. */
+/* LOD mesh or cast by error, cast coarse and orthographic, the paper's search, reversed depth,
+ * after an edit on the GPU, and with the state read back. */
 static void draw_album(void **state)
 {
     static const look steel = {{150, 160, 200, 255}, {230, 90, 200, 255}, {40, 10, 0}};
@@ -81,14 +81,14 @@ static void draw_album(void **state)
     STAGE_OR_SKIP(state);
     album *a = drawing;
     gtx_error error = {0};
-    subject ball = subject_open(s, shelled(fixture_sphere(2, 64, 8), 2, 3, 0));
+    subject ball = subject_open(s, with_lod(fixture_sphere(2, 64, 8), 2, 3, 0));
     subject deep = subject_open(s, fixture_sphere(2, 48, 16));
-    subject sheet = subject_open(s, fixture_bumpy(8, GTX_PATCH_TWO_SIDED));
+    subject field = subject_open(s, fixture_bumpy(8, GTX_PATCH_TWO_SIDED));
     subject shiny = subject_open(s, repaint(fixture_sphere(2, 48, 8), &steel));
     gtx_asset *edited = repaint(fixture_sphere(2, 48, 8), &brick);
     const gtx_instance instances[] = {
         placed(ball.model, 0.9f, -2.5f, 1, 0),   placed(ball.model, -0.5f, 2.6f, -1.6f, 1),
-        placed(shiny.model, 0.8f, 0, -1, 0),     placed(sheet.model, 0.7f, -1, 1.5f, -0.5f),
+        placed(shiny.model, 0.8f, 0, -1, 0),     placed(field.model, 0.7f, -1, 1.5f, -0.5f),
         placed(deep.model, 0.3f, 3, 2, 0.5f),    placed(ball.model, 0.12f, -1, -2.5f, 2.2f)};
     for (int i = 0; i < PICTURES; ++i) {
         const gtx_camera camera = {.radius = 4.5f, .azimuth = 20, .elevation = 15, .distance = 2.2f,
@@ -108,7 +108,7 @@ static void draw_album(void **state)
     gtx_close(edited);
     subject_close(s, &ball);
     subject_close(s, &deep);
-    subject_close(s, &sheet);
+    subject_close(s, &field);
     subject_close(s, &shiny);
 }
 

@@ -94,8 +94,8 @@ static void one_height(const gtx_patch *patch, double x, double y, const void *u
     out->normal[2] = 1;
 }
 
-/* A sheet of more texels than a layer of the textures has. */
-static gtx_asset *wide_sheet(double height)
+/* A height field of more texels than a layer of the textures has. */
+static gtx_asset *wide_field(double height)
 {
     const double corner[3] = {-1.2, -1, 0};
     fixture_patch patch = {fixture_frame(corner, 1200, 1000, 0.002, 1), one_height, &height};
@@ -103,24 +103,24 @@ static gtx_asset *wide_sheet(double height)
     return fixture_build(&patch, 1, 8, 1);
 }
 
-/* Heights and outline of a strip across the whole sheet. */
+/* Heights and outline of a strip across the whole height field. */
 static void large_patches_are_seen(void **state)
 {
     STAGE_OR_SKIP(state);
     gtx_error error = {0};
-    gtx_asset *sheet = wide_sheet(0.2), *edited = wide_sheet(0.8);
+    gtx_asset *field = wide_field(0.2), *edited = wide_field(0.8);
     const gtx_patch *p = &gtx_patches(edited)[0];
     gtx_info info;
     gtx_get_info(edited, &info);
     uint8_t *trim = (uint8_t *)(uintptr_t)gtx_map_data(edited, GTX_MAP_TRIM, 0, NULL);
     for (uint32_t y = 0; y < p->rect[3]; ++y)
         memset(trim + (size_t)(p->rect[1] + y) * info.page_width + p->rect[0] + 500, 255, 200);
-    update u = update_begin(s, s->renderer, sheet);
+    update u = update_begin(s, s->renderer, field);
     must(gtx_rays_update(s->renderer, u.rays, 1, edited, 0, &error), &error);
     must(gtx_rays_place(s->renderer, u.rays, &u.instance, 1, &error), &error);
     expect_rays_of(s, s->renderer, &u, edited);
     update_end(s, s->renderer, &u);
-    gtx_close(sheet);
+    gtx_close(field);
     gtx_close(edited);
 }
 

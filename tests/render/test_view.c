@@ -108,8 +108,8 @@ static void camera_inside_boxes(void **state)
 {
     STAGE_OR_SKIP(state);
     subject ball = subject_open(s, fixture_sphere(2, 64, 8));
-    subject sheet = subject_open(s, fixture_bumpy(8, GTX_PATCH_TWO_SIDED));
-    subject *subjects[2] = {&ball, &sheet};
+    subject field = subject_open(s, fixture_bumpy(8, GTX_PATCH_TWO_SIDED));
+    subject *subjects[2] = {&ball, &field};
     for (int k = 0; k < 2; ++k)
         for (int i = 0; i < 8; ++i) {
             gtx_camera camera = camera_around(subjects[k]->asset);
@@ -127,10 +127,10 @@ static void camera_inside_boxes(void **state)
             memcpy(subjects[k]->instance.transform, identity, sizeof identity);
         }
     subject_close(s, &ball);
-    subject_close(s, &sheet);
+    subject_close(s, &field);
 }
 
-/* A two-sided sheet is lit on the side that is seen. */
+/* A two-sided height field is lit on the side that is seen. */
 static void the_back_is_lit_too(void **state)
 {
     STAGE_OR_SKIP(state);
@@ -162,7 +162,7 @@ static void headlight_and_light(void **state)
     subject scene = subject_open(s, fixture_flat(0.5, 8));
     gtx_camera camera = camera_around(scene.asset);
     camera.azimuth = 0;
-    camera.elevation = 0; /* along the sheet's normal: +Z */
+    camera.elevation = 0; /* along the height field's normal: +Z */
     camera.orthographic = 1;
     gtx_view view = view_of(&camera);
     const int middle = 4 * (STAGE_HEIGHT / 2 * STAGE_WIDTH + STAGE_WIDTH / 2);

@@ -12,15 +12,15 @@ static const double share = 0.7;
 static subject coarse_sphere(stage *s)
 {
     enum { COARSEST = 1 };
-    static shell_level made[SHELL_LEVELS];
-    gtx_shell shells[SHELL_LEVELS];
+    static lod_level made[LOD_LEVELS];
+    gtx_lod_mesh lods[LOD_LEVELS];
     gtx_asset *sphere = fixture_sphere(radius, TEXELS, 8);
-    for (int k = 0; k < SHELL_LEVELS; ++k) {
-        make_shell_level(gtx_patches(sphere), 6, radius, COARSEST << (SHELL_LEVELS - 1 - k),
-                         &made[k]);
-        shells[k] = made[k].shell;
+    for (int k = 0; k < LOD_LEVELS; ++k) {
+        make_lod_level(gtx_patches(sphere), 6, radius, COARSEST << (LOD_LEVELS - 1 - k),
+                       &made[k]);
+        lods[k] = made[k].lod;
     }
-    return subject_open(s, with_shell(sphere, shells, SHELL_LEVELS, 0, SHELL_COLORED));
+    return subject_open(s, with_lod_meshes(sphere, lods, LOD_LEVELS, 0, LOD_COLORED));
 }
 
 /* How much brightness changes from one picture to the next, in white pixels. */
@@ -44,8 +44,8 @@ static double outline_of(const picture *p)
     return length;
 }
 
-/* The greatest change from frame to frame beyond that of what is cast at its finest level: pixels by
- * which all of the outline would have to jump. */
+/* The greatest change from frame to frame beyond that of what is cast at its finest level: pixels
+ * by which all of the outline would have to jump. */
 static double zoom_out(stage *s, const subject *shown, gtx_method method, float max_error)
 {
     static picture before, fine_before;
@@ -75,15 +75,16 @@ static double zoom_out(stage *s, const subject *shown, gtx_method method, float 
 static void levels_change_unseen(void **state)
 {
     STAGE_OR_SKIP(state);
-    static const gtx_method methods[] = {GTX_METHOD_CAST, GTX_METHOD_SHELL, GTX_METHOD_AUTO};
+    static const gtx_method methods[] = {GTX_METHOD_CAST, GTX_METHOD_LOD, GTX_METHOD_AUTO};
     subject shown = coarse_sphere(s);
     for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m) {
         const double jump = zoom_out(s, &shown, methods[m], allowed);
         if (jump > share * allowed)
-            fail_msg("method %zu: from a frame to the next the outline jumps by %g pixels", m, jump);
+            fail_msg("method %zu: from a frame to the next the outline jumps by %g pixels", m,
+                     jump);
     }
     /* What is to be seen, this sees. */
-    assert_true(zoom_out(s, &shown, GTX_METHOD_SHELL, visible) > 2 * share * allowed);
+    assert_true(zoom_out(s, &shown, GTX_METHOD_LOD, visible) > 2 * share * allowed);
     subject_close(s, &shown);
 }
 

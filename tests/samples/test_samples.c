@@ -17,8 +17,8 @@
 
 static char folder[] = "/tmp/gtx-samples-XXXXXX";
 
-/* Runs a shell command line with $S the samples' folder and $T a temporary one; returns its exit
- * code. */
+/* Runs an LOD mesh command line with $S the samples' folder and $T a temporary one; returns its
+ * exit code. */
 static int run(const char *format, ...)
 {
     char command[1024];
@@ -39,8 +39,8 @@ static int set_up(void **state)
     snprintf(samples, sizeof samples, "%s/samples", getenv("GTX_OUT"));
     setenv("S", samples, 1);
     setenv("T", folder, 1);
-    return run("$S/sculpt --triangles 20000 $T/shell.glb >/dev/null && "
-               "$S/cook_from_c $T/shell.glb $T/shell.gtx >$T/cook.log");
+    return run("$S/sculpt --triangles 20000 $T/lod.glb >/dev/null && "
+               "$S/cook_from_c $T/lod.glb $T/lod.gtx >$T/cook.log");
 }
 
 static int tear_down(void **state)
@@ -68,8 +68,8 @@ static void an_interrupt_leaves_nothing_behind(void **state)
 static void an_asset_is_printed(void **state)
 {
     (void)state;
-    assert_int_equal(run("$S/open_asset $T/shell.gtx | grep -q 'patches on 1 pages'"), 0);
-    assert_int_equal(run("$S/open_asset $T/shell.glb 2>/dev/null"), 1);
+    assert_int_equal(run("$S/open_asset $T/lod.gtx | grep -q 'patches on 1 pages'"), 0);
+    assert_int_equal(run("$S/open_asset $T/lod.glb 2>/dev/null"), 1);
 }
 
 /* Drivers round differently: a picture may differ a little everywhere and much in few places. */
@@ -111,7 +111,7 @@ static void draws_picture_of(const char *name, const char *what)
 
 static void draws_its_picture(void **state)
 {
-    draws_picture_of(*state, "$T/shell.gtx");
+    draws_picture_of(*state, "$T/lod.gtx");
 }
 
 static void horizons_are_made_and_drawn(void **state)
@@ -125,9 +125,9 @@ static void misuse_is_one_line(void **state)
 {
     const char *name = *state;
     assert_int_equal(run("$S/%s 2>$T/err; test $? = 1 && grep -q ^usage $T/err", name), 0);
-    assert_int_equal(run("$S/%s $T/shell.glb --headless $T/x.png 2>$T/err; test $? = 1 && "
+    assert_int_equal(run("$S/%s $T/lod.glb --headless $T/x.png 2>$T/err; test $? = 1 && "
                          "test $(wc -l <$T/err) = 1 && ! test -e $T/x.png", name), 0);
-    assert_int_equal(run("$S/%s $T/shell.gtx --headless $T/x.png --size 0x9 2>/dev/null", name), 1);
+    assert_int_equal(run("$S/%s $T/lod.gtx --headless $T/x.png --size 0x9 2>/dev/null", name), 1);
 }
 
 int main(void)

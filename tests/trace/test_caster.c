@@ -238,7 +238,7 @@ static void along_the_axes(void **state)
             assert_float_equal(hit.x, i * 0.5f, 1e-5f);
             assert_float_equal(hit.y, j * 0.5f, 1e-5f);
         }
-    /* Within the plane of the sheet nothing is crossed; just past the border neither. */
+    /* Within the plane of the height field nothing is crossed; just past the border neither. */
     for (int k = 0; k < 4; ++k) {
         gtx_ray flat = {.origin = {-1, 1, 0.5f},
                         .direction = {k & 1 ? 1.f : 0, k & 2 ? 1.f : 0, 0}};
@@ -250,7 +250,7 @@ static void along_the_axes(void **state)
     gtx_close(asset);
 }
 
-static void slope_sheet(const gtx_patch *patch, double x, double y, const void *user,
+static void slope_field(const gtx_patch *patch, double x, double y, const void *user,
                         fixture_texel *out)
 {
     (void)patch;
@@ -265,7 +265,7 @@ static void grazing_rays_meet_a_ramp(void **state)
     (void)state;
     /* z = x / 127 * 2 over x in 0..12.7; rays along -x at a height h meet it at x = 63.5 h / 10. */
     const double corner[3] = {0, 0, 0};
-    fixture_patch patch = {fixture_frame(corner, 128, 16, 0.1, 2), slope_sheet, NULL};
+    fixture_patch patch = {fixture_frame(corner, 128, 16, 0.1, 2), slope_field, NULL};
     gtx_asset *asset = fixture_build(&patch, 1, 8, 1);
     gtx_caster *caster = caster_of(asset, 0);
     for (int i = 1; i < 2000; ++i) {
@@ -461,7 +461,7 @@ static void an_error_chooses_levels(void **state)
     gtx_close(asset);
 }
 
-static void half_sheet(const gtx_patch *patch, double x, double y, const void *user,
+static void half_field(const gtx_patch *patch, double x, double y, const void *user,
                        fixture_texel *out)
 {
     (void)patch;
@@ -471,11 +471,11 @@ static void half_sheet(const gtx_patch *patch, double x, double y, const void *u
     out->trim = x - 7.5;
 }
 
-static void trim_ends_the_sheet(void **state)
+static void trim_ends_the_field(void **state)
 {
     (void)state;
     const double corner[3] = {0, 0, 0};
-    fixture_patch patch = {fixture_frame(corner, 16, 16, 1, 1), half_sheet, NULL};
+    fixture_patch patch = {fixture_frame(corner, 16, 16, 1, 1), half_field, NULL};
     gtx_asset *asset = fixture_build(&patch, 1, 8, 1);
     for (uint32_t level = 0; level < 3; ++level) {
         gtx_caster *caster = caster_of(asset, level);
@@ -499,7 +499,7 @@ static void a_field_of_patches(void **state)
     uint64_t seed = 11;
     for (int i = 0; i < COUNT; ++i) {
         const double corner[3] = {20 * uniform(&seed), 20 * uniform(&seed), 20 * uniform(&seed)};
-        patches[i] = (fixture_patch){fixture_frame(corner, 8, 8, 0.3, 0.5), half_sheet, NULL};
+        patches[i] = (fixture_patch){fixture_frame(corner, 8, 8, 0.3, 0.5), half_field, NULL};
         if (i & 1) { /* looking the other way */
             patches[i].frame.axis_x[0] = -1;
             patches[i].frame.axis_z[2] = -1;
@@ -512,7 +512,7 @@ static void a_field_of_patches(void **state)
     gtx_close(asset);
 }
 
-static void dust_sheet(const gtx_patch *patch, double x, double y, const void *user,
+static void dust_field(const gtx_patch *patch, double x, double y, const void *user,
                        fixture_texel *out)
 {
     (void)patch;
@@ -525,7 +525,7 @@ static void codes_without_a_cell_are_no_surface(void **state)
 {
     (void)state;
     const double corner[3] = {0, 0, 0};
-    fixture_patch patch = {fixture_frame(corner, 8, 8, 1, 1), dust_sheet, NULL};
+    fixture_patch patch = {fixture_frame(corner, 8, 8, 1, 1), dust_field, NULL};
     gtx_asset *asset = fixture_build(&patch, 1, 8, 1);
     for (uint32_t level = 0; level < 8; ++level) {
         gtx_caster *caster = caster_of(asset, level);
@@ -608,7 +608,7 @@ int main(void)
         cmocka_unit_test(any_hit_is_a_hit),
         cmocka_unit_test(coverage_only_grows),
         cmocka_unit_test(an_error_chooses_levels),
-        cmocka_unit_test(trim_ends_the_sheet),
+        cmocka_unit_test(trim_ends_the_field),
         cmocka_unit_test(a_field_of_patches),
         cmocka_unit_test(codes_without_a_cell_are_no_surface),
         cmocka_unit_test(bad_arguments),

@@ -139,7 +139,7 @@ static bool in_band(const Target &target, const Vec3d &from, const Vec3d &to, fl
 }
 
 /* Shadow rays from where chords hit, to suns low over the horizon of the normal there and of the
- * mesh: were sheets to shade themselves, more points would be dark than by the mesh. */
+ * mesh: were height fields to shade themselves, more points would be dark than by the mesh. */
 static void shadows_agree(const Target &target, const Vec3d &centre, double radius, Random &random)
 {
     gtx_scene_instance one = {target.caster, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};

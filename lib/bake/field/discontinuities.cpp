@@ -1,0 +1,225 @@
+/* Depth cliffs: two height fields side by side in the map, which no cell may bridge. */
+#include "bake/patch_maps.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace gtx::baking {
+
+bool Paths::joined(uint32_t from, uint32_t to, double u, double v, double reach)
+{
+    auto inside = [&](uint32_t t) {
+        Vec3d p[3];
+        for (int k = 0; k < 3; ++k)
+            p[k] = chart_.grid.texel(mesh_.position(t, k));
+        return std::min({p[0].x, p[1].x, p[2].x}) <= u + reach &&
+               std::max({p[0].x, p[1].x, p[2].x}) >= u - reach &&
+               std::min({p[0].y, p[1].y, p[2].y}) <= v + reach &&
+               std::max({p[0].y, p[1].y, p[2].y}) >= v - reach;
+    };
+    uint32_t goal = chart_.triangles[to].source;
+    queue_.assign(1, chart_.triangles[from].source);
+    seen_.clear();
+    seen_.insert(queue_[0]);
+    for (size_t next = 0; next < queue_.size(); ++next) {
+        if (queue_[next] == goal)
+            return true;
+        for (uint32_t n : neighbours_[queue_[next]])
+            if (n != NO_TRIANGLE && !seen_.count(n) && inside(n)) {
+                seen_.insert(n);
+                queue_.push_back(n);
+            }
+    }
+    return false;
+}
+
+namespace {
+
+/* Which cells show, and which of them bridge. */
+class Bridges {
+public:
+    Bridges(const FlatChart &chart, const Outline &outline, std::vector<float> &trim, Cover &cover,
+            Paths &paths)
+        : chart_(chart), outline_(outline), trim_(trim), cover_(cover), paths_(paths)
+    {
+    }
+
+    /* Which drops are bridges when a cell spans them. */
+    enum Drop { UNJOINED, BESIDE_CORE };
+    void find(Drop drop, const std::vector<uint8_t> &support);
+    void give_to_core(const Outline &core);
+    void cut(std::vector<uint8_t> &support);
+
+private:
+    std::array<size_t, 4> corners(size_t cell) const
+    {
+        size_t w = size_t(chart_.grid.w);
+        return {cell, cell + 1, cell + w, cell + w + 1};
+    }
+    /* The cells with this corner, which is not on the grid's first row or column. */
+    std::array<size_t, 4> around(size_t texel) const
+    {
+        size_t w = size_t(chart_.grid.w);
+        return {texel - w - 1, texel - w, texel - 1, texel};
+    }
+    bool bridges(Drop drop, size_t cell);
+    /* What is lost with a texel: the share of the surface, not of what continues it, in the good
+     * cells around it; for each of the bad ones that go too. */
+    double loss(size_t texel) const;
+
+    const FlatChart &chart_;
+    const Outline &outline_;
+    bool is_core(size_t texel) const { return cover_.triangle[texel] < chart_.core; }
+    bool continue_core(size_t texel, double &height) const;
+
+    std::vector<float> &trim_;
+    Cover &cover_;
+    Paths &paths_;
+    enum : uint8_t { NONE, GOOD, BAD };
+    std::vector<uint8_t> cells_;
+};
+
+/* Whether a step between corners of a cell is more than a slope, with no surface along it: or even
+ * with that where it leaves the core, for a wall that begins there is another chart's. */
+bool Bridges::bridges(Drop drop, size_t cell)
+{
+    constexpr double REACH = 1.5; /* from the middle of the cell */
+    std::array<size_t, 4> corner = corners(cell);
+    auto triangle = [&](size_t texel) {
+        uint32_t t = cover_.triangle[texel];
+        return t != NO_TRIANGLE ? t : outline_.edges[outline_.nearest[texel]].triangle;
+    };
+    double u = double(cell % chart_.grid.w) + 0.5, v = double(cell / chart_.grid.w) + 0.5;
+    for (int a = 0; a < 4; ++a) {
+        for (int b = a + 1; b < 4; ++b) {
+            double step = std::fabs(cover_.height[corner[a]] - cover_.height[corner[b]]);
+            if (step <= CLIFF * chart_.grid.coarse_pitch())
+                continue;
+            if (drop == BESIDE_CORE && is_core(corner[a]) != is_core(corner[b]))
+                return true;
+            if (!paths_.joined(triangle(corner[a]), triangle(corner[b]), u, v, REACH))
+                return true;
+        }
+    }
+    return false;
+}
+
+double Bridges::loss(size_t texel) const
+{
+    constexpr double CORE = 4, OVERLAP_ONLY = 1; /* another chart's core lies there */
+    double lost = 0;
+    int bad = 0;
+    for (size_t cell : around(texel)) {
+        bad += cells_[cell] == BAD;
+        if (cells_[cell] != GOOD)
+            continue;
+        for (size_t c : corners(cell)) {
+            uint32_t t = cover_.triangle[c];
+            if (t != NO_TRIANGLE)
+                lost += t < chart_.core ? CORE : OVERLAP_ONLY;
+        }
+    }
+    return lost / bad;
+}
+
+/* The height of the core continued by a texel: the mean over its neighbours in the core of a line
+ * through each and the one behind it. False where there is none, or where they do not agree. */
+bool Bridges::continue_core(size_t texel, double &height) const
+{
+    const double cliff = CLIFF * chart_.grid.coarse_pitch();
+    const int w = chart_.grid.w, h = chart_.grid.h, x = int(texel) % w, y = int(texel) / w;
+    double sum = 0, low = INFINITY, high = -INFINITY;
+    int count = 0;
+    for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+            int nx = x + dx, ny = y + dy, bx = nx + dx, by = ny + dy;
+            if (nx < 0 || ny < 0 || nx >= w || ny >= h || !is_core(size_t(ny) * w + nx))
+                continue;
+            double near = cover_.height[size_t(ny) * w + nx], slope = 0;
+            if (bx >= 0 && by >= 0 && bx < w && by < h && is_core(size_t(by) * w + bx))
+                slope = near - cover_.height[size_t(by) * w + bx];
+            sum += near + (std::fabs(slope) <= cliff ? slope : 0);
+            low = std::min(low, near);
+            high = std::max(high, near);
+            ++count;
+        }
+    }
+    height = sum / std::max(count, 1);
+    return count > 0 && high - low <= cliff;
+}
+
+/* A texel beyond the core that makes a bridge with it may as well continue the core: what lies
+ * there is shown by another chart. So the core keeps its last cell. But where the core itself rises
+ * as steeply, the surface beyond is its best continuation. */
+void Bridges::give_to_core(const Outline &core)
+{
+    constexpr double RISE = 3; /* texels of depth above the continued core: a wall begins */
+    const double rise = RISE * chart_.grid.coarse_pitch();
+    auto leaves_core = [&](double beyond, double continued) {
+        return beyond < continued || beyond >= continued + rise;
+    };
+    std::vector<std::pair<size_t, double>> given;
+    for (size_t cell = 0; cell < cells_.size(); ++cell) {
+        double height;
+        if (cells_[cell] == BAD)
+            for (size_t texel : corners(cell))
+                if (!is_core(texel) && continue_core(texel, height) &&
+                    leaves_core(cover_.height[texel], height))
+                    given.emplace_back(texel, height);
+    }
+    for (auto [texel, height] : given) {
+        cover_.height[texel] = height;
+        cover_.triangle[texel] = NO_TRIANGLE;
+        trim_[texel] = std::max(trim_[texel], core.distance[texel]);
+    }
+}
+
+void Bridges::find(Drop drop, const std::vector<uint8_t> &support)
+{
+    const Grid &grid = chart_.grid;
+    cells_.assign(grid.texels(), NONE);
+    for (int j = 1; j + 1 < grid.h; ++j) { /* the margin keeps cells that show off the sides */
+        for (int i = 1; i + 1 < grid.w; ++i) {
+            size_t cell = size_t(j) * size_t(grid.w) + size_t(i);
+            std::array<size_t, 4> c = corners(cell);
+            bool shows = std::any_of(c.begin(), c.end(), [&](size_t t) { return shown(trim_[t]); });
+            bool exists = std::all_of(c.begin(), c.end(), [&](size_t t) { return support[t]; });
+            if (shows && exists)
+                cells_[cell] = bridges(drop, cell) ? BAD : GOOD;
+        }
+    }
+}
+
+void Bridges::cut(std::vector<uint8_t> &support)
+{
+    for (size_t cell = 0; cell < cells_.size(); ++cell) {
+        if (cells_[cell] != BAD)
+            continue;
+        std::pair<double, double> least = {INFINITY, INFINITY};
+        size_t drop = cell;
+        for (size_t texel : corners(cell)) { /* of equals, the lower */
+            std::pair<double, double> rank = {loss(texel), cover_.height[texel]};
+            if (rank < least) {
+                least = rank;
+                drop = texel;
+            }
+        }
+        support[drop] = 0;
+        for (size_t gone : around(drop))
+            cells_[gone] = NONE;
+    }
+}
+
+} // namespace
+
+void cut_cliffs(const FlatChart &chart, const Outline &core_outline, const Outline &outline,
+                Paths &paths, std::vector<float> &trim, Cover &cover, std::vector<uint8_t> &support)
+{
+    Bridges bridges(chart, outline, trim, cover, paths);
+    bridges.find(Bridges::BESIDE_CORE, support);
+    bridges.give_to_core(core_outline);
+    bridges.find(Bridges::UNJOINED, support);
+    bridges.cut(support);
+}
+
+} // namespace gtx::baking

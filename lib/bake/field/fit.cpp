@@ -1,0 +1,137 @@
+/* Fits the height field to the source between the texels too. */
+#include "bake/patch_maps.hpp"
+
+#include <algorithm>
+
+namespace gtx::baking {
+
+/* Heights sampled at the texels alone cut every crest and fill every groove that runs between them.
+ * So the height field is fitted by least squares to samples along the source's edges, where a mesh
+ * has its crests, with the sampled height itself as one more observation of each texel. */
+
+constexpr double STEP = 0.5;    /* texels between samples on an edge */
+constexpr double OUTLIER = 4; /* texels of depth: farther samples are of another height field */
+constexpr double FARTHEST = 1; /* texels of depth that a height may move: no fins */
+/* Depth below the source that counts as missed, in texels of the model, or of the chart's own where
+ * these are finer. */
+constexpr double MISSED = 0.3;
+constexpr int ROUNDS = 6;
+/* A height field below the source lets a grazing ray pass over a crest and open a hole, one above
+ * it only moves an outline by as much: being below by more than `LEEWAY` texels of depth weighs
+ * this many times more. */
+constexpr double BELOW = 6, LEEWAY = 0.1;
+/* So does, this many times more, a texel that sinks below its own sample to follow the foot of a
+ * wall beside it. */
+constexpr double SUNK = 5;
+/* The overlap is another chart's core and better shown there: it counts this much. So across a
+ * crease the height field follows the core to its very edge. */
+constexpr double OVERLAP_COUNTS = 0.1;
+
+struct Observation {
+    uint32_t texel;             /* the lower corner of its cell */
+    float weight[4];            /* of the cell's four texels */
+    double height;
+    double counts;              /* in the sum of squares */
+};
+
+static void observe(const Grid &grid, const std::vector<uint8_t> &support, const Cover &cover,
+                    const Vec3d &at, double counts, std::vector<Observation> &out)
+{
+    int i = int(std::floor(at.x)), j = int(std::floor(at.y));
+    if (i < 0 || j < 0 || i + 1 >= grid.w || j + 1 >= grid.h)
+        return;
+    uint32_t texel = uint32_t(j) * uint32_t(grid.w) + uint32_t(i);
+    const uint32_t corner[4] = {texel, texel + 1, texel + uint32_t(grid.w),
+                                texel + uint32_t(grid.w) + 1};
+    float u = float(at.x - i), v = float(at.y - j);
+    Observation o = {texel, {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}, at.z,
+                     counts};
+    double field = 0;
+    for (int k = 0; k < 4; ++k) {
+        if (!support[corner[k]])
+            return;
+        field += o.weight[k] * cover.height[corner[k]];
+    }
+    if (std::fabs(at.z - field) <= OUTLIER * grid.coarse_pitch())
+        out.push_back(o);
+}
+
+static std::vector<Observation> observe_edges(const FlatChart &chart,
+                                              const std::vector<uint8_t> &support,
+                                              const Cover &cover)
+{
+    std::vector<Observation> out;
+    for (size_t t = 0; t < chart.triangles.size(); ++t) {
+        const FlatTriangle &triangle = chart.triangles[t];
+        if (!triangle.front)
+            continue;
+        for (int k = 0; k < 3; ++k) {
+            uint32_t mate = chart.mate[t][size_t(k)];
+            if (mate != NO_TRIANGLE && mate < t)
+                continue; /* seen from the other side */
+            Vec3d from = triangle.corner[k], along = triangle.corner[(k + 1) % 3] - from;
+            int steps = std::max(1, int(std::hypot(along.x, along.y) / STEP));
+            double counts = t < chart.core ? 1 : OVERLAP_COUNTS;
+            for (int s = 0; s < steps; ++s)
+                observe(chart.grid, support, cover, from + along * ((s + 0.5) / steps), counts,
+                        out);
+        }
+    }
+    return out;
+}
+
+/* The share of the core's observations that the height field passes below, `missed` or more. */
+static double missed_share(const FlatChart &chart, const std::vector<Observation> &observations,
+                           const Cover &cover, double missed)
+{
+    const uint32_t row = uint32_t(chart.grid.w);
+    size_t core = 0, below = 0;
+    for (const Observation &o : observations) {
+        if (o.counts < 1)
+            continue;
+        const uint32_t corner[4] = {o.texel, o.texel + 1, o.texel + row, o.texel + row + 1};
+        double residual = o.height;
+        for (int k = 0; k < 4; ++k)
+            residual -= o.weight[k] * cover.height[corner[k]];
+        ++core;
+        below += residual > missed;
+    }
+    return core ? double(below) / double(core) : 0;
+}
+
+double fit_heights(const FlatChart &chart, const std::vector<uint8_t> &support, double pitch,
+                   Cover &cover)
+{
+    const std::vector<Observation> observations = observe_edges(chart, support, cover);
+    const std::vector<double> sampled = cover.height;
+    const uint32_t row = uint32_t(chart.grid.w);
+    const double farthest = FARTHEST * chart.grid.coarse_pitch();
+    const double leeway = LEEWAY * chart.grid.coarse_pitch();
+    std::vector<double> pull(sampled.size()), weight(sampled.size());
+    for (int round = 0; round < ROUNDS; ++round) {
+        for (size_t i = 0; i < sampled.size(); ++i) {
+            const double residual = sampled[i] - cover.height[i];
+            const bool sunk = residual > leeway && cover.triangle[i] != NO_TRIANGLE;
+            weight[i] = (cover.triangle[i] < chart.core ? 1 : OVERLAP_COUNTS) * (sunk ? SUNK : 1);
+            pull[i] = weight[i] * residual;
+        }
+        for (const Observation &o : observations) {
+            const uint32_t corner[4] = {o.texel, o.texel + 1, o.texel + row, o.texel + row + 1};
+            double residual = o.height;
+            for (int k = 0; k < 4; ++k)
+                residual -= o.weight[k] * cover.height[corner[k]];
+            double trust = o.counts * (residual > leeway ? BELOW : 1);
+            for (int k = 0; k < 4; ++k) {
+                pull[corner[k]] += trust * o.weight[k] * residual;
+                weight[corner[k]] += trust * o.weight[k]; /* row sums: no step overshoots */
+            }
+        }
+        for (size_t i = 0; i < sampled.size(); ++i)
+            cover.height[i] = std::clamp(cover.height[i] + pull[i] / weight[i],
+                                         sampled[i] - farthest, sampled[i] + farthest);
+    }
+    return missed_share(chart, observations, cover,
+                        MISSED * std::min(pitch, chart.grid.coarse_pitch()));
+}
+
+} // namespace gtx::baking

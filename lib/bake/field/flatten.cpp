@@ -1,0 +1,156 @@
+/* Lays a chart and its overlap out in the texel grid of its frame. */
+#include "bake/patch_maps.hpp"
+
+#include <algorithm>
+
+namespace gtx::baking {
+
+/* Cells a chart gets at least along a side, and texels it may have at most. */
+constexpr double MIN_CELLS = 4, MAX_TEXELS = 512;
+/* A pitch is never finer than this part of the model's: a needle is no reason for a fine map. */
+constexpr double FINEST = 1.0 / 16;
+/* Texels around the core: overlap, what is shown beyond it, and the far corner of a cell there. */
+constexpr int MARGIN = 4;
+
+static Grid reciprocal_grid(const Frame &frame)
+{
+    Grid grid;
+    double det = dot(cross(frame.x, frame.y), frame.z);
+    grid.origin = frame.origin;
+    grid.dual[0] = cross(frame.y, frame.z) / det;
+    grid.dual[1] = cross(frame.z, frame.x) / det;
+    grid.dual[2] = cross(frame.x, frame.y) / det;
+    return grid;
+}
+
+/* The core's sides: from where to where along an axis, at the pitch of a texel, in how many
+ * cells. */
+struct Side {
+    double low = INFINITY, high = -INFINITY, pitch = 0;
+    int cells = 0;
+};
+
+/* The model's pitch, finer along a side of under four cells, coarser where the map would become
+ * too large. */
+static std::array<Side, 2> measure_sides(const Mesh &mesh, const Chart &chart, const Grid &grid,
+                                         double pitch)
+{
+    std::array<Side, 2> sides;
+    for (uint32_t t : chart.triangles) {
+        for (int k = 0; k < 3; ++k) {
+            Vec3d p = mesh.position(t, k) - grid.origin;
+            for (int axis = 0; axis < 2; ++axis) {
+                double a = dot(grid.dual[axis], p);
+                sides[axis].low = std::min(sides[axis].low, a);
+                sides[axis].high = std::max(sides[axis].high, a);
+            }
+        }
+    }
+    pitch = std::max(pitch, std::max(sides[0].high - sides[0].low, sides[1].high - sides[1].low) /
+                                MAX_TEXELS);
+    for (Side &side : sides) {
+        double extent = side.high - side.low;
+        side.pitch = std::clamp(extent / MIN_CELLS, pitch * FINEST, pitch);
+        side.cells = int(std::ceil(extent / side.pitch));
+    }
+    return sides;
+}
+
+/* Those of a chart that was cut along its grid: `finer` times as many cells. */
+static std::array<Side, 2> given_sides(const Chart &chart, double finer)
+{
+    std::array<Side, 2> sides;
+    for (int axis = 0; axis < 2; ++axis) {
+        int cells = int(std::ceil(chart.cells[axis] * finer));
+        sides[axis] = {0, chart.frame.extent[axis], chart.frame.extent[axis] / cells, cells};
+    }
+    return sides;
+}
+
+static Grid fit_grid(const Mesh &mesh, const Chart &chart, double pitch, double finer)
+{
+    Grid grid = reciprocal_grid(chart.frame);
+    std::array<Side, 2> sides = chart.cells[0] ? given_sides(chart, finer)
+                                               : measure_sides(mesh, chart, grid, pitch / finer);
+    for (int axis = 0; axis < 2; ++axis) {
+        const Side &s = sides[axis];
+        int size = s.cells + 2 * MARGIN;
+        (axis ? grid.h : grid.w) = size;
+        grid.pitch[axis] = s.pitch;
+        grid.corner[axis] = (s.low + s.high) / 2 - size * s.pitch / 2;
+        grid.clip_low[axis] = (chart.clip_low[axis] - grid.corner[axis]) / s.pitch - 0.5;
+        grid.clip_high[axis] = (chart.clip_high[axis] - grid.corner[axis]) / s.pitch - 0.5;
+    }
+    return grid;
+}
+
+static void lay_corners(const Mesh &mesh, const Grid &grid, FlatTriangle &flat)
+{
+    for (int k = 0; k < 3; ++k)
+        flat.corner[k] = grid.texel(mesh.position(flat.source, k));
+}
+
+static FlatTriangle flat_triangle(const Mesh &mesh, const Grid &grid, uint32_t source)
+{
+    FlatTriangle flat;
+    flat.source = source;
+    lay_corners(mesh, grid, flat);
+    flat.front = flat.signed_area() > 0;
+    return flat;
+}
+
+/* The place of `source` among the triangles, which are two ascending runs. */
+static uint32_t find_triangle(const FlatChart &chart, uint32_t source)
+{
+    auto before = [](const FlatTriangle &a, uint32_t b) { return a.source < b; };
+    auto begin = chart.triangles.begin(), middle = begin + ptrdiff_t(chart.core);
+    auto end = chart.triangles.end();
+    for (auto run : {std::make_pair(begin, middle), std::make_pair(middle, end)}) {
+        auto at = std::lower_bound(run.first, run.second, source, before);
+        if (at != run.second && at->source == source)
+            return uint32_t(at - begin);
+    }
+    return NO_TRIANGLE;
+}
+
+FlatChart flatten(const Mesh &mesh, const Neighbours &neighbours, const Chart &chart, double pitch,
+                  double finer)
+{
+    FlatChart flat;
+    flat.grid = fit_grid(mesh, chart, pitch, finer);
+    flat.core = chart.triangles.size();
+    /* Beyond the overlap that is shown, texels are sampled rather than extrapolated while there is
+     * source surface to sample. */
+    std::vector<uint32_t> overlap =
+        overlap_triangles(mesh, neighbours, chart, (MARGIN - 0.5) * flat.grid.coarse_pitch());
+    flat.triangles.reserve(flat.core + overlap.size());
+    for (uint32_t t : chart.triangles)
+        flat.triangles.push_back(flat_triangle(mesh, flat.grid, t));
+    for (uint32_t t : overlap)
+        flat.triangles.push_back(flat_triangle(mesh, flat.grid, t));
+
+    /* A chart that nowhere faces its frame is junk; all of it is shown rather than nothing. */
+    auto core_end = flat.triangles.begin() + ptrdiff_t(flat.core);
+    if (std::none_of(flat.triangles.begin(), core_end, [](const auto &t) { return t.front; }))
+        for (FlatTriangle &t : flat.triangles)
+            t.front = true;
+
+    flat.mate.resize(flat.triangles.size());
+    for (size_t i = 0; i < flat.triangles.size(); ++i) {
+        for (int k = 0; k < 3; ++k) {
+            uint32_t across = neighbours[flat.triangles[i].source][k];
+            uint32_t at = across == NO_TRIANGLE ? NO_TRIANGLE : find_triangle(flat, across);
+            flat.mate[i][k] = at != NO_TRIANGLE && flat.triangles[at].front ? at : NO_TRIANGLE;
+        }
+    }
+    return flat;
+}
+
+void flatten_again(const Mesh &mesh, const Chart &chart, FlatChart &flat)
+{
+    flat.grid = fit_grid(mesh, chart, 0, 1);
+    for (FlatTriangle &t : flat.triangles)
+        lay_corners(mesh, flat.grid, t);
+}
+
+} // namespace gtx::baking

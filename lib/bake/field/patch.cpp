@@ -1,0 +1,231 @@
+/* One chart -> the maps of its patch (paper, section 5.3). */
+#include "bake/patch_maps.hpp"
+
+#include "asset/fill.h"
+
+#include <algorithm>
+
+namespace gtx::baking {
+
+static Crop crop_support(const Grid &grid, const std::vector<uint8_t> &support, int grain)
+{
+    int low[2] = {grid.w, grid.h}, high[2] = {0, 0};
+    for (int j = 0; j < grid.h; ++j) {
+        for (int i = 0; i < grid.w; ++i) {
+            if (!support[size_t(j) * grid.w + i])
+                continue;
+            low[0] = std::min(low[0], i);
+            high[0] = std::max(high[0], i + 1);
+            low[1] = std::min(low[1], j);
+            high[1] = std::max(high[1], j + 1);
+        }
+    }
+    auto round_up = [&](int size) { return (std::max(size, 2) + grain - 1) / grain * grain; };
+    Crop crop;
+    crop.w = round_up(high[0] - low[0]);
+    crop.h = round_up(high[1] - low[1]);
+    crop.x = low[0] - (crop.w - (high[0] - low[0])) / 2;
+    crop.y = low[1] - (crop.h - (high[1] - low[1])) / 2;
+    return crop;
+}
+
+static gtx_patch make_record(const Job &job, const Chart &chart, const Grid &grid, const Crop &crop,
+                             double low, double high)
+{
+    gtx_patch record = {};
+    const Frame &f = chart.frame;
+    double a = grid.corner[0] + crop.x * grid.pitch[0], b = grid.corner[1] + crop.y * grid.pitch[1];
+    store(record.origin, (grid.origin - job.anchor) + f.x * a + f.y * b + f.z * low);
+    store(record.axis_x, f.x);
+    store(record.axis_y, f.y);
+    store(record.axis_z, f.z);
+    double extent_x = crop.w * grid.pitch[0], extent_y = crop.h * grid.pitch[1];
+    record.extent_x = float(extent_x);
+    record.extent_y = float(extent_y);
+    record.extent_z = float(std::max(high - low, std::max(extent_x, extent_y) / 4096));
+    record.rect[2] = uint16_t(crop.w);
+    record.rect[3] = uint16_t(crop.h);
+    unsigned dilation = job.options.dilation;
+    record.dilation = uint16_t(dilation ? dilation : 1u << (job.options.mips - 1));
+    record.flags = chart.two_sided ? GTX_PATCH_TWO_SIDED : 0;
+    record.source_triangles = uint32_t(chart.source_triangles);
+    return record;
+}
+
+/* The point of a texel as a reader computes it from the record. */
+static Vec3d texel_point(const gtx_patch &r, int i, int j, double height)
+{
+    double a = (i + 0.5) / r.rect[2] * r.extent_x, b = (j + 0.5) / r.rect[3] * r.extent_y;
+    double c = height * r.extent_z;
+    Vec3d p;
+    for (int k = 0; k < 3; ++k)
+        p[k] = r.origin[k] + a * r.axis_x[k] + b * r.axis_y[k] + c * r.axis_z[k];
+    return p;
+}
+
+void measure_patch(unsigned height_bits, PatchMaps &maps)
+{
+    gtx_patch &r = maps.record;
+    double steps = height_bits == 8 ? 254 : 65534;
+    int w = r.rect[2], h = r.rect[3];
+    maps.low = {INFINITY, INFINITY, INFINITY};
+    maps.high = -maps.low;
+    std::vector<Vec3d> points;
+    for (int j = 0; j < h; ++j) {
+        for (int i = 0; i < w; ++i) {
+            unsigned code = maps.height[size_t(j) * w + i];
+            if (!code)
+                continue;
+            Vec3d p = texel_point(r, i, j, (code - 1) / steps);
+            for (int k = 0; k < 3; ++k) {
+                maps.low[k] = std::min(maps.low[k], p[k]);
+                maps.high[k] = std::max(maps.high[k], p[k]);
+            }
+            points.push_back(p);
+        }
+    }
+    maps.coded = points.size();
+    r.coverage = float(double(points.size()) / (double(w) * h));
+    store(r.sphere, (maps.low + maps.high) * 0.5);
+    Vec3d centre(r.sphere[0], r.sphere[1], r.sphere[2]);
+    double radius = 0;
+    for (const Vec3d &p : points)
+        radius = std::max(radius, length(p - centre));
+    r.sphere[3] = float(radius * (1 + 1e-6));
+}
+
+void fill_trim(PatchMaps &maps)
+{
+    uint32_t w = maps.record.rect[2], h = maps.record.rect[3];
+    std::vector<uint8_t> ring(maps.height.size());
+    for (size_t i = 0; i < ring.size(); ++i) {
+        ring[i] = maps.height[i] != 0;
+        if (!ring[i])
+            maps.trim[i] = GTX_FAR_TRIM;
+    }
+    gtx_fill area = {maps.trim.data(), ring.data(), w, w, h};
+    gtx_fill_trim(&area);
+}
+
+/* A texel and a half inside: deeper, no cell reaches the limit, so that no depth need be told. */
+constexpr float DEEP_TRIM = 128 - 24;
+
+uint8_t trim_code(float distance)
+{
+    return uint8_t(std::clamp(128 + 16 * distance, DEEP_TRIM, 255.f) + 0.5f);
+}
+
+static void quantise(const HeightField &s, const Crop &crop, double low, unsigned height_bits,
+                     PatchMaps &maps)
+{
+    const Grid &grid = s.flat.grid;
+    double steps = (height_bits == 8 ? 254 : 65534) / double(maps.record.extent_z);
+    double top = height_bits == 8 ? 254 : 65534;
+    maps.height.assign(size_t(crop.w) * crop.h, 0);
+    maps.trim.resize(maps.height.size());
+    maps.border.resize(maps.height.size());
+    for (int j = 0; j < crop.h; ++j) {
+        for (int i = 0; i < crop.w; ++i) {
+            int x = crop.x + i, y = crop.y + j;
+            int near_x = std::clamp(x, 0, grid.w - 1), near_y = std::clamp(y, 0, grid.h - 1);
+            size_t from = size_t(near_y) * grid.w + near_x, to = size_t(j) * crop.w + i;
+            maps.trim[to] = trim_code(s.trim[from]);
+            maps.border[to] = s.outline.edges[s.outline.nearest[from]].border;
+            if (x == near_x && y == near_y && s.support[from]) {
+                double code = std::floor((s.cover.height[from] - low) * steps + 0.5);
+                maps.height[to] = uint16_t(1 + std::clamp(code, 0., top));
+            }
+        }
+    }
+    fill_trim(maps);
+}
+
+static HeightField lay_field(const Job &job, FlatChart flat, Extractor *extractor)
+{
+    HeightField s;
+    s.flat = std::move(flat);
+    if (extractor)
+        s.rendering = extractor->render(job.mesh, s.flat);
+    Cover core = extractor ? core_of(s.flat, s.rendering) : raster_core(s.flat);
+    Outline core_outline = find_outline(job.neighbours, s.flat, s.flat.core);
+    s.cover = core;
+    Paths paths(job.mesh, job.neighbours, s.flat);
+    raster_overlap(s.flat, core_outline, paths, s.cover);
+    s.outline = find_outline(job.neighbours, s.flat, s.flat.triangles.size());
+    s.trim = trim_distances(s.flat, core, s.cover, core_outline, s.outline);
+    if (job.needs.mask)
+        trim_mask(job.mesh, job.neighbours, s.flat, s.trim);
+    s.support = find_support(s.flat.grid, s.trim);
+    extrapolate(s.flat, s.outline, paths, s.support, s.cover);
+    cut_cliffs(s.flat, core_outline, s.outline, paths, s.trim, s.cover, s.support);
+    return s;
+}
+
+static PatchMaps encode_field(const Job &job, const Chart &chart, const HeightField &s)
+{
+    PatchMaps maps;
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < s.support.size(); ++i) {
+        if (s.support[i]) {
+            low = std::min(low, s.cover.height[i]);
+            high = std::max(high, s.cover.height[i]);
+        }
+    }
+    if (low > high) /* a mask has left nothing */
+        return maps;
+    Crop crop = crop_support(s.flat.grid, s.support, 1 << (job.options.mips - 1));
+    maps.record = make_record(job, chart, s.flat.grid, crop, low, high);
+    quantise(s, crop, low, job.options.height_bits, maps);
+    measure_patch(job.options.height_bits, maps);
+    build_mips(shade_texels(job, s, crop, maps.height), job.options.mips, job.needs, maps);
+    return maps;
+}
+
+/* A few cells less, or more, along a side that rounding to a multiple of `grain` would fill up with
+ * empty texels. */
+static bool refit(const HeightField &field, int grain, Chart &chart)
+{
+    constexpr int MAX_LESS = 3;
+    const Crop crop = crop_support(field.flat.grid, field.support, 1);
+    bool changed = false;
+    for (int axis = 0; axis < 2; ++axis) {
+        const int over = (axis ? crop.h : crop.w) % grain, cells = int(chart.cells[axis]);
+        if (!over || cells <= grain)
+            continue;
+        chart.cells[axis] = unsigned(over <= MAX_LESS ? cells - over : cells + grain - over);
+        changed = true;
+    }
+    return changed;
+}
+
+/* A height field with `finer` times as many cells along its sides, or so many that they fill
+ * them. */
+static HeightField lay_fitted(const Job &job, const Chart &chart, double finer)
+{
+    Extractor *extractor = job.options.extractor;
+    FlatChart flat = flatten(job.mesh, job.neighbours, chart, job.pitch, finer);
+    HeightField field = lay_field(job, std::move(flat), nullptr); /* cells do not depend on a
+                                                                     driver */
+    Chart fitted = chart;
+    for (unsigned &cells : fitted.cells)
+        cells = unsigned(std::ceil(cells * finer));
+    const bool again = refit(field, 1 << (job.options.mips - 1), fitted);
+    if (again)
+        flatten_again(job.mesh, fitted, field.flat);
+    return again || extractor ? lay_field(job, std::move(field.flat), extractor)
+                              : std::move(field);
+}
+
+/* A chart whose relief is finer than the model's pitch gets a finer one. */
+PatchMaps bake_chart(const Job &job, const Chart &chart)
+{
+    constexpr double ALLOWED = 0.01, FINER = 1.4;
+    HeightField field = lay_fitted(job, chart, 1);
+    if (fit_heights(field.flat, field.support, job.pitch, field.cover) > ALLOWED) {
+        field = lay_fitted(job, chart, FINER);
+        fit_heights(field.flat, field.support, job.pitch, field.cover);
+    }
+    return encode_field(job, chart, field);
+}
+
+} // namespace gtx::baking

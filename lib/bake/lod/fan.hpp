@@ -1,0 +1,40 @@
+/* The triangles around a vertex. */
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace gtx::baking {
+
+using Triangle = std::array<uint32_t, 3>;
+
+/* Triangles around a vertex beyond which it stays. */
+constexpr int MAX_FAN = 40;
+
+/* The triangles around a vertex in order: `ring` holds their other vertices, one more than there
+ * are triangles where the fan is open. Where height fields meet there is no order, and each other
+ * vertex is in the ring once. */
+struct Fan {
+    int count = 0, ring_count = 0;
+    bool open = false, meeting = false;
+    uint32_t triangle[MAX_FAN], ring[2 * MAX_FAN];
+
+    bool has(uint32_t vertex) const
+    {
+        return std::find(ring, ring + ring_count, vertex) != ring + ring_count;
+    }
+};
+
+inline int corner_of(const Triangle &triangle, uint32_t vertex)
+{
+    return triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : triangle[2] == vertex ? 2 : -1;
+}
+
+/* Puts those `around` a vertex in order. False when there are none or too many. */
+bool find_fan(const std::vector<Triangle> &triangles, const uint32_t *around, size_t triangle_count,
+              uint32_t vertex, Fan &fan);
+
+} // namespace gtx::baking

@@ -1,0 +1,333 @@
+/* The LOD meshes: how many, how fine, and the order of their triangles. */
+#include "bake/lod/parts.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <map>
+
+namespace gtx::baking {
+
+using Triangle = std::array<uint32_t, 3>;
+using Place = std::array<uint16_t, 3>; /* of a vertex, in steps */
+
+/* Triangles of the source for one of the finest level: fills the bytes that an LOD mesh may
+ * take. */
+constexpr size_t FINEST_RATIO = 9;
+/* Triangles of a level for one of the next: five levels then reach from windows of a million pixels
+ * to models of a hundred across. */
+constexpr double LEVEL_RATIO = 2.2;
+/* A level is worth its bytes when it has at most this share of them. */
+constexpr double MAX_SHARE = 0.75;
+/* An error that nobody sees: the maps know no better. In texels. */
+constexpr double FREE_ERROR = 1.0 / 16;
+/* What thinning may cost inside patches: dear triangles are not worth the time. In texels. */
+constexpr double THIN_ERROR = 1.0 / 8;
+/* What is seen from so far that this is a pixel is a handful of pixels. Share of the diagonal. */
+constexpr double MAX_ERROR = 1.0 / 64;
+/* The coarsest level beyond, for models of ten to twenty pixels, and how far it may stray. */
+constexpr double FAR_TRIANGLES = 160, MAX_FAR_ERROR = 1.0 / 20;
+/* Their errors are stated so many times as large: few triangles put an outline off by the farthest
+ * of its points, not by the mean. */
+constexpr double FAR_STATED = 1.5;
+/* How many lead there, and triangles of one for one of the next where fewer of them do. */
+constexpr unsigned FAR_LEVELS = 3;
+constexpr double FAR_RATIO = 2.5;
+/* Positions are rounded to this part of a texel. */
+constexpr double STEP = 1.0 / 16;
+/* Edges among which the next triangle is looked for, as the asset's coding does. */
+constexpr size_t RECENT_EDGES = 16;
+
+std::vector<PatchRegion> patch_regions(const Maps &maps, Task &task)
+{
+    std::vector<PatchRegion> regions(maps.patches.size());
+    task.parallel(regions.size(), [&](size_t p) {
+        regions[p] = PatchRegion(maps.patches[p], maps);
+    }, 0, 0);
+    return regions;
+}
+
+/* Texels of a mean patch are so far apart. */
+static double mean_pitch(const Maps &maps)
+{
+    double area = 0, texels = 0;
+    for (const gtx_patch &p : maps.patches) {
+        area += double(p.extent_x) * p.extent_y;
+        texels += double(p.rect[2]) * p.rect[3];
+    }
+    return std::sqrt(area / texels);
+}
+
+/* The places that positions are rounded to. */
+struct Lattice {
+    float origin[3] = {0, 0, 0}, step = 0;
+
+    Lattice(const std::vector<Vec3d> &points, double wanted)
+    {
+        Vec3d low = points[0], high = low;
+        for (const Vec3d &p : points) {
+            for (int k = 0; k < 3; ++k) {
+                low[k] = std::min(low[k], p[k]);
+                high[k] = std::max(high[k], p[k]);
+            }
+        }
+        const Vec3d size = high - low;
+        step = float(std::max(wanted, std::max({size.x, size.y, size.z}) / 65534));
+        store(origin, low);
+    }
+    Place round(const Vec3d &point) const
+    {
+        Place place;
+        for (int k = 0; k < 3; ++k)
+            place[k] = uint16_t(
+                std::clamp(std::floor((point[k] - origin[k]) / step + 0.5), 0.0, 65535.0));
+        return place;
+    }
+    Vec3d point(const Place &place) const
+    {
+        return {origin[0] + double(step) * place[0], origin[1] + double(step) * place[1],
+                origin[2] + double(step) * place[2]};
+    }
+};
+
+/* Triangles in an order where most share an edge with one just before: few bytes, and vertices that
+ * a processor still remembers. */
+class Strip {
+public:
+    Strip(const std::vector<Triangle> &triangles, const std::vector<uint32_t> &patch,
+          size_t vertices)
+        : triangles_(triangles), patch_(patch), start_(vertices + 1, 0), left_(triangles.size(), 0)
+    {
+        for (const Triangle &t : triangles)
+            for (uint32_t v : t)
+                ++start_[v + 1];
+        for (size_t v = 0; v < vertices; ++v)
+            start_[v + 1] += start_[v];
+        around_.resize(3 * triangles.size());
+        std::vector<uint32_t> next(start_.begin(), start_.end() - 1);
+        for (size_t t = 0; t < triangles.size(); ++t)
+            for (uint32_t v : triangles[t])
+                around_[next[v]++] = uint32_t(t);
+    }
+    /* Adds the triangles `members` of a patch, corners turned so that a shared edge comes first. */
+    void follow(uint32_t patch, const std::vector<uint32_t> &members, std::vector<Triangle> &out)
+    {
+        for (uint32_t t : members)
+            left_[t] = 1;
+        Triangle next;
+        auto go_on = [&] {
+            while (find_beside(patch, next))
+                take(next, out);
+        };
+        go_on();
+        for (uint32_t seed : members) {
+            if (!left_[seed])
+                continue;
+            left_[seed] = 0;
+            take(triangles_[seed], out);
+            go_on();
+        }
+    }
+
+private:
+    using Edge = std::array<uint32_t, 2>;
+
+    void take(const Triangle &t, std::vector<Triangle> &out)
+    {
+        out.push_back(t);
+        for (int k = 0; k < 3; ++k)
+            recent_.push_front({t[(k + 1) % 3], t[k]});
+        while (recent_.size() > RECENT_EDGES)
+            recent_.pop_back();
+    }
+    bool find_beside(uint32_t patch, Triangle &found)
+    {
+        for (const Edge &edge : recent_) {
+            for (uint32_t i = start_[edge[0]]; i < start_[edge[0] + 1]; ++i) {
+                const Triangle &t = triangles_[around_[i]];
+                const int k = t[0] == edge[0] ? 0 : t[1] == edge[0] ? 1 : 2;
+                if (t[(k + 1) % 3] != edge[1] || !left_[around_[i]] || patch_[around_[i]] != patch)
+                    continue;
+                found = {t[k], t[(k + 1) % 3], t[(k + 2) % 3]};
+                left_[around_[i]] = 0;
+                return true;
+            }
+        }
+        return false;
+    }
+
+    const std::vector<Triangle> &triangles_;
+    const std::vector<uint32_t> &patch_;
+    std::vector<uint32_t> start_, around_;
+    std::vector<uint8_t> left_; /* to be followed */
+    std::deque<Edge> recent_;
+};
+
+static bool collapses(const Triangle &t, const std::vector<Place> &places)
+{
+    return places[t[0]] == places[t[1]] || places[t[1]] == places[t[2]] ||
+           places[t[2]] == places[t[0]];
+}
+
+/* Whether a level may have the triangle: it has an area, and lies on the rectangle of its patch or
+ * next to it. */
+static bool fits(const PatchRegion &region, const Triangle &t, const Lattice &lattice,
+                 const std::vector<Place> &places)
+{
+    if (collapses(t, places))
+        return false;
+    for (uint32_t v : t)
+        if (!region.near(region.place(lattice.point(places[v]))))
+            return false;
+    return true;
+}
+
+/* The patch of each triangle, or NO_PATCH where none may have it: a triangle that does not fit its
+ * own goes to one that has a neighbour of it, for without it there would be a hole. */
+static std::vector<uint32_t> find_homes(const Simplifier &simplified,
+                                        const std::vector<PatchRegion> &regions,
+                                        const Lattice &lattice, const std::vector<Place> &places)
+{
+    const auto &triangles = simplified.triangles();
+    std::vector<uint32_t> homes = simplified.patch(), homeless;
+    std::vector<std::pair<uint32_t, uint32_t>> beside; /* vertices, and patches that have them */
+    for (uint32_t t = 0; t < triangles.size(); ++t) {
+        if (fits(regions[homes[t]], triangles[t], lattice, places))
+            continue;
+        homes[t] = NO_PATCH;
+        if (!collapses(triangles[t], places))
+            homeless.push_back(t);
+    }
+    for (uint32_t t = 0; t < triangles.size() && !homeless.empty(); ++t)
+        for (uint32_t v : triangles[t])
+            if (homes[t] != NO_PATCH)
+                beside.push_back({v, homes[t]});
+    std::sort(beside.begin(), beside.end());
+    beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+    for (uint32_t t : homeless)
+        for (uint32_t v : triangles[t])
+            for (auto at = std::lower_bound(beside.begin(), beside.end(), std::make_pair(v, 0u));
+                 homes[t] == NO_PATCH && at != beside.end() && at->first == v; ++at)
+                if (fits(regions[at->second], triangles[t], lattice, places))
+                    homes[t] = at->second;
+    return homes;
+}
+
+static std::vector<Place> round_all(const Simplifier &simplified, const Lattice &lattice)
+{
+    std::vector<Place> places;
+    for (const Vec3d &p : simplified.positions())
+        places.push_back(lattice.round(p));
+    return places;
+}
+
+/* `patch` has NO_PATCH for triangles that are left out. */
+static LodLevel make_level(const Simplifier &simplified, const std::vector<uint32_t> &patch,
+                           const std::vector<Place> &places, size_t patches,
+                           const Lattice &lattice)
+{
+    const auto &triangles = simplified.triangles();
+    std::vector<std::vector<uint32_t>> members(patches);
+    for (size_t t = 0; t < triangles.size(); ++t)
+        if (patch[t] != NO_PATCH && !collapses(triangles[t], places))
+            members[patch[t]].push_back(uint32_t(t));
+
+    LodLevel level;
+    std::copy_n(lattice.origin, 3, level.origin);
+    level.step = lattice.step;
+    std::map<Place, uint32_t> name; /* of the vertex at a place */
+    std::vector<uint32_t> named(places.size(), NO_VERTEX);
+    std::vector<Triangle> ordered;
+    Strip strip(triangles, patch, places.size());
+    for (uint32_t p = 0; p < members.size(); ++p) {
+        level.first.push_back(uint32_t(ordered.size()));
+        strip.follow(p, members[p], ordered);
+    }
+    level.first.push_back(uint32_t(ordered.size()));
+    for (const Triangle &t : ordered) {
+        for (uint32_t v : t) {
+            if (named[v] == NO_VERTEX) {
+                const auto [at, is_new] = name.try_emplace(places[v], uint32_t(name.size()));
+                if (is_new)
+                    level.positions.insert(level.positions.end(), places[v].begin(),
+                                           places[v].end());
+                named[v] = at->second;
+            }
+            level.indices.push_back(named[v]);
+        }
+    }
+    return level;
+}
+
+/* Goes on without regard to patches: where each is a pixel, a triangle may show several. */
+static void add_far_levels(Simplifier &simplifier, const std::vector<PatchRegion> &regions,
+                           const Maps &maps, const Lattice &lattice, double thinned, double most,
+                           std::vector<LodLevel> &lod, Task &task)
+{
+    simplifier.cross_patches();
+    const double ways = std::log(double(simplifier.triangles().size()) / FAR_TRIANGLES);
+    const unsigned count = unsigned(std::clamp(std::ceil(ways / std::log(FAR_RATIO)), 0.0,
+                                               double(FAR_LEVELS)));
+    for (unsigned k = count; k-- > 0;) {
+        const double before = double(simplifier.triangles().size());
+        const double ratio = std::pow(before / FAR_TRIANGLES, 1.0 / (k + 1));
+        simplifier.reduce(size_t(before / ratio), 0, most);
+        simplifier.settle();
+        simplifier.drop(find_specks(simplifier, simplifier.error()));
+        if (double(simplifier.triangles().size()) > MAX_SHARE * before)
+            return;
+        LodLevel level = make_level(simplifier, find_far_homes(simplifier, maps, regions, task),
+                                    round_all(simplifier, lattice), regions.size(), lattice);
+        level.error = float(thinned + FAR_STATED * simplifier.error());
+        level.far = true;
+        if (level.indices.empty())
+            return;
+        lod.push_back(std::move(level));
+    }
+}
+
+} // namespace gtx::baking
+
+namespace gtx {
+
+using namespace baking;
+
+std::vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned levels,
+                               Task &task)
+{
+    task.begin("lod");
+    std::vector<LodLevel> lod;
+    if (source.triangles.empty() || !levels)
+        return lod;
+    const std::vector<PatchRegion> regions = patch_regions(maps, task);
+    const double pitch = mean_pitch(maps);
+    const Lattice lattice(source.positions, STEP * pitch);
+    Vec3d size;
+    for (int k = 0; k < 3; ++k)
+        size[k] = double(maps.bounds_max[k]) - maps.bounds_min[k];
+    const double free = FREE_ERROR * pitch;
+    double thinned = 0;
+    const LodSource few = thin(source, maps, regions, THIN_ERROR * pitch, thinned, task);
+    Simplifier simplifier(few, regions, task);
+    size_t wanted = (source.model ? source.model : source.triangles.size()) / FINEST_RATIO;
+    for (unsigned k = 0; k < levels; ++k) {
+        const size_t before = simplifier.triangles().size();
+        simplifier.reduce(wanted, k ? 0 : free, MAX_ERROR * length(size));
+        if (k && double(simplifier.triangles().size()) > MAX_SHARE * double(before))
+            break;
+        simplifier.settle();
+        const std::vector<Place> places = round_all(simplifier, lattice);
+        LodLevel level =
+            make_level(simplifier, find_homes(simplifier, regions, lattice, places), places,
+                       regions.size(), lattice);
+        level.error = float(thinned + simplifier.error());
+        if (level.indices.empty())
+            break;
+        lod.push_back(std::move(level));
+        wanted = size_t(double(simplifier.triangles().size()) / LEVEL_RATIO);
+    }
+    add_far_levels(simplifier, regions, maps, lattice, thinned, MAX_FAR_ERROR * length(size),
+                   lod, task);
+    return lod;
+}
+
+} // namespace gtx

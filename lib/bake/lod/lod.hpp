@@ -1,0 +1,51 @@
+/* The LOD mesh: the source surface as a few meshes of ever fewer triangles, for what is far
+ * away. */
+#pragma once
+
+#include "bake/bake.hpp"
+
+namespace gtx {
+
+/* Surface with a patch a triangle, and vertices that patches share, relative to the anchor. */
+struct LodSource {
+    std::vector<Vec3d> positions;
+    std::vector<std::array<uint32_t, 3>> triangles;
+    std::vector<uint32_t> patch; /* a triangle each */
+    size_t model = 0;            /* triangles of the model, that levels are a share of; 0: these */
+
+    Vec3d centre(size_t triangle) const
+    {
+        const auto &[a, b, c] = triangles[triangle];
+        return (positions[a] + positions[b] + positions[c]) / 3;
+    }
+};
+
+/* One level as the asset keeps it (format/gtx.md, "LOD mesh"). */
+struct LodLevel {
+    float origin[3] = {0, 0, 0}, step = 0, error = 0;
+    bool far = false;                /* triangles reach across patches */
+    std::vector<uint32_t> first;     /* of each patch, and the end */
+    std::vector<uint32_t> indices;   /* 3 a triangle */
+    std::vector<uint16_t> positions; /* 3 a vertex */
+
+    size_t triangle_count() const { return indices.size() / 3; }
+};
+
+/* What the charts show; `maps` is what bake made of them. A triangle has the patch of its chart; of
+ * several charts that share it, that in whose core its centre lies. One that reaches farther across
+ * a straight cut than the maps of its patch do is split there, its neighbours with it.
+ * Deterministic for any thread count. Stage of `task`: "LOD mesh". */
+LodSource lod_source(const Mesh &mesh, const Partition &partition, const Maps &maps,
+                     Task &task);
+
+/* What the maps show, without a mesh: height fields are cut where they overlap and welded along the
+ * cuts. Deterministic for any thread count. Stage of `task`: "LOD mesh". */
+LodSource lod_source(const Maps &maps, Task &task);
+
+/* Simplifies the surface across all patches at once, down to at most `levels` levels, the finest
+ * first, and to at most three more for models of a few pixels, whose triangles reach across
+ * patches. Deterministic for any thread count. Stage of `task`: "LOD mesh". */
+std::vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned levels,
+                               Task &task);
+
+} // namespace gtx

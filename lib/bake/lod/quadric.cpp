@@ -1,0 +1,59 @@
+/* What vertices of a surface cost to move, before any was merged. */
+#include "bake/lod/quadric.hpp"
+
+namespace gtx::baking {
+
+/* Weight of staying on an open border against staying on the surface. */
+constexpr double BORDER = 10;
+
+static Vec3d area_of(const std::vector<Vec3d> &positions, const Triangle &t)
+{
+    const Vec3d a = positions[t[0]];
+    return cross(positions[t[1]] - a, positions[t[2]] - a);
+}
+
+/* Planes that stand on the edges of a vertex that only one triangle has, of those from `first` to
+ * `end`. A vertex of very many stays anyway. */
+static void add_borders(const std::vector<Vec3d> &positions, const std::vector<Triangle> &triangles,
+                        const uint32_t *first, const uint32_t *end, uint32_t vertex, Quadric &q)
+{
+    for (const uint32_t *at = first; at < end && end - first <= MAX_FAN; ++at) {
+        const Triangle &t = triangles[*at];
+        const int k = corner_of(t, vertex);
+        for (int other = 1; other < 3; ++other) {
+            const uint32_t to = t[(k + other) % 3];
+            if (std::count_if(first, end, [&](uint32_t n) {
+                    return corner_of(triangles[n], to) >= 0;
+                }) > 1)
+                continue;
+            const Vec3d edge = positions[to] - positions[vertex];
+            const Vec3d across = normalize(cross(edge, area_of(positions, t)));
+            q.add_plane(across, -dot(across, positions[vertex]), BORDER * dot(edge, edge));
+        }
+    }
+}
+
+std::vector<Quadric> vertex_quadrics(const std::vector<Vec3d> &positions,
+                                     const std::vector<Triangle> &triangles,
+                                     const std::vector<uint32_t> &start,
+                                     const std::vector<uint32_t> &around, Task &task)
+{
+    std::vector<Quadric> quadrics(positions.size());
+    const size_t chunk = 4096, chunks = (positions.size() + chunk - 1) / chunk;
+    task.parallel(chunks, [&](size_t n) {
+        for (size_t v = n * chunk; v < std::min(positions.size(), (n + 1) * chunk); ++v) {
+            Quadric &q = quadrics[v];
+            for (uint32_t i = start[v]; i < start[v + 1]; ++i) {
+                const Triangle &t = triangles[around[i]];
+                const Vec3d area = area_of(positions, t), normal = normalize(area);
+                q.add_plane(normal, -dot(normal, positions[t[0]]), length(area));
+                q.weight += length(area);
+            }
+            add_borders(positions, triangles, around.data() + start[v],
+                        around.data() + start[v + 1], uint32_t(v), q);
+        }
+    }, 0, 0);
+    return quadrics;
+}
+
+} // namespace gtx::baking

@@ -1,0 +1,399 @@
+/* Bottom-up clustering with the metric of variational shape approximation (Cohen-Steiner, Alliez,
+ * Desbrun 2004, L2,1): what a merge costs is by how much it shortens the sum of normals.
+ *
+ * Rounds of mutually cheapest merges take millions of triangles to thousands of clusters in linear
+ * time; a queue does the rest in the exact order; label switching then moves the borders. */
+#include "chart/cuts/agglomerate.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <queue>
+
+namespace gtx {
+
+namespace {
+
+/* A cluster's normals sum to at least this share of its area: (1 + cos) / 2 for a round cap. */
+constexpr float MIN_CONE = 0.82f;
+/* Small clusters merge first where the surface is flat. */
+constexpr float SIZE_COST = 1e-4f;
+constexpr size_t QUEUED_CLUSTERS = 20000;
+constexpr int REFITS = 10, SWEEPS = 3;
+/* The last refits straighten borders: what a neighbour of the same cluster weighs beside the cosine
+ * between a triangle's normal and the cluster's. */
+constexpr int STRAIGHT_REFITS = 3;
+constexpr float STRAIGHTNESS = 0.3f;
+constexpr size_t CHUNK = 4096; /* clusters a parallel step */
+
+struct Sum {
+    Vec3f normal; /* of sizes times normals */
+    float size = 0, norm = 0;
+};
+
+Sum operator+(const Sum &a, const Sum &b)
+{
+    Sum out = {a.normal + b.normal, a.size + b.size, 0};
+    out.norm = length(out.normal);
+    return out;
+}
+
+float merge_cost(const Sum &a, const Sum &b)
+{
+    Sum both = a + b;
+    if (both.norm < MIN_CONE * both.size)
+        return INFINITY;
+    return 2 * (a.norm + b.norm - both.norm) + SIZE_COST * both.size;
+}
+
+/* Clusters and who touches whom, as rounds rebuild them. */
+struct Clusters {
+    std::vector<Sum> sums;
+    std::vector<uint32_t> first, touching; /* those of c: touching[first[c]] to first[c + 1] */
+
+    size_t size() const { return sums.size(); }
+};
+
+Clusters single_triangles(const Surface &surface)
+{
+    Clusters out;
+    out.sums.reserve(surface.whole.size());
+    for (size_t t = 0; t < surface.whole.size(); ++t) {
+        const Facet &f = surface.facets[t];
+        out.sums.push_back({f.normal * f.size, f.size, f.size});
+        out.first.push_back(uint32_t(out.touching.size()));
+        for (uint32_t n : surface.whole.neighbours[t])
+            if (n != NO_TRIANGLE)
+                out.touching.push_back(n);
+    }
+    out.first.push_back(uint32_t(out.touching.size()));
+    return out;
+}
+
+/* Decides between pairs that cost the same, as in planes, so that many are mutual. */
+uint32_t draw_lot(uint32_t a, uint32_t b)
+{
+    uint32_t lot = std::min(a, b) * 0x9e3779b1u ^ std::max(a, b) * 0x85ebca77u;
+    return (lot ^ lot >> 15) * 0xc2b2ae35u;
+}
+
+/* The cheapest partner of each cluster, NO_TRIANGLE where no merge is allowed. */
+std::vector<uint32_t> cheapest_partners(const Clusters &clusters, Task &task)
+{
+    std::vector<uint32_t> best(clusters.size(), NO_TRIANGLE);
+    task.parallel((clusters.size() + CHUNK - 1) / CHUNK, [&](size_t chunk) {
+        size_t end = std::min(clusters.size(), (chunk + 1) * CHUNK);
+        for (size_t c = chunk * CHUNK; c < end; ++c) {
+            float least = INFINITY;
+            uint32_t best_lot = 0;
+            for (uint32_t i = clusters.first[c]; i < clusters.first[c + 1]; ++i) {
+                uint32_t other = clusters.touching[i];
+                float cost = merge_cost(clusters.sums[c], clusters.sums[other]);
+                uint32_t lot = draw_lot(uint32_t(c), other);
+                if (cost < least || (cost == least && cost < INFINITY && lot < best_lot)) {
+                    least = cost;
+                    best_lot = lot;
+                    best[c] = other;
+                }
+            }
+        }
+    }, 0, 0);
+    return best;
+}
+
+/* Who merges with whom: every two that are each other's cheapest, and where costs rise along a
+ * line, so that these are few, whoever is still free. */
+std::vector<uint32_t> match(const std::vector<uint32_t> &best)
+{
+    std::vector<uint32_t> partner(best.size(), NO_TRIANGLE);
+    size_t matched = 0;
+    for (uint32_t c = 0; c < best.size(); ++c)
+        if (best[c] != NO_TRIANGLE && best[best[c]] == c) {
+            partner[c] = best[c];
+            ++matched;
+        }
+    for (uint32_t c = 0; matched < best.size() / 16 && c < best.size(); ++c)
+        if (partner[c] == NO_TRIANGLE && best[c] != NO_TRIANGLE &&
+            partner[best[c]] == NO_TRIANGLE) {
+            partner[c] = best[c];
+            partner[best[c]] = c;
+        }
+    return partner;
+}
+
+/* Merges matched pairs. Returns the new cluster of each old one. */
+std::vector<uint32_t> merge_pairs(Clusters &clusters, const std::vector<uint32_t> &partner)
+{
+    std::vector<uint32_t> renamed(clusters.size()), members;
+    Clusters out;
+    for (uint32_t c = 0; c < clusters.size(); ++c) {
+        if (partner[c] < c) {
+            renamed[c] = renamed[partner[c]];
+            continue;
+        }
+        renamed[c] = uint32_t(members.size());
+        members.push_back(c);
+    }
+    std::vector<uint32_t> listed(members.size(), NO_TRIANGLE); /* by which cluster, last */
+    out.sums.reserve(members.size());
+    out.touching.reserve(clusters.touching.size());
+    for (uint32_t c = 0; c < members.size(); ++c) {
+        const Sum &own = clusters.sums[members[c]];
+        uint32_t other_half = partner[members[c]];
+        out.sums.push_back(other_half == NO_TRIANGLE ? own : own + clusters.sums[other_half]);
+        out.first.push_back(uint32_t(out.touching.size()));
+        listed[c] = c;
+        for (uint32_t member : {members[c], other_half}) {
+            if (member == NO_TRIANGLE)
+                continue;
+            for (uint32_t i = clusters.first[member]; i < clusters.first[member + 1]; ++i) {
+                uint32_t other = renamed[clusters.touching[i]];
+                if (listed[other] == c)
+                    continue;
+                listed[other] = c;
+                out.touching.push_back(other);
+            }
+        }
+    }
+    out.first.push_back(uint32_t(out.touching.size()));
+    clusters = std::move(out);
+    return renamed;
+}
+
+/* The cheapest merge a cluster saw when it last looked. Those of equal cost have an order. */
+struct Offer {
+    float cost = INFINITY;
+    uint32_t a = 0, b = 0;        /* a < b; one of them is the owner */
+    uint32_t age_a = 0, age_b = 0, owner = 0;
+
+    bool is_before(const Offer &o) const
+    {
+        return cost != o.cost ? cost < o.cost : a != o.a ? a < o.a : b < o.b;
+    }
+    bool operator<(const Offer &o) const { return o.is_before(*this); } /* the queue's top is
+                                                                           last */
+};
+
+/* Merges the cheapest pair, again and again. The queue holds the cheapest offer of each cluster, or
+ * an old one that was as cheap: only a cluster just made can lower what its neighbours pay. */
+class MergeQueue {
+public:
+    explicit MergeQueue(Clusters &clusters);
+    /* Returns the new cluster of each old one. */
+    std::vector<uint32_t> run();
+
+private:
+    uint32_t root(uint32_t c)
+    {
+        while (parent_[c] != c)
+            c = parent_[c] = parent_[parent_[c]];
+        return c;
+    }
+    bool is_now(uint32_t c, uint32_t age) const { return parent_[c] == c && age_[c] == age; }
+    Offer offer(uint32_t owner, uint32_t other) const;
+    void keep(const Offer &best);
+    void look(uint32_t owner);
+    void merge(uint32_t a, uint32_t b);
+
+    Clusters &clusters_;
+    std::vector<uint32_t> parent_, age_;
+    std::vector<std::vector<uint32_t>> touching_;
+    std::vector<Offer> best_;
+    std::priority_queue<Offer> queue_;
+};
+
+MergeQueue::MergeQueue(Clusters &clusters)
+    : clusters_(clusters), parent_(clusters.size()), age_(clusters.size()),
+      touching_(clusters.size()), best_(clusters.size())
+{
+    std::iota(parent_.begin(), parent_.end(), 0u);
+    for (uint32_t c = 0; c < clusters.size(); ++c)
+        touching_[c].assign(clusters.touching.begin() + clusters.first[c],
+                            clusters.touching.begin() + clusters.first[c + 1]);
+}
+
+Offer MergeQueue::offer(uint32_t owner, uint32_t other) const
+{
+    const uint32_t a = std::min(owner, other), b = std::max(owner, other);
+    return {merge_cost(clusters_.sums[a], clusters_.sums[b]), a, b, age_[a], age_[b], owner};
+}
+
+void MergeQueue::keep(const Offer &best)
+{
+    best_[best.owner] = best;
+    if (best.cost < INFINITY)
+        queue_.push(best);
+}
+
+void MergeQueue::look(uint32_t owner)
+{
+    Offer best;
+    best.owner = owner;
+    for (uint32_t &other : touching_[owner]) {
+        other = root(other);
+        const Offer one = offer(owner, other);
+        if (other != owner && one.is_before(best))
+            best = one;
+    }
+    keep(best);
+}
+
+void MergeQueue::merge(uint32_t a, uint32_t b)
+{
+    parent_[b] = a;
+    ++age_[a];
+    clusters_.sums[a] = clusters_.sums[a] + clusters_.sums[b];
+    std::vector<uint32_t> &all = touching_[a];
+    all.insert(all.end(), touching_[b].begin(), touching_[b].end());
+    touching_[b] = {};
+    for (uint32_t &c : all)
+        c = root(c);
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    all.erase(std::find(all.begin(), all.end(), a));
+    look(a);
+    for (uint32_t other : all) {
+        const Offer one = offer(other, a);
+        if (one.is_before(best_[other]))
+            keep(one);
+    }
+}
+
+std::vector<uint32_t> MergeQueue::run()
+{
+    const auto count = uint32_t(clusters_.size());
+    for (uint32_t c = 0; c < count; ++c)
+        look(c);
+    while (!queue_.empty()) {
+        const Offer o = queue_.top();
+        const Offer &best = best_[o.owner];
+        queue_.pop();
+        if (is_now(o.a, o.age_a) && is_now(o.b, o.age_b))
+            merge(o.a, o.b);
+        else if (parent_[o.owner] == o.owner && best.a == o.a && best.b == o.b &&
+                 best.age_a == o.age_a && best.age_b == o.age_b)
+            look(o.owner);
+    }
+    std::vector<uint32_t> renamed(count);
+    uint32_t kept = 0;
+    for (uint32_t c = 0; c < count; ++c) {
+        if (root(c) == c) {
+            clusters_.sums[kept] = clusters_.sums[c];
+            renamed[c] = kept++;
+        } else {
+            renamed[c] = renamed[root(c)]; /* the lower number stays the root */
+        }
+    }
+    clusters_.sums.resize(kept);
+    return renamed;
+}
+
+/* Lets triangles change to the neighbouring cluster whose mean normal is nearest to theirs. Spikes
+ * that noise leaves along the borders would cost texels in every patch there: they go last. */
+void move_borders(const Surface &surface, size_t count, std::vector<uint32_t> &labels, Task &task)
+{
+    const auto &neighbours = surface.whole.neighbours;
+    for (int refit = 0; refit < REFITS; ++refit) {
+        std::vector<Vec3d> sums(count);
+        for (size_t t = 0; t < labels.size(); ++t)
+            sums[labels[t]] += Vec3d(surface.facets[t].normal) * double(surface.facets[t].size);
+        std::vector<Vec3f> proxies(count);
+        for (size_t c = 0; c < count; ++c)
+            proxies[c] = Vec3f(normalize(sums[c]));
+        std::vector<uint32_t> border;
+        for (uint32_t t = 0; t < labels.size(); ++t)
+            for (uint32_t n : neighbours[t])
+                if (n != NO_TRIANGLE && labels[n] != labels[t]) {
+                    border.push_back(t);
+                    break;
+                }
+        const float straightness = refit < REFITS - STRAIGHT_REFITS ? 0 : STRAIGHTNESS;
+        auto liking = [&](uint32_t t, uint32_t label) {
+            int alike = 0;
+            for (uint32_t n : neighbours[t])
+                alike += n != NO_TRIANGLE && labels[n] == label;
+            return dot(surface.facets[t].normal, proxies[label]) + straightness * float(alike);
+        };
+        for (int sweep = 0; sweep < SWEEPS; ++sweep) {
+            std::vector<uint32_t> moved;
+            for (uint32_t t : border) {
+                uint32_t best = labels[t];
+                float most = liking(t, best);
+                for (uint32_t n : neighbours[t]) {
+                    float like = n == NO_TRIANGLE ? -INFINITY : liking(t, labels[n]);
+                    if (like > most) {
+                        most = like;
+                        best = labels[n];
+                    }
+                }
+                if (best == labels[t])
+                    continue;
+                labels[t] = best;
+                for (uint32_t n : neighbours[t])
+                    if (n != NO_TRIANGLE)
+                        moved.push_back(n);
+            }
+            border = std::move(moved);
+        }
+        task.advance(0.5 + 0.2 * refit / REFITS);
+    }
+}
+
+/* Gives each piece of a cluster but the largest to the neighbour with which it shares most
+ * edges. */
+void absorb_islands(const Surface &surface, size_t count, std::vector<uint32_t> &labels)
+{
+    std::vector<uint32_t> piece = labels;
+    uint32_t pieces = connected_pieces(surface.whole, piece);
+    std::vector<double> size(pieces);
+    std::vector<uint32_t> of(pieces), main(count, NO_TRIANGLE);
+    std::vector<std::vector<uint32_t>> across(pieces); /* labels, an entry an edge */
+    for (uint32_t t = 0; t < labels.size(); ++t) {
+        size[piece[t]] += double(surface.facets[t].size);
+        of[piece[t]] = labels[t];
+    }
+    for (uint32_t p = 0; p < pieces; ++p)
+        if (main[of[p]] == NO_TRIANGLE || size[p] > size[main[of[p]]])
+            main[of[p]] = p;
+    for (uint32_t t = 0; t < labels.size(); ++t)
+        for (uint32_t n : surface.whole.neighbours[t])
+            if (main[labels[t]] != piece[t] && n != NO_TRIANGLE && main[labels[n]] == piece[n] &&
+                labels[n] != labels[t])
+                across[piece[t]].push_back(labels[n]);
+    for (uint32_t p = 0; p < pieces; ++p) {
+        std::sort(across[p].begin(), across[p].end());
+        size_t most = 0;
+        for (size_t i = 0, run = 0; i < across[p].size(); ++i) {
+            run = i && across[p][i] == across[p][i - 1] ? run + 1 : 1;
+            if (run > most) {
+                most = run;
+                of[p] = across[p][i];
+            }
+        }
+    }
+    for (uint32_t t = 0; t < labels.size(); ++t)
+        labels[t] = of[piece[t]];
+}
+
+} // namespace
+
+std::vector<uint32_t> agglomerate(const Surface &surface, uint32_t &count, Task &task)
+{
+    Clusters clusters = single_triangles(surface);
+    std::vector<uint32_t> labels = surface.whole.triangles;
+    auto rename = [&labels](const std::vector<uint32_t> &renamed) {
+        for (uint32_t &label : labels)
+            label = renamed[label];
+    };
+    for (size_t before = SIZE_MAX; clusters.size() > QUEUED_CLUSTERS && clusters.size() < before;) {
+        before = clusters.size();
+        rename(merge_pairs(clusters, match(cheapest_partners(clusters, task))));
+        task.advance(0.4 * (1 - double(clusters.size()) / double(labels.size())));
+    }
+    rename(MergeQueue(clusters).run());
+    move_borders(surface, clusters.size(), labels, task);
+    absorb_islands(surface, clusters.size(), labels);
+    count = connected_pieces(surface.whole, labels);
+    return labels;
+}
+
+} // namespace gtx

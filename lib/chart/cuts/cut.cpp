@@ -1,0 +1,252 @@
+/* Cuts charts straight, along the lines of their own grids of texels.
+ *
+ * A chart that folds nowhere is one height map already, however large. Parts of it fill their tight
+ * rectangles the better the smaller they are, and neighbours across a cut share the axis of
+ * projection, along which their height fields are made to cross (bake/seam/close_cuts.cpp). */
+#include "chart/cuts/tree.hpp"
+#include "chart/frame.hpp"
+
+#include <numeric>
+
+namespace gtx {
+
+namespace {
+
+/* Texels beyond a patch from which its overlap may take. */
+constexpr float MARGIN = 4;
+/* Texels from where the chart ends to a cut behind it, at least: room for the overlap there. */
+constexpr double ROOM = 2;
+/* Turns of a frame that are tried, and how many times as coarse the grid is for that. */
+constexpr size_t TURNS = 8;
+constexpr int COARSE = 6;
+/* Texels along the sides of a chart that stays whole, at least, for its cells to be counted. */
+constexpr int MIN_CELLS = 4;
+
+/* Texels of a patch's core along an axis. */
+unsigned cells_of(const CutNode &node, int axis)
+{
+    return unsigned(std::max(1., std::floor(node.tight.side(axis) * node.density[axis] + 0.5)));
+}
+
+/* A triangle of a chart as its patches see it, in texels. */
+struct Piece {
+    uint32_t triangle;
+    float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, middle[2] = {0, 0};
+};
+
+class Harvest {
+public:
+    Harvest(const Surface &surface, const Frame &frame, const CutPlan &plan, const CutTree &tree)
+        : surface_(surface), frame_(frame), plan_(plan), pitch_(plan.pitch), tree_(tree)
+    {
+    }
+
+    std::vector<Chart> reap(const Region &region)
+    {
+        FrameInverse inverse(frame_);
+        pieces_.reserve(region.size());
+        std::vector<uint32_t> all(region.size());
+        std::iota(all.begin(), all.end(), 0u);
+        for (uint32_t t : region.triangles) {
+            Piece piece = {t};
+            for (int k = 0; k < 3; ++k) {
+                Vec3d p = inverse(surface_.mesh.position(t, k));
+                for (int a = 0; a < 2; ++a) {
+                    float x = float((p[a] - tree_.relief.corner[a]) / pitch_);
+                    piece.low[a] = std::min(piece.low[a], x);
+                    piece.high[a] = std::max(piece.high[a], x);
+                    piece.middle[a] += x / 3;
+                }
+            }
+            pieces_.push_back(piece);
+        }
+        descend(tree_.nodes[0], std::move(all));
+        return std::move(out_);
+    }
+
+private:
+    void descend(const CutNode &node, std::vector<uint32_t> pieces);
+    void make_patch(const CutNode &node, const std::vector<uint32_t> &pieces);
+    bool is_own(const CutNode &node, const Piece &piece) const;
+    void lay_frame(const CutNode &node, Chart &chart) const;
+    unsigned fitted_cells(const CutNode &node, int axis) const;
+    void clip(const CutNode &node, Chart &chart) const;
+
+    const Surface &surface_;
+    const Frame &frame_;
+    const CutPlan &plan_;
+    const double pitch_;
+    const CutTree &tree_;
+    std::vector<Piece> pieces_;
+    std::vector<Chart> out_;
+};
+
+void Harvest::descend(const CutNode &node, std::vector<uint32_t> pieces)
+{
+    if (!node.divided) {
+        make_patch(node, pieces);
+        return;
+    }
+    std::vector<uint32_t> inside[2];
+    for (int side = 0; side < 2; ++side) {
+        const Rect &half = tree_.nodes[size_t(node.child[side])].region;
+        for (uint32_t index : pieces) {
+            const Piece &piece = pieces_[index];
+            bool meets = true;
+            for (int a = 0; a < 2; ++a)
+                meets = meets && piece.high[a] >= float(half.low[a]) - MARGIN &&
+                        piece.low[a] <= float(half.high[a]) + MARGIN;
+            if (meets)
+                inside[side].push_back(index);
+        }
+    }
+    pieces = {}; /* of a terrain they are many */
+    for (int side = 0; side < 2; ++side)
+        descend(tree_.nodes[size_t(node.child[side])], std::move(inside[side]));
+}
+
+/* Whether its centre lies in the region; what rounding puts off the grid belongs to its edge. */
+bool Harvest::is_own(const CutNode &node, const Piece &piece) const
+{
+    bool own = true;
+    for (int a = 0; a < 2; ++a)
+        own = own && (piece.middle[a] >= float(node.region.low[a]) || !node.region.low[a]) &&
+              (piece.middle[a] < float(node.region.high[a]) ||
+               node.region.high[a] == tree_.relief.size[a]);
+    return own;
+}
+
+/* Sides come in multiples of the grain: the core in a few cells less, or in so many more that its
+ * texels fill them. */
+unsigned Harvest::fitted_cells(const CutNode &node, int axis) const
+{
+    const size_t low = size_t(2 * axis);
+    const bool ends[2] = {!node.cuts[low] || node.tight.low[axis] > node.region.low[axis],
+                          !node.cuts[low + 1] || node.tight.high[axis] < node.region.high[axis]};
+    const unsigned core = cells_of(node, axis);
+    const unsigned side = core + plan_.overlap[ends[0]] + plan_.overlap[ends[1]];
+    const unsigned over = side % plan_.grain;
+    if (8 * over < 3 * plan_.grain && core > plan_.grain)
+        return core - over;
+    return core + std::min(core, (plan_.grain - over) % plan_.grain);
+}
+
+void Harvest::lay_frame(const CutNode &node, Chart &chart) const
+{
+    const Relief &relief = tree_.relief;
+    std::vector<Vec3d> points;
+    for (int j = node.tight.low[1]; j < node.tight.high[1]; ++j)
+        for (int i = node.tight.low[0]; i < node.tight.high[0]; ++i) {
+            double height = double(relief.height[relief.at(i, j)]);
+            if (!std::isnan(height))
+                points.push_back({relief.corner[0] + (i + 0.5) * pitch_,
+                                  relief.corner[1] + (j + 0.5) * pitch_, height * pitch_});
+        }
+    double low[2], high[2];
+    for (int a = 0; a < 2; ++a) {
+        low[a] = relief.corner[a] + node.tight.low[a] * pitch_;
+        high[a] = relief.corner[a] + node.tight.high[a] * pitch_;
+        chart.cells[a] = fitted_cells(node, a);
+    }
+    chart.frame = part_of_frame(frame_, low, high, points);
+}
+
+void Harvest::clip(const CutNode &node, Chart &chart) const
+{
+    for (int a = 0; a < 2; ++a) {
+        const double cell = chart.frame.extent[a] / chart.cells[a];
+        const double texel = chart.frame.extent[a] / node.tight.side(a); /* of the tree's grid */
+        const int low = node.tight.low[a] - node.region.low[a];
+        const int high = node.region.high[a] - node.tight.high[a];
+        if (node.cuts[size_t(2 * a)])
+            chart.clip_low[a] = low ? -std::max(low * texel, ROOM * cell) : 0;
+        if (node.cuts[size_t(2 * a + 1)])
+            chart.clip_high[a] =
+                chart.frame.extent[a] + (high ? std::max(high * texel, ROOM * cell) : 0);
+    }
+}
+
+void Harvest::make_patch(const CutNode &node, const std::vector<uint32_t> &pieces)
+{
+    Chart chart;
+    for (uint32_t index : pieces) {
+        chart.triangles.push_back(pieces_[index].triangle);
+        chart.source_triangles += is_own(node, pieces_[index]);
+    }
+    lay_frame(node, chart);
+    clip(node, chart);
+    out_.push_back(std::move(chart));
+}
+
+/* Of a chart that stays whole; a blade gets cells where it is baked. */
+void set_cells(const CutNode &node, Chart &chart)
+{
+    if (std::min(node.tight.side(0), node.tight.side(1)) < MIN_CELLS)
+        return;
+    for (int axis = 0; axis < 2; ++axis)
+        chart.cells[axis] = cells_of(node, axis);
+}
+
+/* Turns the frames of charts that will be cut as their patches fill rectangles best, for the least
+ * rectangle around all of a large chart says little about its parts. Coarse trees tell well enough.
+ */
+void turn_frames(const Surface &surface, const std::vector<Region> &regions, const CutPlan &plan,
+                 double share, std::vector<Frame> &frames, Task &task)
+{
+    auto radians = [](size_t turn) { return M_PI / 2 * double(turn) / TURNS; };
+    std::vector<CutTree> trees(regions.size() * TURNS);
+    for_each_region(regions, task, [&](size_t i) {
+        Relief relief = make_relief(surface, regions[i], frames[i], plan.pitch);
+        for (size_t turn = 0; turn < TURNS; ++turn)
+            trees[i * TURNS + turn] =
+                grow_cut_tree(turn_relief(relief, radians(turn), COARSE), plan, share);
+    }, 0.2, 0.4);
+    std::vector<size_t> best = choose_turns(trees, TURNS, plan.patches);
+    for_each_region(regions, task, [&](size_t i) {
+        if (trees[i * TURNS + best[i]].nodes[0].divided)
+            frames[i] = turned_frame(surface.mesh, regions[i].triangles, frames[i],
+                                     radians(best[i]));
+    });
+}
+
+} // namespace
+
+std::vector<Chart> cut_charts(const Surface &surface, std::vector<Region> regions,
+                              std::vector<Frame> frames, const CutPlan &plan, Task &task)
+{
+    double share = surface.area / (plan.pitch * plan.pitch) / double(plan.patches);
+    turn_frames(surface, regions, plan, share, frames, task);
+    std::vector<CutTree> trees(regions.size());
+    for_each_region(regions, task, [&](size_t i) {
+        trees[i] = grow_cut_tree(make_relief(surface, regions[i], frames[i], plan.pitch), plan,
+                                 share);
+        if (!plan.one_density)
+            weigh_bends(trees[i]);
+    }, 0.4, 0.8);
+    divide_trees(trees, plan.patches);
+    if (!plan.one_density)
+        spread_texels(trees, plan);
+
+    std::vector<std::vector<Chart>> cut(regions.size());
+    for_each_region(regions, task, [&](size_t i) {
+        if (trees[i].nodes[0].divided) {
+            cut[i] = Harvest(surface, frames[i], plan, trees[i]).reap(regions[i]);
+        } else {
+            cut[i].resize(1);
+            cut[i][0].source_triangles = regions[i].size();
+            cut[i][0].triangles = std::move(regions[i].triangles);
+            cut[i][0].frame = frames[i];
+            set_cells(trees[i].nodes[0], cut[i][0]);
+        }
+        trees[i] = {};
+    }, 0.8, 1);
+    std::vector<Chart> out;
+    for (std::vector<Chart> &charts : cut)
+        for (Chart &chart : charts) {
+            std::sort(chart.triangles.begin(), chart.triangles.end());
+            out.push_back(std::move(chart));
+        }
+    return out;
+}
+
+} // namespace gtx

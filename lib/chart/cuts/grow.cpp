@@ -1,0 +1,395 @@
+/* Grows k-d trees over charts, trading texels against relief.
+ *
+ * A node's cut is the one whose two sides would take the fewest texels, after the best next cut of
+ * each: what counts is how the sides will fill their rectangles. */
+#include "chart/cuts/tree.hpp"
+
+namespace gtx {
+
+namespace {
+
+constexpr int MIN_CELLS = 4;           /* along a side that was cut */
+constexpr double MIN_SIDE = 0.1;       /* of a square patch's */
+constexpr double RELIEF_COST = 20;     /* of height steps beside texels, both squared */
+constexpr double RANGE = 4;            /* heights lie within as many standard deviations */
+constexpr double SMALLEST_SHARE = 1.0 / 4; /* of a patch's texels: cut no further */
+constexpr double SMALLEST_TRIED = 1.0 / 4; /* likewise, where a turn of the frame is only tried */
+constexpr double PATCH_PRICE = 0.1;    /* likewise: what one more patch has to save */
+constexpr double AHEAD_SHARE = 16;     /* likewise: larger nodes are far from their leaves yet */
+constexpr size_t CANDIDATES = 6;       /* cuts whose next cuts are looked at */
+constexpr double BALANCE = 1e-6;       /* texels: of cuts that are worth the same, the middle one */
+
+/* Sums over heights at texels, to fit a plane to. */
+struct Moments {
+    double n = 0, u = 0, v = 0, h = 0, uu = 0, uv = 0, vv = 0, uh = 0, vh = 0, hh = 0;
+
+    void add(const Moments &m)
+    {
+        n += m.n, u += m.u, v += m.v, h += m.h;
+        uu += m.uu, uv += m.uv, vv += m.vv, uh += m.uh, vh += m.vh, hh += m.hh;
+    }
+    /* Mean square of what the least-squares plane leaves. */
+    double residual() const
+    {
+        if (n < 4)
+            return 0;
+        double suu = uu - u * u / n, suv = uv - u * v / n, svv = vv - v * v / n;
+        double suh = uh - u * h / n, svh = vh - v * h / n, shh = hh - h * h / n;
+        double det = suu * svv - suv * suv;
+        if (det > 1e-9 * suu * svv) {
+            double a = (suh * svv - svh * suv) / det, b = (svh * suu - suh * suv) / det;
+            shh -= a * suh + b * svh;
+        }
+        return std::max(0., shh / n);
+    }
+};
+
+constexpr Rect NOTHING = {{INT32_MAX, INT32_MAX}, {INT32_MIN, INT32_MIN}};
+
+/* A column or row of a node, or several. */
+struct Slice {
+    Moments moments;
+    Rect box = NOTHING;
+
+    void add(const Slice &s)
+    {
+        moments.add(s.moments);
+        for (int k = 0; k < 2; ++k) {
+            box.low[k] = std::min(box.low[k], s.box.low[k]);
+            box.high[k] = std::max(box.high[k], s.box.high[k]);
+        }
+    }
+};
+
+/* Sums along one column or row, where the other coordinate stays. */
+struct Line {
+    int low = INT32_MAX, high = INT32_MIN; /* of what is touched */
+    double n = 0, x = 0, h = 0, xx = 0, xh = 0, hh = 0;
+
+    void touch(int at)
+    {
+        low = std::min(low, at);
+        high = at + 1;
+    }
+    void add(double at, double height)
+    {
+        n += 1, x += at, h += height;
+        xx += at * at, xh += at * height, hh += height * height;
+    }
+    Slice slice(int axis, int at) const
+    {
+        Slice out;
+        if (high > low) {
+            out.box.low[axis] = at;
+            out.box.high[axis] = at + 1;
+            out.box.low[!axis] = low;
+            out.box.high[!axis] = high;
+        }
+        double a = at;
+        if (axis == 0)
+            out.moments = {n, n * a, x, h, n * a * a, a * x, xx, a * h, xh, hh};
+        else
+            out.moments = {n, x, n * a, h, xx, a * x, n * a * a, xh, a * h, hh};
+        return out;
+    }
+};
+
+struct Cut {
+    double value = INFINITY; /* texels, the price of patches included */
+    int axis = -1, at = 0;
+
+    bool operator<(const Cut &o) const
+    {
+        return value != o.value ? value < o.value : axis != o.axis ? axis < o.axis : at < o.at;
+    }
+};
+
+struct Half {
+    Rect region;
+    Cuts cuts;
+};
+
+Half half_of(const Rect &region, const Cuts &cuts, int axis, int at, int side)
+{
+    Half half = {region, cuts};
+    (side ? half.region.low : half.region.high)[axis] = at;
+    half.cuts[size_t(2 * axis + !side)] = true;
+    return half;
+}
+
+/* Columns or rows of a part of the chart, in order. */
+struct Lines {
+    int first; /* coordinate of the first */
+    std::vector<Slice> slices;
+};
+
+class Grower {
+public:
+    Grower(const Relief &relief, const CutPlan &plan, double share)
+        : relief_(relief), plan_(plan), smallest_(SMALLEST_SHARE * share),
+          price_(PATCH_PRICE * share), ahead_(relief.coarse > 1 ? 0 : AHEAD_SHARE * share),
+          least_(std::max(MIN_CELLS, int(MIN_SIDE * std::sqrt(share))) / relief.coarse)
+    {
+    }
+
+    std::vector<CutNode> grow()
+    {
+        CutNode root;
+        root.region = root.tight = {{0, 0}, {relief_.size[0], relief_.size[1]}};
+        std::vector<CutNode> nodes = {root};
+        for (size_t n = 0; n < nodes.size(); ++n)
+            grow_node(n, nodes);
+        return nodes;
+    }
+
+private:
+    void grow_node(size_t n, std::vector<CutNode> &nodes);
+    std::vector<Lines> parts(const Rect &box, int axis, const std::vector<int> &across) const;
+    template <class Visit>
+    void sweep(const Lines &lines, int axis, const Rect &region, const Cuts &cuts, Visit visit);
+    double best_half(const Lines &along, const Lines &across, int axis, const Half &half);
+    Cut look_ahead(const CutNode &node, const Rect &box, const Lines lines[2],
+                   const std::vector<Cut> &sorted);
+    double texels(const Rect &box, const Cuts &cuts, double &patches) const;
+    double area(const Slice &s, const Rect &region, const Cuts &cuts, double &patches) const;
+    double relief(const Slice &s) const;
+    double value(const Slice &s, const Rect &region, const Cuts &cuts) const
+    {
+        double patches, texels = area(s, region, cuts, patches);
+        return texels * relief(s) + patches * price_;
+    }
+
+    const Relief &relief_;
+    const CutPlan &plan_;
+    double smallest_, price_, ahead_;
+    int least_;
+    std::vector<Slice> above_; /* of the sweep at hand */
+};
+
+/* Texels of a box, in as many patches as the longest side allows. */
+double Grower::texels(const Rect &box, const Cuts &cuts, double &patches) const
+{
+    double total = 1;
+    patches = 1;
+    for (int axis = 0; axis < 2; ++axis) {
+        unsigned n = unsigned(box.side(axis) * relief_.coarse) +
+                     plan_.overlap[!cuts[size_t(2 * axis)]] +
+                     plan_.overlap[!cuts[size_t(2 * axis + 1)]];
+        double side = n;
+        if (n > plan_.side) {
+            const unsigned rest = 2 * plan_.overlap[0], parts = 1 + (n - 1) / (plan_.side - rest);
+            side += parts * rest;
+            patches *= parts;
+        }
+        total *= side;
+    }
+    return total;
+}
+
+/* Texels of what lies in a region. */
+double Grower::area(const Slice &s, const Rect &region, const Cuts &cuts, double &patches) const
+{
+    patches = 0;
+    if (s.box.empty())
+        return 0;
+    Cuts own; /* elsewhere the chart itself ends */
+    for (int axis = 0; axis < 2; ++axis) {
+        size_t low = size_t(2 * axis);
+        own[low] = cuts[low] && s.box.low[axis] == region.low[axis];
+        own[low + 1] = cuts[low + 1] && s.box.high[axis] == region.high[axis];
+    }
+    return texels(s.box, own, patches);
+}
+
+/* How much more a texel costs where heights resolve less than texels. */
+double Grower::relief(const Slice &s) const
+{
+    double steps = RANGE / plan_.steps * relief_.coarse;
+    return 1 + RELIEF_COST * steps * steps * s.moments.residual();
+}
+
+/* The columns (axis 0) or rows of a box, in parts that end at the coordinates `across` of the other
+ * axis, of which the last is where the box ends. */
+std::vector<Lines> Grower::parts(const Rect &box, int axis, const std::vector<int> &across) const
+{
+    const size_t count = size_t(box.side(axis));
+    std::vector<size_t> part_of; /* a coordinate of the other axis */
+    for (int at = box.low[!axis]; at < box.high[!axis]; ++at) {
+        bool next = !part_of.empty() && at == across[part_of.back()];
+        part_of.push_back(part_of.empty() ? 0 : part_of.back() + next);
+    }
+    std::vector<Line> sums(across.size() * count);
+    for (int j = box.low[1]; j < box.high[1]; ++j)
+        for (int i = box.low[0]; i < box.high[0]; ++i) {
+            const size_t texel = relief_.at(i, j);
+            if (!relief_.touched[texel])
+                continue;
+            const int line = (axis ? j : i) - box.low[axis], at = axis ? i : j;
+            Line &sum = sums[part_of[size_t(at - box.low[!axis])] * count + size_t(line)];
+            sum.touch(at);
+            double height = double(relief_.height[texel]);
+            if (!std::isnan(height))
+                sum.add(at, height);
+        }
+    std::vector<Lines> out;
+    for (size_t part = 0; part < across.size(); ++part) {
+        out.push_back({box.low[axis], {}});
+        for (size_t i = 0; i < count; ++i)
+            out[part].slices.push_back(sums[part * count + i].slice(axis, box.low[axis] + int(i)));
+    }
+    return out;
+}
+
+/* Visits every cut between lines: where, and what lies below and above it. Nowhere else in the
+ * region lies anything. */
+template <class Visit>
+void Grower::sweep(const Lines &lines, int axis, const Rect &region, const Cuts &cuts, Visit visit)
+{
+    const std::vector<Slice> &slices = lines.slices;
+    above_.assign(slices.size() + 1, {});
+    for (size_t i = slices.size(); i-- > 0;) {
+        above_[i] = above_[i + 1];
+        above_[i].add(slices[i]);
+    }
+    const Rect &box = above_[0].box;
+    Slice below;
+    for (size_t i = 1; i < slices.size(); ++i) {
+        below.add(slices[i - 1]);
+        const int at = lines.first + int(i);
+        if (at < box.low[axis] + least_ || at > box.high[axis] - least_)
+            continue;
+        if (!(below.moments.n > 0 && above_[i].moments.n > 0))
+            continue; /* what passes between all texel centres makes no patch of its own */
+        visit(at, below, above_[i], half_of(region, cuts, axis, at, 0),
+              half_of(region, cuts, axis, at, 1));
+    }
+}
+
+/* What a half costs, whole or after its best cut: its lines along the axis of the cut that made it,
+ * and across. */
+double Grower::best_half(const Lines &along, const Lines &across, int axis, const Half &half)
+{
+    double least = INFINITY;
+    for (int turn = 0; turn < 2; ++turn) {
+        sweep(turn ? across : along, turn ? !axis : axis, half.region, half.cuts,
+              [&](int, const Slice &below, const Slice &above, const Half &low, const Half &high) {
+                  double patches[2];
+                  double texels[2] = {area(below, low.region, low.cuts, patches[0]),
+                                      area(above, high.region, high.cuts, patches[1])};
+                  double price = (patches[0] + patches[1]) * price_;
+                  if (texels[0] + texels[1] + price < least) /* before what relief adds */
+                      least = std::min(least, texels[0] * relief(below) +
+                                                  texels[1] * relief(above) + price);
+              });
+        if (!turn)
+            least = std::min(least, value(above_[0], half.region, half.cuts));
+    }
+    return least;
+}
+
+/* The best of the first few cuts that are not beside each other, each with the best cut that may
+ * follow on its two sides. */
+Cut Grower::look_ahead(const CutNode &node, const Rect &box, const Lines lines[2],
+                       const std::vector<Cut> &sorted)
+{
+    std::vector<Cut> tried;
+    for (const Cut &cut : sorted) {
+        if (tried.size() == CANDIDATES)
+            break;
+        if (std::none_of(tried.begin(), tried.end(), [&](const Cut &t) {
+                return t.axis == cut.axis && std::abs(t.at - cut.at) < least_ / 2;
+            }))
+            tried.push_back(cut);
+    }
+    Cut best;
+    for (int axis = 0; axis < 2; ++axis) {
+        std::vector<int> across;
+        for (const Cut &cut : tried)
+            if (cut.axis == axis)
+                across.push_back(cut.at);
+        if (across.empty())
+            continue;
+        std::sort(across.begin(), across.end());
+        across.push_back(box.high[axis]);
+        std::vector<Lines> low = parts(box, !axis, across), high = low;
+        for (size_t part = 1; part < across.size(); ++part)
+            for (size_t i = 0; i < low[part].slices.size(); ++i) {
+                low[part].slices[i].add(low[part - 1].slices[i]);
+                size_t back = across.size() - 1 - part;
+                high[back].slices[i].add(high[back + 1].slices[i]);
+            }
+        const std::vector<Slice> &all = lines[axis].slices;
+        for (size_t part = 0; part + 1 < across.size(); ++part) {
+            auto middle = all.begin() + (across[part] - lines[axis].first);
+            Lines along[2] = {{lines[axis].first, {all.begin(), middle}},
+                              {across[part], {middle, all.end()}}};
+            double sum = 0;
+            for (int side = 0; side < 2; ++side)
+                sum += best_half(along[side], side ? high[part + 1] : low[part], axis,
+                                 half_of(node.region, node.cuts, axis, across[part], side));
+            Cut cut = {sum, axis, across[part]};
+            if (cut < best)
+                best = cut;
+        }
+    }
+    return best;
+}
+
+void Grower::grow_node(size_t n, std::vector<CutNode> &nodes)
+{
+    CutNode node = nodes[n];
+    Rect box;
+    for (int k = 0; k < 2; ++k) {
+        box.low[k] = std::max(node.region.low[k], node.tight.low[k]);
+        box.high[k] = std::max(box.low[k], std::min(node.region.high[k], node.tight.high[k]));
+    }
+    Lines lines[2];
+    std::vector<Cut> cuts;
+    Slice all;
+    for (int axis = 0; axis < 2; ++axis) {
+        lines[axis] = std::move(parts(box, axis, {box.high[!axis]})[0]);
+        sweep(lines[axis], axis, node.region, node.cuts,
+              [&](int at, const Slice &below, const Slice &above, const Half &low,
+                  const Half &high) {
+                  const Rect &whole = above_[0].box;
+                  double off_middle = std::fabs(whole.low[axis] + whole.high[axis] - 2. * at);
+                  cuts.push_back({value(below, low.region, low.cuts) +
+                                      value(above, high.region, high.cuts) + BALANCE * off_middle,
+                                  axis, at});
+              });
+        all = above_[0];
+    }
+    std::sort(cuts.begin(), cuts.end());
+    double patches;
+    node.tight = all.box;
+    node.cost = area(all, node.region, node.cuts, patches) * relief(all);
+    const bool fits = patches <= 1;
+    if (!cuts.empty() && !(fits && node.cost < smallest_)) {
+        Cut cut = node.cost < ahead_ ? look_ahead(node, box, lines, cuts) : cuts[0];
+        for (int side = 0; side < 2; ++side) {
+            Half half = half_of(node.region, node.cuts, cut.axis, cut.at, side);
+            CutNode child;
+            child.region = half.region;
+            child.tight = node.tight;
+            child.cuts = half.cuts;
+            node.child[side] = int(nodes.size());
+            nodes.push_back(child);
+        }
+        if (!fits)
+            node.cost = INFINITY;
+    }
+    nodes[n] = node;
+}
+
+} // namespace
+
+CutTree grow_cut_tree(Relief relief, const CutPlan &plan, double share)
+{
+    CutTree tree;
+    tree.relief = std::move(relief);
+    if (!tree.relief.touched.empty())
+        tree.nodes = Grower(tree.relief, plan, share).grow();
+    return tree;
+}
+
+} // namespace gtx

@@ -1,0 +1,151 @@
+/* Charts on the grids of their frames, and pruning their trees of cuts to a number of leaves. */
+#include "chart/cuts/tree.hpp"
+
+#include "chart/raster.hpp"
+
+namespace gtx {
+
+namespace {
+
+constexpr double MAX_TURNED = 4; /* of a chart, texels when it is turned */
+
+/* Divides the nodes for which that pays when each patch costs `price` texels on top. */
+void prune(CutTree &tree, double price)
+{
+    for (size_t n = tree.nodes.size(); n-- > 0;) {
+        CutNode &node = tree.nodes[n];
+        node.leaves = 1;
+        node.least = node.cost + price;
+        node.divided = false;
+        if (node.child[0] < 0)
+            continue;
+        const CutNode &a = tree.nodes[size_t(node.child[0])];
+        const CutNode &b = tree.nodes[size_t(node.child[1])];
+        if (a.least + b.least < node.least) {
+            node.least = a.least + b.least;
+            node.leaves = a.leaves + b.leaves;
+            node.divided = true;
+        }
+    }
+}
+
+/* Of each run of `turns` trees the one that costs least at a price; how many leaves they have. */
+size_t prune_all(std::vector<CutTree> &trees, size_t turns, double price,
+                 std::vector<size_t> &best)
+{
+    size_t leaves = 0;
+    best.clear();
+    for (size_t first = 0; first < trees.size(); first += turns) {
+        size_t least = first;
+        for (size_t t = first; t < first + turns; ++t) {
+            if (trees[t].nodes.empty())
+                continue;
+            prune(trees[t], price);
+            if (trees[t].nodes[0].least < trees[least].nodes[0].least)
+                least = t;
+        }
+        leaves += trees[least].nodes[0].leaves;
+        best.push_back(least - first);
+    }
+    return leaves;
+}
+
+} // namespace
+
+Relief make_relief(const Surface &surface, const Region &region, const Frame &frame, double pitch)
+{
+    Relief out;
+    for (int k = 0; k < 2; ++k) {
+        out.size[k] = std::max(1, int(std::ceil(frame.extent[k] / pitch)));
+        out.corner[k] = (frame.extent[k] - out.size[k] * pitch) / 2;
+    }
+    out.height.assign(size_t(out.size[0]) * size_t(out.size[1]), NAN);
+    out.touched.assign(out.height.size(), 0);
+    FrameInverse inverse(frame);
+    for (uint32_t t : region.triangles) {
+        Vec3d corner[3];
+        for (int k = 0; k < 3; ++k) {
+            Vec3d p = inverse(surface.mesh.position(t, k));
+            corner[k] = {(p.x - out.corner[0]) / pitch, (p.y - out.corner[1]) / pitch, p.z / pitch};
+        }
+        raster_centres(corner, out.size[0], out.size[1], [&](int i, int j, double depth) {
+            float &height = out.height[out.at(i, j)];
+            if (!(depth <= double(height)))
+                height = float(depth);
+            out.touched[out.at(i, j)] = 1;
+        });
+        for (int k = 0; k < 3; ++k) { /* a sliver passes between centres */
+            Vec3d from = corner[k], along = corner[(k + 1) % 3] - from;
+            int steps = 1 + int(2 * std::hypot(along.x, along.y));
+            for (int s = 0; s < steps; ++s) {
+                Vec3d p = from + along * (double(s) / steps);
+                int i = std::clamp(int(p.x), 0, out.size[0] - 1);
+                int j = std::clamp(int(p.y), 0, out.size[1] - 1);
+                out.touched[out.at(i, j)] = 1;
+            }
+        }
+    }
+    return out;
+}
+
+Relief turn_relief(const Relief &relief, double turn, int coarse)
+{
+    const double c = std::cos(turn) / coarse, s = std::sin(turn) / coarse;
+    const double w = relief.size[0], h = relief.size[1];
+    Relief out;
+    out.coarse = coarse;
+    out.size[0] = 1 + int(std::fabs(c) * w + std::fabs(s) * h);
+    out.size[1] = 1 + int(std::fabs(s) * w + std::fabs(c) * h);
+    out.corner[0] = out.corner[1] = 0;
+    const double texels = double(out.size[0]) * out.size[1];
+    if (turn != 0 && texels > MAX_TURNED * (1 + w / coarse) * (1 + h / coarse)) {
+        out.size[0] = out.size[1] = 0;
+        return out;
+    }
+    out.height.assign(size_t(out.size[0]) * size_t(out.size[1]), NAN);
+    out.touched.assign(out.height.size(), 0);
+    for (int j = 0; j < relief.size[1]; ++j) {
+        for (int i = 0; i < relief.size[0]; ++i) {
+            const size_t from = relief.at(i, j);
+            if (!relief.touched[from])
+                continue;
+            const double x = i + 0.5 - w / 2, y = j + 0.5 - h / 2;
+            const int column = int(c * x + s * y + out.size[0] / 2.);
+            const int row = int(c * y - s * x + out.size[1] / 2.);
+            const size_t to = out.at(std::clamp(column, 0, out.size[0] - 1),
+                                     std::clamp(row, 0, out.size[1] - 1));
+            out.touched[to] = 1;
+            if (!std::isnan(relief.height[from]))
+                out.height[to] = relief.height[from] / float(coarse);
+        }
+    }
+    return out;
+}
+
+void divide_trees(std::vector<CutTree> &trees, size_t wanted)
+{
+    choose_turns(trees, 1, wanted);
+}
+
+std::vector<size_t> choose_turns(std::vector<CutTree> &trees, size_t turns, size_t wanted)
+{
+    constexpr double HIGHEST = 1e12;
+    constexpr int STEPS = 40;
+    std::vector<size_t> best;
+    double low = 0, high = 1;
+    if (prune_all(trees, turns, low, best) <= wanted)
+        return best;
+    while (high < HIGHEST && prune_all(trees, turns, high, best) > wanted)
+        high *= 2;
+    for (int step = 0; step < STEPS; ++step) {
+        const double middle = (low + high) / 2;
+        const size_t leaves = prune_all(trees, turns, middle, best);
+        if (leaves == wanted)
+            return best;
+        (leaves > wanted ? low : high) = middle;
+    }
+    prune_all(trees, turns, high, best);
+    return best;
+}
+
+} // namespace gtx

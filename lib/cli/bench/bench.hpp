@@ -1,0 +1,69 @@
+/* Frame times of an asset beside the mesh it was cooked from and what else a user would draw. */
+#pragma once
+
+#include "cli/view/scene.hpp"
+
+#include <array>
+#include <functional>
+
+namespace gtx {
+
+enum class BenchMethod : uint32_t {
+    MESH,        /* the source in buffers, in vertex-cache order, its back faces culled */
+    MESH_STREAM, /* the same arrays sent anew each frame */
+    MESH_LOD,    /* its coarsest simplification that looks as good as what AUTO draws */
+    PAPER, CAST, LOD, AUTO,
+    CAST_DEPTH, AUTO_DEPTH, /* the depth pass alone */
+    CAST_FRAGMENT /* cast in fragments where CAST is by tiles */
+};
+constexpr uint32_t BENCH_METHODS = 10;
+extern const char *const bench_method_names[BENCH_METHODS]; /* as in reports */
+constexpr double bench_errors[] = {0.25, 0.35, 0.5, 0.71, 1, 1.41, 2}; /* pixels */
+
+struct BenchOptions {
+    std::vector<std::array<uint32_t, 2>> sizes; /* windows, pixels */
+    std::vector<uint32_t> instances;            /* ascending */
+    std::vector<BenchMethod> methods;           /* in the table's order */
+    uint32_t frames = 12;
+    double max_error = 0.5;                     /* pixels */
+    double min_iou = 0;                         /* over 0: max_error is the largest of
+                                                   bench_errors that AUTO keeps it at */
+    double budget = 600;                        /* seconds, of all rows */
+};
+
+struct BenchRow {
+    std::array<uint32_t, 2> size;
+    uint32_t instances;
+    BenchMethod method;
+    uint32_t triangles = 0;         /* of a mesh, an instance */
+    double max_error = 0;           /* pixels that it was drawn at; 0: a mesh */
+    uint32_t frames = 0;            /* 0: skipped, and why */
+    const char *skipped = nullptr;
+    double median = 0, least = 0;   /* milliseconds; the median of each azimuth, averaged */
+    double work = 0;                /* the same of all processors together */
+    /* One instance at its share of the window, over four azimuths, against the mesh: */
+    double iou = 0;                 /* of what is covered */
+    double psnr = 0;                /* decibels, over what either covers; infinite: the same */
+    uint64_t pixels = 0;            /* covered, a view */
+    uint64_t holes = 0;             /* pixels not covered inside what the mesh covers */
+    uint64_t rays = 0, hits = 0;    /* fragments shaded and kept, a view; 0: not told */
+};
+
+struct BenchSetup {
+    std::string renderer;           /* of OpenGL: the platform */
+    uint32_t triangles = 0;
+    uint64_t geometry_bytes = 0;    /* of the asset on the GPU, colour apart */
+    /* Milliseconds: file to asset, asset to model, model to GPU. */
+    double open = 0, prepare = 0, upload = 0;
+};
+
+/* Measures every window, instance count and method through EGL, without a window; rows are told
+ * one by one as they are done. The methods of a window take turns frame by frame, each frame
+ * ended by glFinish, so that a machine that slows down slows all of them. A method whose first
+ * frame takes over two seconds is measured once. Throws Error: GL, SHADER, MEMORY, LIMIT, and
+ * what opening the files says. */
+void run_bench(const std::string &asset_path, const Mesh &mesh, const BenchOptions &options,
+               const std::function<void(const BenchSetup &)> &begin,
+               const std::function<void(const BenchRow &)> &tell);
+
+} // namespace gtx

@@ -1,0 +1,251 @@
+/* Loads an asset and its mesh onto the GPU and draws them for `gtx bench`. */
+#include "cli/bench/scene.hpp"
+
+#include "cli/bench/shading.hpp"
+#include "cli/view/scene_renderer.hpp"
+#include "host/camera.h"
+#include "host/jobs.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace gtx {
+
+constexpr GLenum INVOCATIONS = 0x82F4; /* GL_FRAGMENT_SHADER_INVOCATIONS: OpenGL 4.6 */
+
+/* How the methods of the library are asked for. */
+struct Way {
+    gtx_method method;
+    gtx_pass pass;
+};
+static Way way_of(BenchMethod method)
+{
+    switch (method) {
+    case BenchMethod::PAPER: return {GTX_METHOD_PAPER, GTX_PASS_FORWARD};
+    case BenchMethod::CAST:
+    case BenchMethod::CAST_FRAGMENT: return {GTX_METHOD_CAST, GTX_PASS_FORWARD};
+    case BenchMethod::LOD: return {GTX_METHOD_LOD, GTX_PASS_FORWARD};
+    case BenchMethod::CAST_DEPTH: return {GTX_METHOD_CAST, GTX_PASS_DEPTH};
+    case BenchMethod::AUTO_DEPTH: return {GTX_METHOD_AUTO, GTX_PASS_DEPTH};
+    default: return {GTX_METHOD_AUTO, GTX_PASS_FORWARD};
+    }
+}
+
+bool is_depth_pass(BenchMethod method)
+{
+    return way_of(method).pass == GTX_PASS_DEPTH;
+}
+
+double milliseconds()
+{
+    using clock = std::chrono::steady_clock;
+    return std::chrono::duration<double, std::milli>(clock::now().time_since_epoch()).count();
+}
+
+Target::Target(const gtx_host_gl &functions, uint32_t width, uint32_t height) : gl(functions)
+{
+    gtx_error error;
+    check(gtx_framebuffer_create(&gl, int(width), int(height), &framebuffer, &error), error);
+}
+
+BenchContext::BenchContext()
+{
+    gtx_error error;
+    check(gtx_offscreen_create(&offscreen, &error), error);
+}
+
+BenchScene::BenchScene(const std::string &asset_path, const Mesh &mesh, const BenchOptions &options)
+    : max_error(options.max_error), options_(options)
+{
+    gtx_error error;
+    gtx_renderer_desc desc = {};
+    desc.load = gtx_offscreen_load;
+    check(gtx_host_gl_init(&gl, gtx_offscreen_load, nullptr, &error), error);
+    check(gtx_renderer_create(&desc, &renderer_, &error), error);
+    setup.renderer = reinterpret_cast<const char *>(gl.GetString(GL_RENDERER));
+    GLuint query;
+    gl.GenQueries(1, &query);
+    gl.BeginQuery(INVOCATIONS, query);
+    counts_ = gl.GetError() == GL_NO_ERROR;
+    if (counts_)
+        gl.EndQuery(INVOCATIONS);
+    gl.DeleteQueries(1, &query);
+    load_asset(asset_path);
+    program_ = make_bench_program(gl, info.has_material || info.has_emission);
+    load_mesh(mesh);
+}
+
+BenchScene::~BenchScene()
+{
+    for (gtx_polygons &p : polygons_)
+        gtx_polygons_destroy(&gl, &p);
+    gtx_model_destroy(renderer_, model_);
+    gtx_renderer_destroy(renderer_);
+    gtx_polygon_program_destroy(&gl, &program_);
+}
+
+void BenchScene::load_asset(const std::string &path)
+{
+    gtx_error error;
+    gtx_asset *asset;
+    const gtx_jobs jobs = gtx_host_jobs(0);
+    gtx_open_desc open = {};
+    gtx_model_desc model = {};
+    open.jobs = model.jobs = &jobs;
+    model.borrow = 1;
+    const double start = milliseconds();
+    check(gtx_open_file(path.c_str(), &open, &asset, &error), error);
+    AssetPointer owner(asset);
+    const double opened = milliseconds();
+    check(gtx_model_prepare(asset, &model, &model_, &error), error);
+    const double prepared = milliseconds();
+    check(gtx_model_upload(renderer_, model_, 0, nullptr, &error), error);
+    gl.Finish();
+    setup.open = opened - start;
+    setup.prepare = prepared - opened;
+    setup.upload = milliseconds() - prepared;
+    gtx_get_info(asset, &info);
+    setup.geometry_bytes = gtx_model_gpu_size(model_).geometry;
+    float square = 0;
+    for (int i = 0; i < 3; ++i) {
+        centre_[i] = (info.bounds_min[i] + info.bounds_max[i]) / 2;
+        square += std::pow(info.bounds_max[i] - info.bounds_min[i], 2.f);
+    }
+    radius_ = std::sqrt(square) / 2;
+}
+
+void BenchScene::load_mesh(const Mesh &mesh)
+{
+    const std::vector<BenchMethod> &m = options_.methods;
+    levels = make_mesh_levels(mesh, {info.anchor[0], info.anchor[1], info.anchor[2]},
+                               std::count(m.begin(), m.end(), BenchMethod::MESH_LOD) > 0);
+    setup.triangles = uint32_t(levels.indices[0].size() / 3);
+    for (const std::vector<uint32_t> &indices : levels.indices) {
+        gtx_error error;
+        polygons_.emplace_back();
+        check(gtx_polygons_create(&gl, levels.vertices.data(), uint32_t(levels.vertices.size()),
+                                  indices.data(), uint32_t(indices.size()), &polygons_.back(),
+                                  &error), error);
+    }
+}
+
+/* The camera stands in front of the wall and keeps its light on the head. */
+gtx_view BenchScene::view_of(const Shot &shot, std::vector<gtx_instance> &placed) const
+{
+    const uint32_t columns = uint32_t(std::ceil(std::sqrt(shot.instances)));
+    const uint32_t rows = (shot.instances + columns - 1) / columns;
+    const float azimuth = 20 + 360.f / BENCH_TURNS * float(shot.turn);
+    placed.assign(shot.instances, {});
+    for (uint32_t i = 0; i < shot.instances; ++i) {
+        gtx_instance &instance = placed[i];
+        instance.model = model_;
+        const float at[2] = {float(2 * (i % columns)) - float(columns - 1),
+                             float(rows - 1) - float(2 * (i / columns))};
+        float turned[16], moved[16];
+        gtx_matrix_place(at[0] * radius_, at[1] * radius_, 0, -azimuth, 1, turned);
+        gtx_matrix_place(-centre_[0], -centre_[1], -centre_[2], 0, 1, moved);
+        gtx_matrix_multiply(turned, moved, instance.transform);
+    }
+    gtx_camera camera = {};
+    camera.radius = float(columns) * radius_;
+    camera.elevation = 15;
+    camera.distance = 2.65f;
+    gtx_view view = {};
+    gtx_camera_matrices(&camera, float(shot.width) / float(shot.height), view.view,
+                        view.projection);
+    for (int i = 0; i < 3; ++i)
+        view.light_direction[i] = view.view[4 * i + 2];
+    view.ambient = 0.2f;
+    view.viewport_width = shot.width;
+    view.viewport_height = shot.height;
+    view.max_error = float(max_error);
+    return view;
+}
+
+void BenchScene::draw_mesh(BenchMethod method, const gtx_view &view,
+                      const std::vector<gtx_instance> &placed)
+{
+    gtx_polygons drawn = polygons_[method == BenchMethod::MESH_LOD ? level : 0];
+    if (method == BenchMethod::MESH_STREAM) { /* drivers may keep buffers, but not contents */
+        gl.BindBuffer(GL_ARRAY_BUFFER, drawn.vertices);
+        gl.BufferData(GL_ARRAY_BUFFER,
+                       GLsizeiptr(levels.vertices.size() * sizeof(gtx_polygon_vertex)),
+                       levels.vertices.data(), GL_STREAM_DRAW);
+        gl.BindVertexArray(drawn.vertex_array);
+        gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, GLsizeiptr(levels.indices[0].size() * 4),
+                       levels.indices[0].data(), GL_STREAM_DRAW);
+    }
+    gl.Enable(GL_CULL_FACE);
+    gl.CullFace(GL_BACK);
+    set_bench_eye(gl, program_, view.view);
+    for (const gtx_instance &instance : placed)
+        gtx_polygons_draw(&gl, &program_, &drawn, instance.transform, view.view, view.projection,
+                          view.light_direction, view.ambient);
+    gl.Disable(GL_CULL_FACE);
+}
+
+void BenchScene::draw(BenchMethod method, const Shot &shot)
+{
+    std::vector<gtx_instance> placed;
+    gtx_view view = view_of(shot, placed);
+    gl.DepthMask(GL_TRUE);
+    gl.ClearDepthf(1);
+    gl.Clear(GL_DEPTH_BUFFER_BIT | (is_depth_pass(method) ? 0 : GL_COLOR_BUFFER_BIT));
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthFunc(GL_LESS);
+    if (is_mesh(method)) {
+        draw_mesh(method, view, placed);
+    } else {
+        const Way way = way_of(method);
+        view.method = way.method;
+        view.pass = way.pass;
+        if (method == BenchMethod::CAST_FRAGMENT)
+            view.viewport_width = 0;
+        gtx_error error;
+        check(gtx_draw(renderer_, &view, placed.data(), shot.instances, &error), error);
+    }
+    gl.Finish();
+}
+
+Picture BenchScene::look(BenchMethod method, const Shot &shot, const Target &target)
+{
+    draw(method, shot);
+    Picture out;
+    out.color.resize(size_t(4) * shot.width * shot.height);
+    out.depth.resize(size_t(shot.width) * shot.height);
+    gtx_framebuffer_read_color(&gl, &target.framebuffer, out.color.data());
+    gtx_framebuffer_read_depth(&gl, &target.framebuffer, out.depth.data());
+    return out;
+}
+
+void BenchScene::count(BenchMethod method, Shot shot, uint64_t &rays, uint64_t &hits)
+{
+    rays = hits = 0;
+    if (!counts_)
+        return;
+    const GLenum what[2] = {INVOCATIONS, GL_SAMPLES_PASSED};
+    GLuint queries[2];
+    GLuint counted[2];
+    gl.GenQueries(2, queries);
+    for (int k = 0; k < 2; ++k)
+        gl.BeginQuery(what[k], queries[k]);
+    for (shot.turn = 0; shot.turn < BENCH_TURNS; ++shot.turn)
+        draw(method, shot);
+    for (int k = 0; k < 2; ++k) {
+        gl.EndQuery(what[k]);
+        gl.GetQueryObjectuiv(queries[k], GL_QUERY_RESULT, &counted[k]);
+    }
+    gl.DeleteQueries(2, queries);
+    rays = counted[0];
+    hits = counted[1];
+}
+
+uint32_t BenchScene::triangles(BenchMethod method) const
+{
+    if (!is_mesh(method))
+        return 0;
+    return uint32_t(levels.indices[method == BenchMethod::MESH_LOD ? level : 0].size() / 3);
+}
+
+} // namespace gtx

@@ -1,0 +1,121 @@
+/* A thread that opens assets and cooks models. */
+#include "cli/view/loader.hpp"
+
+#include "host/jobs.h"
+
+#include <geotex/cook.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <unistd.h>
+
+namespace gtx {
+
+/* A name for a file that nobody else has, and nobody has after this. */
+struct TemporaryFile {
+    std::string folder, path;
+    TemporaryFile()
+    {
+        const char *where = std::getenv("TMPDIR");
+        folder = std::string(where && *where ? where : "/tmp") + "/gtx-view-XXXXXX";
+        if (!mkdtemp(folder.data()))
+            throw Error(GTX_ERROR_WRITE, folder + ": " + std::strerror(errno));
+        path = folder + "/model.gtx";
+    }
+    TemporaryFile(const TemporaryFile &) = delete;
+    ~TemporaryFile()
+    {
+        unlink(path.c_str());
+        rmdir(folder.c_str());
+    }
+};
+
+int Loader::on_progress(const gtx_progress *progress, void *user)
+{
+    auto *loader = static_cast<Loader *>(user);
+    loader->stage_ = progress->stage;
+    loader->fraction_ = progress->fraction;
+    return loader->cancelled_;
+}
+
+AssetPointer Loader::cook(const std::string &path)
+{
+    TemporaryFile file;
+    gtx_cook_desc desc = {};
+    gtx_report report = {};
+    gtx_error error;
+    desc.progress = on_progress;
+    desc.progress_user = this;
+    if (gtx_cook_file(path.c_str(), file.path.c_str(), &desc, &report, &error) != GTX_OK)
+        throw Error(error.result, error.message);
+    result_.warnings.insert(result_.warnings.end(), report.warnings,
+                            report.warnings + report.warning_count);
+    gtx_report_free(&report);
+    return open_asset(file.path);
+}
+
+void Loader::load(const std::string &path)
+{
+    result_.path = path;
+    PlacedAsset placed = {is_asset(path) ? open_asset(path) : cook(path), identity_transform};
+    const gtx_jobs jobs = gtx_host_jobs(0);
+    const gtx_model_desc desc = {nullptr, &jobs, 0, {}};
+    gtx_model *model;
+    gtx_error error;
+    if (gtx_model_prepare(placed.asset.get(), &desc, &model, &error) != GTX_OK)
+        throw Error(error.result, error.message);
+    result_.models.push_back(model);
+    result_.scene.assets.push_back(std::move(placed));
+}
+
+void Loader::run(const std::vector<std::string> &paths)
+{
+    gtx_result result = GTX_OK;
+    std::string message;
+    try {
+        for (const std::string &path : paths)
+            load(path);
+        measure_bounds(result_.scene);
+        if (cancelled_)
+            throw Error(GTX_CANCELLED, "cancelled");
+    } catch (const Error &e) {
+        result = e.result;
+        message = e.message;
+    } catch (const std::exception &e) {
+        result = GTX_ERROR_INTERNAL;
+        message = e.what();
+    }
+    result_.error.result = result;
+    std::snprintf(result_.error.message, sizeof result_.error.message, "%s", message.c_str());
+    finished_ = true;
+}
+
+void Loader::start(std::vector<std::string> paths)
+{
+    stop();
+    cancelled_ = finished_ = false;
+    fraction_ = 0;
+    stage_ = "open";
+    thread_ = std::thread([this, paths = std::move(paths)] { run(paths); });
+}
+
+Loader::Result Loader::join()
+{
+    thread_.join();
+    finished_ = false;
+    Result result = std::move(result_);
+    result_ = Result();
+    return result;
+}
+
+void Loader::stop()
+{
+    if (!busy())
+        return;
+    cancel();
+    for (gtx_model *model : join().models)
+        gtx_model_destroy(nullptr, model);
+}
+
+} // namespace gtx

@@ -1,0 +1,189 @@
+/* Files -> a scene: assets, polygon models, and glTF scenes that place assets. */
+#include "cli/view/scene.hpp"
+
+#include "host/jobs.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+namespace gtx {
+
+using nlohmann::json;
+
+static Transform multiply(const Transform &a, const Transform &b)
+{
+    Transform r;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) {
+            double sum = 0;
+            for (int k = 0; k < 4; ++k)
+                sum += a[4 * k + row] * b[4 * column + k];
+            r[4 * column + row] = sum;
+        }
+    return r;
+}
+
+/* The local transform of a glTF node: a matrix, or translation, rotation (x y z w) and scale. */
+static Transform node_transform(const json &node)
+{
+    if (node.contains("matrix"))
+        return node["matrix"].get<Transform>();
+    auto t = node.value("translation", std::array<double, 3>{0, 0, 0});
+    auto q = node.value("rotation", std::array<double, 4>{0, 0, 0, 1});
+    auto s = node.value("scale", std::array<double, 3>{1, 1, 1});
+    double x = q[0], y = q[1], z = q[2], w = q[3];
+    return {s[0] * (1 - 2 * (y * y + z * z)), s[0] * 2 * (x * y + z * w),
+            s[0] * 2 * (x * z - y * w), 0,
+            s[1] * 2 * (x * y - z * w), s[1] * (1 - 2 * (x * x + z * z)),
+            s[1] * 2 * (y * z + x * w), 0,
+            s[2] * 2 * (x * z + y * w), s[2] * 2 * (y * z - x * w),
+            s[2] * (1 - 2 * (x * x + y * y)), 0,
+            t[0], t[1], t[2], 1};
+}
+
+AssetPointer open_asset(const std::string &path)
+{
+    const gtx_jobs jobs = gtx_host_jobs(0);
+    gtx_open_desc desc = {};
+    desc.jobs = &jobs;
+    gtx_asset *asset;
+    gtx_error error;
+    if (gtx_open_file(path.c_str(), &desc, &asset, &error) != GTX_OK)
+        throw Error(error.result, error.message);
+    return AssetPointer(asset);
+}
+
+static void add_asset(Scene &scene, const std::string &path, const Transform &transform)
+{
+    scene.assets.push_back({open_asset(path), transform});
+}
+
+/* Places the assets that the nodes of a glTF scene name; false when no node names one. */
+static bool add_placed_assets(Scene &scene, const json &gltf, const std::string &folder)
+{
+    struct Visit {
+        size_t node;
+        Transform parent;
+    };
+    const json nodes = gltf.value("nodes", json::array());
+    std::vector<Visit> stack;
+    for (const json &s : gltf.value("scenes", json::array()))
+        for (size_t node : s.value("nodes", std::vector<size_t>()))
+            stack.push_back({node, identity_transform});
+
+    bool found = false;
+    for (size_t visited = 0; !stack.empty(); ++visited) {
+        Visit visit = stack.back();
+        stack.pop_back();
+        if (visit.node >= nodes.size() || visited > nodes.size())
+            throw Error(GTX_ERROR_INPUT, "the scene's nodes do not form a forest");
+        const json &node = nodes[visit.node];
+        Transform world = multiply(visit.parent, node_transform(node));
+        if (node.contains("extras") && node["extras"].contains("geotex")) {
+            add_asset(scene, folder + node["extras"]["geotex"].get<std::string>(), world);
+            found = true;
+        }
+        for (size_t child : node.value("children", std::vector<size_t>()))
+            stack.push_back({child, world});
+    }
+    return found;
+}
+
+static bool ends_with(const std::string &text, const char *suffix)
+{
+    size_t n = std::strlen(suffix);
+    return text.size() >= n && text.compare(text.size() - n, n, suffix) == 0;
+}
+
+static void add_model(Scene &scene, const std::string &path, Task &task)
+{
+    CleanReport report;
+    scene.meshes.push_back(clean_mesh(import_mesh(path, task), task, report));
+}
+
+static void add_gltf(Scene &scene, const std::string &path, Task &task)
+{
+    std::ifstream file(path, std::ios::binary);
+    std::stringstream text;
+    text << file.rdbuf();
+    if (!file)
+        throw Error(GTX_ERROR_READ, "cannot be read");
+    bool placed = false;
+    try {
+        json gltf = json::parse(text.str());
+        size_t slash = path.rfind('/');
+        placed =
+            add_placed_assets(scene, gltf, slash == path.npos ? "" : path.substr(0, slash + 1));
+    } catch (const json::exception &e) {
+        throw Error(GTX_ERROR_INPUT, e.what());
+    }
+    try {
+        add_model(scene, path, task);
+    } catch (const Error &e) {
+        if (!placed || e.result != GTX_ERROR_EMPTY) /* a scene of assets alone is fine */
+            throw;
+    }
+}
+
+bool is_asset(const std::string &path)
+{
+    char start[5] = {0};
+    FILE *file = std::fopen(path.c_str(), "rb");
+    if (!file)
+        throw Error(GTX_ERROR_READ, std::strerror(errno));
+    size_t got = std::fread(start, 1, 4, file);
+    std::fclose(file);
+    return ends_with(path, ".gtx") || (got == 4 && !std::memcmp(start, "\xabGTX", 4));
+}
+
+void add_file(Scene &scene, const std::string &path, Task &task)
+{
+    if (is_asset(path))
+        add_asset(scene, path, identity_transform);
+    else if (ends_with(path, ".gltf"))
+        add_gltf(scene, path, task);
+    else
+        add_model(scene, path, task);
+}
+
+void measure_bounds(Scene &scene)
+{
+    const double inf = std::numeric_limits<double>::infinity();
+    Vec3d low(inf, inf, inf), high(-inf, -inf, -inf);
+    auto add = [&](const Vec3d &p) {
+        for (int i = 0; i < 3; ++i) {
+            low[i] = std::min(low[i], p[i]);
+            high[i] = std::max(high[i], p[i]);
+        }
+    };
+    for (const Mesh &mesh : scene.meshes)
+        for (const Vec3d &p : mesh.positions)
+            add(p);
+    for (const PlacedAsset &placed : scene.assets) {
+        gtx_info info;
+        gtx_get_info(placed.asset.get(), &info);
+        const Transform &m = placed.transform;
+        for (int corner = 0; corner < 8; ++corner) {
+            double p[3];
+            for (int i = 0; i < 3; ++i)
+                p[i] = info.anchor[i] +
+                       double(corner >> i & 1 ? info.bounds_max[i] : info.bounds_min[i]);
+            add({m[0] * p[0] + m[4] * p[1] + m[8] * p[2] + m[12],
+                 m[1] * p[0] + m[5] * p[1] + m[9] * p[2] + m[13],
+                 m[2] * p[0] + m[6] * p[1] + m[10] * p[2] + m[14]});
+        }
+    }
+    if (!(low.x <= high.x)) /* nothing at all */
+        low = high = Vec3d(0, 0, 0);
+    scene.centre = (low + high) * 0.5;
+    scene.radius = std::max(length(high - low) / 2, std::numeric_limits<double>::min());
+}
+
+} // namespace gtx

@@ -1,0 +1,162 @@
+/* A scene on the GPU: models and polygons, in one z-buffer. */
+#include "cli/view/scene_renderer.hpp"
+
+#include "cli/view/polygons.hpp"
+#include "host/jobs.h"
+
+namespace gtx {
+
+Stage::Stage(gtx_host_load load)
+{
+    gtx_error error;
+    const gtx_jobs jobs = gtx_host_jobs(0);
+    gtx_renderer_desc desc = {};
+    desc.load = load;
+    desc.jobs = &jobs;
+    check(gtx_host_gl_init(&gl, load, nullptr, &error), error);
+    check(gtx_polygon_program_create(&gl, &program, &error), error);
+    if (gtx_renderer_create(&desc, &renderer, &error) != GTX_OK) {
+        gtx_polygon_program_destroy(&gl, &program);
+        throw Error(error.result, error.message);
+    }
+}
+
+Stage::~Stage()
+{
+    clear();
+    gtx_renderer_destroy(renderer);
+    gtx_polygon_program_destroy(&gl, &program);
+}
+
+void Stage::clear()
+{
+    for (Props &p : looks) {
+        for (gtx_model *model : p.models)
+            gtx_model_destroy(renderer, model);
+        for (gtx_polygons &polygons : p.polygons)
+            gtx_polygons_destroy(&gl, &polygons);
+        p = Props();
+    }
+    for (gtx_polygons &lines : boxes)
+        gtx_polygons_destroy(&gl, &lines);
+    boxes.clear();
+    places.clear();
+}
+
+/* The transform of an asset's own coordinates, with the scene's centre at the origin. */
+static gtx_instance place(const PlacedAsset &placed, const Vec3d &centre)
+{
+    gtx_info info;
+    gtx_get_info(placed.asset.get(), &info);
+    gtx_instance instance = {};
+    const Transform &m = placed.transform;
+    for (int i = 0; i < 16; ++i)
+        instance.transform[i] = float(m[size_t(i)]);
+    for (int row = 0; row < 3; ++row) {
+        double sum = m[size_t(12 + row)] - centre[row];
+        for (int k = 0; k < 3; ++k)
+            sum += m[size_t(4 * k + row)] * info.anchor[k];
+        instance.transform[12 + row] = float(sum);
+    }
+    return instance;
+}
+
+void Stage::show(const Scene &shown, std::vector<gtx_model *> models)
+{
+    clear();
+    scene = &shown;
+    looks[size_t(Look::PLAIN)].models = std::move(models);
+    for (const PlacedAsset &placed : shown.assets)
+        places.push_back(place(placed, shown.centre));
+    props(Look::PLAIN);
+}
+
+static gtx_polygons upload(const gtx_host_gl &gl, const Polygons &shape)
+{
+    gtx_polygons polygons;
+    gtx_error error;
+    check(gtx_polygons_create(&gl, shape.vertices.data(), uint32_t(shape.vertices.size()),
+                              shape.indices.data(), uint32_t(shape.indices.size()), &polygons,
+                              &error), error);
+    return polygons;
+}
+
+Stage::Props &Stage::props(Look look)
+{
+    Props &p = looks[size_t(look)];
+    if (p.ready)
+        return p;
+    for (size_t i = p.models.size(); i < scene->assets.size(); ++i) {
+        const gtx_asset *asset = scene->assets[i].asset.get();
+        AssetPointer copy;
+        if (look != Look::PLAIN)
+            copy = recolor(asset, look);
+        gtx_model *model;
+        gtx_error error;
+        check(gtx_model_create(renderer, copy ? copy.get() : asset, &model, &error), error);
+        p.models.push_back(model);
+    }
+    for (size_t i = p.polygons.size(); i < scene->meshes.size(); ++i) {
+        Polygons shape = make_polygons(scene->meshes[i], scene->centre);
+        recolor(shape, look);
+        p.polygons.push_back(upload(gl, shape));
+        p.polygon_bytes += shape.vertices.size() * sizeof shape.vertices[0] +
+                           shape.indices.size() * sizeof shape.indices[0];
+    }
+    p.ready = true;
+    return p;
+}
+
+void Stage::draw(const gtx_view &view, Look look)
+{
+    const Props &p = props(look);
+    gl.ClearColor(0.92f, 0.93f, 0.95f, 1);
+    gl.ClearDepthf(1);
+    gl.DepthMask(GL_TRUE);
+    gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthFunc(GL_LESS);
+    for (const gtx_polygons &polygons : p.polygons)
+        gtx_polygons_draw(&gl, &program, &polygons, nullptr, view.view, view.projection,
+                          view.light_direction, view.ambient);
+    std::vector<gtx_instance> instances = places;
+    for (size_t i = 0; i < instances.size(); ++i)
+        instances[i].model = p.models[i];
+    gtx_error error;
+    if (!instances.empty())
+        check(gtx_draw(renderer, &view, instances.data(), uint32_t(instances.size()), &error),
+              error);
+}
+
+void Stage::draw_boxes(const gtx_view &view)
+{
+    for (size_t i = boxes.size(); i < scene->assets.size(); ++i) {
+        boxes.push_back(upload(gl, patch_boxes(scene->assets[i].asset.get())));
+        boxes.back().mode = GL_LINES;
+    }
+    for (size_t i = 0; i < boxes.size(); ++i)
+        gtx_polygons_draw(&gl, &program, &boxes[i], places[i].transform, view.view,
+                          view.projection, view.light_direction, 1);
+}
+
+uint64_t Stage::gpu_bytes() const
+{
+    const Props &p = looks[size_t(Look::PLAIN)];
+    uint64_t bytes = 0;
+    for (const gtx_model *model : p.models) {
+        gtx_model_size size = gtx_model_gpu_size(model);
+        bytes += size.geometry + size.color;
+    }
+    return bytes + p.polygon_bytes;
+}
+
+void light_from_camera(gtx_view &view)
+{
+    const float eye[3] = {-0.40f, 0.55f, 0.73f};
+    for (int i = 0; i < 3; ++i)
+        view.light_direction[i] = view.view[4 * i] * eye[0] + view.view[4 * i + 1] * eye[1] +
+                                  view.view[4 * i + 2] * eye[2];
+    view.ambient = 0.2f;
+}
+
+} // namespace gtx

@@ -1,0 +1,63 @@
+/* A scene on the GPU, drawn as `gtx render` and `gtx view` show it. */
+#pragma once
+
+#include "cli/view/debug_views.hpp"
+#include "cli/view/scene.hpp"
+#include "host/polygons.h"
+
+#include <geotex/render.h>
+
+namespace gtx {
+
+/* Throws what a failed call says. */
+inline void check(gtx_result result, const gtx_error &error)
+{
+    if (result != GTX_OK)
+        throw Error(result, error.message);
+}
+
+/* Needs its context current from the constructor to the destructor. Everything throws Error: GL,
+ * SHADER, MEMORY, LIMIT. */
+class Stage {
+public:
+    explicit Stage(gtx_host_load load);
+    Stage(const Stage &) = delete;
+    ~Stage();
+
+    /* Shows another scene, which must outlive its show. `models` are of the scene's assets, in
+     * order and uploaded, and are taken over; none: they are made here. */
+    void show(const Scene &scene, std::vector<gtx_model *> models = {});
+
+    /* Clears the bound framebuffer and draws into it. Depth test on, func LESS, afterwards. */
+    void draw(const gtx_view &view, Look look = Look::PLAIN);
+    /* The boxes of all patches as lines, on top of what was drawn, in its depth. */
+    void draw_boxes(const gtx_view &view);
+
+    /* Bytes on the GPU of what the plain look draws. */
+    uint64_t gpu_bytes() const;
+
+    gtx_host_gl gl = {};
+    gtx_polygon_program program = {};
+    gtx_renderer *renderer = nullptr;
+
+private:
+    /* What one look draws; made when it is first asked for. */
+    struct Props {
+        bool ready = false;
+        std::vector<gtx_model *> models;
+        std::vector<gtx_polygons> polygons;
+        uint64_t polygon_bytes = 0;
+    };
+    Props &props(Look look);
+    void clear();
+
+    const Scene *scene = nullptr;
+    Props looks[LOOK_COUNT];
+    std::vector<gtx_instance> places; /* without their models */
+    std::vector<gtx_polygons> boxes;
+};
+
+/* A key light over the camera's left shoulder. */
+void light_from_camera(gtx_view &view);
+
+} // namespace gtx

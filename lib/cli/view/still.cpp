@@ -1,0 +1,62 @@
+/* A scene -> an image: an offscreen context, polygons and patches in one z-buffer. */
+#include "cli/view/still.hpp"
+
+#include "cli/view/scene_renderer.hpp"
+#include "host/camera.h"
+#include "host/framebuffer.h"
+#include "host/offscreen.h"
+
+#include <limits>
+
+namespace gtx {
+
+/* A context that lives as long as its picture. */
+struct Offscreen {
+    gtx_offscreen *context = nullptr;
+    explicit Offscreen(bool gles)
+    {
+        gtx_error error;
+        check((gles ? gtx_offscreen_create_es : gtx_offscreen_create)(&context, &error), error);
+    }
+    Offscreen(const Offscreen &) = delete;
+    ~Offscreen() { gtx_offscreen_destroy(context); }
+};
+
+Still draw_still(const Scene &scene, const StillOptions &options)
+{
+    Offscreen offscreen(options.gles);
+    Stage stage(gtx_offscreen_load);
+    gtx_framebuffer target; /* dies with the context */
+    gtx_error error;
+    check(gtx_framebuffer_create(&stage.gl, int(options.width), int(options.height), &target,
+                                 &error), error);
+    gtx_camera camera = {};
+    camera.radius = float(scene.radius);
+    camera.azimuth = float(options.camera[0]);
+    camera.elevation = float(options.camera[1]);
+    camera.distance = float(options.camera[2]);
+    gtx_view view = {};
+    view.method = options.method;
+    view.viewport_width = options.width;
+    view.viewport_height = options.height;
+    view.max_error = float(options.max_error);
+    view.level = options.level;
+    gtx_camera_matrices(&camera, float(options.width) / float(options.height), view.view,
+                        view.projection);
+    light_from_camera(view);
+    stage.show(scene);
+    stage.draw(view);
+
+    Still still;
+    size_t pixels = size_t(options.width) * options.height;
+    still.color.resize(4 * pixels);
+    still.depth.resize(pixels);
+    gtx_framebuffer_read_color(&stage.gl, &target, still.color.data());
+    gtx_framebuffer_read_depth(&stage.gl, &target, still.depth.data());
+    for (float &d : still.depth)
+        d = d < 1 ? gtx_camera_distance(view.projection, 0, d)
+                  : std::numeric_limits<float>::infinity();
+    return still;
+}
+
+} // namespace gtx

@@ -1,0 +1,80 @@
+/* The window of `gtx view`: what it shows, its keys, its text. */
+#pragma once
+
+#include "cli/view/loader.hpp"
+#include "cli/view/scene_renderer.hpp"
+#include "host/framebuffer.h"
+#include "host/text.h"
+#include "host/window.h"
+
+namespace gtx {
+
+/* The last part of a path. */
+std::string file_name(const std::string &path);
+
+/* What drives the viewer instead of a person. */
+struct ViewScript {
+    const char *keys = "";      /* pressed one a frame; see cmd_view.cpp */
+    const char *drop = nullptr; /* a file dropped before the first frame */
+    uint32_t frames = 0;        /* it closes after as many, once all keys are pressed and nothing
+                                   is being cooked; 0: it stays */
+    const char *picture = nullptr; /* where the last frame goes */
+};
+
+class Viewer {
+public:
+    /* Opens the window. Throws Error: GL, SHADER, MEMORY. */
+    Viewer(Scene scene, std::string name, const uint32_t size[2], const double camera[3],
+           size_t method);
+    Viewer(const Viewer &) = delete;
+    ~Viewer();
+
+    /* Draws until the window is closed. Returns an exit code; throws Error: GL, MEMORY, WRITE. */
+    int run(const ViewScript &script);
+
+    struct Key {
+        char key;
+        const char *help;
+        void (*act)(Viewer &);
+    };
+
+private:
+    static const Key keys[];
+    void press(char key);
+    void press_script(char key);
+    void escape();
+    void save_screenshot();
+    void take_drops();
+    void take_loaded();
+    void receive(Loader::Result result);
+    void show(Scene shown, std::vector<gtx_model *> models);
+    void frame_all();
+    void draw_frame();
+    void draw_overlay();
+    void add_status(gtx_shapes &shapes, float dot);
+    void add_progress(gtx_shapes &shapes, float dot);
+    void add_help(gtx_shapes &shapes, float dot);
+    void write_picture(const std::string &path);
+    void release();
+
+    gtx_window *window = nullptr;
+    std::unique_ptr<Stage> stage;
+    gtx_framebuffer target = {};
+    int width = 0, height = 0;
+    Scene scene;
+    std::string name, note;     /* what is shown; a line about what happened last */
+    std::string facts;          /* triangles, patches and bytes of the scene */
+    Loader loader;
+    Loader::Result incoming;    /* is being uploaded where it has models */
+    gtx_camera camera = {};
+    float home[3];              /* azimuth, elevation and distance */
+    gtx_view view = {};
+    size_t method;              /* in the table of methods */
+    Look look = Look::PLAIN;
+    bool boxes = false, help = false, text = true, fixed_light = false, wants_picture = false;
+    bool minimised = false;
+    double milliseconds = 0;    /* of a frame, lately */
+    int code = 0;
+};
+
+} // namespace gtx

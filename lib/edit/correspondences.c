@@ -1,0 +1,399 @@
+/* Whose surface it is: texels outside a patch's outline are looked up in its neighbours, by
+ * casting along the patch's z, or around the ridge where that meets nothing; they follow them
+ * from then on. */
+#include "edit/edit.h"
+
+#include "base/alloc.h"
+#include "base/error.h"
+#include "trace/caster.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* How far, in texels across the surface, two height fields of one surface may be apart. */
+static const double APART = 1.5;
+/* Surfaces that are steeper against z than this are looked for no farther. */
+static const double STEEP = 0.3;
+
+/* Patches in the order in which a plane along x meets their spheres. */
+typedef struct reach {
+    float low, high;
+    uint32_t patch;
+} reach;
+
+static int by_low(const void *a, const void *b)
+{
+    const reach *p = a, *q = b;
+    if (p->low != q->low)
+        return p->low < q->low ? -1 : 1;
+    return p->patch < q->patch ? -1 : p->patch > q->patch;
+}
+
+/* What linking works with. */
+typedef struct linker {
+    gtx_edit *edit;
+    gtx_caster *caster;
+    reach *reaches;
+    float widest;             /* of the reaches */
+    uint32_t *near;           /* patches whose spheres meet that of the one at hand */
+    uint32_t near_count;
+} linker;
+
+static void find_near(linker *l, uint32_t patch)
+{
+    const gtx_edit *edit = l->edit;
+    const float *s = edit->source->patches[patch].sphere;
+    const float slack = s[3] + 4 * edit->texel_size, low = s[0] - slack - l->widest;
+    uint32_t first = 0, last = edit->count;
+    while (first < last) {
+        const uint32_t middle = first + (last - first) / 2;
+        if (l->reaches[middle].low < low)
+            first = middle + 1;
+        else
+            last = middle;
+    }
+    l->near_count = 0;
+    for (; first < edit->count && l->reaches[first].low <= s[0] + slack; ++first) {
+        const uint32_t other = l->reaches[first].patch;
+        const float *t = edit->source->patches[other].sphere;
+        const float r = slack + t[3], x = s[0] - t[0], y = s[1] - t[1], z = s[2] - t[2];
+        if (other != patch && x * x + y * y + z * z <= r * r)
+            l->near[l->near_count++] = other;
+    }
+}
+
+/* Where a texel's surface is on a neighbour. */
+typedef struct place {
+    gtx_crossing at;
+    double trim;              /* code there */
+} place;
+
+static double trim_at(const gtx_height_field *field, double x, double y)
+{
+    const uint32_t i = (uint32_t)fmin(fmax(x, 0), field->width - 2);
+    const uint32_t j = (uint32_t)fmin(fmax(y, 0), field->height - 2);
+    const double u = x - i, v = y - j;
+    const uint8_t *row = field->trim + (size_t)j * field->width + i, *next = row + field->width;
+    return (1 - v) * ((1 - u) * row[0] + u * row[1]) + v * ((1 - u) * next[0] + u * next[1]);
+}
+
+/* The neighbour that is nearest, and in whose outline the texel lies: the two are weighed, for
+ * which height field is a little nearer is chance. The texel is at the middle of the ray. */
+static place find_owner(const linker *l, const gtx_line *ray, double facing)
+{
+    place best = {.at = {.field = UINT32_MAX}};
+    double least = INFINITY;
+    for (uint32_t i = 0; i < l->near_count; ++i) {
+        gtx_crossing found = {.t = ray->t_max, .field = UINT32_MAX};
+        gtx_walk_field(l->caster, l->near[i], ray, false, &found);
+        if (found.field == UINT32_MAX)
+            continue;
+        const double trim = trim_at(&l->caster->fields[found.field], found.x, found.y);
+        const double apart = fabs(found.t - ray->t_max / 2) * facing / l->edit->texel_size;
+        const double cost = 2 * apart + fmax((trim - 128) / 16, -0.5);
+        if (cost >= least)
+            continue;
+        least = cost;
+        best = (place){found, trim};
+    }
+    return best;
+}
+
+static gtx_link make_link(const gtx_edit *edit, uint32_t texel, const gtx_crossing *at)
+{
+    const gtx_spread *other = &edit->fields[at->field];
+    const double x = fmax(at->x, 0), y = fmax(at->y, 0);
+    const uint32_t last_x = other->width - 2 * GTX_EDIT_MARGIN - 2;
+    const uint32_t last_y = other->height - 2 * GTX_EDIT_MARGIN - 2;
+    const uint32_t i = x < last_x ? (uint32_t)x : last_x, j = y < last_y ? (uint32_t)y : last_y;
+    return (gtx_link){.texel = texel, .patch = at->field,
+                      .source = (j + GTX_EDIT_MARGIN) * other->width + i + GTX_EDIT_MARGIN,
+                      .u = (float)fmin(x - i, 1), .v = (float)fmin(y - j, 1)};
+}
+
+/* Whether the surface that was found looks the same way, as one surface does. */
+static bool faces(const linker *l, const place *found, const float normal[3])
+{
+    const gtx_crossing *at = &found->at;
+    float n[3];
+    gtx_field_normal(&l->caster->fields[at->field], at->x, at->y, n);
+    return n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2] > 0.3f;
+}
+
+/* Casts at one texel. One past the coded ones is set down on what is found there. */
+static bool link_texel(const linker *l, uint32_t patch, uint32_t texel, gtx_link *out)
+{
+    gtx_edit *edit = l->edit;
+    const gtx_spread *field = &edit->fields[patch];
+    const float *z = edit->source->patches[patch].axis_z;
+    const size_t at = field->first + texel;
+    const float *n = edit->normal[at];
+    double facing = 0;
+    for (int k = 0; k < 3; ++k)
+        facing += (double)n[k] * z[k];
+    const double far = APART * (1 + edit->ring[at]) * edit->texel_size / fmax(facing, STEEP);
+    gtx_line ray = {.t_max = 2 * far};
+    for (int k = 0; k < 3; ++k) {
+        ray.origin[k] = edit->rest[at][k] + far * z[k];
+        ray.direction[k] = -z[k];
+    }
+    const place found = find_owner(l, &ray, facing);
+    if (found.at.field == UINT32_MAX || !faces(l, &found, n))
+        return false;
+    *out = make_link(edit, texel, &found.at);
+    if (edit->ring[at]) {
+        edit->height[at] += (float)(far - found.at.t);
+        for (int k = 0; k < 3; ++k)
+            edit->rest[at][k] = (float)(ray.origin[k] + found.at.t * ray.direction[k]);
+    }
+    return true;
+}
+
+/* The neighbour k of 8 of a texel; false past the height field's end. */
+static bool neighbour(const gtx_spread *field, uint32_t texel, int k, uint32_t *out)
+{
+    static const int8_t step[8][2] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0},
+                                      {1, 0},   {-1, 1}, {0, 1},  {1, 1}};
+    const int64_t x = (int64_t)(texel % field->width) + step[k][0];
+    const int64_t y = (int64_t)(texel / field->width) + step[k][1];
+    if (x < 0 || y < 0 || x >= field->width || y >= field->height)
+        return false;
+    *out = (uint32_t)y * field->width + (uint32_t)x;
+    return true;
+}
+
+/* The crossing of a neighbour near a point, along the neighbour's z. */
+static bool project(const linker *l, uint32_t patch, const double point[3], place *out)
+{
+    const float *z = l->edit->source->patches[patch].axis_z;
+    const double far = 2 * APART * l->edit->texel_size;
+    gtx_line ray = {.t_max = 2 * far};
+    for (int k = 0; k < 3; ++k) {
+        ray.origin[k] = point[k] + far * z[k];
+        ray.direction[k] = -z[k];
+    }
+    gtx_crossing found = {.t = ray.t_max, .field = UINT32_MAX};
+    gtx_walk_field(l->caster, patch, &ray, false, &found);
+    if (found.field == UINT32_MAX)
+        return false;
+    *out = (place){found, trim_at(&l->caster->fields[patch], found.x, found.y)};
+    out->at.t -= far; /* above the point */
+    return true;
+}
+
+/* Turns `v` as the least turn from one unit vector to another does. */
+static bool turn(const float from[3], const float to[3], double v[3])
+{
+    double axis[3], cosine = 0, along = 0;
+    for (int k = 0; k < 3; ++k) {
+        const int a = (k + 1) % 3, b = (k + 2) % 3;
+        axis[k] = (double)from[a] * to[b] - (double)from[b] * to[a];
+        cosine += (double)from[k] * to[k];
+        along += axis[k] * v[k];
+    }
+    if (cosine < -0.9)
+        return false;
+    double out[3];
+    for (int k = 0; k < 3; ++k) {
+        const int a = (k + 1) % 3, b = (k + 2) % 3;
+        out[k] = cosine * v[k] + axis[a] * v[b] - axis[b] * v[a] + axis[k] * along / (1 + cosine);
+    }
+    memcpy(v, out, sizeof out);
+    return true;
+}
+
+/* The own texel that is nearest in the grid. */
+static bool find_own(const gtx_edit *edit, const gtx_spread *field, uint32_t texel, size_t *out)
+{
+    const int64_t i = texel % field->width, j = texel / field->width;
+    int64_t best = INT64_MAX;
+    for (int64_t y = j - GTX_EDIT_MARGIN; y <= j + GTX_EDIT_MARGIN; ++y)
+        for (int64_t x = i - GTX_EDIT_MARGIN; x <= i + GTX_EDIT_MARGIN; ++x) {
+            if (x < 0 || y < 0 || x >= field->width || y >= field->height)
+                continue;
+            const size_t at = field->first + (size_t)y * field->width + (size_t)x;
+            const int64_t square = (x - i) * (x - i) + (y - j) * (y - j);
+            if (edit->kind[at] != GTX_TEXEL_OWN || square >= best)
+                continue;
+            best = square;
+            *out = at;
+        }
+    return best < INT64_MAX;
+}
+
+/* Where the step from an own texel to the one at hand leads on a neighbour that goes on at another
+ * angle. */
+static bool link_around(const linker *l, uint32_t patch, uint32_t texel, gtx_link *out)
+{
+    const gtx_edit *edit = l->edit;
+    const gtx_spread *field = &edit->fields[patch];
+    place best = {.trim = INFINITY};
+    size_t own = 0;
+    if (!find_own(edit, field, texel, &own))
+        return false;
+    for (uint32_t i = 0; i < l->near_count; ++i) {
+        const uint32_t other = l->near[i];
+        const float *z = edit->source->patches[other].axis_z;
+        double from[3], step[3];
+        float normal[3];
+        place start, end;
+        for (int k = 0; k < 3; ++k) {
+            from[k] = edit->rest[own][k];
+            step[k] = (double)edit->rest[field->first + texel][k] - from[k];
+        }
+        if (!project(l, other, from, &start))
+            continue;
+        gtx_field_normal(&l->caster->fields[other], start.at.x, start.at.y, normal);
+        if (!turn(edit->normal[own], normal, step))
+            continue;
+        for (int k = 0; k < 3; ++k)
+            from[k] += step[k] - start.at.t * z[k];
+        if (project(l, other, from, &end) && end.trim < best.trim)
+            best = end;
+    }
+    if (best.trim == INFINITY)
+        return false;
+    *out = make_link(edit, texel, &best.at);
+    return true;
+}
+
+/* Steps from own and borrowed texels, and the loose ones in their order. */
+static void order_loose(gtx_edit *edit, gtx_spread *field)
+{
+    const uint32_t count = field->width * field->height;
+    const uint8_t *kind = edit->kind + field->first;
+    uint8_t *ring = edit->ring + field->first;
+    uint32_t *loose = edit->loose + field->first_loose, other;
+    size_t end = 0;
+    for (uint32_t t = 0; t < count; ++t)
+        ring[t] = kind[t] == GTX_TEXEL_OWN || kind[t] == GTX_TEXEL_BORROWED ? 0 : UINT8_MAX;
+    for (uint32_t t = 0; t < count; ++t)
+        for (int k = 0; k < 8 && kind[t] == GTX_TEXEL_LOOSE && ring[t] == UINT8_MAX; ++k)
+            if (neighbour(field, t, k, &other) && ring[other] == 0) {
+                ring[t] = 1;
+                loose[end++] = t;
+            }
+    for (size_t n = 0; n < end; ++n)
+        for (int k = 0; k < 8 && ring[loose[n]] < UINT8_MAX - 1; ++k)
+            if (neighbour(field, loose[n], k, &other) && kind[other] == GTX_TEXEL_LOOSE &&
+                ring[other] == UINT8_MAX) {
+                ring[other] = (uint8_t)(ring[loose[n]] + 1);
+                loose[end++] = other;
+            }
+    field->loose_count = end;
+}
+
+static gtx_result link_all(linker *l, gtx_error *error)
+{
+    gtx_edit *edit = l->edit;
+    size_t most = 0;
+    for (size_t t = 0; t < edit->texels; ++t)
+        most += edit->kind[t] == GTX_TEXEL_LOOSE;
+    edit->link_count = edit->loose_count = most;
+    edit->links = gtx_alloc_array(&edit->allocator, most, sizeof *edit->links);
+    edit->loose = gtx_alloc_array(&edit->allocator, most, sizeof *edit->loose);
+    if (most && (!edit->links || !edit->loose))
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for %zu borrowed texels", most);
+    size_t links = 0, loose = 0;
+    for (uint32_t p = 0; p < edit->count; ++p) {
+        gtx_spread *field = &edit->fields[p];
+        const uint32_t count = field->width * field->height;
+        find_near(l, p);
+        field->first_link = links;
+        field->first_loose = loose;
+        for (uint32_t t = 0; t < count; ++t)
+            if (edit->kind[field->first + t] == GTX_TEXEL_LOOSE &&
+                (link_texel(l, p, t, &edit->links[links]) ||
+                 link_around(l, p, t, &edit->links[links]))) {
+                edit->kind[field->first + t] = GTX_TEXEL_BORROWED;
+                ++links;
+            }
+        field->link_count = links - field->first_link;
+        order_loose(edit, field);
+        loose += field->loose_count;
+    }
+    return GTX_OK;
+}
+
+/* The linear part, with heights in object units. */
+static void take_frames(gtx_edit *edit, const gtx_caster *caster)
+{
+    const double top = edit->source->info.height_bits == 8 ? 254 : 65534;
+    for (uint32_t p = 0; p < edit->count; ++p) {
+        const double step = edit->source->patches[p].extent_z / top;
+        for (int r = 0; r < 3; ++r)
+            for (int k = 0; k < 3; ++k)
+                edit->fields[p].to_grid[r][k] =
+                    caster->fields[p].to_grid[r][k] * (r == 2 ? step : 1);
+    }
+}
+
+gtx_result gtx_edit_link(gtx_edit *edit, gtx_error *error)
+{
+    const gtx_allocator *hooks = &edit->allocator;
+    const gtx_caster_desc desc = {.allocator = hooks};
+    linker l = {.edit = edit};
+    gtx_result result = gtx_caster_create(edit->source, &desc, &l.caster, error);
+    if (result)
+        return result;
+    l.reaches = gtx_alloc_array(hooks, edit->count, sizeof *l.reaches);
+    l.near = gtx_alloc_array(hooks, edit->count, sizeof *l.near);
+    if (l.reaches && l.near) {
+        for (uint32_t p = 0; p < edit->count; ++p) {
+            const float *s = edit->source->patches[p].sphere;
+            l.reaches[p] = (reach){s[0] - s[3], s[0] + s[3], p};
+            l.widest = fmaxf(l.widest, 2 * s[3]);
+        }
+        qsort(l.reaches, edit->count, sizeof *l.reaches, by_low);
+        take_frames(edit, l.caster);
+        result = link_all(&l, error);
+    } else {
+        result = gtx_fail(error, GTX_ERROR_MEMORY, "no memory to find neighbours");
+    }
+    gtx_free_array(hooks, l.reaches, edit->count, sizeof *l.reaches);
+    gtx_free_array(hooks, l.near, edit->count, sizeof *l.near);
+    gtx_caster_destroy(l.caster);
+    return result;
+}
+
+/* The mean of the changes beside a loose texel that are nearer to the surface. */
+static void follow_beside(const gtx_edit *edit, const gtx_spread *field, uint32_t texel,
+                          gtx_change *changes)
+{
+    const uint8_t *ring = edit->ring + field->first;
+    gtx_change sum = {0};
+    float count = 0;
+    for (int k = 0; k < 8; ++k) {
+        uint32_t other;
+        if (!neighbour(field, texel, k, &other) || ring[other] >= ring[texel])
+            continue;
+        for (int c = 0; c < 8; ++c)
+            sum[c] += changes[other][c];
+        count += 1;
+    }
+    for (int c = 0; c < 8; ++c)
+        changes[texel][c] = sum[c] / count;
+}
+
+void gtx_edit_follow(const gtx_edit *edit, gtx_change *changes)
+{
+    for (uint32_t p = 0; p < edit->count; ++p) {
+        const gtx_spread *field = &edit->fields[p];
+        gtx_change *own = changes + field->first;
+        if (!field->touched)
+            continue;
+        for (size_t i = 0; i < field->link_count; ++i) {
+            const gtx_link *link = &edit->links[field->first_link + i];
+            const gtx_spread *other = &edit->fields[link->patch];
+            gtx_change *a = changes + other->first + link->source, *b = a + other->width;
+            const float u = link->u, v = link->v;
+            const float weight[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
+            for (int c = 0; c < 8; ++c)
+                own[link->texel][c] = weight[0] * a[0][c] + weight[1] * a[1][c] +
+                                      weight[2] * b[0][c] + weight[3] * b[1][c];
+        }
+        for (size_t i = 0; i < field->loose_count; ++i)
+            follow_beside(edit, field, edit->loose[field->first_loose + i], own);
+    }
+}

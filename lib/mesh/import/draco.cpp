@@ -1,0 +1,132 @@
+/* Draco streams. Damaged ones often decode without complaint, so all of the result is checked. */
+#include "mesh/import/draco.hpp"
+
+#include <draco/compression/decode.h>
+#include <draco/mesh/mesh.h>
+
+namespace gtx {
+
+static DracoRole role_of(draco::GeometryAttribute::Type type)
+{
+    switch (type) {
+    case draco::GeometryAttribute::POSITION: return DracoRole::position;
+    case draco::GeometryAttribute::NORMAL: return DracoRole::normal;
+    case draco::GeometryAttribute::COLOR: return DracoRole::color;
+    default: return DracoRole::other;
+    }
+}
+
+static double full_value(draco::DataType type)
+{
+    switch (type) {
+    case draco::DT_INT8: return 127;
+    case draco::DT_UINT8: return 255;
+    case draco::DT_INT16: return 32767;
+    case draco::DT_UINT16: return 65535;
+    default: return 1;
+    }
+}
+
+static DracoAttribute read_attribute(const draco::Mesh &mesh, const draco::PointAttribute &from)
+{
+    DracoAttribute to;
+    to.id = from.unique_id();
+    to.role = role_of(from.attribute_type());
+    to.components = from.num_components();
+    to.full = full_value(from.data_type());
+    int64_t item = int64_t(draco::DataTypeLength(from.data_type())) * to.components;
+    bool sound = from.buffer() && item > 0 && from.byte_stride() >= item && from.byte_offset() >= 0;
+    for (draco::PointIndex p(0); sound && p < mesh.num_points(); ++p) {
+        if (!from.is_mapping_identity() && p.value() >= from.indices_map_size()) {
+            sound = false;
+            break;
+        }
+        draco::AttributeValueIndex v = from.mapped_index(p);
+        uint64_t at =
+            uint64_t(from.byte_offset()) + uint64_t(v.value()) * uint64_t(from.byte_stride());
+        double values[4];
+        sound = at + uint64_t(item) <= from.buffer()->data_size() &&
+                from.ConvertValue<double>(v, int8_t(to.components), values);
+        /* Draco has divided normalised integers by their full value: callers want them raw. */
+        for (int k = 0; k < to.components; ++k)
+            to.values.push_back(from.normalized() ? values[k] * to.full : values[k]);
+    }
+    if (!sound)
+        fail(GTX_ERROR_INPUT, "Draco attribute %u refers to values that are not there", to.id);
+    return to;
+}
+
+static DracoMesh checked(const draco::Mesh &mesh, bool with_uv, Task &task)
+{
+    DracoMesh out;
+    out.points = mesh.num_points();
+    out.triangles.reserve(mesh.num_faces());
+    for (draco::FaceIndex f(0); f < mesh.num_faces(); ++f) {
+        std::array<uint32_t, 3> corners;
+        for (int k = 0; k < 3; ++k) {
+            corners[k] = mesh.face(f)[k].value();
+            if (corners[k] >= out.points)
+                fail(GTX_ERROR_INPUT, "Draco face %u: point %u of %zu", f.value(), corners[k],
+                     out.points);
+        }
+        out.triangles.push_back(corners);
+    }
+    for (int i = 0; i < mesh.num_attributes(); ++i) {
+        const draco::PointAttribute *attribute = mesh.attribute(i);
+        task.advance(0.5 + 0.5 * i / mesh.num_attributes());
+        bool uv = attribute->attribute_type() == draco::GeometryAttribute::TEX_COORD;
+        if ((!uv || with_uv) && attribute->num_components() <= 4)
+            out.attributes.push_back(read_attribute(mesh, *attribute));
+    }
+    return out;
+}
+
+DracoMesh decode_draco(std::string_view bytes, bool with_uv, Task &task)
+{
+    draco::DecoderBuffer buffer;
+    buffer.Init(bytes.data(), bytes.size());
+    auto type = draco::Decoder::GetEncodedGeometryType(&buffer);
+    if (type.ok() && type.value() == draco::POINT_CLOUD)
+        fail(GTX_ERROR_UNSUPPORTED, "the Draco data is a point cloud: it has no faces");
+    if (!type.ok() || type.value() != draco::TRIANGULAR_MESH)
+        fail(GTX_ERROR_INPUT, "the Draco header is damaged");
+
+    draco::Decoder decoder;
+    auto mesh = decoder.DecodeMeshFromBuffer(&buffer);
+    if (!mesh.ok() || !mesh.value())
+        fail(GTX_ERROR_INPUT, "the Draco data is damaged: %s",
+             printable(mesh.status().error_msg_string()).c_str());
+    return checked(*mesh.value(), with_uv, task);
+}
+
+Mesh import_draco(const ModelFile &file, Task &task)
+{
+    DracoMesh draco = decode_draco(file.bytes, false, task);
+    const DracoAttribute *by_role[3] = {};
+    for (const DracoAttribute &a : draco.attributes)
+        if (a.role != DracoRole::other && !by_role[int(a.role)])
+            by_role[int(a.role)] = &a;
+    const DracoAttribute *position = by_role[0], *normal = by_role[1], *color = by_role[2];
+    if (!position || position->components != 3)
+        fail(GTX_ERROR_INPUT, "the Draco data has no positions of three components");
+
+    VertexMesh mesh;
+    mesh.triangles = std::move(draco.triangles);
+    for (size_t i = 0; i < draco.points; ++i) {
+        const double *p = &position->values[3 * i];
+        mesh.positions.push_back({p[0], p[1], p[2]});
+        if (normal && normal->components == 3) {
+            const double *n = &normal->values[3 * i];
+            mesh.normals.push_back(Vec3f(Vec3d(n[0], n[1], n[2])));
+        }
+        if (color && color->components >= 3) {
+            const double *c = &color->values[size_t(color->components) * i];
+            double alpha = color->components == 4 ? c[3] / color->full : 1;
+            mesh.colors.push_back({to_byte(c[0] / color->full), to_byte(c[1] / color->full),
+                                   to_byte(c[2] / color->full), to_byte(alpha)});
+        }
+    }
+    return by_corner(std::move(mesh));
+}
+
+} // namespace gtx

@@ -1,0 +1,93 @@
+/* A glTF document whose numbers are known to lie inside their buffers. Internal to lib/mesh. */
+#pragma once
+
+#include "mesh/import/gltf_material.hpp"
+
+/* libdraco exports a tinygltf of its own, and a program may have another: ours has its own name. */
+#define tinygltf gtx_tinygltf
+#define TINYGLTF_NO_FS
+#define TINYGLTF_NO_STB_IMAGE
+#define TINYGLTF_NO_STB_IMAGE_WRITE
+#define TINYGLTF_NO_INCLUDE_STB_IMAGE
+#define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
+#include <fstream> /* which tinygltf forgets once it is told to stay off the file system */
+#include <tiny_gltf.h>
+
+namespace gtx {
+
+struct GltfDocument {
+    tinygltf::Model model;            /* without buffers, materials and animations */
+    std::vector<std::string> buffers; /* the bytes of each */
+    std::vector<std::string> views;   /* those of each buffer view that was packed, or none */
+    GltfMaterials look;
+    struct ImageSource {
+        std::string uri;
+        int view = -1;
+    };
+    std::vector<ImageSource> images;
+    /* Most triangles that may come out. A few bytes of JSON can ask for a mesh a million times, so
+     * the limit grows with the size of the file; real scenes stay far below it. */
+    uint64_t triangle_limit = 0;
+};
+
+/* Reads the container, the JSON and the buffers. Throws Error: INPUT, UNSUPPORTED, READ, LIMIT. */
+GltfDocument read_gltf_document(const ModelFile &file, Task &task);
+
+/* The bytes of a buffer view, checked. `user` names who asks, as in "accessor 3". */
+std::string_view gltf_view(const GltfDocument &doc, int view, const std::string &user);
+
+/* An accessor's values, sparse substitution and normalisation done. */
+struct GltfValues {
+    int components = 0;
+    size_t count = 0;
+    std::vector<double> values;
+};
+GltfValues gltf_values(const GltfDocument &doc, int accessor);
+
+/* An index accessor's values, each below `vertices`. */
+std::vector<uint32_t> gltf_indices(const GltfDocument &doc, int accessor, size_t vertices);
+
+/* Unpacks the buffer views of EXT_meshopt_compression to doc.views. Throws Error: INPUT. */
+void unpack_gltf_views(GltfDocument &doc, Task &task);
+
+/* The bytes of a base64 data URI. Throws Error: INPUT. */
+std::string data_uri_bytes(const std::string &uri, const std::string &user);
+
+/* ---- the scene ---- */
+
+struct Affine {
+    Vec3d column[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, offset;
+
+    Vec3d direction(const Vec3d &v) const
+    {
+        return column[0] * v.x + column[1] * v.y + column[2] * v.z;
+    }
+    Vec3d point(const Vec3d &v) const { return direction(v) + offset; }
+    double determinant() const { return dot(column[0], cross(column[1], column[2])); }
+};
+
+/* Where each mesh stands, in the order of the tree. */
+std::vector<std::vector<Affine>> gltf_instances(const GltfDocument &doc);
+
+/* ---- primitives ---- */
+
+/* Attributes by vertex; those that it lacks, or that nobody looks at, are empty. */
+struct GltfPrimitive {
+    std::vector<Vec3d> positions;
+    std::vector<std::array<uint32_t, 3>> triangles;
+    std::vector<Vec3f> normals;
+    std::vector<Rgba8> colors;
+    std::vector<std::array<float, 2>> uv[2];
+    std::vector<std::array<float, 4>> tangents;
+};
+
+/* Reads one of triangles. `material`, null without, says what it looks at. `where` is for
+ * messages. */
+GltfPrimitive read_gltf_primitive(const GltfDocument &doc, const tinygltf::Primitive &from,
+                                  const GltfMaterial *material, const std::string &where,
+                                  Task &task);
+
+/* What stands for 1 in a component of that type; 1 unless the integers are normalised. */
+double gltf_full_value(int component_type, bool normalized);
+
+} // namespace gtx

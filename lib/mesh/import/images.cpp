@@ -1,0 +1,168 @@
+/* The images of a model: decoded once each, on the task's threads, within limits. */
+#include "mesh/import/images.hpp"
+
+#include "mesh/material/texture.hpp"
+
+#include "image/image.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+namespace gtx {
+
+/* A few kilobytes of PNG may claim a gigabyte. */
+static const uint64_t max_file_bytes = uint64_t(1) << 30;
+static const uint64_t max_image_pixels = uint64_t(1) << 28;
+static const uint64_t max_model_pixels = uint64_t(1) << 29;
+
+EncodedImage read_image_file(const ModelFile &file, std::string name, const std::string &path)
+{
+    EncodedImage out;
+    out.name = std::move(name);
+    std::error_code error;
+    try {
+        const uint64_t size = std::filesystem::file_size(path, error); /* fails unless it has one */
+        if (error)
+            fail(GTX_ERROR_READ, "it cannot be opened");
+        if (size > max_file_bytes)
+            fail(GTX_ERROR_LIMIT, "it is larger than 1 GiB");
+        out.bytes = read_whole_file(path);
+        if (file.sources)
+            file.sources->push_back(path);
+    } catch (const Error &e) {
+        out.problem = e.message;
+    }
+    return out;
+}
+
+namespace {
+/* What becomes of one encoded image. */
+struct Load {
+    bool needed[2] = {false, false}; /* by Texels */
+    uint32_t number[2] = {Texture::NONE, Texture::NONE}; /* in the appearance */
+    uint64_t pixels = 0;
+    std::string problem;
+    Image images[2];
+};
+} // namespace
+
+static Texels kind_of(Texture Material::*map)
+{
+    return map == &Material::color_map || map == &Material::emission_map ? Texels::COLOR
+                                                                         : Texels::DATA;
+}
+
+static void measure(const EncodedImage &from, Load &load)
+{
+    uint32_t width = 0, height = 0;
+    gtx_error error = {};
+    load.problem = from.problem;
+    if (!load.problem.empty())
+        return;
+    if (gtx_image_measure(from.bytes.data(), from.bytes.size(), &width, &height, &error))
+        load.problem = error.message;
+    load.pixels = uint64_t(width) * height;
+    if (load.pixels > max_image_pixels)
+        load.problem = "it has more than 2^28 pixels";
+}
+
+/* Roughness is 1 - glossiness, in green; the surface counts as no metal. */
+static void make_rough(float glossiness, std::vector<Rgba8> &texels)
+{
+    for (Rgba8 &c : texels)
+        c = {255, to_byte(1 - double(glossiness) * c.a / 255), 0, 255};
+}
+
+static void decode(const EncodedImage &from, Load &load)
+{
+    gtx_image decoded = {};
+    gtx_error error = {};
+    if (gtx_image_decode(from.bytes.data(), from.bytes.size(), &decoded, &error)) {
+        load.problem = error.message;
+        return;
+    }
+    std::unique_ptr<gtx_image, void (*)(gtx_image *)> guard(&decoded, gtx_image_free);
+    const uint32_t width = decoded.width, height = decoded.height;
+    std::vector<Rgba8> texels(size_t(width) * height);
+    for (size_t i = 0; i < texels.size(); ++i) {
+        const uint8_t *p = decoded.pixels + 4 * i;
+        texels[i] = {p[0], p[1], p[2], p[3]};
+    }
+    guard.reset();
+    if (from.glossiness >= 0)
+        make_rough(from.glossiness, texels);
+    for (Texels kind : {Texels::COLOR, Texels::DATA})
+        if (load.needed[int(kind)])
+            load.images[int(kind)] = make_image(width, height, texels, kind);
+}
+
+static void drop_texture(Texture Material::*map, Material &material)
+{
+    (material.*map).image = Texture::NONE;
+    if (map == &Material::emission_map)
+        std::fill_n(material.emission, 3, 0.f);
+}
+
+/* Coordinates and tangents that no texture looks at. */
+static void drop_unseen(Appearance &look)
+{
+    bool set[2] = {false, false}, bent = false;
+    for (const Material &m : look.materials) {
+        for (Texture Material::*map : MATERIAL_TEXTURES)
+            if ((m.*map).used())
+                set[(m.*map).set] = true;
+        bent |= m.normal_map.used();
+    }
+    for (int k = 0; k < 2; ++k)
+        if (!set[k])
+            std::vector<std::array<float, 2>>().swap(look.uv[k]);
+    if (!bent)
+        std::vector<std::array<float, 4>>().swap(look.tangents);
+}
+
+void load_images(const std::vector<EncodedImage> &encoded, Appearance &look, Task &task)
+{
+    std::vector<Load> loads(encoded.size());
+    for (const Material &m : look.materials)
+        for (Texture Material::*map : MATERIAL_TEXTURES)
+            if ((m.*map).used())
+                loads[(m.*map).image].needed[int(kind_of(map))] = true;
+
+    std::vector<size_t> work;
+    uint64_t pixels = 0;
+    for (size_t i = 0; i < loads.size(); ++i) {
+        if (!loads[i].needed[0] && !loads[i].needed[1])
+            continue;
+        measure(encoded[i], loads[i]);
+        if (loads[i].problem.empty() && (pixels += loads[i].pixels) > max_model_pixels)
+            loads[i].problem = "the model's images have more than 2^29 pixels";
+        work.push_back(i);
+    }
+    task.parallel(work.size(), [&](size_t k) {
+        if (loads[work[k]].problem.empty())
+            decode(encoded[work[k]], loads[work[k]]);
+    }, 0.9, 1);
+    for (size_t i : work) {
+        Load &load = loads[i];
+        if (!load.problem.empty())
+            task.warnings.push_back(encoded[i].name + " was ignored: " + load.problem);
+        for (int kind = 0; kind < 2 && load.problem.empty(); ++kind)
+            if (load.needed[kind]) {
+                load.number[kind] = uint32_t(look.images.size());
+                look.images.push_back(std::move(load.images[kind]));
+            }
+    }
+    for (Material &m : look.materials)
+        for (Texture Material::*map : MATERIAL_TEXTURES) {
+            Texture &t = m.*map;
+            if (!t.used())
+                continue;
+            t.image = loads[t.image].number[int(kind_of(map))];
+            if (!t.used())
+                drop_texture(map, m);
+        }
+    drop_unseen(look);
+}
+
+} // namespace gtx

@@ -1,0 +1,26 @@
+/* From encoded images to those of an appearance. Internal to lib/mesh. */
+#pragma once
+
+#include "mesh/import/import.hpp"
+
+namespace gtx {
+
+/* An image as a file or a buffer holds it. */
+struct EncodedImage {
+    std::string name;      /* for messages: "image 3 ('wood.png')" */
+    std::string bytes;
+    std::string problem;   /* why there are none */
+    float glossiness = -1; /* >= 0: the alpha holds glossiness, to be multiplied by this; it becomes
+                            * roughness where a metal-rough map has that */
+};
+
+/* The bytes of a file that a model names, or the problem. */
+EncodedImage read_image_file(const ModelFile &file, std::string name, const std::string &path);
+
+/* Decodes those images that textures of `look` name (Texture::image is an index of `encoded`), each
+ * once, and makes the textures name the results. An image that cannot be had is a warning, and the
+ * textures that name it are gone: their factors alone are left, but nothing shines by a factor that
+ * waited for its texture. Coordinates and tangents that no texture looks at go too. */
+void load_images(const std::vector<EncodedImage> &encoded, Appearance &look, Task &task);
+
+} // namespace gtx

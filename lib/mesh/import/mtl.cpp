@@ -1,0 +1,244 @@
+/* Wavefront MTL: colours and textures, with the common additions for physically based shading. */
+#include "mesh/import/mtl.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+namespace gtx {
+
+namespace {
+
+/* One line: words, numbers, and the rest of it. */
+struct Line {
+    const char *at, *end;
+
+    void skip_blanks()
+    {
+        while (at < end && (*at == ' ' || *at == '\t'))
+            ++at;
+    }
+    std::string_view word()
+    {
+        skip_blanks();
+        const char *start = at;
+        while (at < end && *at != ' ' && *at != '\t')
+            ++at;
+        return {start, size_t(at - start)};
+    }
+    bool number(double &value)
+    {
+        skip_blanks();
+        return parse_number(at, end, value);
+    }
+    std::string_view rest()
+    {
+        skip_blanks();
+        while (end > at && (end[-1] == ' ' || end[-1] == '\t'))
+            --end;
+        return {at, size_t(end - at)};
+    }
+};
+
+/* The options that may stand before the name of a map, and how many words follow them at most;
+ * numbers may be fewer. */
+const struct {
+    const char *name;
+    int words;
+    bool numbers;
+} MAP_OPTIONS[] = {{"-blendu", 1, false}, {"-blendv", 1, false}, {"-boost", 1, true},
+                   {"-bm", 1, true},      {"-cc", 1, false},     {"-clamp", 1, false},
+                   {"-imfchan", 1, false}, {"-mm", 2, true},     {"-o", 3, true},
+                   {"-s", 3, true},       {"-t", 3, true},       {"-texres", 1, true},
+                   {"-type", 1, false}};
+
+const struct {
+    const char *statement;
+    Texture Material::*map;
+} MAPS[] = {{"map_Kd", &Material::color_map},
+            {"map_Ke", &Material::emission_map},
+            {"norm", &Material::normal_map},
+            {"map_Kn", &Material::normal_map}};
+
+/* Of older shading models, or of curves: nothing that the maps hold. */
+const char *const SILENT[] = {"Ka", "Ks", "Ns", "Ni", "Tf", "illum", "sharpness", "map_Ka",
+                              "map_Ks", "map_Ns", "aniso", "anisor", "Pc", "Pcr"};
+
+class MtlReader {
+public:
+    MtlReader(const ModelFile &file, MtlLibrary &library) : file_(file), library_(library) {}
+    void statement(Line line);
+
+private:
+    bool factor(std::string_view word, Line &line);
+    bool map(std::string_view word, Line &line);
+    bool map_options(Line &line, Texture &texture);
+    uint32_t image(const std::string &name);
+    Material &look() { return library_.materials[current_].look; }
+
+    const ModelFile &file_;
+    MtlLibrary &library_;
+    size_t current_ = 0;
+    bool repeated_ = true; /* nothing is defined yet, or it was before */
+};
+
+/* 0..limit; what is no number counts as 0. */
+float within(double value, double limit)
+{
+    return float(value > 0 ? std::min(value, limit) : 0);
+}
+
+bool MtlReader::factor(std::string_view word, Line &line)
+{
+    double v[3] = {0, 0, 0};
+    int count = 0;
+    while (count < 3 && line.number(v[count]))
+        ++count;
+    if (count == 1)
+        v[1] = v[2] = v[0];
+    if (count == 0)
+        return false;
+    for (int k = 0; k < 3; ++k) {
+        if (word == "Kd")
+            look().color[k] = within(v[k], 1);
+        else if (word == "Ke")
+            look().emission[k] = within(v[k], 1e6);
+    }
+    if (word == "Pr")
+        look().roughness = within(v[0], 1);
+    else if (word == "Pm")
+        look().metallic = within(v[0], 1);
+    return true;
+}
+
+bool MtlReader::map_options(Line &line, Texture &texture)
+{
+    double scale[3] = {1, 1, 1}, offset[3] = {0, 0, 0};
+    for (line.skip_blanks(); line.at < line.end && *line.at == '-'; line.skip_blanks()) {
+        std::string_view name = line.word();
+        auto option = std::find_if(std::begin(MAP_OPTIONS), std::end(MAP_OPTIONS),
+                                   [&](const auto &o) { return name == o.name; });
+        if (option == std::end(MAP_OPTIONS))
+            return false;
+        double ignored[3], *values = name == "-s" ? scale : name == "-o" ? offset : ignored;
+        for (int i = 0; i < option->words; ++i) {
+            if (option->numbers && !line.number(values[i]))
+                break;
+            if (!option->numbers && line.word() == "on" && name == "-clamp")
+                texture.wrap[0] = texture.wrap[1] = Wrap::CLAMP;
+        }
+    }
+    for (double v : {scale[0], scale[1], offset[0], offset[1]})
+        if (!(v >= -1e6 && v <= 1e6))
+            return false;
+    /* The coordinates at hand have their origin at the top: v = 1 - v of the file. */
+    texture.transform[0] = float(scale[0]);
+    texture.transform[2] = float(offset[0]);
+    texture.transform[4] = float(scale[1]);
+    texture.transform[5] = float(1 - scale[1] - offset[1]);
+    return true;
+}
+
+uint32_t MtlReader::image(const std::string &name)
+{
+    auto known = std::find(library_.image_names.begin(), library_.image_names.end(), name);
+    if (known == library_.image_names.end()) {
+        std::string shown = "image '" + printable(name) + "'";
+        /* Exporters of another system write its separators. */
+        std::string local = name;
+        std::replace(local.begin(), local.end(), '\\', '/');
+        std::string path = path_beside(file_, local);
+        EncodedImage encoded;
+        encoded.name = shown;
+        encoded.problem = "it is not a file in the model's folder";
+        library_.images.push_back(path.empty() ? encoded : read_image_file(file_, shown, path));
+        library_.image_names.push_back(name);
+        known = library_.image_names.end() - 1;
+    }
+    return uint32_t(known - library_.image_names.begin());
+}
+
+bool MtlReader::map(std::string_view word, Line &line)
+{
+    for (const auto &m : MAPS) {
+        if (word != m.statement)
+            continue;
+        Texture texture;
+        if (!map_options(line, texture) || line.rest().empty())
+            return false;
+        texture.image = image(std::string(line.rest()));
+        Material &material = look();
+        material.*m.map = texture;
+        if (m.map == &Material::emission_map && material.emission[0] + material.emission[1] +
+                                                        material.emission[2] == 0)
+            std::fill_n(material.emission, 3, 1.f);
+        return true;
+    }
+    return false;
+}
+
+void MtlReader::statement(Line line)
+{
+    std::string_view word = line.word();
+    if (word.empty() || word[0] == '#')
+        return;
+    if (word == "newmtl") {
+        std::string name(line.rest());
+        auto known = std::find_if(library_.materials.begin(), library_.materials.end(),
+                                  [&](const MtlMaterial &m) { return m.name == name; });
+        repeated_ = known != library_.materials.end();
+        if (!repeated_) {
+            current_ = library_.materials.size();
+            library_.materials.push_back({name, {}});
+        }
+        return;
+    }
+    if (repeated_)
+        return;
+    for (const char *name : SILENT)
+        if (word == name)
+            return;
+    double alpha;
+    if (word == "d" || word == "Tr") { /* only what is not opaque deserves a word */
+        if (line.number(alpha) && (word == "d" ? alpha >= 1 : alpha <= 0))
+            return;
+    } else if (word == "Kd" || word == "Ke" || word == "Pr" || word == "Pm") {
+        if (factor(word, line))
+            return;
+    } else if (map(word, line)) {
+        return;
+    }
+    std::string shown = printable(word);
+    if (std::find(library_.ignored.begin(), library_.ignored.end(), shown) ==
+            library_.ignored.end() && library_.ignored.size() < 8)
+        library_.ignored.push_back(shown);
+}
+
+} // namespace
+
+void read_mtl(const ModelFile &file, const std::string &name, MtlLibrary &library, Task &task)
+{
+    std::string path = path_beside(file, name), text;
+    std::error_code error;
+    if (path.empty() || !std::filesystem::is_regular_file(path, error)) {
+        task.warnings.push_back("material library '" + printable(name) + "' was not found");
+        return;
+    }
+    try {
+        text = read_whole_file(path);
+    } catch (const Error &e) {
+        task.warnings.push_back("material library '" + printable(name) +
+                                "' was ignored: " + e.message);
+        return;
+    }
+    if (file.sources)
+        file.sources->push_back(path);
+    MtlReader reader(file, library);
+    for (size_t at = 0; at < text.size();) {
+        size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+        reader.statement({text.data() + at, text.data() + end});
+        at = end + 1;
+        task.advance(0.9);
+    }
+}
+
+} // namespace gtx

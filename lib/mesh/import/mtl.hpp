@@ -1,0 +1,27 @@
+/* Material libraries of OBJ models. Internal to lib/mesh. */
+#pragma once
+
+#include "mesh/import/images.hpp"
+
+#include <string_view>
+
+namespace gtx {
+
+/* What `usemtl` may name. */
+struct MtlMaterial {
+    std::string name;
+    Material look; /* Texture::image is an index of MtlLibrary::images */
+};
+
+struct MtlLibrary {
+    std::vector<MtlMaterial> materials;
+    std::vector<EncodedImage> images;
+    std::vector<std::string> image_names;
+    std::vector<std::string> ignored; /* statements, in the order found */
+};
+
+/* Adds the materials of a library beside the model; of two of one name the first stays. Colours are
+ * linear, images sRGB. A library or statement that cannot be read is a warning, never an error. */
+void read_mtl(const ModelFile &file, const std::string &name, MtlLibrary &library, Task &task);
+
+} // namespace gtx

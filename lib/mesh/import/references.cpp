@@ -1,0 +1,141 @@
+/* The files that a model refers to, found in its text without decoding it. */
+#include "mesh/import/import.hpp"
+
+#include "base/bytes.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+namespace gtx {
+
+using nlohmann::json;
+
+/* ---- names ---- */
+
+std::string path_beside(const ModelFile &file, const std::string &name)
+{
+    bool outside = name.empty() || name.find_first_of(std::string(":\\\0", 3)) != name.npos;
+    std::filesystem::path relative(outside ? std::string() : name);
+    outside |= relative.is_absolute();
+    for (const auto &part : relative)
+        outside |= part == "..";
+    if (outside)
+        return {};
+    return (std::filesystem::path(file.path).parent_path() / relative).string();
+}
+
+static int hex(char c)
+{
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
+}
+
+std::string percent_decoded(std::string_view uri)
+{
+    std::string out;
+    for (size_t i = 0; i < uri.size(); ++i) {
+        bool escaped =
+            uri[i] == '%' && i + 2 < uri.size() && hex(uri[i + 1]) >= 0 && hex(uri[i + 2]) >= 0;
+        out += escaped ? char(hex(uri[i + 1]) * 16 + hex(uri[i + 2])) : uri[i];
+        i += escaped ? 2 : 0;
+    }
+    return out;
+}
+
+/* A few bytes of text can stand for many names, each of which is looked for. */
+static void add_path(std::vector<std::string> &paths, std::string path)
+{
+    constexpr size_t MOST = 1 << 16;
+    if (paths.size() == MOST)
+        fail(GTX_ERROR_LIMIT, "the model refers to more than %zu files", MOST);
+    paths.push_back(std::move(path));
+}
+
+/* ---- glTF ---- */
+
+static std::string_view gltf_text(std::string_view bytes)
+{
+    constexpr size_t TEXT = 20; /* behind the GLB header and that of its first chunk */
+    if (bytes.substr(0, 4) != "glTF")
+        return bytes;
+    if (bytes.size() < TEXT)
+        return {};
+    return bytes.substr(TEXT, gtx_load_u32(reinterpret_cast<const uint8_t *>(bytes.data()) + 12));
+}
+
+void gltf_references(const ModelFile &file, std::vector<std::string> &paths)
+{
+    std::string_view text = gltf_text(file.bytes);
+    auto keep = [](int depth, json::parse_event_t event, json &value) {
+        return event != json::parse_event_t::key || depth != 1 || value == "buffers" ||
+               value == "images";
+    };
+    json root = json::parse(text.begin(), text.end(), keep, false);
+    for (const char *list : {"buffers", "images"}) {
+        if (!root.is_object() || !root.contains(list) || !root[list].is_array())
+            continue;
+        for (const json &item : root[list])
+            if (item.is_object() && item.contains("uri") && item["uri"].is_string())
+                if (std::string uri = item["uri"]; uri.rfind("data:", 0) != 0)
+                    add_path(paths, path_beside(file, percent_decoded(uri)));
+    }
+}
+
+/* ---- OBJ ---- */
+
+/* What follows one of the keywords on its line, for each such line. */
+template <class Use>
+static void each_statement(std::string_view text, std::initializer_list<const char *> keywords,
+                           Use use)
+{
+    for (size_t at = 0; at < text.size();) {
+        size_t end = std::min(text.find_first_of("\r\n", at), text.size());
+        std::string_view line = text.substr(at, end - at);
+        at = end + 1;
+        line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+        for (const char *keyword : keywords)
+            if (line.rfind(keyword, 0) == 0)
+                use(line);
+    }
+}
+
+/* A name may have blanks in it, and options or further names before it: every tail of the line and
+ * every word may be one. Exporters of another system write its separators. */
+static void add_names(std::initializer_list<const ModelFile *> beside, std::string_view line,
+                      std::vector<std::string> &paths)
+{
+    constexpr int MAX_WORDS = 32;
+    std::string portable(line.substr(0, line.find_last_not_of(" \t") + 1));
+    std::replace(portable.begin(), portable.end(), '\\', '/');
+    line = portable;
+    for (int i = 0; i < MAX_WORDS; ++i) {
+        size_t blank = line.find_first_of(" \t");
+        for (const ModelFile *file : beside)
+            for (std::string_view name : {line, line.substr(0, blank)})
+                if (i > 0)
+                    add_path(paths, path_beside(*file, std::string(name)));
+        size_t next = line.find_first_not_of(" \t", blank);
+        if (blank == line.npos || next == line.npos)
+            break;
+        line.remove_prefix(next);
+    }
+}
+
+void obj_references(const ModelFile &file, std::vector<std::string> &paths)
+{
+    each_statement(file.bytes, {"mtllib"},
+                   [&](std::string_view line) { add_names({&file}, line, paths); });
+    for (size_t i = 0, libraries = paths.size(); i < libraries; ++i) {
+        std::error_code ignored;
+        if (!std::filesystem::is_regular_file(paths[i], ignored))
+            continue;
+        ModelFile library = {paths[i], read_whole_file(paths[i]), nullptr};
+        each_statement(library.bytes, {"map_", "bump", "norm", "disp", "refl", "decal"},
+                       [&](std::string_view line) { add_names({&file, &library}, line, paths); });
+    }
+}
+
+} // namespace gtx

@@ -1,0 +1,81 @@
+/* The LOD mesh of a model: its levels as buffers, how one is chosen and how it is drawn. */
+#ifndef GTX_RENDER_LOD_H
+#define GTX_RENDER_LOD_H
+
+#include "asset/asset.h"
+#include "render/gl.h"
+
+#include <stdbool.h>
+
+/* A vertex of several patches comes once for each. */
+typedef struct gtx_lod_vertex {
+    uint16_t position[3], spare;
+    uint32_t patch;
+} gtx_lod_vertex;
+
+/* Consecutive patches with vertices of their own, few enough to be one draw: llvmpipe then takes
+ * indices as they are and shades each vertex once. */
+typedef struct gtx_lod_run {
+    uint32_t end;             /* triangles of the level up to its own last one */
+    uint32_t first_vertex, vertex_count;
+} gtx_lod_run;
+
+typedef struct gtx_lod_level {
+    float place[4];           /* origin and step of the positions */
+    float error;              /* object units */
+    bool far;                 /* triangles show several patches: not beside edited ones */
+    uint32_t triangle_count;
+    uint32_t *first;          /* triangles first[i]..first[i + 1] - 1 are those of patch order[i] */
+    gtx_lod_run *runs;        /* room for a patch each; indices count from a run's first vertex */
+    uint32_t run_count;
+    uint32_t index_size;      /* bytes */
+    uint64_t vertex_offset, index_offset;
+    uint64_t vertex_bytes;
+    uint32_t source_vertices; /* in the asset's level */
+    struct gtx_lod_copy *copies; /* of each of these, while the level is made */
+    gtx_result result;        /* of measuring it */
+} gtx_lod_level;
+
+/* All levels share one buffer of vertices and one of indices, the finest first. */
+typedef struct gtx_lod_meshes {
+    uint32_t level_count, patch_count;
+    gtx_lod_level levels[GTX_MAX_LODS];
+    uint32_t *order;          /* of the patches: those seen from the front alone come first */
+    uint32_t one_sided;       /* how many */
+    bool *edited;             /* a patch each: its height field has changed, and it must be cast */
+    uint32_t edited_count;
+    float low[3], high[3];    /* bounds in object space */
+    gtx_lod_vertex *vertices;     /* both freed once they are uploaded */
+    uint8_t *indices;
+    uint64_t vertex_bytes, index_bytes, vertex_bytes_sent, index_bytes_sent;
+    gl_uint vertex_buffer, index_buffer;
+} gtx_lod_meshes;
+
+/* Made in four steps, of which the second and the last are done for every level, in any order or
+ * at the same time: what a level needs is found, room is made for all, and buffers are filled.
+ * Whatever fails, gtx_lod_free gives back what was allocated. An asset without an LOD mesh has no
+ * levels. */
+bool gtx_lod_begin(const gtx_asset *asset, const gtx_allocator *allocator, gtx_lod_meshes *out);
+void gtx_lod_measure(const gtx_asset *asset, uint32_t level, const gtx_allocator *allocator,
+                     gtx_lod_meshes *out);
+/* Errors: MEMORY, CORRUPT. */
+gtx_result gtx_lod_place(const gtx_allocator *allocator, gtx_lod_meshes *out, gtx_error *error);
+void gtx_lod_fill(const gtx_asset *asset, uint32_t level, const gtx_allocator *allocator,
+                  gtx_lod_meshes *out);
+void gtx_lod_free_staging(gtx_lod_meshes *lods, const gtx_allocator *allocator);
+void gtx_lod_free(gtx_lod_meshes *lods, const gtx_allocator *allocator);
+
+/* Notes that a patch's height field has changed. */
+static inline void gtx_lod_mark(gtx_lod_meshes *lods, uint32_t patch)
+{
+    lods->edited_count += !lods->edited[patch];
+    lods->edited[patch] = true;
+}
+
+/* Draws the patches that are not edited. The program, the textures and the attributes of instances
+ * are set, the vertex array is bound. `two_sided` picks the patches. `instances` is 0 for a program
+ * that knows the place of its only one. Sets attributes 0 and 1 and binds the indices. */
+void gtx_lod_draw(const gtx_gl *gl, const gtx_lod_meshes *lods, uint32_t level, bool two_sided,
+                  uint32_t instances);
+
+#endif

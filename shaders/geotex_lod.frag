@@ -1,0 +1,48 @@
+/* The stock forward main of the LOD mesh: lit colour in sRGB bytes, from the same maps and by the
+ * same light as geotex_forward.frag. Follows geotex_lod_fragment.glsl. GTX_COLORS says that there
+ * is a map of colours, and GTX_MATERIALS is as in geotex_forward.frag. */
+layout(location = 0) out vec4 gtx_out_color;
+
+/* Light from the front on a unit normal; on a back, on what gtx_from_behind makes of it. */
+float gtx_lambert(vec3 n)
+{
+    float front = dot(n, gtx_light.xyz);
+    if (!gl_FrontFacing) {
+        float away = max(dot(n, gtx_ray), 0.0);
+        float mirrored = front - 2.0 * away * dot(gtx_ray, gtx_light.xyz);
+        front = mix(mirrored, -front, smoothstep(0.2, 0.6, away));
+    }
+    return max(front, 0.0);
+}
+
+void main()
+{
+    vec3 place = gtx_place();
+    float level = gtx_page.y;
+    vec3 p = gtx_decode_normal(textureLod(gtx_normals, place, level).xy);
+    vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y + gtx_normal_z * p.z);
+    vec4 color = gtx_color;
+#ifdef GTX_MATERIALS
+    if (!gl_FrontFacing)
+        n = gtx_from_behind(n, gtx_ray);
+    if (gtx_maps.y > 0.0)
+        color *= textureLod(gtx_colors, place, level);
+    gtx_material material = gtx_material(color.rgb, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
+    if (gtx_maps.w > 0.0) {
+        vec4 map = textureLod(gtx_materials, place, level);
+        material = gtx_material(color.rgb, vec3(0.0), map.x, map.y, map.z, map.w);
+    }
+    if (gtx_maps.z > 0.0)
+        material.emission = textureLod(gtx_emissions, place, level).rgb * gtx_maps.z;
+    color.rgb = gtx_to_srgb(gtx_shade(material, n, -gtx_ray, gtx_light.xyz, gtx_light.w));
+#else
+    float share = gtx_light.w + (1.0 - gtx_light.w) * gtx_lambert(n);
+#ifdef GTX_COLORS
+    color *= textureLod(gtx_colors, place, level);
+    color.rgb = gtx_to_srgb(color.rgb * share);
+#else
+    color.rgb = gtx_shaded_to_srgb(color.rgb, share);
+#endif
+#endif
+    gtx_out_color = color;
+}

@@ -1,0 +1,105 @@
+/* An LOD mesh: polygons, whose vertices know their place and their patch. Map coordinates
+ * and the frame of normals follow from the patch's record.
+ *
+ * Needs geotex_dialect.glsl, geotex_height_field.glsl and geotex_view.glsl before it. What hardly
+ * changes over a triangle is found here and stays the same all over it: triangles are small, and a
+ * vertex serves several. Each number more that a triangle carries costs a few per cent on
+ * llvmpipe. */
+GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;
+
+layout(location = 0) in vec3 gtx_position;  /* in steps of the level */
+layout(location = 1) in uint gtx_patch;
+#ifdef GTX_ALONE
+uniform vec4 gtx_place[3];                  /* what follows, of the only instance */
+#define gtx_world_x gtx_place[0]
+#define gtx_world_y gtx_place[1]
+#define gtx_world_z gtx_place[2]
+#else
+layout(location = 2) in vec4 gtx_world_x;   /* as in geotex_proxy.vert */
+layout(location = 3) in vec4 gtx_world_y;
+layout(location = 4) in vec4 gtx_world_z;
+#endif
+layout(location = 5) in vec4 gtx_object_x;
+layout(location = 6) in vec4 gtx_object_y;
+layout(location = 7) in vec4 gtx_object_z;
+layout(location = 8) in vec4 gtx_tint;
+layout(location = 9) in uint gtx_instance;
+
+invariant gl_Position;                      /* bit for bit what a depth prepass has */
+
+GTX_VARYING(0) out vec2 gtx_at;             /* place in the page, 0..1 */
+GTX_VARYING(1) flat out vec2 gtx_page;      /* page; mip level */
+GTX_VARYING(5) flat out vec4 gtx_color;     /* where no map gives colours, the 2.4th root of rgb */
+#ifdef GTX_FRONT
+GTX_VARYING(2) flat out vec3 gtx_toward;    /* the light among the patch's normals; unit */
+#ifdef GTX_MATERIALS
+GTX_VARYING(3) flat out vec3 gtx_eye;       /* the eye, and what gtx_half_way says, there too */
+GTX_VARYING(4) flat out vec4 gtx_between;
+#endif
+#else
+GTX_VARYING(2) flat out vec3 gtx_normal_x;  /* the patch's normals -> world */
+GTX_VARYING(3) flat out vec3 gtx_normal_y;
+GTX_VARYING(4) flat out vec3 gtx_normal_z;
+GTX_VARYING(6) flat out vec3 gtx_ray;       /* of sight; world space, unit */
+GTX_VARYING(7) out vec3 gtx_object;         /* the point in either space; what follows costs only */
+GTX_VARYING(8) out vec3 gtx_world;          /* where a main reads it */
+GTX_VARYING(9) flat out int gtx_patch_index;
+GTX_VARYING(10) flat out uint gtx_id;       /* of the instance */
+#endif
+
+vec3 gtx_to_world(vec3 object)
+{
+    return vec3(dot(gtx_world_x.xyz, object), dot(gtx_world_y.xyz, object),
+                dot(gtx_world_z.xyz, object));
+}
+
+void main()
+{
+    int index = int(gtx_patch);
+    vec4 object = vec4(gtx_lod_mesh.xyz + gtx_lod_mesh.w * gtx_position, 1.0);
+    vec3 world = gtx_to_world(object.xyz) + vec3(gtx_world_x.w, gtx_world_y.w, gtx_world_z.w);
+    gl_Position = gtx_clip_from_world * vec4(world, 1.0);
+
+    /* The mip level whose texels, seen from above, are nearest to a pixel in size; 0 when the size
+     * of a pixel is unknown. */
+    vec4 axis_y = gtx_record(index, 5);
+    vec3 axis_x = gtx_record(index, 4).xyz, axis_z = gtx_record(index, 6).xyz;
+    float texel = length(cross(gtx_to_world(axis_x), gtx_to_world(axis_y.xyz)));
+    float pixels = gtx_detail.x * gtx_detail.w * sqrt(texel);
+    float level = log2(gl_Position.w / max(pixels, 1e-30));
+    level = pixels > 0.0 ? clamp(level, 0.0, gtx_maps.x) : 0.0;
+    /* The lookup takes the nearest whole level of one of the triangle's vertices, and there texels
+     * of this patch alone: of two levels that are nearly as near, the coarser one tells which. */
+    float half_texel = 0.5 * exp2(min(floor(level + 0.75), gtx_maps.x));
+    vec4 rect = gtx_record(index, 7);
+    vec2 size = vec2(textureSize(gtx_normals, 0).xy);
+    vec2 at = vec2(dot(gtx_record(index, 0), object), dot(gtx_record(index, 1), object));
+    gtx_at = (rect.xy + clamp(at + 0.5, vec2(half_texel), rect.zw - half_texel)) / size;
+    gtx_page = vec2(axis_y.w, level);
+
+    vec3 z = normalize(axis_z), x = normalize(axis_x - dot(axis_x, z) * z);
+    mat3 world_normals = mat3(gtx_object_x.xyz, gtx_object_y.xyz, gtx_object_z.xyz);
+#ifdef GTX_FRONT
+    mat3 frame = mat3(x, cross(z, x), z);
+    gtx_toward = normalize(gtx_light.xyz * world_normals) * frame;
+#ifdef GTX_MATERIALS
+    vec3 eye = vec3(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w) - object.xyz * gtx_depth.w;
+    gtx_eye = normalize(eye) * frame;
+    gtx_between = gtx_half_way(vec3(0.0, 0.0, 1.0), gtx_eye, gtx_toward);
+#endif
+#else
+    gtx_normal_x = world_normals * x;
+    gtx_normal_y = world_normals * cross(z, x);
+    gtx_normal_z = world_normals * z;
+    gtx_object = object.xyz;
+    gtx_world = world;
+    gtx_ray = normalize(gtx_to_world(object.xyz * gtx_depth.w -
+                                     vec3(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w)));
+    gtx_patch_index = index;
+    gtx_id = gtx_instance;
+#endif
+    gtx_color = gtx_tint;
+#if !defined GTX_COLORS && !defined GTX_MATERIALS
+    gtx_color.rgb = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
+#endif
+}

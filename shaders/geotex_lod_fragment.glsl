@@ -1,0 +1,100 @@
+/* What a fragment of the LOD mesh sees: the calls of geotex_fragment.glsl, answered by polygons,
+ * for the same mains. Nothing is searched and depth is the polygon's own, so that a main that
+ * neither discards nor writes a depth leaves the depth test first.
+ *
+ * Needs geotex_dialect.glsl, geotex_height_field.glsl, geotex_view.glsl, geotex_surface.glsl and,
+ * with GTX_MATERIALS defined, geotex_material.glsl before it. The varyings are those of
+ * geotex_lod.vert. */
+GTX_VARYING(0) in vec2 gtx_at;
+GTX_VARYING(1) flat in vec2 gtx_page;
+GTX_VARYING(2) flat in vec3 gtx_normal_x;
+GTX_VARYING(3) flat in vec3 gtx_normal_y;
+GTX_VARYING(4) flat in vec3 gtx_normal_z;
+GTX_VARYING(5) flat in vec4 gtx_color;
+GTX_VARYING(6) flat in vec3 gtx_ray;
+GTX_VARYING(7) in vec3 gtx_object;
+GTX_VARYING(8) in vec3 gtx_world;
+GTX_VARYING(9) flat in int gtx_patch_index;
+GTX_VARYING(10) flat in uint gtx_id;
+
+struct gtx_surface {
+    gtx_hit hit;        /* hit.grid.xy: texel coordinates in the patch */
+    gtx_height_field field;
+    gtx_frame frame;    /* grid space -> object space */
+    float level;        /* mip level */
+};
+
+bool gtx_find(out gtx_surface s)
+{
+    vec4 object = vec4(gtx_object, 1.0);
+    s.field = gtx_field_of(gtx_patch_index, 0);
+    s.frame = gtx_frame_of(gtx_patch_index);
+    s.hit.t = 0.0;
+    s.hit.grid = vec3(dot(gtx_record(gtx_patch_index, 0), object),
+                      dot(gtx_record(gtx_patch_index, 1), object),
+                      dot(gtx_record(gtx_patch_index, 2), object));
+    vec3 facet = cross(dFdx(s.hit.grid), dFdy(s.hit.grid));
+    s.hit.slope = -facet.xy / facet.z;
+    s.hit.level = 0;
+    s.hit.back = !gl_FrontFacing;
+    s.level = gtx_page.y;
+    return true;
+}
+
+float gtx_window_depth(gtx_surface s)
+{
+    return gl_FragCoord.z;
+}
+
+void gtx_write_depth(gtx_surface s)
+{
+}
+
+vec3 gtx_object_point(gtx_surface s)
+{
+    return gtx_object;
+}
+
+vec3 gtx_world_point(gtx_surface s)
+{
+    return gtx_world;
+}
+
+vec3 gtx_world_ray(gtx_surface s)
+{
+    return gtx_ray;
+}
+
+vec3 gtx_place()
+{
+    return vec3(gtx_at, gtx_page.x);
+}
+
+vec3 gtx_world_normal(gtx_surface s)
+{
+    vec3 p = gtx_decode_normal(textureLod(gtx_normals, gtx_place(), gtx_page.y).xy);
+    vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y + gtx_normal_z * p.z);
+    return gl_FrontFacing ? n : gtx_from_behind(n, gtx_ray);
+}
+
+vec4 gtx_albedo(gtx_surface s)
+{
+    vec4 color = gtx_color;
+    if (gtx_maps.y > 0.0)
+        color *= textureLod(gtx_colors, gtx_place(), gtx_page.y);
+    return color;
+}
+
+#ifdef GTX_MATERIALS
+gtx_material gtx_material_of(gtx_surface s, vec3 albedo)
+{
+    gtx_material m = gtx_material(albedo, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
+    if (gtx_maps.w > 0.0) {
+        vec4 map = textureLod(gtx_materials, gtx_place(), gtx_page.y);
+        m = gtx_material(albedo, vec3(0.0), map.x, map.y, map.z, map.w);
+    }
+    if (gtx_maps.z > 0.0)
+        m.emission = textureLod(gtx_emissions, gtx_place(), gtx_page.y).rgb * gtx_maps.z;
+    return m;
+}
+#endif

@@ -1,0 +1,49 @@
+/* geotex_lod.frag for what the LOD mesh mostly is: patches that are seen from the front alone, of
+ * instances whose transform keeps angles. All is done in the patch's own frame, where its normals
+ * are. GTX_EVEN says that one material is all there is, and no emission. Needs
+ * geotex_dialect.glsl, geotex_height_field.glsl, geotex_view.glsl, geotex_surface.glsl and, with
+ * GTX_MATERIALS defined, geotex_material.glsl before it, and GTX_FRONT in the vertex shader. */
+GTX_VARYING(0) in vec2 gtx_at;
+GTX_VARYING(1) flat in vec2 gtx_page;
+GTX_VARYING(2) flat in vec3 gtx_toward;
+#ifdef GTX_MATERIALS
+GTX_VARYING(3) flat in vec3 gtx_eye;
+GTX_VARYING(4) flat in vec4 gtx_between;
+#endif
+GTX_VARYING(5) flat in vec4 gtx_color;
+
+layout(location = 0) out vec4 gtx_out_color;
+
+void main()
+{
+    vec3 place = vec3(gtx_at, gtx_page.x);
+    float level = gtx_page.y;
+    vec3 n = normalize(gtx_decode_normal(textureLod(gtx_normals, place, level).xy));
+    vec4 color = gtx_color;
+#ifdef GTX_MATERIALS
+    if (gtx_maps.y > 0.0)
+        color *= textureLod(gtx_colors, place, level);
+#ifdef GTX_EVEN
+    gtx_material material =
+        gtx_material(color.rgb, vec3(0.0), gtx_even.x, gtx_even.y, gtx_even.z, gtx_even.w);
+#else
+    gtx_material material = gtx_material(color.rgb, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
+    if (gtx_maps.w > 0.0) {
+        vec4 map = textureLod(gtx_materials, place, level);
+        material = gtx_material(color.rgb, vec3(0.0), map.x, map.y, map.z, map.w);
+    }
+    if (gtx_maps.z > 0.0)
+        material.emission = textureLod(gtx_emissions, place, level).rgb * gtx_maps.z;
+#endif
+    color.rgb = gtx_to_srgb(gtx_shade(material, n, gtx_eye, gtx_toward, gtx_between, gtx_light.w));
+#else
+    float share = gtx_light.w + (1.0 - gtx_light.w) * max(dot(n, gtx_toward), 0.0);
+#ifdef GTX_COLORS
+    color *= textureLod(gtx_colors, place, level);
+    color.rgb = gtx_to_srgb(color.rgb * share);
+#else
+    color.rgb = gtx_shaded_to_srgb(color.rgb, share);
+#endif
+#endif
+    gtx_out_color = color;
+}
