@@ -53,7 +53,7 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
     for (int i = 0; !result && i < ROWS * COLUMNS; ++i) {
         const int row = i / COLUMNS, column = i % COLUMNS;
         gtx_asset *smooth = NULL;
-        result = filter(asset, radii[column], row ? GTX_EDIT_ALONE : 0, &smooth, error);
+        result = filter(asset, radii[column], row ? GTX_EDIT_PER_PATCH : 0, &smooth, error);
         if (!result)
             result = gtx_model_create(g->renderer, smooth, &g->models[row][column], error);
         gtx_close(smooth);

@@ -5,7 +5,7 @@
  * texel of a height field belongs to the patch (it is inside its outline), or is borrowed: the
  * surface there belongs to a neighbour, and moves as that one's points do. So all patches see one
  * surface, across their borders, and what moves it opens no seam. (In the paper, section 6.3, every
- * patch is filtered by itself; GTX_EDIT_ALONE does the same, for comparison.)
+ * patch is filtered by itself; GTX_EDIT_PER_PATCH does the same, for comparison.)
  *
  * What would turn part of a patch's surface away from its axis_z, where no height map can show
  * it, is held back there, and less and less around: the tip of a claw is rounded off a little
@@ -48,7 +48,7 @@ GTX_API float gtx_edit_texel_size(const gtx_edit *edit);
 
 enum { /* gtx_edit_blur.flags */
     GTX_EDIT_WORLD = 1,           /* radius in object units, not in texels */
-    GTX_EDIT_ALONE = 2            /* the paper's way: every patch by itself, heights along its z */
+    GTX_EDIT_PER_PATCH = 2        /* the paper's way: every patch by itself, heights along its z */
 };
 
 /* A Gaussian over the surface, of points and of normals. Distances are those along the surface,

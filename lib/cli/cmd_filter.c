@@ -72,7 +72,7 @@ static gtx_result lay_pattern(gtx_edit *edit, const char *path, const char **fil
 
 static gtx_result take(gtx_edit *edit, const step *s, const char **file, gtx_error *error)
 {
-    gtx_edit_blur blur = {.radius = (float)s->number, .flags = naive ? GTX_EDIT_ALONE : 0};
+    gtx_edit_blur blur = {.radius = (float)s->number, .flags = naive ? GTX_EDIT_PER_PATCH : 0};
     if (!strcmp(s->name, "pattern"))
         return lay_pattern(edit, s->text, file, error);
     if (!strcmp(s->name, "high-boost")) {

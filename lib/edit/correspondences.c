@@ -30,36 +30,37 @@ static int by_low(const void *a, const void *b)
     return p->patch < q->patch ? -1 : p->patch > q->patch;
 }
 
-/* What linking works with. */
-typedef struct linker {
+/* What the search works with. */
+typedef struct search {
     gtx_edit *edit;
     gtx_caster *caster;
     reach *reaches;
     float widest;             /* of the reaches */
     uint32_t *near;           /* patches whose spheres meet that of the one at hand */
     uint32_t near_count;
-} linker;
+} search;
 
-static void find_near(linker *l, uint32_t patch)
+static void find_near(search *s, uint32_t patch)
 {
-    const gtx_edit *edit = l->edit;
-    const float *s = edit->source->patches[patch].sphere;
-    const float slack = s[3] + 4 * edit->texel_size, low = s[0] - slack - l->widest;
+    const gtx_edit *edit = s->edit;
+    const float *ball = edit->source->patches[patch].sphere;
+    const float slack = ball[3] + 4 * edit->texel_size, low = ball[0] - slack - s->widest;
     uint32_t first = 0, last = edit->count;
     while (first < last) {
         const uint32_t middle = first + (last - first) / 2;
-        if (l->reaches[middle].low < low)
+        if (s->reaches[middle].low < low)
             first = middle + 1;
         else
             last = middle;
     }
-    l->near_count = 0;
-    for (; first < edit->count && l->reaches[first].low <= s[0] + slack; ++first) {
-        const uint32_t other = l->reaches[first].patch;
+    s->near_count = 0;
+    for (; first < edit->count && s->reaches[first].low <= ball[0] + slack; ++first) {
+        const uint32_t other = s->reaches[first].patch;
         const float *t = edit->source->patches[other].sphere;
-        const float r = slack + t[3], x = s[0] - t[0], y = s[1] - t[1], z = s[2] - t[2];
+        const float r = slack + t[3], x = ball[0] - t[0], y = ball[1] - t[1],
+                    z = ball[2] - t[2];
         if (other != patch && x * x + y * y + z * z <= r * r)
-            l->near[l->near_count++] = other;
+            s->near[s->near_count++] = other;
     }
 }
 
@@ -80,17 +81,17 @@ static double trim_at(const gtx_height_field *field, double x, double y)
 
 /* The neighbour that is nearest, and in whose outline the texel lies: the two are weighed, for
  * which height field is a little nearer is chance. The texel is at the middle of the ray. */
-static place find_owner(const linker *l, const gtx_line *ray, double facing)
+static place find_owner(const search *s, const gtx_line *ray, double facing)
 {
     place best = {.at = {.field = UINT32_MAX}};
     double least = INFINITY;
-    for (uint32_t i = 0; i < l->near_count; ++i) {
+    for (uint32_t i = 0; i < s->near_count; ++i) {
         gtx_crossing found = {.t = ray->t_max, .field = UINT32_MAX};
-        gtx_walk_field(l->caster, l->near[i], ray, false, &found);
+        gtx_walk_field(s->caster, s->near[i], ray, false, &found);
         if (found.field == UINT32_MAX)
             continue;
-        const double trim = trim_at(&l->caster->fields[found.field], found.x, found.y);
-        const double apart = fabs(found.t - ray->t_max / 2) * facing / l->edit->texel_size;
+        const double trim = trim_at(&s->caster->fields[found.field], found.x, found.y);
+        const double apart = fabs(found.t - ray->t_max / 2) * facing / s->edit->texel_size;
         const double cost = 2 * apart + fmax(gtx_trim_distance(trim), -0.5);
         if (cost >= least)
             continue;
@@ -100,32 +101,33 @@ static place find_owner(const linker *l, const gtx_line *ray, double facing)
     return best;
 }
 
-static gtx_link make_link(const gtx_edit *edit, uint32_t texel, const gtx_crossing *at)
+static gtx_correspondence make_correspondence(const gtx_edit *edit, uint32_t texel,
+                                              const gtx_crossing *at)
 {
-    const gtx_spread *other = &edit->fields[at->field];
+    const gtx_field_span *other = &edit->fields[at->field];
     const double x = fmax(at->x, 0), y = fmax(at->y, 0);
     const uint32_t last_x = other->width - 2 * GTX_EDIT_MARGIN - 2;
     const uint32_t last_y = other->height - 2 * GTX_EDIT_MARGIN - 2;
     const uint32_t i = x < last_x ? (uint32_t)x : last_x, j = y < last_y ? (uint32_t)y : last_y;
-    return (gtx_link){.texel = texel, .patch = at->field,
+    return (gtx_correspondence){.texel = texel, .patch = at->field,
                       .source = (j + GTX_EDIT_MARGIN) * other->width + i + GTX_EDIT_MARGIN,
                       .u = (float)fmin(x - i, 1), .v = (float)fmin(y - j, 1)};
 }
 
 /* Whether the surface that was found looks the same way, as one surface does. */
-static bool faces(const linker *l, const place *found, const float normal[3])
+static bool faces(const search *s, const place *found, const float normal[3])
 {
     const gtx_crossing *at = &found->at;
     float n[3];
-    gtx_field_normal(&l->caster->fields[at->field], at->x, at->y, n);
+    gtx_field_normal(&s->caster->fields[at->field], at->x, at->y, n);
     return n[0] * normal[0] + n[1] * normal[1] + n[2] * normal[2] > 0.3f;
 }
 
 /* Casts at one texel. One past the coded ones is set down on what is found there. */
-static bool link_texel(const linker *l, uint32_t patch, uint32_t texel, gtx_link *out)
+static bool find_along_z(const search *s, uint32_t patch, uint32_t texel, gtx_correspondence *out)
 {
-    gtx_edit *edit = l->edit;
-    const gtx_spread *field = &edit->fields[patch];
+    gtx_edit *edit = s->edit;
+    const gtx_field_span *field = &edit->fields[patch];
     const float *z = edit->source->patches[patch].axis_z;
     const size_t at = field->first + texel;
     const float *n = edit->normal[at];
@@ -138,10 +140,10 @@ static bool link_texel(const linker *l, uint32_t patch, uint32_t texel, gtx_link
         ray.origin[k] = edit->rest[at][k] + far * z[k];
         ray.direction[k] = -z[k];
     }
-    const place found = find_owner(l, &ray, facing);
-    if (found.at.field == UINT32_MAX || !faces(l, &found, n))
+    const place found = find_owner(s, &ray, facing);
+    if (found.at.field == UINT32_MAX || !faces(s, &found, n))
         return false;
-    *out = make_link(edit, texel, &found.at);
+    *out = make_correspondence(edit, texel, &found.at);
     if (edit->ring[at]) {
         edit->height[at] += (float)(far - found.at.t);
         for (int k = 0; k < 3; ++k)
@@ -150,34 +152,21 @@ static bool link_texel(const linker *l, uint32_t patch, uint32_t texel, gtx_link
     return true;
 }
 
-/* The neighbour k of 8 of a texel; false past the height field's end. */
-static bool neighbour(const gtx_spread *field, uint32_t texel, int k, uint32_t *out)
-{
-    static const int8_t step[8][2] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0},
-                                      {1, 0},   {-1, 1}, {0, 1},  {1, 1}};
-    const int64_t x = (int64_t)(texel % field->width) + step[k][0];
-    const int64_t y = (int64_t)(texel / field->width) + step[k][1];
-    if (x < 0 || y < 0 || x >= field->width || y >= field->height)
-        return false;
-    *out = (uint32_t)y * field->width + (uint32_t)x;
-    return true;
-}
-
 /* The crossing of a neighbour near a point, along the neighbour's z. */
-static bool project(const linker *l, uint32_t patch, const double point[3], place *out)
+static bool project(const search *s, uint32_t patch, const double point[3], place *out)
 {
-    const float *z = l->edit->source->patches[patch].axis_z;
-    const double far = 2 * APART * l->edit->texel_size;
+    const float *z = s->edit->source->patches[patch].axis_z;
+    const double far = 2 * APART * s->edit->texel_size;
     gtx_line ray = {.t_max = 2 * far};
     for (int k = 0; k < 3; ++k) {
         ray.origin[k] = point[k] + far * z[k];
         ray.direction[k] = -z[k];
     }
     gtx_crossing found = {.t = ray.t_max, .field = UINT32_MAX};
-    gtx_walk_field(l->caster, patch, &ray, false, &found);
+    gtx_walk_field(s->caster, patch, &ray, false, &found);
     if (found.field == UINT32_MAX)
         return false;
-    *out = (place){found, trim_at(&l->caster->fields[patch], found.x, found.y)};
+    *out = (place){found, trim_at(&s->caster->fields[patch], found.x, found.y)};
     out->at.t -= far; /* above the point */
     return true;
 }
@@ -204,7 +193,7 @@ static bool turn(const float from[3], const float to[3], double v[3])
 }
 
 /* The own texel that is nearest in the grid. */
-static bool find_own(const gtx_edit *edit, const gtx_spread *field, uint32_t texel, size_t *out)
+static bool find_own(const gtx_edit *edit, const gtx_field_span *field, uint32_t texel, size_t *out)
 {
     const int64_t i = texel % field->width, j = texel / field->width;
     int64_t best = INT64_MAX;
@@ -224,16 +213,17 @@ static bool find_own(const gtx_edit *edit, const gtx_spread *field, uint32_t tex
 
 /* Where the step from an own texel to the one at hand leads on a neighbour that goes on at another
  * angle. */
-static bool link_around(const linker *l, uint32_t patch, uint32_t texel, gtx_link *out)
+static bool find_around_ridge(const search *s, uint32_t patch, uint32_t texel,
+                              gtx_correspondence *out)
 {
-    const gtx_edit *edit = l->edit;
-    const gtx_spread *field = &edit->fields[patch];
+    const gtx_edit *edit = s->edit;
+    const gtx_field_span *field = &edit->fields[patch];
     place best = {.trim = INFINITY};
     size_t own = 0;
     if (!find_own(edit, field, texel, &own))
         return false;
-    for (uint32_t i = 0; i < l->near_count; ++i) {
-        const uint32_t other = l->near[i];
+    for (uint32_t i = 0; i < s->near_count; ++i) {
+        const uint32_t other = s->near[i];
         const float *z = edit->source->patches[other].axis_z;
         double from[3], step[3];
         float normal[3];
@@ -242,75 +232,49 @@ static bool link_around(const linker *l, uint32_t patch, uint32_t texel, gtx_lin
             from[k] = edit->rest[own][k];
             step[k] = (double)edit->rest[field->first + texel][k] - from[k];
         }
-        if (!project(l, other, from, &start))
+        if (!project(s, other, from, &start))
             continue;
-        gtx_field_normal(&l->caster->fields[other], start.at.x, start.at.y, normal);
+        gtx_field_normal(&s->caster->fields[other], start.at.x, start.at.y, normal);
         if (!turn(edit->normal[own], normal, step))
             continue;
         for (int k = 0; k < 3; ++k)
             from[k] += step[k] - start.at.t * z[k];
-        if (project(l, other, from, &end) && end.trim < best.trim)
+        if (project(s, other, from, &end) && end.trim < best.trim)
             best = end;
     }
     if (best.trim == INFINITY)
         return false;
-    *out = make_link(edit, texel, &best.at);
+    *out = make_correspondence(edit, texel, &best.at);
     return true;
 }
 
-/* Steps from own and borrowed texels, and the loose ones in their order. */
-static void order_loose(gtx_edit *edit, gtx_spread *field)
+static gtx_result find_all(search *s, gtx_error *error)
 {
-    const uint32_t count = field->width * field->height;
-    const uint8_t *kind = edit->kind + field->first;
-    uint8_t *ring = edit->ring + field->first;
-    uint32_t *loose = edit->loose + field->first_loose, other;
-    size_t end = 0;
-    for (uint32_t t = 0; t < count; ++t)
-        ring[t] = kind[t] == GTX_TEXEL_OWN || kind[t] == GTX_TEXEL_BORROWED ? 0 : UINT8_MAX;
-    for (uint32_t t = 0; t < count; ++t)
-        for (int k = 0; k < 8 && kind[t] == GTX_TEXEL_LOOSE && ring[t] == UINT8_MAX; ++k)
-            if (neighbour(field, t, k, &other) && ring[other] == 0) {
-                ring[t] = 1;
-                loose[end++] = t;
-            }
-    for (size_t n = 0; n < end; ++n)
-        for (int k = 0; k < 8 && ring[loose[n]] < UINT8_MAX - 1; ++k)
-            if (neighbour(field, loose[n], k, &other) && kind[other] == GTX_TEXEL_LOOSE &&
-                ring[other] == UINT8_MAX) {
-                ring[other] = (uint8_t)(ring[loose[n]] + 1);
-                loose[end++] = other;
-            }
-    field->loose_count = end;
-}
-
-static gtx_result link_all(linker *l, gtx_error *error)
-{
-    gtx_edit *edit = l->edit;
+    gtx_edit *edit = s->edit;
     size_t most = 0;
     for (size_t t = 0; t < edit->texels; ++t)
         most += edit->kind[t] == GTX_TEXEL_LOOSE;
-    edit->link_count = edit->loose_count = most;
-    edit->links = gtx_alloc_array(&edit->allocator, most, sizeof *edit->links);
+    edit->correspondence_count = edit->loose_count = most;
+    edit->correspondences = gtx_alloc_array(&edit->allocator, most, sizeof *edit->correspondences);
     edit->loose = gtx_alloc_array(&edit->allocator, most, sizeof *edit->loose);
-    if (most && (!edit->links || !edit->loose))
+    if (most && (!edit->correspondences || !edit->loose))
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for %zu borrowed texels", most);
-    size_t links = 0, loose = 0;
+    size_t found = 0, loose = 0;
     for (uint32_t p = 0; p < edit->count; ++p) {
-        gtx_spread *field = &edit->fields[p];
+        gtx_field_span *field = &edit->fields[p];
         const uint32_t count = field->width * field->height;
-        find_near(l, p);
-        field->first_link = links;
+        find_near(s, p);
+        field->first_correspondence = found;
         field->first_loose = loose;
         for (uint32_t t = 0; t < count; ++t)
             if (edit->kind[field->first + t] == GTX_TEXEL_LOOSE &&
-                (link_texel(l, p, t, &edit->links[links]) ||
-                 link_around(l, p, t, &edit->links[links]))) {
+                (find_along_z(s, p, t, &edit->correspondences[found]) ||
+                 find_around_ridge(s, p, t, &edit->correspondences[found]))) {
                 edit->kind[field->first + t] = GTX_TEXEL_BORROWED;
-                ++links;
+                ++found;
             }
-        field->link_count = links - field->first_link;
-        order_loose(edit, field);
+        field->correspondence_count = found - field->first_correspondence;
+        gtx_edit_order_loose(edit, field);
         loose += field->loose_count;
     }
     return GTX_OK;
@@ -329,71 +293,30 @@ static void take_frames(gtx_edit *edit, const gtx_caster *caster)
     }
 }
 
-gtx_result gtx_edit_link(gtx_edit *edit, gtx_error *error)
+gtx_result gtx_edit_find_correspondences(gtx_edit *edit, gtx_error *error)
 {
     const gtx_allocator *hooks = &edit->allocator;
     const gtx_caster_desc desc = {.allocator = hooks};
-    linker l = {.edit = edit};
-    gtx_result result = gtx_caster_create(edit->source, &desc, &l.caster, error);
+    search s = {.edit = edit};
+    gtx_result result = gtx_caster_create(edit->source, &desc, &s.caster, error);
     if (result)
         return result;
-    l.reaches = gtx_alloc_array(hooks, edit->count, sizeof *l.reaches);
-    l.near = gtx_alloc_array(hooks, edit->count, sizeof *l.near);
-    if (l.reaches && l.near) {
+    s.reaches = gtx_alloc_array(hooks, edit->count, sizeof *s.reaches);
+    s.near = gtx_alloc_array(hooks, edit->count, sizeof *s.near);
+    if (s.reaches && s.near) {
         for (uint32_t p = 0; p < edit->count; ++p) {
-            const float *s = edit->source->patches[p].sphere;
-            l.reaches[p] = (reach){s[0] - s[3], s[0] + s[3], p};
-            l.widest = fmaxf(l.widest, 2 * s[3]);
+            const float *ball = edit->source->patches[p].sphere;
+            s.reaches[p] = (reach){ball[0] - ball[3], ball[0] + ball[3], p};
+            s.widest = fmaxf(s.widest, 2 * ball[3]);
         }
-        qsort(l.reaches, edit->count, sizeof *l.reaches, by_low);
-        take_frames(edit, l.caster);
-        result = link_all(&l, error);
+        qsort(s.reaches, edit->count, sizeof *s.reaches, by_low);
+        take_frames(edit, s.caster);
+        result = find_all(&s, error);
     } else {
         result = gtx_fail(error, GTX_ERROR_MEMORY, "no memory to find neighbours");
     }
-    gtx_free_array(hooks, l.reaches, edit->count, sizeof *l.reaches);
-    gtx_free_array(hooks, l.near, edit->count, sizeof *l.near);
-    gtx_caster_destroy(l.caster);
+    gtx_free_array(hooks, s.reaches, edit->count, sizeof *s.reaches);
+    gtx_free_array(hooks, s.near, edit->count, sizeof *s.near);
+    gtx_caster_destroy(s.caster);
     return result;
-}
-
-/* The mean of the changes beside a loose texel that are nearer to the surface. */
-static void follow_beside(const gtx_edit *edit, const gtx_spread *field, uint32_t texel,
-                          gtx_change *changes)
-{
-    const uint8_t *ring = edit->ring + field->first;
-    gtx_change sum = {0};
-    float count = 0;
-    for (int k = 0; k < 8; ++k) {
-        uint32_t other;
-        if (!neighbour(field, texel, k, &other) || ring[other] >= ring[texel])
-            continue;
-        for (int c = 0; c < 8; ++c)
-            sum[c] += changes[other][c];
-        count += 1;
-    }
-    for (int c = 0; c < 8; ++c)
-        changes[texel][c] = sum[c] / count;
-}
-
-void gtx_edit_follow(const gtx_edit *edit, gtx_change *changes)
-{
-    for (uint32_t p = 0; p < edit->count; ++p) {
-        const gtx_spread *field = &edit->fields[p];
-        gtx_change *own = changes + field->first;
-        if (!field->touched)
-            continue;
-        for (size_t i = 0; i < field->link_count; ++i) {
-            const gtx_link *link = &edit->links[field->first_link + i];
-            const gtx_spread *other = &edit->fields[link->patch];
-            gtx_change *a = changes + other->first + link->source, *b = a + other->width;
-            const float u = link->u, v = link->v;
-            const float weight[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
-            for (int c = 0; c < 8; ++c)
-                own[link->texel][c] = weight[0] * a[0][c] + weight[1] * a[1][c] +
-                                      weight[2] * b[0][c] + weight[3] * b[1][c];
-        }
-        for (size_t i = 0; i < field->loose_count; ++i)
-            follow_beside(edit, field, edit->loose[field->first_loose + i], own);
-    }
 }

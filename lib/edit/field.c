@@ -11,7 +11,7 @@
 /* Steepest continuation, in texels of height a texel: the rim of a height field is noisy. */
 static const float STEEPEST = 4;
 
-static void place(const gtx_patch *patch, const gtx_spread *field, size_t texel, float height,
+static void place(const gtx_patch *patch, const gtx_field_span *field, size_t texel, float height,
                   float out[3])
 {
     const double x = (double)(texel % field->width) - GTX_EDIT_MARGIN;
@@ -26,7 +26,7 @@ static uint64_t read_patch(gtx_edit *edit, uint32_t index)
 {
     const gtx_asset *asset = edit->source;
     const gtx_patch *patch = &asset->patches[index];
-    const gtx_spread *field = &edit->fields[index];
+    const gtx_field_span *field = &edit->fields[index];
     uint64_t coded = 0;
     float rows[3][3];
     gtx_normal_frame(patch, rows);
@@ -54,21 +54,23 @@ static uint64_t read_patch(gtx_edit *edit, uint32_t index)
     return coded;
 }
 
-/* What the texels around one of a ring tell of it. */
+/* A texel of a ring, and what those around it that are nearer tell of it. */
 typedef struct guess {
+    uint32_t i, j;
+    uint8_t ring;
+    float steepest;           /* of a continuation, height a texel */
     float height, flat, normal[3], trim;
     int sloped, count;
 } guess;
 
 /* Adds the direction (dx, dy), along which one texel, and perhaps a second, is there. */
-static void look(const gtx_edit *edit, const gtx_spread *field, uint32_t i, uint32_t j, int dx,
-                 int dy, uint8_t ring, float steepest, guess *g)
+static void look(const gtx_edit *edit, const gtx_field_span *field, int dx, int dy, guess *g)
 {
-    const int64_t x = (int64_t)i + dx, y = (int64_t)j + dy;
+    const int64_t x = (int64_t)g->i + dx, y = (int64_t)g->j + dy;
     if (x < 0 || y < 0 || x >= field->width || y >= field->height)
         return;
     const size_t a = field->first + (size_t)y * field->width + (size_t)x;
-    if (edit->ring[a] >= ring)
+    if (edit->ring[a] >= g->ring)
         return;
     const float step = dx && dy ? 1.41421356f : 1;
     g->flat += edit->height[a];
@@ -80,15 +82,15 @@ static void look(const gtx_edit *edit, const gtx_spread *field, uint32_t i, uint
     if (u < 0 || v < 0 || u >= field->width || v >= field->height)
         return;
     const size_t b = field->first + (size_t)v * field->width + (size_t)u;
-    if (edit->ring[b] >= ring)
+    if (edit->ring[b] >= g->ring)
         return;
-    const float slope = fminf(fmaxf(edit->height[a] - edit->height[b], -steepest), steepest);
-    g->height += edit->height[a] + slope;
+    const float slope = edit->height[a] - edit->height[b];
+    g->height += edit->height[a] + fminf(fmaxf(slope, -g->steepest), g->steepest);
     ++g->sloped;
 }
 
 /* Where a height field ends without having been trimmed, its last texels are its outline. */
-static void end_at_border(gtx_edit *edit, const gtx_spread *field)
+static void end_at_border(gtx_edit *edit, const gtx_field_span *field)
 {
     const size_t last = field->first + (size_t)field->width * field->height;
     for (size_t t = field->first; t < last; ++t)
@@ -102,7 +104,7 @@ static void end_at_border(gtx_edit *edit, const gtx_spread *field)
 static void continue_patch(gtx_edit *edit, uint32_t index)
 {
     const gtx_patch *patch = &edit->source->patches[index];
-    const gtx_spread *field = &edit->fields[index];
+    const gtx_field_span *field = &edit->fields[index];
     const float steepest = STEEPEST * patch->extent_x / patch->rect[2];
     for (uint8_t ring = 1; ring <= GTX_EDIT_MARGIN; ++ring)
         for (uint32_t j = 0; j < field->height; ++j)
@@ -110,10 +112,10 @@ static void continue_patch(gtx_edit *edit, uint32_t index)
                 const size_t own = (size_t)j * field->width + i, texel = field->first + own;
                 if (edit->ring[texel] <= ring)
                     continue;
-                guess g = {.trim = INFINITY};
+                guess g = {i, j, ring, steepest, .trim = INFINITY};
                 for (int k = 0; k < 9; ++k)
                     if (k != 4)
-                        look(edit, field, i, j, k % 3 - 1, k / 3 - 1, ring, steepest, &g);
+                        look(edit, field, k % 3 - 1, k / 3 - 1, &g);
                 if (!g.count)
                     continue;
                 const float *n = g.normal;
@@ -129,7 +131,7 @@ static void continue_patch(gtx_edit *edit, uint32_t index)
             }
 }
 
-gtx_result gtx_edit_spread(gtx_edit *edit, gtx_error *error)
+gtx_result gtx_edit_read_fields(gtx_edit *edit, gtx_error *error)
 {
     uint64_t coded = 0;
     memset(edit->ring, UINT8_MAX, edit->texels);

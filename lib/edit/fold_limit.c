@@ -20,7 +20,7 @@ enum { ROUNDS = 12, HALVING_ROUNDS = 5 };
 enum { HELD, LEFT };
 
 /* Where a texel would be on its patch's texels. */
-static void place(const gtx_edit *edit, const gtx_spread *field, size_t at, double left,
+static void place(const gtx_edit *edit, const gtx_field_span *field, size_t at, double left,
                   double out[2])
 {
     out[0] = (double)((at - field->first) % field->width);
@@ -34,7 +34,7 @@ static void place(const gtx_edit *edit, const gtx_spread *field, size_t at, doub
 }
 
 /* Whether a triangle at any corner of the cell would turn away. `left` may be NULL: all of it. */
-static bool turns(const gtx_edit *edit, const gtx_spread *field, const size_t corner[4],
+static bool turns(const gtx_edit *edit, const gtx_field_span *field, const size_t corner[4],
                   gtx_change *left)
 {
     double p[4][2];
@@ -48,30 +48,31 @@ static bool turns(const gtx_edit *edit, const gtx_spread *field, const size_t co
     return false;
 }
 
-/* The link of a borrowed texel. */
-static const gtx_link *find_link(const gtx_edit *edit, const gtx_spread *field, size_t at)
+/* The correspondence of a borrowed texel. */
+static const gtx_correspondence *find_correspondence(const gtx_edit *edit,
+                                                     const gtx_field_span *field, size_t at)
 {
     const uint32_t texel = (uint32_t)(at - field->first);
-    size_t first = field->first_link, last = first + field->link_count;
+    size_t first = field->first_correspondence, last = first + field->correspondence_count;
     while (first + 1 < last) {
         const size_t middle = first + (last - first) / 2;
-        if (edit->links[middle].texel <= texel)
+        if (edit->correspondences[middle].texel <= texel)
             first = middle;
         else
             last = middle;
     }
-    return &edit->links[first];
+    return &edit->correspondences[first];
 }
 
 /* Holds a texel, or those that it is borrowed from. */
-static void hold(const gtx_edit *edit, const gtx_spread *field, size_t at, gtx_change *held)
+static void hold(const gtx_edit *edit, const gtx_field_span *field, size_t at, gtx_change *held)
 {
     held[at][HELD] = 1;
     if (edit->kind[at] != GTX_TEXEL_BORROWED)
         return;
-    const gtx_link *link = find_link(edit, field, at);
-    const gtx_spread *other = &edit->fields[link->patch];
-    gtx_change *a = held + other->first + link->source, *b = a + other->width;
+    const gtx_correspondence *owner = find_correspondence(edit, field, at);
+    const gtx_field_span *other = &edit->fields[owner->patch];
+    gtx_change *a = held + other->first + owner->source, *b = a + other->width;
     a[0][HELD] = a[1][HELD] = b[0][HELD] = b[1][HELD] = 1;
 }
 
@@ -81,7 +82,7 @@ static bool find_turned(const gtx_edit *edit, gtx_change *held)
 {
     bool any = false;
     for (uint32_t p = 0; p < edit->count; ++p) {
-        const gtx_spread *field = &edit->fields[p];
+        const gtx_field_span *field = &edit->fields[p];
         for (uint32_t j = 0; field->touched && j + 1 < field->height; ++j)
             for (uint32_t i = 0; i + 1 < field->width; ++i) {
                 const size_t a = field->first + (size_t)j * field->width + i, b = a + field->width;
@@ -102,11 +103,11 @@ static bool find_turned(const gtx_edit *edit, gtx_change *held)
 }
 
 /* Own texels are held a little less than those beside them, and so on across the patches. */
-static void spread_hold(const gtx_edit *edit, gtx_change *held)
+static void spread_limit(const gtx_edit *edit, gtx_change *held)
 {
     for (int pass = 0; pass < REACH; ++pass) {
         for (uint32_t p = 0; p < edit->count; ++p) {
-            const gtx_spread *field = &edit->fields[p];
+            const gtx_field_span *field = &edit->fields[p];
             const size_t width = field->width, last = field->first + width * field->height;
             const ptrdiff_t next[4] = {1, -1, (ptrdiff_t)width, -(ptrdiff_t)width};
             for (size_t t = field->first; field->touched && t < last; ++t)
@@ -122,7 +123,7 @@ static void spread_hold(const gtx_edit *edit, gtx_change *held)
 static void take(const gtx_edit *edit, gtx_change *held, float share)
 {
     for (uint32_t p = 0; p < edit->count; ++p) {
-        const gtx_spread *field = &edit->fields[p];
+        const gtx_field_span *field = &edit->fields[p];
         const size_t last = field->first + (size_t)field->width * field->height;
         for (size_t t = field->first; field->touched && t < last; ++t) {
             held[t][LEFT] *= 1 - share * held[t][HELD];
@@ -131,23 +132,23 @@ static void take(const gtx_edit *edit, gtx_change *held, float share)
     }
 }
 
-gtx_result gtx_edit_hold(gtx_edit *edit, gtx_error *error)
+gtx_result gtx_edit_limit_folds(gtx_edit *edit, gtx_error *error)
 {
     if (!find_turned(edit, NULL))
         return GTX_OK;
     gtx_change *held = gtx_alloc_array(&edit->allocator, edit->texels, sizeof *held);
     if (!held)
-        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory to hold the surface together");
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory to limit folds");
     for (size_t t = 0; t < edit->texels; ++t)
         held[t][LEFT] = 1;
     for (int round = 0; round < ROUNDS && find_turned(edit, held); ++round) {
         const float share = round < HALVING_ROUNDS ? 0.5f : 1;
-        spread_hold(edit, held);
+        spread_limit(edit, held);
         take(edit, held, share);
         gtx_edit_follow(edit, held);
     }
     for (uint32_t p = 0; p < edit->count; ++p) {
-        const gtx_spread *field = &edit->fields[p];
+        const gtx_field_span *field = &edit->fields[p];
         const size_t last = field->first + (size_t)field->width * field->height;
         for (size_t t = field->first; field->touched && t < last; ++t)
             for (int c = 0; c < GTX_CHANGE_VALUE; ++c)

@@ -87,7 +87,7 @@ static void add_cell(const flow *f, const size_t corner[4], double *mass)
 }
 
 /* The rates of a height field's texels; returns the largest sum of a texel's. `mass` is scratch. */
-static float measure_field(const flow *f, const gtx_spread *field, float most, double *mass)
+static float measure_field(const flow *f, const gtx_field_span *field, float most, double *mass)
 {
     const gtx_edit *edit = f->edit;
     const uint32_t w = field->width, h = field->height;
@@ -118,13 +118,19 @@ static float measure_field(const flow *f, const gtx_spread *field, float most, d
     return largest;
 }
 
-/* For all own texels: out = a * now + b * before + step * (how `now` flows). */
-static void advance(const flow *f, gtx_change *now, gtx_change *before, float a,
-                    float b, float step, gtx_change *out)
+/* A stage: out = a * now + b * before + step * (how `now` flows). */
+typedef struct stage {
+    gtx_change *now, *before, *out;
+    float a, b, step;
+} stage;
+
+/* For all own texels. */
+static void advance(const flow *f, const stage *s)
 {
+    const gtx_change *now = (const gtx_change *)s->now, *before = (const gtx_change *)s->before;
     const gtx_edit *edit = f->edit;
     for (uint32_t p = 0; p < edit->count; ++p) {
-        const gtx_spread *field = &edit->fields[p];
+        const gtx_field_span *field = &edit->fields[p];
         const size_t last = field->first + (size_t)field->width * field->height;
         ptrdiff_t next[8];
         for (int k = 0; k < 8; ++k)
@@ -140,10 +146,10 @@ static void advance(const flow *f, gtx_change *now, gtx_change *before, float a,
                     flows[c] += rate * (other[c] - now[t][c]);
             }
             for (int c = 0; c < 8; ++c)
-                out[t][c] = a * now[t][c] + b * before[t][c] + step * flows[c];
+                s->out[t][c] = s->a * now[t][c] + s->b * before[t][c] + s->step * flows[c];
         }
     }
-    gtx_edit_follow(edit, out);
+    gtx_edit_follow(edit, s->out);
 }
 
 /* Points and details as they stand. Past a ridge a height field goes straight on, and only the
@@ -168,7 +174,7 @@ static void measure_source(const flow *f)
 {
     const gtx_edit *edit = f->edit;
     for (uint32_t p = 0; p < edit->count; ++p) {
-        const gtx_spread *field = &edit->fields[p];
+        const gtx_field_span *field = &edit->fields[p];
         const size_t last = field->first + (size_t)field->width * field->height;
         for (size_t t = field->first; t < last; ++t)
             for (int k = 0; k < 8 && edit->kind[t] == GTX_TEXEL_OWN; ++k) {
@@ -188,10 +194,11 @@ static void run(const flow *f, double time, float fastest, gtx_change *ring[3])
     const int count = stages > 1 ? (int)ceil(stages) : 1;
     const double unit = 2 * step / ((double)count * count + count);
     for (int n = 0; n < STEPS; ++n) {
-        advance(f, ring[0], ring[0], 1, 0, (float)unit, ring[1]);
+        advance(f, &(stage){ring[0], ring[0], ring[1], 1, 0, (float)unit});
         for (int j = 2; j <= count; ++j) {
             const double a = (2 * j - 1.0) / j, b = (1.0 - j) / j;
-            advance(f, ring[1], ring[0], (float)a, (float)b, (float)(a * unit), ring[2]);
+            advance(f, &(stage){ring[1], ring[0], ring[2], (float)a, (float)b,
+                                (float)(a * unit)});
             gtx_change *oldest = ring[0];
             ring[0] = ring[1];
             ring[1] = ring[2];
@@ -203,7 +210,7 @@ static void run(const flow *f, double time, float fastest, gtx_change *ring[3])
     }
 }
 
-gtx_result gtx_edit_diffuse(gtx_edit *edit, double radius, gtx_error *error)
+gtx_result gtx_edit_heat_flow(gtx_edit *edit, double radius, gtx_error *error)
 {
     const gtx_allocator *hooks = &edit->allocator;
     flow f = {.edit = edit};
@@ -217,7 +224,6 @@ gtx_result gtx_edit_diffuse(gtx_edit *edit, double radius, gtx_error *error)
         all = all && owned[k];
     }
     if (all) {
-        gtx_edit_touch_all(edit);
         f.surface = ring[1];
         gather(&f);
         const float most = FASTEST / (edit->texel_size * edit->texel_size);

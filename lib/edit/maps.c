@@ -199,12 +199,12 @@ static void find_shifts(writer *w, const gtx_window *window)
 }
 
 /* Bilinear, within the source's rectangle at the level. */
-static void look_up(const writer *w, gtx_section_kind kind, uint32_t level, double x, double y,
-                    uint32_t channels, uint8_t *out)
+static void look_up(const writer *w, gtx_section_kind kind, uint32_t level, const double at[2],
+                    uint8_t *out)
 {
+    const uint32_t channels = gtx_section_shape(&w->out->info, kind, level).texel;
     const uint32_t right = (w->from->rect[2] >> level) - 1u, top = (w->from->rect[3] >> level) - 1u;
-    x = fmin(fmax(x, 0), right);
-    y = fmin(fmax(y, 0), top);
+    const double x = fmin(fmax(at[0], 0), right), y = fmin(fmax(at[1], 0), top);
     const uint32_t i = (uint32_t)x, j = (uint32_t)y;
     const double u = x - i, v = y - j;
     const uint32_t next_i = i < right ? i + 1 : i, next_j = j < top ? j + 1 : j;
@@ -221,7 +221,7 @@ static void look_up(const writer *w, gtx_section_kind kind, uint32_t level, doub
 static void write_looks(writer *w, gtx_section_kind kind)
 {
     for (uint32_t k = 0; k < gtx_map_levels(&w->out->info, kind); ++k) {
-        const uint32_t texel = gtx_section_shape(&w->out->info, kind, k).texel, size = 1u << k;
+        const uint32_t size = 1u << k;
         for (uint32_t y = 0; y < w->height >> k; ++y)
             for (uint32_t x = 0; x < w->width >> k; ++x) {
                 double shift[2] = {0, 0};
@@ -230,8 +230,8 @@ static void write_looks(writer *w, gtx_section_kind kind)
                     shift[0] += w->shift[at][0] / (double)(size * size);
                     shift[1] += w->shift[at][1] / (double)(size * size);
                 }
-                look_up(w, kind, k, x + shift[0] / size, y + shift[1] / size, texel,
-                        texel_of(w->out, w->to, kind, k, x, y));
+                const double from[2] = {x + shift[0] / size, y + shift[1] / size};
+                look_up(w, kind, k, from, texel_of(w->out, w->to, kind, k, x, y));
             }
     }
 }

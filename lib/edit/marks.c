@@ -162,7 +162,7 @@ gtx_result gtx_edit_stamp(gtx_edit *edit, const gtx_edit_stamp_desc *stamp, gtx_
     }
     gtx_edit_touch(edit, low, high, 2 * edit->texel_size);
     for (uint32_t i = 0; i < edit->count; ++i) {
-        const gtx_spread *field = &edit->fields[i];
+        const gtx_field_span *field = &edit->fields[i];
         const size_t last = field->first + (size_t)field->width * field->height;
         for (size_t t = field->first; field->touched && t < last; ++t) {
             if (edit->kind[t] != GTX_TEXEL_OWN || !(dot(edit->normal[t], p.axis[2]) < 0))
@@ -173,15 +173,6 @@ gtx_result gtx_edit_stamp(gtx_edit *edit, const gtx_edit_stamp_desc *stamp, gtx_
         }
     }
     return gtx_edit_done(edit, error);
-}
-
-/* How high a texel's point stands, object units along z. */
-static float standing(const gtx_edit *edit, const gtx_spread *field, size_t at)
-{
-    double height = edit->height[at];
-    for (int k = 0; k < 3; ++k)
-        height += field->to_grid[2][k] * (edit->point[at][k] - edit->rest[at][k]);
-    return (float)height;
 }
 
 gtx_result gtx_edit_set_heights(gtx_edit *edit, uint32_t patch, const uint32_t rectangle[4],
@@ -199,7 +190,7 @@ gtx_result gtx_edit_set_heights(gtx_edit *edit, uint32_t patch, const uint32_t r
     for (size_t i = 0; i < (size_t)r[2] * r[3]; ++i)
         if (!isfinite(heights[i]) || !isfinite(heights[i] * record->extent_z))
             return gtx_fail(error, GTX_ERROR_ARGUMENT, "height %zu is not finite", i);
-    gtx_spread *field = &edit->fields[patch];
+    gtx_field_span *field = &edit->fields[patch];
     gtx_edit_touch(edit, field->low, field->high, 2 * edit->texel_size);
     field->touched = true;
     for (uint32_t j = 0; j < r[3]; ++j)
@@ -209,7 +200,7 @@ gtx_result gtx_edit_set_heights(gtx_edit *edit, uint32_t patch, const uint32_t r
             if (edit->kind[at] != GTX_TEXEL_OWN)
                 continue;
             const float by = heights[(size_t)j * r[2] + i] * record->extent_z -
-                             standing(edit, field, at);
+                             (float)gtx_edit_height(edit, field, at);
             for (int k = 0; k < 3; ++k)
                 edit->changes[at][GTX_CHANGE_MOVE + k] = by * record->axis_z[k];
         }

@@ -4,26 +4,26 @@
 #include <math.h>
 #include <string.h>
 
-/* The step from the texel before to the one after, of those that are there. */
-static bool difference(const gtx_edit *edit, const gtx_spread *field, size_t texel, size_t step,
-                       bool before, bool after, float out[3])
+/* The step along an axis from the texel before (i, j) to the one after, of those that are there. */
+static bool difference(const gtx_edit *edit, const gtx_field_span *field, const uint32_t texel[2],
+                       int axis, float out[3])
 {
-    const size_t at = field->first + texel;
-    const size_t a = before && edit->kind[at - step] ? at - step : at;
-    const size_t b = after && edit->kind[at + step] ? at + step : at;
+    const size_t at = field->first + (size_t)texel[1] * field->width + texel[0];
+    const size_t step = axis ? field->width : 1, side = axis ? field->height : field->width;
+    const size_t a = texel[axis] > 0 && edit->kind[at - step] ? at - step : at;
+    const size_t b = texel[axis] + 1 < side && edit->kind[at + step] ? at + step : at;
     for (int k = 0; k < 3; ++k)
         out[k] = edit->point[b][k] - edit->point[a][k];
     return a != b;
 }
 
 /* The unit normal of the points alone; false where they make no surface. */
-static bool facet(const gtx_edit *edit, const gtx_spread *field, uint32_t i, uint32_t j,
+static bool facet(const gtx_edit *edit, const gtx_field_span *field, uint32_t i, uint32_t j,
                   float out[3])
 {
-    const size_t texel = (size_t)j * field->width + i;
+    const uint32_t texel[2] = {i, j};
     float u[3], v[3], square = 0;
-    if (!difference(edit, field, texel, 1, i > 0, i + 1 < field->width, u) ||
-        !difference(edit, field, texel, field->width, j > 0, j + 1 < field->height, v))
+    if (!difference(edit, field, texel, 0, u) || !difference(edit, field, texel, 1, v))
         return false;
     for (int k = 0; k < 3; ++k) {
         const int a = (k + 1) % 3, b = (k + 2) % 3;
@@ -37,7 +37,7 @@ static bool facet(const gtx_edit *edit, const gtx_spread *field, uint32_t i, uin
     return true;
 }
 
-static void find_box(const gtx_edit *edit, gtx_spread *field)
+static void find_box(const gtx_edit *edit, gtx_field_span *field)
 {
     const size_t last = field->first + (size_t)field->width * field->height;
     for (int k = 0; k < 3; ++k) {
@@ -54,7 +54,7 @@ static void find_box(const gtx_edit *edit, gtx_spread *field)
 void gtx_edit_begin_details(gtx_edit *edit)
 {
     for (uint32_t p = 0; p < edit->count; ++p) {
-        gtx_spread *field = &edit->fields[p];
+        gtx_field_span *field = &edit->fields[p];
         find_box(edit, field);
         for (uint32_t j = 0; j < field->height; ++j)
             for (uint32_t i = 0; i < field->width; ++i) {
@@ -67,7 +67,7 @@ void gtx_edit_begin_details(gtx_edit *edit)
     }
 }
 
-static void turn_normals(gtx_edit *edit, const gtx_spread *field)
+static void turn_normals(gtx_edit *edit, const gtx_field_span *field)
 {
     for (uint32_t j = 0; j < field->height; ++j)
         for (uint32_t i = 0; i < field->width; ++i) {
@@ -86,14 +86,20 @@ static void turn_normals(gtx_edit *edit, const gtx_spread *field)
         }
 }
 
-/* Borrowed texels have the normals of their owners. */
-static void borrow_normals(gtx_edit *edit, const gtx_spread *field)
+void gtx_edit_renew_normals(gtx_edit *edit, gtx_field_span *field)
 {
-    for (size_t i = 0; i < field->link_count; ++i) {
-        const gtx_link *link = &edit->links[field->first_link + i];
-        const gtx_spread *other = &edit->fields[link->patch];
-        const size_t a = other->first + link->source, b = a + other->width;
-        const float u = link->u, v = link->v;
+    turn_normals(edit, field);
+    find_box(edit, field);
+}
+
+void gtx_edit_borrow_normals(gtx_edit *edit, const gtx_field_span *field)
+{
+    for (size_t i = 0; i < field->correspondence_count; ++i) {
+        const gtx_correspondence *owner =
+            &edit->correspondences[field->first_correspondence + i];
+        const gtx_field_span *other = &edit->fields[owner->patch];
+        const size_t a = other->first + owner->source, b = a + other->width;
+        const float u = owner->u, v = owner->v;
         float n[3], square = 0;
         for (int k = 0; k < 3; ++k) {
             n[k] = (1 - v) * ((1 - u) * edit->normal[a][k] + u * edit->normal[a + 1][k]) +
@@ -101,34 +107,6 @@ static void borrow_normals(gtx_edit *edit, const gtx_spread *field)
             square += n[k] * n[k];
         }
         for (int k = 0; k < 3 && square > 1e-6f; ++k)
-            edit->normal[field->first + link->texel][k] = n[k] / sqrtf(square);
+            edit->normal[field->first + owner->texel][k] = n[k] / sqrtf(square);
     }
-}
-
-void gtx_edit_commit(gtx_edit *edit)
-{
-    for (uint32_t p = 0; p < edit->count; ++p) {
-        gtx_spread *field = &edit->fields[p];
-        const size_t last = field->first + (size_t)field->width * field->height;
-        bool moves = false;
-        for (size_t t = field->first; field->touched && t < last; ++t) {
-            const float *c = edit->changes[t];
-            /* Farther out nothing of it is ever shown. */
-            const bool counts = edit->trim[t] < GTX_TRIM_SHOWN + GTX_EDIT_MARGIN;
-            for (int k = 0; k < 3 && edit->kind[t]; ++k) {
-                moves |= counts && (c[GTX_CHANGE_MOVE + k] != 0 || c[GTX_CHANGE_DETAIL + k] != 0);
-                edit->point[t][k] += c[GTX_CHANGE_MOVE + k];
-                edit->detail[t][k] += c[GTX_CHANGE_DETAIL + k];
-            }
-        }
-        if (!moves)
-            continue;
-        field->moved = true;
-        field->shown = false;
-        turn_normals(edit, field);
-        find_box(edit, field);
-    }
-    for (uint32_t p = 0; p < edit->count; ++p)
-        if (edit->fields[p].touched && edit->fields[p].moved)
-            borrow_normals(edit, &edit->fields[p]);
 }

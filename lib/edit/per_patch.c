@@ -30,7 +30,7 @@ static void blur_line(const sample *in, sample *out, uint32_t count, size_t step
     }
 }
 
-static bool is_coded(const gtx_edit *edit, const gtx_spread *field, const gtx_patch *patch,
+static bool is_coded(const gtx_edit *edit, const gtx_field_span *field, const gtx_patch *patch,
                      uint32_t texel)
 {
     const uint32_t x = texel % field->width - GTX_EDIT_MARGIN; /* wraps before the first */
@@ -40,8 +40,7 @@ static bool is_coded(const gtx_edit *edit, const gtx_spread *field, const gtx_pa
 
 static void blur_patch(const gtx_edit *edit, uint32_t index, double radius, sample *a, sample *b)
 {
-    gtx_change *changes = edit->changes;
-    const gtx_spread *field = &edit->fields[index];
+    const gtx_field_span *field = &edit->fields[index];
     const gtx_patch *patch = &edit->source->patches[index];
     const uint32_t w = field->width, h = field->height;
     memset(a, 0, (size_t)w * h * sizeof *a);
@@ -49,14 +48,10 @@ static void blur_patch(const gtx_edit *edit, uint32_t index, double radius, samp
         const size_t at = field->first + t;
         if (!is_coded(edit, field, patch, t))
             continue;
-        for (int k = 0; k < 3; ++k) {
-            a[t][HEIGHT] += (edit->point[at][k] - edit->rest[at][k]) *
-                            (float)field->to_grid[2][k];
+        a[t][HEIGHT] = (float)gtx_edit_height(edit, field, at);
+        for (int k = 0; k < 3; ++k)
             a[t][DETAIL + k] = edit->detail[at][k];
-        }
-        a[t][HEIGHT] += edit->height[at];
         a[t][WEIGHT] = 1;
-        changes[at][GTX_CHANGE_VALUE] = a[t][HEIGHT]; /* for a moment */
     }
     for (uint32_t j = 0; j < h; ++j)
         blur_line((const sample *)a + (size_t)j * w, b + (size_t)j * w, w, 1,
@@ -66,20 +61,19 @@ static void blur_patch(const gtx_edit *edit, uint32_t index, double radius, samp
     for (uint32_t t = 0; t < w * h; ++t) {
         const size_t at = field->first + t;
         const float weight = a[t][WEIGHT];
-        float before = changes[at][GTX_CHANGE_VALUE];
-        changes[at][GTX_CHANGE_VALUE] = 0;
         if (!edit->kind[at] || !(weight > 1e-6f))
             continue;
-        if (!is_coded(edit, field, patch, t))
-            before = edit->height[at];
+        const float before = is_coded(edit, field, patch, t)
+                                 ? (float)gtx_edit_height(edit, field, at) : edit->height[at];
+        float *change = edit->changes[at];
         for (int k = 0; k < 3; ++k) {
-            changes[at][GTX_CHANGE_MOVE + k] = (a[t][HEIGHT] / weight - before) * patch->axis_z[k];
-            changes[at][GTX_CHANGE_DETAIL + k] = a[t][DETAIL + k] / weight - edit->detail[at][k];
+            change[GTX_CHANGE_MOVE + k] = (a[t][HEIGHT] / weight - before) * patch->axis_z[k];
+            change[GTX_CHANGE_DETAIL + k] = a[t][DETAIL + k] / weight - edit->detail[at][k];
         }
     }
 }
 
-gtx_result gtx_edit_diffuse_alone(gtx_edit *edit, double radius, gtx_error *error)
+gtx_result gtx_edit_blur_per_patch(gtx_edit *edit, double radius, gtx_error *error)
 {
     size_t most = 0;
     for (uint32_t p = 0; p < edit->count; ++p) {
@@ -91,8 +85,6 @@ gtx_result gtx_edit_diffuse_alone(gtx_edit *edit, double radius, gtx_error *erro
     for (uint32_t p = 0; a && b && p < edit->count; ++p)
         blur_patch(edit, p, radius, a, b);
     const bool failed = !a || !b;
-    if (!failed)
-        gtx_edit_touch_all(edit);
     gtx_free_array(&edit->allocator, a, most, sizeof *a);
     gtx_free_array(&edit->allocator, b, most, sizeof *b);
     return failed ? gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a blur") : GTX_OK;

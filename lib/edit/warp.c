@@ -14,7 +14,7 @@ typedef struct corner {
     size_t at;
 } corner;
 
-static corner find_corner(const gtx_edit *edit, const gtx_spread *field, uint32_t i, uint32_t j)
+static corner find_corner(const gtx_edit *edit, const gtx_field_span *field, uint32_t i, uint32_t j)
 {
     const size_t at = field->first + (size_t)j * field->width + i;
     corner c = {(double)i - GTX_EDIT_MARGIN, (double)j - GTX_EDIT_MARGIN, at};
@@ -26,15 +26,7 @@ static corner find_corner(const gtx_edit *edit, const gtx_spread *field, uint32_
     return c;
 }
 
-static double height_of(const gtx_edit *edit, const gtx_spread *field, size_t at)
-{
-    double height = edit->height[at];
-    for (int k = 0; k < 3; ++k)
-        height += field->to_grid[2][k] * ((double)edit->point[at][k] - edit->rest[at][k]);
-    return height;
-}
-
-gtx_window gtx_edit_window(const gtx_edit *edit, const gtx_spread *field)
+gtx_window gtx_edit_window(const gtx_edit *edit, const gtx_field_span *field)
 {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (uint32_t j = 0; j < field->height; ++j)
@@ -64,7 +56,7 @@ gtx_window gtx_edit_window(const gtx_edit *edit, const gtx_spread *field)
 
 /* Takes a texel for a triangle of the height field if none that is deeper inside the outline has
  * it. */
-static void offer(const gtx_edit *edit, const gtx_spread *field, const corner corners[3],
+static void offer(const gtx_edit *edit, const gtx_field_span *field, const corner corners[3],
                   const double weight[3], gtx_texel *out)
 {
     double trim = 0;
@@ -75,7 +67,7 @@ static void offer(const gtx_edit *edit, const gtx_spread *field, const corner co
     *out = (gtx_texel){.trim = (float)trim, .covered = 1};
     for (int k = 0; k < 3; ++k) {
         const size_t at = corners[k].at, own = at - field->first;
-        out->height += (float)(weight[k] * height_of(edit, field, at));
+        out->height += (float)(weight[k] * gtx_edit_height(edit, field, at));
         out->from[0] += (float)(weight[k] * ((double)(own % field->width) - GTX_EDIT_MARGIN));
         out->from[1] += (float)(weight[k] * ((double)(own / field->width) - GTX_EDIT_MARGIN));
         for (int c = 0; c < 3; ++c)
@@ -83,7 +75,7 @@ static void offer(const gtx_edit *edit, const gtx_spread *field, const corner co
     }
 }
 
-static void draw_triangle(const gtx_edit *edit, const gtx_spread *field, const corner c[3],
+static void draw_triangle(const gtx_edit *edit, const gtx_field_span *field, const corner c[3],
                           const gtx_window *window, gtx_texel *out)
 {
     const double ux = c[1].x - c[0].x, uy = c[1].y - c[0].y;
@@ -125,7 +117,7 @@ static void mark_coded(const gtx_window *window, gtx_texel *texels)
         }
 }
 
-void gtx_edit_warp(const gtx_edit *edit, const gtx_spread *field, const gtx_window *window,
+void gtx_edit_warp(const gtx_edit *edit, const gtx_field_span *field, const gtx_window *window,
                    gtx_texel *out)
 {
     for (uint32_t j = 0; j + 1 < field->height; ++j)

@@ -193,7 +193,7 @@ static void a_plane_stays(void **state)
 {
     (void)state;
     gtx_asset *asset = fixture_flat(0.5, 8);
-    for (uint32_t flags = 0; flags <= GTX_EDIT_ALONE; flags += GTX_EDIT_ALONE) {
+    for (uint32_t flags = 0; flags <= GTX_EDIT_PER_PATCH; flags += GTX_EDIT_PER_PATCH) {
         gtx_edit *edit = begin(asset);
         const gtx_edit_blur blur = {.radius = 5, .flags = flags};
         must(gtx_edit_gaussian(edit, &blur, NULL));
@@ -305,7 +305,7 @@ static void alone_a_sphere_comes_apart(void **state)
     (void)state;
     gtx_asset *asset = fixture_sphere(2, 64, 16);
     gtx_edit *edit = begin(asset);
-    const gtx_edit_blur blur = {.radius = 8, .flags = GTX_EDIT_ALONE};
+    const gtx_edit_blur blur = {.radius = 8, .flags = GTX_EDIT_PER_PATCH};
     must(gtx_edit_gaussian(edit, &blur, NULL));
     gtx_asset *out = finish(edit);
     gtx_caster *caster;
@@ -523,7 +523,8 @@ static void running_out_of_memory_is_a_result(void **state)
         counter c = {n, 0};
         const gtx_allocator hooks = {counted_alloc, counted_free, &c};
         const gtx_edit_desc desc = {.allocator = &hooks};
-        const gtx_edit_blur blur = {.radius = 1}, alone = {.radius = 1, .flags = GTX_EDIT_ALONE};
+        const gtx_edit_blur blur = {.radius = 1};
+        const gtx_edit_blur alone = {.radius = 1, .flags = GTX_EDIT_PER_PATCH};
         const gtx_edit_stamp_desc stamp = {.centre = {2, 1, 0.5f}, .radius = 1, .depth = 0.1f,
                                            .direction = {0, 0, -1}};
         const uint32_t *patches;
