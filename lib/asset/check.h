@@ -78,12 +78,17 @@ void gtx_occupancy_free(gtx_occupancy *occupancy, const gtx_allocator *allocator
 /* Whether patch `index` holds the rules that gtx_check_maps looks at for each: then it need not. */
 bool gtx_patch_holds(const gtx_asset *asset, uint32_t index);
 
-/* Heights against patches: coverage, spheres, bounds, codes outside. The offsets are those of the
- * patch records and of the height section, whose codes lie there as such when `height_stored`.
- * `holds`, or NULL, has a byte a patch that is 1 where it is known to hold. */
+/* Where patch records and the height section lie in the file, and whether codes lie there as
+ * such. */
+typedef struct gtx_map_places {
+    uint64_t patches, height;
+    bool height_stored;
+} gtx_map_places;
+
+/* Heights against patches: coverage, spheres, bounds, codes outside. `holds`, or NULL, has a byte a
+ * patch that is 1 where it is known to hold. */
 void gtx_check_maps(gtx_check *check, const gtx_asset *asset, const gtx_occupancy *occupancy,
-                    const uint8_t *holds, uint64_t patch_offset, uint64_t height_offset,
-                    bool height_stored);
+                    const uint8_t *holds, const gtx_map_places *places);
 
 /* An LOD mesh, once the finer one is there, and patches that broke no rule. `offset`
  * is that of its section. */

@@ -241,21 +241,20 @@ bool gtx_patch_holds(const gtx_asset *asset, uint32_t index)
 }
 
 void gtx_check_maps(gtx_check *check, const gtx_asset *asset, const gtx_occupancy *occupancy,
-                    const uint8_t *holds, uint64_t patch_offset, uint64_t height_offset,
-                    bool height_stored)
+                    const uint8_t *holds, const gtx_map_places *places)
 {
     const gtx_info *info = &asset->info;
     box bounds = grown_bounds(info);
     for (uint32_t i = 0; i < info->patch_count; ++i)
         if (!holds || !holds[i])
-            check_patch(check, asset, i, &bounds, patch_offset + sizeof(gtx_patch) * i);
+            check_patch(check, asset, i, &bounds, places->patches + sizeof(gtx_patch) * i);
     for (uint32_t page = 0; page < info->page_count; ++page) {
         uint32_t x, y;
         if (!find_outside(asset, occupancy, page, &x, &y))
             continue;
         uint64_t texel = ((uint64_t)page * info->page_height + y) * info->page_width + x;
-        uint64_t within = height_stored ? texel * (info->height_bits / 8) : 0;
-        gtx_break(check, GTX_RULE_HEIGHT_OUTSIDE, height_offset + within,
+        uint64_t within = places->height_stored ? texel * (info->height_bits / 8) : 0;
+        gtx_break(check, GTX_RULE_HEIGHT_OUTSIDE, places->height + within,
                   "page %u has a code at (%u, %u)", page, x, y);
     }
 }

@@ -93,7 +93,7 @@ static void check_content(gtx_check *check, const gtx_asset *asset)
     gtx_occupancy occupancy;
     gtx_check_patches(check, asset, 0, &occupancy);
     if (!gtx_check_over(check))
-        gtx_check_maps(check, asset, &occupancy, NULL, 0, 0, false);
+        gtx_check_maps(check, asset, &occupancy, NULL, &(gtx_map_places){0});
     gtx_occupancy_free(&occupancy, &asset->allocator);
     for (uint32_t k = 0; k < asset->info.lod_levels && !gtx_check_over(check); ++k)
         gtx_check_lod(check, asset, k, 0);

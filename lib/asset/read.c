@@ -93,9 +93,11 @@ static void check_rest(const reader *r, bool patches_hold)
                 gtx_check_meta(r->check, asset->meta, asset->meta_size, section->offset);
         }
     }
-    if (height && r->occupancy.words && !gtx_check_over(r->check))
-        gtx_check_maps(r->check, asset, &r->occupancy, d->holds, d->parts[0].section->offset,
-                       height->section->offset, height->section->scheme == GTX_SCHEME_STORED);
+    if (height && r->occupancy.words && !gtx_check_over(r->check)) {
+        const gtx_map_places places = {d->parts[0].section->offset, height->section->offset,
+                                       height->section->scheme == GTX_SCHEME_STORED};
+        gtx_check_maps(r->check, asset, &r->occupancy, d->holds, &places);
+    }
 }
 
 static void read_sections(reader *r)

@@ -129,23 +129,28 @@ typedef struct comparison {
     double greatest;          /* so far, object units */
 } comparison;
 
+/* Texels of a row from (x0, y) on: their codes, what the level's height field has there, and how
+ * much a distance counts. */
+typedef struct run {
+    uint32_t x0, y, count;
+    float texels[GTX_CODES_RUN], field[GTX_CODES_RUN], weights[GTX_CODES_RUN];
+} run;
+
 /* The distance of a texel from the height field as floats have it. NaNs are not beyond any
  * limit. */
-static inline float distance_of(float texel, float field, float weight)
+static inline float distance_of(const run *r, uint32_t i)
 {
-    return fabsf(field - texel) * weight;
+    return fabsf(r->field[i] - r->texels[i]) * r->weights[i];
 }
 
-/* Some texels of a row, in turn: those beyond the limit. */
-static void compare_exactly(comparison *c, uint32_t x0, uint32_t count, uint32_t y,
-                            const float *texels, const float *field, const float *weights,
-                            float limit)
+/* Of the texels first to end - 1, in turn, those beyond the limit. */
+static void compare_exactly(comparison *c, const run *r, uint32_t first, uint32_t end, float limit)
 {
-    for (uint32_t i = 0; i < count; ++i) {
-        if (!(distance_of(texels[i], field[i], weights[i]) > limit))
+    for (uint32_t i = first; i < end; ++i) {
+        if (!(distance_of(r, i) > limit))
             continue;
-        const gtx_surface s = surface_at(c->grid, c->patch, x0 + i, y);
-        const double codes = fabs(s.z - texels[i]) * (double)weights[i];
+        const gtx_surface s = surface_at(c->grid, c->patch, r->x0 + i, r->y);
+        const double codes = fabs(s.z - r->texels[i]) * (double)r->weights[i];
         /* or it cannot be greater square to the height field */
         if (codes * c->step[2] > c->greatest)
             c->greatest = fmax(c->greatest, codes * square_to(&s, c->step, c->patch));
@@ -153,12 +158,11 @@ static void compare_exactly(comparison *c, uint32_t x0, uint32_t count, uint32_t
 }
 
 /* Whether a texel is so far from the height field. */
-static bool any_beyond(const float *texels, const float *field, const float *weights,
-                       uint32_t count, float limit)
+static bool any_beyond(const run *r, uint32_t first, uint32_t end, float limit)
 {
     int beyond = 0;
-    for (uint32_t i = 0; i < count; ++i)
-        beyond |= distance_of(texels[i], field[i], weights[i]) > limit;
+    for (uint32_t i = first; i < end; ++i)
+        beyond |= distance_of(r, i) > limit;
     return beyond;
 }
 
@@ -173,26 +177,28 @@ static void compare_run(comparison *c, uint32_t first, uint32_t end, uint32_t y)
     const float f = (float)(y - low) / (float)(low + step < last ? step : last - low);
     const uint16_t *row = grid->code + (size_t)j * grid->nodes_x + first;
     const uint16_t *next = row + grid->nodes_x;
-    float texels[GTX_CODES_RUN], side[GTX_CODES_RUN], field[GTX_CODES_RUN];
-    float weights[GTX_CODES_RUN];
+    float side[GTX_CODES_RUN];
     for (uint32_t i = 0; i <= end - first; ++i)
         side[i] = (float)row[i] + f * (float)(next[i] - row[i]);
     /* The last cell of a row may be narrower, and has texels on both of its sides. */
     const bool ends = end == grid->nodes_x - 1;
     const uint32_t x0 = first << grid->level, whole = end - first - ends;
     const uint32_t rest = ends ? c->finest->nodes_x - x0 - whole * step : 0;
-    const uint32_t count = whole * step + rest;
-    gtx_load_codes(c->finest, x0, count, y, texels);
-    weigh(c->trim + y * c->row_texels + x0, count, weights);
-    lay_whole_cells(side, whole, step, field);
+    run r;
+    r.x0 = x0;
+    r.y = y;
+    r.count = whole * step + rest;
+    gtx_load_codes(c->finest, x0, r.count, y, r.texels);
+    weigh(c->trim + y * c->row_texels + x0, r.count, r.weights);
+    lay_whole_cells(side, whole, step, r.field);
     if (ends)
-        lay_cells(side + whole, 1, rest - 1, rest, field + whole * step);
-    for (uint32_t i = 0; i < count; i += PIECE) {
-        const uint32_t piece = count - i < PIECE ? count - i : PIECE;
+        lay_cells(side + whole, 1, rest - 1, rest, r.field + whole * step);
+    for (uint32_t i = 0; i < r.count; i += PIECE) {
+        const uint32_t piece_end = r.count - i < PIECE ? r.count : i + PIECE;
         /* Floats are off by less than this. */
         const float limit = (float)(0.9999 * c->greatest / c->step[2]) - 0.05f * border_counts;
-        if (any_beyond(texels + i, field + i, weights + i, piece, limit))
-            compare_exactly(c, x0 + i, piece, y, texels + i, field + i, weights + i, limit);
+        if (any_beyond(&r, i, piece_end, limit))
+            compare_exactly(c, &r, i, piece_end, limit);
     }
 }
 

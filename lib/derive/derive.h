@@ -9,9 +9,10 @@
 extern "C" {
 #endif
 
-/* Level k of one patch: nodes (i, j) at texels (min(i << k, w - 1), min(j << k, h - 1)); codes by
- * the rule of format/gtx.md, "Levels". A cell (i, j) lies between 2x2 nodes and exists where
- * `solid` is 1. */
+/* One level of a patch's height field: heights alone, as codes. (gtx_height_field adds what a ray
+ * needs, gtx_field_span is one whose points move.) Level k has nodes (i, j) at texels
+ * (min(i << k, w - 1), min(j << k, h - 1)), and codes by the rule of format/gtx.md, section 5. A
+ * cell (i, j) lies between 2x2 nodes and exists where `solid` is 1. */
 typedef struct gtx_grid {
     uint32_t level, nodes_x, nodes_y;  /* cells are one fewer on each axis */
     uint16_t *code;                    /* nodes_x * nodes_y */

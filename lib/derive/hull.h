@@ -76,7 +76,7 @@ static inline float gtx_greater(float a, float b)
 }
 
 /* hull_fit.c: places nodes near the height field, lifts and sinks lid and floor until they are
- * clear of it, * and sinks the walls' feet. Columns and codes are filled. */
+ * clear of it, and sinks the walls' feet. Columns and codes are filled. */
 void gtx_hull_fit(gtx_hull *h);
 
 #endif

@@ -8,8 +8,9 @@
 
 #include <stdbool.h>
 
-/* One patch, cast at its level of detail. Grid space: x and y in texels of level 0 (texel i at
- * x = i), z in codes. The map from object space is affine, so t means the same in both. */
+/* A patch's height field as a ray meets it: the codes of one level, with the frame, the trim and
+ * the normals that a hit needs. Grid space: x and y in texels of level 0 (texel i at x = i), z in
+ * codes. The map from object space is affine, so t means the same in both. */
 typedef struct gtx_height_field {
     double to_grid[3][4];       /* rows: linear part and translation */
     float normal_frame[3][3];   /* rows x', y', z' */
@@ -74,9 +75,9 @@ gtx_result gtx_fields_build(gtx_caster *caster, const gtx_asset *asset, uint32_t
                             double max_error, gtx_error *error);
 void gtx_fields_free(gtx_caster *caster);
 gtx_line gtx_field_line(const gtx_height_field *field, const gtx_line *ray);
-gtx_cell gtx_field_cell(const gtx_height_field *field, uint32_t i,
+gtx_cell gtx_field_cell(const gtx_height_field *field, uint32_t i, uint32_t j);
+bool gtx_field_solid(const gtx_caster *caster, const gtx_height_field *field, uint32_t i,
                      uint32_t j);
-bool gtx_field_solid(const gtx_caster *caster, const gtx_height_field *field, uint32_t i, uint32_t j);
 /* Whether the trim map shows the height field at (x, y). */
 bool gtx_field_shows(const gtx_height_field *field, double x, double y);
 /* The unit normals at (x, y) in object space: of the map, and of the surface of a cell. */

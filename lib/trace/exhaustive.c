@@ -51,25 +51,32 @@ static double turn(double t0, double t1, double f0, double middle, double f1)
     return x > -0.5 && x < 0.5 ? t0 + (0.5 + x) * (t1 - t0) : t1;
 }
 
-static void search_cell(const gtx_caster *caster, uint32_t index, const gtx_line *line,
-                        const gtx_cell *cell, bool both, interval i, gtx_crossing *best)
+/* What is looked for in the cells of a height field. */
+typedef struct search {
+    const gtx_height_field *field;
+    uint32_t index;
+    gtx_line line;
+    bool both;                /* crossings from below, too */
+} search;
+
+static void search_cell(const search *s, const gtx_cell *cell, interval i, gtx_crossing *best)
 {
-    const gtx_height_field *field = &caster->fields[index];
+    const gtx_line *line = &s->line;
     double f0 = above(line, cell, i.t0), f1 = above(line, cell, i.t1);
     double middle = above(line, cell, i.t0 + (i.t1 - i.t0) / 2);
     double split = turn(i.t0, i.t1, f0, middle, f1);
     const double end[3] = {i.t0, split, i.t1};
     for (int k = 0; k < 2; ++k) {
         bool from = above(line, cell, end[k]) > 0, to = above(line, cell, end[k + 1]) > 0;
-        if (from == to || (!from && !both))
+        if (from == to || (!from && !s->both))
             continue;
         double t = bisect(line, cell, end[k], end[k + 1]);
         double x = line->origin[0] + t * line->direction[0];
         double y = line->origin[1] + t * line->direction[1];
-        if (!(t < best->t || (t == best->t && index < best->field)) ||
-            !gtx_field_shows(field, x, y))
+        if (!(t < best->t || (t == best->t && s->index < best->field)) ||
+            !gtx_field_shows(s->field, x, y))
             continue;
-        *best = (gtx_crossing){t, index, x, y, !from};
+        *best = (gtx_crossing){t, s->index, x, y, !from};
         return;
     }
 }
@@ -93,26 +100,25 @@ static void code_range(const gtx_height_field *field, uint32_t i, uint32_t j, do
 void gtx_search_field(const gtx_caster *caster, uint32_t field, const gtx_line *ray, bool both,
                       gtx_crossing *best)
 {
-    const gtx_height_field *s = &caster->fields[field];
-    const gtx_line line = gtx_field_line(s, ray);
-    const double inverse[3] = {1 / line.direction[0], 1 / line.direction[1],
-                               1 / line.direction[2]};
-    for (uint32_t j = 0; j + 1 < s->nodes_y; ++j) {
-        gtx_cell first = gtx_field_cell(s, 0, j);
+    const gtx_height_field *f = &caster->fields[field];
+    const search s = {f, field, gtx_field_line(f, ray), both || f->two_sided};
+    const double *d = s.line.direction, inverse[3] = {1 / d[0], 1 / d[1], 1 / d[2]};
+    for (uint32_t j = 0; j + 1 < f->nodes_y; ++j) {
+        gtx_cell first = gtx_field_cell(f, 0, j);
         interval row = {ray->t_min, best->t};
-        row = cut(row, &line, 1, inverse[1], first.y0, first.y1);
-        for (uint32_t i = 0; row.t0 <= row.t1 && i + 1 < s->nodes_x; ++i) {
+        row = cut(row, &s.line, 1, inverse[1], first.y0, first.y1);
+        for (uint32_t i = 0; row.t0 <= row.t1 && i + 1 < f->nodes_x; ++i) {
             double low, high;
-            if (!gtx_field_solid(caster, s, i, j))
+            if (!gtx_field_solid(caster, f, i, j))
                 continue;
-            code_range(s, i, j, &low, &high);
-            interval inside = cut(row, &line, 2, inverse[2], low, high);
+            code_range(f, i, j, &low, &high);
+            interval inside = cut(row, &s.line, 2, inverse[2], low, high);
             if (inside.t0 > inside.t1)
                 continue;
-            gtx_cell cell = gtx_field_cell(s, i, j);
-            inside = cut(inside, &line, 0, inverse[0], cell.x0, cell.x1);
+            gtx_cell cell = gtx_field_cell(f, i, j);
+            inside = cut(inside, &s.line, 0, inverse[0], cell.x0, cell.x1);
             if (inside.t0 <= inside.t1)
-                search_cell(caster, field, &line, &cell, both || s->two_sided, inside, best);
+                search_cell(&s, &cell, inside, best);
         }
     }
 }

@@ -190,8 +190,7 @@ gtx_line gtx_field_line(const gtx_height_field *field, const gtx_line *ray)
     return line;
 }
 
-gtx_cell gtx_field_cell(const gtx_height_field *field, uint32_t i,
-                     uint32_t j)
+gtx_cell gtx_field_cell(const gtx_height_field *field, uint32_t i, uint32_t j)
 {
     const uint32_t level = field->level;
     const uint16_t *row = field->code + (size_t)j * field->nodes_x + i;
@@ -206,7 +205,8 @@ gtx_cell gtx_field_cell(const gtx_height_field *field, uint32_t i,
                       .cxy = next[1] - next[0] - row[1] + row[0]};
 }
 
-bool gtx_field_solid(const gtx_caster *caster, const gtx_height_field *field, uint32_t i, uint32_t j)
+bool gtx_field_solid(const gtx_caster *caster, const gtx_height_field *field, uint32_t i,
+                     uint32_t j)
 {
     const uint32_t block = j / GTX_BLOCK * field->blocks_x + i / GTX_BLOCK;
     const uint32_t bit = j % GTX_BLOCK * GTX_BLOCK + i % GTX_BLOCK;
