@@ -280,20 +280,6 @@ run-demo: $(MODEL)
 
 include lib/package/install.mk tests/bench/bench.mk
 
-# Numbers that a cook goes by, on models of few triangles and scans; the rare are for what is left.
-tune_common := textured/spot/spot/spot_control_mesh.obj gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf \
-  gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb scans/bunny.ply \
-  heightfields/reek/1_topreek_rota.gri heightfields/reek_1588x1188/0_topreek_rota_z16.png
-tune_rare   := $(word 2,$(tune_common)),--partition,vsa scans/gargo_3dhop.ply.gz gltf/dragon_draco_119k.glb
-below        = $(addprefix $(GEOTEX_MODELS)/,$(1))
-TUNE_MODELS ?= $(if $(GEOTEX_MODELS),$(call below,$(tune_common)) --rare $(call below,$(tune_rare)),$(MODEL))
-tune: ## what each constant of the cooker changes at half and at double, TUNE=REGEX takes some
-	@$(MAKE) --no-print-directory deps
-	$(if $(GEOTEX_MODELS),,@$(MAKE) --no-print-directory -j$$(nproc) all)
-	@mkdir -p $(build)/demo
-	$(if $(filter $(build)/demo/sculpt.glb,$(TUNE_MODELS)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
-	@TUNE='$(TUNE)' tests/bench/tune $(build)/tune $(TUNE_MODELS)
-
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev \
             nlohmann-json3-dev libmeshoptimizer-dev \
@@ -321,8 +307,8 @@ clean: ## remove what was built
 	rm -rf $(build)
 
 .PHONY: all install uninstall dist build-tests run-tests test check demo run-demo bench run-bench \
-        bench-rays run-bench-rays tune paper-tables run-paper-tables paper-figures run-paper-figures \
-        deps help clean
+        bench-rays run-bench-rays tune paper-tables run-paper-tables paper-figures \
+        run-paper-figures deps help clean
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(shell [ -d $(out) ] && find $(out) -name '*.d')

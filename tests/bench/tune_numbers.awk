@@ -9,11 +9,11 @@ function structural(name)
     name = file ":" name
     if (name ~ /:NO_[A-Z_]+$|:(UNUSED|OFF|OPEN)$/) return "means none, or is a bit"
     if (name ~ /:[A-Z]+_CHANNELS$|report.cpp:(RECORD|ROW|BOX)$/) return "of the format"
-    if (name ~ /patch.cpp:DEEP_TRIM$|unseen.cpp:(LEAST|MIN)_CODE$/) return "a code of the format"
+    if (name ~ /patch.cpp:DEEP_TRIM$|MIN_CODE$/) return "a code of the format"
     if (name ~ /stitch.cpp:(OUTLINE|TEXEL)$/) return "a code of the format"
     if (name ~ /:(COOKER_REVISION|DEFAULT_ZSTD)$/) return "a version, a default"
     if (name ~ /pgp.hpp:(PI|UV_GRID)$|decoded.hpp:DIAGONAL$/) return "mathematics"
-    if (name ~ /vsa.cpp:(BUCKETS|WORDS|LOWEST)$|shell_fan.hpp:(MOST|MAX)_FAN$/) return "array size"
+    if (name ~ /vsa.cpp:(BUCKETS|WORDS|LOWEST)$|fan.hpp:MAX_FAN$/) return "array size"
     return ""
 }
 

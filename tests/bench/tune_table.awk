@@ -9,11 +9,11 @@ function told(figures,    f)
     split(figures, f, " ")
     return f[1] " patches, " f[2] " texels, " f[3] " % empty, RMS " f[4] " %, " f[5] " holes, " \
         f[6] " B" (f[7] > 0 ? ", " \
-        f[7] " shell levels of " f[8] " triangles, error " f[9] " %" : "")
+        f[7] " LOD meshes of " f[8] " triangles, error " f[9] " %" : "")
 }
 
 function size(x) { return x < 0 ? -x : x }
-function counted(k) { return k == 5 || k == 7 } # holes and shell levels: a difference, else a ratio
+function counted(k) { return k == 5 || k == 7 } # holes and LOD meshes: a difference, else a ratio
 function short(model) { sub(/[.][^,]*/, "", model); return model }
 
 # The greatest change of each figure over the models, with the model that has it.
@@ -58,7 +58,7 @@ function changes(number, factor,    i, k, m, a, b, d, worst, of, text, any)
 }
 
 BEGIN {
-    split("patches,texels,empty,RMS,holes,bytes,shell levels,shell triangles,shell error", what,
+    split("patches,texels,empty,RMS,holes,bytes,LOD meshes,LOD triangles,LOD error", what,
         ",")
     while ((getline line < numbers) > 0) {
         split(line, part, "\t")
