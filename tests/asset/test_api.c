@@ -125,8 +125,11 @@ static void test_files(void **state)
     assert_memory_equal(saved.data, golden_file.data, saved.size);
 
     assert_int_equal(gtx_open_file(folder, NULL, &other, &error), GTX_ERROR_READ);
+    assert_string_equal(strstr(error.message, ": "), ": Is a directory");
     assert_int_equal(gtx_open_file("/nowhere/a.gtx", NULL, &other, &error), GTX_ERROR_READ);
+    assert_string_equal(error.message, "cannot open /nowhere/a.gtx: No such file or directory");
     assert_int_equal(gtx_save_file(asset, "/nowhere/a.gtx", NULL, &error), GTX_ERROR_WRITE);
+    assert_non_null(strstr(error.message, "No such file or directory"));
 
     /* A folder stands where the file should go: it stays, and nothing else does. */
     assert_int_equal(mkdir(taken, 0700), 0);

@@ -69,6 +69,7 @@ static void test_validate(void **state)
         assert_int_equal(h.issues, b->edit == material_before_color ? 4 : 1);
         assert_int_equal(h.offset, reported_offset(b, file));
         assert_int_equal(error.rule, b->rule);
+        assert_string_equal(error.rule_name, b->name);
         free(file.data);
     }
 }

@@ -11,7 +11,7 @@ static bool near_edge(const gtx_hit *hit, uint32_t level)
     return fabs(x - round(x)) < 1e-4 || fabs(y - round(y)) < 1e-4;
 }
 
-/* DESIGN, "wrong ray": hit and miss differ, or hits by more than a height step and 1/8 texel. Rays
+/* A ray is wrong when hit and miss differ, or hits by more than a height step and 1/8 texel. Rays
  * close to an edge or a tangent are excluded and counted. */
 static void judge(const gtx_asset *asset, uint32_t level, const gtx_ray *ray, const gtx_hit *a,
                   const gtx_hit *b, tally *out)
