@@ -73,6 +73,8 @@ cflags_host  = $(call pkg,--cflags,egl glfw3)
 # Loops over texels become vectors where a comparison of floats may be made in vain.
 cflags_asset  = -fno-trapping-math
 cflags_derive = -fno-trapping-math
+# The layouts of records are of shaders and of C.
+cflags_render = -Ishaders
 cflags_cli   = -D_POSIX_C_SOURCE=200809L
 libs_asset   = $(if $(filter 1,$(zstd)),$(call pkg,--libs,libzstd))
 libs_mesh    = $(call pkg,--libs,openmesh draco zlib) -lmeshoptimizer -ldl -pthread -lstdc++
