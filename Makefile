@@ -5,13 +5,13 @@
 #   zstd=1|0                        compressed sections in libgeotex, or a library of libc alone
 #   build=DIR                       where everything goes (build)
 #   V=1                             print the commands
-#   werror=0                        warnings stay warnings
+#   werror=1                        warnings are errors, for those who change the code
 -include Makefile.config
 
 config ?= release
 zstd   ?= 1
 build  ?= build
-werror ?= 1
+werror ?= 0
 PREFIX ?= /usr/local
 .DEFAULT_GOAL := all
 
@@ -58,7 +58,7 @@ warnings := -Wall -Wextra $(if $(filter 1,$(werror)),-Werror)
 common   := $(flags) $(warnings) -fPIC -fvisibility=hidden -ffp-contract=off -MMD -MP \
             -Iinclude -DGTX_BUILDING $(if $(filter 1,$(zstd)),-DGTX_ZSTD)
 cflags   := -std=c11 -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes $(common)
-cxxflags := -std=c++17 -Wshadow=local $(common)
+cxxflags := -std=c++17 $(if $(findstring clang,$(shell $(CXX) --version)),-Wshadow,-Wshadow=local) $(common)
 
 # Packages, asked for only where they are used: nothing here is needed to build libgeotex.
 pkg = $(shell pkg-config $(1) $(2))
@@ -234,6 +234,7 @@ links_cli      := base image
 links_consumer := base
 links_corpus   := base
 links_samples  := $(needs_image)
+links_source   := base
 links_threads  := $(needs_cook)
 extra_needs_render  := trace edit host image
 extra_needs_trace   := image mesh grid chart bake measure cook
