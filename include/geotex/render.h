@@ -35,7 +35,7 @@ typedef void (*gtx_gl_proc)(void);
 
 /* What drawing costs, for GTX_METHOD_AUTO to compare: a triangle of an LOD mesh and a pixel that it
  * covers; a patch that is cast and a pixel that its proxy covers. In any unit; all 0 = as measured
- * with llvmpipe. */
+ * with llvmpipe, on which only the finer LOD meshes may cost more than casting. */
 typedef struct gtx_costs {
     float lod_triangle, lod_pixel;
     float cast_patch, cast_pixel;
@@ -66,7 +66,7 @@ typedef struct gtx_renderer_desc {
     uint32_t reserved[3];
 } gtx_renderer_desc;
 
-/* The context must be current, as for all functions below but gtx_model_prepare. Leaves program 0,
+/* The context must be current, here and in all functions that take a renderer. Leaves program 0,
  * vertex array 0 and array buffer 0. The renderer comes from the descriptor's allocator, and is
  * freed by gtx_renderer_destroy.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL (a function or version is missing), SHADER. */
