@@ -2,9 +2,9 @@
  *
  *   ray_shadows ASSET.gtx [--headless OUT.png] [--size WxH]
  *
- * Above on the left a shadow map, on the right a ray to the sun from each pixel; below on the left
- * rays to a disc, on the right those and rays to the sky. Patches and polygons call the same
- * functions of geotex_rays.glsl, and nothing has a bias to be tuned. */
+ * Top left, a shadow map; top right, a ray to the sun from each pixel; bottom left, rays to a disc;
+ * bottom right, those and rays to the sky. Patches and polygons call the same
+ * functions of geotex_rays.glsl, and no bias has to be tuned. */
 #include "host/program.h"
 #include "host/sample.h"
 #include "host/shapes.h"
@@ -27,7 +27,7 @@ typedef struct world {
     GLuint programs[3];
 } world;
 
-/* Draws the map and tells the programs where it is. */
+/* Draws the map and binds it for the programs. */
 static gtx_result shine(const gtx_host_gl *gl, world *w, gtx_error *error)
 {
     const gtx_camera sun = {.target = {0, 0.8f, 0}, .radius = 5, .azimuth = -60, .elevation = 24,
