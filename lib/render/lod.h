@@ -72,9 +72,9 @@ static inline void gtx_lod_mark(gtx_lod_meshes *lods, uint32_t patch)
 }
 
 /* Draws the patches that are not edited, of those seen from one side or from two. Program, textures
- * and the attributes of instances are set, the vertex array is bound. `instances` is 0 for a program
- * that takes the transform of a single one as a uniform. Sets attributes 0 and 1 and binds the
- * indices. */
+ * and the attributes of instances are set, the vertex array is bound. `instances` is 0 for a
+ * program that takes the transform of a single one as a uniform. Sets attributes 0 and 1 and binds
+ * the indices. */
 void gtx_lod_draw(const gtx_gl *gl, const gtx_lod_meshes *lods, uint32_t level, bool two_sided,
                   uint32_t instances);
 
