@@ -1,7 +1,7 @@
 /* Patch view set-up: the records of patches and slabs that geotex_tiles.glsl reads. */
 #include "render/patch_view.h"
 
-#include "derive/frame.h"
+#include "asset/patch.h"
 
 #include <math.h>
 
