@@ -73,6 +73,8 @@ cflags_host  = $(call pkg,--cflags,egl glfw3)
 # Loops over texels become vectors where a comparison of floats may be made in vain.
 cflags_asset  = -fno-trapping-math
 cflags_derive = -fno-trapping-math
+# The layouts of records are of shaders and of C.
+cflags_render = -Ishaders
 cflags_cli   = -D_POSIX_C_SOURCE=200809L
 libs_asset   = $(if $(filter 1,$(zstd)),$(call pkg,--libs,libzstd))
 libs_mesh    = $(call pkg,--libs,openmesh draco zlib) -lmeshoptimizer -ldl -pthread -lstdc++
@@ -307,8 +309,8 @@ clean: ## remove what was built
 	rm -rf $(build)
 
 .PHONY: all install uninstall dist build-tests run-tests test check demo run-demo bench run-bench \
-        bench-rays run-bench-rays paper-tables run-paper-tables paper-figures run-paper-figures \
-        deps help clean
+        bench-rays run-bench-rays tune paper-tables run-paper-tables paper-figures \
+        run-paper-figures deps help clean
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(shell [ -d $(out) ] && find $(out) -name '*.d')

@@ -81,6 +81,7 @@ GTX_API const char *gtx_result_string(gtx_result result);
 typedef struct gtx_error {
     gtx_result result;
     uint32_t rule;                /* rule number of format/gtx.md, 0 when none applies */
+    const char *rule_name;        /* its name, such as "patch-page": static; else NULL */
     uint64_t offset;              /* byte offset in the file that broke the rule, else 0 */
     char message[240];            /* one sentence without a final newline, always terminated */
 } gtx_error;

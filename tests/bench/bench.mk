@@ -65,3 +65,18 @@ $(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o \
 $(out)/tests/bench/rays: $(out)/tests/bench/rays.o $(call objects_of,host image) $(lib_core)
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset host image)
+
+# Numbers that a cook goes by, on models of few triangles and scans; the rare are for what is left.
+truck       := gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf
+tune_common := textured/spot/spot/spot_control_mesh.obj $(truck) scans/bunny.ply \
+               gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb \
+               heightfields/reek/1_topreek_rota.gri \
+               heightfields/reek_1588x1188/0_topreek_rota_z16.png
+tune_rare   := $(truck),--partition,vsa scans/gargo_3dhop.ply.gz gltf/dragon_draco_119k.glb
+below        = $(addprefix $(GEOTEX_MODELS)/,$(1))
+TUNE_MODELS ?= $(if $(GEOTEX_MODELS),$(call below,$(tune_common)) --rare \
+                 $(call below,$(tune_rare)),$(MODEL))
+tune: ## what each constant of the cooker changes at half and at double; TUNE=REGEX takes some
+	$(again) deps
+	$(if $(GEOTEX_MODELS),,$(again) $(MODEL))
+	@TUNE='$(TUNE)' tests/bench/tune $(build)/tune $(TUNE_MODELS)
