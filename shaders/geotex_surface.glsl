@@ -1,4 +1,4 @@
-/* Normal and colour of a hit. Needs geotex_dialect.glsl and geotex_height_field.glsl before it. */
+/* Normal and colour of a hit. Needs geotex_height_field.glsl before it. */
 GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;  /* hemi-octahedral, two channels, mips */
 GTX_SAMPLER(3, highp sampler2DArray) gtx_colors;   /* sRGB, mips; decoded when sampled */
 

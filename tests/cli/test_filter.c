@@ -105,7 +105,7 @@ static void the_lod_stays_behind(void **state)
     expect(gtx("filter lod.gtx -o bare.gtx --gaussian 1"), 0);
     expect_text("warning: the LOD mesh");
     expect(gtx("info bare.gtx --json"), 0);
-    expect_text("\"LOD mesh\": []");
+    expect_text("\"lod_meshes\": []");
 }
 
 int main(void)
