@@ -12,7 +12,6 @@ static const double HOLE_PIXELS = 2, HOLE_STEPS = 4, HOLE_DIAGONAL = 0.001, FLAT
 /* Pixels that the runtime's levels may be off, and how many sizes of images are looked at. */
 static const double DETAIL_PIXELS = 0.5;
 static const uint32_t DETAIL_SIZES = 5, MIN_SIZE = 16;
-static const double PI = 3.14159265358979323846;
 
 namespace {
 
@@ -116,7 +115,7 @@ static double color_difference(const Fragment *source, const Fragment *asset, co
 
 static double degrees_between(const Vec3d &a, const Vec3d &b)
 {
-    return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / PI;
+    return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / 3.14159265358979323846;
 }
 
 void Look::hole(const Suspect &s)
