@@ -1,5 +1,5 @@
 /* Packs rectangles into pages: skyline, bottom left, tallest first (survey: Jylanki 2010). */
-#include "bake/patch_maps.hpp"
+#include "bake/pages.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,15 +1,14 @@
 /* Height grids cut into tiles that agree where they meet. */
 #include "bake/tiles.hpp"
 
-#include "bake/patch_maps.hpp"
+#include "bake/field/shade.hpp"
+#include "bake/pages.hpp"
 #include "mesh/material/srgb.hpp"
 
 #include <algorithm>
 
 namespace gtx::baking {
 
-/* A tile shows so many texels beyond its border: its neighbour has the same texels. */
-constexpr double TILE_OVERLAP = 0.15;
 /* Steps of heights are halves of halves of the coarsest, so often at most. */
 constexpr int MAX_HALVINGS = 12;
 
@@ -176,7 +175,7 @@ static float outside(const Tile &tile, const HeightGrid &grid, int i, int j)
         if (tile.to[k] < size[k] - 1)
             most = std::max(most, double(at[k] - tile.to[k]));
     }
-    return float(most - TILE_OVERLAP);
+    return float(most - CUT_OVERLAP);
 }
 
 static gtx_patch make_record(const Tile &tile, const LayerHeights &layer, const Vec3d &anchor,
@@ -251,8 +250,7 @@ static PatchMaps bake_tile(const Tile &tile, const LayerHeights &layer, const Gr
     return maps;
 }
 
-/* The middle of all grids, to a multiple of the largest power of two not above their size. */
-static Vec3d find_anchor(const std::vector<LayerHeights> &layers, const std::vector<Tile> &tiles)
+static Vec3d anchor_of(const std::vector<LayerHeights> &layers, const std::vector<Tile> &tiles)
 {
     Vec3d low(INFINITY, INFINITY, INFINITY), high = -low;
     for (const Tile &tile : tiles)
@@ -265,14 +263,7 @@ static Vec3d find_anchor(const std::vector<LayerHeights> &layers, const std::vec
                 high[a] = std::max(high[a], p[a]);
             }
         }
-    const double diagonal = length(high - low);
-    if (!(diagonal >= MIN_DIAGONAL && diagonal <= MAX_DIAGONAL))
-        throw Error(GTX_ERROR_INPUT, "the grids are smaller than 1e-15 or larger than 1e15");
-    const double step = std::exp2(std::floor(std::log2(diagonal)));
-    Vec3d anchor;
-    for (int a = 0; a < 3; ++a)
-        anchor[a] = std::floor((low[a] + high[a]) / 2 / step + 0.5) * step;
-    return anchor;
+    return find_anchor(low, high, "the grids are");
 }
 
 } // namespace gtx::baking
@@ -317,7 +308,7 @@ Maps bake_tiles(const std::vector<GridLayer> &layers, const TileOptions &options
             own.push_back(&tiles[t]);
         choose_steps(own, options, heights[n], task);
     }
-    const Vec3d anchor = find_anchor(heights, tiles);
+    const Vec3d anchor = anchor_of(heights, tiles);
     std::vector<PatchMaps> patches(tiles.size());
     std::vector<Rounding> rounding(tiles.size());
     task.parallel(tiles.size(), [&](size_t t) {
@@ -338,11 +329,9 @@ Maps bake_tiles(const std::vector<GridLayer> &layers, const TileOptions &options
             report.nodes += !std::isnan(value);
 
     task.begin("pack");
-    Maps maps = place_on_pages(patches, options.bake);
+    Maps maps = place_on_pages(patches, anchor, options.bake);
     for (uint32_t t = 0; t < tiles.size(); ++t)
         maps.charts.push_back(t);
-    for (int k = 0; k < 3; ++k)
-        maps.anchor[k] = anchor[k];
     return maps;
 }
 

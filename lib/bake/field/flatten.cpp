@@ -1,5 +1,5 @@
 /* Lays a chart and its overlap out in the texel grid of its frame. */
-#include "bake/patch_maps.hpp"
+#include "bake/field/flatten.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 /* Material that is cut away: the outline of a mask becomes part of the trim. */
-#include "bake/patch_maps.hpp"
+#include "bake/field/chart_field.hpp"
 
 #include <algorithm>
 

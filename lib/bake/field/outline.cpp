@@ -1,11 +1,16 @@
 /* Where the true surface ends: outline edges, distances to them, and the trim map. */
-#include "bake/patch_maps.hpp"
+#include "bake/field/chart_field.hpp"
 
 #include <algorithm>
 
 namespace gtx::baking {
 
 constexpr uint32_t NO_EDGE = 0xffffffffu;
+/* Source surface beyond a chart's border counts as true up to this many texels from it. */
+constexpr double OVERLAP = 1;
+/* Where the model itself ends, up to this many texels beyond its border: nobody else's height field
+ * starts there. */
+constexpr double BORDER_SHOWN = 0.1;
 
 double nearest_parameter(const OutlineEdge &edge, double u, double v)
 {

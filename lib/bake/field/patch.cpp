@@ -1,5 +1,5 @@
 /* One chart -> the maps of its patch (paper, section 5.3). */
-#include "bake/patch_maps.hpp"
+#include "bake/field/shade.hpp"
 
 #include "asset/fill.h"
 
@@ -115,7 +115,7 @@ uint8_t trim_code(float distance)
     return uint8_t(std::clamp(128 + 16 * distance, DEEP_TRIM, 255.f) + 0.5f);
 }
 
-static void quantise(const HeightField &s, const Crop &crop, double low, unsigned height_bits,
+static void quantise(const ChartField &s, const Crop &crop, double low, unsigned height_bits,
                      PatchMaps &maps)
 {
     const Grid &grid = s.flat.grid;
@@ -140,9 +140,9 @@ static void quantise(const HeightField &s, const Crop &crop, double low, unsigne
     fill_trim(maps);
 }
 
-static HeightField lay_field(const Job &job, FlatChart flat, Extractor *extractor)
+static ChartField lay_field(const Job &job, FlatChart flat, Extractor *extractor)
 {
-    HeightField s;
+    ChartField s;
     s.flat = std::move(flat);
     if (extractor)
         s.rendering = extractor->render(job.mesh, s.flat);
@@ -156,12 +156,12 @@ static HeightField lay_field(const Job &job, FlatChart flat, Extractor *extracto
     if (job.needs.mask)
         trim_mask(job.mesh, job.neighbours, s.flat, s.trim);
     s.support = find_support(s.flat.grid, s.trim);
-    extrapolate(s.flat, s.outline, paths, s.support, s.cover);
-    cut_cliffs(s.flat, core_outline, s.outline, paths, s.trim, s.cover, s.support);
+    extrapolate(paths, s);
+    cut_discontinuities(core_outline, paths, s);
     return s;
 }
 
-static PatchMaps encode_field(const Job &job, const Chart &chart, const HeightField &s)
+static PatchMaps encode_field(const Job &job, const Chart &chart, const ChartField &s)
 {
     PatchMaps maps;
     double low = INFINITY, high = -INFINITY;
@@ -183,7 +183,7 @@ static PatchMaps encode_field(const Job &job, const Chart &chart, const HeightFi
 
 /* A few cells less, or more, along a side that rounding to a multiple of `grain` would fill up with
  * empty texels. */
-static bool refit(const HeightField &field, int grain, Chart &chart)
+static bool refit(const ChartField &field, int grain, Chart &chart)
 {
     constexpr int MAX_LESS = 3;
     const Crop crop = crop_support(field.flat.grid, field.support, 1);
@@ -200,11 +200,11 @@ static bool refit(const HeightField &field, int grain, Chart &chart)
 
 /* A height field with `finer` times as many cells along its sides, or so many that they fill
  * them. */
-static HeightField lay_fitted(const Job &job, const Chart &chart, double finer)
+static ChartField lay_fitted(const Job &job, const Chart &chart, double finer)
 {
     Extractor *extractor = job.options.extractor;
     FlatChart flat = flatten(job.mesh, job.neighbours, chart, job.pitch, finer);
-    HeightField field = lay_field(job, std::move(flat), nullptr); /* cells do not depend on a
+    ChartField field = lay_field(job, std::move(flat), nullptr); /* cells do not depend on a
                                                                      driver */
     Chart fitted = chart;
     for (unsigned &cells : fitted.cells)
@@ -220,10 +220,10 @@ static HeightField lay_fitted(const Job &job, const Chart &chart, double finer)
 PatchMaps bake_chart(const Job &job, const Chart &chart)
 {
     constexpr double ALLOWED = 0.01, FINER = 1.4;
-    HeightField field = lay_fitted(job, chart, 1);
-    if (fit_heights(field.flat, field.support, job.pitch, field.cover) > ALLOWED) {
+    ChartField field = lay_fitted(job, chart, 1);
+    if (fit_heights(job.pitch, field) > ALLOWED) {
         field = lay_fitted(job, chart, FINER);
-        fit_heights(field.flat, field.support, job.pitch, field.cover);
+        fit_heights(job.pitch, field);
     }
     return encode_field(job, chart, field);
 }

@@ -1,5 +1,5 @@
 /* What the source looks like at the texels of a patch. */
-#include "bake/patch_maps.hpp"
+#include "bake/field/shade.hpp"
 
 #include <algorithm>
 
@@ -41,7 +41,7 @@ SurfacePoint surface_point(const FlatChart &chart, const Outline &outline, const
 
 /* What the GPU has interpolated where its triangle is still the one that covers the texel, else
  * what the corners give here. */
-static Interpolated interpolated_at(const Job &job, const HeightField &field,
+static Interpolated interpolated_at(const Job &job, const ChartField &field,
                                     const SurfacePoint &point, size_t texel)
 {
     Interpolated corners =
@@ -70,7 +70,7 @@ static void store(const SurfaceSample &sample, const AppearanceNeeds &needs, Sha
         std::copy_n(sample.emission, EMISSION_CHANNELS, out);
 }
 
-Shades shade_texels(const Job &job, const HeightField &field, const Crop &crop,
+Shades shade_texels(const Job &job, const ChartField &field, const Crop &crop,
                     const std::vector<uint16_t> &height)
 {
     /* A texel with a code is at most so far from what is shown. */

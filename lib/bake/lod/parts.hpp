@@ -1,7 +1,7 @@
 /* The inside of the LOD mesh's making: where a patch has normals, and fewer triangles. */
 #pragma once
 
-#include "bake/patch_maps.hpp"
+#include "bake/field/patch.hpp"
 #include "bake/lod/lod.hpp"
 
 #include <memory>

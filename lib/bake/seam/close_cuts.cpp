@@ -7,6 +7,7 @@
  * height field, as a reader decodes it. Pieces of a chart share its axis of projection, along which
  * that is exact. */
 #include "bake/seam/decoded.hpp"
+#include "bake/seam/seam.hpp"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 /* The height fields of patches as a reader decodes them. */
 #pragma once
 
-#include "bake/patch_maps.hpp"
+#include "bake/field/patch.hpp"
 
 #include <algorithm>
 

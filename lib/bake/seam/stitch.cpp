@@ -7,6 +7,7 @@
  * set up again where the height fields then are. Texels beyond an outline move first, for nobody
  * sees what they lie on, and those deep inside one last. */
 #include "bake/seam/decoded.hpp"
+#include "bake/seam/seam.hpp"
 
 namespace gtx::baking {
 

@@ -7,10 +7,12 @@
  * in none of them, nor lies hidden in one a little beyond its outline, gets patches of its own,
  * with as much around it as their borders need. */
 #include "bake/seam/decoded.hpp"
+#include "bake/seam/seam.hpp"
 #include "chart/frame.hpp"
 
 #include <algorithm>
 #include <tuple>
+#include <unordered_set>
 
 namespace gtx::baking {
 
@@ -295,8 +297,8 @@ static void ease(const std::vector<Eased> &cells, std::vector<PatchMaps> &patche
             fill_trim(patches[i]);
 }
 
-std::vector<Chart> chart_unseen(const Job &job, const Partition &partition,
-                                std::vector<PatchMaps> &patches, Task &task)
+std::vector<Chart> cover_uncovered(const Job &job, const Partition &partition,
+                                   std::vector<PatchMaps> &patches, Task &task)
 {
     Search search(job, partition, patches);
     const std::vector<Lost> lost = search.run(task);
