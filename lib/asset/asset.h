@@ -2,7 +2,7 @@
 #ifndef GTX_ASSET_ASSET_H
 #define GTX_ASSET_ASSET_H
 
-#include <geotex/geotex.h>
+#include "asset/patch.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -56,20 +56,6 @@ static inline uint32_t gtx_trim_code(const gtx_asset *asset, const gtx_patch *pa
 {
     size_t row = (size_t)patch->page * asset->info.page_height + patch->rect[1] + y;
     return asset->trim[row * asset->info.page_width + patch->rect[0] + x];
-}
-
-/* Hemi-octahedral normals in the patch's normal frame (format/gtx.md, "Normals"): n is a unit
- * vector in that frame with n[2] >= 0. */
-void gtx_encode_normal(const float n[3], uint8_t out[2]);
-void gtx_decode_normal(const uint8_t in[2], float n[3]);
-
-/* Rows of the patch's normal frame in object space: x', y', z'. */
-void gtx_normal_frame(const gtx_patch *patch, float rows[3][3]);
-
-/* Maps a height code to a fraction of extent_z, 0..1, for c >= 1. */
-static inline float gtx_code_height(uint32_t code, uint32_t height_bits)
-{
-    return (float)(code - 1) / (height_bits == 8 ? 254.0f : 65534.0f);
 }
 
 #ifdef __cplusplus

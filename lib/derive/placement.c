@@ -1,7 +1,7 @@
 /* Affine placements: inverse, stretch and boxes. */
 #include "derive/placement.h"
 
-#include "derive/frame.h"
+#include "asset/patch.h"
 
 #include <math.h>
 

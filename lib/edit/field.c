@@ -45,7 +45,8 @@ static uint64_t read_patch(gtx_edit *edit, uint32_t index)
             for (int k = 0; k < 3; ++k)
                 edit->normal[texel][k] = n[0] * rows[0][k] + n[1] * rows[1][k] + n[2] * rows[2][k];
             edit->trim[texel] = ((float)asset->trim[at] - 128) / 16;
-            edit->height[texel] = gtx_code_height(code, asset->info.height_bits) * patch->extent_z;
+            edit->height[texel] =
+                (float)(gtx_code_height(code, asset->info.height_bits) * patch->extent_z);
             edit->kind[texel] = edit->trim[texel] <= 0 ? GTX_TEXEL_OWN : GTX_TEXEL_LOOSE;
             edit->ring[texel] = 0;
             place(patch, field, own, edit->height[texel], edit->rest[texel]);

@@ -36,7 +36,7 @@ static void grow_box(const gtx_asset *asset, const gtx_patch *patch, float low[3
             continue;
         const double a = (t % w + 0.5) / w * patch->extent_x;
         const double b = (t / w + 0.5) / h * patch->extent_y;
-        const double c = (double)gtx_code_height(code, asset->info.height_bits) * patch->extent_z;
+        const double c = gtx_code_height(code, asset->info.height_bits) * patch->extent_z;
         for (int k = 0; k < 3; ++k) {
             const float at = (float)(patch->origin[k] + a * patch->axis_x[k] +
                                      b * patch->axis_y[k] + c * patch->axis_z[k]);

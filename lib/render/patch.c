@@ -1,9 +1,9 @@
 /* What drawing derives from one patch: corner cells of all levels, its record, and its proxies. */
 #include "render/renderer.h"
 
+#include "asset/patch.h"
 #include "base/alloc.h"
 #include "base/error.h"
-#include "derive/frame.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* What a camera sees of patches and slabs: the records that geotex_tiles.glsl reads. */
 #include "render/patch_view.h"
 
-#include "derive/frame.h"
+#include "asset/patch.h"
 
 #include <math.h>
 

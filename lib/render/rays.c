@@ -2,9 +2,9 @@
  * of their cells that hierarchies are built over. geotex_rays.glsl reads them. */
 #include "render/rays.h"
 
+#include "asset/patch.h"
 #include "base/alloc.h"
 #include "base/error.h"
-#include "derive/frame.h"
 #include "render/renderer.h"
 
 #include <string.h>

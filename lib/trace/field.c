@@ -1,10 +1,10 @@
 /* Height fields: what casting needs of one patch, and the lookups in its maps. */
 #include "trace/caster.h"
 
+#include "asset/patch.h"
 #include "base/alloc.h"
 #include "base/error.h"
 #include "derive/derive.h"
-#include "derive/frame.h"
 
 #include <math.h>
 #include <string.h>

@@ -80,7 +80,7 @@ static double decoded_height(const maps *m, const gtx_patch *patch, uint32_t i, 
     uint32_t code = m->desc.height_bits == 8
                         ? m->height[at]
                         : m->height[2 * at] | (uint32_t)m->height[2 * at + 1] << 8;
-    return code ? (double)gtx_code_height(code, m->desc.height_bits) : -1;
+    return code ? gtx_code_height(code, m->desc.height_bits) : -1;
 }
 
 /* Coverage and sphere of the patch, and its part of the asset's bounds. */
