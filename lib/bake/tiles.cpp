@@ -44,11 +44,6 @@ struct LayerHeights {
     }
 };
 
-static unsigned top_code(const TileOptions &options)
-{
-    return options.bake.height_bits == 8 ? 254 : 65534;
-}
-
 /* Cuts the grid evenly into as few tiles as the side allows. */
 static void cut(const LayerHeights &layer, uint32_t index, unsigned side, std::vector<Tile> &tiles)
 {
@@ -100,7 +95,7 @@ static void find_range(const LayerHeights &layer, bool rounded, Tile &tile)
 static void choose_steps(std::vector<Tile *> &tiles, const TileOptions &options,
                          LayerHeights &layer, Task &task)
 {
-    const double top = top_code(options);
+    const double top = gtx_height_steps(options.bake.height_bits);
     auto ranges = [&](bool rounded) {
         task.parallel(tiles.size(), [&](size_t t) { find_range(layer, rounded, *tiles[t]); }, 0, 0);
     };
@@ -195,7 +190,8 @@ static gtx_patch make_record(const Tile &tile, const LayerHeights &layer, const 
     store(record.axis_z, frame.z);
     record.extent_x = float(record.rect[2] * grid.step[0]);
     record.extent_y = float(record.rect[3] * grid.step[1]);
-    record.extent_z = float(std::ldexp(layer.step, -tile.halvings) * top_code(options));
+    record.extent_z = float(std::ldexp(layer.step, -tile.halvings) *
+                            gtx_height_steps(options.bake.height_bits));
     const unsigned dilation = options.bake.dilation;
     record.dilation = uint16_t(dilation ? dilation : 1u << (options.bake.mips - 1));
     record.flags = GTX_PATCH_TWO_SIDED;
@@ -227,8 +223,8 @@ static PatchMaps bake_tile(const Tile &tile, const LayerHeights &layer, const Gr
     for_nodes(tile, layer, [&](int i, int j) {
         const size_t at = size_t(j - tile.low[1]) * w + size_t(i - tile.low[0]);
         const double height = layer.rounded(i, j);
-        maps.height[at] = uint16_t(1 + std::clamp(std::floor((height - tile.bottom) / step + 0.5),
-                                                  0.0, double(top_code(options))));
+        maps.height[at] =
+            uint16_t(gtx_nearest_code((height - tile.bottom) / step, options.bake.height_bits));
         maps.trim[at] = trim_code(outside(tile, *layer.grid, i, j));
         shades.occupied[at] = 1;
         shades.normal[at] = normal_at(layer, frame, i, j);

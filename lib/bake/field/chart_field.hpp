@@ -11,7 +11,7 @@ namespace gtx::baking {
  * below its least corner, and codes round to 1/32. */
 inline bool shown(float trim)
 {
-    return trim <= float(SHOWN + 1.0 / 32);
+    return trim <= float(GTX_TRIM_SHOWN + 0.5 / GTX_TRIM_TEXEL);
 }
 
 /* Texels of depth between neighbouring texels that are a depth discontinuity, unless the surface is

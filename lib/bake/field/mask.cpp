@@ -107,7 +107,7 @@ void trim_mask(const Mesh &mesh, const Neighbours &neighbours, const FlatChart &
         size_t x = i % size_t(chart.grid.w), y = i / size_t(chart.grid.w);
         float distance = outline.distance[i];
         bool gone = cut[FINER * (y * size_t(fine.grid.w) + x)] < 0;
-        trim[i] = std::max(trim[i], float(SHOWN) + (gone ? distance : -distance));
+        trim[i] = std::max(trim[i], float(GTX_TRIM_SHOWN) + (gone ? distance : -distance));
     }
 }
 

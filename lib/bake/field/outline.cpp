@@ -129,7 +129,7 @@ Outline find_outline(const Neighbours &neighbours, const FlatChart &chart, size_
  * corner, or a sliver that passes between texel centres. */
 static void show_point(const Grid &grid, double u, double v, std::vector<float> &trim)
 {
-    constexpr double AIM = SHOWN - 1.0 / 16; /* a code below the limit */
+    constexpr double AIM = GTX_TRIM_SHOWN - 1.0 / GTX_TRIM_TEXEL; /* a code below the limit */
     int i = std::clamp(int(u), 0, grid.w - 2), j = std::clamp(int(v), 0, grid.h - 2);
     float *a = &trim[size_t(j) * grid.w + i], *b = a + grid.w;
     double x = u - i, y = v - j;
@@ -151,7 +151,7 @@ std::vector<float> trim_distances(const FlatChart &chart, const Cover &core, con
         float to_core = in_core ? -core_outline.distance[i] : core_outline.distance[i];
         float to_all = in_all ? -all_outline.distance[i] : all_outline.distance[i];
         if (all_outline.edges[all_outline.nearest[i]].border)
-            to_all += float(SHOWN - BORDER_SHOWN);
+            to_all += float(GTX_TRIM_SHOWN - BORDER_SHOWN);
         double cut = grid.outside(double(i % size_t(grid.w)), double(i / size_t(grid.w)));
         trim[i] = std::max({to_all, to_core - float(OVERLAP), float(cut - CUT_OVERLAP)});
     }

@@ -1,6 +1,7 @@
 /* One chart -> the maps of its patch. */
 #pragma once
 
+#include "asset/patch.h"
 #include "bake/bake.hpp"
 #include "bake/field/flatten.hpp"
 
@@ -32,8 +33,6 @@ struct Job {
 
 PatchMaps bake_chart(const Job &job, const Chart &chart);
 
-/* A hit up to this many texels outside the outline belongs to the surface (format/gtx.md, Trim). */
-constexpr double SHOWN = 0.3;
 /* Texels that a patch shows beyond a straight cut, the border of a tile included: the neighbour's
  * height field is along the same axis, and crosses it. */
 constexpr double CUT_OVERLAP = 0.15;
@@ -45,11 +44,15 @@ void fill_trim(PatchMaps &maps);
 /* Signed distances to the outline in texels, as codes. */
 uint8_t trim_code(float distance);
 
-/* A vector as a record keeps it. */
+/* A vector as a record keeps it, and back. */
 inline void store(float out[3], const Vec3d &v)
 {
     for (int k = 0; k < 3; ++k)
         out[k] = float(v[k]);
+}
+inline Vec3d loaded(const float v[3])
+{
+    return {v[0], v[1], v[2]};
 }
 
 } // namespace gtx::baking

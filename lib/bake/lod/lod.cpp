@@ -41,7 +41,7 @@ std::vector<PatchRegion> patch_regions(const Maps &maps, Task &task)
 {
     std::vector<PatchRegion> regions(maps.patches.size());
     task.parallel(regions.size(), [&](size_t p) {
-        regions[p] = PatchRegion(maps.patches[p], maps);
+        regions[p] = PatchRegion(maps, uint32_t(p));
     }, 0, 0);
     return regions;
 }
