@@ -6,6 +6,7 @@
 
 namespace gtx::baking {
 
+/* Limits of the format. */
 constexpr uint64_t MAX_PATCHES = 1u << 20, MAX_PAGES = 2048;
 
 Vec3d find_anchor(const Vec3d &low, const Vec3d &high, const char *what)

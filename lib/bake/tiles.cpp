@@ -9,7 +9,8 @@
 
 namespace gtx::baking {
 
-/* Steps of heights are halves of halves of the coarsest, so often at most. */
+/* Steps of heights are halves of halves of the coarsest, so often at most: a limit,
+ * half changes a few bytes. */
 constexpr int MAX_HALVINGS = 12;
 
 /* Nodes of a layer: from..to are the tile's own, borders included; low..high are stored. */

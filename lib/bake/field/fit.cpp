@@ -9,8 +9,16 @@ namespace gtx::baking {
  * So the height field is fitted by least squares to samples along the source's edges, where a mesh
  * has its crests, with the sampled height itself as one more observation of each texel. */
 
-constexpr double STEP = 0.5;    /* texels between samples on an edge */
-constexpr double OUTLIER = 4; /* texels of depth: farther samples are of another height field */
+/* Measured on Spot's control mesh, the truck, Duck and bunny, at half and at double:
+ * STEP        RMS +6 % | -8 %, and 6 % more texels
+ * FARTHEST    6 % more texels | 2 % RMS more
+ * MISSED      45 % more texels, and a hole | 8 % fewer texels, RMS +6 %
+ * ROUNDS      RMS +6 % | -2 %
+ * BELOW       a hole, 11 % more texels | RMS +10 %
+ * LEEWAY      RMS +4 % | a hole, 14 % more texels
+ * SUNK        within 2 % both ways
+ * OVERLAP_COUNTS  RMS -7 % | +4 %, and 3 % more texels */
+constexpr double STEP = 0.5;   /* texels between samples on an edge */
 constexpr double FARTHEST = 1; /* texels of depth that a height may move: no fins */
 /* Depth below the source that counts as missed, in texels of the model, or of the chart's own where
  * these are finer. */
@@ -53,8 +61,8 @@ static void observe(const ChartField &field, const Vec3d &at, double counts,
             return;
         height += o.weight[k] * field.cover.height[corner[k]];
     }
-    if (std::fabs(at.z - height) <= OUTLIER * grid.coarse_pitch())
-        out.push_back(o);
+    if (std::fabs(at.z - height) <= JUMP * grid.coarse_pitch())
+        out.push_back(o); /* farther ones are of another height field */
 }
 
 static std::vector<Observation> observe_edges(const ChartField &field)

@@ -5,7 +5,8 @@
 
 namespace gtx::baking {
 
-/* Samples of the mask along a texel: its outline is found between them. */
+/* Samples of the mask along a texel: its outline is found between them. No measured model
+ * has a mask. */
 constexpr int FINER = 2;
 /* Samples outside the surface where what lies at its border still counts. */
 constexpr float BEYOND = 2 * FINER;

@@ -6,10 +6,11 @@
 namespace gtx::baking {
 
 constexpr uint32_t NO_EDGE = 0xffffffffu;
-/* Source surface beyond a chart's border counts as true up to this many texels from it. */
+/* Source surface beyond a chart's border counts as true up to this many texels from it. Truck:
+ * RMS +8 % at half; Spot's control mesh: RMS +17 %, 5 % more texels at double. */
 constexpr double OVERLAP = 1;
 /* Where the model itself ends, up to this many texels beyond its border: nobody else's height field
- * starts there. */
+ * starts there. Bunny's holes: 0.4 % RMS either way. */
 constexpr double BORDER_SHOWN = 0.1;
 
 double nearest_parameter(const OutlineEdge &edge, double u, double v)
@@ -50,7 +51,7 @@ struct DistanceField {
      * the outline of a larger chart around the part that is baked. */
     void splat(uint32_t edge)
     {
-        constexpr double REACH = 2;
+        constexpr double REACH = 2; /* hardly a byte at half or double: sweeps find the rest */
         const Vec3d &p = outline.edges[edge].from, &q = outline.edges[edge].to;
         auto low = [](double a, double b, int size) {
             return int(std::ceil(std::clamp(std::min(a, b) - REACH, 0., size - 1.)));

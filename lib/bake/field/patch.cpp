@@ -76,9 +76,7 @@ void fill_trim(PatchMaps &maps)
 
 uint8_t trim_code(float distance)
 {
-    /* Deeper, no cell reaches the limit: no depth need be told. */
-    constexpr float DEEPEST = -1.5f;
-    return gtx_nearest_trim(std::max(distance, DEEPEST));
+    return gtx_nearest_trim(std::max(distance, DEEPEST_TRIM));
 }
 
 static void quantise(const ChartField &s, const Crop &crop, double low, unsigned height_bits,
@@ -146,7 +144,9 @@ static PatchMaps encode_field(const Job &job, const Chart &chart, const ChartFie
 }
 
 /* A few cells less, or more, along a side that rounding to a multiple of `grain` would fill up with
- * empty texels. */
+ * empty texels. Planned cuts decide likewise in chart/cuts, before the outline is known: there less
+ * than 3/8 of a grain goes, here up to 3 texels, which at 4 mip levels is one more. Truck: 3 % more
+ * texels at half; 7 % fewer at double, for 9 % RMS. */
 static bool refit(const ChartField &field, int grain, Chart &chart)
 {
     constexpr int MAX_LESS = 3;
@@ -180,7 +180,8 @@ static ChartField lay_fitted(const Job &job, const Chart &chart, double finer)
                               : std::move(field);
 }
 
-/* A chart whose relief is finer than the model's pitch gets a finer one. */
+/* A chart whose relief is finer than the model's pitch gets a finer one. Measured on the truck:
+ * ALLOWED at half a hole and 6 % more texels, at double 4 % fewer; FINER at double 83 % more. */
 PatchMaps bake_chart(const Job &job, const Chart &chart)
 {
     constexpr double ALLOWED = 0.01, FINER = 1.4;

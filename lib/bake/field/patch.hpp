@@ -34,13 +34,16 @@ struct Job {
 PatchMaps bake_chart(const Job &job, const Chart &chart);
 
 /* Texels that a patch shows beyond a straight cut, the border of a tile included: the neighbour's
- * height field is along the same axis, and crosses it. */
+ * height field is along the same axis, and crosses it. Bunny: RMS +6 % at double, -0.4 % at
+ * half. */
 constexpr double CUT_OVERLAP = 0.15;
 
 /* Coverage, sphere and the box of the coded texels. */
 void measure_patch(unsigned height_bits, PatchMaps &maps);
 /* Trim where there is no height, by the rule that readers know. */
 void fill_trim(PatchMaps &maps);
+/* A texel and a half inside: deeper, no cell reaches the limit, so that no depth need be told. */
+constexpr float DEEPEST_TRIM = -1.5f;
 /* Signed distances to the outline in texels, as codes. */
 uint8_t trim_code(float distance);
 

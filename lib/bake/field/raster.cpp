@@ -55,7 +55,8 @@ Cover raster_core(const FlatChart &chart)
 
 void raster_overlap(const FlatChart &chart, const Outline &core, Paths &paths, Cover &cover)
 {
-    /* Texels around the border within which surface must lead on from it. */
+    /* Texels around the border within which surface must lead on from it. Less than 0.3 % at
+     * half or double on any model. */
     constexpr double REACH = 2.5;
     const Grid &grid = chart.grid;
     double jump = JUMP * grid.coarse_pitch();

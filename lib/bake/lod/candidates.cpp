@@ -6,6 +6,7 @@
 
 namespace gtx::baking {
 
+/* A few bytes change at half and at double, of either. */
 /* A triangle may turn by as much as has this cosine. */
 constexpr double MIN_TURN_COSINE = 0.25;
 /* What moving a vertex along a plane costs, as a share of the squared distance: of two that

@@ -8,7 +8,8 @@
 
 namespace gtx::baking {
 
-/* A patch that is turned further from a triangle does not tell how that is lit. */
+/* A patch that is turned further from a triangle does not tell how that is lit. A few bytes at half
+ * and at double. */
 constexpr double MIN_COSINE = 0.3;
 
 /* How well a patch shows a triangle: the cosine between them, less the way from the triangle's

@@ -11,7 +11,7 @@ namespace gtx::baking {
 constexpr double REACH_TEXELS = 0.75, REACH_STEPS = 3, MIN_COSINE = 0.3;
 /* So far inside its outline a height field that is not steep need not look for others. Trim may not
  * be told any deeper, so two that are would be equals. */
-constexpr double DEEP = -1.5;
+constexpr double DEEP = DEEPEST_TRIM;
 /* Where another height field goes on, one may end this many texels beyond its outline, so that both
  * reach the line between their outlines. */
 constexpr double MAX_OUTSIDE = 1;

@@ -6,7 +6,8 @@
 
 namespace gtx::baking {
 
-/* Dilated texels repeat the normals of the border: few of them look right. */
+/* Dilated texels repeat the normals of the border: few of them look right. Spot's control mesh:
+ * error +13 % at half, 0.5 % fewer triangles at double. */
 constexpr unsigned MAX_REACH = 3;
 
 /* Chessboard distances to the nearest texel with a zero, from values that are 0 or 255; beyond the

@@ -7,6 +7,7 @@
 
 namespace gtx::baking {
 
+/* A few bytes change at half and at double of all three. */
 /* What settling costs for the squared distance, as a share of what leaving the surface does. */
 constexpr double STAY = 0.003;
 /* How often half the way is tried. */

@@ -14,7 +14,8 @@
 namespace gtx::baking {
 
 /* Texels of depth that a texel is raised at most: more is another height field, or would be a fin
- * that a third patch does not meet. */
+ * that a third patch does not meet. At half and at double a few bytes change, here and below; more
+ * rounds change no more, one is RMS -0.7 % (bunny). */
 constexpr double MAX_RAISED = 0.3;
 /* and that it may miss: a ray that finds the way then is within a tenth of a degree of the
  * surface. */

