@@ -1,17 +1,17 @@
-/* An operation of one's own: a cellular automaton grows over the surface and becomes its relief.
+/* An operation of your own: a cellular automaton grows over the surface and becomes its relief.
  *
  *   cellular ASSET.gtx [--headless OUT.png] [--size WxH]
  *
- * The operation is the first 40 lines of code. It runs on every patch by itself and reads texels
- * past the patch's outline: those are its neighbours', and follow them after every call. */
+ * The operation is the first 40 lines of code. It runs patch by patch and also reads texels past
+ * the patch's outline: those are borrowed from its neighbours, and follow them after every call. */
 #include "host/sample.h"
 
 #include <geotex/edit.h>
 #include <geotex/render.h>
 #include <string.h>
 
-/* What the sum of a texel and its eight neighbours becomes: the majority, but for close votes,
- * which are turned round so that borders keep moving (Vichniac 1984). */
+/* What the sum of a texel and its eight neighbours becomes: the majority, except that close
+ * votes are reversed, so that borders keep moving (Vichniac 1984). */
 static const float vote[10] = {0, 0, 0, 0, 1, 0, 1, 1, 1, 1};
 
 static int around(const gtx_edit_field *s, uint32_t t, float *sum)

@@ -14,7 +14,7 @@ static void on_interrupt(int signal_number)
     interrupted = 1;
 }
 
-/* Called from this thread, some hundred times: the way out is to return non-zero. */
+/* Called from this thread, some hundred times; returning non-zero cancels the cook. */
 static int on_progress(const gtx_progress *progress, void *user)
 {
     int *shown = user, percent = (int)(progress->fraction * 100);

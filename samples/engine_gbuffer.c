@@ -2,8 +2,8 @@
  *
  *   engine_gbuffer ASSET.gtx [--headless OUT.png] [--size WxH]
  *
- * What is stored is the engine's affair: `store` is called by the main of its polygons and by the
- * main that it hands to geotex, and nothing behind the G-buffer knows which was which. */
+ * The engine decides what is stored: the main of its polygons and the main that it hands to geotex
+ * both call `store`, and nothing behind the G-buffer knows which was which. */
 #include "host/program.h"
 #include "host/sample.h"
 #include "host/shapes.h"
@@ -34,7 +34,7 @@ static const char patch_main[] = STORE
     "    gtx_write_depth(s);\n"
     "}\n";
 
-/* The place of a pixel follows from its depth: true depth is all that the lights need. */
+/* The position of a pixel follows from its depth: true depth is all that the lights need. */
 static const char light_main[] =
     "uniform sampler2D albedo_map, normal_map, depth_map;\n"
     "uniform mat4 clip;\n"

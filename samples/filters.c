@@ -2,8 +2,8 @@
  *
  *   filters ASSET.gtx [--headless OUT.png] [--size WxH]
  *
- * Above, patches know their neighbours; below, each is blurred by itself, as the paper did it: it
- * flattens, and its seams open. */
+ * In the top row patches know their neighbours; in the bottom row each is blurred by itself, as in
+ * the paper: it flattens, and its seams open. */
 #include "host/sample.h"
 #include "host/text.h"
 

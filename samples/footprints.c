@@ -1,8 +1,8 @@
-/* Editing while it is drawn: somebody walks around the asset, and the sand keeps every step.
+/* Editing an asset while it is drawn: somebody walks around on sand, which keeps every step.
  *
  *   footprints ASSET.gtx [--headless OUT.png] [--size WxH]
  *
- * A step is a stamp across all patches that it meets; those alone go to the GPU again, and the next
+ * A step is a stamp into all patches that it meets; only those are uploaded again, and the next
  * frame shows them. Without a window the picture holds four moments of the walk. */
 #include "host/sample.h"
 

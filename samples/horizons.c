@@ -4,7 +4,7 @@
  *
  * `own` makes four grids, FOLDER holds those of the table below, and an asset is one that
  * `gtx horizons` has made. A well path and a cutting plane are polygons in the same depth buffer.
- * Where there is an LOD mesh, made of the maps, the right half of the picture is drawn by it. */
+ * If it has LOD meshes, made from the maps, they draw the right half of the picture. */
 #include "horizons.h"
 #include "host/sample.h"
 #include "host/text.h"

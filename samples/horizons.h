@@ -1,4 +1,4 @@
-/* The grids of samples/horizons.c: four that are made, or the files of a folder. */
+/* The grids of samples/horizons.c: four made here, or the files of a folder. */
 #include <geotex/cook.h>
 
 #include <math.h>
@@ -36,7 +36,7 @@ static gtx_result read_layer(const char *folder, int k, gtx_height_grid *grid, g
     return GTX_OK;
 }
 
-/* A dome with a fault, thin where it is high or low in turn; its outline is ragged. */
+/* A dome with a fault and a ragged outline; at its crest layers are thin and thick in turn. */
 static gtx_result make_layer(int k, gtx_height_grid *grid)
 {
     static float values[LAYERS][OWN * OWN], property[LAYERS][OWN * OWN];

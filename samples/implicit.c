@@ -1,10 +1,11 @@
-/* Explicit and implicit surfaces in one z-buffer: holes, a torus and a ball with patches, polygons.
+/* Implicit surfaces in one z-buffer with patches and polygons: spherical holes, a torus, a ball.
  *
  *   implicit ASSET.gtx [--headless OUT.png] [--size WxH]
  *
- * Spheres are taken out of the asset. Where a ray goes into it inside a sphere, the sphere's far
- * side is a wall if the ray does not come out before; else the cast goes on behind. Torus and ball
- * have the relief of a height map, and are found in their boxes' fragments. */
+ * Spheres are cut out of the asset. Where a ray enters the asset inside a sphere, the sphere's far
+ * side is the wall of a hole, unless the ray has left the asset by then: the cast then goes on
+ * behind. Torus and ball have the relief of a height map, and are found in their boxes'
+ * fragments. */
 #include "host/program.h"
 #include "host/sample.h"
 #include "host/shapes.h"

@@ -1,4 +1,4 @@
-/* The shaders of implicit.c: a main for patches that takes spheres out of them, and one for the
+/* The shaders of implicit.c: a main for patches that cuts spheres out of them, and one for the
  * boxes of a torus and a ball with relief. */
 #ifndef GTX_SAMPLES_IMPLICIT_SHADERS_H
 #define GTX_SAMPLES_IMPLICIT_SHADERS_H

@@ -22,7 +22,7 @@ typedef struct field {
     gtx_backdrop backdrop;
 } field;
 
-/* 0..1, and the same for the same place in every run. */
+/* 0..1, the same for the same index in every run. */
 static float scatter(int i, float k)
 {
     const float s = sinf((float)(i + 1) * k) * 43758.5f;

@@ -2,9 +2,9 @@
  *
  *   ray_shadows ASSET.gtx [--headless OUT.png] [--size WxH]
  *
- * Above on the left a shadow map, on the right a ray to the sun from each pixel; below on the left
- * rays to a disc, on the right those and rays to the sky. Patches and polygons call the same
- * functions of geotex_rays.glsl, and nothing has a bias to be tuned. */
+ * Top left, a shadow map; top right, a ray to the sun from each pixel; bottom left, rays to a disc;
+ * bottom right, those and rays to the sky. Patches and polygons call the same
+ * functions of geotex_rays.glsl, and no bias has to be tuned. */
 #include "host/program.h"
 #include "host/sample.h"
 #include "host/shapes.h"
@@ -27,7 +27,7 @@ typedef struct world {
     GLuint programs[3];
 } world;
 
-/* Draws the map and tells the programs where it is. */
+/* Draws the map and binds it for the programs. */
 static gtx_result shine(const gtx_host_gl *gl, world *w, gtx_error *error)
 {
     const gtx_camera sun = {.target = {0, 0.8f, 0}, .radius = 5, .azimuth = -60, .elevation = 24,
@@ -85,8 +85,8 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
     gtx_shapes_box(&s, (float[3]){0, -0.1f, 0}, (float[3]){30, 0.2f, 30}, 0,
                    (gtx_rgb){222, 214, 200});
     snprintf(patch_text, sizeof patch_text, "%s%s", lighting, patch_main);
-    snprintf(polygon_text, sizeof polygon_text, "%s%s%s%s%s",
-             gtx_shader_source("geotex_dialect.glsl"),
+    snprintf(polygon_text, sizeof polygon_text, "%s%s%s%s%s%s",
+             gtx_shader_source("geotex_dialect.glsl"), gtx_shader_source("geotex_records.glsl"),
              gtx_shader_source("geotex_height_field.glsl"),
              gtx_shader_source("geotex_rays.glsl"), lighting, polygon_main);
     if ((result = gtx_open_file(w->path, NULL, &asset, error)) ||

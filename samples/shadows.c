@@ -1,9 +1,9 @@
-/* A shadow map over polygons and patches: both are drawn into it, both look into it.
+/* A shadow map for polygons and patches: both cast shadows, both receive them.
  *
  *   shadows ASSET.gtx [--headless OUT.png] [--size WxH]
  *
- * Patches enter by GTX_PASS_DEPTH and read by a main of the engine's own; `shade` is one function
- * for all. The sun stands still, so that its map is drawn once. */
+ * Patches are drawn into it by GTX_PASS_DEPTH and read it in a main of the engine's own; `shade` is
+ * one function for all. The sun stands still, so its map is drawn once. */
 #include "host/program.h"
 #include "host/sample.h"
 #include "host/shapes.h"
@@ -16,7 +16,7 @@ enum { INSTANCES = 3, SIZE = 1024, UNIT = 8 }; /* geotex has units 0..7 */
 /* Bias. Of the 4 x 4 texels that are compared the farthest centre lies 2 texels off in x and in y,
  * where a surface that faces the sun at an angle has fallen by 2 sqrt(2) tan(angle) texel widths.
  * One width more is for the map's level of detail, which is half a texel off. At grazing angles the
- * bias ends, for what it would hide is dark without a shadow. */
+ * bias is capped: what it would hide is dark without a shadow. */
 #define SUN                                                                                        \
     "uniform highp sampler2D shadow_map;\n"                                                        \
     "uniform mat4 sun_clip;\n"                                                                     \
@@ -65,7 +65,7 @@ static gtx_result draw_all(const gtx_host_gl *gl, const world *w, const gtx_view
     return gtx_draw(w->renderer, v, w->instances, INSTANCES, error);
 }
 
-/* Draws the map and tells both programs where it is. */
+/* Draws the map and binds it for both programs. */
 static gtx_result shine(const gtx_host_gl *gl, const world *w, gtx_error *error)
 {
     const gtx_camera sun = {.target = {0, 0.8f, 0}, .radius = 5, .azimuth = -52, .elevation = 38,

@@ -51,7 +51,7 @@ inline double noise(double x, double y, double z)
 
 /* A tube around a logarithmic spiral (Raup 1966): at `angle`, 0 at the mouth and negative towards
  * the apex, everything is `growth` times as large. s in 0..1 runs along the tube: outside from the
- * apex to the lip, around the lip, back inside. One sheet, closed at its two poles s = 0 and s = 1.
+ * apex to the lip, around the lip, back inside. One surface, closed at its poles s = 0 and s = 1.
  * v in 0..2 pi runs around the tube. */
 inline ShellPoint shell_at(double s, double v)
 {

@@ -2,8 +2,8 @@
  *
  *   smallest_engine ASSET.gtx [--headless OUT.png] [--size WxH]
  *
- * lib/host stands for what an engine already has: a context, its function loader, a camera. What
- * geotex asks of it is in load() and draw(). */
+ * lib/host stands for what an engine already has: a context, its function loader, a camera. All
+ * that geotex needs is in load() and draw(). */
 #include "host/sample.h"
 
 #include <geotex/render.h>

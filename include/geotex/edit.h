@@ -1,23 +1,21 @@
-/* Image operations on the surface of an asset: blur, boost, patterns, operations of one's own,
- * and edits while it is drawn.
+/* Image operations on the surface of an asset: blur, boost, patterns, operations of your own, and
+ * edits while the asset is drawn.
  *
- * An edit spreads an asset out as one *height field* a patch: a grid of points with normals. A
- * texel of a height field belongs to the patch (it is inside its outline), or is borrowed: the
- * surface there belongs to a neighbour, and moves as that one's points do. So all patches see one
- * surface, across their borders, and what moves it opens no seam. (In the paper, section 6.3, every
+ * An edit unpacks each patch's height field into a grid of points with normals. A texel of it
+ * belongs to the patch if it is inside the patch's outline; otherwise it is borrowed: the surface
+ * there belongs to a neighbour, and moves with the neighbour's points. So all patches see one
+ * surface across their borders, and no operation opens a seam. (In the paper, section 6.3, every
  * patch is filtered by itself; GTX_EDIT_ALONE does the same, for comparison.)
  *
- * What would turn part of a patch's surface away from its axis_z, where no height map can show
- * it, is held back there, and less and less around: the tip of a claw is rounded off a little
- * less than its flanks.
+ * A fold limiter holds back changes that would turn part of a patch's surface away from its axis_z,
+ * where no height map can show it, fully there and ever less around: the tip of a claw is rounded
+ * off a little less than its flanks.
  *
- * Points may move in any direction. They are put back on texels at the end: outlines, colours
- * and materials go where the surface goes. Nothing is resampled twice, however many operations
- * there are.
+ * Points may move in any direction. At the end they are resampled to texels, once, however many
+ * operations there were; outlines, colours and materials move with the surface.
  *
- * The rules of geotex.h hold here too. An operation that fails leaves the edit as it was. Levels
- * of an LOD mesh do not follow: edited assets have none until gtx_cook_lod_meshes makes them
- * one. */
+ * The rules of geotex.h hold here too. An operation that fails leaves the edit as it was. LOD
+ * meshes do not follow: an edited asset has none until gtx_cook_lod_meshes makes them. */
 #ifndef GEOTEX_EDIT_H
 #define GEOTEX_EDIT_H
 
@@ -35,84 +33,83 @@ typedef struct gtx_edit_desc {
     uint32_t reserved[6];
 } gtx_edit_desc;
 
-/* Spreads the asset out. `asset` is not changed, and must stay open until gtx_edit_end; `desc`
- * may be NULL. Takes some 100 bytes a texel.
+/* Begins an edit. `asset` is not changed, and must stay open until gtx_edit_end, which frees the
+ * edit; `desc` may be NULL. Takes some 100 bytes per texel.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, EMPTY (no texel has a height). */
 GTX_API gtx_result gtx_edit_begin(const gtx_asset *asset, const gtx_edit_desc *desc, gtx_edit **out,
                                   gtx_error *error);
-/* Frees the edit, and the asset that gtx_edit_refresh showed. NULL is fine. */
+/* Frees the edit, and the asset that gtx_edit_refresh gave. NULL is fine. */
 GTX_API void gtx_edit_end(gtx_edit *edit);
 
-/* The size of a texel, in object units: the median of the patches. */
+/* The median texel size of the patches, in object units. */
 GTX_API float gtx_edit_texel_size(const gtx_edit *edit);
 
 enum { /* gtx_edit_blur.flags */
     GTX_EDIT_WORLD = 1,           /* radius in object units, not in texels */
-    GTX_EDIT_ALONE = 2            /* the paper's way: every patch by itself, heights along its z */
+    GTX_EDIT_ALONE = 2            /* as in the paper: each patch by itself, heights along its z */
 };
 
-/* A Gaussian over the surface, of points and of normals. Distances are those along the surface,
- * whatever the patches' frames: heat flows for a time of radius^2 / 2 (Desbrun et al., "Implicit
- * Fairing of Irregular Meshes using Diffusion and Curvature Flow", SIGGRAPH 1999). */
+/* A Gaussian over the surface, of points and normals. Distances are measured along the surface,
+ * whatever the patches' frames: it is a heat flow for a time of radius^2 / 2 (Desbrun et al.,
+ * "Implicit Fairing of Irregular Meshes using Diffusion and Curvature Flow", SIGGRAPH 1999). */
 typedef struct gtx_edit_blur {
     float radius;                 /* standard deviation, > 0 */
     uint32_t flags;
     uint32_t reserved[6];
 } gtx_edit_blur;
 
-/* Replaces the surface by its blur. A plane stays, a sphere shrinks by a factor of
- * exp(-(radius / its own)^2). Works in some 200 bytes a texel.
+/* Replaces the surface by its blur. A plane stays; a sphere of radius R shrinks by a factor of
+ * exp(-(radius / R)^2). Takes some 200 bytes per texel meanwhile.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT (the radius is larger than the largest patch). */
 GTX_API gtx_result gtx_edit_gaussian(gtx_edit *edit, const gtx_edit_blur *blur, gtx_error *error);
 
 /* High-boost: surface + amount * (surface - its blur). 0 < amount <= 16.
- * Errors: likewise. */
+ * Errors: as gtx_edit_gaussian. */
 GTX_API gtx_result gtx_edit_high_boost(gtx_edit *edit, const gtx_edit_blur *blur, float amount,
                                        gtx_error *error);
 
-/* An image of heights, 0..1 where nothing else is said; rows from the top. */
+/* An image of heights, 0..1 unless said otherwise; rows from the top. */
 typedef struct gtx_edit_image {
     const float *values;          /* width * height, finite */
     uint32_t width, height;       /* 2..16384 */
 } gtx_edit_image;
 
 /* Raises the surface along its normals by height * image, in object units; height may be negative.
- * The image is repeated every `size` object units and laid on from the three axes at once, each to
- * the share that the surface faces it.
+ * The image repeats every `size` object units and is projected along all three axes, blended by how
+ * much the surface faces each.
  * Errors: ARGUMENT, MEMORY. */
 GTX_API gtx_result gtx_edit_pattern(gtx_edit *edit, const gtx_edit_image *image, float height,
                                     float size, gtx_error *error);
 
 enum { /* gtx_edit_field.kind */
     GTX_TEXEL_NONE = 0,           /* no surface; the other arrays mean nothing here */
-    GTX_TEXEL_OWN = 1,            /* the patch's own: an operation acts here */
-    GTX_TEXEL_BORROWED = 2,       /* a neighbour's: follows by itself */
-    GTX_TEXEL_LOOSE = 3           /* past a border without neighbour: follows by itself */
+    GTX_TEXEL_OWN = 1,            /* the patch's own: operations act here */
+    GTX_TEXEL_BORROWED = 2,       /* a neighbour's: follows automatically */
+    GTX_TEXEL_LOOSE = 3           /* past a border without a neighbour: follows automatically */
 };
 
-/* A patch's height field: arrays of width * height, row by row. It is the patch's rectangle and
- * some texels more on each side. */
+/* A patch's height field: arrays of width * height, row by row, for the patch's rectangle and a
+ * margin of some texels on each side. */
 typedef struct gtx_edit_field {
     uint32_t patch, width, height;
     const uint8_t *kind;
     float (*point)[3];            /* relative to the anchor; may be moved */
     const float (*normal)[3];     /* unit; follows the points after the operation */
-    const float *value;           /* a number of the operations' own, 0 at first */
-    float *next;                  /* what `value` will be: a copy of it now */
+    const float *value;           /* a number for operations to use, 0 at first */
+    float *next;                  /* the next `value`; holds a copy of `value` at first */
 } gtx_edit_field;
 
 typedef void (*gtx_edit_fn)(const gtx_edit_field *field, void *user);
 
-/* An operation of one's own: calls `fn` for every height field, then makes borrowed texels follow.
- * `fn` reads any texel and writes `point` and `next` at own ones: neighbours' texels are there to
- * read, 3 past the outline at least. Values and points that are not finite end it: ARGUMENT,
- * nothing changed.
- * Errors: ARGUMENT, MEMORY. */
+/* An operation of your own: calls `fn` for every height field on the calling thread, then makes
+ * borrowed texels follow. `fn` may read any texel, neighbours' texels up to at least 3 past the
+ * outline included, and writes `point` and `next` of its own texels.
+ * Errors: ARGUMENT (a value or a point is not finite), MEMORY. */
 GTX_API gtx_result gtx_edit_apply(gtx_edit *edit, gtx_edit_fn fn, void *user, gtx_error *error);
 
-/* A mark on the surface: a crater, a footprint. Texels that are less than `radius` from the
- * centre and face against `direction` by any angle below 90 degrees move along it by depth times
- * the image; a zero image is a round bowl. The image spans 2 * radius; its top points along
+/* A mark on the surface: a crater, a footprint. Texels less than `radius` from the centre whose
+ * normals face against `direction`, at any angle below 90 degrees, move along it by depth times the
+ * image; a zeroed image stands for a round bowl. The image spans 2 * radius; its top points along
  * `up`. */
 typedef struct gtx_edit_stamp_desc {
     float centre[3], radius;      /* relative to the anchor; object units */
@@ -122,30 +119,29 @@ typedef struct gtx_edit_stamp_desc {
     uint32_t reserved[4];
 } gtx_edit_stamp_desc;
 
-/* Errors: ARGUMENT, NOT_ZEROED, MEMORY. A stamp that meets no surface is fine. */
+/* Presses the stamp into every patch that it meets; meeting none is fine.
+ * Errors: ARGUMENT, NOT_ZEROED, MEMORY. */
 GTX_API gtx_result gtx_edit_stamp(gtx_edit *edit, const gtx_edit_stamp_desc *stamp,
                                   gtx_error *error);
 
-/* Sets the heights of a rectangle of one patch, x, y, width and height in texels of the patch:
- * `heights` are as in the map (0..1 of the asset's extent_z), and may leave that range. Empty
- * texels stay so; texels that belong to a neighbour stay with it, and the neighbours' borrowed
- * ones follow.
+/* Sets the heights of a rectangle (x, y, width, height, in texels of the patch) of one patch:
+ * `heights` are as in the map, in units of the patch's extent_z in the source asset, and may leave
+ * 0..1. Empty and borrowed texels stay as they are; what neighbours borrow from the patch follows.
  * Errors: ARGUMENT (the rectangle is empty or leaves the patch, a height is not finite), MEMORY. */
 GTX_API gtx_result gtx_edit_set_heights(gtx_edit *edit, uint32_t patch, const uint32_t rectangle[4],
                                         const float *heights, gtx_error *error);
 
-/* Makes an asset of the edited surface, with the edit's allocator, which gtx_close frees.
- * Patches that did not change keep their bytes. Where a patch has outgrown its rectangle, pages
- * are laid out anew.
+/* Makes an asset of the edited surface, from the edit's allocator; gtx_close frees it. Patches that
+ * did not change keep their bytes. If a patch has outgrown its rectangle, pages are laid out anew.
  * Errors: ARGUMENT, MEMORY, LIMIT (a patch would be larger than a page may be). */
 GTX_API gtx_result gtx_edit_finish(const gtx_edit *edit, gtx_asset **out, gtx_error *error);
 
-/* The same while it is drawn: rectangles stay where they are, and only patches that have changed
- * since the last call are done again. *asset belongs to the edit, is valid until gtx_edit_end
- * and is changed by the next call; its content_hash is 0. *patches gets the `*count` indices of
- * changed patches, valid until the next call: give each to gtx_model_update, and to
- * gtx_rays_update where shaders cast rays into it. What moved out of its rectangle is lost:
- * sideways there is room for a texel or two.
+/* The same for an asset that is being drawn: rectangles stay where they are, and only patches that
+ * have changed since the last call are written again. *asset belongs to the edit, is valid until
+ * gtx_edit_end and is changed by the next call; its content_hash is 0. *patches gets the *count
+ * indices of changed patches, valid until the next call: give each to gtx_model_update, and to
+ * gtx_rays_update if shaders cast rays into it. What moves out of its rectangle is lost: sideways
+ * there is room for a texel or two.
  * Errors: ARGUMENT, MEMORY. */
 GTX_API gtx_result gtx_edit_refresh(gtx_edit *edit, const gtx_asset **asset,
                                     const uint32_t **patches, uint32_t *count, gtx_error *error);

@@ -14,8 +14,9 @@
  *   - Strings are UTF-8, matrices column-major, coordinates right-handed.
  *
  * Words: a patch is an oriented box with a height map; a texel is a vertex of the height field; a
- * cell is the square between 2x2 texels. The format is specified in format/gtx.md, and the
- * technique in de Toledo, Wang, Levy, "Geometry Textures and Applications", CGF 27(8), 2008. */
+ * cell is the square between 2x2 texels. The glossary is in CONTRIBUTING.md, "Words". The format is
+ * specified in format/gtx.md, and the technique ("the paper") in de Toledo, Wang, Levy, "Geometry
+ * Textures and Applications", CGF 27(8), 2008. */
 #ifndef GEOTEX_GEOTEX_H
 #define GEOTEX_GEOTEX_H
 
@@ -46,7 +47,7 @@ extern "C" {
 /* major * 10000 + minor * 100 + patch. The format has a version of its own (gtx_info). */
 #define GTX_VERSION (GTX_VERSION_MAJOR * 10000 + GTX_VERSION_MINOR * 100 + GTX_VERSION_PATCH)
 
-/* The GTX_VERSION that the library was built with. */
+/* The GTX_VERSION that the library was built with. Any thread. */
 GTX_API uint32_t gtx_version(void);
 
 /* ---- results ---------------------------------------------------------------------------- */
@@ -62,7 +63,7 @@ typedef enum gtx_result {
     GTX_ERROR_READ = 30,          /* a file cannot be opened or read */
     GTX_ERROR_WRITE = 31,         /* a file cannot be written */
     GTX_ERROR_NOT_GTX = 40,       /* the bytes do not start with the .gtx identifier */
-    GTX_ERROR_VERSION = 41,       /* a .gtx of another major version */
+    GTX_ERROR_VERSION = 41,       /* a .gtx of a version that this build does not read */
     GTX_ERROR_TRUNCATED = 42,     /* the file ends too early */
     GTX_ERROR_CORRUPT = 43,       /* a rule of the format is broken; gtx_error.rule says which */
     GTX_ERROR_UNSUPPORTED = 45,   /* legal, but needs something this build does not have */
@@ -80,6 +81,7 @@ GTX_API const char *gtx_result_string(gtx_result result);
 typedef struct gtx_error {
     gtx_result result;
     uint32_t rule;                /* rule number of format/gtx.md, 0 when none applies */
+    const char *rule_name;        /* its name, such as "patch-page": static; else NULL */
     uint64_t offset;              /* byte offset in the file that broke the rule, else 0 */
     char message[240];            /* one sentence without a final newline, always terminated */
 } gtx_error;
@@ -88,8 +90,8 @@ typedef struct gtx_error {
 
 /* Memory hooks. `alloc` returns at least `size` bytes aligned to 16, or NULL; `free` gets the size
  * back. Both may be called from any thread that calls into geotex. NULL hooks mean malloc and free.
- * The struct is copied by the objects that keep it: each is freed by the function named with it, by
- * the hooks it was made with. What a call takes for its own use it gives back before it returns. */
+ * Objects copy the struct: each is freed by the function named with it, through the hooks it was
+ * made with. Memory that a call takes for its own use is given back before it returns. */
 typedef struct gtx_allocator {
     void *(*alloc)(size_t size, void *user);
     void (*free)(void *memory, size_t size, void *user);
@@ -97,11 +99,11 @@ typedef struct gtx_allocator {
 } gtx_allocator;
 
 /* A host's threads, such as an engine's job system, for calls that can use several. `run` calls
- * job(i, data) once for every i below `count`, in any order and on any threads, at once or not, and
- * returns when all have returned. A job neither waits for another nor calls `run`. Jobs may take
+ * job(i, data) once for every i below `count`, in any order, on any threads, in parallel or not,
+ * and returns when all jobs have. A job neither waits for another nor calls `run`. Jobs may take
  * memory from the call's allocator, which must then be safe to call from several threads at once,
- * as malloc is. Results are the same, byte by byte and error by error, however jobs are run.
- * Zeros, like NULL, mean one after the other on the calling thread; the library has no threads of
+ * as malloc is. Results are the same, byte by byte and error by error, however jobs are run. Zeros,
+ * like NULL, run the jobs one after another on the calling thread; the library has no threads of
  * its own. */
 typedef struct gtx_jobs {
     void (*run)(uint32_t count, void (*job)(uint32_t index, void *data), void *data, void *user);
@@ -125,7 +127,7 @@ typedef int (*gtx_progress_fn)(const gtx_progress *progress, void *user);
 typedef struct gtx_asset gtx_asset;
 
 enum { /* gtx_patch.flags */
-    GTX_PATCH_TWO_SIDED = 1u << 8 /* the height field is seen from below too */
+    GTX_PATCH_TWO_SIDED = 1u << 8 /* the height field is visible from below too */
 };
 
 /* A patch: the frame of its parallelepiped and the rectangle of its maps. 128 bytes, the layout of
@@ -143,7 +145,8 @@ typedef struct gtx_patch {
     float axis_z[3], coverage;    /* coverage: share of texels with a code, 0..1 */
     uint32_t page;
     uint16_t rect[4];             /* x, y, w, h in texels of the page at level 0 */
-    uint16_t dilation;            /* texels with valid normals, colours... around the coded ones */
+    uint16_t dilation;            /* rings of texels with valid normals, colours, materials and
+                                     emission around the coded ones */
     uint16_t flags;
     float sphere[4];              /* centre and radius around the coded texels' surface */
     uint32_t source_triangles;    /* triangles of the chart */
@@ -152,7 +155,8 @@ typedef struct gtx_patch {
 
 typedef enum gtx_map {
     GTX_MAP_HEIGHT = 0,           /* level 0 only; uint8_t or uint16_t codes, 0 = empty */
-    GTX_MAP_TRIM = 1,             /* level 0 only; uint8_t, (c - 128) / 16 texels outside outline */
+    GTX_MAP_TRIM = 1,             /* level 0 only; uint8_t, (c - 128) / 16 texels outside the
+                                     outline */
     GTX_MAP_NORMAL = 2,           /* 2 x uint8_t, hemi-octahedral in the patch's normal frame */
     GTX_MAP_COLOR = 3,            /* 4 x uint8_t, sRGB colour and linear alpha; may be absent */
     GTX_MAP_MATERIAL = 4,         /* 4 x uint8_t: occlusion, roughness, metallic, share of lighting
@@ -167,7 +171,7 @@ typedef struct gtx_info {
     uint32_t mip_count;           /* levels of every map but height and trim, 1..8 */
     uint32_t height_bits;         /* 8 or 16 */
     uint32_t has_color, has_material, has_emission;   /* 0 or 1 */
-    uint32_t lod_levels;          /* 0..8 */
+    uint32_t lod_levels;          /* LOD meshes, 0..8 */
     float bounds_min[3], bounds_max[3];       /* relative to the anchor */
     float unit;                   /* metres per object unit */
     float emission_scale;         /* light of a full emission texel; 0 without emission */
@@ -179,8 +183,8 @@ typedef struct gtx_info {
 
 typedef struct gtx_open_desc {
     const gtx_allocator *allocator;
-    const gtx_jobs *jobs;         /* used during the call; opening then holds all sections, as they
-                                     are coded, in memory at once */
+    const gtx_jobs *jobs;         /* used during the call; opening then holds all coded sections in
+                                     memory at once */
     uint64_t max_bytes;           /* most that opening may allocate; 0 = 4 GiB */
     uint32_t flags;
     uint32_t reserved[5];
@@ -191,8 +195,8 @@ enum { /* gtx_open_desc.flags */
 };
 
 /* Reads an asset from `size` bytes, which may be freed afterwards. Every rule of format/gtx.md is
- * checked; hostile bytes end in an error, never in a fault. `desc` may be NULL. The asset is of the
- * descriptor's allocator, and freed by gtx_close.
+ * checked; hostile bytes end in an error, never in a fault. `desc` may be NULL. The asset comes
+ * from the descriptor's allocator, and is freed by gtx_close.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, NOT_GTX, VERSION, TRUNCATED, CORRUPT,
  * UNSUPPORTED. */
 GTX_API gtx_result gtx_open_memory(const void *data, size_t size, const gtx_open_desc *desc,
@@ -206,6 +210,7 @@ GTX_API gtx_result gtx_open_file(const char *path, const gtx_open_desc *desc, gt
 /* Frees the asset. NULL is fine. */
 GTX_API void gtx_close(gtx_asset *asset);
 
+/* What the asset's header says, copied to *out. */
 GTX_API void gtx_get_info(const gtx_asset *asset, gtx_info *out);
 
 /* gtx_info.patch_count records, owned by the asset. */
@@ -216,25 +221,26 @@ GTX_API const gtx_patch *gtx_patches(const gtx_asset *asset);
  * (page_width >> k) x (page_height >> k). */
 GTX_API const void *gtx_map_data(const gtx_asset *asset, gtx_map map, uint32_t level, size_t *size);
 
-/* Of gtx_lod_mesh.flags: for models of a few pixels; a triangle may be larger than its patch, and
- * is looked up in its map as far as that reaches. */
+/* Of gtx_lod_mesh.flags, for models of a few pixels: a triangle may be larger than its patch; its
+ * lookups are clamped to the patch's rectangle. */
 #define GTX_LOD_FAR 1u
 
-/* An LOD mesh: the whole surface as triangles, for drawing it where it is small. A vertex
- * is its position alone; it may be shared by triangles of several patches, and its texel
- * coordinates in each follow from that patch's frame. Position q of a vertex stands for the point
+/* An LOD mesh: the whole surface as triangles, for drawing it small. A vertex is a position and
+ * nothing else: triangles of several patches may share it, and its texel coordinates in each patch
+ * follow from that patch's frame. Position q of a vertex stands for the point
  *   origin + step * q                                            relative to the asset's anchor. */
 typedef struct gtx_lod_mesh {
     float origin[3], step;
-    float error;                  /* how far the level strays from the source, object units */
+    float error;                  /* distance from the source, object units */
     uint32_t vertex_count, triangle_count;
     uint32_t flags;               /* GTX_LOD_FAR */
-    const uint32_t *first;        /* patch_count + 1: first[p]..first[p + 1] - 1 are p's */
-    const uint32_t *indices;      /* 3 a triangle */
-    const uint16_t *positions;    /* 3 a vertex */
+    const uint32_t *first;        /* patch_count + 1: triangles first[p]..first[p + 1] - 1 belong
+                                     to patch p */
+    const uint32_t *indices;      /* 3 per triangle */
+    const uint16_t *positions;    /* 3 per vertex */
 } gtx_lod_mesh;
 
-/* Shows an LOD mesh; 0 is the finest. The arrays are owned by the asset.
+/* Gives LOD mesh `level`, 0 being the finest; its arrays are owned by the asset.
  * Errors: ARGUMENT (there is no such level). */
 GTX_API gtx_result gtx_get_lod_mesh(const gtx_asset *asset, uint32_t level, gtx_lod_mesh *out);
 
@@ -253,11 +259,11 @@ typedef struct gtx_issue {
 
 typedef void (*gtx_issue_fn)(const gtx_issue *issue, void *user);
 
-/* Runs every rule of format/gtx.md over untrusted bytes and reports each broken one in the order of
- * its section 6, as far as it is safe to read on.
+/* Checks untrusted bytes against every rule of format/gtx.md and reports each broken one, in the
+ * order of its section 7, for as long as it is safe to read on.
  * GTX_OK when no error was reported (warnings do not count). `fn` may be NULL.
  * Takes from malloc what opening would, 4 GiB at most.
- * Errors: as gtx_open_memory; rules that are broken come before MEMORY and LIMIT. */
+ * Errors: as gtx_open_memory; a broken rule comes before MEMORY and LIMIT. */
 GTX_API gtx_result gtx_validate(const void *data, size_t size, gtx_issue_fn fn, void *user,
                                 gtx_error *error);
 
@@ -274,11 +280,11 @@ typedef struct gtx_asset_desc {
     const void *height;           /* page_count * page_width * page_height codes */
     const uint8_t *trim;          /* the same count */
     const uint8_t *const *normal; /* mip_count pointers, level 0 first */
-    const uint8_t *const *color;  /* mip_count pointers, or NULL; likewise the next two */
+    const uint8_t *const *color;  /* mip_count pointers, or NULL; so are the next two */
     const uint8_t *const *material;
     const uint8_t *const *emission;
-    float emission_scale;         /* 0 = 1, where there is emission */
-    const gtx_lod_mesh *lod;      /* lod_levels levels, the finest first; or NULL */
+    float emission_scale;         /* 0 = 1 if there is emission */
+    const gtx_lod_mesh *lod;      /* lod_levels LOD meshes, the finest first; or NULL */
     uint32_t lod_levels;          /* up to 8 */
     const char *meta;             /* JSON text, or NULL */
     size_t meta_size;
@@ -290,22 +296,22 @@ typedef struct gtx_asset_desc {
     uint32_t reserved[6];
 } gtx_asset_desc;
 
-/* Makes an asset of the descriptor's allocator, which gtx_close frees.
+/* Makes an asset from the descriptor's allocator, which gtx_close frees.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, CORRUPT (with the broken rule). */
 GTX_API gtx_result gtx_create(const gtx_asset_desc *desc, gtx_asset **out, gtx_error *error);
 
 typedef struct gtx_encode_desc {
     const gtx_allocator *allocator;
-    const gtx_jobs *jobs;         /* used during the call; encoding then has memory for all sections
-                                     at once */
+    const gtx_jobs *jobs;         /* used during the call; encoding then holds all sections in
+                                     memory at once */
     int32_t zstd_level;           /* 0 = stored, 1..19 */
     uint32_t reserved[5];
 } gtx_encode_desc;
 
-/* Encodes the asset as the bytes of a `.gtx`. *data comes from the descriptor's allocator (malloc
- * when none) and is freed with it, as *size bytes. The same asset and options give the same bytes
- * (for one zstd version). Errors: ARGUMENT, NOT_ZEROED, MEMORY, UNSUPPORTED (built without
- * zstd). */
+/* Encodes the asset as the bytes of a `.gtx` file. *data comes from the descriptor's allocator
+ * (malloc when none), and is freed with it, as *size bytes. The same asset and options give the
+ * same bytes (for one zstd version). Errors: ARGUMENT, NOT_ZEROED, MEMORY, UNSUPPORTED (built
+ * without zstd). */
 GTX_API gtx_result gtx_encode(const gtx_asset *asset, const gtx_encode_desc *desc, void **data,
                               size_t *size, gtx_error *error);
 
@@ -316,22 +322,21 @@ GTX_API gtx_result gtx_save_file(const gtx_asset *asset, const char *path,
 
 /* ---- ray query -------------------------------------------------------------------------- */
 
-/* What casting on the CPU needs of an asset: levels, bounds and a hierarchy over the patches.
- * Keeps no reference to the asset. Immutable; any number of threads may cast at once. */
+/* What casting rays on the CPU derives from an asset: levels, bounds and a hierarchy over the
+ * patches. Keeps no reference to the asset. Immutable; any number of threads may cast at once. */
 typedef struct gtx_caster gtx_caster;
 
 typedef struct gtx_caster_desc {
     const gtx_allocator *allocator;
-    uint32_t level;               /* level of detail to cast, 0 = finest .. 7 */
-    /* Object units; > 0: each patch at its coarsest level, of as many as there are mip levels,
-     * whose height field strays no farther from that of level 0, as the runtime chooses them.
-     * `level` is 0 then. */
+    uint32_t level;               /* level of the height fields to cast, 0 = finest .. 7 */
+    /* Object units; when > 0, each patch is cast at the coarsest of its mip_count levels that is
+     * within this distance of level 0, as the renderer chooses levels; `level` must then be 0. */
     float max_error;
     uint32_t reserved[4];
 } gtx_caster_desc;
 
-/* Coordinates are relative to the asset's anchor. direction need not be normalised; t counts in
- * its lengths. Hits with t_min <= t <= t_max are found; t_max <= 0 means infinity. */
+/* Coordinates are relative to the asset's anchor. `direction` need not be normalised; t is in
+ * units of its length. Hits with t_min <= t <= t_max are found; t_max <= 0 means infinity. */
 typedef struct gtx_ray {
     float origin[3], t_min;
     float direction[3], t_max;
@@ -344,7 +349,7 @@ typedef struct gtx_hit {
     float normal[3];              /* unit normal from the normal map, object space */
     float facet[3];               /* unit geometric normal of the height field, on the side of
                                      axis_z */
-    uint32_t back;                /* 1: the height field was crossed from below */
+    uint32_t back;                /* 1: the ray crossed the height field from below */
 } gtx_hit;
 
 enum { /* flags of gtx_raycast */
@@ -353,7 +358,7 @@ enum { /* flags of gtx_raycast */
     GTX_RAY_EXHAUSTIVE = 4        /* visit every cell of every patch: the slow reference */
 };
 
-/* Makes a caster of the descriptor's allocator, which gtx_caster_destroy frees. `desc` may be NULL.
+/* Makes a caster from the descriptor's allocator; gtx_caster_destroy frees it. `desc` may be NULL.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY. */
 GTX_API gtx_result gtx_caster_create(const gtx_asset *asset, const gtx_caster_desc *desc,
                                      gtx_caster **out, gtx_error *error);
@@ -365,18 +370,18 @@ GTX_API void gtx_caster_destroy(gtx_caster *caster);
 GTX_API gtx_result gtx_raycast(const gtx_caster *caster, const gtx_ray *rays, gtx_hit *hits,
                                size_t count, uint32_t flags);
 
-/* The surface under points, for what stands, falls or drives: casts along the vertical `up`, which
- * need not be normalised, from `step` object units above each point (0 or more, so that a surface a
- * little above it counts too) down for ever. hit.t is the height of the point above the surface, in
- * object units: negative when the surface is above it, infinite when there is none. Flags as for
- * gtx_raycast, which this is. Errors: ARGUMENT (also an `up` without a direction). */
+/* The surface under points, for things that stand, fall or drive: casts a ray straight down,
+ * against `up` (of any length but 0), starting `step` >= 0 object units above each point, so that a
+ * surface a little above the point counts too. hit.t is the height of the point above the surface,
+ * in object units: negative when the surface is above it, infinite when there is none. Flags as for
+ * gtx_raycast. Errors: ARGUMENT. */
 GTX_API gtx_result gtx_drop(const gtx_caster *caster, const float up[3], float step,
                             const float (*points)[3], gtx_hit *hits, size_t count,
                             uint32_t flags);
 
-/* The colour map at hits: linear red, green, blue and alpha, each 0..1, between the texels of level
- * 0; white where nothing was hit, and when the asset has no colours. `asset` is what the caster was
- * made of. Errors: ARGUMENT. */
+/* The colour map at hits: linear red, green, blue and alpha, each 0..1, interpolated between the
+ * texels of level 0; white where nothing was hit, or if the asset has no colours. `asset` is the
+ * one that the caster was made from. Errors: ARGUMENT. */
 GTX_API gtx_result gtx_hit_colors(const gtx_asset *asset, const gtx_hit *hits,
                                   float (*colors)[4], size_t count);
 
@@ -393,50 +398,52 @@ typedef struct gtx_scene_instance {
     float transform[16];
 } gtx_scene_instance;
 
-/* Makes a scene of `allocator` (NULL = malloc), which gtx_scene_destroy frees.
- * Errors: ARGUMENT (an instance without a caster, or with a transform as above), MEMORY. */
+/* Makes a scene from `allocator` (NULL = malloc); gtx_scene_destroy frees it.
+ * Errors: ARGUMENT (an instance without a caster, or a transform that is not as said above),
+ * MEMORY. */
 GTX_API gtx_result gtx_scene_create(const gtx_scene_instance *instances, uint32_t count,
                                     const gtx_allocator *allocator, gtx_scene **out,
                                     gtx_error *error);
 /* NULL is fine. */
 GTX_API void gtx_scene_destroy(gtx_scene *scene);
 
-/* gtx_raycast in the world: rays, normals and facets are the world's. `which` gets the index of the
- * instance that was hit, UINT32_MAX for none; it may be NULL. Errors: ARGUMENT. */
+/* gtx_raycast in the world: rays, normals and facets are in world space. `which` gets the index of
+ * the instance that was hit, UINT32_MAX for none; it may be NULL. Errors: ARGUMENT. */
 GTX_API gtx_result gtx_scene_raycast(const gtx_scene *scene, const gtx_ray *rays, gtx_hit *hits,
                                      uint32_t *which, size_t count, uint32_t flags);
 
-/* A point to be lit: world position, unit normal towards the side that is seen, and `turn`, 0..1,
- * which turns the pattern of its rays. Noise for it trades bands for grain. */
+/* A point to be lit: world position, unit normal towards the visible side, and `turn`, 0..1, which
+ * rotates the pattern of its rays. Random turns trade banding for grain. */
 typedef struct gtx_lit_point {
     float position[3], normal[3];
     float turn;
 } gtx_lit_point;
 
-/* A disc of light far away, or the sky. */
+/* A distant disc of light, or the sky. */
 typedef struct gtx_light_desc {
-    float direction[3];           /* world, towards the light; zero: the sky, of which each point
-                                     sees the half above it, weighted by the cosine */
+    float direction[3];           /* world, towards the light; zero: the sky, the hemisphere above
+                                     each point, weighted by the cosine */
     float spread;                 /* tangent of half the disc's angle; 0: hard shadows */
-    float reach;                  /* rays end there, world units; 0 = never. With the sky: what is
-                                     farther away does not occlude */
+    float reach;                  /* length of the rays, world units: what is farther away does not
+                                     occlude; 0 = infinite */
     uint32_t rays;                /* for each point; 0 = 1 */
-    float offset;                 /* how far off the surface rays begin; 0 = gtx_scene_offset */
+    float offset;                 /* distance from the surface at which rays start; 0 =
+                                     gtx_scene_offset */
     uint32_t reserved[5];
 } gtx_light_desc;
 
-/* The share of the light, 0..1, that reaches each point past all patches of all instances: of a
- * disc a shadow, hard or soft, which the cosine is still to be multiplied with; of the sky its
- * ambient occlusion. Rays of a disc that begin under the horizon of the normal count as dark. The
- * same arguments give the same shares; shaders have the same patterns (geotex_rays.glsl).
- * Errors: ARGUMENT, NOT_ZEROED. */
+/* The share of the light, 0..1, that reaches each point past all patches of all instances: for a
+ * disc, a hard or soft shadow, still to be multiplied by the cosine; for the sky, ambient
+ * occlusion. A disc's rays below the horizon of the normal count as dark. The same arguments give
+ * the same shares; shaders use the same patterns (geotex_rays.glsl). Errors: ARGUMENT,
+ * NOT_ZEROED. */
 GTX_API gtx_result gtx_scene_light(const gtx_scene *scene, const gtx_light_desc *light,
                                    const gtx_lit_point *points, float *shares, size_t count);
 
-/* How far off the surface rays begin, in world units: two height steps of the coarsest patch, or
- * the 32nd part of a texel if that is more. A height field rounds the surface that it stands for by
- * half a step up or down, and its cells cut a little into what is round; from there no ray that
- * leaves a surface without hollows meets them, however grazing. Nothing else is left out. */
+/* The default distance from the surface at which rays start, in world units: two height steps of
+ * the patch with the coarsest ones, or a 32nd of a texel if that is more. Heights are rounded by up
+ * to half a step, and cells cut a little into round shapes: started from there, no ray that leaves
+ * a convex surface meets it again, however grazing. The offset hides nothing else. */
 GTX_API float gtx_scene_offset(const gtx_scene *scene);
 
 #ifdef __cplusplus

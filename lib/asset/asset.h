@@ -50,6 +50,16 @@ static inline uint32_t gtx_height_code(const gtx_asset *asset, const gtx_patch *
     return asset->height[2 * texel] | (uint32_t)asset->height[2 * texel + 1] << 8;
 }
 
+/* Where the height codes of a patch lie. */
+static inline gtx_code_map gtx_codes_of(const gtx_asset *asset, const gtx_patch *patch)
+{
+    const size_t width = asset->info.page_width, bytes = asset->info.height_bits / 8;
+    const size_t row = (size_t)patch->page * asset->info.page_height + patch->rect[1];
+    gtx_code_map codes = {asset->height + (row * width + patch->rect[0]) * bytes, width,
+                          (uint32_t)bytes, asset->info.height_bits};
+    return codes;
+}
+
 /* The trim code at texel (x, y) of a patch. No bounds check. */
 static inline uint32_t gtx_trim_code(const gtx_asset *asset, const gtx_patch *patch, uint32_t x,
                                      uint32_t y)

@@ -108,7 +108,7 @@ typedef struct gtx_code_map {
 
 /* What the texels with a code span. */
 typedef struct gtx_patch_span {
-    double low[3], high[3];       /* of their points; infinite, low above high, when there are none */
+    double low[3], high[3];       /* of their points; low is above high when there are none */
     uint64_t coded;
 } gtx_patch_span;
 

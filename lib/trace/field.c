@@ -142,7 +142,7 @@ gtx_result gtx_fields_build(gtx_caster *caster, const gtx_asset *asset, uint32_t
             if (chosen)
                 return chosen;
         }
-        field->trim_limit = 128 + 16 * 0.3 * (1 << field->level);
+        field->trim_limit = gtx_trim_limit(field->level);
         place_field(caster, field, &total);
     }
     caster->code_count = total.code;

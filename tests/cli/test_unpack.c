@@ -6,7 +6,7 @@
 #include <glob.h>
 #include <unistd.h>
 
-/* Runs an LOD mesh command in the test's folder. */
+/* Runs a shell command in the test's folder. */
 static void shell(const char *command)
 {
     char full[1024];
@@ -80,7 +80,7 @@ static void an_asset_is_packed_anew(void **state)
     expect(gtx("pack c.gtx -o lod.gtx --lod-levels 3"), 0);
     expect(gtx("validate lod.gtx"), 0);
     expect(gtx("info lod.gtx"), 0);
-    expect_text("LOD mesh ");
+    expect_text("LOD meshes ");
     expect(gtx("pack sphere.obj -o no.gtx"), 3);
     expect(gtx("pack c.gtx -o no.gtx --lod-levels 6"), 1);
 }
@@ -189,8 +189,8 @@ static void what_is_no_asset_is_refused(void **state)
         {"\"flags\": 0", "\"flags\": 70000", "flags is not", 3},
         {"\"unit\": 1.0", "\"unit\": 1e400", "is not a JSON object", 3},
         {"\"unit\": 1.0", "\"unit\": -1.0", "unit", 3},
-        {"\"LOD mesh\": [", "\"LOD meshes\": [", "LOD mesh is missing", 3},
-        {"\"LOD mesh\": [", "\"LOD mesh\": [7,", "a level of LOD mesh is not an object", 3},
+        {"\"lod_meshes\": [", "\"LOD meshes\": [", "lod_meshes is missing", 3},
+        {"\"lod_meshes\": [", "\"lod_meshes\": [7,", "one of lod_meshes is not an object", 3},
         {"\"step\": ", "\"step\": -", "step positive", 3},
         {"\"triangles\": ", "\"triangles\": 1", "lod-0.bin: error[input]: has not the size", 3},
         {"\"vertices\": ", "\"vertices\": -", "vertices is not a whole number", 3},

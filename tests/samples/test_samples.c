@@ -17,8 +17,8 @@
 
 static char folder[] = "/tmp/gtx-samples-XXXXXX";
 
-/* Runs an LOD mesh command line with $S the samples' folder and $T a temporary one; returns its
- * exit code. */
+/* Runs a shell command with $S the samples' folder and $T a temporary one; returns its exit
+ * code. */
 static int run(const char *format, ...)
 {
     char command[1024];
