@@ -16,14 +16,16 @@ constexpr double CANDIDATE_TEXELS = 3 * PATCH_TEXELS;
 /* Surface this near is tried as a target even where it does not touch. Half: patches +7 % (truck);
  * double: 5 holes (truck). */
 constexpr double NEAR_TEXELS = 3;
-/* What a patch costs for being one, in texels: its records and its share of the atlas. */
+/* VSA and PGP: what a patch costs for being one, in texels. Half: patches +2 %; double: bytes +1 %
+ * (truck). */
 constexpr double PATCH_COST = 256;
 /* Least cosine of raw normals with the target's axis, of small islands and of larger candidates.
  * Half: RMS +1 %, bytes +1 %; double: patches +7 and +12 % (truck). */
 constexpr double ISLAND_FACING = 0.1, CANDIDATE_FACING = 0.3;
 /* What of their area may be steeper. Half: patches +3 %; double: RMS +3 % (truck). */
 constexpr double STEEP_AREA = 0.05;
-/* Of a wall that a target may get: scans have small ones. Half and double change nothing. */
+/* Of a wall that a target may get: scans have small ones. Half and double change nothing, at 1 the
+ * gargoyle changes. */
 constexpr double WALL_TEXELS = 16;
 /* An island may lead to the next; tiny ones wait for the last pass. A limit: the first pass finds
  * nearly all, and chains of islands must not take a time of their number squared. */

@@ -16,8 +16,8 @@ constexpr double DEVIANT_AREA = 0.005;
 constexpr int CONE_STEPS = 100;
 constexpr int CONE_SECTORS = 256;
 
-/* Of many unit vectors those that turn farthest from their mean, one a sector around it: the others
- * hardly bear on their smallest cone. */
+/* The unit vectors farthest from their mean, one in each sector around it: the others hardly affect
+ * the smallest cone. */
 std::vector<Vec3f> outermost(const std::vector<Vec3f> &normals, const Vec3d &mean)
 {
     if (normals.size() <= 2 * CONE_SECTORS || mean == Vec3d())
@@ -60,8 +60,8 @@ Vec3d ball_axis(const std::vector<Vec3f> &normals)
     return normalize(Vec3d(centre));
 }
 
-/* Puts triangles that turn farthest from an axis first, which are a small share of `size`, and
- * tells how many. Only as many are sorted as that takes. */
+/* Moves the triangles that turn farthest from an axis to the front, up to DEVIANT_AREA of `size`,
+ * and returns their number. Sorts no more of the rest than it must. */
 size_t drop_deviants(const Surface &surface, float size,
                      std::vector<std::pair<float, uint32_t>> &order)
 {

@@ -170,7 +170,7 @@ Plane minimax_plane(const std::vector<Point> &points)
     return best;
 }
 
-/* Moves the origin of a frame and sets its extents, so that it holds the triangles. */
+/* Sets the origin and the extents of a frame so that it encloses the triangles. */
 void enclose(const Mesh &mesh, const std::vector<uint32_t> &triangles, Frame &frame)
 {
     FrameInverse inverse(frame);

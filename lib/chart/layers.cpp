@@ -120,7 +120,8 @@ private:
     double pitch_;
 };
 
-/* Samples side by side that are height fields of their own: no cell between them shows either. */
+/* Neighbouring samples with no surface between them: the cell that bridges them shows neither
+ * side. */
 void find_discontinuities(const FlatRegion &flat, const LayerGrid &grid, float max_step,
                           std::vector<DoubleSample> &out)
 {

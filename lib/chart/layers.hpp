@@ -14,14 +14,14 @@ struct DoubleSample {
 struct Layers {
     size_t samples = 0;                 /* texel centres covered */
     size_t doubled = 0;                 /* of those, twice */
-    std::vector<DoubleSample> folds;    /* the doubled ones that no junk rule excuses */
-    /* Neighbouring texel centres far apart in depth with no surface between: each shows where the
-     * cell that bridges them is cut away. */
+    std::vector<DoubleSample> folds;    /* the doubled ones that are not noise */
+    /* Neighbouring texel centres far apart in depth with no surface between them: a hole opens
+     * where the cell that bridges them is cut away. */
     std::vector<DoubleSample> discontinuities;
 };
 
-/* How far apart two depths are to be two layers, up to where a few of them are a scan's noise, and
- * the step between neighbours that is a depth discontinuity. */
+/* Depths: `apart` makes two layers, a few of them up to `shallow` are a scan's noise, and a `step`
+ * between neighbours is a depth discontinuity. */
 struct LayerRule {
     float apart, shallow, step;
 };

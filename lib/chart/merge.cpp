@@ -45,19 +45,19 @@ struct Offer {
     }
 };
 
-/* What two charts have in common. What folds with a part of a chart folds with the whole, or nearly
- * always: who was refused is not asked again. */
+/* What two charts have in common. A pair that was refused is not tried again after either has
+ * grown: what folds with a part of a chart nearly always folds with the whole. */
 struct Border {
     double length = 0;      /* in roots of triangles' sizes */
     bool refused = false;
 };
 
-/* What became of an offer. */
+/* The outcome of an offer. */
 struct Trial {
     bool fits = false;
     Region both;
     Frame frame;
-    std::vector<Region> loose; /* set apart */
+    std::vector<Region> loose; /* walls and the like, left out of both */
 };
 
 class Merger {

@@ -8,8 +8,8 @@ namespace gtx {
 
 namespace {
 
-/* Least cosine with the axis: what is steeper, others show better. Half: 1 hole (truck), texels +2
- * % (Spot); double: bytes -5 % for less overlap (Spot). */
+/* Least cosine with the axis: what is steeper, other charts show better. Half: 1 hole (truck),
+ * texels +2 % (Spot); double: bytes -5 % for less overlap (Spot). */
 constexpr double MIN_FACING = 0.24;
 /* Surface is reached from one edge of the border, and stays within this many reaches of it: the
  * height field that passes below a silhouette is not followed from where the two meet. Half: bytes

@@ -56,9 +56,9 @@ Candidate try_axis(const Surface &surface, const Region &region, const Vec3d &z,
     return out;
 }
 
-/* Sets apart what stands upright in a frame, or hangs over by less than a texel: a height map shows
- * nothing of it, and there would be a hole where nobody else does. Empty where there is none of
- * more than so many texels of surface. */
+/* Labels as 1 what stands upright along `z`, or overhangs by less than a texel: a height field
+ * cannot show it, which leaves a hole unless another chart takes it. Empty without a wall of more
+ * than `most_texels`. */
 std::vector<uint32_t> find_walls(const Surface &surface, const Region &region, const Vec3d &z,
                                  double pitch, double most_texels)
 {
@@ -87,8 +87,8 @@ std::vector<Region> pieces_of(const Region &region, std::vector<uint32_t> labels
     return split_region(region, labels, count);
 }
 
-/* Straight across the middle of the longer side. What the cut leaves apart from the main piece of
- * its side goes to the other. */
+/* Cuts straight across the middle of the longer side. Pieces that the cut disconnects from the
+ * largest piece of their side change sides. */
 std::vector<uint32_t> cut_across(const Surface &surface, const Region &region, const Frame &frame)
 {
     FrameInverse inverse(frame);
@@ -146,7 +146,8 @@ std::vector<uint32_t> split_normals(const Surface &surface, const Region &region
     return cluster_pair(surface, region, a, b);
 }
 
-/* What fits is a chart, but for its walls; a ring of them faces nowhere, and is taken apart. */
+/* Accepts a region as a chart, less its walls. Where all of it is wall, as around a peg, no axis
+ * serves the whole ring: it is split by normals. */
 Verdict accept(const Surface &surface, const Region &region, const Frame &frame, double pitch)
 {
     const std::vector<uint32_t> wall = find_walls(surface, region, frame.z, pitch, WALL_TEXELS);

@@ -11,7 +11,8 @@ constexpr double PATCH_TEXELS = 1400;
 /* Smaller charts are small islands: not merged but attached, to whatever faces them. Half: patches
  * +4 %; double: +4 % merged, -5 % attached (truck). */
 constexpr double SMALL_ISLAND_TEXELS = 64;
-/* Texels of a patch beyond its chart's sides: two on each. */
+/* Texels of a patch beyond its chart's sides: two on each. VSA and PGP: half: patches +1 %; double:
+ * patches -1 % (truck). */
 constexpr double RIM = 4;
 /* Of a chart's area, what may be too steep. Half: patches +2 %; double: RMS +11 % (truck). */
 constexpr double STEEP_SHARE = 0.01;
@@ -28,8 +29,8 @@ struct Verdict {
     std::vector<Region> pieces;  /* connected, at least two; or none: the region is a chart */
 };
 
-/* Whether a region is a chart along unit `z`, but for its walls: `pieces` if there are any, of
- * which none has another axis yet. */
+/* Whether a region can be a chart along unit `z`, walls left out: if it has walls, the verdict's
+ * `pieces` are they and the rest, which have no axes yet. */
 bool fits_along(const Surface &surface, const Region &region, const Vec3d &z, const Bounds &bounds,
                 Verdict &verdict);
 
@@ -39,11 +40,11 @@ Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds
 /* Core triangles with n.z <= 0 and a projected area over a texel, junk left out. */
 bool is_inverted(const Surface &surface, uint32_t triangle, const Vec3d &z, double pitch);
 
-/* Likewise, or a wall of some texels that leans back: no chart should have it. */
+/* Likewise, or a wall of some texels that leans back: neither belongs in a chart. */
 bool leans_back(const Surface &surface, uint32_t triangle, const Vec3d &z, double pitch);
 
-/* Whether a part of the region, of more than so many texels, stands so upright along unit `z` that
- * no height map shows it. */
+/* Whether a connected part of the region, of more than `most_texels`, is too upright along unit `z`
+ * for a height field to show. */
 bool has_wall(const Surface &surface, const Region &region, const Vec3d &z, double pitch,
               double most_texels);
 

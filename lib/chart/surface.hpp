@@ -28,7 +28,7 @@ struct Surface {
     double diagonal = 0;
     std::vector<Facet> facets;
     std::vector<Vec3f> normal; /* unit, raw */
-    std::vector<uint8_t> junk; /* 1: too small and too twisted to be anyone's surface */
+    std::vector<uint8_t> junk; /* 1: scan noise, small and twisted against its neighbours */
 };
 
 /* Texels: what is smaller may be a scan's junk, a triangle that turns far from those around it or a

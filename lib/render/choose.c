@@ -6,9 +6,9 @@
 #include <float.h>
 #include <math.h>
 
-/* What the host has told, or nanoseconds with llvmpipe on two cores, of the forward pass of a
- * dragon of 810,080 triangles in 526 patches: cast in fragments, cast by tiles. Other passes
- * cost less, but have to choose the same for the same depth. */
+/* The host's costs, or nanoseconds measured with llvmpipe on two cores, in the forward pass of a
+ * dragon of 810,080 triangles in 526 patches: cast in fragments, and by tiles. Other passes cost
+ * less, but must choose the same to get the same depth. */
 static const gtx_costs *costs_of(const gtx_draw_call *draw)
 {
     static const gtx_costs measured[2] = {{100, 25, 15000, 160}, {100, 25, 5500, 75}};
@@ -18,12 +18,13 @@ static const gtx_costs *costs_of(const gtx_draw_call *draw)
     return none ? &measured[gtx_stream_suits(draw->renderer, draw->view)] : told;
 }
 
-/* A box whose nearest corner is nearer than this share of the way to its middle is looked into. */
+/* Where the nearest corner of the bounds is closer than this fraction of the distance to their
+ * middle, the spheres of the patches are looked at instead. */
 static const double near_share = 0.9;
 
 /* How large an instance is in the picture. */
 typedef struct extent {
-    double error;             /* object units that are the error allowed, where it is nearest */
+    double error;             /* allowed, in object units at its nearest point */
     double pixels;            /* that it covers, roughly */
 } extent;
 
@@ -55,7 +56,6 @@ static extent measure(const gtx_draw_call *draw, const gtx_model *model,
         middle += w[k] * (low + high) / 2;
         radius += (high - low) * (high - low) / 4;
     }
-    /* Patches tell it more closely than the corner of a box, where that makes a difference. */
     if (nearest < near_share * middle)
         nearest = fmax(nearest, nearest_patch(model, w));
     /* detail[0]: pixels a world unit at w = 1, over the error allowed in pixels. */
@@ -74,7 +74,7 @@ static bool is_casting_cheaper(const gtx_costs *costs, const gtx_model *model, u
            costs->lod_triangle * triangles + costs->lod_pixel * pixels;
 }
 
-/* How many levels there are, of which far ones leave no room for patches that are edited. */
+/* Far levels cannot be mixed with edited patches. */
 static uint32_t usable_levels(const gtx_lod_meshes *lods)
 {
     uint32_t count = 0;
@@ -83,8 +83,8 @@ static uint32_t usable_levels(const gtx_lod_meshes *lods)
     return count;
 }
 
-/* The finest level may be off by so many times the error allowed before an instance is cast, which
- * takes several times as long. */
+/* The finest level is used up to this multiple of the allowed error: casting takes several times as
+ * long. */
 static const double finest_excess = 1.5;
 
 gtx_result gtx_choose_lod(const gtx_draw_call *draw, const gtx_model *model,

@@ -1,4 +1,4 @@
-/* Whether one material covers a whole model: most have no maps of it, and need no lookups. */
+/* Finds models with one constant material, which need no lookups of it. */
 #include "render/model.h"
 
 #include <string.h>
@@ -18,7 +18,7 @@ static bool is_constant(const uint8_t *texels, size_t count, const uint8_t mater
     return true;
 }
 
-/* The first that is one. */
+/* The first texel that is not empty. */
 static const uint8_t *find_material(const uint8_t *texels, size_t count)
 {
     static const uint8_t none[4] = {0};

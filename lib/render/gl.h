@@ -236,4 +236,10 @@ static inline void gtx_gl_label(const gtx_gl *gl, gl_enum kind, gl_uint object, 
 /* Errors: GL, which names the first missing function, or the version below 3.3 (OpenGL ES: 3.0). */
 gtx_result gtx_gl_init(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *error);
 
+/* A place in the bound buffer, as OpenGL takes it. */
+static inline const void *gtx_gl_offset(uint64_t offset)
+{
+    return (const void *)(uintptr_t)offset;
+}
+
 #endif

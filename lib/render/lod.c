@@ -1,4 +1,4 @@
-/* Levels of the LOD mesh: from the asset's shared vertices to buffers in which each has one
+/* Levels of the LOD mesh: shared vertices of the asset become buffers in which each has one
  * patch. */
 #include "render/lod.h"
 
@@ -7,17 +7,18 @@
 
 #include <string.h>
 
-/* The greatest index is left to hosts that restart primitives by it. A run's indices are no more
- * than what llvmpipe draws at once. */
+/* The greatest 16-bit index stays unused, for hosts that have enabled primitive restart. A run's
+ * indices are no more than what llvmpipe draws at once. */
 enum { MAX_NARROW_VERTICES = 65535, MAX_RUN_TRIANGLES = 4095 / 3 };
 
-/* Which of a patch's vertices a vertex of the level has become. */
+/* The latest copy of one of the level's vertices. */
 typedef struct gtx_lod_copy {
-    uint32_t patch;           /* one more than the patch that met it last */
+    uint32_t patch;           /* one more than the patch that it is for */
     uint32_t index;
 } gtx_lod_copy;
 
-/* Begins a run where the last one is full, and where culling changes. */
+/* The run of patch order[i], whose first vertex would be `vertex`: a new one where the last is full
+ * and where culling changes. */
 static gtx_lod_run *run_of(const gtx_lod_meshes *lods, gtx_lod_level *level, uint32_t i,
                            uint32_t vertex)
 {
@@ -40,8 +41,8 @@ static void store_index(const gtx_lod_meshes *lods, const gtx_lod_level *level, 
            level->index_size);
 }
 
-/* Gives each vertex a copy for each patch that uses it, patch by patch in the order of drawing.
- * Without memory for them it only counts. Returns how many copies there are. */
+/* Copies each vertex for each patch that uses it, in drawing order. Before there is room for the
+ * copies it only counts them. Returns their number. */
 static uint32_t split(const gtx_lod_meshes *lods, gtx_lod_level *level, const gtx_lod_mesh *source)
 {
     gtx_lod_vertex *vertices =
@@ -81,7 +82,7 @@ static void put_in_order(const gtx_asset *asset, gtx_lod_meshes *out)
     }
 }
 
-/* An asset has been checked when it was opened; what is used to index is looked at again. */
+/* An asset was checked when it was opened; what is used as an index is checked again. */
 static bool is_sound(const gtx_lod_mesh *source, uint32_t patches)
 {
     bool sound = source->first[0] == 0 && source->first[patches] == source->triangle_count;
@@ -92,7 +93,7 @@ static bool is_sound(const gtx_lod_mesh *source, uint32_t patches)
     return sound;
 }
 
-/* What the asset says of a level, and room to make it. */
+/* Takes a level's properties from the asset, and allocates what its size is known of. */
 static bool begin_level(const gtx_lod_meshes *lods, gtx_lod_level *level,
                         const gtx_lod_mesh *source, const gtx_allocator *hooks)
 {
@@ -211,24 +212,20 @@ void gtx_lod_free(gtx_lod_meshes *lods, const gtx_allocator *allocator)
     *lods = (gtx_lod_meshes){0};
 }
 
-static const void *at(uint64_t offset)
-{
-    return (const char *)NULL + offset;
-}
-
 /* Triangles of a run. */
 static void draw_run(const gtx_gl *gl, const gtx_lod_level *level, const gtx_lod_run *run,
                      uint32_t first, uint32_t last, uint32_t instances)
 {
     const gl_enum type = level->index_size == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
     const gl_size count = (gl_size)(3 * (last - first));
-    const void *indices = at(level->index_offset + 3 * (uint64_t)first * level->index_size);
+    const void *indices =
+        gtx_gl_offset(level->index_offset + 3 * (uint64_t)first * level->index_size);
     const uint64_t vertex =
         level->vertex_offset + run->first_vertex * (uint64_t)sizeof(gtx_lod_vertex);
     gl->VertexAttribPointer(0, 3, GL_UNSIGNED_SHORT, GL_FALSE, sizeof(gtx_lod_vertex),
-                            at(vertex));
+                            gtx_gl_offset(vertex));
     gl->VertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(gtx_lod_vertex),
-                             at(vertex + offsetof(gtx_lod_vertex, patch)));
+                             gtx_gl_offset(vertex + offsetof(gtx_lod_vertex, patch)));
     if (instances)
         gl->DrawElementsInstanced(GL_TRIANGLES, count, type, indices, (gl_size)instances);
     else

@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-/* A vertex of several patches comes once for each. */
+/* A vertex on a border between patches is stored once for each of them. */
 typedef struct gtx_lod_vertex {
     uint16_t position[3], spare;
     uint32_t patch;
@@ -23,7 +23,7 @@ typedef struct gtx_lod_run {
 typedef struct gtx_lod_level {
     float place[4];           /* origin and step of the positions */
     float error;              /* object units */
-    bool far;                 /* triangles show several patches: not beside edited ones */
+    bool far;                 /* its triangles span patches: not mixed with edited ones */
     uint32_t triangle_count;
     uint32_t *first;          /* triangles first[i]..first[i + 1] - 1 are those of patch order[i] */
     gtx_lod_run *runs;        /* room for a patch each; indices count from a run's first vertex */
@@ -51,10 +51,9 @@ typedef struct gtx_lod_meshes {
     gl_uint vertex_buffer, index_buffer;
 } gtx_lod_meshes;
 
-/* Made in four steps, of which the second and the last are done for every level, in any order or
- * at the same time: what a level needs is found, room is made for all, and buffers are filled.
- * Whatever fails, gtx_lod_free gives back what was allocated. An asset without an LOD mesh has no
- * levels. */
+/* Built in four steps: begin; measure each level; place, which allocates the buffers of all; fill
+ * each level. Levels may be measured, and filled, in any order or in parallel. Whatever fails,
+ * gtx_lod_free frees what was allocated. An asset without an LOD mesh has no levels. */
 bool gtx_lod_begin(const gtx_asset *asset, const gtx_allocator *allocator, gtx_lod_meshes *out);
 void gtx_lod_measure(const gtx_asset *asset, uint32_t level, const gtx_allocator *allocator,
                      gtx_lod_meshes *out);
@@ -65,16 +64,17 @@ void gtx_lod_fill(const gtx_asset *asset, uint32_t level, const gtx_allocator *a
 void gtx_lod_free_staging(gtx_lod_meshes *lods, const gtx_allocator *allocator);
 void gtx_lod_free(gtx_lod_meshes *lods, const gtx_allocator *allocator);
 
-/* Notes that a patch's height field has changed. */
+/* Marks a patch whose height field has changed. */
 static inline void gtx_lod_mark(gtx_lod_meshes *lods, uint32_t patch)
 {
     lods->edited_count += !lods->edited[patch];
     lods->edited[patch] = true;
 }
 
-/* Draws the patches that are not edited. The program, the textures and the attributes of instances
- * are set, the vertex array is bound. `two_sided` picks the patches. `instances` is 0 for a program
- * that knows the place of its only one. Sets attributes 0 and 1 and binds the indices. */
+/* Draws the patches that are not edited, of those seen from one side or from two. Program, textures
+ * and the attributes of instances are set, the vertex array is bound. `instances` is 0 for a
+ * program that takes the transform of a single one as a uniform. Sets attributes 0 and 1 and binds
+ * the indices. */
 void gtx_lod_draw(const gtx_gl *gl, const gtx_lod_meshes *lods, uint32_t level, bool two_sided,
                   uint32_t instances);
 

@@ -29,11 +29,11 @@ typedef struct gtx_level {
     bool borrowed;
 } gtx_level;
 
-/* What the choice of a patch's proxy goes by. */
+/* Bounds and errors that a patch's proxy is chosen by. */
 typedef struct gtx_patch_facts {
     float sphere[4], hull[4]; /* around the height field; around the proxies */
     float error[GTX_MAX_MIPS]; /* of each level, as gtx_grid_error has it, never falling */
-    bool boxed;               /* edited, and its hulls do not fit their place: cast by its box */
+    bool boxed;               /* edited hulls outgrew their room: cast by the box instead */
 } gtx_patch_facts;
 
 struct gtx_model {
@@ -42,7 +42,7 @@ struct gtx_model {
     uint64_t layout;          /* gtx_model_layout of the asset */
     bool has_color, has_material, has_emission, ready;
     float emission_scale;     /* 0: no emission */
-    bool has_constant_material; /* all over, but for patches that were edited: */
+    bool has_constant_material; /* ignoring edits */
     float constant_material[4];
     gtx_level levels[GTX_MAX_LEVELS];
     uint32_t level_count;
@@ -69,8 +69,7 @@ struct gtx_model {
 /* constant_material.c: whether all that the asset shows has one material, and which: 0..1. */
 bool gtx_find_constant_material(const gtx_asset *asset, float material[4]);
 
-/* model.c: gives the CPU's copy of the maps and proxies back, or all that a model has but the
- * objects of OpenGL. */
+/* model.c: frees the CPU's copy of maps and proxies; or the whole model but its OpenGL objects. */
 void gtx_model_free_staging(gtx_model *model);
 void gtx_model_free(gtx_model *model);
 /* A hash of where the patches' rectangles lie. */
@@ -88,9 +87,9 @@ typedef struct gtx_derived {
     gtx_proxies proxies[GTX_MAX_PROXY_KINDS]; /* the patch's are added to them */
     gtx_record record;
     gtx_patch_facts facts;
-    gtx_slab *slabs[GTX_MAX_MIPS];            /* where they go */
-    void *cells[GTX_MAX_MIPS];                /* where the cells of each level go, in rows of so */
-    size_t row_texels[GTX_MAX_MIPS];          /* many texels */
+    gtx_slab *slabs[GTX_MAX_MIPS];            /* where those of each level go */
+    void *cells[GTX_MAX_MIPS];                /* where those of each level go */
+    size_t row_texels[GTX_MAX_MIPS];          /* from a row of cells to the next */
 } gtx_derived;
 /* Errors: MEMORY. */
 gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_allocator *allocator,

@@ -174,10 +174,11 @@ static void put_planes(const double value[RAY_PARTS], double low, double high, b
     if (perspective) {
         const double far = fabs(a) > fabs(b) ? a : b, near = fabs(a) > fabs(b) ? b : a;
         const double per = 1 / far, most = 1e30, other = far / near;
-        const double linear[3] = {value[RAY_X] * per, value[RAY_Y] * per, value[RAY_DIRECTION] * per};
+        const double linear[3] = {value[RAY_X] * per, value[RAY_Y] * per,
+                                  value[RAY_DIRECTION] * per};
         put(out, linear, gtx_bits_of(!(other < most) ? most : other < -most ? -most : other));
     } else {
-        const double along = copysign(fmax(fabs(value[RAY_DIRECTION]), 1e-20), value[RAY_DIRECTION]);
+        const double d = value[RAY_DIRECTION], along = copysign(fmax(fabs(d), 1e-20), d);
         const double linear[3] = {-value[RAY_X] / along, -value[RAY_Y] / along,
                                   (along > 0 ? a : b) / along};
         put(out, linear, gtx_bits_of((high - low) / fabs(along)));

@@ -1,4 +1,4 @@
-/* Plans: which proxy each patch of an instance is cast by, if any, and in which order. */
+/* Plans: culls an instance's patches, picks level and proxy of each, and sorts them. */
 #include "render/plan.h"
 
 #include "base/alloc.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A plane or any other linear function over object space, and how fast it grows. */
+/* A plane or any other linear function over object space, and the length of its gradient. */
 typedef struct plane {
     double row[4], slope;
 } plane;
@@ -18,7 +18,7 @@ typedef struct plane {
 typedef struct frustum {
     plane side[6];            /* inside is above 0; the near one, the far one... */
     plane w;                  /* of clip space */
-    double scale;             /* pixels an object unit at w = 1, over the error allowed */
+    double scale;             /* pixels an object unit at w = 1, over the allowed error */
     int32_t level;            /* of all patches; -1: by their errors */
 } frustum;
 
@@ -70,7 +70,7 @@ static double at_centre(const plane *p, const float sphere[4])
     return p->row[0] * sphere[0] + p->row[1] * sphere[1] + p->row[2] * sphere[2] + p->row[3];
 }
 
-/* Object units that are the error allowed, where the sphere is nearest. */
+/* The allowed error in object units, at the sphere's nearest point. */
 static double allowed_error(const frustum *f, const float sphere[4])
 {
     const double nearest = at_centre(&f->w, sphere) - f->w.slope * sphere[3];
@@ -90,7 +90,7 @@ static bool is_outside(const frustum *f, const float sphere[4])
     return outside;
 }
 
-/* The coarsest level whose error is allowed. */
+/* The coarsest level within the allowed error. */
 static uint32_t level_of(const frustum *f, const gtx_model *model, const gtx_patch_facts *facts)
 {
     if (f->level >= 0)
@@ -175,6 +175,6 @@ void gtx_plan_patches(const gtx_draw_call *draw, const gtx_model *model,
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t first = model->first_index[plan->entries[i].slot];
         plan->counts[i] = (gl_size)(model->first_index[plan->entries[i].slot + 1] - first);
-        plan->offsets[i] = (const char *)NULL + first * sizeof(uint32_t);
+        plan->offsets[i] = gtx_gl_offset(first * sizeof(uint32_t));
     }
 }

@@ -29,8 +29,7 @@ gtx_result gtx_choose_lod(const gtx_draw_call *draw, const gtx_model *model,
 /* plan.c: makes room for plans of so many patches. Errors: MEMORY. */
 gtx_result gtx_plan_reserve(gtx_renderer *renderer, uint32_t patches, gtx_error *error);
 void gtx_plan_free(gtx_renderer *renderer);
-/* The kind of proxy that all patches of an instance have, if that is seen without looking at each,
- * or 0. */
+/* The kind of proxy that all patches of an instance get, if its bounds alone tell, or 0. */
 uint32_t gtx_plan_whole(const gtx_draw_call *draw, const gtx_model *model,
                         const gtx_instance_data *placed);
 /* Fills the renderer's plan: each patch in view, or each that is edited. */

@@ -71,7 +71,7 @@ static bool add_maps(making *m, gtx_map map, uint32_t unit, uint32_t count, uint
     return true;
 }
 
-/* One array of each, in order of the kinds. */
+/* Joins the batches' proxies: one array of vertices and one of indices, ordered by kind. */
 static gtx_result join_proxies(const making *m, gtx_error *error)
 {
     gtx_model *model = m->model;
@@ -146,7 +146,7 @@ static void begin_level(const making *m, uint32_t index, uint32_t piece)
         memset(l->data + first, 0, count);
 }
 
-/* What has to be there first: sizes of the LOD meshes, and maps. */
+/* What comes before all else: sizes of the LOD meshes, and maps. */
 static void begin_part(uint32_t index, void *data)
 {
     making *m = data;

@@ -6,8 +6,8 @@
 
 #include <geotex/render.h>
 
-/* How fragments come about: by casting in a patch's proxy, exactly or by the paper's search, or in a
- * tile; or by the LOD mesh. */
+/* How fragments come about: by casting in the proxy of a patch, exactly or by the paper's search;
+ * by casting in a tile; or by the LOD mesh. */
 typedef enum gtx_technique {
     TECHNIQUE_CAST,
     TECHNIQUE_PAPER,

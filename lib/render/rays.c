@@ -81,8 +81,8 @@ static bool reserve(gtx_rays *rays)
     return all && rays->front && (!rays->max_instances || (rays->boxes && rays->places));
 }
 
-/* Where the cells and the outline of a patch go, from which texel of the textures on, its record and
- * the boxes of its blocks. */
+/* Where what is derived of a patch goes: cells and outline, which lie from texel `first` of the
+ * textures on, its record, and the boxes of its blocks. */
 typedef struct room {
     size_t first;
     uint8_t *cells, *trim;
@@ -118,7 +118,7 @@ static gtx_result derive_patch(const gtx_rays *rays, const gtx_asset *asset, uin
     return GTX_OK;
 }
 
-/* All patches of an asset, into room for cells and outlines that begins at `next` and grows less. */
+/* All patches of an asset. Moves `next` on behind their cells. */
 static gtx_result derive_asset(gtx_rays *rays, const gtx_asset *asset, gtx_ray_member *m,
                                room *next, gtx_error *error)
 {

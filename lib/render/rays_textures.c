@@ -1,4 +1,4 @@
-/* The textures of rays in shaders: rows of texels that are counted through, in whole layers. */
+/* The textures of rays in shaders: texels are addressed through rows and layers, as in an array. */
 #include "render/rays.h"
 
 #include "base/error.h"

@@ -19,7 +19,7 @@ static void log_context(const gtx_renderer *renderer)
     renderer->log(line, renderer->log_user);
 }
 
-/* A name becomes an object, which may be labelled, when it is bound. */
+/* A name becomes an object, and can be labelled, once it is bound. */
 static void create_shared(gtx_renderer *renderer)
 {
     const gtx_gl *gl = &renderer->gl;

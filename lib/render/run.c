@@ -1,5 +1,4 @@
-/* Drawing a run of instances: by the LOD mesh, and by casting patches, in one draw where all are far
- * away. */
+/* Drawing a run of instances: by the LOD mesh, or by casting their patches. */
 #include "render/run.h"
 
 #include "render/renderer.h"
@@ -28,11 +27,6 @@ static void bind_textures(const gtx_gl *gl, const gtx_model *model)
     }
 }
 
-static const void *at(size_t offset)
-{
-    return (const char *)NULL + offset;
-}
-
 /* Points the attributes at the data of instances from one on. */
 static void set_instances(const gtx_renderer *renderer, uint32_t instance)
 {
@@ -47,12 +41,12 @@ static void set_instances(const gtx_renderer *renderer, uint32_t instance)
     for (gl_uint i = 0; i < INSTANCE_ATTRIBUTES; ++i) {
         const gl_uint index = FIRST_INSTANCE_ATTRIBUTE + i;
         gl->VertexAttribPointer(index, 4, GL_FLOAT, GL_FALSE, sizeof(gtx_instance_data),
-                                at(base + 16 * (size_t)i));
+                                gtx_gl_offset(base + 16 * (size_t)i));
         gl->VertexAttribDivisor(index, 1);
         gl->EnableVertexAttribArray(index);
     }
     gl->VertexAttribIPointer(ID_ATTRIBUTE, 1, GL_UNSIGNED_INT, sizeof(gtx_instance_data),
-                             at(base + offsetof(gtx_instance_data, id)));
+                             gtx_gl_offset(base + offsetof(gtx_instance_data, id)));
     gl->VertexAttribDivisor(ID_ATTRIBUTE, 1);
     gl->EnableVertexAttribArray(ID_ATTRIBUTE);
 }
@@ -62,9 +56,9 @@ static void set_attributes(const gtx_renderer *renderer, const gtx_run *r, uint3
 {
     const gtx_gl *gl = &renderer->gl;
     gl->BindBuffer(GL_ARRAY_BUFFER, r->model->vertices);
-    gl->VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(gtx_proxy_vertex), at(0));
+    gl->VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(gtx_proxy_vertex), gtx_gl_offset(0));
     gl->VertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(gtx_proxy_vertex),
-                             at(offsetof(gtx_proxy_vertex, patch)));
+                             gtx_gl_offset(offsetof(gtx_proxy_vertex, patch)));
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->model->indices);
     gl->EnableVertexAttribArray(0);
     gl->EnableVertexAttribArray(1);
@@ -99,8 +93,8 @@ static void face(const gtx_gl *gl, const gtx_run *r, bool back)
 }
 
 /* Draws all proxies of a kind, of `count` instances. */
-static void cast_whole(const gtx_renderer *renderer, const gtx_run *r, uint32_t kind, uint32_t instance,
-                       uint32_t count)
+static void cast_whole(const gtx_renderer *renderer, const gtx_run *r, uint32_t kind,
+                       uint32_t instance, uint32_t count)
 {
     const gtx_model *model = r->model;
     const uint32_t *first = &model->first_index[kind * model->patch_count];
@@ -110,7 +104,7 @@ static void cast_whole(const gtx_renderer *renderer, const gtx_run *r, uint32_t 
     set_attributes(renderer, r, instance);
     face(&renderer->gl, r, kind == 0);
     renderer->gl.DrawElementsInstanced(GL_TRIANGLES, (gl_size)indices, GL_UNSIGNED_INT,
-                                       at(first[0] * sizeof(uint32_t)), (gl_size)count);
+                                       gtx_gl_offset(first[0] * sizeof(uint32_t)), (gl_size)count);
 }
 
 /* Draws parts of a plan, of the instance that the attributes point at. */

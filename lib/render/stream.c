@@ -1,4 +1,4 @@
-/* The objects of casting by tiles, and its part in a draw. */
+/* Casting by tiles in OpenGL: its objects, the upload of its stream, and the draw. */
 #include "render/renderer.h"
 #include "render/units.h"
 
@@ -51,7 +51,7 @@ bool gtx_stream_suits(const gtx_renderer *renderer, const gtx_view *view)
            view->viewport_height > 0 && view->viewport_height <= most;
 }
 
-/* Puts the parts of the stream one behind the other. */
+/* Uploads the parts of the stream, one after the other. */
 static void send(const gtx_gl *gl, const gtx_tiles *t)
 {
     const struct {

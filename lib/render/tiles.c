@@ -293,8 +293,9 @@ static bool has_slabs(const gtx_tiles *t, uint32_t x, uint32_t y0, uint32_t y1)
     return false;
 }
 
-/* Outlines the tiles that have a slab. Along the diagonal between two triangles processors cast
- * twice: rectangles are as high as a band of rows, with empty tiles in them, which cost less. */
+/* Covers the tiles that have a slab with rectangles. Rasterisers on the CPU shade pixels along the
+ * diagonal of a rectangle twice, so rectangles are as high as a band of rows: the empty tiles in
+ * them cost less. */
 static void outline(gtx_tiles *t)
 {
     t->corner_count = 0;
@@ -308,7 +309,7 @@ static void outline(gtx_tiles *t)
     }
 }
 
-/* Tells shaders where the heads are. Floats count to 2^24, and so do the texels before them. */
+/* Tells shaders where the heads are, in floats: gtx_tiles_fill keeps the numbers below 2^24. */
 static void place_heads(gtx_tiles *t)
 {
     t->place[GTX_PLACE_COLUMNS][3] = (float)t->columns;

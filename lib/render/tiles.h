@@ -20,7 +20,7 @@ typedef struct gtx_tiles {
     uint32_t first_column, first_row, columns, rows; /* the rectangle of tiles that have heads */
     uint32_t record_texels, slab_texels, head_texels, list_texels;
     float place[GTX_PLACE_ROWS][4];
-    uint64_t draws;           /* so far, for tests: where tiles cannot be, fragments cast the same */
+    uint64_t draws;           /* by tiles, so far: tests look whether there were any */
 } gtx_tiles;
 
 /* tiles.c: fills the renderer's tiles from its plan. False when there is no memory for it, or it is

@@ -46,7 +46,7 @@ static gtx_result check_limits(const gtx_gl *gl, const gtx_model *model, gtx_err
     return GTX_OK;
 }
 
-/* Before there are images: drivers make room for the levels that can be asked for. */
+/* The last level is told before there are images: drivers allocate for levels that may come. */
 static void begin_texture(const gtx_gl *gl, gtx_model *model, uint32_t unit, uint32_t last_level)
 {
     static const char *const labels[UNIT_COUNT] = {

@@ -1,4 +1,4 @@
-/* The mathematics of a draw, in double: the eye, the clip planes, instances' inverses and scales. */
+/* The mathematics of a draw, in double: the eye, the clip planes, instances' inverses. */
 #include "render/view.h"
 
 #include "asset/asset.h"

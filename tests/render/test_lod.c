@@ -169,7 +169,7 @@ static void casts_when_it_must(void **state)
     view.method = GTX_METHOD_LOD;
     assert_int_equal(gtx_draw(s->renderer, &view, &shown.instance, 1, &error),
                      GTX_ERROR_UNSUPPORTED);
-    assert_non_null(strstr(error.message, "lod"));
+    assert_non_null(strstr(error.message, "LOD mesh"));
     subject_close(s, &shown);
 }
 

@@ -16,8 +16,10 @@ static const char *const lod_vertex[] = {SHARED, "geotex_lod.vert", NULL};
 static const char *const lod[] = {SHARED, "geotex_surface.glsl", "geotex_lod_fragment.glsl",
                                   "geotex_lod.frag", NULL};
 
-static const char *const lod_front[] = {SHARED, "geotex_surface.glsl", "geotex_lod_front.frag", NULL};
-static const char *const lod_front_shaded[] = {SHARED, "geotex_surface.glsl", "geotex_material.glsl",
+static const char *const lod_front[] = {SHARED, "geotex_surface.glsl",
+                                        "geotex_lod_front.frag", NULL};
+static const char *const lod_front_shaded[] = {SHARED, "geotex_surface.glsl",
+                                               "geotex_material.glsl",
                                                "geotex_lod_front.frag", NULL};
 
 /* What comes before an engine's own main, and a main. */

@@ -47,4 +47,24 @@ static inline void witness_dismiss(stage *s)
     set_callback(NULL, NULL);
 }
 
+/* A stage whose context a witness hears, to the last test. */
+static witness the_witness;
+
+static inline int open_watched(void **state)
+{
+    const int result = stage_open(state);
+    if (!result && the_stage.offscreen && has_debug(&the_stage))
+        witness_call(&the_stage, &the_witness);
+    return result;
+}
+
+static inline void expect_no_complaint(stage *s, int least_groups)
+{
+    if (!has_debug(s))
+        skip();
+    witness_dismiss(s);
+    assert_int_equal(the_witness.complaints, 0);
+    assert_true(the_witness.groups >= least_groups);
+}
+
 #endif

@@ -1,4 +1,4 @@
-/* Borders of clusters: where they fit best, straight, around one piece each. */
+/* Borders of clusters: moved to where normals fit best, straightened, around one piece each. */
 #pragma once
 
 #include "chart/surface.hpp"

@@ -15,15 +15,12 @@ namespace {
 /* Texels beyond a patch from which its overlap may take. Half and double: a few bytes. */
 constexpr float MARGIN = 4;
 /* Texels from where the chart ends to a cut behind it, at least: room for the overlap there. Half
- * and double change nothing. */
+ * and double change nothing, none changes the dragon. */
 constexpr double ROOM = 2;
 /* Turns of a frame that are tried, and how many times as coarse the grid is for that: time against
  * empty texels. Half: patches +3 % (truck), bytes +1 % (Spot); double: RMS +1 % (Spot). */
 constexpr size_t TURNS = 8;
 constexpr int COARSE = 6;
-/* Texels along the sides of a chart that stays whole, at least, for its cells to be counted:
- * slivers get theirs where they are baked. Half: nothing; double: patches +4 % (Spot). */
-constexpr int MIN_CELLS = 4;
 /* Of a grain, what a side may lose to come to a multiple: its core's texels get longer. The bake
  * decides again from what it rendered, and gives up one texel more (bake/field/patch.cpp). */
 constexpr double SHRINKABLE = 3. / 8;
@@ -112,7 +109,7 @@ void PatchBuilder::descend(const CutNode &node, std::vector<uint32_t> pieces)
         descend(tree_.nodes[size_t(node.child[side])], std::move(inside[side]));
 }
 
-/* Whether its centre lies in the region; what rounding puts off the grid belongs to its edge. */
+/* Whether its centre lies in the node's region, clamped to the grid against rounding. */
 bool PatchBuilder::is_own(const CutNode &node, const Piece &piece) const
 {
     bool own = true;
@@ -123,8 +120,8 @@ bool PatchBuilder::is_own(const CutNode &node, const Piece &piece) const
     return own;
 }
 
-/* Sides come in multiples of the grain: the core in a few cells less, or in so many more that its
- * texels fill them. */
+/* Cells of the core such that the patch's side is a multiple of the grain: a few less, or more,
+ * which its texels stretch to fill. */
 unsigned PatchBuilder::fitted_cells(const CutNode &node, int axis) const
 {
     const size_t low = size_t(2 * axis);
@@ -194,9 +191,9 @@ void set_cells(const CutNode &node, Chart &chart)
         chart.cells[axis] = cells_of(node, axis);
 }
 
-/* Turns the frames of charts that will be cut as their patches fill rectangles best, for the least
- * rectangle around all of a large chart says little about its parts. Coarse trees tell well enough.
- */
+/* Turns the frames of charts that will be cut so that their patches fill their rectangles best:
+ * the least rectangle around a large chart says little about its parts. Coarse trees suffice to
+ * tell. */
 void turn_frames(const Surface &surface, const std::vector<Region> &regions, const CutPlan &plan,
                  double share, std::vector<Frame> &frames, Task &task)
 {

@@ -8,9 +8,8 @@ namespace gtx {
 
 namespace {
 
-/* Least texels along a side that was cut, and its share of a square patch's side. Half: RMS +2 %
- * (Spot), a few bytes; double: bytes +2 % (Duck), texels -4 % (Spot). */
-constexpr int MIN_CELLS = 4;
+/* Least length of a side that was cut, of a square patch's side. Half: a few bytes; double: texels
+ * -4 % (Spot), RMS -4 % (Duck). */
 constexpr double MIN_SIDE = 0.1;
 /* What height steps cost beside texels, both squared, and the standard deviations within which
  * heights lie. Half: RMS +6 %, +13 % (Duck); double: bytes +2 %, +4 % (bunny). */

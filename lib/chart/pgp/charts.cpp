@@ -18,8 +18,8 @@ constexpr double MIN_CELLS = 0.1;
 /* Charts that come out of a cell's area, where the search for the cell begins. Half: RMS +3 %
  * (bunny); double: texels +13 % (Spot). */
 constexpr double CHARTS_PER_CELL = 0.97;
-/* Shares of the wanted number that end the search: a few too many are joined. A narrower range only
- * takes more rounds, of which two do for the bunny and Spot. */
+/* Shares of the wanted number that end the search: a few too many are joined. Half and double:
+ * texels +9 to +12 % (Spot). Rounds are a limit: two do for the bunny and Spot. */
 constexpr double MIN_RATIO = 0.98, MAX_RATIO = 1.06, BEST_RATIO = (MIN_RATIO + MAX_RATIO) / 2;
 constexpr int SEARCH_ROUNDS = 4;
 

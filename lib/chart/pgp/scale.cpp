@@ -10,13 +10,16 @@ namespace gtx {
 
 namespace {
 
-/* For the curl, cells are at most as much longer or shorter than the mean. */
+/* For the curl, cells are at most as much longer or shorter than the mean. Half: texels -8 %;
+ * double: RMS +3 % (Spot, adaptive, as are the next). */
 constexpr double MAX_SCALE = 4;
-/* And for the curvature, at most as much again, against where it is the median. */
+/* And for the curvature, at most as much again, against where it is the median. Half: bytes +3 %;
+ * double: a few bytes. */
 constexpr double MAX_ADAPTED = 2;
-/* Curvature, and what it asks for, are smoothed over a radius of as many cells. */
+/* Curvature, and what it asks for, are smoothed over a radius of as many cells. Half: texels
+ * +7 %, RMS -15 %; double: RMS +3 %. */
 constexpr double REACH = 0.7;
-/* What bends less than this, radians along a cell, is as good as flat. */
+/* A guard: what bends less than this, radians along a cell, is as good as flat. */
 constexpr double MIN_BEND = 0.1;
 /* A guard: keeps the mean of ln s at 0, where nothing else does. */
 constexpr double MIN_DIAGONAL = 1e-8;

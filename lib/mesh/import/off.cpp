@@ -50,7 +50,7 @@ OffKind OffReader::keyword()
     kind.texture = take("ST");
     kind.color = take("C");
     kind.normal = take("N");
-    bool more_dimensions = take("4") | take("n");
+    const bool four = take("4"), more_dimensions = take("n") || four;
     bool glued = word.size() > 3 && word[3] >= '0' && word[3] <= '9'; /* "OFF8 6 12" is met */
     if (word.substr(0, 3) != "OFF" || (word.size() > 3 && !glued))
         return {};
