@@ -1,26 +1,21 @@
 /* All charts baked, and their maps put on the pages of one asset. */
-#include "bake/patch_maps.hpp"
+#include "bake/pages.hpp"
+#include "bake/seam/seam.hpp"
 
 #include <algorithm>
 
 namespace gtx::baking {
 
+/* Limits of the format. */
 constexpr uint64_t MAX_PATCHES = 1u << 20, MAX_PAGES = 2048;
 
-/* The centre of the bounding box, to a multiple of the largest power of two that is not above its
- * diagonal: a model near the origin keeps its coordinates. */
-static Vec3d find_anchor(const Mesh &mesh)
+Vec3d find_anchor(const Vec3d &low, const Vec3d &high, const char *what)
 {
-    Vec3d low = mesh.positions[0], high = low;
-    for (const Vec3d &p : mesh.positions) {
-        for (int k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], p[k]);
-            high[k] = std::max(high[k], p[k]);
-        }
-    }
+    /* Lengths of a record are floats, and readers square them. */
+    constexpr double MIN_DIAGONAL = 1e-15, MAX_DIAGONAL = 1e15;
     double diagonal = length(high - low);
     if (!(diagonal >= MIN_DIAGONAL && diagonal <= MAX_DIAGONAL))
-        throw Error(GTX_ERROR_INPUT, "the model is smaller than 1e-15 or larger than 1e15");
+        throw Error(GTX_ERROR_INPUT, std::string(what) + " smaller than 1e-15 or larger than 1e15");
     double step = std::exp2(std::floor(std::log2(diagonal)));
     Vec3d anchor;
     for (int k = 0; k < 3; ++k)
@@ -120,7 +115,8 @@ static void summarise(const std::vector<PatchMaps> &patches, Maps &maps)
                             (double(maps.page_count) * maps.page_width * maps.page_height);
 }
 
-Maps place_on_pages(std::vector<PatchMaps> &patches, const BakeOptions &options)
+Maps place_on_pages(std::vector<PatchMaps> &patches, const Vec3d &anchor,
+                    const BakeOptions &options)
 {
     std::vector<std::array<uint32_t, 2>> sizes;
     for (const PatchMaps &p : patches)
@@ -133,7 +129,21 @@ Maps place_on_pages(std::vector<PatchMaps> &patches, const BakeOptions &options)
     for (size_t i = 0; i < patches.size(); ++i)
         place_patch(patches[i], packing.places[i], maps);
     summarise(patches, maps);
+    for (int k = 0; k < 3; ++k)
+        maps.anchor[k] = anchor[k];
     return maps;
+}
+
+static Vec3d anchor_of(const Mesh &mesh)
+{
+    Vec3d low = mesh.positions[0], high = low;
+    for (const Vec3d &p : mesh.positions) {
+        for (int k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], p[k]);
+            high[k] = std::max(high[k], p[k]);
+        }
+    }
+    return find_anchor(low, high, "the model is");
 }
 
 static void check(const Mesh &mesh, const Partition &partition, const BakeOptions &options)
@@ -163,7 +173,7 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
     task.begin("bake");
     Neighbours neighbours = triangle_neighbours(mesh);
     Job job = {mesh,            neighbours,      options, appearance_needs(mesh),
-               partition.pitch, find_anchor(mesh)};
+               partition.pitch, anchor_of(mesh)};
     std::vector<PatchMaps> patches;
     auto bake_rest = [&](double from, double to) {
         const size_t done = patches.size();
@@ -173,8 +183,8 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
         }, from, to);
     };
     bake_rest(0, 0.9);
-    std::vector<Chart> unseen = chart_unseen(job, partition, patches, task);
-    std::move(unseen.begin(), unseen.end(), std::back_inserter(partition.charts));
+    std::vector<Chart> uncovered = cover_uncovered(job, partition, patches, task);
+    std::move(uncovered.begin(), uncovered.end(), std::back_inserter(partition.charts));
     bake_rest(0.9, 1);
     std::vector<uint32_t> charts;
     for (size_t i = 0; i < patches.size(); ++i)
@@ -192,10 +202,8 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
                   [&](size_t i) { measure_patch(options.height_bits, patches[i]); });
 
     task.begin("pack");
-    Maps maps = place_on_pages(patches, options);
+    Maps maps = place_on_pages(patches, job.anchor, options);
     maps.charts = std::move(charts);
-    for (int k = 0; k < 3; ++k)
-        maps.anchor[k] = job.anchor[k];
     maps.emission_scale = job.needs.emission_scale;
     return maps;
 }

@@ -1,11 +1,12 @@
 /* Packs rectangles into pages: skyline, bottom left, tallest first (survey: Jylanki 2010). */
-#include "bake/patch_maps.hpp"
+#include "bake/pages.hpp"
 
 #include <algorithm>
 #include <numeric>
 
 namespace gtx::baking {
 
+/* Of a page, in texels: limits of the format. */
 constexpr uint32_t MAX_SIDE = 4096, MIN_SIDE = 8;
 
 /* The upper edge of what a page holds: segments from left to right. */
@@ -130,7 +131,7 @@ static Packing fill(const Sizes &sizes, const std::vector<uint32_t> &order, uint
 static Packing pack_one(const Sizes &sizes, const std::vector<uint32_t> &order, uint64_t area,
                         uint32_t widest, uint32_t least, uint32_t most)
 {
-    constexpr int TRIES = 24;
+    constexpr int TRIES = 24; /* widths; at double 0.3 % fewer bytes (truck) for twice the time */
     double side = std::sqrt(double(area));
     Packing best;
     uint64_t best_area = 0;
@@ -155,7 +156,7 @@ static Packing pack_one(const Sizes &sizes, const std::vector<uint32_t> &order, 
 static Packing pack_many(const Sizes &sizes, const std::vector<uint32_t> &order, uint64_t area,
                          uint32_t most)
 {
-    constexpr uint32_t STEPS = 32;
+    constexpr uint32_t STEPS = 32; /* heights between the least and the largest */
     Packing largest = fill(sizes, order, most, most);
     uint64_t least = area / (uint64_t(largest.page_count) * most) + 1;
     for (uint32_t i = 0; i < STEPS && least < most; ++i) {

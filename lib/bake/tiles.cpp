@@ -1,16 +1,16 @@
 /* Height grids cut into tiles that agree where they meet. */
 #include "bake/tiles.hpp"
 
-#include "bake/patch_maps.hpp"
+#include "bake/field/shade.hpp"
+#include "bake/pages.hpp"
 #include "mesh/material/srgb.hpp"
 
 #include <algorithm>
 
 namespace gtx::baking {
 
-/* A tile shows so many texels beyond its border: its neighbour has the same texels. */
-constexpr double TILE_OVERLAP = 0.15;
-/* Steps of heights are halves of halves of the coarsest, so often at most. */
+/* Steps of heights are halves of halves of the coarsest, so often at most: a limit,
+ * half changes a few bytes. */
 constexpr int MAX_HALVINGS = 12;
 
 /* Nodes of a layer: from..to are the tile's own, borders included; low..high are stored. */
@@ -44,11 +44,6 @@ struct LayerHeights {
         return has(i, j) && has(i + 1, j) && has(i, j + 1) && has(i + 1, j + 1);
     }
 };
-
-static unsigned top_code(const TileOptions &options)
-{
-    return options.bake.height_bits == 8 ? 254 : 65534;
-}
 
 /* Cuts the grid evenly into as few tiles as the side allows. */
 static void cut(const LayerHeights &layer, uint32_t index, unsigned side, std::vector<Tile> &tiles)
@@ -101,7 +96,7 @@ static void find_range(const LayerHeights &layer, bool rounded, Tile &tile)
 static void choose_steps(std::vector<Tile *> &tiles, const TileOptions &options,
                          LayerHeights &layer, Task &task)
 {
-    const double top = top_code(options);
+    const double top = gtx_height_steps(options.bake.height_bits);
     auto ranges = [&](bool rounded) {
         task.parallel(tiles.size(), [&](size_t t) { find_range(layer, rounded, *tiles[t]); }, 0, 0);
     };
@@ -176,7 +171,7 @@ static float outside(const Tile &tile, const HeightGrid &grid, int i, int j)
         if (tile.to[k] < size[k] - 1)
             most = std::max(most, double(at[k] - tile.to[k]));
     }
-    return float(most - TILE_OVERLAP);
+    return float(most - CUT_OVERLAP);
 }
 
 static gtx_patch make_record(const Tile &tile, const LayerHeights &layer, const Vec3d &anchor,
@@ -196,7 +191,8 @@ static gtx_patch make_record(const Tile &tile, const LayerHeights &layer, const 
     store(record.axis_z, frame.z);
     record.extent_x = float(record.rect[2] * grid.step[0]);
     record.extent_y = float(record.rect[3] * grid.step[1]);
-    record.extent_z = float(std::ldexp(layer.step, -tile.halvings) * top_code(options));
+    record.extent_z = float(std::ldexp(layer.step, -tile.halvings) *
+                            gtx_height_steps(options.bake.height_bits));
     const unsigned dilation = options.bake.dilation;
     record.dilation = uint16_t(dilation ? dilation : 1u << (options.bake.mips - 1));
     record.flags = GTX_PATCH_TWO_SIDED;
@@ -228,8 +224,8 @@ static PatchMaps bake_tile(const Tile &tile, const LayerHeights &layer, const Gr
     for_nodes(tile, layer, [&](int i, int j) {
         const size_t at = size_t(j - tile.low[1]) * w + size_t(i - tile.low[0]);
         const double height = layer.rounded(i, j);
-        maps.height[at] = uint16_t(1 + std::clamp(std::floor((height - tile.bottom) / step + 0.5),
-                                                  0.0, double(top_code(options))));
+        maps.height[at] =
+            uint16_t(gtx_nearest_code((height - tile.bottom) / step, options.bake.height_bits));
         maps.trim[at] = trim_code(outside(tile, *layer.grid, i, j));
         shades.occupied[at] = 1;
         shades.normal[at] = normal_at(layer, frame, i, j);
@@ -251,8 +247,7 @@ static PatchMaps bake_tile(const Tile &tile, const LayerHeights &layer, const Gr
     return maps;
 }
 
-/* The middle of all grids, to a multiple of the largest power of two not above their size. */
-static Vec3d find_anchor(const std::vector<LayerHeights> &layers, const std::vector<Tile> &tiles)
+static Vec3d anchor_of(const std::vector<LayerHeights> &layers, const std::vector<Tile> &tiles)
 {
     Vec3d low(INFINITY, INFINITY, INFINITY), high = -low;
     for (const Tile &tile : tiles)
@@ -265,14 +260,7 @@ static Vec3d find_anchor(const std::vector<LayerHeights> &layers, const std::vec
                 high[a] = std::max(high[a], p[a]);
             }
         }
-    const double diagonal = length(high - low);
-    if (!(diagonal >= MIN_DIAGONAL && diagonal <= MAX_DIAGONAL))
-        throw Error(GTX_ERROR_INPUT, "the grids are smaller than 1e-15 or larger than 1e15");
-    const double step = std::exp2(std::floor(std::log2(diagonal)));
-    Vec3d anchor;
-    for (int a = 0; a < 3; ++a)
-        anchor[a] = std::floor((low[a] + high[a]) / 2 / step + 0.5) * step;
-    return anchor;
+    return find_anchor(low, high, "the grids are");
 }
 
 } // namespace gtx::baking
@@ -317,7 +305,7 @@ Maps bake_tiles(const std::vector<GridLayer> &layers, const TileOptions &options
             own.push_back(&tiles[t]);
         choose_steps(own, options, heights[n], task);
     }
-    const Vec3d anchor = find_anchor(heights, tiles);
+    const Vec3d anchor = anchor_of(heights, tiles);
     std::vector<PatchMaps> patches(tiles.size());
     std::vector<Rounding> rounding(tiles.size());
     task.parallel(tiles.size(), [&](size_t t) {
@@ -338,11 +326,9 @@ Maps bake_tiles(const std::vector<GridLayer> &layers, const TileOptions &options
             report.nodes += !std::isnan(value);
 
     task.begin("pack");
-    Maps maps = place_on_pages(patches, options.bake);
+    Maps maps = place_on_pages(patches, anchor, options.bake);
     for (uint32_t t = 0; t < tiles.size(); ++t)
         maps.charts.push_back(t);
-    for (int k = 0; k < 3; ++k)
-        maps.anchor[k] = anchor[k];
     return maps;
 }
 

@@ -9,7 +9,7 @@ extern "C" {
 }
 
 #include "bake/agreement.hpp"
-#include "bake/patch_maps.hpp"
+#include "bake/field/chart_field.hpp"
 #include "bake/shapes.hpp"
 #include "host/offscreen.h"
 

@@ -8,7 +8,7 @@ extern "C" {
 #include <cmocka.h>
 }
 
-#include "bake/patch_maps.hpp"
+#include "bake/pages.hpp"
 
 #include <algorithm>
 #include <random>

@@ -1,5 +1,5 @@
-/* Depth cliffs: two height fields side by side in the map, which no cell may bridge. */
-#include "bake/patch_maps.hpp"
+/* Depth discontinuities: two height fields side by side in the map, which no cell may bridge. */
+#include "bake/field/chart_field.hpp"
 
 #include <algorithm>
 #include <tuple>
@@ -38,64 +38,67 @@ namespace {
 /* Which cells show, and which of them bridge. */
 class Bridges {
 public:
-    Bridges(const FlatChart &chart, const Outline &outline, std::vector<float> &trim, Cover &cover,
-            Paths &paths)
-        : chart_(chart), outline_(outline), trim_(trim), cover_(cover), paths_(paths)
+    Bridges(ChartField &field, Paths &paths)
+        : field_(field), grid_(field.flat.grid), cover_(field.cover), paths_(paths),
+          jump_(JUMP * grid_.coarse_pitch())
     {
     }
 
-    /* Which drops are bridges when a cell spans them. */
-    enum Drop { UNJOINED, BESIDE_CORE };
-    void find(Drop drop, const std::vector<uint8_t> &support);
+    /* Which jumps are bridged when a cell spans them. */
+    enum Jumps { UNJOINED, BESIDE_CORE };
+    void find(Jumps jumps);
     void give_to_core(const Outline &core);
-    void cut(std::vector<uint8_t> &support);
+    void cut();
 
 private:
     std::array<size_t, 4> corners(size_t cell) const
     {
-        size_t w = size_t(chart_.grid.w);
+        size_t w = size_t(grid_.w);
         return {cell, cell + 1, cell + w, cell + w + 1};
     }
     /* The cells with this corner, which is not on the grid's first row or column. */
     std::array<size_t, 4> around(size_t texel) const
     {
-        size_t w = size_t(chart_.grid.w);
+        size_t w = size_t(grid_.w);
         return {texel - w - 1, texel - w, texel - 1, texel};
     }
-    bool bridges(Drop drop, size_t cell);
+    bool bridges(Jumps jumps, size_t cell);
     /* What is lost with a texel: the share of the surface, not of what continues it, in the good
      * cells around it; for each of the bad ones that go too. */
     double loss(size_t texel) const;
 
-    const FlatChart &chart_;
-    const Outline &outline_;
-    bool is_core(size_t texel) const { return cover_.triangle[texel] < chart_.core; }
+    bool is_core(size_t texel) const { return cover_.triangle[texel] < field_.flat.core; }
     bool continue_core(size_t texel, double &height) const;
 
-    std::vector<float> &trim_;
+    ChartField &field_;
+    const Grid &grid_;
     Cover &cover_;
     Paths &paths_;
+    const double jump_;
     enum : uint8_t { NONE, GOOD, BAD };
     std::vector<uint8_t> cells_;
 };
 
 /* Whether a step between corners of a cell is more than a slope, with no surface along it: or even
  * with that where it leaves the core, for a wall that begins there is another chart's. */
-bool Bridges::bridges(Drop drop, size_t cell)
+bool Bridges::bridges(Jumps jumps, size_t cell)
 {
-    constexpr double REACH = 1.5; /* from the middle of the cell */
+    /* From the middle of the cell. Spot's control mesh: 2 % more patches at half, 0.2 % RMS at
+     * double (Duck). chart/layers.cpp looks a texel farther, for what it splits is a patch more. */
+    constexpr double REACH = 1.5;
+    const Outline &outline = field_.outline;
     std::array<size_t, 4> corner = corners(cell);
     auto triangle = [&](size_t texel) {
         uint32_t t = cover_.triangle[texel];
-        return t != NO_TRIANGLE ? t : outline_.edges[outline_.nearest[texel]].triangle;
+        return t != NO_TRIANGLE ? t : outline.edges[outline.nearest[texel]].triangle;
     };
-    double u = double(cell % chart_.grid.w) + 0.5, v = double(cell / chart_.grid.w) + 0.5;
+    double u = double(cell % grid_.w) + 0.5, v = double(cell / grid_.w) + 0.5;
     for (int a = 0; a < 4; ++a) {
         for (int b = a + 1; b < 4; ++b) {
             double step = std::fabs(cover_.height[corner[a]] - cover_.height[corner[b]]);
-            if (step <= CLIFF * chart_.grid.coarse_pitch())
+            if (step <= jump_)
                 continue;
-            if (drop == BESIDE_CORE && is_core(corner[a]) != is_core(corner[b]))
+            if (jumps == BESIDE_CORE && is_core(corner[a]) != is_core(corner[b]))
                 return true;
             if (!paths_.joined(triangle(corner[a]), triangle(corner[b]), u, v, REACH))
                 return true;
@@ -106,7 +109,9 @@ bool Bridges::bridges(Drop drop, size_t cell)
 
 double Bridges::loss(size_t texel) const
 {
-    constexpr double CORE = 4, OVERLAP_ONLY = 1; /* another chart's core lies there */
+    /* Against 1 for the overlap, where another chart's core lies. 0.4 % texels at half or double
+     * (truck). */
+    constexpr double CORE = 4;
     double lost = 0;
     int bad = 0;
     for (size_t cell : around(texel)) {
@@ -116,7 +121,7 @@ double Bridges::loss(size_t texel) const
         for (size_t c : corners(cell)) {
             uint32_t t = cover_.triangle[c];
             if (t != NO_TRIANGLE)
-                lost += t < chart_.core ? CORE : OVERLAP_ONLY;
+                lost += t < field_.flat.core ? CORE : 1;
         }
     }
     return lost / bad;
@@ -126,8 +131,7 @@ double Bridges::loss(size_t texel) const
  * through each and the one behind it. False where there is none, or where they do not agree. */
 bool Bridges::continue_core(size_t texel, double &height) const
 {
-    const double cliff = CLIFF * chart_.grid.coarse_pitch();
-    const int w = chart_.grid.w, h = chart_.grid.h, x = int(texel) % w, y = int(texel) / w;
+    const int w = grid_.w, h = grid_.h, x = int(texel) % w, y = int(texel) / w;
     double sum = 0, low = INFINITY, high = -INFINITY;
     int count = 0;
     for (int dy = -1; dy <= 1; ++dy) {
@@ -138,14 +142,14 @@ bool Bridges::continue_core(size_t texel, double &height) const
             double near = cover_.height[size_t(ny) * w + nx], slope = 0;
             if (bx >= 0 && by >= 0 && bx < w && by < h && is_core(size_t(by) * w + bx))
                 slope = near - cover_.height[size_t(by) * w + bx];
-            sum += near + (std::fabs(slope) <= cliff ? slope : 0);
+            sum += near + (std::fabs(slope) <= jump_ ? slope : 0);
             low = std::min(low, near);
             high = std::max(high, near);
             ++count;
         }
     }
     height = sum / std::max(count, 1);
-    return count > 0 && high - low <= cliff;
+    return count > 0 && high - low <= jump_;
 }
 
 /* A texel beyond the core that makes a bridge with it may as well continue the core: what lies
@@ -153,8 +157,9 @@ bool Bridges::continue_core(size_t texel, double &height) const
  * as steeply, the surface beyond is its best continuation. */
 void Bridges::give_to_core(const Outline &core)
 {
-    constexpr double RISE = 3; /* texels of depth above the continued core: a wall begins */
-    const double rise = RISE * chart_.grid.coarse_pitch();
+    /* Texels of depth above the continued core: a wall begins. Spot's control mesh: 1 % RMS. */
+    constexpr double RISE = 3;
+    const double rise = RISE * grid_.coarse_pitch();
     auto leaves_core = [&](double beyond, double continued) {
         return beyond < continued || beyond >= continued + rise;
     };
@@ -170,56 +175,54 @@ void Bridges::give_to_core(const Outline &core)
     for (auto [texel, height] : given) {
         cover_.height[texel] = height;
         cover_.triangle[texel] = NO_TRIANGLE;
-        trim_[texel] = std::max(trim_[texel], core.distance[texel]);
+        field_.trim[texel] = std::max(field_.trim[texel], core.distance[texel]);
     }
 }
 
-void Bridges::find(Drop drop, const std::vector<uint8_t> &support)
+void Bridges::find(Jumps jumps)
 {
-    const Grid &grid = chart_.grid;
-    cells_.assign(grid.texels(), NONE);
-    for (int j = 1; j + 1 < grid.h; ++j) { /* the margin keeps cells that show off the sides */
-        for (int i = 1; i + 1 < grid.w; ++i) {
-            size_t cell = size_t(j) * size_t(grid.w) + size_t(i);
+    auto shows = [&](size_t texel) { return shown(field_.trim[texel]); };
+    auto has_code = [&](size_t texel) { return field_.support[texel]; };
+    cells_.assign(grid_.texels(), NONE);
+    for (int j = 1; j + 1 < grid_.h; ++j) { /* the margin keeps cells that show off the sides */
+        for (int i = 1; i + 1 < grid_.w; ++i) {
+            size_t cell = size_t(j) * size_t(grid_.w) + size_t(i);
             std::array<size_t, 4> c = corners(cell);
-            bool shows = std::any_of(c.begin(), c.end(), [&](size_t t) { return shown(trim_[t]); });
-            bool exists = std::all_of(c.begin(), c.end(), [&](size_t t) { return support[t]; });
-            if (shows && exists)
-                cells_[cell] = bridges(drop, cell) ? BAD : GOOD;
+            if (std::any_of(c.begin(), c.end(), shows) && std::all_of(c.begin(), c.end(), has_code))
+                cells_[cell] = bridges(jumps, cell) ? BAD : GOOD;
         }
     }
 }
 
-void Bridges::cut(std::vector<uint8_t> &support)
+void Bridges::cut()
 {
     for (size_t cell = 0; cell < cells_.size(); ++cell) {
         if (cells_[cell] != BAD)
             continue;
         std::pair<double, double> least = {INFINITY, INFINITY};
-        size_t drop = cell;
+        size_t taken = cell;
         for (size_t texel : corners(cell)) { /* of equals, the lower */
             std::pair<double, double> rank = {loss(texel), cover_.height[texel]};
             if (rank < least) {
                 least = rank;
-                drop = texel;
+                taken = texel;
             }
         }
-        support[drop] = 0;
-        for (size_t gone : around(drop))
+        field_.support[taken] = 0;
+        for (size_t gone : around(taken))
             cells_[gone] = NONE;
     }
 }
 
 } // namespace
 
-void cut_cliffs(const FlatChart &chart, const Outline &core_outline, const Outline &outline,
-                Paths &paths, std::vector<float> &trim, Cover &cover, std::vector<uint8_t> &support)
+void cut_discontinuities(const Outline &core, Paths &paths, ChartField &field)
 {
-    Bridges bridges(chart, outline, trim, cover, paths);
-    bridges.find(Bridges::BESIDE_CORE, support);
-    bridges.give_to_core(core_outline);
-    bridges.find(Bridges::UNJOINED, support);
-    bridges.cut(support);
+    Bridges bridges(field, paths);
+    bridges.find(Bridges::BESIDE_CORE);
+    bridges.give_to_core(core);
+    bridges.find(Bridges::UNJOINED);
+    bridges.cut();
 }
 
 } // namespace gtx::baking

@@ -1,7 +1,7 @@
 /* Renders a chart orthographically: colours unlit, normals renormalised, heights as depth (paper,
  * section 5, map extraction). Its three passes are the three targets of one. */
 #include "bake/field/gl.hpp"
-#include "bake/patch_maps.hpp"
+#include "bake/field/chart_field.hpp"
 
 #include <algorithm>
 

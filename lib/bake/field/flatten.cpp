@@ -1,15 +1,18 @@
 /* Lays a chart and its overlap out in the texel grid of its frame. */
-#include "bake/patch_maps.hpp"
+#include "bake/field/flatten.hpp"
 
 #include <algorithm>
 
 namespace gtx::baking {
 
-/* Cells a chart gets at least along a side, and texels it may have at most. */
+/* Cells a chart gets at least along a side (truck: 3 % more texels at double), and texels it may
+ * have at most: a limit against hostile charts, which no model reaches. */
 constexpr double MIN_CELLS = 4, MAX_TEXELS = 512;
-/* A pitch is never finer than this part of the model's: a needle is no reason for a fine map. */
+/* A pitch is never finer than this part of the model's: a needle is no reason for a fine map. A
+ * limit: hardly a byte changes at half or double. */
 constexpr double FINEST = 1.0 / 16;
-/* Texels around the core: overlap, what is shown beyond it, and the far corner of a cell there. */
+/* Texels around the core: overlap, what is shown beyond it, and the far corner of a cell there.
+ * Truck: RMS -7 % at half; Duck: 3 % more at double. */
 constexpr int MARGIN = 4;
 
 static Grid reciprocal_grid(const Frame &frame)

@@ -1,11 +1,12 @@
 /* Material that is cut away: the outline of a mask becomes part of the trim. */
-#include "bake/patch_maps.hpp"
+#include "bake/field/chart_field.hpp"
 
 #include <algorithm>
 
 namespace gtx::baking {
 
-/* Samples of the mask along a texel: its outline is found between them. */
+/* Samples of the mask along a texel: its outline is found between them. No measured model
+ * has a mask. */
 constexpr int FINER = 2;
 /* Samples outside the surface where what lies at its border still counts. */
 constexpr float BEYOND = 2 * FINER;
@@ -107,7 +108,7 @@ void trim_mask(const Mesh &mesh, const Neighbours &neighbours, const FlatChart &
         size_t x = i % size_t(chart.grid.w), y = i / size_t(chart.grid.w);
         float distance = outline.distance[i];
         bool gone = cut[FINER * (y * size_t(fine.grid.w) + x)] < 0;
-        trim[i] = std::max(trim[i], float(SHOWN) + (gone ? distance : -distance));
+        trim[i] = std::max(trim[i], float(GTX_TRIM_SHOWN) + (gone ? distance : -distance));
     }
 }
 

@@ -1,5 +1,5 @@
 /* What is seen at a patch's texels as bytes: mip levels, dilated past what is occupied. */
-#include "bake/patch_maps.hpp"
+#include "bake/field/shade.hpp"
 
 #include "asset/asset.h"
 #include "asset/fill.h"

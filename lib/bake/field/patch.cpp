@@ -1,5 +1,5 @@
 /* One chart -> the maps of its patch (paper, section 5.3). */
-#include "bake/patch_maps.hpp"
+#include "bake/field/shade.hpp"
 
 #include "asset/fill.h"
 
@@ -52,46 +52,13 @@ static gtx_patch make_record(const Job &job, const Chart &chart, const Grid &gri
     return record;
 }
 
-/* The point of a texel as a reader computes it from the record. */
-static Vec3d texel_point(const gtx_patch &r, int i, int j, double height)
-{
-    double a = (i + 0.5) / r.rect[2] * r.extent_x, b = (j + 0.5) / r.rect[3] * r.extent_y;
-    double c = height * r.extent_z;
-    Vec3d p;
-    for (int k = 0; k < 3; ++k)
-        p[k] = r.origin[k] + a * r.axis_x[k] + b * r.axis_y[k] + c * r.axis_z[k];
-    return p;
-}
-
 void measure_patch(unsigned height_bits, PatchMaps &maps)
 {
-    gtx_patch &r = maps.record;
-    double steps = height_bits == 8 ? 254 : 65534;
-    int w = r.rect[2], h = r.rect[3];
-    maps.low = {INFINITY, INFINITY, INFINITY};
-    maps.high = -maps.low;
-    std::vector<Vec3d> points;
-    for (int j = 0; j < h; ++j) {
-        for (int i = 0; i < w; ++i) {
-            unsigned code = maps.height[size_t(j) * w + i];
-            if (!code)
-                continue;
-            Vec3d p = texel_point(r, i, j, (code - 1) / steps);
-            for (int k = 0; k < 3; ++k) {
-                maps.low[k] = std::min(maps.low[k], p[k]);
-                maps.high[k] = std::max(maps.high[k], p[k]);
-            }
-            points.push_back(p);
-        }
-    }
-    maps.coded = points.size();
-    r.coverage = float(double(points.size()) / (double(w) * h));
-    store(r.sphere, (maps.low + maps.high) * 0.5);
-    Vec3d centre(r.sphere[0], r.sphere[1], r.sphere[2]);
-    double radius = 0;
-    for (const Vec3d &p : points)
-        radius = std::max(radius, length(p - centre));
-    r.sphere[3] = float(radius * (1 + 1e-6));
+    const gtx_code_map codes = {maps.height.data(), maps.record.rect[2], 2, height_bits};
+    const gtx_patch_span span = gtx_measure_patch(&maps.record, &codes);
+    maps.low = {span.low[0], span.low[1], span.low[2]};
+    maps.high = {span.high[0], span.high[1], span.high[2]};
+    maps.coded = span.coded;
 }
 
 void fill_trim(PatchMaps &maps)
@@ -107,20 +74,16 @@ void fill_trim(PatchMaps &maps)
     gtx_fill_trim(&area);
 }
 
-/* A texel and a half inside: deeper, no cell reaches the limit, so that no depth need be told. */
-constexpr float DEEP_TRIM = 128 - 24;
-
 uint8_t trim_code(float distance)
 {
-    return uint8_t(std::clamp(128 + 16 * distance, DEEP_TRIM, 255.f) + 0.5f);
+    return gtx_nearest_trim(std::max(distance, DEEPEST_TRIM));
 }
 
-static void quantise(const HeightField &s, const Crop &crop, double low, unsigned height_bits,
+static void quantise(const ChartField &s, const Crop &crop, double low, unsigned height_bits,
                      PatchMaps &maps)
 {
     const Grid &grid = s.flat.grid;
-    double steps = (height_bits == 8 ? 254 : 65534) / double(maps.record.extent_z);
-    double top = height_bits == 8 ? 254 : 65534;
+    const double steps = gtx_height_steps(height_bits) / double(maps.record.extent_z);
     maps.height.assign(size_t(crop.w) * crop.h, 0);
     maps.trim.resize(maps.height.size());
     maps.border.resize(maps.height.size());
@@ -131,18 +94,17 @@ static void quantise(const HeightField &s, const Crop &crop, double low, unsigne
             size_t from = size_t(near_y) * grid.w + near_x, to = size_t(j) * crop.w + i;
             maps.trim[to] = trim_code(s.trim[from]);
             maps.border[to] = s.outline.edges[s.outline.nearest[from]].border;
-            if (x == near_x && y == near_y && s.support[from]) {
-                double code = std::floor((s.cover.height[from] - low) * steps + 0.5);
-                maps.height[to] = uint16_t(1 + std::clamp(code, 0., top));
-            }
+            if (x == near_x && y == near_y && s.support[from])
+                maps.height[to] = uint16_t(
+                    gtx_nearest_code((s.cover.height[from] - low) * steps, height_bits));
         }
     }
     fill_trim(maps);
 }
 
-static HeightField lay_field(const Job &job, FlatChart flat, Extractor *extractor)
+static ChartField lay_field(const Job &job, FlatChart flat, Extractor *extractor)
 {
-    HeightField s;
+    ChartField s;
     s.flat = std::move(flat);
     if (extractor)
         s.rendering = extractor->render(job.mesh, s.flat);
@@ -156,12 +118,12 @@ static HeightField lay_field(const Job &job, FlatChart flat, Extractor *extracto
     if (job.needs.mask)
         trim_mask(job.mesh, job.neighbours, s.flat, s.trim);
     s.support = find_support(s.flat.grid, s.trim);
-    extrapolate(s.flat, s.outline, paths, s.support, s.cover);
-    cut_cliffs(s.flat, core_outline, s.outline, paths, s.trim, s.cover, s.support);
+    extrapolate(paths, s);
+    cut_discontinuities(core_outline, paths, s);
     return s;
 }
 
-static PatchMaps encode_field(const Job &job, const Chart &chart, const HeightField &s)
+static PatchMaps encode_field(const Job &job, const Chart &chart, const ChartField &s)
 {
     PatchMaps maps;
     double low = INFINITY, high = -INFINITY;
@@ -182,8 +144,10 @@ static PatchMaps encode_field(const Job &job, const Chart &chart, const HeightFi
 }
 
 /* A few cells less, or more, along a side that rounding to a multiple of `grain` would fill up with
- * empty texels. */
-static bool refit(const HeightField &field, int grain, Chart &chart)
+ * empty texels. Planned cuts decide likewise in chart/cuts, before the outline is known: there less
+ * than 3/8 of a grain goes, here up to 3 texels, which at 4 mip levels is one more. Truck: 3 % more
+ * texels at half; 7 % fewer at double, for 9 % RMS. */
+static bool refit(const ChartField &field, int grain, Chart &chart)
 {
     constexpr int MAX_LESS = 3;
     const Crop crop = crop_support(field.flat.grid, field.support, 1);
@@ -200,11 +164,11 @@ static bool refit(const HeightField &field, int grain, Chart &chart)
 
 /* A height field with `finer` times as many cells along its sides, or so many that they fill
  * them. */
-static HeightField lay_fitted(const Job &job, const Chart &chart, double finer)
+static ChartField lay_fitted(const Job &job, const Chart &chart, double finer)
 {
     Extractor *extractor = job.options.extractor;
     FlatChart flat = flatten(job.mesh, job.neighbours, chart, job.pitch, finer);
-    HeightField field = lay_field(job, std::move(flat), nullptr); /* cells do not depend on a
+    ChartField field = lay_field(job, std::move(flat), nullptr); /* cells do not depend on a
                                                                      driver */
     Chart fitted = chart;
     for (unsigned &cells : fitted.cells)
@@ -216,14 +180,15 @@ static HeightField lay_fitted(const Job &job, const Chart &chart, double finer)
                               : std::move(field);
 }
 
-/* A chart whose relief is finer than the model's pitch gets a finer one. */
+/* A chart whose relief is finer than the model's pitch gets a finer one. Measured on the truck:
+ * ALLOWED at half a hole and 6 % more texels, at double 4 % fewer; FINER at double 83 % more. */
 PatchMaps bake_chart(const Job &job, const Chart &chart)
 {
     constexpr double ALLOWED = 0.01, FINER = 1.4;
-    HeightField field = lay_fitted(job, chart, 1);
-    if (fit_heights(field.flat, field.support, job.pitch, field.cover) > ALLOWED) {
+    ChartField field = lay_fitted(job, chart, 1);
+    if (fit_heights(job.pitch, field) > ALLOWED) {
         field = lay_fitted(job, chart, FINER);
-        fit_heights(field.flat, field.support, job.pitch, field.cover);
+        fit_heights(job.pitch, field);
     }
     return encode_field(job, chart, field);
 }

@@ -1,5 +1,5 @@
 /* What the source looks like at the texels of a patch. */
-#include "bake/patch_maps.hpp"
+#include "bake/field/shade.hpp"
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@ namespace gtx::baking {
 
 Vec3d weights_at(const FlatTriangle &triangle, double u, double v)
 {
-    constexpr double INSIDE = -1e-6; /* but for the rounding of these very weights */
+    constexpr double INSIDE = -1e-6; /* numerical guard: the rounding of these very weights */
     const Vec3d *p = triangle.corner;
     Vec3d e = p[1] - p[0], f = p[2] - p[0];
     double area = triangle.signed_area(), du = u - p[0].x, dv = v - p[0].y;
@@ -41,7 +41,7 @@ SurfacePoint surface_point(const FlatChart &chart, const Outline &outline, const
 
 /* What the GPU has interpolated where its triangle is still the one that covers the texel, else
  * what the corners give here. */
-static Interpolated interpolated_at(const Job &job, const HeightField &field,
+static Interpolated interpolated_at(const Job &job, const ChartField &field,
                                     const SurfacePoint &point, size_t texel)
 {
     Interpolated corners =
@@ -70,10 +70,10 @@ static void store(const SurfaceSample &sample, const AppearanceNeeds &needs, Sha
         std::copy_n(sample.emission, EMISSION_CHANNELS, out);
 }
 
-Shades shade_texels(const Job &job, const HeightField &field, const Crop &crop,
+Shades shade_texels(const Job &job, const ChartField &field, const Crop &crop,
                     const std::vector<uint16_t> &height)
 {
-    /* A texel with a code is at most so far from what is shown. */
+    /* A texel with a code is at most so far from what is shown: a fact of the support. */
     constexpr unsigned MARGIN = 2;
     const FlatChart &chart = field.flat;
     const AppearanceNeeds &needs = job.needs;

@@ -9,10 +9,11 @@ namespace gtx::baking {
 
 using Triangle = std::array<uint32_t, 3>;
 
-/* A corner so near to a cut lies on it, in texels. */
+/* A corner so near to a cut lies on it, in texels. Bunny: error +10 % at half and at double. */
 constexpr double ON_CUT = 0.05;
 /* A triangle that reaches no farther across is not split, in texels: far enough that one with its
- * centre on this side always has an edge that crosses. */
+ * centre on this side always has an edge that crosses. Bunny: error +7 % at half, +12 % at
+ * double. */
 constexpr double REACH = 0.25;
 
 ChartCuts::ChartCuts(const Chart &chart, const Vec3d &anchor)

@@ -2,8 +2,6 @@
  * inside its own outline. Both find that line, for it is where their trims are equal. */
 #include "bake/lod/fields.hpp"
 
-#include "asset/asset.h"
-
 #include <algorithm>
 #include <map>
 
@@ -13,7 +11,7 @@ namespace gtx::baking {
 constexpr double REACH_TEXELS = 0.75, REACH_STEPS = 3, MIN_COSINE = 0.3;
 /* So far inside its outline a height field that is not steep need not look for others. Trim may not
  * be told any deeper, so two that are would be equals. */
-constexpr double DEEP = -1.5;
+constexpr double DEEP = DEEPEST_TRIM;
 /* Where another height field goes on, one may end this many texels beyond its outline, so that both
  * reach the line between their outlines. */
 constexpr double MAX_OUTSIDE = 1;
@@ -23,36 +21,28 @@ constexpr double STEEP_COSINE = 0.5, STEEP = 8;
 /* Texels whose trims differ by no more than this lie on the cut. */
 constexpr double ON_CUT = 0.4;
 
-static Vec3d vector(const float v[3])
-{
-    return {v[0], v[1], v[2]};
-}
-
-MapField::MapField(const Maps &maps, uint32_t patch) : maps_(maps)
+MapField::MapField(const Maps &maps, uint32_t patch)
+    : HeightField(maps, patch), height_bits_(maps.height_bits),
+      normals_(maps.normal[0].data() + 2 * first_texel(maps, maps.patches[patch]))
 {
     const gtx_patch &p = maps.patches[patch];
-    w_ = p.rect[2];
-    h_ = p.rect[3];
-    first_ = (size_t(p.page) * maps.page_height + p.rect[1]) * maps.page_width + p.rect[0];
-    texel_[0] = vector(p.axis_x) * (double(p.extent_x) / w_);
-    texel_[1] = vector(p.axis_y) * (double(p.extent_y) / h_);
-    z_ = vector(p.axis_z) * double(p.extent_z);
-    origin_ = vector(p.origin) + (texel_[0] + texel_[1]) * 0.5;
+    for (int k = 0; k < 2; ++k)
+        texel_[k] = axis[k] * pitch[k];
+    z_ = axis[2] * double(p.extent_z);
+    first_ = origin + (texel_[0] + texel_[1]) * 0.5;
     const double det = dot(cross(texel_[0], texel_[1]), z_);
     row_[0] = cross(texel_[1], z_) / det;
     row_[1] = cross(z_, texel_[0]) / det;
     row_[2] = cross(texel_[0], texel_[1]) / det;
-    pitch_ = std::min(length(texel_[0]), length(texel_[1]));
-    reach_ = REACH_TEXELS * pitch_ +
-             REACH_STEPS * p.extent_z / (maps.height_bits == 8 ? 254 : 65534);
+    fine_texel_ = std::min(length(texel_[0]), length(texel_[1]));
+    reach_ = REACH_TEXELS * fine_texel_ + REACH_STEPS * p.extent_z / gtx_height_steps(height_bits_);
     float rows[3][3];
     gtx_normal_frame(&p, rows);
-    for (int k = 0; k < 9; ++k)
-        frame_[k / 3][k % 3] = rows[k / 3][k % 3];
-    low = high = origin_;
+    for (int k = 0; k < 3; ++k)
+        frame_[k] = loaded(rows[k]);
+    low = high = first_;
     for (int k = 0; k < 8; ++k) {
-        const Vec3d corner = origin_ + texel_[0] * (k & 1 ? w_ - 1 : 0) +
-                             texel_[1] * (k & 2 ? h_ - 1 : 0) + z_ * (k & 4 ? 1 : 0);
+        const Vec3d corner = place(k & 1 ? w - 1 : 0, k & 2 ? h - 1 : 0, k & 4 ? 1 : 0);
         for (int a = 0; a < 3; ++a) {
             low[a] = std::min(low[a], corner[a] - reach_);
             high[a] = std::max(high[a], corner[a] + reach_);
@@ -60,33 +50,13 @@ MapField::MapField(const Maps &maps, uint32_t patch) : maps_(maps)
     }
 }
 
-uint32_t MapField::code(int i, int j) const
-{
-    const size_t at = first_ + size_t(j) * maps_.page_width + i;
-    if (maps_.height_bits == 8)
-        return maps_.height[at];
-    return maps_.height[2 * at] | uint32_t(maps_.height[2 * at + 1]) << 8;
-}
-
-double MapField::trim(int i, int j) const
-{
-    return (maps_.trim[first_ + size_t(j) * maps_.page_width + i] - 128) / 16.0;
-}
-
-Vec3d MapField::point(int i, int j) const
-{
-    const double height = (code(i, j) - 1.0) / (maps_.height_bits == 8 ? 254 : 65534);
-    return origin_ + texel_[0] * i + texel_[1] * j + z_ * height;
-}
-
-Vec3d MapField::normal(int i, int j) const
+Vec3d MapField::normal(size_t texel) const
 {
     float n[3];
-    gtx_decode_normal(&maps_.normal[0][2 * (first_ + size_t(j) * maps_.page_width + i)], n);
+    gtx_decode_normal(normals_ + 2 * texel, n);
     Vec3d out;
     for (int k = 0; k < 3; ++k)
-        for (int a = 0; a < 3; ++a)
-            out[a] += n[k] * frame_[k][a];
+        out += frame_[k] * n[k];
     return out;
 }
 
@@ -95,33 +65,33 @@ double MapField::steepness(const Vec3d &facing) const
     return STEEP * std::max(0.0, STEEP_COSINE - std::fabs(dot(z_, facing)) / length(z_));
 }
 
-double MapField::trim(const Vec3d &at, const Vec3d &facing) const
+double MapField::trim_at(const Vec3d &point, const Vec3d &facing) const
 {
     constexpr double SLACK = 1e-3; /* texels: a point on the side of a cell is in both */
-    const Vec3d from = at - origin_;
+    const Vec3d from = point - first_;
     const double u = dot(row_[0], from), v = dot(row_[1], from);
-    if (!(u > -SLACK && v > -SLACK && u < w_ - 1 + SLACK && v < h_ - 1 + SLACK))
+    if (!(u > -SLACK && v > -SLACK && u < w - 1 + SLACK && v < h - 1 + SLACK))
         return INFINITY;
     for (int n = 0; n < 4; ++n) {
-        const int i = std::clamp(int(std::floor(u + (n & 1 ? -SLACK : SLACK))), 0, w_ - 2);
-        const int j = std::clamp(int(std::floor(v + (n & 2 ? -SLACK : SLACK))), 0, h_ - 2);
-        if (code(i, j) && code(i + 1, j) && code(i, j + 1) && code(i + 1, j + 1))
+        const int i = std::clamp(int(std::floor(u + (n & 1 ? -SLACK : SLACK))), 0, w - 2);
+        const int j = std::clamp(int(std::floor(v + (n & 2 ? -SLACK : SLACK))), 0, h - 2);
+        if (code(at(i, j)) && code(at(i + 1, j)) && code(at(i, j + 1)) && code(at(i + 1, j + 1)))
             return trim_in_cell(i, j, {u - i, v - j, dot(row_[2], from)}, facing);
     }
     return INFINITY;
 }
 
-double MapField::trim_in_cell(int i, int j, const Vec3d &at, const Vec3d &facing) const
+double MapField::trim_in_cell(int i, int j, const Vec3d &in, const Vec3d &facing) const
 {
+    const CellPoint place = {at(i, j), in.x, in.y};
     double height = 0, trimmed = 0;
-    for (int k = 0; k < 4; ++k) {
-        const int x = i + (k & 1), y = j + (k >> 1);
-        const double weight = (k & 1 ? at.x : 1 - at.x) * (k & 2 ? at.y : 1 - at.y);
-        height += weight * (code(x, y) - 1.0) / (maps_.height_bits == 8 ? 254 : 65534);
-        trimmed += weight * trim(x, y);
+    for (size_t k = 0; k < 4; ++k) {
+        const size_t texel = corner(place, k);
+        height += place.weight(k) * (code(texel) - 1.0) / gtx_height_steps(height_bits_);
+        trimmed += place.weight(k) * gtx_trim_distance(trim(texel));
     }
-    const double apart = std::fabs(at.z - height) * std::fabs(dot(z_, facing));
-    const Vec3d here = normal(i + (at.x > 0.5), j + (at.y > 0.5));
+    const double apart = std::fabs(in.z - height) * std::fabs(dot(z_, facing));
+    const Vec3d here = normal(at(i + (in.x > 0.5), j + (in.y > 0.5)));
     return apart <= reach_ && dot(here, facing) >= MIN_COSINE ? trimmed : INFINITY;
 }
 
@@ -168,17 +138,18 @@ static double distance_to_own(const std::vector<MapField> &fields, uint32_t patc
                               const std::vector<uint32_t> &others, int i, int j)
 {
     const MapField &field = fields[patch];
-    const Vec3d point = field.point(i, j), normal = field.normal(i, j);
-    const double trim = field.trim(i, j), mine = trim + field.steepness(normal);
+    const size_t texel = field.at(i, j);
+    const Vec3d point = field.texel_point(i, j), normal = field.normal(texel);
+    const double trim = gtx_trim_distance(field.trim(texel)), mine = trim + field.steepness(normal);
     if (trim <= DEEP && mine == trim)
         return trim;
     double own = -INFINITY;
     for (uint32_t other : others) {
-        const double theirs = fields[other].trim(point, normal);
+        const double theirs = fields[other].trim_at(point, normal);
         if (theirs <= MAX_OUTSIDE)
             own = std::max(own, mine - theirs - fields[other].steepness(normal));
     }
-    own = std::max(own, trim - (own == -INFINITY ? SHOWN : MAX_OUTSIDE));
+    own = std::max(own, trim - (own == -INFINITY ? GTX_TRIM_SHOWN : MAX_OUTSIDE));
     return std::fabs(own) < ON_CUT ? 0 : own;
 }
 
@@ -194,7 +165,7 @@ public:
 
     void cell(int i, int j)
     {
-        const int a = j * field_.w() + i, b = a + 1, c = a + field_.w(), d = c + 1;
+        const int a = j * field_.w + i, b = a + 1, c = a + field_.w, d = c + 1;
         for (int t : {a, b, c, d})
             if (std::isnan(value_[t]))
                 return;
@@ -212,8 +183,7 @@ public:
 private:
     int bend(int a, int b) const
     {
-        const int w = field_.w();
-        return int(field_.code(a % w, a / w)) - int(field_.code(b % w, b / w));
+        return int(field_.code(place(a))) - int(field_.code(place(b)));
     }
     uint32_t add(const Vec3d &position, const Vec3d &normal)
     {
@@ -221,11 +191,16 @@ private:
         piece.normals.push_back(normal);
         return uint32_t(piece.positions.size() - 1);
     }
-    Vec3d point(int texel) const { return field_.point(texel % field_.w(), texel / field_.w()); }
+    /* `texel` counts those of the patch alone. */
+    size_t place(int texel) const { return field_.at(texel % field_.w, texel / field_.w); }
+    Vec3d point(int texel) const
+    {
+        return field_.texel_point(texel % field_.w, texel / field_.w);
+    }
     uint32_t at_texel(int texel)
     {
         if (name_[texel] == NO_VERTEX)
-            name_[texel] = add(point(texel), field_.normal(texel % field_.w(), texel / field_.w()));
+            name_[texel] = add(point(texel), field_.normal(place(texel)));
         return name_[texel];
     }
     uint32_t between(int a, int b) /* one of them inside, the other outside */
@@ -235,8 +210,8 @@ private:
         const auto [found, is_new] = cuts_.try_emplace({a, b}, 0);
         if (is_new) {
             const double at = value_[a] / (value_[a] - value_[b]);
-            const Vec3d from = point(a), normal = field_.normal(a % field_.w(), a / field_.w());
-            found->second = add(from + (point(b) - from) * at, normal);
+            const Vec3d from = point(a);
+            found->second = add(from + (point(b) - from) * at, field_.normal(place(a)));
         }
         return found->second;
     }
@@ -282,14 +257,14 @@ FieldPiece cut_field(const std::vector<MapField> &fields, uint32_t patch,
                      const std::vector<uint32_t> &others)
 {
     const MapField &field = fields[patch];
-    std::vector<double> value(size_t(field.w()) * field.h(), NAN);
-    for (int j = 0; j < field.h(); ++j)
-        for (int i = 0; i < field.w(); ++i)
-            if (field.code(i, j))
-                value[size_t(j) * field.w() + i] = distance_to_own(fields, patch, others, i, j);
+    std::vector<double> value(size_t(field.w) * field.h, NAN);
+    for (int j = 0; j < field.h; ++j)
+        for (int i = 0; i < field.w; ++i)
+            if (field.code(field.at(i, j)))
+                value[size_t(j) * field.w + i] = distance_to_own(fields, patch, others, i, j);
     Cutter cutter(field, value);
-    for (int j = 0; j + 1 < field.h(); ++j)
-        for (int i = 0; i + 1 < field.w(); ++i)
+    for (int j = 0; j + 1 < field.h; ++j)
+        for (int i = 0; i + 1 < field.w; ++i)
             cutter.cell(i, j);
     find_border(cutter.piece);
     return std::move(cutter.piece);

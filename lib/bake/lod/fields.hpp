@@ -2,42 +2,45 @@
  * own. */
 #pragma once
 
+#include "bake/height_field.hpp"
 #include "bake/lod/fan.hpp"
 #include "bake/lod/parts.hpp"
 
 namespace gtx::baking {
 
-/* The height field of a patch, as its maps tell it. Texel (i, j) lies at u = i, v = j. */
-class MapField {
+/* A height field with the normals of its pages, by which it claims what lies near it. */
+class MapField : public HeightField {
 public:
     MapField(const Maps &maps, uint32_t patch);
 
-    int w() const { return w_; }
-    int h() const { return h_; }
     /* Least distance between texels, object units. */
-    double pitch() const { return pitch_; }
-    uint32_t code(int i, int j) const;
-    double trim(int i, int j) const; /* texels outside the outline */
-    /* The same at a point with this normal that the height field passes; infinity where it does
-     * not. */
-    double trim(const Vec3d &point, const Vec3d &normal) const;
-    Vec3d point(int i, int j) const;
-    Vec3d normal(int i, int j) const;
+    double fine_texel() const { return fine_texel_; }
+    Vec3d texel_point(int i, int j) const { return place(i, j, share(code(at(i, j)))); }
+    Vec3d normal(size_t texel) const;
+    /* Texels outside the outline at a point with this normal that the height field passes; infinity
+     * where it does not. */
+    double trim_at(const Vec3d &point, const Vec3d &facing) const;
     /* What a height field loses of its claim, in texels, where it is steep. */
-    double steepness(const Vec3d &normal) const;
+    double steepness(const Vec3d &facing) const;
 
     Vec3d low, high; /* box around the patch */
 
 private:
+    /* Points by whole texels, and heights as shares of the extent: regular grids have many equal
+     * costs, and another order of roundings would break the ties of their LOD meshes elsewhere. */
+    Vec3d place(int i, int j, double height) const
+    {
+        return first_ + texel_[0] * i + texel_[1] * j + z_ * height;
+    }
+    double share(double code) const { return gtx_code_height(code, height_bits_); }
     double trim_in_cell(int i, int j, const Vec3d &at, const Vec3d &facing) const;
 
-    const Maps &maps_;
-    Vec3d origin_, texel_[2], z_; /* one texel to the side, and the greatest height */
-    Vec3d row_[3];                /* the way back */
-    double frame_[3][3];          /* of normals */
-    double pitch_, reach_;        /* object units that a height field may pass a point by */
-    size_t first_;                /* texel of the maps */
-    int w_, h_;
+    unsigned height_bits_;
+    Vec3d first_, texel_[2], z_; /* texel (0, 0), one to the side, and the greatest height */
+    Vec3d row_[3];               /* the way back */
+    Vec3d frame_[3];             /* of normals */
+    double fine_texel_, reach_;  /* object units that a height field may pass a point by */
+    const uint8_t *normals_;
 };
 
 std::vector<MapField> map_fields(const Maps &maps, Task &task);

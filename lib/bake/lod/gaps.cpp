@@ -57,15 +57,15 @@ void Welder::drop_folds()
 /* Whether any height field shows the surface going on beyond an open edge. */
 bool Welder::goes_on(const OpenEdge &open) const
 {
-    const auto [a, b] = open.first;
+    const uint32_t a = open.first[0];
     const Triangle &t = source.triangles[open.second];
-    const Vec3d from = source.positions[a], way = source.positions[b] - from;
+    const Vec3d from = source.positions[a], way = source.positions[open.first[1]] - from;
     const Vec3d normal = cross(source.positions[t[1]] - source.positions[t[0]],
                                source.positions[t[2]] - source.positions[t[0]]);
     const uint32_t patch = source.patch[open.second];
     const Vec3d at = from + way * 0.5 +
-                     normalize(cross(way, normal)) * (BEYOND * fields_[patch].pitch());
-    auto on = [&](uint32_t p) { return fields_[p].trim(at, normals_[a]) <= SHOWN; };
+                     normalize(cross(way, normal)) * (BEYOND * fields_[patch].fine_texel());
+    auto on = [&](uint32_t p) { return fields_[p].trim_at(at, normals_[a]) <= GTX_TRIM_SHOWN; };
     return on(patch) || std::any_of(others_[patch].begin(), others_[patch].end(), on);
 }
 
@@ -74,7 +74,7 @@ bool Welder::is_gap(const std::vector<OpenEdge> &edges) const
     double around = 0, shown = 0;
     for (const auto &[edge, t] : edges)
         around += length(source.positions[edge[0]] - source.positions[edge[1]]) /
-                  fields_[source.patch[t]].pitch();
+                  fields_[source.patch[t]].fine_texel();
     if (around <= SURELY_A_GAP)
         return true;
     for (const OpenEdge &edge : edges)

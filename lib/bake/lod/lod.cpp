@@ -10,38 +10,45 @@ namespace gtx::baking {
 using Triangle = std::array<uint32_t, 3>;
 using Place = std::array<uint16_t, 3>; /* of a vertex, in steps */
 
-/* Triangles of the source for one of the finest level: fills the bytes that an LOD mesh may
- * take. */
+/* Measured with five levels of bunny, Spot's control mesh and the truck, at half and at double. */
+
+/* Triangles of the source for one of the finest level: fills the bytes that an LOD mesh may take.
+ * Bunny: 82 % more triangles | 51 % fewer. */
 constexpr size_t FINEST_RATIO = 9;
 /* Triangles of a level for one of the next: five levels then reach from windows of a million pixels
- * to models of a hundred across. */
+ * to models of a hundred across. Bunny: two levels fewer at half. */
 constexpr double LEVEL_RATIO = 2.2;
-/* A level is worth its bytes when it has at most this share of them. */
+/* A level is worth its bytes when it has at most this share of them. Bunny: two levels fewer | Spot:
+ * four more. */
 constexpr double MAX_SHARE = 0.75;
-/* An error that nobody sees: the maps know no better. In texels. */
-constexpr double FREE_ERROR = 1.0 / 16;
-/* What thinning may cost inside patches: dear triangles are not worth the time. In texels. */
-constexpr double THIN_ERROR = 1.0 / 8;
-/* What is seen from so far that this is a pixel is a handful of pixels. Share of the diagonal. */
+/* Positions are rounded to this part of a texel: 0.7 % bytes either way (bunny). */
+constexpr double STEP = 1.0 / 16;
+/* An error that nobody sees, the maps know no better: that of rounding. In texels. */
+constexpr double FREE_ERROR = STEP;
+/* What thinning may cost inside patches: dear triangles are not worth the time. In texels. Error
+ * +17 % | +5 % (truck). */
+constexpr double THIN_ERROR = 2 * FREE_ERROR;
+/* What is seen from so far that this is a pixel is a handful of pixels. Share of the diagonal.
+ * Truck: 64 % more triangles | Spot: 54 % fewer. */
 constexpr double MAX_ERROR = 1.0 / 64;
-/* The coarsest level beyond, for models of ten to twenty pixels, and how far it may stray. */
+/* The coarsest level beyond, for models of ten to twenty pixels, and how far it may stray. Spot: one
+ * level more | one fewer; MAX_FAR_ERROR: error +13 % | a few bytes. */
 constexpr double FAR_TRIANGLES = 160, MAX_FAR_ERROR = 1.0 / 20;
 /* Their errors are stated so many times as large: few triangles put an outline off by the farthest
- * of its points, not by the mean. */
+ * of its points, not by the mean. At half bunny has no valid levels. */
 constexpr double FAR_STATED = 1.5;
-/* How many lead there, and triangles of one for one of the next where fewer of them do. */
+/* How many lead there: a limit. And triangles of one for one of the next where fewer of them do;
+ * Spot: one level fewer at half, a few bytes at double. */
 constexpr unsigned FAR_LEVELS = 3;
 constexpr double FAR_RATIO = 2.5;
-/* Positions are rounded to this part of a texel. */
-constexpr double STEP = 1.0 / 16;
-/* Edges among which the next triangle is looked for, as the asset's coding does. */
+/* Edges among which the next triangle is looked for, as the asset's coding does: 0.2 % bytes. */
 constexpr size_t RECENT_EDGES = 16;
 
 std::vector<PatchRegion> patch_regions(const Maps &maps, Task &task)
 {
     std::vector<PatchRegion> regions(maps.patches.size());
     task.parallel(regions.size(), [&](size_t p) {
-        regions[p] = PatchRegion(maps.patches[p], maps);
+        regions[p] = PatchRegion(maps, uint32_t(p));
     }, 0, 0);
     return regions;
 }
@@ -258,10 +265,18 @@ static LodLevel make_level(const Simplifier &simplified, const std::vector<uint3
     return level;
 }
 
+/* What all levels of an asset are made with. */
+struct LodJob {
+    const Maps &maps;
+    const std::vector<PatchRegion> &regions;
+    const Lattice &lattice;
+    double thinned;              /* error of the surface that levels start from */
+    Task &task;
+};
+
 /* Goes on without regard to patches: where each is a pixel, a triangle may show several. */
-static void add_far_levels(Simplifier &simplifier, const std::vector<PatchRegion> &regions,
-                           const Maps &maps, const Lattice &lattice, double thinned, double most,
-                           std::vector<LodLevel> &lod, Task &task)
+static void add_far_levels(const LodJob &job, Simplifier &simplifier, double most,
+                           std::vector<LodLevel> &lod)
 {
     simplifier.cross_patches();
     const double ways = std::log(double(simplifier.triangles().size()) / FAR_TRIANGLES);
@@ -275,9 +290,11 @@ static void add_far_levels(Simplifier &simplifier, const std::vector<PatchRegion
         simplifier.drop(find_specks(simplifier, simplifier.error()));
         if (double(simplifier.triangles().size()) > MAX_SHARE * before)
             return;
-        LodLevel level = make_level(simplifier, find_far_homes(simplifier, maps, regions, task),
-                                    round_all(simplifier, lattice), regions.size(), lattice);
-        level.error = float(thinned + FAR_STATED * simplifier.error());
+        const std::vector<uint32_t> homes =
+            find_far_homes(simplifier, job.maps, job.regions, job.task);
+        LodLevel level = make_level(simplifier, homes, round_all(simplifier, job.lattice),
+                                    job.regions.size(), job.lattice);
+        level.error = float(job.thinned + FAR_STATED * simplifier.error());
         level.far = true;
         if (level.indices.empty())
             return;
@@ -325,8 +342,8 @@ std::vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsign
         lod.push_back(std::move(level));
         wanted = size_t(double(simplifier.triangles().size()) / LEVEL_RATIO);
     }
-    add_far_levels(simplifier, regions, maps, lattice, thinned, MAX_FAR_ERROR * length(size),
-                   lod, task);
+    add_far_levels({maps, regions, lattice, thinned, task}, simplifier,
+                   MAX_FAR_ERROR * length(size), lod);
     return lod;
 }
 

@@ -6,7 +6,8 @@
 
 namespace gtx::baking {
 
-/* Each round moves triangles for what is farthest outside at each vertex. */
+/* Each round moves triangles for what is farthest outside at each vertex. Half or double
+ * change a few bytes. */
 constexpr int ROUNDS = 12;
 
 struct Outlier {

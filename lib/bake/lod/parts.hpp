@@ -1,7 +1,7 @@
 /* The inside of the LOD mesh's making: where a patch has normals, and fewer triangles. */
 #pragma once
 
-#include "bake/patch_maps.hpp"
+#include "bake/height_field.hpp"
 #include "bake/lod/lod.hpp"
 
 #include <memory>
@@ -12,7 +12,7 @@ namespace gtx::baking {
 class PatchRegion {
 public:
     PatchRegion() = default;
-    PatchRegion(const gtx_patch &patch, const Maps &maps);
+    PatchRegion(const Maps &maps, uint32_t patch);
 
     /* Texel (i, j) of the patch covers i..i+1, j..j+1. */
     std::array<double, 2> place(const Vec3d &point) const

@@ -1,11 +1,13 @@
 /* Where the triangles of a patch may lie: the texels that have a normal. */
+#include "bake/height_field.hpp"
 #include "bake/lod/parts.hpp"
 
 #include <algorithm>
 
 namespace gtx::baking {
 
-/* Dilated texels repeat the normals of the border: few of them look right. */
+/* Dilated texels repeat the normals of the border: few of them look right. Spot's control mesh:
+ * error +13 % at half, 0.5 % fewer triangles at double. */
 constexpr unsigned MAX_REACH = 3;
 
 /* Chessboard distances to the nearest texel with a zero, from values that are 0 or 255; beyond the
@@ -29,34 +31,25 @@ static void spread(std::vector<uint8_t> &distance, int w, int h, bool bounded)
             lower(x, y, 1);
 }
 
-PatchRegion::PatchRegion(const gtx_patch &patch, const Maps &maps)
-    : w_(patch.rect[2]), h_(patch.rect[3])
+PatchRegion::PatchRegion(const Maps &maps, uint32_t patch)
+    : w_(maps.patches[patch].rect[2]), h_(maps.patches[patch].rect[3])
 {
-    const Vec3d origin(patch.origin[0], patch.origin[1], patch.origin[2]);
-    const Vec3d x(patch.axis_x[0], patch.axis_x[1], patch.axis_x[2]);
-    const Vec3d y(patch.axis_y[0], patch.axis_y[1], patch.axis_y[2]);
-    const Vec3d z(patch.axis_z[0], patch.axis_z[1], patch.axis_z[2]);
+    const gtx_patch &record = maps.patches[patch];
+    const HeightField field(maps, patch);
+    const Vec3d &x = field.axis[0], &y = field.axis[1], &z = field.axis[2];
     const double det = dot(cross(x, y), z);
-    row_[0] = cross(y, z) * (w_ / (det * patch.extent_x));
-    row_[1] = cross(z, x) * (h_ / (det * patch.extent_y));
+    row_[0] = cross(y, z) * (w_ / (det * record.extent_x)); /* rounded once: see MapField */
+    row_[1] = cross(z, x) * (h_ / (det * record.extent_y));
     for (int k = 0; k < 2; ++k)
-        shift_[k] = -dot(row_[k], origin);
+        shift_[k] = -dot(row_[k], field.origin);
 
     /* Texels of distance to a code, then to one too far from any. Vertices are rounded by parts of
      * a texel later: the last ring of dilation is left alone. */
-    const unsigned reach =
-        std::min<unsigned>(MAX_REACH, std::max<unsigned>(patch.dilation, 1) - 1);
+    const unsigned reach = std::min<unsigned>(MAX_REACH, std::max<unsigned>(record.dilation, 1) - 1);
     clear_.resize(size_t(w_) * h_);
-    for (int j = 0; j < h_; ++j) {
-        const size_t row = size_t(patch.page) * maps.page_height + patch.rect[1] + j;
-        for (int i = 0; i < w_; ++i) {
-            const size_t texel = row * maps.page_width + patch.rect[0] + i;
-            const bool coded = maps.height_bits == 8
-                                   ? maps.height[texel]
-                                   : maps.height[2 * texel] || maps.height[2 * texel + 1];
-            clear_[size_t(j) * w_ + i] = coded ? 0 : 255;
-        }
-    }
+    for (int j = 0; j < h_; ++j)
+        for (int i = 0; i < w_; ++i)
+            clear_[size_t(j) * w_ + i] = field.code(field.at(i, j)) ? 0 : 255;
     spread(clear_, w_, h_, false);
     for (uint8_t &texel : clear_)
         texel = texel <= reach ? 255 : 0;

@@ -9,9 +9,11 @@ namespace gtx::baking {
 
 using Triangles = std::vector<std::array<uint32_t, 3>>;
 
-/* Steeper triangles are left alone: it takes little for them to turn away from their patch. */
+/* Steeper triangles are left alone: it takes little for them to turn away from their patch. Spot's control
+ * mesh: a few bytes at half, 0.5 % fewer triangles at double. */
 constexpr double MIN_FACING = 0.4;
-/* So often a patch is thinned anew around what turned away, before it is left as it is. */
+/* So often a patch is thinned anew around what turned away, before it is left as it is: a
+ * limit, half changes nothing. */
 constexpr int ATTEMPTS = 4;
 
 /* Triangles of a patch: those to be thinned, with vertices of their own, and others. */

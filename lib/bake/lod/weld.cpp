@@ -17,7 +17,7 @@ static double widest(const std::vector<MapField> &fields)
 {
     double most = 0;
     for (const MapField &field : fields)
-        most = std::max(most, field.pitch());
+        most = std::max(most, field.fine_texel());
     return most;
 }
 
@@ -44,7 +44,7 @@ Welder::Welder(const std::vector<MapField> &fields, std::vector<FieldPiece> piec
 
 double Welder::reach(uint32_t vertex) const
 {
-    return NEAR * fields_[piece_[vertex]].pitch();
+    return NEAR * fields_[piece_[vertex]].fine_texel();
 }
 
 bool Welder::facing(uint32_t a, uint32_t b) const

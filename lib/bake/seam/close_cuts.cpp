@@ -6,20 +6,22 @@
  * much as the relief between two texels. So the texels beyond a cut are raised to the neighbour's
  * height field, as a reader decodes it. Pieces of a chart share its axis of projection, along which
  * that is exact. */
-#include "bake/seam/decoded.hpp"
+#include "bake/height_field.hpp"
+#include "bake/seam/seam.hpp"
 
 #include <algorithm>
 
 namespace gtx::baking {
 
 /* Texels of depth that a texel is raised at most: more is another height field, or would be a fin
- * that a third patch does not meet. */
+ * that a third patch does not meet. At half and at double a few bytes change, here and below; more
+ * rounds change no more, one is RMS -0.7 % (bunny). */
 constexpr double MAX_RAISED = 0.3;
 /* and that it may miss: a ray that finds the way then is within a tenth of a degree of the
  * surface. */
 constexpr double MISSED = 0.002;
 /* Texels from its outline to which a height field counts, the first ones beyond a cut included. */
-constexpr double REACHED = SHOWN + 0.1;
+constexpr double REACHED = GTX_TRIM_SHOWN + 0.1;
 /* A neighbour's texels beyond the same cut follow what is raised here. */
 constexpr int ROUNDS = 2;
 
@@ -29,7 +31,7 @@ namespace {
 struct Clip {
     double low[2], high[2];
 
-    Clip(const Decoded &field, const Chart &chart, const Vec3d &anchor)
+    Clip(const HeightField &field, const Chart &chart, const Vec3d &anchor)
     {
         const Vec3d corner = chart.frame.local(field.origin + anchor);
         for (int k = 0; k < 2; ++k) {
@@ -41,11 +43,10 @@ struct Clip {
 
 class Cuts {
 public:
-    Cuts(const std::vector<const Decoded *> &others, const Decoded &piece, const Clip &clip,
-         unsigned most_code)
+    Cuts(const std::vector<const HeightField *> &others, const HeightField &piece, const Clip &clip,
+         double most_code, const std::vector<uint16_t> &codes)
         : others_(others), piece_(piece), clip_(clip), most_code_(most_code),
-          most_(MAX_RAISED * piece.texel()), missed_(MISSED * piece.texel()),
-          codes_(piece.maps->height)
+          most_(MAX_RAISED * piece.texel()), missed_(MISSED * piece.texel()), codes_(codes)
     {
     }
     std::vector<uint16_t> close()
@@ -62,8 +63,8 @@ private:
     double missing(int axis, int line, double along) const;
     void raise(size_t texel, double by);
 
-    const std::vector<const Decoded *> &others_;
-    const Decoded &piece_;
+    const std::vector<const HeightField *> &others_;
+    const HeightField &piece_;
     const Clip clip_;
     const double most_code_, most_, missed_;
     std::vector<uint16_t> codes_;
@@ -89,7 +90,7 @@ double Cuts::missing(int axis, int line, double along) const
     const Vec3d point = axis ? piece_.point(along, line, height)
                              : piece_.point(line, along, height);
     double missing = -INFINITY, above, trim;
-    for (const Decoded *other : others_)
+    for (const HeightField *other : others_)
         if (other->field_above(point, above, trim) && trim <= REACHED && above <= most_)
             missing = std::max(missing, above);
     return missing;
@@ -118,11 +119,11 @@ void Cuts::close_line(int axis, int line, int inward)
 }
 
 /* The others of the same axis that its sphere meets. */
-std::vector<const Decoded *> find_others(const HeightFields &fields, const Decoded &piece)
+std::vector<const HeightField *> find_others(const HeightFields &fields, const HeightField &piece)
 {
-    std::vector<const Decoded *> others = fields.around(piece);
+    std::vector<const HeightField *> others = fields.around(piece);
     others.erase(std::remove_if(others.begin(), others.end(),
-                                [&](const Decoded *o) { return !(o->axis[2] == piece.axis[2]); }),
+                                [&](const HeightField *o) { return !(o->axis[2] == piece.axis[2]); }),
                  others.end());
     return others;
 }
@@ -134,7 +135,7 @@ void close_cuts(const Partition &partition, const std::vector<uint32_t> &charts,
                 Task &task)
 {
     const HeightFields pieces(patches, height_bits);
-    std::vector<std::vector<const Decoded *>> others(patches.size());
+    std::vector<std::vector<const HeightField *>> others(patches.size());
     task.parallel(patches.size(), [&](size_t i) { others[i] = find_others(pieces, pieces[i]); });
     std::vector<std::vector<uint16_t>> closed(patches.size());
     for (int round = 0; round < ROUNDS; ++round) {
@@ -142,12 +143,12 @@ void close_cuts(const Partition &partition, const std::vector<uint32_t> &charts,
             if (!others[i].empty())
                 closed[i] = Cuts(others[i], pieces[i],
                                  Clip(pieces[i], partition.charts[charts[i]], anchor),
-                                 height_bits == 8 ? 255 : 65535)
+                                 gtx_height_steps(height_bits) + 1, patches[i].height)
                                 .close();
         });
         for (size_t i = 0; i < patches.size(); ++i)
             if (!others[i].empty())
-                patches[i].height.swap(closed[i]);
+                std::copy(closed[i].begin(), closed[i].end(), patches[i].height.begin());
     }
 }
 

@@ -1,14 +1,15 @@
-/* The height fields of patches as a reader decodes them. */
+/* The height field of a patch as readers decode it, from its own maps or from an asset's pages. */
 #pragma once
 
-#include "bake/patch_maps.hpp"
+#include "asset/patch.h"
+#include "bake/field/patch.hpp"
 
 #include <algorithm>
 
 namespace gtx::baking {
 
 /* A place in the map of a patch: the first corner of a cell, and how far beyond it, 0..1. */
-struct Place {
+struct CellPoint {
     size_t cell;
     double x, y;
 
@@ -17,23 +18,46 @@ struct Place {
 };
 
 /* Texel (i, j) lies at u = i, v = j, heights along the axis. Points are relative to the anchor. */
-struct Decoded {
-    const PatchMaps *maps;
+class HeightField {
+public:
     Vec3d origin, axis[3], dual[3];
     double pitch[2], step;       /* of a texel, and of a code */
     Vec3d centre;                /* of its sphere */
     double radius;
     int w, h;
 
-    Decoded(const PatchMaps &patch, unsigned height_bits);
+    /* The maps stay where they are, but may change. */
+    HeightField(const PatchMaps &patch, unsigned height_bits);
+    HeightField(const Maps &maps, uint32_t patch);
+
+    /* The first texel of a patch on an asset's pages. */
+    static size_t first_texel(const Maps &maps, const gtx_patch &r)
+    {
+        return (size_t(r.page) * maps.page_height + r.rect[1]) * maps.page_width + r.rect[0];
+    }
+    size_t at(int i, int j) const { return size_t(j) * row_ + size_t(i); }
+    uint32_t code(size_t texel) const
+    {
+        const uint8_t *at = codes_ + texel * code_bytes_;
+        return code_bytes_ == 1 ? *at : *at | uint32_t(at[1]) << 8;
+    }
+    uint8_t trim(size_t texel) const { return trim_[texel]; }
+    /* Whether the outline nearest to a texel is the model's own border; pages do not tell. */
+    bool at_border(size_t texel) const { return border_ && border_[texel]; }
+
     Vec3d point(double u, double v, double height) const
     {
         return origin + axis[0] * ((u + 0.5) * pitch[0]) + axis[1] * ((v + 0.5) * pitch[1]) +
                axis[2] * height;
     }
-    size_t at(int i, int j) const { return size_t(j) * size_t(w) + size_t(i); }
     double height(double code) const { return (code - 1) * step; }
     double texel() const { return std::max(pitch[0], pitch[1]); }
+    /* Texels along an axis to a point. */
+    double across(int k, const Vec3d &from_origin) const
+    {
+        return dot(row(k), from_origin) - 0.5;
+    }
+    const Vec3d &row(int k) const { return per_texel_[k]; }
 
     /* How far above a point the height field is, along the axis, and the trim there; false where it
      * has no cell. */
@@ -47,24 +71,22 @@ struct Decoded {
                std::max(v[0], v[1]) > -1 && std::min(v[0], v[1]) < h;
     }
     /* Where it is in the map, if it has a cell there. */
-    Place place_of(const Vec3d &point) const;
+    CellPoint place_of(const Vec3d &point) const;
     /* Texel k of 0..3 around a place, by rows. */
-    size_t corner(const Place &place, size_t k) const
+    size_t corner(const CellPoint &place, size_t k) const
     {
-        return place.cell + (k & 1) + (k >> 1) * size_t(w);
+        return place.cell + (k & 1) + (k >> 1) * row_;
     }
     /* The height field at a place of a cell with codes. */
-    Vec3d point(const Place &place) const;
-    Vec3d normal(const Place &place) const;
+    Vec3d point(const CellPoint &place) const;
+    Vec3d normal(const CellPoint &place) const;
 
 private:
-    Vec3d per_texel_[2];         /* dual, in texels */
+    void decode(const gtx_patch &record, unsigned height_bits);
 
-    /* Texels along an axis. */
-    double across(int k, const Vec3d &from_origin) const
-    {
-        return dot(per_texel_[k], from_origin) - 0.5;
-    }
+    Vec3d per_texel_[2];         /* dual, in texels */
+    const uint8_t *codes_, *trim_, *border_ = nullptr;
+    size_t code_bytes_, row_;    /* texels from one row to the next */
 };
 
 /* Height fields, found by their spheres. */
@@ -76,31 +98,36 @@ public:
     HeightFields &operator=(const HeightFields &) = delete;
 
     size_t size() const { return fields_.size(); }
-    const Decoded &operator[](size_t i) const { return fields_[i]; }
-    size_t index(const Decoded &field) const { return size_t(&field - fields_.data()); }
+    const HeightField &operator[](size_t i) const { return fields_[i]; }
+    size_t index(const HeightField &field) const { return size_t(&field - fields_.data()); }
+    /* Whose it is. */
+    uint32_t patch(size_t i) const { return patch_[i]; }
+    uint32_t patch(const HeightField &field) const { return patch_[index(field)]; }
 
     /* Calls `visit` with every height field whose sphere comes as near to a point as `reach`, until
      * it returns true; whether it did. */
     template <class Visit> bool any_near(const Vec3d &point, double reach, Visit visit) const
     {
         const double far = DIAGONAL * (farthest_ + reach), place = along(point);
-        auto at = std::lower_bound(order_.begin(), order_.end(), place - far,
-                                   [](const Decoded *a, double b) { return along(a->centre) < b; });
+        auto at = std::lower_bound(
+            order_.begin(), order_.end(), place - far,
+            [](const HeightField *a, double b) { return along(a->centre) < b; });
         for (; at != order_.end() && along((*at)->centre) <= place + far; ++at)
             if (length(point - (*at)->centre) <= (*at)->radius + reach && visit(**at))
                 return true;
         return false;
     }
     /* The others whose spheres that of a height field meets. */
-    std::vector<const Decoded *> around(const Decoded &field) const;
+    std::vector<const HeightField *> around(const HeightField &field) const;
 
 private:
     /* They are sorted along (1, 1, 1), whose length this is. */
     static constexpr double DIAGONAL = 1.7320508075688772;
     static double along(const Vec3d &point) { return point.x + point.y + point.z; }
 
-    std::vector<Decoded> fields_;
-    std::vector<const Decoded *> order_;
+    std::vector<HeightField> fields_;
+    std::vector<uint32_t> patch_;
+    std::vector<const HeightField *> order_;
     double farthest_ = 0; /* the largest radius */
 };
 

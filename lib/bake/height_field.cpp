@@ -1,0 +1,120 @@
+/* Decodes the maps of patches: what a reader sees at a point. */
+#include "bake/height_field.hpp"
+
+namespace gtx::baking {
+
+HeightField::HeightField(const PatchMaps &patch, unsigned height_bits)
+    : codes_(reinterpret_cast<const uint8_t *>(patch.height.data())), trim_(patch.trim.data()),
+      border_(patch.border.data()), code_bytes_(2), row_(patch.record.rect[2])
+{
+    decode(patch.record, height_bits);
+}
+
+HeightField::HeightField(const Maps &maps, uint32_t patch)
+    : code_bytes_(maps.height_bits / 8), row_(maps.page_width)
+{
+    const gtx_patch &r = maps.patches[patch];
+    const size_t first = first_texel(maps, r);
+    codes_ = maps.height.data() + first * code_bytes_;
+    trim_ = maps.trim.data() + first;
+    decode(r, maps.height_bits);
+}
+
+void HeightField::decode(const gtx_patch &r, unsigned height_bits)
+{
+    const float *from[3] = {r.axis_x, r.axis_y, r.axis_z};
+    w = r.rect[2];
+    h = r.rect[3];
+    for (int k = 0; k < 3; ++k)
+        axis[k] = loaded(from[k]);
+    origin = loaded(r.origin);
+    const double det = dot(cross(axis[0], axis[1]), axis[2]);
+    for (int k = 0; k < 3; ++k)
+        dual[k] = cross(axis[(k + 1) % 3], axis[(k + 2) % 3]) / det;
+    pitch[0] = double(r.extent_x) / w;
+    pitch[1] = double(r.extent_y) / h;
+    for (int k = 0; k < 2; ++k)
+        per_texel_[k] = dual[k] / pitch[k];
+    step = gtx_height_step(&r, height_bits);
+    centre = loaded(r.sphere);
+    radius = r.sphere[3];
+}
+
+bool HeightField::field_above(const Vec3d &point, double &above, double &trim) const
+{
+    const Vec3d from = point - origin;
+    const double u = across(0, from), v = across(1, from);
+    if (!(u >= 0 && v >= 0 && u < w - 1 && v < h - 1))
+        return false;
+    const CellPoint place = {at(int(u), int(v)), u - int(u), v - int(v)};
+    double mean = 0;
+    trim = 0;
+    for (size_t k = 0; k < 4; ++k) {
+        const size_t texel = corner(place, k);
+        if (!code(texel))
+            return false;
+        mean += place.weight(k) * code(texel);
+        trim += place.weight(k) * gtx_trim_distance(trim_[texel]);
+    }
+    above = height(mean) - dot(dual[2], from);
+    return true;
+}
+
+CellPoint HeightField::place_of(const Vec3d &point) const
+{
+    const Vec3d from = point - origin;
+    const double u = across(0, from), v = across(1, from);
+    const int i = int(u), j = int(v);
+    return {at(i, j), u - i, v - j};
+}
+
+Vec3d HeightField::point(const CellPoint &place) const
+{
+    double mean = 0;
+    for (size_t k = 0; k < 4; ++k)
+        mean += place.weight(k) * code(corner(place, k));
+    return point(double(place.cell % row_) + place.x, double(place.cell / row_) + place.y,
+                 height(mean));
+}
+
+Vec3d HeightField::normal(const CellPoint &place) const
+{
+    double c[4];
+    for (size_t k = 0; k < 4; ++k)
+        c[k] = code(corner(place, k));
+    const double x = place.x, y = place.y;
+    const double along_u = (c[1] - c[0]) * (1 - y) + (c[3] - c[2]) * y;
+    const double along_v = (c[2] - c[0]) * (1 - x) + (c[3] - c[1]) * x;
+    return normalize(cross(axis[0] * pitch[0] + axis[2] * (along_u * step),
+                           axis[1] * pitch[1] + axis[2] * (along_v * step)));
+}
+
+HeightFields::HeightFields(const std::vector<PatchMaps> &patches, unsigned height_bits)
+{
+    for (size_t i = 0; i < patches.size(); ++i)
+        if (patches[i].coded) {
+            fields_.emplace_back(patches[i], height_bits);
+            patch_.push_back(uint32_t(i));
+        }
+    for (const HeightField &field : fields_) {
+        order_.push_back(&field);
+        farthest_ = std::max(farthest_, field.radius);
+    }
+    std::sort(order_.begin(), order_.end(), [](const HeightField *a, const HeightField *b) {
+        const double first = along(a->centre), second = along(b->centre);
+        return first != second ? first < second : a < b;
+    });
+}
+
+std::vector<const HeightField *> HeightFields::around(const HeightField &field) const
+{
+    std::vector<const HeightField *> out;
+    any_near(field.centre, field.radius, [&](const HeightField &other) {
+        if (&other != &field)
+            out.push_back(&other);
+        return false;
+    });
+    return out;
+}
+
+} // namespace gtx::baking

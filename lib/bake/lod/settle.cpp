@@ -1,0 +1,80 @@
+/* Moves the vertices that are left to where they show best what they stand for. */
+#include "bake/lod/outlier.hpp"
+#include "bake/lod/simplify.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace gtx::baking {
+
+/* A few bytes change at half and at double of all three. */
+/* What settling costs for the squared distance, as a share of what leaving the surface does. */
+constexpr double STAY = 0.003;
+/* How often half the way is tried. */
+constexpr int MOVE_STEPS = 3;
+/* What a level may leave outside, as a share of its error. At 0 outlines only grow, and are half as
+ * good; at 1 sight passes between parts of a model that nearly touch. */
+constexpr double MAX_OUTSIDE = 0.5;
+
+/* Moves a vertex, less far where its triangles need it. */
+void Simplifier::State::move(uint32_t vertex, Vec3d way)
+{
+    for (int n = 0; n < MOVE_STEPS; ++n, way = way * 0.5) {
+        const Vec3d place = positions[vertex] + way;
+        bool keeps = true;
+        for (uint32_t i = start[vertex]; keeps && i < start[vertex + 1]; ++i)
+            keeps = keeps_shape(around[i], vertex, place);
+        if (keeps) {
+            positions[vertex] = place;
+            return;
+        }
+    }
+}
+
+/* Sorts the points by the vertex that stands for them: `first` of each, and the end. */
+void Simplifier::State::find_members(std::vector<uint32_t> &first, std::vector<Vec3d> &members)
+{
+    std::vector<uint32_t> vertex(points.size(), NO_VERTEX);
+    for (uint32_t v = 0; v < point.size(); ++v)
+        vertex[point[v]] = v;
+    first.assign(positions.size() + 1, 0);
+    for (uint32_t p = 0; p < points.size(); ++p) {
+        uint32_t last = p;
+        while (merged[last] != last)
+            last = merged[last];
+        for (uint32_t q = p; q != last;)
+            q = std::exchange(merged[q], last);
+        vertex[p] = vertex[last];
+        if (vertex[p] != NO_VERTEX)
+            ++first[vertex[p] + 1];
+    }
+    for (size_t v = 0; v < positions.size(); ++v)
+        first[v + 1] += first[v];
+    members.resize(first.back());
+    std::vector<uint32_t> next(first.begin(), first.end() - 1);
+    for (uint32_t p = 0; p < points.size(); ++p)
+        if (vertex[p] != NO_VERTEX)
+            members[next[vertex[p]]++] = points[p];
+}
+
+/* First to where the planes are nearest, from where the next level goes on; then, for this level
+ * alone, outwards again where something stands out: there an outline would be seen to shrink, and
+ * sight would pass where it must not. */
+void Simplifier::State::settle()
+{
+    find_around();
+    for (uint32_t v = 0; v < positions.size(); ++v) {
+        move(v, quadrics[v].way_down(positions[v], STAY));
+        error = std::max(error, quadrics[v].at(positions[v]));
+    }
+    settled = positions;
+    if (crossing) /* what is a handful of pixels would only look fatter */
+        return;
+    Simplified surface = {positions, triangles, start, around, {}, {}};
+    find_members(surface.first, surface.points);
+    draw_out(surface, MAX_OUTSIDE * std::sqrt(error),
+             [&](uint32_t vertex, const Vec3d &way) { move(vertex, way); }, task,
+             1 - 0.7 * double(triangles.size()) / double(first_count));
+}
+
+} // namespace gtx::baking

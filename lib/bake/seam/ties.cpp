@@ -1,0 +1,126 @@
+/* Finds where outlines lie and what they should lie on. */
+#include "bake/seam/ties.hpp"
+
+namespace gtx::baking {
+
+/* Texels outside its outline to which a height field counts: 0.6 % RMS at most (truck). */
+constexpr double REACHED = GTX_TRIM_SHOWN + 0.2;
+/* Points for a texel of an outline's length, and texels of it that count in a cell. Spot's control
+ * mesh: RMS -2 % at half, +1 % at double; LONGEST is a limit. */
+constexpr int POINTS = 4, LONGEST = 8;
+
+/* Where an outline that is not the model's own border crosses a cell with codes: from one of its
+ * sides to another. */
+static bool find_crossing(const HeightField &field, int i, int j, double from[2], double to[2])
+{
+    static const int RING[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
+    double trim[5];
+    for (int k = 0; k < 5; ++k) {
+        const size_t texel = field.at(i + RING[k][0], j + RING[k][1]);
+        if (!field.code(texel) || field.at_border(texel))
+            return false;
+        trim[k] = double(field.trim(texel)) - GTX_TRIM_OUTLINE;
+    }
+    int count = 0;
+    for (int k = 0; k < 4; ++k) {
+        if ((trim[k] <= 0) == (trim[k + 1] <= 0))
+            continue;
+        double *out = count++ ? to : from;
+        for (int axis = 0; axis < 2; ++axis)
+            out[axis] = RING[k][axis] +
+                        (RING[k + 1][axis] - RING[k][axis]) * trim[k] / (trim[k] - trim[k + 1]);
+    }
+    return count > 0;
+}
+
+/* How far apart the ends of a tie are now; false where the other height field has no cell there. */
+static bool measure(Tie &tie)
+{
+    End &end = tie.end[0], &on = tie.end[1];
+    const Vec3d point = end.field->point(end.place);
+    double above, trim;
+    if (!on.field || !on.field->field_above(point, above, trim) || trim > REACHED)
+        return false;
+    on.place = on.field->place_of(point);
+    const Vec3d facing = on.field->normal(on.place);
+    on.lever = dot(facing, on.field->axis[2]);
+    end.lever = -dot(facing, end.field->axis[2]);
+    tie.gap = above * on.lever;
+    return true;
+}
+
+/* The end of a tie on the nearest height field; none where all are too far. */
+static void find_end(const std::vector<const HeightField *> &others, const TieLimits &limits, Tie &tie)
+{
+    const HeightField &own = *tie.end[0].field;
+    double nearest = limits.apart;
+    Tie found = {{tie.end[0], {}}};
+    for (const HeightField *other : others) {
+        Tie trial = {{tie.end[0], {other}}};
+        if (!measure(trial) || std::abs(trial.gap) >= nearest)
+            continue;
+        nearest = std::abs(trial.gap);
+        found = trial;
+        found.slack = limits.slack * std::max(own.step, other->step);
+    }
+    tie = found;
+}
+
+std::vector<Tie> sample_outline(const HeightField &own)
+{
+    std::vector<Tie> ties;
+    for (int j = 0; j + 1 < own.h; ++j) {
+        for (int i = 0; i + 1 < own.w; ++i) {
+            double from[2], to[2];
+            if (!find_crossing(own, i, j, from, to))
+                continue;
+            const Vec3d span = own.point({own.at(i, j), to[0], to[1]}) -
+                               own.point({own.at(i, j), from[0], from[1]});
+            const double texels = length(span) / own.texel() + 0.5;
+            const int points = POINTS * int(std::clamp(texels, 1., double(LONGEST)));
+            for (int n = 0; n < points; ++n) {
+                const double along = (n + 0.5) / points;
+                const CellPoint place = {own.at(i, j), from[0] + (to[0] - from[0]) * along,
+                                     from[1] + (to[1] - from[1]) * along};
+                ties.push_back({{{&own, place}, {}}});
+            }
+        }
+    }
+    return ties;
+}
+
+/* Those whose maps reach to the part of an outline between two ties. */
+static std::vector<const HeightField *> reaching(const std::vector<const HeightField *> &others, const Tie &first,
+                                      const Tie &last)
+{
+    const HeightField &own = *first.end[0].field;
+    const Vec3d from = own.point(first.end[0].place), to = own.point(last.end[0].place);
+    std::vector<const HeightField *> out;
+    std::copy_if(others.begin(), others.end(), std::back_inserter(out),
+                 [&](const HeightField *other) { return other->reaches(from, to); });
+    return out;
+}
+
+std::vector<const Tie *> update_ties(const std::vector<const HeightField *> &others,
+                                     const TieLimits &limits, std::vector<Tie> &ties)
+{
+    std::vector<const Tie *> open;
+    std::vector<Tie *> loose;
+    for (auto from = ties.begin(), to = from; from != ties.end(); from = to) {
+        loose.clear();
+        for (; to != ties.end() && to->end[0].place.cell == from->end[0].place.cell; ++to)
+            if (to->moves && (!measure(*to) || to->is_open()))
+                loose.push_back(&*to);
+        if (loose.empty())
+            continue;
+        const std::vector<const HeightField *> near = reaching(others, *from, *(to - 1));
+        for (Tie *tie : loose) {
+            find_end(near, limits, *tie);
+            if (tie->is_open())
+                open.push_back(tie);
+        }
+    }
+    return open;
+}
+
+} // namespace gtx::baking
