@@ -16,14 +16,6 @@ namespace gtx {
 
 constexpr std::array<uint8_t, 3> NO_PROPERTY = {128, 128, 128};
 
-/* A C caller can store any number in an enum. */
-static uint32_t number_of(const gtx_colors &colors)
-{
-    std::underlying_type_t<gtx_colors> number;
-    std::memcpy(&number, &colors, sizeof number);
-    return uint32_t(number);
-}
-
 static ColorMap map_of(const gtx_colors &colors)
 {
     return number_of(colors) == GTX_COLORS_RAINBOW ? ColorMap::RAINBOW : ColorMap::VIRIDIS;

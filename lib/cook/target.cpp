@@ -29,8 +29,8 @@ struct Point {
 
 class Search {
 public:
-    Search(const Options &options, double error, const Cook &cook)
-        : options_(options), error_(error), cook_(cook)
+    Search(const Options &options, const Cook &cook)
+        : options_(options), error_(options.error), cook_(cook)
     {
     }
 
@@ -139,13 +139,13 @@ Attempt Search::take()
 
 } // namespace
 
-Attempt cook_to_error(const Options &options, double error, const Freedom &free, const Cook &cook)
+Attempt cook_to_error(const Options &options, const Cook &cook)
 {
-    Search search(options, error, cook);
+    Search search(options, cook);
     search.find_pitch();
-    if (free.height_bits)
+    if (options.free_bits)
         search.try_sixteen_bits();
-    if (free.charts)
+    if (options.free_charts)
         search.try_patches();
     return search.take();
 }
