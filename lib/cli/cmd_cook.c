@@ -31,7 +31,7 @@ static const option options[] = {
      "what reads the maps off the patches: gpu renders them, through EGL [cpu]", 0, 0},
     {"error", 0, OPTION_NUMBER, &desc.error, "E",
      "smallest asset whose RMS error is at most this fraction of the diagonal", 1e-9, 0.5},
-    {"height-bits", 0, OPTION_UINT, &desc.height_bits, "8|16", "bits of a height [8]", 8, 16},
+    {"height-bits", 0, OPTION_ONE_OF, &desc.height_bits, "8|16", "bits of a height [8]", 0, 0},
     {"mips", 0, OPTION_UINT, &desc.mips, "N", "levels of normal and colour [4]", 1, 8},
     {"dilation", 0, OPTION_UINT, &desc.dilation, "N", "texels of dilation [2^(mips-1)]", 1, 128},
     {"lod-levels", 0, OPTION_UINT, &desc.lod_levels, "N", "polygon levels of detail [0]", 0, 5},

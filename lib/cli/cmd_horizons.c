@@ -41,7 +41,7 @@ static const option options[] = {
     {"rotation", 0, OPTION_NUMBER, &rotation, "DEG", "counter-clockwise [as the file says, or 0]",
      -360, 360},
     {"tile", 0, OPTION_UINT, &desc.tile, "N", "most texels along a patch [128]", 16, 512},
-    {"height-bits", 0, OPTION_UINT, &desc.height_bits, "8|16", "bits of a height [8]", 8, 16},
+    {"height-bits", 0, OPTION_ONE_OF, &desc.height_bits, "8|16", "bits of a height [8]", 0, 0},
     {"mips", 0, OPTION_UINT, &desc.mips, "N", "levels of normal and colour [4]", 1, 8},
     {"lod-levels", 0, OPTION_UINT, &desc.lod_levels, "N", "polygon levels of detail [0]", 0, 5},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},

@@ -17,8 +17,8 @@
 namespace gtx {
 
 /* The stages and their shares of the time, measured on scans of 10^5 triangles and more: they pace
- * the progress and nothing else. The file is written last, so that a cook that is cancelled or fails
- * leaves nothing. */
+ * the progress and nothing else. The file is written last, so that a cook that is cancelled or
+ * fails leaves nothing. */
 static Task make_task(const gtx_cook_desc &desc, const Options &options)
 {
     const float lod = options.lod_levels ? 18 : 0, measure = options.measure ? 60 : 0;

@@ -19,7 +19,9 @@ static void usage_is_exit_1(void **state)
     expect_text("64 to 512");
     expect(gtx("cook sphere.obj -o x.gtx --unknown"), 1);
     expect(gtx("cook sphere.obj -o x.gtx --charts"), 1);
-    expect(gtx("cook sphere.obj -o x.gtx --height-bits 12"), 1);
+    expect(gtx("cook none.obj -o x.gtx --height-bits 9"), 1); /* before the model is read */
+    expect_text("--height-bits wants 8|16, not '9'");
+    expect(gtx("horizons none.irap -o x.gtx --height-bits 9"), 1);
     expect(gtx("info"), 1);
     expect(gtx("info a b"), 1);
     assert_false(exists("x.gtx"));
