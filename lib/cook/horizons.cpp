@@ -14,6 +14,7 @@
 
 namespace gtx {
 
+/* Grey: a colour of none of the maps. */
 constexpr std::array<uint8_t, 3> NO_PROPERTY = {128, 128, 128};
 
 static ColorMap map_of(const gtx_colors &colors)

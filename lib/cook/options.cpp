@@ -16,7 +16,7 @@ namespace gtx {
 /* Raised with every change that makes other assets of the same models and options. */
 constexpr int COOKER_REVISION = 16;
 
-/* Of levels 1 to 19 as zstd counts them: 3 is its own default. */
+/* As zstd counts: 3 is its own default. */
 #ifdef GTX_ZSTD
 constexpr int DEFAULT_ZSTD = 3;
 #else
