@@ -5,20 +5,21 @@
 #   zstd=1|0                        compressed sections in libgeotex, or a library of libc alone
 #   build=DIR                       where everything goes (build)
 #   V=1                             print the commands
-#   werror=0                        warnings stay warnings
+#   werror=1                        warnings are errors, for those who change the code
 -include Makefile.config
 
 config ?= release
 zstd   ?= 1
 build  ?= build
-werror ?= 1
+werror ?= 0
 PREFIX ?= /usr/local
 .DEFAULT_GOAL := all
+again := @$(MAKE) --no-print-directory
 
 VERSION := 0.1.0
 SOVERSION := 0
 
-# ---- rooms: what each needs. Imports run one way, from right to left ------------------------------
+# ---- rooms: what each needs. Imports run one way, from right to left -----------------------------
 ROOMS_CORE := base asset derive trace edit render
 ROOMS_COOK := image mesh grid chart bake measure cook
 
@@ -46,7 +47,8 @@ CC  ?= cc
 CXX ?= c++
 flags_release  := -O3 -g
 flags_debug    := -O0 -g
-flags_sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined
+flags_sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined \
+                  -fno-sanitize-recover=undefined
 flags_thread   := -O1 -g -fsanitize=thread
 flags := $(flags_$(config))
 ifeq ($(flags),)
@@ -58,7 +60,9 @@ warnings := -Wall -Wextra $(if $(filter 1,$(werror)),-Werror)
 common   := $(flags) $(warnings) -fPIC -fvisibility=hidden -ffp-contract=off -MMD -MP \
             -Iinclude -DGTX_BUILDING $(if $(filter 1,$(zstd)),-DGTX_ZSTD)
 cflags   := -std=c11 -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes $(common)
-cxxflags := -std=c++17 -Wshadow=local $(common)
+cxxflags := -std=c++17 $(common)
+# gcc's plain -Wshadow also warns of a parameter that has a member's name; clang's does not.
+cxxflags += $(if $(findstring clang,$(shell $(CXX) --version)),-Wshadow,-Wshadow=local)
 
 # Packages, asked for only where they are used: nothing here is needed to build libgeotex.
 pkg = $(shell pkg-config $(1) $(2))
@@ -69,6 +73,8 @@ cflags_host  = $(call pkg,--cflags,egl glfw3)
 # Loops over texels become vectors where a comparison of floats may be made in vain.
 cflags_asset  = -fno-trapping-math
 cflags_derive = -fno-trapping-math
+# The layouts of records are of shaders and of C.
+cflags_render = -Ishaders
 cflags_cli   = -D_POSIX_C_SOURCE=200809L
 libs_asset   = $(if $(filter 1,$(zstd)),$(call pkg,--libs,libzstd))
 libs_mesh    = $(call pkg,--libs,openmesh draco zlib) -lmeshoptimizer -ldl -pthread -lstdc++
@@ -81,7 +87,7 @@ out := $(build)/$(config)
 Q   := $(if $(V),,@)
 say  = @printf '  %-5s %s\n'
 
-sources    = $(filter-out %/module.cpp,$(wildcard $(foreach d,lib/$(1) lib/$(1)/*,$(d)/*.c $(d)/*.cpp)))
+sources    = $(filter-out %/module.cpp,$(wildcard $(foreach d,lib/$(1) lib/$(1)/*,$(d)/*.c*)))
 objects    = $(patsubst %,$(out)/%.o,$(basename $(call sources,$(1)))) \
              $(if $(filter render,$(1)),$(out)/gen/shader_sources.o)
 objects_of = $(foreach r,$(1),$(call objects,$(r)))
@@ -92,10 +98,12 @@ room       = $(word 2,$(subst /, ,$(1)))
 path_of    = $(out)/sees/$(or $(filter $(rooms:%=lib/%) $(tests:%=tests/%),$(call folder,$(1))),all)
 folder     = $(word 1,$(subst /, ,$(1)))/$(room)
 room_flags = -I$(path_of) $(cflags_$(room))
-link_rooms = mkdir -p $(out)/sees/$(1) && ln -sfn $(foreach r,$(2),$(CURDIR)/lib/$(r)) $(out)/sees/$(1) &&
+link_rooms = mkdir -p $(out)/sees/$(1) && \
+             ln -sfn $(foreach r,$(2),$(CURDIR)/lib/$(r)) $(out)/sees/$(1) &&
 $(out)/sees/.made: Makefile
 	$(Q)rm -rf $(@D)
-	$(Q)$(call link_rooms,all,$(rooms)) $(foreach r,$(rooms),$(call link_rooms,lib/$(r),$(needs_$(r)))) \
+	$(Q)$(call link_rooms,all,$(rooms)) \
+	  $(foreach r,$(rooms),$(call link_rooms,lib/$(r),$(needs_$(r)))) \
 	  $(foreach t,$(tests),$(call link_rooms,tests/$(t),$(call test_needs,$(t)))) touch $@
 
 $(out)/%.o: %.c | $(out)/sees/.made
@@ -132,7 +140,7 @@ module   := $(out)/geotex-image.so
 sample_names := $(basename $(notdir $(wildcard samples/*.c samples/*.cpp)))
 sample_bins  := $(addprefix $(out)/samples/,$(sample_names))
 
-all: $(build)/gtx $(so_core) $(so_cook) $(sample_bins) ## the libraries, the command (build/gtx) and the samples
+all: $(build)/gtx $(so_core) $(so_cook) $(sample_bins) ## libraries, command (build/gtx) and samples
 
 $(lib_core): $(call objects_of,$(ROOMS_CORE))
 	$(say) AR $@
@@ -167,73 +175,34 @@ $(so_cook): $(call objects_of,$(ROOMS_COOK)) $(so_core) | $(out)/gen/libgeotex-c
 $(module): lib/image/module.cpp lib/image/module.h Makefile | $(out)/sees/.made
 	@mkdir -p $(@D)
 	$(say) LINK $@
-	$(Q)$(CXX) $(cxxflags) $(call room_flags,$<) $(CXXFLAGS) -shared -o $@ $< $(call pkg,--libs,OpenImageIO)
-	$(Q)for d in $(out)/samples $(sort $(dir $(test_bins))); do mkdir -p $$d && ln -sf $(abspath $@) $$d; done
+	$(Q)$(CXX) $(cxxflags) $(call room_flags,$<) $(CXXFLAGS) -shared -o $@ $< \
+	  $(call pkg,--libs,OpenImageIO)
+	$(Q)for d in $(out)/samples $(sort $(dir $(test_bins))); do \
+	  mkdir -p $$d && ln -sf $(abspath $@) $$d; done
 
 $(command): $(call objects_of,cli host image) $(lib_cook) $(lib_core) | $(module)
 	$(say) LINK $@
-	$(Q)$(CXX) $(flags) -o $@ $(call objects_of,cli host image) $(lib_cook) $(lib_core) $(call libs_of,asset mesh host image)
+	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host image)
 
 $(build)/gtx: $(command) $(module)
 	$(Q)ln -sf $(config)/gtx $@
 
 # A sample is one file; it links what an engine would link, and lib/host for its window.
-$(out)/samples/%: $(out)/samples/%.o $(call objects_of,host image) $(lib_cook) $(lib_core) | $(module)
+$(out)/samples/%: $(out)/samples/%.o $(call objects_of,host image) $(lib_cook) $(lib_core) \
+    | $(module)
 	$(say) LINK $@
-	$(Q)$(CXX) $(flags) -o $@ $< $(call objects_of,host image) $(lib_cook) $(lib_core) $(call libs_of,asset mesh host image)
+	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host image)
 
-# ---- installation: exactly the files of lib/package/files, below PREFIX --------------------------
-fill = sed -e 's|@PREFIX@|$(PREFIX)|g' -e 's|@VERSION@|$(VERSION)|g' -e 's|@SOVERSION@|$(SOVERSION)|g' \
-  -e 's|@CORE_LIBS@|$(call libs_of,asset)|g' -e 's|@COOK_LIBS@|$(call libs_of,mesh)|g'
-verbs := cook horizons info validate unpack pack filter render view compare bench
-to    := $(DESTDIR)$(PREFIX)
-
-$(out)/gen/gtx.1: lib/package/gtx.1.in lib/package/verbs.awk $(command)
-	@mkdir -p $(@D)
-	$(Q){ sed '/@VERBS@/,$$d' $<; for verb in $(verbs); do $(command) $$verb --help; done | \
-	  awk -f lib/package/verbs.awk; sed '1,/@VERBS@/d' $<; } | $(fill) > $@
-
-install: all $(out)/gen/gtx.1 ## put libraries, headers, command, shaders and manual below PREFIX (and DESTDIR)
-	@install -d $(to)/bin $(to)/include/geotex $(to)/lib/geotex $(to)/lib/pkgconfig \
-	  $(to)/lib/cmake/geotex $(to)/share/geotex/shaders $(to)/share/doc/geotex $(to)/share/man/man1
-	@install -m 755 $(command) $(to)/bin
-	@install -m 644 include/geotex/*.h $(to)/include/geotex
-	@install -m 644 $(lib_core) $(lib_cook) $(to)/lib
-	@install -m 755 $(so_core) $(so_cook) $(to)/lib
-	@for so in libgeotex.so libgeotex-cook.so; do \
-	  ln -sf $$so.$(VERSION) $(to)/lib/$$so.$(SOVERSION); ln -sf $$so.$(SOVERSION) $(to)/lib/$$so; done
-	@install -m 755 $(module) $(to)/lib/geotex
-	@for pc in geotex geotex-cook; do \
-	  $(fill) lib/package/$$pc.pc.in > $(to)/lib/pkgconfig/$$pc.pc; done
-	@for cmake in geotexConfig geotexConfigVersion; do \
-	  $(fill) lib/package/$$cmake.cmake.in > $(to)/lib/cmake/geotex/$$cmake.cmake; done
-	@install -m 644 $(shaders) $(to)/share/geotex/shaders
-	@install -m 644 README.md LICENSE $(filter-out %.gtx,$(wildcard format/*)) $(to)/share/doc/geotex
-	@install -m 644 $(out)/gen/gtx.1 $(to)/share/man/man1
-
-uninstall: ## remove what install put there
-	@cd $(to) && rm -f $$(cat $(abspath lib/package/files)) && \
-	  rmdir --ignore-fail-on-non-empty -p include/geotex lib/geotex lib/cmake/geotex lib/pkgconfig \
-	    share/geotex/shaders share/doc/geotex share/man/man1 bin 2>/dev/null || true
-
-# The same bytes from the same commit, wherever and whenever.
-dist_name := geotex-$(VERSION)
-dist: ## the committed sources as build/geotex-VERSION.tar.gz
-	@mkdir -p $(build)
-	@git -c tar.umask=0022 archive --format=tar --prefix=$(dist_name)/ HEAD > $(build)/$(dist_name).tar
-	@gzip -9nf $(build)/$(dist_name).tar
-	@echo $(build)/$(dist_name).tar.gz
-
-# ---- tests: every tests/ROOM/test_*.c(pp) is a program that links its room and what it needs ------
+# ---- tests: every tests/ROOM/test_*.c(pp) is a program that links its room and what it needs -----
 test_sources := $(wildcard tests/*/test_*.c tests/*/test_*.cpp)
 test_bins    := $(patsubst %,$(out)/%,$(basename $(test_sources)))
-test_room     = $(word 2,$(subst /, ,$(1)))
 test_needs    = $(or $(links_$(1)),$(needs_$(1)) $(extra_needs_$(1)))
 # These run the command and the products; they link nothing of ours but the smallest room.
 links_cli      := base image
 links_consumer := base
 links_corpus   := base
 links_samples  := $(needs_image)
+links_source   := base
 links_threads  := $(needs_cook)
 extra_needs_render  := trace edit host image
 extra_needs_trace   := image mesh grid chart bake measure cook
@@ -241,7 +210,8 @@ extra_needs_bake    := derive trace measure host
 extra_needs_cook    := host
 extra_needs_measure := grid chart bake cook
 # Embree ships no pkg-config file; its test asks for the header in the same way.
-libs_test_embree = $(shell printf '\043include <embree3/rtcore.h>' | $(CXX) -E -x c++ - >/dev/null 2>&1 && echo -lembree3)
+libs_test_embree = $(shell printf '\043include <embree3/rtcore.h>' | \
+                     $(CXX) -E -x c++ - >/dev/null 2>&1 && echo -lembree3)
 # An archive: a test takes from it only what it asks for, and so needs no room but its own.
 common_tests := $(out)/tests/common.a
 $(common_tests): $(patsubst %,$(out)/%.o,$(basename $(wildcard tests/common/*.c)))
@@ -249,9 +219,10 @@ $(common_tests): $(patsubst %,$(out)/%.o,$(basename $(wildcard tests/common/*.c)
 
 define test_rule
 $(out)/$(basename $(1)): $(out)/$(basename $(1)).o $(common_tests) \
-    $(call objects_of,$(call test_needs,$(call test_room,$(1))))
+    $(call objects_of,$(call test_needs,$(call room,$(1))))
 	$$(say) LINK $$@
-	$$(Q)$$(CXX) $$(flags) -o $$@ $$^ $$(call libs_of,$$(call test_needs,$(call test_room,$(1)))) $$(call pkg,--libs,cmocka) $$(libs_$(notdir $(basename $(1))))
+	$$(Q)$$(CXX) $$(flags) -o $$@ $$^ $$(call libs_of,$$(call test_needs,$(call room,$(1)))) \
+	  $$(call pkg,--libs,cmocka) $$(libs_$(notdir $(basename $(1))))
 endef
 $(foreach t,$(test_sources),$(eval $(call test_rule,$(t))))
 $(out)/tests/%: cflags += -Itests -D_XOPEN_SOURCE=700 $(call pkg,--cflags,cmocka)
@@ -261,144 +232,85 @@ $(out)/tests/%: cxxflags += -Itests $(call pkg,--cflags,cmocka)
 $(out)/gtx_decode: format/gtx_decode.c
 	@mkdir -p $(@D)
 	$(say) CC $@
-	$(Q)$(CC) -std=c99 $(flags) $(warnings) $(if $(filter 1,$(zstd)),,-DNO_ZSTD) -o $@ $< $(libs_asset) -lm
+	$(Q)$(CC) -std=c99 $(flags) $(warnings) $(if $(filter 1,$(zstd)),,-DNO_ZSTD) -o $@ $< \
+	  $(libs_asset) -lm
 $(filter $(out)/tests/asset/%,$(test_bins)): | $(out)/gtx_decode
 $(filter $(out)/tests/mesh/% $(out)/tests/grid/%,$(test_bins)): | $(module)
 
 build-tests: $(test_bins) $(out)/gtx_decode all
 
 # What test programs may ask for: the command, the build folder, the compilers.
-test_env = GTX=$(abspath $(command)) GTX_BUILD=$(abspath $(build)) GTX_OUT=$(abspath $(out)) GTX_CONFIG=$(config) CC="$(CC)" CXX="$(CXX)"
+test_env = GTX=$(abspath $(command)) GTX_BUILD=$(abspath $(build)) GTX_OUT=$(abspath $(out)) \
+           GTX_CONFIG=$(config) CC="$(CC)" CXX="$(CXX)"
 
 run-tests: build-tests
 	@$(test_env) tests/run $(test_bins)
 
 # `make test-asset` builds and runs the programs of one room alone.
 test-%:
-	@$(MAKE) --no-print-directory $(filter $(out)/tests/$*/%,$(test_bins)) \
+	$(again) $(filter $(out)/tests/$*/%,$(test_bins)) \
 	  $(if $(filter cli samples consumer corpus image,$*),all)
 	@$(test_env) tests/run $(filter $(out)/tests/$*/%,$(test_bins))
 
 test: ## install what is missing, build, pass the tests
-	@$(MAKE) --no-print-directory deps
-	@$(MAKE) --no-print-directory -j$$(nproc) build-tests
-	@$(MAKE) --no-print-directory run-tests
+	$(again) deps
+	$(again) -j$$(nproc) build-tests
+	$(again) run-tests
 
 check: ## every test under the sanitizers, threads under theirs, every file of the corpus
-	@$(MAKE) --no-print-directory deps
-	@$(MAKE) --no-print-directory -j$$(nproc) config=sanitize build-tests
+	$(again) deps
+	$(again) -j$$(nproc) config=sanitize werror=1 build-tests
 	@GTX_CORPUS=all $(MAKE) --no-print-directory config=sanitize run-tests
-	@$(MAKE) --no-print-directory -j$$(nproc) config=thread test-threads
+	$(again) -j$$(nproc) config=thread werror=1 test-threads
 
 # ---- the demo ------------------------------------------------------------------------------------
 MODEL ?= $(build)/demo/sculpt.glb
 demo: ## install what is missing, build, cook MODEL (default: the sculpt) and render the mixed scene
-	@$(MAKE) --no-print-directory deps
-	@$(MAKE) --no-print-directory -j$$(nproc) all
-	@$(MAKE) --no-print-directory run-demo
+	$(again) deps
+	$(again) -j$$(nproc) all
+	$(again) run-demo
 
-run-demo:
+$(build)/demo/sculpt.glb: $(out)/samples/sculpt
+	@mkdir -p $(@D)
+	@$< $@
+
+run-demo: $(MODEL)
 	@mkdir -p $(build)/demo
-	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
 	@$(build)/gtx cook $(MODEL) -o $(build)/demo/model.gtx
 	@$(out)/samples/mixed_scene $(build)/demo/model.gtx --headless $(build)/demo/mixed_scene.png
 	@echo $(build)/demo/mixed_scene.png
 
-# ---- benchmarks ----------------------------------------------------------------------------------
-bench: ## frame times of MODEL (default: the sculpt) by every method, BENCH="--instances 1,10" and more
-	@$(MAKE) --no-print-directory deps
-	@$(MAKE) --no-print-directory -j$$(nproc) all
-	@$(MAKE) --no-print-directory run-bench
-
-run-bench:
-	@mkdir -p $(build)/demo
-	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
-	@$(build)/gtx cook $(MODEL) --lod-levels 5 -o $(build)/demo/bench.gtx
-	@$(build)/gtx bench $(build)/demo/bench.gtx $(MODEL) --min-iou 0.99 $(BENCH)
-
-bench-rays: ## rays a second into MODEL (default: the sculpt), and what shadows by ray cost a frame
-	@$(MAKE) --no-print-directory deps
-	@$(MAKE) --no-print-directory -j$$(nproc) all $(out)/tests/bench/rays
-	@$(MAKE) --no-print-directory run-bench-rays
-
-run-bench-rays:
-	@mkdir -p $(build)/demo
-	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
-	@$(build)/gtx cook $(MODEL) -o $(build)/demo/rays.gtx
-	@$(out)/tests/bench/rays $(build)/demo/rays.gtx
-
-# Models and their charts: the paper's bunny where it is, and MODEL (default: the sculpt without it).
-CHARTS ?= 0
-bunny := $(wildcard $(GEOTEX_MODELS)/scans/bunny.ply)
-more_models  = $(if $(bunny),$(filter-out $(build)/demo/sculpt.glb,$(MODEL)),$(MODEL))
-table_models = $(if $(bunny),$(bunny) 222) $(foreach model,$(more_models),$(model) $(CHARTS))
-paper-tables: ## the paper's Tables 2 and 3 of the bunny and of MODEL, all partitions beside each other
-	@$(MAKE) --no-print-directory deps
-	@$(MAKE) --no-print-directory -j$$(nproc) all $(out)/tests/bench/paper_tables
-	@$(MAKE) --no-print-directory run-paper-tables
-
-run-paper-tables:
-	@mkdir -p $(build)/demo $(build)/paper
-	$(if $(filter $(build)/demo/sculpt.glb,$(table_models)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
-	@$(out)/tests/bench/paper_tables $(build)/paper $(table_models)
-
-# A figure is a program tests/bench/NAME.cpp that measures, prints, and writes NAME.json and NAME.svg;
-# what it takes besides the folder is arguments_NAME.
-figures := figure2 figure7 figure9
-reek    := $(wildcard $(GEOTEX_MODELS)/heightfields/reek_1588x1188)
-arguments_figure7 = $(MODEL)
-arguments_figure9 := $(or $(reek),own)
-bench_objects := $(addprefix $(out)/lib/cli/,bench/bench.o bench/mesh.o bench/scene.o bench/shading.o view/polygons.o)
-paper-figures: ## the paper's figures of frame rates, measured here: tables, JSON and curves in build/paper
-	@$(MAKE) --no-print-directory deps
-	@$(MAKE) --no-print-directory -j$$(nproc) all $(figures:%=$(out)/tests/bench/%)
-	@$(MAKE) --no-print-directory run-paper-figures
-
-run-paper-figures:
-	@mkdir -p $(build)/demo $(build)/paper
-	$(if $(filter $(build)/demo/sculpt.glb,$(MODEL)),@$(out)/samples/sculpt $(build)/demo/sculpt.glb)
-	@$(foreach f,$(figures),$(out)/tests/bench/$(f) $(build)/paper $(arguments_$(f)) &&) true
-
-$(figures:%=$(out)/tests/bench/%): $(out)/tests/bench/%: $(out)/tests/bench/%.o $(out)/tests/bench/figure.o \
-    $(bench_objects) $(call objects_of,host image) $(lib_cook) $(lib_core) | $(module)
-	$(say) LINK $@
-	$(Q)ln -sf $(abspath $(module)) $(@D) && $(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host image) -lmeshoptimizer
-
-$(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o $(out)/tests/bench/equal_texels.o \
-    $(lib_cook) $(lib_core)
-	$(say) LINK $@
-	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh)
-
-$(out)/tests/bench/rays: $(out)/tests/bench/rays.o $(call objects_of,host image) $(lib_core)
-	$(say) LINK $@
-	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset host image)
+include lib/package/install.mk tests/bench/bench.mk
 
 # ---- dependencies --------------------------------------------------------------------------------
-packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev nlohmann-json3-dev \
-            libmeshoptimizer-dev \
+packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev \
+            nlohmann-json3-dev libmeshoptimizer-dev \
             libglfw3-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri \
             libopenimageio-dev libzstd-dev zlib1g-dev libcmocka-dev glslang-tools \
             ninja-build cmake xvfb libembree-dev
 
 deps: ## install the Debian packages that are missing (apt-get, with sudo when not root)
 	@missing=; for p in $(packages); do \
-	  dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || missing="$$missing $$p"; done; \
+	  dpkg-query -W -f '$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || \
+	    missing="$$missing $$p"; done; \
 	if [ -n "$$missing" ]; then \
 	  if [ "$$(id -u)" = 0 ]; then sudo=; else sudo=sudo; fi; \
 	  echo "installing:$$missing"; \
 	  $$sudo apt-get update -qq && \
-	  $$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing >/dev/null; \
+	  $$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq \
+	    --no-install-recommends $$missing >/dev/null; \
 	fi
 
 help: ## this list
-	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | awk -F'\t' '{printf "  make %-14s %s\n", $$1, $$2}'
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(filter %Makefile %.mk,$(MAKEFILE_LIST)) | \
+	  awk -F'\t' '{printf "  make %-14s %s\n", $$1, $$2}'
 
 clean: ## remove what was built
 	rm -rf $(build)
 
 .PHONY: all install uninstall dist build-tests run-tests test check demo run-demo bench run-bench \
-        bench-rays run-bench-rays paper-tables run-paper-tables paper-figures run-paper-figures \
-        deps help clean
+        bench-rays run-bench-rays tune paper-tables run-paper-tables paper-figures \
+        run-paper-figures deps help clean
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(shell [ -d $(out) ] && find $(out) -name '*.d')

@@ -85,8 +85,8 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
     gtx_shapes_box(&s, (float[3]){0, -0.1f, 0}, (float[3]){30, 0.2f, 30}, 0,
                    (gtx_rgb){222, 214, 200});
     snprintf(patch_text, sizeof patch_text, "%s%s", lighting, patch_main);
-    snprintf(polygon_text, sizeof polygon_text, "%s%s%s%s%s",
-             gtx_shader_source("geotex_dialect.glsl"),
+    snprintf(polygon_text, sizeof polygon_text, "%s%s%s%s%s%s",
+             gtx_shader_source("geotex_dialect.glsl"), gtx_shader_source("geotex_records.glsl"),
              gtx_shader_source("geotex_height_field.glsl"),
              gtx_shader_source("geotex_rays.glsl"), lighting, polygon_main);
     if ((result = gtx_open_file(w->path, NULL, &asset, error)) ||

@@ -1,7 +1,7 @@
 /* The exact caster: a walk over the cells along the ray, and the analytic root in each. Needs
- * geotex_dialect.glsl and geotex_height_field.glsl before it.
+ * geotex_height_field.glsl before it.
  *
- *   bool gtx_cast(height field, origin, direction, t0, t1, hit)
+ *   bool gtx_cast(field, origin, direction, t0, t1, hit)
  *
  * First point of the height field on origin + t * direction, t0 <= t <= t1, all in grid space, with
  * [t0, t1] within the height field's box (gtx_clip_box). `direction` may have any length. Crossings

@@ -1,4 +1,5 @@
-/* One GLSL for OpenGL 3.3 core and later, OpenGL ES 3.0 and Vulkan. Comes first after #version.
+/* One GLSL for OpenGL 3.3 core and later, OpenGL ES 3.0 and Vulkan. Comes first after #version;
+ * each other file names those that it needs before it, with what these need.
  *
  * GTX_SAMPLER(b, type) declares a sampler at binding b of set 0; GTX_VARYING(n) gives a varying its
  * location; members between GTX_UNIFORMS and GTX_UNIFORMS_END are plain uniforms, each marked

@@ -11,10 +11,9 @@
  *       gtx_write_depth(s);
  *   }
  *
- * Needs geotex_dialect.glsl, geotex_height_field.glsl, geotex_view.glsl, geotex_surface.glsl, with
- * GTX_MATERIALS defined geotex_material.glsl, and a gtx_cast (of geotex_cast.glsl or
- * geotex_paper.glsl) before it. The varyings are those of geotex_proxy.vert; with GTX_TILES
- * defined geotex_tiles.glsl comes after it instead. */
+ * Needs geotex_view.glsl, geotex_surface.glsl, with GTX_MATERIALS defined geotex_material.glsl, and
+ * a gtx_cast (of geotex_cast.glsl or geotex_paper.glsl) before it. The varyings are those of
+ * geotex_proxy.vert; with GTX_TILES defined geotex_tiles.glsl comes after it instead. */
 #ifdef GTX_TILES
 /* geotex_tiles.glsl fills these. */
 vec4 gtx_clip_z, gtx_clip_w;
@@ -23,8 +22,8 @@ int gtx_patch_index;
 uint gtx_id;
 GTX_VARYING(1) flat in vec4 gtx_color;
 /* What is the same all over comes as varyings, too: processors fetch a uniform for every pixel, but
- * a flat varying once. From 3 on it is gtx_place of geotex_tiles.glsl. */
-GTX_VARYING(2) flat in vec4 gtx_flat[12];
+ * a flat varying once. From 3 on it is gtx_place. */
+GTX_VARYING(2) flat in vec4 gtx_flat[3 + GTX_PLACE_ROWS];
 #define gtx_depth gtx_flat[0]
 #define gtx_light gtx_flat[1]
 #define gtx_maps gtx_flat[2]

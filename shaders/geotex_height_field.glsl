@@ -1,4 +1,5 @@
-/* A patch as shaders see it: its record, its cells and its outline.
+/* A patch as shaders see it: its record, its cells and its outline. Needs geotex_dialect.glsl and
+ * geotex_records.glsl before it.
  *
  * Grid space of a patch: x and y in texels (texel i at x = i), z in height codes. Cell (i, j) spans
  * texels i..i+1, j..j+1, and exists where its four codes are not zero; inside it the height field
@@ -9,7 +10,7 @@ GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* four codes a cell: (0,0) (1
                                                      under level 0 the others side by side, for
                                                      lookups by level cost more */
 GTX_SAMPLER(1, highp sampler2DArray) gtx_trim;    /* distance to the outline, as stored */
-GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* 11 texels a patch, 128 patches a row */
+GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* records: geotex_records.glsl */
 
 /* What casting needs of a patch. */
 struct gtx_height_field {
@@ -41,13 +42,17 @@ struct gtx_hit {
 
 vec4 gtx_record(int patch_index, int texel)
 {
-    return texelFetch(gtx_patches, ivec2((patch_index & 127) * 11 + texel, patch_index >> 7), 0);
+    int column = patch_index & ((1 << GTX_RECORD_ROW_BITS) - 1);
+    return texelFetch(gtx_patches, ivec2(column * GTX_RECORD_TEXELS + texel,
+                                         patch_index >> GTX_RECORD_ROW_BITS), 0);
 }
 
 gtx_frame gtx_frame_of(int patch_index)
 {
-    return gtx_frame(gtx_record(patch_index, 3).xyz, gtx_record(patch_index, 4).xyz,
-                     gtx_record(patch_index, 5).xyz, gtx_record(patch_index, 6).xyz);
+    return gtx_frame(gtx_record(patch_index, GTX_RECORD_ORIGIN).xyz,
+                     gtx_record(patch_index, GTX_RECORD_AXIS_X).xyz,
+                     gtx_record(patch_index, GTX_RECORD_AXIS_Y).xyz,
+                     gtx_record(patch_index, GTX_RECORD_AXIS_Z).xyz);
 }
 
 /* From the rectangle (x, y, w, h) and (lowest z, highest z, page, two-sided), which are those of
@@ -57,16 +62,32 @@ gtx_height_field gtx_field_of(vec4 rect, vec4 span, int level)
     ivec2 page = textureSize(gtx_cells, 0).xy;
     ivec2 from = level > 0 ? ivec2(page.x - (page.x >> (level - 1)), page.y / 3 * 2) : ivec2(0);
     return gtx_height_field(ivec2(rect.xy), from + (ivec2(rect.xy) >> level), ivec2(rect.zw),
-                            ivec2(0), (ivec2(rect.zw) - 2) >> level, int(span.z), level, span.w >
-                            0.0, vec3(0.0, 0.0, span.x), vec3(rect.zw - 1.0, span.y), 1e30);
+                            ivec2(0), (ivec2(rect.zw) - 2) >> level, int(span.z), level,
+                            span.w > 0.0, vec3(0.0, 0.0, span.x), vec3(rect.zw - 1.0, span.y),
+                            1e30);
+}
+
+/* Lowest z, highest z, page and two-sided of a record. */
+vec4 gtx_span_of(int patch_index)
+{
+    return vec4(gtx_record(patch_index, GTX_RECORD_LOW_Z).w,
+                gtx_record(patch_index, GTX_RECORD_HIGH_Z).w,
+                gtx_record(patch_index, GTX_RECORD_PAGE).w,
+                gtx_record(patch_index, GTX_RECORD_TWO_SIDED).w);
+}
+
+/* A point or, with w = 0, a direction of object space, taken to the patch's grid space. */
+vec3 gtx_to_grid(int patch_index, vec4 object)
+{
+    return vec3(dot(gtx_record(patch_index, GTX_RECORD_TO_GRID), object),
+                dot(gtx_record(patch_index, GTX_RECORD_TO_GRID + 1), object),
+                dot(gtx_record(patch_index, GTX_RECORD_TO_GRID + 2), object));
 }
 
 /* The same straight from the record. The level is below the model's number of mip levels. */
 gtx_height_field gtx_field_of(int patch_index, int level)
 {
-    return gtx_field_of(gtx_record(patch_index, 7),
-                        vec4(gtx_record(patch_index, 3).w, gtx_record(patch_index, 4).w,
-                             gtx_record(patch_index, 5).w, gtx_record(patch_index, 6).w), level);
+    return gtx_field_of(gtx_record(patch_index, GTX_RECORD_RECT), gtx_span_of(patch_index), level);
 }
 
 /* Object-space position of a grid-space point. */

@@ -1,6 +1,6 @@
 /* The stock forward main of the LOD mesh: lit colour in sRGB bytes, from the same maps and by the
- * same light as geotex_forward.frag. Follows geotex_lod_fragment.glsl. GTX_COLORS says that there
- * is a map of colours, and GTX_MATERIALS is as in geotex_forward.frag. */
+ * same light as geotex_forward.frag. Follows geotex_lod_fragment.glsl. GTX_PLAIN and
+ * GTX_MATERIALS are as there. */
 layout(location = 0) out vec4 gtx_out_color;
 
 /* Light from the front on a unit normal; on a back, on what gtx_from_behind makes of it. */
@@ -37,11 +37,11 @@ void main()
     color.rgb = gtx_to_srgb(gtx_shade(material, n, -gtx_ray, gtx_light.xyz, gtx_light.w));
 #else
     float share = gtx_light.w + (1.0 - gtx_light.w) * gtx_lambert(n);
-#ifdef GTX_COLORS
+#ifdef GTX_PLAIN
+    color.rgb = gtx_shaded_to_srgb(color.rgb, share);
+#else
     color *= textureLod(gtx_colors, place, level);
     color.rgb = gtx_to_srgb(color.rgb * share);
-#else
-    color.rgb = gtx_shaded_to_srgb(color.rgb, share);
 #endif
 #endif
     gtx_out_color = color;

@@ -1,7 +1,7 @@
 /* An LOD mesh: polygons, whose vertices know their place and their patch. Map coordinates
  * and the frame of normals follow from the patch's record.
  *
- * Needs geotex_dialect.glsl, geotex_height_field.glsl and geotex_view.glsl before it. What hardly
+ * Needs geotex_height_field.glsl and geotex_view.glsl before it. What hardly
  * changes over a triangle is found here and stays the same all over it: triangles are small, and a
  * vertex serves several. Each number more that a triangle carries costs a few per cent on
  * llvmpipe. */
@@ -9,7 +9,7 @@ GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;
 
 layout(location = 0) in vec3 gtx_position;  /* in steps of the level */
 layout(location = 1) in uint gtx_patch;
-#ifdef GTX_ALONE
+#ifdef GTX_SINGLE
 uniform vec4 gtx_place[3];                  /* what follows, of the only instance */
 #define gtx_world_x gtx_place[0]
 #define gtx_world_y gtx_place[1]
@@ -62,20 +62,21 @@ void main()
 
     /* The mip level whose texels, seen from above, are nearest to a pixel in size; 0 when the size
      * of a pixel is unknown. */
-    vec4 axis_y = gtx_record(index, 5);
-    vec3 axis_x = gtx_record(index, 4).xyz, axis_z = gtx_record(index, 6).xyz;
-    float texel = length(cross(gtx_to_world(axis_x), gtx_to_world(axis_y.xyz)));
+    vec3 axis_x = gtx_record(index, GTX_RECORD_AXIS_X).xyz;
+    vec3 axis_y = gtx_record(index, GTX_RECORD_AXIS_Y).xyz;
+    vec3 axis_z = gtx_record(index, GTX_RECORD_AXIS_Z).xyz;
+    float texel = length(cross(gtx_to_world(axis_x), gtx_to_world(axis_y)));
     float pixels = gtx_detail.x * gtx_detail.w * sqrt(texel);
     float level = log2(gl_Position.w / max(pixels, 1e-30));
     level = pixels > 0.0 ? clamp(level, 0.0, gtx_maps.x) : 0.0;
     /* The lookup takes the nearest whole level of one of the triangle's vertices, and there texels
      * of this patch alone: of two levels that are nearly as near, the coarser one tells which. */
     float half_texel = 0.5 * exp2(min(floor(level + 0.75), gtx_maps.x));
-    vec4 rect = gtx_record(index, 7);
+    vec4 rect = gtx_record(index, GTX_RECORD_RECT);
     vec2 size = vec2(textureSize(gtx_normals, 0).xy);
-    vec2 at = vec2(dot(gtx_record(index, 0), object), dot(gtx_record(index, 1), object));
+    vec2 at = gtx_to_grid(index, object).xy;
     gtx_at = (rect.xy + clamp(at + 0.5, vec2(half_texel), rect.zw - half_texel)) / size;
-    gtx_page = vec2(axis_y.w, level);
+    gtx_page = vec2(gtx_record(index, GTX_RECORD_PAGE).w, level);
 
     vec3 z = normalize(axis_z), x = normalize(axis_x - dot(axis_x, z) * z);
     mat3 world_normals = mat3(gtx_object_x.xyz, gtx_object_y.xyz, gtx_object_z.xyz);
@@ -99,7 +100,7 @@ void main()
     gtx_id = gtx_instance;
 #endif
     gtx_color = gtx_tint;
-#if !defined GTX_COLORS && !defined GTX_MATERIALS
+#ifdef GTX_PLAIN
     gtx_color.rgb = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
 #endif
 }

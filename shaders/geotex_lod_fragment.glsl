@@ -2,9 +2,8 @@
  * for the same mains. Nothing is searched and depth is the polygon's own, so that a main that
  * neither discards nor writes a depth leaves the depth test first.
  *
- * Needs geotex_dialect.glsl, geotex_height_field.glsl, geotex_view.glsl, geotex_surface.glsl and,
- * with GTX_MATERIALS defined, geotex_material.glsl before it. The varyings are those of
- * geotex_lod.vert. */
+ * Needs geotex_view.glsl, geotex_surface.glsl and, with GTX_MATERIALS defined, geotex_material.glsl
+ * before it. The varyings are those of geotex_lod.vert. */
 GTX_VARYING(0) in vec2 gtx_at;
 GTX_VARYING(1) flat in vec2 gtx_page;
 GTX_VARYING(2) flat in vec3 gtx_normal_x;
@@ -26,13 +25,10 @@ struct gtx_surface {
 
 bool gtx_find(out gtx_surface s)
 {
-    vec4 object = vec4(gtx_object, 1.0);
     s.field = gtx_field_of(gtx_patch_index, 0);
     s.frame = gtx_frame_of(gtx_patch_index);
     s.hit.t = 0.0;
-    s.hit.grid = vec3(dot(gtx_record(gtx_patch_index, 0), object),
-                      dot(gtx_record(gtx_patch_index, 1), object),
-                      dot(gtx_record(gtx_patch_index, 2), object));
+    s.hit.grid = gtx_to_grid(gtx_patch_index, vec4(gtx_object, 1.0));
     vec3 facet = cross(dFdx(s.hit.grid), dFdy(s.hit.grid));
     s.hit.slope = -facet.xy / facet.z;
     s.hit.level = 0;

@@ -1,8 +1,8 @@
 /* geotex_lod.frag for what the LOD mesh mostly is: patches that are seen from the front alone, of
  * instances whose transform keeps angles. All is done in the patch's own frame, where its normals
- * are. GTX_EVEN says that one material is all there is, and no emission. Needs
- * geotex_dialect.glsl, geotex_height_field.glsl, geotex_view.glsl, geotex_surface.glsl and, with
- * GTX_MATERIALS defined, geotex_material.glsl before it, and GTX_FRONT in the vertex shader. */
+ * are. With GTX_CONSTANT the model has one material all over, and no emission. Needs
+ * geotex_view.glsl, geotex_surface.glsl and, with GTX_MATERIALS defined, geotex_material.glsl
+ * before it, and GTX_FRONT in the vertex shader. */
 GTX_VARYING(0) in vec2 gtx_at;
 GTX_VARYING(1) flat in vec2 gtx_page;
 GTX_VARYING(2) flat in vec3 gtx_toward;
@@ -23,9 +23,10 @@ void main()
 #ifdef GTX_MATERIALS
     if (gtx_maps.y > 0.0)
         color *= textureLod(gtx_colors, place, level);
-#ifdef GTX_EVEN
+#ifdef GTX_CONSTANT
     gtx_material material =
-        gtx_material(color.rgb, vec3(0.0), gtx_even.x, gtx_even.y, gtx_even.z, gtx_even.w);
+        gtx_material(color.rgb, vec3(0.0), gtx_constant_material.x, gtx_constant_material.y,
+                     gtx_constant_material.z, gtx_constant_material.w);
 #else
     gtx_material material = gtx_material(color.rgb, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
     if (gtx_maps.w > 0.0) {
@@ -38,11 +39,11 @@ void main()
     color.rgb = gtx_to_srgb(gtx_shade(material, n, gtx_eye, gtx_toward, gtx_between, gtx_light.w));
 #else
     float share = gtx_light.w + (1.0 - gtx_light.w) * max(dot(n, gtx_toward), 0.0);
-#ifdef GTX_COLORS
+#ifdef GTX_PLAIN
+    color.rgb = gtx_shaded_to_srgb(color.rgb, share);
+#else
     color *= textureLod(gtx_colors, place, level);
     color.rgb = gtx_to_srgb(color.rgb * share);
-#else
-    color.rgb = gtx_shaded_to_srgb(color.rgb, share);
 #endif
 #endif
     gtx_out_color = color;

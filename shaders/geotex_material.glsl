@@ -1,7 +1,6 @@
 /* The material of a hit, and its stock shading: metallic-roughness as in glTF 2.0, appendix B.
  *
- * Needs geotex_dialect.glsl, geotex_height_field.glsl, geotex_view.glsl and geotex_surface.glsl
- * before. */
+ * Needs geotex_view.glsl and geotex_surface.glsl before it. */
 GTX_SAMPLER(5, highp sampler2DArray) gtx_materials;  /* occlusion, roughness, metallic, lit; mips */
 GTX_SAMPLER(6, highp sampler2DArray) gtx_emissions;  /* sRGB, mips; decoded when sampled */
 

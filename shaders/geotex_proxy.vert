@@ -1,10 +1,10 @@
 /* Proxies of instances: every fragment of a patch's hull or box gets its ray, in the patch's grid
  * space.
  *
- * Needs geotex_dialect.glsl, geotex_height_field.glsl and geotex_view.glsl before it. Hulls are
- * rasterised by their front faces, where the rays begin. Patches that the near plane cuts have
- * boxes instead, by their back faces, so that a camera inside still sees the patch; their rays are
- * cut to the box and to the near plane in the fragment. */
+ * Needs geotex_height_field.glsl and geotex_view.glsl before it. Hulls are rasterised by their
+ * front faces, where the rays begin. Patches that the near plane cuts have boxes instead, by their
+ * back faces, so that a camera inside still sees the patch; their rays are cut to the box and to
+ * the near plane in the fragment. */
 layout(location = 0) in vec3 gtx_position;  /* grid space */
 layout(location = 1) in uint gtx_patch;     /* index + 2^28 * kind: 0 box, n hull of level n - 1 */
 layout(location = 2) in vec4 gtx_world_x;   /* rows of object -> world, one set an instance */
@@ -60,21 +60,21 @@ void main()
 {
     int index = int(gtx_patch & 0x0fffffffu), kind = int(gtx_patch >> 28);
     gtx_frame frame = gtx_frame_of(index);
-    gtx_rect = gtx_record(index, 7);
+    gtx_rect = gtx_record(index, GTX_RECORD_RECT);
     if (kind > 0) {
         gtx_level = kind - 1;
         gtx_point = gtx_position;
-        gtx_reach = gtx_record(index, 8 + gtx_level / 4)[gtx_level % 4];
+        gtx_reach = gtx_record(index, GTX_RECORD_REACH + gtx_level / 4)[gtx_level % 4];
     } else {
         gtx_level = int(gtx_detail.z);
-        gtx_point = gtx_widen(gtx_position, gtx_rect, gtx_record(index, 10), gtx_level);
+        gtx_point =
+            gtx_widen(gtx_position, gtx_rect, gtx_record(index, GTX_RECORD_SOLID), gtx_level);
         gtx_reach = -1.0;
     }
     vec4 grid = vec4(gtx_point, 1.0);
     vec4 eye = vec4(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w, gtx_depth.w);
     mat4 rows = transpose(gtx_clip_from_world);
-    gtx_eye = vec3(dot(gtx_record(index, 0), eye), dot(gtx_record(index, 1), eye),
-                   dot(gtx_record(index, 2), eye));
+    gtx_eye = gtx_to_grid(index, eye);
     gtx_clip_z = gtx_row(rows[2], frame);
     gtx_clip_w = gtx_row(rows[3], frame);
     /* n_world = transpose(inverse) n: the inverse's rows are the columns. */
@@ -91,8 +91,7 @@ void main()
     gtx_color.rgb = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
 #endif
     gtx_patch_index = index;
-    gtx_span = vec4(gtx_record(index, 3).w, gtx_record(index, 4).w, gtx_record(index, 5).w,
-                    gtx_record(index, 6).w);
+    gtx_span = gtx_span_of(index);
 
     float w = dot(gtx_clip_w, grid);
     /* z in the middle of either clip convention: only the sides of the frustum cut the proxy. The

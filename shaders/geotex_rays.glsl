@@ -1,7 +1,7 @@
 /* Rays among all patches of all instances of a set: shadows and ambient occlusion, in any shader of
- * geotex or of the engine. Needs geotex_dialect.glsl and geotex_height_field.glsl before it;
- * gtx_shading_create puts it before an engine's own main, gtx_rays_bind gives a program its
- * textures. Without them nothing occludes.
+ * geotex or of the engine. Needs geotex_height_field.glsl before it; gtx_shading_create puts it
+ * before an engine's own main, gtx_rays_bind gives a program its textures. Without them nothing
+ * occludes.
  *
  *   bool gtx_occluded(origin, direction, t_max)              any crossing at 0 <= t <= t_max
  *   float gtx_sunlight(point, normal, light, spread, rays, turn)
@@ -10,13 +10,16 @@
  * in world space. Crossings count as for the picture: from above, and from below where a patch is
  * two-sided. The walk needs no stack: nodes lie depth first, each with the one behind its
  * subtree. */
-GTX_SAMPLER(9, highp sampler2D) gtx_ray_nodes;         /* rows of 1024 texels, counted through */
-GTX_SAMPLER(10, highp usampler2DArray) gtx_ray_cells;  /* as gtx_cells, layers of 1024 rows */
+GTX_SAMPLER(9, highp sampler2D) gtx_ray_nodes;         /* texels are counted through rows */
+GTX_SAMPLER(10, highp usampler2DArray) gtx_ray_cells;  /* as gtx_cells; through layers */
 GTX_SAMPLER(11, highp sampler2DArray) gtx_ray_trim;
+
+const int gtx_ray_row = (1 << GTX_RAY_ROW_BITS) - 1;
+const int gtx_ray_layer = (1 << GTX_RAY_LAYER_BITS) - 1;
 
 vec4 gtx_ray_texel(int at)
 {
-    return texelFetch(gtx_ray_nodes, ivec2(at & 1023, at >> 10), 0);
+    return texelFetch(gtx_ray_nodes, ivec2(at & gtx_ray_row, at >> GTX_RAY_ROW_BITS), 0);
 }
 
 /* Three rows of an affine map. */
@@ -36,7 +39,8 @@ vec3 gtx_mapped(gtx_ray_rows m, vec4 v)
 
 ivec3 gtx_ray_address(int at)
 {
-    return ivec3(at & 1023, (at >> 10) & 1023, at >> 20);
+    return ivec3(at & gtx_ray_row, (at >> GTX_RAY_ROW_BITS) & gtx_ray_layer,
+                 at >> (GTX_RAY_ROW_BITS + GTX_RAY_LAYER_BITS));
 }
 
 /* gtx_shows, of level 0, for a height field whose texels begin at `first`, `width` in a row. */
@@ -52,16 +56,16 @@ bool gtx_ray_shows(int first, ivec2 size, vec2 at)
     return mix(mix(a, b, f.x), mix(c, d, f.x), f.y) * 255.0 <= 132.8;
 }
 
-/* Whether the ray crosses a block of 8 x 8 cells of the height field whose record begins at `height
- * field`. */
+/* Whether the ray crosses a block of 8 x 8 cells of the height field whose record is at `field`. */
 bool gtx_crosses(int field, int block, vec3 origin, vec3 direction, float t_max)
 {
-    gtx_ray_rows to_grid = gtx_rows_at(field);
-    vec4 record = gtx_ray_texel(field + 3); /* width, height, first texel / 256, two-sided */
+    gtx_ray_rows to_grid = gtx_rows_at(field + GTX_RAY_FIELD_TO_GRID);
+    vec4 record = gtx_ray_texel(field + GTX_RAY_FIELD_CELLS);
     ivec2 size = ivec2(record.xy);
-    int first = int(record.z) * 256;
+    int first = int(record.z) * GTX_RAY_FIELD_ALIGN;
     vec3 o = gtx_mapped(to_grid, vec4(origin, 1.0)), d = gtx_mapped(to_grid, vec4(direction, 0.0));
-    ivec2 low = ivec2(block & 2047, block >> 11) * 8, high = min(low + 8, size - 1);
+    ivec2 low = ivec2(block & ((1 << GTX_RAY_BLOCK_BITS) - 1), block >> GTX_RAY_BLOCK_BITS) * 8;
+    ivec2 high = min(low + 8, size - 1);
     float t0 = 0.0, t1 = t_max;
     gtx_clip(o.x - float(low.x), d.x, t0, t1);
     gtx_clip(float(high.x) - o.x, -d.x, t0, t1);
@@ -116,7 +120,7 @@ vec3 gtx_ray_inverse(vec3 d)
 bool gtx_occluded(vec3 origin, vec3 direction, float t_max)
 {
     vec3 o = origin, d = direction, inverse = gtx_ray_inverse(d);
-    int top = int(gtx_ray_texel(0).x), node = 1, end = top;
+    int top = int(gtx_ray_texel(0).x), node = GTX_RAY_HEAD_TEXELS, end = top;
     int behind = 0;                       /* the node after an instance's; 0: in the world */
     int fields = 0;
     bool found = false, more = true;
@@ -125,20 +129,20 @@ bool gtx_occluded(vec3 origin, vec3 direction, float t_max)
         vec4 low = vec4(0.0), high = vec4(0.0);
         bool leaf = false;
         while (node < end && !leaf) {
-            low = gtx_ray_texel(node);
-            high = gtx_ray_texel(node + 1);
+            low = gtx_ray_texel(node + GTX_RAY_NODE_LOW);
+            high = gtx_ray_texel(node + GTX_RAY_NODE_HIGH);
             vec3 a = (low.xyz - o) * inverse, b = (high.xyz - o) * inverse;
             vec3 enter = min(a, b), exit = max(a, b);
             float t0 = max(max(enter.x, enter.y), max(enter.z, 0.0));
             float t1 = min(min(exit.x, exit.y), min(exit.z, t_max));
             bool met = t0 <= t1 * 1.000001;
             leaf = met && high.w >= 0.0;
-            node = met || high.w >= 0.0 ? node + 2 : int(low.w);
+            node = met || high.w >= 0.0 ? node + GTX_RAY_NODE_TEXELS : int(low.w);
         }
         if (leaf && behind == 0) {        /* an instance: on into its asset */
             int instance = int(high.w);
-            gtx_ray_rows to_object = gtx_rows_at(instance);
-            vec4 asset = gtx_ray_texel(instance + 3);
+            gtx_ray_rows to_object = gtx_rows_at(instance + GTX_RAY_INSTANCE_TO_OBJECT);
+            vec4 asset = gtx_ray_texel(instance + GTX_RAY_INSTANCE_NODES);
             o = gtx_mapped(to_object, vec4(origin, 1.0));
             d = gtx_mapped(to_object, vec4(direction, 0.0));
             behind = node;
@@ -147,7 +151,8 @@ bool gtx_occluded(vec3 origin, vec3 direction, float t_max)
             fields = end;
             inverse = gtx_ray_inverse(d);
         } else if (leaf) {
-            found = gtx_crosses(fields + 4 * int(high.w), int(low.w), o, d, t_max);
+            int field = fields + GTX_RAY_FIELD_TEXELS * int(high.w);
+            found = gtx_crosses(field, int(low.w), o, d, t_max);
         } else {                          /* back to the world, or through */
             more = behind > 0;
             node = behind;

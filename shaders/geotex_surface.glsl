@@ -1,4 +1,4 @@
-/* Normal and colour of a hit. Needs geotex_dialect.glsl and geotex_height_field.glsl before it. */
+/* Normal and colour of a hit. Needs geotex_height_field.glsl before it. */
 GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;  /* hemi-octahedral, two channels, mips */
 GTX_SAMPLER(3, highp sampler2DArray) gtx_colors;   /* sRGB, mips; decoded when sampled */
 
@@ -26,7 +26,7 @@ vec4 gtx_lookup_level(highp sampler2DArray map, gtx_height_field field, vec2 at,
 }
 
 /* At the nearest whole level, clamped there to the patch's own texels: patches are packed without a
- * gutter (section 4.5). */
+ * gutter (section 4.7). */
 vec4 gtx_lookup(highp sampler2DArray map, gtx_height_field field, vec2 at, float level, float last)
 {
     return gtx_lookup_level(map, field, at, floor(clamp(level, 0.0, last) + 0.5));

@@ -7,21 +7,11 @@
  * geotex_cast.glsl and geotex_fragment.glsl, with GTX_TILES. */
 GTX_VARYING(0) in vec2 gtx_pixel;
 
-/* 8 texels a patch: columns to grid space of rows 0, 3, 1 and 2 of gtx_place; columns of its
- * normals
- *   to the world; w of the first and of the last three: corner; size; page + 2^24 * level + 2^31 *
- *   two-sided; then the index, and the volume that the second, third and fourth column span.
- * 4 texels a slab: for each pair of its planes a linear function of the pixel, and how the second
- *   plane follows from the first (gtx_meets); first cell and last, where its patch's texels are.
- * Heads of a rectangle of tiles, two a texel: where the list begins and ends, in half texels.
- * The lists, two slabs a texel: where the slab is, least t. */
+/* Records of patches and of slabs (geotex_records.glsl). Then heads of a rectangle of tiles, two a
+ * texel: where the list begins and ends, in half texels. Then the lists, two slabs a texel: where
+ * the slab is, least t. */
 uniform highp usamplerBuffer gtx_stream;
 uniform uint gtx_instance;
-/* xyz of 0: the rays' origin in object space; 1, 2: what a pixel in x and in y adds, to the
- * direction of a perspective camera's rays, to the origin of an orthographic one's; 3: direction;
- * w of 0: tiles a row of the rectangle; 1: texels before the heads; 2, 3: its first column and row;
- * 4: the same four of clip z; x, y of 5: of clip w, origin and direction; z, w of 5: size of the
- * viewport, in pixels; 6..8: rows of object -> world. */
 #define gtx_place(i) gtx_flat[3 + i]
 
 struct gtx_line {
@@ -38,17 +28,18 @@ gtx_line gtx_line_of(vec2 pixel, vec3 origin, vec3 direction, vec3 x, vec3 y)
 /* z and w of the clip position at t = 0, and what t adds. */
 void gtx_clip_along(vec2 pixel, out vec2 zw, out vec2 zw_step)
 {
-    vec4 z = gtx_place(4);
+    vec4 z = gtx_place(GTX_PLACE_CLIP_Z);
     float aside = dot(z.yz, pixel);
-    zw = vec2(z.x + (1.0 - gtx_depth.w) * aside, gtx_place(5).x);
-    zw_step = vec2(z.w + gtx_depth.w * aside, gtx_place(5).y);
+    zw = vec2(z.x + (1.0 - gtx_depth.w) * aside, gtx_place(GTX_PLACE_CLIP_W).x);
+    zw_step = vec2(z.w + gtx_depth.w * aside, gtx_place(GTX_PLACE_CLIP_W).y);
 }
 
 gtx_height_field gtx_unpacked(uint corner, uint size, uint page)
 {
     return gtx_field_of(vec4(uvec4(corner & 0xffffu, corner >> 16, size & 0xffffu, size >> 16)),
-                        vec4(0.0, 0.0, float(page & 0xffffffu), float(page >> 31)),
-                        int(page >> 24 & 127u));
+                        vec4(0.0, 0.0, float(page & ((1u << GTX_TILE_LEVEL_SHIFT) - 1u)),
+                             float(page >> GTX_TILE_TWO_SIDED_SHIFT)),
+                        int(page >> GTX_TILE_LEVEL_SHIFT & 127u));
 }
 
 /* Where the ray of a pixel is in a slab, as x to y: of 1 / t when the camera is perspective, for
@@ -56,9 +47,9 @@ gtx_height_field gtx_unpacked(uint corner, uint size, uint page)
  * of the other, negative when the eye is between them; or it is a constant behind. */
 vec2 gtx_meets(int slab, vec2 pixel, vec2 range)
 {
-    vec4 x = uintBitsToFloat(texelFetch(gtx_stream, slab));
-    vec4 y = uintBitsToFloat(texelFetch(gtx_stream, slab + 1));
-    vec4 z = uintBitsToFloat(texelFetch(gtx_stream, slab + 2));
+    vec4 x = uintBitsToFloat(texelFetch(gtx_stream, slab + GTX_TILE_SLAB_PLANES));
+    vec4 y = uintBitsToFloat(texelFetch(gtx_stream, slab + GTX_TILE_SLAB_PLANES + 1));
+    vec4 z = uintBitsToFloat(texelFetch(gtx_stream, slab + GTX_TILE_SLAB_PLANES + 2));
     vec3 u = vec3(x.x, y.x, z.x) * pixel.x + vec3(x.y, y.y, z.y) * pixel.y + vec3(x.z, y.z, z.z);
     vec3 other = vec3(x.w, y.w, z.w);
     bool perspective = gtx_depth.w > 0.0;
@@ -79,11 +70,12 @@ vec2 gtx_inverse(vec2 range)
  * ray's direction in its grid space. */
 bool gtx_cast_slab(int slab, vec2 pixel, vec2 t, out gtx_hit hit, out int patch_at, out vec3 ray)
 {
-    uvec4 cells = texelFetch(gtx_stream, slab + 3);
+    uvec4 cells = texelFetch(gtx_stream, slab + GTX_TILE_SLAB_CELLS);
     patch_at = int(cells.z);
-    uvec4 origin = texelFetch(gtx_stream, patch_at);
-    uvec4 direction = texelFetch(gtx_stream, patch_at + 1);
-    uvec4 x = texelFetch(gtx_stream, patch_at + 2), y = texelFetch(gtx_stream, patch_at + 3);
+    int rays_at = patch_at + GTX_TILE_PATCH_RAYS;
+    uvec4 origin = texelFetch(gtx_stream, rays_at);
+    uvec4 direction = texelFetch(gtx_stream, rays_at + 1);
+    uvec4 x = texelFetch(gtx_stream, rays_at + 2), y = texelFetch(gtx_stream, rays_at + 3);
     gtx_line line = gtx_line_of(pixel, uintBitsToFloat(origin.xyz), uintBitsToFloat(direction.xyz),
                                 uintBitsToFloat(x.xyz), uintBitsToFloat(y.xyz));
     gtx_height_field field = gtx_unpacked(origin.w, direction.w, x.w);
@@ -128,9 +120,11 @@ int gtx_next_slab(vec2 pixel, vec2 range, int end, inout int k, out vec2 within)
 /* The camera's side of a hit, and the instance's. */
 void gtx_place_hit(vec2 pixel, vec2 zw)
 {
-    mat4x3 world = transpose(mat3x4(gtx_place(6), gtx_place(7), gtx_place(8)));
-    gtx_line line = gtx_line_of(pixel, gtx_place(0).xyz, gtx_place(3).xyz, gtx_place(1).xyz,
-                                gtx_place(2).xyz);
+    mat4x3 world = transpose(mat3x4(gtx_place(GTX_PLACE_WORLD), gtx_place(GTX_PLACE_WORLD + 1),
+                                       gtx_place(GTX_PLACE_WORLD + 2)));
+    gtx_line line = gtx_line_of(pixel, gtx_place(GTX_PLACE_ORIGIN).xyz,
+                                gtx_place(GTX_PLACE_DIRECTION).xyz, gtx_place(GTX_PLACE_X).xyz,
+                                gtx_place(GTX_PLACE_Y).xyz);
     gtx_clip_z = vec4(0.0, 0.0, 0.0, zw.x);
     gtx_clip_w = vec4(0.0, 0.0, 0.0, zw.y);
     gtx_world = world * vec4(line.origin, 1.0);
@@ -145,8 +139,10 @@ bool gtx_find(out gtx_surface s)
     gtx_clip(zw.x + gtx_depth.x * zw.y, zw_step.x + gtx_depth.x * zw_step.y, range.x, range.y);
     gtx_clip(zw.y - zw.x, zw_step.y - zw_step.x, range.x, range.y);
 
-    ivec2 tile = (ivec2(pixel) >> 2) - ivec2(gtx_place(2).w, gtx_place(3).w);
-    uvec2 head = gtx_half(2 * int(gtx_place(1).w) + tile.y * int(gtx_place(0).w) + tile.x);
+    ivec2 tile = (ivec2(pixel) >> 2) -
+                 ivec2(gtx_place(GTX_PLACE_FIRST_COLUMN).w, gtx_place(GTX_PLACE_FIRST_ROW).w);
+    uvec2 head = gtx_half(2 * int(gtx_place(GTX_PLACE_HEADS).w) +
+                          tile.y * int(gtx_place(GTX_PLACE_COLUMNS).w) + tile.x);
     int k = int(head.x), end = int(head.y), patch_at = -1;
     if (k == end)
         return false;
@@ -169,8 +165,10 @@ bool gtx_find(out gtx_surface s)
         return false;
     zw += s.hit.t * zw_step;
     gtx_place_hit(pixel, zw);
-    uvec4 x = texelFetch(gtx_stream, patch_at + 4), y = texelFetch(gtx_stream, patch_at + 5);
-    uvec4 z = texelFetch(gtx_stream, patch_at + 6), rest = texelFetch(gtx_stream, patch_at + 7);
+    int normals_at = patch_at + GTX_TILE_PATCH_NORMALS;
+    uvec4 x = texelFetch(gtx_stream, normals_at), y = texelFetch(gtx_stream, normals_at + 1);
+    uvec4 z = texelFetch(gtx_stream, normals_at + 2);
+    uvec4 rest = texelFetch(gtx_stream, patch_at + GTX_TILE_PATCH_INDEX); /* and volume */
     gtx_normal_x = uintBitsToFloat(x.xyz);
     gtx_normal_y = uintBitsToFloat(y.xyz);
     gtx_normal_z = uintBitsToFloat(z.xyz);

@@ -16,7 +16,7 @@ GTX_UNIFORM vec4 gtx_maps;              /* x: last mip level of normals and colo
                                            model has colours; z: scale of its emission, or 0;
                                            w: 1 when it has materials */
 GTX_UNIFORM vec4 gtx_lod_mesh;          /* of the LOD mesh's level, xyz: origin; w: step */
-GTX_UNIFORM vec4 gtx_even;              /* of geotex_lod_front.frag: the only material */
+GTX_UNIFORM vec4 gtx_constant_material; /* of geotex_lod_front.frag, with GTX_CONSTANT */
 GTX_UNIFORMS_END
 
 /* Half way between light and eye, unit, and what of Schlick's Fresnel term depends on them.

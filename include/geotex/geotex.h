@@ -80,6 +80,7 @@ GTX_API const char *gtx_result_string(gtx_result result);
 typedef struct gtx_error {
     gtx_result result;
     uint32_t rule;                /* rule number of format/gtx.md, 0 when none applies */
+    const char *rule_name;        /* its name, such as "patch-page": static; else NULL */
     uint64_t offset;              /* byte offset in the file that broke the rule, else 0 */
     char message[240];            /* one sentence without a final newline, always terminated */
 } gtx_error;
@@ -254,7 +255,7 @@ typedef struct gtx_issue {
 typedef void (*gtx_issue_fn)(const gtx_issue *issue, void *user);
 
 /* Runs every rule of format/gtx.md over untrusted bytes and reports each broken one in the order of
- * its section 6, as far as it is safe to read on.
+ * its section 7, as far as it is safe to read on.
  * GTX_OK when no error was reported (warnings do not count). `fn` may be NULL.
  * Takes from malloc what opening would, 4 GiB at most.
  * Errors: as gtx_open_memory; rules that are broken come before MEMORY and LIMIT. */

@@ -2,7 +2,7 @@
 #ifndef GTX_ASSET_ASSET_H
 #define GTX_ASSET_ASSET_H
 
-#include <geotex/geotex.h>
+#include "asset/patch.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -50,26 +50,22 @@ static inline uint32_t gtx_height_code(const gtx_asset *asset, const gtx_patch *
     return asset->height[2 * texel] | (uint32_t)asset->height[2 * texel + 1] << 8;
 }
 
+/* Where the height codes of a patch lie. */
+static inline gtx_code_map gtx_codes_of(const gtx_asset *asset, const gtx_patch *patch)
+{
+    const size_t width = asset->info.page_width, bytes = asset->info.height_bits / 8;
+    const size_t row = (size_t)patch->page * asset->info.page_height + patch->rect[1];
+    gtx_code_map codes = {asset->height + (row * width + patch->rect[0]) * bytes, width,
+                          (uint32_t)bytes, asset->info.height_bits};
+    return codes;
+}
+
 /* The trim code at texel (x, y) of a patch. No bounds check. */
 static inline uint32_t gtx_trim_code(const gtx_asset *asset, const gtx_patch *patch, uint32_t x,
                                      uint32_t y)
 {
     size_t row = (size_t)patch->page * asset->info.page_height + patch->rect[1] + y;
     return asset->trim[row * asset->info.page_width + patch->rect[0] + x];
-}
-
-/* Hemi-octahedral normals in the patch's normal frame (format/gtx.md, "Normals"): n is a unit
- * vector in that frame with n[2] >= 0. */
-void gtx_encode_normal(const float n[3], uint8_t out[2]);
-void gtx_decode_normal(const uint8_t in[2], float n[3]);
-
-/* Rows of the patch's normal frame in object space: x', y', z'. */
-void gtx_normal_frame(const gtx_patch *patch, float rows[3][3]);
-
-/* Maps a height code to a fraction of extent_z, 0..1, for c >= 1. */
-static inline float gtx_code_height(uint32_t code, uint32_t height_bits)
-{
-    return (float)(code - 1) / (height_bits == 8 ? 254.0f : 65534.0f);
 }
 
 #ifdef __cplusplus

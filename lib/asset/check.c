@@ -41,8 +41,12 @@ void gtx_break(gtx_check *check, gtx_rule rule, uint64_t offset, const char *for
     if (!check->in_file)
         offset = 0;
     if (first)
-        check->result = gtx_fail_rule(check->error, row->result, row->number, offset, "%s",
-                                      message);
+        check->result = gtx_fail(check->error, row->result, "%s", message);
+    if (first && check->error) {
+        check->error->rule = row->number;
+        check->error->rule_name = row->name;
+        check->error->offset = offset;
+    }
     if (check->fn)
         check->fn(&(gtx_issue){row->number, 1, offset, row->name, message}, check->user);
 }

@@ -153,7 +153,7 @@ static void look_at(const limits *in, uint32_t x, uint32_t y, uint32_t code, pat
 static patch_finding walk_patch(const gtx_asset *asset, const gtx_patch *patch, const box *bounds)
 {
     const uint32_t bytes = asset->info.height_bits / 8, width = patch->rect[2];
-    const limits in = limits_of(patch, bounds, bytes == 1 ? 254 : 65534);
+    const limits in = limits_of(patch, bounds, gtx_height_steps(8 * bytes));
     patch_finding found = {0};
     for (uint32_t y = 0; y < patch->rect[3]; ++y) {
         const size_t line = (size_t)patch->page * asset->info.page_height + patch->rect[1] + y;

@@ -1,5 +1,5 @@
 /* Normals in two bytes: hemi-octahedral coordinates in a patch's own frame. */
-#include "asset/asset.h"
+#include "asset/patch.h"
 
 #include "base/vec.h"
 

@@ -2,9 +2,7 @@
 #include "asset/read.h"
 
 #include "base/alloc.h"
-
-#include <inttypes.h>
-#include <stdio.h>
+#include "base/file.h"
 
 #define DEFAULT_LIMIT ((uint64_t)4 << 30)
 
@@ -49,45 +47,6 @@ gtx_result gtx_open_memory(const void *data, size_t size, const gtx_open_desc *d
     return open_bytes(data, size, desc, limit_of(desc), out, error);
 }
 
-/* The size of a file, which is then read from its start. */
-static gtx_result measure(FILE *file, const char *path, uint64_t *size, gtx_error *error)
-{
-    /* The first read tells a directory, which opens and has a "size" on some systems. */
-    if (fgetc(file) == EOF && ferror(file))
-        return gtx_fail(error, GTX_ERROR_READ, "cannot read %s", path);
-    long end = -1;
-    if (!fseek(file, 0, SEEK_END))
-        end = ftell(file);
-    if (end < 0 || fseek(file, 0, SEEK_SET))
-        return gtx_fail(error, GTX_ERROR_READ, "cannot find the size of %s", path);
-    *size = (uint64_t)end;
-    return GTX_OK;
-}
-
-static gtx_result open_stream(FILE *file, const char *path, const gtx_open_desc *desc,
-                              gtx_asset **out, gtx_error *error)
-{
-    uint64_t size = 0, limit = limit_of(desc);
-    gtx_result result = measure(file, path, &size, error);
-    if (result)
-        return result;
-    if (size == 0)
-        return open_bytes(NULL, 0, desc, limit, out, error);
-    if (size > limit || size > SIZE_MAX)
-        return gtx_fail(error, GTX_ERROR_LIMIT, "%s has %" PRIu64 " bytes, more than the %" PRIu64
-                        " allowed", path, size, limit);
-    gtx_allocator allocator = gtx_allocator_or_default(desc ? desc->allocator : NULL);
-    void *data = gtx_alloc_array(&allocator, (size_t)size, 1);
-    if (!data)
-        return gtx_fail(error, GTX_ERROR_MEMORY, "out of memory for %s", path);
-    if (fread(data, 1, (size_t)size, file) == size)
-        result = open_bytes(data, (size_t)size, desc, limit - size, out, error);
-    else
-        result = gtx_fail(error, GTX_ERROR_READ, "cannot read %s to its end", path);
-    gtx_free_array(&allocator, data, (size_t)size, 1);
-    return result;
-}
-
 gtx_result gtx_open_file(const char *path, const gtx_open_desc *desc, gtx_asset **out,
                          gtx_error *error)
 {
@@ -96,11 +55,14 @@ gtx_result gtx_open_file(const char *path, const gtx_open_desc *desc, gtx_asset 
         return result;
     if (!path)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "the path to open is NULL");
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return gtx_fail(error, GTX_ERROR_READ, "cannot open %s", path);
-    result = open_stream(file, path, desc, out, error);
-    fclose(file);
+    const uint64_t limit = limit_of(desc);
+    gtx_file_bytes file = {
+        .allocator = gtx_allocator_or_default(desc ? desc->allocator : NULL), .limit = limit};
+    result = gtx_read_file(path, &file, error);
+    if (result)
+        return result;
+    result = open_bytes(file.data, file.size, desc, limit - file.capacity, out, error);
+    gtx_free_file(&file);
     return result;
 }
 

@@ -1,4 +1,4 @@
-/* One pass over hostile bytes, in the order of format/gtx.md, section 6. */
+/* One pass over hostile bytes, in the order of format/gtx.md, section 7. */
 #include "asset/read.h"
 
 #include "asset/decode.h"

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/jobs.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -214,9 +215,11 @@ gtx_result gtx_save_bytes(const char *path, const gtx_allocator *allocator, cons
     snprintf(temporary, length, "%s.tmp", path);
     gtx_result result = GTX_OK;
     if (!write_file(temporary, data, size))
-        result = gtx_fail(error, GTX_ERROR_WRITE, "cannot write %s", temporary);
+        result = gtx_fail(error, GTX_ERROR_WRITE, "cannot write %s: %s", temporary,
+                          strerror(errno));
     else if (rename(temporary, path))
-        result = gtx_fail(error, GTX_ERROR_WRITE, "cannot rename %s to %s", temporary, path);
+        result = gtx_fail(error, GTX_ERROR_WRITE, "cannot rename %s: %s", temporary,
+                          strerror(errno));
     if (result)
         remove(temporary);
     gtx_free_array(allocator, temporary, length, 1);

@@ -34,32 +34,14 @@ const char *gtx_result_string(gtx_result result)
     return "unknown result";
 }
 
-static void fill(gtx_error *error, gtx_result result, uint32_t rule, uint64_t offset,
-                 const char *format, va_list args)
-{
-    if (!error)
-        return;
-    error->result = result;
-    error->rule = rule;
-    error->offset = offset;
-    vsnprintf(error->message, sizeof error->message, format, args);
-}
-
 gtx_result gtx_fail(gtx_error *error, gtx_result result, const char *format, ...)
 {
+    if (!error)
+        return result;
+    *error = (gtx_error){.result = result};
     va_list args;
     va_start(args, format);
-    fill(error, result, 0, 0, format, args);
-    va_end(args);
-    return result;
-}
-
-gtx_result gtx_fail_rule(gtx_error *error, gtx_result result, uint32_t rule, uint64_t offset,
-                         const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    fill(error, result, rule, offset, format, args);
+    vsnprintf(error->message, sizeof error->message, format, args);
     va_end(args);
     return result;
 }

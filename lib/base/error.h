@@ -18,10 +18,6 @@ extern "C" {
  * function ends with `return gtx_fail(error, GTX_ERROR_..., "...")`. */
 gtx_result gtx_fail(gtx_error *error, gtx_result result, const char *format, ...) GTX_PRINTF(3, 4);
 
-/* The same for a broken rule of the format at a byte offset. */
-gtx_result gtx_fail_rule(gtx_error *error, gtx_result result, uint32_t rule, uint64_t offset,
-                         const char *format, ...) GTX_PRINTF(5, 6);
-
 /* GTX_ERROR_NOT_ZEROED unless the `count` words of a descriptor's reserved field are zero. */
 gtx_result gtx_check_reserved(const uint32_t *reserved, size_t count, gtx_error *error);
 

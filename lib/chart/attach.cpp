@@ -1,5 +1,5 @@
-/* Attaches crumbs: components of a few triangles, which scans with non-manifold edges have by the
- * thousand, and what is left over from splitting. Each would cost a patch of its own. */
+/* Attaches small islands: components of a few triangles, which scans with non-manifold edges have
+ * by the thousand, and what is left over from splitting. Each would cost a patch of its own. */
 #include "chart/attach.hpp"
 
 #include <algorithm>
@@ -10,17 +10,90 @@ namespace gtx {
 
 namespace {
 
-constexpr double CRUMB_TEXELS = 64;     /* most area of a crumb */
-constexpr double GUEST_TEXELS = 4200;   /* of what joins a chart that will be cut anyway */
-constexpr double TRIFLE_TEXELS = 8;     /* of one that may face anywhere: it is junk then */
-constexpr double NEAR_TEXELS = 3;       /* up to here a region may be host without touching */
-constexpr double RIM = 4;               /* texels that a patch needs beyond its chart's sides */
-constexpr double PATCH = 256;           /* what a patch costs for being one, in texels */
-constexpr double STEEP_COSINE = 0.1;    /* of raw normals, on at most a small share of the area */
-constexpr double GUEST_COSINE = 0.3;
+/* Largest candidate where its target will be cut anyway; elsewhere a small island. Half: RMS -9 %,
+ * empty -2 points (truck); double: bytes +1 % (truck). */
+constexpr double CANDIDATE_TEXELS = 3 * PATCH_TEXELS;
+/* Surface this near is tried as a target even where it does not touch. Half: patches +7 % (truck);
+ * double: 5 holes (truck). */
+constexpr double NEAR_TEXELS = 3;
+/* What a patch costs for being one, in texels: its records and its share of the atlas. */
+constexpr double PATCH_COST = 256;
+/* Least cosine of raw normals with the target's axis, of small islands and of larger candidates.
+ * Half: RMS +1 %, bytes +1 %; double: patches +7 and +12 % (truck). */
+constexpr double ISLAND_FACING = 0.1, CANDIDATE_FACING = 0.3;
+/* What of their area may be steeper. Half: patches +3 %; double: RMS +3 % (truck). */
 constexpr double STEEP_AREA = 0.05;
-constexpr double WALL_TEXELS = 16;      /* of a wall that a host may get: scans have small ones */
-constexpr int PASSES = 4;               /* crumbs may lead to crumbs; trifles wait for the last */
+/* Of a wall that a target may get: scans have small ones. Half and double change nothing. */
+constexpr double WALL_TEXELS = 16;
+/* An island may lead to the next; tiny ones wait for the last pass. A limit: the first pass finds
+ * nearly all, and chains of islands must not take a time of their number squared. */
+constexpr int PASSES = 4;
+
+template <class T> void sort_unique(std::vector<T> &values)
+{
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+/* Which candidates have a vertex near a point: in its cell of a grid, or in one of the 26
+ * around. */
+class NearGrid {
+public:
+    explicit NearGrid(double step) : step_(step), filter_(1 << 16) {}
+
+    void add(const Vec3d &point, uint32_t candidate)
+    {
+        entries_.emplace_back(cell_of(point), candidate);
+    }
+    /* Once, after the last has been added. */
+    void dilate();
+    template <class Visit> void each_near(const Vec3d &point, Visit visit) const;
+
+private:
+    using Cell = std::array<int64_t, 3>;
+    using Entry = std::pair<Cell, uint32_t>;
+
+    Cell cell_of(const Vec3d &p) const
+    {
+        return {int64_t(std::floor(p.x / step_)), int64_t(std::floor(p.y / step_)),
+                int64_t(std::floor(p.z / step_))};
+    }
+    static uint16_t hash(const Cell &c)
+    {
+        return uint16_t(uint64_t(c[0]) * 73856093 ^ uint64_t(c[1]) * 19349663 ^
+                        uint64_t(c[2]) * 83492791);
+    }
+
+    double step_;
+    std::vector<Entry> entries_; /* ascending, once dilated */
+    std::vector<bool> filter_;   /* by hash: most points are near no candidate */
+};
+
+void NearGrid::dilate()
+{
+    sort_unique(entries_);
+    std::vector<Entry> dilated;
+    dilated.reserve(27 * entries_.size());
+    for (const auto &[cell, candidate] : entries_)
+        for (int x = -1; x <= 1; ++x)
+            for (int y = -1; y <= 1; ++y)
+                for (int z = -1; z <= 1; ++z)
+                    dilated.push_back({{cell[0] + x, cell[1] + y, cell[2] + z}, candidate});
+    sort_unique(dilated);
+    entries_ = std::move(dilated);
+    for (const auto &[cell, candidate] : entries_)
+        filter_[hash(cell)] = true;
+}
+
+template <class Visit> void NearGrid::each_near(const Vec3d &point, Visit visit) const
+{
+    const Cell cell = cell_of(point);
+    if (!filter_[hash(cell)])
+        return;
+    auto at = std::lower_bound(entries_.begin(), entries_.end(), Entry(cell, 0));
+    for (; at != entries_.end() && at->first == cell; ++at)
+        visit(at->second);
+}
 
 class Attachment {
 public:
@@ -34,125 +107,88 @@ public:
     void run();
 
 private:
-    void find_crumbs();
+    void find_candidates();
     void find_near();
-    double texels(const Region &region) const;
-    void place(uint32_t crumb, bool trifle);
-    bool try_host(uint32_t crumb, uint32_t host, bool trifle);
-    void mark_junk(const Region &crumb, const Vec3d &z);
-    bool faces(const Region &crumb, const Vec3d &z) const;
-    Frame widened(const Frame &frame, const Region &crumb) const;
+    double texels(const Region &region) const
+    {
+        return texels_of(surface_, region, bounds_.pitch);
+    }
+    void place(uint32_t candidate, bool tiny);
+    bool try_target(uint32_t candidate, uint32_t target, bool tiny);
+    void mark_junk(const Region &candidate, const Vec3d &z);
+    bool faces(const Region &candidate, const Vec3d &z) const;
+    Frame widened(const Frame &frame, const Region &candidate) const;
     double cost(const Frame &frame) const
     {
         double w = frame.extent[0] / bounds_.pitch + RIM, h = frame.extent[1] / bounds_.pitch + RIM;
-        return PATCH + w * h;
+        return PATCH_COST + w * h;
     }
 
     Surface &surface_;
     const Bounds &bounds_;
     std::vector<Region> &regions_;
     std::vector<Frame> &frames_;
-    std::vector<uint32_t> crumbs_;                        /* largest first */
-    std::vector<std::pair<uint32_t, uint32_t>> near_;     /* crumb, region; ascending */
-    std::vector<uint32_t> host_;                          /* of a region; itself when it stays */
-    /* Depths of regions that were asked to be hosts, in the frames that these had at first. */
+    std::vector<uint32_t> candidates_;                /* largest first */
+    std::vector<std::pair<uint32_t, uint32_t>> near_; /* candidate, region; ascending */
+    std::vector<uint32_t> target_;                    /* of a region; itself while it stays */
+    /* Depths of regions that were tried as targets, in the frames that they had at first. */
     std::vector<Frame> grid_of_;
     std::vector<LayerGrid> grids_;
 };
 
-double Attachment::texels(const Region &region) const
-{
-    double size = 0, mean = surface_.area / double(surface_.facets.size());
-    for (uint32_t t : region.triangles)
-        size += surface_.facets[t].size;
-    return size * mean / (bounds_.pitch * bounds_.pitch);
-}
-
-void Attachment::find_crumbs()
+void Attachment::find_candidates()
 {
     std::vector<std::pair<double, uint32_t>> order;
     for (uint32_t i = 0; i < regions_.size(); ++i)
         order.emplace_back(-texels(regions_[i]), i);
     std::sort(order.begin(), order.end());
     for (const auto &[less, region] : order)
-        if (-less < (bounds_.cone ? GUEST_TEXELS : CRUMB_TEXELS))
-            crumbs_.push_back(region);
+        if (-less < (bounds_.cone ? CANDIDATE_TEXELS : SMALL_ISLAND_TEXELS))
+            candidates_.push_back(region);
 }
 
-/* Regions with a vertex in the same cell of a grid as one of a crumb, or in a cell beside it. */
 void Attachment::find_near()
 {
-    using Cell = std::array<int64_t, 3>;
-    const double step = NEAR_TEXELS * bounds_.pitch;
     const Mesh &mesh = surface_.mesh;
-    auto cell_of = [&](uint32_t v) {
-        const Vec3d &p = mesh.positions[v];
-        return Cell{int64_t(std::floor(p.x / step)), int64_t(std::floor(p.y / step)),
-                    int64_t(std::floor(p.z / step))};
-    };
-    auto each_vertex = [&](uint32_t region, auto &&visit) {
+    NearGrid grid(NEAR_TEXELS * bounds_.pitch);
+    for (uint32_t candidate : candidates_)
+        for (uint32_t t : regions_[candidate].triangles)
+            for (uint32_t v : mesh.triangles[t])
+                grid.add(mesh.positions[v], candidate);
+    grid.dilate();
+
+    std::vector<uint32_t> last_seen(mesh.positions.size(), NO_TRIANGLE); /* a vertex: by a region */
+    for (uint32_t region = 0; region < regions_.size(); ++region)
         for (uint32_t t : regions_[region].triangles)
             for (uint32_t v : mesh.triangles[t])
-                visit(v);
-    };
-    std::vector<std::pair<Cell, uint32_t>> wanted; /* cell, crumb */
-    for (uint32_t crumb : crumbs_)
-        each_vertex(crumb, [&](uint32_t v) { wanted.emplace_back(cell_of(v), crumb); });
-    std::sort(wanted.begin(), wanted.end());
-    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-    for (size_t i = wanted.size(); i-- > 0;)
-        for (int n = 0; n < 27; ++n) {
-            auto [cell, crumb] = wanted[i];
-            wanted.push_back({{cell[0] + n / 9 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n % 3 - 1},
-                              crumb});
-        }
-    std::sort(wanted.begin(), wanted.end());
-    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-
-    /* Most vertices are near no crumb, as few bits tell. */
-    auto bit_of = [](const Cell &c) {
-        return uint16_t(uint64_t(c[0]) * 73856093 ^ uint64_t(c[1]) * 19349663 ^
-                        uint64_t(c[2]) * 83492791);
-    };
-    std::vector<bool> marked(1 << 16);
-    for (const auto &[cell, crumb] : wanted)
-        marked[bit_of(cell)] = true;
-    std::vector<uint32_t> seen(mesh.positions.size(), NO_TRIANGLE); /* by which region, last */
-    for (uint32_t i = 0; i < regions_.size(); ++i)
-        each_vertex(i, [&](uint32_t v) {
-            if (std::exchange(seen[v], i) == i)
-                return;
-            const Cell cell = cell_of(v);
-            if (!marked[bit_of(cell)])
-                return;
-            auto at = std::lower_bound(wanted.begin(), wanted.end(), std::make_pair(cell, 0u));
-            for (; at != wanted.end() && at->first == cell; ++at)
-                if (at->second != i)
-                    near_.emplace_back(at->second, i);
-        });
-    std::sort(near_.begin(), near_.end());
-    near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+                if (std::exchange(last_seen[v], region) != region)
+                    grid.each_near(mesh.positions[v], [&](uint32_t candidate) {
+                        if (candidate != region)
+                            near_.emplace_back(candidate, region);
+                    });
+    sort_unique(near_);
 }
 
-bool Attachment::faces(const Region &crumb, const Vec3d &z) const
+bool Attachment::faces(const Region &candidate, const Vec3d &z) const
 {
     double steep = 0, size = 0;
-    const double least = texels(crumb) < CRUMB_TEXELS ? STEEP_COSINE : GUEST_COSINE;
-    for (uint32_t t : crumb.triangles) {
+    const double least = texels(candidate) < SMALL_ISLAND_TEXELS ? ISLAND_FACING : CANDIDATE_FACING;
+    for (uint32_t t : candidate.triangles) {
         if (leans_back(surface_, t, z, bounds_.pitch))
             return false;
         size += surface_.facets[t].size;
         if (dot(Vec3d(surface_.normal[t]), z) < least)
             steep += surface_.facets[t].size;
     }
-    return steep <= STEEP_AREA * size && !has_wall(surface_, crumb, z, bounds_.pitch, WALL_TEXELS);
+    return steep <= STEEP_AREA * size &&
+           !has_wall(surface_, candidate, z, bounds_.pitch, WALL_TEXELS);
 }
 
-Frame Attachment::widened(const Frame &frame, const Region &crumb) const
+Frame Attachment::widened(const Frame &frame, const Region &candidate) const
 {
     FrameInverse inverse(frame);
     Vec3d low, high(frame.extent[0], frame.extent[1], frame.extent[2]);
-    for (uint32_t t : crumb.triangles)
+    for (uint32_t t : candidate.triangles)
         for (int k = 0; k < 3; ++k) {
             Vec3d p = inverse(surface_.mesh.position(t, k));
             for (int i = 0; i < 3; ++i) {
@@ -167,86 +203,78 @@ Frame Attachment::widened(const Frame &frame, const Region &crumb) const
     return out;
 }
 
-void Attachment::mark_junk(const Region &crumb, const Vec3d &z)
+void Attachment::mark_junk(const Region &candidate, const Vec3d &z)
 {
-    for (uint32_t t : crumb.triangles)
-        if (dot(Vec3d(surface_.normal[t]), z) < STEEP_COSINE)
+    for (uint32_t t : candidate.triangles)
+        if (dot(Vec3d(surface_.normal[t]), z) < ISLAND_FACING)
             surface_.junk[t] = 1;
 }
 
-bool Attachment::try_host(uint32_t crumb, uint32_t host, bool trifle)
+bool Attachment::try_target(uint32_t candidate, uint32_t target, bool tiny)
 {
-    const Region &guest = regions_[crumb];
-    if (!trifle && !faces(guest, frames_[host].z))
+    const Region &added = regions_[candidate];
+    if (!tiny && !faces(added, frames_[target].z))
         return false;
-    Frame frame = widened(frames_[host], guest);
+    Frame frame = widened(frames_[target], added);
     if (!bounds_.cone && (std::max(frame.extent[0], frame.extent[1]) > bounds_.side ||
-                          cost(frame) > cost(frames_[host]) + cost(frames_[crumb])))
+                          cost(frame) > cost(frames_[target]) + cost(frames_[candidate])))
         return false;
-    LayerGrid &grid = grids_[host];
+    LayerGrid &grid = grids_[target];
     if (grid.samples.empty())
-        grid = make_layer_grid(surface_, regions_[host], grid_of_[host], bounds_.pitch);
-    LayerGrid own = make_layer_grid(surface_, guest, grid_of_[host], bounds_.pitch);
+        grid = make_layer_grid(surface_, regions_[target], grid_of_[target], bounds_.pitch);
+    LayerGrid own = make_layer_grid(surface_, added, grid_of_[target], bounds_.pitch);
     size_t doubled;
     if (fold_together(grid, own, layer_rule(surface_, bounds_.pitch), doubled) ||
-        (doubled && !trifle))
+        (doubled && !tiny))
         return false;
     grid.add(own);
-    if (trifle)
-        mark_junk(guest, frame.z);
-    Region &both = regions_[host];
+    if (tiny)
+        mark_junk(added, frame.z);
+    Region &both = regions_[target];
     auto offset = uint32_t(both.size());
-    both.triangles.insert(both.triangles.end(), guest.triangles.begin(), guest.triangles.end());
-    for (std::array<uint32_t, 3> n : guest.neighbours) {
+    both.triangles.insert(both.triangles.end(), added.triangles.begin(), added.triangles.end());
+    for (std::array<uint32_t, 3> n : added.neighbours) {
         for (uint32_t &i : n)
             i += i == NO_TRIANGLE ? 0 : offset;
         both.neighbours.push_back(n);
     }
-    frames_[host] = frame;
-    regions_[crumb] = {};
-    host_[crumb] = host;
+    frames_[target] = frame;
+    regions_[candidate] = {};
+    target_[candidate] = target;
     return true;
 }
 
-void Attachment::place(uint32_t crumb, bool trifle)
+void Attachment::place(uint32_t candidate, bool tiny)
 {
-    auto near = std::lower_bound(near_.begin(), near_.end(), std::make_pair(crumb, 0u));
-    for (; near != near_.end() && near->first == crumb; ++near) {
-        uint32_t host = near->second;
-        while (host_[host] != host)
-            host = host_[host];
-        if (host != crumb && try_host(crumb, host, trifle))
+    auto near = std::lower_bound(near_.begin(), near_.end(), std::make_pair(candidate, 0u));
+    for (; near != near_.end() && near->first == candidate; ++near) {
+        uint32_t target = near->second;
+        while (target_[target] != target)
+            target = target_[target];
+        if (target != candidate && try_target(candidate, target, tiny))
             return;
     }
 }
 
 void Attachment::run()
 {
-    find_crumbs();
+    find_candidates();
     find_near();
-    host_.resize(regions_.size());
-    std::iota(host_.begin(), host_.end(), 0u);
+    target_.resize(regions_.size());
+    std::iota(target_.begin(), target_.end(), 0u);
     for (int pass = 1; pass <= PASSES; ++pass)
-        for (uint32_t crumb : crumbs_) {
-            bool trifle = pass == PASSES && texels(regions_[crumb]) < TRIFLE_TEXELS;
-            if (host_[crumb] == crumb)
-                place(crumb, trifle);
+        for (uint32_t candidate : candidates_) {
+            bool tiny = pass == PASSES && texels(regions_[candidate]) < JUNK_TEXELS;
+            if (target_[candidate] == candidate)
+                place(candidate, tiny);
         }
-    size_t kept = 0;
-    for (uint32_t i = 0; i < regions_.size(); ++i) {
-        if (host_[i] != i)
-            continue;
-        std::swap(regions_[kept], regions_[i]);
-        frames_[kept++] = frames_[i];
-    }
-    regions_.resize(kept);
-    frames_.resize(kept);
+    drop_empty(regions_, frames_);
 }
 
 } // namespace
 
-void attach_crumbs(Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
-                   std::vector<Frame> &frames)
+void attach_islands(Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
+                    std::vector<Frame> &frames)
 {
     Attachment(surface, bounds, regions, frames).run();
 }

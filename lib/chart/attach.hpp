@@ -1,4 +1,4 @@
-/* Crumbs of surface find a place in a larger chart. */
+/* Small islands of surface find a place in a larger chart. */
 #pragma once
 
 #include "chart/split.hpp"
@@ -6,9 +6,9 @@
 namespace gtx {
 
 /* Moves charts of a few texels into charts that they touch, where these stay free of folds and
- * texels are saved. Hosts keep their axes, and may then have several connected pieces. What
+ * texels are saved. Target charts keep their axes, and may then have several connected pieces. What
  * is smaller than a texel or two and faces away becomes junk there. */
-void attach_crumbs(Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
-                   std::vector<Frame> &frames);
+void attach_islands(Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
+                    std::vector<Frame> &frames);
 
 } // namespace gtx

@@ -62,7 +62,7 @@ struct ChartReport {
     /* Of the final charts: core triangles with n.z <= 0 and more than a texel of projected area,
      * without junk; charts that hold one. */
     uint64_t inverted_triangles = 0, folding_charts = 0;
-    double second_layer_fraction = 0; /* DESIGN: share of core texels with a second layer */
+    double second_layer_fraction = 0; /* share of core texels with a second layer */
     uint64_t junk_triangles = 0;      /* too small and too twisted to be anyone's surface */
     double junk_area_fraction = 0;
 };

@@ -6,6 +6,9 @@
 
 namespace gtx {
 
+/* A unit vector across `z`. */
+Vec3d any_perpendicular(const Vec3d &z);
+
 /* The component-wise median of the triangles' normals, normalised (paper, section 5). */
 Vec3d median_axis(const Mesh &mesh, const std::vector<uint32_t> &triangles);
 

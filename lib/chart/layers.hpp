@@ -17,13 +17,13 @@ struct Layers {
     std::vector<DoubleSample> folds;    /* the doubled ones that no junk rule excuses */
     /* Neighbouring texel centres far apart in depth with no surface between: each shows where the
      * cell that bridges them is cut away. */
-    std::vector<DoubleSample> cliffs;
+    std::vector<DoubleSample> discontinuities;
 };
 
 /* How far apart two depths are to be two layers, up to where a few of them are a scan's noise, and
- * how far apart those of neighbours are to be a cliff. */
+ * the step between neighbours that is a depth discontinuity. */
 struct LayerRule {
-    float apart, shallow, cliff;
+    float apart, shallow, step;
 };
 LayerRule layer_rule(const Surface &surface, double pitch);
 
@@ -47,9 +47,9 @@ LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Fr
 
 Layers find_layers(const Surface &surface, const Region &region, const Frame &frame, double pitch);
 
-/* Whether a guest could not join a host without a fold or a cliff; `doubled` counts the texel
- * centres that would be covered twice and are not yet. */
-bool fold_together(const LayerGrid &host, const LayerGrid &guest, const LayerRule &rule,
+/* Whether adding one grid to another makes a fold or a depth discontinuity; `doubled` counts the
+ * texel centres that would be covered twice and are not yet. */
+bool fold_together(const LayerGrid &target, const LayerGrid &added, const LayerRule &rule,
                    size_t &doubled);
 
 } // namespace gtx

@@ -13,18 +13,21 @@ namespace gtx {
 
 namespace {
 
-/* No chart's side exceeds the (area-weighted) median side by more than this factor: the longest
- * side sets the density of the whole model. */
+/* VSA and PGP: no chart's side exceeds the (area-weighted) median side by more than this factor,
+ * for the longest side sets the density of the whole model. */
 constexpr double LONGEST_SIDE = 2.5;
-/* Half-edges are counted in ints. */
+/* A limit: half-edges are counted in ints. */
 constexpr size_t MAX_TRIANGLES = 300000000;
-/* Texels of `resolution` that are left to the overlap. */
+/* VSA and PGP: texels of `resolution` that are left to the overlap. */
 constexpr unsigned OVERLAP_TEXELS = 8;
-/* At a resolution of 128, texels of surface in a patch that is cut; at least in a chart, on
- * average, for a model may be of thousands of small components; in its rectangle at most. */
-constexpr double CUT_TEXELS = 1400, CHART_TEXELS = 100, MAX_TEXELS = 4 * CUT_TEXELS;
-constexpr double TWO_SIDED_AREA = 0.05; /* of a chart: it is two-sided */
-constexpr double RIM = 4; /* texels of a rectangle beyond its chart's sides */
+/* At a resolution of 128, least texels of a chart, on average: a model may be of thousands of small
+ * components. Binding for those alone; half and double change nothing on scans. */
+constexpr double CHART_TEXELS = 100;
+/* Likewise, most texels of its rectangle: of a sliver chart that is nearly all empty. */
+constexpr double MAX_TEXELS = 4 * PATCH_TEXELS;
+/* Of a chart that is two-sided. Where any share counted, 448 of the dragon's 449 patches were, with
+ * this 13; half and double change a few bytes. */
+constexpr double TWO_SIDED_AREA = 0.05;
 
 uint32_t default_count(const Mesh &mesh)
 {
@@ -67,7 +70,7 @@ double cut_pitch(const Surface &surface, size_t patches, const ChartOptions &opt
 {
     if (options.pitch > 0)
         return options.pitch;
-    return std::sqrt(surface.area / (CUT_TEXELS * double(patches))) * 128 / options.resolution;
+    return std::sqrt(surface.area / (PATCH_TEXELS * double(patches))) * 128 / options.resolution;
 }
 
 /* A triangle in pieces counts once. */
@@ -182,7 +185,8 @@ double pitch_for(const std::vector<Frame> &frames, double texels)
 }
 
 /* Splits the clusters until each is a chart, at the pitch asked for, or else one that is fine
- * enough for all of them, but not finer than a blade can pay for, whose rectangles are all rim. */
+ * enough for all of them, but not finer than a sliver chart, whose rectangle is all rim, can pay
+ * for. */
 std::vector<Frame> split_for_count(const Surface &surface, const ChartOptions &options,
                                    std::vector<Region> &regions, Bounds &bounds, Task &task)
 {
@@ -233,7 +237,7 @@ void merge_all(const Surface &surface, std::vector<Region> &regions, std::vector
     frames.insert(frames.end(), loose_frames.begin(), loose_frames.end());
 }
 
-/* Whether more of it has two sides than the crumbs that a scan has everywhere. */
+/* Whether more of it has two sides than the small islands that a scan has everywhere. */
 bool is_two_sided(const Mesh &mesh, const Chart &chart)
 {
     double both = 0, area = 0;
@@ -277,7 +281,7 @@ void make_charts(Surface surface, const ChartOptions &options, uint32_t count, T
     if (cut)
         merge_all(surface, regions, frames, bounds, task);
     surface.whole.neighbours = {};
-    attach_crumbs(surface, bounds, regions, frames);
+    attach_islands(surface, bounds, regions, frames);
     out.junk = surface.junk;
     report_final(surface, regions, frames, task, out);
     CutPlan plan = {wanted,

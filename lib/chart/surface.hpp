@@ -31,11 +31,18 @@ struct Surface {
     std::vector<uint8_t> junk; /* 1: too small and too twisted to be anyone's surface */
 };
 
+/* Texels: what is smaller may be a scan's junk, a triangle that turns far from those around it or a
+ * tiny island that faces away. Half: patches +6 %, double: RMS +14 % (truck). */
+constexpr double JUNK_TEXELS = 8;
+
 /* `pitch` is the expected size of a texel. */
 Surface make_surface(const Mesh &mesh, double pitch, Task &task);
 
 /* The expected size of a texel when `charts` of them cover the mesh. */
 double expected_pitch(const Mesh &mesh, size_t charts);
+
+/* Texels of a region's area. */
+double texels_of(const Surface &surface, const Region &region, double pitch);
 
 /* Runs body(i) for every region on the task's threads, as Task::parallel does, but the largest
  * first: one that begins last is waited for. */

@@ -13,11 +13,15 @@ namespace gtx {
 
 namespace {
 
-constexpr int LLOYD_ITERATIONS = 10;
-constexpr int PAIR_ITERATIONS = 3;
+/* Of a partition, and of a region split in two. Half: RMS +6 % (bunny), +1 % (Spot); double: RMS -2
+ * % (bunny), patches -3 % (Spot) for twice the time. */
+constexpr int LLOYD_ITERATIONS = 10, PAIR_ITERATIONS = 3;
+/* Mean clusters between the first seeds: time against the choice of the rest. Half: RMS +3 %,
+ * patches -5 %; double: RMS +5 %, patches +2 % (Spot). */
 constexpr double SEED_STEPS = 8;
 /* Weight of the distance from a cluster's centre, in radii of an average cluster. Normals alone
- * make snakes along creases, and one long chart sets the texel density of the whole model. */
+ * make snakes along creases, and one long chart sets the texel density of the whole model. Half:
+ * patches +3 %; double: texels +22 % (Spot). */
 constexpr float COMPACTNESS = 0.01f;
 
 /* A priority queue of 2048 buckets, 32 an octave: the order of nearly equal errors does not
@@ -93,7 +97,7 @@ public:
             nodes_[i] = {facet, region.neighbours[i], 0};
             size += facet.size;
         }
-        spread_ = COMPACTNESS / float(size / clusters / 3.14159265);
+        spread_ = COMPACTNESS / float(size / clusters / M_PI);
     }
 
     void add_seed(uint32_t local)

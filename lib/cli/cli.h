@@ -81,6 +81,8 @@ enum { PROGRESS_BAR, PROGRESS_JSON };
 
 /* ---- messages ---- */
 
+/* A broken rule of the format, on stderr: "file: error[305 patch-page]: sentence (byte 512)". */
+void report_issue(const char *file, const gtx_issue *issue);
 /* "file: error[id]: sentence" on stderr, from a failed call; returns the exit code. */
 int report_error(const char *file, const gtx_error *error);
 /* "file: warning: sentence", unless quiet. */
@@ -90,8 +92,8 @@ int print_result(const char *text, size_t size);
 /* Writes a text file whole, through a temporary name. Returns an exit code. */
 int write_text_file(const char *path, const char *text, size_t size);
 
-/* Reads a file whole, or standard input for "-", and says why when it cannot; *data is freed by the
- * caller. Returns an exit code. */
+/* Reads a file whole, or standard input for "-", and says why when it cannot; *data is of malloc, and
+ * the caller's. Returns an exit code. */
 int read_whole(const char *path, void **data, size_t *size);
 /* Writes a dependency file as Make and Ninja read it: `target` was made from `sources`. Returns an
  * exit code. */

@@ -3,10 +3,7 @@
 
 #include "base/json.h"
 
-#include <errno.h>
-#include <inttypes.h>
 #include <stdlib.h>
-#include <string.h>
 
 static bool as_json;
 
@@ -26,51 +23,18 @@ typedef struct listener {
 static void on_issue(const gtx_issue *issue, void *user)
 {
     listener *l = user;
-    const char *severity = issue->is_error ? "error" : "warning";
     l->errors += issue->is_error;
     if (!as_json) {
-        fprintf(stderr, "%s: %s[%u %s]: %s (byte %" PRIu64 ")\n", l->path, severity, issue->rule,
-                issue->name, issue->message, issue->offset);
+        report_issue(l->path, issue);
         return;
     }
     gtx_json_begin_object(&l->json, NULL);
-    gtx_json_string(&l->json, "severity", severity);
+    gtx_json_string(&l->json, "severity", issue->is_error ? "error" : "warning");
     gtx_json_integer(&l->json, "rule", issue->rule);
     gtx_json_string(&l->json, "name", issue->name);
     gtx_json_integer(&l->json, "offset", issue->offset);
     gtx_json_string(&l->json, "message", issue->message);
     gtx_json_end_object(&l->json);
-}
-
-/* The whole file in memory from malloc; NULL with errno set. */
-static uint8_t *read_file(const char *path, size_t *size)
-{
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return NULL;
-    uint8_t *data = NULL;
-    size_t capacity = 0;
-    *size = 0;
-    for (;;) {
-        if (*size == capacity) {
-            capacity = capacity ? 2 * capacity : 1 << 16;
-            uint8_t *grown = realloc(data, capacity);
-            if (!grown)
-                break;
-            data = grown;
-        }
-        size_t got = fread(data + *size, 1, capacity - *size, file);
-        *size += got;
-        if (!got) {
-            if (ferror(file))
-                break;
-            fclose(file);
-            return data;
-        }
-    }
-    free(data);
-    fclose(file);
-    return NULL;
 }
 
 int cmd_validate(int argc, char **argv)
@@ -80,12 +44,11 @@ int cmd_validate(int argc, char **argv)
     int code = parse_options(&validate_verb, argc, argv, &l.path, &count);
     if (code >= 0)
         return code;
+    void *data;
     size_t size;
-    uint8_t *data = read_file(l.path, &size);
-    if (!data) {
-        fprintf(stderr, "%s: error[read]: %s\n", l.path, strerror(errno));
-        return EXIT_CODE_FILE;
-    }
+    code = read_whole(l.path, &data, &size);
+    if (code)
+        return code;
     gtx_error error;
     gtx_json_begin_object(&l.json, NULL);
     gtx_json_begin_array(&l.json, "issues");

@@ -31,6 +31,12 @@ static const struct {
     {GTX_ERROR_SHADER, EXIT_CODE_INTERNAL, "shader"},
 };
 
+void report_issue(const char *file, const gtx_issue *issue)
+{
+    fprintf(stderr, "%s: %s[%u %s]: %s (byte %llu)\n", file, issue->is_error ? "error" : "warning",
+            issue->rule, issue->name, issue->message, (unsigned long long)issue->offset);
+}
+
 int report_error(const char *file, const gtx_error *error)
 {
     int exit_code = EXIT_CODE_INTERNAL;
@@ -42,8 +48,8 @@ int report_error(const char *file, const gtx_error *error)
         }
     end_progress();
     if (error->rule)
-        fprintf(stderr, "%s: error[%u]: %s (byte %llu)\n", file, error->rule, error->message,
-                (unsigned long long)error->offset);
+        report_issue(file, &(gtx_issue){error->rule, 1, error->offset, error->rule_name,
+                                        error->message});
     else
         fprintf(stderr, "%s: error[%s]: %s\n", file, id, error->message);
     return exit_code;

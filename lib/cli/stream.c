@@ -1,46 +1,20 @@
 /* Reading whole files and standard input. */
 #include "cli/cli.h"
 
-#include <errno.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/alloc.h"
+#include "base/file.h"
 
-static bool read_stream(FILE *file, char **data, size_t *size)
-{
-    size_t capacity = 1 << 16, used = 0;
-    char *bytes = NULL;
-    for (;;) {
-        char *grown = realloc(bytes, capacity);
-        if (!grown)
-            break;
-        bytes = grown;
-        used += fread(bytes + used, 1, capacity - used, file);
-        if (used < capacity) {
-            *data = bytes;
-            *size = used;
-            return !ferror(file);
-        }
-        capacity *= 2;
-    }
-    free(bytes);
-    errno = ENOMEM;
-    return false;
-}
+#include <string.h>
 
 int read_whole(const char *path, void **data, size_t *size)
 {
-    bool is_stdin = !strcmp(path, "-");
-    char *bytes = NULL;
-    FILE *file = is_stdin ? stdin : fopen(path, "rb");
-    bool good = file && read_stream(file, &bytes, size);
-    if (!good)
-        fprintf(stderr, "%s: error[read]: %s\n", is_stdin ? "stdin" : path, strerror(errno));
-    if (file && !is_stdin)
-        fclose(file);
-    if (!good) {
-        free(bytes);
-        return EXIT_CODE_FILE;
-    }
-    *data = bytes;
+    const bool is_stdin = !strcmp(path, "-");
+    gtx_file_bytes bytes = {.allocator = gtx_allocator_or_default(NULL), .limit = UINT64_MAX};
+    gtx_error error;
+    if (is_stdin ? gtx_read_stream(stdin, "standard input", &bytes, &error)
+                 : gtx_read_file(path, &bytes, &error))
+        return report_error(is_stdin ? "stdin" : path, &error);
+    *data = bytes.data;
+    *size = bytes.size;
     return EXIT_CODE_OK;
 }

@@ -87,7 +87,7 @@ static double square_to(const gtx_surface *s, const double step[3], const gtx_pa
 /* From a texel inside the outline on, distances count this many times: neighbours drawn at levels
  * of their own part by the sum of their errors. */
 static const float border_counts = 4;
-static const uint8_t border_code = 128 - 16;
+static const uint8_t border_code = GTX_TRIM_OUTLINE - GTX_TRIM_TEXEL;
 
 static void weigh(const uint8_t *trim, uint32_t count, float *out)
 {
@@ -204,9 +204,9 @@ double gtx_grid_error(const gtx_asset *asset, uint32_t patch, const gtx_grid *fi
     const size_t row = (size_t)p->page * asset->info.page_height + p->rect[1];
     comparison c = {p, finest, grid, asset->trim + row * row_texels + p->rect[0], row_texels,
                     {(double)p->extent_x / p->rect[2], (double)p->extent_y / p->rect[3],
-                     p->extent_z / (asset->info.height_bits == 8 ? 254.0 : 65534.0)}, 0};
+                     gtx_height_step(p, asset->info.height_bits)}, 0};
     /* What the wider limit of the trim lets stick out. */
-    c.greatest = 0.3 * ((1u << grid->level) - 1) * fmax(c.step[0], c.step[1]);
+    c.greatest = GTX_TRIM_SHOWN * ((1u << grid->level) - 1) * fmax(c.step[0], c.step[1]);
     /* The difference of two bilinear height fields is greatest at a corner of the finer cells. */
     const uint32_t cells = (GTX_CODES_RUN >> grid->level) - 1, width = grid->nodes_x - 1;
     for (uint32_t y = 0; grid->level && y < finest->nodes_y; ++y)

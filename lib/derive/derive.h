@@ -26,7 +26,7 @@ gtx_result gtx_grid_coarsen(const gtx_grid *finest, uint32_t level, const gtx_al
 void gtx_grid_free(gtx_grid *grid, const gtx_allocator *allocator);
 
 /* Leaves solid only the cells of which something shows: those with a texel within the level's trim
- * limit (format/gtx.md, section 4.2). A ray that meets the others goes on behind them. */
+ * limit (format/gtx.md, sections 4.2 and 5). A ray that meets the others goes on behind them. */
 void gtx_grid_trim(const gtx_asset *asset, uint32_t patch, gtx_grid *grid);
 
 /* Corner cells of a level, for kernels that fetch a cell at once: texel (i, j) gets the codes of

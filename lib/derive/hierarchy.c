@@ -2,9 +2,9 @@
  * binned after Wald 2007). */
 #include "derive/hierarchy.h"
 
+#include "asset/patch.h"
 #include "base/alloc.h"
 #include "base/error.h"
-#include "derive/frame.h"
 
 #include <math.h>
 

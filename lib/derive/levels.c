@@ -138,7 +138,7 @@ void gtx_grid_trim(const gtx_asset *asset, uint32_t patch, gtx_grid *grid)
     uint8_t least[ROW_ROOM];
     const gtx_patch *p = &asset->patches[patch];
     const size_t width = p->rect[2], cells_x = grid->nodes_x - 1, step = (size_t)1 << grid->level;
-    const uint32_t limit = 128 + (48u << grid->level) / 10;
+    const uint32_t limit = (uint32_t)gtx_trim_limit(grid->level);
     const uint8_t *first = asset->trim + ((size_t)p->page * asset->info.page_height + p->rect[1]) *
                                              asset->info.page_width + p->rect[0];
     for (size_t j = 0; j + 1 < grid->nodes_y; ++j) {

@@ -1,7 +1,7 @@
 /* Affine placements: inverse, stretch and boxes. */
 #include "derive/placement.h"
 
-#include "derive/frame.h"
+#include "asset/patch.h"
 
 #include <math.h>
 
@@ -55,11 +55,10 @@ gtx_box gtx_placement_box(const gtx_placement *placement, const gtx_box *object)
 
 double gtx_ray_offset(const gtx_asset *asset)
 {
-    const double steps = asset->info.height_bits == 8 ? 254 : 65534;
     double most = 0;
     for (uint32_t i = 0; i < asset->info.patch_count; ++i) {
         const gtx_patch *p = &asset->patches[i];
-        most = fmax(most, 2 * p->extent_z / steps);
+        most = fmax(most, 2 * gtx_height_step(p, asset->info.height_bits));
         most = fmax(most, p->extent_x / p->rect[2] / 32);
         most = fmax(most, p->extent_y / p->rect[3] / 32);
     }

@@ -91,7 +91,7 @@ static place find_owner(const linker *l, const gtx_line *ray, double facing)
             continue;
         const double trim = trim_at(&l->caster->fields[found.field], found.x, found.y);
         const double apart = fabs(found.t - ray->t_max / 2) * facing / l->edit->texel_size;
-        const double cost = 2 * apart + fmax((trim - 128) / 16, -0.5);
+        const double cost = 2 * apart + fmax(gtx_trim_distance(trim), -0.5);
         if (cost >= least)
             continue;
         least = cost;
@@ -319,9 +319,9 @@ static gtx_result link_all(linker *l, gtx_error *error)
 /* The linear part, with heights in object units. */
 static void take_frames(gtx_edit *edit, const gtx_caster *caster)
 {
-    const double top = edit->source->info.height_bits == 8 ? 254 : 65534;
     for (uint32_t p = 0; p < edit->count; ++p) {
-        const double step = edit->source->patches[p].extent_z / top;
+        const double step =
+            gtx_height_step(&edit->source->patches[p], edit->source->info.height_bits);
         for (int r = 0; r < 3; ++r)
             for (int k = 0; k < 3; ++k)
                 edit->fields[p].to_grid[r][k] =

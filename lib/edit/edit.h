@@ -12,9 +12,6 @@
  * what moves by half a texel still covers every cell that shows. */
 enum { GTX_EDIT_MARGIN = 3 };
 
-/* Trim up to which a cell shows, in texels (format/gtx.md, 4.2). */
-#define GTX_EDIT_SHOWN 0.3f
-
 /* A texel that is a neighbour's: a place in a cell of that one's height field. */
 typedef struct gtx_link {
     uint32_t texel;

@@ -14,13 +14,12 @@ static const float STEEPEST = 4;
 static void place(const gtx_patch *patch, const gtx_spread *field, size_t texel, float height,
                   float out[3])
 {
-    const double i = (double)(texel % field->width) - GTX_EDIT_MARGIN + 0.5;
-    const double j = (double)(texel / field->width) - GTX_EDIT_MARGIN + 0.5;
-    const double a = i / patch->rect[2] * patch->extent_x;
-    const double b = j / patch->rect[3] * patch->extent_y;
+    const double x = (double)(texel % field->width) - GTX_EDIT_MARGIN;
+    const double y = (double)(texel / field->width) - GTX_EDIT_MARGIN;
+    double point[3];
+    gtx_texel_point(patch, x, y, (double)height / patch->extent_z, point);
     for (int k = 0; k < 3; ++k)
-        out[k] = (float)(patch->origin[k] + a * patch->axis_x[k] + b * patch->axis_y[k] +
-                         (double)height * patch->axis_z[k]);
+        out[k] = (float)point[k];
 }
 
 static uint64_t read_patch(gtx_edit *edit, uint32_t index)
@@ -44,8 +43,9 @@ static uint64_t read_patch(gtx_edit *edit, uint32_t index)
             gtx_decode_normal(asset->normal[0] + 2 * at, n);
             for (int k = 0; k < 3; ++k)
                 edit->normal[texel][k] = n[0] * rows[0][k] + n[1] * rows[1][k] + n[2] * rows[2][k];
-            edit->trim[texel] = ((float)asset->trim[at] - 128) / 16;
-            edit->height[texel] = gtx_code_height(code, asset->info.height_bits) * patch->extent_z;
+            edit->trim[texel] = (float)gtx_trim_distance(asset->trim[at]);
+            edit->height[texel] =
+                (float)(gtx_code_height(code, asset->info.height_bits) * patch->extent_z);
             edit->kind[texel] = edit->trim[texel] <= 0 ? GTX_TEXEL_OWN : GTX_TEXEL_LOOSE;
             edit->ring[texel] = 0;
             place(patch, field, own, edit->height[texel], edit->rest[texel]);
@@ -92,10 +92,10 @@ static void end_at_border(gtx_edit *edit, const gtx_spread *field)
 {
     const size_t last = field->first + (size_t)field->width * field->height;
     for (size_t t = field->first; t < last; ++t)
-        if (edit->ring[t] == 0 && edit->trim[t] < GTX_EDIT_SHOWN &&
+        if (edit->ring[t] == 0 && edit->trim[t] < (float)GTX_TRIM_SHOWN &&
             (edit->ring[t - 1] || edit->ring[t + 1] || edit->ring[t - field->width] ||
              edit->ring[t + field->width]))
-            edit->trim[t] = GTX_EDIT_SHOWN;
+            edit->trim[t] = (float)GTX_TRIM_SHOWN;
 }
 
 /* Rings of texels are continued straight on, each from those before it. */

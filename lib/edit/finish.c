@@ -29,19 +29,16 @@ static gtx_asset *new_asset(const gtx_edit *edit, const gtx_info *info, const gt
 /* Grows a box around a patch's texels with a code. */
 static void grow_box(const gtx_asset *asset, const gtx_patch *patch, float low[3], float high[3])
 {
-    const uint32_t w = patch->rect[2], h = patch->rect[3];
+    const uint32_t w = patch->rect[2], h = patch->rect[3], bits = asset->info.height_bits;
     for (uint32_t t = 0; t < w * h; ++t) {
         const uint32_t code = gtx_height_code(asset, patch, t % w, t / w);
+        double point[3];
         if (!code)
             continue;
-        const double a = (t % w + 0.5) / w * patch->extent_x;
-        const double b = (t / w + 0.5) / h * patch->extent_y;
-        const double c = (double)gtx_code_height(code, asset->info.height_bits) * patch->extent_z;
+        gtx_texel_point(patch, t % w, t / w, gtx_code_height(code, bits), point);
         for (int k = 0; k < 3; ++k) {
-            const float at = (float)(patch->origin[k] + a * patch->axis_x[k] +
-                                     b * patch->axis_y[k] + c * patch->axis_z[k]);
-            low[k] = fminf(low[k], at);
-            high[k] = fmaxf(high[k], at);
+            low[k] = fminf(low[k], (float)point[k]);
+            high[k] = fmaxf(high[k], (float)point[k]);
         }
     }
 }

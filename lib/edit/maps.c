@@ -83,42 +83,17 @@ static void fit_frame(writer *w, const gtx_window *window)
 static void write_heights(writer *w)
 {
     const uint32_t bits = w->out->info.height_bits;
-    const float top = bits == 8 ? 254 : 65534;
-    uint64_t coded = 0;
-    double low[3] = {0}, high[3] = {0}, square = 0;
-    for (int pass = 0; pass < 2; ++pass)
-        for (uint32_t t = 0; t < w->width * w->height; ++t) {
-            const gtx_texel *texel = &w->texels[t];
-            const uint32_t x = t % w->width, y = t / w->width;
-            const float code = floorf(fminf(fmaxf(texel->height, 0), 1) * top + 0.5f);
-            if (!pass) {
-                const uint32_t c = texel->coded ? (uint32_t)code + 1 : 0;
-                uint8_t *to = texel_of(w->out, w->to, GTX_SECTION_HEIGHT, 0, x, y);
-                to[0] = (uint8_t)c;
-                if (bits == 16)
-                    to[1] = (uint8_t)(c >> 8);
-            }
-            if (!texel->coded)
-                continue;
-            const double a = (x + 0.5) / w->width * w->to->extent_x;
-            const double b = (y + 0.5) / w->height * w->to->extent_y;
-            double far = 0;
-            for (int k = 0; k < 3; ++k) {
-                const double p = w->to->origin[k] + a * w->to->axis_x[k] + b * w->to->axis_y[k] +
-                                 (double)(code / top * w->to->extent_z) * w->to->axis_z[k];
-                low[k] = !pass && (!coded || p < low[k]) ? p : low[k];
-                high[k] = !pass && (!coded || p > high[k]) ? p : high[k];
-                far += pass ? (p - (low[k] + high[k]) / 2) * (p - (low[k] + high[k]) / 2) : 0;
-            }
-            square = fmax(square, far);
-            coded += !pass;
-        }
-    w->to->coverage = (float)((double)coded / ((double)w->width * w->height));
-    if (!coded)
-        return;
-    for (int k = 0; k < 3; ++k)
-        w->to->sphere[k] = (float)((low[k] + high[k]) / 2);
-    w->to->sphere[3] = fmaxf((float)(sqrt(square) * (1 + 1e-6)), 1e-30f);
+    for (uint32_t t = 0; t < w->width * w->height; ++t) {
+        const double steps = w->texels[t].height * gtx_height_steps(bits);
+        const uint32_t code = w->texels[t].coded ? gtx_nearest_code(steps, bits) : 0;
+        uint8_t *to =
+            texel_of(w->out, w->to, GTX_SECTION_HEIGHT, 0, t % w->width, t / w->width);
+        to[0] = (uint8_t)code;
+        if (bits == 16)
+            to[1] = (uint8_t)(code >> 8);
+    }
+    const gtx_code_map codes = gtx_codes_of(w->out, w->to);
+    gtx_measure_patch(w->to, &codes);
 }
 
 static void write_trim(writer *w)
@@ -126,9 +101,8 @@ static void write_trim(writer *w)
     const size_t count = (size_t)w->width * w->height;
     memset(w->codes, GTX_FAR_TRIM, count);
     for (size_t t = 0; t < count; ++t) {
-        const float code = floorf(128 + 16 * w->texels[t].trim + 0.5f);
         if (w->texels[t].coded)
-            w->codes[t] = (uint8_t)fminf(fmaxf(code, 0), 255);
+            w->codes[t] = gtx_nearest_trim(w->texels[t].trim);
         w->ring[t] = w->texels[t].coded;
     }
     const gtx_fill area = {w->codes, w->ring, w->width, w->width, w->height};

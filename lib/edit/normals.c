@@ -114,7 +114,7 @@ void gtx_edit_commit(gtx_edit *edit)
         for (size_t t = field->first; field->touched && t < last; ++t) {
             const float *c = edit->changes[t];
             /* Farther out nothing of it is ever shown. */
-            const bool counts = edit->trim[t] < GTX_EDIT_SHOWN + GTX_EDIT_MARGIN;
+            const bool counts = edit->trim[t] < GTX_TRIM_SHOWN + GTX_EDIT_MARGIN;
             for (int k = 0; k < 3 && edit->kind[t]; ++k) {
                 moves |= counts && (c[GTX_CHANGE_MOVE + k] != 0 || c[GTX_CHANGE_DETAIL + k] != 0);
                 edit->point[t][k] += c[GTX_CHANGE_MOVE + k];

@@ -40,7 +40,7 @@ gtx_window gtx_edit_window(const gtx_edit *edit, const gtx_spread *field)
     for (uint32_t j = 0; j < field->height; ++j)
         for (uint32_t i = 0; i < field->width; ++i) {
             const size_t at = field->first + (size_t)j * field->width + i;
-            const double shown = (double)GTX_EDIT_SHOWN - edit->trim[at];
+            const double shown = GTX_TRIM_SHOWN - (double)edit->trim[at];
             if (!edit->kind[at] || shown < MIN_SHOWN)
                 continue;
             /* So far from the outline, the next texel shows too. */
@@ -120,7 +120,7 @@ static void mark_coded(const gtx_window *window, gtx_texel *texels)
             gtx_texel *a = texels + j * width + i, *b = a + width;
             const float trim = fminf(fminf(a[0].trim, a[1].trim), fminf(b[0].trim, b[1].trim));
             if (a[0].covered && a[1].covered && b[0].covered && b[1].covered &&
-                trim <= GTX_EDIT_SHOWN - MIN_SHOWN)
+                trim <= GTX_TRIM_SHOWN - MIN_SHOWN)
                 a[0].coded = a[1].coded = b[0].coded = b[1].coded = 1;
         }
 }

@@ -28,7 +28,7 @@ AssetView::AssetView(const gtx_asset *asset, uint32_t level, double max_error)
 
 double AssetView::height_step(uint32_t patch) const
 {
-    return patches_[patch].extent_z / (info_.height_bits == 8 ? 254. : 65534.);
+    return gtx_height_step(&patches_[patch], info_.height_bits);
 }
 
 void AssetView::cast_row(const View &view, uint32_t j, std::vector<gtx_hit> &hits,

@@ -5,12 +5,9 @@
 
 namespace gtx {
 
-/* Trim codes: 128 is the outline, 16 a texel (format/gtx.md, 4.2). */
-static const double LIMIT = 0.3;
-
-static double trim_of(double code)
+static Vec3d vector(const double from[3])
 {
-    return (code - 128) / 16;
+    return {from[0], from[1], from[2]};
 }
 
 template <class T> static double mix(const T corner[4], double u, double v)
@@ -28,15 +25,9 @@ Cells::Cells(const gtx_asset *asset)
 void Cells::add_patch(const gtx_asset *asset, uint32_t index)
 {
     const gtx_patch &patch = asset->patches[index];
-    Frame frame;
-    double steps = asset->info.height_bits == 8 ? 254 : 65534;
-    for (int k = 0; k < 3; ++k) {
-        frame.x[k] = double(patch.axis_x[k]) * patch.extent_x / patch.rect[2];
-        frame.y[k] = double(patch.axis_y[k]) * patch.extent_y / patch.rect[3];
-        frame.z[k] = double(patch.axis_z[k]) * patch.extent_z / steps;
-        frame.origin[k] = patch.origin[k] + (frame.x[k] + frame.y[k]) / 2 - frame.z[k];
-    }
-    frames_.push_back(frame);
+    const gtx_patch_frame frame = gtx_patch_frame_of(&patch, asset->info.height_bits);
+    const double(&axis)[3][3] = frame.axis;
+    frames_.push_back({vector(frame.origin), vector(axis[0]), vector(axis[1]), vector(axis[2])});
     for (uint32_t y = 0; y + 1 < patch.rect[3]; ++y)
         for (uint32_t x = 0; x + 1 < patch.rect[2]; ++x) {
             Cell cell = {index, uint16_t(x), uint16_t(y), {}, {}, false};
@@ -44,7 +35,7 @@ void Cells::add_patch(const gtx_asset *asset, uint32_t index)
             for (uint32_t k = 0; k < 4; ++k) {
                 cell.code[k] = uint16_t(gtx_height_code(asset, &patch, x + (k & 1), y + (k >> 1)));
                 cell.trim[k] = uint8_t(gtx_trim_code(asset, &patch, x + (k & 1), y + (k >> 1)));
-                bool outside = trim_of(cell.trim[k]) > LIMIT;
+                bool outside = gtx_trim_distance(cell.trim[k]) > GTX_TRIM_SHOWN;
                 solid &= cell.code[k] != 0;
                 shown |= !outside;
                 cell.crossed |= outside;
@@ -70,7 +61,7 @@ Vec3d Cells::corner(size_t i, int k) const
 
 double Cells::trim(size_t i, double u, double v) const
 {
-    return trim_of(mix(cells_[i].trim, u, v));
+    return gtx_trim_distance(mix(cells_[i].trim, u, v));
 }
 
 Box Cells::box(size_t i) const
@@ -89,11 +80,13 @@ static double clipped_distance2(const Vec3d &p, const Vec3d v[3], const double t
     int count = 0;
     for (int k = 0; k < 3; ++k) {
         int n = (k + 1) % 3;
-        bool in = trim[k] <= LIMIT, next_in = trim[n] <= LIMIT;
+        bool in = trim[k] <= GTX_TRIM_SHOWN, next_in = trim[n] <= GTX_TRIM_SHOWN;
         if (in)
             kept[count++] = v[k];
-        if (in != next_in)
-            kept[count++] = v[k] + (v[n] - v[k]) * ((LIMIT - trim[k]) / (trim[n] - trim[k]));
+        if (in != next_in) {
+            const double part = (GTX_TRIM_SHOWN - trim[k]) / (trim[n] - trim[k]);
+            kept[count++] = v[k] + (v[n] - v[k]) * part;
+        }
     }
     double best = std::numeric_limits<double>::infinity();
     for (int k = 2; k < count; ++k)

@@ -7,7 +7,7 @@
 
 namespace gtx {
 
-/* Tolerances, as DESIGN fixes them: pixels, height steps and fractions of the diagonal. */
+/* Tolerances: pixels, height steps and fractions of the diagonal. */
 static const double HOLE_PIXELS = 2, HOLE_STEPS = 4, HOLE_DIAGONAL = 0.001, FLAT_DIAGONAL = 0.01;
 /* Pixels that the runtime's levels may be off, and how many sizes of images are looked at. */
 static const double DETAIL_PIXELS = 0.5;

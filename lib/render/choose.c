@@ -9,46 +9,13 @@
 /* What the host has told, or nanoseconds with llvmpipe on two cores, of the forward pass of a
  * dragon of 810,080 triangles in 526 patches: cast in fragments, cast by tiles. Other passes
  * cost less, but have to choose the same for the same depth. */
-static const gtx_costs *costs_of(const gtx_renderer *renderer, const gtx_view *view)
+static const gtx_costs *costs_of(const gtx_draw_call *draw)
 {
     static const gtx_costs measured[2] = {{100, 25, 15000, 160}, {100, 25, 5500, 75}};
-    const gtx_costs *told = &renderer->costs;
+    const gtx_costs *told = &draw->renderer->costs;
     const bool none = told->lod_triangle == 0 && told->lod_pixel == 0 &&
                       told->cast_patch == 0 && told->cast_pixel == 0;
-    return none ? &measured[gtx_stream_suits(renderer, view)] : told;
-}
-
-/* For a transform M the root of the largest row sum of M M^T. */
-double gtx_stretch_of(const gtx_instance_data *placed)
-{
-    double most = 0;
-    for (int r = 0; r < 3; ++r) {
-        double sum = 0;
-        for (int c = 0; c < 3; ++c) {
-            double product = 0;
-            for (int k = 0; k < 3; ++k)
-                product += (double)placed->world[r][k] * placed->world[c][k];
-            sum += fabs(product);
-        }
-        most = fmax(most, sum);
-    }
-    return sqrt(most);
-}
-
-bool gtx_keeps_angles(const gtx_instance_data *placed)
-{
-    const double slack = 1e-3;
-    double product[3][3] = {{0}};
-    for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c)
-            for (int k = 0; k < 3; ++k)
-                product[r][c] += (double)placed->world[r][k] * placed->world[c][k];
-    bool keeps = true;
-    for (int r = 0; r < 3; ++r)
-        for (int c = 0; c <= r; ++c)
-            keeps = keeps && fabs(product[r][c] - (r == c ? product[0][0] : 0)) <=
-                                 slack * product[0][0];
-    return keeps;
+    return none ? &measured[gtx_stream_suits(draw->renderer, draw->view)] : told;
 }
 
 /* A box whose nearest corner is nearer than this share of the way to its middle is looked into. */
@@ -72,11 +39,11 @@ static double nearest_patch(const gtx_model *model, const double w[4])
     return least + w[3];
 }
 
-static extent measure(const gtx_view *view, const gtx_frame *frame, const gtx_model *model,
+static extent measure(const gtx_draw_call *draw, const gtx_model *model,
                       const gtx_instance_data *placed)
 {
     const gtx_lod_meshes *lods = &model->lods;
-    const float *clip = frame->clip_from_world;
+    const float *clip = draw->frame.clip_from_world;
     double w[4] = {0, 0, 0, clip[15]}, radius = 0; /* w in clip space, as a row over object space */
     for (int k = 0; k < 4; ++k)
         for (int r = 0; r < 3; ++r)
@@ -92,8 +59,8 @@ static extent measure(const gtx_view *view, const gtx_frame *frame, const gtx_mo
     if (nearest < near_share * middle)
         nearest = fmax(nearest, nearest_patch(model, w));
     /* detail[0]: pixels a world unit at w = 1, over the error allowed in pixels. */
-    const double scale = frame->detail[0] * gtx_stretch_of(placed);
-    const double allowed = view->max_error > 0 ? view->max_error : 0.5;
+    const double scale = draw->frame.detail[0] * gtx_stretch_of(placed);
+    const double allowed = draw->view->max_error > 0 ? draw->view->max_error : 0.5;
     const double across = scale * allowed * sqrt(radius) / fmax(middle, DBL_MIN);
     return (extent){fmax(nearest, 0) / scale, across * across};
 }
@@ -120,14 +87,14 @@ static uint32_t usable_levels(const gtx_lod_meshes *lods)
  * takes several times as long. */
 static const double finest_excess = 1.5;
 
-gtx_result gtx_choose_way(const gtx_renderer *renderer, const gtx_view *view,
-                          const gtx_frame *frame, const gtx_model *model,
-                          const gtx_instance_data *placed, uint8_t *way, gtx_error *error)
+gtx_result gtx_choose_lod(const gtx_draw_call *draw, const gtx_model *model,
+                          const gtx_instance_data *placed, uint8_t *lod, gtx_error *error)
 {
+    const gtx_view *view = draw->view;
     const gtx_lod_meshes *lods = &model->lods;
     const bool forced = view->method == GTX_METHOD_LOD;
     const bool by_error = view->level == 0 && view->viewport_height > 0;
-    *way = 0;
+    *lod = 0;
     if (forced && !lods->level_count)
         return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "the asset has no LOD mesh to be drawn by");
     if (!lods->level_count || !(forced || (view->method == GTX_METHOD_AUTO && by_error)))
@@ -135,15 +102,15 @@ gtx_result gtx_choose_way(const gtx_renderer *renderer, const gtx_view *view,
     const uint32_t usable = usable_levels(lods);
     uint32_t level = view->level < usable ? view->level : usable;
     if (by_error) {
-        const extent e = measure(view, frame, model, placed);
+        const extent e = measure(draw, model, placed);
         while (level < usable && lods->levels[level].error <= e.error)
             ++level;
         if (!level && usable && lods->levels[0].error <= finest_excess * e.error)
             level = 1;
         if (!forced && level &&
-            is_casting_cheaper(costs_of(renderer, view), model, level - 1, e.pixels))
+            is_casting_cheaper(costs_of(draw), model, level - 1, e.pixels))
             level = 0;
     }
-    *way = (uint8_t)(forced && !level && usable ? 1 : level);
+    *lod = (uint8_t)(forced && !level && usable ? 1 : level);
     return GTX_OK;
 }

@@ -1,9 +1,9 @@
 /* Whether one material covers a whole model: most have no maps of it, and need no lookups. */
-#include "render/renderer.h"
+#include "render/model.h"
 
 #include <string.h>
 
-static bool is_even(const uint8_t *texels, size_t count, const uint8_t material[4],
+static bool is_constant(const uint8_t *texels, size_t count, const uint8_t material[4],
                     const uint8_t *heights, size_t height_size)
 {
     static const uint8_t none[4] = {0}, empty[2] = {0};
@@ -28,7 +28,7 @@ static const uint8_t *find_material(const uint8_t *texels, size_t count)
     return texels;
 }
 
-bool gtx_find_even_material(const gtx_asset *asset, float out[4])
+bool gtx_find_constant_material(const gtx_asset *asset, float out[4])
 {
     const gtx_info *info = &asset->info;
     const uint8_t *heights = gtx_map_data(asset, GTX_MAP_HEIGHT, 0, NULL), *material = NULL;
@@ -39,7 +39,7 @@ bool gtx_find_even_material(const gtx_asset *asset, float out[4])
             return false;
         if (k == 0)
             material = find_material(texels, size / 4);
-        if (!is_even(texels, size / 4, material, k ? NULL : heights, info->height_bits / 8))
+        if (!is_constant(texels, size / 4, material, k ? NULL : heights, info->height_bits / 8))
             return false;
     }
     for (int c = 0; c < 4; ++c)

@@ -1,9 +1,9 @@
 /* What drawing derives from one patch: corner cells of all levels, its record, and its proxies. */
-#include "render/renderer.h"
+#include "render/model.h"
 
+#include "asset/patch.h"
 #include "base/alloc.h"
 #include "base/error.h"
-#include "derive/frame.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,47 +13,49 @@
 static const float hull_margin = 0.25f;
 
 /* The part of a record that is the same for all levels. */
-static void fill_frame(float record[GTX_RECORD_TEXELS][4], const gtx_patch *patch,
-                       uint32_t height_bits)
+static void fill_frame(gtx_record record, const gtx_patch *patch, uint32_t height_bits)
 {
     const gtx_patch_frame frame = gtx_patch_frame_of(patch, height_bits);
     for (int k = 0; k < 4; ++k)
         for (int r = 0; r < 3; ++r)
-            record[r][k] = (float)frame.to_grid[r][k];
+            record[GTX_RECORD_TO_GRID + r][k] = (float)frame.to_grid[r][k];
     for (int k = 0; k < 3; ++k) {
-        record[3][k] = (float)frame.origin[k];
+        record[GTX_RECORD_ORIGIN][k] = (float)frame.origin[k];
         for (int a = 0; a < 3; ++a)
-            record[4 + a][k] = (float)frame.axis[a][k];
+            record[GTX_RECORD_AXIS_X + a][k] = (float)frame.axis[a][k];
     }
-    record[5][3] = (float)patch->page;
-    record[6][3] = patch->flags & GTX_PATCH_TWO_SIDED ? 1.0f : 0.0f;
+    record[GTX_RECORD_PAGE][3] = (float)patch->page;
+    record[GTX_RECORD_TWO_SIDED][3] = patch->flags & GTX_PATCH_TWO_SIDED ? 1.0f : 0.0f;
     for (int k = 0; k < 4; ++k)
-        record[7][k] = patch->rect[k];
+        record[GTX_RECORD_RECT][k] = patch->rect[k];
 }
 
 /* The part that follows from the box, whose vertices begin at `box`. */
-static void fill_box(float record[GTX_RECORD_TEXELS][4], const gtx_proxy_vertex *box)
+static void fill_box(gtx_record record, const gtx_proxy_vertex *box)
 {
     const gtx_proxy_vertex *low = box, *high = box + GTX_BOX_VERTICES - 1;
-    record[3][3] = low->z;
-    record[4][3] = high->z;
-    record[10][0] = low->x + hull_margin; /* the solid cells, without the margin */
-    record[10][1] = low->y + hull_margin;
-    record[10][2] = high->x - hull_margin;
-    record[10][3] = high->y - hull_margin;
+    float *solid = record[GTX_RECORD_SOLID];
+    record[GTX_RECORD_LOW_Z][3] = low->z;
+    record[GTX_RECORD_HIGH_Z][3] = high->z;
+    solid[0] = low->x + hull_margin;
+    solid[1] = low->y + hull_margin;
+    solid[2] = high->x - hull_margin;
+    solid[3] = high->y - hull_margin;
 }
 
 /* Enlarges the sphere until the vertices are within. */
-static void hold(float sphere[4], float record[GTX_RECORD_TEXELS][4], const gtx_proxies *proxies,
-                 uint32_t first)
+static void enclose(float sphere[4], gtx_record record, const gtx_proxies *proxies,
+                    uint32_t first)
 {
     double most = 0;
     for (uint32_t v = first; v < proxies->vertex_count; ++v) {
         const gtx_proxy_vertex *p = &proxies->vertices[v];
         double square = 0;
         for (int k = 0; k < 3; ++k) {
-            const double at = record[3][k] + (double)record[4][k] * p->x +
-                              (double)record[5][k] * p->y + (double)record[6][k] * p->z;
+            const double at = record[GTX_RECORD_ORIGIN][k] +
+                              (double)record[GTX_RECORD_AXIS_X][k] * p->x +
+                              (double)record[GTX_RECORD_AXIS_Y][k] * p->y +
+                              (double)record[GTX_RECORD_AXIS_Z][k] * p->z;
             square += (at - sphere[k]) * (at - sphere[k]);
         }
         most = square > most ? square : most;
@@ -72,9 +74,9 @@ static gtx_result derive_level(const gtx_asset *asset, uint32_t patch, gtx_grid 
     gtx_grid_cells(grid, asset->info.height_bits, out->row_texels[k], out->cells[k]);
     gtx_grid_slabs(&asset->patches[patch], grid, out->slabs[k]);
     gtx_result result = gtx_add_hull(asset, patch, grid, hull_margin, allocator, hulls,
-                                     &out->record[8 + k / 4][k % 4], error);
+                                     &out->record[GTX_RECORD_REACH + k / 4][k % 4], error);
     if (!result)
-        hold(out->facts.hull, out->record, hulls, first);
+        enclose(out->facts.hull, out->record, hulls, first);
     return result;
 }
 

@@ -1,7 +1,7 @@
-/* What a camera sees of patches and slabs: the records that geotex_tiles.glsl reads. */
+/* Patch view set-up: the records of patches and slabs that geotex_tiles.glsl reads. */
 #include "render/patch_view.h"
 
-#include "derive/frame.h"
+#include "asset/patch.h"
 
 #include <math.h>
 
@@ -10,23 +10,47 @@ static double dot4(const double row[4], const double p[3], double w)
     return row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3] * w;
 }
 
-/* Inverts the rows: origin and columns. */
-static void invert(gtx_camera_rows *c)
+/* The rays are columns of the rows' inverse. */
+static void set_rays(gtx_camera_rows *c)
 {
+    static const int column[RAY_PARTS] = {
+        [RAY_ORIGIN] = 3, [RAY_DIRECTION] = 2, [RAY_X] = 0, [RAY_Y] = 1};
     double inverse[3][4];
     gtx_invert_affine(c->row, inverse);
-    for (int k = 0; k < 3; ++k) {
-        c->origin[k] = inverse[k][3];
-        for (int r = 0; r < 3; ++r)
-            c->column[r][k] = inverse[k][r];
-    }
+    for (int i = 0; i < RAY_PARTS; ++i)
+        for (int k = 0; k < 3; ++k)
+            c->rays[i][k] = inverse[k][column[i]];
 }
 
-gtx_camera_rows gtx_sight_camera_of(const gtx_view *view, const gtx_frame *frame,
-                                    const gtx_instance_data *placed, float place[PLACE_ROWS][4])
+/* gtx_place, but for where the heads are. `clip_z` and `w` are of the clip position. */
+static void fill_place(const gtx_camera_rows *c, const gtx_instance_data *placed,
+                       const double clip_z[4], double w, float place[GTX_PLACE_ROWS][4])
 {
-    gtx_camera_rows c = {.perspective = frame->depth[3] > 0, .width = view->viewport_width,
-                         .height = view->viewport_height};
+    static const int rows[RAY_PARTS] = {
+        [RAY_ORIGIN] = GTX_PLACE_ORIGIN, [RAY_DIRECTION] = GTX_PLACE_DIRECTION,
+        [RAY_X] = GTX_PLACE_X, [RAY_Y] = GTX_PLACE_Y};
+    float *z = place[GTX_PLACE_CLIP_Z], *viewport = place[GTX_PLACE_VIEWPORT];
+    for (int i = 0; i < RAY_PARTS; ++i)
+        for (int k = 0; k < 3; ++k)
+            place[rows[i]][k] = (float)c->rays[i][k];
+    z[0] = (float)dot4(clip_z, c->rays[RAY_ORIGIN], 1);
+    z[1] = (float)dot4(clip_z, c->rays[RAY_X], 0);
+    z[2] = (float)dot4(clip_z, c->rays[RAY_Y], 0);
+    z[3] = (float)dot4(clip_z, c->rays[RAY_DIRECTION], 0);
+    place[GTX_PLACE_CLIP_W][0] = c->perspective ? 0.0f : (float)w;
+    place[GTX_PLACE_CLIP_W][1] = c->perspective ? 1.0f : 0.0f;
+    viewport[2] = (float)c->width;
+    viewport[3] = (float)c->height;
+    memcpy(place[GTX_PLACE_WORLD], placed->world, sizeof placed->world);
+}
+
+gtx_camera_rows gtx_camera_rows_of(const gtx_draw_call *draw, const gtx_instance_data *placed,
+                                   float place[GTX_PLACE_ROWS][4])
+{
+    const gtx_frame *frame = &draw->frame;
+    gtx_camera_rows c = {.perspective = frame->depth[3] > 0,
+                         .width = draw->view->viewport_width,
+                         .height = draw->view->viewport_height};
     const double half[2] = {c.width / 2.0, c.height / 2.0};
     double clip[4][4] = {{0}};
     for (int r = 0; r < 4; ++r) {
@@ -41,19 +65,8 @@ gtx_camera_rows gtx_sight_camera_of(const gtx_view *view, const gtx_frame *frame
         c.row[1][k] = (clip[1][k] + clip[3][k]) * half[1] / w;
         c.row[2][k] = c.perspective ? clip[3][k] : sign * clip[2][k] / w;
     }
-    invert(&c);
-    for (int k = 0; k < 3; ++k) {
-        place[PLACE_ORIGIN][k] = (float)c.origin[k];
-        for (int r = 0; r < 3; ++r)
-            place[PLACE_X + r][k] = (float)c.column[r][k];
-        place[PLACE_CLIP_Z][1 + k] = (float)dot4(clip[2], c.column[k], 0);
-        memcpy(place[PLACE_WORLD + k], placed->world[k], sizeof place[0]);
-    }
-    place[PLACE_CLIP_Z][0] = (float)dot4(clip[2], c.origin, 1);
-    place[PLACE_CLIP_W][0] = c.perspective ? 0.0f : (float)w;
-    place[PLACE_CLIP_W][1] = c.perspective ? 1.0f : 0.0f;
-    place[PLACE_CLIP_W][2] = (float)c.width;
-    place[PLACE_CLIP_W][3] = (float)c.height;
+    set_rays(&c);
+    fill_place(&c, placed, clip[2], w, place);
     return c;
 }
 
@@ -74,12 +87,12 @@ static void normalize(double v[3])
 /* What takes the patch's normals to the world: the columns of gtx_normal_frame, by the transposed
  * inverse of object -> world. */
 static void put_normals(const gtx_instance_data *placed, const float (*record)[4],
-                        const uint32_t rest[3], uint32_t out[3][4])
+                        const uint32_t field[3], uint32_t out[3][4])
 {
     double axes[3][3], along = 0;
     for (int k = 0; k < 3; ++k) {
-        axes[0][k] = record[4][k];
-        axes[2][k] = record[6][k];
+        axes[0][k] = record[GTX_RECORD_AXIS_X][k];
+        axes[2][k] = record[GTX_RECORD_AXIS_Z][k];
     }
     normalize(axes[2]);
     for (int k = 0; k < 3; ++k)
@@ -95,83 +108,102 @@ static void put_normals(const gtx_instance_data *placed, const float (*record)[4
         for (int k = 0; k < 3; ++k)
             for (int i = 0; i < 3; ++i)
                 world[k] += (double)placed->object[i][k] * axes[a][i];
-        put(out[a], world, rest[a]);
+        put(out[a], world, field[a]);
     }
 }
 
-gtx_sight gtx_sight_of(const gtx_camera_rows *c, const gtx_model *model,
-                       const gtx_instance_data *placed, const gtx_plan_entry *entry,
-                       uint32_t out[GTX_TILE_RECORD_TEXELS][4])
+/* The volume that direction, x and y span. */
+static double volume_of(const double rays[RAY_PARTS][3])
+{
+    const double *d = rays[RAY_DIRECTION], *x = rays[RAY_X], *y = rays[RAY_Y];
+    double volume = 0;
+    for (int k = 0; k < 3; ++k)
+        volume += d[k] * (x[(k + 1) % 3] * y[(k + 2) % 3] - x[(k + 2) % 3] * y[(k + 1) % 3]);
+    return fabs(volume);
+}
+
+static void put_patch(const gtx_patch_view *v, const float (*record)[4],
+                      const gtx_instance_data *placed, gtx_tile_patch out)
+{
+    const float *rect = record[GTX_RECORD_RECT];
+    const uint32_t page = (uint32_t)record[GTX_RECORD_PAGE][3];
+    const uint32_t field[RAY_PARTS] = {
+        [GTX_TILE_FIELD_CORNER] = (uint32_t)rect[0] | (uint32_t)rect[1] << 16,
+        [GTX_TILE_FIELD_SIZE] = (uint32_t)rect[2] | (uint32_t)rect[3] << 16,
+        [GTX_TILE_FIELD_PAGE] = page | v->level << GTX_TILE_LEVEL_SHIFT |
+                                (uint32_t)v->two_sided << GTX_TILE_TWO_SIDED_SHIFT};
+    for (int i = 0; i < RAY_PARTS; ++i)
+        put(out[GTX_TILE_PATCH_RAYS + i], v->rays[i], field[i]);
+    put_normals(placed, record, field, out + GTX_TILE_PATCH_NORMALS);
+    out[GTX_TILE_PATCH_INDEX][0] = v->patch;
+    out[GTX_TILE_PATCH_VOLUME][1] = gtx_bits_of(volume_of(v->rays));
+}
+
+gtx_patch_view gtx_patch_view_of(const gtx_camera_rows *c, const gtx_model *model,
+                                 const gtx_instance_data *placed, const gtx_plan_entry *entry,
+                                 gtx_tile_patch out)
 {
     const float (*record)[4] = (const float (*)[4])model->records[entry->patch];
     const uint32_t slot = entry->level * model->patch_count + entry->patch;
-    gtx_sight s = {.slabs = model->slabs + model->first_slab[slot],
-                   .count = model->first_slab[slot + 1] - model->first_slab[slot],
-                   .patch = entry->patch, .level = entry->level,
-                   .two_sided = record[6][3] > 0, .perspective = c->perspective};
-    double volume = 0;
+    gtx_patch_view v = {.slabs = model->slabs + model->first_slab[slot],
+                        .count = model->first_slab[slot + 1] - model->first_slab[slot],
+                        .patch = entry->patch, .level = entry->level,
+                        .two_sided = record[GTX_RECORD_TWO_SIDED][3] > 0,
+                        .perspective = c->perspective};
     for (int k = 0; k < 3; ++k) {
-        const double row[4] = {record[k][0], record[k][1], record[k][2], record[k][3]};
-        s.rays[0][k] = dot4(row, c->origin, 1);
-        s.rays[1][k] = dot4(row, c->column[2], 0);
-        s.rays[2][k] = dot4(row, c->column[0], 0);
-        s.rays[3][k] = dot4(row, c->column[1], 0);
-        for (int a = 0; a < 4; ++a) { /* record[3] is the origin, then the axes */
-            const double p[3] = {record[3 + a][0], record[3 + a][1], record[3 + a][2]};
-            s.row[k][(a + 3) % 4] = (float)dot4(c->row[k], p, a == 0);
+        const float *to_grid = record[GTX_RECORD_TO_GRID + k];
+        const double row[4] = {to_grid[0], to_grid[1], to_grid[2], to_grid[3]};
+        for (int i = 0; i < RAY_PARTS; ++i)
+            v.rays[i][k] = dot4(row, c->rays[i], i == RAY_ORIGIN);
+        for (int a = 0; a < 4; ++a) { /* the origin, then the axes */
+            const float *from = record[GTX_RECORD_ORIGIN + a];
+            const double p[3] = {from[0], from[1], from[2]};
+            v.row[k][(a + 3) % 4] = (float)dot4(c->row[k], p, a == 0);
         }
     }
-    for (int k = 0; k < 3; ++k)
-        volume += s.rays[1][k] * (s.rays[2][(k + 1) % 3] * s.rays[3][(k + 2) % 3] -
-                                  s.rays[2][(k + 2) % 3] * s.rays[3][(k + 1) % 3]);
-    const uint32_t rest[4] = {
-        (uint32_t)record[7][0] | (uint32_t)record[7][1] << 16,
-        (uint32_t)record[7][2] | (uint32_t)record[7][3] << 16,
-        (uint32_t)record[5][3] | entry->level << 24 | (uint32_t)s.two_sided << 31, 0};
-    for (int i = 0; i < 4; ++i)
-        put(out[i], s.rays[i], rest[i]);
-    put_normals(placed, record, rest, out + 4);
-    out[7][0] = entry->patch;
-    out[7][1] = gtx_bits_of(fabs(volume));
-    return s;
+    put_patch(&v, record, placed, out);
+    return v;
 }
 
 /* One pair of a slab's planes, which bound a linear function over grid space: its values along the
  * columns of rays, and the bounds. See gtx_meets in geotex_tiles.glsl. */
-static void put_planes(const double value[4], double low, double high, bool perspective,
+static void put_planes(const double value[RAY_PARTS], double low, double high, bool perspective,
                        uint32_t out[4])
 {
-    const double a = low - value[0], b = high - value[0];
+    const double a = low - value[RAY_ORIGIN], b = high - value[RAY_ORIGIN];
     if (perspective) {
         const double far = fabs(a) > fabs(b) ? a : b, near = fabs(a) > fabs(b) ? b : a;
         const double per = 1 / far, most = 1e30, other = far / near;
-        const double linear[3] = {value[2] * per, value[3] * per, value[1] * per};
+        const double linear[3] = {value[RAY_X] * per, value[RAY_Y] * per, value[RAY_DIRECTION] * per};
         put(out, linear, gtx_bits_of(!(other < most) ? most : other < -most ? -most : other));
     } else {
-        const double along = copysign(fmax(fabs(value[1]), 1e-20), value[1]);
-        const double linear[3] = {-value[2] / along, -value[3] / along,
+        const double along = copysign(fmax(fabs(value[RAY_DIRECTION]), 1e-20), value[RAY_DIRECTION]);
+        const double linear[3] = {-value[RAY_X] / along, -value[RAY_Y] / along,
                                   (along > 0 ? a : b) / along};
         put(out, linear, gtx_bits_of((high - low) / fabs(along)));
     }
 }
 
-void gtx_sight_put_slab(const gtx_sight *s, const gtx_slab *slab, uint32_t record_at,
-                        uint32_t out[GTX_TILE_SLAB_TEXELS][4])
+void gtx_patch_view_put_slab(const gtx_patch_view *v, const gtx_slab *slab, uint32_t patch_at,
+                             gtx_tile_slab out)
 {
-    double value[4];
-    memset(out, 0, GTX_TILE_SLAB_TEXELS * sizeof *out);
+    uint32_t *cells = out[GTX_TILE_SLAB_CELLS];
+    double value[RAY_PARTS];
+    memset(out, 0, sizeof(gtx_tile_slab));
     for (int k = 0; k < 2; ++k) {
-        for (int i = 0; i < 4; ++i)
-            value[i] = s->rays[i][k];
-        put_planes(value, (double)slab->low[k], (double)slab->high[k], s->perspective, out[k]);
-        out[3][0] |= (uint32_t)(slab->low[k] + 0.5f) >> s->level << 16 * k;
-        out[3][1] |= ((uint32_t)(slab->high[k] + 0.5f) - 1) >> s->level << 16 * k;
+        for (int i = 0; i < RAY_PARTS; ++i)
+            value[i] = v->rays[i][k];
+        put_planes(value, (double)slab->low[k], (double)slab->high[k], v->perspective,
+                   out[GTX_TILE_SLAB_PLANES + k]);
+        cells[0] |= (uint32_t)(slab->low[k] + 0.5f) >> v->level << 16 * k;
+        cells[1] |= ((uint32_t)(slab->high[k] + 0.5f) - 1) >> v->level << 16 * k;
     }
-    for (int i = 0; i < 4; ++i)
-        value[i] = s->rays[i][2] - (double)slab->slope[0] * s->rays[i][0] -
-                   (double)slab->slope[1] * s->rays[i][1];
-    put_planes(value, (double)slab->height[0], (double)slab->height[1], s->perspective, out[2]);
-    out[3][2] = record_at;
+    for (int i = 0; i < RAY_PARTS; ++i)
+        value[i] = v->rays[i][2] - (double)slab->slope[0] * v->rays[i][0] -
+                   (double)slab->slope[1] * v->rays[i][1];
+    put_planes(value, (double)slab->height[0], (double)slab->height[1], v->perspective,
+               out[GTX_TILE_SLAB_PLANES + 2]);
+    cells[2] = patch_at;
 }
 
 static float greatest(const float a[2], const float b[2])
@@ -184,13 +216,16 @@ static float greatest(const float a[2], const float b[2])
     return most;
 }
 
-bool gtx_sight_faces_away(const gtx_sight *s, const gtx_slab *slab)
+bool gtx_patch_view_faces_away(const gtx_patch_view *v, const gtx_slab *slab)
 {
-    const float o[3] = {(float)s->rays[0][0], (float)s->rays[0][1], (float)s->rays[0][2]};
-    const float d[3] = {(float)s->rays[1][0], (float)s->rays[1][1], (float)s->rays[1][2]};
-    if (s->two_sided)
+    float o[3], d[3];
+    for (int k = 0; k < 3; ++k) {
+        o[k] = (float)v->rays[RAY_ORIGIN][k];
+        d[k] = (float)v->rays[RAY_DIRECTION][k];
+    }
+    if (v->two_sided)
         return false;
-    if (!s->perspective)
+    if (!v->perspective)
         return d[2] - slab->slope[0] * d[0] - slab->slope[1] * d[1] >
                greatest(slab->rise_x, (float[2]){d[0], d[0]}) +
                    greatest(slab->rise_y, (float[2]){d[1], d[1]});

@@ -1,8 +1,9 @@
 /* Plans: which proxy each patch of an instance is cast by, if any, and in which order. */
-#include "render/renderer.h"
+#include "render/plan.h"
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "render/renderer.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,12 +14,13 @@ typedef struct plane {
     double row[4], slope;
 } plane;
 
-typedef struct sight {
-    plane side[6];            /* of the frustum, inside is above 0; the near one, the far one... */
+/* What is in view, as planes over object space. */
+typedef struct frustum {
+    plane side[6];            /* inside is above 0; the near one, the far one... */
     plane w;                  /* of clip space */
     double scale;             /* pixels an object unit at w = 1, over the error allowed */
     int32_t level;            /* of all patches; -1: by their errors */
-} sight;
+} frustum;
 
 static plane finish(plane p)
 {
@@ -35,9 +37,11 @@ static plane combine(const plane *w, double w_factor, const plane *row, double f
     return finish(p);
 }
 
-static sight sight_of(const gtx_view *view, const gtx_frame *frame, const gtx_model *model,
-                      const gtx_instance_data *placed)
+static frustum frustum_of(const gtx_draw_call *draw, const gtx_model *model,
+                          const gtx_instance_data *placed)
 {
+    const gtx_view *view = draw->view;
+    const gtx_frame *frame = &draw->frame;
     plane rows[4] = {{{0}, 0}};
     for (int r = 0; r < 4; ++r) {
         for (int k = 0; k < 4; ++k)
@@ -47,18 +51,18 @@ static sight sight_of(const gtx_view *view, const gtx_frame *frame, const gtx_mo
     }
     const plane *w = &rows[3];
     const plane low = combine(w, frame->depth[0], &rows[2], 1), high = combine(w, 1, &rows[2], -1);
-    sight s = {.side = {frame->reversed ? high : low, frame->reversed ? low : high,
-                        combine(w, 1, &rows[0], 1), combine(w, 1, &rows[0], -1),
-                        combine(w, 1, &rows[1], 1), combine(w, 1, &rows[1], -1)},
-               .w = finish(*w),
-               .scale = frame->detail[0] * gtx_stretch_of(placed),
-               .level = -1};
+    frustum f = {.side = {frame->reversed ? high : low, frame->reversed ? low : high,
+                          combine(w, 1, &rows[0], 1), combine(w, 1, &rows[0], -1),
+                          combine(w, 1, &rows[1], 1), combine(w, 1, &rows[1], -1)},
+                 .w = finish(*w),
+                 .scale = frame->detail[0] * gtx_stretch_of(placed),
+                 .level = -1};
     const int32_t last = (int32_t)model->mip_count - 1;
     if (view->level > 0)
-        s.level = (int32_t)view->level - 1 < last ? (int32_t)view->level - 1 : last;
+        f.level = (int32_t)view->level - 1 < last ? (int32_t)view->level - 1 : last;
     else if (view->viewport_height == 0)
-        s.level = 0;
-    return s;
+        f.level = 0;
+    return f;
 }
 
 static double at_centre(const plane *p, const float sphere[4])
@@ -67,31 +71,31 @@ static double at_centre(const plane *p, const float sphere[4])
 }
 
 /* Object units that are the error allowed, where the sphere is nearest. */
-static double allowed_error(const sight *s, const float sphere[4])
+static double allowed_error(const frustum *f, const float sphere[4])
 {
-    const double nearest = at_centre(&s->w, sphere) - s->w.slope * sphere[3];
-    return fmax(nearest, 0) / s->scale;
+    const double nearest = at_centre(&f->w, sphere) - f->w.slope * sphere[3];
+    return fmax(nearest, 0) / f->scale;
 }
 
-static bool is_before_near(const sight *s, const float sphere[4])
+static bool is_before_near(const frustum *f, const float sphere[4])
 {
-    return at_centre(&s->side[0], sphere) < s->side[0].slope * sphere[3];
+    return at_centre(&f->side[0], sphere) < f->side[0].slope * sphere[3];
 }
 
-static bool is_outside(const sight *s, const float sphere[4])
+static bool is_outside(const frustum *f, const float sphere[4])
 {
     bool outside = false;
     for (int k = 0; k < 6; ++k)
-        outside = outside || at_centre(&s->side[k], sphere) < -s->side[k].slope * sphere[3];
+        outside = outside || at_centre(&f->side[k], sphere) < -f->side[k].slope * sphere[3];
     return outside;
 }
 
 /* The coarsest level whose error is allowed. */
-static uint32_t level_of(const sight *s, const gtx_model *model, const gtx_patch_facts *facts)
+static uint32_t level_of(const frustum *f, const gtx_model *model, const gtx_patch_facts *facts)
 {
-    if (s->level >= 0)
-        return (uint32_t)s->level;
-    const double allowed = allowed_error(s, facts->sphere);
+    if (f->level >= 0)
+        return (uint32_t)f->level;
+    const double allowed = allowed_error(f, facts->sphere);
     uint32_t level = 0;
     while (level + 1 < model->mip_count && facts->error[level + 1] <= allowed)
         ++level;
@@ -123,15 +127,15 @@ void gtx_plan_free(gtx_renderer *renderer)
     *plan = (gtx_plan){0};
 }
 
-uint32_t gtx_plan_whole(const gtx_view *view, const gtx_frame *frame, const gtx_model *model,
+uint32_t gtx_plan_whole(const gtx_draw_call *draw, const gtx_model *model,
                         const gtx_instance_data *placed)
 {
-    const sight s = sight_of(view, frame, model, placed);
-    if (model->boxed_count || is_before_near(&s, model->sphere))
+    const frustum f = frustum_of(draw, model, placed);
+    if (model->boxed_count || is_before_near(&f, model->sphere))
         return 0;
-    if (s.level >= 0)
-        return 1 + (uint32_t)s.level;
-    return model->coarsest_error <= allowed_error(&s, model->sphere) ? model->mip_count : 0;
+    if (f.level >= 0)
+        return 1 + (uint32_t)f.level;
+    return model->coarsest_error <= allowed_error(&f, model->sphere) ? model->mip_count : 0;
 }
 
 /* Boxes come first, in order of their levels. */
@@ -143,23 +147,23 @@ static int compare(const void *a, const void *b)
     return x->slot < y->slot ? -1 : x->slot > y->slot;
 }
 
-void gtx_plan_patches(gtx_renderer *renderer, const gtx_view *view, const gtx_frame *frame,
-                      const gtx_model *model, const gtx_instance_data *placed, bool edited_only)
+void gtx_plan_patches(const gtx_draw_call *draw, const gtx_model *model,
+                      const gtx_instance_data *placed, bool edited_only)
 {
-    gtx_plan *plan = &renderer->plan;
-    const sight s = sight_of(view, frame, model, placed);
+    gtx_plan *plan = &draw->renderer->plan;
+    const frustum f = frustum_of(draw, model, placed);
     uint32_t count = 0, boxes = 0;
     memset(plan->box_count, 0, sizeof plan->box_count);
     for (uint32_t i = 0; i < model->patch_count; ++i) {
         const gtx_patch_facts *facts = &model->facts[i];
-        if ((edited_only && !model->lods.edited[i]) || is_outside(&s, facts->hull))
+        if ((edited_only && !model->lods.edited[i]) || is_outside(&f, facts->hull))
             continue;
-        const bool box = facts->boxed || is_before_near(&s, facts->hull);
-        const uint32_t level = level_of(&s, model, facts);
+        const bool box = facts->boxed || is_before_near(&f, facts->hull);
+        const uint32_t level = level_of(&f, model, facts);
         const uint32_t slot = (box ? 0 : 1 + level) * model->patch_count + i;
         if (model->first_index[slot] == model->first_index[slot + 1])
             continue;
-        const float distance = (float)at_centre(&s.side[0], facts->hull);
+        const float distance = (float)at_centre(&f.side[0], facts->hull);
         plan->entries[count++] = (gtx_plan_entry){
             box ? (float)level - GTX_MAX_MIPS : fmaxf(distance, 0), slot, i, level};
         boxes += box;

@@ -1,93 +1,77 @@
-/* Programs: shader files put together in order, compiled and linked. */
-#include "render/renderer.h"
+/* Programs: shader files put together in order, compiled and linked; found by technique, pass and
+ * material. */
+#include "render/program.h"
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "render/rays.h"
+#include "render/renderer.h"
 #include "render/shaders.h"
+#include "render/units.h"
 
+#include <stdio.h>
 #include <string.h>
 
-enum { MAX_PARTS = 6, MAX_TEXTS = 16, MAX_LOG = 2048 };
+enum { MAX_PARTS = 3, MAX_TEXTS = 16, MAX_LOG = 2048, MAX_LABEL = 64 };
 
-/* What a program consists of: between #version and the parts come its defines and, in either stage,
- * the files that all share. */
-typedef struct recipe {
-    const char *vertex, *defines, *parts[MAX_PARTS], *label;
-} recipe;
+/* What a technique consists of: between #version and the parts come the defines of technique and
+ * material and, in either stage, the files that all share. */
+typedef struct technique_files {
+    const char *label, *vertex, *defines, *parts[MAX_PARTS];
+    const char *forward;      /* the main of the forward pass */
+    /* Which material of the forward pass another one is drawn as. */
+    uint8_t drawn_as[MATERIAL_COUNT];
+} technique_files;
 
-#define PROXY "geotex_proxy.vert"
-#define MATERIALS "#define GTX_MATERIALS\n"
-#define PLAIN "#define GTX_PLAIN\n"
-#define CAST "geotex_cast.glsl", "geotex_fragment.glsl"
-#define PAPER "geotex_paper.glsl", "geotex_fragment.glsl"
-#define POLYGONS "geotex_lod.vert"
-#define CORNERS "geotex_tiles.vert"
-#define TILES "#define GTX_TILES\n"
-#define WALK CAST, "geotex_tiles.glsl"
 #define FRONT "#define GTX_FRONT\n"
-#define ALONE "#define GTX_ALONE\n"
-#define COLORS "#define GTX_COLORS\n"
-#define LOD "geotex_lod_fragment.glsl"
-#define RAYS "geotex_rays.glsl"
+#define ALL_BUT_CONSTANT {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS, MATERIAL_MAPS}
 
-static const recipe recipes[PROGRAM_COUNT] = {
-    [PROGRAM_CAST] = {PROXY, PLAIN, {CAST, "geotex_forward.frag"}, "geotex cast"},
-    [PROGRAM_CAST_COLOR] = {PROXY, "", {CAST, "geotex_forward.frag"}, "geotex cast, colors"},
-    [PROGRAM_CAST_MATERIAL] = {PROXY, MATERIALS,
-                               {"geotex_material.glsl", CAST, "geotex_forward.frag"},
-                               "geotex cast, materials"},
-    [PROGRAM_CAST_DEPTH] = {PROXY, "", {CAST, "geotex_depth.frag"}, "geotex cast, depth"},
-    [PROGRAM_CAST_ID] = {PROXY, "", {CAST, "geotex_id.frag"}, "geotex cast, ids"},
-    [PROGRAM_CAST_GBUFFER] = {PROXY, MATERIALS,
-                              {"geotex_material.glsl", CAST, "geotex_gbuffer.frag"},
-                              "geotex cast, g-buffer"},
-    [PROGRAM_PAPER] = {PROXY, "", {PAPER, "geotex_forward.frag"}, "geotex paper"},
-    [PROGRAM_PAPER_MATERIAL] = {PROXY, MATERIALS,
-                                {"geotex_material.glsl", PAPER, "geotex_forward.frag"},
-                                "geotex paper, materials"},
-    [PROGRAM_PAPER_DEPTH] = {PROXY, "", {PAPER, "geotex_depth.frag"}, "geotex paper, depth"},
-    [PROGRAM_PAPER_ID] = {PROXY, "", {PAPER, "geotex_id.frag"}, "geotex paper, ids"},
-    [PROGRAM_PAPER_GBUFFER] = {PROXY, MATERIALS,
-                               {"geotex_material.glsl", PAPER, "geotex_gbuffer.frag"},
-                               "geotex paper, g-buffer"},
-    [PROGRAM_LOD] = {POLYGONS, "", {LOD, "geotex_lod.frag"}, "geotex LOD mesh"},
-    [PROGRAM_LOD_FRONT] = {POLYGONS, FRONT, {"geotex_lod_front.frag"}, "geotex LOD mesh, front"},
-    [PROGRAM_LOD_MATERIAL] = {POLYGONS, MATERIALS,
-                              {"geotex_material.glsl", LOD, "geotex_lod.frag"},
-                              "geotex LOD mesh, materials"},
-    [PROGRAM_LOD_DEPTH] = {POLYGONS, "", {LOD, "geotex_depth.frag"}, "geotex LOD mesh, depth"},
-    [PROGRAM_LOD_DEPTH_ALONE] = {POLYGONS, ALONE, {LOD, "geotex_depth.frag"},
-                                 "geotex LOD mesh, depth, alone"},
-    [PROGRAM_LOD_ID] = {POLYGONS, "", {LOD, "geotex_id.frag"}, "geotex LOD mesh, ids"},
-    [PROGRAM_LOD_GBUFFER] = {POLYGONS, MATERIALS,
-                             {"geotex_material.glsl", LOD, "geotex_gbuffer.frag"},
-                             "geotex LOD mesh, g-buffer"},
-    [PROGRAM_LOD_MATERIAL_FRONT] = {POLYGONS, MATERIALS FRONT,
-                                    {"geotex_material.glsl", "geotex_lod_front.frag"},
-                                    "geotex LOD mesh, materials, front"},
-    [PROGRAM_LOD_EVEN_FRONT] = {POLYGONS, MATERIALS FRONT "#define GTX_EVEN\n",
-                                {"geotex_material.glsl", "geotex_lod_front.frag"},
-                                "geotex LOD mesh, one material, front"},
-    [PROGRAM_LOD_COLOR] = {POLYGONS, COLORS, {LOD, "geotex_lod.frag"},
-                           "geotex LOD mesh, colors"},
-    [PROGRAM_LOD_COLOR_FRONT] = {POLYGONS, COLORS FRONT, {"geotex_lod_front.frag"},
-                                 "geotex LOD mesh, colors, front"},
-    [PROGRAM_TILES] = {CORNERS, TILES PLAIN, {WALK, "geotex_forward.frag"}, "geotex tiles"},
-    [PROGRAM_TILES_COLOR] = {CORNERS, TILES, {WALK, "geotex_forward.frag"},
-                             "geotex tiles, colors"},
-    [PROGRAM_TILES_MATERIAL] = {CORNERS, TILES MATERIALS,
-                                {"geotex_material.glsl", WALK, "geotex_forward.frag"},
-                                "geotex tiles, materials"},
-    [PROGRAM_TILES_DEPTH] = {CORNERS, TILES, {WALK, "geotex_depth.frag"}, "geotex tiles, depth"},
-    [PROGRAM_TILES_ID] = {CORNERS, TILES, {WALK, "geotex_id.frag"}, "geotex tiles, ids"},
-    [PROGRAM_TILES_GBUFFER] = {CORNERS, TILES MATERIALS,
-                               {"geotex_material.glsl", WALK, "geotex_gbuffer.frag"},
-                               "geotex tiles, g-buffer"},
+static const technique_files techniques[TECHNIQUE_COUNT] = {
+    [TECHNIQUE_CAST] = {"cast", "geotex_proxy.vert", "",
+                        {"geotex_cast.glsl", "geotex_fragment.glsl"},
+                        "geotex_forward.frag", ALL_BUT_CONSTANT},
+    [TECHNIQUE_PAPER] = {"paper", "geotex_proxy.vert", "",
+                         {"geotex_paper.glsl", "geotex_fragment.glsl"},
+                         "geotex_forward.frag",
+                         {MATERIAL_COLORS, MATERIAL_COLORS, MATERIAL_MAPS, MATERIAL_MAPS}},
+    [TECHNIQUE_TILES] = {"tiles", "geotex_tiles.vert", "#define GTX_TILES\n",
+                         {"geotex_cast.glsl", "geotex_fragment.glsl", "geotex_tiles.glsl"},
+                         "geotex_forward.frag", ALL_BUT_CONSTANT},
+    [TECHNIQUE_LOD] = {"LOD mesh", "geotex_lod.vert", "", {"geotex_lod_fragment.glsl"},
+                       "geotex_lod.frag", ALL_BUT_CONSTANT},
+    [TECHNIQUE_LOD_FRONT] = {"LOD mesh front", "geotex_lod.vert", FRONT, {NULL},
+                             "geotex_lod_front.frag",
+                             {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS, MATERIAL_CONSTANT}},
+    [TECHNIQUE_LOD_SINGLE] = {"LOD mesh single", "geotex_lod.vert", "#define GTX_SINGLE\n",
+                              {"geotex_lod_fragment.glsl"}, NULL, {0}},
 };
-static const recipe own_cast = {PROXY, MATERIALS, {"geotex_material.glsl", CAST, RAYS},
-                                "geotex cast, own"};
-static const recipe own_lod = {POLYGONS, MATERIALS "#define GTX_LOD\n",
-                               {"geotex_material.glsl", LOD, RAYS}, "geotex LOD mesh, own"};
+
+static const struct {
+    const char *label, *defines, *file;
+} materials[MATERIAL_COUNT] = {
+    [MATERIAL_NONE] = {"", "#define GTX_PLAIN\n", NULL},
+    [MATERIAL_COLORS] = {", colors", "", NULL},
+    [MATERIAL_MAPS] = {", materials", "#define GTX_MATERIALS\n", "geotex_material.glsl"},
+    [MATERIAL_CONSTANT] = {", one material", "#define GTX_MATERIALS\n#define GTX_CONSTANT\n",
+                           "geotex_material.glsl"},
+};
+
+/* Passes with a main for all techniques, which reads what one material has. */
+static const struct {
+    const char *label, *main;
+    gtx_material_kind material;
+} passes[GTX_PASS_COUNT] = {
+    [GTX_PASS_DEPTH] = {", depth", "geotex_depth.frag", MATERIAL_COLORS},
+    [GTX_PASS_ID] = {", ids", "geotex_id.frag", MATERIAL_COLORS},
+    [GTX_PASS_GBUFFER] = {", g-buffer", "geotex_gbuffer.frag", MATERIAL_MAPS},
+};
+
+/* What a program is built of. */
+typedef struct recipe {
+    const technique_files *technique;
+    gtx_material_kind material;
+    const char *rays, *main, *label; /* texts; rays may be NULL */
+} recipe;
 
 const char *gtx_shader_source(const char *name)
 {
@@ -108,33 +92,38 @@ static void add(source *s, const char *text)
     s->texts[s->count++] = text;
 }
 
+/* What both stages begin with. */
 static source begin(bool es, const recipe *r)
 {
+    static const char *const shared[] = {"geotex_dialect.glsl", "geotex_records.glsl",
+                                         "geotex_height_field.glsl", "geotex_view.glsl"};
     source s = {.count = 0};
     add(&s, es ? "#version 300 es\n" : "#version 330 core\n");
-    add(&s, r->defines);
-    add(&s, gtx_shader_source("geotex_dialect.glsl"));
-    add(&s, gtx_shader_source("geotex_height_field.glsl"));
-    add(&s, gtx_shader_source("geotex_view.glsl"));
+    add(&s, r->technique->defines);
+    add(&s, materials[r->material].defines);
+    for (size_t i = 0; i < sizeof shared / sizeof *shared; ++i)
+        add(&s, gtx_shader_source(shared[i]));
     return s;
 }
 
 static source vertex_source(bool es, const recipe *r)
 {
     source s = begin(es, r);
-    add(&s, gtx_shader_source(r->vertex));
+    add(&s, gtx_shader_source(r->technique->vertex));
     return s;
 }
 
-/* `text` ends the shader if it is not NULL. */
-static source fragment_source(bool es, const recipe *r, const char *text)
+static source fragment_source(bool es, const recipe *r)
 {
     source s = begin(es, r);
     add(&s, gtx_shader_source("geotex_surface.glsl"));
-    for (int i = 0; i < MAX_PARTS && r->parts[i]; ++i)
-        add(&s, gtx_shader_source(r->parts[i]));
-    if (text)
-        add(&s, text);
+    if (materials[r->material].file)
+        add(&s, gtx_shader_source(materials[r->material].file));
+    for (int i = 0; i < MAX_PARTS && r->technique->parts[i]; ++i)
+        add(&s, gtx_shader_source(r->technique->parts[i]));
+    if (r->rays)
+        add(&s, r->rays);
+    add(&s, r->main);
     return s;
 }
 
@@ -194,7 +183,8 @@ static void locate(const gtx_gl *gl, gtx_program *program)
     program->detail = gl->GetUniformLocation(program->object, "gtx_detail");
     program->search = gl->GetUniformLocation(program->object, "gtx_search");
     program->maps = gl->GetUniformLocation(program->object, "gtx_maps");
-    program->even = gl->GetUniformLocation(program->object, "gtx_even");
+    program->constant_material =
+        gl->GetUniformLocation(program->object, "gtx_constant_material");
     program->lod = gl->GetUniformLocation(program->object, "gtx_lod_mesh");
     gl->UseProgram(program->object);
     for (gl_int i = 0; i < UNIT_COUNT; ++i)
@@ -204,13 +194,14 @@ static void locate(const gtx_gl *gl, gtx_program *program)
     gl->UseProgram(0);
 }
 
-static gtx_result build(const gtx_renderer *renderer, const recipe *r, const char *text,
-                        gtx_program *out, gtx_error *error)
+static gtx_result build(const gtx_renderer *renderer, const recipe *r, gtx_program *out,
+                        gtx_error *error)
 {
     const gtx_gl *gl = &renderer->gl;
-    const source above = vertex_source(gl->es, r), below = fragment_source(gl->es, r, text);
+    const source above = vertex_source(gl->es, r), below = fragment_source(gl->es, r);
     const gl_uint vertex = compile(renderer, GL_VERTEX_SHADER, &above);
     const gl_uint fragment = vertex ? compile(renderer, GL_FRAGMENT_SHADER, &below) : 0;
+    char label[MAX_LABEL];
     out->object = fragment ? link_stages(renderer, (gl_uint[2]){vertex, fragment}, 2) : 0;
     if (vertex)
         gl->DeleteShader(vertex);
@@ -218,39 +209,64 @@ static gtx_result build(const gtx_renderer *renderer, const recipe *r, const cha
         gl->DeleteShader(fragment);
     if (!out->object)
         return gtx_fail(error, GTX_ERROR_SHADER, "a shader did not compile; the log says why");
-    gtx_gl_label(gl, GL_PROGRAM, out->object, r->label);
+    snprintf(label, sizeof label, "geotex %s%s", r->technique->label, r->label);
+    gtx_gl_label(gl, GL_PROGRAM, out->object, label);
     locate(gl, out);
     return GTX_OK;
 }
 
-gtx_result gtx_program_need(gtx_renderer *renderer, int program, gtx_error *error)
+static gtx_material_kind drawn_as(gtx_technique technique, gtx_pass pass,
+                                  gtx_material_kind material)
 {
-    gtx_program *out = &renderer->programs[program];
-    return out->object ? GTX_OK : build(renderer, &recipes[program], NULL, out, error);
+    return pass == GTX_PASS_FORWARD ? techniques[technique].drawn_as[material]
+                                    : passes[pass].material;
+}
+
+const gtx_program *gtx_program_of(const gtx_renderer *renderer, gtx_technique technique,
+                                  gtx_pass pass, gtx_material_kind material)
+{
+    return &renderer->programs[technique][pass][drawn_as(technique, pass, material)];
+}
+
+gtx_result gtx_programs_need(gtx_renderer *renderer, gtx_technique technique, gtx_pass pass,
+                             gtx_error *error)
+{
+    const bool forward = pass == GTX_PASS_FORWARD;
+    gtx_result result = GTX_OK;
+    for (int i = 0; i < MATERIAL_COUNT && !result; ++i) {
+        const gtx_material_kind material = drawn_as(technique, pass, (gtx_material_kind)i);
+        gtx_program *out = &renderer->programs[technique][pass][material];
+        const recipe r = {
+            &techniques[technique], material, NULL,
+            gtx_shader_source(forward ? techniques[technique].forward : passes[pass].main),
+            forward ? materials[material].label : passes[pass].label};
+        if (!out->object)
+            result = build(renderer, &r, out, error);
+    }
+    return result;
 }
 
 gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
 {
-    static const int first[] = {PROGRAM_CAST, PROGRAM_CAST_MATERIAL, PROGRAM_PAPER,
-                                PROGRAM_PAPER_MATERIAL, PROGRAM_LOD, PROGRAM_LOD_MATERIAL,
-                                PROGRAM_LOD_FRONT, PROGRAM_LOD_COLOR,
-                                PROGRAM_LOD_COLOR_FRONT, PROGRAM_LOD_MATERIAL_FRONT,
-                                PROGRAM_LOD_EVEN_FRONT, PROGRAM_CAST_COLOR};
     gtx_result result = GTX_OK;
-    static const int tiles[] = {PROGRAM_TILES, PROGRAM_TILES_MATERIAL, PROGRAM_TILES_COLOR};
-    for (size_t i = 0; i < sizeof first / sizeof *first && !result; ++i)
-        result = gtx_program_need(renderer, first[i], error);
-    for (int i = 0; i < 3 && !result && renderer->gl.TexBuffer; ++i)
-        result = gtx_program_need(renderer, tiles[i], error);
+    for (int i = 0; i < TECHNIQUE_COUNT && !result; ++i)
+        if (techniques[i].forward && (i != TECHNIQUE_TILES || renderer->gl.TexBuffer))
+            result = gtx_programs_need(renderer, (gtx_technique)i, GTX_PASS_FORWARD, error);
     return result;
 }
 
 void gtx_programs_destroy(gtx_renderer *renderer)
 {
-    for (int i = 0; i < PROGRAM_COUNT; ++i)
-        if (renderer->programs[i].object)
-            renderer->gl.DeleteProgram(renderer->programs[i].object);
+    gtx_program *all = renderer->programs[0][0];
+    for (size_t i = 0; i < sizeof renderer->programs / sizeof *all; ++i)
+        if (all[i].object)
+            renderer->gl.DeleteProgram(all[i].object);
 }
+
+/* The LOD mesh, for mains that tell it apart. */
+static const technique_files own_lod = {.label = "LOD mesh", .vertex = "geotex_lod.vert",
+                                  .defines = "#define GTX_LOD\n",
+                                  .parts = {"geotex_lod_fragment.glsl"}};
 
 gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
                               gtx_error *error)
@@ -261,9 +277,12 @@ gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shad
     gtx_shading *shading = gtx_alloc_array(&renderer->allocator, 1, sizeof *shading);
     if (!shading)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a shading");
-    gtx_result result = build(renderer, &own_cast, text, &shading->cast, error);
+    const char *rays = gtx_shader_source("geotex_rays.glsl");
+    const recipe cast = {&techniques[TECHNIQUE_CAST], MATERIAL_MAPS, rays, text, ", own"};
+    const recipe lod = {&own_lod, MATERIAL_MAPS, rays, text, ", own"};
+    gtx_result result = build(renderer, &cast, &shading->cast, error);
     if (!result)
-        result = build(renderer, &own_lod, text, &shading->lod, error);
+        result = build(renderer, &lod, &shading->lod, error);
     if (result)
         gtx_shading_destroy(renderer, shading);
     else

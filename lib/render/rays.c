@@ -2,16 +2,16 @@
  * of their cells that hierarchies are built over. geotex_rays.glsl reads them. */
 #include "render/rays.h"
 
+#include "asset/patch.h"
 #include "base/alloc.h"
 #include "base/error.h"
-#include "derive/frame.h"
+#include "render/model.h"
 #include "render/renderer.h"
 
 #include <string.h>
 
-/* Texels that a height field's first is a multiple of: such numbers are exact as floats. */
-enum { FIELD_ALIGN = 256 };
-/* What floats count to, and what ints of shaders do. */
+/* What floats count to, and what ints of shaders do: a height field's first texel is a multiple of
+ * GTX_RAY_FIELD_ALIGN, and told as a float. */
 static const size_t MAX_NODES = 1u << 24, MAX_TEXELS = 1u << 30;
 
 static size_t align(size_t n, size_t to)
@@ -33,7 +33,8 @@ static uint32_t blocks_of(const gtx_patch *patch)
 static gtx_result measure(gtx_rays *rays, const gtx_rays_desc *desc, gtx_error *error)
 {
     rays->front_texels =
-        1 + (2 * GTX_RAY_NODE + GTX_RAY_INSTANCE) * (size_t)rays->max_instances;
+        GTX_RAY_HEAD_TEXELS +
+        (2 * GTX_RAY_NODE_TEXELS + GTX_RAY_INSTANCE_TEXELS) * (size_t)rays->max_instances;
     rays->nodes = align(rays->front_texels, GTX_RAY_ROW);
     rays->bits = 8;
     for (uint32_t a = 0; a < desc->asset_count; ++a) {
@@ -42,11 +43,12 @@ static gtx_result measure(gtx_rays *rays, const gtx_rays_desc *desc, gtx_error *
         gtx_ray_member *m = &rays->members[a];
         size_t blocks = 0;
         for (uint32_t i = 0; i < info->patch_count; ++i) {
-            rays->cells += align(texels_of(&asset->patches[i]), FIELD_ALIGN);
+            rays->cells += align(texels_of(&asset->patches[i]), GTX_RAY_FIELD_ALIGN);
             blocks += blocks_of(&asset->patches[i]);
         }
         m->nodes = rays->nodes;
-        rays->nodes += 2 * GTX_RAY_NODE * blocks + GTX_RAY_FIELD * (size_t)info->patch_count;
+        rays->nodes += 2 * GTX_RAY_NODE_TEXELS * blocks +
+                       GTX_RAY_FIELD_TEXELS * (size_t)info->patch_count;
         if (rays->nodes > MAX_NODES || rays->cells > MAX_TEXELS)
             return gtx_fail(error, GTX_ERROR_LIMIT, "the assets are too large to cast into");
         m->layout = gtx_model_layout(asset);
@@ -79,53 +81,64 @@ static bool reserve(gtx_rays *rays)
     return all && rays->front && (!rays->max_instances || (rays->boxes && rays->places));
 }
 
-/* A patch's cells and outline, its record with the height field's first texel, and the boxes of its
- * blocks. */
+/* Where the cells and the outline of a patch go, from which texel of the textures on, its record and
+ * the boxes of its blocks. */
+typedef struct room {
+    size_t first;
+    uint8_t *cells, *trim;
+    gtx_ray_field *field;
+    gtx_box *boxes;
+} room;
+
 static gtx_result derive_patch(const gtx_rays *rays, const gtx_asset *asset, uint32_t index,
-                               size_t first, void *cells, uint8_t *trim,
-                               float (*record)[4], gtx_box *boxes, gtx_error *error)
+                               const room *out, gtx_error *error)
 {
     const gtx_patch *p = &asset->patches[index];
     const gtx_patch_frame frame = gtx_patch_frame_of(p, asset->info.height_bits);
+    float (*record)[4] = *out->field, *cells = record[GTX_RAY_FIELD_CELLS];
     gtx_grid grid;
     gtx_result result = gtx_grid_build(asset, index, 0, &rays->allocator, &grid, error);
     if (result)
         return result;
-    gtx_grid_cells(&grid, rays->bits, p->rect[2], cells);
-    gtx_grid_boxes(asset, index, &grid, boxes);
+    gtx_grid_cells(&grid, rays->bits, p->rect[2], out->cells);
+    gtx_grid_boxes(asset, index, &grid, out->boxes);
     gtx_grid_free(&grid, &rays->allocator);
     for (uint32_t y = 0; y < p->rect[3]; ++y) {
         const size_t row = (size_t)p->page * asset->info.page_height + p->rect[1] + y;
-        memcpy(trim + (size_t)y * p->rect[2],
+        memcpy(out->trim + (size_t)y * p->rect[2],
                asset->trim + row * asset->info.page_width + p->rect[0], p->rect[2]);
     }
     for (int r = 0; r < 3; ++r)
         for (int k = 0; k < 4; ++k)
-            record[r][k] = (float)frame.to_grid[r][k];
-    record[3][0] = p->rect[2];
-    record[3][1] = p->rect[3];
-    record[3][2] = (float)(first / FIELD_ALIGN);
-    record[3][3] = p->flags & GTX_PATCH_TWO_SIDED ? 1 : 0;
+            record[GTX_RAY_FIELD_TO_GRID + r][k] = (float)frame.to_grid[r][k];
+    cells[0] = p->rect[2];
+    cells[1] = p->rect[3];
+    cells[2] = (float)(out->first / GTX_RAY_FIELD_ALIGN);
+    cells[3] = p->flags & GTX_PATCH_TWO_SIDED ? 1 : 0;
     return GTX_OK;
 }
 
-/* All patches of an asset, from texel *next of the cells on. */
+/* All patches of an asset, into room for cells and outlines that begins at `next` and grows less. */
 static gtx_result derive_asset(gtx_rays *rays, const gtx_asset *asset, gtx_ray_member *m,
-                               uint8_t *cells, uint8_t *trim, size_t *next, gtx_error *error)
+                               room *next, gtx_error *error)
 {
     uint32_t block = 0;
     for (uint32_t i = 0; i < m->patch_count; ++i) {
         const gtx_patch *p = &asset->patches[i];
-        gtx_result result = derive_patch(rays, asset, i, *next, cells + *next * (rays->bits / 2),
-                                         trim + *next, m->fields[i], m->boxes + block, error);
+        const size_t texels = align(texels_of(p), GTX_RAY_FIELD_ALIGN);
+        const uint32_t wide = gtx_blocks_of(p->rect[2] - 1u);
+        next->field = &m->fields[i];
+        next->boxes = m->boxes + block;
+        gtx_result result = derive_patch(rays, asset, i, next, error);
         if (result)
             return result;
-        const uint32_t wide = gtx_blocks_of(p->rect[2] - 1u);
         for (uint32_t b = 0; b < blocks_of(p); ++b, ++block) {
-            m->blocks[block][0] = (float)(b % wide + (b / wide << 11));
+            m->blocks[block][0] = (float)(b % wide + (b / wide << GTX_RAY_BLOCK_BITS));
             m->blocks[block][1] = (float)i;
         }
-        *next += align(texels_of(p), FIELD_ALIGN);
+        next->first += texels;
+        next->cells += texels * (rays->bits / 2);
+        next->trim += texels;
     }
     m->offset = gtx_ray_offset(asset);
     m->edited = true;
@@ -138,13 +151,13 @@ static gtx_result fill(gtx_renderer *renderer, gtx_rays *rays, const gtx_rays_de
     const gtx_allocator *hooks = &rays->allocator;
     uint8_t *cells = gtx_alloc_array(hooks, rays->cells, rays->bits / 2);
     uint8_t *trim = gtx_alloc_array(hooks, rays->cells, 1);
-    size_t next = 0;
+    room next = {.cells = cells, .trim = trim};
     gtx_result result = GTX_OK;
     if (!reserve(rays) || !cells || !trim)
         result = gtx_fail(error, GTX_ERROR_MEMORY, "no memory to cast into %u assets",
                           desc->asset_count);
     for (uint32_t i = 0; !result && i < desc->asset_count; ++i)
-        result = derive_asset(rays, desc->assets[i], &rays->members[i], cells, trim, &next, error);
+        result = derive_asset(rays, desc->assets[i], &rays->members[i], &next, error);
     if (!result)
         result = gtx_rays_upload(&renderer->gl, rays, cells, trim, error);
     gtx_free_array(hooks, cells, rays->cells, rays->bits / 2);
@@ -224,16 +237,16 @@ gtx_result gtx_rays_update(gtx_renderer *renderer, gtx_rays *rays, uint32_t asse
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "patch %u is not one of an asset with the rectangles of that cast into",
                         patch);
-    const size_t first = (size_t)m->fields[patch][3][2] * FIELD_ALIGN;
+    const size_t first = (size_t)m->fields[patch][GTX_RAY_FIELD_CELLS][2] * GTX_RAY_FIELD_ALIGN;
     const size_t texels = texels_of(&edited->patches[patch]);
     uint32_t block = 0;
     for (uint32_t i = 0; i < patch; ++i)
         block += blocks_of(&edited->patches[i]);
-    void *cells = gtx_alloc_array(&rays->allocator, texels, rays->bits / 2);
+    uint8_t *cells = gtx_alloc_array(&rays->allocator, texels, rays->bits / 2);
     uint8_t *trim = gtx_alloc_array(&rays->allocator, texels, 1);
+    const room out = {first, cells, trim, &m->fields[patch], m->boxes + block};
     gtx_result result =
-        cells && trim ? derive_patch(rays, edited, patch, first, cells, trim, m->fields[patch],
-                                     m->boxes + block, error)
+        cells && trim ? derive_patch(rays, edited, patch, &out, error)
                       : gtx_fail(error, GTX_ERROR_MEMORY, "no memory for an update");
     if (!result) {
         gtx_rays_send(&renderer->gl, rays, GTX_RAY_CELLS, first, texels, cells);

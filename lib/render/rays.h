@@ -3,12 +3,15 @@
 #define GTX_RENDER_RAYS_H
 
 #include "derive/placement.h"
+#include "geotex_records.glsl"
 #include "render/gl.h"
+#include "render/units.h"
 
-/* Texels of a node, of an instance's record and of a height field's. */
-enum { GTX_RAY_NODE = 2, GTX_RAY_INSTANCE = 4, GTX_RAY_FIELD = 4 };
 /* Texels of a row of any of the textures, and rows of a layer. */
-enum { GTX_RAY_ROW = 1024, GTX_RAY_LAYER_ROWS = 1024 };
+enum { GTX_RAY_ROW = 1 << GTX_RAY_ROW_BITS, GTX_RAY_LAYER_ROWS = 1 << GTX_RAY_LAYER_BITS };
+
+/* A height field's record, as geotex_records.glsl lays it out. */
+typedef float gtx_ray_field[GTX_RAY_FIELD_TEXELS][4];
 
 typedef enum gtx_ray_texture {
     GTX_RAY_NODES, GTX_RAY_CELLS, GTX_RAY_TRIM, GTX_RAY_TEXTURES
@@ -24,7 +27,7 @@ typedef struct gtx_ray_member {
     gtx_box *boxes;
     float (*blocks)[2];
     uint32_t block_count;
-    float (*fields)[GTX_RAY_FIELD][4]; /* as geotex_rays.glsl reads them */
+    gtx_ray_field *fields;
     gtx_box box;              /* around all */
     size_t nodes, end;        /* texels of its hierarchy; its height fields follow */
     /* Nodes and height fields, from when they are derived until they are sent. */
@@ -53,6 +56,8 @@ gtx_result gtx_rays_upload(const gtx_gl *gl, gtx_rays *rays, const void *cells, 
  * gtx_rays_leave finds them. */
 void gtx_rays_send(const gtx_gl *gl, const gtx_rays *rays, gtx_ray_texture texture, size_t first,
                    size_t count, const void *data);
+/* Tells the program in use where gtx_rays_bind binds. */
+void gtx_rays_locate(const gtx_gl *gl, gl_uint program);
 /* Leaves units and unpacking as gtx_model_upload does. */
 void gtx_rays_leave(const gtx_gl *gl);
 

@@ -16,14 +16,14 @@ static void put_nodes(const gtx_hierarchy *tree, size_t first, float (*out)[4],
 {
     for (uint32_t i = 0; i < tree->node_count; ++i) {
         const gtx_node *node = &tree->nodes[i];
-        float(*texel)[4] = &out[GTX_RAY_NODE * (size_t)i];
-        float at[2] = {(float)(first + GTX_RAY_NODE * (size_t)node->skip), -1};
+        float(*texel)[4] = &out[GTX_RAY_NODE_TEXELS * (size_t)i];
+        float at[2] = {(float)(first + GTX_RAY_NODE_TEXELS * (size_t)node->skip), -1};
         if (node->link & GTX_LEAF)
             leaf(node->link - GTX_LEAF, at, user);
-        memcpy(texel[0], node->low, sizeof node->low);
-        memcpy(texel[1], node->high, sizeof node->high);
-        texel[0][3] = at[0];
-        texel[1][3] = at[1];
+        memcpy(texel[GTX_RAY_NODE_LOW], node->low, sizeof node->low);
+        memcpy(texel[GTX_RAY_NODE_HIGH], node->high, sizeof node->high);
+        texel[GTX_RAY_NODE_LOW][3] = at[0];
+        texel[GTX_RAY_NODE_HIGH][3] = at[1];
     }
 }
 
@@ -34,7 +34,7 @@ static void put_block(uint32_t box, float at[2], const void *user)
 
 static size_t fresh_texels(const gtx_ray_member *m)
 {
-    return m->end - m->nodes + GTX_RAY_FIELD * (size_t)m->patch_count;
+    return m->end - m->nodes + GTX_RAY_FIELD_TEXELS * (size_t)m->patch_count;
 }
 
 static void free_fresh(gtx_ray_member *m, const gtx_allocator *hooks)
@@ -50,7 +50,7 @@ static gtx_result derive_nodes(gtx_ray_member *m, const gtx_allocator *hooks, gt
     gtx_result result = gtx_hierarchy_build(m->boxes, m->block_count, hooks, &tree, error);
     if (result)
         return result;
-    m->end = m->nodes + GTX_RAY_NODE * (size_t)tree.node_count;
+    m->end = m->nodes + GTX_RAY_NODE_TEXELS * (size_t)tree.node_count;
     m->fresh = gtx_alloc_array(hooks, fresh_texels(m), sizeof *m->fresh);
     m->box = gtx_box_empty;
     for (int k = 0; tree.node_count && k < 3; ++k) {
@@ -90,7 +90,7 @@ static gtx_result find_places(gtx_rays *rays, const gtx_ray_instance *instances,
 static void put_instance(uint32_t box, float at[2], const void *user)
 {
     at[0] = 0;
-    at[1] = (float)(*(const size_t *)user + GTX_RAY_INSTANCE * (size_t)box);
+    at[1] = (float)(*(const size_t *)user + GTX_RAY_INSTANCE_TEXELS * (size_t)box);
 }
 
 /* Fills the front of the nodes' texture; *texels becomes how many texels that takes. */
@@ -104,21 +104,21 @@ static gtx_result derive_front(gtx_rays *rays, const gtx_ray_instance *instances
         result = gtx_hierarchy_build(rays->boxes, count, &rays->allocator, &tree, error);
     if (result)
         return result;
-    const size_t end = 1 + GTX_RAY_NODE * (size_t)tree.node_count;
-    put_nodes(&tree, 1, rays->front + 1, put_instance, &end);
+    const size_t end = GTX_RAY_HEAD_TEXELS + GTX_RAY_NODE_TEXELS * (size_t)tree.node_count;
+    put_nodes(&tree, GTX_RAY_HEAD_TEXELS, rays->front + GTX_RAY_HEAD_TEXELS, put_instance, &end);
     gtx_hierarchy_free(&tree, &rays->allocator);
     rays->front[0][0] = (float)end;
     rays->front[0][1] = (float)offset;
     for (uint32_t i = 0; i < count; ++i) {
-        float(*record)[4] = rays->front + end + GTX_RAY_INSTANCE * (size_t)i;
+        float(*record)[4] = rays->front + end + GTX_RAY_INSTANCE_TEXELS * (size_t)i;
         const gtx_ray_member *m = &rays->members[instances[i].asset];
         for (int r = 0; r < 3; ++r)
             for (int k = 0; k < 4; ++k)
-                record[r][k] = (float)rays->places[i].object[r][k];
-        record[3][0] = (float)m->nodes;
-        record[3][1] = (float)m->end;
+                record[GTX_RAY_INSTANCE_TO_OBJECT + r][k] = (float)rays->places[i].object[r][k];
+        record[GTX_RAY_INSTANCE_NODES][0] = (float)m->nodes;
+        record[GTX_RAY_INSTANCE_NODES][1] = (float)m->end;
     }
-    *texels = end + GTX_RAY_INSTANCE * (size_t)count;
+    *texels = end + GTX_RAY_INSTANCE_TEXELS * (size_t)count;
     return GTX_OK;
 }
 

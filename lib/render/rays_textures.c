@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "render/renderer.h"
+#include "render/upload.h"
 
 typedef struct texture_kind {
     gl_enum target, inner, format, type;

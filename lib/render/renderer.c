@@ -95,10 +95,10 @@ void gtx_renderer_free_scratch(gtx_renderer *renderer)
                    sizeof *renderer->instances);
     gtx_free_array(&renderer->allocator, renderer->mirrored, renderer->instance_capacity,
                    sizeof *renderer->mirrored);
-    gtx_free_array(&renderer->allocator, renderer->ways, renderer->instance_capacity,
-                   sizeof *renderer->ways);
+    gtx_free_array(&renderer->allocator, renderer->lods, renderer->instance_capacity,
+                   sizeof *renderer->lods);
     renderer->instances = NULL;
     renderer->mirrored = NULL;
-    renderer->ways = NULL;
+    renderer->lods = NULL;
     renderer->instance_capacity = 0;
 }

@@ -1,5 +1,5 @@
 /* The OpenGL state around a draw: the fixed one it leaves, and reading and restoring the host's. */
-#include "render/renderer.h"
+#include "render/state.h"
 
 /* Leaves unit UNIT_STREAM active. */
 static void bind_stream(const gtx_gl *gl, gl_uint texture)

@@ -1,5 +1,6 @@
 /* The objects of casting by tiles, and its part in a draw. */
 #include "render/renderer.h"
+#include "render/units.h"
 
 void gtx_stream_create(gtx_renderer *renderer)
 {
@@ -73,11 +74,10 @@ static void send(const gtx_gl *gl, const gtx_tiles *t)
     }
 }
 
-void gtx_stream_draw(gtx_renderer *renderer, const gtx_program *program,
-                     const gtx_instance_data *placed)
+void gtx_stream_draw(const gtx_draw_call *draw, const gtx_instance_data *placed)
 {
-    const gtx_gl *gl = &renderer->gl;
-    const gtx_tiles *t = &renderer->tiles;
+    const gtx_gl *gl = &draw->renderer->gl;
+    gtx_tiles *t = &draw->renderer->tiles;
     send(gl, t);
     gl->BindBuffer(GL_ARRAY_BUFFER, t->corner_buffer);
     gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)t->corner_count * 4, t->corners.data,
@@ -85,11 +85,12 @@ void gtx_stream_draw(gtx_renderer *renderer, const gtx_program *program,
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     gl->ActiveTexture(GL_TEXTURE0 + UNIT_STREAM);
     gl->BindTexture(GL_TEXTURE_BUFFER, t->stream_texture);
-    gl->Uniform4fv(program->place, PLACE_ROWS, t->place[0]);
-    gl->Uniform4fv(program->tint, 1, placed->tint);
-    gl->Uniform1ui(program->instance, placed->id);
+    gl->Uniform4fv(draw->program->place, GTX_PLACE_ROWS, t->place[0]);
+    gl->Uniform4fv(draw->program->tint, 1, placed->tint);
+    gl->Uniform1ui(draw->program->instance, placed->id);
     gl->BindVertexArray(t->vertex_array);
     gl->Disable(GL_CULL_FACE);
     gl->DrawArrays(GL_TRIANGLES, 0, (gl_size)t->corner_count);
     gl->Enable(GL_CULL_FACE);
+    ++t->draws;
 }

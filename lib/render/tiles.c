@@ -1,8 +1,10 @@
 /* Tiles: which slabs of an instance may cover which squares of pixels, nearest first. */
-#include "render/patch_view.h"
+#include "render/tiles.h"
 
 #include "base/alloc.h"
 #include "render/order.h"
+#include "render/patch_view.h"
+#include "render/renderer.h"
 
 #include <math.h>
 #include <string.h>
@@ -11,6 +13,13 @@
 enum { TILE = 4, BAND = 16 };
 
 enum { CORNERS = 8 }; /* of a slab */
+
+/* A slab in view, and the tiles that it may cover. */
+typedef struct visible_slab {
+    float near;               /* the least t of its points */
+    uint16_t x0, x1, y0, y1;
+    int32_t sum[2], difference[2]; /* of x and y */
+} visible_slab;
 
 /* How far, in pixels, rounding may move a slab's outline. */
 static const float slack = 0.03f;
@@ -32,7 +41,7 @@ static void *reserve(gtx_renderer *renderer, gtx_scratch *scratch, size_t count,
 void gtx_tiles_free(gtx_renderer *renderer)
 {
     gtx_tiles *t = &renderer->tiles;
-    gtx_scratch *all[] = {&t->seen,    &t->order, &t->heads,  &t->records,
+    gtx_scratch *all[] = {&t->visible,    &t->order, &t->heads,  &t->records,
                           &t->slabs, &t->lists, &t->corners};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
         gtx_free_array(&renderer->allocator, all[i]->data, all[i]->size, 1);
@@ -95,13 +104,13 @@ static void diagonals_of(const float range[2], float middle, int32_t out[2])
 
 /* Where a slab is in the picture; false when it is not. One that the eye's plane cuts may be
  * anywhere. */
-static bool project(const gtx_camera_rows *c, const gtx_sight *s, const gtx_slab *slab,
-                    gtx_seen_slab *out)
+static bool project(const gtx_camera_rows *c, const gtx_patch_view *v, const gtx_slab *slab,
+                    visible_slab *out)
 {
     float p[3][CORNERS], sums[CORNERS], differences[CORNERS];
     float x[2], y[2], t[2], sum[2], difference[2];
     for (int k = 0; k < 3; ++k) {
-        const float *row = s->row[k];
+        const float *row = v->row[k];
         const float along_x = row[0] + row[2] * slab->slope[0];
         const float along_y = row[1] + row[2] * slab->slope[1];
         const float from_x[2] = {along_x * slab->low[0], along_x * slab->high[0]};
@@ -147,8 +156,8 @@ static bool find_slabs(gtx_renderer *renderer, const gtx_camera_rows *c, const g
 {
     gtx_tiles *t = &renderer->tiles;
     const gtx_plan *plan = &renderer->plan;
-    t->record_texels = GTX_TILE_RECORD_TEXELS * model->patch_count;
-    t->seen_count = 0;
+    t->record_texels = GTX_TILE_PATCH_TEXELS * model->patch_count;
+    t->visible_count = 0;
     uint16_t x0 = UINT16_MAX, x1 = 0, y0 = UINT16_MAX, y1 = 0;
     size_t most = 0;
     for (uint32_t i = 0; i < plan->count; ++i) {
@@ -156,37 +165,39 @@ static bool find_slabs(gtx_renderer *renderer, const gtx_camera_rows *c, const g
         const uint32_t *first = &model->first_slab[e->level * model->patch_count + e->patch];
         most += first[1] - first[0];
     }
-    gtx_seen_slab *seen = reserve(renderer, &t->seen, most, sizeof *seen);
-    uint32_t (*records)[GTX_TILE_RECORD_TEXELS][4] =
+    visible_slab *visible = reserve(renderer, &t->visible, most, sizeof *visible);
+    gtx_tile_patch *records =
         reserve(renderer, &t->records, model->patch_count, sizeof *records);
-    uint32_t (*slabs)[GTX_TILE_SLAB_TEXELS][4] = reserve(renderer, &t->slabs, most, sizeof *slabs);
+    gtx_tile_slab *slabs = reserve(renderer, &t->slabs, most, sizeof *slabs);
     gtx_rank *order = reserve(renderer, &t->order, 2 * most, sizeof *order);
-    if (!seen || !records || !slabs || !order)
+    if (!visible || !records || !slabs || !order)
         return false;
     for (uint32_t i = 0; i < plan->count; ++i) {
         const gtx_plan_entry *entry = &plan->entries[i];
-        const gtx_sight s = gtx_sight_of(c, model, placed, entry, records[entry->patch]);
-        for (uint32_t k = 0; k < s.count; ++k) {
-            const gtx_slab *slab = &s.slabs[k];
-            gtx_seen_slab *out = &seen[t->seen_count];
-            if (slab->low[0] > slab->high[0] || gtx_sight_faces_away(&s, slab) ||
-                !project(c, &s, slab, out))
+        const gtx_patch_view v =
+            gtx_patch_view_of(c, model, placed, entry, records[entry->patch]);
+        for (uint32_t k = 0; k < v.count; ++k) {
+            const gtx_slab *slab = &v.slabs[k];
+            visible_slab *out = &visible[t->visible_count];
+            if (slab->low[0] > slab->high[0] || gtx_patch_view_faces_away(&v, slab) ||
+                !project(c, &v, slab, out))
                 continue;
-            gtx_sight_put_slab(&s, slab, GTX_TILE_RECORD_TEXELS * s.patch, slabs[t->seen_count]);
+            gtx_patch_view_put_slab(&v, slab, GTX_TILE_PATCH_TEXELS * v.patch,
+                                    slabs[t->visible_count]);
             x0 = out->x0 < x0 ? out->x0 : x0;
             x1 = out->x1 > x1 ? out->x1 : x1;
             y0 = out->y0 < y0 ? out->y0 : y0;
             y1 = out->y1 > y1 ? out->y1 : y1;
-            order[t->seen_count] = gtx_rank_of(out->near, t->seen_count);
-            ++t->seen_count;
+            order[t->visible_count] = gtx_rank_of(out->near, t->visible_count);
+            ++t->visible_count;
         }
     }
-    gtx_order(order, order + t->seen_count, t->seen_count);
-    t->slab_texels = GTX_TILE_SLAB_TEXELS * t->seen_count;
+    gtx_order(order, order + t->visible_count, t->visible_count);
+    t->slab_texels = GTX_TILE_SLAB_TEXELS * t->visible_count;
     t->first_column = x0;
     t->first_row = y0;
-    t->columns = t->seen_count ? x1 - x0 + 1u : 0;
-    t->rows = t->seen_count ? y1 - y0 + 1u : 0;
+    t->columns = t->visible_count ? x1 - x0 + 1u : 0;
+    t->rows = t->visible_count ? y1 - y0 + 1u : 0;
     return true;
 }
 
@@ -197,12 +208,12 @@ static int32_t greatest(int32_t a, int32_t b, int32_t c)
 }
 
 /* In row y of the tiles that a slab may cover. */
-static int32_t first_tile(const gtx_seen_slab *s, int32_t y)
+static int32_t first_tile(const visible_slab *s, int32_t y)
 {
     return greatest(s->x0, s->sum[0] - y, s->difference[0] + y);
 }
 
-static int32_t last_tile(const gtx_seen_slab *s, int32_t y)
+static int32_t last_tile(const visible_slab *s, int32_t y)
 {
     return -greatest(-s->x1, y - s->sum[1], -s->difference[1] - y);
 }
@@ -217,10 +228,10 @@ static size_t head_of(const gtx_tiles *t, int32_t row)
  * last one ends, and counts the tiles that have any. */
 static uint64_t make_heads(gtx_tiles *t, uint32_t (*heads)[2], size_t count, uint64_t begin)
 {
-    const gtx_seen_slab *seen = t->seen.data;
+    const visible_slab *visible = t->visible.data;
     /* Counts from tile to tile first: how many slabs more each has, and how many less. */
     memset(heads, 0, count * sizeof *heads);
-    for (const gtx_seen_slab *s = seen; s < seen + t->seen_count; ++s)
+    for (const visible_slab *s = visible; s < visible + t->visible_count; ++s)
         for (int32_t y = s->y0; y <= s->y1; ++y) {
             const int32_t first = first_tile(s, y), last = last_tile(s, y);
             if (first <= last) {
@@ -244,11 +255,11 @@ static uint64_t make_heads(gtx_tiles *t, uint32_t (*heads)[2], size_t count, uin
 /* Puts each slab into the lists of its tiles, nearest first. */
 static void list_slabs(const gtx_tiles *t, uint32_t (*heads)[2], uint32_t (*lists)[2])
 {
-    const gtx_seen_slab *seen = t->seen.data;
+    const visible_slab *visible = t->visible.data;
     const gtx_rank *order = t->order.data;
     const uint32_t begin = 2 * (t->record_texels + t->slab_texels + t->head_texels);
-    for (uint32_t i = 0; i < t->seen_count; ++i) {
-        const gtx_seen_slab *s = &seen[order[i].place];
+    for (uint32_t i = 0; i < t->visible_count; ++i) {
+        const visible_slab *s = &visible[order[i].place];
         const uint32_t entry[2] = {
             t->record_texels + GTX_TILE_SLAB_TEXELS * order[i].place, gtx_bits_of(s->near)};
         for (int32_t y = s->y0; y <= s->y1; ++y) {
@@ -300,17 +311,18 @@ static void outline(gtx_tiles *t)
 /* Tells shaders where the heads are. Floats count to 2^24, and so do the texels before them. */
 static void place_heads(gtx_tiles *t)
 {
-    t->place[PLACE_ORIGIN][3] = (float)t->columns;
-    t->place[PLACE_X][3] = (float)(t->record_texels + t->slab_texels);
-    t->place[PLACE_Y][3] = (float)t->first_column;
-    t->place[PLACE_DIRECTION][3] = (float)t->first_row;
+    t->place[GTX_PLACE_COLUMNS][3] = (float)t->columns;
+    t->place[GTX_PLACE_HEADS][3] = (float)(t->record_texels + t->slab_texels);
+    t->place[GTX_PLACE_FIRST_COLUMN][3] = (float)t->first_column;
+    t->place[GTX_PLACE_FIRST_ROW][3] = (float)t->first_row;
 }
 
-bool gtx_tiles_fill(gtx_renderer *renderer, const gtx_view *view, const gtx_frame *frame,
-                    const gtx_model *model, const gtx_instance_data *placed)
+bool gtx_tiles_fill(const gtx_draw_call *draw, const gtx_model *model,
+                    const gtx_instance_data *placed)
 {
+    gtx_renderer *renderer = draw->renderer;
     gtx_tiles *t = &renderer->tiles;
-    const gtx_camera_rows c = gtx_sight_camera_of(view, frame, placed, t->place);
+    const gtx_camera_rows c = gtx_camera_rows_of(draw, placed, t->place);
     if (!find_slabs(renderer, &c, model, placed))
         return false;
     const size_t head_texels = ((size_t)t->columns * t->rows + 1) / 2, tiles = 2 * head_texels;

@@ -1,8 +1,9 @@
 /* Edits of a model on the GPU: one patch's maps, and what follows from them. */
-#include "render/renderer.h"
+#include "render/upload.h"
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "render/renderer.h"
 
 #include <string.h>
 
@@ -72,18 +73,34 @@ static gtx_result derive(const gtx_model *model, const gtx_asset *asset, uint32_
     return result ? result : gtx_patch_derive(asset, patch, &model->allocator, d, error);
 }
 
-/* As much as the patch's rectangle has at `level`, to a place in its page at a mip level, out of
- * rows of `width` texels. */
-static void upload_rect(const gtx_gl *gl, const gtx_model *model, uint32_t unit,
-                        const gtx_patch *patch, uint32_t level, uint32_t mip,
-                        const uint32_t at[2], const void *data, uint32_t width)
+/* Texels of a patch's rectangle at a level of detail, out of rows of `row_texels`. */
+typedef struct rect {
+    uint32_t unit, level;
+    uint32_t mip, at[2];      /* where they go in the patch's page */
+    const void *texels;
+    uint32_t row_texels;
+} rect;
+
+static void upload_rect(const gtx_gl *gl, const gtx_model *model, const gtx_patch *patch,
+                        const rect *r)
 {
-    const gtx_texture_kind kind = gtx_texture_kind_of(model, unit);
-    gl->BindTexture(kind.target, model->textures[unit]);
-    gl->PixelStorei(GL_UNPACK_ROW_LENGTH, (gl_int)width);
-    gl->TexSubImage3D(kind.target, (gl_int)mip, (gl_int)at[0], (gl_int)at[1], (gl_int)patch->page,
-                      patch->rect[2] >> level, patch->rect[3] >> level, 1,
-                      kind.format, kind.type, data);
+    const gtx_texture_kind kind = gtx_texture_kind_of(model, r->unit);
+    gl->BindTexture(kind.target, model->textures[r->unit]);
+    gl->PixelStorei(GL_UNPACK_ROW_LENGTH, (gl_int)r->row_texels);
+    gl->TexSubImage3D(kind.target, (gl_int)r->mip, (gl_int)r->at[0], (gl_int)r->at[1],
+                      (gl_int)patch->page, patch->rect[2] >> r->level, patch->rect[3] >> r->level,
+                      1, kind.format, kind.type, r->texels);
+}
+
+static void upload_cells(const gtx_gl *gl, const gtx_model *model, const gtx_patch *patch,
+                         const gtx_derived *d)
+{
+    for (uint32_t k = 0; k < model->mip_count; ++k) {
+        rect r = {.unit = UNIT_CELLS, .level = k, .texels = d->cells[k],
+                  .row_texels = patch->rect[2] >> k};
+        gtx_model_cells_at(model, patch, k, r.at);
+        upload_rect(gl, model, patch, &r);
+    }
 }
 
 static void upload_maps(const gtx_gl *gl, const gtx_model *model, const gtx_asset *asset,
@@ -103,10 +120,12 @@ static void upload_maps(const gtx_gl *gl, const gtx_model *model, const gtx_asse
             if (!data)
                 break;
             const size_t width = model->page_width >> k, height = model->page_height >> k;
-            const uint32_t at[2] = {patch->rect[0] >> k, patch->rect[1] >> k};
-            const size_t texel = (patch->page * height + at[1]) * width + at[0];
-            upload_rect(gl, model, maps[i].unit, patch, k, k, at,
-                        data + texel * maps[i].texel_size, (uint32_t)width);
+            rect r = {.unit = maps[i].unit, .level = k, .mip = k,
+                      .at = {patch->rect[0] >> k, patch->rect[1] >> k},
+                      .row_texels = (uint32_t)width};
+            const size_t texel = (patch->page * height + r.at[1]) * width + r.at[0];
+            r.texels = data + texel * maps[i].texel_size;
+            upload_rect(gl, model, patch, &r);
         }
     }
 }
@@ -119,11 +138,7 @@ static gtx_result upload(const gtx_renderer *renderer, gtx_model *model, const g
     gl->ActiveTexture(GL_TEXTURE0);
     gtx_default_unpacking(gl);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    for (uint32_t k = 0; k < model->mip_count; ++k) {
-        uint32_t at[2];
-        gtx_model_cells_at(model, p, k, at);
-        upload_rect(gl, model, UNIT_CELLS, p, k, 0, at, d->cells[k], p->rect[2] >> k);
-    }
+    upload_cells(gl, model, p, d);
     upload_maps(gl, model, edited, p);
     gl->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
     const gtx_texture_kind records = gtx_texture_kind_of(model, UNIT_PATCHES);

@@ -1,8 +1,8 @@
 /* Models on the GPU's side: textures and buffers, uploaded in slices of rows. */
-#include "render/renderer.h"
+#include "render/upload.h"
 
-#include "base/alloc.h"
 #include "base/error.h"
+#include "render/renderer.h"
 
 #include <string.h>
 
@@ -87,16 +87,19 @@ static void allocate_textures(const gtx_gl *gl, gtx_model *model)
 }
 
 /* Both go through the array target: the element target belongs to the host's vertex array. */
-void gtx_upload_proxies(const gtx_gl *gl, const gtx_model *model, const gtx_proxies *p)
+static void allocate_proxies(const gtx_gl *gl, gtx_model *model)
 {
+    const gtx_proxies *p = &model->proxies;
+    gl->GenBuffers(1, &model->vertices);
+    gl->GenBuffers(1, &model->indices);
     gl->BindBuffer(GL_ARRAY_BUFFER, model->vertices);
-    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(p->vertex_count * sizeof *p->vertices),
-                   p->vertices, GL_DYNAMIC_DRAW);
+    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(p->vertex_count * sizeof *p->vertices), NULL,
+                   GL_DYNAMIC_DRAW);
     gtx_gl_label(gl, GL_BUFFER, model->vertices, "geotex proxy vertices");
     gl->BindBuffer(GL_ARRAY_BUFFER, model->indices);
-    gtx_gl_label(gl, GL_BUFFER, model->indices, "geotex proxy indices");
-    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(p->index_count * sizeof *p->indices), p->indices,
+    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(p->index_count * sizeof *p->indices), NULL,
                    GL_DYNAMIC_DRAW);
+    gtx_gl_label(gl, GL_BUFFER, model->indices, "geotex proxy indices");
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
 }
 
@@ -220,12 +223,8 @@ static void allocate_lods(const gtx_gl *gl, gtx_lod_meshes *s)
 /* Names, sizes and labels of all objects, still empty. */
 static void allocate(const gtx_gl *gl, gtx_model *model)
 {
-    const gtx_proxies empty = {.vertex_count = model->proxies.vertex_count,
-                               .index_count = model->proxies.index_count};
     allocate_textures(gl, model);
-    gl->GenBuffers(1, &model->vertices);
-    gl->GenBuffers(1, &model->indices);
-    gtx_upload_proxies(gl, model, &empty);
+    allocate_proxies(gl, model);
     allocate_lods(gl, &model->lods);
 }
 
@@ -326,19 +325,5 @@ void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model)
         return;
     if (renderer && model->vertices)
         release(&renderer->gl, model);
-    gtx_model_free_staging(model);
-    const gtx_allocator hooks = model->allocator;
-    gtx_lod_free(&model->lods, &hooks);
-    const size_t slots = (size_t)model->kind_count * model->patch_count + 1;
-    gtx_free_array(&hooks, model->first_vertex, slots, sizeof *model->first_vertex);
-    gtx_free_array(&hooks, model->first_index, slots, sizeof *model->first_index);
-    gtx_free_array(&hooks, model->facts, model->patch_count, sizeof *model->facts);
-    gtx_free_array(&hooks, model->records, model->patch_count, sizeof *model->records);
-    if (model->first_slab)
-        gtx_free_array(&hooks, model->slabs,
-                       model->first_slab[model->mip_count * model->patch_count],
-                       sizeof *model->slabs);
-    gtx_free_array(&hooks, model->first_slab, (size_t)model->mip_count * model->patch_count + 1,
-                   sizeof *model->first_slab);
-    gtx_free_array(&hooks, model, 1, sizeof *model);
+    gtx_model_free(model);
 }

@@ -1,6 +1,7 @@
-/* The mathematics of a draw, in double: the eye, the clip planes, and instances' inverses. */
-#include "render/renderer.h"
+/* The mathematics of a draw, in double: the eye, the clip planes, instances' inverses and scales. */
+#include "render/view.h"
 
+#include "asset/asset.h"
 #include "base/error.h"
 
 #include <float.h>
@@ -196,4 +197,37 @@ gtx_result gtx_place_instance(const gtx_frame *frame, const gtx_instance *instan
     out->id = instance->id;
     *mirrored = (det < 0) != frame->mirrored;
     return GTX_OK;
+}
+
+/* For a transform M the root of the largest row sum of M M^T. */
+double gtx_stretch_of(const gtx_instance_data *placed)
+{
+    double most = 0;
+    for (int r = 0; r < 3; ++r) {
+        double sum = 0;
+        for (int c = 0; c < 3; ++c) {
+            double product = 0;
+            for (int k = 0; k < 3; ++k)
+                product += (double)placed->world[r][k] * placed->world[c][k];
+            sum += fabs(product);
+        }
+        most = fmax(most, sum);
+    }
+    return sqrt(most);
+}
+
+bool gtx_keeps_angles(const gtx_instance_data *placed)
+{
+    const double slack = 1e-3;
+    double product[3][3] = {{0}};
+    for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c)
+            for (int k = 0; k < 3; ++k)
+                product[r][c] += (double)placed->world[r][k] * placed->world[c][k];
+    bool keeps = true;
+    for (int r = 0; r < 3; ++r)
+        for (int c = 0; c <= r; ++c)
+            keeps = keeps && fabs(product[r][c] - (r == c ? product[0][0] : 0)) <=
+                                 slack * product[0][0];
+    return keeps;
 }

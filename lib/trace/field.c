@@ -1,10 +1,10 @@
 /* Height fields: what casting needs of one patch, and the lookups in its maps. */
 #include "trace/caster.h"
 
+#include "asset/patch.h"
 #include "base/alloc.h"
 #include "base/error.h"
 #include "derive/derive.h"
-#include "derive/frame.h"
 
 #include <math.h>
 #include <string.h>
@@ -142,7 +142,7 @@ gtx_result gtx_fields_build(gtx_caster *caster, const gtx_asset *asset, uint32_t
             if (chosen)
                 return chosen;
         }
-        field->trim_limit = 128 + 16 * 0.3 * (1 << field->level);
+        field->trim_limit = gtx_trim_limit(field->level);
         place_field(caster, field, &total);
     }
     caster->code_count = total.code;

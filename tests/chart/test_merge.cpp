@@ -77,7 +77,7 @@ static void check(const Mesh &mesh, const Merged &merged)
     for (int n : seen)
         assert_int_equal(n, 1);
     for (size_t i = 0; i < merged.regions.size(); ++i) {
-        assert_int_equal(merged.layers[i].folds.size() + merged.layers[i].cliffs.size(), 0);
+        assert_true(merged.layers[i].folds.empty() && merged.layers[i].discontinuities.empty());
         const FrameInverse inverse(merged.frames[i]);
         for (uint32_t t : merged.regions[i].triangles)
             for (int k = 0; k < 3; ++k) {
@@ -137,8 +137,8 @@ static void what_folds_together_stays_apart(void **)
     assert_in_range(merged.regions.size(), 3, 6);
 }
 
-/* A chart of fewer texels than 64 is a crumb, and not asked. */
-static void crumbs_are_left(void **)
+/* A chart of fewer texels than 64 is a small island, and not asked. */
+static void small_islands_are_left(void **)
 {
     const Mesh mesh = shapes::plane(32);
     auto border = [](const Vec3d &p) { return uint32_t(p.x > 1. / 32); };
@@ -206,7 +206,7 @@ int main()
         cmocka_unit_test(what_is_flat_becomes_one),
         cmocka_unit_test(sides_of_a_cube_stay_apart),
         cmocka_unit_test(what_folds_together_stays_apart),
-        cmocka_unit_test(crumbs_are_left),
+        cmocka_unit_test(small_islands_are_left),
         cmocka_unit_test(walls_are_set_apart),
         cmocka_unit_test(any_thread_count_merges_the_same),
     };

@@ -91,8 +91,8 @@ static void test_open_border(void **)
         assert_in_range(t / 2 / SIDE, 5, 5);
 }
 
-/* Beyond a cliff lies surface within reach that no facing triangle leads to. */
-static void test_cliff(void **)
+/* Beyond a depth discontinuity lies surface within reach that no facing triangle leads to. */
+static void test_discontinuity(void **)
 {
     Mesh mesh = grid([](double x, double) { return x < 10.5 ? 0. : 50.; });
     std::set<uint32_t> found = overlap(mesh, block(4, 10, 4, 10), 3);
@@ -139,7 +139,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ring), cmocka_unit_test(test_open_border),
-        cmocka_unit_test(test_cliff), cmocka_unit_test(test_slope),
+        cmocka_unit_test(test_discontinuity), cmocka_unit_test(test_slope),
         cmocka_unit_test(test_partitioned_model)};
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -180,6 +180,10 @@ static void rendering_writes_a_png(void **state)
     assert_true(size > 100);
     assert_memory_equal(png, "\x89PNG", 4);
     free(png);
+    expect(gtx("render sphere.gtx -o d.png --size 64x64 --depth d.exr"), 0);
+    char *exr = slurp("d.exr", &size);
+    assert_memory_equal(exr, "\x76\x2f\x31\x01", 4);
+    free(exr);
     code = gtx("render sphere.gtx -o es.png --size 64x64 --gles");
     assert_true((code == 0 && exists("es.png")) || code == 5);
     expect(gtx("render none.gtx -o x.png"), 2);

@@ -37,7 +37,7 @@ static void misuse_leaves_nothing(void **state)
     refused(1, "not 1 x 1", "sphere.gtx -o no.gtx --pattern dot.png");
     refused(2, "none.png: error[read]", "sphere.gtx -o no.gtx --gaussian 1 --pattern none.png");
     refused(2, "none.gtx: error[read]", "none.gtx -o no.gtx --gaussian 1");
-    refused(3, "error[100]", "sphere.obj -o no.gtx --gaussian 1");
+    refused(3, "error[100 identifier]", "sphere.obj -o no.gtx --gaussian 1");
     refused(2, "error[write]", "sphere.gtx -o nowhere/no.gtx --gaussian 1");
 }
 
@@ -105,7 +105,7 @@ static void the_lod_stays_behind(void **state)
     expect(gtx("filter lod.gtx -o bare.gtx --gaussian 1"), 0);
     expect_text("warning: the LOD mesh");
     expect(gtx("info bare.gtx --json"), 0);
-    expect_text("\"LOD mesh\": []");
+    expect_text("\"lod_meshes\": []");
 }
 
 int main(void)

@@ -16,14 +16,6 @@ static void *zeroed(size_t count, size_t size)
     return memory;
 }
 
-static void texel_point(const gtx_patch *p, double x, double y, double height, double out[3])
-{
-    double a = (x + 0.5) / p->rect[2] * p->extent_x, b = (y + 0.5) / p->rect[3] * p->extent_y;
-    for (int k = 0; k < 3; ++k)
-        out[k] = p->origin[k] + a * p->axis_x[k] + b * p->axis_y[k] +
-                 height * p->extent_z * p->axis_z[k];
-}
-
 static void put_normal(const gtx_patch *patch, const double normal[3], uint8_t *out)
 {
     float rows[3][3], n[3];
@@ -61,10 +53,9 @@ static void sample_level(maps *m, const fixture_patch *from, const gtx_patch *pa
             memcpy(m->color[level] + 4 * at, texel.color, 4);
             if (level)
                 continue;
-            double trim = round(128 + 16 * texel.trim);
-            m->trim[at] = (uint8_t)fmin(fmax(trim, 0), 255);
-            double top = m->desc.height_bits == 8 ? 254 : 65534;
-            uint32_t code = texel.height < 0 ? 0 : (uint32_t)round(fmin(texel.height, 1) * top) + 1;
+            m->trim[at] = gtx_nearest_trim((float)texel.trim);
+            double steps = texel.height * gtx_height_steps(m->desc.height_bits);
+            uint32_t code = texel.height < 0 ? 0 : gtx_nearest_code(steps, m->desc.height_bits);
             if (m->desc.height_bits == 8) {
                 m->height[at] = (uint8_t)code;
             } else {
@@ -74,41 +65,18 @@ static void sample_level(maps *m, const fixture_patch *from, const gtx_patch *pa
         }
 }
 
-static double decoded_height(const maps *m, const gtx_patch *patch, uint32_t i, uint32_t j)
-{
-    size_t at = (size_t)(patch->rect[1] + j) * m->desc.page_width + patch->rect[0] + i;
-    uint32_t code = m->desc.height_bits == 8
-                        ? m->height[at]
-                        : m->height[2 * at] | (uint32_t)m->height[2 * at + 1] << 8;
-    return code ? (double)gtx_code_height(code, m->desc.height_bits) : -1;
-}
-
 /* Coverage and sphere of the patch, and its part of the asset's bounds. */
 static void finish_patch(maps *m, gtx_patch *patch)
 {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    double p[3], coded = 0, radius = 0;
-    for (int pass = 0; pass < 2; ++pass)
-        for (uint32_t j = 0; j < patch->rect[3]; ++j)
-            for (uint32_t i = 0; i < patch->rect[2]; ++i) {
-                double height = decoded_height(m, patch, i, j), square = 0;
-                if (height < 0)
-                    continue;
-                texel_point(patch, i, j, height, p);
-                for (int k = 0; k < 3; ++k) {
-                    low[k] = fmin(low[k], p[k]);
-                    high[k] = fmax(high[k], p[k]);
-                    square += pow(p[k] - (low[k] + high[k]) / 2, 2);
-                }
-                coded += pass;
-                radius = pass ? fmax(radius, sqrt(square)) : 0;
-            }
-    patch->coverage = (float)(coded / ((double)patch->rect[2] * patch->rect[3]));
-    patch->sphere[3] = (float)fmax(radius, 1e-3);
-    for (int k = 0; coded > 0 && k < 3; ++k) {
-        patch->sphere[k] = (float)((low[k] + high[k]) / 2);
-        m->desc.bounds_min[k] = fminf(m->desc.bounds_min[k], (float)low[k]);
-        m->desc.bounds_max[k] = fmaxf(m->desc.bounds_max[k], (float)high[k]);
+    const size_t first = (size_t)patch->rect[1] * m->desc.page_width;
+    const size_t bytes = m->desc.height_bits / 8;
+    const gtx_code_map codes = {m->height + first * bytes, m->desc.page_width, (uint32_t)bytes,
+                                m->desc.height_bits};
+    const gtx_patch_span span = gtx_measure_patch(patch, &codes);
+    patch->sphere[3] = fmaxf(patch->sphere[3], 1e-3f);
+    for (int k = 0; k < 3; ++k) {
+        m->desc.bounds_min[k] = fminf(m->desc.bounds_min[k], (float)span.low[k]);
+        m->desc.bounds_max[k] = fmaxf(m->desc.bounds_max[k], (float)span.high[k]);
     }
 }
 

@@ -7,9 +7,9 @@
 
 #include <cmocka.h>
 
+#include "asset/patch.h"
 #include "base/alloc.h"
 #include "common/fixture.h"
-#include "derive/frame.h"
 #include "derive/placement.h"
 
 #include <math.h>

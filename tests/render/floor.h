@@ -19,7 +19,8 @@ static inline GLuint make_floor(stage *s)
     static char text[32768];
     gtx_error error = {0};
     GLuint program;
-    snprintf(text, sizeof text, "%s%s%s%s", gtx_shader_source("geotex_dialect.glsl"),
+    snprintf(text, sizeof text, "%s%s%s%s%s", gtx_shader_source("geotex_dialect.glsl"),
+             gtx_shader_source("geotex_records.glsl"),
              gtx_shader_source("geotex_height_field.glsl"), gtx_shader_source("geotex_rays.glsl"),
              floor_main);
     must(gtx_host_program_create(&s->gl, gtx_screen_vertex, text, &program, &error), &error);

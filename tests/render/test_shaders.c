@@ -2,34 +2,26 @@
 #define _POSIX_C_SOURCE 200809L
 #include "stage.h"
 
-static const char *const vertex[] = {"geotex_dialect.glsl", "geotex_height_field.glsl",
-                                     "geotex_view.glsl",
-                                     "geotex_proxy.vert", NULL};
+#define SHARED                                                                                     \
+    "geotex_dialect.glsl", "geotex_records.glsl", "geotex_height_field.glsl", "geotex_view.glsl"
+
+static const char *const vertex[] = {SHARED, "geotex_proxy.vert", NULL};
 /* A fragment shader: the parts before the method, the method, geotex_fragment.glsl, the main. */
 static const char *const mains[] = {"geotex_forward.frag", "geotex_depth.frag", "geotex_id.frag",
                                     "geotex_gbuffer.frag"};
 static const char *const methods[] = {"geotex_cast.glsl", "geotex_paper.glsl"};
 enum { MAINS = sizeof mains / sizeof *mains, METHODS = 2 };
 
-static const char *const lod_vertex[] = {"geotex_dialect.glsl", "geotex_height_field.glsl",
-                                         "geotex_view.glsl", "geotex_lod.vert", NULL};
-static const char *const lod[] = {"geotex_dialect.glsl", "geotex_height_field.glsl",
-                                  "geotex_view.glsl",
-                                  "geotex_surface.glsl", "geotex_lod_fragment.glsl",
+static const char *const lod_vertex[] = {SHARED, "geotex_lod.vert", NULL};
+static const char *const lod[] = {SHARED, "geotex_surface.glsl", "geotex_lod_fragment.glsl",
                                   "geotex_lod.frag", NULL};
 
-static const char *const lod_front[] = {"geotex_dialect.glsl", "geotex_height_field.glsl",
-                                        "geotex_view.glsl", "geotex_surface.glsl",
-                                        "geotex_lod_front.frag", NULL};
-static const char *const lod_front_shaded[] = {"geotex_dialect.glsl", "geotex_height_field.glsl",
-                                               "geotex_view.glsl", "geotex_surface.glsl",
-                                               "geotex_material.glsl",
+static const char *const lod_front[] = {SHARED, "geotex_surface.glsl", "geotex_lod_front.frag", NULL};
+static const char *const lod_front_shaded[] = {SHARED, "geotex_surface.glsl", "geotex_material.glsl",
                                                "geotex_lod_front.frag", NULL};
 
 /* What comes before an engine's own main, and a main. */
-static const char *const rays[] = {"geotex_dialect.glsl", "geotex_height_field.glsl",
-                                   "geotex_view.glsl",
-                                   "geotex_surface.glsl", "geotex_material.glsl",
+static const char *const rays[] = {SHARED, "geotex_surface.glsl", "geotex_material.glsl",
                                    "geotex_cast.glsl", "geotex_fragment.glsl", "geotex_rays.glsl",
                                    "geotex_forward.frag", NULL};
 
@@ -77,12 +69,10 @@ static void every_dialect(void **state)
         char head[80];
         snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS", versions[i][0]);
         for (int k = 0; k < MAINS * METHODS; ++k) {
-            const char *const parts[] = {"geotex_dialect.glsl", "geotex_height_field.glsl",
-                                         "geotex_view.glsl", "geotex_surface.glsl",
+            const char *const parts[] = {SHARED, "geotex_surface.glsl",
                                          methods[k % METHODS], "geotex_fragment.glsl",
                                          mains[k / METHODS], NULL};
-            const char *const shaded[] = {"geotex_dialect.glsl", "geotex_height_field.glsl",
-                                          "geotex_view.glsl", "geotex_surface.glsl",
+            const char *const shaded[] = {SHARED, "geotex_surface.glsl",
                                           "geotex_material.glsl", methods[k % METHODS],
                                           "geotex_fragment.glsl", mains[k / METHODS], NULL};
             if (k / METHODS < 3)
@@ -93,11 +83,9 @@ static void every_dialect(void **state)
         compile(versions[i][0], versions[i][1], "vert", lod_vertex);
         for (int k = 0; k < MAINS; ++k) {
             const char *main = k ? mains[k] : "geotex_lod.frag";
-            const char *const parts[] = {"geotex_dialect.glsl", "geotex_height_field.glsl",
-                                         "geotex_view.glsl", "geotex_surface.glsl",
+            const char *const parts[] = {SHARED, "geotex_surface.glsl",
                                          "geotex_lod_fragment.glsl", main, NULL};
-            const char *const shaded[] = {"geotex_dialect.glsl", "geotex_height_field.glsl",
-                                          "geotex_view.glsl", "geotex_surface.glsl",
+            const char *const shaded[] = {SHARED, "geotex_surface.glsl",
                                           "geotex_material.glsl", "geotex_lod_fragment.glsl",
                                           main, NULL};
             if (k < 3)
@@ -108,7 +96,9 @@ static void every_dialect(void **state)
         snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS", versions[i][0]);
         compile(head, versions[i][1], "frag", rays);
         compile(head, versions[i][1], "frag", lod_front_shaded);
-        snprintf(head, sizeof head, "%s\n#define GTX_COLORS", versions[i][0]);
+        strcat(head, "\n#define GTX_CONSTANT");
+        compile(head, versions[i][1], "frag", lod_front_shaded);
+        snprintf(head, sizeof head, "%s\n#define GTX_PLAIN", versions[i][0]);
         compile(head, versions[i][1], "frag", lod);
         compile(head, versions[i][1], "frag", lod_front);
         compile(versions[i][0], versions[i][1], "frag", lod_front);
@@ -123,14 +113,12 @@ static void every_dialect(void **state)
 static void tiles(void **state)
 {
     (void)state;
-    static const char *const corners[] = {"geotex_dialect.glsl", "geotex_height_field.glsl",
-                                          "geotex_view.glsl", "geotex_tiles.vert", NULL};
+    static const char *const corners[] = {SHARED, "geotex_tiles.vert", NULL};
     if (system("glslangValidator --version >/dev/null 2>&1"))
         skip();
     compile("#version 330 core", "", "vert", corners);
     for (int k = 0; k < MAINS; ++k) {
-        const char *const parts[] = {"geotex_dialect.glsl", "geotex_height_field.glsl",
-                                     "geotex_view.glsl", "geotex_surface.glsl",
+        const char *const parts[] = {SHARED, "geotex_surface.glsl",
                                      "geotex_material.glsl", "geotex_cast.glsl",
                                      "geotex_fragment.glsl", "geotex_tiles.glsl", mains[k], NULL};
         compile("#version 330 core\n#define GTX_TILES\n#define GTX_MATERIALS", "", "frag", parts);
@@ -148,23 +136,24 @@ static void a_main_of_ones_own(void **state)
         "out vec4 position;\n"
         "void main()\n"
         "{\n"
-        "    gtx_height_field height field = gtx_field_of(index, 0);\n"
+        "    gtx_height_field field = gtx_field_of(index, 0);\n"
         "    gtx_hit hit;\n"
         "    float t0 = 0.0, t1 = 1e30;\n"
-        "    gtx_clip_box(height field, origin, direction, t0, t1);\n"
-        "    if (t0 > t1 || !gtx_cast(height field, origin, direction, t0, t1, hit))\n"
+        "    gtx_clip_box(field, origin, direction, t0, t1);\n"
+        "    if (t0 > t1 || !gtx_cast(field, origin, direction, t0, t1, hit))\n"
         "        discard;\n"
         "    gtx_frame frame = gtx_frame_of(index);\n"
         "    position = vec4(gtx_object_point(frame, hit.grid), gtx_facet(frame, hit).x);\n"
         "}\n";
     const char *parts[] = {"#version 330 core\n", gtx_shader_source("geotex_dialect.glsl"),
+                           gtx_shader_source("geotex_records.glsl"),
                            gtx_shader_source("geotex_height_field.glsl"),
                            gtx_shader_source("geotex_cast.glsl"), text};
     PFNGLGETSHADERIVPROC get_shader =
         (PFNGLGETSHADERIVPROC)gtx_offscreen_load("glGetShaderiv", NULL);
     const GLuint shader = s->gl.CreateShader(GL_FRAGMENT_SHADER);
     GLint compiled = 0;
-    s->gl.ShaderSource(shader, 5, parts, NULL);
+    s->gl.ShaderSource(shader, 6, parts, NULL);
     s->gl.CompileShader(shader);
     get_shader(shader, GL_COMPILE_STATUS, &compiled);
     s->gl.DeleteShader(shader);

@@ -1,5 +1,7 @@
 /* Casting by tiles against casting in fragments: the same picture, whatever is drawn. That it is
- * the caster's is looked at where casting in fragments is. */
+ * the caster's is looked at where casting in fragments is. Where tiles cannot be, fragments cast the
+ * same: the renderer counts what it draws by tiles. */
+#include "render/renderer.h"
 #include "stage.h"
 
 static uint8_t other_color[4 * STAGE_PIXELS];
@@ -13,6 +15,28 @@ static gtx_renderer *renderer_with(gtx_tiling tiles, const gtx_allocator *hooks)
     gtx_error error = {0};
     must(gtx_renderer_create(&desc, &renderer, &error), &error);
     return renderer;
+}
+
+/* A stage whose renderer casts by tiles whatever the driver is. */
+static int open_with_tiles(void **state)
+{
+    const int result = stage_open(state);
+    stage *s = *state;
+    if (result || !s->offscreen)
+        return result;
+    gtx_renderer_destroy(s->renderer);
+    s->renderer = renderer_with(GTX_TILES_ALWAYS, NULL);
+    return 0;
+}
+
+/* Draws by tiles, and so many instances; OpenGL ES has no tiles. */
+static void draw_by_tiles(stage *s, gtx_view *view, const gtx_instance *instances, uint32_t count,
+                          uint32_t in_view)
+{
+    const uint64_t before = s->renderer->tiles.draws;
+    by_tiles(view);
+    stage_draw(s, view, instances, count);
+    assert_int_equal(s->renderer->tiles.draws - before, s->renderer->gl.es ? 0 : in_view);
 }
 
 /* How many pixels of the stage differ from those kept: in what they show, or in colour by more than
@@ -69,8 +93,7 @@ static void the_same_picture(void **state)
             view.method = GTX_METHOD_CAST;
             stage_draw(s, &view, three, 3);
             keep(s);
-            by_tiles(&view);
-            stage_draw(s, &view, three, 3);
+            draw_by_tiles(s, &view, three, 3, 3);
             const int count = differences(s);
             if (count > 40)
                 fail_msg("asset %d, view %d: %d pixels differ", a, i, count);
@@ -96,7 +119,9 @@ static void viewports_of_any_place(void **state)
         view.viewport_height = HEIGHT;
         stage_clear(s, &view);
         s->gl.Viewport(LEFT, BOTTOM, WIDTH, HEIGHT);
+        const uint64_t before = s->renderer->tiles.draws;
         must(gtx_draw(s->renderer, &view, &shown.instance, 1, &error), &error);
+        assert_int_equal(s->renderer->tiles.draws - before, tiles && !s->renderer->gl.es);
         gtx_framebuffer_read_color(&s->gl, &s->framebuffer, s->color);
         gtx_framebuffer_read_depth(&s->gl, &s->framebuffer, s->depth);
     }
@@ -130,8 +155,8 @@ static void across_the_borders(void **state)
         view.viewport_width = 0;
         stage_draw(s, &view, &moved, 1);
         keep(s);
-        by_tiles(&view);
-        stage_draw(s, &view, &moved, 1);
+        const int outside = (i & 3) == 3 || i >> 2 == 3, whole = (i & 3) == 1 && i >> 2 == 1;
+        draw_by_tiles(s, &view, &moved, 1, !outside);
         int covered = 0, at_border = 0;
         for (int k = 0; k < STAGE_PIXELS; ++k) {
             const int x = k % STAGE_WIDTH, y = k / STAGE_WIDTH;
@@ -139,7 +164,6 @@ static void across_the_borders(void **state)
             at_border += s->depth[k] < 1 && (x == 0 || y == 0 || x == STAGE_WIDTH - 1 ||
                                              y == STAGE_HEIGHT - 1);
         }
-        const int outside = (i & 3) == 3 || i >> 2 == 3, whole = (i & 3) == 1 && i >> 2 == 1;
         if (differences(s) > 40 || (covered > 0) == outside ||
             (at_border > 0) == (outside || whole))
             fail_msg("place %d: %d pixels covered, %d at a border, %d differ", i, covered,
@@ -164,8 +188,7 @@ static void pictures_that_stand_on_their_heads(void **state)
     clip_control(GL_UPPER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
     stage_draw(s, &view, &shown.instance, 1);
     keep(s);
-    by_tiles(&view);
-    stage_draw(s, &view, &shown.instance, 1);
+    draw_by_tiles(s, &view, &shown.instance, 1, 1);
     clip_control(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
     const int turned = differences(s);
     keep(s);
@@ -183,8 +206,7 @@ static void what_was_drawn_before_stays_in_front(void **state)
     gtx_view view = view_of(&camera);
     gtx_error error = {0};
     view.level = 1;
-    by_tiles(&view);
-    stage_draw(s, &view, &shown.instance, 1);
+    draw_by_tiles(s, &view, &shown.instance, 1, 1);
     const float middle = s->depth[STAGE_PIXELS / 2 + STAGE_WIDTH / 2];
     for (int i = 0; i < 2; ++i) {
         stage_clear(s, &view);
@@ -204,14 +226,13 @@ static void passes_have_one_depth(void **state)
     gtx_camera camera = camera_around(shown.asset);
     gtx_view view = view_of(&camera);
     view.level = 1;
-    by_tiles(&view);
-    stage_draw(s, &view, &shown.instance, 1);
+    draw_by_tiles(s, &view, &shown.instance, 1, 1);
     keep(s);
     view.pass = GTX_PASS_DEPTH;
-    stage_draw(s, &view, &shown.instance, 1);
+    draw_by_tiles(s, &view, &shown.instance, 1, 1);
     assert_memory_equal(s->depth, other_depth, sizeof other_depth);
     view.pass = GTX_PASS_GBUFFER;
-    stage_draw(s, &view, &shown.instance, 1);
+    draw_by_tiles(s, &view, &shown.instance, 1, 1);
     assert_memory_equal(s->depth, other_depth, sizeof other_depth);
     subject_close(s, &shown);
 }
@@ -226,11 +247,13 @@ static void others_cast_in_fragments(void **state)
     gtx_camera camera = camera_around(shown.asset);
     gtx_view view = view_of(&camera);
     view.level = 1;
+    const uint64_t before = own->tiles.draws;
     stage_draw(s, &view, &shown.instance, 1);
     keep(s);
     by_tiles(&view);
     view.viewport_width = UINT32_MAX;
     stage_draw(s, &view, &shown.instance, 1);
+    assert_int_equal(s->renderer->tiles.draws, before);
     assert_memory_equal(s->color, other_color, sizeof other_color);
     by_tiles(&view);
     for (long n = 0; n < 8; ++n) {
@@ -244,6 +267,8 @@ static void others_cast_in_fragments(void **state)
             gtx_framebuffer_read_color(&s->gl, &s->framebuffer, s->color);
             gtx_framebuffer_read_depth(&s->gl, &s->framebuffer, s->depth);
             assert_true(differences(s) < 40);
+            if (!n)
+                assert_int_equal(s->renderer->tiles.draws, 0);
         }
         subject_close(s, &again);
         gtx_renderer_destroy(s->renderer);
@@ -274,5 +299,5 @@ int main(void)
         cmocka_unit_test(others_cast_in_fragments),
         cmocka_unit_test(unknown_tilings_are_refused),
     };
-    return cmocka_run_group_tests(tests, stage_open, stage_close);
+    return cmocka_run_group_tests(tests, open_with_tiles, stage_close);
 }

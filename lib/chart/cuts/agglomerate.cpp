@@ -2,8 +2,11 @@
  * Desbrun 2004, L2,1): what a merge costs is by how much it shortens the sum of normals.
  *
  * Rounds of mutually cheapest merges take millions of triangles to thousands of clusters in linear
- * time; a queue does the rest in the exact order; label switching then moves the borders. */
+ * time; a queue does the rest in the exact order; label switching (cuts/borders.cpp) then moves the
+ * borders. */
 #include "chart/cuts/agglomerate.hpp"
+
+#include "chart/cuts/borders.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -13,17 +16,17 @@ namespace gtx {
 
 namespace {
 
-/* A cluster's normals sum to at least this share of its area: (1 + cos) / 2 for a round cap. */
+/* A cluster's normals sum to at least this share of its area: (1 + cos) / 2 for a round cap. Half:
+ * RMS +17 % (Duck); above 1 nothing merges: 9 times the texels (bunny). */
 constexpr float MIN_CONE = 0.82f;
-/* Small clusters merge first where the surface is flat. */
+/* Small clusters merge first where the surface is flat. Half: RMS +7 % (Duck); double: patches +9 %
+ * (truck). */
 constexpr float SIZE_COST = 1e-4f;
+/* Time against order: rounds stop here and the queue goes on. Half: RMS +5 %; double: bytes +3 %
+ * (bunny). */
 constexpr size_t QUEUED_CLUSTERS = 20000;
-constexpr int REFITS = 10, SWEEPS = 3;
-/* The last refits straighten borders: what a neighbour of the same cluster weighs beside the cosine
- * between a triangle's normal and the cluster's. */
-constexpr int STRAIGHT_REFITS = 3;
-constexpr float STRAIGHTNESS = 0.3f;
-constexpr size_t CHUNK = 4096; /* clusters a parallel step */
+/* Clusters a parallel step; changes no byte. */
+constexpr size_t CHUNK = 4096;
 
 struct Sum {
     Vec3f normal; /* of sizes times normals */
@@ -69,11 +72,11 @@ Clusters single_triangles(const Surface &surface)
     return out;
 }
 
-/* Decides between pairs that cost the same, as in planes, so that many are mutual. */
-uint32_t draw_lot(uint32_t a, uint32_t b)
+/* Breaks ties between pairs that cost the same, as in planes, so that many are mutual. */
+uint32_t tie_break_hash(uint32_t a, uint32_t b)
 {
-    uint32_t lot = std::min(a, b) * 0x9e3779b1u ^ std::max(a, b) * 0x85ebca77u;
-    return (lot ^ lot >> 15) * 0xc2b2ae35u;
+    uint32_t hash = std::min(a, b) * 0x9e3779b1u ^ std::max(a, b) * 0x85ebca77u;
+    return (hash ^ hash >> 15) * 0xc2b2ae35u;
 }
 
 /* The cheapest partner of each cluster, NO_TRIANGLE where no merge is allowed. */
@@ -84,14 +87,14 @@ std::vector<uint32_t> cheapest_partners(const Clusters &clusters, Task &task)
         size_t end = std::min(clusters.size(), (chunk + 1) * CHUNK);
         for (size_t c = chunk * CHUNK; c < end; ++c) {
             float least = INFINITY;
-            uint32_t best_lot = 0;
+            uint32_t best_hash = 0;
             for (uint32_t i = clusters.first[c]; i < clusters.first[c + 1]; ++i) {
                 uint32_t other = clusters.touching[i];
                 float cost = merge_cost(clusters.sums[c], clusters.sums[other]);
-                uint32_t lot = draw_lot(uint32_t(c), other);
-                if (cost < least || (cost == least && cost < INFINITY && lot < best_lot)) {
+                uint32_t hash = tie_break_hash(uint32_t(c), other);
+                if (cost < least || (cost == least && cost < INFINITY && hash < best_hash)) {
                     least = cost;
-                    best_lot = lot;
+                    best_hash = hash;
                     best[c] = other;
                 }
             }
@@ -285,93 +288,6 @@ std::vector<uint32_t> MergeQueue::run()
     }
     clusters_.sums.resize(kept);
     return renamed;
-}
-
-/* Lets triangles change to the neighbouring cluster whose mean normal is nearest to theirs. Spikes
- * that noise leaves along the borders would cost texels in every patch there: they go last. */
-void move_borders(const Surface &surface, size_t count, std::vector<uint32_t> &labels, Task &task)
-{
-    const auto &neighbours = surface.whole.neighbours;
-    for (int refit = 0; refit < REFITS; ++refit) {
-        std::vector<Vec3d> sums(count);
-        for (size_t t = 0; t < labels.size(); ++t)
-            sums[labels[t]] += Vec3d(surface.facets[t].normal) * double(surface.facets[t].size);
-        std::vector<Vec3f> proxies(count);
-        for (size_t c = 0; c < count; ++c)
-            proxies[c] = Vec3f(normalize(sums[c]));
-        std::vector<uint32_t> border;
-        for (uint32_t t = 0; t < labels.size(); ++t)
-            for (uint32_t n : neighbours[t])
-                if (n != NO_TRIANGLE && labels[n] != labels[t]) {
-                    border.push_back(t);
-                    break;
-                }
-        const float straightness = refit < REFITS - STRAIGHT_REFITS ? 0 : STRAIGHTNESS;
-        auto liking = [&](uint32_t t, uint32_t label) {
-            int alike = 0;
-            for (uint32_t n : neighbours[t])
-                alike += n != NO_TRIANGLE && labels[n] == label;
-            return dot(surface.facets[t].normal, proxies[label]) + straightness * float(alike);
-        };
-        for (int sweep = 0; sweep < SWEEPS; ++sweep) {
-            std::vector<uint32_t> moved;
-            for (uint32_t t : border) {
-                uint32_t best = labels[t];
-                float most = liking(t, best);
-                for (uint32_t n : neighbours[t]) {
-                    float like = n == NO_TRIANGLE ? -INFINITY : liking(t, labels[n]);
-                    if (like > most) {
-                        most = like;
-                        best = labels[n];
-                    }
-                }
-                if (best == labels[t])
-                    continue;
-                labels[t] = best;
-                for (uint32_t n : neighbours[t])
-                    if (n != NO_TRIANGLE)
-                        moved.push_back(n);
-            }
-            border = std::move(moved);
-        }
-        task.advance(0.5 + 0.2 * refit / REFITS);
-    }
-}
-
-/* Gives each piece of a cluster but the largest to the neighbour with which it shares most
- * edges. */
-void absorb_islands(const Surface &surface, size_t count, std::vector<uint32_t> &labels)
-{
-    std::vector<uint32_t> piece = labels;
-    uint32_t pieces = connected_pieces(surface.whole, piece);
-    std::vector<double> size(pieces);
-    std::vector<uint32_t> of(pieces), main(count, NO_TRIANGLE);
-    std::vector<std::vector<uint32_t>> across(pieces); /* labels, an entry an edge */
-    for (uint32_t t = 0; t < labels.size(); ++t) {
-        size[piece[t]] += double(surface.facets[t].size);
-        of[piece[t]] = labels[t];
-    }
-    for (uint32_t p = 0; p < pieces; ++p)
-        if (main[of[p]] == NO_TRIANGLE || size[p] > size[main[of[p]]])
-            main[of[p]] = p;
-    for (uint32_t t = 0; t < labels.size(); ++t)
-        for (uint32_t n : surface.whole.neighbours[t])
-            if (main[labels[t]] != piece[t] && n != NO_TRIANGLE && main[labels[n]] == piece[n] &&
-                labels[n] != labels[t])
-                across[piece[t]].push_back(labels[n]);
-    for (uint32_t p = 0; p < pieces; ++p) {
-        std::sort(across[p].begin(), across[p].end());
-        size_t most = 0;
-        for (size_t i = 0, run = 0; i < across[p].size(); ++i) {
-            run = i && across[p][i] == across[p][i - 1] ? run + 1 : 1;
-            if (run > most) {
-                most = run;
-                of[p] = across[p][i];
-            }
-        }
-    }
-    for (uint32_t t = 0; t < labels.size(); ++t)
-        labels[t] = of[piece[t]];
 }
 
 } // namespace

@@ -2,97 +2,30 @@
  *
  * A node's cut is the one whose two sides would take the fewest texels, after the best next cut of
  * each: what counts is how the sides will fill their rectangles. */
-#include "chart/cuts/tree.hpp"
+#include "chart/cuts/slices.hpp"
 
 namespace gtx {
 
 namespace {
 
-constexpr int MIN_CELLS = 4;           /* along a side that was cut */
-constexpr double MIN_SIDE = 0.1;       /* of a square patch's */
-constexpr double RELIEF_COST = 20;     /* of height steps beside texels, both squared */
-constexpr double RANGE = 4;            /* heights lie within as many standard deviations */
-constexpr double SMALLEST_SHARE = 1.0 / 4; /* of a patch's texels: cut no further */
-constexpr double SMALLEST_TRIED = 1.0 / 4; /* likewise, where a turn of the frame is only tried */
-constexpr double PATCH_PRICE = 0.1;    /* likewise: what one more patch has to save */
-constexpr double AHEAD_SHARE = 16;     /* likewise: larger nodes are far from their leaves yet */
-constexpr size_t CANDIDATES = 6;       /* cuts whose next cuts are looked at */
-constexpr double BALANCE = 1e-6;       /* texels: of cuts that are worth the same, the middle one */
-
-/* Sums over heights at texels, to fit a plane to. */
-struct Moments {
-    double n = 0, u = 0, v = 0, h = 0, uu = 0, uv = 0, vv = 0, uh = 0, vh = 0, hh = 0;
-
-    void add(const Moments &m)
-    {
-        n += m.n, u += m.u, v += m.v, h += m.h;
-        uu += m.uu, uv += m.uv, vv += m.vv, uh += m.uh, vh += m.vh, hh += m.hh;
-    }
-    /* Mean square of what the least-squares plane leaves. */
-    double residual() const
-    {
-        if (n < 4)
-            return 0;
-        double suu = uu - u * u / n, suv = uv - u * v / n, svv = vv - v * v / n;
-        double suh = uh - u * h / n, svh = vh - v * h / n, shh = hh - h * h / n;
-        double det = suu * svv - suv * suv;
-        if (det > 1e-9 * suu * svv) {
-            double a = (suh * svv - svh * suv) / det, b = (svh * suu - suh * suv) / det;
-            shh -= a * suh + b * svh;
-        }
-        return std::max(0., shh / n);
-    }
-};
-
-constexpr Rect NOTHING = {{INT32_MAX, INT32_MAX}, {INT32_MIN, INT32_MIN}};
-
-/* A column or row of a node, or several. */
-struct Slice {
-    Moments moments;
-    Rect box = NOTHING;
-
-    void add(const Slice &s)
-    {
-        moments.add(s.moments);
-        for (int k = 0; k < 2; ++k) {
-            box.low[k] = std::min(box.low[k], s.box.low[k]);
-            box.high[k] = std::max(box.high[k], s.box.high[k]);
-        }
-    }
-};
-
-/* Sums along one column or row, where the other coordinate stays. */
-struct Line {
-    int low = INT32_MAX, high = INT32_MIN; /* of what is touched */
-    double n = 0, x = 0, h = 0, xx = 0, xh = 0, hh = 0;
-
-    void touch(int at)
-    {
-        low = std::min(low, at);
-        high = at + 1;
-    }
-    void add(double at, double height)
-    {
-        n += 1, x += at, h += height;
-        xx += at * at, xh += at * height, hh += height * height;
-    }
-    Slice slice(int axis, int at) const
-    {
-        Slice out;
-        if (high > low) {
-            out.box.low[axis] = at;
-            out.box.high[axis] = at + 1;
-            out.box.low[!axis] = low;
-            out.box.high[!axis] = high;
-        }
-        double a = at;
-        if (axis == 0)
-            out.moments = {n, n * a, x, h, n * a * a, a * x, xx, a * h, xh, hh};
-        else
-            out.moments = {n, x, n * a, h, xx, a * x, n * a * a, xh, a * h, hh};
-        return out;
-    }
-};
+/* Least texels along a side that was cut, and its share of a square patch's side. Half: RMS +2 %
+ * (Spot), a few bytes; double: bytes +2 % (Duck), texels -4 % (Spot). */
+constexpr int MIN_CELLS = 4;
+constexpr double MIN_SIDE = 0.1;
+/* What height steps cost beside texels, both squared, and the standard deviations within which
+ * heights lie. Half: RMS +6 %, +13 % (Duck); double: bytes +2 %, +4 % (bunny). */
+constexpr double RELIEF_COST = 20, RANGE = 4;
+/* Of the texels of a wanted patch: what is smaller is cut no further. A limit on time: half and
+ * double move RMS by 1 % (Duck). */
+constexpr double SMALLEST_SHARE = 1.0 / 4;
+/* Likewise, what one more patch has to save. Half: texels +1 % (truck); double: RMS +4 % (Duck). */
+constexpr double PATCH_PRICE = 0.1;
+/* Likewise, nodes up to this look a cut ahead, at so many cuts: larger ones are far from their
+ * leaves yet. Half: RMS +1, +3 % (Spot); double: RMS +1 %, bytes +1 % (truck). */
+constexpr double AHEAD_SHARE = 16;
+constexpr size_t CANDIDATES = 6;
+/* Texels: a tie-break, of cuts that are worth the same the middle one. */
+constexpr double BALANCE = 1e-6;
 
 struct Cut {
     double value = INFINITY; /* texels, the price of patches included */
@@ -116,12 +49,6 @@ Half half_of(const Rect &region, const Cuts &cuts, int axis, int at, int side)
     half.cuts[size_t(2 * axis + !side)] = true;
     return half;
 }
-
-/* Columns or rows of a part of the chart, in order. */
-struct Lines {
-    int first; /* coordinate of the first */
-    std::vector<Slice> slices;
-};
 
 class Grower {
 public:

@@ -7,7 +7,9 @@ namespace gtx {
 
 namespace {
 
-constexpr double MAX_TURNED = 4; /* of a chart, texels when it is turned */
+/* Texels of a chart when it is turned, in those it has: a limit on memory, for slivers. Half: bytes
+ * -1 % (truck); double: the same. */
+constexpr double MAX_TURNED = 4;
 
 /* Divides the nodes for which that pays when each patch costs `price` texels on top. */
 void prune(CutTree &tree, double price)
@@ -129,8 +131,8 @@ void divide_trees(std::vector<CutTree> &trees, size_t wanted)
 
 std::vector<size_t> choose_turns(std::vector<CutTree> &trees, size_t turns, size_t wanted)
 {
-    constexpr double HIGHEST = 1e12;
-    constexpr int STEPS = 40;
+    constexpr double HIGHEST = 1e12; /* texels: with more charts than wanted no price is enough */
+    constexpr int STEPS = 40;        /* of a bisection that ends early where it can */
     std::vector<size_t> best;
     double low = 0, high = 1;
     if (prune_all(trees, turns, low, best) <= wanted)

@@ -18,8 +18,9 @@ struct Relief {
 
 Relief make_relief(const Surface &surface, const Region &region, const Frame &frame, double pitch);
 
-/* The same turned about z by `turn` radians, `coarse` times as coarse: what a chart would look like
- * in a turned frame, roughly. Without texels where it would take far more of them: a blade. */
+/* The same turned about z by `turn` radians, `coarse` times as coarse: what a chart would look
+ * like in a turned frame, roughly. Without texels where it would take far more of them: a sliver
+ * chart. */
 Relief turn_relief(const Relief &relief, double turn, int coarse);
 
 /* Texels low to high - 1 along each axis. */

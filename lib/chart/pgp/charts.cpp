@@ -10,15 +10,17 @@ namespace gtx {
 
 namespace {
 
-/* Entries of the matrix are counted in ints. */
+/* A limit: entries of the matrix are counted in ints. */
 constexpr size_t MAX_TRIANGLES = 30000000;
 /* Charts below so many cells, of what lies about singularities and of what lines cut off, are
- * joined to a neighbour. */
+ * joined to a neighbour. Half: texels +11 %; double: RMS +6 % (Spot). */
 constexpr double MIN_CELLS = 0.1;
-/* The search for the cell: charts that come out of a cell's area, about, and the shares of the
- * wanted number that end it: a few too many are joined. */
+/* Charts that come out of a cell's area, where the search for the cell begins. Half: RMS +3 %
+ * (bunny); double: texels +13 % (Spot). */
 constexpr double CHARTS_PER_CELL = 0.97;
-constexpr double MIN_RATIO = 0.98, MAX_RATIO = 1.06, BEST_RATIO = 1.02;
+/* Shares of the wanted number that end the search: a few too many are joined. A narrower range only
+ * takes more rounds, of which two do for the bunny and Spot. */
+constexpr double MIN_RATIO = 0.98, MAX_RATIO = 1.06, BEST_RATIO = (MIN_RATIO + MAX_RATIO) / 2;
 constexpr int SEARCH_ROUNDS = 4;
 
 class UnionFind {
@@ -108,27 +110,27 @@ void Joining::join_until(size_t count)
 /* To the neighbour with which it has the longest border. */
 void Joining::join_smallest()
 {
-    uint32_t chart = order_.begin()->second, host = chart;
+    uint32_t chart = order_.begin()->second, target = chart;
     order_.erase(order_.begin());
     double longest = -1;
     for (const auto &[neighbour, border] : borders_[chart])
         if (border > longest) {
             longest = border;
-            host = neighbour;
+            target = neighbour;
         }
-    if (host == chart)
+    if (target == chart)
         return;
-    if (order_.erase({size_[host], host})) /* one that counts */
-        order_.insert({size_[host] + size_[chart], host});
-    size_[host] += size_[chart];
+    if (order_.erase({size_[target], target})) /* one that counts */
+        order_.insert({size_[target] + size_[chart], target});
+    size_[target] += size_[chart];
     for (const auto &[neighbour, border] : borders_[chart]) {
         borders_[neighbour].erase(chart);
-        if (neighbour == host)
+        if (neighbour == target)
             continue;
-        borders_[neighbour][host] += border;
-        borders_[host][neighbour] += border;
+        borders_[neighbour][target] += border;
+        borders_[target][neighbour] += border;
     }
-    charts_.join(host, chart);
+    charts_.join(target, chart);
 }
 
 std::vector<uint32_t> Joining::labels(std::vector<uint32_t> old, uint32_t &count)

@@ -11,10 +11,11 @@ namespace gtx {
 
 namespace {
 
-/* Cells in a triangle, at most: what is larger stays whole. A cell's lines are meant to be far
- * apart on triangles; of needles there may be more than could be stored. */
+/* Limits. Cells in a triangle: what is larger stays whole, for a cell's lines are meant to be far
+ * apart on triangles. Pieces: of needles there may be more than could be stored. */
 constexpr double MAX_CELLS = 1024, MAX_PIECES = 3e7;
-/* Two lines that cross an edge closer than this, as a share of its length, cross in one point. */
+/* A guard: two lines that cross an edge closer than this, as a share of its length, cross in one
+ * point. */
 constexpr double SAME_POINT = 1e-6;
 
 /* Where lines cross an edge, from the start of the half-edge that is cut. */

@@ -7,7 +7,8 @@ namespace gtx {
 
 namespace {
 
-/* Of obtuse triangles, and of slivers. */
+/* Guards: of obtuse triangles, whose cotangents would push their ends apart, and of slivers. The
+ * first moves the bunny's texels by -3 % at half and +25 % at double, the second nothing. */
 constexpr double MIN_WEIGHT = 0.02, MAX_WEIGHT = 1e4;
 
 double corner_angle(const Mesh &mesh, uint32_t t, int k)
@@ -53,7 +54,7 @@ void find_fans(HalfEdges &edges)
 
 double HalfEdges::angle(uint32_t c) const
 {
-    return PI - std::abs(std::remainder(direction[c] - direction[previous_edge(c)], 2 * PI));
+    return M_PI - std::abs(std::remainder(direction[c] - direction[previous_edge(c)], 2 * M_PI));
 }
 
 double HalfEdges::weight(uint32_t h) const
@@ -66,7 +67,7 @@ double HalfEdges::weight(uint32_t h) const
 
 double HalfEdges::transport(uint32_t h) const
 {
-    return std::remainder(direction[opposite[h]] + PI - direction[h], 2 * PI);
+    return std::remainder(direction[opposite[h]] + M_PI - direction[h], 2 * M_PI);
 }
 
 HalfEdges make_half_edges(const Surface &surface)
@@ -79,7 +80,7 @@ HalfEdges make_half_edges(const Surface &surface)
             out.opposite.push_back(find_opposite(surface, 3 * t + uint32_t(k)));
             out.direction.push_back(angle);
             out.length.push_back(length(mesh.position(t, (k + 1) % 3) - mesh.position(t, k)));
-            angle += PI - corner_angle(mesh, t, (k + 1) % 3);
+            angle += M_PI - corner_angle(mesh, t, (k + 1) % 3);
         }
     }
     find_fans(out);

@@ -22,10 +22,13 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/* What curvature counts for, against what the neighbours' directions do. */
+/* What curvature counts for, against what the neighbours' directions do. Half: texels +12 % (Spot);
+ * double: RMS +14 % (bunny). */
 constexpr double FIT = 0.01;
-/* Without any curvature something must still hold the field. */
-constexpr double FIT_LEAST = 1e-9;
+/* A guard: without any curvature something must still hold the field. Where it does, as on Spot's
+ * flat parts, directions turn with it: texels -1 % at half, +14 % at double. */
+constexpr double MIN_FIT = 1e-9;
+/* Solves, each fitted to the last at unit length. Half: texels +21 %; double: RMS +9 % (Spot). */
 constexpr int PASSES = 20;
 
 /* Directions to keep to, four at once: cos 4a + i sin 4a for an angle a. */
@@ -52,7 +55,7 @@ Polar make_polar(const HalfEdges &edges)
             sum += edges.angle(c);
             c = edges.left_of(c);
         } while (c != NO_EDGE && c != first);
-        const double stretch = c != NO_EDGE && sum > 0 ? 2 * PI / sum : 1;
+        const double stretch = c != NO_EDGE && sum > 0 ? 2 * M_PI / sum : 1;
         out.stretch.push_back(stretch);
         for (c = first; c != NO_EDGE;) {
             out.start[c] *= stretch;
@@ -76,7 +79,7 @@ double into_triangle(const HalfEdges &edges, const Polar &polar, uint32_t c)
 double along_edge(const HalfEdges &edges, const Polar &polar, uint32_t h)
 {
     uint32_t next = next_edge(h);
-    return polar.start[next] + polar.stretch[edges.vertex[next]] * edges.angle(next) + PI -
+    return polar.start[next] + polar.stretch[edges.vertex[next]] * edges.angle(next) + M_PI -
            polar.start[h];
 }
 
@@ -122,7 +125,7 @@ Guide gather(const HalfEdges &edges, const Polar &polar, const Guide &triangles)
                                       std::polar(1., -4 * into_triangle(edges, polar, c));
     for (Complex &value : out.value) {
         double size = std::abs(value);
-        out.weight.push_back(FIT_LEAST + size / 3);
+        out.weight.push_back(MIN_FIT + size / 3);
         value = size > 0 ? value / size : Complex(1);
     }
     return out;
@@ -195,10 +198,10 @@ void match(const HalfEdges &edges, CrossField &field)
         if (o == NO_EDGE || o < h)
             continue;
         double between = field.angle[o / 3] - field.angle[h / 3] - edges.transport(h);
-        int quarters = int(std::lround(between / (PI / 2)));
+        int quarters = int(std::lround(between / (M_PI / 2)));
         field.turn[h] = uint8_t(quarters & 3);
         field.turn[o] = uint8_t(-quarters & 3);
-        field.bend[h] = between - quarters * (PI / 2);
+        field.bend[h] = between - quarters * (M_PI / 2);
         field.bend[o] = -field.bend[h];
     }
 }
@@ -208,14 +211,14 @@ void find_indices(const HalfEdges &edges, CrossField &field)
 {
     field.index.assign(edges.first.size(), 0);
     for (size_t v = 0; v < edges.first.size(); ++v) {
-        double sum = 2 * PI;
+        double sum = 2 * M_PI;
         uint32_t c = edges.first[v];
         do {
             sum += field.bend[previous_edge(c)] - edges.angle(c);
             c = edges.left_of(c);
         } while (c != NO_EDGE && c != edges.first[v]);
         if (c != NO_EDGE)
-            field.index[v] = int(std::lround(sum / (PI / 2)));
+            field.index[v] = int(std::lround(sum / (M_PI / 2)));
     }
 }
 

@@ -6,8 +6,6 @@
 
 namespace gtx {
 
-constexpr double PI = 3.14159265358979323846;
-
 /* Half-edges, and how a direction is carried across them. A corner is the half-edge that leaves it.
  * Angles in a triangle count from its first edge, counter-clockwise. */
 struct HalfEdges {
@@ -56,7 +54,7 @@ void adapt_scale(const Surface &surface, const HalfEdges &edges, double cell,
 using Uv = std::array<double, 2>;
 Uv turned(const Uv &uv, unsigned quarters);
 
-/* Coordinates are multiples of this, so that sums with whole numbers are exact. */
+/* Arithmetic: coordinates are multiples of this, so that sums with whole numbers are exact. */
 constexpr double UV_GRID = 1. / (uint64_t(1) << 40);
 inline double on_grid(double coordinate)
 {

@@ -18,7 +18,7 @@ constexpr double MAX_ADAPTED = 2;
 constexpr double REACH = 0.7;
 /* What bends less than this, radians along a cell, is as good as flat. */
 constexpr double MIN_BEND = 0.1;
-/* Keeps the mean of ln s at 0, where nothing else does. */
+/* A guard: keeps the mean of ln s at 0, where nothing else does. */
 constexpr double MIN_DIAGONAL = 1e-8;
 
 /* (L + diagonal) x = side, for Laplace's equation with cotangent weights L. */

@@ -14,12 +14,15 @@ namespace gtx {
 namespace {
 
 /* The least squares alone are minimal where all phases vanish. Each solve is held to the last
- * solution at unit length by this weight, an edge's being 1; soon the phases stay at unit length.
- * A rough solve will do, since the next goes on from it. */
-constexpr double HOLD = 0.1;
+ * solution at unit length by ANCHOR, an edge's weight being 1; soon the phases stay at unit
+ * length. A rough solve will do, since the next goes on from it. The solution is a local one:
+ * whatever changes by half, texels change by 10 to 30 % either way (Spot); more iterations
+ * change nothing. */
+constexpr double ANCHOR = 0.1;
 constexpr int PASSES = 10, MAX_ITERATIONS = 300;
 constexpr double TOLERANCE = 1e-2;
-/* Lines that pass a vertex closer than this share of a cell go through it: no slivers there. */
+/* Lines that pass a vertex closer than this share of a cell go through it: no slivers there. Half:
+ * RMS +3 %; double: texels +13 % (bunny). */
 constexpr double SNAP = 0.002;
 
 using Matrix4 = Eigen::Matrix4d;
@@ -70,7 +73,7 @@ Matrix4 step_matrix(const Uv &step)
 {
     Matrix4 out = Matrix4::Zero();
     for (int i = 0; i < 2; ++i) {
-        double c = std::cos(2 * PI * step[size_t(i)]), s = std::sin(2 * PI * step[size_t(i)]);
+        double c = std::cos(2 * M_PI * step[size_t(i)]), s = std::sin(2 * M_PI * step[size_t(i)]);
         out.block<2, 2>(2 * i, 2 * i) << c, -s, s, c;
     }
     return out;
@@ -117,7 +120,7 @@ Matrix4 Solve::carry(const Edge &edge) const
            turn_matrix(turn_[edge.half_edge]);
 }
 
-/* The sum over the edges of |x_end - carry x_start|^2, and HOLD |x|^2. */
+/* The sum over the edges of |x_end - carry x_start|^2, and ANCHOR |x|^2. */
 Energy Solve::energy() const
 {
     std::vector<int> degree(edges_.first.size(), 0);
@@ -130,7 +133,7 @@ Energy Solve::energy() const
     Energy out(x_.size(), x_.size());
     out.reserve(sizes);
     for (int r = 0; r < sizes.size(); ++r)
-        out.insert(r, r) = HOLD + degree[size_t(r / 4)];
+        out.insert(r, r) = ANCHOR + degree[size_t(r / 4)];
     for (const Edge &edge : list_) {
         int i = 4 * int(edge.vertex[0]), j = 4 * int(edge.vertex[1]);
         Matrix4 block = carry(edge);
@@ -206,7 +209,7 @@ void Solve::run(Task &task)
     solver.setMaxIterations(MAX_ITERATIONS);
     for (int pass = 0; pass < PASSES; ++pass) {
         task.check();
-        Vector side = HOLD * x_;
+        Vector side = ANCHOR * x_;
         x_ = solver.solveWithGuess(side, x_).eval();
         to_unit_length();
     }
@@ -214,7 +217,7 @@ void Solve::run(Task &task)
 
 double cells_of(double im, double re)
 {
-    double cells = std::atan2(im, re) / (2 * PI);
+    double cells = std::atan2(im, re) / (2 * M_PI);
     return std::abs(cells) < SNAP ? 0 : on_grid(cells);
 }
 

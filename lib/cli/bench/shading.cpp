@@ -48,8 +48,8 @@ void main()
 gtx_polygon_program make_bench_program(const gtx_host_gl &gl, bool materials)
 {
     std::string text;
-    for (const char *file : {"geotex_dialect.glsl", "geotex_height_field.glsl", "geotex_view.glsl",
-                             "geotex_surface.glsl", "geotex_material.glsl"})
+    for (const char *file : {"geotex_dialect.glsl", "geotex_records.glsl", "geotex_height_field.glsl",
+                             "geotex_view.glsl", "geotex_surface.glsl", "geotex_material.glsl"})
         text += gtx_shader_source(file);
     text += inputs;
     text += materials ? metallic_roughness : lambert;

@@ -186,19 +186,28 @@ static void append(const GltfPrimitive &from, bool two_sided, const Turn &turn, 
     }
 }
 
-/* Adds the primitive wherever its mesh stands. */
-static void append_instances(const GltfPrimitive &primitive, bool two_sided, uint32_t material,
-                             const std::vector<Affine> &instances, const std::string &where,
-                             uint64_t limit, Task &task, Mesh &mesh)
+namespace {
+/* A primitive and what the model says of all its triangles. */
+struct Part {
+    GltfPrimitive primitive;
+    bool two_sided;
+    uint32_t material;
+    std::string where; /* for messages */
+};
+} // namespace
+
+/* Adds the part wherever its mesh stands. */
+static void append_instances(const Part &part, const std::vector<Affine> &instances, uint64_t limit,
+                             Task &task, Mesh &mesh)
 {
     for (const Affine &transform : instances) {
-        uint64_t triangles = mesh.triangles.size() + primitive.triangles.size();
-        uint64_t vertices = mesh.positions.size() + primitive.positions.size();
+        uint64_t triangles = mesh.triangles.size() + part.primitive.triangles.size();
+        uint64_t vertices = mesh.positions.size() + part.primitive.positions.size();
         if (std::max(triangles, vertices / 3) > limit || vertices > MAX_VERTICES)
             fail(GTX_ERROR_LIMIT, "%s: the instances come to more than %llu triangles",
-                 where.c_str(), (unsigned long long)limit);
-        append(primitive, two_sided, Turn(transform), mesh);
-        mesh.appearance.material.resize(mesh.triangles.size(), material);
+                 part.where.c_str(), (unsigned long long)limit);
+        append(part.primitive, part.two_sided, Turn(transform), mesh);
+        mesh.appearance.material.resize(mesh.triangles.size(), part.material);
         task.advance(0.2 + 0.7 * double(triangles) / double(limit));
     }
 }
@@ -228,9 +237,9 @@ Mesh import_gltf(const ModelFile &file, Task &task)
                 number < 0 ? nullptr : &doc.look.materials[size_t(number)];
             GltfPrimitive primitive =
                 read_gltf_primitive(doc, primitives[i], material, where, task);
-            append_instances(primitive, material && material->two_sided,
-                             palette.number(number, primitive, where), instances[m], where,
-                             doc.triangle_limit, task, mesh);
+            const uint32_t shown = palette.number(number, primitive, where);
+            const Part part = {std::move(primitive), material && material->two_sided, shown, where};
+            append_instances(part, instances[m], doc.triangle_limit, task, mesh);
         }
     }
     if (has_lines)

@@ -1,9 +1,8 @@
 /* Wavefront OBJ: positions with colours, normals, texture coordinates, materials and polygons. */
 #include "mesh/import/mtl.hpp"
+#include "mesh/import/obj_text.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cstring>
 
 namespace gtx {
 
@@ -19,31 +18,23 @@ struct Corner {
 class ObjReader {
 public:
     ObjReader(const ModelFile &file, Task &task)
-        : begin_(file.bytes.data()), at_(begin_), end_(begin_ + file.bytes.size()), file_(file),
-          task_(task)
+        : text_(file.bytes), file_(file), task_(task)
     {
     }
     Mesh read();
 
 private:
-    bool at_line_end();
-    void next_line(bool continued);
-    bool number(double &value);
-    void numbers(double *values, int count, const char *what);
-    bool index(size_t count, const char *what, uint32_t &out);
     bool corner();
     void statement(std::string_view word);
     void vertex();
     void face();
     void triangle(const Corner &a, const Corner &b, const Corner &c);
-    std::string_view rest_of_line();
     void use_material();
     void ignore(std::string_view word);
     void finish_materials();
     void finish();
 
-    const char *begin_, *at_, *end_;
-    size_t line_ = 1;
+    ObjText text_;
     const ModelFile &file_;
     Task &task_;
     Mesh mesh_;
@@ -59,60 +50,16 @@ private:
     size_t short_faces_ = 0, lost_coordinates_ = 0;
 };
 
-/* Skips blanks, and line ends behind a backslash. */
-bool ObjReader::at_line_end()
-{
-    for (; at_ < end_; ++at_) {
-        if (*at_ == ' ' || *at_ == '\t')
-            continue;
-        if (*at_ != '\\' || at_ + 1 == end_ || (at_[1] != '\n' && at_[1] != '\r'))
-            return *at_ == '\n' || *at_ == '\r' || *at_ == '#';
-        at_ += at_[1] == '\r' && at_ + 2 < end_ && at_[2] == '\n' ? 2 : 1;
-        ++line_;
-    }
-    return true;
-}
-
-void ObjReader::next_line(bool continued)
-{
-    while (at_ < end_ && *at_ != '\n' && *at_ != '\r') {
-        if (continued && *at_ == '\\' && at_ + 1 < end_ && (at_[1] == '\n' || at_[1] == '\r'))
-            at_line_end();
-        else
-            ++at_;
-    }
-    if (at_ < end_)
-        at_ += *at_ == '\r' && at_ + 1 < end_ && at_[1] == '\n' ? 2 : 1;
-    ++line_;
-}
-
-bool ObjReader::number(double &value)
-{
-    if (at_line_end())
-        return false;
-    if (!parse_number(at_, end_, value))
-        fail(GTX_ERROR_INPUT, "line %zu: '%s' is not a number", line_,
-             printable({at_, std::min<size_t>(size_t(end_ - at_), 12)}).c_str());
-    return true;
-}
-
-void ObjReader::numbers(double *values, int count, const char *what)
-{
-    for (int i = 0; i < count; ++i)
-        if (!number(values[i]))
-            fail(GTX_ERROR_INPUT, "line %zu: a %s needs %d numbers", line_, what, count);
-}
-
 /* x y z, then w, or r g b, or r g b a. */
 void ObjReader::vertex()
 {
     double v[3], more[4] = {};
     int extra = 0;
-    numbers(v, 3, "vertex");
-    while (extra < 4 && number(more[extra]))
+    text_.numbers(v, 3, "vertex");
+    while (extra < 4 && text_.number(more[extra]))
         ++extra;
     if (mesh_.positions.size() == MAX_VERTICES)
-        fail(GTX_ERROR_LIMIT, "line %zu: more than %llu vertices", line_,
+        fail(GTX_ERROR_LIMIT, "line %zu: more than %llu vertices", text_.line(),
              (unsigned long long)MAX_VERTICES);
     if (extra >= 3) {
         colors_.resize(mesh_.positions.size());
@@ -121,46 +68,21 @@ void ObjReader::vertex()
     mesh_.positions.push_back({v[0], v[1], v[2]});
 }
 
-/* A number from 1, or from -1 backwards; false when there is none. */
-bool ObjReader::index(size_t count, const char *what, uint32_t &out)
-{
-    int64_t value = 0;
-    auto [stop, error] = std::from_chars(at_, end_, value);
-    if (error == std::errc::invalid_argument)
-        return false;
-    bool beyond =
-        error != std::errc() || value == 0 || value > int64_t(count) || value < -int64_t(count);
-    if (beyond)
-        fail(GTX_ERROR_INPUT, "line %zu: %s %s, but %zu are defined before it", line_, what,
-             printable({at_, size_t(stop - at_)}).c_str(), count);
-    out = uint32_t(value > 0 ? value - 1 : int64_t(count) + value);
-    at_ = stop;
-    return true;
-}
-
 /* v, v/vt, v//vn or v/vt/vn. */
 bool ObjReader::corner()
 {
-    if (at_line_end())
+    if (text_.at_line_end())
         return false;
     Corner corner;
-    bool good = index(mesh_.positions.size(), "vertex", corner.vertex);
-    if (good && at_ < end_ && *at_ == '/') {
-        int64_t named = 0, count = int64_t(coordinates_.size());
-        at_ = std::from_chars(at_ + 1, end_, named).ptr;
-        if (named && named <= count && named >= -count)
-            corner.coordinate = uint32_t(named > 0 ? named - 1 : count + named);
-        else
-            lost_coordinates_ += named != 0;
-        if (at_ < end_ && *at_ == '/') {
-            ++at_;
-            index(normals_.size(), "normal", corner.normal); /* "v/vt/" is met in the wild */
-        }
+    bool good = text_.index(mesh_.positions.size(), "vertex", corner.vertex);
+    if (good && text_.take('/')) {
+        lost_coordinates_ += !text_.optional_index(coordinates_.size(), corner.coordinate);
+        if (text_.take('/')) /* "v/vt/" is met in the wild */
+            text_.index(normals_.size(), "normal", corner.normal);
     }
-    const char *stop = at_;
-    if (!good || !(at_line_end() || at_ != stop))
+    if (!good || !text_.at_word_end())
         fail(GTX_ERROR_INPUT, "line %zu: a corner of a face is not v, v/vt, v//vn or v/vt/vn",
-             line_);
+             text_.line());
     corners_.push_back(corner);
     return true;
 }
@@ -212,25 +134,13 @@ void ObjReader::face()
             triangle(corners_[t[0]], corners_[t[1]], corners_[t[2]]);
     }
     if (mesh_.triangles.size() > MAX_VERTICES)
-        fail(GTX_ERROR_LIMIT, "line %zu: more than %llu triangles", line_,
+        fail(GTX_ERROR_LIMIT, "line %zu: more than %llu triangles", text_.line(),
              (unsigned long long)MAX_VERTICES);
-}
-
-/* Names may have blanks in them. */
-std::string_view ObjReader::rest_of_line()
-{
-    at_line_end();
-    const char *stop = at_;
-    while (stop < end_ && *stop != '\n' && *stop != '\r')
-        ++stop;
-    std::string_view rest(at_, size_t(stop - at_));
-    at_ = stop;
-    return rest.substr(0, rest.find_last_not_of(" \t") + 1);
 }
 
 void ObjReader::use_material()
 {
-    std::string name(rest_of_line());
+    std::string name(text_.rest_of_line());
     auto known = std::find(names_.begin(), names_.end(), name);
     name_ = uint32_t(known - names_.begin());
     if (known == names_.end())
@@ -245,7 +155,7 @@ void ObjReader::ignore(std::string_view word)
             return;
     auto strange = [](unsigned char c) { return c <= ' ' || c > '~'; };
     if (word.empty() || std::any_of(word.begin(), word.end(), strange))
-        fail(GTX_ERROR_INPUT, "line %zu: '%s' is not an OBJ statement", line_,
+        fail(GTX_ERROR_INPUT, "line %zu: '%s' is not an OBJ statement", text_.line(),
              printable(word).c_str());
     for (const std::string &known : ignored_)
         if (word == known)
@@ -260,13 +170,13 @@ void ObjReader::statement(std::string_view word)
         vertex();
     } else if (word == "vn") {
         double n[3];
-        numbers(n, 3, "normal");
+        text_.numbers(n, 3, "normal");
         if (normals_.size() < MAX_VERTICES)
             normals_.push_back({float(n[0]), float(n[1]), float(n[2])});
     } else if (word == "vt") {
         double u = 0, v = 0;
-        number(u);
-        number(v);
+        text_.number(u);
+        text_.number(v);
         if (coordinates_.size() < MAX_VERTICES) /* images have their origin at the top */
             coordinates_.push_back({float(u), float(1 - v)});
     } else if (word == "f") {
@@ -274,7 +184,7 @@ void ObjReader::statement(std::string_view word)
     } else if (word == "usemtl") {
         use_material();
     } else if (word == "mtllib") {
-        libraries_.emplace_back(rest_of_line());
+        libraries_.emplace_back(text_.rest_of_line());
     } else {
         ignore(word);
     }
@@ -332,19 +242,13 @@ void ObjReader::finish()
 
 Mesh ObjReader::read()
 {
-    if (std::string_view(at_, size_t(end_ - at_)).substr(0, 3) == "\xef\xbb\xbf")
-        at_ += 3;
-    while (at_ < end_) {
-        if (line_ % 0x8000 == 0)
-            task_.advance(double(at_ - begin_) / double(end_ - begin_));
-        bool blank = at_line_end();
-        if (!blank) {
-            const char *word = at_;
-            while (at_ < end_ && !std::strchr(" \t\r\n\\#", *at_))
-                ++at_;
-            statement({word, size_t(at_ - word)});
-        }
-        next_line(!blank && (at_ == end_ || *at_ != '#'));
+    while (!text_.at_end()) {
+        if (text_.line() % 0x8000 == 0)
+            task_.advance(text_.share_read());
+        const bool blank = text_.at_line_end();
+        if (!blank)
+            statement(text_.word());
+        text_.next_line(!blank && !text_.at_comment());
     }
     finish();
     return std::move(mesh_);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace gtx {
 
@@ -67,21 +66,12 @@ struct Lists {
 class PlyReader {
 public:
     PlyReader(const std::string &bytes, Task &task)
-        : begin_(bytes.data()), end_(begin_ + bytes.size()), header_(read_ply_header(bytes)),
-          at_(begin_ + header_.size), task_(task)
+        : header_(read_ply_header(bytes)), values_(bytes, header_, task), task_(task)
     {
     }
     Mesh read();
 
 private:
-    size_t left() const { return size_t(end_ - at_); }
-    double ascii_value();
-    double value(PlyType type);
-    uint64_t list_length(const PlyProperty &property);
-    void skip(const PlyProperty &property);
-    void check_count(const PlyElement &element);
-    void progress(uint64_t row);
-
     void read_vertices(const PlyElement &element);
     void read_lists(const PlyElement &element, size_t list, Lists &lists);
     void skip_rows(const PlyElement &element);
@@ -92,11 +82,8 @@ private:
     Mesh colored();
     void ignored(const PlyElement &element, const PlyProperty &property);
 
-    const char *begin_, *end_;
-    PlyHeader header_; /* its lines go on counting */
-    const char *at_;
-    const PlyElement *element_ = nullptr; /* at hand, for messages */
-    uint64_t row_ = 0;
+    const PlyHeader header_;
+    PlyValues values_;
     Task &task_;
     VertexMesh mesh_;
     Lists faces_, strips_;
@@ -104,101 +91,6 @@ private:
     std::vector<Rgba8> colors_; /* a triangle each */
     std::string ignored_;
 };
-
-/* ---- values ---- */
-
-double PlyReader::ascii_value()
-{
-    for (; at_ < end_ && (*at_ == ' ' || (*at_ >= '\t' && *at_ <= '\r')); ++at_)
-        header_.lines += *at_ == '\n';
-    if (at_ == end_)
-        fail(GTX_ERROR_INPUT, "the file ends in %s %llu of %llu", printable(element_->name).c_str(),
-             (unsigned long long)row_, (unsigned long long)element_->count);
-    double value = 0;
-    if (!parse_number(at_, end_, value))
-        fail(GTX_ERROR_INPUT, "line %zu: '%s' is not a number", header_.lines + 1,
-             printable({at_, std::min<size_t>(left(), 12)}).c_str());
-    return value;
-}
-
-template <class T> double as(const unsigned char *bytes)
-{
-    T value;
-    std::memcpy(&value, bytes, sizeof value);
-    return double(value);
-}
-
-bool host_is_big_endian()
-{
-    const uint16_t one = 1;
-    unsigned char first;
-    std::memcpy(&first, &one, 1);
-    return first == 0;
-}
-
-double PlyReader::value(PlyType type)
-{
-    if (header_.ascii)
-        return ascii_value();
-    unsigned size = ply_size(type);
-    if (left() < size)
-        fail(GTX_ERROR_INPUT, "the file ends in %s %llu of %llu", printable(element_->name).c_str(),
-             (unsigned long long)row_, (unsigned long long)element_->count);
-    unsigned char bytes[8];
-    std::memcpy(bytes, at_, size);
-    at_ += size;
-    if (header_.big_endian != host_is_big_endian())
-        std::reverse(bytes, bytes + size);
-    switch (type) {
-    case PlyType::i8: return as<int8_t>(bytes);
-    case PlyType::u8: return as<uint8_t>(bytes);
-    case PlyType::i16: return as<int16_t>(bytes);
-    case PlyType::u16: return as<uint16_t>(bytes);
-    case PlyType::i32: return as<int32_t>(bytes);
-    case PlyType::u32: return as<uint32_t>(bytes);
-    case PlyType::f32: return as<float>(bytes);
-    case PlyType::f64: return as<double>(bytes);
-    }
-    return 0;
-}
-
-/* The length, after checking that the file is long enough to hold the items. */
-uint64_t PlyReader::list_length(const PlyProperty &property)
-{
-    double length = value(property.count_type);
-    size_t item = header_.ascii ? 1 : ply_size(property.type);
-    if (!(length >= 0) || length > double(left() / item))
-        fail(GTX_ERROR_INPUT, "%s %llu: a list of %.0f items does not fit the file",
-             printable(element_->name).c_str(), (unsigned long long)row_, length);
-    return uint64_t(length);
-}
-
-void PlyReader::skip(const PlyProperty &property)
-{
-    for (uint64_t n = property.is_list ? list_length(property) : 1; n > 0; --n)
-        value(property.type);
-}
-
-/* Before anything is allocated: does the file have room for that many rows? */
-void PlyReader::check_count(const PlyElement &element)
-{
-    uint64_t row = 0;
-    for (const PlyProperty &p : element.properties)
-        row += header_.ascii ? 2 : ply_size(p.is_list ? p.count_type : p.type);
-    /* The last value of an ascii file needs no blank behind it. */
-    if (row && element.count > (left() + (header_.ascii ? 1 : 0)) / row)
-        fail(GTX_ERROR_INPUT, "%llu rows of element '%s' do not fit the file",
-             (unsigned long long)element.count, printable(element.name).c_str());
-}
-
-void PlyReader::progress(uint64_t row)
-{
-    row_ = row;
-    if (row % 0x8000 == 0)
-        task_.advance(double(at_ - begin_) / double(end_ - begin_));
-}
-
-/* ---- elements ---- */
 
 void PlyReader::ignored(const PlyElement &element, const PlyProperty &property)
 {
@@ -222,13 +114,13 @@ void PlyReader::read_vertices(const PlyElement &element)
 
     double v[ROLE_COUNT + 1] = {};
     for (uint64_t row = 0; row < element.count; ++row) {
-        progress(row);
+        values_.begin_row(row);
         for (size_t i = 0; i < roles.of.size(); ++i) {
             const PlyProperty &p = element.properties[i];
             if (p.is_list)
-                skip(p);
+                values_.skip(p);
             else
-                v[roles.of[i]] = value(p.type);
+                v[roles.of[i]] = values_.value(p.type);
         }
         mesh_.positions.push_back({v[X], v[Y], v[Z]});
         if (normals)
@@ -251,21 +143,21 @@ void PlyReader::read_lists(const PlyElement &element, size_t list, Lists &lists)
     lists.colors.reserve(lists.colors.size() + element.count);
     double v[ROLE_COUNT + 1] = {};
     for (uint64_t row = 0; row < element.count; ++row) {
-        progress(row);
+        values_.begin_row(row);
         for (size_t i = 0; i < element.properties.size(); ++i) {
             const PlyProperty &p = element.properties[i];
             if (i != list && !p.is_list) {
-                v[roles.of[i]] = value(p.type);
+                v[roles.of[i]] = values_.value(p.type);
                 continue;
             }
             if (i != list) {
-                skip(p);
+                values_.skip(p);
                 continue;
             }
-            uint64_t length = list_length(p);
+            uint64_t length = values_.list_length(p);
             lists.values.push_back(double(length));
             for (; length > 0; --length)
-                lists.values.push_back(value(p.type));
+                lists.values.push_back(values_.value(p.type));
         }
         lists.colors.push_back(colored ? roles.color(v) : Rgba8());
     }
@@ -277,9 +169,9 @@ void PlyReader::skip_rows(const PlyElement &element)
     if (element.properties.empty())
         return;
     for (uint64_t row = 0; row < element.count; ++row) {
-        progress(row);
+        values_.begin_row(row);
         for (const PlyProperty &p : element.properties)
-            skip(p);
+            values_.skip(p);
     }
 }
 
@@ -366,8 +258,7 @@ Mesh PlyReader::colored()
 Mesh PlyReader::read()
 {
     for (const PlyElement &element : header_.elements) {
-        element_ = &element;
-        check_count(element);
+        values_.begin(element);
         size_t list = 0, properties = element.properties.size();
         while (list < properties && !(element.properties[list].is_list &&
                                       (element.properties[list].name == "vertex_indices" ||

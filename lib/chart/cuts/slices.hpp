@@ -1,0 +1,89 @@
+/* Columns and rows of a chart's texels, summed: what a rectangle of them would cost. */
+#pragma once
+
+#include "chart/cuts/tree.hpp"
+
+namespace gtx {
+
+/* Sums over heights at texels, to fit a plane to. */
+struct Moments {
+    double n = 0, u = 0, v = 0, h = 0, uu = 0, uv = 0, vv = 0, uh = 0, vh = 0, hh = 0;
+
+    void add(const Moments &m)
+    {
+        n += m.n, u += m.u, v += m.v, h += m.h;
+        uu += m.uu, uv += m.uv, vv += m.vv, uh += m.uh, vh += m.vh, hh += m.hh;
+    }
+    /* Mean square of what the least-squares plane leaves. */
+    double residual() const
+    {
+        if (n < 4)
+            return 0;
+        double suu = uu - u * u / n, suv = uv - u * v / n, svv = vv - v * v / n;
+        double suh = uh - u * h / n, svh = vh - v * h / n, shh = hh - h * h / n;
+        double det = suu * svv - suv * suv;
+        if (det > 1e-9 * suu * svv) {
+            double a = (suh * svv - svh * suv) / det, b = (svh * suu - suh * suv) / det;
+            shh -= a * suh + b * svh;
+        }
+        return std::max(0., shh / n);
+    }
+};
+
+inline constexpr Rect NOTHING = {{INT32_MAX, INT32_MAX}, {INT32_MIN, INT32_MIN}};
+
+/* A column or row of a node, or several. */
+struct Slice {
+    Moments moments;
+    Rect box = NOTHING;
+
+    void add(const Slice &s)
+    {
+        moments.add(s.moments);
+        for (int k = 0; k < 2; ++k) {
+            box.low[k] = std::min(box.low[k], s.box.low[k]);
+            box.high[k] = std::max(box.high[k], s.box.high[k]);
+        }
+    }
+};
+
+/* Sums along one column or row, where the other coordinate stays. */
+struct Line {
+    int low = INT32_MAX, high = INT32_MIN; /* of what is touched */
+    double n = 0, x = 0, h = 0, xx = 0, xh = 0, hh = 0;
+
+    void touch(int at)
+    {
+        low = std::min(low, at);
+        high = at + 1;
+    }
+    void add(double at, double height)
+    {
+        n += 1, x += at, h += height;
+        xx += at * at, xh += at * height, hh += height * height;
+    }
+    Slice slice(int axis, int at) const
+    {
+        Slice out;
+        if (high > low) {
+            out.box.low[axis] = at;
+            out.box.high[axis] = at + 1;
+            out.box.low[!axis] = low;
+            out.box.high[!axis] = high;
+        }
+        double a = at;
+        if (axis == 0)
+            out.moments = {n, n * a, x, h, n * a * a, a * x, xx, a * h, xh, hh};
+        else
+            out.moments = {n, x, n * a, h, xx, a * x, n * a * a, xh, a * h, hh};
+        return out;
+    }
+};
+
+/* Columns or rows of a part of the chart, in order. */
+struct Lines {
+    int first; /* coordinate of the first */
+    std::vector<Slice> slices;
+};
+
+} // namespace gtx

@@ -1,0 +1,41 @@
+# Installation: exactly the files of lib/package/files, below PREFIX; and the source archive.
+fill = sed -e 's|@PREFIX@|$(PREFIX)|g' -e 's|@VERSION@|$(VERSION)|g' \
+  -e 's|@SOVERSION@|$(SOVERSION)|g' -e 's|@CORE_LIBS@|$(call libs_of,asset)|g' -e 's|@COOK_LIBS@|$(call libs_of,mesh)|g'
+verbs := cook horizons info validate unpack pack filter render view compare bench
+to    := $(DESTDIR)$(PREFIX)
+
+$(out)/gen/gtx.1: lib/package/gtx.1.in lib/package/verbs.awk $(command)
+	@mkdir -p $(@D)
+	$(Q){ sed '/@VERBS@/,$$d' $<; for verb in $(verbs); do $(command) $$verb --help; done | \
+	  awk -f lib/package/verbs.awk; sed '1,/@VERBS@/d' $<; } | $(fill) > $@
+
+install: all $(out)/gen/gtx.1 ## libraries, headers, command, shaders, manual: below PREFIX
+	@install -d $(to)/bin $(to)/include/geotex $(to)/lib/geotex $(to)/lib/pkgconfig \
+	  $(to)/lib/cmake/geotex $(to)/share/geotex/shaders $(to)/share/doc/geotex $(to)/share/man/man1
+	@install -m 755 $(command) $(to)/bin
+	@install -m 644 include/geotex/*.h $(to)/include/geotex
+	@install -m 644 $(lib_core) $(lib_cook) $(to)/lib
+	@install -m 755 $(so_core) $(so_cook) $(to)/lib
+	@for so in libgeotex.so libgeotex-cook.so; do \
+	  ln -sf $$so.$(VERSION) $(to)/lib/$$so.$(SOVERSION); ln -sf $$so.$(SOVERSION) $(to)/lib/$$so; done
+	@install -m 755 $(module) $(to)/lib/geotex
+	@for pc in geotex geotex-cook; do \
+	  $(fill) lib/package/$$pc.pc.in > $(to)/lib/pkgconfig/$$pc.pc; done
+	@for cmake in geotexConfig geotexConfigVersion; do \
+	  $(fill) lib/package/$$cmake.cmake.in > $(to)/lib/cmake/geotex/$$cmake.cmake; done
+	@install -m 644 $(shaders) $(to)/share/geotex/shaders
+	@install -m 644 README.md LICENSE $(filter-out %.gtx,$(wildcard format/*)) $(to)/share/doc/geotex
+	@install -m 644 $(out)/gen/gtx.1 $(to)/share/man/man1
+
+uninstall: ## remove what install put there
+	@cd $(to) && rm -f $$(cat $(abspath lib/package/files)) && \
+	  rmdir --ignore-fail-on-non-empty -p include/geotex lib/geotex lib/cmake/geotex lib/pkgconfig \
+	    share/geotex/shaders share/doc/geotex share/man/man1 bin 2>/dev/null || true
+
+# The same bytes from the same commit, wherever and whenever.
+dist_name := geotex-$(VERSION)
+dist: ## the committed sources as build/geotex-VERSION.tar.gz
+	@mkdir -p $(build)
+	@git -c tar.umask=0022 archive --format=tar --prefix=$(dist_name)/ HEAD > $(build)/$(dist_name).tar
+	@gzip -9nf $(build)/$(dist_name).tar
+	@echo $(build)/$(dist_name).tar.gz

@@ -1,0 +1,99 @@
+/* The inside of models, and what is derived of an asset for them. */
+#ifndef GTX_RENDER_MODEL_H
+#define GTX_RENDER_MODEL_H
+
+#include "derive/derive.h"
+#include "geotex_records.glsl"
+#include "render/gl.h"
+#include "render/lod.h"
+#include "render/units.h"
+
+#include <geotex/render.h>
+#include <stdbool.h>
+
+enum {
+    GTX_MAX_LEVELS = 2 + 5 * GTX_MAX_MIPS,
+    GTX_MAX_PROXY_KINDS = 1 + GTX_MAX_MIPS,
+    GTX_RECORDS_A_ROW = 1 << GTX_RECORD_ROW_BITS
+};
+
+/* A patch's record, as geotex_records.glsl lays it out. */
+typedef float gtx_record[GTX_RECORD_TEXELS][4];
+
+/* One mip level of a texture, waiting for its upload. All layers follow one another. */
+typedef struct gtx_level {
+    uint32_t unit, level, width, height, layers;
+    uint32_t texel_size;
+    uint32_t next_row;        /* of height * layers rows, the first one not uploaded yet */
+    uint8_t *data;            /* freed once it is uploaded, unless it is the asset's */
+    bool borrowed;
+} gtx_level;
+
+/* What the choice of a patch's proxy goes by. */
+typedef struct gtx_patch_facts {
+    float sphere[4], hull[4]; /* around the height field; around the proxies */
+    float error[GTX_MAX_MIPS]; /* of each level, as gtx_grid_error has it, never falling */
+    bool boxed;               /* edited, and its hulls do not fit their place: cast by its box */
+} gtx_patch_facts;
+
+struct gtx_model {
+    gtx_allocator allocator;
+    uint32_t height_bits, mip_count, patch_count, page_count, page_width, page_height;
+    uint64_t layout;          /* gtx_model_layout of the asset */
+    bool has_color, has_material, has_emission, ready;
+    float emission_scale;     /* 0: no emission */
+    bool has_constant_material; /* all over, but for patches that were edited: */
+    float constant_material[4];
+    gtx_level levels[GTX_MAX_LEVELS];
+    uint32_t level_count;
+    gtx_proxies proxies;      /* freed once they are uploaded */
+    uint64_t vertex_bytes_sent, index_bytes_sent;
+    /* Proxies are in order of their kind, boxes first and then the hulls of each level, and of
+     * patches. Where each begins, and the end: kind_count * patch_count + 1. */
+    uint32_t kind_count, *first_vertex, *first_index;
+    gtx_patch_facts *facts;   /* a patch each */
+    float sphere[4];          /* around all proxies */
+    float coarsest_error;     /* of all patches at the last level */
+    uint32_t boxed_count;
+    gtx_lod_meshes lods;
+    /* Slabs of all levels, and where those of a patch's level begin: mip_count * patch_count + 1
+     * numbers. */
+    gtx_slab *slabs;
+    uint32_t *first_slab;
+    gtx_record *records;
+    gtx_model_size size;
+    gl_uint textures[UNIT_COUNT];
+    gl_uint vertices, indices;
+};
+
+/* constant_material.c: whether all that the asset shows has one material, and which: 0..1. */
+bool gtx_find_constant_material(const gtx_asset *asset, float material[4]);
+
+/* model.c: gives the CPU's copy of the maps and proxies back, or all that a model has but the
+ * objects of OpenGL. */
+void gtx_model_free_staging(gtx_model *model);
+void gtx_model_free(gtx_model *model);
+/* A hash of where the patches' rectangles lie. */
+uint64_t gtx_model_layout(const gtx_asset *asset);
+/* Rows of a page of cells, and where the cells of a patch's level are in it: level 1 and the
+ * coarser ones lie side by side under level 0. */
+uint32_t gtx_model_cell_rows(const gtx_model *model);
+void gtx_model_cells_at(const gtx_model *model, const gtx_patch *patch, uint32_t level,
+                        uint32_t at[2]);
+/* Bounds of all patches, from the facts of each. */
+void gtx_model_sum_up(gtx_model *model);
+
+/* patch.c: what is derived of a patch. */
+typedef struct gtx_derived {
+    gtx_proxies proxies[GTX_MAX_PROXY_KINDS]; /* the patch's are added to them */
+    gtx_record record;
+    gtx_patch_facts facts;
+    gtx_slab *slabs[GTX_MAX_MIPS];            /* where they go */
+    void *cells[GTX_MAX_MIPS];                /* where the cells of each level go, in rows of so */
+    size_t row_texels[GTX_MAX_MIPS];          /* many texels */
+} gtx_derived;
+/* Errors: MEMORY. */
+gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_allocator *allocator,
+                            gtx_derived *out, gtx_error *error);
+
+#endif

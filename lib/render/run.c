@@ -1,0 +1,250 @@
+/* Drawing a run of instances: by the LOD mesh, and by casting patches, in one draw where all are far
+ * away. */
+#include "render/run.h"
+
+#include "render/renderer.h"
+
+static gtx_material_kind material_of(const gtx_model *model)
+{
+    if (model->emission_scale > 0)
+        return MATERIAL_MAPS;
+    if (model->has_material)
+        return model->has_constant_material ? MATERIAL_CONSTANT : MATERIAL_MAPS;
+    return model->has_color ? MATERIAL_COLORS : MATERIAL_NONE;
+}
+
+static const gtx_program *program_of(const gtx_draw_call *draw, const gtx_model *model,
+                                     gtx_technique technique)
+{
+    return gtx_program_of(draw->renderer, technique, draw->view->pass, material_of(model));
+}
+
+static void bind_textures(const gtx_gl *gl, const gtx_model *model)
+{
+    for (gl_uint i = 0; i < UNIT_COUNT; ++i) {
+        const gl_enum target = i == UNIT_PATCHES ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY;
+        gl->ActiveTexture(GL_TEXTURE0 + i);
+        gl->BindTexture(target, model->textures[i]);
+    }
+}
+
+static const void *at(size_t offset)
+{
+    return (const char *)NULL + offset;
+}
+
+/* Points the attributes at the data of instances from one on. */
+static void set_instances(const gtx_renderer *renderer, uint32_t instance)
+{
+    const gtx_gl *gl = &renderer->gl;
+    enum {
+        FIRST_INSTANCE_ATTRIBUTE = 2,
+        INSTANCE_ATTRIBUTES = offsetof(gtx_instance_data, id) / 16,
+        ID_ATTRIBUTE = FIRST_INSTANCE_ATTRIBUTE + INSTANCE_ATTRIBUTES
+    };
+    const size_t base = instance * sizeof(gtx_instance_data);
+    gl->BindBuffer(GL_ARRAY_BUFFER, renderer->instance_buffer);
+    for (gl_uint i = 0; i < INSTANCE_ATTRIBUTES; ++i) {
+        const gl_uint index = FIRST_INSTANCE_ATTRIBUTE + i;
+        gl->VertexAttribPointer(index, 4, GL_FLOAT, GL_FALSE, sizeof(gtx_instance_data),
+                                at(base + 16 * (size_t)i));
+        gl->VertexAttribDivisor(index, 1);
+        gl->EnableVertexAttribArray(index);
+    }
+    gl->VertexAttribIPointer(ID_ATTRIBUTE, 1, GL_UNSIGNED_INT, sizeof(gtx_instance_data),
+                             at(base + offsetof(gtx_instance_data, id)));
+    gl->VertexAttribDivisor(ID_ATTRIBUTE, 1);
+    gl->EnableVertexAttribArray(ID_ATTRIBUTE);
+}
+
+/* The same, and at the vertices of proxies. */
+static void set_attributes(const gtx_renderer *renderer, const gtx_run *r, uint32_t instance)
+{
+    const gtx_gl *gl = &renderer->gl;
+    gl->BindBuffer(GL_ARRAY_BUFFER, r->model->vertices);
+    gl->VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(gtx_proxy_vertex), at(0));
+    gl->VertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(gtx_proxy_vertex),
+                             at(offsetof(gtx_proxy_vertex, patch)));
+    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->model->indices);
+    gl->EnableVertexAttribArray(0);
+    gl->EnableVertexAttribArray(1);
+    set_instances(renderer, instance);
+}
+
+/* Takes a program into use, with the model's uniforms. */
+static void use_program(gtx_draw_call *draw, const gtx_program *program, const gtx_model *model)
+{
+    const gtx_gl *gl = &draw->renderer->gl;
+    const gtx_frame *frame = &draw->frame;
+    const float maps[4] = {(float)(model->mip_count - 1), model->has_color ? 1.0f : 0.0f,
+                           model->emission_scale, model->has_material ? 1.0f : 0.0f};
+    if (program != draw->program) {
+        gl->UseProgram(program->object);
+        gl->UniformMatrix4fv(program->clip_from_world, 1, GL_FALSE, frame->clip_from_world);
+        gl->Uniform4fv(program->depth, 1, frame->depth);
+        gl->Uniform4fv(program->light, 1, frame->light);
+        gl->Uniform4fv(program->detail, 1, frame->detail);
+        gl->Uniform4fv(program->search, 1, frame->search);
+        draw->program = program;
+    }
+    gl->Uniform4fv(program->maps, 1, maps);
+    gl->Uniform4fv(program->constant_material, 1, model->constant_material);
+}
+
+/* Which faces a run of proxies is drawn by: boxes by their back faces, so that a camera inside
+ * still sees the patch, hulls by their front faces, where rays begin. */
+static void face(const gtx_gl *gl, const gtx_run *r, bool back)
+{
+    gl->FrontFace(r->mirrored != back ? GL_CW : GL_CCW);
+}
+
+/* Draws all proxies of a kind, of `count` instances. */
+static void cast_whole(const gtx_renderer *renderer, const gtx_run *r, uint32_t kind, uint32_t instance,
+                       uint32_t count)
+{
+    const gtx_model *model = r->model;
+    const uint32_t *first = &model->first_index[kind * model->patch_count];
+    const uint32_t indices = first[model->patch_count] - first[0];
+    if (!indices)
+        return;
+    set_attributes(renderer, r, instance);
+    face(&renderer->gl, r, kind == 0);
+    renderer->gl.DrawElementsInstanced(GL_TRIANGLES, (gl_size)indices, GL_UNSIGNED_INT,
+                                       at(first[0] * sizeof(uint32_t)), (gl_size)count);
+}
+
+/* Draws parts of a plan, of the instance that the attributes point at. */
+static void cast_parts(const gtx_gl *gl, const gtx_plan *plan, uint32_t first, uint32_t count)
+{
+    if (gl->MultiDrawElements && count)
+        gl->MultiDrawElements(GL_TRIANGLES, plan->counts + first, GL_UNSIGNED_INT,
+                              plan->offsets + first, (gl_size)count);
+    for (uint32_t i = first; !gl->MultiDrawElements && i < first + count; ++i)
+        gl->DrawElementsInstanced(GL_TRIANGLES, plan->counts[i], GL_UNSIGNED_INT, plan->offsets[i],
+                                  1);
+}
+
+/* Casts an instance by tiles; false when it has to be done otherwise. */
+static bool cast_tiles(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
+{
+    gtx_renderer *renderer = draw->renderer;
+    const gtx_instance_data *placed = &renderer->instances[instance];
+    if (!gtx_stream_suits(renderer, draw->view) || !gtx_tiles_fill(draw, r->model, placed))
+        return false;
+    if (!renderer->tiles.tile_count)
+        return true;
+    use_program(draw, program_of(draw, r->model, TECHNIQUE_TILES), r->model);
+    gtx_stream_draw(draw, placed);
+    renderer->gl.BindVertexArray(renderer->vertex_array);
+    return true;
+}
+
+static const gtx_program *cast_program(const gtx_draw_call *draw, const gtx_model *model)
+{
+    const bool paper = draw->view->method == GTX_METHOD_PAPER;
+    return draw->view->shading ? &draw->view->shading->cast
+                               : program_of(draw, model, paper ? TECHNIQUE_PAPER : TECHNIQUE_CAST);
+}
+
+/* Draws an instance patch by patch, nearest first. Boxes are told their level by a uniform. */
+static void cast_sorted(gtx_draw_call *draw, const gtx_run *r, uint32_t instance,
+                        bool edited_only)
+{
+    const gtx_renderer *renderer = draw->renderer;
+    const gtx_gl *gl = &renderer->gl;
+    const gtx_plan *plan = &renderer->plan;
+    uint32_t first = 0;
+    gtx_plan_patches(draw, r->model, &renderer->instances[instance], edited_only);
+    if (cast_tiles(draw, r, instance))
+        return;
+    use_program(draw, cast_program(draw, r->model), r->model);
+    set_attributes(renderer, r, instance);
+    face(gl, r, true);
+    for (uint32_t level = 0; level < r->model->mip_count; ++level) {
+        const float *d = draw->frame.detail, detail[4] = {d[0], d[1], (float)level, d[3]};
+        if (!plan->box_count[level])
+            continue;
+        gl->Uniform4fv(draw->program->detail, 1, detail);
+        cast_parts(gl, plan, first, plan->box_count[level]);
+        first += plan->box_count[level];
+    }
+    face(gl, r, false);
+    cast_parts(gl, plan, first, plan->hull_count);
+}
+
+/* Casts the patches of a run, or only those that are edited. Instances that stand alone are sorted,
+ * those that need it are looked at patch by patch, and others drawn together. */
+static void cast_run(gtx_draw_call *draw, const gtx_run *r, bool edited_only)
+{
+    const gtx_renderer *renderer = draw->renderer;
+    const gtx_model *model = r->model;
+    const gtx_program *program = cast_program(draw, model);
+    renderer->gl.Enable(GL_CULL_FACE);
+    if (draw->view->method == GTX_METHOD_PAPER) {
+        use_program(draw, program, model);
+        cast_whole(renderer, r, 0, r->first, r->count);
+        return;
+    }
+    for (uint32_t i = r->first, end = r->first + r->count; i < end;) {
+        uint32_t last = i, kind = 0;
+        if (r->count > 1 && !edited_only)
+            kind = gtx_plan_whole(draw, model, &renderer->instances[i]);
+        for (++last; kind && last < end; ++last)
+            if (gtx_plan_whole(draw, model, &renderer->instances[last]) != kind)
+                break;
+        if (kind) {
+            use_program(draw, program, model);
+            cast_whole(renderer, r, kind, i, last - i);
+        } else {
+            cast_sorted(draw, r, i, edited_only);
+        }
+        i = last;
+    }
+}
+
+static const gtx_program *lod_program(const gtx_draw_call *draw, const gtx_run *r, bool front)
+{
+    const bool forward = draw->view->pass == GTX_PASS_FORWARD;
+    return draw->view->shading
+               ? &draw->view->shading->lod
+               : program_of(draw, r->model,
+                            forward && front ? TECHNIQUE_LOD_FRONT : TECHNIQUE_LOD);
+}
+
+/* Draws an LOD mesh: patches with a back face culled, then those without. */
+static void draw_lod(gtx_draw_call *draw, const gtx_run *r)
+{
+    const gtx_renderer *renderer = draw->renderer;
+    const gtx_gl *gl = &renderer->gl;
+    const gtx_lod_meshes *lods = &r->model->lods;
+    const uint32_t level = r->lod - 1u;
+    const bool single = draw->view->pass == GTX_PASS_DEPTH && r->count == 1;
+    bool keeps_angles = true;
+    for (uint32_t i = 0; i < r->count; ++i)
+        keeps_angles = keeps_angles && gtx_keeps_angles(&renderer->instances[r->first + i]);
+    if (!single)
+        set_instances(renderer, r->first);
+    gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
+    for (int two_sided = 0; two_sided < 2; ++two_sided) {
+        if (lods->one_sided == (two_sided ? lods->patch_count : 0))
+            continue;
+        use_program(draw, single ? program_of(draw, r->model, TECHNIQUE_LOD_SINGLE)
+                                 : lod_program(draw, r, keeps_angles && !two_sided), r->model);
+        if (single)
+            gl->Uniform4fv(draw->program->place, 3, renderer->instances[r->first].world[0]);
+        gl->Uniform4fv(draw->program->lod, 1, lods->levels[level].place);
+        (two_sided ? gl->Disable : gl->Enable)(GL_CULL_FACE);
+        gtx_lod_draw(gl, lods, level, two_sided, single ? 0 : r->count);
+    }
+}
+
+void gtx_run_draw(gtx_draw_call *draw, const gtx_run *r)
+{
+    if (!r->model) /* before the first run */
+        return;
+    bind_textures(&draw->renderer->gl, r->model);
+    if (r->lod)
+        draw_lod(draw, r);
+    if (!r->lod || r->model->lods.edited_count)
+        cast_run(draw, r, r->lod);
+}

@@ -1,0 +1,20 @@
+/* What uploading a model shares with updating it. */
+#ifndef GTX_RENDER_UPLOAD_H
+#define GTX_RENDER_UPLOAD_H
+
+#include "render/model.h"
+
+/* How the texture of a unit is stored and read. */
+typedef struct gtx_texture_kind {
+    gl_enum target, inner, format, type, min_filter, mag_filter;
+} gtx_texture_kind;
+gtx_texture_kind gtx_texture_kind_of(const gtx_model *model, uint32_t unit);
+/* Puts a patch's edited proxies in the place of its old ones. False when a hull does not fit. */
+bool gtx_replace_proxies(const gtx_gl *gl, const gtx_model *model, gtx_proxies *proxies,
+                         uint32_t patch);
+/* Pixel unpacking as render.h promises to leave it. */
+void gtx_default_unpacking(const gtx_gl *gl);
+/* Errors: GL (out of memory since the last look). */
+gtx_result gtx_check_gl_memory(const gtx_gl *gl, gtx_error *error);
+
+#endif

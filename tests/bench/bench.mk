@@ -1,0 +1,82 @@
+# Benchmarks: frame times, rays, and the paper's tables and figures.
+bench: ## frame times of MODEL (default: the sculpt) by every method; BENCH="--instances 1,10"
+	$(again) deps
+	$(again) -j$$(nproc) all
+	$(again) run-bench
+
+run-bench: $(MODEL)
+	@mkdir -p $(build)/demo
+	@$(build)/gtx cook $(MODEL) --lod-levels 5 -o $(build)/demo/bench.gtx
+	@$(build)/gtx bench $(build)/demo/bench.gtx $(MODEL) --min-iou 0.99 $(BENCH)
+
+bench-rays: ## rays a second into MODEL (default: the sculpt), and what shadows by ray cost a frame
+	$(again) deps
+	$(again) -j$$(nproc) all $(out)/tests/bench/rays
+	$(again) run-bench-rays
+
+run-bench-rays: $(MODEL)
+	@mkdir -p $(build)/demo
+	@$(build)/gtx cook $(MODEL) -o $(build)/demo/rays.gtx
+	@$(out)/tests/bench/rays $(build)/demo/rays.gtx
+
+# Models and their charts: the paper's bunny, and MODEL (without the bunny: the sculpt).
+CHARTS ?= 0
+bunny := $(wildcard $(GEOTEX_MODELS)/scans/bunny.ply)
+more_models  = $(if $(bunny),$(filter-out $(build)/demo/sculpt.glb,$(MODEL)),$(MODEL))
+table_models = $(if $(bunny),$(bunny) 222) $(foreach model,$(more_models),$(model) $(CHARTS))
+paper-tables: ## the paper's Tables 2 and 3 of the bunny and of MODEL, by all partitions
+	$(again) deps
+	$(again) -j$$(nproc) all $(out)/tests/bench/paper_tables
+	$(again) run-paper-tables
+
+run-paper-tables: $(filter $(build)/demo/sculpt.glb,$(table_models))
+	@mkdir -p $(build)/demo $(build)/paper
+	@$(out)/tests/bench/paper_tables $(build)/paper $(table_models)
+
+# A figure is a program tests/bench/NAME.cpp that measures, prints, and writes NAME.json and
+# NAME.svg; what it takes besides the folder is arguments_NAME.
+figures := figure2 figure7 figure9
+reek    := $(wildcard $(GEOTEX_MODELS)/heightfields/reek_1588x1188)
+arguments_figure7 = $(MODEL)
+arguments_figure9 := $(or $(reek),own)
+bench_objects := $(addprefix $(out)/lib/cli/,bench/bench.o bench/mesh.o bench/scene.o \
+                   bench/shading.o view/polygons.o)
+paper-figures: ## the paper's figures of frame rates: tables, JSON and curves in build/paper
+	$(again) deps
+	$(again) -j$$(nproc) all $(figures:%=$(out)/tests/bench/%)
+	$(again) run-paper-figures
+
+run-paper-figures: $(MODEL)
+	@mkdir -p $(build)/demo $(build)/paper
+	@$(foreach f,$(figures),$(out)/tests/bench/$(f) $(build)/paper $(arguments_$(f)) &&) true
+
+$(figures:%=$(out)/tests/bench/%): $(out)/tests/bench/%: $(out)/tests/bench/%.o \
+    $(out)/tests/bench/figure.o \
+    $(bench_objects) $(call objects_of,host image) $(lib_cook) $(lib_core) | $(module)
+	$(say) LINK $@
+	$(Q)ln -sf $(abspath $(module)) $(@D)
+	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host image) -lmeshoptimizer
+
+$(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o \
+    $(out)/tests/bench/equal_texels.o $(lib_cook) $(lib_core)
+	$(say) LINK $@
+	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh)
+
+$(out)/tests/bench/rays: $(out)/tests/bench/rays.o $(call objects_of,host image) $(lib_core)
+	$(say) LINK $@
+	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset host image)
+
+# Numbers that a cook goes by, on models of few triangles and scans; the rare are for what is left.
+truck       := gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf
+tune_common := textured/spot/spot/spot_control_mesh.obj $(truck) scans/bunny.ply \
+               gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb \
+               heightfields/reek/1_topreek_rota.gri \
+               heightfields/reek_1588x1188/0_topreek_rota_z16.png
+tune_rare   := $(truck),--partition,vsa scans/gargo_3dhop.ply.gz gltf/dragon_draco_119k.glb
+below        = $(addprefix $(GEOTEX_MODELS)/,$(1))
+TUNE_MODELS ?= $(if $(GEOTEX_MODELS),$(call below,$(tune_common)) --rare \
+                 $(call below,$(tune_rare)),$(MODEL))
+tune: ## what each constant of the cooker changes at half and at double; TUNE=REGEX takes some
+	$(again) deps
+	$(if $(GEOTEX_MODELS),,$(again) $(MODEL))
+	@TUNE='$(TUNE)' tests/bench/tune $(build)/tune $(TUNE_MODELS)

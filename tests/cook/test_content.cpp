@@ -1,0 +1,83 @@
+/* Cooked content stays what it was: literal hashes, which only a change of the cooker may change,
+ * knowingly and together with its revision. They hold for x86-64 and Debian 12's libraries. */
+#include "cook/folder.hpp"
+
+struct Content {
+    const char *model;            /* below GEOTEX_MODELS; of the ball, its own name */
+    gtx_partition partition;
+    uint32_t lod_levels;
+    uint64_t hash;
+};
+
+static void assert_content(const std::string &path, const Content &expected)
+{
+    gtx_cook_desc desc = {};
+    desc.partition = expected.partition;
+    desc.lod_levels = expected.lod_levels;
+    const std::string output = in_folder("content.gtx");
+    gtx_error error = {};
+    gtx_asset *asset = nullptr;
+    if (gtx_cook_file(path.c_str(), output.c_str(), &desc, nullptr, &error) ||
+        gtx_open_file(output.c_str(), nullptr, &asset, &error))
+        fail_msg("%s", error.message);
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    gtx_close(asset);
+    if (info.content_hash != expected.hash)
+        fail_msg("%s: 0x%016llx", expected.model, (unsigned long long)info.content_hash);
+}
+
+static void a_ball_has_its_content(void **)
+{
+#ifndef __x86_64__
+    skip();
+#endif
+    for (const Content &ball : {Content{"ball", GTX_PARTITION_CUTS, 5, 0xdd4b496da590462c},
+                                Content{"ball", GTX_PARTITION_VSA, 0, 0xff6480fca129567b},
+                                Content{"ball", GTX_PARTITION_PGP, 0, 0xdb93daccf3025264}})
+        assert_content(ball_file(), ball);
+}
+
+static void models_have_their_content(void **)
+{
+    const char *models = getenv("GEOTEX_MODELS");
+#ifndef __x86_64__
+    models = nullptr;
+#endif
+    if (!models || !*models)
+        skip();
+    for (const Content &content : std::initializer_list<Content>{
+             {"/scans/bunny.ply",
+              GTX_PARTITION_CUTS, 0, 0x32d3acb993ee9370},
+             {"/scans/gargo_3dhop.ply.gz",
+              GTX_PARTITION_CUTS, 0, 0x9c95dbb6e6024666},
+             {"/textured/spot/spot/spot_control_mesh.obj",
+              GTX_PARTITION_CUTS, 0, 0xde293bf3a615b550},
+             {"/gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf",
+              GTX_PARTITION_CUTS, 0, 0x39fb4e568fb04cbf},
+             {"/gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb",
+              GTX_PARTITION_CUTS, 5, 0xe7f3e2e663608fed},
+             {"/gltf/dragon_draco_119k.glb",
+              GTX_PARTITION_CUTS, 5, 0xf14ec80d95260c75},
+             {"/gltf/2CylinderEngine.glb",
+              GTX_PARTITION_CUTS, 0, 0x9c17a84cf7cdad5c},
+             {"/scans/horse.ply.gz",
+              GTX_PARTITION_CUTS, 0, 0xf6dea12fa4f345a7},
+             {"/scans/armadillo_86k.obj.gz",
+              GTX_PARTITION_CUTS, 0, 0x70d95dd4aaf6c776},
+             {"/nasty/gen_2000_tiny_components.ply",
+              GTX_PARTITION_CUTS, 0, 0x5335e6c0598a80bd},
+             {"/scans/bunny.ply",
+              GTX_PARTITION_VSA, 0, 0xb2e51f82211213c8},
+             {"/scans/bunny.ply",
+              GTX_PARTITION_PGP, 0, 0x6b350cd69413222f},
+         })
+        assert_content(std::string(models) + content.model, content);
+}
+
+int main()
+{
+    const CMUnitTest tests[] = {cmocka_unit_test(a_ball_has_its_content),
+                                cmocka_unit_test(models_have_their_content)};
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
