@@ -33,6 +33,7 @@ typedef enum option_kind {
     OPTION_SIZE,   /* uint32_t[2], "WxH", each within [min, max] */
     OPTION_TRIPLE, /* double[3], "a,b,c" */
     OPTION_CHOICE, /* uint32_t *, index into the names of `argument`, written "a|b|c" */
+    OPTION_ONE_OF, /* uint32_t *, one of the whole numbers of `argument`, written "8|16" */
     OPTION_STEP    /* steps *, appended to: a number within [min, max], or a text when both are 0 */
 } option_kind;
 

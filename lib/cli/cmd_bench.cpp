@@ -20,25 +20,26 @@ bool as_json;
 const option options[] = {
     {"sizes", 0, OPTION_STRING, &sizes, "WxH,...",
      "windows [100x100,200x200,400x400,640x480,800x600,1024x768,1280x1024]", 0, 0},
-    {"instances", 0, OPTION_STRING, &instances, "N,...", "models in view, in one draw [1]", 0, 0},
+    {"instances", 0, OPTION_STRING, &instances, "N,...",
+     "instances in view, in one draw call [1]", 0, 0},
     {"methods", 0, OPTION_STRING, &methods, "NAME,...",
      "mesh mesh_stream simplified paper cast lod auto cast_depth auto_depth cast_fragment "
      "[mesh,simplified,paper,cast,lod,auto]", 0, 0},
-    {"frames", 0, OPTION_UINT, &frames, "N", "frames a method [12]", 1, 10000},
+    {"frames", 0, OPTION_UINT, &frames, "N", "frames per method [12]", 1, 10000},
     {"max-error", 0, OPTION_NUMBER, &max_error, "PIXELS",
-     "how far a level may be from the finest [0.5]", 1e-6, 1e6},
+     "largest error of a level of detail on screen [0.5]", 1e-6, 1e6},
     {"min-iou", 0, OPTION_NUMBER, &min_iou, "SHARE",
-     "instead, in each window: the largest of 0.25, 0.35, 0.5, 0.71, 1, 1.41 and 2 pixels at which "
-     "auto's outline still has this intersection over union with the mesh's [0: --max-error]", 0,
+     "per window, the largest --max-error of 0.25 to 2 pixels whose silhouette IoU with the mesh "
+     "is at least SHARE [0: --max-error as given]", 0,
      1},
-    {"budget", 0, OPTION_NUMBER, &budget, "SECONDS", "what would take longer is skipped [600]", 0,
+    {"budget", 0, OPTION_NUMBER, &budget, "SECONDS", "skip what would exceed this time [600]", 0,
      1e9},
     {"json", 0, OPTION_FLAG, &as_json, nullptr, "the whole report as JSON", 0, 0},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
 const verb bench = {"bench", "ASSET MODEL",
-                    "Times how an asset draws beside the mesh it was cooked from: the mesh culled, "
-                    "sent anew\neach frame, simplified until it looks as good as auto; and the "
+                    "Times an asset against the mesh it was cooked from. The mesh is drawn culled, "
+                    "sent again\neach frame, or simplified until it looks as good as auto; the "
                     "asset by each method.", 2, 2, options};
 
 bool usage(const char *what, const std::string &word)

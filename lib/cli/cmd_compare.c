@@ -17,13 +17,14 @@ static const option options[] = {
     {"size", 0, OPTION_UINT, &desc.size, "N", "pixels along a side of the 26 views [1024]", 64,
      4096},
     {"levels", 0, OPTION_UINT, &desc.levels, "N", "levels of detail to evaluate [all]", 1, 8},
-    {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z", "as the asset was cooked [y]", 0, 0},
+    {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z",
+     "the up axis that the asset was cooked with [y]", 0, 0},
     {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
     PROGRESS_OPTION,
     {"max-holes", 0, OPTION_NUMBER, &max_holes, "N", "exit 7 above N hole pixels", 0, 1e18},
     {"min-iou", 0, OPTION_NUMBER, &min_iou, "X", "exit 7 below this silhouette IoU", 0, 1},
-    {"max-rms", 0, OPTION_NUMBER, &max_rms, "X", "exit 7 above this forward RMS, of the diagonal",
-     0, 1},
+    {"max-rms", 0, OPTION_NUMBER, &max_rms, "X",
+     "exit 7 above this forward RMS error, in diagonals", 0, 1},
     {0}};
 
 static const verb compare_verb = {

@@ -20,45 +20,47 @@ static bool adaptive, strict, if_changed;
 
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes, - for stdout", 0, 0},
-    {"charts", 0, OPTION_UINT, &desc.charts, "N", "wanted number of patches [10 T^0.28]", 1, 1e6},
-    {"resolution", 0, OPTION_UINT, &desc.resolution, "N", "most texels along a patch [128]", 64,
-     512},
+    {"charts", 0, OPTION_UINT, &desc.charts, "N",
+     "number of patches to aim at [10 T^0.28, T triangles]", 1, 1e6},
+    {"resolution", 0, OPTION_UINT, &desc.resolution, "N",
+     "a patch's largest side in texels [128]", 64, 512},
     {"partition", 0, OPTION_CHOICE, &partition, "cuts|vsa|pgp",
-     "how the surface is cut into patches [cuts]", 0, 0},
+     "partition into charts [cuts]", 0, 0},
     {"adaptive", 0, OPTION_FLAG, &adaptive, NULL,
      "with --partition pgp: smaller patches where the surface is more curved", 0, 0},
     {"extract", 0, OPTION_CHOICE, &extract, "cpu|gpu",
-     "what reads the maps off the patches: gpu renders them, through EGL [cpu]", 0, 0},
+     "gpu: render the maps through EGL instead of sampling them [cpu]", 0, 0},
     {"error", 0, OPTION_NUMBER, &desc.error, "E",
-     "smallest asset whose RMS error is at most this fraction of the diagonal", 1e-9, 0.5},
-    {"height-bits", 0, OPTION_UINT, &desc.height_bits, "8|16", "bits of a height [8]", 8, 16},
-    {"mips", 0, OPTION_UINT, &desc.mips, "N", "levels of normal and colour [4]", 1, 8},
+     "fewest bytes at an RMS error of at most E bounding-box diagonals", 1e-9, 0.5},
+    {"height-bits", 0, OPTION_ONE_OF, &desc.height_bits, "8|16", "bits of a height [8]", 0, 0},
+    {"mips", 0, OPTION_UINT, &desc.mips, "N", "mip levels of normal and colour [4]", 1, 8},
     {"dilation", 0, OPTION_UINT, &desc.dilation, "N", "texels of dilation [2^(mips-1)]", 1, 128},
-    {"lod-levels", 0, OPTION_UINT, &desc.lod_levels, "N", "polygon levels of detail [0]", 0, 5},
+    {"lod-levels", 0, OPTION_UINT, &desc.lod_levels, "N", "levels of the LOD mesh [0]", 0, 5},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
-    {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z", "z: the model's +Z becomes +Y [y]", 0, 0},
+    {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z",
+     "the model's up axis; +Z is turned to +Y [y]", 0, 0},
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the model [1]", 1e-30, 1e30},
     {"name", 0, OPTION_STRING, &name, "PATH",
-     "what stdin would be called: its type, and where the files beside it are", 0, 0},
+     "stdin's file name: tells its type and where its textures are", 0, 0},
     {"if-changed", 0, OPTION_FLAG, &if_changed, NULL,
-     "leave OUT.gtx alone when its key tells that it would not change", 0, 0},
+     "keep OUT.gtx if its key says that nothing changed", 0, 0},
     {"strict", 0, OPTION_FLAG, &strict, NULL, "a warning is an error (exit 3)", 0, 0},
     {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
     PROGRESS_OPTION,
-    {"report", 0, OPTION_STRING, &report_path, "R.json", "write the cook report, error measured", 0,
-     0},
-    {"depfile", 0, OPTION_STRING, &depfile_path, "D", "write the files behind the models, for Make",
+    {"report", 0, OPTION_STRING, &report_path, "R.json",
+     "write the cook report, with the error measured", 0, 0},
+    {"depfile", 0, OPTION_STRING, &depfile_path, "D", "write a dependency file for Make or Ninja",
      0, 0},
     {"charts-ply", 0, OPTION_STRING, &desc.charts_ply, "F.ply",
-     "write the first partition, a colour a chart, inverted triangles green", 0, 0},
+     "write the first partition: one colour per chart, inverted triangles green", 0, 0},
     {0}};
 
 static const verb cook = {
     "cook", "MODEL... -o OUT.gtx",
     "Cooks models (glTF, GLB, Draco, OBJ, PLY, OFF, STL, each also gzipped; - reads stdin) into\n"
-    "one .gtx asset. It keeps a key, for --if-changed: of the content of the models and of every\n"
-    "file they refer to, the options from --charts to --unit, and the cooker's revision; paths,\n"
-    "times, threads and reports are not in it.",
+    "one .gtx asset. It keeps a key for --if-changed: a hash of the models, of every file they\n"
+    "refer to, of the options from --charts to --unit and of the cooker's revision. Paths, times,\n"
+    "threads and reports do not count.",
     1, MAX_MODELS, options};
 
 static int usage(const char *sentence)

@@ -17,23 +17,26 @@ static double boost_radius = 2, pattern_height, pattern_size;
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes (required)", 0, 0},
     {"gaussian", 0, OPTION_STEP, &chosen, "TEXELS", "blur; standard deviation in texels", 0, 1e6},
-    {"gaussian-world", 0, OPTION_STEP, &chosen, "UNITS", "the same in object units", 0, 1e30},
-    {"high-boost", 0, OPTION_STEP, &chosen, "AMOUNT", "exaggerate what a blur takes away", 0, 16},
-    {"boost-radius", 0, OPTION_NUMBER, &boost_radius, "TEXELS", "of that blur [2]", 0, 1e6},
-    {"pattern", 0, OPTION_STEP, &chosen, "IMAGE", "raise the surface by an image of heights", 0, 0},
+    {"gaussian-world", 0, OPTION_STEP, &chosen, "UNITS",
+     "blur; standard deviation in object units", 0, 1e30},
+    {"high-boost", 0, OPTION_STEP, &chosen, "AMOUNT",
+     "sharpen: add AMOUNT times what a blur removes", 0, 16},
+    {"boost-radius", 0, OPTION_NUMBER, &boost_radius, "TEXELS",
+     "standard deviation of that blur [2]", 0, 1e6},
+    {"pattern", 0, OPTION_STEP, &chosen, "IMAGE", "add an image of heights to the surface", 0, 0},
     {"pattern-height", 0, OPTION_NUMBER, &pattern_height, "H",
-     "of white, object units [1 texel]", -1e30, 1e30},
+     "height of white, object units [1 texel]", -1e30, 1e30},
     {"pattern-size", 0, OPTION_NUMBER, &pattern_size, "S",
-     "the image's width on the surface, object units [64 texels]", 0, 1e30},
-    {"naive", 0, OPTION_FLAG, &naive, NULL, "blur patch by patch, as the paper did: seams open", 0,
+     "width of the image, object units [64 texels]", 0, 1e30},
+    {"naive", 0, OPTION_FLAG, &naive, NULL, "blur each patch alone, as in the paper: seams open", 0,
      0},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
     {0}};
 
 static const verb filter = {
     "filter", "ASSET -o OUT.gtx",
-    "Changes the surface of an asset, heights and normals, across the borders of its patches.\n"
-    "Operations are done in the order given; each may be given again.",
+    "Filters the surface of an asset, heights and normals, across patch borders.\n"
+    "Operations run in the order given, and may be repeated.",
     1, 1, options};
 
 /* Grey of the image, 0..1. *file names it when it is at fault. */

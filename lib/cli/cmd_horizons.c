@@ -21,29 +21,29 @@ static bool depths, one_surface;
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes (required)", 0, 0},
     {"colors", 0, OPTION_CHOICE, &colors, "viridis|rainbow|none",
-     "what properties, or else heights, are shown by [viridis]", 0, 0},
+     "colour map of the properties, or of the heights [viridis]", 0, 0},
     {"color-range", 0, OPTION_STRING, &color_range, "LOW,HIGH",
-     "values at the ends of the colours [the least and the greatest]", 0, 0},
-    {"depths", 0, OPTION_FLAG, &depths, NULL, "values count downwards", 0, 0},
-    {"vertical", 0, OPTION_NUMBER, &desc.vertical, "X", "exaggeration of heights [1]", 1e-6, 1e6},
+     "values at the ends of the colour map [the data's own range]", 0, 0},
+    {"depths", 0, OPTION_FLAG, &depths, NULL, "values are depths: positive is down", 0, 0},
+    {"vertical", 0, OPTION_NUMBER, &desc.vertical, "X", "vertical exaggeration [1]", 1e-6, 1e6},
     {"one-surface", 0, OPTION_FLAG, &one_surface, NULL,
-     "the grids are parts of one lattice, and become one surface", 0, 0},
+     "the grids are parts of one lattice: join them", 0, 0},
     {"missing", 0, OPTION_NUMBER, &missing, "V",
-     "a height, and a property, that says that there is none", -1e30, 1e30},
+     "value of a node that has no data", -1e30, 1e30},
     {"range", 0, OPTION_STRING, &range, "LOW,HIGH",
-     "what the least and greatest code of height images stand for [themselves]", 0, 0},
-    {"property-range", 0, OPTION_STRING, &property_range, "LOW,HIGH", "the same of property images",
-     0, 0},
-    {"spacing", 0, OPTION_STRING, &spacing, "DX,DY", "between nodes [as the file says, or 1]", 0,
+     "heights of black and white in height images [the pixel values]", 0, 0},
+    {"property-range", 0, OPTION_STRING, &property_range, "LOW,HIGH",
+     "likewise for property images", 0, 0},
+    {"spacing", 0, OPTION_STRING, &spacing, "DX,DY", "distance between nodes [the file's, or 1]", 0,
      0},
-    {"origin", 0, OPTION_STRING, &origin, "X,Y", "of the first node [as the file says, or 0]", 0,
+    {"origin", 0, OPTION_STRING, &origin, "X,Y", "position of the first node [the file's, or 0]", 0,
      0},
-    {"rotation", 0, OPTION_NUMBER, &rotation, "DEG", "counter-clockwise [as the file says, or 0]",
+    {"rotation", 0, OPTION_NUMBER, &rotation, "DEG", "counter-clockwise [the file's, or 0]",
      -360, 360},
-    {"tile", 0, OPTION_UINT, &desc.tile, "N", "most texels along a patch [128]", 16, 512},
-    {"height-bits", 0, OPTION_UINT, &desc.height_bits, "8|16", "bits of a height [8]", 8, 16},
-    {"mips", 0, OPTION_UINT, &desc.mips, "N", "levels of normal and colour [4]", 1, 8},
-    {"lod-levels", 0, OPTION_UINT, &desc.lod_levels, "N", "polygon levels of detail [0]", 0, 5},
+    {"tile", 0, OPTION_UINT, &desc.tile, "N", "a patch's largest side in texels [128]", 16, 512},
+    {"height-bits", 0, OPTION_ONE_OF, &desc.height_bits, "8|16", "bits of a height [8]", 0, 0},
+    {"mips", 0, OPTION_UINT, &desc.mips, "N", "mip levels of normal and colour [4]", 1, 8},
+    {"lod-levels", 0, OPTION_UINT, &desc.lod_levels, "N", "levels of the LOD mesh [0]", 0, 5},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the grids [1]", 1e-30, 1e30},
     {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
@@ -52,9 +52,9 @@ static const option options[] = {
 
 static const verb horizons = {
     "horizons", "GRID[@X,Y][=PROPERTY]... -o OUT.gtx",
-    "Makes one asset of height grids: IRAP classic or binary and ZMAP+ (also gzipped), or images\n"
-    "(PNG, TIFF, EXR: 8 or 16 bits, or floats). @X,Y puts the first node of a grid elsewhere;\n"
-    "=PROPERTY is a grid of the same size to colour by. East becomes +X, up +Y, north -Z.",
+    "Makes one asset of height grids: IRAP classic or binary, ZMAP+ (also gzipped), images (PNG,\n"
+    "TIFF, EXR: 8 or 16 bits, or floats). @X,Y sets the position of a grid's first node;\n"
+    "=PROPERTY is a grid of the same size to colour it by. East becomes +X, up +Y, north -Z.",
     1, MAX_GRIDS, options};
 
 static int usage(const char *sentence)

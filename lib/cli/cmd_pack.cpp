@@ -13,16 +13,16 @@ static uint32_t lod_levels;
 
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes (required)", 0, 0},
-    {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [as it was]", 0, 19},
+    {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [as before]", 0, 19},
     {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
-     "polygon levels of detail, made of the maps [those that are there]", 1, 5},
+     "make a new LOD mesh of N levels from the maps [keep the old]", 1, 5},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
 static const verb pack = {
     "pack", "DIR|ASSET -o OUT.gtx",
-    "Makes an asset of a folder that gtx unpack wrote: the same bytes, or an edited asset. Levels\n"
-    "of normal, colour, material and emission are taken as their images are. An asset is packed\n"
-    "anew, for another LOD mesh or compression.",
+    "Packs a folder that gtx unpack wrote: the same bytes again, or the edited asset. Every mip\n"
+    "level is taken from its own image; none is computed. Given an asset, writes it again with\n"
+    "another LOD mesh or compression.",
     1, 1, options};
 
 /* Rules that only tell of heights that have changed: coverage, sphere, bounds. */

@@ -19,20 +19,20 @@ static const option options[] = {
     {"camera", 0, OPTION_TRIPLE, still_options.camera, "AZ,EL,DIST",
      "degrees, degrees, bounding-sphere radii [30,20,2.8]", 0, 0},
     {"depth", 0, OPTION_STRING, &depth_path, "OUT.exr",
-     "distance along the view axis too, infinity where nothing is", 0, 0},
+     "also write depth along the view axis, infinity for background", 0, 0},
     {"method", 0, OPTION_CHOICE, &method, "auto|cast|lod|paper",
      "how patches are drawn [auto]", 0, 0},
     {"level", 0, OPTION_CHOICE, &still_options.level, "auto|0|1|2|3|4|5|6|7",
-     "level of detail, or the coarsest there is; auto: by error [auto]", 0, 0},
+     "level of detail, or the coarsest there is; auto: by --max-error [auto]", 0, 0},
     {"max-error", 0, OPTION_NUMBER, &still_options.max_error, "PIXELS",
-     "how far a level may be from level 0 [0.5]", 1e-6, 1e6},
+     "largest error of a level of detail on screen [0.5]", 1e-6, 1e6},
     {"gles", 0, OPTION_FLAG, &gles, nullptr, "draw with OpenGL ES 3", 0, 0},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
 static const verb render = {
     "render", "FILE... -o OUT.png",
-    "Draws assets, polygon models and glTF scenes (node extras {\"geotex\": \"a.gtx\"} place "
-    "assets).",
+    "Draws assets, polygon models and glTF scenes into a PNG. A glTF node with the extras\n"
+    "{\"geotex\": \"a.gtx\"} places an asset.",
     1, 64, options};
 
 static int write_images(const gtx::Still &still)

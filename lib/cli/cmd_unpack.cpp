@@ -11,8 +11,8 @@ static const option options[] = {{nullptr, 0, OPTION_FLAG, nullptr, nullptr, nul
 
 static const verb unpack = {
     "unpack", "ASSET DIR",
-    "Writes the maps of an asset as PNG images, and all else as asset.json, into a new folder.\n"
-    "gtx pack makes the same asset of it again, or an edited one.",
+    "Writes an asset into a new folder: the maps as PNG images, the LOD mesh as lod-N.bin, the\n"
+    "rest as asset.json. gtx pack makes the asset again, edited or not.",
     2, 2, options};
 
 namespace fs = std::filesystem;

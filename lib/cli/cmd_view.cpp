@@ -8,26 +8,27 @@ static uint32_t method; /* in the viewer's table */
 static gtx::ViewScript script;
 
 static const option options[] = {
-    {"size", 0, OPTION_SIZE, size, "WxH", "of the window [1024x768]", 16, 8192},
+    {"size", 0, OPTION_SIZE, size, "WxH", "size of the window [1024x768]", 16, 8192},
     {"camera", 0, OPTION_TRIPLE, camera, "AZ,EL,DIST",
      "degrees, degrees, bounding-sphere radii [30,20,2.8]", 0, 0},
     {"method", 0, OPTION_CHOICE, &method, "auto|cast|lod|paper",
      "how patches are drawn [auto]", 0, 0},
     {"frames", 0, OPTION_UINT, &script.frames, "N",
-     "close after N frames, once all is pressed and cooked", 1, 1e9},
+     "close after N frames, once --keys and cooking are done", 1, 1e9},
     {"keys", 0, OPTION_STRING, &script.keys, "KEYS",
-     "press these, one a frame; . nothing, ! Escape, < > halve, double the size, _ minimise", 0, 0},
-    {"drop", 0, OPTION_STRING, &script.drop, "FILE", "drop it onto the window when it opens", 0, 0},
+     "press KEYS, one a frame: . none, ! Escape, < > halve, double the window, _ minimise", 0, 0},
+    {"drop", 0, OPTION_STRING, &script.drop, "FILE",
+     "drop FILE onto the window when it opens", 0, 0},
     {"screenshot", 0, OPTION_STRING, &script.picture, "OUT.png",
-     "write what the window shows last, its text too", 0, 0},
+     "write the last frame, text included", 0, 0},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
 static const verb view = {
     "view", "[FILE...]",
-    "Shows assets, polygon models and glTF scenes in a window, as render draws them. Left drag\n"
-    "turns, right or middle drag moves, the wheel comes nearer; H lists the keys. What is dropped\n"
-    "onto the window replaces what is shown; a model is cooked first, while the view stays alive.\n"
-    "Exit: 5 where no display offers OpenGL 3.3; with --frames, as cook where a drop failed.",
+    "Shows assets, polygon models and glTF scenes in a window. Left drag turns, right or\n"
+    "middle drag pans, the wheel zooms, H lists the keys. A file dropped onto the window replaces\n"
+    "what it shows; a model is cooked first, in the background.\n"
+    "Exit: 5 if no display offers OpenGL 3.3; with --frames, that of cook if a drop failed.",
     0, 64, options};
 
 int cmd_view(int argc, char **argv)

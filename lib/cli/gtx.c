@@ -10,15 +10,15 @@ static const struct {
 } verbs[] = {
     {"cook", cmd_cook, "turn a triangle mesh into a .gtx asset"},
     {"horizons", cmd_horizons, "turn height grids, horizons or terrain, into an asset"},
-    {"info", cmd_info, "say what is in an asset"},
+    {"info", cmd_info, "print what is in an asset"},
     {"validate", cmd_validate, "check an asset against every rule of the format"},
     {"unpack", cmd_unpack, "write an asset's maps as images, to look at and to edit"},
-    {"pack", cmd_pack, "make an asset of unpacked images again"},
+    {"pack", cmd_pack, "pack unpacked images into an asset again"},
     {"filter", cmd_filter, "blur, boost or pattern the surface of an asset"},
     {"render", cmd_render, "draw assets and meshes into a PNG, without a window"},
     {"view", cmd_view, "look at assets and meshes in a window"},
     {"compare", cmd_compare, "measure an asset against the mesh it was cooked from"},
-    {"bench", cmd_bench, "time how an asset draws beside the mesh it was cooked from"},
+    {"bench", cmd_bench, "time an asset against the mesh it was cooked from"},
 };
 
 static void print_verbs(FILE *to)
@@ -26,7 +26,7 @@ static void print_verbs(FILE *to)
     fputs("gtx VERB [options] ...\n\n", to);
     for (size_t i = 0; i < sizeof verbs / sizeof *verbs; ++i)
         fprintf(to, "  %-10s %s\n", verbs[i].name, verbs[i].summary);
-    fputs("\n`gtx VERB --help` tells a verb's options. Results go to stdout, messages to stderr.\n"
+    fputs("\n`gtx VERB --help` lists a verb's options. Results go to stdout, messages to stderr.\n"
           "Exit: 0 ok, 1 usage, 2 file cannot be read or written, 3 invalid input, 4 internal,\n"
           "5 unsupported, 7 a stated limit is passed, 130 cancelled.\n", to);
 }

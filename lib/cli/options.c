@@ -113,6 +113,11 @@ static bool parse_value(const option *o, const char *text)
     case OPTION_SIZE: return parse_size(o, text);
     case OPTION_TRIPLE: return parse_triple(text, o->value);
     case OPTION_CHOICE: return parse_choice(o, text);
+    case OPTION_ONE_OF:
+        if (!parse_choice(o, text))
+            return false;
+        *(uint32_t *)o->value = (uint32_t)strtoul(text, NULL, 10);
+        return true;
     case OPTION_STEP: return parse_step(o, text);
     default: break;
     }

@@ -17,6 +17,79 @@ static void check(const gtx_compare_desc &desc)
     require_models(desc.more, desc.more_count);
 }
 
+static void write_pixels(Json &json, const CompareReport &report)
+{
+    gtx_json_integer(&json, "views", report.views);
+    gtx_json_integer(&json, "surface_pixels", report.surface_pixels);
+    gtx_json_integer(&json, "hole_pixels", report.hole_pixels);
+    gtx_json_integer(&json, "leak_pixels", report.leak_pixels);
+    gtx_json_begin_array(&json, "levels");
+    for (const LevelReport &level : report.levels) {
+        gtx_json_begin_object(&json, nullptr);
+        gtx_json_integer(&json, "level", level.level);
+        gtx_json_integer(&json, "hole_pixels", level.hole_pixels);
+        gtx_json_integer(&json, "leak_pixels", level.leak_pixels);
+        gtx_json_number(&json, "silhouette_iou", level.silhouette_iou);
+        gtx_json_end_object(&json);
+    }
+    gtx_json_end_array(&json);
+    gtx_json_begin_array(&json, "details");
+    for (const DetailReport &detail : report.details) {
+        gtx_json_begin_object(&json, nullptr);
+        gtx_json_integer(&json, "size", detail.size);
+        gtx_json_integer(&json, "surface_pixels", detail.surface_pixels);
+        gtx_json_integer(&json, "hole_pixels", detail.hole_pixels);
+        gtx_json_integer(&json, "leak_pixels", detail.leak_pixels);
+        gtx_json_number(&json, "silhouette_iou", detail.silhouette_iou);
+        gtx_json_end_object(&json);
+    }
+    gtx_json_end_array(&json);
+    gtx_json_number(&json, "silhouette_iou", report.silhouette_iou);
+    gtx_json_number(&json, "silhouette_iou_min", report.silhouette_iou_min);
+}
+
+static void write_differences(Json &json, const CompareReport &report)
+{
+    gtx_json_begin_object(&json, "depth_error");
+    gtx_json_number(&json, "rms", report.depth_rms);
+    gtx_json_number(&json, "p99", report.depth_p99);
+    gtx_json_number(&json, "max", report.depth_max);
+    gtx_json_end_object(&json);
+    gtx_json_begin_object(&json, "normal_error_deg");
+    gtx_json_number(&json, "mean", report.normal_mean_deg);
+    gtx_json_number(&json, "p99", report.normal_p99_deg);
+    gtx_json_end_object(&json);
+    gtx_json_number(&json, "psnr_db", report.psnr_db);
+    gtx_json_begin_object(&json, "error");
+    write_deviation(json, "forward", report.error.forward);
+    write_deviation(json, "reverse", report.error.reverse);
+    gtx_json_end_object(&json);
+    gtx_json_begin_object(&json, "seams");
+    gtx_json_integer(&json, "points", report.seams.points);
+    gtx_json_integer(&json, "within_two_steps", report.seams.within_two_steps);
+    gtx_json_number(&json, "p99_steps", report.seams.p99_steps);
+    gtx_json_number(&json, "max_steps", report.seams.max_steps);
+    gtx_json_number(&json, "max", report.seams.max);
+    gtx_json_end_object(&json);
+}
+
+/* Fills `json` and returns the line of gtx_report.summary. */
+static std::string write_report(const CompareReport &report,
+                                const std::vector<std::string> &warnings, Json &json)
+{
+    gtx_json_begin_object(&json, nullptr);
+    write_pixels(json, report);
+    write_differences(json, report);
+    write_strings(json, "warnings", warnings);
+    gtx_json_end_object(&json);
+    check_written(json);
+    char line[160];
+    snprintf(line, sizeof line, "%llu hole pixels of %llu, silhouette IoU %.5f, forward RMS %.3g",
+             (unsigned long long)report.hole_pixels, (unsigned long long)report.surface_pixels,
+             report.silhouette_iou, report.error.forward.rms);
+    return line;
+}
+
 static void compare_files(const gtx_asset *asset, const char *model, const gtx_compare_desc &desc,
                           gtx_compare_result *result, gtx_report *report)
 {
@@ -40,7 +113,7 @@ static void compare_files(const gtx_asset *asset, const char *model, const gtx_c
 
     if (report) {
         Json json(gtx_allocator_or_default(desc.allocator));
-        std::string summary = write_compare_report(measured, task.warnings, json);
+        std::string summary = write_report(measured, task.warnings, json);
         Report(json, summary, models.sources, task.warnings).hand_over(report);
     }
     if (result)

@@ -95,7 +95,7 @@ bool Driver::Context::make(EGLDisplay on)
 
 Driver::Context::Context()
 {
-    constexpr EGLint MAX_DEVICES = 16;
+    constexpr EGLint MAX_DEVICES = 16; /* a limit: machines have 1 to 8, and one is taken */
     auto display_of =
         egl.extension<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
     auto query_devices = egl.extension<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");

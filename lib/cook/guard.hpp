@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 
+#include <cstring>
 #include <new>
 
 namespace gtx {
@@ -37,6 +38,14 @@ inline void require_argument(bool fine, const char *message)
 {
     if (!fine)
         throw Error(GTX_ERROR_ARGUMENT, message);
+}
+
+/* A C caller can store any number in an enum, which C++ may not even read as one. */
+template <class Enum> unsigned number_of(const Enum &field)
+{
+    std::underlying_type_t<Enum> number;
+    std::memcpy(&number, &field, sizeof number);
+    return unsigned(number);
 }
 
 template <size_t N> void require_zeroed(const uint32_t (&reserved)[N])

@@ -14,15 +14,8 @@
 
 namespace gtx {
 
+/* Grey: a colour of none of the maps. */
 constexpr std::array<uint8_t, 3> NO_PROPERTY = {128, 128, 128};
-
-/* A C caller can store any number in an enum. */
-static uint32_t number_of(const gtx_colors &colors)
-{
-    std::underlying_type_t<gtx_colors> number;
-    std::memcpy(&number, &colors, sizeof number);
-    return uint32_t(number);
-}
 
 static ColorMap map_of(const gtx_colors &colors)
 {

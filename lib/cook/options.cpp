@@ -16,7 +16,7 @@ namespace gtx {
 /* Raised with every change that makes other assets of the same models and options. */
 constexpr int COOKER_REVISION = 16;
 
-constexpr uint32_t MAX_CHARTS = 1u << 20, MAX_THREADS = 1024, MAX_DILATION = 128;
+/* As zstd counts: 3 is its own default. */
 #ifdef GTX_ZSTD
 constexpr int DEFAULT_ZSTD = 3;
 #else
@@ -27,29 +27,21 @@ constexpr int DEFAULT_ZSTD = 0;
 constexpr PartitionMethod METHODS[] = {PartitionMethod::CUTS, PartitionMethod::CUTS,
                                        PartitionMethod::VSA, PartitionMethod::PGP};
 
-/* A C caller can store any number in an enum, which C++ may not even read as one. */
-template <class Enum> static unsigned number_of(const Enum &field)
-{
-    std::underlying_type_t<Enum> number;
-    std::memcpy(&number, &field, sizeof number);
-    return unsigned(number);
-}
-
-void check(const gtx_cook_desc &desc)
+static void check(const gtx_cook_desc &desc)
 {
     require_zeroed(desc.reserved);
     require_argument(number_of(desc.partition) <= GTX_PARTITION_PGP, "unknown partition");
     require_argument(number_of(desc.extract) <= GTX_EXTRACT_GPU, "unknown extraction");
-    require_argument(desc.charts <= MAX_CHARTS, "charts is at most 2^20");
+    require_argument(desc.charts <= 1u << 20, "charts is at most 2^20");
     require_argument(!desc.resolution || (desc.resolution >= 64 && desc.resolution <= 512),
                      "resolution is 64 to 512");
     require_argument(!desc.height_bits || desc.height_bits == 8 || desc.height_bits == 16,
                      "height_bits is 8 or 16");
-    require_argument(desc.dilation <= MAX_DILATION, "dilation is at most 128");
+    require_argument(desc.dilation <= 128, "dilation is at most 128");
     require_argument(desc.mips <= 8, "mips is 1 to 8");
     require_argument(desc.lod_levels <= MAX_LOD_LEVELS, "lod_levels is 0 to 5");
     require_argument(desc.zstd_level >= -1 && desc.zstd_level <= 19, "zstd_level is -1 to 19");
-    require_argument(desc.threads <= MAX_THREADS, "threads is at most 1024");
+    require_argument(desc.threads <= 1024, "threads is at most 1024");
     require_argument(desc.unit >= 0 && std::isfinite(desc.unit), "unit is a positive number");
     require_argument(desc.error >= 0 && desc.error < 1, "error is a fraction of the diagonal");
     require_argument(desc.error == 0 || number_of(desc.partition) <= GTX_PARTITION_CUTS,
@@ -64,8 +56,9 @@ void check(const gtx_cook_desc &desc)
     require_models(desc.more, desc.more_count);
 }
 
-Options options_of(const gtx_cook_desc &desc)
+Options checked_options(const gtx_cook_desc &desc)
 {
+    check(desc);
     Options options;
     options.chart.charts = desc.charts;
     options.chart.method = METHODS[number_of(desc.partition)];
@@ -86,9 +79,14 @@ Options options_of(const gtx_cook_desc &desc)
     options.lod_levels = desc.lod_levels;
     options.zstd = desc.zstd_level == 0 ? DEFAULT_ZSTD : std::max(desc.zstd_level, 0);
     options.unit = desc.unit > 0 ? desc.unit : 1;
-    options.z_up = desc.z_up;
     options.error = desc.error;
     options.free_bits = desc.error > 0 && !desc.height_bits;
+    options.free_charts = desc.error > 0 && !desc.charts;
+    options.measure = desc.measure || desc.error > 0;
+    options.z_up = desc.z_up;
+    options.strict = desc.strict;
+    options.if_changed = desc.if_changed;
+    options.charts_ply = desc.charts_ply;
     options.allocator = gtx_allocator_or_default(desc.allocator);
     return options;
 }

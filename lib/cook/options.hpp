@@ -8,8 +8,10 @@
 
 namespace gtx {
 
+/* Promised by cook.h. */
 constexpr uint32_t MAX_LOD_LEVELS = 5;
 
+/* gtx_cook_desc says what each means. */
 struct Options {
     ChartOptions chart;
     BakeOptions bake;
@@ -17,16 +19,17 @@ struct Options {
     unsigned lod_levels = 0;
     int zstd = 0;
     float unit = 1;
-    double error = 0;            /* asked for; 0: none */
-    bool free_bits = false;      /* the error decides on the bits of a height */
-    bool z_up = false;
+    double error = 0;             /* asked for; 0: none */
+    bool free_bits = false;       /* the error decides on the bits of a height */
+    bool free_charts = false;     /* and on the number of patches */
+    bool measure = false;         /* also where an error is asked for */
+    bool z_up = false, strict = false, if_changed = false;
+    const char *charts_ply = nullptr;
     gtx_allocator allocator = {}; /* never empty hooks */
 };
 
-/* Throws Error: ARGUMENT, NOT_ZEROED. */
-void check(const gtx_cook_desc &desc);
-/* Of a checked descriptor. Throws Error: GL, SHADER. */
-Options options_of(const gtx_cook_desc &desc);
+/* Throws Error: ARGUMENT, NOT_ZEROED; GL, SHADER. */
+Options checked_options(const gtx_cook_desc &desc);
 
 /* The partition as an asset names it. */
 const char *partition_name(const Options &options);

@@ -1,7 +1,7 @@
 /* What the two calls of cook.h tell about their work. */
 #pragma once
 
-#include "bake/bake.hpp"
+#include "cook/options.hpp"
 #include "measure/measure.hpp"
 
 #include <geotex/cook.h>
@@ -12,22 +12,18 @@
 
 namespace gtx {
 
-/* Everything the cook report is written from. */
+/* What the cook report tells besides the options. */
 struct CookFacts {
+    bool unchanged = false; /* there was nothing to cook: what only a cook finds out is not known */
     uint64_t source_triangles = 0, source_vertices = 0;
     CleanReport clean;
     ChartReport charts;
     uint64_t chart_count = 0;
     BakeReport bake;
-    std::string renderer, version; /* of the driver that extracted the maps; empty: the CPU did */
-    double requested = 0;        /* 0: none */
-    bool measured = false;
     SurfaceError error;
     uint64_t source_hash = 0, key = 0, warnings = 0;
     std::vector<gtx_lod_mesh> lod; /* the levels of the asset */
-    uint64_t bytes = 0, gpu_bytes = 0, content_hash = 0;
-    std::vector<const char *> stages;
-    std::vector<double> seconds; /* a stage each */
+    uint64_t bytes = 0, content_hash = 0;
     double total_seconds = 0;
 };
 
@@ -39,12 +35,14 @@ struct Json : gtx_json {
     Json &operator=(const Json &) = delete;
 };
 
-/* Fill `json` and return the line of gtx_report.summary. */
-std::string write_cook_report(const CookFacts &facts, const std::vector<std::string> &warnings,
+void write_deviation(Json &json, const char *key, const Deviation &deviation);
+void write_strings(Json &json, const char *key, const std::vector<std::string> &strings);
+/* Throws bad_alloc where memory ran out on the way. */
+void check_written(const Json &json);
+
+/* Fills `json` and returns the line of gtx_report.summary. */
+std::string write_cook_report(const Options &options, const CookFacts &facts, const Task &task,
                               Json &json);
-std::string write_unchanged_report(const CookFacts &facts, Json &json);
-std::string write_compare_report(const CompareReport &report,
-                                 const std::vector<std::string> &warnings, Json &json);
 
 /* A report that frees itself until the caller takes it. */
 struct Report : gtx_report {
@@ -61,24 +59,5 @@ struct Report : gtx_report {
         block = nullptr;
     }
 };
-
-/* The META section: what made the asset, from what. Nothing of when, where or by how many. */
-struct MetaFacts {
-    const char *partition;
-    uint64_t charts, resolution, height_bits, mips, dilation, lod_levels;
-    bool z_up, by_gpu, adaptive;
-    uint64_t source_triangles, source_hash, key, warnings;
-};
-void write_meta(const MetaFacts &facts, Json &json);
-
-/* The key of an asset, and how many warnings it was cooked with; false when META does not tell. */
-bool read_meta(const gtx_asset *asset, uint64_t &key, uint64_t &warnings);
-
-/* Bytes of the asset's geometry on the GPU as lib/render lays it out; colour, material
- * and emission left out. */
-uint64_t gpu_bytes(const gtx_info &info);
-
-/* The most memory this process has held so far. */
-uint64_t peak_rss_bytes();
 
 } // namespace gtx

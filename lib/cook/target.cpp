@@ -10,17 +10,34 @@ namespace gtx {
 
 namespace {
 
-/* Errors go with this power of the pitch, until measured otherwise. */
+/* Measured on spot's control mesh and the duck at errors of 1e-3 and 1e-4 (A), where a search takes
+ * 6 to 10 attempts, and on both at 2e-5 and spot at 1e-2 (B). */
+
+/* Errors go with this power of the pitch, until measured otherwise. A: half and double end within
+ * 9 % of the bytes after up to 5 attempts more. */
 constexpr double POWER = 1.4;
-constexpr double AIM = 0.97;           /* of the error that is asked for */
-constexpr double CLOSE_ENOUGH = 0.94;  /* likewise: no coarser pitch is looked for */
-constexpr double NARROW = 1.03;        /* ratio of pitches between which the search ends */
+/* Part of the error to aim at. A: at half three files of four are larger, by up to 82 %, after up to
+ * 21 attempts more; above 1 every second attempt is in vain and spot at 1e-4 fails. */
+constexpr double AIM = 0.97;
+/* Part of the error from which no coarser pitch is looked for. A: half leaves spot at 1e-3 11 %
+ * larger; above 1 it is never enough, up to 3 attempts more for 2 %. */
+constexpr double CLOSE_ENOUGH = 0.94;
+/* Ratio of pitches between which the search ends. A: below 1 it never does, up to 5 attempts more
+ * for the same bytes; at double up to 2 fewer, and spot at 1e-3 7 % smaller, by luck. */
+constexpr double NARROW = 1.03;
+/* Ratio of the pitches of two attempts. A: files of at least 90,000 bytes stay at half and double;
+ * the small ones shrink by up to 15 %, by luck. */
 constexpr double LONGEST_STEP = 4;
+/* A limit: no search of A or B comes to it, and half ends one of them an attempt earlier. */
 constexpr int MAX_ATTEMPTS = 12;
-/* Pitches beyond these parts of the default one are not tried. */
+/* Pitches beyond these parts of the default one are not tried. COARSEST: spot at 1e-2 is 69 % larger
+ * at half and 59 % smaller at double, of 9 patches. FINEST: at double spot does not reach 2e-5. */
 constexpr double COARSEST = 16, FINEST = 1.0 / 8;
-/* Sixteen bits are tried where they take as much from the error at the same pitch. */
+/* Sixteen bits are tried where they take as much from the error at the same pitch. At half the duck
+ * at 2e-5 stays at eight and is 18 % larger; at double up to 5 attempts more for the same bytes. */
 constexpr double WORTH_BITS = 0.92;
+/* Patches are tried at that many times as many, and as few. A: at half, which swaps the two, and at
+ * double two files of four stay, the small ones shrink by up to 13 %. */
 constexpr double PATCHES_STEP = 1.5;
 
 struct Point {
@@ -29,17 +46,13 @@ struct Point {
 
 class Search {
 public:
-    Search(const Options &options, double error, const Cook &cook)
-        : options_(options), error_(error), cook_(cook)
-    {
-    }
+    Search(double error, const Cook &cook) : error_(error), cook_(cook) {}
 
-    void find_pitch();
+    /* From options of the error `rms`. */
+    void find_pitch(Options options, double rms);
     void try_sixteen_bits();
     void try_patches();
     Attempt take();
-
-private:
     /* Cooks, keeps what is best so far, and tells the error. */
     double attempt(const Options &options)
     {
@@ -54,9 +67,10 @@ private:
         }
         return rms;
     }
+
+private:
     double next_pitch(const std::optional<Point> &good, const std::optional<Point> &bad) const;
 
-    Options options_;
     double error_;
     const Cook &cook_;
     std::optional<Attempt> best_;
@@ -80,35 +94,33 @@ double Search::next_pitch(const std::optional<Point> &good, const std::optional<
     return std::clamp(only.pitch * step, FINEST * first_pitch_, COARSEST * first_pitch_);
 }
 
-void Search::find_pitch()
+void Search::find_pitch(Options options, double rms)
 {
     std::optional<Point> good, bad;
-    Options options = options_;
-    for (int n = 0; n < MAX_ATTEMPTS; ++n) {
-        double rms = attempt(options);
+    for (int n = 1;; ++n) {
         Point here = {options.chart.pitch > 0 ? options.chart.pitch : first_pitch_, rms};
         (rms <= error_ ? good : bad) = here;
         if (good && (good->error >= CLOSE_ENOUGH * error_ ||
                      (bad && bad->pitch < NARROW * good->pitch)))
             return;
         double pitch = next_pitch(good, bad);
-        if (pitch == here.pitch) /* at the end of what is tried */
+        if (n == MAX_ATTEMPTS || pitch == here.pitch) /* at the end of what is tried */
             return;
         options.chart.pitch = pitch;
+        rms = attempt(options);
     }
 }
 
 void Search::try_sixteen_bits()
 {
-    if (!best_ || options_.bake.height_bits == 16)
+    if (!best_ || best_options_.bake.height_bits == 16)
         return;
     double coarse = best_->error.forward.rms;
     Options fine = best_options_;
     fine.bake.height_bits = fine.chart.height_bits = 16;
-    if (attempt(fine) > WORTH_BITS * coarse)
-        return;
-    options_ = fine;
-    find_pitch();
+    double rms = attempt(fine);
+    if (rms <= WORTH_BITS * coarse)
+        find_pitch(fine, rms);
 }
 
 void Search::try_patches()
@@ -139,13 +151,13 @@ Attempt Search::take()
 
 } // namespace
 
-Attempt cook_to_error(const Options &options, double error, const Freedom &free, const Cook &cook)
+Attempt cook_to_error(const Options &options, const Cook &cook)
 {
-    Search search(options, error, cook);
-    search.find_pitch();
-    if (free.height_bits)
+    Search search(options.error, cook);
+    search.find_pitch(options, search.attempt(options));
+    if (options.free_bits)
         search.try_sixteen_bits();
-    if (free.charts)
+    if (options.free_charts)
         search.try_patches();
     return search.take();
 }

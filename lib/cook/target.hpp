@@ -21,14 +21,9 @@ struct Attempt {
 };
 using Cook = std::function<Attempt(const Options &)>;
 
-/* What may be chosen where the caller has not. */
-struct Freedom {
-    bool charts, height_bits;
-};
-
-/* Looks for the fewest bytes at a forward RMS of at most `error`, a fraction of the bounding
- * diagonal: texel pitch, bits of a height and number of patches are tried in turn, each measured.
- * Deterministic. Throws Error: LIMIT where no density reaches the error. */
-Attempt cook_to_error(const Options &options, double error, const Freedom &free, const Cook &cook);
+/* Looks for the fewest bytes at a forward RMS of at most options.error: texel pitch, and where they
+ * are free, bits of a height and number of patches are tried in turn, each measured. Deterministic.
+ * Throws Error: LIMIT where no density reaches the error. */
+Attempt cook_to_error(const Options &options, const Cook &cook);
 
 } // namespace gtx

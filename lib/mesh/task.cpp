@@ -37,13 +37,28 @@ Task::Task(unsigned threads, gtx_progress_fn progress, void *user,
     stage_start_ = now();
 }
 
+/* The current one where a job has no such stage. */
+size_t Task::index_of(const char *stage) const
+{
+    for (size_t i = 0; i < stages_.size(); ++i)
+        if (!std::strcmp(stages_[i], stage))
+            return i;
+    return stage_;
+}
+
 void Task::begin(const char *stage)
 {
     end();
-    for (size_t i = 0; i < stages_.size(); ++i)
-        if (!std::strcmp(stages_[i], stage))
-            stage_ = i;
+    stage_ = index_of(stage);
     report(0);
+}
+
+void Task::begin_pass(const char *first, const char *after, double share)
+{
+    pass_.first = index_of(first);
+    pass_.after = index_of(after);
+    pass_.from = std::max(double(reported_), before_[pass_.first]);
+    pass_.to = pass_.from + share * (before_[pass_.after] - pass_.from);
 }
 
 void Task::advance(double fraction)
@@ -71,6 +86,10 @@ void Task::report(double fraction)
     if (!progress_)
         return;
     double whole = before_[stage_] + fraction * (before_[stage_ + 1] - before_[stage_]);
+    if (stage_ >= pass_.first && stage_ < pass_.after) {
+        const double first = before_[pass_.first], after = before_[pass_.after];
+        whole = pass_.from + (whole - first) / (after - first) * (pass_.to - pass_.from);
+    }
     reported_ = std::max(reported_, float(whole));
     gtx_progress progress = {stages_[stage_], uint32_t(stage_), uint32_t(stages_.size()),
                              reported_};

@@ -35,6 +35,10 @@ public:
      * to call every few thousand steps. */
     void advance(double fraction);
 
+    /* The stages from `first` to before `after` are about to run, once more where they have run
+     * already: progress moves by `share` of what is left of theirs. */
+    void begin_pass(const char *first, const char *after, double share);
+
     /* Runs body(i) for i in [0, count) on the task's threads, in no particular order, and returns
      * when all are done; reports progress from `from` to `to` of the stage and throws when
      * cancelled. The first exception of a body (lowest i) is rethrown. Bodies must write only to
@@ -57,6 +61,12 @@ public:
     std::vector<std::string> warnings;
 
 private:
+    /* One of several runs of some stages, and the part of all progress that it moves over. */
+    struct Pass {
+        size_t first = 0, after = 0;
+        double from = 0, to = 0;
+    };
+    size_t index_of(const char *stage) const;
     void report(double fraction);
     unsigned threads_;
     gtx_progress_fn progress_;
@@ -64,6 +74,7 @@ private:
     std::vector<const char *> stages_;
     std::vector<double> before_, seconds_; /* share done before a stage; seconds in it */
     size_t stage_ = 0;
+    Pass pass_;
     double stage_start_ = 0;
     float reported_ = 0;
     std::thread::id caller_;

@@ -19,7 +19,9 @@ static void usage_is_exit_1(void **state)
     expect_text("64 to 512");
     expect(gtx("cook sphere.obj -o x.gtx --unknown"), 1);
     expect(gtx("cook sphere.obj -o x.gtx --charts"), 1);
-    expect(gtx("cook sphere.obj -o x.gtx --height-bits 12"), 1);
+    expect(gtx("cook none.obj -o x.gtx --height-bits 9"), 1); /* before the model is read */
+    expect_text("--height-bits wants 8|16, not '9'");
+    expect(gtx("horizons none.irap -o x.gtx --height-bits 9"), 1);
     expect(gtx("info"), 1);
     expect(gtx("info a b"), 1);
     assert_false(exists("x.gtx"));
@@ -178,6 +180,10 @@ static void rendering_writes_a_png(void **state)
     assert_true(size > 100);
     assert_memory_equal(png, "\x89PNG", 4);
     free(png);
+    expect(gtx("render sphere.gtx -o d.png --size 64x64 --depth d.exr"), 0);
+    char *exr = slurp("d.exr", &size);
+    assert_memory_equal(exr, "\x76\x2f\x31\x01", 4);
+    free(exr);
     code = gtx("render sphere.gtx -o es.png --size 64x64 --gles");
     assert_true((code == 0 && exists("es.png")) || code == 5);
     expect(gtx("render none.gtx -o x.png"), 2);

@@ -159,6 +159,53 @@ static void several_models_cook_together(void **state)
     expect(gtx("cook - open.obj --name a.obj -o b.gtx <sphere.obj"), 0);
 }
 
+/* What `gtx info --json` says behind `"key": `. */
+static double info(const char *asset, const char *key)
+{
+    char quoted[64];
+    snprintf(quoted, sizeof quoted, "\"%s\": ", key);
+    expect(gtx("info --json %s", asset), 0);
+    expect_text(quoted);
+    return atof(strstr(output, quoted) + strlen(quoted));
+}
+
+static void options_reach_the_asset(void **state)
+{
+    (void)state;
+    expect(gtx("cook sphere.obj --output a.gtx --quiet"), 0);
+    assert_true(is_empty());
+    same_files("a.gtx", "sphere.gtx");
+    expect(gtx("cook sphere.obj -o a.gtx --unit 0.25 --dilation 3 --charts-ply a.ply"), 0);
+    assert_true(info("sphere.gtx", "unit") == 1 && info("a.gtx", "unit") == 0.25);
+    size_t size;
+    char faces[64], *ply = slurp("a.ply", &size);
+    snprintf(faces, sizeof faces, "element face %.0f\n", info("a.gtx", "source_triangles"));
+    ply[size] = 0;
+    assert_non_null(strstr(ply, faces)); /* ends before the binary part */
+    free(ply);
+    expect(gtx("unpack a.gtx a"), 0);
+    char *json = slurp("a/asset.json", &size);
+    json[size] = 0;
+    assert_non_null(strstr(json, "\"dilation\": 3,"));
+    assert_null(strstr(json, "\"dilation\": 8,"));
+    free(json);
+}
+
+static void an_error_is_kept_in_fewer_bytes(void **state)
+{
+    (void)state;
+    expect(gtx("cook sphere.obj -o e.gtx --error 2e-3 --report e.json"), 0);
+    size_t size;
+    char *report = slurp("e.json", &size);
+    report[size] = 0;
+    const char *forward = strstr(report, "\"forward\": {");
+    assert_non_null(strstr(report, "\"requested\": 0.002"));
+    assert_non_null(forward);
+    assert_true(atof(strstr(forward, "\"rms\": ") + strlen("\"rms\": ")) <= 2e-3);
+    free(report);
+    assert_true(info("e.gtx", "bytes") < 0.5 * info("sphere.gtx", "bytes"));
+}
+
 /* By the driver that there is, or with a line that there is none. */
 static void a_gpu_may_extract_the_maps(void **state)
 {
@@ -219,6 +266,8 @@ int main(void)
         cmocka_unit_test(strict_is_exit_3),
         cmocka_unit_test(progress_is_a_json_object_a_line),
         cmocka_unit_test(several_models_cook_together),
+        cmocka_unit_test(options_reach_the_asset),
+        cmocka_unit_test(an_error_is_kept_in_fewer_bytes),
         cmocka_unit_test(a_gpu_may_extract_the_maps),
         cmocka_unit_test(peak_memory_is_the_commands_own),
     };

@@ -109,6 +109,45 @@ static void grids_become_an_asset(void **state)
     assert_false(exists("no.gtx"));
 }
 
+/* What `gtx horizons ARGUMENTS` says, and then what gtx info does of its asset. */
+static void horizons_tells(const char *arguments, const char *said, const char *info)
+{
+    expect(gtx("horizons %s --output h.gtx", arguments), 0);
+    expect_text(said);
+    expect(gtx("info h.gtx"), 0);
+    expect_text(info);
+}
+
+static void grids_lie_where_options_say(void **state)
+{
+    (void)state;
+    static const uint8_t codes[4] = {0, 128, 255, 64};
+    gtx_error error;
+    if (gtx_image_write_png(in_folder("g.png"), 2, 2, 1, codes, &error))
+        fail_msg("%s", error.message);
+    write_file("a.irap", classic, sizeof classic - 1);
+    horizons_tells("a.irap", "colours 1 to 5", "bounds          -16 1 -4 .. 4 5 16");
+    horizons_tells("a.irap --depths", "colours 1 to 5", "bounds          -16 -5 -4 .. 4 -1 16");
+    horizons_tells("a.irap --origin 100,200", "9 nodes", "anchor          112 0 -208");
+    horizons_tells("a.irap --rotation 90", "9 nodes", "anchor          -16 0 -16");
+    horizons_tells("a.irap --unit 0.5", "9 nodes", "unit            0.5 m");
+    horizons_tells("a.irap --color-range 0,10", "colours 0 to 10", "anchor          16 0 -16");
+    horizons_tells("g.png", "colours 0 to 255", "-128 -1 .. 1 127 0");
+    horizons_tells("g.png --range 0,51", "colours 0 to 51", "bounds          0 -32 -1 .. 1 19 0");
+    horizons_tells("g.png=g.png --property-range 0,51", "colours 0 to 51", "-128 -1 .. 1 127 0");
+}
+
+static void tiles_bound_the_patches(void **state)
+{
+    (void)state;
+    uint8_t flat[40 * 40] = {0};
+    gtx_error error;
+    if (gtx_image_write_png(in_folder("flat.png"), 40, 40, 1, flat, &error))
+        fail_msg("%s", error.message);
+    horizons_tells("flat.png", ", 1 patches", "patches         1 ");
+    horizons_tells("flat.png --tile 16", ", 9 patches", "patches         9 ");
+}
+
 static void unknown_sections_are_warned_of(void **state)
 {
     (void)state;
@@ -224,6 +263,8 @@ int main(void)
         cmocka_unit_test(cooked_assets_come_back),
         cmocka_unit_test(an_asset_is_packed_anew),
         cmocka_unit_test(grids_become_an_asset),
+        cmocka_unit_test(grids_lie_where_options_say),
+        cmocka_unit_test(tiles_bound_the_patches),
         cmocka_unit_test(unknown_sections_are_warned_of),
         cmocka_unit_test(edits_arrive),
         cmocka_unit_test(what_is_there_stays),

@@ -4,6 +4,7 @@
 /* Notes the steps; cancels at call `at`. */
 struct Watch {
     int calls = 0, at = -1;
+    std::vector<float> partitioned; /* where progress stands when a partition begins */
     float last = 0;
     std::vector<std::string> stages;
     std::vector<int> first_call; /* of each */
@@ -16,6 +17,8 @@ static int watch_progress(const gtx_progress *progress, void *user)
     watch->last = progress->fraction;
     if (watch->stages.empty() || watch->stages.back() != progress->stage) {
         watch->stages.push_back(progress->stage);
+        if (watch->stages.back() == "partition")
+            watch->partitioned.push_back(progress->fraction);
         watch->first_call.push_back(watch->calls);
     }
     return watch->calls++ == watch->at;
@@ -122,6 +125,23 @@ static void a_cancelled_cook_in_memory_gives_nothing(void **)
         cook_stages, [] {});
 }
 
+/* Each attempt moves the progress on, and does not leave most of it to the last step. */
+static void attempts_at_an_error_progress(void **)
+{
+    Watch watch;
+    gtx_cook_desc desc = watched(watch);
+    desc.error = 1e-3;
+    gtx_asset *asset = nullptr;
+    std::string bytes = read_file(small_ball_file());
+    assert_int_equal(gtx_cook_memory(bytes.data(), bytes.size(), "ball.obj", &desc, &asset, nullptr,
+                                     nullptr), GTX_OK);
+    gtx_close(asset);
+    assert_true(watch.partitioned.size() > 2);
+    for (size_t i = 1; i < watch.partitioned.size(); ++i)
+        assert_true(watch.partitioned[i] > watch.partitioned[i - 1] + 0.01f);
+    assert_true(watch.partitioned.back() > 0.4f && watch.last > 0.95f);
+}
+
 static void a_cancelled_comparison_gives_nothing(void **)
 {
     std::string output = in_folder("c.gtx");
@@ -224,6 +244,7 @@ int main()
         cmocka_unit_test(a_cancelled_cook_overwrites_nothing),
         cmocka_unit_test(a_measured_cook_is_cancelled_too),
         cmocka_unit_test(a_cancelled_cook_in_memory_gives_nothing),
+        cmocka_unit_test(attempts_at_an_error_progress),
         cmocka_unit_test(a_cancelled_comparison_gives_nothing),
         cmocka_unit_test(several_threads_stop),
         cmocka_unit_test(long_imports_are_cancelled),

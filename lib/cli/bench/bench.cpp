@@ -91,7 +91,8 @@ Quality Bench::judge(BenchMethod method, const Shot &one, const std::vector<Pict
     Quality quality;
     for (int turn = 0; turn < BENCH_TURNS; ++turn)
         compare(truth[size_t(turn)],
-                scene.look(method, {one.width, one.height, 1, turn}, target), one.width, quality);
+                scene.picture(method, {one.width, one.height, 1, turn}, target), one.width,
+                quality);
     return quality;
 }
 
@@ -128,7 +129,7 @@ void Bench::judge_all(const std::array<uint32_t, 2> &size, uint32_t instances,
         const Target target(scene.gl, one.width, one.height);
         for (int turn = 0; turn < BENCH_TURNS; ++turn)
             truth.push_back(
-                scene.look(BenchMethod::MESH, {one.width, one.height, 1, turn}, target));
+                scene.picture(BenchMethod::MESH, {one.width, one.height, 1, turn}, target));
     }
     if (options_.min_iou > 0)
         choose_error(one, truth);

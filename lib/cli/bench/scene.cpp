@@ -15,11 +15,11 @@ namespace gtx {
 constexpr GLenum INVOCATIONS = 0x82F4; /* GL_FRAGMENT_SHADER_INVOCATIONS: OpenGL 4.6 */
 
 /* How the methods of the library are asked for. */
-struct Way {
+struct Technique {
     gtx_method method;
     gtx_pass pass;
 };
-static Way way_of(BenchMethod method)
+static Technique technique_of(BenchMethod method)
 {
     switch (method) {
     case BenchMethod::PAPER: return {GTX_METHOD_PAPER, GTX_PASS_FORWARD};
@@ -34,7 +34,7 @@ static Way way_of(BenchMethod method)
 
 bool is_depth_pass(BenchMethod method)
 {
-    return way_of(method).pass == GTX_PASS_DEPTH;
+    return technique_of(method).pass == GTX_PASS_DEPTH;
 }
 
 double milliseconds()
@@ -197,9 +197,9 @@ void BenchScene::draw(BenchMethod method, const Shot &shot)
     if (is_mesh(method)) {
         draw_mesh(method, view, placed);
     } else {
-        const Way way = way_of(method);
-        view.method = way.method;
-        view.pass = way.pass;
+        const Technique technique = technique_of(method);
+        view.method = technique.method;
+        view.pass = technique.pass;
         if (method == BenchMethod::CAST_FRAGMENT)
             view.viewport_width = 0;
         gtx_error error;
@@ -208,7 +208,7 @@ void BenchScene::draw(BenchMethod method, const Shot &shot)
     gl.Finish();
 }
 
-Picture BenchScene::look(BenchMethod method, const Shot &shot, const Target &target)
+Picture BenchScene::picture(BenchMethod method, const Shot &shot, const Target &target)
 {
     draw(method, shot);
     Picture out;

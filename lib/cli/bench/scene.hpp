@@ -58,7 +58,7 @@ public:
     /* Draws into the bound framebuffer and waits for it. */
     void draw(BenchMethod method, const Shot &shot);
     /* The same into `target`, read back. */
-    Picture look(BenchMethod method, const Shot &shot, const Target &target);
+    Picture picture(BenchMethod method, const Shot &shot, const Target &target);
     /* Fragments shaded and kept by all azimuths together; zeros: the driver cannot tell. */
     void count(BenchMethod method, Shot shot, uint64_t &rays, uint64_t &hits);
     /* Triangles of what a method draws; 0: no mesh. */

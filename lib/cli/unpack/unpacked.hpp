@@ -27,9 +27,11 @@ constexpr UnpackedMap UNPACKED_MAPS[] = {{GTX_MAP_HEIGHT, "height", 1, 1, false}
                                          {GTX_MAP_EMISSION, "emission", 3, 3, true}};
 
 constexpr const char *UNPACKED_JSON = "asset.json";
+constexpr char UNPACKED_FORMAT[] = "geotex unpacked asset 1";
 
 /* "height-0.png" for page 0, "normal-0-2.png" for level 2 of page 0. */
 std::string unpacked_name(const UnpackedMap &map, uint32_t page, uint32_t level);
+std::string in_folder(const std::string &folder, const std::string &name);
 
 /* In all of these `about` names the file at hand when an Error is thrown. */
 

@@ -1,4 +1,4 @@
-/* Colours of patches and of normals, and the boxes of patches. */
+/* Debug views: a colour a patch, normals as colours, the boxes of patches. */
 #include "cli/view/debug_views.hpp"
 
 #include "asset/asset.h"
@@ -34,7 +34,7 @@ static Color normal_color(const float n[3])
 
 /* Fills a patch's rectangle of a colour map. */
 static void paint(const gtx_asset *asset, const gtx_info &info, uint32_t index, uint32_t level,
-                  Look look, std::vector<uint8_t> &map)
+                  DebugView view, std::vector<uint8_t> &map)
 {
     const gtx_patch &patch = gtx_patches(asset)[index];
     auto normals =
@@ -50,7 +50,7 @@ static void paint(const gtx_asset *asset, const gtx_info &info, uint32_t index, 
         for (size_t x = x0; x < x1; ++x) {
             const size_t texel = (patch.page * height + y) * width + x;
             Color color = flat;
-            if (look == Look::NORMALS) {
+            if (view == DebugView::NORMALS) {
                 float local[3], n[3];
                 gtx_decode_normal(normals + 2 * texel, local);
                 for (int k = 0; k < 3; ++k)
@@ -61,7 +61,7 @@ static void paint(const gtx_asset *asset, const gtx_info &info, uint32_t index, 
         }
 }
 
-AssetPointer recolor(const gtx_asset *asset, Look look)
+AssetPointer recolor(const gtx_asset *asset, DebugView view)
 {
     gtx_info info;
     gtx_get_info(asset, &info);
@@ -73,9 +73,9 @@ AssetPointer recolor(const gtx_asset *asset, Look look)
             static_cast<const uint8_t *>(gtx_map_data(asset, GTX_MAP_NORMAL, level, nullptr));
         colors[level].resize(4 * texels);
         for (uint32_t i = 0; i < info.patch_count; ++i)
-            paint(asset, info, i, level, look, colors[level]);
+            paint(asset, info, i, level, view, colors[level]);
         color[level] = colors[level].data();
-        if (look == Look::NORMALS) { /* unlit: a share of lighting of 0 */
+        if (view == DebugView::NORMALS) { /* unlit: a share of lighting of 0 */
             const uint8_t unlit[4] = {255, 255, 0, 0};
             for (size_t i = 0; i < texels; ++i)
                 materials[level].insert(materials[level].end(), unlit, unlit + 4);
@@ -94,7 +94,7 @@ AssetPointer recolor(const gtx_asset *asset, Look look)
     desc.trim = static_cast<const uint8_t *>(gtx_map_data(asset, GTX_MAP_TRIM, 0, nullptr));
     desc.normal = normal;
     desc.color = color;
-    desc.material = look == Look::NORMALS ? material : nullptr;
+    desc.material = view == DebugView::NORMALS ? material : nullptr;
     std::copy(info.bounds_min, info.bounds_min + 3, desc.bounds_min);
     std::copy(info.bounds_max, info.bounds_max + 3, desc.bounds_max);
     std::copy(info.anchor, info.anchor + 3, desc.anchor);
@@ -112,9 +112,9 @@ AssetPointer recolor(const gtx_asset *asset, Look look)
     return AssetPointer(out);
 }
 
-void recolor(Polygons &polygons, Look look)
+void recolor(Polygons &polygons, DebugView view)
 {
-    if (look == Look::NORMALS)
+    if (view == DebugView::NORMALS)
         for (gtx_polygon_vertex &v : polygons.vertices) {
             Color color = normal_color(v.normal);
             color[3] = 0; /* unlit */

@@ -1,4 +1,4 @@
-/* Other ways to look at a scene: copies of what is drawn, coloured by what it is made of. */
+/* Debug views: copies of what is drawn, coloured by patch or by normal. */
 #pragma once
 
 #include "cli/view/polygons.hpp"
@@ -6,15 +6,15 @@
 
 namespace gtx {
 
-enum class Look { PLAIN, PATCHES, NORMALS };
-constexpr size_t LOOK_COUNT = 3;
+enum class DebugView { NONE, PATCHES, NORMALS };
+constexpr size_t DEBUG_VIEW_COUNT = 3;
 
 /* A copy without materials: every patch in a colour of its own, or unlit in the colour of its
  * normals (x, y and z of object space as red, green and blue). Throws Error: MEMORY. */
-AssetPointer recolor(const gtx_asset *asset, Look look);
+AssetPointer recolor(const gtx_asset *asset, DebugView view);
 
 /* The same of polygons, which have no patches: those stay as they are. */
-void recolor(Polygons &polygons, Look look);
+void recolor(Polygons &polygons, DebugView view);
 
 /* Pairs of ends: the edges of the patches' boxes, in the asset's own coordinates. */
 Polygons patch_boxes(const gtx_asset *asset);

@@ -6,7 +6,7 @@
 
 namespace gtx {
 
-Stage::Stage(gtx_host_load load)
+SceneRenderer::SceneRenderer(gtx_host_load load)
 {
     gtx_error error;
     const gtx_jobs jobs = gtx_host_jobs(0);
@@ -21,21 +21,21 @@ Stage::Stage(gtx_host_load load)
     }
 }
 
-Stage::~Stage()
+SceneRenderer::~SceneRenderer()
 {
     clear();
     gtx_renderer_destroy(renderer);
     gtx_polygon_program_destroy(&gl, &program);
 }
 
-void Stage::clear()
+void SceneRenderer::clear()
 {
-    for (Props &p : looks) {
+    for (Uploaded &p : views) {
         for (gtx_model *model : p.models)
             gtx_model_destroy(renderer, model);
         for (gtx_polygons &polygons : p.polygons)
             gtx_polygons_destroy(&gl, &polygons);
-        p = Props();
+        p = Uploaded();
     }
     for (gtx_polygons &lines : boxes)
         gtx_polygons_destroy(&gl, &lines);
@@ -61,14 +61,14 @@ static gtx_instance place(const PlacedAsset &placed, const Vec3d &centre)
     return instance;
 }
 
-void Stage::show(const Scene &shown, std::vector<gtx_model *> models)
+void SceneRenderer::show(const Scene &shown, std::vector<gtx_model *> models)
 {
     clear();
     scene = &shown;
-    looks[size_t(Look::PLAIN)].models = std::move(models);
+    views[size_t(DebugView::NONE)].models = std::move(models);
     for (const PlacedAsset &placed : shown.assets)
         places.push_back(place(placed, shown.centre));
-    props(Look::PLAIN);
+    uploaded(DebugView::NONE);
 }
 
 static gtx_polygons upload(const gtx_host_gl &gl, const Polygons &shape)
@@ -81,16 +81,16 @@ static gtx_polygons upload(const gtx_host_gl &gl, const Polygons &shape)
     return polygons;
 }
 
-Stage::Props &Stage::props(Look look)
+SceneRenderer::Uploaded &SceneRenderer::uploaded(DebugView debug)
 {
-    Props &p = looks[size_t(look)];
+    Uploaded &p = views[size_t(debug)];
     if (p.ready)
         return p;
     for (size_t i = p.models.size(); i < scene->assets.size(); ++i) {
         const gtx_asset *asset = scene->assets[i].asset.get();
         AssetPointer copy;
-        if (look != Look::PLAIN)
-            copy = recolor(asset, look);
+        if (debug != DebugView::NONE)
+            copy = recolor(asset, debug);
         gtx_model *model;
         gtx_error error;
         check(gtx_model_create(renderer, copy ? copy.get() : asset, &model, &error), error);
@@ -98,7 +98,7 @@ Stage::Props &Stage::props(Look look)
     }
     for (size_t i = p.polygons.size(); i < scene->meshes.size(); ++i) {
         Polygons shape = make_polygons(scene->meshes[i], scene->centre);
-        recolor(shape, look);
+        recolor(shape, debug);
         p.polygons.push_back(upload(gl, shape));
         p.polygon_bytes += shape.vertices.size() * sizeof shape.vertices[0] +
                            shape.indices.size() * sizeof shape.indices[0];
@@ -107,9 +107,9 @@ Stage::Props &Stage::props(Look look)
     return p;
 }
 
-void Stage::draw(const gtx_view &view, Look look)
+void SceneRenderer::draw(const gtx_view &view, DebugView debug)
 {
-    const Props &p = props(look);
+    const Uploaded &p = uploaded(debug);
     gl.ClearColor(0.92f, 0.93f, 0.95f, 1);
     gl.ClearDepthf(1);
     gl.DepthMask(GL_TRUE);
@@ -128,7 +128,7 @@ void Stage::draw(const gtx_view &view, Look look)
               error);
 }
 
-void Stage::draw_boxes(const gtx_view &view)
+void SceneRenderer::draw_boxes(const gtx_view &view)
 {
     for (size_t i = boxes.size(); i < scene->assets.size(); ++i) {
         boxes.push_back(upload(gl, patch_boxes(scene->assets[i].asset.get())));
@@ -139,9 +139,9 @@ void Stage::draw_boxes(const gtx_view &view)
                           view.projection, view.light_direction, 1);
 }
 
-uint64_t Stage::gpu_bytes() const
+uint64_t SceneRenderer::gpu_bytes() const
 {
-    const Props &p = looks[size_t(Look::PLAIN)];
+    const Uploaded &p = views[size_t(DebugView::NONE)];
     uint64_t bytes = 0;
     for (const gtx_model *model : p.models) {
         gtx_model_size size = gtx_model_gpu_size(model);

@@ -18,22 +18,22 @@ inline void check(gtx_result result, const gtx_error &error)
 
 /* Needs its context current from the constructor to the destructor. Everything throws Error: GL,
  * SHADER, MEMORY, LIMIT. */
-class Stage {
+class SceneRenderer {
 public:
-    explicit Stage(gtx_host_load load);
-    Stage(const Stage &) = delete;
-    ~Stage();
+    explicit SceneRenderer(gtx_host_load load);
+    SceneRenderer(const SceneRenderer &) = delete;
+    ~SceneRenderer();
 
     /* Shows another scene, which must outlive its show. `models` are of the scene's assets, in
      * order and uploaded, and are taken over; none: they are made here. */
     void show(const Scene &scene, std::vector<gtx_model *> models = {});
 
     /* Clears the bound framebuffer and draws into it. Depth test on, func LESS, afterwards. */
-    void draw(const gtx_view &view, Look look = Look::PLAIN);
+    void draw(const gtx_view &view, DebugView debug = DebugView::NONE);
     /* The boxes of all patches as lines, on top of what was drawn, in its depth. */
     void draw_boxes(const gtx_view &view);
 
-    /* Bytes on the GPU of what the plain look draws. */
+    /* Bytes on the GPU of what is drawn without a debug view. */
     uint64_t gpu_bytes() const;
 
     gtx_host_gl gl = {};
@@ -41,18 +41,18 @@ public:
     gtx_renderer *renderer = nullptr;
 
 private:
-    /* What one look draws; made when it is first asked for. */
-    struct Props {
+    /* What one debug view draws; made when it is first asked for. */
+    struct Uploaded {
         bool ready = false;
         std::vector<gtx_model *> models;
         std::vector<gtx_polygons> polygons;
         uint64_t polygon_bytes = 0;
     };
-    Props &props(Look look);
+    Uploaded &uploaded(DebugView debug);
     void clear();
 
     const Scene *scene = nullptr;
-    Props looks[LOOK_COUNT];
+    Uploaded views[DEBUG_VIEW_COUNT];
     std::vector<gtx_instance> places; /* without their models */
     std::vector<gtx_polygons> boxes;
 };

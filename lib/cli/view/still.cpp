@@ -25,10 +25,10 @@ struct Offscreen {
 Still draw_still(const Scene &scene, const StillOptions &options)
 {
     Offscreen offscreen(options.gles);
-    Stage stage(gtx_offscreen_load);
+    SceneRenderer renderer(gtx_offscreen_load);
     gtx_framebuffer target; /* dies with the context */
     gtx_error error;
-    check(gtx_framebuffer_create(&stage.gl, int(options.width), int(options.height), &target,
+    check(gtx_framebuffer_create(&renderer.gl, int(options.width), int(options.height), &target,
                                  &error), error);
     gtx_camera camera = {};
     camera.radius = float(scene.radius);
@@ -44,15 +44,15 @@ Still draw_still(const Scene &scene, const StillOptions &options)
     gtx_camera_matrices(&camera, float(options.width) / float(options.height), view.view,
                         view.projection);
     light_from_camera(view);
-    stage.show(scene);
-    stage.draw(view);
+    renderer.show(scene);
+    renderer.draw(view);
 
     Still still;
     size_t pixels = size_t(options.width) * options.height;
     still.color.resize(4 * pixels);
     still.depth.resize(pixels);
-    gtx_framebuffer_read_color(&stage.gl, &target, still.color.data());
-    gtx_framebuffer_read_depth(&stage.gl, &target, still.depth.data());
+    gtx_framebuffer_read_color(&renderer.gl, &target, still.color.data());
+    gtx_framebuffer_read_depth(&renderer.gl, &target, still.depth.data());
     for (float &d : still.depth)
         d = d < 1 ? gtx_camera_distance(view.projection, 0, d)
                   : std::numeric_limits<float>::infinity();

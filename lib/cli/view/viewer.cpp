@@ -1,5 +1,5 @@
-/* The window of `gtx view`. Everything is drawn into a framebuffer of our own, which is what
- * pictures are read from: a window that is covered or hidden has no pixels to read. */
+/* The window of `gtx view`: keys, drops, frames. Everything is drawn into a framebuffer of our own,
+ * which is what pictures are read from: a window that is covered or hidden has no pixels to read. */
 #include "cli/view/viewer.hpp"
 
 #include "cli/cli.h"
@@ -12,21 +12,18 @@
 
 namespace gtx {
 
-static const struct {
-    gtx_method method;
-    const char *name;
-} methods[] = {{GTX_METHOD_AUTO, "auto"}, {GTX_METHOD_CAST, "cast"}, {GTX_METHOD_LOD, "lod"},
-             {GTX_METHOD_PAPER, "paper"}};
+const Viewer::Method Viewer::methods[] = {{GTX_METHOD_AUTO, "auto"},
+                                          {GTX_METHOD_CAST, "cast"},
+                                          {GTX_METHOD_LOD, "lod"},
+                                          {GTX_METHOD_PAPER, "paper"}};
 
 const Viewer::Key Viewer::keys[] = {
     {'F', "frame everything", [](Viewer &v) { v.frame_all(); }},
     {'M', "method: auto, cast, lod, paper", [](Viewer &v) { v.method = (v.method + 1) % 4; }},
     {'L', "level of detail: auto, 0, 1, 2, 3",
      [](Viewer &v) { v.view.level = (v.view.level + 1) % 5; }},
-    {'P', "a colour a patch",
-     [](Viewer &v) { v.look = v.look == Look::PATCHES ? Look::PLAIN : Look::PATCHES; }},
-    {'N', "normals as colours",
-     [](Viewer &v) { v.look = v.look == Look::NORMALS ? Look::PLAIN : Look::NORMALS; }},
+    {'P', "a colour a patch", [](Viewer &v) { v.toggle(DebugView::PATCHES); }},
+    {'N', "normals as colours", [](Viewer &v) { v.toggle(DebugView::NORMALS); }},
     {'B', "boxes of the patches", [](Viewer &v) { v.boxes = !v.boxes; }},
     {'O', "light fixed, or with the camera", [](Viewer &v) { v.fixed_light = !v.fixed_light; }},
     {'S', "save a picture", [](Viewer &v) { v.wants_picture = true; }},
@@ -47,18 +44,6 @@ static bool has_lods(const Scene &scene)
     return all;
 }
 
-static std::string format_bytes(uint64_t bytes)
-{
-    static const char *const units[] = {"B", "kB", "MB", "GB"};
-    double number = double(bytes);
-    size_t unit = 0;
-    for (; number >= 1000 && unit < 3; ++unit)
-        number /= 1000;
-    char text[32];
-    std::snprintf(text, sizeof text, unit ? "%.1f %s" : "%.0f %s", number, units[unit]);
-    return text;
-}
-
 std::string file_name(const std::string &path)
 {
     return path.substr(path.rfind('/') + 1);
@@ -72,7 +57,7 @@ Viewer::Viewer(Scene scene_, std::string name_, const uint32_t size[2], const do
     check(gtx_window_create("gtx view", int(size[0]), int(size[1]), &camera, &window, &error),
           error);
     try {
-        stage = std::make_unique<Stage>(gtx_window_load);
+        scene_renderer = std::make_unique<SceneRenderer>(gtx_window_load);
         show(std::move(scene_), {});
         frame_all();
     } catch (...) {
@@ -89,29 +74,27 @@ Viewer::~Viewer()
 void Viewer::release()
 {
     for (gtx_model *model : incoming.models)
-        gtx_model_destroy(stage->renderer, model);
+        gtx_model_destroy(scene_renderer->renderer, model);
     if (target.object)
-        gtx_framebuffer_destroy(&stage->gl, &target);
-    stage.reset();
+        gtx_framebuffer_destroy(&scene_renderer->gl, &target);
+    scene_renderer.reset();
     gtx_window_destroy(window);
 }
 
 void Viewer::show(Scene shown, std::vector<gtx_model *> models)
 {
-    uint64_t triangles = 0, patches = 0, bytes = 0;
+    facts = Facts();
     scene = std::move(shown);
-    stage->show(scene, std::move(models));
+    scene_renderer->show(scene, std::move(models));
     for (const PlacedAsset &placed : scene.assets) {
         gtx_info info;
         gtx_get_info(placed.asset.get(), &info);
-        triangles += info.source_triangles;
-        patches += info.patch_count;
-        bytes += info.file_size;
+        facts.triangles += info.source_triangles;
+        facts.patches += info.patch_count;
+        facts.bytes += info.file_size;
     }
     for (const Mesh &mesh : scene.meshes)
-        triangles += mesh.triangle_count();
-    facts = std::to_string(triangles) + " triangles  " + std::to_string(patches) + " patches  " +
-            format_bytes(bytes) + " asset  ";
+        facts.triangles += mesh.triangle_count();
     camera.radius = float(scene.radius);
     gtx_window_title(window, (name + " - gtx view").c_str());
 }
@@ -129,6 +112,11 @@ void Viewer::press(char key)
     for (const Key &k : keys)
         if (k.key == key)
             k.act(*this);
+}
+
+void Viewer::toggle(DebugView view)
+{
+    debug = debug == view ? DebugView::NONE : view;
 }
 
 /* Beside the keys: what else can happen to a window. */
@@ -172,14 +160,14 @@ void Viewer::receive(Loader::Result result)
     for (const std::string &warning : result.warnings)
         report_warning(result.path.c_str(), warning.c_str());
     for (gtx_model *model : incoming.models) /* of a drop before, not yet uploaded */
-        gtx_model_destroy(stage->renderer, model);
+        gtx_model_destroy(scene_renderer->renderer, model);
     incoming = Loader::Result();
     if (result.error.result == GTX_OK) {
         incoming = std::move(result);
         return;
     }
     for (gtx_model *model : result.models)
-        gtx_model_destroy(stage->renderer, model);
+        gtx_model_destroy(scene_renderer->renderer, model);
     note = file_name(result.path) + ": " + result.error.message;
     code = report_error(result.path.c_str(), &result.error);
 }
@@ -193,7 +181,7 @@ void Viewer::take_loaded()
     for (gtx_model *model : incoming.models) {
         uint32_t done = 0;
         gtx_error error;
-        check(gtx_model_upload(stage->renderer, model, slice, &done, &error), error);
+        check(gtx_model_upload(scene_renderer->renderer, model, slice, &done, &error), error);
         if (!done)
             return;
     }
@@ -212,7 +200,7 @@ void Viewer::write_picture(const std::string &path)
 {
     std::vector<uint8_t> pixels(size_t(width) * size_t(height) * 4);
     gtx_error error;
-    gtx_framebuffer_read_color(&stage->gl, &target, pixels.data());
+    gtx_framebuffer_read_color(&scene_renderer->gl, &target, pixels.data());
     check(gtx_image_write_png(path.c_str(), uint32_t(width), uint32_t(height), 4, pixels.data(),
                               &error), error);
 }
@@ -232,79 +220,11 @@ void Viewer::save_screenshot()
     }
 }
 
-void Viewer::add_status(gtx_shapes &shapes, float dot)
-{
-    const gtx_text_style plain = {dot, {32, 36, 44}, {244, 245, 247}};
-    const gtx_text_style loud = {dot, {176, 24, 16}, {255, 255, 255}};
-    static const char *const looks_text[] = {"", "  patches", "  normals"};
-    static const char *const levels_text[] = {"auto", "0", "1", "2", "3"};
-    char line[160];
-    const bool no_lod = view.method != methods[method].method;
-    std::snprintf(line, sizeof line, "%s  level %s%s%s%s  %.1f ms  %dx%d",
-                  no_lod ? "no LOD mesh: auto" : methods[method].name, levels_text[view.level],
-                  looks_text[size_t(look)], boxes ? "  boxes" : "",
-                  fixed_light ? "  light fixed" : "", milliseconds, width, height);
-    std::string lines = name + "\n" + facts + format_bytes(stage->gpu_bytes()) + " GPU\n" + line;
-    if (scene.assets.empty() && scene.meshes.empty())
-        lines = "drop a model or an asset here";
-    gtx_text_add(&shapes, 4 * dot, 4 * dot, &plain, (lines + "\nH: help").c_str());
-    gtx_text_add(&shapes, 4 * dot, (8 + 4 * GTX_TEXT_LINE) * dot, &loud, note.c_str());
-}
-
-void Viewer::add_progress(gtx_shapes &shapes, float dot)
-{
-    const gtx_text_style style = {dot, {32, 36, 44}, {244, 245, 247}};
-    const float w = float(width) * 0.6f, x = float(width) * 0.2f, h = 8 * dot;
-    const float y = float(height) - 3 * h;
-    char line[96];
-    std::snprintf(line, sizeof line, "%s %.0f%%   Esc: %s",
-                  loader.cancelling() ? "cancelling" : loader.stage(),
-                  double(100 * loader.fraction()), loader.cancelling() ? "close" : "cancel");
-    gtx_text_rectangle(&shapes, x - dot, y - dot, w + 2 * dot, h + 2 * dot, {32, 36, 44});
-    gtx_text_rectangle(&shapes, x, y, w, h, {244, 245, 247});
-    gtx_text_rectangle(&shapes, x, y, w * loader.fraction(), h, {52, 120, 200});
-    gtx_text_add(&shapes, x, y - (GTX_TEXT_LINE + 2) * dot, &style, line);
-}
-
-void Viewer::add_help(gtx_shapes &shapes, float dot)
-{
-    const gtx_text_style style = {dot, {236, 238, 242}, {32, 36, 44}};
-    std::string lines = "left drag   turn\nright drag  move\nwheel       nearer, farther\n"
-                        "drop        a model is cooked, an asset opened\n";
-    for (const Key &k : keys) {
-        std::string label = k.key == GTX_KEY_ESCAPE ? "Esc" : std::string(1, k.key);
-        lines += label + std::string(12 - label.size(), ' ') + k.help + "\n";
-    }
-    lines.pop_back();
-    int w, h;
-    gtx_text_measure(lines.c_str(), &w, &h);
-    const float x = std::max(8 * dot, (float(width) - float(w) * dot) / 2);
-    const float y = std::max(8 * dot, (float(height) - float(h) * dot) / 2);
-    gtx_text_rectangle(&shapes, x - 6 * dot, y - 6 * dot, (float(w) + 12) * dot,
-                       (float(h) + 12) * dot, {32, 36, 44});
-    gtx_text_add(&shapes, x, y, &style, lines.c_str());
-}
-
-void Viewer::draw_overlay()
-{
-    const float dot = float(std::max(1, std::min(height / 300, width / 400)));
-    gtx_shapes shapes = {};
-    gtx_error error;
-    if (text)
-        add_status(shapes, dot);
-    if (loader.busy())
-        add_progress(shapes, dot);
-    if (help)
-        add_help(shapes, dot);
-    if (shapes.index_count || shapes.failed)
-        check(gtx_text_draw(&stage->gl, &stage->program, &shapes, width, height, &error), error);
-}
-
 void Viewer::draw_frame()
 {
     using Clock = std::chrono::steady_clock;
     gtx_error error;
-    const gtx_host_gl &gl = stage->gl;
+    const gtx_host_gl &gl = scene_renderer->gl;
     if (target.width != width || target.height != height) {
         if (target.object)
             gtx_framebuffer_destroy(&gl, &target);
@@ -320,9 +240,9 @@ void Viewer::draw_frame()
         view.method = GTX_METHOD_AUTO;
     view.viewport_width = uint32_t(width);
     view.viewport_height = uint32_t(height);
-    stage->draw(view, look);
+    scene_renderer->draw(view, debug);
     if (boxes)
-        stage->draw_boxes(view);
+        scene_renderer->draw_boxes(view);
     gl.Finish(); /* or the time would be that of giving orders */
     const double took = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     milliseconds = milliseconds > 0 ? 0.8 * milliseconds + 0.2 * took : took;
@@ -359,7 +279,7 @@ int Viewer::run(const ViewScript &script)
             gtx_window_close(window);
     }
     if (script.picture && target.object) {
-        gtx_framebuffer_bind(&stage->gl, &target);
+        gtx_framebuffer_bind(&scene_renderer->gl, &target);
         width = target.width;
         height = target.height;
         write_picture(script.picture);

@@ -39,8 +39,17 @@ public:
     };
 
 private:
-    static const Key keys[];
+    struct Method {
+        gtx_method method;
+        const char *name;
+    };
+    struct Facts {
+        uint64_t triangles = 0, patches = 0, bytes = 0;
+    };
+    static const Key keys[11];
+    static const Method methods[4];
     void press(char key);
+    void toggle(DebugView view);
     void press_script(char key);
     void escape();
     void save_screenshot();
@@ -58,19 +67,19 @@ private:
     void release();
 
     gtx_window *window = nullptr;
-    std::unique_ptr<Stage> stage;
+    std::unique_ptr<SceneRenderer> scene_renderer;
     gtx_framebuffer target = {};
     int width = 0, height = 0;
     Scene scene;
     std::string name, note;     /* what is shown; a line about what happened last */
-    std::string facts;          /* triangles, patches and bytes of the scene */
+    Facts facts;                /* of the scene */
     Loader loader;
     Loader::Result incoming;    /* is being uploaded where it has models */
     gtx_camera camera = {};
     float home[3];              /* azimuth, elevation and distance */
     gtx_view view = {};
     size_t method;              /* in the table of methods */
-    Look look = Look::PLAIN;
+    DebugView debug = DebugView::NONE;
     bool boxes = false, help = false, text = true, fixed_light = false, wants_picture = false;
     bool minimised = false;
     double milliseconds = 0;    /* of a frame, lately */

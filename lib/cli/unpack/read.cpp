@@ -1,4 +1,4 @@
-/* An asset as a folder of images and one JSON file. */
+/* Reading the folder of images and the JSON file that an asset was written as. */
 #include "cli/unpack/unpacked.hpp"
 
 #include "asset/asset.h"
@@ -7,9 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -17,130 +15,6 @@
 namespace gtx {
 
 using Json = nlohmann::ordered_json;
-
-static constexpr char FORMAT[] = "geotex unpacked asset 1";
-
-std::string unpacked_name(const UnpackedMap &map, uint32_t page, uint32_t level)
-{
-    std::string name = map.name + ("-" + std::to_string(page));
-    return name + (map.has_levels ? "-" + std::to_string(level) : "") + ".png";
-}
-
-static std::string in_folder(const std::string &folder, const std::string &name)
-{
-    return (std::filesystem::path(folder) / name).string();
-}
-
-/* ---- writing ---- */
-
-template <class T> static Json list(const T *values, size_t count)
-{
-    Json out = Json::array();
-    for (size_t i = 0; i < count; ++i)
-        out.push_back(values[i]); /* floats become doubles, whose shortest text gives them again */
-    return out;
-}
-
-static Json patch_json(const gtx_patch &p)
-{
-    return {{"origin", list(p.origin, 3)}, {"axis_x", list(p.axis_x, 3)},
-            {"axis_y", list(p.axis_y, 3)}, {"axis_z", list(p.axis_z, 3)},
-            {"extent", {p.extent_x, p.extent_y, p.extent_z}}, {"coverage", p.coverage},
-            {"page", p.page}, {"rect", list(p.rect, 4)}, {"dilation", p.dilation},
-            {"flags", p.flags}, {"sphere", list(p.sphere, 4)},
-            {"source_triangles", p.source_triangles}};
-}
-
-static void write_image(const std::string &path, const UnpackedMap &map, uint32_t width,
-                        uint32_t height, uint32_t bits, const uint8_t *texels)
-{
-    gtx_error error;
-    gtx_result result;
-    const size_t count = size_t(width) * height;
-    if (map.map == GTX_MAP_HEIGHT && bits == 16) {
-        std::vector<uint16_t> codes(count);
-        for (size_t i = 0; i < count; ++i)
-            codes[i] = uint16_t(texels[2 * i] | texels[2 * i + 1] << 8);
-        result = gtx_image_write_png16(path.c_str(), width, height, codes.data(), &error);
-    } else if (map.map == GTX_MAP_NORMAL) { /* two channels would be grey and alpha */
-        std::vector<uint8_t> rgb(count * 3);
-        for (size_t i = 0; i < count; ++i)
-            std::copy_n(texels + 2 * i, 2, &rgb[3 * i]);
-        result = gtx_image_write_png(path.c_str(), width, height, 3, rgb.data(), &error);
-    } else {
-        result = gtx_image_write_png(path.c_str(), width, height, map.channels, texels, &error);
-    }
-    if (result)
-        throw Error(result, error.message);
-}
-
-static void write_images(const gtx_asset *asset, const gtx_info &info, const std::string &folder,
-                         std::string &about)
-{
-    for (const UnpackedMap &map : UNPACKED_MAPS) {
-        for (uint32_t level = 0; level < (map.has_levels ? info.mip_count : 1); ++level) {
-            size_t size;
-            const void *data = gtx_map_data(asset, map.map, level, &size);
-            for (uint32_t page = 0; data && page < info.page_count; ++page) {
-                about = in_folder(folder, unpacked_name(map, page, level));
-                write_image(about, map, info.page_width >> level, info.page_height >> level,
-                            info.height_bits,
-                            static_cast<const uint8_t *>(data) + page * (size / info.page_count));
-            }
-        }
-    }
-}
-
-static void write_lod(const gtx_asset *asset, const gtx_info &info, const std::string &folder,
-                      Json &json, std::string &about)
-{
-    json["lod_meshes"] = Json::array();
-    for (uint32_t k = 0; k < info.lod_levels; ++k) {
-        gtx_lod_mesh level;
-        gtx_get_lod_mesh(asset, k, &level);
-        about = in_folder(folder, unpacked_lod_name(k));
-        write_unpacked_lod(level, info.patch_count, about);
-        json["lod_meshes"].push_back({{"origin", list(level.origin, 3)},
-                               {"step", level.step},
-                               {"error", level.error},
-                               {"triangles", level.triangle_count},
-                               {"vertices", level.vertex_count},
-                               {"flags", level.flags}});
-    }
-}
-
-void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder,
-                    std::string &about)
-{
-    gtx_info info;
-    gtx_get_info(asset, &info);
-    size_t meta_size;
-    const char *meta = gtx_meta(asset, &meta_size);
-    Json json = {{"format", FORMAT}, {"page_count", info.page_count},
-                 {"page_size", {info.page_width, info.page_height}}, {"mip_count", info.mip_count},
-                 {"height_bits", info.height_bits}, {"unit", info.unit},
-                 {"anchor", list(info.anchor, 3)}, {"bounds_min", list(info.bounds_min, 3)},
-                 {"bounds_max", list(info.bounds_max, 3)},
-                 {"emission_scale", info.emission_scale},
-                 {"has_color", info.has_color != 0}, {"has_material", info.has_material != 0},
-                 {"has_emission", info.has_emission != 0},
-                 {"source_triangles", info.source_triangles}, {"zstd", zstd}};
-    if (meta)
-        json["meta"] = std::string(meta, meta_size);
-    json["patches"] = Json::array();
-    for (uint32_t i = 0; i < info.patch_count; ++i)
-        json["patches"].push_back(patch_json(gtx_patches(asset)[i]));
-    write_images(asset, info, folder, about);
-    write_lod(asset, info, folder, json, about);
-    about = in_folder(folder, UNPACKED_JSON);
-    std::ofstream file(about, std::ios::binary);
-    file << json.dump(1) << '\n';
-    file.close();
-    if (!file)
-        throw Error(GTX_ERROR_WRITE, "cannot be written");
-}
-
-/* ---- reading ---- */
 
 /* Reads values out of the JSON; every fault names its field. */
 struct Reader {
@@ -210,13 +84,13 @@ static gtx_patch read_patch(const Reader &reader, const Json &json)
 
 static Json parse(const std::string &path)
 {
-    constexpr uintmax_t MOST = uintmax_t(1) << 30;
+    constexpr uintmax_t MAX_SIZE = uintmax_t(1) << 30;
     std::error_code error;
     const uintmax_t size = std::filesystem::file_size(path, error);
     std::ifstream file(path, std::ios::binary);
     if (error || !file)
         throw Error(GTX_ERROR_READ, "cannot be read");
-    if (size > MOST)
+    if (size > MAX_SIZE)
         throw Error(GTX_ERROR_LIMIT, "is larger than 1 GiB");
     Json json = Json::parse(file, nullptr, false);
     if (!json.is_object())
@@ -309,8 +183,8 @@ void read_unpacked(const std::string &folder, Unpacked &out, std::string &about)
     about = in_folder(folder, UNPACKED_JSON);
     const Json json = parse(about);
     const Reader reader;
-    if (!(reader.at(json, "format") == FORMAT))
-        reader.fail(std::string("format is not \"") + FORMAT + '"');
+    if (!(reader.at(json, "format") == UNPACKED_FORMAT))
+        reader.fail(std::string("format is not \"") + UNPACKED_FORMAT + '"');
     gtx_asset_desc &d = out.desc;
     uint32_t size[2];
     reader.numbers(json, "page_size", size, 2);
@@ -356,37 +230,6 @@ void read_unpacked(const std::string &folder, Unpacked &out, std::string &about)
     d.emission = levels(5);
     d.meta = out.meta.empty() ? nullptr : out.meta.data();
     d.meta_size = out.meta.size();
-}
-
-/* ---- what follows from edited heights ---- */
-
-void derive_again(Unpacked &unpacked)
-{
-    gtx_asset_desc &d = unpacked.desc;
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    const uint32_t bytes = d.height_bits / 8;
-    for (gtx_patch &p : unpacked.patches) {
-        if (p.page >= d.page_count || p.rect[0] + p.rect[2] > d.page_width ||
-            p.rect[1] + p.rect[3] > d.page_height)
-            continue; /* gtx_create will say so */
-        const size_t row = size_t(p.page) * d.page_height + p.rect[1];
-        const size_t first = (row * d.page_width + p.rect[0]) * bytes;
-        const gtx_code_map codes = {static_cast<const uint8_t *>(d.height) + first, d.page_width,
-                                    bytes, d.height_bits};
-        const gtx_patch_span span = gtx_measure_patch(&p, &codes);
-        for (int k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], span.low[k]);
-            high[k] = std::max(high[k], span.high[k]);
-        }
-    }
-    for (int k = 0; k < 3 && low[0] <= high[0]; ++k) {
-        d.bounds_min[k] = float(low[k]);
-        d.bounds_max[k] = float(high[k]);
-    }
-    if (d.lod_levels)
-        unpacked.warnings.push_back("the LOD mesh does not follow the heights and was left out");
-    d.lod_levels = 0;
-    unpacked.warnings.push_back("coverage, spheres and bounds were computed anew from the heights");
 }
 
 } // namespace gtx

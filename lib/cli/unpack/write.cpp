@@ -1,0 +1,134 @@
+/* Writing an asset as a folder of images and one JSON file. */
+#include "cli/unpack/unpacked.hpp"
+
+#include "image/image.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+namespace gtx {
+
+using Json = nlohmann::ordered_json;
+
+std::string unpacked_name(const UnpackedMap &map, uint32_t page, uint32_t level)
+{
+    std::string name = map.name + ("-" + std::to_string(page));
+    return name + (map.has_levels ? "-" + std::to_string(level) : "") + ".png";
+}
+
+std::string in_folder(const std::string &folder, const std::string &name)
+{
+    return (std::filesystem::path(folder) / name).string();
+}
+
+template <class T> static Json list(const T *values, size_t count)
+{
+    Json out = Json::array();
+    for (size_t i = 0; i < count; ++i)
+        out.push_back(values[i]); /* floats become doubles, whose shortest text gives them again */
+    return out;
+}
+
+static Json patch_json(const gtx_patch &p)
+{
+    return {{"origin", list(p.origin, 3)}, {"axis_x", list(p.axis_x, 3)},
+            {"axis_y", list(p.axis_y, 3)}, {"axis_z", list(p.axis_z, 3)},
+            {"extent", {p.extent_x, p.extent_y, p.extent_z}}, {"coverage", p.coverage},
+            {"page", p.page}, {"rect", list(p.rect, 4)}, {"dilation", p.dilation},
+            {"flags", p.flags}, {"sphere", list(p.sphere, 4)},
+            {"source_triangles", p.source_triangles}};
+}
+
+static void write_image(const std::string &path, const UnpackedMap &map, uint32_t width,
+                        uint32_t height, uint32_t bits, const uint8_t *texels)
+{
+    gtx_error error;
+    gtx_result result;
+    const size_t count = size_t(width) * height;
+    if (map.map == GTX_MAP_HEIGHT && bits == 16) {
+        std::vector<uint16_t> codes(count);
+        for (size_t i = 0; i < count; ++i)
+            codes[i] = uint16_t(texels[2 * i] | texels[2 * i + 1] << 8);
+        result = gtx_image_write_png16(path.c_str(), width, height, codes.data(), &error);
+    } else if (map.map == GTX_MAP_NORMAL) { /* two channels would be grey and alpha */
+        std::vector<uint8_t> rgb(count * 3);
+        for (size_t i = 0; i < count; ++i)
+            std::copy_n(texels + 2 * i, 2, &rgb[3 * i]);
+        result = gtx_image_write_png(path.c_str(), width, height, 3, rgb.data(), &error);
+    } else {
+        result = gtx_image_write_png(path.c_str(), width, height, map.channels, texels, &error);
+    }
+    if (result)
+        throw Error(result, error.message);
+}
+
+static void write_images(const gtx_asset *asset, const gtx_info &info, const std::string &folder,
+                         std::string &about)
+{
+    for (const UnpackedMap &map : UNPACKED_MAPS) {
+        for (uint32_t level = 0; level < (map.has_levels ? info.mip_count : 1); ++level) {
+            size_t size;
+            const void *data = gtx_map_data(asset, map.map, level, &size);
+            for (uint32_t page = 0; data && page < info.page_count; ++page) {
+                about = in_folder(folder, unpacked_name(map, page, level));
+                write_image(about, map, info.page_width >> level, info.page_height >> level,
+                            info.height_bits,
+                            static_cast<const uint8_t *>(data) + page * (size / info.page_count));
+            }
+        }
+    }
+}
+
+static void write_lod(const gtx_asset *asset, const gtx_info &info, const std::string &folder,
+                      Json &json, std::string &about)
+{
+    json["lod_meshes"] = Json::array();
+    for (uint32_t k = 0; k < info.lod_levels; ++k) {
+        gtx_lod_mesh level;
+        gtx_get_lod_mesh(asset, k, &level);
+        about = in_folder(folder, unpacked_lod_name(k));
+        write_unpacked_lod(level, info.patch_count, about);
+        json["lod_meshes"].push_back({{"origin", list(level.origin, 3)},
+                                      {"step", level.step},
+                                      {"error", level.error},
+                                      {"triangles", level.triangle_count},
+                                      {"vertices", level.vertex_count},
+                                      {"flags", level.flags}});
+    }
+}
+
+void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder,
+                    std::string &about)
+{
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    size_t meta_size;
+    const char *meta = gtx_meta(asset, &meta_size);
+    Json json = {{"format", UNPACKED_FORMAT}, {"page_count", info.page_count},
+                 {"page_size", {info.page_width, info.page_height}}, {"mip_count", info.mip_count},
+                 {"height_bits", info.height_bits}, {"unit", info.unit},
+                 {"anchor", list(info.anchor, 3)}, {"bounds_min", list(info.bounds_min, 3)},
+                 {"bounds_max", list(info.bounds_max, 3)},
+                 {"emission_scale", info.emission_scale},
+                 {"has_color", info.has_color != 0}, {"has_material", info.has_material != 0},
+                 {"has_emission", info.has_emission != 0},
+                 {"source_triangles", info.source_triangles}, {"zstd", zstd}};
+    if (meta)
+        json["meta"] = std::string(meta, meta_size);
+    json["patches"] = Json::array();
+    for (uint32_t i = 0; i < info.patch_count; ++i)
+        json["patches"].push_back(patch_json(gtx_patches(asset)[i]));
+    write_images(asset, info, folder, about);
+    write_lod(asset, info, folder, json, about);
+    about = in_folder(folder, UNPACKED_JSON);
+    std::ofstream file(about, std::ios::binary);
+    file << json.dump(1) << '\n';
+    file.close();
+    if (!file)
+        throw Error(GTX_ERROR_WRITE, "cannot be written");
+}
+
+} // namespace gtx

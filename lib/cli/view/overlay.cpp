@@ -1,0 +1,89 @@
+/* The text over the window of `gtx view`: status, progress, help. */
+#include "cli/view/viewer.hpp"
+
+namespace gtx {
+
+static std::string format_bytes(uint64_t bytes)
+{
+    static const char *const units[] = {"B", "kB", "MB", "GB"};
+    double number = double(bytes);
+    size_t unit = 0;
+    for (; number >= 1000 && unit < 3; ++unit)
+        number /= 1000;
+    char text[32];
+    std::snprintf(text, sizeof text, unit ? "%.1f %s" : "%.0f %s", number, units[unit]);
+    return text;
+}
+
+void Viewer::add_status(gtx_shapes &shapes, float dot)
+{
+    const gtx_text_style plain = {dot, {32, 36, 44}, {244, 245, 247}};
+    const gtx_text_style loud = {dot, {176, 24, 16}, {255, 255, 255}};
+    static const char *const debug_view_text[] = {"", "  patches", "  normals"};
+    static const char *const levels_text[] = {"auto", "0", "1", "2", "3"};
+    char line[160];
+    const bool no_lod = view.method != methods[method].method;
+    std::snprintf(line, sizeof line, "%s  level %s%s%s%s  %.1f ms  %dx%d",
+                  no_lod ? "no LOD mesh: auto" : methods[method].name, levels_text[view.level],
+                  debug_view_text[size_t(debug)], boxes ? "  boxes" : "",
+                  fixed_light ? "  light fixed" : "", milliseconds, width, height);
+    std::string lines = name + "\n" + std::to_string(facts.triangles) + " triangles  " +
+                        std::to_string(facts.patches) + " patches  " + format_bytes(facts.bytes) +
+                        " asset  " + format_bytes(scene_renderer->gpu_bytes()) + " GPU\n" + line;
+    if (scene.assets.empty() && scene.meshes.empty())
+        lines = "drop a model or an asset here";
+    gtx_text_add(&shapes, 4 * dot, 4 * dot, &plain, (lines + "\nH: help").c_str());
+    gtx_text_add(&shapes, 4 * dot, (8 + 4 * GTX_TEXT_LINE) * dot, &loud, note.c_str());
+}
+
+void Viewer::add_progress(gtx_shapes &shapes, float dot)
+{
+    const gtx_text_style style = {dot, {32, 36, 44}, {244, 245, 247}};
+    const float w = float(width) * 0.6f, x = float(width) * 0.2f, h = 8 * dot;
+    const float y = float(height) - 3 * h;
+    char line[96];
+    std::snprintf(line, sizeof line, "%s %.0f%%   Esc: %s",
+                  loader.cancelling() ? "cancelling" : loader.stage(),
+                  double(100 * loader.fraction()), loader.cancelling() ? "close" : "cancel");
+    gtx_text_rectangle(&shapes, x - dot, y - dot, w + 2 * dot, h + 2 * dot, {32, 36, 44});
+    gtx_text_rectangle(&shapes, x, y, w, h, {244, 245, 247});
+    gtx_text_rectangle(&shapes, x, y, w * loader.fraction(), h, {52, 120, 200});
+    gtx_text_add(&shapes, x, y - (GTX_TEXT_LINE + 2) * dot, &style, line);
+}
+
+void Viewer::add_help(gtx_shapes &shapes, float dot)
+{
+    const gtx_text_style style = {dot, {236, 238, 242}, {32, 36, 44}};
+    std::string lines = "left drag   turn\nright drag  move\nwheel       nearer, farther\n"
+                        "drop        a model is cooked, an asset opened\n";
+    for (const Key &k : keys) {
+        std::string label = k.key == GTX_KEY_ESCAPE ? "Esc" : std::string(1, k.key);
+        lines += label + std::string(12 - label.size(), ' ') + k.help + "\n";
+    }
+    lines.pop_back();
+    int w, h;
+    gtx_text_measure(lines.c_str(), &w, &h);
+    const float x = std::max(8 * dot, (float(width) - float(w) * dot) / 2);
+    const float y = std::max(8 * dot, (float(height) - float(h) * dot) / 2);
+    gtx_text_rectangle(&shapes, x - 6 * dot, y - 6 * dot, (float(w) + 12) * dot,
+                       (float(h) + 12) * dot, {32, 36, 44});
+    gtx_text_add(&shapes, x, y, &style, lines.c_str());
+}
+
+void Viewer::draw_overlay()
+{
+    const float dot = float(std::max(1, std::min(height / 300, width / 400)));
+    gtx_shapes shapes = {};
+    gtx_error error;
+    if (text)
+        add_status(shapes, dot);
+    if (loader.busy())
+        add_progress(shapes, dot);
+    if (help)
+        add_help(shapes, dot);
+    if (shapes.index_count || shapes.failed)
+        check(gtx_text_draw(&scene_renderer->gl, &scene_renderer->program, &shapes, width, height,
+                            &error), error);
+}
+
+} // namespace gtx

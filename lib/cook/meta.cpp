@@ -1,0 +1,59 @@
+/* The META section of an asset: what made it, from what. */
+#include "cook/meta.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace gtx {
+
+std::string write_meta(const Options &options, const CookFacts &facts)
+{
+    char generator[32];
+    snprintf(generator, sizeof generator, "geotex %d.%d.%d", GTX_VERSION_MAJOR, GTX_VERSION_MINOR,
+             GTX_VERSION_PATCH);
+    Json json(options.allocator);
+    gtx_json_begin_object(&json, nullptr);
+    gtx_json_string(&json, "generator", generator);
+    gtx_json_begin_object(&json, "options");
+    gtx_json_string(&json, "partition", partition_name(options));
+    if (options.chart.adaptive)
+        gtx_json_bool(&json, "adaptive", true);
+    gtx_json_integer(&json, "charts", facts.chart_count);
+    gtx_json_integer(&json, "resolution", options.chart.resolution);
+    gtx_json_integer(&json, "height_bits", options.bake.height_bits);
+    gtx_json_integer(&json, "mips", options.bake.mips);
+    gtx_json_integer(&json, "dilation", options.bake.dilation);
+    gtx_json_integer(&json, "lod_levels", options.lod_levels);
+    gtx_json_string(&json, "up", options.z_up ? "z" : "y");
+    if (options.bake.extractor)
+        gtx_json_string(&json, "extract", "gpu");
+    gtx_json_end_object(&json);
+    gtx_json_begin_object(&json, "source");
+    gtx_json_integer(&json, "triangles", facts.source_triangles);
+    gtx_json_hash(&json, "xxh64", facts.source_hash);
+    gtx_json_end_object(&json);
+    gtx_json_hash(&json, "key", facts.key);
+    gtx_json_integer(&json, "warnings", facts.warnings);
+    gtx_json_end_object(&json);
+    check_written(json);
+    return std::string(json.text, json.size);
+}
+
+bool read_meta(const gtx_asset *asset, uint64_t &key, uint64_t &warnings)
+{
+    size_t size = 0;
+    const char *text = gtx_meta(asset, &size);
+    if (!text)
+        return false;
+    auto meta = nlohmann::json::parse(text, text + size, nullptr, false);
+    if (!meta.is_object() || !meta.contains("key") || !meta["key"].is_string() ||
+        !meta.contains("warnings") || !meta["warnings"].is_number_unsigned())
+        return false;
+    key = std::strtoull(meta["key"].get_ref<const std::string &>().c_str(), nullptr, 16);
+    warnings = meta["warnings"];
+    return true;
+}
+
+} // namespace gtx

@@ -1,0 +1,14 @@
+/* The META section of an asset: what made it, from what. Nothing of when, where or by how many. */
+#pragma once
+
+#include "cook/options.hpp"
+#include "cook/report.hpp"
+
+namespace gtx {
+
+std::string write_meta(const Options &options, const CookFacts &facts);
+
+/* The key of an asset, and how many warnings it was cooked with; false when META does not tell. */
+bool read_meta(const gtx_asset *asset, uint64_t &key, uint64_t &warnings);
+
+} // namespace gtx
