@@ -104,8 +104,13 @@ vec3 gtx_facet(gtx_frame frame, gtx_hit hit)
            hit.slope.y * cross(frame.axis_z, frame.axis_x);
 }
 
-/* Whether the height field shows at a point: at most 0.3 * 2^level texels outside its outline
- * (section 4.2: stored code 128 + 16 * 0.3). */
+/* The greatest trim code that shows at a level of detail (format/gtx.md, section 4.2). */
+float gtx_trim_limit(int level)
+{
+    return float(GTX_TRIM_OUTLINE) + float(GTX_TRIM_TEXEL) * GTX_TRIM_SHOWN * float(1 << level);
+}
+
+/* Whether the height field shows at a point: it may lie a little outside the outline. */
 bool gtx_shows(gtx_height_field field, vec2 at)
 {
     ivec2 cell = clamp(ivec2(floor(at)), ivec2(0), field.size - 2);
@@ -121,8 +126,7 @@ bool gtx_shows(gtx_height_field field, vec2 at)
     float d = texelFetch(gtx_trim, texel + ivec3(1, 1, 0), 0).r;
 #endif
     vec2 f = clamp(at - vec2(cell), 0.0, 1.0);
-    return mix(mix(a, b, f.x), mix(c, d, f.x), f.y) * 255.0 <=
-           128.0 + 4.8 * float(1 << field.level);
+    return mix(mix(a, b, f.x), mix(c, d, f.x), f.y) * 255.0 <= gtx_trim_limit(field.level);
 }
 
 /* Shortens [t0, t1] to where a + b t >= 0. */

@@ -53,7 +53,7 @@ bool gtx_ray_shows(int first, ivec2 size, vec2 at)
     float c = texelFetch(gtx_ray_trim, gtx_ray_address(texel + size.x), 0).r;
     float d = texelFetch(gtx_ray_trim, gtx_ray_address(texel + size.x + 1), 0).r;
     vec2 f = clamp(at - vec2(cell), 0.0, 1.0);
-    return mix(mix(a, b, f.x), mix(c, d, f.x), f.y) * 255.0 <= 132.8;
+    return mix(mix(a, b, f.x), mix(c, d, f.x), f.y) * 255.0 <= gtx_trim_limit(0);
 }
 
 /* Whether the ray crosses a block of 8 x 8 cells of the height field whose record is at `field`. */

@@ -1,5 +1,10 @@
-/* Layouts of the records that shaders read from textures, as offsets in texels. C includes this
- * file, too. Comes after geotex_dialect.glsl. */
+/* Codes of the trim, and layouts of the records that shaders read from textures, as offsets in
+ * texels. C includes this file, too. Comes after geotex_dialect.glsl. */
+
+/* As in lib/asset/patch.h: where C sees both, the compiler tells whether they differ. */
+#define GTX_TRIM_OUTLINE 128             /* the outline's code */
+#define GTX_TRIM_TEXEL 16                /* codes a texel */
+#define GTX_TRIM_SHOWN 0.3               /* texels outside the outline that show, at level 0 */
 
 /* A patch, in gtx_patches. A texel's w has a name of its own where it says something else. */
 #define GTX_RECORD_TO_GRID 0             /* 3: rows of object space -> grid space */

@@ -39,10 +39,10 @@ static inline uint32_t gtx_nearest_code(double steps, uint32_t height_bits)
 
 /* ---- trim: signed distances in texels from the outline, positive outside ---- */
 
-enum { GTX_TRIM_OUTLINE = 128, GTX_TRIM_TEXEL = 16 }; /* its code, and codes a texel */
-
-/* A point belongs to the surface up to this distance. */
-#define GTX_TRIM_SHOWN 0.3
+/* As in shaders/geotex_records.glsl. */
+#define GTX_TRIM_OUTLINE 128             /* the outline's code */
+#define GTX_TRIM_TEXEL 16                /* codes a texel */
+#define GTX_TRIM_SHOWN 0.3               /* a point belongs to the surface up to this distance */
 
 static inline double gtx_trim_distance(double code)
 {
