@@ -1,6 +1,8 @@
 /* gtx horizons: height grids -> an asset. */
 #include "cli/cli.h"
 
+#include "base/error.h"
+
 #include <geotex/cook.h>
 
 #include <inttypes.h>
@@ -127,10 +129,8 @@ static int read_operand(const char *operand, gtx_height_grid *grid)
     if (gtx_height_grid_read(second, &reading_property, &property, &error))
         return report_error(second, &error);
     if (property.nx != grid->nx || property.ny != grid->ny) {
-        error.result = GTX_ERROR_INPUT;
-        snprintf(error.message, sizeof error.message,
-                 "the property has %u x %u nodes, its grid %u x %u", property.nx, property.ny,
-                 grid->nx, grid->ny);
+        gtx_fail(&error, GTX_ERROR_INPUT, "the property has %u x %u nodes, its grid %u x %u",
+                 property.nx, property.ny, grid->nx, grid->ny);
         gtx_height_grid_free(&property);
         return report_error(second, &error);
     }
