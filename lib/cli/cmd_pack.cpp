@@ -33,12 +33,6 @@ static bool follows_from_heights(uint32_t rule)
 
 using Asset = std::unique_ptr<gtx_asset, void (*)(gtx_asset *)>;
 
-static void require(gtx_result result, const gtx_error &error)
-{
-    if (result)
-        throw gtx::Error(result, error.message);
-}
-
 static Asset open_folder(const char *folder, std::string &about)
 {
     gtx::Unpacked unpacked;
@@ -51,7 +45,7 @@ static Asset open_folder(const char *folder, std::string &about)
         gtx::derive_again(unpacked);
         result = gtx_create(&unpacked.desc, &asset, &error);
     }
-    require(result, error);
+    gtx::require_ok(result, error);
     for (const std::string &warning : unpacked.warnings)
         report_warning(folder, warning.c_str());
     if (zstd_level < 0)
@@ -63,7 +57,7 @@ static Asset open_asset(const char *path)
 {
     gtx_asset *asset = nullptr;
     gtx_error error = {};
-    require(gtx_open_file(path, nullptr, &asset, &error), error);
+    gtx::require_ok(gtx_open_file(path, nullptr, &asset, &error), error);
     return Asset(asset, gtx_close);
 }
 
@@ -77,7 +71,7 @@ static Asset with_lod(const Asset &asset)
     catch_interrupt();
     gtx_result result = gtx_cook_lod_meshes(asset.get(), &desc, &out, &error);
     end_progress();
-    require(result, error);
+    gtx::require_ok(result, error);
     return Asset(out, gtx_close);
 }
 
@@ -103,7 +97,7 @@ int cmd_pack(int argc, char **argv)
         desc.zstd_level = zstd_level >= 0 ? zstd_level : 3;
         gtx_error error = {};
         about = output;
-        require(gtx_save_file(asset.get(), output, &desc, &error), error);
+        gtx::require_ok(gtx_save_file(asset.get(), output, &desc, &error), error);
         return int(EXIT_CODE_OK);
     });
 }

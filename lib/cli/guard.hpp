@@ -4,7 +4,6 @@
 #include "cli/cli.h"
 #include "mesh/task.hpp"
 
-#include <new>
 #include <string>
 
 namespace gtx {
@@ -13,20 +12,12 @@ namespace gtx {
  * keeps it up to date. */
 template <class Body> int guarded(const std::string &about, Body body)
 {
-    gtx_error error = {};
     try {
         return body();
-    } catch (const Error &e) {
-        error.result = e.result;
-        std::snprintf(error.message, sizeof error.message, "%s", e.message.c_str());
-    } catch (const std::bad_alloc &) {
-        error.result = GTX_ERROR_MEMORY;
-        std::snprintf(error.message, sizeof error.message, "out of memory");
-    } catch (const std::exception &e) {
-        error.result = GTX_ERROR_INTERNAL;
-        std::snprintf(error.message, sizeof error.message, "%s", e.what());
+    } catch (...) {
+        const gtx_error error = caught_error();
+        return report_error(about.c_str(), &error);
     }
-    return report_error(about.c_str(), &error);
 }
 
 } // namespace gtx

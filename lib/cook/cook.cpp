@@ -114,7 +114,7 @@ static Asset find_cooked(const char *path, const Options &options, uint64_t key)
     gtx_error error;
     gtx_result opened = gtx_open_file(path, &open, &asset, &error);
     if (opened == GTX_ERROR_MEMORY)
-        throw Error(opened, error.message);
+        throw Error(error);
     if (opened)
         return Asset(nullptr, gtx_close);
     Asset owner(asset, gtx_close);

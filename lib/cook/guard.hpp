@@ -6,7 +6,6 @@
 #include "base/error.h"
 
 #include <cstring>
-#include <new>
 
 namespace gtx {
 
@@ -16,22 +15,12 @@ template <class Body> gtx_result guard(gtx_error *error, Body body)
     try {
         body();
         return GTX_OK;
-    } catch (const Error &e) {
-        return gtx_fail(error, e.result, "%s", e.what());
-    } catch (const std::bad_alloc &) {
-        return gtx_fail(error, GTX_ERROR_MEMORY, "out of memory");
-    } catch (const std::exception &e) {
-        return gtx_fail(error, GTX_ERROR_INTERNAL, "%s", e.what());
     } catch (...) {
-        return gtx_fail(error, GTX_ERROR_INTERNAL, "an unknown exception");
+        const gtx_error caught = caught_error();
+        if (error)
+            *error = caught;
+        return caught.result;
     }
-}
-
-/* Throws what a C function reported. */
-inline void require_ok(gtx_result result, const gtx_error &error)
-{
-    if (result != GTX_OK)
-        throw Error(result, error.message);
 }
 
 inline void require_argument(bool fine, const char *message)

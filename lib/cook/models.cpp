@@ -4,7 +4,9 @@
 #include "base/hash.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 
@@ -45,7 +47,7 @@ static bool add_file(gtx_hash &hash, const std::string &path, Task &task)
         task.advance(0);
     }
     if (ferror(file.get()))
-        throw Error(GTX_ERROR_READ, "cannot read " + path);
+        throw Error(GTX_ERROR_READ, "cannot read " + path + ": " + std::strerror(errno));
     add_number(hash, total);
     return true;
 }
@@ -60,10 +62,10 @@ static auto naming(const std::string &path, bool several, Task &task, Body body)
         for (size_t i = before; several && i < task.warnings.size(); ++i)
             task.warnings[i].insert(0, path + ": ");
         return result;
-    } catch (const Error &e) {
-        if (!several || e.result == GTX_CANCELLED)
-            throw;
-        throw Error(e.result, path + ": " + e.message);
+    } catch (Error &e) {
+        if (several && e.result != GTX_CANCELLED)
+            e.message.insert(0, path + ": ");
+        throw;
     }
 }
 

@@ -44,8 +44,7 @@ static HeightGrid read_image(const std::string &path, const GridReading &reading
 {
     gtx_value_image image;
     gtx_error error;
-    if (gtx_result result = gtx_image_read_values(path.c_str(), &image, &error))
-        throw Error(result, error.message);
+    require_ok(gtx_image_read_values(path.c_str(), &image, &error), error);
     std::unique_ptr<float, void (*)(void *)> guard(image.values, std::free);
     HeightGrid grid;
     grid.nx = image.width;

@@ -20,9 +20,8 @@ AssetView::AssetView(const gtx_asset *asset, uint32_t level, double max_error)
     desc.level = level;
     desc.max_error = float(max_error);
     gtx_caster *caster = nullptr;
-    gtx_error error = {};
-    if (gtx_caster_create(asset, &desc, &caster, &error))
-        throw Error(error.result, error.message);
+    gtx_error error;
+    require_ok(gtx_caster_create(asset, &desc, &caster, &error), error);
     caster_.reset(caster);
 }
 

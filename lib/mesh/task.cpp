@@ -4,10 +4,32 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <cstring>
 #include <mutex>
+#include <new>
 
 namespace gtx {
+
+gtx_error caught_error()
+{
+    gtx_error out = {GTX_ERROR_INTERNAL, 0, nullptr, 0, "an unknown exception"};
+    const auto say = [&](const char *text) {
+        std::snprintf(out.message, sizeof out.message, "%s", text);
+    };
+    try {
+        throw;
+    } catch (const Error &e) {
+        out = {e.result, e.rule.number, e.rule.name, e.rule.offset, {}};
+        say(e.what());
+    } catch (const std::bad_alloc &) {
+        out.result = GTX_ERROR_MEMORY;
+        say("out of memory");
+    } catch (const std::exception &e) {
+        say(e.what());
+    }
+    return out;
+}
 
 static double now()
 {

@@ -13,13 +13,36 @@
 
 namespace gtx {
 
-/* Thrown inside the C++ rooms; turned into a gtx_error where the C API ends. */
+/* The rule of the format that a file breaks, and where; 0 and null when none applies. */
+struct BrokenRule {
+    uint32_t number = 0;
+    const char *name = nullptr;
+    uint64_t offset = 0;
+};
+
+/* Thrown inside the C++ rooms; turned into a gtx_error where C++ ends. */
 struct Error : std::exception {
     gtx_result result;
     std::string message;
+    BrokenRule rule;
     Error(gtx_result result, std::string message) : result(result), message(std::move(message)) {}
+    explicit Error(const gtx_error &error)
+        : result(error.result), message(error.message),
+          rule{error.rule, error.rule_name, error.offset}
+    {
+    }
     const char *what() const noexcept override { return message.c_str(); }
 };
+
+/* Throws what a C function reported. */
+inline void require_ok(gtx_result result, const gtx_error &error)
+{
+    if (result != GTX_OK)
+        throw Error(error);
+}
+
+/* The exception in flight as a C caller gets it, written whole. For catch (...) alone. */
+gtx_error caught_error();
 
 /* One job. Used from the thread that runs it, except where stated. */
 class Task {

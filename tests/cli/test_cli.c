@@ -1,6 +1,7 @@
 /* The command as a script sees it: exit codes, one clear line, whole files or none. */
 #include "cli/command.h"
 
+#include <limits.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -156,6 +157,25 @@ static void broken_assets_name_the_rule(void **state)
     free(good);
 }
 
+static void every_verb_names_the_broken_rule(void **state)
+{
+    static const struct {
+        const char *verb, *rest;
+    } calls[] = {
+        {"info", ""}, {"validate", ""}, {"view", ""}, {"compare", "sphere.obj"},
+        {"bench", "sphere.obj"}, {"unpack", "maps"}, {"pack", "-o x.gtx"},
+        {"render", "-o x.png"}, {"filter", "-o x.gtx --gaussian 1"},
+    };
+    char bad[PATH_MAX];
+    (void)state;
+    assert_non_null(realpath("tests/golden/bad/305-patch-page.gtx", bad));
+    for (size_t i = 0; i < sizeof calls / sizeof *calls; ++i) {
+        expect(gtx("%s '%s' %s", calls[i].verb, bad, calls[i].rest), 3);
+        expect_text("305-patch-page.gtx: error[305 patch-page]: a patch lies on an existing page");
+        expect_text(" (byte 512)\n");
+    }
+}
+
 static void comparing_judges_only_stated_limits(void **state)
 {
     (void)state;
@@ -239,6 +259,7 @@ int main(void)
         cmocka_unit_test(an_asset_is_described),
         cmocka_unit_test(cooking_is_deterministic),
         cmocka_unit_test(broken_assets_name_the_rule),
+        cmocka_unit_test(every_verb_names_the_broken_rule),
         cmocka_unit_test(comparing_judges_only_stated_limits),
         cmocka_unit_test(rendering_writes_a_png),
         cmocka_unit_test(an_interrupted_cook_leaves_no_half_file),

@@ -46,13 +46,13 @@ double milliseconds()
 Target::Target(const gtx_host_gl &functions, uint32_t width, uint32_t height) : gl(functions)
 {
     gtx_error error;
-    check(gtx_framebuffer_create(&gl, int(width), int(height), &framebuffer, &error), error);
+    require_ok(gtx_framebuffer_create(&gl, int(width), int(height), &framebuffer, &error), error);
 }
 
 BenchContext::BenchContext()
 {
     gtx_error error;
-    check(gtx_offscreen_create(&offscreen, &error), error);
+    require_ok(gtx_offscreen_create(&offscreen, &error), error);
 }
 
 BenchScene::BenchScene(const std::string &asset_path, const Mesh &mesh, const BenchOptions &options)
@@ -61,8 +61,8 @@ BenchScene::BenchScene(const std::string &asset_path, const Mesh &mesh, const Be
     gtx_error error;
     gtx_renderer_desc desc = {};
     desc.load = gtx_offscreen_load;
-    check(gtx_host_gl_init(&gl, gtx_offscreen_load, nullptr, &error), error);
-    check(gtx_renderer_create(&desc, &renderer_, &error), error);
+    require_ok(gtx_host_gl_init(&gl, gtx_offscreen_load, nullptr, &error), error);
+    require_ok(gtx_renderer_create(&desc, &renderer_, &error), error);
     setup.renderer = reinterpret_cast<const char *>(gl.GetString(GL_RENDERER));
     GLuint query;
     gl.GenQueries(1, &query);
@@ -95,12 +95,12 @@ void BenchScene::load_asset(const std::string &path)
     open.jobs = model.jobs = &jobs;
     model.borrow = 1;
     const double start = milliseconds();
-    check(gtx_open_file(path.c_str(), &open, &asset, &error), error);
+    require_ok(gtx_open_file(path.c_str(), &open, &asset, &error), error);
     AssetPointer owner(asset);
     const double opened = milliseconds();
-    check(gtx_model_prepare(asset, &model, &model_, &error), error);
+    require_ok(gtx_model_prepare(asset, &model, &model_, &error), error);
     const double prepared = milliseconds();
-    check(gtx_model_upload(renderer_, model_, 0, nullptr, &error), error);
+    require_ok(gtx_model_upload(renderer_, model_, 0, nullptr, &error), error);
     gl.Finish();
     setup.open = opened - start;
     setup.prepare = prepared - opened;
@@ -124,9 +124,9 @@ void BenchScene::load_mesh(const Mesh &mesh)
     for (const std::vector<uint32_t> &indices : levels.indices) {
         gtx_error error;
         polygons_.emplace_back();
-        check(gtx_polygons_create(&gl, levels.vertices.data(), uint32_t(levels.vertices.size()),
-                                  indices.data(), uint32_t(indices.size()), &polygons_.back(),
-                                  &error), error);
+        require_ok(gtx_polygons_create(&gl, levels.vertices.data(),
+                                       uint32_t(levels.vertices.size()), indices.data(),
+                                       uint32_t(indices.size()), &polygons_.back(), &error), error);
     }
 }
 
@@ -203,7 +203,7 @@ void BenchScene::draw(BenchMethod method, const Shot &shot)
         if (method == BenchMethod::CAST_FRAGMENT)
             view.viewport_width = 0;
         gtx_error error;
-        check(gtx_draw(renderer_, &view, placed.data(), shot.instances, &error), error);
+        require_ok(gtx_draw(renderer_, &view, placed.data(), shot.instances, &error), error);
     }
     gl.Finish();
 }

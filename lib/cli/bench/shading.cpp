@@ -56,7 +56,7 @@ gtx_polygon_program make_bench_program(const gtx_host_gl &gl, bool materials)
     text += materials ? metallic_roughness : lambert;
     gtx_polygon_program program;
     gtx_error error;
-    check(gtx_polygon_program_create_with(&gl, text.c_str(), &program, &error), error);
+    require_ok(gtx_polygon_program_create_with(&gl, text.c_str(), &program, &error), error);
     return program;
 }
 

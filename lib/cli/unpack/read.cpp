@@ -110,8 +110,7 @@ static void read_image(const std::string &path, const UnpackedMap &map, uint32_t
 {
     gtx_raw_image image;
     gtx_error error;
-    if (gtx_result result = gtx_image_read_raw(path.c_str(), &image, &error))
-        throw Error(result, error.message);
+    require_ok(gtx_image_read_raw(path.c_str(), &image, &error), error);
     std::unique_ptr<void, void (*)(void *)> guard(image.pixels, std::free);
     const uint32_t depth = map.map == GTX_MAP_HEIGHT ? bits / 8 : 1;
     if (image.width != width || image.height != height || image.channels != map.channels ||

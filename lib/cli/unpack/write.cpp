@@ -61,8 +61,7 @@ static void write_image(const std::string &path, const UnpackedMap &map, uint32_
     } else {
         result = gtx_image_write_png(path.c_str(), width, height, map.channels, texels, &error);
     }
-    if (result)
-        throw Error(result, error.message);
+    require_ok(result, error);
 }
 
 static void write_images(const gtx_asset *asset, const gtx_info &info, const std::string &folder,

@@ -107,8 +107,7 @@ AssetPointer recolor(const gtx_asset *asset, DebugView view)
     desc.source_triangles = info.source_triangles;
     gtx_asset *out;
     gtx_error error;
-    if (gtx_create(&desc, &out, &error) != GTX_OK)
-        throw Error(error.result, error.message);
+    require_ok(gtx_create(&desc, &out, &error), error);
     return AssetPointer(out);
 }
 

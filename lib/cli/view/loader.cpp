@@ -47,8 +47,7 @@ AssetPointer Loader::cook(const std::string &path)
     gtx_error error;
     desc.progress = on_progress;
     desc.progress_user = this;
-    if (gtx_cook_file(path.c_str(), file.path.c_str(), &desc, &report, &error) != GTX_OK)
-        throw Error(error.result, error.message);
+    require_ok(gtx_cook_file(path.c_str(), file.path.c_str(), &desc, &report, &error), error);
     result_.warnings.insert(result_.warnings.end(), report.warnings,
                             report.warnings + report.warning_count);
     gtx_report_free(&report);
@@ -63,31 +62,22 @@ void Loader::load(const std::string &path)
     const gtx_model_desc desc = {nullptr, &jobs, 0, {}};
     gtx_model *model;
     gtx_error error;
-    if (gtx_model_prepare(placed.asset.get(), &desc, &model, &error) != GTX_OK)
-        throw Error(error.result, error.message);
+    require_ok(gtx_model_prepare(placed.asset.get(), &desc, &model, &error), error);
     result_.models.push_back(model);
     result_.scene.assets.push_back(std::move(placed));
 }
 
 void Loader::run(const std::vector<std::string> &paths)
 {
-    gtx_result result = GTX_OK;
-    std::string message;
     try {
         for (const std::string &path : paths)
             load(path);
         measure_bounds(result_.scene);
         if (cancelled_)
             throw Error(GTX_CANCELLED, "cancelled");
-    } catch (const Error &e) {
-        result = e.result;
-        message = e.message;
-    } catch (const std::exception &e) {
-        result = GTX_ERROR_INTERNAL;
-        message = e.what();
+    } catch (...) {
+        result_.error = caught_error();
     }
-    result_.error.result = result;
-    std::snprintf(result_.error.message, sizeof result_.error.message, "%s", message.c_str());
     finished_ = true;
 }
 

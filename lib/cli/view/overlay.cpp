@@ -82,8 +82,8 @@ void Viewer::draw_overlay()
     if (help)
         add_help(shapes, dot);
     if (shapes.index_count || shapes.failed)
-        check(gtx_text_draw(&scene_renderer->gl, &scene_renderer->program, &shapes, width, height,
-                            &error), error);
+        require_ok(gtx_text_draw(&scene_renderer->gl, &scene_renderer->program, &shapes, width,
+                                 height, &error), error);
 }
 
 } // namespace gtx

@@ -9,9 +9,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
 namespace gtx {
 
@@ -55,8 +53,7 @@ AssetPointer open_asset(const std::string &path)
     desc.jobs = &jobs;
     gtx_asset *asset;
     gtx_error error;
-    if (gtx_open_file(path.c_str(), &desc, &asset, &error) != GTX_OK)
-        throw Error(error.result, error.message);
+    require_ok(gtx_open_file(path.c_str(), &desc, &asset, &error), error);
     return AssetPointer(asset);
 }
 
@@ -110,14 +107,9 @@ static void add_model(Scene &scene, const std::string &path, Task &task)
 
 static void add_gltf(Scene &scene, const std::string &path, Task &task)
 {
-    std::ifstream file(path, std::ios::binary);
-    std::stringstream text;
-    text << file.rdbuf();
-    if (!file)
-        throw Error(GTX_ERROR_READ, "cannot be read");
     bool placed = false;
     try {
-        json gltf = json::parse(text.str());
+        json gltf = json::parse(read_model(path, task).bytes);
         size_t slash = path.rfind('/');
         placed =
             add_placed_assets(scene, gltf, slash == path.npos ? "" : path.substr(0, slash + 1));

@@ -13,11 +13,11 @@ SceneRenderer::SceneRenderer(gtx_host_load load)
     gtx_renderer_desc desc = {};
     desc.load = load;
     desc.jobs = &jobs;
-    check(gtx_host_gl_init(&gl, load, nullptr, &error), error);
-    check(gtx_polygon_program_create(&gl, &program, &error), error);
+    require_ok(gtx_host_gl_init(&gl, load, nullptr, &error), error);
+    require_ok(gtx_polygon_program_create(&gl, &program, &error), error);
     if (gtx_renderer_create(&desc, &renderer, &error) != GTX_OK) {
         gtx_polygon_program_destroy(&gl, &program);
-        throw Error(error.result, error.message);
+        throw Error(error);
     }
 }
 
@@ -75,9 +75,9 @@ static gtx_polygons upload(const gtx_host_gl &gl, const Polygons &shape)
 {
     gtx_polygons polygons;
     gtx_error error;
-    check(gtx_polygons_create(&gl, shape.vertices.data(), uint32_t(shape.vertices.size()),
-                              shape.indices.data(), uint32_t(shape.indices.size()), &polygons,
-                              &error), error);
+    require_ok(gtx_polygons_create(&gl, shape.vertices.data(), uint32_t(shape.vertices.size()),
+                                   shape.indices.data(), uint32_t(shape.indices.size()), &polygons,
+                                   &error), error);
     return polygons;
 }
 
@@ -93,7 +93,7 @@ SceneRenderer::Uploaded &SceneRenderer::uploaded(DebugView debug)
             copy = recolor(asset, debug);
         gtx_model *model;
         gtx_error error;
-        check(gtx_model_create(renderer, copy ? copy.get() : asset, &model, &error), error);
+        require_ok(gtx_model_create(renderer, copy ? copy.get() : asset, &model, &error), error);
         p.models.push_back(model);
     }
     for (size_t i = p.polygons.size(); i < scene->meshes.size(); ++i) {
@@ -124,8 +124,8 @@ void SceneRenderer::draw(const gtx_view &view, DebugView debug)
         instances[i].model = p.models[i];
     gtx_error error;
     if (!instances.empty())
-        check(gtx_draw(renderer, &view, instances.data(), uint32_t(instances.size()), &error),
-              error);
+        require_ok(gtx_draw(renderer, &view, instances.data(), uint32_t(instances.size()), &error),
+                   error);
 }
 
 void SceneRenderer::draw_boxes(const gtx_view &view)

@@ -9,13 +9,6 @@
 
 namespace gtx {
 
-/* Throws what a failed call says. */
-inline void check(gtx_result result, const gtx_error &error)
-{
-    if (result != GTX_OK)
-        throw Error(result, error.message);
-}
-
 /* Needs its context current from the constructor to the destructor. Everything throws Error: GL,
  * SHADER, MEMORY, LIMIT. */
 class SceneRenderer {

@@ -16,7 +16,8 @@ struct Offscreen {
     explicit Offscreen(bool gles)
     {
         gtx_error error;
-        check((gles ? gtx_offscreen_create_es : gtx_offscreen_create)(&context, &error), error);
+        require_ok((gles ? gtx_offscreen_create_es : gtx_offscreen_create)(&context, &error),
+                   error);
     }
     Offscreen(const Offscreen &) = delete;
     ~Offscreen() { gtx_offscreen_destroy(context); }
@@ -28,8 +29,8 @@ Still draw_still(const Scene &scene, const StillOptions &options)
     SceneRenderer renderer(gtx_offscreen_load);
     gtx_framebuffer target; /* dies with the context */
     gtx_error error;
-    check(gtx_framebuffer_create(&renderer.gl, int(options.width), int(options.height), &target,
-                                 &error), error);
+    require_ok(gtx_framebuffer_create(&renderer.gl, int(options.width), int(options.height),
+                                      &target, &error), error);
     gtx_camera camera = {};
     camera.radius = float(scene.radius);
     camera.azimuth = float(options.camera[0]);

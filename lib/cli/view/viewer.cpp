@@ -54,8 +54,8 @@ Viewer::Viewer(Scene scene_, std::string name_, const uint32_t size[2], const do
     : name(std::move(name_)), home{float(at[0]), float(at[1]), float(at[2])}, method(method_)
 {
     gtx_error error;
-    check(gtx_window_create("gtx view", int(size[0]), int(size[1]), &camera, &window, &error),
-          error);
+    require_ok(gtx_window_create("gtx view", int(size[0]), int(size[1]), &camera, &window, &error),
+               error);
     try {
         scene_renderer = std::make_unique<SceneRenderer>(gtx_window_load);
         show(std::move(scene_), {});
@@ -181,7 +181,7 @@ void Viewer::take_loaded()
     for (gtx_model *model : incoming.models) {
         uint32_t done = 0;
         gtx_error error;
-        check(gtx_model_upload(scene_renderer->renderer, model, slice, &done, &error), error);
+        require_ok(gtx_model_upload(scene_renderer->renderer, model, slice, &done, &error), error);
         if (!done)
             return;
     }
@@ -201,8 +201,8 @@ void Viewer::write_picture(const std::string &path)
     std::vector<uint8_t> pixels(size_t(width) * size_t(height) * 4);
     gtx_error error;
     gtx_framebuffer_read_color(&scene_renderer->gl, &target, pixels.data());
-    check(gtx_image_write_png(path.c_str(), uint32_t(width), uint32_t(height), 4, pixels.data(),
-                              &error), error);
+    require_ok(gtx_image_write_png(path.c_str(), uint32_t(width), uint32_t(height), 4,
+                                   pixels.data(), &error), error);
 }
 
 /* The picture without the text. */
@@ -228,7 +228,7 @@ void Viewer::draw_frame()
     if (target.width != width || target.height != height) {
         if (target.object)
             gtx_framebuffer_destroy(&gl, &target);
-        check(gtx_framebuffer_create(&gl, width, height, &target, &error), error);
+        require_ok(gtx_framebuffer_create(&gl, width, height, &target, &error), error);
     }
     const Clock::time_point start = Clock::now();
     gtx_framebuffer_bind(&gl, &target);
