@@ -58,7 +58,7 @@ gtx_result gtx_open_file(const char *path, const gtx_open_desc *desc, gtx_asset 
     const uint64_t limit = limit_of(desc);
     gtx_file_bytes file = {
         .allocator = gtx_allocator_or_default(desc ? desc->allocator : NULL), .limit = limit};
-    result = gtx_read_file(path, &file, error);
+    result = gtx_read_file(path, path, &file, error);
     if (result)
         return result;
     result = open_bytes(file.data, file.size, desc, limit - file.capacity, out, error);

@@ -66,12 +66,13 @@ gtx_result gtx_read_stream(FILE *stream, const char *name, gtx_file_bytes *bytes
     return result;
 }
 
-gtx_result gtx_read_file(const char *path, gtx_file_bytes *bytes, gtx_error *error)
+gtx_result gtx_read_file(const char *path, const char *name, gtx_file_bytes *bytes,
+                         gtx_error *error)
 {
     FILE *file = fopen(path, "rb");
     if (!file)
-        return gtx_fail(error, GTX_ERROR_READ, "cannot open %s: %s", path, strerror(errno));
-    const gtx_result result = gtx_read_stream(file, path, bytes, error);
+        return gtx_fail(error, GTX_ERROR_READ, "cannot open %s: %s", name, strerror(errno));
+    const gtx_result result = gtx_read_stream(file, name, bytes, error);
     fclose(file);
     return result;
 }

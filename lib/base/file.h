@@ -17,9 +17,10 @@ typedef struct gtx_file_bytes {
     size_t size, capacity;        /* freed as `capacity` bytes */
 } gtx_file_bytes;
 
-/* Reads a file; or what is left of a stream, which may be a pipe. The message of READ has the
- * system's reason. Errors: READ, LIMIT, MEMORY (nothing is left to free). */
-gtx_result gtx_read_file(const char *path, gtx_file_bytes *bytes, gtx_error *error);
+/* Reads a file; or what is left of a stream, which may be a pipe. Messages call it `name`; that of
+ * READ has the system's reason. Errors: READ, LIMIT, MEMORY (nothing is left to free). */
+gtx_result gtx_read_file(const char *path, const char *name, gtx_file_bytes *bytes,
+                         gtx_error *error);
 gtx_result gtx_read_stream(FILE *stream, const char *name, gtx_file_bytes *bytes,
                            gtx_error *error);
 void gtx_free_file(gtx_file_bytes *bytes);

@@ -12,7 +12,7 @@ int read_whole(const char *path, void **data, size_t *size)
     gtx_file_bytes bytes = {.allocator = gtx_allocator_or_default(NULL), .limit = UINT64_MAX};
     gtx_error error;
     if (is_stdin ? gtx_read_stream(stdin, "standard input", &bytes, &error)
-                 : gtx_read_file(path, &bytes, &error))
+                 : gtx_read_file(path, path, &bytes, &error))
         return report_error(is_stdin ? "stdin" : path, &error);
     *data = bytes.data;
     *size = bytes.size;

@@ -188,8 +188,12 @@ static void missing_files_are_told_of(void **)
 {
     gtx_height_grid grid;
     gtx_error error;
+    std::memset(&error, 0xa5, sizeof error);
     assert_int_equal(gtx_height_grid_read("/nowhere/a.gri", nullptr, &grid, &error),
                      GTX_ERROR_READ);
+    assert_true(error.result == GTX_ERROR_READ && !error.rule && !error.rule_name &&
+                !error.offset);
+    assert_string_equal(error.message, "cannot open the file: No such file or directory");
     assert_int_equal(gtx_height_grid_read(nullptr, nullptr, &grid, &error), GTX_ERROR_ARGUMENT);
     gtx_height_grid none = {};
     gtx_height_grid_free(&none);

@@ -36,9 +36,23 @@ static void test_kind(void **)
     assert_fails(import_text("a.gltf", "hello"), GTX_ERROR_INPUT, "JSON");
     assert_fails(import_text("a.glb", "glTF"), GTX_ERROR_INPUT, "GLB");
     assert_fails(import_text("a.drc", ""), GTX_ERROR_INPUT, "Draco");
+}
+
+static void test_unreadable(void **)
+{
     Folder folder;
-    assert_fails(import_path((folder.path / "absent.obj").string()), GTX_ERROR_READ, "opened");
-    assert_fails(import_path(folder.path.string()), GTX_ERROR_READ, "directory");
+    const auto refused = [&](const std::string &path, const char *why) {
+        assert_fails(import_path(path), GTX_ERROR_READ, why);
+    };
+    refused((folder.path / "absent.obj").string(),
+            "cannot open the file: No such file or directory");
+    refused(folder.path.string(), "cannot read the file: Is a directory");
+    refused("/proc/self/mem", "cannot read the file: Input/output error"); /* even as root */
+
+    std::filesystem::create_symlink("/proc/self/mem", folder.path / "a.mtl");
+    const Imported i = import_path(folder.write("a.obj", std::string("mtllib a.mtl\n") + obj));
+    assert_works(i, 3, 1);
+    assert_true(i.warns("library 'a.mtl' was ignored: cannot read the file: Input/output error"));
 }
 
 static void test_gzip(void **)
@@ -98,6 +112,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_kind),
+        cmocka_unit_test(test_unreadable),
         cmocka_unit_test(test_gzip),
         cmocka_unit_test(test_cancel),
         cmocka_unit_test(test_sources),

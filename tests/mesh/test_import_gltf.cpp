@@ -57,7 +57,7 @@ static void test_files(void **)
         std::filesystem::equivalent(i.sources[1], folder.path / "models/parts/my data.bin"));
     assert_works(with_uri("./parts/my data.bin"), 4, 2);
     assert_fails(with_uri("absent.bin"), GTX_ERROR_READ,
-                 "buffer 0: 'absent.bin': it cannot be opened");
+                 "buffer 0: 'absent.bin': cannot open the file: No such file or directory");
     for (const std::string &uri :
          {std::string("../secret.bin"), std::string("parts/../../secret.bin"), std::string(""),
           std::string("%2e%2e/secret.bin"), std::string("..%5c..\\\\secret.bin"),

@@ -76,11 +76,12 @@ static void test_bad_images(void **)
     static const struct {
         const char *image, *warning;
     } cases[] = {
-        {"'uri':'none.png'", "image 0 ('none.png') was ignored: it cannot be opened"},
+        {"'uri':'none.png'", "image 0 ('none.png') was ignored: cannot open the file: No such "
+         "file or directory"},
         {"'uri':'../a.png'", "image 0 ('../a.png') was ignored: it is not a file in the model's"},
         {"'uri':'https://example.com/a.png'", "it is not a file in the model's folder"},
         {"'uri':'/dev/zero'", "it is not a file in the model's folder"},
-        {"'uri':'sub'", "image 0 ('sub') was ignored: it cannot be opened"},
+        {"'uri':'sub'", "image 0 ('sub') was ignored: cannot open the file: Is a directory"},
         {"'uri':'text.png'", "image 0 ('text.png') was ignored: neither PNG"},
         {"'uri':'empty.png'", "image 0 ('empty.png') was ignored"},
         {"'uri':'half.png'", "image 0 ('half.png') was ignored"},

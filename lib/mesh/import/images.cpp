@@ -22,12 +22,9 @@ EncodedImage read_image_file(const ModelFile &file, std::string name, const std:
     out.name = std::move(name);
     std::error_code error;
     try {
-        const uint64_t size = std::filesystem::file_size(path, error); /* fails unless it has one */
-        if (error)
-            fail(GTX_ERROR_READ, "it cannot be opened");
-        if (size > max_file_bytes)
-            fail(GTX_ERROR_LIMIT, "it is larger than 1 GiB");
-        out.bytes = read_whole_file(path);
+        if (std::filesystem::file_size(path, error) == UINTMAX_MAX) /* a pipe may never end */
+            fail(GTX_ERROR_READ, "cannot open the file: %s", error.message().c_str());
+        out.bytes = read_whole_file(path, max_file_bytes);
         if (file.sources)
             file.sources->push_back(path);
     } catch (const Error &e) {

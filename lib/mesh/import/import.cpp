@@ -1,12 +1,14 @@
 /* Reading a model file: its bytes, inflated if need be, to the importer of its format. */
 #include "mesh/import/import.hpp"
 
+#include "base/alloc.h"
+#include "base/file.h"
+
 #include <charconv>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <new>
 #include <set>
@@ -17,9 +19,7 @@
 
 namespace gtx {
 
-/* Larger models would not fit the 32-bit numbers of their vertices. A gzip file of a few megabytes
- * can claim any size, hence the same limit on what it inflates to. */
-static const uint64_t max_file_bytes = uint64_t(1) << 36;
+/* A gzip file of a few megabytes can claim any size. */
 static const uint64_t max_inflated_bytes = uint64_t(1) << 32;
 
 struct Format {
@@ -93,26 +93,15 @@ bool parse_number(const char *&at, const char *end, double &value)
     return true;
 }
 
-std::string read_whole_file(const std::string &path)
+std::string read_whole_file(const std::string &path, uint64_t limit)
 {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored))
-        fail(GTX_ERROR_READ, "it is a directory");
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream)
-        fail(GTX_ERROR_READ, "it cannot be opened");
-    std::string bytes;
-    uint64_t size = std::filesystem::file_size(path, ignored); /* a pipe has none */
-    bytes.reserve(ignored ? 0 : size_t(std::min(size, max_file_bytes)));
-    std::vector<char> block(size_t(1) << 20);
-    while (stream.read(block.data(), std::streamsize(block.size())) || stream.gcount() > 0) {
-        bytes.append(block.data(), size_t(stream.gcount()));
-        if (bytes.size() > max_file_bytes)
-            fail(GTX_ERROR_LIMIT, "it is larger than 64 GiB");
-    }
-    if (stream.bad())
-        fail(GTX_ERROR_READ, "it cannot be read to its end");
-    return bytes;
+    gtx_file_bytes file = {};
+    gtx_error error;
+    file.allocator = gtx_allocator_or_default(nullptr);
+    file.limit = limit;
+    require_ok(gtx_read_file(path.c_str(), "the file", &file, &error), error);
+    std::unique_ptr<gtx_file_bytes, void (*)(gtx_file_bytes *)> owner(&file, gtx_free_file);
+    return std::string(reinterpret_cast<const char *>(file.data), file.size);
 }
 
 /* All members of a gzip file, one after another; what follows the last is ignored as gzip does. */

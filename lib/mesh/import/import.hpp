@@ -31,8 +31,11 @@ std::string printable(std::string_view text, size_t longest = 40);
  * stays, where there is none. */
 bool parse_number(const char *&at, const char *end, double &value);
 
-/* Throws Error: READ, LIMIT. */
-std::string read_whole_file(const std::string &path);
+/* Larger models would not fit the 32-bit numbers of their vertices. */
+constexpr uint64_t MAX_FILE_BYTES = uint64_t(1) << 36;
+
+/* Throws Error: READ, LIMIT, MEMORY; it calls the file "the file", for a model may name any. */
+std::string read_whole_file(const std::string &path, uint64_t limit = MAX_FILE_BYTES);
 
 /* The path of a file that a model names: beside the model or in a folder below it. Empty where the
  * name leads anywhere else: a model from elsewhere must not make the cooker read other files. */
