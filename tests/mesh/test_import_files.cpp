@@ -48,11 +48,6 @@ static void test_unreadable(void **)
             "cannot open the file: No such file or directory");
     refused(folder.path.string(), "cannot read the file: Is a directory");
     refused("/proc/self/mem", "cannot read the file: Input/output error"); /* even as root */
-
-    std::filesystem::create_symlink("/proc/self/mem", folder.path / "a.mtl");
-    const Imported i = import_path(folder.write("a.obj", std::string("mtllib a.mtl\n") + obj));
-    assert_works(i, 3, 1);
-    assert_true(i.warns("library 'a.mtl' was ignored: cannot read the file: Input/output error"));
 }
 
 static void test_gzip(void **)

@@ -58,6 +58,8 @@ static void test_files(void **)
     assert_works(with_uri("./parts/my data.bin"), 4, 2);
     assert_fails(with_uri("absent.bin"), GTX_ERROR_READ,
                  "buffer 0: 'absent.bin': cannot open the file: No such file or directory");
+    assert_fails(with_uri("parts"), GTX_ERROR_READ,
+                 "buffer 0: 'parts': cannot read the file: Is a directory");
     for (const std::string &uri :
          {std::string("../secret.bin"), std::string("parts/../../secret.bin"), std::string(""),
           std::string("%2e%2e/secret.bin"), std::string("..%5c..\\\\secret.bin"),
