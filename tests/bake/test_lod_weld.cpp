@@ -114,7 +114,7 @@ static void borders_of_other_steps_become_one(void **)
 static void only_near_vertices_are_joined(void **)
 {
     const Halves maps(nowhere);
-    const double pitch = maps.fields[0].pitch();
+    const double pitch = maps.fields[0].fine_texel();
     auto open_at = [&](double away, const Vec3d &normal) {
         FieldPiece other = grid(0.5 + away * pitch, 1, 4, 8, nowhere);
         other.normals.assign(other.positions.size(), normal);

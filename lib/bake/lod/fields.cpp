@@ -7,6 +7,10 @@
 
 namespace gtx::baking {
 
+/* Tiles of a height grid have the same nodes where they meet: no number here changes any
+ * of theirs (Reek's base in tiles of 64, at half and at double). They serve
+ * patches whose texels differ, as in tests/bake/test_lod_maps.cpp. */
+
 /* A height field passes a point when it is no farther away than this, and as steep. */
 constexpr double REACH_TEXELS = 0.75, REACH_STEPS = 3, MIN_COSINE = 0.3;
 /* So far inside its outline a height field that is not steep need not look for others. Trim may not

@@ -18,8 +18,8 @@ constexpr size_t FINEST_RATIO = 9;
 /* Triangles of a level for one of the next: five levels then reach from windows of a million pixels
  * to models of a hundred across. Bunny: two levels fewer at half. */
 constexpr double LEVEL_RATIO = 2.2;
-/* A level is worth its bytes when it has at most this share of them. Bunny: two levels fewer | Spot:
- * four more. */
+/* A level is worth its bytes when it has at most this share of them. Bunny: two levels fewer |
+ * Spot: four more. */
 constexpr double MAX_SHARE = 0.75;
 /* Positions are rounded to this part of a texel: 0.7 % bytes either way (bunny). */
 constexpr double STEP = 1.0 / 16;
@@ -31,8 +31,8 @@ constexpr double THIN_ERROR = 2 * FREE_ERROR;
 /* What is seen from so far that this is a pixel is a handful of pixels. Share of the diagonal.
  * Truck: 64 % more triangles | Spot: 54 % fewer. */
 constexpr double MAX_ERROR = 1.0 / 64;
-/* The coarsest level beyond, for models of ten to twenty pixels, and how far it may stray. Spot: one
- * level more | one fewer; MAX_FAR_ERROR: error +13 % | a few bytes. */
+/* The coarsest level beyond, for models of ten to twenty pixels, and how far it may stray. Spot:
+ * one level more | one fewer; MAX_FAR_ERROR: error +13 % | a few bytes. */
 constexpr double FAR_TRIANGLES = 160, MAX_FAR_ERROR = 1.0 / 20;
 /* Their errors are stated so many times as large: few triangles put an outline off by the farthest
  * of its points, not by the mean. At half bunny has no valid levels. */

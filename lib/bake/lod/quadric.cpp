@@ -3,8 +3,8 @@
 
 namespace gtx::baking {
 
-/* Weight of staying on an open border against staying on the surface. Bunny: error +1 % at half, +8 % at
- * double. */
+/* Weight of staying on an open border against staying on the surface. Bunny: error +1 % at
+ * half, +8 % at double. */
 constexpr double BORDER = 10;
 
 static Vec3d area_of(const std::vector<Vec3d> &positions, const Triangle &t)

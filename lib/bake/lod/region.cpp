@@ -45,7 +45,8 @@ PatchRegion::PatchRegion(const Maps &maps, uint32_t patch)
 
     /* Texels of distance to a code, then to one too far from any. Vertices are rounded by parts of
      * a texel later: the last ring of dilation is left alone. */
-    const unsigned reach = std::min<unsigned>(MAX_REACH, std::max<unsigned>(record.dilation, 1) - 1);
+    const unsigned rings = std::max<unsigned>(record.dilation, 1) - 1;
+    const unsigned reach = std::min(MAX_REACH, rings);
     clear_.resize(size_t(w_) * h_);
     for (int j = 0; j < h_; ++j)
         for (int i = 0; i < w_; ++i)

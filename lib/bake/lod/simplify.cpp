@@ -10,8 +10,8 @@
 
 namespace gtx::baking {
 
-/* So few of the vertices that are left are not worth a round of their own. Spot's control mesh: error +5 %
- * at double. */
+/* So few of the vertices that are left are not worth a round of their own. Spot's control mesh:
+ * error +5 % at double. */
 constexpr double FEW = 0.02;
 
 Simplifier::State::State(const LodSource &source, const std::vector<PatchRegion> &regions,

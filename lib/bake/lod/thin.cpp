@@ -9,8 +9,8 @@ namespace gtx::baking {
 
 using Triangles = std::vector<std::array<uint32_t, 3>>;
 
-/* Steeper triangles are left alone: it takes little for them to turn away from their patch. Spot's control
- * mesh: a few bytes at half, 0.5 % fewer triangles at double. */
+/* Steeper triangles are left alone: it takes little for them to turn away from their patch. Spot's
+ * control mesh: a few bytes at half, 0.5 % fewer triangles at double. */
 constexpr double MIN_FACING = 0.4;
 /* So often a patch is thinned anew around what turned away, before it is left as it is: a
  * limit, half changes nothing. */

@@ -121,10 +121,10 @@ void Cuts::close_line(int axis, int line, int inward)
 /* The others of the same axis that its sphere meets. */
 std::vector<const HeightField *> find_others(const HeightFields &fields, const HeightField &piece)
 {
-    std::vector<const HeightField *> others = fields.around(piece);
-    others.erase(std::remove_if(others.begin(), others.end(),
-                                [&](const HeightField *o) { return !(o->axis[2] == piece.axis[2]); }),
-                 others.end());
+    std::vector<const HeightField *> others;
+    for (const HeightField *other : fields.around(piece))
+        if (other->axis[2] == piece.axis[2])
+            others.push_back(other);
     return others;
 }
 

@@ -50,7 +50,8 @@ static bool measure(Tie &tie)
 }
 
 /* The end of a tie on the nearest height field; none where all are too far. */
-static void find_end(const std::vector<const HeightField *> &others, const TieLimits &limits, Tie &tie)
+static void find_end(const std::vector<const HeightField *> &others, const TieLimits &limits,
+                     Tie &tie)
 {
     const HeightField &own = *tie.end[0].field;
     double nearest = limits.apart;
@@ -90,8 +91,8 @@ std::vector<Tie> sample_outline(const HeightField &own)
 }
 
 /* Those whose maps reach to the part of an outline between two ties. */
-static std::vector<const HeightField *> reaching(const std::vector<const HeightField *> &others, const Tie &first,
-                                      const Tie &last)
+static std::vector<const HeightField *> reaching(const std::vector<const HeightField *> &others,
+                                                 const Tie &first, const Tie &last)
 {
     const HeightField &own = *first.end[0].field;
     const Vec3d from = own.point(first.end[0].place), to = own.point(last.end[0].place);

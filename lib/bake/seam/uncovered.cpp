@@ -50,7 +50,8 @@ public:
     Gaps run(Task &task) const;
 
 private:
-    double uncovered_share(size_t field, uint32_t triangle, std::vector<RelaxedTrim> &relaxed) const;
+    double uncovered_share(size_t field, uint32_t triangle,
+                           std::vector<RelaxedTrim> &relaxed) const;
     bool shown_by(const HeightField &field, const Sample &at, double max_above) const;
     bool shown_by_any(const Sample &at, double min_facing) const;
     std::optional<RelaxedTrim> find_hidden(const Sample &at) const;
