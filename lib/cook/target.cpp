@@ -16,8 +16,8 @@ namespace {
 /* Errors go with this power of the pitch, until measured otherwise. A: half and double end within
  * 9 % of the bytes after up to 5 attempts more. */
 constexpr double POWER = 1.4;
-/* Part of the error to aim at. A: at half three files of four are larger, by up to 82 %, after up to
- * 21 attempts more; above 1 every second attempt is in vain and spot at 1e-4 fails. */
+/* Part of the error to aim at. A: at half three files of four are larger, by up to 82 %, after up
+ * to 21 attempts more; above 1 every second attempt is in vain and spot at 1e-4 fails. */
 constexpr double AIM = 0.97;
 /* Part of the error from which no coarser pitch is looked for. A: half leaves spot at 1e-3 11 %
  * larger; above 1 it is never enough, up to 3 attempts more for 2 %. */
@@ -30,8 +30,9 @@ constexpr double NARROW = 1.03;
 constexpr double LONGEST_STEP = 4;
 /* A limit: no search of A or B comes to it, and half ends one of them an attempt earlier. */
 constexpr int MAX_ATTEMPTS = 12;
-/* Pitches beyond these parts of the default one are not tried. COARSEST: spot at 1e-2 is 69 % larger
- * at half and 59 % smaller at double, of 9 patches. FINEST: at double spot does not reach 2e-5. */
+/* Pitches beyond these parts of the default one are not tried. COARSEST: spot at 1e-2 is 69 %
+ * larger at half and 59 % smaller at double, of 9 patches. FINEST: at double spot does not reach
+ * 2e-5. */
 constexpr double COARSEST = 16, FINEST = 1.0 / 8;
 /* Sixteen bits are tried where they take as much from the error at the same pitch. At half the duck
  * at 2e-5 stays at eight and is 18 % larger; at double up to 5 attempts more for the same bytes. */

@@ -1,6 +1,7 @@
 # Installation: exactly the files of lib/package/files, below PREFIX; and the source archive.
 fill = sed -e 's|@PREFIX@|$(PREFIX)|g' -e 's|@VERSION@|$(VERSION)|g' \
-  -e 's|@SOVERSION@|$(SOVERSION)|g' -e 's|@CORE_LIBS@|$(call libs_of,asset)|g' -e 's|@COOK_LIBS@|$(call libs_of,mesh)|g'
+  -e 's|@SOVERSION@|$(SOVERSION)|g' -e 's|@CORE_LIBS@|$(call libs_of,asset)|g' \
+  -e 's|@COOK_LIBS@|$(call libs_of,mesh)|g'
 verbs := cook horizons info validate unpack pack filter render view compare bench
 to    := $(DESTDIR)$(PREFIX)
 
