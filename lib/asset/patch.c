@@ -23,16 +23,15 @@ void gtx_invert_affine(double (*map)[4], double (*out)[4])
 gtx_patch_frame gtx_patch_frame_of(const gtx_patch *patch, uint32_t height_bits)
 {
     const float *unit[3] = {patch->axis_x, patch->axis_y, patch->axis_z};
-    const double step[3] = {(double)patch->extent_x / patch->rect[2],
-                            (double)patch->extent_y / patch->rect[3],
-                            gtx_height_step(patch, height_bits)};
+    const double extent[3] = {patch->extent_x, patch->extent_y, patch->extent_z};
+    const double steps[3] = {patch->rect[2], patch->rect[3], gtx_height_steps(height_bits)};
     gtx_patch_frame f;
     double to_object[3][4];
     for (int k = 0; k < 3; ++k) {
         for (int a = 0; a < 3; ++a)
-            to_object[k][a] = f.axis[a][k] = step[a] * unit[a][k];
+            to_object[k][a] = f.axis[a][k] = unit[a][k] * extent[a] / steps[a];
         /* Texel 0 lies half a texel inside the rectangle, and height 0 has code 1. */
-        f.origin[k] = patch->origin[k] + 0.5 * f.axis[0][k] + 0.5 * f.axis[1][k] - f.axis[2][k];
+        f.origin[k] = patch->origin[k] + (f.axis[0][k] + f.axis[1][k]) / 2 - f.axis[2][k];
         to_object[k][3] = f.origin[k];
     }
     gtx_invert_affine(to_object, f.to_grid);

@@ -31,8 +31,7 @@ constexpr double LONGEST_STEP = 4;
 /* A limit: no search of A or B comes to it, and half ends one of them an attempt earlier. */
 constexpr int MAX_ATTEMPTS = 12;
 /* Pitches beyond these parts of the default one are not tried. COARSEST: spot at 1e-2 is 69 %
- * larger at half and 59 % smaller at double, of 9 patches. FINEST: at double spot does not reach
- * 2e-5. */
+ * larger at half and 59 % smaller at double, of 9 patches. FINEST: at double spot does not reach 2e-5. */
 constexpr double COARSEST = 16, FINEST = 1.0 / 8;
 /* Sixteen bits are tried where they take as much from the error at the same pitch. At half the duck
  * at 2e-5 stays at eight and is 18 % larger; at double up to 5 attempts more for the same bytes. */

@@ -13,8 +13,8 @@ ninja_required_version = 1.5
 # leaves the asset alone, and restat spares what is made from it. Models are cooked side by side, so
 # one takes one thread.
 rule cook
-  command = '$(printf '%s' "$gtx" | sed 's/\$/$$/g')' \$
-    cook -q --threads 1 --if-changed --depfile \$out.d \$in -o \$out
+  command = '$(printf '%s' "$gtx" | sed 's/\$/$$/g')' cook -q --threads 1 \$
+      --if-changed --depfile \$out.d \$in -o \$out
   depfile = \$out.d
   deps = gcc
   restat = 1

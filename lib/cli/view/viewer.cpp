@@ -1,5 +1,5 @@
-/* The window of `gtx view`: keys, drops, frames. Everything is drawn into a framebuffer of our own.
- * Pictures are read from it, for a window that is covered or hidden has no pixels to read. */
+/* The window of `gtx view`: keys, drops, frames. Everything is drawn into a framebuffer of our own,
+ * which is what pictures are read from: a covered or hidden window has no pixels to read. */
 #include "cli/view/viewer.hpp"
 
 #include "cli/cli.h"
