@@ -121,7 +121,7 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
     memcpy(v.view, view, sizeof v.view);
     memcpy(v.projection, projection, sizeof v.projection);
     gtx_target_begin(gl, &e->target);
-    gtx_polygons_draw(gl, &e->polygon, &e->solids, NULL, view, projection, (float[3]){0}, 0);
+    gtx_polygons_draw(gl, &e->polygon, &e->solids, NULL, &v);
     result = gtx_draw(e->renderer, &v, &e->instance, 1, error);
 
     gl->BindFramebuffer(GL_FRAMEBUFFER, screen);

@@ -126,8 +126,7 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
                   .viewport_height = (uint32_t)box[3]};
     memcpy(v.view, view, sizeof v.view);
     memcpy(v.projection, projection, sizeof v.projection);
-    gtx_polygons_draw(gl, &w->program, &w->solids, NULL, view, projection, v.light_direction,
-                      v.ambient);
+    gtx_polygons_draw(gl, &w->program, &w->solids, NULL, &v);
     gtx_result result = GTX_OK;
     const int halves = w->info.lod_levels ? 2 : 1;
     for (int half = 0; half < halves && !result; ++half) {

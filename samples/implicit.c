@@ -4,8 +4,7 @@
  *
  * Spheres are cut out of the asset. Where a ray enters the asset inside a sphere, the sphere's far
  * side is the wall of a hole, unless the ray has left the asset by then: the cast then goes on
- * behind. Torus and ball have the relief of a height map, and are found in their boxes'
- * fragments. */
+ * behind. Torus and ball have the relief of a height map; fragments of their boxes find them. */
 #include "host/program.h"
 #include "host/sample.h"
 #include "host/shapes.h"
@@ -115,7 +114,7 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
                        void *user, gtx_error *error)
 {
     const world *w = user;
-    gtx_view v = {.shading = w->shading, .method = GTX_METHOD_CAST};
+    gtx_view v = {.shading = w->shading, .method = GTX_METHOD_CAST, .ambient = 0.25f};
     const float light[4] = {0.42f, 0.74f, 0.52f};
     float clip[16], eye[4] = {0};
     memcpy(v.view, view, sizeof v.view);
@@ -124,7 +123,7 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
     gl->ClearColor(0.62f, 0.72f, 0.82f, 1);
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     gl->Enable(GL_DEPTH_TEST);
-    gtx_polygons_draw(gl, &w->plain, &w->solids, NULL, view, projection, light, 0.25f);
+    gtx_polygons_draw(gl, &w->plain, &w->solids, NULL, &v);
     for (int k = 0; k < 12; ++k) /* a view turns and moves: its inverse is its transpose */
         eye[k / 4] -= view[k / 4 * 4 + k % 4] * (k % 4 < 3 ? view[12 + k % 4] : 0);
     gtx_matrix_multiply(projection, view, clip);
@@ -135,7 +134,7 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
     gtx_set_texture(gl, w->implicit.program, "relief", UNIT, w->relief);
     gl->Enable(GL_CULL_FACE);
     gl->CullFace(GL_FRONT); /* the backs of the boxes: the camera may stand in them */
-    gtx_polygons_draw(gl, &w->implicit, &w->boxes, NULL, view, projection, light, 0);
+    gtx_polygons_draw(gl, &w->implicit, &w->boxes, NULL, &v);
     gl->CullFace(GL_BACK);
     gl->Disable(GL_CULL_FACE);
     return gtx_draw(w->renderer, &v, &w->instance, 1, error);

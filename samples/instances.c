@@ -71,7 +71,8 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
         return result;
     place(f, asset);
     gtx_close(asset);
-    return gtx_backdrop_create(gl, 30, light, draw_field, f, &f->backdrop, error);
+    const gtx_backdrop_desc floor = {.side = 30, .light = light, .draw = draw_field, .user = f};
+    return gtx_backdrop_create(gl, &floor, &f->backdrop, error);
 }
 
 static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float projection[16],

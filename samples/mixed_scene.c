@@ -87,7 +87,7 @@ static gtx_result draw_standing(const float view[16], const float projection[16]
     w->gl->GetIntegerv(GL_VIEWPORT, viewport);
     v.viewport_width = (uint32_t)viewport[2];
     v.viewport_height = (uint32_t)viewport[3];
-    gtx_polygons_draw(w->gl, &w->program, &w->solids, NULL, view, projection, light, v.ambient);
+    gtx_polygons_draw(w->gl, &w->program, &w->solids, NULL, &v);
     return gtx_draw(w->renderer, &v, w->instances, INSTANCES, error);
 }
 
@@ -116,7 +116,8 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
         return result;
     place_instances(w, asset);
     gtx_close(asset); /* a model keeps no reference to it */
-    return gtx_backdrop_create(gl, 24, light, draw_standing, w, &w->backdrop, error);
+    const gtx_backdrop_desc floor = {.side = 24, .light = light, .draw = draw_standing, .user = w};
+    return gtx_backdrop_create(gl, &floor, &w->backdrop, error);
 }
 
 int main(int argc, char **argv)

@@ -105,7 +105,7 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
     if (!isinf(hit.t)) {
         float pin[16];
         place_pin(&ray, &hit, 0.35f * p->show.camera.radius, pin);
-        gtx_polygons_draw(gl, &p->program, &p->pin, pin, view, projection, light, v.ambient);
+        gtx_polygons_draw(gl, &p->program, &p->pin, pin, &v);
     }
     return result;
 }

@@ -43,7 +43,7 @@ static gtx_result shine(const gtx_host_gl *gl, world *w, gtx_error *error)
     if (result)
         return result;
     gtx_target_begin(gl, &map);
-    gtx_polygons_draw(gl, &w->plain, &w->ground, NULL, v.view, v.projection, v.light_direction, 0);
+    gtx_polygons_draw(gl, &w->plain, &w->ground, NULL, &v);
     result = gtx_draw(w->renderer, &v, w->instances, INSTANCES, error);
     for (int i = 0; i < 3; ++i) {
         gl->UseProgram(w->programs[i]);
@@ -131,8 +131,7 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
             gtx_set_vector(gl, w->programs[i], "way", (float[4]){(float)way});
         }
         gl->Viewport(way % 2 * port[2] / 2, (1 - way / 2) * port[3] / 2, port[2] / 2, port[3] / 2);
-        gtx_polygons_draw(gl, &w->polygon, &w->ground, NULL, view, projection,
-                          v.light_direction, 0);
+        gtx_polygons_draw(gl, &w->polygon, &w->ground, NULL, &v);
         result = gtx_draw(w->renderer, &v, w->instances, INSTANCES, error);
     }
     gl->Viewport(port[0], port[1], port[2], port[3]);

@@ -61,7 +61,7 @@ typedef struct world {
 static gtx_result draw_all(const gtx_host_gl *gl, const world *w, const gtx_view *v,
                            const gtx_polygon_program *program, gtx_error *error)
 {
-    gtx_polygons_draw(gl, program, &w->solids, NULL, v->view, v->projection, v->light_direction, 0);
+    gtx_polygons_draw(gl, program, &w->solids, NULL, v);
     return gtx_draw(w->renderer, v, w->instances, INSTANCES, error);
 }
 

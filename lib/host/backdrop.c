@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { SHADOW_SIZE = 2048, FLOOR_CELLS = 480, SHADOW_REACH = 7 };
 
@@ -52,10 +53,10 @@ static gtx_rgb floor_color(float x, float z, void *user)
     return (gtx_rgb){c[0], c[1], c[2]};
 }
 
-static gtx_result draw_shadow(const gtx_host_gl *gl, shadow *s, const float light[3],
-                              gtx_draw_standing draw, void *user, gtx_error *error)
+static gtx_result draw_shadow(const gtx_host_gl *gl, const gtx_backdrop_desc *desc, shadow *s,
+                              gtx_error *error)
 {
-    const float degrees = 57.2957795f;
+    const float degrees = 57.2957795f, *light = desc->light;
     const gtx_camera sun = {.radius = s->side / 3, .distance = 2, .orthographic = 1,
                             .azimuth = degrees * atan2f(light[0], light[2]),
                             .elevation = degrees * atan2f(light[1], hypotf(light[0], light[2]))};
@@ -70,7 +71,7 @@ static gtx_result draw_shadow(const gtx_host_gl *gl, shadow *s, const float ligh
     gl->DepthMask(GL_TRUE);
     gl->ClearDepthf(1);
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    result = draw(view, projection, user, error);
+    result = desc->draw(view, projection, desc->user, error);
     gtx_framebuffer_read_depth(gl, &target, s->depth);
     gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
     gtx_framebuffer_destroy(gl, &target);
@@ -87,22 +88,21 @@ static gtx_result create_sky(const gtx_host_gl *gl, gtx_polygons *out, gtx_error
     for (int i = 0; i < 4; ++i)
         for (int k = 0; k < 3; ++k)
             corners[i].color[k] = (uint8_t)(i < 2 ? horizon[k] : zenith[k]);
-    return gtx_polygons_create(gl, corners, 4, order, 6, out, error);
+    return gtx_polygons_create(gl, &(gtx_polygon_data){corners, order, 4, 6}, out, error);
 }
 
-gtx_result gtx_backdrop_create(const gtx_host_gl *gl, float side, const float light[3],
-                               gtx_draw_standing draw, void *user, gtx_backdrop *out,
-                               gtx_error *error)
+gtx_result gtx_backdrop_create(const gtx_host_gl *gl, const gtx_backdrop_desc *desc,
+                               gtx_backdrop *out, gtx_error *error)
 {
     shadow *s = calloc(1, sizeof *s);
     gtx_shapes shapes = {0};
     gtx_backdrop backdrop = {0};
     if (!s)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the shadows of the floor");
-    s->side = side;
-    gtx_result result = draw_shadow(gl, s, light, draw, user, error);
+    s->side = desc->side;
+    gtx_result result = draw_shadow(gl, desc, s, error);
     if (!result) {
-        gtx_shapes_grid(&shapes, 0, side, FLOOR_CELLS, floor_color, s);
+        gtx_shapes_grid(&shapes, 0, desc->side, FLOOR_CELLS, floor_color, s);
         result = gtx_shapes_finish(&shapes, gl, &backdrop.floor, error);
     }
     if (!result)
@@ -125,15 +125,19 @@ void gtx_backdrop_draw(const gtx_host_gl *gl, const gtx_polygon_program *program
                        const gtx_backdrop *backdrop, const float view[16],
                        const float projection[16])
 {
-    static const float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    static const float no_light[3] = {0, 1, 0};
+    static const gtx_view flat = {.view = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+                                  .projection = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+                                  .ambient = 1};
+    gtx_view v = {.ambient = 1};
+    memcpy(v.view, view, sizeof v.view);
+    memcpy(v.projection, projection, sizeof v.projection);
     gl->DepthMask(GL_TRUE);
     gl->ClearColor(horizon[0] / 255, horizon[1] / 255, horizon[2] / 255, 1);
     gl->ClearDepthf(1);
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     gl->Disable(GL_DEPTH_TEST);
-    gtx_polygons_draw(gl, program, &backdrop->sky, NULL, identity, identity, no_light, 1);
+    gtx_polygons_draw(gl, program, &backdrop->sky, NULL, &flat);
     gl->Enable(GL_DEPTH_TEST);
     gl->DepthFunc(GL_LESS);
-    gtx_polygons_draw(gl, program, &backdrop->floor, NULL, view, projection, no_light, 1);
+    gtx_polygons_draw(gl, program, &backdrop->floor, NULL, &v);
 }

@@ -17,12 +17,18 @@ typedef struct gtx_backdrop {
 typedef gtx_result (*gtx_draw_standing)(const float view[16], const float projection[16],
                                         void *user, gtx_error *error);
 
-/* A floor at height 0, `side` long and centred on the origin. Its shadows are those of what
- * `draw` draws within half of it, in parallel light from `light` (unit, towards the light).
- * Unbinds the framebuffer. Errors: MEMORY, GL, and what `draw` returns. */
-gtx_result gtx_backdrop_create(const gtx_host_gl *gl, float side, const float light[3],
-                               gtx_draw_standing draw, void *user, gtx_backdrop *out,
-                               gtx_error *error);
+typedef struct gtx_backdrop_desc {
+    float side;               /* of the floor */
+    const float *light;       /* three: towards the light, unit */
+    gtx_draw_standing draw;
+    void *user;
+} gtx_backdrop_desc;
+
+/* A floor at height 0, centred on the origin. Its shadows are those of what `draw` draws within
+ * half of it, in parallel light. Unbinds the framebuffer. Errors: MEMORY, GL, and what `draw`
+ * returns. */
+gtx_result gtx_backdrop_create(const gtx_host_gl *gl, const gtx_backdrop_desc *desc,
+                               gtx_backdrop *out, gtx_error *error);
 void gtx_backdrop_destroy(const gtx_host_gl *gl, gtx_backdrop *backdrop);
 
 /* Clears the framebuffer and draws sky and floor; leaves the depth test on. */

@@ -46,20 +46,21 @@ static const char fragment_text[] =
     "    color = vec4(to_srgb(to_linear(srgb.rgb) * share), 1.0);\n"
     "}\n";
 
-gtx_result gtx_polygons_create(const gtx_host_gl *gl, const gtx_polygon_vertex *vertices,
-                               uint32_t vertex_count, const uint32_t *indices,
-                               uint32_t index_count, gtx_polygons *out, gtx_error *error)
+gtx_result gtx_polygons_create(const gtx_host_gl *gl, const gtx_polygon_data *data,
+                               gtx_polygons *out, gtx_error *error)
 {
     const GLsizei stride = sizeof(gtx_polygon_vertex);
-    gtx_polygons p = {.index_count = (GLsizei)index_count, .mode = GL_TRIANGLES};
+    gtx_polygons p = {.index_count = (GLsizei)data->index_count, .mode = GL_TRIANGLES};
     gl->GenVertexArrays(1, &p.vertex_array);
     gl->GenBuffers(1, &p.vertices);
     gl->GenBuffers(1, &p.indices);
     gl->BindVertexArray(p.vertex_array);
     gl->BindBuffer(GL_ARRAY_BUFFER, p.vertices);
-    gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)vertex_count * stride, vertices, GL_STATIC_DRAW);
+    gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)data->vertex_count * stride, data->vertices,
+                   GL_STATIC_DRAW);
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, p.indices);
-    gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)index_count * 4, indices, GL_STATIC_DRAW);
+    gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)data->index_count * 4, data->indices,
+                   GL_STATIC_DRAW);
     gl->VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, stride,
                             (const void *)offsetof(gtx_polygon_vertex, position));
     gl->VertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, stride,
@@ -74,7 +75,8 @@ gtx_result gtx_polygons_create(const gtx_host_gl *gl, const gtx_polygon_vertex *
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     if (gl->GetError() == GL_OUT_OF_MEMORY) {
         gtx_polygons_destroy(gl, &p);
-        return gtx_fail(error, GTX_ERROR_GL, "out of GPU memory for %u triangles", index_count / 3);
+        return gtx_fail(error, GTX_ERROR_GL, "out of GPU memory for %u triangles",
+                        data->index_count / 3);
     }
     *out = p;
     return GTX_OK;
@@ -116,17 +118,16 @@ void gtx_polygon_program_destroy(const gtx_host_gl *gl, gtx_polygon_program *pro
 }
 
 void gtx_polygons_draw(const gtx_host_gl *gl, const gtx_polygon_program *program,
-                       const gtx_polygons *polygons, const float *model, const float view[16],
-                       const float projection[16], const float light[3], float ambient)
+                       const gtx_polygons *polygons, const float *model, const gtx_view *view)
 {
     static const float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     float view_projection[16];
-    gtx_matrix_multiply(projection, view, view_projection);
+    gtx_matrix_multiply(view->projection, view->view, view_projection);
     gl->UseProgram(program->program);
     gl->UniformMatrix4fv(program->model, 1, GL_FALSE, model ? model : identity);
     gl->UniformMatrix4fv(program->view_projection, 1, GL_FALSE, view_projection);
-    gl->Uniform3fv(program->light, 1, light);
-    gl->Uniform1f(program->ambient, ambient);
+    gl->Uniform3fv(program->light, 1, view->light_direction);
+    gl->Uniform1f(program->ambient, view->ambient);
     gl->BindVertexArray(polygons->vertex_array);
     gl->DrawElements(polygons->mode, polygons->index_count, GL_UNSIGNED_INT, NULL);
     gl->BindVertexArray(0);

@@ -4,6 +4,8 @@
 
 #include "host/gl.h"
 
+#include <geotex/render.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -14,6 +16,13 @@ typedef struct gtx_polygon_vertex {
     uint8_t material[4];      /* occlusion, roughness, metallic: for shaders of the caller's */
 } gtx_polygon_vertex;
 
+/* Triangles in memory. */
+typedef struct gtx_polygon_data {
+    const gtx_polygon_vertex *vertices;
+    const uint32_t *indices;
+    uint32_t vertex_count, index_count;
+} gtx_polygon_data;
+
 /* Triangles in buffers on the GPU; or, after a host set `mode` to GL_LINES, pairs of ends. */
 typedef struct gtx_polygons {
     GLuint vertex_array, vertices, indices;
@@ -22,9 +31,8 @@ typedef struct gtx_polygons {
 } gtx_polygons;
 
 /* Errors: GL (out of memory). */
-gtx_result gtx_polygons_create(const gtx_host_gl *gl, const gtx_polygon_vertex *vertices,
-                               uint32_t vertex_count, const uint32_t *indices,
-                               uint32_t index_count, gtx_polygons *out, gtx_error *error);
+gtx_result gtx_polygons_create(const gtx_host_gl *gl, const gtx_polygon_data *data,
+                               gtx_polygons *out, gtx_error *error);
 void gtx_polygons_destroy(const gtx_host_gl *gl, gtx_polygons *polygons);
 
 /* The program. */
@@ -42,12 +50,11 @@ gtx_result gtx_polygon_program_create_with(const gtx_host_gl *gl, const char *fr
                                            gtx_polygon_program *out, gtx_error *error);
 void gtx_polygon_program_destroy(const gtx_host_gl *gl, gtx_polygon_program *program);
 
-/* Draws with the state as it is (depth test, culling), by the shading of gtx_draw: Lambert with
- * the light direction and ambient share given. `model` NULL is the identity. Leaves program 0 and
- * vertex array 0. */
+/* Draws with the state as it is (depth test, culling), by the shading of gtx_draw: Lambert with the
+ * light direction and ambient share of the view, where zeros are no light and no ambient share.
+ * `model` NULL is the identity. Leaves program 0 and vertex array 0. */
 void gtx_polygons_draw(const gtx_host_gl *gl, const gtx_polygon_program *program,
-                       const gtx_polygons *polygons, const float *model, const float view[16],
-                       const float projection[16], const float light[3], float ambient);
+                       const gtx_polygons *polygons, const float *model, const gtx_view *view);
 
 #ifdef __cplusplus
 }

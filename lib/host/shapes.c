@@ -165,10 +165,11 @@ void gtx_shapes_grid(gtx_shapes *shapes, float y, float side, uint32_t cells,
 gtx_result gtx_shapes_finish(gtx_shapes *shapes, const gtx_host_gl *gl, gtx_polygons *out,
                              gtx_error *error)
 {
+    const gtx_polygon_data data = {shapes->vertices, shapes->indices, shapes->vertex_count,
+                                   shapes->index_count};
     gtx_result result =
         shapes->failed ? gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the polygons")
-                       : gtx_polygons_create(gl, shapes->vertices, shapes->vertex_count,
-                                             shapes->indices, shapes->index_count, out, error);
+                       : gtx_polygons_create(gl, &data, out, error);
     free(shapes->vertices);
     free(shapes->indices);
     *shapes = (gtx_shapes){0};

@@ -113,9 +113,14 @@ void gtx_text_rectangle(gtx_shapes *shapes, float x, float y, float width, float
     gtx_shapes_quad(shapes, corners, color);
 }
 
-/* A rectangle for each horizontal run of dots, `rim` pixels larger on every side. */
-static void add_glyph(gtx_shapes *shapes, unsigned char c, float x, float y, float dot, float rim,
-                      gtx_rgb color)
+/* Where and how glyphs are added; the rim makes them larger on every side. */
+typedef struct pen {
+    float x, y, dot, rim;     /* pixels */
+    gtx_rgb color;
+} pen;
+
+/* A rectangle for each horizontal run of dots. */
+static void add_glyph(gtx_shapes *shapes, unsigned char c, const pen *p)
 {
     const int index = (c < FIRST || c > LAST ? LAST : c) - FIRST;
     for (int row = 0; row < GLYPH_ROWS; ++row) {
@@ -124,30 +129,30 @@ static void add_glyph(gtx_shapes *shapes, unsigned char c, float x, float y, flo
         for (int i = 0, run; i < GLYPH_WIDTH; i += run + 1) {
             for (run = 0; i + run < GLYPH_WIDTH && dots[i + run] == '#'; ++run) {}
             if (run)
-                gtx_text_rectangle(shapes, x + (float)i * dot - rim, y + (float)row * dot - rim,
-                                   (float)run * dot + 2 * rim, dot + 2 * rim, color);
+                gtx_text_rectangle(shapes, p->x + (float)i * p->dot - p->rim,
+                                   p->y + (float)row * p->dot - p->rim,
+                                   (float)run * p->dot + 2 * p->rim, p->dot + 2 * p->rim, p->color);
         }
     }
 }
 
-static void add_text(gtx_shapes *shapes, float x, float y, float dot, float rim, gtx_rgb color,
-                     const char *text)
+static void add_text(gtx_shapes *shapes, pen p, const char *text)
 {
-    for (float at = x; *text; ++text)
+    for (const float left = p.x; *text; ++text)
         if (*text == '\n') {
-            at = x;
-            y += GTX_TEXT_LINE * dot;
+            p.x = left;
+            p.y += GTX_TEXT_LINE * p.dot;
         } else if (((unsigned char)*text & 0xc0) != 0x80) { /* no continuation byte of UTF-8 */
-            add_glyph(shapes, (unsigned char)*text, at, y, dot, rim, color);
-            at += GTX_TEXT_ADVANCE * dot;
+            add_glyph(shapes, (unsigned char)*text, &p);
+            p.x += GTX_TEXT_ADVANCE * p.dot;
         }
 }
 
 void gtx_text_add(gtx_shapes *shapes, float x, float y, const gtx_text_style *style,
                   const char *text)
 {
-    add_text(shapes, x, y, style->dot, style->dot, style->halo, text);
-    add_text(shapes, x, y, style->dot, 0, style->color, text);
+    add_text(shapes, (pen){x, y, style->dot, style->dot, style->halo}, text);
+    add_text(shapes, (pen){x, y, style->dot, 0, style->color}, text);
 }
 
 void gtx_text_measure(const char *text, int *width, int *height)
@@ -168,16 +173,16 @@ void gtx_text_measure(const char *text, int *width, int *height)
 gtx_result gtx_text_draw(const gtx_host_gl *gl, const gtx_polygon_program *program,
                          gtx_shapes *shapes, int width, int height, gtx_error *error)
 {
-    static const float identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    static const float no_light[3] = {0, 0, 1};
-    const float pixels[16] = {2 / (float)width, 0, 0, 0, 0, -2 / (float)height, 0, 0,
-                              0, 0, 1, 0, -1, 1, 0, 1};
+    const gtx_view pixels = {.view = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+                             .projection = {2 / (float)width, 0, 0, 0, 0, -2 / (float)height, 0, 0,
+                                            0, 0, 1, 0, -1, 1, 0, 1},
+                             .ambient = 1};
     gtx_polygons polygons;
     gtx_result result = gtx_shapes_finish(shapes, gl, &polygons, error);
     if (result)
         return result;
     gl->Disable(GL_DEPTH_TEST);
-    gtx_polygons_draw(gl, program, &polygons, NULL, identity, pixels, no_light, 1);
+    gtx_polygons_draw(gl, program, &polygons, NULL, &pixels);
     gtx_polygons_destroy(gl, &polygons);
     return GTX_OK;
 }

@@ -12,7 +12,7 @@
 #include <sys/auxv.h>
 #include <unistd.h>
 
-enum { MAX_PATH = 4096 };
+enum { MAX_PATH = 4096, MAX_PIXELS = 1 << 28 };
 static const char module_name[] = "geotex-image.so";
 
 /* Where the module may be, from the folder of the library or program that holds this code. */
@@ -69,11 +69,10 @@ static const gtx_image_functions *module_functions(gtx_error *error)
     return functions;
 }
 
-static gtx_result write_image(const char *path, const char *format, uint32_t width, uint32_t height,
-                              uint32_t channels, const void *pixels, gtx_error *error)
+static gtx_result write_image(const char *path, gtx_image_rows rows, gtx_error *error)
 {
     char message[GTX_IMAGE_MAX_MESSAGE];
-    if (!path || !pixels || !width || !height)
+    if (!path || !rows.pixels || !rows.width || !rows.height)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "an image without a path, pixels or size");
     const gtx_image_functions *module = module_functions(error);
     if (!module)
@@ -84,7 +83,7 @@ static gtx_result write_image(const char *path, const char *format, uint32_t wid
         return gtx_fail(error, GTX_ERROR_MEMORY, "out of memory");
     snprintf(temporary, size, "%s.tmp", path);
     gtx_result result = GTX_OK;
-    if (module->write(temporary, format, width, height, channels, pixels, message))
+    if (module->write(temporary, &rows, message))
         result = gtx_fail(error, GTX_ERROR_WRITE, "%s", message);
     else if (rename(temporary, path))
         result = gtx_fail(error, GTX_ERROR_WRITE, "cannot rename to %.200s", path);
@@ -99,19 +98,19 @@ gtx_result gtx_image_write_png(const char *path, uint32_t width, uint32_t height
 {
     if (channels != 1 && channels != 3 && channels != 4)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a PNG of %u channels", channels);
-    return write_image(path, "png", width, height, channels, pixels, error);
+    return write_image(path, (gtx_image_rows){"png", width, height, channels, pixels}, error);
 }
 
 gtx_result gtx_image_write_png16(const char *path, uint32_t width, uint32_t height,
                                  const uint16_t *pixels, gtx_error *error)
 {
-    return write_image(path, "png16", width, height, 1, pixels, error);
+    return write_image(path, (gtx_image_rows){"png16", width, height, 1, pixels}, error);
 }
 
 gtx_result gtx_image_write_exr(const char *path, uint32_t width, uint32_t height, const float *z,
                                gtx_error *error)
 {
-    return write_image(path, "exr", width, height, 1, z, error);
+    return write_image(path, (gtx_image_rows){"exr", width, height, 1, z}, error);
 }
 
 static gtx_result read_image(const char *path, const void *data, size_t size, gtx_image *out,
@@ -122,8 +121,7 @@ static gtx_result read_image(const char *path, const void *data, size_t size, gt
     const gtx_image_functions *module = module_functions(error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
-    if (module->read(path, data, size, UINT64_C(1) << 28, &image.width, &image.height,
-                     &image.pixels, message))
+    if (module->read(path, data, size, MAX_PIXELS, &image, message))
         return gtx_fail(error, GTX_ERROR_READ, "%s", message);
     *out = image;
     return GTX_OK;
@@ -152,8 +150,7 @@ gtx_result gtx_image_read_raw(const char *path, gtx_raw_image *out, gtx_error *e
     const gtx_image_functions *module = module_functions(error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
-    if (module->read_raw(path, UINT64_C(1) << 28, &image.width, &image.height, &image.channels,
-                         &image.depth, &image.pixels, message))
+    if (module->read_raw(path, MAX_PIXELS, &image, message))
         return gtx_fail(error, GTX_ERROR_READ, "%s", message);
     *out = image;
     return GTX_OK;
@@ -168,8 +165,7 @@ gtx_result gtx_image_read_values(const char *path, gtx_value_image *out, gtx_err
     const gtx_image_functions *module = module_functions(error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
-    if (module->read_values(path, UINT64_C(1) << 28, &image.width, &image.height, &image.least,
-                            &image.greatest, &image.values, message))
+    if (module->read_values(path, MAX_PIXELS, &image, message))
         return gtx_fail(error, GTX_ERROR_READ, "%s", message);
     *out = image;
     return GTX_OK;

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <exception>
 #include <memory>
+#include <tuple>
 #include <vector>
 
 namespace {
@@ -21,10 +22,10 @@ int fail(char *message, const char *name, const std::string &detail)
     return 1;
 }
 
-int write(const char *path, const char *format, uint32_t width, uint32_t height, uint32_t channels,
-          const void *pixels, char *message)
+int write_rows(const char *path, const gtx_image_rows *rows, char *message)
 {
-    const bool is_depth = std::string(format) == "exr", is_deep = std::string(format) == "png16";
+    const std::string format = rows->format;
+    const bool is_depth = format == "exr", is_deep = format == "png16";
     const OIIO::TypeDesc type = is_depth  ? OIIO::TypeDesc::FLOAT
                                 : is_deep ? OIIO::TypeDesc::UINT16
                                           : OIIO::TypeDesc::UINT8;
@@ -32,7 +33,7 @@ int write(const char *path, const char *format, uint32_t width, uint32_t height,
     std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(is_deep ? "png" : format);
     if (!output)
         return fail(message, path, OIIO::geterror());
-    OIIO::ImageSpec spec(int(width), int(height), int(channels), type);
+    OIIO::ImageSpec spec(int(rows->width), int(rows->height), int(rows->channels), type);
     if (is_depth) {
         spec.channelnames = {"Z"};
         spec.z_channel = 0;
@@ -40,7 +41,7 @@ int write(const char *path, const char *format, uint32_t width, uint32_t height,
         spec.attribute("oiio:ColorSpace", "sRGB");
         spec.attribute("oiio:UnassociatedAlpha", 1);
     }
-    if (!output->open(path, spec) || !output->write_image(type, pixels) || !output->close())
+    if (!output->open(path, spec) || !output->write_image(type, rows->pixels) || !output->close())
         return fail(message, path, output->geterror());
     return 0;
 }
@@ -114,8 +115,8 @@ int measure(const char *path, const void *data, size_t size, uint32_t *width, ui
     return 0;
 }
 
-int read(const char *path, const void *data, size_t size, uint64_t max_pixels, uint32_t *width,
-         uint32_t *height, uint8_t **pixels, char *message)
+int read_rgba(const char *path, const void *data, size_t size, uint64_t max_pixels, gtx_image *out,
+              char *message)
 {
     Source source(path, data, size);
     if (source.open(path, data, size, message))
@@ -127,19 +128,18 @@ int read(const char *path, const void *data, size_t size, uint64_t max_pixels, u
     std::vector<uint8_t> texels(size_t(count) * size_t(spec.nchannels));
     if (!source.input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, texels.data()))
         return fail(message, source.name, source.input->geterror());
-    *pixels = static_cast<uint8_t *>(std::malloc(size_t(count) * 4));
-    if (!*pixels)
+    out->pixels = static_cast<uint8_t *>(std::malloc(size_t(count) * 4));
+    if (!out->pixels)
         return fail(message, source.name, "out of memory");
     const int alpha = spec.alpha_channel >= 0 && spec.alpha_channel < spec.nchannels
                           ? spec.alpha_channel : -1;
-    spread(texels, spec.nchannels, alpha, *pixels);
-    *width = uint32_t(spec.width);
-    *height = uint32_t(spec.height);
+    spread(texels, spec.nchannels, alpha, out->pixels);
+    out->width = uint32_t(spec.width);
+    out->height = uint32_t(spec.height);
     return 0;
 }
 
-int read_raw(const char *path, uint64_t max_pixels, uint32_t *width, uint32_t *height,
-             uint32_t *channels, uint32_t *depth, void **pixels, char *message)
+int read_raw(const char *path, uint64_t max_pixels, gtx_raw_image *out, char *message)
 {
     Source source(path, nullptr, 0);
     if (source.open(path, nullptr, 0, message))
@@ -150,17 +150,17 @@ int read_raw(const char *path, uint64_t max_pixels, uint32_t *width, uint32_t *h
     if (count > max_pixels || spec.nchannels > 4 ||
         (!is_deep && spec.format != OIIO::TypeDesc::UINT8))
         return fail(message, source.name, "not an image of 8 or 16 bits and of a supported size");
-    *depth = is_deep ? 2 : 1;
-    *pixels = std::malloc(size_t(count) * size_t(spec.nchannels) * *depth);
-    if (!*pixels)
+    out->depth = is_deep ? 2 : 1;
+    out->pixels = std::malloc(size_t(count) * size_t(spec.nchannels) * out->depth);
+    if (!out->pixels)
         return fail(message, source.name, "out of memory");
-    if (!source.input->read_image(0, 0, 0, spec.nchannels, spec.format, *pixels)) {
-        std::free(*pixels);
+    if (!source.input->read_image(0, 0, 0, spec.nchannels, spec.format, out->pixels)) {
+        std::free(out->pixels);
         return fail(message, source.name, source.input->geterror());
     }
-    *width = uint32_t(spec.width);
-    *height = uint32_t(spec.height);
-    *channels = uint32_t(spec.nchannels);
+    out->width = uint32_t(spec.width);
+    out->height = uint32_t(spec.height);
+    out->channels = uint32_t(spec.nchannels);
     return 0;
 }
 
@@ -184,8 +184,7 @@ const struct {
                    {OIIO::TypeDesc::HALF, 0, 0, widen<float>},
                    {OIIO::TypeDesc::FLOAT, 0, 0, widen<float>}};
 
-int read_values(const char *path, uint64_t max_pixels, uint32_t *width, uint32_t *height,
-                double *least, double *greatest, float **values, char *message)
+int read_values(const char *path, uint64_t max_pixels, gtx_value_image *out, char *message)
 {
     Source source(path, nullptr, 0);
     if (source.open(path, nullptr, 0, message))
@@ -199,69 +198,31 @@ int read_values(const char *path, uint64_t max_pixels, uint32_t *width, uint32_t
         std::vector<char> bytes(size_t(count) * type.size());
         if (!source.input->read_image(0, 0, 0, 1, type, bytes.data()))
             return fail(message, source.name, source.input->geterror());
-        *values = static_cast<float *>(std::malloc(size_t(count) * sizeof(float)));
-        if (!*values)
+        out->values = static_cast<float *>(std::malloc(size_t(count) * sizeof(float)));
+        if (!out->values)
             return fail(message, source.name, "out of memory");
-        known.widen(bytes, *values, size_t(count));
-        *width = uint32_t(spec.width);
-        *height = uint32_t(spec.height);
-        *least = known.least;
-        *greatest = known.greatest;
+        known.widen(bytes, out->values, size_t(count));
+        out->width = uint32_t(spec.width);
+        out->height = uint32_t(spec.height);
+        out->least = known.least;
+        out->greatest = known.greatest;
         return 0;
     }
     return fail(message, source.name, "not an image of 8 or 16 bits or of floats, or too large");
 }
 
-/* Nothing may be thrown across the C boundary. */
-template <class Call> int guarded(char *message, Call call)
+/* Nothing may be thrown across the C boundary. The message is the last argument. */
+template <auto call, class... Arguments> int guarded(Arguments... arguments)
 {
     try {
-        return call();
+        return call(arguments...);
     } catch (const std::exception &e) {
-        return fail(message, "image", e.what());
+        return fail(std::get<sizeof...(arguments) - 1>(std::tie(arguments...)), "image", e.what());
     }
-}
-
-int guarded_write(const char *path, const char *format, uint32_t width, uint32_t height,
-                  uint32_t channels, const void *pixels, char *message)
-{
-    return guarded(message, [&] {
-        return write(path, format, width, height, channels, pixels, message);
-    });
-}
-
-int guarded_read(const char *path, const void *data, size_t size, uint64_t max_pixels,
-                 uint32_t *width, uint32_t *height, uint8_t **pixels, char *message)
-{
-    return guarded(message, [&] {
-        return read(path, data, size, max_pixels, width, height, pixels, message);
-    });
-}
-
-int guarded_read_raw(const char *path, uint64_t max_pixels, uint32_t *width, uint32_t *height,
-                     uint32_t *channels, uint32_t *depth, void **pixels, char *message)
-{
-    return guarded(message, [&] {
-        return read_raw(path, max_pixels, width, height, channels, depth, pixels, message);
-    });
-}
-
-int guarded_read_values(const char *path, uint64_t max_pixels, uint32_t *width, uint32_t *height,
-                        double *least, double *greatest, float **values, char *message)
-{
-    return guarded(message, [&] {
-        return read_values(path, max_pixels, width, height, least, greatest, values, message);
-    });
-}
-
-int guarded_measure(const char *path, const void *data, size_t size, uint32_t *width,
-                    uint32_t *height, char *message)
-{
-    return guarded(message, [&] { return measure(path, data, size, width, height, message); });
 }
 
 } // namespace
 
 extern "C" __attribute__((visibility("default"))) const gtx_image_functions gtx_image_module = {
-    GTX_IMAGE_MODULE_VERSION, guarded_write, guarded_read, guarded_read_raw,
-    guarded_read_values, guarded_measure};
+    GTX_IMAGE_MODULE_VERSION, guarded<write_rows>, guarded<read_rgba>, guarded<read_raw>,
+    guarded<read_values>, guarded<measure>};

@@ -102,9 +102,9 @@ static void upload_mesh(Stage &stage, const gtx_height_grid *grids)
     meshopt_optimizeVertexFetch(vertices.data(), indices.data(), indices.size(), vertices.data(),
                                 vertices.size(), sizeof vertices[0]);
     gtx_error error;
-    check(gtx_polygons_create(&stage.gl, vertices.data(), uint32_t(vertices.size()),
-                              indices.data(), uint32_t(indices.size()), &stage.mesh, &error),
-          error);
+    const gtx_polygon_data data = {vertices.data(), indices.data(), uint32_t(vertices.size()),
+                                   uint32_t(indices.size())};
+    check(gtx_polygons_create(&stage.gl, &data, &stage.mesh, &error), error);
     stage.triangles = indices.size() / 3;
 }
 
@@ -150,6 +150,7 @@ static gtx_view view_of(const Stage &stage, size_t which, int width, int height)
     gtx_view view = {};
     gtx_camera_matrices(&camera, float(width) / float(height), view.view, view.projection);
     view.light_direction[1] = 1;
+    view.ambient = 0.2f;
     view.viewport_width = uint32_t(width);
     view.viewport_height = uint32_t(height);
     return view;
@@ -164,8 +165,7 @@ static void draw(const Stage &stage, size_t method, gtx_view view)
     stage.gl.DepthFunc(GL_LESS);
     gtx_error error;
     if (!method) {
-        gtx_polygons_draw(&stage.gl, &stage.program, &stage.mesh, nullptr, view.view,
-                          view.projection, view.light_direction, 0.2f);
+        gtx_polygons_draw(&stage.gl, &stage.program, &stage.mesh, nullptr, &view);
     } else {
         gtx_instance instance = {};
         instance.model = stage.model;

@@ -132,13 +132,16 @@ static void polygons_share_the_depth_buffer(void **state)
                                            {{3, 3, 1}, {0, 0, 1}, {255, 0, 255, 255}, {0}},
                                            {{-3, 3, 1}, {0, 0, 1}, {255, 0, 255, 255}, {0}}};
     const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
-    const float light[3] = {0, 0, 1};
     gtx_polygons plane;
     gtx_polygon_program program;
     must(gtx_polygon_program_create(&s->gl, &program, &error), &error);
-    must(gtx_polygons_create(&s->gl, corners, 4, indices, 6, &plane, &error), &error);
+    must(gtx_polygons_create(&s->gl, &(gtx_polygon_data){corners, indices, 4, 6}, &plane, &error),
+         &error);
     gtx_camera camera = {.radius = 4, .azimuth = 10, .elevation = 20, .distance = 2.5f};
     const gtx_view view = view_of(&camera);
+    gtx_view lit = view;
+    lit.light_direction[2] = 1;
+    lit.ambient = 0.2f;
     uint8_t *first = malloc(sizeof s->color);
     for (int order = 0; order < 2; ++order) {
         stage_clear(s, &view);
@@ -146,8 +149,7 @@ static void polygons_share_the_depth_buffer(void **state)
             if (step == order) {
                 s->gl.Enable(GL_DEPTH_TEST);
                 s->gl.DepthFunc(GL_LESS);
-                gtx_polygons_draw(&s->gl, &program, &plane, NULL, view.view, view.projection, light,
-                                  0.2f);
+                gtx_polygons_draw(&s->gl, &program, &plane, NULL, &lit);
             } else {
                 must(gtx_draw(s->renderer, &view, &shown.instance, 1, &error), &error);
             }

@@ -58,15 +58,19 @@ static void draw_scene(stage *s, const gtx_view *view, const gtx_instance *insta
         {{9, -3, 1}, {0, 0.6f, 0.8f}, {90, 220, 200, 255}, {0}},
         {{0, 5, 0}, {0, 0.6f, 0.8f}, {220, 90, 200, 255}, {0}}};
     const uint32_t order[3] = {0, 1, 2};
-    const float light[3] = {0.6f, 0, 0.8f};
+    gtx_view lit = *view;
+    lit.light_direction[0] = 0.6f;
+    lit.light_direction[2] = 0.8f;
+    lit.ambient = 0.3f;
     gtx_polygons plane;
     gtx_polygon_program program;
     must(gtx_polygon_program_create(&s->gl, &program, &error), &error);
-    must(gtx_polygons_create(&s->gl, corners, 3, order, 3, &plane, &error), &error);
+    must(gtx_polygons_create(&s->gl, &(gtx_polygon_data){corners, order, 3, 3}, &plane, &error),
+         &error);
     stage_clear(s, view);
     s->gl.Enable(GL_DEPTH_TEST);
     s->gl.DepthFunc(view->flags & GTX_VIEW_REVERSED_Z ? GL_GREATER : GL_LESS);
-    gtx_polygons_draw(&s->gl, &program, &plane, NULL, view->view, view->projection, light, 0.3f);
+    gtx_polygons_draw(&s->gl, &program, &plane, NULL, &lit);
     must(gtx_draw(s->renderer, view, instances, count, &error), &error);
     gtx_polygons_destroy(&s->gl, &plane);
     gtx_polygon_program_destroy(&s->gl, &program);

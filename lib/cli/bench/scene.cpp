@@ -124,9 +124,9 @@ void BenchScene::load_mesh(const Mesh &mesh)
     for (const std::vector<uint32_t> &indices : levels.indices) {
         gtx_error error;
         polygons_.emplace_back();
-        require_ok(gtx_polygons_create(&gl, levels.vertices.data(),
-                                       uint32_t(levels.vertices.size()), indices.data(),
-                                       uint32_t(indices.size()), &polygons_.back(), &error), error);
+        const gtx_polygon_data data = {levels.vertices.data(), indices.data(),
+                                       uint32_t(levels.vertices.size()), uint32_t(indices.size())};
+        require_ok(gtx_polygons_create(&gl, &data, &polygons_.back(), &error), error);
     }
 }
 
@@ -180,8 +180,7 @@ void BenchScene::draw_mesh(BenchMethod method, const gtx_view &view,
     gl.CullFace(GL_BACK);
     set_bench_eye(gl, program_, view.view);
     for (const gtx_instance &instance : placed)
-        gtx_polygons_draw(&gl, &program_, &drawn, instance.transform, view.view, view.projection,
-                          view.light_direction, view.ambient);
+        gtx_polygons_draw(&gl, &program_, &drawn, instance.transform, &view);
     gl.Disable(GL_CULL_FACE);
 }
 

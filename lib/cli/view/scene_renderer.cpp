@@ -75,9 +75,9 @@ static gtx_polygons upload(const gtx_host_gl &gl, const Polygons &shape)
 {
     gtx_polygons polygons;
     gtx_error error;
-    require_ok(gtx_polygons_create(&gl, shape.vertices.data(), uint32_t(shape.vertices.size()),
-                                   shape.indices.data(), uint32_t(shape.indices.size()), &polygons,
-                                   &error), error);
+    const gtx_polygon_data data = {shape.vertices.data(), shape.indices.data(),
+                                   uint32_t(shape.vertices.size()), uint32_t(shape.indices.size())};
+    require_ok(gtx_polygons_create(&gl, &data, &polygons, &error), error);
     return polygons;
 }
 
@@ -117,8 +117,7 @@ void SceneRenderer::draw(const gtx_view &view, DebugView debug)
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_LESS);
     for (const gtx_polygons &polygons : p.polygons)
-        gtx_polygons_draw(&gl, &program, &polygons, nullptr, view.view, view.projection,
-                          view.light_direction, view.ambient);
+        gtx_polygons_draw(&gl, &program, &polygons, nullptr, &view);
     std::vector<gtx_instance> instances = places;
     for (size_t i = 0; i < instances.size(); ++i)
         instances[i].model = p.models[i];
@@ -134,9 +133,10 @@ void SceneRenderer::draw_boxes(const gtx_view &view)
         boxes.push_back(upload(gl, patch_boxes(scene->assets[i].asset.get())));
         boxes.back().mode = GL_LINES;
     }
+    gtx_view unlit = view;
+    unlit.ambient = 1;
     for (size_t i = 0; i < boxes.size(); ++i)
-        gtx_polygons_draw(&gl, &program, &boxes[i], places[i].transform, view.view,
-                          view.projection, view.light_direction, 1);
+        gtx_polygons_draw(&gl, &program, &boxes[i], places[i].transform, &unlit);
 }
 
 uint64_t SceneRenderer::gpu_bytes() const
