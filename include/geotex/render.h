@@ -277,7 +277,8 @@ GTX_API gtx_result gtx_rays_update(gtx_renderer *renderer, gtx_rays *rays, uint3
 GTX_API void gtx_rays_bind(gtx_renderer *renderer, const gtx_rays *rays, uint32_t program);
 
 /* The text of an installed shader file such as "geotex_cast.glsl", for engines that write their own
- * mains; NULL if there is none of that name. Static storage. Any thread. */
+ * mains; its first lines say which files come before it. NULL if there is none of that name. Static
+ * storage. Any thread. */
 GTX_API const char *gtx_shader_source(const char *name);
 
 #ifdef __cplusplus
