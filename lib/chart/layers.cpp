@@ -18,8 +18,9 @@ constexpr double JUNK_PITCHES = 1.5;
 constexpr double LAYER_DISTANCE = 1e-4;
 /* A step between neighbouring texels this large is a depth discontinuity, unless surface within the
  * reach leads from one to the other. Half: RMS +8 %, double: +1 % (truck); the reach changes
- * nothing at half or double. The bake is stricter, 4 texels within 1.5 (bake/field/chart_field.hpp): it
- * cuts away the one cell that bridges the step, where splitting a chart costs another patch. */
+ * nothing at half or double. The bake is stricter, 4 texels within 1.5 (bake/field/
+ * chart_field.hpp): it cuts away the one cell that bridges the step, where splitting a chart costs
+ * another patch. */
 constexpr double DISCONTINUITY_PITCHES = 6, DISCONTINUITY_REACH = 2.5;
 
 void join(Sample &s, const Sample &other)
