@@ -114,9 +114,9 @@ void Viewer::press(char key)
             k.act(*this);
 }
 
-void Viewer::toggle(DebugView view)
+void Viewer::toggle(DebugView wanted)
 {
-    debug = debug == view ? DebugView::NONE : view;
+    debug = debug == wanted ? DebugView::NONE : wanted;
 }
 
 /* Beside the keys: what else can happen to a window. */

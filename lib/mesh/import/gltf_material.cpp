@@ -163,19 +163,19 @@ static int transform_of(const Item &info, Texture &out)
 Texture Reader::texture(const Item &info, GltfMaterial &material, float glossiness)
 {
     constexpr size_t MAX_SETS = 2;
-    Texture out;
+    Texture made;
     if (!info)
-        return out;
+        return made;
     const int number = info.index("index", -1);
     if (number < 0)
         fail(GTX_ERROR_INPUT, "%.150s has no index", info.where.c_str());
     const Item texture = textures.at(size_t(number), info.where);
-    const int set = transform_of(info, out), sampler = texture.index("sampler", -1);
+    const int set = transform_of(info, made), sampler = texture.index("sampler", -1);
     const GltfImage image = {image_of(texture), glossiness};
     if (sampler >= 0) {
         const Item modes = samplers.at(size_t(sampler), texture.where);
-        out.wrap[0] = wrap_of(modes.index("wrapS", 0));
-        out.wrap[1] = wrap_of(modes.index("wrapT", 0));
+        made.wrap[0] = wrap_of(modes.index("wrapS", 0));
+        made.wrap[1] = wrap_of(modes.index("wrapT", 0));
     }
     auto &sets = material.sets;
     size_t slot = size_t(std::find(sets.begin(), sets.end(), set) - sets.begin());
@@ -186,13 +186,13 @@ Texture Reader::texture(const Item &info, GltfMaterial &material, float glossine
     } else {
         if (slot == sets.size())
             sets.push_back(set);
-        auto found = std::find(this->out.images.begin(), this->out.images.end(), image);
-        out.image = uint32_t(found - this->out.images.begin());
-        if (found == this->out.images.end())
-            this->out.images.push_back(image);
-        out.set = uint8_t(slot);
+        auto found = std::find(out.images.begin(), out.images.end(), image);
+        made.image = uint32_t(found - out.images.begin());
+        if (found == out.images.end())
+            out.images.push_back(image);
+        made.set = uint8_t(slot);
     }
-    return out;
+    return made;
 }
 
 /* ---- materials ---- */
