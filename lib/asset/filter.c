@@ -47,7 +47,7 @@ static uint8_t predict(int a, int b, int c)
 {
     const int pa = abs(b - c), pb = abs(a - c), pc = abs(a + b - 2 * c);
     const int other = pb <= pc ? b : c; /* without a branch, which noise would mislead */
-    return (uint8_t)((pa <= pb) & (pa <= pc) ? a : other);
+    return (uint8_t)(((pa <= pb) & (pa <= pc)) ? a : other);
 }
 
 /* From the last byte to the first: a predictor needs what is not yet replaced. */

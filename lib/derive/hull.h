@@ -14,7 +14,7 @@ typedef struct gtx_hull_node {
     uint32_t top, bottom;     /* vertices, or GTX_HULL_NONE */
 } gtx_hull_node;
 
-enum { GTX_HULL_NONE = UINT32_MAX };
+#define GTX_HULL_NONE UINT32_MAX
 
 typedef struct gtx_hull_triangle {
     uint32_t node[3];         /* counter-clockwise from above */

@@ -118,8 +118,8 @@ static void measure_row(const row_shape *row, const float *restrict x, const flo
         const int meets = (s.base[0] + s.slope[0] * x[i] >= 0) &
                           (s.base[1] + s.slope[1] * x[i] >= 0) &
                           (s.base[2] + s.slope[2] * x[i] >= 0);
-        highest[i] = meets & (over > highest[i]) ? over : highest[i];
-        lowest[i] = meets & (over < lowest[i]) ? over : lowest[i];
+        highest[i] = (meets & (over > highest[i])) ? over : highest[i];
+        lowest[i] = (meets & (over < lowest[i])) ? over : lowest[i];
     }
 }
 

@@ -115,8 +115,8 @@ typedef struct range {
 
 static inline void extend(range *r, int i, bool take, float value)
 {
-    r->low[i] = take & (value < r->low[i]) ? value : r->low[i];
-    r->high[i] = take & (value > r->high[i]) ? value : r->high[i];
+    r->low[i] = (take & (value < r->low[i])) ? value : r->low[i];
+    r->high[i] = (take & (value > r->high[i])) ? value : r->high[i];
 }
 
 static void store_range(const range *r, float out[2])
