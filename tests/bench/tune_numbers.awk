@@ -8,11 +8,10 @@ function structural(name)
 {
     name = file ":" name
     if (name ~ /:NO_[A-Z_]+$|:(UNUSED|OFF|OPEN)$/) return "means none, or is a bit"
-    if (name ~ /:[A-Z]+_CHANNELS$|report.cpp:(RECORD|ROW|BOX)$/) return "of the format"
-    if (name ~ /patch.cpp:DEEP_TRIM$|MIN_CODE$/) return "a code of the format"
-    if (name ~ /stitch.cpp:(OUTLINE|TEXEL)$/) return "a code of the format"
+    if (name ~ /:[A-Z]+_CHANNELS$/) return "of the format"
+    if (name ~ /MIN_CODE$/) return "a code of the format"
     if (name ~ /:(COOKER_REVISION|DEFAULT_ZSTD)$/) return "a version, a default"
-    if (name ~ /pgp.hpp:(PI|UV_GRID)$|decoded.hpp:DIAGONAL$/) return "mathematics"
+    if (name ~ /pgp.hpp:UV_GRID$|height_field.hpp:DIAGONAL$/) return "mathematics"
     if (name ~ /vsa.cpp:(BUCKETS|WORDS|LOWEST)$|fan.hpp:MAX_FAN$/) return "array size"
     return ""
 }
