@@ -54,7 +54,7 @@ struct ChartOptions {
     double pitch = 0;            /* texel pitch for CUTS, object units; 0 = what gives patches
                                     their texels at this resolution */
     unsigned grain = 8;          /* sides will be multiples of as many texels */
-    unsigned height_bits = 8;    /* heights will have */
+    double height_steps = 254;   /* that a patch's heights will have from lowest to highest */
     bool one_density = false;    /* CUTS: texels alike in all patches, as the paper has them */
     /* Texels that a patch needs beyond its core: at a straight cut, and where its chart ends. */
     unsigned overlap[2] = {1, 2};

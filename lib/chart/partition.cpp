@@ -291,7 +291,7 @@ void make_charts(Surface surface, const ChartOptions &options, uint32_t count, T
                     std::max(options.resolution / options.grain, 1u) * options.grain,
                     options.grain,
                     {options.overlap[0], options.overlap[1]},
-                    options.height_bits == 8 ? 254. : 65534.,
+                    options.height_steps,
                     options.one_density};
     out.charts = cut ? cut_charts(surface, std::move(regions), frames, plan, task)
                      : whole_charts(std::move(regions), frames, out);

@@ -3,6 +3,7 @@
 
 #include "cook/guard.hpp"
 
+#include "asset/patch.h"
 #include "base/alloc.h"
 #include "base/hash.h"
 
@@ -69,7 +70,7 @@ Options checked_options(const gtx_cook_desc &desc)
         options.bake.height_bits = desc.height_bits;
     if (desc.mips)
         options.bake.mips = desc.mips;
-    options.chart.height_bits = options.bake.height_bits;
+    options.chart.height_steps = gtx_height_steps(options.bake.height_bits);
     options.chart.grain = 1u << (options.bake.mips - 1);
     options.bake.dilation = desc.dilation ? desc.dilation : 1u << (options.bake.mips - 1);
     if (number_of(desc.extract) == GTX_EXTRACT_GPU) {

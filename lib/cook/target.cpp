@@ -1,6 +1,8 @@
 /* Searches the texel pitch, then bits and patches, that keep to an error with the fewest bytes. */
 #include "cook/target.hpp"
 
+#include "asset/patch.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -118,7 +120,8 @@ void Search::try_sixteen_bits()
         return;
     double coarse = best_->error.forward.rms;
     Options fine = best_options_;
-    fine.bake.height_bits = fine.chart.height_bits = 16;
+    fine.bake.height_bits = 16;
+    fine.chart.height_steps = gtx_height_steps(fine.bake.height_bits);
     double rms = attempt(fine);
     if (rms <= WORTH_BITS * coarse)
         find_pitch(fine, rms);

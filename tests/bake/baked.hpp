@@ -11,6 +11,7 @@ extern "C" {
 }
 
 #include "asset/asset.h"
+#include "asset/patch.h"
 #include "bake/shapes.hpp"
 
 #include <cstring>
@@ -47,7 +48,7 @@ inline Maps bake_valid(const Mesh &mesh, Partition partition, BakeOptions option
 inline Vec3d point_of(const Maps &maps, const gtx_patch &p, unsigned i, unsigned j, unsigned code)
 {
     double a = (i + 0.5) / p.rect[2] * p.extent_x, b = (j + 0.5) / p.rect[3] * p.extent_y;
-    double c = (code - 1) / (maps.height_bits == 8 ? 254. : 65534.) * p.extent_z;
+    double c = gtx_code_height(code, maps.height_bits) * p.extent_z;
     Vec3d point;
     for (int k = 0; k < 3; ++k)
         point[k] = maps.anchor[k] + p.origin[k] + a * p.axis_x[k] + b * p.axis_y[k] +

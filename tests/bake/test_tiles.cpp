@@ -8,6 +8,7 @@ extern "C" {
 #include <cmocka.h>
 }
 
+#include "asset/patch.h"
 #include "bake/lods.hpp"
 #include "bake/tiles.hpp"
 
@@ -64,7 +65,7 @@ template <class Body> static void for_texels(const HeightGrid &grid, const Maps 
                     continue;
                 const double a = (x + 0.5) / p.rect[2] * p.extent_x;
                 const double b = (y + 0.5) / p.rect[3] * p.extent_y;
-                const double c = (code - 1) / (maps.height_bits == 8 ? 254. : 65534.) * p.extent_z;
+                const double c = gtx_code_height(code, maps.height_bits) * p.extent_z;
                 double at_point[3];
                 for (int k = 0; k < 3; ++k)
                     at_point[k] = p.origin[k] + a * p.axis_x[k] + b * p.axis_y[k] +
@@ -75,7 +76,7 @@ template <class Body> static void for_texels(const HeightGrid &grid, const Maps 
                 assert_true(std::fabs(i - std::round(i)) < 0.02);
                 assert_true(std::fabs(j - std::round(j)) < 0.02);
                 body(uint32_t(std::lround(i)), uint32_t(std::lround(j)), at_point[1],
-                     p.extent_z / (maps.height_bits == 8 ? 254 : 65534));
+                     gtx_height_step(&p, maps.height_bits));
             }
 }
 

@@ -6,6 +6,7 @@
  * JSON beside the assets. */
 #include "equal_texels.hpp"
 
+#include "asset/patch.h"
 #include "chart/frame.hpp"
 #include "chart/raster.hpp"
 
@@ -145,7 +146,7 @@ Row make_row(const Mesh &mesh, const char *name, PartitionMethod method, unsigne
     options.grain = 1;
     options.overlap[0] = options.overlap[1] = 0;
     options.one_density = true;
-    options.height_bits = 16; /* the rules ask for full maps, not for flat ones */
+    options.height_steps = gtx_height_steps(16); /* the rules ask for full maps, not flat ones */
     Task task(0, nullptr, nullptr);
     Partition p = make_partition(mesh, options, task);
     const ChartReport &r = p.report;
