@@ -8,21 +8,24 @@
 namespace gtx::baking {
 
 /* Tiles of a height grid have the same nodes where they meet: no number here changes any
- * of theirs (Reek's base in tiles of 64, at half and at double). They serve
- * patches whose texels differ, as in tests/bake/test_lod_maps.cpp. */
+ * of theirs (Reek's base in tiles of 64, at half and at double). They serve patches whose texels
+ * differ. Measured on LOD meshes that `gtx pack` makes of the bunny's and Duck's maps: where no
+ * more is said, the finest mesh errs by up to 6 % more or less, either way. */
 
-/* A height field passes a point when it is no farther away than this, and as steep. */
+/* A height field passes a point when it is no farther away than this, and as steep. Duck's coarsest
+ * mesh: REACH_TEXELS at half, error +35 %. */
 constexpr double REACH_TEXELS = 0.75, REACH_STEPS = 3, MIN_COSINE = 0.3;
 /* So far inside its outline a height field that is not steep need not look for others. Trim may not
- * be told any deeper, so two that are would be equals. */
+ * be told any deeper, so two that are would be equals. At half: error +9 %, a mesh more (bunny). */
 constexpr double DEEP = DEEPEST_TRIM;
 /* Where another height field goes on, one may end this many texels beyond its outline, so that both
  * reach the line between their outlines. */
 constexpr double MAX_OUTSIDE = 1;
 /* A height field steeper than this against a surface shows it with few texels, and gives it up to
- * others by so many texels. */
+ * others by so many texels. Half of either leaves slits that are bridged: 70 times the error
+ * (bunny); STEEP at double: 50 times. */
 constexpr double STEEP_COSINE = 0.5, STEEP = 8;
-/* Texels whose trims differ by no more than this lie on the cut. */
+/* Texels whose trims differ by no more than this lie on the cut. At double: error +17 % (bunny). */
 constexpr double ON_CUT = 0.4;
 
 MapField::MapField(const Maps &maps, uint32_t patch)
