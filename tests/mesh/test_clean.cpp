@@ -128,7 +128,7 @@ static void test_duplicates(void **)
     assert_int_equal(c.report.components, 2);
     assert_int_equal(c.report.boundary_edges, 48);
     assert_int_equal(c.mesh.flags[0], 0);
-    /* a height field of two sides alone keeps one */
+    /* a sheet of two sides alone keeps one */
     assert_int_equal(clean(moved(torus(), {1, 1, 0}, {0, 0, 0})).report.components, 1);
 
     /* the copy that stays winds as most do */

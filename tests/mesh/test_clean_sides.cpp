@@ -29,20 +29,20 @@ static void test_winding(void **)
 
 static void test_nested(void **)
 {
-    auto lod = [](double radius, bool inward) {
+    auto shell = [](double radius, bool inward) {
         Mesh mesh = moved(sphere(), {radius, radius, radius}, {0.01, 0.02, 0.03});
         return inward ? turned(mesh) : mesh;
     };
-    Mesh hollow = lod(2, false);
-    append(hollow, lod(1, true));
-    append(hollow, lod(0.5, false));
+    Mesh hollow = shell(2, false);
+    append(hollow, shell(1, true));
+    append(hollow, shell(0.5, false));
     Cleaned c = clean(hollow);
     assert_int_equal(c.report.flipped, 0);
     assert_int_equal(c.report.components, 3);
 
     /* the outermost is turned, the wall of its cavity is left alone */
-    Mesh both = lod(2, true);
-    append(both, lod(1, true));
+    Mesh both = shell(2, true);
+    append(both, shell(1, true));
     assert_int_equal(clean(both).report.flipped, c.mesh.triangle_count() / 3);
 
     /* beside each other, in one another's shadow, nothing encloses anything */
@@ -51,7 +51,7 @@ static void test_nested(void **)
         append(row, turned(moved(cube(), {1, 1, 1}, {2. * i, 0, 0})));
     assert_int_equal(clean(row).report.flipped, row.triangle_count());
 
-    /* a ring around it is no LOD mesh around it */
+    /* a ring around it is no shell around it */
     Mesh ring = torus();
     append(ring, turned(sphere()));
     c = clean(ring);
@@ -136,7 +136,7 @@ static void test_touching(void **)
     assert_true(area(c.mesh) >= 10);
 }
 
-/* A torus whose tube is pinched so that all of one edge ring coincides with another: height fields
+/* A torus whose tube is pinched so that all of one edge ring coincides with another: sheets
  * pass the same edges within the same fans. */
 static void test_pinched(void **)
 {

@@ -15,7 +15,7 @@ void weld(Mesh &mesh);
 
 /* Of triangles on the same three vertices one stays: "duplicate". It winds as most do. Returns for
  * each triangle kept whether as many of its copies wound one way as the other: they were the two
- * sides of a height field without thickness. */
+ * sides of a sheet without thickness. */
 std::vector<uint8_t> drop_duplicates(Mesh &mesh, CleanReport &report);
 
 /* Calls use(vector) for each attribute of corners; those that a mesh lacks are empty. */

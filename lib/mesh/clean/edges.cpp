@@ -24,7 +24,7 @@ struct Candidate {
 };
 
 /* Greedy: of the triangles that run the edge in opposite directions, those two whose normals agree
- * best continue each other. A height field without thickness adds nothing to a surface that it
+ * best continue each other. A sheet without thickness adds nothing to a surface that it
  * touches, so it must not take a side from it. Of an edge with very many triangles no surface can
  * be told. */
 static void pair_many(Draft &surface, const EdgeEntry *edge, size_t count)

@@ -71,7 +71,7 @@ template <class Visit> static void for_each_suspect_edge(const Draft &surface, V
         visit(group);
 }
 
-/* Two height fields may pass the same edge and still be one fan at both its ends, so that no vertex
+/* Two sheets may pass the same edge and still be one fan at both its ends, so that no vertex
  * tells them apart. All sides of such an edge are parted. Each fan around an end of it then has the
  * edge at its two ends only; where these are still the same edge they close the fan, and as a fan
  * winds one way they fit. */
