@@ -40,7 +40,7 @@ needs_cook    := $(needs_trace) image mesh grid chart bake measure cook
 needs_cli     := $(needs_cook) edit render host cli
 
 rooms := $(ROOMS_CORE) $(ROOMS_COOK) host cli
-tests := $(filter-out bench common golden,$(notdir $(wildcard tests/*)))
+tests := $(filter-out bench common golden run,$(notdir $(wildcard tests/*)))
 
 # ---- flags ---------------------------------------------------------------------------------------
 CC  ?= cc

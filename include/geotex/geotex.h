@@ -83,6 +83,8 @@ typedef struct gtx_error {
     uint32_t rule;                /* rule number of format/gtx.md, 0 when none applies */
     const char *rule_name;        /* its name, such as "patch-page": static; else NULL */
     uint64_t offset;              /* byte offset in the file that broke the rule, else 0 */
+    const char *limit;            /* with LIMIT, the field of gtx_limits that would raise it, such
+                                     as "memory": static; else NULL */
     char message[240];            /* one sentence without a final newline, always terminated */
 } gtx_error;
 
@@ -109,6 +111,20 @@ typedef struct gtx_jobs {
     void (*run)(uint32_t count, void (*job)(uint32_t index, void *data), void *data, void *user);
     void *user;
 } gtx_jobs;
+
+/* What a call may take for files that others made. 0 asks for a field's default, which grows with
+ * the bytes that the call reads; UINT64_MAX lifts a limit. What would pass one ends in LIMIT before
+ * it is taken. */
+typedef struct gtx_limits {
+    uint64_t memory;              /* bytes at once; 0 = 256 MiB and 2,000 for each byte read */
+    uint64_t triangles;           /* of all models together, once polygons are cut and instances
+                                     placed; 0 = 2^20 and 2 for each byte read */
+    uint64_t texels;              /* of an asset's pages at level 0, and nodes of height grids;
+                                     0 = 2^26 and 256 for each byte read */
+    uint64_t pixels;              /* of one image; 0 = 2^26 and 16 for each byte read */
+    uint64_t patches;             /* 0 = 2^20 */
+    uint32_t reserved[4];
+} gtx_limits;
 
 /* How far a long call has come. `stage` is a static string such as "bake". */
 typedef struct gtx_progress {
@@ -185,7 +201,7 @@ typedef struct gtx_open_desc {
     const gtx_allocator *allocator;
     const gtx_jobs *jobs;         /* used during the call; opening then holds all coded sections in
                                      memory at once */
-    uint64_t max_bytes;           /* most that opening may allocate; 0 = 4 GiB */
+    gtx_limits limits;            /* memory, texels, triangles of one LOD mesh, patches */
     uint32_t flags;
     uint32_t reserved[5];
 } gtx_open_desc;
@@ -202,8 +218,8 @@ enum { /* gtx_open_desc.flags */
 GTX_API gtx_result gtx_open_memory(const void *data, size_t size, const gtx_open_desc *desc,
                                    gtx_asset **out, gtx_error *error);
 
-/* The same from a file. Its bytes come from the allocator too, and count towards max_bytes, while
- * they are read. Errors: also READ. */
+/* The same from a file. Its bytes come from the allocator too, and count towards limits.memory,
+ * while they are read. Errors: also READ. */
 GTX_API gtx_result gtx_open_file(const char *path, const gtx_open_desc *desc, gtx_asset **out,
                                  gtx_error *error);
 
@@ -261,11 +277,11 @@ typedef void (*gtx_issue_fn)(const gtx_issue *issue, void *user);
 
 /* Checks untrusted bytes against every rule of format/gtx.md and reports each broken one, in the
  * order of its section 7, for as long as it is safe to read on.
- * GTX_OK when no error was reported (warnings do not count). `fn` may be NULL.
- * Takes from malloc what opening would, 4 GiB at most.
+ * GTX_OK when no error was reported (warnings do not count). `limits` and `fn` may be NULL. Takes
+ * from malloc what opening would.
  * Errors: as gtx_open_memory; a broken rule comes before MEMORY and LIMIT. */
-GTX_API gtx_result gtx_validate(const void *data, size_t size, gtx_issue_fn fn, void *user,
-                                gtx_error *error);
+GTX_API gtx_result gtx_validate(const void *data, size_t size, const gtx_limits *limits,
+                                gtx_issue_fn fn, void *user, gtx_error *error);
 
 /* ---- creating and encoding -------------------------------------------------------------- */
 
