@@ -201,7 +201,7 @@ typedef struct gtx_open_desc {
     const gtx_allocator *allocator;
     const gtx_jobs *jobs;         /* used during the call; opening then holds all coded sections in
                                      memory at once */
-    gtx_limits limits;            /* memory, texels, triangles of one LOD mesh, patches */
+    gtx_limits limits;            /* memory, texels and patches */
     uint32_t flags;
     uint32_t reserved[5];
 } gtx_open_desc;

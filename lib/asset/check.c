@@ -65,6 +65,14 @@ void gtx_check_fail(gtx_check *check, gtx_result result, const char *format, ...
     check->result = gtx_fail(check->error, result, "%s", message);
 }
 
+void gtx_check_limit(gtx_check *check, gtx_limited which, const char *what, uint64_t wanted,
+                     uint64_t allowed)
+{
+    if (!check->broken && !check->failed)
+        check->result = gtx_fail_limit(check->error, which, what, wanted, allowed);
+    check->failed = true;
+}
+
 static void check_counts(gtx_check *check, const gtx_info *info)
 {
     if (info->patch_count < 1 || info->patch_count > GTX_MAX_PATCHES)

@@ -5,6 +5,7 @@
 #include "asset/asset.h"
 #include "asset/section.h"
 #include "base/error.h"
+#include "base/limits.h"
 
 #include <stdbool.h>
 
@@ -33,6 +34,10 @@ void gtx_break(gtx_check *check, gtx_rule rule, uint64_t offset, const char *for
 /* Ends the run for a reason that is no rule. */
 void gtx_check_fail(gtx_check *check, gtx_result result, const char *format, ...) GTX_PRINTF(3, 4);
 
+/* Ends it because `what` would take more than is allowed. */
+void gtx_check_limit(gtx_check *check, gtx_limited which, const char *what, uint64_t wanted,
+                     uint64_t allowed);
+
 /* Whether the run is over. */
 static inline bool gtx_check_over(const gtx_check *check)
 {
@@ -46,6 +51,10 @@ typedef struct gtx_layout {
     uint32_t section_count;
     bool known;                   /* the sections can be read */
 } gtx_layout;
+
+/* What the first bytes of a file tell: that it is no asset, or not the whole of one. `file_size` is
+ * 0 where it is not known yet. */
+void gtx_check_head(gtx_check *check, const uint8_t *data, size_t size, uint64_t file_size);
 
 /* Header, table and padding of a file. */
 void gtx_check_file(gtx_check *check, const uint8_t *data, uint64_t size, gtx_layout *out);

@@ -259,6 +259,16 @@ static void check_table(gtx_check *check, const uint8_t *data, uint64_t size, gt
         check_padding(&walk, data);
 }
 
+void gtx_check_head(gtx_check *check, const uint8_t *data, size_t size, uint64_t file_size)
+{
+    gtx_header header;
+    gtx_info info;
+    if (!check_start(check, data, size) || !file_size)
+        return;
+    gtx_header_load(data, &header, &info);
+    check_shape(check, &header, file_size);
+}
+
 void gtx_check_file(gtx_check *check, const uint8_t *data, uint64_t size, gtx_layout *out)
 {
     *out = (gtx_layout){0};

@@ -4,8 +4,6 @@
 #include "base/alloc.h"
 #include "base/file.h"
 
-#define DEFAULT_LIMIT ((uint64_t)4 << 30)
-
 static gtx_result check_open(const gtx_open_desc *desc, gtx_asset **out, gtx_error *error)
 {
     if (!out)
@@ -13,24 +11,24 @@ static gtx_result check_open(const gtx_open_desc *desc, gtx_asset **out, gtx_err
     *out = NULL;
     if (!desc)
         return GTX_OK;
+    gtx_result result = gtx_check_limits(&desc->limits, error);
+    if (result)
+        return result;
     if (desc->flags & ~(uint32_t)GTX_OPEN_SKIP_HASH)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "unknown flags 0x%08x", desc->flags);
     return gtx_check_reserved(desc->reserved, 5, error);
 }
 
-static uint64_t limit_of(const gtx_open_desc *desc)
-{
-    return desc && desc->max_bytes ? desc->max_bytes : DEFAULT_LIMIT;
-}
-
+/* `held` bytes are taken already, by those to open. */
 static gtx_result open_bytes(const void *data, size_t size, const gtx_open_desc *desc,
-                             uint64_t limit, gtx_asset **out, gtx_error *error)
+                             uint64_t held, gtx_asset **out, gtx_error *error)
 {
     gtx_check check = {.error = error};
     const gtx_read_options options = {
         .allocator = gtx_allocator_or_default(desc ? desc->allocator : NULL),
         .jobs = desc ? desc->jobs : NULL,
-        .limit = limit,
+        .limits = desc ? &desc->limits : NULL,
+        .bytes_held = held,
         .skip_hash = desc && desc->flags & GTX_OPEN_SKIP_HASH,
     };
     return gtx_read_asset(&check, &options, data, size, out);
@@ -44,7 +42,17 @@ gtx_result gtx_open_memory(const void *data, size_t size, const gtx_open_desc *d
         return result;
     if (!data && size)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "the bytes to open are NULL");
-    return open_bytes(data, size, desc, limit_of(desc), out, error);
+    return open_bytes(data, size, desc, 0, out, error);
+}
+
+/* What is no asset is not read. */
+static gtx_result look_at_head(const uint8_t *head, size_t size, uint64_t file_size, void *user,
+                               gtx_error *error)
+{
+    (void)user;
+    gtx_check check = {.error = error, .in_file = true};
+    gtx_check_head(&check, head, size, file_size);
+    return check.result;
 }
 
 gtx_result gtx_open_file(const char *path, const gtx_open_desc *desc, gtx_asset **out,
@@ -55,25 +63,28 @@ gtx_result gtx_open_file(const char *path, const gtx_open_desc *desc, gtx_asset 
         return result;
     if (!path)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "the path to open is NULL");
-    const uint64_t limit = limit_of(desc);
-    gtx_file_bytes file = {
-        .allocator = gtx_allocator_or_default(desc ? desc->allocator : NULL), .limit = limit};
+    const gtx_limits *limits = desc ? &desc->limits : NULL;
+    gtx_file_bytes file = {.allocator = gtx_allocator_or_default(desc ? desc->allocator : NULL),
+                           .limit = gtx_limit_of(limits, GTX_LIMITED_MEMORY, UINT64_MAX),
+                           .look = look_at_head};
     result = gtx_read_file(path, path, &file, error);
     if (result)
         return result;
-    result = open_bytes(file.data, file.size, desc, limit - file.capacity, out, error);
+    result = open_bytes(file.data, file.size, desc, file.capacity, out, error);
     gtx_free_file(&file);
     return result;
 }
 
-gtx_result gtx_validate(const void *data, size_t size, gtx_issue_fn fn, void *user,
-                        gtx_error *error)
+gtx_result gtx_validate(const void *data, size_t size, const gtx_limits *limits,
+                        gtx_issue_fn fn, void *user, gtx_error *error)
 {
+    if (limits && gtx_check_limits(limits, error))
+        return GTX_ERROR_NOT_ZEROED;
     if (!data && size)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "the bytes to validate are NULL");
     gtx_check check = {.fn = fn, .user = user, .error = error, .keep_going = true};
     const gtx_read_options options = {.allocator = gtx_allocator_or_default(NULL),
-                                      .limit = DEFAULT_LIMIT};
+                                      .limits = limits};
     gtx_asset *asset;
     gtx_result result = gtx_read_asset(&check, &options, data, size, &asset);
     gtx_close(asset);

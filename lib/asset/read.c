@@ -31,6 +31,28 @@ static gtx_sizes sizes_of(const gtx_layout *layout)
     return out;
 }
 
+/* Whether the asset and the memory for reading it are within what is allowed. */
+static bool within_limits(reader *r, uint64_t memory)
+{
+    const gtx_layout *layout = &r->layout;
+    const gtx_info *info = &layout->info;
+    const uint64_t page = (uint64_t)info->page_width * info->page_height;
+    const struct {
+        gtx_limited which;
+        uint64_t wanted;
+    } wants[] = {{GTX_LIMITED_PATCHES, info->patch_count},
+                 {GTX_LIMITED_TEXELS, page * info->page_count},
+                 {GTX_LIMITED_MEMORY, memory}};
+    for (size_t i = 0; i < sizeof wants / sizeof *wants; ++i) {
+        const uint64_t allowed = gtx_limit_of(r->options.limits, wants[i].which, info->file_size);
+        if (wants[i].wanted > allowed) {
+            gtx_check_limit(r->check, wants[i].which, "the asset", wants[i].wanted, allowed);
+            return false;
+        }
+    }
+    return true;
+}
+
 /* What reading allocates is known before the first allocation. */
 static void allocate(reader *r)
 {
@@ -46,10 +68,10 @@ static void allocate(reader *r)
                        "the file is compressed and this build has no zstd");
         return;
     }
-    if (need > r->options.limit || need > SIZE_MAX) {
-        gtx_check_fail(r->check, GTX_ERROR_LIMIT,
-                       "reading takes %" PRIu64 " bytes, more than the %" PRIu64 " allowed",
-                       need, r->options.limit);
+    if (!within_limits(r, need + r->options.bytes_held))
+        return;
+    if (need > SIZE_MAX) {
+        gtx_check_fail(r->check, GTX_ERROR_MEMORY, "reading takes %" PRIu64 " bytes", need);
         return;
     }
     r->asset = gtx_asset_new(&r->options.allocator, &layout->info, &sizes, false);

@@ -7,12 +7,13 @@
 typedef struct gtx_read_options {
     gtx_allocator allocator;
     const gtx_jobs *jobs;         /* or NULL */
-    uint64_t limit;               /* most bytes that may be allocated at once */
+    const gtx_limits *limits;     /* or NULL */
+    uint64_t bytes_held;          /* that the caller has taken from the same memory */
     bool skip_hash;               /* trust the section hashes */
 } gtx_read_options;
 
 /* Checks `size` bytes of a file and makes an asset of them; *out is NULL when a rule was broken or
- * something failed. What it allocates is known, and held against the limit, before the first
+ * something failed. What it allocates is known, and held against the limits, before the first
  * allocation. */
 gtx_result gtx_read_asset(gtx_check *check, const gtx_read_options *options, const void *data,
                           size_t size, gtx_asset **out);

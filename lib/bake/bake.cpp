@@ -37,8 +37,8 @@ constexpr Pyramid PYRAMIDS[] = {{&PatchMaps::normal, &Maps::normal, 2, 128},
                                 {&PatchMaps::emission, &Maps::emission, 3, 0}};
 
 /* Copies a tight rectangle of `texel` bytes a texel to its place at a level of the pages. */
-static void blit(const std::vector<uint8_t> &from, const gtx_patch &r, const Maps &maps,
-                 unsigned level, size_t texel, std::vector<uint8_t> &to)
+static void blit(const Vector<uint8_t> &from, const gtx_patch &r, const Maps &maps,
+                 unsigned level, size_t texel, Vector<uint8_t> &to)
 {
     size_t row = (r.rect[2] >> level) * texel, page_w = maps.page_width >> level;
     size_t page = size_t(r.page) * (maps.page_height >> level);
@@ -48,9 +48,9 @@ static void blit(const std::vector<uint8_t> &from, const gtx_patch &r, const Map
     }
 }
 
-static std::vector<uint8_t> height_bytes(const PatchMaps &patch, unsigned bits)
+static Vector<uint8_t> height_bytes(const PatchMaps &patch, unsigned bits)
 {
-    std::vector<uint8_t> bytes(patch.height.size() * bits / 8);
+    Vector<uint8_t> bytes(patch.height.size() * bits / 8);
     for (size_t i = 0; i < patch.height.size(); ++i) {
         if (bits == 8) {
             bytes[i] = uint8_t(patch.height[i]);
@@ -96,7 +96,7 @@ static void place_patch(PatchMaps &patch, const Packing::Place &place, Maps &map
             blit((patch.*p.from)[k], r, maps, k, p.texel, (maps.*p.to)[k]);
 }
 
-static void summarise(const std::vector<PatchMaps> &patches, Maps &maps)
+static void summarise(const Vector<PatchMaps> &patches, Maps &maps)
 {
     Vec3d low = patches[0].low, high = patches[0].high;
     for (const PatchMaps &p : patches) {
@@ -115,10 +115,10 @@ static void summarise(const std::vector<PatchMaps> &patches, Maps &maps)
                             (double(maps.page_count) * maps.page_width * maps.page_height);
 }
 
-Maps place_on_pages(std::vector<PatchMaps> &patches, const Vec3d &anchor,
+Maps place_on_pages(Vector<PatchMaps> &patches, const Vec3d &anchor,
                     const BakeOptions &options)
 {
-    std::vector<std::array<uint32_t, 2>> sizes;
+    Vector<std::array<uint32_t, 2>> sizes;
     for (const PatchMaps &p : patches)
         sizes.push_back({p.record.rect[2], p.record.rect[3]});
     Packing packing = pack(sizes, 1u << (options.mips - 1));
@@ -174,7 +174,7 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
     Neighbours neighbours = triangle_neighbours(mesh);
     Job job = {mesh,            neighbours,      options, appearance_needs(mesh),
                partition.pitch, anchor_of(mesh)};
-    std::vector<PatchMaps> patches;
+    Vector<PatchMaps> patches;
     auto bake_rest = [&](double from, double to) {
         const size_t done = patches.size();
         patches.resize(partition.charts.size());
@@ -183,10 +183,10 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
         }, from, to);
     };
     bake_rest(0, 0.9);
-    std::vector<Chart> uncovered = cover_uncovered(job, partition, patches, task);
+    Vector<Chart> uncovered = cover_uncovered(job, partition, patches, task);
     std::move(uncovered.begin(), uncovered.end(), std::back_inserter(partition.charts));
     bake_rest(0.9, 1);
-    std::vector<uint32_t> charts;
+    Vector<uint32_t> charts;
     for (size_t i = 0; i < patches.size(); ++i)
         if (patches[i].coded)
             charts.push_back(uint32_t(i));

@@ -23,14 +23,14 @@ struct BakeReport {
 
 /* Everything gtx_create takes, owned. */
 struct Maps {
-    std::vector<gtx_patch> patches;
-    std::vector<uint32_t> charts;             /* of each patch */
+    Vector<gtx_patch> patches;
+    Vector<uint32_t> charts;                  /* of each patch */
     uint32_t page_count = 0, page_width = 0, page_height = 0, mip_count = 0, height_bits = 8;
-    std::vector<uint8_t> height;              /* 1 or 2 bytes a texel, little-endian */
-    std::vector<uint8_t> trim;
-    std::vector<std::vector<uint8_t>> normal; /* a level each */
-    std::vector<std::vector<uint8_t>> color;  /* a level each, or empty; likewise the next two */
-    std::vector<std::vector<uint8_t>> material, emission;
+    Vector<uint8_t> height;                   /* 1 or 2 bytes a texel, little-endian */
+    Vector<uint8_t> trim;
+    Vector<Vector<uint8_t>> normal;           /* a level each */
+    Vector<Vector<uint8_t>> color;            /* a level each, or empty; likewise the next two */
+    Vector<Vector<uint8_t>> material, emission;
     float emission_scale = 0;                 /* 0 without emission */
     double anchor[3] = {0, 0, 0};
     float bounds_min[3] = {0, 0, 0}, bounds_max[3] = {0, 0, 0};

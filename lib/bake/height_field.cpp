@@ -89,7 +89,7 @@ Vec3d HeightField::normal(const CellPoint &place) const
                            axis[1] * pitch[1] + axis[2] * (along_v * step)));
 }
 
-HeightFields::HeightFields(const std::vector<PatchMaps> &patches, unsigned height_bits)
+HeightFields::HeightFields(const Vector<PatchMaps> &patches, unsigned height_bits)
 {
     for (size_t i = 0; i < patches.size(); ++i)
         if (patches[i].coded) {
@@ -106,9 +106,9 @@ HeightFields::HeightFields(const std::vector<PatchMaps> &patches, unsigned heigh
     });
 }
 
-std::vector<const HeightField *> HeightFields::around(const HeightField &field) const
+Vector<const HeightField *> HeightFields::around(const HeightField &field) const
 {
-    std::vector<const HeightField *> out;
+    Vector<const HeightField *> out;
     any_near(field.centre, field.radius, [&](const HeightField &other) {
         if (&other != &field)
             out.push_back(&other);

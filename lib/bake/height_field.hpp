@@ -93,7 +93,7 @@ private:
 class HeightFields {
 public:
     /* Those of the patches that have codes. */
-    HeightFields(const std::vector<PatchMaps> &patches, unsigned height_bits);
+    HeightFields(const Vector<PatchMaps> &patches, unsigned height_bits);
     HeightFields(const HeightFields &) = delete;
     HeightFields &operator=(const HeightFields &) = delete;
 
@@ -118,16 +118,16 @@ public:
         return false;
     }
     /* The others whose spheres that of a height field meets. */
-    std::vector<const HeightField *> around(const HeightField &field) const;
+    Vector<const HeightField *> around(const HeightField &field) const;
 
 private:
     /* They are sorted along (1, 1, 1), whose length this is. */
     static constexpr double DIAGONAL = 1.7320508075688772;
     static double along(const Vec3d &point) { return point.x + point.y + point.z; }
 
-    std::vector<HeightField> fields_;
-    std::vector<uint32_t> patch_;
-    std::vector<const HeightField *> order_;
+    Vector<HeightField> fields_;
+    Vector<uint32_t> patch_;
+    Vector<const HeightField *> order_;
     double farthest_ = 0; /* the largest radius */
 };
 

@@ -97,19 +97,19 @@ private:
     }
 
     uint32_t width_, height_;
-    std::vector<Segment> segments_;
+    Vector<Segment> segments_;
 };
 
-using Sizes = std::vector<std::array<uint32_t, 2>>;
+using Sizes = Vector<std::array<uint32_t, 2>>;
 
 /* Fills pages of a given size in the given order; sides are in grains. The height that comes back
  * is what was used of the page if there is but one. */
-static Packing fill(const Sizes &sizes, const std::vector<uint32_t> &order, uint32_t width,
+static Packing fill(const Sizes &sizes, const Vector<uint32_t> &order, uint32_t width,
                     uint32_t height)
 {
     Packing packing;
     packing.places.resize(sizes.size());
-    std::vector<Skyline> pages;
+    Vector<Skyline> pages;
     for (uint32_t i : order) {
         Packing::Place &place = packing.places[i];
         uint32_t w = sizes[i][0], h = sizes[i][1], page = 0;
@@ -128,7 +128,7 @@ static Packing fill(const Sizes &sizes, const std::vector<uint32_t> &order, uint
 }
 
 /* One page: the width, among those near the square root of the area, that wastes least. */
-static Packing pack_one(const Sizes &sizes, const std::vector<uint32_t> &order, uint64_t area,
+static Packing pack_one(const Sizes &sizes, const Vector<uint32_t> &order, uint64_t area,
                         uint32_t widest, uint32_t least, uint32_t most)
 {
     constexpr int TRIES = 24; /* widths; at double 0.3 % fewer bytes (truck) for twice the time */
@@ -153,7 +153,7 @@ static Packing pack_one(const Sizes &sizes, const std::vector<uint32_t> &order, 
 }
 
 /* Several pages: as few as the largest size needs, then as low as they still hold everything. */
-static Packing pack_many(const Sizes &sizes, const std::vector<uint32_t> &order, uint64_t area,
+static Packing pack_many(const Sizes &sizes, const Vector<uint32_t> &order, uint64_t area,
                          uint32_t most)
 {
     constexpr uint32_t STEPS = 32; /* heights between the least and the largest */
@@ -179,7 +179,7 @@ Packing pack(const Sizes &texels, uint32_t grain)
         area += uint64_t(size[0]) * size[1];
         widest = std::max(widest, size[0]);
     }
-    std::vector<uint32_t> order(sizes.size());
+    Vector<uint32_t> order(sizes.size());
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         if (sizes[a][1] != sizes[b][1])

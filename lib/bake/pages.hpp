@@ -16,14 +16,14 @@ struct Packing {
     struct Place {
         uint32_t page, x, y;
     };
-    std::vector<Place> places;
+    Vector<Place> places;
     uint32_t page_count = 0, width = 0, height = 0;
 };
-Packing pack(const std::vector<std::array<uint32_t, 2>> &sizes, uint32_t grain);
+Packing pack(const Vector<std::array<uint32_t, 2>> &sizes, uint32_t grain);
 
 /* Puts patches on the pages of one asset; those of an asset have the same kinds of maps. Emission
  * scale is left to the caller. Throws Error: LIMIT. */
-Maps place_on_pages(std::vector<PatchMaps> &patches, const Vec3d &anchor,
+Maps place_on_pages(Vector<PatchMaps> &patches, const Vec3d &anchor,
                     const BakeOptions &options);
 
 } // namespace gtx::baking

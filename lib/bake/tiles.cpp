@@ -26,7 +26,7 @@ struct Tile {
 struct LayerHeights {
     const HeightGrid *grid;
     double vertical, step;       /* step: the coarsest */
-    std::vector<uint8_t> halvings; /* of a node's step: the coarsest of the tiles that have it */
+    Vector<uint8_t> halvings;      /* of a node's step: the coarsest of the tiles that have it */
 
     bool has(int i, int j) const
     {
@@ -46,7 +46,7 @@ struct LayerHeights {
 };
 
 /* Cuts the grid evenly into as few tiles as the side allows. */
-static void cut(const LayerHeights &layer, uint32_t index, unsigned side, std::vector<Tile> &tiles)
+static void cut(const LayerHeights &layer, uint32_t index, unsigned side, Vector<Tile> &tiles)
 {
     const int size[2] = {int(layer.grid->nx), int(layer.grid->ny)};
     int count[2];
@@ -93,7 +93,7 @@ static void find_range(const LayerHeights &layer, bool rounded, Tile &tile)
 
 /* Gives each tile the finest step that its codes can tell its relief in once nodes are rounded to
  * the steps of all tiles that have them. A layer's first tile is tiles[0]. */
-static void choose_steps(std::vector<Tile *> &tiles, const TileOptions &options,
+static void choose_steps(Vector<Tile *> &tiles, const TileOptions &options,
                          LayerHeights &layer, Task &task)
 {
     const double top = gtx_height_steps(options.bake.height_bits);
@@ -247,7 +247,7 @@ static PatchMaps bake_tile(const Tile &tile, const LayerHeights &layer, const Gr
     return maps;
 }
 
-static Vec3d anchor_of(const std::vector<LayerHeights> &layers, const std::vector<Tile> &tiles)
+static Vec3d anchor_of(const Vector<LayerHeights> &layers, const Vector<Tile> &tiles)
 {
     Vec3d low(INFINITY, INFINITY, INFINITY), high = -low;
     for (const Tile &tile : tiles)
@@ -269,7 +269,7 @@ namespace gtx {
 
 using namespace baking;
 
-static void check(const std::vector<GridLayer> &layers, const TileOptions &options)
+static void check(const Vector<GridLayer> &layers, const TileOptions &options)
 {
     if (options.tile < 16 || options.tile > 512)
         throw Error(GTX_ERROR_ARGUMENT, "a tile has 16 to 512 texels along a side");
@@ -286,13 +286,13 @@ static void check(const std::vector<GridLayer> &layers, const TileOptions &optio
     }
 }
 
-Maps bake_tiles(const std::vector<GridLayer> &layers, const TileOptions &options,
+Maps bake_tiles(const Vector<GridLayer> &layers, const TileOptions &options,
                 TileReport &report, Task &task)
 {
     check(layers, options);
     task.begin("bake");
-    std::vector<LayerHeights> heights;
-    std::vector<Tile> tiles;
+    Vector<LayerHeights> heights;
+    Vector<Tile> tiles;
     for (uint32_t n = 0; n < layers.size(); ++n) {
         const HeightGrid *grid = layers[n].heights;
         heights.push_back({grid, options.vertical, 0, {}});
@@ -300,14 +300,14 @@ Maps bake_tiles(const std::vector<GridLayer> &layers, const TileOptions &options
         cut(heights[n], n, options.tile, tiles);
         if (tiles.size() == first)
             throw Error(GTX_ERROR_EMPTY, "a grid has no four neighbouring nodes with values");
-        std::vector<Tile *> own;
+        Vector<Tile *> own;
         for (size_t t = first; t < tiles.size(); ++t)
             own.push_back(&tiles[t]);
         choose_steps(own, options, heights[n], task);
     }
     const Vec3d anchor = anchor_of(heights, tiles);
-    std::vector<PatchMaps> patches(tiles.size());
-    std::vector<Rounding> rounding(tiles.size());
+    Vector<PatchMaps> patches(tiles.size());
+    Vector<Rounding> rounding(tiles.size());
     task.parallel(tiles.size(), [&](size_t t) {
         const uint32_t n = tiles[t].layer;
         patches[t] = bake_tile(tiles[t], heights[n], layers[n], anchor, options, rounding[t]);

@@ -9,7 +9,7 @@ namespace gtx {
 /* One surface: heights in object units along +Y, and colours. */
 struct GridLayer {
     const HeightGrid *heights;
-    std::vector<std::array<uint8_t, 3>> colors; /* sRGB, a node each; empty: none has any */
+    Vector<std::array<uint8_t, 3>> colors;      /* sRGB, a node each; empty: none has any */
 };
 
 struct TileOptions {
@@ -29,7 +29,7 @@ struct TileReport {
  * its border. Normals follow from the values at full precision. The height fields are seen from
  * both sides. Deterministic for any thread count. Stages of `task`: "bake", "pack".
  * Throws Error: INPUT, EMPTY, LIMIT. */
-Maps bake_tiles(const std::vector<GridLayer> &layers, const TileOptions &options,
+Maps bake_tiles(const Vector<GridLayer> &layers, const TileOptions &options,
                 TileReport &report, Task &task);
 
 } // namespace gtx

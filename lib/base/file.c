@@ -3,9 +3,9 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "base/limits.h"
 
 #include <errno.h>
-#include <inttypes.h>
 #include <string.h>
 
 /* What a stream without a size starts with. */
@@ -27,8 +27,7 @@ static gtx_result grow(gtx_file_bytes *bytes, uint64_t wanted, const char *name,
     const uint64_t most = bytes->limit < SIZE_MAX ? bytes->limit : SIZE_MAX;
     const size_t capacity = (size_t)(wanted < most ? wanted : most);
     if (capacity <= bytes->size)
-        return gtx_fail(error, GTX_ERROR_LIMIT, "%s has more than the %" PRIu64 " bytes allowed",
-                        name, most);
+        return gtx_fail_limit(error, GTX_LIMITED_MEMORY, name, wanted, most);
     uint8_t *grown = gtx_alloc_raw(&bytes->allocator, capacity, 1);
     if (!grown)
         return gtx_fail(error, GTX_ERROR_MEMORY, "out of memory for %s", name);
@@ -40,25 +39,43 @@ static gtx_result grow(gtx_file_bytes *bytes, uint64_t wanted, const char *name,
     return GTX_OK;
 }
 
-gtx_result gtx_read_stream(FILE *stream, const char *name, gtx_file_bytes *bytes,
-                           gtx_error *error)
+static gtx_result read_all(FILE *stream, uint64_t left, const uint8_t *head, size_t head_size,
+                           const char *name, gtx_file_bytes *bytes, gtx_error *error)
 {
-    bytes->data = NULL;
-    bytes->size = bytes->capacity = 0;
-    const uint64_t left = bytes_left(stream);
-    if (left > bytes->limit)
-        return gtx_fail(error, GTX_ERROR_LIMIT, "%s has %" PRIu64 " bytes, more than the %" PRIu64
-                        " allowed", name, left, bytes->limit);
-    gtx_result result = grow(bytes, left ? left : PIECE, name, error);
+    gtx_result result = grow(bytes, left > head_size ? left : PIECE, name, error);
+    if (result)
+        return result;
+    bytes->size = head_size < bytes->capacity ? head_size : bytes->capacity;
+    memcpy(bytes->data, head, bytes->size);
+    if (bytes->size < head_size)
+        return gtx_fail_limit(error, GTX_LIMITED_MEMORY, name, head_size, bytes->limit);
     while (!result) {
         bytes->size += fread(bytes->data + bytes->size, 1, bytes->capacity - bytes->size, stream);
         const int next = bytes->size < bytes->capacity ? EOF : fgetc(stream);
         if (next == EOF)
-            break;
+            return GTX_OK;
         result = grow(bytes, 2 * (uint64_t)bytes->capacity, name, error);
         if (!result)
             bytes->data[bytes->size++] = (uint8_t)next;
     }
+    return result;
+}
+
+gtx_result gtx_read_stream(FILE *stream, const char *name, gtx_file_bytes *bytes,
+                           gtx_error *error)
+{
+    uint8_t head[GTX_FILE_HEAD];
+    bytes->data = NULL;
+    bytes->size = bytes->capacity = 0;
+    const uint64_t left = bytes_left(stream);
+    if (left > bytes->limit)
+        return gtx_fail_limit(error, GTX_LIMITED_MEMORY, name, left, bytes->limit);
+    const size_t head_size = fread(head, 1, sizeof head, stream);
+    gtx_result result = GTX_OK;
+    if (bytes->look && !ferror(stream))
+        result = bytes->look(head, head_size, left, bytes->user, error);
+    if (!result)
+        result = read_all(stream, left, head, head_size, name, bytes, error);
     if (!result && ferror(stream))
         result = gtx_fail(error, GTX_ERROR_READ, "cannot read %s: %s", name, strerror(errno));
     if (result)

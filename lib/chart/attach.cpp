@@ -31,7 +31,7 @@ constexpr double WALL_TEXELS = 16;
  * nearly all, and chains of islands must not take a time of their number squared. */
 constexpr int PASSES = 4;
 
-template <class T> void sort_unique(std::vector<T> &values)
+template <class T> void sort_unique(Vector<T> &values)
 {
     std::sort(values.begin(), values.end());
     values.erase(std::unique(values.begin(), values.end()), values.end());
@@ -67,14 +67,14 @@ private:
     }
 
     double step_;
-    std::vector<Entry> entries_; /* ascending, once dilated */
-    std::vector<bool> filter_;   /* by hash: most points are near no candidate */
+    Vector<Entry> entries_;      /* ascending, once dilated */
+    Vector<bool> filter_;        /* by hash: most points are near no candidate */
 };
 
 void NearGrid::dilate()
 {
     sort_unique(entries_);
-    std::vector<Entry> dilated;
+    Vector<Entry> dilated;
     dilated.reserve(27 * entries_.size());
     for (const auto &[cell, candidate] : entries_)
         for (int x = -1; x <= 1; ++x)
@@ -99,8 +99,8 @@ template <class Visit> void NearGrid::each_near(const Vec3d &point, Visit visit)
 
 class Attachment {
 public:
-    Attachment(Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
-               std::vector<Frame> &frames)
+    Attachment(Surface &surface, const Bounds &bounds, Vector<Region> &regions,
+               Vector<Frame> &frames)
         : surface_(surface), bounds_(bounds), regions_(regions), frames_(frames), grid_of_(frames),
           grids_(regions.size())
     {
@@ -128,19 +128,19 @@ private:
 
     Surface &surface_;
     const Bounds &bounds_;
-    std::vector<Region> &regions_;
-    std::vector<Frame> &frames_;
-    std::vector<uint32_t> candidates_;                /* largest first */
-    std::vector<std::pair<uint32_t, uint32_t>> near_; /* candidate, region; ascending */
-    std::vector<uint32_t> target_;                    /* of a region; itself while it stays */
+    Vector<Region> &regions_;
+    Vector<Frame> &frames_;
+    Vector<uint32_t> candidates_;                     /* largest first */
+    Vector<std::pair<uint32_t, uint32_t>> near_;      /* candidate, region; ascending */
+    Vector<uint32_t> target_;                         /* of a region; itself while it stays */
     /* Depths of regions that were tried as targets, in the frames that they had at first. */
-    std::vector<Frame> grid_of_;
-    std::vector<LayerGrid> grids_;
+    Vector<Frame> grid_of_;
+    Vector<LayerGrid> grids_;
 };
 
 void Attachment::find_candidates()
 {
-    std::vector<std::pair<double, uint32_t>> order;
+    Vector<std::pair<double, uint32_t>> order;
     for (uint32_t i = 0; i < regions_.size(); ++i)
         order.emplace_back(-texels(regions_[i]), i);
     std::sort(order.begin(), order.end());
@@ -159,7 +159,7 @@ void Attachment::find_near()
                 grid.add(mesh.positions[v], candidate);
     grid.dilate();
 
-    std::vector<uint32_t> last_seen(mesh.positions.size(), NO_TRIANGLE); /* a vertex: by a region */
+    Vector<uint32_t> last_seen(mesh.positions.size(), NO_TRIANGLE);      /* a vertex: by a region */
     for (uint32_t region = 0; region < regions_.size(); ++region)
         for (uint32_t t : regions_[region].triangles)
             for (uint32_t v : mesh.triangles[t])
@@ -275,8 +275,8 @@ void Attachment::run()
 
 } // namespace
 
-void attach_islands(Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
-                    std::vector<Frame> &frames)
+void attach_islands(Surface &surface, const Bounds &bounds, Vector<Region> &regions,
+                    Vector<Frame> &frames)
 {
     Attachment(surface, bounds, regions, frames).run();
 }

@@ -8,7 +8,7 @@ namespace gtx {
 /* Moves charts of a few texels into charts that they touch, where these stay free of folds and
  * texels are saved. Target charts keep their axes, and may then have several connected pieces. What
  * is smaller than a texel or two and faces away becomes junk there. */
-void attach_islands(Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
-                    std::vector<Frame> &frames);
+void attach_islands(Surface &surface, const Bounds &bounds, Vector<Region> &regions,
+                    Vector<Frame> &frames);
 
 } // namespace gtx

@@ -18,12 +18,12 @@ constexpr int CONE_SECTORS = 256;
 
 /* The unit vectors farthest from their mean, one in each sector around it: the others hardly affect
  * the smallest cone. */
-std::vector<Vec3f> outermost(const std::vector<Vec3f> &normals, const Vec3d &mean)
+Vector<Vec3f> outermost(const Vector<Vec3f> &normals, const Vec3d &mean)
 {
     if (normals.size() <= 2 * CONE_SECTORS || mean == Vec3d())
         return normals;
     const Vec3f z(normalize(mean)), u(any_perpendicular(Vec3d(z))), v = cross(z, u);
-    std::vector<const Vec3f *> farthest(CONE_SECTORS);
+    Vector<const Vec3f *> farthest(CONE_SECTORS);
     for (const Vec3f &n : normals) {
         const float a = dot(n, u), b = dot(n, v);
         const float share = b / std::max(std::fabs(a) + std::fabs(b), 1e-30f);
@@ -32,7 +32,7 @@ std::vector<Vec3f> outermost(const std::vector<Vec3f> &normals, const Vec3d &mea
         if (!sector || dot(n, z) < dot(*sector, z))
             sector = &n;
     }
-    std::vector<Vec3f> out;
+    Vector<Vec3f> out;
     for (const Vec3f *n : farthest)
         if (n)
             out.push_back(*n);
@@ -41,12 +41,12 @@ std::vector<Vec3f> outermost(const std::vector<Vec3f> &normals, const Vec3d &mea
 
 /* The centre of the smallest ball around unit vectors points along the axis of their smallest
  * cone while that is narrower than a half-space (Badoiu, Clarkson 2003: step to the farthest). */
-Vec3d ball_axis(const std::vector<Vec3f> &normals)
+Vec3d ball_axis(const Vector<Vec3f> &normals)
 {
     Vec3f centre;
     for (const Vec3f &n : normals)
         centre += n / float(normals.size());
-    const std::vector<Vec3f> outer = outermost(normals, Vec3d(centre));
+    const Vector<Vec3f> outer = outermost(normals, Vec3d(centre));
     for (int step = 1; step <= CONE_STEPS; ++step) {
         const Vec3f *farthest = &outer[0];
         float least = INFINITY;
@@ -63,7 +63,7 @@ Vec3d ball_axis(const std::vector<Vec3f> &normals)
 /* Moves the triangles that turn farthest from an axis to the front, up to DEVIANT_AREA of `size`,
  * and returns their number. Sorts no more of the rest than it must. */
 size_t drop_deviants(const Surface &surface, float size,
-                     std::vector<std::pair<float, uint32_t>> &order)
+                     Vector<std::pair<float, uint32_t>> &order)
 {
     for (size_t sorted = 64;; sorted *= 4) {
         const auto end = order.begin() + ptrdiff_t(std::min(sorted, order.size()));
@@ -87,9 +87,9 @@ Vec3d any_perpendicular(const Vec3d &z)
     return normalize(cross(z, least));
 }
 
-Vec3d median_axis(const Mesh &mesh, const std::vector<uint32_t> &triangles)
+Vec3d median_axis(const Mesh &mesh, const Vector<uint32_t> &triangles)
 {
-    std::vector<float> values[3];
+    Vector<float> values[3];
     for (uint32_t t : triangles) {
         Vec3d normal = normalize(mesh.area_vector(t));
         for (int i = 0; i < 3; ++i)
@@ -104,16 +104,16 @@ Vec3d median_axis(const Mesh &mesh, const std::vector<uint32_t> &triangles)
     return length(median) > 1e-3 ? normalize(median) : normalize(mesh.area_vector(triangles[0]));
 }
 
-Vec3d cone_axis(const Surface &surface, const std::vector<uint32_t> &triangles)
+Vec3d cone_axis(const Surface &surface, const Vector<uint32_t> &triangles)
 {
-    std::vector<Vec3f> normals;
+    Vector<Vec3f> normals;
     float size = 0;
     for (uint32_t t : triangles) {
         normals.push_back(surface.facets[t].normal);
         size += surface.facets[t].size;
     }
     Vec3d axis = ball_axis(normals);
-    std::vector<std::pair<float, uint32_t>> order;
+    Vector<std::pair<float, uint32_t>> order;
     for (uint32_t t : triangles)
         order.emplace_back(dot(surface.facets[t].normal, Vec3f(axis)), t);
     const size_t first_kept = drop_deviants(surface, size, order);

@@ -26,7 +26,7 @@ struct Frame {
 
 struct Chart {
     /* The triangles whose surface is the core, ascending. */
-    std::vector<uint32_t> triangles;
+    Vector<uint32_t> triangles;
     Frame frame;
     bool two_sided = false;
     /* Straight cuts along the frame's x and y, object units: the core is the part of the triangles
@@ -74,13 +74,13 @@ struct ChartReport {
 
 /* Triangles here are those of charted(). */
 struct Partition {
-    std::vector<Chart> charts;
+    Vector<Chart> charts;
     /* PGP cuts triangles where charts end; empty where the charts are of the source's own. */
     Mesh mesh;
-    std::vector<uint32_t> source;        /* per triangle of `mesh`: that of the source, ascending */
+    Vector<uint32_t> source;             /* per triangle of `mesh`: that of the source, ascending */
     double pitch = 0;                    /* texel pitch of the model, object units */
-    std::vector<uint32_t> initial_chart; /* per triangle, before splitting */
-    std::vector<uint8_t> junk;           /* per triangle: 1 = junk */
+    Vector<uint32_t> initial_chart;      /* per triangle, before splitting */
+    Vector<uint8_t> junk;                /* per triangle: 1 = junk */
     ChartReport report;
 
     const Mesh &charted(const Mesh &source_mesh) const;
@@ -99,9 +99,9 @@ Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &ta
  * border within `reach` object units (measured in the frame's (x, y) plane from the core's
  * outline) through edges, that faces the frame (n.z >= 0.2). Returns triangles beyond the core,
  * ascending. `neighbours` is triangle_neighbours(mesh). Const and reentrant. */
-std::vector<uint32_t> overlap_triangles(const Mesh &mesh,
-                                        const std::vector<std::array<uint32_t, 3>> &neighbours,
-                                        const Chart &chart, double reach);
+Vector<uint32_t> overlap_triangles(const Mesh &mesh,
+                                   const Vector<std::array<uint32_t, 3>> &neighbours,
+                                   const Chart &chart, double reach);
 
 /* Writes the charted mesh with a colour a chart of the partition before splitting, inverted
  * triangles green (paper, Figure 5): binary PLY, through a temporary name beside it. Throws Error:

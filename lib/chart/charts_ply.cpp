@@ -25,13 +25,13 @@ Rgba8 chart_color(uint32_t chart)
 }
 
 /* Triangles that face away from the median normal of their initial chart. */
-std::vector<bool> initially_inverted(const Mesh &mesh, const Partition &partition)
+Vector<bool> initially_inverted(const Mesh &mesh, const Partition &partition)
 {
-    std::vector<std::vector<uint32_t>> charts(partition.report.initial_charts);
+    Vector<Vector<uint32_t>> charts(partition.report.initial_charts);
     for (uint32_t t = 0; t < mesh.triangle_count(); ++t)
         charts[partition.initial_chart[t]].push_back(t);
-    std::vector<bool> out(mesh.triangle_count());
-    for (const std::vector<uint32_t> &chart : charts) {
+    Vector<bool> out(mesh.triangle_count());
+    for (const Vector<uint32_t> &chart : charts) {
         Vec3d z = median_axis(mesh, chart);
         for (uint32_t t : chart)
             out[t] = dot(mesh.area_vector(t), z) <= 0;
@@ -87,7 +87,7 @@ std::string header(const Mesh &mesh)
 
 void write_charts_ply(const std::string &path, const Mesh &mesh, const Partition &partition)
 {
-    std::vector<bool> inverted = initially_inverted(mesh, partition);
+    Vector<bool> inverted = initially_inverted(mesh, partition);
     std::string temporary = path + ".part";
     PlyFile file(temporary);
     std::string head = header(mesh);

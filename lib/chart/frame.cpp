@@ -26,9 +26,9 @@ double turn(const Point &a, const Point &b, const Point &c)
     return (b.u - a.u) * (c.v - a.v) - (b.v - a.v) * (c.u - a.u);
 }
 
-std::vector<uint32_t> vertices_of(const Mesh &mesh, const std::vector<uint32_t> &triangles)
+Vector<uint32_t> vertices_of(const Mesh &mesh, const Vector<uint32_t> &triangles)
 {
-    std::vector<uint32_t> out;
+    Vector<uint32_t> out;
     out.reserve(triangles.size() * 3);
     for (uint32_t t : triangles)
         out.insert(out.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
@@ -39,7 +39,7 @@ std::vector<uint32_t> vertices_of(const Mesh &mesh, const std::vector<uint32_t> 
         out.erase(std::unique(out.begin(), out.end()), out.end());
         return out;
     }
-    std::vector<uint64_t> used((high - low) / 64 + 1); /* a bit each: indices lie close together */
+    Vector<uint64_t> used((high - low) / 64 + 1);      /* a bit each: indices lie close together */
     for (uint32_t vertex : out)
         used[(vertex - low) / 64] |= uint64_t(1) << (vertex - low) % 64;
     out.clear();
@@ -50,11 +50,11 @@ std::vector<uint32_t> vertices_of(const Mesh &mesh, const std::vector<uint32_t> 
 }
 
 /* Andrew's monotone chain: the convex hull in the plane, counter-clockwise. */
-std::vector<Point> hull_of(std::vector<Point> points)
+Vector<Point> hull_of(Vector<Point> points)
 {
     std::sort(points.begin(), points.end(),
               [](const Point &a, const Point &b) { return a.u != b.u ? a.u < b.u : a.v < b.v; });
-    std::vector<Point> hull;
+    Vector<Point> hull;
     auto add = [&hull](const Point &p, size_t floor) {
         while (hull.size() >= floor + 2 &&
                turn(hull[hull.size() - 2], hull[hull.size() - 1], p) <= 0)
@@ -72,9 +72,9 @@ std::vector<Point> hull_of(std::vector<Point> points)
 
 /* The direction (cos, sin) of the longer side of the least rectangle around points in the plane.
  * One side of that rectangle lies along an edge of the hull (Freeman, Shapira 1975). */
-Point least_rectangle(const std::vector<Point> &points)
+Point least_rectangle(const Vector<Point> &points)
 {
-    std::vector<Point> hull = hull_of(points);
+    Vector<Point> hull = hull_of(points);
     Point best = {1, 0, 0};
     double least = INFINITY;
     for (size_t i = 0; i < hull.size(); ++i) {
@@ -106,7 +106,7 @@ struct Plane {
 };
 
 /* The weighted least-squares plane; false when the points do not span one. */
-bool fit_plane(const std::vector<Point> &points, const std::vector<double> &weights, Plane &out)
+bool fit_plane(const Vector<Point> &points, const Vector<double> &weights, Plane &out)
 {
     double w = 0, u = 0, v = 0, h = 0;
     for (size_t i = 0; i < points.size(); ++i) {
@@ -134,7 +134,7 @@ bool fit_plane(const std::vector<Point> &points, const std::vector<double> &weig
     return true;
 }
 
-double range_above(const Plane &plane, const std::vector<Point> &points)
+double range_above(const Plane &plane, const Vector<Point> &points)
 {
     double low = INFINITY, high = -INFINITY;
     for (const Point &p : points) {
@@ -147,11 +147,11 @@ double range_above(const Plane &plane, const std::vector<Point> &points)
 
 /* The plane above which points have the least range of height: least squares, reweighted by the
  * distances they leave (Lawson 1961), which tends to the minimax plane. */
-Plane minimax_plane(const std::vector<Point> &points)
+Plane minimax_plane(const Vector<Point> &points)
 {
     Plane best, plane;
     double least = range_above(best, points);
-    std::vector<double> weights(points.size(), 1);
+    Vector<double> weights(points.size(), 1);
     for (int step = 0; step <= LAWSON_STEPS && fit_plane(points, weights, plane); ++step) {
         double range = range_above(plane, points);
         bool gentle = std::abs(plane.a) <= STEEPEST_TILT && std::abs(plane.b) <= STEEPEST_TILT;
@@ -171,7 +171,7 @@ Plane minimax_plane(const std::vector<Point> &points)
 }
 
 /* Sets the origin and the extents of a frame so that it encloses the triangles. */
-void enclose(const Mesh &mesh, const std::vector<uint32_t> &triangles, Frame &frame)
+void enclose(const Mesh &mesh, const Vector<uint32_t> &triangles, Frame &frame)
 {
     FrameInverse inverse(frame);
     Vec3d low(INFINITY, INFINITY, INFINITY), high = -low;
@@ -204,11 +204,11 @@ Vec3d Frame::local(const Vec3d &point) const
     return FrameInverse(*this)(point);
 }
 
-Frame make_frame(const Mesh &mesh, const std::vector<uint32_t> &triangles, const Vec3d &z)
+Frame make_frame(const Mesh &mesh, const Vector<uint32_t> &triangles, const Vec3d &z)
 {
-    std::vector<uint32_t> vertices = vertices_of(mesh, triangles);
+    Vector<uint32_t> vertices = vertices_of(mesh, triangles);
     Vec3d base = mesh.positions[vertices[0]], u = any_perpendicular(z), v = cross(z, u);
-    std::vector<Point> points;
+    Vector<Point> points;
     points.reserve(vertices.size());
     for (uint32_t i : vertices) {
         Vec3d d = mesh.positions[i] - base;
@@ -228,7 +228,7 @@ Frame make_frame(const Mesh &mesh, const std::vector<uint32_t> &triangles, const
     return frame;
 }
 
-Frame turned_frame(const Mesh &mesh, const std::vector<uint32_t> &triangles, const Frame &frame,
+Frame turned_frame(const Mesh &mesh, const Vector<uint32_t> &triangles, const Frame &frame,
                    double radians)
 {
     const Vec3d &z = frame.z;
@@ -243,9 +243,9 @@ Frame turned_frame(const Mesh &mesh, const std::vector<uint32_t> &triangles, con
 }
 
 Frame part_of_frame(const Frame &whole, const double low[2], const double high[2],
-                    const std::vector<Vec3d> &points)
+                    const Vector<Vec3d> &points)
 {
-    std::vector<Point> heights;
+    Vector<Point> heights;
     heights.reserve(points.size());
     for (const Vec3d &p : points)
         heights.push_back({p.x, p.y, p.z});

@@ -10,24 +10,24 @@ namespace gtx {
 Vec3d any_perpendicular(const Vec3d &z);
 
 /* The component-wise median of the triangles' normals, normalised (paper, section 5). */
-Vec3d median_axis(const Mesh &mesh, const std::vector<uint32_t> &triangles);
+Vec3d median_axis(const Mesh &mesh, const Vector<uint32_t> &triangles);
 
 /* The axis of the smallest cone around the smoothed normals, but for the most deviant 0.5 % of
  * the area. */
-Vec3d cone_axis(const Surface &surface, const std::vector<uint32_t> &triangles);
+Vec3d cone_axis(const Surface &surface, const Vector<uint32_t> &triangles);
 
 /* The frame along unit `z`: the rectangle of least area, longer side first, tilted where that
  * takes away height. */
-Frame make_frame(const Mesh &mesh, const std::vector<uint32_t> &triangles, const Vec3d &z);
+Frame make_frame(const Mesh &mesh, const Vector<uint32_t> &triangles, const Vec3d &z);
 
 /* The frame of the same axis and tilt, turned by `radians` about z. */
-Frame turned_frame(const Mesh &mesh, const std::vector<uint32_t> &triangles, const Frame &frame,
+Frame turned_frame(const Mesh &mesh, const Vector<uint32_t> &triangles, const Frame &frame,
                    double radians);
 
 /* The part of a frame between `low` and `high` along its x and y, tilted where that takes height
  * from `points`, which are in the frame's coordinates. */
 Frame part_of_frame(const Frame &whole, const double low[2], const double high[2],
-                    const std::vector<Vec3d> &points);
+                    const Vector<Vec3d> &points);
 
 /* Affine coordinates in a frame, for many points. */
 struct FrameInverse {

@@ -48,10 +48,10 @@ LayerGrid blank_grid(const int low[2], const int high[2])
 }
 
 /* Empties `samples` of the 8-connected group that holds the one at `start`; returns the group. */
-std::vector<DoubleSample> take_group(LayerGrid &grid, size_t start, float apart)
+Vector<DoubleSample> take_group(LayerGrid &grid, size_t start, float apart)
 {
-    std::vector<DoubleSample> group;
-    std::vector<size_t> stack;
+    Vector<DoubleSample> group;
+    Vector<size_t> stack;
     const int width = grid.size[0], height = grid.size[1];
     auto take = [&](size_t at) {
         Sample &s = grid.samples[at];
@@ -72,7 +72,7 @@ std::vector<DoubleSample> take_group(LayerGrid &grid, size_t start, float apart)
     return group;
 }
 
-bool is_fold(const std::vector<DoubleSample> &group, const LayerRule &rule)
+bool is_fold(const Vector<DoubleSample> &group, const LayerRule &rule)
 {
     return group.size() > JUNK_SAMPLES ||
            std::any_of(group.begin(), group.end(),
@@ -95,7 +95,7 @@ public:
     /* Whether surface within `reach` texels of (u, v) leads from one triangle to another. */
     bool joined(uint32_t from, uint32_t to, double u, double v, double reach) const
     {
-        std::vector<uint32_t> queue(1, from);
+        Vector<uint32_t> queue(1, from);
         for (size_t next = 0; next < queue.size(); ++next) {
             if (queue[next] == to)
                 return true;
@@ -124,7 +124,7 @@ private:
 /* Neighbouring samples with no surface between them: the cell that bridges them shows neither
  * side. */
 void find_discontinuities(const FlatRegion &flat, const LayerGrid &grid, float max_step,
-                          std::vector<DoubleSample> &out)
+                          Vector<DoubleSample> &out)
 {
     const int width = grid.size[0], height = grid.size[1];
     for (int j = 0; j < height; ++j)
@@ -224,7 +224,7 @@ Layers find_layers(const Surface &surface, const Region &region, const Frame &fr
     find_discontinuities(FlatRegion(surface, region, frame, pitch), grid, rule.step,
                          layers.discontinuities);
     for (size_t at = 0; at < grid.samples.size(); ++at) {
-        std::vector<DoubleSample> group = take_group(grid, at, rule.apart);
+        Vector<DoubleSample> group = take_group(grid, at, rule.apart);
         layers.doubled += group.size();
         if (!group.empty() && is_fold(group, rule))
             layers.folds.insert(layers.folds.end(), group.begin(), group.end());
@@ -276,7 +276,7 @@ bool fold_together(const LayerGrid &target, const LayerGrid &added, const LayerR
             doubled += !was && s.high - s.low > rule.apart;
         }
     for (size_t at = 0; at < both.samples.size(); ++at) {
-        std::vector<DoubleSample> group = take_group(both, at, rule.apart);
+        Vector<DoubleSample> group = take_group(both, at, rule.apart);
         if (!group.empty() && is_fold(group, rule))
             return true;
     }

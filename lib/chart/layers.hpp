@@ -14,10 +14,10 @@ struct DoubleSample {
 struct Layers {
     size_t samples = 0;                 /* texel centres covered */
     size_t doubled = 0;                 /* of those, twice */
-    std::vector<DoubleSample> folds;    /* the doubled ones that are not noise */
+    Vector<DoubleSample> folds;         /* the doubled ones that are not noise */
     /* Neighbouring texel centres far apart in depth with no surface between them: a hole opens
      * where the cell that bridges them is cut away. */
-    std::vector<DoubleSample> discontinuities;
+    Vector<DoubleSample> discontinuities;
 };
 
 /* Depths: `apart` makes two layers, a few of them up to `shallow` are a scan's noise, and a `step`
@@ -35,7 +35,7 @@ struct LayerGrid {
         uint32_t back = 0, front = 0;
     };
     int first[2] = {0, 0}, size[2] = {0, 0};
-    std::vector<Sample> samples;
+    Vector<Sample> samples;
 
     /* The sample at a texel of the frame, NULL outside the grid. */
     const Sample *at(int i, int j) const;

@@ -57,25 +57,25 @@ struct Trial {
     bool fits = false;
     Region both;
     Frame frame;
-    std::vector<Region> loose; /* walls and the like, left out of both */
+    Vector<Region> loose;      /* walls and the like, left out of both */
 };
 
 class Merger {
 public:
-    Merger(const Surface &surface, const Bounds &bounds, std::vector<Region> &regions,
-           std::vector<Frame> &frames)
+    Merger(const Surface &surface, const Bounds &bounds, Vector<Region> &regions,
+           Vector<Frame> &frames)
         : surface_(surface), bounds_(bounds), regions_(regions), frames_(frames),
           border_(regions.size()), outline_(regions.size()), texels_(regions.size()),
           age_(regions.size()), owner_(surface.whole.size()), place_(surface.whole.size())
     {
     }
 
-    std::vector<Region> run(Task &task);
+    Vector<Region> run(Task &task);
 
 private:
     void measure();
     void offer(uint32_t a, uint32_t b);
-    std::vector<Offer> best_offers();
+    Vector<Offer> best_offers();
     bool too_steep(const Offer &offer, const Vec3d &z, double most) const;
     Region join(const Offer &offer);
     Trial try_offer(const Offer &offer);
@@ -87,15 +87,15 @@ private:
 
     const Surface &surface_;
     const Bounds &bounds_;
-    std::vector<Region> &regions_;
-    std::vector<Frame> &frames_;
-    std::vector<std::map<uint32_t, Border>> border_; /* of a chart with others */
-    std::vector<double> outline_, texels_;
-    std::vector<uint32_t> age_;
-    std::vector<uint32_t> owner_; /* of a triangle: its chart */
-    std::vector<uint32_t> place_; /* likewise in the region that is being made */
+    Vector<Region> &regions_;
+    Vector<Frame> &frames_;
+    Vector<std::map<uint32_t, Border>> border_;      /* of a chart with others */
+    Vector<double> outline_, texels_;
+    Vector<uint32_t> age_;
+    Vector<uint32_t> owner_;      /* of a triangle: its chart */
+    Vector<uint32_t> place_;      /* likewise in the region that is being made */
     std::priority_queue<Offer> queue_;
-    std::vector<Region> loose_;
+    Vector<Region> loose_;
 };
 
 void Merger::measure()
@@ -138,9 +138,9 @@ bool Merger::too_steep(const Offer &offer, const Vec3d &z, double most) const
 }
 
 /* The best offers that stand, no chart in two of them. */
-std::vector<Offer> Merger::best_offers()
+Vector<Offer> Merger::best_offers()
 {
-    std::vector<Offer> out, later;
+    Vector<Offer> out, later;
     while (!queue_.empty() && out.size() < BATCH) {
         const Offer best = queue_.top();
         queue_.pop();
@@ -158,7 +158,7 @@ std::vector<Offer> Merger::best_offers()
 
 Region Merger::join(const Offer &offer)
 {
-    const std::vector<uint32_t> &a = regions_[offer.a].triangles, &b = regions_[offer.b].triangles;
+    const Vector<uint32_t> &a = regions_[offer.a].triangles, &b = regions_[offer.b].triangles;
     Region out;
     std::merge(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(out.triangles));
     for (uint32_t i = 0; i < out.size(); ++i)
@@ -239,15 +239,15 @@ void Merger::adopt(const Offer &offer, Trial &trial)
         this->offer(a, other);
 }
 
-std::vector<Region> Merger::run(Task &task)
+Vector<Region> Merger::run(Task &task)
 {
     measure();
     for (uint32_t a = 0; a < regions_.size(); ++a)
         for (const auto &[b, border] : border_[a])
             if (a < b)
                 offer(a, b);
-    for (std::vector<Offer> best; !(best = best_offers()).empty();) {
-        std::vector<Trial> trials(best.size());
+    for (Vector<Offer> best; !(best = best_offers()).empty();) {
+        Vector<Trial> trials(best.size());
         task.parallel(best.size(), [&](size_t i) { trials[i] = try_offer(best[i]); }, 0, 0);
         for (size_t i = 0; i < best.size(); ++i) {
             const auto [a, b] = std::pair(best[i].a, best[i].b);
@@ -263,9 +263,9 @@ std::vector<Region> Merger::run(Task &task)
 
 } // namespace
 
-std::vector<Region> merge_charts(const Surface &surface, const Bounds &bounds,
-                                 std::vector<Region> &regions, std::vector<Frame> &frames,
-                                 Task &task)
+Vector<Region> merge_charts(const Surface &surface, const Bounds &bounds,
+                            Vector<Region> &regions, Vector<Frame> &frames,
+                            Task &task)
 {
     return Merger(surface, bounds, regions, frames).run(task);
 }

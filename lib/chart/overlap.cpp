@@ -101,17 +101,17 @@ private:
     }
 
     double reach_, step_;
-    std::vector<std::array<Point, 2>> edges_;
-    std::vector<std::vector<uint32_t>> columns_;
+    Vector<std::array<Point, 2>> edges_;
+    Vector<Vector<uint32_t>> columns_;
 };
 
 } // namespace
 
-std::vector<uint32_t> overlap_triangles(const Mesh &mesh,
-                                        const std::vector<std::array<uint32_t, 3>> &neighbours,
-                                        const Chart &chart, double reach)
+Vector<uint32_t> overlap_triangles(const Mesh &mesh,
+                                   const Vector<std::array<uint32_t, 3>> &neighbours,
+                                   const Chart &chart, double reach)
 {
-    const std::vector<uint32_t> &core = chart.triangles;
+    const Vector<uint32_t> &core = chart.triangles;
     auto in_core = [&core](uint32_t t) { return std::binary_search(core.begin(), core.end(), t); };
     FrameInverse inverse(chart.frame);
     auto plan = [&](uint32_t t, int k) {
@@ -123,14 +123,14 @@ std::vector<uint32_t> overlap_triangles(const Mesh &mesh,
         return std::max(p.a, q.a) < chart.clip_low[0] || std::min(p.a, q.a) > chart.clip_high[0] ||
                std::max(p.b, q.b) < chart.clip_low[1] || std::min(p.b, q.b) > chart.clip_high[1];
     };
-    std::vector<std::pair<uint32_t, int>> border;
+    Vector<std::pair<uint32_t, int>> border;
     for (uint32_t t : core)
         for (int k = 0; k < 3; ++k)
             if (neighbours[t][k] != NO_TRIANGLE && !in_core(neighbours[t][k]) &&
                 !beyond_cut(plan(t, k), plan(t, (k + 1) % 3)))
                 border.emplace_back(t, k);
     Outline outline(chart.frame.extent[0], reach, border.size());
-    std::vector<std::pair<uint32_t, uint32_t>> found; /* triangle, edge it was reached from */
+    Vector<std::pair<uint32_t, uint32_t>> found;      /* triangle, edge it was reached from */
     std::unordered_set<uint32_t> seen;
     auto visit = [&](uint32_t t, uint32_t edge) {
         if (t == NO_TRIANGLE || in_core(t) || seen.count(t))
@@ -152,7 +152,7 @@ std::vector<uint32_t> overlap_triangles(const Mesh &mesh,
         for (uint32_t n : neighbours[t])
             visit(n, edge);
     }
-    std::vector<uint32_t> out;
+    Vector<uint32_t> out;
     for (const auto &[t, edge] : found)
         out.push_back(t);
     std::sort(out.begin(), out.end());

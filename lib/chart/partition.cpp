@@ -55,7 +55,7 @@ double long_side(const Frame &frame)
 
 /* The longest side gets the resolution, unless more charts than wanted came out so alike that
  * together they would take more than full rectangles in the wanted number. */
-double texel_size(const std::vector<Frame> &frames, const Mesh &mesh, const ChartOptions &options)
+double texel_size(const Vector<Frame> &frames, const Mesh &mesh, const ChartOptions &options)
 {
     double longest = 0, area = 0;
     for (const Frame &frame : frames) {
@@ -76,10 +76,10 @@ double cut_pitch(const Surface &surface, size_t patches, const ChartOptions &opt
 }
 
 /* A triangle in pieces counts once. */
-void report_initial(const Surface &surface, const std::vector<Region> &regions, Task &task,
+void report_initial(const Surface &surface, const Vector<Region> &regions, Task &task,
                     Partition &out)
 {
-    std::vector<std::vector<uint32_t>> inverted(regions.size());
+    Vector<Vector<uint32_t>> inverted(regions.size());
     for_each_region(regions, task, [&](size_t i) {
         Vec3d z = median_axis(surface.mesh, regions[i].triangles);
         for (uint32_t t : regions[i].triangles)
@@ -87,8 +87,8 @@ void report_initial(const Surface &surface, const std::vector<Region> &regions, 
                 inverted[i].push_back(out.source_of(t));
     }, 0.7, 0.72);
     out.report.initial_charts = regions.size();
-    std::vector<uint32_t> all;
-    for (const std::vector<uint32_t> &some : inverted) {
+    Vector<uint32_t> all;
+    for (const Vector<uint32_t> &some : inverted) {
         all.insert(all.end(), some.begin(), some.end());
         out.report.initial_folding += !some.empty();
     }
@@ -96,11 +96,11 @@ void report_initial(const Surface &surface, const std::vector<Region> &regions, 
     out.report.initial_inverted = uint64_t(std::unique(all.begin(), all.end()) - all.begin());
 }
 
-double side_limit(const Surface &surface, const std::vector<Region> &regions, Task &task)
+double side_limit(const Surface &surface, const Vector<Region> &regions, Task &task)
 {
-    std::vector<std::pair<double, double>> sides(regions.size()); /* length, area */
+    Vector<std::pair<double, double>> sides(regions.size());      /* length, area */
     for_each_region(regions, task, [&](size_t i) {
-        const std::vector<uint32_t> &triangles = regions[i].triangles;
+        const Vector<uint32_t> &triangles = regions[i].triangles;
         Frame frame = make_frame(surface.mesh, triangles, median_axis(surface.mesh, triangles));
         sides[i].first = long_side(frame);
         for (uint32_t t : triangles)
@@ -116,18 +116,18 @@ double side_limit(const Surface &surface, const std::vector<Region> &regions, Ta
 }
 
 /* Splits until every region is a chart; `frames` gets theirs. Returns whether any was split. */
-bool split_all(const Surface &surface, std::vector<Region> &regions, std::vector<Frame> &frames,
+bool split_all(const Surface &surface, Vector<Region> &regions, Vector<Frame> &frames,
                const Bounds &bounds, Task &task)
 {
     size_t before = regions.size();
-    std::vector<Region> charts, pending = std::move(regions);
+    Vector<Region> charts, pending = std::move(regions);
     frames.clear();
     while (!pending.empty()) {
-        std::vector<Verdict> verdicts(pending.size());
+        Vector<Verdict> verdicts(pending.size());
         for_each_region(pending, task, [&](size_t i) {
             verdicts[i] = judge(surface, pending[i], bounds);
         }, 0.75, 1);
-        std::vector<Region> next;
+        Vector<Region> next;
         for (size_t i = 0; i < pending.size(); ++i) {
             for (Region &piece : verdicts[i].pieces)
                 next.push_back(std::move(piece));
@@ -142,14 +142,14 @@ bool split_all(const Surface &surface, std::vector<Region> &regions, std::vector
     return regions.size() != before;
 }
 
-void report_final(const Surface &surface, const std::vector<Region> &regions,
-                  const std::vector<Frame> &frames, Task &task, Partition &out)
+void report_final(const Surface &surface, const Vector<Region> &regions,
+                  const Vector<Frame> &frames, Task &task, Partition &out)
 {
     struct Count {
         uint64_t inverted, samples, doubled;
         bool folding;
     };
-    std::vector<Count> counts(regions.size());
+    Vector<Count> counts(regions.size());
     for_each_region(regions, task, [&](size_t i) {
         Layers layers = find_layers(surface, regions[i], frames[i], out.pitch);
         counts[i] = {0, layers.samples, layers.doubled, !layers.folds.empty()};
@@ -174,7 +174,7 @@ void report_final(const Surface &surface, const std::vector<Region> &regions,
 }
 
 /* The pitch at which rectangles with a rim of `RIM` texels take `texels` together. */
-double pitch_for(const std::vector<Frame> &frames, double texels)
+double pitch_for(const Vector<Frame> &frames, double texels)
 {
     double area = 0, sides = 0, rims = RIM * RIM * double(frames.size());
     for (const Frame &frame : frames) {
@@ -189,12 +189,12 @@ double pitch_for(const std::vector<Frame> &frames, double texels)
 /* Splits the clusters until each is a chart, at the pitch asked for, or else one that is fine
  * enough for all of them, but not finer than a sliver chart, whose rectangle is all rim, can pay
  * for. */
-std::vector<Frame> split_for_count(const Surface &surface, const ChartOptions &options,
-                                   std::vector<Region> &regions, Bounds &bounds, Task &task)
+Vector<Frame> split_for_count(const Surface &surface, const ChartOptions &options,
+                              Vector<Region> &regions, Bounds &bounds, Task &task)
 {
     const double wanted = chart_count(surface.mesh, options);
     const double scale = std::pow(options.resolution / 128., 2);
-    std::vector<Frame> frames;
+    Vector<Frame> frames;
     for (;;) {
         split_all(surface, regions, frames, bounds, task);
         if (options.pitch > 0)
@@ -213,10 +213,10 @@ std::vector<Frame> split_for_count(const Surface &surface, const ChartOptions &o
 }
 
 /* Splits the clusters of the paper's method until each is a chart, and finds the pitch. */
-std::vector<Frame> split_for_length(const Surface &surface, const ChartOptions &options,
-                                    std::vector<Region> &regions, Bounds &bounds, Task &task)
+Vector<Frame> split_for_length(const Surface &surface, const ChartOptions &options,
+                               Vector<Region> &regions, Bounds &bounds, Task &task)
 {
-    std::vector<Frame> frames;
+    Vector<Frame> frames;
     bounds = {side_limit(surface, regions, task), 0, false};
     bounds.pitch = bounds.side / side_texels(options);
     while (split_all(surface, regions, frames, bounds, task)) {
@@ -229,11 +229,11 @@ std::vector<Frame> split_for_length(const Surface &surface, const ChartOptions &
 }
 
 /* Merges what splitting took apart too far. */
-void merge_all(const Surface &surface, std::vector<Region> &regions, std::vector<Frame> &frames,
+void merge_all(const Surface &surface, Vector<Region> &regions, Vector<Frame> &frames,
                const Bounds &bounds, Task &task)
 {
-    std::vector<Region> loose = merge_charts(surface, bounds, regions, frames, task);
-    std::vector<Frame> loose_frames;
+    Vector<Region> loose = merge_charts(surface, bounds, regions, frames, task);
+    Vector<Frame> loose_frames;
     split_all(surface, loose, loose_frames, bounds, task);
     std::move(loose.begin(), loose.end(), std::back_inserter(regions));
     frames.insert(frames.end(), loose_frames.begin(), loose_frames.end());
@@ -251,10 +251,10 @@ bool is_two_sided(const Mesh &mesh, const Chart &chart)
     return both > TWO_SIDED_AREA * area;
 }
 
-std::vector<Chart> whole_charts(std::vector<Region> regions, const std::vector<Frame> &frames,
-                                const Partition &partition)
+Vector<Chart> whole_charts(Vector<Region> regions, const Vector<Frame> &frames,
+                           const Partition &partition)
 {
-    std::vector<Chart> out(regions.size());
+    Vector<Chart> out(regions.size());
     for (size_t i = 0; i < regions.size(); ++i) {
         for (uint32_t t : regions[i].triangles)
             out[i].source_triangles += !t || partition.source_of(t) != partition.source_of(t - 1);
@@ -271,12 +271,12 @@ void make_charts(Surface surface, const ChartOptions &options, uint32_t count, T
 {
     const bool cut = options.method == PartitionMethod::CUTS;
     const uint32_t wanted = chart_count(surface.mesh, options);
-    std::vector<Region> regions = split_region(surface.whole, out.initial_chart, count);
+    Vector<Region> regions = split_region(surface.whole, out.initial_chart, count);
     report_initial(surface, regions, task, out);
 
     Bounds bounds = {INFINITY, cut_pitch(surface, wanted, options), true};
     const auto split = cut ? split_for_count : split_for_length;
-    std::vector<Frame> frames = split(surface, options, regions, bounds, task);
+    Vector<Frame> frames = split(surface, options, regions, bounds, task);
     out.pitch = bounds.pitch;
 
     task.begin("frame");

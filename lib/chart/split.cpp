@@ -59,18 +59,18 @@ Candidate try_axis(const Surface &surface, const Region &region, const Vec3d &z,
 /* Labels as 1 what stands upright along `z`, or overhangs by less than a texel: a height field
  * cannot show it, which leaves a hole unless another chart takes it. Empty without a wall of more
  * than `most_texels`. */
-std::vector<uint32_t> find_walls(const Surface &surface, const Region &region, const Vec3d &z,
-                                 double pitch, double most_texels)
+Vector<uint32_t> find_walls(const Surface &surface, const Region &region, const Vec3d &z,
+                            double pitch, double most_texels)
 {
     const double texel = pitch * pitch, mean = surface.area / double(surface.facets.size());
     const double least = mean > DESIGNED_TEXELS * texel ? DESIGNED_WALL_COSINE : WALL_COSINE;
-    std::vector<uint32_t> wall(region.size());
+    Vector<uint32_t> wall(region.size());
     for (size_t i = 0; i < region.size(); ++i) {
         uint32_t t = region.triangles[i];
         wall[i] = !surface.junk[t] && dot(Vec3d(surface.normal[t]), z) < least;
     }
-    std::vector<uint32_t> group = wall;
-    std::vector<double> area(connected_pieces(region, group));
+    Vector<uint32_t> group = wall;
+    Vector<double> area(connected_pieces(region, group));
     for (size_t i = 0; i < region.size(); ++i)
         area[group[i]] += length(surface.mesh.area_vector(region.triangles[i])) / 2;
     bool any = false;
@@ -78,10 +78,10 @@ std::vector<uint32_t> find_walls(const Surface &surface, const Region &region, c
         wall[i] = wall[i] && area[group[i]] > most_texels * texel;
         any = any || wall[i];
     }
-    return any ? wall : std::vector<uint32_t>();
+    return any ? wall : Vector<uint32_t>();
 }
 
-std::vector<Region> pieces_of(const Region &region, std::vector<uint32_t> labels)
+Vector<Region> pieces_of(const Region &region, Vector<uint32_t> labels)
 {
     uint32_t count = connected_pieces(region, labels);
     return split_region(region, labels, count);
@@ -89,12 +89,12 @@ std::vector<Region> pieces_of(const Region &region, std::vector<uint32_t> labels
 
 /* Cuts straight across the middle of the longer side. Pieces that the cut disconnects from the
  * largest piece of their side change sides. */
-std::vector<uint32_t> cut_across(const Surface &surface, const Region &region, const Frame &frame)
+Vector<uint32_t> cut_across(const Surface &surface, const Region &region, const Frame &frame)
 {
     FrameInverse inverse(frame);
     int axis = frame.extent[0] >= frame.extent[1] ? 0 : 1;
-    std::vector<uint32_t> side(region.size());
-    std::vector<std::pair<double, uint32_t>> order;
+    Vector<uint32_t> side(region.size());
+    Vector<std::pair<double, uint32_t>> order;
     for (uint32_t i = 0; i < region.size(); ++i) {
         Vec3d sum;
         for (int k = 0; k < 3; ++k)
@@ -106,9 +106,9 @@ std::vector<uint32_t> cut_across(const Surface &surface, const Region &region, c
     side[order.front().second] = 0; /* neither side is empty */
     side[order.back().second] = 1;
 
-    std::vector<uint32_t> piece = side;
+    Vector<uint32_t> piece = side;
     uint32_t count = connected_pieces(region, piece);
-    std::vector<size_t> size(count);
+    Vector<size_t> size(count);
     uint32_t main[2] = {NO_TRIANGLE, NO_TRIANGLE};
     for (uint32_t p : piece)
         ++size[p];
@@ -125,7 +125,7 @@ std::vector<uint32_t> cut_across(const Surface &surface, const Region &region, c
 
 /* Two clusters of normals, grown from the triangle that turns farthest from the axis and the one
  * that turns farthest from that. */
-std::vector<uint32_t> split_normals(const Surface &surface, const Region &region, const Vec3d &z)
+Vector<uint32_t> split_normals(const Surface &surface, const Region &region, const Vec3d &z)
 {
     auto farthest = [&](const Vec3f &from) {
         uint32_t best = 0;
@@ -150,21 +150,21 @@ std::vector<uint32_t> split_normals(const Surface &surface, const Region &region
  * serves the whole ring: it is split by normals. */
 Verdict accept(const Surface &surface, const Region &region, const Frame &frame, double pitch)
 {
-    const std::vector<uint32_t> wall = find_walls(surface, region, frame.z, pitch, WALL_TEXELS);
+    const Vector<uint32_t> wall = find_walls(surface, region, frame.z, pitch, WALL_TEXELS);
     if (wall.empty())
         return {frame, {}};
-    std::vector<Region> pieces = pieces_of(region, wall);
+    Vector<Region> pieces = pieces_of(region, wall);
     if (pieces.size() == 1 && region.size() > 1)
         pieces = pieces_of(region, split_normals(surface, region, frame.z));
-    return {frame, pieces.size() > 1 ? std::move(pieces) : std::vector<Region>()};
+    return {frame, pieces.size() > 1 ? std::move(pieces) : Vector<Region>()};
 }
 
 /* Watershed between what lies in front and what lies behind: triangles vote by their doubled
  * samples, the deepest of which decides its own two. Crossing a crease costs most. */
-std::vector<uint32_t> split_layers(const Surface &surface, const Region &region,
-                                   const std::vector<DoubleSample> &samples)
+Vector<uint32_t> split_layers(const Surface &surface, const Region &region,
+                              const Vector<DoubleSample> &samples)
 {
-    std::vector<int> votes(region.size());
+    Vector<int> votes(region.size());
     const DoubleSample *deepest = &samples[0];
     for (const DoubleSample &d : samples) {
         ++votes[d.front];
@@ -176,9 +176,9 @@ std::vector<uint32_t> split_layers(const Surface &surface, const Region &region,
     votes[deepest->back] = -1;
 
     using Step = std::pair<float, uint32_t>;
-    std::priority_queue<Step, std::vector<Step>, std::greater<Step>> queue;
-    std::vector<float> reached(region.size(), INFINITY);
-    std::vector<uint32_t> side(region.size());
+    std::priority_queue<Step, Vector<Step>, std::greater<Step>> queue;
+    Vector<float> reached(region.size(), INFINITY);
+    Vector<uint32_t> side(region.size());
     for (uint32_t i = 0; i < region.size(); ++i)
         if (votes[i]) {
             side[i] = votes[i] < 0;
@@ -270,7 +270,7 @@ Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds
     return {{}, pieces_of(region, split_normals(surface, region, narrow.z))};
 }
 
-void drop_empty(std::vector<Region> &regions, std::vector<Frame> &frames)
+void drop_empty(Vector<Region> &regions, Vector<Frame> &frames)
 {
     size_t kept = 0;
     for (size_t i = 0; i < regions.size(); ++i) {

@@ -26,7 +26,7 @@ struct Bounds {
 
 struct Verdict {
     Frame frame;                 /* of the chart, when there are no pieces */
-    std::vector<Region> pieces;  /* connected, at least two; or none: the region is a chart */
+    Vector<Region> pieces;       /* connected, at least two; or none: the region is a chart */
 };
 
 /* Whether a region can be a chart along unit `z`, walls left out: if it has walls, the verdict's
@@ -49,6 +49,6 @@ bool has_wall(const Surface &surface, const Region &region, const Vec3d &z, doub
               double most_texels);
 
 /* Forgets regions without triangles, and their frames. */
-void drop_empty(std::vector<Region> &regions, std::vector<Frame> &frames);
+void drop_empty(Vector<Region> &regions, Vector<Frame> &frames);
 
 } // namespace gtx

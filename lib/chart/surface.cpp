@@ -55,10 +55,10 @@ Connectivity connect(const Mesh &mesh, Task &task)
     return out;
 }
 
-std::vector<std::array<uint32_t, 3>> neighbours_of(const Mesh &mesh, Task &task)
+Vector<std::array<uint32_t, 3>> neighbours_of(const Mesh &mesh, Task &task)
 {
     Connectivity connectivity = connect(mesh, task);
-    std::vector<std::array<uint32_t, 3>> out(mesh.triangle_count());
+    Vector<std::array<uint32_t, 3>> out(mesh.triangle_count());
     for (size_t t = 0; t < out.size(); ++t) {
         auto edge = connectivity.halfedge_handle(OpenMesh::FaceHandle(int(t)));
         for (int k = 0; k < 3; ++k) {
@@ -73,7 +73,7 @@ std::vector<std::array<uint32_t, 3>> neighbours_of(const Mesh &mesh, Task &task)
 void smooth_normals(Surface &surface, float large)
 {
     const Mesh &mesh = surface.mesh;
-    std::vector<Vec3f> at_vertex(mesh.positions.size());
+    Vector<Vec3f> at_vertex(mesh.positions.size());
     for (int pass = 0; pass < SMOOTHING_PASSES; ++pass) {
         std::fill(at_vertex.begin(), at_vertex.end(), Vec3f());
         for (size_t t = 0; t < mesh.triangle_count(); ++t)
@@ -166,10 +166,10 @@ Surface make_surface(const Mesh &mesh, double pitch, Task &task)
     return surface;
 }
 
-void for_each_region(const std::vector<Region> &regions, Task &task,
+void for_each_region(const Vector<Region> &regions, Task &task,
                      const std::function<void(size_t)> &body, double from, double to)
 {
-    std::vector<uint32_t> order(regions.size());
+    Vector<uint32_t> order(regions.size());
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         return regions[a].size() > regions[b].size();
@@ -177,11 +177,11 @@ void for_each_region(const std::vector<Region> &regions, Task &task,
     task.parallel(order.size(), [&](size_t n) { body(order[n]); }, from, to);
 }
 
-std::vector<Region> split_region(const Region &parent, const std::vector<uint32_t> &labels,
-                                 uint32_t count)
+Vector<Region> split_region(const Region &parent, const Vector<uint32_t> &labels,
+                            uint32_t count)
 {
-    std::vector<Region> out(count);
-    std::vector<uint32_t> place(parent.size());
+    Vector<Region> out(count);
+    Vector<uint32_t> place(parent.size());
     for (size_t i = 0; i < parent.size(); ++i) {
         place[i] = uint32_t(out[labels[i]].size());
         out[labels[i]].triangles.push_back(parent.triangles[i]);
@@ -197,9 +197,9 @@ std::vector<Region> split_region(const Region &parent, const std::vector<uint32_
     return out;
 }
 
-uint32_t connected_pieces(const Region &region, std::vector<uint32_t> &labels)
+uint32_t connected_pieces(const Region &region, Vector<uint32_t> &labels)
 {
-    std::vector<uint32_t> piece(region.size(), NO_TRIANGLE), stack;
+    Vector<uint32_t> piece(region.size(), NO_TRIANGLE), stack;
     uint32_t count = 0;
     for (uint32_t first = 0; first < region.size(); ++first) {
         if (piece[first] != NO_TRIANGLE)

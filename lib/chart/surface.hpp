@@ -8,8 +8,8 @@ namespace gtx {
 
 /* A set of triangles and its connectivity. Indices into a region are called local. */
 struct Region {
-    std::vector<uint32_t> triangles;                  /* of the mesh */
-    std::vector<std::array<uint32_t, 3>> neighbours;  /* local; NO_TRIANGLE outside */
+    Vector<uint32_t> triangles;                       /* of the mesh */
+    Vector<std::array<uint32_t, 3>> neighbours;       /* local; NO_TRIANGLE outside */
 
     size_t size() const { return triangles.size(); }
 };
@@ -26,9 +26,9 @@ struct Surface {
     Region whole;              /* every triangle: local indices are the mesh's */
     double area = 0;           /* object units, as is the diagonal of the bounding box */
     double diagonal = 0;
-    std::vector<Facet> facets;
-    std::vector<Vec3f> normal; /* unit, raw */
-    std::vector<uint8_t> junk; /* 1: scan noise, small and twisted against its neighbours */
+    Vector<Facet> facets;
+    Vector<Vec3f> normal;      /* unit, raw */
+    Vector<uint8_t> junk;      /* 1: scan noise, small and twisted against its neighbours */
 };
 
 /* Texels: what is smaller may be a scan's junk, a triangle that turns far from those around it or a
@@ -46,15 +46,15 @@ double texels_of(const Surface &surface, const Region &region, double pitch);
 
 /* Runs body(i) for every region on the task's threads, as Task::parallel does, but the largest
  * first: one that begins last is waited for. */
-void for_each_region(const std::vector<Region> &regions, Task &task,
+void for_each_region(const Vector<Region> &regions, Task &task,
                      const std::function<void(size_t)> &body, double from = 0, double to = 1);
 
 /* The triangles of `parent` whose label is below `count`, a region a label. Labels are local. */
-std::vector<Region> split_region(const Region &parent, const std::vector<uint32_t> &labels,
-                                 uint32_t count);
+Vector<Region> split_region(const Region &parent, const Vector<uint32_t> &labels,
+                            uint32_t count);
 
 /* Numbers the connected pieces of equal `labels` in order of their first triangle; returns how
  * many there are. */
-uint32_t connected_pieces(const Region &region, std::vector<uint32_t> &labels);
+uint32_t connected_pieces(const Region &region, Vector<uint32_t> &labels);
 
 } // namespace gtx

@@ -79,7 +79,7 @@ private:
         return place <= LOWEST ? 0 : std::min<size_t>(place - LOWEST, BUCKETS - 1);
     }
 
-    std::vector<Entry> entries_; /* places count from 1; 0 ends a list */
+    Vector<Entry> entries_;      /* places count from 1; 0 ends a list */
     uint32_t free_ = 0;
     uint32_t heads_[BUCKETS] = {};
     uint64_t used_[WORDS] = {};
@@ -110,9 +110,9 @@ public:
     void add_worst_seeds(size_t wanted);
 
     size_t count() const { return clusters_.size(); }
-    std::vector<uint32_t> labels() const
+    Vector<uint32_t> labels() const
     {
-        std::vector<uint32_t> out;
+        Vector<uint32_t> out;
         for (const Node &node : nodes_)
             out.push_back(node.label);
         return out;
@@ -132,9 +132,9 @@ private:
         return facet.size * (dot(dn, dn) + spread_ * dot(dc, dc));
     }
 
-    std::vector<Node> nodes_;
+    Vector<Node> nodes_;
     float spread_;
-    std::vector<Cluster> clusters_;
+    Vector<Cluster> clusters_;
 };
 
 void Clustering::grow()
@@ -172,7 +172,7 @@ void Clustering::refit()
         double size = 0, error = 0;
         float best = INFINITY, worst = -1;
     };
-    std::vector<Sum> sums(count());
+    Vector<Sum> sums(count());
     for (const Node &node : nodes_) {
         Sum &sum = sums[node.label];
         double size = node.facet.size;
@@ -206,7 +206,7 @@ void Clustering::refit()
 /* A second seed for the clusters with more than their share of the error. */
 void Clustering::add_worst_seeds(size_t wanted)
 {
-    std::vector<uint32_t> order(count());
+    Vector<uint32_t> order(count());
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         float ea = clusters_[a].error, eb = clusters_[b].error;
@@ -227,8 +227,8 @@ void Clustering::add_worst_seeds(size_t wanted)
 uint32_t seed_pieces(const Surface &surface, const Region &region, uint32_t wanted,
                      Clustering &clustering)
 {
-    std::vector<uint32_t> pieces(region.size(), 0);
-    std::vector<double> size(connected_pieces(region, pieces));
+    Vector<uint32_t> pieces(region.size(), 0);
+    Vector<double> size(connected_pieces(region, pieces));
     double mean = double(region.size()) / wanted;
     for (uint32_t i = 0, next = 0, step = 0; i < region.size(); ++i, ++step) {
         size[pieces[i]] += surface.facets[region.triangles[i]].size;
@@ -244,8 +244,8 @@ uint32_t seed_pieces(const Surface &surface, const Region &region, uint32_t want
 
 } // namespace
 
-std::vector<uint32_t> cluster(const Surface &surface, const Region &region, uint32_t &count,
-                              Task &task)
+Vector<uint32_t> cluster(const Surface &surface, const Region &region, uint32_t &count,
+                         Task &task)
 {
     Clustering clustering(surface, region, count);
     count += seed_pieces(surface, region, count, clustering);
@@ -265,8 +265,8 @@ std::vector<uint32_t> cluster(const Surface &surface, const Region &region, uint
     return clustering.labels();
 }
 
-std::vector<uint32_t> cluster_pair(const Surface &surface, const Region &region, uint32_t a,
-                                   uint32_t b)
+Vector<uint32_t> cluster_pair(const Surface &surface, const Region &region, uint32_t a,
+                              uint32_t b)
 {
     Clustering clustering(surface, region, 2);
     clustering.add_seed(a);

@@ -15,11 +15,11 @@ struct Cluster {
 
 /* Partitions a region into `count` connected clusters, or one a connected piece when that is
  * more. Returns a label a triangle and their number in `count`. */
-std::vector<uint32_t> cluster(const Surface &surface, const Region &region, uint32_t &count,
-                              Task &task);
+Vector<uint32_t> cluster(const Surface &surface, const Region &region, uint32_t &count,
+                         Task &task);
 
 /* Two connected clusters in a connected region, grown first from the local triangles a != b. */
-std::vector<uint32_t> cluster_pair(const Surface &surface, const Region &region, uint32_t a,
-                                   uint32_t b);
+Vector<uint32_t> cluster_pair(const Surface &surface, const Region &region, uint32_t a,
+                              uint32_t b);
 
 } // namespace gtx

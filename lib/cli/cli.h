@@ -18,6 +18,7 @@ enum { /* exit codes of the command */
     EXIT_CODE_INVALID = 3,     /* invalid input */
     EXIT_CODE_INTERNAL = 4,
     EXIT_CODE_UNSUPPORTED = 5, /* legal, but not supported */
+    EXIT_CODE_LIMIT = 6,       /* would take more than is allowed, or than there is */
     EXIT_CODE_DIFFERS = 7,     /* a stated limit is passed */
     EXIT_CODE_CANCELLED = 130
 };
@@ -30,6 +31,7 @@ typedef enum option_kind {
     OPTION_UINT,   /* uint32_t *, within [min, max] */
     OPTION_INT,    /* int32_t *, within [min, max] */
     OPTION_NUMBER, /* double *, within [min, max] */
+    OPTION_AMOUNT, /* uint64_t *, within [min, max], with k, M, G or T for powers of 1000 */
     OPTION_SIZE,   /* uint32_t[2], "WxH", each within [min, max] */
     OPTION_TRIPLE, /* double[3], "a,b,c" */
     OPTION_CHOICE, /* uint32_t *, index into the names of `argument`, written "a|b|c" */
@@ -72,6 +74,8 @@ int parse_options(const verb *v, int argc, char **argv, const char **operands, i
 
 /* Only errors are printed. */
 extern bool cli_quiet;
+/* What --max-memory and its like allow, for every descriptor that has limits. */
+extern gtx_limits cli_limits;
 /* The choice of --progress. */
 extern uint32_t cli_progress;
 enum { PROGRESS_BAR, PROGRESS_JSON };

@@ -48,9 +48,9 @@ bool usage(const char *what, const std::string &word)
     return false;
 }
 
-std::vector<std::string> split(const std::string &list)
+gtx::Vector<std::string> split(const std::string &list)
 {
-    std::vector<std::string> out(1);
+    gtx::Vector<std::string> out(1);
     for (char c : list)
         if (c == ',')
             out.emplace_back();
@@ -147,7 +147,7 @@ void write_row(gtx_json &json, const gtx::BenchSetup &setup, const gtx::BenchRow
 }
 
 int print_json(const char *scene, const gtx::BenchSetup &setup,
-               const std::vector<gtx::BenchRow> &rows)
+               const gtx::Vector<gtx::BenchRow> &rows)
 {
     gtx_json json = {};
     gtx_json_begin_object(&json, nullptr);
@@ -210,7 +210,7 @@ int cmd_bench(int argc, char **argv)
         const gtx::Mesh mesh = gtx::clean_mesh(gtx::import_mesh(files[1], task), task, report);
         current = files[0];
         gtx::BenchSetup setup;
-        std::vector<gtx::BenchRow> rows;
+        gtx::Vector<gtx::BenchRow> rows;
         double of_mesh = 0;
         gtx::run_bench(
             files[0], mesh, wanted,

@@ -52,7 +52,7 @@ int cmd_validate(int argc, char **argv)
     gtx_error error;
     gtx_json_begin_object(&l.json, NULL);
     gtx_json_begin_array(&l.json, "issues");
-    gtx_result result = gtx_validate(data, size, on_issue, &l, &error);
+    gtx_result result = gtx_validate(data, size, &cli_limits, on_issue, &l, &error);
     gtx_json_end_array(&l.json);
     gtx_json_bool(&l.json, "valid", result == GTX_OK);
     gtx_json_end_object(&l.json);

@@ -16,8 +16,8 @@ static const struct {
     {GTX_CANCELLED, EXIT_CODE_CANCELLED, "cancelled"},
     {GTX_ERROR_ARGUMENT, EXIT_CODE_USAGE, "usage"},
     {GTX_ERROR_NOT_ZEROED, EXIT_CODE_INTERNAL, "internal"},
-    {GTX_ERROR_MEMORY, EXIT_CODE_INTERNAL, "memory"},
-    {GTX_ERROR_LIMIT, EXIT_CODE_UNSUPPORTED, "limit"},
+    {GTX_ERROR_MEMORY, EXIT_CODE_LIMIT, "memory"},
+    {GTX_ERROR_LIMIT, EXIT_CODE_LIMIT, "limit"},
     {GTX_ERROR_READ, EXIT_CODE_FILE, "read"},
     {GTX_ERROR_WRITE, EXIT_CODE_FILE, "write"},
     {GTX_ERROR_NOT_GTX, EXIT_CODE_INVALID, "not-gtx"},
@@ -50,6 +50,9 @@ int report_error(const char *file, const gtx_error *error)
     if (error->rule)
         report_issue(file, &(gtx_issue){error->rule, 1, error->offset, error->rule_name,
                                         error->message});
+    else if (error->result == GTX_ERROR_LIMIT && error->limit)
+        fprintf(stderr, "%s: error[%s]: %s (--max-%s allows more)\n", file, id, error->message,
+                error->limit);
     else
         fprintf(stderr, "%s: error[%s]: %s\n", file, id, error->message);
     return exit_code;

@@ -7,8 +7,19 @@
 
 bool cli_quiet;
 uint32_t cli_progress;
+gtx_limits cli_limits;
 
+/* Their names are those of gtx_error.limit. */
 static const option common_options[] = {
+    {"max-memory", 0, OPTION_AMOUNT, &cli_limits.memory, "BYTES",
+     "most memory to take, as in 8G [268M and 2k for each byte read]", 1, 1e18},
+    {"max-triangles", 0, OPTION_AMOUNT, &cli_limits.triangles, "N",
+     "most triangles of all models [1M and 2 for each byte read]", 1, 1e18},
+    {"max-texels", 0, OPTION_AMOUNT, &cli_limits.texels, "N",
+     "most texels of an asset, nodes of a grid [67M and 256 for each byte read]", 1, 1e18},
+    {"max-pixels", 0, OPTION_AMOUNT, &cli_limits.pixels, "N",
+     "most pixels of an image [67M and 16 for each byte read]", 1, 1e18},
+    {"max-patches", 0, OPTION_AMOUNT, &cli_limits.patches, "N", "most patches [1M]", 1, 1e18},
     {"quiet", 'q', OPTION_FLAG, &cli_quiet, NULL, "print errors only", 0, 0},
     {"help", 'h', OPTION_FLAG, NULL, NULL, "this text", 0, 0},
     {0}};
@@ -44,6 +55,24 @@ static bool parse_number(const char *text, char **end, double *out)
 {
     *out = strtod(text, end);
     return *end != text && isfinite(*out);
+}
+
+static bool parse_amount(const option *o, const char *text)
+{
+    static const char units[] = "kMGT";
+    char *end;
+    double number;
+    if (!parse_number(text, &end, &number))
+        return false;
+    const char *unit = *end ? strchr(units, *end) : NULL;
+    for (const char *u = units; unit && u <= unit; ++u)
+        number *= 1000;
+    if (unit)
+        ++end;
+    if (*end || number < o->min || number > o->max)
+        return false;
+    *(uint64_t *)o->value = (uint64_t)number;
+    return true;
 }
 
 static bool parse_triple(const char *text, double out[3])
@@ -119,6 +148,7 @@ static bool parse_value(const option *o, const char *text)
         *(uint32_t *)o->value = (uint32_t)strtoul(text, NULL, 10);
         return true;
     case OPTION_STEP: return parse_step(o, text);
+    case OPTION_AMOUNT: return parse_amount(o, text);
     default: break;
     }
     if (!parse_number(text, &end, &number) || *end || number < o->min || number > o->max)

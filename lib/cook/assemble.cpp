@@ -12,17 +12,17 @@
 
 namespace gtx {
 
-static std::vector<const uint8_t *> level_pointers(const std::vector<std::vector<uint8_t>> &levels)
+static Vector<const uint8_t *> level_pointers(const Vector<Vector<uint8_t>> &levels)
 {
-    std::vector<const uint8_t *> pointers;
+    Vector<const uint8_t *> pointers;
     for (const auto &level : levels)
         pointers.push_back(level.data());
     return pointers;
 }
 
-static std::vector<gtx_lod_mesh> lod_levels(const std::vector<LodLevel> &lod)
+static Vector<gtx_lod_mesh> lod_levels(const Vector<LodLevel> &lod)
 {
-    std::vector<gtx_lod_mesh> levels;
+    Vector<gtx_lod_mesh> levels;
     for (const LodLevel &level : lod) {
         gtx_lod_mesh out = {};
         std::copy_n(level.origin, 3, out.origin);
@@ -39,13 +39,13 @@ static std::vector<gtx_lod_mesh> lod_levels(const std::vector<LodLevel> &lod)
     return levels;
 }
 
-Asset assemble(const Maps &maps, const std::vector<LodLevel> &lod, const AssetFacts &facts)
+Asset assemble(const Maps &maps, const Vector<LodLevel> &lod, const AssetFacts &facts)
 {
-    const std::vector<const uint8_t *> normal = level_pointers(maps.normal),
+    const Vector<const uint8_t *> normal = level_pointers(maps.normal),
                                        color = level_pointers(maps.color),
                                        material = level_pointers(maps.material),
                                        emission = level_pointers(maps.emission);
-    const std::vector<gtx_lod_mesh> levels = lod_levels(lod);
+    const Vector<gtx_lod_mesh> levels = lod_levels(lod);
 
     gtx_asset_desc desc = {};
     desc.patches = maps.patches.data();
@@ -98,7 +98,7 @@ Maps maps_of(const gtx_asset *asset)
     auto bytes = [&](gtx_map map, uint32_t level) {
         size_t size = 0;
         const auto *data = static_cast<const uint8_t *>(gtx_map_data(asset, map, level, &size));
-        return data ? std::vector<uint8_t>(data, data + size) : std::vector<uint8_t>();
+        return data ? Vector<uint8_t>(data, data + size) : Vector<uint8_t>();
     };
     maps.height = bytes(GTX_MAP_HEIGHT, 0);
     maps.trim = bytes(GTX_MAP_TRIM, 0);

@@ -19,7 +19,7 @@ struct AssetFacts {
 };
 
 /* Throws Error: what gtx_create reports. */
-Asset assemble(const Maps &maps, const std::vector<LodLevel> &lod, const AssetFacts &facts);
+Asset assemble(const Maps &maps, const Vector<LodLevel> &lod, const AssetFacts &facts);
 
 /* The maps of an asset; its charts are its patches. */
 Maps maps_of(const gtx_asset *asset);

@@ -75,7 +75,7 @@ static void write_differences(Json &json, const CompareReport &report)
 
 /* Fills `json` and returns the line of gtx_report.summary. */
 static std::string write_report(const CompareReport &report,
-                                const std::vector<std::string> &warnings, Json &json)
+                                const Vector<std::string> &warnings, Json &json)
 {
     gtx_json_begin_object(&json, nullptr);
     write_pixels(json, report);

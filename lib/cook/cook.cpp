@@ -84,7 +84,7 @@ struct Encoded {
     }
 };
 
-static void refuse_overwriting_source(const std::vector<std::string> &sources, const char *output)
+static void refuse_overwriting_source(const Vector<std::string> &sources, const char *output)
 {
     for (const std::string &source : sources) {
         std::error_code ignored; /* an output that does not exist is no source */
@@ -134,7 +134,7 @@ static Attempt attempt(const Mesh &mesh, const Options &options, Task &task, con
     const Mesh &charted = out.partition.charted(mesh);
     {
         Maps maps = bake(charted, out.partition, options.bake, task);
-        std::vector<LodLevel> lod;
+        Vector<LodLevel> lod;
         if (options.lod_levels)
             lod = make_lod(lod_source(charted, out.partition, maps, task), maps,
                            options.lod_levels, task);
@@ -208,7 +208,7 @@ static Cooked cook_models(Models &models, const Options &options, bool encoded, 
 }
 
 static std::unique_ptr<Report> report_on(const gtx_asset *asset, const Options &options,
-                                         CookFacts &facts, const std::vector<std::string> &sources,
+                                         CookFacts &facts, const Vector<std::string> &sources,
                                          const Task &task)
 {
     gtx_info info;

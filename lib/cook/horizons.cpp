@@ -112,7 +112,7 @@ static HeightGrid lattice(const gtx_height_grid &from, const float *values)
 
 /* The surfaces, and what each is coloured by: an empty grid stands for its heights. */
 struct Surfaces {
-    std::vector<HeightGrid> heights, properties;
+    Vector<HeightGrid> heights, properties;
 
     Surfaces(const gtx_height_grid *grids, uint32_t count, bool as_one)
     {
@@ -126,7 +126,7 @@ struct Surfaces {
         heights = {mosaic(heights)};
         properties = {grids[0].property ? mosaic(properties) : HeightGrid()};
     }
-    const std::vector<float> &coloured(size_t n) const
+    const Vector<float> &coloured(size_t n) const
     {
         return properties[n].values.empty() ? heights[n].values : properties[n].values;
     }
@@ -150,10 +150,10 @@ static void find_color_range(const Surfaces &surfaces, const gtx_horizons_desc &
         range[0] = range[1] = 0;
 }
 
-static std::vector<std::array<uint8_t, 3>> colors_of(const std::vector<float> &values,
-                                                     ColorMap map, const double range[2])
+static Vector<std::array<uint8_t, 3>> colors_of(const Vector<float> &values,
+                                                ColorMap map, const double range[2])
 {
-    std::vector<std::array<uint8_t, 3>> colors;
+    Vector<std::array<uint8_t, 3>> colors;
     colors.reserve(values.size());
     const double size = range[1] - range[0];
     for (float value : values)
@@ -204,7 +204,7 @@ static Asset make_horizons(const gtx_height_grid *grids, uint32_t count,
               {35, 3, lod, 2});
     const Surfaces surfaces(grids, count, desc.one_surface);
     double range[2] = {0, 0};
-    std::vector<GridLayer> layers;
+    Vector<GridLayer> layers;
     if (number_of(desc.colors) != GTX_COLORS_NONE)
         find_color_range(surfaces, desc, range);
     for (size_t n = 0; n < surfaces.heights.size(); ++n) {
@@ -214,7 +214,7 @@ static Asset make_horizons(const gtx_height_grid *grids, uint32_t count,
     }
     TileReport report;
     const Maps maps = bake_tiles(layers, options_of(desc), report, task);
-    std::vector<LodLevel> levels;
+    Vector<LodLevel> levels;
     if (desc.lod_levels)
         levels = make_lod(lod_source(maps, task), maps, desc.lod_levels, task);
     task.begin("write");

@@ -39,7 +39,7 @@ static bool add_file(gtx_hash &hash, const std::string &path, Task &task)
         add_number(hash, UINT64_MAX);
         return false;
     }
-    std::vector<char> block(1 << 18);
+    Vector<char> block(1 << 18);
     uint64_t total = 0;
     while (size_t size = fread(block.data(), 1, block.size(), file.get())) {
         gtx_hash_add(&hash, block.data(), size);
@@ -72,7 +72,7 @@ static auto naming(const std::string &path, bool several, Task &task, Body body)
 Models read_models(const ModelInput &first, const char *const *more, uint32_t more_count,
                    Task &task)
 {
-    std::vector<ModelInput> inputs = {first};
+    Vector<ModelInput> inputs = {first};
     for (uint32_t i = 0; i < more_count; ++i)
         inputs.push_back({more[i]});
 
@@ -103,7 +103,7 @@ Models read_models(const ModelInput &first, const char *const *more, uint32_t mo
 
 /* Appends attributes that either mesh may lack: `fill` stands for what is not there. */
 template <class T>
-static void append(std::vector<T> &to, size_t before, std::vector<T> &from, size_t count,
+static void append(Vector<T> &to, size_t before, Vector<T> &from, size_t count,
                    const T &fill = T())
 {
     if (to.empty() && from.empty())
@@ -171,7 +171,7 @@ Mesh import_models(Models &models, bool z_up, Task &task)
     bool several = models.files.size() > 1;
     for (ModelFile &kept : models.files) {
         ModelFile file = std::move(kept); /* freed as soon as it is imported */
-        std::vector<std::string> read;
+        Vector<std::string> read;
         file.sources = &read;
         Mesh next = naming(file.path, several, task, [&] { return import_model(file, task); });
         if (mesh.triangles.empty())

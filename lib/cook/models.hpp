@@ -13,9 +13,9 @@ struct ModelInput {
 };
 
 struct Models {
-    std::vector<ModelFile> files;
+    Vector<ModelFile> files;
     /* Every file behind them that is there: the models, then what they refer to. */
-    std::vector<std::string> sources;
+    Vector<std::string> sources;
     /* Of the content of all of them, not of their paths. */
     uint64_t hash = 0;
     /* Whether importing read nothing else; known after it. */

@@ -20,7 +20,7 @@ void write_deviation(Json &json, const char *key, const Deviation &deviation)
     gtx_json_end_object(&json);
 }
 
-void write_strings(Json &json, const char *key, const std::vector<std::string> &strings)
+void write_strings(Json &json, const char *key, const Vector<std::string> &strings)
 {
     gtx_json_begin_array(&json, key);
     for (const std::string &s : strings)
@@ -71,7 +71,7 @@ static void write_error(Json &json, const Options &options, const SurfaceError &
     gtx_json_end_object(&json);
 }
 
-static void write_lod(Json &json, const std::vector<gtx_lod_mesh> &levels)
+static void write_lod(Json &json, const Vector<gtx_lod_mesh> &levels)
 {
     gtx_json_begin_array(&json, "lod_meshes");
     for (const gtx_lod_mesh &level : levels) {
@@ -172,7 +172,7 @@ std::string write_cook_report(const Options &options, const CookFacts &facts, co
 }
 
 /* Puts the strings behind each other at `at`, their addresses at `strings`. */
-static char *copy_strings(const std::vector<std::string> &from, char **strings, char *at)
+static char *copy_strings(const Vector<std::string> &from, char **strings, char *at)
 {
     for (const std::string &s : from) {
         *strings++ = at;
@@ -183,8 +183,8 @@ static char *copy_strings(const std::vector<std::string> &from, char **strings, 
 }
 
 /* One block: the addresses of the strings, for they want alignment, the strings, and the JSON. */
-Report::Report(const Json &text, const std::string &line, const std::vector<std::string> &source,
-               const std::vector<std::string> &warning)
+Report::Report(const Json &text, const std::string &line, const Vector<std::string> &source,
+               const Vector<std::string> &warning)
     : gtx_report{}
 {
     allocator = text.allocator;

@@ -22,7 +22,7 @@ struct CookFacts {
     BakeReport bake;
     SurfaceError error;
     uint64_t source_hash = 0, key = 0, warnings = 0;
-    std::vector<gtx_lod_mesh> lod; /* the levels of the asset */
+    Vector<gtx_lod_mesh> lod;      /* the levels of the asset */
     uint64_t bytes = 0, content_hash = 0;
     double total_seconds = 0;
 };
@@ -36,7 +36,7 @@ struct Json : gtx_json {
 };
 
 void write_deviation(Json &json, const char *key, const Deviation &deviation);
-void write_strings(Json &json, const char *key, const std::vector<std::string> &strings);
+void write_strings(Json &json, const char *key, const Vector<std::string> &strings);
 /* Throws bad_alloc where memory ran out on the way. */
 void check_written(const Json &json);
 
@@ -47,8 +47,8 @@ std::string write_cook_report(const Options &options, const CookFacts &facts, co
 /* A report that frees itself until the caller takes it. */
 struct Report : gtx_report {
     /* Copies all of it, in memory of the text's allocator. */
-    Report(const Json &json, const std::string &summary, const std::vector<std::string> &sources,
-           const std::vector<std::string> &warnings);
+    Report(const Json &json, const std::string &summary, const Vector<std::string> &sources,
+           const Vector<std::string> &warnings);
     ~Report() { gtx_report_free(this); }
     Report(const Report &) = delete;
     Report &operator=(const Report &) = delete;

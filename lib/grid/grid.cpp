@@ -105,10 +105,10 @@ HeightGrid read_grid(const std::string &path, const GridReading &reading, Task &
 /* Nodes of one lattice may differ by this part of a step: headers are rounded. */
 constexpr double OFF_LATTICE = 1e-3;
 
-HeightGrid mosaic(const std::vector<HeightGrid> &parts)
+HeightGrid mosaic(const Vector<HeightGrid> &parts)
 {
     const HeightGrid &first = parts.at(0);
-    std::vector<std::array<int64_t, 2>> at;
+    Vector<std::array<int64_t, 2>> at;
     int64_t low[2] = {0, 0}, high[2] = {0, 0};
     for (const HeightGrid &part : parts) {
         const double turn = -first.rotation * std::acos(-1.0) / 180;
@@ -157,15 +157,15 @@ using Rgb = std::array<uint8_t, 3>;
 
 /* Nine colours of viridis (van der Walt and Smith 2015), and the way round the hues that maps of
  * geology have from of old. */
-static const std::vector<Rgb> VIRIDIS = {{68, 1, 84},   {71, 45, 123},  {59, 82, 139},
-                                         {44, 114, 142}, {33, 145, 140}, {40, 174, 128},
-                                         {94, 201, 98}, {173, 220, 48}, {253, 231, 37}};
-static const std::vector<Rgb> RAINBOW = {
+static const Vector<Rgb> VIRIDIS = {{68, 1, 84},   {71, 45, 123},  {59, 82, 139},
+                                    {44, 114, 142}, {33, 145, 140}, {40, 174, 128},
+                                    {94, 201, 98}, {173, 220, 48}, {253, 231, 37}};
+static const Vector<Rgb> RAINBOW = {
     {0, 0, 255}, {0, 255, 255}, {0, 255, 0}, {255, 255, 0}, {255, 0, 0}};
 
 Rgb color_of(ColorMap map, double value)
 {
-    const std::vector<Rgb> &colors = map == ColorMap::VIRIDIS ? VIRIDIS : RAINBOW;
+    const Vector<Rgb> &colors = map == ColorMap::VIRIDIS ? VIRIDIS : RAINBOW;
     const double last = double(colors.size() - 1);
     const double at = value > 0 ? std::min(value, 1.0) * last : 0; /* NaN is 0 */
     const size_t k = std::min(size_t(at), colors.size() - 2);

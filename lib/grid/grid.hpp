@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace gtx {
 
@@ -18,7 +17,7 @@ namespace gtx {
 struct HeightGrid {
     uint32_t nx = 0, ny = 0;
     double origin[2] = {0, 0}, step[2] = {1, 1}, rotation = 0;
-    std::vector<float> values; /* nx * ny, row by row from the origin; NaN where there is none */
+    Vector<float> values;      /* nx * ny, row by row from the origin; NaN where there is none */
 
     size_t count() const { return size_t(nx) * ny; }
     float at(uint32_t i, uint32_t j) const { return values[size_t(j) * nx + i]; }
@@ -54,7 +53,7 @@ HeightGrid read_zmap(std::string_view bytes);
 /* One grid of several that are parts of one lattice, such as neighbouring tiles of terrain; of
  * nodes that several have, the first with a value counts. Throws Error: INPUT where the lattices
  * differ. */
-HeightGrid mosaic(const std::vector<HeightGrid> &parts);
+HeightGrid mosaic(const Vector<HeightGrid> &parts);
 
 /* Colours for a value of 0..1, sRGB. */
 enum class ColorMap { VIRIDIS, RAINBOW };

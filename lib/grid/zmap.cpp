@@ -39,9 +39,9 @@ static std::string_view trimmed(std::string_view text)
     return text.substr(0, text.find_last_not_of(" \t") + 1);
 }
 
-static std::vector<std::string_view> split(std::string_view line)
+static Vector<std::string_view> split(std::string_view line)
 {
-    std::vector<std::string_view> fields;
+    Vector<std::string_view> fields;
     for (size_t comma = 0; comma != line.npos; line.remove_prefix(comma + 1)) {
         comma = line.find(',');
         fields.push_back(trimmed(line.substr(0, comma)));
@@ -62,12 +62,12 @@ bool is_zmap(std::string_view bytes)
 }
 
 /* The next line that is no comment, cut into at least so many fields. */
-static std::vector<std::string_view> header_line(Lines &lines, size_t fields)
+static Vector<std::string_view> header_line(Lines &lines, size_t fields)
 {
     std::string_view line;
     while (lines.next(line))
         if (!line.empty() && line[0] != '!') {
-            std::vector<std::string_view> found = split(line);
+            Vector<std::string_view> found = split(line);
             if (found.size() < fields)
                 malformed("a line of the header is too short");
             return found;
@@ -79,7 +79,7 @@ HeightGrid read_zmap(std::string_view bytes)
 {
     Lines lines(bytes);
     header_line(lines, 2); /* what it is called */
-    const std::vector<std::string_view> field = header_line(lines, 3), size = header_line(lines, 6);
+    const Vector<std::string_view> field = header_line(lines, 3), size = header_line(lines, 6);
     const std::string_view missing = field[1].empty() ? field[2] : field[1];
     double missing_value = NAN;
     if (missing.find_first_not_of("+-.0123456789eE") == missing.npos && !missing.empty())

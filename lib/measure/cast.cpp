@@ -30,11 +30,11 @@ double AssetView::height_step(uint32_t patch) const
     return gtx_height_step(&patches_[patch], info_.height_bits);
 }
 
-void AssetView::cast_row(const View &view, uint32_t j, std::vector<gtx_hit> &hits,
-                         std::vector<Crossing> &crossings) const
+void AssetView::cast_row(const View &view, uint32_t j, Vector<gtx_hit> &hits,
+                         Vector<Crossing> &crossings) const
 {
-    std::vector<gtx_ray> rays(view.size), again;
-    std::vector<uint32_t> pixel;
+    Vector<gtx_ray> rays(view.size), again;
+    Vector<uint32_t> pixel;
     const Vec3d anchor(info_.anchor[0], info_.anchor[1], info_.anchor[2]);
     for (uint32_t i = 0; i < view.size; ++i) {
         Vec3d origin = view.at(i, j) - anchor;
@@ -54,7 +54,7 @@ void AssetView::cast_row(const View &view, uint32_t j, std::vector<gtx_hit> &hit
         }
     }
     /* Where the nearest crossing is not shown, what is shown lies behind it. */
-    std::vector<gtx_hit> shown(again.size());
+    Vector<gtx_hit> shown(again.size());
     gtx_raycast(caster_.get(), again.data(), shown.data(), again.size(), 0);
     for (size_t k = 0; k < again.size(); ++k) {
         gtx_hit &hit = hits[pixel[k]];

@@ -25,8 +25,8 @@ public:
 
     /* Casts row j of the view; both vectors get view.size entries. A hit is what is shown: hit.t is
      * the depth, infinity where there is none. */
-    void cast_row(const View &view, uint32_t j, std::vector<gtx_hit> &hits,
-                  std::vector<Crossing> &crossings) const;
+    void cast_row(const View &view, uint32_t j, Vector<gtx_hit> &hits,
+                  Vector<Crossing> &crossings) const;
 
     /* The length of one step of the patch's height codes. */
     double height_step(uint32_t patch) const;

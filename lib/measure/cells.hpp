@@ -49,8 +49,8 @@ private:
     double crossed_distance2(size_t i, const Vec3d &p) const;
     void add_patch(const gtx_asset *asset, uint32_t index);
 
-    std::vector<Frame> frames_;
-    std::vector<Cell> cells_;
+    Vector<Frame> frames_;
+    Vector<Cell> cells_;
 };
 
 } // namespace gtx

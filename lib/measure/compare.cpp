@@ -20,14 +20,14 @@ namespace {
 struct Figures {
     uint64_t surface = 0, holes = 0, leaks = 0, both = 0, either = 0;
     /* At level 0 only. */
-    std::vector<float> depth, angle;
+    Vector<float> depth, angle;
     double color_square = 0;
-    std::vector<HoleSample> samples;
+    Vector<HoleSample> samples;
 };
 
 /* Views of one size, and the asset as it is looked at there. */
 struct Scene {
-    std::vector<View> views;
+    Vector<View> views;
     AssetView asset;
     uint32_t level = 0;
     bool appearance = false;      /* all figures, not holes and silhouettes alone */
@@ -63,13 +63,13 @@ struct Look {
     const MeshImage &image;
     const AssetView &asset;
     Figures &out;
-    std::vector<Suspect> suspects = {};
+    Vector<Suspect> suspects = {};
 
     void pixel(uint32_t i, uint32_t j, const gtx_hit &hit);
     void holes();
     void hole(const Suspect &suspect);
     void appearance(uint32_t i, uint32_t j, const gtx_hit &hit, bool depths_agree);
-    void leaks(const std::vector<Crossing> &crossings);
+    void leaks(const Vector<Crossing> &crossings);
 };
 
 } // namespace
@@ -145,10 +145,10 @@ void Look::holes()
     constexpr size_t AT_ONCE = 4096;
     for (size_t first = 0; first < suspects.size(); first += AT_ONCE) {
         const size_t end = std::min(first + AT_ONCE, suspects.size());
-        std::vector<std::array<uint32_t, 2>> pixels;
+        Vector<std::array<uint32_t, 2>> pixels;
         for (size_t k = first; k < end; ++k)
             pixels.push_back({suspects[k].i, suspects[k].j});
-        const std::vector<MeshImage> close = rasterise_close(all.mesh, view, pixels);
+        const Vector<MeshImage> close = rasterise_close(all.mesh, view, pixels);
         for (size_t k = first; k < end; ++k)
             if (!shows_as_deep(close[k - first], suspects[k]))
                 hole(suspects[k]);
@@ -198,7 +198,7 @@ void Look::pixel(uint32_t i, uint32_t j, const gtx_hit &hit)
 }
 
 /* A leak counts where its 3x3 is covered. */
-void Look::leaks(const std::vector<Crossing> &crossings)
+void Look::leaks(const Vector<Crossing> &crossings)
 {
     const uint32_t size = view.size;
     for (uint32_t j = 1; j + 1 < size; ++j)
@@ -218,8 +218,8 @@ static void measure_view(const Comparison &all, const Scene &scene, uint32_t vie
 {
     const View &view = scene.views[view_index];
     Look look = {all, scene, view_index, view, image, scene.asset, out};
-    std::vector<gtx_hit> hits;
-    std::vector<Crossing> row, crossings;
+    Vector<gtx_hit> hits;
+    Vector<Crossing> row, crossings;
     crossings.reserve(size_t(view.size) * view.size);
     for (uint32_t j = 0; j < view.size; ++j) {
         task.check(); /* a view takes seconds */
@@ -233,9 +233,9 @@ static void measure_view(const Comparison &all, const Scene &scene, uint32_t vie
 }
 
 /* The figures of level 0 that come from lists: figures[view]. */
-static void summarise(const std::vector<Figures> &figures, CompareReport &report)
+static void summarise(const Vector<Figures> &figures, CompareReport &report)
 {
-    std::vector<float> depth, angle;
+    Vector<float> depth, angle;
     double depth_square = 0, angle_sum = 0, color_square = 0, pixels = 0;
     for (const Figures &f : figures) {
         depth.insert(depth.end(), f.depth.begin(), f.depth.end());
@@ -258,7 +258,7 @@ static void summarise(const std::vector<Figures> &figures, CompareReport &report
 
 /* The figures that are sums; returns the least silhouette IoU of a view. */
 template <class Report>
-static double add_up(const std::vector<Figures> &figures, Report &sum, uint64_t &surface)
+static double add_up(const Vector<Figures> &figures, Report &sum, uint64_t &surface)
 {
     uint64_t both = 0, either = 0;
     double least = 1;
@@ -276,11 +276,11 @@ static double add_up(const std::vector<Figures> &figures, Report &sum, uint64_t 
 }
 
 /* Every level at the size asked for, then what the runtime would draw, at ever smaller sizes. */
-static std::vector<Scene> make_scenes(const gtx_asset *asset, const Extent &extent,
-                                      const CompareOptions &options)
+static Vector<Scene> make_scenes(const gtx_asset *asset, const Extent &extent,
+                                 const CompareOptions &options)
 {
-    std::vector<Scene> scenes;
-    std::vector<View> views = comparison_views(extent, options.size);
+    Vector<Scene> scenes;
+    Vector<View> views = comparison_views(extent, options.size);
     for (uint32_t level = 0; level < options.levels; ++level)
         scenes.push_back({views, AssetView(asset, level), level, level == 0,
                           options.holes != nullptr});
@@ -298,9 +298,9 @@ CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOpt
     const Comparison all = {mesh, extent_of(mesh)};
     if (!(all.extent.radius > 0))
         throw Error(GTX_ERROR_EMPTY, "the source has no extent to measure against");
-    const std::vector<Scene> scenes = make_scenes(asset, all.extent, options);
+    const Vector<Scene> scenes = make_scenes(asset, all.extent, options);
     const size_t views = scenes[0].views.size();
-    std::vector<std::vector<Figures>> figures(scenes.size(), std::vector<Figures>(views));
+    Vector<Vector<Figures>> figures(scenes.size(), Vector<Figures>(views));
     task.parallel(views, [&](size_t v) {
         MeshImage image;
         uint32_t size = 0;

@@ -63,13 +63,13 @@ struct MeshTriangles {
 
 } // namespace
 
-static std::vector<Vec3d> sample_mesh(const MeshTriangles &source,
-                                      const std::vector<uint8_t> &junk)
+static Vector<Vec3d> sample_mesh(const MeshTriangles &source,
+                                 const Vector<uint8_t> &junk)
 {
-    std::vector<double> area(source.size());
+    Vector<double> area(source.size());
     for (size_t t = 0; t < area.size(); ++t)
         area[t] = !junk.empty() && junk[t] ? 0 : length(source.mesh.area_vector(t)) / 2;
-    std::vector<Vec3d> points;
+    Vector<Vec3d> points;
     Random random;
     stratify(area, SAMPLES, random, [&](size_t t) {
         double u = std::sqrt(random.next()), v = random.next();
@@ -81,12 +81,12 @@ static std::vector<Vec3d> sample_mesh(const MeshTriangles &source,
     return points;
 }
 
-static std::vector<Vec3d> sample_cells(const Cells &cells)
+static Vector<Vec3d> sample_cells(const Cells &cells)
 {
-    std::vector<double> area(cells.size());
+    Vector<double> area(cells.size());
     for (size_t i = 0; i < area.size(); ++i)
         area[i] = cells.core_area(i);
-    std::vector<Vec3d> points;
+    Vector<Vec3d> points;
     Random random;
     stratify(area, SAMPLES, random, [&](size_t i) {
         for (int attempt = 0; attempt < 64; ++attempt) {
@@ -101,11 +101,11 @@ static std::vector<Vec3d> sample_cells(const Cells &cells)
 }
 
 template <class Shapes>
-static Deviation deviation(const std::vector<Vec3d> &points, const Shapes &shapes, double diagonal,
+static Deviation deviation(const Vector<Vec3d> &points, const Shapes &shapes, double diagonal,
                            Task &task, double from, double to)
 {
     NearestTree<Shapes> tree(shapes);
-    std::vector<double> square(points.size());
+    Vector<double> square(points.size());
     task.parallel((points.size() + CHUNK - 1) / CHUNK, [&](size_t chunk) {
         size_t end = std::min(points.size(), (chunk + 1) * CHUNK);
         uint32_t near = NO_HIT; /* consecutive points lie on one shape or on the next */
@@ -125,7 +125,7 @@ static Deviation deviation(const std::vector<Vec3d> &points, const Shapes &shape
 }
 
 SurfaceError surface_error(const gtx_asset *asset, const Mesh &mesh,
-                           const std::vector<uint8_t> &junk, Task &task)
+                           const Vector<uint8_t> &junk, Task &task)
 {
     const double diagonal = extent_of(mesh).diagonal;
     gtx_info info;

@@ -19,7 +19,7 @@ struct SurfaceError {
     Deviation forward, reverse;
 };
 SurfaceError surface_error(const gtx_asset *asset, const Mesh &mesh,
-                           const std::vector<uint8_t> &junk, Task &task);
+                           const Vector<uint8_t> &junk, Task &task);
 
 /* Where patches meet: 100,000 points of the outlines of their cores (trim 0), each to the nearest
  * point of the other patches, in height steps of the coarser of the two. Points within two
@@ -55,8 +55,8 @@ struct CompareReport {
     double depth_rms = 0, depth_p99 = 0, depth_max = 0;   /* fractions of the diagonal */
     double normal_mean_deg = 0, normal_p99_deg = 0;
     double psnr_db = 0;
-    std::vector<LevelReport> levels;
-    std::vector<DetailReport> details; /* the views' own size, then each half of the one before */
+    Vector<LevelReport> levels;
+    Vector<DetailReport> details;      /* the views' own size, then each half of the one before */
     SurfaceError error;
     SeamReport seams;
 };
@@ -76,7 +76,7 @@ struct CompareOptions {
     uint32_t size = 1024;        /* pixels along a side of a view */
     uint32_t levels = 1;         /* levels of detail to evaluate */
     bool surface = true;         /* measure `error` and `seams` too */
-    std::vector<HoleSample> *holes = nullptr; /* appended to: every hole pixel of every level
+    Vector<HoleSample> *holes = nullptr;      /* appended to: every hole pixel of every level
                                               and detail, views in order */
 };
 

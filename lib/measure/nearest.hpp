@@ -1,6 +1,7 @@
 /* Nearest point on many small shapes: a balanced tree of boxes, split at medians. */
 #pragma once
 
+#include "mesh/memory.hpp"
 #include "mesh/vec.hpp"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <utility>
-#include <vector>
 
 namespace gtx {
 
@@ -55,7 +55,7 @@ public:
         leaves_ = 1;
         while (leaves_ * LEAF < order_.size())
             leaves_ *= 2;
-        std::vector<Vec3f> centre;
+        Vector<Vec3f> centre;
         for (size_t i = 0; i < order_.size(); ++i) {
             centre.push_back(Vec3f(shapes_.box(i).centre()));
             order_[i] = uint32_t(i);
@@ -119,8 +119,8 @@ private:
 
     /* Orders the shapes of a node with places for `room` of them: those of its first child have the
      * lower centres along the longest side of all, and fill it. */
-    using Place = std::vector<uint32_t>::iterator;
-    static void split(const std::vector<Vec3f> &centre, Place from, Place to, size_t room)
+    using Place = Vector<uint32_t>::iterator;
+    static void split(const Vector<Vec3f> &centre, Place from, Place to, size_t room)
     {
         if (room <= LEAF)
             return;
@@ -145,8 +145,8 @@ private:
     }
 
     const Shapes &shapes_;
-    std::vector<uint32_t> order_;
-    std::vector<Box> boxes_; /* heap order: children of n at 2n and 2n + 1, leaves last */
+    Vector<uint32_t> order_;
+    Vector<Box> boxes_;      /* heap order: children of n at 2n and 2n + 1, leaves last */
     size_t leaves_;
 };
 

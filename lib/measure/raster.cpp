@@ -93,9 +93,9 @@ static void find_fronts(const Mesh &mesh, const View &view, MeshImage &image)
     }
 }
 
-static std::vector<Vec3d> project(const Mesh &mesh, const View &view)
+static Vector<Vec3d> project(const Mesh &mesh, const View &view)
 {
-    std::vector<Vec3d> projected(mesh.positions.size());
+    Vector<Vec3d> projected(mesh.positions.size());
     for (size_t i = 0; i < projected.size(); ++i)
         projected[i] = view.project(mesh.positions[i]);
     return projected;
@@ -104,7 +104,7 @@ static std::vector<Vec3d> project(const Mesh &mesh, const View &view)
 MeshImage rasterise(const Mesh &mesh, const View &view)
 {
     MeshImage image = blank_image(view.size);
-    const std::vector<Vec3d> projected = project(mesh, view);
+    const Vector<Vec3d> projected = project(mesh, view);
     for (size_t t = 0; t < mesh.triangle_count(); ++t) {
         Vec3d v[3];
         for (int k = 0; k < 3; ++k)
@@ -115,19 +115,19 @@ MeshImage rasterise(const Mesh &mesh, const View &view)
     return image;
 }
 
-std::vector<MeshImage> rasterise_close(const Mesh &mesh, const View &view,
-                                       const std::vector<std::array<uint32_t, 2>> &pixels)
+Vector<MeshImage> rasterise_close(const Mesh &mesh, const View &view,
+                                  const Vector<std::array<uint32_t, 2>> &pixels)
 {
     View close = view;
     close.size = CLOSE_SIDE;
     close.pixel = view.pixel / CLOSER;
     /* Which of the pixels one is, NO_HIT for none. */
-    std::vector<uint32_t> which(size_t(view.size) * view.size, NO_HIT);
+    Vector<uint32_t> which(size_t(view.size) * view.size, NO_HIT);
     for (size_t k = 0; k < pixels.size(); ++k)
         which[size_t(pixels[k][1]) * view.size + pixels[k][0]] = uint32_t(k);
 
-    std::vector<MeshImage> images(pixels.size(), blank_image(CLOSE_SIDE));
-    const std::vector<Vec3d> projected = project(mesh, view);
+    Vector<MeshImage> images(pixels.size(), blank_image(CLOSE_SIDE));
+    const Vector<Vec3d> projected = project(mesh, view);
     for (size_t t = 0; t < mesh.triangle_count(); ++t) {
         Vec3d v[3], near[3];
         for (int k = 0; k < 3; ++k)

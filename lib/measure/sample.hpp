@@ -1,10 +1,11 @@
 /* Points spread evenly over shapes, the same everywhere. */
 #pragma once
 
+#include "mesh/memory.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace gtx {
 
@@ -23,7 +24,7 @@ private:
 
 /* Calls place(shape) for `count` points that are stratified over the sizes of shapes. */
 template <class Place>
-void stratify(const std::vector<double> &size, size_t count, Random &random, Place place)
+void stratify(const Vector<double> &size, size_t count, Random &random, Place place)
 {
     double total = 0, before = 0;
     for (double s : size)
@@ -42,7 +43,7 @@ void stratify(const std::vector<double> &size, size_t count, Random &random, Pla
 }
 
 /* The value that 99 % of the values are not above; orders them. */
-inline double percentile_99(std::vector<float> &values)
+inline double percentile_99(Vector<float> &values)
 {
     if (values.empty())
         return 0;

@@ -25,11 +25,11 @@ struct SeamPoint {
 
 /* Shapes for NearestTree: the edges where the source ends, relative to the anchor. */
 struct BorderEdges {
-    std::vector<std::array<Vec3d, 2>> edges;
+    Vector<std::array<Vec3d, 2>> edges;
 
     BorderEdges(const Mesh &mesh, const Vec3d &anchor)
     {
-        std::vector<std::array<uint32_t, 3>> neighbours = triangle_neighbours(mesh);
+        Vector<std::array<uint32_t, 3>> neighbours = triangle_neighbours(mesh);
         for (size_t t = 0; t < neighbours.size(); ++t)
             for (int k = 0; k < 3; ++k)
                 if (neighbours[t][k] == NO_TRIANGLE)
@@ -53,10 +53,10 @@ struct BorderEdges {
 } // namespace
 
 /* Marching squares over the trim of a cell; the rare saddle counts as two of its four crossings. */
-static std::vector<Crossing> find_crossings(const Cells &cells)
+static Vector<Crossing> find_crossings(const Cells &cells)
 {
     static const double RING[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
-    std::vector<Crossing> out;
+    Vector<Crossing> out;
     for (size_t i = 0; i < cells.size(); ++i) {
         double found[4][2];
         int count = 0;
@@ -75,14 +75,14 @@ static std::vector<Crossing> find_crossings(const Cells &cells)
     return out;
 }
 
-static std::vector<SeamPoint> sample_outlines(const Cells &cells)
+static Vector<SeamPoint> sample_outlines(const Cells &cells)
 {
-    const std::vector<Crossing> crossings = find_crossings(cells);
-    std::vector<double> size;
+    const Vector<Crossing> crossings = find_crossings(cells);
+    Vector<double> size;
     for (const Crossing &c : crossings)
         size.push_back(length(cells.point(c.cell, c.to[0], c.to[1]) -
                               cells.point(c.cell, c.from[0], c.from[1])));
-    std::vector<SeamPoint> points;
+    Vector<SeamPoint> points;
     if (crossings.empty())
         return points;
     Random random;
@@ -105,12 +105,12 @@ SeamReport measure_seams(const gtx_asset *asset, const Mesh &mesh, Task &task)
     const BorderEdges border(mesh, anchor);
     const NearestTree<Cells> fields(cells);
     const NearestTree<BorderEdges> ends(border);
-    const std::vector<SeamPoint> points = sample_outlines(cells);
+    const Vector<SeamPoint> points = sample_outlines(cells);
 
     struct Gap {
         double distance = -1, steps = 0; /* negative: none is to be expected */
     };
-    std::vector<Gap> gaps(points.size());
+    Vector<Gap> gaps(points.size());
     task.parallel((points.size() + CHUNK - 1) / CHUNK, [&](size_t chunk) {
         uint32_t near = NO_HIT, near_end = NO_HIT;
         for (size_t i = chunk * CHUNK; i < std::min(points.size(), (chunk + 1) * CHUNK); ++i) {
@@ -128,7 +128,7 @@ SeamReport measure_seams(const gtx_asset *asset, const Mesh &mesh, Task &task)
         }
     });
     SeamReport report;
-    std::vector<float> steps;
+    Vector<float> steps;
     const double diagonal = extent_of(mesh).diagonal;
     for (const Gap &gap : gaps) {
         if (gap.distance < 0)

@@ -42,24 +42,24 @@ struct View {
 
 /* The 26 directions (normalised non-zero {-1, 0, 1}^3, x fastest), up +Y, or +Z when parallel; the
  * sphere of the extent is inscribed in 96 % of size x size pixels. */
-std::vector<View> comparison_views(const Extent &extent, uint32_t size);
+Vector<View> comparison_views(const Extent &extent, uint32_t size);
 
 /* Whether a triangle's material cuts it away at a point; `footprint` as in sample_surface. */
 bool is_cut(const Mesh &mesh, size_t triangle, const double weight[3], double footprint);
 
 /* The nearest fragment at every pixel centre. What a mask cuts away is no surface. */
 struct MeshImage {
-    std::vector<float> depth;       /* infinity where nothing is */
-    std::vector<uint32_t> triangle; /* NO_HIT where nothing is */
-    std::vector<uint8_t> front;     /* 1: seen from the front, or two-sided */
+    Vector<float> depth;            /* infinity where nothing is */
+    Vector<uint32_t> triangle;      /* NO_HIT where nothing is */
+    Vector<uint8_t> front;          /* 1: seen from the front, or two-sided */
 };
 MeshImage rasterise(const Mesh &mesh, const View &view);
 
 /* The square that a pixel's centre and those of its neighbours span, so many times finer:
  * CLOSE_SIDE x CLOSE_SIDE fragments for each of these pixels. */
 constexpr uint32_t CLOSER = 8, CLOSE_SIDE = 2 * CLOSER + 1;
-std::vector<MeshImage> rasterise_close(const Mesh &mesh, const View &view,
-                                       const std::vector<std::array<uint32_t, 2>> &pixels);
+Vector<MeshImage> rasterise_close(const Mesh &mesh, const View &view,
+                                  const Vector<std::array<uint32_t, 2>> &pixels);
 
 /* Normal (unit, towards the eye's side) and colour of the source where pixel (i, j) shows it: those
  * of its materials, textures included, else those of its corners. */

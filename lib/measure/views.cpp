@@ -23,9 +23,9 @@ Extent extent_of(const Mesh &mesh)
     return extent;
 }
 
-std::vector<View> comparison_views(const Extent &extent, uint32_t size)
+Vector<View> comparison_views(const Extent &extent, uint32_t size)
 {
-    std::vector<View> views;
+    Vector<View> views;
     for (int z = -1; z <= 1; ++z)
         for (int y = -1; y <= 1; ++y)
             for (int x = -1; x <= 1; ++x) {

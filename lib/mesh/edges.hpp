@@ -38,7 +38,7 @@ struct EdgeEntry {
  * A counting sort by the lower vertex leaves lists of about three entries. */
 template <class Visit> void for_each_edge(const Mesh &mesh, Visit visit)
 {
-    std::vector<uint32_t> end(mesh.positions.size() + 1, 0);
+    Vector<uint32_t> end(mesh.positions.size() + 1, 0);
     auto each_half_edge = [&](auto body) {
         for (size_t t = 0; t < mesh.triangles.size(); ++t)
             for (int k = 0; k < 3; ++k) {
@@ -49,7 +49,7 @@ template <class Visit> void for_each_edge(const Mesh &mesh, Visit visit)
     each_half_edge([&](uint32_t low, const EdgeEntry &) { ++end[low + 1]; });
     for (size_t v = 1; v < end.size(); ++v)
         end[v] += end[v - 1];
-    std::vector<EdgeEntry> entries(3 * mesh.triangles.size());
+    Vector<EdgeEntry> entries(3 * mesh.triangles.size());
     each_half_edge([&](uint32_t low, const EdgeEntry &entry) { entries[end[low]++] = entry; });
 
     EdgeEntry *from = entries.data();

@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <map>
 #include <string>
-#include <vector>
 
 namespace gtx {
 
@@ -23,11 +22,11 @@ enum TriangleFlag : uint8_t {
  * one fan of triangles; no triangle is degenerate or there twice; every corner has a unit normal;
  * flags say which triangles are two-sided. */
 struct Mesh {
-    std::vector<Vec3d> positions;
-    std::vector<std::array<uint32_t, 3>> triangles;
-    std::vector<Vec3f> normals; /* per corner, or empty */
-    std::vector<Rgba8> colors;  /* per corner, or empty */
-    std::vector<uint8_t> flags; /* per triangle, TriangleFlag, or empty */
+    Vector<Vec3d> positions;
+    Vector<std::array<uint32_t, 3>> triangles;
+    Vector<Vec3f> normals;      /* per corner, or empty */
+    Vector<Rgba8> colors;       /* per corner, or empty */
+    Vector<uint8_t> flags;      /* per triangle, TriangleFlag, or empty */
     Appearance appearance;      /* materials and textures, where the source has them */
 
     size_t triangle_count() const { return triangles.size(); }
@@ -53,7 +52,7 @@ struct CleanReport {
 struct ModelFile {
     std::string path;
     std::string bytes; /* inflated when they were gzipped */
-    std::vector<std::string> *sources; /* gets the path of every further file read; may be null */
+    Vector<std::string> *sources;      /* gets the path of every further file read; may be null */
 };
 
 /* Throw Error: READ, INPUT, LIMIT, MEMORY, CANCELLED. */
@@ -65,7 +64,7 @@ std::string model_extension(const std::string &path);
 
 /* Paths of the files that a model refers to, whether they exist or not: buffers, images, material
  * libraries. Found without decoding the model; nothing is said of one that is malformed. */
-std::vector<std::string> referenced_files(const ModelFile &file);
+Vector<std::string> referenced_files(const ModelFile &file);
 
 /* Reads a model by its content (falling back to its extension): OBJ, PLY, OFF, STL, Draco, glTF and
  * GLB. Node transforms are applied. What is ignored is named in task.warnings.
@@ -74,7 +73,7 @@ Mesh import_model(const ModelFile &file, Task &task);
 
 /* The same of a file. `sources`, when given, gets the path of every file that was read (the model
  * first). */
-Mesh import_mesh(const std::string &path, Task &task, std::vector<std::string> *sources = nullptr);
+Mesh import_mesh(const std::string &path, Task &task, Vector<std::string> *sources = nullptr);
 
 /* Welds, repairs and orients; the result keeps the promises above. Throws Error: EMPTY,
  * CANCELLED. */
@@ -83,6 +82,6 @@ Mesh clean_mesh(Mesh mesh, Task &task, CleanReport &report);
 /* Three neighbours a triangle: neighbour[t][k] shares the edge from corner k to corner k + 1, or is
  * NO_TRIANGLE at a border. For cleaned meshes. */
 constexpr uint32_t NO_TRIANGLE = 0xffffffffu;
-std::vector<std::array<uint32_t, 3>> triangle_neighbours(const Mesh &mesh);
+Vector<std::array<uint32_t, 3>> triangle_neighbours(const Mesh &mesh);
 
 } // namespace gtx

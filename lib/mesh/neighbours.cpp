@@ -3,9 +3,9 @@
 
 namespace gtx {
 
-std::vector<std::array<uint32_t, 3>> triangle_neighbours(const Mesh &mesh)
+Vector<std::array<uint32_t, 3>> triangle_neighbours(const Mesh &mesh)
 {
-    std::vector<std::array<uint32_t, 3>> neighbours(
+    Vector<std::array<uint32_t, 3>> neighbours(
         mesh.triangles.size(), {NO_TRIANGLE, NO_TRIANGLE, NO_TRIANGLE});
     for_each_edge(mesh, [&](const EdgeEntry *edge, size_t count) {
         if (count != 2)

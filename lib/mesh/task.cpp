@@ -8,19 +8,22 @@
 #include <cstring>
 #include <mutex>
 #include <new>
+#include <system_error>
 
 namespace gtx {
 
 gtx_error caught_error()
 {
-    gtx_error out = {GTX_ERROR_INTERNAL, 0, nullptr, 0, "an unknown exception"};
+    gtx_error out = {};
+    out.result = GTX_ERROR_INTERNAL;
     const auto say = [&](const char *text) {
         std::snprintf(out.message, sizeof out.message, "%s", text);
     };
+    say("an unknown exception");
     try {
         throw;
     } catch (const Error &e) {
-        out = {e.result, e.rule.number, e.rule.name, e.rule.offset, {}};
+        out = {e.result, e.rule.number, e.rule.name, e.rule.offset, e.limit, {}};
         say(e.what());
     } catch (const std::bad_alloc &) {
         out.result = GTX_ERROR_MEMORY;
@@ -38,8 +41,9 @@ static double now()
 }
 
 Task::Task(unsigned threads, gtx_progress_fn progress, void *user,
-           std::vector<const char *> stages, std::vector<float> weights)
-    : threads_(threads ? threads : std::max(1u, std::thread::hardware_concurrency())),
+           std::vector<const char *> stages, std::vector<float> weights,
+           const gtx_limits &limits)
+    : limits(limits), threads_(threads ? threads : std::max(1u, std::thread::hardware_concurrency())),
       progress_(progress), user_(user), stages_(std::move(stages)),
       caller_(std::this_thread::get_id())
 {
@@ -72,6 +76,7 @@ void Task::begin(const char *stage)
 {
     end();
     stage_ = index_of(stage);
+    limits.stage = stages_[stage_];
     report(0);
 }
 
@@ -149,8 +154,17 @@ void Task::parallel(size_t count, const std::function<void(size_t)> &body, doubl
 
     size_t helpers = std::min<size_t>(threads_, std::max<size_t>(count, 1)) - 1;
     std::vector<std::thread> pool;
-    for (size_t i = 0; i < helpers; ++i)
-        pool.emplace_back([&] { while (run_one()) {} });
+    pool.reserve(helpers);
+    for (size_t i = 0; i < helpers; ++i) {
+        try {
+            pool.emplace_back([&] {
+                MemoryScope scope(limits);
+                while (run_one()) {}
+            });
+        } catch (const std::system_error &) { /* no more threads: fewer do the same */
+            break;
+        }
+    }
     try {
         while (run_one() && !stop)
             advance(from + (to - from) * double(done) / double(count));

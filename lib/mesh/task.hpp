@@ -1,6 +1,8 @@
 /* What a long job carries through the cooker's rooms: errors, progress, cancelling, threads. */
 #pragma once
 
+#include "mesh/memory.hpp"
+
 #include <geotex/geotex.h>
 
 #include <atomic>
@@ -25,10 +27,11 @@ struct Error : std::exception {
     gtx_result result;
     std::string message;
     BrokenRule rule;
+    const char *limit = nullptr; /* as gtx_error.limit */
     Error(gtx_result result, std::string message) : result(result), message(std::move(message)) {}
     explicit Error(const gtx_error &error)
         : result(error.result), message(error.message),
-          rule{error.rule, error.rule_name, error.offset}
+          rule{error.rule, error.rule_name, error.offset}, limit(error.limit)
     {
     }
     const char *what() const noexcept override { return message.c_str(); }
@@ -50,7 +53,8 @@ public:
     /* `threads` 0 means all processors. `stages` names the steps in order; `weights` their shares
      * of the time (any scale, same length). */
     Task(unsigned threads, gtx_progress_fn progress, void *user,
-         std::vector<const char *> stages = {}, std::vector<float> weights = {});
+         std::vector<const char *> stages = {}, std::vector<float> weights = {},
+         const gtx_limits &limits = {});
 
     /* Enters the named stage. Throws Error(GTX_CANCELLED) when the callback says so. */
     void begin(const char *stage);
@@ -80,8 +84,11 @@ public:
     /* Closes the clock of the last stage. */
     void end();
 
+    /* What the job may take: the memory of all its threads' containers counts against it. */
+    Limits limits;
+
     /* One sentence each, in the order found: what was dropped, ignored or repaired. */
-    std::vector<std::string> warnings;
+    Vector<std::string> warnings;
 
 private:
     /* One of several runs of some stages, and the part of all progress that it moves over. */
@@ -91,6 +98,7 @@ private:
     };
     size_t index_of(const char *stage) const;
     void report(double fraction);
+    MemoryScope scope_{limits};
     unsigned threads_;
     gtx_progress_fn progress_;
     void *user_;

@@ -31,8 +31,8 @@ static void test_arguments(void **state)
     assert_int_equal(gtx_open_memory(NULL, 0, NULL, &other, &error), GTX_ERROR_TRUNCATED);
     assert_int_equal(gtx_open_memory("text", 4, NULL, &other, &error), GTX_ERROR_NOT_GTX);
     assert_null(other);
-    assert_int_equal(gtx_validate(NULL, 1, NULL, NULL, NULL), GTX_ERROR_ARGUMENT);
-    assert_int_equal(gtx_validate(NULL, 0, NULL, NULL, NULL), GTX_ERROR_TRUNCATED);
+    assert_int_equal(gtx_validate(NULL, 1, NULL, NULL, NULL, NULL), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_validate(NULL, 0, NULL, NULL, NULL, NULL), GTX_ERROR_TRUNCATED);
 
     void *data;
     size_t size;

@@ -60,7 +60,7 @@ static void test_validate(void **state)
         bytes file = make_bad(b);
         hearing h = {.expected = b};
         gtx_error error = {0};
-        gtx_result result = gtx_validate(file.data, file.size, hear, &h, &error);
+        gtx_result result = gtx_validate(file.data, file.size, NULL, hear, &h, &error);
         assert_int_not_equal(result, GTX_OK);
         assert_int_equal(h.others, 0);
         if (h.issues != 1 || h.offset != reported_offset(b, file))
@@ -146,13 +146,13 @@ static void test_several(void **state)
     rehash_sections(file);
     several s = {0};
     gtx_error error = {0};
-    assert_int_equal(gtx_validate(file.data, file.size, list, &s, &error), GTX_ERROR_CORRUPT);
+    assert_int_equal(gtx_validate(file.data, file.size, NULL, list, &s, &error), GTX_ERROR_CORRUPT);
     assert_int_equal(error.rule, 113);
     assert_int_equal(s.count, 3);
     assert_int_equal(s.rules[0], 113);
     assert_int_equal(s.rules[1], 307);
     assert_int_equal(s.rules[2], 304);
-    assert_int_equal(gtx_validate(file.data, file.size, NULL, NULL, NULL), GTX_ERROR_CORRUPT);
+    assert_int_equal(gtx_validate(file.data, file.size, NULL, NULL, NULL, NULL), GTX_ERROR_CORRUPT);
     free(file.data);
 }
 

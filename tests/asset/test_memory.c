@@ -90,7 +90,7 @@ static gtx_result attempt_validate(const gtx_allocator *allocator, const golden 
 {
     bytes file = read_golden(g->name);
     gtx_check check = {.keep_going = true};
-    const gtx_read_options options = {.allocator = *allocator, .limit = SIZE_MAX};
+    const gtx_read_options options = {.allocator = *allocator};
     gtx_asset *asset;
     gtx_result result = gtx_read_asset(&check, &options, file.data, file.size, &asset);
     assert_int_equal(check.broken, 0);
@@ -210,22 +210,23 @@ static void check_limit(const golden *g, open_fn open, const gtx_jobs *jobs, siz
     assert_int_equal(open(g, &desc, &asset, NULL), GTX_OK);
     gtx_close(asset);
     size_t peak = m.peak;
-    desc.max_bytes = peak;
+    desc.limits.memory = peak;
     assert_int_equal(open(g, &desc, &asset, NULL), GTX_OK);
     gtx_close(asset);
-    for (desc.max_bytes = peak - 1; desc.max_bytes > 0; desc.max_bytes /= 2) {
+    for (desc.limits.memory = peak - 1; desc.limits.memory > 0; desc.limits.memory /= 2) {
         m = (meter){0};
         gtx_error error = {0};
         assert_int_equal(open(g, &desc, &asset, &error), GTX_ERROR_LIMIT);
         assert_null(asset);
         assert_int_equal(error.result, GTX_ERROR_LIMIT);
         assert_int_equal(error.rule, 0);
+        assert_string_equal(error.limit, "memory");
         assert_in_range(m.calls, 0, most_calls);
         assert_int_equal(m.blocks, 0);
     }
 }
 
-static void test_max_bytes(void **state)
+static void test_memory_limit(void **state)
 {
     (void)state;
     runner_log log;
@@ -300,7 +301,7 @@ static void test_default_limit(void **state)
                      GTX_ERROR_LIMIT);
     assert_int_equal(m.calls, 0);
     error = (gtx_error){0};
-    assert_int_equal(gtx_validate(file.data, file.size, NULL, NULL, &error), GTX_ERROR_LIMIT);
+    assert_int_equal(gtx_validate(file.data, file.size, NULL, NULL, NULL, &error), GTX_ERROR_LIMIT);
     assert_int_equal(error.result, GTX_ERROR_LIMIT);
     free(file.data);
 }
@@ -335,7 +336,7 @@ static void test_objects(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_exhaustion),    cmocka_unit_test(test_max_bytes),
+        cmocka_unit_test(test_exhaustion),    cmocka_unit_test(test_memory_limit),
         cmocka_unit_test(test_bomb),          cmocka_unit_test(test_default_limit),
         cmocka_unit_test(test_objects),
     };

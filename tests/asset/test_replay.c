@@ -26,7 +26,7 @@ static gtx_result open_copy(bytes file, gtx_asset **out, gtx_error *error)
     uint8_t *copy = need(malloc(file.size ? file.size : 1));
     memcpy(copy, file.data, file.size);
     gtx_result result = gtx_open_memory(copy, file.size, NULL, out, error);
-    gtx_result verdict = gtx_validate(copy, file.size, NULL, NULL, NULL);
+    gtx_result verdict = gtx_validate(copy, file.size, NULL, NULL, NULL, NULL);
     assert_int_equal(result, verdict);
     free(copy);
     return result;

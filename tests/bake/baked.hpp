@@ -29,7 +29,7 @@ inline Maps bake_with(const Mesh &mesh, Partition partition, BakeOptions options
 /* gtx_create checks every rule of the format. */
 inline gtx_asset *create(const Maps &maps)
 {
-    std::vector<const uint8_t *> levels;
+    Vector<const uint8_t *> levels;
     gtx_asset_desc desc = describe(maps, levels);
     gtx_asset *asset = nullptr;
     gtx_error error = {};

@@ -14,7 +14,7 @@ using namespace gtx;
 
 struct Lod {
     Maps maps;
-    std::vector<LodLevel> levels;
+    Vector<LodLevel> levels;
 };
 
 inline Lod lod_of(const Mesh &mesh, Partition partition, unsigned levels = 5,
@@ -27,17 +27,17 @@ inline Lod lod_of(const Mesh &mesh, Partition partition, unsigned levels = 5,
 }
 
 /* Without those for models of a few pixels. */
-inline std::vector<LodLevel> near_levels(const Lod &lod)
+inline Vector<LodLevel> near_levels(const Lod &lod)
 {
-    std::vector<LodLevel> out;
+    Vector<LodLevel> out;
     std::copy_if(lod.levels.begin(), lod.levels.end(), std::back_inserter(out),
                  [](const LodLevel &level) { return !level.far; });
     return out;
 }
 
-inline std::vector<gtx_lod_mesh> describe(const std::vector<LodLevel> &levels)
+inline Vector<gtx_lod_mesh> describe(const Vector<LodLevel> &levels)
 {
-    std::vector<gtx_lod_mesh> out;
+    Vector<gtx_lod_mesh> out;
     for (const LodLevel &level : levels) {
         gtx_lod_mesh lod = {};
         std::copy_n(level.origin, 3, lod.origin);
@@ -57,9 +57,9 @@ inline std::vector<gtx_lod_mesh> describe(const std::vector<LodLevel> &levels)
 /* The asset obeys every rule, and its file gives the levels back. */
 inline void assert_valid(const Lod &lod)
 {
-    std::vector<const uint8_t *> normals;
+    Vector<const uint8_t *> normals;
     gtx_asset_desc desc = shapes::describe(lod.maps, normals);
-    const std::vector<gtx_lod_mesh> levels = describe(lod.levels);
+    const Vector<gtx_lod_mesh> levels = describe(lod.levels);
     desc.lod = levels.data();
     desc.lod_levels = uint32_t(levels.size());
     gtx_asset *asset = nullptr, *again = nullptr;

@@ -57,7 +57,7 @@ struct HeightField {
     /* A texture of size x size texels; texel(x, y) for x and y in 0..1. */
     Texture paint(uint32_t size, Texels kind, const std::function<Rgba8(double, double)> &texel)
     {
-        std::vector<Rgba8> texels;
+        Vector<Rgba8> texels;
         for (uint32_t j = 0; j < size; ++j)
             for (uint32_t i = 0; i < size; ++i)
                 texels.push_back(texel((i + 0.5) / size, (j + 0.5) / size));

@@ -14,7 +14,7 @@ using gtx::Vec3f;
 /* Smooth corner normals: area-weighted means around the vertices. */
 inline void add_normals(gtx::Mesh &mesh)
 {
-    std::vector<Vec3d> sum(mesh.positions.size());
+    gtx::Vector<Vec3d> sum(mesh.positions.size());
     for (size_t t = 0; t < mesh.triangle_count(); ++t)
         for (int k = 0; k < 3; ++k)
             sum[mesh.triangles[t][k]] += mesh.area_vector(t);
@@ -84,7 +84,7 @@ inline double bumps(const Vec3d &d)
 }
 
 /* An orthonormal frame that looks along z, around the chart. */
-inline gtx::Frame frame_along(const gtx::Mesh &mesh, const std::vector<uint32_t> &triangles,
+inline gtx::Frame frame_along(const gtx::Mesh &mesh, const gtx::Vector<uint32_t> &triangles,
                               const Vec3d &z)
 {
     gtx::Frame frame;
@@ -149,7 +149,7 @@ inline std::function<int(size_t)> all_in_one()
 }
 
 /* The maps as gtx_create wants them. */
-inline gtx_asset_desc describe(const gtx::Maps &maps, std::vector<const uint8_t *> &levels)
+inline gtx_asset_desc describe(const gtx::Maps &maps, gtx::Vector<const uint8_t *> &levels)
 {
     levels.clear();
     for (const auto &level : maps.normal)

@@ -21,11 +21,11 @@ struct Shot {
 };
 
 /* Rays at points spread evenly over the triangles, from directions that see their front. */
-static std::vector<Shot> aim(const Mesh &mesh, const double anchor[3], size_t count)
+static Vector<Shot> aim(const Mesh &mesh, const double anchor[3], size_t count)
 {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> unit(0, 1);
-    std::vector<Shot> shots;
+    Vector<Shot> shots;
     while (shots.size() < count) {
         size_t t = random() % mesh.triangle_count();
         double a = unit(random), b = unit(random);
@@ -94,7 +94,7 @@ static bool nearer_all_around(const Mesh &mesh, const double anchor[3], const gt
 
 static gtx_asset *asset_of(const Maps &maps)
 {
-    std::vector<const uint8_t *> levels;
+    Vector<const uint8_t *> levels;
     gtx_asset_desc desc = shapes::describe(maps, levels);
     gtx_asset *asset = nullptr;
     gtx_error error = {};
@@ -116,11 +116,11 @@ static size_t holes(const Mesh &mesh, Partition partition, size_t count, int ero
     gtx_caster *caster = nullptr;
     assert_int_equal(gtx_caster_create(asset, nullptr, &caster, &error), GTX_OK);
 
-    std::vector<Shot> shots = aim(mesh, maps.anchor, count);
-    std::vector<gtx_ray> rays;
+    Vector<Shot> shots = aim(mesh, maps.anchor, count);
+    Vector<gtx_ray> rays;
     for (const Shot &shot : shots)
         rays.push_back(shot.ray);
-    std::vector<gtx_hit> hits(rays.size());
+    Vector<gtx_hit> hits(rays.size());
     assert_int_equal(gtx_raycast(caster, rays.data(), hits.data(), rays.size(), 0), GTX_OK);
     size_t found = 0;
     for (size_t i = 0; i < hits.size(); ++i) {
@@ -139,7 +139,7 @@ static size_t holes(const Mesh &mesh, Partition partition, size_t count, int ero
 static std::function<int(size_t)> scattered(const Mesh &mesh, int count)
 {
     std::mt19937 random(5);
-    std::vector<size_t> seeds;
+    Vector<size_t> seeds;
     for (int i = 0; i < count; ++i)
         seeds.push_back(random() % mesh.triangle_count());
     auto centre = [&mesh](size_t t) {

@@ -50,7 +50,7 @@ static Maps bake_with(const Mesh &mesh, Partition partition, Extractor *extracto
 
 static Asset asset_of(const Maps &maps)
 {
-    std::vector<const uint8_t *> levels;
+    Vector<const uint8_t *> levels;
     gtx_asset_desc desc = shapes::describe(maps, levels);
     gtx_asset *asset = nullptr;
     gtx_error error;

@@ -31,7 +31,7 @@ static LodSource source_of(const Mesh &mesh, Partition partition, Maps &maps,
     return lod_source(mesh, partition, maps, task);
 }
 
-static Edges count_edges(const std::vector<std::array<uint32_t, 3>> &triangles)
+static Edges count_edges(const gtx::Vector<std::array<uint32_t, 3>> &triangles)
 {
     LodLevel level;
     for (const auto &t : triangles)
@@ -99,7 +99,7 @@ static void every_patch_has_its_part(void **)
     Maps maps;
     LodSource source = source_of(mesh, partition, maps);
     assert_placed(source, maps);
-    std::vector<size_t> count(maps.patches.size());
+    gtx::Vector<size_t> count(maps.patches.size());
     for (uint32_t p : source.patch)
         ++count[p];
     for (size_t n : count)

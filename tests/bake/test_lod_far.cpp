@@ -24,7 +24,7 @@ static std::function<int(size_t)> in_cells(const Mesh &mesh, int n)
     };
 }
 
-static std::vector<LodLevel> far_levels(const Lod &lod)
+static gtx::Vector<LodLevel> far_levels(const Lod &lod)
 {
     return {lod.levels.begin() + std::ptrdiff_t(near_levels(lod).size()), lod.levels.end()};
 }
@@ -34,7 +34,7 @@ static void triangles_cross_many_patches(void **)
     Mesh mesh = shapes::ball(64, shapes::bumps);
     Lod lod = lod_of(mesh, shapes::split(mesh, in_cells(mesh, 12), 24));
     const size_t patches = lod.maps.patches.size();
-    const std::vector<LodLevel> far = far_levels(lod);
+    const gtx::Vector<LodLevel> far = far_levels(lod);
     assert_true(patches > 300 && far.size() >= 2);
     assert_true(far.back().far && far.back().triangle_count() < 2 * patches / 3);
     assert_valid(lod);

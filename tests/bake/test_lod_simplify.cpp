@@ -24,10 +24,10 @@ static bool is_near(double a, double b)
 
 /* Around vertex 0: a roof, 1 high along y = 0, that falls to 0 at y = -1 and 1. */
 struct Roof {
-    std::vector<Vec3d> positions = {{0, 0, 1}, {-1, 0, 1}, {0, -1, 0}, {1, 0, 1}, {0, 1, 0}};
-    std::vector<Triangle> triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}};
-    std::vector<uint32_t> start = {0, 4, 6, 8, 10, 12};
-    std::vector<uint32_t> around = {0, 1, 2, 3, 0, 3, 0, 1, 1, 2, 2, 3};
+    Vector<Vec3d> positions = {{0, 0, 1}, {-1, 0, 1}, {0, -1, 0}, {1, 0, 1}, {0, 1, 0}};
+    Vector<Triangle> triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}};
+    Vector<uint32_t> start = {0, 4, 6, 8, 10, 12};
+    Vector<uint32_t> around = {0, 1, 2, 3, 0, 3, 0, 1, 1, 2, 2, 3};
 
     /* To a point that vertex 0 stands for; returns how often a vertex was moved. */
     int draw_out_to(const Vec3d &point, double most)
@@ -86,15 +86,15 @@ static LodSource source_of(const Mesh &mesh)
 }
 
 struct Level {
-    std::vector<Vec3d> positions;
-    std::vector<Triangle> triangles;
+    Vector<Vec3d> positions;
+    Vector<Triangle> triangles;
     double error;
 };
 
 /* A level of `share` of the triangles, of a surface that its only patch shows everywhere. */
 static Level reduced(const LodSource &source, double share, Task &task)
 {
-    const std::vector<PatchRegion> anywhere(1);
+    const Vector<PatchRegion> anywhere(1);
     Simplifier level(source, anywhere, task);
     level.reduce(size_t(share * double(source.triangles.size())), 0, INFINITY);
     level.settle();

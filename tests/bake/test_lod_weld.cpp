@@ -17,8 +17,8 @@ using namespace gtx::baking;
  * says so. A texel is 1/64. */
 struct Halves {
     Maps maps;
-    std::vector<MapField> fields;
-    std::vector<std::vector<uint32_t>> others;
+    Vector<MapField> fields;
+    Vector<Vector<uint32_t>> others;
 
     explicit Halves(const std::function<bool(const Vec3d &)> &hole)
     {
@@ -43,7 +43,7 @@ struct Halves {
     }
 
     /* What welding makes of two pieces of them. */
-    LodSource welded(std::vector<FieldPiece> pieces) const
+    LodSource welded(Vector<FieldPiece> pieces) const
     {
         for (FieldPiece &piece : pieces)
             for (Vec3d &p : piece.positions)

@@ -3,25 +3,25 @@
 
 /* Whether the height field is hit where a grid of side x side vertical rays meets the unit
  * square. */
-static std::vector<bool> look_down(const Maps &maps, unsigned side)
+static gtx::Vector<bool> look_down(const Maps &maps, unsigned side)
 {
-    std::vector<const uint8_t *> levels;
+    gtx::Vector<const uint8_t *> levels;
     gtx_asset_desc desc = shapes::describe(maps, levels);
     gtx_asset *asset = nullptr;
     gtx_caster *caster = nullptr;
     gtx_error error = {};
     if (gtx_create(&desc, &asset, &error) || gtx_caster_create(asset, nullptr, &caster, &error))
         fail_msg("%s (rule %u)", error.message, error.rule);
-    std::vector<gtx_ray> rays;
+    gtx::Vector<gtx_ray> rays;
     for (unsigned j = 0; j < side; ++j)
         for (unsigned i = 0; i < side; ++i)
             rays.push_back({{float((i + 0.5) / side - maps.anchor[0]),
                              float((j + 0.5) / side - maps.anchor[1]), 1}, 0, {0, 0, -1}, 0});
-    std::vector<gtx_hit> hits(rays.size());
+    gtx::Vector<gtx_hit> hits(rays.size());
     gtx_raycast(caster, rays.data(), hits.data(), rays.size(), 0);
     gtx_caster_destroy(caster);
     gtx_close(asset);
-    std::vector<bool> seen;
+    gtx::Vector<bool> seen;
     for (const gtx_hit &hit : hits)
         seen.push_back(hit.patch != UINT32_MAX);
     return seen;
@@ -33,7 +33,7 @@ static int wrong_rays(const Maps &maps, double less, double more,
                       const std::function<double(double, double)> &off)
 {
     constexpr unsigned SIDE = 200;
-    std::vector<bool> seen = look_down(maps, SIDE);
+    gtx::Vector<bool> seen = look_down(maps, SIDE);
     int wrong = 0;
     for (unsigned j = 0; j < SIDE; ++j) {
         for (unsigned i = 0; i < SIDE; ++i) {

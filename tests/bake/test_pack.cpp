@@ -13,7 +13,7 @@ extern "C" {
 #include <algorithm>
 #include <random>
 
-using Sizes = std::vector<std::array<uint32_t, 2>>;
+using Sizes = gtx::Vector<std::array<uint32_t, 2>>;
 
 static Sizes random_sizes(size_t count, uint32_t most, uint32_t grain)
 {
@@ -34,7 +34,7 @@ static double checked_fill(const Sizes &sizes, const gtx::baking::Packing &packi
     assert_int_equal(packing.width % grain, 0);
     assert_int_equal(packing.height % grain, 0);
     size_t across = packing.width / grain, down = packing.height / grain;
-    std::vector<uint8_t> taken(packing.page_count * across * down);
+    gtx::Vector<uint8_t> taken(packing.page_count * across * down);
     double area = 0;
     for (size_t r = 0; r < sizes.size(); ++r) {
         const gtx::baking::Packing::Place &at = packing.places[r];

@@ -88,7 +88,7 @@ static void neighbours_have_the_same_heights(void **)
         options.bake.height_bits = bits;
         const Made made = make(grid, options);
         assert_int_equal(made.maps.patches.size(), 12);
-        std::vector<double> seen(grid.count(), NAN);
+        Vector<double> seen(grid.count(), NAN);
         size_t common = 0, nodes = 0;
         double most = 0, finest = INFINITY, coarsest = 0;
         for_texels(grid, made.maps, [&](uint32_t i, uint32_t j, double height, double step) {
@@ -116,7 +116,7 @@ static void neighbours_have_the_same_heights(void **)
 
 static gtx_asset *create(const Maps &maps)
 {
-    std::vector<const uint8_t *> normals, colors;
+    Vector<const uint8_t *> normals, colors;
     gtx_asset_desc desc = shapes::describe(maps, normals);
     for (const auto &level : maps.color)
         colors.push_back(level.data());

@@ -11,7 +11,7 @@ struct Mapped {
     gtx::Surface surface;
     gtx::HalfEdges edges;
     gtx::CrossField field;
-    std::vector<double> scale;
+    gtx::Vector<double> scale;
 
     explicit Mapped(gtx::Mesh of)
         : mesh(std::move(of)),

@@ -50,7 +50,7 @@ static void test_charts_ply_of_pieces(void **)
     std::remove(path.c_str());
     assert_int_equal(read.triangle_count(), p.mesh.triangle_count());
     assert_int_equal(read.colors.size(), 3 * read.triangle_count());
-    std::vector<uint32_t> green;
+    gtx::Vector<uint32_t> green;
     for (uint32_t t = 0; t < read.triangle_count(); ++t)
         if (read.colors[3 * t] == Rgba8{0, 255, 0, 255})
             green.push_back(p.source_of(t));

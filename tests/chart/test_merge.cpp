@@ -17,10 +17,10 @@ using namespace gtx;
 
 /* What merging leaves. */
 struct Merged {
-    std::vector<Region> regions, loose;
-    std::vector<Frame> frames;
-    std::vector<Layers> layers;     /* of the charts as they are now */
-    std::vector<double> area;       /* likewise */
+    Vector<Region> regions, loose;
+    Vector<Frame> frames;
+    Vector<Layers> layers;          /* of the charts as they are now */
+    Vector<double> area;            /* likewise */
     Region whole;
     size_t before = 0;              /* charts */
 };
@@ -31,7 +31,7 @@ static Merged merge(const Mesh &mesh, double pitch,
 {
     Task task(threads, nullptr, nullptr, {"partition"}, {1});
     const Surface surface = make_surface(mesh, pitch, task);
-    std::vector<uint32_t> labels;
+    Vector<uint32_t> labels;
     for (size_t t = 0; t < mesh.triangle_count(); ++t)
         labels.push_back(
             key((mesh.position(t, 0) + mesh.position(t, 1) + mesh.position(t, 2)) / 3));
@@ -58,7 +58,7 @@ static Merged merge(const Mesh &mesh, double pitch,
 /* Every triangle is in one chart, once, with the neighbours that it has there. */
 static void check(const Mesh &mesh, const Merged &merged)
 {
-    std::vector<int> seen(mesh.triangle_count());
+    Vector<int> seen(mesh.triangle_count());
     for (const auto *charts : {&merged.regions, &merged.loose})
         for (const Region &region : *charts) {
             assert_true(region.size() > 0 && region.neighbours.size() == region.size());

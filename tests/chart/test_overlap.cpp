@@ -44,7 +44,7 @@ static Mesh grid(double (*height)(double, double))
 
 static std::set<uint32_t> overlap(const Mesh &mesh, const Chart &chart, double reach)
 {
-    std::vector<uint32_t> out = overlap_triangles(mesh, triangle_neighbours(mesh), chart, reach);
+    Vector<uint32_t> out = overlap_triangles(mesh, triangle_neighbours(mesh), chart, reach);
     assert_true(std::is_sorted(out.begin(), out.end()));
     std::set<uint32_t> set(out.begin(), out.end());
     assert_int_equal(set.size(), out.size());
@@ -126,7 +126,7 @@ static void test_partitioned_model(void **)
     auto neighbours = triangle_neighbours(mesh);
     size_t all = 0;
     for (const Chart &chart : p.charts) {
-        std::vector<uint32_t> ring = overlap_triangles(mesh, neighbours, chart, 1.5 * p.pitch);
+        Vector<uint32_t> ring = overlap_triangles(mesh, neighbours, chart, 1.5 * p.pitch);
         assert_true(!ring.empty());
         for (uint32_t t : ring)
             assert_true(dot(normalize(mesh.area_vector(t)), chart.frame.z) >= 0.1);

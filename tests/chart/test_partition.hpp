@@ -48,13 +48,13 @@ inline void check_cells(const Chart &chart, double pitch)
 }
 
 /* Areas of the connected pieces of a chart, ascending. */
-inline std::vector<double> pieces(const Mesh &mesh, const Chart &chart,
-                                  const std::vector<std::array<uint32_t, 3>> &neighbours)
+inline Vector<double> pieces(const Mesh &mesh, const Chart &chart,
+                             const Vector<std::array<uint32_t, 3>> &neighbours)
 {
-    std::vector<bool> seen(chart.triangles.size());
-    std::vector<double> areas;
+    Vector<bool> seen(chart.triangles.size());
+    Vector<double> areas;
     for (uint32_t first : chart.triangles) {
-        std::vector<uint32_t> stack = {first};
+        Vector<uint32_t> stack = {first};
         double area = 0;
         while (!stack.empty()) {
             uint32_t t = stack.back();
@@ -133,7 +133,7 @@ inline void check(const Mesh &source, const Partition &p, double largest_island 
 {
     const Mesh &mesh = p.charted(source);
     auto neighbours = triangle_neighbours(mesh);
-    std::vector<int> used(mesh.triangle_count());
+    Vector<int> used(mesh.triangle_count());
     uint64_t owned = 0;
     bool cut = false;
     double longest = 0;
@@ -145,7 +145,7 @@ inline void check(const Mesh &source, const Partition &p, double largest_island 
         owned += chart.source_triangles;
         cut = cut || is_cut(chart);
         if (largest_island > 0) {
-            std::vector<double> areas = pieces(mesh, chart, neighbours);
+            Vector<double> areas = pieces(mesh, chart, neighbours);
             areas.pop_back(); /* beside one piece only islands */
             for (double area : areas)
                 assert_true(area < largest_island * p.pitch * p.pitch);

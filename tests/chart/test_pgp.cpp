@@ -70,7 +70,7 @@ static void singularities_add_up(void **)
 static void turns_agree(void **)
 {
     Mapped m(shapes::bumpy_sphere(20));
-    std::vector<int> around(m.edges.first.size(), 0);
+    Vector<int> around(m.edges.first.size(), 0);
     for (uint32_t h = 0; h < m.edges.opposite.size(); ++h) {
         uint32_t o = m.edges.opposite[h];
         assert_int_equal(m.edges.opposite[o], h);
@@ -204,7 +204,7 @@ static void wanted_count(void **)
             assert_int_equal(std::set<uint32_t>(cut.label.begin(), cut.label.end()).size(), count);
             Task task(1, nullptr, nullptr, {"partition"});
             Surface surface = make_surface(cut.mesh, 1, task);
-            std::vector<uint32_t> pieces = cut.label;
+            Vector<uint32_t> pieces = cut.label;
             assert_int_equal(connected_pieces(surface.whole, pieces), count);
         }
 }

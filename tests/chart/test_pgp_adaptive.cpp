@@ -15,21 +15,21 @@ extern "C" {
 using namespace gtx;
 
 /* A cell's length at each vertex over what it is without the option. */
-static std::vector<double> factors(const Mapped &m, double cells)
+static Vector<double> factors(const Mapped &m, double cells)
 {
-    std::vector<double> scale = m.scale;
+    Vector<double> scale = m.scale;
     adapt_scale(m.surface, m.edges, m.cell_for(cells), scale);
     for (size_t i = 0; i < scale.size(); ++i)
         scale[i] /= m.scale[i];
     return scale;
 }
 
-static double least(const std::vector<double> &values)
+static double least(const Vector<double> &values)
 {
     return *std::min_element(values.begin(), values.end());
 }
 
-static double most(const std::vector<double> &values)
+static double most(const Vector<double> &values)
 {
     return *std::max_element(values.begin(), values.end());
 }
@@ -65,7 +65,7 @@ static void alike_everywhere_stays_so(void **)
                  {"sphere", shapes::sphere(40), 0.01}};
     for (auto &c : cases)
         for (double cells : {30., 200.}) {
-            std::vector<double> factor = factors(Mapped(c.mesh), cells);
+            Vector<double> factor = factors(Mapped(c.mesh), cells);
             print_message("%-10s %3.0f cells: %.3f to %.3f\n", c.name, cells, least(factor),
                           most(factor));
             assert_true(least(factor) > 1 - c.within && most(factor) < 1 + c.within);
@@ -78,7 +78,7 @@ static void factors_are_bounded(void **)
     for (const Mesh &mesh : {shapes::cube(20), shapes::cube(1), shapes::folded_field(30, 0.1),
                              shapes::bumpy_sphere(30), ellipsoid(30)})
         for (double cells : {5., 60., 2000.}) {
-            std::vector<double> factor = factors(Mapped(mesh), cells);
+            Vector<double> factor = factors(Mapped(mesh), cells);
             assert_true(least(factor) > 0.499 && most(factor) < 2.001);
         }
 }
@@ -86,7 +86,7 @@ static void factors_are_bounded(void **)
 /* The mean area of charts between two heights, those above as those below. */
 static double mean_area(const CutMesh &cut, uint32_t count, int axis, double low, double high)
 {
-    std::vector<double> area(count, 0), moment(count, 0);
+    Vector<double> area(count, 0), moment(count, 0);
     for (uint32_t t = 0; t < cut.mesh.triangle_count(); ++t) {
         double a = length(cut.mesh.area_vector(t)) / 2, at = 0;
         for (int k = 0; k < 3; ++k)

@@ -63,7 +63,7 @@ static void check_cut(const Mesh &mesh, const CutMesh &cut)
     assert_int_equal(cut.source.size(), cut.mesh.triangle_count());
     assert_int_equal(cut.label.size(), cut.mesh.triangle_count());
     assert_true(std::is_sorted(cut.source.begin(), cut.source.end()));
-    std::vector<double> covered(mesh.triangle_count());
+    Vector<double> covered(mesh.triangle_count());
     for (uint32_t t = 0; t < cut.source.size(); ++t) {
         Vec3d own = cut.mesh.area_vector(t), whole = mesh.area_vector(cut.source[t]);
         assert_true(dot(own, whole) > 0);
@@ -85,7 +85,7 @@ static void cuts_keep_the_surface(void **)
             Periodic map = m.parameterize(m.cell_for(count));
             Pieces pieces = cut_along_lines(mesh, m.edges, m.field, map);
             check_cut(mesh, cut_mesh(mesh, pieces,
-                                     std::vector<uint32_t>(pieces.triangle.size())));
+                                     Vector<uint32_t>(pieces.triangle.size())));
             for (const Seam &seam : pieces.seams)
                 assert_true(seam.piece[0] != NO_PIECE && seam.piece[0] != seam.piece[1]);
         }
@@ -100,7 +100,7 @@ static void pieces_keep_to_their_cells(void **)
         Mapped m(mesh);
         Periodic map = m.parameterize(m.cell_for(150));
         Pieces pieces = cut_along_lines(mesh, m.edges, m.field, map);
-        std::vector<Uv> cell(pieces.triangle.size());
+        Vector<Uv> cell(pieces.triangle.size());
         size_t cut = 0;
         for (uint32_t i = 0; i < pieces.triangle.size(); ++i) {
             uint32_t t = pieces.triangle[i];
@@ -142,7 +142,7 @@ static void charts_are_squares(void **)
     struct Box {
         double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, area = 0;
     };
-    std::vector<Box> boxes(count);
+    Vector<Box> boxes(count);
     for (uint32_t t = 0; t < cut.label.size(); ++t) {
         Box &box = boxes[cut.label[t]];
         box.area += length(cut.mesh.area_vector(t)) / 2;

@@ -13,7 +13,7 @@
 static std::string coloured_ball(unsigned n)
 {
     const gtx::Mesh mesh = shapes::ball(n, shapes::bumps);
-    std::vector<gtx::Vec3d> normals(mesh.positions.size());
+    gtx::Vector<gtx::Vec3d> normals(mesh.positions.size());
     for (size_t t = 0; t < mesh.triangle_count(); ++t)
         for (uint32_t v : mesh.triangles[t])
             normals[v] += mesh.area_vector(t);

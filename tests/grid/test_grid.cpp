@@ -64,7 +64,7 @@ static std::string record(const std::string &content)
     put(out, uint32_t(content.size()));
     return out;
 }
-static std::string binary(uint32_t nx, uint32_t ny, const std::vector<float> &nodes)
+static std::string binary(uint32_t nx, uint32_t ny, const Vector<float> &nodes)
 {
     std::string first, second, data;
     put(first, uint32_t(-996));

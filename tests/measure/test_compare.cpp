@@ -26,7 +26,7 @@ static CompareReport measure(const gtx_asset *asset, const Mesh &mesh, CompareOp
 }
 
 static CompareOptions views_of(uint32_t size, uint32_t levels = 1,
-                               std::vector<HoleSample> *holes = nullptr)
+                               Vector<HoleSample> *holes = nullptr)
 {
     CompareOptions options;
     options.size = size;
@@ -41,7 +41,7 @@ static void views_are_26(void **)
     Extent extent = extent_of(sphere_mesh(3, 8, Vec3d(1, 2, 3)));
     assert_float_equal(extent.radius, 3, 1e-9);
     assert_float_equal(extent.diagonal, 6 * std::sqrt(3.), 1e-9);
-    std::vector<View> views = comparison_views(extent, 100);
+    Vector<View> views = comparison_views(extent, 100);
     assert_int_equal(views.size(), 26);
     for (const View &v : views) {
         Vec3d z = cross(v.right, v.up) - v.toward;
@@ -97,8 +97,8 @@ static void slits_are_seen_from_close(void **)
             mesh.triangles.push_back({at, at + 3, at + 2});
         }
         const MeshImage image = rasterise(mesh, view);
-        const std::vector<std::array<uint32_t, 2>> pixels = {{15, 16}, {16, 9}, {9, 16}};
-        const std::vector<MeshImage> close = rasterise_close(mesh, view, pixels);
+        const Vector<std::array<uint32_t, 2>> pixels = {{15, 16}, {16, 9}, {9, 16}};
+        const Vector<MeshImage> close = rasterise_close(mesh, view, pixels);
         assert_int_equal(close.size(), 3);
         for (size_t k = 0; k < 3; ++k) {
             const size_t centre = CLOSER * CLOSE_SIDE + CLOSER;
@@ -163,7 +163,7 @@ static void a_missing_patch_is_a_hole(void **)
 {
     gtx_asset *asset = fixture_sphere_without(2, 64, 8, 1 << 4); /* +z */
     Mesh mesh = sphere_mesh(2, 60);
-    std::vector<HoleSample> holes;
+    Vector<HoleSample> holes;
     CompareReport r = measure(asset, mesh, views_of(128, 1, &holes));
     uint64_t listed = r.hole_pixels;
     for (const DetailReport &detail : r.details)

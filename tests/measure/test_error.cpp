@@ -29,7 +29,7 @@ static Vec3d random_point(uint64_t &seed, double size)
 }
 
 static SurfaceError error_of(const gtx_asset *asset, const Mesh &mesh,
-                             const std::vector<uint8_t> &junk = {})
+                             const Vector<uint8_t> &junk = {})
 {
     Task task(2, nullptr, nullptr);
     return surface_error(asset, mesh, junk, task);
@@ -56,7 +56,7 @@ static void triangle_distance_is_the_least(void **)
 }
 
 struct Soup {
-    std::vector<Vec3d> corners;
+    Vector<Vec3d> corners;
     size_t size() const { return corners.size() / 3; }
     Box box(size_t i) const
     {
@@ -167,7 +167,7 @@ static void junk_is_left_out(void **)
     for (int k = 0; k < 3; ++k)
         mesh.positions.push_back({double(k == 1), double(k == 2), 3});
     mesh.triangles.push_back({first, first + 1, first + 2});
-    std::vector<uint8_t> junk(mesh.triangle_count(), 0);
+    Vector<uint8_t> junk(mesh.triangle_count(), 0);
     assert_true(error_of(asset, mesh, junk).forward.max > 0.4);
     junk.back() = 1;
     assert_float_equal(error_of(asset, mesh, junk).forward.max, 0, 1e-7);

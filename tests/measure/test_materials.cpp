@@ -36,7 +36,7 @@ static Mesh painted_plane(double cutoff, uint8_t right_alpha)
     return mesh;
 }
 
-static const View &front_of(const std::vector<View> &views)
+static const View &front_of(const Vector<View> &views)
 {
     for (const View &view : views)
         if (view.toward.z > 0.999)
@@ -47,7 +47,7 @@ static const View &front_of(const std::vector<View> &views)
 static void colours_are_those_of_the_texture(void **)
 {
     Mesh mesh = painted_plane(-1, 255);
-    std::vector<View> views = comparison_views(extent_of(mesh), 64);
+    Vector<View> views = comparison_views(extent_of(mesh), 64);
     const View &view = front_of(views);
     MeshImage image = rasterise(mesh, view);
     size_t covered = 0;
@@ -72,7 +72,7 @@ static void colours_are_those_of_the_texture(void **)
 static void what_is_cut_away_is_no_surface(void **)
 {
     Mesh mesh = painted_plane(0.5, 0);
-    std::vector<View> views = comparison_views(extent_of(mesh), 64);
+    Vector<View> views = comparison_views(extent_of(mesh), 64);
     const View &view = front_of(views);
     MeshImage image = rasterise(mesh, view);
     for (uint32_t j = 0; j < 64; ++j)

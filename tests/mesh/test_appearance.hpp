@@ -77,7 +77,7 @@ inline Image leveled()
     Image image;
     for (uint32_t k = 0; k < 3; ++k) {
         uint8_t c = uint8_t(100 * k);
-        std::vector<Rgba8> texels(16u >> 2 * k, Rgba8{c, c, c, c});
+        gtx::Vector<Rgba8> texels(16u >> 2 * k, Rgba8{c, c, c, c});
         image.levels.push_back({4u >> k, 4u >> k, texels});
     }
     return image;

@@ -144,7 +144,7 @@ inline Mesh soup(const Mesh &mesh)
 /* ---- the check ---- */
 
 struct UnionFind {
-    std::vector<size_t> parent;
+    gtx::Vector<size_t> parent;
     explicit UnionFind(size_t n) : parent(n) { std::iota(parent.begin(), parent.end(), size_t(0)); }
     size_t find(size_t i) { return parent[i] == i ? i : parent[i] = find(parent[i]); }
     void join(size_t a, size_t b) { parent[find(a)] = find(b); }
@@ -155,7 +155,7 @@ struct DirectedEdge {
     int corner;
     bool forward; /* from the lower vertex to the higher */
 };
-using EdgeMap = std::map<std::pair<uint32_t, uint32_t>, std::vector<DirectedEdge>>;
+using EdgeMap = std::map<std::pair<uint32_t, uint32_t>, gtx::Vector<DirectedEdge>>;
 
 inline EdgeMap edges_of(const Mesh &mesh)
 {
@@ -170,7 +170,7 @@ inline EdgeMap edges_of(const Mesh &mesh)
 
 inline void check_triangles(const Mesh &mesh)
 {
-    std::vector<bool> used(mesh.positions.size(), false);
+    gtx::Vector<bool> used(mesh.positions.size(), false);
     std::set<std::array<std::array<double, 3>, 3>> seen;
     for (size_t t = 0; t < mesh.triangle_count(); ++t) {
         std::array<std::array<double, 3>, 3> key;
@@ -213,7 +213,7 @@ inline void check_fans(const Mesh &mesh, const EdgeMap &edges)
     UnionFind corners(3 * mesh.triangle_count());
     for (const auto &edge : edges) {
         for (uint32_t v : {edge.first.first, edge.first.second}) {
-            std::vector<size_t> at_v;
+            gtx::Vector<size_t> at_v;
             for (const DirectedEdge &side : edge.second)
                 for (size_t k = 0; k < 3; ++k)
                     if (mesh.triangles[side.triangle][k] == v)
@@ -222,7 +222,7 @@ inline void check_fans(const Mesh &mesh, const EdgeMap &edges)
                 corners.join(at_v[0], c);
         }
     }
-    std::vector<size_t> fan(mesh.positions.size(), SIZE_MAX);
+    gtx::Vector<size_t> fan(mesh.positions.size(), SIZE_MAX);
     for (size_t c = 0; c < corners.parent.size(); ++c) {
         size_t &of_vertex = fan[mesh.triangles[c / 3][c % 3]];
         assert_true(of_vertex == SIZE_MAX || of_vertex == corners.find(c));
@@ -233,11 +233,11 @@ inline void check_fans(const Mesh &mesh, const EdgeMap &edges)
 inline void check_report(const Mesh &mesh, const EdgeMap &edges, const CleanReport &report)
 {
     UnionFind triangles(mesh.triangle_count());
-    std::vector<bool> open(mesh.triangle_count(), false);
+    gtx::Vector<bool> open(mesh.triangle_count(), false);
     size_t borders = 0;
     std::set<size_t> components;
-    std::vector<Vec3d> vector_area(mesh.triangle_count());
-    std::vector<double> area(mesh.triangle_count());
+    gtx::Vector<Vec3d> vector_area(mesh.triangle_count());
+    gtx::Vector<double> area(mesh.triangle_count());
     for (const auto &edge : edges)
         triangles.join(edge.second.front().triangle, edge.second.back().triangle);
     for (const auto &edge : edges)
@@ -273,7 +273,7 @@ inline void check_normals(const Mesh &mesh)
 inline void check_open_mesh(const Mesh &mesh)
 {
     OpenMesh::TriConnectivity other;
-    std::vector<OpenMesh::VertexHandle> vertices;
+    gtx::Vector<OpenMesh::VertexHandle> vertices;
     for (size_t v = 0; v < mesh.positions.size(); ++v)
         vertices.push_back(other.add_vertex());
     for (const auto &t : mesh.triangles)
@@ -300,7 +300,7 @@ inline void check_promises(const Mesh &mesh, const CleanReport &report)
 struct Cleaned {
     Mesh mesh;
     CleanReport report;
-    std::vector<std::string> warnings;
+    gtx::Vector<std::string> warnings;
     uint64_t dropped(const char *reason) const
     {
         auto found = report.dropped.find(reason);

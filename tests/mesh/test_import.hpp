@@ -49,7 +49,7 @@ struct Imported {
     gtx_result result = GTX_OK;
     std::string message;
     Mesh mesh;
-    std::vector<std::string> warnings, sources;
+    gtx::Vector<std::string> warnings, sources;
 
     bool warns(const char *text) const
     {

@@ -66,7 +66,7 @@ inline void assert_sample(const Mesh &mesh, size_t t, std::array<double, 4> colo
 /* A PNG of width x height texels, each `color`. */
 inline std::string png(const Folder &folder, uint32_t width, uint32_t height, Rgba8 color)
 {
-    std::vector<Rgba8> pixels(size_t(width) * height, color);
+    gtx::Vector<Rgba8> pixels(size_t(width) * height, color);
     const std::string path = folder.write("made.png", "");
     gtx_error error = {};
     if (gtx_image_write_png(path.c_str(), width, height, 4, &pixels[0].r, &error))

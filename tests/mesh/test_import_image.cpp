@@ -134,7 +134,7 @@ static void test_many_threads(void **)
         folder.write("a.gltf", with_data(json, square() + coordinates()));
     for (unsigned threads : {1u, 4u}) {
         Task task(threads, nullptr, nullptr);
-        std::vector<std::string> sources;
+        gtx::Vector<std::string> sources;
         Mesh mesh = gtx::import_mesh(path, task, &sources);
         assert_int_equal(sources.size(), 6); /* the model, and not the image that nobody uses */
         assert_int_equal(mesh.appearance.images.size(), 5);

@@ -3,7 +3,7 @@
 
 #include <meshoptimizer.h>
 
-static std::string text_of(const std::vector<unsigned char> &bytes, size_t size)
+static std::string text_of(const gtx::Vector<unsigned char> &bytes, size_t size)
 {
     return std::string(reinterpret_cast<const char *>(bytes.data()), size);
 }
@@ -11,24 +11,24 @@ static std::string text_of(const std::vector<unsigned char> &bytes, size_t size)
 static std::string vertices(const std::string &raw, size_t stride)
 {
     const size_t count = raw.size() / stride;
-    std::vector<unsigned char> out(meshopt_encodeVertexBufferBound(count, stride));
+    gtx::Vector<unsigned char> out(meshopt_encodeVertexBufferBound(count, stride));
     size_t size = meshopt_encodeVertexBuffer(out.data(), out.size(), raw.data(), count, stride);
     assert_true(size > 0);
     return text_of(out, size);
 }
 
-static const std::vector<unsigned> quad = {0, 1, 2, 0, 2, 3};
+static const gtx::Vector<unsigned> quad = {0, 1, 2, 0, 2, 3};
 
 static std::string triangles()
 {
-    std::vector<unsigned char> out(meshopt_encodeIndexBufferBound(6, 4));
+    gtx::Vector<unsigned char> out(meshopt_encodeIndexBufferBound(6, 4));
     meshopt_encodeIndexVersion(1);
     return text_of(out, meshopt_encodeIndexBuffer(out.data(), out.size(), quad.data(), 6));
 }
 
 static std::string sequence()
 {
-    std::vector<unsigned char> out(meshopt_encodeIndexSequenceBound(6, 4));
+    gtx::Vector<unsigned char> out(meshopt_encodeIndexSequenceBound(6, 4));
     meshopt_encodeIndexVersion(1);
     return text_of(out, meshopt_encodeIndexSequence(out.data(), out.size(), quad.data(), 6));
 }

@@ -7,7 +7,7 @@
 
 /* Writes a PNG of 4 bytes a texel beside the model. */
 static void write_png(const Folder &folder, const char *name, uint32_t width, uint32_t height,
-                      const std::vector<uint8_t> &texels)
+                      const gtx::Vector<uint8_t> &texels)
 {
     const std::string path = (folder.path / name).string();
     if (gtx_image_write_png(path.c_str(), width, height, 4, texels.data(), nullptr))

@@ -35,7 +35,7 @@ static void test_wrap(void **)
 static void test_levels(void **)
 {
     /* black and white in turn are half the light: code 188, not 128 */
-    std::vector<Rgba8> board;
+    gtx::Vector<Rgba8> board;
     for (int i = 0; i < 64; ++i)
         board.push_back((i + i / 8) % 2 ? Rgba8{255, 255, 255, 255} : Rgba8{0, 0, 0, 0});
     const Image light = gtx::make_image(8, 8, board, Texels::COLOR);
@@ -47,7 +47,7 @@ static void test_levels(void **)
         assert_true(data.levels[k].texels[0] == (Rgba8{128, 128, 128, 128}));
     }
     /* odd sizes lose nothing: the mean of all texels stays */
-    std::vector<Rgba8> row;
+    gtx::Vector<Rgba8> row;
     for (uint8_t i = 0; i < 7; ++i)
         row.push_back({uint8_t(30 * i), 0, 0, 0});
     const Image odd = gtx::make_image(7, 1, row, Texels::DATA);
@@ -55,7 +55,7 @@ static void test_levels(void **)
     assert_int_equal(odd.levels[1].width, 3);
     assert_int_equal(odd.levels[2].height, 1);
     assert_in_range(odd.levels[2].texels[0].r, 89, 91);
-    const std::vector<Rgba8> five(5, Rgba8{7, 7, 7, 7});
+    const gtx::Vector<Rgba8> five(5, Rgba8{7, 7, 7, 7});
     const Image tall = gtx::make_image(1, 5, five, Texels::DATA);
     assert_int_equal(tall.levels.size(), 3);
     assert_true(tall.levels[2].texels[0] == (Rgba8{7, 7, 7, 7}));

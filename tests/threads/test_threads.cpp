@@ -107,7 +107,7 @@ static void assets_open_side_by_side(void **)
         size_t size = 0;
         bool good = gtx_encode(asset, &desc, &again, &size, nullptr) == GTX_OK &&
                     std::string(static_cast<char *>(again), size) == bytes &&
-                    gtx_validate(again, size, nullptr, nullptr, nullptr) == GTX_OK;
+                    gtx_validate(again, size, nullptr, nullptr, nullptr, nullptr) == GTX_OK;
         std::free(again);
         gtx_close(asset);
         return good;

@@ -39,13 +39,13 @@ private:
     const Neighbours &neighbours_;
     const FlatChart &chart_;
     std::unordered_set<uint32_t> seen_; /* by one search */
-    std::vector<uint32_t> queue_;
+    Vector<uint32_t> queue_;
 };
 
 /* What lies at each texel centre of the grid. */
 struct Cover {
-    std::vector<double> height;     /* c, where covered */
-    std::vector<uint32_t> triangle; /* index in FlatChart::triangles, NO_TRIANGLE where empty */
+    Vector<double> height;          /* c, where covered */
+    Vector<uint32_t> triangle;      /* index in FlatChart::triangles, NO_TRIANGLE where empty */
 };
 
 /* The outline of a set of triangles: the edges where its front-facing surface ends, and for each
@@ -57,16 +57,16 @@ struct OutlineEdge {
     bool border;                    /* the model ends here */
 };
 struct Outline {
-    std::vector<OutlineEdge> edges;
-    std::vector<uint32_t> nearest;  /* edge, per texel */
-    std::vector<float> distance;    /* to it, in texels, unsigned; exact up to two texels */
+    Vector<OutlineEdge> edges;
+    Vector<uint32_t> nearest;       /* edge, per texel */
+    Vector<float> distance;         /* to it, in texels, unsigned; exact up to two texels */
 };
 
 /* The core as a GPU has drawn it, and what it has made there of the triangles' corners. */
 struct Rendering {
-    std::vector<uint32_t> triangle; /* index in FlatChart::triangles, NO_TRIANGLE where empty */
-    std::vector<Vec3f> normal;      /* object space, unit; zero where the corners' cancel out */
-    std::vector<std::array<float, 4>> color; /* linear */
+    Vector<uint32_t> triangle;      /* index in FlatChart::triangles, NO_TRIANGLE where empty */
+    Vector<Vec3f> normal;           /* object space, unit; zero where the corners' cancel out */
+    Vector<std::array<float, 4>> color;      /* linear */
 };
 
 struct ChartField {
@@ -74,8 +74,8 @@ struct ChartField {
     Rendering rendering;            /* empty without a GPU */
     Outline outline;
     Cover cover;
-    std::vector<float> trim;        /* signed distance to the outline, in texels */
-    std::vector<uint8_t> support;   /* texels that need a code */
+    Vector<float> trim;             /* signed distance to the outline, in texels */
+    Vector<uint8_t> support;        /* texels that need a code */
 };
 
 /* A point of the true surface. */
@@ -105,14 +105,14 @@ double nearest_parameter(const OutlineEdge &edge, double u, double v);
 /* Finds what of `outline` follows from its edges. */
 void measure_distances(const Grid &grid, Outline &outline);
 /* Signed distances to the outline of the true surface, per texel, in texels. */
-std::vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Cover &all,
-                                  const Outline &core_outline, const Outline &all_outline);
+Vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Cover &all,
+                             const Outline &core_outline, const Outline &all_outline);
 /* Lets the trim end where the surface's material is cut away, too. */
 void trim_mask(const Mesh &mesh, const Neighbours &neighbours, const FlatChart &chart,
-               std::vector<float> &trim);
+               Vector<float> &trim);
 
 /* Which texels need a code: the corners of every cell where a hit may be shown. */
-std::vector<uint8_t> find_support(const Grid &grid, const std::vector<float> &trim);
+Vector<uint8_t> find_support(const Grid &grid, const Vector<float> &trim);
 /* Gives every supported texel that nothing covers the height of the surface continued there. */
 void extrapolate(Paths &paths, ChartField &field);
 /* Lets texels beyond the core continue it, then takes texels out of the support, until no cell that

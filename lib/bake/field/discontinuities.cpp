@@ -76,7 +76,7 @@ private:
     Paths &paths_;
     const double jump_;
     enum : uint8_t { NONE, GOOD, BAD };
-    std::vector<uint8_t> cells_;
+    Vector<uint8_t> cells_;
 };
 
 /* Whether a step between corners of a cell is more than a slope, with no surface along it: or even
@@ -163,7 +163,7 @@ void Bridges::give_to_core(const Outline &core)
     auto leaves_core = [&](double beyond, double continued) {
         return beyond < continued || beyond >= continued + rise;
     };
-    std::vector<std::pair<size_t, double>> given;
+    Vector<std::pair<size_t, double>> given;
     for (size_t cell = 0; cell < cells_.size(); ++cell) {
         double height;
         if (cells_[cell] == BAD)

@@ -67,7 +67,7 @@ struct GlState {
         make_program();
         make_buffers();
     }
-    void draw(const std::vector<Vertex> &vertices, size_t first_triangle);
+    void draw(const Vector<Vertex> &vertices, size_t first_triangle);
     void begin(int width, int height);
     void read(int target, int width, int height, GLenum format, GLenum type, void *out);
     void check();
@@ -161,7 +161,7 @@ void GlState::begin(int width, int height)
     gl.Viewport(0, 0, width, height);
 }
 
-void GlState::draw(const std::vector<Vertex> &vertices, size_t first_triangle)
+void GlState::draw(const Vector<Vertex> &vertices, size_t first_triangle)
 {
     gl.BufferData(GL_ARRAY_BUFFER, GLsizeiptr(vertices.size() * sizeof(Vertex)), vertices.data(),
                   GL_STREAM_DRAW);
@@ -191,7 +191,7 @@ struct Projection {
     }
 };
 
-static Projection project(const FlatChart &chart, const std::vector<uint32_t> &seen)
+static Projection project(const FlatChart &chart, const Vector<uint32_t> &seen)
 {
     Projection p = {chart.grid, INFINITY, -INFINITY};
     for (uint32_t t : seen) {
@@ -216,9 +216,9 @@ static Vertex vertex(const Mesh &mesh, const Projection &projection, const FlatT
 }
 
 /* The core's triangles that can be seen; one without area would be drawn by a rounding. */
-static std::vector<uint32_t> seen_triangles(const FlatChart &chart)
+static Vector<uint32_t> seen_triangles(const FlatChart &chart)
 {
-    std::vector<uint32_t> seen;
+    Vector<uint32_t> seen;
     for (uint32_t t = 0; t < chart.core; ++t)
         if (chart.triangles[t].front && chart.triangles[t].signed_area() != 0)
             seen.push_back(t);
@@ -226,10 +226,10 @@ static std::vector<uint32_t> seen_triangles(const FlatChart &chart)
 }
 
 static void draw_core(GlState &state, const Mesh &mesh, const FlatChart &chart,
-                      const std::vector<uint32_t> &seen)
+                      const Vector<uint32_t> &seen)
 {
     const Projection projection = project(chart, seen);
-    std::vector<Vertex> vertices;
+    Vector<Vertex> vertices;
     for (size_t first = 0; first < seen.size(); first += BATCH) {
         vertices.clear();
         for (size_t i = first; i < std::min(first + BATCH, seen.size()); ++i)
@@ -289,7 +289,7 @@ Extractor::~Extractor() = default;
 Rendering Extractor::render(const Mesh &mesh, const FlatChart &chart)
 {
     const int w = chart.grid.w, h = chart.grid.h;
-    const std::vector<uint32_t> seen = seen_triangles(chart);
+    const Vector<uint32_t> seen = seen_triangles(chart);
     Rendering out;
     out.triangle.resize(chart.grid.texels());
     out.normal.resize(chart.grid.texels());

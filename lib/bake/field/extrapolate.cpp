@@ -5,9 +5,9 @@
 
 namespace gtx::baking {
 
-std::vector<uint8_t> find_support(const Grid &grid, const std::vector<float> &trim)
+Vector<uint8_t> find_support(const Grid &grid, const Vector<float> &trim)
 {
-    std::vector<uint8_t> support(grid.texels(), 0);
+    Vector<uint8_t> support(grid.texels(), 0);
     for (int j = 0; j + 1 < grid.h; ++j) {
         for (int i = 0; i + 1 < grid.w; ++i) {
             size_t a = size_t(j) * grid.w + i, b = a + grid.w;

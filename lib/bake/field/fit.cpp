@@ -43,7 +43,7 @@ struct Observation {
 };
 
 static void observe(const ChartField &field, const Vec3d &at, double counts,
-                    std::vector<Observation> &out)
+                    Vector<Observation> &out)
 {
     const Grid &grid = field.flat.grid;
     int i = int(std::floor(at.x)), j = int(std::floor(at.y));
@@ -65,10 +65,10 @@ static void observe(const ChartField &field, const Vec3d &at, double counts,
         out.push_back(o); /* farther ones are of another height field */
 }
 
-static std::vector<Observation> observe_edges(const ChartField &field)
+static Vector<Observation> observe_edges(const ChartField &field)
 {
     const FlatChart &chart = field.flat;
-    std::vector<Observation> out;
+    Vector<Observation> out;
     for (size_t t = 0; t < chart.triangles.size(); ++t) {
         const FlatTriangle &triangle = chart.triangles[t];
         if (!triangle.front)
@@ -88,7 +88,7 @@ static std::vector<Observation> observe_edges(const ChartField &field)
 }
 
 /* The share of the core's observations that the height field passes below, `missed` or more. */
-static double missed_share(const FlatChart &chart, const std::vector<Observation> &observations,
+static double missed_share(const FlatChart &chart, const Vector<Observation> &observations,
                            const Cover &cover, double missed)
 {
     const uint32_t row = uint32_t(chart.grid.w);
@@ -110,12 +110,12 @@ double fit_heights(double pitch, ChartField &field)
 {
     const FlatChart &chart = field.flat;
     Cover &cover = field.cover;
-    const std::vector<Observation> observations = observe_edges(field);
-    const std::vector<double> sampled = cover.height;
+    const Vector<Observation> observations = observe_edges(field);
+    const Vector<double> sampled = cover.height;
     const uint32_t row = uint32_t(chart.grid.w);
     const double farthest = FARTHEST * chart.grid.coarse_pitch();
     const double leeway = LEEWAY * chart.grid.coarse_pitch();
-    std::vector<double> pull(sampled.size()), weight(sampled.size());
+    Vector<double> pull(sampled.size()), weight(sampled.size());
     for (int round = 0; round < ROUNDS; ++round) {
         for (size_t i = 0; i < sampled.size(); ++i) {
             const double residual = sampled[i] - cover.height[i];

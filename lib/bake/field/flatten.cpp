@@ -124,7 +124,7 @@ FlatChart flatten(const Mesh &mesh, const Neighbours &neighbours, const Chart &c
     flat.core = chart.triangles.size();
     /* Beyond the overlap that is shown, texels are sampled rather than extrapolated while there is
      * source surface to sample. */
-    std::vector<uint32_t> overlap =
+    Vector<uint32_t> overlap =
         overlap_triangles(mesh, neighbours, chart, (MARGIN - 0.5) * flat.grid.coarse_pitch());
     flat.triangles.reserve(flat.core + overlap.size());
     for (uint32_t t : chart.triangles)

@@ -7,7 +7,7 @@
 
 namespace gtx::baking {
 
-using Neighbours = std::vector<std::array<uint32_t, 3>>;
+using Neighbours = Vector<std::array<uint32_t, 3>>;
 
 /* The working grid of a chart: texel space (u, v, c), where texel (i, j) lies at u = i, v = j, and
  * c stays in object units along the frame's z. */
@@ -52,7 +52,7 @@ struct FlatTriangle {
 /* The true surface of a chart: first `core` triangles of its own, then those of its overlap. */
 struct FlatChart {
     Grid grid;
-    std::vector<FlatTriangle> triangles;
+    Vector<FlatTriangle> triangles;
     size_t core = 0;
     /* mate[t][k] is the index here of the front-facing triangle across edge k, or NO_TRIANGLE. */
     Neighbours mate;

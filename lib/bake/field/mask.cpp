@@ -41,8 +41,8 @@ static FlatChart refine(const FlatChart &chart)
 
 /* What sample_surface calls `cut`, at every sample of the grid; nothing where the core is nowhere
  * there: a chart does not stand for its overlap alone. */
-static std::vector<float> sample_cut(const Mesh &mesh, const Neighbours &neighbours,
-                                     const FlatChart &fine)
+static Vector<float> sample_cut(const Mesh &mesh, const Neighbours &neighbours,
+                                const FlatChart &fine)
 {
     Cover cover = raster_core(fine);
     Outline core_outline = find_outline(neighbours, fine, fine.core);
@@ -51,7 +51,7 @@ static std::vector<float> sample_cut(const Mesh &mesh, const Neighbours &neighbo
     Outline outline = find_outline(neighbours, fine, fine.triangles.size());
 
     const double side = std::sqrt(fine.grid.pitch[0] * fine.grid.pitch[1]);
-    std::vector<float> cut(fine.grid.texels(), 1);
+    Vector<float> cut(fine.grid.texels(), 1);
     bool core_is_there = false;
     for (size_t i = 0; i < cut.size(); ++i) {
         if (cover.triangle[i] == NO_TRIANGLE && outline.distance[i] > BEYOND)
@@ -66,8 +66,8 @@ static std::vector<float> sample_cut(const Mesh &mesh, const Neighbours &neighbo
 }
 
 /* The zero contour in the square at sample (x, y), in texel space (marching squares). */
-static void contour_square(const std::vector<float> &cut, int w, int x, int y,
-                           std::vector<OutlineEdge> &edges)
+static void contour_square(const Vector<float> &cut, int w, int x, int y,
+                           Vector<OutlineEdge> &edges)
 {
     static const int DX[] = {0, 1, 1, 0}, DY[] = {0, 0, 1, 1};
     float value[4], sum = 0;
@@ -91,12 +91,12 @@ static void contour_square(const std::vector<float> &cut, int w, int x, int y,
 }
 
 void trim_mask(const Mesh &mesh, const Neighbours &neighbours, const FlatChart &chart,
-               std::vector<float> &trim)
+               Vector<float> &trim)
 {
     if (!has_mask(mesh, chart))
         return;
     const FlatChart fine = refine(chart);
-    const std::vector<float> cut = sample_cut(mesh, neighbours, fine);
+    const Vector<float> cut = sample_cut(mesh, neighbours, fine);
     Outline outline;
     for (int y = 0; y + 1 < fine.grid.h; ++y)
         for (int x = 0; x + 1 < fine.grid.w; ++x)

@@ -55,7 +55,7 @@ static Shades halve(const Shades &fine)
 
 void dilate(Shades &shades, unsigned rings)
 {
-    std::vector<size_t> ring;
+    Vector<size_t> ring;
     for (unsigned r = 0; r < rings; ++r) {
         ring.clear();
         for (int j = 0; j < shades.h; ++j) {
@@ -81,11 +81,11 @@ void dilate(Shades &shades, unsigned rings)
     }
 }
 
-static std::vector<uint8_t> encode_normals(const Shades &shades, const gtx_patch &record)
+static Vector<uint8_t> encode_normals(const Shades &shades, const gtx_patch &record)
 {
     float rows[3][3];
     gtx_normal_frame(&record, rows);
-    std::vector<uint8_t> bytes(2 * shades.normal.size(), GTX_FAR_NORMAL);
+    Vector<uint8_t> bytes(2 * shades.normal.size(), GTX_FAR_NORMAL);
     for (size_t i = 0; i < shades.normal.size(); ++i) {
         if (!shades.occupied[i])
             continue;
@@ -103,10 +103,10 @@ static std::vector<uint8_t> encode_normals(const Shades &shades, const gtx_patch
 }
 
 /* The next level of normals, by the rule that readers know. */
-static std::vector<uint8_t> halve_normals(const std::vector<uint8_t> &fine, const Shades &shades)
+static Vector<uint8_t> halve_normals(const Vector<uint8_t> &fine, const Shades &shades)
 {
     int w = shades.w / 2, h = shades.h / 2;
-    std::vector<uint8_t> coarse(2 * size_t(w) * h);
+    Vector<uint8_t> coarse(2 * size_t(w) * h);
     for (int j = 0; j < h; ++j) {
         for (int i = 0; i < w; ++i) {
             gtx_normal_sum sum = {};
@@ -121,10 +121,10 @@ static std::vector<uint8_t> halve_normals(const std::vector<uint8_t> &fine, cons
     return coarse;
 }
 
-static std::vector<uint8_t> fill_normals(std::vector<uint8_t> codes, const Shades &shades,
-                                         unsigned rings)
+static Vector<uint8_t> fill_normals(Vector<uint8_t> codes, const Shades &shades,
+                                    unsigned rings)
 {
-    std::vector<uint8_t> ring = shades.occupied;
+    Vector<uint8_t> ring = shades.occupied;
     gtx_fill area = {codes.data(), ring.data(), size_t(shades.w), uint32_t(shades.w),
                      uint32_t(shades.h)};
     gtx_fill_normals(&area, rings);
@@ -138,9 +138,9 @@ static uint8_t unorm(float value)
 
 /* `count` channels from `first` on, as bytes that code(channel, value) gives. */
 template <class Code>
-static std::vector<uint8_t> encode(const Shades &shades, int first, int count, Code code)
+static Vector<uint8_t> encode(const Shades &shades, int first, int count, Code code)
 {
-    std::vector<uint8_t> bytes(count * shades.normal.size(), 0);
+    Vector<uint8_t> bytes(count * shades.normal.size(), 0);
     for (size_t i = 0; i < shades.normal.size(); ++i)
         for (int k = 0; shades.occupied[i] && k < count; ++k)
             bytes[count * i + k] = code(k, shades.values[i * shades.channels + first + k]);
@@ -169,7 +169,7 @@ static void encode_level(const Shades &shades, const AppearanceNeeds &needs, Pat
 
 void build_mips(Shades shades, unsigned mips, const AppearanceNeeds &needs, PatchMaps &patch)
 {
-    std::vector<uint8_t> normals = encode_normals(shades, patch.record);
+    Vector<uint8_t> normals = encode_normals(shades, patch.record);
     for (unsigned k = 0; k < mips; ++k) {
         unsigned rings = gtx_fill_rings(&patch.record, k);
         patch.normal.push_back(fill_normals(normals, shades, rings));

@@ -128,7 +128,7 @@ Outline find_outline(const Neighbours &neighbours, const FlatChart &chart, size_
 
 /* Lowers the distances around a point of the core that bilinear lookup would cut away: the tip of a
  * corner, or a sliver that passes between texel centres. */
-static void show_point(const Grid &grid, double u, double v, std::vector<float> &trim)
+static void show_point(const Grid &grid, double u, double v, Vector<float> &trim)
 {
     constexpr double AIM = GTX_TRIM_SHOWN - 1.0 / GTX_TRIM_TEXEL; /* a code below the limit */
     int i = std::clamp(int(u), 0, grid.w - 2), j = std::clamp(int(v), 0, grid.h - 2);
@@ -141,11 +141,11 @@ static void show_point(const Grid &grid, double u, double v, std::vector<float> 
         *corner -= float(d - AIM);
 }
 
-std::vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Cover &all,
-                                  const Outline &core_outline, const Outline &all_outline)
+Vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Cover &all,
+                             const Outline &core_outline, const Outline &all_outline)
 {
     const Grid &grid = chart.grid;
-    std::vector<float> trim(grid.texels());
+    Vector<float> trim(grid.texels());
     for (size_t i = 0; i < trim.size(); ++i) {
         bool in_core = core.triangle[i] != NO_TRIANGLE && core.triangle[i] < chart.core;
         bool in_all = all.triangle[i] != NO_TRIANGLE;

@@ -7,7 +7,7 @@
 
 namespace gtx::baking {
 
-static Crop crop_support(const Grid &grid, const std::vector<uint8_t> &support, int grain)
+static Crop crop_support(const Grid &grid, const Vector<uint8_t> &support, int grain)
 {
     int low[2] = {grid.w, grid.h}, high[2] = {0, 0};
     for (int j = 0; j < grid.h; ++j) {
@@ -64,7 +64,7 @@ void measure_patch(unsigned height_bits, PatchMaps &maps)
 void fill_trim(PatchMaps &maps)
 {
     uint32_t w = maps.record.rect[2], h = maps.record.rect[3];
-    std::vector<uint8_t> ring(maps.height.size());
+    Vector<uint8_t> ring(maps.height.size());
     for (size_t i = 0; i < ring.size(); ++i) {
         ring[i] = maps.height[i] != 0;
         if (!ring[i])

@@ -7,14 +7,14 @@
 
 namespace gtx::baking {
 
-using Levels = std::vector<std::vector<uint8_t>>;
+using Levels = Vector<Vector<uint8_t>>;
 
 /* The maps of one patch, `rect` still without its place on a page. */
 struct PatchMaps {
     gtx_patch record = {};
-    std::vector<uint16_t> height;             /* codes */
-    std::vector<uint8_t> trim;
-    std::vector<uint8_t> border;              /* the nearest outline is the model's own border */
+    Vector<uint16_t> height;                  /* codes */
+    Vector<uint8_t> trim;
+    Vector<uint8_t> border;                   /* the nearest outline is the model's own border */
     Levels normal;                            /* a level each, 2 bytes a texel */
     Levels color, material, emission;         /* 4, 4 and 3 bytes a texel, or none */
     Vec3d low, high;                          /* of the coded texels' points */

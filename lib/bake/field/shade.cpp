@@ -71,7 +71,7 @@ static void store(const SurfaceSample &sample, const AppearanceNeeds &needs, Sha
 }
 
 Shades shade_texels(const Job &job, const ChartField &field, const Crop &crop,
-                    const std::vector<uint16_t> &height)
+                    const Vector<uint16_t> &height)
 {
     /* A texel with a code is at most so far from what is shown: a fact of the support. */
     constexpr unsigned MARGIN = 2;

@@ -12,9 +12,9 @@ constexpr int COLOR_CHANNELS = 4, MATERIAL_CHANNELS = 4, EMISSION_CHANNELS = 3,
 /* What is seen at each texel of a level, before it is stored. */
 struct Shades {
     int w, h, channels;
-    std::vector<Vec3f> normal;                /* object space, unit */
-    std::vector<float> values;                /* `channels` a texel: those that follow, if needed */
-    std::vector<uint8_t> occupied;            /* has a shade */
+    Vector<Vec3f> normal;                     /* object space, unit */
+    Vector<float> values;                     /* `channels` a texel: those that follow, if needed */
+    Vector<uint8_t> occupied;                 /* has a shade */
 
     Shades(int w, int h, int channels)
         : w(w), h(h), channels(channels), normal(size_t(w) * h), values(normal.size() * channels),
@@ -30,7 +30,7 @@ struct Crop {
 
 /* The shades of the texels with a code. */
 Shades shade_texels(const Job &job, const ChartField &field, const Crop &crop,
-                    const std::vector<uint16_t> &height);
+                    const Vector<uint16_t> &height);
 
 /* Fills empty texels ring by ring with the mean of the neighbours that the ring before had. */
 void dilate(Shades &shades, unsigned rings);

@@ -54,7 +54,7 @@ struct EdgeSplit {
 
 class Splitter {
 public:
-    Splitter(const std::vector<ChartCuts> &cuts, const std::vector<PatchRegion> &regions,
+    Splitter(const Vector<ChartCuts> &cuts, const Vector<PatchRegion> &regions,
              LodSource &source)
         : cuts_(cuts), regions_(regions), source_(source)
     {
@@ -74,15 +74,15 @@ private:
     void divide(uint32_t triangle);
     uint32_t patch_at(uint32_t origin, const Vec3d &centre) const;
 
-    const std::vector<ChartCuts> &cuts_;
-    const std::vector<PatchRegion> &regions_;
+    const Vector<ChartCuts> &cuts_;
+    const Vector<PatchRegion> &regions_;
     LodSource &source_;
-    std::vector<Shared> sharers_;     /* of the triangles that were open at first, ascending */
-    std::vector<uint32_t> origin_;    /* of each triangle: that of the mesh */
-    std::vector<uint32_t> open_;      /* those that may have to be split */
-    std::vector<uint8_t> is_open_;
-    std::vector<EdgeSplit> splits_;   /* of this round, by edge */
-    std::vector<uint8_t> is_end_;     /* vertices of edges that are split */
+    Vector<Shared> sharers_;          /* of the triangles that were open at first, ascending */
+    Vector<uint32_t> origin_;         /* of each triangle: that of the mesh */
+    Vector<uint32_t> open_;           /* those that may have to be split */
+    Vector<uint8_t> is_open_;
+    Vector<EdgeSplit> splits_;        /* of this round, by edge */
+    Vector<uint8_t> is_end_;          /* vertices of edges that are split */
     uint32_t first_new_ = 0;          /* vertex of the first split */
 };
 
@@ -238,8 +238,8 @@ bool Splitter::round()
     return !splits_.empty();
 }
 
-void split_at_cuts(const Partition &partition, const Maps &maps, const std::vector<ChartCuts> &cuts,
-                   const std::vector<PatchRegion> &regions, LodSource &source, Task &task)
+void split_at_cuts(const Partition &partition, const Maps &maps, const Vector<ChartCuts> &cuts,
+                   const Vector<PatchRegion> &regions, LodSource &source, Task &task)
 {
     Splitter splitter(cuts, regions, source);
     splitter.find_open(task);

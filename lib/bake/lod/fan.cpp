@@ -4,7 +4,7 @@
 namespace gtx::baking {
 
 /* All triangles and vertices as they come. */
-static void gather(const std::vector<Triangle> &triangles, const uint32_t *around, int count,
+static void gather(const Vector<Triangle> &triangles, const uint32_t *around, int count,
                    uint32_t vertex, Fan &fan)
 {
     fan.count = count;
@@ -18,7 +18,7 @@ static void gather(const std::vector<Triangle> &triangles, const uint32_t *aroun
                 fan.ring[fan.ring_count++] = v;
 }
 
-bool find_fan(const std::vector<Triangle> &triangles, const uint32_t *around, size_t triangle_count,
+bool find_fan(const Vector<Triangle> &triangles, const uint32_t *around, size_t triangle_count,
               uint32_t vertex, Fan &fan)
 {
     if (triangle_count == 0 || triangle_count > MAX_FAN)

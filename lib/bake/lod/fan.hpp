@@ -1,11 +1,12 @@
 /* The triangles around a vertex. */
 #pragma once
 
+#include "mesh/memory.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace gtx::baking {
 
@@ -34,7 +35,7 @@ inline int corner_of(const Triangle &triangle, uint32_t vertex)
 }
 
 /* Puts those `around` a vertex in order. False when there are none or too many. */
-bool find_fan(const std::vector<Triangle> &triangles, const uint32_t *around, size_t triangle_count,
+bool find_fan(const Vector<Triangle> &triangles, const uint32_t *around, size_t triangle_count,
               uint32_t vertex, Fan &fan);
 
 } // namespace gtx::baking

@@ -29,14 +29,14 @@ static double suits(const gtx_patch &patch, const PatchRegion &region, const Vec
     return facing - away / std::sqrt(size);
 }
 
-std::vector<uint32_t> find_far_homes(const Simplifier &simplified, const Maps &maps,
-                                     const std::vector<PatchRegion> &regions, Task &task)
+Vector<uint32_t> find_far_homes(const Simplifier &simplified, const Maps &maps,
+                                const Vector<PatchRegion> &regions, Task &task)
 {
     const auto &triangles = simplified.triangles();
-    std::vector<uint32_t> homes = simplified.patch();
+    Vector<uint32_t> homes = simplified.patch();
     task.parallel(triangles.size(), [&](size_t n) {
         const auto &[a, b, c] = triangles[n];
-        const std::vector<Vec3d> &at = simplified.positions();
+        const Vector<Vec3d> &at = simplified.positions();
         const Vec3d middle = (at[a] + at[b] + at[c]) / 3;
         const Vec3d area = cross(at[b] - at[a], at[c] - at[a]);
         const uint16_t flags = maps.patches[homes[n]].flags;
@@ -57,7 +57,7 @@ std::vector<uint32_t> find_far_homes(const Simplifier &simplified, const Maps &m
 /* Connected parts of a surface, each named by the lowest of its vertices. */
 class Components {
 public:
-    Components(const std::vector<Triangle> &triangles, size_t vertices) : lowest_(vertices)
+    Components(const Vector<Triangle> &triangles, size_t vertices) : lowest_(vertices)
     {
         std::iota(lowest_.begin(), lowest_.end(), 0u);
         for (const Triangle &t : triangles) {
@@ -73,16 +73,16 @@ public:
     }
 
 private:
-    std::vector<uint32_t> lowest_;
+    Vector<uint32_t> lowest_;
 };
 
-std::vector<uint8_t> find_specks(const Simplifier &simplified, double most)
+Vector<uint8_t> find_specks(const Simplifier &simplified, double most)
 {
-    const std::vector<Vec3d> &positions = simplified.positions();
+    const Vector<Vec3d> &positions = simplified.positions();
     const auto &triangles = simplified.triangles();
     Components components(triangles, positions.size());
-    std::vector<Vec3d> low(positions.size(), {INFINITY, INFINITY, INFINITY});
-    std::vector<Vec3d> high(positions.size(), {-INFINITY, -INFINITY, -INFINITY});
+    Vector<Vec3d> low(positions.size(), {INFINITY, INFINITY, INFINITY});
+    Vector<Vec3d> high(positions.size(), {-INFINITY, -INFINITY, -INFINITY});
     for (uint32_t v = 0; v < positions.size(); ++v) {
         const uint32_t of = components.of(v);
         for (int k = 0; k < 3; ++k) {
@@ -90,7 +90,7 @@ std::vector<uint8_t> find_specks(const Simplifier &simplified, double most)
             high[of][k] = std::max(high[of][k], positions[v][k]);
         }
     }
-    std::vector<uint8_t> specks(triangles.size(), 0);
+    Vector<uint8_t> specks(triangles.size(), 0);
     size_t count = 0;
     for (size_t t = 0; t < triangles.size(); ++t) {
         const uint32_t of = components.of(triangles[t][0]);

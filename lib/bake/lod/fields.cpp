@@ -102,24 +102,24 @@ double MapField::trim_in_cell(int i, int j, const Vec3d &in, const Vec3d &facing
     return apart <= reach_ && dot(here, facing) >= MIN_COSINE ? trimmed : INFINITY;
 }
 
-std::vector<MapField> map_fields(const Maps &maps, Task &task)
+Vector<MapField> map_fields(const Maps &maps, Task &task)
 {
-    std::vector<MapField> fields;
+    Vector<MapField> fields;
     for (uint32_t p = 0; p < maps.patches.size(); ++p)
         fields.emplace_back(maps, p);
     task.check();
     return fields;
 }
 
-std::vector<std::vector<uint32_t>> touching(const std::vector<MapField> &fields)
+Vector<Vector<uint32_t>> touching(const Vector<MapField> &fields)
 {
-    std::vector<uint32_t> order(fields.size()), open;
+    Vector<uint32_t> order(fields.size()), open;
     for (uint32_t p = 0; p < order.size(); ++p)
         order[p] = p;
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         return fields[a].low.x < fields[b].low.x;
     });
-    std::vector<std::vector<uint32_t>> out(fields.size());
+    Vector<Vector<uint32_t>> out(fields.size());
     for (uint32_t p : order) {
         const MapField &s = fields[p];
         open.erase(std::remove_if(open.begin(), open.end(),
@@ -141,8 +141,8 @@ std::vector<std::vector<uint32_t>> touching(const std::vector<MapField> &fields)
 }
 
 /* How far a texel of a patch is from being its own: negative inside, 0 on the cut. */
-static double distance_to_own(const std::vector<MapField> &fields, uint32_t patch,
-                              const std::vector<uint32_t> &others, int i, int j)
+static double distance_to_own(const Vector<MapField> &fields, uint32_t patch,
+                              const Vector<uint32_t> &others, int i, int j)
 {
     const MapField &field = fields[patch];
     const size_t texel = field.at(i, j);
@@ -165,7 +165,7 @@ namespace {
 /* Cuts the triangles of a height field where a value at its texels is 0. */
 class Cutter {
 public:
-    Cutter(const MapField &field, const std::vector<double> &value)
+    Cutter(const MapField &field, const Vector<double> &value)
         : field_(field), value_(value), name_(value.size(), NO_VERTEX)
     {
     }
@@ -240,8 +240,8 @@ private:
     }
 
     const MapField &field_;
-    const std::vector<double> &value_;
-    std::vector<uint32_t> name_;
+    const Vector<double> &value_;
+    Vector<uint32_t> name_;
     std::map<std::array<int, 2>, uint32_t> cuts_;
 };
 
@@ -249,7 +249,7 @@ private:
 
 static void find_border(FieldPiece &piece)
 {
-    std::vector<std::array<uint32_t, 2>> edges;
+    Vector<std::array<uint32_t, 2>> edges;
     for (const Triangle &t : piece.triangles)
         for (int k = 0; k < 3; ++k)
             edges.push_back({t[k], t[(k + 1) % 3]});
@@ -260,11 +260,11 @@ static void find_border(FieldPiece &piece)
             piece.at_border[a] = piece.at_border[b] = 1;
 }
 
-FieldPiece cut_field(const std::vector<MapField> &fields, uint32_t patch,
-                     const std::vector<uint32_t> &others)
+FieldPiece cut_field(const Vector<MapField> &fields, uint32_t patch,
+                     const Vector<uint32_t> &others)
 {
     const MapField &field = fields[patch];
-    std::vector<double> value(size_t(field.w) * field.h, NAN);
+    Vector<double> value(size_t(field.w) * field.h, NAN);
     for (int j = 0; j < field.h; ++j)
         for (int i = 0; i < field.w; ++i)
             if (field.code(field.at(i, j)))

@@ -43,22 +43,22 @@ private:
     const uint8_t *normals_;
 };
 
-std::vector<MapField> map_fields(const Maps &maps, Task &task);
+Vector<MapField> map_fields(const Maps &maps, Task &task);
 
 /* For each patch those, in ascending order, whose boxes touch its own. */
-std::vector<std::vector<uint32_t>> touching(const std::vector<MapField> &fields);
+Vector<Vector<uint32_t>> touching(const Vector<MapField> &fields);
 
 /* What of a height field lies deeper inside its own outline than inside any other patch's. */
 struct FieldPiece {
-    std::vector<Vec3d> positions, normals;
-    std::vector<Triangle> triangles;
-    std::vector<uint8_t> at_border; /* of a vertex: the piece ends there */
+    Vector<Vec3d> positions, normals;
+    Vector<Triangle> triangles;
+    Vector<uint8_t> at_border;      /* of a vertex: the piece ends there */
 };
-FieldPiece cut_field(const std::vector<MapField> &fields, uint32_t patch,
-                     const std::vector<uint32_t> &others);
+FieldPiece cut_field(const Vector<MapField> &fields, uint32_t patch,
+                     const Vector<uint32_t> &others);
 
 /* Joins pieces, one a patch, where they meet. */
-LodSource weld(const std::vector<MapField> &fields, std::vector<FieldPiece> pieces,
-               const std::vector<std::vector<uint32_t>> &others);
+LodSource weld(const Vector<MapField> &fields, Vector<FieldPiece> pieces,
+               const Vector<Vector<uint32_t>> &others);
 
 } // namespace gtx::baking

@@ -13,8 +13,8 @@ constexpr double SURELY_A_GAP = 3.5, SHOWN_SHARE = 0.5, BEYOND = 0.5;
 constexpr size_t MAX_EDGES = 128;
 
 /* Marks triangles of the same corners but one; those that lie on each other's back, both. */
-static void mark_twins(const std::vector<Triangle> &triangles,
-                       const std::vector<uint8_t> &at_border, std::vector<uint8_t> &dropped)
+static void mark_twins(const Vector<Triangle> &triangles,
+                       const Vector<uint8_t> &at_border, Vector<uint8_t> &dropped)
 {
     std::map<Triangle, uint32_t> known;
     for (uint32_t t = 0; t < triangles.size(); ++t) {
@@ -36,9 +36,9 @@ static void mark_twins(const std::vector<Triangle> &triangles,
  * first: the gap that is left is closed as any. */
 void Welder::drop_folds()
 {
-    std::vector<uint8_t> dropped(source.triangles.size(), 0);
+    Vector<uint8_t> dropped(source.triangles.size(), 0);
     mark_twins(source.triangles, at_border_, dropped);
-    std::vector<OpenEdge> edges;
+    Vector<OpenEdge> edges;
     for (uint32_t t = 0; t < source.triangles.size(); ++t)
         for (int k = 0; k < 3 && !dropped[t]; ++k) {
             const Edge edge = {source.triangles[t][k], source.triangles[t][(k + 1) % 3]};
@@ -70,7 +70,7 @@ bool Welder::goes_on(const OpenEdge &open) const
     return on(patch) || std::any_of(others_[patch].begin(), others_[patch].end(), on);
 }
 
-bool Welder::is_gap(const std::vector<OpenEdge> &edges) const
+bool Welder::is_gap(const Vector<OpenEdge> &edges) const
 {
     double around = 0, shown = 0;
     for (const auto &[edge, t] : edges)
@@ -84,9 +84,9 @@ bool Welder::is_gap(const std::vector<OpenEdge> &edges) const
 }
 
 /* Cuts one ear after the other off the ring, that with the shortest side first. */
-void Welder::close(const std::vector<OpenEdge> &edges)
+void Welder::close(const Vector<OpenEdge> &edges)
 {
-    std::vector<uint32_t> ring, patch;
+    Vector<uint32_t> ring, patch;
     for (const auto &[edge, t] : edges) {
         ring.push_back(edge[0]);
         patch.push_back(source.patch[t]);
@@ -113,8 +113,8 @@ void Welder::close(const std::vector<OpenEdge> &edges)
 }
 
 /* Where every ear would take an edge that others have. */
-void Welder::close_around_middle(const std::vector<uint32_t> &ring,
-                                 const std::vector<uint32_t> &patch)
+void Welder::close_around_middle(const Vector<uint32_t> &ring,
+                                 const Vector<uint32_t> &patch)
 {
     const uint32_t middle = uint32_t(source.positions.size());
     Vec3d at;
@@ -139,20 +139,20 @@ void Welder::add(const Triangle &t, uint32_t patch)
 /* Follows open edges; where a way comes back to a vertex, a ring is complete. */
 void Welder::close_gaps()
 {
-    const std::vector<OpenEdge> open = open_edges();
-    std::vector<uint8_t> gone(open.size(), 0);
+    const Vector<OpenEdge> open = open_edges();
+    Vector<uint8_t> gone(open.size(), 0);
     used_.clear();
     for (const Triangle &t : source.triangles)
         for (int k = 0; k < 3; ++k)
             if (at_border_[t[k]] && at_border_[t[(k + 1) % 3]])
                 used_.insert(pair_of(t[k], t[(k + 1) % 3]));
     constexpr uint32_t OFF = 0xffffffffu;
-    std::vector<uint32_t> step(source.positions.size(), OFF); /* of a vertex that is on the way */
+    Vector<uint32_t> step(source.positions.size(), OFF);      /* of a vertex that is on the way */
     for (size_t start = 0; start < open.size(); ++start) {
-        std::vector<OpenEdge> way;
+        Vector<OpenEdge> way;
         for (uint32_t here = open[start].first[0];;) {
             if (step[here] != OFF) {
-                const std::vector<OpenEdge> ring(way.begin() + step[here], way.end());
+                const Vector<OpenEdge> ring(way.begin() + step[here], way.end());
                 way.resize(step[here]);
                 for (const OpenEdge &edge : ring)
                     step[edge.first[0]] = OFF;

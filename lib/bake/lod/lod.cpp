@@ -44,9 +44,9 @@ constexpr double FAR_RATIO = 2.5;
 /* Edges among which the next triangle is looked for, as the asset's coding does: 0.2 % bytes. */
 constexpr size_t RECENT_EDGES = 16;
 
-std::vector<PatchRegion> patch_regions(const Maps &maps, Task &task)
+Vector<PatchRegion> patch_regions(const Maps &maps, Task &task)
 {
-    std::vector<PatchRegion> regions(maps.patches.size());
+    Vector<PatchRegion> regions(maps.patches.size());
     task.parallel(regions.size(), [&](size_t p) {
         regions[p] = PatchRegion(maps, uint32_t(p));
     }, 0, 0);
@@ -68,7 +68,7 @@ static double mean_pitch(const Maps &maps)
 struct Lattice {
     float origin[3] = {0, 0, 0}, step = 0;
 
-    Lattice(const std::vector<Vec3d> &points, double wanted)
+    Lattice(const Vector<Vec3d> &points, double wanted)
     {
         Vec3d low = points[0], high = low;
         for (const Vec3d &p : points) {
@@ -100,7 +100,7 @@ struct Lattice {
  * a processor still remembers. */
 class Strip {
 public:
-    Strip(const std::vector<Triangle> &triangles, const std::vector<uint32_t> &patch,
+    Strip(const Vector<Triangle> &triangles, const Vector<uint32_t> &patch,
           size_t vertices)
         : triangles_(triangles), patch_(patch), start_(vertices + 1, 0), left_(triangles.size(), 0)
     {
@@ -110,13 +110,13 @@ public:
         for (size_t v = 0; v < vertices; ++v)
             start_[v + 1] += start_[v];
         around_.resize(3 * triangles.size());
-        std::vector<uint32_t> next(start_.begin(), start_.end() - 1);
+        Vector<uint32_t> next(start_.begin(), start_.end() - 1);
         for (size_t t = 0; t < triangles.size(); ++t)
             for (uint32_t v : triangles[t])
                 around_[next[v]++] = uint32_t(t);
     }
     /* Adds the triangles `members` of a patch, corners turned so that a shared edge comes first. */
-    void follow(uint32_t patch, const std::vector<uint32_t> &members, std::vector<Triangle> &out)
+    void follow(uint32_t patch, const Vector<uint32_t> &members, Vector<Triangle> &out)
     {
         for (uint32_t t : members)
             left_[t] = 1;
@@ -138,7 +138,7 @@ public:
 private:
     using Edge = std::array<uint32_t, 2>;
 
-    void take(const Triangle &t, std::vector<Triangle> &out)
+    void take(const Triangle &t, Vector<Triangle> &out)
     {
         out.push_back(t);
         for (int k = 0; k < 3; ++k)
@@ -162,14 +162,14 @@ private:
         return false;
     }
 
-    const std::vector<Triangle> &triangles_;
-    const std::vector<uint32_t> &patch_;
-    std::vector<uint32_t> start_, around_;
-    std::vector<uint8_t> left_; /* to be followed */
+    const Vector<Triangle> &triangles_;
+    const Vector<uint32_t> &patch_;
+    Vector<uint32_t> start_, around_;
+    Vector<uint8_t> left_;      /* to be followed */
     std::deque<Edge> recent_;
 };
 
-static bool collapses(const Triangle &t, const std::vector<Place> &places)
+static bool collapses(const Triangle &t, const Vector<Place> &places)
 {
     return places[t[0]] == places[t[1]] || places[t[1]] == places[t[2]] ||
            places[t[2]] == places[t[0]];
@@ -178,7 +178,7 @@ static bool collapses(const Triangle &t, const std::vector<Place> &places)
 /* Whether a level may have the triangle: it has an area, and lies on the rectangle of its patch or
  * next to it. */
 static bool fits(const PatchRegion &region, const Triangle &t, const Lattice &lattice,
-                 const std::vector<Place> &places)
+                 const Vector<Place> &places)
 {
     if (collapses(t, places))
         return false;
@@ -190,13 +190,13 @@ static bool fits(const PatchRegion &region, const Triangle &t, const Lattice &la
 
 /* The patch of each triangle, or NO_PATCH where none may have it: a triangle that does not fit its
  * own goes to one that has a neighbour of it, for without it there would be a hole. */
-static std::vector<uint32_t> find_homes(const Simplifier &simplified,
-                                        const std::vector<PatchRegion> &regions,
-                                        const Lattice &lattice, const std::vector<Place> &places)
+static Vector<uint32_t> find_homes(const Simplifier &simplified,
+                                   const Vector<PatchRegion> &regions,
+                                   const Lattice &lattice, const Vector<Place> &places)
 {
     const auto &triangles = simplified.triangles();
-    std::vector<uint32_t> homes = simplified.patch(), homeless;
-    std::vector<std::pair<uint32_t, uint32_t>> beside; /* vertices, and patches that have them */
+    Vector<uint32_t> homes = simplified.patch(), homeless;
+    Vector<std::pair<uint32_t, uint32_t>> beside;      /* vertices, and patches that have them */
     for (uint32_t t = 0; t < triangles.size(); ++t) {
         if (fits(regions[homes[t]], triangles[t], lattice, places))
             continue;
@@ -219,21 +219,21 @@ static std::vector<uint32_t> find_homes(const Simplifier &simplified,
     return homes;
 }
 
-static std::vector<Place> round_all(const Simplifier &simplified, const Lattice &lattice)
+static Vector<Place> round_all(const Simplifier &simplified, const Lattice &lattice)
 {
-    std::vector<Place> places;
+    Vector<Place> places;
     for (const Vec3d &p : simplified.positions())
         places.push_back(lattice.round(p));
     return places;
 }
 
 /* `patch` has NO_PATCH for triangles that are left out. */
-static LodLevel make_level(const Simplifier &simplified, const std::vector<uint32_t> &patch,
-                           const std::vector<Place> &places, size_t patches,
+static LodLevel make_level(const Simplifier &simplified, const Vector<uint32_t> &patch,
+                           const Vector<Place> &places, size_t patches,
                            const Lattice &lattice)
 {
     const auto &triangles = simplified.triangles();
-    std::vector<std::vector<uint32_t>> members(patches);
+    Vector<Vector<uint32_t>> members(patches);
     for (size_t t = 0; t < triangles.size(); ++t)
         if (patch[t] != NO_PATCH && !collapses(triangles[t], places))
             members[patch[t]].push_back(uint32_t(t));
@@ -242,8 +242,8 @@ static LodLevel make_level(const Simplifier &simplified, const std::vector<uint3
     std::copy_n(lattice.origin, 3, level.origin);
     level.step = lattice.step;
     std::map<Place, uint32_t> name; /* of the vertex at a place */
-    std::vector<uint32_t> named(places.size(), NO_VERTEX);
-    std::vector<Triangle> ordered;
+    Vector<uint32_t> named(places.size(), NO_VERTEX);
+    Vector<Triangle> ordered;
     Strip strip(triangles, patch, places.size());
     for (uint32_t p = 0; p < members.size(); ++p) {
         level.first.push_back(uint32_t(ordered.size()));
@@ -268,7 +268,7 @@ static LodLevel make_level(const Simplifier &simplified, const std::vector<uint3
 /* What all levels of an asset are made with. */
 struct LodJob {
     const Maps &maps;
-    const std::vector<PatchRegion> &regions;
+    const Vector<PatchRegion> &regions;
     const Lattice &lattice;
     double thinned;              /* error of the surface that levels start from */
     Task &task;
@@ -276,7 +276,7 @@ struct LodJob {
 
 /* Goes on without regard to patches: where each is a pixel, a triangle may show several. */
 static void add_far_levels(const LodJob &job, Simplifier &simplifier, double most,
-                           std::vector<LodLevel> &lod)
+                           Vector<LodLevel> &lod)
 {
     simplifier.cross_patches();
     const double ways = std::log(double(simplifier.triangles().size()) / FAR_TRIANGLES);
@@ -290,7 +290,7 @@ static void add_far_levels(const LodJob &job, Simplifier &simplifier, double mos
         simplifier.drop(find_specks(simplifier, simplifier.error()));
         if (double(simplifier.triangles().size()) > MAX_SHARE * before)
             return;
-        const std::vector<uint32_t> homes =
+        const Vector<uint32_t> homes =
             find_far_homes(simplifier, job.maps, job.regions, job.task);
         LodLevel level = make_level(simplifier, homes, round_all(simplifier, job.lattice),
                                     job.regions.size(), job.lattice);
@@ -308,14 +308,14 @@ namespace gtx {
 
 using namespace baking;
 
-std::vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned levels,
-                               Task &task)
+Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned levels,
+                          Task &task)
 {
     task.begin("lod");
-    std::vector<LodLevel> lod;
+    Vector<LodLevel> lod;
     if (source.triangles.empty() || !levels)
         return lod;
-    const std::vector<PatchRegion> regions = patch_regions(maps, task);
+    const Vector<PatchRegion> regions = patch_regions(maps, task);
     const double pitch = mean_pitch(maps);
     const Lattice lattice(source.positions, STEP * pitch);
     Vec3d size;
@@ -332,7 +332,7 @@ std::vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsign
         if (k && double(simplifier.triangles().size()) > MAX_SHARE * double(before))
             break;
         simplifier.settle();
-        const std::vector<Place> places = round_all(simplifier, lattice);
+        const Vector<Place> places = round_all(simplifier, lattice);
         LodLevel level =
             make_level(simplifier, find_homes(simplifier, regions, lattice, places), places,
                        regions.size(), lattice);

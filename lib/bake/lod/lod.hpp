@@ -8,9 +8,9 @@ namespace gtx {
 
 /* Surface with a patch a triangle, and vertices that patches share, relative to the anchor. */
 struct LodSource {
-    std::vector<Vec3d> positions;
-    std::vector<std::array<uint32_t, 3>> triangles;
-    std::vector<uint32_t> patch; /* a triangle each */
+    Vector<Vec3d> positions;
+    Vector<std::array<uint32_t, 3>> triangles;
+    Vector<uint32_t> patch;      /* a triangle each */
     size_t model = 0;            /* triangles of the model, that levels are a share of; 0: these */
 
     Vec3d centre(size_t triangle) const
@@ -24,9 +24,9 @@ struct LodSource {
 struct LodLevel {
     float origin[3] = {0, 0, 0}, step = 0, error = 0;
     bool far = false;                /* triangles reach across patches */
-    std::vector<uint32_t> first;     /* of each patch, and the end */
-    std::vector<uint32_t> indices;   /* 3 a triangle */
-    std::vector<uint16_t> positions; /* 3 a vertex */
+    Vector<uint32_t> first;          /* of each patch, and the end */
+    Vector<uint32_t> indices;        /* 3 a triangle */
+    Vector<uint16_t> positions;      /* 3 a vertex */
 
     size_t triangle_count() const { return indices.size() / 3; }
 };
@@ -45,7 +45,7 @@ LodSource lod_source(const Maps &maps, Task &task);
 /* Simplifies the surface across all patches at once, down to at most `levels` levels, the finest
  * first, and to at most three more for models of a few pixels, whose triangles reach across
  * patches. Deterministic for any thread count. Stage of `task`: "LOD mesh". */
-std::vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned levels,
-                               Task &task);
+Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned levels,
+                          Task &task);
 
 } // namespace gtx

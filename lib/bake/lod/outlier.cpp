@@ -76,9 +76,9 @@ static Outlier find_outlier(const Simplified &surface, const uint32_t *near, siz
 }
 
 /* The triangles around a vertex and those around their corners. */
-static std::vector<uint32_t> find_near(const Simplified &s, uint32_t vertex)
+static Vector<uint32_t> find_near(const Simplified &s, uint32_t vertex)
 {
-    std::vector<uint32_t> near;
+    Vector<uint32_t> near;
     for (uint32_t i = s.start[vertex]; i < s.start[vertex + 1]; ++i)
         for (uint32_t v : s.triangles[s.around[i]])
             near.insert(near.end(), s.around.begin() + s.start[v],
@@ -93,7 +93,7 @@ static std::vector<uint32_t> find_near(const Simplified &s, uint32_t vertex)
 static Outlier find_worst(const Simplified &s, uint32_t vertex, double most)
 {
     Outlier worst;
-    std::vector<uint32_t> near;
+    Vector<uint32_t> near;
     for (uint32_t i = s.first[vertex]; i < s.first[vertex + 1]; ++i) {
         const double least = std::max(most, worst.height);
         if (find_outlier(s, s.around.data() + s.start[vertex],
@@ -114,15 +114,15 @@ void draw_out(const Simplified &surface, double most,
               const std::function<void(uint32_t, const Vec3d &)> &move, Task &task, double done)
 {
     const size_t chunk = 256;
-    std::vector<uint32_t> left(surface.positions.size());
+    Vector<uint32_t> left(surface.positions.size());
     std::iota(left.begin(), left.end(), 0u);
     for (int n = 0; n < ROUNDS && !left.empty(); ++n) {
-        std::vector<uint8_t> has_any(left.size());
+        Vector<uint8_t> has_any(left.size());
         task.parallel((left.size() + chunk - 1) / chunk, [&](size_t of) {
             for (size_t i = of * chunk; i < std::min(left.size(), (of + 1) * chunk); ++i)
                 has_any[i] = find_worst(surface, left[i], most).height > 0;
         }, done, done);
-        std::vector<uint32_t> still;
+        Vector<uint32_t> still;
         for (size_t i = 0; i < left.size(); ++i)
             if (has_any[i])
                 still.push_back(left[i]);

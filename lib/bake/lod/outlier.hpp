@@ -12,11 +12,11 @@ namespace gtx::baking {
 /* Vertex v has the triangles around[start[v]] to around[start[v + 1] - 1], and stands for the
  * points points[first[v]] to points[first[v + 1] - 1] of what was simplified. */
 struct Simplified {
-    const std::vector<Vec3d> &positions;
-    const std::vector<Triangle> &triangles;
-    const std::vector<uint32_t> &start, &around;
-    std::vector<uint32_t> first;
-    std::vector<Vec3d> points;
+    const Vector<Vec3d> &positions;
+    const Vector<Triangle> &triangles;
+    const Vector<uint32_t> &start, &around;
+    Vector<uint32_t> first;
+    Vector<Vec3d> points;
 };
 
 /* Draws the surface out to where no point is farther outside than `most`, as far as `move` lets it,

@@ -34,10 +34,10 @@ private:
     Vec3d row_[2];
     double shift_[2] = {};
     int w_ = 0, h_ = 0;
-    std::vector<uint8_t> clear_; /* texels to the nearest one without a normal; 0: has none */
+    Vector<uint8_t> clear_;      /* texels to the nearest one without a normal; 0: has none */
 };
 
-std::vector<PatchRegion> patch_regions(const Maps &maps, Task &task);
+Vector<PatchRegion> patch_regions(const Maps &maps, Task &task);
 
 /* Twice the area, positive when the corners go round as the patch sees them. */
 inline double winding(const std::array<double, 2> (&c)[3])
@@ -75,20 +75,20 @@ private:
 
 /* Splits those triangles of `source` that reach so far across a cut that their patch cannot show
  * them. Its triangles are numbered as those of the mesh, `cuts` and `regions` as the patches. */
-void split_at_cuts(const Partition &partition, const Maps &maps, const std::vector<ChartCuts> &cuts,
-                   const std::vector<PatchRegion> &regions, LodSource &source, Task &task);
+void split_at_cuts(const Partition &partition, const Maps &maps, const Vector<ChartCuts> &cuts,
+                   const Vector<PatchRegion> &regions, LodSource &source, Task &task);
 
 constexpr uint32_t NO_PATCH = 0xffffffffu, NO_VERTEX = 0xffffffffu;
 
 /* The same surface with the vertices inside patches thinned out, at an error of at most `most`;
  * `error` gets what it came to. */
 LodSource thin(const LodSource &source, const Maps &maps,
-               const std::vector<PatchRegion> &regions, double most, double &error, Task &task);
+               const Vector<PatchRegion> &regions, double most, double &error, Task &task);
 
 /* Takes vertices away, cheapest first. */
 class Simplifier {
 public:
-    Simplifier(const LodSource &source, const std::vector<PatchRegion> &regions, Task &task);
+    Simplifier(const LodSource &source, const Vector<PatchRegion> &regions, Task &task);
     ~Simplifier();
 
     /* Goes on until `wanted` triangles are left, and on from there while that costs no more than an
@@ -104,11 +104,11 @@ public:
     void settle();
 
     /* Takes triangles away, a value each. */
-    void drop(const std::vector<uint8_t> &dropped);
+    void drop(const Vector<uint8_t> &dropped);
 
-    const std::vector<Vec3d> &positions() const;
-    const std::vector<std::array<uint32_t, 3>> &triangles() const;
-    const std::vector<uint32_t> &patch() const;
+    const Vector<Vec3d> &positions() const;
+    const Vector<std::array<uint32_t, 3>> &triangles() const;
+    const Vector<uint32_t> &patch() const;
     /* The greatest at a vertex, so far, when they settled: root of the mean square of the distances
      * to the planes that it stands for. About 99.7 of 100 points of the source are nearer than
      * that, the farthest two to three times as far. */
@@ -120,10 +120,10 @@ private:
 };
 
 /* Of triangles that cross patches: in which patch each is looked up. */
-std::vector<uint32_t> find_far_homes(const Simplifier &simplified, const Maps &maps,
-                                     const std::vector<PatchRegion> &regions, Task &task);
+Vector<uint32_t> find_far_homes(const Simplifier &simplified, const Maps &maps,
+                                const Vector<PatchRegion> &regions, Task &task);
 
 /* Which triangles are of connected parts no longer than `most`; none where all are. */
-std::vector<uint8_t> find_specks(const Simplifier &simplified, double most);
+Vector<uint8_t> find_specks(const Simplifier &simplified, double most);
 
 } // namespace gtx::baking

@@ -7,7 +7,7 @@ namespace gtx::baking {
  * half, +8 % at double. */
 constexpr double BORDER = 10;
 
-static Vec3d area_of(const std::vector<Vec3d> &positions, const Triangle &t)
+static Vec3d area_of(const Vector<Vec3d> &positions, const Triangle &t)
 {
     const Vec3d a = positions[t[0]];
     return cross(positions[t[1]] - a, positions[t[2]] - a);
@@ -15,7 +15,7 @@ static Vec3d area_of(const std::vector<Vec3d> &positions, const Triangle &t)
 
 /* Planes that stand on the edges of a vertex that only one triangle has, of those from `first` to
  * `end`. A vertex of very many stays anyway. */
-static void add_borders(const std::vector<Vec3d> &positions, const std::vector<Triangle> &triangles,
+static void add_borders(const Vector<Vec3d> &positions, const Vector<Triangle> &triangles,
                         const uint32_t *first, const uint32_t *end, uint32_t vertex, Quadric &q)
 {
     for (const uint32_t *at = first; at < end && end - first <= MAX_FAN; ++at) {
@@ -34,12 +34,12 @@ static void add_borders(const std::vector<Vec3d> &positions, const std::vector<T
     }
 }
 
-std::vector<Quadric> vertex_quadrics(const std::vector<Vec3d> &positions,
-                                     const std::vector<Triangle> &triangles,
-                                     const std::vector<uint32_t> &start,
-                                     const std::vector<uint32_t> &around, Task &task)
+Vector<Quadric> vertex_quadrics(const Vector<Vec3d> &positions,
+                                const Vector<Triangle> &triangles,
+                                const Vector<uint32_t> &start,
+                                const Vector<uint32_t> &around, Task &task)
 {
-    std::vector<Quadric> quadrics(positions.size());
+    Vector<Quadric> quadrics(positions.size());
     const size_t chunk = 4096, chunks = (positions.size() + chunk - 1) / chunk;
     task.parallel(chunks, [&](size_t n) {
         for (size_t v = n * chunk; v < std::min(positions.size(), (n + 1) * chunk); ++v) {

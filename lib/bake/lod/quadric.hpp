@@ -51,9 +51,9 @@ struct Quadric {
 
 /* Of each vertex the planes of its triangles, by their area; at open borders also planes that stand
  * on the edge. Vertex v has the triangles around[start[v]] to around[start[v + 1] - 1]. */
-std::vector<Quadric> vertex_quadrics(const std::vector<Vec3d> &positions,
-                                     const std::vector<Triangle> &triangles,
-                                     const std::vector<uint32_t> &start,
-                                     const std::vector<uint32_t> &around, Task &task);
+Vector<Quadric> vertex_quadrics(const Vector<Vec3d> &positions,
+                                const Vector<Triangle> &triangles,
+                                const Vector<uint32_t> &start,
+                                const Vector<uint32_t> &around, Task &task);
 
 } // namespace gtx::baking

@@ -12,7 +12,7 @@ constexpr unsigned MAX_REACH = 3;
 
 /* Chessboard distances to the nearest texel with a zero, from values that are 0 or 255; beyond the
  * image is 0 where `bounded` (Rosenfeld and Pfaltz 1966: two passes). */
-static void spread(std::vector<uint8_t> &distance, int w, int h, bool bounded)
+static void spread(Vector<uint8_t> &distance, int w, int h, bool bounded)
 {
     const int outside = bounded ? 0 : 255;
     auto at = [&](int x, int y) {

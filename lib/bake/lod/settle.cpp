@@ -32,9 +32,9 @@ void Simplifier::State::move(uint32_t vertex, Vec3d way)
 }
 
 /* Sorts the points by the vertex that stands for them: `first` of each, and the end. */
-void Simplifier::State::find_members(std::vector<uint32_t> &first, std::vector<Vec3d> &members)
+void Simplifier::State::find_members(Vector<uint32_t> &first, Vector<Vec3d> &members)
 {
-    std::vector<uint32_t> vertex(points.size(), NO_VERTEX);
+    Vector<uint32_t> vertex(points.size(), NO_VERTEX);
     for (uint32_t v = 0; v < point.size(); ++v)
         vertex[point[v]] = v;
     first.assign(positions.size() + 1, 0);
@@ -51,7 +51,7 @@ void Simplifier::State::find_members(std::vector<uint32_t> &first, std::vector<V
     for (size_t v = 0; v < positions.size(); ++v)
         first[v + 1] += first[v];
     members.resize(first.back());
-    std::vector<uint32_t> next(first.begin(), first.end() - 1);
+    Vector<uint32_t> next(first.begin(), first.end() - 1);
     for (uint32_t p = 0; p < points.size(); ++p)
         if (vertex[p] != NO_VERTEX)
             members[next[vertex[p]]++] = points[p];

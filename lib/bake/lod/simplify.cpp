@@ -14,7 +14,7 @@ namespace gtx::baking {
  * error +5 % at double. */
 constexpr double FEW = 0.02;
 
-Simplifier::State::State(const LodSource &source, const std::vector<PatchRegion> &regions,
+Simplifier::State::State(const LodSource &source, const Vector<PatchRegion> &regions,
                          Task &task)
     : regions(regions), task(task), positions(source.positions), triangles(source.triangles),
       patch(source.patch), points(positions), point(positions.size()),
@@ -33,7 +33,7 @@ void Simplifier::State::find_around()
     for (size_t v = 0; v < positions.size(); ++v)
         start[v + 1] += start[v];
     around.resize(3 * triangles.size());
-    std::vector<uint32_t> next(start.begin(), start.end() - 1);
+    Vector<uint32_t> next(start.begin(), start.end() - 1);
     for (size_t t = 0; t < triangles.size(); ++t)
         for (uint32_t v : triangles[t])
             around[next[v]++] = uint32_t(t);
@@ -63,7 +63,7 @@ size_t Simplifier::State::collapse(const Fan &fan, uint32_t from, uint32_t to)
 void Simplifier::State::compact()
 {
     size_t count = 0;
-    std::vector<uint32_t> renamed(positions.size(), NO_VERTEX);
+    Vector<uint32_t> renamed(positions.size(), NO_VERTEX);
     for (size_t t = 0; t < triangles.size(); ++t) {
         if (triangles[t][0] == NO_VERTEX)
             continue;
@@ -116,7 +116,7 @@ size_t Simplifier::State::round(size_t wanted, double free, double most)
     return taken;
 }
 
-Simplifier::Simplifier(const LodSource &source, const std::vector<PatchRegion> &regions,
+Simplifier::Simplifier(const LodSource &source, const Vector<PatchRegion> &regions,
                        Task &task)
 {
     state_ = std::make_unique<State>(source, regions, task);
@@ -153,7 +153,7 @@ void Simplifier::settle()
     state_->settle();
 }
 
-void Simplifier::drop(const std::vector<uint8_t> &dropped)
+void Simplifier::drop(const Vector<uint8_t> &dropped)
 {
     size_t left = 0;
     for (size_t t = 0; t < dropped.size(); ++t) {
@@ -166,17 +166,17 @@ void Simplifier::drop(const std::vector<uint8_t> &dropped)
     state_->patch.resize(left);
 }
 
-const std::vector<Vec3d> &Simplifier::positions() const
+const Vector<Vec3d> &Simplifier::positions() const
 {
     return state_->positions;
 }
 
-const std::vector<Triangle> &Simplifier::triangles() const
+const Vector<Triangle> &Simplifier::triangles() const
 {
     return state_->triangles;
 }
 
-const std::vector<uint32_t> &Simplifier::patch() const
+const Vector<uint32_t> &Simplifier::patch() const
 {
     return state_->patch;
 }

@@ -25,28 +25,28 @@ inline bool is_cheaper(const Candidate &a, const Candidate &b)
 }
 
 struct Simplifier::State {
-    const std::vector<PatchRegion> &regions;
+    const Vector<PatchRegion> &regions;
     Task &task;
-    std::vector<Vec3d> positions;
-    std::vector<Triangle> triangles;
-    std::vector<uint32_t> patch;
-    std::vector<Quadric> quadrics;
-    std::vector<Vec3d> settled;  /* where the vertices go on from for the next level */
-    const std::vector<Vec3d> points; /* vertices at the start */
-    std::vector<uint32_t> point;     /* of each vertex, the one that it was */
-    std::vector<uint32_t> merged;    /* of each point, what it went into; itself: it is left */
-    std::vector<uint32_t> start, around; /* triangles of each vertex */
-    std::vector<uint8_t> touched;
+    Vector<Vec3d> positions;
+    Vector<Triangle> triangles;
+    Vector<uint32_t> patch;
+    Vector<Quadric> quadrics;
+    Vector<Vec3d> settled;       /* where the vertices go on from for the next level */
+    const Vector<Vec3d> points;      /* vertices at the start */
+    Vector<uint32_t> point;          /* of each vertex, the one that it was */
+    Vector<uint32_t> merged;         /* of each point, what it went into; itself: it is left */
+    Vector<uint32_t> start, around;      /* triangles of each vertex */
+    Vector<uint8_t> touched;
     /* What each vertex costs at least, as far as is known: NAN where it has to be found out,
      * infinite where it must stay unless something changes around it. */
-    std::vector<float> costs;
-    std::vector<Candidate> candidates;
+    Vector<float> costs;
+    Vector<Candidate> candidates;
     size_t first_count;          /* triangles at the start */
     double share = ROUND_SHARE;  /* of the candidates that a round takes */
     bool crossing = false;       /* triangles may leave their patches */
     double error = 0;            /* squared */
 
-    State(const LodSource &source, const std::vector<PatchRegion> &regions, Task &task);
+    State(const LodSource &source, const Vector<PatchRegion> &regions, Task &task);
     void find_around();
     bool find_fan(uint32_t vertex, Fan &fan) const
     {
@@ -65,7 +65,7 @@ struct Simplifier::State {
     size_t round(size_t wanted, double free, double most);
     void move(uint32_t vertex, Vec3d way);
     void settle();
-    void find_members(std::vector<uint32_t> &first, std::vector<Vec3d> &members);
+    void find_members(Vector<uint32_t> &first, Vector<Vec3d> &members);
 };
 
 } // namespace gtx::baking

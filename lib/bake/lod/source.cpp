@@ -9,11 +9,11 @@ namespace gtx {
 using namespace baking;
 
 /* The patch of each triangle of the mesh. */
-static std::vector<uint32_t> patches_of(const Partition &partition, const Maps &maps,
-                                        const std::vector<ChartCuts> &cuts,
-                                        const LodSource &source, Task &task)
+static Vector<uint32_t> patches_of(const Partition &partition, const Maps &maps,
+                                   const Vector<ChartCuts> &cuts,
+                                   const LodSource &source, Task &task)
 {
-    std::vector<std::vector<double>> outside(cuts.size()); /* of the triangles of a chart */
+    Vector<Vector<double>> outside(cuts.size());           /* of the triangles of a chart */
     task.parallel(cuts.size(), [&](size_t p) {
         if (!cuts[p].any())
             return;
@@ -21,10 +21,10 @@ static std::vector<uint32_t> patches_of(const Partition &partition, const Maps &
             outside[p].push_back(cuts[p].outside(cuts[p].place(source.centre(t))));
     }, 0, 0);
 
-    std::vector<uint32_t> patch(source.triangles.size(), NO_PATCH);
-    std::vector<double> least(source.triangles.size(), INFINITY);
+    Vector<uint32_t> patch(source.triangles.size(), NO_PATCH);
+    Vector<double> least(source.triangles.size(), INFINITY);
     for (size_t p = 0; p < cuts.size(); ++p) {
-        const std::vector<uint32_t> &triangles = partition.charts[maps.charts[p]].triangles;
+        const Vector<uint32_t> &triangles = partition.charts[maps.charts[p]].triangles;
         for (size_t i = 0; i < triangles.size(); ++i) {
             const uint32_t t = triangles[i];
             if (cuts[p].any() && outside[p][i] >= least[t])
@@ -47,10 +47,10 @@ static bool shown(const PatchRegion &region, const LodSource &source, size_t tri
     return held;
 }
 
-static void drop_hidden(const std::vector<PatchRegion> &regions, LodSource &source, Task &task)
+static void drop_hidden(const Vector<PatchRegion> &regions, LodSource &source, Task &task)
 {
     const size_t count = source.triangles.size(), chunk = 4096;
-    std::vector<uint8_t> kept(count, 0);
+    Vector<uint8_t> kept(count, 0);
     task.parallel((count + chunk - 1) / chunk, [&](size_t n) {
         for (size_t t = n * chunk; t < std::min(count, (n + 1) * chunk); ++t)
             kept[t] = source.patch[t] != NO_PATCH && shown(regions[source.patch[t]], source, t);
@@ -88,11 +88,11 @@ LodSource lod_source(const Mesh &mesh, const Partition &partition, const Maps &m
     task.begin("lod");
     const Vec3d anchor(maps.anchor[0], maps.anchor[1], maps.anchor[2]);
     LodSource source = joined(mesh, anchor);
-    std::vector<ChartCuts> cuts;
+    Vector<ChartCuts> cuts;
     for (uint32_t chart : maps.charts)
         cuts.emplace_back(partition.charts[chart], anchor);
     source.patch = patches_of(partition, maps, cuts, source, task);
-    const std::vector<PatchRegion> regions = patch_regions(maps, task);
+    const Vector<PatchRegion> regions = patch_regions(maps, task);
     split_at_cuts(partition, maps, cuts, regions, source, task);
     drop_hidden(regions, source, task);
     return source;
@@ -101,9 +101,9 @@ LodSource lod_source(const Mesh &mesh, const Partition &partition, const Maps &m
 LodSource lod_source(const Maps &maps, Task &task)
 {
     task.begin("lod");
-    const std::vector<MapField> fields = map_fields(maps, task);
-    const std::vector<std::vector<uint32_t>> others = touching(fields);
-    std::vector<FieldPiece> pieces(fields.size());
+    const Vector<MapField> fields = map_fields(maps, task);
+    const Vector<Vector<uint32_t>> others = touching(fields);
+    Vector<FieldPiece> pieces(fields.size());
     task.parallel(fields.size(), [&](size_t p) {
         pieces[p] = cut_field(fields, uint32_t(p), others[p]);
     }, 0, 0.3);

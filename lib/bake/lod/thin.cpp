@@ -7,7 +7,7 @@
 
 namespace gtx::baking {
 
-using Triangles = std::vector<std::array<uint32_t, 3>>;
+using Triangles = Vector<std::array<uint32_t, 3>>;
 
 /* Steeper triangles are left alone: it takes little for them to turn away from their patch. Spot's
  * control mesh: a few bytes at half, 0.5 % fewer triangles at double. */
@@ -18,26 +18,26 @@ constexpr int ATTEMPTS = 4;
 
 /* Triangles of a patch: those to be thinned, with vertices of their own, and others. */
 struct Piece {
-    std::vector<uint32_t> vertices; /* of the source, as they come */
-    std::vector<unsigned> indices;
+    Vector<uint32_t> vertices;      /* of the source, as they come */
+    Vector<unsigned> indices;
     Triangles kept;                 /* as they are, of the source's vertices */
 };
 
-static std::vector<Piece> make_pieces(const LodSource &source, const Maps &maps)
+static Vector<Piece> make_pieces(const LodSource &source, const Maps &maps)
 {
     const size_t patches = maps.patches.size();
-    std::vector<Piece> pieces(patches);
-    std::vector<uint32_t> start(patches + 1, 0), order(source.triangles.size());
+    Vector<Piece> pieces(patches);
+    Vector<uint32_t> start(patches + 1, 0), order(source.triangles.size());
     for (uint32_t p : source.patch)
         ++start[p + 1];
     for (size_t p = 0; p < patches; ++p)
         start[p + 1] += start[p];
-    std::vector<uint32_t> next(start.begin(), start.end() - 1);
+    Vector<uint32_t> next(start.begin(), start.end() - 1);
     for (size_t t = 0; t < source.triangles.size(); ++t)
         order[next[source.patch[t]]++] = uint32_t(t);
 
     /* Where a vertex is in the piece that had it last. */
-    std::vector<unsigned> place(source.positions.size(), 0);
+    Vector<unsigned> place(source.positions.size(), 0);
     for (size_t p = 0; p < patches; ++p) {
         Piece &piece = pieces[p];
         const float *z = maps.patches[p].axis_z;
@@ -63,9 +63,9 @@ static std::vector<Piece> make_pieces(const LodSource &source, const Maps &maps)
 }
 
 /* From the first vertex on, so that floats are fine enough. */
-static std::vector<float> positions_of(const LodSource &source, const Piece &piece)
+static Vector<float> positions_of(const LodSource &source, const Piece &piece)
 {
-    std::vector<float> positions;
+    Vector<float> positions;
     positions.reserve(3 * piece.vertices.size());
     for (uint32_t v : piece.vertices) {
         const Vec3d from = source.positions[v] - source.positions[piece.vertices[0]];
@@ -75,10 +75,10 @@ static std::vector<float> positions_of(const LodSource &source, const Piece &pie
 }
 
 /* The triangles left at an error of at most `most`, which becomes what it came to. */
-static std::vector<unsigned> simplify(const Piece &piece, const std::vector<float> &positions,
-                                      double &most)
+static Vector<unsigned> simplify(const Piece &piece, const Vector<float> &positions,
+                                 double &most)
 {
-    std::vector<unsigned> left(piece.indices.size());
+    Vector<unsigned> left(piece.indices.size());
     const size_t vertices = piece.vertices.size(), stride = 3 * sizeof(float);
     const float scale = meshopt_simplifyScale(positions.data(), vertices, stride);
     float came_to = 0; /* as a share of the scale, like what is asked for */
@@ -90,7 +90,7 @@ static std::vector<unsigned> simplify(const Piece &piece, const std::vector<floa
     return left;
 }
 
-static void keep(const Piece &piece, const std::vector<unsigned> &indices, Triangles &out)
+static void keep(const Piece &piece, const Vector<unsigned> &indices, Triangles &out)
 {
     for (size_t i = 0; i < indices.size(); i += 3)
         out.push_back({piece.vertices[indices[i]], piece.vertices[indices[i + 1]],
@@ -100,9 +100,9 @@ static void keep(const Piece &piece, const std::vector<unsigned> &indices, Trian
 /* Simplifying looks at triangles in space alone. Where some have turned away from the patch, all
  * around their corners is kept as it was. False when there is nothing of that. */
 static bool keep_turned(const LodSource &source, const PatchRegion &region,
-                        const std::vector<unsigned> &left, Piece &piece)
+                        const Vector<unsigned> &left, Piece &piece)
 {
-    std::vector<uint8_t> stays(piece.vertices.size(), 0);
+    Vector<uint8_t> stays(piece.vertices.size(), 0);
     bool any = false;
     for (size_t i = 0; i < left.size(); i += 3) {
         std::array<double, 2> corner[3];
@@ -114,10 +114,10 @@ static bool keep_turned(const LodSource &source, const PatchRegion &region,
         for (int k = 0; k < 3; ++k)
             stays[left[i + k]] = 1;
     }
-    std::vector<unsigned> kept, rest;
+    Vector<unsigned> kept, rest;
     for (size_t i = 0; any && i < piece.indices.size(); i += 3) {
         const unsigned *t = &piece.indices[i];
-        std::vector<unsigned> &to = stays[t[0]] || stays[t[1]] || stays[t[2]] ? kept : rest;
+        Vector<unsigned> &to = stays[t[0]] || stays[t[1]] || stays[t[2]] ? kept : rest;
         to.insert(to.end(), t, t + 3);
     }
     if (any) {
@@ -130,8 +130,8 @@ static bool keep_turned(const LodSource &source, const PatchRegion &region,
 static Triangles thin_piece(const LodSource &source, const PatchRegion &region, Piece piece,
                             double most, double &error)
 {
-    std::vector<unsigned> left;
-    const std::vector<float> positions = positions_of(source, piece);
+    Vector<unsigned> left;
+    const Vector<float> positions = positions_of(source, piece);
     for (int n = 0; n < ATTEMPTS && !piece.indices.empty(); ++n) {
         error = most;
         left = simplify(piece, positions, error);
@@ -146,12 +146,12 @@ static Triangles thin_piece(const LodSource &source, const PatchRegion &region, 
 }
 
 LodSource thin(const LodSource &source, const Maps &maps,
-               const std::vector<PatchRegion> &regions, double most, double &error, Task &task)
+               const Vector<PatchRegion> &regions, double most, double &error, Task &task)
 {
     const size_t patches = regions.size();
-    std::vector<Piece> pieces = make_pieces(source, maps);
-    std::vector<Triangles> left(patches);
-    std::vector<double> errors(patches, 0);
+    Vector<Piece> pieces = make_pieces(source, maps);
+    Vector<Triangles> left(patches);
+    Vector<double> errors(patches, 0);
     task.parallel(patches, [&](size_t p) {
         left[p] = thin_piece(source, regions[p], std::move(pieces[p]), most, errors[p]);
     }, 0, 0.3);
@@ -159,7 +159,7 @@ LodSource thin(const LodSource &source, const Maps &maps,
 
     constexpr uint32_t UNUSED = 0xffffffffu;
     LodSource out;
-    std::vector<uint32_t> name(source.positions.size(), UNUSED);
+    Vector<uint32_t> name(source.positions.size(), UNUSED);
     for (size_t p = 0; p < patches; ++p) {
         for (std::array<uint32_t, 3> t : left[p]) {
             for (uint32_t &v : t) {

@@ -15,7 +15,7 @@ constexpr double MAX_STEPS = 64;
 /* What closes a gap may fold in its turn. A limit: the same after two rounds and after six. */
 constexpr int ROUNDS = 3;
 
-static double widest(const std::vector<MapField> &fields)
+static double widest(const Vector<MapField> &fields)
 {
     double most = 0;
     for (const MapField &field : fields)
@@ -23,8 +23,8 @@ static double widest(const std::vector<MapField> &fields)
     return most;
 }
 
-Welder::Welder(const std::vector<MapField> &fields, std::vector<FieldPiece> pieces,
-               const std::vector<std::vector<uint32_t>> &others)
+Welder::Welder(const Vector<MapField> &fields, Vector<FieldPiece> pieces,
+               const Vector<Vector<uint32_t>> &others)
     : fields_(fields), others_(others), places_(NEAR * widest(fields))
 {
     for (uint32_t p = 0; p < pieces.size(); ++p) {
@@ -78,7 +78,7 @@ void Welder::join_vertices()
     for (uint32_t v = 0; v < count; ++v)
         if (at_border_[v] && find_common(v) == NO_VERTEX)
             places_.add(source.positions[v], v);
-    std::vector<uint32_t> name(count);
+    Vector<uint32_t> name(count);
     for (uint32_t v = 0; v < count; ++v)
         name[v] = at_border_[v] ? find_common(v) : v;
     for (Triangle &t : source.triangles)
@@ -89,13 +89,13 @@ void Welder::join_vertices()
 
 void Welder::drop_collapsed()
 {
-    std::vector<uint8_t> collapsed;
+    Vector<uint8_t> collapsed;
     for (const Triangle &v : source.triangles)
         collapsed.push_back(v[0] == v[1] || v[1] == v[2] || v[2] == v[0]);
     drop(collapsed);
 }
 
-void Welder::drop(const std::vector<uint8_t> &dropped)
+void Welder::drop(const Vector<uint8_t> &dropped)
 {
     size_t left = 0;
     for (size_t t = 0; t < dropped.size(); ++t) {
@@ -109,9 +109,9 @@ void Welder::drop(const std::vector<uint8_t> &dropped)
 }
 
 /* Edges with a triangle on one side alone, and that triangle. */
-std::vector<OpenEdge> Welder::open_edges() const
+Vector<OpenEdge> Welder::open_edges() const
 {
-    std::vector<OpenEdge> edges;
+    Vector<OpenEdge> edges;
     for (uint32_t t = 0; t < source.triangles.size(); ++t) {
         const Triangle &v = source.triangles[t];
         for (int k = 0; k < 3; ++k)
@@ -123,7 +123,7 @@ std::vector<OpenEdge> Welder::open_edges() const
         const auto at = std::lower_bound(edges.begin(), edges.end(), std::make_pair(e, 0u));
         return at != edges.end() && at->first == e;
     };
-    std::vector<OpenEdge> open;
+    Vector<OpenEdge> open;
     for (const auto &edge : edges)
         if (!has({edge.first[1], edge.first[0]}))
             open.push_back(edge);
@@ -132,19 +132,19 @@ std::vector<OpenEdge> Welder::open_edges() const
 
 /* The common vertices that an open edge passes by, in its order; none that are its neighbours on
  * both sides (`beside`: those that a vertex shares an open edge with). */
-std::vector<uint32_t> Welder::stops_on(const OpenEdge &open, const Places &ends,
-                                       const std::vector<std::vector<uint32_t>> &beside) const
+Vector<uint32_t> Welder::stops_on(const OpenEdge &open, const Places &ends,
+                                  const Vector<Vector<uint32_t>> &beside) const
 {
     const auto [a, b] = open.first;
     const Vec3d from = source.positions[a], way = source.positions[b] - from;
     const double size = std::min(reach(a), reach(b)), far = length(way);
     const int steps = int(std::min(far / ends.size(), MAX_STEPS)) + 1;
-    std::vector<uint32_t> near;
+    Vector<uint32_t> near;
     for (int s = 0; s <= steps; ++s)
         ends.around(from + way * (double(s) / steps), [&](uint32_t v) { near.push_back(v); });
     std::sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());
-    std::vector<std::pair<double, uint32_t>> stops;
+    Vector<std::pair<double, uint32_t>> stops;
     for (uint32_t v : near) {
         auto is_beside = [&](uint32_t end) {
             return std::find(beside[end].begin(), beside[end].end(), v) != beside[end].end();
@@ -158,14 +158,14 @@ std::vector<uint32_t> Welder::stops_on(const OpenEdge &open, const Places &ends,
             stops.push_back({at, v});
     }
     std::sort(stops.begin(), stops.end());
-    std::vector<uint32_t> out;
+    Vector<uint32_t> out;
     for (const auto &stop : stops)
         out.push_back(stop.second);
     return out;
 }
 
 /* Leads an edge through the stops: its triangle becomes a fan. */
-void Welder::divide(const OpenEdge &open, std::vector<uint32_t> stops)
+void Welder::divide(const OpenEdge &open, Vector<uint32_t> stops)
 {
     const Triangle whole = source.triangles[open.second];
     const uint32_t patch = source.patch[open.second];
@@ -181,21 +181,21 @@ void Welder::divide(const OpenEdge &open, std::vector<uint32_t> stops)
 /* Where one piece has a vertex the other has it too, so that their borders are the same edges. */
 void Welder::split_edges()
 {
-    const std::vector<OpenEdge> open = open_edges();
+    const Vector<OpenEdge> open = open_edges();
     Places ends(places_.size());
-    std::vector<std::vector<uint32_t>> beside(source.positions.size());
+    Vector<Vector<uint32_t>> beside(source.positions.size());
     for (const auto &[edge, t] : open)
         for (int k = 0; k < 2; ++k) {
             if (beside[edge[k]].empty())
                 ends.add(source.positions[edge[k]], edge[k]);
             beside[edge[k]].push_back(edge[1 - k]);
         }
-    std::vector<uint8_t> divided(source.triangles.size(), 0);
+    Vector<uint8_t> divided(source.triangles.size(), 0);
     for (const OpenEdge &edge : open) {
         const uint32_t t = edge.second;
         if (divided[t])
             continue;
-        const std::vector<uint32_t> stops = stops_on(edge, ends, beside);
+        const Vector<uint32_t> stops = stops_on(edge, ends, beside);
         if (stops.empty())
             continue;
         divided[t] = 1;
@@ -203,8 +203,8 @@ void Welder::split_edges()
     }
 }
 
-LodSource weld(const std::vector<MapField> &fields, std::vector<FieldPiece> pieces,
-               const std::vector<std::vector<uint32_t>> &others)
+LodSource weld(const Vector<MapField> &fields, Vector<FieldPiece> pieces,
+               const Vector<Vector<uint32_t>> &others)
 {
     Welder welder(fields, std::move(pieces), others);
     welder.join_vertices();

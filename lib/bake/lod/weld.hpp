@@ -43,14 +43,14 @@ private:
         return {cell(at.x) + x, cell(at.y) + y, cell(at.z) + z};
     }
     double size_;
-    std::unordered_map<Key, std::vector<uint32_t>, Hash> cells_;
+    std::unordered_map<Key, Vector<uint32_t>, Hash> cells_;
 };
 
 /* All pieces as one, and their common border vertices. */
 class Welder {
 public:
-    Welder(const std::vector<MapField> &fields, std::vector<FieldPiece> pieces,
-           const std::vector<std::vector<uint32_t>> &others);
+    Welder(const Vector<MapField> &fields, Vector<FieldPiece> pieces,
+           const Vector<Vector<uint32_t>> &others);
 
     void join_vertices();
     void split_edges();
@@ -64,24 +64,24 @@ private:
     bool facing(uint32_t a, uint32_t b) const;
     uint32_t find_common(uint32_t vertex) const;
     void drop_collapsed();
-    void drop(const std::vector<uint8_t> &dropped);
-    std::vector<uint32_t> stops_on(const OpenEdge &open, const Places &ends,
-                                   const std::vector<std::vector<uint32_t>> &beside) const;
-    void divide(const OpenEdge &open, std::vector<uint32_t> stops);
-    std::vector<OpenEdge> open_edges() const;
+    void drop(const Vector<uint8_t> &dropped);
+    Vector<uint32_t> stops_on(const OpenEdge &open, const Places &ends,
+                              const Vector<Vector<uint32_t>> &beside) const;
+    void divide(const OpenEdge &open, Vector<uint32_t> stops);
+    Vector<OpenEdge> open_edges() const;
     bool goes_on(const OpenEdge &open) const;
-    bool is_gap(const std::vector<OpenEdge> &edges) const;
-    void close(const std::vector<OpenEdge> &edges);
-    void close_around_middle(const std::vector<uint32_t> &ring,
-                             const std::vector<uint32_t> &patch);
+    bool is_gap(const Vector<OpenEdge> &edges) const;
+    void close(const Vector<OpenEdge> &edges);
+    void close_around_middle(const Vector<uint32_t> &ring,
+                             const Vector<uint32_t> &patch);
     void add(const Triangle &t, uint32_t patch);
     static uint64_t pair_of(uint32_t from, uint32_t to) { return uint64_t(from) << 32 | to; }
 
-    const std::vector<MapField> &fields_;
-    const std::vector<std::vector<uint32_t>> &others_;
-    std::vector<Vec3d> normals_;
-    std::vector<uint32_t> piece_;   /* of a vertex: the first that had it */
-    std::vector<uint8_t> at_border_;
+    const Vector<MapField> &fields_;
+    const Vector<Vector<uint32_t>> &others_;
+    Vector<Vec3d> normals_;
+    Vector<uint32_t> piece_;        /* of a vertex: the first that had it */
+    Vector<uint8_t> at_border_;
     Places places_;                 /* of the common vertices */
     std::unordered_set<uint64_t> used_; /* edges of triangles, while gaps are closed */
 };

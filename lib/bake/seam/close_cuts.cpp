@@ -43,13 +43,13 @@ struct Clip {
 
 class Cuts {
 public:
-    Cuts(const std::vector<const HeightField *> &others, const HeightField &piece, const Clip &clip,
-         double most_code, const std::vector<uint16_t> &codes)
+    Cuts(const Vector<const HeightField *> &others, const HeightField &piece, const Clip &clip,
+         double most_code, const Vector<uint16_t> &codes)
         : others_(others), piece_(piece), clip_(clip), most_code_(most_code),
           most_(MAX_RAISED * piece.texel()), missed_(MISSED * piece.texel()), codes_(codes)
     {
     }
-    std::vector<uint16_t> close()
+    Vector<uint16_t> close()
     {
         for (int axis = 0; axis < 2; ++axis) {
             close_line(axis, int(std::ceil(std::max(clip_.low[axis], 0.))) - 1, 1);
@@ -63,11 +63,11 @@ private:
     double missing(int axis, int line, double along) const;
     void raise(size_t texel, double by);
 
-    const std::vector<const HeightField *> &others_;
+    const Vector<const HeightField *> &others_;
     const HeightField &piece_;
     const Clip clip_;
     const double most_code_, most_, missed_;
-    std::vector<uint16_t> codes_;
+    Vector<uint16_t> codes_;
 };
 
 void Cuts::raise(size_t texel, double by)
@@ -119,9 +119,9 @@ void Cuts::close_line(int axis, int line, int inward)
 }
 
 /* The others of the same axis that its sphere meets. */
-std::vector<const HeightField *> find_others(const HeightFields &fields, const HeightField &piece)
+Vector<const HeightField *> find_others(const HeightFields &fields, const HeightField &piece)
 {
-    std::vector<const HeightField *> others;
+    Vector<const HeightField *> others;
     for (const HeightField *other : fields.around(piece))
         if (other->axis[2] == piece.axis[2])
             others.push_back(other);
@@ -130,14 +130,14 @@ std::vector<const HeightField *> find_others(const HeightFields &fields, const H
 
 } // namespace
 
-void close_cuts(const Partition &partition, const std::vector<uint32_t> &charts,
-                const Vec3d &anchor, unsigned height_bits, std::vector<PatchMaps> &patches,
+void close_cuts(const Partition &partition, const Vector<uint32_t> &charts,
+                const Vec3d &anchor, unsigned height_bits, Vector<PatchMaps> &patches,
                 Task &task)
 {
     const HeightFields pieces(patches, height_bits);
-    std::vector<std::vector<const HeightField *>> others(patches.size());
+    Vector<Vector<const HeightField *>> others(patches.size());
     task.parallel(patches.size(), [&](size_t i) { others[i] = find_others(pieces, pieces[i]); });
-    std::vector<std::vector<uint16_t>> closed(patches.size());
+    Vector<Vector<uint16_t>> closed(patches.size());
     for (int round = 0; round < ROUNDS; ++round) {
         task.parallel(patches.size(), [&](size_t i) {
             if (!others[i].empty())

@@ -29,7 +29,7 @@ namespace {
 /* Gathers uncovered triangles that lie together into charts. */
 class Gatherer {
 public:
-    Gatherer(const Job &job, const Partition &partition, const std::vector<Uncovered> &uncovered)
+    Gatherer(const Job &job, const Partition &partition, const Vector<Uncovered> &uncovered)
         : job_(job), partition_(partition), uncovered_(uncovered), taken_(uncovered.size(), 0)
     {
     }
@@ -56,8 +56,8 @@ private:
 
     const Job &job_;
     const Partition &partition_;
-    const std::vector<Uncovered> &uncovered_;
-    std::vector<uint8_t> taken_;
+    const Vector<Uncovered> &uncovered_;
+    Vector<uint8_t> taken_;
 };
 
 Chart Gatherer::gather(size_t first, double &area)
@@ -68,7 +68,7 @@ Chart Gatherer::gather(size_t first, double &area)
     };
     const uint32_t seed = uncovered_[first].triangle;
     const Vec3d axis = normalize(job_.mesh.area_vector(seed));
-    std::vector<Reached> queue = {{seed, centre(seed)}};
+    Vector<Reached> queue = {{seed, centre(seed)}};
     std::unordered_set<uint32_t> seen = {seed};
     Chart chart;
     Vec3d sum;
@@ -107,12 +107,12 @@ Chart Gatherer::gather(size_t first, double &area)
 }
 
 /* The largest ones, in the order in which they are found. */
-std::vector<Chart> gather_charts(const Job &job, const Partition &partition,
-                                 const std::vector<Uncovered> &uncovered)
+Vector<Chart> gather_charts(const Job &job, const Partition &partition,
+                            const Vector<Uncovered> &uncovered)
 {
     Gatherer gatherer(job, partition, uncovered);
-    std::vector<Chart> charts;
-    std::vector<std::pair<double, size_t>> size; /* largest first */
+    Vector<Chart> charts;
+    Vector<std::pair<double, size_t>> size;      /* largest first */
     for (size_t i = 0; i < uncovered.size(); ++i) {
         double area;
         if (gatherer.taken(i))
@@ -126,20 +126,20 @@ std::vector<Chart> gather_charts(const Job &job, const Partition &partition,
     std::sort(size.begin(), size.end());
     size.resize(std::min(size.size(), 1 + partition.charts.size() / ONE_TO));
     std::sort(size.begin(), size.end(), [](auto &a, auto &b) { return a.second < b.second; });
-    std::vector<Chart> out;
+    Vector<Chart> out;
     for (const auto &[area, i] : size)
         out.push_back(std::move(charts[i]));
     return out;
 }
 
 /* Lowers the trim of the corners of cells, not into the patch's own chart. */
-void relax_trims(const std::vector<RelaxedTrim> &cells, std::vector<PatchMaps> &patches)
+void relax_trims(const Vector<RelaxedTrim> &cells, Vector<PatchMaps> &patches)
 {
     constexpr int MIN_CODE = GTX_TRIM_OUTLINE + 1;
-    std::vector<std::vector<uint8_t>> before(patches.size());
+    Vector<Vector<uint8_t>> before(patches.size());
     for (const RelaxedTrim &relaxed : cells) {
         PatchMaps &maps = patches[relaxed.patch];
-        std::vector<uint8_t> &old = before[relaxed.patch];
+        Vector<uint8_t> &old = before[relaxed.patch];
         if (old.empty())
             old = maps.trim;
         const size_t w = maps.record.rect[2], cell = relaxed.cell;
@@ -155,8 +155,8 @@ void relax_trims(const std::vector<RelaxedTrim> &cells, std::vector<PatchMaps> &
 
 } // namespace
 
-std::vector<Chart> cover_uncovered(const Job &job, const Partition &partition,
-                                   std::vector<PatchMaps> &patches, Task &task)
+Vector<Chart> cover_uncovered(const Job &job, const Partition &partition,
+                              Vector<PatchMaps> &patches, Task &task)
 {
     const Gaps gaps = find_gaps(job, partition, patches, task);
     relax_trims(gaps.relaxed, patches);

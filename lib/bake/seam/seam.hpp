@@ -8,17 +8,17 @@ namespace gtx::baking {
 
 /* Relaxes the trim of patches, those of `partition` in their order, that hide what no other shows;
  * returns charts of the surface that none of them has. */
-std::vector<Chart> cover_uncovered(const Job &job, const Partition &partition,
-                                   std::vector<PatchMaps> &patches, Task &task);
+Vector<Chart> cover_uncovered(const Job &job, const Partition &partition,
+                              Vector<PatchMaps> &patches, Task &task);
 
 /* Moves heights around outlines until height fields that meet lie on each other; all patches have
  * codes. They are to be measured again then. */
-void stitch(unsigned height_bits, std::vector<PatchMaps> &patches, Task &task);
+void stitch(unsigned height_bits, Vector<PatchMaps> &patches, Task &task);
 
 /* Raises texels beyond straight cuts until the height fields on both sides cross; likewise.
  * `charts` is that of each patch. */
-void close_cuts(const Partition &partition, const std::vector<uint32_t> &charts,
-                const Vec3d &anchor, unsigned height_bits, std::vector<PatchMaps> &patches,
+void close_cuts(const Partition &partition, const Vector<uint32_t> &charts,
+                const Vec3d &anchor, unsigned height_bits, Vector<PatchMaps> &patches,
                 Task &task);
 
 } // namespace gtx::baking

@@ -57,7 +57,7 @@ Mobilities mobilities(double at_outline)
 /* How far the texels of every height field have moved along its axis, object units. */
 class Moves {
 public:
-    Moves(const HeightFields &fields, std::vector<PatchMaps> &patches, unsigned height_bits,
+    Moves(const HeightFields &fields, Vector<PatchMaps> &patches, unsigned height_bits,
           double texel, Task &task)
         : fields_(fields), patches_(patches), top_(gtx_height_steps(height_bits) + 1),
           texel_(texel), texels_(patches.size()), equations_(patches.size())
@@ -69,8 +69,8 @@ public:
         });
     }
     /* `open` are those of the ties that are. */
-    void solve(const std::vector<std::vector<const Tie *>> &open,
-               std::vector<std::vector<Tie>> &ties, double readiness, Task &task);
+    void solve(const Vector<Vector<const Tie *>> &open,
+               Vector<Vector<Tie>> &ties, double readiness, Task &task);
     /* Rounds a height field to codes. */
     void apply(size_t field);
 
@@ -103,10 +103,10 @@ private:
     void project(const Equation &equation, const Mobilities &mobility) const;
 
     const HeightFields &fields_;
-    std::vector<PatchMaps> &patches_;
+    Vector<PatchMaps> &patches_;
     const double top_, texel_; /* the largest code; a texel of the model, object units */
-    std::vector<std::vector<Texel>> texels_;
-    std::vector<std::vector<Equation>> equations_; /* of this pass, by the height fields that end */
+    Vector<Vector<Texel>> texels_;
+    Vector<Vector<Equation>> equations_;           /* of this pass, by the height fields that end */
 };
 
 Moves::Equation Moves::equation_of(const Tie &tie, const Mobilities &mobility)
@@ -122,11 +122,11 @@ Moves::Equation Moves::equation_of(const Tie &tie, const Mobilities &mobility)
 }
 
 /* Ties that are closed, and stay so whatever the open ones do, are no part of it. */
-void Moves::solve(const std::vector<std::vector<const Tie *>> &open,
-                  std::vector<std::vector<Tie>> &ties, double readiness, Task &task)
+void Moves::solve(const Vector<Vector<const Tie *>> &open,
+                  Vector<Vector<Tie>> &ties, double readiness, Task &task)
 {
     const Mobilities mobility = mobilities(readiness);
-    for (const std::vector<const Tie *> &some : open)
+    for (const Vector<const Tie *> &some : open)
         for (const Tie *tie : some)
             for (size_t n = 0; n < 8; ++n)
                 texel(*tie, n).at_open = true;
@@ -141,7 +141,7 @@ void Moves::solve(const std::vector<std::vector<const Tie *>> &open,
         }
     });
     for (int round = 0; round < ROUNDS; ++round)
-        for (const std::vector<Equation> &some : equations_)
+        for (const Vector<Equation> &some : equations_)
             for (const Equation &equation : some)
                 project(equation, mobility);
 }
@@ -185,7 +185,7 @@ void Moves::apply(size_t field)
 }
 
 /* Of the box around them. */
-double diagonal_of(const std::vector<PatchMaps> &patches)
+double diagonal_of(const Vector<PatchMaps> &patches)
 {
     Vec3d low = patches[0].low, high = patches[0].high;
     for (const PatchMaps &patch : patches)
@@ -199,7 +199,7 @@ double diagonal_of(const std::vector<PatchMaps> &patches)
 /* The middle one of all height fields': patches differ by what their relief needs. */
 double middle_texel(const HeightFields &fields)
 {
-    std::vector<double> texels;
+    Vector<double> texels;
     for (size_t i = 0; i < fields.size(); ++i)
         texels.push_back(fields[i].texel());
     const auto middle = texels.begin() + ptrdiff_t(texels.size() / 2);
@@ -209,19 +209,19 @@ double middle_texel(const HeightFields &fields)
 
 } // namespace
 
-void stitch(unsigned height_bits, std::vector<PatchMaps> &patches, Task &task)
+void stitch(unsigned height_bits, Vector<PatchMaps> &patches, Task &task)
 {
     const HeightFields fields(patches, height_bits);
     const double texel = middle_texel(fields);
     const TieLimits limits = {MAX_APART * texel,
                               SLACK * (gtx_height_steps(height_bits) / gtx_height_steps(8))};
-    std::vector<std::vector<const HeightField *>> others(fields.size());
-    std::vector<std::vector<Tie>> ties(fields.size());
+    Vector<Vector<const HeightField *>> others(fields.size());
+    Vector<Vector<Tie>> ties(fields.size());
     task.parallel(fields.size(), [&](size_t i) {
         others[i] = fields.around(fields[i]);
         ties[i] = sample_outline(fields[i]);
     });
-    std::vector<std::vector<const Tie *>> open(fields.size());
+    Vector<Vector<const Tie *>> open(fields.size());
     Moves moves(fields, patches, height_bits, std::min(texel, COARSE * diagonal_of(patches)),
                 task);
     for (const double readiness : PASSES) {

@@ -50,7 +50,7 @@ static bool measure(Tie &tie)
 }
 
 /* The end of a tie on the nearest height field; none where all are too far. */
-static void find_end(const std::vector<const HeightField *> &others, const TieLimits &limits,
+static void find_end(const Vector<const HeightField *> &others, const TieLimits &limits,
                      Tie &tie)
 {
     const HeightField &own = *tie.end[0].field;
@@ -67,9 +67,9 @@ static void find_end(const std::vector<const HeightField *> &others, const TieLi
     tie = found;
 }
 
-std::vector<Tie> sample_outline(const HeightField &own)
+Vector<Tie> sample_outline(const HeightField &own)
 {
-    std::vector<Tie> ties;
+    Vector<Tie> ties;
     for (int j = 0; j + 1 < own.h; ++j) {
         for (int i = 0; i + 1 < own.w; ++i) {
             double from[2], to[2];
@@ -91,22 +91,22 @@ std::vector<Tie> sample_outline(const HeightField &own)
 }
 
 /* Those whose maps reach to the part of an outline between two ties. */
-static std::vector<const HeightField *> reaching(const std::vector<const HeightField *> &others,
-                                                 const Tie &first, const Tie &last)
+static Vector<const HeightField *> reaching(const Vector<const HeightField *> &others,
+                                            const Tie &first, const Tie &last)
 {
     const HeightField &own = *first.end[0].field;
     const Vec3d from = own.point(first.end[0].place), to = own.point(last.end[0].place);
-    std::vector<const HeightField *> out;
+    Vector<const HeightField *> out;
     std::copy_if(others.begin(), others.end(), std::back_inserter(out),
                  [&](const HeightField *other) { return other->reaches(from, to); });
     return out;
 }
 
-std::vector<const Tie *> update_ties(const std::vector<const HeightField *> &others,
-                                     const TieLimits &limits, std::vector<Tie> &ties)
+Vector<const Tie *> update_ties(const Vector<const HeightField *> &others,
+                                const TieLimits &limits, Vector<Tie> &ties)
 {
-    std::vector<const Tie *> open;
-    std::vector<Tie *> loose;
+    Vector<const Tie *> open;
+    Vector<Tie *> loose;
     for (auto from = ties.begin(), to = from; from != ties.end(); from = to) {
         loose.clear();
         for (; to != ties.end() && to->end[0].place.cell == from->end[0].place.cell; ++to)
@@ -114,7 +114,7 @@ std::vector<const Tie *> update_ties(const std::vector<const HeightField *> &oth
                 loose.push_back(&*to);
         if (loose.empty())
             continue;
-        const std::vector<const HeightField *> near = reaching(others, *from, *(to - 1));
+        const Vector<const HeightField *> near = reaching(others, *from, *(to - 1));
         for (Tie *tie : loose) {
             find_end(near, limits, *tie);
             if (tie->is_open())

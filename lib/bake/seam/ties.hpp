@@ -27,11 +27,11 @@ struct TieLimits {
 };
 
 /* Points along the outline of a height field, tied to nothing yet. */
-std::vector<Tie> sample_outline(const HeightField &own);
+Vector<Tie> sample_outline(const HeightField &own);
 
 /* Ties what is tied to nothing, or to what it does not lie on; measures the others that moved.
  * Returns those that are open. */
-std::vector<const Tie *> update_ties(const std::vector<const HeightField *> &others,
-                                     const TieLimits &limits, std::vector<Tie> &ties);
+Vector<const Tie *> update_ties(const Vector<const HeightField *> &others,
+                                const TieLimits &limits, Vector<Tie> &ties);
 
 } // namespace gtx::baking

@@ -42,7 +42,7 @@ struct Sample {
 
 class Search {
 public:
-    Search(const Job &job, const Partition &partition, const std::vector<PatchMaps> &patches)
+    Search(const Job &job, const Partition &partition, const Vector<PatchMaps> &patches)
         : job_(job), partition_(partition), fields_(patches, job.options.height_bits)
     {
     }
@@ -51,7 +51,7 @@ public:
 
 private:
     double uncovered_share(size_t field, uint32_t triangle,
-                           std::vector<RelaxedTrim> &relaxed) const;
+                           Vector<RelaxedTrim> &relaxed) const;
     bool shown_by(const HeightField &field, const Sample &at, double max_above) const;
     bool shown_by_any(const Sample &at, double min_facing) const;
     std::optional<RelaxedTrim> find_hidden(const Sample &at) const;
@@ -117,7 +117,7 @@ bool in_core(const Chart &chart, const Vec3d &point)
 
 /* How much of a triangle no height field shows, 0..1, once trims are `relaxed`. */
 double Search::uncovered_share(size_t field, uint32_t triangle,
-                               std::vector<RelaxedTrim> &relaxed) const
+                               Vector<RelaxedTrim> &relaxed) const
 {
     const Mesh &mesh = job_.mesh;
     const HeightField &own = fields_[field];
@@ -153,7 +153,7 @@ double Search::uncovered_share(size_t field, uint32_t triangle,
 
 Gaps Search::run(Task &task) const
 {
-    std::vector<Gaps> of_field(fields_.size());
+    Vector<Gaps> of_field(fields_.size());
     task.parallel(fields_.size(), [&](size_t s) {
         for (uint32_t t : partition_.charts[fields_.patch(s)].triangles) {
             const double share = uncovered_share(s, t, of_field[s].relaxed);
@@ -180,7 +180,7 @@ Gaps Search::run(Task &task) const
 
 } // namespace
 
-Gaps find_gaps(const Job &job, const Partition &partition, const std::vector<PatchMaps> &patches,
+Gaps find_gaps(const Job &job, const Partition &partition, const Vector<PatchMaps> &patches,
                Task &task)
 {
     return Search(job, partition, patches).run(task);

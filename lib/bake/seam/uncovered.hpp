@@ -20,10 +20,10 @@ struct RelaxedTrim {
 /* Triangles in ascending order, and the cells that show what would be among them but for their
  * trim. */
 struct Gaps {
-    std::vector<Uncovered> uncovered;
-    std::vector<RelaxedTrim> relaxed;
+    Vector<Uncovered> uncovered;
+    Vector<RelaxedTrim> relaxed;
 };
-Gaps find_gaps(const Job &job, const Partition &partition, const std::vector<PatchMaps> &patches,
+Gaps find_gaps(const Job &job, const Partition &partition, const Vector<PatchMaps> &patches,
                Task &task);
 
 } // namespace gtx::baking

@@ -50,8 +50,8 @@ float merge_cost(const Sum &a, const Sum &b)
 
 /* Clusters and who touches whom, as rounds rebuild them. */
 struct Clusters {
-    std::vector<Sum> sums;
-    std::vector<uint32_t> first, touching; /* those of c: touching[first[c]] to first[c + 1] */
+    Vector<Sum> sums;
+    Vector<uint32_t> first, touching;      /* those of c: touching[first[c]] to first[c + 1] */
 
     size_t size() const { return sums.size(); }
 };
@@ -80,9 +80,9 @@ uint32_t tie_break_hash(uint32_t a, uint32_t b)
 }
 
 /* The cheapest partner of each cluster, NO_TRIANGLE where no merge is allowed. */
-std::vector<uint32_t> cheapest_partners(const Clusters &clusters, Task &task)
+Vector<uint32_t> cheapest_partners(const Clusters &clusters, Task &task)
 {
-    std::vector<uint32_t> best(clusters.size(), NO_TRIANGLE);
+    Vector<uint32_t> best(clusters.size(), NO_TRIANGLE);
     task.parallel((clusters.size() + CHUNK - 1) / CHUNK, [&](size_t chunk) {
         size_t end = std::min(clusters.size(), (chunk + 1) * CHUNK);
         for (size_t c = chunk * CHUNK; c < end; ++c) {
@@ -105,9 +105,9 @@ std::vector<uint32_t> cheapest_partners(const Clusters &clusters, Task &task)
 
 /* Who merges with whom: every two that are each other's cheapest, and where costs rise along a
  * line, so that these are few, whoever is still free. */
-std::vector<uint32_t> match(const std::vector<uint32_t> &best)
+Vector<uint32_t> match(const Vector<uint32_t> &best)
 {
-    std::vector<uint32_t> partner(best.size(), NO_TRIANGLE);
+    Vector<uint32_t> partner(best.size(), NO_TRIANGLE);
     size_t matched = 0;
     for (uint32_t c = 0; c < best.size(); ++c)
         if (best[c] != NO_TRIANGLE && best[best[c]] == c) {
@@ -124,9 +124,9 @@ std::vector<uint32_t> match(const std::vector<uint32_t> &best)
 }
 
 /* Merges matched pairs. Returns the new cluster of each old one. */
-std::vector<uint32_t> merge_pairs(Clusters &clusters, const std::vector<uint32_t> &partner)
+Vector<uint32_t> merge_pairs(Clusters &clusters, const Vector<uint32_t> &partner)
 {
-    std::vector<uint32_t> renamed(clusters.size()), members;
+    Vector<uint32_t> renamed(clusters.size()), members;
     Clusters out;
     for (uint32_t c = 0; c < clusters.size(); ++c) {
         if (partner[c] < c) {
@@ -136,7 +136,7 @@ std::vector<uint32_t> merge_pairs(Clusters &clusters, const std::vector<uint32_t
         renamed[c] = uint32_t(members.size());
         members.push_back(c);
     }
-    std::vector<uint32_t> listed(members.size(), NO_TRIANGLE); /* by which cluster, last */
+    Vector<uint32_t> listed(members.size(), NO_TRIANGLE);      /* by which cluster, last */
     out.sums.reserve(members.size());
     out.touching.reserve(clusters.touching.size());
     for (uint32_t c = 0; c < members.size(); ++c) {
@@ -182,7 +182,7 @@ class MergeQueue {
 public:
     explicit MergeQueue(Clusters &clusters);
     /* Returns the new cluster of each old one. */
-    std::vector<uint32_t> run();
+    Vector<uint32_t> run();
 
 private:
     uint32_t root(uint32_t c)
@@ -198,9 +198,9 @@ private:
     void merge(uint32_t a, uint32_t b);
 
     Clusters &clusters_;
-    std::vector<uint32_t> parent_, age_;
-    std::vector<std::vector<uint32_t>> touching_;
-    std::vector<Offer> best_;
+    Vector<uint32_t> parent_, age_;
+    Vector<Vector<uint32_t>> touching_;
+    Vector<Offer> best_;
     std::priority_queue<Offer> queue_;
 };
 
@@ -245,7 +245,7 @@ void MergeQueue::merge(uint32_t a, uint32_t b)
     parent_[b] = a;
     ++age_[a];
     clusters_.sums[a] = clusters_.sums[a] + clusters_.sums[b];
-    std::vector<uint32_t> &all = touching_[a];
+    Vector<uint32_t> &all = touching_[a];
     all.insert(all.end(), touching_[b].begin(), touching_[b].end());
     touching_[b] = {};
     for (uint32_t &c : all)
@@ -261,7 +261,7 @@ void MergeQueue::merge(uint32_t a, uint32_t b)
     }
 }
 
-std::vector<uint32_t> MergeQueue::run()
+Vector<uint32_t> MergeQueue::run()
 {
     const auto count = uint32_t(clusters_.size());
     for (uint32_t c = 0; c < count; ++c)
@@ -276,7 +276,7 @@ std::vector<uint32_t> MergeQueue::run()
                  best.age_a == o.age_a && best.age_b == o.age_b)
             look(o.owner);
     }
-    std::vector<uint32_t> renamed(count);
+    Vector<uint32_t> renamed(count);
     uint32_t kept = 0;
     for (uint32_t c = 0; c < count; ++c) {
         if (root(c) == c) {
@@ -292,11 +292,11 @@ std::vector<uint32_t> MergeQueue::run()
 
 } // namespace
 
-std::vector<uint32_t> agglomerate(const Surface &surface, uint32_t &count, Task &task)
+Vector<uint32_t> agglomerate(const Surface &surface, uint32_t &count, Task &task)
 {
     Clusters clusters = single_triangles(surface);
-    std::vector<uint32_t> labels = surface.whole.triangles;
-    auto rename = [&labels](const std::vector<uint32_t> &renamed) {
+    Vector<uint32_t> labels = surface.whole.triangles;
+    auto rename = [&labels](const Vector<uint32_t> &renamed) {
         for (uint32_t &label : labels)
             label = renamed[label];
     };

@@ -7,6 +7,6 @@ namespace gtx {
 
 /* Partitions the surface into as few connected clusters as their cones of normals allow. Returns a
  * label a triangle and their number in `count`. Deterministic for any thread count. */
-std::vector<uint32_t> agglomerate(const Surface &surface, uint32_t &count, Task &task);
+Vector<uint32_t> agglomerate(const Surface &surface, uint32_t &count, Task &task);
 
 } // namespace gtx

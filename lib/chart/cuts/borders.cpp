@@ -17,9 +17,9 @@ constexpr int STRAIGHT_REFITS = 3;
 constexpr float STRAIGHTNESS = 0.3f;
 
 /* The triangles with a neighbour of another label. */
-std::vector<uint32_t> border_of(const Surface &surface, const std::vector<uint32_t> &labels)
+Vector<uint32_t> border_of(const Surface &surface, const Vector<uint32_t> &labels)
 {
-    std::vector<uint32_t> border;
+    Vector<uint32_t> border;
     for (uint32_t t = 0; t < labels.size(); ++t) {
         const auto &around = surface.whole.neighbours[t];
         if (std::any_of(around.begin(), around.end(), [&](uint32_t n) {
@@ -32,17 +32,17 @@ std::vector<uint32_t> border_of(const Surface &surface, const std::vector<uint32
 
 } // namespace
 
-void move_borders(const Surface &surface, size_t count, std::vector<uint32_t> &labels, Task &task)
+void move_borders(const Surface &surface, size_t count, Vector<uint32_t> &labels, Task &task)
 {
     const auto &neighbours = surface.whole.neighbours;
     for (int refit = 0; refit < REFITS; ++refit) {
-        std::vector<Vec3d> sums(count);
+        Vector<Vec3d> sums(count);
         for (size_t t = 0; t < labels.size(); ++t)
             sums[labels[t]] += Vec3d(surface.facets[t].normal) * double(surface.facets[t].size);
-        std::vector<Vec3f> proxies(count);
+        Vector<Vec3f> proxies(count);
         for (size_t c = 0; c < count; ++c)
             proxies[c] = Vec3f(normalize(sums[c]));
-        std::vector<uint32_t> border = border_of(surface, labels);
+        Vector<uint32_t> border = border_of(surface, labels);
         const float straightness = refit < REFITS - STRAIGHT_REFITS ? 0 : STRAIGHTNESS;
         auto liking = [&](uint32_t t, uint32_t label) {
             int alike = 0;
@@ -51,7 +51,7 @@ void move_borders(const Surface &surface, size_t count, std::vector<uint32_t> &l
             return dot(surface.facets[t].normal, proxies[label]) + straightness * float(alike);
         };
         for (int sweep = 0; sweep < SWEEPS; ++sweep) {
-            std::vector<uint32_t> moved;
+            Vector<uint32_t> moved;
             for (uint32_t t : border) {
                 uint32_t best = labels[t];
                 float most = liking(t, best);
@@ -75,13 +75,13 @@ void move_borders(const Surface &surface, size_t count, std::vector<uint32_t> &l
     }
 }
 
-void absorb_islands(const Surface &surface, size_t count, std::vector<uint32_t> &labels)
+void absorb_islands(const Surface &surface, size_t count, Vector<uint32_t> &labels)
 {
-    std::vector<uint32_t> piece = labels;
+    Vector<uint32_t> piece = labels;
     uint32_t pieces = connected_pieces(surface.whole, piece);
-    std::vector<double> size(pieces);
-    std::vector<uint32_t> of(pieces), main(count, NO_TRIANGLE);
-    std::vector<std::vector<uint32_t>> across(pieces); /* labels, an entry an edge */
+    Vector<double> size(pieces);
+    Vector<uint32_t> of(pieces), main(count, NO_TRIANGLE);
+    Vector<Vector<uint32_t>> across(pieces);           /* labels, an entry an edge */
     for (uint32_t t = 0; t < labels.size(); ++t) {
         size[piece[t]] += double(surface.facets[t].size);
         of[piece[t]] = labels[t];

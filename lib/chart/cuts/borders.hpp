@@ -7,10 +7,10 @@ namespace gtx {
 
 /* Lets triangles change to the neighbouring cluster whose mean normal is nearest to theirs. Spikes
  * that noise leaves along the borders would cost texels in every patch there: they go last. */
-void move_borders(const Surface &surface, size_t count, std::vector<uint32_t> &labels, Task &task);
+void move_borders(const Surface &surface, size_t count, Vector<uint32_t> &labels, Task &task);
 
 /* Gives each piece of a cluster but the largest to the neighbour with which it shares most
  * edges. */
-void absorb_islands(const Surface &surface, size_t count, std::vector<uint32_t> &labels);
+void absorb_islands(const Surface &surface, size_t count, Vector<uint32_t> &labels);
 
 } // namespace gtx

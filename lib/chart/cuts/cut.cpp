@@ -45,11 +45,11 @@ public:
     {
     }
 
-    std::vector<Chart> build(const Region &region)
+    Vector<Chart> build(const Region &region)
     {
         FrameInverse inverse(frame_);
         pieces_.reserve(region.size());
-        std::vector<uint32_t> all(region.size());
+        Vector<uint32_t> all(region.size());
         std::iota(all.begin(), all.end(), 0u);
         for (uint32_t t : region.triangles) {
             Piece piece = {t};
@@ -69,8 +69,8 @@ public:
     }
 
 private:
-    void descend(const CutNode &node, std::vector<uint32_t> pieces);
-    void make_patch(const CutNode &node, const std::vector<uint32_t> &pieces);
+    void descend(const CutNode &node, Vector<uint32_t> pieces);
+    void make_patch(const CutNode &node, const Vector<uint32_t> &pieces);
     bool is_own(const CutNode &node, const Piece &piece) const;
     void lay_frame(const CutNode &node, Chart &chart) const;
     unsigned fitted_cells(const CutNode &node, int axis) const;
@@ -81,17 +81,17 @@ private:
     const CutPlan &plan_;
     const double pitch_;
     const CutTree &tree_;
-    std::vector<Piece> pieces_;
-    std::vector<Chart> out_;
+    Vector<Piece> pieces_;
+    Vector<Chart> out_;
 };
 
-void PatchBuilder::descend(const CutNode &node, std::vector<uint32_t> pieces)
+void PatchBuilder::descend(const CutNode &node, Vector<uint32_t> pieces)
 {
     if (!node.divided) {
         make_patch(node, pieces);
         return;
     }
-    std::vector<uint32_t> inside[2];
+    Vector<uint32_t> inside[2];
     for (int side = 0; side < 2; ++side) {
         const Rect &half = tree_.nodes[size_t(node.child[side])].region;
         for (uint32_t index : pieces) {
@@ -138,7 +138,7 @@ unsigned PatchBuilder::fitted_cells(const CutNode &node, int axis) const
 void PatchBuilder::lay_frame(const CutNode &node, Chart &chart) const
 {
     const Relief &relief = tree_.relief;
-    std::vector<Vec3d> points;
+    Vector<Vec3d> points;
     for (int j = node.tight.low[1]; j < node.tight.high[1]; ++j)
         for (int i = node.tight.low[0]; i < node.tight.high[0]; ++i) {
             double height = double(relief.height[relief.at(i, j)]);
@@ -170,7 +170,7 @@ void PatchBuilder::clip(const CutNode &node, Chart &chart) const
     }
 }
 
-void PatchBuilder::make_patch(const CutNode &node, const std::vector<uint32_t> &pieces)
+void PatchBuilder::make_patch(const CutNode &node, const Vector<uint32_t> &pieces)
 {
     Chart chart;
     for (uint32_t index : pieces) {
@@ -194,18 +194,18 @@ void set_cells(const CutNode &node, Chart &chart)
 /* Turns the frames of charts that will be cut so that their patches fill their rectangles best:
  * the least rectangle around a large chart says little about its parts. Coarse trees suffice to
  * tell. */
-void turn_frames(const Surface &surface, const std::vector<Region> &regions, const CutPlan &plan,
-                 double share, std::vector<Frame> &frames, Task &task)
+void turn_frames(const Surface &surface, const Vector<Region> &regions, const CutPlan &plan,
+                 double share, Vector<Frame> &frames, Task &task)
 {
     auto radians = [](size_t turn) { return M_PI / 2 * double(turn) / TURNS; };
-    std::vector<CutTree> trees(regions.size() * TURNS);
+    Vector<CutTree> trees(regions.size() * TURNS);
     for_each_region(regions, task, [&](size_t i) {
         Relief relief = make_relief(surface, regions[i], frames[i], plan.pitch);
         for (size_t turn = 0; turn < TURNS; ++turn)
             trees[i * TURNS + turn] =
                 grow_cut_tree(turn_relief(relief, radians(turn), COARSE), plan, share);
     }, 0.2, 0.4);
-    std::vector<size_t> best = choose_turns(trees, TURNS, plan.patches);
+    Vector<size_t> best = choose_turns(trees, TURNS, plan.patches);
     for_each_region(regions, task, [&](size_t i) {
         if (trees[i * TURNS + best[i]].nodes[0].divided)
             frames[i] = turned_frame(surface.mesh, regions[i].triangles, frames[i],
@@ -215,12 +215,12 @@ void turn_frames(const Surface &surface, const std::vector<Region> &regions, con
 
 } // namespace
 
-std::vector<Chart> cut_charts(const Surface &surface, std::vector<Region> regions,
-                              std::vector<Frame> frames, const CutPlan &plan, Task &task)
+Vector<Chart> cut_charts(const Surface &surface, Vector<Region> regions,
+                         Vector<Frame> frames, const CutPlan &plan, Task &task)
 {
     double share = surface.area / (plan.pitch * plan.pitch) / double(plan.patches);
     turn_frames(surface, regions, plan, share, frames, task);
-    std::vector<CutTree> trees(regions.size());
+    Vector<CutTree> trees(regions.size());
     for_each_region(regions, task, [&](size_t i) {
         trees[i] = grow_cut_tree(make_relief(surface, regions[i], frames[i], plan.pitch), plan,
                                  share);
@@ -231,7 +231,7 @@ std::vector<Chart> cut_charts(const Surface &surface, std::vector<Region> region
     if (!plan.one_density)
         spread_texels(trees, plan);
 
-    std::vector<std::vector<Chart>> cut(regions.size());
+    Vector<Vector<Chart>> cut(regions.size());
     for_each_region(regions, task, [&](size_t i) {
         if (trees[i].nodes[0].divided) {
             cut[i] = PatchBuilder(surface, frames[i], plan, trees[i]).build(regions[i]);
@@ -244,8 +244,8 @@ std::vector<Chart> cut_charts(const Surface &surface, std::vector<Region> region
         }
         trees[i] = {};
     }, 0.8, 1);
-    std::vector<Chart> out;
-    for (std::vector<Chart> &charts : cut)
+    Vector<Chart> out;
+    for (Vector<Chart> &charts : cut)
         for (Chart &chart : charts) {
             std::sort(chart.triangles.begin(), chart.triangles.end());
             out.push_back(std::move(chart));

@@ -18,7 +18,7 @@ struct CutPlan {
 
 /* Cuts the charts of `regions` and `frames`, which fold nowhere. Deterministic for any thread
  * count. */
-std::vector<Chart> cut_charts(const Surface &surface, std::vector<Region> regions,
-                              std::vector<Frame> frames, const CutPlan &plan, Task &task);
+Vector<Chart> cut_charts(const Surface &surface, Vector<Region> regions,
+                         Vector<Frame> frames, const CutPlan &plan, Task &task);
 
 } // namespace gtx

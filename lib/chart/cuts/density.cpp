@@ -112,15 +112,15 @@ void weigh_bends(CutTree &tree)
     }
 }
 
-void spread_texels(std::vector<CutTree> &trees, const CutPlan &plan)
+void spread_texels(Vector<CutTree> &trees, const CutPlan &plan)
 {
     constexpr double FINEST = 1e6; /* of a bisection that ends at a double's digits */
     constexpr int STEPS = 60;
     const double longest = plan.side - 2 * plan.overlap[1];
-    std::vector<CutNode *> leaves;
+    Vector<CutNode *> leaves;
     double texels = 0;
     for (CutTree &tree : trees) {
-        std::vector<size_t> open(1, 0);
+        Vector<size_t> open(1, 0);
         for (size_t next = 0; next < open.size(); ++next) {
             CutNode &node = tree.nodes[open[next]];
             if (node.divided) {

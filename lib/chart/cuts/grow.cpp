@@ -58,24 +58,24 @@ public:
     {
     }
 
-    std::vector<CutNode> grow()
+    Vector<CutNode> grow()
     {
         CutNode root;
         root.region = root.tight = {{0, 0}, {relief_.size[0], relief_.size[1]}};
-        std::vector<CutNode> nodes = {root};
+        Vector<CutNode> nodes = {root};
         for (size_t n = 0; n < nodes.size(); ++n)
             grow_node(n, nodes);
         return nodes;
     }
 
 private:
-    void grow_node(size_t n, std::vector<CutNode> &nodes);
-    std::vector<Lines> parts(const Rect &box, int axis, const std::vector<int> &across) const;
+    void grow_node(size_t n, Vector<CutNode> &nodes);
+    Vector<Lines> parts(const Rect &box, int axis, const Vector<int> &across) const;
     template <class Visit>
     void sweep(const Lines &lines, int axis, const Rect &region, const Cuts &cuts, Visit visit);
     double best_half(const Lines &along, const Lines &across, int axis, const Half &half);
     Cut look_ahead(const CutNode &node, const Rect &box, const Lines lines[2],
-                   const std::vector<Cut> &sorted);
+                   const Vector<Cut> &sorted);
     double texels(const Rect &box, const Cuts &cuts, double &patches) const;
     double area(const Slice &s, const Rect &region, const Cuts &cuts, double &patches) const;
     double relief(const Slice &s) const;
@@ -89,7 +89,7 @@ private:
     const CutPlan &plan_;
     double smallest_, price_, ahead_;
     int least_;
-    std::vector<Slice> above_; /* of the sweep at hand */
+    Vector<Slice> above_;      /* of the sweep at hand */
 };
 
 /* Texels of a box, in as many patches as the longest side allows. */
@@ -136,15 +136,15 @@ double Grower::relief(const Slice &s) const
 
 /* The columns (axis 0) or rows of a box, in parts that end at the coordinates `across` of the other
  * axis, of which the last is where the box ends. */
-std::vector<Lines> Grower::parts(const Rect &box, int axis, const std::vector<int> &across) const
+Vector<Lines> Grower::parts(const Rect &box, int axis, const Vector<int> &across) const
 {
     const size_t count = size_t(box.side(axis));
-    std::vector<size_t> part_of; /* a coordinate of the other axis */
+    Vector<size_t> part_of;      /* a coordinate of the other axis */
     for (int at = box.low[!axis]; at < box.high[!axis]; ++at) {
         bool next = !part_of.empty() && at == across[part_of.back()];
         part_of.push_back(part_of.empty() ? 0 : part_of.back() + next);
     }
-    std::vector<Line> sums(across.size() * count);
+    Vector<Line> sums(across.size() * count);
     for (int j = box.low[1]; j < box.high[1]; ++j)
         for (int i = box.low[0]; i < box.high[0]; ++i) {
             const size_t texel = relief_.at(i, j);
@@ -157,7 +157,7 @@ std::vector<Lines> Grower::parts(const Rect &box, int axis, const std::vector<in
             if (!std::isnan(height))
                 sum.add(at, height);
         }
-    std::vector<Lines> out;
+    Vector<Lines> out;
     for (size_t part = 0; part < across.size(); ++part) {
         out.push_back({box.low[axis], {}});
         for (size_t i = 0; i < count; ++i)
@@ -171,7 +171,7 @@ std::vector<Lines> Grower::parts(const Rect &box, int axis, const std::vector<in
 template <class Visit>
 void Grower::sweep(const Lines &lines, int axis, const Rect &region, const Cuts &cuts, Visit visit)
 {
-    const std::vector<Slice> &slices = lines.slices;
+    const Vector<Slice> &slices = lines.slices;
     above_.assign(slices.size() + 1, {});
     for (size_t i = slices.size(); i-- > 0;) {
         above_[i] = above_[i + 1];
@@ -216,9 +216,9 @@ double Grower::best_half(const Lines &along, const Lines &across, int axis, cons
 /* The best of the first few cuts that are not beside each other, each with the best cut that may
  * follow on its two sides. */
 Cut Grower::look_ahead(const CutNode &node, const Rect &box, const Lines lines[2],
-                       const std::vector<Cut> &sorted)
+                       const Vector<Cut> &sorted)
 {
-    std::vector<Cut> tried;
+    Vector<Cut> tried;
     for (const Cut &cut : sorted) {
         if (tried.size() == CANDIDATES)
             break;
@@ -229,7 +229,7 @@ Cut Grower::look_ahead(const CutNode &node, const Rect &box, const Lines lines[2
     }
     Cut best;
     for (int axis = 0; axis < 2; ++axis) {
-        std::vector<int> across;
+        Vector<int> across;
         for (const Cut &cut : tried)
             if (cut.axis == axis)
                 across.push_back(cut.at);
@@ -237,14 +237,14 @@ Cut Grower::look_ahead(const CutNode &node, const Rect &box, const Lines lines[2
             continue;
         std::sort(across.begin(), across.end());
         across.push_back(box.high[axis]);
-        std::vector<Lines> low = parts(box, !axis, across), high = low;
+        Vector<Lines> low = parts(box, !axis, across), high = low;
         for (size_t part = 1; part < across.size(); ++part)
             for (size_t i = 0; i < low[part].slices.size(); ++i) {
                 low[part].slices[i].add(low[part - 1].slices[i]);
                 size_t back = across.size() - 1 - part;
                 high[back].slices[i].add(high[back + 1].slices[i]);
             }
-        const std::vector<Slice> &all = lines[axis].slices;
+        const Vector<Slice> &all = lines[axis].slices;
         for (size_t part = 0; part + 1 < across.size(); ++part) {
             auto middle = all.begin() + (across[part] - lines[axis].first);
             Lines along[2] = {{lines[axis].first, {all.begin(), middle}},
@@ -261,7 +261,7 @@ Cut Grower::look_ahead(const CutNode &node, const Rect &box, const Lines lines[2
     return best;
 }
 
-void Grower::grow_node(size_t n, std::vector<CutNode> &nodes)
+void Grower::grow_node(size_t n, Vector<CutNode> &nodes)
 {
     CutNode node = nodes[n];
     Rect box;
@@ -270,7 +270,7 @@ void Grower::grow_node(size_t n, std::vector<CutNode> &nodes)
         box.high[k] = std::max(box.low[k], std::min(node.region.high[k], node.tight.high[k]));
     }
     Lines lines[2];
-    std::vector<Cut> cuts;
+    Vector<Cut> cuts;
     Slice all;
     for (int axis = 0; axis < 2; ++axis) {
         lines[axis] = std::move(parts(box, axis, {box.high[!axis]})[0]);

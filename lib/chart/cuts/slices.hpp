@@ -83,7 +83,7 @@ struct Line {
 /* Columns or rows of a part of the chart, in order. */
 struct Lines {
     int first; /* coordinate of the first */
-    std::vector<Slice> slices;
+    Vector<Slice> slices;
 };
 
 } // namespace gtx

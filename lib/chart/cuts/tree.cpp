@@ -32,8 +32,8 @@ void prune(CutTree &tree, double price)
 }
 
 /* Of each run of `turns` trees the one that costs least at a price; how many leaves they have. */
-size_t prune_all(std::vector<CutTree> &trees, size_t turns, double price,
-                 std::vector<size_t> &best)
+size_t prune_all(Vector<CutTree> &trees, size_t turns, double price,
+                 Vector<size_t> &best)
 {
     size_t leaves = 0;
     best.clear();
@@ -124,16 +124,16 @@ Relief turn_relief(const Relief &relief, double turn, int coarse)
     return out;
 }
 
-void divide_trees(std::vector<CutTree> &trees, size_t wanted)
+void divide_trees(Vector<CutTree> &trees, size_t wanted)
 {
     choose_turns(trees, 1, wanted);
 }
 
-std::vector<size_t> choose_turns(std::vector<CutTree> &trees, size_t turns, size_t wanted)
+Vector<size_t> choose_turns(Vector<CutTree> &trees, size_t turns, size_t wanted)
 {
     constexpr double HIGHEST = 1e12; /* texels: with more charts than wanted no price is enough */
     constexpr int STEPS = 40;        /* of a bisection that ends early where it can */
-    std::vector<size_t> best;
+    Vector<size_t> best;
     double low = 0, high = 1;
     if (prune_all(trees, turns, low, best) <= wanted)
         return best;

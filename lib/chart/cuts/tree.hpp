@@ -14,8 +14,8 @@ struct Relief {
     double corner[2];                 /* of texel (0, 0), in the frame's coordinates */
     int coarse = 1;                   /* its texels are as many of the model's on a side */
     int size[2];
-    std::vector<float> height;        /* at centres; NAN where none is */
-    std::vector<uint8_t> touched;     /* by any triangle */
+    Vector<float> height;             /* at centres; NAN where none is */
+    Vector<uint8_t> touched;          /* by any triangle */
 
     size_t at(int i, int j) const { return size_t(j) * size_t(size[0]) + size_t(i); }
 };
@@ -64,7 +64,7 @@ struct CutNode {
 
 struct CutTree {
     Relief relief;
-    std::vector<CutNode> nodes;       /* the root first, children after their parents */
+    Vector<CutNode> nodes;            /* the root first, children after their parents */
 };
 
 /* Grows the tree of a chart down to where its patches would be far smaller than wanted; `share` is
@@ -76,15 +76,15 @@ void weigh_bends(CutTree &tree);
 
 /* Divides nodes so that all trees together have at most `wanted` leaves, if they can, and the
  * least cost. */
-void divide_trees(std::vector<CutTree> &trees, size_t wanted);
+void divide_trees(Vector<CutTree> &trees, size_t wanted);
 
 /* Sets the density of each leaf so that, with as many texels in all, patches miss their relief by
  * the least mean square. */
-void spread_texels(std::vector<CutTree> &trees, const CutPlan &plan);
+void spread_texels(Vector<CutTree> &trees, const CutPlan &plan);
 
 /* Of each run of `turns` trees, which are of one chart, the index of the one that takes the fewest
  * texels when all charts together have at most `wanted` leaves. Of a run all but the first may have
  * no nodes. */
-std::vector<size_t> choose_turns(std::vector<CutTree> &trees, size_t turns, size_t wanted);
+Vector<size_t> choose_turns(Vector<CutTree> &trees, size_t turns, size_t wanted);
 
 } // namespace gtx

@@ -37,9 +37,9 @@ public:
     }
     void join(uint32_t a, uint32_t b) { parent_[find(b)] = find(a); }
     /* The sets' numbers, in order of their first members. */
-    std::vector<uint32_t> labels(uint32_t &count)
+    Vector<uint32_t> labels(uint32_t &count)
     {
-        std::vector<uint32_t> number(parent_.size(), NO_TRIANGLE), out;
+        Vector<uint32_t> number(parent_.size(), NO_TRIANGLE), out;
         count = 0;
         for (uint32_t i = 0; i < parent_.size(); ++i) {
             uint32_t root = find(i);
@@ -51,33 +51,33 @@ public:
     }
 
 private:
-    std::vector<uint32_t> parent_;
+    Vector<uint32_t> parent_;
 };
 
 /* Joins charts to neighbours, the smallest first. */
 class Joining {
 public:
     /* Sizes are of pieces, as are labels. */
-    Joining(const Pieces &pieces, const std::vector<double> &size,
-            const std::vector<uint32_t> &labels, size_t count);
+    Joining(const Pieces &pieces, const Vector<double> &size,
+            const Vector<uint32_t> &labels, size_t count);
     /* Those below `least`; what has no neighbour stays as it is and does not count. */
     void join_smaller(double least);
     void join_until(size_t count);
     size_t count() const { return order_.size(); }
     /* Of what `old` labels. */
-    std::vector<uint32_t> labels(std::vector<uint32_t> old, uint32_t &count);
+    Vector<uint32_t> labels(Vector<uint32_t> old, uint32_t &count);
 
 private:
     void join_smallest();
 
-    std::vector<double> size_;
-    std::vector<std::map<uint32_t, double>> borders_; /* chart: neighbour, length of border */
+    Vector<double> size_;
+    Vector<std::map<uint32_t, double>> borders_;      /* chart: neighbour, length of border */
     std::set<std::pair<double, uint32_t>> order_;     /* size, chart */
     UnionFind charts_;
 };
 
-Joining::Joining(const Pieces &pieces, const std::vector<double> &size,
-                 const std::vector<uint32_t> &labels, size_t count)
+Joining::Joining(const Pieces &pieces, const Vector<double> &size,
+                 const Vector<uint32_t> &labels, size_t count)
     : size_(count), borders_(count), charts_(count)
 {
     for (size_t i = 0; i < size.size(); ++i)
@@ -133,16 +133,16 @@ void Joining::join_smallest()
     charts_.join(target, chart);
 }
 
-std::vector<uint32_t> Joining::labels(std::vector<uint32_t> old, uint32_t &count)
+Vector<uint32_t> Joining::labels(Vector<uint32_t> old, uint32_t &count)
 {
-    std::vector<uint32_t> joined = charts_.labels(count);
+    Vector<uint32_t> joined = charts_.labels(count);
     for (uint32_t &label : old)
         label = joined[label];
     return old;
 }
 
 /* Numbers the squares, and the pieces of what is singular, in order of their first piece. */
-std::vector<uint32_t> label_cells(const Pieces &pieces, uint32_t &count)
+Vector<uint32_t> label_cells(const Pieces &pieces, uint32_t &count)
 {
     UnionFind sets(pieces.triangle.size());
     for (const Seam &seam : pieces.seams)
@@ -152,10 +152,10 @@ std::vector<uint32_t> label_cells(const Pieces &pieces, uint32_t &count)
 }
 
 /* A triangle's area, where a cell of mean length 1 has that of 1. */
-std::vector<double> cell_areas(const Surface &surface, const HalfEdges &edges,
-                               const std::vector<double> &scale)
+Vector<double> cell_areas(const Surface &surface, const HalfEdges &edges,
+                          const Vector<double> &scale)
 {
-    std::vector<double> out;
+    Vector<double> out;
     for (uint32_t t = 0; t < surface.mesh.triangle_count(); ++t) {
         double s = 0;
         for (uint32_t c = 3 * t; c < 3 * t + 3; ++c)
@@ -166,9 +166,9 @@ std::vector<double> cell_areas(const Surface &surface, const HalfEdges &edges,
 }
 
 /* The same of pieces. */
-std::vector<double> piece_areas(const Pieces &pieces, const std::vector<double> &of_triangle)
+Vector<double> piece_areas(const Pieces &pieces, const Vector<double> &of_triangle)
 {
-    std::vector<double> out;
+    Vector<double> out;
     for (size_t i = 0; i < pieces.triangle.size(); ++i) {
         double twice = 0; /* of the triangle's area, in its weights */
         const PieceCorner *first = &pieces.corners[pieces.first[i]];
@@ -203,10 +203,10 @@ CutMesh square_cells(const Surface &surface, uint32_t &count, bool adaptive, Tas
         throw Error(GTX_ERROR_LIMIT, "the partition pgp takes up to 30 million triangles");
     HalfEdges edges = make_half_edges(surface);
     CrossField field = make_cross_field(surface, edges, task);
-    std::vector<double> scale = make_scale(edges, field);
+    Vector<double> scale = make_scale(edges, field);
     if (adaptive)
         adapt_scale(surface, edges, std::sqrt(surface.area / count), scale);
-    std::vector<double> size = cell_areas(surface, edges, scale);
+    Vector<double> size = cell_areas(surface, edges, scale);
 
     const uint32_t wanted = count;
     double area = std::accumulate(size.begin(), size.end(), 0.);
@@ -215,13 +215,13 @@ CutMesh square_cells(const Surface &surface, uint32_t &count, bool adaptive, Tas
     double cell = std::sqrt(CHARTS_PER_CELL * area / wanted), nearest = INFINITY;
     Try few, many;
     Pieces best;
-    std::vector<uint32_t> label;
+    Vector<uint32_t> label;
     for (int round = 0; round < SEARCH_ROUNDS; ++round) {
         task.advance(0.1 + 0.6 * round / SEARCH_ROUNDS);
         Pieces pieces = cut_along_lines(surface.mesh, edges, field,
                                         parameterize(edges, field, scale, cell, task));
         uint32_t squares;
-        std::vector<uint32_t> cells = label_cells(pieces, squares);
+        Vector<uint32_t> cells = label_cells(pieces, squares);
         Joining joining(pieces, piece_areas(pieces, size), cells, squares);
         joining.join_smaller(MIN_CELLS * cell * cell);
         double ratio = double(std::max<size_t>(joining.count(), 1)) / wanted;

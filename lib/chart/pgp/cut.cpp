@@ -34,7 +34,7 @@ struct Corner {
     Uv uv;
     uint32_t side; /* of the seam to the next corner: twice its number, or one more */
 };
-using Polygon = std::vector<Corner>;
+using Polygon = Vector<Corner>;
 
 double next_line(double coordinate)
 {
@@ -63,7 +63,7 @@ public:
 private:
     void leave_whole();
     uint32_t owner(uint32_t half_edge) const;
-    std::vector<EdgePoint> crossings(uint32_t half_edge) const;
+    Vector<EdgePoint> crossings(uint32_t half_edge) const;
     void cut_edge(uint32_t half_edge);
     Polygon outline(uint32_t triangle) const;
     template <class Visit> void each_strip(Polygon polygon, size_t axis, Visit visit);
@@ -83,9 +83,9 @@ private:
     const HalfEdges &edges_;
     const CrossField &field_;
     const Periodic &map_;
-    std::vector<uint8_t> whole_;    /* a triangle: no line cuts it */
-    std::vector<EdgePoint> points_; /* of edges */
-    std::vector<EdgeCuts> cuts_;    /* a half-edge, where it is the one that is cut */
+    Vector<uint8_t> whole_;         /* a triangle: no line cuts it */
+    Vector<EdgePoint> points_;      /* of edges */
+    Vector<EdgeCuts> cuts_;         /* a half-edge, where it is the one that is cut */
     Pieces out_;
 };
 
@@ -130,10 +130,10 @@ uint32_t LineCutter::add_seam(uint32_t a, uint32_t b, bool line)
     return uint32_t(out_.seams.size() - 1);
 }
 
-std::vector<EdgePoint> LineCutter::crossings(uint32_t h) const
+Vector<EdgePoint> LineCutter::crossings(uint32_t h) const
 {
     const Uv &p = map_.uv[h], &q = map_.uv[next_edge(h)];
-    std::vector<EdgePoint> all, out;
+    Vector<EdgePoint> all, out;
     for (size_t axis = 0; axis < 2 && !whole_[h / 3]; ++axis) {
         auto [low, high] = std::minmax(p[axis], q[axis]);
         for (double line = next_line(low); line < high; ++line) {
@@ -160,7 +160,7 @@ void LineCutter::cut_edge(uint32_t h)
 {
     uint32_t o = edges_.opposite[h];
     uint32_t start = start_of(mesh_, h), end = start_of(mesh_, next_edge(h));
-    std::vector<EdgePoint> points = crossings(h);
+    Vector<EdgePoint> points = crossings(h);
     bool apart = o != NO_EDGE && whole_[h / 3] != whole_[o / 3];
     bool line = apart || (!whole_[h / 3] && on_one_line(map_.uv[h], map_.uv[next_edge(h)]));
     cuts_[h] = {uint32_t(points_.size()), uint32_t(points.size()), uint32_t(out_.seams.size())};

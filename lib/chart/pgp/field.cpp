@@ -33,14 +33,14 @@ constexpr int PASSES = 20;
 
 /* Directions to keep to, four at once: cos 4a + i sin 4a for an angle a. */
 struct Guide {
-    std::vector<Complex> value;
-    std::vector<double> weight;
+    Vector<Complex> value;
+    Vector<double> weight;
 };
 
 /* Angles around vertices, stretched so that a full turn is one (Knoeppel et al. 2013). */
 struct Polar {
-    std::vector<double> start;   /* a corner: of the half-edge that leaves it */
-    std::vector<double> stretch; /* a vertex */
+    Vector<double> start;        /* a corner: of the half-edge that leaves it */
+    Vector<double> stretch;      /* a vertex */
 };
 
 Polar make_polar(const HalfEdges &edges)
@@ -89,7 +89,7 @@ double along_edge(const HalfEdges &edges, const Polar &polar, uint32_t h)
 Guide curvature_guide(const Surface &surface, const HalfEdges &edges)
 {
     const Mesh &mesh = surface.mesh;
-    std::vector<Tensor> at_vertex = vertex_curvatures(surface, edges);
+    Vector<Tensor> at_vertex = vertex_curvatures(surface, edges);
     Guide out;
     double largest = 0;
     for (uint32_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -133,13 +133,13 @@ Guide gather(const HalfEdges &edges, const Polar &polar, const Guide &triangles)
 
 /* Minimises the Dirichlet energy of z over the surface, and weight |z - guide|^2, where the guide
  * becomes the last solution at unit length: without that, z fades away from what is sure. */
-std::vector<Complex> smooth(const HalfEdges &edges, const Polar &polar, const Guide &guide,
-                            Task &task)
+Vector<Complex> smooth(const HalfEdges &edges, const Polar &polar, const Guide &guide,
+                       Task &task)
 {
-    using Vector = Eigen::VectorXcd;
+    using Eigen::VectorXcd;
     int count = int(guide.value.size());
     Eigen::VectorXd diagonal = Eigen::Map<const Eigen::VectorXd>(guide.weight.data(), count);
-    std::vector<Eigen::Triplet<Complex>> entries; /* the lower triangle */
+    Vector<Eigen::Triplet<Complex>> entries;      /* the lower triangle */
     for (uint32_t h = 0; h < edges.opposite.size(); ++h) {
         uint32_t o = edges.opposite[h];
         int i = int(edges.vertex[h]), j = int(edges.vertex[next_edge(h)]);
@@ -158,13 +158,13 @@ std::vector<Complex> smooth(const HalfEdges &edges, const Polar &polar, const Gu
     entries = {};
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<Complex>> solver(matrix);
 
-    std::vector<Complex> out = guide.value;
+    Vector<Complex> out = guide.value;
     for (int pass = 0; pass < PASSES && solver.info() == Eigen::Success; ++pass) {
         task.check();
-        Vector side(count);
+        VectorXcd side(count);
         for (int v = 0; v < count; ++v)
             side[v] = guide.weight[size_t(v)] * out[size_t(v)];
-        Vector z = solver.solve(side);
+        VectorXcd z = solver.solve(side);
         for (size_t v = 0; v < out.size(); ++v) {
             double size = std::abs(z[int(v)]);
             if (size > 0 && std::isfinite(size))
@@ -175,10 +175,10 @@ std::vector<Complex> smooth(const HalfEdges &edges, const Polar &polar, const Gu
 }
 
 /* The mean of what a triangle's corners have. */
-std::vector<double> angles_in_triangles(const HalfEdges &edges, const Polar &polar,
-                                        const std::vector<Complex> &at_vertex)
+Vector<double> angles_in_triangles(const HalfEdges &edges, const Polar &polar,
+                                   const Vector<Complex> &at_vertex)
 {
-    std::vector<double> out;
+    Vector<double> out;
     for (uint32_t t = 0; 3 * t < edges.vertex.size(); ++t) {
         Complex sum = 0;
         for (uint32_t c = 3 * t; c < 3 * t + 3; ++c)
@@ -224,10 +224,10 @@ void find_indices(const HalfEdges &edges, CrossField &field)
 
 } // namespace
 
-std::vector<Tensor> vertex_curvatures(const Surface &surface, const HalfEdges &edges)
+Vector<Tensor> vertex_curvatures(const Surface &surface, const HalfEdges &edges)
 {
     const Mesh &mesh = surface.mesh;
-    std::vector<Tensor> out(edges.first.size(), Tensor{});
+    Vector<Tensor> out(edges.first.size(), Tensor{});
     for (uint32_t h = 0; h < edges.opposite.size(); ++h) {
         uint32_t o = edges.opposite[h];
         if (o == NO_EDGE || o < h || !(edges.length[h] > 0))

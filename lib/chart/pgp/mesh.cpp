@@ -9,11 +9,11 @@ namespace gtx {
 namespace {
 
 /* A part of a piece: places in its list of corners. */
-using Part = std::vector<uint32_t>;
+using Part = Vector<uint32_t>;
 
 /* Of the corner `at` of a part, which turns to the left everywhere: how much it turns, as a
  * sine. */
-double turn_at(const std::vector<Vec3d> &position, const Part &part, size_t at)
+double turn_at(const Vector<Vec3d> &position, const Part &part, size_t at)
 {
     size_t n = part.size();
     const Vec3d &p = position[part[at]];
@@ -23,8 +23,8 @@ double turn_at(const std::vector<Vec3d> &position, const Part &part, size_t at)
 
 /* Divides a convex part from its flattest corner, which can be none of a triangle's, to the corner
  * that lies farthest from the line of its neighbours. */
-void triangulate(const std::vector<Vec3d> &position, const Part &part,
-                 std::vector<std::array<uint32_t, 3>> &out)
+void triangulate(const Vector<Vec3d> &position, const Part &part,
+                 Vector<std::array<uint32_t, 3>> &out)
 {
     size_t n = part.size(), flattest = 0, farthest = 2;
     if (n == 3) {
@@ -55,8 +55,8 @@ void triangulate(const std::vector<Vec3d> &position, const Part &part,
 
 /* An attribute of the triangle's corners, between them. */
 template <size_t N>
-void add_between(std::vector<std::array<float, N>> &to,
-                 const std::vector<std::array<float, N>> &from, uint32_t triangle,
+void add_between(Vector<std::array<float, N>> &to,
+                 const Vector<std::array<float, N>> &from, uint32_t triangle,
                  const std::array<float, 3> &weight)
 {
     if (from.empty())
@@ -101,15 +101,15 @@ void add_corner(Mesh &to, const Mesh &from, uint32_t source, const std::array<fl
 
 } // namespace
 
-CutMesh cut_mesh(const Mesh &mesh, const Pieces &pieces, const std::vector<uint32_t> &label)
+CutMesh cut_mesh(const Mesh &mesh, const Pieces &pieces, const Vector<uint32_t> &label)
 {
     CutMesh out;
     out.mesh.positions = mesh.positions;
     out.mesh.positions.insert(out.mesh.positions.end(), pieces.points.begin(), pieces.points.end());
     out.mesh.appearance.materials = mesh.appearance.materials;
     out.mesh.appearance.images = mesh.appearance.images;
-    std::vector<Vec3d> position;
-    std::vector<std::array<uint32_t, 3>> triangles;
+    Vector<Vec3d> position;
+    Vector<std::array<uint32_t, 3>> triangles;
     for (size_t i = 0; i < pieces.triangle.size(); ++i) {
         const PieceCorner *corners = &pieces.corners[pieces.first[i]];
         Part part(pieces.first[i + 1] - pieces.first[i]);

@@ -9,11 +9,11 @@ namespace gtx {
 /* Half-edges, and how a direction is carried across them. A corner is the half-edge that leaves it.
  * Angles in a triangle count from its first edge, counter-clockwise. */
 struct HalfEdges {
-    std::vector<uint32_t> opposite;  /* a half-edge; NO_EDGE at a border */
-    std::vector<uint32_t> vertex;    /* a corner; a vertex here is one fan of triangles */
-    std::vector<uint32_t> first;     /* a vertex: the corner where a turn to the left begins */
-    std::vector<double> direction;   /* a half-edge: its angle */
-    std::vector<double> length;      /* a half-edge */
+    Vector<uint32_t> opposite;       /* a half-edge; NO_EDGE at a border */
+    Vector<uint32_t> vertex;         /* a corner; a vertex here is one fan of triangles */
+    Vector<uint32_t> first;          /* a vertex: the corner where a turn to the left begins */
+    Vector<double> direction;        /* a half-edge: its angle */
+    Vector<double> length;           /* a half-edge */
 
     /* The next corner of the same vertex, counter-clockwise; NO_EDGE past a border. */
     uint32_t left_of(uint32_t corner) const { return opposite[previous_edge(corner)]; }
@@ -30,25 +30,25 @@ HalfEdges make_half_edges(const Surface &surface);
 /* Around each vertex, the normal cycle's measure of curvature (Cohen-Steiner, Morvan 2003): each
  * edge bends by its dihedral angle, in its own direction. An edge counts at both its ends. */
 using Tensor = std::array<double, 9>; /* symmetric */
-std::vector<Tensor> vertex_curvatures(const Surface &surface, const HalfEdges &edges);
+Vector<Tensor> vertex_curvatures(const Surface &surface, const HalfEdges &edges);
 
 /* Four directions a triangle, a quarter turn apart, that follow the surface's curvature. */
 struct CrossField {
-    std::vector<double> angle;   /* a triangle: of its first direction */
-    std::vector<uint8_t> turn;   /* a half-edge: quarter turns from the first direction, carried
+    Vector<double> angle;        /* a triangle: of its first direction */
+    Vector<uint8_t> turn;        /* a half-edge: quarter turns from the first direction, carried
                                     across, to that of the triangle there */
-    std::vector<double> bend;    /* a half-edge: what is left then to turn, at most an eighth */
-    std::vector<int> index;      /* a vertex: quarter turns that the field makes around it; 0 where
+    Vector<double> bend;         /* a half-edge: what is left then to turn, at most an eighth */
+    Vector<int> index;           /* a vertex: quarter turns that the field makes around it; 0 where
                                     it is regular or on a border */
 };
 CrossField make_cross_field(const Surface &surface, const HalfEdges &edges, Task &task);
 
 /* How long a cell is to be at each vertex, against the mean, for the directions to be gradients. */
-std::vector<double> make_scale(const HalfEdges &edges, const CrossField &field);
+Vector<double> make_scale(const HalfEdges &edges, const CrossField &field);
 /* Makes them shorter where the surface is more curved, down to half, and longer where it is less,
  * up to twice; for cells of about this mean length. */
 void adapt_scale(const Surface &surface, const HalfEdges &edges, double cell,
-                 std::vector<double> &scale);
+                 Vector<double> &scale);
 
 /* Coordinates in a triangle's directions, as those turned by quarters to the left see them. */
 using Uv = std::array<double, 2>;
@@ -63,14 +63,14 @@ inline double on_grid(double coordinate)
 
 /* A parameterization: integer lines of u and v follow the directions, a cell apart. */
 struct Periodic {
-    std::vector<Uv> uv;             /* a corner. Across an edge they are the same but for a turn
+    Vector<Uv> uv;                  /* a corner. Across an edge they are the same but for a turn
                                        and whole numbers, exactly, between regular triangles */
-    std::vector<uint8_t> singular;  /* a triangle */
+    Vector<uint8_t> singular;       /* a triangle */
 };
 
 /* Throws Error: INPUT, CANCELLED. */
 Periodic parameterize(const HalfEdges &edges, const CrossField &field,
-                      const std::vector<double> &scale, double cell, Task &task);
+                      const Vector<double> &scale, double cell, Task &task);
 
 /* The triangles, cut along the integer lines where they are regular: convex pieces in the order of
  * their triangles. */
@@ -85,11 +85,11 @@ struct Seam {
     bool line;         /* it lies on an integer line, or around what is singular */
 };
 struct Pieces {
-    std::vector<uint32_t> triangle;   /* a piece: what it is of */
-    std::vector<uint32_t> first;      /* a piece: its first corner; all corners' number at last */
-    std::vector<PieceCorner> corners; /* in the order of the triangle's */
-    std::vector<Vec3d> points;        /* vertices that the mesh had not */
-    std::vector<Seam> seams;
+    Vector<uint32_t> triangle;        /* a piece: what it is of */
+    Vector<uint32_t> first;           /* a piece: its first corner; all corners' number at last */
+    Vector<PieceCorner> corners;      /* in the order of the triangle's */
+    Vector<Vec3d> points;             /* vertices that the mesh had not */
+    Vector<Seam> seams;
 };
 
 /* Throws Error: LIMIT. */
@@ -99,12 +99,12 @@ Pieces cut_along_lines(const Mesh &mesh, const HalfEdges &edges, const CrossFiel
 /* A mesh whose triangles are cut where charts end. */
 struct CutMesh {
     Mesh mesh;
-    std::vector<uint32_t> source; /* a triangle: what it is of, ascending */
-    std::vector<uint32_t> label;  /* a triangle */
+    Vector<uint32_t> source;      /* a triangle: what it is of, ascending */
+    Vector<uint32_t> label;       /* a triangle */
 };
 
 /* `label` is of pieces. */
-CutMesh cut_mesh(const Mesh &mesh, const Pieces &pieces, const std::vector<uint32_t> &label);
+CutMesh cut_mesh(const Mesh &mesh, const Pieces &pieces, const Vector<uint32_t> &label);
 
 /* Partitions the surface into about `count` connected charts: squares of the parameterization, and
  * what lies around its singularities where that is as large. Where `adaptive`, they are smaller

@@ -29,7 +29,7 @@ using Solver = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
 
 void factorize(const HalfEdges &edges, Eigen::VectorXd diagonal, Solver &solver)
 {
-    std::vector<Eigen::Triplet<double>> entries; /* the lower triangle */
+    Vector<Eigen::Triplet<double>> entries;      /* the lower triangle */
     for (uint32_t h = 0; h < edges.opposite.size(); ++h) {
         uint32_t o = edges.opposite[h];
         int i = int(edges.vertex[h]), j = int(edges.vertex[next_edge(h)]);
@@ -77,7 +77,7 @@ Eigen::VectorXd vertex_areas(const Surface &surface, const HalfEdges &edges)
 Eigen::VectorXd smooth_curvatures(const Surface &surface, const HalfEdges &edges,
                                   const Solver &solver, double screen)
 {
-    std::vector<Tensor> tensors = vertex_curvatures(surface, edges);
+    Vector<Tensor> tensors = vertex_curvatures(surface, edges);
     Eigen::VectorXd out = Eigen::VectorXd::Zero(int(tensors.size()));
     for (size_t entry = 0; entry < 9; ++entry) {
         Eigen::VectorXd side(out.size());
@@ -91,7 +91,7 @@ Eigen::VectorXd smooth_curvatures(const Surface &surface, const HalfEdges &edges
 /* The value below which half of the weight is. */
 double weighted_median(const Eigen::VectorXd &values, const Eigen::VectorXd &weights)
 {
-    std::vector<int> order(size_t(values.size()));
+    Vector<int> order(size_t(values.size()));
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(), [&](int a, int b) {
         return std::pair(values[a], a) < std::pair(values[b], b);
@@ -118,10 +118,10 @@ Eigen::VectorXd wanted_logarithm(const Eigen::VectorXd &curvatures, const Eigen:
 
 } // namespace
 
-std::vector<double> make_scale(const HalfEdges &edges, const CrossField &field)
+Vector<double> make_scale(const HalfEdges &edges, const CrossField &field)
 {
     const Eigen::VectorXd side = curl_side(edges, field);
-    std::vector<double> out(edges.first.size(), 1);
+    Vector<double> out(edges.first.size(), 1);
     Solver solver;
     factorize(edges, Eigen::VectorXd::Constant(side.size(), MIN_DIAGONAL), solver);
     if (solver.info() != Eigen::Success)
@@ -137,7 +137,7 @@ std::vector<double> make_scale(const HalfEdges &edges, const CrossField &field)
 /* Screened equations smooth. The curl's own is not screened: where the curvature asks for nothing,
  * cells stay as long as the field wants them. */
 void adapt_scale(const Surface &surface, const HalfEdges &edges, double cell,
-                 std::vector<double> &scale)
+                 Vector<double> &scale)
 {
     const Eigen::VectorXd areas = vertex_areas(surface, edges);
     const double screen = 1 / (REACH * REACH * cell * cell);

@@ -26,7 +26,7 @@ constexpr double TOLERANCE = 1e-2;
 constexpr double SNAP = 0.002;
 
 using Matrix4 = Eigen::Matrix4d;
-using Vector = Eigen::VectorXd;                                  /* re p, im p, re q, im q, ... */
+using Eigen::VectorXd;                                             /* re p, im p, re q, im q, ... */
 using Energy = Eigen::SparseMatrix<double, Eigen::RowMajor>;     /* all of it: fastest to apply */
 
 struct Edge {
@@ -36,7 +36,7 @@ struct Edge {
 
 class Solve {
 public:
-    Solve(const HalfEdges &edges, const CrossField &field, const std::vector<double> &scale,
+    Solve(const HalfEdges &edges, const CrossField &field, const Vector<double> &scale,
           double cell);
     void run(Task &task);
     Periodic unwrap() const;
@@ -46,17 +46,17 @@ private:
     Matrix4 carry(const Edge &edge) const;
     Energy energy() const;
     void start();
-    void start_at(uint32_t vertex, std::vector<uint8_t> &known, std::vector<uint32_t> &queue);
+    void start_at(uint32_t vertex, Vector<uint8_t> &known, Vector<uint32_t> &queue);
     void to_unit_length();
     Uv phase(uint32_t corner) const;
     Uv whole(uint32_t half_edge) const;
 
     const HalfEdges &edges_;
     const CrossField &field_;
-    std::vector<uint8_t> turn_;   /* a corner: quarters from its vertex' directions to its own */
-    std::vector<Edge> list_;
-    std::vector<uint32_t> place_; /* a half-edge: its edge in the list */
-    Vector x_;
+    Vector<uint8_t> turn_;        /* a corner: quarters from its vertex' directions to its own */
+    Vector<Edge> list_;
+    Vector<uint32_t> place_;      /* a half-edge: its edge in the list */
+    VectorXd x_;
 };
 
 /* What phases are to directions turned by quarters. */
@@ -81,7 +81,7 @@ Matrix4 step_matrix(const Uv &step)
 
 /* Both triangles' directions, half way between, say how an edge lies in the field: seen from either
  * side its step is the same, and so is how many whole cells are in it. */
-Solve::Solve(const HalfEdges &edges, const CrossField &field, const std::vector<double> &scale,
+Solve::Solve(const HalfEdges &edges, const CrossField &field, const Vector<double> &scale,
              double cell)
     : edges_(edges), field_(field), place_(edges.opposite.size())
 {
@@ -123,7 +123,7 @@ Matrix4 Solve::carry(const Edge &edge) const
 /* The sum over the edges of |x_end - carry x_start|^2, and ANCHOR |x|^2. */
 Energy Solve::energy() const
 {
-    std::vector<int> degree(edges_.first.size(), 0);
+    Vector<int> degree(edges_.first.size(), 0);
     for (const Edge &edge : list_)
         for (uint32_t v : edge.vertex)
             ++degree[v];
@@ -149,7 +149,7 @@ Energy Solve::energy() const
 }
 
 /* Along a tree of edges from `vertex`, breadth first. */
-void Solve::start_at(uint32_t vertex, std::vector<uint8_t> &known, std::vector<uint32_t> &queue)
+void Solve::start_at(uint32_t vertex, Vector<uint8_t> &known, Vector<uint32_t> &queue)
 {
     auto reach = [&](uint32_t from, uint32_t half_edge) {
         const Edge &edge = list_[place_[half_edge]];
@@ -179,9 +179,9 @@ void Solve::start_at(uint32_t vertex, std::vector<uint8_t> &known, std::vector<u
 
 void Solve::start()
 {
-    x_ = Vector::Zero(4 * int(edges_.first.size()));
-    std::vector<uint8_t> known(edges_.first.size(), 0);
-    std::vector<uint32_t> queue;
+    x_ = VectorXd::Zero(4 * int(edges_.first.size()));
+    Vector<uint8_t> known(edges_.first.size(), 0);
+    Vector<uint32_t> queue;
     for (uint32_t v = 0; v < known.size(); ++v)
         if (!known[v])
             start_at(v, known, queue);
@@ -209,7 +209,7 @@ void Solve::run(Task &task)
     solver.setMaxIterations(MAX_ITERATIONS);
     for (int pass = 0; pass < PASSES; ++pass) {
         task.check();
-        Vector side = ANCHOR * x_;
+        VectorXd side = ANCHOR * x_;
         x_ = solver.solveWithGuess(side, x_).eval();
         to_unit_length();
     }
@@ -277,7 +277,7 @@ Uv turned(const Uv &uv, unsigned quarters)
 }
 
 Periodic parameterize(const HalfEdges &edges, const CrossField &field,
-                      const std::vector<double> &scale, double cell, Task &task)
+                      const Vector<double> &scale, double cell, Task &task)
 {
     Solve solve(edges, field, scale, cell);
     solve.run(task);

@@ -38,13 +38,13 @@ public:
 
 private:
     double time(BenchMethod method, const Shot &shot);
-    Quality judge(BenchMethod method, const Shot &one, const std::vector<Picture> &truth);
-    void choose_error(const Shot &one, const std::vector<Picture> &truth);
-    void choose_level(const Shot &one, const std::vector<Picture> &truth, const Quality &wanted);
+    Quality judge(BenchMethod method, const Shot &one, const Vector<Picture> &truth);
+    void choose_error(const Shot &one, const Vector<Picture> &truth);
+    void choose_level(const Shot &one, const Vector<Picture> &truth, const Quality &wanted);
     void judge_all(const std::array<uint32_t, 2> &size, uint32_t instances,
-                   std::vector<BenchRow> &rows);
+                   Vector<BenchRow> &rows);
     const char *reason_to_skip(const BenchRow &row) const;
-    void time_all(std::vector<BenchRow> &rows);
+    void time_all(Vector<BenchRow> &rows);
 
     const BenchOptions &options_;
     const double began_ = milliseconds();
@@ -85,7 +85,7 @@ void compare(const Picture &truth, const Picture &picture, size_t width, Quality
     }
 }
 
-Quality Bench::judge(BenchMethod method, const Shot &one, const std::vector<Picture> &truth)
+Quality Bench::judge(BenchMethod method, const Shot &one, const Vector<Picture> &truth)
 {
     const Target target(scene.gl, one.width, one.height);
     Quality quality;
@@ -97,7 +97,7 @@ Quality Bench::judge(BenchMethod method, const Shot &one, const std::vector<Pict
 }
 
 /* The largest error at which AUTO's outline is as good as is asked for, or the least there is. */
-void Bench::choose_error(const Shot &one, const std::vector<Picture> &truth)
+void Bench::choose_error(const Shot &one, const Vector<Picture> &truth)
 {
     for (size_t i = std::size(bench_errors); i-- > 0;) {
         scene.max_error = bench_errors[i];
@@ -107,7 +107,7 @@ void Bench::choose_error(const Shot &one, const std::vector<Picture> &truth)
 }
 
 /* The coarsest level that covers and looks as well. */
-void Bench::choose_level(const Shot &one, const std::vector<Picture> &truth, const Quality &wanted)
+void Bench::choose_level(const Shot &one, const Vector<Picture> &truth, const Quality &wanted)
 {
     size_t good = 0, bad = scene.levels.indices.size(); /* quality falls from level to level */
     while (bad - good > 1) {
@@ -120,11 +120,11 @@ void Bench::choose_level(const Shot &one, const std::vector<Picture> &truth, con
 
 /* Judges every method by one instance at its share of the window; it warms up, too. */
 void Bench::judge_all(const std::array<uint32_t, 2> &size, uint32_t instances,
-                      std::vector<BenchRow> &rows)
+                      Vector<BenchRow> &rows)
 {
     const uint32_t columns = uint32_t(std::ceil(std::sqrt(instances)));
     const Shot one = {std::max(1u, size[0] / columns), std::max(1u, size[1] / columns), 1, 0};
-    std::vector<Picture> truth;
+    Vector<Picture> truth;
     {
         const Target target(scene.gl, one.width, one.height);
         for (int turn = 0; turn < BENCH_TURNS; ++turn)
@@ -164,7 +164,7 @@ const char *Bench::reason_to_skip(const BenchRow &row) const
 }
 
 /* Times at each azimuth. */
-using Turns = std::array<std::vector<double>, BENCH_TURNS>;
+using Turns = std::array<Vector<double>, BENCH_TURNS>;
 
 /* The median at each azimuth, averaged over those that have any: from one to the next times may
  * differ twofold, and one median of all would take those of either kind by chance. */
@@ -172,7 +172,7 @@ double mean_median(Turns turns)
 {
     double sum = 0;
     int count = 0;
-    for (std::vector<double> &times : turns)
+    for (Vector<double> &times : turns)
         if (!times.empty()) {
             const size_t n = times.size();
             std::sort(times.begin(), times.end());
@@ -185,19 +185,19 @@ double mean_median(Turns turns)
 double least(const Turns &turns)
 {
     double out = INFINITY;
-    for (const std::vector<double> &times : turns)
+    for (const Vector<double> &times : turns)
         for (double time : times)
             out = std::min(out, time);
     return out;
 }
 
-void Bench::time_all(std::vector<BenchRow> &rows)
+void Bench::time_all(Vector<BenchRow> &rows)
 {
     struct Times {
         BenchRow *row;
         Turns wall, work;
     };
-    std::vector<Times> quick;
+    Vector<Times> quick;
     for (BenchRow &row : rows) {
         const Shot shot = {row.size[0], row.size[1], row.instances, 0};
         if (row.skipped)
@@ -230,7 +230,7 @@ void Bench::time_all(std::vector<BenchRow> &rows)
 void Bench::measure(const std::array<uint32_t, 2> &size, uint32_t instances,
                     const std::function<void(const BenchRow &)> &tell)
 {
-    std::vector<BenchRow> rows;
+    Vector<BenchRow> rows;
     for (BenchMethod method : options_.methods) {
         rows.emplace_back();
         rows.back().size = size;
@@ -238,7 +238,7 @@ void Bench::measure(const std::array<uint32_t, 2> &size, uint32_t instances,
         rows.back().method = method;
         rows.back().skipped = reason_to_skip(rows.back());
     }
-    std::vector<BenchRow> judged, skipped;
+    Vector<BenchRow> judged, skipped;
     for (BenchRow &row : rows)
         (row.skipped ? skipped : judged).push_back(row);
     if (!judged.empty()) {
@@ -246,7 +246,7 @@ void Bench::measure(const std::array<uint32_t, 2> &size, uint32_t instances,
         const Target target(scene.gl, size[0], size[1]);
         time_all(judged);
     }
-    for (const std::vector<BenchRow> *part : {&judged, &skipped})
+    for (const Vector<BenchRow> *part : {&judged, &skipped})
         for (const BenchRow &row : *part)
             tell(row);
 }

@@ -21,9 +21,9 @@ extern const char *const bench_method_names[BENCH_METHODS]; /* as in reports */
 constexpr double bench_errors[] = {0.25, 0.35, 0.5, 0.71, 1, 1.41, 2}; /* pixels */
 
 struct BenchOptions {
-    std::vector<std::array<uint32_t, 2>> sizes; /* windows, pixels */
-    std::vector<uint32_t> instances;            /* ascending */
-    std::vector<BenchMethod> methods;           /* in the table's order */
+    Vector<std::array<uint32_t, 2>> sizes;      /* windows, pixels */
+    Vector<uint32_t> instances;                 /* ascending */
+    Vector<BenchMethod> methods;                /* in the table's order */
     uint32_t frames = 12;
     double max_error = 0.5;                     /* pixels */
     double min_iou = 0;                         /* over 0: max_error is the largest of

@@ -14,10 +14,10 @@ MeshLevels make_mesh_levels(const Mesh &mesh, const Vec3d &centre, bool simplifi
     Polygons polygons = make_polygons(mesh, centre);
     MeshLevels out;
     const size_t corners = polygons.indices.size(), size = sizeof(gtx_polygon_vertex);
-    std::vector<uint32_t> remap(polygons.vertices.size());
+    Vector<uint32_t> remap(polygons.vertices.size());
     size_t unique = meshopt_generateVertexRemap(remap.data(), polygons.indices.data(), corners,
                                                 polygons.vertices.data(), remap.size(), size);
-    std::vector<uint32_t> finest(corners);
+    Vector<uint32_t> finest(corners);
     meshopt_remapIndexBuffer(finest.data(), polygons.indices.data(), corners, remap.data());
     out.vertices.resize(unique);
     meshopt_remapVertexBuffer(out.vertices.data(), polygons.vertices.data(), remap.size(), size,
@@ -27,8 +27,8 @@ MeshLevels make_mesh_levels(const Mesh &mesh, const Vec3d &centre, bool simplifi
                                 unique, size);
     out.indices.push_back(std::move(finest));
     while (simplified) {
-        const std::vector<uint32_t> &last = out.indices.back();
-        std::vector<uint32_t> next(last.size());
+        const Vector<uint32_t> &last = out.indices.back();
+        Vector<uint32_t> next(last.size());
         size_t wanted = size_t(double(last.size() / 3) * STEP) * 3;
         next.resize(meshopt_simplify(next.data(), last.data(), last.size(),
                                      out.vertices[0].position, unique, size, wanted, 1.f));

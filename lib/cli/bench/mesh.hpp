@@ -8,8 +8,8 @@ namespace gtx {
 /* The mesh and ever coarser ones of the same vertices: indices[0] is the source. Everything is in
  * vertex-cache order. */
 struct MeshLevels {
-    std::vector<gtx_polygon_vertex> vertices;
-    std::vector<std::vector<uint32_t>> indices;
+    Vector<gtx_polygon_vertex> vertices;
+    Vector<Vector<uint32_t>> indices;
 };
 
 /* `simplified`: with coarser levels, each of about 0.7 times the triangles (Garland and Heckbert

@@ -117,11 +117,11 @@ void BenchScene::load_asset(const std::string &path)
 
 void BenchScene::load_mesh(const Mesh &mesh)
 {
-    const std::vector<BenchMethod> &m = options_.methods;
+    const Vector<BenchMethod> &m = options_.methods;
     levels = make_mesh_levels(mesh, {info.anchor[0], info.anchor[1], info.anchor[2]},
                                std::count(m.begin(), m.end(), BenchMethod::MESH_LOD) > 0);
     setup.triangles = uint32_t(levels.indices[0].size() / 3);
-    for (const std::vector<uint32_t> &indices : levels.indices) {
+    for (const Vector<uint32_t> &indices : levels.indices) {
         gtx_error error;
         polygons_.emplace_back();
         const gtx_polygon_data data = {levels.vertices.data(), indices.data(),
@@ -131,7 +131,7 @@ void BenchScene::load_mesh(const Mesh &mesh)
 }
 
 /* The camera stands in front of the wall and keeps its light on the head. */
-gtx_view BenchScene::view_of(const Shot &shot, std::vector<gtx_instance> &placed) const
+gtx_view BenchScene::view_of(const Shot &shot, Vector<gtx_instance> &placed) const
 {
     const uint32_t columns = uint32_t(std::ceil(std::sqrt(shot.instances)));
     const uint32_t rows = (shot.instances + columns - 1) / columns;
@@ -164,7 +164,7 @@ gtx_view BenchScene::view_of(const Shot &shot, std::vector<gtx_instance> &placed
 }
 
 void BenchScene::draw_mesh(BenchMethod method, const gtx_view &view,
-                      const std::vector<gtx_instance> &placed)
+                      const Vector<gtx_instance> &placed)
 {
     gtx_polygons drawn = polygons_[method == BenchMethod::MESH_LOD ? level : 0];
     if (method == BenchMethod::MESH_STREAM) { /* drivers may keep buffers, but not contents */
@@ -186,7 +186,7 @@ void BenchScene::draw_mesh(BenchMethod method, const gtx_view &view,
 
 void BenchScene::draw(BenchMethod method, const Shot &shot)
 {
-    std::vector<gtx_instance> placed;
+    Vector<gtx_instance> placed;
     gtx_view view = view_of(shot, placed);
     gl.DepthMask(GL_TRUE);
     gl.ClearDepthf(1);

@@ -27,8 +27,8 @@ struct Shot {
 
 /* A picture as it is judged. */
 struct Picture {
-    std::vector<uint8_t> color; /* RGBA */
-    std::vector<float> depth;
+    Vector<uint8_t> color;      /* RGBA */
+    Vector<float> depth;
 };
 
 /* A framebuffer for a while, bound from the constructor on. */
@@ -74,9 +74,9 @@ public:
 private:
     void load_asset(const std::string &path);
     void load_mesh(const Mesh &mesh);
-    gtx_view view_of(const Shot &shot, std::vector<gtx_instance> &placed) const;
+    gtx_view view_of(const Shot &shot, Vector<gtx_instance> &placed) const;
     void draw_mesh(BenchMethod method, const gtx_view &view,
-                   const std::vector<gtx_instance> &placed);
+                   const Vector<gtx_instance> &placed);
 
     const BenchOptions &options_;
     BenchContext context_;
@@ -84,7 +84,7 @@ private:
     gtx_renderer *renderer_ = nullptr;
     gtx_model *model_ = nullptr;
     float centre_[3] = {}, radius_ = 0;
-    std::vector<gtx_polygons> polygons_; /* of the levels */
+    Vector<gtx_polygons> polygons_;      /* of the levels */
     bool counts_ = false;                /* the driver counts shaded fragments */
 };
 

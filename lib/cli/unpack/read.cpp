@@ -106,7 +106,7 @@ static std::string describe(uint32_t width, uint32_t height, uint32_t channels, 
 
 /* Appends a page of a level as the asset holds it. */
 static void read_image(const std::string &path, const UnpackedMap &map, uint32_t width,
-                       uint32_t height, uint32_t bits, std::vector<uint8_t> &out)
+                       uint32_t height, uint32_t bits, Vector<uint8_t> &out)
 {
     gtx_raw_image image;
     gtx_error error;

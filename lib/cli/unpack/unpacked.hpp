@@ -7,7 +7,6 @@
 #include <geotex/geotex.h>
 
 #include <string>
-#include <vector>
 
 namespace gtx {
 
@@ -42,8 +41,8 @@ void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder,
 
 /* The arrays of an LOD mesh. */
 struct UnpackedLod {
-    std::vector<uint32_t> numbers; /* first, then indices */
-    std::vector<uint16_t> positions;
+    Vector<uint32_t> numbers;      /* first, then indices */
+    Vector<uint16_t> positions;
 };
 std::string unpacked_lod_name(uint32_t level); /* "lod-0.bin" */
 void write_unpacked_lod(const gtx_lod_mesh &level, uint32_t patches, const std::string &path);
@@ -55,13 +54,13 @@ void read_unpacked_lod(const std::string &path, uint32_t patches, gtx_lod_mesh &
 struct Unpacked {
     gtx_asset_desc desc = {};    /* its pointers lead into what follows */
     int zstd = 0;
-    std::vector<gtx_patch> patches;
+    Vector<gtx_patch> patches;
     std::string meta;
-    std::vector<std::vector<uint8_t>> levels[6]; /* by UNPACKED_MAPS: pages one after another */
-    std::vector<const uint8_t *> pointers[6];
-    std::vector<gtx_lod_mesh> lod;
-    std::vector<UnpackedLod> lod_arrays;
-    std::vector<std::string> warnings;
+    Vector<Vector<uint8_t>> levels[6];           /* by UNPACKED_MAPS: pages one after another */
+    Vector<const uint8_t *> pointers[6];
+    Vector<gtx_lod_mesh> lod;
+    Vector<UnpackedLod> lod_arrays;
+    Vector<std::string> warnings;
 };
 
 /* Fills `out`, which must stay where it is. */

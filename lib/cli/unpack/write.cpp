@@ -49,12 +49,12 @@ static void write_image(const std::string &path, const UnpackedMap &map, uint32_
     gtx_result result;
     const size_t count = size_t(width) * height;
     if (map.map == GTX_MAP_HEIGHT && bits == 16) {
-        std::vector<uint16_t> codes(count);
+        Vector<uint16_t> codes(count);
         for (size_t i = 0; i < count; ++i)
             codes[i] = uint16_t(texels[2 * i] | texels[2 * i + 1] << 8);
         result = gtx_image_write_png16(path.c_str(), width, height, codes.data(), &error);
     } else if (map.map == GTX_MAP_NORMAL) { /* two channels would be grey and alpha */
-        std::vector<uint8_t> rgb(count * 3);
+        Vector<uint8_t> rgb(count * 3);
         for (size_t i = 0; i < count; ++i)
             std::copy_n(texels + 2 * i, 2, &rgb[3 * i]);
         result = gtx_image_write_png(path.c_str(), width, height, 3, rgb.data(), &error);

@@ -34,7 +34,7 @@ static Color normal_color(const float n[3])
 
 /* Fills a patch's rectangle of a colour map. */
 static void paint(const gtx_asset *asset, const gtx_info &info, uint32_t index, uint32_t level,
-                  DebugView view, std::vector<uint8_t> &map)
+                  DebugView view, Vector<uint8_t> &map)
 {
     const gtx_patch &patch = gtx_patches(asset)[index];
     auto normals =
@@ -65,7 +65,7 @@ AssetPointer recolor(const gtx_asset *asset, DebugView view)
 {
     gtx_info info;
     gtx_get_info(asset, &info);
-    std::vector<uint8_t> colors[GTX_MAX_MIPS], materials[GTX_MAX_MIPS];
+    Vector<uint8_t> colors[GTX_MAX_MIPS], materials[GTX_MAX_MIPS];
     const uint8_t *normal[GTX_MAX_MIPS], *color[GTX_MAX_MIPS], *material[GTX_MAX_MIPS];
     for (uint32_t level = 0; level < info.mip_count; ++level) {
         size_t texels = gtx_page_texels(asset, level) * info.page_count;
@@ -98,7 +98,7 @@ AssetPointer recolor(const gtx_asset *asset, DebugView view)
     std::copy(info.bounds_min, info.bounds_min + 3, desc.bounds_min);
     std::copy(info.bounds_max, info.bounds_max + 3, desc.bounds_max);
     std::copy(info.anchor, info.anchor + 3, desc.anchor);
-    std::vector<gtx_lod_mesh> lod(info.lod_levels);
+    Vector<gtx_lod_mesh> lod(info.lod_levels);
     for (uint32_t k = 0; k < info.lod_levels; ++k)
         gtx_get_lod_mesh(asset, k, &lod[k]);
     desc.lod = lod.data();

@@ -67,7 +67,7 @@ void Loader::load(const std::string &path)
     result_.scene.assets.push_back(std::move(placed));
 }
 
-void Loader::run(const std::vector<std::string> &paths)
+void Loader::run(const Vector<std::string> &paths)
 {
     try {
         for (const std::string &path : paths)
@@ -81,7 +81,7 @@ void Loader::run(const std::vector<std::string> &paths)
     finished_ = true;
 }
 
-void Loader::start(std::vector<std::string> paths)
+void Loader::start(Vector<std::string> paths)
 {
     stop();
     cancelled_ = finished_ = false;

@@ -18,7 +18,7 @@ public:
     ~Loader() { stop(); }
 
     /* Opens assets and cooks models into one scene; ends the job before. */
-    void start(std::vector<std::string> paths);
+    void start(Vector<std::string> paths);
     /* Asks the job to end soon; join() then tells GTX_CANCELLED. */
     void cancel() { cancelled_ = true; }
 
@@ -32,14 +32,14 @@ public:
         gtx_error error = {}; /* of `path`, unless it is GTX_OK */
         std::string path;
         Scene scene;
-        std::vector<gtx_model *> models; /* of the scene's assets, prepared, not yet uploaded */
-        std::vector<std::string> warnings;
+        Vector<gtx_model *> models;      /* of the scene's assets, prepared, not yet uploaded */
+        Vector<std::string> warnings;
     };
     /* The result of the job. The models belong to the caller. */
     Result join();
 
 private:
-    void run(const std::vector<std::string> &paths);
+    void run(const Vector<std::string> &paths);
     void load(const std::string &path);
     AssetPointer cook(const std::string &path);
     void stop();

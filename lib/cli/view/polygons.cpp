@@ -42,7 +42,7 @@ struct TriangleCutter {
     const Vec3d &centre;
     double side;                 /* of the small triangles */
     Polygons out = {};
-    std::vector<float> cut = {}; /* of one triangle's vertices */
+    Vector<float> cut = {};      /* of one triangle's vertices */
 
     /* `pieces` x `pieces` small triangles in place of one. */
     void add_triangle(size_t t, uint32_t pieces)

@@ -7,8 +7,8 @@
 namespace gtx {
 
 struct Polygons {
-    std::vector<gtx_polygon_vertex> vertices; /* relative to `centre` */
-    std::vector<uint32_t> indices;
+    Vector<gtx_polygon_vertex> vertices;      /* relative to `centre` */
+    Vector<uint32_t> indices;
 };
 
 /* Textured triangles are cut into smaller ones, which take colour and normal at their corners; what

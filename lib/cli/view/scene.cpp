@@ -70,9 +70,9 @@ static bool add_placed_assets(Scene &scene, const json &gltf, const std::string 
         Transform parent;
     };
     const json nodes = gltf.value("nodes", json::array());
-    std::vector<Visit> stack;
+    Vector<Visit> stack;
     for (const json &s : gltf.value("scenes", json::array()))
-        for (size_t node : s.value("nodes", std::vector<size_t>()))
+        for (size_t node : s.value("nodes", Vector<size_t>()))
             stack.push_back({node, identity_transform});
 
     bool found = false;
@@ -87,7 +87,7 @@ static bool add_placed_assets(Scene &scene, const json &gltf, const std::string 
             add_asset(scene, folder + node["extras"]["geotex"].get<std::string>(), world);
             found = true;
         }
-        for (size_t child : node.value("children", std::vector<size_t>()))
+        for (size_t child : node.value("children", Vector<size_t>()))
             stack.push_back({child, world});
     }
     return found;

@@ -8,7 +8,6 @@
 #include <array>
 #include <memory>
 #include <string>
-#include <vector>
 
 namespace gtx {
 
@@ -30,8 +29,8 @@ struct PlacedAsset {
 };
 
 struct Scene {
-    std::vector<PlacedAsset> assets;
-    std::vector<Mesh> meshes; /* cleaned */
+    Vector<PlacedAsset> assets;
+    Vector<Mesh> meshes;      /* cleaned */
     Vec3d centre;             /* bounding sphere of everything */
     double radius = 0;
 };

@@ -61,7 +61,7 @@ static gtx_instance place(const PlacedAsset &placed, const Vec3d &centre)
     return instance;
 }
 
-void SceneRenderer::show(const Scene &shown, std::vector<gtx_model *> models)
+void SceneRenderer::show(const Scene &shown, Vector<gtx_model *> models)
 {
     clear();
     scene = &shown;
@@ -118,7 +118,7 @@ void SceneRenderer::draw(const gtx_view &view, DebugView debug)
     gl.DepthFunc(GL_LESS);
     for (const gtx_polygons &polygons : p.polygons)
         gtx_polygons_draw(&gl, &program, &polygons, nullptr, &view);
-    std::vector<gtx_instance> instances = places;
+    Vector<gtx_instance> instances = places;
     for (size_t i = 0; i < instances.size(); ++i)
         instances[i].model = p.models[i];
     gtx_error error;

@@ -19,7 +19,7 @@ public:
 
     /* Shows another scene, which must outlive its show. `models` are of the scene's assets, in
      * order and uploaded, and are taken over; none: they are made here. */
-    void show(const Scene &scene, std::vector<gtx_model *> models = {});
+    void show(const Scene &scene, Vector<gtx_model *> models = {});
 
     /* Clears the bound framebuffer and draws into it. Depth test on, func LESS, afterwards. */
     void draw(const gtx_view &view, DebugView debug = DebugView::NONE);
@@ -37,8 +37,8 @@ private:
     /* What one debug view draws; made when it is first asked for. */
     struct Uploaded {
         bool ready = false;
-        std::vector<gtx_model *> models;
-        std::vector<gtx_polygons> polygons;
+        Vector<gtx_model *> models;
+        Vector<gtx_polygons> polygons;
         uint64_t polygon_bytes = 0;
     };
     Uploaded &uploaded(DebugView debug);
@@ -46,8 +46,8 @@ private:
 
     const Scene *scene = nullptr;
     Uploaded views[DEBUG_VIEW_COUNT];
-    std::vector<gtx_instance> places; /* without their models */
-    std::vector<gtx_polygons> boxes;
+    Vector<gtx_instance> places;      /* without their models */
+    Vector<gtx_polygons> boxes;
 };
 
 /* A key light over the camera's left shoulder. */

@@ -17,8 +17,8 @@ struct StillOptions {
 };
 
 struct Still {
-    std::vector<uint8_t> color; /* RGBA, rows from the top */
-    std::vector<float> depth;   /* along the view axis in object units; infinity = nothing */
+    Vector<uint8_t> color;      /* RGBA, rows from the top */
+    Vector<float> depth;        /* along the view axis in object units; infinity = nothing */
 };
 
 /* Throws Error: GL, SHADER, MEMORY, LIMIT. */

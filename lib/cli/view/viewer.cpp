@@ -81,7 +81,7 @@ void Viewer::release()
     gtx_window_destroy(window);
 }
 
-void Viewer::show(Scene shown, std::vector<gtx_model *> models)
+void Viewer::show(Scene shown, Vector<gtx_model *> models)
 {
     facts = Facts();
     scene = std::move(shown);
@@ -146,7 +146,7 @@ void Viewer::escape()
 
 void Viewer::take_drops()
 {
-    std::vector<std::string> paths;
+    Vector<std::string> paths;
     while (char *path = gtx_window_dropped(window)) {
         paths.push_back(path);
         std::free(path);
@@ -190,7 +190,7 @@ void Viewer::take_loaded()
     size_t others = incoming.models.size() - 1;
     name = file_name(incoming.path) + (others ? " and " + std::to_string(others) + " more" : "");
     note.clear();
-    std::vector<gtx_model *> models;
+    Vector<gtx_model *> models;
     models.swap(incoming.models);
     show(std::move(incoming.scene), std::move(models));
     frame_all();
@@ -198,7 +198,7 @@ void Viewer::take_loaded()
 
 void Viewer::write_picture(const std::string &path)
 {
-    std::vector<uint8_t> pixels(size_t(width) * size_t(height) * 4);
+    Vector<uint8_t> pixels(size_t(width) * size_t(height) * 4);
     gtx_error error;
     gtx_framebuffer_read_color(&scene_renderer->gl, &target, pixels.data());
     require_ok(gtx_image_write_png(path.c_str(), uint32_t(width), uint32_t(height), 4,

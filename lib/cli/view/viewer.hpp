@@ -56,7 +56,7 @@ private:
     void take_drops();
     void take_loaded();
     void receive(Loader::Result result);
-    void show(Scene shown, std::vector<gtx_model *> models);
+    void show(Scene shown, Vector<gtx_model *> models);
     void frame_all();
     void draw_frame();
     void draw_overlay();

@@ -70,13 +70,13 @@ Mesh clean_mesh(Mesh mesh, Task &task, CleanReport &report)
     task.advance(0.1);
     weld(mesh);
     task.advance(0.2);
-    std::vector<uint8_t> thin = drop_duplicates(mesh, report);
+    Vector<uint8_t> thin = drop_duplicates(mesh, report);
     task.advance(0.3);
     warn_dropped(task, report);
     if (mesh.triangles.empty())
         throw Error(GTX_ERROR_EMPTY, "no triangle with a finite, non-zero area");
 
-    Draft surface{mesh, std::move(thin), {}, {}, std::vector<uint8_t>(mesh.triangles.size(), 0)};
+    Draft surface{mesh, std::move(thin), {}, {}, Vector<uint8_t>(mesh.triangles.size(), 0)};
     pair_edges(surface, report);
     task.advance(0.4);
     orient(surface);

@@ -16,7 +16,7 @@ void weld(Mesh &mesh);
 /* Of triangles on the same three vertices one stays: "duplicate". It winds as most do. Returns for
  * each triangle kept whether as many of its copies wound one way as the other: they were the two
  * sides of a sheet without thickness. */
-std::vector<uint8_t> drop_duplicates(Mesh &mesh, CleanReport &report);
+Vector<uint8_t> drop_duplicates(Mesh &mesh, CleanReport &report);
 
 /* Calls use(vector) for each attribute of corners; those that a mesh lacks are empty. */
 template <class Use> void for_each_corner_attribute(Mesh &mesh, Use use)
@@ -31,10 +31,10 @@ template <class Use> void for_each_corner_attribute(Mesh &mesh, Use use)
 /* A mesh being cleaned: what the later steps know of it. */
 struct Draft {
     Mesh &mesh;
-    std::vector<uint8_t> thin;     /* per triangle, from drop_duplicates */
-    std::vector<uint32_t> twin;    /* per half-edge: the other side of the edge, or NO_EDGE */
-    std::vector<uint32_t> suspect; /* half-edges whose two ends may be shared by another edge */
-    std::vector<uint8_t> turned;   /* per triangle: its winding differs from the source's */
+    Vector<uint8_t> thin;          /* per triangle, from drop_duplicates */
+    Vector<uint32_t> twin;         /* per half-edge: the other side of the edge, or NO_EDGE */
+    Vector<uint32_t> suspect;      /* half-edges whose two ends may be shared by another edge */
+    Vector<uint8_t> turned;        /* per triangle: its winding differs from the source's */
     uint64_t cut_edges = 0;        /* opened because the surface has one side only */
     uint64_t inside_out = 0;       /* closed components that were turned */
     uint64_t open_components = 0;
@@ -60,18 +60,18 @@ void make_normals(Draft &surface, Task &task);
 /* Triangles grouped by component: those of component c are order[first[c]] to
  * order[first[c + 1] - 1], in breadth-first order from the lowest. */
 struct Components {
-    std::vector<uint32_t> order, first;
+    Vector<uint32_t> order, first;
     size_t count() const { return first.size() - 1; }
 };
 
 /* Floods over twins; meet(h, o, fresh) is called for each half-edge h of a reached triangle whose
  * twin is o, with whether o's triangle is reached by this. It may remove twins. */
-template <class Meet> Components flood(const std::vector<uint32_t> &twin, Meet meet)
+template <class Meet> Components flood(const Vector<uint32_t> &twin, Meet meet)
 {
     size_t triangles = twin.size() / 3;
     Components result;
     result.order.reserve(triangles);
-    std::vector<bool> reached(triangles, false);
+    Vector<bool> reached(triangles, false);
     for (size_t seed = 0; seed < triangles; ++seed) {
         if (reached[seed])
             continue;
@@ -97,9 +97,9 @@ template <class Meet> Components flood(const std::vector<uint32_t> &twin, Meet m
 }
 
 /* Turns the winding of the triangles with turn[t] != 0, their attributes and twins with them. */
-void turn_triangles(Draft &surface, const std::vector<uint8_t> &turn);
+void turn_triangles(Draft &surface, const Vector<uint8_t> &turn);
 
 /* The corners around the vertex of corner c that are reached over twins, in winding order. */
-void fan_of(const std::vector<uint32_t> &twin, uint32_t c, std::vector<uint32_t> &fan);
+void fan_of(const Vector<uint32_t> &twin, uint32_t c, Vector<uint32_t> &fan);
 
 } // namespace gtx

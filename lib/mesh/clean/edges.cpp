@@ -3,7 +3,7 @@
 
 namespace gtx {
 
-static void join(std::vector<uint32_t> &twin, uint32_t a, uint32_t b)
+static void join(Vector<uint32_t> &twin, uint32_t a, uint32_t b)
 {
     twin[a] = b;
     twin[b] = a;
@@ -35,7 +35,7 @@ static void pair_many(Draft &surface, const EdgeEntry *edge, size_t count)
     Vec3d normals[most];
     for (size_t i = 0; i < count; ++i)
         normals[i] = normalize(surface.mesh.area_vector(edge[i].half_edge / 3));
-    std::vector<Candidate> candidates;
+    Vector<Candidate> candidates;
     for (size_t i = 0; i < count; ++i)
         for (size_t j = i + 1; j < count; ++j) {
             uint32_t a = edge[i].half_edge, b = edge[j].half_edge;
@@ -64,7 +64,7 @@ void pair_edges(Draft &surface, CleanReport &report)
     });
 }
 
-void turn_triangles(Draft &surface, const std::vector<uint8_t> &turn)
+void turn_triangles(Draft &surface, const Vector<uint8_t> &turn)
 {
     Mesh &mesh = surface.mesh;
     /* Exchanging corners 1 and 2 reverses edge 1 and exchanges edges 0 and 2. */
@@ -91,8 +91,8 @@ void turn_triangles(Draft &surface, const std::vector<uint8_t> &turn)
 void orient(Draft &surface)
 {
     const Mesh &mesh = surface.mesh;
-    std::vector<uint32_t> &twin = surface.twin;
-    std::vector<uint8_t> turn(mesh.triangles.size(), 0);
+    Vector<uint32_t> &twin = surface.twin;
+    Vector<uint8_t> turn(mesh.triangles.size(), 0);
     bool any = false;
     Components components = flood(twin, [&](uint32_t h, uint32_t o, bool fresh) {
         uint8_t wanted = turn[h / 3] ^ uint8_t(start_of(mesh, h) == start_of(mesh, o));

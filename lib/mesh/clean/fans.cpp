@@ -3,7 +3,7 @@
 
 namespace gtx {
 
-void fan_of(const std::vector<uint32_t> &twin, uint32_t c, std::vector<uint32_t> &fan)
+void fan_of(const Vector<uint32_t> &twin, uint32_t c, Vector<uint32_t> &fan)
 {
     uint32_t first = c;
     for (uint32_t o; (o = twin[first]) != NO_EDGE;) { /* back to the border, or once around */
@@ -22,8 +22,8 @@ void fan_of(const std::vector<uint32_t> &twin, uint32_t c, std::vector<uint32_t>
 static void one_vertex_a_fan(Draft &surface)
 {
     Mesh &mesh = surface.mesh;
-    std::vector<bool> seen(surface.twin.size(), false), taken(mesh.positions.size(), false);
-    std::vector<uint32_t> fan;
+    Vector<bool> seen(surface.twin.size(), false), taken(mesh.positions.size(), false);
+    Vector<uint32_t> fan;
     for (uint32_t c = 0; c < surface.twin.size(); ++c) {
         if (seen[c])
             continue;
@@ -47,7 +47,7 @@ template <class Visit> static void for_each_suspect_edge(const Draft &surface, V
     struct Entry {
         uint32_t low, high, half_edge;
     };
-    std::vector<Entry> entries;
+    Vector<Entry> entries;
     for (uint32_t h : surface.suspect) {
         uint32_t a = start_of(surface.mesh, h), b = start_of(surface.mesh, next_edge(h));
         entries.push_back({std::min(a, b), std::max(a, b), h});
@@ -57,7 +57,7 @@ template <class Visit> static void for_each_suspect_edge(const Draft &surface, V
                : a.high != b.high ? a.high < b.high
                                   : a.half_edge < b.half_edge;
     });
-    std::vector<uint32_t> group;
+    Vector<uint32_t> group;
     for (size_t i = 0; i < entries.size(); ++i) {
         const Entry &e = entries[i];
         if (i > 0 && (e.low != entries[i - 1].low || e.high != entries[i - 1].high)) {
@@ -77,10 +77,10 @@ template <class Visit> static void for_each_suspect_edge(const Draft &surface, V
  * winds one way they fit. */
 void split_fans(Draft &surface)
 {
-    std::vector<uint32_t> &twin = surface.twin;
+    Vector<uint32_t> &twin = surface.twin;
     one_vertex_a_fan(surface);
     bool parted = false;
-    for_each_suspect_edge(surface, [&](const std::vector<uint32_t> &edge) {
+    for_each_suspect_edge(surface, [&](const Vector<uint32_t> &edge) {
         bool clear = edge.size() == 1 || (edge.size() == 2 && twin[edge[0]] == edge[1]);
         if (clear)
             return;
@@ -91,7 +91,7 @@ void split_fans(Draft &surface)
     if (!parted)
         return;
     one_vertex_a_fan(surface);
-    for_each_suspect_edge(surface, [&](const std::vector<uint32_t> &edge) {
+    for_each_suspect_edge(surface, [&](const Vector<uint32_t> &edge) {
         if (edge.size() == 2) {
             twin[edge[0]] = edge[1];
             twin[edge[1]] = edge[0];

@@ -40,7 +40,7 @@ struct FanCorner {
 
 /* The mean over the triangles of the fan within 60 degrees of corner i's: smooth across scans,
  * sharp at the edges of a cube. Of a very large fan only near triangles count. */
-static Vec3f mean_normal(const std::vector<FanCorner> &fan, size_t i)
+static Vec3f mean_normal(const Vector<FanCorner> &fan, size_t i)
 {
     constexpr size_t reach = 64;
     size_t n = fan.size();
@@ -54,9 +54,9 @@ static Vec3f mean_normal(const std::vector<FanCorner> &fan, size_t i)
 }
 
 /* The normals of the corners around one vertex; returns how many source normals it replaced. */
-static uint64_t fan_normals(Mesh &mesh, const Draft &surface, const std::vector<Vec3f> &faces,
-                            bool from_source, const std::vector<uint32_t> &corners,
-                            std::vector<FanCorner> &fan)
+static uint64_t fan_normals(Mesh &mesh, const Draft &surface, const Vector<Vec3f> &faces,
+                            bool from_source, const Vector<uint32_t> &corners,
+                            Vector<FanCorner> &fan)
 {
     uint64_t replaced = 0;
     fan.clear();
@@ -82,19 +82,19 @@ void make_normals(Draft &surface, Task &task)
     Mesh &mesh = surface.mesh;
     bool from_source = !mesh.normals.empty();
     mesh.normals.resize(3 * mesh.triangles.size());
-    std::vector<Vec3f> faces(mesh.triangles.size());
+    Vector<Vec3f> faces(mesh.triangles.size());
     for (size_t t = 0; t < faces.size(); ++t)
         faces[t] = Vec3f(normalize(mesh.area_vector(t)));
-    std::vector<uint32_t> corner_of(mesh.positions.size());
+    Vector<uint32_t> corner_of(mesh.positions.size());
     for (uint32_t c = uint32_t(surface.twin.size()); c-- > 0;)
         corner_of[start_of(mesh, c)] = c;
 
     constexpr size_t block = 1 << 12;
     size_t blocks = (corner_of.size() + block - 1) / block;
-    std::vector<uint64_t> replaced(blocks, 0);
+    Vector<uint64_t> replaced(blocks, 0);
     task.parallel(blocks, [&](size_t b) {
-        std::vector<uint32_t> corners;
-        std::vector<FanCorner> fan;
+        Vector<uint32_t> corners;
+        Vector<FanCorner> fan;
         for (size_t v = b * block; v < std::min(corner_of.size(), (b + 1) * block); ++v) {
             fan_of(surface.twin, corner_of[v], corners);
             replaced[b] += fan_normals(mesh, surface, faces, from_source, corners, fan);

@@ -42,7 +42,7 @@ static bool ray_meets(const Mesh &mesh, size_t t, const Vec3d &p)
 struct Probe {
     Vec3d point;
     uint32_t component;
-    std::vector<uint32_t> met;
+    Vector<uint32_t> met;
 };
 
 /* An odd number of crossings with one closed component means that it encloses the point. */
@@ -59,8 +59,8 @@ static bool is_enclosed(Probe &probe)
 }
 
 /* Shoots all probes at once: each triangle of a closed component looks up those at its height. */
-static void shoot(const Mesh &mesh, const Components &components, const std::vector<bool> &closed,
-                  std::vector<Probe> &probes, Task &task)
+static void shoot(const Mesh &mesh, const Components &components, const Vector<bool> &closed,
+                  Vector<Probe> &probes, Task &task)
 {
     auto lower = [](const Probe &probe, double y) { return probe.point.y < y; };
     for (size_t c = 0; c < components.count(); ++c) {
@@ -81,10 +81,10 @@ static void shoot(const Mesh &mesh, const Components &components, const std::vec
 /* A closed component of negative volume is the wall of a cavity if another encloses it, and inside
  * out if none does. */
 static void turn_inside_out(Draft &surface, const Components &components,
-                            const std::vector<bool> &closed, Task &task)
+                            const Vector<bool> &closed, Task &task)
 {
     const Mesh &mesh = surface.mesh;
-    std::vector<Probe> probes;
+    Vector<Probe> probes;
     for (size_t c = 0; c < components.count(); ++c) {
         const uint32_t *first = &components.order[components.first[c]];
         if (closed[c] && volume_of(mesh, first, components.first[c + 1] - components.first[c]) < 0)
@@ -97,7 +97,7 @@ static void turn_inside_out(Draft &surface, const Components &components,
     });
     shoot(mesh, components, closed, probes, task);
 
-    std::vector<uint8_t> turn(mesh.triangles.size(), 0);
+    Vector<uint8_t> turn(mesh.triangles.size(), 0);
     for (Probe &probe : probes) {
         if (is_enclosed(probe))
             continue;
@@ -110,7 +110,7 @@ static void turn_inside_out(Draft &surface, const Components &components,
 }
 
 /* The half-edge after h along a border. */
-static uint32_t next_border(const std::vector<uint32_t> &twin, uint32_t h)
+static uint32_t next_border(const Vector<uint32_t> &twin, uint32_t h)
 {
     for (h = next_edge(h); twin[h] != NO_EDGE;)
         h = next_edge(twin[h]);
@@ -119,10 +119,10 @@ static uint32_t next_border(const std::vector<uint32_t> &twin, uint32_t h)
 
 /* The area of a surface that would close the border along half-edge h: triangles around its centre.
  * Marks the border as seen. */
-static double gap_at(const Draft &surface, uint32_t h, std::vector<bool> &seen)
+static double gap_at(const Draft &surface, uint32_t h, Vector<bool> &seen)
 {
     const Mesh &mesh = surface.mesh;
-    std::vector<Vec3d> loop;
+    Vector<Vec3d> loop;
     Vec3d centre;
     for (; !seen[h]; h = next_border(surface.twin, h)) {
         seen[h] = true;
@@ -139,7 +139,7 @@ static double gap_at(const Draft &surface, uint32_t h, std::vector<bool> &seen)
 void choose_sides(Draft &surface, Task &task, CleanReport &report)
 {
     Components components = flood(surface.twin, [](uint32_t, uint32_t, bool) {});
-    std::vector<bool> closed(components.count()), seen(surface.twin.size());
+    Vector<bool> closed(components.count()), seen(surface.twin.size());
     for (size_t c = 0; c < components.count(); ++c) {
         size_t from = components.first[c], to = components.first[c + 1], borders = 0;
         double area = 0, gaps = 0;

@@ -11,7 +11,7 @@ static const char *const fate_names[] = {"", "index", "non-finite", "degenerate"
 
 /* Removes the items of the triangles that are not kept; each has `per` in a row, or all none. */
 template <class T>
-static void compact(std::vector<T> &items, size_t per, const std::vector<uint8_t> &fates)
+static void compact(Vector<T> &items, size_t per, const Vector<uint8_t> &fates)
 {
     size_t kept = 0;
     for (size_t t = 0; t < fates.size() && !items.empty(); ++t)
@@ -21,7 +21,7 @@ static void compact(std::vector<T> &items, size_t per, const std::vector<uint8_t
 }
 
 /* Removes the triangles whose fate is not to be kept and counts them by reason. */
-static void drop(Mesh &mesh, const std::vector<uint8_t> &fates, CleanReport &report)
+static void drop(Mesh &mesh, const Vector<uint8_t> &fates, CleanReport &report)
 {
     uint64_t counts[sizeof(fate_names) / sizeof(*fate_names)] = {0};
     for (uint8_t fate : fates)
@@ -71,7 +71,7 @@ static Fate fate_of(const Mesh &mesh, size_t t)
 
 void drop_invalid(Mesh &mesh, CleanReport &report)
 {
-    std::vector<uint8_t> fates(mesh.triangles.size());
+    Vector<uint8_t> fates(mesh.triangles.size());
     bool all_kept = true;
     for (size_t t = 0; t < fates.size(); ++t) {
         fates[t] = fate_of(mesh, t);
@@ -99,8 +99,8 @@ void weld(Mesh &mesh)
     size_t capacity = 16;
     while (capacity < 2 * bound)
         capacity *= 2;
-    std::vector<uint32_t> table(capacity, NO_EDGE), number(mesh.positions.size(), NO_EDGE);
-    std::vector<Vec3d> welded;
+    Vector<uint32_t> table(capacity, NO_EDGE), number(mesh.positions.size(), NO_EDGE);
+    Vector<Vec3d> welded;
     for (auto &triangle : mesh.triangles)
         for (uint32_t &v : triangle) {
             if (number[v] == NO_EDGE) {
@@ -134,14 +134,14 @@ struct TriangleEntry {
 };
 
 /* A counting sort by the lowest vertex leaves short lists; end[v] is where that of v ends. */
-static std::vector<TriangleEntry> list_triangles(const Mesh &mesh, std::vector<uint32_t> &end)
+static Vector<TriangleEntry> list_triangles(const Mesh &mesh, Vector<uint32_t> &end)
 {
     end.assign(mesh.positions.size() + 1, 0);
     for (const auto &v : mesh.triangles)
         ++end[std::min({v[0], v[1], v[2]}) + 1];
     for (size_t v = 1; v < end.size(); ++v)
         end[v] += end[v - 1];
-    std::vector<TriangleEntry> entries(mesh.triangles.size());
+    Vector<TriangleEntry> entries(mesh.triangles.size());
     for (size_t t = 0; t < entries.size(); ++t) {
         auto v = mesh.triangles[t];
         bool odd = (v[0] > v[1]) ^ (v[1] > v[2]) ^ (v[0] > v[2]);
@@ -151,11 +151,11 @@ static std::vector<TriangleEntry> list_triangles(const Mesh &mesh, std::vector<u
     return entries;
 }
 
-std::vector<uint8_t> drop_duplicates(Mesh &mesh, CleanReport &report)
+Vector<uint8_t> drop_duplicates(Mesh &mesh, CleanReport &report)
 {
-    std::vector<uint32_t> end;
-    std::vector<TriangleEntry> entries = list_triangles(mesh, end);
-    std::vector<uint8_t> fates(entries.size(), KEEP), thin(entries.size(), 0);
+    Vector<uint32_t> end;
+    Vector<TriangleEntry> entries = list_triangles(mesh, end);
+    Vector<uint8_t> fates(entries.size(), KEEP), thin(entries.size(), 0);
     bool all_kept = true;
     TriangleEntry *from = entries.data();
     for (size_t v = 0; v < mesh.positions.size(); ++v) {

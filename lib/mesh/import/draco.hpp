@@ -12,13 +12,13 @@ struct DracoAttribute {
     DracoRole role = DracoRole::other;
     int components = 0;
     double full = 1;            /* what stands for 1 if the values are normalised integers */
-    std::vector<double> values; /* point after point */
+    Vector<double> values;      /* point after point */
 };
 
 struct DracoMesh {
     size_t points = 0;
-    std::vector<std::array<uint32_t, 3>> triangles; /* of points */
-    std::vector<DracoAttribute> attributes;
+    Vector<std::array<uint32_t, 3>> triangles;      /* of points */
+    Vector<DracoAttribute> attributes;
 };
 
 /* Texture coordinates only when they are wanted.

@@ -101,7 +101,7 @@ static EncodedImage encoded_image(const GltfDocument &doc, const GltfImage &imag
 static void fetch_images(const GltfDocument &doc, const ModelFile &file, Appearance &look,
                          Task &task)
 {
-    std::vector<EncodedImage> encoded(doc.look.images.size());
+    Vector<EncodedImage> encoded(doc.look.images.size());
     for (const Material &m : look.materials)
         for (Texture Material::*map : MATERIAL_TEXTURES)
             if ((m.*map).used() && encoded[(m.*map).image].name.empty())
@@ -114,7 +114,7 @@ static void fetch_images(const GltfDocument &doc, const ModelFile &file, Appeara
 
 /* Adds `count` attributes of a primitive that has them or not to a mesh that has them or not. */
 template <class T>
-static void extend(std::vector<T> &to, size_t before, size_t count, bool has, T fill = T())
+static void extend(Vector<T> &to, size_t before, size_t count, bool has, T fill = T())
 {
     if (!has && to.empty())
         return;
@@ -197,7 +197,7 @@ struct Part {
 } // namespace
 
 /* Adds the part wherever its mesh stands. */
-static void append_instances(const Part &part, const std::vector<Affine> &instances, uint64_t limit,
+static void append_instances(const Part &part, const Vector<Affine> &instances, uint64_t limit,
                              Task &task, Mesh &mesh)
 {
     for (const Affine &transform : instances) {
@@ -215,7 +215,7 @@ static void append_instances(const Part &part, const std::vector<Affine> &instan
 Mesh import_gltf(const ModelFile &file, Task &task)
 {
     GltfDocument doc = read_gltf_document(file, task);
-    std::vector<std::vector<Affine>> instances = gltf_instances(doc);
+    Vector<Vector<Affine>> instances = gltf_instances(doc);
     Mesh mesh;
     Palette palette = {doc, mesh.appearance, {}, {}};
     bool has_lines = false;

@@ -17,14 +17,14 @@ namespace gtx {
 
 struct GltfDocument {
     tinygltf::Model model;            /* without buffers, materials and animations */
-    std::vector<std::string> buffers; /* the bytes of each */
-    std::vector<std::string> views;   /* those of each buffer view that was packed, or none */
+    Vector<std::string> buffers;      /* the bytes of each */
+    Vector<std::string> views;        /* those of each buffer view that was packed, or none */
     GltfMaterials look;
     struct ImageSource {
         std::string uri;
         int view = -1;
     };
-    std::vector<ImageSource> images;
+    Vector<ImageSource> images;
     /* Most triangles that may come out. A few bytes of JSON can ask for a mesh a million times, so
      * the limit grows with the size of the file; real scenes stay far below it. */
     uint64_t triangle_limit = 0;
@@ -40,12 +40,12 @@ std::string_view gltf_view(const GltfDocument &doc, int view, const std::string 
 struct GltfValues {
     int components = 0;
     size_t count = 0;
-    std::vector<double> values;
+    Vector<double> values;
 };
 GltfValues gltf_values(const GltfDocument &doc, int accessor);
 
 /* An index accessor's values, each below `vertices`. */
-std::vector<uint32_t> gltf_indices(const GltfDocument &doc, int accessor, size_t vertices);
+Vector<uint32_t> gltf_indices(const GltfDocument &doc, int accessor, size_t vertices);
 
 /* Unpacks the buffer views of EXT_meshopt_compression to doc.views. Throws Error: INPUT. */
 void unpack_gltf_views(GltfDocument &doc, Task &task);
@@ -67,18 +67,18 @@ struct Affine {
 };
 
 /* Where each mesh stands, in the order of the tree. */
-std::vector<std::vector<Affine>> gltf_instances(const GltfDocument &doc);
+Vector<Vector<Affine>> gltf_instances(const GltfDocument &doc);
 
 /* ---- primitives ---- */
 
 /* Attributes by vertex; those that it lacks, or that nobody looks at, are empty. */
 struct GltfPrimitive {
-    std::vector<Vec3d> positions;
-    std::vector<std::array<uint32_t, 3>> triangles;
-    std::vector<Vec3f> normals;
-    std::vector<Rgba8> colors;
-    std::vector<std::array<float, 2>> uv[2];
-    std::vector<std::array<float, 4>> tangents;
+    Vector<Vec3d> positions;
+    Vector<std::array<uint32_t, 3>> triangles;
+    Vector<Vec3f> normals;
+    Vector<Rgba8> colors;
+    Vector<std::array<float, 2>> uv[2];
+    Vector<std::array<float, 4>> tangents;
 };
 
 /* Reads one of triangles. `material`, null without, says what it looks at. `where` is for

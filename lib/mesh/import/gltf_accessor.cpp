@@ -89,8 +89,8 @@ static int components_of(const tinygltf::Accessor &a)
 }
 
 /* Integers of a sparse accessor's list of places, increasing and below `limit`. */
-static std::vector<uint32_t> sparse_places(const GltfDocument &doc, const tinygltf::Accessor &a,
-                                           const std::string &user)
+static Vector<uint32_t> sparse_places(const GltfDocument &doc, const tinygltf::Accessor &a,
+                                      const std::string &user)
 {
     int type = a.sparse.indices.componentType;
     size_t size = component_size(type);
@@ -103,7 +103,7 @@ static std::vector<uint32_t> sparse_places(const GltfDocument &doc, const tinygl
         !fits(uint64_t(a.sparse.indices.byteOffset), uint64_t(a.sparse.count), size, size,
               bytes.size()))
         fail(GTX_ERROR_INPUT, "%s: its sparse indices lie outside their buffer view", user.c_str());
-    std::vector<uint32_t> places;
+    Vector<uint32_t> places;
     auto data = reinterpret_cast<const uint8_t *>(bytes.data()) + a.sparse.indices.byteOffset;
     for (size_t i = 0; i < size_t(a.sparse.count); ++i) {
         double place = component(data + i * size, type);
@@ -118,7 +118,7 @@ static std::vector<uint32_t> sparse_places(const GltfDocument &doc, const tinygl
 static void substitute_sparse(const GltfDocument &doc, const tinygltf::Accessor &a, double full,
                               const std::string &user, GltfValues &out)
 {
-    std::vector<uint32_t> places = sparse_places(doc, a, user);
+    Vector<uint32_t> places = sparse_places(doc, a, user);
     std::string_view bytes = gltf_view(doc, a.sparse.values.bufferView, user);
     size_t size = component_size(a.componentType), item = size * size_t(out.components);
     if (a.sparse.values.byteOffset < 0 ||
@@ -164,7 +164,7 @@ GltfValues gltf_values(const GltfDocument &doc, int accessor)
     return out;
 }
 
-std::vector<uint32_t> gltf_indices(const GltfDocument &doc, int accessor, size_t vertices)
+Vector<uint32_t> gltf_indices(const GltfDocument &doc, int accessor, size_t vertices)
 {
     const tinygltf::Accessor &a = find_accessor(doc, accessor);
     bool integers = a.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
@@ -173,7 +173,7 @@ std::vector<uint32_t> gltf_indices(const GltfDocument &doc, int accessor, size_t
     if (!integers || a.type != TINYGLTF_TYPE_SCALAR || a.normalized)
         fail(GTX_ERROR_INPUT, "accessor %d: indices must be unsigned integers", accessor);
     GltfValues from = gltf_values(doc, accessor);
-    std::vector<uint32_t> out;
+    Vector<uint32_t> out;
     out.reserve(from.count);
     for (size_t i = 0; i < from.count; ++i) {
         if (from.values[i] >= double(vertices))

@@ -172,9 +172,9 @@ static std::string read_buffer(const ModelFile &file, const json &buffer, size_t
     return bytes;
 }
 
-static std::vector<GltfDocument::ImageSource> read_images(const json &root)
+static Vector<GltfDocument::ImageSource> read_images(const json &root)
 {
-    std::vector<GltfDocument::ImageSource> images;
+    Vector<GltfDocument::ImageSource> images;
     for (const json &image : root.value("images", json::array()))
         images.push_back({image.value("uri", ""), image.value("bufferView", -1)});
     return images;

@@ -11,7 +11,7 @@ namespace gtx {
 struct GltfMaterial {
     /* Texture::image is an index of GltfMaterials::images, Texture::set one of `sets`. */
     Material look;
-    std::vector<int> sets; /* the n of TEXCOORD_n, two at most */
+    Vector<int> sets;      /* the n of TEXCOORD_n, two at most */
     bool two_sided = false;
     std::set<std::string> warnings; /* what will not be seen of it */
 };
@@ -27,8 +27,8 @@ struct GltfImage {
 };
 
 struct GltfMaterials {
-    std::vector<GltfMaterial> materials;
-    std::vector<GltfImage> images;
+    Vector<GltfMaterial> materials;
+    Vector<GltfImage> images;
 };
 
 /* Reads materials, textures and samplers of a checked document. Throws Error: INPUT. */

@@ -86,9 +86,9 @@ static void read_draco(const GltfDocument &doc, const tinygltf::Primitive &primi
 
 /* ---- accessors ---- */
 
-static std::vector<std::array<uint32_t, 3>> assemble(const std::vector<uint32_t> &v, int mode)
+static Vector<std::array<uint32_t, 3>> assemble(const Vector<uint32_t> &v, int mode)
 {
-    std::vector<std::array<uint32_t, 3>> out;
+    Vector<std::array<uint32_t, 3>> out;
     bool list = mode == TINYGLTF_MODE_TRIANGLES;
     for (size_t i = 2; i < v.size(); i += list ? 3 : 1) {
         bool odd = mode == TINYGLTF_MODE_TRIANGLE_STRIP && i % 2;
@@ -104,7 +104,7 @@ static void read_accessors(const GltfDocument &doc, const tinygltf::Primitive &p
     for (int slot = 0; slot < SLOTS; ++slot)
         if (int accessor = attribute(primitive, a.names[slot]); accessor >= 0)
             a.values[slot] = gltf_values(doc, accessor);
-    std::vector<uint32_t> indices;
+    Vector<uint32_t> indices;
     size_t count = a.values[POSITION].count;
     if (primitive.indices >= 0) {
         indices = gltf_indices(doc, primitive.indices, count);
@@ -147,7 +147,7 @@ static void set_colors(const GltfValues &from, GltfPrimitive &out)
 
 /* Any number of floats a vertex. */
 template <size_t N>
-static void set_floats(const GltfValues &from, std::vector<std::array<float, N>> &out)
+static void set_floats(const GltfValues &from, Vector<std::array<float, N>> &out)
 {
     out.resize(from.count);
     for (size_t i = 0; i < from.count; ++i)

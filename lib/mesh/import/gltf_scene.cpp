@@ -58,7 +58,7 @@ static void check_repeats(size_t count, int number)
 }
 
 /* EXT_mesh_gpu_instancing: where a node repeats its mesh, relative to itself. */
-static std::vector<Affine> repeated(const GltfDocument &doc, const tinygltf::Node &node, int number)
+static Vector<Affine> repeated(const GltfDocument &doc, const tinygltf::Node &node, int number)
 {
     auto extension = node.extensions.find("EXT_mesh_gpu_instancing");
     if (extension == node.extensions.end())
@@ -76,7 +76,7 @@ static std::vector<Affine> repeated(const GltfDocument &doc, const tinygltf::Nod
             count = values[k].count;
         }
     check_repeats(count, number);
-    std::vector<Affine> out;
+    Vector<Affine> out;
     const double *at[3] = {};
     for (int k = 0; k < 3; ++k)
         if (values[k].components && (values[k].components != attributes[k].components ||
@@ -100,7 +100,7 @@ static std::vector<int> scene_roots(const tinygltf::Model &model)
         return model.scenes[size_t(scene)].nodes;
     if (model.defaultScene >= 0)
         fail(GTX_ERROR_INPUT, "there is no scene %d", scene);
-    std::vector<bool> is_child(model.nodes.size());
+    Vector<bool> is_child(model.nodes.size());
     for (const tinygltf::Node &node : model.nodes)
         for (int child : node.children)
             if (child >= 0 && size_t(child) < is_child.size())
@@ -113,10 +113,10 @@ static std::vector<int> scene_roots(const tinygltf::Model &model)
 }
 
 /* With a stack of our own, since a file may nest its nodes as deep as it likes. */
-std::vector<std::vector<Affine>> gltf_instances(const GltfDocument &doc)
+Vector<Vector<Affine>> gltf_instances(const GltfDocument &doc)
 {
     const tinygltf::Model &model = doc.model;
-    std::vector<std::vector<Affine>> instances(model.meshes.size());
+    Vector<Vector<Affine>> instances(model.meshes.size());
     if (model.nodes.empty()) { /* a library of meshes */
         for (auto &list : instances)
             list.emplace_back();
@@ -126,9 +126,9 @@ std::vector<std::vector<Affine>> gltf_instances(const GltfDocument &doc)
         int node;
         Affine parent;
     };
-    std::vector<Visit> stack;
+    Vector<Visit> stack;
     size_t repeats = 0;
-    std::vector<bool> seen(model.nodes.size());
+    Vector<bool> seen(model.nodes.size());
     std::vector<int> roots = scene_roots(model);
     for (size_t i = roots.size(); i-- > 0;)
         stack.push_back({roots[i], {}});
@@ -145,7 +145,7 @@ std::vector<std::vector<Affine>> gltf_instances(const GltfDocument &doc)
         if (node.mesh >= 0) {
             if (size_t(node.mesh) >= model.meshes.size())
                 fail(GTX_ERROR_INPUT, "node %d: there is no mesh %d", number, node.mesh);
-            std::vector<Affine> list = repeated(doc, node, number);
+            Vector<Affine> list = repeated(doc, node, number);
             check_repeats(repeats += list.size() - (list.size() == 1), number);
             for (const Affine &instance : list)
                 instances[size_t(node.mesh)].push_back(transform * instance);

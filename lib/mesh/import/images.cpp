@@ -65,7 +65,7 @@ static void measure(const EncodedImage &from, Load &load)
 }
 
 /* Roughness is 1 - glossiness, in green; the surface counts as no metal. */
-static void make_rough(float glossiness, std::vector<Rgba8> &texels)
+static void make_rough(float glossiness, Vector<Rgba8> &texels)
 {
     for (Rgba8 &c : texels)
         c = {255, to_byte(1 - double(glossiness) * c.a / 255), 0, 255};
@@ -81,7 +81,7 @@ static void decode(const EncodedImage &from, Load &load)
     }
     std::unique_ptr<gtx_image, void (*)(gtx_image *)> guard(&decoded, gtx_image_free);
     const uint32_t width = decoded.width, height = decoded.height;
-    std::vector<Rgba8> texels(size_t(width) * height);
+    Vector<Rgba8> texels(size_t(width) * height);
     for (size_t i = 0; i < texels.size(); ++i) {
         const uint8_t *p = decoded.pixels + 4 * i;
         texels[i] = {p[0], p[1], p[2], p[3]};
@@ -113,20 +113,20 @@ static void drop_unseen(Appearance &look)
     }
     for (int k = 0; k < 2; ++k)
         if (!set[k])
-            std::vector<std::array<float, 2>>().swap(look.uv[k]);
+            Vector<std::array<float, 2>>().swap(look.uv[k]);
     if (!bent)
-        std::vector<std::array<float, 4>>().swap(look.tangents);
+        Vector<std::array<float, 4>>().swap(look.tangents);
 }
 
-void load_images(const std::vector<EncodedImage> &encoded, Appearance &look, Task &task)
+void load_images(const Vector<EncodedImage> &encoded, Appearance &look, Task &task)
 {
-    std::vector<Load> loads(encoded.size());
+    Vector<Load> loads(encoded.size());
     for (const Material &m : look.materials)
         for (Texture Material::*map : MATERIAL_TEXTURES)
             if ((m.*map).used())
                 loads[(m.*map).image].needed[int(kind_of(map))] = true;
 
-    std::vector<size_t> work;
+    Vector<size_t> work;
     uint64_t pixels = 0;
     for (size_t i = 0; i < loads.size(); ++i) {
         if (!loads[i].needed[0] && !loads[i].needed[1])

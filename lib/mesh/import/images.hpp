@@ -21,6 +21,6 @@ EncodedImage read_image_file(const ModelFile &file, std::string name, const std:
  * once, and makes the textures name the results. An image that cannot be had is a warning, and the
  * textures that name it are gone: their factors alone are left, but nothing shines by a factor that
  * waited for its texture. Coordinates and tangents that no texture looks at go too. */
-void load_images(const std::vector<EncodedImage> &encoded, Appearance &look, Task &task);
+void load_images(const Vector<EncodedImage> &encoded, Appearance &look, Task &task);
 
 } // namespace gtx

@@ -26,7 +26,7 @@ struct Format {
     const char *extension;
     const char *magic; /* the first bytes of every such file; null when there are none */
     Mesh (*import)(const ModelFile &, Task &);
-    void (*references)(const ModelFile &, std::vector<std::string> &); /* null: it is alone */
+    void (*references)(const ModelFile &, Vector<std::string> &);      /* null: it is alone */
 };
 
 static const Format formats[] = {
@@ -112,7 +112,7 @@ static std::string inflate_gzip(const std::string &packed, Task &task)
         fail(GTX_ERROR_MEMORY, "not enough memory to inflate the file");
     std::unique_ptr<z_stream, int (*)(z_stream *)> guard(&stream, inflateEnd);
     std::string out;
-    std::vector<char> block(size_t(1) << 20);
+    Vector<char> block(size_t(1) << 20);
     size_t at = 0;
     for (int status = Z_OK; status != Z_STREAM_END || packed.compare(at, 2, "\x1f\x8b") == 0;) {
         if (status == Z_STREAM_END)
@@ -218,10 +218,10 @@ ModelFile read_model(const std::string &path, Task &task)
     return within_memory([&] { return model_in_memory(read_whole_file(path), path, task); });
 }
 
-std::vector<std::string> referenced_files(const ModelFile &file)
+Vector<std::string> referenced_files(const ModelFile &file)
 {
     return within_memory([&] {
-        std::vector<std::string> paths, once;
+        Vector<std::string> paths, once;
         const Format *format = find_format(file);
         if (format && format->references)
             format->references(file, paths);
@@ -246,7 +246,7 @@ Mesh import_model(const ModelFile &file, Task &task)
     return mesh;
 }
 
-Mesh import_mesh(const std::string &path, Task &task, std::vector<std::string> *sources)
+Mesh import_mesh(const std::string &path, Task &task, Vector<std::string> *sources)
 {
     ModelFile file = read_model(path, task);
     file.sources = sources;

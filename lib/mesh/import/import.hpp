@@ -43,18 +43,18 @@ std::string path_beside(const ModelFile &file, const std::string &name);
 std::string percent_decoded(std::string_view uri);
 
 /* Append the paths of the files that a model refers to; "" for those it must not. */
-void gltf_references(const ModelFile &file, std::vector<std::string> &paths);
-void obj_references(const ModelFile &file, std::vector<std::string> &paths);
+void gltf_references(const ModelFile &file, Vector<std::string> &paths);
+void obj_references(const ModelFile &file, Vector<std::string> &paths);
 
 /* Cuts a polygon of n >= 3 corners into n - 2 triangles of corner numbers, wound alike. */
-void triangulate(const std::vector<Vec3d> &polygon, std::vector<std::array<uint32_t, 3>> &out);
+void triangulate(const Vector<Vec3d> &polygon, Vector<std::array<uint32_t, 3>> &out);
 
 /* A mesh with its attributes by vertex, as most files have it; normals and colors may be empty. */
 struct VertexMesh {
-    std::vector<Vec3d> positions;
-    std::vector<Vec3f> normals;
-    std::vector<Rgba8> colors;
-    std::vector<std::array<uint32_t, 3>> triangles;
+    Vector<Vec3d> positions;
+    Vector<Vec3f> normals;
+    Vector<Rgba8> colors;
+    Vector<std::array<uint32_t, 3>> triangles;
 };
 
 /* The same with its attributes by corner. */

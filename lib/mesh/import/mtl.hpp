@@ -14,10 +14,10 @@ struct MtlMaterial {
 };
 
 struct MtlLibrary {
-    std::vector<MtlMaterial> materials;
-    std::vector<EncodedImage> images;
-    std::vector<std::string> image_names;
-    std::vector<std::string> ignored; /* statements, in the order found */
+    Vector<MtlMaterial> materials;
+    Vector<EncodedImage> images;
+    Vector<std::string> image_names;
+    Vector<std::string> ignored;      /* statements, in the order found */
 };
 
 /* Adds the materials of a library beside the model; of two of one name the first stays. Colours are

@@ -38,15 +38,15 @@ private:
     const ModelFile &file_;
     Task &task_;
     Mesh mesh_;
-    std::vector<Vec3f> normals_;
-    std::vector<std::array<float, 2>> coordinates_;
-    std::vector<Rgba8> colors_;                  /* by vertex, or empty */
-    std::vector<std::string> libraries_, names_; /* of mtllib and usemtl */
+    Vector<Vec3f> normals_;
+    Vector<std::array<float, 2>> coordinates_;
+    Vector<Rgba8> colors_;                       /* by vertex, or empty */
+    Vector<std::string> libraries_, names_;      /* of mtllib and usemtl */
     uint32_t name_ = NOTHING;                    /* of the material in use, in names_ */
-    std::vector<Corner> corners_;                /* of the face at hand */
-    std::vector<Vec3d> polygon_;
-    std::vector<std::array<uint32_t, 3>> cut_;
-    std::vector<std::string> ignored_; /* statements, in the order found */
+    Vector<Corner> corners_;                     /* of the face at hand */
+    Vector<Vec3d> polygon_;
+    Vector<std::array<uint32_t, 3>> cut_;
+    Vector<std::string> ignored_;      /* statements, in the order found */
     size_t short_faces_ = 0, lost_coordinates_ = 0;
 };
 

@@ -25,13 +25,13 @@ private:
     TextReader text_;
     Task &task_;
     VertexMesh mesh_;
-    std::vector<std::array<float, 4>> colors_;
+    Vector<std::array<float, 4>> colors_;
     float largest_color_ = 0;
     uint64_t vertices_ = 0, faces_ = 0, short_faces_ = 0;
     bool has_face_colors_ = false;
-    std::vector<uint32_t> corners_;
-    std::vector<Vec3d> polygon_;
-    std::vector<std::array<uint32_t, 3>> cut_;
+    Vector<uint32_t> corners_;
+    Vector<Vec3d> polygon_;
+    Vector<std::array<uint32_t, 3>> cut_;
 };
 
 /* [ST][C][N][4][n]OFF [BINARY]; a file may do without and start with its counts. */

@@ -25,7 +25,7 @@ constexpr const char *role_names[ROLE_COUNT][2] = {
 
 /* What the properties of an element mean. */
 struct Roles {
-    std::vector<int> of;              /* a property; ROLE_COUNT: nobody asks for it */
+    Vector<int> of;                   /* a property; ROLE_COUNT: nobody asks for it */
     bool has[ROLE_COUNT] = {};
     double full[ROLE_COUNT] = {};
 
@@ -59,8 +59,8 @@ Rgba8 Roles::color(const double *v) const
 
 /* The corners of faces or of strips. */
 struct Lists {
-    std::vector<double> values; /* each list behind its length */
-    std::vector<Rgba8> colors;  /* a list each */
+    Vector<double> values;      /* each list behind its length */
+    Vector<Rgba8> colors;       /* a list each */
 };
 
 class PlyReader {
@@ -88,7 +88,7 @@ private:
     VertexMesh mesh_;
     Lists faces_, strips_;
     bool faces_colored_ = false;
-    std::vector<Rgba8> colors_; /* a triangle each */
+    Vector<Rgba8> colors_;      /* a triangle each */
     std::string ignored_;
 };
 
@@ -185,9 +185,9 @@ uint32_t PlyReader::vertex_index(double value, const char *what, size_t row)
 
 void PlyReader::cut_faces()
 {
-    std::vector<uint32_t> corners;
-    std::vector<Vec3d> polygon;
-    std::vector<std::array<uint32_t, 3>> cut;
+    Vector<uint32_t> corners;
+    Vector<Vec3d> polygon;
+    Vector<std::array<uint32_t, 3>> cut;
     size_t row = 0, dropped = 0;
     for (size_t i = 0; i < faces_.values.size(); ++row) {
         size_t n = size_t(faces_.values[i++]);

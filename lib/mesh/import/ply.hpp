@@ -21,12 +21,12 @@ struct PlyProperty {
 struct PlyElement {
     std::string name;
     uint64_t count = 0;
-    std::vector<PlyProperty> properties;
+    Vector<PlyProperty> properties;
 };
 
 struct PlyHeader {
     bool ascii = false, big_endian = false;
-    std::vector<PlyElement> elements;
+    Vector<PlyElement> elements;
     size_t size = 0; /* in bytes */
     size_t lines = 0;
 };

@@ -38,7 +38,7 @@ public:
     PlyHeader read();
 
 private:
-    using Words = std::vector<std::string_view>;
+    using Words = Vector<std::string_view>;
     Words next_line();
     PlyType type_named(std::string_view name);
     void element(const Words &words);

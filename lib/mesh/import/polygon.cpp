@@ -22,7 +22,7 @@ static double turn(Point a, Point b, Point c)
 }
 
 /* The polygon along the largest component of its normal (Newell's), counter-clockwise. */
-static std::vector<Point> flatten(const std::vector<Vec3d> &polygon)
+static Vector<Point> flatten(const Vector<Vec3d> &polygon)
 {
     Vec3d normal;
     for (size_t i = 0; i < polygon.size(); ++i) {
@@ -37,13 +37,13 @@ static std::vector<Point> flatten(const std::vector<Vec3d> &polygon)
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
     if (normal[axis] < 0)
         std::swap(u, v);
-    std::vector<Point> flat;
+    Vector<Point> flat;
     for (const Vec3d &p : polygon)
         flat.push_back({p[u] - polygon[0][u], p[v] - polygon[0][v]});
     return flat;
 }
 
-static bool is_convex(const std::vector<Point> &flat)
+static bool is_convex(const Vector<Point> &flat)
 {
     size_t n = flat.size();
     for (size_t i = 0; i < n; ++i)
@@ -61,10 +61,10 @@ static bool inside(Point p, Point a, Point b, Point c)
 
 /* Meisters, "Polygons have ears", 1975. A polygon that crosses itself may have none left; then the
  * corner at hand is cut off, so that the count of triangles holds. */
-static void clip_ears(const std::vector<Point> &flat, std::vector<std::array<uint32_t, 3>> &out)
+static void clip_ears(const Vector<Point> &flat, Vector<std::array<uint32_t, 3>> &out)
 {
     uint32_t n = uint32_t(flat.size());
-    std::vector<uint32_t> next(n), previous(n);
+    Vector<uint32_t> next(n), previous(n);
     for (uint32_t i = 0; i < n; ++i) {
         next[i] = (i + 1) % n;
         previous[i] = (i + n - 1) % n;
@@ -95,10 +95,10 @@ static void clip_ears(const std::vector<Point> &flat, std::vector<std::array<uin
     out.push_back({previous[i], i, next[i]});
 }
 
-void triangulate(const std::vector<Vec3d> &polygon, std::vector<std::array<uint32_t, 3>> &out)
+void triangulate(const Vector<Vec3d> &polygon, Vector<std::array<uint32_t, 3>> &out)
 {
     if (polygon.size() > 3 && polygon.size() <= max_ear_corners) {
-        std::vector<Point> flat = flatten(polygon);
+        Vector<Point> flat = flatten(polygon);
         if (!is_convex(flat)) {
             clip_ears(flat, out);
             return;

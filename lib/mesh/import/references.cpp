@@ -46,7 +46,7 @@ std::string percent_decoded(std::string_view uri)
 }
 
 /* A few bytes of text can stand for many names, each of which is looked for. */
-static void add_path(std::vector<std::string> &paths, std::string path)
+static void add_path(Vector<std::string> &paths, std::string path)
 {
     constexpr size_t MOST = 1 << 16;
     if (paths.size() == MOST)
@@ -66,7 +66,7 @@ static std::string_view gltf_text(std::string_view bytes)
     return bytes.substr(TEXT, gtx_load_u32(reinterpret_cast<const uint8_t *>(bytes.data()) + 12));
 }
 
-void gltf_references(const ModelFile &file, std::vector<std::string> &paths)
+void gltf_references(const ModelFile &file, Vector<std::string> &paths)
 {
     std::string_view text = gltf_text(file.bytes);
     auto keep = [](int depth, json::parse_event_t event, json &value) {
@@ -105,7 +105,7 @@ static void each_statement(std::string_view text, std::initializer_list<const ch
 /* A name may have blanks in it, and options or further names before it: every tail of the line and
  * every word may be one. Exporters of another system write its separators. */
 static void add_names(std::initializer_list<const ModelFile *> beside, std::string_view line,
-                      std::vector<std::string> &paths)
+                      Vector<std::string> &paths)
 {
     constexpr int MAX_WORDS = 32;
     std::string portable(line.substr(0, line.find_last_not_of(" \t") + 1));
@@ -124,7 +124,7 @@ static void add_names(std::initializer_list<const ModelFile *> beside, std::stri
     }
 }
 
-void obj_references(const ModelFile &file, std::vector<std::string> &paths)
+void obj_references(const ModelFile &file, Vector<std::string> &paths)
 {
     each_statement(file.bytes, {"mtllib"},
                    [&](std::string_view line) { add_names({&file}, line, paths); });

@@ -79,7 +79,7 @@ static void expect(TextReader &text, const char *wanted)
 }
 
 /* From behind "facet"; its normal, which the corners say better, is on the same line. */
-static void read_facet(TextReader &text, std::vector<Vec3d> &polygon)
+static void read_facet(TextReader &text, Vector<Vec3d> &polygon)
 {
     polygon.clear();
     text.next_line();
@@ -104,8 +104,8 @@ static Mesh read_text(std::string_view bytes, Task &task)
 {
     Mesh mesh;
     TextReader text(bytes, task);
-    std::vector<Vec3d> polygon;
-    std::vector<std::array<uint32_t, 3>> cut;
+    Vector<Vec3d> polygon;
+    Vector<std::array<uint32_t, 3>> cut;
     bool inside = false;
     for (;;) {
         std::string word = keyword(text);

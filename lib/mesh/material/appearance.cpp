@@ -26,7 +26,7 @@ AppearanceNeeds appearance_needs(const Mesh &mesh)
     const Appearance &look = mesh.appearance;
     AppearanceNeeds needs;
     needs.color = !mesh.colors.empty();
-    std::vector<bool> used(look.materials.size(), false);
+    Vector<bool> used(look.materials.size(), false);
     for (uint32_t m : look.material)
         used[m] = true;
     for (size_t i = 0; i < used.size(); ++i) {

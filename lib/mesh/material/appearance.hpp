@@ -1,12 +1,12 @@
 /* Materials and textures of a mesh, and what they make of a point of it (glTF 2.0, 3.9). */
 #pragma once
 
+#include "mesh/memory.hpp"
 #include "mesh/vec.hpp"
 
 #include <array>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 namespace gtx {
 
@@ -21,9 +21,9 @@ struct Rgba8 {
 struct Image {
     struct Level {
         uint32_t width = 0, height = 0;
-        std::vector<Rgba8> texels;
+        Vector<Rgba8> texels;
     };
-    std::vector<Level> levels;
+    Vector<Level> levels;
 };
 
 enum class Wrap : uint8_t { REPEAT, MIRROR, CLAMP };
@@ -54,11 +54,11 @@ constexpr Texture Material::*MATERIAL_TEXTURES[] = {
 
 /* Per corner like the other attributes of a mesh, or empty. */
 struct Appearance {
-    std::vector<Material> materials;
-    std::vector<Image> images;
-    std::vector<uint32_t> material;                /* per triangle; empty: none has any */
-    std::vector<std::array<float, 2>> uv[2];       /* per corner */
-    std::vector<std::array<float, 4>> tangents;    /* per corner: unit, and the bitangent's sign */
+    Vector<Material> materials;
+    Vector<Image> images;
+    Vector<uint32_t> material;                     /* per triangle; empty: none has any */
+    Vector<std::array<float, 2>> uv[2];            /* per corner */
+    Vector<std::array<float, 4>> tangents;         /* per corner: unit, and the bitangent's sign */
 };
 
 /* What the maps of a mesh have to hold. */

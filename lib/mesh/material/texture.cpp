@@ -77,7 +77,7 @@ static Image::Level halve(const Image::Level &fine, Texels kind)
     return out;
 }
 
-Image make_image(uint32_t width, uint32_t height, std::vector<Rgba8> texels, Texels kind)
+Image make_image(uint32_t width, uint32_t height, Vector<Rgba8> texels, Texels kind)
 {
     Image image;
     image.levels.push_back({width, height, std::move(texels)});

@@ -12,7 +12,7 @@ enum class Texels : uint8_t {
 };
 
 /* An image of width x height texels with all its levels, down to one texel. */
-Image make_image(uint32_t width, uint32_t height, std::vector<Rgba8> texels, Texels kind);
+Image make_image(uint32_t width, uint32_t height, Vector<Rgba8> texels, Texels kind);
 
 /* The mean over a square of `side` texels of the finest level around (u, v), which the texture's
  * transform has been applied to: 0..1, the colours of COLOR as light. Trilinear (Williams 1983). */

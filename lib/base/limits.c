@@ -1,0 +1,51 @@
+/* The limits' defaults, and the one sentence of what passes one. */
+#include "base/limits.h"
+
+#include <inttypes.h>
+
+/* A default: a number, and more for each byte read. Of 59 real models, scans and terrain in Draco
+ * have most of everything for a byte: 1.8 triangles, 900 bytes of memory. */
+static const struct {
+    const char *name, *unit;
+    uint64_t least, per_byte;
+} fields[GTX_LIMITED_COUNT] = {
+    {"memory", "bytes of memory", (uint64_t)256 << 20, 2000},
+    {"triangles", "triangles", (uint64_t)1 << 20, 2},
+    {"texels", "texels", (uint64_t)1 << 26, 256},
+    {"pixels", "pixels", (uint64_t)1 << 26, 16},
+    {"patches", "patches", (uint64_t)1 << 20, 0},
+};
+
+gtx_result gtx_check_limits(const gtx_limits *limits, gtx_error *error)
+{
+    return gtx_check_reserved(limits->reserved, sizeof limits->reserved / sizeof(uint32_t), error);
+}
+
+uint64_t gtx_limit_of(const gtx_limits *limits, gtx_limited which, uint64_t bytes_read)
+{
+    static const gtx_limits none = {0};
+    const gtx_limits *l = limits ? limits : &none;
+    const uint64_t given[GTX_LIMITED_COUNT] = {l->memory, l->triangles, l->texels, l->pixels,
+                                               l->patches};
+    const uint64_t per_byte = fields[which].per_byte, least = fields[which].least;
+    if (given[which])
+        return given[which];
+    return per_byte && bytes_read > (UINT64_MAX - least) / per_byte
+               ? UINT64_MAX
+               : least + per_byte * bytes_read;
+}
+
+gtx_result gtx_fail_limit(gtx_error *error, gtx_limited which, const char *what, uint64_t wanted,
+                          uint64_t allowed)
+{
+    gtx_fail(error, GTX_ERROR_LIMIT, "%.100s takes %" PRIu64 " %s, more than the %" PRIu64
+             " allowed", what, wanted, fields[which].unit, allowed);
+    if (error)
+        error->limit = fields[which].name;
+    return GTX_ERROR_LIMIT;
+}
+
+const char *gtx_limit_name(gtx_limited which)
+{
+    return fields[which].name;
+}

@@ -1,0 +1,85 @@
+/* Counting: each thread gathers small amounts before it tells the job's limits. */
+#include "mesh/memory.hpp"
+
+#include "mesh/task.hpp"
+
+namespace gtx {
+
+/* Bytes that a thread may hold, or have given back, untold: a limit is that coarse. */
+constexpr int64_t UNTOLD = 1 << 16;
+
+namespace {
+
+struct Account {
+    Limits *limits = nullptr;
+    int64_t untold = 0;
+};
+
+} // namespace
+
+static thread_local Account account;
+
+void Limits::require(gtx_limited which, const char *what, uint64_t wanted) const
+{
+    const uint64_t allowed = of(which);
+    if (wanted <= allowed)
+        return;
+    gtx_error error;
+    gtx_fail_limit(&error, which, what, wanted, allowed);
+    throw Error(error);
+}
+
+void Limits::take(int64_t bytes)
+{
+    const int64_t now = taken_ += bytes;
+    if (now <= 0 || uint64_t(now) <= most_)
+        return;
+    taken_ -= bytes;
+    gtx_error error;
+    gtx_fail_limit(&error, GTX_LIMITED_MEMORY, stage, uint64_t(now), most_);
+    throw Error(error);
+}
+
+MemoryScope::MemoryScope(Limits &limits) : outer_(account.limits)
+{
+    if (outer_)
+        outer_->tell(account.untold);
+    account = {&limits, 0};
+}
+
+MemoryScope::~MemoryScope()
+{
+    account.limits->tell(account.untold);
+    account = {outer_, 0};
+}
+
+void take_memory(size_t bytes)
+{
+    if (!account.limits)
+        return;
+    account.untold += int64_t(bytes);
+    if (account.untold < UNTOLD)
+        return;
+    const int64_t told = account.untold;
+    account.untold = 0;
+    try {
+        account.limits->take(told);
+    } catch (...) {
+        account.untold = told - int64_t(bytes);
+        throw;
+    }
+}
+
+void give_memory(size_t bytes) noexcept
+{
+    if (!account.limits)
+        return;
+    account.untold -= int64_t(bytes);
+    if (account.untold > -UNTOLD)
+        return;
+    const int64_t told = account.untold;
+    account.untold = 0;
+    account.limits->tell(told);
+}
+
+} // namespace gtx

@@ -1,0 +1,98 @@
+/* Memory that a job takes, counted and held to its limit where containers take it. */
+#pragma once
+
+#include "base/limits.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <vector>
+
+namespace gtx {
+
+/* The limits of one job, and the memory that it holds. Any of its threads may use it. */
+class Limits {
+public:
+    explicit Limits(const gtx_limits &given = {}) : given_(given) { grow(0); }
+
+    /* The job has read so many bytes: defaults grow. */
+    void read(uint64_t bytes) { grow(read_ += bytes); }
+    uint64_t of(gtx_limited which) const { return gtx_limit_of(&given_, which, read_); }
+    /* Throws Error(LIMIT) if `what` would take more than is allowed. */
+    void require(gtx_limited which, const char *what, uint64_t wanted) const;
+
+    /* Throws Error(LIMIT), and takes nothing, where that would be more memory than is allowed. */
+    void take(int64_t bytes);
+    /* Bytes that are taken already, or given back where negative. */
+    void tell(int64_t bytes) noexcept { taken_ += bytes; }
+    const gtx_limits &given() const { return given_; }
+
+    /* What takes memory now, for the message; static. */
+    std::atomic<const char *> stage{"the job"};
+
+private:
+    void grow(uint64_t bytes_read) { most_ = gtx_limit_of(&given_, GTX_LIMITED_MEMORY, bytes_read); }
+    gtx_limits given_;
+    std::atomic<uint64_t> read_{0}, most_{0};
+    std::atomic<int64_t> taken_{0};
+};
+
+/* For as long as it lives, what the thread's containers take counts against these limits. */
+class MemoryScope {
+public:
+    explicit MemoryScope(Limits &limits);
+    ~MemoryScope();
+    MemoryScope(const MemoryScope &) = delete;
+    MemoryScope &operator=(const MemoryScope &) = delete;
+
+private:
+    Limits *outer_;
+};
+
+/* On a thread without a scope they do nothing. */
+void take_memory(size_t bytes);
+void give_memory(size_t bytes) noexcept;
+
+/* Memory that others take for the job: decoders. */
+class TakenMemory {
+public:
+    explicit TakenMemory(size_t bytes) : bytes_(bytes) { take_memory(bytes); }
+    ~TakenMemory() { give_memory(bytes_); }
+    TakenMemory(const TakenMemory &) = delete;
+    TakenMemory &operator=(const TakenMemory &) = delete;
+
+private:
+    size_t bytes_;
+};
+
+template <class T> struct CountingAllocator {
+    using value_type = T;
+    CountingAllocator() = default;
+    template <class U> CountingAllocator(const CountingAllocator<U> &) {}
+
+    T *allocate(size_t count)
+    {
+        if (count > SIZE_MAX / sizeof(T))
+            throw std::bad_array_new_length();
+        take_memory(count * sizeof(T));
+        try {
+            return static_cast<T *>(::operator new(count * sizeof(T)));
+        } catch (...) {
+            give_memory(count * sizeof(T));
+            throw;
+        }
+    }
+    void deallocate(T *memory, size_t count)
+    {
+        give_memory(count * sizeof(T));
+        ::operator delete(memory);
+    }
+    friend bool operator==(const CountingAllocator &, const CountingAllocator &) { return true; }
+    friend bool operator!=(const CountingAllocator &, const CountingAllocator &) { return false; }
+};
+
+/* What the cooker's rooms keep their data in. */
+template <class T> using Vector = std::vector<T, CountingAllocator<T>>;
+
+} // namespace gtx
