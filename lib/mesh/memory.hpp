@@ -32,7 +32,10 @@ public:
     std::atomic<const char *> stage{"the job"};
 
 private:
-    void grow(uint64_t bytes_read) { most_ = gtx_limit_of(&given_, GTX_LIMITED_MEMORY, bytes_read); }
+    void grow(uint64_t bytes_read)
+    {
+        most_ = gtx_limit_of(&given_, GTX_LIMITED_MEMORY, bytes_read);
+    }
     gtx_limits given_;
     std::atomic<uint64_t> read_{0}, most_{0};
     std::atomic<int64_t> taken_{0};

@@ -43,7 +43,8 @@ static double now()
 Task::Task(unsigned threads, gtx_progress_fn progress, void *user,
            std::vector<const char *> stages, std::vector<float> weights,
            const gtx_limits &limits)
-    : limits(limits), threads_(threads ? threads : std::max(1u, std::thread::hardware_concurrency())),
+    : limits(limits),
+      threads_(threads ? threads : std::max(1u, std::thread::hardware_concurrency())),
       progress_(progress), user_(user), stages_(std::move(stages)),
       caller_(std::this_thread::get_id())
 {

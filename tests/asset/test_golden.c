@@ -161,7 +161,8 @@ static void test_valid(void **state)
             continue;
         bytes kept = read_golden(goldens[i].name);
         int issues = 0;
-        assert_int_equal(gtx_validate(kept.data, kept.size, NULL, count_issue, &issues, NULL), GTX_OK);
+        assert_int_equal(gtx_validate(kept.data, kept.size, NULL, count_issue, &issues, NULL),
+                         GTX_OK);
         assert_int_equal(issues, 0);
         free(kept.data);
     }

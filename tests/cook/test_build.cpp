@@ -126,7 +126,8 @@ static void the_sources_are_all_that_is_read(void **)
         std::string model = files.count("it.obj") ? "it.obj" : "it.gltf";
         write_files("here", files);
         std::string input = (folder / "here" / model).string(), output = in_folder("a.gtx");
-        std::vector<std::string> told = cook(input, output).sources, read;
+        std::vector<std::string> told = cook(input, output).sources;
+        gtx::Vector<std::string> read;
         assert_string_equal(told[0].c_str(), input.c_str());
         assert_int_equal(told.size(), files.size());
         gtx::Task task(1, nullptr, nullptr);
