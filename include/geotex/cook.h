@@ -9,7 +9,12 @@
  * JSON. It is called from the calling thread alone. The C++ containers that hold models, charts and
  * maps while they are made, and the decoders (OpenMesh, Draco, tinygltf, meshoptimizer, zlib,
  * OpenImageIO), use the process's own heap. If that runs out the result is MEMORY too, except that
- * an image for which there is no memory is ignored with a warning. */
+ * an image for which there is no memory is ignored with a warning.
+ *
+ * Limits. limits.memory is held against what the containers have on all threads of the call, each
+ * time that one takes memory; images and Draco meshes count before they are decoded, by the size
+ * that they claim. What the decoders take beside that, in proportion to the bytes that they read, is
+ * not counted, nor what the allocator gives. */
 #ifndef GEOTEX_COOK_H
 #define GEOTEX_COOK_H
 
@@ -74,6 +79,8 @@ typedef struct gtx_cook_desc {
     const gtx_allocator *allocator;   /* needed during the call; its hooks until all is freed */
     uint32_t adaptive;            /* 1: squares of half to twice the side, smaller where the surface
                                      is more curved; for the partition pgp */
+    gtx_limits limits;            /* all of them; bytes read are those of the models and of the
+                                     files that these refer to */
     uint32_t reserved[7];
 } gtx_cook_desc;
 
@@ -82,7 +89,7 @@ typedef struct gtx_cook_desc {
  *     and images that they refer to, missing ones included; not their paths or times;
  *   - the options that change the asset: partition, extract (and the driver, where it is GPU),
  *     charts, resolution, height_bits, dilation, mips, lod_levels, zstd_level, unit, error, z_up
- *     and adaptive; not threads, measure, progress, strict or allocator;
+ *     and adaptive; not threads, measure, progress, strict, limits or allocator;
  *   - geotex's version and the revision of its cooker,
  * but not the library that decodes images. With `strict`, an asset that was cooked with warnings is
  * cooked again; with `charts_ply`, or if importing read files that could not be foreseen, any
@@ -128,6 +135,7 @@ typedef struct gtx_lod_desc {
     gtx_progress_fn progress;     /* may be NULL */
     void *progress_user;
     const gtx_allocator *allocator;   /* for the new asset */
+    gtx_limits limits;            /* memory; the asset's maps count as read */
     uint32_t reserved[6];
 } gtx_lod_desc;
 
@@ -163,6 +171,7 @@ typedef struct gtx_height_grid_desc {
     double range[2];              /* values of an image's lowest and highest codes, `missing` left
                                      out; both 0: codes are the values */
     const gtx_allocator *allocator;
+    gtx_limits limits;            /* memory, texels: the grid's nodes, and pixels */
 } gtx_height_grid_desc;
 
 /* Reads a grid: IRAP classic and binary (".irap", ".gri") or ZMAP+ text, each also gzipped, which
@@ -170,7 +179,7 @@ typedef struct gtx_height_grid_desc {
  * northernmost, with origin 0 and spacing 1, for the caller to change. Each format's own marker of
  * missing values is known (9999900, 1e30; -32767 and below in signed 16 bits). The values come from
  * the descriptor's allocator, and are freed by gtx_height_grid_free. `desc` may be NULL.
- * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT (2^28 nodes), READ, INPUT, UNSUPPORTED. */
+ * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, READ, INPUT, UNSUPPORTED. */
 GTX_API gtx_result gtx_height_grid_read(const char *path, const gtx_height_grid_desc *desc,
                                         gtx_height_grid *out, gtx_error *error);
 /* Frees the values of a grid that was read, and zeroes it. NULL and zeros are fine. */
@@ -203,6 +212,8 @@ typedef struct gtx_horizons_desc {
     gtx_progress_fn progress;     /* may be NULL */
     void *progress_user;
     const gtx_allocator *allocator;   /* for the asset */
+    gtx_limits limits;            /* memory, texels, also those of the surface that several grids
+                                     become, and patches; the grids' values count as read */
     uint32_t reserved[6];
 } gtx_horizons_desc;
 
@@ -237,6 +248,7 @@ typedef struct gtx_compare_desc {
     const char *const *more;
     uint32_t more_count;
     const gtx_allocator *allocator;
+    gtx_limits limits;            /* as for gtx_cook_desc; the asset counts as read too */
     uint32_t reserved[8];
 } gtx_compare_desc;
 

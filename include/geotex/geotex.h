@@ -118,7 +118,7 @@ typedef struct gtx_jobs {
 typedef struct gtx_limits {
     uint64_t memory;              /* bytes at once; 0 = 256 MiB and 2,000 for each byte read */
     uint64_t triangles;           /* of all models together, once polygons are cut and instances
-                                     placed; 0 = 2^20 and 2 for each byte read */
+                                     placed; 0 = 2^19 and 1.5 for each byte read */
     uint64_t texels;              /* of an asset's pages at level 0, and nodes of height grids;
                                      0 = 2^26 and 256 for each byte read */
     uint64_t pixels;              /* of one image; 0 = 2^26 and 16 for each byte read */

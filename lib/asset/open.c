@@ -65,7 +65,7 @@ gtx_result gtx_open_file(const char *path, const gtx_open_desc *desc, gtx_asset 
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "the path to open is NULL");
     const gtx_limits *limits = desc ? &desc->limits : NULL;
     gtx_file_bytes file = {.allocator = gtx_allocator_or_default(desc ? desc->allocator : NULL),
-                           .limit = gtx_limit_of(limits, GTX_LIMITED_MEMORY, UINT64_MAX),
+                           .limit = limits ? limits->memory : 0,
                            .look = look_at_head};
     result = gtx_read_file(path, path, &file, error);
     if (result)

@@ -116,14 +116,17 @@ static void summarise(const Vector<PatchMaps> &patches, Maps &maps)
 }
 
 Maps place_on_pages(Vector<PatchMaps> &patches, const Vec3d &anchor,
-                    const BakeOptions &options)
+                    const BakeOptions &options, const Limits &limits)
 {
+    limits.require(GTX_LIMITED_PATCHES, "the asset", patches.size());
     Vector<std::array<uint32_t, 2>> sizes;
     for (const PatchMaps &p : patches)
         sizes.push_back({p.record.rect[2], p.record.rect[3]});
     Packing packing = pack(sizes, 1u << (options.mips - 1));
     if (packing.page_count > MAX_PAGES)
         throw Error(GTX_ERROR_LIMIT, "the maps fill more than 2048 pages");
+    limits.require(GTX_LIMITED_TEXELS, "the asset",
+                   uint64_t(packing.page_count) * packing.width * packing.height);
     Maps maps;
     allocate_pages(packing, options, patches[0], maps);
     for (size_t i = 0; i < patches.size(); ++i)
@@ -202,7 +205,7 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
                   [&](size_t i) { measure_patch(options.height_bits, patches[i]); });
 
     task.begin("pack");
-    Maps maps = place_on_pages(patches, job.anchor, options);
+    Maps maps = place_on_pages(patches, job.anchor, options, task.limits);
     maps.charts = std::move(charts);
     maps.emission_scale = job.needs.emission_scale;
     return maps;

@@ -24,6 +24,6 @@ Packing pack(const Vector<std::array<uint32_t, 2>> &sizes, uint32_t grain);
 /* Puts patches on the pages of one asset; those of an asset have the same kinds of maps. Emission
  * scale is left to the caller. Throws Error: LIMIT. */
 Maps place_on_pages(Vector<PatchMaps> &patches, const Vec3d &anchor,
-                    const BakeOptions &options);
+                    const BakeOptions &options, const Limits &limits);
 
 } // namespace gtx::baking

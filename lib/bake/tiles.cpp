@@ -281,7 +281,7 @@ static void check(const Vector<GridLayer> &layers, const TileOptions &options)
             throw Error(GTX_ERROR_INPUT, "a grid of " + std::to_string(grid.nx) + " x " +
                                              std::to_string(grid.ny) +
                                              " nodes is no surface: it takes 2 x 2 at least");
-        if (std::max(grid.nx, grid.ny) > 1u << 24 || grid.values.size() != grid.count())
+        if (std::max(grid.nx, grid.ny) > MAX_SIDE || grid.values.size() != grid.count())
             throw Error(GTX_ERROR_LIMIT, "a grid has more than 2^24 nodes along a side");
     }
 }
@@ -326,7 +326,7 @@ Maps bake_tiles(const Vector<GridLayer> &layers, const TileOptions &options,
             report.nodes += !std::isnan(value);
 
     task.begin("pack");
-    Maps maps = place_on_pages(patches, anchor, options.bake);
+    Maps maps = place_on_pages(patches, anchor, options.bake, task.limits);
     for (uint32_t t = 0; t < tiles.size(); ++t)
         maps.charts.push_back(t);
     return maps;

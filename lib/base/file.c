@@ -8,8 +8,9 @@
 #include <errno.h>
 #include <string.h>
 
-/* What a stream without a size starts with. */
+/* What a stream without a size starts with, and may come to by default. */
 static const size_t PIECE = 1 << 16;
+static const uint64_t STREAM_LIMIT = (uint64_t)4 << 30;
 
 /* Bytes until the end; 0 where only reading can tell. */
 static uint64_t bytes_left(FILE *stream)
@@ -68,6 +69,8 @@ gtx_result gtx_read_stream(FILE *stream, const char *name, gtx_file_bytes *bytes
     bytes->data = NULL;
     bytes->size = bytes->capacity = 0;
     const uint64_t left = bytes_left(stream);
+    if (!bytes->limit)
+        bytes->limit = left > STREAM_LIMIT ? left : STREAM_LIMIT;
     if (left > bytes->limit)
         return gtx_fail_limit(error, GTX_LIMITED_MEMORY, name, left, bytes->limit);
     const size_t head_size = fread(head, 1, sizeof head, stream);

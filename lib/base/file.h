@@ -19,7 +19,8 @@ typedef gtx_result (*gtx_file_look)(const uint8_t *head, size_t size, uint64_t f
 
 typedef struct gtx_file_bytes {
     gtx_allocator allocator;      /* given, like all before `data` */
-    uint64_t limit;               /* of memory: most bytes to take */
+    uint64_t limit;               /* of memory: most bytes to take; 0 = those of the file, or 4 GiB
+                                     where its size is not known */
     gtx_file_look look;           /* or NULL */
     void *user;
     uint8_t *data;

@@ -7,10 +7,11 @@
  * have most of everything for a byte: 1.8 triangles, 900 bytes of memory. */
 static const struct {
     const char *name, *unit;
-    uint64_t least, per_byte;
+    uint64_t least;
+    double per_byte;
 } fields[GTX_LIMITED_COUNT] = {
     {"memory", "bytes of memory", (uint64_t)256 << 20, 2000},
-    {"triangles", "triangles", (uint64_t)1 << 20, 2},
+    {"triangles", "triangles", (uint64_t)1 << 19, 1.5},
     {"texels", "texels", (uint64_t)1 << 26, 256},
     {"pixels", "pixels", (uint64_t)1 << 26, 16},
     {"patches", "patches", (uint64_t)1 << 20, 0},
@@ -27,12 +28,10 @@ uint64_t gtx_limit_of(const gtx_limits *limits, gtx_limited which, uint64_t byte
     const gtx_limits *l = limits ? limits : &none;
     const uint64_t given[GTX_LIMITED_COUNT] = {l->memory, l->triangles, l->texels, l->pixels,
                                                l->patches};
-    const uint64_t per_byte = fields[which].per_byte, least = fields[which].least;
     if (given[which])
         return given[which];
-    return per_byte && bytes_read > (UINT64_MAX - least) / per_byte
-               ? UINT64_MAX
-               : least + per_byte * bytes_read;
+    const double sum = (double)fields[which].least + fields[which].per_byte * (double)bytes_read;
+    return sum < 1e18 ? (uint64_t)sum : UINT64_MAX;
 }
 
 gtx_result gtx_fail_limit(gtx_error *error, gtx_limited which, const char *what, uint64_t wanted,

@@ -205,7 +205,7 @@ int cmd_bench(int argc, char **argv)
 
     std::string current = files[1];
     return gtx::guarded(current, [&] {
-        gtx::Task task(0, nullptr, nullptr);
+        gtx::Task task(0, nullptr, nullptr, {}, {}, cli_limits);
         gtx::CleanReport report;
         const gtx::Mesh mesh = gtx::clean_mesh(gtx::import_mesh(files[1], task), task, report);
         current = files[0];

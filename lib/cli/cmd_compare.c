@@ -41,6 +41,7 @@ int cmd_compare(int argc, char **argv)
     desc.more = files + 2;
     desc.more_count = (uint32_t)(count - 2);
     desc.progress = show_progress;
+    desc.limits = cli_limits;
     catch_interrupt();
 
     gtx_report report;

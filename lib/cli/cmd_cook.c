@@ -176,6 +176,7 @@ int cmd_cook(int argc, char **argv)
     desc.more = models + 1;
     desc.more_count = (uint32_t)(count - 1);
     desc.progress = show_progress;
+    desc.limits = cli_limits;
 
     const char *label = count > 1 ? "gtx cook" : is_stream(models[0]) ? "stdin" : models[0];
     bool streams = is_stream(models[0]) || is_stream(output);

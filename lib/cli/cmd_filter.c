@@ -120,10 +120,11 @@ int cmd_filter(int argc, char **argv)
                        : "-o OUT.gtx is missing");
         return EXIT_CODE_USAGE;
     }
+    const gtx_open_desc open = {.limits = cli_limits};
     gtx_asset *asset = NULL;
     gtx_error error = {0};
     gtx_info info;
-    gtx_result result = gtx_open_file(file, NULL, &asset, &error);
+    gtx_result result = gtx_open_file(file, &open, &asset, &error);
     if (!result) {
         gtx_get_info(asset, &info);
         if (info.lod_levels)

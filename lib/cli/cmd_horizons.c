@@ -183,6 +183,7 @@ int cmd_horizons(int argc, char **argv)
     desc.one_surface = one_surface;
     desc.unit = (float)unit;
     desc.progress = show_progress;
+    desc.limits = reading.limits = reading_property.limits = cli_limits;
     reading.has_missing = !isnan(missing);
     reading.missing = reading.has_missing ? missing : 0;
     reading_property.has_missing = reading.has_missing;

@@ -127,9 +127,10 @@ int cmd_info(int argc, char **argv)
     int code = parse_options(&info_verb, argc, argv, &path, &count);
     if (code >= 0)
         return code;
+    const gtx_open_desc open = {.limits = cli_limits};
     gtx_asset *asset;
     gtx_error error;
-    if (gtx_open_file(path, NULL, &asset, &error) != GTX_OK)
+    if (gtx_open_file(path, &open, &asset, &error) != GTX_OK)
         return report_error(path, &error);
     gtx_info info;
     gtx_get_info(asset, &info);

@@ -36,7 +36,9 @@ using Asset = std::unique_ptr<gtx_asset, void (*)(gtx_asset *)>;
 static Asset open_folder(const char *folder, std::string &about)
 {
     gtx::Unpacked unpacked;
-    gtx::read_unpacked(folder, unpacked, about);
+    gtx::Limits limits(cli_limits);
+    gtx::MemoryScope scope(limits);
+    gtx::read_unpacked(folder, limits, unpacked, about);
     about = folder;
     gtx_asset *asset = nullptr;
     gtx_error error = {};
@@ -55,15 +57,18 @@ static Asset open_folder(const char *folder, std::string &about)
 
 static Asset open_asset(const char *path)
 {
+    gtx_open_desc open = {};
+    open.limits = cli_limits;
     gtx_asset *asset = nullptr;
     gtx_error error = {};
-    gtx::require_ok(gtx_open_file(path, nullptr, &asset, &error), error);
+    gtx::require_ok(gtx_open_file(path, &open, &asset, &error), error);
     return Asset(asset, gtx_close);
 }
 
 static Asset with_lod(const Asset &asset)
 {
     gtx_lod_desc desc = {};
+    desc.limits = cli_limits;
     desc.levels = lod_levels;
     desc.progress = show_progress;
     gtx_asset *out = nullptr;

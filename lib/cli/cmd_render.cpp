@@ -64,7 +64,7 @@ int cmd_render(int argc, char **argv)
 
     std::string current = files[0];
     return gtx::guarded(current, [&] {
-        gtx::Task task(0, nullptr, nullptr);
+        gtx::Task task(0, nullptr, nullptr, {}, {}, cli_limits);
         gtx::Scene scene;
         for (int i = 0; i < count; ++i) {
             current = files[i];

@@ -75,9 +75,11 @@ int cmd_unpack(int argc, char **argv)
     if (code)
         return code;
     std::unique_ptr<void, void (*)(void *)> bytes(data, std::free);
+    gtx_open_desc open = {};
+    open.limits = cli_limits;
     gtx_asset *asset = nullptr;
     gtx_error error = {};
-    if (gtx_open_memory(data, size, nullptr, &asset, &error))
+    if (gtx_open_memory(data, size, &open, &asset, &error))
         return report_error(files[0], &error);
     std::unique_ptr<gtx_asset, void (*)(gtx_asset *)> guard(asset, gtx_close);
     std::string about = files[1];

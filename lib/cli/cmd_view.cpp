@@ -41,7 +41,7 @@ int cmd_view(int argc, char **argv)
 
     std::string current = "gtx view";
     return gtx::guarded(current, [&] {
-        gtx::Task task(0, nullptr, nullptr);
+        gtx::Task task(0, nullptr, nullptr, {}, {}, cli_limits);
         gtx::Scene scene;
         std::string name = gtx::file_name(count ? files[0] : "nothing");
         for (int i = 0; i < count; ++i) {

@@ -14,7 +14,7 @@ static const option common_options[] = {
     {"max-memory", 0, OPTION_AMOUNT, &cli_limits.memory, "BYTES",
      "most memory to take, as in 8G [268M and 2k for each byte read]", 1, 1e18},
     {"max-triangles", 0, OPTION_AMOUNT, &cli_limits.triangles, "N",
-     "most triangles of all models [1M and 2 for each byte read]", 1, 1e18},
+     "most triangles of all models [524k and 1.5 for each byte read]", 1, 1e18},
     {"max-texels", 0, OPTION_AMOUNT, &cli_limits.texels, "N",
      "most texels of an asset, nodes of a grid [67M and 256 for each byte read]", 1, 1e18},
     {"max-pixels", 0, OPTION_AMOUNT, &cli_limits.pixels, "N",

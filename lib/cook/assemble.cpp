@@ -118,14 +118,23 @@ Maps maps_of(const gtx_asset *asset)
     return maps;
 }
 
+/* Of heights and trim alone: the others are in proportion. */
+static uint64_t map_bytes(const gtx_info &info)
+{
+    return uint64_t(info.page_count) * info.page_width * info.page_height *
+           (1 + info.height_bits / 8);
+}
+
 static Asset with_lod(const gtx_asset *asset, const gtx_lod_desc &desc)
 {
     require_zeroed(desc.reserved);
+    require_limits(desc.limits);
     require_argument(desc.levels <= MAX_LOD_LEVELS, "levels is at most 5");
     require_argument(desc.threads <= 1024, "threads is at most 1024");
     gtx_info info;
     gtx_get_info(asset, &info);
-    Task task(desc.threads, desc.progress, desc.progress_user, {"lod"}, {1});
+    Task task(desc.threads, desc.progress, desc.progress_user, {"lod"}, {1}, desc.limits);
+    task.limits.read("", map_bytes(info));
     const Maps maps = maps_of(asset);
     LodSource source = lod_source(maps, task);
     source.model = info.source_triangles;

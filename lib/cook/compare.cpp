@@ -90,11 +90,15 @@ static std::string write_report(const CompareReport &report,
     return line;
 }
 
-static void compare_files(const gtx_asset *asset, const char *model, const gtx_compare_desc &desc,
-                          gtx_compare_result *result, gtx_report *report)
+static void compare_files(const gtx_asset *asset, const char *asset_path, const char *model,
+                          const gtx_compare_desc &desc, gtx_compare_result *result,
+                          gtx_report *report)
 {
     Task task(desc.threads, desc.progress, desc.progress_user, {"import", "clean", "measure"},
-              {5, 10, 85});
+              {5, 10, 85}, desc.limits);
+    gtx_info info;
+    gtx_get_info(asset, &info);
+    task.limits.read(asset_path, info.file_size);
     task.begin("import");
     Models models = read_models({model}, desc.more, desc.more_count, task);
     Mesh mesh = import_models(models, desc.z_up, task);
@@ -102,8 +106,6 @@ static void compare_files(const gtx_asset *asset, const char *model, const gtx_c
     task.begin("clean");
     mesh = clean_mesh(std::move(mesh), task, clean);
 
-    gtx_info info;
-    gtx_get_info(asset, &info);
     CompareOptions options;
     options.size = desc.size ? desc.size : 1024;
     options.levels = desc.levels ? desc.levels : info.mip_count;
@@ -138,11 +140,12 @@ gtx_result gtx_compare_files(const char *asset_path, const char *model,
     gtx_asset *asset = nullptr;
     gtx_open_desc open = {};
     open.allocator = given.allocator;
+    open.limits = given.limits;
     gtx_result opened = gtx_open_file(asset_path, &open, &asset, error); /* keeps its rule */
     if (opened)
         return opened;
     gtx_result compared = gtx::guard(
-        error, [&] { gtx::compare_files(asset, model, given, result, report); });
+        error, [&] { gtx::compare_files(asset, asset_path, model, given, result, report); });
     gtx_close(asset);
     return compared;
 }

@@ -25,7 +25,7 @@ static Task make_task(const gtx_cook_desc &desc, const Options &options)
     return Task(desc.threads, desc.progress, desc.progress_user,
                 {"import", "clean", "partition", "frame", "bake", "pack", "lod", "measure",
                  "write"},
-                {6, 14, 40, 10, 22, 2, lod, measure, 6});
+                {6, 14, 40, 10, 22, 2, lod, measure, 6}, desc.limits);
 }
 
 /* Of the progress that is left, an attempt to reach an error takes this share: the cook needs 6 to
@@ -104,13 +104,15 @@ static void refuse_warnings(const Options &options, const Task &task)
 }
 
 /* The asset at `path` when cooking would only make it again. */
-static Asset find_cooked(const char *path, const Options &options, uint64_t key)
+static Asset find_cooked(const char *path, const Options &options, uint64_t key,
+                         const gtx_limits &limits)
 {
     if (!options.if_changed || options.charts_ply)
         return Asset(nullptr, gtx_close);
     gtx_asset *asset = nullptr;
     gtx_open_desc open = {};
     open.allocator = &options.allocator;
+    open.limits = limits;
     gtx_error error;
     gtx_result opened = gtx_open_file(path, &open, &asset, &error);
     if (opened == GTX_ERROR_MEMORY)
@@ -242,7 +244,7 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
     Cooked cooked;
     if (output) {
         refuse_overwriting_source(models.sources, output);
-        cooked.asset = find_cooked(output, options, facts.key);
+        cooked.asset = find_cooked(output, options, facts.key, desc.limits);
     }
     facts.unchanged = cooked.asset != nullptr;
     if (!facts.unchanged)

@@ -3,7 +3,7 @@
 
 #include "mesh/task.hpp"
 
-#include "base/error.h"
+#include "base/limits.h"
 
 #include <cstring>
 
@@ -41,6 +41,12 @@ template <size_t N> void require_zeroed(const uint32_t (&reserved)[N])
 {
     gtx_error error;
     require_ok(gtx_check_reserved(reserved, N, &error), error);
+}
+
+inline void require_limits(const gtx_limits &limits)
+{
+    gtx_error error;
+    require_ok(gtx_check_limits(&limits, &error), error);
 }
 
 inline void require_models(const char *const *more, uint32_t count)

@@ -31,7 +31,8 @@ static void read(const char *path, const gtx_height_grid_desc &desc, gtx_height_
     const bool ranged = desc.range[0] != 0 || desc.range[1] != 0;
     require_argument(std::isfinite(desc.range[0]) && std::isfinite(desc.range[1]),
                      "range is two finite numbers");
-    Task task(1, nullptr, nullptr);
+    require_limits(desc.limits);
+    Task task(1, nullptr, nullptr, {}, {}, desc.limits);
     GridReading reading;
     reading.missing = desc.has_missing ? &desc.missing : nullptr;
     reading.range = ranged ? desc.range : nullptr;
@@ -54,9 +55,12 @@ static void read(const char *path, const gtx_height_grid_desc &desc, gtx_height_
 
 /* ---- making ---- */
 
-static void check(const gtx_height_grid *grids, uint32_t count, const gtx_horizons_desc &desc)
+/* Returns the number of nodes. */
+static uint64_t check(const gtx_height_grid *grids, uint32_t count, const gtx_horizons_desc &desc)
 {
+    uint64_t nodes = 0;
     require_zeroed(desc.reserved);
+    require_limits(desc.limits);
     require_argument(count > 0 && count <= 4096, "there are 1 to 4096 grids");
     require_argument(number_of(desc.colors) <= GTX_COLORS_NONE, "unknown colours");
     require_argument(desc.depths <= 1, "depths is 0 or 1");
@@ -80,8 +84,7 @@ static void check(const gtx_height_grid *grids, uint32_t count, const gtx_horizo
             throw Error(GTX_ERROR_INPUT, name + " has " + std::to_string(g.nx) + " x " +
                                              std::to_string(g.ny) +
                                              " nodes, and a surface takes 2 x 2");
-        if (uint64_t(g.nx) * g.ny > uint64_t(1) << 28)
-            throw Error(GTX_ERROR_LIMIT, name + " has more than 2^28 nodes");
+        nodes += uint64_t(g.nx) * g.ny;
         for (double place : {g.origin[0], g.origin[1], g.rotation, g.spacing[0], g.spacing[1]})
             require_argument(std::fabs(place) < 1e15, "a grid lies nowhere");
         require_argument(g.spacing[0] > 0 && g.spacing[1] > 0, "a grid's spacing is not positive");
@@ -93,6 +96,7 @@ static void check(const gtx_height_grid *grids, uint32_t count, const gtx_horizo
         require_argument(!desc.one_surface || !g.property == !grids[0].property,
                          "of the parts of one surface some have a property and some do not");
     }
+    return nodes;
 }
 
 static HeightGrid lattice(const gtx_height_grid &from, const float *values)
@@ -114,7 +118,7 @@ static HeightGrid lattice(const gtx_height_grid &from, const float *values)
 struct Surfaces {
     Vector<HeightGrid> heights, properties;
 
-    Surfaces(const gtx_height_grid *grids, uint32_t count, bool as_one)
+    Surfaces(const gtx_height_grid *grids, uint32_t count, bool as_one, const Limits &limits)
     {
         for (uint32_t n = 0; n < count; ++n) {
             heights.push_back(lattice(grids[n], grids[n].values));
@@ -123,8 +127,8 @@ struct Surfaces {
         }
         if (!as_one)
             return;
-        heights = {mosaic(heights)};
-        properties = {grids[0].property ? mosaic(properties) : HeightGrid()};
+        heights = {mosaic(heights, limits)};
+        properties = {grids[0].property ? mosaic(properties, limits) : HeightGrid()};
     }
     const Vector<float> &coloured(size_t n) const
     {
@@ -198,11 +202,12 @@ static std::string meta_of(const gtx_horizons_desc &desc, const double range[2],
 static Asset make_horizons(const gtx_height_grid *grids, uint32_t count,
                            const gtx_horizons_desc &desc, gtx_horizons_result *result)
 {
-    check(grids, count, desc);
+    const uint64_t nodes = check(grids, count, desc);
     const float lod = desc.lod_levels ? 60 : 0;
     Task task(desc.threads, desc.progress, desc.progress_user, {"bake", "pack", "lod", "write"},
-              {35, 3, lod, 2});
-    const Surfaces surfaces(grids, count, desc.one_surface);
+              {35, 3, lod, 2}, desc.limits);
+    task.limits.read("", nodes * sizeof(float));
+    const Surfaces surfaces(grids, count, desc.one_surface, task.limits);
     double range[2] = {0, 0};
     Vector<GridLayer> layers;
     if (number_of(desc.colors) != GTX_COLORS_NONE)

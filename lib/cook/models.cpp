@@ -22,7 +22,7 @@ static void add_number(gtx_hash &hash, uint64_t number)
     gtx_hash_add(&hash, bytes, sizeof bytes);
 }
 
-static void add_bytes(gtx_hash &hash, const std::string &bytes)
+static void add_bytes(gtx_hash &hash, std::string_view bytes)
 {
     add_number(hash, bytes.size());
     gtx_hash_add(&hash, bytes.data(), bytes.size());
@@ -90,7 +90,7 @@ Models read_models(const ModelInput &first, const char *const *more, uint32_t mo
         /* Where the bytes leave the format open, the name decides. */
         add_bytes(hash, model_extension(input.path));
         add_bytes(hash, file.bytes);
-        for (const std::string &path : referenced_files(file))
+        for (const std::string &path : referenced_files(file, task))
             if (add_file(hash, path, task))
                 models.sources.push_back(path);
         models.files.push_back(std::move(file));

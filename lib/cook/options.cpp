@@ -31,6 +31,7 @@ constexpr PartitionMethod METHODS[] = {PartitionMethod::CUTS, PartitionMethod::C
 static void check(const gtx_cook_desc &desc)
 {
     require_zeroed(desc.reserved);
+    require_limits(desc.limits);
     require_argument(number_of(desc.partition) <= GTX_PARTITION_PGP, "unknown partition");
     require_argument(number_of(desc.extract) <= GTX_EXTRACT_GPU, "unknown extraction");
     require_argument(desc.charts <= 1u << 20, "charts is at most 2^20");

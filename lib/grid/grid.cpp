@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 
 namespace gtx {
@@ -40,10 +41,18 @@ void settle(HeightGrid &grid)
 /* 16 bits with a sign are terrain, whose voids are -32768 (SRTM) or -32767 (DTED). */
 constexpr float SIGNED_VOID = -32767;
 
-static HeightGrid read_image(const std::string &path, const GridReading &reading)
+static HeightGrid read_image(const std::string &path, const GridReading &reading, Task &task)
 {
     gtx_value_image image;
     gtx_error error;
+    uint32_t width, height;
+    std::error_code unknown;
+    const uint64_t size = std::filesystem::file_size(path, unknown);
+    task.limits.read(path, unknown ? 0 : size);
+    require_ok(gtx_image_measure_file(path.c_str(), &width, &height, &error), error);
+    task.limits.require(GTX_LIMITED_PIXELS, "the image", uint64_t(width) * height);
+    task.limits.require(GTX_LIMITED_TEXELS, "the image", uint64_t(width) * height);
+    TakenMemory taken(2 * sizeof(float) * width * height);
     require_ok(gtx_image_read_values(path.c_str(), &image, &error), error);
     std::unique_ptr<float, void (*)(void *)> guard(image.values, std::free);
     HeightGrid grid;
@@ -74,26 +83,48 @@ static HeightGrid read_image(const std::string &path, const GridReading &reading
 
 static const struct {
     bool (*is)(std::string_view);
-    HeightGrid (*read)(std::string_view);
+    HeightGrid (*read)(std::string_view, const Limits &);
 } formats[] = {{is_irap_classic, read_irap_classic},
                {is_irap_binary, read_irap_binary},
                {is_zmap, read_zmap}};
 
+/* What is none of them is left to those who know images. */
+static gtx_result look_for_grid(const uint8_t *head, size_t size, uint64_t, void *, gtx_error *error)
+{
+    const std::string_view text(reinterpret_cast<const char *>(head), size);
+    bool known = false;
+    for (const auto &format : formats)
+        known = known || format.is(text);
+    return known ? GTX_OK : gtx_fail(error, GTX_ERROR_UNSUPPORTED, "no grid");
+}
+
+/* Empty where it is none of the formats. */
+static ModelFile read_grid_file(const std::string &path, Task &task)
+{
+    try {
+        return read_packed_file(path, task, look_for_grid);
+    } catch (const Error &e) {
+        if (e.result != GTX_ERROR_UNSUPPORTED)
+            throw;
+        return {};
+    }
+}
+
 HeightGrid read_grid(const std::string &path, const GridReading &reading, Task &task)
 {
-    const ModelFile file = read_model(path, task);
+    const ModelFile file = read_grid_file(path, task);
     for (const auto &format : formats) {
         if (!format.is(file.bytes))
             continue;
         if (reading.range)
             throw Error(GTX_ERROR_ARGUMENT, "a range is for images of whole numbers");
-        HeightGrid grid = format.read(file.bytes);
+        HeightGrid grid = format.read(file.bytes, task.limits);
         for (float &value : grid.values)
             if (!std::isfinite(value) || (reading.missing && value == float(*reading.missing)))
                 value = NAN;
         return grid;
     }
-    HeightGrid grid = read_image(path, reading);
+    HeightGrid grid = read_image(path, reading, task);
     for (float &value : grid.values)
         if (!(std::fabs(value) < 1e30f))
             value = NAN;
@@ -105,7 +136,7 @@ HeightGrid read_grid(const std::string &path, const GridReading &reading, Task &
 /* Nodes of one lattice may differ by this part of a step: headers are rounded. */
 constexpr double OFF_LATTICE = 1e-3;
 
-HeightGrid mosaic(const Vector<HeightGrid> &parts)
+HeightGrid mosaic(const Vector<HeightGrid> &parts, const Limits &limits)
 {
     const HeightGrid &first = parts.at(0);
     Vector<std::array<int64_t, 2>> at;
@@ -129,10 +160,10 @@ HeightGrid mosaic(const Vector<HeightGrid> &parts)
         }
         at.push_back(place);
     }
-    constexpr int64_t MOST = 1 << 24, MAX_NODES = int64_t(1) << 28;
-    if (high[0] - low[0] > MOST || high[1] - low[1] > MOST ||
-        (high[0] - low[0]) * (high[1] - low[1]) > MAX_NODES)
-        throw Error(GTX_ERROR_LIMIT, "the parts of the surface span more than 2^28 nodes");
+    limits.require(GTX_LIMITED_TEXELS, "the surface of all parts",
+                   uint64_t(high[0] - low[0]) * uint64_t(high[1] - low[1]));
+    if (std::max(high[0] - low[0], high[1] - low[1]) > MAX_SIDE)
+        throw Error(GTX_ERROR_LIMIT, "the parts of the surface span more than 2^24 nodes");
     HeightGrid out = first;
     const auto origin = first.place(double(low[0]), double(low[1]));
     out.nx = uint32_t(high[0] - low[0]);

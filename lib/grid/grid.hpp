@@ -30,6 +30,9 @@ struct HeightGrid {
     }
 };
 
+/* Nodes along a side. */
+constexpr uint32_t MAX_SIDE = 1 << 24;
+
 /* What a file may leave open. */
 struct GridReading {
     const double *missing = nullptr; /* says that there is no value, as the format's does */
@@ -46,14 +49,14 @@ HeightGrid read_grid(const std::string &path, const GridReading &reading, Task &
 bool is_irap_classic(std::string_view bytes);
 bool is_irap_binary(std::string_view bytes);
 bool is_zmap(std::string_view bytes);
-HeightGrid read_irap_classic(std::string_view bytes);
-HeightGrid read_irap_binary(std::string_view bytes);
-HeightGrid read_zmap(std::string_view bytes);
+HeightGrid read_irap_classic(std::string_view bytes, const Limits &limits = Limits());
+HeightGrid read_irap_binary(std::string_view bytes, const Limits &limits = Limits());
+HeightGrid read_zmap(std::string_view bytes, const Limits &limits = Limits());
 
 /* One grid of several that are parts of one lattice, such as neighbouring tiles of terrain; of
  * nodes that several have, the first with a value counts. Throws Error: INPUT where the lattices
  * differ. */
-HeightGrid mosaic(const Vector<HeightGrid> &parts);
+HeightGrid mosaic(const Vector<HeightGrid> &parts, const Limits &limits = Limits());
 
 /* Colours for a value of 0..1, sRGB. */
 enum class ColorMap { VIRIDIS, RAINBOW };

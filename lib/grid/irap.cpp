@@ -29,7 +29,7 @@ bool is_irap_classic(std::string_view bytes)
     return Words(bytes.substr(0, 64)).next() == "-996";
 }
 
-HeightGrid read_irap_classic(std::string_view bytes)
+HeightGrid read_irap_classic(std::string_view bytes, const Limits &limits)
 {
     Words words(bytes);
     HeightGrid grid;
@@ -47,7 +47,7 @@ HeightGrid read_irap_classic(std::string_view bytes)
     turn(grid, x, words.number("the centre of rotation"));
     for (int k = 0; k < 7; ++k)
         words.number("the header's last row");
-    reserve_nodes(grid, words.left(), 2);
+    reserve_nodes(grid, words.left(), 2, limits);
     for (float &value : grid.values) {
         const double number = words.number("a node");
         value = number >= CLASSIC_MISSING ? NAN : float(number);
@@ -103,7 +103,7 @@ static std::string_view header_record(std::string_view &bytes, size_t size)
     return record;
 }
 
-HeightGrid read_irap_binary(std::string_view bytes)
+HeightGrid read_irap_binary(std::string_view bytes, const Limits &limits)
 {
     const std::string_view first = header_record(bytes, 32), second = header_record(bytes, 16);
     header_record(bytes, 28);
@@ -116,7 +116,7 @@ HeightGrid read_irap_binary(std::string_view bytes)
     grid.nx = node_count(load_big(second.data()), "the number of columns");
     grid.rotation = load_float(second.data() + 4);
     turn(grid, load_float(second.data() + 8), load_float(second.data() + 12));
-    reserve_nodes(grid, bytes.size(), 4);
+    reserve_nodes(grid, bytes.size(), 4, limits);
     for (size_t at = 0; at < grid.count();) {
         const std::string_view record = take_record(bytes);
         if (record.empty() || record.size() / 4 > grid.count() - at)

@@ -53,15 +53,14 @@ private:
 /* A count of nodes along a side, and of all of them: no more than the file has bytes for. */
 inline uint32_t node_count(double value, const char *what)
 {
-    if (!(value >= 1 && value <= 1 << 24 && value == std::floor(value)))
+    if (!(value >= 1 && value <= MAX_SIDE && value == std::floor(value)))
         malformed(std::string(what) + " is not a whole number from 1 to 2^24");
     return uint32_t(value);
 }
-inline void reserve_nodes(HeightGrid &grid, size_t bytes_left, size_t least_bytes)
+inline void reserve_nodes(HeightGrid &grid, size_t bytes_left, size_t least_bytes,
+                          const Limits &limits)
 {
-    constexpr size_t MOST = size_t(1) << 28;
-    if (grid.count() > MOST)
-        throw Error(GTX_ERROR_LIMIT, "the grid has more than 2^28 nodes");
+    limits.require(GTX_LIMITED_TEXELS, "the grid", grid.count());
     if (grid.count() > bytes_left / least_bytes + 1)
         malformed("the grid ends before its " + std::to_string(grid.nx) + " x " +
                   std::to_string(grid.ny) + " nodes do");

@@ -75,7 +75,7 @@ static Vector<std::string_view> header_line(Lines &lines, size_t fields)
     malformed("the header ends too early");
 }
 
-HeightGrid read_zmap(std::string_view bytes)
+HeightGrid read_zmap(std::string_view bytes, const Limits &limits)
 {
     Lines lines(bytes);
     header_line(lines, 2); /* what it is called */
@@ -103,7 +103,7 @@ HeightGrid read_zmap(std::string_view bytes)
            lines.left().find('\n') != std::string_view::npos && lines.next(line)) {
     }
     Words words(lines.left());
-    reserve_nodes(grid, words.left(), 2);
+    reserve_nodes(grid, words.left(), 2, limits);
     for (uint32_t i = 0; i < grid.nx; ++i)
         for (uint32_t j = grid.ny; j-- > 0;) {
             const std::string_view word = words.next();

@@ -171,18 +171,32 @@ gtx_result gtx_image_read_values(const char *path, gtx_value_image *out, gtx_err
     return GTX_OK;
 }
 
-gtx_result gtx_image_measure(const void *data, size_t size, uint32_t *width, uint32_t *height,
-                             gtx_error *error)
+static gtx_result measure(const char *path, const void *data, size_t size, uint32_t *width,
+                          uint32_t *height, gtx_error *error)
 {
     char message[GTX_IMAGE_MAX_MESSAGE];
-    if (!data || !size || !width || !height)
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "no bytes or no place for the size");
     const gtx_image_functions *module = module_functions(error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
-    if (module->measure(NULL, data, size, width, height, message))
+    if (module->measure(path, data, size, width, height, message))
         return gtx_fail(error, GTX_ERROR_READ, "%s", message);
     return GTX_OK;
+}
+
+gtx_result gtx_image_measure(const void *data, size_t size, uint32_t *width, uint32_t *height,
+                             gtx_error *error)
+{
+    if (!data || !size || !width || !height)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "no bytes or no place for the size");
+    return measure(NULL, data, size, width, height, error);
+}
+
+gtx_result gtx_image_measure_file(const char *path, uint32_t *width, uint32_t *height,
+                                  gtx_error *error)
+{
+    if (!path || !width || !height)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "no path or no place for the size");
+    return measure(path, NULL, 0, width, height, error);
 }
 
 void gtx_image_free(gtx_image *image)

@@ -57,6 +57,8 @@ gtx_result gtx_image_decode(const void *data, size_t size, gtx_image *out, gtx_e
 /* The size that such bytes claim, without decoding them. Errors: likewise. */
 gtx_result gtx_image_measure(const void *data, size_t size, uint32_t *width, uint32_t *height,
                              gtx_error *error);
+gtx_result gtx_image_measure_file(const char *path, uint32_t *width, uint32_t *height,
+                                  gtx_error *error);
 void gtx_image_free(gtx_image *image);
 
 #ifdef __cplusplus

@@ -59,18 +59,31 @@ void spread(const std::vector<uint8_t> &in, int channels, int alpha, uint8_t *ou
     }
 }
 
-/* OpenImageIO picks a reader by the file's name; bytes without one say by their first ones. */
-std::string name_for(const void *data, size_t size)
+/* The formats that are read, by their first bytes alone: OpenImageIO would try all that it knows,
+ * films and medical archives among them. */
+const char *format_of(const char *head, size_t size)
 {
     static const struct {
-        const char *start, *name;
-    } formats[] = {{"\x89PNG", "embedded.png"}, {"\xff\xd8\xff", "embedded.jpg"},
-                   {"RIFF", "embedded.webp"}, {"BM", "embedded.bmp"}, {"GIF8", "embedded.gif"}};
+        const char *start, *format;
+        size_t length;
+    } formats[] = {{"\x89PNG", "png", 4},     {"\xff\xd8\xff", "jpeg", 3}, {"RIFF", "webp", 4},
+                   {"BM", "bmp", 2},          {"GIF8", "gif", 4},          {"II*\0", "tiff", 4},
+                   {"MM\0*", "tiff", 4},      {"II+\0", "tiff", 4},        {"MM\0+", "tiff", 4},
+                   {"\x76\x2f\x31\x01", "openexr", 4}, {"#?", "hdr", 2}, {"P", "pnm", 1}};
     for (const auto &format : formats)
-        if (size >= std::strlen(format.start) &&
-            std::memcmp(data, format.start, std::strlen(format.start)) == 0)
-            return format.name;
-    return {};
+        if (size >= format.length && std::memcmp(head, format.start, format.length) == 0)
+            return format.format;
+    return nullptr;
+}
+
+/* The same of a file; one that has no such bytes goes by its name: TGA. */
+const char *format_of(const char *path)
+{
+    char head[8];
+    std::unique_ptr<FILE, int (*)(FILE *)> file(std::fopen(path, "rb"), std::fclose);
+    const size_t size = file ? std::fread(head, 1, sizeof head, file.get()) : 0;
+    const char *format = format_of(head, size), *extension = std::strrchr(path, '.');
+    return format ? format : extension && !std::strcmp(extension, ".tga") ? "targa" : nullptr;
 }
 
 /* An open file or piece of memory. Neither copied nor moved: the reader points into it. */
@@ -86,16 +99,20 @@ struct Source {
     /* Returns 0 when an image of a sound size is open. */
     int open(const char *path, const void *data, size_t size, char *message)
     {
-        const std::string file = path ? path : name_for(data, size);
-        if (file.empty())
-            return fail(message, name, "neither PNG, JPEG, WebP, BMP nor GIF");
-        OIIO::ImageSpec hint;
+        const char *format = path ? format_of(path)
+                                  : format_of(static_cast<const char *>(data), size);
+        if (!format)
+            return fail(message, name, "neither PNG, JPEG, WebP, BMP, GIF, TIFF, OpenEXR, HDR, "
+                                       "PNM nor TGA");
+        OIIO::ImageSpec hint, found;
         hint.attribute("oiio:UnassociatedAlpha", 1);
         if (!path)
             hint.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-        input = OIIO::ImageInput::open(file, &hint);
+        input = OIIO::ImageInput::create(format);
         if (!input)
             return fail(message, name, OIIO::geterror());
+        if (!input->open(path ? path : std::string("embedded.") + format, found, hint))
+            return fail(message, name, input->geterror());
         const OIIO::ImageSpec &spec = input->spec();
         if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 ||
             spec.nchannels > 64)

@@ -3,6 +3,8 @@
 
 #include "mesh/task.hpp"
 
+#include <filesystem>
+
 namespace gtx {
 
 /* Bytes that a thread may hold, or have given back, untold: a limit is that coarse. */
@@ -27,6 +29,14 @@ void Limits::require(gtx_limited which, const char *what, uint64_t wanted) const
     gtx_error error;
     gtx_fail_limit(&error, which, what, wanted, allowed);
     throw Error(error);
+}
+
+void Limits::read(const std::string &path, uint64_t bytes)
+{
+    std::error_code ignored; /* what has no canonical name is no file, and known by what it is called */
+    const std::string name = std::filesystem::weakly_canonical(path, ignored).string();
+    if (files_.insert(ignored ? path : name).second)
+        grow(read_ += bytes);
 }
 
 void Limits::take(int64_t bytes)

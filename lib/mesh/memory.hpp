@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <new>
+#include <set>
+#include <string>
 #include <vector>
 
 namespace gtx {
@@ -16,8 +18,9 @@ class Limits {
 public:
     explicit Limits(const gtx_limits &given = {}) : given_(given) { grow(0); }
 
-    /* The job has read so many bytes: defaults grow. */
-    void read(uint64_t bytes) { grow(read_ += bytes); }
+    /* The job has read a file of so many bytes: defaults grow, once for each file. For the calling
+     * thread alone. */
+    void read(const std::string &path, uint64_t bytes);
     uint64_t of(gtx_limited which) const { return gtx_limit_of(&given_, which, read_); }
     /* Throws Error(LIMIT) if `what` would take more than is allowed. */
     void require(gtx_limited which, const char *what, uint64_t wanted) const;
@@ -29,7 +32,7 @@ public:
     const gtx_limits &given() const { return given_; }
 
     /* What takes memory now, for the message; static. */
-    std::atomic<const char *> stage{"the job"};
+    std::atomic<const char *> stage{"reading"};
 
 private:
     void grow(uint64_t bytes_read)
@@ -37,6 +40,7 @@ private:
         most_ = gtx_limit_of(&given_, GTX_LIMITED_MEMORY, bytes_read);
     }
     gtx_limits given_;
+    std::set<std::string> files_;
     std::atomic<uint64_t> read_{0}, most_{0};
     std::atomic<int64_t> taken_{0};
 };
@@ -97,5 +101,6 @@ template <class T> struct CountingAllocator {
 
 /* What the cooker's rooms keep their data in. */
 template <class T> using Vector = std::vector<T, CountingAllocator<T>>;
+using Bytes = std::basic_string<char, std::char_traits<char>, CountingAllocator<char>>;
 
 } // namespace gtx

@@ -5,6 +5,8 @@
 #include "mesh/task.hpp"
 #include "mesh/vec.hpp"
 
+#include "base/file.h"
+
 #include <array>
 #include <cstdint>
 #include <map>
@@ -51,20 +53,23 @@ struct CleanReport {
  * model refers to are relative to. */
 struct ModelFile {
     std::string path;
-    std::string bytes; /* inflated when they were gzipped */
+    Bytes bytes;      /* inflated when they were gzipped */
     Vector<std::string> *sources;      /* gets the path of every further file read; may be null */
 };
 
 /* Throw Error: READ, INPUT, LIMIT, MEMORY, CANCELLED. */
 ModelFile read_model(const std::string &path, Task &task);
-ModelFile model_in_memory(std::string bytes, const std::string &path, Task &task);
+/* Any other file, perhaps gzipped too; `look` sees the first bytes of what is packed, and `user` is
+ * the path, a std::string. */
+ModelFile read_packed_file(const std::string &path, Task &task, gtx_file_look look);
+ModelFile model_in_memory(std::string_view bytes, const std::string &path, Task &task);
 
 /* What a path says of the format: its extension in lower case, ".gz" left out. */
 std::string model_extension(const std::string &path);
 
 /* Paths of the files that a model refers to, whether they exist or not: buffers, images, material
  * libraries. Found without decoding the model; nothing is said of one that is malformed. */
-Vector<std::string> referenced_files(const ModelFile &file);
+Vector<std::string> referenced_files(const ModelFile &file, Task &task);
 
 /* Reads a model by its content (falling back to its extension): OBJ, PLY, OFF, STL, Draco, glTF and
  * GLB. Node transforms are applied. What is ignored is named in task.warnings.

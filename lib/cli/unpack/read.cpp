@@ -98,6 +98,14 @@ static Json parse(const std::string &path)
     return json;
 }
 
+/* 0 of what is not there. */
+static uint64_t size_of(const std::string &path)
+{
+    std::error_code error;
+    const uintmax_t size = std::filesystem::file_size(path, error);
+    return error ? 0 : size;
+}
+
 static std::string describe(uint32_t width, uint32_t height, uint32_t channels, uint32_t depth)
 {
     return std::to_string(width) + " x " + std::to_string(height) + " of " +
@@ -132,8 +140,8 @@ static void read_image(const std::string &path, const UnpackedMap &map, uint32_t
     }
 }
 
-static void read_maps(const std::string &folder, const bool has[6], Unpacked &out,
-                      std::string &about)
+static void read_maps(const std::string &folder, const bool has[6], Limits &limits,
+                      Unpacked &out, std::string &about)
 {
     const gtx_asset_desc &d = out.desc;
     for (size_t m = 0; m < 6; ++m) {
@@ -144,6 +152,7 @@ static void read_maps(const std::string &folder, const bool has[6], Unpacked &ou
         for (uint32_t level = 0; level < out.levels[m].size(); ++level)
             for (uint32_t page = 0; page < d.page_count; ++page) {
                 about = in_folder(folder, unpacked_name(map, page, level));
+                limits.read(about, size_of(about));
                 read_image(about, map, d.page_width >> level, d.page_height >> level,
                            d.height_bits, out.levels[m][level]);
             }
@@ -177,7 +186,7 @@ static void read_lod(const Reader &reader, const Json &levels, const std::string
     out.desc.lod_levels = uint32_t(out.lod.size());
 }
 
-void read_unpacked(const std::string &folder, Unpacked &out, std::string &about)
+void read_unpacked(const std::string &folder, Limits &limits, Unpacked &out, std::string &about)
 {
     about = in_folder(folder, UNPACKED_JSON);
     const Json json = parse(about);
@@ -195,6 +204,8 @@ void read_unpacked(const std::string &folder, Unpacked &out, std::string &about)
     if (!d.page_count || !d.mip_count || (d.height_bits != 8 && d.height_bits != 16) ||
         std::max(size[0], size[1]) > GTX_MAX_PAGE_SIDE || std::min(size[0], size[1]) < 1)
         reader.fail("the pages, levels or bits are not those of an asset");
+    limits.require(GTX_LIMITED_TEXELS, "the asset",
+                   uint64_t(d.page_count) * d.page_width * d.page_height);
     d.unit = float(reader.number(reader.at(json, "unit"), "unit"));
     d.emission_scale = float(reader.number(reader.at(json, "emission_scale"), "emission_scale"));
     reader.numbers(json, "anchor", d.anchor, 3);
@@ -211,13 +222,14 @@ void read_unpacked(const std::string &folder, Unpacked &out, std::string &about)
     const Json &patches = reader.at(json, "patches");
     if (!patches.is_array() || patches.empty() || patches.size() > GTX_MAX_PATCHES)
         reader.fail("patches is not a list of patches");
+    limits.require(GTX_LIMITED_PATCHES, "the asset", patches.size());
     for (const Json &patch : patches)
         out.patches.push_back(read_patch(reader, patch));
 
     const bool has[6] = {true, true, true, reader.flag(json, "has_color"),
                          reader.flag(json, "has_material"), reader.flag(json, "has_emission")};
     read_lod(reader, reader.at(json, "lod_meshes"), folder, out, about);
-    read_maps(folder, has, out, about);
+    read_maps(folder, has, limits, out, about);
     auto levels = [&](size_t m) { return has[m] ? out.pointers[m].data() : nullptr; };
     d.patches = out.patches.data();
     d.patch_count = uint32_t(out.patches.size());

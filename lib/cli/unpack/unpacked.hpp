@@ -64,7 +64,7 @@ struct Unpacked {
 };
 
 /* Fills `out`, which must stay where it is. */
-void read_unpacked(const std::string &folder, Unpacked &out, std::string &about);
+void read_unpacked(const std::string &folder, Limits &limits, Unpacked &out, std::string &about);
 
 /* Computes coverage, spheres and bounds anew from the heights, and leaves out the LOD mesh, which
  * does not follow them. */

@@ -21,6 +21,12 @@ struct DracoMesh {
     Vector<DracoAttribute> attributes;
 };
 
+/* The sizes in the header of a mesh; whatever the bytes are, they are read within them. */
+struct DracoClaims {
+    uint64_t faces = 0, points = 0;
+};
+DracoClaims draco_claims(std::string_view bytes);
+
 /* Texture coordinates only when they are wanted.
  * Throws Error: INPUT, UNSUPPORTED (a point cloud), LIMIT. */
 DracoMesh decode_draco(std::string_view bytes, bool with_uv, Task &task);

@@ -59,12 +59,13 @@ uint32_t Palette::number(int material, const GltfPrimitive &primitive, const std
     return entry->second;
 }
 
-static EncodedImage image_beside(const ModelFile &file, std::string name, const std::string &uri)
+static EncodedImage image_beside(const ModelFile &file, std::string name, const std::string &uri,
+                                 Task &task)
 {
     name += " ('" + printable(uri) + "')";
     const std::string path = path_beside(file, percent_decoded(uri));
     if (!path.empty())
-        return read_image_file(file, name, path);
+        return read_image_file(file, name, path, task);
     EncodedImage out;
     out.name = name;
     out.problem = "it is not a file in the model's folder";
@@ -77,22 +78,24 @@ static EncodedImage image_inside(const GltfDocument &doc, std::string name,
     EncodedImage out;
     out.name = name;
     try {
-        out.bytes = source.uri.empty() ? std::string(gltf_view(doc, source.view, name))
+        out.bytes = source.uri.empty() ? Bytes(gltf_view(doc, source.view, name))
                                        : data_uri_bytes(source.uri, name);
     } catch (const Error &e) {
+        if (e.result == GTX_ERROR_LIMIT)
+            throw;
         out.problem = e.message;
     }
     return out;
 }
 
 static EncodedImage encoded_image(const GltfDocument &doc, const GltfImage &image,
-                                  const ModelFile &file)
+                                  const ModelFile &file, Task &task)
 {
     const GltfDocument::ImageSource &source = doc.images[size_t(image.number)];
     const std::string name = "image " + std::to_string(image.number);
     const bool is_inside = source.uri.empty() || source.uri.rfind("data:", 0) == 0;
     EncodedImage out =
-        is_inside ? image_inside(doc, name, source) : image_beside(file, name, source.uri);
+        is_inside ? image_inside(doc, name, source) : image_beside(file, name, source.uri, task);
     out.glossiness = image.glossiness;
     return out;
 }
@@ -106,7 +109,7 @@ static void fetch_images(const GltfDocument &doc, const ModelFile &file, Appeara
         for (Texture Material::*map : MATERIAL_TEXTURES)
             if ((m.*map).used() && encoded[(m.*map).image].name.empty())
                 encoded[(m.*map).image] =
-                    encoded_image(doc, doc.look.images[(m.*map).image], file);
+                    encoded_image(doc, doc.look.images[(m.*map).image], file, task);
     load_images(encoded, look, task);
 }
 
@@ -197,18 +200,21 @@ struct Part {
 } // namespace
 
 /* Adds the part wherever its mesh stands. */
-static void append_instances(const Part &part, const Vector<Affine> &instances, uint64_t limit,
-                             Task &task, Mesh &mesh)
+static void append_instances(const Part &part, const Vector<Affine> &instances, Task &task,
+                             Mesh &mesh)
 {
+    const double limit = double(task.limits.of(GTX_LIMITED_TRIANGLES));
     for (const Affine &transform : instances) {
         uint64_t triangles = mesh.triangles.size() + part.primitive.triangles.size();
         uint64_t vertices = mesh.positions.size() + part.primitive.positions.size();
-        if (std::max(triangles, vertices / 3) > limit || vertices > MAX_VERTICES)
-            fail(GTX_ERROR_LIMIT, "%s: the instances come to more than %llu triangles",
-                 part.where.c_str(), (unsigned long long)limit);
+        task.limits.require(GTX_LIMITED_TRIANGLES, part.where.c_str(),
+                            std::max(triangles, vertices / 3));
+        if (vertices > MAX_VERTICES)
+            fail(GTX_ERROR_LIMIT, "%s: more than %llu vertices", part.where.c_str(),
+                 (unsigned long long)MAX_VERTICES);
         append(part.primitive, part.two_sided, Turn(transform), mesh);
         mesh.appearance.material.resize(mesh.triangles.size(), part.material);
-        task.advance(0.2 + 0.7 * double(triangles) / double(limit));
+        task.advance(0.2 + 0.7 * std::min(double(triangles) / limit, 1.));
     }
 }
 
@@ -239,7 +245,7 @@ Mesh import_gltf(const ModelFile &file, Task &task)
                 read_gltf_primitive(doc, primitives[i], material, where, task);
             const uint32_t shown = palette.number(number, primitive, where);
             const Part part = {std::move(primitive), material && material->two_sided, shown, where};
-            append_instances(part, instances[m], doc.triangle_limit, task, mesh);
+            append_instances(part, instances[m], task, mesh);
         }
     }
     if (has_lines)

@@ -10,6 +10,8 @@
 #define TINYGLTF_NO_STB_IMAGE_WRITE
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
+#include <memory>
+
 #include <fstream> /* which tinygltf forgets once it is told to stay off the file system */
 #include <tiny_gltf.h>
 
@@ -17,17 +19,21 @@ namespace gtx {
 
 struct GltfDocument {
     tinygltf::Model model;            /* without buffers, materials and animations */
-    Vector<std::string> buffers;      /* the bytes of each */
-    Vector<std::string> views;        /* those of each buffer view that was packed, or none */
+    /* As many bytes as it promises, of those that it may share with others. */
+    struct Buffer {
+        std::shared_ptr<const Bytes> bytes;
+        size_t size = 0;
+
+        std::string_view view() const { return std::string_view(*bytes).substr(0, size); }
+    };
+    Vector<Buffer> buffers;
+    Vector<Bytes> views;              /* those of each buffer view that was packed, or none */
     GltfMaterials look;
     struct ImageSource {
         std::string uri;
         int view = -1;
     };
     Vector<ImageSource> images;
-    /* Most triangles that may come out. A few bytes of JSON can ask for a mesh a million times, so
-     * the limit grows with the size of the file; real scenes stay far below it. */
-    uint64_t triangle_limit = 0;
 };
 
 /* Reads the container, the JSON and the buffers. Throws Error: INPUT, UNSUPPORTED, READ, LIMIT. */
@@ -51,7 +57,7 @@ Vector<uint32_t> gltf_indices(const GltfDocument &doc, int accessor, size_t vert
 void unpack_gltf_views(GltfDocument &doc, Task &task);
 
 /* The bytes of a base64 data URI. Throws Error: INPUT. */
-std::string data_uri_bytes(const std::string &uri, const std::string &user);
+Bytes data_uri_bytes(const std::string &uri, const std::string &user);
 
 /* ---- the scene ---- */
 

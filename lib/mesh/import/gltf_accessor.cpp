@@ -24,11 +24,11 @@ std::string_view gltf_view(const GltfDocument &doc, int view, const std::string 
         return doc.views[size_t(view)];
     if (v.buffer < 0 || size_t(v.buffer) >= doc.buffers.size())
         fail(GTX_ERROR_INPUT, "buffer view %d: there is no buffer %d", view, v.buffer);
-    const std::string &buffer = doc.buffers[size_t(v.buffer)];
+    const std::string_view buffer = doc.buffers[size_t(v.buffer)].view();
     if (!fits(v.byteOffset, 1, 0, v.byteLength, buffer.size()))
         fail(GTX_ERROR_INPUT, "buffer view %d lies outside buffer %d of %zu bytes", view, v.buffer,
              buffer.size());
-    return std::string_view(buffer).substr(v.byteOffset, v.byteLength);
+    return buffer.substr(v.byteOffset, v.byteLength);
 }
 
 static double component(const uint8_t *p, int type)
@@ -155,8 +155,9 @@ GltfValues gltf_values(const GltfDocument &doc, int accessor)
                 out.values.push_back(component(data + i * stride + k * size, a.componentType) /
                                      full);
     } else {
-        if (a.count > doc.triangle_limit)
-            fail(GTX_ERROR_LIMIT, "%s: %zu zeros", user.c_str(), a.count);
+        if (a.count > MAX_VERTICES)
+            fail(GTX_ERROR_INPUT, "%s: %zu zeros are more than 32 bits can count", user.c_str(),
+                 a.count);
         out.values.assign(a.count * components, 0);
     }
     if (a.sparse.isSparse)

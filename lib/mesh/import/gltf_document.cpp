@@ -5,6 +5,7 @@
 
 #include "base/bytes.h"
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 namespace gtx {
@@ -81,7 +82,7 @@ static tinygltf::Model load_model(const json &root)
 
 /* ---- buffers ---- */
 
-static std::string base64_decoded(std::string_view text, const std::string &user)
+static Bytes base64_decoded(std::string_view text, const std::string &user)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     int8_t value[256];
@@ -90,7 +91,7 @@ static std::string base64_decoded(std::string_view text, const std::string &user
         value[(unsigned char)digits[i]] = int8_t(i);
     while (!text.empty() && text.back() == '=')
         text.remove_suffix(1);
-    std::string out;
+    Bytes out;
     out.reserve(text.size() / 4 * 3 + 3);
     uint32_t bits = 0;
     int count = 0;
@@ -107,7 +108,7 @@ static std::string base64_decoded(std::string_view text, const std::string &user
     return out;
 }
 
-std::string data_uri_bytes(const std::string &uri, const std::string &user)
+Bytes data_uri_bytes(const std::string &uri, const std::string &user)
 {
     size_t comma = uri.find(',');
     if (comma == std::string::npos || comma < 7 || uri.compare(comma - 7, 7, ";base64") != 0)
@@ -134,42 +135,67 @@ static bool is_fallback(const json &buffer)
     return meshopt != extensions->end() && meshopt->value("fallback", false);
 }
 
-static std::string read_buffer(const ModelFile &file, const json &buffer, size_t number,
-                               const Container &container)
+using SharedBytes = std::shared_ptr<const Bytes>;
+
+/* Buffers of a document; those that name the same file share its bytes. */
+class Buffers {
+public:
+    Buffers(const ModelFile &file, const Container &container, Task &task)
+        : file_(file), container_(container), task_(task)
+    {
+    }
+    GltfDocument::Buffer read(const json &buffer, size_t number);
+
+private:
+    SharedBytes read_file(const std::string &uri, size_t number);
+    const ModelFile &file_;
+    const Container &container_;
+    Task &task_;
+    std::map<std::string, SharedBytes> files_; /* by path */
+};
+
+SharedBytes Buffers::read_file(const std::string &uri, size_t number)
 {
-    auto length = buffer.find("byteLength");
+    const std::string path = file_beside(file_, uri, number);
+    SharedBytes &bytes = files_[path];
+    if (bytes)
+        return bytes;
+    try {
+        bytes = std::make_shared<const Bytes>(read_file_beside(path, task_));
+    } catch (Error &e) {
+        e.message = "buffer " + std::to_string(number) + ": '" + printable(uri) + "': " + e.message;
+        throw;
+    }
+    if (file_.sources)
+        file_.sources->push_back(path);
+    return bytes;
+}
+
+GltfDocument::Buffer Buffers::read(const json &buffer, size_t number)
+{
+    static const SharedBytes NONE = std::make_shared<const Bytes>();
+    auto length = buffer.find("byteLength"), uri = buffer.find("uri");
     if (length == buffer.end())
         fail(GTX_ERROR_INPUT, "buffer %zu has no byteLength", number);
-    auto uri = buffer.find("uri");
-    std::string bytes;
+    SharedBytes bytes;
     if (is_fallback(buffer)) {
-        return {};
+        return {NONE, 0};
     } else if (uri == buffer.end()) {
-        if (number == 0 && container.has_binary)
-            bytes = container.binary;
-        else /* legal when only an extension fills it; who reads it finds it too short */
-            return {};
+        if (number > 0 || !container_.has_binary)
+            return {NONE, 0}; /* legal when only an extension fills it; who reads it finds it too short */
+        bytes = std::make_shared<const Bytes>(container_.binary);
     } else {
         const std::string &text = uri->get_ref<const std::string &>();
-        if (text.rfind("data:", 0) != 0) {
-            std::string path = file_beside(file, text, number);
-            try {
-                bytes = read_whole_file(path);
-            } catch (const Error &e) {
-                fail(e.result, "buffer %zu: '%s': %s", number, printable(text).c_str(), e.what());
-            }
-            if (file.sources)
-                file.sources->push_back(path);
-        } else {
-            bytes = data_uri_bytes(text, "buffer " + std::to_string(number));
-        }
+        bytes = text.rfind("data:", 0) != 0
+                    ? read_file(text, number)
+                    : std::make_shared<const Bytes>(
+                          data_uri_bytes(text, "buffer " + std::to_string(number)));
     }
-    uint64_t wanted = length->get<uint64_t>();
-    if (wanted > bytes.size())
-        fail(GTX_ERROR_INPUT, "buffer %zu has %zu of its %llu bytes", number, bytes.size(),
+    const uint64_t wanted = length->get<uint64_t>();
+    if (wanted > bytes->size())
+        fail(GTX_ERROR_INPUT, "buffer %zu has %zu of its %llu bytes", number, bytes->size(),
              (unsigned long long)wanted);
-    bytes.resize(size_t(wanted));
-    return bytes;
+    return {bytes, size_t(wanted)};
 }
 
 static Vector<GltfDocument::ImageSource> read_images(const json &root)
@@ -189,14 +215,12 @@ GltfDocument read_gltf_document(const ModelFile &file, Task &task)
     json root = read_gltf_json(container.json, task);
 
     GltfDocument doc;
-    uint64_t total = file.bytes.size();
+    Buffers reader(file, container, task);
     json buffers = root.value("buffers", json::array());
     for (size_t i = 0; i < buffers.size(); ++i) {
-        doc.buffers.push_back(read_buffer(file, buffers[i], i, container));
-        total += doc.buffers.back().size();
+        doc.buffers.push_back(reader.read(buffers[i], i));
         task.advance(0.1 + 0.1 * double(i) / double(buffers.size()));
     }
-    doc.triangle_limit = (uint64_t(1) << 24) + 64 * total;
     doc.look = read_gltf_materials(root);
     doc.images = read_images(root);
     strip_gltf_json(root, task);

@@ -74,7 +74,7 @@ static const T *find_named(const T (&table)[N], const std::string &name)
     return nullptr;
 }
 
-static void apply_filter(const Packed &packed, std::string &out)
+static void apply_filter(const Packed &packed, Bytes &out)
 {
     if (packed.filter.empty() || packed.filter == "NONE")
         return;
@@ -86,13 +86,13 @@ static void apply_filter(const Packed &packed, std::string &out)
     filter->apply(out.data(), packed.count, packed.stride);
 }
 
-static std::string unpack(const Packed &packed, const Mode &mode)
+static Bytes unpack(const Packed &packed, const Mode &mode)
 {
     packed.require(mode.suits(packed.count, packed.stride),
                    "its meshopt stride or count does not suit its mode");
     packed.require(packed.count <= packed.bytes.size() * mode.most_bytes / packed.stride,
                    "its meshopt data is too short for its count");
-    std::string out(packed.count * packed.stride, 0);
+    Bytes out(packed.count * packed.stride, 0);
     if (!out.empty())
         packed.require(mode.decode(out.data(), packed.count, packed.stride, packed.data(),
                                    packed.bytes.size()) == 0,
@@ -121,7 +121,7 @@ void unpack_gltf_views(GltfDocument &doc, Task &task)
         const Mode *mode = find_named(modes, text("mode"));
         packed.require(mode, "its meshopt mode is unknown");
         packed.require(number("buffer") < doc.buffers.size(), "its meshopt buffer is not there");
-        std::string_view buffer = doc.buffers[number("buffer")];
+        std::string_view buffer = doc.buffers[number("buffer")].view();
         packed.require(number("byteOffset") <= buffer.size() &&
                            number("byteLength") <= buffer.size() - number("byteOffset"),
                        "its meshopt data lies outside its buffer");

@@ -6,28 +6,22 @@
 #include "image/image.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 
 namespace gtx {
 
-/* A few kilobytes of PNG may claim a gigabyte. */
-static const uint64_t max_file_bytes = uint64_t(1) << 30;
-static const uint64_t max_image_pixels = uint64_t(1) << 28;
-static const uint64_t max_model_pixels = uint64_t(1) << 29;
-
-EncodedImage read_image_file(const ModelFile &file, std::string name, const std::string &path)
+EncodedImage read_image_file(const ModelFile &file, std::string name, const std::string &path,
+                             Task &task)
 {
     EncodedImage out;
     out.name = std::move(name);
-    std::error_code error;
     try {
-        if (std::filesystem::file_size(path, error) == UINTMAX_MAX) /* a pipe may never end */
-            fail(GTX_ERROR_READ, "cannot open the file: %s", error.message().c_str());
-        out.bytes = read_whole_file(path, max_file_bytes);
+        out.bytes = read_file_beside(path, task);
         if (file.sources)
             file.sources->push_back(path);
     } catch (const Error &e) {
+        if (e.result == GTX_ERROR_LIMIT)
+            throw;
         out.problem = e.message;
     }
     return out;
@@ -38,7 +32,7 @@ namespace {
 struct Load {
     bool needed[2] = {false, false}; /* by Texels */
     uint32_t number[2] = {Texture::NONE, Texture::NONE}; /* in the appearance */
-    uint64_t pixels = 0;
+    size_t pixels = 0;
     std::string problem;
     Image images[2];
 };
@@ -50,7 +44,7 @@ static Texels kind_of(Texture Material::*map)
                                                                          : Texels::DATA;
 }
 
-static void measure(const EncodedImage &from, Load &load)
+static void measure(const EncodedImage &from, const Limits &limits, Load &load)
 {
     uint32_t width = 0, height = 0;
     gtx_error error = {};
@@ -59,9 +53,8 @@ static void measure(const EncodedImage &from, Load &load)
         return;
     if (gtx_image_measure(from.bytes.data(), from.bytes.size(), &width, &height, &error))
         load.problem = error.message;
-    load.pixels = uint64_t(width) * height;
-    if (load.pixels > max_image_pixels)
-        load.problem = "it has more than 2^28 pixels";
+    load.pixels = size_t(width) * height;
+    limits.require(GTX_LIMITED_PIXELS, from.name.c_str(), load.pixels);
 }
 
 /* Roughness is 1 - glossiness, in green; the surface counts as no metal. */
@@ -75,6 +68,7 @@ static void decode(const EncodedImage &from, Load &load)
 {
     gtx_image decoded = {};
     gtx_error error = {};
+    TakenMemory taken(2 * sizeof(Rgba8) * load.pixels); /* as decoded, and as RGBA */
     if (gtx_image_decode(from.bytes.data(), from.bytes.size(), &decoded, &error)) {
         load.problem = error.message;
         return;
@@ -127,13 +121,10 @@ void load_images(const Vector<EncodedImage> &encoded, Appearance &look, Task &ta
                 loads[(m.*map).image].needed[int(kind_of(map))] = true;
 
     Vector<size_t> work;
-    uint64_t pixels = 0;
     for (size_t i = 0; i < loads.size(); ++i) {
         if (!loads[i].needed[0] && !loads[i].needed[1])
             continue;
-        measure(encoded[i], loads[i]);
-        if (loads[i].problem.empty() && (pixels += loads[i].pixels) > max_model_pixels)
-            loads[i].problem = "the model's images have more than 2^29 pixels";
+        measure(encoded[i], task.limits, loads[i]);
         work.push_back(i);
     }
     task.parallel(work.size(), [&](size_t k) {

@@ -8,14 +8,15 @@ namespace gtx {
 /* An image as a file or a buffer holds it. */
 struct EncodedImage {
     std::string name;      /* for messages: "image 3 ('wood.png')" */
-    std::string bytes;
+    Bytes bytes;
     std::string problem;   /* why there are none */
     float glossiness = -1; /* >= 0: the alpha holds glossiness, to be multiplied by this; it becomes
                             * roughness where a metal-rough map has that */
 };
 
-/* The bytes of a file that a model names, or the problem. */
-EncodedImage read_image_file(const ModelFile &file, std::string name, const std::string &path);
+/* The bytes of a file that a model names, or the problem. Throws Error: LIMIT. */
+EncodedImage read_image_file(const ModelFile &file, std::string name, const std::string &path,
+                             Task &task);
 
 /* Decodes those images that textures of `look` name (Texture::image is an index of `encoded`), each
  * once, and makes the textures name the results. An image that cannot be had is a warning, and the

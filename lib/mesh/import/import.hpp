@@ -4,6 +4,7 @@
 #include "mesh/mesh.hpp"
 
 #include "base/error.h"
+#include "base/file.h"
 
 #include <string_view>
 
@@ -17,6 +18,8 @@ Mesh import_draco(const ModelFile &file, Task &task);
 Mesh import_gltf(const ModelFile &file, Task &task);
 Mesh import_off(const ModelFile &file, Task &task);
 Mesh import_stl(const ModelFile &file, Task &task);
+/* Throws Error(EMPTY) for the first bytes of a binary STL file that counts no facet. */
+void require_facets(std::string_view head);
 
 /* Vertices and triangles are numbered in 32 bits, and the last number is taken. */
 constexpr uint64_t MAX_VERTICES = 0xfffffffe;
@@ -31,11 +34,12 @@ std::string printable(std::string_view text, size_t longest = 40);
  * stays, where there is none. */
 bool parse_number(const char *&at, const char *end, double &value);
 
-/* Larger models would not fit the 32-bit numbers of their vertices. */
-constexpr uint64_t MAX_FILE_BYTES = uint64_t(1) << 36;
-
-/* Throws Error: READ, LIMIT, MEMORY; it calls the file "the file", for a model may name any. */
-std::string read_whole_file(const std::string &path, uint64_t limit = MAX_FILE_BYTES);
+/* Throws Error: READ, LIMIT, MEMORY, and what `look` says of the first bytes; it calls the file "the
+ * file", for a model may name any. */
+Bytes read_whole_file(const std::string &path, Task &task, gtx_file_look look = nullptr,
+                      void *user = nullptr);
+/* The same of a file that a model names: a device or a pipe is READ. */
+Bytes read_file_beside(const std::string &path, Task &task);
 
 /* The path of a file that a model names: beside the model or in a folder below it. Empty where the
  * name leads anywhere else: a model from elsewhere must not make the cooker read other files. */
@@ -43,8 +47,8 @@ std::string path_beside(const ModelFile &file, const std::string &name);
 std::string percent_decoded(std::string_view uri);
 
 /* Append the paths of the files that a model refers to; "" for those it must not. */
-void gltf_references(const ModelFile &file, Vector<std::string> &paths);
-void obj_references(const ModelFile &file, Vector<std::string> &paths);
+void gltf_references(const ModelFile &file, Task &task, Vector<std::string> &paths);
+void obj_references(const ModelFile &file, Task &task, Vector<std::string> &paths);
 
 /* Cuts a polygon of n >= 3 corners into n - 2 triangles of corner numbers, wound alike. */
 void triangulate(const Vector<Vec3d> &polygon, Vector<std::array<uint32_t, 3>> &out);

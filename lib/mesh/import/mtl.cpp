@@ -65,7 +65,10 @@ const char *const SILENT[] = {"Ka", "Ks", "Ns", "Ni", "Tf", "illum", "sharpness"
 
 class MtlReader {
 public:
-    MtlReader(const ModelFile &file, MtlLibrary &library) : file_(file), library_(library) {}
+    MtlReader(const ModelFile &file, MtlLibrary &library, Task &task)
+        : file_(file), library_(library), task_(task)
+    {
+    }
     void statement(Line line);
 
 private:
@@ -77,6 +80,7 @@ private:
 
     const ModelFile &file_;
     MtlLibrary &library_;
+    Task &task_;
     size_t current_ = 0;
     bool repeated_ = true; /* nothing is defined yet, or it was before */
 };
@@ -150,7 +154,7 @@ uint32_t MtlReader::image(const std::string &name)
         EncodedImage encoded;
         encoded.name = shown;
         encoded.problem = "it is not a file in the model's folder";
-        library_.images.push_back(path.empty() ? encoded : read_image_file(file_, shown, path));
+        library_.images.push_back(path.empty() ? encoded : read_image_file(file_, shown, path, task_));
         library_.image_names.push_back(name);
         known = library_.image_names.end() - 1;
     }
@@ -217,22 +221,25 @@ void MtlReader::statement(Line line)
 
 void read_mtl(const ModelFile &file, const std::string &name, MtlLibrary &library, Task &task)
 {
-    std::string path = path_beside(file, name), text;
+    std::string path = path_beside(file, name);
+    Bytes text;
     std::error_code error;
     if (path.empty() || !std::filesystem::is_regular_file(path, error)) {
         task.warnings.push_back("material library '" + printable(name) + "' was not found");
         return;
     }
     try {
-        text = read_whole_file(path);
+        text = read_file_beside(path, task);
     } catch (const Error &e) {
+        if (e.result == GTX_ERROR_LIMIT)
+            throw;
         task.warnings.push_back("material library '" + printable(name) +
                                 "' was ignored: " + e.message);
         return;
     }
     if (file.sources)
         file.sources->push_back(path);
-    MtlReader reader(file, library);
+    MtlReader reader(file, library, task);
     for (size_t at = 0; at < text.size();) {
         size_t end = std::min(text.find_first_of("\r\n", at), text.size());
         reader.statement({text.data() + at, text.data() + end});

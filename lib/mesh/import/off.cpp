@@ -12,7 +12,7 @@ struct OffKind {
 
 class OffReader {
 public:
-    OffReader(const std::string &text, Task &task) : text_(text, task), task_(task) {}
+    OffReader(std::string_view text, Task &task) : text_(text, task), task_(task) {}
     Mesh read();
 
 private:

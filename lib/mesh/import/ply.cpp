@@ -65,7 +65,7 @@ struct Lists {
 
 class PlyReader {
 public:
-    PlyReader(const std::string &bytes, Task &task)
+    PlyReader(std::string_view bytes, Task &task)
         : header_(read_ply_header(bytes)), values_(bytes, header_, task), task_(task)
     {
     }

@@ -66,7 +66,7 @@ static std::string_view gltf_text(std::string_view bytes)
     return bytes.substr(TEXT, gtx_load_u32(reinterpret_cast<const uint8_t *>(bytes.data()) + 12));
 }
 
-void gltf_references(const ModelFile &file, Vector<std::string> &paths)
+void gltf_references(const ModelFile &file, Task &, Vector<std::string> &paths)
 {
     std::string_view text = gltf_text(file.bytes);
     auto keep = [](int depth, json::parse_event_t event, json &value) {
@@ -124,7 +124,7 @@ static void add_names(std::initializer_list<const ModelFile *> beside, std::stri
     }
 }
 
-void obj_references(const ModelFile &file, Vector<std::string> &paths)
+void obj_references(const ModelFile &file, Task &task, Vector<std::string> &paths)
 {
     each_statement(file.bytes, {"mtllib"},
                    [&](std::string_view line) { add_names({&file}, line, paths); });
@@ -132,7 +132,7 @@ void obj_references(const ModelFile &file, Vector<std::string> &paths)
         std::error_code ignored;
         if (!std::filesystem::is_regular_file(paths[i], ignored))
             continue;
-        ModelFile library = {paths[i], read_whole_file(paths[i]), nullptr};
+        ModelFile library = {paths[i], read_file_beside(paths[i], task), nullptr};
         each_statement(library.bytes, {"map_", "bump", "norm", "disp", "refl", "decal"},
                        [&](std::string_view line) { add_names({&file, &library}, line, paths); });
     }

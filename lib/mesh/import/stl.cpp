@@ -134,6 +134,12 @@ static Mesh read_text(std::string_view bytes, Task &task)
     return mesh;
 }
 
+void require_facets(std::string_view head)
+{
+    if (head.size() >= PROLOGUE && !is_text(head) && !gtx_load_u32(bytes_at(head, HEADER)))
+        fail(GTX_ERROR_EMPTY, "the STL file has no facet");
+}
+
 Mesh import_stl(const ModelFile &file, Task &task)
 {
     return is_text(file.bytes) ? read_text(file.bytes, task) : read_binary(file.bytes, task);
