@@ -13,8 +13,8 @@
  *
  * Limits. limits.memory is held against what the containers have on all threads of the call, each
  * time that one takes memory; images and Draco meshes count before they are decoded, by the size
- * that they claim. What the decoders take beside that, in proportion to the bytes that they read, is
- * not counted, nor what the allocator gives. */
+ * that they claim. What the decoders take beside that, in proportion to the bytes that they read,
+ * is not counted, nor what the allocator gives. */
 #ifndef GEOTEX_COOK_H
 #define GEOTEX_COOK_H
 
@@ -212,8 +212,9 @@ typedef struct gtx_horizons_desc {
     gtx_progress_fn progress;     /* may be NULL */
     void *progress_user;
     const gtx_allocator *allocator;   /* for the asset */
-    gtx_limits limits;            /* memory, texels, also those of the surface that several grids
-                                     become, and patches; the grids' values count as read */
+    gtx_limits limits;            /* memory, for which the grids' values count as read; texels:
+                                     nodes of all grids, and of the surface that they become,
+                                     2^28 by default; patches */
     uint32_t reserved[6];
 } gtx_horizons_desc;
 

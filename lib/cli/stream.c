@@ -9,7 +9,8 @@
 int read_whole(const char *path, void **data, size_t *size)
 {
     const bool is_stdin = !strcmp(path, "-");
-    gtx_file_bytes bytes = {.allocator = gtx_allocator_or_default(NULL), .limit = cli_limits.memory};
+    gtx_file_bytes bytes = {.allocator = gtx_allocator_or_default(NULL),
+                            .limit = cli_limits.memory};
     gtx_error error;
     if (is_stdin ? gtx_read_stream(stdin, "standard input", &bytes, &error)
                  : gtx_read_file(path, path, &bytes, &error))

@@ -199,13 +199,23 @@ static std::string meta_of(const gtx_horizons_desc &desc, const double range[2],
     return std::string(json.text, json.size);
 }
 
+/* The values are in memory already, and the caller's own. */
+static gtx_limits limits_of(const gtx_horizons_desc &desc)
+{
+    gtx_limits limits = desc.limits;
+    if (!limits.texels)
+        limits.texels = uint64_t(1) << 28;
+    return limits;
+}
+
 static Asset make_horizons(const gtx_height_grid *grids, uint32_t count,
                            const gtx_horizons_desc &desc, gtx_horizons_result *result)
 {
     const uint64_t nodes = check(grids, count, desc);
     const float lod = desc.lod_levels ? 60 : 0;
     Task task(desc.threads, desc.progress, desc.progress_user, {"bake", "pack", "lod", "write"},
-              {35, 3, lod, 2}, desc.limits);
+              {35, 3, lod, 2}, limits_of(desc));
+    task.limits.require(GTX_LIMITED_TEXELS, "the grids", nodes);
     task.limits.read("", nodes * sizeof(float));
     const Surfaces surfaces(grids, count, desc.one_surface, task.limits);
     double range[2] = {0, 0};

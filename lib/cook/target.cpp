@@ -55,7 +55,7 @@ public:
     void find_pitch(Options options, double rms);
     void try_sixteen_bits();
     void try_patches();
-    Attempt take();
+    Attempt take(const char *limit);
     /* Cooks, keeps what is best so far, and tells the error. */
     double attempt(const Options &options)
     {
@@ -143,14 +143,16 @@ void Search::try_patches()
     }
 }
 
-Attempt Search::take()
+Attempt Search::take(const char *limit)
 {
     if (best_)
         return std::move(*best_);
     char text[128];
     snprintf(text, sizeof text,
              "an RMS of %.3g of the diagonal is out of reach: %.3g was the least", error_, least_);
-    throw Error(GTX_ERROR_LIMIT, text);
+    Error error(GTX_ERROR_LIMIT, text);
+    error.limit = limit;
+    throw error;
 }
 
 } // namespace
@@ -158,12 +160,19 @@ Attempt Search::take()
 Attempt cook_to_error(const Options &options, const Cook &cook)
 {
     Search search(options.error, cook);
-    search.find_pitch(options, search.attempt(options));
-    if (options.free_bits)
-        search.try_sixteen_bits();
-    if (options.free_charts)
-        search.try_patches();
-    return search.take();
+    const char *limit = nullptr; /* what held the search back */
+    try {
+        search.find_pitch(options, search.attempt(options));
+        if (options.free_bits)
+            search.try_sixteen_bits();
+        if (options.free_charts)
+            search.try_patches();
+    } catch (const Error &e) {
+        if (e.result != GTX_ERROR_LIMIT)
+            throw;
+        limit = e.limit;
+    }
+    return search.take(limit);
 }
 
 } // namespace gtx

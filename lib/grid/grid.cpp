@@ -89,7 +89,8 @@ static const struct {
                {is_zmap, read_zmap}};
 
 /* What is none of them is left to those who know images. */
-static gtx_result look_for_grid(const uint8_t *head, size_t size, uint64_t, void *, gtx_error *error)
+static gtx_result look_for_grid(const uint8_t *head, size_t size, uint64_t, void *,
+                                gtx_error *error)
 {
     const std::string_view text(reinterpret_cast<const char *>(head), size);
     bool known = false;

@@ -33,7 +33,7 @@ void Limits::require(gtx_limited which, const char *what, uint64_t wanted) const
 
 void Limits::read(const std::string &path, uint64_t bytes)
 {
-    std::error_code ignored; /* what has no canonical name is no file, and known by what it is called */
+    std::error_code ignored; /* what has no canonical name is no file: what it is called counts */
     const std::string name = std::filesystem::weakly_canonical(path, ignored).string();
     if (files_.insert(ignored ? path : name).second)
         grow(read_ += bytes);

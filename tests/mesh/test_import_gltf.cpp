@@ -59,7 +59,7 @@ static void test_files(void **)
     assert_fails(with_uri("absent.bin"), GTX_ERROR_READ,
                  "buffer 0: 'absent.bin': cannot open the file: No such file or directory");
     assert_fails(with_uri("parts"), GTX_ERROR_READ,
-                 "buffer 0: 'parts': cannot read the file: Is a directory");
+                 "buffer 0: 'parts': cannot read the file: it is not a regular one");
     for (const std::string &uri :
          {std::string("../secret.bin"), std::string("parts/../../secret.bin"), std::string(""),
           std::string("%2e%2e/secret.bin"), std::string("..%5c..\\\\secret.bin"),
@@ -164,7 +164,8 @@ static void test_instances(void **)
     }
     json = change(json, "{'mesh':0}", nodes);
     json = change(json, "'nodes':[0]", "'nodes':[" + roots + "]");
-    assert_fails(import_data(json, square().substr(0, 48) + indices), GTX_ERROR_LIMIT, "instances");
+    assert_fails(import_data(json, square().substr(0, 48) + indices), GTX_ERROR_LIMIT,
+                 "triangles, more than");
 }
 
 /* EXT_mesh_gpu_instancing: a node that repeats its mesh, quarter turns as normalised shorts. */
@@ -257,7 +258,7 @@ static void test_sparse(void **)
     assert_fails(import_data(json, far), GTX_ERROR_INPUT, "sparse index 77 of 4");
     assert_fails(import_changed("'bufferView':0,'componentType':5126,'count':4",
                                 "'componentType':5126,'count':4000000000"),
-                 GTX_ERROR_LIMIT, "accessor 0");
+                 GTX_ERROR_LIMIT, "bytes of memory");
 }
 
 /* KHR_mesh_quantization: normalised shorts with a stride. */

@@ -6,7 +6,7 @@
 
 namespace gtx {
 
-/* What the decoder takes, with positions and normals: measured with meshes of 10^5 faces and more. */
+/* What the decoder takes, with positions and normals: measured on meshes of 10^5 faces and more. */
 constexpr uint64_t BYTES_PER_FACE = 64, BYTES_PER_POINT = 64;
 
 static DracoRole role_of(draco::GeometryAttribute::Type type)

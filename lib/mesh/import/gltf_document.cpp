@@ -182,7 +182,7 @@ GltfDocument::Buffer Buffers::read(const json &buffer, size_t number)
         return {NONE, 0};
     } else if (uri == buffer.end()) {
         if (number > 0 || !container_.has_binary)
-            return {NONE, 0}; /* legal when only an extension fills it; who reads it finds it too short */
+            return {NONE, 0}; /* legal when an extension fills it; else who reads it says so */
         bytes = std::make_shared<const Bytes>(container_.binary);
     } else {
         const std::string &text = uri->get_ref<const std::string &>();

@@ -6,6 +6,8 @@
 #include "base/error.h"
 #include "base/file.h"
 
+#include <new>
+#include <stdexcept>
 #include <string_view>
 
 namespace gtx {
@@ -34,12 +36,28 @@ std::string printable(std::string_view text, size_t longest = 40);
  * stays, where there is none. */
 bool parse_number(const char *&at, const char *end, double &value);
 
-/* Throws Error: READ, LIMIT, MEMORY, and what `look` says of the first bytes; it calls the file "the
- * file", for a model may name any. */
+/* Throws Error: READ, LIMIT, MEMORY, and what `look` says of the first bytes; it calls the file
+ * "the file", for a model may name any. */
 Bytes read_whole_file(const std::string &path, Task &task, gtx_file_look look = nullptr,
                       void *user = nullptr);
 /* The same of a file that a model names: a device or a pipe is READ. */
 Bytes read_file_beside(const std::string &path, Task &task);
+
+/* What runs out of memory, or of a container's longest length, says so. */
+template <class Body> auto within_memory(Body body)
+{
+    try {
+        return body();
+    } catch (const std::bad_alloc &) {
+        fail(GTX_ERROR_MEMORY, "not enough memory to read the model");
+    } catch (const std::length_error &) {
+        fail(GTX_ERROR_MEMORY, "not enough memory to read the model");
+    }
+}
+
+/* Inflates the bytes of a file if they are gzipped; `look` then sees the first ones, with a
+ * std::string, the path, as `user`. */
+ModelFile unpacked_file(Bytes bytes, const std::string &path, Task &task, gtx_file_look look);
 
 /* The path of a file that a model names: beside the model or in a folder below it. Empty where the
  * name leads anywhere else: a model from elsewhere must not make the cooker read other files. */

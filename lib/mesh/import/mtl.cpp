@@ -154,7 +154,8 @@ uint32_t MtlReader::image(const std::string &name)
         EncodedImage encoded;
         encoded.name = shown;
         encoded.problem = "it is not a file in the model's folder";
-        library_.images.push_back(path.empty() ? encoded : read_image_file(file_, shown, path, task_));
+        library_.images.push_back(
+            path.empty() ? encoded : read_image_file(file_, shown, path, task_));
         library_.image_names.push_back(name);
         known = library_.image_names.end() - 1;
     }
