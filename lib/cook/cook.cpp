@@ -8,6 +8,7 @@
 #include "asset/asset.h"
 #include "bake/lod/lod.hpp"
 #include "base/alloc.h"
+#include "base/output.h"
 
 #include <algorithm>
 #include <chrono>
@@ -80,7 +81,7 @@ struct Encoded {
     void save(const char *path) const
     {
         gtx_error error;
-        require_ok(gtx_save_bytes(path, &allocator, data, size, &error), error);
+        require_ok(gtx_write_file(path, data, size, &error), error);
     }
 };
 
