@@ -220,14 +220,15 @@ void read_mtl(const ModelFile &file, const std::string &name, MtlLibrary &librar
     std::string path = path_beside(file, name), text;
     std::error_code error;
     if (path.empty() || !std::filesystem::is_regular_file(path, error)) {
-        task.warnings.push_back("material library '" + printable(name) + "' was not found");
+        task.warn(GTX_WARNING_UNREAD_LIBRARY,
+                  "material library '" + printable(name) + "' was not found");
         return;
     }
     try {
         text = read_whole_file(path);
     } catch (const Error &e) {
-        task.warnings.push_back("material library '" + printable(name) +
-                                "' was ignored: " + e.message);
+        task.warn(GTX_WARNING_UNREAD_LIBRARY,
+                  "material library '" + printable(name) + "' was ignored: " + e.message);
         return;
     }
     if (file.sources)
