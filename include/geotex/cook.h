@@ -44,6 +44,12 @@ typedef enum gtx_extract {
     GTX_EXTRACT_GPU = 2
 } gtx_extract;
 
+/* Gets the paths of the files behind the models, which exist, once they are known and before
+ * anything is made of them; again with more of them, where importing read files that could not be
+ * foreseen. What it returns but GTX_OK, with `error` filled, ends the call. */
+typedef gtx_result (*gtx_sources_fn)(const char *const *paths, size_t count, void *user,
+                                     gtx_error *error);
+
 typedef struct gtx_cook_desc {
     gtx_partition partition;
     gtx_extract extract;
@@ -81,6 +87,8 @@ typedef struct gtx_cook_desc {
                                      is more curved; for the partition pgp */
     gtx_limits limits;            /* all of them; bytes read are those of the models and of the
                                      files that these refer to */
+    gtx_sources_fn sources_fn;    /* may be NULL */
+    void *sources_user;
     uint32_t reserved[7];
 } gtx_cook_desc;
 
@@ -104,15 +112,18 @@ typedef struct gtx_report {
     uint32_t unchanged;           /* 1: if_changed, and the output was left alone */
     char **sources;               /* paths of the files behind the models, the first model first */
     size_t source_count;
-    char **warnings;              /* one sentence each */
+    char **warnings;              /* one sentence each, for people */
     size_t warning_count;
+    const char **warning_names;   /* as many: what kind each is, such as "open-edges", for programs;
+                                     static. All are in format/cook-report.schema.json */
     gtx_allocator allocator;      /* gave `block`, and takes it back */
     void *block;
     size_t block_size;
 } gtx_report;
 
 /* Reads the model at `input` (glTF, GLB, Draco, OBJ, PLY, OFF, STL, each also gzipped), cooks it
- * and writes the asset to `output`: whole, through a temporary name and a rename, or not at all.
+ * and writes the asset to `output`, as gtx_save_file does. Neither it nor charts_ply may be a file
+ * that the models are read from, under whatever name (ARGUMENT).
  * `desc`, `report` (format/cook-report.schema.json) and `error` may be NULL. Any thread.
  * Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, READ, WRITE, INPUT, EMPTY, UNSUPPORTED,
  * INTERNAL; GL and SHADER if the GPU is to extract and no driver can. */

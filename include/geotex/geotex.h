@@ -331,8 +331,10 @@ typedef struct gtx_encode_desc {
 GTX_API gtx_result gtx_encode(const gtx_asset *asset, const gtx_encode_desc *desc, void **data,
                               size_t *size, gtx_error *error);
 
-/* Encodes, with the descriptor's allocator, into "<path>.tmp" and renames it over `path` once it is
- * whole. Errors: also WRITE. */
+/* Encodes, with the descriptor's allocator, and writes a file: whole, under a temporary name of its
+ * own in the same folder, or not at all. It takes the place of what was there once it is on the
+ * disk, and keeps its permissions; a symbolic link stays one, and devices and pipes are written to.
+ * Errors: also WRITE. */
 GTX_API gtx_result gtx_save_file(const gtx_asset *asset, const char *path,
                                  const gtx_encode_desc *desc, gtx_error *error);
 

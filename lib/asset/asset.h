@@ -29,10 +29,6 @@ struct gtx_asset {
     size_t meta_size;
 };
 
-/* Writes the bytes of a file whole or not at all; the rest of gtx_save_file after encoding. */
-gtx_result gtx_save_bytes(const char *path, const gtx_allocator *allocator, const void *data,
-                          size_t size, gtx_error *error);
-
 /* Texels of a page at a level, and of all pages. */
 static inline size_t gtx_page_texels(const gtx_asset *asset, uint32_t level)
 {

@@ -5,9 +5,8 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/jobs.h"
+#include "base/output.h"
 
-#include <errno.h>
-#include <stdio.h>
 #include <string.h>
 
 /* Each takes an encoder's memory. The largest map has a fifth of all bytes or more: with more jobs
@@ -195,37 +194,6 @@ gtx_result gtx_encode(const gtx_asset *asset, const gtx_encode_desc *desc, void 
     return result;
 }
 
-/* Writes `data` to a file and makes sure that all of it got there. */
-static bool write_file(const char *path, const void *data, size_t size)
-{
-    FILE *file = fopen(path, "wb");
-    if (!file)
-        return false;
-    bool whole = fwrite(data, 1, size, file) == size;
-    return fclose(file) == 0 && whole;
-}
-
-gtx_result gtx_save_bytes(const char *path, const gtx_allocator *allocator, const void *data,
-                          size_t size, gtx_error *error)
-{
-    size_t length = strlen(path) + sizeof ".tmp";
-    char *temporary = gtx_alloc_array(allocator, length, 1);
-    if (!temporary)
-        return gtx_fail(error, GTX_ERROR_MEMORY, "out of memory for a path");
-    snprintf(temporary, length, "%s.tmp", path);
-    gtx_result result = GTX_OK;
-    if (!write_file(temporary, data, size))
-        result = gtx_fail(error, GTX_ERROR_WRITE, "cannot write %s: %s", temporary,
-                          strerror(errno));
-    else if (rename(temporary, path))
-        result = gtx_fail(error, GTX_ERROR_WRITE, "cannot rename %s: %s", temporary,
-                          strerror(errno));
-    if (result)
-        remove(temporary);
-    gtx_free_array(allocator, temporary, length, 1);
-    return result;
-}
-
 gtx_result gtx_save_file(const gtx_asset *asset, const char *path, const gtx_encode_desc *desc,
                          gtx_error *error)
 {
@@ -237,7 +205,7 @@ gtx_result gtx_save_file(const gtx_asset *asset, const char *path, const gtx_enc
     if (result)
         return result;
     gtx_allocator allocator = gtx_allocator_or_default(desc ? desc->allocator : NULL);
-    result = gtx_save_bytes(path, &allocator, data, size, error);
+    result = gtx_write_file(path, data, size, error);
     gtx_free_array(&allocator, data, size, 1);
     return result;
 }

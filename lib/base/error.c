@@ -1,7 +1,8 @@
-/* Result sentences and the filling of gtx_error. */
+/* Result sentences, the filling of gtx_error, and text fit for a line of a terminal. */
 #include "base/error.h"
 
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 
 uint32_t gtx_version(void)
@@ -34,6 +35,43 @@ const char *gtx_result_string(gtx_result result)
     return "unknown result";
 }
 
+/* Bytes of the UTF-8 character at `text`, which ends in a 0; 0 for what is none. */
+static size_t character_size(const unsigned char *text, uint32_t *code)
+{
+    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    const size_t size = *text < 0x80 ? 1 : *text >> 5 == 6 ? 2 : *text >> 4 == 14 ? 3
+                        : *text >> 3 == 30 ? 4 : 0;
+    *code = size > 1 ? *text & (0x7fu >> size) : *text;
+    for (size_t i = 1; i < size; ++i) {
+        if (text[i] >> 6 != 2)
+            return 0;
+        *code = *code << 6 | (text[i] & 0x3fu);
+    }
+    const bool is_half = *code >= 0xd800 && *code < 0xe000;
+    return size && *code >= least[size] && *code <= 0x10ffff && !is_half ? size : 0;
+}
+
+/* Controls, and what breaks or turns a line. */
+static bool is_printable(uint32_t code)
+{
+    return code >= 0x20 && (code < 0x7f || code >= 0xa0) && !(code >= 0x2028 && code <= 0x202e) &&
+           !(code >= 0x2066 && code <= 0x2069);
+}
+
+void gtx_make_printable(char *text)
+{
+    uint32_t code;
+    for (unsigned char *at = (unsigned char *)text; *at;) {
+        const size_t size = character_size(at, &code);
+        const bool keeps = size && is_printable(code);
+        for (size_t i = 0; i < size && !keeps; ++i)
+            at[i] = '?';
+        if (!size)
+            *at = '?';
+        at += size ? size : 1;
+    }
+}
+
 gtx_result gtx_fail(gtx_error *error, gtx_result result, const char *format, ...)
 {
     if (!error)
@@ -43,6 +81,7 @@ gtx_result gtx_fail(gtx_error *error, gtx_result result, const char *format, ...
     va_start(args, format);
     vsnprintf(error->message, sizeof error->message, format, args);
     va_end(args);
+    gtx_make_printable(error->message);
     return result;
 }
 

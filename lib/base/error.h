@@ -14,9 +14,13 @@ extern "C" {
 #define GTX_PRINTF(fmt, args)
 #endif
 
-/* Writes result and message into `error` (NULL is fine) and returns `result`, so that a failing
- * function ends with `return gtx_fail(error, GTX_ERROR_..., "...")`. */
+/* Fills `error` (NULL is fine) with result and message, made printable, and with zeros else; returns
+ * `result`, so that a failing function ends with `return gtx_fail(error, GTX_ERROR_..., "...")`. */
 gtx_result gtx_fail(gtx_error *error, gtx_result result, const char *format, ...) GTX_PRINTF(3, 4);
+
+/* Puts a ? for every byte of what a line of text must not have: controls, line breaks, marks that
+ * turn the direction of text, and bytes that are no UTF-8. Paths and names may hold all of them. */
+void gtx_make_printable(char *text);
 
 /* GTX_ERROR_NOT_ZEROED unless the `count` words of a descriptor's reserved field are zero. */
 gtx_result gtx_check_reserved(const uint32_t *reserved, size_t count, gtx_error *error);

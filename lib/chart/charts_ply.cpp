@@ -1,10 +1,10 @@
 /* The partition as a coloured PLY (paper, Figure 5). */
 #include "chart/frame.hpp"
 
+#include "base/output.h"
+
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
-#include <memory>
 
 namespace gtx {
 
@@ -39,32 +39,7 @@ Vector<bool> initially_inverted(const Mesh &mesh, const Partition &partition)
     return out;
 }
 
-struct Close {
-    void operator()(std::FILE *file) const { std::fclose(file); }
-};
-
-/* Numbers in the machine's byte order, which the header names. */
-class PlyFile {
-public:
-    explicit PlyFile(const std::string &path) : file_(std::fopen(path.c_str(), "wb"))
-    {
-        good_ = file_ != nullptr;
-    }
-    void put(const void *data, size_t size)
-    {
-        good_ = good_ && std::fwrite(data, 1, size, file_.get()) == size;
-    }
-    bool close()
-    {
-        std::FILE *file = file_.release();
-        return file && std::fclose(file) == 0 && good_;
-    }
-
-private:
-    std::unique_ptr<std::FILE, Close> file_;
-    bool good_;
-};
-
+/* Numbers are in the machine's byte order, which the header names. */
 bool little_endian()
 {
     uint16_t one = 1;
@@ -88,25 +63,26 @@ std::string header(const Mesh &mesh)
 void write_charts_ply(const std::string &path, const Mesh &mesh, const Partition &partition)
 {
     Vector<bool> inverted = initially_inverted(mesh, partition);
-    std::string temporary = path + ".part";
-    PlyFile file(temporary);
-    std::string head = header(mesh);
-    file.put(head.data(), head.size());
+    const std::string head = header(mesh);
+    Vector<char> file(head.begin(), head.end());
+    file.reserve(head.size() + sizeof(Vec3d) * mesh.positions.size() + 20 * mesh.triangle_count());
+    auto put = [&](const void *data, size_t size) {
+        const char *bytes = static_cast<const char *>(data);
+        file.insert(file.end(), bytes, bytes + size);
+    };
     for (const Vec3d &p : mesh.positions)
-        file.put(&p, sizeof p);
+        put(&p, sizeof p);
     for (size_t t = 0; t < mesh.triangle_count(); ++t) {
         uint32_t chart = partition.initial_chart[t];
         Rgba8 c = inverted[t] ? Rgba8{0, 255, 0, 255} : chart_color(chart);
         uint8_t corners = 3, rgb[3] = {c.r, c.g, c.b};
-        file.put(&corners, 1);
-        file.put(mesh.triangles[t].data(), 12);
-        file.put(rgb, 3);
-        file.put(&chart, 4);
+        put(&corners, 1);
+        put(mesh.triangles[t].data(), 12);
+        put(rgb, 3);
+        put(&chart, 4);
     }
-    if (file.close() && !std::rename(temporary.c_str(), path.c_str()))
-        return;
-    std::remove(temporary.c_str());
-    throw Error(GTX_ERROR_WRITE, path + ": cannot be written");
+    gtx_error error;
+    require_ok(gtx_write_file(path.c_str(), file.data(), file.size(), &error), error);
 }
 
 } // namespace gtx

@@ -2,6 +2,9 @@
 #ifndef GTX_CLI_CLI_H
 #define GTX_CLI_CLI_H
 
+#include "base/error.h"
+#include "base/json.h"
+
 #include <geotex/geotex.h>
 
 #include <stdbool.h>
@@ -85,29 +88,54 @@ enum { PROGRESS_BAR, PROGRESS_JSON };
 
 /* ---- messages ---- */
 
+/* One line on stderr, whatever paths hold: see gtx_make_printable. The format has no newline. */
+void print_message(const char *format, ...) GTX_PRINTF(1, 2);
 /* A broken rule of the format, on stderr: "file: error[305 patch-page]: sentence (byte 512)". */
 void report_issue(const char *file, const gtx_issue *issue);
 /* "file: error[id]: sentence" on stderr, from a failed call; returns the exit code. */
 int report_error(const char *file, const gtx_error *error);
-/* "file: warning: sentence", unless quiet. */
-void report_warning(const char *file, const char *sentence);
+int report_no_memory(const char *file);
+/* "file: warning[name]: sentence", unless quiet. */
+void report_warning(const char *file, const char *name, const char *sentence);
 /* Writes text to stdout or says why it could not; returns an exit code. */
 int print_result(const char *text, size_t size);
-/* Writes a text file whole, through a temporary name. Returns an exit code. */
+/* The same of a JSON text, which is freed; `file` is what it is about. */
+int print_json(const char *file, gtx_json *json);
+
+/* ---- outputs ---- */
+
+/* A file that a call writes: the option that names it, and its path, or NULL if it is not asked
+ * for. A list ends with a NULL option. */
+typedef struct output_file {
+    const char *option, *path;
+} output_file;
+
+/* Before the work: no output may be an input, or another output, under whatever name. "-" is the
+ * standard stream. Returns an exit code. */
+int check_outputs(const char *caller, const output_file *outputs, const char *const *inputs,
+                  size_t count);
+/* The first half of it, for files that turn out to be inputs. Errors: ARGUMENT. */
+gtx_result refuse_inputs(const output_file *outputs, const char *const *inputs, size_t count,
+                         gtx_error *error);
+/* Writes a text file whole. Returns an exit code. */
 int write_text_file(const char *path, const char *text, size_t size);
 
 /* Reads a file whole, or standard input for "-", and says why when it cannot. *data is of malloc
  * and the caller's. Returns an exit code. */
 int read_whole(const char *path, void **data, size_t *size);
-/* Writes a dependency file as Make and Ninja read it: `target` was made from `sources`. Returns an
- * exit code. */
+/* Whether a dependency file can name a path: no way to write a line break is known to both. */
+bool fits_depfile(const char *path);
+/* Writes a dependency file as Make and Ninja read it: `target` was made from `sources`, which all
+ * fit. Returns an exit code. */
 int write_depfile(const char *path, const char *target, char *const *sources, size_t count);
 
 /* Progress on stderr as cli_progress says; cancels on Ctrl-C. A gtx_progress_fn. */
 int show_progress(const gtx_progress *progress, void *user);
 void end_progress(void);
-/* Makes Ctrl-C cancel the running call instead of killing the process. */
+/* Makes Ctrl-C cancel the running call instead of killing the process. Called before anything is
+ * written, so that nothing is left half done. */
 void catch_interrupt(void);
+bool was_interrupted(void);
 
 /* ---- verbs: each gets argv[0] = its name ---- */
 

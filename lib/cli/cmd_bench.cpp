@@ -44,7 +44,7 @@ const verb bench = {"bench", "ASSET MODEL",
 
 bool usage(const char *what, const std::string &word)
 {
-    std::fprintf(stderr, "gtx bench: error[usage]: --%s: '%s' is none\n", what, word.c_str());
+    print_message("gtx bench: error[usage]: --%s: '%s' is none", what, word.c_str());
     return false;
 }
 
@@ -146,7 +146,7 @@ void write_row(gtx_json &json, const gtx::BenchSetup &setup, const gtx::BenchRow
     gtx_json_end_object(&json);
 }
 
-int print_json(const char *scene, const gtx::BenchSetup &setup,
+int tell_json(const char *scene, const gtx::BenchSetup &setup,
                const gtx::Vector<gtx::BenchRow> &rows)
 {
     gtx_json json = {};
@@ -165,18 +165,16 @@ int print_json(const char *scene, const gtx::BenchSetup &setup,
         gtx_json_end_array(&json);
     }
     gtx_json_end_object(&json);
-    int code = EXIT_CODE_INTERNAL;
-    if (!json.failed)
-        code = print_result(json.text, json.size);
-    gtx_json_free(&json);
-    return code;
+    return print_json(scene, &json);
 }
 
 void print_head(const char *scene, const gtx::BenchSetup &setup)
 {
+    std::string line = scene; /* of a table, whatever the path holds */
+    gtx_make_printable(line.data());
     std::printf("%s: %u triangles, %.2f bytes each on the GPU (colour apart)\n"
                 "open %.1f ms, prepare %.1f ms, upload %.1f ms, together %.1f ms\n"
-                "%s, milliseconds; error: pixels, of a level\n", scene,
+                "%s, milliseconds; error: pixels, of a level\n", line.c_str(),
                 setup.triangles, double(setup.geometry_bytes) / std::max(1u, setup.triangles),
                 setup.open, setup.prepare, setup.upload,
                 setup.open + setup.prepare + setup.upload, setup.renderer.c_str());
@@ -208,6 +206,7 @@ int cmd_bench(int argc, char **argv)
         gtx::Task task(0, nullptr, nullptr, {}, {}, cli_limits);
         gtx::CleanReport report;
         const gtx::Mesh mesh = gtx::clean_mesh(gtx::import_mesh(files[1], task), task, report);
+        gtx::report_warnings(files[1], task.warnings);
         current = files[0];
         gtx::BenchSetup setup;
         gtx::Vector<gtx::BenchRow> rows;
@@ -229,6 +228,6 @@ int cmd_bench(int argc, char **argv)
                 if (!as_json)
                     print_row(row, of_mesh);
             });
-        return as_json ? print_json(files[1], setup, rows) : int(EXIT_CODE_OK);
+        return as_json ? tell_json(files[1], setup, rows) : int(EXIT_CODE_OK);
     });
 }

@@ -31,6 +31,28 @@ static const verb compare_verb = {
     "compare", "ASSET MODEL...",
     "Measures an asset against the models it was cooked from, on the CPU.", 2, MAX_FILES, options};
 
+static int differs(const char *asset, const char *what, double value, const char *how, double limit)
+{
+    print_message("%s: error[differs]: %s %.9g: %s %.9g", asset, what, value, how, limit);
+    return EXIT_CODE_DIFFERS;
+}
+
+/* Says of every limit that is passed by how much. Returns the exit code. */
+static int judge(const char *asset, const gtx_compare_result *result)
+{
+    int code = EXIT_CODE_OK;
+    if (max_holes >= 0 && (double)result->hole_pixels > max_holes)
+        code = differs(asset, "hole pixels", (double)result->hole_pixels, "above --max-holes",
+                       max_holes);
+    if (min_iou >= 0 && result->silhouette_iou < min_iou)
+        code = differs(asset, "silhouette IoU", result->silhouette_iou, "below --min-iou",
+                       min_iou);
+    if (max_rms >= 0 && result->forward_rms > max_rms)
+        code = differs(asset, "forward RMS", result->forward_rms,
+                       "above --max-rms", max_rms);
+    return code;
+}
+
 int cmd_compare(int argc, char **argv)
 {
     static const char *files[MAX_FILES];
@@ -64,11 +86,9 @@ int cmd_compare(int argc, char **argv)
                result.seam_p99_steps, result.seam_max_steps);
         code = print_result("", 0);
     }
+    for (size_t i = 0; i < report.warning_count; ++i)
+        report_warning(count > 2 ? "gtx compare" : files[1], report.warning_names[i],
+                       report.warnings[i]);
     gtx_report_free(&report);
-    if (code)
-        return code;
-    bool differs = (max_holes >= 0 && (double)result.hole_pixels > max_holes) ||
-                   (min_iou >= 0 && result.silhouette_iou < min_iou) ||
-                   (max_rms >= 0 && result.forward_rms > max_rms);
-    return differs ? EXIT_CODE_DIFFERS : EXIT_CODE_OK;
+    return code ? code : judge(files[0], &result);
 }

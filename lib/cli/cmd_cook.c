@@ -63,9 +63,12 @@ static const verb cook = {
     "threads and reports do not count.",
     1, MAX_MODELS, options};
 
+static output_file outputs[] = {{"-o", NULL}, {"--report", NULL}, {"--depfile", NULL},
+                                {"--charts-ply", NULL}, {NULL, NULL}};
+
 static int usage(const char *sentence)
 {
-    fprintf(stderr, "gtx cook: error[usage]: %s (see gtx cook --help)\n", sentence);
+    print_message("gtx cook: error[usage]: %s (see gtx cook --help)", sentence);
     return EXIT_CODE_USAGE;
 }
 
@@ -76,6 +79,10 @@ static bool is_stream(const char *path)
 
 static int check(const char *const *models, int count)
 {
+    outputs[0].path = output;
+    outputs[1].path = report_path;
+    outputs[2].path = depfile_path;
+    outputs[3].path = desc.charts_ply;
     if (!output)
         return usage("-o OUT.gtx is missing");
     for (int i = 1; i < count; ++i)
@@ -87,9 +94,23 @@ static int check(const char *const *models, int count)
         return usage("--if-changed needs models that are files");
     if (is_stream(output) && isatty(STDOUT_FILENO))
         return usage("an asset is not written to a terminal");
+    if (depfile_path && !fits_depfile(output))
+        return usage("a dependency file cannot name a path with a line break");
     if (adaptive && GTX_PARTITION_CUTS + partition != GTX_PARTITION_PGP)
         return usage("--adaptive needs --partition pgp");
-    return EXIT_CODE_OK;
+    return check_outputs("gtx cook", outputs, models, (size_t)count);
+}
+
+/* What the models refer to. */
+static gtx_result check_sources(const char *const *paths, size_t count, void *user,
+                                gtx_error *error)
+{
+    (void)user;
+    for (size_t i = 0; i < count && depfile_path; ++i)
+        if (!fits_depfile(paths[i]))
+            return gtx_fail(error, GTX_ERROR_ARGUMENT, "a dependency file cannot name a path with "
+                                                       "a line break: %s", paths[i]);
+    return refuse_inputs(outputs, paths, count, error);
 }
 
 /* To stdout once it is whole, or to a file as gtx_cook_file would. */
@@ -144,9 +165,9 @@ static int cook_files(const char *model, const char *label, gtx_report *report)
 static int tell(const char *label, const gtx_report *report)
 {
     for (size_t i = 0; i < report->warning_count; ++i)
-        report_warning(label, report->warnings[i]);
+        report_warning(label, report->warning_names[i], report->warnings[i]);
     if (!cli_quiet)
-        fprintf(stderr, "%s: %s\n", is_stream(output) ? "stdout" : output, report->summary);
+        print_message("%s: %s", is_stream(output) ? "stdout" : output, report->summary);
     int code = EXIT_CODE_OK;
     if (depfile_path)
         code = write_depfile(depfile_path, output, report->sources, report->source_count);
@@ -177,6 +198,7 @@ int cmd_cook(int argc, char **argv)
     desc.more_count = (uint32_t)(count - 1);
     desc.progress = show_progress;
     desc.limits = cli_limits;
+    desc.sources_fn = check_sources;
 
     const char *label = count > 1 ? "gtx cook" : is_stream(models[0]) ? "stdin" : models[0];
     bool streams = is_stream(models[0]) || is_stream(output);

@@ -1,6 +1,8 @@
 /* gtx filter: image operations on the surface of an asset. */
 #include "cli/cli.h"
 
+#include "base/warnings.h"
+
 #include <geotex/edit.h>
 
 #include "image/image.h"
@@ -53,9 +55,7 @@ static gtx_result lay_pattern(gtx_edit *edit, const char *path, const char **fil
     float *values = malloc(count * sizeof *values);
     if (!values) {
         gtx_image_free(&image);
-        *error = (gtx_error){.result = GTX_ERROR_MEMORY};
-        strcpy(error->message, "no memory for the image");
-        return GTX_ERROR_MEMORY;
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the image");
     }
     for (size_t i = 0; i < count; ++i) {
         const uint8_t *p = image.pixels + 4 * i;
@@ -101,10 +101,23 @@ static gtx_result run(const gtx_asset *asset, const char **file, gtx_error *erro
     if (!result) {
         const gtx_encode_desc encode = {.zstd_level = zstd_level};
         *file = output;
+        catch_interrupt();
         result = gtx_save_file(edited, output, &encode, error);
     }
     gtx_close(edited);
     return result;
+}
+
+/* Everything that is read: the asset and the patterns. */
+static int check_inputs(const char *asset)
+{
+    const output_file outputs[] = {{"-o", output}, {NULL, NULL}};
+    const char *inputs[MAX_STEPS + 1] = {asset};
+    size_t count = 1;
+    for (uint32_t i = 0; i < chosen.count; ++i)
+        if (!strcmp(chosen.list[i].name, "pattern"))
+            inputs[count++] = chosen.list[i].text;
+    return check_outputs("gtx filter", outputs, inputs, count);
 }
 
 int cmd_filter(int argc, char **argv)
@@ -115,12 +128,15 @@ int cmd_filter(int argc, char **argv)
     if (code >= 0)
         return code;
     if (!output || !chosen.count) {
-        fprintf(stderr, "gtx filter: error[usage]: %s\n",
-                output ? "an operation is missing (see gtx filter --help)"
-                       : "-o OUT.gtx is missing");
+        print_message("gtx filter: error[usage]: %s",
+                      output ? "an operation is missing (see gtx filter --help)"
+                             : "-o OUT.gtx is missing");
         return EXIT_CODE_USAGE;
     }
     const gtx_open_desc open = {.limits = cli_limits};
+    code = check_inputs(file);
+    if (code)
+        return code;
     gtx_asset *asset = NULL;
     gtx_error error = {0};
     gtx_info info;
@@ -128,8 +144,9 @@ int cmd_filter(int argc, char **argv)
     if (!result) {
         gtx_get_info(asset, &info);
         if (info.lod_levels)
-            report_warning(file, "the LOD mesh is that of the surface as it was, and is left out "
-                                 "(gtx pack --lod-levels makes one of the maps)");
+            report_warning(file, gtx_warning_name(GTX_WARNING_LOD_DROPPED),
+                           "the LOD mesh is that of the surface as it was, and is left out "
+                           "(gtx pack --lod-levels makes one of the maps)");
         result = run(asset, &file, &error);
     }
     gtx_close(asset);

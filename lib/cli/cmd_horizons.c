@@ -61,7 +61,7 @@ static const verb horizons = {
 
 static int usage(const char *sentence)
 {
-    fprintf(stderr, "gtx horizons: error[usage]: %s (see gtx horizons --help)\n", sentence);
+    print_message("gtx horizons: error[usage]: %s (see gtx horizons --help)", sentence);
     return EXIT_CODE_USAGE;
 }
 
@@ -95,44 +95,68 @@ static int check(void)
     return EXIT_CODE_OK;
 }
 
+/* The parts of an operand. */
+typedef struct parts {
+    char name[MAX_NAME];
+    const char *property; /* or NULL */
+    bool has_place;
+    double place[2];
+} parts;
+
 /* The operand "GRID[@X,Y][=PROPERTY]", cut at its marks; an @ in a folder's name is none. */
+static int cut(const char *operand, parts *out)
+{
+    if (strlen(operand) >= sizeof out->name)
+        return usage("a name is too long");
+    strcpy(out->name, operand);
+    char *property = strchr(out->name, '=');
+    if (property)
+        *property++ = 0;
+    out->property = property;
+    char *slash = strrchr(out->name, '/'), *place = strchr(slash ? slash : out->name, '@');
+    out->has_place = place != NULL;
+    if (!place)
+        return EXIT_CODE_OK;
+    *place++ = 0;
+    return parse_pair(place, out->place) ? EXIT_CODE_OK : usage("a grid's place is @X,Y");
+}
+
+static int check_operand(const char *operand)
+{
+    const output_file outputs[] = {{"-o", output}, {NULL, NULL}};
+    parts p;
+    const int code = cut(operand, &p);
+    const char *inputs[] = {p.name, p.property};
+    return code ? code : check_outputs("gtx horizons", outputs, inputs, p.property ? 2 : 1);
+}
+
 static int read_operand(const char *operand, gtx_height_grid *grid)
 {
-    char name[MAX_NAME];
+    parts p;
     gtx_height_grid property = {0};
     gtx_error error;
-    if (strlen(operand) >= sizeof name)
-        return usage("a name is too long");
-    strcpy(name, operand);
-    char *second = strchr(name, '=');
-    if (second)
-        *second++ = 0;
-    char *slash = strrchr(name, '/'), *place = strchr(slash ? slash : name, '@');
-    double at[2];
-    if (place) {
-        *place++ = 0;
-        if (!parse_pair(place, at))
-            return usage("a grid's place is @X,Y");
-    }
-    if (gtx_height_grid_read(name, &reading, grid, &error))
-        return report_error(name, &error);
+    const int code = cut(operand, &p);
+    if (code)
+        return code;
+    if (gtx_height_grid_read(p.name, &reading, grid, &error))
+        return report_error(p.name, &error);
     if (spacing)
         parse_pair(spacing, grid->spacing);
     if (origin)
         parse_pair(origin, grid->origin);
-    if (place)
-        memcpy(grid->origin, at, sizeof at);
+    if (p.has_place)
+        memcpy(grid->origin, p.place, sizeof p.place);
     if (!isnan(rotation))
         grid->rotation = rotation;
-    if (!second)
+    if (!p.property)
         return EXIT_CODE_OK;
-    if (gtx_height_grid_read(second, &reading_property, &property, &error))
-        return report_error(second, &error);
+    if (gtx_height_grid_read(p.property, &reading_property, &property, &error))
+        return report_error(p.property, &error);
     if (property.nx != grid->nx || property.ny != grid->ny) {
         gtx_fail(&error, GTX_ERROR_INPUT, "the property has %u x %u nodes, its grid %u x %u",
                  property.nx, property.ny, grid->nx, grid->ny);
         gtx_height_grid_free(&property);
-        return report_error(second, &error);
+        return report_error(p.property, &error);
     }
     grid->property = property.values; /* of malloc, freed with free */
     return EXIT_CODE_OK;
@@ -142,11 +166,12 @@ static void tell(const gtx_horizons_result *r)
 {
     if (cli_quiet)
         return;
-    fprintf(stderr, "%s: %" PRIu64 " nodes, %" PRIu64 " triangles, %u patches, heights within %g "
-            "(RMS %g)", output, r->nodes, r->triangles, r->patches, r->height_max, r->height_rms);
+    char colored[64] = "";
     if (desc.colors != GTX_COLORS_NONE)
-        fprintf(stderr, ", colours %g to %g", r->color_range[0], r->color_range[1]);
-    fputc('\n', stderr);
+        snprintf(colored, sizeof colored, ", colours %g to %g", r->color_range[0], r->color_range[1]);
+    print_message("%s: %" PRIu64 " nodes, %" PRIu64 " triangles, %u patches, heights within %g "
+                  "(RMS %g)%s", output, r->nodes, r->triangles, r->patches, r->height_max,
+                  r->height_rms, colored);
 }
 
 static int make(const gtx_height_grid *grids, int count)
@@ -176,6 +201,8 @@ int cmd_horizons(int argc, char **argv)
     if (code >= 0)
         return code;
     code = check();
+    for (int i = 0; i < count && !code; ++i)
+        code = check_operand(operands[i]);
     if (code)
         return code;
     desc.colors = (gtx_colors)colors;
@@ -191,7 +218,7 @@ int cmd_horizons(int argc, char **argv)
 
     gtx_height_grid *grids = calloc((size_t)count, sizeof *grids);
     if (!grids)
-        return EXIT_CODE_INTERNAL;
+        return report_no_memory("gtx horizons");
     for (int i = 0; i < count && !code; ++i)
         code = read_operand(operands[i], &grids[i]);
     if (!code)

@@ -1,8 +1,6 @@
 /* gtx info: what is in an asset. */
 #include "cli/cli.h"
 
-#include "base/json.h"
-
 #include <inttypes.h>
 #include <string.h>
 
@@ -55,7 +53,7 @@ static void lod(gtx_json *json, const gtx_asset *asset, const gtx_info *info)
     gtx_json_end_array(json);
 }
 
-static int print_json(const gtx_asset *asset, const gtx_info *info)
+static int tell_json(const char *path, const gtx_asset *asset, const gtx_info *info)
 {
     gtx_json json = {0};
     char version[32];
@@ -83,12 +81,10 @@ static int print_json(const gtx_asset *asset, const gtx_info *info)
     gtx_json_integer(&json, "bytes", info->file_size);
     gtx_json_hash(&json, "content_hash", info->content_hash);
     gtx_json_end_object(&json);
-    int code = json.failed ? EXIT_CODE_INTERNAL : print_result(json.text, json.size);
-    gtx_json_free(&json);
-    return code;
+    return print_json(path, &json);
 }
 
-static int print_text(const gtx_asset *asset, const gtx_info *info)
+static int tell_text(const gtx_asset *asset, const gtx_info *info)
 {
     printf("version         %u.%u\n", info->version_major, info->version_minor);
     printf("patches         %u (%u two-sided)\n", info->patch_count, two_sided(asset, info));
@@ -134,7 +130,7 @@ int cmd_info(int argc, char **argv)
         return report_error(path, &error);
     gtx_info info;
     gtx_get_info(asset, &info);
-    code = as_json ? print_json(asset, &info) : print_text(asset, &info);
+    code = as_json ? tell_json(path, asset, &info) : tell_text(asset, &info);
     gtx_close(asset);
     return code;
 }

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <memory>
 
+namespace fs = std::filesystem;
+
 static const char *output;
 static int32_t zstd_level = -1;
 static uint32_t lod_levels;
@@ -48,8 +50,7 @@ static Asset open_folder(const char *folder, std::string &about)
         result = gtx_create(&unpacked.desc, &asset, &error);
     }
     gtx::require_ok(result, error);
-    for (const std::string &warning : unpacked.warnings)
-        report_warning(folder, warning.c_str());
+    gtx::report_warnings(folder, unpacked.warnings);
     if (zstd_level < 0)
         zstd_level = unpacked.zstd;
     return Asset(asset, gtx_close);
@@ -80,6 +81,21 @@ static Asset with_lod(const Asset &asset)
     return Asset(out, gtx_close);
 }
 
+/* The asset, or all that lies in the folder. */
+static int check_inputs(const char *input)
+{
+    const output_file outputs[] = {{"-o", output}, {nullptr, nullptr}};
+    int code = check_outputs("gtx pack", outputs, &input, 1);
+    std::error_code error;
+    for (fs::directory_iterator at(input, error), end; !code && !error && at != end;
+         at.increment(error)) {
+        const std::string path = at->path().string();
+        const char *file = path.c_str();
+        code = check_outputs("gtx pack", outputs, &file, 1);
+    }
+    return code;
+}
+
 int cmd_pack(int argc, char **argv)
 {
     const char *input;
@@ -88,13 +104,16 @@ int cmd_pack(int argc, char **argv)
     if (code >= 0)
         return code;
     if (!output) {
-        std::fputs("gtx pack: error[usage]: -o OUT.gtx is missing\n", stderr);
+        print_message("gtx pack: error[usage]: -o OUT.gtx is missing");
         return EXIT_CODE_USAGE;
     }
+    code = check_inputs(input);
+    if (code)
+        return code;
     std::string about = input;
     return gtx::guarded(about, [&] {
         std::error_code ignored;
-        const bool is_file = std::filesystem::is_regular_file(input, ignored);
+        const bool is_file = fs::is_regular_file(input, ignored);
         Asset asset = is_file ? open_asset(input) : open_folder(input, about);
         if (lod_levels)
             asset = with_lod(asset);
@@ -102,6 +121,7 @@ int cmd_pack(int argc, char **argv)
         desc.zstd_level = zstd_level >= 0 ? zstd_level : 3;
         gtx_error error = {};
         about = output;
+        catch_interrupt();
         gtx::require_ok(gtx_save_file(asset.get(), output, &desc, &error), error);
         return int(EXIT_CODE_OK);
     });

@@ -38,6 +38,7 @@ static const verb render = {
 static int write_images(const gtx::Still &still)
 {
     gtx_error error;
+    catch_interrupt();
     if (gtx_image_write_png(output, size[0], size[1], 4, still.color.data(), &error) != GTX_OK)
         return report_error(output, &error);
     if (depth_path &&
@@ -54,9 +55,13 @@ int cmd_render(int argc, char **argv)
     if (code >= 0)
         return code;
     if (!output) {
-        std::fputs("gtx render: error[usage]: -o OUT.png is missing\n", stderr);
+        print_message("gtx render: error[usage]: -o OUT.png is missing");
         return EXIT_CODE_USAGE;
     }
+    const output_file outputs[] = {{"-o", output}, {"--depth", depth_path}, {nullptr, nullptr}};
+    code = check_outputs("gtx render", outputs, files, size_t(count));
+    if (code)
+        return code;
     still_options.width = size[0];
     still_options.height = size[1];
     still_options.method = methods[method];
@@ -70,8 +75,10 @@ int cmd_render(int argc, char **argv)
             current = files[i];
             gtx::add_file(scene, current, task);
         }
-        for (const std::string &warning : task.warnings)
-            report_warning(files[0], warning.c_str());
+        gtx::report_warnings(files[0], task.warnings);
+        current = "gtx render";
+        gtx::refuse_sources(scene, outputs);
+        current = files[0];
         gtx::measure_bounds(scene);
         return write_images(gtx::draw_still(scene, still_options));
     });

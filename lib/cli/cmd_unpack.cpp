@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <unistd.h>
 
 static const option options[] = {{nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
@@ -27,8 +28,11 @@ static int find_zstd(const gtx_asset *asset, const void *data, size_t size)
         desc.zstd_level = level;
         void *again = nullptr;
         size_t again_size = 0;
-        if (gtx_encode(asset, &desc, &again, &again_size, nullptr))
+        gtx_error error;
+        const gtx_result result = gtx_encode(asset, &desc, &again, &again_size, &error);
+        if (result == GTX_ERROR_UNSUPPORTED)
             continue;
+        gtx::require_ok(result, error);
         const bool same = again_size == size && !std::memcmp(again, data, size);
         std::free(again);
         if (same)
@@ -37,25 +41,70 @@ static int find_zstd(const gtx_asset *asset, const void *data, size_t size)
     return -1;
 }
 
-/* The folder appears whole: it is filled under a temporary name. */
+/* A new folder in another one, with a short name that nobody has. */
+static fs::path make_folder(const fs::path &parent)
+{
+    std::error_code error;
+    for (int i = 0; i < 100 && !error; ++i) {
+        const fs::path made =
+            parent / (".gtx-" + std::to_string(getpid()) + "-" + std::to_string(i));
+        if (fs::create_directory(made, error))
+            return made;
+    }
+    throw gtx::Error(GTX_ERROR_WRITE, "cannot be made: " + error.message());
+}
+
+static void move(const fs::path &from, const fs::path &to)
+{
+    std::error_code error;
+    fs::rename(from, to, error);
+    if (error)
+        throw gtx::Error(GTX_ERROR_WRITE, "cannot be written: " + error.message());
+}
+
+/* asset.json comes last: a folder without it is none. */
+static void move_files(const fs::path &from, const fs::path &to)
+{
+    gtx::Vector<fs::path> names, moved;
+    for (const fs::directory_entry &entry : fs::directory_iterator(from))
+        if (entry.path().filename() != gtx::UNPACKED_JSON)
+            names.push_back(entry.path().filename());
+    names.push_back(gtx::UNPACKED_JSON);
+    try {
+        for (const fs::path &name : names) {
+            move(from / name, to / name);
+            moved.push_back(to / name);
+        }
+    } catch (...) {
+        std::error_code ignored;
+        for (const fs::path &file : moved)
+            fs::remove(file, ignored);
+        throw;
+    }
+}
+
+/* The folder appears whole: it is filled under a temporary name, inside the one that is there
+ * already, which then keeps its permissions and the links to it. */
 static void write_folder(const gtx_asset *asset, int zstd, const std::string &folder,
                          std::string &about)
 {
     std::error_code error;
-    if (fs::exists(folder, error) &&
-        !(fs::is_directory(folder, error) && fs::is_empty(folder, error)))
+    const bool exists = fs::exists(folder, error);
+    if (exists && !(fs::is_directory(folder, error) && fs::is_empty(folder, error)))
         throw gtx::Error(GTX_ERROR_WRITE, "is there and not an empty folder");
-    const std::string temporary = (fs::path(folder) / "").parent_path().string() + ".tmp";
-    about = temporary;
-    if (!fs::create_directory(temporary, error))
-        throw gtx::Error(GTX_ERROR_WRITE,
-                         error ? "cannot be made" : "is left from before: remove it");
+    const fs::path target = (fs::path(folder) / "").parent_path();
+    const fs::path home = exists ? fs::path(folder) : target.parent_path();
+    catch_interrupt();
+    const fs::path temporary = make_folder(home);
     try {
-        gtx::write_unpacked(asset, zstd, temporary, about);
+        gtx::write_unpacked(asset, zstd, temporary.string(), about);
         about = folder;
-        fs::rename(temporary, folder, error);
-        if (error)
-            throw gtx::Error(GTX_ERROR_WRITE, "cannot be written");
+        gtx::stop_if_interrupted();
+        if (exists)
+            move_files(temporary, folder);
+        else
+            move(temporary, target);
+        fs::remove(temporary, error);
     } catch (...) {
         fs::remove_all(temporary, error);
         throw;
@@ -86,8 +135,9 @@ int cmd_unpack(int argc, char **argv)
     return gtx::guarded(about, [&] {
         const int zstd = find_zstd(asset, data, size);
         if (zstd < 0)
-            report_warning(files[0], "packed again it will have other bytes: it holds unknown "
-                                     "sections, or another zstd wrote it");
+            report_warning(files[0], gtx_warning_name(GTX_WARNING_OTHER_BYTES),
+                           "packed again it will have other bytes: it holds unknown sections, or "
+                           "another zstd wrote it");
         write_folder(asset, zstd, files[1], about);
         return int(EXIT_CODE_OK);
     });

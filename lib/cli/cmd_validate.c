@@ -1,8 +1,6 @@
 /* gtx validate: an asset against every rule of format/gtx.md. */
 #include "cli/cli.h"
 
-#include "base/json.h"
-
 #include <stdlib.h>
 
 static bool as_json;
@@ -67,9 +65,8 @@ int cmd_validate(int argc, char **argv)
     else if (!as_json)
         code = print_result("valid\n", 6);
     if (as_json) {
-        int printed = print_result(l.json.text, l.json.size);
+        int printed = print_json(l.path, &l.json);
         code = code ? code : printed;
     }
-    gtx_json_free(&l.json);
     return code;
 }

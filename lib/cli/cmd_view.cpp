@@ -39,6 +39,12 @@ int cmd_view(int argc, char **argv)
     if (code >= 0)
         return code;
 
+    const output_file outputs[] = {{"--screenshot", script.picture}, {nullptr, nullptr}};
+    code = check_outputs("gtx view", outputs, files, size_t(count));
+    if (!code && script.drop)
+        code = check_outputs("gtx view", outputs, &script.drop, 1);
+    if (code)
+        return code;
     std::string current = "gtx view";
     return gtx::guarded(current, [&] {
         gtx::Task task(0, nullptr, nullptr, {}, {}, cli_limits);
@@ -48,8 +54,9 @@ int cmd_view(int argc, char **argv)
             current = files[i];
             gtx::add_file(scene, current, task);
         }
-        for (const std::string &warning : task.warnings)
-            report_warning(files[0], warning.c_str());
+        gtx::report_warnings(files[0], task.warnings);
+        current = "gtx view";
+        gtx::refuse_sources(scene, outputs);
         gtx::measure_bounds(scene);
         if (count > 1)
             name += " and " + std::to_string(count - 1) + " more";

@@ -4,15 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+bool fits_depfile(const char *path)
+{
+    return !strpbrk(path, "\n\r");
+}
+
 /* A path as a word: what the two read otherwise is escaped, backslashes only where they would
- * escape what follows. No way to write a line break is known to both. Returns the end, NULL for
- * those. */
+ * escape what follows. Returns the end. */
 static char *put_word(char *out, const char *path)
 {
     size_t backslashes = 0;
     for (; *path; ++path) {
-        if (*path == '\n' || *path == '\r')
-            return NULL;
         if (*path == ' ' || *path == '\t' || *path == '#' || *path == ':') {
             for (size_t i = 0; i < backslashes && (*path == ' ' || *path == '\t'); ++i)
                 *out++ = '\\';
@@ -33,21 +35,15 @@ int write_depfile(const char *path, const char *target, char *const *sources, si
         most += 2 * strlen(sources[i]) + 4;
     char *text = malloc(most);
     if (!text)
-        return EXIT_CODE_INTERNAL;
+        return report_no_memory(path);
     char *end = put_word(text, target);
-    if (end)
-        *end++ = ':';
-    for (size_t i = 0; end && i < count; ++i) {
+    *end++ = ':';
+    for (size_t i = 0; i < count; ++i) {
         memcpy(end, " \\\n ", 4);
         end = put_word(end + 4, sources[i]);
     }
-    int code = EXIT_CODE_FILE;
-    if (end) {
-        *end++ = '\n';
-        code = write_text_file(path, text, (size_t)(end - text));
-    } else {
-        fprintf(stderr, "%s: error[write]: a path has a line break in it\n", path);
-    }
+    *end++ = '\n';
+    const int code = write_text_file(path, text, (size_t)(end - text));
     free(text);
     return code;
 }

@@ -1,6 +1,7 @@
 /* The `gtx` command: picks a verb. */
 #include "cli/cli.h"
 
+#include <signal.h>
 #include <string.h>
 
 static const struct {
@@ -28,11 +29,13 @@ static void print_verbs(FILE *to)
         fprintf(to, "  %-10s %s\n", verbs[i].name, verbs[i].summary);
     fputs("\n`gtx VERB --help` lists a verb's options. Results go to stdout, messages to stderr.\n"
           "Exit: 0 ok, 1 usage, 2 file cannot be read or written, 3 invalid input, 4 internal,\n"
-          "5 unsupported, 7 a stated limit is passed, 130 cancelled.\n", to);
+          "5 unsupported, 6 more than is allowed or than there is, 7 a stated limit is passed,\n"
+          "130 cancelled.\n", to);
 }
 
 int main(int argc, char **argv)
 {
+    signal(SIGXFSZ, SIG_IGN); /* a file that may not grow is an error, as a full disk is */
     if (argc < 2) {
         print_verbs(stderr);
         return EXIT_CODE_USAGE;
@@ -49,6 +52,6 @@ int main(int argc, char **argv)
     for (size_t i = 0; i < sizeof verbs / sizeof *verbs; ++i)
         if (!strcmp(argv[1], verbs[i].name))
             return verbs[i].run(argc - 1, argv + 1);
-    fprintf(stderr, "gtx: error[usage]: unknown verb '%s' (see gtx --help)\n", argv[1]);
+    print_message("gtx: error[usage]: unknown verb '%s' (see gtx --help)", argv[1]);
     return EXIT_CODE_USAGE;
 }

@@ -20,4 +20,17 @@ template <class Body> int guarded(const std::string &about, Body body)
     }
 }
 
+inline void report_warnings(const char *file, const Vector<Warning> &warnings)
+{
+    for (const Warning &warning : warnings)
+        report_warning(file, gtx_warning_name(warning.kind), warning.sentence.c_str());
+}
+
+/* Once something is about to be written, Ctrl-C no longer kills. */
+inline void stop_if_interrupted()
+{
+    if (was_interrupted())
+        throw Error(GTX_CANCELLED, "cancelled");
+}
+
 } // namespace gtx

@@ -3,10 +3,12 @@
 
 #include <errno.h>
 #include <signal.h>
-#include <stdlib.h>
+#include <stdarg.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
+
+enum { MAX_LINE = 16384 };
 
 static const struct {
     gtx_result result;
@@ -31,10 +33,22 @@ static const struct {
     {GTX_ERROR_SHADER, EXIT_CODE_INTERNAL, "shader"},
 };
 
+void print_message(const char *format, ...)
+{
+    char line[MAX_LINE];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(line, sizeof line, format, args);
+    va_end(args);
+    gtx_make_printable(line);
+    end_progress();
+    fprintf(stderr, "%s\n", line);
+}
+
 void report_issue(const char *file, const gtx_issue *issue)
 {
-    fprintf(stderr, "%s: %s[%u %s]: %s (byte %llu)\n", file, issue->is_error ? "error" : "warning",
-            issue->rule, issue->name, issue->message, (unsigned long long)issue->offset);
+    print_message("%s: %s[%u %s]: %s (byte %llu)", file, issue->is_error ? "error" : "warning",
+                  issue->rule, issue->name, issue->message, (unsigned long long)issue->offset);
 }
 
 int report_error(const char *file, const gtx_error *error)
@@ -46,51 +60,43 @@ int report_error(const char *file, const gtx_error *error)
             exit_code = outcomes[i].exit_code;
             id = outcomes[i].id;
         }
-    end_progress();
     if (error->rule)
         report_issue(file, &(gtx_issue){error->rule, 1, error->offset, error->rule_name,
                                         error->message});
     else if (error->result == GTX_ERROR_LIMIT && error->limit)
-        fprintf(stderr, "%s: error[%s]: %s (--max-%s allows more)\n", file, id, error->message,
-                error->limit);
+        print_message("%s: error[%s]: %s (--max-%s allows more)", file, id, error->message,
+                      error->limit);
     else
-        fprintf(stderr, "%s: error[%s]: %s\n", file, id, error->message);
+        print_message("%s: error[%s]: %s", file, id, error->message);
     return exit_code;
 }
 
-void report_warning(const char *file, const char *sentence)
+int report_no_memory(const char *file)
+{
+    gtx_error error;
+    gtx_fail(&error, GTX_ERROR_MEMORY, "out of memory");
+    return report_error(file, &error);
+}
+
+void report_warning(const char *file, const char *name, const char *sentence)
 {
     if (!cli_quiet)
-        fprintf(stderr, "%s: warning: %s\n", file, sentence);
+        print_message("%s: warning[%s]: %s", file, name, sentence);
 }
 
 int print_result(const char *text, size_t size)
 {
     if (fwrite(text, 1, size, stdout) == size && fflush(stdout) == 0)
         return EXIT_CODE_OK;
-    fprintf(stderr, "stdout: error[write]: %s\n", strerror(errno));
+    print_message("stdout: error[write]: %s", strerror(errno));
     return EXIT_CODE_FILE;
 }
 
-int write_text_file(const char *path, const char *text, size_t size)
+int print_json(const char *file, gtx_json *json)
 {
-    size_t length = strlen(path);
-    char *temporary = malloc(length + 5);
-    if (!temporary)
-        return EXIT_CODE_INTERNAL;
-    memcpy(temporary, path, length);
-    memcpy(temporary + length, ".tmp", 5);
-    FILE *file = fopen(temporary, "wb");
-    bool ok = file && fwrite(text, 1, size, file) == size;
-    if (file)
-        ok = (fclose(file) == 0) && ok;
-    ok = ok && rename(temporary, path) == 0;
-    if (!ok) {
-        fprintf(stderr, "%s: error[write]: %s\n", path, strerror(errno));
-        remove(temporary);
-    }
-    free(temporary);
-    return ok ? EXIT_CODE_OK : EXIT_CODE_FILE;
+    const int code = json->failed ? report_no_memory(file) : print_result(json->text, json->size);
+    gtx_json_free(json);
+    return code;
 }
 
 static volatile sig_atomic_t interrupted;
@@ -110,6 +116,14 @@ void catch_interrupt(void)
     action.sa_flags = (int)SA_RESETHAND; /* a second Ctrl-C kills */
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    struct sigaction hangup;
+    if (sigaction(SIGHUP, NULL, &hangup) == 0 && hangup.sa_handler != SIG_IGN) /* nohup */
+        sigaction(SIGHUP, &action, NULL);
+}
+
+bool was_interrupted(void)
+{
+    return interrupted;
 }
 
 static double seconds_now(void)

@@ -46,8 +46,8 @@ static void print_help(const verb *v)
 
 static int usage(const verb *v, const char *what, const char *which)
 {
-    fprintf(stderr, "gtx %s: error[usage]: %s '%s' (see gtx %s --help)\n", v->name, what, which,
-            v->name);
+    print_message("gtx %s: error[usage]: %s '%s' (see gtx %s --help)", v->name, what, which,
+                  v->name);
     return EXIT_CODE_USAGE;
 }
 
@@ -213,11 +213,11 @@ int parse_options(const verb *v, int argc, char **argv, const char **operands, i
         if (!value)
             return usage(v, "a value is missing after", text);
         if (!parse_value(o, value)) {
-            fprintf(stderr, "gtx %s: error[usage]: --%s wants %s, not '%s'", v->name, o->name,
-                    o->argument, value);
+            char range[64] = "";
             if (o->max > o->min)
-                fprintf(stderr, " (%g to %g)", o->min, o->max);
-            fputc('\n', stderr);
+                snprintf(range, sizeof range, " (%g to %g)", o->min, o->max);
+            print_message("gtx %s: error[usage]: --%s wants %s, not '%s'%s", v->name, o->name,
+                          o->argument, value, range);
             return EXIT_CODE_USAGE;
         }
     }

@@ -74,13 +74,13 @@ static void write_differences(Json &json, const CompareReport &report)
 }
 
 /* Fills `json` and returns the line of gtx_report.summary. */
-static std::string write_report(const CompareReport &report,
-                                const Vector<std::string> &warnings, Json &json)
+static std::string write_report(const CompareReport &report, const Vector<Warning> &warnings,
+                                Json &json)
 {
     gtx_json_begin_object(&json, nullptr);
     write_pixels(json, report);
     write_differences(json, report);
-    write_strings(json, "warnings", warnings);
+    write_warnings(json, warnings);
     gtx_json_end_object(&json);
     check_written(json);
     char line[160];

@@ -8,6 +8,7 @@
 #include "asset/asset.h"
 #include "bake/lod/lod.hpp"
 #include "base/alloc.h"
+#include "base/output.h"
 
 #include <algorithm>
 #include <chrono>
@@ -80,24 +81,44 @@ struct Encoded {
     void save(const char *path) const
     {
         gtx_error error;
-        require_ok(gtx_save_bytes(path, &allocator, data, size, &error), error);
+        require_ok(gtx_write_file(path, data, size, &error), error);
     }
 };
 
-static void refuse_overwriting_source(const Vector<std::string> &sources, const char *output)
-{
-    for (const std::string &source : sources) {
-        std::error_code ignored; /* an output that does not exist is no source */
-        require_argument(!std::filesystem::equivalent(source, output, ignored),
-                         "the output is one of the files that the model is read from");
+/* The files that a call writes, and who else wants to know what it reads. */
+struct Outputs {
+    const char *asset, *charts_ply;
+    gtx_sources_fn sources_fn;
+    void *user;
+
+    void refuse_one_file() const
+    {
+        require_argument(!asset || !charts_ply || !gtx_same_file(asset, charts_ply),
+                         "the asset and charts_ply are one file");
     }
-}
+    void refuse_sources(const Vector<std::string> &sources) const
+    {
+        Vector<const char *> paths;
+        for (const std::string &source : sources) {
+            require_argument(!asset || !gtx_same_file(source.c_str(), asset),
+                             "the output is one of the files that the model is read from");
+            require_argument(!charts_ply || !gtx_same_file(source.c_str(), charts_ply),
+                             "charts_ply is one of the files that the model is read from");
+            paths.push_back(source.c_str());
+        }
+        gtx_error error;
+        gtx_fail(&error, GTX_OK, "a file that the model is read from was refused");
+        if (sources_fn)
+            error.result = sources_fn(paths.data(), paths.size(), user, &error);
+        require_ok(error.result, error);
+    }
+};
 
 static void refuse_warnings(const Options &options, const Task &task)
 {
     size_t count = task.warnings.size();
     if (options.strict && count)
-        throw Error(GTX_ERROR_INPUT, task.warnings.front() +
+        throw Error(GTX_ERROR_INPUT, task.warnings.front().sentence +
                                          (count > 1 ? " (and " + std::to_string(count - 1) +
                                                           " more warnings)"
                                                     : ""));
@@ -182,14 +203,16 @@ struct Cooked {
 };
 
 /* Everything from the models on; fills `facts`. */
-static Cooked cook_models(Models &models, const Options &options, bool encoded, Task &task,
-                          CookFacts &facts)
+static Cooked cook_models(Models &models, const Options &options, const Outputs &outputs,
+                          bool encoded, Task &task, CookFacts &facts)
 {
     Mesh mesh = import_models(models, options.z_up, task);
     facts.source_triangles = mesh.triangle_count();
     facts.source_vertices = mesh.positions.size();
-    if (!models.foreseen)
+    if (!models.foreseen) {
+        outputs.refuse_sources(models.sources);
         facts.key = 0; /* nobody's: it would not cover all, so this asset is always cooked again */
+    }
     task.begin("clean");
     mesh = clean_mesh(std::move(mesh), task, facts.clean);
     refuse_warnings(options, task);
@@ -237,18 +260,19 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
     Task task = make_task(desc, options);
     CookFacts facts;
 
+    const Outputs outputs = {output, desc.charts_ply, desc.sources_fn, desc.sources_user};
+    outputs.refuse_one_file();
     task.begin("import");
     Models models = read_models(input, desc.more, desc.more_count, task);
+    outputs.refuse_sources(models.sources);
     facts.source_hash = models.hash;
     facts.key = content_key(options, models.hash);
     Cooked cooked;
-    if (output) {
-        refuse_overwriting_source(models.sources, output);
+    if (output)
         cooked.asset = find_cooked(output, options, facts.key, desc.limits);
-    }
     facts.unchanged = cooked.asset != nullptr;
     if (!facts.unchanged)
-        cooked = cook_models(models, options, output || report, task, facts);
+        cooked = cook_models(models, options, outputs, output || report, task, facts);
     task.end();
 
     /* The file comes last: a report that finds no memory must not leave one behind. */

@@ -60,7 +60,7 @@ static auto naming(const std::string &path, bool several, Task &task, Body body)
     try {
         auto result = body();
         for (size_t i = before; several && i < task.warnings.size(); ++i)
-            task.warnings[i].insert(0, path + ": ");
+            task.warnings[i].sentence.insert(0, path + ": ");
         return result;
     } catch (Error &e) {
         if (several && e.result != GTX_CANCELLED)

@@ -20,11 +20,15 @@ void write_deviation(Json &json, const char *key, const Deviation &deviation)
     gtx_json_end_object(&json);
 }
 
-void write_strings(Json &json, const char *key, const Vector<std::string> &strings)
+void write_warnings(Json &json, const Vector<Warning> &warnings)
 {
-    gtx_json_begin_array(&json, key);
-    for (const std::string &s : strings)
-        gtx_json_string(&json, nullptr, s.c_str());
+    gtx_json_begin_array(&json, "warnings");
+    for (const Warning &w : warnings)
+        gtx_json_string(&json, nullptr, w.sentence.c_str());
+    gtx_json_end_array(&json);
+    gtx_json_begin_array(&json, "warning_names");
+    for (const Warning &w : warnings)
+        gtx_json_string(&json, nullptr, gtx_warning_name(w.kind));
     gtx_json_end_array(&json);
 }
 
@@ -165,44 +169,47 @@ std::string write_cook_report(const Options &options, const CookFacts &facts, co
     gtx_json_integer(&json, "peak_rss_bytes", peak_rss_bytes());
     gtx_json_hash(&json, "content_hash", facts.content_hash);
     gtx_json_hash(&json, "key", facts.key);
-    write_strings(json, "warnings", task.warnings);
+    write_warnings(json, task.warnings);
     gtx_json_end_object(&json);
     check_written(json);
     return facts.unchanged ? "unchanged" : cook_summary(facts);
 }
 
-/* Puts the strings behind each other at `at`, their addresses at `strings`. */
-static char *copy_strings(const Vector<std::string> &from, char **strings, char *at)
+/* Puts a string at `at`, which is moved behind it. */
+static char *copy_string(const std::string &from, char *&at)
 {
-    for (const std::string &s : from) {
-        *strings++ = at;
-        memcpy(at, s.c_str(), s.size() + 1);
-        at += s.size() + 1;
-    }
-    return at;
+    char *copy = at;
+    memcpy(copy, from.c_str(), from.size() + 1);
+    at += from.size() + 1;
+    return copy;
 }
 
 /* One block: the addresses of the strings, for they want alignment, the strings, and the JSON. */
 Report::Report(const Json &text, const std::string &line, const Vector<std::string> &source,
-               const Vector<std::string> &warning)
+               const Vector<Warning> &warning)
     : gtx_report{}
 {
     allocator = text.allocator;
-    block_size = (source.size() + warning.size()) * sizeof(char *) + text.size + 1;
-    for (const auto *strings : {&source, &warning})
-        for (const std::string &s : *strings)
-            block_size += s.size() + 1;
+    block_size = (source.size() + 2 * warning.size()) * sizeof(char *) + text.size + 1;
+    for (const std::string &s : source)
+        block_size += s.size() + 1;
+    for (const Warning &w : warning)
+        block_size += w.sentence.size() + 1;
     block = gtx_alloc_array(&allocator, block_size, 1);
     if (!block)
         throw std::bad_alloc();
 
     sources = static_cast<char **>(block);
-    source_count = source.size();
-    warnings = sources + source_count;
-    warning_count = warning.size();
-    char *at = reinterpret_cast<char *>(warnings + warning_count);
-    at = copy_strings(source, sources, at);
-    json = copy_strings(warning, warnings, at);
+    warnings = sources + source.size();
+    warning_names = const_cast<const char **>(warnings + warning.size());
+    char *at = reinterpret_cast<char *>(warning_names + warning.size());
+    for (const std::string &s : source)
+        sources[source_count++] = copy_string(s, at);
+    for (const Warning &w : warning) {
+        warning_names[warning_count] = gtx_warning_name(w.kind);
+        warnings[warning_count++] = copy_string(w.sentence, at);
+    }
+    json = at;
     size = text.size;
     memcpy(json, text.text, size + 1);
     snprintf(summary, sizeof summary, "%s", line.c_str());

@@ -36,7 +36,8 @@ struct Json : gtx_json {
 };
 
 void write_deviation(Json &json, const char *key, const Deviation &deviation);
-void write_strings(Json &json, const char *key, const Vector<std::string> &strings);
+/* Sentences and names. */
+void write_warnings(Json &json, const Vector<Warning> &warnings);
 /* Throws bad_alloc where memory ran out on the way. */
 void check_written(const Json &json);
 
@@ -48,7 +49,7 @@ std::string write_cook_report(const Options &options, const CookFacts &facts, co
 struct Report : gtx_report {
     /* Copies all of it, in memory of the text's allocator. */
     Report(const Json &json, const std::string &summary, const Vector<std::string> &sources,
-           const Vector<std::string> &warnings);
+           const Vector<Warning> &warnings);
     ~Report() { gtx_report_free(this); }
     Report(const Report &) = delete;
     Report &operator=(const Report &) = delete;

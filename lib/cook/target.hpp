@@ -17,7 +17,7 @@ struct Attempt {
     BakeReport bake;
     SurfaceError error;
     uint64_t bytes = 0;                 /* of the file */
-    Vector<std::string> warnings;       /* of this attempt */
+    Vector<Warning> warnings;           /* of this attempt */
 };
 using Cook = std::function<Attempt(const Options &)>;
 

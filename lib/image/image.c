@@ -1,8 +1,9 @@
-/* Opens the image module on first use, and writes files through a temporary name. */
+/* Opens the image module on first use; what it encodes is written as every file is. */
 #define _GNU_SOURCE /* dladdr */
 #include "image/image.h"
 
 #include "base/error.h"
+#include "base/output.h"
 #include "image/module.h"
 
 #include <dlfcn.h>
@@ -72,24 +73,17 @@ static const gtx_image_functions *module_functions(gtx_error *error)
 static gtx_result write_image(const char *path, gtx_image_rows rows, gtx_error *error)
 {
     char message[GTX_IMAGE_MAX_MESSAGE];
+    void *data;
+    size_t size;
     if (!path || !rows.pixels || !rows.width || !rows.height)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "an image without a path, pixels or size");
     const gtx_image_functions *module = module_functions(error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
-    const size_t size = strlen(path) + sizeof ".tmp";
-    char *temporary = malloc(size);
-    if (!temporary)
-        return gtx_fail(error, GTX_ERROR_MEMORY, "out of memory");
-    snprintf(temporary, size, "%s.tmp", path);
-    gtx_result result = GTX_OK;
-    if (module->write(temporary, &rows, message))
-        result = gtx_fail(error, GTX_ERROR_WRITE, "%s", message);
-    else if (rename(temporary, path))
-        result = gtx_fail(error, GTX_ERROR_WRITE, "cannot rename to %.200s", path);
-    if (result)
-        remove(temporary);
-    free(temporary);
+    if (module->encode(&rows, &data, &size, message))
+        return gtx_fail(error, GTX_ERROR_WRITE, "%s", message);
+    const gtx_result result = gtx_write_file(path, data, size, error);
+    free(data);
     return result;
 }
 

@@ -12,7 +12,7 @@ extern "C" {
 #endif
 
 /* Writes rows from the top; `channels` is 1 (grey), 3 (RGB) or 4 (RGBA), 8 bits each, sRGB. The
- * file appears whole, through a temporary name and a rename, or not at all.
+ * file is written as gtx_write_file does.
  * Errors: ARGUMENT, MEMORY, WRITE, UNSUPPORTED (the module cannot be opened). */
 gtx_result gtx_image_write_png(const char *path, uint32_t width, uint32_t height, uint32_t channels,
                                const uint8_t *pixels, gtx_error *error);

@@ -22,17 +22,17 @@ int fail(char *message, const char *name, const std::string &detail)
     return 1;
 }
 
-int write_rows(const char *path, const gtx_image_rows *rows, char *message)
+int encode(const gtx_image_rows *rows, void **data, size_t *size, char *message)
 {
     const std::string format = rows->format;
     const bool is_depth = format == "exr", is_deep = format == "png16";
     const OIIO::TypeDesc type = is_depth  ? OIIO::TypeDesc::FLOAT
                                 : is_deep ? OIIO::TypeDesc::UINT16
                                           : OIIO::TypeDesc::UINT8;
-    /* By format name: the temporary path does not end in the format's extension. */
-    std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(is_deep ? "png" : format);
+    const std::string name = is_depth ? "exr" : "png";
+    std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name);
     if (!output)
-        return fail(message, path, OIIO::geterror());
+        return fail(message, "", OIIO::geterror());
     OIIO::ImageSpec spec(int(rows->width), int(rows->height), int(rows->channels), type);
     if (is_depth) {
         spec.channelnames = {"Z"};
@@ -41,8 +41,17 @@ int write_rows(const char *path, const gtx_image_rows *rows, char *message)
         spec.attribute("oiio:ColorSpace", "sRGB");
         spec.attribute("oiio:UnassociatedAlpha", 1);
     }
-    if (!output->open(path, spec) || !output->write_image(type, rows->pixels) || !output->close())
-        return fail(message, path, output->geterror());
+    OIIO::Filesystem::IOVecOutput memory;
+    OIIO::Filesystem::IOProxy *proxy = &memory;
+    spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    if (!output->open("memory." + name, spec) || !output->write_image(type, rows->pixels) ||
+        !output->close())
+        return fail(message, "", output->geterror());
+    *size = memory.buffer().size();
+    *data = std::malloc(*size);
+    if (!*data)
+        return fail(message, "", "out of memory");
+    std::memcpy(*data, memory.buffer().data(), *size);
     return 0;
 }
 
@@ -241,5 +250,5 @@ template <auto call, class... Arguments> int guarded(Arguments... arguments)
 } // namespace
 
 extern "C" __attribute__((visibility("default"))) const gtx_image_functions gtx_image_module = {
-    GTX_IMAGE_MODULE_VERSION, guarded<write_rows>, guarded<read_rgba>, guarded<read_raw>,
+    GTX_IMAGE_MODULE_VERSION, guarded<encode>, guarded<read_rgba>, guarded<read_raw>,
     guarded<read_values>, guarded<measure>};

@@ -9,7 +9,7 @@ extern "C" {
 #endif
 
 #define GTX_IMAGE_MODULE_SYMBOL "gtx_image_module"
-#define GTX_IMAGE_MODULE_VERSION 5
+#define GTX_IMAGE_MODULE_VERSION 6
 
 enum { GTX_IMAGE_MAX_MESSAGE = 200 };
 
@@ -23,8 +23,9 @@ typedef struct gtx_image_rows {
 /* All return 0 for success and otherwise fill `message`. */
 typedef struct gtx_image_functions {
     uint32_t version;
-    int (*write)(const char *path, const gtx_image_rows *rows,
-                 char message[GTX_IMAGE_MAX_MESSAGE]);
+    /* The bytes of a file, from malloc. */
+    int (*encode)(const gtx_image_rows *rows, void **data, size_t *size,
+                  char message[GTX_IMAGE_MAX_MESSAGE]);
     /* The pixels come from malloc. `data` NULL: the file at `path`. */
     int (*read)(const char *path, const void *data, size_t size, uint64_t max_pixels,
                 gtx_image *out, char message[GTX_IMAGE_MAX_MESSAGE]);

@@ -1,10 +1,11 @@
 /* Progress, cancelling and threads of a long job. */
 #include "mesh/task.hpp"
 
+#include "base/error.h"
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cstdio>
 #include <cstring>
 #include <mutex>
 #include <new>
@@ -14,22 +15,21 @@ namespace gtx {
 
 gtx_error caught_error()
 {
-    gtx_error out = {};
-    out.result = GTX_ERROR_INTERNAL;
-    const auto say = [&](const char *text) {
-        std::snprintf(out.message, sizeof out.message, "%s", text);
-    };
-    say("an unknown exception");
+    gtx_error out;
     try {
         throw;
     } catch (const Error &e) {
-        out = {e.result, e.rule.number, e.rule.name, e.rule.offset, e.limit, {}};
-        say(e.what());
+        gtx_fail(&out, e.result, "%s", e.what());
+        out.rule = e.rule.number;
+        out.rule_name = e.rule.name;
+        out.offset = e.rule.offset;
+        out.limit = e.limit;
     } catch (const std::bad_alloc &) {
-        out.result = GTX_ERROR_MEMORY;
-        say("out of memory");
+        gtx_fail(&out, GTX_ERROR_MEMORY, "out of memory");
     } catch (const std::exception &e) {
-        say(e.what());
+        gtx_fail(&out, GTX_ERROR_INTERNAL, "%s", e.what());
+    } catch (...) {
+        gtx_fail(&out, GTX_ERROR_INTERNAL, "an unknown exception");
     }
     return out;
 }

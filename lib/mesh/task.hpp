@@ -1,6 +1,7 @@
 /* What a long job carries through the cooker's rooms: errors, progress, cancelling, threads. */
 #pragma once
 
+#include "base/warnings.h"
 #include "mesh/memory.hpp"
 
 #include <geotex/geotex.h>
@@ -47,6 +48,12 @@ inline void require_ok(gtx_result result, const gtx_error &error)
 /* The exception in flight as a C caller gets it, written whole. For catch (...) alone. */
 gtx_error caught_error();
 
+struct Warning {
+    gtx_warning kind;
+    std::string sentence;
+    bool operator<(const Warning &other) const { return sentence < other.sentence; }
+};
+
 /* One job. Used from the thread that runs it, except where stated. */
 class Task {
 public:
@@ -87,8 +94,9 @@ public:
     /* What the job may take: the memory of all its threads' containers counts against it. */
     Limits limits;
 
-    /* One sentence each, in the order found: what was dropped, ignored or repaired. */
-    Vector<std::string> warnings;
+    /* In the order found: what was dropped, ignored or repaired. */
+    Vector<Warning> warnings;
+    void warn(gtx_warning kind, std::string sentence) { warnings.push_back({kind, sentence}); }
 
 private:
     /* One of several runs of some stages, and the part of all progress that it moves over. */

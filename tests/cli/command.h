@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <dirent.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -71,6 +72,18 @@ static inline bool exists(const char *name)
 {
     struct stat info;
     return stat(in_folder(name), &info) == 0;
+}
+
+/* Files of the command's own that are still in the test's folder. */
+static inline int left_over(void)
+{
+    int count = 0;
+    DIR *list = opendir(folder);
+    assert_non_null(list);
+    for (struct dirent *entry; (entry = readdir(list)) != NULL;)
+        count += !strncmp(entry->d_name, ".gtx-", 5) || strstr(entry->d_name, ".tmp") != NULL;
+    closedir(list);
+    return count;
 }
 
 static inline void write_file(const char *name, const void *data, size_t size)

@@ -112,7 +112,7 @@ static void strict_is_exit_3(void **state)
     free(kept);
     expect(gtx("cook sphere.obj -o a.gtx --strict"), 0);
     expect(gtx("cook open.obj -o kept.gtx"), 0);
-    expect_text("open.obj: warning: ");
+    expect_text("open.obj: warning[open-edges]: ");
 }
 
 static void progress_is_a_json_object_a_line(void **state)

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <fstream>
 #include <string>
 
@@ -46,6 +47,9 @@ inline std::string broken(const json &value, const json &rule, const json &root,
         std::string path = rule["$ref"];
         return broken(value, root.at(json::json_pointer(path.substr(1))), root, at);
     }
+    if (rule.contains("enum") &&
+        std::find(rule["enum"].begin(), rule["enum"].end(), value) == rule["enum"].end())
+        return at + ": none of the values";
     if (rule.contains("const") && value != rule["const"])
         return at + ": another value";
     if (rule.contains("if") && broken(value, rule["if"], root, at).empty())

@@ -28,7 +28,7 @@ struct Cooked {
     gtx_result result;
     std::string message, summary;
     schema::json json;
-    std::vector<std::string> sources, warnings;
+    std::vector<std::string> sources, warnings, names;
     bool unchanged = false;
 };
 
@@ -46,6 +46,7 @@ inline Cooked try_cook(const std::string &input, const std::string &output,
     out.summary = report.summary;
     out.sources.assign(report.sources, report.sources + report.source_count);
     out.warnings.assign(report.warnings, report.warnings + report.warning_count);
+    out.names.assign(report.warning_names, report.warning_names + report.warning_count);
     out.unchanged = report.unchanged;
     gtx_report_free(&report);
     return out;

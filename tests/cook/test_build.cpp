@@ -250,7 +250,13 @@ static void strict_cooks_refuse_warnings(void **)
     assert_non_null(strstr(cooked.message.c_str(), "more warning"));
     assert_false(fs::exists(output));
     desc.strict = 0;
-    assert_true(cook(input, output, desc).warnings.size() > 1);
+    Cooked warned = cook(input, output, desc);
+    assert_true(warned.warnings.size() > 1);
+    assert_true(warned.names.size() == warned.warnings.size());
+    assert_true(warned.json["warning_names"] == schema::json(warned.names));
+    assert_true(std::count(warned.names.begin(), warned.names.end(), "open-edges") == 1);
+    schema::json rules = schema::load("format/cook-report.schema.json");
+    assert_string_equal(schema::broken(warned.json, rules, rules).c_str(), "");
     desc.if_changed = 1;
     assert_true(cook(input, output, desc).unchanged);
     desc.strict = 1; /* an asset with warnings does not count as done */

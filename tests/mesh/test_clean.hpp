@@ -313,7 +313,8 @@ inline Cleaned clean(const Mesh &mesh, unsigned threads = 1)
     Cleaned result;
     Task task(threads, nullptr, nullptr);
     result.mesh = clean_mesh(mesh, task, result.report);
-    result.warnings = task.warnings;
+    for (const gtx::Warning &warning : task.warnings)
+        result.warnings.push_back(warning.sentence);
     check_promises(result.mesh, result.report);
     return result;
 }

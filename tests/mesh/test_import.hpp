@@ -70,7 +70,8 @@ inline Imported import_path(const std::string &path)
         out.result = e.result;
         out.message = e.message;
     }
-    out.warnings = task.warnings;
+    for (const gtx::Warning &warning : task.warnings)
+        out.warnings.push_back(warning.sentence);
     return out;
 }
 

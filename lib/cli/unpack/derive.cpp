@@ -31,9 +31,11 @@ void derive_again(Unpacked &unpacked)
         d.bounds_max[k] = float(high[k]);
     }
     if (d.lod_levels)
-        unpacked.warnings.push_back("the LOD mesh does not follow the heights and was left out");
+        unpacked.warnings.push_back({GTX_WARNING_LOD_DROPPED,
+                                     "the LOD mesh does not follow the heights and was left out"});
     d.lod_levels = 0;
-    unpacked.warnings.push_back("coverage, spheres and bounds were computed anew from the heights");
+    unpacked.warnings.push_back({GTX_WARNING_BOUNDS_DERIVED, "coverage, spheres and bounds were "
+                                                             "computed anew from the heights"});
 }
 
 } // namespace gtx

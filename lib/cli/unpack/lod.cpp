@@ -2,6 +2,8 @@
  * format/gtx.md lays them out; the rest is in the JSON. */
 #include "cli/unpack/unpacked.hpp"
 
+#include "base/output.h"
+
 #include <filesystem>
 #include <fstream>
 
@@ -14,16 +16,16 @@ std::string unpacked_lod_name(uint32_t level)
 
 void write_unpacked_lod(const gtx_lod_mesh &level, uint32_t patches, const std::string &path)
 {
-    std::ofstream file(path, std::ios::binary);
-    auto write = [&](const void *data, size_t size) {
-        file.write(static_cast<const char *>(data), std::streamsize(size));
+    Vector<char> file;
+    auto put = [&](const void *data, size_t size) {
+        const char *bytes = static_cast<const char *>(data);
+        file.insert(file.end(), bytes, bytes + size);
     };
-    write(level.first, 4 * (size_t(patches) + 1));
-    write(level.indices, 12 * size_t(level.triangle_count));
-    write(level.positions, 6 * size_t(level.vertex_count));
-    file.close();
-    if (!file)
-        throw Error(GTX_ERROR_WRITE, "cannot be written");
+    put(level.first, 4 * (size_t(patches) + 1));
+    put(level.indices, 12 * size_t(level.triangle_count));
+    put(level.positions, 6 * size_t(level.vertex_count));
+    gtx_error error;
+    require_ok(gtx_write_file(path.c_str(), file.data(), file.size(), &error), error);
 }
 
 void read_unpacked_lod(const std::string &path, uint32_t patches, gtx_lod_mesh &level,

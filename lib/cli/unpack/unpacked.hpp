@@ -60,7 +60,7 @@ struct Unpacked {
     Vector<const uint8_t *> pointers[6];
     Vector<gtx_lod_mesh> lod;
     Vector<UnpackedLod> lod_arrays;
-    Vector<std::string> warnings;
+    Vector<Warning> warnings;
 };
 
 /* Fills `out`, which must stay where it is. */

@@ -1,13 +1,14 @@
 /* Writing an asset as a folder of images and one JSON file. */
+#include "cli/guard.hpp"
 #include "cli/unpack/unpacked.hpp"
 
+#include "base/output.h"
 #include "image/image.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 namespace gtx {
 
@@ -72,6 +73,7 @@ static void write_images(const gtx_asset *asset, const gtx_info &info, const std
             size_t size;
             const void *data = gtx_map_data(asset, map.map, level, &size);
             for (uint32_t page = 0; data && page < info.page_count; ++page) {
+                stop_if_interrupted();
                 about = in_folder(folder, unpacked_name(map, page, level));
                 write_image(about, map, info.page_width >> level, info.page_height >> level,
                             info.height_bits,
@@ -123,11 +125,9 @@ void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder,
     write_images(asset, info, folder, about);
     write_lod(asset, info, folder, json, about);
     about = in_folder(folder, UNPACKED_JSON);
-    std::ofstream file(about, std::ios::binary);
-    file << json.dump(1) << '\n';
-    file.close();
-    if (!file)
-        throw Error(GTX_ERROR_WRITE, "cannot be written");
+    const std::string text = json.dump(1) + '\n';
+    gtx_error error;
+    require_ok(gtx_write_file(about.c_str(), text.data(), text.size(), &error), error);
 }
 
 } // namespace gtx

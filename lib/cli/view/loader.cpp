@@ -48,8 +48,8 @@ AssetPointer Loader::cook(const std::string &path)
     desc.progress = on_progress;
     desc.progress_user = this;
     require_ok(gtx_cook_file(path.c_str(), file.path.c_str(), &desc, &report, &error), error);
-    result_.warnings.insert(result_.warnings.end(), report.warnings,
-                            report.warnings + report.warning_count);
+    for (size_t i = 0; i < report.warning_count; ++i)
+        result_.warnings.push_back({report.warning_names[i], report.warnings[i]});
     gtx_report_free(&report);
     return open_asset(file.path);
 }

@@ -33,7 +33,7 @@ public:
         std::string path;
         Scene scene;
         Vector<gtx_model *> models;      /* of the scene's assets, prepared, not yet uploaded */
-        Vector<std::string> warnings;
+        Vector<std::pair<const char *, std::string>> warnings; /* names, sentences */
     };
     /* The result of the job. The models belong to the caller. */
     Result join();

@@ -62,6 +62,7 @@ AssetPointer open_asset(const std::string &path)
 static void add_asset(Scene &scene, const std::string &path, const Transform &transform)
 {
     scene.assets.push_back({open_asset(path), transform});
+    scene.sources.push_back(path);
 }
 
 /* Places the assets that the nodes of a glTF scene name; false when no node names one. */
@@ -104,7 +105,12 @@ static bool ends_with(const std::string &text, const char *suffix)
 static void add_model(Scene &scene, const std::string &path, Task &task)
 {
     CleanReport report;
-    scene.meshes.push_back(clean_mesh(import_mesh(path, task), task, report));
+    ModelFile file = read_model(path, task);
+    scene.sources.push_back(path);
+    for (std::string &source : referenced_files(file))
+        scene.sources.push_back(std::move(source));
+    file.sources = &scene.sources;
+    scene.meshes.push_back(clean_mesh(import_model(file, task), task, report));
 }
 
 static void add_gltf(Scene &scene, const std::string &path, Task &task)
@@ -145,6 +151,15 @@ void add_file(Scene &scene, const std::string &path, Task &task)
         add_gltf(scene, path, task);
     else
         add_model(scene, path, task);
+}
+
+void refuse_sources(const Scene &scene, const output_file *outputs)
+{
+    gtx_error error;
+    for (const std::string &source : scene.sources) {
+        const char *path = source.c_str();
+        require_ok(refuse_inputs(outputs, &path, 1, &error), error);
+    }
 }
 
 void measure_bounds(Scene &scene)

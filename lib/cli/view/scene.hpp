@@ -3,6 +3,7 @@
 
 #include <geotex/geotex.h>
 
+#include "cli/cli.h"
 #include "mesh/mesh.hpp"
 
 #include <array>
@@ -31,6 +32,7 @@ struct PlacedAsset {
 struct Scene {
     Vector<PlacedAsset> assets;
     Vector<Mesh> meshes;      /* cleaned */
+    Vector<std::string> sources;  /* every file that it was made of */
     Vec3d centre;             /* bounding sphere of everything */
     double radius = 0;
 };
@@ -41,6 +43,9 @@ void add_file(Scene &scene, const std::string &path, Task &task);
 
 /* Whether a file is to be opened as an asset: its name or first bytes. Throws Error: READ. */
 bool is_asset(const std::string &path);
+
+/* Throws Error(ARGUMENT) where a file that the scene was made of is an output. */
+void refuse_sources(const Scene &scene, const output_file *outputs);
 
 /* Sets centre and radius once everything is in. */
 void measure_bounds(Scene &scene);

@@ -4,37 +4,44 @@
 namespace gtx {
 
 /* "3 triangles without area: dropped" */
-static void warn(Task &task, uint64_t count, const char *noun, const char *what)
+static void warn(Task &task, gtx_warning kind, uint64_t count, const char *noun, const char *what)
 {
     if (count)
-        task.warnings.push_back(std::to_string(count) + " " + noun + (count > 1 ? "s " : " ") +
-                                what);
+        task.warn(kind, std::to_string(count) + " " + noun + (count > 1 ? "s " : " ") + what);
 }
 
 static void warn_dropped(Task &task, const CleanReport &report)
 {
     static const struct {
+        gtx_warning kind;
         const char *reason, *what;
     } reasons[] = {
-        {"index", "naming a vertex that does not exist: dropped"},
-        {"non-finite", "with coordinates that are not finite or beyond 1e75: dropped"},
-        {"degenerate", "without area: dropped"},
-        {"duplicate", "on the same vertices as another: dropped"},
+        {GTX_WARNING_BAD_INDICES, "index", "naming a vertex that does not exist: dropped"},
+        {GTX_WARNING_NON_FINITE, "non-finite",
+         "with coordinates that are not finite or beyond 1e75: dropped"},
+        {GTX_WARNING_DEGENERATE, "degenerate", "without area: dropped"},
+        {GTX_WARNING_DUPLICATE, "duplicate", "on the same vertices as another: dropped"},
     };
     for (const auto &r : reasons) {
         auto found = report.dropped.find(r.reason);
-        warn(task, found == report.dropped.end() ? 0 : found->second, "triangle", r.what);
+        warn(task, r.kind, found == report.dropped.end() ? 0 : found->second, "triangle", r.what);
     }
 }
 
 static void warn_repaired(Task &task, const Draft &surface, const CleanReport &report)
 {
-    warn(task, report.nonmanifold_edges, "edge", "with more than two triangles: split");
-    warn(task, surface.cut_edges, "edge", "where a one-sided surface meets itself reversed: cut");
-    warn(task, report.flipped, "triangle", "wound against the others or inwards: turned");
-    warn(task, surface.inside_out, "closed component", "inside out: turned");
-    warn(task, surface.open_components, "component", "with a border: made two-sided");
-    warn(task, surface.new_normals, "corner normal", "missing or facing inwards: derived");
+    warn(task, GTX_WARNING_NONMANIFOLD, report.nonmanifold_edges, "edge",
+         "with more than two triangles: split");
+    warn(task, GTX_WARNING_UNORIENTABLE, surface.cut_edges, "edge",
+         "where a one-sided surface meets itself reversed: cut");
+    warn(task, GTX_WARNING_WINDING, report.flipped, "triangle",
+         "wound against the others or inwards: turned");
+    warn(task, GTX_WARNING_INSIDE_OUT, surface.inside_out, "closed component",
+         "inside out: turned");
+    warn(task, GTX_WARNING_OPEN_EDGES, surface.open_components, "component",
+         "with a border: made two-sided");
+    warn(task, GTX_WARNING_BAD_NORMALS, surface.new_normals, "corner normal",
+         "missing or facing inwards: derived");
 }
 
 /* Attributes that do not fit the triangles are no attributes, and a texture without coordinates or

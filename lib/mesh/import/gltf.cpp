@@ -14,7 +14,7 @@ struct Palette {
     const GltfDocument &doc;
     Appearance &look;
     std::map<std::pair<int, unsigned>, uint32_t> numbers; /* by material and lacking sets */
-    std::set<std::string> warnings;
+    std::set<Warning> warnings;
     std::set<std::pair<int, unsigned>> warned = {}; /* of a set that primitives lack: once */
 
     uint32_t number(int material, const GltfPrimitive &primitive, const std::string &where);
@@ -42,8 +42,9 @@ uint32_t Palette::number(int material, const GltfPrimitive &primitive, const std
         if (primitive.uv[k].empty()) {
             lacking |= 1u << k;
             if (warned.insert({material, k}).second)
-                warnings.insert(where + " has no TEXCOORD_" + std::to_string(from.sets[k]) +
-                                ": the textures that need it were ignored");
+                warnings.insert({GTX_WARNING_IGNORED_TEXTURE,
+                                 where + " has no TEXCOORD_" + std::to_string(from.sets[k]) +
+                                     ": the textures that need it were ignored"});
         }
     warnings.insert(from.warnings.begin(), from.warnings.end());
     Material m = from.look;
@@ -249,7 +250,7 @@ Mesh import_gltf(const ModelFile &file, Task &task)
         }
     }
     if (has_lines)
-        task.warnings.push_back("points and lines were ignored");
+        task.warn(GTX_WARNING_IGNORED_LINES, "points and lines were ignored");
     task.warnings.insert(task.warnings.end(), palette.warnings.begin(), palette.warnings.end());
     fetch_images(doc, file, mesh.appearance, task);
     if (std::all_of(mesh.appearance.materials.begin(), mesh.appearance.materials.end(), is_plain))

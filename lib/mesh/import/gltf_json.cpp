@@ -193,7 +193,7 @@ static void check_extensions(const json &root, Task &task)
                 ignored +=
                     (ignored.empty() ? "" : ", ") + printable(name.get_ref<const std::string &>());
     if (!ignored.empty())
-        task.warnings.push_back("glTF extensions were ignored: " + ignored);
+        task.warn(GTX_WARNING_IGNORED_EXTENSION, "glTF extensions were ignored: " + ignored);
 }
 
 json read_gltf_json(std::string_view text, Task &task)
@@ -216,13 +216,13 @@ json read_gltf_json(std::string_view text, Task &task)
 void strip_gltf_json(json &root, Task &task)
 {
     if (root.contains("extensions") && root["extensions"].contains("KHR_lights_punctual"))
-        task.warnings.push_back("lights were ignored");
+        task.warn(GTX_WARNING_IGNORED_SCENE, "lights were ignored");
     for (const auto &item : unread) {
         auto found = root.find(item.key);
         if (found == root.end())
             continue;
         if (item.warning && !found->empty())
-            task.warnings.push_back(item.warning);
+            task.warn(GTX_WARNING_IGNORED_SCENE, item.warning);
         root.erase(found);
     }
     bool has_targets = false;
@@ -240,7 +240,7 @@ void strip_gltf_json(json &root, Task &task)
         }
     }
     if (has_targets)
-        task.warnings.push_back("morph targets were ignored");
+        task.warn(GTX_WARNING_IGNORED_SCENE, "morph targets were ignored");
 }
 
 } // namespace gtx

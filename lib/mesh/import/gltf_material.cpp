@@ -180,9 +180,11 @@ Texture Reader::texture(const Item &info, GltfMaterial &material, float glossine
     auto &sets = material.sets;
     size_t slot = size_t(std::find(sets.begin(), sets.end(), set) - sets.begin());
     if (image.number < 0) {
-        material.warnings.insert(texture.where + " has no image: ignored");
+        material.warnings.insert({GTX_WARNING_IGNORED_TEXTURE,
+                                  texture.where + " has no image: ignored"});
     } else if (slot == sets.size() && slot == MAX_SETS) {
-        material.warnings.insert(info.where + " needs a third set of coordinates: ignored");
+        material.warnings.insert({GTX_WARNING_IGNORED_TEXTURE,
+                                  info.where + " needs a third set of coordinates: ignored"});
     } else {
         if (slot == sets.size())
             sets.push_back(set);
@@ -215,8 +217,8 @@ void Reader::specular_gloss(const Item &from, GltfMaterial &to)
     to.look.metal_rough_map = texture(from.member("specularGlossinessTexture"), to, glossiness);
     to.look.metallic = 0;
     to.look.roughness = to.look.metal_rough_map.used() ? 1 : 1 - glossiness;
-    to.warnings.insert("specular-glossiness materials are approximated: diffuse colour and "
-                       "roughness");
+    to.warnings.insert({GTX_WARNING_APPROXIMATED, "specular-glossiness materials are approximated: "
+                                                  "diffuse colour and roughness"});
 }
 
 /* Extensions of a material that are read, or change nothing where they are not. */
@@ -257,13 +259,14 @@ GltfMaterial Reader::material(const Item &from)
     if (alpha == "MASK")
         look.alpha_cutoff = from.number("alphaCutoff", 0.5f, 0, FAR);
     if (alpha == "BLEND")
-        to.warnings.insert("blended materials are drawn opaque");
+        to.warnings.insert({GTX_WARNING_APPROXIMATED, "blended materials are drawn opaque"});
     look.unlit = bool(from.extension("KHR_materials_unlit"));
     to.two_sided = from.flag("doubleSided");
     if (const Item extensions = from.member("extensions"))
         for (const auto &item : extensions.object->items())
             if (!is_read(item.key()))
-                to.warnings.insert("of materials, " + printable(item.key()) + " was ignored");
+                to.warnings.insert({GTX_WARNING_IGNORED_MATERIAL,
+                                    "of materials, " + printable(item.key()) + " was ignored"});
     return to;
 }
 

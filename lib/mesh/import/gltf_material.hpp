@@ -13,7 +13,7 @@ struct GltfMaterial {
     Material look;
     Vector<int> sets;      /* the n of TEXCOORD_n, two at most */
     bool two_sided = false;
-    std::set<std::string> warnings; /* what will not be seen of it */
+    std::set<Warning> warnings; /* what will not be seen of it */
 };
 
 /* Where an image is; of one read in two ways there are two. */

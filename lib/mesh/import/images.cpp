@@ -134,7 +134,8 @@ void load_images(const Vector<EncodedImage> &encoded, Appearance &look, Task &ta
     for (size_t i : work) {
         Load &load = loads[i];
         if (!load.problem.empty())
-            task.warnings.push_back(encoded[i].name + " was ignored: " + load.problem);
+            task.warn(GTX_WARNING_UNREAD_IMAGE,
+                      encoded[i].name + " was ignored: " + load.problem);
         for (int kind = 0; kind < 2 && load.problem.empty(); ++kind)
             if (load.needed[kind]) {
                 load.number[kind] = uint32_t(look.images.size());

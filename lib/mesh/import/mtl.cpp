@@ -226,7 +226,8 @@ void read_mtl(const ModelFile &file, const std::string &name, MtlLibrary &librar
     Bytes text;
     std::error_code error;
     if (path.empty() || !std::filesystem::is_regular_file(path, error)) {
-        task.warnings.push_back("material library '" + printable(name) + "' was not found");
+        task.warn(GTX_WARNING_UNREAD_LIBRARY,
+                  "material library '" + printable(name) + "' was not found");
         return;
     }
     try {
@@ -234,8 +235,8 @@ void read_mtl(const ModelFile &file, const std::string &name, MtlLibrary &librar
     } catch (const Error &e) {
         if (e.result == GTX_ERROR_LIMIT)
             throw;
-        task.warnings.push_back("material library '" + printable(name) +
-                                "' was ignored: " + e.message);
+        task.warn(GTX_WARNING_UNREAD_LIBRARY,
+                  "material library '" + printable(name) + "' was ignored: " + e.message);
         return;
     }
     if (file.sources)

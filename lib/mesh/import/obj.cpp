@@ -214,10 +214,11 @@ void ObjReader::finish_materials()
     for (const std::string &name : library.ignored)
         ignored += (ignored.empty() ? "" : ", ") + name;
     if (!ignored.empty())
-        task_.warnings.push_back("MTL statements were ignored: " + ignored);
+        task_.warn(GTX_WARNING_IGNORED_MATERIAL, "MTL statements were ignored: " + ignored);
     if (lost_coordinates_ && !look.uv[0].empty())
-        task_.warnings.push_back(std::to_string(lost_coordinates_) +
-                                 " corners name texture coordinates that are not there");
+        task_.warn(GTX_WARNING_IGNORED_TEXTURE,
+                   std::to_string(lost_coordinates_) +
+                       " corners name texture coordinates that are not there");
 }
 
 void ObjReader::finish()
@@ -231,13 +232,13 @@ void ObjReader::finish()
     }
     mesh_.normals.resize(mesh_.normals.empty() ? 0 : mesh_.triangles.size() * 3);
     if (short_faces_)
-        task_.warnings.push_back(std::to_string(short_faces_) +
-                                 " faces with fewer than three corners were dropped");
+        task_.warn(GTX_WARNING_DEGENERATE, std::to_string(short_faces_) +
+                                               " faces with fewer than three corners were dropped");
     std::string names;
     for (const std::string &name : ignored_)
         names += (names.empty() ? "" : ", ") + name;
     if (!names.empty())
-        task_.warnings.push_back("OBJ statements were ignored: " + names);
+        task_.warn(GTX_WARNING_IGNORED_DATA, "OBJ statements were ignored: " + names);
 }
 
 Mesh ObjReader::read()

@@ -144,12 +144,12 @@ void OffReader::finish()
         mesh_.colors.push_back({to_byte(c[0] / full), to_byte(c[1] / full), to_byte(c[2] / full),
                                 c[3] < 0 ? uint8_t(255) : to_byte(c[3] / full)});
     if (short_faces_)
-        task_.warnings.push_back(std::to_string(short_faces_) +
-                                 " faces with fewer than three corners were dropped");
+        task_.warn(GTX_WARNING_DEGENERATE, std::to_string(short_faces_) +
+                                               " faces with fewer than three corners were dropped");
     if (has_face_colors_)
-        task_.warnings.push_back("colours of faces were ignored");
+        task_.warn(GTX_WARNING_IGNORED_COLORS, "colours of faces were ignored");
     if (text_.find_word())
-        task_.warnings.push_back("text behind the last face was ignored");
+        task_.warn(GTX_WARNING_IGNORED_DATA, "text behind the last face was ignored");
 }
 
 Mesh OffReader::read()

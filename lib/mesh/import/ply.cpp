@@ -213,8 +213,8 @@ void PlyReader::cut_faces()
             task_.advance(1); /* for the chance to stop */
     }
     if (dropped)
-        task_.warnings.push_back(std::to_string(dropped) +
-                                 " faces with fewer than three corners were dropped");
+        task_.warn(GTX_WARNING_DEGENERATE, std::to_string(dropped) +
+                                               " faces with fewer than three corners were dropped");
 }
 
 /* Every other triangle of a strip is turned; -1 starts a new strip. */
@@ -248,7 +248,8 @@ Mesh PlyReader::colored()
     const bool by_vertex = !mesh_.colors.empty();
     Mesh out = by_corner(std::move(mesh_));
     if (faces_colored_ && by_vertex)
-        task_.warnings.push_back("the colours of faces were ignored, for the vertices have some");
+        task_.warn(GTX_WARNING_IGNORED_COLORS,
+                   "the colours of faces were ignored, for the vertices have some");
     else if (faces_colored_)
         for (const Rgba8 &color : colors_)
             out.colors.insert(out.colors.end(), 3, color);
@@ -280,7 +281,7 @@ Mesh PlyReader::read()
     if (mesh_.triangles.size() > MAX_VERTICES)
         fail(GTX_ERROR_LIMIT, "more than %llu triangles", (unsigned long long)MAX_VERTICES);
     if (!ignored_.empty())
-        task_.warnings.push_back("PLY properties were ignored: " + ignored_);
+        task_.warn(GTX_WARNING_IGNORED_DATA, "PLY properties were ignored: " + ignored_);
     return colored();
 }
 

@@ -49,9 +49,9 @@ static Mesh read_binary(std::string_view bytes, Task &task)
             task.advance(double(t) / double(count));
     }
     if (has_colors)
-        task.warnings.push_back("colours of STL facets were ignored");
+        task.warn(GTX_WARNING_IGNORED_COLORS, "colours of STL facets were ignored");
     if (size < bytes.size())
-        task.warnings.push_back("bytes behind the last facet were ignored");
+        task.warn(GTX_WARNING_IGNORED_DATA, "bytes behind the last facet were ignored");
     return mesh;
 }
 

@@ -1,0 +1,22 @@
+/* The kinds of warnings: each has a name that stays, beside a sentence that may change. */
+#ifndef GTX_BASE_WARNINGS_H
+#define GTX_BASE_WARNINGS_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum gtx_warning {
+#define GTX_WARNING(id, name) GTX_WARNING_##id,
+#include "base/warnings.def"
+#undef GTX_WARNING
+    GTX_WARNING_COUNT
+} gtx_warning;
+
+/* Such as "open-edges"; static. */
+const char *gtx_warning_name(gtx_warning kind);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
