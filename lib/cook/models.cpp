@@ -3,12 +3,12 @@
 
 #include "base/hash.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 namespace gtx {
 
@@ -169,6 +169,12 @@ Mesh import_models(Models &models, bool z_up, Task &task)
 {
     Mesh mesh;
     bool several = models.files.size() > 1;
+    std::set<std::filesystem::path> known;
+    auto is_new = [&known](const std::string &path) {
+        return known.insert(std::filesystem::path(path).lexically_normal()).second;
+    };
+    for (const std::string &path : models.sources)
+        is_new(path);
     for (ModelFile &kept : models.files) {
         ModelFile file = std::move(kept); /* freed as soon as it is imported */
         Vector<std::string> read;
@@ -179,8 +185,7 @@ Mesh import_models(Models &models, bool z_up, Task &task)
         else
             append(mesh, std::move(next));
         for (const std::string &path : read)
-            if (std::find(models.sources.begin(), models.sources.end(), path) ==
-                models.sources.end()) {
+            if (is_new(path)) {
                 models.sources.push_back(path);
                 models.foreseen = false;
             }

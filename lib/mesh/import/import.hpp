@@ -62,6 +62,8 @@ ModelFile unpacked_file(Bytes bytes, const std::string &path, Task &task, gtx_fi
 /* The path of a file that a model names: beside the model or in a folder below it. Empty where the
  * name leads anywhere else: a model from elsewhere must not make the cooker read other files. */
 std::string path_beside(const ModelFile &file, const std::string &name);
+/* The same whatever spelling names a file: without "." and doubled separators. */
+std::string normal_path(const std::string &path);
 std::string percent_decoded(std::string_view uri);
 
 /* Append the paths of the files that a model refers to; "" for those it must not. */

@@ -76,7 +76,7 @@ private:
     bool map(std::string_view word, Line &line);
     bool map_options(Line &line, Texture &texture);
     uint32_t image(const std::string &name);
-    Material &look() { return library_.materials[current_].look; }
+    Material &look() { return library_.materials[current_]; }
 
     const ModelFile &file_;
     MtlLibrary &library_;
@@ -144,22 +144,20 @@ bool MtlReader::map_options(Line &line, Texture &texture)
 
 uint32_t MtlReader::image(const std::string &name)
 {
-    auto known = std::find(library_.image_names.begin(), library_.image_names.end(), name);
-    if (known == library_.image_names.end()) {
+    /* Exporters of another system write its separators. */
+    std::string local = name;
+    std::replace(local.begin(), local.end(), '\\', '/');
+    const std::string path = path_beside(file_, local);
+    const auto [number, fresh] = library_.image_names.add(path.empty() ? name : normal_path(path));
+    if (fresh) {
         std::string shown = "image '" + printable(name) + "'";
-        /* Exporters of another system write its separators. */
-        std::string local = name;
-        std::replace(local.begin(), local.end(), '\\', '/');
-        std::string path = path_beside(file_, local);
         EncodedImage encoded;
         encoded.name = shown;
         encoded.problem = "it is not a file in the model's folder";
         library_.images.push_back(
             path.empty() ? encoded : read_image_file(file_, shown, path, task_));
-        library_.image_names.push_back(name);
-        known = library_.image_names.end() - 1;
     }
-    return uint32_t(known - library_.image_names.begin());
+    return number;
 }
 
 bool MtlReader::map(std::string_view word, Line &line)
@@ -187,14 +185,11 @@ void MtlReader::statement(Line line)
     if (word.empty() || word[0] == '#')
         return;
     if (word == "newmtl") {
-        std::string name(line.rest());
-        auto known = std::find_if(library_.materials.begin(), library_.materials.end(),
-                                  [&](const MtlMaterial &m) { return m.name == name; });
-        repeated_ = known != library_.materials.end();
-        if (!repeated_) {
-            current_ = library_.materials.size();
-            library_.materials.push_back({name, {}});
-        }
+        const auto [number, fresh] = library_.names.add(std::string(line.rest()));
+        repeated_ = !fresh;
+        current_ = number;
+        if (fresh)
+            library_.materials.emplace_back();
         return;
     }
     if (repeated_)

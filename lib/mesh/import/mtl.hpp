@@ -3,20 +3,41 @@
 
 #include "mesh/import/images.hpp"
 
-#include <string_view>
+#include <map>
 
 namespace gtx {
 
-/* What `usemtl` may name. */
-struct MtlMaterial {
-    std::string name;
-    Material look; /* Texture::image is an index of MtlLibrary::images */
+/* Names, numbered in the order found. */
+class Names {
+public:
+    /* Whether it is new, with its number. */
+    std::pair<uint32_t, bool> add(const std::string &name)
+    {
+        auto [at, fresh] = numbers_.emplace(name, uint32_t(numbers_.size()));
+        return {at->second, fresh};
+    }
+    /* `none` where nothing has the name. */
+    uint32_t find(const std::string &name, uint32_t none) const
+    {
+        auto at = numbers_.find(name);
+        return at == numbers_.end() ? none : at->second;
+    }
+    size_t size() const { return numbers_.size(); }
+
+    /* Pairs of a name and its number. */
+    auto begin() const { return numbers_.begin(); }
+    auto end() const { return numbers_.end(); }
+
+private:
+    std::map<std::string, uint32_t, std::less<std::string>,
+             CountingAllocator<std::pair<const std::string, uint32_t>>> numbers_;
 };
 
 struct MtlLibrary {
-    Vector<MtlMaterial> materials;
+    Names names;                      /* of the materials, as `usemtl` has them */
+    Vector<Material> materials;       /* Texture::image is an index of `images` */
+    Names image_names;
     Vector<EncodedImage> images;
-    Vector<std::string> image_names;
     Vector<std::string> ignored;      /* statements, in the order found */
 };
 

@@ -41,7 +41,8 @@ private:
     Vector<Vec3f> normals_;
     Vector<std::array<float, 2>> coordinates_;
     Vector<Rgba8> colors_;                       /* by vertex, or empty */
-    Vector<std::string> libraries_, names_;      /* of mtllib and usemtl */
+    Vector<std::string> libraries_;              /* each once */
+    Names library_names_, names_;                /* of mtllib and usemtl */
     uint32_t name_ = NOTHING;                    /* of the material in use, in names_ */
     Vector<Corner> corners_;                     /* of the face at hand */
     Vector<Vec3d> polygon_;
@@ -140,11 +141,7 @@ void ObjReader::face()
 
 void ObjReader::use_material()
 {
-    std::string name(text_.rest_of_line());
-    auto known = std::find(names_.begin(), names_.end(), name);
-    name_ = uint32_t(known - names_.begin());
-    if (known == names_.end())
-        names_.push_back(name);
+    name_ = names_.add(std::string(text_.rest_of_line())).first;
 }
 
 void ObjReader::ignore(std::string_view word)
@@ -184,7 +181,10 @@ void ObjReader::statement(std::string_view word)
     } else if (word == "usemtl") {
         use_material();
     } else if (word == "mtllib") {
-        libraries_.emplace_back(text_.rest_of_line());
+        std::string name(text_.rest_of_line());
+        const std::string path = path_beside(file_, name);
+        if (library_names_.add(path.empty() ? name : normal_path(path)).second)
+            libraries_.push_back(std::move(name));
     } else {
         ignore(word);
     }
@@ -195,14 +195,13 @@ void ObjReader::finish_materials()
 {
     Appearance &look = mesh_.appearance;
     MtlLibrary library;
-    if (!names_.empty())
+    if (names_.size())
         for (const std::string &name : libraries_)
             read_mtl(file_, name, library, task_);
-    for (const std::string &name : names_) {
-        auto found = std::find_if(library.materials.begin(), library.materials.end(),
-                                  [&](const MtlMaterial &m) { return m.name == name; });
-        look.materials.push_back(found == library.materials.end() ? Material() : found->look);
-    }
+    look.materials.resize(names_.size());
+    for (const auto &[name, number] : names_)
+        if (const uint32_t defined = library.names.find(name, NOTHING); defined != NOTHING)
+            look.materials[number] = library.materials[defined];
     if (!look.material.empty() &&
         std::find(look.material.begin(), look.material.end(), NOTHING) != look.material.end()) {
         std::replace(look.material.begin(), look.material.end(), NOTHING,

@@ -5,9 +5,11 @@
 
 namespace gtx {
 
-/* Clipping ears takes time in the cube of the corners at worst, which a hostile file would choose;
- * larger polygons are the caps of cylinders and the like, and convex. */
-static const size_t max_ear_corners = 512;
+/* Clipping ears takes time in the cube of the corners at worst, which a hostile file would choose.
+ * Larger polygons are the caps of cylinders and the like, and convex. Corners looked at, for each
+ * that a polygon has: a star, half of whose corners are ears, needs as many as it has. */
+constexpr size_t MAX_EAR_CORNERS = 512;
+constexpr size_t MAX_LOOKS = 2 * MAX_EAR_CORNERS;
 
 namespace {
 struct Point {
@@ -59,8 +61,8 @@ static bool inside(Point p, Point a, Point b, Point c)
            !same(c);
 }
 
-/* Meisters, "Polygons have ears", 1975. A polygon that crosses itself may have none left; then the
- * corner at hand is cut off, so that the count of triangles holds. */
+/* Meisters, "Polygons have ears", 1975. A polygon that crosses itself may have none left, or take
+ * too long to show one; then the corner at hand is cut off, so that the count of triangles holds. */
 static void clip_ears(const Vector<Point> &flat, Vector<std::array<uint32_t, 3>> &out)
 {
     uint32_t n = uint32_t(flat.size());
@@ -69,18 +71,20 @@ static void clip_ears(const Vector<Point> &flat, Vector<std::array<uint32_t, 3>>
         next[i] = (i + 1) % n;
         previous[i] = (i + n - 1) % n;
     }
+    size_t looks = 0;
     auto is_ear = [&](uint32_t i) {
         uint32_t a = previous[i], c = next[i];
+        ++looks;
         if (!(turn(flat[a], flat[i], flat[c]) > 0))
             return false;
-        for (uint32_t j = next[c]; j != a; j = next[j])
+        for (uint32_t j = next[c]; j != a; j = next[j], ++looks)
             if (inside(flat[j], flat[a], flat[i], flat[c]))
                 return false;
         return true;
     };
     uint32_t i = 0, misses = 0;
     for (uint32_t left = n; left > 3;) {
-        if (misses < left && !is_ear(i)) {
+        if (misses < left && looks < MAX_LOOKS * n && !is_ear(i)) {
             ++misses;
             i = next[i];
             continue;
@@ -97,7 +101,7 @@ static void clip_ears(const Vector<Point> &flat, Vector<std::array<uint32_t, 3>>
 
 void triangulate(const Vector<Vec3d> &polygon, Vector<std::array<uint32_t, 3>> &out)
 {
-    if (polygon.size() > 3 && polygon.size() <= max_ear_corners) {
+    if (polygon.size() > 3 && polygon.size() <= MAX_EAR_CORNERS) {
         Vector<Point> flat = flatten(polygon);
         if (!is_convex(flat)) {
             clip_ears(flat, out);

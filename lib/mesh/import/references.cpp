@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace gtx {
 
@@ -15,7 +16,9 @@ using nlohmann::json;
 
 std::string path_beside(const ModelFile &file, const std::string &name)
 {
-    bool outside = name.empty() || name.find_first_of(std::string(":\\\0", 3)) != name.npos;
+    constexpr size_t LONGEST = 4096; /* as systems have it */
+    bool outside = name.empty() || name.size() > LONGEST ||
+                   name.find_first_of(std::string(":\\\0", 3)) != name.npos;
     std::filesystem::path relative(outside ? std::string() : name);
     outside |= relative.is_absolute();
     for (const auto &part : relative)
@@ -23,6 +26,11 @@ std::string path_beside(const ModelFile &file, const std::string &name)
     if (outside)
         return {};
     return (std::filesystem::path(file.path).parent_path() / relative).string();
+}
+
+std::string normal_path(const std::string &path)
+{
+    return std::filesystem::path(path).lexically_normal().string();
 }
 
 static int hex(char c)
@@ -45,14 +53,26 @@ std::string percent_decoded(std::string_view uri)
     return out;
 }
 
-/* A few bytes of text can stand for many names, each of which is looked for. */
-static void add_path(Vector<std::string> &paths, std::string path)
-{
-    constexpr size_t MOST = 1 << 16;
-    if (paths.size() == MOST)
-        fail(GTX_ERROR_LIMIT, "the model refers to more than %zu files", MOST);
-    paths.push_back(std::move(path));
-}
+/* Each file once, however often and in whatever spelling it is named: a few bytes of text can stand
+ * for many names, each of which is looked for. */
+class Paths {
+public:
+    explicit Paths(Vector<std::string> &paths) : paths_(paths) {}
+
+    void add(std::string path)
+    {
+        constexpr size_t MOST = 1 << 16;
+        if (!seen_.insert(normal_path(path)).second)
+            return;
+        if (paths_.size() == MOST)
+            fail(GTX_ERROR_LIMIT, "the model refers to more than %zu files", MOST);
+        paths_.push_back(std::move(path));
+    }
+
+private:
+    Vector<std::string> &paths_;
+    std::set<std::string> seen_ = {""};
+};
 
 /* ---- glTF ---- */
 
@@ -66,8 +86,9 @@ static std::string_view gltf_text(std::string_view bytes)
     return bytes.substr(TEXT, gtx_load_u32(reinterpret_cast<const uint8_t *>(bytes.data()) + 12));
 }
 
-void gltf_references(const ModelFile &file, Task &, Vector<std::string> &paths)
+void gltf_references(const ModelFile &file, Task &, Vector<std::string> &out)
 {
+    Paths paths(out);
     std::string_view text = gltf_text(file.bytes);
     auto keep = [](int depth, json::parse_event_t event, json &value) {
         return event != json::parse_event_t::key || depth != 1 || value == "buffers" ||
@@ -80,7 +101,7 @@ void gltf_references(const ModelFile &file, Task &, Vector<std::string> &paths)
         for (const json &item : root[list])
             if (item.is_object() && item.contains("uri") && item["uri"].is_string())
                 if (std::string uri = item["uri"]; uri.rfind("data:", 0) != 0)
-                    add_path(paths, path_beside(file, percent_decoded(uri)));
+                    paths.add(path_beside(file, percent_decoded(uri)));
     }
 }
 
@@ -105,7 +126,7 @@ static void each_statement(std::string_view text, std::initializer_list<const ch
 /* A name may have blanks in it, and options or further names before it: every tail of the line and
  * every word may be one. Exporters of another system write its separators. */
 static void add_names(std::initializer_list<const ModelFile *> beside, std::string_view line,
-                      Vector<std::string> &paths)
+                      Paths &paths)
 {
     constexpr int MAX_WORDS = 32;
     std::string portable(line.substr(0, line.find_last_not_of(" \t") + 1));
@@ -116,7 +137,7 @@ static void add_names(std::initializer_list<const ModelFile *> beside, std::stri
         for (const ModelFile *file : beside)
             for (std::string_view name : {line, line.substr(0, blank)})
                 if (i > 0)
-                    add_path(paths, path_beside(*file, std::string(name)));
+                    paths.add(path_beside(*file, std::string(name)));
         size_t next = line.find_first_not_of(" \t", blank);
         if (blank == line.npos || next == line.npos)
             break;
@@ -124,15 +145,16 @@ static void add_names(std::initializer_list<const ModelFile *> beside, std::stri
     }
 }
 
-void obj_references(const ModelFile &file, Task &task, Vector<std::string> &paths)
+void obj_references(const ModelFile &file, Task &task, Vector<std::string> &out)
 {
+    Paths paths(out);
     each_statement(file.bytes, {"mtllib"},
                    [&](std::string_view line) { add_names({&file}, line, paths); });
-    for (size_t i = 0, libraries = paths.size(); i < libraries; ++i) {
+    for (size_t i = 0, libraries = out.size(); i < libraries; ++i) {
         std::error_code ignored;
-        if (!std::filesystem::is_regular_file(paths[i], ignored))
+        if (!std::filesystem::is_regular_file(out[i], ignored))
             continue;
-        ModelFile library = {paths[i], read_file_beside(paths[i], task), nullptr};
+        ModelFile library = {out[i], read_file_beside(out[i], task), nullptr};
         each_statement(library.bytes, {"map_", "bump", "norm", "disp", "refl", "decal"},
                        [&](std::string_view line) { add_names({&file, &library}, line, paths); });
     }
