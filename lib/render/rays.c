@@ -5,6 +5,7 @@
 #include "asset/patch.h"
 #include "base/alloc.h"
 #include "base/error.h"
+#include "derive/crowd.h"
 #include "render/model.h"
 #include "render/renderer.h"
 
@@ -175,9 +176,12 @@ gtx_result gtx_rays_create(gtx_renderer *renderer, const gtx_rays_desc *desc, gt
     *out = NULL;
     gtx_result result =
         gtx_check_reserved(desc->reserved, sizeof desc->reserved / sizeof *desc->reserved, error);
+    if (!result)
+        result = gtx_check_limits(&desc->limits, error);
     for (uint32_t i = 0; !result && i < desc->asset_count; ++i)
-        if (!desc->assets[i])
-            result = gtx_fail(error, GTX_ERROR_ARGUMENT, "asset %u is missing", i);
+        result = desc->assets[i]
+                     ? gtx_check_crowd(desc->assets[i], &desc->limits, error)
+                     : gtx_fail(error, GTX_ERROR_ARGUMENT, "asset %u is missing", i);
     if (result)
         return result;
     const gtx_allocator *hooks = &renderer->allocator;

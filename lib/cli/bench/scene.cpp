@@ -2,6 +2,7 @@
 #include "cli/bench/scene.hpp"
 
 #include "cli/bench/shading.hpp"
+#include "cli/cli.h"
 #include "cli/view/scene_renderer.hpp"
 #include "host/camera.h"
 #include "host/jobs.h"
@@ -93,6 +94,7 @@ void BenchScene::load_asset(const std::string &path)
     gtx_open_desc open = {};
     gtx_model_desc model = {};
     open.jobs = model.jobs = &jobs;
+    open.limits = model.limits = cli_limits;
     model.borrow = 1;
     const double start = milliseconds();
     require_ok(gtx_open_file(path.c_str(), &open, &asset, &error), error);

@@ -1,6 +1,7 @@
 /* Files -> a scene: assets, polygon models, and glTF scenes that place assets. */
 #include "cli/view/scene.hpp"
 
+#include "cli/cli.h"
 #include "host/jobs.h"
 
 #include <nlohmann/json.hpp>
@@ -51,6 +52,7 @@ AssetPointer open_asset(const std::string &path)
     const gtx_jobs jobs = gtx_host_jobs(0);
     gtx_open_desc desc = {};
     desc.jobs = &jobs;
+    desc.limits = cli_limits;
     gtx_asset *asset;
     gtx_error error;
     require_ok(gtx_open_file(path.c_str(), &desc, &asset, &error), error);
