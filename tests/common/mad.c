@@ -18,6 +18,8 @@ static uint8_t code_of(mad_field field, uint32_t x, uint32_t y)
 {
     if (field == MAD_NEEDLES)
         return (x + y) % 2 ? 255 : 1;
+    if (field == MAD_RIDGES)
+        return x == 48 && y == 48 ? 255 : (uint8_t)(80 + 60 * sin(x * 6.2831853 / 64));
     return (uint8_t)(128 + 20 * sin((x + y) * 0.2));
 }
 
@@ -37,7 +39,7 @@ static void fill(const maps *m, const gtx_patch *p, mad_field field)
         }
 }
 
-/* The sphere is around the whole box; the bounds are around all spheres. */
+/* The sphere is around the whole box. */
 static void frame(gtx_patch *p, uint32_t index, const maps *m, float share, mad_place place,
                   float depth)
 {
@@ -86,7 +88,8 @@ gtx_asset *mad_asset(uint32_t count, uint32_t side, mad_place place, mad_field f
     const gtx_asset_desc desc = {
         .patches = patches, .patch_count = count, .page_count = pages, .page_width = m.page,
         .page_height = m.page, .mip_count = 1, .height_bits = 8, .height = m.height,
-        .trim = m.trim, .normal = normals, .bounds_max = {1, 1, patches[0].extent_z + 1}};
+        .trim = m.trim, .normal = normals,
+        .bounds_max = {1, 1, patches[count - 1].origin[2] + patches[0].extent_z}};
     gtx_asset *asset = NULL;
     gtx_error error = {0};
     if (gtx_create(&desc, &asset, &error)) {

@@ -12,6 +12,8 @@ typedef enum mad_place {
 typedef enum mad_field {
     MAD_GAUZE,                  /* waves, inside the outline at every other texel and nowhere
                                    between: cells exist, and rays go through */
+    MAD_RIDGES,                 /* such gauze in high folds, with one spike in a valley: hulls are
+                                   thick, and a ray leaves and enters them again and again */
     MAD_NEEDLES                 /* a checkerboard of the lowest and the highest code, as high as the
                                    patch is wide */
 } mad_field;
