@@ -382,7 +382,8 @@ typedef struct gtx_hit {
 enum { /* flags of gtx_raycast */
     GTX_RAY_ANY = 1,              /* any hit will do (shadows); t and normal are that hit's */
     GTX_RAY_TWO_SIDED = 2,        /* accept crossings from below in every patch */
-    GTX_RAY_EXHAUSTIVE = 4        /* visit every cell of every patch: the slow reference */
+    GTX_RAY_EXHAUSTIVE = 4        /* visit every cell of every patch: the slow reference,
+                                     without a bound */
 };
 
 /* Makes a caster from the descriptor's allocator; gtx_caster_destroy frees it. `desc` may be NULL.

@@ -142,11 +142,9 @@ gtx_result gtx_check_crowd(const gtx_asset *asset, const gtx_limits *limits, gtx
                            : GTX_OK;
 }
 
-gtx_result gtx_check_derived(const gtx_asset *asset, const gtx_limits *limits, const char *what,
+gtx_result gtx_check_derived(uint64_t texels, const gtx_limits *limits, const char *what,
                              uint64_t bytes, gtx_error *error)
 {
-    const gtx_info *info = &asset->info;
-    const uint64_t texels = (uint64_t)info->page_count * info->page_width * info->page_height;
     const uint64_t allowed = gtx_limit_of(limits, GTX_LIMITED_MEMORY, texels);
     return bytes > allowed ? gtx_fail_limit(error, GTX_LIMITED_MEMORY, what, bytes, allowed)
                            : GTX_OK;

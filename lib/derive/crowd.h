@@ -7,8 +7,9 @@
 
 /* LIMIT when gtx_ray_cells is more than limits->cells. */
 gtx_result gtx_check_crowd(const gtx_asset *asset, const gtx_limits *limits, gtx_error *error);
-/* LIMIT when `bytes` are more than limits->memory; a texel counts as a byte read. */
-gtx_result gtx_check_derived(const gtx_asset *asset, const gtx_limits *limits, const char *what,
+/* LIMIT when `bytes` are more than limits->memory, by default what as many bytes read as there are
+ * texels allow. */
+gtx_result gtx_check_derived(uint64_t texels, const gtx_limits *limits, const char *what,
                              uint64_t bytes, gtx_error *error);
 
 #endif

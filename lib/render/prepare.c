@@ -298,8 +298,10 @@ static gtx_result check(const gtx_asset *asset, const gtx_model_desc *desc, gtx_
     gtx_result result = gtx_check_reserved(desc->reserved, 4, error);
     if (!result)
         result = gtx_check_limits(&desc->limits, error);
+    const gtx_info *info = &asset->info;
+    const uint64_t texels = (uint64_t)info->page_count * info->page_width * info->page_height;
     if (!result)
-        result = gtx_check_derived(asset, &desc->limits, "a model",
+        result = gtx_check_derived(texels, &desc->limits, "a model",
                                    gtx_model_memory(asset, desc->borrow), error);
     return result ? result : gtx_check_crowd(asset, &desc->limits, error);
 }

@@ -65,6 +65,17 @@ static gtx_result measure(gtx_rays *rays, const gtx_rays_desc *desc, gtx_error *
     return GTX_OK;
 }
 
+/* Maps until they are uploaded; for each node its texels, and a hierarchy and boxes of half as
+ * many blocks while it is built. */
+static uint64_t bytes_of(const gtx_rays *rays)
+{
+    const uint64_t texel = 4 * sizeof(float), cell = rays->bits / 2 + 1;
+    const uint64_t node = GTX_RAY_NODE_TEXELS * texel + sizeof(gtx_node) + sizeof(gtx_box);
+    return cell * rays->cells + texel * rays->front_texels +
+           (sizeof *rays->boxes + sizeof *rays->places) * (uint64_t)rays->max_instances +
+           node * (rays->nodes / GTX_RAY_NODE_TEXELS);
+}
+
 static bool reserve(gtx_rays *rays)
 {
     const gtx_allocator *hooks = &rays->allocator;
@@ -195,6 +206,9 @@ gtx_result gtx_rays_create(gtx_renderer *renderer, const gtx_rays_desc *desc, gt
     result = rays->members ? measure(rays, desc, error)
                            : gtx_fail(error, GTX_ERROR_MEMORY, "no memory to cast into %u assets",
                                       desc->asset_count);
+    if (!result)
+        result = gtx_check_derived(rays->cells, &desc->limits, "a set of rays", bytes_of(rays),
+                                   error);
     if (!result)
         result = fill(renderer, rays, desc, error);
     if (result)

@@ -156,7 +156,7 @@ gtx_result gtx_fields_build(gtx_caster *caster, const gtx_asset *asset,
         field->trim_limit = gtx_trim_limit(field->level);
         place_field(caster, field, &total);
     }
-    gtx_result result = gtx_check_derived(asset, &desc->limits, "a caster",
+    gtx_result result = gtx_check_derived(total.texel, &desc->limits, "a caster",
                                           bytes_of(caster, &total), error);
     if (result)
         return result;
