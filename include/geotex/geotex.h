@@ -123,6 +123,7 @@ typedef struct gtx_limits {
                                      0 = 2^26 and 256 for each byte read */
     uint64_t pixels;              /* of one image; 0 = 2^26 and 16 for each byte read */
     uint64_t patches;             /* 0 = 2^20 */
+    uint64_t cells;               /* that a ray may visit (gtx_ray_cells); 0 = 2^19 */
     uint32_t reserved[4];
 } gtx_limits;
 
@@ -263,6 +264,15 @@ GTX_API gtx_result gtx_get_lod_mesh(const gtx_asset *asset, uint32_t level, gtx_
 /* The META section: JSON text of *size bytes, not terminated; NULL when absent. Informative. */
 GTX_API const char *gtx_meta(const gtx_asset *asset, size_t *size);
 
+/* No ray through the asset visits more cells of height fields than this, wherever it comes from and
+ * goes, if it looks at each patch once: so drawing and rays take at most so many steps a pixel or a
+ * ray. The sum of width and height over the patches that some ray may meet, found for bundles of
+ * rays and so from above: ordinary assets have a few thousand up to 10^5, of which a ray visits a
+ * hundredth; where patches are stacked in one place it is what a ray takes. limits.cells holds it
+ * wherever an asset is prepared for rays or drawing. 0 for NULL. Takes time in proportion to the
+ * patches, and no memory. */
+GTX_API uint64_t gtx_ray_cells(const gtx_asset *asset);
+
 /* ---- validation ------------------------------------------------------------------------- */
 
 typedef struct gtx_issue {
@@ -350,6 +360,7 @@ typedef struct gtx_caster_desc {
     /* Object units; when > 0, each patch is cast at the coarsest of its mip_count levels that is
      * within this distance of level 0, as the renderer chooses levels; `level` must then be 0. */
     float max_error;
+    gtx_limits limits;            /* memory and cells */
     uint32_t reserved[4];
 } gtx_caster_desc;
 
@@ -373,11 +384,12 @@ typedef struct gtx_hit {
 enum { /* flags of gtx_raycast */
     GTX_RAY_ANY = 1,              /* any hit will do (shadows); t and normal are that hit's */
     GTX_RAY_TWO_SIDED = 2,        /* accept crossings from below in every patch */
-    GTX_RAY_EXHAUSTIVE = 4        /* visit every cell of every patch: the slow reference */
+    GTX_RAY_EXHAUSTIVE = 4        /* visit every cell of every patch: the slow reference,
+                                     without a bound */
 };
 
 /* Makes a caster from the descriptor's allocator; gtx_caster_destroy frees it. `desc` may be NULL.
- * Errors: ARGUMENT, NOT_ZEROED, MEMORY. */
+ * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT. */
 GTX_API gtx_result gtx_caster_create(const gtx_asset *asset, const gtx_caster_desc *desc,
                                      gtx_caster **out, gtx_error *error);
 /* NULL is fine. */

@@ -81,13 +81,14 @@ typedef struct gtx_model_desc {
     const gtx_jobs *jobs;             /* used during the call; may be NULL */
     uint32_t borrow;                  /* 1: maps are not copied; the asset must stay open until the
                                          model is uploaded or destroyed */
+    gtx_limits limits;                /* memory, until the upload, and cells */
     uint32_t reserved[4];
 } gtx_model_desc;
 
 /* Derives what the GPU needs, without GL: any thread. Keeps no reference to the asset unless it
  * borrows its maps. `desc` may be NULL. The model comes from the descriptor's allocator, and is
  * freed by gtx_model_destroy, most of it already by the upload. Errors: ARGUMENT, NOT_ZEROED,
- * MEMORY. */
+ * MEMORY, LIMIT. */
 GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc,
                                      gtx_model **out, gtx_error *error);
 
@@ -100,7 +101,7 @@ GTX_API gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, ui
                                     uint32_t *done, gtx_error *error);
 
 /* Prepares and uploads in one call, with the renderer's allocator and jobs; gtx_model_destroy frees
- * the model. Errors: as gtx_model_prepare and gtx_model_upload. */
+ * the model, and the defaults of limits. Errors: as gtx_model_prepare and gtx_model_upload. */
 GTX_API gtx_result gtx_model_create(gtx_renderer *renderer, const gtx_asset *asset,
                                     gtx_model **out, gtx_error *error);
 
@@ -240,12 +241,13 @@ typedef struct gtx_rays_desc {
     const gtx_asset *const *assets;   /* not kept */
     uint32_t asset_count;
     uint32_t max_instances;           /* up to 2^20 */
+    gtx_limits limits;                /* memory of all, cells of each asset */
     uint32_t reserved[4];
 } gtx_rays_desc;
 
 /* Derives and uploads; no instance is placed yet. The rays come from the renderer's allocator, and
  * are freed by gtx_rays_destroy. State is left as by gtx_model_upload.
- * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT (texture size), GL (out of memory). */
+ * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT (limits, texture size), GL (out of memory). */
 GTX_API gtx_result gtx_rays_create(gtx_renderer *renderer, const gtx_rays_desc *desc,
                                    gtx_rays **out, gtx_error *error);
 /* NULL rays are fine. */

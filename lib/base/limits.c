@@ -15,6 +15,7 @@ static const struct {
     {"texels", "texels", (uint64_t)1 << 26, 256},
     {"pixels", "pixels", (uint64_t)1 << 26, 16},
     {"patches", "patches", (uint64_t)1 << 20, 0},
+    {"cells", "cells", (uint64_t)1 << 19, 0},
 };
 
 gtx_result gtx_check_limits(const gtx_limits *limits, gtx_error *error)
@@ -27,7 +28,7 @@ uint64_t gtx_limit_of(const gtx_limits *limits, gtx_limited which, uint64_t byte
     static const gtx_limits none = {0};
     const gtx_limits *l = limits ? limits : &none;
     const uint64_t given[GTX_LIMITED_COUNT] = {l->memory, l->triangles, l->texels, l->pixels,
-                                               l->patches};
+                                               l->patches, l->cells};
     if (given[which])
         return given[which];
     const double sum = (double)fields[which].least + fields[which].per_byte * (double)bytes_read;

@@ -63,6 +63,7 @@ static int tell_json(const char *path, const gtx_asset *asset, const gtx_info *i
     gtx_json_integer(&json, "patches", info->patch_count);
     gtx_json_integer(&json, "two_sided_patches", two_sided(asset, info));
     gtx_json_integer(&json, "texels", texels(asset, info));
+    gtx_json_integer(&json, "ray_cells", gtx_ray_cells(asset));
     gtx_json_integer(&json, "pages", info->page_count);
     gtx_json_integer(&json, "page_width", info->page_width);
     gtx_json_integer(&json, "page_height", info->page_height);
@@ -91,6 +92,7 @@ static int tell_text(const gtx_asset *asset, const gtx_info *info)
     printf("texels          %" PRIu64 " in %u page%s of %u x %u\n", texels(asset, info),
            info->page_count, info->page_count == 1 ? "" : "s", info->page_width, info->page_height);
     printf("heights         %u bits\n", info->height_bits);
+    printf("a ray           %" PRIu64 " cells at most\n", gtx_ray_cells(asset));
     printf("maps            normal%s%s%s, %u mip level%s\n", info->has_color ? ", colour" : "",
            info->has_material ? ", material" : "", info->has_emission ? ", emission" : "",
            info->mip_count, info->mip_count == 1 ? "" : "s");
@@ -123,10 +125,10 @@ int cmd_info(int argc, char **argv)
     int code = parse_options(&info_verb, argc, argv, &path, &count);
     if (code >= 0)
         return code;
-    const gtx_open_desc open = {.limits = cli_limits};
     gtx_asset *asset;
     gtx_error error;
-    if (gtx_open_file(path, &open, &asset, &error) != GTX_OK)
+    const gtx_open_desc desc = {.limits = cli_limits};
+    if (gtx_open_file(path, &desc, &asset, &error) != GTX_OK)
         return report_error(path, &error);
     gtx_info info;
     gtx_get_info(asset, &info);

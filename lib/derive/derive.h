@@ -72,6 +72,8 @@ enum { GTX_BOX_VERTICES = 8, GTX_BOX_INDICES = 36 };
 gtx_result gtx_add_box(uint32_t patch, const gtx_grid *finest, float grow,
                        const gtx_allocator *allocator, gtx_proxies *out, gtx_error *error);
 
+enum { GTX_HULL_BLOCK = 16 };          /* cells along the side of a hull's block */
+
 /* Adds a tight hull of the solid cells of a level: over blocks of cells a lid above the height
  * field, and walls where the blocks end, down to below it. Two-sided patches have a floor too, and
  * a closed hull. Every ray from outside that crosses the height field from above, and if it is

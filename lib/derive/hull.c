@@ -7,9 +7,8 @@
 
 #include <math.h>
 
-/* Cells along the side of a block: processors shade small triangles by whole groups of pixels, so
- * that few large ones cost least. */
-enum { BLOCK = 16 };
+/* Processors shade small triangles by whole groups of pixels, so that few large ones cost least. */
+enum { BLOCK = GTX_HULL_BLOCK };
 /* Codes that vectors may read beyond the last one. */
 enum { SPARE = 3 };
 _Static_assert((int)BLOCK <= (int)GTX_MAX_MOMENTS, "a block's sums fit");

@@ -296,7 +296,8 @@ static void take_frames(gtx_edit *edit, const gtx_caster *caster)
 gtx_result gtx_edit_find_correspondences(gtx_edit *edit, gtx_error *error)
 {
     const gtx_allocator *hooks = &edit->allocator;
-    const gtx_caster_desc desc = {.allocator = hooks};
+    const gtx_limits all = {.memory = UINT64_MAX, .cells = UINT64_MAX};
+    const gtx_caster_desc desc = {.allocator = hooks, .limits = all};
     search s = {.edit = edit};
     gtx_result result = gtx_caster_create(edit->source, &desc, &s.caster, error);
     if (result)

@@ -19,6 +19,7 @@ AssetView::AssetView(const gtx_asset *asset, uint32_t level, double max_error)
     desc.allocator = &asset->allocator;
     desc.level = level;
     desc.max_error = float(max_error);
+    desc.limits.memory = desc.limits.cells = UINT64_MAX; /* the allocator counts; cells take time */
     gtx_caster *caster = nullptr;
     gtx_error error;
     require_ok(gtx_caster_create(asset, &desc, &caster, &error), error);

@@ -33,7 +33,8 @@ typedef struct gtx_level {
 typedef struct gtx_patch_facts {
     float sphere[4], hull[4]; /* around the height field; around the proxies */
     float error[GTX_MAX_MIPS]; /* of each level, as gtx_grid_error has it, never falling */
-    bool boxed;               /* edited hulls outgrew their room: cast by the box instead */
+    bool boxed;               /* too large for hulls, or edited ones outgrew their room: cast by the
+                                 box instead */
 } gtx_patch_facts;
 
 struct gtx_model {
@@ -72,6 +73,8 @@ bool gtx_find_constant_material(const gtx_asset *asset, float material[4]);
 /* model.c: frees the CPU's copy of maps and proxies; or the whole model but its OpenGL objects. */
 void gtx_model_free_staging(gtx_model *model);
 void gtx_model_free(gtx_model *model);
+/* memory.c: bytes that gtx_model_prepare takes, from above. */
+uint64_t gtx_model_memory(const gtx_asset *asset, bool borrow);
 /* A hash of where the patches' rectangles lie. */
 uint64_t gtx_model_layout(const gtx_asset *asset);
 /* Rows of a page of cells, and where the cells of a patch's level are in it: level 1 and the

@@ -12,6 +12,10 @@
  * not cut the height field's rim, and a flat height field must not lie in a face. */
 static const float hull_margin = 0.25f;
 
+/* A ray may pass a face of a hull at each of its blocks, and each face casts anew. Patches with a
+ * longer side, which no cooker makes, are cast by their boxes instead, once a ray. */
+enum { MAX_HULL_SIDE = 512 };
+
 /* The part of a record that is the same for all levels. */
 static void fill_frame(gtx_record record, const gtx_patch *patch, uint32_t height_bits)
 {
@@ -73,6 +77,8 @@ static gtx_result derive_level(const gtx_asset *asset, uint32_t patch, gtx_grid 
     gtx_grid_trim(asset, patch, grid);
     gtx_grid_cells(grid, asset->info.height_bits, out->row_texels[k], out->cells[k]);
     gtx_grid_slabs(&asset->patches[patch], grid, out->slabs[k]);
+    if (out->facts.boxed)
+        return GTX_OK;
     gtx_result result = gtx_add_hull(asset, patch, grid, hull_margin, allocator, hulls,
                                      &out->record[GTX_RECORD_REACH + k / 4][k % 4], error);
     if (!result)
@@ -97,6 +103,9 @@ gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_al
         fill_box(out->record, boxes->vertices + boxes->vertex_count - GTX_BOX_VERTICES);
         memcpy(out->facts.sphere, p->sphere, sizeof out->facts.sphere);
         memcpy(out->facts.hull, p->sphere, 3 * sizeof *p->sphere);
+        out->facts.boxed = p->rect[2] > MAX_HULL_SIDE || p->rect[3] > MAX_HULL_SIDE;
+        if (out->facts.boxed)
+            enclose(out->facts.hull, out->record, boxes, boxes->vertex_count - GTX_BOX_VERTICES);
     }
     for (uint32_t k = 1; !result && k < asset->info.mip_count; ++k) {
         result = gtx_grid_coarsen(&finest, k, allocator, &grid, error);

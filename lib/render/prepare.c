@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/jobs.h"
+#include "derive/crowd.h"
 
 #include <string.h>
 
@@ -292,26 +293,39 @@ static gtx_model *new_model(const gtx_asset *asset, const gtx_allocator *hooks)
     return model;
 }
 
+static gtx_result check(const gtx_asset *asset, const gtx_model_desc *desc, gtx_error *error)
+{
+    gtx_result result = gtx_check_reserved(desc->reserved, 4, error);
+    if (!result)
+        result = gtx_check_limits(&desc->limits, error);
+    const gtx_info *info = &asset->info;
+    const uint64_t texels = (uint64_t)info->page_count * info->page_width * info->page_height;
+    if (!result)
+        result = gtx_check_derived(texels, &desc->limits, "a model",
+                                   gtx_model_memory(asset, desc->borrow), error);
+    return result ? result : gtx_check_crowd(asset, &desc->limits, error);
+}
+
 gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc, gtx_model **out,
                              gtx_error *error)
 {
     if (!asset || !out)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a model needs an asset");
     *out = NULL;
-    gtx_result result = desc ? gtx_check_reserved(desc->reserved, 4, error) : GTX_OK;
+    const gtx_model_desc defaults = {0}, *d = desc ? desc : &defaults;
+    gtx_result result = check(asset, d, error);
     if (result)
         return result;
-    const gtx_allocator hooks = gtx_allocator_or_default(desc ? desc->allocator : NULL);
-    making m = {.asset = asset, .model = new_model(asset, &hooks), .borrow = desc && desc->borrow};
+    const gtx_allocator hooks = gtx_allocator_or_default(d->allocator);
+    making m = {.asset = asset, .model = new_model(asset, &hooks), .borrow = d->borrow};
     if (!m.model)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a model");
-    const gtx_jobs *jobs = desc ? desc->jobs : NULL;
     if (reserve(&m))
-        result = begin_parts(&m, jobs, error);
+        result = begin_parts(&m, d->jobs, error);
     else
         result = gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's maps");
     if (!result)
-        result = make_parts(&m, jobs, error);
+        result = make_parts(&m, d->jobs, error);
     gtx_model *model = m.model;
     if (result) {
         gtx_model_free(model);

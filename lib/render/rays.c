@@ -5,6 +5,7 @@
 #include "asset/patch.h"
 #include "base/alloc.h"
 #include "base/error.h"
+#include "derive/crowd.h"
 #include "render/model.h"
 #include "render/renderer.h"
 
@@ -62,6 +63,17 @@ static gtx_result measure(gtx_rays *rays, const gtx_rays_desc *desc, gtx_error *
     if (rays->cells > (size_t)GTX_RAY_ROW * GTX_RAY_LAYER_ROWS)
         rays->cells = align(rays->cells, (size_t)GTX_RAY_ROW * GTX_RAY_LAYER_ROWS);
     return GTX_OK;
+}
+
+/* Maps until they are uploaded; for each node its texels, and a hierarchy and boxes of half as
+ * many blocks while it is built. */
+static uint64_t bytes_of(const gtx_rays *rays)
+{
+    const uint64_t texel = 4 * sizeof(float), cell = rays->bits / 2 + 1;
+    const uint64_t node = GTX_RAY_NODE_TEXELS * texel + sizeof(gtx_node) + sizeof(gtx_box);
+    return cell * rays->cells + texel * rays->front_texels +
+           (sizeof *rays->boxes + sizeof *rays->places) * (uint64_t)rays->max_instances +
+           node * (rays->nodes / GTX_RAY_NODE_TEXELS);
 }
 
 static bool reserve(gtx_rays *rays)
@@ -175,9 +187,12 @@ gtx_result gtx_rays_create(gtx_renderer *renderer, const gtx_rays_desc *desc, gt
     *out = NULL;
     gtx_result result =
         gtx_check_reserved(desc->reserved, sizeof desc->reserved / sizeof *desc->reserved, error);
+    if (!result)
+        result = gtx_check_limits(&desc->limits, error);
     for (uint32_t i = 0; !result && i < desc->asset_count; ++i)
-        if (!desc->assets[i])
-            result = gtx_fail(error, GTX_ERROR_ARGUMENT, "asset %u is missing", i);
+        result = desc->assets[i]
+                     ? gtx_check_crowd(desc->assets[i], &desc->limits, error)
+                     : gtx_fail(error, GTX_ERROR_ARGUMENT, "asset %u is missing", i);
     if (result)
         return result;
     const gtx_allocator *hooks = &renderer->allocator;
@@ -191,6 +206,9 @@ gtx_result gtx_rays_create(gtx_renderer *renderer, const gtx_rays_desc *desc, gt
     result = rays->members ? measure(rays, desc, error)
                            : gtx_fail(error, GTX_ERROR_MEMORY, "no memory to cast into %u assets",
                                       desc->asset_count);
+    if (!result)
+        result = gtx_check_derived(rays->cells, &desc->limits, "a set of rays", bytes_of(rays),
+                                   error);
     if (!result)
         result = fill(renderer, rays, desc, error);
     if (result)

@@ -24,12 +24,15 @@ typedef struct gtx_tiles {
 } gtx_tiles;
 
 /* tiles.c: fills the renderer's tiles from its plan. False when there is no memory for it, or it is
- * more than the context takes. */
+ * more than the context takes or pays. */
 bool gtx_tiles_fill(const gtx_draw_call *draw, const gtx_model *model,
                     const gtx_instance_data *placed);
+
+/* stream.c: room of `count` x `size` bytes, or NULL. */
+void *gtx_tiles_reserve(gtx_renderer *renderer, gtx_scratch *scratch, size_t count, size_t size);
 void gtx_tiles_free(gtx_renderer *renderer);
 
-/* stream.c: the objects of casting by tiles. Where they cannot be made, nothing is cast so. */
+/* The objects of casting by tiles. Where they cannot be made, nothing is cast so. */
 void gtx_stream_create(gtx_renderer *renderer);
 void gtx_stream_destroy(gtx_renderer *renderer);
 /* Whether what a view casts is cast by tiles. */

@@ -307,7 +307,8 @@ gtx_result gtx_model_create(gtx_renderer *renderer, const gtx_asset *asset, gtx_
 {
     if (!renderer)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a model needs a renderer");
-    const gtx_model_desc desc = {&renderer->allocator, &renderer->jobs, 1, {0}};
+    const gtx_model_desc desc = {
+        .allocator = &renderer->allocator, .jobs = &renderer->jobs, .borrow = 1};
     gtx_result result = gtx_model_prepare(asset, &desc, out, error);
     if (result)
         return result;

@@ -3,6 +3,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "derive/crowd.h"
 #include "derive/placement.h"
 #include "trace/slabs.h"
 
@@ -21,6 +22,10 @@ gtx_result gtx_caster_create(const gtx_asset *asset, const gtx_caster_desc *desc
                         "casting takes a level, or a finite error >= 0 that chooses levels");
     gtx_result result =
         gtx_check_reserved(d->reserved, sizeof d->reserved / sizeof *d->reserved, error);
+    if (!result)
+        result = gtx_check_limits(&d->limits, error);
+    if (!result)
+        result = gtx_check_crowd(asset, &d->limits, error);
     if (result)
         return result;
     const gtx_allocator hooks = gtx_allocator_or_default(d->allocator);
@@ -30,7 +35,7 @@ gtx_result gtx_caster_create(const gtx_asset *asset, const gtx_caster_desc *desc
     caster->allocator = hooks;
     caster->field_count = asset->info.patch_count;
     caster->ray_offset = gtx_ray_offset(asset);
-    result = gtx_fields_build(caster, asset, d->level, d->max_error, error);
+    result = gtx_fields_build(caster, asset, d, error);
     if (result) {
         gtx_caster_destroy(caster);
         return result;

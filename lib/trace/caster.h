@@ -60,6 +60,7 @@ typedef struct gtx_crossing {
     uint32_t field;             /* UINT32_MAX when there is none */
     double x, y;                /* texels of level 0 */
     bool back;
+    uint64_t visited;           /* cells that the ray was taken through to find it */
 } gtx_crossing;
 
 /* A cell of the detail level as a bilinear patch over [x0, x1] x [y0, y1]:
@@ -71,8 +72,8 @@ typedef struct gtx_cell {
 
 /* field.c: height fields, all at one level or each at its coarsest within an error, and what is
  * looked up in them. */
-gtx_result gtx_fields_build(gtx_caster *caster, const gtx_asset *asset, uint32_t level,
-                            double max_error, gtx_error *error);
+gtx_result gtx_fields_build(gtx_caster *caster, const gtx_asset *asset,
+                            const gtx_caster_desc *desc, gtx_error *error);
 void gtx_fields_free(gtx_caster *caster);
 gtx_line gtx_field_line(const gtx_height_field *field, const gtx_line *ray);
 gtx_cell gtx_field_cell(const gtx_height_field *field, uint32_t i, uint32_t j);

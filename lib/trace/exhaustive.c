@@ -76,7 +76,7 @@ static void search_cell(const search *s, const gtx_cell *cell, interval i, gtx_c
         if (!(t < best->t || (t == best->t && s->index < best->field)) ||
             !gtx_field_shows(s->field, x, y))
             continue;
-        *best = (gtx_crossing){t, s->index, x, y, !from};
+        *best = (gtx_crossing){t, s->index, x, y, !from, best->visited};
         return;
     }
 }

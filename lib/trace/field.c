@@ -4,7 +4,7 @@
 #include "asset/patch.h"
 #include "base/alloc.h"
 #include "base/error.h"
-#include "derive/derive.h"
+#include "derive/crowd.h"
 
 #include <math.h>
 #include <string.h>
@@ -126,8 +126,18 @@ static gtx_result choose_level(const gtx_asset *asset, uint32_t patch, double ma
     return result;
 }
 
-gtx_result gtx_fields_build(gtx_caster *caster, const gtx_asset *asset, uint32_t level,
-                            double max_error, gtx_error *error)
+/* Bytes of all arrays, and while the hierarchy is built of its boxes and their order. */
+static uint64_t bytes_of(const gtx_caster *caster, const cursor *total)
+{
+    const uint64_t block = sizeof(gtx_block) + sizeof(gtx_box) + sizeof(uint32_t) +
+                           2 * sizeof(gtx_node);
+    return sizeof *caster->fields * (uint64_t)caster->field_count +
+           sizeof *caster->code * (uint64_t)total->code + 3 * (uint64_t)total->texel +
+           block * total->block;
+}
+
+gtx_result gtx_fields_build(gtx_caster *caster, const gtx_asset *asset,
+                            const gtx_caster_desc *desc, gtx_error *error)
 {
     const gtx_allocator *hooks = &caster->allocator;
     cursor total = {0}, at = {0};
@@ -136,15 +146,20 @@ gtx_result gtx_fields_build(gtx_caster *caster, const gtx_asset *asset, uint32_t
         gtx_height_field *field = &caster->fields[i];
         field->width = asset->patches[i].rect[2];
         field->height = asset->patches[i].rect[3];
-        field->level = level;
-        if (max_error > 0) {
-            gtx_result chosen = choose_level(asset, i, max_error, hooks, &field->level, error);
+        field->level = desc->level;
+        if (desc->max_error > 0) {
+            gtx_result chosen =
+                choose_level(asset, i, desc->max_error, hooks, &field->level, error);
             if (chosen)
                 return chosen;
         }
         field->trim_limit = gtx_trim_limit(field->level);
         place_field(caster, field, &total);
     }
+    gtx_result result = gtx_check_derived(total.texel, &desc->limits, "a caster",
+                                          bytes_of(caster, &total), error);
+    if (result)
+        return result;
     caster->code_count = total.code;
     caster->block_count = total.block;
     caster->texel_count = total.texel;
@@ -153,7 +168,6 @@ gtx_result gtx_fields_build(gtx_caster *caster, const gtx_asset *asset, uint32_t
     caster->trim = gtx_alloc_array(hooks, total.texel, 1);
     caster->normal = gtx_alloc_array(hooks, total.texel, 2);
     gtx_box *boxes = gtx_alloc_array(hooks, total.block, sizeof *boxes);
-    gtx_result result = GTX_OK;
     if (!caster->fields || !caster->code || !caster->blocks || !caster->trim || !caster->normal ||
         !boxes)
         result = gtx_fail(error, GTX_ERROR_MEMORY, "no memory to cast into %u patches",

@@ -20,6 +20,7 @@ typedef struct walk {
     double inverse[2];
     double start, length;           /* the ray's t there, and how far the block reaches */
     double overlap;                 /* OVERLAP in t */
+    uint32_t cells[2];              /* of the block: fewer at the far edges */
     double t_min;
     gtx_crossing *best;
 } walk;
@@ -43,7 +44,7 @@ static bool accept(const walk *w, double t, double s, bool back)
     double y = w->origin[1] + (t + s) * w->direction[1];
     if (!gtx_field_shows(w->field, x, y))
         return false;
-    *best = (gtx_crossing){when, index, x, y, back};
+    *best = (gtx_crossing){when, index, x, y, back, best->visited};
     return true;
 }
 
@@ -107,6 +108,7 @@ static void walk_cells(const walk *w, uint32_t x, uint32_t y)
         const int axis = leave[1] < leave[0];
         double exit = leave[axis] < w->length ? leave[axis] : w->length;
         exit = exit > t ? exit : t;
+        ++w->best->visited;
         const uint32_t i = cell[0] - w->block->x, j = cell[1] - w->block->y;
         if (w->block->solid >> (j * GTX_BLOCK + i) & 1) {
             const gtx_cell c = gtx_field_cell(w->field, cell[0], cell[1]);
@@ -117,7 +119,7 @@ static void walk_cells(const walk *w, uint32_t x, uint32_t y)
             return;
         t = exit;
         cell[axis] += ahead[axis] ? 1u : -1u;
-        if (cell[axis] - (axis ? w->block->y : w->block->x) >= GTX_BLOCK)
+        if (cell[axis] - (axis ? w->block->y : w->block->x) >= w->cells[axis])
             return;
     }
 }
@@ -156,6 +158,7 @@ void gtx_walk_block(const gtx_caster *caster, const gtx_block *block, const gtx_
         last[a] = (first[a] + GTX_BLOCK < cells[a] ? first[a] + GTX_BLOCK : cells[a]) - 1;
         if (!cut(line, a, plane(s, a, first[a]), plane(s, a, last[a] + 1), &t0, &t1))
             return;
+        w.cells[a] = last[a] + 1 - first[a];
         w.inverse[a] = 1 / line->direction[a];
         fastest = fmax(fastest, fabs(line->direction[a]));
     }

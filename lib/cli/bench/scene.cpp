@@ -94,7 +94,7 @@ void BenchScene::load_asset(const std::string &path)
     gtx_open_desc open = {};
     gtx_model_desc model = {};
     open.jobs = model.jobs = &jobs;
-    open.limits = cli_limits;
+    open.limits = model.limits = cli_limits;
     model.borrow = 1;
     const double start = milliseconds();
     require_ok(gtx_open_file(path.c_str(), &open, &asset, &error), error);

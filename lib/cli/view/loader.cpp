@@ -1,6 +1,7 @@
 /* A thread that opens assets and cooks models. */
 #include "cli/view/loader.hpp"
 
+#include "cli/cli.h"
 #include "host/jobs.h"
 
 #include <geotex/cook.h>
@@ -59,7 +60,9 @@ void Loader::load(const std::string &path)
     result_.path = path;
     PlacedAsset placed = {is_asset(path) ? open_asset(path) : cook(path), identity_transform};
     const gtx_jobs jobs = gtx_host_jobs(0);
-    const gtx_model_desc desc = {nullptr, &jobs, 0, {}};
+    gtx_model_desc desc = {};
+    desc.jobs = &jobs;
+    desc.limits = cli_limits;
     gtx_model *model;
     gtx_error error;
     require_ok(gtx_model_prepare(placed.asset.get(), &desc, &model, &error), error);

@@ -1,6 +1,7 @@
 /* A scene on the GPU: models and polygons, in one z-buffer. */
 #include "cli/view/scene_renderer.hpp"
 
+#include "cli/cli.h"
 #include "cli/view/polygons.hpp"
 #include "host/jobs.h"
 
@@ -81,6 +82,23 @@ static gtx_polygons upload(const gtx_host_gl &gl, const Polygons &shape)
     return polygons;
 }
 
+gtx_model *SceneRenderer::make_model(const gtx_asset *asset)
+{
+    const gtx_jobs jobs = gtx_host_jobs(0);
+    gtx_model_desc desc = {};
+    desc.jobs = &jobs;
+    desc.borrow = 1;
+    desc.limits = cli_limits;
+    gtx_model *model;
+    gtx_error error;
+    require_ok(gtx_model_prepare(asset, &desc, &model, &error), error);
+    if (gtx_model_upload(renderer, model, 0, nullptr, &error) != GTX_OK) {
+        gtx_model_destroy(renderer, model);
+        throw Error(error);
+    }
+    return model;
+}
+
 SceneRenderer::Uploaded &SceneRenderer::uploaded(DebugView debug)
 {
     Uploaded &p = views[size_t(debug)];
@@ -91,10 +109,7 @@ SceneRenderer::Uploaded &SceneRenderer::uploaded(DebugView debug)
         AssetPointer copy;
         if (debug != DebugView::NONE)
             copy = recolor(asset, debug);
-        gtx_model *model;
-        gtx_error error;
-        require_ok(gtx_model_create(renderer, copy ? copy.get() : asset, &model, &error), error);
-        p.models.push_back(model);
+        p.models.push_back(make_model(copy ? copy.get() : asset));
     }
     for (size_t i = p.polygons.size(); i < scene->meshes.size(); ++i) {
         Polygons shape = make_polygons(scene->meshes[i], scene->centre);

@@ -41,6 +41,7 @@ private:
         Vector<gtx_polygons> polygons;
         uint64_t polygon_bytes = 0;
     };
+    gtx_model *make_model(const gtx_asset *asset);
     Uploaded &uploaded(DebugView debug);
     void clear();
 
