@@ -6,6 +6,8 @@
 #include <math.h>
 
 static const float MAX_BOOST = 16;
+/* Texels: a page is no larger. Patches of very different densities may be, in texels of others. */
+static const double MAX_RADIUS = 16384;
 
 /* The radius in object units. */
 static gtx_result read_blur(const gtx_edit *edit, const gtx_edit_blur *blur, double *radius,
@@ -26,6 +28,7 @@ static gtx_result read_blur(const gtx_edit *edit, const gtx_edit_blur *blur, dou
         const gtx_patch *patch = &edit->source->patches[p];
         largest = fmax(largest, fmax(patch->extent_x, patch->extent_y));
     }
+    largest = fmin(largest, MAX_RADIUS * edit->texel_size);
     if (*radius > largest)
         return gtx_fail(error, GTX_ERROR_LIMIT,
                         "a blur of %g texels is larger than the largest patch, of %g",

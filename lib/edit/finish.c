@@ -93,6 +93,7 @@ static gtx_result lay_out(const gtx_edit *edit, gtx_window *windows, gtx_patch *
     return grown ? gtx_edit_place(patches, &edit->allocator, info, error) : GTX_OK;
 }
 
+/* LIMIT where the rules of the format do not hold: numbers that were too large for them. */
 static gtx_result check_and_copy(const gtx_asset *asset, gtx_asset **out, gtx_error *error)
 {
     const gtx_info *info = &asset->info;
@@ -113,7 +114,14 @@ static gtx_result check_and_copy(const gtx_asset *asset, gtx_asset **out, gtx_er
     memcpy(desc.bounds_min, info->bounds_min, sizeof desc.bounds_min);
     memcpy(desc.bounds_max, info->bounds_max, sizeof desc.bounds_max);
     memcpy(desc.anchor, info->anchor, sizeof desc.anchor);
-    return gtx_create(&desc, out, error);
+    gtx_error broken;
+    const gtx_result result = gtx_create(&desc, out, &broken);
+    if (result == GTX_ERROR_CORRUPT)
+        return gtx_fail(error, GTX_ERROR_LIMIT, "no asset can hold the edited surface: %.170s",
+                        broken.message);
+    if (result && error)
+        *error = broken;
+    return result;
 }
 
 static void fill_far(gtx_asset *asset)

@@ -18,6 +18,8 @@ enum { STEPS = 6 };
 /* Rates, in square texels, beyond which a texel is slowed down: patches of up to three times the
  * usual density are not. */
 static const float FASTEST = 36;
+/* What blur.c lets through takes 2.5 a texel of the radius; more is rounding of tiny texels. */
+enum { MAX_STAGES = 1 << 16 };
 
 /* Neighbours in pairs: k + 4 is opposite to k. */
 static const int8_t NEXT[8][2] = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
@@ -191,7 +193,7 @@ static void measure_source(const flow *f)
 static void run(const flow *f, double time, float fastest, gtx_change *ring[3])
 {
     const double step = time / STEPS, stages = sqrt(0.25 + 2 * step * fastest) - 0.5;
-    const int count = stages > 1 ? (int)ceil(stages) : 1;
+    const int count = stages > 1 ? (int)fmin(ceil(stages), MAX_STAGES) : 1;
     const double unit = 2 * step / ((double)count * count + count);
     for (int n = 0; n < STEPS; ++n) {
         advance(f, &(stage){ring[0], ring[0], ring[1], 1, 0, (float)unit});

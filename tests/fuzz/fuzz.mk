@@ -17,6 +17,13 @@ $(out)/tests/fuzz/fuzz: $(fuzz_objects) $(out)/tests/fuzz/libfuzzer.o \
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -fsanitize=fuzzer -o $@ $^ $(call libs_of,$(links_fuzz))
 
+# Comparisons are traced where text is read; elsewhere that would double the time.
+ifeq ($(config),fuzz)
+untraced := -fno-sanitize-coverage=trace-cmp
+$(foreach d,$(filter-out lib/mesh lib/grid,$(rooms:%=lib/%)) tests/fuzz,\
+  $(eval $(out)/$(d)/%: cflags += $(untraced))$(eval $(out)/$(d)/%: cxxflags += $(untraced)))
+endif
+
 # A target's own folder first: libFuzzer puts there what reaches something new.
 fuzz_flags = -timeout=10 -rss_limit_mb=1500 -max_len=8192 -print_final_stats=1 $(FUZZ_FLAGS)
 fuzz: ## fuzz every target, or FUZZ="ply obj", for TIME=600 seconds in all (needs clang)

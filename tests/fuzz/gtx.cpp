@@ -241,9 +241,11 @@ void run_gtx(const uint8_t *data, size_t size)
     const bool known = texels_of(data, size) <= MAX_TEXELS;
     const bool whole = known && agree(data, size, verdict, asset);
     if (asset && known) {
-        round_trip(asset, whole, "what was opened");
-        create_again(asset, whole);
-        use_asset(asset, how);
+        if (how >> 8 & 1)
+            round_trip(asset, whole, "what was opened");
+        else
+            create_again(asset, whole);
+        use_asset(asset, how >> 9);
     }
     gtx_close(asset);
 }

@@ -95,7 +95,6 @@ static void cook(const std::string &bytes, const std::string &path, uint64_t how
     desc.mips = 1 + uint32_t(how >> 24 & 3);
     desc.lod_levels = how >> 26 & 1 ? 2 : 0;
     desc.z_up = uint32_t(how >> 27 & 1);
-    desc.measure = uint32_t(how >> 28 & 1);
     desc.progress = stop_after;
     desc.progress_user = &left;
     gtx_asset *asset = nullptr;
@@ -115,8 +114,8 @@ static void run(const uint8_t *data, size_t size, const char *name)
     const std::string bytes(reinterpret_cast<const char *>(data), size), path = scratch(name);
     const uint64_t how = choices(data, size);
     const size_t triangles = import(bytes, path);
-    if (triangles && triangles <= MAX_COOKED && how % 16 == 0)
-        cook(bytes, path, how >> 4);
+    if (triangles && triangles <= MAX_COOKED && how % 32 == 0)
+        cook(bytes, path, how >> 5);
 }
 
 void run_ply(const uint8_t *data, size_t size) { run(data, size, "a.ply"); }
