@@ -106,7 +106,7 @@ static void change_record(Content &content, Random &random)
 static void deal_rectangles(Content &content, Random &random)
 {
     Section *s = content.find("PTCH");
-    if (!s || s->bytes.size() < 128 || content.field(MIPS) > 4)
+    if (!s || s->bytes.size() < 128 || content.field(MIPS) - 1 > 3)
         return;
     const uint32_t block = std::max(2u, 1u << (content.field(MIPS) - 1));
     const uint32_t columns = 1 + random.below(3), rows = 1 + random.below(3);

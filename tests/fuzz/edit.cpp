@@ -26,8 +26,8 @@ static void lift(const gtx_edit_field *field, void *user)
 
 static float size_of(const gtx_edit *edit, Random &random)
 {
-    static const float some[] = {0.1f, 1, 1.5f, 3, 10, 100};
-    return random.chance(6) ? random.number()
+    static const float some[] = {0.1f, 0.5f, 1, 1.5f, 3, 10};
+    return random.chance(16) ? random.number()
                             : gtx_edit_texel_size(edit) * some[random.below(6)];
 }
 

@@ -1,6 +1,8 @@
 /* Readers of height grids: what each reads becomes an asset. */
 #include "fuzz/fuzz.hpp"
 
+#include "grid/grid.hpp"
+
 #include <geotex/cook.h>
 
 #include <cmath>
@@ -60,8 +62,20 @@ static void run(const uint8_t *data, size_t size, const char *name)
     gtx_height_grid_free(&grid);
 }
 
-void run_irap(const uint8_t *data, size_t size) { run(data, size, "a.irap"); }
-void run_zmap(const uint8_t *data, size_t size) { run(data, size, "a.zmap"); }
+/* What is no grid would be tried as an image, which is a target of its own. */
+void run_irap(const uint8_t *data, size_t size)
+{
+    const std::string_view text(reinterpret_cast<const char *>(data), size);
+    if (gtx::is_irap_classic(text) || gtx::is_irap_binary(text))
+        run(data, size, "a.irap");
+}
+
+void run_zmap(const uint8_t *data, size_t size)
+{
+    if (gtx::is_zmap({reinterpret_cast<const char *>(data), size}))
+        run(data, size, "a.zmap");
+}
+
 void run_image(const uint8_t *data, size_t size) { run(data, size, "a.png"); }
 
 } // namespace fuzz

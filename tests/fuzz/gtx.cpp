@@ -242,10 +242,10 @@ void run_gtx(const uint8_t *data, size_t size)
     const bool whole = known && agree(data, size, verdict, asset);
     if (asset && known) {
         if (how >> 8 & 1)
-            round_trip(asset, whole, "what was opened");
-        else
             create_again(asset, whole);
-        use_asset(asset, how >> 9);
+        else if (how >> 9 & 1)
+            round_trip(asset, whole, "what was opened");
+        use_asset(asset, how >> 10);
     }
     gtx_close(asset);
 }

@@ -157,14 +157,14 @@ void use_asset(const gtx_asset *asset, uint64_t how)
     gtx_info info;
     gtx_get_info(asset, &info);
     const uint64_t texels = uint64_t(info.page_count) * info.page_width * info.page_height;
-    const uint32_t some = uint32_t(how & 31);
-    if (some < 8)
-        cast(asset, how >> 5);
-    else if (some < 12)
-        prepare(asset, how >> 5);
-    else if (some < 16 && texels <= 1 << 13)
-        edit_asset(asset, how >> 5);
-    else if (some == 16 && texels <= 1 << 12)
+    const uint32_t some = uint32_t(how & 127);
+    if (some < 16)
+        cast(asset, how >> 7);
+    else if (some < 24)
+        prepare(asset, how >> 7);
+    else if (some < 32 && texels <= 1 << 12)
+        edit_asset(asset, how >> 7);
+    else if (some < 33 && texels <= 1 << 11)
         make_lods(asset);
 }
 
