@@ -77,7 +77,7 @@ static gtx_window choose_window(const gtx_edit *edit, uint32_t patch)
 }
 
 /* An asset whose texels are tiny beside an edit would grow without end. */
-static const uint64_t MAX_GROWTH = 16, MIN_ROOM = 1 << 16;
+static const uint64_t MAX_GROWTH = 16, MIN_ROOM = 1 << 20;
 
 /* Records with the windows' sizes, placed on pages. */
 static gtx_result lay_out(const gtx_edit *edit, gtx_window *windows, gtx_patch *patches,
@@ -99,7 +99,8 @@ static gtx_result lay_out(const gtx_edit *edit, gtx_window *windows, gtx_patch *
     }
     if (texels > most)
         return gtx_fail(error, GTX_ERROR_LIMIT, "the edited surface takes %" PRIu64
-                        " texels, %" PRIu64 " times as many as before or more", texels, MAX_GROWTH);
+                        " texels, %" PRIu64 " times as many as before or more", texels,
+                        MAX_GROWTH);
     return grown ? gtx_edit_place(patches, &edit->allocator, info, error) : GTX_OK;
 }
 
