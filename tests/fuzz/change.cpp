@@ -88,7 +88,7 @@ static void change_record(Content &content, Random &random)
     uint8_t *r = record_of(content, random);
     if (!r)
         return;
-    const uint32_t block = 1u << (content.field(MIPS) - 1 & 3);
+    const uint32_t block = 1u << ((content.field(MIPS) - 1) & 3);
     switch (random.below(8)) {
     case 0: turn_frame(r, random); break;
     case 1: resize_frame(r, random); break;

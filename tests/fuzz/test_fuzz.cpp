@@ -1,12 +1,4 @@
 /* What fuzzing has found: every file of the corpora, and every one that once failed, again. */
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-extern "C" {
-#include <cmocka.h>
-}
-
 #include "fuzz/fuzz.hpp"
 
 #include <algorithm>
@@ -14,6 +6,14 @@ extern "C" {
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+extern "C" {
+#include <cmocka.h>
+}
 
 namespace fuzz {
 /* Nothing is changed here. */
