@@ -2,6 +2,7 @@
 #
 #   config=release|debug            optimised (default) · -O0 -g
 #   config=sanitize|thread          address and undefined sanitizers · thread sanitizer
+#   config=fuzz|coverage            for tests/fuzz, with clang
 #   zstd=1|0                        compressed sections in libgeotex, or a library of libc alone
 #   build=DIR                       where everything goes (build)
 #   V=1                             print the commands
@@ -50,9 +51,12 @@ flags_debug    := -O0 -g
 flags_sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined \
                   -fno-sanitize-recover=undefined
 flags_thread   := -O1 -g -fsanitize=thread
+flags_fuzz     := -O1 -g -fno-omit-frame-pointer -fno-sanitize-recover=all \
+                  -fsanitize=fuzzer-no-link,address,undefined,float-cast-overflow
+flags_coverage := -O0 -g -fprofile-instr-generate -fcoverage-mapping
 flags := $(flags_$(config))
 ifeq ($(flags),)
-$(error config=$(config): use release, debug, sanitize or thread)
+$(error config=$(config): use release, debug, sanitize, thread, fuzz or coverage)
 endif
 warnings := -Wall -Wextra $(if $(filter 1,$(werror)),-Werror)
 
@@ -201,6 +205,7 @@ test_needs    = $(or $(links_$(1)),$(needs_$(1)) $(extra_needs_$(1)))
 links_cli      := base image
 links_consumer := base
 links_corpus   := base
+links_fuzz     := $(needs_cook) edit render
 links_samples  := $(needs_image)
 links_source   := base
 links_threads  := $(needs_cook)
@@ -280,7 +285,7 @@ run-demo: $(MODEL)
 	@$(out)/samples/mixed_scene $(build)/demo/model.gtx --headless $(build)/demo/mixed_scene.png
 	@echo $(build)/demo/mixed_scene.png
 
-include lib/package/install.mk tests/bench/bench.mk
+include lib/package/install.mk tests/bench/bench.mk tests/fuzz/fuzz.mk
 
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev \

@@ -133,7 +133,8 @@ GTX_API gtx_result gtx_edit_set_heights(gtx_edit *edit, uint32_t patch, const ui
 
 /* Makes an asset of the edited surface, from the edit's allocator; gtx_close frees it. Patches that
  * did not change keep their bytes. If a patch has outgrown its rectangle, pages are laid out anew.
- * Errors: ARGUMENT, MEMORY, LIMIT (a patch would be larger than a page may be). */
+ * Errors: ARGUMENT, MEMORY, LIMIT (a patch would be larger than a page may be, all patches 16 times
+ * as large as they were, or numbers larger or smaller than the rules of the format allow). */
 GTX_API gtx_result gtx_edit_finish(const gtx_edit *edit, gtx_asset **out, gtx_error *error);
 
 /* The same for an asset that is being drawn: rectangles stay where they are, and only patches that

@@ -6,6 +6,9 @@
 #include <math.h>
 
 static const float MAX_BOOST = 16;
+/* Patches of other densities count as at most this often their texels: a blur takes time for each
+ * texel of its radius. */
+static const double MAX_SPREAD = 8;
 
 /* The radius in object units. */
 static gtx_result read_blur(const gtx_edit *edit, const gtx_edit_blur *blur, double *radius,
@@ -21,11 +24,13 @@ static gtx_result read_blur(const gtx_edit *edit, const gtx_edit_blur *blur, dou
     if (!(blur->radius > 0) || isinf(blur->radius))
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "the radius of a blur is finite and above 0");
     *radius = (double)blur->radius * (blur->flags & GTX_EDIT_WORLD ? 1 : edit->texel_size);
-    double largest = 0;
+    double largest = 0, texels = 0;
     for (uint32_t p = 0; p < edit->count; ++p) {
         const gtx_patch *patch = &edit->source->patches[p];
         largest = fmax(largest, fmax(patch->extent_x, patch->extent_y));
+        texels = fmax(texels, fmax(patch->rect[2], patch->rect[3]));
     }
+    largest = fmin(largest, MAX_SPREAD * texels * edit->texel_size);
     if (*radius > largest)
         return gtx_fail(error, GTX_ERROR_LIMIT,
                         "a blur of %g texels is larger than the largest patch, of %g",

@@ -5,6 +5,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -75,12 +76,17 @@ static gtx_window choose_window(const gtx_edit *edit, uint32_t patch)
     return window;
 }
 
+/* An asset whose texels are tiny beside an edit would grow without end. */
+static const uint64_t MAX_GROWTH = 16, MIN_ROOM = 1 << 20;
+
 /* Records with the windows' sizes, placed on pages. */
 static gtx_result lay_out(const gtx_edit *edit, gtx_window *windows, gtx_patch *patches,
                           gtx_info *info, gtx_error *error)
 {
     bool grown = false;
+    uint64_t texels = 0, most = MIN_ROOM;
     for (uint32_t p = 0; p < edit->count; ++p) {
+        most += MAX_GROWTH * patches[p].rect[2] * patches[p].rect[3];
         windows[p] = choose_window(edit, p);
         for (int a = 0; a < 2; ++a) {
             if (windows[p].size[a] > GTX_MAX_PAGE_SIDE / 2)
@@ -89,10 +95,16 @@ static gtx_result lay_out(const gtx_edit *edit, gtx_window *windows, gtx_patch *
             grown |= patches[p].rect[2 + a] != windows[p].size[a];
             patches[p].rect[2 + a] = (uint16_t)windows[p].size[a];
         }
+        texels += (uint64_t)windows[p].size[0] * windows[p].size[1];
     }
+    if (texels > most)
+        return gtx_fail(error, GTX_ERROR_LIMIT, "the edited surface takes %" PRIu64
+                        " texels, %" PRIu64 " times as many as before or more", texels,
+                        MAX_GROWTH);
     return grown ? gtx_edit_place(patches, &edit->allocator, info, error) : GTX_OK;
 }
 
+/* LIMIT where the rules of the format do not hold: numbers that were too large for them. */
 static gtx_result check_and_copy(const gtx_asset *asset, gtx_asset **out, gtx_error *error)
 {
     const gtx_info *info = &asset->info;
@@ -113,7 +125,14 @@ static gtx_result check_and_copy(const gtx_asset *asset, gtx_asset **out, gtx_er
     memcpy(desc.bounds_min, info->bounds_min, sizeof desc.bounds_min);
     memcpy(desc.bounds_max, info->bounds_max, sizeof desc.bounds_max);
     memcpy(desc.anchor, info->anchor, sizeof desc.anchor);
-    return gtx_create(&desc, out, error);
+    gtx_error broken;
+    const gtx_result result = gtx_create(&desc, out, &broken);
+    if (result == GTX_ERROR_CORRUPT)
+        return gtx_fail(error, GTX_ERROR_LIMIT, "no asset can hold the edited surface: %.170s",
+                        broken.message);
+    if (result && error)
+        *error = broken;
+    return result;
 }
 
 static void fill_far(gtx_asset *asset)

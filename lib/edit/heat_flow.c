@@ -18,6 +18,8 @@ enum { STEPS = 6 };
 /* Rates, in square texels, beyond which a texel is slowed down: patches of up to three times the
  * usual density are not. */
 static const float FASTEST = 36;
+/* Stages for each texel of the radius: the fastest rates take 2.5, only those that overflow more. */
+static const double MAX_STAGES = 3;
 
 /* Neighbours in pairs: k + 4 is opposite to k. */
 static const int8_t NEXT[8][2] = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
@@ -186,11 +188,13 @@ static void measure_source(const flow *f)
     }
 }
 
-/* Lets `time` go by, at largest sums of rates `fastest`. `ring` are three arrays of changes, all
- * 0; the result is ring[0]. */
-static void run(const flow *f, double time, float fastest, gtx_change *ring[3])
+/* Lets the time of a radius go by, at largest sums of rates `fastest`. `ring` are three arrays of
+ * changes, all 0; the result is ring[0]. */
+static void run(const flow *f, double radius, float fastest, gtx_change *ring[3])
 {
-    const double step = time / STEPS, stages = sqrt(0.25 + 2 * step * fastest) - 0.5;
+    const double step = radius * radius / 2 / STEPS;
+    const double stages = fmin(sqrt(0.25 + 2 * step * fastest) - 0.5,
+                               MAX_STAGES * radius / f->edit->texel_size + 1);
     const int count = stages > 1 ? (int)ceil(stages) : 1;
     const double unit = 2 * step / ((double)count * count + count);
     for (int n = 0; n < STEPS; ++n) {
@@ -232,7 +236,7 @@ gtx_result gtx_edit_heat_flow(gtx_edit *edit, double radius, gtx_error *error)
             fastest = fmaxf(fastest, measure_field(&f, &edit->fields[p], most, mass));
         measure_source(&f);
         memset(ring[1], 0, edit->texels * sizeof *ring[1]);
-        run(&f, radius * radius / 2, fastest, ring);
+        run(&f, radius, fastest, ring);
         if (ring[0] != edit->changes)
             memcpy(edit->changes, ring[0], edit->texels * sizeof *edit->changes);
     }

@@ -15,7 +15,7 @@ typedef float sample[CHANNELS];
 /* One axis of a height field: lines of `count` texels, `step` apart. */
 static void blur_line(const sample *in, sample *out, uint32_t count, size_t step, double sigma)
 {
-    const int reach = (int)ceil(3 * sigma);
+    const int reach = (int)fmin(ceil(3 * sigma), count);
     for (int i = 0; i < (int)count; ++i) {
         double sum[CHANNELS] = {0};
         const int low = i > reach ? i - reach : 0;

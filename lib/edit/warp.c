@@ -8,6 +8,12 @@
 static const float MIN_SHOWN = 0.01f;
 static const double SLACK = 1e-3;
 
+/* `low` for what is no number. */
+static double clamped(double value, double low, double high)
+{
+    return !(value > low) ? low : value < high ? value : high;
+}
+
 /* A height field's texel where it is now: texels of the source in x and y, object units in z. */
 typedef struct corner {
     double x, y;
@@ -44,10 +50,11 @@ gtx_window gtx_edit_window(const gtx_edit *edit, const gtx_field_span *field)
             high[1] = fmax(high[1], ceil(c.y + beyond));
         }
     gtx_window window = {.size = {0, 0}};
-    for (int a = 0; a < 2 && low[0] <= high[0]; ++a) {
+    const bool shows = low[0] <= high[0] && low[1] <= high[1];
+    for (int a = 0; a < 2 && shows; ++a) {
         /* What is farther away than any page is large is refused later. */
-        low[a] = fmax(low[a], -1e6);
-        high[a] = fmin(high[a], 2e6);
+        low[a] = clamped(low[a], -1e6, 2e6);
+        high[a] = clamped(high[a], -1e6, 2e6);
         window.low[a] = (int32_t)low[a];
         window.size[a] = (uint32_t)(high[a] - low[a]) + 1;
     }
@@ -86,9 +93,9 @@ static void draw_triangle(const gtx_edit *edit, const gtx_field_span *field, con
     const double high[2] = {fmax(fmax(c[0].x, c[1].x), c[2].x), fmax(fmax(c[0].y, c[1].y), c[2].y)};
     int32_t first[2], last[2];
     for (int a = 0; a < 2; ++a) {
-        first[a] = (int32_t)fmax(ceil(low[a] - SLACK), window->low[a]);
-        last[a] = (int32_t)fmin(floor(high[a] + SLACK),
-                                (double)window->low[a] + window->size[a] - 1);
+        const double begin = window->low[a], end = begin + window->size[a];
+        first[a] = (int32_t)clamped(ceil(low[a] - SLACK), begin, end);
+        last[a] = (int32_t)clamped(floor(high[a] + SLACK), begin - 1, end - 1);
     }
     for (int32_t y = first[1]; y <= last[1]; ++y)
         for (int32_t x = first[0]; x <= last[0]; ++x) {

@@ -124,11 +124,11 @@ static void walk_cells(const walk *w, uint32_t x, uint32_t y)
     }
 }
 
-/* The cell of the block that the ray is in where it enters. */
+/* The cell of the block that the ray is in where it enters; the first where that is no number. */
 static uint32_t entry_cell(const gtx_height_field *field, uint32_t first, uint32_t last, double at)
 {
     const double cell = at / (1u << field->level);
-    return cell <= first ? first : cell >= last ? last : (uint32_t)cell;
+    return !(cell > first) ? first : cell >= last ? last : (uint32_t)cell;
 }
 
 /* Cuts [*t0, *t1] to where the line is between two planes across an axis. */

@@ -10,6 +10,7 @@ extern "C" {
 
 #include "bake/lod/outlier.hpp"
 #include "bake/lod/parts.hpp"
+#include "bake/lod/quadric.hpp"
 #include "bake/shapes.hpp"
 
 #include <map>
@@ -49,6 +50,16 @@ struct Roof {
         return dot(point - a, normalize(cross(positions[t[1]] - a, positions[t[2]] - a)));
     }
 };
+
+/* The cube of an area of 1e-110 is 0. */
+static void a_vertex_of_no_area_stays(void **)
+{
+    Quadric q;
+    q.add_plane({0, 0, 1}, -1, 1e-110);
+    q.weight = 1e-110;
+    const Vec3d way = q.way_down({1, 2, 3}, 0.003);
+    assert_true(way.x == 0 && way.y == 0 && way.z == 0);
+}
 
 static void points_outside_are_reached(void **)
 {
@@ -195,6 +206,7 @@ static void leaves_stay_bound(void **)
 int main()
 {
     const CMUnitTest tests[] = {
+        cmocka_unit_test(a_vertex_of_no_area_stays),
         cmocka_unit_test(points_outside_are_reached),
         cmocka_unit_test(slivers_have_nearest_points),
         cmocka_unit_test(little_is_left_outside),

@@ -6,6 +6,7 @@
 #include "mesh/vec.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gtx::baking {
 
@@ -34,7 +35,8 @@ struct Quadric {
         double sum = rx * p.x + ry * p.y + rz * p.z + c;
         return weight > 0 ? std::max(sum, 0.0) / weight : 0;
     }
-    /* From a point to where the mean plus `stay` times the squared way from there is least. */
+    /* From a point to where the mean plus `stay` times the squared way from there is least; nowhere
+     * where areas are so small that their cubes are 0. */
     Vec3d way_down(const Vec3d &p, double stay) const
     {
         if (!(weight > 0))
@@ -45,7 +47,9 @@ struct Quadric {
                             -(xy * p.x + yy * p.y + yz * p.z + y),
                             -(xz * p.x + yz * p.y + zz * p.z + z)};
         const double det = dot(cross(a, b), d); /* at least s^3 */
-        return Vec3d{dot(down, cross(b, d)), dot(down, cross(d, a)), dot(down, cross(a, b))} / det;
+        const Vec3d way =
+            Vec3d{dot(down, cross(b, d)), dot(down, cross(d, a)), dot(down, cross(a, b))} / det;
+        return std::isfinite(way.x + way.y + way.z) ? way : Vec3d{0, 0, 0};
     }
 };
 

@@ -1,0 +1,16 @@
+/* The fuzz targets. */
+#include "fuzz/fuzz.hpp"
+
+namespace fuzz {
+
+const Target targets[] = {
+    {"gtx", run_gtx, mutate_gtx},    {"ply", run_ply, nullptr},
+    {"obj", run_obj, nullptr},       {"off", run_off, nullptr},
+    {"stl", run_stl, nullptr},       {"gltf", run_gltf, mutate_glb},
+    {"draco", run_draco, nullptr},   {"gzip", run_gzip, mutate_gzip},
+    {"irap", run_irap, nullptr},     {"zmap", run_zmap, nullptr},
+    {"image", run_image, nullptr},
+};
+const size_t target_count = sizeof targets / sizeof *targets;
+
+} // namespace fuzz
