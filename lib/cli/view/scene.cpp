@@ -107,7 +107,7 @@ static void add_model(Scene &scene, const std::string &path, Task &task)
     CleanReport report;
     ModelFile file = read_model(path, task);
     scene.sources.push_back(path);
-    for (std::string &source : referenced_files(file))
+    for (std::string &source : referenced_files(file, task))
         scene.sources.push_back(std::move(source));
     file.sources = &scene.sources;
     scene.meshes.push_back(clean_mesh(import_model(file, task), task, report));
