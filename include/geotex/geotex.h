@@ -265,12 +265,13 @@ GTX_API gtx_result gtx_get_lod_mesh(const gtx_asset *asset, uint32_t level, gtx_
 GTX_API const char *gtx_meta(const gtx_asset *asset, size_t *size);
 
 /* No ray through the asset visits more cells of height fields than this, wherever it comes from and
- * goes, if it looks at each patch once: so drawing and rays take at most so many steps a pixel or a
- * ray. The sum of width and height over the patches that some ray may meet, found for bundles of
- * rays and so from above: ordinary assets have a few thousand up to 10^5, of which a ray visits a
- * hundredth; where patches are stacked in one place it is what a ray takes. limits.cells holds it
- * wherever an asset is prepared for rays or drawing. 0 for NULL. Takes time in proportion to the
- * patches, and no memory. */
+ * goes: it bounds what rays, and pixels that are drawn (gtx_draw says how), cost. Tests of boxes in
+ * hierarchies come on top, at most two for each block of 8 x 8 cells of the asset. It is the sum of
+ * width and height over the patches that a ray may meet, found for bundles of rays and so from
+ * above: ordinary assets have a few thousand up to 10^5, of which most rays visit a small part;
+ * where patches are stacked in one place it is what a ray takes. limits.cells holds it wherever an
+ * asset is prepared for rays or drawing. 0 for NULL. Takes time in proportion to the patches, and
+ * no memory. */
 GTX_API uint64_t gtx_ray_cells(const gtx_asset *asset);
 
 /* ---- validation ------------------------------------------------------------------------- */

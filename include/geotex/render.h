@@ -222,6 +222,14 @@ typedef struct gtx_instance {
  * patch, nearest first, without those out of view. In a run of instances of one model, those far
  * away are one instanced draw, and so are those drawn by LOD meshes. Room for the largest number of
  * instances and patches so far is kept in the renderer's allocator until gtx_renderer_destroy.
+ *
+ * What a frame costs. By tiles a pixel visits at most gtx_ray_cells of each instance over it; so it
+ * does in fragments of patches that are cast by their boxes, those near the camera and those with
+ * more than 512 texels a side. Hulls cast anew from each front face that a ray passes, and visit no
+ * more than width + height of the patch: most rays pass one face, but one that skims a patch may
+ * pass a face for each 16 of the cells along it. The paper's search takes its steps in each patch
+ * over a pixel. A pixel also tests each slab that its tile lists: all lists have at most 64 entries
+ * for each tile of the viewport and 8 for each slab in view, or it is cast in fragments.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL, SHADER (a pass's first draw), UNSUPPORTED
  * (GTX_METHOD_LOD with an asset that has no LOD mesh). */
 GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,

@@ -329,8 +329,10 @@ bool gtx_tiles_fill(const gtx_draw_call *draw, const gtx_model *model,
     if (texels > (uint64_t)t->max_texels || 2 * (texels - lists_at) > most_entries(t, &c))
         return false;
     t->list_texels = (uint32_t)(texels - lists_at);
-    uint32_t (*lists)[2] = gtx_tiles_reserve(renderer, &t->lists, 2 * t->list_texels, sizeof *lists);
-    if (!lists || !gtx_tiles_reserve(renderer, &t->corners, 6 * (size_t)t->tile_count, 2 * sizeof(uint16_t)))
+    uint32_t (*lists)[2] =
+        gtx_tiles_reserve(renderer, &t->lists, 2 * t->list_texels, sizeof *lists);
+    if (!lists || !gtx_tiles_reserve(renderer, &t->corners, 6 * (size_t)t->tile_count,
+                                     2 * sizeof(uint16_t)))
         return false;
     list_slabs(t, heads, lists);
     outline(t);

@@ -111,7 +111,9 @@ static void an_asset_is_described(void **state)
     (void)state;
     expect(gtx("info sphere.gtx"), 0);
     expect_text("patches");
+    expect_text("cells at most");
     expect(gtx("info --json sphere.gtx"), 0);
+    expect_text("\"ray_cells\": ");
     expect_text("\"content_hash\": \"0x");
     expect(gtx("validate sphere.gtx"), 0);
     expect_text("valid");
@@ -207,6 +209,9 @@ static void rendering_writes_a_png(void **state)
     code = gtx("render sphere.gtx -o es.png --size 64x64 --gles");
     assert_true((code == 0 && exists("es.png")) || code == 5);
     expect(gtx("render none.gtx -o x.png"), 2);
+    expect(gtx("render sphere.gtx -o x.png --max-cells 50"), 6);
+    expect_text("a ray through the asset takes");
+    expect_text("--max-cells allows more");
     expect(gtx("render sphere.gtx"), 1);
     expect(gtx("render sphere.gtx --method lod -o x.png"), 5); /* it has none */
     expect(gtx("cook sphere.obj --lod-levels 3 -o with_lod.gtx"), 0);
