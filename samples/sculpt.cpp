@@ -5,13 +5,14 @@
  */
 #include "shell.hpp"
 
+#include "base/output.h"
+
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -93,19 +94,6 @@ static std::string make_glb(const Model &model)
     return "glTF" + word(2) + word(12 + chunks.size()) + chunks;
 }
 
-/* The file gets its name when it is whole. */
-static bool write_file(const std::string &path, const std::string &bytes)
-{
-    std::string temporary = path + ".tmp";
-    std::ofstream file(temporary, std::ios::binary);
-    file << bytes;
-    file.close();
-    if (file && !std::rename(temporary.c_str(), path.c_str()))
-        return true;
-    std::remove(temporary.c_str());
-    return false;
-}
-
 int main(int argc, char **argv)
 {
     bool counted = argc == 4 && !std::strcmp(argv[1], "--triangles");
@@ -116,7 +104,7 @@ int main(int argc, char **argv)
     }
     Model model = make_shell(wanted);
     std::string glb = make_glb(model), path = argv[argc - 1];
-    if (glb.empty() || !write_file(path, glb)) {
+    if (glb.empty() || gtx_write_file(path.c_str(), glb.data(), glb.size(), nullptr)) {
         std::fprintf(stderr, "%s: cannot be written\n", path.c_str());
         return 2;
     }

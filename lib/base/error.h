@@ -14,8 +14,8 @@ extern "C" {
 #define GTX_PRINTF(fmt, args)
 #endif
 
-/* Fills `error` (NULL is fine) with result and message, made printable, and with zeros else; returns
- * `result`, so that a failing function ends with `return gtx_fail(error, GTX_ERROR_..., "...")`. */
+/* Fills `error` (NULL is fine) with result and printable message, and zeros elsewhere; returns
+ * `result`: a failing function ends with `return gtx_fail(error, GTX_ERROR_..., "...")`. */
 gtx_result gtx_fail(gtx_error *error, gtx_result result, const char *format, ...) GTX_PRINTF(3, 4);
 
 /* Puts a ? for every byte of what a line of text must not have: controls, line breaks, marks that

@@ -168,7 +168,8 @@ static void tell(const gtx_horizons_result *r)
         return;
     char colored[64] = "";
     if (desc.colors != GTX_COLORS_NONE)
-        snprintf(colored, sizeof colored, ", colours %g to %g", r->color_range[0], r->color_range[1]);
+        snprintf(colored, sizeof colored, ", colours %g to %g", r->color_range[0],
+                 r->color_range[1]);
     print_message("%s: %" PRIu64 " nodes, %" PRIu64 " triangles, %u patches, heights within %g "
                   "(RMS %g)%s", output, r->nodes, r->triangles, r->patches, r->height_max,
                   r->height_rms, colored);

@@ -70,6 +70,11 @@ static const gtx_image_functions *module_functions(gtx_error *error)
     return functions;
 }
 
+static gtx_result result_of(int failed, gtx_result otherwise)
+{
+    return failed == GTX_IMAGE_NO_MEMORY ? GTX_ERROR_MEMORY : otherwise;
+}
+
 static gtx_result write_image(const char *path, gtx_image_rows rows, gtx_error *error)
 {
     char message[GTX_IMAGE_MAX_MESSAGE];
@@ -80,8 +85,9 @@ static gtx_result write_image(const char *path, gtx_image_rows rows, gtx_error *
     const gtx_image_functions *module = module_functions(error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
-    if (module->encode(&rows, &data, &size, message))
-        return gtx_fail(error, GTX_ERROR_WRITE, "%s", message);
+    const int failed = module->encode(&rows, &data, &size, message);
+    if (failed)
+        return gtx_fail(error, result_of(failed, GTX_ERROR_WRITE), "%s", message);
     const gtx_result result = gtx_write_file(path, data, size, error);
     free(data);
     return result;
@@ -115,8 +121,9 @@ static gtx_result read_image(const char *path, const void *data, size_t size, gt
     const gtx_image_functions *module = module_functions(error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
-    if (module->read(path, data, size, MAX_PIXELS, &image, message))
-        return gtx_fail(error, GTX_ERROR_READ, "%s", message);
+    const int failed = module->read(path, data, size, MAX_PIXELS, &image, message);
+    if (failed)
+        return gtx_fail(error, result_of(failed, GTX_ERROR_READ), "%s", message);
     *out = image;
     return GTX_OK;
 }
@@ -144,8 +151,9 @@ gtx_result gtx_image_read_raw(const char *path, gtx_raw_image *out, gtx_error *e
     const gtx_image_functions *module = module_functions(error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
-    if (module->read_raw(path, MAX_PIXELS, &image, message))
-        return gtx_fail(error, GTX_ERROR_READ, "%s", message);
+    const int failed = module->read_raw(path, MAX_PIXELS, &image, message);
+    if (failed)
+        return gtx_fail(error, result_of(failed, GTX_ERROR_READ), "%s", message);
     *out = image;
     return GTX_OK;
 }
@@ -159,8 +167,9 @@ gtx_result gtx_image_read_values(const char *path, gtx_value_image *out, gtx_err
     const gtx_image_functions *module = module_functions(error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
-    if (module->read_values(path, MAX_PIXELS, &image, message))
-        return gtx_fail(error, GTX_ERROR_READ, "%s", message);
+    const int failed = module->read_values(path, MAX_PIXELS, &image, message);
+    if (failed)
+        return gtx_fail(error, result_of(failed, GTX_ERROR_READ), "%s", message);
     *out = image;
     return GTX_OK;
 }
@@ -172,8 +181,9 @@ static gtx_result measure(const char *path, const void *data, size_t size, uint3
     const gtx_image_functions *module = module_functions(error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
-    if (module->measure(path, data, size, width, height, message))
-        return gtx_fail(error, GTX_ERROR_READ, "%s", message);
+    const int failed = module->measure(path, data, size, width, height, message);
+    if (failed)
+        return gtx_fail(error, result_of(failed, GTX_ERROR_READ), "%s", message);
     return GTX_OK;
 }
 

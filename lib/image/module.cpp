@@ -19,7 +19,13 @@ int fail(char *message, const char *name, const std::string &detail)
 {
     const std::string line = detail.substr(0, detail.find('\n'));
     std::snprintf(message, GTX_IMAGE_MAX_MESSAGE, "%s%s%s", name, *name ? ": " : "", line.c_str());
-    return 1;
+    return GTX_IMAGE_FAILED;
+}
+
+int fail_memory(char *message, const char *name)
+{
+    fail(message, name, "out of memory");
+    return GTX_IMAGE_NO_MEMORY;
 }
 
 int encode(const gtx_image_rows *rows, void **data, size_t *size, char *message)
@@ -50,7 +56,7 @@ int encode(const gtx_image_rows *rows, void **data, size_t *size, char *message)
     *size = memory.buffer().size();
     *data = std::malloc(*size);
     if (!*data)
-        return fail(message, "", "out of memory");
+        return fail_memory(message, "");
     std::memcpy(*data, memory.buffer().data(), *size);
     return 0;
 }
@@ -156,7 +162,7 @@ int read_rgba(const char *path, const void *data, size_t size, uint64_t max_pixe
         return fail(message, source.name, source.input->geterror());
     out->pixels = static_cast<uint8_t *>(std::malloc(size_t(count) * 4));
     if (!out->pixels)
-        return fail(message, source.name, "out of memory");
+        return fail_memory(message, source.name);
     const int alpha = spec.alpha_channel >= 0 && spec.alpha_channel < spec.nchannels
                           ? spec.alpha_channel : -1;
     spread(texels, spec.nchannels, alpha, out->pixels);
@@ -179,7 +185,7 @@ int read_raw(const char *path, uint64_t max_pixels, gtx_raw_image *out, char *me
     out->depth = is_deep ? 2 : 1;
     out->pixels = std::malloc(size_t(count) * size_t(spec.nchannels) * out->depth);
     if (!out->pixels)
-        return fail(message, source.name, "out of memory");
+        return fail_memory(message, source.name);
     if (!source.input->read_image(0, 0, 0, spec.nchannels, spec.format, out->pixels)) {
         std::free(out->pixels);
         return fail(message, source.name, source.input->geterror());
@@ -226,7 +232,7 @@ int read_values(const char *path, uint64_t max_pixels, gtx_value_image *out, cha
             return fail(message, source.name, source.input->geterror());
         out->values = static_cast<float *>(std::malloc(size_t(count) * sizeof(float)));
         if (!out->values)
-            return fail(message, source.name, "out of memory");
+            return fail_memory(message, source.name);
         known.widen(bytes, out->values, size_t(count));
         out->width = uint32_t(spec.width);
         out->height = uint32_t(spec.height);
@@ -242,6 +248,8 @@ template <auto call, class... Arguments> int guarded(Arguments... arguments)
 {
     try {
         return call(arguments...);
+    } catch (const std::bad_alloc &) {
+        return fail_memory(std::get<sizeof...(arguments) - 1>(std::tie(arguments...)), "image");
     } catch (const std::exception &e) {
         return fail(std::get<sizeof...(arguments) - 1>(std::tie(arguments...)), "image", e.what());
     }

@@ -20,7 +20,9 @@ typedef struct gtx_image_rows {
     const void *pixels;
 } gtx_image_rows;
 
-/* All return 0 for success and otherwise fill `message`. */
+enum { GTX_IMAGE_FAILED = 1, GTX_IMAGE_NO_MEMORY = 2 };
+
+/* All return 0 for success, and otherwise one of these and fill `message`. */
 typedef struct gtx_image_functions {
     uint32_t version;
     /* The bytes of a file, from malloc. */

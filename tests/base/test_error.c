@@ -9,7 +9,7 @@
 #include "base/limits.h"
 #include "base/warnings.h"
 
-#include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
 static void every_field_is_set(void **state)
@@ -70,12 +70,33 @@ static void warnings_have_names(void **state)
     }
 }
 
+/* Those of models; LOD_DROPPED and what follows is of the command alone. */
+static void schemas_know_the_names(void **state)
+{
+    static const char *const schemas[] = {"format/cook-report.schema.json",
+                                          "format/compare-report.schema.json"};
+    static char text[1 << 16];
+    (void)state;
+    for (int k = 0; k < 2; ++k) {
+        FILE *file = fopen(schemas[k], "r");
+        assert_non_null(file);
+        text[fread(text, 1, sizeof text - 1, file)] = 0;
+        fclose(file);
+        for (int i = 0; i < GTX_WARNING_COUNT; ++i) {
+            char quoted[64];
+            snprintf(quoted, sizeof quoted, "\"%s\"", gtx_warning_name((gtx_warning)i));
+            assert_int_equal(strstr(text, quoted) != NULL, i < GTX_WARNING_LOD_DROPPED);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_field_is_set),
         cmocka_unit_test(messages_are_printable),
         cmocka_unit_test(warnings_have_names),
+        cmocka_unit_test(schemas_know_the_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

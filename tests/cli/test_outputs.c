@@ -168,10 +168,11 @@ static void names_may_be_long_and_folders_closed(void **state)
 static void standard_output_goes_on(void **state)
 {
     (void)state;
-    if (access("/dev/stdout", F_OK))
+    if (access("/proc/self/fd/1", F_OK))
         skip();
-    assert_int_equal(shell("echo head >log; \"$GTX\" cook t.obj -q -o /dev/stdout >>log"), 0);
-    assert_int_equal(shell("{ echo head; cat a.gtx; } | cmp - log"), 0);
+    assert_int_equal(shell("ln -s /proc/self/fd/1 stdout; echo head >log; "
+                           "\"$GTX\" cook t.obj -q -o stdout >>log"), 0);
+    assert_int_equal(shell("test -h stdout && { echo head; cat a.gtx; } | cmp - log"), 0);
 }
 
 static void one_of_two_cooks_wins(void **state)

@@ -27,7 +27,8 @@ static void is_whole(const char *call, gtx_result result, gtx_result wanted)
 
 static void every_field_is_set(void **)
 {
-    const std::string obj = in_folder("e.obj"), bad = in_folder("bad.obj"), out = in_folder("e.gtx");
+    const std::string obj = in_folder("e.obj"), bad = in_folder("bad.obj");
+    const std::string out = in_folder("e.gtx");
     const char *model = obj.c_str(), *path = out.c_str();
     write_file(obj, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     write_file(bad, "v 0 0\n");

@@ -1,5 +1,5 @@
-/* A failed call says no number that nobody has set: whatever the error held, every field is written.
- * What needs no context of geotex.h, edit.h and render.h. */
+/* A failed call says no number that nobody has set: whatever the error held, every field is
+ * written. What needs no context of geotex.h, edit.h and render.h. */
 #define _POSIX_C_SOURCE 200809L
 #include <stdarg.h>
 #include <stddef.h>
