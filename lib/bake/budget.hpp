@@ -17,9 +17,9 @@ private:
     double left_;
 };
 
-/* Looks at other height fields that each of `items` may cost in the mean, when `wanted` are all that
- * the model may ask for. An engine of 82 nodes asks for 160 million, and needs them; where so many
- * surfaces lie over each other that it is more than that, nobody can tell what belongs together. */
+/* Looks at other height fields that each of `items` may cost in the mean, when `wanted` are all
+ * that the model may ask for. An engine of 82 nodes asks for 160 million, and needs them; where so
+ * many surfaces lie over each other that it is more, nobody can tell what belongs together. */
 inline double looks_each(double items, double wanted)
 {
     constexpr double ENOUGH = 1 << 28, MOST = 1 << 25, EACH = 64, LEAST = 16;

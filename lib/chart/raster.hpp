@@ -8,9 +8,9 @@
 
 namespace gtx {
 
-/* The part of a row of `count` texels, the first of which is `first` from a triangle's corner, where
- * the triangle can lie: wide of that by what rounding does, so that a test of each of them, as
- * before, decides. A sliver's box has more texels than its rows have together. */
+/* The part of a row of `count` texels, the first of which is `first` from a triangle's corner,
+ * where the triangle can lie: wide of that by more than rounding does, so that a test of each of
+ * them decides. A sliver covers few of the texels of its box. */
 struct Row {
     double first;
     int from, to;

@@ -107,7 +107,8 @@ public:
                 }
                 continue;
             }
-            const double low = boxes_[2 * node].distance2(p), high = boxes_[2 * node + 1].distance2(p);
+            const double low = boxes_[2 * node].distance2(p);
+            const double high = boxes_[2 * node + 1].distance2(p);
             const bool low_first = low <= high;
             if (std::max(low, high) < best)
                 stack[size++] = {2 * node + low_first, std::max(low, high)};

@@ -118,7 +118,8 @@ void measure_distances(const Grid &grid, size_t charts, Outline &outline)
 {
     outline.nearest.assign(grid.texels(), NO_EDGE);
     outline.distance.assign(grid.texels(), INFINITY);
-    DistanceField field{grid, outline, Budget(SPLATS * double(grid.texels()) + SPLATS_OF_ALL / double(charts))};
+    const Budget budget(SPLATS * double(grid.texels()) + SPLATS_OF_ALL / double(charts));
+    DistanceField field{grid, outline, budget};
     for (size_t e = 0; e < outline.edges.size(); ++e)
         field.splat(uint32_t(e));
     field.sweep(true);
