@@ -8,7 +8,8 @@ namespace gtx {
 
 static const size_t SAMPLES = size_t(1) << 18, CHUNK = 1 << 14, BREATH = 256;
 /* A limit on time: nodes of the tree that a point of a chunk looks at in the mean. Scans take 25,
- * an engine of 82 nodes 121 at most; where more surfaces lie over each other distances come out too large, if anything. */
+ * an engine of 82 nodes 121 at most; where more surfaces lie over each other distances come out
+ * too large, if anything. */
 static const size_t MAX_LOOKS = 128;
 
 static double segment_distance2(const Vec3d &from_start, const Vec3d &edge)
