@@ -50,6 +50,7 @@ struct MeshTriangles {
     const Mesh &mesh;
     Vec3d anchor;
 
+    static constexpr size_t LOOKS = 0;
     size_t size() const { return mesh.triangle_count(); }
     Vec3d position(size_t t, int k) const { return mesh.position(t, k) - anchor; }
     Box box(size_t t) const

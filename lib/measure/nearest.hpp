@@ -47,7 +47,8 @@ struct Box {
 double triangle_distance2(const Vec3d &p, const Vec3d &a, const Vec3d &b, const Vec3d &c);
 
 /* `Shapes` has size(), box(i) and distance2(i, p, bound), which may answer anything >= bound for
- * what is not nearer than that. It outlives the tree. */
+ * what is not nearer than that; LOOKS are the nodes of the tree that one costs as much as where it
+ * is not refused so. It outlives the tree. */
 template <class Shapes> class NearestTree {
 public:
     explicit NearestTree(const Shapes &shapes) : shapes_(shapes), order_(shapes.size())
@@ -79,7 +80,7 @@ public:
     double distance2(const Vec3d &p, uint32_t *near, const Counts &counts,
                      size_t *looks = nullptr) const
     {
-        constexpr size_t FEW = 64; /* they lead down one way */
+        constexpr size_t FEW = 32; /* they lead down one way */
         const size_t most = looks ? std::max(*looks, FEW) : SIZE_MAX;
         size_t left = most;
         double best = std::numeric_limits<double>::infinity();
@@ -92,14 +93,17 @@ public:
             auto [node, distance] = stack[--size];
             if (distance >= best)
                 continue;
-            if (left-- == 0)
+            if (left == 0)
                 break;
+            --left;
             if (node >= leaves_) {
                 size_t first = (node - leaves_) * LEAF;
                 for (size_t i = first; i < std::min(first + LEAF, order_.size()); ++i) {
                     if (!counts(order_[i]))
                         continue;
                     double distance2 = shapes_.distance2(order_[i], p, best);
+                    if (distance2 != best) /* not refused at once */
+                        left -= std::min(left, Shapes::LOOKS);
                     if (distance2 < best) {
                         best = distance2;
                         *near = order_[i];

@@ -57,6 +57,7 @@ static void triangle_distance_is_the_least(void **)
 
 struct Soup {
     Vector<Vec3d> corners;
+    static constexpr size_t LOOKS = 0;
     size_t size() const { return corners.size() / 3; }
     Box box(size_t i) const
     {
