@@ -96,24 +96,61 @@ HeightFields::HeightFields(const Vector<PatchMaps> &patches, unsigned height_bit
             fields_.emplace_back(patches[i], height_bits);
             patch_.push_back(uint32_t(i));
         }
-    for (const HeightField &field : fields_) {
-        order_.push_back(&field);
-        farthest_ = std::max(farthest_, field.radius);
+    for (uint32_t i = 0; i < fields_.size(); ++i)
+        order_.push_back(i);
+    if (!order_.empty())
+        build(0, uint32_t(order_.size()));
+}
+
+/* A node and those below it: halves at medians along the longest side of the centres' box. */
+void HeightFields::build(uint32_t from, uint32_t to)
+{
+    constexpr double ROUNDING = 1e-9; /* the box must not be less than the spheres, computed */
+    const size_t at = nodes_.size();
+    Node node = {Vec3d(INFINITY, INFINITY, INFINITY), Vec3d(-INFINITY, -INFINITY, -INFINITY), from,
+                 to, 0};
+    Vec3d low = node.low, high = node.high;
+    for (uint32_t i = from; i < to; ++i) {
+        const HeightField &field = fields_[order_[i]];
+        for (int k = 0; k < 3; ++k) {
+            const double c = field.centre[k];
+            const double r = field.radius + ROUNDING * (field.radius + std::abs(c));
+            low[k] = std::min(low[k], c);
+            high[k] = std::max(high[k], c);
+            node.low[k] = std::min(node.low[k], c - r);
+            node.high[k] = std::max(node.high[k], c + r);
+        }
     }
-    std::sort(order_.begin(), order_.end(), [](const HeightField *a, const HeightField *b) {
-        const double first = along(a->centre), second = along(b->centre);
-        return first != second ? first < second : a < b;
-    });
+    nodes_.push_back(node);
+    if (to - from <= LEAF)
+        return;
+    const Vec3d side = high - low;
+    const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
+    const uint32_t middle = from + (to - from) / 2;
+    std::nth_element(order_.begin() + from, order_.begin() + middle, order_.begin() + to,
+                     [&](uint32_t a, uint32_t b) {
+                         const double first = fields_[a].centre[axis];
+                         const double second = fields_[b].centre[axis];
+                         return first != second ? first < second : a < b;
+                     });
+    build(from, middle);
+    nodes_[at].second = uint32_t(nodes_.size());
+    build(middle, to);
 }
 
 Vector<const HeightField *> HeightFields::around(const HeightField &field) const
 {
+    /* A limit on time and memory: of one, and of all together. An engine of 82 nodes has 697 of
+     * one and 0.2 million of all. */
+    constexpr size_t MOST = 2048, OF_ALL = size_t(1) << 24, LEAST = 64;
+    const size_t most = std::max(LEAST, std::min(MOST, OF_ALL / fields_.size()));
     Vector<const HeightField *> out;
     any_near(field.centre, field.radius, [&](const HeightField &other) {
         if (&other != &field)
             out.push_back(&other);
-        return false;
+        return out.size() == most;
     });
+    std::sort(out.begin(), out.end(), [](auto *a, auto *b) { return is_before(*a, *b); });
     return out;
 }
 

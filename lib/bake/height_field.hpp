@@ -104,31 +104,69 @@ public:
     uint32_t patch(size_t i) const { return patch_[i]; }
     uint32_t patch(const HeightField &field) const { return patch_[index(field)]; }
 
-    /* Calls `visit` with every height field whose sphere comes as near to a point as `reach`, until
-     * it returns true; whether it did. */
-    template <class Visit> bool any_near(const Vec3d &point, double reach, Visit visit) const
+    /* An order of all: along (1, 1, 1). */
+    static bool is_before(const HeightField &a, const HeightField &b)
     {
-        const double far = DIAGONAL * (farthest_ + reach), place = along(point);
-        auto at = std::lower_bound(
-            order_.begin(), order_.end(), place - far,
-            [](const HeightField *a, double b) { return along(a->centre) < b; });
-        for (; at != order_.end() && along((*at)->centre) <= place + far; ++at)
-            if (length(point - (*at)->centre) <= (*at)->radius + reach && visit(**at))
-                return true;
-        return false;
+        auto along = [](const Vec3d &p) { return p.x + p.y + p.z; };
+        const double first = along(a.centre), second = along(b.centre);
+        return first != second ? first < second : &a < &b;
     }
-    /* The others whose spheres that of a height field meets. */
+    /* Calls `visit` with the height fields whose spheres come as near to a point as `reach`, in no
+     * particular order, until it returns true; whether it did. */
+    template <class Visit> bool any_near(const Vec3d &point, double reach, Visit visit) const;
+    /* The others whose spheres that of a height field meets, in order. Of very many some. */
     Vector<const HeightField *> around(const HeightField &field) const;
 
 private:
-    /* They are sorted along (1, 1, 1), whose length this is. */
-    static constexpr double DIAGONAL = 1.7320508075688772;
-    static double along(const Vec3d &point) { return point.x + point.y + point.z; }
+    static constexpr size_t LEAF = 4;
+    /* The box around the spheres of those from order_[from] to order_[to - 1]; the first half of
+     * them is the next node's, the others that of the one at `second`, 0 in a leaf. */
+    struct Node {
+        Vec3d low, high;
+        uint32_t from, to, second;
+
+        double distance(const Vec3d &p) const
+        {
+            Vec3d off;
+            for (int k = 0; k < 3; ++k)
+                off[k] = std::max({low[k] - p[k], p[k] - high[k], 0.});
+            return length(off);
+        }
+    };
+    void build(uint32_t from, uint32_t to);
 
     Vector<HeightField> fields_;
     Vector<uint32_t> patch_;
-    Vector<const HeightField *> order_;
-    double farthest_ = 0; /* the largest radius */
+    Vector<uint32_t> order_;
+    Vector<Node> nodes_;
 };
+
+template <class Visit>
+bool HeightFields::any_near(const Vec3d &point, double reach, Visit visit) const
+{
+    uint32_t stack[64];
+    size_t depth = 0;
+    if (!nodes_.empty())
+        stack[depth++] = 0;
+    while (depth) {
+        const uint32_t at = stack[--depth];
+        const Node &node = nodes_[at];
+        if (!(node.distance(point) <= reach))
+            continue;
+        if (node.second) {
+            stack[depth++] = node.second;
+            stack[depth++] = at + 1;
+            continue;
+        }
+        for (uint32_t i = node.from; i < node.to; ++i) {
+            const HeightField &field = fields_[order_[i]];
+            if (!(length(point - field.centre) <= field.radius + reach))
+                continue;
+            if (visit(field))
+                return true;
+        }
+    }
+    return false;
+}
 
 } // namespace gtx::baking

@@ -30,6 +30,11 @@ constexpr double WALL_TEXELS = 16;
 /* An island may lead to the next; tiny ones wait for the last pass. A limit: the first pass finds
  * nearly all, and chains of islands must not take a time of their number squared. */
 constexpr int PASSES = 4;
+/* Limits on time: where more charts than this come together no surface goes on, and all tries
+ * together look at so many texels for each triangle. An engine of 82 nodes has up to 123
+ * and takes 58; a car takes 256. */
+constexpr ptrdiff_t MAX_NEAR = 256;
+constexpr double MAX_LOOKS = 1024;
 
 template <class T> void sort_unique(Vector<T> &values)
 {
@@ -92,8 +97,11 @@ template <class Visit> void NearGrid::each_near(const Vec3d &point, Visit visit)
     const Cell cell = cell_of(point);
     if (!filter_[hash(cell)])
         return;
-    auto at = std::lower_bound(entries_.begin(), entries_.end(), Entry(cell, 0));
-    for (; at != entries_.end() && at->first == cell; ++at)
+    const auto first = std::lower_bound(entries_.begin(), entries_.end(), Entry(cell, 0));
+    auto last = first;
+    while (last != entries_.end() && last->first == cell && last - first <= MAX_NEAR)
+        ++last;
+    for (auto at = first; at != last && last - first <= MAX_NEAR; ++at)
         visit(at->second);
 }
 
@@ -102,11 +110,12 @@ public:
     Attachment(Surface &surface, const Bounds &bounds, Vector<Region> &regions,
                Vector<Frame> &frames)
         : surface_(surface), bounds_(bounds), regions_(regions), frames_(frames), grid_of_(frames),
-          grids_(regions.size())
+          grids_(regions.size()), age_(regions.size()),
+          looks_left_(MAX_LOOKS * double(surface.facets.size()))
     {
     }
 
-    void run();
+    void run(Task &task);
 
 private:
     void find_candidates();
@@ -115,11 +124,13 @@ private:
     {
         return texels_of(surface_, region, bounds_.pitch);
     }
+    uint32_t owner_of(uint32_t region);
     void place(uint32_t candidate, bool tiny);
     bool try_target(uint32_t candidate, uint32_t target, bool tiny);
     void mark_junk(const Region &candidate, const Vec3d &z);
     bool faces(const Region &candidate, const Vec3d &z) const;
-    Frame widened(const Frame &frame, const Region &candidate) const;
+    Frame widened(const Frame &frame, const Region &candidate, double &texels) const;
+    bool look_at(double texels);
     double cost(const Frame &frame) const
     {
         double w = frame.extent[0] / bounds_.pitch + RIM, h = frame.extent[1] / bounds_.pitch + RIM;
@@ -131,11 +142,18 @@ private:
     Vector<Region> &regions_;
     Vector<Frame> &frames_;
     Vector<uint32_t> candidates_;                     /* largest first */
-    Vector<std::pair<uint32_t, uint32_t>> near_;      /* candidate, region; ascending */
+    struct Near {
+        uint32_t candidate, region;
+        uint32_t refused_by = NO_TRIANGLE, ages = 0; /* the target at the last try, and both ages */
+    };
+    Vector<Near> near_;                               /* ascending */
     Vector<uint32_t> target_;                         /* of a region; itself while it stays */
     /* Depths of regions that were tried as targets, in the frames that they had at first. */
     Vector<Frame> grid_of_;
     Vector<LayerGrid> grids_;
+    Vector<uint32_t> age_;                            /* of a region: what it has taken in */
+    Vector<uint32_t> asked_by_;                       /* a target: which candidate came last */
+    double looks_left_;
 };
 
 void Attachment::find_candidates()
@@ -160,15 +178,20 @@ void Attachment::find_near()
     grid.dilate();
 
     Vector<uint32_t> last_seen(mesh.positions.size(), NO_TRIANGLE);      /* a vertex: by a region */
+    Vector<uint32_t> last_region(regions_.size(), NO_TRIANGLE);          /* of a candidate */
     for (uint32_t region = 0; region < regions_.size(); ++region)
         for (uint32_t t : regions_[region].triangles)
             for (uint32_t v : mesh.triangles[t])
                 if (std::exchange(last_seen[v], region) != region)
                     grid.each_near(mesh.positions[v], [&](uint32_t candidate) {
-                        if (candidate != region)
-                            near_.emplace_back(candidate, region);
+                        if (candidate != region &&
+                            std::exchange(last_region[candidate], region) != region)
+                            near_.push_back({candidate, region});
                     });
-    sort_unique(near_);
+    /* Regions ascend already. */
+    std::stable_sort(near_.begin(), near_.end(), [](const Near &a, const Near &b) {
+        return a.candidate < b.candidate;
+    });
 }
 
 bool Attachment::faces(const Region &candidate, const Vec3d &z) const
@@ -186,23 +209,38 @@ bool Attachment::faces(const Region &candidate, const Vec3d &z) const
            !has_wall(surface_, candidate, z, bounds_.pitch, WALL_TEXELS);
 }
 
-Frame Attachment::widened(const Frame &frame, const Region &candidate) const
+/* Also the texels of the rectangle that the candidate takes there. */
+Frame Attachment::widened(const Frame &frame, const Region &candidate, double &texels) const
 {
     FrameInverse inverse(frame);
-    Vec3d low, high(frame.extent[0], frame.extent[1], frame.extent[2]);
+    Vec3d own_low(INFINITY, INFINITY, INFINITY), own_high = -own_low;
     for (uint32_t t : candidate.triangles)
         for (int k = 0; k < 3; ++k) {
             Vec3d p = inverse(surface_.mesh.position(t, k));
             for (int i = 0; i < 3; ++i) {
-                low[i] = std::min(low[i], p[i]);
-                high[i] = std::max(high[i], p[i]);
+                own_low[i] = std::min(own_low[i], p[i]);
+                own_high[i] = std::max(own_high[i], p[i]);
             }
         }
+    Vec3d low, high;
+    for (int i = 0; i < 3; ++i) {
+        low[i] = std::min(0., own_low[i]);
+        high[i] = std::max(frame.extent[i], own_high[i]);
+    }
+    texels = (own_high.x - own_low.x) * (own_high.y - own_low.y) / (bounds_.pitch * bounds_.pitch);
     Frame out = frame;
     out.origin = frame.point(low);
     for (int i = 0; i < 3; ++i)
         out.extent[i] = high[i] - low[i];
     return out;
+}
+
+/* Whether that many may be looked at still. */
+bool Attachment::look_at(double texels)
+{
+    const bool may = texels <= looks_left_;
+    looks_left_ -= may ? texels : 0;
+    return may;
 }
 
 void Attachment::mark_junk(const Region &candidate, const Vec3d &z)
@@ -217,9 +255,12 @@ bool Attachment::try_target(uint32_t candidate, uint32_t target, bool tiny)
     const Region &added = regions_[candidate];
     if (!tiny && !faces(added, frames_[target].z))
         return false;
-    Frame frame = widened(frames_[target], added);
+    double looks;
+    Frame frame = widened(frames_[target], added, looks);
     if (!bounds_.cone && (std::max(frame.extent[0], frame.extent[1]) > bounds_.side ||
                           cost(frame) > cost(frames_[target]) + cost(frames_[candidate])))
+        return false;
+    if (!look_at(looks + double(added.size())))
         return false;
     LayerGrid &grid = grids_[target];
     if (grid.samples.empty())
@@ -228,6 +269,8 @@ bool Attachment::try_target(uint32_t candidate, uint32_t target, bool tiny)
     size_t doubled;
     if (fold_together(grid, own, layer_rule(surface_, bounds_.pitch), doubled) ||
         (doubled && !tiny))
+        return false;
+    if (grid.grows_by(own) && !look_at(double(grid.samples.size())))
         return false;
     grid.add(own);
     if (tiny)
@@ -243,42 +286,60 @@ bool Attachment::try_target(uint32_t candidate, uint32_t target, bool tiny)
     frames_[target] = frame;
     regions_[candidate] = {};
     target_[candidate] = target;
+    ++age_[target];
     return true;
 }
 
+/* Where a region is now. */
+uint32_t Attachment::owner_of(uint32_t region)
+{
+    while (target_[region] != region)
+        region = target_[region] = target_[target_[region]];
+    return region;
+}
+
+/* A target that refused is not asked again before one of the two has grown, but for tiny ones. */
 void Attachment::place(uint32_t candidate, bool tiny)
 {
-    auto near = std::lower_bound(near_.begin(), near_.end(), std::make_pair(candidate, 0u));
-    for (; near != near_.end() && near->first == candidate; ++near) {
-        uint32_t target = near->second;
-        while (target_[target] != target)
-            target = target_[target];
-        if (target != candidate && try_target(candidate, target, tiny))
+    auto near = std::lower_bound(near_.begin(), near_.end(), candidate,
+                                 [](const Near &a, uint32_t b) { return a.candidate < b; });
+    for (; near != near_.end() && near->candidate == candidate; ++near) {
+        const uint32_t target = owner_of(near->region), ages = age_[target] + age_[candidate];
+        if (target == candidate ||
+            (near->refused_by == target && near->ages == ages && !tiny) ||
+            std::exchange(asked_by_[target], candidate) == candidate)
+            continue;
+        if (try_target(candidate, target, tiny))
             return;
+        near->refused_by = target;
+        near->ages = ages;
     }
 }
 
-void Attachment::run()
+void Attachment::run(Task &task)
 {
     find_candidates();
     find_near();
     target_.resize(regions_.size());
     std::iota(target_.begin(), target_.end(), 0u);
-    for (int pass = 1; pass <= PASSES; ++pass)
+    for (int pass = 1; pass <= PASSES; ++pass) {
+        asked_by_.assign(regions_.size(), NO_TRIANGLE);
         for (uint32_t candidate : candidates_) {
             bool tiny = pass == PASSES && texels(regions_[candidate]) < JUNK_TEXELS;
+            task.check();
             if (target_[candidate] == candidate)
                 place(candidate, tiny);
         }
+    }
     drop_empty(regions_, frames_);
 }
 
 } // namespace
 
 void attach_islands(Surface &surface, const Bounds &bounds, Vector<Region> &regions,
-                    Vector<Frame> &frames)
+                    Vector<Frame> &frames, Task &task)
 {
-    Attachment(surface, bounds, regions, frames).run();
+    Attachment(surface, bounds, regions, frames).run(task);
 }
 
 } // namespace gtx

@@ -23,6 +23,10 @@ constexpr double LAYER_DISTANCE = 1e-4;
  * another patch. */
 constexpr double DISCONTINUITY_PITCHES = 6, DISCONTINUITY_REACH = 2.5;
 
+/* Triangles that lead from one sample to another: a limit on time. An engine of 82
+ * nodes takes up to 168, others 100. */
+constexpr size_t MAX_SEARCHED = 512;
+
 void join(Sample &s, const Sample &other)
 {
     if (other.low < s.low) {
@@ -96,7 +100,7 @@ public:
     bool joined(uint32_t from, uint32_t to, double u, double v, double reach) const
     {
         Vector<uint32_t> queue(1, from);
-        for (size_t next = 0; next < queue.size(); ++next) {
+        for (size_t next = 0; next < queue.size() && queue.size() < MAX_SEARCHED; ++next) {
             if (queue[next] == to)
                 return true;
             for (uint32_t n : region_.neighbours[queue[next]])
@@ -160,16 +164,23 @@ const Sample *LayerGrid::at(int i, int j) const
     return inside ? &samples[size_t(y) * size_t(size[0]) + size_t(x)] : nullptr;
 }
 
+bool LayerGrid::grows_by(const LayerGrid &other) const
+{
+    bool grows = false;
+    for (int k = 0; k < 2; ++k)
+        grows = grows || other.first[k] < first[k] ||
+                other.first[k] + other.size[k] > first[k] + size[k];
+    return grows;
+}
+
 void LayerGrid::add(const LayerGrid &other)
 {
-    int low[2], high[2];
-    bool grows = false;
-    for (int k = 0; k < 2; ++k) {
-        low[k] = std::min(first[k], other.first[k]);
-        high[k] = std::max(first[k] + size[k], other.first[k] + other.size[k]);
-        grows = grows || low[k] < first[k] || high[k] > first[k] + size[k];
-    }
-    if (grows) {
+    if (grows_by(other)) {
+        int low[2], high[2];
+        for (int k = 0; k < 2; ++k) {
+            low[k] = std::min(first[k], other.first[k]);
+            high[k] = std::max(first[k] + size[k], other.first[k] + other.size[k]);
+        }
         LayerGrid larger = blank_grid(low, high);
         larger.add(*this);
         *this = std::move(larger);

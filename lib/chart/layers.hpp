@@ -39,6 +39,8 @@ struct LayerGrid {
 
     /* The sample at a texel of the frame, NULL outside the grid. */
     const Sample *at(int i, int j) const;
+    /* Whether another grid of the same frame reaches out of this one. */
+    bool grows_by(const LayerGrid &other) const;
     /* Takes the samples of another grid of the same frame. */
     void add(const LayerGrid &other);
 };

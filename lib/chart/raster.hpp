@@ -8,6 +8,49 @@
 
 namespace gtx {
 
+/* The part of a row of `count` texels, the first of which is `first` from a triangle's corner,
+ * where the triangle can lie: wide of that by more than rounding does, so that a test of each of
+ * them decides. A sliver covers few of the texels of its box. */
+struct Row {
+    double first;
+    int from, to;
+
+    Row(double first, int count) : first(first), from(0), to(count) {}
+
+    /* To where (d * slope + rest) / area >= least, d from the corner, all sums of products up to
+     * `size`. */
+    void narrow(double slope, double rest, double area, double least, double size)
+    {
+        constexpr double ROUNDING = 1e-12;
+        const double limit = (least * area - rest) / slope - first;
+        const double wide = 1 + ROUNDING * size / std::fabs(slope);
+        if (!(std::fabs(limit) + wide < 1e9))
+            return;
+        if ((slope > 0) == (area > 0))
+            from = std::max(from, int(std::floor(limit - wide)));
+        else
+            to = std::min(to, int(std::ceil(limit + wide)) + 1);
+    }
+};
+
+/* That of a triangle with sides u and v from its corner, `dy` above it, where both of its weights
+ * are at least `least` and their sum as little above 1. */
+inline Row narrow_row(double first, int count, double dy, const double u[2], const double v[2],
+                      double area, double least)
+{
+    constexpr int SHORT = 8; /* not worth it */
+    Row row(first, count);
+    if (count <= SHORT)
+        return row;
+    const double reach = std::fabs(first) + count + std::fabs(dy);
+    const double size = reach * (std::fabs(u[0]) + std::fabs(u[1]) + std::fabs(v[0]) +
+                                 std::fabs(v[1])) + std::fabs(area);
+    row.narrow(v[1], -dy * v[0], area, least, size);
+    row.narrow(-u[1], dy * u[0], area, least, size);
+    row.narrow(u[1] - v[1], dy * (v[0] - u[0]), area, least - 1, size);
+    return row;
+}
+
 /* Calls visit(i, j, depth) for the texel centres in a triangle, edges included. Corners are in
  * texels, texel (i, j) from i to i + 1 and j to j + 1; depths are the corners' z. */
 template <class Visit>
@@ -23,8 +66,10 @@ void raster_centres(const Vec3d corner[3], int width, int height, Visit visit)
     };
     int i0 = first(std::min({a.x, b.x, c.x})), i1 = last(std::max({a.x, b.x, c.x}), width);
     int j0 = first(std::min({a.y, b.y, c.y})), j1 = last(std::max({a.y, b.y, c.y}), height);
-    for (int j = j0; j <= j1; ++j)
-        for (int i = i0; i <= i1; ++i) {
+    const double u[2] = {b.x - a.x, b.y - a.y}, v[2] = {c.x - a.x, c.y - a.y};
+    for (int j = j0; j <= j1; ++j) {
+        const Row row = narrow_row(i0 + 0.5 - a.x, i1 - i0 + 1, j + 0.5 - a.y, u, v, area, 0);
+        for (int i = i0 + row.from; i < i0 + row.to; ++i) {
             double x = i + 0.5, y = j + 0.5;
             double wb = ((x - a.x) * (c.y - a.y) - (y - a.y) * (c.x - a.x)) / area;
             double wc = ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / area;
@@ -32,6 +77,7 @@ void raster_centres(const Vec3d corner[3], int width, int height, Visit visit)
                 continue;
             visit(i, j, a.z + wb * (b.z - a.z) + wc * (c.z - a.z));
         }
+    }
 }
 
 } // namespace gtx

@@ -15,6 +15,7 @@ class Cells {
 public:
     explicit Cells(const gtx_asset *asset);
 
+    static constexpr size_t LOOKS = 4;
     size_t size() const { return cells_.size(); }
     Box box(size_t i) const;
     double distance2(size_t i, const Vec3d &p, double bound) const;

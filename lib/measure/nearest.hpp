@@ -47,7 +47,8 @@ struct Box {
 double triangle_distance2(const Vec3d &p, const Vec3d &a, const Vec3d &b, const Vec3d &c);
 
 /* `Shapes` has size(), box(i) and distance2(i, p, bound), which may answer anything >= bound for
- * what is not nearer than that. It outlives the tree. */
+ * what is not nearer than that; LOOKS are the nodes of the tree that one costs as much as where it
+ * is not refused so. It outlives the tree. */
 template <class Shapes> class NearestTree {
 public:
     explicit NearestTree(const Shapes &shapes) : shapes_(shapes), order_(shapes.size())
@@ -73,10 +74,15 @@ public:
     /* The squared distance to the nearest shape; infinity when there is none. `*near` is a shape to
      * try first, such as the nearest of a point close by (any number from size() on: none), and
      * becomes the nearest: a short distance known early spares most of the search. Only shapes that
-     * `counts(shape)` is true of are sought. */
+     * `counts(shape)` is true of are sought. `*looks` are the nodes that may be looked at, which
+     * become fewer: where they are spent, the shape found by so few may not be the nearest. */
     template <class Counts>
-    double distance2(const Vec3d &p, uint32_t *near, const Counts &counts) const
+    double distance2(const Vec3d &p, uint32_t *near, const Counts &counts,
+                     size_t *looks = nullptr) const
     {
+        constexpr size_t FEW = 32; /* they lead down one way */
+        const size_t most = looks ? std::max(*looks, FEW) : SIZE_MAX;
+        size_t left = most;
         double best = std::numeric_limits<double>::infinity();
         if (*near < shapes_.size() && counts(*near))
             best = shapes_.distance2(*near, p, best);
@@ -87,12 +93,17 @@ public:
             auto [node, distance] = stack[--size];
             if (distance >= best)
                 continue;
+            if (left == 0)
+                break;
+            --left;
             if (node >= leaves_) {
                 size_t first = (node - leaves_) * LEAF;
                 for (size_t i = first; i < std::min(first + LEAF, order_.size()); ++i) {
                     if (!counts(order_[i]))
                         continue;
                     double distance2 = shapes_.distance2(order_[i], p, best);
+                    if (distance2 != best) /* not refused at once */
+                        left -= std::min(left, Shapes::LOOKS);
                     if (distance2 < best) {
                         best = distance2;
                         *near = order_[i];
@@ -100,18 +111,21 @@ public:
                 }
                 continue;
             }
-            double left = boxes_[2 * node].distance2(p), right = boxes_[2 * node + 1].distance2(p);
-            bool left_first = left <= right;
-            if (std::max(left, right) < best)
-                stack[size++] = {2 * node + left_first, std::max(left, right)};
-            if (std::min(left, right) < best)
-                stack[size++] = {2 * node + !left_first, std::min(left, right)};
+            const double low = boxes_[2 * node].distance2(p);
+            const double high = boxes_[2 * node + 1].distance2(p);
+            const bool low_first = low <= high;
+            if (std::max(low, high) < best)
+                stack[size++] = {2 * node + low_first, std::max(low, high)};
+            if (std::min(low, high) < best)
+                stack[size++] = {2 * node + !low_first, std::min(low, high)};
         }
+        if (looks)
+            *looks -= std::min(*looks, most - left);
         return best;
     }
-    double distance2(const Vec3d &p, uint32_t *near) const
+    double distance2(const Vec3d &p, uint32_t *near, size_t *looks = nullptr) const
     {
-        return distance2(p, near, [](uint32_t) { return true; });
+        return distance2(p, near, [](uint32_t) { return true; }, looks);
     }
 
 private:

@@ -36,6 +36,7 @@ struct BorderEdges {
                     edges.push_back({mesh.position(t, k) - anchor,
                                      mesh.position(t, (k + 1) % 3) - anchor});
     }
+    static constexpr size_t LOOKS = 0;
     size_t size() const { return edges.size(); }
     Box box(size_t i) const
     {

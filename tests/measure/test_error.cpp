@@ -57,6 +57,7 @@ static void triangle_distance_is_the_least(void **)
 
 struct Soup {
     Vector<Vec3d> corners;
+    static constexpr size_t LOOKS = 0;
     size_t size() const { return corners.size() / 3; }
     Box box(size_t i) const
     {
@@ -92,6 +93,28 @@ static void tree_finds_the_nearest(void **)
             assert_true(count ? soup.distance2(near, p, least) == least : near == NO_HIT);
         }
     }
+}
+
+/* Triangles over each other: whatever the tree, one cannot be told from the next. */
+static void few_looks_find_something_as_near_at_least(void **)
+{
+    uint64_t seed = 3;
+    Soup soup;
+    for (size_t i = 0; i < 3 * 5000; ++i)
+        soup.corners.push_back(random_point(seed, 4));
+    NearestTree<Soup> tree(soup);
+    size_t looks = 1000, visited = 0;
+    for (int q = 0; q < 100; ++q) {
+        const Vec3d p = random_point(seed, 4);
+        uint32_t near = NO_HIT, found = NO_HIT;
+        const size_t before = looks;
+        const double quick = tree.distance2(p, &found, &looks);
+        visited += before - looks;
+        assert_true(quick >= tree.distance2(p, &near));
+        assert_true(soup.distance2(found, p, INFINITY) == quick);
+    }
+    assert_int_equal(looks, 0);
+    assert_int_equal(visited, 1000);
 }
 
 static void an_offset_plane_is_off_by_its_offset(void **)
@@ -224,6 +247,7 @@ int main()
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(triangle_distance_is_the_least),
         cmocka_unit_test(tree_finds_the_nearest),
+        cmocka_unit_test(few_looks_find_something_as_near_at_least),
         cmocka_unit_test(an_offset_plane_is_off_by_its_offset),
         cmocka_unit_test(trim_is_honoured),
         cmocka_unit_test(a_sphere_is_near_its_asset),

@@ -1,6 +1,7 @@
 /* The height field of a chart over its working grid, and the steps that make it. */
 #pragma once
 
+#include "bake/budget.hpp"
 #include "bake/field/patch.hpp"
 
 #include <unordered_set>
@@ -26,7 +27,8 @@ constexpr double JUMP = 4;
 class Paths {
 public:
     Paths(const Mesh &mesh, const Neighbours &neighbours, const FlatChart &chart)
-        : mesh_(mesh), neighbours_(neighbours), chart_(chart)
+        : mesh_(mesh), neighbours_(neighbours), chart_(chart),
+          budget_(STEPS * double(chart.grid.texels()) + STEPS_OF_ALL / double(chart.of))
     {
     }
 
@@ -35,11 +37,15 @@ public:
     bool joined(uint32_t from, uint32_t to, double u, double v, double reach);
 
 private:
+    /* A limit on time: triangles that all searches look at for a texel, and in all beyond that. An
+     * engine of 82 nodes takes up to 352 for a texel of a chart, others 59. */
+    static constexpr double STEPS = 512, STEPS_OF_ALL = 1 << 26;
     const Mesh &mesh_;
     const Neighbours &neighbours_;
     const FlatChart &chart_;
     std::unordered_set<uint32_t> seen_; /* by one search */
     Vector<uint32_t> queue_;
+    Budget budget_;
 };
 
 /* What lies at each texel centre of the grid. */
@@ -98,12 +104,12 @@ Cover core_of(const FlatChart &chart, const Rendering &rendering);
 /* Adds the overlap at texels the core left empty, where it continues the core's border. */
 void raster_overlap(const FlatChart &chart, const Outline &core, Paths &paths, Cover &cover);
 
-/* The outline of the first `count` triangles. */
+/* The outline of the first `count` triangles */
 Outline find_outline(const Neighbours &neighbours, const FlatChart &chart, size_t count);
 /* The nearest point of an edge to (u, v): its parameter, 0 at `from` and 1 at `to`. */
 double nearest_parameter(const OutlineEdge &edge, double u, double v);
 /* Finds what of `outline` follows from its edges. */
-void measure_distances(const Grid &grid, Outline &outline);
+void measure_distances(const Grid &grid, size_t charts, Outline &outline);
 /* Signed distances to the outline of the true surface, per texel, in texels. */
 Vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Cover &all,
                              const Outline &core_outline, const Outline &all_outline);

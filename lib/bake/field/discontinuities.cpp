@@ -21,7 +21,8 @@ bool Paths::joined(uint32_t from, uint32_t to, double u, double v, double reach)
     queue_.assign(1, chart_.triangles[from].source);
     seen_.clear();
     seen_.insert(queue_[0]);
-    for (size_t next = 0; next < queue_.size(); ++next) {
+    for (size_t next = 0; next < queue_.size() && !budget_.spent(); ++next) {
+        budget_.spend(1);
         if (queue_[next] == goal)
             return true;
         for (uint32_t n : neighbours_[queue_[next]])

@@ -54,6 +54,7 @@ struct FlatChart {
     Grid grid;
     Vector<FlatTriangle> triangles;
     size_t core = 0;
+    size_t of = 1; /* so many charts it is one: the share it has of what all may take */
     /* mate[t][k] is the index here of the front-facing triangle across edge k, or NO_TRIANGLE. */
     Neighbours mate;
 };

@@ -101,7 +101,7 @@ void trim_mask(const Mesh &mesh, const Neighbours &neighbours, const FlatChart &
     for (int y = 0; y + 1 < fine.grid.h; ++y)
         for (int x = 0; x + 1 < fine.grid.w; ++x)
             contour_square(cut, fine.grid.w, x, y, outline.edges);
-    measure_distances(chart.grid, outline);
+    measure_distances(chart.grid, chart.of, outline);
     /* What is shown beyond an outline closes the seam between charts. A mask has no seam, and its
      * bars must not grow. */
     for (size_t i = 0; i < trim.size(); ++i) {

@@ -168,6 +168,7 @@ static ChartField lay_fitted(const Job &job, const Chart &chart, double finer)
 {
     Extractor *extractor = job.options.extractor;
     FlatChart flat = flatten(job.mesh, job.neighbours, chart, job.pitch, finer);
+    flat.of = job.charts;
     ChartField field = lay_field(job, std::move(flat), nullptr); /* cells do not depend on a
                                                                      driver */
     Chart fitted = chart;

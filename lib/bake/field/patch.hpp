@@ -29,6 +29,7 @@ struct Job {
     AppearanceNeeds needs;
     double pitch;
     Vec3d anchor;
+    size_t charts;
 };
 
 PatchMaps bake_chart(const Job &job, const Chart &chart);

@@ -1,5 +1,6 @@
 /* Samples the true surface of a chart at the texel centres of its grid. */
 #include "bake/field/chart_field.hpp"
+#include "chart/raster.hpp"
 
 #include <algorithm>
 
@@ -23,8 +24,10 @@ template <class Visit> static void raster(const FlatTriangle &t, const Grid &gri
     };
     int x0 = low(p[0].x, p[1].x, p[2].x), x1 = high(p[0].x, p[1].x, p[2].x, grid.w);
     int y0 = low(p[0].y, p[1].y, p[2].y), y1 = high(p[0].y, p[1].y, p[2].y, grid.h);
+    const double u[2] = {ux, uy}, v[2] = {vx, vy};
     for (int y = y0; y <= y1; ++y) {
-        for (int x = x0; x <= x1; ++x) {
+        const Row row = narrow_row(x0 - p[0].x, x1 - x0 + 1, y - p[0].y, u, v, area, -1e-9);
+        for (int x = x0 + row.from; x < x0 + row.to; ++x) {
             double dx = x - p[0].x, dy = y - p[0].y;
             double b1 = (dx * vy - dy * vx) / area, b2 = (ux * dy - uy * dx) / area;
             if (b1 < -1e-9 || b2 < -1e-9 || b1 + b2 > 1 + 1e-9)

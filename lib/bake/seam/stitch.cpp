@@ -221,12 +221,21 @@ void stitch(unsigned height_bits, Vector<PatchMaps> &patches, Task &task)
         others[i] = fields.around(fields[i]);
         ties[i] = sample_outline(fields[i]);
     });
+    double all = 0, wanted = 0;
+    for (size_t i = 0; i < ties.size(); ++i) {
+        all += double(ties[i].size());
+        wanted += double(ties[i].size()) * double(others[i].size());
+    }
+    const double each = looks_each(all, wanted);
     Vector<Vector<const Tie *>> open(fields.size());
     Moves moves(fields, patches, height_bits, std::min(texel, COARSE * diagonal_of(patches)),
                 task);
     for (const double readiness : PASSES) {
         task.parallel(fields.size(),
-                      [&](size_t i) { open[i] = update_ties(others[i], limits, ties[i]); });
+                      [&](size_t i) {
+                          const Budget budget(each * double(1 + ties[i].size()));
+                          open[i] = update_ties(others[i], limits, budget, ties[i]);
+                      });
         moves.solve(open, ties, readiness, task);
         task.parallel(fields.size(), [&](size_t i) { moves.apply(i); });
     }

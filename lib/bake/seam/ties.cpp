@@ -103,7 +103,7 @@ static Vector<const HeightField *> reaching(const Vector<const HeightField *> &o
 }
 
 Vector<const Tie *> update_ties(const Vector<const HeightField *> &others,
-                                const TieLimits &limits, Vector<Tie> &ties)
+                                const TieLimits &limits, Budget budget, Vector<Tie> &ties)
 {
     Vector<const Tie *> open;
     Vector<Tie *> loose;
@@ -114,7 +114,13 @@ Vector<const Tie *> update_ties(const Vector<const HeightField *> &others,
                 loose.push_back(&*to);
         if (loose.empty())
             continue;
+        if (budget.spent()) { /* they are tied to nothing */
+            for (Tie *tie : loose)
+                *tie = {{tie->end[0], {}}};
+            continue;
+        }
         const Vector<const HeightField *> near = reaching(others, *from, *(to - 1));
+        budget.spend(double(others.size() + near.size() * loose.size()));
         for (Tie *tie : loose) {
             find_end(near, limits, *tie);
             if (tie->is_open())

@@ -1,6 +1,7 @@
 /* Points of outlines, each tied to the height field of a neighbour that it should lie on. */
 #pragma once
 
+#include "bake/budget.hpp"
 #include "bake/height_field.hpp"
 
 namespace gtx::baking {
@@ -30,8 +31,8 @@ struct TieLimits {
 Vector<Tie> sample_outline(const HeightField &own);
 
 /* Ties what is tied to nothing, or to what it does not lie on; measures the others that moved.
- * Returns those that are open. */
+ * Returns those that are open. A budget is of looks at other height fields. */
 Vector<const Tie *> update_ties(const Vector<const HeightField *> &others,
-                                const TieLimits &limits, Vector<Tie> &ties);
+                                const TieLimits &limits, Budget budget, Vector<Tie> &ties);
 
 } // namespace gtx::baking

@@ -1,6 +1,7 @@
 /* Looks the source up in the height fields as readers decode them. */
 #include "bake/seam/uncovered.hpp"
 
+#include "bake/budget.hpp"
 #include "bake/height_field.hpp"
 
 #include <algorithm>
@@ -32,6 +33,8 @@ constexpr double STEEP = 0.35;
 /* Samples along a texel. A needle may be as long as its chart: it gets as many as a triangle whose
  * sides are so many texels longer than those of a square of its area. */
 constexpr double SAMPLES = 2, NEEDLE = 8;
+/* Height fields over a place that are counted: a limit on time. */
+constexpr double MAX_OVER = 1024;
 
 namespace {
 
@@ -50,11 +53,13 @@ public:
     Gaps run(Task &task) const;
 
 private:
-    double uncovered_share(size_t field, uint32_t triangle,
+    Vector<Budget> share_looks(Task &task) const;
+    int parts_of(uint32_t triangle) const;
+    double uncovered_share(size_t field, uint32_t triangle, Budget &budget,
                            Vector<RelaxedTrim> &relaxed) const;
     bool shown_by(const HeightField &field, const Sample &at, double max_above) const;
-    bool shown_by_any(const Sample &at, double min_facing) const;
-    std::optional<RelaxedTrim> find_hidden(const Sample &at) const;
+    bool shown_by_any(const Sample &at, double min_facing, Budget &budget) const;
+    std::optional<RelaxedTrim> find_hidden(const Sample &at, Budget &budget) const;
 
     const Job &job_;
     const Partition &partition_;
@@ -72,28 +77,33 @@ bool Search::shown_by(const HeightField &field, const Sample &at, double max_abo
     return off >= -MAX_BELOW && off <= max_above;
 }
 
-bool Search::shown_by_any(const Sample &at, double min_facing) const
+/* Also where the budget is spent before one is found. */
+bool Search::shown_by_any(const Sample &at, double min_facing, Budget &budget) const
 {
-    return fields_.any_near(at.point, 0, [&](const HeightField &field) {
-        return dot(at.normal, field.axis[2]) >= min_facing && shown_by(field, at, MAX_ABOVE);
+    return budget.spent() || fields_.any_near(at.point, 0, [&](const HeightField &field) {
+        budget.spend(1);
+        return budget.spent() || (dot(at.normal, field.axis[2]) >= min_facing &&
+                                  shown_by(field, at, MAX_ABOVE));
     });
 }
 
 /* The cell of a height field that is right there, and hidden by its trim alone: the one that is
  * hidden least. */
-std::optional<RelaxedTrim> Search::find_hidden(const Sample &at) const
+std::optional<RelaxedTrim> Search::find_hidden(const Sample &at, Budget &budget) const
 {
     const HeightField *found = nullptr;
     double least = MAX_RELAXED;
     fields_.any_near(at.point, 0, [&](const HeightField &field) {
         const double facing = dot(at.normal, field.axis[2]);
         double above, trim;
-        if (facing >= MIN_FACING && field.field_above(at.point, above, trim) && trim <= least &&
-            std::abs(above * facing) <= MAX_OFF * job_.pitch) {
+        budget.spend(1);
+        if (facing >= MIN_FACING && field.field_above(at.point, above, trim) &&
+            std::abs(above * facing) <= MAX_OFF * job_.pitch &&
+            (trim < least || (trim == least && (!found || fields_.is_before(*found, field))))) {
             least = trim;
             found = &field;
         }
-        return false;
+        return budget.spent();
     });
     if (!found)
         return {};
@@ -115,8 +125,21 @@ bool in_core(const Chart &chart, const Vec3d &point)
            local.y >= chart.clip_low[1] && local.y <= chart.clip_high[1];
 }
 
+/* Samples along a side of a triangle. */
+int Search::parts_of(uint32_t triangle) const
+{
+    const Mesh &mesh = job_.mesh;
+    const Vec3d first = mesh.position(triangle, 0) - job_.anchor;
+    const Vec3d e = mesh.position(triangle, 1) - job_.anchor - first;
+    const Vec3d f = mesh.position(triangle, 2) - job_.anchor - first;
+    const double square = std::max({dot(e, e), dot(f, f), dot(f - e, f - e)});
+    const double longest = std::sqrt(square) / job_.pitch;
+    const double sides = NEEDLE + std::sqrt(length(cross(e, f)) / 2) / job_.pitch;
+    return std::max(1, int(std::ceil(SAMPLES * std::min(longest, sides))));
+}
+
 /* How much of a triangle no height field shows, 0..1, once trims are `relaxed`. */
-double Search::uncovered_share(size_t field, uint32_t triangle,
+double Search::uncovered_share(size_t field, uint32_t triangle, Budget &budget,
                                Vector<RelaxedTrim> &relaxed) const
 {
     const Mesh &mesh = job_.mesh;
@@ -125,14 +148,11 @@ double Search::uncovered_share(size_t field, uint32_t triangle,
     const Vec3d first = mesh.position(triangle, 0) - job_.anchor;
     const Vec3d e = mesh.position(triangle, 1) - job_.anchor - first;
     const Vec3d f = mesh.position(triangle, 2) - job_.anchor - first;
-    const double square = std::max({dot(e, e), dot(f, f), dot(f - e, f - e)});
-    const double longest = std::sqrt(square) / job_.pitch;
     const Vec3d normal = normalize(cross(e, f));
     if (!(dot(normal, own.axis[2]) > TWISTED) || is_masked(mesh, triangle))
         return 0;
     const bool steep = dot(normal, own.axis[2]) < STEEP;
-    const double sides = NEEDLE + std::sqrt(length(cross(e, f)) / 2) / job_.pitch;
-    const int parts = std::max(1, int(std::ceil(SAMPLES * std::min(longest, sides))));
+    const int parts = parts_of(triangle);
     int uncovered = 0;
     for (int j = 0; j < parts; ++j) {
         for (int i = 0; i + j < parts; ++i) {
@@ -140,9 +160,9 @@ double Search::uncovered_share(size_t field, uint32_t triangle,
                                normal};
             const bool by_own = shown_by(own, at, INFINITY);
             if ((by_own && !steep) || !in_core(chart, at.point + job_.anchor) ||
-                shown_by_any(at, steep ? STEEP : 0))
+                shown_by_any(at, steep ? STEEP : 0, budget))
                 continue;
-            if (const std::optional<RelaxedTrim> hidden = find_hidden(at))
+            if (const std::optional<RelaxedTrim> hidden = find_hidden(at, budget))
                 relaxed.push_back(*hidden);
             else
                 uncovered += !by_own;
@@ -151,12 +171,35 @@ double Search::uncovered_share(size_t field, uint32_t triangle,
     return uncovered / (parts * (parts + 1) / 2.);
 }
 
+/* Looks at the others for the samples of each height field. */
+Vector<Budget> Search::share_looks(Task &task) const
+{
+    Vector<double> samples(fields_.size()), over(fields_.size());
+    task.parallel(fields_.size(), [&](size_t s) {
+        for (uint32_t t : partition_.charts[fields_.patch(s)].triangles)
+            samples[s] += parts_of(t) * (parts_of(t) + 1.) / 2;
+        fields_.any_near(fields_[s].centre, 0,
+                         [&](const HeightField &) { return ++over[s] == MAX_OVER; });
+    }, 0, 0);
+    double all = 0, wanted = 0;
+    for (size_t s = 0; s < samples.size(); ++s) {
+        all += samples[s];
+        wanted += samples[s] * over[s];
+    }
+    Vector<Budget> out;
+    for (double of_field : samples)
+        out.emplace_back(looks_each(all, wanted) * of_field);
+    return out;
+}
+
 Gaps Search::run(Task &task) const
 {
     Vector<Gaps> of_field(fields_.size());
+    Vector<Budget> budgets = share_looks(task);
     task.parallel(fields_.size(), [&](size_t s) {
+        Budget &budget = budgets[s];
         for (uint32_t t : partition_.charts[fields_.patch(s)].triangles) {
-            const double share = uncovered_share(s, t, of_field[s].relaxed);
+            const double share = uncovered_share(s, t, budget, of_field[s].relaxed);
             if (!(share > 0))
                 continue;
             const double area = length(job_.mesh.area_vector(t)) / (2 * job_.pitch * job_.pitch);

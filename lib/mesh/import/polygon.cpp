@@ -61,8 +61,8 @@ static bool inside(Point p, Point a, Point b, Point c)
            !same(c);
 }
 
-/* Meisters, "Polygons have ears", 1975. A polygon that crosses itself may have none left, or take
- * too long to show one; then the corner at hand is cut off, so that the count of triangles holds. */
+/* Meisters, "Polygons have ears", 1975. A polygon that crosses itself may have none left, or show
+ * one too late; then the corner at hand is cut off, so that the count of triangles holds. */
 static void clip_ears(const Vector<Point> &flat, Vector<std::array<uint32_t, 3>> &out)
 {
     uint32_t n = uint32_t(flat.size());
