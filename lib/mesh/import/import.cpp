@@ -112,7 +112,7 @@ static std::string inflate_gzip(const std::string &packed, Task &task)
         fail(GTX_ERROR_MEMORY, "not enough memory to inflate the file");
     std::unique_ptr<z_stream, int (*)(z_stream *)> guard(&stream, inflateEnd);
     std::string out;
-    Vector<char> block(size_t(1) << 16);
+    Vector<char> block(size_t(1) << 14);
     size_t at = 0;
     for (int status = Z_OK; status != Z_STREAM_END || packed.compare(at, 2, "\x1f\x8b") == 0;) {
         if (status == Z_STREAM_END)
