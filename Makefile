@@ -48,8 +48,9 @@ CC  ?= cc
 CXX ?= c++
 flags_release  := -O3 -g
 flags_debug    := -O0 -g
-flags_sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined \
-                  -fno-sanitize-recover=undefined
+flags_sanitize := -O1 -g -fno-omit-frame-pointer \
+                  -fsanitize=address,undefined,float-cast-overflow \
+                  -fno-sanitize-recover=undefined,float-cast-overflow
 flags_thread   := -O1 -g -fsanitize=thread
 flags_fuzz     := -O1 -g -fno-omit-frame-pointer -fno-sanitize-recover=all \
                   -fsanitize=fuzzer-no-link,address,undefined,float-cast-overflow

@@ -156,7 +156,8 @@ typedef struct gtx_lod_desc {
  * vertices. The finest LOD mesh aims at a ninth of the asset's source_triangles (if that is 0, of
  * two triangles per texel); each `error` is a distance from the maps' own surface. The same asset
  * and options give the same bytes. `desc` may be NULL. Any thread.
- * Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, INTERNAL. */
+ * Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, LIMIT (a patch lies more than 10^9 times its
+ * size away from the anchor), INTERNAL. */
 GTX_API gtx_result gtx_cook_lod_meshes(const gtx_asset *asset, const gtx_lod_desc *desc,
                                        gtx_asset **out, gtx_error *error);
 

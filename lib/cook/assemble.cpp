@@ -9,6 +9,7 @@
 #include <geotex/cook.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace gtx {
 
@@ -125,6 +126,17 @@ static uint64_t map_bytes(const gtx_info &info)
            (1 + info.height_bits / 8);
 }
 
+/* Places on a patch so far away are not told apart, not even by doubles. */
+static void require_near(const Vector<gtx_patch> &patches)
+{
+    constexpr double MAX_AWAY = 1e9; /* times its size */
+    for (size_t p = 0; p < patches.size(); ++p)
+        for (float at : patches[p].origin)
+            if (std::fabs(at) > MAX_AWAY * std::min(patches[p].extent_x, patches[p].extent_y))
+                throw Error(GTX_ERROR_LIMIT, "patch " + std::to_string(p) + " lies more than 10^9 "
+                            "times its size away from the anchor");
+}
+
 static Asset with_lod(const gtx_asset *asset, const gtx_lod_desc &desc)
 {
     require_zeroed(desc.reserved);
@@ -136,6 +148,7 @@ static Asset with_lod(const gtx_asset *asset, const gtx_lod_desc &desc)
     Task task(desc.threads, desc.progress, desc.progress_user, {"lod"}, {1}, desc.limits);
     task.limits.read("", map_bytes(info));
     const Maps maps = maps_of(asset);
+    require_near(maps.patches);
     LodSource source = lod_source(maps, task);
     source.model = info.source_triangles;
     size_t size;

@@ -228,6 +228,24 @@ static void create_again(const gtx_asset *asset, bool hashed)
     gtx_close(again);
 }
 
+/* The same through a file. */
+static void save_and_open(const gtx_asset *asset)
+{
+    Counted memory;
+    const gtx_allocator hooks = memory.hooks();
+    gtx_encode_desc encode = {};
+    encode.allocator = &hooks;
+    gtx_open_desc open = {};
+    open.allocator = &hooks;
+    open.limits = small_limits();
+    gtx_asset *again = nullptr;
+    gtx_error error = {};
+    const std::string path = scratch("a.gtx");
+    REQUIRE(!gtx_save_file(asset, path.c_str(), &encode, &error), "saving: %s", error.message);
+    REQUIRE(!gtx_open_file(path.c_str(), &open, &again, &error), "opening: %s", error.message);
+    gtx_close(again);
+}
+
 void run_gtx(const uint8_t *data, size_t size)
 {
     const uint64_t how = choices(data, size);
@@ -247,6 +265,8 @@ void run_gtx(const uint8_t *data, size_t size)
             create_again(asset, whole);
         else if (how >> 9 & 1)
             round_trip(asset, whole, "what was opened");
+        if (how >> 59 == 0)
+            save_and_open(asset);
         use_asset(asset, how >> 10);
     }
     gtx_close(asset);

@@ -125,6 +125,9 @@ void run_gltf(const uint8_t *data, size_t size) { run(data, size, "a.gltf"); }
 void run_draco(const uint8_t *data, size_t size) { run(data, size, "a.drc"); }
 void run_gzip(const uint8_t *data, size_t size) { run(data, size, "a.obj.gz"); }
 
+/* A grey pixel, for a library to refer to. */
+static const uint8_t PICTURE[] = "P5\n1 1\n255\n\x80";
+
 /* What follows a line "# a.mtl" is the material library beside the model. */
 void run_obj(const uint8_t *data, size_t size)
 {
@@ -132,6 +135,7 @@ void run_obj(const uint8_t *data, size_t size)
     const uint8_t *at = std::search(data, data + size, mark.begin(), mark.end());
     const uint8_t *library = std::min(at + mark.size(), data + size);
     write_scratch("a.mtl", library, size_t(data + size - library));
+    write_scratch("a.png", PICTURE, sizeof PICTURE - 1);
     run(data, size_t(at - data), "a.obj");
 }
 

@@ -1,4 +1,6 @@
-/* What fuzzing has found: every file of the corpora, and every one that once failed, again. */
+/* What fuzzing has found: every file of the corpora, and every one that once failed, again.
+ *
+ *   test_fuzz TARGET FILE...   runs these alone */
 #include "fuzz/fuzz.hpp"
 
 #include <algorithm>
@@ -34,23 +36,32 @@ static std::vector<std::filesystem::path> files_of(const char *kind, const char 
     return out;
 }
 
+static void run(const fuzz::Target &target, const std::filesystem::path &path)
+{
+    std::fprintf(stderr, "%s\n", path.c_str()); /* the last one said is to blame */
+    std::ifstream in(path, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    target.run(reinterpret_cast<const uint8_t *>(bytes.data()), bytes.size());
+}
+
 static void replay(void **state)
 {
     const auto *target = static_cast<const fuzz::Target *>(*state);
     const auto corpus = files_of("corpus", target->name);
     assert_true(corpus.size() >= 5);
     for (const auto &files : {corpus, files_of("found", target->name)})
-        for (const auto &path : files) {
-            std::fprintf(stderr, "%s\n", path.c_str()); /* the last one said is to blame */
-            std::ifstream in(path, std::ios::binary);
-            const std::string bytes((std::istreambuf_iterator<char>(in)), {});
-            target->run(reinterpret_cast<const uint8_t *>(bytes.data()), bytes.size());
-        }
+        for (const auto &path : files)
+            run(*target, path);
 }
 
-int main()
+int main(int count, char **arguments)
 {
     std::vector<CMUnitTest> tests;
+    for (size_t i = 0; count > 1 && i < fuzz::target_count; ++i)
+        for (int a = 2; a < count && fuzz::targets[i].name == std::string(arguments[1]); ++a)
+            run(fuzz::targets[i], arguments[a]);
+    if (count > 1)
+        return 0;
     for (size_t i = 0; i < fuzz::target_count; ++i)
         tests.push_back({fuzz::targets[i].name, replay, nullptr, nullptr,
                          const_cast<fuzz::Target *>(&fuzz::targets[i])});

@@ -69,7 +69,7 @@ static Bytes inflate_gzip(std::string_view packed, Look &look, Task &task)
     std::unique_ptr<z_stream, int (*)(z_stream *)> guard(&stream, inflateEnd);
     Bytes out;
     bool looked = false;
-    Vector<char> block(size_t(1) << 16);
+    Vector<char> block(size_t(1) << 14);
     size_t at = 0;
     for (int status = Z_OK; status != Z_STREAM_END || packed.compare(at, 2, GZIP_MAGIC) == 0;) {
         if (status == Z_STREAM_END)
