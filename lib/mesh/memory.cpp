@@ -35,6 +35,8 @@ void Limits::read(const std::string &path, uint64_t bytes)
 {
     std::error_code ignored; /* what has no canonical name is no file: what it is called counts */
     const std::string name = std::filesystem::weakly_canonical(path, ignored).string();
+    if (ignored == std::errc::not_enough_memory)
+        throw std::bad_alloc();
     if (files_.insert(ignored ? path : name).second)
         grow(read_ += bytes);
 }

@@ -3,8 +3,8 @@
 #include "cook/folder.hpp"
 
 #include <atomic>
-#include <cstring>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 
 /* ---- allocations that fail ---- */
@@ -131,12 +131,12 @@ static const struct {
     const char *name;
     Call call;
     size_t stride; /* of the failing allocations: a prime, where all take minutes */
-} calls[] = {{"cuts", cook_by(GTX_PARTITION_CUTS, 2, 1), 7},
-             {"vsa", cook_by(GTX_PARTITION_VSA, 0, 0), 5},
-             {"pgp", cook_by(GTX_PARTITION_PGP, 0, 0), 11},
-             {"compare", compare_once, 5},
-             {"lod", lod_once, 11},
-             {"horizons", horizons_once, 5}};
+} calls[] = {{"cuts", cook_by(GTX_PARTITION_CUTS, 2, 1), 101},
+             {"vsa", cook_by(GTX_PARTITION_VSA, 0, 0), 103},
+             {"pgp", cook_by(GTX_PARTITION_PGP, 0, 0), 107},
+             {"compare", compare_once, 11},
+             {"lod", lod_once, 109},
+             {"horizons", horizons_once, 113}};
 
 static int prepare(void **state)
 {
@@ -156,8 +156,10 @@ static int prepare(void **state)
 
 /* ---- the tests ---- */
 
-/* Runs it once more, which must end so, without a file or a block left. */
-static void fails_cleanly(const char *name, const Call &call, size_t k, gtx_result wanted)
+/* Runs it once more, which must end so, without a file or a block left. Only what makes no
+ * difference may get by without an allocation. */
+static void fails_cleanly(const char *name, const Call &call, size_t k, gtx_result wanted,
+                          const std::string &expected)
 {
     Progress progress;
     const size_t files = files_in_folder();
@@ -169,6 +171,11 @@ static void fails_cleanly(const char *name, const Call &call, size_t k, gtx_resu
         fail_at = taken + k;
     const gtx_result result = call(progress, &error);
     fail_at = 0;
+    if (result == GTX_OK && wanted == GTX_ERROR_MEMORY && !expected.empty()) {
+        assert_true(read_file(output) == expected);
+        fs::remove(output);
+        return;
+    }
     if (result != wanted || error.result != wanted)
         fail_msg("%s %zu: %d, %s", name, k, result, error.message);
     if (live != before)
@@ -188,11 +195,11 @@ static void every_allocation_fails(void **)
         const size_t first = taken;
         assert_int_equal(c.call(progress, nullptr), GTX_OK);
         const size_t count = taken - first;
+        const std::string expected = read_file(output);
         fs::remove(output);
         assert_true(count > 100);
-        printf("%s: %zu allocations\n", c.name, count);
         for (size_t k = 1; k <= count; k += all ? 1 : c.stride)
-            fails_cleanly(c.name, c.call, k, GTX_ERROR_MEMORY);
+            fails_cleanly(c.name, c.call, k, GTX_ERROR_MEMORY, expected);
     }
 }
 
@@ -204,7 +211,7 @@ static void every_progress_call_cancels(void **)
         fs::remove(output);
         assert_true(whole.calls > 2);
         for (size_t k = 1; k <= whole.calls; ++k)
-            fails_cleanly(c.name, c.call, k, GTX_CANCELLED);
+            fails_cleanly(c.name, c.call, k, GTX_CANCELLED, "");
     }
 }
 
