@@ -18,7 +18,7 @@ enum { STEPS = 6 };
 /* Rates, in square texels, beyond which a texel is slowed down: patches of up to three times the
  * usual density are not. */
 static const float FASTEST = 36;
-/* Stages for each texel of the radius: the fastest rates take 2.5, only those that overflow more. */
+/* Stages for each texel of the radius: the fastest rates take 2.5, only what overflows more. */
 static const double MAX_STAGES = 3;
 
 /* Neighbours in pairs: k + 4 is opposite to k. */

@@ -21,10 +21,17 @@ static gtx_result check_image(const gtx_edit_image *image, gtx_error *error)
     return GTX_OK;
 }
 
+/* What lies beyond a whole number; 0 of what is no number. */
+static double part_of(double at)
+{
+    const double part = at - floor(at);
+    return part >= 0 ? part : 0;
+}
+
 /* The image at (u, v), each 0..1 from one side to the other, v downwards; it is repeated. */
 static double look_up(const gtx_edit_image *image, double u, double v)
 {
-    const double x = (u - floor(u)) * image->width - 0.5, y = (v - floor(v)) * image->height - 0.5;
+    const double x = part_of(u) * image->width - 0.5, y = part_of(v) * image->height - 0.5;
     const double i = floor(x), j = floor(y);
     double row[2];
     for (int k = 0; k < 2; ++k) {
