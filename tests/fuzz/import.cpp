@@ -58,7 +58,7 @@ static size_t import(const std::string &bytes, const std::string &path)
     gtx::Task task(1, nullptr, nullptr, {}, {}, small_limits());
     try {
         gtx::ModelFile file = gtx::model_in_memory(bytes, path, task);
-        gtx::referenced_files(file);
+        gtx::referenced_files(file, task);
         Mesh mesh = gtx::import_model(file, task);
         check_imported(mesh);
         gtx::CleanReport report;

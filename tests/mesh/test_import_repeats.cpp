@@ -47,8 +47,9 @@ static void references_are_listed_once(void **)
     for (int k = 0; k < 40000; ++k) /* in two folders that are one, in two spellings */
         library += "map_Kd " + std::to_string(k) + ".png\nmap_Kd ./" + std::to_string(k) + ".png\n";
     folder.write("b.mtl", library);
-    gtx::ModelFile file = {(folder.path / "a.obj").string(), text, nullptr};
-    assert_int_equal(gtx::referenced_files(file).size(), 40001);
+    gtx::ModelFile file = {(folder.path / "a.obj").string(), gtx::Bytes(text), nullptr};
+    Task task(1, nullptr, nullptr);
+    assert_int_equal(gtx::referenced_files(file, task).size(), 40001);
 }
 
 static void names_of_any_length_name_no_file(void **)
@@ -57,8 +58,10 @@ static void names_of_any_length_name_no_file(void **)
     std::string name;
     for (int k = 0; k < 500000; ++k)
         name += "a/";
-    gtx::ModelFile file = {(folder.path / "a.obj").string(), "mtllib x " + name, nullptr};
-    assert_int_equal(gtx::referenced_files(file).size(), 1);
+    gtx::ModelFile file = {(folder.path / "a.obj").string(), gtx::Bytes("mtllib x " + name),
+                           nullptr};
+    Task task(1, nullptr, nullptr);
+    assert_int_equal(gtx::referenced_files(file, task).size(), 1);
 }
 
 static void names_are_found_among_many(void **)
