@@ -32,7 +32,7 @@ static void misuse_leaves_nothing(void **state)
     refused(1, "--gaussian wants TEXELS", "sphere.gtx -o no.gtx --gaussian -3");
     refused(1, "finite and above 0", "sphere.gtx -o no.gtx --gaussian 0");
     refused(6, "larger than the largest patch", "sphere.gtx -o no.gtx --gaussian 5000");
-    refused(5, "larger than the largest patch", "sphere.gtx -o no.gtx --gaussian-world 90");
+    refused(6, "larger than the largest patch", "sphere.gtx -o no.gtx --gaussian-world 90");
     refused(1, "--high-boost wants AMOUNT", "sphere.gtx -o no.gtx --high-boost 99");
     refused(1, "not 1 x 1", "sphere.gtx -o no.gtx --pattern dot.png");
     refused(2, "none.png: error[read]", "sphere.gtx -o no.gtx --gaussian 1 --pattern none.png");

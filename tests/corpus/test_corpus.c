@@ -1,15 +1,17 @@
-/* Real and hostile models through the command: a sound asset, or one clear line and exit 2, 3 or 5.
+/* Real and hostile models through the command: a sound asset, or a clear line and exit 2, 3, 5, 6.
  *
  * Every file under $GEOTEX_MODELS is cooked; what was cooked is validated, compared and rendered.
  * Each run is a process of its own with at most 60 seconds and 4 GiB. Files of malformed/ are
  * sampled (every eighth), and files of more than 2 MB and small assets' pictures left out, unless
  * GTX_CORPUS=all. $GTX_OUT/corpus.txt says what became of each file. */
+#define _DEFAULT_SOURCE /* wait4 */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
 #include <stdint.h>
 #include <cmocka.h>
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <ftw.h>
 #include <stdbool.h>
@@ -29,7 +31,8 @@ static char *files[MAX_FILES];
 static unsigned file_count;
 static bool everything, sanitized;
 static char folder[] = "/tmp/gtx-corpus-XXXXXX";
-static char asset[64], temporary[80], picture[64], log_file[64];
+static char asset[64], picture[64], log_file[64];
+static uint64_t peak; /* memory that the last command had resident, bytes */
 
 static int collect(const char *path, const struct stat *info, int kind, struct FTW *ftw)
 {
@@ -61,7 +64,9 @@ static int run(char *const argv[])
         _exit(99);
     }
     int status = -1;
-    waitpid(child, &status, 0);
+    struct rusage usage = {0};
+    wait4(child, &status, 0, &usage);
+    peak = 1024 * (uint64_t)usage.ru_maxrss;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
@@ -84,18 +89,33 @@ static bool exists(const char *path)
     return access(path, F_OK) == 0;
 }
 
-/* What is wrong with how cooking ended, or NULL. */
-static const char *fault_of_cook(int code, unsigned errors, const char *last)
+/* Where outputs are before they are whole. */
+static bool has_temporary(void)
+{
+    bool found = false;
+    DIR *list = opendir(folder);
+    for (struct dirent *entry; list && (entry = readdir(list)) != NULL;)
+        found = found || !strncmp(entry->d_name, ".gtx-", 5);
+    if (list)
+        closedir(list);
+    return found;
+}
+
+/* What is wrong with how cooking ended, or NULL. `size` is that of the model; its buffers and
+ * images, and what the program itself takes, have 256 MB here. */
+static const char *fault_of_cook(int code, off_t size, unsigned errors, const char *last)
 {
     if (code == -1)
         return "cook died of a signal or a limit";
-    if (exists(temporary))
+    if (has_temporary())
         return "cook left its temporary file";
+    if (!sanitized && peak > ((uint64_t)512 << 20) + 2000 * (uint64_t)size)
+        return "cook took more memory than it may for files of that size";
     if (code == 0)
         return exists(asset) ? NULL : "cook wrote nothing";
     if (exists(asset))
         return "cook failed but wrote a file";
-    if (code != 2 && code != 3 && code != 5)
+    if (code != 2 && code != 3 && code != 5 && code != 6)
         return "cook left with an unexpected exit code";
     return errors == 1 && strstr(last, ": error[") ? NULL : "cook did not say why in one line";
 }
@@ -118,7 +138,6 @@ static const char *fault_of_asset(char *gtx, char *model, bool pictured)
 static void remove_outputs(void)
 {
     unlink(asset);
-    unlink(temporary);
     unlink(picture);
     unlink(log_file);
 }
@@ -132,7 +151,6 @@ static int set_up(void **state)
     if (!mkdtemp(folder))
         return -1;
     snprintf(asset, sizeof asset, "%s/out.gtx", folder);
-    snprintf(temporary, sizeof temporary, "%s.tmp", asset);
     snprintf(picture, sizeof picture, "%s/out.png", folder);
     snprintf(log_file, sizeof log_file, "%s/log", folder);
     return 0;
@@ -167,7 +185,9 @@ static void every_file_cooks_or_is_refused(void **state)
         remove_outputs();
         int code = run(cook);
         unsigned errors = read_log(last);
-        const char *fault = fault_of_cook(code, errors, last);
+        struct stat model = {0};
+        stat(files[i], &model);
+        const char *fault = fault_of_cook(code, model.st_size, errors, last);
         if (!fault && code == 0)
             fault = fault_of_asset(gtx, files[i], everything || cooked % PICTURE_SAMPLE == 0);
         if (fault) {
