@@ -42,6 +42,13 @@ void fail(gtx_result result, const char *format, ...)
     throw Error(result, message);
 }
 
+void require_triangles(uint64_t count, const Task &task)
+{
+    task.limits.require(GTX_LIMITED_TRIANGLES, "the model", count);
+    if (count > MAX_VERTICES)
+        fail(GTX_ERROR_LIMIT, "more than %llu triangles", (unsigned long long)MAX_VERTICES);
+}
+
 std::string printable(std::string_view text, size_t longest)
 {
     std::string out;
@@ -219,7 +226,7 @@ Mesh import_model(const ModelFile &file, Task &task)
     Mesh mesh = within_memory([&] { return format->import(file, task); });
     if (mesh.triangles.empty())
         fail(GTX_ERROR_EMPTY, "the model has no triangle");
-    task.limits.require(GTX_LIMITED_TRIANGLES, "the model", mesh.triangles.size());
+    require_triangles(mesh.triangles.size(), task);
     task.advance(1);
     return mesh;
 }

@@ -26,6 +26,9 @@ void require_facets(std::string_view head);
 /* Vertices and triangles are numbered in 32 bits, and the last number is taken. */
 constexpr uint64_t MAX_VERTICES = 0xfffffffe;
 
+/* Throws Error(LIMIT) for more triangles than are allowed, or than 32 bits can count. */
+void require_triangles(uint64_t count, const Task &task);
+
 /* Throws Error(result, the sentence). */
 [[noreturn]] void fail(gtx_result result, const char *format, ...) GTX_PRINTF(2, 3);
 

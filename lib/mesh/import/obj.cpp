@@ -134,9 +134,7 @@ void ObjReader::face()
         for (const auto &t : cut_)
             triangle(corners_[t[0]], corners_[t[1]], corners_[t[2]]);
     }
-    if (mesh_.triangles.size() > MAX_VERTICES)
-        fail(GTX_ERROR_LIMIT, "line %zu: more than %llu triangles", text_.line(),
-             (unsigned long long)MAX_VERTICES);
+    require_triangles(mesh_.triangles.size(), task_);
 }
 
 void ObjReader::use_material()

@@ -131,9 +131,7 @@ void OffReader::face()
     triangulate(polygon_, cut_);
     for (const auto &t : cut_)
         mesh_.triangles.push_back({corners_[t[0]], corners_[t[1]], corners_[t[2]]});
-    if (mesh_.triangles.size() > MAX_VERTICES)
-        fail(GTX_ERROR_LIMIT, "line %zu: more than %llu triangles", text_.line(),
-             (unsigned long long)MAX_VERTICES);
+    require_triangles(mesh_.triangles.size(), task_);
 }
 
 void OffReader::finish()

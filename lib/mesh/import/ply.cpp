@@ -207,6 +207,7 @@ void PlyReader::cut_faces()
         } else {
             ++dropped;
         }
+        require_triangles(mesh_.triangles.size(), task_);
         if (faces_colored_)
             colors_.resize(mesh_.triangles.size(), faces_.colors[row]);
         if (row % 0x8000 == 0)
@@ -237,6 +238,7 @@ void PlyReader::cut_strips()
             a = b;
             b = c;
         }
+        require_triangles(mesh_.triangles.size(), task_);
         if (faces_colored_)
             colors_.resize(mesh_.triangles.size(), strips_.colors[row]);
     }
@@ -278,8 +280,6 @@ Mesh PlyReader::read()
         fail(GTX_ERROR_UNSUPPORTED, "the file is a point cloud: it has no faces");
     cut_faces();
     cut_strips();
-    if (mesh_.triangles.size() > MAX_VERTICES)
-        fail(GTX_ERROR_LIMIT, "more than %llu triangles", (unsigned long long)MAX_VERTICES);
     if (!ignored_.empty())
         task_.warn(GTX_WARNING_IGNORED_DATA, "PLY properties were ignored: " + ignored_);
     return colored();

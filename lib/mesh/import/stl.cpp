@@ -34,6 +34,7 @@ static Mesh read_binary(std::string_view bytes, Task &task)
              (unsigned long long)count, (unsigned long long)size, bytes.size());
     if (3 * count > MAX_VERTICES)
         fail(GTX_ERROR_LIMIT, "more than %llu vertices", (unsigned long long)MAX_VERTICES);
+    require_triangles(count, task);
     Mesh mesh;
     bool has_colors = false;
     mesh.positions.reserve(size_t(3 * count));
@@ -128,6 +129,7 @@ static Mesh read_text(std::string_view bytes, Task &task)
         triangulate(polygon, cut);
         for (const auto &t : cut)
             mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+        require_triangles(mesh.triangles.size(), task);
     }
     if (inside)
         fail(GTX_ERROR_INPUT, "the STL file ends where 'endsolid' is to follow");
