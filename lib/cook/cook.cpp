@@ -96,14 +96,18 @@ struct Outputs {
         require_argument(!asset || !charts_ply || !gtx_same_file(asset, charts_ply),
                          "the asset and charts_ply are one file");
     }
+    void refuse(const char *source) const
+    {
+        require_argument(!asset || !gtx_same_file(source, asset),
+                         "the output is one of the files that the model is read from");
+        require_argument(!charts_ply || !gtx_same_file(source, charts_ply),
+                         "charts_ply is one of the files that the model is read from");
+    }
     void refuse_sources(const Vector<std::string> &sources) const
     {
         Vector<const char *> paths;
         for (const std::string &source : sources) {
-            require_argument(!asset || !gtx_same_file(source.c_str(), asset),
-                             "the output is one of the files that the model is read from");
-            require_argument(!charts_ply || !gtx_same_file(source.c_str(), charts_ply),
-                             "charts_ply is one of the files that the model is read from");
+            refuse(source.c_str());
             paths.push_back(source.c_str());
         }
         gtx_error error;
@@ -262,6 +266,10 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
 
     const Outputs outputs = {output, desc.charts_ply, desc.sources_fn, desc.sources_user};
     outputs.refuse_one_file();
+    if (!input.data)
+        outputs.refuse(input.path);
+    for (uint32_t i = 0; i < desc.more_count; ++i)
+        outputs.refuse(desc.more[i]);
     task.begin("import");
     Models models = read_models(input, desc.more, desc.more_count, task);
     outputs.refuse_sources(models.sources);
