@@ -30,9 +30,6 @@ uint64_t gtx_limit_of(const gtx_limits *limits, gtx_limited which, uint64_t byte
 gtx_result gtx_fail_limit(gtx_error *error, gtx_limited which, const char *what, uint64_t wanted,
                           uint64_t allowed);
 
-/* The field's name as gtx_error.limit has it. */
-const char *gtx_limit_name(gtx_limited which);
-
 #ifdef __cplusplus
 }
 #endif

@@ -1,28 +1,12 @@
 /* Which importer a file gets, gzip, cancelling, and the list of sources. */
-#include <zlib.h>
-
-#include "test_import.hpp"
+#include "mesh/gzip.hpp"
+#include "mesh/test_import.hpp"
 
 static const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 static const std::string ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float "
                                "x\nproperty float y\nproperty float z\n"
                                "element face 1\nproperty list uchar int "
                                "vertex_indices\nend_header\n0 0 0 1 0 0 0 1 0 3 0 1 2\n";
-
-static std::string gzipped(const std::string &bytes)
-{
-    std::string out(bytes.size() + 1000, '\0');
-    z_stream stream = {};
-    deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 9, Z_DEFAULT_STRATEGY);
-    stream.next_in = reinterpret_cast<Bytef *>(const_cast<char *>(bytes.data()));
-    stream.avail_in = uInt(bytes.size());
-    stream.next_out = reinterpret_cast<Bytef *>(out.data());
-    stream.avail_out = uInt(out.size());
-    assert_int_equal(deflate(&stream, Z_FINISH), Z_STREAM_END);
-    out.resize(stream.total_out);
-    deflateEnd(&stream);
-    return out;
-}
 
 static void test_kind(void **)
 {

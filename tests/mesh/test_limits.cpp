@@ -1,5 +1,6 @@
 /* Small files that ask for much: what importing them takes stays within what is allowed, and what
  * would pass a limit is told of by its name. */
+#include "mesh/gzip.hpp"
 #include "mesh/test_import.hpp"
 
 #include <atomic>
@@ -98,21 +99,6 @@ static std::string repeated(const std::string &text, size_t count)
     std::string out;
     for (size_t i = 0; i < count; ++i)
         out += (i ? "," : "") + text;
-    return out;
-}
-
-static std::string gzipped(const std::string &text)
-{
-    z_stream stream = {};
-    assert_int_equal(deflateInit2(&stream, 9, Z_DEFLATED, 15 + 16, 9, Z_DEFAULT_STRATEGY), Z_OK);
-    std::string out(deflateBound(&stream, uLong(text.size())), 0);
-    stream.next_in = reinterpret_cast<Bytef *>(const_cast<char *>(text.data()));
-    stream.avail_in = uInt(text.size());
-    stream.next_out = reinterpret_cast<Bytef *>(out.data());
-    stream.avail_out = uInt(out.size());
-    assert_int_equal(deflate(&stream, Z_FINISH), Z_STREAM_END);
-    out.resize(stream.total_out);
-    deflateEnd(&stream);
     return out;
 }
 
