@@ -17,6 +17,10 @@ float gtx_lambert(vec3 n)
 
 void main()
 {
+#ifdef GTX_TRIMMED
+    if (!gtx_is_shown())
+        discard;
+#endif
     vec3 place = gtx_place();
     float level = gtx_page.y;
     vec3 p = gtx_decode_normal(textureLod(gtx_normals, place, level).xy);

@@ -1,5 +1,6 @@
-/* An LOD mesh: polygons, whose vertices know their place and their patch. Map coordinates
- * and the frame of normals follow from the patch's record.
+/* Polygons, whose vertices know their place and their patch: of an LOD mesh or, with GTX_GRID, of
+ * height fields drawn as displaced grids (Cook, Shade Trees, SIGGRAPH 1984), a block of cells an
+ * instance. Map coordinates and the frame of normals follow from the patch's record.
  *
  * Needs geotex_height_field.glsl and geotex_view.glsl before it. What hardly
  * changes over a triangle is found here and stays the same all over it: triangles are small, and a
@@ -7,8 +8,13 @@
  * llvmpipe. */
 GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;
 
+#ifdef GTX_GRID
+layout(location = 0) in uvec2 gtx_node;     /* of the block */
+layout(location = 1) in uvec2 gtx_block;    /* patch + 2^28 level; its first cell, x + 2^16 y */
+#else
 layout(location = 0) in vec3 gtx_position;  /* in steps of the level */
 layout(location = 1) in uint gtx_patch;
+#endif
 #ifdef GTX_SINGLE
 uniform vec4 gtx_place[3];                  /* what follows, of the only instance */
 #define gtx_world_x gtx_place[0]
@@ -47,6 +53,49 @@ GTX_VARYING(9) flat out int gtx_patch_index;
 GTX_VARYING(10) flat out uint gtx_id;       /* of the instance */
 #endif
 
+#ifdef GTX_TRIMMED
+GTX_VARYING(11) out vec2 gtx_texel;         /* of the patch */
+GTX_VARYING(12) flat out uvec4 gtx_trimmed; /* of the rectangle, 16 bits each: corner; size; page,
+                                               level; 1 where the triangle's cell exists */
+#endif
+
+#ifdef GTX_GRID
+/* The code of a node, which each of its up to four cells that exists has; 0: none exists. The
+ * triangles of a cell get what is flat from its first node, and `exists` is of that cell. */
+uint gtx_code_of(gtx_height_field field, ivec2 node, out bool exists)
+{
+    uint code = 0u;
+    exists = false;
+    for (int k = 0; k < 4 && code == 0u; ++k) {
+        ivec2 cell = node - ivec2(k & 1, k >> 1);
+        bool within = all(greaterThanEqual(cell, ivec2(0))) &&
+                      all(lessThanEqual(cell, field.last));
+        if (within)
+            code = texelFetch(gtx_cells, ivec3(field.cells + cell, field.page), 0)[k];
+        exists = exists || (k == 0 && code != 0u);
+    }
+    return code;
+}
+
+/* The node's place in grid space. Where nothing exists it is nowhere, for triangles that show
+ * nothing anyway: what drivers make of it only costs time. */
+vec3 gtx_place_node(int index)
+{
+    gtx_height_field field = gtx_field_of(index, int(gtx_block.x >> 28));
+    ivec2 node = ivec2(gtx_block.y & 0xffffu, gtx_block.y >> 16) + ivec2(gtx_node);
+    node = min(node, field.last + 1);
+    bool exists;
+    uint code = gtx_code_of(field, node, exists);
+    vec2 at = vec2(min(node << field.level, field.size - 1));
+#ifdef GTX_TRIMMED
+    gtx_texel = at;
+    gtx_trimmed = uvec4(field.corner.x | field.corner.y << 16, field.size.x | field.size.y << 16,
+                        field.page | field.level << 16, exists ? 1u : 0u);
+#endif
+    return vec3(at, code == 0u ? uintBitsToFloat(0x7fc00000u) : float(code));
+}
+#endif
+
 vec3 gtx_to_world(vec3 object)
 {
     return vec3(dot(gtx_world_x.xyz, object), dot(gtx_world_y.xyz, object),
@@ -55,8 +104,16 @@ vec3 gtx_to_world(vec3 object)
 
 void main()
 {
+#ifdef GTX_GRID
+    int index = int(gtx_block.x & 0x0fffffffu);
+    vec3 grid = gtx_place_node(index);
+    vec4 object = vec4(gtx_object_point(gtx_frame_of(index), grid), 1.0);
+    vec2 at = grid.xy;
+#else
     int index = int(gtx_patch);
     vec4 object = vec4(gtx_lod_mesh.xyz + gtx_lod_mesh.w * gtx_position, 1.0);
+    vec2 at = gtx_to_grid(index, object).xy;
+#endif
     vec3 world = gtx_to_world(object.xyz) + vec3(gtx_world_x.w, gtx_world_y.w, gtx_world_z.w);
     gl_Position = gtx_clip_from_world * vec4(world, 1.0);
 
@@ -74,7 +131,6 @@ void main()
     float half_texel = 0.5 * exp2(min(floor(level + 0.75), gtx_maps.x));
     vec4 rect = gtx_record(index, GTX_RECORD_RECT);
     vec2 size = vec2(textureSize(gtx_normals, 0).xy);
-    vec2 at = gtx_to_grid(index, object).xy;
     gtx_at = (rect.xy + clamp(at + 0.5, vec2(half_texel), rect.zw - half_texel)) / size;
     gtx_page = vec2(gtx_record(index, GTX_RECORD_PAGE).w, level);
 

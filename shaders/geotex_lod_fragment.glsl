@@ -34,7 +34,11 @@ bool gtx_find(out gtx_surface s)
     s.hit.level = 0;
     s.hit.back = !gl_FrontFacing;
     s.level = gtx_page.y;
+#ifdef GTX_TRIMMED
+    return gtx_is_shown();
+#else
     return true;
+#endif
 }
 
 float gtx_window_depth(gtx_surface s)

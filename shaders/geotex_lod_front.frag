@@ -16,6 +16,10 @@ layout(location = 0) out vec4 gtx_out_color;
 
 void main()
 {
+#ifdef GTX_TRIMMED
+    if (!gtx_is_shown())
+        discard;
+#endif
     vec3 place = vec3(gtx_at, gtx_page.x);
     float level = gtx_page.y;
     vec3 n = normalize(gtx_decode_normal(textureLod(gtx_normals, place, level).xy));

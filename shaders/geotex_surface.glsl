@@ -81,3 +81,20 @@ vec3 gtx_shaded_to_srgb(vec3 root, float share)
     return mix(1.055 * r - 0.055, 12.92 * r * r * (0.197 + 2.05 * r),
                vec3(lessThan(r, vec3(0.0904))));
 }
+
+#ifdef GTX_TRIMMED
+/* Of a displaced grid: whether its triangle's cell exists and shows here. From geotex_lod.vert. */
+GTX_VARYING(11) in vec2 gtx_texel;
+GTX_VARYING(12) flat in uvec4 gtx_trimmed;
+
+bool gtx_is_shown()
+{
+    uvec4 t = gtx_trimmed;
+    gtx_height_field field;
+    field.corner = ivec2(t.x & 0xffffu, t.x >> 16);
+    field.size = ivec2(t.y & 0xffffu, t.y >> 16);
+    field.page = int(t.z & 0xffffu);
+    field.level = int(t.z >> 16);
+    return t.w != 0u && gtx_shows(field, gtx_texel);
+}
+#endif

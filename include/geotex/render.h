@@ -34,11 +34,13 @@ typedef struct gtx_model gtx_model;
 typedef void (*gtx_gl_proc)(void);
 
 /* What drawing costs, for GTX_METHOD_AUTO to compare: a triangle of an LOD mesh and a pixel that it
- * covers; a patch that is cast and a pixel that its proxy covers. In any unit; all 0 = as measured
- * with llvmpipe, on which only the finer LOD meshes may cost more than casting. */
+ * covers; a patch that is cast and a pixel that its proxy covers; a triangle of a displaced grid,
+ * whose pixels cost what those of LOD meshes do. In any unit; all 0 = as measured with llvmpipe, on
+ * which only the finer LOD meshes may cost more than casting. */
 typedef struct gtx_costs {
     float lod_triangle, lod_pixel;
     float cast_patch, cast_pixel;
+    float grid_triangle;          /* 0 = twice lod_triangle */
 } gtx_costs;
 
 /* Casting by tiles: for each tile of 4 x 4 pixels the patches of an instance that may cover it are
@@ -128,7 +130,9 @@ typedef enum gtx_method {
     GTX_METHOD_AUTO = 0,          /* what is fastest within the error budget: LOD mesh or cast */
     GTX_METHOD_CAST = 1,          /* exact: walks the cells and solves their bilinear patches */
     GTX_METHOD_PAPER = 2,         /* linear then binary search, balanced by slant (paper, 4.1) */
-    GTX_METHOD_LOD = 3            /* triangles of an LOD mesh, which the asset must have */
+    GTX_METHOD_LOD = 3,           /* triangles of an LOD mesh, which the asset must have */
+    GTX_METHOD_GRID = 4           /* triangles of the height fields, each patch at its own level:
+                                     displaced grids (Cook, Shade Trees, SIGGRAPH 1984) */
 } gtx_method;
 
 /* What a draw writes besides depth, by fragment output location. The programs of the forward pass

@@ -24,7 +24,7 @@ const option options[] = {
      "instances in view, in one draw call [1]", 0, 0},
     {"methods", 0, OPTION_STRING, &methods, "NAME,...",
      "mesh mesh_stream simplified paper cast lod auto cast_depth auto_depth cast_fragment "
-     "[mesh,simplified,paper,cast,lod,auto]", 0, 0},
+     "grid grid_depth [mesh,simplified,paper,cast,lod,auto]", 0, 0},
     {"frames", 0, OPTION_UINT, &frames, "N", "frames per method [12]", 1, 10000},
     {"max-error", 0, OPTION_NUMBER, &max_error, "PIXELS",
      "largest error of a level of detail on screen [0.5]", 1e-6, 1e6},

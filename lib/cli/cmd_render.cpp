@@ -11,7 +11,7 @@ static uint32_t size[2] = {1024, 768};
 static uint32_t method;
 static bool gles;
 static const gtx_method methods[] = {GTX_METHOD_AUTO, GTX_METHOD_CAST, GTX_METHOD_LOD,
-                                     GTX_METHOD_PAPER};
+                                     GTX_METHOD_GRID, GTX_METHOD_PAPER};
 
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &output, "OUT.png", "where the picture goes (required)", 0, 0},
@@ -20,7 +20,7 @@ static const option options[] = {
      "degrees, degrees, bounding-sphere radii [30,20,2.8]", 0, 0},
     {"depth", 0, OPTION_STRING, &depth_path, "OUT.exr",
      "also write depth along the view axis, infinity for background", 0, 0},
-    {"method", 0, OPTION_CHOICE, &method, "auto|cast|lod|paper",
+    {"method", 0, OPTION_CHOICE, &method, "auto|cast|lod|grid|paper",
      "how patches are drawn [auto]", 0, 0},
     {"level", 0, OPTION_CHOICE, &still_options.level, "auto|0|1|2|3|4|5|6|7",
      "level of detail, or the coarsest there is; auto: by --max-error [auto]", 0, 0},

@@ -11,7 +11,7 @@ static const option options[] = {
     {"size", 0, OPTION_SIZE, size, "WxH", "size of the window [1024x768]", 16, 8192},
     {"camera", 0, OPTION_TRIPLE, camera, "AZ,EL,DIST",
      "degrees, degrees, bounding-sphere radii [30,20,2.8]", 0, 0},
-    {"method", 0, OPTION_CHOICE, &method, "auto|cast|lod|paper",
+    {"method", 0, OPTION_CHOICE, &method, "auto|cast|lod|grid|paper",
      "how patches are drawn [auto]", 0, 0},
     {"frames", 0, OPTION_UINT, &script.frames, "N",
      "close after N frames, once --keys and cooking are done", 1, 1e9},

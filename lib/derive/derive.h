@@ -5,6 +5,8 @@
 
 #include "asset/asset.h"
 
+#include <stdbool.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -99,6 +101,8 @@ enum { GTX_SLAB_CELLS = 8 };
  * rectangle alone. */
 uint32_t gtx_slab_count(const gtx_patch *patch, uint32_t level);
 void gtx_grid_slabs(const gtx_patch *patch, const gtx_grid *grid, gtx_slab *out);
+/* Whether all cells of a slab's block exist and show all over, for each slab. */
+void gtx_grid_whole(const gtx_asset *asset, uint32_t patch, const gtx_grid *grid, bool *out);
 
 /* Makes room for more. Errors: MEMORY. */
 gtx_result gtx_proxies_reserve(gtx_proxies *proxies, size_t vertices, size_t indices,

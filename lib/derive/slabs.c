@@ -190,3 +190,45 @@ void gtx_grid_slabs(const gtx_patch *patch, const gtx_grid *grid, gtx_slab *out)
                                       min_u32(j + GTX_SLAB_CELLS, cells[1])},
                                      {patch->rect[2] - 1u, patch->rect[3] - 1u}});
 }
+
+/* Whether no texel of the block's cells is beyond the trim's limit. */
+static bool shows_whole(const block *b, const uint8_t *trim, size_t row_texels)
+{
+    const uint8_t limit = (uint8_t)fminf(gtx_trim_limit(b->grid->level), UINT8_MAX);
+    uint32_t low[2], high[2];
+    for (int k = 0; k < 2; ++k) {
+        low[k] = min_u32(b->low[k] << b->grid->level, b->last[k]);
+        high[k] = min_u32(b->high[k] << b->grid->level, b->last[k]);
+    }
+    for (uint32_t y = low[1]; y <= high[1]; ++y)
+        for (uint32_t x = low[0]; x <= high[0]; ++x)
+            if (trim[y * row_texels + x] > limit)
+                return false;
+    return true;
+}
+
+static bool is_solid(const block *b)
+{
+    for (uint32_t j = b->low[1]; j < b->high[1]; ++j)
+        if (memchr(solid_row(b, j) + b->low[0], 0, b->high[0] - b->low[0]))
+            return false;
+    return true;
+}
+
+void gtx_grid_whole(const gtx_asset *asset, uint32_t patch, const gtx_grid *grid, bool *out)
+{
+    const gtx_patch *p = &asset->patches[patch];
+    const uint32_t cells[2] = {grid->nodes_x - 1, grid->nodes_y - 1};
+    const size_t row_texels = asset->info.page_width;
+    const uint8_t *trim =
+        asset->trim + ((size_t)p->page * asset->info.page_height + p->rect[1]) * row_texels +
+        p->rect[0];
+    for (uint32_t j = 0; j < cells[1]; j += GTX_SLAB_CELLS)
+        for (uint32_t i = 0; i < cells[0]; i += GTX_SLAB_CELLS) {
+            const block b = {grid, {i, j},
+                             {min_u32(i + GTX_SLAB_CELLS, cells[0]),
+                              min_u32(j + GTX_SLAB_CELLS, cells[1])},
+                             {p->rect[2] - 1u, p->rect[3] - 1u}};
+            *out++ = is_solid(&b) && shows_whole(&b, trim, row_texels);
+        }
+}

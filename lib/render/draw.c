@@ -13,7 +13,7 @@ static gtx_result check(const gtx_renderer *renderer, const gtx_view *view,
         GTX_VIEW_REVERSED_Z | GTX_VIEW_DEPTH_ZERO_TO_ONE | GTX_VIEW_RESTORE_STATE;
     if (!renderer || !view || (count && !instances))
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a draw needs a renderer, a view and instances");
-    if (view->flags & ~flags || (unsigned)view->method > GTX_METHOD_LOD ||
+    if (view->flags & ~flags || (unsigned)view->method > GTX_METHOD_GRID ||
         (unsigned)view->pass > GTX_PASS_GBUFFER)
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "the view asks for an unknown flag, method or pass");
@@ -40,8 +40,8 @@ static gtx_result reserve(gtx_renderer *renderer, uint32_t count, gtx_error *err
     renderer->instance_capacity = count;
     renderer->instances = gtx_alloc_array(hooks, count, sizeof *renderer->instances);
     renderer->mirrored = gtx_alloc_array(hooks, count, sizeof *renderer->mirrored);
-    renderer->lods = gtx_alloc_array(hooks, count, sizeof *renderer->lods);
-    if (renderer->instances && renderer->mirrored && renderer->lods)
+    renderer->ways = gtx_alloc_array(hooks, count, sizeof *renderer->ways);
+    if (renderer->instances && renderer->mirrored && renderer->ways)
         return GTX_OK;
     gtx_renderer_free_scratch(renderer);
     return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for %u instances", count);
@@ -58,6 +58,10 @@ static gtx_result need_programs(const gtx_draw_call *draw, gtx_error *error)
         [TECHNIQUE_TILES] = gtx_stream_suits(draw->renderer, view),
         [TECHNIQUE_LOD] = !paper,
         [TECHNIQUE_LOD_FRONT] = !paper && view->pass == GTX_PASS_FORWARD,
+        [TECHNIQUE_GRID] = !paper,
+        [TECHNIQUE_GRID_WHOLE] = !paper,
+        [TECHNIQUE_GRID_FRONT] = !paper && view->pass == GTX_PASS_FORWARD,
+        [TECHNIQUE_GRID_WHOLE_FRONT] = !paper && view->pass == GTX_PASS_FORWARD,
         [TECHNIQUE_LOD_SINGLE] = !paper && view->pass == GTX_PASS_DEPTH};
     gtx_result result = GTX_OK;
     for (int i = 0; i < TECHNIQUE_COUNT && !result; ++i)
@@ -84,10 +88,10 @@ static void draw_runs(gtx_draw_call *draw, const gtx_instance *instances, uint32
     const gtx_renderer *renderer = draw->renderer;
     gtx_run r = {0};
     for (uint32_t i = 0; i < count; ++i) {
-        if (instances[i].model != r.model || renderer->lods[i] != r.lod ||
+        if (instances[i].model != r.model || renderer->ways[i] != r.way ||
             renderer->mirrored[i] != r.mirrored) {
             gtx_run_draw(draw, &r);
-            r = (gtx_run){instances[i].model, i, 0, renderer->lods[i], renderer->mirrored[i]};
+            r = (gtx_run){instances[i].model, i, 0, renderer->ways[i], renderer->mirrored[i]};
         }
         ++r.count;
     }
@@ -110,8 +114,8 @@ gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_inst
             result = gtx_place_instance(&draw.frame, &instances[i], &renderer->instances[i],
                                         &renderer->mirrored[i], error);
         if (!result)
-            result = gtx_choose_lod(&draw, instances[i].model, &renderer->instances[i],
-                                    &renderer->lods[i], error);
+            result = gtx_choose(&draw, instances[i].model, &renderer->instances[i],
+                                    &renderer->ways[i], error);
     }
     if (!result)
         result = need_programs(&draw, error);

@@ -1,4 +1,4 @@
-/* Levels of the LOD mesh: shared vertices of the asset become buffers in which each has one
+/* The making of LOD meshes: shared vertices of the asset become buffers in which each has one
  * patch. */
 #include "render/lod.h"
 
@@ -15,6 +15,7 @@ enum { MAX_NARROW_VERTICES = 65535, MAX_RUN_TRIANGLES = 4095 / 3 };
 typedef struct gtx_lod_copy {
     uint32_t patch;           /* one more than the patch that it is for */
     uint32_t index;
+    bool shared;              /* there was one for another patch */
 } gtx_lod_copy;
 
 /* The run of patch order[i], whose first vertex would be `vertex`: a new one where the last is full
@@ -41,32 +42,68 @@ static void store_index(const gtx_lod_meshes *lods, const gtx_lod_level *level, 
            level->index_size);
 }
 
-/* Copies each vertex for each patch that uses it, in drawing order. Before there is room for the
- * copies it only counts them. Returns their number. */
-static uint32_t split(const gtx_lod_meshes *lods, gtx_lod_level *level, const gtx_lod_mesh *source)
+/* The vertex's copy for a patch, a new one if it has none. */
+static gtx_lod_copy *copy_of(gtx_lod_level *level, uint32_t vertex, uint32_t patch, uint32_t *count)
 {
-    gtx_lod_vertex *vertices =
-        lods->vertices ? lods->vertices + level->vertex_offset / sizeof *vertices : NULL;
-    uint32_t count = 0, met = 0;
+    gtx_lod_copy *s = &level->copies[vertex];
+    if (s->patch == patch + 1)
+        return s;
+    s->shared = s->shared || s->patch;
+    s->patch = patch + 1;
+    s->index = (*count)++;
+    return s;
+}
+
+/* Counts the copies, one of each vertex for each patch that uses it. */
+static uint32_t count_copies(const gtx_lod_meshes *lods, gtx_lod_level *level,
+                             const gtx_lod_mesh *source)
+{
+    uint32_t count = 0;
     memset(level->copies, 0, source->vertex_count * sizeof *level->copies);
-    level->run_count = 0;
     for (uint32_t i = 0; i < lods->patch_count; ++i) {
+        const uint32_t patch = lods->order[i], *first = &source->first[patch];
         gtx_lod_run *run = run_of(lods, level, i, count);
-        const uint32_t patch = lods->order[i], last = source->first[patch + 1];
-        for (uint64_t c = 3 * (uint64_t)source->first[patch]; c < 3 * (uint64_t)last; ++c) {
-            gtx_lod_copy *s = &level->copies[source->indices[c]];
-            const uint16_t *q = source->positions + 3 * (size_t)source->indices[c];
-            if (s->patch != patch + 1) {
-                *s = (gtx_lod_copy){patch + 1, count++};
-                if (vertices)
-                    vertices[s->index] = (gtx_lod_vertex){{q[0], q[1], q[2]}, 0, patch};
-            }
-            if (vertices)
-                store_index(lods, level, met++, s->index - run->first_vertex);
-        }
+        for (uint64_t c = 3 * (uint64_t)first[0]; c < 3 * (uint64_t)first[1]; ++c)
+            copy_of(level, source->indices[c], patch, &count);
         run->vertex_count = count - run->first_vertex;
     }
+    for (uint32_t v = 0; v < source->vertex_count; ++v)
+        level->copies[v].patch = 0;
     return count;
+}
+
+static bool is_at_border(const gtx_lod_level *level, const uint32_t *corners)
+{
+    return level->copies[corners[0]].shared || level->copies[corners[1]].shared ||
+           level->copies[corners[2]].shared;
+}
+
+/* Writes copies and indices in drawing order, of each patch the triangles at its border last. */
+static void split(const gtx_lod_meshes *lods, gtx_lod_level *level, const gtx_lod_mesh *source)
+{
+    gtx_lod_vertex *vertices = lods->vertices + level->vertex_offset / sizeof *vertices;
+    uint32_t count = 0, met = 0;
+    level->run_count = 0;
+    for (uint32_t i = 0; i < lods->patch_count; ++i) {
+        const uint32_t patch = lods->order[i], *first = &source->first[patch];
+        const gtx_lod_run *run = run_of(lods, level, i, count);
+        for (int border = 0; border < 2; ++border) {
+            level->border[i] = border ? met / 3 : 0;
+            for (uint32_t t = first[0]; t < first[1]; ++t) {
+                const uint32_t *corners = source->indices + 3 * (size_t)t;
+                if (is_at_border(level, corners) != border)
+                    continue;
+                for (int c = 0; c < 3; ++c) {
+                    const uint32_t before = count;
+                    const gtx_lod_copy *s = copy_of(level, corners[c], patch, &count);
+                    const uint16_t *q = source->positions + 3 * (size_t)corners[c];
+                    if (count > before)
+                        vertices[s->index] = (gtx_lod_vertex){{q[0], q[1], q[2]}, 0, patch};
+                    store_index(lods, level, met++, s->index - run->first_vertex);
+                }
+            }
+        }
+    }
 }
 
 /* Patches that are seen from the front alone first: they are drawn with back faces culled. */
@@ -104,10 +141,11 @@ static bool begin_level(const gtx_lod_meshes *lods, gtx_lod_level *level,
     level->far = source->flags & GTX_LOD_FAR;
     level->triangle_count = source->triangle_count;
     level->first = gtx_alloc_array(hooks, patches + 1, sizeof *level->first);
+    level->border = gtx_alloc_array(hooks, patches, sizeof *level->border);
     level->runs = gtx_alloc_array(hooks, patches, sizeof *level->runs);
     level->source_vertices = source->vertex_count;
     level->copies = gtx_alloc_raw(hooks, source->vertex_count, sizeof *level->copies);
-    return level->first && level->runs && level->copies;
+    return level->first && level->border && level->runs && level->copies;
 }
 
 bool gtx_lod_begin(const gtx_asset *asset, const gtx_allocator *allocator, gtx_lod_meshes *out)
@@ -140,12 +178,14 @@ void gtx_lod_measure(const gtx_asset *asset, uint32_t k, const gtx_allocator *al
         const uint32_t *of = source.first + out->order[i];
         level->first[i + 1] = level->first[i] + of[1] - of[0];
     }
-    const uint32_t count = split(out, level, &source);
+    const uint32_t count = count_copies(out, level, &source);
     level->index_size = 2;
     for (uint32_t r = 0; r < level->run_count; ++r)
         if (level->runs[r].vertex_count > MAX_NARROW_VERTICES)
             level->index_size = 4;
     level->vertex_bytes = count * (uint64_t)sizeof *out->vertices;
+    if (k == 0 && !gtx_lod_find_neighbours(&source, count, allocator, out))
+        level->result = GTX_ERROR_MEMORY;
 }
 
 gtx_result gtx_lod_place(const gtx_allocator *allocator, gtx_lod_meshes *out, gtx_error *error)
@@ -204,60 +244,15 @@ void gtx_lod_free(gtx_lod_meshes *lods, const gtx_allocator *allocator)
         free_copies(&lods->levels[k], allocator);
         gtx_free_array(allocator, lods->levels[k].first, lods->patch_count + 1,
                        sizeof *lods->levels[k].first);
+        gtx_free_array(allocator, lods->levels[k].border, lods->patch_count,
+                       sizeof *lods->levels[k].border);
         gtx_free_array(allocator, lods->levels[k].runs, lods->patch_count,
                        sizeof *lods->levels[k].runs);
     }
     gtx_free_array(allocator, lods->order, lods->patch_count, sizeof *lods->order);
     gtx_free_array(allocator, lods->edited, lods->patch_count, sizeof *lods->edited);
+    gtx_free_array(allocator, lods->first_neighbour, lods->patch_count + 1,
+                   sizeof *lods->first_neighbour);
+    gtx_free_array(allocator, lods->neighbours, lods->neighbour_count, sizeof *lods->neighbours);
     *lods = (gtx_lod_meshes){0};
-}
-
-/* Triangles of a run. */
-static void draw_run(const gtx_gl *gl, const gtx_lod_level *level, const gtx_lod_run *run,
-                     uint32_t first, uint32_t last, uint32_t instances)
-{
-    const gl_enum type = level->index_size == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
-    const gl_size count = (gl_size)(3 * (last - first));
-    const void *indices =
-        gtx_gl_offset(level->index_offset + 3 * (uint64_t)first * level->index_size);
-    const uint64_t vertex =
-        level->vertex_offset + run->first_vertex * (uint64_t)sizeof(gtx_lod_vertex);
-    gl->VertexAttribPointer(0, 3, GL_UNSIGNED_SHORT, GL_FALSE, sizeof(gtx_lod_vertex),
-                            gtx_gl_offset(vertex));
-    gl->VertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(gtx_lod_vertex),
-                             gtx_gl_offset(vertex + offsetof(gtx_lod_vertex, patch)));
-    if (instances)
-        gl->DrawElementsInstanced(GL_TRIANGLES, count, type, indices, (gl_size)instances);
-    else
-        gl->DrawRangeElements(GL_TRIANGLES, 0, run->vertex_count - 1, count, type, indices);
-}
-
-static void draw_range(const gtx_gl *gl, const gtx_lod_level *level, uint32_t first,
-                       uint32_t last, uint32_t instances)
-{
-    uint32_t start = 0;
-    for (uint32_t r = 0; r < level->run_count; start = level->runs[r++].end) {
-        const gtx_lod_run *run = &level->runs[r];
-        const uint32_t from = first > start ? first : start, to = last < run->end ? last : run->end;
-        if (from < to)
-            draw_run(gl, level, run, from, to, instances);
-    }
-}
-
-void gtx_lod_draw(const gtx_gl *gl, const gtx_lod_meshes *lods, uint32_t level, bool two_sided,
-                  uint32_t instances)
-{
-    const gtx_lod_level *l = &lods->levels[level];
-    uint32_t from = two_sided ? lods->one_sided : 0;
-    const uint32_t end = two_sided ? lods->patch_count : lods->one_sided;
-    gl->BindBuffer(GL_ARRAY_BUFFER, lods->vertex_buffer);
-    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, lods->index_buffer);
-    gl->EnableVertexAttribArray(0);
-    gl->EnableVertexAttribArray(1);
-    for (uint32_t i = from; lods->edited_count && i < end; ++i)
-        if (lods->edited[lods->order[i]]) {
-            draw_range(gl, l, l->first[from], l->first[i], instances);
-            from = i + 1;
-        }
-    draw_range(gl, l, l->first[from], l->first[end], instances);
 }

@@ -26,6 +26,7 @@ typedef struct gtx_lod_level {
     bool far;                 /* its triangles span patches: not mixed with edited ones */
     uint32_t triangle_count;
     uint32_t *first;          /* triangles first[i]..first[i + 1] - 1 are those of patch order[i] */
+    uint32_t *border;         /* from border[i] on they share a vertex with another patch */
     gtx_lod_run *runs;        /* room for a patch each; indices count from a run's first vertex */
     uint32_t run_count;
     uint32_t index_size;      /* bytes */
@@ -45,6 +46,10 @@ typedef struct gtx_lod_meshes {
     bool *edited;             /* a patch each: its height field has changed, and it must be cast */
     uint32_t edited_count;
     float low[3], high[3];    /* bounds in object space */
+    /* Patches that share a vertex of the finest level with patch i:
+     * neighbours[first_neighbour[i]]..neighbours[first_neighbour[i + 1] - 1]. */
+    uint32_t *first_neighbour, *neighbours;
+    uint32_t neighbour_count;
     gtx_lod_vertex *vertices;     /* both freed once they are uploaded */
     uint8_t *indices;
     uint64_t vertex_bytes, index_bytes, vertex_bytes_sent, index_bytes_sent;
@@ -61,6 +66,10 @@ void gtx_lod_measure(const gtx_asset *asset, uint32_t level, const gtx_allocator
 gtx_result gtx_lod_place(const gtx_allocator *allocator, gtx_lod_meshes *out, gtx_error *error);
 void gtx_lod_fill(const gtx_asset *asset, uint32_t level, const gtx_allocator *allocator,
                   gtx_lod_meshes *out);
+/* lod_neighbours.c: of a model's finest level; `meetings` counts its vertices once for each patch
+ * that has them. False without memory. */
+bool gtx_lod_find_neighbours(const gtx_lod_mesh *source, uint32_t meetings,
+                             const gtx_allocator *allocator, gtx_lod_meshes *out);
 void gtx_lod_free_staging(gtx_lod_meshes *lods, const gtx_allocator *allocator);
 void gtx_lod_free(gtx_lod_meshes *lods, const gtx_allocator *allocator);
 
@@ -71,11 +80,14 @@ static inline void gtx_lod_mark(gtx_lod_meshes *lods, uint32_t patch)
     lods->edited[patch] = true;
 }
 
-/* Draws the patches that are not edited, of those seen from one side or from two. Program, textures
- * and the attributes of instances are set, the vertex array is bound. `instances` is 0 for a
- * program that takes the transform of a single one as a uniform. Sets attributes 0 and 1 and binds
- * the indices. */
+/* What of a patch is drawn by a level. */
+typedef enum gtx_lod_part { GTX_LOD_NOTHING, GTX_LOD_BORDER, GTX_LOD_ALL } gtx_lod_part;
+
+/* Draws the parts, an array of gtx_lod_part by patch, or with NULL all patches that are not edited;
+ * of those seen from one side or from two. Program, textures and the attributes of instances are
+ * set, the vertex array is bound. `instances` is 0 for a program that takes the transform of a
+ * single one as a uniform. Sets attributes 0 and 1 and binds the indices. */
 void gtx_lod_draw(const gtx_gl *gl, const gtx_lod_meshes *lods, uint32_t level, bool two_sided,
-                  uint32_t instances);
+                  uint32_t instances, const uint8_t *parts);
 
 #endif

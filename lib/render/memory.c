@@ -18,7 +18,7 @@ static uint64_t level_bytes(const gtx_patch *patch, uint32_t level)
 {
     const uint64_t wide = ((patch->rect[2] - 2u) >> level) + 1;
     const uint64_t high = ((patch->rect[3] - 2u) >> level) + 1;
-    return gtx_slab_count(patch, level) * sizeof(gtx_slab) + 3 * sizeof(uint32_t) +
+    return gtx_slab_count(patch, level) * (sizeof(gtx_slab) + sizeof(bool)) + 3 * sizeof(uint32_t) +
            hull_bytes((wide + GTX_HULL_BLOCK - 1) / GTX_HULL_BLOCK,
                       (high + GTX_HULL_BLOCK - 1) / GTX_HULL_BLOCK);
 }

@@ -73,10 +73,11 @@ void gtx_model_free(gtx_model *model)
     gtx_free_array(&hooks, model->first_index, slots, sizeof *model->first_index);
     gtx_free_array(&hooks, model->facts, model->patch_count, sizeof *model->facts);
     gtx_free_array(&hooks, model->records, model->patch_count, sizeof *model->records);
-    if (model->first_slab)
-        gtx_free_array(&hooks, model->slabs,
-                       model->first_slab[model->mip_count * model->patch_count],
-                       sizeof *model->slabs);
+    if (model->first_slab) {
+        const size_t count = model->first_slab[model->mip_count * model->patch_count];
+        gtx_free_array(&hooks, model->slabs, count, sizeof *model->slabs);
+        gtx_free_array(&hooks, model->whole, count, sizeof *model->whole);
+    }
     gtx_free_array(&hooks, model->first_slab, (size_t)model->mip_count * model->patch_count + 1,
                    sizeof *model->first_slab);
     gtx_free_array(&hooks, model, 1, sizeof *model);

@@ -60,6 +60,7 @@ struct gtx_model {
     /* Slabs of all levels, and where those of a patch's level begin: mip_count * patch_count + 1
      * numbers. */
     gtx_slab *slabs;
+    bool *whole;              /* of each slab's block: all of it is there and shows */
     uint32_t *first_slab;
     gtx_record *records;
     gtx_model_size size;
@@ -91,6 +92,7 @@ typedef struct gtx_derived {
     gtx_record record;
     gtx_patch_facts facts;
     gtx_slab *slabs[GTX_MAX_MIPS];            /* where those of each level go */
+    bool *whole[GTX_MAX_MIPS];                /* where that of each of its slabs goes */
     void *cells[GTX_MAX_MIPS];                /* where those of each level go */
     size_t row_texels[GTX_MAX_MIPS];          /* from a row of cells to the next */
 } gtx_derived;

@@ -77,6 +77,7 @@ static gtx_result derive_level(const gtx_asset *asset, uint32_t patch, gtx_grid 
     gtx_grid_trim(asset, patch, grid);
     gtx_grid_cells(grid, asset->info.height_bits, out->row_texels[k], out->cells[k]);
     gtx_grid_slabs(&asset->patches[patch], grid, out->slabs[k]);
+    gtx_grid_whole(asset, patch, grid, out->whole[k]);
     if (out->facts.boxed)
         return GTX_OK;
     gtx_result result = gtx_add_hull(asset, patch, grid, hull_margin, allocator, hulls,

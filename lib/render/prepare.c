@@ -122,6 +122,7 @@ static gtx_result derive_patch(const making *m, uint32_t i, gtx_derived *derived
         derived->row_texels[k] = info->page_width;
         derived->cells[k] = m->pages + (row * info->page_width + at[0]) * (info->height_bits / 2);
         derived->slabs[k] = model->slabs + model->first_slab[k * info->patch_count + i];
+        derived->whole[k] = model->whole + model->first_slab[k * info->patch_count + i];
     }
     for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
         model->first_vertex[kind * info->patch_count + i] = derived->proxies[kind].vertex_count;
@@ -235,7 +236,8 @@ static bool reserve_slabs(gtx_model *model, const gtx_asset *asset)
         return false;
     model->first_slab[slots] = (uint32_t)count;
     model->slabs = gtx_alloc_raw(&model->allocator, (size_t)count, sizeof *model->slabs);
-    return model->slabs;
+    model->whole = gtx_alloc_raw(&model->allocator, (size_t)count, sizeof *model->whole);
+    return model->slabs && model->whole;
 }
 
 /* Memory for everything that has a size before it is derived. */

@@ -24,6 +24,8 @@ typedef struct technique_files {
 } technique_files;
 
 #define FRONT "#define GTX_FRONT\n"
+#define GRID "#define GTX_GRID\n"
+#define TRIMMED "#define GTX_TRIMMED\n"
 #define ALL_BUT_CONSTANT {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS, MATERIAL_MAPS}
 
 static const technique_files techniques[TECHNIQUE_COUNT] = {
@@ -44,6 +46,17 @@ static const technique_files techniques[TECHNIQUE_COUNT] = {
                              {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS, MATERIAL_CONSTANT}},
     [TECHNIQUE_LOD_SINGLE] = {"LOD mesh single", "geotex_lod.vert", "#define GTX_SINGLE\n",
                               {"geotex_lod_fragment.glsl"}, NULL, {0}},
+    [TECHNIQUE_GRID] = {"grid", "geotex_lod.vert", GRID TRIMMED, {"geotex_lod_fragment.glsl"},
+                        "geotex_lod.frag", ALL_BUT_CONSTANT},
+    [TECHNIQUE_GRID_FRONT] = {"grid front", "geotex_lod.vert", GRID TRIMMED FRONT, {NULL},
+                              "geotex_lod_front.frag",
+                              {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS, MATERIAL_CONSTANT}},
+    [TECHNIQUE_GRID_WHOLE] = {"whole grid", "geotex_lod.vert", GRID,
+                              {"geotex_lod_fragment.glsl"}, "geotex_lod.frag", ALL_BUT_CONSTANT},
+    [TECHNIQUE_GRID_WHOLE_FRONT] = {"whole grid front", "geotex_lod.vert", GRID FRONT, {NULL},
+                                    "geotex_lod_front.frag",
+                                    {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS,
+                                     MATERIAL_CONSTANT}},
 };
 
 static const struct {
@@ -263,10 +276,13 @@ void gtx_programs_destroy(gtx_renderer *renderer)
             renderer->gl.DeleteProgram(all[i].object);
 }
 
-/* The LOD mesh, for mains that tell it apart. */
+/* Polygons, for mains that tell them apart. */
 static const technique_files own_lod = {.label = "LOD mesh", .vertex = "geotex_lod.vert",
                                   .defines = "#define GTX_LOD\n",
                                   .parts = {"geotex_lod_fragment.glsl"}};
+static const technique_files own_grid = {.label = "grid", .vertex = "geotex_lod.vert",
+                                   .defines = "#define GTX_LOD\n" GRID TRIMMED,
+                                   .parts = {"geotex_lod_fragment.glsl"}};
 
 gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
                               gtx_error *error)
@@ -280,9 +296,12 @@ gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shad
     const char *rays = gtx_shader_source("geotex_rays.glsl");
     const recipe cast = {&techniques[TECHNIQUE_CAST], MATERIAL_MAPS, rays, text, ", own"};
     const recipe lod = {&own_lod, MATERIAL_MAPS, rays, text, ", own"};
+    const recipe grid = {&own_grid, MATERIAL_MAPS, rays, text, ", own"};
     gtx_result result = build(renderer, &cast, &shading->cast, error);
     if (!result)
         result = build(renderer, &lod, &shading->lod, error);
+    if (!result)
+        result = build(renderer, &grid, &shading->grid, error);
     if (result)
         gtx_shading_destroy(renderer, shading);
     else
@@ -296,10 +315,13 @@ void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading)
         return;
     renderer->gl.DeleteProgram(shading->cast.object);
     renderer->gl.DeleteProgram(shading->lod.object);
+    renderer->gl.DeleteProgram(shading->grid.object);
     gtx_free_array(&renderer->allocator, shading, 1, sizeof *shading);
 }
 
 uint32_t gtx_shading_program(const gtx_shading *shading, gtx_method method)
 {
-    return method == GTX_METHOD_LOD ? shading->lod.object : shading->cast.object;
+    return method == GTX_METHOD_LOD    ? shading->lod.object
+           : method == GTX_METHOD_GRID ? shading->grid.object
+                                       : shading->cast.object;
 }

@@ -15,6 +15,10 @@ typedef enum gtx_technique {
     TECHNIQUE_LOD,
     TECHNIQUE_LOD_FRONT,      /* front faces alone, under transforms that keep angles */
     TECHNIQUE_LOD_SINGLE,     /* depth of one instance, whose transform is a uniform */
+    TECHNIQUE_GRID,           /* blocks of a displaced grid with cells that do not show whole */
+    TECHNIQUE_GRID_FRONT,
+    TECHNIQUE_GRID_WHOLE,     /* blocks without */
+    TECHNIQUE_GRID_WHOLE_FRONT,
     TECHNIQUE_COUNT
 } gtx_technique;
 
@@ -37,7 +41,7 @@ typedef struct gtx_program {
 } gtx_program;
 
 struct gtx_shading {
-    gtx_program cast, lod;
+    gtx_program cast, lod, grid;
 };
 
 /* Compiles what a technique needs for a pass, with any material. Errors: SHADER. */

@@ -44,8 +44,9 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
     if ((unsigned)desc->tiles > GTX_TILES_ALWAYS)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "the renderer asks for an unknown tiling");
     const float costs[] = {desc->costs.lod_triangle, desc->costs.lod_pixel,
-                           desc->costs.cast_patch, desc->costs.cast_pixel};
-    for (int i = 0; i < 4; ++i)
+                           desc->costs.cast_patch, desc->costs.cast_pixel,
+                           desc->costs.grid_triangle};
+    for (size_t i = 0; i < sizeof costs / sizeof *costs; ++i)
         if (!(costs[i] >= 0))
             return gtx_fail(error, GTX_ERROR_ARGUMENT, "a cost is not a number, or below 0");
     const gtx_allocator hooks = gtx_allocator_or_default(desc->allocator);
@@ -63,6 +64,7 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
         return result;
     }
     gtx_stream_create(renderer);
+    gtx_grids_create(renderer);
     result = gtx_programs_create(renderer, error);
     if (result) {
         gtx_renderer_destroy(renderer);
@@ -80,6 +82,7 @@ void gtx_renderer_destroy(gtx_renderer *renderer)
         return;
     gtx_programs_destroy(renderer);
     gtx_stream_destroy(renderer);
+    gtx_grids_destroy(renderer);
     renderer->gl.DeleteVertexArrays(1, &renderer->vertex_array);
     renderer->gl.DeleteBuffers(1, &renderer->instance_buffer);
     const gtx_allocator hooks = renderer->allocator;
@@ -95,10 +98,10 @@ void gtx_renderer_free_scratch(gtx_renderer *renderer)
                    sizeof *renderer->instances);
     gtx_free_array(&renderer->allocator, renderer->mirrored, renderer->instance_capacity,
                    sizeof *renderer->mirrored);
-    gtx_free_array(&renderer->allocator, renderer->lods, renderer->instance_capacity,
-                   sizeof *renderer->lods);
+    gtx_free_array(&renderer->allocator, renderer->ways, renderer->instance_capacity,
+                   sizeof *renderer->ways);
     renderer->instances = NULL;
     renderer->mirrored = NULL;
-    renderer->lods = NULL;
+    renderer->ways = NULL;
     renderer->instance_capacity = 0;
 }

@@ -27,8 +27,9 @@ static void bind_textures(const gtx_gl *gl, const gtx_model *model)
     }
 }
 
-/* Points the attributes at the data of instances from one on. */
-static void set_instances(const gtx_renderer *renderer, uint32_t instance)
+/* Points the attributes at the data of instances from one on, the next one's after `divisor` of
+ * those that are drawn. */
+static void set_instances(const gtx_renderer *renderer, uint32_t instance, gl_uint divisor)
 {
     const gtx_gl *gl = &renderer->gl;
     enum {
@@ -42,12 +43,12 @@ static void set_instances(const gtx_renderer *renderer, uint32_t instance)
         const gl_uint index = FIRST_INSTANCE_ATTRIBUTE + i;
         gl->VertexAttribPointer(index, 4, GL_FLOAT, GL_FALSE, sizeof(gtx_instance_data),
                                 gtx_gl_offset(base + 16 * (size_t)i));
-        gl->VertexAttribDivisor(index, 1);
+        gl->VertexAttribDivisor(index, divisor);
         gl->EnableVertexAttribArray(index);
     }
     gl->VertexAttribIPointer(ID_ATTRIBUTE, 1, GL_UNSIGNED_INT, sizeof(gtx_instance_data),
                              gtx_gl_offset(base + offsetof(gtx_instance_data, id)));
-    gl->VertexAttribDivisor(ID_ATTRIBUTE, 1);
+    gl->VertexAttribDivisor(ID_ATTRIBUTE, divisor);
     gl->EnableVertexAttribArray(ID_ATTRIBUTE);
 }
 
@@ -62,7 +63,7 @@ static void set_attributes(const gtx_renderer *renderer, const gtx_run *r, uint3
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->model->indices);
     gl->EnableVertexAttribArray(0);
     gl->EnableVertexAttribArray(1);
-    set_instances(renderer, instance);
+    set_instances(renderer, instance, 1);
 }
 
 /* Takes a program into use, with the model's uniforms. */
@@ -140,17 +141,90 @@ static const gtx_program *cast_program(const gtx_draw_call *draw, const gtx_mode
                                : program_of(draw, model, paper ? TECHNIQUE_PAPER : TECHNIQUE_CAST);
 }
 
-/* Draws an instance patch by patch, nearest first. Boxes are told their level by a uniform. */
-static void cast_sorted(gtx_draw_call *draw, const gtx_run *r, uint32_t instance,
-                        bool edited_only)
+static const gtx_program *grid_program(const gtx_draw_call *draw, const gtx_model *model,
+                                       uint32_t kind, bool keeps_angles)
+{
+    static const gtx_technique techniques[2][2] = {
+        {TECHNIQUE_GRID_WHOLE, TECHNIQUE_GRID_WHOLE_FRONT},
+        {TECHNIQUE_GRID, TECHNIQUE_GRID_FRONT}};
+    const bool front = draw->view->pass == GTX_PASS_FORWARD && keeps_angles &&
+                       !(kind & GTX_BLOCK_TWO_SIDED);
+    return draw->view->shading
+               ? &draw->view->shading->grid
+               : program_of(draw, model, techniques[(kind & GTX_BLOCK_TRIMMED) != 0][front]);
+}
+
+static const gtx_program *lod_program(const gtx_draw_call *draw, const gtx_run *r, bool front)
+{
+    const bool forward = draw->view->pass == GTX_PASS_FORWARD;
+    return draw->view->shading
+               ? &draw->view->shading->lod
+               : program_of(draw, r->model,
+                            forward && front ? TECHNIQUE_LOD_FRONT : TECHNIQUE_LOD);
+}
+
+/* Draws an LOD mesh, or parts of it: patches with a back face culled, then those without. */
+static void draw_lod(gtx_draw_call *draw, const gtx_run *r, uint32_t level, const uint8_t *parts)
 {
     const gtx_renderer *renderer = draw->renderer;
     const gtx_gl *gl = &renderer->gl;
-    const gtx_plan *plan = &renderer->plan;
+    const gtx_lod_meshes *lods = &r->model->lods;
+    const bool single = draw->view->pass == GTX_PASS_DEPTH && r->count == 1;
+    bool keeps_angles = true;
+    for (uint32_t i = 0; i < r->count; ++i)
+        keeps_angles = keeps_angles && gtx_keeps_angles(&renderer->instances[r->first + i]);
+    if (!single)
+        set_instances(renderer, r->first, 1);
+    gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
+    for (int two_sided = 0; two_sided < 2; ++two_sided) {
+        if (lods->one_sided == (two_sided ? lods->patch_count : 0))
+            continue;
+        use_program(draw, single ? program_of(draw, r->model, TECHNIQUE_LOD_SINGLE)
+                                 : lod_program(draw, r, keeps_angles && !two_sided), r->model);
+        if (single)
+            gl->Uniform4fv(draw->program->place, 3, renderer->instances[r->first].world[0]);
+        gl->Uniform4fv(draw->program->lod, 1, lods->levels[level].place);
+        (two_sided ? gl->Disable : gl->Enable)(GL_CULL_FACE);
+        gtx_lod_draw(gl, lods, level, two_sided, single ? 0 : r->count, parts);
+    }
+}
+
+/* Draws the blocks of displaced grids. */
+static void draw_grids(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
+{
+    gtx_renderer *renderer = draw->renderer;
+    const gtx_gl *gl = &renderer->gl;
+    const gtx_instance_data *placed = &renderer->instances[instance];
+    const gl_uint all = 1u << 30;
+    bool begun = false;
+    for (uint32_t kind = 0; kind < GTX_BLOCK_KINDS; ++kind) {
+        if (!renderer->grids.counts[kind])
+            continue;
+        if (!begun) {
+            gtx_grids_begin(renderer);
+            set_instances(renderer, instance, all);
+            gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
+            begun = true;
+        }
+        use_program(draw, grid_program(draw, r->model, kind, gtx_keeps_angles(placed)), r->model);
+        (kind & GTX_BLOCK_TWO_SIDED ? gl->Disable : gl->Enable)(GL_CULL_FACE);
+        gtx_grids_draw(renderer, kind);
+    }
+    gl->Enable(GL_CULL_FACE);
+    if (begun)
+        gl->BindVertexArray(renderer->vertex_array);
+}
+
+/* Casts what the plan holds, nearest first. Boxes are told their level by a uniform. */
+static void cast_plan(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
+{
+    const gtx_renderer *renderer = draw->renderer;
+    const gtx_gl *gl = &renderer->gl;
+    gtx_plan *plan = &draw->renderer->plan;
     uint32_t first = 0;
-    gtx_plan_patches(draw, r->model, &renderer->instances[instance], edited_only);
-    if (cast_tiles(draw, r, instance))
+    if (!plan->count || cast_tiles(draw, r, instance))
         return;
+    gtx_plan_proxies(plan, r->model);
     use_program(draw, cast_program(draw, r->model), r->model);
     set_attributes(renderer, r, instance);
     face(gl, r, true);
@@ -166,9 +240,39 @@ static void cast_sorted(gtx_draw_call *draw, const gtx_run *r, uint32_t instance
     cast_parts(gl, plan, first, plan->hull_count);
 }
 
-/* Casts the patches of a run, or only those that are edited. Instances that stand alone are sorted,
- * those that need it are looked at patch by patch, and others drawn together. */
-static void cast_run(gtx_draw_call *draw, const gtx_run *r, bool edited_only)
+/* How many levels of the LOD mesh may be mixed with height fields, the finest first. */
+static uint32_t levels_to_mix(const gtx_draw_call *draw, const gtx_run *r)
+{
+    const gtx_lod_meshes *lods = &r->model->lods;
+    uint32_t count = 0;
+    if (draw->view->method != GTX_METHOD_AUTO || r->way != GTX_DRAW_PATCHES)
+        return 0;
+    while (count < lods->level_count && !lods->levels[count].far)
+        ++count;
+    return count;
+}
+
+/* Draws an instance patch by patch, each in its own way. */
+static void draw_patches(gtx_draw_call *draw, const gtx_run *r, uint32_t instance,
+                         bool edited_only)
+{
+    gtx_renderer *renderer = draw->renderer;
+    gtx_plan *plan = &renderer->plan;
+    const gtx_lod_meshes *lods = &r->model->lods;
+    const gtx_instance_data *placed = &renderer->instances[instance];
+    gtx_plan_patches(draw, r->model, placed, levels_to_mix(draw, r), edited_only);
+    if (r->way != GTX_DRAW_CAST && gtx_blocks_fill(draw, r->model, placed))
+        draw_grids(draw, r, instance);
+    cast_plan(draw, r, instance);
+    const gtx_run one = {r->model, instance, 1, 0, r->mirrored};
+    for (uint32_t k = 0; plan->any_lod && k < lods->level_count; ++k)
+        if (gtx_plan_parts(plan, lods, k))
+            draw_lod(draw, &one, k, plan->parts);
+}
+
+/* Draws the patches of a run, or only those that are edited. Instances that stand alone are sorted,
+ * those that need it are looked at patch by patch, and others cast together. */
+static void draw_height_fields(gtx_draw_call *draw, const gtx_run *r, bool edited_only)
 {
     const gtx_renderer *renderer = draw->renderer;
     const gtx_model *model = r->model;
@@ -181,7 +285,8 @@ static void cast_run(gtx_draw_call *draw, const gtx_run *r, bool edited_only)
     }
     for (uint32_t i = r->first, end = r->first + r->count; i < end;) {
         uint32_t last = i, kind = 0;
-        if (r->count > 1 && !edited_only)
+        if (r->count > 1 && !edited_only && draw->view->method != GTX_METHOD_GRID &&
+            (r->way == GTX_DRAW_CAST || !model->lods.level_count))
             kind = gtx_plan_whole(draw, model, &renderer->instances[i]);
         for (++last; kind && last < end; ++last)
             if (gtx_plan_whole(draw, model, &renderer->instances[last]) != kind)
@@ -190,45 +295,9 @@ static void cast_run(gtx_draw_call *draw, const gtx_run *r, bool edited_only)
             use_program(draw, program, model);
             cast_whole(renderer, r, kind, i, last - i);
         } else {
-            cast_sorted(draw, r, i, edited_only);
+            draw_patches(draw, r, i, edited_only);
         }
         i = last;
-    }
-}
-
-static const gtx_program *lod_program(const gtx_draw_call *draw, const gtx_run *r, bool front)
-{
-    const bool forward = draw->view->pass == GTX_PASS_FORWARD;
-    return draw->view->shading
-               ? &draw->view->shading->lod
-               : program_of(draw, r->model,
-                            forward && front ? TECHNIQUE_LOD_FRONT : TECHNIQUE_LOD);
-}
-
-/* Draws an LOD mesh: patches with a back face culled, then those without. */
-static void draw_lod(gtx_draw_call *draw, const gtx_run *r)
-{
-    const gtx_renderer *renderer = draw->renderer;
-    const gtx_gl *gl = &renderer->gl;
-    const gtx_lod_meshes *lods = &r->model->lods;
-    const uint32_t level = r->lod - 1u;
-    const bool single = draw->view->pass == GTX_PASS_DEPTH && r->count == 1;
-    bool keeps_angles = true;
-    for (uint32_t i = 0; i < r->count; ++i)
-        keeps_angles = keeps_angles && gtx_keeps_angles(&renderer->instances[r->first + i]);
-    if (!single)
-        set_instances(renderer, r->first);
-    gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
-    for (int two_sided = 0; two_sided < 2; ++two_sided) {
-        if (lods->one_sided == (two_sided ? lods->patch_count : 0))
-            continue;
-        use_program(draw, single ? program_of(draw, r->model, TECHNIQUE_LOD_SINGLE)
-                                 : lod_program(draw, r, keeps_angles && !two_sided), r->model);
-        if (single)
-            gl->Uniform4fv(draw->program->place, 3, renderer->instances[r->first].world[0]);
-        gl->Uniform4fv(draw->program->lod, 1, lods->levels[level].place);
-        (two_sided ? gl->Disable : gl->Enable)(GL_CULL_FACE);
-        gtx_lod_draw(gl, lods, level, two_sided, single ? 0 : r->count);
     }
 }
 
@@ -236,9 +305,10 @@ void gtx_run_draw(gtx_draw_call *draw, const gtx_run *r)
 {
     if (!r->model) /* before the first run */
         return;
+    const bool lod = r->way != GTX_DRAW_PATCHES && r->way != GTX_DRAW_CAST;
     bind_textures(&draw->renderer->gl, r->model);
-    if (r->lod)
-        draw_lod(draw, r);
-    if (!r->lod || r->model->lods.edited_count)
-        cast_run(draw, r, r->lod);
+    if (lod)
+        draw_lod(draw, r, r->way - 1u, NULL);
+    if (!lod || r->model->lods.edited_count)
+        draw_height_fields(draw, r, lod);
 }

@@ -9,7 +9,7 @@
 typedef struct gtx_run {
     const gtx_model *model;   /* NULL: nothing */
     uint32_t first, count;
-    uint8_t lod;              /* as gtx_choose_lod has it */
+    uint8_t way;              /* as gtx_choose has it */
     bool mirrored;
 } gtx_run;
 

@@ -2,31 +2,13 @@
 #include "render/renderer.h"
 #include "render/units.h"
 
-#include "base/alloc.h"
-
-void *gtx_tiles_reserve(gtx_renderer *renderer, gtx_scratch *scratch, size_t count,
-                        size_t size)
-{
-    const size_t wanted = count * size;
-    if (wanted <= scratch->size && scratch->data)
-        return scratch->data;
-    gtx_free_array(&renderer->allocator, scratch->data, scratch->size, 1);
-    scratch->size = wanted + wanted / 2 + 64;
-    scratch->data = gtx_alloc_array(&renderer->allocator, scratch->size, 1);
-    if (!scratch->data)
-        scratch->size = 0;
-    return scratch->data;
-}
-
 void gtx_tiles_free(gtx_renderer *renderer)
 {
     gtx_tiles *t = &renderer->tiles;
     gtx_scratch *all[] = {&t->visible,    &t->order, &t->heads,  &t->records,
                           &t->slabs, &t->lists, &t->corners};
-    for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
-        gtx_free_array(&renderer->allocator, all[i]->data, all[i]->size, 1);
-        *all[i] = (gtx_scratch){0};
-    }
+    for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
+        gtx_scratch_free(&renderer->allocator, all[i]);
 }
 
 void gtx_stream_create(gtx_renderer *renderer)

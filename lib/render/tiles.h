@@ -3,12 +3,7 @@
 #define GTX_RENDER_TILES_H
 
 #include "render/plan.h"
-
-/* An array of scratch that grows and does not keep what it held. */
-typedef struct gtx_scratch {
-    void *data;
-    size_t size;
-} gtx_scratch;
+#include "render/scratch.h"
 
 /* What shaders read are the parts of one stream: records of patches, slabs, heads of the lists, and
  * the lists. */
@@ -28,8 +23,7 @@ typedef struct gtx_tiles {
 bool gtx_tiles_fill(const gtx_draw_call *draw, const gtx_model *model,
                     const gtx_instance_data *placed);
 
-/* stream.c: room of `count` x `size` bytes, or NULL. */
-void *gtx_tiles_reserve(gtx_renderer *renderer, gtx_scratch *scratch, size_t count, size_t size);
+/* stream.c. */
 void gtx_tiles_free(gtx_renderer *renderer);
 
 /* The objects of casting by tiles. Where they cannot be made, nothing is cast so. */

@@ -35,27 +35,33 @@ static uint8_t *make_cells(const gtx_model *model, const gtx_patch *patch, gtx_d
     return cells;
 }
 
-/* Slabs of all levels, one after another, and how many. NULL without memory. */
-static gtx_slab *make_slabs(const gtx_model *model, const gtx_patch *patch, gtx_derived *d,
-                            size_t *count)
+/* Slabs of all levels, one after another, what follows from each, and how many. False without
+ * memory. */
+static bool make_slabs(const gtx_model *model, const gtx_patch *patch, gtx_derived *d,
+                       size_t *count)
 {
+    size_t first[GTX_MAX_MIPS];
     *count = 0;
-    for (uint32_t k = 0; k < model->mip_count; ++k)
+    for (uint32_t k = 0; k < model->mip_count; ++k) {
+        first[k] = *count;
         *count += gtx_slab_count(patch, k);
-    gtx_slab *slabs = gtx_alloc_array(&model->allocator, *count, sizeof *slabs), *next = slabs;
-    for (uint32_t k = 0; slabs && k < model->mip_count; ++k) {
-        d->slabs[k] = next;
-        next += gtx_slab_count(patch, k);
     }
-    return slabs;
+    d->slabs[0] = gtx_alloc_array(&model->allocator, *count, sizeof *d->slabs[0]);
+    d->whole[0] = gtx_alloc_array(&model->allocator, *count, sizeof *d->whole[0]);
+    for (uint32_t k = 1; d->slabs[0] && d->whole[0] && k < model->mip_count; ++k) {
+        d->slabs[k] = d->slabs[0] + first[k];
+        d->whole[k] = d->whole[0] + first[k];
+    }
+    return d->slabs[0] && d->whole[0];
 }
 
 static void replace_slabs(gtx_model *model, const gtx_derived *d, uint32_t patch)
 {
     for (uint32_t k = 0; k < model->mip_count; ++k) {
         const uint32_t *first = &model->first_slab[k * model->patch_count + patch];
-        const size_t size = (first[1] - first[0]) * sizeof *model->slabs;
-        memcpy(model->slabs + first[0], d->slabs[k], size);
+        const size_t count = first[1] - first[0];
+        memcpy(model->slabs + first[0], d->slabs[k], count * sizeof *model->slabs);
+        memcpy(model->whole + first[0], d->whole[k], count * sizeof *model->whole);
     }
     memcpy(model->records[patch], d->record, sizeof d->record);
 }
@@ -173,7 +179,7 @@ gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model, const gtx_
     gtx_derived d = {0};
     size_t size, slab_count;
     uint8_t *cells = make_cells(model, p, &d, &size);
-    gtx_slab *slabs = make_slabs(model, p, &d, &slab_count);
+    const bool slabs = make_slabs(model, p, &d, &slab_count);
     gtx_result result = cells && slabs ? derive(model, edited, patch, &d, error)
                               : gtx_fail(error, GTX_ERROR_MEMORY, "no memory for an update");
     if (!result)
@@ -181,6 +187,7 @@ gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model, const gtx_
     for (uint32_t kind = 0; kind < model->kind_count; ++kind)
         gtx_proxies_free(&d.proxies[kind], &model->allocator);
     gtx_free_array(&model->allocator, cells, size, 1);
-    gtx_free_array(&model->allocator, slabs, slab_count, sizeof *slabs);
+    gtx_free_array(&model->allocator, d.slabs[0], slab_count, sizeof *d.slabs[0]);
+    gtx_free_array(&model->allocator, d.whole[0], slab_count, sizeof *d.whole[0]);
     return result;
 }

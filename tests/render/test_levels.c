@@ -40,14 +40,19 @@ static void is_drawn_as(stage *s, const gtx_view *view, const gtx_instance *inst
                         uint32_t level)
 {
     static uint8_t drawn[sizeof s->color];
-    gtx_view forced = *view;
-    stage_draw(s, view, instance, 1);
-    memcpy(drawn, s->color, sizeof drawn);
-    for (uint32_t k = 0; k < 4; ++k) {
-        forced.level = k + 1;
-        stage_draw(s, &forced, instance, 1);
-        if ((memcmp(drawn, s->color, sizeof drawn) == 0) != (k == level))
-            fail_msg("level %u: %s level %u", level, k == level ? "not" : "as", k);
+    static const gtx_method methods[2] = {GTX_METHOD_CAST, GTX_METHOD_GRID};
+    gtx_view by_error = *view;
+    for (int m = 0; m < 2; ++m) {
+        by_error.method = methods[m];
+        gtx_view forced = by_error;
+        stage_draw(s, &by_error, instance, 1);
+        memcpy(drawn, s->color, sizeof drawn);
+        for (uint32_t k = 0; k < 4; ++k) {
+            forced.level = k + 1;
+            stage_draw(s, &forced, instance, 1);
+            if ((memcmp(drawn, s->color, sizeof drawn) == 0) != (k == level))
+                fail_msg("level %u: %s level %u", level, k == level ? "not" : "as", k);
+        }
     }
 }
 

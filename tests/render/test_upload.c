@@ -144,6 +144,7 @@ static void a_small_gpu_is_a_limit(void **state)
     gtx_model *model = NULL;
     gtx_error error = {0};
     spy.side = 64;
+    spy.sent = 0;
     assert_int_equal(gtx_model_create(renderer, asset, &model, &error), GTX_ERROR_LIMIT);
     assert_non_null(strstr(error.message, "64"));
     assert_null(model);

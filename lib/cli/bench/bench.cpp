@@ -10,7 +10,7 @@ namespace gtx {
 
 const char *const bench_method_names[BENCH_METHODS] = {
     "mesh", "mesh_stream", "simplified", "paper", "cast", "lod", "auto", "cast_depth", "auto_depth",
-    "cast_fragment"};
+    "cast_fragment", "grid", "grid_depth"};
 
 namespace {
 

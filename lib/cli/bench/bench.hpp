@@ -14,9 +14,10 @@ enum class BenchMethod : uint32_t {
     MESH_LOD,    /* its coarsest simplification that looks as good as what AUTO draws */
     PAPER, CAST, LOD, AUTO,
     CAST_DEPTH, AUTO_DEPTH, /* the depth pass alone */
-    CAST_FRAGMENT /* cast in fragments where CAST is by tiles */
+    CAST_FRAGMENT, /* cast in fragments where CAST is by tiles */
+    GRID, GRID_DEPTH
 };
-constexpr uint32_t BENCH_METHODS = 10;
+constexpr uint32_t BENCH_METHODS = 12;
 extern const char *const bench_method_names[BENCH_METHODS]; /* as in reports */
 constexpr double bench_errors[] = {0.25, 0.35, 0.5, 0.71, 1, 1.41, 2}; /* pixels */
 

@@ -26,6 +26,8 @@ static Technique technique_of(BenchMethod method)
     case BenchMethod::PAPER: return {GTX_METHOD_PAPER, GTX_PASS_FORWARD};
     case BenchMethod::CAST:
     case BenchMethod::CAST_FRAGMENT: return {GTX_METHOD_CAST, GTX_PASS_FORWARD};
+    case BenchMethod::GRID: return {GTX_METHOD_GRID, GTX_PASS_FORWARD};
+    case BenchMethod::GRID_DEPTH: return {GTX_METHOD_GRID, GTX_PASS_DEPTH};
     case BenchMethod::LOD: return {GTX_METHOD_LOD, GTX_PASS_FORWARD};
     case BenchMethod::CAST_DEPTH: return {GTX_METHOD_CAST, GTX_PASS_DEPTH};
     case BenchMethod::AUTO_DEPTH: return {GTX_METHOD_AUTO, GTX_PASS_DEPTH};

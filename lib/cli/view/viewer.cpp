@@ -15,11 +15,12 @@ namespace gtx {
 const Viewer::Method Viewer::methods[] = {{GTX_METHOD_AUTO, "auto"},
                                           {GTX_METHOD_CAST, "cast"},
                                           {GTX_METHOD_LOD, "lod"},
+                                          {GTX_METHOD_GRID, "grid"},
                                           {GTX_METHOD_PAPER, "paper"}};
 
 const Viewer::Key Viewer::keys[] = {
     {'F', "frame everything", [](Viewer &v) { v.frame_all(); }},
-    {'M', "method: auto, cast, lod, paper", [](Viewer &v) { v.method = (v.method + 1) % 4; }},
+    {'M', "method: auto, cast, lod, grid, paper", [](Viewer &v) { v.method = (v.method + 1) % 5; }},
     {'L', "level of detail: auto, 0, 1, 2, 3",
      [](Viewer &v) { v.view.level = (v.view.level + 1) % 5; }},
     {'P', "a colour a patch", [](Viewer &v) { v.toggle(DebugView::PATCHES); }},

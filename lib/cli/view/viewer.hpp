@@ -47,7 +47,7 @@ private:
         uint64_t triangles = 0, patches = 0, bytes = 0;
     };
     static const Key keys[11];
-    static const Method methods[4];
+    static const Method methods[5];
     void press(char key);
     void toggle(DebugView view);
     void press_script(char key);
