@@ -124,6 +124,9 @@ bool parse_lists(gtx::BenchOptions &out)
         const char *const *name = std::find(names, names + gtx::BENCH_METHODS, word);
         if (name == names + gtx::BENCH_METHODS)
             return usage("methods", word);
+        const bool orbits = word == "mesh_stream", follows = word == "floor";
+        if (along ? orbits : follows)
+            return usage(along ? "methods of a path" : "methods of the orbit", word);
         out.methods.push_back(gtx::BenchMethod(name - names));
     }
     return true;

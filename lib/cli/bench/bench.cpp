@@ -143,8 +143,6 @@ const char *Bench::reason_to_skip(const BenchRow &row) const
 {
     if (row.method == BenchMethod::LOD && !scene.info.lod_levels)
         return "the asset has no LOD mesh";
-    if (row.method == BenchMethod::FLOOR)
-        return "along a path alone";
     const double left = 1000 * options_.budget - (milliseconds() - began_);
     const auto last = last_.find({row.size[1], row.method});
     double expected = 0;

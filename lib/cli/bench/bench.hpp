@@ -15,7 +15,7 @@ enum class BenchMethod : uint32_t {
     PAPER, CAST, LOD, AUTO,
     CAST_DEPTH, AUTO_DEPTH, /* the depth pass alone */
     CAST_FRAGMENT, /* cast in fragments where CAST is by tiles */
-    FLOOR          /* along a path: the pixels that AUTO covers, shaded once */
+    FLOOR          /* of run_path alone: the pixels that AUTO covers, shaded once */
 };
 constexpr uint32_t BENCH_METHODS = 11;
 extern const char *const bench_method_names[BENCH_METHODS]; /* as in reports */

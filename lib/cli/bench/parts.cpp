@@ -11,8 +11,8 @@
 
 namespace gtx {
 
-/* Triangles of a part, at most: of 128, 256, 512 and 1024 these drew a terrain of 2.88 million
- * fastest on llvmpipe, by little. */
+/* Triangles of a part, at most. On a terrain of 2.88 million, 256 to 2048 took the same processor
+ * time in all views, on llvmpipe. */
 constexpr uint32_t PART_TRIANGLES = 512;
 constexpr size_t MIN_TRIANGLES = 64;
 
