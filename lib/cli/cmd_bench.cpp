@@ -1,6 +1,6 @@
 /* gtx bench: frame times of an asset, its source mesh and what stands between them. */
 #include "base/json.h"
-#include "cli/bench/bench.hpp"
+#include "cli/bench/along.hpp"
 #include "cli/guard.hpp"
 
 #include <algorithm>
@@ -10,22 +10,34 @@
 
 namespace {
 
-const char *sizes = "100x100,200x200,400x400,640x480,800x600,1024x768,1280x1024";
-const char *instances = "1";
-const char *methods = "mesh,simplified,paper,cast,lod,auto";
-uint32_t frames = 12;
+const char *sizes, *instances, *methods; /* null: as of the orbit, or of the path */
+constexpr const char *ORBIT_SIZES = "100x100,200x200,400x400,640x480,800x600,1024x768,1280x1024";
+constexpr const char *ORBIT_METHODS = "mesh,simplified,paper,cast,lod,auto";
+constexpr const char *PATH_SIZE = "1280x720", *PATH_METHODS = "mesh,simplified,floor,cast,auto";
+const char *path_file;
+uint32_t frames, random_count, seed = 1, repeats = 3;
 double max_error = 0.5, min_iou, budget = 600;
 bool as_json;
 
 const option options[] = {
     {"sizes", 0, OPTION_STRING, &sizes, "WxH,...",
-     "windows [100x100,200x200,400x400,640x480,800x600,1024x768,1280x1024]", 0, 0},
+     "windows [100x100,200x200,400x400,640x480,800x600,1024x768,1280x1024; a path's: 1280x720]", 0,
+     0},
     {"instances", 0, OPTION_STRING, &instances, "N,...",
      "instances in view, in one draw call [1]", 0, 0},
     {"methods", 0, OPTION_STRING, &methods, "NAME,...",
      "mesh mesh_stream simplified paper cast lod auto cast_depth auto_depth cast_fragment "
-     "grid grid_depth [mesh,simplified,paper,cast,lod,auto]", 0, 0},
-    {"frames", 0, OPTION_UINT, &frames, "N", "frames per method [12]", 1, 10000},
+     "grid grid_depth floor [mesh,simplified,paper,cast,lod,auto; a path's: mesh,simplified,floor,cast,auto]", 0, 0},
+    {"frames", 0, OPTION_UINT, &frames, "N",
+     "frames per method [12]; views along a path [one a key]", 1, 10000},
+    {"path", 0, OPTION_STRING, &path_file, "FILE",
+     "see it from along a path: a key a line, x y z x y z, eye and target in the model's own "
+     "coordinates; before them 'up x y z' [0 1 0] and 'fov DEGREES' [45]", 0, 0},
+    {"random", 0, OPTION_UINT, &random_count, "N",
+     "a path of N random views: outside, just above the surface, in the bounding box", 1, 10000},
+    {"seed", 0, OPTION_UINT, &seed, "S", "other random views [1]", 0, 4294967295.},
+    {"repeats", 0, OPTION_UINT, &repeats, "N",
+     "frames of a view of a path, of which the fastest counts [3]", 1, 1000},
     {"max-error", 0, OPTION_NUMBER, &max_error, "PIXELS",
      "largest error of a level of detail on screen [0.5]", 1e-6, 1e6},
     {"min-iou", 0, OPTION_NUMBER, &min_iou, "SHARE",
@@ -69,9 +81,29 @@ bool parse_number(const std::string &word, uint32_t least, uint32_t most, uint32
            value <= most;
 }
 
+bool clash(const char *one, const char *other)
+{
+    print_message("gtx bench: error[usage]: --%s is not for --%s", one, other);
+    return false;
+}
+
+/* A path stands alone, and has one instance at the error asked for. */
+bool choices_agree()
+{
+    const char *along = path_file ? "path" : "random";
+    if (path_file && random_count)
+        return clash("random", "path");
+    if (!path_file && !random_count)
+        return true;
+    return instances     ? clash("instances", along)
+           : min_iou > 0 ? clash("min-iou", along)
+                         : true;
+}
+
 bool parse_lists(gtx::BenchOptions &out)
 {
-    for (const std::string &word : split(sizes)) {
+    const bool along = path_file || random_count;
+    for (const std::string &word : split(sizes ? sizes : along ? PATH_SIZE : ORBIT_SIZES)) {
         std::array<uint32_t, 2> size;
         const size_t x = word.find('x');
         if (x == std::string::npos || !parse_number(word.substr(0, x), 1, 8192, size[0]) ||
@@ -79,18 +111,22 @@ bool parse_lists(gtx::BenchOptions &out)
             return usage("sizes", word);
         out.sizes.push_back(size);
     }
-    for (const std::string &word : split(instances)) {
+    for (const std::string &word : split(instances ? instances : "1")) {
         uint32_t count;
         if (!parse_number(word, 1, 100000, count))
             return usage("instances", word);
         out.instances.push_back(count);
     }
     std::sort(out.instances.begin(), out.instances.end());
-    for (const std::string &word : split(methods)) {
+    const char *usual = along ? PATH_METHODS : ORBIT_METHODS;
+    for (const std::string &word : split(methods ? methods : usual)) {
         const char *const *names = gtx::bench_method_names;
         const char *const *name = std::find(names, names + gtx::BENCH_METHODS, word);
         if (name == names + gtx::BENCH_METHODS)
             return usage("methods", word);
+        const bool orbits = word == "mesh_stream", follows = word == "floor";
+        if (along ? orbits : follows)
+            return usage(along ? "methods of a path" : "methods of the orbit", word);
         out.methods.push_back(gtx::BenchMethod(name - names));
     }
     return true;
@@ -146,22 +182,35 @@ void write_row(gtx_json &json, const gtx::BenchSetup &setup, const gtx::BenchRow
     gtx_json_end_object(&json);
 }
 
-int tell_json(const char *scene, const gtx::BenchSetup &setup,
-               const gtx::Vector<gtx::BenchRow> &rows)
+/* What was measured: rows of the orbit, or paths. */
+struct Report {
+    gtx::BenchSetup setup;
+    gtx::Vector<gtx::BenchRow> rows;
+    gtx::Vector<gtx::PathReport> paths;
+};
+
+int tell_json(const char *scene, const Report &report)
 {
     gtx_json json = {};
     gtx_json_begin_object(&json, nullptr);
     gtx_json_string(&json, "scene", scene);
-    gtx_json_integer(&json, "triangles", setup.triangles);
-    gtx_json_integer(&json, "gpu_geometry_bytes", setup.geometry_bytes);
-    gtx_json_number(&json, "open_ms", setup.open);
-    gtx_json_number(&json, "prepare_ms", setup.prepare);
-    gtx_json_number(&json, "upload_ms", setup.upload);
+    gtx_json_integer(&json, "triangles", report.setup.triangles);
+    gtx_json_integer(&json, "gpu_geometry_bytes", report.setup.geometry_bytes);
+    gtx_json_number(&json, "open_ms", report.setup.open);
+    gtx_json_number(&json, "prepare_ms", report.setup.prepare);
+    gtx_json_number(&json, "upload_ms", report.setup.upload);
     for (bool skipped : {false, true}) {
         gtx_json_begin_array(&json, skipped ? "skipped" : "rows");
-        for (const gtx::BenchRow &row : rows)
+        for (const gtx::BenchRow &row : report.rows)
             if (skipped == (row.skipped != nullptr))
-                write_row(json, setup, row);
+                write_row(json, report.setup, row);
+        gtx_json_end_array(&json);
+    }
+    if (!report.paths.empty()) {
+        gtx_json_string(&json, "platform", report.setup.renderer.c_str());
+        gtx_json_begin_array(&json, "paths");
+        for (const gtx::PathReport &path : report.paths)
+            write_path_report(json, path);
         gtx_json_end_array(&json);
     }
     gtx_json_end_object(&json);
@@ -178,10 +227,57 @@ void print_head(const char *scene, const gtx::BenchSetup &setup)
                 setup.triangles, double(setup.geometry_bytes) / std::max(1u, setup.triangles),
                 setup.open, setup.prepare, setup.upload,
                 setup.open + setup.prepare + setup.upload, setup.renderer.c_str());
+}
+
+void print_table_head()
+{
     std::printf("| window    | count | method      | error | median    | least     | mesh/   "
                 "| work      "
                 "| IoU    | PSNR  | holes | rays     | triang. |\n"
                 "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+}
+
+void run_orbit(const char *scene, const char *asset, const gtx::Mesh &mesh,
+               const gtx::BenchOptions &wanted, Report &report)
+{
+    double of_mesh = 0;
+    gtx::Vector<gtx::BenchRow> &rows = report.rows;
+    gtx::run_bench(
+        asset, mesh, wanted,
+        [&](const gtx::BenchSetup &setup) {
+            report.setup = setup;
+            if (!as_json) {
+                print_head(scene, setup);
+                print_table_head();
+            }
+        },
+        [&](const gtx::BenchRow &row) {
+            if (rows.empty() || rows.back().size != row.size ||
+                rows.back().instances != row.instances)
+                of_mesh = 0;
+            rows.push_back(row);
+            if (row.method == gtx::BenchMethod::MESH)
+                of_mesh = row.median;
+            if (!as_json)
+                print_row(row, of_mesh);
+        });
+}
+
+void run_along(const char *scene, const char *asset, const gtx::Mesh &mesh,
+               const gtx::ViewPath &path, const gtx::BenchOptions &wanted, Report &report)
+{
+    gtx::run_path(
+        asset, mesh, path, wanted,
+        [&](const gtx::BenchSetup &setup) {
+            report.setup = setup;
+            if (!as_json)
+                print_head(scene, setup);
+        },
+        [&](const gtx::PathReport &measured) {
+            report.paths.push_back(measured);
+            if (!as_json)
+                print_path_report(measured);
+        });
 }
 
 } // namespace
@@ -194,40 +290,33 @@ int cmd_bench(int argc, char **argv)
     if (code >= 0)
         return code;
     gtx::BenchOptions wanted;
-    wanted.frames = frames;
+    wanted.frames = frames ? frames : wanted.frames;
     wanted.max_error = max_error;
     wanted.min_iou = min_iou;
     wanted.budget = budget;
-    if (!parse_lists(wanted))
+    wanted.repeats = repeats;
+    wanted.along_path = path_file || random_count;
+    if (!choices_agree() || !parse_lists(wanted))
         return EXIT_CODE_USAGE;
 
-    std::string current = files[1];
+    std::string current = path_file ? path_file : files[1];
     return gtx::guarded(current, [&] {
         gtx::Task task(0, nullptr, nullptr, {}, {}, cli_limits);
-        gtx::CleanReport report;
-        const gtx::Mesh mesh = gtx::clean_mesh(gtx::import_mesh(files[1], task), task, report);
+        gtx::ViewPath path;
+        if (path_file)
+            path = gtx::read_path(path_file, frames, task);
+        current = files[1];
+        gtx::CleanReport cleaned;
+        const gtx::Mesh mesh = gtx::clean_mesh(gtx::import_mesh(files[1], task), task, cleaned);
         gtx::report_warnings(files[1], task.warnings);
+        if (random_count)
+            path = gtx::random_path(mesh, random_count, seed);
         current = files[0];
-        gtx::BenchSetup setup;
-        gtx::Vector<gtx::BenchRow> rows;
-        double of_mesh = 0;
-        gtx::run_bench(
-            files[0], mesh, wanted,
-            [&](const gtx::BenchSetup &s) {
-                setup = s;
-                if (!as_json)
-                    print_head(files[1], setup);
-            },
-            [&](const gtx::BenchRow &row) {
-                if (rows.empty() || rows.back().size != row.size ||
-                    rows.back().instances != row.instances)
-                    of_mesh = 0;
-                rows.push_back(row);
-                if (row.method == gtx::BenchMethod::MESH)
-                    of_mesh = row.median;
-                if (!as_json)
-                    print_row(row, of_mesh);
-            });
-        return as_json ? tell_json(files[1], setup, rows) : int(EXIT_CODE_OK);
+        Report report;
+        if (wanted.along_path)
+            run_along(files[1], files[0], mesh, path, wanted, report);
+        else
+            run_orbit(files[1], files[0], mesh, wanted, report);
+        return as_json ? tell_json(files[1], report) : int(EXIT_CODE_OK);
     });
 }

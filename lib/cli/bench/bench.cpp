@@ -10,7 +10,7 @@ namespace gtx {
 
 const char *const bench_method_names[BENCH_METHODS] = {
     "mesh", "mesh_stream", "simplified", "paper", "cast", "lod", "auto", "cast_depth", "auto_depth",
-    "cast_fragment", "grid", "grid_depth"};
+    "cast_fragment", "grid", "grid_depth", "floor"};
 
 namespace {
 
@@ -59,22 +59,10 @@ double Bench::time(BenchMethod method, const Shot &shot)
     return milliseconds() - start;
 }
 
-/* Whether a pixel and its eight neighbours are covered. */
-bool is_inside(const Picture &picture, size_t pixel, size_t width)
-{
-    const size_t x = pixel % width, y = pixel / width;
-    if (x == 0 || y == 0 || x + 1 == width || (y + 1) * width == picture.depth.size())
-        return false;
-    for (size_t k = 0; k < 9; ++k)
-        if (!(picture.depth[(y + k / 3 - 1) * width + x + k % 3 - 1] < 1))
-            return false;
-    return true;
-}
-
 void compare(const Picture &truth, const Picture &picture, size_t width, Quality &quality)
 {
     for (size_t p = 0; p < truth.depth.size(); ++p) {
-        const bool wanted = truth.depth[p] < 1, covered = picture.depth[p] < 1;
+        const bool wanted = truth.covers(p), covered = picture.covers(p);
         quality.both += wanted && covered;
         quality.either += wanted || covered;
         quality.covered += covered;
@@ -91,7 +79,7 @@ Quality Bench::judge(BenchMethod method, const Shot &one, const Vector<Picture> 
     Quality quality;
     for (int turn = 0; turn < BENCH_TURNS; ++turn)
         compare(truth[size_t(turn)],
-                scene.picture(method, {one.width, one.height, 1, turn}, target), one.width,
+                scene.picture(method, Shot{one.width, one.height, 1, turn}, target), one.width,
                 quality);
     return quality;
 }
@@ -129,7 +117,7 @@ void Bench::judge_all(const std::array<uint32_t, 2> &size, uint32_t instances,
         const Target target(scene.gl, one.width, one.height);
         for (int turn = 0; turn < BENCH_TURNS; ++turn)
             truth.push_back(
-                scene.picture(BenchMethod::MESH, {one.width, one.height, 1, turn}, target));
+                scene.picture(BenchMethod::MESH, Shot{one.width, one.height, 1, turn}, target));
     }
     if (options_.min_iou > 0)
         choose_error(one, truth);

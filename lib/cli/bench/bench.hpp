@@ -15,9 +15,10 @@ enum class BenchMethod : uint32_t {
     PAPER, CAST, LOD, AUTO,
     CAST_DEPTH, AUTO_DEPTH, /* the depth pass alone */
     CAST_FRAGMENT, /* cast in fragments where CAST is by tiles */
-    GRID, GRID_DEPTH
+    GRID, GRID_DEPTH,
+    FLOOR          /* of run_path alone: the pixels that AUTO covers, shaded once */
 };
-constexpr uint32_t BENCH_METHODS = 12;
+constexpr uint32_t BENCH_METHODS = 13;
 extern const char *const bench_method_names[BENCH_METHODS]; /* as in reports */
 constexpr double bench_errors[] = {0.25, 0.35, 0.5, 0.71, 1, 1.41, 2}; /* pixels */
 
@@ -30,6 +31,8 @@ struct BenchOptions {
     double min_iou = 0;                         /* over 0: max_error is the largest of
                                                    bench_errors that AUTO keeps it at */
     double budget = 600;                        /* seconds, of all rows */
+    bool along_path = false;                    /* for run_path, not run_bench */
+    uint32_t repeats = 3;                       /* of a view of a path */
 };
 
 struct BenchRow {

@@ -13,6 +13,9 @@
 
 namespace gtx {
 
+/* Error of the coarsest simplification along a path, in radii: more than half a pixel anywhere
+ * nearer than six radii in a window of 1000 pixels. */
+constexpr double MAX_LEVEL_ERROR = 0.003;
 constexpr GLenum INVOCATIONS = 0x82F4; /* GL_FRAGMENT_SHADER_INVOCATIONS: OpenGL 4.6 */
 
 /* How the methods of the library are asked for. */
@@ -122,14 +125,22 @@ void BenchScene::load_asset(const std::string &path)
 void BenchScene::load_mesh(const Mesh &mesh)
 {
     const Vector<BenchMethod> &m = options_.methods;
-    levels = make_mesh_levels(mesh, {info.anchor[0], info.anchor[1], info.anchor[2]},
-                               std::count(m.begin(), m.end(), BenchMethod::MESH_LOD) > 0);
-    setup.triangles = uint32_t(levels.indices[0].size() / 3);
-    for (const Vector<uint32_t> &indices : levels.indices) {
+    const Vec3d anchor(info.anchor[0], info.anchor[1], info.anchor[2]);
+    const bool simplified = std::count(m.begin(), m.end(), BenchMethod::MESH_LOD) > 0;
+    if (options_.along_path) {
+        parts = make_part_levels(mesh, anchor, simplified, MAX_LEVEL_ERROR * double(radius_));
+        part_drawer_ = std::make_unique<PartDrawer>(gl);
+        floor_ = std::make_unique<Floor>(gl, info);
+    } else {
+        levels = make_mesh_levels(mesh, anchor, simplified);
+    }
+    const MeshLevels &drawn = options_.along_path ? parts.mesh : levels;
+    setup.triangles = uint32_t(drawn.indices[0].size() / 3);
+    for (const Vector<uint32_t> &indices : drawn.indices) {
         gtx_error error;
         polygons_.emplace_back();
-        const gtx_polygon_data data = {levels.vertices.data(), indices.data(),
-                                       uint32_t(levels.vertices.size()), uint32_t(indices.size())};
+        const gtx_polygon_data data = {drawn.vertices.data(), indices.data(),
+                                       uint32_t(drawn.vertices.size()), uint32_t(indices.size())};
         require_ok(gtx_polygons_create(&gl, &data, &polygons_.back(), &error), error);
     }
 }
@@ -191,13 +202,33 @@ void BenchScene::draw_mesh(BenchMethod method, const gtx_view &view,
 void BenchScene::draw(BenchMethod method, const Shot &shot)
 {
     Vector<gtx_instance> placed;
-    gtx_view view = view_of(shot, placed);
+    const gtx_view view = view_of(shot, placed);
+    draw(method, view, placed);
+}
+
+void BenchScene::draw(BenchMethod method, const gtx_view &view)
+{
+    Vector<gtx_instance> placed(1);
+    placed[0].model = model_;
+    for (int k = 0; k < 4; ++k)
+        placed[0].transform[5 * k] = 1;
+    draw(method, view, placed);
+}
+
+void BenchScene::draw(BenchMethod method, gtx_view view, const Vector<gtx_instance> &placed)
+{
     gl.DepthMask(GL_TRUE);
     gl.ClearDepthf(1);
     gl.Clear(GL_DEPTH_BUFFER_BIT | (is_depth_pass(method) ? 0 : GL_COLOR_BUFFER_BIT));
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_LESS);
-    if (is_mesh(method)) {
+    const size_t drawn = method == BenchMethod::MESH_LOD ? level : 0;
+    if (method == BenchMethod::FLOOR) {
+        floor_->draw(view);
+    } else if (is_mesh(method) && part_drawer_) {
+        set_bench_eye(gl, program_, view.view);
+        part_drawer_->draw(program_, polygons_[drawn], parts.parts[drawn], view);
+    } else if (is_mesh(method)) {
         draw_mesh(method, view, placed);
     } else {
         const Technique technique = technique_of(method);
@@ -206,20 +237,38 @@ void BenchScene::draw(BenchMethod method, const Shot &shot)
         if (method == BenchMethod::CAST_FRAGMENT)
             view.viewport_width = 0;
         gtx_error error;
-        require_ok(gtx_draw(renderer_, &view, placed.data(), shot.instances, &error), error);
+        require_ok(gtx_draw(renderer_, &view, placed.data(), uint32_t(placed.size()), &error),
+                   error);
     }
     gl.Finish();
+}
+
+Picture BenchScene::read(const gtx_view &view, const Target &target)
+{
+    Picture out;
+    out.color.resize(size_t(4) * view.viewport_width * view.viewport_height);
+    out.depth.resize(size_t(view.viewport_width) * view.viewport_height);
+    gtx_framebuffer_read_color(&gl, &target.framebuffer, out.color.data());
+    gtx_framebuffer_read_depth(&gl, &target.framebuffer, out.depth.data());
+    return out;
 }
 
 Picture BenchScene::picture(BenchMethod method, const Shot &shot, const Target &target)
 {
     draw(method, shot);
-    Picture out;
-    out.color.resize(size_t(4) * shot.width * shot.height);
-    out.depth.resize(size_t(shot.width) * shot.height);
-    gtx_framebuffer_read_color(&gl, &target.framebuffer, out.color.data());
-    gtx_framebuffer_read_depth(&gl, &target.framebuffer, out.depth.data());
-    return out;
+    Vector<gtx_instance> placed;
+    return read(view_of(shot, placed), target);
+}
+
+Picture BenchScene::picture(BenchMethod method, const gtx_view &view, const Target &target)
+{
+    draw(method, view);
+    return read(view, target);
+}
+
+void BenchScene::set_floor(const Picture &covered, const gtx_view &view)
+{
+    floor_->cover(covered, view.viewport_width, view.viewport_height);
 }
 
 void BenchScene::count(BenchMethod method, Shot shot, uint64_t &rays, uint64_t &hits)
@@ -248,7 +297,8 @@ uint32_t BenchScene::triangles(BenchMethod method) const
 {
     if (!is_mesh(method))
         return 0;
-    return uint32_t(levels.indices[method == BenchMethod::MESH_LOD ? level : 0].size() / 3);
+    const MeshLevels &drawn = part_drawer_ ? parts.mesh : levels;
+    return uint32_t(drawn.indices[method == BenchMethod::MESH_LOD ? level : 0].size() / 3);
 }
 
 } // namespace gtx

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "cli/bench/bench.hpp"
-#include "cli/bench/mesh.hpp"
+#include "cli/bench/floor.hpp"
+#include "cli/bench/parts.hpp"
+#include "cli/bench/path.hpp"
 #include "host/framebuffer.h"
 #include "host/offscreen.h"
 
@@ -23,12 +25,6 @@ bool is_depth_pass(BenchMethod method);
 struct Shot {
     uint32_t width, height, instances;
     int turn;
-};
-
-/* A picture as it is judged. */
-struct Picture {
-    Vector<uint8_t> color;      /* RGBA */
-    Vector<float> depth;
 };
 
 /* A framebuffer for a while, bound from the constructor on. */
@@ -59,6 +55,12 @@ public:
     void draw(BenchMethod method, const Shot &shot);
     /* The same into `target`, read back. */
     Picture picture(BenchMethod method, const Shot &shot, const Target &target);
+    /* The same of one instance where it is, from a viewpoint of a path. */
+    gtx_view view_of(const ViewPath &path, size_t which, uint32_t width, uint32_t height) const;
+    void draw(BenchMethod method, const gtx_view &view);
+    Picture picture(BenchMethod method, const gtx_view &view, const Target &target);
+    /* Before FLOOR is drawn: what it covers. */
+    void set_floor(const Picture &covered, const gtx_view &view);
     /* Fragments shaded and kept by all azimuths together; zeros: the driver cannot tell. */
     void count(BenchMethod method, Shot shot, uint64_t &rays, uint64_t &hits);
     /* Triangles of what a method draws; 0: no mesh. */
@@ -67,7 +69,8 @@ public:
     BenchSetup setup;
     gtx_host_gl gl = {};
     gtx_info info = {};
-    MeshLevels levels;
+    MeshLevels levels;    /* of an orbit */
+    PartLevels parts;     /* of a path */
     size_t level = 0;     /* that MESH_LOD draws */
     double max_error = 0; /* pixels, of what is no mesh */
 
@@ -75,8 +78,10 @@ private:
     void load_asset(const std::string &path);
     void load_mesh(const Mesh &mesh);
     gtx_view view_of(const Shot &shot, Vector<gtx_instance> &placed) const;
+    void draw(BenchMethod method, gtx_view view, const Vector<gtx_instance> &placed);
     void draw_mesh(BenchMethod method, const gtx_view &view,
                    const Vector<gtx_instance> &placed);
+    Picture read(const gtx_view &view, const Target &target);
 
     const BenchOptions &options_;
     BenchContext context_;
@@ -85,6 +90,8 @@ private:
     gtx_model *model_ = nullptr;
     float centre_[3] = {}, radius_ = 0;
     Vector<gtx_polygons> polygons_;      /* of the levels */
+    std::unique_ptr<PartDrawer> part_drawer_;
+    std::unique_ptr<Floor> floor_;
     bool counts_ = false;                /* the driver counts shaded fragments */
 };
 

@@ -28,7 +28,8 @@ vec3 to_linear(vec3 c)
 static const char lambert[] = R"(
 void main()
 {
-    float toward = max(dot(normalize(world_normal), light), 0.0);
+    vec3 n = gl_FrontFacing ? world_normal : -world_normal;
+    float toward = max(dot(normalize(n), light), 0.0);
     float share = srgb.a > 0.0 ? ambient + (1.0 - ambient) * toward : 1.0;
     color = vec4(gtx_to_srgb(to_linear(srgb.rgb) * share), 1.0);
 }
@@ -40,8 +41,9 @@ void main()
 {
     gtx_material m = gtx_material(to_linear(srgb.rgb), vec3(0.0), material.x, material.y,
                                   material.z, srgb.a);
-    color = vec4(gtx_to_srgb(gtx_shade(m, normalize(world_normal), normalize(eye.xyz - world_point),
-                                       light, ambient)), 1.0);
+    vec3 n = normalize(gl_FrontFacing ? world_normal : -world_normal);
+    color = vec4(gtx_to_srgb(gtx_shade(m, n, normalize(eye.xyz - world_point), light, ambient)),
+                 1.0);
 }
 )";
 

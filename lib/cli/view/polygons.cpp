@@ -48,6 +48,7 @@ struct TriangleCutter {
     void add_triangle(size_t t, uint32_t pieces)
     {
         const uint32_t first = uint32_t(out.vertices.size());
+        const uint8_t sides = !mesh.flags.empty() && (mesh.flags[t] & TRIANGLE_TWO_SIDED) ? 255 : 0;
         cut.clear();
         for (uint32_t j = 0; j <= pieces; ++j) {
             for (uint32_t i = 0; i + j <= pieces; ++i) {
@@ -60,7 +61,7 @@ struct TriangleCutter {
                                         {linear_to_srgb(s.color[0]), linear_to_srgb(s.color[1]),
                                          linear_to_srgb(s.color[2]), uint8_t(s.lit > 0 ? 255 : 0)},
                                         {to_byte(s.occlusion), to_byte(s.roughness),
-                                         to_byte(s.metallic), 0}});
+                                         to_byte(s.metallic), sides}});
                 cut.push_back(s.cut);
             }
         }

@@ -12,7 +12,8 @@ struct Polygons {
 };
 
 /* Textured triangles are cut into smaller ones, which take colour and normal at their corners; what
- * a mask cuts away is left out. Throws Error: LIMIT. */
+ * a mask cuts away is left out. Two-sided triangles have 255 in the last byte of their vertices'
+ * materials. Throws Error: LIMIT. */
 Polygons make_polygons(const Mesh &mesh, const Vec3d &centre);
 
 } // namespace gtx
