@@ -9,8 +9,12 @@
 GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;
 
 #ifdef GTX_GRID
-layout(location = 0) in uvec2 gtx_node;     /* of the block */
-layout(location = 1) in uvec2 gtx_block;    /* patch + 2^28 level; its first cell, x + 2^16 y */
+layout(location = 0) in uvec2 gtx_node;     /* of a block's part, in strides */
+layout(location = 1) in uvec2 gtx_block;    /* x: patch + 2^28 stride; y: column + 2^11 row + 2^22
+                                               the strides of the left, right, lower and upper
+                                               edge, 2 bits each: binary logarithms, in texels.
+                                               Above, 2 bits: where the part begins, in 2 texels */
+GTX_SAMPLER(7, highp usampler2DArray) gtx_heights; /* codes, and beyond them what goes on */
 #else
 layout(location = 0) in vec3 gtx_position;  /* in steps of the level */
 layout(location = 1) in uint gtx_patch;
@@ -55,44 +59,39 @@ GTX_VARYING(10) flat out uint gtx_id;       /* of the instance */
 
 #ifdef GTX_TRIMMED
 GTX_VARYING(11) out vec2 gtx_texel;         /* of the patch */
-GTX_VARYING(12) flat out uvec4 gtx_trimmed; /* of the rectangle, 16 bits each: corner; size; page,
-                                               level; 1 where the triangle's cell exists */
+GTX_VARYING(12) flat out uvec3 gtx_trimmed; /* of the rectangle, 16 bits each: corner; size; page */
 #endif
 
 #ifdef GTX_GRID
-/* The code of a node, which each of its up to four cells that exists has; 0: none exists. The
- * triangles of a cell get what is flat from its first node, and `exists` is of that cell. */
-uint gtx_code_of(gtx_height_field field, ivec2 node, out bool exists)
+/* A place along an edge, at the edge's own stride. */
+uint gtx_snap(uint at, uint edges, int edge)
 {
-    uint code = 0u;
-    exists = false;
-    for (int k = 0; k < 4 && code == 0u; ++k) {
-        ivec2 cell = node - ivec2(k & 1, k >> 1);
-        bool within = all(greaterThanEqual(cell, ivec2(0))) &&
-                      all(lessThanEqual(cell, field.last));
-        if (within)
-            code = texelFetch(gtx_cells, ivec3(field.cells + cell, field.page), 0)[k];
-        exists = exists || (k == 0 && code != 0u);
-    }
-    return code;
+    uint stride = (edges >> (2 * edge)) & 3u;
+    return (at >> stride) << stride;
 }
 
-/* The node's place in grid space. Where nothing exists it is nowhere, for triangles that show
- * nothing anyway: what drivers make of it only costs time. */
+/* The node's place in grid space. Where blocks of different strides meet, the finer one's nodes
+ * on the edge are those of the coarser (de Boer, Geometrical MipMapping, 2000). */
 vec3 gtx_place_node(int index)
 {
-    gtx_height_field field = gtx_field_of(index, int(gtx_block.x >> 28));
-    ivec2 node = ivec2(gtx_block.y & 0xffffu, gtx_block.y >> 16) + ivec2(gtx_node);
-    node = min(node, field.last + 1);
-    bool exists;
-    uint code = gtx_code_of(field, node, exists);
-    vec2 at = vec2(min(node << field.level, field.size - 1));
+    uvec2 at = (gtx_node << ((gtx_block.x >> 28) & 3u)) + 2u * (gtx_block >> 30u);
+    uint edges = gtx_block.y >> 22;
+    uvec2 on = at;
+    if (at.x == 0u || at.x == uint(GTX_BLOCK_CELLS))
+        on.y = gtx_snap(at.y, edges, at.x == 0u ? 0 : 1);
+    if (at.y == 0u || at.y == uint(GTX_BLOCK_CELLS))
+        on.x = gtx_snap(at.x, edges, at.y == 0u ? 2 : 3);
+    ivec2 block = ivec2(gtx_block.y & 0x7ffu, (gtx_block.y >> 11) & 0x7ffu);
+    vec4 rect = gtx_record(index, GTX_RECORD_RECT);
+    int page = int(gtx_record(index, GTX_RECORD_PAGE).w);
+    ivec2 node = min(block * GTX_BLOCK_CELLS + ivec2(on), ivec2(rect.zw) - 1);
+    uint code = texelFetch(gtx_heights, ivec3(ivec2(rect.xy) + node, page), 0).r;
 #ifdef GTX_TRIMMED
-    gtx_texel = at;
-    gtx_trimmed = uvec4(field.corner.x | field.corner.y << 16, field.size.x | field.size.y << 16,
-                        field.page | field.level << 16, exists ? 1u : 0u);
+    uvec4 corners = uvec4(rect);
+    gtx_texel = vec2(node);
+    gtx_trimmed = uvec3(corners.x | corners.y << 16, corners.z | corners.w << 16, page);
 #endif
-    return vec3(at, code == 0u ? uintBitsToFloat(0x7fc00000u) : float(code));
+    return vec3(node, code);
 }
 #endif
 

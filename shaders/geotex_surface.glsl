@@ -83,18 +83,20 @@ vec3 gtx_shaded_to_srgb(vec3 root, float share)
 }
 
 #ifdef GTX_TRIMMED
-/* Of a displaced grid: whether its triangle's cell exists and shows here. From geotex_lod.vert. */
+/* Of a displaced grid: whether there is a cell and it shows. Varyings of geotex_lod.vert. */
 GTX_VARYING(11) in vec2 gtx_texel;
-GTX_VARYING(12) flat in uvec4 gtx_trimmed;
+GTX_VARYING(12) flat in uvec3 gtx_trimmed;
 
 bool gtx_is_shown()
 {
-    uvec4 t = gtx_trimmed;
+    uvec3 t = gtx_trimmed;
     gtx_height_field field;
     field.corner = ivec2(t.x & 0xffffu, t.x >> 16);
     field.size = ivec2(t.y & 0xffffu, t.y >> 16);
-    field.page = int(t.z & 0xffffu);
-    field.level = int(t.z >> 16);
-    return t.w != 0u && gtx_shows(field, gtx_texel);
+    field.page = int(t.z);
+    field.level = 0;
+    ivec2 cell = clamp(ivec2(floor(gtx_texel)), ivec2(0), field.size - 2);
+    uvec4 codes = texelFetch(gtx_cells, ivec3(field.corner + cell, field.page), 0);
+    return codes.x != 0u && gtx_shows(field, gtx_texel);
 }
 #endif

@@ -66,14 +66,12 @@ static gtx_surface surface_at(const gtx_grid *grid, const gtx_patch *patch, uint
     return (gtx_surface){(1 - f[1]) * low + f[1] * high, dx / width[0], (high - low) / width[1]};
 }
 
-/* Of a code along the frame's Z in object space, square to the height field: the share of the step
- * that leads away from the plane of its tangents. */
-static double square_to(const gtx_surface *s, const double step[3], const gtx_patch *p)
+double gtx_square_to(const gtx_patch *p, const double step[3], double dx, double dy)
 {
     double u[3], v[3], along = 0, length = 0;
     for (int k = 0; k < 3; ++k) {
-        u[k] = step[0] * p->axis_x[k] + s->dx * step[2] * p->axis_z[k];
-        v[k] = step[1] * p->axis_y[k] + s->dy * step[2] * p->axis_z[k];
+        u[k] = step[0] * p->axis_x[k] + dx * step[2] * p->axis_z[k];
+        v[k] = step[1] * p->axis_y[k] + dy * step[2] * p->axis_z[k];
     }
     for (int k = 0; k < 3; ++k) {
         const int a = (k + 1) % 3, b = (k + 2) % 3;
@@ -84,15 +82,13 @@ static double square_to(const gtx_surface *s, const double step[3], const gtx_pa
     return fabs(along) * step[2] / sqrt(length);
 }
 
-/* From a texel inside the outline on, distances count this many times: neighbours drawn at levels
- * of their own part by the sum of their errors. */
-static const float border_counts = 4;
+/* From a texel inside the outline on, distances count GTX_BORDER_COUNTS times. */
 static const uint8_t border_code = GTX_TRIM_OUTLINE - GTX_TRIM_TEXEL;
 
 static void weigh(const uint8_t *trim, uint32_t count, float *out)
 {
     for (uint32_t i = 0; i < count; ++i)
-        out[i] = trim[i] > border_code ? border_counts : 1;
+        out[i] = trim[i] > border_code ? GTX_BORDER_COUNTS : 1;
 }
 
 /* Heights over `count` texels of each of some cells of a row, from the heights at their sides;
@@ -153,7 +149,7 @@ static void compare_exactly(comparison *c, const run *r, uint32_t first, uint32_
         const double codes = fabs(s.z - r->texels[i]) * (double)r->weights[i];
         /* or it cannot be greater square to the height field */
         if (codes * c->step[2] > c->greatest)
-            c->greatest = fmax(c->greatest, codes * square_to(&s, c->step, c->patch));
+            c->greatest = fmax(c->greatest, codes * gtx_square_to(c->patch, c->step, s.dx, s.dy));
     }
 }
 
@@ -196,7 +192,7 @@ static void compare_run(comparison *c, uint32_t first, uint32_t end, uint32_t y)
     for (uint32_t i = 0; i < r.count; i += PIECE) {
         const uint32_t piece_end = r.count - i < PIECE ? r.count : i + PIECE;
         /* Floats are off by less than this. */
-        const float limit = (float)(0.9999 * c->greatest / c->step[2]) - 0.05f * border_counts;
+        const float limit = (float)(0.9999 * c->greatest / c->step[2]) - 0.05f * GTX_BORDER_COUNTS;
         if (any_beyond(&r, i, piece_end, limit))
             compare_exactly(c, &r, i, piece_end, limit);
     }

@@ -16,4 +16,13 @@ void gtx_load_codes(const gtx_grid *grid, uint32_t x0, uint32_t count, uint32_t 
 /* The solid cells lie in low to high - 1; false when there are none. */
 bool gtx_solid_extent(const gtx_grid *grid, uint32_t low[2], uint32_t high[2]);
 
+/* How often a distance at an outline counts: neighbours drawn at levels of their own part by the
+ * sum of their errors, and what is too little to be seen opens a hole there. */
+#define GTX_BORDER_COUNTS 4
+
+/* Of a code along the frame's Z in object space, square to a height field with these slopes, in
+ * codes a texel: the share of the step that leads away from the plane of its tangents. `step` has
+ * object units a texel along x and y, and a code. */
+double gtx_square_to(const gtx_patch *patch, const double step[3], double dx, double dy);
+
 #endif

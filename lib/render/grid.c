@@ -1,33 +1,43 @@
-/* Displaced grids in OpenGL: one pattern of triangles, an instance for each block. */
+/* Displaced grids in OpenGL: patterns of triangles, an instance for each block. */
 #include "render/grid.h"
 #include "render/renderer.h"
 
-enum {
-    CELLS = GTX_SLAB_CELLS,
-    NODES_A_ROW = CELLS + 1,
-    INDICES = 3 * GTX_BLOCK_TRIANGLES
-};
+/* All patterns, one after another. */
+enum { CELLS = GTX_BLOCK_CELLS, MAX_NODES = 119, MAX_INDICES = 510 };
 
-/* The last vertex of a cell's triangles, which tells what is flat, is the cell's own. */
-static void send_pattern(const gtx_gl *gl)
+typedef struct patterns {
+    uint8_t nodes[MAX_NODES][4];
+    uint16_t indices[MAX_INDICES];
+    uint16_t node_count, index_count;
+} patterns;
+
+/* Cells are cut from their own node to the one across, which gtx_grid_blocks counts on. */
+static void add_pattern(patterns *p, uint32_t cells)
 {
-    uint8_t nodes[NODES_A_ROW * NODES_A_ROW][4] = {{0}};
-    uint16_t indices[INDICES], *next = indices;
-    for (int j = 0; j < NODES_A_ROW; ++j)
-        for (int i = 0; i < NODES_A_ROW; ++i) {
-            nodes[j * NODES_A_ROW + i][0] = (uint8_t)i;
-            nodes[j * NODES_A_ROW + i][1] = (uint8_t)j;
+    const uint16_t row = (uint16_t)(cells + 1), first = p->node_count;
+    for (uint32_t j = 0; j <= cells; ++j)
+        for (uint32_t i = 0; i <= cells; ++i) {
+            uint8_t *node = p->nodes[p->node_count++];
+            node[0] = (uint8_t)i;
+            node[1] = (uint8_t)j;
         }
-    for (int j = 0; j < CELLS; ++j)
-        for (int i = 0; i < CELLS; ++i) {
-            const uint16_t own = (uint16_t)(j * NODES_A_ROW + i), right = own + 1;
-            const uint16_t above = own + NODES_A_ROW, across = above + 1;
+    for (uint32_t j = 0; j < cells; ++j)
+        for (uint32_t i = 0; i < cells; ++i) {
+            const uint16_t own = (uint16_t)(first + j * row + i), right = own + 1;
+            const uint16_t above = own + row, across = above + 1;
             const uint16_t corners[6] = {right, across, own, across, above, own};
             for (int c = 0; c < 6; ++c)
-                *next++ = corners[c];
+                p->indices[p->index_count++] = corners[c];
         }
-    gl->BufferData(GL_ARRAY_BUFFER, sizeof nodes, nodes, GL_STATIC_DRAW);
-    gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, sizeof indices, indices, GL_STATIC_DRAW);
+}
+
+static void send_patterns(const gtx_gl *gl)
+{
+    patterns p = {.node_count = 0};
+    for (uint32_t k = 0; k < GTX_GRID_PATTERNS; ++k)
+        add_pattern(&p, CELLS >> k);
+    gl->BufferData(GL_ARRAY_BUFFER, sizeof p.nodes, p.nodes, GL_STATIC_DRAW);
+    gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, sizeof p.indices, p.indices, GL_STATIC_DRAW);
 }
 
 void gtx_grids_create(gtx_renderer *renderer)
@@ -44,7 +54,7 @@ void gtx_grids_create(gtx_renderer *renderer)
     gtx_gl_label(gl, GL_BUFFER, g->nodes, "geotex grid nodes");
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, g->indices);
     gtx_gl_label(gl, GL_BUFFER, g->indices, "geotex grid indices");
-    send_pattern(gl);
+    send_patterns(gl);
     gl->VertexAttribIPointer(0, 2, GL_UNSIGNED_BYTE, 4, NULL);
     gl->EnableVertexAttribArray(0);
     gl->EnableVertexAttribArray(1);
@@ -64,6 +74,7 @@ void gtx_grids_destroy(gtx_renderer *renderer)
     renderer->gl.DeleteBuffers(1, &g->stream);
     gtx_scratch_free(&renderer->allocator, &g->found);
     gtx_scratch_free(&renderer->allocator, &g->blocks);
+    gtx_scratch_free(&renderer->allocator, &g->strides);
 }
 
 void gtx_grids_begin(gtx_renderer *renderer)
@@ -86,10 +97,15 @@ void gtx_grids_draw(gtx_renderer *renderer, uint32_t kind)
     size_t first = 0;
     for (uint32_t k = 0; k < kind; ++k)
         first += g->counts[k];
+    size_t indices = 0;
+    for (uint32_t k = 0; k < kind % GTX_GRID_PATTERNS; ++k)
+        indices += 3 * gtx_pattern_triangles(k);
+    const uint32_t triangles = gtx_pattern_triangles(kind % GTX_GRID_PATTERNS);
     gl->BindBuffer(GL_ARRAY_BUFFER, g->stream);
     gl->VertexAttribIPointer(1, 2, GL_UNSIGNED_INT, sizeof(gtx_block),
                              gtx_gl_offset(first * sizeof(gtx_block)));
-    gl->DrawElementsInstanced(GL_TRIANGLES, INDICES, GL_UNSIGNED_SHORT, NULL,
+    gl->DrawElementsInstanced(GL_TRIANGLES, (gl_size)(3 * triangles), GL_UNSIGNED_SHORT,
+                              gtx_gl_offset(indices * sizeof(uint16_t)),
                               (gl_size)g->counts[kind]);
-    g->triangles += (uint64_t)g->counts[kind] * GTX_BLOCK_TRIANGLES;
+    g->triangles += (uint64_t)g->counts[kind] * triangles;
 }

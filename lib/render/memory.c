@@ -18,7 +18,7 @@ static uint64_t level_bytes(const gtx_patch *patch, uint32_t level)
 {
     const uint64_t wide = ((patch->rect[2] - 2u) >> level) + 1;
     const uint64_t high = ((patch->rect[3] - 2u) >> level) + 1;
-    return gtx_slab_count(patch, level) * (sizeof(gtx_slab) + sizeof(bool)) + 3 * sizeof(uint32_t) +
+    return gtx_slab_count(patch, level) * (sizeof(gtx_slab) + sizeof(gtx_block_facts)) + 3 * sizeof(uint32_t) +
            hull_bytes((wide + GTX_HULL_BLOCK - 1) / GTX_HULL_BLOCK,
                       (high + GTX_HULL_BLOCK - 1) / GTX_HULL_BLOCK);
 }
@@ -50,7 +50,7 @@ static uint64_t lod_bytes(const gtx_asset *asset)
 /* Heights of a patch while its levels are derived, of as many patches as there may be jobs. */
 static uint64_t work_bytes(const gtx_asset *asset)
 {
-    enum { TEXEL = 16, JOBS = 64 };
+    enum { TEXEL = 32, JOBS = 64 };
     const uint32_t count = asset->info.patch_count;
     uint64_t most = 0;
     for (uint32_t i = 0; i < count; ++i) {
@@ -65,7 +65,7 @@ uint64_t gtx_model_memory(const gtx_asset *asset, bool borrow)
     const gtx_info *info = &asset->info;
     const uint64_t texels = (uint64_t)info->page_count * info->page_width * info->page_height;
     const uint32_t maps = 3 + 4 * info->has_color + 4 * info->has_material + 3 * info->has_emission;
-    const uint64_t cells = texels * (info->height_bits / 2);
+    const uint64_t cells = texels * (info->height_bits / 2 + info->height_bits / 8);
     uint64_t bytes = sizeof(gtx_model) + lod_bytes(asset) + work_bytes(asset) + cells +
                      (info->mip_count > 1 ? cells / 2 : 0);
     bytes += borrow ? 0 : texels * maps + (info->mip_count > 1 ? texels * maps / 3 : 0);

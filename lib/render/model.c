@@ -76,7 +76,8 @@ void gtx_model_free(gtx_model *model)
     if (model->first_slab) {
         const size_t count = model->first_slab[model->mip_count * model->patch_count];
         gtx_free_array(&hooks, model->slabs, count, sizeof *model->slabs);
-        gtx_free_array(&hooks, model->whole, count, sizeof *model->whole);
+        gtx_free_array(&hooks, model->blocks, model->first_slab[model->patch_count],
+                       sizeof *model->blocks);
     }
     gtx_free_array(&hooks, model->first_slab, (size_t)model->mip_count * model->patch_count + 1,
                    sizeof *model->first_slab);

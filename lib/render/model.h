@@ -12,7 +12,7 @@
 #include <stdbool.h>
 
 enum {
-    GTX_MAX_LEVELS = 2 + 5 * GTX_MAX_MIPS,
+    GTX_MAX_LEVELS = 3 + 5 * GTX_MAX_MIPS,
     GTX_MAX_PROXY_KINDS = 1 + GTX_MAX_MIPS,
     GTX_RECORDS_A_ROW = 1 << GTX_RECORD_ROW_BITS
 };
@@ -60,7 +60,7 @@ struct gtx_model {
     /* Slabs of all levels, and where those of a patch's level begin: mip_count * patch_count + 1
      * numbers. */
     gtx_slab *slabs;
-    bool *whole;              /* of each slab's block: all of it is there and shows */
+    gtx_block_facts *blocks;  /* of each slab of level 0 */
     uint32_t *first_slab;
     gtx_record *records;
     gtx_model_size size;
@@ -92,7 +92,9 @@ typedef struct gtx_derived {
     gtx_record record;
     gtx_patch_facts facts;
     gtx_slab *slabs[GTX_MAX_MIPS];            /* where those of each level go */
-    bool *whole[GTX_MAX_MIPS];                /* where that of each of its slabs goes */
+    gtx_block_facts *blocks;                  /* where those of level 0 go */
+    void *heights;                            /* where the codes of gtx_grid_fill go, bytes or... */
+    size_t height_row;                        /* ... 16 bits each; from a row to the next */
     void *cells[GTX_MAX_MIPS];                /* where those of each level go */
     size_t row_texels[GTX_MAX_MIPS];          /* from a row of cells to the next */
 } gtx_derived;

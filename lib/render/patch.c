@@ -77,7 +77,6 @@ static gtx_result derive_level(const gtx_asset *asset, uint32_t patch, gtx_grid 
     gtx_grid_trim(asset, patch, grid);
     gtx_grid_cells(grid, asset->info.height_bits, out->row_texels[k], out->cells[k]);
     gtx_grid_slabs(&asset->patches[patch], grid, out->slabs[k]);
-    gtx_grid_whole(asset, patch, grid, out->whole[k]);
     if (out->facts.boxed)
         return GTX_OK;
     gtx_result result = gtx_add_hull(asset, patch, grid, hull_margin, allocator, hulls,
@@ -85,6 +84,20 @@ static gtx_result derive_level(const gtx_asset *asset, uint32_t patch, gtx_grid 
     if (!result)
         enclose(out->facts.hull, out->record, hulls, first);
     return result;
+}
+
+static void store_heights(const gtx_asset *asset, const gtx_grid *finest, const uint16_t *filled,
+                          gtx_derived *out)
+{
+    const size_t width = finest->nodes_x, size = asset->info.height_bits / 8;
+    for (size_t y = 0; y < finest->nodes_y; ++y) {
+        uint8_t *to = (uint8_t *)out->heights + y * out->height_row * size;
+        const uint16_t *from = filled + y * width;
+        if (size == 2)
+            memcpy(to, from, width * size);
+        for (size_t x = 0; size == 1 && x < width; ++x)
+            to[x] = (uint8_t)from[x];
+    }
 }
 
 gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_allocator *allocator,
@@ -118,8 +131,16 @@ gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_al
         result = derive_level(asset, patch, &grid, allocator, out, error);
         gtx_grid_free(&grid, allocator);
     }
+    uint16_t *filled = NULL;
+    if (!result)
+        result = gtx_grid_fill(&finest, asset->info.height_bits, allocator, &filled, error);
     if (!result) /* last, for errors are measured against what is not trimmed */
         result = derive_level(asset, patch, &finest, allocator, out, error);
+    if (!result)
+        gtx_grid_blocks(asset, patch, &finest, filled, out->slabs[0], out->blocks);
+    if (filled)
+        store_heights(asset, &finest, filled, out);
+    gtx_free_array(allocator, filled, (size_t)finest.nodes_x * finest.nodes_y, sizeof *filled);
     gtx_grid_free(&finest, allocator);
     return result;
 }

@@ -21,7 +21,7 @@ typedef struct making {
     gtx_model *model;
     const gtx_asset *asset;
     gtx_record *records;
-    uint8_t *pages;               /* of cells */
+    uint8_t *pages, *heights;     /* of cells; of codes */
     batch *batches;
     uint32_t batch_count;
     bool borrow;
@@ -122,8 +122,11 @@ static gtx_result derive_patch(const making *m, uint32_t i, gtx_derived *derived
         derived->row_texels[k] = info->page_width;
         derived->cells[k] = m->pages + (row * info->page_width + at[0]) * (info->height_bits / 2);
         derived->slabs[k] = model->slabs + model->first_slab[k * info->patch_count + i];
-        derived->whole[k] = model->whole + model->first_slab[k * info->patch_count + i];
     }
+    derived->blocks = model->blocks + model->first_slab[i];
+    derived->height_row = info->page_width;
+    derived->heights = m->heights + (((size_t)p->page * info->page_height + p->rect[1]) *
+                                         info->page_width + p->rect[0]) * (info->height_bits / 8);
     for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
         model->first_vertex[kind * info->patch_count + i] = derived->proxies[kind].vertex_count;
         model->first_index[kind * info->patch_count + i] = derived->proxies[kind].index_count;
@@ -236,8 +239,9 @@ static bool reserve_slabs(gtx_model *model, const gtx_asset *asset)
         return false;
     model->first_slab[slots] = (uint32_t)count;
     model->slabs = gtx_alloc_raw(&model->allocator, (size_t)count, sizeof *model->slabs);
-    model->whole = gtx_alloc_raw(&model->allocator, (size_t)count, sizeof *model->whole);
-    return model->slabs && model->whole;
+    model->blocks = gtx_alloc_raw(&model->allocator, model->first_slab[model->patch_count],
+                                  sizeof *model->blocks);
+    return model->slabs && model->blocks;
 }
 
 /* Memory for everything that has a size before it is derived. */
@@ -259,7 +263,11 @@ static bool reserve(making *m)
         model, (gtx_level){.unit = UNIT_CELLS, .width = info->page_width,
                            .height = gtx_model_cell_rows(model), .layers = info->page_count,
                            .texel_size = info->height_bits / 2});
-    if (!reserve_slabs(model, m->asset) || !m->records || !m->pages || !model->first_vertex ||
+    m->heights = add_level(
+        model, (gtx_level){.unit = UNIT_HEIGHTS, .width = info->page_width,
+                           .height = info->page_height, .layers = info->page_count,
+                           .texel_size = info->height_bits / 8});
+    if (!reserve_slabs(model, m->asset) || !m->records || !m->pages || !m->heights || !model->first_vertex ||
         !model->first_index || !model->facts)
         return false;
     return add_maps(m, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&

@@ -142,16 +142,16 @@ static const gtx_program *cast_program(const gtx_draw_call *draw, const gtx_mode
 }
 
 static const gtx_program *grid_program(const gtx_draw_call *draw, const gtx_model *model,
-                                       uint32_t kind, bool keeps_angles)
+                                       uint32_t looks, bool keeps_angles)
 {
     static const gtx_technique techniques[2][2] = {
         {TECHNIQUE_GRID_WHOLE, TECHNIQUE_GRID_WHOLE_FRONT},
         {TECHNIQUE_GRID, TECHNIQUE_GRID_FRONT}};
     const bool front = draw->view->pass == GTX_PASS_FORWARD && keeps_angles &&
-                       !(kind & GTX_BLOCK_TWO_SIDED);
+                       !(looks & GTX_BLOCK_TWO_SIDED);
     return draw->view->shading
                ? &draw->view->shading->grid
-               : program_of(draw, model, techniques[(kind & GTX_BLOCK_TRIMMED) != 0][front]);
+               : program_of(draw, model, techniques[(looks & GTX_BLOCK_TRIMMED) != 0][front]);
 }
 
 static const gtx_program *lod_program(const gtx_draw_call *draw, const gtx_run *r, bool front)
@@ -206,8 +206,9 @@ static void draw_grids(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
             gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
             begun = true;
         }
-        use_program(draw, grid_program(draw, r->model, kind, gtx_keeps_angles(placed)), r->model);
-        (kind & GTX_BLOCK_TWO_SIDED ? gl->Disable : gl->Enable)(GL_CULL_FACE);
+        const uint32_t looks = kind / GTX_GRID_PATTERNS;
+        use_program(draw, grid_program(draw, r->model, looks, gtx_keeps_angles(placed)), r->model);
+        (looks & GTX_BLOCK_TWO_SIDED ? gl->Disable : gl->Enable)(GL_CULL_FACE);
         gtx_grids_draw(renderer, kind);
     }
     gl->Enable(GL_CULL_FACE);

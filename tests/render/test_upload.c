@@ -10,7 +10,10 @@ static struct {
 
 static uint64_t texel_size(GLenum format, GLenum type)
 {
-    const uint64_t channels = format == GL_RED ? 1 : format == GL_RG ? 2 : format == GL_RGB ? 3 : 4;
+    const uint64_t channels = format == GL_RED || format == GL_RED_INTEGER ? 1
+                              : format == GL_RG                            ? 2
+                              : format == GL_RGB                           ? 3
+                                                                           : 4;
     return channels * (type == GL_FLOAT ? 4 : type == GL_UNSIGNED_SHORT ? 2 : 1);
 }
 
