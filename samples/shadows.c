@@ -84,13 +84,13 @@ static gtx_result shine(const gtx_host_gl *gl, const world *w, gtx_error *error)
         return result;
     gtx_target_begin(gl, &map);
     result = draw_all(gl, w, &v, &plain, error);
-    const GLuint readers[] = {w->polygon.program, gtx_shading_program(w->shading, GTX_METHOD_CAST),
-                              gtx_shading_program(w->shading, GTX_METHOD_LOD)};
-    for (int i = 0; i < 3; ++i) {
-        gl->UseProgram(readers[i]);
-        gtx_set_matrix(gl, readers[i], "sun_clip", clip);
-        gtx_set_vector(gl, readers[i], "to_sun", to_sun);
-        gtx_set_texture(gl, readers[i], "shadow_map", UNIT, map.depth);
+    static const gtx_method methods[] = {GTX_METHOD_CAST, GTX_METHOD_LOD, GTX_METHOD_GRID};
+    for (int i = 0; i < 4; ++i) {
+        const GLuint p = i ? gtx_shading_program(w->shading, methods[i - 1]) : w->polygon.program;
+        gl->UseProgram(p);
+        gtx_set_matrix(gl, p, "sun_clip", clip);
+        gtx_set_vector(gl, p, "to_sun", to_sun);
+        gtx_set_texture(gl, p, "shadow_map", UNIT, map.depth);
     }
     return result;
 }

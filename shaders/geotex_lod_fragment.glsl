@@ -1,5 +1,5 @@
-/* What a fragment of the LOD mesh sees: the calls of geotex_fragment.glsl, answered by polygons,
- * for the same mains. Nothing is searched and depth is the polygon's own, so that a main that
+/* What a fragment of an LOD mesh or a displaced grid sees: the calls of geotex_fragment.glsl,
+ * answered by polygons, for the same mains. Nothing is searched and depth is the polygon's own, so that a main that
  * neither discards nor writes a depth leaves the depth test first.
  *
  * Needs geotex_view.glsl, geotex_surface.glsl and, with GTX_MATERIALS defined, geotex_material.glsl

@@ -127,7 +127,8 @@ typedef struct gtx_model_size {
 GTX_API gtx_model_size gtx_model_gpu_size(const gtx_model *model);
 
 typedef enum gtx_method {
-    GTX_METHOD_AUTO = 0,          /* what is fastest within the error budget: LOD mesh or cast */
+    GTX_METHOD_AUTO = 0,          /* what is fastest within the error budget, patch by patch where
+                                     that pays: LOD meshes, displaced grids, or cast */
     GTX_METHOD_CAST = 1,          /* exact: walks the cells and solves their bilinear patches */
     GTX_METHOD_PAPER = 2,         /* linear then binary search, balanced by slant (paper, 4.1) */
     GTX_METHOD_LOD = 3,           /* triangles of an LOD mesh, which the asset must have */
@@ -155,7 +156,7 @@ typedef enum gtx_pass {
 typedef struct gtx_shading gtx_shading;
 
 /* `text` is GLSL that is put behind geotex_fragment.glsl, which says what there is to call, and for
- * LOD meshes behind geotex_lod_fragment.glsl, with GTX_LOD defined. geotex_material.glsl and
+ * LOD meshes and displaced grids behind geotex_lod_fragment.glsl, with GTX_LOD defined. geotex_material.glsl and
  * geotex_rays.glsl are there too; the rays are those of gtx_rays_bind. `text` has no #version, its
  * samplers start at unit 8, and it is not kept. The shading comes from the renderer's allocator,
  * and is freed by gtx_shading_destroy.
@@ -164,8 +165,9 @@ GTX_API gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, 
                                       gtx_error *error);
 /* A NULL shading is fine. */
 GTX_API void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading);
-/* The GL name of its program that casts, or with GTX_METHOD_LOD of the one that draws LOD meshes,
- * for setting the engine's own uniforms between draws. */
+/* The GL name of its program that casts, or with GTX_METHOD_LOD and GTX_METHOD_GRID of those that
+ * draw LOD meshes and displaced grids, for setting the engine's own uniforms between draws: AUTO
+ * takes all three. */
 GTX_API uint32_t gtx_shading_program(const gtx_shading *shading, gtx_method method);
 
 enum { /* gtx_view.flags */
@@ -187,9 +189,19 @@ enum { /* gtx_view.flags */
  * none is; `level` then counts LOD meshes. They write no depth of their own, so that the depth test
  * comes first and multisampling smooths edges; `viewport_height` also sets the mip level of their
  * maps. GTX_METHOD_AUTO takes the same LOD mesh, or the finest one if its error is at most 1.5
- * times the allowed one, and draws it unless casting costs less (gtx_costs). It casts if no LOD
- * mesh is fine enough, if `viewport_height` is unknown, or if `level` is given. With either method,
- * patches taken by gtx_model_update are cast from then on. */
+ * times the allowed one, and draws it unless casting costs less (gtx_costs).
+ *
+ * Patch by patch. If none is fine enough for all of an instance, or part of it is beside the
+ * picture, AUTO draws each patch in view by the coarsest LOD mesh that is fine enough where the
+ * patch is nearest, or else as a displaced grid or cast, whichever costs less. Where ways meet, the
+ * coarser goes on beneath the finer by a ring of triangles. It casts if `viewport_height` is
+ * unknown, or if `level` is given. With AUTO and LOD patches taken by gtx_model_update have no LOD
+ * mesh from then on.
+ *
+ * Displaced grids. GTX_METHOD_GRID draws height fields as triangles over 1, 2, 4 or 8 cells of
+ * level 0, the same in blocks of 8 x 8 cells: as many as keep to max_error where the block is
+ * nearest, and to a fourth of it at outlines, where neighbours meet; `level` n says 2^(n - 1).
+ * Blocks that are out of view or face away are not drawn. They write no depth of their own. */
 typedef struct gtx_view {
     float view[16], projection[16];   /* column-major; world -> eye -> clip */
     float light_direction[3];         /* world space, towards the light; zero = headlight */

@@ -56,8 +56,10 @@ static void an_updated_model_is_the_edited_one(void **state)
     gtx_camera camera = camera_around(shown.asset);
     gtx_view view = view_of(&camera);
     uint8_t *before = malloc(sizeof s->color), *expected = malloc(sizeof s->color);
-    for (uint32_t patch = 0; patch < 6; patch += 2) { /* those towards the camera, a level each */
+    for (uint32_t i = 0; i < 6; ++i) { /* those towards the camera, a level each */
+        const uint32_t patch = 2 * (i / 2);
         view.level = patch + 1;
+        view.method = i % 2 ? GTX_METHOD_GRID : GTX_METHOD_CAST;
         if (patch == 2)
             by_tiles(&view);
         stage_draw(s, &view, &shown.instance, 1);

@@ -1,0 +1,172 @@
+/* Height fields drawn as displaced grids: what casting shows, whatever their strides are; no more
+ * blocks than are in view; and beside LOD meshes without a hole. */
+#include "render/renderer.h"
+#include "pictures.h"
+
+static gtx_view view_from(const gtx_asset *asset, float azimuth, float elevation, float distance)
+{
+    gtx_camera camera = camera_around(asset);
+    camera.azimuth = azimuth;
+    camera.elevation = elevation;
+    camera.distance = distance;
+    gtx_view view = view_of(&camera);
+    view.viewport_height = STAGE_HEIGHT;
+    return view;
+}
+
+/* The eye near the surface of the sphere, looking along it; the near plane as close. */
+static gtx_view standing(int way)
+{
+    const gtx_camera around = {.radius = (float)radius, .azimuth = 37.0f * (float)way,
+                               .elevation = 11.0f * (float)(way % 5) - 20, .distance = 1.08f};
+    gtx_view view = view_of(&around);
+    const float near = 0.01f, far = 8;
+    view.projection[10] = -(far + near) / (far - near);
+    view.projection[14] = -2 * near * far / (far - near);
+    /* Turned up by 55 degrees: the horizon is in the picture. */
+    const double c = cos(0.96), n = sin(0.96);
+    const gtx_view flat = view;
+    for (int k = 0; k < 4; ++k) {
+        view.view[4 * k + 1] = (float)(c * flat.view[4 * k + 1] + n * flat.view[4 * k + 2]);
+        view.view[4 * k + 2] = (float)(c * flat.view[4 * k + 2] - n * flat.view[4 * k + 1]);
+    }
+    view.viewport_height = STAGE_HEIGHT;
+    return view;
+}
+
+static uint64_t triangles_of(stage *s, const gtx_view *view, const subject *shown)
+{
+    const uint64_t before = s->renderer->grids.triangles;
+    draw(s, view, GTX_METHOD_GRID, &shown->instance, 1, &first);
+    return s->renderer->grids.triangles - before;
+}
+
+/* Triangles over each cell: but for their twist what is cast. */
+static void as_cast(void **state)
+{
+    STAGE_OR_SKIP(state);
+    gtx_asset *const assets[] = {fixture_bumpy(8, 0), fixture_bumpy(16, GTX_PATCH_TWO_SIDED),
+                                 fixture_sphere(radius, TEXELS, 8),
+                                 fixture_sphere_without(radius, TEXELS, 16, 5)};
+    for (size_t i = 0; i < sizeof assets / sizeof *assets; ++i) {
+        subject shown = subject_open(s, assets[i]);
+        for (int turn = 0; turn < 6; ++turn) {
+            gtx_view view = view_from(shown.asset, 61.0f * (float)turn, 15.0f * (float)(turn - 2),
+                                      turn % 2 ? 2.6f : 3.4f);
+            view.level = 1;
+            draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &first);
+            draw(s, &view, GTX_METHOD_GRID, &shown.instance, 1, &second);
+            const difference d = compare(&first, &second), back = compare(&second, &first);
+            const double iou = (double)d.both / (double)d.either;
+            if (d.both < 900 || iou < 0.85 || d.holes || back.holes || d.mean > 4)
+                fail_msg("%zu, %d: %ld pixels, IoU %g, %ld and %ld holes, colours differ by %g", i,
+                         turn, d.both, iou, d.holes, back.holes, d.mean);
+        }
+        subject_close(s, &shown);
+    }
+}
+
+/* Every pass draws the same depth, bit for bit, whole blocks and trimmed ones. */
+static void passes_agree(void **state)
+{
+    STAGE_OR_SKIP(state);
+    subject shown = sphere_open(s);
+    static const gtx_method methods[2] = {GTX_METHOD_GRID, GTX_METHOD_AUTO};
+    for (int i = 0; i < 2; ++i) {
+        gtx_view view = standing(i);
+        view.pass = GTX_PASS_DEPTH;
+        draw(s, &view, methods[i], &shown.instance, 1, &first);
+        view.pass = GTX_PASS_FORWARD;
+        draw(s, &view, methods[i], &shown.instance, 1, &second);
+        assert_memory_equal(first.depth, second.depth, sizeof first.depth);
+        assert_true(compare(&first, &second).both > STAGE_PIXELS / 4);
+    }
+    subject_close(s, &shown);
+}
+
+/* The coarser it may be the fewer triangles, and never a hole or an outline that is off by more than
+ * a pixel. */
+static void strides_keep_the_error(void **state)
+{
+    STAGE_OR_SKIP(state);
+    subject shown = subject_open(s, fixture_sphere(radius, TEXELS, 16));
+    uint64_t coarse = 0, fine = 0;
+    for (int way = 0; way < 8; ++way) {
+        gtx_view view = standing(way);
+        uint64_t last = UINT64_MAX;
+        draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &second);
+        static const float errors[] = {1e-3f, 0.25f, 0.5f, 1};
+        for (int e = 0; e < 4; ++e) {
+            view.max_error = errors[e];
+            const uint64_t triangles = triangles_of(s, &view, &shown);
+            const difference d = compare(&second, &first), back = compare(&first, &second);
+            assert_true(triangles && triangles <= last);
+            last = triangles;
+            assert_int_equal(d.holes, 0);
+            assert_int_equal(back.holes, 0); /* nothing beyond a pixel of the outline */
+        }
+        coarse += last;
+        view.max_error = 1e-3f;
+        fine += triangles_of(s, &view, &shown);
+    }
+    assert_true(2 * coarse < fine);
+    subject_close(s, &shown);
+}
+
+static void only_what_may_be_seen(void **state)
+{
+    STAGE_OR_SKIP(state);
+    subject shown = subject_open(s, fixture_sphere(radius, TEXELS, 8));
+    gtx_view view = view_from(shown.asset, 20, 30, 3);
+    view.level = 1;
+    const uint64_t front = triangles_of(s, &view, &shown);
+    const uint64_t all = 6 * 2 * (TEXELS - 1) * (TEXELS - 1);
+    assert_true(front > all / 4 && front < 6 * all / 10); /* not what faces away */
+    view.projection[0] *= 8;
+    view.projection[5] *= 8;
+    assert_true(triangles_of(s, &view, &shown) < front / 8); /* nor beside the picture */
+    for (int k = 0; k < 16; k += 4) /* nor behind the eye */
+        view.view[k] *= -1, view.view[k + 2] *= -1;
+    assert_int_equal(triangles_of(s, &view, &shown), 0);
+    subject_close(s, &shown);
+}
+
+/* Near patches by height fields, far ones by LOD meshes of several levels. */
+static void ways_meet_without_a_hole(void **state)
+{
+    STAGE_OR_SKIP(state);
+    subject shown = sphere_open(s);
+    uint32_t mixed = 0, levels = 0;
+    for (int way = 0; way < 26; ++way) {
+        gtx_view view = standing(way);
+        for (int e = 0; e < 12; ++e) {
+            view.max_error = 0.3f * powf(1.6f, (float)e);
+            draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &first);
+            draw(s, &view, GTX_METHOD_AUTO, &shown.instance, 1, &second);
+            const uint8_t *ways = s->renderer->plan.ways;
+            uint32_t met = 0;
+            for (int p = 0; p < 6; ++p)
+                met |= 1u << ways[p];
+            mixed += (met & 1u << GTX_BY_HEIGHT_FIELD) && met >> GTX_BY_LOD;
+            levels += (met >> GTX_BY_LOD & ((met >> GTX_BY_LOD) - 1)) != 0;
+            const difference d = compare(&first, &second);
+            if (view.max_error < 1.5f && d.holes)
+                fail_msg("%ld holes: view %d, error %g", d.holes, way, (double)view.max_error);
+        }
+    }
+    assert_true(mixed > 20);
+    assert_true(levels > 20);
+    subject_close(s, &shown);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(as_cast),
+        cmocka_unit_test(passes_agree),
+        cmocka_unit_test(strides_keep_the_error),
+        cmocka_unit_test(only_what_may_be_seen),
+        cmocka_unit_test(ways_meet_without_a_hole),
+    };
+    return cmocka_run_group_tests(tests, open_stage, stage_close);
+}
