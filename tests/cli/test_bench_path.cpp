@@ -61,8 +61,8 @@ static void what_does_not_fit_is_refused(void **)
 /* The entry of the only window, of the form that is promised. */
 static json along(const char *asset, const char *model, const std::string &arguments)
 {
-    expect(gtx("bench %s %s -q --json --sizes 64x48 --repeats 1 %s", asset, model, arguments.c_str()),
-           0);
+    expect(gtx("bench %s %s -q --json --sizes 64x48 --repeats 1 %s", asset, model,
+               arguments.c_str()), 0);
     const json report = json::parse(std::string(output));
     const json rules = schema::load("format/bench-report.schema.json");
     const std::string why = schema::broken(report, rules, rules);
