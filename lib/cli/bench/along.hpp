@@ -37,9 +37,10 @@ struct PathReport {
 
 /* Measures every window through EGL, without a window. The methods of a view take turns, frame by
  * frame, each ended by glFinish; a method that takes over two seconds is measured once. LOD is left
- * out where the asset has no LOD mesh; MESH_STREAM must not be asked for. The mesh is drawn in parts, those out of view left out, its
- * back faces culled but where it is two-sided; MESH_LOD is its coarsest simplification with an
- * error of at most max_error at the nearest vertex in view. Throws as run_bench. */
+ * out where the asset has no LOD mesh; MESH_STREAM must not be asked for. The mesh is drawn in
+ * parts, without those out of view, its back faces culled but where it is two-sided; MESH_LOD is
+ * its coarsest simplification with an error of at most max_error at the nearest vertex in view.
+ * Throws as run_bench. */
 void run_path(const std::string &asset_path, const Mesh &mesh, const ViewPath &path,
               const BenchOptions &options,
               const std::function<void(const BenchSetup &)> &begin,
