@@ -44,6 +44,7 @@ void compare(const Picture &truth, const Picture &picture, size_t width, PathCel
         cell.holes += !picture.covers(p) && is_inside(truth, p, width);
     }
     cell.iou = either ? double(both) / double(either) : 1;
+    cell.enclosed = enclosed_holes(truth, picture, width);
     cell.outline = outline_error(truth, picture, width);
 }
 
@@ -114,6 +115,7 @@ PathRow sum_up(BenchMethod method, const Vector<PathCell> &cells, const Vector<P
         row.order.push_back(v);
         row.iou = std::min(row.iou, cells[v].iou);
         row.holes = std::max(row.holes, cells[v].holes);
+        row.enclosed = std::max(row.enclosed, cells[v].enclosed);
         row.outline = std::max(row.outline, cells[v].outline);
     }
     row.median = median(times);

@@ -12,6 +12,7 @@ struct PathCell {
     double ms = 0, work = 0;        /* of the clock; of all processors together */
     double iou = 1;                 /* against the mesh's picture, like what follows */
     uint64_t holes = 0;             /* pixels not covered, inside what the mesh covers */
+    uint64_t enclosed = 0;          /* gaps, see enclosed_holes */
     uint32_t outline = 0;           /* pixels, see outline_error */
     uint32_t triangles = 0;         /* of a mesh, before what is out of view */
 };
@@ -23,7 +24,7 @@ struct PathRow {
     double ratio = 0, worst = 0;    /* median, and the worst of any view */
     Vector<size_t> order;           /* of the views, the worst first */
     double iou = 1;                 /* the least */
-    uint64_t holes = 0;             /* the most */
+    uint64_t holes = 0, enclosed = 0;         /* the most */
     uint32_t outline = 0;           /* the most */
 };
 
