@@ -41,6 +41,7 @@ void compare(const Picture &truth, const Picture &picture, size_t width, PathCel
     for (size_t p = 0; p < truth.depth.size(); ++p) {
         both += truth.covers(p) && picture.covers(p);
         either += truth.covers(p) || picture.covers(p);
+        cell.pixels += picture.covers(p);
         cell.holes += !picture.covers(p) && is_inside(truth, p, width);
     }
     cell.iou = either ? double(both) / double(either) : 1;

@@ -10,6 +10,7 @@ namespace gtx {
  * adds. */
 struct PathCell {
     double ms = 0, work = 0;        /* of the clock; of all processors together */
+    uint64_t pixels = 0;            /* covered */
     double iou = 1;                 /* against the mesh's picture, like what follows */
     uint64_t holes = 0;             /* pixels not covered, inside what the mesh covers */
     uint64_t enclosed = 0;          /* gaps, see enclosed_holes */

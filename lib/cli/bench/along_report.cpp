@@ -97,6 +97,7 @@ static void write_cell(gtx_json &json, BenchMethod method, const PathCell &cell)
     gtx_json_string(&json, "method", name_of(method));
     gtx_json_number(&json, "ms_min", cell.ms);
     gtx_json_number(&json, "ms_work", cell.work);
+    gtx_json_integer(&json, "pixels", cell.pixels);
     gtx_json_number(&json, "silhouette_iou", cell.iou);
     gtx_json_integer(&json, "hole_pixels", cell.holes);
     gtx_json_integer(&json, "enclosed_hole_pixels", cell.enclosed);
