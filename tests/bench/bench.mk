@@ -81,7 +81,7 @@ arguments_figure7 = $(MODEL)
 arguments_figure9 := $(or $(reek),own)
 bench_objects := $(addprefix $(out)/lib/cli/,bench/bench.o bench/camera.o bench/floor.o \
                    bench/mesh.o bench/parts.o bench/picture.o bench/scene.o bench/shading.o \
-                   view/polygons.o)
+                   view/polygons.o message.o options.o)
 paper-figures: ## the paper's figures of frame rates: tables, JSON and curves in build/paper
 	$(again) deps
 	$(again) -j$$(nproc) all $(figures:%=$(out)/tests/bench/%)

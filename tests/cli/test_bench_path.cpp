@@ -185,7 +185,7 @@ static void a_sheet_is_seen_from_behind(void **)
         assert_true(cell(view, "cast")["outline_px"] <= 1);
 }
 
-/* Figures of pictures: an asset with a hole in it, and one that is larger, beside the whole sheet. */
+/* An asset with a hole in it, a wider one and a smaller one, beside the whole sheet. */
 static void gaps_and_moved_outlines_are_told_apart(void **)
 {
     const char *frame = "v 0 0 0\nv 30 0 0\nv 30 30 0\nv 0 30 0\nv 10 10 0\nv 20 10 0\n"
