@@ -1,9 +1,9 @@
 /* Writes a sculpture to cook: a closed surface of as many triangles as wanted, with normals and
- * vertex colours, as a Draco-compressed GLB.
+ * vertex colours, as a Draco-compressed GLB. The hall and the cave are seen from inside.
  *
- *     sculpt [--triangles N] OUT.glb
+ *     sculpt [--shape shell|hall|cave] [--triangles N] OUT.glb
  */
-#include "shell.hpp"
+#include "cave.hpp"
 
 #include "base/output.h"
 
@@ -96,13 +96,25 @@ static std::string make_glb(const Model &model)
 
 int main(int argc, char **argv)
 {
-    bool counted = argc == 4 && !std::strcmp(argv[1], "--triangles");
-    double wanted = counted ? std::atof(argv[2]) : 800000;
-    if ((!counted && (argc != 2 || argv[1][0] == '-')) || !(wanted >= 1000 && wanted <= 2e7)) {
-        std::fprintf(stderr, "usage: sculpt [--triangles 1000..20000000] OUT.glb\n");
+    double wanted = 800000;
+    std::string shape = "shell";
+    int at = 1;
+    for (; at + 2 < argc; at += 2)
+        if (!std::strcmp(argv[at], "--triangles"))
+            wanted = std::atof(argv[at + 1]);
+        else if (!std::strcmp(argv[at], "--shape"))
+            shape = argv[at + 1];
+        else
+            break;
+    bool known = shape == "shell" || shape == "hall" || shape == "cave";
+    if (at + 1 != argc || argv[at][0] == '-' || !known || !(wanted >= 1000 && wanted <= 2e7)) {
+        std::fprintf(stderr, "usage: sculpt [--shape shell|hall|cave] "
+                             "[--triangles 1000..20000000] OUT.glb\n");
         return 1;
     }
-    Model model = make_shell(wanted);
+    Model model = shape == "hall"   ? in_rock(make_rings(wanted, 1, hall_at))
+                  : shape == "cave" ? in_rock(make_rings(wanted, 8, cave_at))
+                                    : make_rings(wanted, 14, shell_at);
     std::string glb = make_glb(model), path = argv[argc - 1];
     if (glb.empty() || gtx_write_file(path.c_str(), glb.data(), glb.size(), nullptr)) {
         std::fprintf(stderr, "%s: cannot be written\n", path.c_str());

@@ -101,9 +101,8 @@ inline ShellPoint shell_at(double s, double v)
     return {{out * std::cos(angle), up, out * std::sin(angle)}, color};
 }
 
-inline void add_vertex(Model &model, double s, double v)
+inline void add_vertex(Model &model, ShellPoint point)
 {
-    ShellPoint point = shell_at(s, v);
     for (double &c : point.color)
         c = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
     model.positions.push_back(point.position);
@@ -123,17 +122,18 @@ inline void add_normals(Model &model)
         }
 }
 
-/* Rings of vertices between two poles. Triangles share them, so the surface is watertight. */
-inline Model make_shell(double triangles)
+/* Rings of vertices between two poles s = 0 and s = 1, half of `slender` times as many as vertices
+ * in a ring. Triangles share them, so the surface is watertight. */
+template <class Point> Model make_rings(double triangles, double slender, Point point_at)
 {
-    uint32_t columns = uint32_t(std::sqrt(triangles / 14));
+    uint32_t columns = uint32_t(std::sqrt(triangles / slender));
     uint32_t rings = uint32_t(triangles / 2 / columns);
     Model model;
-    add_vertex(model, 0, 0);
+    add_vertex(model, point_at(0, 0));
     for (uint32_t r = 1; r <= rings; ++r)
         for (uint32_t c = 0; c < columns; ++c)
-            add_vertex(model, double(r) / (rings + 1), 2 * PI * c / columns);
-    add_vertex(model, 1, 0);
+            add_vertex(model, point_at(double(r) / (rings + 1), 2 * PI * c / columns));
+    add_vertex(model, point_at(1, 0));
     auto vertex = [&](uint32_t r, uint32_t c) {
         return r == 0 ? 0 : r > rings ? 1 + rings * columns : 1 + (r - 1) * columns + c % columns;
     };

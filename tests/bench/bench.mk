@@ -9,6 +9,46 @@ run-bench: $(MODEL)
 	@$(build)/gtx cook $(MODEL) --lod-levels 5 -o $(build)/demo/bench.gtx
 	@$(build)/gtx bench $(build)/demo/bench.gtx $(MODEL) --min-iou 0.99 $(BENCH)
 
+# Paths are files of tests/bench/paths, SCENE or SCENE_NAME; a scene is what model_SCENE was cooked
+# to. Of reek the four horizons are one asset.
+reek_files   = 1_topreek_rota.gri 1_midreek_rota.gri 1_lowreek_rota.gri 1_basereek_rota.gri
+reek_grids   = $(reek_files:%=$(GEOTEX_MODELS)/heightfields/reek/%)
+model_andes  = $(GEOTEX_MODELS)/draco/andes_S33W071_2880k_q16.drc
+model_dragon = $(GEOTEX_MODELS)/draco/dragon_810k_loop_q14.drc
+model_reek  := $(build)/paths/reek.ply
+model_hall  := $(build)/paths/hall.glb
+model_cave  := $(build)/paths/cave.glb
+scene_of     = $(firstword $(subst _, ,$(1)))
+own_paths   := cave hall
+PATHS       ?= $(if $(GEOTEX_MODELS),$(sort $(notdir $(wildcard tests/bench/paths/*))),$(own_paths))
+bench-paths: ## frame times from inside and on surfaces, along PATHS of tests/bench/paths
+	$(again) deps
+	$(again) -j$$(nproc) all $(out)/tests/bench/grid_mesh $(out)/samples/sculpt
+	$(again) run-bench-paths
+
+run-bench-paths: $(foreach p,$(PATHS),$(model_$(call scene_of,$(p))) \
+                   $(build)/paths/$(call scene_of,$(p)).gtx)
+	@$(foreach p,$(PATHS),echo "$(p)" && $(build)/gtx bench \
+	  $(build)/paths/$(call scene_of,$(p)).gtx $(model_$(call scene_of,$(p))) \
+	  --path tests/bench/paths/$(p) -q $(BENCH) &&) true
+
+$(build)/paths/hall.glb $(build)/paths/cave.glb: $(build)/paths/%.glb: $(out)/samples/sculpt
+	@mkdir -p $(@D)
+	@$< --shape $* $@
+
+$(build)/paths/reek.ply: $(out)/tests/bench/grid_mesh
+	@mkdir -p $(@D)
+	@$< $@ --depths $(reek_grids)
+
+$(build)/paths/reek.gtx: $(command)
+	@mkdir -p $(@D)
+	@$(build)/gtx horizons $(reek_grids) --depths --lod-levels 5 -o $@
+
+$(build)/paths/hall.gtx $(build)/paths/cave.gtx: $(build)/paths/%.gtx: $(build)/paths/%.glb
+$(build)/paths/%.gtx: $(command)
+	@mkdir -p $(@D)
+	@$(build)/gtx cook $(model_$*) --lod-levels 5 --if-changed -q -o $@
+
 bench-rays: ## rays a second into MODEL (default: the sculpt), and what shadows by ray cost a frame
 	$(again) deps
 	$(again) -j$$(nproc) all $(out)/tests/bench/rays
@@ -39,8 +79,9 @@ figures := figure2 figure7 figure9
 reek    := $(wildcard $(GEOTEX_MODELS)/heightfields/reek_1588x1188)
 arguments_figure7 = $(MODEL)
 arguments_figure9 := $(or $(reek),own)
-bench_objects := $(addprefix $(out)/lib/cli/,bench/bench.o bench/mesh.o bench/scene.o \
-                   bench/shading.o view/polygons.o)
+bench_objects := $(addprefix $(out)/lib/cli/,bench/bench.o bench/camera.o bench/floor.o \
+                   bench/mesh.o bench/parts.o bench/picture.o bench/scene.o bench/shading.o \
+                   view/polygons.o message.o options.o)
 paper-figures: ## the paper's figures of frame rates: tables, JSON and curves in build/paper
 	$(again) deps
 	$(again) -j$$(nproc) all $(figures:%=$(out)/tests/bench/%)
@@ -59,6 +100,10 @@ $(figures:%=$(out)/tests/bench/%): $(out)/tests/bench/%: $(out)/tests/bench/%.o 
 
 $(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o \
     $(out)/tests/bench/equal_texels.o $(lib_cook) $(lib_core)
+	$(say) LINK $@
+	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh)
+
+$(out)/tests/bench/grid_mesh: $(out)/tests/bench/grid_mesh.o $(lib_cook) $(lib_core)
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh)
 

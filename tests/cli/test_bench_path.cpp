@@ -61,8 +61,8 @@ static void what_does_not_fit_is_refused(void **)
 /* The entry of the only window, of the form that is promised. */
 static json along(const char *asset, const char *model, const std::string &arguments)
 {
-    expect(gtx("bench %s %s -q --json --sizes 64x48 --repeats 1 %s", asset, model, arguments.c_str()),
-           0);
+    expect(gtx("bench %s %s -q --json --sizes 64x48 --repeats 1 %s", asset, model,
+               arguments.c_str()), 0);
     const json report = json::parse(std::string(output));
     const json rules = schema::load("format/bench-report.schema.json");
     const std::string why = schema::broken(report, rules, rules);
@@ -150,8 +150,10 @@ static void methods_agree_from_anywhere(void **)
         for (const char *method : {"simplified", "cast", "auto"}) {
             assert_true(cell(view, method)["silhouette_iou"].get<double>() > 0.9);
             assert_true(cell(view, method)["outline_px"] <= 3);
+            assert_true(cell(view, method)["enclosed_hole_pixels"] == 0);
         }
-        for (const char *figure : {"silhouette_iou", "hole_pixels", "outline_px"})
+        for (const char *figure :
+             {"silhouette_iou", "hole_pixels", "enclosed_hole_pixels", "outline_px"})
             assert_true(cell(view, "floor")[figure] == cell(view, "auto")[figure]);
     }
     assert_true(seen > 0); /* some views are far away enough */
@@ -181,6 +183,30 @@ static void a_sheet_is_seen_from_behind(void **)
     const json path = along("sheet.gtx", "sheet.obj", "--path sides.path --methods mesh,cast");
     for (const json &view : path["views"])
         assert_true(cell(view, "cast")["outline_px"] <= 1);
+}
+
+/* An asset with a hole in it, a wider one and a smaller one, beside the whole sheet. */
+static void gaps_and_moved_outlines_are_told_apart(void **)
+{
+    const char *frame = "v 0 0 0\nv 30 0 0\nv 30 30 0\nv 0 30 0\nv 10 10 0\nv 20 10 0\n"
+                        "v 20 20 0\nv 10 20 0\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    const char *wide = "v -5 0 0\nv 35 0 0\nv 35 30 0\nv -5 30 0\nf 1 2 3 4\n";
+    const char *small = "v 0 0 0\nv 24 0 0\nv 24 30 0\nv 0 30 0\nf 1 2 3 4\n";
+    write_text("sheet.obj", "v 0 0 0\nv 30 0 0\nv 30 30 0\nv 0 30 0\nf 1 2 3 4\n");
+    write_text("front.path", "15 15 60 15 15 0\n"); /* a unit is a pixel, nearly */
+    struct {
+        const char *model;
+        int least_enclosed, most_enclosed, least_outline, most_outline;
+    } cases[] = {{frame, 60, 100, 4, 6}, {wide, 0, 0, 4, 6}, {small, 0, 0, 5, 7}};
+    for (const auto &c : cases) {
+        write_text("other.obj", c.model);
+        expect(gtx("cook other.obj -o other.gtx"), 0);
+        const json path = along("other.gtx", "sheet.obj", "--path front.path --methods cast");
+        const json &cast = cell(path["views"][0], "cast");
+        assert_in_range(cast["enclosed_hole_pixels"].get<int>(), c.least_enclosed,
+                        c.most_enclosed);
+        assert_in_range(cast["outline_px"].get<int>(), c.least_outline, c.most_outline);
+    }
 }
 
 /* The worst views are printed as a path that shows them again. */
@@ -214,6 +240,7 @@ int main()
         cmocka_unit_test(random_views_are_a_third_each_and_the_same_again),
         cmocka_unit_test(methods_agree_from_anywhere),
         cmocka_unit_test(a_sheet_is_seen_from_behind),
+        cmocka_unit_test(gaps_and_moved_outlines_are_told_apart),
         cmocka_unit_test(the_worst_views_can_be_seen_again)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -56,6 +56,24 @@ static void cooking_says_how_far_it_is(void **state)
     assert_int_equal(run("$S/cook_from_c $T/nothing.glb $T/no.gtx 2>/dev/null"), 1);
 }
 
+/* All that an eye in the middle sees is wall: neither is it culled, nor is there a gap. */
+static void halls_and_caves_are_around_the_eye(void **state)
+{
+    (void)state;
+    assert_int_equal(run("echo '0 0 0  1 0 0' >$T/hall.path; "
+                         "echo '13.4 1.1 4.1  7 0.5 10' >$T/cave.path"), 0);
+    for (int i = 0; i < 2; ++i) {
+        setenv("SHAPE", i ? "cave" : "hall", 1);
+        assert_int_equal(run("$S/sculpt --shape $SHAPE --triangles 20000 $T/hall.glb >/dev/null && "
+                             "$GTX cook $T/hall.glb -q -o $T/hall.gtx && "
+                             "$GTX bench $T/hall.gtx $T/hall.glb --path $T/$SHAPE.path -q --json "
+                             "--sizes 32x32 --methods mesh,cast >$T/hall.json"), 0);
+        assert_int_equal(run("test $(grep -c '\"pixels\": 1024' $T/hall.json) = 2"), 0);
+    }
+    assert_int_equal(run("$S/sculpt --shape none $T/no.glb 2>/dev/null"), 1);
+    assert_int_equal(run("$S/sculpt --shape hall 2>/dev/null"), 1);
+}
+
 static void an_interrupt_leaves_nothing_behind(void **state)
 {
     (void)state;
@@ -140,6 +158,7 @@ int main(void)
                 cellular[] = "cellular", footprints[] = "footprints";
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cooking_says_how_far_it_is),
+        cmocka_unit_test(halls_and_caves_are_around_the_eye),
         cmocka_unit_test(an_interrupt_leaves_nothing_behind),
         cmocka_unit_test(an_asset_is_printed),
         PICTURE(smallest),

@@ -41,9 +41,11 @@ void compare(const Picture &truth, const Picture &picture, size_t width, PathCel
     for (size_t p = 0; p < truth.depth.size(); ++p) {
         both += truth.covers(p) && picture.covers(p);
         either += truth.covers(p) || picture.covers(p);
+        cell.pixels += picture.covers(p);
         cell.holes += !picture.covers(p) && is_inside(truth, p, width);
     }
     cell.iou = either ? double(both) / double(either) : 1;
+    cell.enclosed = enclosed_holes(truth, picture, width);
     cell.outline = outline_error(truth, picture, width);
 }
 
@@ -114,6 +116,7 @@ PathRow sum_up(BenchMethod method, const Vector<PathCell> &cells, const Vector<P
         row.order.push_back(v);
         row.iou = std::min(row.iou, cells[v].iou);
         row.holes = std::max(row.holes, cells[v].holes);
+        row.enclosed = std::max(row.enclosed, cells[v].enclosed);
         row.outline = std::max(row.outline, cells[v].outline);
     }
     row.median = median(times);

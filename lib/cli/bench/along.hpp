@@ -10,8 +10,10 @@ namespace gtx {
  * adds. */
 struct PathCell {
     double ms = 0, work = 0;        /* of the clock; of all processors together */
+    uint64_t pixels = 0;            /* covered */
     double iou = 1;                 /* against the mesh's picture, like what follows */
     uint64_t holes = 0;             /* pixels not covered, inside what the mesh covers */
+    uint64_t enclosed = 0;          /* gaps, see enclosed_holes */
     uint32_t outline = 0;           /* pixels, see outline_error */
     uint32_t triangles = 0;         /* of a mesh, before what is out of view */
 };
@@ -23,7 +25,7 @@ struct PathRow {
     double ratio = 0, worst = 0;    /* median, and the worst of any view */
     Vector<size_t> order;           /* of the views, the worst first */
     double iou = 1;                 /* the least */
-    uint64_t holes = 0;             /* the most */
+    uint64_t holes = 0, enclosed = 0;         /* the most */
     uint32_t outline = 0;           /* the most */
 };
 
@@ -37,9 +39,10 @@ struct PathReport {
 
 /* Measures every window through EGL, without a window. The methods of a view take turns, frame by
  * frame, each ended by glFinish; a method that takes over two seconds is measured once. LOD is left
- * out where the asset has no LOD mesh; MESH_STREAM must not be asked for. The mesh is drawn in parts, those out of view left out, its
- * back faces culled but where it is two-sided; MESH_LOD is its coarsest simplification with an
- * error of at most max_error at the nearest vertex in view. Throws as run_bench. */
+ * out where the asset has no LOD mesh; MESH_STREAM must not be asked for. The mesh is drawn in
+ * parts, without those out of view, its back faces culled but where it is two-sided; MESH_LOD is
+ * its coarsest simplification with an error of at most max_error at the nearest vertex in view.
+ * Throws as run_bench. */
 void run_path(const std::string &asset_path, const Mesh &mesh, const ViewPath &path,
               const BenchOptions &options,
               const std::function<void(const BenchSetup &)> &begin,

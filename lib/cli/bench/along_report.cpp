@@ -41,9 +41,10 @@ void print_path_report(const PathReport &report)
     char window[32];
     std::snprintf(window, sizeof window, "%ux%u", report.size[0], report.size[1]);
     std::printf("%s, %zu of %zu views; /mesh, worst: ratio to the mesh's time, median and of any "
-                "view; holes, outline, IoU: the worst of any view\n"
+                "view; holes to IoU: the worst of any view\n"
                 "| method        | median    | mean      | work      | /mesh   | worst   | view  "
-                "| holes  | outline | IoU    |\n|---|---|---|---|---|---|---|---|---|---|\n",
+                "| holes  | enclosed | outline | IoU    |\n"
+                "|---|---|---|---|---|---|---|---|---|---|---|\n",
                 window, report.measured, report.path->views.size());
     for (const PathRow &row : report.rows) {
         char ratio[16] = "", worst[16] = "", view[16] = "";
@@ -52,9 +53,11 @@ void print_path_report(const PathReport &report)
             std::snprintf(worst, sizeof worst, "%.3f", row.worst);
             std::snprintf(view, sizeof view, "%zu", row.order[0]);
         }
-        std::printf("| %-13s | %9.2f | %9.2f | %9.2f | %7s | %7s | %5s | %6llu | %7u | %6.4f |\n",
+        std::printf("| %-13s | %9.2f | %9.2f | %9.2f | %7s | %7s | %5s | %6llu | %8llu | %7u "
+                    "| %6.4f |\n",
                     name_of(row.method), row.median, row.mean, row.work, ratio, worst, view,
-                    static_cast<unsigned long long>(row.holes), row.outline, row.iou);
+                    static_cast<unsigned long long>(row.holes),
+                    static_cast<unsigned long long>(row.enclosed), row.outline, row.iou);
     }
     std::printf("\n%s\n", path_head(*report.path).c_str());
     for (size_t m = 0; m < report.rows.size(); ++m)
@@ -94,8 +97,10 @@ static void write_cell(gtx_json &json, BenchMethod method, const PathCell &cell)
     gtx_json_string(&json, "method", name_of(method));
     gtx_json_number(&json, "ms_min", cell.ms);
     gtx_json_number(&json, "ms_work", cell.work);
+    gtx_json_integer(&json, "pixels", cell.pixels);
     gtx_json_number(&json, "silhouette_iou", cell.iou);
-    gtx_json_integer(&json, "hole_pixels", uint64_t(cell.holes));
+    gtx_json_integer(&json, "hole_pixels", cell.holes);
+    gtx_json_integer(&json, "enclosed_hole_pixels", cell.enclosed);
     gtx_json_integer(&json, "outline_px", cell.outline);
     if (cell.triangles)
         gtx_json_integer(&json, "triangles", cell.triangles);

@@ -16,6 +16,33 @@ bool is_inside(const Picture &picture, size_t pixel, size_t width)
     return true;
 }
 
+uint64_t enclosed_holes(const Picture &truth, const Picture &picture, size_t width)
+{
+    const size_t count = truth.depth.size(), height = count / width;
+    Vector<bool> reached(count);
+    Vector<size_t> next;
+    auto reach = [&](size_t pixel) {
+        if (!picture.covers(pixel) && !reached[pixel]) {
+            reached[pixel] = true;
+            next.push_back(pixel);
+        }
+    };
+    for (size_t p = 0; p < count; ++p)
+        if (!truth.covers(p))
+            reach(p);
+    while (!next.empty()) {
+        const size_t x = next.back() % width, y = next.back() / width;
+        next.pop_back();
+        for (size_t v = y - (y > 0); v <= std::min(y + 1, height - 1); ++v)
+            for (size_t u = x - (x > 0); u <= std::min(x + 1, width - 1); ++u)
+                reach(v * width + u);
+    }
+    uint64_t holes = 0;
+    for (size_t p = 0; p < count; ++p)
+        holes += !picture.covers(p) && !reached[p];
+    return holes;
+}
+
 /* From each pixel to the nearest covered one, at most `most`: one pass down and one up, each taking
  * what four neighbours have (Rosenfeld and Pfaltz 1968). */
 static Vector<uint32_t> distances(const Picture &picture, size_t width, uint32_t most)

@@ -18,6 +18,10 @@ struct Picture {
 /* Whether a pixel and its eight neighbours are covered. */
 bool is_inside(const Picture &picture, size_t pixel, size_t width);
 
+/* Pixels that the picture does not cover and that no way over such pixels joins with one that the
+ * truth does not cover either: gaps in the surface, but not where its outline has moved. */
+uint64_t enclosed_holes(const Picture &truth, const Picture &picture, size_t width);
+
 /* How far the outlines are apart, in pixels: the most that a pixel covered by one picture alone is
  * away from the nearest one covered by the other, diagonal steps counting as one; the window's
  * longest side if the other covers none. */
