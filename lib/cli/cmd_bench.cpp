@@ -193,16 +193,14 @@ int cmd_bench(int argc, char **argv)
     int code = parse_options(&bench, argc, argv, files, &count);
     if (code >= 0)
         return code;
-    gtx::BenchOptions wanted;
-    wanted.frames = frames;
-    wanted.max_error = max_error;
-    wanted.min_iou = min_iou;
-    wanted.budget = budget;
-    if (!parse_lists(wanted))
-        return EXIT_CODE_USAGE;
-
-    std::string current = files[1];
-    return gtx::guarded(current, [&] {
+    return gtx::guarded(files[1], [&](std::string &current) {
+        gtx::BenchOptions wanted;
+        wanted.frames = frames;
+        wanted.max_error = max_error;
+        wanted.min_iou = min_iou;
+        wanted.budget = budget;
+        if (!parse_lists(wanted))
+            return int(EXIT_CODE_USAGE);
         gtx::Task task(0, nullptr, nullptr, {}, {}, cli_limits);
         gtx::CleanReport report;
         const gtx::Mesh mesh = gtx::clean_mesh(gtx::import_mesh(files[1], task), task, report);
