@@ -210,6 +210,7 @@ links_fuzz     := $(needs_cook) edit render
 links_samples  := $(needs_image)
 links_source   := base
 links_threads  := $(needs_cook)
+links_verbs    := $(needs_cli)
 extra_needs_render  := trace edit host image
 extra_needs_trace   := image mesh grid chart bake measure cook
 extra_needs_bake    := derive trace measure host
@@ -225,7 +226,7 @@ $(common_tests): $(patsubst %,$(out)/%.o,$(basename $(wildcard tests/common/*.c)
 
 define test_rule
 $(out)/$(basename $(1)): $(out)/$(basename $(1)).o $(common_tests) \
-    $(call objects_of,$(call test_needs,$(call room,$(1))))
+    $(filter-out %/cli/gtx.o,$(call objects_of,$(call test_needs,$(call room,$(1)))))
 	$$(say) LINK $$@
 	$$(Q)$$(CXX) $$(flags) -o $$@ $$^ $$(call libs_of,$$(call test_needs,$(call room,$(1)))) \
 	  $$(call pkg,--libs,cmocka) $$(libs_$(notdir $(basename $(1))))
@@ -241,7 +242,7 @@ $(out)/gtx_decode: format/gtx_decode.c
 	$(Q)$(CC) -std=c99 $(flags) $(warnings) $(if $(filter 1,$(zstd)),,-DNO_ZSTD) -o $@ $< \
 	  $(libs_asset) -lm
 $(filter $(out)/tests/asset/%,$(test_bins)): | $(out)/gtx_decode
-$(filter $(out)/tests/mesh/% $(out)/tests/grid/%,$(test_bins)): | $(module)
+$(filter $(out)/tests/mesh/% $(out)/tests/grid/% $(out)/tests/verbs/%,$(test_bins)): | $(module)
 
 build-tests: $(test_bins) $(out)/gtx_decode all
 

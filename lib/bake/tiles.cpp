@@ -91,6 +91,13 @@ static void find_range(const LayerHeights &layer, bool rounded, Tile &tile)
     });
 }
 
+/* Texels of a rectangle of so many nodes: all of its mip levels are whole. */
+static int to_grain(int nodes, const TileOptions &options)
+{
+    const int grain = 1 << (options.bake.mips - 1);
+    return (nodes + grain - 1) / grain * grain;
+}
+
 /* Gives each tile the finest step that its codes can tell its relief in once nodes are rounded to
  * the steps of all tiles that have them. A layer's first tile is tiles[0]. */
 static void choose_steps(Vector<Tile *> &tiles, const TileOptions &options,
@@ -105,7 +112,7 @@ static void choose_steps(Vector<Tile *> &tiles, const TileOptions &options,
     for (const Tile *tile : tiles)
         most = std::max(most, tile->top - tile->bottom);
     for (double pitch : layer.grid->step)
-        side = std::max(side, pitch * options.tile);
+        side = std::max(side, pitch * to_grain(int(options.tile), options));
     const double least = side / 4096 / top; /* a patch is never flatter than that */
     layer.step = std::max(most / (top - 2), least);
     for (Tile *tile : tiles) {
@@ -179,11 +186,9 @@ static gtx_patch make_record(const Tile &tile, const LayerHeights &layer, const 
 {
     const HeightGrid &grid = *layer.grid;
     const GridFrame frame(grid);
-    const int grain = 1 << (options.bake.mips - 1);
     gtx_patch record = {};
     for (int k = 0; k < 2; ++k)
-        record.rect[2 + k] =
-            uint16_t((tile.high[k] - tile.low[k] + 1 + grain - 1) / grain * grain);
+        record.rect[2 + k] = uint16_t(to_grain(tile.high[k] - tile.low[k] + 1, options));
     const std::array<double, 2> corner = grid.place(tile.low[0] - 0.5, tile.low[1] - 0.5);
     store(record.origin, Vec3d(corner[0], tile.bottom, -corner[1]) - anchor);
     store(record.axis_x, frame.x);

@@ -289,18 +289,16 @@ int cmd_bench(int argc, char **argv)
     int code = parse_options(&bench, argc, argv, files, &count);
     if (code >= 0)
         return code;
-    gtx::BenchOptions wanted;
-    wanted.frames = frames ? frames : wanted.frames;
-    wanted.max_error = max_error;
-    wanted.min_iou = min_iou;
-    wanted.budget = budget;
-    wanted.repeats = repeats;
-    wanted.along_path = path_file || random_count;
-    if (!choices_agree() || !parse_lists(wanted))
-        return EXIT_CODE_USAGE;
-
-    std::string current = path_file ? path_file : files[1];
-    return gtx::guarded(current, [&] {
+    return gtx::guarded(path_file ? path_file : files[1], [&](std::string &current) {
+        gtx::BenchOptions wanted;
+        wanted.frames = frames ? frames : wanted.frames;
+        wanted.max_error = max_error;
+        wanted.min_iou = min_iou;
+        wanted.budget = budget;
+        wanted.repeats = repeats;
+        wanted.along_path = path_file || random_count;
+        if (!choices_agree() || !parse_lists(wanted))
+            return int(EXIT_CODE_USAGE);
         gtx::Task task(0, nullptr, nullptr, {}, {}, cli_limits);
         gtx::ViewPath path;
         if (path_file)

@@ -86,12 +86,10 @@ static int check_inputs(const char *input)
 {
     const output_file outputs[] = {{"-o", output}, {nullptr, nullptr}};
     int code = check_outputs("gtx pack", outputs, &input, 1);
-    std::error_code error;
-    for (fs::directory_iterator at(input, error), end; !code && !error && at != end;
-         at.increment(error)) {
-        const std::string path = at->path().string();
+    for (const std::string &name : gtx::names_in(input)) {
+        const std::string path = gtx::in_folder(input, name);
         const char *file = path.c_str();
-        code = check_outputs("gtx pack", outputs, &file, 1);
+        code = code ? code : check_outputs("gtx pack", outputs, &file, 1);
     }
     return code;
 }
@@ -107,11 +105,10 @@ int cmd_pack(int argc, char **argv)
         print_message("gtx pack: error[usage]: -o OUT.gtx is missing");
         return EXIT_CODE_USAGE;
     }
-    code = check_inputs(input);
-    if (code)
-        return code;
-    std::string about = input;
-    return gtx::guarded(about, [&] {
+    return gtx::guarded(input, [&](std::string &about) {
+        code = check_inputs(input);
+        if (code)
+            return code;
         std::error_code ignored;
         const bool is_file = fs::is_regular_file(input, ignored);
         Asset asset = is_file ? open_asset(input) : open_folder(input, about);

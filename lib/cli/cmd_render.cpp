@@ -67,8 +67,7 @@ int cmd_render(int argc, char **argv)
     still_options.method = methods[method];
     still_options.gles = gles;
 
-    std::string current = files[0];
-    return gtx::guarded(current, [&] {
+    return gtx::guarded(files[0], [&](std::string &current) {
         gtx::Task task(0, nullptr, nullptr, {}, {}, cli_limits);
         gtx::Scene scene;
         for (int i = 0; i < count; ++i) {

@@ -66,9 +66,9 @@ static void move(const fs::path &from, const fs::path &to)
 static void move_files(const fs::path &from, const fs::path &to)
 {
     gtx::Vector<fs::path> names, moved;
-    for (const fs::directory_entry &entry : fs::directory_iterator(from))
-        if (entry.path().filename() != gtx::UNPACKED_JSON)
-            names.push_back(entry.path().filename());
+    for (const std::string &name : gtx::names_in(from.string()))
+        if (name != gtx::UNPACKED_JSON)
+            names.push_back(name);
     names.push_back(gtx::UNPACKED_JSON);
     try {
         for (const fs::path &name : names) {
@@ -106,7 +106,7 @@ static void write_folder(const gtx_asset *asset, int zstd, const std::string &fo
             move(temporary, target);
         fs::remove(temporary, error);
     } catch (...) {
-        fs::remove_all(temporary, error);
+        gtx::remove_folder(temporary.native());
         throw;
     }
 }
@@ -131,8 +131,7 @@ int cmd_unpack(int argc, char **argv)
     if (gtx_open_memory(data, size, &open, &asset, &error))
         return report_error(files[0], &error);
     std::unique_ptr<gtx_asset, void (*)(gtx_asset *)> guard(asset, gtx_close);
-    std::string about = files[1];
-    return gtx::guarded(about, [&] {
+    return gtx::guarded(files[1], [&](std::string &about) {
         const int zstd = find_zstd(asset, data, size);
         if (zstd < 0)
             report_warning(files[0], gtx_warning_name(GTX_WARNING_OTHER_BYTES),

@@ -45,8 +45,7 @@ int cmd_view(int argc, char **argv)
         code = check_outputs("gtx view", outputs, &script.drop, 1);
     if (code)
         return code;
-    std::string current = "gtx view";
-    return gtx::guarded(current, [&] {
+    return gtx::guarded("gtx view", [&](std::string &current) {
         gtx::Task task(0, nullptr, nullptr, {}, {}, cli_limits);
         gtx::Scene scene;
         std::string name = gtx::file_name(count ? files[0] : "nothing");

@@ -8,15 +8,17 @@
 
 namespace gtx {
 
-/* Runs the body, which returns an exit code. `about` is the file that the line is about; the body
- * keeps it up to date. */
-template <class Body> int guarded(const std::string &about, Body body)
+/* Runs the body, which returns an exit code. Its argument is what the line is about, at first
+ * `first`; the body keeps it up to date. */
+template <class Body> int guarded(const char *first, Body body)
 {
+    std::string about;
     try {
-        return body();
+        about = first;
+        return body(about);
     } catch (...) {
         const gtx_error error = caught_error();
-        return report_error(about.c_str(), &error);
+        return report_error(about.empty() ? first : about.c_str(), &error);
     }
 }
 

@@ -7,6 +7,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -59,8 +60,9 @@ static void fit_frame(writer *w, const gtx_window *window)
             low = fminf(low, w->texels[t].height);
             high = fmaxf(high, w->texels[t].height);
         }
-    const float step_x = w->from->extent_x / w->from->rect[2];
-    const float step_y = w->from->extent_y / w->from->rect[3];
+    /* A patch may be so small that a texel's share would be rounded to nothing. */
+    const float step_x = fmaxf(w->from->extent_x / w->from->rect[2], FLT_TRUE_MIN);
+    const float step_y = fmaxf(w->from->extent_y / w->from->rect[3], FLT_TRUE_MIN);
     w->to->extent_x = step_x * (float)w->width;
     w->to->extent_y = step_y * (float)w->height;
     const float least = FLATTEST * fmaxf(w->to->extent_x, w->to->extent_y);

@@ -4,6 +4,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -61,6 +62,8 @@ int encode(const gtx_image_rows *rows, void **data, size_t *size, char *message)
     return 0;
 }
 
+constexpr double MAX_PIECE = 1 << 24; /* bytes; strips and tiles of images have 10^4 to 10^6 */
+
 /* RGBA from any number of channels: grey, grey and alpha, RGB, RGBA and more. */
 void spread(const std::vector<uint8_t> &in, int channels, int alpha, uint8_t *out)
 {
@@ -91,14 +94,33 @@ const char *format_of(const char *head, size_t size)
     return nullptr;
 }
 
-/* The same of a file; one that has no such bytes goes by its name: TGA. */
-const char *format_of(const char *path)
+/* A file that has no such bytes goes by its name: TGA. */
+const char *format_of(const char *head, size_t size, const char *path)
 {
-    char head[8];
-    std::unique_ptr<FILE, int (*)(FILE *)> file(std::fopen(path, "rb"), std::fclose);
-    const size_t size = file ? std::fread(head, 1, sizeof head, file.get()) : 0;
-    const char *format = format_of(head, size), *extension = std::strrchr(path, '.');
+    const char *format = format_of(head, size);
+    const char *extension = path ? std::strrchr(path, '.') : nullptr;
     return format ? format : extension && !std::strcmp(extension, ".tga") ? "targa" : nullptr;
+}
+
+/* Whether a BMP is packed as runs: OpenImageIO 2.4 writes past the rows of a grey one, and looks
+ * for colours where there is no palette. The oldest header tells of no packing. */
+bool is_bmp_of_runs(const char *head, size_t size)
+{
+    constexpr size_t HEADER = 14, PACKING = 30;
+    constexpr char OLDEST = 12, RUNS_OF_8 = 1, RUNS_OF_4 = 2;
+    return size > PACKING && head[HEADER] != OLDEST &&
+           (head[PACKING] == RUNS_OF_8 || head[PACKING] == RUNS_OF_4);
+}
+
+/* Bytes of the largest piece that is decoded at once: a file may tell of strips and tiles that are
+ * larger than its image. */
+double piece_size(const OIIO::ImageSpec &spec)
+{
+    constexpr int NO_STRIPS = 0;
+    const double pixel = double(spec.pixel_bytes(true));
+    const double strip = std::max(0, spec.get_int_attribute("tiff:RowsPerStrip", NO_STRIPS));
+    const double tile = double(spec.tile_width) * spec.tile_height * std::max(1, spec.tile_depth);
+    return pixel * std::max(tile, strip * spec.width);
 }
 
 /* An open file or piece of memory. Neither copied nor moved: the reader points into it. */
@@ -114,11 +136,18 @@ struct Source {
     /* Returns 0 when an image of a sound size is open. */
     int open(const char *path, const void *data, size_t size, char *message)
     {
-        const char *format = path ? format_of(path)
-                                  : format_of(static_cast<const char *>(data), size);
+        char head[64];
+        if (path) {
+            std::unique_ptr<FILE, int (*)(FILE *)> file(std::fopen(path, "rb"), std::fclose);
+            size = file ? std::fread(head, 1, sizeof head, file.get()) : 0;
+            data = head;
+        }
+        const char *start = static_cast<const char *>(data), *format = format_of(start, size, path);
         if (!format)
             return fail(message, name, "neither PNG, JPEG, WebP, BMP, GIF, TIFF, OpenEXR, HDR, "
                                        "PNM nor TGA");
+        if (!std::strcmp(format, "bmp") && is_bmp_of_runs(start, size))
+            return fail(message, name, "a BMP that is packed as runs is not supported");
         OIIO::ImageSpec hint, found;
         hint.attribute("oiio:UnassociatedAlpha", 1);
         if (!path)
@@ -130,7 +159,8 @@ struct Source {
             return fail(message, name, input->geterror());
         const OIIO::ImageSpec &spec = input->spec();
         if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 ||
-            spec.nchannels > 64)
+            spec.nchannels > 64 ||
+            piece_size(spec) > std::max(MAX_PIECE, double(spec.image_bytes(true))))
             return fail(message, name, "not an image of a supported size");
         return 0;
     }

@@ -230,7 +230,7 @@ static void what_is_no_asset_is_refused(void **state)
         {"\"origin\": [", "\"origin\": [\"x\",", "origin is not", 3},
         {"\"axis_x\"", "\"axis_q\"", "axis_x is missing", 3},
         {"\"patches\": [", "\"patches\": [7,", "a patch is not an object", 3},
-        {"\"flags\": 0", "\"flags\": 70000", "flags is not", 3},
+        {"\"dilation\": ", "\"dilation\": 9999", "dilation is not", 3},
         {"\"unit\": 1.0", "\"unit\": 1e400", "is not a JSON object", 3},
         {"\"unit\": 1.0", "\"unit\": -1.0", "unit", 3},
         {"\"lod_meshes\": [", "\"LOD meshes\": [", "lod_meshes is missing", 3},

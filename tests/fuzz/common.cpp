@@ -71,9 +71,8 @@ struct Folder {
     std::string path;
     Folder()
     {
-        char name[] = "/tmp/geotex-fuzz-XXXXXX";
-        REQUIRE(mkdtemp(name), "there is no folder for scratch files");
-        path = name;
+        path = (std::filesystem::temp_directory_path() / "geotex-fuzz-XXXXXX").string();
+        REQUIRE(mkdtemp(path.data()), "there is no folder for scratch files");
     }
     ~Folder()
     {

@@ -1,10 +1,12 @@
 # Fuzzing: one program of libFuzzer, which fuzzes the target that a link to it is named after.
 #   CLANG=clang     its compiler       TIME=600    seconds for all targets together
 #   FUZZ="ply obj"  some targets       WORK=DIR    where what is found is kept (build/fuzz/work)
+#   TMPDIR=DIR      for scratch files: on a disk they take most of the time (/dev/shm)
 CLANG ?= clang
 TIME  ?= 600
 FUZZ  ?= $(notdir $(wildcard tests/fuzz/corpus/*))
 WORK  ?= $(build)/fuzz/work
+TMPDIR ?= /dev/shm
 clang := CC="$(CLANG)" CXX="$(CLANG)++"
 
 # The test of the corpora links what the fuzzer does, but for libFuzzer.
@@ -36,7 +38,7 @@ fuzz: ## fuzz every target, or FUZZ="ply obj", for TIME=600 seconds in all (need
 	  ln -sf fuzz $(build)/fuzz/tests/fuzz/$$t; \
 	  dict=$$(ls tests/fuzz/$$t.dict 2>/dev/null | sed 's/^/-dict=/'); \
 	  case " $(leaking) " in *" $$t "*) leaks=0 ;; *) leaks=1 ;; esac; \
-	  ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=$$leaks \
+	  TMPDIR=$(TMPDIR) ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=$$leaks \
 	  $(build)/fuzz/tests/fuzz/$$t $(fuzz_flags) $$dict -max_total_time=$$each \
 	    -artifact_prefix=tests/fuzz/found/$$t/ $(WORK)/$$t tests/fuzz/corpus/$$t; \
 	done

@@ -162,9 +162,9 @@ void use_asset(const gtx_asset *asset, uint64_t how)
         cast(asset, how >> 7);
     else if (some < 24)
         prepare(asset, how >> 7);
-    else if (some < 32 && texels <= 1 << 12)
+    else if (some < 27 && texels <= 1 << 12) /* slow, as is the next */
         edit_asset(asset, how >> 7);
-    else if (some < 33 && texels <= 1 << 11)
+    else if (some == 32 && texels <= 1 << 11)
         make_lods(asset);
 }
 

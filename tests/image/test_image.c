@@ -146,11 +146,68 @@ static void errors_say_what_is_wrong(void **state)
     gtx_image_free(NULL);
 }
 
+static void put(uint8_t *at, uint32_t value, int bytes)
+{
+    for (int i = 0; i < bytes; ++i)
+        at[i] = (uint8_t)(value >> 8 * i);
+}
+
+/* Their reader would write and read past its rows. */
+static void no_bmp_of_runs(void **state)
+{
+    (void)state;
+    enum { PALETTE = 54, RUNS = PALETTE + 2 * 4, SIZE = RUNS + 8 };
+    static const uint8_t runs[8] = {64, 0, 0, 0, 64, 1, 0, 1};
+    for (uint32_t bits = 8; bits <= 32; bits *= 2) {
+        uint8_t bmp[SIZE] = "BM";
+        const uint32_t fields[][3] = {{2, SIZE, 4}, {10, RUNS, 4}, {14, 40, 4}, {18, 64, 4},
+                                      {22, 2, 4},   {26, 1, 2},    {28, bits, 2}, {30, 1, 4},
+                                      {34, 8, 4},   {46, 2, 4},    {PALETTE + 4, 0xffffff, 4}};
+        for (size_t i = 0; i < sizeof fields / sizeof *fields; ++i)
+            put(bmp + fields[i][0], fields[i][1], (int)fields[i][2]);
+        memcpy(bmp + RUNS, runs, sizeof runs);
+        gtx_image image = {0};
+        gtx_error error = {0};
+        assert_int_equal(gtx_image_decode(bmp, sizeof bmp, &image, &error), GTX_ERROR_READ);
+        assert_non_null(strstr(error.message, "runs"));
+    }
+}
+
+/* A strip that a TIFF tells of, of a hundred gigabytes for an image of 16 pixels. */
+static void strips_are_no_larger_than_the_image(void **state)
+{
+    (void)state;
+    static const uint32_t tags[][2] = {{256, 4}, {257, 4}, {258, 8}, {259, 8}, {262, 1},
+                                       {273, 200}, {277, 1}, {278, 0}, {279, 24}};
+    enum { TAGS = sizeof tags / sizeof *tags };
+    for (int huge = 0; huge < 2; ++huge) {
+        uint8_t tiff[224] = {'I', 'I', 42, 0, 8, 0, 0, 0, TAGS};
+        /* 16 times 0 as zlib writes it */
+        static const uint8_t packed[] = {0x78, 0x9c, 0x63, 0x60, 0x40, 0x05, 0, 0, 0x10, 0, 1};
+        for (size_t i = 0; i < TAGS; ++i) {
+            put(tiff + 10 + 12 * i, tags[i][0], 2);
+            put(tiff + 12 + 12 * i, 4, 2);
+            put(tiff + 14 + 12 * i, 1, 4);
+            put(tiff + 18 + 12 * i, tags[i][0] == 278 ? (huge ? 0x70000000u : 4) : tags[i][1], 4);
+        }
+        memcpy(tiff + 200, packed, sizeof packed);
+        gtx_image image = {0};
+        gtx_error error = {0};
+        const gtx_result result = gtx_image_decode(tiff, sizeof tiff, &image, &error);
+        assert_int_equal(result, huge ? GTX_ERROR_READ : GTX_OK);
+        if (huge)
+            assert_non_null(strstr(error.message, "size"));
+        gtx_image_free(&image);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(png_of_every_channel_count), cmocka_unit_test(the_same_from_memory),
         cmocka_unit_test(depth_as_exr),               cmocka_unit_test(errors_say_what_is_wrong),
+        cmocka_unit_test(no_bmp_of_runs),
+        cmocka_unit_test(strips_are_no_larger_than_the_image),
     };
     return cmocka_run_group_tests(tests, make_directory, remove_directory);
 }

@@ -1,10 +1,9 @@
 /* Reading the folder of images and the JSON file that an asset was written as. */
+#include "cli/unpack/json.hpp"
 #include "cli/unpack/unpacked.hpp"
 
 #include "asset/asset.h"
 #include "image/image.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdlib>
@@ -13,8 +12,6 @@
 #include <memory>
 
 namespace gtx {
-
-using Json = nlohmann::ordered_json;
 
 /* Reads values out of the JSON; every fault names its field. */
 struct Reader {
@@ -189,9 +186,11 @@ static void read_lod(const Reader &reader, const Json &levels, const std::string
 void read_unpacked(const std::string &folder, Limits &limits, Unpacked &out, std::string &about)
 {
     about = in_folder(folder, UNPACKED_JSON);
-    const Json json = parse(about);
+    const JsonTree tree{parse(about)};
+    const Json &json = tree.root;
     const Reader reader;
-    if (!(reader.at(json, "format") == UNPACKED_FORMAT))
+    const Json &format = reader.at(json, "format");
+    if (!format.is_string() || format.get_ref<const std::string &>() != UNPACKED_FORMAT)
         reader.fail(std::string("format is not \"") + UNPACKED_FORMAT + '"');
     gtx_asset_desc &d = out.desc;
     uint32_t size[2];

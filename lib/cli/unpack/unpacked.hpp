@@ -31,6 +31,11 @@ constexpr char UNPACKED_FORMAT[] = "geotex unpacked asset 1";
 /* "height-0.png" for page 0, "normal-0-2.png" for level 2 of page 0. */
 std::string unpacked_name(const UnpackedMap &map, uint32_t page, uint32_t level);
 std::string in_folder(const std::string &folder, const std::string &name);
+/* What lies in a folder, in any order; nothing where there is none. The iterators of the standard
+ * library end the program where there is no memory. */
+Vector<std::string> names_in(const std::string &folder);
+/* Removes a folder of files. Takes no memory but what the system does. */
+void remove_folder(const std::string &folder) noexcept;
 
 /* In all of these `about` names the file at hand when an Error is thrown. */
 

@@ -1,18 +1,15 @@
 /* Writing an asset as a folder of images and one JSON file. */
 #include "cli/guard.hpp"
+#include "cli/unpack/json.hpp"
 #include "cli/unpack/unpacked.hpp"
 
 #include "base/output.h"
 #include "image/image.h"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <filesystem>
 
 namespace gtx {
-
-using Json = nlohmann::ordered_json;
 
 std::string unpacked_name(const UnpackedMap &map, uint32_t page, uint32_t level)
 {
@@ -33,14 +30,24 @@ template <class T> static Json list(const T *values, size_t count)
     return out;
 }
 
+/* Member by member: lists of initial values are copied, and destroyed as trees are. */
 static Json patch_json(const gtx_patch &p)
 {
-    return {{"origin", list(p.origin, 3)}, {"axis_x", list(p.axis_x, 3)},
-            {"axis_y", list(p.axis_y, 3)}, {"axis_z", list(p.axis_z, 3)},
-            {"extent", {p.extent_x, p.extent_y, p.extent_z}}, {"coverage", p.coverage},
-            {"page", p.page}, {"rect", list(p.rect, 4)}, {"dilation", p.dilation},
-            {"flags", p.flags}, {"sphere", list(p.sphere, 4)},
-            {"source_triangles", p.source_triangles}};
+    const float extent[] = {p.extent_x, p.extent_y, p.extent_z};
+    Json out = Json::object();
+    out["origin"] = list(p.origin, 3);
+    out["axis_x"] = list(p.axis_x, 3);
+    out["axis_y"] = list(p.axis_y, 3);
+    out["axis_z"] = list(p.axis_z, 3);
+    out["extent"] = list(extent, 3);
+    out["coverage"] = p.coverage;
+    out["page"] = p.page;
+    out["rect"] = list(p.rect, 4);
+    out["dilation"] = p.dilation;
+    out["flags"] = p.flags;
+    out["sphere"] = list(p.sphere, 4);
+    out["source_triangles"] = p.source_triangles;
+    return out;
 }
 
 static void write_image(const std::string &path, const UnpackedMap &map, uint32_t width,
@@ -92,12 +99,14 @@ static void write_lod(const gtx_asset *asset, const gtx_info &info, const std::s
         gtx_get_lod_mesh(asset, k, &level);
         about = in_folder(folder, unpacked_lod_name(k));
         write_unpacked_lod(level, info.patch_count, about);
-        json["lod_meshes"].push_back({{"origin", list(level.origin, 3)},
-                                      {"step", level.step},
-                                      {"error", level.error},
-                                      {"triangles", level.triangle_count},
-                                      {"vertices", level.vertex_count},
-                                      {"flags", level.flags}});
+        Json member = Json::object();
+        member["origin"] = list(level.origin, 3);
+        member["step"] = level.step;
+        member["error"] = level.error;
+        member["triangles"] = level.triangle_count;
+        member["vertices"] = level.vertex_count;
+        member["flags"] = level.flags;
+        json["lod_meshes"].push_back(std::move(member));
     }
 }
 
@@ -108,15 +117,24 @@ void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder,
     gtx_get_info(asset, &info);
     size_t meta_size;
     const char *meta = gtx_meta(asset, &meta_size);
-    Json json = {{"format", UNPACKED_FORMAT}, {"page_count", info.page_count},
-                 {"page_size", {info.page_width, info.page_height}}, {"mip_count", info.mip_count},
-                 {"height_bits", info.height_bits}, {"unit", info.unit},
-                 {"anchor", list(info.anchor, 3)}, {"bounds_min", list(info.bounds_min, 3)},
-                 {"bounds_max", list(info.bounds_max, 3)},
-                 {"emission_scale", info.emission_scale},
-                 {"has_color", info.has_color != 0}, {"has_material", info.has_material != 0},
-                 {"has_emission", info.has_emission != 0},
-                 {"source_triangles", info.source_triangles}, {"zstd", zstd}};
+    const uint32_t size[] = {info.page_width, info.page_height};
+    JsonTree tree{Json::object()}; /* made at once: what cannot be is no half of one */
+    Json &json = tree.root;
+    json["format"] = UNPACKED_FORMAT;
+    json["page_count"] = info.page_count;
+    json["page_size"] = list(size, 2);
+    json["mip_count"] = info.mip_count;
+    json["height_bits"] = info.height_bits;
+    json["unit"] = info.unit;
+    json["anchor"] = list(info.anchor, 3);
+    json["bounds_min"] = list(info.bounds_min, 3);
+    json["bounds_max"] = list(info.bounds_max, 3);
+    json["emission_scale"] = info.emission_scale;
+    json["has_color"] = info.has_color != 0;
+    json["has_material"] = info.has_material != 0;
+    json["has_emission"] = info.has_emission != 0;
+    json["source_triangles"] = info.source_triangles;
+    json["zstd"] = zstd;
     if (meta)
         json["meta"] = std::string(meta, meta_size);
     json["patches"] = Json::array();

@@ -30,6 +30,17 @@ static double full_value(draco::DataType type)
     }
 }
 
+/* Draco would take any byte of a damaged stream for a bool. */
+static bool convert(const draco::PointAttribute &from, draco::AttributeValueIndex at, int count,
+                    double values[4])
+{
+    if (from.data_type() != draco::DT_BOOL)
+        return from.ConvertValue<double>(at, int8_t(count), values);
+    for (int k = 0; k < count; ++k)
+        values[k] = from.GetAddress(at)[k] != 0;
+    return true;
+}
+
 static DracoAttribute read_attribute(const draco::Mesh &mesh, const draco::PointAttribute &from)
 {
     DracoAttribute to;
@@ -49,7 +60,7 @@ static DracoAttribute read_attribute(const draco::Mesh &mesh, const draco::Point
             uint64_t(from.byte_offset()) + uint64_t(v.value()) * uint64_t(from.byte_stride());
         double values[4];
         sound = at + uint64_t(item) <= from.buffer()->data_size() &&
-                from.ConvertValue<double>(v, int8_t(to.components), values);
+                convert(from, v, to.components, values);
         /* Draco has divided normalised integers by their full value: callers want them raw. */
         for (int k = 0; k < to.components; ++k)
             to.values.push_back(from.normalized() ? values[k] * to.full : values[k]);
