@@ -115,7 +115,7 @@ public:
     {
     }
 
-    void run(Task &task);
+    void run();
 
 private:
     void find_candidates();
@@ -316,7 +316,7 @@ void Attachment::place(uint32_t candidate, bool tiny)
     }
 }
 
-void Attachment::run(Task &task)
+void Attachment::run()
 {
     find_candidates();
     find_near();
@@ -326,7 +326,7 @@ void Attachment::run(Task &task)
         asked_by_.assign(regions_.size(), NO_TRIANGLE);
         for (uint32_t candidate : candidates_) {
             bool tiny = pass == PASSES && texels(regions_[candidate]) < JUNK_TEXELS;
-            task.check();
+            cancel_point();
             if (target_[candidate] == candidate)
                 place(candidate, tiny);
         }
@@ -337,9 +337,9 @@ void Attachment::run(Task &task)
 } // namespace
 
 void attach_islands(Surface &surface, const Bounds &bounds, Vector<Region> &regions,
-                    Vector<Frame> &frames, Task &task)
+                    Vector<Frame> &frames)
 {
-    Attachment(surface, bounds, regions, frames).run(task);
+    Attachment(surface, bounds, regions, frames).run();
 }
 
 } // namespace gtx

@@ -6,7 +6,7 @@
 
 namespace gtx {
 
-static const size_t SAMPLES = size_t(1) << 18, CHUNK = 1 << 14, BREATH = 256;
+static const size_t SAMPLES = size_t(1) << 18, CHUNK = 1 << 14;
 /* A limit on time: nodes of the tree that a point of a chunk looks at in the mean. Scans take 25,
  * an engine of 82 nodes 121 at most; where more surfaces lie over each other distances come out
  * too large, if anything. */
@@ -116,8 +116,7 @@ static Deviation deviation(const Vector<Vec3d> &points, const Shapes &shapes, do
         uint32_t near = NO_HIT; /* consecutive points lie on one shape or on the next */
         size_t looks = MAX_LOOKS * (end - chunk * CHUNK);
         for (size_t i = chunk * CHUNK; i < end; ++i) {
-            if (i % BREATH == 0)
-                task.check();
+            cancel_point();
             square[i] = tree.distance2(points[i], &near, &looks);
         }
     }, from, to);
