@@ -81,11 +81,13 @@ void NearGrid::dilate()
     sort_unique(entries_);
     Vector<Entry> dilated;
     dilated.reserve(27 * entries_.size());
-    for (const auto &[cell, candidate] : entries_)
+    for (const auto &[cell, candidate] : entries_) {
+        cancel_point();
         for (int x = -1; x <= 1; ++x)
             for (int y = -1; y <= 1; ++y)
                 for (int z = -1; z <= 1; ++z)
                     dilated.push_back({{cell[0] + x, cell[1] + y, cell[2] + z}, candidate});
+    }
     sort_unique(dilated);
     entries_ = std::move(dilated);
     for (const auto &[cell, candidate] : entries_)
@@ -182,12 +184,14 @@ void Attachment::find_near()
     for (uint32_t region = 0; region < regions_.size(); ++region)
         for (uint32_t t : regions_[region].triangles)
             for (uint32_t v : mesh.triangles[t])
-                if (std::exchange(last_seen[v], region) != region)
+                if (std::exchange(last_seen[v], region) != region) {
+                    cancel_point();
                     grid.each_near(mesh.positions[v], [&](uint32_t candidate) {
                         if (candidate != region &&
                             std::exchange(last_region[candidate], region) != region)
                             near_.push_back({candidate, region});
                     });
+                }
     /* Regions ascend already. */
     std::stable_sort(near_.begin(), near_.end(), [](const Near &a, const Near &b) {
         return a.candidate < b.candidate;

@@ -72,8 +72,10 @@ static Vector<Vec3d> sample_mesh(const MeshTriangles &source,
                                  const Vector<uint8_t> &junk)
 {
     Vector<double> area(source.size());
-    for (size_t t = 0; t < area.size(); ++t)
+    for (size_t t = 0; t < area.size(); ++t) {
+        cancel_point();
         area[t] = !junk.empty() && junk[t] ? 0 : length(source.mesh.area_vector(t)) / 2;
+    }
     Vector<Vec3d> points;
     Random random;
     stratify(area, SAMPLES, random, [&](size_t t) {
@@ -89,8 +91,10 @@ static Vector<Vec3d> sample_mesh(const MeshTriangles &source,
 static Vector<Vec3d> sample_cells(const Cells &cells)
 {
     Vector<double> area(cells.size());
-    for (size_t i = 0; i < area.size(); ++i)
+    for (size_t i = 0; i < area.size(); ++i) {
+        cancel_point();
         area[i] = cells.core_area(i);
+    }
     Vector<Vec3d> points;
     Random random;
     stratify(area, SAMPLES, random, [&](size_t i) {

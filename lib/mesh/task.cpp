@@ -35,14 +35,16 @@ gtx_error caught_error()
     return out;
 }
 
-/* Cancellation points of a thread between two looks at the clock, and seconds between two calls of
- * the callback: an answer is wanted in a fifth of one, most of which one long step may take. */
-constexpr unsigned LOOK = 16;
+/* Steps of a thread between two looks at the clock, and seconds between two calls of the callback:
+ * an answer is wanted in a fifth of one, most of which one long step may take. */
+constexpr size_t LOOK = 16;
+/* Turns of a short loop that count as a step. */
+constexpr size_t PLAIN = 1 << 14;
 constexpr double ASK = 0.02;
 
 /* Which task the thread works for. */
 static thread_local Task *current = nullptr;
-static thread_local unsigned passed = 0;
+static thread_local size_t passed = 0;
 
 Task::Scope::Scope(Task &task) : memory_(task.limits), outer_(current)
 {
@@ -54,10 +56,13 @@ Task::Scope::~Scope()
     current = outer_;
 }
 
-void cancel_point()
+void cancel_point(size_t plain)
 {
-    if (current && ++passed % LOOK == 0)
-        current->report_now_and_then();
+    passed += 1 + plain / PLAIN;
+    if (passed < LOOK || !current)
+        return;
+    passed = 0;
+    current->report_now_and_then();
 }
 
 static double now()

@@ -57,8 +57,9 @@ struct Warning {
 /* A cancellation point, at any depth and on any thread of a job: has the callback asked now and
  * then, and throws Error(GTX_CANCELLED) once it has said so. It costs a count, for it looks at the
  * clock one time in a few: where steps take up to a millisecond each has one. Taking memory is one
- * too; without a job it does nothing. */
-void cancel_point();
+ * too; without a job it does nothing. `plain` are the turns of a short loop that follows without
+ * any. */
+void cancel_point(size_t plain = 0);
 
 /* One job. Used from the thread that runs it, except where stated. */
 class Task {
@@ -120,7 +121,7 @@ private:
         Task *outer_;
     };
     class Crew;
-    friend void cancel_point();
+    friend void cancel_point(size_t plain);
 
     size_t index_of(const char *stage) const;
     void report(double fraction);

@@ -142,8 +142,10 @@ void Moves::solve(const Vector<Vector<const Tie *>> &open,
     });
     for (int round = 0; round < ROUNDS; ++round)
         for (const Vector<Equation> &some : equations_)
-            for (const Equation &equation : some)
+            for (const Equation &equation : some) {
+                cancel_point();
                 project(equation, mobility);
+            }
 }
 
 /* Closes a gap, but for its slack, by the least squares of what the texels around both ends move.

@@ -155,6 +155,7 @@ double Search::uncovered_share(size_t field, uint32_t triangle, Budget &budget,
     const int parts = parts_of(triangle);
     int uncovered = 0;
     for (int j = 0; j < parts; ++j) {
+        cancel_point();
         for (int i = 0; i + j < parts; ++i) {
             const Sample at = {first + e * ((i + 1 / 3.) / parts) + f * ((j + 1 / 3.) / parts),
                                normal};

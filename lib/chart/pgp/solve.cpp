@@ -200,11 +200,22 @@ void Solve::to_unit_length()
     }
 }
 
+/* The usual preconditioner, asked once each step. */
+struct Cancellable : Eigen::DiagonalPreconditioner<double> {
+    using Eigen::DiagonalPreconditioner<double>::DiagonalPreconditioner;
+
+    template <class Right> auto solve(const Eigen::MatrixBase<Right> &right) const
+    {
+        cancel_point(size_t(right.size()));
+        return Eigen::DiagonalPreconditioner<double>::solve(right);
+    }
+};
+
 void Solve::run()
 {
     start();
     Energy matrix = energy();
-    Eigen::ConjugateGradient<Energy, Eigen::Lower | Eigen::Upper> solver(matrix);
+    Eigen::ConjugateGradient<Energy, Eigen::Lower | Eigen::Upper, Cancellable> solver(matrix);
     solver.setTolerance(TOLERANCE);
     solver.setMaxIterations(MAX_ITERATIONS);
     for (int pass = 0; pass < PASSES; ++pass) {
