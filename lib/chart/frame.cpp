@@ -16,7 +16,7 @@ constexpr double STEEPEST_TILT = 1.5;
 /* What parts of a tilted frame may come to. The format asks for 0.1; half and double change
  * nothing. */
 constexpr double MIN_DETERMINANT = 0.15;
-/* A limit on time: sides of a hull that a rectangle is tried along, evenly. Scans have up to 200. */
+/* A limit on time: sides of a hull that a rectangle is tried along, evenly. */
 constexpr size_t MAX_SIDES = 512;
 
 struct Point {

@@ -111,6 +111,28 @@ static Vector<const HeightField *> reaching(const Vector<const HeightField *> &o
     return out;
 }
 
+/* What it takes to tell of so many whether they reach somewhere: a look at a map takes longer. */
+static double reach_looks(size_t others)
+{
+    return double(others) / 8;
+}
+
+double looks_of(const Vector<const HeightField *> &others, const Vector<Tie> &ties)
+{
+    constexpr size_t EVERY = 8; /* cell: time against accuracy */
+    double looks = 0;
+    size_t cells = 0;
+    for (auto from = ties.begin(), to = from; from != ties.end(); from = to) {
+        while (to != ties.end() && to->end[0].place.cell == from->end[0].place.cell)
+            ++to;
+        if (cells++ % EVERY)
+            continue;
+        const size_t near = reaching(others, *from, *(to - 1)).size();
+        looks += EVERY * (reach_looks(others.size()) + double(near * size_t(to - from)));
+    }
+    return looks;
+}
+
 Vector<const Tie *> update_ties(const Vector<const HeightField *> &others,
                                 const TieLimits &limits, Budget budget, Vector<Tie> &ties)
 {
@@ -123,13 +145,12 @@ Vector<const Tie *> update_ties(const Vector<const HeightField *> &others,
                 loose.push_back(&*to);
         if (loose.empty())
             continue;
-        if (budget.spent()) { /* they are tied to nothing */
-            for (Tie *tie : loose)
-                *tie = {{tie->end[0], {}}};
-            continue;
-        }
-        const Vector<const HeightField *> near = reaching(others, *from, *(to - 1));
-        budget.spend(double(others.size() + near.size() * loose.size()));
+        Vector<const HeightField *> near;
+        const bool may_reach = !budget.spent() && budget.grants(reach_looks(others.size()));
+        if (may_reach)
+            near = reaching(others, *from, *(to - 1));
+        if (!may_reach || !budget.grants(double(near.size() * loose.size())))
+            near.clear(); /* they are tied to nothing */
         find_ends(near, limits, loose);
         std::copy_if(loose.begin(), loose.end(), std::back_inserter(open),
                      [](const Tie *tie) { return tie->is_open(); });
