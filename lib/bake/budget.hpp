@@ -12,18 +12,25 @@ public:
 
     bool spent() const { return left_ <= 0; }
     void spend(double work) { left_ -= work; }
+    /* Spends it where that much is left, and all of it where not. */
+    bool grants(double work)
+    {
+        const bool enough = work <= left_;
+        left_ = enough ? left_ - work : 0;
+        return enough;
+    }
 
 private:
     double left_;
 };
 
 /* Looks at other height fields that each of `items` may cost in the mean, when `wanted` are all
- * that the model may ask for. An engine of 82 nodes asks for 160 million, and needs them; where so
- * many surfaces lie over each other that it is more, nobody can tell what belongs together. */
-inline double looks_each(double items, double wanted)
+ * that the model asks for, of which `enough`, and `each` for every item, are granted: where so many
+ * surfaces lie over each other that it is more, nobody can tell what belongs together. */
+inline double looks_each(double items, double wanted, double enough, double each)
 {
-    constexpr double ENOUGH = 1 << 28, MOST = 1 << 25, EACH = 64, LEAST = 16;
-    return wanted <= ENOUGH + EACH * items ? INFINITY : LEAST + MOST / items;
+    constexpr double MOST = 1 << 23, LEAST = 4;
+    return wanted <= enough + each * items ? INFINITY : LEAST + MOST / items;
 }
 
 } // namespace gtx::baking

@@ -38,7 +38,10 @@ constexpr double MAX_LOOKS = 1024;
 
 template <class T> void sort_unique(Vector<T> &values)
 {
-    std::sort(values.begin(), values.end());
+    std::sort(values.begin(), values.end(), [](const T &a, const T &b) {
+        cancel_point();
+        return a < b;
+    });
     values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
@@ -81,11 +84,13 @@ void NearGrid::dilate()
     sort_unique(entries_);
     Vector<Entry> dilated;
     dilated.reserve(27 * entries_.size());
-    for (const auto &[cell, candidate] : entries_)
+    for (const auto &[cell, candidate] : entries_) {
+        cancel_point();
         for (int x = -1; x <= 1; ++x)
             for (int y = -1; y <= 1; ++y)
                 for (int z = -1; z <= 1; ++z)
                     dilated.push_back({{cell[0] + x, cell[1] + y, cell[2] + z}, candidate});
+    }
     sort_unique(dilated);
     entries_ = std::move(dilated);
     for (const auto &[cell, candidate] : entries_)
@@ -115,7 +120,7 @@ public:
     {
     }
 
-    void run(Task &task);
+    void run();
 
 private:
     void find_candidates();
@@ -182,12 +187,14 @@ void Attachment::find_near()
     for (uint32_t region = 0; region < regions_.size(); ++region)
         for (uint32_t t : regions_[region].triangles)
             for (uint32_t v : mesh.triangles[t])
-                if (std::exchange(last_seen[v], region) != region)
+                if (std::exchange(last_seen[v], region) != region) {
+                    cancel_point();
                     grid.each_near(mesh.positions[v], [&](uint32_t candidate) {
                         if (candidate != region &&
                             std::exchange(last_region[candidate], region) != region)
                             near_.push_back({candidate, region});
                     });
+                }
     /* Regions ascend already. */
     std::stable_sort(near_.begin(), near_.end(), [](const Near &a, const Near &b) {
         return a.candidate < b.candidate;
@@ -316,7 +323,7 @@ void Attachment::place(uint32_t candidate, bool tiny)
     }
 }
 
-void Attachment::run(Task &task)
+void Attachment::run()
 {
     find_candidates();
     find_near();
@@ -326,7 +333,7 @@ void Attachment::run(Task &task)
         asked_by_.assign(regions_.size(), NO_TRIANGLE);
         for (uint32_t candidate : candidates_) {
             bool tiny = pass == PASSES && texels(regions_[candidate]) < JUNK_TEXELS;
-            task.check();
+            cancel_point();
             if (target_[candidate] == candidate)
                 place(candidate, tiny);
         }
@@ -337,9 +344,9 @@ void Attachment::run(Task &task)
 } // namespace
 
 void attach_islands(Surface &surface, const Bounds &bounds, Vector<Region> &regions,
-                    Vector<Frame> &frames, Task &task)
+                    Vector<Frame> &frames)
 {
-    Attachment(surface, bounds, regions, frames).run(task);
+    Attachment(surface, bounds, regions, frames).run();
 }
 
 } // namespace gtx

@@ -16,6 +16,8 @@ constexpr double STEEPEST_TILT = 1.5;
 /* What parts of a tilted frame may come to. The format asks for 0.1; half and double change
  * nothing. */
 constexpr double MIN_DETERMINANT = 0.15;
+/* A limit on time: sides of a hull that a rectangle is tried along, evenly. */
+constexpr size_t MAX_SIDES = 512;
 
 struct Point {
     double u, v, h;
@@ -77,7 +79,8 @@ Point least_rectangle(const Vector<Point> &points)
     Vector<Point> hull = hull_of(points);
     Point best = {1, 0, 0};
     double least = INFINITY;
-    for (size_t i = 0; i < hull.size(); ++i) {
+    for (size_t i = 0; i < hull.size(); i += 1 + hull.size() / MAX_SIDES) {
+        cancel_point(hull.size());
         const Point &a = hull[i], &b = hull[(i + 1) % hull.size()];
         double du = b.u - a.u, dv = b.v - a.v, l = std::hypot(du, dv);
         if (!(l > 0))
@@ -153,6 +156,7 @@ Plane minimax_plane(const Vector<Point> &points)
     double least = range_above(best, points);
     Vector<double> weights(points.size(), 1);
     for (int step = 0; step <= LAWSON_STEPS && fit_plane(points, weights, plane); ++step) {
+        cancel_point(points.size());
         double range = range_above(plane, points);
         bool gentle = std::abs(plane.a) <= STEEPEST_TILT && std::abs(plane.b) <= STEEPEST_TILT;
         if (gentle && range < least) {
@@ -176,6 +180,7 @@ void enclose(const Mesh &mesh, const Vector<uint32_t> &triangles, Frame &frame)
     FrameInverse inverse(frame);
     Vec3d low(INFINITY, INFINITY, INFINITY), high = -low;
     for (uint32_t t : triangles) {
+        cancel_point();
         for (int corner = 0; corner < 3; ++corner) {
             Vec3d p = inverse(mesh.position(t, corner));
             for (int k = 0; k < 3; ++k) {

@@ -283,7 +283,7 @@ void make_charts(Surface surface, const ChartOptions &options, uint32_t count, T
     if (cut)
         merge_all(surface, regions, frames, bounds, task);
     surface.whole.neighbours = {};
-    attach_islands(surface, bounds, regions, frames, task);
+    attach_islands(surface, bounds, regions, frames);
     out.junk = surface.junk;
     report_final(surface, regions, frames, task, out);
     CutPlan plan = {wanted,

@@ -1,6 +1,7 @@
 /* Triangles at the centres of a grid of texels. */
 #pragma once
 
+#include "mesh/task.hpp"
 #include "mesh/vec.hpp"
 
 #include <algorithm>
@@ -56,6 +57,7 @@ inline Row narrow_row(double first, int count, double dy, const double u[2], con
 template <class Visit>
 void raster_centres(const Vec3d corner[3], int width, int height, Visit visit)
 {
+    cancel_point();
     const Vec3d &a = corner[0], &b = corner[1], &c = corner[2];
     double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     if (area == 0)

@@ -31,9 +31,8 @@ void silence_openmesh()
     (void)silent;
 }
 
-Connectivity connect(const Mesh &mesh, Task &task)
+Connectivity connect(const Mesh &mesh)
 {
-    constexpr size_t BREATH = 65536; /* triangles between chances to cancel */
     silence_openmesh();
     size_t count = mesh.triangle_count();
     Connectivity out;
@@ -44,8 +43,7 @@ Connectivity connect(const Mesh &mesh, Task &task)
         OpenMesh::VertexHandle v[3];
         for (int k = 0; k < 3; ++k)
             v[k] = OpenMesh::VertexHandle(int(mesh.triangles[t][k]));
-        if (t % BREATH == 0)
-            task.check();
+        cancel_point();
         if (out.add_face(v[0], v[1], v[2]).is_valid())
             continue;
         for (OpenMesh::VertexHandle &handle : v) /* no manifold neighbour: it stands alone */
@@ -55,9 +53,9 @@ Connectivity connect(const Mesh &mesh, Task &task)
     return out;
 }
 
-Vector<std::array<uint32_t, 3>> neighbours_of(const Mesh &mesh, Task &task)
+Vector<std::array<uint32_t, 3>> neighbours_of(const Mesh &mesh)
 {
-    Connectivity connectivity = connect(mesh, task);
+    Connectivity connectivity = connect(mesh);
     Vector<std::array<uint32_t, 3>> out(mesh.triangle_count());
     for (size_t t = 0; t < out.size(); ++t) {
         auto edge = connectivity.halfedge_handle(OpenMesh::FaceHandle(int(t)));
@@ -99,11 +97,11 @@ double area_of(const Mesh &mesh)
     return area;
 }
 
-void connect_whole(Surface &surface, Task &task)
+void connect_whole(Surface &surface)
 {
     surface.whole.triangles.resize(surface.mesh.triangle_count());
     std::iota(surface.whole.triangles.begin(), surface.whole.triangles.end(), 0u);
-    surface.whole.neighbours = neighbours_of(surface.mesh, task);
+    surface.whole.neighbours = neighbours_of(surface.mesh);
 }
 
 void measure_facets(Surface &surface, double pitch)
@@ -159,7 +157,7 @@ Surface make_surface(const Mesh &mesh, double pitch, Task &task)
     Surface surface = {mesh, {}, area_of(mesh), 0, {}, {}, {}};
     task.parallel(2, [&](size_t half) {
         if (half == 0)
-            connect_whole(surface, task);
+            connect_whole(surface);
         else
             measure_facets(surface, pitch);
     }, 0, 0);

@@ -214,7 +214,7 @@ void Look::leaks(const Vector<Crossing> &crossings)
 }
 
 static void measure_view(const Comparison &all, const Scene &scene, uint32_t view_index,
-                         const MeshImage &image, Task &task, Figures &out)
+                         const MeshImage &image, Figures &out)
 {
     const View &view = scene.views[view_index];
     Look look = {all, scene, view_index, view, image, scene.asset, out};
@@ -222,7 +222,7 @@ static void measure_view(const Comparison &all, const Scene &scene, uint32_t vie
     Vector<Crossing> row, crossings;
     crossings.reserve(size_t(view.size) * view.size);
     for (uint32_t j = 0; j < view.size; ++j) {
-        task.check(); /* a view takes seconds */
+        cancel_point();
         look.asset.cast_row(view, j, hits, row);
         crossings.insert(crossings.end(), row.begin(), row.end());
         for (uint32_t i = 0; i < view.size; ++i)
@@ -309,7 +309,7 @@ CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOpt
             if (view.size != size)
                 image = rasterise(mesh, view);
             size = view.size;
-            measure_view(all, scenes[s], uint32_t(v), image, task, figures[s][v]);
+            measure_view(all, scenes[s], uint32_t(v), image, figures[s][v]);
         }
     }, 0, options.surface ? 0.8 : 1);
 

@@ -6,7 +6,7 @@
 
 namespace gtx {
 
-static const size_t SAMPLES = size_t(1) << 18, CHUNK = 1 << 14, BREATH = 256;
+static const size_t SAMPLES = size_t(1) << 18, CHUNK = 1 << 14;
 /* A limit on time: nodes of the tree that a point of a chunk looks at in the mean. Scans take 25,
  * an engine of 82 nodes 121 at most; where more surfaces lie over each other distances come out
  * too large, if anything. */
@@ -72,8 +72,10 @@ static Vector<Vec3d> sample_mesh(const MeshTriangles &source,
                                  const Vector<uint8_t> &junk)
 {
     Vector<double> area(source.size());
-    for (size_t t = 0; t < area.size(); ++t)
+    for (size_t t = 0; t < area.size(); ++t) {
+        cancel_point();
         area[t] = !junk.empty() && junk[t] ? 0 : length(source.mesh.area_vector(t)) / 2;
+    }
     Vector<Vec3d> points;
     Random random;
     stratify(area, SAMPLES, random, [&](size_t t) {
@@ -89,8 +91,10 @@ static Vector<Vec3d> sample_mesh(const MeshTriangles &source,
 static Vector<Vec3d> sample_cells(const Cells &cells)
 {
     Vector<double> area(cells.size());
-    for (size_t i = 0; i < area.size(); ++i)
+    for (size_t i = 0; i < area.size(); ++i) {
+        cancel_point();
         area[i] = cells.core_area(i);
+    }
     Vector<Vec3d> points;
     Random random;
     stratify(area, SAMPLES, random, [&](size_t i) {
@@ -116,8 +120,7 @@ static Deviation deviation(const Vector<Vec3d> &points, const Shapes &shapes, do
         uint32_t near = NO_HIT; /* consecutive points lie on one shape or on the next */
         size_t looks = MAX_LOOKS * (end - chunk * CHUNK);
         for (size_t i = chunk * CHUNK; i < end; ++i) {
-            if (i % BREATH == 0)
-                task.check();
+            cancel_point();
             square[i] = tree.distance2(points[i], &near, &looks);
         }
     }, from, to);

@@ -1,7 +1,7 @@
 /* Nearest point on many small shapes: a balanced tree of boxes, split at medians. */
 #pragma once
 
-#include "mesh/memory.hpp"
+#include "mesh/task.hpp"
 #include "mesh/vec.hpp"
 
 #include <algorithm>
@@ -58,13 +58,16 @@ public:
             leaves_ *= 2;
         Vector<Vec3f> centre;
         for (size_t i = 0; i < order_.size(); ++i) {
+            cancel_point();
             centre.push_back(Vec3f(shapes_.box(i).centre()));
             order_[i] = uint32_t(i);
         }
         split(centre, order_.begin(), order_.end(), leaves_ * LEAF);
         boxes_.resize(2 * leaves_);
-        for (size_t i = 0; i < order_.size(); ++i)
+        for (size_t i = 0; i < order_.size(); ++i) {
+            cancel_point();
             boxes_[leaves_ + i / LEAF].add(shapes_.box(order_[i]));
+        }
         for (size_t n = leaves_ - 1; n > 0; --n) {
             boxes_[n].add(boxes_[2 * n]);
             boxes_[n].add(boxes_[2 * n + 1]);
@@ -138,6 +141,7 @@ private:
     {
         if (room <= LEAF)
             return;
+        cancel_point(size_t(to - from));
         Place middle = from + std::min(std::ptrdiff_t(room / 2), to - from);
         if (middle != to) {
             Vec3f low = centre[*from], high = low;

@@ -50,6 +50,7 @@ bool is_cut(const Mesh &mesh, size_t triangle, const double weight[3], double fo
 static void draw(const Mesh &mesh, const View &view, const Vec3d v[3], uint32_t triangle,
                  MeshImage &image)
 {
+    cancel_point();
     const uint32_t size = view.size;
     auto x = std::minmax({v[0].x, v[1].x, v[2].x}), y = std::minmax({v[0].y, v[1].y, v[2].y});
     auto z = std::minmax({v[0].z, v[1].z, v[2].z});

@@ -1,7 +1,7 @@
 /* Points spread evenly over shapes, the same everywhere. */
 #pragma once
 
-#include "mesh/memory.hpp"
+#include "mesh/task.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -38,6 +38,7 @@ void stratify(const Vector<double> &size, size_t count, Random &random, Place pl
         double at = (double(i) + random.next()) / double(count) * total;
         while (shape < last && (size[shape] <= 0 || before + size[shape] <= at))
             before += size[shape++];
+        cancel_point();
         place(shape);
     }
 }

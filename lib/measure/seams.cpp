@@ -59,6 +59,7 @@ static Vector<Crossing> find_crossings(const Cells &cells)
     static const double RING[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
     Vector<Crossing> out;
     for (size_t i = 0; i < cells.size(); ++i) {
+        cancel_point();
         double found[4][2];
         int count = 0;
         for (int k = 0; k < 4; ++k) {
@@ -115,6 +116,7 @@ SeamReport measure_seams(const gtx_asset *asset, const Mesh &mesh, Task &task)
     task.parallel((points.size() + CHUNK - 1) / CHUNK, [&](size_t chunk) {
         uint32_t near = NO_HIT, near_end = NO_HIT;
         for (size_t i = chunk * CHUNK; i < std::min(points.size(), (chunk + 1) * CHUNK); ++i) {
+            cancel_point();
             const SeamPoint &p = points[i];
             double reach = BORDER_TEXELS * cells.texel(p.patch);
             if (ends.distance2(p.at, &near_end) <= reach * reach)

@@ -67,6 +67,7 @@ MemoryScope::~MemoryScope()
 
 void take_memory(size_t bytes)
 {
+    cancel_point();
     if (!account.limits)
         return;
     account.untold += int64_t(bytes);

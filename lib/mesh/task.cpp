@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstring>
 #include <mutex>
 #include <new>
@@ -32,6 +33,36 @@ gtx_error caught_error()
         gtx_fail(&out, GTX_ERROR_INTERNAL, "an unknown exception");
     }
     return out;
+}
+
+/* Steps of a thread between two looks at the clock, and seconds between two calls of the callback:
+ * an answer is wanted in a fifth of one, most of which one long step may take. */
+constexpr size_t LOOK = 16;
+/* Turns of a short loop that count as a step. */
+constexpr size_t PLAIN = 1 << 14;
+constexpr double ASK = 0.02;
+
+/* Which task the thread works for. */
+static thread_local Task *current = nullptr;
+static thread_local size_t passed = 0;
+
+Task::Scope::Scope(Task &task) : memory_(task.limits), outer_(current)
+{
+    current = &task;
+}
+
+Task::Scope::~Scope()
+{
+    current = outer_;
+}
+
+void cancel_point(size_t plain)
+{
+    passed += 1 + plain / PLAIN;
+    if (passed < LOOK || !current)
+        return;
+    passed = 0;
+    current->report_now_and_then();
 }
 
 static double now()
@@ -94,12 +125,12 @@ void Task::advance(double fraction)
     report(std::clamp(fraction, 0., 1.));
 }
 
-void Task::check()
+void Task::report_now_and_then()
 {
-    if (std::this_thread::get_id() == caller_)
-        report(0); /* which never falls */
-    else if (cancelled_)
+    if (cancelled_)
         throw Error(GTX_CANCELLED, "cancelled");
+    if (progress_ && std::this_thread::get_id() == caller_ && now() - asked_ > ASK)
+        report(0); /* which never falls */
 }
 
 void Task::end()
@@ -121,64 +152,113 @@ void Task::report(double fraction)
     reported_ = std::max(reported_, float(whole));
     gtx_progress progress = {stages_[stage_], uint32_t(stage_), uint32_t(stages_.size()),
                              reported_};
-    if (progress_(&progress, user_)) {
-        cancelled_ = true;
+    cancelled_ = cancelled_ || progress_(&progress, user_);
+    if (cancelled_)
         throw Error(GTX_CANCELLED, "cancelled");
-    }
+    asked_ = now();
 }
 
-void Task::parallel(size_t count, const std::function<void(size_t)> &body, double from, double to)
+/* The threads of one parallel(), the caller's among them. */
+class Task::Crew {
+public:
+    Crew(Task &task, size_t count, const std::function<void(size_t)> &body)
+        : task_(task), count_(count), failed_at_(count), body_(body)
+    {
+    }
+    ~Crew() { join(); }
+    void hire(size_t helpers);
+    /* What the caller does; report(done) is its chance to stop. */
+    void work(const std::function<void(size_t)> &report);
+    void rethrow();
+
+private:
+    bool run_one();
+    void join();
+
+    Task &task_;
+    const size_t count_;
+    size_t failed_at_, gone_ = 0; /* helpers that have nothing left to do */
+    const std::function<void(size_t)> &body_;
+    std::atomic<size_t> next_{0}, done_{0};
+    std::atomic<bool> stop_{false};
+    std::mutex mutex_;
+    std::condition_variable one_went_;
+    std::exception_ptr failure_;
+    std::vector<std::thread> helpers_;
+};
+
+bool Task::Crew::run_one()
 {
-    std::atomic<size_t> next{0}, done{0};
-    std::atomic<bool> stop{false};
-    std::mutex mutex;
-    std::exception_ptr failure;
-    size_t failed_at = count;
-
-    auto run_one = [&]() {
-        size_t i = next++;
-        if (i >= count || stop)
-            return false;
-        try {
-            body(i);
-        } catch (...) {
-            std::lock_guard<std::mutex> lock(mutex);
-            if (i < failed_at) {
-                failed_at = i;
-                failure = std::current_exception();
-            }
-            stop = true;
+    size_t i = next_++;
+    if (i >= count_ || stop_)
+        return false;
+    try {
+        body_(i);
+    } catch (...) {
+        std::lock_guard<std::mutex> lock(mutex_);
+        if (i < failed_at_) {
+            failed_at_ = i;
+            failure_ = std::current_exception();
         }
-        ++done;
-        return true;
-    };
+        stop_ = true;
+    }
+    ++done_;
+    return true;
+}
 
-    size_t helpers = std::min<size_t>(threads_, std::max<size_t>(count, 1)) - 1;
-    std::vector<std::thread> pool;
-    pool.reserve(helpers);
+void Task::Crew::hire(size_t helpers)
+{
+    helpers_.reserve(helpers);
     for (size_t i = 0; i < helpers; ++i) {
         try {
-            pool.emplace_back([&] {
-                MemoryScope scope(limits);
+            helpers_.emplace_back([this] {
+                Scope scope(task_);
                 while (run_one()) {}
+                std::lock_guard<std::mutex> lock(mutex_);
+                ++gone_;
+                one_went_.notify_one();
             });
         } catch (const std::system_error &) { /* no more threads: fewer do the same */
             break;
         }
     }
-    try {
-        while (run_one() && !stop)
-            advance(from + (to - from) * double(done) / double(count));
-    } catch (...) { /* cancelled from the callback */
-        stop = true;
-        for (std::thread &t : pool)
-            t.join();
-        throw;
+}
+
+void Task::Crew::work(const std::function<void(size_t)> &report)
+{
+    while (run_one() && !stop_)
+        report(done_);
+    const std::chrono::duration<double> wait(ASK);
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!one_went_.wait_for(lock, wait, [this] { return gone_ == helpers_.size(); })) {
+        lock.unlock();
+        report(done_);
+        lock.lock();
     }
-    for (std::thread &t : pool)
-        t.join();
-    if (failure)
-        std::rethrow_exception(failure);
+}
+
+/* Early where work() has thrown. */
+void Task::Crew::join()
+{
+    stop_ = true;
+    for (std::thread &helper : helpers_)
+        helper.join();
+    helpers_.clear();
+}
+
+void Task::Crew::rethrow()
+{
+    join();
+    if (failure_)
+        std::rethrow_exception(failure_);
+}
+
+void Task::parallel(size_t count, const std::function<void(size_t)> &body, double from, double to)
+{
+    Crew crew(*this, count, body);
+    crew.hire(std::min<size_t>(threads_, std::max<size_t>(count, 1)) - 1);
+    crew.work([&](size_t done) { advance(from + (to - from) * double(done) / double(count)); });
+    crew.rethrow();
     advance(to);
 }
 

@@ -54,6 +54,13 @@ struct Warning {
     bool operator<(const Warning &other) const { return sentence < other.sentence; }
 };
 
+/* A cancellation point, at any depth and on any thread of a job: has the callback asked now and
+ * then, and throws Error(GTX_CANCELLED) once it has said so. It costs a count, for it looks at the
+ * clock one time in a few: where steps take up to a millisecond each has one. Taking memory is one
+ * too; without a job it does nothing. `plain` are the turns of a short loop that follows without
+ * any. */
+void cancel_point(size_t plain = 0);
+
 /* One job. Used from the thread that runs it, except where stated. */
 class Task {
 public:
@@ -75,14 +82,11 @@ public:
 
     /* Runs body(i) for i in [0, count) on the task's threads, in no particular order, and returns
      * when all are done; reports progress from `from` to `to` of the stage and throws when
-     * cancelled. The first exception of a body (lowest i) is rethrown. Bodies must write only to
-     * places of their own, so that results do not depend on the thread count. */
+     * cancelled: long bodies have cancellation points. The first exception of a body (lowest i) is
+     * rethrown. Bodies must write only to places of their own, so that results do not depend on the
+     * thread count. */
     void parallel(size_t count, const std::function<void(size_t)> &body, double from = 0,
                   double to = 1);
-
-    /* For long bodies of parallel(), now and then, on any thread: lets the callback be called and
-     * throws once it has asked to stop. */
-    void check();
 
     unsigned threads() const { return threads_; }
     /* Seconds spent in each stage so far, in the order of the constructor. */
@@ -104,9 +108,25 @@ private:
         size_t first = 0, after = 0;
         double from = 0, to = 0;
     };
+    /* For as long as it lives, the thread works for the task. */
+    class Scope {
+    public:
+        explicit Scope(Task &task);
+        ~Scope();
+        Scope(const Scope &) = delete;
+        Scope &operator=(const Scope &) = delete;
+
+    private:
+        MemoryScope memory_;
+        Task *outer_;
+    };
+    class Crew;
+    friend void cancel_point(size_t plain);
+
     size_t index_of(const char *stage) const;
     void report(double fraction);
-    MemoryScope scope_{limits};
+    void report_now_and_then();
+    Scope scope_{*this};
     unsigned threads_;
     gtx_progress_fn progress_;
     void *user_;
@@ -114,7 +134,7 @@ private:
     std::vector<double> before_, seconds_; /* share done before a stage; seconds in it */
     size_t stage_ = 0;
     Pass pass_;
-    double stage_start_ = 0;
+    double stage_start_ = 0, asked_ = 0; /* when */
     float reported_ = 0;
     std::thread::id caller_;
     std::atomic<bool> cancelled_{false};

@@ -38,7 +38,7 @@ struct Halves {
             return centre(mesh, t).x > 0.5;
         }, 64);
         maps = bake(mesh, partition, {}, task);
-        fields = map_fields(maps, task);
+        fields = map_fields(maps);
         others = touching(fields);
     }
 

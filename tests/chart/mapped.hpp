@@ -16,14 +16,14 @@ struct Mapped {
     explicit Mapped(gtx::Mesh of)
         : mesh(std::move(of)),
           surface(gtx::make_surface(mesh, gtx::expected_pitch(mesh, 50), task)),
-          edges(gtx::make_half_edges(surface)), field(gtx::make_cross_field(surface, edges, task)),
+          edges(gtx::make_half_edges(surface)), field(gtx::make_cross_field(surface, edges)),
           scale(gtx::make_scale(edges, field))
     {
         task.begin("partition");
     }
     gtx::Periodic parameterize(double cell)
     {
-        return gtx::parameterize(edges, field, scale, cell, task);
+        return gtx::parameterize(edges, field, scale, cell);
     }
     /* Cells of a mean length that cover as much as the surface. */
     double cell_for(double count) const { return std::sqrt(surface.area / count); }

@@ -83,6 +83,24 @@ inline std::string stack(unsigned n)
     return out;
 }
 
+/* Octahedra inside each other, closely. */
+inline std::string shells(unsigned n)
+{
+    static const char *const FACES[8] = {"024", "214", "134", "304", "205", "125", "315", "035"};
+    std::string out;
+    for (unsigned i = 0; i < n / 8; ++i) {
+        const double r = 1 + 0.8 * i / n;
+        for (int k = 0; k < 6; ++k) {
+            const double at = k % 2 ? -r : r;
+            out += vertex(k / 2 == 0 ? at : 0, k / 2 == 1 ? at : 0, k / 2 == 2 ? at : 0);
+        }
+        for (const char *f : FACES)
+            out += face(6 * i + 1 + unsigned(f[0] - '0'), 6 * i + 1 + unsigned(f[1] - '0'),
+                        6 * i + 1 + unsigned(f[2] - '0'));
+    }
+    return out;
+}
+
 /* Polygons of `corners` random ones of 512 vertices. */
 inline std::string polygons(unsigned count, unsigned corners)
 {

@@ -103,6 +103,7 @@ struct DistanceField {
         int back = down ? -1 : 1;
         for (int row = 0; row < grid.h; ++row) {
             int j = down ? row : grid.h - 1 - row;
+            cancel_point();
             for (int i = 0; i < grid.w; ++i) {
                 offer_from(i, j, -1, 0);
                 for (int di = -1; di <= 1; ++di)
@@ -120,8 +121,10 @@ void measure_distances(const Grid &grid, size_t charts, Outline &outline)
     outline.distance.assign(grid.texels(), INFINITY);
     const Budget budget(SPLATS * double(grid.texels()) + SPLATS_OF_ALL / double(charts));
     DistanceField field{grid, outline, budget};
-    for (size_t e = 0; e < outline.edges.size(); ++e)
+    for (size_t e = 0; e < outline.edges.size(); ++e) {
+        cancel_point();
         field.splat(uint32_t(e));
+    }
     field.sweep(true);
     field.sweep(false);
     for (float &d : outline.distance)
@@ -179,6 +182,7 @@ Vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Co
         trim[i] = std::max({to_all, to_core - float(OVERLAP), float(cut - CUT_OVERLAP)});
     }
     for (const OutlineEdge &edge : core_outline.edges) {
+        cancel_point();
         Vec3d along = edge.to - edge.from;
         int steps = 1 + int(2 * std::hypot(along.x, along.y));
         for (int s = 0; s < steps; ++s) {

@@ -10,6 +10,7 @@ namespace gtx::baking {
  * no centre falls between two triangles. */
 template <class Visit> static void raster(const FlatTriangle &t, const Grid &grid, Visit visit)
 {
+    cancel_point();
     const Vec3d *p = t.corner;
     double ux = p[1].x - p[0].x, uy = p[1].y - p[0].y;
     double vx = p[2].x - p[0].x, vy = p[2].y - p[0].y;

@@ -245,7 +245,7 @@ void split_at_cuts(const Partition &partition, const Maps &maps, const Vector<Ch
     splitter.find_open(task);
     splitter.find_sharers(partition, maps);
     while (splitter.round())
-        task.check();
+        cancel_point();
 }
 
 } // namespace gtx::baking

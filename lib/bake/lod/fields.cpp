@@ -102,12 +102,11 @@ double MapField::trim_in_cell(int i, int j, const Vec3d &in, const Vec3d &facing
     return apart <= reach_ && dot(here, facing) >= MIN_COSINE ? trimmed : INFINITY;
 }
 
-Vector<MapField> map_fields(const Maps &maps, Task &task)
+Vector<MapField> map_fields(const Maps &maps)
 {
     Vector<MapField> fields;
     for (uint32_t p = 0; p < maps.patches.size(); ++p)
         fields.emplace_back(maps, p);
-    task.check();
     return fields;
 }
 

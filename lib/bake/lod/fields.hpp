@@ -43,7 +43,7 @@ private:
     const uint8_t *normals_;
 };
 
-Vector<MapField> map_fields(const Maps &maps, Task &task);
+Vector<MapField> map_fields(const Maps &maps);
 
 /* For each patch those, in ascending order, whose boxes touch its own. */
 Vector<Vector<uint32_t>> touching(const Vector<MapField> &fields);

@@ -1,13 +1,12 @@
 /* The LOD meshes: how many, how fine, and the order of their triangles. */
 #include "bake/lod/parts.hpp"
+#include "bake/lod/strip.hpp"
 
 #include <algorithm>
-#include <deque>
 #include <map>
 
 namespace gtx::baking {
 
-using Triangle = std::array<uint32_t, 3>;
 using Place = std::array<uint16_t, 3>; /* of a vertex, in steps */
 
 /* Measured with five levels of bunny, Spot's control mesh and the truck, at half and at double. */
@@ -41,8 +40,6 @@ constexpr double FAR_STATED = 1.5;
  * Spot: one level fewer at half, a few bytes at double. */
 constexpr unsigned FAR_LEVELS = 3;
 constexpr double FAR_RATIO = 2.5;
-/* Edges among which the next triangle is looked for, as the asset's coding does: 0.2 % bytes. */
-constexpr size_t RECENT_EDGES = 16;
 
 Vector<PatchRegion> patch_regions(const Maps &maps, Task &task)
 {
@@ -94,79 +91,6 @@ struct Lattice {
         return {origin[0] + double(step) * place[0], origin[1] + double(step) * place[1],
                 origin[2] + double(step) * place[2]};
     }
-};
-
-/* Triangles in an order where most share an edge with one just before: few bytes, and vertices that
- * a processor still remembers. */
-class Strip {
-public:
-    Strip(const Vector<Triangle> &triangles, const Vector<uint32_t> &patch,
-          size_t vertices)
-        : triangles_(triangles), patch_(patch), start_(vertices + 1, 0), left_(triangles.size(), 0)
-    {
-        for (const Triangle &t : triangles)
-            for (uint32_t v : t)
-                ++start_[v + 1];
-        for (size_t v = 0; v < vertices; ++v)
-            start_[v + 1] += start_[v];
-        around_.resize(3 * triangles.size());
-        Vector<uint32_t> next(start_.begin(), start_.end() - 1);
-        for (size_t t = 0; t < triangles.size(); ++t)
-            for (uint32_t v : triangles[t])
-                around_[next[v]++] = uint32_t(t);
-    }
-    /* Adds the triangles `members` of a patch, corners turned so that a shared edge comes first. */
-    void follow(uint32_t patch, const Vector<uint32_t> &members, Vector<Triangle> &out)
-    {
-        for (uint32_t t : members)
-            left_[t] = 1;
-        Triangle next;
-        auto go_on = [&] {
-            while (find_beside(patch, next))
-                take(next, out);
-        };
-        go_on();
-        for (uint32_t seed : members) {
-            if (!left_[seed])
-                continue;
-            left_[seed] = 0;
-            take(triangles_[seed], out);
-            go_on();
-        }
-    }
-
-private:
-    using Edge = std::array<uint32_t, 2>;
-
-    void take(const Triangle &t, Vector<Triangle> &out)
-    {
-        out.push_back(t);
-        for (int k = 0; k < 3; ++k)
-            recent_.push_front({t[(k + 1) % 3], t[k]});
-        while (recent_.size() > RECENT_EDGES)
-            recent_.pop_back();
-    }
-    bool find_beside(uint32_t patch, Triangle &found)
-    {
-        for (const Edge &edge : recent_) {
-            for (uint32_t i = start_[edge[0]]; i < start_[edge[0] + 1]; ++i) {
-                const Triangle &t = triangles_[around_[i]];
-                const int k = t[0] == edge[0] ? 0 : t[1] == edge[0] ? 1 : 2;
-                if (t[(k + 1) % 3] != edge[1] || !left_[around_[i]] || patch_[around_[i]] != patch)
-                    continue;
-                found = {t[k], t[(k + 1) % 3], t[(k + 2) % 3]};
-                left_[around_[i]] = 0;
-                return true;
-            }
-        }
-        return false;
-    }
-
-    const Vector<Triangle> &triangles_;
-    const Vector<uint32_t> &patch_;
-    Vector<uint32_t> start_, around_;
-    Vector<uint8_t> left_;      /* to be followed */
-    std::deque<Edge> recent_;
 };
 
 static bool collapses(const Triangle &t, const Vector<Place> &places)

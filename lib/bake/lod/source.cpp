@@ -101,7 +101,7 @@ LodSource lod_source(const Mesh &mesh, const Partition &partition, const Maps &m
 LodSource lod_source(const Maps &maps, Task &task)
 {
     task.begin("lod");
-    const Vector<MapField> fields = map_fields(maps, task);
+    const Vector<MapField> fields = map_fields(maps);
     const Vector<Vector<uint32_t>> others = touching(fields);
     Vector<FieldPiece> pieces(fields.size());
     task.parallel(fields.size(), [&](size_t p) {

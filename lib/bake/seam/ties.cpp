@@ -33,13 +33,13 @@ static bool find_crossing(const HeightField &field, int i, int j, double from[2]
     return count > 0;
 }
 
-/* How far apart the ends of a tie are now; false where the other height field has no cell there. */
-static bool measure(Tie &tie)
+/* How far apart the ends of a tie are now, of which the first is at `point`; false where the other
+ * height field has no cell there. */
+static bool measure(const Vec3d &point, Tie &tie)
 {
     End &end = tie.end[0], &on = tie.end[1];
-    const Vec3d point = end.field->point(end.place);
     double above, trim;
-    if (!on.field || !on.field->field_above(point, above, trim) || trim > REACHED)
+    if (!on.field->field_above(point, above, trim) || trim > REACHED)
         return false;
     on.place = on.field->place_of(point);
     const Vec3d facing = on.field->normal(on.place);
@@ -49,22 +49,31 @@ static bool measure(Tie &tie)
     return true;
 }
 
-/* The end of a tie on the nearest height field; none where all are too far. */
-static void find_end(const Vector<const HeightField *> &others, const TieLimits &limits,
-                     Tie &tie)
+static Vec3d end_of(const Tie &tie)
 {
-    const HeightField &own = *tie.end[0].field;
-    double nearest = limits.apart;
-    Tie found = {{tie.end[0], {}}};
-    for (const HeightField *other : others) {
-        Tie trial = {{tie.end[0], {other}}};
-        if (!measure(trial) || std::abs(trial.gap) >= nearest)
-            continue;
-        nearest = std::abs(trial.gap);
-        found = trial;
-        found.slack = limits.slack * std::max(own.step, other->step);
+    return tie.end[0].field->point(tie.end[0].place);
+}
+
+/* Ties what is near enough to the nearest height field, and the others to none. They are of one
+ * cell, and look at each height field together: in its maps they look at the same place. */
+static void find_ends(const Vector<const HeightField *> &others, const TieLimits &limits,
+                      const Vector<Tie *> &ties)
+{
+    Vector<Vec3d> point;
+    Vector<double> nearest(ties.size(), limits.apart);
+    for (Tie *tie : ties) {
+        *tie = {{tie->end[0], {}}};
+        point.push_back(end_of(*tie));
     }
-    tie = found;
+    for (const HeightField *other : others)
+        for (size_t i = 0; i < ties.size(); ++i) {
+            Tie trial = {{ties[i]->end[0], {other}}};
+            if (!measure(point[i], trial) || std::abs(trial.gap) >= nearest[i])
+                continue;
+            nearest[i] = std::abs(trial.gap);
+            trial.slack = limits.slack * std::max(trial.end[0].field->step, other->step);
+            *ties[i] = trial;
+        }
 }
 
 Vector<Tie> sample_outline(const HeightField &own)
@@ -102,6 +111,28 @@ static Vector<const HeightField *> reaching(const Vector<const HeightField *> &o
     return out;
 }
 
+/* What it takes to tell of so many whether they reach somewhere: a look at a map takes longer. */
+static double reach_looks(size_t others)
+{
+    return double(others) / 8;
+}
+
+double looks_of(const Vector<const HeightField *> &others, const Vector<Tie> &ties)
+{
+    constexpr size_t EVERY = 8; /* cell: time against accuracy */
+    double looks = 0;
+    size_t cells = 0;
+    for (auto from = ties.begin(), to = from; from != ties.end(); from = to) {
+        while (to != ties.end() && to->end[0].place.cell == from->end[0].place.cell)
+            ++to;
+        if (cells++ % EVERY)
+            continue;
+        const size_t near = reaching(others, *from, *(to - 1)).size();
+        looks += EVERY * (reach_looks(others.size()) + double(near * size_t(to - from)));
+    }
+    return looks;
+}
+
 Vector<const Tie *> update_ties(const Vector<const HeightField *> &others,
                                 const TieLimits &limits, Budget budget, Vector<Tie> &ties)
 {
@@ -110,22 +141,19 @@ Vector<const Tie *> update_ties(const Vector<const HeightField *> &others,
     for (auto from = ties.begin(), to = from; from != ties.end(); from = to) {
         loose.clear();
         for (; to != ties.end() && to->end[0].place.cell == from->end[0].place.cell; ++to)
-            if (to->moves && (!measure(*to) || to->is_open()))
+            if (to->moves && (!to->end[1].field || !measure(end_of(*to), *to) || to->is_open()))
                 loose.push_back(&*to);
         if (loose.empty())
             continue;
-        if (budget.spent()) { /* they are tied to nothing */
-            for (Tie *tie : loose)
-                *tie = {{tie->end[0], {}}};
-            continue;
-        }
-        const Vector<const HeightField *> near = reaching(others, *from, *(to - 1));
-        budget.spend(double(others.size() + near.size() * loose.size()));
-        for (Tie *tie : loose) {
-            find_end(near, limits, *tie);
-            if (tie->is_open())
-                open.push_back(tie);
-        }
+        Vector<const HeightField *> near;
+        const bool may_reach = !budget.spent() && budget.grants(reach_looks(others.size()));
+        if (may_reach)
+            near = reaching(others, *from, *(to - 1));
+        if (!may_reach || !budget.grants(double(near.size() * loose.size())))
+            near.clear(); /* they are tied to nothing */
+        find_ends(near, limits, loose);
+        std::copy_if(loose.begin(), loose.end(), std::back_inserter(open),
+                     [](const Tie *tie) { return tie->is_open(); });
     }
     return open;
 }

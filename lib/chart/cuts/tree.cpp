@@ -38,6 +38,7 @@ size_t prune_all(Vector<CutTree> &trees, size_t turns, double price,
     size_t leaves = 0;
     best.clear();
     for (size_t first = 0; first < trees.size(); first += turns) {
+        cancel_point();
         size_t least = first;
         for (size_t t = first; t < first + turns; ++t) {
             if (trees[t].nodes.empty())
@@ -107,6 +108,7 @@ Relief turn_relief(const Relief &relief, double turn, int coarse)
     out.height.assign(size_t(out.size[0]) * size_t(out.size[1]), NAN);
     out.touched.assign(out.height.size(), 0);
     for (int j = 0; j < relief.size[1]; ++j) {
+        cancel_point();
         for (int i = 0; i < relief.size[0]; ++i) {
             const size_t from = relief.at(i, j);
             if (!relief.touched[from])

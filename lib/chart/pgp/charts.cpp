@@ -202,7 +202,7 @@ CutMesh square_cells(const Surface &surface, uint32_t &count, bool adaptive, Tas
     if (surface.mesh.triangle_count() > MAX_TRIANGLES)
         throw Error(GTX_ERROR_LIMIT, "the partition pgp takes up to 30 million triangles");
     HalfEdges edges = make_half_edges(surface);
-    CrossField field = make_cross_field(surface, edges, task);
+    CrossField field = make_cross_field(surface, edges);
     Vector<double> scale = make_scale(edges, field);
     if (adaptive)
         adapt_scale(surface, edges, std::sqrt(surface.area / count), scale);
@@ -219,7 +219,7 @@ CutMesh square_cells(const Surface &surface, uint32_t &count, bool adaptive, Tas
     for (int round = 0; round < SEARCH_ROUNDS; ++round) {
         task.advance(0.1 + 0.6 * round / SEARCH_ROUNDS);
         Pieces pieces = cut_along_lines(surface.mesh, edges, field,
-                                        parameterize(edges, field, scale, cell, task));
+                                        parameterize(edges, field, scale, cell));
         uint32_t squares;
         Vector<uint32_t> cells = label_cells(pieces, squares);
         Joining joining(pieces, piece_areas(pieces, size), cells, squares);

@@ -133,8 +133,7 @@ Guide gather(const HalfEdges &edges, const Polar &polar, const Guide &triangles)
 
 /* Minimises the Dirichlet energy of z over the surface, and weight |z - guide|^2, where the guide
  * becomes the last solution at unit length: without that, z fades away from what is sure. */
-Vector<Complex> smooth(const HalfEdges &edges, const Polar &polar, const Guide &guide,
-                       Task &task)
+Vector<Complex> smooth(const HalfEdges &edges, const Polar &polar, const Guide &guide)
 {
     using Eigen::VectorXcd;
     int count = int(guide.value.size());
@@ -160,7 +159,7 @@ Vector<Complex> smooth(const HalfEdges &edges, const Polar &polar, const Guide &
 
     Vector<Complex> out = guide.value;
     for (int pass = 0; pass < PASSES && solver.info() == Eigen::Success; ++pass) {
-        task.check();
+        cancel_point();
         VectorXcd side(count);
         for (int v = 0; v < count; ++v)
             side[v] = guide.weight[size_t(v)] * out[size_t(v)];
@@ -243,12 +242,12 @@ Vector<Tensor> vertex_curvatures(const Surface &surface, const HalfEdges &edges)
     return out;
 }
 
-CrossField make_cross_field(const Surface &surface, const HalfEdges &edges, Task &task)
+CrossField make_cross_field(const Surface &surface, const HalfEdges &edges)
 {
     CrossField out;
     Polar polar = make_polar(edges);
     Guide guide = gather(edges, polar, curvature_guide(surface, edges));
-    out.angle = angles_in_triangles(edges, polar, smooth(edges, polar, guide, task));
+    out.angle = angles_in_triangles(edges, polar, smooth(edges, polar, guide));
     match(edges, out);
     find_indices(edges, out);
     return out;

@@ -41,7 +41,7 @@ struct CrossField {
     Vector<int> index;           /* a vertex: quarter turns that the field makes around it; 0 where
                                     it is regular or on a border */
 };
-CrossField make_cross_field(const Surface &surface, const HalfEdges &edges, Task &task);
+CrossField make_cross_field(const Surface &surface, const HalfEdges &edges);
 
 /* How long a cell is to be at each vertex, against the mean, for the directions to be gradients. */
 Vector<double> make_scale(const HalfEdges &edges, const CrossField &field);
@@ -70,7 +70,7 @@ struct Periodic {
 
 /* Throws Error: INPUT, CANCELLED. */
 Periodic parameterize(const HalfEdges &edges, const CrossField &field,
-                      const Vector<double> &scale, double cell, Task &task);
+                      const Vector<double> &scale, double cell);
 
 /* The triangles, cut along the integer lines where they are regular: convex pieces in the order of
  * their triangles. */

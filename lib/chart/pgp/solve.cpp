@@ -38,7 +38,7 @@ class Solve {
 public:
     Solve(const HalfEdges &edges, const CrossField &field, const Vector<double> &scale,
           double cell);
-    void run(Task &task);
+    void run();
     Periodic unwrap() const;
 
 private:
@@ -200,15 +200,26 @@ void Solve::to_unit_length()
     }
 }
 
-void Solve::run(Task &task)
+/* The usual preconditioner, asked once each step. */
+struct Cancellable : Eigen::DiagonalPreconditioner<double> {
+    using Eigen::DiagonalPreconditioner<double>::DiagonalPreconditioner;
+
+    template <class Right> auto solve(const Eigen::MatrixBase<Right> &right) const
+    {
+        cancel_point(size_t(right.size()));
+        return Eigen::DiagonalPreconditioner<double>::solve(right);
+    }
+};
+
+void Solve::run()
 {
     start();
     Energy matrix = energy();
-    Eigen::ConjugateGradient<Energy, Eigen::Lower | Eigen::Upper> solver(matrix);
+    Eigen::ConjugateGradient<Energy, Eigen::Lower | Eigen::Upper, Cancellable> solver(matrix);
     solver.setTolerance(TOLERANCE);
     solver.setMaxIterations(MAX_ITERATIONS);
     for (int pass = 0; pass < PASSES; ++pass) {
-        task.check();
+        cancel_point();
         VectorXd side = ANCHOR * x_;
         x_ = solver.solveWithGuess(side, x_).eval();
         to_unit_length();
@@ -277,10 +288,10 @@ Uv turned(const Uv &uv, unsigned quarters)
 }
 
 Periodic parameterize(const HalfEdges &edges, const CrossField &field,
-                      const Vector<double> &scale, double cell, Task &task)
+                      const Vector<double> &scale, double cell)
 {
     Solve solve(edges, field, scale, cell);
-    solve.run(task);
+    solve.run();
     return solve.unwrap();
 }
 
