@@ -38,10 +38,8 @@ constexpr double MAX_LOOKS = 1024;
 
 template <class T> void sort_unique(Vector<T> &values)
 {
-    std::sort(values.begin(), values.end(), [](const T &a, const T &b) {
-        cancel_point();
-        return a < b;
-    });
+    std::sort(values.begin(), values.end(),
+              [](const T &a, const T &b) { return cancel_point(), a < b; });
     values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 

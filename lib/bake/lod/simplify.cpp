@@ -34,9 +34,11 @@ void Simplifier::State::find_around()
         start[v + 1] += start[v];
     around.resize(3 * triangles.size());
     Vector<uint32_t> next(start.begin(), start.end() - 1);
-    for (size_t t = 0; t < triangles.size(); ++t)
+    for (size_t t = 0; t < triangles.size(); ++t) {
+        cancel_point();
         for (uint32_t v : triangles[t])
             around[next[v]++] = uint32_t(t);
+    }
 }
 
 /* Returns how many triangles are gone. */
@@ -108,6 +110,7 @@ size_t Simplifier::State::round(size_t wanted, double free, double most)
             break;
         if (touched[c.from] || touched[c.to])
             continue;
+        cancel_point();
         find_fan(c.from, fan);
         left -= collapse(fan, c.from, c.to);
         ++taken;

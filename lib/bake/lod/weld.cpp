@@ -75,12 +75,16 @@ uint32_t Welder::find_common(uint32_t vertex) const
 void Welder::join_vertices()
 {
     const uint32_t count = uint32_t(source.positions.size());
-    for (uint32_t v = 0; v < count; ++v)
+    for (uint32_t v = 0; v < count; ++v) {
+        cancel_point();
         if (at_border_[v] && find_common(v) == NO_VERTEX)
             places_.add(source.positions[v], v);
+    }
     Vector<uint32_t> name(count);
-    for (uint32_t v = 0; v < count; ++v)
+    for (uint32_t v = 0; v < count; ++v) {
+        cancel_point();
         name[v] = at_border_[v] ? find_common(v) : v;
+    }
     for (Triangle &t : source.triangles)
         for (uint32_t &v : t)
             v = name[v];

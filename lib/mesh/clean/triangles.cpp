@@ -101,7 +101,8 @@ void weld(Mesh &mesh)
         capacity *= 2;
     Vector<uint32_t> table(capacity, NO_EDGE), number(mesh.positions.size(), NO_EDGE);
     Vector<Vec3d> welded;
-    for (auto &triangle : mesh.triangles)
+    for (auto &triangle : mesh.triangles) {
+        cancel_point();
         for (uint32_t &v : triangle) {
             if (number[v] == NO_EDGE) {
                 /* adding zero makes -0 and 0 the same bits */
@@ -117,6 +118,7 @@ void weld(Mesh &mesh)
             }
             v = number[v];
         }
+    }
     welded.shrink_to_fit();
     mesh.positions = std::move(welded);
 }
