@@ -1,6 +1,6 @@
 /* What a fragment of an LOD mesh or a displaced grid sees: the calls of geotex_fragment.glsl,
- * answered by polygons, for the same mains. Nothing is searched and depth is the polygon's own, so that a main that
- * neither discards nor writes a depth leaves the depth test first.
+ * answered by polygons, for the same mains. Nothing is searched and depth is the polygon's own, so
+ * that a main that neither discards nor writes a depth leaves the depth test first.
  *
  * Needs geotex_view.glsl, geotex_surface.glsl and, with GTX_MATERIALS defined, geotex_material.glsl
  * before it. The varyings are those of geotex_lod.vert. */

@@ -156,10 +156,10 @@ typedef enum gtx_pass {
 typedef struct gtx_shading gtx_shading;
 
 /* `text` is GLSL that is put behind geotex_fragment.glsl, which says what there is to call, and for
- * LOD meshes and displaced grids behind geotex_lod_fragment.glsl, with GTX_LOD defined. geotex_material.glsl and
- * geotex_rays.glsl are there too; the rays are those of gtx_rays_bind. `text` has no #version, its
- * samplers start at unit 8, and it is not kept. The shading comes from the renderer's allocator,
- * and is freed by gtx_shading_destroy.
+ * LOD meshes and displaced grids behind geotex_lod_fragment.glsl, with GTX_LOD defined.
+ * geotex_material.glsl and geotex_rays.glsl are there too; the rays are those of gtx_rays_bind.
+ * `text` has no #version, its samplers start at unit 8, and it is not kept. The shading comes from
+ * the renderer's allocator, and is freed by gtx_shading_destroy.
  * Errors: ARGUMENT, MEMORY, SHADER (the renderer's log says why). */
 GTX_API gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
                                       gtx_error *error);

@@ -107,8 +107,8 @@ static double pixels_of(const patch_view *v, const gtx_frustum *f, const gtx_sla
     return area * fabs(above) / fmax(sqrt(away) * w * w, 1e-300);
 }
 
-/* Whether the eye may be above the plane of any of its triangles. With h the height above the slab's
- * slope, and the eye e: it is e.z - slope e.xy - w h - rise (e.xy - w p.xy) above that through p. */
+/* Whether the eye e may be above the plane of any of its triangles. Above that through p, which is
+ * h above the slab's slope, it is e.z - slope e.xy - w h - rise (e.xy - w p.xy). */
 static bool may_face(const patch_view *v, const gtx_slab *s)
 {
     const double *e = v->eye;
@@ -203,8 +203,8 @@ static void add(const gtx_block_facts *facts, square s, found_block *out, sum *a
     const uint32_t pattern = strides == 8 ? 0 : strides == 4 ? 1 : strides == 2 ? 2 : 3;
     const uint32_t looks = s.looks + (whole ? 0 : GTX_BLOCK_TRIMMED);
     all->triangles += gtx_pattern_triangles(pattern);
-    out[all->blocks++] = (found_block){
-        {s.block.patch | s.x << 30, s.block.place | s.y << 30}, looks * GTX_GRID_PATTERNS + pattern};
+    out[all->blocks++] = (found_block){{s.block.patch | s.x << 30, s.block.place | s.y << 30},
+                                       looks * GTX_GRID_PATTERNS + pattern};
 }
 
 /* The blocks of a patch in view that may face the eye. */

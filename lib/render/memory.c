@@ -18,7 +18,8 @@ static uint64_t level_bytes(const gtx_patch *patch, uint32_t level)
 {
     const uint64_t wide = ((patch->rect[2] - 2u) >> level) + 1;
     const uint64_t high = ((patch->rect[3] - 2u) >> level) + 1;
-    return gtx_slab_count(patch, level) * (sizeof(gtx_slab) + sizeof(gtx_block_facts)) + 3 * sizeof(uint32_t) +
+    const uint64_t slab = sizeof(gtx_slab) + (level ? 0 : sizeof(gtx_block_facts));
+    return gtx_slab_count(patch, level) * slab + 3 * sizeof(uint32_t) +
            hull_bytes((wide + GTX_HULL_BLOCK - 1) / GTX_HULL_BLOCK,
                       (high + GTX_HULL_BLOCK - 1) / GTX_HULL_BLOCK);
 }

@@ -267,8 +267,8 @@ static bool reserve(making *m)
         model, (gtx_level){.unit = UNIT_HEIGHTS, .width = info->page_width,
                            .height = info->page_height, .layers = info->page_count,
                            .texel_size = info->height_bits / 8});
-    if (!reserve_slabs(model, m->asset) || !m->records || !m->pages || !m->heights || !model->first_vertex ||
-        !model->first_index || !model->facts)
+    if (!reserve_slabs(model, m->asset) || !m->records || !m->pages || !m->heights ||
+        !model->first_vertex || !model->first_index || !model->facts)
         return false;
     return add_maps(m, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
            add_maps(m, GTX_MAP_NORMAL, UNIT_NORMALS, mips, 2) &&

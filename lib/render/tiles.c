@@ -152,10 +152,12 @@ static bool find_slabs(gtx_renderer *renderer, const gtx_camera_rows *c, const g
         const uint32_t *first = &model->first_slab[e->level * model->patch_count + e->patch];
         most += first[1] - first[0];
     }
-    visible_slab *visible = gtx_scratch_reserve(&renderer->allocator, &t->visible, most, sizeof *visible);
+    visible_slab *visible =
+        gtx_scratch_reserve(&renderer->allocator, &t->visible, most, sizeof *visible);
     gtx_tile_patch *records =
         gtx_scratch_reserve(&renderer->allocator, &t->records, model->patch_count, sizeof *records);
-    gtx_tile_slab *slabs = gtx_scratch_reserve(&renderer->allocator, &t->slabs, most, sizeof *slabs);
+    gtx_tile_slab *slabs =
+        gtx_scratch_reserve(&renderer->allocator, &t->slabs, most, sizeof *slabs);
     gtx_rank *order = gtx_scratch_reserve(&renderer->allocator, &t->order, 2 * most, sizeof *order);
     if (!visible || !records || !slabs || !order)
         return false;
@@ -320,7 +322,8 @@ bool gtx_tiles_fill(const gtx_draw_call *draw, const gtx_model *model,
     const uint64_t before = (uint64_t)t->record_texels + t->slab_texels;
     if (before + head_texels > (uint64_t)t->max_texels || before > 1 << 24)
         return false;
-    uint32_t (*heads)[2] = gtx_scratch_reserve(&renderer->allocator, &t->heads, tiles, sizeof *heads);
+    uint32_t (*heads)[2] =
+        gtx_scratch_reserve(&renderer->allocator, &t->heads, tiles, sizeof *heads);
     if (!heads)
         return false;
     t->head_texels = (uint32_t)head_texels;

@@ -35,8 +35,8 @@ static uint8_t *make_cells(const gtx_model *model, const gtx_patch *patch, gtx_d
     return cells;
 }
 
-/* Slabs of all levels, one after another, and how many; what blocks and heights are derived to. False
- * without memory. */
+/* Slabs of all levels, one after another, and how many; room for blocks and heights. False without
+ * memory. */
 static bool make_slabs(const gtx_model *model, const gtx_patch *patch, gtx_derived *d,
                        size_t *count)
 {

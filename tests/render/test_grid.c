@@ -58,7 +58,7 @@ static void as_cast(void **state)
             draw(s, &view, GTX_METHOD_GRID, &shown.instance, 1, &second);
             const difference d = compare(&first, &second), back = compare(&second, &first);
             const double iou = (double)d.both / (double)d.either;
-            if (d.both < 500 || iou < 0.85 || d.holes || back.holes || d.mean > 4)
+            if (d.both < 200 || iou < 0.85 || d.holes || back.holes || d.mean > 4)
                 fail_msg("%zu, %d: %ld pixels, IoU %g, %ld and %ld holes, colours differ by %g", i,
                          turn, d.both, iou, d.holes, back.holes, d.mean);
         }
@@ -84,8 +84,8 @@ static void passes_agree(void **state)
     subject_close(s, &shown);
 }
 
-/* The coarser it may be the fewer triangles, and never a hole or an outline that is off by more than
- * a pixel. */
+/* The coarser it may be the fewer triangles, and never a hole, or an outline that is off by more
+ * than a pixel. */
 static void strides_keep_the_error(void **state)
 {
     STAGE_OR_SKIP(state);
