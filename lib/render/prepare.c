@@ -123,10 +123,10 @@ static gtx_result derive_patch(const making *m, uint32_t i, gtx_derived *derived
         derived->cells[k] = m->pages + (row * info->page_width + at[0]) * (info->height_bits / 2);
         derived->slabs[k] = model->slabs + model->first_slab[k * info->patch_count + i];
     }
+    const size_t line = (size_t)p->page * info->page_height + p->rect[1];
     derived->blocks = model->blocks + model->first_slab[i];
     derived->height_row = info->page_width;
-    derived->heights = m->heights + (((size_t)p->page * info->page_height + p->rect[1]) *
-                                         info->page_width + p->rect[0]) * (info->height_bits / 8);
+    derived->heights = m->heights + (line * info->page_width + p->rect[0]) * info->height_bits / 8;
     for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
         model->first_vertex[kind * info->patch_count + i] = derived->proxies[kind].vertex_count;
         model->first_index[kind * info->patch_count + i] = derived->proxies[kind].index_count;
@@ -250,7 +250,6 @@ static bool reserve(making *m)
     gtx_model *model = m->model;
     const gtx_info *info = &m->asset->info;
     const size_t slots = (size_t)model->kind_count * model->patch_count + 1;
-    const uint32_t mips = model->mip_count;
     m->records = (void *)add_level(
         model, (gtx_level){.unit = UNIT_PATCHES, .width = GTX_RECORD_TEXELS * GTX_RECORDS_A_ROW,
                            .height = (model->patch_count + GTX_RECORDS_A_ROW - 1) /
@@ -271,10 +270,10 @@ static bool reserve(making *m)
         !model->first_vertex || !model->first_index || !model->facts)
         return false;
     return add_maps(m, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
-           add_maps(m, GTX_MAP_NORMAL, UNIT_NORMALS, mips, 2) &&
-           add_maps(m, GTX_MAP_COLOR, UNIT_COLORS, mips, 4) &&
-           add_maps(m, GTX_MAP_MATERIAL, UNIT_MATERIALS, mips, 4) &&
-           add_maps(m, GTX_MAP_EMISSION, UNIT_EMISSIONS, mips, 3);
+           add_maps(m, GTX_MAP_NORMAL, UNIT_NORMALS, info->mip_count, 2) &&
+           add_maps(m, GTX_MAP_COLOR, UNIT_COLORS, info->mip_count, 4) &&
+           add_maps(m, GTX_MAP_MATERIAL, UNIT_MATERIALS, info->mip_count, 4) &&
+           add_maps(m, GTX_MAP_EMISSION, UNIT_EMISSIONS, info->mip_count, 3);
 }
 
 static gtx_model *new_model(const gtx_asset *asset, const gtx_allocator *hooks)
