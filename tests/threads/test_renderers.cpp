@@ -24,10 +24,10 @@ extern "C" {
 }
 
 /* Mesa and LLVM are not built with the thread sanitizer, which sees only half of their locks. */
-extern "C" const char *__tsan_default_suppressions(void);
+extern "C" __attribute__((visibility("default"))) const char *__tsan_default_suppressions(void);
 extern "C" const char *__tsan_default_suppressions(void)
 {
-    return "race:libEGL_mesa\nrace:swrast_dri.so\nmutex:swrast_dri.so\nmutex:libLLVM\nrace:libLLVM\n";
+    return "race:libEGL_mesa\nrace:swrast_dri\nrace:libLLVM\nrace:llvm::\nmutex:libLLVM\n";
 }
 
 static constexpr unsigned THREADS = 2;
