@@ -14,8 +14,6 @@
 #include <map>
 #include <new>
 
-#include <execinfo.h>
-#include <exception>
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <fcntl.h>
@@ -156,7 +154,6 @@ static int status_of(size_t run, size_t k)
         for (const char *argument : runs[run].arguments)
             arguments.push_back(const_cast<char *>(argument));
         arguments.push_back(nullptr);
-        std::set_terminate([]{ fail_at=0; void*b[40]; int n=backtrace(b,40); backtrace_symbols_fd(b,n,2); abort();});
         std::set_terminate(on_terminate);
         fail_at = k;
         const int code = runs[run].run(int(arguments.size()) - 1, arguments.data());
