@@ -62,7 +62,8 @@ int encode(const gtx_image_rows *rows, void **data, size_t *size, char *message)
     return 0;
 }
 
-constexpr double MAX_PIECE = 1 << 24; /* bytes; strips and tiles of images have 10^4 to 10^6 */
+constexpr double MAX_PIECE = 1 << 26; /* bytes; strips and tiles of images have 10^4 to 10^6 */
+constexpr int MAX_CHANNELS = 8;       /* memory is counted for four */
 
 /* RGBA from any number of channels: grey, grey and alpha, RGB, RGBA and more. */
 void spread(const std::vector<uint8_t> &in, int channels, int alpha, uint8_t *out)
@@ -113,12 +114,13 @@ bool is_bmp_of_runs(const char *head, size_t size)
 }
 
 /* Bytes of the largest piece that is decoded at once: a file may tell of strips and tiles that are
- * larger than its image. */
+ * larger than its image, and OpenImageIO takes 64 rows, however few there are. */
 double piece_size(const OIIO::ImageSpec &spec)
 {
-    constexpr int NO_STRIPS = 0;
+    constexpr int ROWS_AT_ONCE = 64;
     const double pixel = double(spec.pixel_bytes(true));
-    const double strip = std::max(0, spec.get_int_attribute("tiff:RowsPerStrip", NO_STRIPS));
+    const double strip = std::max(ROWS_AT_ONCE,
+                                  spec.get_int_attribute("tiff:RowsPerStrip", ROWS_AT_ONCE));
     const double tile = double(spec.tile_width) * spec.tile_height * std::max(1, spec.tile_depth);
     return pixel * std::max(tile, strip * spec.width);
 }
@@ -159,7 +161,7 @@ struct Source {
             return fail(message, name, input->geterror());
         const OIIO::ImageSpec &spec = input->spec();
         if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 ||
-            spec.nchannels > 64 ||
+            spec.nchannels > MAX_CHANNELS ||
             piece_size(spec) > std::max(MAX_PIECE, double(spec.image_bytes(true))))
             return fail(message, name, "not an image of a supported size");
         return 0;

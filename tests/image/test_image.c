@@ -201,6 +201,21 @@ static void strips_are_no_larger_than_the_image(void **state)
     }
 }
 
+/* 64 rows would be taken at once, 2 GB, for the four that there are. */
+static void rows_are_not_too_long(void **state)
+{
+    (void)state;
+    uint8_t bmp[102] = "BM";
+    const uint32_t fields[][3] = {{2, sizeof bmp, 4}, {10, 54, 4}, {14, 40, 4}, {18, 8388611, 4},
+                                  {22, 4, 4},         {26, 1, 2},  {28, 24, 2}};
+    for (size_t i = 0; i < sizeof fields / sizeof *fields; ++i)
+        put(bmp + fields[i][0], fields[i][1], (int)fields[i][2]);
+    uint32_t width, height;
+    gtx_error error = {0};
+    assert_int_equal(gtx_image_measure(bmp, sizeof bmp, &width, &height, &error), GTX_ERROR_READ);
+    assert_non_null(strstr(error.message, "size"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -208,6 +223,7 @@ int main(void)
         cmocka_unit_test(depth_as_exr),               cmocka_unit_test(errors_say_what_is_wrong),
         cmocka_unit_test(no_bmp_of_runs),
         cmocka_unit_test(strips_are_no_larger_than_the_image),
+        cmocka_unit_test(rows_are_not_too_long),
     };
     return cmocka_run_group_tests(tests, make_directory, remove_directory);
 }
