@@ -82,7 +82,7 @@ DracoClaims draco_claims(std::string_view bytes)
     stream.skip(5); /* "DRACO" */
     const uint32_t major = stream.byte(), minor = stream.byte(), version = major << 8 | minor;
     stream.skip(1); /* a mesh, as the caller knows */
-    const uint32_t method = stream.byte(), flags = stream.byte() | stream.byte() << 8;
+    const uint32_t method = stream.byte(), low = stream.byte(), flags = low | stream.byte() << 8;
     if (version >= 0x103 && flags & HAS_METADATA) {
         for (uint32_t attributes = stream.varint(); attributes > 0 && !stream.ended();
              --attributes) {
