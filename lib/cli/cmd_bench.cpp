@@ -50,10 +50,19 @@ const option options[] = {
     {"json", 0, OPTION_FLAG, &as_json, nullptr, "the whole report as JSON", 0, 0},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
-const verb bench = {"bench", "ASSET MODEL",
-                    "Times an asset against the mesh it was cooked from. The mesh is drawn culled, "
-                    "sent again\neach frame, or simplified until it looks as good as auto; the "
-                    "asset by each method.", 2, 2, options};
+const verb bench = {
+    "bench", "ASSET MODEL",
+    "Times an asset against the mesh it was cooked from. The mesh is drawn culled, sent again\n"
+    "each frame, or simplified until it looks as good as auto; the asset by each method.\n"
+    "Along a path the mesh is cut into parts, of which those out of view are left out, and drawn\n"
+    "from both sides where it is open, as the asset is; simplified is the coarsest with an error\n"
+    "of at most --max-error at the nearest vertex in view, chosen before the clock starts; and\n"
+    "floor is the least that any method has to do: flat rectangles over the pixels that auto\n"
+    "covers, each pixel shaded once by the main that draws LOD meshes, from textures of its own.\n"
+    "The worst views are printed as a path. Of the outcome, holes are pixels not covered inside\n"
+    "what the mesh covers, enclosed those of them that are no shift of the outline, and outline\n"
+    "is how many pixels the outlines are apart.",
+    2, 2, options};
 
 bool usage(const char *what, const std::string &word)
 {

@@ -107,12 +107,15 @@ PathRow sum_up(BenchMethod method, const Vector<PathCell> &cells, const Vector<P
 {
     PathRow row;
     row.method = method;
-    Vector<double> times, works, ratios;
+    constexpr double LEAST = 1e-3; /* milliseconds: the clock's own step */
+    Vector<double> times, works, ratios, work_ratios;
     for (size_t v = 0; v < cells.size(); ++v) {
         times.push_back(cells[v].ms);
         works.push_back(cells[v].work);
         row.mean += cells[v].ms / double(cells.size());
         ratios.push_back(mesh ? cells[v].ms / (*mesh)[v].ms : 0);
+        work_ratios.push_back(mesh ? cells[v].work / std::max(LEAST, (*mesh)[v].work) : 0);
+        row.work_worst = std::max(row.work_worst, work_ratios.back());
         row.order.push_back(v);
         row.iou = std::min(row.iou, cells[v].iou);
         row.holes = std::max(row.holes, cells[v].holes);
@@ -122,6 +125,7 @@ PathRow sum_up(BenchMethod method, const Vector<PathCell> &cells, const Vector<P
     row.median = median(times);
     row.work = median(works);
     row.ratio = median(ratios);
+    row.work_ratio = median(work_ratios);
     std::stable_sort(row.order.begin(), row.order.end(),
                      [&](size_t a, size_t b) { return ratios[a] > ratios[b]; });
     row.worst = ratios.empty() ? 0 : ratios[row.order[0]];

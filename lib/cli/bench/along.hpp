@@ -23,6 +23,7 @@ struct PathRow {
     BenchMethod method;
     double median = 0, mean = 0, work = 0;    /* milliseconds; work is the median */
     double ratio = 0, worst = 0;    /* median, and the worst of any view */
+    double work_ratio = 0, work_worst = 0;    /* the same of work, for machines that are busy */
     Vector<size_t> order;           /* of the views, the worst first */
     double iou = 1;                 /* the least */
     uint64_t holes = 0, enclosed = 0;         /* the most */

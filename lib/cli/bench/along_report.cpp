@@ -36,26 +36,29 @@ static void print_worst(const PathReport &report, size_t m)
     }
 }
 
+/* The table's cells that say how a method stands to the mesh; empty where that was not drawn. */
+static void print_ratios(const PathRow &row)
+{
+    if (row.worst > 0)
+        std::printf("| %7.3f | %7.3f | %4zu | %7.3f | %7.3f ", row.ratio, row.worst, row.order[0],
+                    row.work_ratio, row.work_worst);
+    else
+        std::printf("| %7s | %7s | %4s | %7s | %7s ", "", "", "", "", "");
+}
+
 void print_path_report(const PathReport &report)
 {
-    char window[32];
-    std::snprintf(window, sizeof window, "%ux%u", report.size[0], report.size[1]);
-    std::printf("%s, %zu of %zu views; /mesh, worst: ratio to the mesh's time, median and of any "
-                "view; holes to IoU: the worst of any view\n"
-                "| method        | median    | mean      | work      | /mesh   | worst   | view  "
-                "| holes  | enclosed | outline | IoU    |\n"
-                "|---|---|---|---|---|---|---|---|---|---|---|\n",
-                window, report.measured, report.path->views.size());
+    std::printf("%ux%u, %zu of %zu views; /mesh, worst: ratio to the mesh's time, median and of "
+                "any view; w/mesh: of work;\nholes to IoU: the worst of any view\n"
+                "| method        | median  | mean    | work    | /mesh   | worst   | view "
+                "| w/mesh  | worst   | holes  | enclosed | outline | IoU    |\n"
+                "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+                report.size[0], report.size[1], report.measured, report.path->views.size());
     for (const PathRow &row : report.rows) {
-        char ratio[16] = "", worst[16] = "", view[16] = "";
-        if (row.worst > 0) {
-            std::snprintf(ratio, sizeof ratio, "%.3f", row.ratio);
-            std::snprintf(worst, sizeof worst, "%.3f", row.worst);
-            std::snprintf(view, sizeof view, "%zu", row.order[0]);
-        }
-        std::printf("| %-13s | %9.2f | %9.2f | %9.2f | %7s | %7s | %5s | %6llu | %8llu | %7u "
-                    "| %6.4f |\n",
-                    name_of(row.method), row.median, row.mean, row.work, ratio, worst, view,
+        std::printf("| %-13s | %7.2f | %7.2f | %7.2f ", name_of(row.method), row.median, row.mean,
+                    row.work);
+        print_ratios(row);
+        std::printf("| %6llu | %8llu | %7u | %6.4f |\n",
                     static_cast<unsigned long long>(row.holes),
                     static_cast<unsigned long long>(row.enclosed), row.outline, row.iou);
     }
@@ -86,6 +89,8 @@ static void write_row(gtx_json &json, const PathRow &row)
     if (row.worst > 0) {
         gtx_json_number(&json, "ratio_median", row.ratio);
         gtx_json_number(&json, "ratio_worst", row.worst);
+        gtx_json_number(&json, "work_ratio_median", row.work_ratio);
+        gtx_json_number(&json, "work_ratio_worst", row.work_worst);
         gtx_json_integer(&json, "worst_view", uint64_t(row.order[0]));
     }
     gtx_json_end_object(&json);
