@@ -276,7 +276,8 @@ bool gtx_blocks_fill(const gtx_draw_call *draw, const gtx_model *model,
     for (uint32_t i = 0; i < plan->count; ++i) {
         const gtx_plan_entry entry = plan->entries[i];
         const sum s = find(&f, model, entry.patch, grids->strides.data, found + count);
-        if (all || gtx_is_grid_cheaper(draw, s.triangles, s.pixels))
+        const bool box = entry.distance < 0; /* may cover the picture, whatever the patch does */
+        if (all || box || gtx_is_grid_cheaper(draw, s.triangles, s.pixels))
             count += s.blocks;
         else
             plan->entries[left++] = entry;
