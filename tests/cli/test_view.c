@@ -129,7 +129,7 @@ static void every_mode_shows_something_else(void **state)
             fail_msg("'%s' changes %u pixels", modes[i].keys, difference(&plain, &other, false));
         gtx_image_free(&other);
     }
-    gtx_image twice = view("sphere.gtx", "tppnnbbhhmmmm");
+    gtx_image twice = view("sphere.gtx", "tppnnbbhhmmmmm");
     assert_int_equal(difference(&plain, &twice, false), 0);
     gtx_image_free(&twice);
     twice = view("sphere.gtx", "tmm"); /* the LOD mesh, which it has not */
@@ -162,7 +162,8 @@ static void levels_take_turns(void **state)
         assert_int_equal(difference(&shown[i], &drawn, false), 0);
         gtx_image_free(&drawn);
     }
-    expect(gtx("render sphere.gtx --camera 30,20,5 --size 320x240 --max-error 1000 -o drawn.png"),
+    expect(gtx("render sphere.gtx --camera 30,20,5 --size 320x240 --method cast "
+               "--max-error 1000 -o drawn.png"),
            0); /* the coarsest */
     gtx_image drawn = picture("drawn.png");
     assert_int_equal(difference(&shown[4], &drawn, false), 0);
