@@ -109,8 +109,8 @@ static Vector<Vec3d> sample_cells(const Cells &cells)
     return points;
 }
 
-/* Squared distances of the points of a chunk, negative where none was sought: every 8th point first.
- * Each such round adds its share of the looks: the first is where a search for all would end. */
+/* Squared distances of the points of a chunk, negative where none was sought: every 8th point
+ * first. Each such round adds its share of the looks: the first is where a search for all would end. */
 template <class Shapes>
 static void seek(const NearestTree<Shapes> &tree, const Vec3d *points, double *square, size_t count)
 {
