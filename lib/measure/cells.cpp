@@ -117,26 +117,30 @@ double Cells::distance2(size_t i, const Vec3d &p, double bound) const
     if (beyond(at, p, bound))
         return bound;
     if (cells_[i].crossed)
-        return crossed_distance2(i, p);
+        return crossed_distance2(i, p, bound);
     static const int ring[5] = {0, 1, 3, 2, 0};
     Vec3d centre = (at[0] + at[1] + at[2] + at[3]) * 0.25; /* on the bilinear patch */
-    double best = bound;
+    double best = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 4; ++k)
         best = std::min(best, triangle_distance2(p, centre, at[ring[k]], at[ring[k + 1]]));
     return best;
 }
 
-double Cells::crossed_distance2(size_t i, const Vec3d &p) const
+double Cells::crossed_distance2(size_t i, const Vec3d &p, double bound) const
 {
     double best = std::numeric_limits<double>::infinity();
     for (int quarter = 0; quarter < 4; ++quarter) {
         Vec3d at[4];
         double trims[4];
+        bool shown = false;
         for (int k = 0; k < 4; ++k) {
             double u = 0.5 * ((quarter & 1) + (k & 1)), v = 0.5 * ((quarter >> 1) + (k >> 1));
             at[k] = point(i, u, v);
             trims[k] = trim(i, u, v);
+            shown |= trims[k] <= GTX_TRIM_SHOWN;
         }
+        if (!shown || beyond(at, p, std::min(best, bound)))
+            continue;
         for (int k = 1; k < 3; ++k) { /* both hold corners 0 and 3 */
             const Vec3d v[3] = {at[0], at[k], at[3]};
             const double t[3] = {trims[0], trims[k], trims[3]};

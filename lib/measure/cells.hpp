@@ -15,8 +15,8 @@ class Cells {
 public:
     explicit Cells(const gtx_asset *asset);
 
-    static constexpr size_t LOOKS = 4;
     size_t size() const { return cells_.size(); }
+    size_t looks(size_t i) const { return cells_[i].crossed ? 12 : 4; }
     Box box(size_t i) const;
     double distance2(size_t i, const Vec3d &p, double bound) const;
 
@@ -47,7 +47,7 @@ private:
         Vec3d origin, x, y, z;
     };
     Vec3d corner(size_t i, int k) const;
-    double crossed_distance2(size_t i, const Vec3d &p) const;
+    double crossed_distance2(size_t i, const Vec3d &p, double bound) const;
     void add_patch(const gtx_asset *asset, uint32_t index);
 
     Vector<Frame> frames_;

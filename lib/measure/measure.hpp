@@ -12,9 +12,9 @@ struct Deviation {
 };
 
 /* Forward: 2^18 area-stratified points of the source to the nearest point of the trimmed asset.
- * Reverse: as many points of cells with trim <= 0 to the nearest point of the source. `junk` (per
- * triangle, may be empty) leaves triangles out of the forward samples; so does a mask what it cuts
- * away. */
+ * Reverse: as many points of cells with trim <= 0 to the nearest point of the source. Fewer where
+ * so many surfaces lie over each other that each point takes long. `junk` (per triangle, may be
+ * empty) leaves triangles out of the forward samples; so does a mask what it cuts away. */
 struct SurfaceError {
     Deviation forward, reverse;
 };

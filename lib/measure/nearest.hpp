@@ -47,8 +47,8 @@ struct Box {
 double triangle_distance2(const Vec3d &p, const Vec3d &a, const Vec3d &b, const Vec3d &c);
 
 /* `Shapes` has size(), box(i) and distance2(i, p, bound), which may answer anything >= bound for
- * what is not nearer than that; LOOKS are the nodes of the tree that one costs as much as where it
- * is not refused so. It outlives the tree. */
+ * what is not nearer than that, `bound` itself where it is told by little work; otherwise shape i
+ * takes as much time as looks(i) nodes of the tree. It outlives the tree. */
 template <class Shapes> class NearestTree {
 public:
     explicit NearestTree(const Shapes &shapes) : shapes_(shapes), order_(shapes.size())
@@ -105,8 +105,7 @@ public:
                     if (!counts(order_[i]))
                         continue;
                     double distance2 = shapes_.distance2(order_[i], p, best);
-                    if (distance2 != best) /* not refused at once */
-                        left -= std::min(left, Shapes::LOOKS);
+                    left -= std::min(left, distance2 == best ? 1 : shapes_.looks(order_[i]));
                     if (distance2 < best) {
                         best = distance2;
                         *near = order_[i];

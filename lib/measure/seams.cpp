@@ -36,8 +36,8 @@ struct BorderEdges {
                     edges.push_back({mesh.position(t, k) - anchor,
                                      mesh.position(t, (k + 1) % 3) - anchor});
     }
-    static constexpr size_t LOOKS = 0;
     size_t size() const { return edges.size(); }
+    size_t looks(size_t) const { return 1; }
     Box box(size_t i) const
     {
         Box box;

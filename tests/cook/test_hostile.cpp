@@ -48,6 +48,18 @@ struct Watch {
     }
 };
 
+/* Distances out of searches that were given up would be a hundredth and more. */
+static void assert_measured_right(const char *json)
+{
+    constexpr double MOST = 3e-3; /* of the diagonal */
+    for (const char *direction : {"\"forward\":", "\"reverse\":"}) {
+        const char *rms = strstr(strstr(json, direction), "\"rms\":");
+        const double error = strtod(rms + strlen("\"rms\":"), nullptr);
+        if (!(error < MOST))
+            fail_msg("%s %g", direction, error);
+    }
+}
+
 static void assert_cooks(const std::string &text)
 {
     Watch watch;
@@ -60,12 +72,15 @@ static void assert_cooks(const std::string &text)
     gtx_asset *asset = nullptr;
     gtx_error error = {};
     alarm(FOREVER);
-    gtx_cook_memory(text.data(), text.size(), "a.obj", &desc, &asset, nullptr, &error);
+    gtx_report report = {};
+    gtx_cook_memory(text.data(), text.size(), "a.obj", &desc, &asset, &report, &error);
     alarm(0);
     assert_string_equal(error.message, "");
     assert_non_null(asset);
     if (!watch.was_asked())
         fail_msg("nothing was asked for %.1f s", watch.longest);
+    assert_measured_right(report.json);
+    gtx_report_free(&report);
     gtx_close(asset);
 }
 

@@ -57,8 +57,8 @@ static void triangle_distance_is_the_least(void **)
 
 struct Soup {
     Vector<Vec3d> corners;
-    static constexpr size_t LOOKS = 0;
     size_t size() const { return corners.size() / 3; }
+    size_t looks(size_t) const { return 1; }
     Box box(size_t i) const
     {
         Box box;
