@@ -98,6 +98,12 @@ HeightFields::HeightFields(const Vector<PatchMaps> &patches, unsigned height_bit
         }
     for (uint32_t i = 0; i < fields_.size(); ++i)
         order_.push_back(i);
+    ranked_ = order_;
+    std::sort(ranked_.begin(), ranked_.end(),
+              [this](uint32_t a, uint32_t b) { return is_before(fields_[a], fields_[b]); });
+    rank_.resize(ranked_.size());
+    for (uint32_t i = 0; i < ranked_.size(); ++i)
+        rank_[ranked_[i]] = i;
     if (!order_.empty())
         build(0, uint32_t(order_.size()));
 }
@@ -144,13 +150,17 @@ Vector<const HeightField *> HeightFields::around(const HeightField &field) const
      * one and 0.2 million of all. */
     constexpr size_t MOST = 2048, OF_ALL = size_t(1) << 24, LEAST = 64;
     const size_t most = std::max(LEAST, std::min(MOST, OF_ALL / fields_.size()));
-    Vector<const HeightField *> out;
+    Vector<uint32_t> ranks; /* many are sorted for each: numbers, not what they stand for */
     any_near(field.centre, field.radius, [&](const HeightField &other) {
         if (&other != &field)
-            out.push_back(&other);
-        return out.size() == most;
+            ranks.push_back(rank_[index(other)]);
+        return ranks.size() == most;
     });
-    std::sort(out.begin(), out.end(), [](auto *a, auto *b) { return is_before(*a, *b); });
+    std::sort(ranks.begin(), ranks.end());
+    Vector<const HeightField *> out;
+    out.reserve(ranks.size());
+    for (uint32_t rank : ranks)
+        out.push_back(&fields_[ranked_[rank]]);
     return out;
 }
 

@@ -138,6 +138,7 @@ private:
     Vector<HeightField> fields_;
     Vector<uint32_t> patch_;
     Vector<uint32_t> order_;
+    Vector<uint32_t> ranked_, rank_; /* as is_before() orders them; the place of each there */
     Vector<Node> nodes_;
 };
 

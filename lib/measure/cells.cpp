@@ -68,9 +68,17 @@ double Cells::trim(size_t i, double u, double v) const
 
 Box Cells::box(size_t i) const
 {
-    Box box;
-    for (int k = 0; k < 4; ++k)
-        box.add(corner(i, k));
+    Vec3d low = corner(i, 0), high = low;
+    for (int k = 1; k < 4; ++k) {
+        const Vec3d at = corner(i, k);
+        for (int a = 0; a < 3; ++a) {
+            low[a] = std::min(low[a], at[a]);
+            high[a] = std::max(high[a], at[a]);
+        }
+    }
+    Box box; /* rounding takes most of the time of a tree: two points, not four */
+    box.add(low);
+    box.add(high);
     return box;
 }
 
