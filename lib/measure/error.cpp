@@ -110,7 +110,8 @@ static Vector<Vec3d> sample_cells(const Cells &cells)
 }
 
 /* Squared distances of the points of a chunk, negative where none was sought: every 8th point
- * first. Each such round adds its share of the looks: the first is where a search for all would end. */
+ * first. Each such round adds its share of the looks: the first is where a search for all would
+ * end. */
 template <class Shapes>
 static void seek(const NearestTree<Shapes> &tree, const Vec3d *points, double *square, size_t count)
 {

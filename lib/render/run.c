@@ -1,4 +1,4 @@
-/* Drawing a run of instances: by the LOD mesh, or by casting their patches. */
+/* Drawing a run of instances: by an LOD mesh, cast, or patch by patch, each in its own way. */
 #include "render/run.h"
 
 #include "render/renderer.h"
@@ -102,6 +102,7 @@ static void cast_whole(const gtx_renderer *renderer, const gtx_run *r, uint32_t 
     const uint32_t indices = first[model->patch_count] - first[0];
     if (!indices)
         return;
+    renderer->gl.Enable(GL_CULL_FACE);
     set_attributes(renderer, r, instance);
     face(&renderer->gl, r, kind == 0);
     renderer->gl.DrawElementsInstanced(GL_TRIANGLES, (gl_size)indices, GL_UNSIGNED_INT,
@@ -211,7 +212,6 @@ static void draw_grids(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
         (looks & GTX_BLOCK_TWO_SIDED ? gl->Disable : gl->Enable)(GL_CULL_FACE);
         gtx_grids_draw(renderer, kind);
     }
-    gl->Enable(GL_CULL_FACE);
     if (begun)
         gl->BindVertexArray(renderer->vertex_array);
 }
@@ -226,6 +226,7 @@ static void cast_plan(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
     if (!plan->count || cast_tiles(draw, r, instance))
         return;
     gtx_plan_proxies(plan, r->model);
+    gl->Enable(GL_CULL_FACE);
     use_program(draw, cast_program(draw, r->model), r->model);
     set_attributes(renderer, r, instance);
     face(gl, r, true);
@@ -278,7 +279,6 @@ static void draw_height_fields(gtx_draw_call *draw, const gtx_run *r, bool edite
     const gtx_renderer *renderer = draw->renderer;
     const gtx_model *model = r->model;
     const gtx_program *program = cast_program(draw, model);
-    renderer->gl.Enable(GL_CULL_FACE);
     if (draw->view->method == GTX_METHOD_PAPER) {
         use_program(draw, program, model);
         cast_whole(renderer, r, 0, r->first, r->count);
