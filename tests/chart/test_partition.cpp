@@ -202,8 +202,8 @@ static int cancel(const gtx_progress *, void *)
 
 static void test_cancel(void **)
 {
+    Mesh mesh = shapes::sphere(10); /* before the task, which taking memory would ask */
     Task task(2, cancel, nullptr, {"partition", "frame"});
-    Mesh mesh = shapes::sphere(10);
     try {
         make_partition(mesh, {}, task);
         fail();
