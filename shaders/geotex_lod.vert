@@ -1,24 +1,18 @@
 /* Polygons, whose vertices know their place and their patch: of an LOD mesh or, with GTX_GRID, of
- * height fields drawn as displaced grids (Cook, Shade Trees, SIGGRAPH 1984), a block of cells an
- * instance. Map coordinates and the frame of normals follow from the patch's record.
+ * height fields drawn as displaced grids (Cook, Shade Trees, SIGGRAPH 1984). Map coordinates and
+ * the frame of normals follow from the patch's record.
  *
- * Needs geotex_height_field.glsl and geotex_view.glsl before it. What hardly
- * changes over a triangle is found here and stays the same all over it: triangles are small, and a
- * vertex serves several. Each number more that a triangle carries costs a few per cent on
- * llvmpipe. */
+ * Needs geotex_height_field.glsl and geotex_view.glsl before it. What hardly changes over a
+ * triangle is found here and stays the same all over it: triangles are small, and a vertex serves
+ * several. Each number more that a triangle carries costs a few per cent on llvmpipe. */
 GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;
 
 #ifdef GTX_GRID
-layout(location = 0) in uvec2 gtx_node;     /* of a block's part, in strides */
-layout(location = 1) in uvec2 gtx_block;    /* x: patch + 2^28 stride; y: column + 2^11 row + 2^22
-                                               the strides of the left, right, lower and upper
-                                               edge, 2 bits each: binary logarithms, in texels.
-                                               Above, 2 bits: where the part begins, in 2 texels */
-GTX_SAMPLER(7, highp usampler2DArray) gtx_heights; /* codes, and beyond them what goes on */
+layout(location = 0) in uvec4 gtx_node;     /* of the patch, and the height's code */
 #else
 layout(location = 0) in vec3 gtx_position;  /* in steps of the level */
-layout(location = 1) in uint gtx_patch;
 #endif
+layout(location = 1) in uint gtx_patch;
 #ifdef GTX_SINGLE
 uniform vec4 gtx_place[3];                  /* what follows, of the only instance */
 #define gtx_world_x gtx_place[0]
@@ -62,39 +56,6 @@ GTX_VARYING(11) out vec2 gtx_texel;         /* of the patch */
 GTX_VARYING(12) flat out uvec3 gtx_trimmed; /* of the rectangle, 16 bits each: corner; size; page */
 #endif
 
-#ifdef GTX_GRID
-/* A place along an edge, at the edge's own stride. */
-uint gtx_snap(uint at, uint edges, int edge)
-{
-    uint stride = (edges >> (2 * edge)) & 3u;
-    return (at >> stride) << stride;
-}
-
-/* The node's place in grid space. Where blocks of different strides meet, the finer one's nodes
- * on the edge are those of the coarser (de Boer, Geometrical MipMapping, 2000). */
-vec3 gtx_place_node(int index)
-{
-    uvec2 at = (gtx_node << ((gtx_block.x >> 28) & 3u)) + 2u * (gtx_block >> 30u);
-    uint edges = gtx_block.y >> 22;
-    uvec2 on = at;
-    if (at.x == 0u || at.x == uint(GTX_BLOCK_CELLS))
-        on.y = gtx_snap(at.y, edges, at.x == 0u ? 0 : 1);
-    if (at.y == 0u || at.y == uint(GTX_BLOCK_CELLS))
-        on.x = gtx_snap(at.x, edges, at.y == 0u ? 2 : 3);
-    ivec2 block = ivec2(gtx_block.y & 0x7ffu, (gtx_block.y >> 11) & 0x7ffu);
-    vec4 rect = gtx_record(index, GTX_RECORD_RECT);
-    int page = int(gtx_record(index, GTX_RECORD_PAGE).w);
-    ivec2 node = min(block * GTX_BLOCK_CELLS + ivec2(on), ivec2(rect.zw) - 1);
-    uint code = texelFetch(gtx_heights, ivec3(ivec2(rect.xy) + node, page), 0).r;
-#ifdef GTX_TRIMMED
-    uvec4 corners = uvec4(rect);
-    gtx_texel = vec2(node);
-    gtx_trimmed = uvec3(corners.x | corners.y << 16, corners.z | corners.w << 16, page);
-#endif
-    return vec3(node, code);
-}
-#endif
-
 vec3 gtx_to_world(vec3 object)
 {
     return vec3(dot(gtx_world_x.xyz, object), dot(gtx_world_y.xyz, object),
@@ -103,13 +64,12 @@ vec3 gtx_to_world(vec3 object)
 
 void main()
 {
+    int index = int(gtx_patch);
 #ifdef GTX_GRID
-    int index = int(gtx_block.x & 0x0fffffffu);
-    vec3 grid = gtx_place_node(index);
+    vec3 grid = vec3(gtx_node.xyz);
     vec4 object = vec4(gtx_object_point(gtx_frame_of(index), grid), 1.0);
     vec2 at = grid.xy;
 #else
-    int index = int(gtx_patch);
     vec4 object = vec4(gtx_lod_mesh.xyz + gtx_lod_mesh.w * gtx_position, 1.0);
     vec2 at = gtx_to_grid(index, object).xy;
 #endif
@@ -129,6 +89,12 @@ void main()
      * of this patch alone: of two levels that are nearly as near, the coarser one tells which. */
     float half_texel = 0.5 * exp2(min(floor(level + 0.75), gtx_maps.x));
     vec4 rect = gtx_record(index, GTX_RECORD_RECT);
+#ifdef GTX_TRIMMED
+    uvec4 corners = uvec4(rect);
+    gtx_texel = at;
+    gtx_trimmed = uvec3(corners.x | corners.y << 16, corners.z | corners.w << 16,
+                        uint(gtx_record(index, GTX_RECORD_PAGE).w));
+#endif
     vec2 size = vec2(textureSize(gtx_normals, 0).xy);
     gtx_at = (rect.xy + clamp(at + 0.5, vec2(half_texel), rect.zw - half_texel)) / size;
     gtx_page = vec2(gtx_record(index, GTX_RECORD_PAGE).w, level);

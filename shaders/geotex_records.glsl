@@ -6,8 +6,6 @@
 #define GTX_TRIM_TEXEL 16                /* codes a texel */
 #define GTX_TRIM_SHOWN 0.3               /* texels outside the outline that show, at level 0 */
 
-#define GTX_BLOCK_CELLS 8                /* of a displaced grid, along the side of a block */
-
 /* A patch, in gtx_patches. A texel's w has a name of its own where it says something else. */
 #define GTX_RECORD_TO_GRID 0             /* 3: rows of object space -> grid space */
 #define GTX_RECORD_ORIGIN 3              /* of grid space in object space */

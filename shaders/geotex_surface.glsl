@@ -95,6 +95,8 @@ bool gtx_is_shown()
     field.size = ivec2(t.y & 0xffffu, t.y >> 16);
     field.page = int(t.z);
     field.level = 0;
+    if (any(greaterThan(gtx_texel, vec2(field.size) - 0.99))) /* triangles may stick out */
+        return false;
     ivec2 cell = clamp(ivec2(floor(gtx_texel)), ivec2(0), field.size - 2);
     uvec4 codes = texelFetch(gtx_cells, ivec3(field.corner + cell, field.page), 0);
     return codes.x != 0u && gtx_shows(field, gtx_texel);

@@ -198,10 +198,12 @@ enum { /* gtx_view.flags */
  * unknown, or if `level` is given. With AUTO and LOD patches taken by gtx_model_update have no LOD
  * mesh from then on.
  *
- * Displaced grids. GTX_METHOD_GRID draws height fields as triangles over 1, 2, 4 or 8 cells of
- * level 0, the same in blocks of 8 x 8 cells: as many as keep to max_error where the block is
- * nearest, and to a fourth of it at outlines, where neighbours meet; `level` n says 2^(n - 1).
- * Blocks that are out of view or face away are not drawn. They write no depth of their own. */
+ * Displaced grids. GTX_METHOD_GRID draws height fields as right triangles over cells of level 0,
+ * from two over 8 x 8 cells to two over each: halved until they keep to max_error where they are,
+ * and to a fourth of it at outlines, where neighbours meet; `level` n says two over squares of
+ * 2^(n - 1) cells. They are found anew in each draw, a few ten nanoseconds each. Blocks of 8 x 8
+ * cells that are out of view, and triangles that face away, are not drawn. They write no depth of
+ * their own. */
 typedef struct gtx_view {
     float view[16], projection[16];   /* column-major; world -> eye -> clip */
     float light_direction[3];         /* world space, towards the light; zero = headlight */

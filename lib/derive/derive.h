@@ -106,21 +106,6 @@ void gtx_grid_slabs(const gtx_patch *patch, const gtx_grid *grid, gtx_slab *out)
 gtx_result gtx_grid_fill(const gtx_grid *finest, uint32_t height_bits,
                          const gtx_allocator *allocator, uint16_t **out, gtx_error *error);
 
-enum { GTX_BLOCK_STRIDES = 4 };        /* 1, 2, 4 and 8 cells */
-
-/* What a displaced grid knows of the block of a slab of level 0. */
-typedef struct gtx_block_facts {
-    float error[GTX_BLOCK_STRIDES];    /* of triangles over 2^k cells, object units, never falling;
-                                          at outlines four times what it is */
-    uint16_t some, whole;              /* of its 4x4 parts of 2x2 cells, in rows: whether a cell
-                                          shows; and whether all exist and show all over, or lie
-                                          beyond the grid */
-} gtx_block_facts;
-
-/* Of each slab's block, from level 0, trimmed, and what gtx_grid_fill made of it before. */
-void gtx_grid_blocks(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
-                     const uint16_t *filled, const gtx_slab *slabs, gtx_block_facts *out);
-
 /* Makes room for more. Errors: MEMORY. */
 gtx_result gtx_proxies_reserve(gtx_proxies *proxies, size_t vertices, size_t indices,
                                const gtx_allocator *allocator, gtx_error *error);

@@ -1,49 +1,67 @@
-/* Height fields drawn as displaced grids: which blocks of their cells are in view, and the draw. */
+/* Height fields drawn as displaced grids: which blocks of their cells are in view, their triangles,
+ * and the draw. */
 #ifndef GTX_RENDER_GRID_H
 #define GTX_RENDER_GRID_H
 
+#include "render/frustum.h"
 #include "render/plan.h"
 #include "render/scratch.h"
 
-/* A block of GTX_BLOCK_CELLS^2 cells of level 0, or a part of one, as geotex_lod.vert reads it. */
-typedef struct gtx_block {
-    uint32_t patch, place;
-} gtx_block;
+/* A node of a patch's level 0, as geotex_lod.vert reads it. */
+typedef struct gtx_grid_vertex {
+    uint16_t x, y, code, unused;
+    uint32_t patch;
+} gtx_grid_vertex;
 
-_Static_assert((int)GTX_BLOCK_CELLS == (int)GTX_SLAB_CELLS, "a block of a slab");
+/* Drawn alike: first those seen from the front, then those from behind; of either those that show
+ * whole, which leave the depth test first, then others. */
+enum { GTX_GRID_TRIMMED = 1, GTX_GRID_BEHIND = 2, GTX_GRID_LOOKS = 4 };
 
-/* Drawn alike: by looks, first those seen from the front alone, of either those that show whole,
- * which leave the depth test first; and by pattern, 8, 4, 2 or 1 strides along a side. */
-enum {
-    GTX_GRID_PATTERNS = 4, GTX_BLOCK_TRIMMED = 1, GTX_BLOCK_TWO_SIDED = 2, GTX_BLOCK_LOOKS = 4,
-    GTX_BLOCK_KINDS = GTX_BLOCK_LOOKS * GTX_GRID_PATTERNS
-};
-
+/* What is drawn of one instance: vertices, and corners of triangles by their looks. */
 typedef struct gtx_grids {
-    gl_uint vertex_array, nodes, indices, stream;
-    gtx_scratch found, blocks, strides;
-    uint32_t counts[GTX_BLOCK_KINDS];
-    uint64_t triangles;       /* drawn so far: tests look at them */
+    gl_uint vertex_array, vertex_buffer, index_buffer;
+    gtx_scratch vertices, indices[GTX_GRID_LOOKS], slots;
+    uint32_t vertex_count, index_count[GTX_GRID_LOOKS];
+    gtx_rtin_triangle triangles[GTX_RTIN_TRIANGLES];
+    uint64_t drawn;           /* triangles so far: tests look at them */
 } gtx_grids;
 
-static inline uint32_t gtx_pattern_triangles(uint32_t pattern)
-{
-    const uint32_t side = (uint32_t)GTX_BLOCK_CELLS >> pattern;
-    return 2 * side * side;
-}
+/* refine.c: a patch while its triangles are found. */
+typedef struct gtx_refining {
+    const gtx_allocator *hooks;
+    gtx_grids *grids;
+    const gtx_rtin *rtin;
+    const gtx_rtin_node *nodes;
+    const gtx_rtin_block *blocks;
+    uint32_t patch, row;
+    bool two_sided;
+    uint32_t depth;           /* levels that are halved: all by their errors, or some anyway */
+    bool by_error;
+    double w[4], eye[4];      /* of clip space, over grid space; and there */
+    double reach[GTX_RTIN_LEVELS]; /* how much nearer may be what halving a middle changes */
+    double scale;             /* w at which an error's unit is what the view allows */
+} gtx_refining;
 
-/* blocks.c: takes those patches out of the renderer's plan that are drawn so, and fills its blocks
- * with theirs: those in view that may face the eye, in the order of the plan. Without memory for
- * that it leaves all to be cast, and is false. */
+/* Begins a patch, with w of clip space as a linear function over its grid space, and the eye in
+ * that. */
+gtx_refining gtx_refine(const gtx_frustum *f, const gtx_model *model, uint32_t patch,
+                        const double w[4], const double eye[4], gtx_grids *grids,
+                        const gtx_allocator *hooks);
+/* Adds the triangles of a block. False without memory. */
+bool gtx_refine_block(const gtx_refining *r, uint32_t column, uint32_t row);
+
+/* blocks.c: takes those patches out of the renderer's plan that are drawn so, and fills its grids
+ * with the blocks of theirs that are in view and may face the eye, in the order of the plan.
+ * Without memory they are cast; it is false when none can be drawn so. */
 bool gtx_blocks_fill(const gtx_draw_call *draw, const gtx_model *model,
                      const gtx_instance_data *placed);
 
 /* grid.c: the objects that all models share. */
 void gtx_grids_create(gtx_renderer *renderer);
 void gtx_grids_destroy(gtx_renderer *renderer);
-/* Uploads the blocks and binds the grids' vertex array. */
+/* Uploads the triangles and binds the grids' vertex array. */
 void gtx_grids_begin(gtx_renderer *renderer);
-/* Draws a kind of the blocks by the program in use; one instance's attributes are set. */
-void gtx_grids_draw(gtx_renderer *renderer, uint32_t kind);
+/* Draws those of some looks by the program in use; one instance's attributes are set. */
+void gtx_grids_draw(gtx_renderer *renderer, uint32_t looks);
 
 #endif

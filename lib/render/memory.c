@@ -18,7 +18,7 @@ static uint64_t level_bytes(const gtx_patch *patch, uint32_t level)
 {
     const uint64_t wide = ((patch->rect[2] - 2u) >> level) + 1;
     const uint64_t high = ((patch->rect[3] - 2u) >> level) + 1;
-    const uint64_t slab = sizeof(gtx_slab) + (level ? 0 : sizeof(gtx_block_facts));
+    const uint64_t slab = sizeof(gtx_slab) + (level ? 0 : sizeof(gtx_rtin_block));
     return gtx_slab_count(patch, level) * slab + 3 * sizeof(uint32_t) +
            hull_bytes((wide + GTX_HULL_BLOCK - 1) / GTX_HULL_BLOCK,
                       (high + GTX_HULL_BLOCK - 1) / GTX_HULL_BLOCK);
@@ -29,7 +29,8 @@ static uint64_t patch_bytes(void)
 {
     const uint64_t box = GTX_BOX_VERTICES * sizeof(gtx_proxy_vertex) +
                          GTX_BOX_INDICES * sizeof(uint32_t);
-    return 2 * sizeof(gtx_record) + sizeof(gtx_patch_facts) + 2 * sizeof(uint32_t) + box * GROWTH;
+    return 2 * sizeof(gtx_record) + sizeof(gtx_patch_facts) + sizeof(gtx_rtin) +
+           sizeof(size_t) + 2 * sizeof(uint32_t) + box * GROWTH;
 }
 
 /* A vertex may be there once for each triangle that has it. */
@@ -66,13 +67,13 @@ uint64_t gtx_model_memory(const gtx_asset *asset, bool borrow)
     const gtx_info *info = &asset->info;
     const uint64_t texels = (uint64_t)info->page_count * info->page_width * info->page_height;
     const uint32_t maps = 3 + 4 * info->has_color + 4 * info->has_material + 3 * info->has_emission;
-    const uint64_t cells = texels * (info->height_bits / 2 + info->height_bits / 8);
+    const uint64_t cells = texels * (info->height_bits / 2);
     uint64_t bytes = sizeof(gtx_model) + lod_bytes(asset) + work_bytes(asset) + cells +
                      (info->mip_count > 1 ? cells / 2 : 0);
     bytes += borrow ? 0 : texels * maps + (info->mip_count > 1 ? texels * maps / 3 : 0);
     bytes += GTX_RECORDS_A_ROW * sizeof(gtx_record);
     for (uint32_t i = 0; i < info->patch_count; ++i) {
-        bytes += patch_bytes();
+        bytes += patch_bytes() + gtx_rtin_nodes(&asset->patches[i]) * sizeof(gtx_rtin_node);
         for (uint32_t k = 0; k < info->mip_count; ++k)
             bytes += level_bytes(&asset->patches[i], k);
     }

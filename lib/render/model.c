@@ -79,6 +79,12 @@ void gtx_model_free(gtx_model *model)
         gtx_free_array(&hooks, model->blocks, model->first_slab[model->patch_count],
                        sizeof *model->blocks);
     }
+    if (model->first_node)
+        gtx_free_array(&hooks, model->nodes, model->first_node[model->patch_count],
+                       sizeof *model->nodes);
+    gtx_free_array(&hooks, model->first_node, (size_t)model->patch_count + 1,
+                   sizeof *model->first_node);
+    gtx_free_array(&hooks, model->rtins, model->patch_count, sizeof *model->rtins);
     gtx_free_array(&hooks, model->first_slab, (size_t)model->mip_count * model->patch_count + 1,
                    sizeof *model->first_slab);
     gtx_free_array(&hooks, model, 1, sizeof *model);

@@ -2,7 +2,7 @@
 #ifndef GTX_RENDER_MODEL_H
 #define GTX_RENDER_MODEL_H
 
-#include "derive/derive.h"
+#include "derive/rtin.h"
 #include "geotex_records.glsl"
 #include "render/gl.h"
 #include "render/lod.h"
@@ -60,8 +60,13 @@ struct gtx_model {
     /* Slabs of all levels, and where those of a patch's level begin: mip_count * patch_count + 1
      * numbers. */
     gtx_slab *slabs;
-    gtx_block_facts *blocks;  /* of each slab of level 0 */
     uint32_t *first_slab;
+    /* Displaced grids: a patch each, blocks of each slab of level 0, and nodes, of which those of a
+     * patch begin at first_node: patch_count + 1 numbers. */
+    gtx_rtin *rtins;
+    gtx_rtin_block *blocks;
+    gtx_rtin_node *nodes;
+    size_t *first_node;
     gtx_record *records;
     gtx_model_size size;
     gl_uint textures[UNIT_COUNT];
@@ -74,6 +79,8 @@ bool gtx_find_constant_material(const gtx_asset *asset, float material[4]);
 /* model.c: frees the CPU's copy of maps and proxies; or the whole model but its OpenGL objects. */
 void gtx_model_free_staging(gtx_model *model);
 void gtx_model_free(gtx_model *model);
+/* reserve.c: room for slabs, records and displaced grids. False without memory. */
+bool gtx_model_reserve_blocks(gtx_model *model, const gtx_asset *asset);
 /* memory.c: bytes that gtx_model_prepare takes, from above. */
 uint64_t gtx_model_memory(const gtx_asset *asset, bool borrow);
 /* A hash of where the patches' rectangles lie. */
@@ -92,9 +99,9 @@ typedef struct gtx_derived {
     gtx_record record;
     gtx_patch_facts facts;
     gtx_slab *slabs[GTX_MAX_MIPS];            /* where those of each level go */
-    gtx_block_facts *blocks;                  /* where those of level 0 go */
-    void *heights;                            /* where the codes of gtx_grid_fill go, bytes or... */
-    size_t height_row;                        /* ... 16 bits each; from a row to the next */
+    gtx_rtin rtin;
+    gtx_rtin_block *blocks;                   /* where those of level 0 go, and its nodes */
+    gtx_rtin_node *nodes;
     void *cells[GTX_MAX_MIPS];                /* where those of each level go */
     size_t row_texels[GTX_MAX_MIPS];          /* from a row of cells to the next */
 } gtx_derived;

@@ -86,20 +86,6 @@ static gtx_result derive_level(const gtx_asset *asset, uint32_t patch, gtx_grid 
     return result;
 }
 
-static void store_heights(const gtx_asset *asset, const gtx_grid *finest, const uint16_t *filled,
-                          gtx_derived *out)
-{
-    const size_t width = finest->nodes_x, size = asset->info.height_bits / 8;
-    for (size_t y = 0; y < finest->nodes_y; ++y) {
-        uint8_t *to = (uint8_t *)out->heights + y * out->height_row * size;
-        const uint16_t *from = filled + y * width;
-        if (size == 2)
-            memcpy(to, from, width * size);
-        for (size_t x = 0; size == 1 && x < width; ++x)
-            to[x] = (uint8_t)from[x];
-    }
-}
-
 gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_allocator *allocator,
                             gtx_derived *out, gtx_error *error)
 {
@@ -137,9 +123,8 @@ gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_al
     if (!result) /* last, for errors are measured against what is not trimmed */
         result = derive_level(asset, patch, &finest, allocator, out, error);
     if (!result)
-        gtx_grid_blocks(asset, patch, &finest, filled, out->slabs[0], out->blocks);
-    if (filled)
-        store_heights(asset, &finest, filled, out);
+        result = gtx_grid_rtin(asset, patch, &finest, filled, out->slabs[0], allocator, &out->rtin,
+                               out->nodes, out->blocks, error);
     gtx_free_array(allocator, filled, (size_t)finest.nodes_x * finest.nodes_y, sizeof *filled);
     gtx_grid_free(&finest, allocator);
     return result;

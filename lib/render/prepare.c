@@ -21,7 +21,7 @@ typedef struct making {
     gtx_model *model;
     const gtx_asset *asset;
     gtx_record *records;
-    uint8_t *pages, *heights;     /* of cells; of codes */
+    uint8_t *pages;               /* of cells */
     batch *batches;
     uint32_t batch_count;
     bool borrow;
@@ -123,10 +123,8 @@ static gtx_result derive_patch(const making *m, uint32_t i, gtx_derived *derived
         derived->cells[k] = m->pages + (row * info->page_width + at[0]) * (info->height_bits / 2);
         derived->slabs[k] = model->slabs + model->first_slab[k * info->patch_count + i];
     }
-    const size_t line = (size_t)p->page * info->page_height + p->rect[1];
     derived->blocks = model->blocks + model->first_slab[i];
-    derived->height_row = info->page_width;
-    derived->heights = m->heights + (line * info->page_width + p->rect[0]) * info->height_bits / 8;
+    derived->nodes = model->nodes + model->first_node[i];
     for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
         model->first_vertex[kind * info->patch_count + i] = derived->proxies[kind].vertex_count;
         model->first_index[kind * info->patch_count + i] = derived->proxies[kind].index_count;
@@ -135,6 +133,7 @@ static gtx_result derive_patch(const making *m, uint32_t i, gtx_derived *derived
     memcpy(m->records[i], derived->record, sizeof derived->record);
     memcpy(model->records[i], derived->record, sizeof derived->record);
     model->facts[i] = derived->facts;
+    model->rtins[i] = derived->rtin;
     return result;
 }
 
@@ -222,28 +221,6 @@ static gtx_result begin_parts(making *m, const gtx_jobs *jobs, gtx_error *error)
     return gtx_lod_place(&model->allocator, &model->lods, error);
 }
 
-/* Makes room for the slabs. */
-static bool reserve_slabs(gtx_model *model, const gtx_asset *asset)
-{
-    const uint32_t slots = model->mip_count * model->patch_count;
-    uint64_t count = 0;
-    model->records = gtx_alloc_array(&model->allocator, model->patch_count,
-                                     sizeof *model->records);
-    model->first_slab = gtx_alloc_array(&model->allocator, (size_t)slots + 1,
-                                        sizeof *model->first_slab);
-    for (uint32_t i = 0; model->first_slab && i < slots; ++i) {
-        model->first_slab[i] = (uint32_t)count;
-        count += gtx_slab_count(&asset->patches[i % model->patch_count], i / model->patch_count);
-    }
-    if (!model->first_slab || !model->records || count > UINT32_MAX)
-        return false;
-    model->first_slab[slots] = (uint32_t)count;
-    model->slabs = gtx_alloc_raw(&model->allocator, (size_t)count, sizeof *model->slabs);
-    model->blocks = gtx_alloc_raw(&model->allocator, model->first_slab[model->patch_count],
-                                  sizeof *model->blocks);
-    return model->slabs && model->blocks;
-}
-
 /* Memory for everything that has a size before it is derived. */
 static bool reserve(making *m)
 {
@@ -262,11 +239,7 @@ static bool reserve(making *m)
         model, (gtx_level){.unit = UNIT_CELLS, .width = info->page_width,
                            .height = gtx_model_cell_rows(model), .layers = info->page_count,
                            .texel_size = info->height_bits / 2});
-    m->heights = add_level(
-        model, (gtx_level){.unit = UNIT_HEIGHTS, .width = info->page_width,
-                           .height = info->page_height, .layers = info->page_count,
-                           .texel_size = info->height_bits / 8});
-    if (!reserve_slabs(model, m->asset) || !m->records || !m->pages || !m->heights ||
+    if (!gtx_model_reserve_blocks(model, m->asset) || !m->records || !m->pages ||
         !model->first_vertex || !model->first_index || !model->facts)
         return false;
     return add_maps(m, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&

@@ -185,7 +185,7 @@ static void locate(const gtx_gl *gl, gtx_program *program)
         [UNIT_CELLS] = "gtx_cells",     [UNIT_TRIM] = "gtx_trim",
         [UNIT_NORMALS] = "gtx_normals", [UNIT_COLORS] = "gtx_colors",
         [UNIT_PATCHES] = "gtx_patches", [UNIT_MATERIALS] = "gtx_materials",
-        [UNIT_EMISSIONS] = "gtx_emissions", [UNIT_HEIGHTS] = "gtx_heights",
+        [UNIT_EMISSIONS] = "gtx_emissions",
     };
     program->place = gl->GetUniformLocation(program->object, "gtx_place");
     program->tint = gl->GetUniformLocation(program->object, "gtx_tint");

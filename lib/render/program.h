@@ -15,9 +15,9 @@ typedef enum gtx_technique {
     TECHNIQUE_LOD,
     TECHNIQUE_LOD_FRONT,      /* front faces alone, under transforms that keep angles */
     TECHNIQUE_LOD_SINGLE,     /* depth of one instance, whose transform is a uniform */
-    TECHNIQUE_GRID,           /* blocks of a displaced grid with cells that do not show whole */
+    TECHNIQUE_GRID,           /* triangles of a displaced grid that do not show whole */
     TECHNIQUE_GRID_FRONT,
-    TECHNIQUE_GRID_WHOLE,     /* blocks without */
+    TECHNIQUE_GRID_WHOLE,     /* those that do */
     TECHNIQUE_GRID_WHOLE_FRONT,
     TECHNIQUE_COUNT
 } gtx_technique;

@@ -149,10 +149,10 @@ static const gtx_program *grid_program(const gtx_draw_call *draw, const gtx_mode
         {TECHNIQUE_GRID_WHOLE, TECHNIQUE_GRID_WHOLE_FRONT},
         {TECHNIQUE_GRID, TECHNIQUE_GRID_FRONT}};
     const bool front = draw->view->pass == GTX_PASS_FORWARD && keeps_angles &&
-                       !(looks & GTX_BLOCK_TWO_SIDED);
+                       !(looks & GTX_GRID_BEHIND);
     return draw->view->shading
                ? &draw->view->shading->grid
-               : program_of(draw, model, techniques[(looks & GTX_BLOCK_TRIMMED) != 0][front]);
+               : program_of(draw, model, techniques[(looks & GTX_GRID_TRIMMED) != 0][front]);
 }
 
 static const gtx_program *lod_program(const gtx_draw_call *draw, const gtx_run *r, bool front)
@@ -190,7 +190,7 @@ static void draw_lod(gtx_draw_call *draw, const gtx_run *r, uint32_t level, cons
     }
 }
 
-/* Draws the blocks of displaced grids. */
+/* Draws displaced grids. */
 static void draw_grids(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
 {
     gtx_renderer *renderer = draw->renderer;
@@ -198,19 +198,18 @@ static void draw_grids(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
     const gtx_instance_data *placed = &renderer->instances[instance];
     const gl_uint all = 1u << 30;
     bool begun = false;
-    for (uint32_t kind = 0; kind < GTX_BLOCK_KINDS; ++kind) {
-        if (!renderer->grids.counts[kind])
+    for (uint32_t looks = 0; looks < GTX_GRID_LOOKS; ++looks) {
+        if (!renderer->grids.index_count[looks])
             continue;
         if (!begun) {
             gtx_grids_begin(renderer);
             set_instances(renderer, instance, all);
             gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
+            gl->Disable(GL_CULL_FACE);
             begun = true;
         }
-        const uint32_t looks = kind / GTX_GRID_PATTERNS;
         use_program(draw, grid_program(draw, r->model, looks, gtx_keeps_angles(placed)), r->model);
-        (looks & GTX_BLOCK_TWO_SIDED ? gl->Disable : gl->Enable)(GL_CULL_FACE);
-        gtx_grids_draw(renderer, kind);
+        gtx_grids_draw(renderer, looks);
     }
     if (begun)
         gl->BindVertexArray(renderer->vertex_array);

@@ -3,6 +3,8 @@
 
 #include "base/alloc.h"
 
+#include <string.h>
+
 void *gtx_scratch_reserve(const gtx_allocator *allocator, gtx_scratch *scratch, size_t count,
                           size_t size)
 {
@@ -14,6 +16,23 @@ void *gtx_scratch_reserve(const gtx_allocator *allocator, gtx_scratch *scratch, 
     scratch->data = gtx_alloc_array(allocator, room, 1);
     scratch->size = scratch->data ? room : 0;
     return scratch->data;
+}
+
+bool gtx_scratch_grow(const gtx_allocator *allocator, gtx_scratch *scratch, size_t count,
+                      size_t size)
+{
+    if (count * size <= scratch->size)
+        return true;
+    gtx_scratch old = *scratch;
+    *scratch = (gtx_scratch){0};
+    if (!gtx_scratch_reserve(allocator, scratch, count, size)) {
+        *scratch = old;
+        return false;
+    }
+    if (old.data)
+        memcpy(scratch->data, old.data, old.size);
+    gtx_scratch_free(allocator, &old);
+    return true;
 }
 
 void gtx_scratch_free(const gtx_allocator *allocator, gtx_scratch *scratch)

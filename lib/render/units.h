@@ -4,7 +4,6 @@
 
 enum {
     UNIT_CELLS, UNIT_TRIM, UNIT_NORMALS, UNIT_COLORS, UNIT_PATCHES, UNIT_MATERIALS, UNIT_EMISSIONS,
-    UNIT_HEIGHTS,
     UNIT_COUNT,
     UNIT_CLEARED = 8, /* units that render.h promises to leave empty */
     UNIT_STREAM = 8,  /* a buffer's, which leaves the other textures of the unit alone */

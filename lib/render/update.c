@@ -35,7 +35,7 @@ static uint8_t *make_cells(const gtx_model *model, const gtx_patch *patch, gtx_d
     return cells;
 }
 
-/* Slabs of all levels, one after another, and how many; room for blocks and heights. False without
+/* Slabs of all levels, one after another, and how many; room for a displaced grid. False without
  * memory. */
 static bool make_slabs(const gtx_model *model, const gtx_patch *patch, gtx_derived *d,
                        size_t *count)
@@ -46,14 +46,12 @@ static bool make_slabs(const gtx_model *model, const gtx_patch *patch, gtx_deriv
         first[k] = *count;
         *count += gtx_slab_count(patch, k);
     }
-    d->height_row = patch->rect[2];
     d->slabs[0] = gtx_alloc_array(&model->allocator, *count, sizeof *d->slabs[0]);
     d->blocks = gtx_alloc_array(&model->allocator, gtx_slab_count(patch, 0), sizeof *d->blocks);
-    d->heights = gtx_alloc_array(&model->allocator, (size_t)patch->rect[2] * patch->rect[3],
-                                 model->height_bits / 8);
+    d->nodes = gtx_alloc_array(&model->allocator, gtx_rtin_nodes(patch), sizeof *d->nodes);
     for (uint32_t k = 1; d->slabs[0] && k < model->mip_count; ++k)
         d->slabs[k] = d->slabs[0] + first[k];
-    return d->slabs[0] && d->blocks && d->heights;
+    return d->slabs[0] && d->blocks && d->nodes;
 }
 
 static void replace_slabs(gtx_model *model, const gtx_derived *d, uint32_t patch)
@@ -65,6 +63,9 @@ static void replace_slabs(gtx_model *model, const gtx_derived *d, uint32_t patch
     }
     const uint32_t *first = &model->first_slab[patch];
     memcpy(model->blocks + first[0], d->blocks, (first[1] - first[0]) * sizeof *model->blocks);
+    const size_t *node = &model->first_node[patch];
+    memcpy(model->nodes + node[0], d->nodes, (node[1] - node[0]) * sizeof *model->nodes);
+    model->rtins[patch] = d->rtin;
     memcpy(model->records[patch], d->record, sizeof d->record);
 }
 
@@ -109,9 +110,6 @@ static void upload_cells(const gtx_gl *gl, const gtx_model *model, const gtx_pat
         gtx_model_cells_at(model, patch, k, r.at);
         upload_rect(gl, model, patch, &r);
     }
-    const rect heights = {.unit = UNIT_HEIGHTS, .at = {patch->rect[0], patch->rect[1]},
-                          .texels = d->heights, .row_texels = patch->rect[2]};
-    upload_rect(gl, model, patch, &heights);
 }
 
 static void upload_maps(const gtx_gl *gl, const gtx_model *model, const gtx_asset *asset,
@@ -194,7 +192,6 @@ gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model, const gtx_
     gtx_free_array(&model->allocator, cells, size, 1);
     gtx_free_array(&model->allocator, d.slabs[0], slab_count, sizeof *d.slabs[0]);
     gtx_free_array(&model->allocator, d.blocks, gtx_slab_count(p, 0), sizeof *d.blocks);
-    gtx_free_array(&model->allocator, d.heights, (size_t)p->rect[2] * p->rect[3],
-                   model->height_bits / 8);
+    gtx_free_array(&model->allocator, d.nodes, gtx_rtin_nodes(p), sizeof *d.nodes);
     return result;
 }

@@ -21,13 +21,11 @@ gtx_texture_kind gtx_texture_kind_of(const gtx_model *model, uint32_t unit)
                             GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR},
         [UNIT_EMISSIONS] = {GL_TEXTURE_2D_ARRAY, GL_SRGB8, GL_RGB, GL_UNSIGNED_BYTE,
                             GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR},
-        [UNIT_HEIGHTS] = {GL_TEXTURE_2D_ARRAY, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE,
-                          GL_NEAREST, GL_NEAREST},
         [UNIT_PATCHES] = {GL_TEXTURE_2D, GL_RGBA32F, GL_RGBA, GL_FLOAT, GL_NEAREST, GL_NEAREST},
     };
     gtx_texture_kind kind = kinds[unit];
-    if ((unit == UNIT_CELLS || unit == UNIT_HEIGHTS) && model->height_bits == 16) {
-        kind.inner = unit == UNIT_CELLS ? GL_RGBA16UI : GL_R16UI;
+    if (unit == UNIT_CELLS && model->height_bits == 16) {
+        kind.inner = GL_RGBA16UI;
         kind.type = GL_UNSIGNED_SHORT;
     }
     return kind;
@@ -54,8 +52,7 @@ static void begin_texture(const gtx_gl *gl, gtx_model *model, uint32_t unit, uin
     static const char *const labels[UNIT_COUNT] = {
         [UNIT_CELLS] = "geotex cells",         [UNIT_TRIM] = "geotex trim",
         [UNIT_NORMALS] = "geotex normals",     [UNIT_COLORS] = "geotex colors",
-        [UNIT_PATCHES] = "geotex patches",     [UNIT_HEIGHTS] = "geotex heights",
-        [UNIT_MATERIALS] = "geotex materials",
+        [UNIT_PATCHES] = "geotex patches",     [UNIT_MATERIALS] = "geotex materials",
         [UNIT_EMISSIONS] = "geotex emissions"};
     const gtx_texture_kind kind = gtx_texture_kind_of(model, unit);
     gl->GenTextures(1, &model->textures[unit]);

@@ -56,8 +56,8 @@ static void objects_carry_labels(void **state)
     subject shown = subject_open(s, with_lod(fixture_sphere(2, 48, 8), 2, 2, 0));
     const int tiles = labelled(GL_PROGRAM) > 26; /* cast by tiles */
     assert_int_equal(labelled(GL_PROGRAM), tiles ? 29 : 26);
-    assert_int_equal(labelled(GL_TEXTURE), tiles ? 7 : 6);
-    assert_int_equal(labelled(GL_BUFFER), tiles ? 10 : 8);
+    assert_int_equal(labelled(GL_TEXTURE), tiles ? 6 : 5);
+    assert_int_equal(labelled(GL_BUFFER), tiles ? 9 : 7);
     subject_close(s, &shown);
     assert_int_equal(labelled(GL_TEXTURE), tiles ? 1 : 0); /* deleted with the model */
     s->gl.GetError();

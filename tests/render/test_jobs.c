@@ -38,6 +38,9 @@ static void expect_equal(const gtx_model *a, const gtx_model *b)
     SAME(first_slab, a->mip_count * a->patch_count + 1);
     SAME(slabs, a->first_slab[a->mip_count * a->patch_count]);
     SAME(blocks, a->first_slab[a->patch_count]);
+    SAME(rtins, a->patch_count);
+    SAME(first_node, a->patch_count + 1);
+    SAME(nodes, a->first_node[a->patch_count]);
     SAME(records, a->patch_count);
     SAME(facts, a->patch_count);
     SAME(sphere, 4);
@@ -58,7 +61,7 @@ static void expect_alike(gtx_asset *asset)
         const gtx_jobs jobs = runner_of(i, &log);
         gtx_model *other = prepare(asset, &jobs, (uint32_t)i);
         assert_int_not_equal(log.runs, 0);
-        const bool own = other->levels[3].data != gtx_map_data(asset, GTX_MAP_TRIM, 0, NULL);
+        const bool own = other->levels[2].data != gtx_map_data(asset, GTX_MAP_TRIM, 0, NULL);
         assert_int_equal(own, !i);
         expect_equal(alone, other);
         gtx_model_destroy(NULL, other);
