@@ -12,6 +12,14 @@ GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* four codes a cell: (0,0) (1
 GTX_SAMPLER(1, highp sampler2DArray) gtx_trim;    /* distance to the outline, as stored */
 GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* records: geotex_records.glsl */
 
+/* With GTX_COUNT defined fragments count what they look at: x cells, y slabs. */
+#ifdef GTX_COUNT
+vec2 gtx_looked = vec2(0.0);
+#define GTX_LOOK(at, when) gtx_looked.at += float(when)
+#else
+#define GTX_LOOK(at, when)
+#endif
+
 /* What casting needs of a patch. */
 struct gtx_height_field {
     ivec2 corner;                         /* of the rectangle in its page */
