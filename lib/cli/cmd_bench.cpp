@@ -50,8 +50,7 @@ const option options[] = {
     {"budget", 0, OPTION_NUMBER, &budget, "SECONDS", "skip what would exceed this time [600]", 0,
      1e9},
     {"cells", 0, OPTION_FLAG, &count_cells, nullptr,
-     "no times: how many cells rays visit, by paper, cast, cast_fragment, and what auto casts", 0,
-     0},
+     "no times: how many cells rays look at, by paper, cast and cast_fragment", 0, 0},
     {"json", 0, OPTION_FLAG, &as_json, nullptr, "the whole report as JSON", 0, 0},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
@@ -145,7 +144,7 @@ bool parse_lists(gtx::BenchOptions &out)
         if (along ? orbits : follows)
             return usage(along ? "methods of a path" : "methods of the orbit", word);
         out.methods.push_back(gtx::BenchMethod(name - names));
-        if (count_cells && !gtx::may_cast(out.methods.back()))
+        if (count_cells && !gtx::casts_alone(out.methods.back()))
             return usage("methods of cells", word);
     }
     return true;

@@ -14,11 +14,13 @@
 enum {
     GTX_MAX_LEVELS = 3 + 5 * GTX_MAX_MIPS,
     GTX_MAX_PROXY_KINDS = 1 + GTX_MAX_MIPS,
-    GTX_RECORDS_A_ROW = 1 << GTX_RECORD_ROW_BITS
+    GTX_PATCHES_ROW = 1 << GTX_PATCHES_ROW_BITS,
+    GTX_RECORDS_A_ROW = GTX_PATCHES_ROW / GTX_RECORD_TEXELS
 };
 
-/* A patch's record, as geotex_records.glsl lays it out. */
+/* A patch's record and a slab, as geotex_records.glsl lays them out. */
 typedef float gtx_record[GTX_RECORD_TEXELS][4];
+typedef float gtx_slab_texel[4];
 
 /* One mip level of a texture, waiting for its upload. All layers follow one another. */
 typedef struct gtx_level {
@@ -83,6 +85,12 @@ uint64_t gtx_model_layout(const gtx_asset *asset);
 uint32_t gtx_model_cell_rows(const gtx_model *model);
 void gtx_model_cells_at(const gtx_model *model, const gtx_patch *patch, uint32_t level,
                         uint32_t at[2]);
+/* Makes room for records and slabs. */
+bool gtx_model_reserve_slabs(gtx_model *model, const gtx_asset *asset);
+/* Rows of the texture of records and slabs, and which of its texels the slabs of a patch's level
+ * begin at. */
+uint32_t gtx_model_patch_rows(const gtx_model *model);
+uint32_t gtx_model_slabs_at(const gtx_model *model, uint32_t patch, uint32_t level);
 /* Bounds of all patches, from the facts of each. */
 void gtx_model_sum_up(gtx_model *model);
 
@@ -91,7 +99,9 @@ typedef struct gtx_derived {
     gtx_proxies proxies[GTX_MAX_PROXY_KINDS]; /* the patch's are added to them */
     gtx_record record;
     gtx_patch_facts facts;
-    gtx_slab *slabs[GTX_MAX_MIPS];            /* where those of each level go */
+    gtx_slab *slabs[GTX_MAX_MIPS];            /* where those of each level go, ... */
+    gtx_slab_texel *slab_texels[GTX_MAX_MIPS]; /* ... those for the GPU, ... */
+    uint32_t slabs_at[GTX_MAX_MIPS];          /* ... and where shaders find these */
     gtx_block_facts *blocks;                  /* where those of level 0 go */
     void *heights;                            /* where the codes of gtx_grid_fill go, bytes or... */
     size_t height_row;                        /* ... 16 bits each; from a row to the next */

@@ -122,6 +122,8 @@ static gtx_result derive_patch(const making *m, uint32_t i, gtx_derived *derived
         derived->row_texels[k] = info->page_width;
         derived->cells[k] = m->pages + (row * info->page_width + at[0]) * (info->height_bits / 2);
         derived->slabs[k] = model->slabs + model->first_slab[k * info->patch_count + i];
+        derived->slabs_at[k] = gtx_model_slabs_at(model, i, k);
+        derived->slab_texels[k] = (gtx_slab_texel *)m->records + derived->slabs_at[k];
     }
     const size_t line = (size_t)p->page * info->page_height + p->rect[1];
     derived->blocks = model->blocks + model->first_slab[i];
@@ -222,39 +224,18 @@ static gtx_result begin_parts(making *m, const gtx_jobs *jobs, gtx_error *error)
     return gtx_lod_place(&model->allocator, &model->lods, error);
 }
 
-/* Makes room for the slabs. */
-static bool reserve_slabs(gtx_model *model, const gtx_asset *asset)
-{
-    const uint32_t slots = model->mip_count * model->patch_count;
-    uint64_t count = 0;
-    model->records = gtx_alloc_array(&model->allocator, model->patch_count,
-                                     sizeof *model->records);
-    model->first_slab = gtx_alloc_array(&model->allocator, (size_t)slots + 1,
-                                        sizeof *model->first_slab);
-    for (uint32_t i = 0; model->first_slab && i < slots; ++i) {
-        model->first_slab[i] = (uint32_t)count;
-        count += gtx_slab_count(&asset->patches[i % model->patch_count], i / model->patch_count);
-    }
-    if (!model->first_slab || !model->records || count > UINT32_MAX)
-        return false;
-    model->first_slab[slots] = (uint32_t)count;
-    model->slabs = gtx_alloc_raw(&model->allocator, (size_t)count, sizeof *model->slabs);
-    model->blocks = gtx_alloc_raw(&model->allocator, model->first_slab[model->patch_count],
-                                  sizeof *model->blocks);
-    return model->slabs && model->blocks;
-}
-
 /* Memory for everything that has a size before it is derived. */
 static bool reserve(making *m)
 {
     gtx_model *model = m->model;
     const gtx_info *info = &m->asset->info;
     const size_t slots = (size_t)model->kind_count * model->patch_count + 1;
+    if (!gtx_model_reserve_slabs(model, m->asset))
+        return false;
     m->records = (void *)add_level(
-        model, (gtx_level){.unit = UNIT_PATCHES, .width = GTX_RECORD_TEXELS * GTX_RECORDS_A_ROW,
-                           .height = (model->patch_count + GTX_RECORDS_A_ROW - 1) /
-                                     GTX_RECORDS_A_ROW,
-                           .layers = 1, .texel_size = 4 * sizeof(float)});
+        model, (gtx_level){.unit = UNIT_PATCHES, .width = GTX_PATCHES_ROW,
+                           .height = gtx_model_patch_rows(model), .layers = 1,
+                           .texel_size = sizeof(gtx_slab_texel)});
     model->first_vertex = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_vertex);
     model->first_index = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_index);
     model->facts = gtx_alloc_array(&model->allocator, model->patch_count, sizeof *model->facts);
@@ -266,8 +247,8 @@ static bool reserve(making *m)
         model, (gtx_level){.unit = UNIT_HEIGHTS, .width = info->page_width,
                            .height = info->page_height, .layers = info->page_count,
                            .texel_size = info->height_bits / 8});
-    if (!reserve_slabs(model, m->asset) || !m->records || !m->pages || !m->heights ||
-        !model->first_vertex || !model->first_index || !model->facts)
+    if (!m->records || !m->pages || !m->heights || !model->first_vertex || !model->first_index ||
+        !model->facts)
         return false;
     return add_maps(m, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
            add_maps(m, GTX_MAP_NORMAL, UNIT_NORMALS, info->mip_count, 2) &&

@@ -150,10 +150,10 @@ CellRow count_cells(BenchScene &scene, const ViewPath *path, BenchMethod method,
 
 } // namespace
 
-bool may_cast(BenchMethod method)
+bool casts_alone(BenchMethod method)
 {
     return method == BenchMethod::PAPER || method == BenchMethod::CAST ||
-           method == BenchMethod::CAST_FRAGMENT || method == BenchMethod::AUTO;
+           method == BenchMethod::CAST_FRAGMENT;
 }
 
 void run_cells(const std::string &asset_path, const ViewPath *path, BenchOptions options,

@@ -17,10 +17,10 @@ struct CellRow {
     size_t worst = 0;               /* the view with most_cells */
 };
 
-bool may_cast(BenchMethod method);
+bool casts_alone(BenchMethod method);
 
 /* Draws each method once from each view of the path, or as an orbit does where it is null, with
- * shaders that count. The methods are those that may cast. Throws as run_bench; GL: OpenGL ES. */
+ * shaders that count. The methods are those that cast alone. Throws as run_bench; GL: OpenGL ES. */
 void run_cells(const std::string &asset_path, const ViewPath *path, BenchOptions options,
                const std::function<void(const CellRow &)> &tell);
 
