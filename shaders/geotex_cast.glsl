@@ -89,6 +89,7 @@ bool gtx_cast(gtx_height_field field, vec3 origin, vec3 direction, float t0, flo
             vec2 then = next + (planes.x <= planes.y ? vec2(way.x, 0.0) : vec2(0.0, way.y));
             bool left = v.known && (v.above ? v.gap.x : -v.gap.x) > field.reach;
             bool stays = v.leave < limit && then == clamp(then, first, final) && !left;
+            GTX_LOOK(x, going);
             if (going) {
                 w = v;
                 next = then;

@@ -94,7 +94,14 @@ bool gtx_find(out gtx_surface s)
     s.field.reach = gtx_reach < 0.0 ? 1e30 : gtx_reach;
     gtx_clip_depth(zw, zw_step, t0, t1);
     gtx_clip_box(s.field, gtx_point, s.ray, t0, t1);
-    if (t0 > t1 || !gtx_cast(s.field, gtx_point, s.ray, t0, t1, s.hit))
+    if (t0 > t1)
+        return false;
+#ifdef GTX_SKIP
+    bool found = gtx_cast_by_slabs(s.field, int(-1.0 - gtx_reach), gtx_point, s.ray, t0, t1, s.hit);
+#else
+    bool found = gtx_cast(s.field, gtx_point, s.ray, t0, t1, s.hit);
+#endif
+    if (!found)
         return false;
 
     float widen = 1.0 + s.hit.t * gtx_depth.w;

@@ -10,7 +10,15 @@ GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* four codes a cell: (0,0) (1
                                                      under level 0 the others side by side, for
                                                      lookups by level cost more */
 GTX_SAMPLER(1, highp sampler2DArray) gtx_trim;    /* distance to the outline, as stored */
-GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* records: geotex_records.glsl */
+GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* records and slabs: geotex_records.glsl */
+
+/* With GTX_COUNT defined fragments count what they look at: x cells, y slabs. */
+#ifdef GTX_COUNT
+vec2 gtx_looked = vec2(0.0);
+#define GTX_LOOK(at, when) gtx_looked.at += float(when)
+#else
+#define GTX_LOOK(at, when)
+#endif
 
 /* What casting needs of a patch. */
 struct gtx_height_field {
@@ -40,11 +48,15 @@ struct gtx_hit {
     bool back;    /* the height field was crossed from below */
 };
 
+vec4 gtx_patches_texel(int at)
+{
+    return texelFetch(gtx_patches, ivec2(at & ((1 << GTX_PATCHES_ROW_BITS) - 1),
+                                         at >> GTX_PATCHES_ROW_BITS), 0);
+}
+
 vec4 gtx_record(int patch_index, int texel)
 {
-    int column = patch_index & ((1 << GTX_RECORD_ROW_BITS) - 1);
-    return texelFetch(gtx_patches, ivec2(column * GTX_RECORD_TEXELS + texel,
-                                         patch_index >> GTX_RECORD_ROW_BITS), 0);
+    return gtx_patches_texel(patch_index * GTX_RECORD_TEXELS + texel);
 }
 
 gtx_frame gtx_frame_of(int patch_index)

@@ -9,6 +9,7 @@
 bool gtx_below(gtx_height_field field, vec3 point, out vec4 height, out ivec2 cell)
 {
     cell = clamp(ivec2(floor(point.xy)), ivec2(0), field.size - 2);
+    GTX_LOOK(x, true);
     height = vec4(texelFetch(gtx_cells, ivec3(field.corner + cell, field.page), 0));
     vec2 f = point.xy - vec2(cell);
     return height.x > 0.0 &&

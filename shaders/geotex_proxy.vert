@@ -29,7 +29,7 @@ GTX_VARYING(9) flat out vec4 gtx_rect;      /* what gtx_field_of takes: a fragme
 GTX_VARYING(10) flat out vec4 gtx_span;     /* need not fetch the record */
 GTX_VARYING(11) flat out int gtx_level;     /* of detail, the same all over the patch */
 GTX_VARYING(12) flat out uint gtx_id;       /* of the instance */
-GTX_VARYING(13) flat out float gtx_reach;   /* of the hull's rays; negative: a box */
+GTX_VARYING(13) flat out float gtx_reach;   /* of the hull's rays; or a box: -1 - slabs */
 GTX_VARYING(14) out vec3 gtx_world;         /* gtx_point in world space */
 GTX_VARYING(15) flat out vec3 gtx_world_eye; /* the ray: gtx_world * gtx_depth.w - gtx_world_eye */
 
@@ -69,7 +69,7 @@ void main()
         gtx_level = int(gtx_detail.z);
         gtx_point =
             gtx_widen(gtx_position, gtx_rect, gtx_record(index, GTX_RECORD_SOLID), gtx_level);
-        gtx_reach = -1.0;
+        gtx_reach = -1.0 - gtx_record(index, GTX_RECORD_SLABS + gtx_level / 4)[gtx_level % 4];
     }
     vec4 grid = vec4(gtx_point, 1.0);
     vec4 eye = vec4(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w, gtx_depth.w);

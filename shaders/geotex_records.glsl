@@ -6,6 +6,8 @@
 #define GTX_TRIM_TEXEL 16                /* codes a texel */
 #define GTX_TRIM_SHOWN 0.3               /* texels outside the outline that show, at level 0 */
 
+#define GTX_BLOCK_CELLS 8                /* along the side of a block */
+
 /* A patch, in gtx_patches. A texel's w has a name of its own where it says something else. */
 #define GTX_RECORD_TO_GRID 0             /* 3: rows of object space -> grid space */
 #define GTX_RECORD_ORIGIN 3              /* of grid space in object space */
@@ -19,8 +21,12 @@
 #define GTX_RECORD_RECT 7                /* x, y, width, height in the page */
 #define GTX_RECORD_REACH 8               /* 2: of the hulls' rays, a component a level */
 #define GTX_RECORD_SOLID 10              /* the solid cells: least x, y, greatest x, y */
-#define GTX_RECORD_TEXELS 11
-#define GTX_RECORD_ROW_BITS 7            /* 128 records a row */
+#define GTX_RECORD_SLABS 11              /* 2: where the slabs of a level begin, a component each */
+#define GTX_RECORD_TEXELS 16             /* some are left over */
+#define GTX_PATCHES_ROW_BITS 11          /* texels of gtx_patches are counted through its rows */
+
+/* A slab, in gtx_patches behind the records, one for each block of a patch's level, in rows: how it
+ * rises along x and y, and its least and greatest height over (0, 0). */
 
 /* gtx_place: an instance and the camera, for casting by tiles. The first four are rays in object
  * space: X and Y are what a pixel adds, to the direction of a perspective camera's rays, to the

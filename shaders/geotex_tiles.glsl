@@ -102,6 +102,7 @@ int gtx_next_slab(vec2 pixel, vec2 range, int end, inout int k, out vec2 within)
         uvec2 entry = gtx_half(k);
         vec2 met = gtx_meets(int(entry.x), pixel, inverse);
         bool look = k < stop, meets = look && met.x <= met.y;
+        GTX_LOOK(y, look);
         if (meets) {
             slab = int(entry.x);
             meeting = met;

@@ -1,6 +1,7 @@
 /* gtx bench: frame times of an asset, its source mesh and what stands between them. */
 #include "base/json.h"
 #include "cli/bench/along.hpp"
+#include "cli/bench/cells.hpp"
 #include "cli/guard.hpp"
 
 #include <algorithm>
@@ -14,10 +15,11 @@ const char *sizes, *instances, *methods; /* null: as of the orbit, or of the pat
 constexpr const char *ORBIT_SIZES = "100x100,200x200,400x400,640x480,800x600,1024x768,1280x1024";
 constexpr const char *ORBIT_METHODS = "mesh,simplified,paper,cast,lod,auto";
 constexpr const char *PATH_SIZE = "1280x720", *PATH_METHODS = "mesh,simplified,floor,cast,auto";
+constexpr const char *CELL_METHODS = "paper,cast,cast_fragment";
 const char *path_file;
 uint32_t frames, random_count, seed = 1, repeats = 3;
 double max_error = 0.5, min_iou, budget = 600;
-bool as_json;
+bool as_json, count_cells;
 
 const option options[] = {
     {"sizes", 0, OPTION_STRING, &sizes, "WxH,...",
@@ -47,6 +49,8 @@ const option options[] = {
      1},
     {"budget", 0, OPTION_NUMBER, &budget, "SECONDS", "skip what would exceed this time [600]", 0,
      1e9},
+    {"cells", 0, OPTION_FLAG, &count_cells, nullptr,
+     "no times: how many cells rays look at, by paper, cast and cast_fragment", 0, 0},
     {"json", 0, OPTION_FLAG, &as_json, nullptr, "the whole report as JSON", 0, 0},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
@@ -101,6 +105,8 @@ bool clash(const char *one, const char *other)
 bool choices_agree()
 {
     const char *along = path_file ? "path" : "random";
+    if (count_cells && (as_json || instances))
+        return clash(as_json ? "json" : "instances", "cells");
     if (path_file && random_count)
         return clash("random", "path");
     if (!path_file && !random_count)
@@ -128,7 +134,7 @@ bool parse_lists(gtx::BenchOptions &out)
         out.instances.push_back(count);
     }
     std::sort(out.instances.begin(), out.instances.end());
-    const char *usual = along ? PATH_METHODS : ORBIT_METHODS;
+    const char *usual = count_cells ? CELL_METHODS : along ? PATH_METHODS : ORBIT_METHODS;
     for (const std::string &word : split(methods ? methods : usual)) {
         const char *const *names = gtx::bench_method_names;
         const char *const *name = std::find(names, names + gtx::BENCH_METHODS, word);
@@ -138,6 +144,8 @@ bool parse_lists(gtx::BenchOptions &out)
         if (along ? orbits : follows)
             return usage(along ? "methods of a path" : "methods of the orbit", word);
         out.methods.push_back(gtx::BenchMethod(name - names));
+        if (count_cells && !gtx::casts_alone(out.methods.back()))
+            return usage("methods of cells", word);
     }
     return true;
 }
@@ -315,11 +323,19 @@ int cmd_bench(int argc, char **argv)
             path = gtx::read_path(path_file, frames, task);
         current = files[1];
         gtx::CleanReport cleaned;
-        const gtx::Mesh mesh = gtx::clean_mesh(gtx::import_mesh(files[1], task), task, cleaned);
+        gtx::Mesh mesh;
+        if (!count_cells || random_count)
+            mesh = gtx::clean_mesh(gtx::import_mesh(files[1], task), task, cleaned);
         gtx::report_warnings(files[1], task.warnings);
         if (random_count)
             path = gtx::random_path(mesh, random_count, seed);
         current = files[0];
+        if (count_cells) {
+            gtx::print_cells_head(files[0]);
+            gtx::run_cells(files[0], wanted.along_path ? &path : nullptr, wanted,
+                           gtx::print_cells);
+            return int(EXIT_CODE_OK);
+        }
         Report report;
         if (wanted.along_path)
             run_along(files[1], files[0], mesh, path, wanted, report);

@@ -54,6 +54,7 @@ static gtx_result need_programs(const gtx_draw_call *draw, gtx_error *error)
     const bool paper = view->method == GTX_METHOD_PAPER;
     const bool wanted[TECHNIQUE_COUNT] = {
         [TECHNIQUE_CAST] = !paper,
+        [TECHNIQUE_BOX] = !paper,
         [TECHNIQUE_PAPER] = paper,
         [TECHNIQUE_TILES] = gtx_stream_suits(draw->renderer, view),
         [TECHNIQUE_LOD] = !paper,

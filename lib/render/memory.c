@@ -18,7 +18,8 @@ static uint64_t level_bytes(const gtx_patch *patch, uint32_t level)
 {
     const uint64_t wide = ((patch->rect[2] - 2u) >> level) + 1;
     const uint64_t high = ((patch->rect[3] - 2u) >> level) + 1;
-    const uint64_t slab = sizeof(gtx_slab) + (level ? 0 : sizeof(gtx_rtin_block));
+    const uint64_t slab = sizeof(gtx_slab) + sizeof(gtx_slab_texel) +
+                          (level ? 0 : sizeof(gtx_rtin_block));
     return gtx_slab_count(patch, level) * slab + 3 * sizeof(uint32_t) +
            hull_bytes((wide + GTX_HULL_BLOCK - 1) / GTX_HULL_BLOCK,
                       (high + GTX_HULL_BLOCK - 1) / GTX_HULL_BLOCK);
@@ -71,7 +72,7 @@ uint64_t gtx_model_memory(const gtx_asset *asset, bool borrow)
     uint64_t bytes = sizeof(gtx_model) + lod_bytes(asset) + work_bytes(asset) + cells +
                      (info->mip_count > 1 ? cells / 2 : 0);
     bytes += borrow ? 0 : texels * maps + (info->mip_count > 1 ? texels * maps / 3 : 0);
-    bytes += GTX_RECORDS_A_ROW * sizeof(gtx_record);
+    bytes += 2 * GTX_PATCHES_ROW * sizeof(gtx_slab_texel); /* rows that are not full */
     for (uint32_t i = 0; i < info->patch_count; ++i) {
         bytes += patch_bytes() + gtx_rtin_nodes(&asset->patches[i]) * sizeof(gtx_rtin_node);
         for (uint32_t k = 0; k < info->mip_count; ++k)

@@ -14,11 +14,13 @@
 enum {
     GTX_MAX_LEVELS = 3 + 5 * GTX_MAX_MIPS,
     GTX_MAX_PROXY_KINDS = 1 + GTX_MAX_MIPS,
-    GTX_RECORDS_A_ROW = 1 << GTX_RECORD_ROW_BITS
+    GTX_PATCHES_ROW = 1 << GTX_PATCHES_ROW_BITS,
+    GTX_RECORDS_A_ROW = GTX_PATCHES_ROW / GTX_RECORD_TEXELS
 };
 
-/* A patch's record, as geotex_records.glsl lays it out. */
+/* A patch's record and a slab, as geotex_records.glsl lays them out. */
 typedef float gtx_record[GTX_RECORD_TEXELS][4];
+typedef float gtx_slab_texel[4];
 
 /* One mip level of a texture, waiting for its upload. All layers follow one another. */
 typedef struct gtx_level {
@@ -79,8 +81,12 @@ bool gtx_find_constant_material(const gtx_asset *asset, float material[4]);
 /* model.c: frees the CPU's copy of maps and proxies; or the whole model but its OpenGL objects. */
 void gtx_model_free_staging(gtx_model *model);
 void gtx_model_free(gtx_model *model);
-/* reserve.c: room for slabs, records and displaced grids. False without memory. */
+/* reserve.c: room for records, slabs and displaced grids. False without memory. */
 bool gtx_model_reserve_blocks(gtx_model *model, const gtx_asset *asset);
+/* Rows of the texture of records and slabs, and which of its texels the slabs of a patch's level
+ * begin at. */
+uint32_t gtx_model_patch_rows(const gtx_model *model);
+uint32_t gtx_model_slabs_at(const gtx_model *model, uint32_t patch, uint32_t level);
 /* memory.c: bytes that gtx_model_prepare takes, from above. */
 uint64_t gtx_model_memory(const gtx_asset *asset, bool borrow);
 /* A hash of where the patches' rectangles lie. */
@@ -98,7 +104,9 @@ typedef struct gtx_derived {
     gtx_proxies proxies[GTX_MAX_PROXY_KINDS]; /* the patch's are added to them */
     gtx_record record;
     gtx_patch_facts facts;
-    gtx_slab *slabs[GTX_MAX_MIPS];            /* where those of each level go */
+    gtx_slab *slabs[GTX_MAX_MIPS];            /* where those of each level go, ... */
+    gtx_slab_texel *slab_texels[GTX_MAX_MIPS]; /* ... those for the GPU, ... */
+    uint32_t slabs_at[GTX_MAX_MIPS];          /* ... and where shaders find these */
     gtx_rtin rtin;
     gtx_rtin_block *blocks;                   /* where those of level 0 go, and its nodes */
     gtx_rtin_node *nodes;

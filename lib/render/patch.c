@@ -67,6 +67,17 @@ static void enclose(float sphere[4], gtx_record record, const gtx_proxies *proxi
     sphere[3] = (float)(fmax(sphere[3], sqrt(most)) * 1.0001);
 }
 
+static void fill_slabs(gtx_derived *out, uint32_t level, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        const gtx_slab *slab = &out->slabs[level][i];
+        const gtx_slab_texel texel = {slab->slope[0], slab->slope[1], slab->height[0],
+                                      slab->height[1]};
+        memcpy(out->slab_texels[level][i], texel, sizeof texel);
+    }
+    out->record[GTX_RECORD_SLABS + level / 4][level % 4] = (float)out->slabs_at[level];
+}
+
 /* Trims a level, and derives its cells, its slabs and its hull. */
 static gtx_result derive_level(const gtx_asset *asset, uint32_t patch, gtx_grid *grid,
                                const gtx_allocator *allocator, gtx_derived *out, gtx_error *error)
@@ -77,6 +88,7 @@ static gtx_result derive_level(const gtx_asset *asset, uint32_t patch, gtx_grid 
     gtx_grid_trim(asset, patch, grid);
     gtx_grid_cells(grid, asset->info.height_bits, out->row_texels[k], out->cells[k]);
     gtx_grid_slabs(&asset->patches[patch], grid, out->slabs[k]);
+    fill_slabs(out, k, gtx_slab_count(&asset->patches[patch], k));
     if (out->facts.boxed)
         return GTX_OK;
     gtx_result result = gtx_add_hull(asset, patch, grid, hull_margin, allocator, hulls,

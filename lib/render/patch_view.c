@@ -64,6 +64,8 @@ gtx_camera_rows gtx_camera_rows_of(const gtx_draw_call *draw, const gtx_instance
         c.row[0][k] = (clip[0][k] + clip[3][k]) * half[0] / w;
         c.row[1][k] = (clip[1][k] + clip[3][k]) * half[1] / w;
         c.row[2][k] = c.perspective ? clip[3][k] : sign * clip[2][k] / w;
+        c.near[k] = frame->reversed ? clip[3][k] - clip[2][k]
+                                    : clip[2][k] + (double)frame->depth[0] * clip[3][k];
     }
     set_rays(&c);
     fill_place(&c, placed, clip[2], w, place);
@@ -150,16 +152,18 @@ gtx_patch_view gtx_patch_view_of(const gtx_camera_rows *c, const gtx_model *mode
                         .patch = entry->patch, .level = entry->level,
                         .two_sided = record[GTX_RECORD_TWO_SIDED][3] > 0,
                         .perspective = c->perspective};
+    for (int a = 0; a < 4; ++a) { /* the origin, then the axes */
+        const float *from = record[GTX_RECORD_ORIGIN + a];
+        const double p[3] = {from[0], from[1], from[2]};
+        for (int k = 0; k < 3; ++k)
+            v.row[k][(a + 3) % 4] = (float)dot4(c->row[k], p, a == 0);
+        v.near[(a + 3) % 4] = (float)dot4(c->near, p, a == 0);
+    }
     for (int k = 0; k < 3; ++k) {
         const float *to_grid = record[GTX_RECORD_TO_GRID + k];
         const double row[4] = {to_grid[0], to_grid[1], to_grid[2], to_grid[3]};
         for (int i = 0; i < RAY_PARTS; ++i)
             v.rays[i][k] = dot4(row, c->rays[i], i == RAY_ORIGIN);
-        for (int a = 0; a < 4; ++a) { /* the origin, then the axes */
-            const float *from = record[GTX_RECORD_ORIGIN + a];
-            const double p[3] = {from[0], from[1], from[2]};
-            v.row[k][(a + 3) % 4] = (float)dot4(c->row[k], p, a == 0);
-        }
     }
     put_patch(&v, record, placed, out);
     return v;

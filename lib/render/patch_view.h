@@ -18,6 +18,7 @@ enum { RAY_ORIGIN, RAY_DIRECTION, RAY_X, RAY_Y, RAY_PARTS };
 /* The camera over an instance's object space. */
 typedef struct gtx_camera_rows {
     double row[3][4];         /* object space -> x, y and t, x and y times t when perspective */
+    double near[4];           /* positive behind the near plane */
     double rays[RAY_PARTS][3];
     bool perspective;
     uint32_t width, height;
@@ -26,7 +27,7 @@ typedef struct gtx_camera_rows {
 /* The same over a patch's grid space. */
 typedef struct gtx_patch_view {
     double rays[RAY_PARTS][3];
-    float row[3][4];
+    float row[3][4], near[4];
     const gtx_slab *slabs;
     uint32_t count, patch, level;
     bool two_sided, perspective;

@@ -122,6 +122,8 @@ static gtx_result derive_patch(const making *m, uint32_t i, gtx_derived *derived
         derived->row_texels[k] = info->page_width;
         derived->cells[k] = m->pages + (row * info->page_width + at[0]) * (info->height_bits / 2);
         derived->slabs[k] = model->slabs + model->first_slab[k * info->patch_count + i];
+        derived->slabs_at[k] = gtx_model_slabs_at(model, i, k);
+        derived->slab_texels[k] = (gtx_slab_texel *)m->records + derived->slabs_at[k];
     }
     derived->blocks = model->blocks + model->first_slab[i];
     derived->nodes = model->nodes + model->first_node[i];
@@ -227,11 +229,12 @@ static bool reserve(making *m)
     gtx_model *model = m->model;
     const gtx_info *info = &m->asset->info;
     const size_t slots = (size_t)model->kind_count * model->patch_count + 1;
+    if (!gtx_model_reserve_blocks(model, m->asset))
+        return false;
     m->records = (void *)add_level(
-        model, (gtx_level){.unit = UNIT_PATCHES, .width = GTX_RECORD_TEXELS * GTX_RECORDS_A_ROW,
-                           .height = (model->patch_count + GTX_RECORDS_A_ROW - 1) /
-                                     GTX_RECORDS_A_ROW,
-                           .layers = 1, .texel_size = 4 * sizeof(float)});
+        model, (gtx_level){.unit = UNIT_PATCHES, .width = GTX_PATCHES_ROW,
+                           .height = gtx_model_patch_rows(model), .layers = 1,
+                           .texel_size = sizeof(gtx_slab_texel)});
     model->first_vertex = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_vertex);
     model->first_index = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_index);
     model->facts = gtx_alloc_array(&model->allocator, model->patch_count, sizeof *model->facts);
@@ -239,8 +242,7 @@ static bool reserve(making *m)
         model, (gtx_level){.unit = UNIT_CELLS, .width = info->page_width,
                            .height = gtx_model_cell_rows(model), .layers = info->page_count,
                            .texel_size = info->height_bits / 2});
-    if (!gtx_model_reserve_blocks(model, m->asset) || !m->records || !m->pages ||
-        !model->first_vertex || !model->first_index || !model->facts)
+    if (!m->records || !m->pages || !model->first_vertex || !model->first_index || !model->facts)
         return false;
     return add_maps(m, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
            add_maps(m, GTX_MAP_NORMAL, UNIT_NORMALS, info->mip_count, 2) &&

@@ -10,6 +10,7 @@
  * by casting in a tile; or by the LOD mesh. */
 typedef enum gtx_technique {
     TECHNIQUE_CAST,
+    TECHNIQUE_BOX,            /* the same in boxes, skipping by slabs */
     TECHNIQUE_PAPER,
     TECHNIQUE_TILES,
     TECHNIQUE_LOD,

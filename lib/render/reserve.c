@@ -3,7 +3,26 @@
 
 #include "base/alloc.h"
 
-/* For the slabs. */
+static uint32_t record_rows(const gtx_model *model)
+{
+    return (model->patch_count + GTX_RECORDS_A_ROW - 1) / GTX_RECORDS_A_ROW;
+}
+
+uint32_t gtx_model_patch_rows(const gtx_model *model)
+{
+    const uint32_t slabs = model->first_slab[model->mip_count * model->patch_count];
+    return record_rows(model) + (slabs + GTX_PATCHES_ROW - 1) / GTX_PATCHES_ROW;
+}
+
+uint32_t gtx_model_slabs_at(const gtx_model *model, uint32_t patch, uint32_t level)
+{
+    return record_rows(model) * GTX_PATCHES_ROW +
+           model->first_slab[level * model->patch_count + patch];
+}
+
+/* Shaders are told in floats where slabs are. */
+enum { MAX_PATCH_ROWS = (1 << 24) / GTX_PATCHES_ROW };
+
 static bool reserve_slabs(gtx_model *model, const gtx_asset *asset)
 {
     const uint32_t slots = model->mip_count * model->patch_count;
@@ -19,6 +38,8 @@ static bool reserve_slabs(gtx_model *model, const gtx_asset *asset)
     if (!model->first_slab || !model->records || count > UINT32_MAX)
         return false;
     model->first_slab[slots] = (uint32_t)count;
+    if (gtx_model_patch_rows(model) > MAX_PATCH_ROWS)
+        return false;
     model->slabs = gtx_alloc_raw(&model->allocator, (size_t)count, sizeof *model->slabs);
     return model->slabs != NULL;
 }

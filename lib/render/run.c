@@ -135,11 +135,12 @@ static bool cast_tiles(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
     return true;
 }
 
-static const gtx_program *cast_program(const gtx_draw_call *draw, const gtx_model *model)
+static const gtx_program *cast_program(const gtx_draw_call *draw, const gtx_model *model, bool box)
 {
-    const bool paper = draw->view->method == GTX_METHOD_PAPER;
-    return draw->view->shading ? &draw->view->shading->cast
-                               : program_of(draw, model, paper ? TECHNIQUE_PAPER : TECHNIQUE_CAST);
+    const gtx_technique technique = draw->view->method == GTX_METHOD_PAPER ? TECHNIQUE_PAPER
+                                    : box                                  ? TECHNIQUE_BOX
+                                                                           : TECHNIQUE_CAST;
+    return draw->view->shading ? &draw->view->shading->cast : program_of(draw, model, technique);
 }
 
 static const gtx_program *grid_program(const gtx_draw_call *draw, const gtx_model *model,
@@ -226,18 +227,20 @@ static void cast_plan(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
         return;
     gtx_plan_proxies(plan, r->model);
     gl->Enable(GL_CULL_FACE);
-    use_program(draw, cast_program(draw, r->model), r->model);
     set_attributes(renderer, r, instance);
     face(gl, r, true);
     for (uint32_t level = 0; level < r->model->mip_count; ++level) {
         const float *d = draw->frame.detail, detail[4] = {d[0], d[1], (float)level, d[3]};
         if (!plan->box_count[level])
             continue;
+        use_program(draw, cast_program(draw, r->model, true), r->model);
         gl->Uniform4fv(draw->program->detail, 1, detail);
         cast_parts(gl, plan, first, plan->box_count[level]);
         first += plan->box_count[level];
     }
     face(gl, r, false);
+    if (plan->hull_count)
+        use_program(draw, cast_program(draw, r->model, false), r->model);
     cast_parts(gl, plan, first, plan->hull_count);
 }
 
@@ -277,7 +280,7 @@ static void draw_height_fields(gtx_draw_call *draw, const gtx_run *r, bool edite
 {
     const gtx_renderer *renderer = draw->renderer;
     const gtx_model *model = r->model;
-    const gtx_program *program = cast_program(draw, model);
+    const gtx_program *program = cast_program(draw, model, false);
     if (draw->view->method == GTX_METHOD_PAPER) {
         use_program(draw, program, model);
         cast_whole(renderer, r, 0, r->first, r->count);

@@ -2,136 +2,23 @@
 #include "render/tiles.h"
 
 #include "render/order.h"
-#include "render/patch_view.h"
+#include "render/project.h"
 #include "render/renderer.h"
 
-#include <math.h>
 #include <string.h>
 
-/* Pixels along a tile, and tiles along the height of a rectangle of them. */
-enum { TILE = 4, BAND = 16 };
-
-enum { CORNERS = 8 }; /* of a slab */
-
-/* A slab in view, and the tiles that it may cover. */
-typedef struct visible_slab {
-    float near;               /* the least t of its points */
-    uint16_t x0, x1, y0, y1;
-    int32_t sum[2], difference[2]; /* of x and y */
-} visible_slab;
+/* Tiles along the height of a rectangle of them. */
+enum { BAND = 16 };
 
 /* Lists have at most so many entries for each tile of the viewport and for each slab in view.
  * Needles, whose slabs all reach across the picture, are cast in less time and memory in fragments.
  * Of 12 models and terrains, in pictures of 640x480, none had an eighth of it. */
 enum { LISTED_A_TILE = 64, LISTED_A_SLAB = 8 };
 
-/* How far, in pixels, rounding may move a slab's outline. */
-static const float slack = 0.03f;
-
-/* The least and the greatest of the values at the corners. */
-static inline void range_of(const float value[CORNERS], float range[2])
-{
-    float low[CORNERS / 2], high[CORNERS / 2];
-    for (int n = 0; n < CORNERS / 2; ++n) {
-        const float a = value[n], b = value[n + CORNERS / 2];
-        low[n] = a < b ? a : b;
-        high[n] = a < b ? b : a;
-    }
-    range[0] = low[0];
-    range[1] = high[0];
-    for (int n = 1; n < CORNERS / 2; ++n) {
-        range[0] = low[n] < range[0] ? low[n] : range[0];
-        range[1] = high[n] > range[1] ? high[n] : range[1];
-    }
-}
-
-/* Within bounds of at most 2^20, rounded down or up; a bound when it is no number. The C library's
- * own are calls where processors need not have the instruction. */
-static int32_t floor_within(float value, int32_t low, int32_t high)
-{
-    value = value > (float)low ? value : (float)low;
-    value = value < (float)high ? value : (float)high;
-    const int32_t whole = (int32_t)value;
-    return whole - (value < (float)whole);
-}
-
-static int32_t ceil_within(float value, int32_t low, int32_t high)
-{
-    return -floor_within(-value, -high, -low);
-}
-
-/* The tiles along an axis of which some pixel's centre is within; false when there is none. */
-static bool tiles_of(const float range[2], uint32_t pixels, uint16_t *first, uint16_t *last)
-{
-    const int32_t end = (int32_t)pixels;
-    const int32_t low = ceil_within(range[0] - 0.5f - slack, 0, end);
-    const int32_t high = floor_within(range[1] - 0.5f + slack, -1, end - 1);
-    *first = (uint16_t)(low / TILE);
-    *last = (uint16_t)(high / TILE);
-    return low <= high;
-}
-
-/* Which tiles have a pixel in a range of x + y, or of x - y, by the sum or the difference of the
- * tiles' own x and y. `middle`: that of the middle of tile 0, in pixels. */
-static void diagonals_of(const float range[2], float middle, int32_t out[2])
-{
-    const float reach = TILE - 1 + 2 * slack;
-    const int32_t most = 1 << 20;
-    out[0] = ceil_within((range[0] - middle - reach) / TILE, -most, most);
-    out[1] = floor_within((range[1] - middle + reach) / TILE, -most, most);
-}
-
-/* Where a slab is in the picture; false when it is not. One that the eye's plane cuts may be
- * anywhere. */
-static bool project(const gtx_camera_rows *c, const gtx_patch_view *v, const gtx_slab *slab,
-                    visible_slab *out)
-{
-    float p[3][CORNERS], sums[CORNERS], differences[CORNERS];
-    float x[2], y[2], t[2], sum[2], difference[2];
-    for (int k = 0; k < 3; ++k) {
-        const float *row = v->row[k];
-        const float along_x = row[0] + row[2] * slab->slope[0];
-        const float along_y = row[1] + row[2] * slab->slope[1];
-        const float from_x[2] = {along_x * slab->low[0], along_x * slab->high[0]};
-        const float from_y[2] = {along_y * slab->low[1], along_y * slab->high[1]};
-        for (int n = 0; n < CORNERS; ++n)
-            p[k][n] = from_x[n & 1] + from_y[n >> 1 & 1] +
-                      (row[2] * slab->height[n >> 2] + row[3]);
-    }
-    for (int n = 0; n < CORNERS; ++n) {
-        const float inverse = c->perspective ? 1 / p[2][n] : 1;
-        p[0][n] *= inverse;
-        p[1][n] *= inverse;
-        sums[n] = p[0][n] + p[1][n];
-        differences[n] = p[0][n] - p[1][n];
-    }
-    range_of(p[0], x);
-    range_of(p[1], y);
-    range_of(p[2], t);
-    range_of(sums, sum);
-    range_of(differences, difference);
-    if (c->perspective && !(t[1] > 0))
-        return false;
-    out->near = t[0];
-    if (c->perspective && !(t[0] > 1e-4f * t[1])) {
-        const float all[2] = {-INFINITY, INFINITY};
-        out->near = -INFINITY;
-        memcpy(x, all, sizeof all);
-        memcpy(y, all, sizeof all);
-        memcpy(sum, all, sizeof all);
-        memcpy(difference, all, sizeof all);
-    }
-    if (!tiles_of(x, c->width, &out->x0, &out->x1) || !tiles_of(y, c->height, &out->y0, &out->y1))
-        return false;
-    diagonals_of(sum, TILE, out->sum);
-    diagonals_of(difference, 0, out->difference);
-    return true;
-}
-
 /* What lists may have, for the slabs in view so far. */
 static uint64_t most_entries(const gtx_tiles *t, const gtx_camera_rows *c)
 {
-    const uint64_t tiles = (uint64_t)(c->width / TILE + 1) * (c->height / TILE + 1);
+    const uint64_t tiles = (uint64_t)(c->width / GTX_TILE + 1) * (c->height / GTX_TILE + 1);
     return LISTED_A_TILE * tiles + LISTED_A_SLAB * (uint64_t)t->visible_count;
 }
 
@@ -152,7 +39,7 @@ static bool find_slabs(gtx_renderer *renderer, const gtx_camera_rows *c, const g
         const uint32_t *first = &model->first_slab[e->level * model->patch_count + e->patch];
         most += first[1] - first[0];
     }
-    visible_slab *visible =
+    gtx_visible_slab *visible =
         gtx_scratch_reserve(&renderer->allocator, &t->visible, most, sizeof *visible);
     gtx_tile_patch *records =
         gtx_scratch_reserve(&renderer->allocator, &t->records, model->patch_count, sizeof *records);
@@ -167,9 +54,9 @@ static bool find_slabs(gtx_renderer *renderer, const gtx_camera_rows *c, const g
             gtx_patch_view_of(c, model, placed, entry, records[entry->patch]);
         for (uint32_t k = 0; k < v.count; ++k) {
             const gtx_slab *slab = &v.slabs[k];
-            visible_slab *out = &visible[t->visible_count];
+            gtx_visible_slab *out = &visible[t->visible_count];
             if (slab->low[0] > slab->high[0] || gtx_patch_view_faces_away(&v, slab) ||
-                !project(c, &v, slab, out))
+                !gtx_project_slab(c, &v, slab, out))
                 continue;
             gtx_patch_view_put_slab(&v, slab, GTX_TILE_PATCH_TEXELS * v.patch,
                                     slabs[t->visible_count]);
@@ -200,12 +87,12 @@ static int32_t greatest(int32_t a, int32_t b, int32_t c)
 }
 
 /* In row y of the tiles that a slab may cover. */
-static int32_t first_tile(const visible_slab *s, int32_t y)
+static int32_t first_tile(const gtx_visible_slab *s, int32_t y)
 {
     return greatest(s->x0, s->sum[0] - y, s->difference[0] + y);
 }
 
-static int32_t last_tile(const visible_slab *s, int32_t y)
+static int32_t last_tile(const gtx_visible_slab *s, int32_t y)
 {
     return -greatest(-s->x1, y - s->sum[1], -s->difference[1] - y);
 }
@@ -220,10 +107,10 @@ static size_t head_of(const gtx_tiles *t, int32_t row)
  * last one ends, and counts the tiles that have any. */
 static uint64_t make_heads(gtx_tiles *t, uint32_t (*heads)[2], size_t count, uint64_t begin)
 {
-    const visible_slab *visible = t->visible.data;
+    const gtx_visible_slab *visible = t->visible.data;
     /* Counts from tile to tile first: how many slabs more each has, and how many less. */
     memset(heads, 0, count * sizeof *heads);
-    for (const visible_slab *s = visible; s < visible + t->visible_count; ++s)
+    for (const gtx_visible_slab *s = visible; s < visible + t->visible_count; ++s)
         for (int32_t y = s->y0; y <= s->y1; ++y) {
             const int32_t first = first_tile(s, y), last = last_tile(s, y);
             if (first <= last) {
@@ -247,11 +134,11 @@ static uint64_t make_heads(gtx_tiles *t, uint32_t (*heads)[2], size_t count, uin
 /* Puts each slab into the lists of its tiles, nearest first. */
 static void list_slabs(const gtx_tiles *t, uint32_t (*heads)[2], uint32_t (*lists)[2])
 {
-    const visible_slab *visible = t->visible.data;
+    const gtx_visible_slab *visible = t->visible.data;
     const gtx_rank *order = t->order.data;
     const uint32_t begin = 2 * (t->record_texels + t->slab_texels + t->head_texels);
     for (uint32_t i = 0; i < t->visible_count; ++i) {
-        const visible_slab *s = &visible[order[i].place];
+        const gtx_visible_slab *s = &visible[order[i].place];
         const uint32_t entry[2] = {
             t->record_texels + GTX_TILE_SLAB_TEXELS * order[i].place, gtx_bits_of(s->near)};
         for (int32_t y = s->y0; y <= s->y1; ++y) {
@@ -269,8 +156,8 @@ static void add_corners(gtx_tiles *t, uint32_t x0, uint32_t x1, uint32_t y0, uin
     static const uint8_t order[6][2] = {{0, 0}, {1, 0}, {0, 1}, {0, 1}, {1, 0}, {1, 1}};
     uint16_t (*corner)[2] = (uint16_t (*)[2])t->corners.data + t->corner_count;
     for (int k = 0; k < 6; ++k) {
-        corner[k][0] = (uint16_t)(TILE * (t->first_column + (order[k][0] ? x1 + 1 : x0)));
-        corner[k][1] = (uint16_t)(TILE * (t->first_row + (order[k][1] ? y1 + 1 : y0)));
+        corner[k][0] = (uint16_t)(GTX_TILE * (t->first_column + (order[k][0] ? x1 + 1 : x0)));
+        corner[k][1] = (uint16_t)(GTX_TILE * (t->first_row + (order[k][1] ? y1 + 1 : y0)));
     }
     t->corner_count += 6;
 }

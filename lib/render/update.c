@@ -47,11 +47,16 @@ static bool make_slabs(const gtx_model *model, const gtx_patch *patch, gtx_deriv
         *count += gtx_slab_count(patch, k);
     }
     d->slabs[0] = gtx_alloc_array(&model->allocator, *count, sizeof *d->slabs[0]);
+    d->slab_texels[0] = gtx_alloc_array(&model->allocator, *count, sizeof *d->slab_texels[0]);
     d->blocks = gtx_alloc_array(&model->allocator, gtx_slab_count(patch, 0), sizeof *d->blocks);
     d->nodes = gtx_alloc_array(&model->allocator, gtx_rtin_nodes(patch), sizeof *d->nodes);
-    for (uint32_t k = 1; d->slabs[0] && k < model->mip_count; ++k)
+    if (!d->slabs[0] || !d->slab_texels[0])
+        return false;
+    for (uint32_t k = 0; k < model->mip_count; ++k) {
         d->slabs[k] = d->slabs[0] + first[k];
-    return d->slabs[0] && d->blocks && d->nodes;
+        d->slab_texels[k] = d->slab_texels[0] + first[k];
+    }
+    return d->blocks && d->nodes;
 }
 
 static void replace_slabs(gtx_model *model, const gtx_derived *d, uint32_t patch)
@@ -74,6 +79,8 @@ static gtx_result derive(const gtx_model *model, const gtx_asset *asset, uint32_
                          gtx_derived *d, gtx_error *error)
 {
     gtx_result result = GTX_OK;
+    for (uint32_t k = 0; k < model->mip_count; ++k)
+        d->slabs_at[k] = gtx_model_slabs_at(model, patch, k);
     for (uint32_t kind = 0; !result && kind < model->kind_count; ++kind) {
         const uint32_t *first = &model->first_index[kind * model->patch_count + patch];
         result = gtx_proxies_reserve(&d->proxies[kind], 0, first[1] - first[0], &model->allocator,
@@ -139,6 +146,32 @@ static void upload_maps(const gtx_gl *gl, const gtx_model *model, const gtx_asse
     }
 }
 
+/* A piece of a row of the texture of records and slabs. */
+static void upload_texels(const gtx_gl *gl, const gtx_texture_kind *kind, uint32_t at,
+                          uint32_t count, const float *texels)
+{
+    gl->TexSubImage2D(kind->target, 0, (gl_int)(at % GTX_PATCHES_ROW),
+                      (gl_int)(at / GTX_PATCHES_ROW), (gl_size)count, 1, kind->format, kind->type,
+                      texels);
+}
+
+static void upload_record(const gtx_gl *gl, const gtx_model *model, const gtx_derived *d,
+                          uint32_t patch)
+{
+    const gtx_texture_kind kind = gtx_texture_kind_of(model, UNIT_PATCHES);
+    gl->BindTexture(kind.target, model->textures[UNIT_PATCHES]);
+    upload_texels(gl, &kind, patch * GTX_RECORD_TEXELS, GTX_RECORD_TEXELS, d->record[0]);
+    for (uint32_t k = 0; k < model->mip_count; ++k) {
+        const uint32_t *first = &model->first_slab[k * model->patch_count + patch];
+        const uint32_t count = first[1] - first[0];
+        for (uint32_t i = 0, piece; i < count; i += piece) {
+            const uint32_t at = d->slabs_at[k] + i, room = GTX_PATCHES_ROW - at % GTX_PATCHES_ROW;
+            piece = count - i < room ? count - i : room;
+            upload_texels(gl, &kind, at, piece, d->slab_texels[k][i]);
+        }
+    }
+}
+
 static gtx_result upload(const gtx_renderer *renderer, gtx_model *model, const gtx_asset *edited,
                          uint32_t patch, gtx_derived *d, gtx_error *error)
 {
@@ -150,11 +183,7 @@ static gtx_result upload(const gtx_renderer *renderer, gtx_model *model, const g
     upload_cells(gl, model, p, d);
     upload_maps(gl, model, edited, p);
     gl->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-    const gtx_texture_kind records = gtx_texture_kind_of(model, UNIT_PATCHES);
-    gl->BindTexture(records.target, model->textures[UNIT_PATCHES]);
-    gl->TexSubImage2D(records.target, 0, (gl_int)(patch % GTX_RECORDS_A_ROW * GTX_RECORD_TEXELS),
-                      (gl_int)(patch / GTX_RECORDS_A_ROW), GTX_RECORD_TEXELS, 1, records.format,
-                      records.type, d->record);
+    upload_record(gl, model, d, patch);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     gl->BindTexture(GL_TEXTURE_2D, 0);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
@@ -191,6 +220,7 @@ gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model, const gtx_
         gtx_proxies_free(&d.proxies[kind], &model->allocator);
     gtx_free_array(&model->allocator, cells, size, 1);
     gtx_free_array(&model->allocator, d.slabs[0], slab_count, sizeof *d.slabs[0]);
+    gtx_free_array(&model->allocator, d.slab_texels[0], slab_count, sizeof *d.slab_texels[0]);
     gtx_free_array(&model->allocator, d.blocks, gtx_slab_count(p, 0), sizeof *d.blocks);
     gtx_free_array(&model->allocator, d.nodes, gtx_rtin_nodes(p), sizeof *d.nodes);
     return result;

@@ -1,5 +1,6 @@
 /* A camera that flies through a patch: in every frame of the way each pixel is what the caster
  * finds, in ordinary and in reversed depth. */
+#include "render/renderer.h"
 #include "stage.h"
 
 enum { FRAMES = 24 };
@@ -57,11 +58,54 @@ static void through_a_closed_model(void **state)
     fly(s, fixture_sphere(2, 64, 8), 1, 1);
 }
 
+/* Of someone who stands on a sphere. */
+static gtx_view view_along(const gtx_asset *asset)
+{
+    const gtx_camera camera = camera_around(asset);
+    gtx_view view = view_of(&camera);
+    const float *target = camera.target, radius = camera.radius;
+    const float axes[3][3] = {{0, -1, 0}, {0, 0, 1}, {-1, 0, 0}};
+    const float eye[3] = {target[0], target[1], target[2] + 0.6f * radius};
+    for (int row = 0; row < 3; ++row) {
+        view.view[12 + row] = 0;
+        for (int k = 0; k < 3; ++k) {
+            view.view[4 * k + row] = axes[row][k];
+            view.view[12 + row] -= axes[row][k] * eye[k];
+        }
+    }
+    const float near = 0.01f * radius, far = 4 * radius;
+    view.projection[10] = -(far + near) / (far - near);
+    view.projection[14] = -2 * near * far / (far - near);
+    return view;
+}
+
+/* Slabs beside the eye, which the plane through it cuts, are not listed all over the picture. */
+static void lists_stay_short(void **state)
+{
+    STAGE_OR_SKIP(state);
+    if (s->renderer->gl.es)
+        skip();
+    subject shown = subject_open(s, fixture_sphere(2, 64, 8));
+    const gtx_tiles *t = &s->renderer->tiles;
+    const uint64_t before = t->draws;
+    gtx_view view = view_along(shown.asset);
+    view.level = 1;
+    by_tiles(&view);
+    const agreement a = stage_compare(s, shown.asset, &view, &shown.instance, 1);
+    assert_int_equal(t->draws, before + 1);
+    const double entries = 2.0 * t->list_texels / fmax(1, t->tile_count);
+    if (a.wrong || a.hits < STAGE_PIXELS / 8 || entries > 4)
+        fail_msg("%ld hits, %ld wrong; %g of %u slabs a tile", a.hits, a.wrong, entries,
+                 t->visible_count);
+    subject_close(s, &shown);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(through_a_field),
         cmocka_unit_test(through_a_closed_model),
+        cmocka_unit_test(lists_stay_short),
     };
     return cmocka_run_group_tests(tests, stage_open, stage_close);
 }

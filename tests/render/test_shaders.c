@@ -82,6 +82,12 @@ static void every_dialect(void **state)
             if (k / METHODS == 0 || k / METHODS == 3)
                 compile(head, versions[i][1], "frag", shaded);
         }
+        snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS\n#define GTX_SKIP", versions[i][0]);
+        for (int k = 0; k < MAINS; ++k)
+            compile(head, versions[i][1], "frag",
+                    (const char *const[]){SHARED, "geotex_surface.glsl", "geotex_material.glsl",
+                                          "geotex_cast.glsl", "geotex_skip.glsl",
+                                          "geotex_fragment.glsl", mains[k], NULL});
         compile(versions[i][0], versions[i][1], "vert", lod_vertex);
         for (int k = 0; k < MAINS; ++k) {
             const char *main = k ? mains[k] : "geotex_lod.frag";

@@ -82,6 +82,37 @@ static void an_updated_model_is_the_edited_one(void **state)
     subject_close(s, &shown);
 }
 
+/* Where the near plane cuts them, patches are cast in boxes, by slabs that follow the edit. */
+static void cut_patches_are_the_edited_ones(void **state)
+{
+    STAGE_OR_SKIP(state);
+    gtx_error error = {0};
+    subject shown = subject_open(s, fixture_sphere(2, 48, 8));
+    gtx_camera camera = camera_around(shown.asset);
+    gtx_view view = view_of(&camera);
+    uint8_t *expected = malloc(sizeof s->color);
+    const float near = (camera.distance - 0.5f) * camera.radius, far = 4 * near;
+    view.projection[10] = -(far + near) / (far - near);
+    view.projection[14] = -2 * far * near / (far - near);
+    view.method = GTX_METHOD_CAST;
+    for (uint32_t patch = 0; patch < 6; patch += 2) {
+        gtx_asset *change = edited(shown.asset, patch, 1);
+        subject whole = subject_open(s, change);
+        view.level = patch / 2 + 1;
+        stage_draw(s, &view, &whole.instance, 1);
+        memcpy(expected, s->color, sizeof s->color);
+        stage_draw(s, &view, &shown.instance, 1);
+        assert_memory_not_equal(expected, s->color, sizeof s->color);
+        must(gtx_model_update(s->renderer, shown.model, change, patch, &error), &error);
+        stage_draw(s, &view, &shown.instance, 1);
+        assert_memory_equal(expected, s->color, sizeof s->color);
+        must(gtx_model_update(s->renderer, shown.model, shown.asset, patch, &error), &error);
+        subject_close(s, &whole);
+    }
+    free(expected);
+    subject_close(s, &shown);
+}
+
 static void others_are_refused(void **state)
 {
     STAGE_OR_SKIP(state);
@@ -116,6 +147,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_updated_model_is_the_edited_one),
+        cmocka_unit_test(cut_patches_are_the_edited_ones),
         cmocka_unit_test(others_are_refused),
     };
     return cmocka_run_group_tests(tests, stage_open, stage_close);

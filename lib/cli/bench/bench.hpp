@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/view/scene.hpp"
+#include "host/offscreen.h"
 
 #include <array>
 #include <functional>
@@ -33,6 +34,7 @@ struct BenchOptions {
     double budget = 600;                        /* seconds, of all rows */
     bool along_path = false;                    /* for run_path, not run_bench */
     uint32_t repeats = 3;                       /* of a view of a path */
+    gtx_host_load load = gtx_offscreen_load;    /* what the renderer is given */
 };
 
 struct BenchRow {

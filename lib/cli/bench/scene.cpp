@@ -66,7 +66,7 @@ BenchScene::BenchScene(const std::string &asset_path, const Mesh &mesh, const Be
 {
     gtx_error error;
     gtx_renderer_desc desc = {};
-    desc.load = gtx_offscreen_load;
+    desc.load = options.load;
     require_ok(gtx_host_gl_init(&gl, gtx_offscreen_load, nullptr, &error), error);
     require_ok(gtx_renderer_create(&desc, &renderer_, &error), error);
     setup.renderer = reinterpret_cast<const char *>(gl.GetString(GL_RENDERER));
@@ -79,7 +79,8 @@ BenchScene::BenchScene(const std::string &asset_path, const Mesh &mesh, const Be
     gl.DeleteQueries(1, &query);
     load_asset(asset_path);
     program_ = make_bench_program(gl, info.has_material || info.has_emission);
-    load_mesh(mesh);
+    if (!mesh.triangles.empty())
+        load_mesh(mesh);
 }
 
 BenchScene::~BenchScene()
