@@ -1,6 +1,7 @@
 /* Frame times of an asset beside the mesh it was cooked from and what else a user would draw. */
 #pragma once
 
+#include "cli/bench/truth.hpp"
 #include "cli/view/scene.hpp"
 
 #include <array>
@@ -33,6 +34,7 @@ struct BenchOptions {
     double budget = 600;                        /* seconds, of all rows */
     bool along_path = false;                    /* for run_path, not run_bench */
     uint32_t repeats = 3;                       /* of a view of a path */
+    bool truth = false;                         /* compare pictures with it, too */
 };
 
 struct BenchRow {
@@ -51,6 +53,7 @@ struct BenchRow {
     uint64_t pixels = 0;            /* covered, a view */
     uint64_t holes = 0;             /* pixels not covered inside what the mesh covers */
     uint64_t rays = 0, hits = 0;    /* fragments shaded and kept, a view; 0: not told */
+    TruthError truth;               /* where it was asked for */
 };
 
 struct BenchSetup {
