@@ -21,7 +21,8 @@
 #define GTX_RECORD_RECT 7                /* x, y, width, height in the page */
 #define GTX_RECORD_REACH 8               /* 2: of the hulls' rays, a component a level */
 #define GTX_RECORD_SOLID 10              /* the solid cells: least x, y, greatest x, y */
-#define GTX_RECORD_TEXELS 11
+#define GTX_RECORD_DEVIATION 11          /* 2: how far normals stray, a component a mip level */
+#define GTX_RECORD_TEXELS 13
 #define GTX_RECORD_ROW_BITS 7            /* 128 records a row */
 
 /* gtx_place: an instance and the camera, for casting by tiles. The first four are rays in object
@@ -53,6 +54,7 @@
 #define GTX_TILE_TWO_SIDED_SHIFT 31
 #define GTX_TILE_PATCH_INDEX 7           /* x */
 #define GTX_TILE_PATCH_VOLUME 7          /* y: that direction, x and y of the rays span */
+#define GTX_TILE_PATCH_DEVIATION 7       /* z: of mip levels 1 to 4, w: from 5 on, bytes */
 #define GTX_TILE_PATCH_TEXELS 8
 
 /* A slab in gtx_stream: for each pair of its planes a linear function of the pixel, and how the
