@@ -1,4 +1,4 @@
-/* What light makes of normals that a mip level has averaged. */
+/* What normals make of light: those that a mip level has averaged, and those seen from behind. */
 #include "stage.h"
 
 #include <stdbool.h>
@@ -114,8 +114,32 @@ static void small_facets_are_lit_as_seen(void **state)
     subject_close(s, &shown);
 }
 
+/* A two-sided mesh turns its normals round where its back is seen, however obliquely. */
+static void backs_have_turned_normals(void **state)
+{
+    STAGE_OR_SKIP(state);
+    const leaning even = {0.3, false};
+    const double n[3] = {sin(even.angle), 0, cos(even.angle)};
+    subject shown = sheet_open(s, &even, GTX_PATCH_TWO_SIDED);
+    for (int i = 0; i < 5; ++i) {
+        gtx_camera camera = {.radius = 3, .azimuth = 180 - 15 * (float)i, .elevation = 10,
+                             .distance = 4};
+        gtx_view view = view_of(&camera);
+        const double light[3] = {0.6, 0, -0.8};
+        for (int k = 0; k < 3; ++k)
+            view.light_direction[k] = (float)light[k];
+        for (int way = 0; way < WAYS; ++way) {
+            const double lit = light_by(s, &view, &shown, way);
+            if (fabs(lit + dot(n, light)) > 0.02)
+                fail_msg("view %d, way %d: %g, but the mesh has %g", i, way, lit, -dot(n, light));
+        }
+    }
+    subject_close(s, &shown);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(small_facets_are_lit_as_seen)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(small_facets_are_lit_as_seen),
+                                       cmocka_unit_test(backs_have_turned_normals)};
     return cmocka_run_group_tests(tests, stage_open, stage_close);
 }
