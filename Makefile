@@ -316,8 +316,8 @@ clean: ## remove what was built
 	rm -rf $(build)
 
 .PHONY: all install uninstall dist build-tests run-tests test check demo run-demo bench run-bench \
-        bench-paths run-bench-paths bench-rays run-bench-rays tune paper-tables \
-        run-paper-tables paper-figures run-paper-figures deps help clean
+        bench-paths run-bench-paths bench-truth run-bench-truth bench-rays run-bench-rays tune \
+        paper-tables run-paper-tables paper-figures run-paper-figures deps help clean
 .SECONDARY:
 .DELETE_ON_ERROR:
 -include $(shell [ -d $(out) ] && find $(out) -name '*.d')

@@ -16,10 +16,11 @@ void main()
 #endif
 #ifdef GTX_MATERIALS
     color.rgb = gtx_shade(gtx_material_of(s, color.rgb), n, -gtx_world_ray(s), gtx_light.xyz,
-                          gtx_light.w);
+                          gtx_light.w, s.deviation);
     gtx_out_color = vec4(gtx_to_srgb(color.rgb), color.a);
 #else
-    float share = gtx_light.w + (1.0 - gtx_light.w) * max(dot(n, gtx_light.xyz), 0.0);
+    float light = gtx_diffuse(n, -gtx_world_ray(s), gtx_light.xyz, s.deviation);
+    float share = gtx_light.w + (1.0 - gtx_light.w) * light;
 #ifdef GTX_PLAIN
     gtx_out_color = vec4(gtx_shaded_to_srgb(color.rgb, share), color.a);
 #else

@@ -53,6 +53,7 @@ struct gtx_surface {
     gtx_frame frame;    /* grid space -> object space */
     vec3 ray;           /* away from the camera, in grid space; of any length */
     float level;        /* mip level whose texels are as large as the pixel */
+    float deviation;    /* how far normals stray from its own */
 };
 
 /* What the engine's matrices and depth range make of a clip position. */
@@ -106,6 +107,7 @@ bool gtx_find(out gtx_surface s)
 
     float widen = 1.0 + s.hit.t * gtx_depth.w;
     s.level = gtx_level_of(s.hit, s.ray, dx * widen, dy * widen);
+    s.deviation = gtx_deviation_of(gtx_patch_index, min(s.level, gtx_maps.x));
     s.frame = gtx_frame_of(gtx_patch_index);
     return true;
 }

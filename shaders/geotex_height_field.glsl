@@ -102,6 +102,14 @@ gtx_height_field gtx_field_of(int patch_index, int level)
     return gtx_field_of(gtx_record(patch_index, GTX_RECORD_RECT), gtx_span_of(patch_index), level);
 }
 
+/* How far a patch's normals stray from those that a lookup at a mip level gives: the standard
+ * deviation along an axis across, as lib/render/deviation.c measures it. */
+float gtx_deviation_of(int patch_index, float level)
+{
+    int k = clamp(int(floor(level + 0.5)), 0, 7);
+    return gtx_record(patch_index, GTX_RECORD_DEVIATION + k / 4)[k % 4];
+}
+
 /* Object-space position of a grid-space point. */
 vec3 gtx_object_point(gtx_frame frame, vec3 grid)
 {

@@ -6,13 +6,8 @@ layout(location = 0) out vec4 gtx_out_color;
 /* Light from the front on a unit normal; on a back, on what gtx_from_behind makes of it. */
 float gtx_lambert(vec3 n)
 {
-    float front = dot(n, gtx_light.xyz);
-    if (!gl_FrontFacing) {
-        float away = max(dot(n, gtx_ray), 0.0);
-        float mirrored = front - 2.0 * away * dot(gtx_ray, gtx_light.xyz);
-        front = mix(mirrored, -front, smoothstep(0.2, 0.6, away));
-    }
-    return max(front, 0.0);
+    vec3 m = gl_FrontFacing ? n : gtx_from_behind(n, gtx_ray);
+    return gtx_diffuse(m, -gtx_ray, gtx_light.xyz, gtx_page.z);
 }
 
 void main()
@@ -38,7 +33,8 @@ void main()
     }
     if (gtx_maps.z > 0.0)
         material.emission = textureLod(gtx_emissions, place, level).rgb * gtx_maps.z;
-    color.rgb = gtx_to_srgb(gtx_shade(material, n, -gtx_ray, gtx_light.xyz, gtx_light.w));
+    color.rgb = gtx_to_srgb(gtx_shade(material, n, -gtx_ray, gtx_light.xyz, gtx_light.w,
+                                      gtx_page.z));
 #else
     float share = gtx_light.w + (1.0 - gtx_light.w) * gtx_lambert(n);
 #ifdef GTX_PLAIN

@@ -32,13 +32,13 @@ layout(location = 9) in uint gtx_instance;
 invariant gl_Position;                      /* bit for bit what a depth prepass has */
 
 GTX_VARYING(0) out vec2 gtx_at;             /* place in the page, 0..1 */
-GTX_VARYING(1) flat out vec2 gtx_page;      /* page; mip level */
+GTX_VARYING(1) flat out vec3 gtx_page;      /* page; mip level; how far normals stray from it */
 GTX_VARYING(5) flat out vec4 gtx_color;     /* where no map gives colours, the 2.4th root of rgb */
 #ifdef GTX_FRONT
-GTX_VARYING(2) flat out vec3 gtx_toward;    /* the light among the patch's normals; unit */
+GTX_VARYING(2) flat out vec3 gtx_toward;    /* the light among the patch's normals, and the eye: */
+GTX_VARYING(3) flat out vec3 gtx_eye;       /* unit, over how far normals stray */
 #ifdef GTX_MATERIALS
-GTX_VARYING(3) flat out vec3 gtx_eye;       /* the eye, and what gtx_half_way says, there too */
-GTX_VARYING(4) flat out vec4 gtx_between;
+GTX_VARYING(4) flat out vec4 gtx_between;   /* what gtx_half_way says there */
 #endif
 #else
 GTX_VARYING(2) flat out vec3 gtx_normal_x;  /* the patch's normals -> world */
@@ -97,17 +97,20 @@ void main()
 #endif
     vec2 size = vec2(textureSize(gtx_normals, 0).xy);
     gtx_at = (rect.xy + clamp(at + 0.5, vec2(half_texel), rect.zw - half_texel)) / size;
-    gtx_page = vec2(gtx_record(index, GTX_RECORD_PAGE).w, level);
+    float deviation = gtx_deviation_of(index, level);
+    gtx_page = vec3(gtx_record(index, GTX_RECORD_PAGE).w, level, deviation);
 
     vec3 z = normalize(axis_z), x = normalize(axis_x - dot(axis_x, z) * z);
     mat3 world_normals = mat3(gtx_object_x.xyz, gtx_object_y.xyz, gtx_object_z.xyz);
 #ifdef GTX_FRONT
     mat3 frame = mat3(x, cross(z, x), z);
-    gtx_toward = normalize(gtx_light.xyz * world_normals) * frame;
-#ifdef GTX_MATERIALS
+    vec3 toward = normalize(gtx_light.xyz * world_normals) * frame;
+    gtx_toward = toward / deviation;
     vec3 eye = vec3(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w) - object.xyz * gtx_depth.w;
-    gtx_eye = normalize(eye) * frame;
-    gtx_between = gtx_half_way(vec3(0.0, 0.0, 1.0), gtx_eye, gtx_toward);
+    eye = normalize(eye) * frame;
+    gtx_eye = eye / deviation;
+#ifdef GTX_MATERIALS
+    gtx_between = gtx_half_way(vec3(0.0, 0.0, 1.0), eye, toward);
 #endif
 #else
     gtx_normal_x = world_normals * x;
@@ -115,8 +118,8 @@ void main()
     gtx_normal_z = world_normals * z;
     gtx_object = object.xyz;
     gtx_world = world;
-    gtx_ray = normalize(gtx_to_world(object.xyz * gtx_depth.w -
-                                     vec3(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w)));
+    vec3 eye = vec3(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w);
+    gtx_ray = normalize(gtx_to_world(object.xyz * gtx_depth.w - eye));
     gtx_patch_index = index;
     gtx_id = gtx_instance;
 #endif

@@ -5,7 +5,7 @@
  * Needs geotex_view.glsl, geotex_surface.glsl and, with GTX_MATERIALS defined, geotex_material.glsl
  * before it. The varyings are those of geotex_lod.vert. */
 GTX_VARYING(0) in vec2 gtx_at;
-GTX_VARYING(1) flat in vec2 gtx_page;
+GTX_VARYING(1) flat in vec3 gtx_page;
 GTX_VARYING(2) flat in vec3 gtx_normal_x;
 GTX_VARYING(3) flat in vec3 gtx_normal_y;
 GTX_VARYING(4) flat in vec3 gtx_normal_z;
@@ -21,6 +21,7 @@ struct gtx_surface {
     gtx_height_field field;
     gtx_frame frame;    /* grid space -> object space */
     float level;        /* mip level */
+    float deviation;    /* how far normals stray from its own */
 };
 
 bool gtx_find(out gtx_surface s)
@@ -34,6 +35,7 @@ bool gtx_find(out gtx_surface s)
     s.hit.level = 0;
     s.hit.back = !gl_FrontFacing;
     s.level = gtx_page.y;
+    s.deviation = gtx_page.z;
 #ifdef GTX_TRIMMED
     return gtx_is_shown();
 #else

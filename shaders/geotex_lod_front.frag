@@ -4,10 +4,10 @@
  * geotex_view.glsl, geotex_surface.glsl and, with GTX_MATERIALS defined, geotex_material.glsl
  * before it, and GTX_FRONT in the vertex shader. */
 GTX_VARYING(0) in vec2 gtx_at;
-GTX_VARYING(1) flat in vec2 gtx_page;
+GTX_VARYING(1) flat in vec3 gtx_page;
 GTX_VARYING(2) flat in vec3 gtx_toward;
-#ifdef GTX_MATERIALS
 GTX_VARYING(3) flat in vec3 gtx_eye;
+#ifdef GTX_MATERIALS
 GTX_VARYING(4) flat in vec4 gtx_between;
 #endif
 GTX_VARYING(5) flat in vec4 gtx_color;
@@ -40,9 +40,12 @@ void main()
     if (gtx_maps.z > 0.0)
         material.emission = textureLod(gtx_emissions, place, level).rgb * gtx_maps.z;
 #endif
-    color.rgb = gtx_to_srgb(gtx_shade(material, n, gtx_eye, gtx_toward, gtx_between, gtx_light.w));
+    color.rgb = gtx_to_srgb(gtx_shade(material, n, gtx_eye * gtx_page.z, gtx_toward * gtx_page.z,
+                                      gtx_between, gtx_light.w, gtx_page.z));
 #else
-    float share = gtx_light.w + (1.0 - gtx_light.w) * max(dot(n, gtx_toward), 0.0);
+    float deviation = gtx_page.z, lv = dot(gtx_toward, gtx_eye) * (deviation * deviation);
+    float light = gtx_diffuse(dot(n, gtx_toward), dot(n, gtx_eye), lv, deviation);
+    float share = gtx_light.w + (1.0 - gtx_light.w) * light;
 #ifdef GTX_PLAIN
     color.rgb = gtx_shaded_to_srgb(color.rgb, share);
 #else

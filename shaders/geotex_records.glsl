@@ -22,7 +22,8 @@
 #define GTX_RECORD_REACH 8               /* 2: of the hulls' rays, a component a level */
 #define GTX_RECORD_SOLID 10              /* the solid cells: least x, y, greatest x, y */
 #define GTX_RECORD_SLABS 11              /* 2: where the slabs of a level begin, a component each */
-#define GTX_RECORD_TEXELS 16             /* some are left over */
+#define GTX_RECORD_DEVIATION 13          /* 2: how far normals stray, a component a mip level */
+#define GTX_RECORD_TEXELS 16             /* one is left over */
 #define GTX_PATCHES_ROW_BITS 11          /* texels of gtx_patches are counted through its rows */
 
 /* A slab, in gtx_patches behind the records, one for each block of a patch's level, in rows: how it
@@ -57,6 +58,7 @@
 #define GTX_TILE_TWO_SIDED_SHIFT 31
 #define GTX_TILE_PATCH_INDEX 7           /* x */
 #define GTX_TILE_PATCH_VOLUME 7          /* y: that direction, x and y of the rays span */
+#define GTX_TILE_PATCH_DEVIATION 7       /* z: of mip levels 1 to 4, w: from 5 on, bytes */
 #define GTX_TILE_PATCH_TEXELS 8
 
 /* A slab in gtx_stream: for each pair of its planes a linear function of the pixel, and how the

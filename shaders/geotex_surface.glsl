@@ -48,15 +48,20 @@ vec3 gtx_decode_normal(vec2 code)
     return vec3(p, 1.0 - abs(p.x) - abs(p.y));
 }
 
-/* The normal of a height field seen from behind along `ray`. Plainly behind, it turns round. Near
- * an outline, where the height field sticks out a little from behind the visible one, turning round
- * would light it from the wrong side: there it is mirrored in the picture plane, which is
- * continuous across the outline. */
+/* The cosine with the ray below which a back may be the rim of an outline, which the height field
+ * overshoots by less than a texel. On a bunny, 640 pixels, light from the side: without it backs at
+ * outlines cost 0.2 dB; 0.6 gains no more, and lights open sheets wrongly. */
+#define GTX_RIM 0.1
+
+/* The normal of a height field seen from behind along `ray`: it turns round, as a two-sided mesh's
+ * does. But where the height field sticks out a little from behind the visible one, that would
+ * light it from the wrong side: towards an outline it is mirrored in the picture plane, which is
+ * continuous across. */
 vec3 gtx_from_behind(vec3 n, vec3 ray)
 {
     vec3 d = normalize(ray);
     float away = max(dot(n, d), 0.0);
-    return mix(n - 2.0 * away * d, -n, smoothstep(0.2, 0.6, away));
+    return mix(n - 2.0 * away * d, -n, smoothstep(0.0, GTX_RIM, away));
 }
 
 /* x^(1 / 2.4) by its fourth root, within a tenth of a byte from 0.003 to 1: two square roots and a

@@ -169,7 +169,7 @@ bool gtx_find(out gtx_surface s)
     int normals_at = patch_at + GTX_TILE_PATCH_NORMALS;
     uvec4 x = texelFetch(gtx_stream, normals_at), y = texelFetch(gtx_stream, normals_at + 1);
     uvec4 z = texelFetch(gtx_stream, normals_at + 2);
-    uvec4 rest = texelFetch(gtx_stream, patch_at + GTX_TILE_PATCH_INDEX); /* and volume */
+    uvec4 rest = texelFetch(gtx_stream, patch_at + GTX_TILE_PATCH_INDEX); /* and more */
     gtx_normal_x = uintBitsToFloat(x.xyz);
     gtx_normal_y = uintBitsToFloat(y.xyz);
     gtx_normal_z = uintBitsToFloat(z.xyz);
@@ -181,5 +181,9 @@ bool gtx_find(out gtx_surface s)
     float descent = abs(dot(vec3(-s.hit.slope, 1.0), s.ray));
     float area = widen * widen * uintBitsToFloat(rest.y) / max(descent, 1e-20);
     s.level = 0.5 * log2(max(area, 1e-20));
+    uint byte = uint(clamp(floor(min(s.level, gtx_maps.x) + 0.5), 0.0, 7.0)) + 3u;
+    uint code = (byte < 8u ? rest.z : rest.w) >> (8u * (byte & 3u)) & 255u;
+    s.deviation = byte > 3u ? float(code) / 510.0 : 0.0;
+    s.deviation = max(s.deviation, GTX_LEAST_DEVIATION);
     return true;
 }

@@ -19,7 +19,7 @@ constexpr const char *CELL_METHODS = "paper,cast,cast_fragment";
 const char *path_file;
 uint32_t frames, random_count, seed = 1, repeats = 3;
 double max_error = 0.5, min_iou, budget = 600;
-bool as_json, count_cells;
+bool truth, as_json, count_cells;
 
 const option options[] = {
     {"sizes", 0, OPTION_STRING, &sizes, "WxH,...",
@@ -47,6 +47,8 @@ const option options[] = {
      "per window, the largest --max-error of 0.25 to 2 pixels whose silhouette IoU with the mesh "
      "is at least SHARE [0: --max-error as given]", 0,
      1},
+    {"truth", 0, OPTION_FLAG, &truth, nullptr,
+     "compare pictures with the mesh's at 8x8 samples a pixel, too", 0, 0},
     {"budget", 0, OPTION_NUMBER, &budget, "SECONDS", "skip what would exceed this time [600]", 0,
      1e9},
     {"cells", 0, OPTION_FLAG, &count_cells, nullptr,
@@ -65,7 +67,10 @@ const verb bench = {
     "covers, each pixel shaded once by the main that draws LOD meshes, from textures of its own.\n"
     "The worst views are printed as a path. Of the outcome, holes are pixels not covered inside\n"
     "what the mesh covers, enclosed those of them that are no shift of the outline, and outline\n"
-    "is how many pixels the outlines are apart.",
+    "is how many pixels the outlines are apart.\n"
+    "With --truth, truth is the PSNR to the mesh at 8x8 samples a pixel, whose light is averaged,\n"
+    "where either covers; inside the same where all samples cover, and outline the share of the\n"
+    "squared error elsewhere.",
     2, 2, options};
 
 bool usage(const char *what, const std::string &word)
@@ -162,9 +167,11 @@ void print_row(const gtx::BenchRow &row, double mesh)
     std::printf("| %-9s | %5u | %-11s ", window, row.instances,
                 gtx::bench_method_names[uint32_t(row.method)]);
     if (row.frames)
-        std::printf("| %5s | %9.2f | %9.2f | %7s | %9.2f | %6.4f | %5.1f | %5llu | %8llu | %7u |\n",
+        std::printf("| %5s | %9.2f | %9.2f | %7s | %9.2f | %6.4f | %5.1f | %5llu | %8llu | %7u "
+                    "|%s\n",
                     error, row.median, row.least, ratio, row.work, row.iou, row.psnr,
-                    (unsigned long long)row.holes, (unsigned long long)row.rays, row.triangles);
+                    (unsigned long long)row.holes, (unsigned long long)row.rays, row.triangles,
+                    gtx::truth_cells(row.truth).c_str());
     else
         std::printf("| skipped: %s |\n", row.skipped);
     std::fflush(stdout);
@@ -196,6 +203,7 @@ void write_row(gtx_json &json, const gtx::BenchSetup &setup, const gtx::BenchRow
             gtx_json_number(&json, "max_error_px", row.max_error);
         if (row.triangles)
             gtx_json_integer(&json, "triangles", row.triangles);
+        gtx::write_truth(json, row.truth);
     }
     gtx_json_end_object(&json);
 }
@@ -251,8 +259,9 @@ void print_table_head()
 {
     std::printf("| window    | count | method      | error | median    | least     | mesh/   "
                 "| work      "
-                "| IoU    | PSNR  | holes | rays     | triang. |\n"
-                "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+                "| IoU    | PSNR  | holes | rays     | triang. |%s\n"
+                "|---|---|---|---|---|---|---|---|---|---|---|---|---|%s\n",
+                truth ? gtx::TRUTH_COLUMNS : "", truth ? gtx::TRUTH_RULES : "");
 }
 
 void run_orbit(const char *scene, const char *asset, const gtx::Mesh &mesh,
@@ -314,6 +323,7 @@ int cmd_bench(int argc, char **argv)
         wanted.min_iou = min_iou;
         wanted.budget = budget;
         wanted.repeats = repeats;
+        wanted.truth = truth;
         wanted.along_path = path_file || random_count;
         if (!choices_agree() || !parse_lists(wanted))
             return int(EXIT_CODE_USAGE);

@@ -99,6 +99,11 @@ void gtx_model_cells_at(const gtx_model *model, const gtx_patch *patch, uint32_t
 /* Bounds of all patches, from the facts of each. */
 void gtx_model_sum_up(gtx_model *model);
 
+/* deviation.c: for each mip level the standard deviation, along an axis across, of a patch's
+ * normals about those that pixels of the level's texels look up: 0.001 to 0.5, and 0.001 at 0. */
+void gtx_normal_deviation(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
+                          float (*deviation)[4]);
+
 /* patch.c: what is derived of a patch. */
 typedef struct gtx_derived {
     gtx_proxies proxies[GTX_MAX_PROXY_KINDS]; /* the patch's are added to them */

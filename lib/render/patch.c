@@ -119,6 +119,8 @@ gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_al
         if (out->facts.boxed)
             enclose(out->facts.hull, out->record, boxes, boxes->vertex_count - GTX_BOX_VERTICES);
     }
+    if (!result)
+        gtx_normal_deviation(asset, patch, &finest, out->record + GTX_RECORD_DEVIATION);
     for (uint32_t k = 1; !result && k < asset->info.mip_count; ++k) {
         result = gtx_grid_coarsen(&finest, k, allocator, &grid, error);
         if (result)

@@ -124,6 +124,16 @@ static double volume_of(const double rays[RAY_PARTS][3])
     return fabs(volume);
 }
 
+/* A byte a mip level from 1 on; 255 is 0.5. */
+static void put_deviation(const float (*deviation)[4], uint32_t out[2])
+{
+    out[0] = out[1] = 0;
+    for (uint32_t k = 1; k < 8; ++k) {
+        const float value = deviation[k / 4][k % 4];
+        out[(k - 1) / 4] |= (uint32_t)(510 * value + 0.5f) << 8 * ((k - 1) % 4);
+    }
+}
+
 static void put_patch(const gtx_patch_view *v, const float (*record)[4],
                       const gtx_instance_data *placed, gtx_tile_patch out)
 {
@@ -139,6 +149,7 @@ static void put_patch(const gtx_patch_view *v, const float (*record)[4],
     put_normals(placed, record, field, out + GTX_TILE_PATCH_NORMALS);
     out[GTX_TILE_PATCH_INDEX][0] = v->patch;
     out[GTX_TILE_PATCH_VOLUME][1] = gtx_bits_of(volume_of(v->rays));
+    put_deviation(record + GTX_RECORD_DEVIATION, out[GTX_TILE_PATCH_DEVIATION] + 2);
 }
 
 gtx_patch_view gtx_patch_view_of(const gtx_camera_rows *c, const gtx_model *model,

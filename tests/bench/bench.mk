@@ -49,6 +49,20 @@ $(build)/paths/%.gtx: $(command)
 	@mkdir -p $(@D)
 	@$(build)/gtx cook $(model_$*) --lod-levels 5 --if-changed -q -o $@
 
+model_bunny     = $(GEOTEX_MODELS)/scans/bunny.ply
+model_armadillo = $(GEOTEX_MODELS)/scans/armadillo_86k.obj.gz
+model_cooked   := $(MODEL)
+TRUTH       ?= $(if $(GEOTEX_MODELS),bunny armadillo dragon andes,cooked)
+truth_sizes := 100x100,200x200,400x400,640x480,1280x1024
+bench-truth: ## how near pictures are to the mesh at 8x8 samples a pixel; TRUTH=dragon, or of MODEL
+	$(again) deps
+	$(again) -j$$(nproc) all
+	$(again) run-bench-truth
+
+run-bench-truth: $(foreach m,$(TRUTH),$(model_$(m)) $(build)/paths/$(m).gtx)
+	@$(foreach m,$(TRUTH),$(build)/gtx bench $(build)/paths/$(m).gtx $(model_$(m)) --truth -q \
+	  --frames 1 --sizes $(truth_sizes) --methods mesh,simplified,cast,lod,auto $(BENCH) &&) true
+
 bench-rays: ## rays a second into MODEL (default: the sculpt), and what shadows by ray cost a frame
 	$(again) deps
 	$(again) -j$$(nproc) all $(out)/tests/bench/rays
@@ -81,7 +95,7 @@ arguments_figure7 = $(MODEL)
 arguments_figure9 := $(or $(reek),own)
 bench_objects := $(addprefix $(out)/lib/cli/,bench/bench.o bench/camera.o bench/floor.o \
                    bench/mesh.o bench/parts.o bench/picture.o bench/scene.o bench/shading.o \
-                   view/polygons.o message.o options.o)
+                   bench/truth.o view/polygons.o message.o options.o)
 paper-figures: ## the paper's figures of frame rates: tables, JSON and curves in build/paper
 	$(again) deps
 	$(again) -j$$(nproc) all $(figures:%=$(out)/tests/bench/%)

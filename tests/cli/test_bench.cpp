@@ -97,6 +97,27 @@ static void the_mesh_has_the_materials(void **)
     assert_true(report["rows"][0]["psnr_db"].get<double>() > 30);
 }
 
+/* The outline is what one sample a pixel draws worst, the mesh's own picture included. */
+static void pictures_are_held_against_many_samples(void **)
+{
+    const json report = bench("--sizes 48x48,96x96 --methods mesh,cast --truth");
+    double last = 0;
+    for (const json &row : report["rows"]) {
+        const double truth = row["truth_psnr_db"], inside = row["truth_inside_psnr_db"];
+        const double outline = row["truth_outline_share"];
+        assert_true(truth > 15 && truth < 30);
+        assert_true(inside > truth + 6);
+        assert_true(outline > 0.5 && outline < 1);
+        if (row["method"] != "mesh")
+            continue;
+        assert_true(truth > last); /* an outline takes a lesser share of a larger picture */
+        last = truth;
+    }
+    assert_false(bench("--sizes 32x32 --methods mesh")["rows"][0].contains("truth_psnr_db"));
+    expect(gtx("bench sphere.gtx sphere.obj --sizes 32x32 --frames 1 --methods mesh --truth"), 0);
+    expect_text("| triang. | truth | inside | outline |");
+}
+
 static void what_is_not_measured_is_named(void **)
 {
     const json no_lod = bench("--sizes 32x32 --methods mesh,lod");
@@ -121,6 +142,7 @@ int main()
         cmocka_unit_test(usage_is_exit_1), cmocka_unit_test(every_method_is_measured),
         cmocka_unit_test(the_error_follows_the_outline),
         cmocka_unit_test(the_mesh_has_the_materials),
+        cmocka_unit_test(pictures_are_held_against_many_samples),
         cmocka_unit_test(what_is_not_measured_is_named),
         cmocka_unit_test(the_table_has_a_line_a_row)};
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -1,6 +1,7 @@
 /* gtx bench --path, --random: what is refused, where the views are, and what is compared there. */
 #include "common/schema.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -107,6 +108,22 @@ static void keys_are_views_and_what_is_between_them(void **)
     assert_true(spread["views"][8]["eye"] == json({5, 8, 3}));
     const json none = along("sphere.gtx", "sphere.obj", "--path line.path --budget 0");
     assert_true(none["views"].empty() && none["views_wanted"] == 3);
+}
+
+static void views_are_held_against_many_samples(void **)
+{
+    write_text("two.path", "0 0 3  0 0 0\n0 0 4  0 0 0\n");
+    const json path =
+        along("sphere.gtx", "sphere.obj", "--path two.path --methods mesh,cast --truth");
+    for (size_t m = 0; m < 2; ++m) {
+        const double all = path["rows"][m]["truth_psnr_db"];
+        double low = 1e9, high = 0;
+        for (const json &view : path["views"]) {
+            low = std::min<double>(low, view["methods"][m]["truth_psnr_db"]);
+            high = std::max<double>(high, view["methods"][m]["truth_psnr_db"]);
+        }
+        assert_true(low > 15 && low <= all && all <= high);
+    }
 }
 
 /* The sphere has a radius of about one and is centred on the origin. */
@@ -239,6 +256,7 @@ int main()
     const CMUnitTest tests[] = {
         cmocka_unit_test(what_does_not_fit_is_refused),
         cmocka_unit_test(keys_are_views_and_what_is_between_them),
+        cmocka_unit_test(views_are_held_against_many_samples),
         cmocka_unit_test(random_views_are_a_third_each_and_the_same_again),
         cmocka_unit_test(methods_agree_from_anywhere),
         cmocka_unit_test(a_sheet_is_seen_from_behind),

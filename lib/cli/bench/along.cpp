@@ -52,14 +52,18 @@ void compare(const Picture &truth, const Picture &picture, size_t width, PathCel
 /* Draws every method once; it warms up, too. */
 void Along::judge(Vector<PathCell> &cells, const gtx_view &view, const Target &target)
 {
-    const Picture truth = scene_.picture(BenchMethod::MESH, view, target);
+    const Picture mesh = scene_.picture(BenchMethod::MESH, view, target);
+    const Truth truth = options_.truth ? scene_.truth(view, target) : Truth();
     const bool floor = std::count(methods_.begin(), methods_.end(), BenchMethod::FLOOR) > 0;
     if (floor)
         scene_.set_floor(scene_.picture(BenchMethod::AUTO, view, target), view);
     for (size_t m = 0; m < methods_.size(); ++m) {
         if (methods_[m] == BenchMethod::MESH_LOD)
             scene_.level = coarsest_level(scene_.parts, view, options_.max_error);
-        compare(truth, scene_.picture(methods_[m], view, target), view.viewport_width, cells[m]);
+        const Picture picture = scene_.picture(methods_[m], view, target);
+        compare(mesh, picture, view.viewport_width, cells[m]);
+        if (options_.truth)
+            cells[m].truth.add(truth, picture);
         cells[m].triangles = scene_.triangles(methods_[m]);
     }
 }
@@ -121,6 +125,7 @@ PathRow sum_up(BenchMethod method, const Vector<PathCell> &cells, const Vector<P
         row.holes = std::max(row.holes, cells[v].holes);
         row.enclosed = std::max(row.enclosed, cells[v].enclosed);
         row.outline = std::max(row.outline, cells[v].outline);
+        row.truth.add(cells[v].truth);
     }
     row.median = median(times);
     row.work = median(works);

@@ -16,6 +16,7 @@ struct PathCell {
     uint64_t enclosed = 0;          /* gaps, see enclosed_holes */
     uint32_t outline = 0;           /* pixels, see outline_error */
     uint32_t triangles = 0;         /* of a mesh, before what is out of view */
+    TruthError truth;               /* where it was asked for */
 };
 
 /* A method along the whole path. `ratio` is its time over the mesh's of the same view. */
@@ -28,6 +29,7 @@ struct PathRow {
     double iou = 1;                 /* the least */
     uint64_t holes = 0, enclosed = 0;         /* the most */
     uint32_t outline = 0;           /* the most */
+    TruthError truth;               /* of all views together */
 };
 
 struct PathReport {

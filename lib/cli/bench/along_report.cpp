@@ -48,19 +48,22 @@ static void print_ratios(const PathRow &row)
 
 void print_path_report(const PathReport &report)
 {
+    const bool truth = !report.rows.empty() && report.rows[0].truth.values;
     std::printf("%ux%u, %zu of %zu views; /mesh, worst: ratio to the mesh's time, median and of "
                 "any view; w/mesh: of work;\nholes to IoU: the worst of any view\n"
                 "| method        | median  | mean    | work    | /mesh   | worst   | view "
-                "| w/mesh  | worst   | holes  | enclosed | outline | IoU    |\n"
-                "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-                report.size[0], report.size[1], report.measured, report.path->views.size());
+                "| w/mesh  | worst   | holes  | enclosed | outline | IoU    |%s\n"
+                "|---|---|---|---|---|---|---|---|---|---|---|---|---|%s\n",
+                report.size[0], report.size[1], report.measured, report.path->views.size(),
+                truth ? TRUTH_COLUMNS : "", truth ? TRUTH_RULES : "");
     for (const PathRow &row : report.rows) {
         std::printf("| %-13s | %7.2f | %7.2f | %7.2f ", name_of(row.method), row.median, row.mean,
                     row.work);
         print_ratios(row);
-        std::printf("| %6llu | %8llu | %7u | %6.4f |\n",
+        std::printf("| %6llu | %8llu | %7u | %6.4f |%s\n",
                     static_cast<unsigned long long>(row.holes),
-                    static_cast<unsigned long long>(row.enclosed), row.outline, row.iou);
+                    static_cast<unsigned long long>(row.enclosed), row.outline, row.iou,
+                    truth_cells(row.truth).c_str());
     }
     std::printf("\n%s\n", path_head(*report.path).c_str());
     for (size_t m = 0; m < report.rows.size(); ++m)
@@ -93,6 +96,7 @@ static void write_row(gtx_json &json, const PathRow &row)
         gtx_json_number(&json, "work_ratio_worst", row.work_worst);
         gtx_json_integer(&json, "worst_view", uint64_t(row.order[0]));
     }
+    write_truth(json, row.truth);
     gtx_json_end_object(&json);
 }
 
@@ -109,6 +113,7 @@ static void write_cell(gtx_json &json, BenchMethod method, const PathCell &cell)
     gtx_json_integer(&json, "outline_px", cell.outline);
     if (cell.triangles)
         gtx_json_integer(&json, "triangles", cell.triangles);
+    write_truth(json, cell.truth);
     gtx_json_end_object(&json);
 }
 

@@ -20,9 +20,16 @@ constexpr double SLOW = 2000; /* milliseconds: a method that takes longer is mea
 struct Quality {
     uint64_t both = 0, either = 0, covered = 0, holes = 0;
     double square = 0; /* of differences of colour */
+    TruthError truth;
 
     double iou() const { return either ? double(both) / double(either) : 1; }
     double psnr() const { return 10 * std::log10(255. * 255. * 3 * double(either) / square); }
+};
+
+/* What a method is held against, a picture a turn. */
+struct Wanted {
+    Vector<Picture> mesh;
+    Vector<Truth> truth; /* none where it was not asked for */
 };
 
 class Bench {
@@ -38,9 +45,10 @@ public:
 
 private:
     double time(BenchMethod method, const Shot &shot);
-    Quality judge(BenchMethod method, const Shot &one, const Vector<Picture> &truth);
-    void choose_error(const Shot &one, const Vector<Picture> &truth);
-    void choose_level(const Shot &one, const Vector<Picture> &truth, const Quality &wanted);
+    Wanted wanted_of(Shot one);
+    Quality judge(BenchMethod method, const Shot &one, const Wanted &wanted);
+    void choose_error(const Shot &one, const Wanted &wanted);
+    void choose_level(const Shot &one, const Wanted &wanted, const Quality &least);
     void judge_all(const std::array<uint32_t, 2> &size, uint32_t instances,
                    Vector<BenchRow> &rows);
     const char *reason_to_skip(const BenchRow &row) const;
@@ -59,51 +67,66 @@ double Bench::time(BenchMethod method, const Shot &shot)
     return milliseconds() - start;
 }
 
-void compare(const Picture &truth, const Picture &picture, size_t width, Quality &quality)
+void compare(const Picture &mesh, const Picture &picture, size_t width, Quality &quality)
 {
-    for (size_t p = 0; p < truth.depth.size(); ++p) {
-        const bool wanted = truth.covers(p), covered = picture.covers(p);
+    for (size_t p = 0; p < mesh.depth.size(); ++p) {
+        const bool wanted = mesh.covers(p), covered = picture.covers(p);
         quality.both += wanted && covered;
         quality.either += wanted || covered;
         quality.covered += covered;
-        quality.holes += !covered && is_inside(truth, p, width);
+        quality.holes += !covered && is_inside(mesh, p, width);
         for (size_t k = 0; k < 3 && (wanted || covered); ++k)
             quality.square +=
-                std::pow(double(truth.color[4 * p + k]) - picture.color[4 * p + k], 2);
+                std::pow(double(mesh.color[4 * p + k]) - picture.color[4 * p + k], 2);
     }
 }
 
-Quality Bench::judge(BenchMethod method, const Shot &one, const Vector<Picture> &truth)
+Quality Bench::judge(BenchMethod method, const Shot &one, const Wanted &wanted)
 {
     const Target target(scene.gl, one.width, one.height);
     Quality quality;
-    for (int turn = 0; turn < BENCH_TURNS; ++turn)
-        compare(truth[size_t(turn)],
-                scene.picture(method, Shot{one.width, one.height, 1, turn}, target), one.width,
-                quality);
+    for (int turn = 0; turn < BENCH_TURNS; ++turn) {
+        const Picture picture =
+            scene.picture(method, Shot{one.width, one.height, 1, turn}, target);
+        compare(wanted.mesh[size_t(turn)], picture, one.width, quality);
+        if (!wanted.truth.empty())
+            quality.truth.add(wanted.truth[size_t(turn)], picture);
+    }
     return quality;
 }
 
 /* The largest error at which AUTO's outline is as good as is asked for, or the least there is. */
-void Bench::choose_error(const Shot &one, const Vector<Picture> &truth)
+void Bench::choose_error(const Shot &one, const Wanted &wanted)
 {
     for (size_t i = std::size(bench_errors); i-- > 0;) {
         scene.max_error = bench_errors[i];
-        if (judge(BenchMethod::AUTO, one, truth).iou() >= options_.min_iou)
+        if (judge(BenchMethod::AUTO, one, wanted).iou() >= options_.min_iou)
             break;
     }
 }
 
 /* The coarsest level that covers and looks as well. */
-void Bench::choose_level(const Shot &one, const Vector<Picture> &truth, const Quality &wanted)
+void Bench::choose_level(const Shot &one, const Wanted &wanted, const Quality &least)
 {
     size_t good = 0, bad = scene.levels.indices.size(); /* quality falls from level to level */
     while (bad - good > 1) {
         scene.level = (good + bad) / 2;
-        const Quality q = judge(BenchMethod::MESH_LOD, one, truth);
-        (q.iou() >= wanted.iou() && q.psnr() >= wanted.psnr() ? good : bad) = scene.level;
+        const Quality q = judge(BenchMethod::MESH_LOD, one, wanted);
+        (q.iou() >= least.iou() && q.psnr() >= least.psnr() ? good : bad) = scene.level;
     }
     scene.level = good;
+}
+
+Wanted Bench::wanted_of(Shot one)
+{
+    Wanted out;
+    const Target target(scene.gl, one.width, one.height);
+    for (one.turn = 0; one.turn < BENCH_TURNS; ++one.turn) {
+        out.mesh.push_back(scene.picture(BenchMethod::MESH, one, target));
+        if (options_.truth)
+            out.truth.push_back(scene.truth(one, target));
+    }
+    return out;
 }
 
 /* Judges every method by one instance at its share of the window; it warms up, too. */
@@ -112,24 +135,19 @@ void Bench::judge_all(const std::array<uint32_t, 2> &size, uint32_t instances,
 {
     const uint32_t columns = uint32_t(std::ceil(std::sqrt(instances)));
     const Shot one = {std::max(1u, size[0] / columns), std::max(1u, size[1] / columns), 1, 0};
-    Vector<Picture> truth;
-    {
-        const Target target(scene.gl, one.width, one.height);
-        for (int turn = 0; turn < BENCH_TURNS; ++turn)
-            truth.push_back(
-                scene.picture(BenchMethod::MESH, Shot{one.width, one.height, 1, turn}, target));
-    }
+    const Wanted wanted = wanted_of(one);
     if (options_.min_iou > 0)
-        choose_error(one, truth);
+        choose_error(one, wanted);
     for (BenchRow &row : rows) {
         row.max_error = is_mesh(row.method) ? 0 : scene.max_error;
         if (row.method == BenchMethod::MESH_LOD)
-            choose_level(one, truth, judge(BenchMethod::AUTO, one, truth));
-        const Quality q = judge(row.method, one, truth);
+            choose_level(one, wanted, judge(BenchMethod::AUTO, one, wanted));
+        const Quality q = judge(row.method, one, wanted);
         row.iou = q.iou();
         row.psnr = is_depth_pass(row.method) ? NAN : q.psnr();
         row.pixels = q.covered / BENCH_TURNS;
         row.holes = q.holes;
+        row.truth = q.truth;
         row.triangles = scene.triangles(row.method);
         const Target target(scene.gl, one.width, one.height);
         scene.count(row.method, one, row.rays, row.hits);

@@ -1,6 +1,7 @@
 /* Frame times of an asset beside the mesh it was cooked from and what else a user would draw. */
 #pragma once
 
+#include "cli/bench/truth.hpp"
 #include "cli/view/scene.hpp"
 #include "host/offscreen.h"
 
@@ -34,6 +35,7 @@ struct BenchOptions {
     double budget = 600;                        /* seconds, of all rows */
     bool along_path = false;                    /* for run_path, not run_bench */
     uint32_t repeats = 3;                       /* of a view of a path */
+    bool truth = false;                         /* compare pictures with it, too */
     gtx_host_load load = gtx_offscreen_load;    /* what the renderer is given */
 };
 
@@ -53,6 +55,7 @@ struct BenchRow {
     uint64_t pixels = 0;            /* covered, a view */
     uint64_t holes = 0;             /* pixels not covered inside what the mesh covers */
     uint64_t rays = 0, hits = 0;    /* fragments shaded and kept, a view; 0: not told */
+    TruthError truth;               /* where it was asked for */
 };
 
 struct BenchSetup {

@@ -216,8 +216,18 @@ void BenchScene::draw(BenchMethod method, const gtx_view &view)
     draw(method, view, placed);
 }
 
+static void move_window(gtx_view &view, const double shift[2])
+{
+    const double step[2] = {2. / view.viewport_width, 2. / view.viewport_height};
+    for (int column = 0; column < 4; ++column)
+        for (int k = 0; k < 2; ++k)
+            view.projection[4 * column + k] +=
+                float(shift[k] * step[k] * double(view.projection[4 * column + 3]));
+}
+
 void BenchScene::draw(BenchMethod method, gtx_view view, const Vector<gtx_instance> &placed)
 {
+    move_window(view, shift_);
     gl.DepthMask(GL_TRUE);
     gl.ClearDepthf(1);
     gl.Clear(GL_DEPTH_BUFFER_BIT | (is_depth_pass(method) ? 0 : GL_COLOR_BUFFER_BIT));
@@ -265,6 +275,27 @@ Picture BenchScene::picture(BenchMethod method, const gtx_view &view, const Targ
 {
     draw(method, view);
     return read(view, target);
+}
+
+template <class What> Truth BenchScene::truth_of(const What &what, const Target &target)
+{
+    Truth out = make_truth([&](double x, double y) {
+        shift_[0] = x;
+        shift_[1] = y;
+        return picture(BenchMethod::MESH, what, target);
+    });
+    shift_[0] = shift_[1] = 0;
+    return out;
+}
+
+Truth BenchScene::truth(const Shot &shot, const Target &target)
+{
+    return truth_of(shot, target);
+}
+
+Truth BenchScene::truth(const gtx_view &view, const Target &target)
+{
+    return truth_of(view, target);
 }
 
 void BenchScene::set_floor(const Picture &covered, const gtx_view &view)

@@ -59,6 +59,9 @@ public:
     gtx_view view_of(const ViewPath &path, size_t which, uint32_t width, uint32_t height) const;
     void draw(BenchMethod method, const gtx_view &view);
     Picture picture(BenchMethod method, const gtx_view &view, const Target &target);
+    /* What the pictures of a view should be. */
+    Truth truth(const gtx_view &view, const Target &target);
+    Truth truth(const Shot &shot, const Target &target);
     /* Before FLOOR is drawn: what it covers. */
     void set_floor(const Picture &covered, const gtx_view &view);
     /* Fragments shaded and kept by all azimuths together; zeros: the driver cannot tell. */
@@ -75,6 +78,7 @@ public:
     double max_error = 0; /* pixels, of what is no mesh */
 
 private:
+    template <class What> Truth truth_of(const What &what, const Target &target);
     void load_asset(const std::string &path);
     void load_mesh(const Mesh &mesh);
     gtx_view view_of(const Shot &shot, Vector<gtx_instance> &placed) const;
@@ -93,6 +97,7 @@ private:
     std::unique_ptr<PartDrawer> part_drawer_;
     std::unique_ptr<Floor> floor_;
     bool counts_ = false;                /* the driver counts shaded fragments */
+    double shift_[2] = {};               /* of the window, in pixels */
 };
 
 /* Of a clock that never goes back. */
