@@ -28,8 +28,10 @@ typedef enum gtx_partition {
     GTX_PARTITION_DEFAULT = 0,    /* cuts */
     GTX_PARTITION_CUTS = 1,       /* few large charts that fold nowhere, cut straight */
     GTX_PARTITION_VSA = 2,        /* variational shape approximation (paper, section 5.2) */
-    GTX_PARTITION_PGP = 3         /* periodic global parameterization: squares along the principal
+    GTX_PARTITION_PGP = 3,        /* periodic global parameterization: squares along the principal
                                      directions of curvature (paper, section 5.1) */
+    GTX_PARTITION_LAYERS = 4      /* peeled along three axes, those of the object or of its large
+                                     flat parts; small pieces of a layer share a patch */
 } gtx_partition;
 
 /* How the maps are extracted from the patches' triangles. GPU is the paper's method (section 5):

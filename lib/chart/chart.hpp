@@ -43,7 +43,8 @@ struct Chart {
 enum class PartitionMethod {
     CUTS, /* few large charts that fold nowhere, cut straight */
     VSA,  /* variational shape approximation (paper, section 5.2) */
-    PGP   /* periodic global parameterization (paper, section 5.1) */
+    PGP,  /* periodic global parameterization (paper, section 5.1) */
+    LAYERS /* peeled along three axes (Santos, de Toledo, Gattass, SPM 2008) */
 };
 
 struct ChartOptions {

@@ -2,6 +2,7 @@
 #include "chart/cuts/agglomerate.hpp"
 #include "chart/attach.hpp"
 #include "chart/cuts/cut.hpp"
+#include "chart/layers/peel.hpp"
 #include "chart/merge.hpp"
 #include "chart/pgp/pgp.hpp"
 #include "chart/split.hpp"
@@ -269,12 +270,15 @@ Vector<Chart> whole_charts(Vector<Region> regions, const Vector<Frame> &frames,
 void make_charts(Surface surface, const ChartOptions &options, uint32_t count, Task &task,
                  Partition &out)
 {
-    const bool cut = options.method == PartitionMethod::CUTS;
+    const bool layers = options.method == PartitionMethod::LAYERS;
+    const bool cut = layers || options.method == PartitionMethod::CUTS;
     const uint32_t wanted = chart_count(surface.mesh, options);
     Vector<Region> regions = split_region(surface.whole, out.initial_chart, count);
     report_initial(surface, regions, task, out);
 
     Bounds bounds = {INFINITY, cut_pitch(surface, wanted, options), true};
+    if (layers)
+        bounds.directions = peel_directions(surface);
     const auto split = cut ? split_for_count : split_for_length;
     Vector<Frame> frames = split(surface, options, regions, bounds, task);
     out.pitch = bounds.pitch;
@@ -284,11 +288,14 @@ void make_charts(Surface surface, const ChartOptions &options, uint32_t count, T
         merge_all(surface, regions, frames, bounds, task);
     surface.whole.neighbours = {};
     attach_islands(surface, bounds, regions, frames);
+    const unsigned side = std::max(options.resolution / options.grain, 1u) * options.grain;
+    if (layers)
+        gather_charts(surface, bounds, options.grain, side, regions, frames);
     out.junk = surface.junk;
     report_final(surface, regions, frames, task, out);
     CutPlan plan = {wanted,
                     bounds.pitch,
-                    std::max(options.resolution / options.grain, 1u) * options.grain,
+                    side,
                     options.grain,
                     {options.overlap[0], options.overlap[1]},
                     options.height_steps,
@@ -325,9 +332,15 @@ Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &ta
         make_charts(make_surface(out.mesh, pitch, task), options, count, task, out);
         return out;
     }
-    out.initial_chart = options.method == PartitionMethod::VSA
-                            ? cluster(surface, surface.whole, count, task)
-                            : agglomerate(surface, count, task);
+    switch (options.method) {
+    case PartitionMethod::VSA:
+        out.initial_chart = cluster(surface, surface.whole, count, task);
+        break;
+    case PartitionMethod::LAYERS:
+        out.initial_chart = peel(surface, peel_directions(surface), count);
+        break;
+    default: out.initial_chart = agglomerate(surface, count, task);
+    }
     make_charts(std::move(surface), options, count, task, out);
     return out;
 }

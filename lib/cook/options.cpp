@@ -26,13 +26,14 @@ constexpr int DEFAULT_ZSTD = 0;
 
 /* In the order of gtx_partition. */
 constexpr PartitionMethod METHODS[] = {PartitionMethod::CUTS, PartitionMethod::CUTS,
-                                       PartitionMethod::VSA, PartitionMethod::PGP};
+                                       PartitionMethod::VSA, PartitionMethod::PGP,
+                                       PartitionMethod::LAYERS};
 
 static void check(const gtx_cook_desc &desc)
 {
     require_zeroed(desc.reserved);
     require_limits(desc.limits);
-    require_argument(number_of(desc.partition) <= GTX_PARTITION_PGP, "unknown partition");
+    require_argument(number_of(desc.partition) <= GTX_PARTITION_LAYERS, "unknown partition");
     require_argument(number_of(desc.extract) <= GTX_EXTRACT_GPU, "unknown extraction");
     require_argument(desc.charts <= 1u << 20, "charts is at most 2^20");
     require_argument(!desc.resolution || (desc.resolution >= 64 && desc.resolution <= 512),
@@ -98,6 +99,7 @@ const char *partition_name(const Options &options)
     switch (options.chart.method) {
     case PartitionMethod::VSA: return "vsa";
     case PartitionMethod::PGP: return "pgp";
+    case PartitionMethod::LAYERS: return "layers";
     default: return "cuts";
     }
 }
