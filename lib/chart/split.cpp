@@ -238,7 +238,7 @@ Vec3d chart_axis(const Surface &surface, const Vector<uint32_t> &triangles, cons
         return cone_axis(surface, triangles);
     Vec3d sum;
     for (uint32_t t : triangles)
-        sum += Vec3d(surface.facets[t].normal) * double(surface.facets[t].size);
+        sum += Vec3d(surface.normal[t]) * double(surface.facets[t].size);
     return bounds.directions[nearest_direction(bounds.directions, sum)];
 }
 

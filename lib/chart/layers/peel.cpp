@@ -14,6 +14,13 @@ namespace {
  * change nothing but a ball's (bunny, armadillo, engine). */
 constexpr double WORTH_TURNING = 0.75;
 
+/* Least cosine of a triangle's own normal with the direction that smoothing gives it: where
+ * designed parts meet at an edge smoothing rounds it. */
+constexpr double MIN_FACING = 0.35;
+
+/* Triangles of an island go over from its border inwards, so many deep. */
+constexpr int PASSES = 4;
+
 /* The share of the area that is lost to slant where everything is seen along the nearest axis. */
 double slant(const Surface &surface, const Vector<Vec3d> &directions)
 {
@@ -52,6 +59,35 @@ Vector<Vec3d> principal_directions(const Surface &surface)
     return with_opposites(axis[0], axis[1], axis[2]);
 }
 
+/* Lets triangles of small islands go over to a larger piece beside them that sees them well. */
+void give_up_islands(const Surface &surface, const Vector<Vec3d> &directions, double pitch,
+                     Vector<uint32_t> &label)
+{
+    Vector<uint32_t> piece = label;
+    Vector<double> texels(connected_pieces(surface.whole, piece));
+    const double mean = surface.area / double(label.size());
+    for (size_t t = 0; t < label.size(); ++t)
+        texels[piece[t]] += double(surface.facets[t].size) * mean / (pitch * pitch);
+    const Vector<uint32_t> before = label;
+    for (size_t t = 0; t < label.size(); ++t) {
+        cancel_point();
+        double best = MIN_FACING;
+        if (texels[piece[t]] >= SMALL_ISLAND_TEXELS)
+            continue;
+        for (uint32_t n : surface.whole.neighbours[t]) {
+            if (n == NO_TRIANGLE || texels[piece[n]] <= texels[piece[t]])
+                continue;
+            const Vec3d &z = directions[before[n]];
+            const double facing = std::min(dot(Vec3d(surface.facets[t].normal), z),
+                                           dot(Vec3d(surface.normal[t]), z));
+            if (facing > best) {
+                best = facing;
+                label[t] = before[n];
+            }
+        }
+    }
+}
+
 } // namespace
 
 size_t nearest_direction(const Vector<Vec3d> &directions, const Vec3d &vector)
@@ -63,18 +99,33 @@ size_t nearest_direction(const Vector<Vec3d> &directions, const Vec3d &vector)
     return best;
 }
 
+Vector<Vec3d> object_directions()
+{
+    return with_opposites({1, 0, 0}, {0, 1, 0}, {0, 0, 1});
+}
+
 Vector<Vec3d> peel_directions(const Surface &surface)
 {
-    Vector<Vec3d> own = with_opposites({1, 0, 0}, {0, 1, 0}, {0, 0, 1});
+    Vector<Vec3d> own = object_directions();
     Vector<Vec3d> other = principal_directions(surface);
     return slant(surface, other) < WORTH_TURNING * slant(surface, own) ? other : own;
 }
 
-Vector<uint32_t> peel(const Surface &surface, const Vector<Vec3d> &directions, uint32_t &count)
+Vector<uint32_t> peel(Surface &surface, const Vector<Vec3d> &directions, double pitch,
+                      uint32_t &count)
 {
     Vector<uint32_t> label(surface.facets.size());
-    for (size_t t = 0; t < label.size(); ++t)
-        label[t] = uint32_t(nearest_direction(directions, Vec3d(surface.facets[t].normal)));
+    for (size_t t = 0; t < label.size(); ++t) {
+        const Vec3d &own = Vec3d(surface.normal[t]);
+        size_t nearest = nearest_direction(directions, Vec3d(surface.facets[t].normal));
+        if (!surface.junk[t] && dot(own, directions[nearest]) < MIN_FACING) {
+            nearest = nearest_direction(directions, own);
+            surface.facets[t].normal = surface.normal[t];
+        }
+        label[t] = uint32_t(nearest);
+    }
+    for (int pass = 0; pass < PASSES; ++pass)
+        give_up_islands(surface, directions, pitch, label);
     count = connected_pieces(surface.whole, label);
     return label;
 }

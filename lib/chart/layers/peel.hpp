@@ -7,6 +7,9 @@
 
 namespace gtx {
 
+/* The axes of the object and their opposites. */
+Vector<Vec3d> object_directions();
+
 /* Three axes and their opposites, front and back in pairs: those of the object, unless the surface
  * faces three others that are square to each other clearly better. */
 Vector<Vec3d> peel_directions(const Surface &surface);
@@ -15,13 +18,19 @@ Vector<Vec3d> peel_directions(const Surface &surface);
 size_t nearest_direction(const Vector<Vec3d> &directions, const Vec3d &vector);
 
 /* Connected pieces of triangles that face the same of six directions: a label a triangle, and their
- * number in `count`. */
-Vector<uint32_t> peel(const Surface &surface, const Vector<Vec3d> &directions, uint32_t &count);
+ * number in `count`. Normals that smoothing has turned away from their triangles' are these' own
+ * again. `pitch` is the expected size of a texel. */
+Vector<uint32_t> peel(Surface &surface, const Vector<Vec3d> &directions, double pitch,
+                      uint32_t &count);
 
 /* Puts small charts of one direction that lie beside each other, none above another, into one
  * chart where that takes fewer texels: the leaves of a tree, the links of a chain. `grain` and
  * `side` are of CutPlan. */
 void gather_charts(const Surface &surface, const Bounds &bounds, unsigned grain, unsigned side,
                    Vector<Region> &regions, Vector<Frame> &frames);
+
+/* Which of object_directions() sees each triangle best, through a grid of `resolution` texels along
+ * the longest side of the box; their number where none sees it. */
+Vector<uint32_t> see_from_sides(const Surface &surface, unsigned resolution, Task &task);
 
 } // namespace gtx
