@@ -14,7 +14,7 @@ static Mesh slab(const Vec3d &x, const Vec3d &y, const Vec3d &z)
 {
     Mesh mesh = shapes::cube(12);
     for (Vec3d &p : mesh.positions)
-        p = x * p.x + y * p.y + z * (0.02 * p.z);
+        p = x * (2 * p.x) + y * p.y + z * (0.02 * p.z);
     return mesh;
 }
 
@@ -34,11 +34,12 @@ static void assert_axes(const Partition &p, const Vector<Vec3d> &axes)
         double most = 0;
         for (const Vec3d &axis : axes)
             most = std::max(most, std::abs(dot(chart.frame.z, axis)));
-        assert_true(most > 1 - 1e-9);
+        assert_true(most > 1 - 1e-6);
     }
 }
 
 static const ChartOptions layers = with(PartitionMethod::LAYERS);
+static const ChartOptions few_layers = with(PartitionMethod::LAYERS, 10);
 static const ChartOptions relief = with(PartitionMethod::RELIEF);
 
 static void a_slab_is_seen_along_its_axes(void **)
@@ -67,12 +68,12 @@ static void a_ball_is_seen_along_the_axes_of_the_object(void **)
 static void small_pieces_of_a_layer_share_a_chart(void **)
 {
     const Mesh beside = sheets(100, {1, 0, 0}, {0, 1, 0});
-    Partition p = partition(beside, 2, layers);
+    Partition p = partition(beside, 2, few_layers);
     assert_true(p.charts.size() <= 60);
     check(beside, p);
 
     const Mesh above = sheets(10, {0, 0, 1});
-    p = partition(above, 2, layers);
+    p = partition(above, 2, few_layers);
     assert_int_equal(p.charts.size(), 10);
     assert_true(p.report.second_layer_fraction == 0);
 }
@@ -157,8 +158,9 @@ static void auto_takes_the_fewer_texels(void **)
 {
     assert_true(partition(shapes::bumpy_sphere(30), 2, with(PartitionMethod::AUTO)).method ==
                 PartitionMethod::CUTS);
-    assert_true(partition(sheets(100, {1, 0, 0}, {0, 1, 0}), 2, with(PartitionMethod::AUTO))
-                    .method == PartitionMethod::LAYERS);
+    for (const Mesh &mesh : {shapes::torus(40, 0.02), slab({1, 0, 0}, {0, 1, 0}, {0, 0, 1})})
+        assert_true(partition(mesh, 2, with(PartitionMethod::AUTO)).method ==
+                    PartitionMethod::LAYERS);
 }
 
 static void edges_are_measured(void **)

@@ -135,7 +135,9 @@ static void test_single_layer(void **)
     for (PartitionMethod method :
          {PartitionMethod::VSA, PartitionMethod::PGP, PartitionMethod::CUTS,
           PartitionMethod::LAYERS}) {
-        Partition p = partition(mesh, 2, with(method, 2));
+        /* Of a fold that is smaller than a texel or two the layers are one. */
+        const unsigned charts = method == PartitionMethod::LAYERS ? 40 : 2;
+        Partition p = partition(mesh, 2, with(method, charts));
         check(mesh, p);
         check_single_layer(mesh, p);
     }
