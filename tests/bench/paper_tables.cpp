@@ -96,7 +96,7 @@ int power_of_two(double texels)
     return size;
 }
 
-void count_texels(const Mesh &mesh, const std::vector<Chart> &charts, Figures &figures)
+void count_texels(const Mesh &mesh, const Vector<Chart> &charts, Figures &figures)
 {
     constexpr double LONGEST = 128;
     std::vector<Extent> extents;
@@ -130,9 +130,9 @@ void count_texels(const Mesh &mesh, const std::vector<Chart> &charts, Figures &f
 }
 
 /* The charts as they were clustered, in frames of the paper's: along the median of the normals. */
-std::vector<Chart> initial_charts(const Mesh &mesh, const Partition &partition)
+Vector<Chart> initial_charts(const Mesh &mesh, const Partition &partition)
 {
-    std::vector<Chart> out(partition.report.initial_charts);
+    Vector<Chart> out(partition.report.initial_charts);
     for (uint32_t t = 0; t < mesh.triangle_count(); ++t)
         out[partition.initial_chart[t]].triangles.push_back(t);
     for (Chart &chart : out)
