@@ -75,8 +75,8 @@ struct ChartReport {
     double junk_area_fraction = 0;
     uint64_t unseen_triangles = 0;    /* RELIEF: what no chart has */
     double unseen_area_fraction = 0;
-    double area = 0, edge_length = 0; /* object units; of borders and of edges sharper than 60 degrees,
-                                         about: each for a third of its triangle's outline */
+    double area = 0, edge_length = 0; /* object units; of borders and edges sharper than 60
+                                         degrees, each a third of its triangle's outline */
 };
 
 /* Triangles here are those of charted(). */

@@ -209,7 +209,8 @@ Vector<uint32_t> split_layers(const Surface &surface, const Region &region,
     return side;
 }
 
-/* Of a region that faces one of the directions; false where what is wrong is no matter of layers. */
+/* Of a region that faces one of the directions; false where what is wrong is no matter of
+ * layers. */
 bool judge_along(const Surface &surface, const Region &region, const Bounds &bounds,
                  Verdict &verdict)
 {

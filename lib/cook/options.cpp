@@ -121,7 +121,8 @@ uint64_t content_key(const Options &options, uint64_t source_hash)
                         "geotex %d revision %d source %016" PRIx64 " partition %s charts %u "
                         "resolution %u bits %u mips %u dilation %u LOD mesh %u zstd %d unit %08"
                         PRIx32 " error %016" PRIx64 " up %c",
-                        GTX_VERSION, COOKER_REVISION, source_hash, partition_name(options.chart.method),
+                        GTX_VERSION, COOKER_REVISION, source_hash,
+                        partition_name(options.chart.method),
                         options.chart.charts, options.chart.resolution,
                         options.free_bits ? 0 : options.bake.height_bits, options.bake.mips,
                         options.bake.dilation, options.lod_levels, options.zstd, unit_bits,

@@ -10,12 +10,12 @@ namespace {
 
 /* Triangles of the source that a patch stands for: below, the asset is larger than the mesh, and
  * drawing triangles is faster than casting. */
-constexpr double FEW_TRIANGLES = 16;
+constexpr double FEW_TRIANGLES = 8;
 /* Of the texels. Scans have 0.1 to 0.3. */
 constexpr double MUCH_EMPTY = 0.45;
-/* Of a texel, how far an outline is off along borders and sharp edges: one less the IoU that compare
- * measures is 0.011 of an engine (estimated 0.018), 0.005 of a truck (0.004), 0.0006 of the bunny
- * (0.0002). */
+/* Of a texel, how far an outline is off along borders and sharp edges: one less the IoU that
+ * compare measures is 0.011 of an engine (estimated 0.018), 0.005 of a truck (0.004), 0.0006 of the
+ * bunny (0.0002). */
 constexpr double OUTLINE_TEXELS = 0.04;
 constexpr double MUCH_LOST = 0.01;
 
@@ -34,8 +34,8 @@ Suitability judge_suitability(const Partition &partition, const BakeReport &bake
 {
     const ChartReport &charts = partition.report;
     Suitability out;
-    out.triangles_per_patch = double(triangles) / double(std::max<size_t>(
-                                                      partition.charts.size(), 1));
+    const size_t patches = std::max<size_t>(partition.charts.size(), 1);
+    out.triangles_per_patch = double(triangles) / double(patches);
     out.empty_fraction = double(bake.texels_empty) / double(bake.texels_total);
     out.outline_loss = std::min(1., OUTLINE_TEXELS * charts.edge_length * partition.pitch /
                                         charts.area);

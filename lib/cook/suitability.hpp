@@ -9,10 +9,10 @@ namespace gtx {
 struct Suitability {
     double triangles_per_patch = 0; /* of the source; a patch of few is slower than they are */
     double empty_fraction = 0;      /* of the texels */
-    double outline_loss = 0;        /* share of a silhouette that may miss the source's: outlines are
-                                       as sharp as texels are small */
+    double outline_loss = 0;        /* share of a silhouette that may miss the source's: outlines
+                                       are as sharp as texels are small */
     double unseen_fraction = 0;     /* of the surface, lost to six views */
-    const char *better = nullptr;   /* "mesh", "auto", "texels", "cuts"; null: nothing that is known */
+    const char *better = nullptr;   /* "mesh", "auto", "texels", "cuts"; null: nothing known */
 };
 
 /* Warns of what weighs most. `triangles` are the source's. */

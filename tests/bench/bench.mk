@@ -63,7 +63,8 @@ run-bench-rays: $(MODEL)
 CHARTS ?= 0
 bunny := $(wildcard $(GEOTEX_MODELS)/scans/bunny.ply)
 more_models  = $(if $(bunny),$(filter-out $(build)/demo/sculpt.glb,$(MODEL)),$(MODEL))
-table_models = $(if $(bunny),$(bunny) 222) $(foreach model,$(leaf) $(more_models),$(model) $(CHARTS))
+table_models = $(if $(bunny),$(bunny) 222) \
+               $(foreach model,$(leaf) $(more_models),$(model) $(CHARTS))
 leaf := $(build)/demo/leaf.ply
 paper-tables: ## the paper's Tables 2 and 3 of the bunny, a leaf and MODEL, by all partitions
 	$(again) deps

@@ -1,7 +1,7 @@
 /* Leaves as a PLY: models of thin sheets, for the table of partitions.
  *
- * Each is a curved blade with a keel, veins and a serrated edge. One alone lies askew and is closed,
- * a hundredth as thick as it is long; many are open sheets, scattered around a crown. */
+ * Each is a curved blade with a keel, veins and a serrated edge. One alone lies askew and is
+ * closed, a hundredth as thick as it is long; many are open sheets, scattered around a crown. */
 #include <algorithm>
 #include <array>
 #include <cmath>

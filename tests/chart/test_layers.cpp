@@ -1,4 +1,4 @@
-/* Peeling along few directions, gathering small pieces, six views, and choosing between partitions. */
+/* Peeling along few directions, gathering small pieces, six views, choosing a partition. */
 #include "test_partition.hpp"
 
 #include <set>

@@ -1,4 +1,4 @@
-/* What a cook says of models that geometry textures are not for, and of partitions that lose some. */
+/* What a cook says of models that geometry textures are not for, and of what partitions lose. */
 #include "common/schema.hpp"
 
 #include "cook/folder.hpp"

@@ -1,8 +1,8 @@
 /* Small charts of one layer, gathered into one.
  *
  * A patch has a rim of empty texels, and sides that are multiples of a grain: of a leaf or a link
- * they are most of it. Charts that see the same way can share a patch where none lies above another,
- * with room between them for the overlap of both; each keeps its own outline. */
+ * they are most of it. Charts that see the same way can share a patch where none lies above
+ * another, with room between them for the overlap of both; each keeps its own outline. */
 #include "chart/layers/peel.hpp"
 
 #include <algorithm>
