@@ -2,8 +2,8 @@
  *
  * A triangle belongs to the side that sees most of it, and sees it least slanted, so the six maps
  * do not repeat each other as the originals do (Oliveira, Bishop, McAllister, SIGGRAPH 2000;
- * Baboud, Decoret, GI 2006); beyond their borders they overlap as other charts do. The views are parallel:
- * a patch is a parallelepiped, and no frustum has one frame for all of its rays. */
+ * Baboud, Decoret, GI 2006); beyond their borders they overlap as other charts do. The views are
+ * parallel: a patch is a parallelepiped, and no frustum has one frame for all of its rays. */
 #include "chart/layers/peel.hpp"
 
 namespace gtx {
