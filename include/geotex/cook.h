@@ -28,8 +28,17 @@ typedef enum gtx_partition {
     GTX_PARTITION_DEFAULT = 0,    /* cuts */
     GTX_PARTITION_CUTS = 1,       /* few large charts that fold nowhere, cut straight */
     GTX_PARTITION_VSA = 2,        /* variational shape approximation (paper, section 5.2) */
-    GTX_PARTITION_PGP = 3         /* periodic global parameterization: squares along the principal
+    GTX_PARTITION_PGP = 3,        /* periodic global parameterization: squares along the principal
                                      directions of curvature (paper, section 5.1) */
+    GTX_PARTITION_LAYERS = 4,     /* peeled along three axes, those of the object or of its large
+                                     flat parts; what lies above itself is split into layers, and
+                                     small pieces of a layer share a patch (Santos, de Toledo,
+                                     Gattass, SPM 2008) */
+    GTX_PARTITION_RELIEF = 5,     /* one height map from each side of the object's box, at most six
+                                     patches: what no side sees is lost, with a warning
+                                     ("unseen-surface"; Oliveira, Bishop, McAllister, 2000) */
+    GTX_PARTITION_AUTO = 6        /* cuts or layers, whichever takes fewer texels at one density;
+                                     takes the time of both partitions */
 } gtx_partition;
 
 /* How the maps are extracted from the patches' triangles. GPU is the paper's method (section 5):
@@ -57,7 +66,8 @@ typedef struct gtx_cook_desc {
                                      T triangles */
     uint32_t resolution;          /* most texels along a patch side, 64..512; 0 = 128. It sets the
                                      density too: at 128 patches have 1,400 texels of surface on
-                                     average (cuts); the longest patch has this side (vsa, pgp) */
+                                     average (cuts); the longest patch has this side (vsa,
+                                     pgp, relief) */
     uint32_t height_bits;         /* 8 or 16; 0 = 8 */
     uint32_t dilation;            /* rings of dilated texels in all maps but height and trim, up to
                                      128; 0 = 2^(mips - 1) */
@@ -70,7 +80,7 @@ typedef struct gtx_cook_desc {
                                      fraction of the source's bounding diagonal; 0 = none. The
                                      density, and height_bits and charts if they are 0, are chosen
                                      for the fewest bytes. LIMIT if no density reaches it. For the
-                                     partition cuts */
+                                     partitions cuts, layers and auto */
     uint32_t measure;             /* 1: measure the error, for the report */
     gtx_progress_fn progress;     /* may be NULL */
     void *progress_user;

@@ -186,7 +186,9 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
         }, from, to);
     };
     bake_rest(0, 0.9);
-    Vector<Chart> uncovered = cover_uncovered(job, partition, patches, task);
+    Vector<Chart> uncovered;
+    if (partition.complete)
+        uncovered = cover_uncovered(job, partition, patches, task);
     std::move(uncovered.begin(), uncovered.end(), std::back_inserter(partition.charts));
     bake_rest(0.9, 1);
     Vector<uint32_t> charts;

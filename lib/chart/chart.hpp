@@ -43,7 +43,10 @@ struct Chart {
 enum class PartitionMethod {
     CUTS, /* few large charts that fold nowhere, cut straight */
     VSA,  /* variational shape approximation (paper, section 5.2) */
-    PGP   /* periodic global parameterization (paper, section 5.1) */
+    PGP,  /* periodic global parameterization (paper, section 5.1) */
+    LAYERS, /* peeled along three axes (Santos, de Toledo, Gattass, SPM 2008) */
+    RELIEF, /* seen from six sides (Oliveira, Bishop, McAllister, SIGGRAPH 2000) */
+    AUTO  /* CUTS or LAYERS, whichever takes fewer texels */
 };
 
 struct ChartOptions {
@@ -70,6 +73,10 @@ struct ChartReport {
     double second_layer_fraction = 0; /* share of core texels with a second layer */
     uint64_t junk_triangles = 0;      /* scan noise: small and twisted against its neighbours */
     double junk_area_fraction = 0;
+    uint64_t unseen_triangles = 0;    /* RELIEF: what no chart has */
+    double unseen_area_fraction = 0;
+    double area = 0, edge_length = 0; /* object units; of borders and edges sharper than 60
+                                         degrees, each a third of its triangle's outline */
 };
 
 /* Triangles here are those of charted(). */
@@ -78,6 +85,8 @@ struct Partition {
     /* PGP cuts triangles where charts end; empty where the charts are of the source's own. */
     Mesh mesh;
     Vector<uint32_t> source;             /* per triangle of `mesh`: that of the source, ascending */
+    PartitionMethod method = PartitionMethod::CUTS; /* never AUTO */
+    bool complete = true;                /* false: what no chart has is not to be shown */
     double pitch = 0;                    /* texel pitch of the model, object units */
     Vector<uint32_t> initial_chart;      /* per triangle, before splitting */
     Vector<uint8_t> junk;                /* per triangle: 1 = junk */

@@ -186,7 +186,7 @@ Trial Merger::try_offer(const Offer &offer)
     if (length(sum) < MIN_CONE * size || too_steep(offer, normalize(sum), STEEP_GUESS))
         return trial;
     trial.both = join(offer);
-    const Vec3d z = cone_axis(surface_, trial.both.triangles);
+    const Vec3d z = chart_axis(surface_, trial.both.triangles, bounds_);
     Verdict verdict;
     if (too_steep(offer, z, STEEP_SHARE) || !fits_along(surface_, trial.both, z, bounds_, verdict))
         return trial;

@@ -1,6 +1,7 @@
 /* Judges regions: too long, too steep, folded, or fit to be a chart. */
 #include "chart/split.hpp"
 
+#include "chart/layers/peel.hpp"
 #include "chart/vsa.hpp"
 
 #include <algorithm>
@@ -208,7 +209,39 @@ Vector<uint32_t> split_layers(const Surface &surface, const Region &region,
     return side;
 }
 
+/* Of a region that faces one of the directions; false where what is wrong is no matter of
+ * layers. */
+bool judge_along(const Surface &surface, const Region &region, const Bounds &bounds,
+                 Verdict &verdict)
+{
+    const Vec3d z = chart_axis(surface, region.triangles, bounds);
+    if (fits_along(surface, region, z, bounds, verdict))
+        return true;
+    const Layers layers = try_axis(surface, region, z, bounds).layers;
+    for (auto *samples : {&layers.folds, &layers.discontinuities})
+        if (!samples->empty()) {
+            verdict = {{}, pieces_of(region, split_layers(surface, region, *samples))};
+            return true;
+        }
+    Vector<uint32_t> nearest(region.size());
+    for (size_t i = 0; i < region.size(); ++i)
+        nearest[i] = uint32_t(nearest_direction(
+            bounds.directions, Vec3d(surface.normal[region.triangles[i]])));
+    verdict = {{}, pieces_of(region, nearest)};
+    return verdict.pieces.size() > 1;
+}
+
 } // namespace
+
+Vec3d chart_axis(const Surface &surface, const Vector<uint32_t> &triangles, const Bounds &bounds)
+{
+    if (bounds.directions.empty())
+        return cone_axis(surface, triangles);
+    Vec3d sum;
+    for (uint32_t t : triangles)
+        sum += Vec3d(surface.normal[t]) * double(surface.facets[t].size);
+    return bounds.directions[nearest_direction(bounds.directions, sum)];
+}
 
 bool is_inverted(const Surface &surface, uint32_t t, const Vec3d &z, double pitch)
 {
@@ -252,6 +285,9 @@ Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds
                              : median_axis(surface.mesh, region.triangles);
         return try_axis(surface, region, z, bounds);
     };
+    Verdict along;
+    if (!bounds.directions.empty() && judge_along(surface, region, bounds, along))
+        return along;
     /* A triangle alone is a height map along its own normal, whatever its neighbours' are. */
     Candidate first = try_kind(bounds.cone && region.size() > 1);
     if (too_long(first.frame))

@@ -22,12 +22,18 @@ struct Bounds {
     double side;   /* longest side of its rectangle */
     double pitch;  /* texel at which layers are looked for */
     bool cone;     /* axes are those of the narrowest cone, rather than the paper's median */
+    /* Unit axes to choose from, where one of them serves; empty: any. */
+    Vector<Vec3d> directions = {};
 };
 
 struct Verdict {
     Frame frame;                 /* of the chart, when there are no pieces */
     Vector<Region> pieces;       /* connected, at least two; or none: the region is a chart */
 };
+
+/* The axis that a chart of some triangles is tried along first: of the bounds' directions the one
+ * that they face most, or else the narrowest cone's. */
+Vec3d chart_axis(const Surface &surface, const Vector<uint32_t> &triangles, const Bounds &bounds);
 
 /* Whether a region can be a chart along unit `z`, walls left out: if it has walls, the verdict's
  * `pieces` are they and the rest, which have no axes yet. */

@@ -24,7 +24,7 @@ static const option options[] = {
      "number of patches to aim at [10 T^0.28, T triangles]", 1, 1e6},
     {"resolution", 0, OPTION_UINT, &desc.resolution, "N",
      "a patch's largest side in texels [128]", 64, 512},
-    {"partition", 0, OPTION_CHOICE, &partition, "cuts|vsa|pgp",
+    {"partition", 0, OPTION_CHOICE, &partition, "cuts|vsa|pgp|layers|relief|auto",
      "partition into charts [cuts]", 0, 0},
     {"adaptive", 0, OPTION_FLAG, &adaptive, NULL,
      "with --partition pgp: smaller patches where the surface is more curved", 0, 0},

@@ -161,6 +161,8 @@ static Attempt attempt(const Mesh &mesh, const Options &options, Task &task, con
     const Mesh &charted = out.partition.charted(mesh);
     {
         Maps maps = bake(charted, out.partition, options.bake, task);
+        out.suitability = judge_suitability(out.partition, maps.report, facts.source_triangles,
+                                            task);
         Vector<LodLevel> lod;
         if (options.lod_levels)
             lod = make_lod(lod_source(charted, out.partition, maps, task), maps,
@@ -168,6 +170,7 @@ static Attempt attempt(const Mesh &mesh, const Options &options, Task &task, con
         refuse_warnings(options, task);
         CookFacts of_asset = facts;
         of_asset.chart_count = out.partition.charts.size();
+        of_asset.method = out.partition.method;
         of_asset.warnings = task.warnings.size();
         out.bake = maps.report;
         out.asset = assemble(maps, lod, {write_meta(options, of_asset), options.unit,
@@ -196,6 +199,8 @@ static Attempt cook_mesh(const Mesh &mesh, const Options &options, Task &task, C
     task.warnings.insert(task.warnings.end(), made.warnings.begin(), made.warnings.end());
     facts.charts = made.partition.report;
     facts.bake = made.bake;
+    facts.method = made.partition.method;
+    facts.suitability = made.suitability;
     facts.error = made.error;
     return made;
 }

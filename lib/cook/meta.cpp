@@ -17,7 +17,7 @@ std::string write_meta(const Options &options, const CookFacts &facts)
     gtx_json_begin_object(&json, nullptr);
     gtx_json_string(&json, "generator", generator);
     gtx_json_begin_object(&json, "options");
-    gtx_json_string(&json, "partition", partition_name(options));
+    gtx_json_string(&json, "partition", partition_name(facts.method));
     if (options.chart.adaptive)
         gtx_json_bool(&json, "adaptive", true);
     gtx_json_integer(&json, "charts", facts.chart_count);

@@ -26,13 +26,15 @@ constexpr int DEFAULT_ZSTD = 0;
 
 /* In the order of gtx_partition. */
 constexpr PartitionMethod METHODS[] = {PartitionMethod::CUTS, PartitionMethod::CUTS,
-                                       PartitionMethod::VSA, PartitionMethod::PGP};
+                                       PartitionMethod::VSA, PartitionMethod::PGP,
+                                       PartitionMethod::LAYERS, PartitionMethod::RELIEF,
+                                       PartitionMethod::AUTO};
 
 static void check(const gtx_cook_desc &desc)
 {
     require_zeroed(desc.reserved);
     require_limits(desc.limits);
-    require_argument(number_of(desc.partition) <= GTX_PARTITION_PGP, "unknown partition");
+    require_argument(number_of(desc.partition) <= GTX_PARTITION_AUTO, "unknown partition");
     require_argument(number_of(desc.extract) <= GTX_EXTRACT_GPU, "unknown extraction");
     require_argument(desc.charts <= 1u << 20, "charts is at most 2^20");
     require_argument(!desc.resolution || (desc.resolution >= 64 && desc.resolution <= 512),
@@ -46,8 +48,11 @@ static void check(const gtx_cook_desc &desc)
     require_argument(desc.threads <= 1024, "threads is at most 1024");
     require_argument(desc.unit >= 0 && std::isfinite(desc.unit), "unit is a positive number");
     require_argument(desc.error >= 0 && desc.error < 1, "error is a fraction of the diagonal");
-    require_argument(desc.error == 0 || number_of(desc.partition) <= GTX_PARTITION_CUTS,
-                     "an error can be asked for with the partition cuts only");
+    const bool any_density = number_of(desc.partition) <= GTX_PARTITION_CUTS ||
+                             number_of(desc.partition) == GTX_PARTITION_LAYERS ||
+                             number_of(desc.partition) == GTX_PARTITION_AUTO;
+    require_argument(desc.error == 0 || any_density,
+                     "an error can be asked for with the partitions cuts, layers and auto only");
     require_argument(desc.adaptive <= 1, "adaptive is 0 or 1");
     require_argument(!desc.adaptive || number_of(desc.partition) == GTX_PARTITION_PGP,
                      "only the partition pgp can be adaptive");
@@ -93,11 +98,14 @@ Options checked_options(const gtx_cook_desc &desc)
     return options;
 }
 
-const char *partition_name(const Options &options)
+const char *partition_name(PartitionMethod method)
 {
-    switch (options.chart.method) {
+    switch (method) {
     case PartitionMethod::VSA: return "vsa";
     case PartitionMethod::PGP: return "pgp";
+    case PartitionMethod::LAYERS: return "layers";
+    case PartitionMethod::RELIEF: return "relief";
+    case PartitionMethod::AUTO: return "auto";
     default: return "cuts";
     }
 }
@@ -113,7 +121,8 @@ uint64_t content_key(const Options &options, uint64_t source_hash)
                         "geotex %d revision %d source %016" PRIx64 " partition %s charts %u "
                         "resolution %u bits %u mips %u dilation %u LOD mesh %u zstd %d unit %08"
                         PRIx32 " error %016" PRIx64 " up %c",
-                        GTX_VERSION, COOKER_REVISION, source_hash, partition_name(options),
+                        GTX_VERSION, COOKER_REVISION, source_hash,
+                        partition_name(options.chart.method),
                         options.chart.charts, options.chart.resolution,
                         options.free_bits ? 0 : options.bake.height_bits, options.bake.mips,
                         options.bake.dilation, options.lod_levels, options.zstd, unit_bits,

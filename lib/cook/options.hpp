@@ -31,8 +31,8 @@ struct Options {
 /* Throws Error: ARGUMENT, NOT_ZEROED; GL, SHADER. */
 Options checked_options(const gtx_cook_desc &desc);
 
-/* The partition as an asset names it. */
-const char *partition_name(const Options &options);
+/* A partition as options and assets name it. */
+const char *partition_name(PartitionMethod method);
 
 /* Of the sources' content, the options that matter and the cooker's revision: equal keys promise
  * equal assets. */

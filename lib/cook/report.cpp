@@ -129,10 +129,26 @@ static uint64_t peak_rss_bytes()
     return getrusage(RUSAGE_SELF, &usage) ? 0 : uint64_t(usage.ru_maxrss) * 1024;
 }
 
+static void write_suitability(Json &json, const Suitability &suitability)
+{
+    gtx_json_begin_object(&json, "suitability");
+    gtx_json_number(&json, "triangles_per_patch", suitability.triangles_per_patch);
+    gtx_json_number(&json, "empty_fraction", suitability.empty_fraction);
+    gtx_json_number(&json, "outline_loss", suitability.outline_loss);
+    gtx_json_number(&json, "unseen_fraction", suitability.unseen_fraction);
+    if (suitability.better)
+        gtx_json_string(&json, "better", suitability.better);
+    else
+        gtx_json_null(&json, "better");
+    gtx_json_end_object(&json);
+}
+
 /* What only a cook tells that has made something. */
 static void write_made(Json &json, const Options &options, const CookFacts &facts)
 {
+    gtx_json_string(&json, "partition", partition_name(facts.method));
     write_charts(json, facts.charts);
+    write_suitability(json, facts.suitability);
     write_extract(json, options.bake.extractor);
     gtx_json_begin_object(&json, "dropped_triangles");
     for (const auto &[reason, count] : facts.clean.dropped)

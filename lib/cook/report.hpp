@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cook/options.hpp"
+#include "cook/suitability.hpp"
 #include "measure/measure.hpp"
 
 #include <geotex/cook.h>
@@ -20,6 +21,8 @@ struct CookFacts {
     ChartReport charts;
     uint64_t chart_count = 0;
     BakeReport bake;
+    PartitionMethod method = PartitionMethod::CUTS; /* what AUTO came to */
+    Suitability suitability;
     SurfaceError error;
     uint64_t source_hash = 0, key = 0, warnings = 0;
     Vector<gtx_lod_mesh> lod;      /* the levels of the asset */

@@ -3,6 +3,7 @@
 
 #include "cook/assemble.hpp"
 #include "cook/options.hpp"
+#include "cook/suitability.hpp"
 #include "measure/measure.hpp"
 
 #include <functional>
@@ -15,6 +16,7 @@ struct Attempt {
     Asset asset{nullptr, gtx_close};
     Partition partition;
     BakeReport bake;
+    Suitability suitability;
     SurfaceError error;
     uint64_t bytes = 0;                 /* of the file */
     Vector<Warning> warnings;           /* of this attempt */

@@ -77,13 +77,19 @@ run-bench-rays: $(MODEL)
 CHARTS ?= 0
 bunny := $(wildcard $(GEOTEX_MODELS)/scans/bunny.ply)
 more_models  = $(if $(bunny),$(filter-out $(build)/demo/sculpt.glb,$(MODEL)),$(MODEL))
-table_models = $(if $(bunny),$(bunny) 222) $(foreach model,$(more_models),$(model) $(CHARTS))
-paper-tables: ## the paper's Tables 2 and 3 of the bunny and of MODEL, by all partitions
+table_models = $(if $(bunny),$(bunny) 222) \
+               $(foreach model,$(leaf) $(more_models),$(model) $(CHARTS))
+leaf := $(build)/demo/leaf.ply
+paper-tables: ## the paper's Tables 2 and 3 of the bunny, a leaf and MODEL, by all partitions
 	$(again) deps
-	$(again) -j$$(nproc) all $(out)/tests/bench/paper_tables
+	$(again) -j$$(nproc) all $(out)/tests/bench/paper_tables $(out)/tests/bench/leaves
 	$(again) run-paper-tables
 
-run-paper-tables: $(filter $(build)/demo/sculpt.glb,$(table_models))
+$(leaf): $(out)/tests/bench/leaves
+	@mkdir -p $(@D)
+	@$< $@ 1
+
+run-paper-tables: $(filter $(build)/demo/%,$(table_models))
 	@mkdir -p $(build)/demo $(build)/paper
 	@$(out)/tests/bench/paper_tables $(build)/paper $(table_models)
 
@@ -120,6 +126,10 @@ $(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o \
 $(out)/tests/bench/grid_mesh: $(out)/tests/bench/grid_mesh.o $(lib_cook) $(lib_core)
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh)
+
+$(out)/tests/bench/leaves: $(out)/tests/bench/leaves.o
+	$(say) LINK $@
+	$(Q)$(CXX) $(flags) -o $@ $^
 
 $(out)/tests/bench/rays: $(out)/tests/bench/rays.o $(call objects_of,host image) $(lib_core)
 	$(say) LINK $@

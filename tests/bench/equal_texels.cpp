@@ -7,6 +7,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
+
+#include <nlohmann/json.hpp>
 
 namespace {
 
@@ -40,6 +43,7 @@ AssetFigures figures_of(const std::string &path)
         const double texels = double(patch.rect[2]) * patch.rect[3];
         out.texels += uint64_t(texels);
         used += texels * double(patch.coverage);
+        out.grid_triangles += 2 * uint64_t(patch.rect[2] - 1) * uint64_t(patch.rect[3] - 1);
         out.range += texels * double(patch.coverage) * double(patch.extent_z);
     }
     out.range /= used * std::sqrt(diagonal);
@@ -56,8 +60,16 @@ AssetFigures cook(const std::string &model, gtx_partition partition, unsigned ch
     desc.charts = charts;
     desc.resolution = resolution;
     gtx_error error;
-    require(gtx_cook_file(model.c_str(), path.c_str(), &desc, nullptr, &error), error);
-    return figures_of(path);
+    gtx_report report = {};
+    const std::clock_t start = std::clock();
+    require(gtx_cook_file(model.c_str(), path.c_str(), &desc, &report, &error), error);
+    AssetFigures out = figures_of(path);
+    out.seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+    const nlohmann::json said = nlohmann::json::parse(report.json);
+    gtx_report_free(&report);
+    out.bytes = said["bytes"];
+    out.lost = said["suitability"]["unseen_fraction"];
+    return out;
 }
 
 /* Leaves the asset that comes nearest to `texels`. */

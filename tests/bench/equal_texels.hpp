@@ -11,6 +11,10 @@ struct AssetFigures {
     double range = 0;               /* of heights in a patch, mean over texels; of the diagonal */
     double rms = 0;                 /* from the source, of the diagonal */
     uint64_t holes = 0, pixels = 0; /* in 26 views */
+    uint64_t bytes = 0;
+    uint64_t grid_triangles = 0;    /* of a displaced mesh over all texels */
+    double seconds = 0;             /* of a processor, to cook it */
+    double lost = 0;                /* of the surface, seen from no side */
 };
 
 /* Cooks the model with each partition, at the resolution at which it has about as many texels as

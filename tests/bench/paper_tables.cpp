@@ -39,7 +39,9 @@ const struct {
     gtx_partition partition;
 } METHODS[] = {{"cuts", PartitionMethod::CUTS, GTX_PARTITION_CUTS},
                {"vsa", PartitionMethod::VSA, GTX_PARTITION_VSA},
-               {"pgp", PartitionMethod::PGP, GTX_PARTITION_PGP}};
+               {"pgp", PartitionMethod::PGP, GTX_PARTITION_PGP},
+               {"layers", PartitionMethod::LAYERS, GTX_PARTITION_LAYERS},
+               {"relief", PartitionMethod::RELIEF, GTX_PARTITION_RELIEF}};
 
 /* The part of a chart's core between its cuts, in its frame's coordinates, corner by corner. */
 std::vector<Vec3d> clipped(const Mesh &mesh, uint32_t triangle, const Chart &chart,
@@ -94,7 +96,7 @@ int power_of_two(double texels)
     return size;
 }
 
-void count_texels(const Mesh &mesh, const std::vector<Chart> &charts, Figures &figures)
+void count_texels(const Mesh &mesh, const Vector<Chart> &charts, Figures &figures)
 {
     constexpr double LONGEST = 128;
     std::vector<Extent> extents;
@@ -128,9 +130,9 @@ void count_texels(const Mesh &mesh, const std::vector<Chart> &charts, Figures &f
 }
 
 /* The charts as they were clustered, in frames of the paper's: along the median of the normals. */
-std::vector<Chart> initial_charts(const Mesh &mesh, const Partition &partition)
+Vector<Chart> initial_charts(const Mesh &mesh, const Partition &partition)
 {
-    std::vector<Chart> out(partition.report.initial_charts);
+    Vector<Chart> out(partition.report.initial_charts);
     for (uint32_t t = 0; t < mesh.triangle_count(); ++t)
         out[partition.initial_chart[t]].triangles.push_back(t);
     for (Chart &chart : out)
@@ -193,14 +195,18 @@ void print_rows(const std::vector<Row> &rows)
             print_figures(row.method + std::string(", before splitting"), row.initial);
         print_figures(row.method, row.final);
     }
-    std::printf("%-24s %6s %9s %9s %9s %10s  %s\n", "assets of equal texels", "charts", "texels",
-                "empty", "range", "RMS", "hole pixels");
+    std::printf("%-24s %6s %9s %9s %9s %10s %9s %9s %7s %7s  %s\n", "assets of equal texels",
+                "charts", "texels", "empty", "range", "RMS", "bytes", "grid", "seconds", "lost",
+                "hole pixels");
     for (const Row &row : rows) {
         const AssetFigures &a = row.asset;
-        std::printf("%-24s %6llu %9llu %7.2f %% %7.2f %% %8.5f %%  %llu of %llu\n", row.method,
+        std::printf("%-24s %6llu %9llu %7.2f %% %7.2f %% %8.5f %% %9llu %9llu %7.2f %5.1f %%  "
+                    "%llu of %llu\n", row.method,
                     static_cast<unsigned long long>(a.patches),
                     static_cast<unsigned long long>(a.texels),
                     100 * double(a.empty) / double(a.texels), 100 * a.range, 100 * a.rms,
+                    static_cast<unsigned long long>(a.bytes),
+                    static_cast<unsigned long long>(a.grid_triangles), a.seconds, 100 * a.lost,
                     static_cast<unsigned long long>(a.holes),
                     static_cast<unsigned long long>(a.pixels));
     }
@@ -212,6 +218,8 @@ void print_notes()
                 "none\nis left, and crumbs are attached, which the paper leaves open\n"
                 "texels: the longest side of all charts sets the density, so one chart decides;\n"
                 "the paper does not say how it finds rectangles: these are of least area\n"
+                "grid: triangles of the displaced mesh (Cook 1984), which draws the same maps, at\n"
+                "most; seconds: to cook, of a processor; lost: surface that no view sees\n"
                 "range: of heights in a patch, mean over texels; as RMS, of the diagonal\n");
 }
 
@@ -233,7 +241,9 @@ nlohmann::json to_json(const Row &row, const std::string &model, size_t triangle
         out["initial_" + key] = value;
     const AssetFigures &a = row.asset;
     out["equal_texels"] = {{"charts", a.patches}, {"texels", a.texels}, {"empty", a.empty},
-                           {"height_range", a.range}, {"rms", a.rms}, {"hole_pixels", a.holes},
+                           {"height_range", a.range}, {"rms", a.rms}, {"bytes", a.bytes},
+                           {"grid_triangles", a.grid_triangles}, {"seconds", a.seconds},
+                           {"lost", a.lost}, {"hole_pixels", a.holes},
                            {"surface_pixels", a.pixels}};
     return out;
 }

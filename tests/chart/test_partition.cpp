@@ -25,6 +25,7 @@ static void test_shapes(void **)
         check(c.mesh, p);
         for (PartitionMethod method : {PartitionMethod::VSA, PartitionMethod::PGP})
             check(c.mesh, partition(c.mesh, 2, with(method)), 64);
+        check(c.mesh, partition(c.mesh, 2, with(PartitionMethod::LAYERS)));
     }
 }
 
@@ -132,8 +133,11 @@ static void test_single_layer(void **)
 {
     Mesh mesh = shapes::both(shapes::helicoid(50, 4), shapes::folded_field(20, 0.03), {4, 0, 0});
     for (PartitionMethod method :
-         {PartitionMethod::VSA, PartitionMethod::PGP, PartitionMethod::CUTS}) {
-        Partition p = partition(mesh, 2, with(method, 2));
+         {PartitionMethod::VSA, PartitionMethod::PGP, PartitionMethod::CUTS,
+          PartitionMethod::LAYERS}) {
+        /* Of a fold that is smaller than a texel or two the layers are one. */
+        const unsigned charts = method == PartitionMethod::LAYERS ? 40 : 2;
+        Partition p = partition(mesh, 2, with(method, charts));
         check(mesh, p);
         check_single_layer(mesh, p);
     }

@@ -167,6 +167,8 @@ static const struct {
 } calls[] = {{"cuts", cook_by(GTX_PARTITION_CUTS, 2, 1)},
              {"vsa", cook_by(GTX_PARTITION_VSA, 0, 0)},
              {"pgp", cook_by(GTX_PARTITION_PGP, 0, 0)},
+             {"layers", cook_by(GTX_PARTITION_LAYERS, 0, 0)},
+             {"relief", cook_by(GTX_PARTITION_RELIEF, 0, 0)},
              {"compare", compare_once},
              {"lod", lod_once},
              {"horizons", horizons_once}};
