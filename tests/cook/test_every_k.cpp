@@ -165,8 +165,8 @@ static const struct {
     const char *name;
     Call call;
 } calls[] = {{"cuts", cook_by(GTX_PARTITION_CUTS, 2, 1)},
-             {"vsa", cook_by(GTX_PARTITION_VSA, 0, 0)},
-             {"pgp", cook_by(GTX_PARTITION_PGP, 0, 0)},
+             {"vsa", cook_by(GTX_PARTITION_VSA, GTX_LOD_LEVELS_NONE, 0)},
+             {"pgp", cook_by(GTX_PARTITION_PGP, GTX_LOD_LEVELS_NONE, 0)},
              {"compare", compare_once},
              {"lod", lod_once},
              {"horizons", horizons_once}};
