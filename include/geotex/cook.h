@@ -59,6 +59,9 @@ typedef enum gtx_extract {
 typedef gtx_result (*gtx_sources_fn)(const char *const *paths, size_t count, void *user,
                                      gtx_error *error);
 
+/* For lod_levels: an asset without LOD meshes. */
+#define GTX_LOD_LEVELS_NONE 0xffffffffu
+
 typedef struct gtx_cook_desc {
     gtx_partition partition;
     gtx_extract extract;
@@ -84,7 +87,8 @@ typedef struct gtx_cook_desc {
     uint32_t measure;             /* 1: measure the error, for the report */
     gtx_progress_fn progress;     /* may be NULL */
     void *progress_user;
-    uint32_t lod_levels;          /* LOD meshes, at most 5; up to 3 far ones follow */
+    uint32_t lod_levels;          /* LOD meshes, 1..5; 0 = 5; up to 3 far ones follow. Or
+                                     GTX_LOD_LEVELS_NONE */
     const char *charts_ply;       /* where to write the partition before splitting, as a PLY with a
                                      colour per chart, inverted triangles green; or NULL */
     const char *const *more;      /* paths of further models to cook into the same asset */
@@ -227,8 +231,8 @@ typedef struct gtx_horizons_desc {
     uint32_t tile;                /* most texels along a patch, 16..512; 0 = 128 */
     uint32_t height_bits;         /* 8 or 16; 0 = 8 */
     uint32_t mips;                /* 1..8; 0 = 4 */
-    uint32_t lod_levels;          /* LOD meshes, 0..5, made from the maps; up to 3 far ones
-                                     follow */
+    uint32_t lod_levels;          /* LOD meshes, 1..5, made from the maps; 0 = 5; up to 3 far ones
+                                     follow. Or GTX_LOD_LEVELS_NONE */
     uint32_t threads;             /* up to 1024; 0 = all processors */
     float unit;                   /* metres per object unit; 0 = 1 */
     gtx_progress_fn progress;     /* may be NULL */

@@ -13,7 +13,7 @@ enum { MAX_MODELS = 4096 };
 
 static gtx_cook_desc desc;
 static const char *output, *name, *report_path, *depfile_path;
-static uint32_t partition, extract;
+static uint32_t partition, extract, lod_levels = 5;
 static double unit = 1;
 static int32_t zstd_level = 3;
 static bool adaptive, strict, if_changed;
@@ -35,7 +35,8 @@ static const option options[] = {
     {"height-bits", 0, OPTION_ONE_OF, &desc.height_bits, "8|16", "bits of a height [8]", 0, 0},
     {"mips", 0, OPTION_UINT, &desc.mips, "N", "mip levels of normal and colour [4]", 1, 8},
     {"dilation", 0, OPTION_UINT, &desc.dilation, "N", "texels of dilation [2^(mips-1)]", 1, 128},
-    {"lod-levels", 0, OPTION_UINT, &desc.lod_levels, "N", "levels of the LOD mesh [0]", 0, 5},
+    {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
+     "LOD meshes at most, besides far ones; 0 = none at all [5]", 0, 5},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
     {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z",
      "the model's up axis; +Z is turned to +Y [y]", 0, 0},
@@ -189,6 +190,7 @@ int cmd_cook(int argc, char **argv)
     desc.partition = (gtx_partition)(GTX_PARTITION_CUTS + partition);
     desc.extract = (gtx_extract)(GTX_EXTRACT_CPU + extract);
     desc.zstd_level = zstd_level ? zstd_level : -1;
+    desc.lod_levels = lod_levels ? lod_levels : GTX_LOD_LEVELS_NONE;
     desc.unit = (float)unit;
     desc.measure = report_path != NULL;
     desc.adaptive = adaptive;

@@ -3,6 +3,7 @@
 
 #include "base/warnings.h"
 
+#include <geotex/cook.h>
 #include <geotex/edit.h>
 
 #include "image/image.h"
@@ -12,6 +13,7 @@
 
 static const char *output;
 static int32_t zstd_level = 3;
+static uint32_t lod_levels = 5;
 static steps chosen;
 static bool naive;
 static double boost_radius = 2, pattern_height, pattern_size;
@@ -32,6 +34,8 @@ static const option options[] = {
      "width of the image, object units [64 texels]", 0, 1e30},
     {"naive", 0, OPTION_FLAG, &naive, NULL, "blur each patch alone, as in the paper: seams open", 0,
      0},
+    {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
+     "LOD meshes at most, made of the filtered maps; 0 = none at all [5]", 0, 5},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
     {0}};
 
@@ -87,6 +91,22 @@ static gtx_result take(gtx_edit *edit, const step *s, const char **file, gtx_err
     return gtx_edit_gaussian(edit, &blur, error);
 }
 
+/* Those that the asset had are of the surface as it was. */
+static gtx_result add_lod_meshes(gtx_asset **edited, gtx_error *error)
+{
+    const gtx_lod_desc desc = {
+        .levels = lod_levels, .progress = show_progress, .limits = cli_limits};
+    gtx_asset *made = NULL;
+    catch_interrupt();
+    gtx_result result = gtx_cook_lod_meshes(*edited, &desc, &made, error);
+    end_progress();
+    if (result)
+        return result;
+    gtx_close(*edited);
+    *edited = made;
+    return GTX_OK;
+}
+
 /* *file is what a failure is about. */
 static gtx_result run(const gtx_asset *asset, const char **file, gtx_error *error)
 {
@@ -98,6 +118,8 @@ static gtx_result run(const gtx_asset *asset, const char **file, gtx_error *erro
     if (!result)
         result = gtx_edit_finish(edit, &edited, error);
     gtx_edit_end(edit);
+    if (!result && lod_levels)
+        result = add_lod_meshes(&edited, error);
     if (!result) {
         const gtx_encode_desc encode = {.zstd_level = zstd_level};
         *file = output;
@@ -143,10 +165,9 @@ int cmd_filter(int argc, char **argv)
     gtx_result result = gtx_open_file(file, &open, &asset, &error);
     if (!result) {
         gtx_get_info(asset, &info);
-        if (info.lod_levels)
+        if (info.lod_levels && !lod_levels)
             report_warning(file, gtx_warning_name(GTX_WARNING_LOD_DROPPED),
-                           "the LOD mesh is that of the surface as it was, and is left out "
-                           "(gtx pack --lod-levels makes one of the maps)");
+                           "the LOD meshes are those of the surface as it was, and are left out");
         result = run(asset, &file, &error);
     }
     gtx_close(asset);

@@ -16,7 +16,7 @@ static gtx_horizons_desc desc;
 static gtx_height_grid_desc reading, reading_property;
 static const char *output, *range, *property_range, *spacing, *origin, *color_range;
 static double missing = NAN, rotation = NAN, unit = 1;
-static uint32_t colors;
+static uint32_t colors, lod_levels = 5;
 static int32_t zstd_level = 3;
 static bool depths, one_surface;
 
@@ -45,7 +45,8 @@ static const option options[] = {
     {"tile", 0, OPTION_UINT, &desc.tile, "N", "a patch's largest side in texels [128]", 16, 512},
     {"height-bits", 0, OPTION_ONE_OF, &desc.height_bits, "8|16", "bits of a height [8]", 0, 0},
     {"mips", 0, OPTION_UINT, &desc.mips, "N", "mip levels of normal and colour [4]", 1, 8},
-    {"lod-levels", 0, OPTION_UINT, &desc.lod_levels, "N", "levels of the LOD mesh [0]", 0, 5},
+    {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
+     "LOD meshes at most, besides far ones; 0 = none at all [5]", 0, 5},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the grids [1]", 1e-30, 1e30},
     {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
@@ -209,6 +210,7 @@ int cmd_horizons(int argc, char **argv)
     desc.colors = (gtx_colors)colors;
     desc.depths = depths;
     desc.one_surface = one_surface;
+    desc.lod_levels = lod_levels ? lod_levels : GTX_LOD_LEVELS_NONE;
     desc.unit = (float)unit;
     desc.progress = show_progress;
     desc.limits = reading.limits = reading_property.limits = cli_limits;

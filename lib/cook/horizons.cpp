@@ -72,7 +72,8 @@ static uint64_t check(const gtx_height_grid *grids, uint32_t count, const gtx_ho
     require_argument(!desc.height_bits || desc.height_bits == 8 || desc.height_bits == 16,
                      "height_bits is 8 or 16");
     require_argument(desc.mips <= 8, "mips is 1 to 8");
-    require_argument(desc.lod_levels <= MAX_LOD_LEVELS, "lod_levels is 0 to 5");
+    require_argument(is_lod_levels(desc.lod_levels),
+                     "lod_levels is 0 to 5, or GTX_LOD_LEVELS_NONE");
     require_argument(desc.threads <= 1024, "threads is at most 1024");
     require_argument(desc.unit >= 0 && std::isfinite(desc.unit), "unit is a positive number");
     for (uint32_t n = 0; n < count; ++n) {
@@ -212,7 +213,8 @@ static Asset make_horizons(const gtx_height_grid *grids, uint32_t count,
                            const gtx_horizons_desc &desc, gtx_horizons_result *result)
 {
     const uint64_t nodes = check(grids, count, desc);
-    const float lod = desc.lod_levels ? 60 : 0;
+    const unsigned lod_levels = lod_levels_of(desc.lod_levels);
+    const float lod = lod_levels ? 200 : 0;
     Task task(desc.threads, desc.progress, desc.progress_user, {"bake", "pack", "lod", "write"},
               {35, 3, lod, 2}, limits_of(desc));
     task.limits.require(GTX_LIMITED_TEXELS, "the grids", nodes);
@@ -230,8 +232,8 @@ static Asset make_horizons(const gtx_height_grid *grids, uint32_t count,
     TileReport report;
     const Maps maps = bake_tiles(layers, options_of(desc), report, task);
     Vector<LodLevel> levels;
-    if (desc.lod_levels)
-        levels = make_lod(lod_source(maps, task), maps, desc.lod_levels, task);
+    if (lod_levels)
+        levels = make_lod(lod_source(maps, task), maps, lod_levels, task);
     task.begin("write");
     const gtx_allocator allocator = gtx_allocator_or_default(desc.allocator);
     Asset asset = assemble(maps, levels, {meta_of(desc, range, allocator),

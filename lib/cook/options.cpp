@@ -15,7 +15,7 @@
 namespace gtx {
 
 /* Raised with every change that makes other assets of the same models and options. */
-constexpr int COOKER_REVISION = 17;
+constexpr int COOKER_REVISION = 18;
 
 /* As zstd counts: 3 is its own default. */
 #ifdef GTX_ZSTD
@@ -43,7 +43,8 @@ static void check(const gtx_cook_desc &desc)
                      "height_bits is 8 or 16");
     require_argument(desc.dilation <= 128, "dilation is at most 128");
     require_argument(desc.mips <= 8, "mips is 1 to 8");
-    require_argument(desc.lod_levels <= MAX_LOD_LEVELS, "lod_levels is 0 to 5");
+    require_argument(is_lod_levels(desc.lod_levels),
+                     "lod_levels is 0 to 5, or GTX_LOD_LEVELS_NONE");
     require_argument(desc.zstd_level >= -1 && desc.zstd_level <= 19, "zstd_level is -1 to 19");
     require_argument(desc.threads <= 1024, "threads is at most 1024");
     require_argument(desc.unit >= 0 && std::isfinite(desc.unit), "unit is a positive number");
@@ -83,7 +84,7 @@ Options checked_options(const gtx_cook_desc &desc)
         options.driver = std::make_shared<const Driver>();
         options.bake.extractor = &options.driver->extractor();
     }
-    options.lod_levels = desc.lod_levels;
+    options.lod_levels = lod_levels_of(desc.lod_levels);
     options.zstd = desc.zstd_level == 0 ? DEFAULT_ZSTD : std::max(desc.zstd_level, 0);
     options.unit = desc.unit > 0 ? desc.unit : 1;
     options.error = desc.error;

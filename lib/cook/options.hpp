@@ -11,6 +11,17 @@ namespace gtx {
 /* Promised by cook.h. */
 constexpr uint32_t MAX_LOD_LEVELS = 5;
 
+/* Of a descriptor's lod_levels. */
+inline unsigned lod_levels_of(uint32_t wanted)
+{
+    return wanted == GTX_LOD_LEVELS_NONE ? 0 : wanted ? wanted : MAX_LOD_LEVELS;
+}
+
+inline bool is_lod_levels(uint32_t wanted)
+{
+    return wanted <= MAX_LOD_LEVELS || wanted == GTX_LOD_LEVELS_NONE;
+}
+
 /* gtx_cook_desc says what each means. */
 struct Options {
     ChartOptions chart;

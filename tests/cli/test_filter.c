@@ -98,11 +98,14 @@ static void a_scan_stays_closed_where_patches_alone_come_apart(void **state)
     assert_true(alone > 100 * (after + 1));
 }
 
-static void the_lod_stays_behind(void **state)
+static void lod_meshes_are_made_anew(void **state)
 {
     (void)state;
     expect(gtx("cook sphere.obj -o lod.gtx --lod-levels 2"), 0);
-    expect(gtx("filter lod.gtx -o bare.gtx --gaussian 1"), 0);
+    expect(gtx("filter lod.gtx -o soft_lod.gtx --gaussian 1 --lod-levels 1"), 0);
+    expect(gtx("info soft_lod.gtx --json"), 0);
+    expect_text("\"lod_meshes\": [\n    {");
+    expect(gtx("filter lod.gtx -o bare.gtx --gaussian 1 --lod-levels 0"), 0);
     expect_text("warning[lod-dropped]: the LOD mesh");
     expect(gtx("info bare.gtx --json"), 0);
     expect_text("\"lod_meshes\": []");
@@ -115,7 +118,7 @@ int main(void)
         cmocka_unit_test(operations_run_in_order),
         cmocka_unit_test(a_blurred_model_stays_closed),
         cmocka_unit_test(a_scan_stays_closed_where_patches_alone_come_apart),
-        cmocka_unit_test(the_lod_stays_behind),
+        cmocka_unit_test(lod_meshes_are_made_anew),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -165,10 +165,10 @@ static const struct {
     const char *name;
     Call call;
 } calls[] = {{"cuts", cook_by(GTX_PARTITION_CUTS, 2, 1)},
-             {"vsa", cook_by(GTX_PARTITION_VSA, 0, 0)},
-             {"pgp", cook_by(GTX_PARTITION_PGP, 0, 0)},
-             {"layers", cook_by(GTX_PARTITION_LAYERS, 0, 0)},
-             {"relief", cook_by(GTX_PARTITION_RELIEF, 0, 0)},
+             {"vsa", cook_by(GTX_PARTITION_VSA, GTX_LOD_LEVELS_NONE, 0)},
+             {"pgp", cook_by(GTX_PARTITION_PGP, GTX_LOD_LEVELS_NONE, 0)},
+             {"layers", cook_by(GTX_PARTITION_LAYERS, GTX_LOD_LEVELS_NONE, 0)},
+             {"relief", cook_by(GTX_PARTITION_RELIEF, GTX_LOD_LEVELS_NONE, 0)},
              {"compare", compare_once},
              {"lod", lod_once},
              {"horizons", horizons_once}};

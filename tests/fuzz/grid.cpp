@@ -21,7 +21,7 @@ static void make_asset(const gtx_height_grid &grid, uint64_t how)
     desc.tile = 16 + uint32_t(how & 31);
     desc.mips = 1 + uint32_t(how >> 5 & 3);
     desc.height_bits = how >> 7 & 1 ? 16 : 8;
-    desc.lod_levels = (how >> 8 & 7) == 0 ? 1 : 0;
+    desc.lod_levels = (how >> 8 & 7) == 0 ? 1 : GTX_LOD_LEVELS_NONE;
     desc.one_surface = uint32_t(how >> 12 & 1);
     desc.depths = uint32_t(how >> 13 & 1);
     gtx_height_grid grids[2] = {grid, grid};

@@ -94,7 +94,7 @@ static void cook(const std::string &bytes, const std::string &path, uint64_t how
     desc.partition = gtx_partition(how >> 20 & 3);
     desc.height_bits = how >> 22 & 1 ? 16 : 8;
     desc.mips = 1 + uint32_t(how >> 24 & 3);
-    desc.lod_levels = how >> 26 & 1 ? 2 : 0;
+    desc.lod_levels = how >> 26 & 1 ? 2 : GTX_LOD_LEVELS_NONE;
     desc.z_up = uint32_t(how >> 27 & 1);
     desc.progress = stop_after;
     desc.progress_user = &left;

@@ -2,7 +2,6 @@
 #include "bake/lod/simplify.hpp"
 
 #include <algorithm>
-#include <functional>
 
 namespace gtx::baking {
 
@@ -46,15 +45,16 @@ bool Simplifier::State::keeps_topology(const Fan &fan, uint32_t from, uint32_t t
 }
 
 /* Whether a triangle that changes stays where its patch can show it. One that never was there
- * may go anywhere. */
-bool Simplifier::State::keeps_place(uint32_t of, const Corners &before, const Corners &after) const
+ * may go anywhere; several that cover the same area as before are where they were. */
+bool Simplifier::State::keeps_place(uint32_t of, const Corners &before, const Corners &after,
+                                    bool same_area) const
 {
     const PatchRegion &region = regions[of];
     std::array<double, 2> was[3], is[3];
     for (int k = 0; k < 3; ++k)
         is[k] = region.place(after[k]);
     const bool turned = winding(is) <= 0;
-    if (!turned && region.holds(is))
+    if (!turned && (same_area || region.holds(is)))
         return true;
     for (int k = 0; k < 3; ++k)
         was[k] = region.place(before[k]);
@@ -62,7 +62,8 @@ bool Simplifier::State::keeps_place(uint32_t of, const Corners &before, const Co
 }
 
 /* Whether a triangle does so, and does not turn much, when one of its vertices is at `place`. */
-bool Simplifier::State::keeps_shape(uint32_t triangle, uint32_t vertex, const Vec3d &place) const
+bool Simplifier::State::keeps_shape(uint32_t triangle, uint32_t vertex, const Vec3d &place,
+                                    bool same_area) const
 {
     const Triangle &t = triangles[triangle];
     const Corners before = {positions[t[0]], positions[t[1]], positions[t[2]]};
@@ -74,103 +75,116 @@ bool Simplifier::State::keeps_shape(uint32_t triangle, uint32_t vertex, const Ve
     const double sizes = std::sqrt(dot(was, was) * dot(is, is));
     if (dot(was, was) > 0 && dot(was, is) <= MIN_TURN_COSINE * sizes)
         return false;
-    return crossing || keeps_place(patch[triangle], before, after);
+    return crossing || keeps_place(patch[triangle], before, after, same_area);
 }
 
 bool Simplifier::State::keeps_shapes(const Fan &fan, uint32_t from, uint32_t to) const
 {
+    bool one_patch = !fan.open && !fan.meeting;
+    for (int i = 1; i < fan.count; ++i)
+        one_patch = one_patch && patch[fan.triangle[i]] == patch[fan.triangle[0]];
     for (int i = 0; i < fan.count; ++i)
         if (corner_of(triangles[fan.triangle[i]], to) < 0 &&
-            !keeps_shape(fan.triangle[i], from, positions[to]))
+            !keeps_shape(fan.triangle[i], from, positions[to], one_patch))
             return false;
     return true;
 }
 
-/* The cheapest neighbour that the vertex may be merged into; `to` is NO_VERTEX when there is
- * none. */
-Candidate Simplifier::State::find_candidate(uint32_t vertex, double most) const
+/* What merging a vertex into a neighbour costs. */
+Choice Simplifier::State::cost_of(uint32_t vertex, uint32_t to, double most) const
 {
-    Candidate none = {0, vertex, NO_VERTEX};
-    Fan fan;
-    if (!find_fan(vertex, fan))
-        return none;
-    Candidate options[MAX_FAN + 1];
-    int count = 0;
-    for (int i = 0; i < fan.ring_count; i += fan.open ? fan.ring_count - 1 : 1) {
-        const Vec3d &target = positions[fan.ring[i]], way = target - positions[vertex];
-        const double cost = quadrics[vertex].at(target);
-        if (cost <= most)
-            options[count++] = {float(cost + SLIDE * dot(way, way)), vertex, fan.ring[i]};
-    }
-    std::sort(options, options + count, [](const Candidate &a, const Candidate &b) {
-        return a.cost != b.cost ? a.cost < b.cost : a.to < b.to;
-    });
-    for (int i = 0; i < count; ++i)
-        if (keeps_topology(fan, vertex, options[i].to) && keeps_shapes(fan, vertex, options[i].to))
-            return options[i];
-    return none;
+    const Vec3d way = positions[to] - positions[vertex];
+    const double cost = quadrics[vertex].at(positions[to]);
+    return cost <= most ? Choice{float(cost + SLIDE * dot(way, way)), to} : Choice();
 }
 
-/* What the vertex costs at least; infinite where it must stay. */
-float Simplifier::State::least_cost(uint32_t vertex, double most) const
+/* What merging a vertex into the cheapest of its neighbours costs, whether it may be or not. In a
+ * closed fan each neighbour comes after the vertex once. */
+Choice Simplifier::State::cheapest(uint32_t vertex, double most) const
 {
-    double least = INFINITY;
+    Choice least;
+    uint64_t after = 0, before = 0;
     for (uint32_t i = start[vertex]; i < start[vertex + 1]; ++i) {
         const Triangle &t = triangles[around[i]];
         const int k = corner_of(t, vertex);
-        for (int other = 1; other < 3; ++other) {
-            const Vec3d &target = positions[t[(k + other) % 3]], way = target - positions[vertex];
-            const double cost = quadrics[vertex].at(target);
-            if (cost <= most)
-                least = std::min(least, cost + SLIDE * dot(way, way));
-        }
+        after += t[(k + 1) % 3];
+        before += t[(k + 2) % 3];
+        least = std::min(least, cost_of(vertex, t[(k + 1) % 3], most));
     }
-    return float(least);
+    for (uint32_t i = start[vertex]; after != before && i < start[vertex + 1]; ++i) {
+        const Triangle &t = triangles[around[i]];
+        const uint32_t to = t[(corner_of(t, vertex) + 2) % 3];
+        least = std::min(least, cost_of(vertex, to, most));
+    }
+    return least;
 }
 
-/* Those that a round is about: the cheapest, and all below `free`. Whether they may go is looked at
- * for them alone. */
-void Simplifier::State::find_candidates(double free, double most)
+/* The cheapest neighbour that the vertex may be merged into, or a cheaper one that is touched;
+ * NO_VERTEX when there is none. Mostly it is the cheapest of all. */
+Choice Simplifier::State::choose(uint32_t vertex, const Fan &fan, double most) const
 {
-    const double done = 1 - 0.7 * double(triangles.size()) / double(first_count);
-    candidates.resize(positions.size());
-    const size_t chunk = 2048;
-    auto for_all = [&](const std::function<void(Candidate &, size_t)> &body) {
-        task.parallel((candidates.size() + chunk - 1) / chunk, [&](size_t n) {
-            const size_t end = std::min(candidates.size(), (n + 1) * chunk);
-            for (size_t i = n * chunk; i < end; ++i)
-                body(candidates[i], i);
-        }, done, done);
+    auto suits = [&](const Choice &c) {
+        return touched[c.to] ||
+               (keeps_topology(fan, vertex, c.to) && keeps_shapes(fan, vertex, c.to));
     };
-    for_all([&](Candidate &c, size_t v) {
-        if (std::isnan(costs[v]))
-            costs[v] = least_cost(uint32_t(v), most);
-        c = {costs[v], uint32_t(v), NO_VERTEX};
-    });
-    auto keep = [&](auto &&kept) {
-        candidates.erase(std::partition(candidates.begin(), candidates.end(), kept),
-                         candidates.end());
-    };
-    keep([](const Candidate &c) { return std::isfinite(c.cost); });
-    const size_t count = size_t(double(candidates.size()) * share);
-    float limit = INFINITY;
-    if (count < candidates.size()) {
-        std::nth_element(candidates.begin(), candidates.begin() + count, candidates.end(),
-                         is_cheaper);
-        limit = std::max(candidates[count].cost, float(free));
-        keep([&](const Candidate &c) { return c.cost <= limit; });
+    const Choice &least = choices[vertex];
+    if (suits(least))
+        return least;
+    Choice options[2 * MAX_FAN];
+    int count = 0;
+    for (int i = 0; i < fan.ring_count; i += fan.open ? fan.ring_count - 1 : 1) {
+        const Choice option = cost_of(vertex, fan.ring[i], most);
+        if (option.to != NO_VERTEX && option.to != least.to)
+            options[count++] = option;
     }
-    for_all([&](Candidate &c, size_t) {
-        c = find_candidate(c.from, most);
-        costs[c.from] = c.to == NO_VERTEX ? INFINITY : c.cost;
+    std::sort(options, options + count);
+    for (int i = 0; i < count; ++i)
+        if (suits(options[i]))
+            return options[i];
+    return {};
+}
+
+void Simplifier::State::find_costs(double most)
+{
+    const size_t count = positions.size();
+    task.parallel((count + BLOCK - 1) / BLOCK, [&](size_t block) {
+        const size_t end = std::min(count, (block + 1) * BLOCK);
+        for (size_t v = block * BLOCK; v < end; ++v)
+            if (std::isnan(choices[v].cost))
+                choices[v] = cheapest(uint32_t(v), most);
+    }, done(), done());
+}
+
+/* What is cheaper goes this round: a share of the vertices, and all that cost nothing. */
+float Simplifier::State::find_limit(double free) const
+{
+    Vector<float> costs;
+    costs.reserve(choices.size());
+    for (const Choice &c : choices)
+        if (std::isfinite(c.cost))
+            costs.push_back(c.cost);
+    const size_t count = size_t(double(costs.size()) * share);
+    if (count >= costs.size())
+        return INFINITY;
+    std::nth_element(costs.begin(), costs.begin() + ptrdiff_t(count), costs.end());
+    return std::max(costs[count], float(free));
+}
+
+/* Those of a block, the cheapest first; among those that cost nothing neighbours go one after
+ * another: so more of them find room. */
+Vector<Candidate> Simplifier::State::find_candidates(size_t block, double free,
+                                                     float limit) const
+{
+    Vector<Candidate> out;
+    const size_t end = std::min(positions.size(), (block + 1) * BLOCK);
+    for (size_t v = block * BLOCK; v < end; ++v)
+        if (choices[v].cost <= limit && std::isfinite(choices[v].cost))
+            out.push_back({choices[v].cost, uint32_t(v)});
+    const auto paid = std::stable_partition(out.begin(), out.end(), [&](const Candidate &c) {
+        return c.cost <= free;
     });
-    keep([&](const Candidate &c) { return c.to != NO_VERTEX && c.cost <= limit; });
-    /* Among those that cost nothing neighbours go one after another: so more of them find room. */
-    auto paid = std::partition(candidates.begin(), candidates.end(),
-                               [&](const Candidate &c) { return c.cost <= free; });
-    std::sort(candidates.begin(), paid,
-              [](const Candidate &a, const Candidate &b) { return a.from < b.from; });
-    std::sort(paid, candidates.end(), is_cheaper);
+    std::sort(paid, out.end(), is_cheaper);
+    return out;
 }
 
 } // namespace gtx::baking

@@ -24,9 +24,6 @@ constexpr double MAX_SHARE = 0.75;
 constexpr double STEP = 1.0 / 16;
 /* An error that nobody sees, the maps know no better: that of rounding. In texels. */
 constexpr double FREE_ERROR = STEP;
-/* What thinning may cost inside patches: dear triangles are not worth the time. In texels. Error
- * +17 % | +5 % (truck). */
-constexpr double THIN_ERROR = 2 * FREE_ERROR;
 /* What is seen from so far that this is a pixel is a handful of pixels. Share of the diagonal.
  * Truck: 64 % more triangles | Spot: 54 % fewer. */
 constexpr double MAX_ERROR = 1.0 / 64;
@@ -194,7 +191,6 @@ struct LodJob {
     const Maps &maps;
     const Vector<PatchRegion> &regions;
     const Lattice &lattice;
-    double thinned;              /* error of the surface that levels start from */
     Task &task;
 };
 
@@ -218,7 +214,7 @@ static void add_far_levels(const LodJob &job, Simplifier &simplifier, double mos
             find_far_homes(simplifier, job.maps, job.regions, job.task);
         LodLevel level = make_level(simplifier, homes, round_all(simplifier, job.lattice),
                                     job.regions.size(), job.lattice);
-        level.error = float(job.thinned + FAR_STATED * simplifier.error());
+        level.error = float(FAR_STATED * simplifier.error());
         level.far = true;
         if (level.indices.empty())
             return;
@@ -246,9 +242,7 @@ Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned le
     for (int k = 0; k < 3; ++k)
         size[k] = double(maps.bounds_max[k]) - maps.bounds_min[k];
     const double free = FREE_ERROR * pitch;
-    double thinned = 0;
-    const LodSource few = thin(source, maps, regions, THIN_ERROR * pitch, thinned, task);
-    Simplifier simplifier(few, regions, task);
+    Simplifier simplifier(source, regions, task);
     size_t wanted = (source.model ? source.model : source.triangles.size()) / FINEST_RATIO;
     for (unsigned k = 0; k < levels; ++k) {
         const size_t before = simplifier.triangles().size();
@@ -260,13 +254,13 @@ Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned le
         LodLevel level =
             make_level(simplifier, find_homes(simplifier, regions, lattice, places), places,
                        regions.size(), lattice);
-        level.error = float(thinned + simplifier.error());
+        level.error = float(simplifier.error());
         if (level.indices.empty())
             break;
         lod.push_back(std::move(level));
         wanted = size_t(double(simplifier.triangles().size()) / LEVEL_RATIO);
     }
-    add_far_levels({maps, regions, lattice, thinned, task}, simplifier,
+    add_far_levels({maps, regions, lattice, task}, simplifier,
                    MAX_FAR_ERROR * length(size), lod);
     return lod;
 }

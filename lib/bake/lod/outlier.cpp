@@ -88,14 +88,45 @@ static Vector<uint32_t> find_near(const Simplified &s, uint32_t vertex)
     return near;
 }
 
+/* The planes of the triangles around a vertex: what is above none of them by more than `most` is not
+ * outside. Of most points this is all that has to be known. */
+class Planes {
+public:
+    Planes(const Simplified &s, uint32_t vertex)
+    {
+        for (uint32_t i = s.start[vertex]; i < s.start[vertex + 1] && count_ < MAX_FAN; ++i) {
+            const auto &[a, b, c] = s.triangles[s.around[i]];
+            const Vec3d &at = s.positions[a];
+            normal_[count_++] = normalize(cross(s.positions[b] - at, s.positions[c] - at));
+        }
+        at_ = s.positions[vertex];
+        all_ = s.start[vertex + 1] - s.start[vertex] <= uint32_t(MAX_FAN);
+    }
+    bool below(const Vec3d &point, double most) const
+    {
+        double above = -INFINITY;
+        for (int i = 0; i < count_; ++i)
+            above = std::max(above, dot(normal_[i], point - at_));
+        return all_ && above <= most;
+    }
+
+private:
+    Vec3d normal_[MAX_FAN], at_;
+    int count_ = 0;
+    bool all_;
+};
+
 /* Of the points that a vertex stands for that farthest outside; a height of 0 where none is by more
  * than `most`. Few are, and the triangles around the vertex alone tell of most others. */
 static Outlier find_worst(const Simplified &s, uint32_t vertex, double most)
 {
     Outlier worst;
     Vector<uint32_t> near;
+    const Planes planes(s, vertex);
     for (uint32_t i = s.first[vertex]; i < s.first[vertex + 1]; ++i) {
         const double least = std::max(most, worst.height);
+        if (planes.below(s.points[i], least))
+            continue;
         if (find_outlier(s, s.around.data() + s.start[vertex],
                          s.start[vertex + 1] - s.start[vertex], s.points[i], least).height == 0)
             continue;

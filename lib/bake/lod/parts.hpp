@@ -80,11 +80,6 @@ void split_at_cuts(const Partition &partition, const Maps &maps, const Vector<Ch
 
 constexpr uint32_t NO_PATCH = 0xffffffffu, NO_VERTEX = 0xffffffffu;
 
-/* The same surface with the vertices inside patches thinned out, at an error of at most `most`;
- * `error` gets what it came to. */
-LodSource thin(const LodSource &source, const Maps &maps,
-               const Vector<PatchRegion> &regions, double most, double &error, Task &task);
-
 /* Takes vertices away, cheapest first. */
 class Simplifier {
 public:

@@ -13,6 +13,20 @@ static Vec3d area_of(const Vector<Vec3d> &positions, const Triangle &t)
     return cross(positions[t[1]] - a, positions[t[2]] - a);
 }
 
+/* Whether each vertex around comes after this one in one triangle and before it in another. */
+static bool is_closed(const Vector<Triangle> &triangles, const uint32_t *first,
+                      const uint32_t *end, uint32_t vertex)
+{
+    uint64_t after = 0, before = 0;
+    for (const uint32_t *at = first; at < end; ++at) {
+        const Triangle &t = triangles[*at];
+        const int k = corner_of(t, vertex);
+        after += t[(k + 1) % 3];
+        before += t[(k + 2) % 3];
+    }
+    return after == before;
+}
+
 /* Planes that stand on the edges of a vertex that only one triangle has, of those from `first` to
  * `end`. A vertex of very many stays anyway. */
 static void add_borders(const Vector<Vec3d> &positions, const Vector<Triangle> &triangles,
@@ -50,8 +64,9 @@ Vector<Quadric> vertex_quadrics(const Vector<Vec3d> &positions,
                 q.add_plane(normal, -dot(normal, positions[t[0]]), length(area));
                 q.weight += length(area);
             }
-            add_borders(positions, triangles, around.data() + start[v],
-                        around.data() + start[v + 1], uint32_t(v), q);
+            const uint32_t *first = around.data() + start[v], *end = around.data() + start[v + 1];
+            if (!is_closed(triangles, first, end, uint32_t(v)))
+                add_borders(positions, triangles, first, end, uint32_t(v), q);
         }
     }, 0, 0);
     return quadrics;

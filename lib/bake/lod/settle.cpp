@@ -15,6 +15,11 @@ constexpr int MOVE_STEPS = 3;
 /* What a level may leave outside, as a share of its error. At 0 outlines only grow, and are half as
  * good; at 1 sight passes between parts of a model that nearly touch. */
 constexpr double MAX_OUTSIDE = 0.5;
+/* Points of the surface that a vertex of the first level draws out to, of those that it stands
+ * for. */
+constexpr uint32_t MAX_POINTS = 6;
+/* Of the points between the first level's vertices one of so many tells later levels too. */
+constexpr uint32_t LATER_POINTS = 4;
 
 /* Moves a vertex, less far where its triangles need it. */
 void Simplifier::State::move(uint32_t vertex, Vec3d way)
@@ -23,7 +28,7 @@ void Simplifier::State::move(uint32_t vertex, Vec3d way)
         const Vec3d place = positions[vertex] + way;
         bool keeps = true;
         for (uint32_t i = start[vertex]; keeps && i < start[vertex + 1]; ++i)
-            keeps = keeps_shape(around[i], vertex, place);
+            keeps = keeps_shape(around[i], vertex, place, false);
         if (keeps) {
             positions[vertex] = place;
             return;
@@ -45,6 +50,8 @@ void Simplifier::State::find_members(Vector<uint32_t> &first, Vector<Vec3d> &mem
         for (uint32_t q = p; q != last;)
             q = std::exchange(merged[q], last);
         vertex[p] = vertex[last];
+        if (vertex[p] != NO_VERTEX && first_points && first[vertex[p] + 1] == MAX_POINTS)
+            vertex[p] = NO_VERTEX;
         if (vertex[p] != NO_VERTEX)
             ++first[vertex[p] + 1];
     }
@@ -55,6 +62,30 @@ void Simplifier::State::find_members(Vector<uint32_t> &first, Vector<Vec3d> &mem
     for (uint32_t p = 0; p < points.size(); ++p)
         if (vertex[p] != NO_VERTEX)
             members[next[vertex[p]]++] = points[p];
+}
+
+/* The next levels are told of the surface by the vertices of the first and by some of the points
+ * between: they are many more than their own still. find_members() has made merged[] one step. */
+void Simplifier::State::keep_points()
+{
+    first_points = false;
+    Vector<uint8_t> is_vertex(points.size(), 0);
+    for (uint32_t p : point)
+        is_vertex[p] = 1;
+    Vector<uint32_t> name(points.size(), NO_VERTEX), kept;
+    for (uint32_t p = 0; p < points.size(); ++p) {
+        if (!is_vertex[p] && (p % LATER_POINTS || !is_vertex[merged[p]]))
+            continue;
+        name[p] = uint32_t(kept.size());
+        points[kept.size()] = points[p];
+        kept.push_back(merged[p]);
+    }
+    points.resize(kept.size());
+    for (uint32_t &p : kept)
+        p = name[p];
+    for (uint32_t &p : point)
+        p = name[p];
+    merged.swap(kept);
 }
 
 /* First to where the planes are nearest, from where the next level goes on; then, for this level
@@ -73,8 +104,9 @@ void Simplifier::State::settle()
     Simplified surface = {positions, triangles, start, around, {}, {}};
     find_members(surface.first, surface.points);
     draw_out(surface, MAX_OUTSIDE * std::sqrt(error),
-             [&](uint32_t vertex, const Vec3d &way) { move(vertex, way); }, task,
-             1 - 0.7 * double(triangles.size()) / double(first_count));
+             [&](uint32_t vertex, const Vec3d &way) { move(vertex, way); }, task, done());
+    if (first_points)
+        keep_points();
 }
 
 } // namespace gtx::baking

@@ -16,12 +16,40 @@ constexpr double FEW = 0.02;
 
 Simplifier::State::State(const LodSource &source, const Vector<PatchRegion> &regions,
                          Task &task)
-    : regions(regions), task(task), positions(source.positions), triangles(source.triangles),
-      patch(source.patch), points(positions), point(positions.size()),
-      first_count(triangles.size())
+    : regions(regions), task(task), first_count(source.triangles.size())
 {
+    sort_by_patch(source);
+    points = positions;
+    point.resize(positions.size());
     std::iota(point.begin(), point.end(), 0u);
     merged = point;
+}
+
+/* What lies in a patch becomes neighbours in memory, and most of it a block's own. */
+void Simplifier::State::sort_by_patch(const LodSource &source)
+{
+    Vector<uint32_t> next(regions.size() + 1, 0), order(source.triangles.size());
+    for (uint32_t p : source.patch)
+        ++next[p + 1];
+    for (size_t p = 0; p < regions.size(); ++p)
+        next[p + 1] += next[p];
+    for (size_t t = 0; t < source.triangles.size(); ++t)
+        order[next[source.patch[t]]++] = uint32_t(t);
+    Vector<uint32_t> name(source.positions.size(), NO_VERTEX);
+    positions.reserve(source.positions.size());
+    triangles.reserve(order.size());
+    patch.reserve(order.size());
+    for (uint32_t t : order) {
+        triangles.push_back(source.triangles[t]);
+        patch.push_back(source.patch[t]);
+        for (uint32_t &v : triangles.back()) {
+            if (name[v] == NO_VERTEX) {
+                name[v] = uint32_t(positions.size());
+                positions.push_back(source.positions[v]);
+            }
+            v = name[v];
+        }
+    }
 }
 
 void Simplifier::State::find_around()
@@ -42,7 +70,7 @@ void Simplifier::State::find_around()
 }
 
 /* Returns how many triangles are gone. */
-size_t Simplifier::State::collapse(const Fan &fan, uint32_t from, uint32_t to)
+size_t Simplifier::State::collapse(const Fan &fan, uint32_t from, uint32_t to, double most)
 {
     size_t count = 0;
     for (int i = 0; i < fan.count; ++i) {
@@ -56,8 +84,16 @@ size_t Simplifier::State::collapse(const Fan &fan, uint32_t from, uint32_t to)
     quadrics[to].add(quadrics[from]);
     merged[point[from]] = point[to];
     touched[from] = 1;
-    for (int i = 0; i < fan.ring_count; ++i)
-        touched[fan.ring[i]] = 1;
+    const bool edges_stay = !fan.open && !fan.meeting && fan.count > 2;
+    for (int i = 0; i < fan.ring_count; ++i) {
+        const uint32_t v = fan.ring[i];
+        touched[v] = 1;
+        Choice &choice = choices[v];
+        if (!edges_stay || v == to || choice.to == from || choice.to == NO_VERTEX)
+            choice = {NAN, NO_VERTEX};
+        else
+            choice = std::min(choice, cost_of(v, to, most));
+    }
     return count;
 }
 
@@ -83,40 +119,85 @@ void Simplifier::State::compact()
         positions[vertices] = positions[v];
         quadrics[vertices] = quadrics[v];
         point[vertices] = point[v];
-        costs[vertices] = touched[v] ? NAN : costs[v];
+        choices[vertices] = choices[v];
         renamed[v] = vertices++;
     }
     positions.resize(vertices);
     quadrics.resize(vertices);
     point.resize(vertices);
-    costs.resize(vertices);
+    choices.resize(vertices);
+    for (Choice &c : choices)
+        c.to = c.to == NO_VERTEX ? NO_VERTEX : renamed[c.to];
     for (Triangle &t : triangles)
         for (uint32_t &v : t)
             v = renamed[v];
 }
 
-/* Merges vertices that do not touch each other, so that what was found out about each still holds.
- * Returns how many. */
+/* Whether what merging it changes lies in the block. */
+bool Simplifier::State::is_inside(uint32_t vertex, size_t block) const
+{
+    for (uint32_t i = start[vertex]; i < start[vertex + 1]; ++i)
+        for (uint32_t v : triangles[around[i]])
+            if (v / BLOCK != block)
+                return false;
+    return true;
+}
+
+/* Returns how many triangles are gone. */
+size_t Simplifier::State::merge(uint32_t vertex, float limit, double most)
+{
+    Fan fan;
+    Choice &choice = choices[vertex];
+    if (touched[vertex] || touched[choice.to])
+        return 0;
+    const Choice found = find_fan(vertex, fan) ? choose(vertex, fan, most) : Choice();
+    if (found.to != NO_VERTEX && touched[found.to])
+        return 0;
+    choice = found;
+    return found.cost <= limit && found.to != NO_VERTEX ? collapse(fan, vertex, found.to, most) : 0;
+}
+
+/* Merges vertices that do not touch each other, so that what was found out about each still holds:
+ * those inside a block on a thread each, then those between blocks. Returns how many. */
 size_t Simplifier::State::round(size_t wanted, double free, double most)
 {
-    find_around();
-    find_candidates(free, most);
-    size_t taken = 0;
-    touched.assign(positions.size(), 0);
+find_around();
+    find_costs(most);
+    const float limit = find_limit(free);
+    const size_t blocks = (positions.size() + BLOCK - 1) / BLOCK, before = positions.size();
+    touched.assign(before, 0);
+    Vector<Vector<Candidate>> outside(blocks);
+    Vector<size_t> gone(blocks, 0);
+    const double surplus = double(triangles.size()) - double(std::min(wanted, triangles.size()));
+    const double share_of_block = surplus / double(before);
+    task.parallel(blocks, [&](size_t block) {
+        const size_t size = std::min(before, (block + 1) * BLOCK) - block * BLOCK;
+        const size_t quota = size_t(share_of_block * double(size)) + 1;
+        for (const Candidate &c : find_candidates(block, free, limit)) {
+            if (!is_inside(c.from, block))
+                outside[block].push_back(c);
+            else if (gone[block] < quota || c.cost <= free)
+                gone[block] += merge(c.from, limit, most);
+        }
+    }, done(), done());
+Vector<Candidate> rest;
     size_t left = triangles.size();
-    Fan fan;
-    for (const Candidate &c : candidates) {
+    for (size_t block = 0; block < blocks; ++block) {
+        rest.insert(rest.end(), outside[block].begin(), outside[block].end());
+        left -= gone[block];
+    }
+    const auto paid = std::stable_partition(rest.begin(), rest.end(), [&](const Candidate &c) {
+        return c.cost <= free;
+    });
+    std::sort(paid, rest.end(), is_cheaper);
+    for (const Candidate &c : rest) {
         if (left <= wanted && c.cost > free)
             break;
-        if (touched[c.from] || touched[c.to])
-            continue;
         cancel_point();
-        find_fan(c.from, fan);
-        left -= collapse(fan, c.from, c.to);
-        ++taken;
+        left -= merge(c.from, limit, most);
     }
-    compact();
-    return taken;
+compact();
+    return before - positions.size();
 }
 
 Simplifier::Simplifier(const LodSource &source, const Vector<PatchRegion> &regions,
@@ -135,7 +216,7 @@ void Simplifier::reduce(size_t wanted, double free, double most)
     if (!state_->settled.empty())
         state_->positions = std::exchange(state_->settled, {});
     state_->share = ROUND_SHARE;
-    state_->costs.assign(state_->positions.size(), NAN);
+    state_->choices.assign(state_->positions.size(), {NAN, NO_VERTEX});
     for (bool going = true; going;) {
         const size_t taken = state_->round(wanted, free * free, most * most);
         const size_t left = state_->triangles.size();

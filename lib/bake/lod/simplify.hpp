@@ -14,9 +14,20 @@ constexpr double ROUND_SHARE = 0.4;
 /* Of a triangle. */
 using Corners = std::array<Vec3d, 3>;
 
+/* Vertices next to each other in memory, that one thread merges. */
+constexpr size_t BLOCK = 1 << 14;
+
+/* What a vertex is merged into, and what that costs. */
+struct Choice {
+    float cost = INFINITY;
+    uint32_t to = NO_VERTEX;
+
+    bool operator<(const Choice &o) const { return cost != o.cost ? cost < o.cost : to < o.to; }
+};
+
 struct Candidate {
-    float cost;                  /* of the cheapest neighbour, whether it may be or not, at first */
-    uint32_t from, to;
+    float cost;
+    uint32_t from;
 };
 
 inline bool is_cheaper(const Candidate &a, const Candidate &b)
@@ -32,21 +43,22 @@ struct Simplifier::State {
     Vector<uint32_t> patch;
     Vector<Quadric> quadrics;
     Vector<Vec3d> settled;       /* where the vertices go on from for the next level */
-    const Vector<Vec3d> points;      /* vertices at the start */
+    Vector<Vec3d> points;        /* of the surface, that vertices stand for */
     Vector<uint32_t> point;          /* of each vertex, the one that it was */
     Vector<uint32_t> merged;         /* of each point, what it went into; itself: it is left */
     Vector<uint32_t> start, around;      /* triangles of each vertex */
     Vector<uint8_t> touched;
-    /* What each vertex costs at least, as far as is known: NAN where it has to be found out,
-     * infinite where it must stay unless something changes around it. */
-    Vector<float> costs;
-    Vector<Candidate> candidates;
+    /* Of each vertex the cheapest, as far as is known: NAN where it has to be found out, infinite
+     * where it must stay unless something changes around it. */
+    Vector<Choice> choices;
     size_t first_count;          /* triangles at the start */
     double share = ROUND_SHARE;  /* of the candidates that a round takes */
+    bool first_points = true;    /* all vertices of the start are still points */
     bool crossing = false;       /* triangles may leave their patches */
     double error = 0;            /* squared */
 
     State(const LodSource &source, const Vector<PatchRegion> &regions, Task &task);
+    void sort_by_patch(const LodSource &source);
     void find_around();
     bool find_fan(uint32_t vertex, Fan &fan) const
     {
@@ -54,17 +66,26 @@ struct Simplifier::State {
                                 start[vertex + 1] - start[vertex], vertex, fan);
     }
     bool keeps_topology(const Fan &fan, uint32_t from, uint32_t to) const;
-    bool keeps_place(uint32_t patch, const Corners &before, const Corners &after) const;
-    bool keeps_shape(uint32_t triangle, uint32_t vertex, const Vec3d &place) const;
+    bool keeps_place(uint32_t patch, const Corners &before, const Corners &after,
+                     bool same_area) const;
+    bool keeps_shape(uint32_t triangle, uint32_t vertex, const Vec3d &place,
+                     bool same_area) const;
     bool keeps_shapes(const Fan &fan, uint32_t from, uint32_t to) const;
-    Candidate find_candidate(uint32_t vertex, double most) const;
-    float least_cost(uint32_t vertex, double most) const;
-    void find_candidates(double free, double most);
-    size_t collapse(const Fan &fan, uint32_t from, uint32_t to);
+    Choice cost_of(uint32_t vertex, uint32_t to, double most) const;
+    Choice cheapest(uint32_t vertex, double most) const;
+    Choice choose(uint32_t vertex, const Fan &fan, double most) const;
+    void find_costs(double most);
+    float find_limit(double free) const;
+    Vector<Candidate> find_candidates(size_t block, double free, float limit) const;
+    size_t collapse(const Fan &fan, uint32_t from, uint32_t to, double most);
+    bool is_inside(uint32_t vertex, size_t block) const;
+    size_t merge(uint32_t vertex, float limit, double most);
     void compact();
+    double done() const { return 1 - 0.7 * double(triangles.size()) / double(first_count); }
     size_t round(size_t wanted, double free, double most);
     void move(uint32_t vertex, Vec3d way);
     void settle();
+    void keep_points();
     void find_members(Vector<uint32_t> &first, Vector<Vec3d> &members);
 };
 
