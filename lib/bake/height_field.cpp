@@ -152,6 +152,7 @@ Vector<const HeightField *> HeightFields::around(const HeightField &field) const
     const size_t most = std::max(LEAST, std::min(MOST, OF_ALL / fields_.size()));
     Vector<uint32_t> ranks; /* many are sorted for each: numbers, not what they stand for */
     any_near(field.centre, field.radius, [&](const HeightField &other) {
+        cancel_point();
         if (&other != &field)
             ranks.push_back(rank_[index(other)]);
         return ranks.size() == most;

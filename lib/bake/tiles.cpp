@@ -12,6 +12,8 @@ namespace gtx::baking {
 /* Steps of heights are halves of halves of the coarsest, so often at most: a limit,
  * half changes a few bytes. */
 constexpr int MAX_HALVINGS = 12;
+/* Turns of a short loop, that take as long as a node. */
+constexpr size_t NODE_TURNS = 64;
 
 /* Nodes of a layer: from..to are the tile's own, borders included; low..high are stored. */
 struct Tile {
@@ -226,6 +228,7 @@ static PatchMaps bake_tile(const Tile &tile, const LayerHeights &layer, const Gr
     Shades shades(w, h, needs.color ? COLOR_CHANNELS : 0);
     maps.height.assign(size_t(w) * h, 0);
     maps.trim.assign(maps.height.size(), 255);
+    cancel_point(NODE_TURNS * maps.height.size());
     for_nodes(tile, layer, [&](int i, int j) {
         const size_t at = size_t(j - tile.low[1]) * w + size_t(i - tile.low[0]);
         const double height = layer.rounded(i, j);

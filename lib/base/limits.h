@@ -16,6 +16,7 @@ typedef enum gtx_limited {
     GTX_LIMITED_PIXELS,
     GTX_LIMITED_PATCHES,
     GTX_LIMITED_CELLS,
+    GTX_LIMITED_WORK,
     GTX_LIMITED_COUNT
 } gtx_limited;
 

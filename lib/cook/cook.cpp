@@ -267,6 +267,7 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
     const Options options = checked_options(desc);
     auto start = std::chrono::steady_clock::now();
     Task task = make_task(desc, options);
+    task.limits.allow_work(work_of(options));
     CookFacts facts;
 
     const Outputs outputs = {output, desc.charts_ply, desc.sources_fn, desc.sources_user};

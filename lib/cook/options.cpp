@@ -7,6 +7,7 @@
 #include "base/alloc.h"
 #include "base/hash.h"
 
+#include <algorithm>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
@@ -97,6 +98,16 @@ Options checked_options(const gtx_cook_desc &desc)
     options.charts_ply = desc.charts_ply;
     options.allocator = gtx_allocator_or_default(desc.allocator);
     return options;
+}
+
+double work_of(const Options &options)
+{
+    constexpr double OTHER_PARTITION = 8, LOD = 2, PATCHES = 1000;
+    const double finer = options.chart.resolution / 128.;
+    double times = std::max({1., finer * finer, options.chart.charts / PATCHES});
+    if (options.chart.method != PartitionMethod::CUTS)
+        times *= OTHER_PARTITION;
+    return options.lod_levels ? times * LOD : times;
 }
 
 const char *partition_name(PartitionMethod method)

@@ -42,6 +42,10 @@ struct Options {
 /* Throws Error: ARGUMENT, NOT_ZEROED; GL, SHADER. */
 Options checked_options(const gtx_cook_desc &desc);
 
+/* How many times the work of the default options they may take: a limit is for what a file asks
+ * for, not for what a caller does. */
+double work_of(const Options &options);
+
 /* A partition as options and assets name it. */
 const char *partition_name(PartitionMethod method);
 

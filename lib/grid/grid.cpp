@@ -52,6 +52,7 @@ static HeightGrid read_image(const std::string &path, const GridReading &reading
     require_ok(gtx_image_measure_file(path.c_str(), &width, &height, &error), error);
     task.limits.require(GTX_LIMITED_PIXELS, "the image", uint64_t(width) * height);
     task.limits.require(GTX_LIMITED_TEXELS, "the image", uint64_t(width) * height);
+    cancel_point(4 * size_t(width) * height); /* decoding a pixel takes four turns */
     TakenMemory taken(2 * sizeof(float) * width * height);
     require_ok(gtx_image_read_values(path.c_str(), &image, &error), error);
     std::unique_ptr<float, void (*)(void *)> guard(image.values, std::free);

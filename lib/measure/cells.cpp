@@ -29,7 +29,7 @@ void Cells::add_patch(const gtx_asset *asset, uint32_t index)
     const double(&axis)[3][3] = frame.axis;
     frames_.push_back({vector(frame.origin), vector(axis[0]), vector(axis[1]), vector(axis[2])});
     for (uint32_t y = 0; y + 1 < patch.rect[3]; ++y) {
-        cancel_point();
+        cancel_point(8 * patch.rect[2]);
         for (uint32_t x = 0; x + 1 < patch.rect[2]; ++x) {
             Cell cell = {index, uint16_t(x), uint16_t(y), {}, {}, false};
             bool solid = true, shown = false;

@@ -121,6 +121,7 @@ public:
             if (std::min(low, high) < best)
                 stack[size++] = {2 * node + !low_first, std::min(low, high)};
         }
+        cancel_point(LOOK_TURNS * (most - left));
         if (looks)
             *looks -= std::min(*looks, most - left);
         return best;
@@ -132,6 +133,7 @@ public:
 
 private:
     static constexpr size_t LEAF = 4;
+    static constexpr size_t LOOK_TURNS = 16; /* of a short loop, that take as long as a look */
 
     /* Orders the shapes of a node with places for `room` of them: those of its first child have the
      * lower centres along the longest side of all, and fill it. */

@@ -50,12 +50,12 @@ bool is_cut(const Mesh &mesh, size_t triangle, const double weight[3], double fo
 static void draw(const Mesh &mesh, const View &view, const Vec3d v[3], uint32_t triangle,
                  MeshImage &image)
 {
-    cancel_point();
     const uint32_t size = view.size;
     auto x = std::minmax({v[0].x, v[1].x, v[2].x}), y = std::minmax({v[0].y, v[1].y, v[2].y});
     auto z = std::minmax({v[0].z, v[1].z, v[2].z});
     uint32_t end_x = end_pixel(x.second, size), end_y = end_pixel(y.second, size);
-    for (uint32_t j = first_pixel(y.first); j < end_y; ++j)
+    for (uint32_t j = first_pixel(y.first); j < end_y; ++j) {
+        cancel_point(end_x);
         for (uint32_t i = first_pixel(x.first); i < end_x; ++i) {
             double w[3];
             if (!weights_at(v, i + 0.5, j + 0.5, w))
@@ -68,6 +68,7 @@ static void draw(const Mesh &mesh, const View &view, const Vec3d v[3], uint32_t 
                 image.triangle[at] = triangle;
             }
         }
+    }
 }
 
 static bool is_two_sided(const Mesh &mesh, uint32_t triangle)

@@ -3,6 +3,7 @@
 
 #include "mesh/task.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace gtx {
@@ -50,6 +51,22 @@ void Limits::take(int64_t bytes)
     gtx_error error;
     gtx_fail_limit(&error, GTX_LIMITED_MEMORY, stage, uint64_t(now), most_);
     throw Error(error);
+}
+
+void Limits::work(uint64_t steps)
+{
+    const uint64_t done = worked_ += steps, allowed = work_allowed();
+    if (done <= allowed)
+        return;
+    gtx_error error;
+    gtx_fail_limit(&error, GTX_LIMITED_WORK, stage, done, allowed);
+    throw Error(error);
+}
+
+uint64_t Limits::work_allowed() const
+{
+    const uint64_t allowed = of(GTX_LIMITED_WORK);
+    return given_.work ? allowed : uint64_t(std::min(more_work_ * double(allowed), 1e18));
 }
 
 MemoryScope::MemoryScope(Limits &limits) : outer_(account.limits)

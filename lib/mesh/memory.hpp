@@ -31,10 +31,18 @@ public:
     void tell(int64_t bytes) noexcept { taken_ += bytes; }
     const gtx_limits &given() const { return given_; }
 
+    /* Throws Error(LIMIT) once more steps than are allowed have been done. */
+    void work(uint64_t steps);
+    /* What follows may do as much once more. */
+    void work_again() noexcept { worked_ = 0; }
+    /* Options that ask for more may do so many times as much as the default. */
+    void allow_work(double times) noexcept { more_work_ = times; }
+
     /* What takes memory now, for the message; static. */
     std::atomic<const char *> stage{"reading"};
 
 private:
+    uint64_t work_allowed() const;
     void grow(uint64_t bytes_read)
     {
         most_ = gtx_limit_of(&given_, GTX_LIMITED_MEMORY, bytes_read);
@@ -43,6 +51,8 @@ private:
     std::set<std::string> files_;
     std::atomic<uint64_t> read_{0}, most_{0};
     std::atomic<int64_t> taken_{0};
+    std::atomic<uint64_t> worked_{0};
+    double more_work_ = 1;
 };
 
 /* For as long as it lives, what the thread's containers take counts against these limits. */

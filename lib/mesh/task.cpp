@@ -41,10 +41,13 @@ constexpr size_t LOOK = 16;
 /* Turns of a short loop that count as a step. */
 constexpr size_t PLAIN = 1 << 14;
 constexpr double ASK = 0.02;
+/* Turns that are a step of work, and steps that a thread does before it tells of them: a limit is
+ * that coarse. */
+constexpr size_t PLAIN_WORK = 16, UNTOLD_WORK = 1 << 12;
 
 /* Which task the thread works for. */
 static thread_local Task *current = nullptr;
-static thread_local size_t passed = 0;
+static thread_local size_t passed = 0, worked = 0;
 
 Task::Scope::Scope(Task &task) : memory_(task.limits), outer_(current)
 {
@@ -59,9 +62,15 @@ Task::Scope::~Scope()
 void cancel_point(size_t plain)
 {
     passed += 1 + plain / PLAIN;
+    worked += 1 + plain / PLAIN_WORK;
     if (passed < LOOK || !current)
         return;
     passed = 0;
+    if (worked >= UNTOLD_WORK) {
+        const size_t told = worked;
+        worked = 0;
+        current->limits.work(told);
+    }
     current->report_now_and_then();
 }
 
@@ -118,6 +127,7 @@ void Task::begin_pass(const char *first, const char *after, double share)
     pass_.after = index_of(after);
     pass_.from = std::max(double(reported_), before_[pass_.first]);
     pass_.to = pass_.from + share * (before_[pass_.after] - pass_.from);
+    limits.work_again();
 }
 
 void Task::advance(double fraction)

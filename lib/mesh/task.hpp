@@ -58,7 +58,8 @@ struct Warning {
  * then, and throws Error(GTX_CANCELLED) once it has said so. It costs a count, for it looks at the
  * clock one time in a few: where steps take up to a millisecond each has one. Taking memory is one
  * too; without a job it does nothing. `plain` are the turns of a short loop that follows without
- * any. */
+ * any. Each is a step of the job's work, and so are some turns: throws Error(LIMIT) where those are
+ * more than is allowed. */
 void cancel_point(size_t plain = 0);
 
 /* One job. Used from the thread that runs it, except where stated. */

@@ -26,10 +26,11 @@ static void defaults_grow_with_the_bytes_read(void **state)
 static void what_is_given_holds(void **state)
 {
     (void)state;
-    const gtx_limits limits = {.memory = 1, .triangles = UINT64_MAX, .patches = 7};
+    const gtx_limits limits = {.memory = 1, .triangles = UINT64_MAX, .patches = 7, .work = 8};
     assert_int_equal(gtx_limit_of(&limits, GTX_LIMITED_MEMORY, 1 << 30), 1);
     assert_true(gtx_limit_of(&limits, GTX_LIMITED_TRIANGLES, 0) == UINT64_MAX);
     assert_int_equal(gtx_limit_of(&limits, GTX_LIMITED_PATCHES, 0), 7);
+    assert_int_equal(gtx_limit_of(&limits, GTX_LIMITED_WORK, 0), 8);
 }
 
 static void a_reserved_field_is_zero(void **state)

@@ -9,6 +9,7 @@ static void every_limit_names_its_option(void **state)
     } cases[] = {
         {"cook sphere.obj -o x.gtx --max-memory 20k", "--max-memory"},
         {"cook sphere.obj -o x.gtx --max-triangles 10", "--max-triangles"},
+        {"cook sphere.obj -o x.gtx --max-work 10k", "--max-work"},
         {"cook sphere.obj -o x.gtx --max-texels 1k", "--max-texels"},
         {"cook sphere.obj -o x.gtx --max-patches 1", "--max-patches"},
         {"compare sphere.gtx sphere.obj --max-triangles 10", "--max-triangles"},

@@ -101,6 +101,23 @@ inline std::string shells(unsigned n)
     return out;
 }
 
+/* A grid of heights that have nothing to do with each other: it folds along every axis. */
+inline std::string noise(unsigned n)
+{
+    const unsigned side = unsigned(std::sqrt(n / 2.)) + 1;
+    Random random;
+    std::string out;
+    for (unsigned j = 0; j < side; ++j)
+        for (unsigned i = 0; i < side; ++i)
+            out += vertex(double(i) / side, double(j) / side, random.next());
+    for (unsigned j = 0; j + 1 < side; ++j)
+        for (unsigned i = 0; i + 1 < side; ++i) {
+            const unsigned at = 1 + j * side + i;
+            out += face(at, at + 1, at + side) + face(at + 1, at + side + 1, at + side);
+        }
+    return out;
+}
+
 /* Polygons of `corners` random ones of 512 vertices. */
 inline std::string polygons(unsigned count, unsigned corners)
 {

@@ -109,6 +109,23 @@ static void shells_inside_each_other(void **)
     assert_cooks(hostile::shells(1800));
 }
 
+/* It takes work that nobody can foresee: what is allowed ends it, on however many threads. */
+static void noise_ends(void **)
+{
+    const std::string text = hostile::noise(3000);
+    for (unsigned threads : {1, 2}) {
+        gtx_cook_desc desc = {};
+        desc.threads = threads;
+        desc.limits.work = 1 << 20;
+        gtx_asset *asset = nullptr;
+        gtx_error error = {};
+        assert_int_equal(gtx_cook_memory(text.data(), text.size(), "a.obj", &desc, &asset, nullptr,
+                                         &error), GTX_ERROR_LIMIT);
+        assert_string_equal(error.limit, "work");
+        assert_null(asset);
+    }
+}
+
 int main()
 {
     const struct CMUnitTest tests[] = {
@@ -117,6 +134,7 @@ int main()
         cmocka_unit_test(a_fan_of_needles),
         cmocka_unit_test(a_stack_of_squares),
         cmocka_unit_test(shells_inside_each_other),
+        cmocka_unit_test(noise_ends),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

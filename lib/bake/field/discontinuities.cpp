@@ -23,6 +23,7 @@ bool Paths::joined(uint32_t from, uint32_t to, double u, double v, double reach)
     seen_.insert(queue_[0]);
     for (size_t next = 0; next < queue_.size() && !budget_.spent(); ++next) {
         budget_.spend(1);
+        cancel_point();
         if (queue_[next] == goal)
             return true;
         for (uint32_t n : neighbours_[queue_[next]])

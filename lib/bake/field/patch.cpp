@@ -102,10 +102,14 @@ static void quantise(const ChartField &s, const Crop &crop, double low, unsigned
     fill_trim(maps);
 }
 
+/* Turns of a short loop, that take as long as what is done for a texel of the grid. */
+constexpr size_t TEXEL_TURNS = 64;
+
 static ChartField lay_field(const Job &job, FlatChart flat, Extractor *extractor)
 {
     ChartField s;
     s.flat = std::move(flat);
+    cancel_point(TEXEL_TURNS * s.flat.grid.texels());
     if (extractor)
         s.rendering = extractor->render(job.mesh, s.flat);
     Cover core = extractor ? core_of(s.flat, s.rendering) : raster_core(s.flat);

@@ -8,6 +8,8 @@ constexpr double REACHED = GTX_TRIM_SHOWN + 0.2;
 /* Points for a texel of an outline's length, and texels of it that count in a cell. Spot's control
  * mesh: RMS -2 % at half, +1 % at double; LONGEST is a limit. */
 constexpr int POINTS = 4, LONGEST = 8;
+/* Of a short loop, that take as long as a look at a height field. */
+constexpr size_t LOOK_TURNS = 8;
 
 /* Where an outline that is not the model's own border crosses a cell with codes: from one of its
  * sides to another. */
@@ -65,6 +67,7 @@ static void find_ends(const Vector<const HeightField *> &others, const TieLimits
         *tie = {{tie->end[0], {}}};
         point.push_back(end_of(*tie));
     }
+    cancel_point(LOOK_TURNS * others.size() * ties.size());
     for (const HeightField *other : others)
         for (size_t i = 0; i < ties.size(); ++i) {
             Tie trial = {{ties[i]->end[0], {other}}};
@@ -103,6 +106,7 @@ Vector<Tie> sample_outline(const HeightField &own)
 static Vector<const HeightField *> reaching(const Vector<const HeightField *> &others,
                                             const Tie &first, const Tie &last)
 {
+    cancel_point(4 * others.size());
     const HeightField &own = *first.end[0].field;
     const Vec3d from = own.point(first.end[0].place), to = own.point(last.end[0].place);
     Vector<const HeightField *> out;

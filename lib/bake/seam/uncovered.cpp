@@ -85,6 +85,7 @@ bool Search::shown_by_any(const Sample &at, double min_facing, Budget &budget) c
 {
     return budget.spent() || fields_.any_near(at.point, 0, [&](const HeightField &field) {
         budget.spend(1);
+        cancel_point();
         return budget.spent() || (dot(at.normal, field.axis[2]) >= min_facing &&
                                   shown_by(field, at, MAX_ABOVE));
     });
@@ -100,6 +101,7 @@ std::optional<RelaxedTrim> Search::find_hidden(const Sample &at, Budget &budget)
         const double facing = dot(at.normal, field.axis[2]);
         double above, trim;
         budget.spend(1);
+        cancel_point();
         if (facing >= MIN_FACING && field.field_above(at.point, above, trim) &&
             std::abs(above * facing) <= MAX_OFF * job_.pitch &&
             (trim < least || (trim == least && (!found || fields_.is_before(*found, field))))) {
@@ -182,8 +184,10 @@ Vector<Budget> Search::share_looks(Task &task) const
     task.parallel(fields_.size(), [&](size_t s) {
         for (uint32_t t : partition_.charts[fields_.patch(s)].triangles)
             samples[s] += parts_of(t) * (parts_of(t) + 1.) / 2;
-        fields_.any_near(fields_[s].centre, 0,
-                         [&](const HeightField &) { return ++over[s] == MAX_OVER; });
+        fields_.any_near(fields_[s].centre, 0, [&](const HeightField &) {
+            cancel_point();
+            return ++over[s] == MAX_OVER;
+        });
     }, 0, 0);
     double all = 0, wanted = 0;
     for (size_t s = 0; s < samples.size(); ++s) {

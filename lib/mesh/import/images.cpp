@@ -66,6 +66,8 @@ static void make_rough(float glossiness, Vector<Rgba8> &texels)
 
 static void decode(const EncodedImage &from, Load &load)
 {
+    constexpr size_t TURNS = 8; /* of a short loop, that take as long as a pixel */
+    cancel_point(TURNS * load.pixels);
     gtx_image decoded = {};
     gtx_error error = {};
     TakenMemory taken(2 * sizeof(Rgba8) * load.pixels); /* as decoded, and as RGBA */
