@@ -34,7 +34,9 @@ static void a_ball_has_its_content(void **)
 #endif
     for (const Content &ball : {Content{"ball", GTX_PARTITION_CUTS, 5, 0xdd4b496da590462c},
                                 Content{"ball", GTX_PARTITION_VSA, 0, 0xff6480fca129567b},
-                                Content{"ball", GTX_PARTITION_PGP, 0, 0xdb93daccf3025264}})
+                                Content{"ball", GTX_PARTITION_PGP, 0, 0xdb93daccf3025264},
+                                Content{"ball", GTX_PARTITION_LAYERS, 0, 0x918e1031c68a9021},
+                                Content{"ball", GTX_PARTITION_RELIEF, 0, 0x5828e8c6bd317c33}})
         assert_content(ball_file(), ball);
 }
 
