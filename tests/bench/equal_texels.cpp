@@ -59,6 +59,7 @@ AssetFigures cook(const std::string &model, gtx_partition partition, unsigned ch
     desc.partition = partition;
     desc.charts = charts;
     desc.resolution = resolution;
+    desc.measure = partition == GTX_PARTITION_RELIEF;
     gtx_error error;
     gtx_report report = {};
     const std::clock_t start = std::clock();
@@ -69,6 +70,8 @@ AssetFigures cook(const std::string &model, gtx_partition partition, unsigned ch
     gtx_report_free(&report);
     out.bytes = said["bytes"];
     out.lost = said["suitability"]["unseen_fraction"];
+    if (desc.measure)
+        out.rms = said["error"]["forward"]["rms"];
     return out;
 }
 
@@ -105,6 +108,10 @@ std::vector<AssetFigures> equal_texels(const std::string &model, unsigned charts
         AssetFigures figures = out.empty() ? cook(model, partition, charts, 128, path)
                                            : cook_to_texels(model, partition, charts,
                                                             double(out[0].texels), path);
+        if (partition == GTX_PARTITION_RELIEF) { /* full of holes, each of which takes long */
+            out.push_back(figures);
+            continue;
+        }
         gtx_compare_desc desc = {};
         desc.levels = 1;
         gtx_compare_result result = {};

@@ -10,7 +10,7 @@ struct AssetFigures {
     uint64_t patches = 0, texels = 0, empty = 0;
     double range = 0;               /* of heights in a patch, mean over texels; of the diagonal */
     double rms = 0;                 /* from the source, of the diagonal */
-    uint64_t holes = 0, pixels = 0; /* in 26 views */
+    uint64_t holes = 0, pixels = 0; /* in 26 views; of relief neither is counted */
     uint64_t bytes = 0;
     uint64_t grid_triangles = 0;    /* of a displaced mesh over all texels */
     double seconds = 0;             /* of a processor, to cook it */

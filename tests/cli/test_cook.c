@@ -38,6 +38,10 @@ static void streams_carry_models_and_assets(void **state)
     expect(gtx("cook sphere.obj -o b.gtx --adaptive"), 1);
     expect(gtx("cook sphere.obj -o b.gtx --partition vsa --adaptive"), 1);
     expect(gtx("cook sphere.obj -o c.gtx --partition pgp --adaptive"), 0);
+    expect(gtx("cook sphere.obj -o c.gtx --partition layers --error 1e-3"), 0);
+    expect(gtx("cook sphere.obj -o c.gtx --partition relief"), 0);
+    expect(gtx("cook sphere.obj -o c.gtx --partition auto"), 0);
+    expect(gtx("cook sphere.obj -o c.gtx --partition relief --error 1e-3"), 1);
     expect(gtx("validate c.gtx"), 0);
     expect(gtx("cook sphere.obj -o - --if-changed"), 1);
     expect(gtx("cook - --name a.obj -o b.gtx --if-changed <sphere.obj"), 1);

@@ -37,7 +37,9 @@ static void a_ball_has_its_content(void **)
 #endif
     for (const Content &ball : {Content{"ball", GTX_PARTITION_CUTS, 0, 0x8de7604a95b21d91},
                                 Content{"ball", GTX_PARTITION_VSA, NONE, 0xff6480fca129567b},
-                                Content{"ball", GTX_PARTITION_PGP, NONE, 0xdb93daccf3025264}})
+                                Content{"ball", GTX_PARTITION_PGP, NONE, 0xdb93daccf3025264},
+                                Content{"ball", GTX_PARTITION_LAYERS, NONE, 0x918e1031c68a9021},
+                                Content{"ball", GTX_PARTITION_RELIEF, NONE, 0x5828e8c6bd317c33}})
         assert_content(ball_file(), ball);
 }
 

@@ -26,6 +26,7 @@ double slant(const Surface &surface, const Vector<Vec3d> &directions)
 {
     double lost = 0, size = 0;
     for (const Facet &facet : surface.facets) {
+        cancel_point();
         const Vec3d normal(facet.normal);
         lost += double(facet.size) *
                 (1 - dot(normal, directions[nearest_direction(directions, normal)]));
@@ -116,7 +117,8 @@ Vector<uint32_t> peel(Surface &surface, const Vector<Vec3d> &directions, double 
 {
     Vector<uint32_t> label(surface.facets.size());
     for (size_t t = 0; t < label.size(); ++t) {
-        const Vec3d &own = Vec3d(surface.normal[t]);
+        cancel_point();
+        const Vec3d own(surface.normal[t]);
         size_t nearest = nearest_direction(directions, Vec3d(surface.facets[t].normal));
         if (!surface.junk[t] && dot(own, directions[nearest]) < MIN_FACING) {
             nearest = nearest_direction(directions, own);
