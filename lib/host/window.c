@@ -15,6 +15,7 @@ struct gtx_window {
     gtx_camera *camera;
     double x, y;              /* of the pointer when last seen */
     unsigned char presses[128];
+    float scrolled;
     char **dropped;
     int dropped_count, dropped_next;
     int minimised;            /* asked for, or seen: not every window manager says so */
@@ -68,6 +69,10 @@ static void on_wheel(GLFWwindow *glfw, double x, double y)
 {
     gtx_window *window = glfwGetWindowUserPointer(glfw);
     (void)x;
+    if (window->camera->distance <= 0) {
+        window->scrolled += (float)y;
+        return;
+    }
     window->camera->distance *= powf(0.9f, (float)y);
     window->camera->distance = fminf(fmaxf(window->camera->distance, 0.05f), 50);
 }
@@ -198,6 +203,21 @@ int gtx_window_pressed(gtx_window *window, char key)
     const int presses = window->presses[key & 127];
     window->presses[key & 127] = 0;
     return presses;
+}
+
+int gtx_window_held(const gtx_window *window, char key)
+{
+    if (key != GTX_KEY_SHIFT)
+        return glfwGetKey(window->glfw, key) == GLFW_PRESS;
+    return glfwGetKey(window->glfw, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ||
+           glfwGetKey(window->glfw, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
+}
+
+float gtx_window_scrolled(gtx_window *window)
+{
+    const float steps = window->scrolled;
+    window->scrolled = 0;
+    return steps;
 }
 
 char *gtx_window_dropped(gtx_window *window)

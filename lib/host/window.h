@@ -11,10 +11,10 @@ extern "C" {
 
 typedef struct gtx_window gtx_window;
 
-enum { GTX_KEY_ESCAPE = 27 };
+enum { GTX_KEY_SHIFT = 1, GTX_KEY_ESCAPE = 27 };
 
 /* Opens a window and makes its context current. Left drag turns `camera`, right and middle drag
- * pan it, and the wheel moves it; the camera must outlive the window.
+ * pan it, and the wheel moves it unless its distance is 0; the camera must outlive the window.
  * Errors: MEMORY, GL (no display, no 3.3 core). */
 gtx_result gtx_window_create(const char *title, int width, int height, gtx_camera *camera,
                              gtx_window **out, gtx_error *error);
@@ -34,6 +34,12 @@ void gtx_window_pointer(const gtx_window *window, float pointer[2]);
 /* The presses of a key since the last call: a letter ('A'..'Z', as the keyboard's layout has it), a
  * digit or GTX_KEY_ESCAPE. */
 int gtx_window_pressed(gtx_window *window, char key);
+
+/* Whether a key is held down now: a letter, where a keyboard of the US has it, or GTX_KEY_SHIFT. */
+int gtx_window_held(const gtx_window *window, char key);
+
+/* Steps of the wheel, up, that did not move the camera, since the last call: its distance is 0. */
+float gtx_window_scrolled(gtx_window *window);
 
 /* A file that was dropped onto the window, in the order dropped, or NULL; freed by the caller. */
 char *gtx_window_dropped(gtx_window *window);

@@ -241,6 +241,29 @@ static void screenshots_get_free_names(void **state)
     gtx_image_free(&second);
 }
 
+/* On the sphere: the ground is below, the sky above; each step shows something else, and F takes
+ * all of it back. */
+static void it_walks_on_the_asset(void **state)
+{
+    (void)state;
+    if (!server)
+        skip();
+    gtx_image shown[5];
+    const char *keys[] = {"t", "gt", "gwwwwt", "ggwwwwt", "gwwsaegsft"};
+    for (int i = 0; i < 5; ++i)
+        shown[i] = view("sphere.gtx --camera 30,80,5", keys[i]);
+    const uint8_t *sky = pixel(&shown[0], 10, 10);
+    for (int i = 1; i < 4; ++i) {
+        assert_memory_equal(pixel(&shown[i], 160, 10), sky, 3);
+        assert_true(abs(pixel(&shown[i], 160, 230)[0] - sky[0]) > 10);
+    }
+    assert_true(difference(&shown[1], &shown[2], false) > 300);
+    assert_true(difference(&shown[2], &shown[3], false) > 300); /* flying leaves the ground */
+    assert_int_equal(difference(&shown[0], &shown[4], false), 0);
+    for (int i = 0; i < 5; ++i)
+        gtx_image_free(&shown[i]);
+}
+
 static void drops_are_opened_cooked_cancelled(void **state)
 {
     (void)state;
@@ -271,6 +294,7 @@ int main(void)
         cmocka_unit_test(normals_have_the_colours_of_their_directions),
         cmocka_unit_test(the_window_shows_what_render_draws),
         cmocka_unit_test(resized_and_minimised_it_goes_on),
+        cmocka_unit_test(it_walks_on_the_asset),
         cmocka_unit_test(screenshots_get_free_names),
         cmocka_unit_test(drops_are_opened_cooked_cancelled),
     };

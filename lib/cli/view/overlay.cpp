@@ -23,10 +23,12 @@ void Viewer::add_status(gtx_shapes &shapes, float dot)
     static const char *const levels_text[] = {"auto", "0", "1", "2", "3"};
     char line[160];
     const bool no_lod = view.method != methods[method].method;
-    std::snprintf(line, sizeof line, "%s  level %s%s%s%s  %.1f ms  %dx%d",
+    static const char *const motions[] = {"", "  walking", "  flying"};
+    std::snprintf(line, sizeof line, "%s  level %s%s%s%s%s  %.1f ms  %dx%d",
                   no_lod ? "no LOD mesh: auto" : methods[method].name, levels_text[view.level],
                   debug_view_text[size_t(debug)], boxes ? "  boxes" : "",
-                  fixed_light ? "  light fixed" : "", milliseconds, width, height);
+                  fixed_light ? "  light fixed" : "", motions[size_t(walker.motion())],
+                  milliseconds, width, height);
     std::string lines = name + "\n" + std::to_string(facts.triangles) + " triangles  " +
                         std::to_string(facts.patches) + " patches  " + format_bytes(facts.bytes) +
                         " asset  " + format_bytes(scene_renderer->gpu_bytes()) + " GPU\n" + line;
@@ -56,6 +58,9 @@ void Viewer::add_help(gtx_shapes &shapes, float dot)
     const gtx_text_style style = {dot, {236, 238, 242}, {32, 36, 44}};
     std::string lines = "left drag   turn\nright drag  move\nwheel       nearer, farther\n"
                         "drop        a model is cooked, an asset opened\n";
+    if (walker.motion() != Motion::ORBIT)
+        lines = "W A S D     go\nE Q         up, down\nShift       faster\n"
+                "left drag   look around\nwheel       faster, slower\n";
     for (const Key &k : keys) {
         std::string label = k.key == GTX_KEY_ESCAPE ? "Esc" : std::string(1, k.key);
         lines += label + std::string(12 - label.size(), ' ') + k.help + "\n";

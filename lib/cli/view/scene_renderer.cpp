@@ -44,8 +44,7 @@ void SceneRenderer::clear()
     places.clear();
 }
 
-/* The transform of an asset's own coordinates, with the scene's centre at the origin. */
-static gtx_instance place(const PlacedAsset &placed, const Vec3d &centre)
+gtx_instance place_in_scene(const PlacedAsset &placed, const Vec3d &centre)
 {
     gtx_info info;
     gtx_get_info(placed.asset.get(), &info);
@@ -68,7 +67,7 @@ void SceneRenderer::show(const Scene &shown, Vector<gtx_model *> models)
     scene = &shown;
     views[size_t(DebugView::NONE)].models = std::move(models);
     for (const PlacedAsset &placed : shown.assets)
-        places.push_back(place(placed, shown.centre));
+        places.push_back(place_in_scene(placed, shown.centre));
     uploaded(DebugView::NONE);
 }
 

@@ -51,6 +51,9 @@ private:
     Vector<gtx_polygons> boxes;
 };
 
+/* The transform of an asset's own coordinates, with the scene's centre at the origin; no model. */
+gtx_instance place_in_scene(const PlacedAsset &placed, const Vec3d &centre);
+
 /* A key light over the camera's left shoulder. */
 void light_from_camera(gtx_view &view);
 

@@ -27,7 +27,9 @@ const Viewer::Key Viewer::keys[] = {
     {'N', "normals as colours", [](Viewer &v) { v.toggle(DebugView::NORMALS); }},
     {'B', "boxes of the patches", [](Viewer &v) { v.boxes = !v.boxes; }},
     {'O', "light fixed, or with the camera", [](Viewer &v) { v.fixed_light = !v.fixed_light; }},
-    {'S', "save a picture", [](Viewer &v) { v.wants_picture = true; }},
+    {'G', "walk, fly, or orbit", [](Viewer &v) { v.change_motion(); }},
+    {'S', "save a picture, but on foot: back",
+     [](Viewer &v) { v.wants_picture = v.walker.motion() == Motion::ORBIT; }},
     {'T', "this text on and off", [](Viewer &v) { v.text = !v.text; }},
     {'H', "help", [](Viewer &v) { v.help = !v.help; }},
     {GTX_KEY_ESCAPE, "cancel cooking, then close", [](Viewer &v) { v.escape(); }},
@@ -85,6 +87,7 @@ void Viewer::release()
 void Viewer::show(Scene shown, Vector<gtx_model *> models)
 {
     facts = Facts();
+    walker.forget(); /* the rays of what will be closed */
     scene = std::move(shown);
     scene_renderer->show(scene, std::move(models));
     for (const PlacedAsset &placed : scene.assets) {
@@ -102,10 +105,54 @@ void Viewer::show(Scene shown, Vector<gtx_model *> models)
 
 void Viewer::frame_all()
 {
+    while (walker.motion() != Motion::ORBIT)
+        walker.change(camera, scene);
     camera.azimuth = home[0];
     camera.elevation = home[1];
     camera.distance = home[2];
     std::fill(camera.pan, camera.pan + 3, 0.f);
+}
+
+void Viewer::change_motion()
+{
+    try {
+        walker.change(camera, scene);
+    } catch (const Error &e) { /* the asset is seen, but has too much for rays */
+        note = e.message;
+    }
+}
+
+/* Where the keys go: right, up, forward. */
+static const struct {
+    char key;
+    float toward[3];
+} walk_keys[] = {{'W', {0, 0, 1}},  {'S', {0, 0, -1}}, {'A', {-1, 0, 0}},
+                 {'D', {1, 0, 0}},  {'E', {0, 1, 0}},  {'Q', {0, -1, 0}}};
+
+/* As if a key were held for some time; whether it is one of those. */
+bool Viewer::walk(char key, double seconds)
+{
+    for (const auto &k : walk_keys)
+        if (k.key == key && walker.motion() != Motion::ORBIT) {
+            walker.move(camera, k.toward, false, seconds);
+            return true;
+        }
+    return false;
+}
+
+void Viewer::walk_by_hand()
+{
+    using Clock = std::chrono::steady_clock;
+    const double longest = 0.1; /* seconds: what took longer was no step */
+    const double now = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+    const double seconds = std::min(stepped > 0 ? now - stepped : 0, longest);
+    stepped = now;
+    float toward[3] = {0, 0, 0};
+    for (const auto &k : walk_keys)
+        for (int i = 0; i < 3; ++i)
+            toward[i] += gtx_window_held(window, k.key) ? k.toward[i] : 0;
+    walker.hasten(gtx_window_scrolled(window));
+    walker.move(camera, toward, gtx_window_held(window, GTX_KEY_SHIFT), seconds);
 }
 
 void Viewer::press(char key)
@@ -131,8 +178,9 @@ void Viewer::press_script(char key)
         gtx_window_resize(window, width * 2, height * 2);
     else if (key == '_')
         gtx_window_minimise(window, minimised = !minimised);
-    else
-        press(key >= 'a' && key <= 'z' ? char(key - 'a' + 'A') : key);
+    else if (const char upper = key >= 'a' && key <= 'z' ? char(key - 'a' + 'A') : key;
+             !walk(upper, 0.1))
+        press(upper);
 }
 
 void Viewer::escape()
@@ -264,6 +312,8 @@ int Viewer::run(const ViewScript &script)
         for (const Key &k : keys)
             for (int n = gtx_window_pressed(window, k.key); n > 0; --n)
                 press(k.key);
+        if (!*script.keys)
+            walk_by_hand();
         take_drops();
         if (!dropped)
             loader.start({script.drop});

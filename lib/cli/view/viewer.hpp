@@ -3,6 +3,7 @@
 
 #include "cli/view/loader.hpp"
 #include "cli/view/scene_renderer.hpp"
+#include "cli/view/walk.hpp"
 #include "host/framebuffer.h"
 #include "host/text.h"
 #include "host/window.h"
@@ -46,7 +47,7 @@ private:
     struct Facts {
         uint64_t triangles = 0, patches = 0, bytes = 0;
     };
-    static const Key keys[11];
+    static const Key keys[12];
     static const Method methods[5];
     void press(char key);
     void toggle(DebugView view);
@@ -58,6 +59,9 @@ private:
     void receive(Loader::Result result);
     void show(Scene shown, Vector<gtx_model *> models);
     void frame_all();
+    void change_motion();
+    bool walk(char key, double seconds);
+    void walk_by_hand();
     void draw_frame();
     void draw_overlay();
     void add_status(gtx_shapes &shapes, float dot);
@@ -76,6 +80,8 @@ private:
     Loader loader;
     Loader::Result incoming;    /* is being uploaded where it has models */
     gtx_camera camera = {};
+    Walk walker;
+    double stepped = 0;         /* seconds of the clock at the last step; 0: none yet */
     float home[3];              /* azimuth, elevation and distance */
     gtx_view view = {};
     size_t method;              /* in the table of methods */
