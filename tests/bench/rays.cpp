@@ -5,8 +5,8 @@
  * Chords join two points of the asset's bounding sphere, inner rays start anywhere in it towards
  * anywhere, grazing ones just above where chords hit, along the surface: no two rays have anything
  * in common. Each row is the best of three runs, in time of the processor, with the cells that a
- * ray visits, in the mean and at worst. Frames are 640 x 480 of the asset alone, the median of five, finished with
- * glFinish. */
+ * ray visits, in the mean and at worst. Frames are 640 x 480 of the asset alone, the median of
+ * five, finished with glFinish. */
 #include "host/camera.h"
 #include "host/framebuffer.h"
 #include "host/offscreen.h"
