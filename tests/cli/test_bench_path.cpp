@@ -151,6 +151,45 @@ static void random_views_are_a_third_each_and_the_same_again(void **)
     assert_int_equal(eyes.size(), 30);
 }
 
+/* What rays of a method look at: cells a ray, of any ray the most, and slabs. */
+struct Counts {
+    unsigned long long rays;
+    double cells, slabs;
+    unsigned most;
+};
+
+static Counts counted(const char *method, const char *where)
+{
+    char window[16], name[32];
+    Counts c;
+    unsigned view, most_slabs;
+    double fragments;
+    expect(gtx("bench sphere.gtx none.obj --cells --sizes 64x48 --methods %s %s", method, where),
+           0);
+    const char *row = std::strstr(output, "| 64x48");
+    if (!row || std::sscanf(row, "| %15s | %31s | %llu | %lf | %lf | %u | %u | %lf | %u |", window,
+                            name, &c.rays, &fragments, &c.cells, &c.most, &view, &c.slabs,
+                            &most_slabs) != 9)
+        fail_msg("no counts: %s", output);
+    assert_string_equal(name, method);
+    return c;
+}
+
+static void cells_are_counted(void **)
+{
+    write_text("near.path", "0 0 1.1  3 0 0.4\n");
+    for (const char *where : {"", "--path near.path"})
+        for (const char *method : {"paper", "cast", "cast_fragment"}) {
+            const Counts c = counted(method, where);
+            if (c.rays < 100 || c.rays > 4 * 64 * 48 || c.most < c.cells || c.cells < 0.5)
+                fail_msg("%s: %llu rays, %g cells", method, c.rays, c.cells);
+        }
+    const Counts by_paper = counted("paper", ""), exactly = counted("cast_fragment", "");
+    assert_true(exactly.cells < by_paper.cells && by_paper.slabs == 0 && exactly.slabs == 0);
+    for (const char *wrong : {"--json", "--instances 2", "--methods mesh", "--methods auto"})
+        expect(gtx("bench sphere.gtx none.obj --cells --sizes 64x48 %s", wrong), 1);
+}
+
 /* Wherever one stands, all methods show the same surface: the parts of the mesh that are left out
  * are out of view. */
 static void methods_agree_from_anywhere(void **)
@@ -258,6 +297,7 @@ int main()
         cmocka_unit_test(keys_are_views_and_what_is_between_them),
         cmocka_unit_test(views_are_held_against_many_samples),
         cmocka_unit_test(random_views_are_a_third_each_and_the_same_again),
+        cmocka_unit_test(cells_are_counted),
         cmocka_unit_test(methods_agree_from_anywhere),
         cmocka_unit_test(a_sheet_is_seen_from_behind),
         cmocka_unit_test(gaps_and_moved_outlines_are_told_apart),
