@@ -18,21 +18,23 @@ static const char vertex_text[] = R"(
 layout(location = 0) in vec3 position;
 uniform vec4 toward;
 out vec2 gtx_at;
-flat out vec2 gtx_page;
+flat out vec3 gtx_page;
 flat out vec3 gtx_toward;
-#ifdef GTX_MATERIALS
 flat out vec3 gtx_eye;
+#ifdef GTX_MATERIALS
 flat out vec4 gtx_between;
 #endif
 flat out vec4 gtx_color;
 void main()
 {
     gtx_at = position.xy * 0.5 + 0.5;
-    gtx_page = vec2(0.0);
-    gtx_toward = toward.xyz;
+    const float deviation = 0.001; /* of normals: the least */
+    const vec3 eye = vec3(0.0, 0.0, 1.0);
+    gtx_page = vec3(0.0, 0.0, deviation);
+    gtx_toward = toward.xyz / deviation;
+    gtx_eye = eye / deviation;
 #ifdef GTX_MATERIALS
-    gtx_eye = vec3(0.0, 0.0, 1.0);
-    gtx_between = vec4(normalize(gtx_eye + gtx_toward), 0.0);
+    gtx_between = vec4(normalize(eye + toward.xyz), 0.0);
 #endif
     gtx_color = vec4(1.0);
     gl_Position = vec4(position, 1.0);
