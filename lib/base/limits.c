@@ -6,7 +6,7 @@
 /* A default: a number, and more for each byte read. Of the models measured, terrain in Draco takes
  * most for a byte: 1.72 triangles and 390 bytes of memory (2.88 million triangles in 1.67 MB). With
  * half the triangles it would be refused; with double, a megabyte could take 12 s of processor. Of
- * work an engine of 82 nodes takes most, 270 million steps in 0.3 MB, the terrain 60 for a byte:
+ * work an engine of 82 nodes takes most, 260 million steps in 0.3 MB, the terrain 60 for a byte:
  * with half the engine would be refused, with double a megabyte of noise could take 40 s. */
 static const struct {
     const char *name, *unit;

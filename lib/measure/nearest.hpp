@@ -133,7 +133,7 @@ public:
 
 private:
     static constexpr size_t LEAF = 4;
-    static constexpr size_t LOOK_TURNS = 16; /* of a short loop, that take as long as a look */
+    static constexpr size_t LOOK_TURNS = 8; /* of a short loop, that take as long as a look */
 
     /* Orders the shapes of a node with places for `room` of them: those of its first child have the
      * lower centres along the longest side of all, and fill it. */
