@@ -45,7 +45,8 @@ static gtx_result make_asset(world *w, gtx_asset **asset, gtx_error *error)
     }
     gtx_height_grid grids[LAYERS];
     const int own = !strcmp(w->path, "own");
-    gtx_horizons_desc desc = {.depths = 1, .vertical = 4, .lod_levels = own ? 5 : GTX_LOD_LEVELS_NONE};
+    gtx_horizons_desc desc = {
+        .depths = 1, .vertical = 4, .lod_levels = own ? 0 : GTX_LOD_LEVELS_NONE};
     gtx_horizons_result made;
     for (int k = 0; k < LAYERS && !result; ++k)
         result = own ? make_layer(k, &grids[k]) : read_layer(w->path, k, &grids[k], error);

@@ -88,8 +88,8 @@ static Vector<uint32_t> find_near(const Simplified &s, uint32_t vertex)
     return near;
 }
 
-/* The planes of the triangles around a vertex: what is above none of them by more than `most` is not
- * outside. Of most points this is all that has to be known. */
+/* The planes of the triangles around a vertex: what is above none of them by more than `most` is
+ * not outside. Of most points this is all that has to be known. */
 class Planes {
 public:
     Planes(const Simplified &s, uint32_t vertex)
