@@ -22,7 +22,8 @@ constexpr size_t MAX_TRIANGLES = 300000000;
  * this 13; half and double change a few bytes. */
 constexpr double TWO_SIDED_AREA = 0.05;
 
-/* AUTO: part of the texels of cuts, at one pitch for both, below which layers are taken. */
+/* AUTO: part of the texels of cuts below which layers are taken. An engine takes 0.83, a leaf 0.86,
+ * a truck 0.95, the bunny 1.03. */
 constexpr double WORTH_PEELING = 0.96;
 
 /* Merges what splitting took apart too far. */

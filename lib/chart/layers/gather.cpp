@@ -12,7 +12,8 @@ namespace gtx {
 
 namespace {
 
-/* Largest chart that is gathered, in parts of a patch's surface. */
+/* What follows was chosen on an engine of 82 nodes (786 charts become 626), and not tuned.
+ * Largest chart that is gathered, in parts of a patch's surface. */
 constexpr double GATHERED_TEXELS = 0.5 * PATCH_TEXELS;
 /* Texels between two charts: the maps of each show a little more than its core. */
 constexpr int GAP = 5;

@@ -11,7 +11,7 @@ namespace gtx {
 namespace {
 
 /* Least cosine between a triangle and the direction that it is seen along, and least share of it
- * that is seen. */
+ * that is seen. Not tuned. */
 constexpr double LEAST_FACING = 0.15, LEAST_SEEN = 0.25;
 /* Texels that surface may lie behind what is in front of it and yet be the same. */
 constexpr double SAME_DEPTH = 1;
