@@ -87,7 +87,7 @@ static void reserved_limits_must_be_zero(void **state)
     gtx_model *model;
     gtx_rays *rays;
     const gtx_model_desc a = {.limits.reserved = {1}};
-    const gtx_rays_desc b = {list, 1, .limits.reserved = {0, 0, 0, 1}};
+    const gtx_rays_desc b = {list, 1, .limits.reserved = {0, 1}};
     assert_int_equal(gtx_model_prepare(asset, &a, &model, NULL), GTX_ERROR_NOT_ZEROED);
     assert_int_equal(gtx_rays_create(s->renderer, &b, &rays, NULL), GTX_ERROR_NOT_ZEROED);
     gtx_close(asset);
