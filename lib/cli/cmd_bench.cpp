@@ -155,59 +155,6 @@ bool parse_lists(gtx::BenchOptions &out)
     return true;
 }
 
-/* A line of the table. The ratios are against the mesh's row of the same window. */
-void print_row(const gtx::BenchRow &row, double mesh)
-{
-    char window[32], ratio[32] = "", error[32] = "";
-    std::snprintf(window, sizeof window, "%ux%u", row.size[0], row.size[1]);
-    if (mesh > 0 && row.frames)
-        std::snprintf(ratio, sizeof ratio, "%.2f", mesh / row.median);
-    if (row.max_error > 0)
-        std::snprintf(error, sizeof error, "%g", row.max_error);
-    std::printf("| %-9s | %5u | %-11s ", window, row.instances,
-                gtx::bench_method_names[uint32_t(row.method)]);
-    if (row.frames)
-        std::printf("| %5s | %9.2f | %9.2f | %7s | %9.2f | %6.4f | %5.1f | %5llu | %8llu | %7u "
-                    "|%s\n",
-                    error, row.median, row.least, ratio, row.work, row.iou, row.psnr,
-                    (unsigned long long)row.holes, (unsigned long long)row.rays, row.triangles,
-                    gtx::truth_cells(row.truth).c_str());
-    else
-        std::printf("| skipped: %s |\n", row.skipped);
-    std::fflush(stdout);
-}
-
-void write_row(gtx_json &json, const gtx::BenchSetup &setup, const gtx::BenchRow &row)
-{
-    char zoom[32];
-    std::snprintf(zoom, sizeof zoom, "%ux%u", row.size[0], row.size[1]);
-    gtx_json_begin_object(&json, nullptr);
-    gtx_json_integer(&json, "instances", row.instances);
-    gtx_json_string(&json, "zoom", zoom);
-    gtx_json_string(&json, "method", gtx::bench_method_names[uint32_t(row.method)]);
-    if (row.skipped) {
-        gtx_json_string(&json, "reason", row.skipped);
-    } else {
-        gtx_json_string(&json, "platform", setup.renderer.c_str());
-        gtx_json_integer(&json, "pixels", row.pixels);
-        gtx_json_integer(&json, "frames", row.frames);
-        gtx_json_number(&json, "ms_median", row.median);
-        gtx_json_number(&json, "ms_min", row.least);
-        gtx_json_number(&json, "ms_work", row.work);
-        gtx_json_number(&json, "silhouette_iou", row.iou);
-        gtx_json_number(&json, "psnr_db", row.psnr);
-        gtx_json_integer(&json, "hole_pixels", row.holes);
-        gtx_json_integer(&json, "rays", row.rays);
-        gtx_json_integer(&json, "hits", row.hits);
-        if (row.max_error > 0)
-            gtx_json_number(&json, "max_error_px", row.max_error);
-        if (row.triangles)
-            gtx_json_integer(&json, "triangles", row.triangles);
-        gtx::write_truth(json, row.truth);
-    }
-    gtx_json_end_object(&json);
-}
-
 /* What was measured: rows of the orbit, or paths. */
 struct Report {
     gtx::BenchSetup setup;
@@ -229,7 +176,7 @@ int tell_json(const char *scene, const Report &report)
         gtx_json_begin_array(&json, skipped ? "skipped" : "rows");
         for (const gtx::BenchRow &row : report.rows)
             if (skipped == (row.skipped != nullptr))
-                write_row(json, report.setup, row);
+                gtx::write_bench_row(json, report.setup, row);
         gtx_json_end_array(&json);
     }
     if (!report.paths.empty()) {
@@ -255,15 +202,6 @@ void print_head(const char *scene, const gtx::BenchSetup &setup)
                 setup.open + setup.prepare + setup.upload, setup.renderer.c_str());
 }
 
-void print_table_head()
-{
-    std::printf("| window    | count | method      | error | median    | least     | mesh/   "
-                "| work      "
-                "| IoU    | PSNR  | holes | rays     | triang. |%s\n"
-                "|---|---|---|---|---|---|---|---|---|---|---|---|---|%s\n",
-                truth ? gtx::TRUTH_COLUMNS : "", truth ? gtx::TRUTH_RULES : "");
-}
-
 void run_orbit(const char *scene, const char *asset, const gtx::Mesh &mesh,
                const gtx::BenchOptions &wanted, Report &report)
 {
@@ -275,7 +213,7 @@ void run_orbit(const char *scene, const char *asset, const gtx::Mesh &mesh,
             report.setup = setup;
             if (!as_json) {
                 print_head(scene, setup);
-                print_table_head();
+                gtx::print_bench_head(truth);
             }
         },
         [&](const gtx::BenchRow &row) {
@@ -286,7 +224,7 @@ void run_orbit(const char *scene, const char *asset, const gtx::Mesh &mesh,
             if (row.method == gtx::BenchMethod::MESH)
                 of_mesh = row.median;
             if (!as_json)
-                print_row(row, of_mesh);
+                gtx::print_bench_row(row, of_mesh);
         });
 }
 

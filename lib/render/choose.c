@@ -10,8 +10,8 @@
 /* The host's costs, or nanoseconds measured with llvmpipe on two cores, in the forward pass of a
  * dragon of 810,080 triangles in 526 patches: cast in fragments, and by tiles. Other passes cost
  * less, but must choose the same to get the same depth. That of a grid: in 24 random views each of
- * that dragon and of a bunny (gtx bench --random 24). At 120 the bunny takes a fifth longer, at 1000
- * the dragon a quarter; without grids most views take three times as long. */
+ * that dragon and of a bunny (gtx bench --random 24). At 120 the bunny takes a fifth longer, at
+ * 1000 the dragon a quarter; without grids most views take three times as long. */
 static const gtx_costs *costs_of(const gtx_draw_call *draw)
 {
     static const gtx_costs measured[2] = {{100, 25, 15000, 160, 350}, {100, 25, 5500, 75, 350}};

@@ -1,6 +1,7 @@
 /* Frame times of an asset beside the mesh it was cooked from and what else a user would draw. */
 #pragma once
 
+#include "base/json.h"
 #include "cli/bench/truth.hpp"
 #include "cli/view/scene.hpp"
 #include "host/offscreen.h"
@@ -74,5 +75,11 @@ struct BenchSetup {
 void run_bench(const std::string &asset_path, const Mesh &mesh, const BenchOptions &options,
                const std::function<void(const BenchSetup &)> &begin,
                const std::function<void(const BenchRow &)> &tell);
+
+/* bench_report.cpp: the table's head; a line, with ratios to the median of the mesh's row of the
+ * same window, 0 if there is none; and a row as JSON. */
+void print_bench_head(bool truth);
+void print_bench_row(const BenchRow &row, double mesh);
+void write_bench_row(gtx_json &json, const BenchSetup &setup, const BenchRow &row);
 
 } // namespace gtx
