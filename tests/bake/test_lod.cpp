@@ -36,7 +36,7 @@ static void a_ball_stays_closed_and_near(void **)
         size_t outside = 0;
         for_each(level, [&](size_t, const std::array<Vec3d, 3> &c) {
             for (const Vec3d &p : c) {
-                assert_true(std::fabs(length(p) - 1) < 4 * level.error + 2 * level.step);
+                assert_true(std::fabs(length(p) - 1) < 3 * level.error + 2 * level.step);
                 outside += length(p) > 1;
             }
             deepest = std::max(deepest, 1 - length((c[0] + c[1] + c[2]) / 3));
@@ -200,10 +200,10 @@ static void tips_are_reached(void **)
                 least = distance;
                 height = dot(cross(c[1] - c[0], c[2] - c[0]), p - c[0]) > 0 ? distance : 0;
             });
-            outside += height > 0.75 * level.error + level.step;
-            assert_true(height < 1.5 * level.error + level.step);
+            outside += height > 0.5 * level.error + level.step;
+            assert_true(height < level.error + level.step);
         }
-        assert_true(outside <= mesh.positions.size() / 100);
+        assert_true(outside <= mesh.positions.size() / 200);
     }
 }
 
