@@ -7,7 +7,7 @@
  * most for a byte: 1.72 triangles and 390 bytes of memory (2.88 million triangles in 1.67 MB). With
  * half the triangles it would be refused; with double, a megabyte could take 12 s of processor. Of
  * work an engine of 82 nodes takes most, 260 million steps in 0.3 MB, the terrain 60 for a byte:
- * with half the engine would be refused, with double a megabyte of noise could take 40 s. */
+ * with half the engine would be refused; now a megabyte of noise is refused after 21 s. */
 static const struct {
     const char *name, *unit;
     uint64_t least;

@@ -102,12 +102,12 @@ Options checked_options(const gtx_cook_desc &desc)
 
 double work_of(const Options &options)
 {
-    constexpr double OTHER_PARTITION = 8, LOD = 2, PATCHES = 1000;
+    constexpr double OTHER_PARTITION = 8, PATCHES = 1000;
     const double finer = options.chart.resolution / 128.;
     double times = std::max({1., finer * finer, options.chart.charts / PATCHES});
     if (options.chart.method != PartitionMethod::CUTS)
         times *= OTHER_PARTITION;
-    return options.lod_levels ? times * LOD : times;
+    return times;
 }
 
 const char *partition_name(PartitionMethod method)
