@@ -111,12 +111,6 @@ static bool may_face(const patch_view *v, const gtx_slab *s)
     return above >= 0;
 }
 
-/* What a patch's blocks in view come to. */
-typedef struct sum {
-    uint32_t triangles;
-    double pixels;
-} sum;
-
 /* How much the grids hold. */
 typedef struct fill {
     uint32_t vertices, indices[GTX_GRID_LOOKS];
@@ -145,27 +139,45 @@ static uint32_t triangles_since(const gtx_grids *g, const fill *f)
     return count;
 }
 
-/* Adds the blocks of a patch in view that may face the eye. False without memory. */
-static bool add(const gtx_frustum *f, const gtx_model *model, uint32_t patch,
-                gtx_renderer *renderer, sum *out)
+static bool is_seen(const patch_view *v, const gtx_slab *s)
 {
-    const patch_view v = view_of(f, model, patch);
+    return s->low[0] <= s->high[0] && is_in_view(v, s) && (v->two_sided || may_face(v, s));
+}
+
+/* How many triangles over so many pixels take as long as casting. */
+static uint32_t most_triangles(const gtx_draw_call *draw, double pixels)
+{
+    const double left = gtx_cast_cost(draw, 1, pixels) - gtx_grid_cost(draw, 0, pixels);
+    return (uint32_t)fmax(0, fmin(left / gtx_grid_cost(draw, 1, 0), 1e9));
+}
+
+/* Adds the blocks of a patch in view that may face the eye; unless it has to, only as long as that
+ * takes less than casting. False if it gave up, or without memory. */
+static bool add(const gtx_draw_call *draw, const gtx_frustum *f, const gtx_model *model,
+                uint32_t patch, bool must)
+{
+    gtx_renderer *renderer = draw->renderer;
     gtx_grids *grids = &renderer->grids;
+    const patch_view v = view_of(f, model, patch);
     const gtx_refining r =
         gtx_refine(f, model, patch, v.w, v.eye, grids, &renderer->allocator);
     const gtx_slab *slabs = model->slabs + model->first_slab[patch];
+    const uint32_t count = r.rtin->columns * r.rtin->rows;
     const fill before = fill_of(grids);
-    *out = (sum){0, 0};
-    for (uint32_t i = 0; i < r.rtin->columns * r.rtin->rows; ++i) {
-        const gtx_slab *s = &slabs[i];
-        if (s->low[0] > s->high[0] || !is_in_view(&v, s) || !(v.two_sided || may_face(&v, s)))
+    double pixels = 0;
+    uint32_t triangles = 0;
+    for (uint32_t i = 0; i < count; ++i)
+        if (is_seen(&v, &slabs[i]))
+            pixels += pixels_of(&v, f, &slabs[i], model->records[patch]);
+    const uint32_t most = must ? UINT32_MAX : most_triangles(draw, pixels);
+    for (uint32_t i = 0; i < count && triangles <= most; ++i) {
+        if (!is_seen(&v, &slabs[i]))
             continue;
-        out->pixels += pixels_of(&v, f, s, model->records[patch]);
         if (!gtx_refine_block(&r, i % r.rtin->columns, i / r.rtin->columns))
             return false;
+        triangles = triangles_since(grids, &before);
     }
-    out->triangles = triangles_since(grids, &before);
-    return true;
+    return triangles <= most;
 }
 
 /* Room for the slots of any one patch. */
@@ -198,9 +210,7 @@ bool gtx_blocks_fill(const gtx_draw_call *draw, const gtx_model *model,
         const gtx_plan_entry entry = plan->entries[i];
         const bool box = entry.distance < 0; /* may cover the picture, whatever the patch does */
         const fill before = fill_of(grids);
-        sum s;
-        const bool added = add(&f, model, entry.patch, renderer, &s);
-        if (added && (all || box || gtx_is_grid_cheaper(draw, s.triangles, s.pixels)))
+        if (add(draw, &f, model, entry.patch, all || box))
             continue;
         empty_to(grids, &before);
         plan->entries[left++] = entry;

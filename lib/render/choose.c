@@ -78,13 +78,18 @@ static bool is_casting_cheaper(const gtx_costs *costs, const gtx_model *model, u
            costs->lod_triangle * triangles + costs->lod_pixel * pixels;
 }
 
-bool gtx_is_grid_cheaper(const gtx_draw_call *draw, uint32_t triangles, double pixels)
+double gtx_grid_cost(const gtx_draw_call *draw, uint32_t triangles, double pixels)
 {
     const gtx_costs *costs = costs_of(draw);
     const double triangle =
         costs->grid_triangle > 0 ? costs->grid_triangle : 2 * costs->lod_triangle;
-    return triangle * triangles + costs->lod_pixel * pixels <
-           costs->cast_patch + costs->cast_pixel * pixels;
+    return triangle * triangles + costs->lod_pixel * pixels;
+}
+
+double gtx_cast_cost(const gtx_draw_call *draw, uint32_t patches, double pixels)
+{
+    const gtx_costs *costs = costs_of(draw);
+    return costs->cast_patch * patches + costs->cast_pixel * pixels;
 }
 
 /* Whether a part of the instance may be out of view: beside it, for camera's near and far planes

@@ -36,9 +36,10 @@ enum { GTX_DRAW_PATCHES = 0, GTX_DRAW_CAST = 255 };
  * none). */
 gtx_result gtx_choose(const gtx_draw_call *draw, const gtx_model *model,
                       const gtx_instance_data *placed, uint8_t *out, gtx_error *error);
-/* choose.c: whether displaced grids are thought to take less than casting, for so many
- * triangles, and pixels. */
-bool gtx_is_grid_cheaper(const gtx_draw_call *draw, uint32_t triangles, double pixels);
+/* choose.c: what displaced grids of so many triangles are thought to take, over so many pixels; and
+ * casting so many patches. */
+double gtx_grid_cost(const gtx_draw_call *draw, uint32_t triangles, double pixels);
+double gtx_cast_cost(const gtx_draw_call *draw, uint32_t patches, double pixels);
 
 /* plan.c: makes room for plans of so many patches. Errors: MEMORY. */
 gtx_result gtx_plan_reserve(gtx_renderer *renderer, uint32_t patches, gtx_error *error);
