@@ -30,10 +30,10 @@ constexpr double MAX_ERROR = 1.0 / 64;
 /* The coarsest level beyond, for models of ten to twenty pixels, and how far it may stray. Spot:
  * one level more | one fewer; MAX_FAR_ERROR: error +13 % | a few bytes. */
 constexpr double FAR_TRIANGLES = 160, MAX_FAR_ERROR = 1.0 / 20;
-/* Errors are stated so many times what merging measured, the root of a mean of squares: outlines are
- * off by the farthest point. On bunny and armadillo that is 1.9 to 3.3 times as far; at half, the
- * sculpt's outlines have holes of some pixels where two are allowed, at double levels are used from
- * twice as far. */
+/* Errors are stated so many times what merging measured, the root of a mean of squares: outlines
+ * are off by the farthest point. On bunny and armadillo that is 1.9 to 3.3 times as far. At half
+ * the sculpt's outlines have holes of some pixels where two are allowed; at double levels are used
+ * from twice as far. */
 constexpr double STATED = 2;
 /* How many lead there: a limit. And triangles of one for one of the next where fewer of them do;
  * Spot: one level fewer at half, a few bytes at double. */
