@@ -125,8 +125,9 @@ typedef struct gtx_limits {
     uint64_t patches;             /* 0 = 2^20 */
     uint64_t cells;               /* that a ray may visit (gtx_ray_cells); 0 = 2^19 */
     uint64_t work;                /* of cooking and comparing, in steps that are counted: the same
-                                     file always passes it or never; some 20 to 40 million take a
-                                     second; 0 = 2^28 and 64 for each byte read */
+                                     file always passes it or never; some 25 million take a second;
+                                     a report's measuring may take as much again;
+                                     0 = 3 x 2^26 and 32 for each byte read */
     uint32_t reserved[2];
 } gtx_limits;
 

@@ -36,8 +36,11 @@ void HeightField::decode(const gtx_patch &r, unsigned height_bits)
     for (int k = 0; k < 2; ++k)
         per_texel_[k] = dual[k] / pitch[k];
     step = gtx_height_step(&r, height_bits);
-    centre = loaded(r.sphere);
-    radius = r.sphere[3];
+    const Vec3d across[2] = {axis[0] * double(r.extent_x), axis[1] * double(r.extent_y)};
+    const Vec3d up = axis[2] * (gtx_height_steps(height_bits) * step);
+    for (int corner = 0; corner < 8; ++corner)
+        box.add(origin + across[0] * (corner & 1) + across[1] * (corner >> 1 & 1) +
+                up * (corner >> 2));
 }
 
 bool HeightField::field_above(const Vec3d &point, double &above, double &trim) const
@@ -108,35 +111,30 @@ HeightFields::HeightFields(const Vector<PatchMaps> &patches, unsigned height_bit
         build(0, uint32_t(order_.size()));
 }
 
-/* A node and those below it: halves at medians along the longest side of the centres' box. */
+/* A node and those below it: halves at medians along the longest side of the box of middles. */
 void HeightFields::build(uint32_t from, uint32_t to)
 {
-    constexpr double ROUNDING = 1e-9; /* the box must not be less than the spheres, computed */
+    auto twice_middle = [this](uint32_t field) {
+        return fields_[field].box.low + fields_[field].box.high;
+    };
     const size_t at = nodes_.size();
-    Node node = {Vec3d(INFINITY, INFINITY, INFINITY), Vec3d(-INFINITY, -INFINITY, -INFINITY), from,
-                 to, 0};
-    Vec3d low = node.low, high = node.high;
+    Node node = {{}, from, to, 0};
+    Box middles;
     for (uint32_t i = from; i < to; ++i) {
-        const HeightField &field = fields_[order_[i]];
-        for (int k = 0; k < 3; ++k) {
-            const double c = field.centre[k];
-            const double r = field.radius + ROUNDING * (field.radius + std::abs(c));
-            low[k] = std::min(low[k], c);
-            high[k] = std::max(high[k], c);
-            node.low[k] = std::min(node.low[k], c - r);
-            node.high[k] = std::max(node.high[k], c + r);
-        }
+        node.box.add(fields_[order_[i]].box.low);
+        node.box.add(fields_[order_[i]].box.high);
+        middles.add(twice_middle(order_[i]));
     }
     nodes_.push_back(node);
     if (to - from <= LEAF)
         return;
-    const Vec3d side = high - low;
+    const Vec3d side = middles.high - middles.low;
     const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
     const uint32_t middle = from + (to - from) / 2;
     std::nth_element(order_.begin() + from, order_.begin() + middle, order_.begin() + to,
                      [&](uint32_t a, uint32_t b) {
-                         const double first = fields_[a].centre[axis];
-                         const double second = fields_[b].centre[axis];
+                         const double first = twice_middle(a)[axis];
+                         const double second = twice_middle(b)[axis];
                          return first != second ? first < second : a < b;
                      });
     build(from, middle);
@@ -144,14 +142,14 @@ void HeightFields::build(uint32_t from, uint32_t to)
     build(middle, to);
 }
 
-Vector<const HeightField *> HeightFields::around(const HeightField &field) const
+Vector<const HeightField *> HeightFields::around(const HeightField &field, double reach) const
 {
     /* A limit on time and memory: of one, and of all together. An engine of 82 nodes has 697 of
      * one and 0.2 million of all. */
     constexpr size_t MOST = 2048, OF_ALL = size_t(1) << 24, LEAST = 64;
     const size_t most = std::max(LEAST, std::min(MOST, OF_ALL / fields_.size()));
     Vector<uint32_t> ranks; /* many are sorted for each: numbers, not what they stand for */
-    any_near(field.centre, field.radius, [&](const HeightField &other) {
+    any_near(field.box, reach, [&](const HeightField &other) {
         cancel_point();
         if (&other != &field)
             ranks.push_back(rank_[index(other)]);

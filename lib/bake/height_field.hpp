@@ -17,13 +17,32 @@ struct CellPoint {
     double weight(size_t k) const { return (k & 1 ? x : 1 - x) * (k & 2 ? y : 1 - y); }
 };
 
+/* Sides along the axes of object space. */
+struct Box {
+    Vec3d low = Vec3d(INFINITY, INFINITY, INFINITY), high = -low;
+
+    void add(const Vec3d &p)
+    {
+        for (int k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], p[k]);
+            high[k] = std::max(high[k], p[k]);
+        }
+    }
+    /* Whether it comes as near to another, or to a point, as `reach`, along each axis. */
+    bool is_near(const Box &other, double reach) const
+    {
+        return low.x <= other.high.x + reach && high.x >= other.low.x - reach &&
+               low.y <= other.high.y + reach && high.y >= other.low.y - reach &&
+               low.z <= other.high.z + reach && high.z >= other.low.z - reach;
+    }
+};
+
 /* Texel (i, j) lies at u = i, v = j, heights along the axis. Points are relative to the anchor. */
 class HeightField {
 public:
     Vec3d origin, axis[3], dual[3];
     double pitch[2], step;       /* of a texel, and of a code */
-    Vec3d centre;                /* of its sphere */
-    double radius;
+    Box box;                     /* around all that its codes can reach */
     int w, h;
 
     /* The maps stay where they are, but may change. */
@@ -89,7 +108,7 @@ private:
     size_t code_bytes_, row_;    /* texels from one row to the next */
 };
 
-/* Height fields, found by their spheres. */
+/* Height fields, found by their boxes. */
 class HeightFields {
 public:
     /* Those of the patches that have codes. */
@@ -107,31 +126,29 @@ public:
     /* An order of all: along (1, 1, 1). */
     static bool is_before(const HeightField &a, const HeightField &b)
     {
-        auto along = [](const Vec3d &p) { return p.x + p.y + p.z; };
-        const double first = along(a.centre), second = along(b.centre);
+        auto along = [](const Vec3d &low, const Vec3d &high) {
+            return low.x + low.y + low.z + high.x + high.y + high.z;
+        };
+        const double first = along(a.box.low, a.box.high), second = along(b.box.low, b.box.high);
         return first != second ? first < second : &a < &b;
     }
-    /* Calls `visit` with the height fields whose spheres come as near to a point as `reach`, in no
+    /* Calls `visit` with the height fields whose boxes come as near to a box as `reach`, in no
      * particular order, until it returns true; whether it did. */
-    template <class Visit> bool any_near(const Vec3d &point, double reach, Visit visit) const;
-    /* The others whose spheres that of a height field meets, in order. Of very many some. */
-    Vector<const HeightField *> around(const HeightField &field) const;
+    template <class Visit> bool any_near(const Box &box, double reach, Visit visit) const;
+    template <class Visit> bool any_near(const Vec3d &point, double reach, Visit visit) const
+    {
+        return any_near(Box{point, point}, reach, visit);
+    }
+    /* The others that come as near to a height field as `reach`, in order. Of very many some. */
+    Vector<const HeightField *> around(const HeightField &field, double reach) const;
 
 private:
     static constexpr size_t LEAF = 4;
-    /* The box around the spheres of those from order_[from] to order_[to - 1]; the first half of
-     * them is the next node's, the others that of the one at `second`, 0 in a leaf. */
+    /* The box around those from order_[from] to order_[to - 1]; the first half of them is the next
+     * node's, the others that of the one at `second`, 0 in a leaf. */
     struct Node {
-        Vec3d low, high;
+        Box box;
         uint32_t from, to, second;
-
-        double distance(const Vec3d &p) const
-        {
-            Vec3d off;
-            for (int k = 0; k < 3; ++k)
-                off[k] = std::max({low[k] - p[k], p[k] - high[k], 0.});
-            return length(off);
-        }
     };
     void build(uint32_t from, uint32_t to);
 
@@ -143,7 +160,7 @@ private:
 };
 
 template <class Visit>
-bool HeightFields::any_near(const Vec3d &point, double reach, Visit visit) const
+bool HeightFields::any_near(const Box &box, double reach, Visit visit) const
 {
     uint32_t stack[64];
     size_t depth = 0;
@@ -152,7 +169,7 @@ bool HeightFields::any_near(const Vec3d &point, double reach, Visit visit) const
     while (depth) {
         const uint32_t at = stack[--depth];
         const Node &node = nodes_[at];
-        if (!(node.distance(point) <= reach))
+        if (!node.box.is_near(box, reach))
             continue;
         if (node.second) {
             stack[depth++] = node.second;
@@ -161,9 +178,7 @@ bool HeightFields::any_near(const Vec3d &point, double reach, Visit visit) const
         }
         for (uint32_t i = node.from; i < node.to; ++i) {
             const HeightField &field = fields_[order_[i]];
-            if (!(length(point - field.centre) <= field.radius + reach))
-                continue;
-            if (visit(field))
+            if (field.box.is_near(box, reach) && visit(field))
                 return true;
         }
     }

@@ -6,8 +6,8 @@
 /* A default: a number, and more for each byte read. Of the models measured, terrain in Draco takes
  * most for a byte: 1.72 triangles and 390 bytes of memory (2.88 million triangles in 1.67 MB). With
  * half the triangles it would be refused; with double, a megabyte could take 12 s of processor. Of
- * work an engine of 82 nodes takes most, 260 million steps in 0.3 MB, the terrain 60 for a byte:
- * with half the engine would be refused; now a megabyte of noise is refused after 21 s. */
+ * work an engine of 82 nodes takes most, 165 million steps in 0.24 MB: with half it would be
+ * refused. A step is some 40 ns, so a megabyte of noise is refused after 10 s; with double, 20. */
 static const struct {
     const char *name, *unit;
     uint64_t least;
@@ -19,7 +19,7 @@ static const struct {
     {"pixels", "pixels", (uint64_t)1 << 26, 16},
     {"patches", "patches", (uint64_t)1 << 20, 0},
     {"cells", "cells", (uint64_t)1 << 19, 0},
-    {"work", "steps of work", (uint64_t)1 << 28, 64},
+    {"work", "steps of work", (uint64_t)3 << 26, 32},
 };
 
 gtx_result gtx_check_limits(const gtx_limits *limits, gtx_error *error)

@@ -82,7 +82,7 @@ Point least_rectangle(const Vector<Point> &points)
     for (size_t i = 0; i < hull.size(); i += 1 + hull.size() / MAX_SIDES) {
         cancel_point(hull.size());
         const Point &a = hull[i], &b = hull[(i + 1) % hull.size()];
-        double du = b.u - a.u, dv = b.v - a.v, l = std::hypot(du, dv);
+        double du = b.u - a.u, dv = b.v - a.v, l = length(du, dv);
         if (!(l > 0))
             continue;
         du /= l;

@@ -213,6 +213,8 @@ LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Fr
         high[a] = int(std::floor(to[a])) + 1;
     }
     LayerGrid grid = blank_grid(low, high);
+    constexpr size_t SAMPLE_TURNS = 8; /* of a short loop, that take as long as a sample */
+    cancel_point(SAMPLE_TURNS * grid.samples.size());
     for (uint32_t local = 0; local < region.size(); ++local) {
         Vec3d p[3];
         for (int k = 0; k < 3; ++k)
@@ -235,9 +237,11 @@ Layers find_layers(const Surface &surface, const Region &region, const Frame &fr
     find_discontinuities(FlatRegion(surface, region, frame, pitch), grid, rule.step,
                          layers.discontinuities);
     for (size_t at = 0; at < grid.samples.size(); ++at) {
+        if (!(grid.samples[at].high - grid.samples[at].low > rule.apart))
+            continue;
         Vector<DoubleSample> group = take_group(grid, at, rule.apart);
         layers.doubled += group.size();
-        if (!group.empty() && is_fold(group, rule))
+        if (is_fold(group, rule))
             layers.folds.insert(layers.folds.end(), group.begin(), group.end());
     }
     return layers;

@@ -41,7 +41,7 @@ struct Candidate {
 Candidate try_axis(const Surface &surface, const Region &region, const Vec3d &z,
                    const Bounds &bounds)
 {
-    constexpr size_t TURNS = 64; /* of a short loop, that take as long as a triangle */
+    constexpr size_t TURNS = 256; /* of a short loop, that take as long as a triangle */
     cancel_point(TURNS * region.size());
     Candidate out;
     float steep = 0, size = 0;

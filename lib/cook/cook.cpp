@@ -178,6 +178,7 @@ static Attempt attempt(const Mesh &mesh, const Options &options, Task &task, con
     }
     if (options.measure) {
         task.begin("measure");
+        task.limits.work_again();
         out.error = surface_error(out.asset.get(), charted, out.partition.junk, task);
     }
     if (options.error > 0)

@@ -37,7 +37,7 @@ gtx_error caught_error()
 
 /* Steps of a thread between two looks at the clock, and seconds between two calls of the callback:
  * an answer is wanted in a fifth of one, most of which one long step may take. */
-constexpr size_t LOOK = 16;
+constexpr size_t LOOK = 64;
 /* Turns of a short loop that count as a step. */
 constexpr size_t PLAIN = 1 << 14;
 constexpr double ASK = 0.02;

@@ -44,6 +44,13 @@ template <class T> T length(const Vec3<T> &a)
     return std::sqrt(dot(a, a));
 }
 
+/* Of (x, y). Not hypot, which differs between C libraries and takes ten times as long: nothing here
+ * comes near the largest or the least of doubles. */
+inline double length(double x, double y)
+{
+    return std::sqrt(x * x + y * y);
+}
+
 /* The zero vector stays zero. */
 template <class T> Vec3<T> normalize(const Vec3<T> &a)
 {

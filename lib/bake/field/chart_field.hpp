@@ -4,8 +4,6 @@
 #include "bake/budget.hpp"
 #include "bake/field/patch.hpp"
 
-#include <unordered_set>
-
 namespace gtx::baking {
 
 /* Whether a cell with this signed distance at a corner can show: bilinear trim is nowhere in a cell
@@ -43,7 +41,15 @@ private:
     const Mesh &mesh_;
     const Neighbours &neighbours_;
     const FlatChart &chart_;
-    std::unordered_set<uint32_t> seen_; /* by one search */
+    /* A triangle of the source that a search has come to: the box around it, in texels. */
+    struct Place {
+        uint32_t triangle = NO_TRIANGLE, seen = 0; /* by the search of this number */
+        double low[2] = {}, high[2] = {};
+    };
+    Place &place_of(uint32_t triangle);
+    Vector<Place> places_;      /* hashed by the triangle; a power of two */
+    size_t known_ = 0;
+    uint32_t search_ = 0;
     Vector<uint32_t> queue_;
     Budget budget_;
 };

@@ -6,31 +6,62 @@
 
 namespace gtx::baking {
 
+/* Searches come to the same triangles again and again: each is laid flat once. */
+Paths::Place &Paths::place_of(uint32_t triangle)
+{
+    if (2 * known_ >= places_.size()) {
+        Vector<Place> less(std::max<size_t>(64, 2 * places_.size()));
+        less.swap(places_);
+        known_ = 0;
+        for (const Place &place : less)
+            if (place.triangle != NO_TRIANGLE)
+                place_of(place.triangle) = place;
+    }
+    const size_t mask = places_.size() - 1;
+    size_t at = (triangle * size_t(0x9e3779b97f4a7c15)) >> 32 & mask; /* Knuth 6.4 */
+    while (places_[at].triangle != NO_TRIANGLE && places_[at].triangle != triangle)
+        at = (at + 1) & mask;
+    Place &place = places_[at];
+    if (place.triangle == triangle)
+        return place;
+    ++known_;
+    Vec3d p[3];
+    for (int k = 0; k < 3; ++k)
+        p[k] = chart_.grid.texel(mesh_.position(triangle, k));
+    place.triangle = triangle;
+    for (int k = 0; k < 2; ++k) {
+        place.low[k] = std::min({p[0][k], p[1][k], p[2][k]});
+        place.high[k] = std::max({p[0][k], p[1][k], p[2][k]});
+    }
+    return place;
+}
+
 bool Paths::joined(uint32_t from, uint32_t to, double u, double v, double reach)
 {
-    auto inside = [&](uint32_t t) {
-        Vec3d p[3];
-        for (int k = 0; k < 3; ++k)
-            p[k] = chart_.grid.texel(mesh_.position(t, k));
-        return std::min({p[0].x, p[1].x, p[2].x}) <= u + reach &&
-               std::max({p[0].x, p[1].x, p[2].x}) >= u - reach &&
-               std::min({p[0].y, p[1].y, p[2].y}) <= v + reach &&
-               std::max({p[0].y, p[1].y, p[2].y}) >= v - reach;
-    };
-    uint32_t goal = chart_.triangles[to].source;
+    constexpr size_t TURNS = 2; /* take as long as a step */
+    const uint32_t goal = chart_.triangles[to].source;
+    if (chart_.triangles[from].source == goal)
+        return true;
+    ++search_;
     queue_.assign(1, chart_.triangles[from].source);
-    seen_.clear();
-    seen_.insert(queue_[0]);
+    place_of(queue_[0]).seen = search_;
     for (size_t next = 0; next < queue_.size() && !budget_.spent(); ++next) {
         budget_.spend(1);
-        cancel_point();
-        if (queue_[next] == goal)
-            return true;
-        for (uint32_t n : neighbours_[queue_[next]])
-            if (n != NO_TRIANGLE && !seen_.count(n) && inside(n)) {
-                seen_.insert(n);
-                queue_.push_back(n);
-            }
+        if (next % TURNS == 0)
+            cancel_point();
+        for (uint32_t n : neighbours_[queue_[next]]) {
+            if (n == NO_TRIANGLE)
+                continue;
+            Place &place = place_of(n);
+            if (place.seen == search_ || !(place.low[0] <= u + reach) ||
+                !(place.high[0] >= u - reach) || !(place.low[1] <= v + reach) ||
+                !(place.high[1] >= v - reach))
+                continue;
+            if (n == goal)
+                return true;
+            place.seen = search_;
+            queue_.push_back(n);
+        }
     }
     return false;
 }

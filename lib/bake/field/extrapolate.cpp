@@ -25,7 +25,7 @@ struct Slope {
 /* Never as steep as a depth discontinuity: a sliver at the border would shoot away. */
 static Slope clamped(Slope s, double pitch)
 {
-    double size = std::hypot(s.u, s.v), most = JUMP * pitch;
+    double size = length(s.u, s.v), most = JUMP * pitch;
     return size > most ? Slope{s.u * most / size, s.v * most / size} : s;
 }
 
@@ -55,7 +55,7 @@ static Slope fitted_slope(const FlatChart &chart, const Cover &cover, const Vec3
             if (cover.triangle[texel] == NO_TRIANGLE)
                 continue;
             double u = i - at.x, v = j - at.y, z = cover.height[texel] - at.z;
-            if (std::fabs(z) > jump * std::max(1., std::hypot(u, v)) &&
+            if (std::fabs(z) > jump * std::max(1., length(u, v)) &&
                 !paths.joined(triangle, cover.triangle[texel], at.x, at.y, REACH + 1))
                 continue;
             double m = 1 / (0.5 + u * u + v * v);

@@ -82,7 +82,7 @@ static Vector<Observation> observe_edges(const ChartField &field)
             if (mate != NO_TRIANGLE && mate < t)
                 continue; /* seen from the other side */
             Vec3d from = triangle.corner[k], along = triangle.corner[(k + 1) % 3] - from;
-            int steps = std::max(1, int(std::hypot(along.x, along.y) / STEP));
+            int steps = std::max(1, int(length(along.x, along.y) / STEP));
             budget.spend(steps);
             if (budget.spent())
                 return out;

@@ -25,26 +25,38 @@ double nearest_parameter(const OutlineEdge &edge, double u, double v)
     return std::clamp(((u - edge.from.x) * ex + (v - edge.from.y) * ey) / square, 0., 1.);
 }
 
-static double distance_square(const OutlineEdge &edge, double u, double v)
-{
-    double at = nearest_parameter(edge, u, v);
-    double dx = edge.from.x + at * (edge.to.x - edge.from.x) - u;
-    double dy = edge.from.y + at * (edge.to.y - edge.from.y) - v;
-    return dx * dx + dy * dy;
-}
+/* An edge as distances to it are computed from. */
+struct Line {
+    double u, v, along_u, along_v, inverse; /* of its square; 0 without a length */
+
+    explicit Line(const OutlineEdge &edge)
+        : u(edge.from.x), v(edge.from.y), along_u(edge.to.x - u), along_v(edge.to.y - v)
+    {
+        const double square = along_u * along_u + along_v * along_v;
+        inverse = square > 0 ? 1 / square : 0;
+    }
+    double distance_square(double to_u, double to_v) const
+    {
+        const double du = to_u - u, dv = to_v - v;
+        const double at = std::clamp((du * along_u + dv * along_v) * inverse, 0., 1.);
+        const double off_u = at * along_u - du, off_v = at * along_v - dv;
+        return off_u * off_u + off_v * off_v;
+    }
+};
 
 /* Distances while they are being found, squared. */
 struct DistanceField {
     const Grid &grid;
     Outline &outline;
     Budget budget;
+    Vector<Line> lines;
 
     void offer(int i, int j, uint32_t edge)
     {
         size_t texel = size_t(j) * grid.w + i;
         if (outline.nearest[texel] == edge)
             return;
-        float square = float(distance_square(outline.edges[edge], i, j));
+        float square = float(lines[edge].distance_square(i, j));
         if (square < outline.distance[texel]) {
             outline.distance[texel] = square;
             outline.nearest[texel] = edge;
@@ -55,7 +67,7 @@ struct DistanceField {
     void splat_line(uint32_t edge)
     {
         const Vec3d &p = outline.edges[edge].from, along = outline.edges[edge].to - p;
-        const int steps = 1 + int(std::min(std::hypot(along.x, along.y), double(grid.w + grid.h)));
+        const int steps = 1 + int(std::min(length(along.x, along.y), double(grid.w + grid.h)));
         for (int s = 0; s <= steps; ++s) {
             const double u = p.x + along.x * s / steps, v = p.y + along.y * s / steps;
             offer(int(std::clamp(u + 0.5, 0., grid.w - 1.)),
@@ -120,7 +132,7 @@ void measure_distances(const Grid &grid, size_t charts, Outline &outline)
     outline.nearest.assign(grid.texels(), NO_EDGE);
     outline.distance.assign(grid.texels(), INFINITY);
     const Budget budget(SPLATS * double(grid.texels()) + SPLATS_OF_ALL / double(charts));
-    DistanceField field{grid, outline, budget};
+    DistanceField field{grid, outline, budget, {outline.edges.begin(), outline.edges.end()}};
     for (size_t e = 0; e < outline.edges.size(); ++e) {
         cancel_point();
         field.splat(uint32_t(e));
@@ -184,7 +196,7 @@ Vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Co
     for (const OutlineEdge &edge : core_outline.edges) {
         cancel_point();
         Vec3d along = edge.to - edge.from;
-        int steps = 1 + int(2 * std::hypot(along.x, along.y));
+        int steps = 1 + int(2 * length(along.x, along.y));
         for (int s = 0; s < steps; ++s) {
             Vec3d p = edge.from + along * (double(s) / steps);
             if (grid.outside(p.x, p.y) <= 0)

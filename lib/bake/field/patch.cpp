@@ -103,7 +103,7 @@ static void quantise(const ChartField &s, const Crop &crop, double low, unsigned
 }
 
 /* Turns of a short loop, that take as long as what is done for a texel of the grid. */
-constexpr size_t TEXEL_TURNS = 64;
+constexpr size_t TEXEL_TURNS = 96;
 
 static ChartField lay_field(const Job &job, FlatChart flat, Extractor *extractor)
 {

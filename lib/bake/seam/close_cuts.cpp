@@ -118,11 +118,11 @@ void Cuts::close_line(int axis, int line, int inward)
     }
 }
 
-/* The others of the same axis that its sphere meets. */
+/* The others of the same axis within a texel. */
 Vector<const HeightField *> find_others(const HeightFields &fields, const HeightField &piece)
 {
     Vector<const HeightField *> others;
-    for (const HeightField *other : fields.around(piece))
+    for (const HeightField *other : fields.around(piece, piece.texel()))
         if (other->axis[2] == piece.axis[2])
             others.push_back(other);
     return others;

@@ -224,9 +224,9 @@ void stitch(unsigned height_bits, Vector<PatchMaps> &patches, Task &task)
     Vector<Vector<Tie>> ties(fields.size());
     Vector<double> looks(fields.size());
     task.parallel(fields.size(), [&](size_t i) {
-        others[i] = fields.around(fields[i]);
+        others[i] = fields.around(fields[i], limits.apart);
         ties[i] = sample_outline(fields[i]);
-        looks[i] = looks_of(others[i], ties[i]);
+        looks[i] = looks_of(others[i], limits, ties[i]);
     });
     double all = 0, wanted = 0;
     for (size_t i = 0; i < ties.size(); ++i) {

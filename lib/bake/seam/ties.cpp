@@ -104,14 +104,19 @@ Vector<Tie> sample_outline(const HeightField &own)
 
 /* Those whose maps reach to the part of an outline between two ties. */
 static Vector<const HeightField *> reaching(const Vector<const HeightField *> &others,
-                                            const Tie &first, const Tie &last)
+                                            double apart, const Tie &first, const Tie &last)
 {
     cancel_point(4 * others.size());
     const HeightField &own = *first.end[0].field;
     const Vec3d from = own.point(first.end[0].place), to = own.point(last.end[0].place);
+    Box box;
+    box.add(from);
+    box.add(to);
     Vector<const HeightField *> out;
     std::copy_if(others.begin(), others.end(), std::back_inserter(out),
-                 [&](const HeightField *other) { return other->reaches(from, to); });
+                 [&](const HeightField *other) {
+                     return other->box.is_near(box, apart) && other->reaches(from, to);
+                 });
     return out;
 }
 
@@ -121,7 +126,8 @@ static double reach_looks(size_t others)
     return double(others) / 8;
 }
 
-double looks_of(const Vector<const HeightField *> &others, const Vector<Tie> &ties)
+double looks_of(const Vector<const HeightField *> &others, const TieLimits &limits,
+                const Vector<Tie> &ties)
 {
     constexpr size_t EVERY = 8; /* cell: time against accuracy */
     double looks = 0;
@@ -131,7 +137,7 @@ double looks_of(const Vector<const HeightField *> &others, const Vector<Tie> &ti
             ++to;
         if (cells++ % EVERY)
             continue;
-        const size_t near = reaching(others, *from, *(to - 1)).size();
+        const size_t near = reaching(others, limits.apart, *from, *(to - 1)).size();
         looks += EVERY * (reach_looks(others.size()) + double(near * size_t(to - from)));
     }
     return looks;
@@ -152,7 +158,7 @@ Vector<const Tie *> update_ties(const Vector<const HeightField *> &others,
         Vector<const HeightField *> near;
         const bool may_reach = !budget.spent() && budget.grants(reach_looks(others.size()));
         if (may_reach)
-            near = reaching(others, *from, *(to - 1));
+            near = reaching(others, limits.apart, *from, *(to - 1));
         if (!may_reach || !budget.grants(double(near.size() * loose.size())))
             near.clear(); /* they are tied to nothing */
         find_ends(near, limits, loose);

@@ -31,7 +31,8 @@ struct TieLimits {
 Vector<Tie> sample_outline(const HeightField &own);
 
 /* Looks that finding the ends of all of them takes, about. */
-double looks_of(const Vector<const HeightField *> &others, const Vector<Tie> &ties);
+double looks_of(const Vector<const HeightField *> &others, const TieLimits &limits,
+                const Vector<Tie> &ties);
 
 /* Ties what is tied to nothing, or to what it does not lie on; measures the others that moved.
  * Returns those that are open. A budget is of looks at other height fields. */

@@ -61,8 +61,12 @@ private:
     double uncovered_share(size_t field, uint32_t triangle, Budget &budget,
                            Vector<RelaxedTrim> &relaxed) const;
     bool shown_by(const HeightField &field, const Sample &at, double max_above) const;
-    bool shown_by_any(const Sample &at, double min_facing, Budget &budget) const;
-    std::optional<RelaxedTrim> find_hidden(const Sample &at, Budget &budget) const;
+    Vector<const HeightField *> facing_near(const Vec3d (&corner)[3], const Vec3d &normal,
+                                            Budget &budget) const;
+    bool shown_by_any(Vector<const HeightField *> &near, const Sample &at, double min_facing,
+                      Budget &budget) const;
+    std::optional<RelaxedTrim> find_hidden(const Vector<const HeightField *> &near,
+                                           const Sample &at, Budget &budget) const;
 
     const Job &job_;
     const Partition &partition_;
@@ -80,36 +84,63 @@ bool Search::shown_by(const HeightField &field, const Sample &at, double max_abo
     return off >= -MAX_BELOW && off <= max_above;
 }
 
-/* Also where the budget is spent before one is found. */
-bool Search::shown_by_any(const Sample &at, double min_facing, Budget &budget) const
+/* The height fields that may show what of a triangle there is, as long as the budget lasts. */
+Vector<const HeightField *> Search::facing_near(const Vec3d (&corner)[3], const Vec3d &normal,
+                                                Budget &budget) const
 {
-    return budget.spent() || fields_.any_near(at.point, 0, [&](const HeightField &field) {
+    Box box;
+    for (const Vec3d &p : corner)
+        box.add(p);
+    Vector<const HeightField *> near;
+    fields_.any_near(box, MAX_ABOVE * job_.pitch, [&](const HeightField &field) {
         budget.spend(1);
         cancel_point();
-        return budget.spent() || (dot(at.normal, field.axis[2]) >= min_facing &&
-                                  shown_by(field, at, MAX_ABOVE));
+        if (dot(normal, field.axis[2]) >= 0)
+            near.push_back(&field);
+        return budget.spent();
     });
+    return near;
+}
+
+/* Also where the budget is spent before one is found, which is the first for the next sample. */
+bool Search::shown_by_any(Vector<const HeightField *> &near, const Sample &at, double min_facing,
+                          Budget &budget) const
+{
+    for (const HeightField *&field : near) {
+        budget.spend(1);
+        cancel_point();
+        if (budget.spent())
+            break;
+        if (dot(at.normal, field->axis[2]) < min_facing || !shown_by(*field, at, MAX_ABOVE))
+            continue;
+        std::swap(field, near[0]);
+        return true;
+    }
+    return budget.spent();
 }
 
 /* The cell of a height field that is right there, and hidden by its trim alone: the one that is
  * hidden least. */
-std::optional<RelaxedTrim> Search::find_hidden(const Sample &at, Budget &budget) const
+std::optional<RelaxedTrim> Search::find_hidden(const Vector<const HeightField *> &near,
+                                               const Sample &at, Budget &budget) const
 {
     const HeightField *found = nullptr;
     double least = MAX_RELAXED;
-    fields_.any_near(at.point, 0, [&](const HeightField &field) {
-        const double facing = dot(at.normal, field.axis[2]);
+    for (const HeightField *field : near) {
+        const double facing = dot(at.normal, field->axis[2]);
         double above, trim;
         budget.spend(1);
         cancel_point();
-        if (facing >= MIN_FACING && field.field_above(at.point, above, trim) &&
+        if (facing >= MIN_FACING && field->field_above(at.point, above, trim) &&
             std::abs(above * facing) <= MAX_OFF * job_.pitch &&
-            (trim < least || (trim == least && (!found || fields_.is_before(*found, field))))) {
+            (trim < least ||
+             (trim == least && (!found || fields_.is_before(*found, *field))))) {
             least = trim;
-            found = &field;
+            found = field;
         }
-        return budget.spent();
-    });
+        if (budget.spent())
+            break;
+    }
     if (!found)
         return {};
     const int by = int(std::ceil((least - SEEN) * GTX_TRIM_TEXEL)) + 1;
@@ -158,6 +189,7 @@ double Search::uncovered_share(size_t field, uint32_t triangle, Budget &budget,
         return 0;
     const bool steep = dot(normal, own.axis[2]) < STEEP;
     const int parts = parts_of(triangle);
+    std::optional<Vector<const HeightField *>> near;
     int uncovered = 0;
     for (int j = 0; j < parts; ++j) {
         cancel_point();
@@ -165,10 +197,13 @@ double Search::uncovered_share(size_t field, uint32_t triangle, Budget &budget,
             const Sample at = {first + e * ((i + 1 / 3.) / parts) + f * ((j + 1 / 3.) / parts),
                                normal};
             const bool by_own = shown_by(own, at, INFINITY);
-            if ((by_own && !steep) || !in_core(chart, at.point + job_.anchor) ||
-                shown_by_any(at, steep ? STEEP : 0, budget))
+            if ((by_own && !steep) || !in_core(chart, at.point + job_.anchor))
                 continue;
-            if (const std::optional<RelaxedTrim> hidden = find_hidden(at, budget))
+            if (!near)
+                near = facing_near({first, first + e, first + f}, normal, budget);
+            if (shown_by_any(*near, at, steep ? STEEP : 0, budget))
+                continue;
+            if (const std::optional<RelaxedTrim> hidden = find_hidden(*near, at, budget))
                 relaxed.push_back(*hidden);
             else
                 uncovered += !by_own;
@@ -184,7 +219,7 @@ Vector<Budget> Search::share_looks(Task &task) const
     task.parallel(fields_.size(), [&](size_t s) {
         for (uint32_t t : partition_.charts[fields_.patch(s)].triangles)
             samples[s] += parts_of(t) * (parts_of(t) + 1.) / 2;
-        fields_.any_near(fields_[s].centre, 0, [&](const HeightField &) {
+        fields_.any_near((fields_[s].box.low + fields_[s].box.high) * 0.5, 0, [&](const HeightField &) {
             cancel_point();
             return ++over[s] == MAX_OVER;
         });

@@ -64,24 +64,33 @@ double roughness(const Bends &bends)
     return std::sqrt(bends.mean_square(0) * bends.mean_square(1));
 }
 
-/* Texels of a leaf's rectangle, at most `longest` on a side, when the model's are `fine`; sets its
- * density. */
-double set_density(CutNode &leaf, double fine, double longest)
-{
-    const double area = double(leaf.tight.side(0)) * leaf.tight.side(1);
-    const double filled = std::max(1., leaf.bends.filled) / area;
-    const double share = std::pow(roughness(leaf.bends) * std::pow(filled, FILLED), SHARE);
-    const double both = std::clamp(fine * share, 1 / RANGE, RANGE);
-    const double ratio = leaf.bends.mean_square(0) / leaf.bends.mean_square(1);
-    const double stretch = std::clamp(std::pow(ratio, 0.25 / POWER), 1 / STRETCH, STRETCH);
-    double texels = 1;
-    for (int axis = 0; axis < 2; ++axis) {
-        const double side = leaf.tight.side(axis);
-        leaf.density[axis] = std::min(axis ? both / stretch : both * stretch, longest / side);
-        texels *= side * leaf.density[axis];
+/* A leaf, and what its density goes by. */
+struct Leaf {
+    CutNode *node;
+    double sides[2], share, stretch;
+
+    explicit Leaf(CutNode &leaf)
+        : node(&leaf), sides{double(leaf.tight.side(0)), double(leaf.tight.side(1))}
+    {
+        const double filled = std::max(1., leaf.bends.filled) / (sides[0] * sides[1]);
+        const double ratio = leaf.bends.mean_square(0) / leaf.bends.mean_square(1);
+        share = std::pow(roughness(leaf.bends) * std::pow(filled, FILLED), SHARE);
+        stretch = std::clamp(std::pow(ratio, 0.25 / POWER), 1 / STRETCH, STRETCH);
     }
-    return texels;
-}
+    /* Texels of its rectangle, at most `longest` on a side, when the model's are `fine`; sets its
+     * density. */
+    double set_density(double fine, double longest) const
+    {
+        const double both = std::clamp(fine * share, 1 / RANGE, RANGE);
+        double texels = 1;
+        for (int axis = 0; axis < 2; ++axis) {
+            node->density[axis] =
+                std::min(axis ? both / stretch : both * stretch, longest / sides[axis]);
+            texels *= sides[axis] * node->density[axis];
+        }
+        return texels;
+    }
+};
 
 } // namespace
 
@@ -117,7 +126,7 @@ void spread_texels(Vector<CutTree> &trees, const CutPlan &plan)
     constexpr double FINEST = 1e6; /* of a bisection that ends at a double's digits */
     constexpr int STEPS = 60;
     const double longest = plan.side - 2 * plan.overlap[1];
-    Vector<CutNode *> leaves;
+    Vector<Leaf> leaves;
     double texels = 0;
     for (CutTree &tree : trees) {
         Vector<size_t> open(1, 0);
@@ -127,16 +136,18 @@ void spread_texels(Vector<CutTree> &trees, const CutPlan &plan)
                 open.insert(open.end(), {size_t(node.child[0]), size_t(node.child[1])});
                 continue;
             }
-            leaves.push_back(&node);
-            texels += double(node.tight.side(0)) * node.tight.side(1);
+            leaves.emplace_back(node);
+            texels += leaves.back().sides[0] * leaves.back().sides[1];
         }
     }
     double low = 1 / FINEST, high = FINEST;
     for (int step = 0; step < STEPS; ++step) {
         const double middle = std::sqrt(low * high);
         double sum = 0;
-        for (CutNode *leaf : leaves)
-            sum += set_density(*leaf, middle, longest);
+        for (const Leaf &leaf : leaves) {
+            cancel_point();
+            sum += leaf.set_density(middle, longest);
+        }
         (sum > texels ? high : low) = middle;
     }
 }

@@ -35,12 +35,13 @@ void prune(CutTree &tree, double price)
 size_t prune_all(Vector<CutTree> &trees, size_t turns, double price,
                  Vector<size_t> &best)
 {
+    constexpr size_t NODE_TURNS = 4; /* of a short loop, that take as long as a node */
     size_t leaves = 0;
     best.clear();
     for (size_t first = 0; first < trees.size(); first += turns) {
-        cancel_point();
         size_t least = first;
         for (size_t t = first; t < first + turns; ++t) {
+            cancel_point(NODE_TURNS * trees[t].nodes.size());
             if (trees[t].nodes.empty())
                 continue;
             prune(trees[t], price);
@@ -57,6 +58,7 @@ size_t prune_all(Vector<CutTree> &trees, size_t turns, double price,
 
 Relief make_relief(const Surface &surface, const Region &region, const Frame &frame, double pitch)
 {
+    constexpr size_t TURNS = 64; /* of a short loop, that take as long as a triangle */
     Relief out;
     for (int k = 0; k < 2; ++k) {
         out.size[k] = std::max(1, int(std::ceil(frame.extent[k] / pitch)));
@@ -66,6 +68,7 @@ Relief make_relief(const Surface &surface, const Region &region, const Frame &fr
     out.touched.assign(out.height.size(), 0);
     FrameInverse inverse(frame);
     for (uint32_t t : region.triangles) {
+        cancel_point(TURNS);
         Vec3d corner[3];
         for (int k = 0; k < 3; ++k) {
             Vec3d p = inverse(surface.mesh.position(t, k));
@@ -79,7 +82,7 @@ Relief make_relief(const Surface &surface, const Region &region, const Frame &fr
         });
         for (int k = 0; k < 3; ++k) { /* a sliver passes between centres */
             Vec3d from = corner[k], along = corner[(k + 1) % 3] - from;
-            int steps = 1 + int(2 * std::hypot(along.x, along.y));
+            int steps = 1 + int(2 * length(along.x, along.y));
             for (int s = 0; s < steps; ++s) {
                 Vec3d p = from + along * (double(s) / steps);
                 int i = std::clamp(int(p.x), 0, out.size[0] - 1);

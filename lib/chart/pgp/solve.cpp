@@ -190,7 +190,7 @@ void Solve::start()
 void Solve::to_unit_length()
 {
     for (int i = 0; i < x_.size(); i += 2) {
-        double size = std::hypot(x_[i], x_[i + 1]);
+        double size = length(x_[i], x_[i + 1]);
         if (!std::isfinite(size))
             throw Error(GTX_ERROR_INPUT, "the surface cannot be parameterized");
         if (size > 0)
