@@ -44,7 +44,7 @@ const option options[] = {
     {"max-error", 0, OPTION_NUMBER, &max_error, "PIXELS",
      "largest error of a level of detail on screen [0.5]", 1e-6, 1e6},
     {"min-iou", 0, OPTION_NUMBER, &min_iou, "SHARE",
-     "per window, the largest --max-error of 0.25 to 2 pixels whose silhouette IoU with the mesh "
+     "per window, the largest --max-error of 0.25 to 4 pixels whose silhouette IoU with the mesh "
      "is at least SHARE [0: --max-error as given]", 0,
      1},
     {"truth", 0, OPTION_FLAG, &truth, nullptr,
