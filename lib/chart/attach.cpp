@@ -10,8 +10,7 @@ namespace gtx {
 
 namespace {
 
-/* Largest candidate where its target will be cut anyway; elsewhere a small island. Half: RMS -9 %,
- * empty -2 points (truck); double: bytes +1 % (truck). */
+/* Largest candidate whose target will be cut. Half: RMS -9 %, double: bytes +1 % (truck). */
 constexpr double CANDIDATE_TEXELS = 3 * PATCH_TEXELS;
 /* Surface this near is tried as a target even where it does not touch. Half: patches +7 % (truck);
  * double: 5 holes (truck). */
@@ -38,18 +37,14 @@ constexpr double MAX_LOOKS = 1024;
 
 template <class T> void sort_unique(Vector<T> &values)
 {
-    constexpr size_t EVERY = 8; /* comparisons are shorter than steps */
-    size_t compared = 0;
-    std::sort(values.begin(), values.end(), [&compared](const T &a, const T &b) {
-        if (++compared % EVERY == 0)
-            cancel_point();
-        return a < b;
+    size_t compared = 0; /* eight comparisons take as long as a step */
+    std::sort(values.begin(), values.end(), [&](const T &a, const T &b) {
+        return (++compared % 8 ? void() : cancel_point()), a < b;
     });
     values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-/* Which candidates have a vertex near a point: in its cell of a grid, or in one of the 26
- * around. */
+/* Which candidates have a vertex near a point: in its cell of a grid, or in one around. */
 class NearGrid {
 public:
     explicit NearGrid(double step) : step_(step), filter_(1 << 16) {}

@@ -23,7 +23,7 @@ static const option common_options[] = {
     {"max-cells", 0, OPTION_AMOUNT, &cli_limits.cells, "N",
      "most cells that a ray may visit, to draw [524k]", 1, 1e18},
     {"max-work", 0, OPTION_AMOUNT, &cli_limits.work, "N",
-     "most steps of cooking, comparing [268M and 64 for each byte read]", 1, 1e18},
+     "most steps of cooking, comparing [201M and 32 for each byte read]", 1, 1e18},
     {"quiet", 'q', OPTION_FLAG, &cli_quiet, NULL, "print errors only", 0, 0},
     {"help", 'h', OPTION_FLAG, NULL, NULL, "this text", 0, 0},
     {0}};

@@ -65,11 +65,11 @@ static gtx_rtin_triangle triangle(const uint8_t a[2], const uint8_t b[2], const 
         t.corner[2][k] = c[k];
         t.middle[k] = (uint8_t)((a[k] + b[k]) / 2);
     }
-    t.parts = parts_of(&t);
     return t;
 }
 
-void gtx_rtin_triangles(gtx_rtin_triangle out[GTX_RTIN_TRIANGLES])
+/* All but their parts. */
+static void halve(gtx_rtin_triangle out[GTX_RTIN_TRIANGLES])
 {
     static const uint8_t corner[4][2] = {{0, 0}, {CELLS, 0}, {0, CELLS}, {CELLS, CELLS}};
     out[0] = out[1] = (gtx_rtin_triangle){.parts = 0};
@@ -80,6 +80,18 @@ void gtx_rtin_triangles(gtx_rtin_triangle out[GTX_RTIN_TRIANGLES])
         out[2 * t] = triangle(whole->corner[2], whole->corner[0], whole->middle);
         out[2 * t + 1] = triangle(whole->corner[1], whole->corner[2], whole->middle);
     }
+}
+
+void gtx_rtin_triangles(gtx_rtin_triangle out[GTX_RTIN_TRIANGLES])
+{
+    halve(out);
+    for (uint32_t t = 2; t < GTX_RTIN_TRIANGLES; ++t)
+        out[t].parts = parts_of(&out[t]);
+}
+
+static float greater(float a, float b)
+{
+    return a > b ? a : b;
 }
 
 /* A patch's network in the making. */
@@ -121,7 +133,7 @@ static void weigh(block *b, uint16_t whole)
             const bool inner = whole >> (j / PART * PARTS + i / PART) & 1;
             for (uint32_t c = 0; b->solid[j][i] && c < 4; ++c) {
                 float *counts = &b->counts[(j + c / 2) * NODES + i + c % 2];
-                *counts = fmaxf(*counts, inner ? 1 : GTX_BORDER_COUNTS);
+                *counts = greater(*counts, inner ? 1 : GTX_BORDER_COUNTS);
             }
         }
 }
@@ -155,8 +167,7 @@ static float distance_from(const block *b, int32_t first, int32_t step, int32_t 
 {
     for (int32_t i = 0; i < count; ++i) {
         const int32_t n = first + i * step;
-        const float distance = b->counts[n] * fabsf(at + (float)i * rise - b->code[n]);
-        most = distance > most ? distance : most;
+        most = greater(b->counts[n] * fabsf(at + (float)i * rise - b->code[n]), most);
     }
     return most;
 }
@@ -216,7 +227,7 @@ static void measure_block(const making *m, const block *b, float *error, double 
     for (uint32_t t = 2; t < GTX_RTIN_LEAF; ++t) {
         const gtx_rtin_triangle *of = &m->triangles[t];
         float *most = &error[of->middle[1] * m->row + of->middle[0]];
-        *most = fmaxf(*most, (float)(distance_of(b, of, gtx_rtin_level(t)) * unit));
+        *most = greater(*most, (float)(distance_of(b, of, gtx_rtin_level(t)) * unit));
     }
 }
 
@@ -239,7 +250,7 @@ static void gather(const making *m, uint32_t level)
                 const int32_t rise = abs(m->nodes[own].code - m->nodes[other].code);
                 if (m->error[other] <= 0)
                     continue;
-                m->error[own] = fmaxf(m->error[own], m->error[other]);
+                m->error[own] = greater(m->error[own], m->error[other]);
                 if (rise > m->rtin->rise[level])
                     m->rtin->rise[level] = (uint16_t)rise;
             }
@@ -251,11 +262,12 @@ static void store_errors(const making *m, size_t count)
 {
     float most = 0;
     for (size_t i = 0; i < count; ++i)
-        most = fmaxf(most, m->error[i]);
+        most = greater(most, m->error[i]);
     m->rtin->unit = most / UINT16_MAX;
     for (size_t i = 0; i < count; ++i) {
-        const float units = most > 0 ? ceilf(m->error[i] / most * UINT16_MAX) : 0;
-        m->nodes[i].error = (uint16_t)fminf(units, UINT16_MAX);
+        const float units = most > 0 ? m->error[i] / most * UINT16_MAX : 0;
+        const uint16_t below = (uint16_t)units;
+        m->nodes[i].error = (uint16_t)(below + (below < units && below < UINT16_MAX));
     }
 }
 
@@ -310,7 +322,7 @@ gtx_result gtx_grid_rtin(const gtx_asset *asset, uint32_t patch, const gtx_grid 
     *out = (gtx_rtin){.columns = (finest->nodes_x - 2) / CELLS + 1,
                       .rows = (finest->nodes_y - 2) / CELLS + 1};
     m.row = gtx_rtin_row(out);
-    gtx_rtin_triangles(m.triangles);
+    halve(m.triangles);
     load_codes(&m, finest, filled);
     measure(&m, asset, &asset->patches[patch], finest, slabs, blocks);
     for (uint32_t level = GTX_RTIN_LEVELS - 1; level-- > 0;)

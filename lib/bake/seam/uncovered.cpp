@@ -219,7 +219,8 @@ Vector<Budget> Search::share_looks(Task &task) const
     task.parallel(fields_.size(), [&](size_t s) {
         for (uint32_t t : partition_.charts[fields_.patch(s)].triangles)
             samples[s] += parts_of(t) * (parts_of(t) + 1.) / 2;
-        fields_.any_near((fields_[s].box.low + fields_[s].box.high) * 0.5, 0, [&](const HeightField &) {
+        const Vec3d middle = (fields_[s].box.low + fields_[s].box.high) * 0.5;
+        fields_.any_near(middle, 0, [&](const HeightField &) {
             cancel_point();
             return ++over[s] == MAX_OVER;
         });
