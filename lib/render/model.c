@@ -18,6 +18,36 @@ uint64_t gtx_model_layout(const gtx_asset *asset)
     return gtx_hash_end(&hash);
 }
 
+/* Of what shows, as blocks have it. */
+static double area_of(const gtx_model *model, uint32_t patch)
+{
+    const float *x = model->records[patch][GTX_RECORD_AXIS_X];
+    const float *y = model->records[patch][GTX_RECORD_AXIS_Y];
+    double square = 0, cells = 0;
+    for (int k = 0; k < 3; ++k) {
+        const int a = (k + 1) % 3, b = (k + 2) % 3;
+        square += pow((double)x[a] * y[b] - (double)x[b] * y[a], 2);
+    }
+    const uint32_t *first = &model->first_slab[patch];
+    for (const gtx_slab *s = model->slabs + first[0]; s < model->slabs + first[1]; ++s)
+        if (s->low[0] <= s->high[0])
+            cells += ((double)s->high[0] - s->low[0]) * ((double)s->high[1] - s->low[1]);
+    return sqrt(square) * cells;
+}
+
+/* Seen from all sides, a surface covers a fourth of its area in the mean (Cauchy 1832), and so does
+ * the box around it. */
+static double depth_complexity_of(const gtx_model *model)
+{
+    double area = 0, side[3];
+    for (uint32_t i = 0; i < model->patch_count; ++i)
+        area += area_of(model, i);
+    for (int k = 0; k < 3; ++k)
+        side[k] = (double)model->lods.high[k] - model->lods.low[k];
+    const double box = 2 * (side[0] * side[1] + side[1] * side[2] + side[2] * side[0]);
+    return box > 0 ? fmax(1, area / box) : 1;
+}
+
 void gtx_model_sum_up(gtx_model *model)
 {
     double radius = 0;
@@ -35,6 +65,7 @@ void gtx_model_sum_up(gtx_model *model)
         model->boxed_count += facts->boxed;
     }
     model->sphere[3] = (float)(radius * 1.0001);
+    model->depth_complexity = (float)fmin(depth_complexity_of(model), 1e6);
 }
 
 uint32_t gtx_model_cell_rows(const gtx_model *model)

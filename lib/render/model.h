@@ -57,6 +57,8 @@ struct gtx_model {
     gtx_patch_facts *facts;   /* a patch each */
     float sphere[4];          /* around all proxies */
     float coarsest_error;     /* of all patches at the last level */
+    float depth_complexity;   /* surfaces that face the eye behind a pixel, in the mean from
+                                 outside, at least 1 */
     uint32_t boxed_count;
     gtx_lod_meshes lods;
     /* Slabs of all levels, and where those of a patch's level begin: mip_count * patch_count + 1
@@ -96,7 +98,7 @@ uint64_t gtx_model_layout(const gtx_asset *asset);
 uint32_t gtx_model_cell_rows(const gtx_model *model);
 void gtx_model_cells_at(const gtx_model *model, const gtx_patch *patch, uint32_t level,
                         uint32_t at[2]);
-/* Bounds of all patches, from the facts of each. */
+/* Bounds and more of all patches, from the facts, slabs and records of each. */
 void gtx_model_sum_up(gtx_model *model);
 
 /* deviation.c: for each mip level the standard deviation, along an axis across, of a patch's
