@@ -19,6 +19,8 @@ static void every_limit_names_its_option(void **state)
         {"validate sphere.gtx --max-memory 1k", "--max-memory"},
         {"unpack sphere.gtx folder --max-texels 1k", "--max-texels"},
         {"filter sphere.gtx -o x.gtx --gaussian 1 --max-patches 1", "--max-patches"},
+        {"combine sphere.gtx sphere.gtx -o x.gtx --op union --max-memory 1M", "--max-memory"},
+        {"combine sphere.gtx sphere.gtx -o x.gtx --op union --max-cells 3", "--max-cells"},
         {"pack sphere.gtx -o x.gtx --max-memory 1k", "--max-memory"},
         {"render sphere.gtx -o x.png --max-texels 1k", "--max-texels"},
         {"render sphere.obj -o x.png --max-triangles 10", "--max-triangles"},
