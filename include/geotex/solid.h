@@ -26,7 +26,8 @@ typedef struct gtx_solid gtx_solid;
 typedef struct gtx_solid_desc {
     const gtx_allocator *allocator;
     const gtx_jobs *jobs;         /* used during the call */
-    gtx_limits limits;            /* memory and cells */
+    gtx_limits limits;            /* memory, cells and work, of which a million steps take some
+                                     0.2 s; texels count as bytes read */
     float max_openness;           /* 0..1: more is refused; 0 = 0.01 */
     uint32_t reserved[5];
 } gtx_solid_desc;
@@ -75,7 +76,7 @@ typedef struct gtx_combine_desc {
     float max_openness;           /* of either asset, as for gtx_solid_desc */
     const gtx_allocator *allocator;   /* for the new asset too */
     const gtx_jobs *jobs;         /* used during the call */
-    gtx_limits limits;            /* memory, cells and patches */
+    gtx_limits limits;            /* memory and cells of either asset; work; patches */
     uint32_t reserved[6];
 } gtx_combine_desc;
 

@@ -93,7 +93,8 @@ static gtx_crossing cast_tree(const gtx_caster *caster, const gtx_line *ray, uin
     return best;
 }
 
-void gtx_cast_each(const gtx_caster *caster, const gtx_line *ray, gtx_crossing_fn fn, void *user)
+uint32_t gtx_cast_each(const gtx_caster *caster, const gtx_line *ray, gtx_crossing_fn fn,
+                       void *user)
 {
     const gtx_node *leaf;
     const gtx_slabs s = gtx_slabs_of(ray);
@@ -101,6 +102,7 @@ void gtx_cast_each(const gtx_caster *caster, const gtx_line *ray, gtx_crossing_f
     gtx_subtree stack[GTX_HIERARCHY_DEPTH];
     gtx_subtree at = {0, caster->tree.node_count ? gtx_enter(caster->tree.nodes, &s, limit)
                                                  : INFINITY};
+    uint32_t blocks = 0;
     int size = 0;
     while ((leaf = gtx_next_leaf(caster->tree.nodes, &s, limit, &at, stack, &size))) {
         const gtx_block *block = &caster->blocks[leaf->link - GTX_LEAF];
@@ -109,7 +111,9 @@ void gtx_cast_each(const gtx_caster *caster, const gtx_line *ray, gtx_crossing_f
         gtx_walk_block(caster, block, &line, true, &crossing);
         if (crossing.field != UINT32_MAX)
             fn(&crossing, user);
+        ++blocks;
     }
+    return blocks;
 }
 
 static gtx_crossing cast_exhaustively(const gtx_caster *caster, const gtx_line *ray,

@@ -104,8 +104,9 @@ bool gtx_read_ray(const gtx_ray *ray, gtx_line *out);
 gtx_crossing gtx_cast_line(const gtx_caster *caster, const gtx_line *line, uint32_t flags);
 gtx_hit gtx_describe(const gtx_caster *caster, const gtx_crossing *crossing);
 /* The first crossing, from above or below, of every block that the ray meets, in no order. One on
- * the border of two blocks comes twice. */
+ * the border of two blocks comes twice. Returns the blocks that were looked at. */
 typedef void (*gtx_crossing_fn)(const gtx_crossing *crossing, void *user);
-void gtx_cast_each(const gtx_caster *caster, const gtx_line *ray, gtx_crossing_fn fn, void *user);
+uint32_t gtx_cast_each(const gtx_caster *caster, const gtx_line *ray, gtx_crossing_fn fn,
+                       void *user);
 
 #endif

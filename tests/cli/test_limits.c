@@ -21,6 +21,7 @@ static void every_limit_names_its_option(void **state)
         {"filter sphere.gtx -o x.gtx --gaussian 1 --max-patches 1", "--max-patches"},
         {"combine sphere.gtx sphere.gtx -o x.gtx --op union --max-memory 1M", "--max-memory"},
         {"combine sphere.gtx sphere.gtx -o x.gtx --op union --max-cells 3", "--max-cells"},
+        {"combine sphere.gtx sphere.gtx -o x.gtx --op union --max-work 100k", "--max-work"},
         {"pack sphere.gtx -o x.gtx --max-memory 1k", "--max-memory"},
         {"render sphere.gtx -o x.png --max-texels 1k", "--max-texels"},
         {"render sphere.obj -o x.png --max-triangles 10", "--max-triangles"},

@@ -158,6 +158,8 @@ static void bad_arguments_are_refused(void **state)
     refused(asset, &dirty, GTX_ERROR_NOT_ZEROED, "");
     refused(asset, &small, GTX_ERROR_LIMIT, "");
     refused(asset, &few, GTX_ERROR_LIMIT, "");
+    const gtx_solid_desc lazy = {.limits = {.work = 10000}};
+    refused(asset, &lazy, GTX_ERROR_LIMIT, "steps of work");
     gtx_close(asset);
 }
 

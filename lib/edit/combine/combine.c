@@ -74,27 +74,37 @@ static gtx_result make_solid(combination *c, int side, const gtx_combine_desc *d
 typedef struct cutting {
     combination *c;
     int side;
+    const gtx_budget *budget;
+    uint64_t *steps;          /* of each patch */
 } cutting;
 
 static void cut_patch(uint32_t patch, void *data)
 {
     const cutting *k = data;
     combination *c = k->c;
-    c->pieces[k->side][patch] =
-        gtx_cut_patch(&c->operands[k->side], patch, c->grain, &c->hooks);
+    gtx_piece *piece = &c->pieces[k->side][patch];
+    *piece = gtx_cut_patch(&c->operands[k->side], patch, c->grain,
+                           k->budget->most - k->budget->done, &c->hooks);
+    k->steps[patch] = piece->steps;
 }
 
 /* Counts what became of the patches. */
-static gtx_result cut_operand(combination *c, int side, const gtx_jobs *jobs, gtx_error *error)
+static gtx_result cut_operand(combination *c, int side, const gtx_combine_desc *d,
+                              gtx_error *error)
 {
-    const uint32_t count = c->operands[side].asset->info.patch_count;
-    cutting data = {c, side};
+    const gtx_asset *asset = c->operands[side].asset;
+    const uint32_t count = asset->info.patch_count;
+    gtx_budget budget = gtx_solid_budget(&d->limits, gtx_solid_texels(asset));
+    uint64_t *steps = gtx_alloc_array(&c->hooks, count, sizeof *steps);
+    cutting data = {c, side, &budget, steps};
     gtx_result result = GTX_OK;
     c->pieces[side] = gtx_alloc_array(&c->hooks, count, sizeof *c->pieces[side]);
-    if (!c->pieces[side])
-        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for %u patches", count);
-    gtx_run_jobs(jobs, count, cut_patch, &data);
-    for (uint32_t p = 0; p < count; ++p) {
+    if (!c->pieces[side] || !steps)
+        result = gtx_fail(error, GTX_ERROR_MEMORY, "no memory for %u patches", count);
+    else if (!gtx_run_within(&budget, d->jobs, count, cut_patch, &data, steps))
+        result = gtx_fail_limit(error, GTX_LIMITED_WORK, "combining", budget.done, budget.most);
+    gtx_free_array(&c->hooks, steps, count, sizeof *steps);
+    for (uint32_t p = 0; !result && p < count; ++p) {
         const gtx_piece *piece = &c->pieces[side][p];
         uint32_t *tally = !piece->size[0] ? c->told.dropped
                           : piece->trim   ? c->told.cut : c->told.whole;
@@ -210,7 +220,7 @@ gtx_result gtx_combine(const gtx_asset *a, const gtx_asset *b, const gtx_combine
         result = make_solid(&c, side, d, error);
     for (int side = 0; !result && side < 2; ++side) {
         c.operands[side].other = c.solids[!side];
-        result = cut_operand(&c, side, d->jobs, error);
+        result = cut_operand(&c, side, d, error);
     }
     if (!result)
         result = join(&c, d, out, error);

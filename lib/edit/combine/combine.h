@@ -26,6 +26,7 @@ typedef struct gtx_piece {
     uint8_t *trim;            /* a code for each texel of the patch's rectangle; NULL: as it was */
     uint8_t *kept;            /* whether its height code stays, likewise */
     uint32_t low[2], size[2]; /* the part of the rectangle that stays; 0 when nothing does */
+    uint64_t steps;           /* that it took */
     double error;             /* how far the outline may be from the crossing, object units */
     gtx_result result;        /* MEMORY or OK */
 } gtx_piece;
@@ -39,6 +40,7 @@ typedef struct gtx_cut {
     double apart;             /* within this, surfaces coincide: object units */
     uint8_t *label;           /* of each texel */
     bool coincided;
+    uint64_t steps, left;     /* of work: past what is left it gives up */
 } gtx_cut;
 void gtx_cut_point(const gtx_cut *cut, double x, double y, double out[3]);
 void gtx_cut_label(gtx_cut *cut);
@@ -46,7 +48,7 @@ void gtx_cut_label(gtx_cut *cut);
 bool gtx_cut_keeps(gtx_cut *cut, double x, double y);
 
 /* outline.c: cuts a patch; the piece's arrays are of `hooks`. Any thread. */
-gtx_piece gtx_cut_patch(const gtx_operand *operand, uint32_t patch, uint32_t grain,
+gtx_piece gtx_cut_patch(const gtx_operand *operand, uint32_t patch, uint32_t grain, uint64_t left,
                         const gtx_allocator *hooks);
 void gtx_free_piece(const gtx_operand *operand, uint32_t patch, gtx_piece *piece,
                     const gtx_allocator *hooks);

@@ -104,7 +104,7 @@ static void meet(const gtx_crossing *crossing, void *user)
     m->way = most > PARALLEL ? 1 : -1;
 }
 
-static int coincide(const gtx_cut *cut, double x, double y, const double point[3])
+static int coincide(gtx_cut *cut, double x, double y, const double point[3])
 {
     meeting m = {.caster = cut->operand->other->caster, .nearest = INFINITY};
     gtx_line line = {.t_min = -cut->apart, .t_max = cut->apart};
@@ -115,7 +115,7 @@ static int coincide(const gtx_cut *cut, double x, double y, const double point[3
         line.origin[k] = point[k];
         line.direction[k] = m.normal[k];
     }
-    gtx_cast_each(m.caster, &line, meet, &m);
+    cut->steps += 1 + gtx_cast_each(m.caster, &line, meet, &m);
     return m.way;
 }
 
@@ -130,7 +130,7 @@ bool gtx_cut_keeps(gtx_cut *cut, double x, double y)
     cut->coincided |= way != 0;
     if (way)
         return way > 0 ? keep->alike : keep->opposed;
-    return (gtx_winding_at(cut->operand->other, point) > 0.5) == keep->inside;
+    return (gtx_winding_at(cut->operand->other, point, &cut->steps) > 0.5) == keep->inside;
 }
 
 /* Around the texels from (x0, y0) and those behind the block, so that an edge between two blocks is
@@ -174,7 +174,7 @@ static void label_block(gtx_cut *cut, uint32_t x0, uint32_t y0)
 
 void gtx_cut_label(gtx_cut *cut)
 {
-    for (uint32_t y = 0; y < cut->height; y += GTX_BLOCK)
+    for (uint32_t y = 0; y < cut->height && cut->steps <= cut->left; y += GTX_BLOCK)
         for (uint32_t x = 0; x < cut->width; x += GTX_BLOCK)
             label_block(cut, x, y);
 }

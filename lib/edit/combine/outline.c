@@ -181,7 +181,7 @@ static void cut_along(outline *o, uint32_t grain, gtx_piece *piece)
 {
     for (size_t t = 0; t < (size_t)o->cut.width * o->cut.height; ++t)
         o->distance[t] = REACH;
-    for (uint32_t y = 0; y + 1 < o->cut.height; ++y)
+    for (uint32_t y = 0; y + 1 < o->cut.height && o->cut.steps <= o->cut.left; ++y)
         for (uint32_t x = 0; x + 1 < o->cut.width; ++x)
             outline_cell(o, x, y);
     write_trim(o, piece);
@@ -192,7 +192,7 @@ static void cut_along(outline *o, uint32_t grain, gtx_piece *piece)
     piece->error = o->longest / 2 + (o->cut.coincided ? o->cut.apart : 0);
 }
 
-gtx_piece gtx_cut_patch(const gtx_operand *operand, uint32_t patch, uint32_t grain,
+gtx_piece gtx_cut_patch(const gtx_operand *operand, uint32_t patch, uint32_t grain, uint64_t left,
                         const gtx_allocator *hooks)
 {
     const gtx_patch *record = &operand->asset->patches[patch];
@@ -201,7 +201,7 @@ gtx_piece gtx_cut_patch(const gtx_operand *operand, uint32_t patch, uint32_t gra
     const double texel = fmax((double)record->extent_x / w, (double)record->extent_y / h);
     gtx_piece piece = {.size = {w, h}};
     outline o = {.cut = {.operand = operand, .patch = record, .width = w, .height = h,
-                         .apart = COINCIDE * texel}};
+                         .apart = COINCIDE * texel, .left = left}};
     o.cut.label = gtx_alloc_array(hooks, count, 1);
     o.crossing = gtx_alloc_array(hooks, count, 2);
     o.distance = gtx_alloc_raw(hooks, count, sizeof *o.distance);
@@ -222,6 +222,7 @@ gtx_piece gtx_cut_patch(const gtx_operand *operand, uint32_t patch, uint32_t gra
     } else {
         piece.result = GTX_ERROR_MEMORY;
     }
+    piece.steps = o.cut.steps;
     gtx_free_array(hooks, o.cut.label, count, 1);
     gtx_free_array(hooks, o.crossing, count, 2);
     gtx_free_array(hooks, o.distance, count, sizeof *o.distance);

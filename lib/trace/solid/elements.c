@@ -3,7 +3,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
-#include "base/jobs.h"
+#include "base/limits.h"
 #include "derive/crowd.h"
 
 #include <math.h>
@@ -118,6 +118,7 @@ typedef struct overlap {
     uint32_t fields[8];
     double depths[8];
     uint32_t count;
+    uint64_t steps;
 } overlap;
 
 static void meet(const gtx_crossing *crossing, void *user)
@@ -176,7 +177,7 @@ static double weight_at(overlap *o, const gtx_element *e, const double share[3],
     for (int k = 0; k < 3; ++k)
         line.direction[k] = reach * o->normal[k];
     o->count = 0;
-    gtx_cast_each(o->solid->caster, &line, meet, o);
+    o->steps += 1 + gtx_cast_each(o->solid->caster, &line, meet, o);
     for (uint32_t i = 0; i < o->count; ++i)
         sum += o->depths[i];
     return sum > 0 ? own / (own + sum) : 1;
@@ -184,7 +185,7 @@ static double weight_at(overlap *o, const gtx_element *e, const double share[3],
 
 /* The mean over the middles of SPLIT x SPLIT parts, near the outline, where weights change within a
  * cell; elsewhere one. */
-static void weigh(const gtx_solid *solid, uint32_t patch, double reach, gtx_element *e)
+static uint64_t weigh(const gtx_solid *solid, uint32_t patch, double reach, gtx_element *e)
 {
     overlap o = {.solid = solid, .own = patch};
     const float least = fminf(e->depth[0], fminf(e->depth[1], e->depth[2]));
@@ -192,7 +193,7 @@ static void weigh(const gtx_solid *solid, uint32_t patch, double reach, gtx_elem
     double sum = 0;
     find_normal(e, o.normal);
     if (o.normal[0] == 0 && o.normal[1] == 0 && o.normal[2] == 0)
-        return;
+        return 1;
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < 2 * (n - i) - 1; ++j) { /* up and down in turn */
             const double third = j & 1 ? 2 / 3. : 1 / 3.;
@@ -201,6 +202,7 @@ static void weigh(const gtx_solid *solid, uint32_t patch, double reach, gtx_elem
             sum += weight_at(&o, e, share, reach);
         }
     e->weight = (float)(sum / (n * n));
+    return o.steps;
 }
 
 /* One patch's elements are a job. */
@@ -208,6 +210,8 @@ typedef struct weighing {
     gtx_solid *solid;
     const gtx_asset *asset;
     const uint32_t *first;        /* group of each patch, and the end */
+    const gtx_budget *budget;
+    uint64_t *steps;              /* of each patch */
 } weighing;
 
 static void weigh_patch(uint32_t patch, void *data)
@@ -215,28 +219,36 @@ static void weigh_patch(uint32_t patch, void *data)
     const weighing *w = data;
     const gtx_patch *p = &w->asset->patches[patch];
     const double texel = fmax((double)p->extent_x / p->rect[2], (double)p->extent_y / p->rect[3]);
-    for (uint32_t g = w->first[patch]; g < w->first[patch + 1]; ++g) {
+    const uint64_t left = w->budget->most - w->budget->done;
+    uint64_t steps = 0;
+    for (uint32_t g = w->first[patch]; g < w->first[patch + 1] && steps <= left; ++g) {
         const gtx_group *group = &w->solid->groups[g];
         for (uint32_t i = 0; i < group->count; ++i)
-            weigh(w->solid, patch, APART * texel, &w->solid->elements[group->first + i]);
+            steps += weigh(w->solid, patch, APART * texel,
+                           &w->solid->elements[group->first + i]);
     }
+    w->steps[patch] = steps;
 }
 
 static gtx_result weigh_all(gtx_solid *solid, const gtx_asset *asset, const gtx_jobs *jobs,
-                            gtx_error *error)
+                            gtx_budget *budget, gtx_error *error)
 {
     const uint32_t patches = asset->info.patch_count;
     uint32_t *first = gtx_alloc_array(&solid->allocator, (size_t)patches + 1, sizeof *first);
-    if (!first)
-        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for %u patches", patches);
-    for (uint32_t g = 0; g < solid->group_count; ++g)
+    uint64_t *steps = gtx_alloc_array(&solid->allocator, patches, sizeof *steps);
+    gtx_result result = GTX_OK;
+    if (!first || !steps)
+        result = gtx_fail(error, GTX_ERROR_MEMORY, "no memory for %u patches", patches);
+    for (uint32_t g = 0; !result && g < solid->group_count; ++g)
         ++first[solid->groups[g].patch + 1];
-    for (uint32_t p = 0; p < patches; ++p)
+    for (uint32_t p = 0; !result && p < patches; ++p)
         first[p + 1] += first[p];
-    weighing w = {solid, asset, first};
-    gtx_run_jobs(jobs, patches, weigh_patch, &w);
+    weighing w = {solid, asset, first, budget, steps};
+    if (!result && !gtx_run_within(budget, jobs, patches, weigh_patch, &w, steps))
+        result = gtx_fail_limit(error, GTX_LIMITED_WORK, "a solid", budget->done, budget->most);
     gtx_free_array(&solid->allocator, first, (size_t)patches + 1, sizeof *first);
-    return GTX_OK;
+    gtx_free_array(&solid->allocator, steps, patches, sizeof *steps);
+    return result;
 }
 
 static void enclose(const gtx_solid *solid, const gtx_group *group, gtx_box *box)
@@ -253,12 +265,10 @@ static void enclose(const gtx_solid *solid, const gtx_group *group, gtx_box *box
 }
 
 gtx_result gtx_elements_build(gtx_solid *solid, const gtx_asset *asset, const gtx_jobs *jobs,
-                              const gtx_limits *limits, gtx_error *error)
+                              const gtx_limits *limits, gtx_budget *budget, gtx_error *error)
 {
     const gtx_allocator *hooks = &solid->allocator;
-    uint64_t texels = 0;
-    for (uint32_t p = 0; p < asset->info.patch_count; ++p)
-        texels += (uint64_t)asset->patches[p].rect[2] * asset->patches[p].rect[3];
+    const uint64_t texels = gtx_solid_texels(asset);
     /* A cell has at most four triangles. */
     if (texels > UINT32_MAX / 8)
         return gtx_fail(error, GTX_ERROR_LIMIT, "a solid has too many texels");
@@ -283,7 +293,7 @@ gtx_result gtx_elements_build(gtx_solid *solid, const gtx_asset *asset, const gt
         add_all(solid, asset);
         for (uint32_t g = 0; g < groups; ++g)
             enclose(solid, &solid->groups[g], &boxes[g]);
-        result = weigh_all(solid, asset, jobs, error);
+        result = weigh_all(solid, asset, jobs, budget, error);
     }
     if (!result)
         result = gtx_hierarchy_build(boxes, groups, hooks, &solid->tree, error);

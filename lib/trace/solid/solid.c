@@ -48,20 +48,33 @@ static double spread(uint32_t index, uint32_t base)
     return sum;
 }
 
-static double find_openness(const gtx_solid *solid)
+static double find_openness(const gtx_solid *solid, gtx_budget *budget)
 {
     static const uint32_t bases[3] = {2, 3, 5};
     const gtx_node *root = solid->tree.nodes;
     uint32_t doubtful = 0;
-    for (uint32_t i = 0; i < SAMPLES; ++i) {
+    for (uint32_t i = 0; i < SAMPLES && budget->done <= budget->most; ++i) {
         double point[3];
         for (int k = 0; k < 3; ++k)
             point[k] = (double)root->low[k] +
                        spread(i + 1, bases[k]) * ((double)root->high[k] - (double)root->low[k]);
-        const double number = gtx_winding_at(solid, point);
+        const double number = gtx_winding_at(solid, point, &budget->done);
         doubtful += number < -0.25 || fabs(number - floor(number + 0.5)) > 0.25;
     }
     return (double)doubtful / SAMPLES;
+}
+
+uint64_t gtx_solid_texels(const gtx_asset *asset)
+{
+    uint64_t texels = 0;
+    for (uint32_t p = 0; p < asset->info.patch_count; ++p)
+        texels += (uint64_t)asset->patches[p].rect[2] * asset->patches[p].rect[3];
+    return texels;
+}
+
+gtx_budget gtx_solid_budget(const gtx_limits *limits, uint64_t texels)
+{
+    return (gtx_budget){.most = gtx_limit_of(limits, GTX_LIMITED_WORK, texels)};
 }
 
 static gtx_result build(gtx_solid *solid, const gtx_asset *asset, const gtx_solid_desc *desc,
@@ -69,15 +82,18 @@ static gtx_result build(gtx_solid *solid, const gtx_asset *asset, const gtx_soli
 {
     const gtx_caster_desc casting = {.allocator = &solid->allocator, .limits = desc->limits};
     const double most = desc->max_openness > 0 ? (double)desc->max_openness : MOST_OPEN;
+    gtx_budget budget = gtx_solid_budget(&desc->limits, gtx_solid_texels(asset));
     gtx_result result = gtx_caster_create(asset, &casting, &solid->caster, error);
     if (!result)
-        result = gtx_elements_build(solid, asset, desc->jobs, &desc->limits, error);
+        result = gtx_elements_build(solid, asset, desc->jobs, &desc->limits, &budget, error);
     if (!result)
         result = gtx_winding_build(solid, error);
     if (result)
         return result;
     measure(solid);
-    solid->facts.openness = find_openness(solid);
+    solid->facts.openness = find_openness(solid, &budget);
+    if (budget.done > budget.most)
+        return gtx_fail_limit(error, GTX_LIMITED_WORK, "a solid", budget.done, budget.most);
     if (solid->facts.openness > most)
         return gtx_fail(error, GTX_ERROR_INPUT,
                         "the surface is open or faces inwards: what is inside is in doubt at "
@@ -138,7 +154,8 @@ static double number_at(const gtx_solid *solid, const float from[3])
     for (int k = 0; k < 3; ++k)
         if (!isfinite(point[k]))
             return NAN;
-    return gtx_winding_at(solid, point);
+    uint64_t steps = 0;
+    return gtx_winding_at(solid, point, &steps);
 }
 
 gtx_result gtx_solid_winding(const gtx_solid *solid, const float (*points)[3], float *numbers,

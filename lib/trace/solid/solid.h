@@ -4,6 +4,7 @@
 
 #include <geotex/solid.h>
 
+#include "base/jobs.h"
 #include "trace/caster.h"
 
 /* A triangle of a cell, counter-clockwise seen from outside. Where patches overlap, the weights of
@@ -39,14 +40,18 @@ struct gtx_solid {
     gtx_solid_facts facts;
 };
 
+/* solid.c: what preparing or combining assets of so many texels may take. */
+gtx_budget gtx_solid_budget(const gtx_limits *limits, uint64_t texels);
+uint64_t gtx_solid_texels(const gtx_asset *asset);
+
 /* elements.c: the elements of an asset in groups, their boxes, and their weights.
  * Errors: MEMORY, LIMIT. */
 gtx_result gtx_elements_build(gtx_solid *solid, const gtx_asset *asset, const gtx_jobs *jobs,
-                              const gtx_limits *limits, gtx_error *error);
+                              const gtx_limits *limits, gtx_budget *budget, gtx_error *error);
 
-/* winding.c */
+/* winding.c: adds the nodes and triangles that were looked at to *steps. */
 gtx_result gtx_winding_build(gtx_solid *solid, gtx_error *error);
-double gtx_winding_at(const gtx_solid *solid, const double point[3]);
+double gtx_winding_at(const gtx_solid *solid, const double point[3], uint64_t *steps);
 /* Whether any of the surface may be in a box. */
 bool gtx_solid_meets(const gtx_solid *solid, const gtx_box *box);
 

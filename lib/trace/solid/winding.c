@@ -133,13 +133,14 @@ static double angle_from_afar(const gtx_moments *m, const double r[3], double sq
     return (first + trace - 3 * second / square) / cube;
 }
 
-double gtx_winding_at(const gtx_solid *solid, const double point[3])
+double gtx_winding_at(const gtx_solid *solid, const double point[3], uint64_t *steps)
 {
     const gtx_node *nodes = solid->tree.nodes;
     double angle = 0;
     for (uint32_t n = 0; n < solid->tree.node_count;) {
         const gtx_moments *m = &solid->moments[n];
         double r[3], square = 0;
+        ++*steps;
         for (int k = 0; k < 3; ++k) {
             r[k] = m->centre[k] - point[k];
             square += r[k] * r[k];
@@ -151,6 +152,7 @@ double gtx_winding_at(const gtx_solid *solid, const double point[3])
         }
         if (nodes[n].link & GTX_LEAF) {
             const gtx_group *group = &solid->groups[nodes[n].link - GTX_LEAF];
+            *steps += group->count;
             for (uint32_t i = 0; i < group->count; ++i) {
                 const gtx_element *e = &solid->elements[group->first + i];
                 angle += (double)e->weight * angle_of(e, point);
