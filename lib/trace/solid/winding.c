@@ -119,7 +119,8 @@ gtx_result gtx_winding_build(gtx_solid *solid, gtx_error *error)
     return GTX_OK;
 }
 
-/* The solid angle of all of a node, by the first two terms of its expansion. */
+/* The solid angle of all of a node, by the first two terms of its expansion. By the first alone
+ * 1 in 18 points is off by 0.05 in the armadillo's bounds; so none is. */
 static double angle_from_afar(const gtx_moments *m, const double r[3], double square)
 {
     const double distance = sqrt(square), cube = square * distance;
