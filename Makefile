@@ -156,7 +156,7 @@ $(lib_cook): $(call objects_of,$(ROOMS_COOK))
 	$(Q)rm -f $@ && $(AR) qcs $@ $^
 
 # What a shared library exports: the functions that its headers declare, and nothing else.
-$(out)/gen/libgeotex.map: include/geotex/geotex.h include/geotex/edit.h include/geotex/render.h
+$(out)/gen/libgeotex.map: $(addprefix include/geotex/,geotex.h edit.h solid.h render.h)
 $(out)/gen/libgeotex-cook.map: include/geotex/cook.h
 $(out)/gen/%.map: Makefile
 	@mkdir -p $(@D)

@@ -137,6 +137,12 @@ void end_progress(void);
 void catch_interrupt(void);
 bool was_interrupted(void);
 
+/* ---- what verbs share ---- */
+
+/* Puts an asset with LOD meshes of its maps in the place of *asset, with progress. Errors: as
+ * gtx_cook_lod_meshes; *asset is then as it was. */
+gtx_result add_lod_meshes(gtx_asset **asset, uint32_t levels, uint32_t threads, gtx_error *error);
+
 /* ---- verbs: each gets argv[0] = its name ---- */
 
 int cmd_cook(int argc, char **argv);
@@ -146,6 +152,7 @@ int cmd_validate(int argc, char **argv);
 int cmd_unpack(int argc, char **argv);
 int cmd_pack(int argc, char **argv);
 int cmd_filter(int argc, char **argv);
+int cmd_combine(int argc, char **argv);
 int cmd_render(int argc, char **argv);
 int cmd_view(int argc, char **argv);
 int cmd_compare(int argc, char **argv);

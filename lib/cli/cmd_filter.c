@@ -3,7 +3,6 @@
 
 #include "base/warnings.h"
 
-#include <geotex/cook.h>
 #include <geotex/edit.h>
 
 #include "image/image.h"
@@ -91,22 +90,6 @@ static gtx_result take(gtx_edit *edit, const step *s, const char **file, gtx_err
     return gtx_edit_gaussian(edit, &blur, error);
 }
 
-/* Those that the asset had are of the surface as it was. */
-static gtx_result add_lod_meshes(gtx_asset **edited, gtx_error *error)
-{
-    const gtx_lod_desc desc = {
-        .levels = lod_levels, .progress = show_progress, .limits = cli_limits};
-    gtx_asset *made = NULL;
-    catch_interrupt();
-    gtx_result result = gtx_cook_lod_meshes(*edited, &desc, &made, error);
-    end_progress();
-    if (result)
-        return result;
-    gtx_close(*edited);
-    *edited = made;
-    return GTX_OK;
-}
-
 /* *file is what a failure is about. */
 static gtx_result run(const gtx_asset *asset, const char **file, gtx_error *error)
 {
@@ -119,7 +102,7 @@ static gtx_result run(const gtx_asset *asset, const char **file, gtx_error *erro
         result = gtx_edit_finish(edit, &edited, error);
     gtx_edit_end(edit);
     if (!result && lod_levels)
-        result = add_lod_meshes(&edited, error);
+        result = add_lod_meshes(&edited, lod_levels, 0, error);
     if (!result) {
         const gtx_encode_desc encode = {.zstd_level = zstd_level};
         *file = output;

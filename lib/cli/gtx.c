@@ -16,6 +16,7 @@ static const struct {
     {"unpack", cmd_unpack, "write an asset's maps as images, to look at and to edit"},
     {"pack", cmd_pack, "pack unpacked images into an asset again"},
     {"filter", cmd_filter, "blur, boost or pattern the surface of an asset"},
+    {"combine", cmd_combine, "unite, intersect or subtract two closed assets"},
     {"render", cmd_render, "draw assets and meshes into a PNG, without a window"},
     {"view", cmd_view, "look at assets and meshes in a window"},
     {"compare", cmd_compare, "measure an asset against the mesh it was cooked from"},

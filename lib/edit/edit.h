@@ -143,6 +143,27 @@ gtx_result gtx_edit_write_patch(const gtx_edit *edit, uint32_t patch, const gtx_
                                 gtx_asset *out, gtx_error *error);
 /* The patch as it was. */
 void gtx_edit_copy_patch(const gtx_edit *edit, uint32_t patch, gtx_asset *out);
+/* The address of a texel of a patch in an image of an asset. */
+uint8_t *gtx_edit_texel(const gtx_asset *asset, const gtx_patch *patch, int kind, uint32_t level,
+                        uint32_t x, uint32_t y);
+
+/* Writes what is known of the texels of a patch, and by rule what is not (format/gtx.md, 4.8). The
+ * arrays have its rectangle's texels, row by row, and are used up. */
+typedef struct gtx_patch_texels {
+    uint8_t *occupied;        /* 1 where there is a height code */
+    uint8_t *normals;         /* 2 bytes each, of level 0 */
+    uint8_t *trims;           /* codes */
+    uint8_t *ring, *codes;    /* scratch, of 1 and 2 bytes */
+} gtx_patch_texels;
+void gtx_edit_write_trim(const gtx_patch_texels *texels, const gtx_patch *to, gtx_asset *out);
+/* All levels; after the trim. */
+void gtx_edit_write_normals(const gtx_patch_texels *texels, const gtx_patch *to, gtx_asset *out);
+
+/* finish.c: what trims and normals hold outside all patches; bounds around these; and a copy that
+ * keeps to the rules of the format: LIMIT where they do not hold, of numbers too large for them. */
+void gtx_edit_fill_far(gtx_asset *asset);
+void gtx_edit_write_bounds(gtx_asset *asset);
+gtx_result gtx_edit_copy_checked(const gtx_asset *asset, gtx_asset **out, gtx_error *error);
 
 /* pages.c: finds places for the rectangles, whose sizes are there, in multiples of 2^(mip_count-1)
  * texels. Errors: MEMORY, LIMIT. */

@@ -44,8 +44,7 @@ static void grow_box(const gtx_asset *asset, const gtx_patch *patch, float low[3
     }
 }
 
-/* Bounds around all patches. */
-static void write_bounds(gtx_asset *asset)
+void gtx_edit_write_bounds(gtx_asset *asset)
 {
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t p = 0; p < asset->info.patch_count; ++p)
@@ -104,8 +103,7 @@ static gtx_result lay_out(const gtx_edit *edit, gtx_window *windows, gtx_patch *
     return grown ? gtx_edit_place(patches, &edit->allocator, info, error) : GTX_OK;
 }
 
-/* LIMIT where the rules of the format do not hold: numbers that were too large for them. */
-static gtx_result check_and_copy(const gtx_asset *asset, gtx_asset **out, gtx_error *error)
+gtx_result gtx_edit_copy_checked(const gtx_asset *asset, gtx_asset **out, gtx_error *error)
 {
     const gtx_info *info = &asset->info;
     gtx_asset_desc desc = {
@@ -135,7 +133,7 @@ static gtx_result check_and_copy(const gtx_asset *asset, gtx_asset **out, gtx_er
     return result;
 }
 
-static void fill_far(gtx_asset *asset)
+void gtx_edit_fill_far(gtx_asset *asset)
 {
     const gtx_info *info = &asset->info;
     memset(asset->trim, 255, (size_t)info->page_count * info->page_width * info->page_height);
@@ -147,13 +145,13 @@ static gtx_result write_all(const gtx_edit *edit, const gtx_window *windows, gtx
                             gtx_error *error)
 {
     gtx_result result = GTX_OK;
-    fill_far(asset);
+    gtx_edit_fill_far(asset);
     for (uint32_t p = 0; !result && p < edit->count; ++p)
         if (edit->fields[p].moved)
             result = gtx_edit_write_patch(edit, p, &windows[p], asset, error);
         else
             gtx_edit_copy_patch(edit, p, asset);
-    write_bounds(asset);
+    gtx_edit_write_bounds(asset);
     return result;
 }
 
@@ -179,7 +177,7 @@ gtx_result gtx_edit_finish(const gtx_edit *edit, gtx_asset **out, gtx_error *err
                        : gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the edited maps");
     }
     if (!result)
-        result = check_and_copy(asset, out, error);
+        result = gtx_edit_copy_checked(asset, out, error);
     gtx_close(asset);
     gtx_free_array(hooks, windows, edit->count, sizeof *windows);
     gtx_free_array(hooks, patches, edit->count, sizeof *patches);
@@ -191,7 +189,7 @@ static gtx_result begin_live(gtx_edit *edit, gtx_error *error)
     edit->live = new_asset(edit, &edit->source->info, edit->source->patches);
     if (!edit->live)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the maps that are drawn");
-    fill_far(edit->live);
+    gtx_edit_fill_far(edit->live);
     for (uint32_t p = 0; p < edit->count; ++p)
         gtx_edit_copy_patch(edit, p, edit->live);
     return GTX_OK;

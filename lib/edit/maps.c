@@ -23,17 +23,17 @@ typedef struct writer {
     uint32_t width, height;
     gtx_texel *texels;
     float (*shift)[2];        /* from a texel to where it was */
-    uint8_t *ring, *occupied, *normals, *codes;
+    gtx_patch_texels bytes;
 } writer;
 
-/* The address of a texel of a patch in an image of an asset. */
-static uint8_t *texel_of(const gtx_asset *asset, const gtx_patch *patch, gtx_section_kind kind,
-                         uint32_t level, uint32_t x, uint32_t y)
+uint8_t *gtx_edit_texel(const gtx_asset *asset, const gtx_patch *patch, int kind, uint32_t level,
+                        uint32_t x, uint32_t y)
 {
-    const gtx_map_shape shape = gtx_section_shape(&asset->info, kind, level);
+    const gtx_map_shape shape = gtx_section_shape(&asset->info, (gtx_section_kind)kind, level);
     const size_t row = (size_t)patch->page * shape.height + (patch->rect[1] >> level) + y;
     /* The asset is not changed here; where it may be, it was not const. */
-    uint8_t *image = *gtx_asset_map((gtx_asset *)(uintptr_t)asset, kind, level);
+    uint8_t *image =
+        *gtx_asset_map((gtx_asset *)(uintptr_t)asset, (gtx_section_kind)kind, level);
     return image + (row * shape.width + (patch->rect[0] >> level) + x) * shape.texel;
 }
 
@@ -44,8 +44,8 @@ void gtx_edit_copy_patch(const gtx_edit *edit, uint32_t patch, gtx_asset *out)
         for (uint32_t k = 0; k < gtx_map_levels(&out->info, (gtx_section_kind)kind); ++k) {
             const gtx_map_shape shape = gtx_section_shape(&out->info, (gtx_section_kind)kind, k);
             for (uint32_t y = 0; y < (uint32_t)(to->rect[3] >> k); ++y)
-                memcpy(texel_of(out, to, (gtx_section_kind)kind, k, 0, y),
-                       texel_of(edit->source, from, (gtx_section_kind)kind, k, 0, y),
+                memcpy(gtx_edit_texel(out, to, kind, k, 0, y),
+                       gtx_edit_texel(edit->source, from, kind, k, 0, y),
                        (size_t)(to->rect[2] >> k) * shape.texel);
         }
 }
@@ -89,7 +89,7 @@ static void write_heights(writer *w)
         const double steps = w->texels[t].height * gtx_height_steps(bits);
         const uint32_t code = w->texels[t].coded ? gtx_nearest_code(steps, bits) : 0;
         uint8_t *to =
-            texel_of(w->out, w->to, GTX_SECTION_HEIGHT, 0, t % w->width, t / w->width);
+            gtx_edit_texel(w->out, w->to, GTX_SECTION_HEIGHT, 0, t % w->width, t / w->width);
         to[0] = (uint8_t)code;
         if (bits == 16)
             to[1] = (uint8_t)(code >> 8);
@@ -98,25 +98,23 @@ static void write_heights(writer *w)
     gtx_measure_patch(w->to, &codes);
 }
 
-static void write_trim(writer *w)
+void gtx_edit_write_trim(const gtx_patch_texels *texels, const gtx_patch *to, gtx_asset *out)
 {
-    const size_t count = (size_t)w->width * w->height;
-    memset(w->codes, GTX_FAR_TRIM, count);
-    for (size_t t = 0; t < count; ++t) {
-        if (w->texels[t].coded)
-            w->codes[t] = gtx_nearest_trim(w->texels[t].trim);
-        w->ring[t] = w->texels[t].coded;
+    const uint32_t width = to->rect[2], height = to->rect[3];
+    for (size_t t = 0; t < (size_t)width * height; ++t) {
+        texels->codes[t] = texels->occupied[t] ? texels->trims[t] : GTX_FAR_TRIM;
+        texels->ring[t] = texels->occupied[t];
     }
-    const gtx_fill area = {w->codes, w->ring, w->width, w->width, w->height};
+    const gtx_fill area = {texels->codes, texels->ring, width, width, height};
     gtx_fill_trim(&area);
-    for (uint32_t y = 0; y < w->height; ++y)
-        memcpy(texel_of(w->out, w->to, GTX_SECTION_TRIM, 0, 0, y),
-               w->codes + (size_t)y * w->width, w->width);
+    for (uint32_t y = 0; y < height; ++y)
+        memcpy(gtx_edit_texel(out, to, GTX_SECTION_TRIM, 0, 0, y),
+               texels->codes + (size_t)y * width, width);
 }
 
 /* The next level of `normals` and `occupied`, in place: what is read is never before what is
  * written. */
-static void halve_normals(writer *w, uint32_t width, uint32_t height)
+static void halve_normals(const gtx_patch_texels *texels, uint32_t width, uint32_t height)
 {
     for (uint32_t j = 0; j < height / 2; ++j)
         for (uint32_t i = 0; i < width / 2; ++i) {
@@ -125,16 +123,36 @@ static void halve_normals(writer *w, uint32_t width, uint32_t height)
             uint8_t any = 0;
             for (uint32_t k = 0; k < 4; ++k) {
                 const size_t from = (size_t)(2 * j + k / 2) * width + 2 * i + k % 2;
-                if (w->occupied[from])
-                    gtx_normal_add(&sum, w->normals + 2 * from);
-                any |= w->occupied[from];
+                if (texels->occupied[from])
+                    gtx_normal_add(&sum, texels->normals + 2 * from);
+                any |= texels->occupied[from];
             }
-            gtx_normal_mean(&sum, w->normals + 2 * to);
-            w->occupied[to] = any;
+            gtx_normal_mean(&sum, texels->normals + 2 * to);
+            texels->occupied[to] = any;
         }
 }
 
-static void write_normals(writer *w)
+void gtx_edit_write_normals(const gtx_patch_texels *texels, const gtx_patch *to, gtx_asset *out)
+{
+    for (uint32_t k = 0; k < out->info.mip_count; ++k) {
+        const uint32_t width = (uint32_t)to->rect[2] >> k, height = (uint32_t)to->rect[3] >> k;
+        const size_t count = (size_t)width * height;
+        memset(texels->codes, GTX_FAR_NORMAL, 2 * count);
+        memcpy(texels->ring, texels->occupied, count);
+        for (size_t t = 0; t < count; ++t)
+            if (texels->occupied[t])
+                memcpy(texels->codes + 2 * t, texels->normals + 2 * t, 2);
+        const gtx_fill area = {texels->codes, texels->ring, width, width, height};
+        gtx_fill_normals(&area, gtx_fill_rings(to, k));
+        for (uint32_t y = 0; y < height; ++y)
+            memcpy(gtx_edit_texel(out, to, GTX_SECTION_NORMAL, k, 0, y),
+                   texels->codes + 2 * (size_t)y * width, 2 * (size_t)width);
+        halve_normals(texels, width, height);
+    }
+}
+
+/* Trims and normals of the warped texels, as bytes. */
+static void write_bytes(writer *w)
 {
     float rows[3][3];
     gtx_normal_frame(w->to, rows);
@@ -143,24 +161,12 @@ static void write_normals(writer *w)
         float m[3];
         for (int k = 0; k < 3; ++k)
             m[k] = rows[k][0] * n[0] + rows[k][1] * n[1] + rows[k][2] * n[2];
-        gtx_encode_normal(m, w->normals + 2 * t);
-        w->occupied[t] = w->texels[t].coded;
+        gtx_encode_normal(m, w->bytes.normals + 2 * t);
+        w->bytes.occupied[t] = w->texels[t].coded;
+        w->bytes.trims[t] = gtx_nearest_trim(w->texels[t].trim);
     }
-    for (uint32_t k = 0; k < w->out->info.mip_count; ++k) {
-        const uint32_t width = w->width >> k, height = w->height >> k;
-        const size_t count = (size_t)width * height;
-        memset(w->codes, GTX_FAR_NORMAL, 2 * count);
-        memcpy(w->ring, w->occupied, count);
-        for (size_t t = 0; t < count; ++t)
-            if (w->occupied[t])
-                memcpy(w->codes + 2 * t, w->normals + 2 * t, 2);
-        const gtx_fill area = {w->codes, w->ring, width, width, height};
-        gtx_fill_normals(&area, gtx_fill_rings(w->to, k));
-        for (uint32_t y = 0; y < height; ++y)
-            memcpy(texel_of(w->out, w->to, GTX_SECTION_NORMAL, k, 0, y),
-                   w->codes + 2 * (size_t)y * width, 2 * (size_t)width);
-        halve_normals(w, width, height);
-    }
+    gtx_edit_write_trim(&w->bytes, w->to, w->out);
+    gtx_edit_write_normals(&w->bytes, w->to, w->out);
 }
 
 /* Takes the shift of a texel beside, if that is known and the own one is not. */
@@ -176,7 +182,7 @@ static void spread_shift(writer *w, uint8_t *known, size_t t, size_t other)
  * below. */
 static void find_shifts(writer *w, const gtx_window *window)
 {
-    uint8_t *known = w->ring;
+    uint8_t *known = w->bytes.ring;
     const uint32_t width = w->width, height = w->height;
     for (size_t t = 0; t < (size_t)width * height; ++t) {
         known[t] = w->texels[t].coded;
@@ -210,10 +216,11 @@ static void look_up(const writer *w, gtx_section_kind kind, uint32_t level, cons
     const uint32_t i = (uint32_t)x, j = (uint32_t)y;
     const double u = x - i, v = y - j;
     const uint32_t next_i = i < right ? i + 1 : i, next_j = j < top ? j + 1 : j;
-    const uint8_t *corner[4] = {texel_of(w->edit->source, w->from, kind, level, i, j),
-                                texel_of(w->edit->source, w->from, kind, level, next_i, j),
-                                texel_of(w->edit->source, w->from, kind, level, i, next_j),
-                                texel_of(w->edit->source, w->from, kind, level, next_i, next_j)};
+    const gtx_asset *source = w->edit->source;
+    const uint8_t *corner[4] = {gtx_edit_texel(source, w->from, kind, level, i, j),
+                                gtx_edit_texel(source, w->from, kind, level, next_i, j),
+                                gtx_edit_texel(source, w->from, kind, level, i, next_j),
+                                gtx_edit_texel(source, w->from, kind, level, next_i, next_j)};
     for (uint32_t c = 0; c < channels; ++c)
         out[c] = (uint8_t)((1 - v) * ((1 - u) * corner[0][c] + u * corner[1][c]) +
                            v * ((1 - u) * corner[2][c] + u * corner[3][c]) + 0.5);
@@ -233,7 +240,7 @@ static void write_looks(writer *w, gtx_section_kind kind)
                     shift[1] += w->shift[at][1] / (double)(size * size);
                 }
                 const double from[2] = {x + shift[0] / size, y + shift[1] / size};
-                look_up(w, kind, k, from, texel_of(w->out, w->to, kind, k, x, y));
+                look_up(w, kind, k, from, gtx_edit_texel(w->out, w->to, kind, k, x, y));
             }
     }
 }
@@ -247,24 +254,21 @@ gtx_result gtx_edit_write_patch(const gtx_edit *edit, uint32_t patch, const gtx_
     const size_t count = (size_t)w.width * w.height;
     w.texels = gtx_alloc_array(hooks, count, sizeof *w.texels);
     w.shift = gtx_alloc_array(hooks, count, sizeof *w.shift);
-    uint8_t *bytes = gtx_alloc_array(hooks, count, 6);
+    uint8_t *bytes = gtx_alloc_array(hooks, count, 7);
     const bool failed = !w.texels || !w.shift || !bytes;
     if (!failed) {
-        w.ring = bytes;
-        w.occupied = bytes + count;
-        w.normals = bytes + 2 * count;
-        w.codes = bytes + 4 * count;
+        w.bytes = (gtx_patch_texels){bytes, bytes + count, bytes + 3 * count, bytes + 4 * count,
+                                     bytes + 5 * count};
         gtx_edit_warp(edit, &edit->fields[patch], window, w.texels);
         find_shifts(&w, window);
         fit_frame(&w, window);
         write_heights(&w);
-        write_trim(&w);
-        write_normals(&w);
+        write_bytes(&w);
         for (int kind = GTX_SECTION_COLOR; kind <= GTX_SECTION_EMISSION; ++kind)
             write_looks(&w, (gtx_section_kind)kind);
     }
     gtx_free_array(hooks, w.texels, count, sizeof *w.texels);
     gtx_free_array(hooks, w.shift, count, sizeof *w.shift);
-    gtx_free_array(hooks, bytes, count, 6);
+    gtx_free_array(hooks, bytes, count, 7);
     return failed ? gtx_fail(error, GTX_ERROR_MEMORY, "no memory for patch %u", patch) : GTX_OK;
 }

@@ -1,4 +1,4 @@
-/* Pages for rectangles that have grown: shelves, tallest first. The cooker packs a tenth
+/* Pages for rectangles of other sizes: shelves, tallest first. The cooker packs a tenth
  * tighter, and takes longer than an edit may. */
 #include "edit/edit.h"
 
@@ -81,7 +81,7 @@ gtx_result gtx_edit_place(gtx_patch *patches, const gtx_allocator *hooks, gtx_in
             pages = s->page + 1 > pages ? s->page + 1 : pages;
         }
         if (pages > GTX_MAX_PAGES)
-            result = gtx_fail(error, GTX_ERROR_LIMIT, "the edited patches take %u pages", pages);
+            result = gtx_fail(error, GTX_ERROR_LIMIT, "the patches take %u pages", pages);
         info->page_count = pages;
         info->page_width = width;
         info->page_height = (used + grain - 1) / grain * grain;

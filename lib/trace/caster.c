@@ -93,6 +93,29 @@ static gtx_crossing cast_tree(const gtx_caster *caster, const gtx_line *ray, uin
     return best;
 }
 
+uint32_t gtx_cast_each(const gtx_caster *caster, const gtx_line *ray, gtx_crossing_fn fn,
+                       void *user)
+{
+    const gtx_node *leaf;
+    const gtx_slabs s = gtx_slabs_of(ray);
+    const float limit = gtx_slabs_limit(&s, ray->t_max);
+    gtx_subtree stack[GTX_HIERARCHY_DEPTH];
+    gtx_subtree at = {0, caster->tree.node_count ? gtx_enter(caster->tree.nodes, &s, limit)
+                                                 : INFINITY};
+    uint32_t blocks = 0;
+    int size = 0;
+    while ((leaf = gtx_next_leaf(caster->tree.nodes, &s, limit, &at, stack, &size))) {
+        const gtx_block *block = &caster->blocks[leaf->link - GTX_LEAF];
+        const gtx_line line = gtx_field_line(&caster->fields[block->field], ray);
+        gtx_crossing crossing = {.t = ray->t_max, .field = UINT32_MAX};
+        gtx_walk_block(caster, block, &line, true, &crossing);
+        if (crossing.field != UINT32_MAX)
+            fn(&crossing, user);
+        ++blocks;
+    }
+    return blocks;
+}
+
 static gtx_crossing cast_exhaustively(const gtx_caster *caster, const gtx_line *ray,
                                       uint32_t flags)
 {

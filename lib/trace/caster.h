@@ -79,7 +79,8 @@ gtx_line gtx_field_line(const gtx_height_field *field, const gtx_line *ray);
 gtx_cell gtx_field_cell(const gtx_height_field *field, uint32_t i, uint32_t j);
 bool gtx_field_solid(const gtx_caster *caster, const gtx_height_field *field, uint32_t i,
                      uint32_t j);
-/* Whether the trim map shows the height field at (x, y). */
+/* The code of the trim map at (x, y), and whether it shows the height field there. */
+double gtx_field_trim(const gtx_height_field *field, double x, double y);
 bool gtx_field_shows(const gtx_height_field *field, double x, double y);
 /* The unit normals at (x, y) in object space: of the map, and of the surface of a cell. */
 void gtx_field_normal(const gtx_height_field *field, double x, double y, float out[3]);
@@ -102,5 +103,10 @@ void gtx_search_field(const gtx_caster *caster, uint32_t field, const gtx_line *
 bool gtx_read_ray(const gtx_ray *ray, gtx_line *out);
 gtx_crossing gtx_cast_line(const gtx_caster *caster, const gtx_line *line, uint32_t flags);
 gtx_hit gtx_describe(const gtx_caster *caster, const gtx_crossing *crossing);
+/* The first crossing, from above or below, of every block that the ray meets, in no order. One on
+ * the border of two blocks comes twice. Returns the blocks that were looked at. */
+typedef void (*gtx_crossing_fn)(const gtx_crossing *crossing, void *user);
+uint32_t gtx_cast_each(const gtx_caster *caster, const gtx_line *ray, gtx_crossing_fn fn,
+                       void *user);
 
 #endif

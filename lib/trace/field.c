@@ -243,13 +243,17 @@ static size_t bilinear(const gtx_height_field *field, double x, double y, double
     return (size_t)j * field->width + i;
 }
 
-bool gtx_field_shows(const gtx_height_field *field, double x, double y)
+double gtx_field_trim(const gtx_height_field *field, double x, double y)
 {
     double weight[4];
     const uint8_t *row = field->trim + bilinear(field, x, y, weight);
     const uint8_t *next = row + field->width;
-    return weight[0] * row[0] + weight[1] * row[1] + weight[2] * next[0] + weight[3] * next[1] <=
-           field->trim_limit;
+    return weight[0] * row[0] + weight[1] * row[1] + weight[2] * next[0] + weight[3] * next[1];
+}
+
+bool gtx_field_shows(const gtx_height_field *field, double x, double y)
+{
+    return gtx_field_trim(field, x, y) <= field->trim_limit;
 }
 
 void gtx_field_normal(const gtx_height_field *field, double x, double y, float out[3])

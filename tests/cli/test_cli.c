@@ -31,7 +31,7 @@ static void usage_is_exit_1(void **state)
 static void help_is_exit_0(void **state)
 {
     static const char *const verbs[] = {"cook",   "info",   "validate", "unpack", "pack",
-                                        "filter", "render", "compare"};
+                                        "filter", "render", "compare",  "combine"};
     (void)state;
     expect(gtx("--help"), 0);
     expect(gtx("--version"), 0);
@@ -167,6 +167,7 @@ static void every_verb_names_the_broken_rule(void **state)
         {"info", ""}, {"validate", ""}, {"view", ""}, {"compare", "sphere.obj"},
         {"bench", "sphere.obj"}, {"unpack", "maps"}, {"pack", "-o x.gtx"},
         {"render", "-o x.png"}, {"filter", "-o x.gtx --gaussian 1"},
+        {"combine", "sphere.gtx -o x.gtx --op union"},
     };
     char bad[PATH_MAX];
     (void)state;

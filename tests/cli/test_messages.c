@@ -31,6 +31,7 @@ static void paths_hold_anything(void **state)
         "pack \"" ODD "\" -o a.gtx",
         "filter sphere.gtx -o a.gtx --pattern \"" ODD "\"",
         "filter \"" ODD "\" -o a.gtx --gaussian 1",
+        "combine \"" ODD "\" sphere.gtx -o a.gtx --op union",
         "render \"" ODD "\" -o a.png",
         "view \"" ODD "\"",
         "compare sphere.gtx \"" ODD "\"",

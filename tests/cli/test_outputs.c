@@ -21,6 +21,9 @@ static const struct {
     {"pack a.gtx -o %s", {"a.gtx"}, false},
     {"pack maps -o %s", {"maps/asset.json", "maps/height-0.png"}, false},
     {"filter a.gtx --pattern p.png -o %s", {"a.gtx", "p.png"}, false},
+    {"combine a.gtx a.gtx --op union --openness 1 --lod-levels 0 -q -o %s", {"a.gtx"}, false},
+    {"combine a.gtx a.gtx --op union --openness 1 --lod-levels 0 -q -o x.gtx --report %s",
+     {"a.gtx", "x.gtx"}, false},
     {"render t.obj a.gtx --size 64x48 -o %s", {"t.obj", "t.mtl", "t.png", "a.gtx"}, true},
     {"render a.gtx --size 64x48 -o x.png --depth %s", {"a.gtx", "x.png"}, true},
 };
