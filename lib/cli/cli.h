@@ -141,6 +141,7 @@ bool was_interrupted(void);
 
 int cmd_cook(int argc, char **argv);
 int cmd_horizons(int argc, char **argv);
+int cmd_world(int argc, char **argv);
 int cmd_info(int argc, char **argv);
 int cmd_validate(int argc, char **argv);
 int cmd_unpack(int argc, char **argv);
