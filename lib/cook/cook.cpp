@@ -164,9 +164,11 @@ static Attempt attempt(const Mesh &mesh, const Options &options, Task &task, con
         out.suitability = judge_suitability(out.partition, maps.report, facts.source_triangles,
                                             task);
         Vector<LodLevel> lod;
-        if (options.lod_levels)
-            lod = make_lod(lod_source(charted, out.partition, maps, task), maps,
-                           options.lod_levels, task);
+        if (options.lod_levels) {
+            LodSource source = lod_source(charted, out.partition, maps, task);
+            source.keep_border = options.keep_border;
+            lod = make_lod(source, maps, options.lod_levels, task);
+        }
         refuse_warnings(options, task);
         CookFacts of_asset = facts;
         of_asset.chart_count = out.partition.charts.size();

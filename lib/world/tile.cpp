@@ -151,6 +151,7 @@ StepReport cook_tile(const std::string &folder, const std::string &name, Task &t
     const Tile &tile = plan.tile(name);
     TileCook job = {plan, tile, task, {}, {}};
     job.desc.unit = float(plan.unit);
+    job.desc.keep_border = 1;
     job.desc.threads = task.threads();
     job.desc.limits = task.limits.given();
     const Surface surface = load_surface(plan, tile, task);

@@ -16,7 +16,8 @@ constexpr double FEW = 0.02;
 
 Simplifier::State::State(const LodSource &source, const Vector<PatchRegion> &regions,
                          Task &task)
-    : regions(regions), task(task), first_count(source.triangles.size())
+    : regions(regions), task(task), first_count(source.triangles.size()),
+      keep_border(source.keep_border)
 {
     sort_by_patch(source);
     points = positions;
@@ -150,7 +151,8 @@ size_t Simplifier::State::merge(uint32_t vertex, float limit, double most)
     Choice &choice = choices[vertex];
     if (touched[vertex] || touched[choice.to])
         return 0;
-    const Choice found = find_fan(vertex, fan) ? choose(vertex, fan, most) : Choice();
+    const bool free = find_fan(vertex, fan) && !stays(fan);
+    const Choice found = free ? choose(vertex, fan, most) : Choice();
     if (found.to != NO_VERTEX && touched[found.to])
         return 0;
     choice = found;
