@@ -17,7 +17,8 @@ static const option plan_options[] = {
      gtx::MIN_TILE, gtx::MAX_TILE},
     {"engine", 0, OPTION_CHOICE, &engine, "ninja|shell|slurm",
      "who runs the steps: DIR/build.ninja, DIR/build.sh, or DIR/slurm/submit.sh [ninja]", 0, 0},
-    {"worker-memory", 0, OPTION_AMOUNT, &memory, "BYTES", "most memory of a worker [1G]", 1e8, 1e15},
+    {"worker-memory", 0, OPTION_AMOUNT, &memory, "BYTES", "most memory of a worker [1G]", 1e8,
+     1e15},
     {"glb", 0, OPTION_FLAG, &glb, nullptr,
      "write each tile's finest LOD mesh as GLB too, for any reader of 3D Tiles", 0, 0},
     {"up", 0, OPTION_CHOICE, &up, "y|z", "the models' up axis; +Z is turned to +Y [y]", 0, 0},
@@ -34,10 +35,11 @@ enum { MAX_MODELS = 4096 };
 
 static const verb steps_of_world[] = {
     {"world plan", "MODEL... -o DIR",
-     "Counts triangles, once, and plans a tree of tiles: plan.json, and what runs the other steps.\n"
-     "Binary PLY, binary STL, and GLB of plain arrays may have any size; other models and grids\n"
-     "(IRAP, ZMAP+, images) are read one at a time, folders file by file; - reads triangles of nine\n"
-     "little-endian floats from stdin. `ninja -C DIR` then makes DIR/tileset.json (3D Tiles 1.1).",
+     "Counts triangles, once, and plans a tree of tiles: plan.json, and what runs the steps.\n"
+     "Binary PLY, binary STL, and GLB of plain arrays may have any size; other models and\n"
+     "grids (IRAP, ZMAP+, images) are read one at a time, folders file by file; - reads\n"
+     "triangles of nine little-endian floats from stdin. `ninja -C DIR` then makes\n"
+     "DIR/tileset.json (OGC 3D Tiles 1.1).",
      1, MAX_MODELS, plan_options},
     {"world split", "DIR",
      "Reads the planned models again and gives each triangle to its leaf: DIR/work/split.",

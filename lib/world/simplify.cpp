@@ -12,7 +12,7 @@ namespace {
 
 /* The own triangles by place, and what a place has. */
 struct Places {
-    Vector<uint32_t> indices;        /* three a triangle; of vertices that are the first at theirs */
+    Vector<uint32_t> indices;        /* three a triangle; of vertices, the first at each */
     Vector<Vec3f> positions;         /* relative to the middle */
     Vector<Vec3f> normals;
     Vector<Rgba8> colors;

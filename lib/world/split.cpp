@@ -1,4 +1,4 @@
-/* The step that gives each triangle to a leaf: cell files, filled side by side in bounded memory. */
+/* The step that gives each triangle to a leaf: cell files, filled in bounded memory. */
 #include "world/cell.hpp"
 
 #include "base/bytes.h"

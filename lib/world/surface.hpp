@@ -23,8 +23,9 @@ struct Surface {
     }
 };
 
-/* The tile's cell file, and its ring: triangles of the files around that share a position with its
- * own. For a leaf these are the other leaves'; for others the low surfaces next to its children's. */
+/* The tile's cell file, and its ring: triangles of the files around that share a position with
+ * its own. For a leaf these are the other leaves'; for others the low surfaces next to its
+ * children's. */
 Surface load_surface(const Plan &plan, const Tile &tile, Task &task);
 /* A surface of one file alone. */
 Surface load_cell(const std::string &path);

@@ -17,7 +17,7 @@ constexpr double HOLE_PIXELS = 2, HOLE_DIAGONAL = 0.001;
 struct Shown {
     std::unique_ptr<gtx_asset, void (*)(gtx_asset *)> asset{nullptr, gtx_close};
     std::unique_ptr<AssetView> view;
-    double cell_error, lod_error;    /* of its cell file, and of its finest LOD mesh */
+    double cell_error, lod_error;    /* of its cell file, of its finest LOD mesh */
 };
 
 /* A world, and the source to hold it against. */
@@ -28,7 +28,7 @@ struct Scene {
     Extent extent;
 };
 
-using Cut = std::function<bool(const Tile &)>;   /* whether to show a tile rather than those below */
+using Cut = std::function<bool(const Tile &)>; /* whether to show a tile, not those below it */
 
 void open_tile(Scene &scene, const Tile &tile)
 {
