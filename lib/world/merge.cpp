@@ -53,13 +53,12 @@ StepReport merge_tile(const std::string &folder, const std::string &name, Task &
     const bool unchanged = is_there(plan, tile, key);
     if (!unchanged) {
         CellWriter cell = joined(plan, tile);
+        if (cell.header.count > plan.triangles) { /* borders took more than their share */
+            write_whole(path, cell.finish()); /* without a key: it is nobody's yet */
+            cell = simplify_surface(load_cell(path), plan.triangles, task).cell;
+        }
         cell.header.key = key;
         write_whole(path, cell.finish());
-        if (cell.header.count > plan.triangles) { /* borders took more than their share */
-            cell = simplify_surface(load_cell(path), plan.triangles, task).cell;
-            cell.header.key = key;
-            write_whole(path, cell.finish());
-        }
     }
     task.end();
     return {std::to_string(CellReader(path).header().count) + " triangles of " +

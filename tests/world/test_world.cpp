@@ -250,6 +250,52 @@ static void the_tileset_is_what_lies_there(void **)
         assert_true(CellReader(cell_path(plan, tile)).header().count <= plan.triangles);
 }
 
+/* Where borders take more than their share, merging goes on to the tile's number; what a worker
+ * that was killed on the way left is not taken for the result. */
+static void merged_tiles_are_as_small_as_planned(void **)
+{
+    Plan plan = colored_world();
+    fs::copy(plan.folder, in_folder("smaller"), fs::copy_options::recursive);
+    plan.folder = in_folder("smaller");
+    plan.triangles = 1000;
+    write_plan(plan);
+    Task task(1, nullptr, nullptr, {"read", "cook", "simplify"}, {1, 1, 1});
+    const std::string path = cell_path(plan, plan.tiles[0]);
+    const CellHeader before = CellReader(path).header();
+    assert_true(before.count > 1000);
+    assert_false(merge_tile(plan.folder, "r", task).unchanged);
+    const CellHeader after = CellReader(path).header();
+    assert_true(after.count <= 1000 && after.deviation > before.deviation);
+    assert_true(merge_tile(plan.folder, "r", task).unchanged);
+    CellWriter halfway({plan.traits.doubles, true, plan.traits.colors});
+    write_whole(path, halfway.finish());
+    assert_false(merge_tile(plan.folder, "r", task).unchanged);
+    assert_int_equal(CellReader(path).header().hash, after.hash);
+}
+
+/* A leaf of nothing but points and lines has no asset, and the world goes on without it. */
+static void a_tile_may_be_empty(void **)
+{
+    Mesh mesh = terrain(24);
+    for (uint32_t k = 0; k < 990; ++k) {
+        mesh.positions.push_back({50 + 0.001 * k, 50, 50});
+        const uint32_t last = uint32_t(mesh.positions.size() - 1);
+        mesh.triangles.push_back({last, last, last});
+    }
+    write_file(in_folder("lines.ply"), ply_text(mesh));
+    PlanOptions options;
+    options.models = {in_folder("lines.ply")};
+    options.folder = in_folder("lines");
+    options.triangles = 1000;
+    const Plan plan = make_world(options);
+    size_t empty = 0;
+    for (const Tile &tile : plan.tiles)
+        empty += read_facts(plan, tile).empty;
+    assert_int_equal(empty, 1);
+    const json set = json::parse(read_file(in_folder("lines") + "/tileset.json"));
+    assert_true(set["root"].contains("content"));
+}
+
 /* Grids, folders, several models; +Z up; metres. */
 static void inputs_of_every_kind(void **)
 {
@@ -284,6 +330,8 @@ int main()
         cmocka_unit_test(borders_stay_as_they_are),
         cmocka_unit_test(normals_and_colors_go_on_across_borders),
         cmocka_unit_test(the_tileset_is_what_lies_there),
+        cmocka_unit_test(merged_tiles_are_as_small_as_planned),
+        cmocka_unit_test(a_tile_may_be_empty),
         cmocka_unit_test(inputs_of_every_kind),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
