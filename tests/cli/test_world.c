@@ -178,6 +178,14 @@ static void faults_are_one_line(void **state)
     expect(gtx("world plan big.obj -o fresh --triangles 2k -q"), 0);
     refuses("world cook fresh r", 2, "the step that makes it has not run");
     refuses("world index fresh", 2, "is not cooked");
+    refuses("world split fresh --max-memory 100k", 6, "--max-memory allows more");
+    expect(gtx("world split fresh -q --progress json"), 0);
+    expect(shell("cell=$(ls fresh/work/split/r* | head -1); truncate -s -1 $cell; basename $cell"),
+           0);
+    output[strcspn(output, "\n")] = 0;
+    char spoiled[128];
+    snprintf(spoiled, sizeof spoiled, "world cook fresh %.60s", output);
+    refuses(spoiled, 3, "is not whole");
     expect(shell("echo '{\"tiles\": [{\"name\": \"../../x\"}]}' >fresh/plan.json"), 0);
     refuses("world split fresh", 3, "none that gtx world plan wrote");
     assert_false(exists("w/plan.json"));
