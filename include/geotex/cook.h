@@ -103,8 +103,10 @@ typedef struct gtx_cook_desc {
                                      files that these refer to */
     gtx_sources_fn sources_fn;    /* may be NULL */
     void *sources_user;
-    uint32_t keep_border;         /* 1: open borders of LOD meshes but far ones stay where they are:
-                                     for a model that is part of a larger one */
+    const double *kept;           /* vertices of the models that LOD meshes but far ones keep where
+                                     they are, three numbers each, as they lie in the asset: for a
+                                     model that is part of a larger one; or NULL */
+    uint64_t kept_count;
     uint32_t reserved[6];
 } gtx_cook_desc;
 
@@ -113,7 +115,7 @@ typedef struct gtx_cook_desc {
  *     and images that they refer to, missing ones included; not their paths or times;
  *   - the options that change the asset: partition, extract (and the driver, where it is GPU),
  *     charts, resolution, height_bits, dilation, mips, lod_levels, zstd_level, unit, error, z_up,
- *     adaptive and keep_border; not threads, measure, progress, strict, limits or allocator;
+ *     adaptive and kept; not threads, measure, progress, strict, limits or allocator;
  *   - geotex's version and the revision of its cooker,
  * but not the library that decodes images. With `strict`, an asset that was cooked with warnings is
  * cooked again; with `charts_ply`, or if importing read files that could not be foreseen, any

@@ -34,7 +34,9 @@ struct Options {
     bool free_bits = false;       /* the error decides on the bits of a height */
     bool free_charts = false;     /* and on the number of patches */
     bool measure = false;         /* also where an error is asked for */
-    bool z_up = false, strict = false, if_changed = false, keep_border = false;
+    bool z_up = false, strict = false, if_changed = false;
+    const double *kept = nullptr;
+    size_t kept_count = 0;
     const char *charts_ply = nullptr;
     gtx_allocator allocator = {}; /* never empty hooks */
 };

@@ -144,6 +144,21 @@ void TileCook::make_low(const Surface &surface, size_t wanted)
     write_whole(low_path(plan, tile), low.cell.finish());
 }
 
+/* The vertices of the ring. Those that it shares with the tile's own triangles are where the
+ * surfaces of neighbours meet, whatever their levels; the others make both overlap. */
+static Vector<double> ring_of(const Surface &surface)
+{
+    Vector<uint8_t> is_ring(surface.positions.size(), 0);
+    for (size_t t = surface.own; t < surface.triangles.size(); ++t)
+        for (uint32_t v : surface.triangles[t])
+            is_ring[surface.place[v]] = 1;
+    Vector<double> out;
+    for (size_t v = 0; v < is_ring.size(); ++v)
+        for (int k = 0; k < 3 && is_ring[v]; ++k)
+            out.push_back(surface.positions[v][k]);
+    return out;
+}
+
 StepReport cook_tile(const std::string &folder, const std::string &name, Task &task)
 {
     task.begin("read");
@@ -151,10 +166,12 @@ StepReport cook_tile(const std::string &folder, const std::string &name, Task &t
     const Tile &tile = plan.tile(name);
     TileCook job = {plan, tile, task, {}, {}};
     job.desc.unit = float(plan.unit);
-    job.desc.keep_border = 1;
     job.desc.threads = task.threads();
     job.desc.limits = task.limits.given();
     const Surface surface = load_surface(plan, tile, task);
+    const Vector<double> ring = ring_of(surface);
+    job.desc.kept = ring.data();
+    job.desc.kept_count = ring.size() / 3;
     const std::string ply = ply_of(surface);
     const size_t wanted = tile.depth ? size_t(plan.low_share(tile) * double(surface.own)) : 0;
     const uint64_t key = job.key_of(ply, surface, wanted);

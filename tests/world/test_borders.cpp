@@ -218,14 +218,14 @@ size_t check_all(const Scene &scene)
 
 static void terrain_has_no_hole(void **)
 {
-    const Scene scene = make_scene("terrain", terrain(220), 8000);
+    const Scene scene = make_scene("terrain", terrain(150), 4000);
     assert_true(cut_of(scene.plan, [](const Tile &) { return false; }).size() >= 8);
     assert_int_equal(check_all(scene), 0);
 }
 
 static void a_closed_ball_has_no_hole(void **)
 {
-    const Scene scene = make_scene("ball", ball(80), 6000);
+    const Scene scene = make_scene("ball", ball(60), 4000);
     assert_true(cut_of(scene.plan, [](const Tile &) { return false; }).size() >= 8);
     assert_int_equal(check_all(scene), 0);
 }

@@ -16,8 +16,7 @@ constexpr double FEW = 0.02;
 
 Simplifier::State::State(const LodSource &source, const Vector<PatchRegion> &regions,
                          Task &task)
-    : regions(regions), task(task), first_count(source.triangles.size()),
-      keep_border(source.keep_border)
+    : regions(regions), task(task), first_count(source.triangles.size())
 {
     sort_by_patch(source);
     points = positions;
@@ -47,6 +46,8 @@ void Simplifier::State::sort_by_patch(const LodSource &source)
             if (name[v] == NO_VERTEX) {
                 name[v] = uint32_t(positions.size());
                 positions.push_back(source.positions[v]);
+                if (!source.kept.empty())
+                    kept.push_back(source.kept[v]);
             }
             v = name[v];
         }
@@ -118,12 +119,15 @@ void Simplifier::State::compact()
         if (renamed[v] == NO_VERTEX)
             continue;
         positions[vertices] = positions[v];
+        if (!kept.empty())
+            kept[vertices] = kept[v];
         quadrics[vertices] = quadrics[v];
         point[vertices] = point[v];
         choices[vertices] = choices[v];
         renamed[v] = vertices++;
     }
     positions.resize(vertices);
+    kept.resize(kept.empty() ? 0 : vertices);
     quadrics.resize(vertices);
     point.resize(vertices);
     choices.resize(vertices);
@@ -151,7 +155,7 @@ size_t Simplifier::State::merge(uint32_t vertex, float limit, double most)
     Choice &choice = choices[vertex];
     if (touched[vertex] || touched[choice.to])
         return 0;
-    const bool free = find_fan(vertex, fan) && !stays(fan);
+    const bool free = !stays(vertex) && find_fan(vertex, fan);
     const Choice found = free ? choose(vertex, fan, most) : Choice();
     if (found.to != NO_VERTEX && touched[found.to])
         return 0;
