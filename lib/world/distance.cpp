@@ -7,8 +7,7 @@
 
 namespace gtx {
 
-/* Points that are asked, spread over all there are. At half and at double the farthest of the
- * sculpt's tiles is the same within 5 %. */
+/* Points that are asked, spread over all there are: a limit of time. */
 constexpr size_t MAX_POINTS = size_t(1) << 16;
 
 namespace {

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 /* What all cells together hold back; then the fullest are written. One file is open at a time. */
 constexpr size_t BUFFERED = size_t(96) << 20;
-/* A cell that is written holds at least this share of what is held back, or the mean. */
+/* Bytes. Cells that hold less, or less than the mean, wait: writing them would take many calls. */
 constexpr size_t FULL = 1 << 16;
 
 static void require_planned(bool fine)

@@ -5,10 +5,11 @@
  *           what runs the other steps (Ninja, a shell script, Slurm).
  *   split   a second pass: each triangle goes to the cell file of the leaf that its centroid is in.
  *   cook    one tile: its own triangles, and a ring of those of its neighbours that share a vertex
- *           with them, so that the surfaces of two tiles overlap and no sight passes between. Makes
- *           the asset, the GLB if wanted, and a *low* surface of a quarter of the triangles for the
- *           parent, whose border vertices stay where they are: the source's own, the same on both
- *           sides, at every level.
+ *           with them. LOD meshes keep the ring's vertices, so that the surfaces of two tiles meet
+ *           along their border, and overlap: no sight passes between. Makes the asset, the GLB if
+ *           wanted, and a *low* surface of a quarter of the triangles for the parent, whose border
+ *           vertices stay where they are: the source's own, the same on both sides, at every
+ *           level.
  *   merge   the low surfaces of a tile's children become the cell file of a tile of its own.
  *   index   writes tileset.json (OGC 3D Tiles 1.1) once all tiles are there.
  *
