@@ -22,7 +22,7 @@ SOVERSION := 0
 
 # ---- rooms: what each needs. Imports run one way, from right to left -----------------------------
 ROOMS_CORE := base asset derive trace edit render
-ROOMS_COOK := image mesh grid chart bake measure cook
+ROOMS_COOK := image mesh grid chart bake measure cook world
 
 needs_base    := base
 needs_asset   := base asset
@@ -38,7 +38,8 @@ needs_chart   := $(needs_mesh) chart
 needs_bake    := $(needs_asset) image mesh grid chart bake
 needs_measure := $(needs_trace) image mesh measure
 needs_cook    := $(needs_trace) image mesh grid chart bake measure cook
-needs_cli     := $(needs_cook) edit render host cli
+needs_world   := $(needs_cook) world
+needs_cli     := $(needs_world) edit render host cli
 
 rooms := $(ROOMS_CORE) $(ROOMS_COOK) host cli
 tests := $(filter-out bench common golden run,$(notdir $(wildcard tests/*)))

@@ -53,6 +53,13 @@ inline ShellPoint cave_at(double s, double v)
     return {{p[0] + r * x * out[0], p[1] + r * y, p[2] + r * x * out[2]}, stone(y, broad)};
 }
 
+/* A ball around all of it. */
+inline ShellPoint rock_at(double s, double v)
+{
+    const double r = 20 * std::sin(PI * s);
+    return {{r * std::cos(v), 20 * std::cos(PI * s), r * std::sin(v)}, stone(0, 0)};
+}
+
 /* Turned to face inward, with rock around it: what is closed would count as solid. */
 inline Model in_rock(Model hollow)
 {
@@ -61,10 +68,7 @@ inline Model in_rock(Model hollow)
     for (Vec &normal : hollow.normals)
         for (double &x : normal)
             x = -x;
-    const Model rock = make_rings(3000, 1, [](double s, double v) {
-        const double r = 20 * std::sin(PI * s);
-        return ShellPoint{{r * std::cos(v), 20 * std::cos(PI * s), r * std::sin(v)}, stone(0, 0)};
-    });
+    const Model rock = make_rings(3000, 1, rock_at);
     const uint32_t before = uint32_t(hollow.positions.size());
     hollow.positions.insert(hollow.positions.end(), rock.positions.begin(), rock.positions.end());
     hollow.normals.insert(hollow.normals.end(), rock.normals.begin(), rock.normals.end());

@@ -2,8 +2,11 @@
  * vertex colours, as a Draco-compressed GLB. The hall and the cave are seen from inside.
  *
  *     sculpt [--shape shell|hall|cave] [--triangles N] OUT.glb
+ *
+ * For `-` it writes nothing but triangles to stdout, nine little-endian floats each, as many as
+ * wanted without holding them: for `gtx world plan -`.
  */
-#include "cave.hpp"
+#include "raw.hpp"
 
 #include "base/output.h"
 
@@ -107,11 +110,17 @@ int main(int argc, char **argv)
         else
             break;
     bool known = shape == "shell" || shape == "hall" || shape == "cave";
-    if (at + 1 != argc || argv[at][0] == '-' || !known || !(wanted >= 1000 && wanted <= 2e7)) {
+    const bool streams = at + 1 == argc && !std::strcmp(argv[at], "-");
+    const bool writes = at + 1 == argc && argv[at][0] != '-' && wanted <= 2e7;
+    if (!known || !(streams || writes) || !(wanted >= 1000 && wanted <= 1e10)) {
         std::fprintf(stderr, "usage: sculpt [--shape shell|hall|cave] "
-                             "[--triangles 1000..20000000] OUT.glb\n");
+                             "[--triangles 1000..20000000] OUT.glb\n"
+                             "       sculpt [--shape shell|hall|cave] [--triangles N] - "
+                             "| gtx world plan - -o DIR\n");
         return 1;
     }
+    if (streams)
+        return write_stream(shape, wanted);
     Model model = shape == "hall"   ? in_rock(make_rings(wanted, 1, hall_at))
                   : shape == "cave" ? in_rock(make_rings(wanted, 8, cave_at))
                                     : make_rings(wanted, 14, shell_at);

@@ -103,15 +103,19 @@ typedef struct gtx_cook_desc {
                                      files that these refer to */
     gtx_sources_fn sources_fn;    /* may be NULL */
     void *sources_user;
-    uint32_t reserved[7];
+    const double *kept;           /* vertices of the models that LOD meshes but far ones keep where
+                                     they are, three numbers each, as they lie in the asset: for a
+                                     model that is part of a larger one; or NULL */
+    uint64_t kept_count;
+    uint32_t reserved[6];
 } gtx_cook_desc;
 
 /* An asset keeps the key that it was cooked under. The key covers
  *   - the content of every file behind the models: themselves, and the buffers, material libraries
  *     and images that they refer to, missing ones included; not their paths or times;
  *   - the options that change the asset: partition, extract (and the driver, where it is GPU),
- *     charts, resolution, height_bits, dilation, mips, lod_levels, zstd_level, unit, error, z_up
- *     and adaptive; not threads, measure, progress, strict, limits or allocator;
+ *     charts, resolution, height_bits, dilation, mips, lod_levels, zstd_level, unit, error, z_up,
+ *     adaptive and kept; not threads, measure, progress, strict, limits or allocator;
  *   - geotex's version and the revision of its cooker,
  * but not the library that decodes images. With `strict`, an asset that was cooked with warnings is
  * cooked again; with `charts_ply`, or if importing read files that could not be foreseen, any

@@ -147,6 +147,7 @@ gtx_result add_lod_meshes(gtx_asset **asset, uint32_t levels, uint32_t threads, 
 
 int cmd_cook(int argc, char **argv);
 int cmd_horizons(int argc, char **argv);
+int cmd_world(int argc, char **argv);
 int cmd_info(int argc, char **argv);
 int cmd_validate(int argc, char **argv);
 int cmd_unpack(int argc, char **argv);

@@ -11,6 +11,7 @@ static const struct {
 } verbs[] = {
     {"cook", cmd_cook, "turn a triangle mesh into a .gtx asset"},
     {"horizons", cmd_horizons, "turn height grids, horizons or terrain, into an asset"},
+    {"world", cmd_world, "cook models of any size in parts, into a tree of tiles (3D Tiles)"},
     {"info", cmd_info, "print what is in an asset"},
     {"validate", cmd_validate, "check an asset against every rule of the format"},
     {"unpack", cmd_unpack, "write an asset's maps as images, to look at and to edit"},

@@ -152,6 +152,23 @@ static Asset find_cooked(const char *path, const Options &options, uint64_t key,
     return owner;
 }
 
+/* Which vertices of the LOD meshes' source are to stay. */
+static void mark_kept(const Options &options, const Maps &maps, LodSource &source)
+{
+    if (!options.kept_count)
+        return;
+    auto before = [](const Vec3d &a, const Vec3d &b) {
+        return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+    };
+    Vector<Vec3d> kept;
+    const Vec3d anchor(maps.anchor[0], maps.anchor[1], maps.anchor[2]);
+    for (const double *p = options.kept, *end = p + 3 * options.kept_count; p != end; p += 3)
+        kept.push_back(Vec3d(p[0], p[1], p[2]) - anchor);
+    std::sort(kept.begin(), kept.end(), before);
+    for (const Vec3d &p : source.positions)
+        source.kept.push_back(std::binary_search(kept.begin(), kept.end(), p, before));
+}
+
 /* Partition, maps and asset of the clean mesh, measured where that is wanted. */
 static Attempt attempt(const Mesh &mesh, const Options &options, Task &task, const CookFacts &facts)
 {
@@ -164,9 +181,11 @@ static Attempt attempt(const Mesh &mesh, const Options &options, Task &task, con
         out.suitability = judge_suitability(out.partition, maps.report, facts.source_triangles,
                                             task);
         Vector<LodLevel> lod;
-        if (options.lod_levels)
-            lod = make_lod(lod_source(charted, out.partition, maps, task), maps,
-                           options.lod_levels, task);
+        if (options.lod_levels) {
+            LodSource source = lod_source(charted, out.partition, maps, task);
+            mark_kept(options, maps, source);
+            lod = make_lod(source, maps, options.lod_levels, task);
+        }
         refuse_warnings(options, task);
         CookFacts of_asset = facts;
         of_asset.chart_count = out.partition.charts.size();

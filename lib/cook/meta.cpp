@@ -27,6 +27,8 @@ std::string write_meta(const Options &options, const CookFacts &facts)
     gtx_json_integer(&json, "dilation", options.bake.dilation);
     gtx_json_integer(&json, "lod_levels", options.lod_levels);
     gtx_json_string(&json, "up", options.z_up ? "z" : "y");
+    if (options.kept_count)
+        gtx_json_integer(&json, "kept", options.kept_count);
     if (options.bake.extractor)
         gtx_json_string(&json, "extract", "gpu");
     gtx_json_end_object(&json);

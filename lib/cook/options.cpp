@@ -62,6 +62,8 @@ static void check(const gtx_cook_desc &desc)
     require_argument(desc.z_up <= 1, "z_up is 0 or 1");
     require_argument(desc.strict <= 1, "strict is 0 or 1");
     require_argument(desc.if_changed <= 1, "if_changed is 0 or 1");
+    require_argument(desc.kept || !desc.kept_count, "kept is NULL, and kept_count is not 0");
+    require_argument(desc.kept_count <= UINT32_MAX, "kept_count is at most 2^32 - 1");
     require_models(desc.more, desc.more_count);
 }
 
@@ -95,6 +97,8 @@ Options checked_options(const gtx_cook_desc &desc)
     options.z_up = desc.z_up;
     options.strict = desc.strict;
     options.if_changed = desc.if_changed;
+    options.kept = desc.kept;
+    options.kept_count = desc.kept_count;
     options.charts_ply = desc.charts_ply;
     options.allocator = gtx_allocator_or_default(desc.allocator);
     return options;
@@ -143,6 +147,9 @@ uint64_t content_key(const Options &options, uint64_t source_hash)
     std::string text(numbers, size_t(size));
     if (options.chart.adaptive)
         text += " adaptive";
+    if (options.kept_count)
+        text += " kept " + std::to_string(gtx_hash_bytes(options.kept, options.kept_count *
+                                                                           3 * sizeof(double)));
     if (const Extractor *gpu = options.bake.extractor)
         text += " extract gpu " + gpu->renderer() + " " + gpu->version();
     return gtx_hash_bytes(text.data(), text.size());

@@ -35,6 +35,8 @@ struct Options {
     bool free_charts = false;     /* and on the number of patches */
     bool measure = false;         /* also where an error is asked for */
     bool z_up = false, strict = false, if_changed = false;
+    const double *kept = nullptr;
+    size_t kept_count = 0;
     const char *charts_ply = nullptr;
     gtx_allocator allocator = {}; /* never empty hooks */
 };

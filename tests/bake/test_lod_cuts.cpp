@@ -172,9 +172,38 @@ static void any_thread_count_splits_the_same(void **)
                         one.positions.size() * sizeof(Vec3d));
 }
 
+/* Those of the border, at every level whose triangles lie in their patches. */
+static void vertices_can_be_kept(void **)
+{
+    const Mesh mesh = field(48, [](double u, double v) {
+        return Vec3d(u, v, 0.1 * std::sin(19 * u + 3 * v) * std::cos(17 * v));
+    });
+    Partition partition = shapes::split(mesh, [&](size_t t) {
+        return mesh.position(t, 0).x < 0.5;
+    }, 64);
+    auto on_border = [](double x) { return x == 0 || x == 1; };
+    for (bool kept : {false, true}) {
+        Task task(2, nullptr, nullptr, {"bake", "pack", "lod"}, {1, 1, 1});
+        Lod lod = {bake(mesh, partition, {}, task), {}};
+        LodSource source = lod_source(mesh, partition, lod.maps, task);
+        for (const Vec3d &p : source.positions)
+            source.kept.push_back(kept && (on_border(p.x + lod.maps.anchor[0]) ||
+                                           on_border(p.y + lod.maps.anchor[1])));
+        lod.levels = make_lod(source, lod.maps, 3, task);
+        assert_valid(lod);
+        for (const LodLevel &level : near_levels(lod)) {
+            if (kept)
+                assert_true(count_edges(level).open >= 4 * 48);
+            else
+                assert_true(count_edges(level).open < 4 * 40);
+        }
+    }
+}
+
 int main()
 {
     const CMUnitTest tests[] = {
+        cmocka_unit_test(vertices_can_be_kept),
         cmocka_unit_test(a_cube_is_split_at_its_cuts),
         cmocka_unit_test(every_patch_has_its_part),
         cmocka_unit_test(small_triangles_stay_whole),

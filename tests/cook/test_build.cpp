@@ -38,6 +38,7 @@ static void adaptive_cells_are_told(void **)
 static void each_option_that_matters_changes_the_key(void **)
 {
     using Change = void (*)(gtx_cook_desc &);
+    static const double points[] = {1, 2, 3, 4, 5, 6};
     const Change matter[] = {
         [](gtx_cook_desc &d) { d.charts = 9; },      [](gtx_cook_desc &d) { d.resolution = 64; },
         [](gtx_cook_desc &d) { d.height_bits = 16; }, [](gtx_cook_desc &d) { d.dilation = 3; },
@@ -45,6 +46,8 @@ static void each_option_that_matters_changes_the_key(void **)
         [](gtx_cook_desc &d) { d.zstd_level = -1; }, [](gtx_cook_desc &d) { d.unit = 0.001f; },
         [](gtx_cook_desc &d) { d.z_up = 1; },        [](gtx_cook_desc &d) { d.error = 0.01; },
         [](gtx_cook_desc &d) { d.lod_levels = 2; },
+        [](gtx_cook_desc &d) { d.kept = points, d.kept_count = 1; },
+        [](gtx_cook_desc &d) { d.kept = points, d.kept_count = 2; },
         [](gtx_cook_desc &d) { d.lod_levels = GTX_LOD_LEVELS_NONE; },
         [](gtx_cook_desc &d) { d.partition = GTX_PARTITION_VSA; },
         [](gtx_cook_desc &d) { d.partition = GTX_PARTITION_PGP; },

@@ -178,7 +178,8 @@ static void wrong_arguments_are_refused(void **)
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.strict = 2; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.if_changed = 2; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.more_count = 1; }},
-        {GTX_ERROR_NOT_ZEROED, [](gtx_cook_desc &d) { d.reserved[6] = 1; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.kept_count = 1; }},
+        {GTX_ERROR_NOT_ZEROED, [](gtx_cook_desc &d) { d.reserved[5] = 1; }},
     };
     std::string output = in_folder("e.gtx");
     for (const auto &c : cases) {

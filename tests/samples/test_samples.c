@@ -72,6 +72,9 @@ static void halls_and_caves_are_around_the_eye(void **state)
     }
     assert_int_equal(run("$S/sculpt --shape none $T/no.glb 2>/dev/null"), 1);
     assert_int_equal(run("$S/sculpt --shape hall 2>/dev/null"), 1);
+    assert_int_equal(run("$S/sculpt --shape cave --triangles 20000 - >$T/cave.raw && "
+                         "$GTX world plan - -o $T/cave -q <$T/cave.raw && "
+                         "grep -q '\"triangles\": 22' $T/cave/plan.json"), 0);
 }
 
 static void an_interrupt_leaves_nothing_behind(void **state)

@@ -12,6 +12,8 @@ struct LodSource {
     Vector<std::array<uint32_t, 3>> triangles;
     Vector<uint32_t> patch;      /* a triangle each */
     size_t model = 0;            /* triangles of the model, that levels are a share of; 0: these */
+    Vector<uint8_t> kept;        /* 1: the vertex stays, until triangles may be larger than patches;
+                                    or empty */
 
     Vec3d centre(size_t triangle) const
     {

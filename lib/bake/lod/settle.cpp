@@ -24,6 +24,8 @@ constexpr uint32_t LATER_POINTS = 4;
 /* Moves a vertex, less far where its triangles need it. */
 void Simplifier::State::move(uint32_t vertex, Vec3d way)
 {
+    if (stays(vertex))
+        return;
     for (int n = 0; n < MOVE_STEPS; ++n, way = way * 0.5) {
         const Vec3d place = positions[vertex] + way;
         bool keeps = true;

@@ -46,6 +46,8 @@ void Simplifier::State::sort_by_patch(const LodSource &source)
             if (name[v] == NO_VERTEX) {
                 name[v] = uint32_t(positions.size());
                 positions.push_back(source.positions[v]);
+                if (!source.kept.empty())
+                    kept.push_back(source.kept[v]);
             }
             v = name[v];
         }
@@ -117,12 +119,15 @@ void Simplifier::State::compact()
         if (renamed[v] == NO_VERTEX)
             continue;
         positions[vertices] = positions[v];
+        if (!kept.empty())
+            kept[vertices] = kept[v];
         quadrics[vertices] = quadrics[v];
         point[vertices] = point[v];
         choices[vertices] = choices[v];
         renamed[v] = vertices++;
     }
     positions.resize(vertices);
+    kept.resize(kept.empty() ? 0 : vertices);
     quadrics.resize(vertices);
     point.resize(vertices);
     choices.resize(vertices);
@@ -150,7 +155,8 @@ size_t Simplifier::State::merge(uint32_t vertex, float limit, double most)
     Choice &choice = choices[vertex];
     if (touched[vertex] || touched[choice.to])
         return 0;
-    const Choice found = find_fan(vertex, fan) ? choose(vertex, fan, most) : Choice();
+    const bool free = !stays(vertex) && find_fan(vertex, fan);
+    const Choice found = free ? choose(vertex, fan, most) : Choice();
     if (found.to != NO_VERTEX && touched[found.to])
         return 0;
     choice = found;

@@ -55,6 +55,7 @@ struct Simplifier::State {
     double share = ROUND_SHARE;  /* of the candidates that a round takes */
     bool first_points = true;    /* all vertices of the start are still points */
     bool crossing = false;       /* triangles may leave their patches */
+    Vector<uint8_t> kept;        /* of the vertices, as in LodSource */
     double error = 0;            /* squared */
 
     State(const LodSource &source, const Vector<PatchRegion> &regions, Task &task);
@@ -83,6 +84,10 @@ struct Simplifier::State {
     void compact();
     double done() const { return 1 - 0.7 * double(triangles.size()) / double(first_count); }
     size_t round(size_t wanted, double free, double most);
+    bool stays(uint32_t vertex) const
+    {
+        return !kept.empty() && kept[vertex] && !crossing;
+    }
     void move(uint32_t vertex, Vec3d way);
     void settle();
     void keep_points();

@@ -126,31 +126,6 @@ static void extend(Vector<T> &to, size_t before, size_t count, bool has, T fill 
     to.resize(before + count, fill);
 }
 
-namespace {
-/* How positions move, and how normals and tangents turn. */
-struct Turn {
-    Affine transform, cofactor;
-    bool mirrors;
-
-    /* Normals turn with the inverse transpose; its multiple by the determinant's size exists even
-     * where the transform flattens. */
-    explicit Turn(const Affine &t) : transform(t), mirrors(t.determinant() < 0)
-    {
-        const Vec3d *c = t.column;
-        const double sign = mirrors ? -1 : 1;
-        cofactor.column[0] = cross(c[1], c[2]) * sign;
-        cofactor.column[1] = cross(c[2], c[0]) * sign;
-        cofactor.column[2] = cross(c[0], c[1]) * sign;
-    }
-    Vec3f normal(const Vec3f &n) const { return Vec3f(normalize(cofactor.direction(Vec3d(n)))); }
-    std::array<float, 4> tangent(const std::array<float, 4> &t) const
-    {
-        const Vec3f v(normalize(transform.direction(Vec3d(t[0], t[1], t[2]))));
-        return {v.x, v.y, v.z, mirrors ? -t[3] : t[3]};
-    }
-};
-} // namespace
-
 static void set_corner(const GltfPrimitive &from, uint32_t vertex, const Turn &turn, size_t corner,
                        Mesh &mesh)
 {

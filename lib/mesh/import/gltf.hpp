@@ -39,6 +39,9 @@ struct GltfDocument {
 /* Reads the container, the JSON and the buffers. Throws Error: INPUT, UNSUPPORTED, READ, LIMIT. */
 GltfDocument read_gltf_document(const ModelFile &file, Task &task);
 
+/* The document of a JSON text alone, without its buffers. Throws Error: likewise. */
+GltfDocument read_gltf_outline(std::string_view text, Task &task);
+
 /* The bytes of a buffer view, checked. `user` names who asks, as in "accessor 3". */
 std::string_view gltf_view(const GltfDocument &doc, int view, const std::string &user);
 
@@ -70,6 +73,29 @@ struct Affine {
     }
     Vec3d point(const Vec3d &v) const { return direction(v) + offset; }
     double determinant() const { return dot(column[0], cross(column[1], column[2])); }
+};
+
+/* How positions move, and how normals and tangents turn. */
+struct Turn {
+    Affine transform, cofactor;
+    bool mirrors;
+
+    /* Normals turn with the inverse transpose; its multiple by the determinant's size exists even
+     * where the transform flattens. */
+    explicit Turn(const Affine &t) : transform(t), mirrors(t.determinant() < 0)
+    {
+        const Vec3d *c = t.column;
+        const double sign = mirrors ? -1 : 1;
+        cofactor.column[0] = cross(c[1], c[2]) * sign;
+        cofactor.column[1] = cross(c[2], c[0]) * sign;
+        cofactor.column[2] = cross(c[0], c[1]) * sign;
+    }
+    Vec3f normal(const Vec3f &n) const { return Vec3f(normalize(cofactor.direction(Vec3d(n)))); }
+    std::array<float, 4> tangent(const std::array<float, 4> &t) const
+    {
+        const Vec3f v(normalize(transform.direction(Vec3d(t[0], t[1], t[2]))));
+        return {v.x, v.y, v.z, mirrors ? -t[3] : t[3]};
+    }
 };
 
 /* Where each mesh stands, in the order of the tree. */

@@ -206,6 +206,16 @@ static Vector<GltfDocument::ImageSource> read_images(const json &root)
     return images;
 }
 
+GltfDocument read_gltf_outline(std::string_view text, Task &task)
+{
+    json root = read_gltf_json(text, task);
+    GltfDocument doc;
+    doc.look = read_gltf_materials(root);
+    strip_gltf_json(root, task);
+    doc.model = load_model(root);
+    return doc;
+}
+
 GltfDocument read_gltf_document(const ModelFile &file, Task &task)
 {
     Container container;

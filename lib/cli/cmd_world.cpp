@@ -1,0 +1,159 @@
+/* gtx world: models of any size -> a tree of tiles, in steps that are processes of their own. */
+#include "cli/guard.hpp"
+#include "world/world.hpp"
+
+#include <cstring>
+#include <filesystem>
+
+static const char *folder;
+static uint32_t engine, threads, up;
+static uint64_t triangles = gtx::MAX_TILE, memory = gtx::WORKER_MEMORY;
+static double unit = 1;
+static bool glb;
+
+static const option plan_options[] = {
+    {"output", 'o', OPTION_STRING, &folder, "DIR", "the world's folder (required)", 0, 0},
+    {"triangles", 0, OPTION_AMOUNT, &triangles, "N", "most triangles of a tile [1M]",
+     gtx::MIN_TILE, gtx::MAX_TILE},
+    {"engine", 0, OPTION_CHOICE, &engine, "ninja|shell|slurm",
+     "who runs the steps: DIR/build.ninja, DIR/build.sh, or DIR/slurm/submit.sh [ninja]", 0, 0},
+    {"worker-memory", 0, OPTION_AMOUNT, &memory, "BYTES", "most memory of a worker [1G]", 1e8,
+     1e15},
+    {"glb", 0, OPTION_FLAG, &glb, nullptr,
+     "write each tile's finest LOD mesh as GLB too, for any reader of 3D Tiles", 0, 0},
+    {"up", 0, OPTION_CHOICE, &up, "y|z", "the models' up axis; +Z is turned to +Y [y]", 0, 0},
+    {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the models [1]", 1e-30, 1e30},
+    PROGRESS_OPTION,
+    {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
+
+static const option step_options[] = {
+    {"threads", 0, OPTION_UINT, &threads, "N", "0 = all processors [0]", 0, 1024},
+    PROGRESS_OPTION,
+    {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
+
+enum { MAX_MODELS = 4096 };
+
+static const verb steps_of_world[] = {
+    {"world plan", "MODEL... -o DIR",
+     "Counts triangles, once, and plans a tree of tiles: plan.json, and what runs the steps.\n"
+     "Binary PLY, binary STL, and GLB of plain arrays may have any size; other models and\n"
+     "grids (IRAP, ZMAP+, images) are read one at a time, folders file by file; - reads\n"
+     "triangles of nine little-endian floats from stdin. `ninja -C DIR` then makes\n"
+     "DIR/tileset.json (OGC 3D Tiles 1.1).",
+     1, MAX_MODELS, plan_options},
+    {"world split", "DIR",
+     "Reads the planned models again and gives each triangle to its leaf: DIR/work/split.",
+     1, 1, step_options},
+    {"world cook", "DIR TILE",
+     "Cooks one tile: DIR/tiles/TILE.gtx, and a surface of fewer triangles for its parent.",
+     2, 2, step_options},
+    {"world merge", "DIR TILE",
+     "Makes the surface of a tile from those of its children: DIR/work/merge/TILE.",
+     2, 2, step_options},
+    {"world index", "DIR",
+     "Writes DIR/tileset.json once all tiles are cooked. A step whose result is there does\n"
+     "nothing; killed and begun again, any number at a time, they make the same bytes.",
+     1, 1, step_options},
+};
+enum { PLAN, SPLIT, COOK, MERGE, INDEX, STEPS };
+
+/* The command itself, wherever it is called from. */
+static std::string own_path()
+{
+    std::error_code error;
+    const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
+    return error ? "gtx" : path.native();
+}
+
+static gtx::StepReport run_plan(const char *const *operands, int count, gtx::Task &task)
+{
+    gtx::PlanOptions options;
+    for (int i = 0; i < count; ++i)
+        options.models.push_back(operands[i]);
+    options.folder = folder;
+    options.triangles = uint32_t(triangles);
+    options.memory = memory;
+    options.engine = gtx::Engine(engine);
+    options.glb = glb;
+    options.z_up = up == 1;
+    options.unit = unit;
+    options.command = own_path();
+    return gtx::plan_world(options, task);
+}
+
+static gtx::StepReport run_step(int step, const char *const *operands, gtx::Task &task)
+{
+    switch (step) {
+    case SPLIT: return gtx::split_world(operands[0], task);
+    case COOK: return gtx::cook_tile(operands[0], operands[1], task);
+    case MERGE: return gtx::merge_tile(operands[0], operands[1], task);
+    default: return gtx::index_world(operands[0], task);
+    }
+}
+
+static int usage(const char *sentence)
+{
+    print_message("gtx world: error[usage]: %s (see gtx world --help)", sentence);
+    return EXIT_CODE_USAGE;
+}
+
+static int run(int step, const char *const *operands, int count)
+{
+    const char *const about = step == PLAN ? folder : operands[0];
+    return gtx::guarded(about, [&](std::string &) {
+        catch_interrupt();
+        if (step != PLAN && !cli_limits.triangles)
+            cli_limits.triangles = UINT64_MAX; /* the plan counted them */
+        gtx::Task task(threads, show_progress, nullptr, {"read", "cook", "simplify"}, {40, 50, 10},
+                       cli_limits);
+        if (step != PLAN) /* files of its own making: the workers' limit is that of memory */
+            task.limits.allow_work(1e6);
+        const gtx::StepReport report =
+            step == PLAN ? run_plan(operands, count, task) : run_step(step, operands, task);
+        end_progress();
+        gtx::report_warnings(about, task.warnings);
+        if (!cli_quiet)
+            print_message("%s%s%s: %s%s", about, step == COOK || step == MERGE ? " " : "",
+                          step == COOK || step == MERGE ? operands[1] : "",
+                          report.summary.c_str(), report.unchanged ? ", unchanged" : "");
+        return int(EXIT_CODE_OK);
+    });
+}
+
+/* All steps' help, one after another. */
+static int print_all_help()
+{
+    char help[] = "--help";
+    for (const verb &step : steps_of_world) {
+        char *arguments[] = {const_cast<char *>(step.name), help};
+        const char *operands[2];
+        int count;
+        parse_options(&step, 2, arguments, operands, &count);
+    }
+    return EXIT_CODE_OK;
+}
+
+int cmd_world(int argc, char **argv)
+{
+    static const char *operands[MAX_MODELS];
+    int step = 0, count;
+    if (argc < 2)
+        return usage("a step is missing: plan, split, cook, merge or index");
+    if (!std::strcmp(argv[1], "--help") || !std::strcmp(argv[1], "-h"))
+        return print_all_help();
+    while (step < STEPS && std::strcmp(steps_of_world[step].name + std::strlen("world "), argv[1]))
+        ++step;
+    if (step == STEPS)
+        return usage("the steps are plan, split, cook, merge and index");
+    const int code = parse_options(&steps_of_world[step], argc - 1, argv + 1, operands, &count);
+    if (code >= 0)
+        return code;
+    if (step == PLAN && !folder)
+        return usage("-o DIR is missing");
+    int streams = 0;
+    for (int i = 0; i < count; ++i)
+        streams += !std::strcmp(operands[i], "-");
+    if (streams > 1)
+        return usage("standard input is read once");
+    return run(step, operands, count);
+}

@@ -1,0 +1,33 @@
+/* What cooking a tile left: its bounds and error, and the key of what it was made from. */
+#pragma once
+
+#include "world/plan.hpp"
+
+namespace gtx {
+
+/* A file that a step made. */
+struct MadeFile {
+    uint64_t size = 0, hash = 0;
+};
+
+struct TileFacts {
+    uint64_t key = 0;
+    uint64_t triangles = 0, lod_triangles = 0;
+    Vec3d low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+    double error = 0;                /* from the source, of what the GLB has too */
+    bool empty = false;              /* nothing but triangles without area: no asset */
+    MadeFile asset, glb, low_surface;
+
+    void add(const Vec3d &p);
+};
+
+void write_facts(const Plan &plan, const Tile &tile, const TileFacts &facts);
+/* Throws Error: READ where there are none, INPUT where they are not such. */
+TileFacts read_facts(const Plan &plan, const Tile &tile);
+
+MadeFile made_of(const std::string &bytes);
+/* Whether the files that the facts tell of are there: all of it, where `content`; otherwise of that
+ * size. */
+bool are_there(const Plan &plan, const Tile &tile, const TileFacts &facts, bool content);
+
+} // namespace gtx

@@ -1,0 +1,195 @@
+/* What a world is made of: models, folders of them, grids, lists of triangles. */
+#include "world/plan.hpp"
+
+#include "grid/grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace gtx {
+
+namespace fs = std::filesystem;
+
+/* ---- which files ---- */
+
+static bool is_one_of(const std::string &extension, std::initializer_list<const char *> list)
+{
+    return std::find(list.begin(), list.end(), extension) != list.end();
+}
+
+static bool is_model(const std::string &path)
+{
+    return is_one_of(model_extension(path),
+                     {".glb", ".gltf", ".drc", ".ply", ".off", ".stl", ".obj"});
+}
+
+/* Other images of a folder are some model's. */
+static bool is_grid(const std::string &path)
+{
+    return is_one_of(model_extension(path), {".irap", ".gri", ".zmap", ".tif", ".tiff"});
+}
+
+/* Whether `path` is `folder` or lies below it. */
+static bool is_below(const fs::path &path, const fs::path &folder)
+{
+    const fs::path a = fs::weakly_canonical(path), b = fs::weakly_canonical(folder / "");
+    auto end = b.end();
+    if (b.has_relative_path() && !b.has_filename())
+        --end; /* the empty name after the last separator */
+    return std::mismatch(a.begin(), a.end(), b.begin(), end).second == end;
+}
+
+static void add_folder(const std::string &folder, Vector<WorldInput> &out)
+{
+    Vector<std::string> paths;
+    for (const fs::directory_entry &entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file() && (is_model(entry.path().native()) ||
+                                        is_grid(entry.path().native())))
+            paths.push_back(entry.path().native());
+    std::sort(paths.begin(), paths.end());
+    for (const std::string &path : paths)
+        out.push_back({path, false, !is_model(path)});
+}
+
+Vector<WorldInput> find_inputs(const PlanOptions &options)
+{
+    Vector<WorldInput> out;
+    for (const std::string &path : options.models) {
+        if (path == "-") {
+            out.push_back({fs::absolute(fs::path(options.folder) / "work/input.raw").native(),
+                           true, false});
+            continue;
+        }
+        std::error_code error;
+        const bool is_folder = fs::is_directory(path, error);
+        if (is_below(path, options.folder) || (is_folder && is_below(options.folder, path)))
+            throw Error(GTX_ERROR_ARGUMENT, "the world's folder would hold what it is made of: " +
+                                                path);
+        const size_t before = out.size();
+        if (is_folder)
+            add_folder(path, out);
+        else
+            out.push_back({path, false, !is_model(path)});
+        if (out.size() == before)
+            throw Error(GTX_ERROR_EMPTY, "there is no model in the folder " + path);
+    }
+    for (WorldInput &input : out)
+        input.path = fs::absolute(input.path).lexically_normal().native();
+    return out;
+}
+
+/* ---- their triangles ---- */
+
+namespace {
+
+/* East becomes +X, up +Y, north -Z. */
+class GridStream : public TriangleStream {
+public:
+    GridStream(const std::string &path, Task &task) : path_(path), task_(task) {}
+    CornerTraits traits() const override { return {true, false, false}; }
+    void read(const TriangleSink &sink) override
+    {
+        const HeightGrid grid = read_grid(path_, {}, task_);
+        for (uint32_t j = 0; j + 1 < grid.ny; ++j) {
+            task_.advance(double(j) / grid.ny);
+            for (uint32_t i = 0; i + 1 < grid.nx; ++i)
+                cell(grid, i, j, sink);
+        }
+    }
+
+private:
+    static Vec3d node(const HeightGrid &grid, uint32_t i, uint32_t j)
+    {
+        const auto at = grid.place(i, j);
+        return {at[0], double(grid.at(i, j)), -at[1]};
+    }
+    /* One triangle where one corner has no value. */
+    static void cell(const HeightGrid &grid, uint32_t i, uint32_t j, const TriangleSink &sink)
+    {
+        const Vec3d all[4] = {node(grid, i, j), node(grid, i + 1, j), node(grid, i + 1, j + 1),
+                              node(grid, i, j + 1)};
+        Vec3d known[4];
+        size_t count = 0;
+        for (const Vec3d &p : all)
+            if (!std::isnan(p.y))
+                known[count++] = p;
+        for (size_t k = 2; k < count; ++k) {
+            Corners3 out;
+            out[0].position = known[0];
+            out[1].position = known[k - 1];
+            out[2].position = known[k];
+            sink(out);
+        }
+    }
+    const std::string path_;
+    Task &task_;
+};
+
+} // namespace
+
+static std::unique_ptr<TriangleStream> open_input(const WorldInput &input, Task &task)
+{
+    if (input.raw)
+        return open_raw_triangles(input.path, task);
+    if (input.grid)
+        return std::make_unique<GridStream>(input.path, task);
+    return open_triangles(input.path, task);
+}
+
+/* Errors and warnings name the input. */
+template <class Body> static void for_each_input(const Plan &plan, Task &task, Body body)
+{
+    for (const WorldInput &input : plan.inputs) {
+        const size_t before = task.warnings.size();
+        try {
+            body(input, *open_input(input, task));
+        } catch (Error &e) {
+            if (e.result != GTX_CANCELLED)
+                e.message.insert(0, input.path + ": ");
+            throw;
+        }
+        for (size_t i = before; i < task.warnings.size(); ++i)
+            task.warnings[i].sentence.insert(0, input.path + ": ");
+    }
+}
+
+CornerTraits input_traits(const Plan &plan, Task &task)
+{
+    CornerTraits traits;
+    for_each_input(plan, task, [&](const WorldInput &, TriangleStream &stream) {
+        traits.add(stream.traits());
+    });
+    return traits;
+}
+
+uint64_t read_inputs(const Plan &plan, Task &task, const TriangleSink &sink)
+{
+    uint64_t dropped = 0, count = 0;
+    const size_t before = task.warnings.size();
+    for_each_input(plan, task, [&](const WorldInput &input, TriangleStream &stream) {
+        const bool turned = plan.z_up && !input.grid;
+        stream.read([&](const Corners3 &read) {
+            Corners3 corners = read;
+            bool finite = true;
+            for (Corner &c : corners) {
+                finite = finite && is_finite(c.position);
+                if (turned) {
+                    c.position = {c.position.x, c.position.z, -c.position.y};
+                    c.normal = {c.normal.x, c.normal.z, -c.normal.y};
+                }
+            }
+            if (++count % 0x10000 == 0)
+                task.limits.require(GTX_LIMITED_TRIANGLES, "the world", count);
+            if (finite)
+                sink(corners);
+            else
+                ++dropped;
+        });
+    });
+    task.limits.require(GTX_LIMITED_TRIANGLES, "the world", count);
+    task.warnings.resize(before); /* those of opening were heard */
+    return dropped;
+}
+
+} // namespace gtx

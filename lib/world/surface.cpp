@@ -1,0 +1,199 @@
+/* Cell files -> the surface of one tile, with the ring that it shares with its neighbours. */
+#include "world/surface.hpp"
+
+#include "base/bytes.h"
+
+#include <cstring>
+
+namespace gtx {
+
+constexpr uint32_t NONE = UINT32_MAX;
+
+namespace {
+
+/* Gives equal corners one vertex: a table of places, and at each a list of its vertices. */
+class Welder {
+public:
+    explicit Welder(Surface &surface) : surface_(surface), slots_(1 << 16, NONE) {}
+    /* The first vertex at the position, or NONE. */
+    uint32_t find(const Vec3d &p) const { return slots_[slot_of(p)]; }
+    uint32_t add(const Corner &corner);
+
+private:
+    size_t slot_of(const Vec3d &p) const;
+    void grow();
+
+    Surface &surface_;
+    Vector<uint32_t> slots_;
+    Vector<uint32_t> next_;          /* vertex at the same place */
+    size_t used_ = 0;
+};
+
+size_t Welder::slot_of(const Vec3d &p) const
+{
+    uint64_t hash = 0;
+    for (int k = 0; k < 3; ++k) {
+        uint64_t bits;
+        const double x = p[k];
+        std::memcpy(&bits, &x, sizeof bits);
+        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 29;
+    }
+    size_t at = size_t(hash) & (slots_.size() - 1);
+    while (slots_[at] != NONE && surface_.positions[slots_[at]] != p)
+        at = (at + 1) & (slots_.size() - 1);
+    return at;
+}
+
+void Welder::grow()
+{
+    Vector<uint32_t> old(2 * slots_.size(), NONE);
+    old.swap(slots_);
+    for (uint32_t first : old)
+        if (first != NONE)
+            slots_[slot_of(surface_.positions[first])] = first;
+}
+
+uint32_t Welder::add(const Corner &c)
+{
+    Surface &s = surface_;
+    const Vec3d p = c.position + Vec3d(); /* -0 is 0 */
+    const size_t at = slot_of(p);
+    uint32_t last = NONE;
+    for (uint32_t v = slots_[at]; v != NONE; last = v, v = next_[v])
+        if ((!s.traits.normals || s.normals[v] == c.normal) &&
+            (!s.traits.colors || s.colors[v] == c.color))
+            return v;
+    const uint32_t made = uint32_t(s.positions.size());
+    if (made == NONE)
+        throw Error(GTX_ERROR_LIMIT, "more vertices than 32 bits can count");
+    s.positions.push_back(p);
+    s.normals.push_back(c.normal);
+    s.colors.push_back(c.color);
+    s.place.push_back(last == NONE ? made : slots_[at]);
+    next_.push_back(NONE);
+    if (last != NONE) {
+        next_[last] = made;
+        return made;
+    }
+    slots_[at] = made;
+    if (2 * ++used_ > slots_.size())
+        grow();
+    return made;
+}
+
+} // namespace
+
+static void add_own(const std::string &path, Welder &welder, Surface &out)
+{
+    CellReader cell(path);
+    out.header = cell.header();
+    out.traits = cell.header().traits;
+    Corners3 c;
+    while (cell.next(c))
+        out.triangles.push_back({welder.add(c[0]), welder.add(c[1]), welder.add(c[2])});
+    out.own = out.triangles.size();
+}
+
+static void add_ring(const std::string &path, size_t own_vertices, Welder &welder, Surface &out)
+{
+    CellReader cell(path);
+    if (!cell.header().touches(out.header))
+        return;
+    Corners3 c;
+    while (cell.next(c)) {
+        CellHeader bounds;
+        bounds.add(c);
+        if (!bounds.touches(out.header))
+            continue;
+        bool shares = false;
+        for (const Corner &corner : c)
+            shares = shares || welder.find(corner.position + Vec3d()) < own_vertices;
+        if (shares)
+            out.triangles.push_back({welder.add(c[0]), welder.add(c[1]), welder.add(c[2])});
+    }
+}
+
+/* Where the files have no normals: the means of the triangles around each place. */
+static void find_normals(Surface &s)
+{
+    Vector<Vec3d> sum(s.positions.size());
+    for (const auto &t : s.triangles) {
+        const Vec3d area = cross(s.positions[t[1]] - s.positions[t[0]],
+                                 s.positions[t[2]] - s.positions[t[0]]);
+        for (uint32_t v : t)
+            sum[s.place[v]] += area;
+    }
+    for (size_t v = 0; v < sum.size(); ++v)
+        s.normals[v] = Vec3f(normalize(sum[s.place[v]]));
+}
+
+Surface load_cell(const std::string &path)
+{
+    Surface out;
+    Welder welder(out);
+    add_own(path, welder, out);
+    return out;
+}
+
+Surface load_surface(const Plan &plan, const Tile &tile, Task &task)
+{
+    Surface out;
+    Welder welder(out);
+    add_own(cell_path(plan, tile), welder, out);
+    const size_t own = out.positions.size();
+    for (size_t n = 0; n < plan.tiles.size(); ++n) {
+        const Tile &other = plan.tiles[n];
+        task.advance(double(n) / double(plan.tiles.size()));
+        const bool is_child = !tile.is_leaf() && &plan.tiles[other.parent] == &tile && n > 0;
+        if (&other == &tile || is_child)
+            continue;
+        if (tile.is_leaf() && other.is_leaf())
+            add_ring(cell_path(plan, other), own, welder, out);
+        if (!tile.is_leaf() && (other.depth == tile.depth + 1 ||
+                                (other.is_leaf() && other.depth <= tile.depth)))
+            add_ring(low_path(plan, other), own, welder, out);
+    }
+    if (!out.traits.normals)
+        find_normals(out);
+    return out;
+}
+
+/* ---- PLY ---- */
+
+std::string ply_of(const Surface &s)
+{
+    const bool normals = s.traits.normals, colors = s.traits.colors;
+    std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                      std::to_string(s.positions.size()) +
+                      "\nproperty double x\nproperty double y\nproperty double z\n";
+    if (normals)
+        out += "property float nx\nproperty float ny\nproperty float nz\n";
+    if (colors)
+        out += "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+               "property uchar alpha\n";
+    out += "element face " + std::to_string(s.triangles.size()) +
+           "\nproperty list uchar uint vertex_indices\nend_header\n";
+    const CornerTraits row = {true, normals, colors};
+    const size_t header = out.size(), vertex = row.bytes();
+    out.resize(header + s.positions.size() * vertex + s.triangles.size() * 13);
+    auto *to = reinterpret_cast<uint8_t *>(&out[header]);
+    for (size_t v = 0; v < s.positions.size(); ++v) {
+        for (int k = 0; k < 3; ++k, to += 8)
+            gtx_store_f64(to, s.positions[v][k]);
+        for (int k = 0; k < 3 && normals; ++k, to += 4)
+            gtx_store_f32(to, s.normals[v][k]);
+        std::memcpy(to, &s.colors[v], colors ? 4 : 0);
+        to += colors ? 4 : 0;
+    }
+    for (const auto &t : s.triangles) {
+        *to++ = 3;
+        for (uint32_t v : t) {
+            gtx_store_u32(to, v);
+            to += 4;
+        }
+    }
+    return out;
+}
+
+} // namespace gtx

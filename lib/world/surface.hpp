@@ -1,0 +1,64 @@
+/* The surface of one tile in memory: its own triangles, then the ring of its neighbours'. */
+#pragma once
+
+#include "world/cell.hpp"
+
+namespace gtx {
+
+/* Corners that have all alike are one vertex; `place` names the first vertex at the same
+ * position. */
+struct Surface {
+    CornerTraits traits;
+    CellHeader header;               /* of the cell file */
+    Vector<Vec3d> positions;
+    Vector<Vec3f> normals;           /* a vertex each; those of places where the cell has none */
+    Vector<Rgba8> colors;
+    Vector<uint32_t> place;
+    Vector<std::array<uint32_t, 3>> triangles;
+    size_t own = 0;                  /* triangles that are the tile's own */
+
+    Corner corner(uint32_t vertex) const
+    {
+        return {positions[vertex], normals[vertex], colors[vertex]};
+    }
+};
+
+/* The tile's cell file, and its ring: triangles of the files around that share a position with
+ * its own. For a leaf these are the other leaves'; for others the low surfaces next to its
+ * children's. */
+Surface load_surface(const Plan &plan, const Tile &tile, Task &task);
+/* A surface of one file alone. */
+Surface load_cell(const std::string &path);
+
+/* As a binary PLY file, which the cooker reads. */
+std::string ply_of(const Surface &surface);
+
+/* The tile's own triangles, as few of them as `wanted` where that can be: vertices on their common
+ * border stay, and those that are left are the surface's. A position has one normal and one colour,
+ * the mean. */
+struct LowSurface {
+    CellWriter cell;
+    double deviation = 0;            /* from `surface`, as measured */
+};
+LowSurface simplify_surface(const Surface &surface, size_t wanted, Task &task);
+
+/* ---- distances ---- */
+
+/* Triangles to measure from and to. */
+struct Sheet {
+    Vector<Vec3d> positions;
+    Vector<std::array<uint32_t, 3>> triangles;
+};
+Sheet sheet_of(const Surface &surface, size_t triangles);
+/* The farthest that points of either are from the other: vertices and centres of triangles, as many
+ * as take little time. Points of `from` beyond its first `own` triangles are not asked. */
+double distance_between(const Sheet &from, size_t own, const Sheet &to, Task &task);
+/* The triangle of the sheet that is nearest to each point. */
+Vector<uint32_t> nearest_triangles(const Vector<Vec3d> &points, const Sheet &sheet, Task &task);
+
+/* ---- plain meshes ---- */
+
+/* A GLB of the mesh, with normals and colours of the surface's nearest points. */
+std::string glb_of(const Sheet &mesh, const Surface &surface, Task &task);
+
+} // namespace gtx

@@ -1,0 +1,185 @@
+/* Models in pieces: the triangles that importing gives, and faults of files that lie. */
+#include "worlds.hpp"
+
+#include "base/bytes.h"
+
+#include <functional>
+
+using namespace gtx;
+
+static Vector<Corners3> read_all(const std::string &path)
+{
+    Task task(1, nullptr, nullptr);
+    Vector<Corners3> out;
+    open_triangles(path, task)->read([&](const Corners3 &c) { out.push_back(c); });
+    return out;
+}
+
+/* The stream has the triangles of the imported mesh, in its order, corner by corner. */
+static void same_as_imported(const std::string &path)
+{
+    Task task(1, nullptr, nullptr);
+    const Mesh mesh = import_mesh(path, task);
+    const Vector<Corners3> read = read_all(path);
+    assert_int_equal(read.size(), mesh.triangle_count());
+    for (size_t t = 0; t < read.size(); ++t)
+        for (size_t k = 0; k < 3; ++k) {
+            assert_true(read[t][k].position == mesh.position(t, int(k)));
+            if (!mesh.normals.empty())
+                assert_true(read[t][k].normal == mesh.normals[3 * t + k]);
+            if (!mesh.colors.empty())
+                assert_true(read[t][k].color == mesh.colors[3 * t + k]);
+        }
+}
+
+/* With normals and colours, or a surface of positions alone. */
+static Surface patch(bool all)
+{
+    const Mesh mesh = terrain(12);
+    Surface s;
+    s.traits = {true, all, all};
+    s.positions = mesh.positions;
+    for (const Vec3d &p : mesh.positions) {
+        s.normals.push_back(Vec3f(normalize(Vec3d(p.x, 1, p.z))));
+        s.colors.push_back({uint8_t(100 + 90 * p.x), uint8_t(100 + 90 * p.z), 40, 255});
+        s.place.push_back(uint32_t(s.place.size()));
+    }
+    s.triangles = mesh.triangles;
+    s.own = s.triangles.size();
+    s.header.low = {-1, -1, -1};
+    s.header.high = {1, 1, 1};
+    return s;
+}
+
+static std::string float_stl()
+{
+    const Mesh mesh = terrain(9);
+    std::string out(84 + 50 * mesh.triangle_count(), 0);
+    auto *to = reinterpret_cast<uint8_t *>(&out[80]);
+    gtx_store_u32(to, uint32_t(mesh.triangle_count()));
+    for (size_t t = 0; t < mesh.triangle_count(); ++t)
+        for (int k = 0; k < 9; ++k)
+            gtx_store_f32(to + 4 + 50 * t + 12 + 4 * size_t(k),
+                          float(mesh.position(t, k / 3)[k % 3]));
+    return out;
+}
+
+static void streams_are_what_importing_gives(void **)
+{
+    for (bool all : {false, true}) {
+        write_file(in_folder("a.ply"), ply_of(patch(all)));
+        same_as_imported(in_folder("a.ply"));
+    }
+    write_file(in_folder("a.stl"), float_stl());
+    same_as_imported(in_folder("a.stl"));
+    const Surface s = patch(true);
+    Task task(1, nullptr, nullptr);
+    write_file(in_folder("a.glb"), glb_of(sheet_of(s, s.own), s, task));
+    same_as_imported(in_folder("a.glb"));
+    assert_int_equal(read_all(in_folder("a.glb")).size(), s.own);
+}
+
+/* Faces of four corners, big-endian, with properties that nobody needs. */
+static void polygons_and_other_orders_of_bytes(void **)
+{
+    const std::string header =
+        "ply\nformat binary_big_endian 1.0\nelement vertex 4\nproperty uchar dust\n"
+        "property float x\nproperty float y\nproperty float z\nelement face 2\n"
+        "property list uchar int vertex_indices\nproperty uchar dust\nend_header\n";
+    std::string text = header;
+    auto put = [&](uint32_t bits) {
+        for (int k = 3; k >= 0; --k)
+            text += char(bits >> (8 * k));
+    };
+    for (int v = 0; v < 4; ++v) {
+        text += 'd';
+        for (bool one : {v == 1 || v == 2, v > 1, false})
+            put(one ? 0x3f800000 : 0);
+    }
+    for (int face = 0; face < 2; ++face) {
+        text += char(4);
+        for (uint32_t v = 0; v < 4; ++v)
+            put(v);
+        text += 'd';
+    }
+    write_file(in_folder("big.ply"), text);
+    assert_int_equal(read_all(in_folder("big.ply")).size(), 4);
+    same_as_imported(in_folder("big.ply"));
+}
+
+static gtx_result result_of(const std::function<void()> &body)
+{
+    try {
+        body();
+        return GTX_OK;
+    } catch (const Error &e) {
+        assert_true(e.message.find('\n') == e.message.npos);
+        return e.result;
+    }
+}
+
+static gtx_result reading(const std::string &name, const std::string &text)
+{
+    write_file(in_folder(name.c_str()), text);
+    return result_of([&] { read_all(in_folder(name.c_str())); });
+}
+
+static std::string replaced(std::string text, const std::string &from, const std::string &to)
+{
+    const size_t at = text.find(from);
+    assert_true(at != text.npos);
+    return text.replace(at, from.size(), to);
+}
+
+static void lies_are_found_before_memory_is_taken(void **)
+{
+    const std::string ply = ply_of(patch(false));
+    assert_int_equal(reading("x.ply", ply.substr(0, ply.size() - 1)), GTX_ERROR_INPUT);
+    assert_int_equal(reading("x.ply", ply.substr(0, 200)), GTX_ERROR_INPUT);
+    assert_int_equal(reading("x.ply", replaced(ply, "face 288", "face 99999999999")),
+                     GTX_ERROR_INPUT);
+    assert_int_equal(reading("x.ply", replaced(ply, "vertex 169", "vertex 18446744073709551615")),
+                     GTX_ERROR_INPUT);
+    assert_int_equal(reading("x.ply", replaced(ply, "vertex 169", "vertex 168")),
+                     GTX_ERROR_INPUT);
+    std::string stl = float_stl();
+    gtx_store_u32(reinterpret_cast<uint8_t *>(&stl[80]), UINT32_MAX);
+    assert_int_equal(reading("x.stl", stl), GTX_ERROR_INPUT);
+    const Surface s = patch(true);
+    Task task(1, nullptr, nullptr);
+    const std::string glb = glb_of(sheet_of(s, s.own), s, task);
+    for (size_t cut : {glb.size() - 4, size_t(400), size_t(21)})
+        assert_int_equal(reading("x.glb", glb.substr(0, cut)), GTX_ERROR_INPUT);
+    for (const char *count : {"\"count\": 169", "\"count\": 864"})
+        assert_int_equal(reading("x.glb", replaced(glb, count, "\"count\": 999")),
+                         GTX_ERROR_INPUT);
+}
+
+static void blocks_are_few(void **)
+{
+    constexpr size_t TRIANGLES = 3000000;
+    {
+        std::ofstream out(in_folder("raw"), std::ios::binary);
+        const std::string block(36 * 1000, 'A');
+        for (size_t i = 0; i < TRIANGLES / 1000; ++i)
+            out << block;
+    }
+    gtx_limits limits = {};
+    limits.memory = 70 << 20; /* the file is 108 MB */
+    Task task(1, nullptr, nullptr, {}, {}, limits);
+    size_t count = 0;
+    open_raw_triangles(in_folder("raw"), task)->read([&](const Corners3 &) { ++count; });
+    assert_int_equal(count, TRIANGLES);
+    fs::remove(in_folder("raw"));
+}
+
+int main()
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(streams_are_what_importing_gives),
+        cmocka_unit_test(polygons_and_other_orders_of_bytes),
+        cmocka_unit_test(lies_are_found_before_memory_is_taken),
+        cmocka_unit_test(blocks_are_few),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,110 @@
+/* Worlds of the tests' own: models by formula, and all steps one after another. */
+#pragma once
+
+#include "bake/shapes.hpp"
+#include "world/facts.hpp"
+#include "world/surface.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+/* Last, for its macros take names that the standard library uses. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+extern "C" {
+#include <cmocka.h>
+}
+
+namespace fs = std::filesystem;
+
+inline fs::path folder;
+
+inline std::string in_folder(const char *name)
+{
+    return (folder / name).string();
+}
+
+inline int make_folder(void **)
+{
+    char name[] = "/tmp/geotex-world-XXXXXX";
+    if (!mkdtemp(name))
+        return -1;
+    folder = name;
+    return 0;
+}
+
+inline int remove_folder(void **)
+{
+    fs::remove_all(folder);
+    return 0;
+}
+
+/* Hills upon hills, 2 x 2 wide, +Y up. */
+inline gtx::Mesh terrain(unsigned n)
+{
+    return shapes::field(n, [](double u, double v) {
+        double h = 0, size = 0.12;
+        for (double f = 3; f < 50; f *= 2.3, size /= 2.1)
+            h += size * std::sin(f * (2 * u + 0.3 * v) + f) * std::cos(f * (1.7 * v - 0.4 * u));
+        return gtx::Vec3d(2 * u - 1, h, 1 - 2 * v);
+    });
+}
+
+/* Closed, with bumps of two sizes. */
+inline gtx::Mesh ball(unsigned n)
+{
+    return shapes::ball(n, [](const gtx::Vec3d &d) {
+        return 1 + 0.04 * std::sin(9 * d.x + 2) * std::sin(8 * d.y) +
+               0.02 * std::sin(23 * d.z) * std::cos(21 * d.x + d.y);
+    });
+}
+
+/* As binary PLY. */
+inline std::string ply_text(const gtx::Mesh &mesh)
+{
+    gtx::Surface surface;
+    surface.positions = mesh.positions;
+    surface.normals.resize(mesh.positions.size());
+    surface.colors.resize(mesh.positions.size());
+    surface.triangles = mesh.triangles;
+    return gtx::ply_of(surface);
+}
+
+inline void write_file(const std::string &path, const std::string &text)
+{
+    std::ofstream(path, std::ios::binary) << text;
+}
+
+inline std::string read_file(const std::string &path)
+{
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/* All steps; returns the plan. */
+inline gtx::Plan make_world(const gtx::PlanOptions &options)
+{
+    gtx::Task task(2, nullptr, nullptr, {"read", "cook", "simplify"}, {1, 1, 1});
+    task.limits.allow_work(1e6);
+    gtx::plan_world(options, task);
+    gtx::split_world(options.folder, task);
+    const gtx::Plan plan = gtx::read_plan(options.folder, task);
+    for (size_t n = plan.tiles.size(); n-- > 0;) { /* deepest first, leaves before all others */
+        if (plan.tiles[n].is_leaf())
+            gtx::cook_tile(options.folder, plan.tiles[n].name, task);
+    }
+    for (uint32_t depth = plan.depths(); depth-- > 0;)
+        for (const gtx::Tile &tile : plan.tiles)
+            if (tile.depth == depth && !tile.is_leaf()) {
+                gtx::merge_tile(options.folder, tile.name, task);
+                gtx::cook_tile(options.folder, tile.name, task);
+            }
+    gtx::index_world(options.folder, task);
+    return plan;
+}
