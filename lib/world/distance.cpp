@@ -78,7 +78,7 @@ Vector<Vec3d> points_of(const Sheet &sheet, size_t own)
 
 } // namespace
 
-Sheet sheet_of(const Surface &surface, size_t triangles)
+Sheet sheet_of(const TileSurface &surface, size_t triangles)
 {
     return {surface.positions, {surface.triangles.begin(),
                                 surface.triangles.begin() + std::ptrdiff_t(triangles)}};

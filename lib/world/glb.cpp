@@ -34,7 +34,7 @@ static Vec3d weights_at(const Vec3d &p, const Vec3d &a, const Vec3d &b, const Ve
     return w;
 }
 
-static void put_vertex(const Vec3d &p, const Vec3d &middle, const Surface &s, uint32_t triangle,
+static void put_vertex(const Vec3d &p, const Vec3d &middle, const TileSurface &s, uint32_t triangle,
                        uint8_t *to)
 {
     const auto &t = s.triangles[triangle];
@@ -193,7 +193,7 @@ static std::string chunk(uint32_t type, std::string bytes, char padding)
     return std::string(reinterpret_cast<char *>(head), sizeof head) + bytes;
 }
 
-std::string glb_of(const Sheet &mesh, const Surface &surface, Task &task)
+std::string glb_of(const Sheet &mesh, const TileSurface &surface, Task &task)
 {
     const size_t vertices = mesh.positions.size(), indices = 3 * mesh.triangles.size();
     Arrays arrays = {vertices, indices, (surface.header.low + surface.header.high) / 2,

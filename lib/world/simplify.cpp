@@ -18,7 +18,7 @@ struct Places {
     Vector<Rgba8> colors;
 };
 
-Places places_of(const Surface &s)
+Places places_of(const TileSurface &s)
 {
     Places out;
     const Vec3d middle = (s.header.low + s.header.high) / 2;
@@ -64,7 +64,7 @@ static Vector<uint32_t> simplified(const Places &places, size_t wanted)
     return out;
 }
 
-LowSurface simplify_surface(const Surface &surface, size_t wanted, Task &task)
+LowSurface simplify_surface(const TileSurface &surface, size_t wanted, Task &task)
 {
     const Places places = places_of(surface);
     const Vector<uint32_t> indices = simplified(places, wanted);

@@ -14,7 +14,7 @@ namespace {
 /* Gives equal corners one vertex: a table of places, and at each a list of its vertices. */
 class Welder {
 public:
-    explicit Welder(Surface &surface) : surface_(surface), slots_(1 << 16, NONE) {}
+    explicit Welder(TileSurface &surface) : surface_(surface), slots_(1 << 16, NONE) {}
     /* The first vertex at the position, or NONE. */
     uint32_t find(const Vec3d &p) const { return slots_[slot_of(p)]; }
     uint32_t add(const Corner &corner);
@@ -23,7 +23,7 @@ private:
     size_t slot_of(const Vec3d &p) const;
     void grow();
 
-    Surface &surface_;
+    TileSurface &surface_;
     Vector<uint32_t> slots_;
     Vector<uint32_t> next_;          /* vertex at the same place */
     size_t used_ = 0;
@@ -56,7 +56,7 @@ void Welder::grow()
 
 uint32_t Welder::add(const Corner &c)
 {
-    Surface &s = surface_;
+    TileSurface &s = surface_;
     const Vec3d p = c.position + Vec3d(); /* -0 is 0 */
     const size_t at = slot_of(p);
     uint32_t last = NONE;
@@ -84,7 +84,7 @@ uint32_t Welder::add(const Corner &c)
 
 } // namespace
 
-static void add_own(const std::string &path, Welder &welder, Surface &out)
+static void add_own(const std::string &path, Welder &welder, TileSurface &out)
 {
     CellReader cell(path);
     out.header = cell.header();
@@ -95,7 +95,7 @@ static void add_own(const std::string &path, Welder &welder, Surface &out)
     out.own = out.triangles.size();
 }
 
-static void add_ring(const std::string &path, size_t own_vertices, Welder &welder, Surface &out)
+static void add_ring(const std::string &path, size_t own_vertices, Welder &welder, TileSurface &out)
 {
     CellReader cell(path);
     if (!cell.header().touches(out.header))
@@ -115,7 +115,7 @@ static void add_ring(const std::string &path, size_t own_vertices, Welder &welde
 }
 
 /* Where the files have no normals: the means of the triangles around each place. */
-static void find_normals(Surface &s)
+static void find_normals(TileSurface &s)
 {
     Vector<Vec3d> sum(s.positions.size());
     for (const auto &t : s.triangles) {
@@ -128,17 +128,17 @@ static void find_normals(Surface &s)
         s.normals[v] = Vec3f(normalize(sum[s.place[v]]));
 }
 
-Surface load_cell(const std::string &path)
+TileSurface load_cell(const std::string &path)
 {
-    Surface out;
+    TileSurface out;
     Welder welder(out);
     add_own(path, welder, out);
     return out;
 }
 
-Surface load_surface(const Plan &plan, const Tile &tile, Task &task)
+TileSurface load_surface(const Plan &plan, const Tile &tile, Task &task)
 {
-    Surface out;
+    TileSurface out;
     Welder welder(out);
     add_own(cell_path(plan, tile), welder, out);
     const size_t own = out.positions.size();
@@ -161,7 +161,7 @@ Surface load_surface(const Plan &plan, const Tile &tile, Task &task)
 
 /* ---- PLY ---- */
 
-std::string ply_of(const Surface &s)
+std::string ply_of(const TileSurface &s)
 {
     const bool normals = s.traits.normals, colors = s.traits.colors;
     std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " +

@@ -7,7 +7,7 @@ namespace gtx {
 
 /* Corners that have all alike are one vertex; `place` names the first vertex at the same
  * position. */
-struct Surface {
+struct TileSurface {
     CornerTraits traits;
     CellHeader header;               /* of the cell file */
     Vector<Vec3d> positions;
@@ -26,12 +26,12 @@ struct Surface {
 /* The tile's cell file, and its ring: triangles of the files around that share a position with
  * its own. For a leaf these are the other leaves'; for others the low surfaces next to its
  * children's. */
-Surface load_surface(const Plan &plan, const Tile &tile, Task &task);
+TileSurface load_surface(const Plan &plan, const Tile &tile, Task &task);
 /* A surface of one file alone. */
-Surface load_cell(const std::string &path);
+TileSurface load_cell(const std::string &path);
 
 /* As a binary PLY file, which the cooker reads. */
-std::string ply_of(const Surface &surface);
+std::string ply_of(const TileSurface &surface);
 
 /* The tile's own triangles, as few of them as `wanted` where that can be: vertices on their common
  * border stay, and those that are left are the surface's. A position has one normal and one colour,
@@ -40,7 +40,7 @@ struct LowSurface {
     CellWriter cell;
     double deviation = 0;            /* from `surface`, as measured */
 };
-LowSurface simplify_surface(const Surface &surface, size_t wanted, Task &task);
+LowSurface simplify_surface(const TileSurface &surface, size_t wanted, Task &task);
 
 /* ---- distances ---- */
 
@@ -49,7 +49,7 @@ struct Sheet {
     Vector<Vec3d> positions;
     Vector<std::array<uint32_t, 3>> triangles;
 };
-Sheet sheet_of(const Surface &surface, size_t triangles);
+Sheet sheet_of(const TileSurface &surface, size_t triangles);
 /* The farthest that points of either are from the other: vertices and centres of triangles, as many
  * as take little time. Points of `from` beyond its first `own` triangles are not asked. */
 double distance_between(const Sheet &from, size_t own, const Sheet &to, Task &task);
@@ -59,6 +59,6 @@ Vector<uint32_t> nearest_triangles(const Vector<Vec3d> &points, const Sheet &she
 /* ---- plain meshes ---- */
 
 /* A GLB of the mesh, with normals and colours of the surface's nearest points. */
-std::string glb_of(const Sheet &mesh, const Surface &surface, Task &task);
+std::string glb_of(const Sheet &mesh, const TileSurface &surface, Task &task);
 
 } // namespace gtx

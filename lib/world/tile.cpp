@@ -24,17 +24,17 @@ struct TileCook {
     gtx_cook_desc desc;
     TileFacts facts;
 
-    uint64_t key_of(const std::string &ply, const Surface &surface, size_t wanted) const;
+    uint64_t key_of(const std::string &ply, const TileSurface &surface, size_t wanted) const;
     AssetOwner cook(const std::string &ply);
     std::string encoded(const gtx_asset *asset) const;
-    void cook_all(const std::string &ply, const Surface &surface);
-    void make_low(const Surface &surface, size_t wanted);
+    void cook_all(const std::string &ply, const TileSurface &surface);
+    void make_low(const TileSurface &surface, size_t wanted);
 };
 
 } // namespace
 
 /* Of the surface, of the tile's share of it, and of all options. */
-uint64_t TileCook::key_of(const std::string &ply, const Surface &surface, size_t wanted) const
+uint64_t TileCook::key_of(const std::string &ply, const TileSurface &surface, size_t wanted) const
 {
     const uint64_t numbers[] = {
         content_key(checked_options(desc), gtx_hash_bytes(ply.data(), ply.size())),
@@ -105,7 +105,7 @@ static Sheet finest_mesh(const gtx_asset *asset)
     return out;
 }
 
-void TileCook::cook_all(const std::string &ply, const Surface &surface)
+void TileCook::cook_all(const std::string &ply, const TileSurface &surface)
 {
     const AssetOwner asset = cook(ply);
     facts.empty = !asset;
@@ -137,7 +137,7 @@ void TileCook::cook_all(const std::string &ply, const Surface &surface)
     }
 }
 
-void TileCook::make_low(const Surface &surface, size_t wanted)
+void TileCook::make_low(const TileSurface &surface, size_t wanted)
 {
     LowSurface low = simplify_surface(surface, wanted, task);
     facts.low_surface = made_of(low.cell.finish());
@@ -146,7 +146,7 @@ void TileCook::make_low(const Surface &surface, size_t wanted)
 
 /* The vertices of the ring. Those that it shares with the tile's own triangles are where the
  * surfaces of neighbours meet, whatever their levels; the others make both overlap. */
-static Vector<double> ring_of(const Surface &surface)
+static Vector<double> ring_of(const TileSurface &surface)
 {
     Vector<uint8_t> is_ring(surface.positions.size(), 0);
     for (size_t t = surface.own; t < surface.triangles.size(); ++t)
@@ -168,7 +168,7 @@ StepReport cook_tile(const std::string &folder, const std::string &name, Task &t
     job.desc.unit = float(plan.unit);
     job.desc.threads = task.threads();
     job.desc.limits = task.limits.given();
-    const Surface surface = load_surface(plan, tile, task);
+    const TileSurface surface = load_surface(plan, tile, task);
     const Vector<double> ring = ring_of(surface);
     job.desc.kept = ring.data();
     job.desc.kept_count = ring.size() / 3;

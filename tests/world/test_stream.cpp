@@ -33,10 +33,10 @@ static void same_as_imported(const std::string &path)
 }
 
 /* With normals and colours, or a surface of positions alone. */
-static Surface patch(bool all)
+static TileSurface patch(bool all)
 {
     const Mesh mesh = terrain(12);
-    Surface s;
+    TileSurface s;
     s.traits = {true, all, all};
     s.positions = mesh.positions;
     for (const Vec3d &p : mesh.positions) {
@@ -72,7 +72,7 @@ static void streams_are_what_importing_gives(void **)
     }
     write_file(in_folder("a.stl"), float_stl());
     same_as_imported(in_folder("a.stl"));
-    const Surface s = patch(true);
+    const TileSurface s = patch(true);
     Task task(1, nullptr, nullptr);
     write_file(in_folder("a.glb"), glb_of(sheet_of(s, s.own), s, task));
     same_as_imported(in_folder("a.glb"));
@@ -145,7 +145,7 @@ static void lies_are_found_before_memory_is_taken(void **)
     std::string stl = float_stl();
     gtx_store_u32(reinterpret_cast<uint8_t *>(&stl[80]), UINT32_MAX);
     assert_int_equal(reading("x.stl", stl), GTX_ERROR_INPUT);
-    const Surface s = patch(true);
+    const TileSurface s = patch(true);
     Task task(1, nullptr, nullptr);
     const std::string glb = glb_of(sheet_of(s, s.own), s, task);
     for (size_t cut : {glb.size() - 4, size_t(400), size_t(21)})

@@ -95,7 +95,7 @@ static const Plan &colored_world()
     if (!plan.tiles.empty())
         return plan;
     const Mesh mesh = terrain(140);
-    Surface s;
+    TileSurface s;
     s.traits = {true, true, true};
     s.positions = mesh.positions;
     s.normals.resize(s.positions.size());
@@ -123,8 +123,8 @@ static void borders_stay_as_they_are(void **)
     for (const Tile &tile : plan.tiles) {
         if (!tile.depth)
             continue;
-        const Surface from = load_surface(plan, tile, task);
-        const Surface low = load_cell(low_path(plan, tile));
+        const TileSurface from = load_surface(plan, tile, task);
+        const TileSurface low = load_cell(low_path(plan, tile));
         assert_true(low.own < from.own);
         std::map<std::pair<uint32_t, uint32_t>, int> sides;
         for (size_t t = 0; t < from.own; ++t)

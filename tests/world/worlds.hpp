@@ -68,7 +68,7 @@ inline gtx::Mesh ball(unsigned n)
 /* As binary PLY. */
 inline std::string ply_text(const gtx::Mesh &mesh)
 {
-    gtx::Surface surface;
+    gtx::TileSurface surface;
     surface.positions = mesh.positions;
     surface.normals.resize(mesh.positions.size());
     surface.colors.resize(mesh.positions.size());
