@@ -269,7 +269,7 @@ GTX_API gtx_result gtx_horizons(const gtx_height_grid *grids, uint32_t count,
                                 gtx_horizons_result *result, gtx_error *error);
 
 typedef struct gtx_compare_desc {
-    uint32_t size;                /* pixels along a side of the 26 views, up to 4096; 0 = 1024 */
+    uint32_t size;                /* pixels along a side of a view, up to 4096; 0 = 1024 */
     uint32_t levels;              /* levels of the height fields to measure, up to 8; 0 = the mip
                                      count */
     uint32_t threads;             /* up to 1024; 0 = all processors */
@@ -280,14 +280,17 @@ typedef struct gtx_compare_desc {
     uint32_t more_count;
     const gtx_allocator *allocator;
     gtx_limits limits;            /* as for gtx_cook_desc; the asset counts as read too */
-    uint32_t reserved[8];
+    uint32_t random_views;        /* beside the 26 fixed ones, up to 4096: those of `seed` */
+    uint32_t seed;
+    uint32_t reserved[6];
 } gtx_compare_desc;
 
-/* The figures that a build may put limits on. */
+/* The figures that a build may put limits on; format/measures.md has the rules of each. */
 typedef struct gtx_compare_result {
-    uint64_t hole_pixels, surface_pixels;
+    uint64_t hole_pixels, wall_pixels, surface_pixels;
     double silhouette_iou, silhouette_iou_min;
-    double forward_rms;           /* fraction of the source's bounding diagonal */
+    double forward_rms;           /* fractions of the source's bounding diagonal */
+    double reverse_max;
     /* Gaps between patches where they meet, in height steps of the coarser one. */
     double seam_p99_steps, seam_max_steps;
 } gtx_compare_result;

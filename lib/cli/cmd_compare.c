@@ -10,18 +10,21 @@ enum { MAX_FILES = 4097 };
 
 static gtx_compare_desc desc;
 static bool as_json;
-static double max_holes = -1, min_iou = -1, max_rms = -1;
+static double max_holes = -1, max_walls = -1, min_iou = -1, max_rms = -1;
 
 static const option options[] = {
     {"json", 0, OPTION_FLAG, &as_json, NULL, "the whole report as JSON", 0, 0},
-    {"size", 0, OPTION_UINT, &desc.size, "N", "pixels along a side of the 26 views [1024]", 64,
-     4096},
+    {"size", 0, OPTION_UINT, &desc.size, "N", "pixels along a side of a view [1024]", 64, 4096},
+    {"views", 0, OPTION_UINT, &desc.random_views, "N",
+     "random views beside the 26 fixed ones [0]", 0, 4096},
+    {"seed", 0, OPTION_UINT, &desc.seed, "S", "which random views [0]", 0, UINT32_MAX},
     {"levels", 0, OPTION_UINT, &desc.levels, "N", "levels of detail to evaluate [all]", 1, 8},
     {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z",
      "the up axis that the asset was cooked with [y]", 0, 0},
     {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
     PROGRESS_OPTION,
     {"max-holes", 0, OPTION_NUMBER, &max_holes, "N", "exit 7 above N hole pixels", 0, 1e18},
+    {"max-walls", 0, OPTION_NUMBER, &max_walls, "N", "exit 7 above N wall pixels", 0, 1e18},
     {"min-iou", 0, OPTION_NUMBER, &min_iou, "X", "exit 7 below this silhouette IoU", 0, 1},
     {"max-rms", 0, OPTION_NUMBER, &max_rms, "X",
      "exit 7 above this forward RMS error, in diagonals", 0, 1},
@@ -29,7 +32,9 @@ static const option options[] = {
 
 static const verb compare_verb = {
     "compare", "ASSET MODEL...",
-    "Measures an asset against the models it was cooked from, on the CPU.", 2, MAX_FILES, options};
+    "Measures an asset against the models it was cooked from, on the CPU. format/measures.md of\n"
+    "the source, installed as share/doc/geotex/measures.md, has the rules of every figure.",
+    2, MAX_FILES, options};
 
 static int differs(const char *asset, const char *what, double value, const char *how, double limit)
 {
@@ -44,6 +49,9 @@ static int judge(const char *asset, const gtx_compare_result *result)
     if (max_holes >= 0 && (double)result->hole_pixels > max_holes)
         code = differs(asset, "hole pixels", (double)result->hole_pixels, "above --max-holes",
                        max_holes);
+    if (max_walls >= 0 && (double)result->wall_pixels > max_walls)
+        code = differs(asset, "wall pixels", (double)result->wall_pixels, "above --max-walls",
+                       max_walls);
     if (min_iou >= 0 && result->silhouette_iou < min_iou)
         code = differs(asset, "silhouette IoU", result->silhouette_iou, "below --min-iou",
                        min_iou);
@@ -79,9 +87,11 @@ int cmd_compare(int argc, char **argv)
     } else {
         printf("hole pixels     %" PRIu64 " of %" PRIu64 "\n", result.hole_pixels,
                result.surface_pixels);
+        printf("wall pixels     %" PRIu64 "\n", result.wall_pixels);
         printf("silhouette IoU  %.5f (worst view %.5f)\n", result.silhouette_iou,
                result.silhouette_iou_min);
         printf("forward RMS     %.5f %% of the diagonal\n", 100 * result.forward_rms);
+        printf("reverse maximum %.5f %% of the diagonal\n", 100 * result.reverse_max);
         printf("seams           99 %% within %.2f height steps, all within %.2f\n",
                result.seam_p99_steps, result.seam_max_steps);
         code = print_result("", 0);

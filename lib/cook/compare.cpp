@@ -11,6 +11,7 @@ static void check(const gtx_compare_desc &desc)
 {
     require_zeroed(desc.reserved);
     require_argument(desc.size <= 4096, "size is at most 4096");
+    require_argument(desc.random_views <= 4096, "random_views is at most 4096");
     require_argument(desc.levels <= 8, "levels is at most 8");
     require_argument(desc.threads <= 1024, "threads is at most 1024");
     require_argument(desc.z_up <= 1, "z_up is 0 or 1");
@@ -22,12 +23,14 @@ static void write_pixels(Json &json, const CompareReport &report)
     gtx_json_integer(&json, "views", report.views);
     gtx_json_integer(&json, "surface_pixels", report.surface_pixels);
     gtx_json_integer(&json, "hole_pixels", report.hole_pixels);
+    gtx_json_integer(&json, "wall_pixels", report.wall_pixels);
     gtx_json_integer(&json, "leak_pixels", report.leak_pixels);
     gtx_json_begin_array(&json, "levels");
     for (const LevelReport &level : report.levels) {
         gtx_json_begin_object(&json, nullptr);
         gtx_json_integer(&json, "level", level.level);
         gtx_json_integer(&json, "hole_pixels", level.hole_pixels);
+        gtx_json_integer(&json, "wall_pixels", level.wall_pixels);
         gtx_json_integer(&json, "leak_pixels", level.leak_pixels);
         gtx_json_number(&json, "silhouette_iou", level.silhouette_iou);
         gtx_json_end_object(&json);
@@ -39,6 +42,7 @@ static void write_pixels(Json &json, const CompareReport &report)
         gtx_json_integer(&json, "size", detail.size);
         gtx_json_integer(&json, "surface_pixels", detail.surface_pixels);
         gtx_json_integer(&json, "hole_pixels", detail.hole_pixels);
+        gtx_json_integer(&json, "wall_pixels", detail.wall_pixels);
         gtx_json_integer(&json, "leak_pixels", detail.leak_pixels);
         gtx_json_number(&json, "silhouette_iou", detail.silhouette_iou);
         gtx_json_end_object(&json);
@@ -84,9 +88,11 @@ static std::string write_report(const CompareReport &report, const Vector<Warnin
     gtx_json_end_object(&json);
     check_written(json);
     char line[160];
-    snprintf(line, sizeof line, "%llu hole pixels of %llu, silhouette IoU %.5f, forward RMS %.3g",
-             (unsigned long long)report.hole_pixels, (unsigned long long)report.surface_pixels,
-             report.silhouette_iou, report.error.forward.rms);
+    snprintf(line, sizeof line,
+             "%llu hole and %llu wall pixels, of %llu, silhouette IoU %.5f, forward RMS %.3g",
+             (unsigned long long)report.hole_pixels, (unsigned long long)report.wall_pixels,
+             (unsigned long long)report.surface_pixels, report.silhouette_iou,
+             report.error.forward.rms);
     return line;
 }
 
@@ -98,8 +104,8 @@ static void compare_files(const gtx_asset *asset, const char *asset_path, const 
               {5, 10, 85}, desc.limits);
     gtx_info info;
     gtx_get_info(asset, &info);
-    constexpr double VIEWS = 32; /* their work is that of as many cooks */
-    task.limits.allow_work(VIEWS);
+    constexpr double VIEWS = 32, FIXED_VIEWS = 26; /* their work is that of as many cooks */
+    task.limits.allow_work(VIEWS * (1 + desc.random_views / FIXED_VIEWS));
     task.limits.read(asset_path, info.file_size);
     task.begin("import");
     Models models = read_models({model}, desc.more, desc.more_count, task);
@@ -111,6 +117,8 @@ static void compare_files(const gtx_asset *asset, const char *asset_path, const 
     CompareOptions options;
     options.size = desc.size ? desc.size : 1024;
     options.levels = desc.levels ? desc.levels : info.mip_count;
+    options.random_views = desc.random_views;
+    options.seed = desc.seed;
     task.begin("measure");
     CompareReport measured = compare(asset, mesh, options, task);
     task.end();
@@ -121,8 +129,9 @@ static void compare_files(const gtx_asset *asset, const char *asset_path, const 
         Report(json, summary, models.sources, task.warnings).hand_over(report);
     }
     if (result)
-        *result = {measured.hole_pixels, measured.surface_pixels, measured.silhouette_iou,
-                   measured.silhouette_iou_min, measured.error.forward.rms,
+        *result = {measured.hole_pixels, measured.wall_pixels, measured.surface_pixels,
+                   measured.silhouette_iou, measured.silhouette_iou_min,
+                   measured.error.forward.rms, measured.error.reverse.max,
                    measured.seams.p99_steps, measured.seams.max_steps};
 }
 

@@ -158,11 +158,11 @@ double Cells::crossed_distance2(size_t i, const Vec3d &p, double bound) const
     return best;
 }
 
-double Cells::core_area(size_t i) const
+double Cells::shown_area(size_t i) const
 {
     int inside = 0;
     for (int k = 0; k < 16; ++k)
-        inside += trim(i, 0.125 + 0.25 * (k & 3), 0.125 + 0.25 * (k >> 2)) <= 0;
+        inside += trim(i, 0.125 + 0.25 * (k & 3), 0.125 + 0.25 * (k >> 2)) <= GTX_TRIM_SHOWN;
     Vec3d across = corner(i, 3) - corner(i, 0), back = corner(i, 2) - corner(i, 1);
     return length(cross(across, back)) / 2 * inside / 16;
 }

@@ -20,8 +20,8 @@ public:
     Box box(size_t i) const;
     double distance2(size_t i, const Vec3d &p, double bound) const;
 
-    /* The area of cell i that lies where the trim is at most 0, estimated on a 4x4 grid. */
-    double core_area(size_t i) const;
+    /* The area of cell i that is drawn, estimated on a 4x4 grid. */
+    double shown_area(size_t i) const;
     /* The point at (u, v) in 0..1 of cell i, and its trim in texels. */
     Vec3d point(size_t i, double u, double v) const;
     double trim(size_t i, double u, double v) const;

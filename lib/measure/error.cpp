@@ -4,6 +4,8 @@
 #include "measure/sample.hpp"
 #include "measure/view.hpp"
 
+#include "asset/patch.h"
+
 namespace gtx {
 
 static const size_t SAMPLES = size_t(1) << 18, CHUNK = 1 << 14;
@@ -93,14 +95,14 @@ static Vector<Vec3d> sample_cells(const Cells &cells)
     Vector<double> area(cells.size());
     for (size_t i = 0; i < area.size(); ++i) {
         cancel_point();
-        area[i] = cells.core_area(i);
+        area[i] = cells.shown_area(i);
     }
     Vector<Vec3d> points;
     Random random;
     stratify(area, SAMPLES, random, [&](size_t i) {
         for (int attempt = 0; attempt < 64; ++attempt) {
             double u = random.next(), v = random.next();
-            if (cells.trim(i, u, v) <= 0) {
+            if (cells.trim(i, u, v) <= GTX_TRIM_SHOWN) {
                 points.push_back(cells.point(i, u, v));
                 return;
             }

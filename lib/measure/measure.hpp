@@ -1,4 +1,4 @@
-/* Measures of an asset against its source mesh; every definition is in the header's functions. */
+/* Measures of an asset against its source mesh. format/measures.md has the rules of all. */
 #pragma once
 
 #include "mesh/mesh.hpp"
@@ -12,9 +12,10 @@ struct Deviation {
 };
 
 /* Forward: 2^18 area-stratified points of the source to the nearest point of the trimmed asset.
- * Reverse: as many points of cells with trim <= 0 to the nearest point of the source. Fewer where
- * so many surfaces lie over each other that each point takes long. `junk` (per triangle, may be
- * empty) leaves triangles out of the forward samples; so does a mask what it cuts away. */
+ * Reverse: as many points of all that is drawn, past outlines too, to the nearest point of the
+ * source. Fewer where so many surfaces lie over each other that each point takes long. `junk` (per
+ * triangle, may be empty) leaves triangles out of the forward samples; so does a mask what it cuts
+ * away. */
 struct SurfaceError {
     Deviation forward, reverse;
 };
@@ -34,7 +35,7 @@ SeamReport measure_seams(const gtx_asset *asset, const Mesh &mesh, Task &task);
 /* How many pixels a level of detail gets wrong. */
 struct LevelReport {
     uint32_t level = 0;
-    uint64_t hole_pixels = 0, leak_pixels = 0;
+    uint64_t hole_pixels = 0, wall_pixels = 0, leak_pixels = 0;
     double silhouette_iou = 0;
 };
 
@@ -42,7 +43,7 @@ struct LevelReport {
  * runtime takes there by default: the coarsest within half a pixel. */
 struct DetailReport {
     uint32_t size = 0;
-    uint64_t surface_pixels = 0, hole_pixels = 0, leak_pixels = 0;
+    uint64_t surface_pixels = 0, hole_pixels = 0, wall_pixels = 0, leak_pixels = 0;
     double silhouette_iou = 0;
 };
 
@@ -50,7 +51,7 @@ struct DetailReport {
  * draw (level 0). */
 struct CompareReport {
     uint32_t views = 0;
-    uint64_t surface_pixels = 0, hole_pixels = 0, leak_pixels = 0;
+    uint64_t surface_pixels = 0, hole_pixels = 0, wall_pixels = 0, leak_pixels = 0;
     double silhouette_iou = 0, silhouette_iou_min = 0;
     double depth_rms = 0, depth_p99 = 0, depth_max = 0;   /* fractions of the diagonal */
     double normal_mean_deg = 0, normal_p99_deg = 0;
@@ -61,23 +62,26 @@ struct CompareReport {
     SeamReport seams;
 };
 
-/* One hole pixel, to find out why it is there. */
+/* One hole or wall pixel, to find out why it is there. */
 constexpr uint32_t CHOSEN_LEVELS = 0xffffffffu; /* each patch at its own, as for DetailReport */
-struct HoleSample {
+struct PixelFault {
+    bool wall;
     uint32_t level;              /* or CHOSEN_LEVELS */
     uint32_t size, view, x, y;   /* pixels along a side of the view, which view, and where */
-    uint32_t triangle;           /* of the mesh, seen there */
-    uint32_t patch;              /* that was hit behind it; UINT32_MAX: none */
-    double depth;                /* by how much too deep; infinity: no hit */
-    Vec3d position;              /* of the source's surface, object space */
+    uint32_t triangle;           /* of the mesh, seen there; UINT32_MAX: none */
+    uint32_t patch;              /* that was hit; UINT32_MAX: none */
+    double depth;                /* by how much too deep, or too near; infinity: alone */
+    Vec3d position;              /* of the source's surface, or a wall's, object space */
 };
 
 struct CompareOptions {
     uint32_t size = 1024;        /* pixels along a side of a view */
     uint32_t levels = 1;         /* levels of detail to evaluate */
     bool surface = true;         /* measure `error` and `seams` too */
-    Vector<HoleSample> *holes = nullptr;      /* appended to: every hole pixel of every level
-                                              and detail, views in order */
+    uint32_t random_views = 0;   /* beside the 26 fixed ones, of this seed */
+    uint32_t seed = 0;
+    Vector<PixelFault> *faults = nullptr;     /* appended to: every hole and wall pixel of every
+                                              level and detail, views in order */
 };
 
 CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOptions &options,

@@ -12,6 +12,7 @@ namespace gtx {
 /* Knuth's MMIX generator, upper bits. */
 class Random {
 public:
+    explicit Random(uint32_t seed = 0) : state_(1 + seed * 0x9e3779b97f4a7c15u) {}
     double next() /* in [0, 1) */
     {
         state_ = state_ * 6364136223846793005u + 1442695040888963407u;
@@ -19,7 +20,7 @@ public:
     }
 
 private:
-    uint64_t state_ = 1;
+    uint64_t state_;
 };
 
 /* Calls place(shape) for `count` points that are stratified over the sizes of shapes. */

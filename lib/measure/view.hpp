@@ -41,8 +41,10 @@ struct View {
 };
 
 /* The 26 directions (normalised non-zero {-1, 0, 1}^3, x fastest), up +Y, or +Z when parallel; the
- * sphere of the extent is inscribed in 96 % of size x size pixels. */
-Vector<View> comparison_views(const Extent &extent, uint32_t size);
+ * sphere of the extent is inscribed in 96 % of size x size pixels. Then `random` more, spread
+ * evenly over the sphere, the same ones for a seed. */
+Vector<View> comparison_views(const Extent &extent, uint32_t size, uint32_t random = 0,
+                              uint32_t seed = 0);
 
 /* Whether a triangle's material cuts it away at a point; `footprint` as in sample_surface. */
 bool is_cut(const Mesh &mesh, size_t triangle, const double weight[3], double footprint);

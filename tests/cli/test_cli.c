@@ -187,8 +187,12 @@ static void comparing_judges_only_stated_limits(void **state)
     expect(gtx("compare sphere.gtx sphere.obj --size 256 --levels 1 --max-holes 0 --min-iou 0.98"),
            0);
     expect(gtx("compare sphere.gtx sphere.obj --size 256 --levels 1 --max-rms 1e-12"), 7);
-    expect(gtx("compare sphere.gtx sphere.obj --size 256 --levels 1 --json"), 0);
+    expect(gtx("compare sphere.gtx sphere.obj --size 256 --levels 1 --views 3 --seed 9 --json"), 0);
     expect_text("\"hole_pixels\"");
+    expect_text("\"wall_pixels\"");
+    expect_text("\"views\": 29");
+    expect(gtx("compare --help"), 0);
+    expect_text("format/measures.md");
 }
 
 static void rendering_writes_a_png(void **state)

@@ -89,6 +89,10 @@ static void passed_limits_are_told(void **state)
     expect(gtx("compare open.gtx sphere.obj --size 64 --levels 1 --max-holes 3"), 7);
     expect_text(": above --max-holes 3\n");
     assert_null(strstr(output, "--min-iou"));
+    /* The sphere is far larger: before the triangle's background stand nothing but walls. */
+    expect(gtx("compare sphere.gtx open.obj --size 64 --levels 1 --max-walls 3"), 7);
+    expect_text("sphere.gtx: error[differs]: wall pixels ");
+    expect_text(": above --max-walls 3\n");
 }
 
 static void every_verb_prints_warnings(void **state)

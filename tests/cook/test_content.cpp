@@ -38,7 +38,7 @@ static void a_ball_has_its_content(void **)
     for (const Content &ball : {Content{"ball", GTX_PARTITION_CUTS, 0, 0x1d4a74ca137452a9},
                                 Content{"ball", GTX_PARTITION_VSA, NONE, 0xff6480fca129567b},
                                 Content{"ball", GTX_PARTITION_PGP, NONE, 0xdb93daccf3025264},
-                                Content{"ball", GTX_PARTITION_LAYERS, NONE, 0x918e1031c68a9021},
+                                Content{"ball", GTX_PARTITION_LAYERS, NONE, 0xae7ea69709e3ca4b},
                                 Content{"ball", GTX_PARTITION_RELIEF, NONE, 0x5828e8c6bd317c33}})
         assert_content(ball_file(), ball);
 }
@@ -53,29 +53,29 @@ static void models_have_their_content(void **)
         skip();
     for (const Content &content : std::initializer_list<Content>{
              {"/scans/bunny.ply",
-              GTX_PARTITION_CUTS, NONE, 0x32d3acb993ee9370},
+              GTX_PARTITION_CUTS, NONE, 0xacf14c9534eee116},
              {"/scans/gargo_3dhop.ply.gz",
-              GTX_PARTITION_CUTS, NONE, 0x9c95dbb6e6024666},
+              GTX_PARTITION_CUTS, NONE, 0x87883ce8d20b3a2e},
              {"/textured/spot/spot/spot_control_mesh.obj",
               GTX_PARTITION_CUTS, NONE, 0xde293bf3a615b550},
              {"/gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf",
-              GTX_PARTITION_CUTS, NONE, 0x39fb4e568fb04cbf},
+              GTX_PARTITION_CUTS, NONE, 0xe642e3e5a0861dee},
              {"/gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb",
-              GTX_PARTITION_CUTS, 0, 0x6e6cebee893b976f},
+              GTX_PARTITION_CUTS, 0, 0x178038714526acb1},
              {"/gltf/dragon_draco_119k.glb",
-              GTX_PARTITION_CUTS, 0, 0xf3c71280fed0de6a},
+              GTX_PARTITION_CUTS, 0, 0xc65f4c1785366e7c},
              {"/gltf/2CylinderEngine.glb",
-              GTX_PARTITION_CUTS, NONE, 0x9c17a84cf7cdad5c},
+              GTX_PARTITION_CUTS, NONE, 0x5d5acc978b113d65},
              {"/scans/horse.ply.gz",
-              GTX_PARTITION_CUTS, NONE, 0xf6dea12fa4f345a7},
+              GTX_PARTITION_CUTS, NONE, 0x87c2864faf4a939e},
              {"/scans/armadillo_86k.obj.gz",
-              GTX_PARTITION_CUTS, NONE, 0x70d95dd4aaf6c776},
+              GTX_PARTITION_CUTS, NONE, 0xe9dd56bb8f7a9182},
              {"/nasty/gen_2000_tiny_components.ply",
               GTX_PARTITION_CUTS, NONE, 0x5335e6c0598a80bd},
              {"/scans/bunny.ply",
-              GTX_PARTITION_VSA, NONE, 0xb2e51f82211213c8},
+              GTX_PARTITION_VSA, NONE, 0xdefb1bfbc06e6347},
              {"/scans/bunny.ply",
-              GTX_PARTITION_PGP, NONE, 0x6b350cd69413222f},
+              GTX_PARTITION_PGP, NONE, 0x29cf33e213866f8a},
          })
         assert_content(std::string(models) + content.model, content);
 }

@@ -27,8 +27,7 @@ constexpr double TWISTED = -0.4;
 /* The trim of a height field that is as near as this along the normal is relaxed by so many texels
  * at most. */
 constexpr double MAX_OFF = MAX_BELOW / 2, MAX_RELAXED = 1;
-/* What faces its axis less is steep: cells miss it, and where another height field is right there,
- * that shows it too. */
+/* What faces its axis less is steep: cells miss it, and another height field is to show it too. */
 constexpr double STEEP = 0.35;
 /* Samples along a texel. A needle may be as long as its chart: it gets as many as a triangle whose
  * sides are so many texels longer than those of a square of its area. */
@@ -206,7 +205,7 @@ double Search::uncovered_share(size_t field, uint32_t triangle, Budget &budget,
             if (const std::optional<RelaxedTrim> hidden = find_hidden(*near, at, budget))
                 relaxed.push_back(*hidden);
             else
-                uncovered += !by_own;
+                ++uncovered;
         }
     }
     return uncovered / (parts * (parts + 1) / 2.);

@@ -1,0 +1,64 @@
+/* Closed models of few triangles have no hole, and nothing that stands out of them. */
+#include "common/schema.hpp"
+
+#include "cook/coarse.hpp"
+#include "cook/folder.hpp"
+
+/* Pixels of 512 x 512 that may be wrong, in 26 fixed and 24 random views. */
+struct Bounds {
+    uint32_t holes, walls;
+};
+
+static void measure_coarse(const Coarse &model, const char *name, const Bounds &most)
+{
+    const std::string input = in_folder("coarse.obj"), output = in_folder("coarse.gtx");
+    model.write(input);
+    gtx_error error = {};
+    gtx_cook_desc cook = {};
+    cook.lod_levels = GTX_LOD_LEVELS_NONE;
+    if (gtx_cook_file(input.c_str(), output.c_str(), &cook, nullptr, &error))
+        fail_msg("%s: %s", name, error.message);
+    gtx_compare_desc desc = {};
+    desc.size = 512;
+    desc.levels = 1;
+    desc.random_views = 24;
+    desc.seed = 7;
+    gtx_compare_result found = {};
+    if (gtx_compare_files(output.c_str(), input.c_str(), &desc, &found, nullptr, &error))
+        fail_msg("%s: %s", name, error.message);
+    print_message("# %s, %zu triangles: %d holes, %d walls, reverse maximum %.2f %%\n", name,
+                  model.triangles.size(), int(found.hole_pixels), int(found.wall_pixels),
+                  100 * found.reverse_max);
+    assert_true(found.surface_pixels > 500000);
+    assert_true(found.hole_pixels <= most.holes);
+    assert_true(found.wall_pixels <= most.walls);
+}
+
+static void round_ones(void **)
+{
+    measure_coarse(bottle(30), "bottle", {0, 40});
+    measure_coarse(bottle(9), "bottle of few sides", {0, 60});
+    measure_coarse(bolts(), "bolts", {0, 20});
+}
+
+static void animals(void **)
+{
+    measure_coarse(ears(), "ears", {0, 4});
+    measure_coarse(fox(), "fox", {0, 4});
+}
+
+/* Their texels are 0.4 to 1 % of the diagonal, two to four pixels, and height fields are shown up
+ * to 0.3 texels past an edge: the walls are along outlines. */
+static void thin_ones(void **)
+{
+    measure_coarse(bars(), "bars", {0, 40});
+    measure_coarse(city_tile(), "tile of a city", {4, 1200});
+    measure_coarse(roof(), "roof", {0, 15000});
+}
+
+int main()
+{
+    const CMUnitTest tests[] = {cmocka_unit_test(round_ones), cmocka_unit_test(animals),
+                                cmocka_unit_test(thin_ones)};
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
