@@ -27,8 +27,11 @@ constexpr double TWISTED = -0.4;
 /* The trim of a height field that is as near as this along the normal is relaxed by so many texels
  * at most. */
 constexpr double MAX_OFF = MAX_BELOW / 2, MAX_RELAXED = 1;
-/* What faces its axis less is steep: cells miss it, and another height field is to show it too. */
+/* What faces its axis less is steep: cells miss it. Another height field that is right there shows
+ * it too; and is made for triangles of so many samples along a side, 6 texels. At 8 the gargoyle
+ * has 39 % more patches, at 16 a bottle of 960 triangles 6 hole pixels. */
 constexpr double STEEP = 0.35;
+constexpr int LONG = 12;
 /* Samples along a texel. A needle may be as long as its chart: it gets as many as a triangle whose
  * sides are so many texels longer than those of a square of its area. */
 constexpr double SAMPLES = 2, NEEDLE = 8;
@@ -205,7 +208,7 @@ double Search::uncovered_share(size_t field, uint32_t triangle, Budget &budget,
             if (const std::optional<RelaxedTrim> hidden = find_hidden(*near, at, budget))
                 relaxed.push_back(*hidden);
             else
-                ++uncovered;
+                uncovered += !by_own || parts >= LONG;
         }
     }
     return uncovered / (parts * (parts + 1) / 2.);
