@@ -44,11 +44,10 @@ template <class T> T length(const Vec3<T> &a)
     return std::sqrt(dot(a, a));
 }
 
-/* Of (x, y). Not hypot, which differs between C libraries and takes ten times as long: nothing here
- * comes near the largest or the least of doubles. */
+/* Of (x, y). */
 inline double length(double x, double y)
 {
-    return std::sqrt(x * x + y * y);
+    return std::hypot(x, y);
 }
 
 /* The zero vector stays zero. */

@@ -37,9 +37,9 @@ struct Line {
     }
     double distance_square(double to_u, double to_v) const
     {
-        const double du = to_u - u, dv = to_v - v;
-        const double at = std::clamp((du * along_u + dv * along_v) * inverse, 0., 1.);
-        const double off_u = at * along_u - du, off_v = at * along_v - dv;
+        const double along = (to_u - u) * along_u + (to_v - v) * along_v;
+        const double at = std::clamp(along * inverse, 0., 1.);
+        const double off_u = u + at * along_u - to_u, off_v = v + at * along_v - to_v;
         return off_u * off_u + off_v * off_v;
     }
 };
