@@ -58,19 +58,23 @@ public:
     template <class Visit> void each_near(const Vec3d &point, Visit visit) const;
 
 private:
-    using Cell = std::array<int64_t, 3>;
+    /* The low 21 bits of each coordinate: cells that are two million apart are one, which only has
+     * more tried. */
+    using Cell = uint64_t;
     using Entry = std::pair<Cell, uint32_t>;
 
+    static Cell pack(int64_t x, int64_t y, int64_t z)
+    {
+        constexpr uint64_t LOW = (1 << 21) - 1;
+        return (uint64_t(x) & LOW) << 42 | (uint64_t(y) & LOW) << 21 | (uint64_t(z) & LOW);
+    }
+    static int64_t coordinate(Cell cell, int axis) { return int64_t(cell >> (42 - 21 * axis)); }
     Cell cell_of(const Vec3d &p) const
     {
-        return {int64_t(std::floor(p.x / step_)), int64_t(std::floor(p.y / step_)),
-                int64_t(std::floor(p.z / step_))};
+        return pack(int64_t(std::floor(p.x / step_)), int64_t(std::floor(p.y / step_)),
+                    int64_t(std::floor(p.z / step_)));
     }
-    static uint16_t hash(const Cell &c)
-    {
-        return uint16_t(uint64_t(c[0]) * 73856093 ^ uint64_t(c[1]) * 19349663 ^
-                        uint64_t(c[2]) * 83492791);
-    }
+    static uint16_t hash(Cell cell) { return uint16_t(cell * 0x9e3779b97f4a7c15 >> 48); }
 
     double step_;
     Vector<Entry> entries_;      /* ascending, once dilated */
@@ -87,7 +91,9 @@ void NearGrid::dilate()
         for (int x = -1; x <= 1; ++x)
             for (int y = -1; y <= 1; ++y)
                 for (int z = -1; z <= 1; ++z)
-                    dilated.push_back({{cell[0] + x, cell[1] + y, cell[2] + z}, candidate});
+                    dilated.push_back({pack(coordinate(cell, 0) + x, coordinate(cell, 1) + y,
+                                            coordinate(cell, 2) + z),
+                                       candidate});
     }
     sort_unique(dilated);
     entries_ = std::move(dilated);

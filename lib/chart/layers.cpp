@@ -131,22 +131,25 @@ void find_discontinuities(const FlatRegion &flat, const LayerGrid &grid, float m
                           Vector<DoubleSample> &out)
 {
     const int width = grid.size[0], height = grid.size[1];
+    const Sample *here = grid.samples.data();
     for (int j = 0; j < height; ++j)
-        for (int i = 0; i < width; ++i)
+        for (int i = 0; i < width; ++i, ++here) {
+            if (!(here->high >= here->low))
+                continue;
             for (int axis = 0; axis < 2; ++axis) {
                 int x = i + 1 - axis, y = j + axis;
                 if (x >= width || y >= height)
                     continue;
-                const Sample &a = grid.samples[size_t(j) * size_t(width) + size_t(i)],
-                             &b = grid.samples[size_t(y) * size_t(width) + size_t(x)];
+                const Sample &a = *here, &b = here[axis ? width : 1];
                 float step = std::fabs(a.high - b.high);
-                if (!(a.high >= a.low && b.high >= b.low && step > max_step) ||
+                if (!(b.high >= b.low && step > max_step) ||
                     flat.joined(a.front, b.front, grid.first[0] + (i + x) / 2. + 0.5,
                                 grid.first[1] + (j + y) / 2. + 0.5, DISCONTINUITY_REACH))
                     continue;
                 out.push_back(a.high > b.high ? DoubleSample{a.front, b.front, step}
                                               : DoubleSample{b.front, a.front, step});
             }
+        }
 }
 
 } // namespace
