@@ -113,6 +113,8 @@ static const struct {
     {"pack", cmd_pack, {"unpacked", "-o", "out"}},
     {"pack an asset", cmd_pack, {"a.gtx", "-o", "out", "--lod-levels", "1", "--zstd", "1"}},
     {"filter", cmd_filter, {"a.gtx", "-o", "out", "--gaussian", "1"}},
+    {"combine", cmd_combine, {"a.gtx", "b.gtx", "-o", "out", "--op", "subtract"}},
+    {"compare", cmd_compare, {"a.gtx", "ball.obj", "--size", "64", "--json"}},
     {"validate", cmd_validate, {"a.gtx", "--json"}},
     {"info", cmd_info, {"a.gtx", "--json"}},
 };
@@ -209,6 +211,24 @@ static void every_malloc_fails(void **state)
 
 /* ---- the assets ---- */
 
+/* A ball that is moved by so much. */
+static gtx_result cook_ball(double aside, const char *model, const char *asset)
+{
+    const gtx::Mesh ball = shapes::ball(4, shapes::bumps);
+    std::ofstream file(model);
+    for (const gtx::Vec3d &p : ball.positions)
+        file << "v " << p.x + aside << ' ' << p.y << ' ' << p.z << '\n';
+    for (const auto &t : ball.triangles)
+        file << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << '\n';
+    file.close();
+    gtx_cook_desc desc = {};
+    desc.charts = 2;
+    desc.resolution = 64;
+    desc.mips = 2;
+    desc.lod_levels = 1;
+    return gtx_cook_file(model, asset, &desc, nullptr, nullptr);
+}
+
 static int prepare(void **)
 {
     const fs::path home = fs::exists("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();
@@ -219,19 +239,7 @@ static int prepare(void **)
     fs::current_path(folder);
     taken = static_cast<size_t *>(mmap(nullptr, sizeof *taken, PROT_READ | PROT_WRITE,
                                        MAP_SHARED | MAP_ANONYMOUS, -1, 0));
-    const gtx::Mesh ball = shapes::ball(4, shapes::bumps);
-    std::ofstream model("ball.obj");
-    for (const gtx::Vec3d &p : ball.positions)
-        model << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
-    for (const auto &t : ball.triangles)
-        model << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << '\n';
-    model.close();
-    gtx_cook_desc desc = {};
-    desc.charts = 2;
-    desc.resolution = 64;
-    desc.mips = 2;
-    desc.lod_levels = 1;
-    if (gtx_cook_file("ball.obj", "a.gtx", &desc, nullptr, nullptr))
+    if (cook_ball(0, "ball.obj", "a.gtx") || cook_ball(0.5, "aside.obj", "b.gtx"))
         return 1;
     const uint8_t texel[3] = {1, 2, 3}; /* the image module is loaded here, for all copies */
     if (gtx_image_write_png("texel.png", 1, 1, 3, texel, nullptr))
