@@ -126,6 +126,45 @@ static void noise_ends(void **)
     }
 }
 
+/* The least work that lets it cook, of limits half as large again each. */
+static double work_of(const std::string &text)
+{
+    constexpr double FIRST = 1 << 15;
+    for (double work = FIRST;; work *= 1.5) {
+        gtx_cook_desc desc = {};
+        desc.threads = 1;
+        desc.lod_levels = 3;
+        desc.limits.work = uint64_t(work);
+        gtx_asset *asset = nullptr;
+        gtx_error error = {};
+        if (!gtx_cook_memory(text.data(), text.size(), "a.obj", &desc, &asset, nullptr, &error)) {
+            gtx_close(asset);
+            return work;
+        }
+        assert_string_equal(error.limit, "work");
+    }
+}
+
+/* Counted, not timed: eight times the triangles take some eight times the work, where all pairs
+ * would take 64 times. Shells take 12. */
+static void work_grows_as_triangles_do(void **)
+{
+    constexpr unsigned FEW = 100, MANY = 8 * FEW;
+    constexpr double MOST = 24;
+    const struct {
+        const char *name;
+        std::string (*make)(unsigned);
+    } families[] = {{"edge", hostile::one_edge}, {"soup", hostile::soup}, {"fan", hostile::fan},
+                    {"stack", hostile::stack}, {"shells", hostile::shells}};
+    for (const auto &family : families) {
+        const double few = work_of(family.make(FEW)), many = work_of(family.make(MANY));
+        print_message("%s: %.0f steps a triangle, then %.0f\n", family.name, few / FEW,
+                      many / MANY);
+        if (many > MOST * few)
+            fail_msg("%s: %.1f times the work", family.name, many / few);
+    }
+}
+
 int main()
 {
     const struct CMUnitTest tests[] = {
@@ -135,6 +174,7 @@ int main()
         cmocka_unit_test(a_stack_of_squares),
         cmocka_unit_test(shells_inside_each_other),
         cmocka_unit_test(noise_ends),
+        cmocka_unit_test(work_grows_as_triangles_do),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }
