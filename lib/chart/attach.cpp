@@ -1,6 +1,7 @@
 /* Attaches small islands: components of a few triangles, which scans with non-manifold edges have
  * by the thousand, and what is left over from splitting. Each would cost a patch of its own. */
 #include "chart/attach.hpp"
+#include "chart/near_grid.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -29,90 +30,8 @@ constexpr double WALL_TEXELS = 16;
 /* An island may lead to the next; tiny ones wait for the last pass. A limit: the first pass finds
  * nearly all, and chains of islands must not take a time of their number squared. */
 constexpr int PASSES = 4;
-/* Limits on time: where more charts than this come together no surface goes on, and all tries
- * together look at so many texels for each triangle. An engine of 82 nodes has up to 123
- * and takes 58; a car takes 256. */
-constexpr ptrdiff_t MAX_NEAR = 256;
+/* A limit on time: all tries together look at so many texels for each triangle. */
 constexpr double MAX_LOOKS = 1024;
-
-template <class T> void sort_unique(Vector<T> &values)
-{
-    size_t compared = 0; /* eight comparisons take as long as a step */
-    std::sort(values.begin(), values.end(), [&](const T &a, const T &b) {
-        return (++compared % 8 ? void() : cancel_point()), a < b;
-    });
-    values.erase(std::unique(values.begin(), values.end()), values.end());
-}
-
-/* Which candidates have a vertex near a point: in its cell of a grid, or in one around. */
-class NearGrid {
-public:
-    explicit NearGrid(double step) : step_(step), filter_(1 << 16) {}
-
-    void add(const Vec3d &point, uint32_t candidate)
-    {
-        entries_.emplace_back(cell_of(point), candidate);
-    }
-    /* Once, after the last has been added. */
-    void dilate();
-    template <class Visit> void each_near(const Vec3d &point, Visit visit) const;
-
-private:
-    /* The low 21 bits of each coordinate: cells that are two million apart are one, which only has
-     * more tried. */
-    using Cell = uint64_t;
-    using Entry = std::pair<Cell, uint32_t>;
-
-    static Cell pack(int64_t x, int64_t y, int64_t z)
-    {
-        constexpr uint64_t LOW = (1 << 21) - 1;
-        return (uint64_t(x) & LOW) << 42 | (uint64_t(y) & LOW) << 21 | (uint64_t(z) & LOW);
-    }
-    static int64_t coordinate(Cell cell, int axis) { return int64_t(cell >> (42 - 21 * axis)); }
-    Cell cell_of(const Vec3d &p) const
-    {
-        return pack(int64_t(std::floor(p.x / step_)), int64_t(std::floor(p.y / step_)),
-                    int64_t(std::floor(p.z / step_)));
-    }
-    static uint16_t hash(Cell cell) { return uint16_t(cell * 0x9e3779b97f4a7c15 >> 48); }
-
-    double step_;
-    Vector<Entry> entries_;      /* ascending, once dilated */
-    Vector<bool> filter_;        /* by hash: most points are near no candidate */
-};
-
-void NearGrid::dilate()
-{
-    sort_unique(entries_);
-    Vector<Entry> dilated;
-    dilated.reserve(27 * entries_.size());
-    for (const auto &[cell, candidate] : entries_) {
-        cancel_point();
-        for (int x = -1; x <= 1; ++x)
-            for (int y = -1; y <= 1; ++y)
-                for (int z = -1; z <= 1; ++z)
-                    dilated.push_back({pack(coordinate(cell, 0) + x, coordinate(cell, 1) + y,
-                                            coordinate(cell, 2) + z),
-                                       candidate});
-    }
-    sort_unique(dilated);
-    entries_ = std::move(dilated);
-    for (const auto &[cell, candidate] : entries_)
-        filter_[hash(cell)] = true;
-}
-
-template <class Visit> void NearGrid::each_near(const Vec3d &point, Visit visit) const
-{
-    const Cell cell = cell_of(point);
-    if (!filter_[hash(cell)])
-        return;
-    const auto first = std::lower_bound(entries_.begin(), entries_.end(), Entry(cell, 0));
-    auto last = first;
-    while (last != entries_.end() && last->first == cell && last - first <= MAX_NEAR)
-        ++last;
-    for (auto at = first; at != last && last - first <= MAX_NEAR; ++at)
-        visit(at->second);
-}
 
 class Attachment {
 public:
