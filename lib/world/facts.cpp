@@ -107,9 +107,15 @@ static bool is_there(const std::string &path, const MadeFile &file, bool content
         return false;
     if (!content)
         return true;
-    std::string bytes(file.size, 0);
+    char bytes[1 << 14]; /* in pieces: facts may tell of any size */
+    gtx_hash hash;
+    gtx_hash_begin(&hash);
     std::ifstream from(path, std::ios::binary);
-    return from.read(&bytes[0], std::streamsize(bytes.size())) && made_of(bytes).hash == file.hash;
+    while (from.read(bytes, sizeof bytes) || from.gcount()) {
+        cancel_point();
+        gtx_hash_add(&hash, bytes, size_t(from.gcount()));
+    }
+    return gtx_hash_end(&hash) == file.hash;
 }
 
 bool are_there(const Plan &plan, const Tile &tile, const TileFacts &facts, bool content)

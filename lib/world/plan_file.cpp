@@ -169,7 +169,7 @@ static Tile read_tile(const json &from, Plan &plan)
     tile.first = hash_of(from.at("first"));
     tile.end = hash_of(from.at("end"));
     tile.triangles = from.at("triangles");
-    require_plan(is_name(tile.name) && tile.triangles > 0);
+    require_plan(is_name(tile.name) && tile.name.size() == tile.depth + 1 && tile.triangles > 0);
     require_plan(number ? tile.parent < number : tile.parent == 0 && tile.depth == 0);
     if (number) {
         require_plan(tile.depth == plan.tiles[tile.parent].depth + 1 &&

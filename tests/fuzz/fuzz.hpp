@@ -33,6 +33,7 @@ void run_gzip(const uint8_t *data, size_t size);
 void run_irap(const uint8_t *data, size_t size);
 void run_zmap(const uint8_t *data, size_t size);
 void run_image(const uint8_t *data, size_t size);
+void run_world(const uint8_t *data, size_t size);
 
 size_t mutate_gtx(uint8_t *data, size_t size, size_t most, unsigned seed);
 size_t mutate_glb(uint8_t *data, size_t size, size_t most, unsigned seed);
@@ -60,9 +61,10 @@ uint64_t choices(const uint8_t *data, size_t size);
  * its content hash is known. */
 void round_trip(const gtx_asset *asset, bool hashed, const char *who);
 
-/* Casts, lights, prepares for drawing and edits what was opened, as `how` chooses. */
+/* Casts, lights, prepares for drawing, edits and combines what was opened, as `how` chooses. */
 void use_asset(const gtx_asset *asset, uint64_t how);
 void edit_asset(const gtx_asset *asset, uint64_t how);
+void combine_asset(const gtx_asset *asset, uint64_t how);
 
 /* A folder of this process, gone with it; and a file in it. */
 std::string scratch(const char *name);

@@ -2,6 +2,7 @@
 #include "fuzz/fuzz.hpp"
 
 #include "mesh/import/import.hpp"
+#include "mesh/stream.hpp"
 
 #include <geotex/cook.h>
 
@@ -73,6 +74,34 @@ static size_t import(const std::string &bytes, const std::string &path)
     }
 }
 
+/* A model that is read in pieces has the triangles that importing it whole gives. */
+static void stream(const std::string &bytes, const std::string &path)
+{
+    static const char *const kinds[] = {"ply", "solid", "glTF"};
+    const bool may = std::any_of(kinds, kinds + 3, [&](const char *kind) {
+        return bytes.compare(0, strlen(kind), kind) == 0;
+    });
+    if (!may && path.substr(path.size() - 3) != "stl")
+        return;
+    write_scratch(path.substr(path.rfind('/') + 1).c_str(), bytes.data(), bytes.size());
+    gtx::Task task(1, nullptr, nullptr, {}, {}, small_limits());
+    size_t imported = 0, streamed = 0;
+    bool whole = false;
+    try {
+        imported = gtx::import_mesh(path, task).triangles.size();
+        whole = true;
+    } catch (const gtx::Error &) {
+    }
+    try {
+        gtx::open_triangles(path, task)->read([&](const gtx::Corners3 &) { ++streamed; });
+        REQUIRE(!whole || imported == streamed, "%zu triangles, in pieces %zu", imported, streamed);
+    } catch (const gtx::Error &e) {
+        REQUIRE(expected(e.result) && e.message.size() > 8, "stream: %d %s", e.result,
+                e.message.c_str());
+        REQUIRE(!whole || e.result == GTX_ERROR_LIMIT, "in pieces: %s", e.message.c_str());
+    }
+}
+
 static int stop_after(const gtx_progress *progress, void *user)
 {
     REQUIRE(progress->fraction >= 0 && progress->fraction <= 1, "progress of %g",
@@ -115,6 +144,8 @@ static void run(const uint8_t *data, size_t size, const char *name)
     const std::string bytes(reinterpret_cast<const char *>(data), size), path = scratch(name);
     const uint64_t how = choices(data, size);
     const size_t triangles = import(bytes, path);
+    if (how >> 40 & 1)
+        stream(bytes, path);
     if (triangles && triangles <= MAX_COOKED && how % 32 == 0)
         cook(bytes, path, how >> 5);
 }

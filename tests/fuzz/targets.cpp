@@ -9,7 +9,7 @@ const Target targets[] = {
     {"stl", run_stl, nullptr},       {"gltf", run_gltf, mutate_glb},
     {"draco", run_draco, nullptr},   {"gzip", run_gzip, mutate_gzip},
     {"irap", run_irap, nullptr},     {"zmap", run_zmap, nullptr},
-    {"image", run_image, nullptr},
+    {"image", run_image, nullptr},   {"world", run_world, nullptr},
 };
 const size_t target_count = sizeof targets / sizeof *targets;
 

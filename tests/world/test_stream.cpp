@@ -79,6 +79,18 @@ static void streams_are_what_importing_gives(void **)
     assert_int_equal(read_all(in_folder("a.glb")).size(), s.own);
 }
 
+/* Rows of text may take fewer bytes than their numbers do in memory. */
+static void text_is_imported_whole(void **)
+{
+    write_file(in_folder("text.ply"),
+               "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\n"
+               "property double y\nproperty double z\nelement face 2\n"
+               "property list uchar int vertex_indices\nend_header\n"
+               "0 0 0\n1 0 0\n0 1 0\n1 1 1\n3 0 1 2\n3 1 3 2\n");
+    assert_int_equal(read_all(in_folder("text.ply")).size(), 2);
+    same_as_imported(in_folder("text.ply"));
+}
+
 /* Faces of four corners, big-endian, with properties that nobody needs. */
 static void polygons_and_other_orders_of_bytes(void **)
 {
@@ -177,6 +189,7 @@ int main()
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(streams_are_what_importing_gives),
+        cmocka_unit_test(text_is_imported_whole),
         cmocka_unit_test(polygons_and_other_orders_of_bytes),
         cmocka_unit_test(lies_are_found_before_memory_is_taken),
         cmocka_unit_test(blocks_are_few),

@@ -106,6 +106,8 @@ void PlyStream::find_fields(const PlyElement &element)
 bool PlyStream::suits()
 {
     uint64_t at = header_.size;
+    if (header_.ascii)
+        return false;
     for (const PlyElement &e : header_.elements) {
         const bool lists = std::any_of(e.properties.begin(), e.properties.end(),
                                        [](const PlyProperty &p) { return p.is_list; });
@@ -129,7 +131,7 @@ bool PlyStream::suits()
         }
         at += e.count * row;
     }
-    return !header_.ascii && vertices_ && faces_ && field_[X].has && field_[Y].has && field_[Z].has;
+    return vertices_ && faces_ && field_[X].has && field_[Y].has && field_[Z].has;
 }
 
 double PlyStream::value(uint64_t &at, PlyType type)
