@@ -30,9 +30,11 @@ uint64_t morton(uint64_t x, uint64_t y, uint64_t z)
     return spread(x) | spread(y) << 1 | spread(z) << 2;
 }
 
+/* Of what lies outside of all cells, which a plan of other triangles may ask, a cell outside. */
 static int64_t cell_of(double x, int exponent)
 {
-    return int64_t(std::floor(std::ldexp(x, -exponent)));
+    const double out = double(4 * HALF);
+    return int64_t(std::clamp(std::floor(std::ldexp(x, -exponent)), -out, out));
 }
 
 uint64_t Lattice::place(const Vec3d &p) const

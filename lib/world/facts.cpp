@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "cook/report.hpp"
+#include "world/numbers.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -66,7 +67,7 @@ void write_facts(const Plan &plan, const Tile &tile, const TileFacts &facts)
 static MadeFile read_file(const json &from)
 {
     const auto &hash = from.at("xxh64").get_ref<const std::string &>();
-    return {from.at("size"), std::strtoull(hash.c_str(), nullptr, 16)};
+    return {whole_number(from, "size", UINT64_MAX), std::strtoull(hash.c_str(), nullptr, 16)};
 }
 
 TileFacts read_facts(const Plan &plan, const Tile &tile)
@@ -81,8 +82,8 @@ TileFacts read_facts(const Plan &plan, const Tile &tile)
     try {
         facts.key = std::strtoull(root.at("key").get_ref<const std::string &>().c_str(), nullptr,
                                   16);
-        facts.triangles = root.at("triangles");
-        facts.lod_triangles = root.at("lod_triangles");
+        facts.triangles = whole_number(root, "triangles", UINT64_MAX);
+        facts.lod_triangles = whole_number(root, "lod_triangles", UINT64_MAX);
         for (int k = 0; k < 3; ++k) {
             facts.low[k] = root.at("low").at(size_t(k));
             facts.high[k] = root.at("high").at(size_t(k));

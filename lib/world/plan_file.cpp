@@ -4,6 +4,7 @@
 #include "base/json.h"
 #include "base/output.h"
 #include "cook/report.hpp"
+#include "world/numbers.hpp"
 
 #include <cinttypes>
 #include <cstring>
@@ -152,10 +153,11 @@ static void require_plan(bool fine)
         throw Error(GTX_ERROR_INPUT, "the plan is none that gtx world plan wrote");
 }
 
-/* A name becomes part of paths. */
+/* A name becomes part of paths, and has a digit for each step below the root. */
+static constexpr uint64_t MOST_DEPTH = 62;
 static bool is_name(const std::string &name)
 {
-    return !name.empty() && name.size() < 64 && name[0] == 'r' &&
+    return !name.empty() && name.size() <= MOST_DEPTH + 1 && name[0] == 'r' &&
            name.find_first_not_of("01234567", 1) == name.npos;
 }
 
@@ -164,12 +166,12 @@ static Tile read_tile(const json &from, Plan &plan)
     Tile tile;
     const uint32_t number = uint32_t(plan.tiles.size());
     tile.name = from.at("name");
-    tile.depth = from.at("depth");
-    tile.parent = from.at("parent");
+    tile.depth = uint32_t(whole_number(from, "depth", MOST_DEPTH));
+    tile.parent = uint32_t(whole_number(from, "parent", UINT32_MAX));
     tile.first = hash_of(from.at("first"));
     tile.end = hash_of(from.at("end"));
-    tile.triangles = from.at("triangles");
-    require_plan(is_name(tile.name) && tile.name.size() == tile.depth + 1 && tile.triangles > 0);
+    tile.triangles = whole_number(from, "triangles", UINT64_MAX);
+    require_plan(is_name(tile.name) && tile.name.size() > tile.depth && tile.triangles > 0);
     require_plan(number ? tile.parent < number : tile.parent == 0 && tile.depth == 0);
     if (number) {
         require_plan(tile.depth == plan.tiles[tile.parent].depth + 1 &&
@@ -182,24 +184,23 @@ static Tile read_tile(const json &from, Plan &plan)
 static void read_parts(const json &from, Plan &plan)
 {
     plan.key = hash_of(from.at("key"));
-    plan.total = from.at("triangles");
-    plan.dropped = from.at("dropped");
-    plan.triangles = from.at("tile_triangles");
-    plan.memory = from.at("memory");
+    plan.total = whole_number(from, "triangles", UINT64_MAX);
+    plan.dropped = whole_number(from, "dropped", UINT64_MAX);
+    plan.triangles = uint32_t(whole_number(from, "tile_triangles", UINT32_MAX));
+    plan.memory = whole_number(from, "memory", UINT64_MAX);
     plan.glb = from.at("glb");
     plan.z_up = from.at("up") == "z";
     plan.unit = from.at("unit");
     plan.traits = {from.at("doubles"), from.at("normals"), from.at("colors")};
-    plan.lattice.exponent = from.at("lattice").at("exponent");
+    plan.lattice.exponent = int(whole_of(from.at("lattice").at("exponent"), 1100));
     for (int k = 0; k < 3; ++k)
-        plan.lattice.low[k] = from.at("lattice").at("low").at(size_t(k));
+        plan.lattice.low[k] = whole_of(from.at("lattice").at("low").at(size_t(k)), 1 << 20);
     for (const json &input : from.at("inputs"))
         plan.inputs.push_back({input.at("path"), input.at("kind") == "raw",
                                input.at("kind") == "grid"});
     for (const json &tile : from.at("tiles"))
         plan.tiles.push_back(read_tile(tile, plan));
-    require_plan(!plan.tiles.empty() && plan.triangles > 0 && plan.unit > 0 &&
-                 std::abs(plan.lattice.exponent) < 1100);
+    require_plan(!plan.tiles.empty() && plan.triangles > 0 && plan.unit > 0);
     for (size_t n = 0; n < plan.tiles.size(); ++n)
         require_plan(from.at("tiles")[n].at("leaf") == plan.tiles[n].is_leaf());
 }

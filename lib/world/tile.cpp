@@ -51,6 +51,8 @@ AssetOwner TileCook::cook(const std::string &ply)
 {
     gtx_asset *asset = nullptr;
     gtx_report report = {};
+    const std::unique_ptr<gtx_report, void (*)(gtx_report *)> report_owner(&report,
+                                                                           gtx_report_free);
     gtx_error error;
     const gtx_result result =
         gtx_cook_memory(ply.data(), ply.size(), "tile.ply", &desc, &asset, &report, &error);
@@ -65,7 +67,6 @@ AssetOwner TileCook::cook(const std::string &ply)
             if (name == gtx_warning_name(kind))
                 task.warn(kind, report.warnings[i]);
     }
-    gtx_report_free(&report);
     return owner;
 }
 
