@@ -19,9 +19,10 @@ void NearGrid::dilate()
     dilated.reserve(27 * entries_.size());
     for (const auto &[cell, candidate] : entries_) {
         cancel_point();
-        for (int x = -1; x <= 1; ++x)
-            for (int y = -1; y <= 1; ++y)
-                for (int z = -1; z <= 1; ++z)
+        constexpr uint64_t AROUND[3] = {UINT64_MAX, 0, 1}; /* one less, and so on: bits are cut */
+        for (uint64_t x : AROUND)
+            for (uint64_t y : AROUND)
+                for (uint64_t z : AROUND)
                     dilated.push_back({pack(coordinate(cell, 0) + x, coordinate(cell, 1) + y,
                                             coordinate(cell, 2) + z),
                                        candidate});

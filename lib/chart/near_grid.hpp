@@ -33,16 +33,17 @@ private:
     using Cell = uint64_t;
     using Entry = std::pair<Cell, uint32_t>;
 
-    static Cell pack(int64_t x, int64_t y, int64_t z)
+    static Cell pack(uint64_t x, uint64_t y, uint64_t z)
     {
         constexpr uint64_t LOW = (1 << 21) - 1;
-        return (uint64_t(x) & LOW) << 42 | (uint64_t(y) & LOW) << 21 | (uint64_t(z) & LOW);
+        return (x & LOW) << 42 | (y & LOW) << 21 | (z & LOW);
     }
-    static int64_t coordinate(Cell cell, int axis) { return int64_t(cell >> (42 - 21 * axis)); }
+    static uint64_t coordinate(Cell cell, int axis) { return cell >> (42 - 21 * axis); }
     Cell cell_of(const Vec3d &p) const
     {
-        return pack(int64_t(std::floor(p.x / step_)), int64_t(std::floor(p.y / step_)),
-                    int64_t(std::floor(p.z / step_)));
+        return pack(uint64_t(int64_t(std::floor(p.x / step_))),
+                    uint64_t(int64_t(std::floor(p.y / step_))),
+                    uint64_t(int64_t(std::floor(p.z / step_))));
     }
     static uint16_t hash(Cell cell) { return uint16_t(cell * 0x9e3779b97f4a7c15 >> 48); }
 

@@ -4,6 +4,7 @@
 #include "base/bytes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 
@@ -44,6 +45,17 @@ bool CellHeader::touches(const CellHeader &other) const
     for (int k = 0; k < 3; ++k)
         touch = touch && low[k] <= other.high[k] && other.low[k] <= high[k];
     return touch;
+}
+
+static bool is_near(const Vec3d &p) /* no NaN is */
+{
+    return std::abs(p.x) <= FARTHEST && std::abs(p.y) <= FARTHEST && std::abs(p.z) <= FARTHEST;
+}
+
+bool are_near(const Corners3 &corners)
+{
+    return is_near(corners[0].position) && is_near(corners[1].position) &&
+           is_near(corners[2].position);
 }
 
 void CellWriter::add(const Corners3 &corners)
@@ -118,7 +130,8 @@ CellReader::CellReader(const std::string &path) : file_(path, std::ios::binary),
     const uint64_t size = std::filesystem::file_size(path, error) - CellHeader::BYTES;
     const uint64_t triangle = 3 * header_.traits.bytes();
     if (error || flags > 7 || size % triangle || size / triangle != left_ ||
-        !(header_.deviation >= 0))
+        !(header_.deviation >= 0 && header_.deviation <= FARTHEST) ||
+        (left_ && !(is_near(header_.low) && is_near(header_.high))))
         throw Error(GTX_ERROR_INPUT, path + " is not whole");
 }
 
@@ -139,6 +152,8 @@ bool CellReader::next(Corners3 &out)
     }
     decode_triangle(header_.traits, &block_[at_], out);
     at_ += triangle;
+    if (!are_near(out))
+        throw Error(GTX_ERROR_INPUT, path_ + " has corners that no step writes");
     return true;
 }
 

@@ -24,6 +24,10 @@ struct CellHeader {
     std::string bytes() const;
 };
 
+/* Farther out than this no tile has corners: what is computed from distances stays finite. */
+constexpr double FARTHEST = 1e60;
+bool are_near(const Corners3 &corners);
+
 /* A triangle takes 3 * traits.bytes(). */
 void encode_triangle(const CornerTraits &traits, const Corners3 &corners, uint8_t *out);
 void decode_triangle(const CornerTraits &traits, const uint8_t *bytes, Corners3 &out);

@@ -1,5 +1,5 @@
 /* What a world is made of: models, folders of them, grids, lists of triangles. */
-#include "world/plan.hpp"
+#include "world/cell.hpp"
 
 #include "grid/grid.hpp"
 
@@ -171,17 +171,14 @@ uint64_t read_inputs(const Plan &plan, Task &task, const TriangleSink &sink)
         const bool turned = plan.z_up && !input.grid;
         stream.read([&](const Corners3 &read) {
             Corners3 corners = read;
-            bool finite = true;
-            for (Corner &c : corners) {
-                finite = finite && is_finite(c.position);
+            for (Corner &c : corners)
                 if (turned) {
                     c.position = {c.position.x, c.position.z, -c.position.y};
                     c.normal = {c.normal.x, c.normal.z, -c.normal.y};
                 }
-            }
             if (++count % 0x10000 == 0)
                 task.limits.require(GTX_LIMITED_TRIANGLES, "the world", count);
-            if (finite)
+            if (are_near(corners))
                 sink(corners);
             else
                 ++dropped;

@@ -97,8 +97,9 @@ StepReport plan_world(const PlanOptions &options, Task &task)
     plan.traits = input_traits(plan, task);
     count(plan, task);
     if (plan.dropped)
-        task.warn(GTX_WARNING_NON_FINITE, std::to_string(plan.dropped) +
-                                              " triangles with non-finite corners were dropped");
+        task.warn(GTX_WARNING_NON_FINITE,
+                  std::to_string(plan.dropped) + " triangles with corners that are not finite, or "
+                                                 "farther than 1e60, were dropped");
     write_plan(plan);
     write_engine(plan, options.engine, options.command);
     task.end();

@@ -75,7 +75,7 @@ void write_whole(const std::string &path, const std::string &text);
 
 /* ---- what plan and split read ---- */
 
-/* Every triangle of all inputs whose corners are finite, turned where +Z is up, in the order of the
+/* Every triangle of all inputs whose corners are near enough, turned where +Z is up, in the order of the
  * inputs. Returns how many were dropped. */
 uint64_t read_inputs(const Plan &plan, Task &task, const TriangleSink &sink);
 CornerTraits input_traits(const Plan &plan, Task &task);

@@ -74,20 +74,20 @@ void Simplifier::State::keep_points()
     Vector<uint8_t> is_vertex(points.size(), 0);
     for (uint32_t p : point)
         is_vertex[p] = 1;
-    Vector<uint32_t> name(points.size(), NO_VERTEX), kept;
+    Vector<uint32_t> name(points.size(), NO_VERTEX), still;
     for (uint32_t p = 0; p < points.size(); ++p) {
         if (!is_vertex[p] && (p % LATER_POINTS || !is_vertex[merged[p]]))
             continue;
-        name[p] = uint32_t(kept.size());
-        points[kept.size()] = points[p];
-        kept.push_back(merged[p]);
+        name[p] = uint32_t(still.size());
+        points[still.size()] = points[p];
+        still.push_back(merged[p]);
     }
-    points.resize(kept.size());
-    for (uint32_t &p : kept)
+    points.resize(still.size());
+    for (uint32_t &p : still)
         p = name[p];
     for (uint32_t &p : point)
         p = name[p];
-    merged.swap(kept);
+    merged.swap(still);
 }
 
 /* First to where the planes are nearest, from where the next level goes on; then, for this level

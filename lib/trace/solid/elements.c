@@ -127,13 +127,13 @@ static void meet(const gtx_crossing *crossing, void *user)
     const uint32_t field = crossing->field;
     const double depth = -gtx_trim_distance(
         gtx_field_trim(&o->solid->caster->fields[field], crossing->x, crossing->y));
-    if (field == o->own || depth <= 0)
+    if (field == o->own || !(depth > 0))
         return;
     const gtx_hit hit = gtx_describe(o->solid->caster, crossing);
     double cosine = 0;
     for (int k = 0; k < 3; ++k)
         cosine += o->normal[k] * (double)hit.facet[k];
-    if (cosine < ALIKE)
+    if (!(cosine >= ALIKE)) /* also where numbers end */
         return;
     uint32_t i = 0;
     while (i < o->count && o->fields[i] != field)

@@ -77,6 +77,15 @@ gtx_budget gtx_solid_budget(const gtx_limits *limits, uint64_t texels)
     return (gtx_budget){.most = gtx_limit_of(limits, GTX_LIMITED_WORK, texels)};
 }
 
+/* Points may lie where boxes around them end beyond all floats. */
+static bool is_bounded(const gtx_node *root)
+{
+    for (int k = 0; k < 3; ++k)
+        if (!isfinite(root->low[k]) || !isfinite(root->high[k]))
+            return false;
+    return true;
+}
+
 static gtx_result build(gtx_solid *solid, const gtx_asset *asset, const gtx_solid_desc *desc,
                         gtx_error *error)
 {
@@ -86,6 +95,8 @@ static gtx_result build(gtx_solid *solid, const gtx_asset *asset, const gtx_soli
     gtx_result result = gtx_caster_create(asset, &casting, &solid->caster, error);
     if (!result)
         result = gtx_elements_build(solid, asset, desc->jobs, &desc->limits, &budget, error);
+    if (!result && !is_bounded(&solid->tree.nodes[0]))
+        return gtx_fail(error, GTX_ERROR_INPUT, "the asset is too large to be measured");
     if (!result)
         result = gtx_winding_build(solid, error);
     if (result)
