@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "derive/codes.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -257,15 +258,16 @@ static void gather(const making *m, uint32_t level)
         }
 }
 
-/* Errors as numbers of 16 bits, rounded up. */
+/* Errors as numbers of 16 bits, rounded up; what floats cannot tell is the most. */
 static void store_errors(const making *m, size_t count)
 {
     float most = 0;
     for (size_t i = 0; i < count; ++i)
-        most = greater(most, m->error[i]);
+        most = greater(most, m->error[i] < FLT_MAX ? m->error[i] : FLT_MAX);
     m->rtin->unit = most / UINT16_MAX;
     for (size_t i = 0; i < count; ++i) {
-        const float units = most > 0 ? m->error[i] / most * UINT16_MAX : 0;
+        const float share = m->error[i] < most ? m->error[i] / most : 1;
+        const float units = most > 0 ? share * UINT16_MAX : 0;
         const uint16_t below = (uint16_t)units;
         m->nodes[i].error = (uint16_t)(below + (below < units && below < UINT16_MAX));
     }
