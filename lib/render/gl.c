@@ -101,6 +101,8 @@ gtx_result gtx_gl_init(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *err
         load_debug(gl, desc, gl->es ? "KHR" : "");
     if (!gl->es || has_extension(gl, "GL_EXT_multi_draw_arrays"))
         load_multi(gl, desc, gl->es ? "EXT" : "");
+    else if (has_extension(gl, "GL_WEBGL_multi_draw"))
+        load_multi(gl, desc, "WEBGL");
     if (!gl->es && wants_tiles(gl, desc))
         load_tiles(gl, desc);
     return result;

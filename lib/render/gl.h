@@ -204,7 +204,8 @@ enum {
     X(void, PopDebugGroup, (void))                                                                 \
     X(void, PushDebugGroup, (gl_enum source, gl_uint id, gl_size length, const char *message))
 
-/* Several draws in one call: of OpenGL, and of OpenGL ES with EXT_multi_draw_arrays. */
+/* Several draws in one call: of OpenGL, of OpenGL ES with EXT_multi_draw_arrays, of WebGL 2 with
+ * WEBGL_multi_draw. */
 #define GTX_GL_MULTI(X)                                                                            \
     X(void, MultiDrawElements,                                                                     \
       (gl_enum mode, const gl_size *counts, gl_enum type, const void *const *offsets,              \

@@ -189,7 +189,8 @@ static gtx_result upload(const gtx_renderer *renderer, gtx_model *model, const g
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
     replace_slabs(model, d, patch);
     model->facts[patch] = d->facts;
-    model->facts[patch].boxed |= !gtx_replace_proxies(gl, model, d->proxies, patch);
+    model->facts[patch].boxed |= !gtx_replace_proxies(renderer, model, d->proxies,
+                                                        patch);
     gtx_model_sum_up(model);
     if (model->lods.level_count)
         gtx_lod_mark(&model->lods, patch);

@@ -86,37 +86,51 @@ static void allocate_textures(const gtx_gl *gl, gtx_model *model)
     }
 }
 
-/* Both go through the array target: the element target belongs to the host's vertex array. */
+gl_uint gtx_take_vertex_array(const gtx_renderer *renderer)
+{
+    gl_int hosts = 0;
+    renderer->gl.GetIntegerv(GL_VERTEX_ARRAY_BINDING, &hosts);
+    renderer->gl.BindVertexArray(renderer->vertex_array);
+    return (gl_uint)hosts;
+}
+
+static gl_uint allocate_buffer(const gtx_gl *gl, gl_enum target, size_t size, gl_enum usage,
+                               const char *label)
+{
+    gl_uint buffer = 0;
+    gl->GenBuffers(1, &buffer);
+    gl->BindBuffer(target, buffer);
+    gl->BufferData(target, (gl_pointer)size, NULL, usage);
+    gtx_gl_label(gl, GL_BUFFER, buffer, label);
+    gl->BindBuffer(target, 0);
+    return buffer;
+}
+
+static void fill_buffer(const gtx_gl *gl, gl_enum target, gl_uint buffer, uint64_t at,
+                        uint64_t size, const void *data)
+{
+    gl->BindBuffer(target, buffer);
+    if (size)
+        gl->BufferSubData(target, (gl_pointer)at, (gl_pointer)size, data);
+    gl->BindBuffer(target, 0);
+}
+
 static void allocate_proxies(const gtx_gl *gl, gtx_model *model)
 {
     const gtx_proxies *p = &model->proxies;
-    gl->GenBuffers(1, &model->vertices);
-    gl->GenBuffers(1, &model->indices);
-    gl->BindBuffer(GL_ARRAY_BUFFER, model->vertices);
-    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(p->vertex_count * sizeof *p->vertices), NULL,
-                   GL_DYNAMIC_DRAW);
-    gtx_gl_label(gl, GL_BUFFER, model->vertices, "geotex proxy vertices");
-    gl->BindBuffer(GL_ARRAY_BUFFER, model->indices);
-    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(p->index_count * sizeof *p->indices), NULL,
-                   GL_DYNAMIC_DRAW);
-    gtx_gl_label(gl, GL_BUFFER, model->indices, "geotex proxy indices");
-    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
-}
-
-static void replace(const gtx_gl *gl, gl_uint buffer, uint32_t first, uint32_t count,
-                    const void *data, size_t size)
-{
-    gl->BindBuffer(GL_ARRAY_BUFFER, buffer);
-    if (count)
-        gl->BufferSubData(GL_ARRAY_BUFFER, (gl_pointer)(first * size), (gl_pointer)(count * size),
-                          data);
-    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    model->vertices = allocate_buffer(gl, GL_ARRAY_BUFFER, p->vertex_count * sizeof *p->vertices,
+                                      GL_DYNAMIC_DRAW, "geotex proxy vertices");
+    model->indices = allocate_buffer(gl, GL_ELEMENT_ARRAY_BUFFER,
+                                     p->index_count * sizeof *p->indices, GL_DYNAMIC_DRAW,
+                                     "geotex proxy indices");
 }
 
 /* Indices that are left over make triangles without area. */
-bool gtx_replace_proxies(const gtx_gl *gl, const gtx_model *model, gtx_proxies *proxies,
-                         uint32_t patch)
+bool gtx_replace_proxies(const gtx_renderer *renderer, const gtx_model *model,
+                         gtx_proxies *proxies, uint32_t patch)
 {
+    const gtx_gl *gl = &renderer->gl;
+    const gl_uint hosts = gtx_take_vertex_array(renderer);
     bool fits = true;
     for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
         gtx_proxies *p = &proxies[kind];
@@ -130,9 +144,12 @@ bool gtx_replace_proxies(const gtx_gl *gl, const gtx_model *model, gtx_proxies *
         }
         for (uint32_t i = 0; i < room; ++i)
             p->indices[i] = i < p->index_count ? p->indices[i] + first : first;
-        replace(gl, model->vertices, first, p->vertex_count, p->vertices, sizeof *p->vertices);
-        replace(gl, model->indices, start, room, p->indices, sizeof *p->indices);
+        fill_buffer(gl, GL_ARRAY_BUFFER, model->vertices, first * sizeof *p->vertices,
+                    p->vertex_count * sizeof *p->vertices, p->vertices);
+        fill_buffer(gl, GL_ELEMENT_ARRAY_BUFFER, model->indices, start * sizeof *p->indices,
+                    room * sizeof *p->indices, p->indices);
     }
+    gl->BindVertexArray(hosts);
     return fits;
 }
 
@@ -149,16 +166,13 @@ void gtx_default_unpacking(const gtx_gl *gl)
 }
 
 /* Uploads what `*budget` allows of a buffer, from byte *sent on. */
-static void upload_bytes(const gtx_gl *gl, gl_uint buffer, const void *data, uint64_t size,
-                         uint64_t *sent, uint64_t *budget)
+static void upload_bytes(const gtx_gl *gl, gl_enum target, gl_uint buffer, const void *data,
+                         uint64_t size, uint64_t *sent, uint64_t *budget)
 {
     const uint64_t left = size - *sent, count = left < *budget ? left : *budget;
     if (count == 0)
         return;
-    gl->BindBuffer(GL_ARRAY_BUFFER, buffer);
-    gl->BufferSubData(GL_ARRAY_BUFFER, (gl_pointer)*sent, (gl_pointer)count,
-                      (const char *)data + *sent);
-    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    fill_buffer(gl, target, buffer, *sent, count, (const char *)data + *sent);
     *sent += count;
     *budget -= count;
 }
@@ -209,15 +223,10 @@ static void allocate_lods(const gtx_gl *gl, gtx_lod_meshes *s)
 {
     if (!s->level_count)
         return;
-    gl->GenBuffers(1, &s->vertex_buffer);
-    gl->GenBuffers(1, &s->index_buffer);
-    gl->BindBuffer(GL_ARRAY_BUFFER, s->vertex_buffer);
-    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)s->vertex_bytes, NULL, GL_STATIC_DRAW);
-    gtx_gl_label(gl, GL_BUFFER, s->vertex_buffer, "geotex LOD mesh vertices");
-    gl->BindBuffer(GL_ARRAY_BUFFER, s->index_buffer);
-    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)s->index_bytes, NULL, GL_STATIC_DRAW);
-    gtx_gl_label(gl, GL_BUFFER, s->index_buffer, "geotex LOD mesh indices");
-    gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+    s->vertex_buffer = allocate_buffer(gl, GL_ARRAY_BUFFER, s->vertex_bytes, GL_STATIC_DRAW,
+                                       "geotex LOD mesh vertices");
+    s->index_buffer = allocate_buffer(gl, GL_ELEMENT_ARRAY_BUFFER, s->index_bytes, GL_STATIC_DRAW,
+                                      "geotex LOD mesh indices");
 }
 
 /* Names, sizes and labels of all objects, still empty. */
@@ -250,13 +259,14 @@ static bool upload_slice(const gtx_gl *gl, gtx_model *model, uint64_t budget)
 {
     const gtx_proxies *p = &model->proxies;
     gtx_lod_meshes *s = &model->lods;
-    upload_bytes(gl, s->vertex_buffer, s->vertices, s->vertex_bytes, &s->vertex_bytes_sent,
-                 &budget);
-    upload_bytes(gl, s->index_buffer, s->indices, s->index_bytes, &s->index_bytes_sent, &budget);
-    upload_bytes(gl, model->vertices, p->vertices, p->vertex_count * sizeof *p->vertices,
-                 &model->vertex_bytes_sent, &budget);
-    upload_bytes(gl, model->indices, p->indices, p->index_count * sizeof *p->indices,
-                 &model->index_bytes_sent, &budget);
+    upload_bytes(gl, GL_ARRAY_BUFFER, s->vertex_buffer, s->vertices, s->vertex_bytes,
+                 &s->vertex_bytes_sent, &budget);
+    upload_bytes(gl, GL_ELEMENT_ARRAY_BUFFER, s->index_buffer, s->indices, s->index_bytes,
+                 &s->index_bytes_sent, &budget);
+    upload_bytes(gl, GL_ARRAY_BUFFER, model->vertices, p->vertices,
+                 p->vertex_count * sizeof *p->vertices, &model->vertex_bytes_sent, &budget);
+    upload_bytes(gl, GL_ELEMENT_ARRAY_BUFFER, model->indices, p->indices,
+                 p->index_count * sizeof *p->indices, &model->index_bytes_sent, &budget);
     for (uint32_t i = 0; i < model->level_count; ++i) {
         if (!is_complete(&model->levels[i]) && budget > 0)
             upload_rows(gl, model, &model->levels[i], &budget);
@@ -282,13 +292,16 @@ gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t m
         gtx_result result = check_limits(gl, model, error);
         if (result)
             return result;
-        allocate(gl, model);
     }
+    const gl_uint hosts = gtx_take_vertex_array(renderer);
+    if (!model->vertices)
+        allocate(gl, model);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     const bool whole = upload_slice(gl, model, max_bytes ? max_bytes : UINT64_MAX);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
     gl->BindTexture(GL_TEXTURE_2D, 0);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+    gl->BindVertexArray(hosts);
     gtx_result result = gtx_check_gl_memory(gl, error);
     if (result) {
         release(gl, model);

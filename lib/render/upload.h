@@ -9,9 +9,12 @@ typedef struct gtx_texture_kind {
     gl_enum target, inner, format, type, min_filter, mag_filter;
 } gtx_texture_kind;
 gtx_texture_kind gtx_texture_kind_of(const gtx_model *model, uint32_t unit);
+/* Binds the renderer's vertex array and returns the host's, to be bound again: index buffers go
+ * through the element target, which belongs to vertex arrays; WebGL takes them no other way. */
+gl_uint gtx_take_vertex_array(const gtx_renderer *renderer);
 /* Puts a patch's edited proxies in the place of its old ones. False when a hull does not fit. */
-bool gtx_replace_proxies(const gtx_gl *gl, const gtx_model *model, gtx_proxies *proxies,
-                         uint32_t patch);
+bool gtx_replace_proxies(const gtx_renderer *renderer, const gtx_model *model,
+                         gtx_proxies *proxies, uint32_t patch);
 /* Pixel unpacking as render.h promises to leave it. */
 void gtx_default_unpacking(const gtx_gl *gl);
 /* Errors: GL (out of memory since the last look). */
