@@ -212,6 +212,7 @@ links_samples  := $(needs_image)
 links_source   := base
 links_threads  := $(needs_cook) render host
 links_verbs    := $(needs_cli)
+links_web      := base
 extra_needs_render  := trace edit host image
 extra_needs_trace   := image mesh grid chart bake measure cook
 extra_needs_bake    := derive trace measure host
@@ -257,7 +258,7 @@ run-tests: build-tests
 # `make test-asset` builds and runs the programs of one room alone.
 test-%:
 	$(again) $(filter $(out)/tests/$*/%,$(test_bins)) \
-	  $(if $(filter cli samples consumer corpus image,$*),all)
+	  $(if $(filter cli samples consumer corpus image web,$*),all)
 	@$(test_env) tests/run $(filter $(out)/tests/$*/%,$(test_bins))
 
 test: ## install what is missing, build, pass the tests
@@ -288,7 +289,7 @@ run-demo: $(MODEL)
 	@$(out)/samples/mixed_scene $(build)/demo/model.gtx --headless $(build)/demo/mixed_scene.png
 	@echo $(build)/demo/mixed_scene.png
 
-include lib/package/install.mk tests/bench/bench.mk tests/fuzz/fuzz.mk
+include lib/package/install.mk lib/web/web.mk tests/bench/bench.mk tests/fuzz/fuzz.mk
 
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev \

@@ -1,0 +1,215 @@
+/* What geotex.js calls: geotex with handles and rows of numbers, for JavaScript knows no structs.
+ * Built by emscripten alone; see web.mk. */
+#include <geotex/geotex.h>
+#include <geotex/render.h>
+
+#include "render/gl.h"
+
+#include <emscripten/emscripten.h>
+#include <emscripten/html5_webgl.h>
+
+#include <string.h>
+
+#define WEB_API EMSCRIPTEN_KEEPALIVE
+
+/* ---- errors ---- */
+
+/* Of the last call that failed. A page's calls come from one thread. */
+static gtx_error last_error;
+
+WEB_API int gtxw_result(void)
+{
+    return (int)last_error.result;
+}
+
+WEB_API const char *gtxw_message(void)
+{
+    return last_error.message;
+}
+
+static gtx_error *begin(void)
+{
+    memset(&last_error, 0, sizeof last_error);
+    return &last_error;
+}
+
+/* ---- the renderer ---- */
+
+/* Every function by its name, so that the page's glue holds no table of all of WebGL. Those that
+ * WebGL 2 has not are not asked for. */
+#define DECLARE(result, name, parameters) extern result gl##name parameters;
+GTX_GL(DECLARE)
+extern void glMultiDrawElementsWEBGL(gl_enum mode, const gl_size *counts, gl_enum type,
+                                     const void *const *offsets, gl_size draws);
+
+static gtx_gl_proc load(const char *name, void *user)
+{
+#define ROW(result, name, parameters) {"gl" #name, (gtx_gl_proc)gl##name},
+    static const struct {
+        const char *name;
+        gtx_gl_proc proc;
+    } table[] = {GTX_GL(ROW){"glMultiDrawElementsWEBGL", (gtx_gl_proc)glMultiDrawElementsWEBGL}};
+    (void)user;
+    for (size_t i = 0; i < sizeof table / sizeof *table; ++i)
+        if (!strcmp(table[i].name, name))
+            return table[i].proc;
+    return NULL;
+}
+
+EM_JS(void, report_line, (const char *line), { Module['onLog'](UTF8ToString(line)); })
+
+static void report(const char *message, void *user)
+{
+    (void)user;
+    report_line(message);
+}
+
+/* Of the current context. 0 on failure, here and in all that return a pointer. */
+WEB_API gtx_renderer *gtxw_renderer_create(void)
+{
+    const gtx_renderer_desc desc = {.load = load, .log = report};
+    gtx_renderer *renderer = NULL;
+    emscripten_webgl_enable_WEBGL_multi_draw(emscripten_webgl_get_current_context());
+    gtx_renderer_create(&desc, &renderer, begin());
+    return renderer;
+}
+
+WEB_API void gtxw_renderer_destroy(gtx_renderer *renderer)
+{
+    gtx_renderer_destroy(renderer);
+}
+
+WEB_API gtx_shading *gtxw_shading_create(gtx_renderer *renderer, const char *text)
+{
+    gtx_shading *shading = NULL;
+    gtx_shading_create(renderer, text, &shading, begin());
+    return shading;
+}
+
+WEB_API void gtxw_shading_destroy(gtx_renderer *renderer, gtx_shading *shading)
+{
+    gtx_shading_destroy(renderer, shading);
+}
+
+WEB_API uint32_t gtxw_shading_program(const gtx_shading *shading, int method)
+{
+    return gtx_shading_program(shading, (gtx_method)method);
+}
+
+/* ---- assets ---- */
+
+WEB_API gtx_asset *gtxw_open(const void *bytes, size_t size)
+{
+    gtx_asset *asset = NULL;
+    gtx_open_memory(bytes, size, NULL, &asset, begin());
+    return asset;
+}
+
+WEB_API void gtxw_close(gtx_asset *asset)
+{
+    gtx_close(asset);
+}
+
+/* In the order that geotex.js names them in. Valid until the next call. */
+WEB_API const double *gtxw_info(const gtx_asset *asset)
+{
+    static double out[21];
+    gtx_info i;
+    gtx_get_info(asset, &i);
+    const double numbers[] = {
+        i.patch_count, i.page_count, i.page_width, i.page_height, i.mip_count, i.height_bits,
+        i.has_color, i.has_material, i.has_emission, i.lod_levels, (double)i.source_triangles,
+        (double)i.unit, (double)i.bounds_min[0], (double)i.bounds_min[1], (double)i.bounds_min[2],
+        (double)i.bounds_max[0], (double)i.bounds_max[1], (double)i.bounds_max[2], i.anchor[0],
+        i.anchor[1], i.anchor[2]};
+    _Static_assert(sizeof numbers == sizeof out, "one place each");
+    memcpy(out, numbers, sizeof out);
+    return out;
+}
+
+WEB_API gtx_caster *gtxw_caster_create(const gtx_asset *asset)
+{
+    gtx_caster *caster = NULL;
+    gtx_caster_create(asset, NULL, &caster, begin());
+    return caster;
+}
+
+WEB_API void gtxw_caster_destroy(gtx_caster *caster)
+{
+    gtx_caster_destroy(caster);
+}
+
+/* `ray`: origin and least t, direction and greatest t, 0 for infinity. Gives t, normal, facet,
+ * colour (rgba, linear); t is infinite where nothing is hit. Valid until the next call. */
+WEB_API const float *gtxw_raycast(const gtx_caster *caster, const gtx_asset *asset,
+                                  const float *ray, int two_sided)
+{
+    static float out[11];
+    gtx_ray cast;
+    gtx_hit hit;
+    memcpy(&cast, ray, sizeof cast);
+    gtx_raycast(caster, &cast, &hit, 1, two_sided ? GTX_RAY_TWO_SIDED : 0);
+    out[0] = hit.t;
+    memcpy(out + 1, hit.normal, sizeof hit.normal);
+    memcpy(out + 4, hit.facet, sizeof hit.facet);
+    gtx_hit_colors(asset, &hit, (float(*)[4])(out + 7), 1);
+    return out;
+}
+
+/* ---- models ---- */
+
+WEB_API gtx_model *gtxw_model_prepare(const gtx_asset *asset)
+{
+    gtx_model *model = NULL;
+    gtx_model_prepare(asset, NULL, &model, begin());
+    return model;
+}
+
+/* 1 once all is there, 0 while it is not, -1 for an error. */
+WEB_API int gtxw_model_upload(gtx_renderer *renderer, gtx_model *model, uint32_t max_bytes)
+{
+    uint32_t done = 0;
+    return gtx_model_upload(renderer, model, max_bytes, &done, begin()) ? -1 : (int)done;
+}
+
+WEB_API void gtxw_model_destroy(gtx_renderer *renderer, gtx_model *model)
+{
+    gtx_model_destroy(renderer, model);
+}
+
+WEB_API double gtxw_model_gpu_bytes(const gtx_model *model)
+{
+    const gtx_model_size size = gtx_model_gpu_size(model);
+    return (double)(size.geometry + size.color);
+}
+
+/* ---- drawing ---- */
+
+enum { MOST_AT_ONCE = 256 };
+
+/* `view`: both matrices, light and ambient, max_error. `whole`: method, flags, width, height, pass,
+ * level. An instance has 20 numbers: its matrix and its tint. Returns a gtx_result. */
+WEB_API int gtxw_draw(gtx_renderer *renderer, const float *view, const uint32_t *whole,
+                      const gtx_shading *shading, gtx_model *const *models, const float *instances,
+                      uint32_t count)
+{
+    static gtx_instance placed[MOST_AT_ONCE];
+    gtx_view v = {.method = (gtx_method)whole[0], .flags = whole[1], .viewport_width = whole[2],
+                  .viewport_height = whole[3], .pass = (gtx_pass)whole[4], .level = whole[5],
+                  .shading = shading, .max_error = view[36], .ambient = view[35]};
+    memcpy(v.view, view, sizeof v.view);
+    memcpy(v.projection, view + 16, sizeof v.projection);
+    memcpy(v.light_direction, view + 32, sizeof v.light_direction);
+    for (uint32_t first = 0; first < count; first += MOST_AT_ONCE) {
+        uint32_t n = count - first < MOST_AT_ONCE ? count - first : MOST_AT_ONCE;
+        for (uint32_t i = 0; i < n; ++i) {
+            const float *numbers = instances + 20 * (size_t)(first + i);
+            placed[i] = (gtx_instance){.model = models[first + i], .id = first + i};
+            memcpy(placed[i].transform, numbers, sizeof placed[i].transform);
+            memcpy(placed[i].tint, numbers + 16, sizeof placed[i].tint);
+        }
+        if (gtx_draw(renderer, &v, placed, n, begin()))
+            return (int)last_error.result;
+    }
+    return 0;
+}

@@ -1,0 +1,107 @@
+/** Ways of drawing (gtx_method): AUTO takes for each part what is fastest within the error. */
+export const Method: Readonly<{AUTO: 0, CAST: 1, PAPER: 2, LOD: 3, GRID: 4}>;
+/** What a draw writes besides depth (gtx_pass). */
+export const Pass: Readonly<{FORWARD: 0, DEPTH: 1, ID: 2, GBUFFER: 3}>;
+
+/** `result` is a gtx_result of geotex.h, `kind` its name. */
+export class GeotexError extends Error {
+  result: number;
+  kind: string;
+}
+
+export type Numbers = ArrayLike<number> & Iterable<number>;
+
+export interface Hit {
+  /** In units of the ray's direction. */
+  t: number;
+  point: number[];
+  /** Unit, of the normal map, in the asset's space. */
+  normal: number[];
+  /** Unit, of the height field. */
+  facet: number[];
+  /** Linear red, green, blue, alpha. */
+  color: number[];
+}
+
+/** An opened `.gtx`. Lengths are object units, relative to `anchor`. */
+export class Asset {
+  readonly patchCount: number;
+  readonly pageCount: number;
+  readonly pageWidth: number;
+  readonly pageHeight: number;
+  readonly mipCount: number;
+  readonly heightBits: 8 | 16;
+  readonly hasColor: boolean;
+  readonly hasMaterial: boolean;
+  readonly hasEmission: boolean;
+  readonly lodLevels: number;
+  readonly sourceTriangles: number;
+  /** Metres per object unit. */
+  readonly unit: number;
+  readonly min: number[];
+  readonly max: number[];
+  readonly anchor: number[];
+  /** The nearest hit, on the CPU; null where nothing is hit. */
+  raycast(origin: Numbers, direction: Numbers,
+          options?: {near?: number, far?: number, twoSided?: boolean}): Hit | null;
+  dispose(): void;
+}
+
+/** An asset on the GPU. Keep the asset for as long: after a lost context it is read again. */
+export class Model {
+  readonly asset: Asset;
+  readonly ready: boolean;
+  readonly gpuBytes: number;
+  /** Sends up to `maxBytes`, 0 for all; returns whether that was the rest. Draws send all. */
+  upload(maxBytes?: number): boolean;
+  dispose(): void;
+}
+
+/** Fragment mains of your own: GLSL as gtx_shading_create takes it. */
+export class Shading {
+  readonly programs: WebGLProgram[];
+  set(uniforms: Record<string, number | Numbers | {int: number} | {vec3: Numbers} |
+                               {mat4: Numbers}>): void;
+  dispose(): void;
+}
+
+export interface View {
+  /** Column-major, world to eye, and eye to clip. */
+  view: Numbers;
+  projection: Numbers;
+  /** Of the viewport, in pixels. */
+  width?: number;
+  height?: number;
+  /** World space, towards the light; none is a headlight. */
+  light?: Numbers;
+  /** Share of colour without light; 0.2. */
+  ambient?: number;
+  /** Pixels; 0.5. */
+  maxError?: number;
+  method?: number;
+  pass?: number;
+  level?: number;
+  /** 1: reversed depth; 2: depth from 0 to 1. */
+  flags?: number;
+  shading?: Shading;
+}
+
+export interface Instance {
+  model: Model;
+  /** Column-major and affine; none is the identity. */
+  transform?: Numbers;
+  /** Multiplies the colour; none is white. */
+  tint?: Numbers;
+}
+
+export class Geotex {
+  /** `gl` stays the page's: its state is left as it was by every call. */
+  static create(gl: WebGL2RenderingContext,
+                options?: {wasm?: string, log?: (line: string) => void}): Promise<Geotex>;
+  /** Throws GeotexError where the bytes are no whole, sound `.gtx`. They are not kept. */
+  open(bytes: ArrayBuffer | ArrayBufferView): Asset;
+  model(asset: Asset): Model;
+  shading(text: string): Shading;
+  draw(view: View, instances: Instance[]): void;
+  dispose(): void;
+}

@@ -1,0 +1,75 @@
+# geotex as WebAssembly: `make web` builds the npm package in build/web/geotex.
+# Needs Debian's emscripten; the decoder of zstd is compiled from Debian's source package.
+web := $(build)/web
+web_package := $(web)/geotex
+# Debian's emscripten does not find its own acorn.
+emcc := NODE_PATH=/usr/share/nodejs emcc
+# -Os: 128 KB gzipped; -O3 has 148, of the 150 that a page is to wait for at most.
+web_flags := -std=c11 -Os -Wall -Wextra $(if $(filter 1,$(werror)),-Werror) -ffp-contract=off \
+             -fvisibility=hidden -Iinclude -Ilib -Ishaders -DGTX_BUILDING -DGTX_ZSTD
+web_sources := $(foreach r,$(ROOMS_CORE),$(wildcard lib/$(r)/*.c lib/$(r)/*/*.c))
+web_objects := $(web_sources:%.c=$(web)/%.o) $(web)/shader_sources.o
+zstd_dir := $(web)/zstd/lib
+
+# Lists of Debian's sources of our own: those of the machine stay as they are.
+apt_source := apt-get -qq -o Dir::Etc::SourceList=$$PWD/sources.list \
+              -o Dir::Etc::SourceParts=/dev/null -o Dir::State::Lists=$$PWD/lists \
+              -o APT::Sandbox::User=root
+$(web)/zstd/.fetched:
+	$(say) FETCH $(@D)
+	$(Q)rm -rf $(@D) && mkdir -p $(@D)/lists/partial && cd $(@D) && \
+	  echo 'deb-src http://deb.debian.org/debian bookworm main' > sources.list && \
+	  $(apt_source) update && $(apt_source) source --download-only libzstd && \
+	  tar xf libzstd_*.orig.tar.xz --strip-components=1 && touch .fetched
+
+$(web)/zstd.o: $(web)/zstd/.fetched
+	$(say) EMCC $@
+	$(Q)$(emcc) -O3 -DZSTD_DISABLE_ASM=1 -DDEBUGLEVEL=0 -DZSTD_STRIP_ERROR_STRINGS \
+	  -I$(zstd_dir) -I$(zstd_dir)/common -r -o $@ $(zstd_dir)/common/entropy_common.c \
+	  $(addprefix $(zstd_dir)/common/,error_private.c fse_decompress.c xxhash.c zstd_common.c) \
+	  $(addprefix $(zstd_dir)/decompress/,huf_decompress.c zstd_ddict.c zstd_decompress.c \
+	    zstd_decompress_block.c)
+
+$(web)/shader_sources.o: $(out)/gen/shader_sources.c
+	$(Q)$(emcc) $(web_flags) -c $< -o $@
+$(web)/%.o: %.c $(web)/zstd/.fetched
+	@mkdir -p $(@D)
+	$(say) EMCC $<
+	$(Q)$(emcc) $(web_flags) -I$(zstd_dir) -MMD -MP -c $< -o $@
+
+# An archive: what nothing calls, such as encoding, stays out.
+$(web)/core.a: $(web_objects)
+	$(Q)rm -f $@ && emar qcs $@ $^
+comma := ,
+space := $() $()
+web_methods := GL HEAPU8 HEAPU32 HEAPF32 HEAPF64 UTF8ToString stringToUTF8 lengthBytesUTF8
+$(web_package)/core.js: $(web)/lib/web/core.o $(web)/core.a $(web)/zstd.o
+	@mkdir -p $(@D)
+	$(say) LINK $@
+	$(Q)$(emcc) -O3 --closure 0 -o $@ $^ --no-entry \
+	  -sMODULARIZE=1 -sEXPORT_ES6=1 -sENVIRONMENT=web,worker -sFILESYSTEM=0 -sMALLOC=emmalloc \
+	  -sMIN_WEBGL_VERSION=2 -sMAX_WEBGL_VERSION=2 -sALLOW_MEMORY_GROWTH=1 \
+	  -sGL_SUPPORT_AUTOMATIC_ENABLE_EXTENSIONS=0 -sINCOMING_MODULE_JS_API=[locateFile] \
+	  -sEXPORTED_RUNTIME_METHODS=$(subst $(space),$(comma),$(web_methods)) \
+	  -sEXPORTED_FUNCTIONS=_malloc,_free
+
+$(web_package)/%: lib/web/%
+	@mkdir -p $(@D)
+	$(Q)cp $< $@
+$(web_package)/LICENSE: LICENSE
+	@mkdir -p $(@D)
+	$(Q)cp $< $@
+
+web: $(addprefix $(web_package)/,core.js geotex.js geotex.d.ts three.js three.d.ts package.json \
+     README.md LICENSE) ## the npm package geotex, as WebAssembly (needs emscripten)
+	@cd $(web_package) && echo "$$PWD: $$(cat core.wasm core.js geotex.js | gzip -9 | wc -c)" \
+	  "bytes of core and glue, gzipped"
+
+# A project as a page's author has it: installs the package, checks its types, is built by Vite.
+web-test: web ## the package in a real Chromium (needs chromium, node and npm's registry)
+	$(Q)rm -rf $(web)/app && cp -r tests/web/app $(web)/app && cd $(web)/app && \
+	  npm pack --silent ../geotex >/dev/null && \
+	  npm install --silent --no-fund --no-audit ./geotex-$(VERSION).tgz && npm run --silent build
+	$(again) test-web
+.PHONY: web web-test
+-include $(wildcard $(web)/lib/*/*.d $(web)/lib/*/*/*.d)
