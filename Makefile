@@ -21,7 +21,7 @@ VERSION := 0.1.0
 SOVERSION := 0
 
 # ---- rooms: what each needs. Imports run one way, from right to left -----------------------------
-ROOMS_CORE := base asset derive trace edit render
+ROOMS_CORE := base asset derive trace edit stream render
 ROOMS_COOK := image mesh grid chart bake measure cook world
 
 needs_base    := base
@@ -31,6 +31,7 @@ needs_trace   := $(needs_derive) trace
 needs_edit    := $(needs_trace) edit
 needs_image   := base image
 needs_host    := base image host
+needs_stream  := base asset stream
 needs_render  := $(needs_derive) render
 needs_mesh    := base image mesh
 needs_grid    := $(needs_mesh) grid
@@ -38,7 +39,7 @@ needs_chart   := $(needs_mesh) chart
 needs_bake    := $(needs_asset) image mesh grid chart bake
 needs_measure := $(needs_trace) image mesh measure
 needs_cook    := $(needs_trace) image mesh grid chart bake measure cook
-needs_world   := $(needs_cook) world
+needs_world   := $(needs_cook) stream world
 needs_cli     := $(needs_world) edit render host cli
 
 rooms := $(ROOMS_CORE) $(ROOMS_COOK) host cli
@@ -157,7 +158,7 @@ $(lib_cook): $(call objects_of,$(ROOMS_COOK))
 	$(Q)rm -f $@ && $(AR) qcs $@ $^
 
 # What a shared library exports: the functions that its headers declare, and nothing else.
-$(out)/gen/libgeotex.map: $(addprefix include/geotex/,geotex.h edit.h solid.h render.h)
+$(out)/gen/libgeotex.map: $(addprefix include/geotex/,geotex.h edit.h solid.h render.h stream.h)
 $(out)/gen/libgeotex-cook.map: include/geotex/cook.h
 $(out)/gen/%.map: Makefile
 	@mkdir -p $(@D)
@@ -174,7 +175,7 @@ $(so_cook): $(call objects_of,$(ROOMS_COOK)) $(so_core) | $(out)/gen/libgeotex-c
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -shared -Wl,-soname,libgeotex-cook.so.$(SOVERSION) -Wl,--no-undefined \
 	  -Wl,--version-script=$(out)/gen/libgeotex-cook.map -o $@ \
-	  $(call objects_of,$(ROOMS_COOK) base asset derive trace) $(call libs_of,asset mesh)
+	  $(call objects_of,$(ROOMS_COOK) base asset derive trace stream) $(call libs_of,asset mesh)
 	$(Q)ln -sf $(@F) $(out)/libgeotex-cook.so.$(SOVERSION) && ln -sf $(@F) $(out)/libgeotex-cook.so
 
 # It is looked for beside the program that asks: links for those that lie elsewhere.

@@ -129,19 +129,29 @@ void gtx_json_string(gtx_json *json, const char *key, const char *value)
     append_string(json, value);
 }
 
-void gtx_json_number(gtx_json *json, const char *key, double value)
+static void write_number(gtx_json *json, const char *key, double value, int digits)
 {
     char text[40];
     if (!isfinite(value)) {
         gtx_json_null(json, key);
         return;
     }
-    int size = snprintf(text, sizeof text, "%.9g", value);
+    int size = snprintf(text, sizeof text, "%.*g", digits, value);
     for (char *p = text; *p; ++p)
         if (*p == ',') /* the decimal point of some locales */
             *p = '.';
     begin_value(json, key);
     append(json, text, (size_t)size);
+}
+
+void gtx_json_number(gtx_json *json, const char *key, double value)
+{
+    write_number(json, key, value, 9);
+}
+
+void gtx_json_exact(gtx_json *json, const char *key, double value)
+{
+    write_number(json, key, value, 17);
 }
 
 void gtx_json_integer(gtx_json *json, const char *key, uint64_t value)

@@ -30,6 +30,8 @@ void gtx_json_begin_array(gtx_json *json, const char *key);
 void gtx_json_end_array(gtx_json *json);
 void gtx_json_string(gtx_json *json, const char *key, const char *value);
 void gtx_json_number(gtx_json *json, const char *key, double value); /* null unless finite */
+/* With all the digits that a double has. */
+void gtx_json_exact(gtx_json *json, const char *key, double value);
 void gtx_json_integer(gtx_json *json, const char *key, uint64_t value);
 void gtx_json_bool(gtx_json *json, const char *key, bool value);
 /* A hash as "0x" and 16 hexadecimal digits: JSON numbers lose bits beyond 2^53. */

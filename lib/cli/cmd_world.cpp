@@ -51,8 +51,9 @@ static const verb steps_of_world[] = {
      "Makes the surface of a tile from those of its children: DIR/work/merge/TILE.",
      2, 2, step_options},
     {"world index", "DIR",
-     "Writes DIR/tileset.json once all tiles are cooked. A step whose result is there does\n"
-     "nothing; killed and begun again, any number at a time, they make the same bytes.",
+     "Writes DIR/tileset.json, and DIR/tiles.gtw for gtx_stream_create, once all tiles are\n"
+     "cooked. A step whose result is there does nothing; killed and begun again, any number at\n"
+     "a time, they make the same bytes.",
      1, 1, step_options},
 };
 enum { PLAN, SPLIT, COOK, MERGE, INDEX, STEPS };

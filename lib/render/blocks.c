@@ -213,7 +213,7 @@ bool gtx_blocks_fill(const gtx_draw_call *draw, const gtx_model *model,
     gtx_grids *grids = &renderer->grids;
     const gtx_frustum f = gtx_frustum_of(draw, model, placed);
     const bool all = draw->view->method == GTX_METHOD_GRID;
-    const bool tiles = gtx_stream_suits(renderer, draw->view);
+    const bool tiles = gtx_tile_stream_suits(renderer, draw->view);
     const fill nothing = {.vertices = 0};
     uint32_t left = 0;
     empty_to(grids, &nothing);

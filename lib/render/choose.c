@@ -19,7 +19,7 @@ static const gtx_costs *costs_of(const gtx_draw_call *draw)
     const bool none = told->lod_triangle == 0 && told->lod_pixel == 0 &&
                       told->cast_patch == 0 && told->cast_pixel == 0 &&
                       told->grid_triangle == 0;
-    return none ? &measured[gtx_stream_suits(draw->renderer, draw->view)] : told;
+    return none ? &measured[gtx_tile_stream_suits(draw->renderer, draw->view)] : told;
 }
 
 /* Where the nearest corner of the bounds is closer than this fraction of the distance to their

@@ -56,7 +56,7 @@ static gtx_result need_programs(const gtx_draw_call *draw, gtx_error *error)
         [TECHNIQUE_CAST] = !paper,
         [TECHNIQUE_BOX] = !paper,
         [TECHNIQUE_PAPER] = paper,
-        [TECHNIQUE_TILES] = gtx_stream_suits(draw->renderer, view),
+        [TECHNIQUE_TILES] = gtx_tile_stream_suits(draw->renderer, view),
         [TECHNIQUE_LOD] = !paper,
         [TECHNIQUE_LOD_FRONT] = !paper && view->pass == GTX_PASS_FORWARD,
         [TECHNIQUE_GRID] = !paper,

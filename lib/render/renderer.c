@@ -63,7 +63,7 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
         gtx_free_array(&hooks, renderer, 1, sizeof *renderer);
         return result;
     }
-    gtx_stream_create(renderer);
+    gtx_tile_stream_create(renderer);
     gtx_grids_create(renderer);
     result = gtx_programs_create(renderer, error);
     if (result) {
@@ -81,7 +81,7 @@ void gtx_renderer_destroy(gtx_renderer *renderer)
     if (!renderer)
         return;
     gtx_programs_destroy(renderer);
-    gtx_stream_destroy(renderer);
+    gtx_tile_stream_destroy(renderer);
     gtx_grids_destroy(renderer);
     renderer->gl.DeleteVertexArrays(1, &renderer->vertex_array);
     renderer->gl.DeleteBuffers(1, &renderer->instance_buffer);

@@ -125,12 +125,12 @@ static bool cast_tiles(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
 {
     gtx_renderer *renderer = draw->renderer;
     const gtx_instance_data *placed = &renderer->instances[instance];
-    if (!gtx_stream_suits(renderer, draw->view) || !gtx_tiles_fill(draw, r->model, placed))
+    if (!gtx_tile_stream_suits(renderer, draw->view) || !gtx_tiles_fill(draw, r->model, placed))
         return false;
     if (!renderer->tiles.tile_count)
         return true;
     use_program(draw, program_of(draw, r->model, TECHNIQUE_TILES), r->model);
-    gtx_stream_draw(draw, placed);
+    gtx_tile_stream_draw(draw, placed);
     renderer->gl.BindVertexArray(renderer->vertex_array);
     return true;
 }

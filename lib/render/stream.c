@@ -11,7 +11,7 @@ void gtx_tiles_free(gtx_renderer *renderer)
         gtx_scratch_free(&renderer->allocator, all[i]);
 }
 
-void gtx_stream_create(gtx_renderer *renderer)
+void gtx_tile_stream_create(gtx_renderer *renderer)
 {
     const gtx_gl *gl = &renderer->gl;
     gtx_tiles *t = &renderer->tiles;
@@ -40,7 +40,7 @@ void gtx_stream_create(gtx_renderer *renderer)
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
 }
 
-void gtx_stream_destroy(gtx_renderer *renderer)
+void gtx_tile_stream_destroy(gtx_renderer *renderer)
 {
     const gtx_gl *gl = &renderer->gl;
     gtx_tiles *t = &renderer->tiles;
@@ -52,7 +52,7 @@ void gtx_stream_destroy(gtx_renderer *renderer)
     gl->DeleteTextures(1, &t->stream_texture);
 }
 
-bool gtx_stream_suits(const gtx_renderer *renderer, const gtx_view *view)
+bool gtx_tile_stream_suits(const gtx_renderer *renderer, const gtx_view *view)
 {
     const uint32_t most = 65528; /* corners are counted in 16 bits */
     return renderer->gl.TexBuffer && !view->shading && view->method != GTX_METHOD_PAPER &&
@@ -83,7 +83,7 @@ static void send(const gtx_gl *gl, const gtx_tiles *t)
     }
 }
 
-void gtx_stream_draw(const gtx_draw_call *draw, const gtx_instance_data *placed)
+void gtx_tile_stream_draw(const gtx_draw_call *draw, const gtx_instance_data *placed)
 {
     const gtx_gl *gl = &draw->renderer->gl;
     gtx_tiles *t = &draw->renderer->tiles;

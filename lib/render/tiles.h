@@ -27,11 +27,11 @@ bool gtx_tiles_fill(const gtx_draw_call *draw, const gtx_model *model,
 void gtx_tiles_free(gtx_renderer *renderer);
 
 /* The objects of casting by tiles. Where they cannot be made, nothing is cast so. */
-void gtx_stream_create(gtx_renderer *renderer);
-void gtx_stream_destroy(gtx_renderer *renderer);
+void gtx_tile_stream_create(gtx_renderer *renderer);
+void gtx_tile_stream_destroy(gtx_renderer *renderer);
 /* Whether what a view casts is cast by tiles. */
-bool gtx_stream_suits(const gtx_renderer *renderer, const gtx_view *view);
+bool gtx_tile_stream_suits(const gtx_renderer *renderer, const gtx_view *view);
 /* Draws what the tiles hold by the program in use. Leaves the tiles' vertex array. */
-void gtx_stream_draw(const gtx_draw_call *draw, const gtx_instance_data *placed);
+void gtx_tile_stream_draw(const gtx_draw_call *draw, const gtx_instance_data *placed);
 
 #endif

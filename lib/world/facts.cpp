@@ -41,7 +41,7 @@ static void write_point(Json &out, const char *name, const Vec3d &p)
 {
     gtx_json_begin_array(&out, name);
     for (int k = 0; k < 3; ++k)
-        gtx_json_number(&out, nullptr, p[k]);
+        gtx_json_exact(&out, nullptr, p[k]);
     gtx_json_end_array(&out);
 }
 
@@ -54,11 +54,12 @@ void write_facts(const Plan &plan, const Tile &tile, const TileFacts &facts)
     gtx_json_integer(&out, "lod_triangles", facts.lod_triangles);
     write_point(out, "low", facts.low);
     write_point(out, "high", facts.high);
-    gtx_json_number(&out, "error", facts.error);
+    gtx_json_exact(&out, "error", facts.error);
     gtx_json_bool(&out, "empty", facts.empty);
     write_file(out, "asset", facts.asset);
     write_file(out, "glb", facts.glb);
     write_file(out, "low_surface", facts.low_surface);
+    gtx_json_integer(&out, "memory", facts.memory);
     gtx_json_end_object(&out);
     check_written(out);
     write_whole(facts_path(plan, tile), std::string(out.text, out.size));
@@ -93,6 +94,7 @@ TileFacts read_facts(const Plan &plan, const Tile &tile)
         facts.asset = read_file(root.at("asset"));
         facts.glb = read_file(root.at("glb"));
         facts.low_surface = read_file(root.at("low_surface"));
+        facts.memory = root.at("memory");
     } catch (const json::exception &) {
         throw Error(GTX_ERROR_INPUT, path + " is none that gtx world cook wrote");
     }

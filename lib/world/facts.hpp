@@ -17,6 +17,7 @@ struct TileFacts {
     double error = 0;                /* from the source, of what the GLB has too */
     bool empty = false;              /* nothing but triangles without area: no asset */
     MadeFile asset, glb, low_surface;
+    uint64_t memory = 0;             /* that opening the asset takes, at most */
 
     void add(const Vec3d &p);
 };

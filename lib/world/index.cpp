@@ -1,9 +1,12 @@
-/* The last step: tileset.json (OGC 3D Tiles 1.1), once every tile is there. */
+/* The last step, once every tile is there: tileset.json (OGC 3D Tiles 1.1), and tiles.gtw
+ * (format/world.md). */
 #include "world/facts.hpp"
 
 #include "cook/report.hpp"
+#include "stream/index.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace gtx {
 
@@ -14,6 +17,8 @@ struct Entry {
     Vec3d low, high;
     double error = 0;
     bool empty = false;
+    MadeFile asset;
+    uint64_t memory = 0;
 };
 
 } // namespace
@@ -27,7 +32,8 @@ static Vector<Entry> entries_of(const Plan &plan)
         if (!are_there(plan, tile, facts, false))
             throw Error(GTX_ERROR_READ, "the files of the tile " + tile.name + " are not those "
                                         "that were cooked");
-        entries.push_back({facts.low, facts.high, facts.error, facts.empty});
+        entries.push_back({facts.low, facts.high, facts.error, facts.empty, facts.asset,
+                           facts.memory});
     }
     for (size_t n = entries.size(); n-- > 1;) {
         Entry &parent = entries[plan.tiles[n].parent];
@@ -48,7 +54,7 @@ static void write_box(Json &out, const Entry &e)
     gtx_json_begin_object(&out, "boundingVolume");
     gtx_json_begin_array(&out, "box");
     for (double number : box)
-        gtx_json_number(&out, nullptr, number);
+        gtx_json_exact(&out, nullptr, number);
     gtx_json_end_array(&out);
     gtx_json_end_object(&out);
 }
@@ -57,7 +63,7 @@ static void write_unit(Json &out, double unit)
 {
     gtx_json_begin_array(&out, "transform");
     for (int i = 0; i < 16; ++i)
-        gtx_json_number(&out, nullptr, i == 15 ? 1 : i % 5 ? 0 : unit);
+        gtx_json_exact(&out, nullptr, i == 15 ? 1 : i % 5 ? 0 : unit);
     gtx_json_end_array(&out);
 }
 
@@ -79,7 +85,7 @@ static void write_tile(Json &out, const Plan &plan, const Vector<Entry> &entries
     const Tile &tile = plan.tiles[number];
     gtx_json_begin_object(&out, key);
     write_box(out, entries[number]);
-    gtx_json_number(&out, "geometricError", entries[number].error);
+    gtx_json_exact(&out, "geometricError", entries[number].error);
     if (!number) {
         gtx_json_string(&out, "refine", "REPLACE");
         if (plan.unit != 1)
@@ -94,6 +100,46 @@ static void write_tile(Json &out, const Plan &plan, const Vector<Entry> &entries
         gtx_json_end_array(&out);
     }
     gtx_json_end_object(&out);
+}
+
+/* As a float that is not less. */
+static float no_less(double error)
+{
+    const float rounded = float(error);
+    return double(rounded) < error ? std::nextafter(rounded, INFINITY) : rounded;
+}
+
+static std::string index_of(const Plan &plan, const Vector<Entry> &entries)
+{
+    Vector<gtx_index_tile> tiles;
+    for (size_t n = 0; n < entries.size(); ++n) {
+        const Entry &e = entries[n];
+        gtx_index_tile tile = {};
+        if (plan.tiles[n].name.size() >= sizeof tile.name)
+            throw Error(GTX_ERROR_INPUT, "the plan is none that gtx world plan wrote");
+        for (int k = 0; k < 3; ++k) {
+            tile.low[k] = e.low[k];
+            tile.high[k] = e.high[k];
+        }
+        tile.error = no_less(e.error);
+        tile.parent = plan.tiles[n].parent;
+        tile.bytes = e.asset.size;
+        tile.hash = e.asset.size ? e.asset.hash : 0;
+        tile.memory = e.memory;
+        std::copy(plan.tiles[n].name.begin(), plan.tiles[n].name.end(), tile.name);
+        tiles.push_back(tile);
+    }
+    if (tiles.size() > GTX_INDEX_MAX_TILES)
+        throw Error(GTX_ERROR_LIMIT, "a world has at most 2^20 tiles: --triangles must allow more");
+    std::string out(GTX_INDEX_HEADER + tiles.size() * GTX_INDEX_RECORD, 0);
+    gtx_index_write(tiles.data(), uint32_t(tiles.size()), plan.unit,
+                    reinterpret_cast<uint8_t *>(&out[0]));
+    gtx_error error;
+    for (uint32_t n = 0; n < tiles.size(); ++n) /* facts and plan are files that anyone may write */
+        if (gtx_index_read(reinterpret_cast<const uint8_t *>(out.data()), &tiles[n], n, &error))
+            throw Error(GTX_ERROR_INPUT, std::string(error.message) + ": the plan or the tile's "
+                                                                      "facts are none of ours");
+    return out;
 }
 
 StepReport index_world(const std::string &folder, Task &task)
@@ -113,6 +159,7 @@ StepReport index_world(const std::string &folder, Task &task)
     gtx_json_end_object(&out);
     check_written(out);
     write_whole(folder + "/tileset.json", std::string(out.text, out.size));
+    write_whole(folder + "/" GTX_INDEX_FILE, index_of(plan, entries));
     task.end();
     return {std::to_string(plan.tiles.size()) + " tiles", false};
 }

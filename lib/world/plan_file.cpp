@@ -125,7 +125,7 @@ void write_plan(const Plan &plan)
     gtx_json_integer(&out, "memory", plan.memory);
     gtx_json_bool(&out, "glb", plan.glb);
     gtx_json_string(&out, "up", plan.z_up ? "z" : "y");
-    gtx_json_number(&out, "unit", plan.unit);
+    gtx_json_exact(&out, "unit", plan.unit);
     gtx_json_bool(&out, "doubles", plan.traits.doubles);
     gtx_json_bool(&out, "normals", plan.traits.normals);
     gtx_json_bool(&out, "colors", plan.traits.colors);
@@ -174,8 +174,10 @@ static Tile read_tile(const json &from, Plan &plan)
     require_plan(is_name(tile.name) && tile.name.size() > tile.depth && tile.triangles > 0);
     require_plan(number ? tile.parent < number : tile.parent == 0 && tile.depth == 0);
     if (number) {
-        require_plan(tile.depth == plan.tiles[tile.parent].depth + 1 &&
-                     tile.depth >= plan.tiles.back().depth);
+        const Tile &parent = plan.tiles[tile.parent]; /* octants between them may have one child */
+        require_plan(tile.depth == parent.depth + 1 && tile.depth >= plan.tiles.back().depth &&
+                     tile.name.compare(0, parent.name.size(), parent.name) == 0 &&
+                     tile.name.size() > parent.name.size());
         plan.tiles[tile.parent].children.push_back(number);
     }
     return tile;

@@ -34,7 +34,7 @@ static void plan(const char *world, const char *engine)
 /* Of every tile, and of what says where they are. */
 static const char *hashes(const char *world)
 {
-    expect(shell("cd %s && find tiles tileset.json -name '[!.]*' -type f | sort | xargs sha256sum",
+    expect(shell("cd %s && find tiles tileset.json tiles.gtw -name '[!.]*' -type f | sort | xargs sha256sum",
                  world), 0);
     assert_non_null(strstr(output, "tiles/r.gtx"));
     assert_non_null(strstr(output, "tiles/r.glb"));

@@ -115,6 +115,7 @@ static void a_wrong_include_does_not_compile(void **state)
         {"bake", "mesh/vec.hpp", true},        {"bake", "cook/options.hpp", false},
         {"measure", "trace/caster.h", true},   {"measure", "bake/bake.hpp", false},
         {"world", "cook/options.hpp", true},   {"cook", "world/world.hpp", false},
+        {"stream", "asset/asset.h", true},     {"stream", "render/model.h", false},
         {"host", "image/image.h", true},       {"host", "asset/asset.h", false},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i)

@@ -1,0 +1,104 @@
+/* Budgets: what tiles take, and who leaves when there is no room. */
+#include "stream/stream.h"
+
+#include <math.h>
+
+/* What is in view leaves only for what mends an error so many times larger: at 1, two tiles of one
+ * value would take turns for ever; the larger, the longer the picture is uneven where the budgets
+ * are too small. */
+static const float WORTH = 2;
+
+void gtx_tile_cost(const gtx_stream *stream, const gtx_tile *tile, uint64_t *cpu, uint64_t *gpu)
+{
+    *cpu = tile->cost_cpu;
+    *gpu = tile->cost_gpu;
+    if (tile->known)
+        return;
+    const double share =
+        stream->known.bytes ? (double)tile->facts->bytes / (double)stream->known.bytes : 0;
+    *cpu = stream->known.bytes ? (uint64_t)(share * (double)stream->known.cpu)
+                               : tile->facts->memory;
+    *gpu = (uint64_t)(share * (double)stream->known.gpu);
+}
+
+void gtx_tile_learn(gtx_stream *stream, gtx_tile *tile, uint64_t cpu, uint64_t gpu)
+{
+    if (tile->known) {
+        stream->known.bytes -= tile->facts->bytes;
+        stream->known.cpu -= tile->cost_cpu;
+        stream->known.gpu -= tile->cost_gpu;
+    }
+    tile->known = true;
+    tile->cost_cpu = cpu;
+    tile->cost_gpu = gpu;
+    stream->known.bytes += tile->facts->bytes;
+    stream->known.cpu += cpu;
+    stream->known.gpu += gpu;
+}
+
+void gtx_tile_take(gtx_stream *stream, gtx_tile *tile, uint64_t cpu, uint64_t gpu)
+{
+    stream->cpu = stream->cpu - tile->cpu + cpu;
+    stream->gpu = stream->gpu - tile->gpu + gpu;
+    tile->cpu = cpu;
+    tile->gpu = gpu;
+}
+
+static bool fits(uint64_t taken, uint64_t freed, uint64_t more, uint64_t budget)
+{
+    const uint64_t left = taken - freed;
+    return left <= budget && more <= budget - left;
+}
+
+static bool may_leave(const gtx_stream *stream, const gtx_tile *tile, float value)
+{
+    if (tile->leaving || tile->users || tile == stream->tiles)
+        return false;
+    return tile->wanted < stream->update || WORTH * tile->value < value;
+}
+
+static bool leaves_before(const gtx_tile *a, const gtx_tile *b)
+{
+    if (a->wanted != b->wanted)
+        return a->wanted < b->wanted;
+    return a->value != b->value ? a->value < b->value : a > b;
+}
+
+static gtx_tile *next_to_leave(const gtx_stream *stream, float value)
+{
+    gtx_tile *best = NULL;
+    for (uint32_t i = 0; i < stream->there.count; ++i) {
+        gtx_tile *tile = &stream->tiles[stream->there.tiles[i]];
+        if (may_leave(stream, tile, value) && (!best || leaves_before(tile, best)))
+            best = tile;
+    }
+    return best;
+}
+
+bool gtx_stream_make_room(gtx_stream *stream, uint64_t cpu, uint64_t gpu, float value)
+{
+    const gtx_stream_desc *desc = &stream->desc;
+    uint64_t freed_cpu = 0, freed_gpu = 0;
+    uint32_t count = 0;
+    bool enough = true;
+    while (!fits(stream->cpu, freed_cpu, cpu, desc->cpu_bytes) ||
+           !fits(stream->gpu, freed_gpu, gpu, desc->gpu_bytes)) {
+        gtx_tile *tile = next_to_leave(stream, value);
+        enough = tile != NULL;
+        if (!enough)
+            break;
+        tile->leaving = true;
+        --gtx_tile_parent(stream, tile)->users;
+        freed_cpu += tile->cpu;
+        freed_gpu += tile->gpu;
+        stream->leaving[count++] = gtx_tile_number(stream, tile);
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+        gtx_tile *tile = &stream->tiles[stream->leaving[i]];
+        tile->leaving = false;
+        ++gtx_tile_parent(stream, tile)->users;
+    }
+    for (uint32_t i = 0; i < count && enough; ++i)
+        gtx_tile_drop(stream, &stream->tiles[stream->leaving[i]]);
+    return enough;
+}

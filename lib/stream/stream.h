@@ -1,0 +1,104 @@
+/* The inside of a gtx_stream: tiles and what is known of them, and the room that they take. */
+#ifndef GTX_STREAM_STREAM_H
+#define GTX_STREAM_STREAM_H
+
+#include "stream/eye.h"
+#include "stream/index.h"
+
+enum { GTX_STREAM_MAX_VIEWS = 16, GTX_STREAM_MAX_REQUESTS = 1024 };
+
+typedef enum gtx_tile_state {
+    GTX_TILE_ABSENT,
+    GTX_TILE_ASKED,
+    GTX_TILE_HELD,            /* delivered, not yet on the GPU */
+    GTX_TILE_READY,           /* may be drawn; of a tile without content from the start */
+    GTX_TILE_GIVEN_UP
+} gtx_tile_state;
+
+typedef struct gtx_tile {
+    const gtx_index_tile *facts;
+    uint32_t first_child, child_count;
+    gtx_tile_state state;
+    uint32_t users;           /* children that are asked for or there: it stays as long */
+    uint32_t tries;
+    bool known;               /* what it costs is known, not estimated */
+    bool leaving;             /* chosen to make room */
+    uint64_t cpu, gpu;        /* taken of the budgets now */
+    uint64_t cost_cpu, cost_gpu;
+    uint64_t sent;            /* bytes of its upload so far */
+    uint64_t request;         /* id, while asked for */
+    uint64_t asked, retry;    /* updates: of the request; of the next one, at the earliest */
+    uint64_t in_view, wanted; /* last updates that saw it; that would show it or what is below */
+    float pixels;             /* its error on screen, when last looked at */
+    float value;              /* the error on screen that it mends, that of its parent, when last
+                                 wanted */
+    void *payload;
+    uint32_t place;           /* in the list that its state puts it into */
+} gtx_tile;
+
+/* Numbers of tiles, each of which knows its place. */
+typedef struct gtx_tile_list {
+    uint32_t *tiles, count;
+} gtx_tile_list;
+
+struct gtx_stream {
+    gtx_allocator allocator;
+    gtx_stream_desc desc;     /* defaults filled in; no index */
+    gtx_stream_info info;
+    gtx_index_tile *facts;
+    gtx_tile *tiles;
+    uint64_t own_bytes;
+    uint64_t update, serial;
+    gtx_eye eyes[GTX_STREAM_MAX_VIEWS];
+    uint32_t eye_count;
+    uint64_t cpu, gpu;        /* taken */
+    struct {
+        uint64_t bytes, cpu, gpu;
+    } known;                  /* sums over tiles that are: files, and what they cost */
+    gtx_tile_list asked, there;
+    uint32_t *stack, *wants, *leaving;
+    uint32_t want_count;      /* tiles whose children are missing */
+    gtx_stream_request *requests;
+    gtx_stream_upload *uploads;
+    gtx_stream_draw *draws;
+    gtx_stream_frame frame;
+};
+
+/* ---- room.c ---- */
+
+/* What a tile is going to take once it is there, known or as others do. */
+void gtx_tile_cost(const gtx_stream *stream, const gtx_tile *tile, uint64_t *cpu, uint64_t *gpu);
+void gtx_tile_learn(gtx_stream *stream, gtx_tile *tile, uint64_t cpu, uint64_t gpu);
+
+/* Sets what a tile takes. */
+void gtx_tile_take(gtx_stream *stream, gtx_tile *tile, uint64_t cpu, uint64_t gpu);
+
+/* Sees to it that so much more can be taken, for what mends an error of `value` pixels; a value of
+ * 0 drops nothing that is in view. All or nothing. */
+bool gtx_stream_make_room(gtx_stream *stream, uint64_t cpu, uint64_t gpu, float value);
+
+/* ---- answers.c ---- */
+
+/* Gives the payload back. */
+void gtx_tile_drop(gtx_stream *stream, gtx_tile *tile);
+void gtx_tile_ask(gtx_stream *stream, gtx_tile *tile);
+/* Its request brought nothing. `counts`: as one of its tries. */
+void gtx_tile_fail(gtx_stream *stream, gtx_tile *tile, const gtx_error *error, bool counts);
+void gtx_tile_uri(const gtx_tile *tile, char out[GTX_STREAM_URI]);
+
+/* ---- update.c ---- */
+
+void gtx_list_add(gtx_stream *stream, gtx_tile_list *list, gtx_tile *tile);
+void gtx_list_remove(gtx_stream *stream, gtx_tile_list *list, gtx_tile *tile);
+
+static inline gtx_tile *gtx_tile_parent(const gtx_stream *stream, const gtx_tile *tile)
+{
+    return &stream->tiles[tile->facts->parent];
+}
+
+static inline uint32_t gtx_tile_number(const gtx_stream *stream, const gtx_tile *tile)
+{
+    return (uint32_t)(tile - stream->tiles);
+}
+
+#endif
