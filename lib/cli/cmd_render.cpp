@@ -1,4 +1,4 @@
-/* gtx render: assets, meshes and scenes into a PNG, without a window. */
+/* gtx render: assets, meshes, worlds and scenes into a PNG, without a window. */
 #include "cli/guard.hpp"
 #include "cli/view/still.hpp"
 #include "image/image.h"
@@ -31,8 +31,8 @@ static const option options[] = {
 
 static const verb render = {
     "render", "FILE... -o OUT.png",
-    "Draws assets, polygon models and glTF scenes into a PNG. A glTF node with the extras\n"
-    "{\"geotex\": \"a.gtx\"} places an asset.",
+    "Draws assets, polygon models, worlds (DIR of gtx world) and glTF scenes into a PNG. A glTF\n"
+    "node with the extras {\"geotex\": \"a.gtx\"} places an asset.",
     1, 64, options};
 
 static int write_images(const gtx::Still &still)

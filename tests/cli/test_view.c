@@ -264,6 +264,30 @@ static void it_walks_on_the_asset(void **state)
         gtx_image_free(&shown[i]);
 }
 
+/* Tiles come while frames are drawn; the last one is what render draws. One walks on them. */
+static void a_world_is_shown_and_walked_on(void **state)
+{
+    (void)state;
+    if (!server)
+        skip();
+    write_sphere("big.obj", 40);
+    expect(gtx("world plan big.obj -o world --triangles 2k --engine shell -q"), 0);
+    char command[256];
+    snprintf(command, sizeof command, "sh %s >/dev/null 2>&1", in_folder("world/build.sh"));
+    expect(system(command), 0);
+    gtx_image shown = view("world", "t"), text = view("world", "."), walked = view("world", "gwwt");
+    expect(gtx("render world --camera 30,20,5 --size 320x240 -o drawn.png"), 0);
+    gtx_image drawn = picture("drawn.png");
+    assert_true(difference(&shown, &drawn, false) < 320 * 240 / 1000);
+    assert_true(difference(&shown, &text, true) > 1000);
+    assert_true(difference(&shown, &walked, false) > 3000);
+    assert_true(abs(pixel(&walked, 160, 230)[0] - pixel(&walked, 160, 10)[0]) > 10);
+    gtx_image_free(&shown);
+    gtx_image_free(&text);
+    gtx_image_free(&walked);
+    gtx_image_free(&drawn);
+}
+
 static void drops_are_opened_cooked_cancelled(void **state)
 {
     (void)state;
@@ -296,6 +320,7 @@ int main(void)
         cmocka_unit_test(resized_and_minimised_it_goes_on),
         cmocka_unit_test(it_walks_on_the_asset),
         cmocka_unit_test(screenshots_get_free_names),
+        cmocka_unit_test(a_world_is_shown_and_walked_on),
         cmocka_unit_test(drops_are_opened_cooked_cancelled),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);

@@ -34,8 +34,8 @@ static void plan(const char *world, const char *engine)
 /* Of every tile, and of what says where they are. */
 static const char *hashes(const char *world)
 {
-    expect(shell("cd %s && find tiles tileset.json tiles.gtw -name '[!.]*' -type f | sort | xargs sha256sum",
-                 world), 0);
+    expect(shell("cd %s && find tiles tileset.json tiles.gtw -name '[!.]*' -type f | sort | "
+                 "xargs sha256sum", world), 0);
     assert_non_null(strstr(output, "tiles/r.gtx"));
     assert_non_null(strstr(output, "tiles/r.glb"));
     assert_non_null(strstr(output, "tileset.json"));
@@ -203,6 +203,28 @@ static void triangles_come_from_stdin(void **state)
     refuses("world plan - -o raw-world <raw", 3, "no whole number of triangles");
 }
 
+/* Read as a stream asks for it; what is not as the index tells ends in one line, without a
+ * picture. */
+static void a_world_is_drawn(void **state)
+{
+    (void)state;
+    expect(gtx("render one -o world.png --size 96x64 --max-error 0.1"), 0);
+    expect(shell("file world.png | grep -q 96 || test -s world.png"), 0);
+    expect(shell("cp -r one shown; rm shown/tiles/r.gtx"), 0);
+    refuses("render shown -o no.png", 2, "shown: error[read]: tiles/r.gtx: No such file");
+    expect(shell("head -c 5000 one/tiles/r.gtx >shown/tiles/r.gtx"), 0);
+    refuses("render shown -o no.png", 3, "tiles/r.gtx: the tile ends after 5000 of");
+    expect(shell("cp one/tiles/r.gtx shown/tiles; for t in shown/tiles/r?.gtx; do "
+                 "cp one/tiles/r.gtx $t; done"), 0);
+    expect(gtx("render shown -o far.png --size 64x48 --camera 30,20,60"), 0);
+    expect(gtx("render shown -o no.png --max-error 0.001"), 3);
+    expect_text("the tile ");
+    expect(shell("printf x >>shown/tiles.gtw"), 0);
+    refuses("render shown -o no.png", 3, "shown: error[corrupt]: the header of the index");
+    assert_false(exists("no.png"));
+    refuses("render one -o one/tiles.gtw", 1, "one/tiles.gtw");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -214,6 +236,7 @@ int main(void)
         cmocka_unit_test(slurm_gets_jobs_that_wait),
         cmocka_unit_test(faults_are_one_line),
         cmocka_unit_test(triangles_come_from_stdin),
+        cmocka_unit_test(a_world_is_drawn),
     };
     return cmocka_run_group_tests(tests, cook_by_shell, tear_down);
 }

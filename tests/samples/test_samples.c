@@ -142,6 +142,42 @@ static void horizons_are_made_and_drawn(void **state)
     assert_int_equal(run("$S/horizons $T/nowhere --headless $T/x.png 2>/dev/null"), 1);
 }
 
+/* Pixels of sky below those of the ground. */
+static void assert_no_hole(const char *name)
+{
+    char path[256];
+    gtx_image image;
+    snprintf(path, sizeof path, "%s/%s.png", folder, name);
+    assert_int_equal(gtx_image_read(path, &image, NULL), GTX_OK);
+    for (uint32_t x = 0; x < image.width; ++x) {
+        uint32_t y = image.height;
+        while (y > 0 && memcmp(image.pixels + 4 * ((y - 1) * image.width + x), image.pixels, 3))
+            --y;
+        assert_in_range(y, 1, image.height / 2); /* the skyline */
+        while (y > 0 && !memcmp(image.pixels + 4 * ((y - 1) * image.width + x), image.pixels, 3))
+            --y;
+        assert_int_equal(y, 0);
+    }
+    gtx_image_free(&image);
+}
+
+/* Hills in tiles, which are read on a walk over them. */
+static void a_world_is_walked_through(void **state)
+{
+    (void)state;
+    assert_int_equal(
+        run("awk 'BEGIN { n = 121; print -996, n, 1, 1; print 0, n - 1, 0, n - 1; print n, 0, 0, 0;"
+            " print 0, 0, 0, 0, 0, 0, 0; for (j = 0; j < n; j++) for (i = 0; i < n; i++)"
+            " print 3 * sin(i / 9 + 1.3 * sin(j / 11)) * cos(j / 8) +"
+            " sin(i / 2.3) * cos(j / 2.9) * (1 + sin(i / 17)) / 1.6 }' >$T/hills.irap && "
+            "$GTX world plan $T/hills.irap -o $T/hills -q --triangles 4k --engine shell && "
+            "sh $T/hills/build.sh 2>$T/hills.log"), 0);
+    draws_picture_of("world", "$T/hills >$T/walk.log");
+    assert_no_hole("world");
+    assert_int_equal(run("grep -q '^600 frames' $T/walk.log && grep -q '16 tiles' $T/walk.log"), 0);
+    assert_int_equal(run("$S/world $T/nowhere --headless $T/x.png 2>/dev/null"), 1);
+}
+
 static void misuse_is_one_line(void **state)
 {
     const char *name = *state;
@@ -176,6 +212,7 @@ int main(void)
         PICTURE(filters),
         PICTURE(cellular),
         PICTURE(footprints),
+        cmocka_unit_test(a_world_is_walked_through),
         MISUSE(smallest),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

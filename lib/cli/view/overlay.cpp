@@ -1,6 +1,8 @@
 /* The text over the window of `gtx view`: status, progress, help. */
 #include "cli/view/viewer.hpp"
 
+#include <algorithm>
+
 namespace gtx {
 
 static std::string format_bytes(uint64_t bytes)
@@ -32,10 +34,14 @@ void Viewer::add_status(gtx_shapes &shapes, float dot)
     std::string lines = name + "\n" + std::to_string(facts.triangles) + " triangles  " +
                         std::to_string(facts.patches) + " patches  " + format_bytes(facts.bytes) +
                         " asset  " + format_bytes(scene_renderer->gpu_bytes()) + " GPU\n" + line;
-    if (scene.assets.empty() && scene.meshes.empty())
+    const std::string worlds = scene_renderer->world_status();
+    if (!worlds.empty())
+        lines += "\n" + worlds.substr(0, worlds.size() - 1);
+    if (scene.assets.empty() && scene.meshes.empty() && scene.worlds.empty())
         lines = "drop a model or an asset here";
     gtx_text_add(&shapes, 4 * dot, 4 * dot, &plain, (lines + "\nH: help").c_str());
-    gtx_text_add(&shapes, 4 * dot, (8 + 4 * GTX_TEXT_LINE) * dot, &loud, note.c_str());
+    const float below = float(std::count(lines.begin(), lines.end(), '\n') + 2) * GTX_TEXT_LINE;
+    gtx_text_add(&shapes, 4 * dot, (8 + below) * dot, &loud, note.c_str());
 }
 
 void Viewer::add_progress(gtx_shapes &shapes, float dot)

@@ -3,6 +3,7 @@
 
 #include "cli/cli.h"
 #include "host/jobs.h"
+#include "stream/index.h"
 
 #include <nlohmann/json.hpp>
 
@@ -145,7 +146,10 @@ bool is_asset(const std::string &path)
 
 void add_file(Scene &scene, const std::string &path, Task &task)
 {
-    if (is_asset(path))
+    if (is_world(path)) {
+        scene.worlds.push_back(open_world(path));
+        scene.sources.push_back(path + "/" GTX_INDEX_FILE);
+    } else if (is_asset(path))
         add_asset(scene, path, identity_transform);
     else if (ends_with(path, ".gltf"))
         add_gltf(scene, path, task);
@@ -175,6 +179,9 @@ void measure_bounds(Scene &scene)
     for (const Mesh &mesh : scene.meshes)
         for (const Vec3d &p : mesh.positions)
             add(p);
+    for (const PlacedWorld &world : scene.worlds)
+        for (const double *p : {world.info.low, world.info.high})
+            add({p[0], p[1], p[2]});
     for (const PlacedAsset &placed : scene.assets) {
         gtx_info info;
         gtx_get_info(placed.asset.get(), &info);

@@ -1,9 +1,10 @@
-/* What `gtx render` draws: assets and polygon models, placed in one coordinate system. */
+/* What `gtx render` draws: assets, polygon models and worlds, in one coordinate system. */
 #pragma once
 
 #include <geotex/geotex.h>
 
 #include "cli/cli.h"
+#include "cli/view/world.hpp"
 #include "mesh/mesh.hpp"
 
 #include <array>
@@ -32,13 +33,14 @@ struct PlacedAsset {
 struct Scene {
     Vector<PlacedAsset> assets;
     Vector<Mesh> meshes;      /* cleaned */
+    Vector<PlacedWorld> worlds;
     Vector<std::string> sources;  /* every file that it was made of */
     Vec3d centre;             /* bounding sphere of everything */
     double radius = 0;
 };
 
-/* Adds a .gtx asset, a polygon model, or a glTF scene whose nodes place assets through
- * `"extras": {"geotex": "FILE.gtx"}` (paths relative to the scene). Throws Error. */
+/* Adds a .gtx asset, a polygon model, the folder of a world, or a glTF scene whose nodes place
+ * assets through `"extras": {"geotex": "FILE.gtx"}` (paths relative to it). Throws Error. */
 void add_file(Scene &scene, const std::string &path, Task &task);
 
 /* Whether a file is to be opened as an asset: its name or first bytes. Throws Error: READ. */

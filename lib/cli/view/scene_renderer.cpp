@@ -5,6 +5,9 @@
 #include "cli/view/polygons.hpp"
 #include "host/jobs.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace gtx {
 
 SceneRenderer::SceneRenderer(gtx_host_load load)
@@ -31,6 +34,7 @@ SceneRenderer::~SceneRenderer()
 
 void SceneRenderer::clear()
 {
+    streams.clear();
     for (Uploaded &p : views) {
         for (gtx_model *model : p.models)
             gtx_model_destroy(renderer, model);
@@ -136,9 +140,49 @@ void SceneRenderer::draw(const gtx_view &view, DebugView debug)
     for (size_t i = 0; i < instances.size(); ++i)
         instances[i].model = p.models[i];
     gtx_error error;
+    add_worlds(view, instances);
     if (!instances.empty())
         require_ok(gtx_draw(renderer, &view, instances.data(), uint32_t(instances.size()), &error),
                    error);
+}
+
+void SceneRenderer::add_worlds(const gtx_view &view, Vector<gtx_instance> &instances)
+{
+    for (size_t i = streams.size(); i < scene->worlds.size(); ++i)
+        streams.push_back(std::make_unique<WorldStream>(scene->worlds[i], renderer, scene->centre,
+                                                        view.max_error));
+    for (auto &stream : streams)
+        if (settles)
+            stream->settle(view, instances);
+        else
+            stream->frame(view, instances);
+}
+
+bool SceneRenderer::is_settled() const
+{
+    for (const auto &stream : streams)
+        if (!stream->is_settled())
+            return false;
+    return streams.size() == scene->worlds.size();
+}
+
+std::string SceneRenderer::world_status() const
+{
+    std::string lines;
+    for (const auto &stream : streams) {
+        lines += stream->status() + "\n";
+        if (stream->failure().result)
+            lines += stream->failure().message + std::string("\n");
+    }
+    return lines;
+}
+
+float SceneRenderer::distance_to_worlds(const float origin[3], const float direction[3])
+{
+    float nearest = INFINITY;
+    for (auto &stream : streams)
+        nearest = std::min(nearest, stream->distance(origin, direction));
+    return nearest;
 }
 
 void SceneRenderer::draw_boxes(const gtx_view &view)

@@ -26,6 +26,13 @@ public:
     /* The boxes of all patches as lines, on top of what was drawn, in its depth. */
     void draw_boxes(const gtx_view &view);
 
+    /* Worlds: draws wait until all that is wanted is there, and throw Error where it cannot be. */
+    void settle_worlds() { settles = true; }
+    bool is_settled() const;
+    /* A line for each; and how far a ray of unit direction goes over what was drawn of them. */
+    std::string world_status() const;
+    float distance_to_worlds(const float origin[3], const float direction[3]);
+
     /* Bytes on the GPU of what is drawn without a debug view. */
     uint64_t gpu_bytes() const;
 
@@ -49,6 +56,9 @@ private:
     Uploaded views[DEBUG_VIEW_COUNT];
     Vector<gtx_instance> places;      /* without their models */
     Vector<gtx_polygons> boxes;
+    void add_worlds(const gtx_view &view, Vector<gtx_instance> &instances);
+    Vector<std::unique_ptr<WorldStream>> streams; /* made by the first draw */
+    bool settles = false;
 };
 
 /* The transform of an asset's own coordinates, with the scene's centre at the origin; no model. */

@@ -46,6 +46,7 @@ Still draw_still(const Scene &scene, const StillOptions &options)
                         view.projection);
     light_from_camera(view);
     renderer.show(scene);
+    renderer.settle_worlds();
     renderer.draw(view);
 
     Still still;

@@ -38,7 +38,7 @@ const Viewer::Key Viewer::keys[] = {
 /* All that the scene has must have an LOD mesh for that to be forced. */
 static bool has_lods(const Scene &scene)
 {
-    bool all = true;
+    bool all = scene.worlds.empty();
     for (const PlacedAsset &placed : scene.assets) {
         gtx_info info;
         gtx_get_info(placed.asset.get(), &info);
@@ -99,6 +99,8 @@ void Viewer::show(Scene shown, Vector<gtx_model *> models)
     }
     for (const Mesh &mesh : scene.meshes)
         facts.triangles += mesh.triangle_count();
+    for (const PlacedWorld &world : scene.worlds)
+        facts.bytes += world.info.bytes;
     camera.radius = float(scene.radius);
     gtx_window_title(window, (name + " - gtx view").c_str());
 }
@@ -106,7 +108,7 @@ void Viewer::show(Scene shown, Vector<gtx_model *> models)
 void Viewer::frame_all()
 {
     while (walker.motion() != Motion::ORBIT)
-        walker.change(camera, scene);
+        walker.change(camera, scene, *scene_renderer);
     camera.azimuth = home[0];
     camera.elevation = home[1];
     camera.distance = home[2];
@@ -116,7 +118,7 @@ void Viewer::frame_all()
 void Viewer::change_motion()
 {
     try {
-        walker.change(camera, scene);
+        walker.change(camera, scene, *scene_renderer);
     } catch (const Error &e) { /* the asset is seen, but has too much for rays */
         note = e.message;
     }
@@ -319,14 +321,14 @@ int Viewer::run(const ViewScript &script)
             loader.start({script.drop});
         dropped = true;
         take_loaded();
-        if (*next)
+        if (*next && scene_renderer->is_settled())
             press_script(*next++);
         if (width > 0 && height > 0) {
             draw_frame();
             ++drawn;
         }
         if (script.frames && drawn >= script.frames && !*next && !loader.busy() &&
-            incoming.models.empty())
+            incoming.models.empty() && scene_renderer->is_settled())
             gtx_window_close(window);
     }
     if (script.picture && target.object) {

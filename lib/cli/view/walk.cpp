@@ -14,7 +14,7 @@ constexpr float FAST = 5;                   /* times, with Shift */
 constexpr float STEP = 0.5f; /* eye heights above the eye that still are the ground */
 constexpr float MIN_HEIGHT = 0.2f, MAX_HEIGHT = 20; /* times EYE_HEIGHT */
 
-Ground::Ground(const Scene &scene)
+Ground::Ground(const Scene &scene, SceneRenderer &renderer) : renderer_(renderer)
 {
     Vector<gtx_scene_instance> instances;
     gtx_caster_desc desc = {};
@@ -57,7 +57,8 @@ float Ground::distance(const float origin[3], const float direction[3]) const
     std::copy(origin, origin + 3, ray.origin);
     std::copy(direction, direction + 3, ray.direction);
     const gtx_result result = gtx_scene_raycast(scene_, &ray, &hit, nullptr, 1, 0);
-    return result == GTX_OK ? hit.t : INFINITY;
+    return std::min(result == GTX_OK ? hit.t : INFINITY,
+                    renderer_.distance_to_worlds(origin, direction));
 }
 
 void Walk::forget()
@@ -85,11 +86,11 @@ void Walk::begin_walk(gtx_camera &camera)
     camera.elevation = 0;
 }
 
-void Walk::change(gtx_camera &camera, const Scene &scene)
+void Walk::change(gtx_camera &camera, const Scene &scene, SceneRenderer &renderer)
 {
     if (motion_ == Motion::ORBIT) {
         if (!ground_)
-            ground_ = std::make_unique<Ground>(scene);
+            ground_ = std::make_unique<Ground>(scene, renderer);
         begin_walk(camera);
         motion_ = Motion::WALK;
     } else if (motion_ == Motion::WALK) {

@@ -8,11 +8,14 @@ namespace gtx {
 
 enum class Motion { ORBIT, WALK, FLY };
 
-/* The surfaces of a scene's assets for rays, in the coordinates it is drawn in: centred. */
+class SceneRenderer;
+
+/* The surfaces of a scene's assets and of what is there of its worlds, for rays, in the coordinates
+ * it is drawn in: centred. */
 class Ground {
 public:
     /* Throws Error: MEMORY, LIMIT. */
-    explicit Ground(const Scene &scene);
+    Ground(const Scene &scene, SceneRenderer &renderer);
     Ground(const Ground &) = delete;
     ~Ground();
 
@@ -23,6 +26,7 @@ private:
     void release();
     Vector<gtx_caster *> casters_;
     gtx_scene *scene_ = nullptr;
+    SceneRenderer &renderer_;
 };
 
 class Walk {
@@ -31,7 +35,7 @@ public:
     void forget();
     /* From orbiting to walking, on what is in the middle of the picture; then to flying; and back.
      * Throws Error: MEMORY, LIMIT. */
-    void change(gtx_camera &camera, const Scene &scene);
+    void change(gtx_camera &camera, const Scene &scene, SceneRenderer &renderer);
     /* Moves for some time: to the right, up and forward, -1..1 each. Walking, up is what the eye's
      * height gains. */
     void move(gtx_camera &camera, const float toward[3], bool fast, double seconds);

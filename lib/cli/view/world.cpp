@@ -1,0 +1,284 @@
+/* Streaming for `gtx render` and `gtx view`: a stream, a thread, and payloads that are models. */
+#include "cli/view/world.hpp"
+
+#include "base/error.h"
+#include "cli/cli.h"
+#include "mesh/task.hpp"
+#include "stream/index.h"
+
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <memory>
+
+namespace gtx {
+
+/* Rays of walking feet: four cells of the height fields at once are fine enough. */
+constexpr uint32_t GROUND_LEVEL = 2;
+
+bool is_world(const std::string &path)
+{
+    struct stat about;
+    return !stat((path + "/" GTX_INDEX_FILE).c_str(), &about) && S_ISREG(about.st_mode);
+}
+
+static bool read_whole(const std::string &path, std::string &out)
+{
+    std::ifstream file(path, std::ios::binary);
+    out.assign(std::istreambuf_iterator<char>(file), {});
+    return file && !file.bad();
+}
+
+PlacedWorld open_world(const std::string &path)
+{
+    PlacedWorld world;
+    gtx_stream_desc desc = {};
+    gtx_stream *stream = nullptr;
+    gtx_error error;
+    world.folder = path;
+    errno = 0;
+    if (!read_whole(path + "/" GTX_INDEX_FILE, world.index))
+        throw Error(GTX_ERROR_READ, std::strerror(errno));
+    desc.index = world.index.data();
+    desc.index_size = world.index.size();
+    require_ok(gtx_stream_create(&desc, &stream, &error), error);
+    gtx_stream_get_info(stream, &world.info);
+    gtx_stream_destroy(stream);
+    return world;
+}
+
+/* The payload. Its memory is counted. */
+struct WorldStream::Tile {
+    gtx_stream_request request = {};
+    WorldStream *of = nullptr;
+    gtx_asset *asset = nullptr;
+    gtx_model *model = nullptr;
+    gtx_caster *caster = nullptr;
+    float transform[16] = {};
+    uint64_t bytes = 0;
+    gtx_error error = {};
+
+    Tile(const gtx_stream_request &wanted, WorldStream *stream) : request(wanted), of(stream) {}
+    ~Tile()
+    {
+        gtx_model_destroy(of->renderer_, model);
+        gtx_caster_destroy(caster);
+        gtx_close(asset);
+    }
+    static void *take(size_t size, void *user)
+    {
+        void *memory = std::malloc(size);
+        static_cast<Tile *>(user)->bytes += memory ? size : 0;
+        return memory;
+    }
+    static void give(void *memory, size_t size, void *user)
+    {
+        static_cast<Tile *>(user)->bytes -= size;
+        std::free(memory);
+    }
+    void open(const std::string &file);
+    void prepare();
+};
+
+void WorldStream::Tile::open(const std::string &file)
+{
+    const gtx_allocator hooks = {take, give, this};
+    gtx_open_desc desc = {};
+    desc.allocator = &hooks;
+    gtx_stream_open(&request, file.data(), file.size(), &desc, &asset, nullptr, &error);
+}
+
+void WorldStream::Tile::prepare()
+{
+    const gtx_allocator hooks = {take, give, this};
+    gtx_model_desc desc = {};
+    gtx_caster_desc rays = {};
+    gtx_info info;
+    desc.allocator = rays.allocator = &hooks;
+    desc.limits = rays.limits = cli_limits;
+    desc.borrow = 1;
+    rays.level = GROUND_LEVEL;
+    if (gtx_model_prepare(asset, &desc, &model, &error) ||
+        gtx_caster_create(asset, &rays, &caster, &error))
+        return;
+    gtx_get_info(asset, &info);
+    for (int k = 0; k < 3; ++k) {
+        transform[5 * k] = 1;
+        transform[12 + k] = float(info.anchor[k] - of->centre_[k]);
+    }
+    transform[15] = 1;
+}
+
+/* On the worker's thread. */
+void WorldStream::load(void *item, void *user)
+{
+    auto *tile = static_cast<Tile *>(item);
+    auto *self = static_cast<WorldStream *>(user);
+    try {
+        std::string file;
+        if (!read_whole(self->folder_ + "/" + tile->request.uri, file))
+            throw Error(GTX_ERROR_READ, std::strerror(errno));
+        tile->open(file);
+    } catch (...) {
+        tile->error = caught_error();
+    }
+    if (!tile->error.result)
+        tile->prepare();
+}
+
+void WorldStream::release(void *payload, void *)
+{
+    delete static_cast<Tile *>(payload);
+}
+
+void WorldStream::drop(void *item)
+{
+    release(item, nullptr);
+}
+
+void WorldStream::report(const gtx_stream_report *report, void *user)
+{
+    auto *self = static_cast<WorldStream *>(user);
+    if (report->tries_left)
+        return;
+    gtx_fail(&self->failure_, report->error->result, "%s: %s", report->uri,
+             report->error->message);
+    if (!self->settles_)
+        report_error((self->folder_ + "/" + report->uri).c_str(), report->error);
+}
+
+WorldStream::WorldStream(const PlacedWorld &world, gtx_renderer *renderer, const Vec3d &centre,
+                         float max_error)
+    : folder_(world.folder), tiles_(world.info.tiles), renderer_(renderer), centre_(centre)
+{
+    gtx_stream_desc desc = {};
+    gtx_error error;
+    desc.index = world.index.data();
+    desc.index_size = world.index.size();
+    desc.max_error = max_error;
+    desc.release = release;
+    desc.report = report;
+    desc.user = this;
+    require_ok(gtx_stream_create(&desc, &stream_, &error), error);
+    if (gtx_worker_create(load, this, &worker_, &error)) {
+        gtx_stream_destroy(stream_);
+        throw Error(error);
+    }
+}
+
+WorldStream::~WorldStream()
+{
+    gtx_scene_destroy(ground_);
+    gtx_worker_destroy(worker_, drop);
+    gtx_stream_destroy(stream_);
+}
+
+void WorldStream::take_answers(bool wait)
+{
+    while (auto *tile = static_cast<Tile *>(gtx_worker_pop(worker_, wait))) {
+        if (tile->error.result) {
+            gtx_stream_fail(stream_, tile->request.id, &tile->error);
+            delete tile;
+            continue;
+        }
+        const gtx_model_size size = gtx_model_gpu_size(tile->model);
+        gtx_stream_deliver(stream_, tile->request.id, tile, tile->bytes,
+                           size.geometry + size.color);
+    }
+}
+
+void WorldStream::upload()
+{
+    for (uint32_t i = 0; i < frame_.upload_count; ++i) {
+        const gtx_stream_upload &part = frame_.uploads[i];
+        auto *tile = static_cast<Tile *>(part.payload);
+        uint32_t done = 0;
+        gtx_error error;
+        require_ok(gtx_model_upload(renderer_, tile->model, part.bytes, &done, &error), error);
+        if (!done)
+            continue;
+        gtx_close(tile->asset);
+        tile->asset = nullptr;
+        gtx_stream_ready(stream_, part.tile, tile->bytes);
+    }
+}
+
+void WorldStream::frame(const gtx_view &view, Vector<gtx_instance> &instances)
+{
+    gtx_stream_view eye = {};
+    gtx_error error;
+    std::copy(view.view, view.view + 16, eye.view);
+    std::copy(view.projection, view.projection + 16, eye.projection);
+    for (int k = 0; k < 3; ++k)
+        eye.origin[k] = centre_[k];
+    eye.viewport_height = view.viewport_height;
+    gtx_scene_destroy(ground_); /* its casters may go */
+    ground_ = nullptr;
+    take_answers(false);
+    require_ok(gtx_stream_update(stream_, &eye, 1, &frame_, &error), error);
+    for (uint32_t i = 0; i < frame_.request_count; ++i) {
+        auto tile = std::make_unique<Tile>(frame_.requests[i], this);
+        if (gtx_worker_push(worker_, tile.get()))
+            tile.release();
+        else
+            gtx_stream_fail(stream_, frame_.requests[i].id, nullptr);
+    }
+    upload();
+    places_.clear();
+    for (uint32_t i = 0; i < frame_.draw_count; ++i) {
+        const auto *tile = static_cast<const Tile *>(frame_.draws[i].payload);
+        gtx_instance instance = {};
+        gtx_scene_instance place = {};
+        instance.model = tile->model;
+        place.caster = tile->caster;
+        std::copy(tile->transform, tile->transform + 16, instance.transform);
+        std::copy(tile->transform, tile->transform + 16, place.transform);
+        instances.push_back(instance);
+        places_.push_back(place);
+    }
+}
+
+void WorldStream::settle(const gtx_view &view, Vector<gtx_instance> &instances)
+{
+    const size_t before = instances.size();
+    settles_ = true;
+    do {
+        instances.resize(before);
+        frame(view, instances);
+        take_answers(true);
+        if (failure_.result)
+            throw Error(failure_);
+    } while (!is_settled());
+    if (frame_.without_room && !frame_.resident)
+        throw Error(GTX_ERROR_LIMIT, "the root of the world is larger than the memory for it");
+}
+
+float WorldStream::distance(const float origin[3], const float direction[3])
+{
+    gtx_ray ray = {};
+    gtx_hit hit;
+    if (!ground_ && (places_.empty() || gtx_scene_create(places_.data(), uint32_t(places_.size()),
+                                                         nullptr, &ground_, nullptr)))
+        return INFINITY;
+    std::copy(origin, origin + 3, ray.origin);
+    std::copy(direction, direction + 3, ray.direction);
+    return gtx_scene_raycast(ground_, &ray, &hit, nullptr, 1, 0) ? INFINITY : hit.t;
+}
+
+std::string WorldStream::status() const
+{
+    char line[160];
+    snprintf(line, sizeof line,
+             "%u of %u tiles drawn, %u there, %u to come%s  %.1f MB + %.1f MB GPU resident",
+             frame_.draw_count, tiles_, frame_.resident, frame_.pending,
+             frame_.without_room ? ", no room" : "", double(frame_.cpu_bytes) / 1e6,
+             double(frame_.gpu_bytes) / 1e6);
+    return line;
+}
+
+} // namespace gtx
