@@ -52,7 +52,7 @@ static bool fits(uint64_t taken, uint64_t freed, uint64_t more, uint64_t budget)
 
 static bool may_leave(const gtx_stream *stream, const gtx_tile *tile, float value)
 {
-    if (tile->leaving || tile->users || tile == stream->tiles)
+    if (tile->leaving || tile->users) /* what is below it would hang in the air */
         return false;
     return tile->wanted < stream->update || WORTH * tile->value < value;
 }

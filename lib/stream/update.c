@@ -138,10 +138,7 @@ static bool ask_for_children(gtx_stream *s, gtx_tile *tile, plan *planned)
             need.gpu += gpu;
             most = opening > most ? opening : most;
         }
-    ++tile->users; /* it must not leave to make room for its children */
-    const bool room = gtx_stream_make_room(s, need.cpu + most, need.gpu, tile->pixels);
-    --tile->users;
-    if (!room)
+    if (!gtx_stream_make_room(s, need.cpu + most, need.gpu, tile->pixels))
         return false;
     *planned = need;
     for (uint32_t k = 0; k < tile->child_count; ++k) {

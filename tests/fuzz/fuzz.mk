@@ -44,7 +44,7 @@ fuzz: ## fuzz every target, or FUZZ="ply obj", for TIME=600 seconds in all (need
 	done
 
 # What the corpora reach, file by file.
-covered := lib/asset lib/mesh/import lib/mesh/stream lib/grid lib/world
+covered := lib/asset lib/mesh/import lib/mesh/stream lib/grid lib/world lib/stream
 fuzz-coverage: ## lines of the readers that the corpora of tests/fuzz reach (needs clang)
 	$(again) config=coverage $(clang) $(build)/coverage/tests/fuzz/test_fuzz
 	@LLVM_PROFILE_FILE=$(build)/coverage/fuzz.profraw $(build)/coverage/tests/fuzz/test_fuzz \

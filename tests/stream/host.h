@@ -148,6 +148,9 @@ static inline void host_update(host *h)
         h->asked[r->tile] = *r;
         h->cpu += r->bytes + r->memory;
     }
+    for (uint32_t i = 1; i < MADE_TILES; ++i)
+        if (h->there[i] || h->asked[i].id)
+            assert_non_null(h->there[h->world->tiles[i].parent]);
     uint64_t sent = 0;
     for (uint32_t i = 0; i < f->upload_count; ++i) {
         payload *p = f->uploads[i].payload;

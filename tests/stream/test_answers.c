@@ -97,6 +97,25 @@ static void who_is_given_up_may_come_back(void **state)
     host_end(&h);
 }
 
+/* Where one child is given up its siblings would show nothing: they are not asked for. */
+static void siblings_are_not_asked_for_in_vain(void **state)
+{
+    (void)state;
+    host h;
+    host_begin(&h, &world, (gtx_stream_desc){.max_error = 4, .max_requests = 1, .max_tries = 1});
+    h.view = from_above(5);
+    run(&h, 1, 10, 0);
+    for (int i = 0; i < 20; ++i) {
+        host_update(&h);
+        for (uint32_t k = 0; k < h.frame.request_count; ++k)
+            host_fail(&h, &h.frame.requests[k], NULL);
+    }
+    assert_int_equal(h.frame.requested, 2);
+    assert_int_equal(h.frame.given_up, 1);
+    assert_int_equal(h.frame.draw_count, 1);
+    host_end(&h);
+}
+
 /* Larger than the room that is there: refused, with a report, and not asked for again and again. */
 static void what_is_too_large_is_refused(void **state)
 {
@@ -213,6 +232,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(failures_are_bounded),
         cmocka_unit_test(who_is_given_up_may_come_back),
+        cmocka_unit_test(siblings_are_not_asked_for_in_vain),
         cmocka_unit_test(what_is_too_large_is_refused),
         cmocka_unit_test(misuse_is_refused),
         cmocka_unit_test(memory_may_run_out),
