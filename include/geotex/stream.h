@@ -137,7 +137,8 @@ typedef struct gtx_stream_info {
 GTX_API void gtx_stream_get_info(const gtx_stream *stream, gtx_stream_info *out);
 
 /* Decides for the next frame, seen by `count` views (up to 16; none: nothing is in view). Never
- * waits, takes no memory, and takes time in proportion to the tiles in view and those there.
+ * waits, takes no memory, and takes time in proportion to the tiles in view, and to those there for
+ * each that it drops: tenths of a millisecond where a thousand are there.
  * Errors: ARGUMENT (a view is not finite, or has no inverse), NOT_ZEROED: nothing has changed. */
 GTX_API gtx_result gtx_stream_update(gtx_stream *stream, const gtx_stream_view *views,
                                      uint32_t count, gtx_stream_frame *frame, gtx_error *error);

@@ -2,9 +2,8 @@
 #include "stream/stream.h"
 
 #include "base/alloc.h"
-#include "base/error.h"
+#include "base/limits.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -106,9 +105,8 @@ static gtx_result fill(gtx_stream *s, const uint8_t *data, gtx_error *error)
     s->cpu = s->own_bytes;
     const uint64_t least = s->own_bytes + s->facts->bytes + s->facts->memory;
     if (least > s->desc.cpu_bytes)
-        return gtx_fail(error, GTX_ERROR_LIMIT,
-                        "the root alone takes %" PRIu64 " bytes, more than the %" PRIu64
-                        " allowed", least, s->desc.cpu_bytes);
+        return gtx_fail_limit(error, GTX_LIMITED_MEMORY, "the root of the world", least,
+                              s->desc.cpu_bytes);
     return GTX_OK;
 }
 

@@ -223,6 +223,7 @@ static void a_world_is_drawn(void **state)
     refuses("render shown -o no.png", 3, "shown: error[corrupt]: the header of the index");
     assert_false(exists("no.png"));
     refuses("render one -o one/tiles.gtw", 1, "one/tiles.gtw");
+    refuses("render one -o no.png --max-memory 100k", 6, "--max-memory allows more");
 }
 
 int main(void)

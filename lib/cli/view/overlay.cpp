@@ -31,12 +31,12 @@ void Viewer::add_status(gtx_shapes &shapes, float dot)
                   debug_view_text[size_t(debug)], boxes ? "  boxes" : "",
                   fixed_light ? "  light fixed" : "", motions[size_t(walker.motion())],
                   milliseconds, width, height);
-    std::string lines = name + "\n" + std::to_string(facts.triangles) + " triangles  " +
-                        std::to_string(facts.patches) + " patches  " + format_bytes(facts.bytes) +
-                        " asset  " + format_bytes(scene_renderer->gpu_bytes()) + " GPU\n" + line;
-    const std::string worlds = scene_renderer->world_status();
-    if (!worlds.empty())
-        lines += "\n" + worlds.substr(0, worlds.size() - 1);
+    std::string lines = name + "\n";
+    if (!scene.assets.empty() || !scene.meshes.empty())
+        lines += std::to_string(facts.triangles) + " triangles  " + std::to_string(facts.patches) +
+                 " patches  " + format_bytes(facts.bytes) + " asset  " +
+                 format_bytes(scene_renderer->gpu_bytes()) + " GPU\n";
+    lines += scene_renderer->world_status() + line;
     if (scene.assets.empty() && scene.meshes.empty() && scene.worlds.empty())
         lines = "drop a model or an asset here";
     gtx_text_add(&shapes, 4 * dot, 4 * dot, &plain, (lines + "\nH: help").c_str());

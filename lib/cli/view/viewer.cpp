@@ -99,8 +99,6 @@ void Viewer::show(Scene shown, Vector<gtx_model *> models)
     }
     for (const Mesh &mesh : scene.meshes)
         facts.triangles += mesh.triangle_count();
-    for (const PlacedWorld &world : scene.worlds)
-        facts.bytes += world.info.bytes;
     camera.radius = float(scene.radius);
     gtx_window_title(window, (name + " - gtx view").c_str());
 }

@@ -161,6 +161,7 @@ WorldStream::WorldStream(const PlacedWorld &world, gtx_renderer *renderer, const
     desc.index = world.index.data();
     desc.index_size = world.index.size();
     desc.max_error = max_error;
+    desc.cpu_bytes = cli_limits.memory;
     desc.release = release;
     desc.report = report;
     desc.user = this;
@@ -274,10 +275,9 @@ std::string WorldStream::status() const
 {
     char line[160];
     snprintf(line, sizeof line,
-             "%u of %u tiles drawn, %u there, %u to come%s  %.1f MB + %.1f MB GPU resident",
-             frame_.draw_count, tiles_, frame_.resident, frame_.pending,
-             frame_.without_room ? ", no room" : "", double(frame_.cpu_bytes) / 1e6,
-             double(frame_.gpu_bytes) / 1e6);
+             "%u of %u tiles  %u there  %u to come%s  %.1f MB  %.1f MB GPU", frame_.draw_count,
+             tiles_, frame_.resident, frame_.pending, frame_.without_room ? ", no room" : "",
+             double(frame_.cpu_bytes) / 1e6, double(frame_.gpu_bytes) / 1e6);
     return line;
 }
 
