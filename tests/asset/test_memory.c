@@ -314,8 +314,8 @@ static void test_objects(void **state)
     (void)state;
     if (!getenv("GTX_OUT"))
         skip();
-    static const char *const rooms[] = {"asset", "derive", "trace"};
-    for (int i = 0; i < 3; ++i) {
+    static const char *const rooms[] = {"asset", "derive", "trace", "stream"};
+    for (int i = 0; i < 4; ++i) {
         char command[1024], line[256];
         snprintf(command, sizeof command, "nm -u '%s'/lib/%s/*.o 2>/dev/null", getenv("GTX_OUT"),
                  rooms[i]);
