@@ -22,7 +22,7 @@ SOVERSION := 0
 
 # ---- rooms: what each needs. Imports run one way, from right to left -----------------------------
 ROOMS_CORE := base asset derive trace edit stream render
-ROOMS_COOK := image mesh grid chart bake measure cook world
+ROOMS_COOK := image mesh grid chart bake measure cook export world
 
 needs_base    := base
 needs_asset   := base asset
@@ -39,8 +39,9 @@ needs_chart   := $(needs_mesh) chart
 needs_bake    := $(needs_asset) image mesh grid chart bake
 needs_measure := $(needs_trace) image mesh measure
 needs_cook    := $(needs_trace) image mesh grid chart bake measure cook
+needs_export  := $(needs_cook) export
 needs_world   := $(needs_cook) stream world
-needs_cli     := $(needs_world) edit render host cli
+needs_cli     := $(needs_world) export edit render host cli
 
 rooms := $(ROOMS_CORE) $(ROOMS_COOK) host cli
 tests := $(filter-out bench common golden run,$(notdir $(wildcard tests/*)))
@@ -159,7 +160,7 @@ $(lib_cook): $(call objects_of,$(ROOMS_COOK))
 
 # What a shared library exports: the functions that its headers declare, and nothing else.
 $(out)/gen/libgeotex.map: $(addprefix include/geotex/,geotex.h edit.h solid.h render.h stream.h)
-$(out)/gen/libgeotex-cook.map: include/geotex/cook.h
+$(out)/gen/libgeotex-cook.map: $(addprefix include/geotex/,cook.h export.h)
 $(out)/gen/%.map: Makefile
 	@mkdir -p $(@D)
 	$(Q){ echo '{ global:'; sed -n 's/^GTX_API.*[ *]\(gtx_[a-z_]*\)(.*/  \1;/p' $(filter %.h,$^); \

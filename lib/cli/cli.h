@@ -152,6 +152,7 @@ int cmd_info(int argc, char **argv);
 int cmd_validate(int argc, char **argv);
 int cmd_unpack(int argc, char **argv);
 int cmd_pack(int argc, char **argv);
+int cmd_export(int argc, char **argv);
 int cmd_filter(int argc, char **argv);
 int cmd_combine(int argc, char **argv);
 int cmd_render(int argc, char **argv);

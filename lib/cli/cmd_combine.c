@@ -5,6 +5,7 @@
 #include "host/jobs.h"
 
 #include <geotex/solid.h>
+#include <geotex/export.h>
 
 #include <inttypes.h>
 #include <string.h>
@@ -186,7 +187,7 @@ int cmd_combine(int argc, char **argv)
     gtx_result result = GTX_OK;
     for (int side = 0; side < 2 && !result; ++side) {
         file = files[side];
-        result = gtx_open_file(file, &open, &assets[side], &error);
+        result = gtx_open_exported(file, &open, &assets[side], &error);
     }
     if (!result)
         result = run(assets, files, &o, &file, &error);

@@ -3,7 +3,7 @@
 
 #include "host/jobs.h"
 
-#include <geotex/cook.h>
+#include <geotex/export.h>
 
 #include <stdlib.h>
 #include <string.h>
@@ -145,12 +145,18 @@ static int cook_stream(const char *model, const char *label, gtx_report *report)
     catch_interrupt();
     gtx_result result = gtx_cook_memory(data, size, is_stream(model) && name ? name : model, &desc,
                                         &asset, report, &error);
-    free(data);
     end_progress();
+    const void *held = NULL; /* by a GLB, which keeps its bytes */
+    if (!result && gtx_find_asset(data, size, &held, &size, NULL))
+        held = NULL;
     if (result)
-        return report_error(label, &error);
-    code = write_asset(asset);
+        code = report_error(label, &error);
+    else
+        code = !held              ? write_asset(asset)
+               : is_stream(output) ? print_result(held, size)
+                                   : write_text_file(output, held, size);
     gtx_close(asset);
+    free(data);
     return code;
 }
 

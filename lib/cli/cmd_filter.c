@@ -4,6 +4,7 @@
 #include "base/warnings.h"
 
 #include <geotex/edit.h>
+#include <geotex/export.h>
 
 #include "image/image.h"
 
@@ -145,7 +146,7 @@ int cmd_filter(int argc, char **argv)
     gtx_asset *asset = NULL;
     gtx_error error = {0};
     gtx_info info;
-    gtx_result result = gtx_open_file(file, &open, &asset, &error);
+    gtx_result result = gtx_open_exported(file, &open, &asset, &error);
     if (!result) {
         gtx_get_info(asset, &info);
         if (info.lod_levels && !lod_levels)

@@ -1,6 +1,8 @@
 /* gtx info: what is in an asset. */
 #include "cli/cli.h"
 
+#include <geotex/export.h>
+
 #include <inttypes.h>
 #include <string.h>
 
@@ -128,7 +130,7 @@ int cmd_info(int argc, char **argv)
     gtx_asset *asset;
     gtx_error error;
     const gtx_open_desc desc = {.limits = cli_limits};
-    if (gtx_open_file(path, &desc, &asset, &error) != GTX_OK)
+    if (gtx_open_exported(path, &desc, &asset, &error) != GTX_OK)
         return report_error(path, &error);
     gtx_info info;
     gtx_get_info(asset, &info);

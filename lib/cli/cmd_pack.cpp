@@ -2,7 +2,7 @@
 #include "cli/guard.hpp"
 #include "cli/unpack/unpacked.hpp"
 
-#include <geotex/cook.h>
+#include <geotex/export.h>
 
 #include <filesystem>
 #include <memory>
@@ -62,7 +62,7 @@ static Asset open_asset(const char *path)
     open.limits = cli_limits;
     gtx_asset *asset = nullptr;
     gtx_error error = {};
-    gtx::require_ok(gtx_open_file(path, &open, &asset, &error), error);
+    gtx::require_ok(gtx_open_exported(path, &open, &asset, &error), error);
     return Asset(asset, gtx_close);
 }
 

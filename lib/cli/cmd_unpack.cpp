@@ -2,6 +2,8 @@
 #include "cli/guard.hpp"
 #include "cli/unpack/unpacked.hpp"
 
+#include <geotex/export.h>
+
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -127,12 +129,15 @@ int cmd_unpack(int argc, char **argv)
     gtx_open_desc open = {};
     open.limits = cli_limits;
     gtx_asset *asset = nullptr;
+    const void *file = data;
     gtx_error error = {};
-    if (gtx_open_memory(data, size, &open, &asset, &error))
+    if (gtx_find_asset(data, size, &file, &size, &error) && error.result != GTX_ERROR_NOT_GTX)
+        return report_error(files[0], &error);
+    if (gtx_open_memory(file, size, &open, &asset, &error))
         return report_error(files[0], &error);
     std::unique_ptr<gtx_asset, void (*)(gtx_asset *)> guard(asset, gtx_close);
     return gtx::guarded(files[1], [&](std::string &about) {
-        const int zstd = find_zstd(asset, data, size);
+        const int zstd = find_zstd(asset, file, size);
         if (zstd < 0)
             report_warning(files[0], gtx_warning_name(GTX_WARNING_OTHER_BYTES),
                            "packed again it will have other bytes: it holds unknown sections, or "

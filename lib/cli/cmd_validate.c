@@ -1,6 +1,8 @@
 /* gtx validate: an asset against every rule of format/gtx.md. */
 #include "cli/cli.h"
 
+#include <geotex/export.h>
+
 #include <stdlib.h>
 
 static bool as_json;
@@ -47,10 +49,15 @@ int cmd_validate(int argc, char **argv)
     code = read_whole(l.path, &data, &size);
     if (code)
         return code;
+    const void *asset = data;
     gtx_error error;
+    if (gtx_find_asset(data, size, &asset, &size, &error) && error.result != GTX_ERROR_NOT_GTX) {
+        free(data);
+        return report_error(l.path, &error);
+    }
     gtx_json_begin_object(&l.json, NULL);
     gtx_json_begin_array(&l.json, "issues");
-    gtx_result result = gtx_validate(data, size, &cli_limits, on_issue, &l, &error);
+    gtx_result result = gtx_validate(asset, size, &cli_limits, on_issue, &l, &error);
     gtx_json_end_array(&l.json);
     gtx_json_bool(&l.json, "valid", result == GTX_OK);
     gtx_json_end_object(&l.json);

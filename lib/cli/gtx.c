@@ -16,6 +16,7 @@ static const struct {
     {"validate", cmd_validate, "check an asset against every rule of the format"},
     {"unpack", cmd_unpack, "write an asset's maps as images, to look at and to edit"},
     {"pack", cmd_pack, "pack unpacked images into an asset again"},
+    {"export", cmd_export, "write an asset as glTF, for tools that know nothing of assets"},
     {"filter", cmd_filter, "blur, boost or pattern the surface of an asset"},
     {"combine", cmd_combine, "unite, intersect or subtract two closed assets"},
     {"render", cmd_render, "draw assets and meshes into a PNG, without a window"},

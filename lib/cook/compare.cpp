@@ -5,6 +5,8 @@
 
 #include "base/alloc.h"
 
+#include <geotex/export.h>
+
 namespace gtx {
 
 static void check(const gtx_compare_desc &desc)
@@ -152,7 +154,7 @@ gtx_result gtx_compare_files(const char *asset_path, const char *model,
     gtx_open_desc open = {};
     open.allocator = given.allocator;
     open.limits = given.limits;
-    gtx_result opened = gtx_open_file(asset_path, &open, &asset, error); /* keeps its rule */
+    gtx_result opened = gtx_open_exported(asset_path, &open, &asset, error);
     if (opened)
         return opened;
     gtx_result compared = gtx::guard(

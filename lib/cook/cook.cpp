@@ -1,5 +1,7 @@
 /* The line from a model file to an asset file (paper, section 5), behind the C API. */
 #include "cook/assemble.hpp"
+#include "cook/embedded.hpp"
+#include "cook/encoded.hpp"
 #include "cook/guard.hpp"
 #include "cook/meta.hpp"
 #include "cook/models.hpp"
@@ -7,8 +9,7 @@
 
 #include "asset/asset.h"
 #include "bake/lod/lod.hpp"
-#include "base/alloc.h"
-#include "base/output.h"
+#include "mesh/embedded.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -33,57 +34,6 @@ static Task make_task(const gtx_cook_desc &desc, const Options &options)
  * 10 (spot and the duck at 1e-3 and 1e-4), which end at 74 to 89 %. At half they end at 47 %, at
  * double the last ones hardly move it. */
 constexpr double ATTEMPT_SHARE = 0.2;
-
-/* Jobs of the C rooms on a task's threads. What ends them early must not pass through C: it is kept
- * for whoever made the call. */
-struct TaskJobs {
-    Task &task;
-    std::exception_ptr thrown = nullptr;
-
-    static void run(uint32_t count, void (*job)(uint32_t, void *), void *data, void *user)
-    {
-        auto *self = static_cast<TaskJobs *>(user);
-        try {
-            self->task.parallel(count, [&](size_t i) { job(uint32_t(i), data); });
-        } catch (...) {
-            self->thrown = std::current_exception();
-        }
-    }
-};
-
-/* The bytes of a file. */
-struct Encoded {
-    gtx_allocator allocator;
-    void *data = nullptr;
-    size_t size = 0;
-
-    Encoded(const gtx_asset *asset, const Options &options, Task &task)
-        : allocator(options.allocator)
-    {
-        TaskJobs on_task = {task};
-        const gtx_jobs jobs = {TaskJobs::run, &on_task};
-        gtx_encode_desc desc = {};
-        desc.allocator = &allocator;
-        desc.jobs = &jobs;
-        desc.zstd_level = options.zstd;
-        gtx_error error;
-        const gtx_result result = gtx_encode(asset, &desc, &data, &size, &error);
-        if (on_task.thrown) {
-            gtx_free_array(&allocator, data, size, 1);
-            std::rethrow_exception(on_task.thrown);
-        }
-        require_ok(result, error);
-    }
-    ~Encoded() { gtx_free_array(&allocator, data, size, 1); }
-    Encoded(const Encoded &) = delete;
-    Encoded &operator=(const Encoded &) = delete;
-
-    void save(const char *path) const
-    {
-        gtx_error error;
-        require_ok(gtx_write_file(path, data, size, &error), error);
-    }
-};
 
 /* The files that a call writes, and who else wants to know what it reads. */
 struct Outputs {
@@ -231,6 +181,28 @@ struct Cooked {
     std::unique_ptr<Encoded> file;
 };
 
+/* The asset that the only model holds, a GLB of gtx_export_file; empty where it holds none. */
+static std::string_view held_asset(const Models &models, const Options &options)
+{
+    std::string_view held;
+    for (const ModelFile &file : models.files)
+        if (held.empty())
+            held = embedded_asset(file.bytes);
+    const bool as_it_is = models.files.size() == 1 && !options.charts_ply &&
+                          content_key(options, 0) == content_key(checked_options({}), 0);
+    require_argument(held.empty() || as_it_is,
+                     "the GLB holds its asset, which is taken as it is: no option that would "
+                     "change it, and no other model, goes with it");
+    return held;
+}
+
+static bool is_content(const char *path, std::string_view bytes, const gtx_allocator &allocator)
+{
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(path, ignored) &&
+           FileBytes(path, allocator, {}).view() == bytes;
+}
+
 /* Everything from the models on; fills `facts`. */
 static Cooked cook_models(Models &models, const Options &options, const Outputs &outputs,
                           bool encoded, Task &task, CookFacts &facts)
@@ -276,7 +248,7 @@ static std::unique_ptr<Report> report_on(const gtx_asset *asset, const Options &
     Json json(options.allocator);
     std::string summary = write_cook_report(options, facts, task, json);
     auto report = std::make_unique<Report>(json, summary, sources, task.warnings);
-    report->unchanged = facts.unchanged;
+    report->unchanged = facts.unchanged && !facts.held;
     return report;
 }
 
@@ -302,7 +274,12 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
     facts.source_hash = models.hash;
     facts.key = content_key(options, models.hash);
     Cooked cooked;
-    if (output)
+    const std::string_view held = held_asset(models, options);
+    facts.held = !held.empty() && !(output && options.if_changed &&
+                                    is_content(output, held, options.allocator));
+    if (!held.empty())
+        cooked.asset = open_asset(held, options.allocator, desc.limits);
+    else if (output)
         cooked.asset = find_cooked(output, options, facts.key, desc.limits);
     facts.unchanged = cooked.asset != nullptr;
     if (!facts.unchanged)
@@ -312,13 +289,18 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
     /* The file comes last: a report that finds no memory must not leave one behind. */
     std::unique_ptr<Report> made;
     if (report) {
-        facts.bytes = cooked.file ? cooked.file->size : std::filesystem::file_size(output);
+        facts.bytes = cooked.file     ? cooked.file->size
+                      : held.empty() ? std::filesystem::file_size(output)
+                                     : held.size();
         facts.total_seconds =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         made = report_on(cooked.asset.get(), options, facts, models.sources, task);
     }
+    gtx_error error;
     if (cooked.file && output)
         cooked.file->save(output);
+    if (facts.held && output)
+        require_ok(gtx_write_file(output, held.data(), held.size(), &error), error);
     if (report)
         made->hand_over(report);
     return std::move(cooked.asset);

@@ -188,7 +188,8 @@ std::string write_cook_report(const Options &options, const CookFacts &facts, co
     write_warnings(json, task.warnings);
     gtx_json_end_object(&json);
     check_written(json);
-    return facts.unchanged ? "unchanged" : cook_summary(facts);
+    return facts.held ? "the asset that the GLB holds" : facts.unchanged ? "unchanged"
+                                                                         : cook_summary(facts);
 }
 
 /* Puts a string at `at`, which is moved behind it. */

@@ -16,6 +16,7 @@ namespace gtx {
 /* What the cook report tells besides the options. */
 struct CookFacts {
     bool unchanged = false; /* there was nothing to cook: what only a cook finds out is not known */
+    bool held = false;      /* for the model held the asset, which is written */
     uint64_t source_triangles = 0, source_vertices = 0;
     CleanReport clean;
     ChartReport charts;

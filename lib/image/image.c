@@ -75,30 +75,57 @@ static gtx_result result_of(int failed, gtx_result otherwise)
     return failed == GTX_IMAGE_NO_MEMORY ? GTX_ERROR_MEMORY : otherwise;
 }
 
-static gtx_result write_image(const char *path, gtx_image_rows rows, gtx_error *error)
+static gtx_result encode_image(gtx_image_rows rows, void **data, size_t *size, gtx_error *error)
 {
     char message[GTX_IMAGE_MAX_MESSAGE];
-    void *data;
-    size_t size;
-    if (!path || !rows.pixels || !rows.width || !rows.height)
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "an image without a path, pixels or size");
+    if (!rows.pixels || !rows.width || !rows.height)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "an image without pixels or size");
     const gtx_image_functions *module = module_functions(error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
-    const int failed = module->encode(&rows, &data, &size, message);
+    const int failed = module->encode(&rows, data, size, message);
     if (failed)
         return gtx_fail(error, result_of(failed, GTX_ERROR_WRITE), "%s", message);
-    const gtx_result result = gtx_write_file(path, data, size, error);
+    return GTX_OK;
+}
+
+static gtx_result write_image(const char *path, gtx_image_rows rows, gtx_error *error)
+{
+    void *data;
+    size_t size;
+    if (!path)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "an image without a path");
+    gtx_result result = encode_image(rows, &data, &size, error);
+    if (result)
+        return result;
+    result = gtx_write_file(path, data, size, error);
     free(data);
     return result;
+}
+
+static gtx_result check_png(uint32_t channels, gtx_error *error)
+{
+    return channels == 1 || channels == 3 || channels == 4
+               ? GTX_OK
+               : gtx_fail(error, GTX_ERROR_ARGUMENT, "a PNG of %u channels", channels);
 }
 
 gtx_result gtx_image_write_png(const char *path, uint32_t width, uint32_t height, uint32_t channels,
                                const uint8_t *pixels, gtx_error *error)
 {
-    if (channels != 1 && channels != 3 && channels != 4)
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "a PNG of %u channels", channels);
-    return write_image(path, (gtx_image_rows){"png", width, height, channels, pixels}, error);
+    const gtx_result checked = check_png(channels, error);
+    return checked ? checked
+                   : write_image(path, (gtx_image_rows){"png", width, height, channels, pixels},
+                                 error);
+}
+
+gtx_result gtx_image_encode_png(uint32_t width, uint32_t height, uint32_t channels,
+                                const uint8_t *pixels, void **data, size_t *size, gtx_error *error)
+{
+    const gtx_result checked = check_png(channels, error);
+    return checked ? checked
+                   : encode_image((gtx_image_rows){"png", width, height, channels, pixels}, data,
+                                  size, error);
 }
 
 gtx_result gtx_image_write_png16(const char *path, uint32_t width, uint32_t height,

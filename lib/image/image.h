@@ -17,7 +17,11 @@ extern "C" {
 gtx_result gtx_image_write_png(const char *path, uint32_t width, uint32_t height, uint32_t channels,
                                const uint8_t *pixels, gtx_error *error);
 
-/* The same for one grey channel of 16 bits. Errors: likewise. */
+/* The same into memory: *data is from malloc, and freed by the caller. Errors: likewise. */
+gtx_result gtx_image_encode_png(uint32_t width, uint32_t height, uint32_t channels,
+                                const uint8_t *pixels, void **data, size_t *size, gtx_error *error);
+
+/* gtx_image_write_png for one grey channel of 16 bits. Errors: likewise. */
 gtx_result gtx_image_write_png16(const char *path, uint32_t width, uint32_t height,
                                  const uint16_t *pixels, gtx_error *error);
 

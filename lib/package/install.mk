@@ -2,7 +2,8 @@
 fill = sed -e 's|@PREFIX@|$(PREFIX)|g' -e 's|@VERSION@|$(VERSION)|g' \
   -e 's|@SOVERSION@|$(SOVERSION)|g' -e 's|@CORE_LIBS@|$(call libs_of,asset)|g' \
   -e 's|@COOK_LIBS@|$(call libs_of,mesh)|g'
-verbs := cook horizons world info validate unpack pack filter combine render view compare bench
+verbs := cook horizons world info validate unpack pack export filter combine render view compare \
+  bench
 to    := $(DESTDIR)$(PREFIX)
 
 $(out)/gen/gtx.1: lib/package/gtx.1.in lib/package/verbs.awk $(command)

@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const char *const headers[] = {"geotex", "edit",   "solid",
-                                      "render", "stream", "cook"};
+static const char *const headers[] = {"geotex", "edit",   "solid", "render",
+                                      "stream", "cook", "export"};
 
 static void compile(const char *compiler, const char *language, const char *standard)
 {

@@ -114,6 +114,7 @@ static void a_wrong_include_does_not_compile(void **state)
         {"mesh", "image/image.h", true},       {"mesh", "chart/chart.hpp", false},
         {"bake", "mesh/vec.hpp", true},        {"bake", "cook/options.hpp", false},
         {"measure", "trace/caster.h", true},   {"measure", "bake/bake.hpp", false},
+        {"export", "cook/options.hpp", true},  {"cook", "export/export.hpp", false},
         {"world", "cook/options.hpp", true},   {"cook", "world/world.hpp", false},
         {"stream", "asset/asset.h", true},     {"stream", "render/model.h", false},
         {"host", "image/image.h", true},       {"host", "asset/asset.h", false},

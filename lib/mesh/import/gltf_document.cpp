@@ -14,14 +14,7 @@ using nlohmann::json;
 
 /* ---- the container ---- */
 
-namespace {
-struct Container {
-    std::string_view json, binary;
-    bool has_binary = false;
-};
-} // namespace
-
-static Container split_glb(std::string_view bytes)
+GlbChunks split_glb(std::string_view bytes)
 {
     auto word = [&](size_t at) {
         return gtx_load_u32(reinterpret_cast<const uint8_t *>(bytes.data()) + at);
@@ -34,7 +27,7 @@ static Container split_glb(std::string_view bytes)
     if (size > bytes.size())
         fail(GTX_ERROR_INPUT, "the GLB header promises %zu bytes, the file has %zu", size,
              bytes.size());
-    Container out;
+    GlbChunks out;
     bool has_json = false;
     for (size_t at = 12; at + 8 <= size;) {
         size_t length = word(at), type = word(at + 4);
@@ -140,7 +133,7 @@ using SharedBytes = std::shared_ptr<const Bytes>;
 /* Buffers of a document; those that name the same file share its bytes. */
 class Buffers {
 public:
-    Buffers(const ModelFile &file, const Container &container, Task &task)
+    Buffers(const ModelFile &file, const GlbChunks &container, Task &task)
         : file_(file), container_(container), task_(task)
     {
     }
@@ -149,7 +142,7 @@ public:
 private:
     SharedBytes read_file(const std::string &uri, size_t number);
     const ModelFile &file_;
-    const Container &container_;
+    const GlbChunks &container_;
     Task &task_;
     std::map<std::string, SharedBytes> files_; /* by path */
 };
@@ -218,7 +211,7 @@ GltfDocument read_gltf_outline(std::string_view text, Task &task)
 
 GltfDocument read_gltf_document(const ModelFile &file, Task &task)
 {
-    Container container;
+    GlbChunks container;
     container.json = file.bytes;
     if (container.json.substr(0, 4) == "glTF")
         container = split_glb(file.bytes);

@@ -17,6 +17,7 @@ static const char *const known_extensions[] = {
     "KHR_texture_basisu",         "EXT_texture_webp",      "EXT_texture_avif",
     "EXT_meshopt_compression",    "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",        "EXT_mesh_features",     "EXT_structural_metadata",
+    "GTX_geometry_texture",       "MSFT_lod", /* the mesh is read, at its finest */
 };
 
 /* What a document may hold that has no place in a mesh, and is not read. */
@@ -157,7 +158,7 @@ static void check_depth(std::string_view text)
     }
 }
 
-static json parse_json(std::string_view text)
+json parse_gltf_json(std::string_view text)
 {
     if (text.size() > size_t(1) << 31)
         fail(GTX_ERROR_LIMIT, "the JSON is larger than 2 GiB");
@@ -198,7 +199,7 @@ static void check_extensions(const json &root, Task &task)
 
 json read_gltf_json(std::string_view text, Task &task)
 {
-    json root = parse_json(text);
+    json root = parse_gltf_json(text);
     std::string where;
     for (const auto &member : members)
         check_member(root, member.path, member.kind, where);

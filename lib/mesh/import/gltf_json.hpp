@@ -7,6 +7,16 @@
 
 namespace gtx {
 
+/* What a GLB file holds; pieces of its bytes. Throws Error: INPUT, UNSUPPORTED. */
+struct GlbChunks {
+    std::string_view json, binary;
+    bool has_binary = false;
+};
+GlbChunks split_glb(std::string_view bytes);
+
+/* Any text, parsed and not too deep. Throws Error: INPUT, LIMIT. */
+nlohmann::json parse_gltf_json(std::string_view text);
+
 /* The parsed text: an object of glTF 2 whose members that geotex reads have the right types, and
  * that requires no unknown extension. Throws Error: INPUT, UNSUPPORTED, LIMIT. */
 nlohmann::json read_gltf_json(std::string_view text, Task &task);

@@ -1,0 +1,103 @@
+/* gtx export: an asset -> a GLB that any tool shows. */
+#include "cli/cli.h"
+
+#include <geotex/export.h>
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static gtx_export_desc desc;
+static const char *output, *report_path;
+static bool lods, collision, without_asset;
+
+static const option options[] = {
+    {"output", 'o', OPTION_STRING, &output, "OUT.glb", "where the GLB goes, - for stdout", 0, 0},
+    {"level", 0, OPTION_UINT, &desc.level, "N", "LOD mesh, 0 = the finest [0]", 0, 7},
+    {"max-error", 0, OPTION_NUMBER, &desc.max_error, "E",
+     "the coarsest LOD mesh within E bounding-box diagonals of the source", 1e-9, 1},
+    {"lods", 0, OPTION_FLAG, &lods, NULL, "the coarser LOD meshes too, as MSFT_lod", 0, 0},
+    {"collision", 0, OPTION_FLAG, &collision, NULL,
+     "for physics: triangles alone, without maps and asset", 0, 0},
+    {"without-asset", 0, OPTION_FLAG, &without_asset, NULL, "leave the asset itself out", 0, 0},
+    {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
+    PROGRESS_OPTION,
+    {"report", 0, OPTION_STRING, &report_path, "R.json", "write what was exported, as JSON", 0, 0},
+    {0}};
+
+static const verb export_verb = {
+    "export", "ASSET -o OUT.glb",
+    "Writes an asset as glTF 2.0: an LOD mesh with the asset's maps as its textures, and the\n"
+    "asset itself as the extension GTX_geometry_texture. gtx cook and the verbs that open assets\n"
+    "read it back; gtx render and view draw the mesh. Units are metres.",
+    1, 1, options};
+
+static int usage(const char *sentence)
+{
+    print_message("gtx export: error[usage]: %s (see gtx export --help)", sentence);
+    return EXIT_CODE_USAGE;
+}
+
+static int check(const char *input)
+{
+    const output_file outputs[] = {{"-o", output}, {"--report", report_path}, {NULL, NULL}};
+    if (!output)
+        return usage("-o OUT.glb is missing");
+    if (desc.level && desc.max_error > 0)
+        return usage("--level and --max-error exclude each other");
+    if (collision && lods)
+        return usage("--collision and --lods exclude each other");
+    if (!strcmp(output, "-") && isatty(STDOUT_FILENO))
+        return usage("a GLB is not written to a terminal");
+    return check_outputs("gtx export", outputs, &input, 1);
+}
+
+static int export_bytes(const char *input, const void *data, size_t size)
+{
+    void *glb;
+    size_t glb_size;
+    gtx_report report;
+    gtx_error error;
+    catch_interrupt();
+    const gtx_result result =
+        gtx_export_memory(data, size, &desc, &glb, &glb_size, &report, &error);
+    end_progress();
+    if (result)
+        return report_error(input, &error);
+    const bool to_stdout = !strcmp(output, "-");
+    int code = to_stdout ? print_result(glb, glb_size) : write_text_file(output, glb, glb_size);
+    for (size_t i = 0; i < report.warning_count; ++i)
+        report_warning(input, report.warning_names[i], report.warnings[i]);
+    if (!code && !cli_quiet)
+        print_message("%s: %s", to_stdout ? "stdout" : output, report.summary);
+    if (!code && report_path)
+        code = write_text_file(report_path, report.json, report.size);
+    gtx_report_free(&report);
+    free(glb);
+    return code;
+}
+
+int cmd_export(int argc, char **argv)
+{
+    const char *input;
+    int count;
+    int code = parse_options(&export_verb, argc, argv, &input, &count);
+    if (code >= 0)
+        return code;
+    code = check(input);
+    if (code)
+        return code;
+    desc.lods = lods;
+    desc.collision = collision;
+    desc.without_asset = without_asset;
+    desc.progress = show_progress;
+    desc.limits = cli_limits;
+    void *data;
+    size_t size;
+    code = read_whole(input, &data, &size);
+    if (code)
+        return code;
+    code = export_bytes(input, data, size);
+    free(data);
+    return code;
+}

@@ -1,0 +1,62 @@
+/* Encoding an asset on a task's threads. */
+#pragma once
+
+#include "cook/options.hpp"
+
+#include "base/alloc.h"
+#include "base/output.h"
+
+namespace gtx {
+
+/* Jobs of the C rooms on a task's threads. What ends them early must not pass through C: it is kept
+ * for whoever made the call. */
+struct TaskJobs {
+    Task &task;
+    std::exception_ptr thrown = nullptr;
+
+    static void run(uint32_t count, void (*job)(uint32_t, void *), void *data, void *user)
+    {
+        auto *self = static_cast<TaskJobs *>(user);
+        try {
+            self->task.parallel(count, [&](size_t i) { job(uint32_t(i), data); });
+        } catch (...) {
+            self->thrown = std::current_exception();
+        }
+    }
+};
+
+/* The bytes of a file. */
+struct Encoded {
+    gtx_allocator allocator;
+    void *data = nullptr;
+    size_t size = 0;
+
+    Encoded(const gtx_asset *asset, const Options &options, Task &task)
+        : allocator(options.allocator)
+    {
+        TaskJobs on_task = {task};
+        const gtx_jobs jobs = {TaskJobs::run, &on_task};
+        gtx_encode_desc desc = {};
+        desc.allocator = &allocator;
+        desc.jobs = &jobs;
+        desc.zstd_level = options.zstd;
+        gtx_error error;
+        const gtx_result result = gtx_encode(asset, &desc, &data, &size, &error);
+        if (on_task.thrown) {
+            gtx_free_array(&allocator, data, size, 1);
+            std::rethrow_exception(on_task.thrown);
+        }
+        require_ok(result, error);
+    }
+    ~Encoded() { gtx_free_array(&allocator, data, size, 1); }
+    Encoded(const Encoded &) = delete;
+    Encoded &operator=(const Encoded &) = delete;
+
+    void save(const char *path) const
+    {
+        gtx_error error;
+        require_ok(gtx_write_file(path, data, size, &error), error);
+    }
+};
+
+} // namespace gtx

@@ -1,0 +1,163 @@
+/* What lies in the buffer of an export: vertices, triangles, images, the asset. */
+#include "export/document.hpp"
+
+#include "base/bytes.h"
+#include "image/image.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace gtx {
+
+/* ---- buffers ---- */
+
+static std::string_view view_of(const Vector<uint8_t> &bytes)
+{
+    return {reinterpret_cast<const char *>(bytes.data()), bytes.size()};
+}
+
+static void bound(GlbBuffer::Accessor &accessor, const Vec3f &p)
+{
+    for (int k = 0; k < 3; ++k) {
+        accessor.low[k] = std::min(accessor.low[k], p[k]);
+        accessor.high[k] = std::max(accessor.high[k], p[k]);
+    }
+}
+
+static GlbBuffer::Accessor positions(unsigned view, size_t offset, size_t count)
+{
+    const Vec3f inf(INFINITY, INFINITY, INFINITY);
+    return {view, offset, GLTF_FLOAT, count, "VEC3", true, inf, -inf};
+}
+
+/* Images of all pages, the first one's number; the pages' memory is given back. */
+unsigned Document::add_images(PageImages &pages)
+{
+    const unsigned first = unsigned(image_views_.size());
+    const size_t size = 3 * size_t(pages.width) * pages.height;
+    for (uint32_t p = 0; p < pages.pages; ++p) {
+        void *data = nullptr;
+        size_t bytes = 0;
+        gtx_error error;
+        require_ok(gtx_image_encode_png(pages.width, pages.height, 3, &pages.texels[p * size],
+                                        &data, &bytes, &error), error);
+        const std::unique_ptr<void, void (*)(void *)> owner(data, std::free);
+        image_views_.push_back(
+            buffer_.add_view({static_cast<const char *>(data), bytes}, GLTF_NO_TARGET));
+        task_.advance(double(p + 1) / pages.pages);
+    }
+    pages.texels = {};
+    return first;
+}
+
+ExportPrimitive Document::add_primitive(const ExportMesh &mesh, size_t first, size_t last,
+                                        unsigned view)
+{
+    const gtx_patch &patch = gtx_patches(asset_)[mesh.parts[first].patch];
+    const uint32_t start = mesh.parts[first].first_vertex;
+    const size_t offset = start * EXPORT_VERTEX;
+    size_t vertices = 0, triangles = 0;
+    for (size_t i = first; i < last; ++i) {
+        vertices += mesh.parts[i].vertices;
+        triangles += mesh.parts[i].triangles;
+    }
+    GlbBuffer::Accessor place = positions(view, offset, vertices);
+    for (size_t v = start; v < start + vertices; ++v)
+        bound(place, mesh.vertices[v].position);
+    Vector<uint8_t> bytes(12 * triangles);
+    uint8_t *to = bytes.data();
+    for (size_t t = 0; t < triangles; ++t)
+        for (uint32_t v : mesh.triangles[mesh.parts[first].first_triangle + t]) {
+            gtx_store_u32(to, v - start);
+            to += 4;
+        }
+    ExportPrimitive out = {patch.page, (patch.flags & GTX_PATCH_TWO_SIDED) != 0, {}, 0};
+    out.attributes[0] = buffer_.add_accessor(place);
+    out.attributes[1] = buffer_.add_accessor({view, offset + 12, GLTF_FLOAT, vertices, "VEC3"});
+    out.attributes[2] = buffer_.add_accessor({view, offset + 24, GLTF_FLOAT, vertices, "VEC4"});
+    out.attributes[3] = buffer_.add_accessor({view, offset + 40, GLTF_FLOAT, vertices, "VEC2"});
+    const unsigned indices = buffer_.add_view(view_of(bytes), GLTF_INDICES);
+    out.indices = buffer_.add_accessor({indices, 0, GLTF_UINT, 3 * triangles, "SCALAR"});
+    return out;
+}
+
+void Document::add_level(uint32_t number, const ExportMesh &mesh, unsigned coarser)
+{
+    const gtx_patch *patches = gtx_patches(asset_);
+    Vector<uint8_t> bytes(EXPORT_VERTEX * mesh.vertices.size());
+    uint8_t *to = bytes.data();
+    for (const ExportVertex &v : mesh.vertices) {
+        const float numbers[] = {
+            v.position.x, v.position.y, v.position.z, v.normal.x, v.normal.y, v.normal.z,
+            v.tangent.x, v.tangent.y, v.tangent.z, BITANGENT_SIGN,
+            v.texel[0] / float(info_.page_width), v.texel[1] / float(info_.page_height)};
+        for (float f : numbers) {
+            gtx_store_f32(to, f);
+            to += 4;
+        }
+    }
+    DocumentLevel level = {number, double(mesh.from.error), {}, 0};
+    const unsigned view = buffer_.add_view(view_of(bytes), GLTF_VERTICES, EXPORT_VERTEX);
+    auto kind = [&](size_t part) {
+        const gtx_patch &p = patches[mesh.parts[part].patch];
+        return std::make_pair(p.page, p.flags & GTX_PATCH_TWO_SIDED);
+    };
+    for (size_t first = 0, last; first < mesh.parts.size(); first = last) {
+        for (last = first + 1; last < mesh.parts.size() && kind(last) == kind(first);)
+            ++last;
+        level.primitives.push_back(add_primitive(mesh, first, last, view));
+    }
+    PageImages normals = tangent_normals(asset_, mesh, coarser, task_);
+    level.first_normal_image = add_images(normals);
+    levels_.push_back(level);
+}
+
+/* Vertices stay shared across patches. */
+void Document::add_collision(uint32_t number, const gtx_lod_mesh &lod)
+{
+    Vector<uint8_t> bytes(12 * size_t(lod.vertex_count)), corners(12 * size_t(lod.triangle_count));
+    GlbBuffer::Accessor place = positions(0, 0, lod.vertex_count);
+    for (uint32_t v = 0; v < lod.vertex_count; ++v) {
+        Vec3f p;
+        for (int k = 0; k < 3; ++k) {
+            p[k] = float(double(lod.origin[k]) +
+                         double(lod.step) * lod.positions[3 * size_t(v) + size_t(k)]);
+            gtx_store_f32(&bytes[12 * size_t(v) + 4 * size_t(k)], p[k]);
+        }
+        bound(place, p);
+    }
+    for (size_t i = 0; i < 3 * size_t(lod.triangle_count); ++i)
+        gtx_store_u32(&corners[4 * i], lod.indices[i]);
+    place.view = buffer_.add_view(view_of(bytes), GLTF_VERTICES);
+    ExportPrimitive p = {};
+    p.attributes[0] = buffer_.add_accessor(place);
+    p.indices = buffer_.add_accessor({buffer_.add_view(view_of(corners), GLTF_INDICES), 0,
+                                      GLTF_UINT, 3 * size_t(lod.triangle_count), "SCALAR"});
+    levels_.push_back({number, double(lod.error), {p}, 0});
+    is_collision_ = true;
+}
+
+void Document::add_maps()
+{
+    maps_ = surface_images(asset_, task_);
+    const struct {
+        PageImages &pages;
+        unsigned &image;
+    } all[] = {{maps_.color, color_image_}, {maps_.material, material_image_},
+               {maps_.emission, emission_image_}};
+    for (const auto &map : all)
+        if (map.pages.pages && !map.pages.constant)
+            map.image = add_images(map.pages);
+    if (maps_.partly_unlit)
+        task_.warn(GTX_WARNING_APPROXIMATED, "parts of the surface are unlit, which one glTF "
+                                             "material cannot say: they are lit");
+}
+
+void Document::set_asset(std::string_view bytes)
+{
+    constexpr size_t ALIGNMENT = 64; /* as its sections are */
+    asset_view_ = buffer_.add_view(bytes, GLTF_NO_TARGET, 0, ALIGNMENT);
+    has_asset_ = true;
+}
+
+} // namespace gtx
