@@ -50,6 +50,18 @@ GTX_API gtx_result gtx_export_file(const char *input, const char *output,
                                    const gtx_export_desc *desc, gtx_report *report,
                                    gtx_error *error);
 
+/* Cooks the meshes of a glTF scene one by one: each that suits geometry textures becomes an asset
+ * of its own in `folder`, which is made where it is not there; and the scene there, under its own
+ * name as a GLB, places the assets by GTX_geometry_texture where its nodes showed the meshes. Nodes
+ * keep their numbers, names and places. Meshes stay as they are that the warnings "few-triangles",
+ * "empty-texels", "outline-loss" and "unseen-surface" tell of, those with skins, morph targets,
+ * points, lines or blending, and those that cannot be cooked; the report
+ * (format/scene-report.schema.json) says why. Files are written whole, the scene last. `more`,
+ * `charts_ply`, `z_up`, `unit`, `kept`, `strict` and `if_changed` of the descriptor must be 0.
+ * `desc`, `report` and `error` may be NULL. Any thread. Errors: as gtx_cook_file. */
+GTX_API gtx_result gtx_cook_scene(const char *input, const char *folder, const gtx_cook_desc *desc,
+                                  gtx_report *report, gtx_error *error);
+
 /* Finds the asset in the bytes of a GLB: *asset points into `data`. A .gtx file is its own asset.
  * Whether it is a sound one gtx_open_memory says. Any thread.
  * Errors: ARGUMENT, INPUT, LIMIT, MEMORY, EMPTY (the GLB holds none), NOT_GTX (the bytes are

@@ -16,7 +16,7 @@ static const char *output, *name, *report_path, *depfile_path;
 static uint32_t partition, extract, lod_levels = 5;
 static double unit = 1;
 static int32_t zstd_level = 3;
-static bool adaptive, strict, if_changed;
+static bool adaptive, strict, if_changed, per_mesh;
 
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes, - for stdout", 0, 0},
@@ -43,6 +43,8 @@ static const option options[] = {
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the model [1]", 1e-30, 1e30},
     {"name", 0, OPTION_STRING, &name, "PATH",
      "stdin's file name: tells its type and where its textures are", 0, 0},
+    {"per-mesh", 0, OPTION_FLAG, &per_mesh, NULL,
+     "of a glTF scene: an asset for each mesh that suits, and the scene, into the folder -o", 0, 0},
     {"if-changed", 0, OPTION_FLAG, &if_changed, NULL,
      "keep OUT.gtx if its key says that nothing changed", 0, 0},
     {"strict", 0, OPTION_FLAG, &strict, NULL, "a warning is an error (exit 3)", 0, 0},
@@ -99,6 +101,10 @@ static int check(const char *const *models, int count)
         return usage("a dependency file cannot name a path with a line break");
     if (adaptive && GTX_PARTITION_CUTS + partition != GTX_PARTITION_PGP)
         return usage("--adaptive needs --partition pgp");
+    if (per_mesh && (count > 1 || is_stream(models[0]) || is_stream(output) || depfile_path ||
+                     desc.charts_ply || desc.z_up || unit != 1 || strict || if_changed))
+        return usage("--per-mesh takes one scene file and a folder, and no --depfile, "
+                     "--charts-ply, --up, --unit, --strict, --if-changed");
     return check_outputs("gtx cook", outputs, models, (size_t)count);
 }
 
@@ -160,6 +166,17 @@ static int cook_stream(const char *model, const char *label, gtx_report *report)
     return code;
 }
 
+static int cook_meshes(const char *scene, const char *label, gtx_report *report)
+{
+    gtx_error error;
+    desc.unit = 0;
+    desc.measure = 0;
+    catch_interrupt();
+    gtx_result result = gtx_cook_scene(scene, output, &desc, report, &error);
+    end_progress();
+    return result ? report_error(label, &error) : EXIT_CODE_OK;
+}
+
 static int cook_files(const char *model, const char *label, gtx_report *report)
 {
     gtx_error error;
@@ -212,7 +229,7 @@ int cmd_cook(int argc, char **argv)
     bool streams = is_stream(models[0]) || is_stream(output);
     gtx_report report;
     memset(&report, 0, sizeof report);
-    code = (streams ? cook_stream : cook_files)(models[0], label, &report);
+    code = (per_mesh ? cook_meshes : streams ? cook_stream : cook_files)(models[0], label, &report);
     if (!code)
         code = tell(label, &report);
     gtx_report_free(&report);

@@ -9,7 +9,7 @@
 
 #include "asset/asset.h"
 #include "bake/lod/lod.hpp"
-#include "mesh/embedded.hpp"
+#include "mesh/glb.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -2,7 +2,7 @@
 #include "cook/embedded.hpp"
 
 #include "cook/guard.hpp"
-#include "mesh/embedded.hpp"
+#include "mesh/glb.hpp"
 
 #include "base/alloc.h"
 

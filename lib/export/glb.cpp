@@ -1,7 +1,7 @@
 /* GLB files: what lies in the buffer, and the two chunks. */
 #include "export/glb.hpp"
 
-#include "base/bytes.h"
+#include "mesh/glb.hpp"
 
 namespace gtx {
 
@@ -65,33 +65,10 @@ void GlbBuffer::describe(Json &out) const
     gtx_json_end_array(&out);
 }
 
-static void store_word(Bytes &out, size_t word)
-{
-    uint8_t bytes[4];
-    gtx_store_u32(bytes, uint32_t(word));
-    out.append(reinterpret_cast<char *>(bytes), sizeof bytes);
-}
-
 Bytes GlbBuffer::file(const Json &json)
 {
-    constexpr size_t HEAD = 12, CHUNK = 8, JSON_CHUNK = 0x4e4f534a, BINARY_CHUNK = 0x004e4942;
     check_written(json);
-    const size_t text = (json.size + 3) / 4 * 4, binary = (bytes_.size() + 3) / 4 * 4;
-    const size_t all = HEAD + CHUNK + text + CHUNK + binary;
-    if (all > UINT32_MAX)
-        throw Error(GTX_ERROR_LIMIT, "the GLB would have " + std::to_string(all) +
-                                         " bytes, more than its header can count");
-    Bytes out;
-    out.reserve(all);
-    out += "glTF";
-    for (size_t word : {size_t(2), all, text, JSON_CHUNK})
-        store_word(out, word);
-    out.append(json.text, json.size);
-    out.append(text - json.size, ' ');
-    store_word(out, binary);
-    store_word(out, BINARY_CHUNK);
-    out += bytes_;
-    out.append(binary - bytes_.size(), '\0');
+    const Bytes out = glb_file({json.text, json.size}, bytes_);
     Bytes().swap(bytes_);
     return out;
 }

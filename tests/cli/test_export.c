@@ -89,6 +89,45 @@ static void its_mesh_is_a_model(void **state)
     expect(gtx("compare sphere.gtx out.glb --size 64 --min-iou 0.98"), 0);
 }
 
+/* A scene that places an asset's anchor where the asset has it shows the asset alone. */
+static void scenes_place_assets(void **state)
+{
+    (void)state;
+    expect(gtx("cook sphere.obj -o moved.gtx --charts 40"), 0);
+    expect(gtx("info moved.gtx --json"), 0);
+    double anchor[3];
+    const char *at = strstr(output, "\"anchor\": [");
+    assert_non_null(at);
+    assert_int_equal(sscanf(at + 11, "%lf , %lf , %lf", &anchor[0], &anchor[1], &anchor[2]), 3);
+    char scene[512];
+    const int size = snprintf(
+        scene, sizeof scene,
+        "{\"asset\": {\"version\": \"2.0\"}, \"extensions\": {\"GTX_geometry_texture\": "
+        "{\"assets\": [{\"uri\": \"moved.gtx\"}]}}, \"scenes\": [{\"nodes\": [0]}], \"nodes\": "
+        "[{\"translation\": [%.17g, %.17g, %.17g], \"extensions\": {\"GTX_geometry_texture\": "
+        "{\"asset\": 0}}}]}", anchor[0], anchor[1], anchor[2]);
+    write_file("placed.gltf", scene, (size_t)size);
+    expect(gtx("render placed.gltf -o placed.png --size 64x64"), 0);
+    expect(gtx("render moved.gtx -o alone.png --size 64x64"), 0);
+    same_files("placed.png", "alone.png");
+}
+
+static void scenes_are_cooked_mesh_by_mesh(void **state)
+{
+    (void)state;
+    expect(gtx("export sphere.gtx -o mesh.glb --without-asset"), 0);
+    expect(gtx("cook mesh.glb --per-mesh -o parts --report parts.json"), 0);
+    expect_text("parts: ");
+    expect_text(" of 1 meshes are assets");
+    assert_true(exists("parts/mesh.glb") && exists("parts.json"));
+    expect(gtx("render parts/mesh.glb -o parts.png --size 64x64"), 0);
+    expect(gtx("cook sphere.obj --per-mesh -o parts2"), 5);
+    expect(gtx("cook mesh.glb mesh.glb --per-mesh -o parts2"), 1);
+    expect(gtx("cook mesh.glb --per-mesh --if-changed -o parts2"), 1);
+    expect(gtx("cook mesh.glb --per-mesh -o sphere.obj"), 2);
+    assert_false(exists("parts2"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -96,6 +135,8 @@ int main(void)
         cmocka_unit_test(verbs_open_it),
         cmocka_unit_test(outputs_and_options_are_checked),
         cmocka_unit_test(its_mesh_is_a_model),
+        cmocka_unit_test(scenes_place_assets),
+        cmocka_unit_test(scenes_are_cooked_mesh_by_mesh),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -1,6 +1,7 @@
 /* Files -> a scene: assets, polygon models, and glTF scenes that place assets. */
 #include "cli/view/scene.hpp"
 
+#include "base/bytes.h"
 #include "cli/cli.h"
 #include "host/jobs.h"
 #include "stream/index.h"
@@ -66,6 +67,30 @@ static void add_asset(Scene &scene, const std::string &path, const Transform &tr
     scene.sources.push_back(path);
 }
 
+/* Of the extension GTX_geometry_texture: the file that a node's asset lies in; empty where it has
+ * none, or one inside the GLB, which the node's mesh stands for. */
+static std::string extension_uri(const json &gltf, const json &node)
+{
+    static const char name[] = "GTX_geometry_texture";
+    const json at_node = node.value("extensions", json::object());
+    if (!at_node.contains(name))
+        return {};
+    const json assets = gltf.at("extensions").at(name).at("assets");
+    return assets.at(at_node[name].at("asset").get<size_t>()).value("uri", "");
+}
+
+/* Such an asset stands with its anchor at the node's origin. */
+static void add_anchored(Scene &scene, const std::string &path, const Transform &transform)
+{
+    add_asset(scene, path, transform);
+    gtx_info info;
+    gtx_get_info(scene.assets.back().asset.get(), &info);
+    Transform back = identity_transform;
+    for (size_t k = 0; k < 3; ++k)
+        back[12 + k] = -info.anchor[k];
+    scene.assets.back().transform = multiply(transform, back);
+}
+
 /* Places the assets that the nodes of a glTF scene name; false when no node names one. */
 static bool add_placed_assets(Scene &scene, const json &gltf, const std::string &folder)
 {
@@ -91,6 +116,10 @@ static bool add_placed_assets(Scene &scene, const json &gltf, const std::string 
             add_asset(scene, folder + node["extras"]["geotex"].get<std::string>(), world);
             found = true;
         }
+        if (const std::string uri = extension_uri(gltf, node); !uri.empty()) {
+            add_anchored(scene, folder + uri, world);
+            found = true;
+        }
         for (size_t child : node.value("children", Vector<size_t>()))
             stack.push_back({child, world});
     }
@@ -103,22 +132,32 @@ static bool ends_with(const std::string &text, const char *suffix)
     return text.size() >= n && text.compare(text.size() - n, n, suffix) == 0;
 }
 
-static void add_model(Scene &scene, const std::string &path, Task &task)
+static void add_model(Scene &scene, ModelFile file, Task &task)
 {
     CleanReport report;
-    ModelFile file = read_model(path, task);
-    scene.sources.push_back(path);
+    scene.sources.push_back(file.path);
     for (std::string &source : referenced_files(file, task))
         scene.sources.push_back(std::move(source));
     file.sources = &scene.sources;
     scene.meshes.push_back(clean_mesh(import_model(file, task), task, report));
 }
 
+/* The text of a document, which is the first chunk of a GLB. */
+static std::string_view json_of(std::string_view bytes)
+{
+    constexpr size_t LENGTH = 12, TEXT = 20;
+    if (bytes.substr(0, 4) != "glTF" || bytes.size() < TEXT)
+        return bytes;
+    const auto *length = reinterpret_cast<const uint8_t *>(bytes.data() + LENGTH);
+    return bytes.substr(TEXT, gtx_load_u32(length));
+}
+
 static void add_gltf(Scene &scene, const std::string &path, Task &task)
 {
     bool placed = false;
+    ModelFile file = read_model(path, task);
     try {
-        json gltf = json::parse(read_model(path, task).bytes);
+        json gltf = json::parse(json_of(file.bytes));
         size_t slash = path.rfind('/');
         placed =
             add_placed_assets(scene, gltf, slash == path.npos ? "" : path.substr(0, slash + 1));
@@ -126,7 +165,7 @@ static void add_gltf(Scene &scene, const std::string &path, Task &task)
         throw Error(GTX_ERROR_INPUT, e.what());
     }
     try {
-        add_model(scene, path, task);
+        add_model(scene, std::move(file), task);
     } catch (const Error &e) {
         if (!placed || e.result != GTX_ERROR_EMPTY) /* a scene of assets alone is fine */
             throw;
@@ -151,10 +190,10 @@ void add_file(Scene &scene, const std::string &path, Task &task)
         scene.sources.push_back(path + "/" GTX_INDEX_FILE);
     } else if (is_asset(path))
         add_asset(scene, path, identity_transform);
-    else if (ends_with(path, ".gltf"))
+    else if (ends_with(path, ".gltf") || ends_with(path, ".glb"))
         add_gltf(scene, path, task);
     else
-        add_model(scene, path, task);
+        add_model(scene, read_model(path, task), task);
 }
 
 void refuse_sources(const Scene &scene, const output_file *outputs)

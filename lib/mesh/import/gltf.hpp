@@ -36,6 +36,10 @@ struct GltfDocument {
     Vector<ImageSource> images;
 };
 
+/* The buffers of a document. */
+struct GlbChunks;
+Vector<GltfDocument::Buffer> read_gltf_buffers(const nlohmann::json &root, const ModelFile &file,
+                                               const GlbChunks &chunks, Task &task);
 /* Reads the container, the JSON and the buffers. Throws Error: INPUT, UNSUPPORTED, READ, LIMIT. */
 GltfDocument read_gltf_document(const ModelFile &file, Task &task);
 

@@ -1,5 +1,5 @@
-/* The asset that a GLB file holds beside its mesh: GTX_geometry_texture. */
-#include "mesh/embedded.hpp"
+/* The asset that a GLB file holds beside its mesh (GTX_geometry_texture); writing GLB files. */
+#include "mesh/glb.hpp"
 #include "mesh/import/gltf_json.hpp"
 
 #include "base/bytes.h"
@@ -73,6 +73,34 @@ std::string_view embedded_asset(std::string_view bytes)
         found = view_bytes(root, chunks, whole(&asset, "bufferView", 0));
     }
     return found;
+}
+
+static void store_word(Bytes &out, size_t word)
+{
+    uint8_t bytes[4];
+    gtx_store_u32(bytes, uint32_t(word));
+    out.append(reinterpret_cast<char *>(bytes), sizeof bytes);
+}
+
+Bytes glb_file(std::string_view json, std::string_view binary)
+{
+    constexpr size_t HEAD = 12, CHUNK = 8, JSON_CHUNK = 0x4e4f534a, BINARY_CHUNK = 0x004e4942;
+    const size_t text = (json.size() + 3) / 4 * 4, bytes = (binary.size() + 3) / 4 * 4;
+    const size_t all = HEAD + CHUNK + text + CHUNK + bytes;
+    if (all > UINT32_MAX)
+        fail(GTX_ERROR_LIMIT, "the GLB would have %zu bytes, more than its header can count", all);
+    Bytes out;
+    out.reserve(all);
+    out += "glTF";
+    for (size_t word : {size_t(2), all, text, JSON_CHUNK})
+        store_word(out, word);
+    out += json;
+    out.append(text - json.size(), ' ');
+    store_word(out, bytes);
+    store_word(out, BINARY_CHUNK);
+    out += binary;
+    out.append(bytes - binary.size(), '\0');
+    return out;
 }
 
 } // namespace gtx

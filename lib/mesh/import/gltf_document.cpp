@@ -199,6 +199,19 @@ static Vector<GltfDocument::ImageSource> read_images(const json &root)
     return images;
 }
 
+Vector<GltfDocument::Buffer> read_gltf_buffers(const json &root, const ModelFile &file,
+                                               const GlbChunks &chunks, Task &task)
+{
+    Buffers reader(file, chunks, task);
+    Vector<GltfDocument::Buffer> out;
+    const json buffers = root.value("buffers", json::array());
+    for (size_t i = 0; i < buffers.size(); ++i) {
+        out.push_back(reader.read(buffers[i], i));
+        task.advance(0.1 + 0.1 * double(i) / double(buffers.size()));
+    }
+    return out;
+}
+
 GltfDocument read_gltf_outline(std::string_view text, Task &task)
 {
     json root = read_gltf_json(text, task);
@@ -218,12 +231,7 @@ GltfDocument read_gltf_document(const ModelFile &file, Task &task)
     json root = read_gltf_json(container.json, task);
 
     GltfDocument doc;
-    Buffers reader(file, container, task);
-    json buffers = root.value("buffers", json::array());
-    for (size_t i = 0; i < buffers.size(); ++i) {
-        doc.buffers.push_back(reader.read(buffers[i], i));
-        task.advance(0.1 + 0.1 * double(i) / double(buffers.size()));
-    }
+    doc.buffers = read_gltf_buffers(root, file, container, task);
     doc.look = read_gltf_materials(root);
     doc.images = read_images(root);
     strip_gltf_json(root, task);
