@@ -1,6 +1,7 @@
 /* Polygons, whose vertices know their place and their patch: of an LOD mesh or, with GTX_GRID, of
  * height fields drawn as displaced grids (Cook, Shade Trees, SIGGRAPH 1984). Map coordinates and
- * the frame of normals follow from the patch's record.
+ * the frame of normals follow from the patch's record. With GTX_LIT, for geotex_lit.frag, triangles
+ * are so small, or so even, that the light at their corners is enough.
  *
  * Needs geotex_height_field.glsl and geotex_view.glsl before it. What hardly changes over a
  * triangle is found here and stays the same all over it: triangles are small, and a vertex serves
@@ -31,6 +32,9 @@ layout(location = 9) in uint gtx_instance;
 
 invariant gl_Position;                      /* bit for bit what a depth prepass has */
 
+#ifdef GTX_LIT
+GTX_VARYING(0) out vec4 gtx_lit;            /* colour, in sRGB */
+#else
 GTX_VARYING(0) out vec2 gtx_at;             /* place in the page, 0..1 */
 GTX_VARYING(1) flat out vec3 gtx_page;      /* page; mip level; how far normals stray from it */
 GTX_VARYING(5) flat out vec4 gtx_color;     /* where no map gives colours, the 2.4th root of rgb */
@@ -49,6 +53,7 @@ GTX_VARYING(7) out vec3 gtx_object;         /* the point in either space; what f
 GTX_VARYING(8) out vec3 gtx_world;          /* where a main reads it */
 GTX_VARYING(9) flat out int gtx_patch_index;
 GTX_VARYING(10) flat out uint gtx_id;       /* of the instance */
+#endif
 #endif
 
 #ifdef GTX_TRIMMED
@@ -96,12 +101,26 @@ void main()
                         uint(gtx_record(index, GTX_RECORD_PAGE).w));
 #endif
     vec2 size = vec2(textureSize(gtx_normals, 0).xy);
-    gtx_at = (rect.xy + clamp(at + 0.5, vec2(half_texel), rect.zw - half_texel)) / size;
+    vec2 place = (rect.xy + clamp(at + 0.5, vec2(half_texel), rect.zw - half_texel)) / size;
+    float page = gtx_record(index, GTX_RECORD_PAGE).w;
     float deviation = gtx_deviation_of(index, level);
-    gtx_page = vec3(gtx_record(index, GTX_RECORD_PAGE).w, level, deviation);
 
     vec3 z = normalize(axis_z), x = normalize(axis_x - dot(axis_x, z) * z);
     mat3 world_normals = mat3(gtx_object_x.xyz, gtx_object_y.xyz, gtx_object_z.xyz);
+#ifdef GTX_LIT
+    vec3 p = gtx_decode_normal(textureLod(gtx_normals, vec3(place, page), level).xy);
+    vec3 n = normalize(world_normals * (mat3(x, cross(z, x), z) * p));
+    vec3 eye = vec3(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w);
+    vec3 ray = normalize(gtx_to_world(object.xyz * gtx_depth.w - eye));
+    if (gtx_lod_mesh.x > 0.0) /* seen from behind */
+        n = gtx_from_behind(n, ray);
+    float light = gtx_diffuse(n, -ray, gtx_light.xyz, deviation);
+    vec3 root = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
+    gtx_lit.rgb = gtx_shaded_to_srgb(root, gtx_light.w + (1.0 - gtx_light.w) * light);
+    gtx_lit.a = gtx_tint.a;
+#else
+    gtx_at = place;
+    gtx_page = vec3(page, level, deviation);
 #ifdef GTX_FRONT
     mat3 frame = mat3(x, cross(z, x), z);
     vec3 toward = normalize(gtx_light.xyz * world_normals) * frame;
@@ -126,5 +145,6 @@ void main()
     gtx_color = gtx_tint;
 #ifdef GTX_PLAIN
     gtx_color.rgb = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
+#endif
 #endif
 }

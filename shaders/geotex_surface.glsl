@@ -40,51 +40,10 @@ mat3 gtx_normal_frame(gtx_frame frame)
     return mat3(x, cross(z, x), z);
 }
 
-/* A normal in that frame, not normalised, from two bytes in 0..1. */
-vec3 gtx_decode_normal(vec2 code)
-{
-    vec2 e = code * 2.0 - 1.0;
-    vec2 p = vec2(e.x + e.y, e.x - e.y) * 0.5;
-    return vec3(p, 1.0 - abs(p.x) - abs(p.y));
-}
-
-/* The cosine with the ray below which a back may be the rim of an outline, which the height field
- * overshoots by less than a texel. On a bunny, 640 pixels, light from the side: without it backs at
- * outlines cost 0.2 dB; 0.6 gains no more, and lights open sheets wrongly. */
-#define GTX_RIM 0.1
-
-/* The normal of a height field seen from behind along `ray`: it turns round, as a two-sided mesh's
- * does. But where the height field sticks out a little from behind the visible one, that would
- * light it from the wrong side: towards an outline it is mirrored in the picture plane, which is
- * continuous across. */
-vec3 gtx_from_behind(vec3 n, vec3 ray)
-{
-    vec3 d = normalize(ray);
-    float away = max(dot(n, d), 0.0);
-    return mix(n - 2.0 * away * d, -n, smoothstep(0.0, GTX_RIM, away));
-}
-
-/* x^(1 / 2.4) by its fourth root, within a tenth of a byte from 0.003 to 1: two square roots and a
- * polynomial are a fraction of a power. */
-vec3 gtx_root(vec3 x)
-{
-    vec3 s = sqrt(sqrt(x));
-    return s * (0.11164 + s * (1.27068 + s * (0.17171 * s - 0.55377)));
-}
-
 vec3 gtx_to_srgb(vec3 c)
 {
     c = clamp(c, 0.0, 1.0);
     return mix(1.055 * gtx_root(c) - 0.055, 12.92 * c, vec3(lessThan(c, vec3(0.0031308))));
-}
-
-/* gtx_to_srgb of a colour times a share of light, from the colour's 2.4th root: one root instead of
- * three. Where sRGB is linear, near black, a polynomial is within a tenth of a byte of it. */
-vec3 gtx_shaded_to_srgb(vec3 root, float share)
-{
-    vec3 r = min(root * gtx_root(vec3(share)), 1.0);
-    return mix(1.055 * r - 0.055, 12.92 * r * r * (0.197 + 2.05 * r),
-               vec3(lessThan(r, vec3(0.0904))));
 }
 
 #ifdef GTX_TRIMMED

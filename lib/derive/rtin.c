@@ -258,18 +258,18 @@ static void gather(const making *m, uint32_t level)
         }
 }
 
-/* Errors as numbers of 16 bits, rounded up; what floats cannot tell is the most. */
+/* Errors as numbers of 15 bits, rounded up; what floats cannot tell is the most. */
 static void store_errors(const making *m, size_t count)
 {
     float most = 0;
     for (size_t i = 0; i < count; ++i)
         most = greater(most, m->error[i] < FLT_MAX ? m->error[i] : FLT_MAX);
-    m->rtin->unit = most / UINT16_MAX;
+    m->rtin->unit = most / GTX_RTIN_MOST;
     for (size_t i = 0; i < count; ++i) {
         const float share = m->error[i] < most ? m->error[i] / most : 1;
-        const float units = most > 0 ? share * UINT16_MAX : 0;
+        const float units = most > 0 ? share * GTX_RTIN_MOST : 0;
         const uint16_t below = (uint16_t)units;
-        m->nodes[i].error = (uint16_t)(below + (below < units && below < UINT16_MAX));
+        m->nodes[i].bits = (uint16_t)(below + (below < units && below < GTX_RTIN_MOST));
     }
 }
 
@@ -330,6 +330,7 @@ gtx_result gtx_grid_rtin(const gtx_asset *asset, uint32_t patch, const gtx_grid 
     for (uint32_t level = GTX_RTIN_LEVELS - 1; level-- > 0;)
         gather(&m, level);
     store_errors(&m, count);
+    gtx_rtin_find_rough(asset, patch, out, nodes, m.error);
     gtx_free_array(allocator, m.error, count, sizeof *m.error);
     return GTX_OK;
 }

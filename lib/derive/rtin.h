@@ -32,12 +32,16 @@ static inline uint32_t gtx_rtin_level(uint32_t triangle)
     return level;
 }
 
-/* A node of the blocks; beyond the grid it repeats the last one. `error` is 0 where blocks begin,
+/* A node of the blocks; beyond the grid it repeats the last one. The error is 0 where blocks begin,
  * and else what the triangles are off by that it is the middle of, and all that come of halving
- * them: never less than that of a node that a half of them has for a middle. */
+ * them: never less than that of a node that a half of them has for a middle. They are rough where
+ * the normals of their corners do not make those over them; then so is a node whose halves' middle
+ * it is. */
 typedef struct gtx_rtin_node {
-    uint16_t code, error;
+    uint16_t code, bits;      /* bits: GTX_RTIN_ROUGH and the error */
 } gtx_rtin_node;
+
+enum { GTX_RTIN_ROUGH = 0x8000, GTX_RTIN_MOST = 0x7fff };
 
 /* What shows of a block: its 4x4 parts of 2x2 cells, in rows. */
 typedef struct gtx_rtin_block {
@@ -69,5 +73,10 @@ gtx_result gtx_grid_rtin(const gtx_asset *asset, uint32_t patch, const gtx_grid 
                          const uint16_t *filled, const gtx_slab *slabs,
                          const gtx_allocator *allocator, gtx_rtin *out, gtx_rtin_node *nodes,
                          gtx_rtin_block *blocks, gtx_error *error);
+
+/* rough.c: marks rough nodes, of assets without colours and materials; of others none.
+ * `scratch` has room for a number a node. */
+void gtx_rtin_find_rough(const gtx_asset *asset, uint32_t patch, gtx_rtin *rtin,
+                         gtx_rtin_node *nodes, float *scratch);
 
 #endif

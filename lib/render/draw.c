@@ -63,6 +63,8 @@ static gtx_result need_programs(const gtx_draw_call *draw, gtx_error *error)
         [TECHNIQUE_GRID_WHOLE] = !paper,
         [TECHNIQUE_GRID_FRONT] = !paper && view->pass == GTX_PASS_FORWARD,
         [TECHNIQUE_GRID_WHOLE_FRONT] = !paper && view->pass == GTX_PASS_FORWARD,
+        [TECHNIQUE_GRID_LIT] = !paper && view->pass == GTX_PASS_FORWARD,
+        [TECHNIQUE_GRID_WHOLE_LIT] = !paper && view->pass == GTX_PASS_FORWARD,
         [TECHNIQUE_LOD_SINGLE] = !paper && view->pass == GTX_PASS_DEPTH};
     gtx_result result = GTX_OK;
     for (int i = 0; i < TECHNIQUE_COUNT && !result; ++i)

@@ -14,8 +14,9 @@ typedef struct gtx_grid_vertex {
 } gtx_grid_vertex;
 
 /* Drawn alike: first those seen from the front, then those from behind; of either those that show
- * whole, which leave the depth test first, then others. */
-enum { GTX_GRID_TRIMMED = 1, GTX_GRID_BEHIND = 2, GTX_GRID_LOOKS = 4 };
+ * whole, which leave the depth test first, then others; of these first those that may be lit at
+ * their vertices, then those whose pixels look maps up. */
+enum { GTX_GRID_MAPPED = 1, GTX_GRID_TRIMMED = 2, GTX_GRID_BEHIND = 4, GTX_GRID_LOOKS = 8 };
 
 /* What is drawn of one instance: vertices, and corners of triangles by their looks. */
 typedef struct gtx_grids {
@@ -34,12 +35,13 @@ typedef struct gtx_refining {
     const gtx_rtin_node *nodes;
     const gtx_rtin_block *blocks;
     uint32_t patch, row;
-    bool two_sided;
+    bool two_sided, mapped;   /* mapped: nothing is lit at vertices */
     uint32_t depth;           /* levels that are halved: all by their errors, or some anyway */
     bool by_error;
     double w[4], eye[4];      /* of clip space, over grid space; and there */
     double reach[GTX_RTIN_LEVELS]; /* how much nearer may be what halving a middle changes */
     double scale;             /* w at which an error's unit is what the view allows */
+    double near;              /* w below which all triangles are to be lit at vertices */
 } gtx_refining;
 
 /* Begins a patch, with w of clip space as a linear function over its grid space, and the eye in

@@ -26,6 +26,7 @@ typedef struct technique_files {
 #define FRONT "#define GTX_FRONT\n"
 #define GRID "#define GTX_GRID\n"
 #define TRIMMED "#define GTX_TRIMMED\n"
+#define LIT "#define GTX_LIT\n"
 #define ALL_BUT_CONSTANT {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS, MATERIAL_MAPS}
 
 static const technique_files techniques[TECHNIQUE_COUNT] = {
@@ -60,6 +61,10 @@ static const technique_files techniques[TECHNIQUE_COUNT] = {
                                     "geotex_lod_front.frag",
                                     {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS,
                                      MATERIAL_CONSTANT}},
+    [TECHNIQUE_GRID_LIT] = {"lit grid", "geotex_lod.vert", GRID TRIMMED LIT, {NULL},
+                            "geotex_lit.frag", {MATERIAL_NONE}},
+    [TECHNIQUE_GRID_WHOLE_LIT] = {"whole lit grid", "geotex_lod.vert", GRID LIT, {NULL},
+                                  "geotex_lit.frag", {MATERIAL_NONE}},
 };
 
 static const struct {

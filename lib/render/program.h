@@ -20,6 +20,8 @@ typedef enum gtx_technique {
     TECHNIQUE_GRID_FRONT,
     TECHNIQUE_GRID_WHOLE,     /* those that do */
     TECHNIQUE_GRID_WHOLE_FRONT,
+    TECHNIQUE_GRID_LIT,       /* those lit at their vertices */
+    TECHNIQUE_GRID_WHOLE_LIT,
     TECHNIQUE_COUNT
 } gtx_technique;
 

@@ -149,11 +149,13 @@ static const gtx_program *grid_program(const gtx_draw_call *draw, const gtx_mode
     static const gtx_technique techniques[2][2] = {
         {TECHNIQUE_GRID_WHOLE, TECHNIQUE_GRID_WHOLE_FRONT},
         {TECHNIQUE_GRID, TECHNIQUE_GRID_FRONT}};
-    const bool front = draw->view->pass == GTX_PASS_FORWARD && keeps_angles &&
-                       !(looks & GTX_GRID_BEHIND);
+    const bool forward = draw->view->pass == GTX_PASS_FORWARD, whole = !(looks & GTX_GRID_TRIMMED);
+    const bool front = forward && keeps_angles && !(looks & GTX_GRID_BEHIND);
+    if (forward && !draw->view->shading && !(looks & GTX_GRID_MAPPED))
+        return program_of(draw, model, whole ? TECHNIQUE_GRID_WHOLE_LIT : TECHNIQUE_GRID_LIT);
     return draw->view->shading
                ? &draw->view->shading->grid
-               : program_of(draw, model, techniques[(looks & GTX_GRID_TRIMMED) != 0][front]);
+               : program_of(draw, model, techniques[!whole][front]);
 }
 
 static const gtx_program *lod_program(const gtx_draw_call *draw, const gtx_run *r, bool front)
@@ -210,6 +212,8 @@ static void draw_grids(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
             begun = true;
         }
         use_program(draw, grid_program(draw, r->model, looks, gtx_keeps_angles(placed)), r->model);
+        gl->Uniform4fv(draw->program->lod, 1,
+                       (float[4]){looks & GTX_GRID_BEHIND ? 1.0f : 0.0f, 0, 0, 0});
         gtx_grids_draw(renderer, looks);
     }
     if (begun)

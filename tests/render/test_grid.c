@@ -67,6 +67,37 @@ static void as_cast(void **state)
     }
 }
 
+/* Without colours they are lit at their corners, seen from the front or from behind. */
+static void lit_at_corners(void **state)
+{
+    STAGE_OR_SKIP(state);
+    gtx_asset *const assets[] = {
+        with_lod_meshes(fixture_bumpy(16, GTX_PATCH_TWO_SIDED), NULL, 0, 0, LOD_PLAIN),
+        with_lod_meshes(fixture_sphere(radius, TEXELS, 8), NULL, 0, 0, LOD_PLAIN),
+        with_lod_meshes(fixture_sphere_without(radius, TEXELS, 16, 5), NULL, 0,
+                        GTX_PATCH_TWO_SIDED, LOD_PLAIN)};
+    uint32_t met = 0;
+    for (size_t i = 0; i < sizeof assets / sizeof *assets; ++i) {
+        subject shown = subject_open(s, assets[i]);
+        for (int turn = 0; turn < 6; ++turn) {
+            gtx_view view = view_from(shown.asset, 61.0f * (float)turn, 15.0f * (float)(turn - 2),
+                                      turn % 2 ? 2.6f : 1.7f);
+            view.max_error = 0.1f;
+            draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &first);
+            draw(s, &view, GTX_METHOD_GRID, &shown.instance, 1, &second);
+            for (uint32_t looks = 0; looks < GTX_GRID_LOOKS; ++looks)
+                met |= (s->renderer->grids.index_count[looks] > 0) << looks;
+            const difference d = compare(&first, &second);
+            if (d.both < 200 || d.holes || d.mean > 2)
+                fail_msg("%zu, %d: %ld pixels, %ld holes, colours differ by %g", i, turn, d.both,
+                         d.holes, d.mean);
+        }
+        subject_close(s, &shown);
+    }
+    for (uint32_t looks = 0; looks < GTX_GRID_LOOKS; looks += 2) /* whole, trimmed, behind */
+        assert_true(met >> looks & 1);
+}
+
 /* Every pass draws the same depth, bit for bit, whole blocks and trimmed ones. */
 static void passes_agree(void **state)
 {
@@ -164,6 +195,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(as_cast),
+        cmocka_unit_test(lit_at_corners),
         cmocka_unit_test(passes_agree),
         cmocka_unit_test(coarser_keeps_the_error),
         cmocka_unit_test(only_what_may_be_seen),

@@ -1,11 +1,13 @@
-/* The triangles of displaced grids: together they cover a height field without a crack, and none is
- * off by more than is allowed where it is. No OpenGL. */
+/* The triangles of displaced grids: together they cover a height field without a crack, none is
+ * off by more than is allowed where it is, and those that are lit at their corners are even. No
+ * OpenGL. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "asset/asset.h"
 #include "asset/patch.h"
 #include "base/alloc.h"
 #include "common/fixture.h"
@@ -24,7 +26,7 @@ static void wavy(const gtx_patch *patch, double x, double y, const void *user, f
     const double ridge = fabs(x - 0.7 * y - 9) / 30;
     *out = (fixture_texel){.height = 0.45 + 0.2 * sin(0.31 * x) * cos(0.23 * y) +
                                      0.3 * fmin(ridge, 0.4) + 0.01 * sin(2.9 * x + 1.7 * y),
-                           .trim = -8, .normal = {0, 0, 1}};
+                           .trim = -8, .normal = {x < 24 ? 0.01 * x : 0.3 * sin(2 * x + y), 0, 1}};
 }
 
 /* A height field that ends where its blocks do, and what is drawn of it. */
@@ -38,7 +40,24 @@ typedef struct subject {
     gtx_frustum view;
 } subject;
 
-static void open_subject(subject *s, uint32_t height_bits)
+/* Closes the asset. */
+static gtx_asset *without_colors(gtx_asset *asset)
+{
+    const uint8_t *normal[1] = {asset->normal[0]};
+    const gtx_info *info = &asset->info;
+    gtx_asset_desc desc = {.patches = asset->patches, .patch_count = 1, .page_count = 1,
+                           .page_width = info->page_width, .page_height = info->page_height,
+                           .mip_count = 1, .height_bits = info->height_bits,
+                           .height = asset->height, .trim = asset->trim, .normal = normal};
+    gtx_asset *out = NULL;
+    memcpy(desc.bounds_min, info->bounds_min, sizeof desc.bounds_min);
+    memcpy(desc.bounds_max, info->bounds_max, sizeof desc.bounds_max);
+    assert_int_equal(gtx_create(&desc, &out, NULL), GTX_OK);
+    gtx_close(asset);
+    return out;
+}
+
+static void open_subject(subject *s, uint32_t height_bits, bool colored)
 {
     const double corner[3] = {0, 0, 0};
     fixture_patch patch = {fixture_frame(corner, WIDE, HIGH, 0.5, 6), wavy, NULL};
@@ -46,6 +65,8 @@ static void open_subject(subject *s, uint32_t height_bits)
     *s = (subject){.asset = fixture_build(&patch, 1, height_bits, 1), .bits = height_bits,
                    .hooks = gtx_allocator_or_default(NULL)};
     const gtx_model_desc desc = {.borrow = 1};
+    if (!colored)
+        s->asset = without_colors(s->asset);
     assert_int_equal(gtx_model_prepare(s->asset, &desc, &s->model, NULL), GTX_OK);
     gtx_rtin_triangles(s->grids.triangles);
     assert_non_null(gtx_scratch_reserve(&s->hooks, &s->grids.slots, NODES, sizeof(uint32_t)));
@@ -70,6 +91,12 @@ static double number(uint32_t n)
     return (n ^ (n >> 15)) / (double)UINT32_MAX;
 }
 
+/* How many of its triangles may be lit at their corners; they come before those that are not. */
+static uint32_t lit_of(const subject *s)
+{
+    return s->grids.index_count[0] / 3;
+}
+
 /* Refines for the n-th view: w grows across the height field, and may be behind the eye. */
 static uint32_t refine(subject *s, uint32_t n)
 {
@@ -78,23 +105,25 @@ static uint32_t refine(subject *s, uint32_t n)
     s->w[2] = 0.02 * (number(4 * n + 2) - 0.5);
     s->w[3] = 40 * number(4 * n + 3) - 10;
     const double eye[4] = {0, 0, 1e6, 1};
-    s->view = (gtx_frustum){.level = -1, .scale = exp(12 * number(7 * n) - 2)};
+    s->view = (gtx_frustum){.level = -1, .scale = exp(12 * number(7 * n) - 2),
+                            .pixels = n % 2 ? 400 * number(11 * n) : 0};
     s->grids.vertex_count = 0;
     memset(s->grids.index_count, 0, sizeof s->grids.index_count);
     const gtx_refining r = gtx_refine(&s->view, s->model, 0, s->w, eye, &s->grids, &s->hooks);
     for (uint32_t b = 0; b < r.rtin->columns * r.rtin->rows; ++b)
         assert_true(gtx_refine_block(&r, b % r.rtin->columns, b / r.rtin->columns));
-    for (uint32_t k = 1; k < GTX_GRID_LOOKS; ++k)
+    for (uint32_t k = GTX_GRID_TRIMMED; k < GTX_GRID_LOOKS; ++k)
         assert_int_equal(s->grids.index_count[k], 0); /* it shows all over, and from above */
-    return s->grids.index_count[0] / 3;
+    return lit_of(s) + s->grids.index_count[GTX_GRID_MAPPED] / 3;
 }
 
 static const gtx_grid_vertex *corner_of(const subject *s, uint32_t i)
 {
-    const uint32_t *indices = s->grids.indices[0].data;
-    const gtx_grid_vertex *vertices = s->grids.vertices.data;
-    assert_true(indices[i] < s->grids.vertex_count);
-    return &vertices[indices[i]];
+    const uint32_t lit = s->grids.index_count[0], look = i < lit ? 0 : GTX_GRID_MAPPED;
+    const uint32_t *indices = s->grids.indices[look].data;
+    const uint32_t index = indices[look ? i - lit : i];
+    assert_true(index < s->grids.vertex_count);
+    return (const gtx_grid_vertex *)s->grids.vertices.data + index;
 }
 
 static bool is_on_rim(const gtx_grid_vertex *a, const gtx_grid_vertex *b)
@@ -104,11 +133,10 @@ static bool is_on_rim(const gtx_grid_vertex *a, const gtx_grid_vertex *b)
 }
 
 /* Each edge but those of the rim has a triangle on either side. */
-static void triangles_fit_together(void **state)
+static void expect_to_fit(bool colored)
 {
-    (void)state;
     subject s;
-    open_subject(&s, 8);
+    open_subject(&s, 8, colored);
     uint8_t *met = calloc((size_t)NODES * NODES, 1); /* by first and second node */
     uint32_t least = UINT32_MAX, most = 0;
     assert_non_null(met);
@@ -133,6 +161,13 @@ static void triangles_fit_together(void **state)
     assert_true(most > 2000);
     free(met);
     close_subject(&s);
+}
+
+static void triangles_fit_together(void **state)
+{
+    (void)state;
+    expect_to_fit(true);
+    expect_to_fit(false);
 }
 
 /* Distance of a node from the plane of a triangle that it lies over, or -1. */
@@ -173,7 +208,7 @@ static void errors_are_kept(void **state)
     for (uint32_t bits = 8; bits <= 16; bits += 8) {
         subject s;
         uint32_t met = 0;
-        open_subject(&s, bits);
+        open_subject(&s, bits, true);
         for (uint32_t n = 0; n < 12; ++n) {
             const uint32_t count = refine(&s, n);
             for (uint32_t i = 0; i < count; ++i)
@@ -199,19 +234,77 @@ static void levels_are_uniform(void **state)
 {
     (void)state;
     subject s;
-    open_subject(&s, 8);
+    open_subject(&s, 8, true);
     const double eye[4] = {0, 0, 1e6, 1}, w[4] = {0, 0, 0, 1};
     for (int32_t level = 0; level < 5; ++level) {
         const gtx_frustum view = {.level = level, .scale = 1};
         const gtx_refining r = gtx_refine(&view, s.model, 0, w, eye, &s.grids, &s.hooks);
-        s.grids.vertex_count = s.grids.index_count[0] = 0;
+        s.grids.vertex_count = s.grids.index_count[GTX_GRID_MAPPED] = 0;
         for (uint32_t b = 0; b < r.rtin->columns * r.rtin->rows; ++b)
             assert_true(gtx_refine_block(&r, b % r.rtin->columns, b / r.rtin->columns));
         const uint32_t step = 1u << (level < 3 ? level : 3);
         const uint32_t cells = (WIDE - 1) / step * ((HIGH - 1) / step);
-        assert_int_equal(s.grids.index_count[0] / 3, 2 * cells);
+        assert_int_equal(s.grids.index_count[GTX_GRID_MAPPED] / 3, 2 * cells);
         assert_int_equal(s.grids.vertex_count, ((WIDE - 1) / step + 1) * ((HIGH - 1) / step + 1));
     }
+    close_subject(&s);
+}
+
+/* A byte of the normal at a node. */
+static double byte_at(const subject *s, uint32_t x, uint32_t y, int k)
+{
+    const gtx_patch *p = s->asset->patches;
+    const size_t row = p->rect[1] + y, column = p->rect[0] + x;
+    return s->asset->normal[0][2 * (row * s->asset->info.page_width + column) + (size_t)k];
+}
+
+/* How far the corners' normals are from that at a node that their triangle lies over, in bytes. */
+static double stray_at(const subject *s, uint32_t triangle, uint32_t x, uint32_t y)
+{
+    const gtx_grid_vertex *c[3];
+    double area[3], most = 0;
+    for (uint32_t i = 0; i < 3; ++i)
+        c[i] = corner_of(s, 3 * triangle + i);
+    for (int i = 0; i < 3; ++i) {
+        const gtx_grid_vertex *a = c[(i + 1) % 3], *b = c[(i + 2) % 3];
+        area[i] = (b->x - a->x) * ((double)y - a->y) - (b->y - a->y) * ((double)x - a->x);
+        if (area[i] < 0)
+            return 0;
+    }
+    for (int k = 0; k < 2; ++k) {
+        double mean = 0;
+        for (int i = 0; i < 3; ++i)
+            mean += area[i] * byte_at(s, c[i]->x, c[i]->y, k) / (area[0] + area[1] + area[2]);
+        most = fmax(most, fabs(mean - byte_at(s, x, y, k)));
+    }
+    return most;
+}
+
+/* Those lit at their corners have the normals that these make; and near they all are. */
+static void lit_ones_are_even(void **state)
+{
+    (void)state;
+    subject s;
+    uint32_t large = 0, mapped = 0, near = 0;
+    open_subject(&s, 8, false);
+    for (uint32_t n = 0; n < 40; ++n) {
+        const uint32_t count = refine(&s, n), lit = lit_of(&s);
+        const double least_w = s.w[3] + fmin(0, 48 * s.w[0]) + fmin(0, 40 * s.w[1]) - 255 * 0.01;
+        const double most_w = least_w + 48 * fabs(s.w[0]) + 40 * fabs(s.w[1]) + 255 * 0.02;
+        for (uint32_t i = 0; i < lit; ++i)
+            for (uint32_t node = 0; node < NODES; ++node) {
+                const double stray = stray_at(&s, i, node % WIDE, node / WIDE);
+                large += stray > 0.4;
+                if (stray > 3.01)
+                    fail_msg("view %u: normals stray by %g", n, stray);
+            }
+        mapped += count - lit;
+        if (most_w < 0.5 * s.view.pixels / 8) { /* the side of a texel */
+            assert_int_equal(lit, count);
+            near += count < 2 * (WIDE - 1) * (HIGH - 1);
+        }
+    }
+    assert_true(large > 100 && mapped > 1000 && near > 3);
     close_subject(&s);
 }
 
@@ -220,6 +313,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(triangles_fit_together),
         cmocka_unit_test(errors_are_kept),
+        cmocka_unit_test(lit_ones_are_even),
         cmocka_unit_test(levels_are_uniform),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

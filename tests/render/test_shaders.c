@@ -22,6 +22,8 @@ static const char *const lod_front_shaded[] = {SHARED, "geotex_surface.glsl",
                                                "geotex_material.glsl",
                                                "geotex_lod_front.frag", NULL};
 
+static const char *const lit[] = {SHARED, "geotex_surface.glsl", "geotex_lit.frag", NULL};
+
 /* What comes before an engine's own main, and a main. */
 static const char *const rays[] = {SHARED, "geotex_surface.glsl", "geotex_material.glsl",
                                    "geotex_cast.glsl", "geotex_fragment.glsl", "geotex_rays.glsl",
@@ -114,6 +116,10 @@ static void every_dialect(void **state)
         compile(head, versions[i][1], "vert", lod_vertex);
         snprintf(head, sizeof head, "%s\n#define GTX_FRONT\n#define GTX_MATERIALS", versions[i][0]);
         compile(head, versions[i][1], "vert", lod_vertex);
+        snprintf(head, sizeof head, "%s\n#define GTX_GRID\n#define GTX_LIT\n#define GTX_TRIMMED",
+                 versions[i][0]);
+        compile(head, versions[i][1], "vert", lod_vertex);
+        compile(head, versions[i][1], "frag", lit);
     }
 }
 
