@@ -56,7 +56,9 @@ GTX_VARYING(10) flat out uint gtx_id;       /* of the instance */
 #endif
 #endif
 
-#ifdef GTX_TRIMMED
+#if defined(GTX_TRIMMED) && defined(GTX_LIT)
+GTX_VARYING(11) out float gtx_outline;      /* code of the trim */
+#elif defined(GTX_TRIMMED)
 GTX_VARYING(11) out vec2 gtx_texel;         /* of the patch */
 GTX_VARYING(12) flat out uvec3 gtx_trimmed; /* of the rectangle, 16 bits each: corner; size; page */
 #endif
@@ -94,7 +96,7 @@ void main()
      * of this patch alone: of two levels that are nearly as near, the coarser one tells which. */
     float half_texel = 0.5 * exp2(min(floor(level + 0.75), gtx_maps.x));
     vec4 rect = gtx_record(index, GTX_RECORD_RECT);
-#ifdef GTX_TRIMMED
+#if defined(GTX_TRIMMED) && !defined(GTX_LIT)
     uvec4 corners = uvec4(rect);
     gtx_texel = at;
     gtx_trimmed = uvec3(corners.x | corners.y << 16, corners.z | corners.w << 16,
@@ -118,6 +120,9 @@ void main()
     vec3 root = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
     gtx_lit.rgb = gtx_shaded_to_srgb(root, gtx_light.w + (1.0 - gtx_light.w) * light);
     gtx_lit.a = gtx_tint.a;
+#ifdef GTX_TRIMMED
+    gtx_outline = 255.0 * texelFetch(gtx_trim, ivec3(rect.xy + at, page), 0).r;
+#endif
 #else
     gtx_at = place;
     gtx_page = vec3(page, level, deviation);

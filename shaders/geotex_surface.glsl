@@ -46,7 +46,7 @@ vec3 gtx_to_srgb(vec3 c)
     return mix(1.055 * gtx_root(c) - 0.055, 12.92 * c, vec3(lessThan(c, vec3(0.0031308))));
 }
 
-#ifdef GTX_TRIMMED
+#if defined(GTX_TRIMMED) && !defined(GTX_LIT)
 /* Of a displaced grid: whether there is a cell and it shows. Varyings of geotex_lod.vert. */
 GTX_VARYING(11) in vec2 gtx_texel;
 GTX_VARYING(12) flat in uvec3 gtx_trimmed;

@@ -258,7 +258,7 @@ static void gather(const making *m, uint32_t level)
         }
 }
 
-/* Errors as numbers of 15 bits, rounded up; what floats cannot tell is the most. */
+/* Errors as numbers of 13 bits, rounded up; what floats cannot tell is the most. */
 static void store_errors(const making *m, size_t count)
 {
     float most = 0;
@@ -330,7 +330,7 @@ gtx_result gtx_grid_rtin(const gtx_asset *asset, uint32_t patch, const gtx_grid 
     for (uint32_t level = GTX_RTIN_LEVELS - 1; level-- > 0;)
         gather(&m, level);
     store_errors(&m, count);
-    gtx_rtin_find_rough(asset, patch, out, nodes, m.error);
+    gtx_rtin_mark(asset, patch, finest, out, nodes, m.error);
     gtx_free_array(allocator, m.error, count, sizeof *m.error);
     return GTX_OK;
 }

@@ -38,10 +38,14 @@ static inline uint32_t gtx_rtin_level(uint32_t triangle)
  * the normals of their corners do not make those over them; then so is a node whose halves' middle
  * it is. */
 typedef struct gtx_rtin_node {
-    uint16_t code, bits;      /* bits: GTX_RTIN_ROUGH and the error */
+    uint16_t code, bits;      /* bits: the error, and those below */
 } gtx_rtin_node;
 
-enum { GTX_RTIN_ROUGH = 0x8000, GTX_RTIN_MOST = 0x7fff };
+/* SOLID: the cell from the node on exists; WITHIN: the trim lets the node show. */
+enum {
+    GTX_RTIN_ROUGH = 0x8000, GTX_RTIN_SOLID = 0x4000, GTX_RTIN_WITHIN = 0x2000,
+    GTX_RTIN_MOST = 0x1fff
+};
 
 /* What shows of a block: its 4x4 parts of 2x2 cells, in rows. */
 typedef struct gtx_rtin_block {
@@ -74,9 +78,9 @@ gtx_result gtx_grid_rtin(const gtx_asset *asset, uint32_t patch, const gtx_grid 
                          const gtx_allocator *allocator, gtx_rtin *out, gtx_rtin_node *nodes,
                          gtx_rtin_block *blocks, gtx_error *error);
 
-/* rough.c: marks rough nodes, of assets without colours and materials; of others none.
+/* marks.c: what nodes tell besides their errors; of assets with colours or materials none is rough.
  * `scratch` has room for a number a node. */
-void gtx_rtin_find_rough(const gtx_asset *asset, uint32_t patch, gtx_rtin *rtin,
-                         gtx_rtin_node *nodes, float *scratch);
+void gtx_rtin_mark(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest, gtx_rtin *rtin,
+                   gtx_rtin_node *nodes, float *scratch);
 
 #endif

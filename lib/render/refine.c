@@ -64,12 +64,6 @@ static bool is_halved(const gtx_refining *r, uint32_t level, uint32_t x, uint32_
     return (error && error * r->scale > w) || (n->bits & GTX_RTIN_ROUGH && w < r->near);
 }
 
-/* Whether a triangle that is not halved may be lit at its vertices. */
-static bool is_lit(const gtx_refining *r, uint32_t level, uint32_t x, uint32_t y)
-{
-    return !r->mapped &&
-           (level == GTX_RTIN_LEVELS || !(r->nodes[y * r->row + x].bits & GTX_RTIN_ROUGH));
-}
 
 /* The vertex of a node, which is there already where its slot leads to it. */
 static uint32_t vertex_of(const gtx_refining *r, uint32_t x, uint32_t y)
@@ -113,6 +107,37 @@ typedef struct place {
     uint32_t x, y;
 } place;
 
+/* How many corners of half a cell show: none where there is no cell. Outlines cross it in straight
+ * lines. */
+static int shown_corners(const gtx_refining *r, const place *at, const gtx_rtin_triangle *t)
+{
+    uint32_t x = GTX_RTIN_CELLS, y = GTX_RTIN_CELLS;
+    int shown = 0;
+    for (int c = 0; c < 3; ++c) {
+        const uint32_t i = t->corner[c][0], j = t->corner[c][1];
+        shown += (r->nodes[(at->y + j) * r->row + at->x + i].bits & GTX_RTIN_WITHIN) != 0;
+        x = i < x ? i : x;
+        y = j < y ? j : y;
+    }
+    return r->nodes[(at->y + y) * r->row + at->x + x].bits & GTX_RTIN_SOLID ? shown : 0;
+}
+
+/* What a triangle that is not halved is drawn by, or GTX_GRID_LOOKS where nothing shows of it.
+ * Where it is larger than a cell outlines and rough normals are those of maps. */
+static uint32_t looks_of(const gtx_refining *r, const place *at, const gtx_rtin_triangle *t,
+                         uint32_t level)
+{
+    const uint32_t x = at->x + t->middle[0], y = at->y + t->middle[1];
+    if (level == GTX_RTIN_LEVELS) {
+        const int shown = shown_corners(r, at, t);
+        return shown ? (r->mapped ? GTX_GRID_MAPPED : 0) + (shown < 3 ? GTX_GRID_TRIMMED : 0)
+                     : GTX_GRID_LOOKS;
+    }
+    if ((at->shown.whole & t->parts) != t->parts)
+        return GTX_GRID_MAPPED + GTX_GRID_TRIMMED;
+    return r->mapped || r->nodes[y * r->row + x].bits & GTX_RTIN_ROUGH ? GTX_GRID_MAPPED : 0;
+}
+
 /* Adds what shows of a triangle, as a whole or its halves. */
 static void add(const gtx_refining *r, const place *at, uint32_t triangle, uint32_t level)
 {
@@ -124,7 +149,9 @@ static void add(const gtx_refining *r, const place *at, uint32_t triangle, uint3
         add(r, at, 2 * triangle + 1, level + 1);
         return;
     }
-    const bool whole = (at->shown.whole & t->parts) == t->parts;
+    const uint32_t from_front = looks_of(r, at, t, level);
+    if (from_front == GTX_GRID_LOOKS)
+        return;
     const gtx_grid_vertex *vertices = r->grids->vertices.data, *corner[3];
     uint32_t index[3];
     for (int c = 0; c < 3; ++c) {
@@ -132,9 +159,7 @@ static void add(const gtx_refining *r, const place *at, uint32_t triangle, uint3
         corner[c] = &vertices[index[c]];
     }
     const bool front = is_front(r, corner);
-    const bool lit = is_lit(r, level, at->x + t->middle[0], at->y + t->middle[1]);
-    const uint32_t looks = (lit ? 0 : GTX_GRID_MAPPED) + (whole ? 0 : GTX_GRID_TRIMMED) +
-                           (front ? 0 : GTX_GRID_BEHIND);
+    const uint32_t looks = from_front + (front ? 0 : GTX_GRID_BEHIND);
     uint32_t *to = (uint32_t *)r->grids->indices[looks].data + r->grids->index_count[looks];
     if (!front && !r->two_sided)
         return;

@@ -1,5 +1,5 @@
-/* Networks of right triangles: over which triangles normals are what those of the corners make, so
- * that the light at the corners is enough. */
+/* Networks of right triangles: where there are cells and they show, and over which triangles
+ * normals are what those of the corners make, so that the light at the corners is enough. */
 #include "derive/rtin.h"
 
 #include "asset/patch.h"
@@ -75,20 +75,39 @@ static void gather(const search *s, uint32_t level)
         }
 }
 
-void gtx_rtin_find_rough(const gtx_asset *asset, uint32_t patch, gtx_rtin *rtin,
-                         gtx_rtin_node *nodes, float *scratch)
+static void find_outline(const gtx_grid *finest, const uint8_t *trim, size_t row_texels,
+                         uint32_t row, gtx_rtin_node *nodes)
+{
+    const uint8_t limit = (uint8_t)gtx_trim_limit(0);
+    const uint32_t cells = finest->nodes_x - 1;
+    for (uint32_t y = 0; y < finest->nodes_y; ++y)
+        for (uint32_t x = 0; x <= cells; ++x) {
+            const bool is_cell = x < cells && y + 1 < finest->nodes_y;
+            uint16_t *bits = &nodes[(size_t)y * row + x].bits;
+            *bits |= trim[y * row_texels + x] <= limit ? GTX_RTIN_WITHIN : 0;
+            *bits |= is_cell && finest->solid[(size_t)y * cells + x] ? GTX_RTIN_SOLID : 0;
+        }
+}
+
+static void find_rough(const search *s, size_t count, gtx_rtin_node *nodes)
+{
+    memset(s->sum, 0, count * sizeof *s->sum);
+    for (uint32_t level = GTX_RTIN_LEVELS; level-- > 0;)
+        gather(s, level);
+    for (size_t i = 0; i < count; ++i)
+        nodes[i].bits |= s->sum[i] > tolerance ? GTX_RTIN_ROUGH : 0;
+}
+
+void gtx_rtin_mark(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest, gtx_rtin *rtin,
+                   gtx_rtin_node *nodes, float *scratch)
 {
     const gtx_info *info = &asset->info;
     const gtx_patch *p = &asset->patches[patch];
-    const size_t count = gtx_rtin_nodes(p), row = 2 * (size_t)info->page_width;
-    const size_t above = (size_t)p->page * info->page_height + p->rect[1];
-    const search s = {asset->normal[0] + above * row + 2 * (size_t)p->rect[0], row, p->rect[2],
-                      p->rect[3], rtin, nodes, scratch};
-    if (info->has_color || info->has_material || info->has_emission)
-        return;
-    memset(scratch, 0, count * sizeof *scratch);
-    for (uint32_t level = GTX_RTIN_LEVELS; level-- > 0;)
-        gather(&s, level);
-    for (size_t i = 0; i < count; ++i)
-        nodes[i].bits |= scratch[i] > tolerance ? GTX_RTIN_ROUGH : 0;
+    const size_t row = info->page_width;
+    const size_t first = ((size_t)p->page * info->page_height + p->rect[1]) * row + p->rect[0];
+    const search s = {asset->normal[0] + 2 * first, 2 * row, p->rect[2], p->rect[3], rtin, nodes,
+                      scratch};
+    find_outline(finest, asset->trim + first, row, gtx_rtin_row(rtin), nodes);
+    if (!info->has_color && !info->has_material && !info->has_emission)
+        find_rough(&s, gtx_rtin_nodes(p), nodes);
 }
