@@ -62,15 +62,18 @@ typedef gtx_result (*gtx_sources_fn)(const char *const *paths, size_t count, voi
 /* For lod_levels: an asset without LOD meshes. */
 #define GTX_LOD_LEVELS_NONE 0xffffffffu
 
+/* For texel_density: as many texels as relief needs, whatever textures show. */
+#define GTX_TEXEL_DENSITY_RELIEF (-1.0f)
+
 typedef struct gtx_cook_desc {
     gtx_partition partition;
     gtx_extract extract;
     uint32_t charts;              /* wanted number of patches, up to 2^20; 0 = round(10 T^0.28) for
                                      T triangles */
-    uint32_t resolution;          /* most texels along a patch side, 64..512; 0 = 128. It sets the
-                                     density too: at 128 patches have 1,400 texels of surface on
-                                     average (cuts); the longest patch has this side (vsa,
-                                     pgp, relief) */
+    uint32_t resolution;          /* most texels along a patch side, 64..512, but for what textures
+                                     ask for (texel_density); 0 = 128. It sets the density too: at
+                                     128 patches have 1,400 texels of surface on average (cuts);
+                                     the longest patch has this side (vsa, pgp, relief) */
     uint32_t height_bits;         /* 8 or 16; 0 = 8 */
     uint32_t dilation;            /* rings of dilated texels in all maps but height and trim, up to
                                      128; 0 = 2^(mips - 1) */
@@ -107,7 +110,12 @@ typedef struct gtx_cook_desc {
                                      they are, three numbers each, as they lie in the asset: for a
                                      model that is part of a larger one; or NULL */
     uint64_t kept_count;
-    uint32_t reserved[6];
+    float texel_density;          /* texels along a side, at least, for a pixel of the source's
+                                     textures, up to 4; no side gets more than 512. 0: as many as
+                                     their detail needs, up to 4 times as fine as relief needs, but
+                                     in all not more than 524,288, and one for each byte read,
+                                     beyond relief's. Or GTX_TEXEL_DENSITY_RELIEF */
+    uint32_t reserved[5];
 } gtx_cook_desc;
 
 /* An asset keeps the key that it was cooked under. The key covers
@@ -115,7 +123,8 @@ typedef struct gtx_cook_desc {
  *     and images that they refer to, missing ones included; not their paths or times;
  *   - the options that change the asset: partition, extract (and the driver, where it is GPU),
  *     charts, resolution, height_bits, dilation, mips, lod_levels, zstd_level, unit, error, z_up,
- *     adaptive and kept; not threads, measure, progress, strict, limits or allocator;
+ *     adaptive, kept and texel_density; not threads, measure, progress, strict, limits or
+ *     allocator;
  *   - geotex's version and the revision of its cooker,
  * but not the library that decodes images. With `strict`, an asset that was cooked with warnings is
  * cooked again; with `charts_ply`, or if importing read files that could not be foreseen, any

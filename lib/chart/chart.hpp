@@ -35,6 +35,7 @@ struct Chart {
     double clip_low[2] = {-INFINITY, -INFINITY}, clip_high[2] = {INFINITY, INFINITY};
     /* Texels of the grid along the frame's sides; 0 = as many as the pitch gives. */
     unsigned cells[2] = {0, 0};
+    double finer = 1;            /* as many times finer texels, for what its textures show */
     /* Source triangles with their centre in the core; one that PGP cut counts with its first
      * piece. */
     uint64_t source_triangles = 0;
@@ -59,6 +60,9 @@ struct ChartOptions {
     unsigned grain = 8;          /* sides will be multiples of as many texels */
     double height_steps = 254;   /* that a patch's heights will have from lowest to highest */
     bool one_density = false;    /* CUTS: texels alike in all patches, as the paper has them */
+    double texel_density = 0;    /* texels for a pixel of the source's textures, along a side, at
+                                    least; 0 = as many as show what they show; < 0: none for
+                                    them */
     /* Texels that a patch needs beyond its core: at a straight cut, and where its chart ends. */
     unsigned overlap[2] = {1, 2};
 };
@@ -88,6 +92,7 @@ struct Partition {
     PartitionMethod method = PartitionMethod::CUTS; /* never AUTO */
     bool complete = true;                /* false: what no chart has is not to be shown */
     double pitch = 0;                    /* texel pitch of the model, object units */
+    double more_texels = 1;              /* with what textures ask for, about; of relief's */
     Vector<uint32_t> initial_chart;      /* per triangle, before splitting */
     Vector<uint8_t> junk;                /* per triangle: 1 = junk */
     ChartReport report;

@@ -8,6 +8,7 @@
 #include "chart/settle.hpp"
 #include "chart/pgp/pgp.hpp"
 #include "chart/split.hpp"
+#include "chart/texture_density.hpp"
 #include "chart/vsa.hpp"
 
 #include <algorithm>
@@ -207,13 +208,18 @@ Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &ta
         throw Error(GTX_ERROR_EMPTY, "the mesh has no triangle to partition");
     if (mesh.triangle_count() > MAX_TRIANGLES)
         throw Error(GTX_ERROR_LIMIT, "the mesh has more than 300 million triangles");
-    if (options.method != PartitionMethod::AUTO)
-        return partition_by(options.method, mesh, options, task);
+    if (options.method != PartitionMethod::AUTO) {
+        Partition out = partition_by(options.method, mesh, options, task);
+        follow_textures(mesh, options, out, task);
+        return out;
+    }
     Partition cuts = partition_by(PartitionMethod::CUTS, mesh, options, task);
     Partition layers = partition_by(PartitionMethod::LAYERS, mesh, options, task);
     const bool fewer = texels_of_patches(layers, options) <
                        WORTH_PEELING * texels_of_patches(cuts, options);
-    return fewer ? std::move(layers) : std::move(cuts);
+    Partition out = fewer ? std::move(layers) : std::move(cuts);
+    follow_textures(mesh, options, out, task);
+    return out;
 }
 
 } // namespace gtx

@@ -14,7 +14,7 @@ enum { MAX_MODELS = 4096 };
 static gtx_cook_desc desc;
 static const char *output, *name, *report_path, *depfile_path;
 static uint32_t partition, extract, lod_levels = 5;
-static double unit = 1;
+static double unit = 1, texel_density = -1; /* by their detail */
 static int32_t zstd_level = 3;
 static bool adaptive, strict, if_changed, per_mesh;
 
@@ -24,6 +24,8 @@ static const option options[] = {
      "number of patches to aim at [10 T^0.28, T triangles]", 1, 1e6},
     {"resolution", 0, OPTION_UINT, &desc.resolution, "N",
      "a patch's largest side in texels [128]", 64, 512},
+    {"texel-density", 0, OPTION_NUMBER, &texel_density, "D",
+     "texels for a pixel of textures along a side, at least; 0 = none [by their detail]", 0, 4},
     {"partition", 0, OPTION_CHOICE, &partition, "cuts|vsa|pgp|layers|relief|auto",
      "partition into charts [cuts]", 0, 0},
     {"adaptive", 0, OPTION_FLAG, &adaptive, NULL,
@@ -217,6 +219,9 @@ int cmd_cook(int argc, char **argv)
     desc.unit = (float)unit;
     desc.measure = report_path != NULL;
     desc.adaptive = adaptive;
+    desc.texel_density = texel_density < 0    ? 0
+                         : texel_density == 0 ? GTX_TEXEL_DENSITY_RELIEF
+                                              : (float)texel_density;
     desc.strict = strict;
     desc.if_changed = if_changed;
     desc.more = models + 1;

@@ -125,6 +125,7 @@ static Attempt attempt(const Mesh &mesh, const Options &options, Task &task, con
     const size_t before = task.warnings.size();
     Attempt out;
     out.partition = make_partition(mesh, options.chart, task);
+    task.limits.allow_work(work_of(options) * out.partition.more_texels);
     const Mesh &charted = out.partition.charted(mesh);
     {
         Maps maps = bake(charted, out.partition, options.bake, task);

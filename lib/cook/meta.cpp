@@ -20,6 +20,8 @@ std::string write_meta(const Options &options, const CookFacts &facts)
     gtx_json_string(&json, "partition", partition_name(facts.method));
     if (options.chart.adaptive)
         gtx_json_bool(&json, "adaptive", true);
+    if (options.chart.texel_density != 0)
+        gtx_json_number(&json, "texel_density", options.chart.texel_density);
     gtx_json_integer(&json, "charts", facts.chart_count);
     gtx_json_integer(&json, "resolution", options.chart.resolution);
     gtx_json_integer(&json, "height_bits", options.bake.height_bits);

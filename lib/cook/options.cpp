@@ -16,7 +16,7 @@
 namespace gtx {
 
 /* Raised with every change that makes other assets of the same models and options. */
-constexpr int COOKER_REVISION = 19;
+constexpr int COOKER_REVISION = 20;
 
 /* As zstd counts: 3 is its own default. */
 #ifdef GTX_ZSTD
@@ -55,6 +55,9 @@ static void check(const gtx_cook_desc &desc)
                              number_of(desc.partition) == GTX_PARTITION_AUTO;
     require_argument(desc.error == 0 || any_density,
                      "an error can be asked for with the partitions cuts, layers and auto only");
+    require_argument(desc.texel_density == GTX_TEXEL_DENSITY_RELIEF ||
+                         (desc.texel_density >= 0 && desc.texel_density <= 4),
+                     "texel_density is 0 to 4, or GTX_TEXEL_DENSITY_RELIEF");
     require_argument(desc.adaptive <= 1, "adaptive is 0 or 1");
     require_argument(!desc.adaptive || number_of(desc.partition) == GTX_PARTITION_PGP,
                      "only the partition pgp can be adaptive");
@@ -74,6 +77,7 @@ Options checked_options(const gtx_cook_desc &desc)
     options.chart.charts = desc.charts;
     options.chart.method = METHODS[number_of(desc.partition)];
     options.chart.adaptive = desc.adaptive;
+    options.chart.texel_density = double(desc.texel_density);
     if (desc.resolution)
         options.chart.resolution = desc.resolution;
     if (desc.height_bits)
@@ -150,6 +154,9 @@ uint64_t content_key(const Options &options, uint64_t source_hash)
     if (options.kept_count)
         text += " kept " + std::to_string(gtx_hash_bytes(options.kept, options.kept_count *
                                                                            3 * sizeof(double)));
+    if (options.chart.texel_density != 0)
+        text += " density " + std::to_string(gtx_hash_bytes(&options.chart.texel_density,
+                                                            sizeof(double)));
     if (const Extractor *gpu = options.bake.extractor)
         text += " extract gpu " + gpu->renderer() + " " + gpu->version();
     return gtx_hash_bytes(text.data(), text.size());

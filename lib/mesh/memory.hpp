@@ -21,6 +21,7 @@ public:
     /* The job has read a file of so many bytes: defaults grow, once for each file. For the calling
      * thread alone. */
     void read(const std::string &path, uint64_t bytes);
+    uint64_t bytes_read() const { return read_; }
     uint64_t of(gtx_limited which) const { return gtx_limit_of(&given_, which, read_); }
     /* Throws Error(LIMIT) if `what` would take more than is allowed. */
     void require(gtx_limited which, const char *what, uint64_t wanted) const;

@@ -73,9 +73,33 @@ run-bench-rays: $(MODEL)
 	@$(build)/gtx cook $(MODEL) -o $(build)/demo/rays.gtx
 	@$(out)/tests/bench/rays $(build)/demo/rays.gtx
 
+bunny := $(wildcard $(GEOTEX_MODELS)/scans/bunny.ply)
+# The bunny, closed, and a ball. With CGAL (libcgal-dev) beside the same operations on the meshes.
+cgal = $(shell printf '\043include <CGAL/version.h>' | \
+         $(CXX) $(CXXFLAGS) -E -x c++ - >/dev/null 2>&1 && echo -lmpfr -lgmp)
+bench-solids: ## the bunny, or MODEL, combined with a ball: volumes beside CGAL's, if it is there
+	$(again) deps
+	$(again) -j$$(nproc) all $(out)/tests/bench/solids
+	$(again) run-bench-solids
+
+run-bench-solids: $(if $(bunny),,$(MODEL))
+	@mkdir -p $(build)/paper
+	@$(out)/tests/bench/solids $(build)/paper $(or $(bunny),$(MODEL))
+
+# Models with textures.
+TEXTURED ?= $(if $(GEOTEX_MODELS),$(wildcard $(GEOTEX_MODELS)/textured/*.glb) \
+              $(addprefix $(GEOTEX_MODELS)/,$(duck) $(truck)),$(MODEL))
+bench-texels: ## what texels as fine as textures cost and show, of TEXTURED
+	$(again) deps
+	$(again) -j$$(nproc) all $(out)/tests/bench/texels
+	$(again) run-bench-texels
+
+run-bench-texels: $(filter $(build)/demo/%,$(TEXTURED))
+	@mkdir -p $(build)/paper
+	@$(out)/tests/bench/texels $(build)/paper $(TEXTURED)
+
 # Models and their charts: the paper's bunny, and MODEL (without the bunny: the sculpt).
 CHARTS ?= 0
-bunny := $(wildcard $(GEOTEX_MODELS)/scans/bunny.ply)
 more_models  = $(if $(bunny),$(filter-out $(build)/demo/sculpt.glb,$(MODEL)),$(MODEL))
 table_models = $(if $(bunny),$(bunny) 222) \
                $(foreach model,$(leaf) $(more_models),$(model) $(CHARTS))
@@ -123,6 +147,16 @@ $(out)/tests/bench/paper_tables: $(out)/tests/bench/paper_tables.o \
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh)
 
+$(out)/tests/bench/texels: $(out)/tests/bench/texels.o $(call objects_of,image) $(lib_cook) \
+    $(lib_core) | $(module)
+	$(say) LINK $@
+	$(Q)ln -sf $(abspath $(module)) $(@D)
+	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh image)
+
+$(out)/tests/bench/solids: $(out)/tests/bench/solids.o $(lib_cook) $(lib_core)
+	$(say) LINK $@
+	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh) $(cgal)
+
 $(out)/tests/bench/grid_mesh: $(out)/tests/bench/grid_mesh.o $(lib_cook) $(lib_core)
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh)
@@ -136,9 +170,10 @@ $(out)/tests/bench/rays: $(out)/tests/bench/rays.o $(call objects_of,host image)
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset host image)
 
 # Numbers that a cook goes by, on models of few triangles and scans; the rare are for what is left.
+duck        := gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb
 truck       := gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf
 tune_common := textured/spot/spot/spot_control_mesh.obj $(truck) scans/bunny.ply \
-               gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb \
+               $(duck) \
                heightfields/reek/1_topreek_rota.gri \
                heightfields/reek_1588x1188/0_topreek_rota_z16.png
 tune_rare   := $(truck),--partition,vsa scans/gargo_3dhop.ply.gz gltf/dragon_draco_119k.glb

@@ -35,6 +35,11 @@ static void streams_carry_models_and_assets(void **state)
     expect_text("stdout: error[write]");
     expect(gtx("cook sphere.obj - -o b.gtx"), 1);
     expect(gtx("cook sphere.obj -o - --depfile d"), 1);
+    static const char *const densities[] = {"-1", "4.1", "nan", "inf", "fine", "''"};
+    for (size_t i = 0; i < sizeof densities / sizeof *densities; ++i)
+        expect(gtx("cook sphere.obj -o b.gtx --texel-density %s", densities[i]), 1);
+    expect(gtx("cook sphere.obj -o c.gtx --texel-density 0"), 0);
+    expect(gtx("cook sphere.obj -o c.gtx --texel-density 0.5"), 0);
     expect(gtx("cook sphere.obj -o b.gtx --adaptive"), 1);
     expect(gtx("cook sphere.obj -o b.gtx --partition vsa --adaptive"), 1);
     expect(gtx("cook sphere.obj -o c.gtx --partition pgp --adaptive"), 0);

@@ -49,6 +49,9 @@ static void each_option_that_matters_changes_the_key(void **)
         [](gtx_cook_desc &d) { d.kept = points, d.kept_count = 1; },
         [](gtx_cook_desc &d) { d.kept = points, d.kept_count = 2; },
         [](gtx_cook_desc &d) { d.lod_levels = GTX_LOD_LEVELS_NONE; },
+        [](gtx_cook_desc &d) { d.texel_density = 1; },
+        [](gtx_cook_desc &d) { d.texel_density = 1e-7f; },
+        [](gtx_cook_desc &d) { d.texel_density = GTX_TEXEL_DENSITY_RELIEF; },
         [](gtx_cook_desc &d) { d.partition = GTX_PARTITION_VSA; },
         [](gtx_cook_desc &d) { d.partition = GTX_PARTITION_PGP; },
         [](gtx_cook_desc &d) { d.partition = GTX_PARTITION_PGP, d.adaptive = 1; }};

@@ -179,7 +179,10 @@ static void wrong_arguments_are_refused(void **)
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.if_changed = 2; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.more_count = 1; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.kept_count = 1; }},
-        {GTX_ERROR_NOT_ZEROED, [](gtx_cook_desc &d) { d.reserved[5] = 1; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.texel_density = -0.5f; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.texel_density = 4.5f; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.texel_density = NAN; }},
+        {GTX_ERROR_NOT_ZEROED, [](gtx_cook_desc &d) { d.reserved[4] = 1; }},
     };
     std::string output = in_folder("e.gtx");
     for (const auto &c : cases) {

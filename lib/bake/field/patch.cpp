@@ -190,8 +190,8 @@ static ChartField lay_fitted(const Job &job, const Chart &chart, double finer)
 PatchMaps bake_chart(const Job &job, const Chart &chart)
 {
     constexpr double ALLOWED = 0.01, FINER = 1.4;
-    ChartField field = lay_fitted(job, chart, 1);
-    if (fit_heights(job.pitch, field) > ALLOWED) {
+    ChartField field = lay_fitted(job, chart, chart.finer);
+    if (fit_heights(job.pitch, field) > ALLOWED && chart.finer < FINER) {
         field = lay_fitted(job, chart, FINER);
         fit_heights(job.pitch, field);
     }

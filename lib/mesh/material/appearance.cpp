@@ -58,6 +58,7 @@ struct Point {
         double determinant() const { return edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0]; }
     };
     Uv uv(const Texture &texture) const;
+    double covered(const Texture &texture, const Uv &place) const;
     std::array<float, 4> sample(const Texture &texture, Texels kind) const;
     Vec3f normal() const;
 };
@@ -82,13 +83,27 @@ Point::Uv Point::uv(const Texture &texture) const
     return out;
 }
 
+/* Twice the texels of the texture that the triangle covers. */
+double Point::covered(const Texture &texture, const Uv &place) const
+{
+    const Image::Level &finest = mesh.appearance.images[texture.image].levels[0];
+    return std::fabs(place.determinant()) * (double(finest.width) * finest.height);
+}
+
+double texture_pixels(const Mesh &mesh, size_t triangle, const Texture &texture)
+{
+    constexpr float middle[3] = {0, 0, 0};
+    const Point point = {mesh, triangle, middle, 0};
+    const double twice = point.covered(texture, point.uv(texture));
+    return std::isfinite(twice) ? twice / 2 : 0;
+}
+
 /* A triangle of area A that covers B texels shows sqrt(B / A) texels along a unit. */
 std::array<float, 4> Point::sample(const Texture &texture, Texels kind) const
 {
     const Image &image = mesh.appearance.images[texture.image];
     const Uv place = uv(texture);
-    const double texels = double(image.levels[0].width) * image.levels[0].height;
-    const double covered = std::fabs(place.determinant()) * texels;
+    const double covered = this->covered(texture, place);
     const double side = footprint * std::sqrt(covered / length(mesh.area_vector(triangle)));
     return sample_image(image, texture.wrap, place.at[0], place.at[1], side, kind);
 }

@@ -77,6 +77,9 @@ struct SurfaceSample {
     float cut = 1;                                 /* alpha less its cutoff; < 0: nothing there */
 };
 
+/* Pixels of a texture's image that a triangle covers. */
+double texture_pixels(const Mesh &mesh, size_t triangle, const Texture &texture);
+
 /* What the corners of a triangle make of a point between them. */
 struct Interpolated {
     Vec3f normal;                                  /* unit, object space */

@@ -1,0 +1,13 @@
+/* Finer texels for charts on which relief needs fewer than textures show. */
+#pragma once
+
+#include "chart/chart.hpp"
+
+namespace gtx {
+
+/* Sets `finer` of the charts, and `more_texels` of the partition. Without textures it changes
+ * nothing. Deterministic for any thread count. */
+void follow_textures(const Mesh &mesh, const ChartOptions &options, Partition &partition,
+                     Task &task);
+
+} // namespace gtx
