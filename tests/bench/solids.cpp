@@ -10,10 +10,11 @@
 #include <geotex/cook.h>
 #include <geotex/solid.h>
 
-#include <chrono>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <map>
 
 #if __has_include(<CGAL/Surface_mesh.h>)
@@ -21,8 +22,8 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/corefinement.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
-#include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
+#include <CGAL/boost/graph/helpers.h>
 #endif
 
 using namespace gtx;
@@ -39,10 +40,10 @@ void require(gtx_result result, const gtx_error &error)
     std::exit(3);
 }
 
+/* Of a processor. */
 double seconds()
 {
-    using namespace std::chrono;
-    return duration<double>(steady_clock::now().time_since_epoch()).count();
+    return double(std::clock()) / CLOCKS_PER_SEC;
 }
 
 /* Closes every border by a fan around the mean of its corners. */
@@ -70,27 +71,32 @@ void close_holes(Mesh &mesh)
     }
 }
 
-/* A cube of 6 x n x n squares blown up. */
-Mesh make_sphere(const Vec3d &centre, double radius, uint32_t n)
+/* A cube of 6 x n x n squares blown up. Faces share the vertices of their edges. */
+Mesh make_sphere(const Vec3d &centre, double radius, int n)
 {
     Mesh out;
+    std::map<std::array<int, 3>, uint32_t> names; /* of the cube's lattice */
+    auto vertex = [&](int face, int i, int j) {
+        std::array<int, 3> at;
+        at[size_t(face / 2)] = face % 2 ? 0 : n;
+        at[size_t(face / 2 + 1) % 3] = face % 2 ? j : i;
+        at[size_t(face / 2 + 2) % 3] = face % 2 ? i : j;
+        const auto [name, fresh] = names.insert({at, uint32_t(out.positions.size())});
+        if (fresh) {
+            Vec3d p;
+            for (int k = 0; k < 3; ++k)
+                p[k] = std::tan((2. * at[size_t(k)] / n - 1) * M_PI / 4);
+            out.positions.push_back(centre + normalize(p) * radius);
+        }
+        return name->second;
+    };
     for (int face = 0; face < 6; ++face)
-        for (uint32_t j = 0; j <= n; ++j)
-            for (uint32_t i = 0; i <= n; ++i) {
-                const double u = std::tan((2. * i / n - 1) * M_PI / 4);
-                const double v = std::tan((2. * j / n - 1) * M_PI / 4);
-                Vec3d p;
-                p[face / 2] = face % 2 ? -1 : 1;
-                p[(face / 2 + 1) % 3] = face % 2 ? v : u;
-                p[(face / 2 + 2) % 3] = face % 2 ? u : v;
-                out.positions.push_back(centre + normalize(p) * radius);
-            }
-    for (uint32_t face = 0; face < 6; ++face)
-        for (uint32_t j = 0; j < n; ++j)
-            for (uint32_t i = 0; i < n; ++i) {
-                const uint32_t a = (face * (n + 1) + j) * (n + 1) + i, c = a + n + 1;
-                out.triangles.push_back({a, a + 1, c + 1});
-                out.triangles.push_back({a, c + 1, c});
+        for (int j = 0; j < n; ++j)
+            for (int i = 0; i < n; ++i) {
+                const uint32_t a = vertex(face, i, j), b = vertex(face, i + 1, j),
+                               c = vertex(face, i, j + 1), d = vertex(face, i + 1, j + 1);
+                out.triangles.push_back({a, b, d});
+                out.triangles.push_back({a, d, c});
             }
     return out;
 }
@@ -151,6 +157,10 @@ Peer combine_meshes(const Mesh &a, const Mesh &b)
     for (int op = 0; op < 3; ++op) {
         Polygons left = polygons_of(a), right = polygons_of(b), made;
         const double start = seconds();
+        if (!CGAL::is_closed(left) || !CGAL::is_closed(right)) {
+            std::fprintf(stderr, "solids: a mesh is open\n");
+            std::exit(3);
+        }
         const bool done =
             op == 0   ? PMP::corefine_and_compute_union(left, right, made)
             : op == 1 ? PMP::corefine_and_compute_intersection(left, right, made)
@@ -215,9 +225,8 @@ void run(const std::string &folder, const char *model)
         }
     const Vec3d size = high - low;
     /* Off the middle, half in and half out. */
-    Mesh ball = make_sphere(low + Vec3d(size.x * 0.6, size.y * 0.55, size.z * 0.7),
-                            0.25 * length(size), 96);
-    ball = clean_mesh(std::move(ball), task, clean); /* welds its faces */
+    const Mesh ball = make_sphere(low + Vec3d(size.x * 0.6, size.y * 0.55, size.z * 0.7),
+                                  0.25 * length(size), 96);
     const Mesh *meshes[2] = {&body, &ball};
     gtx_asset *assets[2];
     for (int side = 0; side < 2; ++side) {
