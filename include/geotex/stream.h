@@ -109,7 +109,8 @@ typedef struct gtx_stream_frame {
     const gtx_stream_draw *draws;
     uint32_t request_count, upload_count, draw_count;
     uint32_t pending;             /* tiles in view that are wanted and not ready; 0: all is there */
-    uint32_t without_room;        /* of these, not asked for since the budgets have no room */
+    uint32_t without_room;        /* of these, those that wait for room in the budgets: no more is
+                                     going to come where it is as many */
     uint32_t given_up;            /* tiles whose tries have ended, of the whole world */
     uint32_t resident, under_way; /* payloads, requests */
     uint64_t cpu_bytes, gpu_bytes;    /* taken of the budgets, by both */

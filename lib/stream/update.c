@@ -187,13 +187,16 @@ static void sort(const gtx_stream *s, uint32_t *tiles, uint32_t count, bool by_v
     }
 }
 
-/* What of an incomplete group is there shows nothing, and may leave. */
+/* What of an incomplete group is there shows nothing, is not uploaded, and may leave. */
 static void give_way(gtx_stream *s, const gtx_tile *parent)
 {
     for (uint32_t k = 0; k < parent->child_count; ++k) {
         gtx_tile *child = &s->tiles[parent->first_child + k];
-        if (child->in_view == s->update)
-            child->wanted = s->update - 1;
+        if (child->in_view != s->update)
+            continue;
+        child->wanted = s->update - 1;
+        s->frame.without_room +=
+            child->state == GTX_TILE_ABSENT || child->state == GTX_TILE_HELD;
     }
 }
 
@@ -222,11 +225,9 @@ static void ask(gtx_stream *s)
         gtx_tile *tile = &s->tiles[s->wants[i]];
         if (tile->state != GTX_TILE_READY) /* it has left for something better */
             continue;
-        const uint32_t missing = count_children(s, tile).missing;
         if (refusals < MAX_REFUSALS && ask_for_children(s, tile, &planned))
             continue;
         ++refusals;
-        s->frame.without_room += missing;
         give_way(s, tile);
     }
 }

@@ -157,6 +157,29 @@ static uint32_t count_useful(const host *h)
     return count;
 }
 
+/* A group of which a part has come, and the rest turns out to have no room, waits no more. */
+static void parts_of_groups_come_to_rest(void **state)
+{
+    (void)state;
+    host h;
+    host_begin(&h, &world, (gtx_stream_desc){.max_error = 4, .gpu_bytes = 3000});
+    h.view = from_above(5);
+    run(&h, 2, 10, 100);
+    host_update(&h);
+    assert_int_equal(h.frame.request_count, 4);
+    for (uint32_t k = 0; k < 4; ++k)
+        host_deliver(&h, &h.frame.requests[k], 10, 1200);
+    for (int i = 0; i < 200; ++i) { /* the first two are held */
+        host_update(&h);
+        host_serve(&h, 10, 1200);
+    }
+    assert_int_equal(h.frame.draws[0].tile, 0);
+    assert_int_equal(h.frame.refused, 2);
+    assert_true(h.frame.pending > 0);
+    assert_int_equal(h.frame.pending, h.frame.without_room);
+    host_end(&h);
+}
+
 /* With budgets that are too small for the view nobody takes turns, and little is there in vain. */
 static void small_budgets_come_to_rest(void **state)
 {
@@ -170,6 +193,7 @@ static void small_budgets_come_to_rest(void **state)
         run(&h, 200, 10, 1000);
         assert_int_equal(h.frame.requested, requested);
         assert_true(h.frame.without_room > 0 && h.frame.draw_count > 0);
+        assert_int_equal(h.frame.pending, h.frame.without_room);
         assert_true(tiles < 10 || h.frame.resident > tiles / 2);
         assert_true(8 * count_useful(&h) >= 7 * h.frame.resident);
         host_end(&h);
@@ -197,6 +221,7 @@ int main(void)
         cmocka_unit_test(a_parent_stands_until_all_are_there),
         cmocka_unit_test(a_view_is_served),
         cmocka_unit_test(the_longest_unseen_leaves),
+        cmocka_unit_test(parts_of_groups_come_to_rest),
         cmocka_unit_test(small_budgets_come_to_rest),
     };
     return cmocka_run_group_tests(tests, begin, end);
