@@ -137,7 +137,8 @@ Maps place_on_pages(Vector<PatchMaps> &patches, const Vec3d &anchor,
     return maps;
 }
 
-static Vec3d anchor_of(const Mesh &mesh)
+static Job make_job(const Mesh &mesh, const Neighbours &neighbours, const BakeOptions &options,
+                    const Partition &partition)
 {
     Vec3d low = mesh.positions[0], high = low;
     for (const Vec3d &p : mesh.positions) {
@@ -146,7 +147,8 @@ static Vec3d anchor_of(const Mesh &mesh)
             high[k] = std::max(high[k], p[k]);
         }
     }
-    return find_anchor(low, high, "the model is");
+    return {mesh, neighbours, options, appearance_needs(mesh), partition.pitch,
+            find_anchor(low, high, "the model is"), partition.charts.size(), length(high - low)};
 }
 
 static void check(const Mesh &mesh, const Partition &partition, const BakeOptions &options)
@@ -175,8 +177,7 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
     check(mesh, partition, options);
     task.begin("bake");
     Neighbours neighbours = triangle_neighbours(mesh);
-    Job job = {mesh,            neighbours,      options, appearance_needs(mesh),
-               partition.pitch, anchor_of(mesh), partition.charts.size()};
+    Job job = make_job(mesh, neighbours, options, partition);
     Vector<PatchMaps> patches;
     auto bake_rest = [&](double from, double to) {
         const size_t done = patches.size();
@@ -203,6 +204,7 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
 
     stitch(options.height_bits, patches, task);
     close_cuts(partition, charts, job.anchor, options.height_bits, patches, task);
+    end_at_creases(job, patches, task);
     task.parallel(patches.size(),
                   [&](size_t i) { measure_patch(options.height_bits, patches[i]); });
 
