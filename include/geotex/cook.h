@@ -96,7 +96,8 @@ typedef struct gtx_cook_desc {
                                      colour per chart, inverted triangles green; or NULL */
     const char *const *more;      /* paths of further models to cook into the same asset */
     uint32_t more_count;
-    uint32_t strict;              /* 1: a warning is an error (INPUT), and nothing is written */
+    uint32_t strict;              /* 1: a warning is an error (INPUT), and nothing is written; notes
+                                     are none */
     uint32_t if_changed;          /* 1: gtx_cook_file does not touch an output that is a valid asset
                                      with the same key (below) */
     const gtx_allocator *allocator;   /* needed during the call; its hooks until all is freed */
@@ -115,6 +116,8 @@ typedef struct gtx_cook_desc {
                                      their detail needs, up to 4 times as fine as relief needs, but
                                      in all not more than 524,288, and one for each byte read,
                                      beyond relief's. Or GTX_TEXEL_DENSITY_RELIEF */
+    const char *const *allow;     /* names of warnings that are no errors with `strict`; or NULL */
+    uint32_t allow_count;         /* up to 64 */
     uint32_t reserved[5];
 } gtx_cook_desc;
 
@@ -123,12 +126,12 @@ typedef struct gtx_cook_desc {
  *     and images that they refer to, missing ones included; not their paths or times;
  *   - the options that change the asset: partition, extract (and the driver, where it is GPU),
  *     charts, resolution, height_bits, dilation, mips, lod_levels, zstd_level, unit, error, z_up,
- *     adaptive, kept and texel_density; not threads, measure, progress, strict, limits or
+ *     adaptive, kept and texel_density; not threads, measure, progress, strict, allow, limits or
  *     allocator;
  *   - geotex's version and the revision of its cooker,
- * but not the library that decodes images. With `strict`, an asset that was cooked with warnings is
- * cooked again; with `charts_ply`, or if importing read files that could not be foreseen, any
- * is. */
+ * but not the library that decodes images. With `strict`, an asset whose cook had warnings that are
+ * not allowed is cooked again; with `charts_ply`, or if importing read files that could not be
+ * foreseen, any is. */
 
 /* What a call did, as JSON; written only on success, freed by gtx_report_free. All that it points
  * to lies in one block from the call's allocator, whose hooks it keeps. */
@@ -139,8 +142,10 @@ typedef struct gtx_report {
     uint32_t unchanged;           /* 1: if_changed, and the output was left alone */
     char **sources;               /* paths of the files behind the models, the first model first */
     size_t source_count;
-    char **warnings;              /* one sentence each, for people */
-    size_t warning_count;
+    char **warnings;              /* one sentence each, for people; the last note_count are notes:
+                                     of what is as it should be in many models, such as an open
+                                     border, or is mended without a loss */
+    size_t warning_count, note_count;
     const char **warning_names;   /* as many: what kind each is, such as "open-edges", for programs;
                                      static. All are in format/cook-report.schema.json */
     gtx_allocator allocator;      /* gave `block`, and takes it back */

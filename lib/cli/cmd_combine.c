@@ -87,7 +87,7 @@ static void write_report(gtx_json *json, const outcome *o)
         gtx_json_begin_array(json, names ? "warning_names" : "warnings");
         for (int side = 0; side < 2; ++side)
             if (o->open[side])
-                gtx_json_string(json, NULL, names ? gtx_warning_name(GTX_WARNING_OPEN_EDGES)
+                gtx_json_string(json, NULL, names ? gtx_warning_name(GTX_WARNING_OPEN_SOLID)
                                                   : open_sentences[side]);
         gtx_json_end_array(json);
     }
@@ -119,7 +119,7 @@ static gtx_result check_warnings(const char *const files[2], outcome *o, gtx_err
         if (o->open[side] && strict)
             return gtx_fail(error, GTX_ERROR_INPUT, "%s (--strict)", open_sentences[side]);
         if (o->open[side])
-            report_warning(files[side], gtx_warning_name(GTX_WARNING_OPEN_EDGES),
+            report_warning(files[side], gtx_warning_name(GTX_WARNING_OPEN_SOLID),
                            open_sentences[side]);
     }
     return GTX_OK;

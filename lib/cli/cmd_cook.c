@@ -12,7 +12,7 @@
 enum { MAX_MODELS = 4096 };
 
 static gtx_cook_desc desc;
-static const char *output, *name, *report_path, *depfile_path;
+static const char *output, *name, *report_path, *depfile_path, *allow;
 static uint32_t partition, extract, lod_levels = 5;
 static double unit = 1, texel_density = -1; /* by their detail */
 static int32_t zstd_level = 3;
@@ -49,7 +49,10 @@ static const option options[] = {
      "of a glTF scene: an asset for each mesh that suits, and the scene, into the folder -o", 0, 0},
     {"if-changed", 0, OPTION_FLAG, &if_changed, NULL,
      "keep OUT.gtx if its key says that nothing changed", 0, 0},
-    {"strict", 0, OPTION_FLAG, &strict, NULL, "a warning is an error (exit 3)", 0, 0},
+    {"strict", 0, OPTION_FLAG, &strict, NULL, "a warning is an error (exit 3); a note is none", 0,
+     0},
+    {"allow", 0, OPTION_STRING, &allow, "NAME,...", "with --strict: warnings that are no errors", 0,
+     0},
     {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
     PROGRESS_OPTION,
     {"report", 0, OPTION_STRING, &report_path, "R.json",
@@ -104,7 +107,7 @@ static int check(const char *const *models, int count)
     if (adaptive && GTX_PARTITION_CUTS + partition != GTX_PARTITION_PGP)
         return usage("--adaptive needs --partition pgp");
     if (per_mesh && (count > 1 || is_stream(models[0]) || is_stream(output) || depfile_path ||
-                     desc.charts_ply || desc.z_up || unit != 1 || strict || if_changed))
+                     desc.charts_ply || desc.z_up || unit != 1 || strict || if_changed || allow))
         return usage("--per-mesh takes one scene file and a folder, and no --depfile, "
                      "--charts-ply, --up, --unit, --strict, --if-changed");
     return check_outputs("gtx cook", outputs, models, (size_t)count);
@@ -202,6 +205,17 @@ static int tell(const char *label, const gtx_report *report)
     return code;
 }
 
+/* Cuts the names apart; more than the library takes it refuses. */
+static void set_allowed(void)
+{
+    static char text[1024];
+    static const char *names[65];
+    snprintf(text, sizeof text, "%s", allow ? allow : "");
+    for (char *at = strtok(text, ","); at && desc.allow_count < 65; at = strtok(NULL, ","))
+        names[desc.allow_count++] = at;
+    desc.allow = names;
+}
+
 int cmd_cook(int argc, char **argv)
 {
     static const char *models[MAX_MODELS];
@@ -223,6 +237,7 @@ int cmd_cook(int argc, char **argv)
                          : texel_density == 0 ? GTX_TEXEL_DENSITY_RELIEF
                                               : (float)texel_density;
     desc.strict = strict;
+    set_allowed();
     desc.if_changed = if_changed;
     desc.more = models + 1;
     desc.more_count = (uint32_t)(count - 1);

@@ -30,7 +30,7 @@ static void print_verbs(FILE *to)
     fputs("gtx VERB [options] ...\n\n", to);
     for (size_t i = 0; i < sizeof verbs / sizeof *verbs; ++i)
         fprintf(to, "  %-10s %s\n", verbs[i].name, verbs[i].summary);
-    fputs("\n`gtx VERB --help` lists a verb's options. Results go to stdout, messages to stderr.\n"
+    fputs("\n`gtx help VERB` lists a verb's options. Results go to stdout, messages to stderr.\n"
           "Exit: 0 ok, 1 usage, 2 file cannot be read or written, 3 invalid input, 4 internal,\n"
           "5 unsupported, 6 more than is allowed or than there is, 7 a stated limit is passed,\n"
           "130 cancelled.\n", to);
@@ -42,6 +42,12 @@ int main(int argc, char **argv)
     if (argc < 2) {
         print_verbs(stderr);
         return EXIT_CODE_USAGE;
+    }
+    if (!strcmp(argv[1], "help") && argc > 2) { /* as `gtx VERB --help` */
+        static char help[] = "--help";
+        argv[1] = argv[2];
+        argv[2] = help;
+        argc = 3;
     }
     if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h") || !strcmp(argv[1], "help")) {
         print_verbs(stdout);

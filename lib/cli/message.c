@@ -1,6 +1,8 @@
 /* Messages, exit codes and progress of the command. */
 #include "cli/cli.h"
 
+#include "base/warnings.h"
+
 #include <errno.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -80,8 +82,10 @@ int report_no_memory(const char *file)
 
 void report_warning(const char *file, const char *name, const char *sentence)
 {
+    const gtx_warning kind = gtx_warning_named(name);
+    const bool is_note = kind < GTX_WARNING_COUNT && gtx_warning_is_note(kind);
     if (!cli_quiet)
-        print_message("%s: warning[%s]: %s", file, name, sentence);
+        print_message("%s: %s[%s]: %s", file, is_note ? "note" : "warning", name, sentence);
 }
 
 int print_result(const char *text, size_t size)

@@ -70,12 +70,18 @@ struct Outputs {
 
 static void refuse_warnings(const Options &options, const Task &task)
 {
-    size_t count = task.warnings.size();
-    if (options.strict && count)
-        throw Error(GTX_ERROR_INPUT, task.warnings.front().sentence +
-                                         (count > 1 ? " (and " + std::to_string(count - 1) +
+    const Warning *first = nullptr;
+    size_t count = 0;
+    for (const Warning &warning : task.warnings)
+        if (options.strict && !options.allowed[warning.kind]) {
+            first = first ? first : &warning;
+            ++count;
+        }
+    if (first)
+        throw Error(GTX_ERROR_INPUT, first->sentence + " (" + gtx_warning_name(first->kind) +
+                                         (count > 1 ? ", and " + std::to_string(count - 1) +
                                                           " more warnings)"
-                                                    : ""));
+                                                    : ")"));
 }
 
 /* The asset at `path` when cooking would only make it again. */
@@ -95,9 +101,10 @@ static Asset find_cooked(const char *path, const Options &options, uint64_t key,
     if (opened)
         return Asset(nullptr, gtx_close);
     Asset owner(asset, gtx_close);
-    uint64_t old_key, warnings;
+    uint64_t old_key;
+    std::bitset<GTX_WARNING_COUNT> warnings;
     bool same = read_meta(asset, old_key, warnings) && old_key == key;
-    if (!same || (options.strict && warnings))
+    if (!same || (options.strict && (warnings & ~options.allowed).any()))
         owner.reset();
     return owner;
 }
@@ -141,7 +148,8 @@ static Attempt attempt(const Mesh &mesh, const Options &options, Task &task, con
         CookFacts of_asset = facts;
         of_asset.chart_count = out.partition.charts.size();
         of_asset.method = out.partition.method;
-        of_asset.warnings = task.warnings.size();
+        for (const Warning &warning : task.warnings)
+            of_asset.warnings.set(warning.kind);
         out.bake = maps.report;
         out.asset = assemble(maps, lod, {write_meta(options, of_asset), options.unit,
                                          facts.source_triangles, options.allocator});

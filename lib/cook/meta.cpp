@@ -39,13 +39,17 @@ std::string write_meta(const Options &options, const CookFacts &facts)
     gtx_json_hash(&json, "xxh64", facts.source_hash);
     gtx_json_end_object(&json);
     gtx_json_hash(&json, "key", facts.key);
-    gtx_json_integer(&json, "warnings", facts.warnings);
+    gtx_json_begin_array(&json, "warnings");
+    for (size_t kind = 0; kind < facts.warnings.size(); ++kind)
+        if (facts.warnings[kind])
+            gtx_json_string(&json, nullptr, gtx_warning_name(gtx_warning(kind)));
+    gtx_json_end_array(&json);
     gtx_json_end_object(&json);
     check_written(json);
     return std::string(json.text, json.size);
 }
 
-bool read_meta(const gtx_asset *asset, uint64_t &key, uint64_t &warnings)
+bool read_meta(const gtx_asset *asset, uint64_t &key, std::bitset<GTX_WARNING_COUNT> &warnings)
 {
     size_t size = 0;
     const char *text = gtx_meta(asset, &size);
@@ -53,10 +57,16 @@ bool read_meta(const gtx_asset *asset, uint64_t &key, uint64_t &warnings)
         return false;
     auto meta = nlohmann::json::parse(text, text + size, nullptr, false);
     if (!meta.is_object() || !meta.contains("key") || !meta["key"].is_string() ||
-        !meta.contains("warnings") || !meta["warnings"].is_number_unsigned())
+        !meta.contains("warnings") || !meta["warnings"].is_array())
         return false;
     key = std::strtoull(meta["key"].get_ref<const std::string &>().c_str(), nullptr, 16);
-    warnings = meta["warnings"];
+    for (const auto &name : meta["warnings"]) {
+        const std::string known = name.is_string() ? name.get<std::string>() : "";
+        const gtx_warning kind = gtx_warning_named(known.c_str());
+        if (kind == GTX_WARNING_COUNT)
+            return false;
+        warnings.set(kind);
+    }
     return true;
 }
 

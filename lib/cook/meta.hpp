@@ -8,7 +8,7 @@ namespace gtx {
 
 std::string write_meta(const Options &options, const CookFacts &facts);
 
-/* The key of an asset, and how many warnings it was cooked with; false when META does not tell. */
-bool read_meta(const gtx_asset *asset, uint64_t &key, uint64_t &warnings);
+/* The key of an asset, and the warnings that it was cooked with; false when META does not tell. */
+bool read_meta(const gtx_asset *asset, uint64_t &key, std::bitset<GTX_WARNING_COUNT> &warnings);
 
 } // namespace gtx

@@ -68,6 +68,24 @@ static void check(const gtx_cook_desc &desc)
     require_argument(desc.kept || !desc.kept_count, "kept is NULL, and kept_count is not 0");
     require_argument(desc.kept_count <= UINT32_MAX, "kept_count is at most 2^32 - 1");
     require_models(desc.more, desc.more_count);
+    require_argument(desc.allow_count <= 64, "allow_count is at most 64");
+    require_argument(desc.allow || !desc.allow_count, "allow is NULL, and allow_count is not 0");
+}
+
+static std::bitset<GTX_WARNING_COUNT> allowed_by(const gtx_cook_desc &desc)
+{
+    std::bitset<GTX_WARNING_COUNT> out;
+    for (int kind = 0; kind < GTX_WARNING_COUNT; ++kind)
+        out[size_t(kind)] = gtx_warning_is_note(gtx_warning(kind));
+    for (uint32_t i = 0; i < desc.allow_count; ++i) {
+        require_argument(desc.allow[i], "one of the allowed names is NULL");
+        const gtx_warning kind = gtx_warning_named(desc.allow[i]);
+        if (kind == GTX_WARNING_COUNT)
+            throw Error(GTX_ERROR_ARGUMENT,
+                        "there is no warning '" + std::string(desc.allow[i]) + "' to allow");
+        out.set(kind);
+    }
+    return out;
 }
 
 Options checked_options(const gtx_cook_desc &desc)
@@ -100,6 +118,7 @@ Options checked_options(const gtx_cook_desc &desc)
     options.measure = desc.measure || desc.error > 0;
     options.z_up = desc.z_up;
     options.strict = desc.strict;
+    options.allowed = allowed_by(desc);
     options.if_changed = desc.if_changed;
     options.kept = desc.kept;
     options.kept_count = desc.kept_count;

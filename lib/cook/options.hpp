@@ -6,6 +6,8 @@
 
 #include <geotex/cook.h>
 
+#include <bitset>
+
 namespace gtx {
 
 /* Promised by cook.h. */
@@ -34,6 +36,7 @@ struct Options {
     bool free_bits = false;       /* the error decides on the bits of a height */
     bool free_charts = false;     /* and on the number of patches */
     bool measure = false;         /* also where an error is asked for */
+    std::bitset<GTX_WARNING_COUNT> allowed; /* warnings that `strict` lets pass; notes always */
     bool z_up = false, strict = false, if_changed = false;
     const double *kept = nullptr;
     size_t kept_count = 0;

@@ -20,16 +20,29 @@ void write_deviation(Json &json, const char *key, const Deviation &deviation)
     gtx_json_end_object(&json);
 }
 
+/* Those that are notes, or those that are none. */
+static Vector<Warning> chosen(const Vector<Warning> &warnings, bool notes)
+{
+    Vector<Warning> out;
+    for (const Warning &w : warnings)
+        if (gtx_warning_is_note(w.kind) == notes)
+            out.push_back(w);
+    return out;
+}
+
 void write_warnings(Json &json, const Vector<Warning> &warnings)
 {
-    gtx_json_begin_array(&json, "warnings");
-    for (const Warning &w : warnings)
-        gtx_json_string(&json, nullptr, w.sentence.c_str());
-    gtx_json_end_array(&json);
-    gtx_json_begin_array(&json, "warning_names");
-    for (const Warning &w : warnings)
-        gtx_json_string(&json, nullptr, gtx_warning_name(w.kind));
-    gtx_json_end_array(&json);
+    for (const bool notes : {false, true}) {
+        const Vector<Warning> list = chosen(warnings, notes);
+        gtx_json_begin_array(&json, notes ? "notes" : "warnings");
+        for (const Warning &w : list)
+            gtx_json_string(&json, nullptr, w.sentence.c_str());
+        gtx_json_end_array(&json);
+        gtx_json_begin_array(&json, notes ? "note_names" : "warning_names");
+        for (const Warning &w : list)
+            gtx_json_string(&json, nullptr, gtx_warning_name(w.kind));
+        gtx_json_end_array(&json);
+    }
 }
 
 static void write_charts(Json &json, const ChartReport &charts)
@@ -222,10 +235,12 @@ Report::Report(const Json &text, const std::string &line, const Vector<std::stri
     char *at = reinterpret_cast<char *>(warning_names + warning.size());
     for (const std::string &s : source)
         sources[source_count++] = copy_string(s, at);
-    for (const Warning &w : warning) {
-        warning_names[warning_count] = gtx_warning_name(w.kind);
-        warnings[warning_count++] = copy_string(w.sentence, at);
-    }
+    for (const bool notes : {false, true})
+        for (const Warning &w : chosen(warning, notes)) {
+            warning_names[warning_count] = gtx_warning_name(w.kind);
+            warnings[warning_count++] = copy_string(w.sentence, at);
+            note_count += notes;
+        }
     json = at;
     size = text.size;
     memcpy(json, text.text, size + 1);

@@ -25,7 +25,8 @@ struct CookFacts {
     PartitionMethod method = PartitionMethod::CUTS; /* what AUTO came to */
     Suitability suitability;
     SurfaceError error;
-    uint64_t source_hash = 0, key = 0, warnings = 0;
+    uint64_t source_hash = 0, key = 0;
+    std::bitset<GTX_WARNING_COUNT> warnings;
     Vector<gtx_lod_mesh> lod;      /* the levels of the asset */
     uint64_t bytes = 0, content_hash = 0;
     double total_seconds = 0;
@@ -40,7 +41,7 @@ struct Json : gtx_json {
 };
 
 void write_deviation(Json &json, const char *key, const Deviation &deviation);
-/* Sentences and names. */
+/* Sentences and names, of warnings and of notes apart. */
 void write_warnings(Json &json, const Vector<Warning> &warnings);
 /* Throws bad_alloc where memory ran out on the way. */
 void check_written(const Json &json);

@@ -13,7 +13,8 @@ $(out)/gen/gtx.1: lib/package/gtx.1.in lib/package/verbs.awk $(command)
 
 install: all $(out)/gen/gtx.1 ## libraries, headers, command, shaders, manual: below PREFIX
 	@install -d $(to)/bin $(to)/include/geotex $(to)/lib/geotex $(to)/lib/pkgconfig \
-	  $(to)/lib/cmake/geotex $(to)/share/geotex/shaders $(to)/share/doc/geotex $(to)/share/man/man1
+	  $(to)/lib/cmake/geotex $(to)/share/geotex/shaders $(to)/share/doc/geotex \
+	  $(to)/share/man/man1 $(to)/share/bash-completion/completions
 	@install -m 755 $(command) $(to)/bin
 	@install -m 644 include/geotex/*.h $(to)/include/geotex
 	@install -m 644 $(lib_core) $(lib_cook) $(to)/lib
@@ -28,11 +29,13 @@ install: all $(out)/gen/gtx.1 ## libraries, headers, command, shaders, manual: b
 	@install -m 644 $(shaders) $(to)/share/geotex/shaders
 	@install -m 644 README.md LICENSE $(filter-out %.gtx,$(wildcard format/*)) $(to)/share/doc/geotex
 	@install -m 644 $(out)/gen/gtx.1 $(to)/share/man/man1
+	@install -m 644 lib/package/gtx.bash $(to)/share/bash-completion/completions/gtx
 
 uninstall: ## remove what install put there
 	@cd $(to) && rm -f $$(cat $(abspath lib/package/files)) && \
 	  rmdir --ignore-fail-on-non-empty -p include/geotex lib/geotex lib/cmake/geotex lib/pkgconfig \
-	    share/geotex/shaders share/doc/geotex share/man/man1 bin 2>/dev/null || true
+	    share/geotex/shaders share/doc/geotex share/man/man1 share/bash-completion/completions \
+	    bin 2>/dev/null || true
 
 # The same bytes from the same commit, wherever and whenever.
 dist_name := geotex-$(VERSION)

@@ -38,7 +38,39 @@ static void help_is_exit_0(void **state)
     for (size_t i = 0; i < sizeof verbs / sizeof *verbs; ++i) {
         expect(gtx("%s --help", verbs[i]), 0);
         expect_text(verbs[i]);
+        char help[sizeof output];
+        strcpy(help, output);
+        expect(gtx("help %s", verbs[i]), 0);
+        assert_string_equal(output, help);
     }
+    expect(gtx("help frobnicate"), 1);
+    expect_text("unknown verb 'frobnicate'");
+}
+
+/* What bash would offer for the last of the words, which follow the command. */
+static void completes(const char *words, const char *wanted)
+{
+    char command[1024], found[1024] = "";
+    snprintf(command, sizeof command,
+             "bash -c 'source lib/package/gtx.bash; COMP_WORDS=(\"$GTX\" %s); "
+             "COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _gtx; echo \"${COMPREPLY[*]}\"'", words);
+    FILE *pipe = popen(command, "r");
+    assert_non_null(pipe);
+    assert_non_null(fgets(found, sizeof found, pipe));
+    pclose(pipe);
+    found[strcspn(found, "\n")] = 0;
+    assert_string_equal(found, wanted);
+}
+
+static void bash_completes_verbs_options_and_values(void **state)
+{
+    (void)state;
+    completes("va", "validate");
+    completes("help comb", "combine");
+    completes("cook --part", "--partition");
+    completes("cook --partition l", "layers");
+    completes("cook model.obj --max-p", "--max-pixels --max-patches");
+    completes("cook mod", "");
 }
 
 static void a_missing_file_is_exit_2(void **state)
@@ -263,6 +295,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(usage_is_exit_1),
         cmocka_unit_test(help_is_exit_0),
+        cmocka_unit_test(bash_completes_verbs_options_and_values),
         cmocka_unit_test(a_missing_file_is_exit_2),
         cmocka_unit_test(bad_models_are_exit_3_and_write_nothing),
         cmocka_unit_test(one_triangle_cooks),

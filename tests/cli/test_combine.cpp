@@ -70,7 +70,7 @@ static void misuse_leaves_nothing(void **)
             "sphere.gtx flat.gtx -o no.gtx --op union --openness 1 --strict --lod-levels 0");
     const json report = report_of("sphere.gtx flat.gtx -o open.gtx --op union --openness 1 "
                                   "--lod-levels 0 --zstd 0");
-    expect_text("flat.gtx: warning[open-edges]");
+    expect_text("flat.gtx: warning[open-solid]");
     assert_int_equal(report["warnings"].size(), 1);
 }
 

@@ -110,18 +110,32 @@ static void unchanged_outputs_stay(void **state)
 static void strict_is_exit_3(void **state)
 {
     static const char text[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    static const char fan[] = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 0 0\n"
+                              "f 1 2 3\nf 1 2 4\nf 1 2 5\n";
     (void)state;
     write_file("open.obj", text, sizeof text - 1);
+    write_file("fan.obj", fan, sizeof fan - 1);
     write_file("kept.gtx", "precious", 8);
-    expect(gtx("cook open.obj -o kept.gtx --strict"), 3);
-    expect_text("open.obj: error[input]: 1 component with a border");
+    expect(gtx("cook fan.obj -o kept.gtx --strict"), 3);
+    expect_text("fan.obj: error[input]: 1 edge with more than two triangles: split (nonmanifold-");
+    expect(gtx("cook fan.obj -o kept.gtx --strict --allow few-triangles"), 3);
+    expect(gtx("cook fan.obj -o kept.gtx --strict --allow nonmanifold-edge"), 1);
+    expect_text("there is no warning 'nonmanifold-edge' to allow");
     size_t size;
     char *kept = slurp("kept.gtx", &size);
     assert_int_equal(size, 8);
     free(kept);
     expect(gtx("cook sphere.obj -o a.gtx --strict"), 0);
-    expect(gtx("cook open.obj -o kept.gtx"), 0);
-    expect_text("open.obj: warning[open-edges]: ");
+    expect(gtx("cook open.obj -o open.gtx"), 0);
+    expect_text("open.obj: note[open-edges]: ");
+    expect(gtx("cook fan.obj -o kept.gtx"), 0);
+    expect_text("fan.obj: warning[nonmanifold-edges]: ");
+    const char *allow = "--allow nonmanifold-edges,few-triangles,outline-loss,inconsistent-winding,"
+                        "empty-texels,unorientable";
+    expect(gtx("cook fan.obj -o fan.gtx --strict --if-changed %s", allow), 0);
+    expect(gtx("cook fan.obj -o fan.gtx --strict --if-changed %s", allow), 0);
+    expect_text("fan.gtx: unchanged");
+    expect(gtx("cook fan.obj -o fan.gtx --strict --if-changed"), 3);
 }
 
 static void progress_is_a_json_object_a_line(void **state)

@@ -79,7 +79,7 @@ static void passed_limits_are_told(void **state)
     write_file("open.obj", text, sizeof text - 1);
     expect(gtx("compare sphere.gtx open.obj --size 64 --levels 1 --min-iou 0.9 --max-rms 0.001"),
            7);
-    expect_text("open.obj: warning[open-edges]: 1 component with a border");
+    expect_text("open.obj: note[open-edges]: 1 component with a border");
     expect_text("sphere.gtx: error[differs]: silhouette IoU 0.");
     expect_text(": below --min-iou 0.9\n");
     expect_text("sphere.gtx: error[differs]: forward RMS 0.");
@@ -99,15 +99,15 @@ static void every_verb_prints_warnings(void **state)
 {
     (void)state;
     expect(gtx("cook open.obj -o a.gtx"), 0);
-    expect_text("open.obj: warning[open-edges]: ");
+    expect_text("open.obj: note[open-edges]: ");
     expect(gtx("compare a.gtx open.obj --size 64 --levels 1"), 0);
-    expect_text("open.obj: warning[open-edges]: ");
+    expect_text("open.obj: note[open-edges]: ");
     const int code = gtx("bench a.gtx open.obj --sizes 16x16 --methods cast --frames 1");
-    expect_text("open.obj: warning[open-edges]: ");
+    expect_text("open.obj: note[open-edges]: ");
     if (code == 5)
         skip();
     expect(gtx("render open.obj --size 16x16 -o a.png"), 0);
-    expect_text("open.obj: warning[open-edges]: ");
+    expect_text("open.obj: note[open-edges]: ");
 }
 
 int main(void)

@@ -23,6 +23,7 @@ static const char *const known_extensions[] = {
 /* What a document may hold that has no place in a mesh, and is not read. */
 static const struct {
     const char *key, *warning;
+    gtx_warning kind = GTX_WARNING_IGNORED_SCENE;
 } unread[] = {
     {"images", nullptr}, /* these four are read apart */
     {"textures", nullptr},
@@ -30,7 +31,7 @@ static const struct {
     {"samplers", nullptr},
     {"animations", "animations were ignored"},
     {"skins", "skins were ignored"},
-    {"cameras", "cameras were ignored"},
+    {"cameras", "cameras were ignored", GTX_WARNING_IGNORED_VIEW},
     {"extensions", nullptr},
     {"extras", nullptr},
     {"buffers", nullptr},
@@ -217,13 +218,13 @@ json read_gltf_json(std::string_view text, Task &task)
 void strip_gltf_json(json &root, Task &task)
 {
     if (root.contains("extensions") && root["extensions"].contains("KHR_lights_punctual"))
-        task.warn(GTX_WARNING_IGNORED_SCENE, "lights were ignored");
+        task.warn(GTX_WARNING_IGNORED_VIEW, "lights were ignored");
     for (const auto &item : unread) {
         auto found = root.find(item.key);
         if (found == root.end())
             continue;
         if (item.warning && !found->empty())
-            task.warn(GTX_WARNING_IGNORED_SCENE, item.warning);
+            task.warn(item.kind, item.warning);
         root.erase(found);
     }
     bool has_targets = false;
