@@ -32,8 +32,8 @@ static const option options[] = {
 static const verb render = {
     "render", "FILE... -o OUT.png",
     "Draws assets, polygon models, worlds (DIR of gtx world) and glTF scenes into a PNG. A glTF\n"
-    "node with the extras {\"geotex\": \"a.gtx\"}, or the extension GTX_geometry_texture, places an\n"
-    "asset; one that lies in a GLB is shown as its mesh.",
+    "node with the extras {\"geotex\": \"a.gtx\"}, or the extension GTX_geometry_texture, places\n"
+    "an asset; one that lies in a GLB is shown as its mesh.",
     1, 64, options};
 
 static int write_images(const gtx::Still &still)
