@@ -60,8 +60,8 @@ $(web_package)/LICENSE: LICENSE
 	@mkdir -p $(@D)
 	$(Q)cp $< $@
 
-web: $(addprefix $(web_package)/,core.js geotex.js geotex.d.ts three.js three.d.ts package.json \
-     README.md LICENSE) ## the npm package geotex, as WebAssembly (needs emscripten)
+web_files := core.js geotex.js geotex.d.ts three.js three.d.ts package.json README.md LICENSE
+web: $(web_files:%=$(web_package)/%) ## the npm package geotex, as WebAssembly (needs emscripten)
 	@cd $(web_package) && echo "$$PWD: $$(cat core.wasm core.js geotex.js | gzip -9 | wc -c)" \
 	  "bytes of core and glue, gzipped"
 

@@ -82,7 +82,7 @@ static void libraries_export_what_headers_declare(void **state)
     need_stage();
     assert_true(shell(
         "cd \"$STAGE/usr\" && "
-        "for pair in 'libgeotex.so " CORE_HEADERS "' 'libgeotex-cook.so cook.h'; "
+        "for pair in 'libgeotex.so " CORE_HEADERS "' 'libgeotex-cook.so cook.h export.h'; "
         "do set -- $pair; so=$1; shift; (cd include/geotex && cat \"$@\") | "
         "grep -o 'gtx_[a-z_]*(' | tr -d '(' | sort -u > \"$STAGE/declared\"; "
         "nm -D --defined-only lib/$so | awk '$3 ~ /^gtx_/ {print $3}' | sort "
@@ -94,7 +94,7 @@ static void libraries_export_what_headers_declare(void **state)
     /* and the other way: every GTX_API function is there */
     assert_true(shell(
         "cd \"$STAGE/usr\" && "
-        "for pair in 'libgeotex.so " CORE_HEADERS "' 'libgeotex-cook.so cook.h'; "
+        "for pair in 'libgeotex.so " CORE_HEADERS "' 'libgeotex-cook.so cook.h export.h'; "
         "do set -- $pair; so=$1; shift; nm -D --defined-only lib/$so | awk '{print $3}' > "
         "\"$STAGE/exported\"; (cd include/geotex && cat \"$@\") | tr '\\n' ' ' | "
         "grep -o 'GTX_API [^;(]*(' | grep -o 'gtx_[a-z_]*($' | tr -d '(' > \"$STAGE/declared\"; "
