@@ -137,8 +137,7 @@ Maps place_on_pages(Vector<PatchMaps> &patches, const Vec3d &anchor,
     return maps;
 }
 
-static Job make_job(const Mesh &mesh, const Neighbours &neighbours, const BakeOptions &options,
-                    const Partition &partition)
+static Vec3d anchor_of(const Mesh &mesh)
 {
     Vec3d low = mesh.positions[0], high = low;
     for (const Vec3d &p : mesh.positions) {
@@ -147,8 +146,7 @@ static Job make_job(const Mesh &mesh, const Neighbours &neighbours, const BakeOp
             high[k] = std::max(high[k], p[k]);
         }
     }
-    return {mesh, neighbours, options, appearance_needs(mesh), partition.pitch,
-            find_anchor(low, high, "the model is"), partition.charts.size(), length(high - low)};
+    return find_anchor(low, high, "the model is");
 }
 
 static void check(const Mesh &mesh, const Partition &partition, const BakeOptions &options)
@@ -177,7 +175,8 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
     check(mesh, partition, options);
     task.begin("bake");
     Neighbours neighbours = triangle_neighbours(mesh);
-    Job job = make_job(mesh, neighbours, options, partition);
+    Job job = {mesh,            neighbours,      options, appearance_needs(mesh),
+               partition.pitch, anchor_of(mesh), partition.charts.size()};
     Vector<PatchMaps> patches;
     auto bake_rest = [&](double from, double to) {
         const size_t done = patches.size();
@@ -204,7 +203,6 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
 
     stitch(options.height_bits, patches, task);
     close_cuts(partition, charts, job.anchor, options.height_bits, patches, task);
-    end_at_creases(job, patches, task);
     task.parallel(patches.size(),
                   [&](size_t i) { measure_patch(options.height_bits, patches[i]); });
 

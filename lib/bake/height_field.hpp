@@ -62,7 +62,7 @@ public:
     }
     uint8_t trim(size_t texel) const { return trim_[texel]; }
     /* Whether the outline nearest to a texel is the model's own border; pages do not tell. */
-    bool at_border(size_t texel) const { return border_ && border_[texel] & MODEL_BORDER; }
+    bool at_border(size_t texel) const { return border_ && border_[texel]; }
 
     Vec3d point(double u, double v, double height) const
     {

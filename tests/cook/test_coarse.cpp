@@ -47,13 +47,13 @@ static void animals(void **)
     measure_coarse(fox(), "fox", {0, 4});
 }
 
-/* Their texels are 0.4 to 1 % of the diagonal, two to four pixels: walls are at corners, where
- * height fields are shown up to 0.3 texels past them. */
+/* Their texels are 0.4 to 1 % of the diagonal, two to four pixels, and height fields are shown up
+ * to 0.3 texels past an edge: the walls are along outlines. */
 static void thin_ones(void **)
 {
-    measure_coarse(bars(), "bars", {0, 20});
-    measure_coarse(city_tile(), "tile of a city", {4, 400});
-    measure_coarse(roof(), "roof", {0, 1500});
+    measure_coarse(bars(), "bars", {0, 40});
+    measure_coarse(city_tile(), "tile of a city", {4, 1200});
+    measure_coarse(roof(), "roof", {0, 15000});
 }
 
 int main()

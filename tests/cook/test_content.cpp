@@ -38,8 +38,8 @@ static void a_ball_has_its_content(void **)
     for (const Content &ball : {Content{"ball", GTX_PARTITION_CUTS, 0, 0x1d4a74ca137452a9},
                                 Content{"ball", GTX_PARTITION_VSA, NONE, 0xff6480fca129567b},
                                 Content{"ball", GTX_PARTITION_PGP, NONE, 0xdb93daccf3025264},
-                                Content{"ball", GTX_PARTITION_LAYERS, NONE, 0xdf99126ec1f125cc},
-                                Content{"ball", GTX_PARTITION_RELIEF, NONE, 0x22000cb317cf32a0}})
+                                Content{"ball", GTX_PARTITION_LAYERS, NONE, 0xae7ea69709e3ca4b},
+                                Content{"ball", GTX_PARTITION_RELIEF, NONE, 0x5828e8c6bd317c33}})
         assert_content(ball_file(), ball);
 }
 
@@ -53,29 +53,29 @@ static void models_have_their_content(void **)
         skip();
     for (const Content &content : std::initializer_list<Content>{
              {"/scans/bunny.ply",
-              GTX_PARTITION_CUTS, NONE, 0x23117d2b10d176c3},
+              GTX_PARTITION_CUTS, NONE, 0x32d3acb993ee9370},
              {"/scans/gargo_3dhop.ply.gz",
-              GTX_PARTITION_CUTS, NONE, 0x6511b80fc03d31f2},
+              GTX_PARTITION_CUTS, NONE, 0x2db20155052fae71},
              {"/textured/spot/spot/spot_control_mesh.obj",
-              GTX_PARTITION_CUTS, NONE, 0xf9168f5cbf597483},
+              GTX_PARTITION_CUTS, NONE, 0xde293bf3a615b550},
              {"/gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf",
-              GTX_PARTITION_CUTS, NONE, 0xd496c8137e43e4af},
+              GTX_PARTITION_CUTS, NONE, 0xbfd3b4f42ee15bb3},
              {"/gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb",
-              GTX_PARTITION_CUTS, 0, 0xe2248fb839bf1443},
+              GTX_PARTITION_CUTS, 0, 0xe9d131c05c0cc817},
              {"/gltf/dragon_draco_119k.glb",
-              GTX_PARTITION_CUTS, 0, 0xf2f0a0f5eec392f6},
+              GTX_PARTITION_CUTS, 0, 0xcf314123272600f7},
              {"/gltf/2CylinderEngine.glb",
-              GTX_PARTITION_CUTS, NONE, 0xa62c046734483d6c},
+              GTX_PARTITION_CUTS, NONE, 0xfb96d88b2c2cae11},
              {"/scans/horse.ply.gz",
-              GTX_PARTITION_CUTS, NONE, 0xeb09493ec949e6b5},
+              GTX_PARTITION_CUTS, NONE, 0x9b61dee445967f3f},
              {"/scans/armadillo_86k.obj.gz",
-              GTX_PARTITION_CUTS, NONE, 0x8b5b839c0aa42af0},
+              GTX_PARTITION_CUTS, NONE, 0x5d10edeff3ba8636},
              {"/nasty/gen_2000_tiny_components.ply",
               GTX_PARTITION_CUTS, NONE, 0x5335e6c0598a80bd},
              {"/scans/bunny.ply",
-              GTX_PARTITION_VSA, NONE, 0xc2da9d191d72c418},
+              GTX_PARTITION_VSA, NONE, 0xb2e51f82211213c8},
              {"/scans/bunny.ply",
-              GTX_PARTITION_PGP, NONE, 0xcf14b5d75dbd30c5},
+              GTX_PARTITION_PGP, NONE, 0x1df8c7280af265f9},
          })
         assert_content(std::string(models) + content.model, content);
 }

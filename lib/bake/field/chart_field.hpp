@@ -87,7 +87,6 @@ struct ChartField {
     Outline outline;
     Cover cover;
     Vector<float> trim;             /* signed distance to the outline, in texels */
-    Vector<float> room;             /* how far the trim is from that of the true surface alone */
     Vector<uint8_t> support;        /* texels that need a code */
 };
 
@@ -117,11 +116,9 @@ Outline find_outline(const Neighbours &neighbours, const FlatChart &chart, size_
 double nearest_parameter(const OutlineEdge &edge, double u, double v);
 /* Finds what of `outline` follows from its edges. */
 void measure_distances(const Grid &grid, size_t charts, Outline &outline);
-/* Signed distances to the outline of the true surface, per texel, in texels: the trim, and its
- * room. */
-void trim_distances(const Cover &core, const Outline &core_outline, ChartField &field);
-/* The ends of a height field in a rectangle of its grid. */
-Vector<EndEdge> find_ends(const Job &job, const ChartField &field, int x, int y, int w, int h);
+/* Signed distances to the outline of the true surface, per texel, in texels. */
+Vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Cover &all,
+                             const Outline &core_outline, const Outline &all_outline);
 /* Lets the trim end where the surface's material is cut away, too. */
 void trim_mask(const Mesh &mesh, const Neighbours &neighbours, const FlatChart &chart,
                Vector<float> &trim);

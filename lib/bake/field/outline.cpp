@@ -178,24 +178,20 @@ static void show_point(const Grid &grid, double u, double v, Vector<float> &trim
         *corner -= float(d - AIM);
 }
 
-void trim_distances(const Cover &core, const Outline &core_outline, ChartField &field)
+Vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Cover &all,
+                             const Outline &core_outline, const Outline &all_outline)
 {
-    const FlatChart &chart = field.flat;
     const Grid &grid = chart.grid;
-    const Cover &all = field.cover;
-    Vector<float> &trim = field.trim;
-    trim.resize(grid.texels());
-    field.room.resize(trim.size());
+    Vector<float> trim(grid.texels());
     for (size_t i = 0; i < trim.size(); ++i) {
         bool in_core = core.triangle[i] != NO_TRIANGLE && core.triangle[i] < chart.core;
         bool in_all = all.triangle[i] != NO_TRIANGLE;
         float to_core = in_core ? -core_outline.distance[i] : core_outline.distance[i];
-        float to_all = in_all ? -field.outline.distance[i] : field.outline.distance[i];
-        if (field.outline.edges[field.outline.nearest[i]].border)
+        float to_all = in_all ? -all_outline.distance[i] : all_outline.distance[i];
+        if (all_outline.edges[all_outline.nearest[i]].border)
             to_all += float(GTX_TRIM_SHOWN - BORDER_SHOWN);
         double cut = grid.outside(double(i % size_t(grid.w)), double(i / size_t(grid.w)));
         trim[i] = std::max({to_all, to_core - float(OVERLAP), float(cut - CUT_OVERLAP)});
-        field.room[i] = trim[i] - to_all;
     }
     for (const OutlineEdge &edge : core_outline.edges) {
         cancel_point();
@@ -207,6 +203,7 @@ void trim_distances(const Cover &core, const Outline &core_outline, ChartField &
                 show_point(grid, p.x, p.y, trim);
         }
     }
+    return trim;
 }
 
 } // namespace gtx::baking

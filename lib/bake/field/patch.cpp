@@ -93,25 +93,13 @@ static void quantise(const ChartField &s, const Crop &crop, double low, unsigned
             int near_x = std::clamp(x, 0, grid.w - 1), near_y = std::clamp(y, 0, grid.h - 1);
             size_t from = size_t(near_y) * grid.w + near_x, to = size_t(j) * crop.w + i;
             maps.trim[to] = trim_code(s.trim[from]);
-            const bool border = s.outline.edges[s.outline.nearest[from]].border;
-            const float room = std::min(s.room[from] * GTX_TRIM_TEXEL, float(MAX_ROOM));
-            maps.border[to] = uint8_t((border ? MODEL_BORDER : 0) + int(room));
+            maps.border[to] = s.outline.edges[s.outline.nearest[from]].border;
             if (x == near_x && y == near_y && s.support[from])
                 maps.height[to] = uint16_t(
                     gtx_nearest_code((s.cover.height[from] - low) * steps, height_bits));
         }
     }
     fill_trim(maps);
-}
-
-/* What is told to those who meet the patch at creases. A mask's outline is nobody else's, and what
- * fine texels show past theirs is less than a third of a pixel of 1024. */
-static void note_ends(const Job &job, const ChartField &s, const Crop &crop, PatchMaps &maps)
-{
-    constexpr double FINE = 0.001; /* of the diagonal */
-    if (job.needs.mask || s.flat.grid.coarse_pitch() < FINE * job.diagonal)
-        return;
-    maps.ends = find_ends(job, s, crop.x, crop.y, crop.w, crop.h);
 }
 
 /* Turns of a short loop, that take as long as what is done for a texel of the grid. */
@@ -130,7 +118,7 @@ static ChartField lay_field(const Job &job, FlatChart flat, Extractor *extractor
     Paths paths(job.mesh, job.neighbours, s.flat);
     raster_overlap(s.flat, core_outline, paths, s.cover);
     s.outline = find_outline(job.neighbours, s.flat, s.flat.triangles.size());
-    trim_distances(core, core_outline, s);
+    s.trim = trim_distances(s.flat, core, s.cover, core_outline, s.outline);
     if (job.needs.mask)
         trim_mask(job.mesh, job.neighbours, s.flat, s.trim);
     s.support = find_support(s.flat.grid, s.trim);
@@ -155,7 +143,6 @@ static PatchMaps encode_field(const Job &job, const Chart &chart, const ChartFie
     maps.record = make_record(job, chart, s.flat.grid, crop, low, high);
     quantise(s, crop, low, job.options.height_bits, maps);
     measure_patch(job.options.height_bits, maps);
-    note_ends(job, s, crop, maps);
     build_mips(shade_texels(job, s, crop, maps.height), job.options.mips, job.needs, maps);
     return maps;
 }

@@ -9,32 +9,17 @@ namespace gtx::baking {
 
 using Levels = Vector<Vector<uint8_t>>;
 
-/* An edge where the true surface of a patch ends: of the mesh, and in the map. */
-struct EndEdge {
-    uint32_t triangle;
-    uint8_t side;                /* from this corner to the next */
-    bool crease;                 /* a convex one */
-    bool core;                   /* the chart's own surface ends here */
-    float u, v, along_u, along_v;
-};
-
 /* The maps of one patch, `rect` still without its place on a page. */
 struct PatchMaps {
     gtx_patch record = {};
     Vector<uint16_t> height;                  /* codes */
     Vector<uint8_t> trim;
-    Vector<uint8_t> border;                   /* MODEL_BORDER: the nearest outline is the model's
-                                                 own; below, codes from the true surface's trim to
-                                                 what is there, where something else ends earlier */
-    Vector<EndEdge> ends;                     /* empty where none is at a crease */
+    Vector<uint8_t> border;                   /* the nearest outline is the model's own border */
     Levels normal;                            /* a level each, 2 bytes a texel */
     Levels color, material, emission;         /* 4, 4 and 3 bytes a texel, or none */
     Vec3d low, high;                          /* of the coded texels' points */
     uint64_t coded = 0;                       /* 0: nothing of the chart is there */
 };
-
-/* In PatchMaps::border. */
-constexpr uint8_t MODEL_BORDER = 128, MAX_ROOM = 127;
 
 /* What every chart's bake reads. */
 struct Job {
@@ -45,7 +30,6 @@ struct Job {
     double pitch;
     Vec3d anchor;
     size_t charts;
-    double diagonal;         /* of the box around the mesh */
 };
 
 PatchMaps bake_chart(const Job &job, const Chart &chart);

@@ -143,12 +143,10 @@ void relax_trims(const Vector<RelaxedTrim> &cells, Vector<PatchMaps> &patches)
         if (old.empty())
             old = maps.trim;
         const size_t w = maps.record.rect[2], cell = relaxed.cell;
-        for (size_t at : {cell, cell + 1, cell + w, cell + w + 1}) {
-            maps.border[at] |= MAX_ROOM; /* nothing is taken back */
+        for (size_t at : {cell, cell + 1, cell + w, cell + w + 1})
             if (old[at] > MIN_CODE)
                 maps.trim[at] = std::min(maps.trim[at],
                                          uint8_t(std::max(MIN_CODE, old[at] - relaxed.by)));
-        }
     }
     for (size_t i = 0; i < patches.size(); ++i)
         if (!before[i].empty())

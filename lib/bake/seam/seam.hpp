@@ -21,7 +21,4 @@ void close_cuts(const Partition &partition, const Vector<uint32_t> &charts,
                 const Vec3d &anchor, unsigned height_bits, Vector<PatchMaps> &patches,
                 Task &task);
 
-/* Hides what is shown past convex creases where no neighbour needs it; heights are final. */
-void end_at_creases(const Job &job, Vector<PatchMaps> &patches, Task &task);
-
 } // namespace gtx::baking
