@@ -227,4 +227,20 @@ static inline void host_serve(host *h, uint64_t cpu, uint64_t gpu)
     host_finish_uploads(h, cpu);
 }
 
+static inline void host_run(host *h, int updates, uint64_t cpu, uint64_t gpu)
+{
+    for (int i = 0; i < updates; ++i) {
+        host_update(h);
+        host_serve(h, cpu, gpu);
+    }
+}
+
+static const double pi = 3.14159265358979;
+
+/* High above the middle, straight down: the error of the root is `pixels`. */
+static inline gtx_stream_view from_above(double pixels)
+{
+    return made_view((double[3]){32, 16 + 4 * 250 / pixels, 32}, 0, -pi / 2);
+}
+
 #endif

@@ -11,21 +11,6 @@
 #include "stream/host.h"
 
 static made_world world;
-static const double pi = 3.14159265358979;
-
-/* High above the middle, straight down: the error of the root is `pixels`. */
-static gtx_stream_view from_above(double pixels)
-{
-    return made_view((double[3]){32, 16 + 4 * 250 / pixels, 32}, 0, -pi / 2);
-}
-
-static void run(host *h, int updates, uint64_t cpu, uint64_t gpu)
-{
-    for (int i = 0; i < updates; ++i) {
-        host_update(h);
-        host_serve(h, cpu, gpu);
-    }
-}
 
 static void failures_are_bounded(void **state)
 {
@@ -34,7 +19,7 @@ static void failures_are_bounded(void **state)
     host_begin(&h, &world, (gtx_stream_desc){.max_error = 4, .retry_updates = 2,
                                              .patience_updates = 50});
     h.view = from_above(5);
-    run(&h, 3, 10, 0);
+    host_run(&h, 3, 10, 0);
     host_update(&h);
     assert_int_equal(h.frame.draw_count, 4);
     h.view = made_view((double[3]){16, 16 + 50, 16}, 0, -pi / 2);
@@ -64,7 +49,7 @@ static void failures_are_bounded(void **state)
     assert_int_equal(h.last.tries_left, 1);
     assert_int_equal(host_fail(&h, &last, NULL), GTX_CANCELLED);
     assert_int_equal(host_deliver(&h, &last, 10, 0), GTX_CANCELLED);
-    run(&h, 1, 10, 0);
+    host_run(&h, 1, 10, 0);
     assert_int_equal(h.asked[6].id, 0);
     host_end(&h);
 }
@@ -90,7 +75,7 @@ static void who_is_given_up_may_come_back(void **state)
     assert_int_equal(h.frame.draws[0].tile, 0);
     gtx_stream_retry(h.stream);
     h.fails[3] = 0;
-    run(&h, 2, 10, 0);
+    host_run(&h, 2, 10, 0);
     host_update(&h);
     assert_int_equal(h.frame.given_up, 0);
     assert_int_equal(h.frame.draw_count, 4);
@@ -104,7 +89,7 @@ static void siblings_are_not_asked_for_in_vain(void **state)
     host h;
     host_begin(&h, &world, (gtx_stream_desc){.max_error = 4, .max_requests = 1, .max_tries = 1});
     h.view = from_above(5);
-    run(&h, 1, 10, 0);
+    host_run(&h, 1, 10, 0);
     for (int i = 0; i < 20; ++i) {
         host_update(&h);
         for (uint32_t k = 0; k < h.frame.request_count; ++k)
@@ -124,7 +109,7 @@ static void what_is_too_large_is_refused(void **state)
     host_begin(&h, &world, (gtx_stream_desc){.max_error = 4, .gpu_bytes = 5000,
                                              .retry_updates = 1});
     h.view = from_above(5);
-    run(&h, 2, 10, 1000);
+    host_run(&h, 2, 10, 1000);
     host_update(&h);
     assert_int_equal(h.frame.request_count, 4);
     uint32_t refused = 0;

@@ -10,21 +10,6 @@
 #include "stream/host.h"
 
 static made_world world;
-static const double pi = 3.14159265358979;
-
-/* High above the middle, straight down: the error of the root is `pixels`. */
-static gtx_stream_view from_above(double pixels)
-{
-    return made_view((double[3]){32, 16 + 4 * 250 / pixels, 32}, 0, -pi / 2);
-}
-
-static void run(host *h, int updates, uint64_t cpu, uint64_t gpu)
-{
-    for (int i = 0; i < updates; ++i) {
-        host_update(h);
-        host_serve(h, cpu, gpu);
-    }
-}
 
 static void the_root_comes_first(void **state)
 {
@@ -61,7 +46,7 @@ static void a_parent_stands_until_all_are_there(void **state)
     host h;
     host_begin(&h, &world, (gtx_stream_desc){.max_error = 4});
     h.view = from_above(5);
-    run(&h, 2, 10, 10);
+    host_run(&h, 2, 10, 10);
     host_update(&h);
     assert_int_equal(h.frame.request_count, 4);
     gtx_stream_request children[4];
@@ -93,10 +78,10 @@ static void a_view_is_served(void **state)
     host h;
     host_begin(&h, &world, (gtx_stream_desc){.max_error = 2});
     h.view = made_view((double[3]){10, 20, 70}, 0.2, -0.4);
-    run(&h, 60, 10, 10);
+    host_run(&h, 60, 10, 10);
     assert_int_equal(h.frame.pending + h.frame.under_way, 0);
     const uint64_t requested = h.frame.requested;
-    run(&h, 10, 10, 10);
+    host_run(&h, 10, 10, 10);
     assert_int_equal(h.frame.requested, requested);
     for (uint32_t i = 0; i < h.frame.draw_count; ++i) {
         const gtx_stream_draw *draw = &h.frame.draws[i];
@@ -164,7 +149,7 @@ static void parts_of_groups_come_to_rest(void **state)
     host h;
     host_begin(&h, &world, (gtx_stream_desc){.max_error = 4, .gpu_bytes = 3000});
     h.view = from_above(5);
-    run(&h, 2, 10, 100);
+    host_run(&h, 2, 10, 100);
     host_update(&h);
     assert_int_equal(h.frame.request_count, 4);
     for (uint32_t k = 0; k < 4; ++k)
@@ -188,9 +173,9 @@ static void small_budgets_come_to_rest(void **state)
         host h;
         host_begin(&h, &world, (gtx_stream_desc){.max_error = 1, .gpu_bytes = 1000 * tiles + 7});
         h.view = made_view((double[3]){30, 6, 62}, 0.1, -0.2);
-        run(&h, 400, 10, 1000);
+        host_run(&h, 400, 10, 1000);
         const uint64_t requested = h.frame.requested;
-        run(&h, 200, 10, 1000);
+        host_run(&h, 200, 10, 1000);
         assert_int_equal(h.frame.requested, requested);
         assert_true(h.frame.without_room > 0 && h.frame.draw_count > 0);
         assert_int_equal(h.frame.pending, h.frame.without_room);
