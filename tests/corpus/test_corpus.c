@@ -2,7 +2,7 @@
  *
  * Every file under $GEOTEX_MODELS is cooked; what was cooked is validated, compared and rendered.
  * Each run is a process of its own with at most 60 seconds and 4 GiB. Files of malformed/ are
- * sampled (every eighth), and files of more than 2 MB and small assets' pictures left out, unless
+ * sampled (every eighth), and files of more than 1 MB and small assets' pictures left out, unless
  * GTX_CORPUS=all. $GTX_OUT/corpus.txt says what became of each file. */
 #define _DEFAULT_SOURCE /* wait4 */
 #include <stdarg.h>
@@ -25,7 +25,7 @@
 
 enum { MAX_FILES = 4096, SECONDS = 60, SAMPLE = 8, PICTURE_SAMPLE = 6 };
 static const uint64_t memory_limit = 4ull << 30;
-static const off_t small_file = 2000000;
+static const off_t small_file = 1000000;
 
 static char *files[MAX_FILES];
 static unsigned file_count;

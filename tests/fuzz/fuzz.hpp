@@ -66,6 +66,9 @@ void round_trip(const gtx_asset *asset, bool hashed, const char *who);
 void use_asset(const gtx_asset *asset, uint64_t how);
 void edit_asset(const gtx_asset *asset, uint64_t how);
 void combine_asset(const gtx_asset *asset, uint64_t how);
+void export_asset(const gtx_asset *asset, uint64_t how);
+/* An asset that a GLB holds. */
+void find_embedded(const uint8_t *data, size_t size);
 
 /* A folder of this process, gone with it; and a file in it. */
 std::string scratch(const char *name);

@@ -153,7 +153,11 @@ static void run(const uint8_t *data, size_t size, const char *name)
 void run_ply(const uint8_t *data, size_t size) { run(data, size, "a.ply"); }
 void run_off(const uint8_t *data, size_t size) { run(data, size, "a.off"); }
 void run_stl(const uint8_t *data, size_t size) { run(data, size, "a.stl"); }
-void run_gltf(const uint8_t *data, size_t size) { run(data, size, "a.gltf"); }
+void run_gltf(const uint8_t *data, size_t size)
+{
+    run(data, size, "a.gltf");
+    find_embedded(data, size);
+}
 void run_draco(const uint8_t *data, size_t size) { run(data, size, "a.drc"); }
 void run_gzip(const uint8_t *data, size_t size) { run(data, size, "a.obj.gz"); }
 

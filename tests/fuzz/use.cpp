@@ -168,6 +168,8 @@ void use_asset(const gtx_asset *asset, uint64_t how)
         make_lods(asset);
     else if (some < 36 && texels <= 1 << 12)
         combine_asset(asset, how >> 7);
+    else if (some == 36 && texels <= 1 << 12)
+        export_asset(asset, how >> 7);
 }
 
 } // namespace fuzz
