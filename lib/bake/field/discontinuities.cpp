@@ -38,7 +38,6 @@ Paths::Place &Paths::place_of(uint32_t triangle)
 
 bool Paths::joined(uint32_t from, uint32_t to, double u, double v, double reach)
 {
-    constexpr size_t TURNS = 2; /* take as long as a step */
     const uint32_t goal = chart_.triangles[to].source;
     if (chart_.triangles[from].source == goal)
         return true;
@@ -47,8 +46,8 @@ bool Paths::joined(uint32_t from, uint32_t to, double u, double v, double reach)
     place_of(queue_[0]).seen = search_;
     for (size_t next = 0; next < queue_.size() && !budget_.spent(); ++next) {
         budget_.spend(1);
-        if (next % TURNS == 0)
-            cancel_point();
+        cancel_point(); /* three places all over memory take as long as two steps */
+        cancel_point();
         for (uint32_t n : neighbours_[queue_[next]]) {
             if (n == NO_TRIANGLE)
                 continue;
