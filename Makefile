@@ -248,11 +248,12 @@ $(out)/gtx_decode: format/gtx_decode.c
 $(filter $(out)/tests/asset/%,$(test_bins)): | $(out)/gtx_decode
 $(filter $(out)/tests/mesh/% $(out)/tests/grid/% $(out)/tests/verbs/%,$(test_bins)): | $(module)
 
-build-tests: $(test_bins) $(out)/gtx_decode all
+build-tests: $(test_bins) $(out)/gtx_decode $(build)/amalgamation/geotex.c all
 
 # What test programs may ask for: the command, the build folder, the compilers.
 test_env = GTX=$(abspath $(command)) GTX_BUILD=$(abspath $(build)) GTX_OUT=$(abspath $(out)) \
-           GTX_CONFIG=$(config) CC="$(CC)" CXX="$(CXX)"
+           GTX_CONFIG=$(config) CC="$(CC)" CXX="$(CXX)" GTX_FLAGS="$(flags)" \
+           GTX_DEFINES="$(if $(filter 1,$(zstd)),-DGTX_ZSTD)" GTX_LIBS="$(libs_asset) -lm"
 
 run-tests: build-tests
 	@$(test_env) tests/run $(test_bins)

@@ -8,7 +8,9 @@
 extern "C" {
 #endif
 
-#if defined(__GNUC__)
+#if defined(__MINGW32__) && !defined(__clang__) /* C's own formats, not those of msvcrt */
+#define GTX_PRINTF(fmt, args) __attribute__((format(gnu_printf, fmt, args)))
+#elif defined(__GNUC__)
 #define GTX_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))
 #else
 #define GTX_PRINTF(fmt, args)

@@ -37,6 +37,35 @@ uninstall: ## remove what install put there
 	    share/geotex/shaders share/doc/geotex share/man/man1 share/bash-completion/completions \
 	    bin 2>/dev/null || true
 
+# What an engine links, as one C11 source and two headers: nothing else to build or to install.
+drop := $(build)/amalgamation
+drop_sources := $(foreach r,$(ROOMS_CORE),$(wildcard lib/$(r)/*.c lib/$(r)/*/*.c)) \
+                $(out)/gen/shader_sources.c
+drop_headers := $(wildcard lib/*/*.h lib/*/*/*.h lib/*/*.def shaders/*.glsl)
+# $(call drop_head,WHAT): its first lines.
+drop_head = { echo '/* geotex $(VERSION), $(1)'; echo ' *'; sed 's/^/ * /; s/ *$$//' LICENSE; \
+              echo ' */'; }
+amalgamation: $(drop)/geotex.c ## geotex.c, geotex.h and geotex_gl.h, to drop into an engine
+	@echo $(drop)
+
+$(drop)/geotex.h: $(foreach h,geotex edit solid stream,include/geotex/$(h).h) LICENSE
+	@mkdir -p $(@D)
+	$(Q){ $(call drop_head,all of its headers but OpenGL); \
+	  sed '/^#include <geotex/d' $(filter %.h,$^); } > $@
+$(drop)/geotex_gl.h: include/geotex/render.h LICENSE
+	@mkdir -p $(@D)
+	$(Q){ $(call drop_head,drawing with OpenGL); \
+	  sed 's/^#include <geotex.*/#include "geotex.h"/' $<; } > $@
+$(drop)/geotex.c: lib/package/amalgamate.awk $(drop_sources) $(drop_headers) $(drop)/geotex.h \
+    $(drop)/geotex_gl.h
+	$(say) GEN $@
+	$(Q){ $(call drop_head,all of its sources. Compile as C11; -DGTX_ZSTD reads compressed \
+	    sections (zstd). Needs libm.); \
+	  echo '#define _POSIX_C_SOURCE 200809L'; echo '#define GTX_BUILDING'; \
+	  echo '#include "geotex_gl.h"'; echo '#ifdef __clang__'; \
+	  echo '#pragma clang diagnostic ignored "-Wunused-function" /* inline ones of headers */'; \
+	  echo '#endif'; awk -f $< $(drop_sources); } > $@.tmp && mv $@.tmp $@
+
 # The same bytes from the same commit, wherever and whenever.
 dist_name := geotex-$(VERSION)
 dist: ## the committed sources as build/geotex-VERSION.tar.gz

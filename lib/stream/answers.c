@@ -16,7 +16,7 @@ void gtx_tile_uri(const gtx_tile *tile, char out[GTX_STREAM_URI])
     snprintf(out, GTX_STREAM_URI, "tiles/%s.gtx", tile->facts->name);
 }
 
-static void release(gtx_stream *stream, void *payload)
+static void give_back(gtx_stream *stream, void *payload)
 {
     if (stream->desc.release)
         stream->desc.release(payload, stream->desc.user);
@@ -32,7 +32,7 @@ void gtx_tile_drop(gtx_stream *stream, gtx_tile *tile)
     if (tile != stream->tiles)
         --gtx_tile_parent(stream, tile)->users;
     ++stream->frame.released;
-    release(stream, payload);
+    give_back(stream, payload);
 }
 
 void gtx_tile_ask(gtx_stream *stream, gtx_tile *tile)
@@ -101,7 +101,7 @@ gtx_result gtx_stream_deliver(gtx_stream *stream, uint64_t id, void *payload, ui
         return GTX_ERROR_ARGUMENT;
     gtx_tile *tile = find_request(stream, id, &result);
     if (!tile) {
-        release(stream, payload);
+        give_back(stream, payload);
         return result;
     }
     gtx_tile_learn(stream, tile, cpu_bytes, gpu_bytes);
@@ -111,7 +111,7 @@ gtx_result gtx_stream_deliver(gtx_stream *stream, uint64_t id, void *payload, ui
                  "the tile takes %" PRIu64 " and %" PRIu64 " bytes, and there is no room",
                  cpu_bytes, gpu_bytes);
         gtx_tile_fail(stream, tile, &error, false);
-        release(stream, payload);
+        give_back(stream, payload);
         return GTX_ERROR_LIMIT;
     }
     gtx_list_remove(stream, &stream->asked, tile);

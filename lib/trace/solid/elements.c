@@ -18,11 +18,12 @@ static const float NARROW = 1;
 enum { SPLIT = 4 };
 
 /* A corner of what is clipped: a point, and how deep it is inside the outline, in texels. */
-typedef struct corner {
+typedef struct clip_corner {
     double point[3], depth;
-} corner;
+} clip_corner;
 
-static void add_element(gtx_solid *solid, const corner *a, const corner *b, const corner *c)
+static void add_element(gtx_solid *solid, const clip_corner *a, const clip_corner *b,
+                        const clip_corner *c)
 {
     if (solid->elements) {
         gtx_element *e = &solid->elements[solid->element_count];
@@ -40,18 +41,18 @@ static void add_element(gtx_solid *solid, const corner *a, const corner *b, cons
 }
 
 /* The part of a triangle that is inside the outline (Sutherland and Hodgman 1974). */
-static void add_clipped(gtx_solid *solid, const corner *const triangle[3])
+static void add_clipped(gtx_solid *solid, const clip_corner *const triangle[3])
 {
-    corner kept[4];
+    clip_corner kept[4];
     int count = 0;
     for (int i = 0; i < 3; ++i) {
-        const corner *a = triangle[i], *b = triangle[(i + 1) % 3];
+        const clip_corner *a = triangle[i], *b = triangle[(i + 1) % 3];
         if (a->depth >= 0)
             kept[count++] = *a;
         if ((a->depth >= 0) == (b->depth >= 0))
             continue;
         const double t = a->depth / (a->depth - b->depth);
-        corner *cut = &kept[count++];
+        clip_corner *cut = &kept[count++];
         cut->depth = 0;
         for (int k = 0; k < 3; ++k)
             cut->point[k] = a->point[k] + t * (b->point[k] - a->point[k]);
@@ -64,7 +65,7 @@ static void add_clipped(gtx_solid *solid, const corner *const triangle[3])
 static void add_cell(gtx_solid *solid, const gtx_asset *asset, const gtx_patch *patch, uint32_t x,
                      uint32_t y)
 {
-    corner at[4];
+    clip_corner at[4];
     double deepest = -1;
     for (uint32_t k = 0; k < 4; ++k) {
         const uint32_t i = x + (k & 1), j = y + (k >> 1);
@@ -78,7 +79,7 @@ static void add_cell(gtx_solid *solid, const gtx_asset *asset, const gtx_patch *
     static const uint8_t halves[2][2][3] = {{{0, 1, 3}, {0, 3, 2}}, {{0, 1, 2}, {1, 3, 2}}};
     for (int h = 0; h < 2 && deepest >= 0; ++h) {
         const uint8_t *k = halves[(x + y) & 1][h];
-        add_clipped(solid, (const corner *[3]){&at[k[0]], &at[k[1]], &at[k[2]]});
+        add_clipped(solid, (const clip_corner *[3]){&at[k[0]], &at[k[1]], &at[k[2]]});
     }
 }
 
@@ -277,7 +278,7 @@ gtx_result gtx_elements_build(gtx_solid *solid, const gtx_asset *asset, const gt
         return gtx_fail(error, GTX_ERROR_EMPTY, "no cell of the asset shows");
     const uint32_t groups = solid->group_count;
     const uint64_t group_bytes = sizeof(gtx_group) + 2 * sizeof(gtx_node) + sizeof(gtx_box) +
-                                 sizeof(uint32_t) + 2 * sizeof(gtx_moments);
+                                 sizeof(uint32_t) + 2 * sizeof(gtx_solid_moments);
     gtx_result result = gtx_check_derived(texels, limits, "a solid",
                                           (uint64_t)solid->element_count * sizeof(gtx_element) +
                                               groups * group_bytes, error);

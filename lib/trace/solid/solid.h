@@ -22,11 +22,11 @@ typedef struct gtx_group {
 } gtx_group;
 
 /* What all elements of a node look like from afar: to the second order around `centre`. */
-typedef struct gtx_moments {
+typedef struct gtx_solid_moments {
     double centre[3], radius;
     double area, normal[3];     /* sums of weighted areas, and of these times the unit normals */
     double spread[3][3];        /* sums of normal i times the offset j from the centre */
-} gtx_moments;
+} gtx_solid_moments;
 
 struct gtx_solid {
     gtx_allocator allocator;
@@ -36,7 +36,7 @@ struct gtx_solid {
     size_t element_room;
     uint32_t element_count, group_count;
     gtx_hierarchy tree;         /* over groups */
-    gtx_moments *moments;       /* of each node */
+    gtx_solid_moments *moments;       /* of each node */
     gtx_solid_facts facts;
 };
 

@@ -35,7 +35,7 @@ static double angle_of(const gtx_element *e, const double point[3])
     return 2 * atan2(det, across);
 }
 
-static void add_moments(const gtx_moments *from, gtx_moments *to)
+static void add_moments(const gtx_solid_moments *from, gtx_solid_moments *to)
 {
     for (int i = 0; i < 3; ++i) {
         to->normal[i] += from->normal[i];
@@ -46,9 +46,9 @@ static void add_moments(const gtx_moments *from, gtx_moments *to)
 }
 
 /* Those of an element around its own middle, where its spread is none: it is flat. */
-static gtx_moments moments_of(const gtx_element *e)
+static gtx_solid_moments moments_of(const gtx_element *e)
 {
-    gtx_moments m = {0};
+    gtx_solid_moments m = {0};
     double square = 0;
     for (int k = 0; k < 3; ++k) {
         const int a = (k + 1) % 3, b = (k + 2) % 3;
@@ -63,7 +63,7 @@ static gtx_moments moments_of(const gtx_element *e)
     return m;
 }
 
-static void add_centre(const gtx_moments *from, gtx_moments *to)
+static void add_centre(const gtx_solid_moments *from, gtx_solid_moments *to)
 {
     to->area += from->area;
     for (int k = 0; k < 3; ++k)
@@ -71,7 +71,7 @@ static void add_centre(const gtx_moments *from, gtx_moments *to)
 }
 
 /* Divides the sum of centres, or takes the middle of the box. */
-static void end_centre(const gtx_node *node, gtx_moments *m)
+static void end_centre(const gtx_node *node, gtx_solid_moments *m)
 {
     double square = 0;
     for (int k = 0; k < 3; ++k) {
@@ -83,12 +83,12 @@ static void end_centre(const gtx_node *node, gtx_moments *m)
     m->radius = sqrt(square);
 }
 
-static void sum_group(const gtx_solid *solid, const gtx_node *node, gtx_moments *m)
+static void sum_group(const gtx_solid *solid, const gtx_node *node, gtx_solid_moments *m)
 {
     const gtx_group *group = &solid->groups[node->link - GTX_LEAF];
     for (int pass = 0; pass < 2; ++pass) {
         for (uint32_t i = 0; i < group->count; ++i) {
-            const gtx_moments one = moments_of(&solid->elements[group->first + i]);
+            const gtx_solid_moments one = moments_of(&solid->elements[group->first + i]);
             (pass ? add_moments : add_centre)(&one, m);
         }
         if (!pass)
@@ -104,12 +104,13 @@ gtx_result gtx_winding_build(gtx_solid *solid, gtx_error *error)
     if (!solid->moments)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the moments of a solid");
     for (uint32_t n = solid->tree.node_count; n-- > 0;) { /* children come behind */
-        gtx_moments *m = &solid->moments[n];
+        gtx_solid_moments *m = &solid->moments[n];
         if (nodes[n].link & GTX_LEAF) {
             sum_group(solid, &nodes[n], m);
             continue;
         }
-        const gtx_moments *child[2] = {&solid->moments[n + 1], &solid->moments[nodes[n].link]};
+        const gtx_solid_moments *child[2] = {&solid->moments[n + 1],
+                                             &solid->moments[nodes[n].link]};
         add_centre(child[0], m);
         add_centre(child[1], m);
         end_centre(&nodes[n], m);
@@ -121,7 +122,7 @@ gtx_result gtx_winding_build(gtx_solid *solid, gtx_error *error)
 
 /* The solid angle of all of a node, by the first two terms of its expansion. By the first alone
  * 1 in 18 points is off by 0.05 in the armadillo's bounds; so none is. */
-static double angle_from_afar(const gtx_moments *m, const double r[3], double square)
+static double angle_from_afar(const gtx_solid_moments *m, const double r[3], double square)
 {
     const double distance = sqrt(square), cube = square * distance;
     double first = 0, trace = 0, second = 0;
@@ -139,7 +140,7 @@ double gtx_winding_at(const gtx_solid *solid, const double point[3], uint64_t *s
     const gtx_node *nodes = solid->tree.nodes;
     double angle = 0;
     for (uint32_t n = 0; n < solid->tree.node_count;) {
-        const gtx_moments *m = &solid->moments[n];
+        const gtx_solid_moments *m = &solid->moments[n];
         double r[3], square = 0;
         ++*steps;
         for (int k = 0; k < 3; ++k) {
