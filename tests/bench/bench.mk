@@ -116,6 +116,7 @@ $(leaf): $(out)/tests/bench/leaves
 run-paper-tables: $(filter $(build)/demo/%,$(table_models))
 	@mkdir -p $(build)/demo $(build)/paper
 	@$(out)/tests/bench/paper_tables $(build)/paper $(table_models)
+	@tests/bench/frames $(build)/gtx $(build)/paper $(filter-out 222 $(CHARTS),$(table_models))
 
 # A figure is a program tests/bench/NAME.cpp that measures, prints, and writes NAME.json and
 # NAME.svg; what it takes besides the folder is arguments_NAME.

@@ -18,6 +18,16 @@ constexpr uint32_t MIN_RESOLUTION = 64, MAX_RESOLUTION = 512;
 constexpr double CLOSE = 0.01;
 constexpr int ROUNDS = 5;
 
+/* By gtx_partition. */
+constexpr const char *NAMES[] = {nullptr, "cuts", "vsa", "pgp", "layers", "relief"};
+
+/* A file's name, up to its first dot. */
+std::string stem(const std::string &path)
+{
+    const std::string name = path.substr(path.find_last_of('/') + 1);
+    return name.substr(0, name.find('.'));
+}
+
 void require(gtx_result result, const gtx_error &error)
 {
     if (!result)
@@ -104,7 +114,7 @@ std::vector<AssetFigures> equal_texels(const std::string &model, unsigned charts
 {
     std::vector<AssetFigures> out;
     for (gtx_partition partition : partitions) {
-        const std::string path = folder + "/" + std::to_string(out.size()) + ".gtx";
+        const std::string path = folder + "/" + stem(model) + "_" + NAMES[partition] + ".gtx";
         AssetFigures figures = out.empty() ? cook(model, partition, charts, 128, path)
                                            : cook_to_texels(model, partition, charts,
                                                             double(out[0].texels), path);

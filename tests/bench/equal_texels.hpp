@@ -18,7 +18,8 @@ struct AssetFigures {
 };
 
 /* Cooks the model with each partition, at the resolution at which it has about as many texels as
- * the first has at 128. Leaves the assets in `folder`. Exits on an error. */
+ * the first has at 128. Leaves the assets in `folder`, as MODEL_PARTITION.gtx.
+ * Exits on an error. */
 std::vector<AssetFigures> equal_texels(const std::string &model, unsigned charts,
                                        const std::vector<gtx_partition> &partitions,
                                        const std::string &folder);
