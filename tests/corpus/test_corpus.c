@@ -1,9 +1,9 @@
 /* Real and hostile models through the command: a sound asset, or a clear line and exit 2, 3, 5, 6.
  *
  * Every file under $GEOTEX_MODELS is cooked; what was cooked is validated, compared and rendered.
- * Each run is a process of its own with at most 60 seconds and 4 GiB. Files of malformed/ are
- * sampled (every eighth), and files of more than 1 MB and small assets' pictures left out, unless
- * GTX_CORPUS=all. $GTX_OUT/corpus.txt says what became of each file. */
+ * Each run is a process of its own with at most 60 seconds of a processor and 4 GiB. Files of
+ * malformed/ are sampled (every eighth), and files of more than 1 MB and small assets' pictures
+ * left out, unless GTX_CORPUS=all. $GTX_OUT/corpus.txt says what became of each file. */
 #define _DEFAULT_SOURCE /* wait4 */
 #include <stdarg.h>
 #include <stddef.h>
@@ -56,7 +56,9 @@ static int run(char *const argv[])
         struct rlimit memory = {memory_limit, memory_limit};
         if (!sanitized) /* shadow memory needs terabytes of addresses */
             setrlimit(RLIMIT_AS, &memory);
-        alarm(sanitized ? 10 * SECONDS : SECONDS); /* stays armed over execv */
+        rlim_t seconds = sanitized ? 10 * SECONDS : SECONDS;
+        setrlimit(RLIMIT_CPU, &(struct rlimit){seconds, seconds});
+        alarm(10 * (unsigned)seconds); /* one that waits; stays armed over execv */
         int out = open(log_file, O_WRONLY | O_CREAT | O_TRUNC, 0600);
         dup2(out, 1);
         dup2(out, 2);
