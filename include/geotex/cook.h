@@ -296,7 +296,9 @@ typedef struct gtx_compare_desc {
     gtx_limits limits;            /* as for gtx_cook_desc; the asset counts as read too */
     uint32_t random_views;        /* beside the 26 fixed ones, up to 4096: those of `seed` */
     uint32_t seed;
-    uint32_t reserved[6];
+    uint32_t any_model;           /* 1: also a model that is not the one that the asset names as its
+                                     source, by a hash of its content and its textures' */
+    uint32_t reserved[5];
 } gtx_compare_desc;
 
 /* The figures that a build may put limits on; format/measures.md has the rules of each. */
@@ -311,7 +313,7 @@ typedef struct gtx_compare_result {
 
 /* Measures an asset against `model`, the mesh file that it was cooked from. `desc`, `result`,
  * `report` (format/compare-report.schema.json) and `error` may be NULL. Any thread.
- * Errors: as gtx_cook_file and gtx_open_file. */
+ * Errors: as gtx_cook_file and gtx_open_file; INPUT if the asset was cooked from another model. */
 GTX_API gtx_result gtx_compare_files(const char *asset, const char *model,
                                      const gtx_compare_desc *desc, gtx_compare_result *result,
                                      gtx_report *report, gtx_error *error);

@@ -126,7 +126,8 @@ int read_whole(const char *path, void **data, size_t *size);
 /* Whether a dependency file can name a path: no way to write a line break is known to both. */
 bool fits_depfile(const char *path);
 /* Writes a dependency file as Make and Ninja read it: `target` was made from `sources`, which all
- * fit. Returns an exit code. */
+ * fit, and each of which is a target too, so that a deleted one stops no build. Returns an exit
+ * code. */
 int write_depfile(const char *path, const char *target, char *const *sources, size_t count);
 
 /* Progress on stderr as cli_progress says; cancels on Ctrl-C. A gtx_progress_fn. */

@@ -9,7 +9,7 @@
 enum { MAX_FILES = 4097 };
 
 static gtx_compare_desc desc;
-static bool as_json;
+static bool as_json, any_model;
 static double max_holes = -1, max_walls = -1, min_iou = -1, max_rms = -1;
 
 static const option options[] = {
@@ -21,6 +21,8 @@ static const option options[] = {
     {"levels", 0, OPTION_UINT, &desc.levels, "N", "levels of detail to evaluate [all]", 1, 8},
     {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z",
      "the up axis that the asset was cooked with [y]", 0, 0},
+    {"any-model", 0, OPTION_FLAG, &any_model, NULL,
+     "a model that the asset was not cooked from, or that has changed since", 0, 0},
     {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
     PROGRESS_OPTION,
     {"max-holes", 0, OPTION_NUMBER, &max_holes, "N", "exit 7 above N hole pixels", 0, 1e18},
@@ -33,7 +35,9 @@ static const option options[] = {
 static const verb compare_verb = {
     "compare", "ASSET MODEL...",
     "Measures an asset against the models it was cooked from, on the CPU. format/measures.md of\n"
-    "the source, installed as share/doc/geotex/measures.md, has the rules of every figure.",
+    "the source, installed as share/doc/geotex/measures.md, has the rules of every figure. An\n"
+    "asset that tells what it was cooked from is compared with nothing else (exit 3), but for\n"
+    "--any-model.",
     2, MAX_FILES, options};
 
 static int differs(const char *asset, const char *what, double value, const char *how, double limit)
@@ -70,6 +74,7 @@ int cmd_compare(int argc, char **argv)
         return code;
     desc.more = files + 2;
     desc.more_count = (uint32_t)(count - 2);
+    desc.any_model = any_model;
     desc.progress = show_progress;
     desc.limits = cli_limits;
     catch_interrupt();

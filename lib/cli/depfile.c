@@ -32,7 +32,7 @@ int write_depfile(const char *path, const char *target, char *const *sources, si
 {
     size_t most = 2 * strlen(target) + 3;
     for (size_t i = 0; i < count; ++i)
-        most += 2 * strlen(sources[i]) + 4;
+        most += 4 * strlen(sources[i]) + 7;
     char *text = malloc(most);
     if (!text)
         return report_no_memory(path);
@@ -43,6 +43,15 @@ int write_depfile(const char *path, const char *target, char *const *sources, si
         end = put_word(end + 4, sources[i]);
     }
     *end++ = '\n';
+    /* Targets without a rule, so that Make goes on when they are gone. In one % is a pattern, whose
+     * escape Ninja would take for another file. */
+    for (size_t i = 0; i < count; ++i) {
+        if (strchr(sources[i], '%'))
+            continue;
+        end = put_word(end, sources[i]);
+        memcpy(end, ":\n", 2);
+        end += 2;
+    }
     const int code = write_text_file(path, text, (size_t)(end - text));
     free(text);
     return code;

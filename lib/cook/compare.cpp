@@ -1,5 +1,6 @@
 /* An asset measured against its source model, behind the C API. */
 #include "cook/guard.hpp"
+#include "cook/meta.hpp"
 #include "cook/models.hpp"
 #include "cook/report.hpp"
 
@@ -17,6 +18,7 @@ static void check(const gtx_compare_desc &desc)
     require_argument(desc.levels <= 8, "levels is at most 8");
     require_argument(desc.threads <= 1024, "threads is at most 1024");
     require_argument(desc.z_up <= 1, "z_up is 0 or 1");
+    require_argument(desc.any_model <= 1, "any_model is 0 or 1");
     require_models(desc.more, desc.more_count);
 }
 
@@ -98,6 +100,19 @@ static std::string write_report(const CompareReport &report, const Vector<Warnin
     return line;
 }
 
+/* An asset that tells its source is compared with no other. */
+static void require_source(const gtx_asset *asset, const Models &models)
+{
+    uint64_t hash;
+    if (read_source_hash(asset, hash) && hash != models.hash)
+        throw Error(GTX_ERROR_INPUT,
+                    models.files.size() > 1
+                        ? "the asset was cooked from other models, or these or their textures "
+                          "have changed since (--any-model compares with them)"
+                        : "the asset was cooked from another model, or this one or its textures "
+                          "have changed since (--any-model compares with it)");
+}
+
 static void compare_files(const gtx_asset *asset, const char *asset_path, const char *model,
                           const gtx_compare_desc &desc, gtx_compare_result *result,
                           gtx_report *report)
@@ -111,6 +126,8 @@ static void compare_files(const gtx_asset *asset, const char *asset_path, const 
     task.limits.read(asset_path, info.file_size);
     task.begin("import");
     Models models = read_models({model}, desc.more, desc.more_count, task);
+    if (!desc.any_model)
+        require_source(asset, models);
     Mesh mesh = import_models(models, desc.z_up, task);
     CleanReport clean;
     task.begin("clean");

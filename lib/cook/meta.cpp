@@ -49,13 +49,27 @@ std::string write_meta(const Options &options, const CookFacts &facts)
     return std::string(json.text, json.size);
 }
 
-bool read_meta(const gtx_asset *asset, uint64_t &key, std::bitset<GTX_WARNING_COUNT> &warnings)
+static nlohmann::json parse_meta(const gtx_asset *asset)
 {
     size_t size = 0;
     const char *text = gtx_meta(asset, &size);
-    if (!text)
+    return text ? nlohmann::json::parse(text, text + size, nullptr, false) : nlohmann::json();
+}
+
+bool read_source_hash(const gtx_asset *asset, uint64_t &hash)
+{
+    const auto meta = parse_meta(asset);
+    if (!meta.is_object() || !meta.contains("source") || !meta["source"].is_object() ||
+        !meta["source"].contains("xxh64") || !meta["source"]["xxh64"].is_string())
         return false;
-    auto meta = nlohmann::json::parse(text, text + size, nullptr, false);
+    hash = std::strtoull(meta["source"]["xxh64"].get_ref<const std::string &>().c_str(), nullptr,
+                         16);
+    return true;
+}
+
+bool read_meta(const gtx_asset *asset, uint64_t &key, std::bitset<GTX_WARNING_COUNT> &warnings)
+{
+    const auto meta = parse_meta(asset);
     if (!meta.is_object() || !meta.contains("key") || !meta["key"].is_string() ||
         !meta.contains("warnings") || !meta["warnings"].is_array())
         return false;

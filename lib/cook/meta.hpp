@@ -10,5 +10,7 @@ std::string write_meta(const Options &options, const CookFacts &facts);
 
 /* The key of an asset, and the warnings that it was cooked with; false when META does not tell. */
 bool read_meta(const gtx_asset *asset, uint64_t &key, std::bitset<GTX_WARNING_COUNT> &warnings);
+/* The hash of the models' content that it was cooked from; false when META does not tell. */
+bool read_source_hash(const gtx_asset *asset, uint64_t &hash);
 
 } // namespace gtx

@@ -69,7 +69,8 @@ static void a_dependency_file_names_every_source(void **state)
     expect(gtx("cook 'a b$c#d\\e.obj' -q -o 'o t.gtx' --depfile 'o t.d'"), 0);
     char *text = slurp("o t.d", &size);
     text[size] = 0;
-    assert_string_equal(text, "o\\ t.gtx: \\\n a\\ b$$c\\#d\\e.obj \\\n lib\\ rary.mtl\n");
+    assert_string_equal(text, "o\\ t.gtx: \\\n a\\ b$$c\\#d\\e.obj \\\n lib\\ rary.mtl\n"
+                              "a\\ b$$c\\#d\\e.obj:\nlib\\ rary.mtl:\n");
     free(text);
     remove(in_folder("o t.d"));
     expect(gtx("cook none.obj -q -o a.gtx --depfile 'o t.d'"), 2);
@@ -175,7 +176,7 @@ static void several_models_cook_together(void **state)
     size_t size;
     char *text = slurp("both.d", &size);
     text[size] = 0;
-    assert_string_equal(text, "both.gtx: \\\n sphere.obj \\\n open.obj\n");
+    assert_string_equal(text, "both.gtx: \\\n sphere.obj \\\n open.obj\nsphere.obj:\nopen.obj:\n");
     free(text);
     expect(gtx("cook sphere.obj none.obj -o both.gtx"), 2);
     expect_text("gtx cook: error[read]: none.obj: ");

@@ -77,8 +77,8 @@ static void passed_limits_are_told(void **state)
     static const char text[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     (void)state;
     write_file("open.obj", text, sizeof text - 1);
-    expect(gtx("compare sphere.gtx open.obj --size 64 --levels 1 --min-iou 0.9 --max-rms 0.001"),
-           7);
+    expect(gtx("compare sphere.gtx open.obj --any-model --size 64 --levels 1 --min-iou 0.9 "
+               "--max-rms 0.001"), 7);
     expect_text("open.obj: note[open-edges]: 1 component with a border");
     expect_text("sphere.gtx: error[differs]: silhouette IoU 0.");
     expect_text(": below --min-iou 0.9\n");
@@ -86,13 +86,32 @@ static void passed_limits_are_told(void **state)
     expect_text(": above --max-rms 0.001\n");
     assert_null(strstr(output, "--max-holes"));
     expect(gtx("cook open.obj -q -o open.gtx"), 0);
-    expect(gtx("compare open.gtx sphere.obj --size 64 --levels 1 --max-holes 3"), 7);
+    expect(gtx("compare open.gtx sphere.obj --size 64 --levels 1 --any-model --max-holes 3"), 7);
     expect_text(": above --max-holes 3\n");
     assert_null(strstr(output, "--min-iou"));
     /* The sphere is far larger: before the triangle's background stand nothing but walls. */
-    expect(gtx("compare sphere.gtx open.obj --size 64 --levels 1 --max-walls 3"), 7);
+    expect(gtx("compare sphere.gtx open.obj --any-model --size 64 --levels 1 --max-walls 3"), 7);
     expect_text("sphere.gtx: error[differs]: wall pixels ");
     expect_text(": above --max-walls 3\n");
+}
+
+static void another_model_is_refused(void **state)
+{
+    (void)state;
+    write_sphere("moved.obj", 40);
+    expect(gtx("cook moved.obj -q -o moved.gtx"), 0);
+    expect(gtx("compare moved.gtx moved.obj --size 64 --levels 1"), 0);
+    write_sphere("moved.obj", 39);
+    expect(gtx("compare moved.gtx moved.obj --size 64 --levels 1"), 3);
+    expect_text("moved.obj: error[input]: the asset was cooked from another model, or this one "
+                "or its textures have changed since (--any-model compares with it)\n");
+    one_clean_line();
+    expect(gtx("compare sphere.gtx moved.obj sphere.obj --size 64 --levels 1"), 3);
+    expect_text("gtx compare: error[input]: the asset was cooked from other models");
+    expect(gtx("compare moved.gtx moved.obj --size 64 --levels 1 --any-model"), 0);
+    /* What tells no source is compared with anything. */
+    expect(gtx("combine moved.gtx sphere.gtx --op union -q -o both.gtx"), 0);
+    expect(gtx("compare both.gtx sphere.obj --size 64 --levels 1"), 0);
 }
 
 static void every_verb_prints_warnings(void **state)
@@ -116,6 +135,7 @@ int main(void)
         cmocka_unit_test(paths_hold_anything),
         cmocka_unit_test(dependency_files_name_no_line_breaks),
         cmocka_unit_test(passed_limits_are_told),
+        cmocka_unit_test(another_model_is_refused),
         cmocka_unit_test(every_verb_prints_warnings),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

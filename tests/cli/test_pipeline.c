@@ -175,6 +175,35 @@ static void cmake_cooks_what_changed(void **state)
     }
 }
 
+/* A texture that is gone is a change, and the model is cooked without it. */
+static void deleted_sources_stop_no_build(void **state)
+{
+    (void)state;
+    need("make");
+    make_models();
+    static const char rules[] = "out/tri.gtx:\n\t'$(GTX)' cook -q models/tri.gltf -o $@ "
+                                "--depfile out/tri.d && echo COOK\n-include out/tri.d\n";
+    write_file("Makefile", rules, sizeof rules - 1);
+    for (int with_ninja = 0; with_ninja < 2; ++with_ninja) {
+        make_models();
+        if (with_ninja && shell("command -v ninja"))
+            break;
+        if (with_ninja)
+            expect(shell("%s/samples/pipeline/ninja.sh models out '%s' >build.ninja", root,
+                         getenv("GTX")), 0);
+        const char *build = with_ninja ? "ninja out/tri.gltf.gtx" : "make -s";
+        expect(shell("%s", build), 0);
+        expect_text("COOK");
+        expect(shell("%s", build), 0);
+        assert_null(strstr(output, "COOK"));
+        assert_int_equal(unlink(in_folder("models/my skin.png")), 0);
+        expect(shell("%s", build), 0);
+        expect_text("COOK");
+        expect(shell("%s", build), 0);
+        assert_null(strstr(output, "COOK"));
+    }
+}
+
 static int set_up_here(void **state)
 {
     return getcwd(root, sizeof root) ? set_up(state) : 1;
@@ -186,6 +215,7 @@ int main(void)
         cmocka_unit_test(ninja_cooks_what_changed),
         cmocka_unit_test(ninja_takes_odd_names),
         cmocka_unit_test(cmake_cooks_what_changed),
+        cmocka_unit_test(deleted_sources_stop_no_build),
     };
     return cmocka_run_group_tests(tests, set_up_here, tear_down);
 }
