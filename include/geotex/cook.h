@@ -118,7 +118,10 @@ typedef struct gtx_cook_desc {
                                      beyond relief's. Or GTX_TEXEL_DENSITY_RELIEF */
     const char *const *allow;     /* names of warnings that are no errors with `strict`; or NULL */
     uint32_t allow_count;         /* up to 64 */
-    uint32_t reserved[5];
+    const char *cache;            /* a folder of assets by their keys, or NULL: what it has is not
+                                     cooked, and what is cooked is kept. Threads and machines may
+                                     share it */
+    uint32_t reserved[2];
 } gtx_cook_desc;
 
 /* An asset keeps the key that it was cooked under. The key covers
@@ -129,9 +132,13 @@ typedef struct gtx_cook_desc {
  *     adaptive, kept and texel_density; not threads, measure, progress, strict, allow, limits or
  *     allocator;
  *   - geotex's version and the revision of its cooker,
- * but not the library that decodes images. With `strict`, an asset whose cook had warnings that are
- * not allowed is cooked again; with `charts_ply`, or if importing read files that could not be
- * foreseen, any is. */
+ * but not the libraries that decode images and compress sections. With `strict`, an asset whose
+ * cook had warnings that are not allowed is cooked again; with `charts_ply`, or if importing read
+ * files that could not be foreseen, any is.
+ *
+ * A cache takes what is in it by these keys, as whole files, copied to the output: a truncated or
+ * damaged entry, which any hash of the format tells, is cooked again and replaced. Keys detect
+ * accidents, not attacks: who may write to a cache is trusted. */
 
 /* What a call did, as JSON; written only on success, freed by gtx_report_free. All that it points
  * to lies in one block from the call's allocator, whose hooks it keeps. */
@@ -140,6 +147,7 @@ typedef struct gtx_report {
     size_t size;
     char summary[160];            /* one line: patches, texels, bytes, seconds */
     uint32_t unchanged;           /* 1: if_changed, and the output was left alone */
+    uint32_t cached;              /* 1: the cache had the asset */
     char **sources;               /* paths of the files behind the models, the first model first */
     size_t source_count;
     char **warnings;              /* one sentence each, for people; the last note_count are notes:

@@ -132,6 +132,8 @@ int write_depfile(const char *path, const char *target, char *const *sources, si
 
 /* Progress on stderr as cli_progress says; cancels on Ctrl-C. A gtx_progress_fn. */
 int show_progress(const gtx_progress *progress, void *user);
+/* Likewise of jobs: so many of so many are done, some of which failed. One thread at a time. */
+void show_count(uint64_t done, uint64_t total, uint64_t failed);
 void end_progress(void);
 /* Makes Ctrl-C cancel the running call instead of killing the process. Called before anything is
  * written, so that nothing is left half done. */

@@ -1,10 +1,11 @@
 /* gtx cook: triangle meshes -> an asset. */
-#include "cli/cli.h"
+#include "cli/folder/folder.h"
 
 #include "host/jobs.h"
 
 #include <geotex/export.h>
 
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -12,8 +13,8 @@
 enum { MAX_MODELS = 4096 };
 
 static gtx_cook_desc desc;
-static const char *output, *name, *report_path, *depfile_path, *allow;
-static uint32_t partition, extract, lod_levels = 5;
+static const char *output, *name, *report_path, *depfile_path, *allow, *shard_text;
+static uint32_t partition, extract, lod_levels = 5, job_count, shard = 1, shards = 1;
 static double unit = 1, texel_density = -1; /* by their detail */
 static int32_t zstd_level = 3;
 static bool adaptive, strict, if_changed, per_mesh;
@@ -49,6 +50,13 @@ static const option options[] = {
      "of a glTF scene: an asset for each mesh that suits, and the scene, into the folder -o", 0, 0},
     {"if-changed", 0, OPTION_FLAG, &if_changed, NULL,
      "keep OUT.gtx if its key says that nothing changed", 0, 0},
+    {"cache", 0, OPTION_STRING, &desc.cache, "DIR",
+     "keep assets by their keys, and take those that are there; machines may share it", 0, 0},
+    {"jobs", 0, OPTION_UINT, &job_count, "N",
+     "of folders: models at a time, which share --max-memory; 0 = as many as processors [0]", 0,
+     1024},
+    {"shard", 0, OPTION_STRING, &shard_text, "I/N",
+     "of folders: cook the I-th of N parts, on this machine [1/1]", 0, 0},
     {"strict", 0, OPTION_FLAG, &strict, NULL, "a warning is an error (exit 3); a note is none", 0,
      0},
     {"allow", 0, OPTION_STRING, &allow, "NAME,...", "with --strict: warnings that are no errors", 0,
@@ -56,7 +64,7 @@ static const option options[] = {
     {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
     PROGRESS_OPTION,
     {"report", 0, OPTION_STRING, &report_path, "R.json",
-     "write the cook report, with the error measured", 0, 0},
+     "write the cook report, with the error measured; of folders, all, without", 0, 0},
     {"depfile", 0, OPTION_STRING, &depfile_path, "D", "write a dependency file for Make or Ninja",
      0, 0},
     {"charts-ply", 0, OPTION_STRING, &desc.charts_ply, "F.ply",
@@ -64,9 +72,11 @@ static const option options[] = {
     {0}};
 
 static const verb cook = {
-    "cook", "MODEL... -o OUT.gtx",
+    "cook", "MODEL... -o OUT.gtx, or FOLDER|MODEL... -o FOLDER",
     "Cooks models (glTF, GLB, Draco, OBJ, PLY, OFF, STL, each also gzipped; - reads stdin) into\n"
-    "one .gtx asset. It keeps a key for --if-changed: a hash of the models, of every file they\n"
+    "one .gtx asset; into a folder, each into an asset of its own, those of folders by the same\n"
+    "names, below it, ending in .gtx. All models are tried; the highest exit code is returned.\n"
+    "An asset keeps a key for --if-changed and --cache: a hash of the models, of every file they\n"
     "refer to, of the options from --charts to --unit and of the cooker's revision. Paths, times,\n"
     "threads and reports do not count.",
     1, MAX_MODELS, options};
@@ -85,9 +95,9 @@ static bool is_stream(const char *path)
     return !strcmp(path, "-");
 }
 
-static int check(const char *const *models, int count)
+static int check(const char *const *models, int count, bool folders)
 {
-    outputs[0].path = output;
+    outputs[0].path = folders ? NULL : output; /* assets may lie beside their models */
     outputs[1].path = report_path;
     outputs[2].path = depfile_path;
     outputs[3].path = desc.charts_ply;
@@ -107,10 +117,39 @@ static int check(const char *const *models, int count)
     if (adaptive && GTX_PARTITION_CUTS + partition != GTX_PARTITION_PGP)
         return usage("--adaptive needs --partition pgp");
     if (per_mesh && (count > 1 || is_stream(models[0]) || is_stream(output) || depfile_path ||
-                     desc.charts_ply || desc.z_up || unit != 1 || strict || if_changed || allow))
+                     desc.charts_ply || desc.z_up || unit != 1 || strict || if_changed || allow ||
+                     desc.cache))
         return usage("--per-mesh takes one scene file and a folder, and no --depfile, "
-                     "--charts-ply, --up, --unit, --strict, --if-changed");
+                     "--charts-ply, --up, --unit, --strict, --if-changed, --cache");
     return check_outputs("gtx cook", outputs, models, (size_t)count);
+}
+
+/* "2/8". */
+static bool parse_shard(void)
+{
+    char *end;
+    if (!isdigit((unsigned char)*shard_text))
+        return false;
+    const unsigned long part = strtoul(shard_text, &end, 10);
+    if (*end != '/' || !isdigit((unsigned char)end[1]))
+        return false;
+    const unsigned long parts = strtoul(end + 1, &end, 10);
+    shard = (uint32_t)part;
+    shards = (uint32_t)parts;
+    return !*end && part >= 1 && part <= parts && parts <= 1000000;
+}
+
+static int check_folders(const char *const *operands, int count)
+{
+    const output_file report[] = {{"--report", report_path}, {NULL, NULL}};
+    if (depfile_path || desc.charts_ply || name)
+        return usage("--depfile, --charts-ply and --name are for one asset");
+    for (int i = 0; i < count; ++i)
+        if (is_stream(operands[i]))
+            return usage("stdin has no name for an asset in a folder");
+    if (shard_text && !parse_shard())
+        return usage("--shard takes I/N, I from 1 to N");
+    return check_outputs("gtx cook", report, operands, (size_t)count);
 }
 
 /* What the models refer to. */
@@ -223,7 +262,13 @@ int cmd_cook(int argc, char **argv)
     int code = parse_options(&cook, argc, argv, models, &count);
     if (code >= 0)
         return code;
-    code = check(models, count);
+    const bool folders = output && !per_mesh && !is_stream(output) &&
+                         is_folder_cook(models, count, output);
+    code = check(models, count, folders);
+    if (!code && folders)
+        code = check_folders(models, count);
+    if (!code && !folders && (job_count || shard_text))
+        code = usage("--jobs and --shard are for folders");
     if (code)
         return code;
     desc.partition = (gtx_partition)(GTX_PARTITION_CUTS + partition);
@@ -239,10 +284,15 @@ int cmd_cook(int argc, char **argv)
     desc.strict = strict;
     set_allowed();
     desc.if_changed = if_changed;
+    desc.limits = cli_limits;
+    if (folders) {
+        desc.measure = 0; /* that would take longer than cooking */
+        return cook_folders(&(folder_cook){models, count, output, &desc, report_path, job_count,
+                                           shard, shards});
+    }
     desc.more = models + 1;
     desc.more_count = (uint32_t)(count - 1);
     desc.progress = show_progress;
-    desc.limits = cli_limits;
     desc.sources_fn = check_sources;
 
     const char *label = count > 1 ? "gtx cook" : is_stream(models[0]) ? "stdin" : models[0];

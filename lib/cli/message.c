@@ -4,6 +4,7 @@
 #include "base/warnings.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <string.h>
@@ -177,21 +178,45 @@ static void print_json_line(const gtx_progress *progress, double elapsed)
             progress->stage, (double)progress->fraction, elapsed, eta);
 }
 
-int show_progress(const gtx_progress *progress, void *user)
+/* Since the first call. */
+static double seconds_elapsed(void)
 {
     static double start = -1;
-    (void)user;
     if (start < 0)
         start = seconds_now();
+    return seconds_now() - start;
+}
+
+int show_progress(const gtx_progress *progress, void *user)
+{
+    (void)user;
+    const double elapsed = seconds_elapsed();
     if (!cli_quiet)
-        (cli_progress == PROGRESS_JSON ? print_json_line : print_bar)(progress,
-                                                                      seconds_now() - start);
+        (cli_progress == PROGRESS_JSON ? print_json_line : print_bar)(progress, elapsed);
     return interrupted;
+}
+
+void show_count(uint64_t done, uint64_t total, uint64_t failed)
+{
+    const double elapsed = seconds_elapsed();
+    double left;
+    char eta[32] = "null";
+    if (time_left((double)done / (double)total, elapsed, &left))
+        snprintf(eta, sizeof eta, "%.0f", left);
+    if (!cli_quiet && cli_progress == PROGRESS_JSON) {
+        fprintf(stderr, "{\"done\": %" PRIu64 ", \"total\": %" PRIu64 ", \"failed\": %" PRIu64
+                        ", \"seconds\": %.2f, \"eta_seconds\": %s}\n",
+                done, total, failed, elapsed, eta);
+    } else if (!cli_quiet && isatty(STDERR_FILENO)) {
+        fprintf(stderr, "\r%" PRIu64 " of %" PRIu64 " models, %" PRIu64 " failed, %s s left ", done,
+                total, failed, eta[0] == 'n' ? "?" : eta);
+        bar_shown = true;
+    }
 }
 
 void end_progress(void)
 {
     if (bar_shown)
-        fprintf(stderr, "\r%32s\r", "");
+        fprintf(stderr, "\r%79s\r", "");
     bar_shown = false;
 }

@@ -1,6 +1,6 @@
 /* The line from a model file to an asset file (paper, section 5), behind the C API. */
 #include "cook/assemble.hpp"
-#include "cook/embedded.hpp"
+#include "cook/cache.hpp"
 #include "cook/encoded.hpp"
 #include "cook/guard.hpp"
 #include "cook/meta.hpp"
@@ -84,31 +84,6 @@ static void refuse_warnings(const Options &options, const Task &task)
                                                     : ")"));
 }
 
-/* The asset at `path` when cooking would only make it again. */
-static Asset find_cooked(const char *path, const Options &options, uint64_t key,
-                         const gtx_limits &limits)
-{
-    if (!options.if_changed || options.charts_ply)
-        return Asset(nullptr, gtx_close);
-    gtx_asset *asset = nullptr;
-    gtx_open_desc open = {};
-    open.allocator = &options.allocator;
-    open.limits = limits;
-    gtx_error error;
-    gtx_result opened = gtx_open_file(path, &open, &asset, &error);
-    if (opened == GTX_ERROR_MEMORY)
-        throw Error(error);
-    if (opened)
-        return Asset(nullptr, gtx_close);
-    Asset owner(asset, gtx_close);
-    uint64_t old_key;
-    std::bitset<GTX_WARNING_COUNT> warnings;
-    bool same = read_meta(asset, old_key, warnings) && old_key == key;
-    if (!same || (options.strict && (warnings & ~options.allowed).any()))
-        owner.reset();
-    return owner;
-}
-
 /* Which vertices of the LOD meshes' source are to stay. */
 static void mark_kept(const Options &options, const Maps &maps, LodSource &source)
 {
@@ -149,7 +124,8 @@ static Attempt attempt(const Mesh &mesh, const Options &options, Task &task, con
         of_asset.chart_count = out.partition.charts.size();
         of_asset.method = out.partition.method;
         for (const Warning &warning : task.warnings)
-            of_asset.warnings.set(warning.kind);
+            if (warning.kind != GTX_WARNING_CACHE) /* of this call, not of the asset */
+                of_asset.warnings.set(warning.kind);
         out.bake = maps.report;
         out.asset = assemble(maps, lod, {write_meta(options, of_asset), options.unit,
                                          facts.source_triangles, options.allocator});
@@ -257,7 +233,8 @@ static std::unique_ptr<Report> report_on(const gtx_asset *asset, const Options &
     Json json(options.allocator);
     std::string summary = write_cook_report(options, facts, task, json);
     auto report = std::make_unique<Report>(json, summary, sources, task.warnings);
-    report->unchanged = facts.unchanged && !facts.held;
+    report->unchanged = facts.unchanged && !facts.held && !facts.cached;
+    report->cached = facts.cached;
     return report;
 }
 
@@ -290,15 +267,26 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
         cooked.asset = open_asset(held, options.allocator, desc.limits);
     else if (output)
         cooked.asset = find_cooked(output, options, facts.key, desc.limits);
+    Cached found;
+    if (!cooked.asset)
+        found = find_in_cache(options, facts.key, desc.limits, task);
+    facts.cached = found.asset != nullptr;
+    if (facts.cached)
+        cooked.asset = std::move(found.asset);
     facts.unchanged = cooked.asset != nullptr;
-    if (!facts.unchanged)
-        cooked = cook_models(models, options, outputs, output || report, task, facts);
+    if (!facts.unchanged) {
+        cooked = cook_models(models, options, outputs, output || report || options.cache, task,
+                             facts);
+        if (cooked.file)
+            keep_in_cache(options, facts.key, cooked.file->view(), task);
+    }
     task.end();
 
     /* The file comes last: a report that finds no memory must not leave one behind. */
     std::unique_ptr<Report> made;
     if (report) {
         facts.bytes = cooked.file     ? cooked.file->size
+                      : facts.cached ? found.file->size
                       : held.empty() ? std::filesystem::file_size(output)
                                      : held.size();
         facts.total_seconds =
@@ -310,6 +298,8 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
         cooked.file->save(output);
     if (facts.held && output)
         require_ok(gtx_write_file(output, held.data(), held.size(), &error), error);
+    if (facts.cached && output)
+        require_ok(gtx_write_file(output, found.file->data, found.file->size, &error), error);
     if (report)
         made->hand_over(report);
     return std::move(cooked.asset);

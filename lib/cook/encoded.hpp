@@ -6,6 +6,8 @@
 #include "base/alloc.h"
 #include "base/output.h"
 
+#include <string_view>
+
 namespace gtx {
 
 /* Jobs of the C rooms on a task's threads. What ends them early must not pass through C: it is kept
@@ -52,6 +54,7 @@ struct Encoded {
     Encoded(const Encoded &) = delete;
     Encoded &operator=(const Encoded &) = delete;
 
+    std::string_view view() const { return {static_cast<const char *>(data), size}; }
     void save(const char *path) const
     {
         gtx_error error;

@@ -123,6 +123,7 @@ Options checked_options(const gtx_cook_desc &desc)
     options.kept = desc.kept;
     options.kept_count = desc.kept_count;
     options.charts_ply = desc.charts_ply;
+    options.cache = desc.cache;
     options.allocator = gtx_allocator_or_default(desc.allocator);
     return options;
 }

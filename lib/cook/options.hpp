@@ -40,7 +40,7 @@ struct Options {
     bool z_up = false, strict = false, if_changed = false;
     const double *kept = nullptr;
     size_t kept_count = 0;
-    const char *charts_ply = nullptr;
+    const char *charts_ply = nullptr, *cache = nullptr;
     gtx_allocator allocator = {}; /* never empty hooks */
 };
 

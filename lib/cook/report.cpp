@@ -179,6 +179,7 @@ std::string write_cook_report(const Options &options, const CookFacts &facts, co
 {
     gtx_json_begin_object(&json, nullptr);
     gtx_json_bool(&json, "unchanged", facts.unchanged);
+    gtx_json_bool(&json, "cached", facts.cached);
     gtx_json_begin_object(&json, "source");
     gtx_json_integer(&json, "triangles", facts.source_triangles);
     if (!facts.unchanged)
@@ -201,8 +202,10 @@ std::string write_cook_report(const Options &options, const CookFacts &facts, co
     write_warnings(json, task.warnings);
     gtx_json_end_object(&json);
     check_written(json);
-    return facts.held ? "the asset that the GLB holds" : facts.unchanged ? "unchanged"
-                                                                         : cook_summary(facts);
+    return facts.held        ? "the asset that the GLB holds"
+           : facts.cached    ? "from the cache"
+           : facts.unchanged ? "unchanged"
+                             : cook_summary(facts);
 }
 
 /* Puts a string at `at`, which is moved behind it. */

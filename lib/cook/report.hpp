@@ -17,6 +17,7 @@ namespace gtx {
 struct CookFacts {
     bool unchanged = false; /* there was nothing to cook: what only a cook finds out is not known */
     bool held = false;      /* for the model held the asset, which is written */
+    bool cached = false;    /* for a cache had it */
     uint64_t source_triangles = 0, source_vertices = 0;
     CleanReport clean;
     ChartReport charts;

@@ -162,7 +162,7 @@ static void names_may_be_long_and_folders_closed(void **state)
         makes(i, "", name, 0);
         if (makes(i, "", "nowhere/a", 2))
             expect_text("nowhere/a: No such file or directory");
-        if (makes(i, "", "folder", 2))
+        if (i > 0 && makes(i, "", "folder", 2)) /* a folder takes what cook makes of models */
             expect_text("folder: Is a directory");
     }
     assert_int_equal(left_over(), 0);

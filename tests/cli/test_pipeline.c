@@ -175,6 +175,34 @@ static void cmake_cooks_what_changed(void **state)
     }
 }
 
+/* What sbatch does, one task after another. */
+static const char sbatch[] =
+    "#!/bin/sh\nfor word; do case $word in --array=1-*) n=${word#--array=1-} ;; "
+    "--output=*) log=${word#--output=} ;; esac; done\ncat >job.sh\n"
+    "for i in $(seq \"$n\"); do SLURM_ARRAY_TASK_ID=$i sh job.sh "
+    ">\"$(echo \"$log\" | sed \"s/%a/$i/\")\" 2>&1 || exit; done\necho 17\n";
+
+static void job_arrays_cook_a_folder(void **state)
+{
+    (void)state;
+    make_models();
+    write_file("sbatch", sbatch, sizeof sbatch - 1);
+    const char *cook = "chmod +x sbatch && PATH=$PWD:$PATH "
+                       "%s/samples/pipeline/slurm.sh models 'o t' cache 3 '%s'";
+    expect(shell(cook, root, getenv("GTX")), 0);
+    assert_string_equal(output, "17\n");
+    expect(gtx("validate 'o t/tri.gtx'"), 0);
+    expect(gtx("validate 'o t/sub/ball one.gtx'"), 0);
+    expect(shell("cat 'o t'/*.json | grep -c '\"outcome\": \"cooked\"'"), 0);
+    assert_int_equal(atoi(output), 2);
+    expect(shell("rm 'o t/tri.gtx'"), 0);
+    expect(shell(cook, root, getenv("GTX")), 0);
+    expect(shell("grep -ho '\"outcome\": \"[a-z]*\"' 'o t'/*.json | sort"), 0);
+    assert_string_equal(output, "\"outcome\": \"cached\"\n\"outcome\": \"unchanged\"\n");
+    write_file("models/broken.ply", "ply\n", 4);
+    assert_int_not_equal(shell(cook, root, getenv("GTX")), 0);
+}
+
 /* A texture that is gone is a change, and the model is cooked without it. */
 static void deleted_sources_stop_no_build(void **state)
 {
@@ -216,6 +244,7 @@ int main(void)
         cmocka_unit_test(ninja_takes_odd_names),
         cmocka_unit_test(cmake_cooks_what_changed),
         cmocka_unit_test(deleted_sources_stop_no_build),
+        cmocka_unit_test(job_arrays_cook_a_folder),
     };
     return cmocka_run_group_tests(tests, set_up_here, tear_down);
 }
