@@ -83,7 +83,7 @@ cflags_asset  = -fno-trapping-math
 cflags_derive = -fno-trapping-math
 # The layouts of records are of shaders and of C.
 cflags_render = -Ishaders
-cflags_cli   = -D_POSIX_C_SOURCE=200809L
+cflags_cli   = -D_POSIX_C_SOURCE=200809L -I$(out)/gen
 libs_asset   = $(if $(filter 1,$(zstd)),$(call pkg,--libs,libzstd))
 libs_mesh    = $(call pkg,--libs,openmesh draco zlib) -lmeshoptimizer -ldl -pthread -lstdc++
 libs_image   = -ldl
@@ -125,6 +125,17 @@ $(out)/%.o: %.cpp | $(out)/sees/.made
 	$(Q)$(CXX) $(cxxflags) $(call room_flags,$<) $(CXXFLAGS) -c $< -o $@
 
 # Shaders travel inside the library: one byte array a file and a table of names.
+# Which commit the command is of: asked of git, where these sources are a checkout of their own.
+$(out)/gen/commit.h: .FORCE
+	@mkdir -p $(@D)
+	@commit=; if [ "$$(git rev-parse --show-toplevel 2>/dev/null)" = "$(CURDIR)" ]; then \
+	  commit=$$(git rev-parse --short=12 HEAD); \
+	  git diff --quiet HEAD || commit="$$commit, changed"; commit=" (commit $$commit)"; fi; \
+	echo "#define GTX_COMMIT \"$$commit\"" | cmp -s - $@ || \
+	echo "#define GTX_COMMIT \"$$commit\"" > $@
+$(out)/lib/cli/version.o: $(out)/gen/commit.h
+.FORCE:
+
 shaders := $(sort $(wildcard shaders/*.glsl shaders/*.vert shaders/*.frag))
 $(out)/gen/shader_sources.c: $(shaders) Makefile
 	@mkdir -p $(@D)
@@ -320,7 +331,8 @@ help: ## this list
 clean: ## remove what was built
 	rm -rf $(build)
 
-.PHONY: all install uninstall dist build-tests run-tests test check demo run-demo bench run-bench \
+.PHONY: all install install-strip uninstall \
+        dist build-tests run-tests test check demo run-demo bench run-bench \
         bench-paths run-bench-paths bench-truth run-bench-truth bench-rays run-bench-rays tune \
         bench-solids run-bench-solids bench-texels run-bench-texels \
         paper-tables run-paper-tables paper-figures run-paper-figures deps help clean

@@ -16,6 +16,11 @@ bool gtx_has_zstd(void)
     return true;
 }
 
+const char *gtx_zstd_version(void)
+{
+    return ZSTD_versionString();
+}
+
 size_t gtx_decoder_size(void)
 {
     return ZSTD_estimateDCtxSize();
@@ -80,6 +85,11 @@ size_t gtx_encode_section(const gtx_encoder *encoder, const gtx_section *section
 bool gtx_has_zstd(void)
 {
     return false;
+}
+
+const char *gtx_zstd_version(void)
+{
+    return "";
 }
 
 size_t gtx_decoder_size(void)

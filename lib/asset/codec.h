@@ -6,6 +6,8 @@
 
 /* Whether this build has zstd. */
 bool gtx_has_zstd(void);
+/* Such as "1.5.4", of the library that is linked; empty without. */
+const char *gtx_zstd_version(void);
 
 /* Whether sections of a kind may have a filter. */
 bool gtx_filter_fits(gtx_section_kind kind, uint32_t filter);

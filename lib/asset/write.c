@@ -169,26 +169,32 @@ static gtx_result write_all(writer *w, void **data, size_t *size, gtx_error *err
     return GTX_OK;
 }
 
+enum { DEFAULT_LEVEL = 3 }; /* zstd's own */
+
 gtx_result gtx_encode(const gtx_asset *asset, const gtx_encode_desc *desc, void **data,
                       size_t *size, gtx_error *error)
 {
-    static const gtx_encode_desc stored = {0};
+    static const gtx_encode_desc defaults = {0};
     if (!desc)
-        desc = &stored;
+        desc = &defaults;
     if (!asset || !data || !size)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "gtx_encode needs an asset and a result");
     gtx_result result = gtx_check_reserved(desc->reserved, 5, error);
     if (result)
         return result;
-    if (desc->zstd_level < 0 || desc->zstd_level > 19)
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "zstd_level is 0..19, not %d", desc->zstd_level);
-    if (desc->zstd_level && !gtx_has_zstd())
+    if (desc->zstd_level < -1 || desc->zstd_level > 19)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "zstd_level is -1..19, not %d",
+                        desc->zstd_level);
+    if (desc->zstd_level > 0 && !gtx_has_zstd())
         return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "this build has no zstd");
 
     writer w = {.asset = asset,
                 .allocator = gtx_allocator_or_default(desc->allocator),
                 .jobs = desc->jobs,
-                .level = desc->zstd_level};
+                .level = desc->zstd_level < 0  ? 0
+                         : desc->zstd_level    ? desc->zstd_level
+                         : gtx_has_zstd()      ? DEFAULT_LEVEL
+                                               : 0};
     result = write_all(&w, data, size, error);
     gtx_free_array(&w.allocator, w.block, w.block_size, 1);
     return result;

@@ -75,6 +75,12 @@ typedef struct verb {
  * operands[0..*count). Returns -1 to go on, or an exit code: 0 after --help, 1 after a message. */
 int parse_options(const verb *v, int argc, char **argv, const char **operands, int *count);
 
+/* What descriptors call a level of --zstd, where 0 is stored. */
+static inline int32_t encode_level(int32_t zstd)
+{
+    return zstd ? zstd : -1;
+}
+
 /* Only errors are printed. */
 extern bool cli_quiet;
 /* What --max-memory and its like allow, for every descriptor that has limits. */
@@ -145,6 +151,9 @@ bool was_interrupted(void);
 /* Puts an asset with LOD meshes of its maps in the place of *asset, with progress. Errors: as
  * gtx_cook_lod_meshes; *asset is then as it was. */
 gtx_result add_lod_meshes(gtx_asset **asset, uint32_t levels, uint32_t threads, gtx_error *error);
+
+/* Of the command, on stdout: its commit, the format, the cooker and the libraries. */
+void print_version(void);
 
 /* ---- verbs: each gets argv[0] = its name ---- */
 

@@ -144,7 +144,7 @@ static gtx_result run(gtx_asset *const assets[2], const char *const files[2], ou
     const gtx_jobs jobs = gtx_host_jobs(threads);
     const gtx_combine_desc desc = {.op = (gtx_combine_op)op, .max_openness = (float)openness,
                                    .jobs = &jobs, .limits = cli_limits};
-    const gtx_encode_desc encode = {.jobs = &jobs, .zstd_level = zstd_level};
+    const gtx_encode_desc encode = {.jobs = &jobs, .zstd_level = encode_level(zstd_level)};
     gtx_asset *made = NULL;
     *file = "gtx combine";
     gtx_result result = gtx_combine(assets[0], assets[1], &desc, &made, &o->parts, error);

@@ -168,7 +168,7 @@ static gtx_result check_sources(const char *const *paths, size_t count, void *us
 static int write_asset(const gtx_asset *asset)
 {
     const gtx_jobs jobs = gtx_host_jobs(desc.threads);
-    const gtx_encode_desc encode = {.jobs = &jobs, .zstd_level = zstd_level};
+    const gtx_encode_desc encode = {.jobs = &jobs, .zstd_level = encode_level(zstd_level)};
     gtx_error error;
     void *data;
     size_t size;
@@ -273,7 +273,7 @@ int cmd_cook(int argc, char **argv)
         return code;
     desc.partition = (gtx_partition)(GTX_PARTITION_CUTS + partition);
     desc.extract = (gtx_extract)(GTX_EXTRACT_CPU + extract);
-    desc.zstd_level = zstd_level ? zstd_level : -1;
+    desc.zstd_level = encode_level(zstd_level);
     desc.lod_levels = lod_levels ? lod_levels : GTX_LOD_LEVELS_NONE;
     desc.unit = (float)unit;
     desc.measure = report_path != NULL;

@@ -105,7 +105,7 @@ static gtx_result run(const gtx_asset *asset, const char **file, gtx_error *erro
     if (!result && lod_levels)
         result = add_lod_meshes(&edited, lod_levels, 0, error);
     if (!result) {
-        const gtx_encode_desc encode = {.zstd_level = zstd_level};
+        const gtx_encode_desc encode = {.zstd_level = encode_level(zstd_level)};
         *file = output;
         catch_interrupt();
         result = gtx_save_file(edited, output, &encode, error);

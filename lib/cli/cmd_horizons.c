@@ -181,7 +181,7 @@ static int make(const gtx_height_grid *grids, int count)
     gtx_asset *asset = NULL;
     gtx_horizons_result result;
     gtx_error error;
-    gtx_encode_desc encode = {.zstd_level = zstd_level};
+    gtx_encode_desc encode = {.zstd_level = encode_level(zstd_level)};
     catch_interrupt();
     gtx_result made = gtx_horizons(grids, (uint32_t)count, &desc, &asset, &result, &error);
     end_progress();

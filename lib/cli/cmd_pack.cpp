@@ -115,7 +115,7 @@ int cmd_pack(int argc, char **argv)
         if (lod_levels)
             asset = with_lod(asset);
         gtx_encode_desc desc = {};
-        desc.zstd_level = zstd_level >= 0 ? zstd_level : 3;
+        desc.zstd_level = encode_level(zstd_level >= 0 ? zstd_level : 3);
         gtx_error error = {};
         about = output;
         catch_interrupt();

@@ -27,7 +27,7 @@ static int find_zstd(const gtx_asset *asset, const void *data, size_t size)
                                  10, 11, 12, 13, 14, 15, 16, 17, 18, 19};
     for (int level : levels) {
         gtx_encode_desc desc = {};
-        desc.zstd_level = level;
+        desc.zstd_level = encode_level(level);
         void *again = nullptr;
         size_t again_size = 0;
         gtx_error error;

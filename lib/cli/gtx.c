@@ -54,8 +54,7 @@ int main(int argc, char **argv)
         return EXIT_CODE_OK;
     }
     if (!strcmp(argv[1], "--version")) {
-        uint32_t v = gtx_version();
-        printf("gtx %u.%u.%u\n", v / 10000, v / 100 % 100, v % 100);
+        print_version();
         return EXIT_CODE_OK;
     }
     for (size_t i = 0; i < sizeof verbs / sizeof *verbs; ++i)

@@ -41,7 +41,7 @@ struct Encoded {
         gtx_encode_desc desc = {};
         desc.allocator = &allocator;
         desc.jobs = &jobs;
-        desc.zstd_level = options.zstd;
+        desc.zstd_level = options.zstd ? options.zstd : -1;
         gtx_error error;
         const gtx_result result = gtx_encode(asset, &desc, &data, &size, &error);
         if (on_task.thrown) {

@@ -15,9 +15,6 @@
 
 namespace gtx {
 
-/* Raised with every change that makes other assets of the same models and options. */
-constexpr int COOKER_REVISION = 21;
-
 /* As zstd counts: 3 is its own default. */
 #ifdef GTX_ZSTD
 constexpr int DEFAULT_ZSTD = 3;

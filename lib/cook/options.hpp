@@ -10,6 +10,9 @@
 
 namespace gtx {
 
+/* Raised with every change that makes other assets of the same models and options. */
+constexpr int COOKER_REVISION = 21;
+
 /* Promised by cook.h. */
 constexpr uint32_t MAX_LOD_LEVELS = 5;
 

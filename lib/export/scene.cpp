@@ -180,7 +180,7 @@ MeshFate SceneCook::cook(size_t mesh, ScenePlacement &placement)
     gtx_encode_desc encode = {};
     encode.allocator = desc_.allocator;
 #ifdef GTX_ZSTD
-    encode.zstd_level = desc_.zstd_level < 0 ? 0 : desc_.zstd_level ? desc_.zstd_level : 3;
+    encode.zstd_level = desc_.zstd_level;
 #endif
     require_ok(gtx_save_file(asset.get(), path_of(out.file).c_str(), &encode, &error), error);
     out.bytes = fs::file_size(path_of(out.file));

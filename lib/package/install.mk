@@ -31,6 +31,12 @@ install: all $(out)/gen/gtx.1 ## libraries, headers, command, shaders, manual: b
 	@install -m 644 $(out)/gen/gtx.1 $(to)/share/man/man1
 	@install -m 644 lib/package/gtx.bash $(to)/share/bash-completion/completions/gtx
 
+# Debugging data is nine tenths of the shared libraries and more of the command.
+install-strip: install ## the same, without debugging data
+	@strip --strip-unneeded $(to)/bin/gtx $(to)/lib/libgeotex.so.$(VERSION) \
+	  $(to)/lib/libgeotex-cook.so.$(VERSION) $(to)/lib/geotex/$(notdir $(module))
+	@strip --strip-debug $(to)/lib/libgeotex.a $(to)/lib/libgeotex-cook.a
+
 uninstall: ## remove what install put there
 	@cd $(to) && rm -f $$(cat $(abspath lib/package/files)) && \
 	  rmdir --ignore-fail-on-non-empty -p include/geotex lib/geotex lib/cmake/geotex lib/pkgconfig \

@@ -41,7 +41,7 @@ static void test_arguments(void **state)
     size_t size;
     gtx_encode_desc encode = {.zstd_level = 20};
     assert_int_equal(gtx_encode(asset, &encode, &data, &size, &error), GTX_ERROR_ARGUMENT);
-    encode.zstd_level = -1;
+    encode.zstd_level = -2;
     assert_int_equal(gtx_encode(asset, &encode, &data, &size, &error), GTX_ERROR_ARGUMENT);
     encode = (gtx_encode_desc){.reserved = {0, 0, 0, 0, 7}};
     assert_int_equal(gtx_encode(asset, &encode, &data, &size, &error), GTX_ERROR_NOT_ZEROED);
@@ -119,8 +119,12 @@ static void test_files(void **state)
     gtx_asset *asset, *other;
     gtx_error error = {0};
     assert_int_equal(gtx_open_file(GOOD "color.gtx", NULL, &asset, NULL), GTX_OK);
+    const gtx_encode_desc stored = {.zstd_level = -1};
     assert_int_equal(gtx_save_file(asset, path, NULL, NULL), GTX_OK);
-    assert_int_equal(gtx_save_file(asset, path, NULL, NULL), GTX_OK); /* over what is there */
+    bytes compressed = read_file(path);
+    assert_true(!gtx_has_zstd() || compressed.size < golden_file.size);
+    free(compressed.data);
+    assert_int_equal(gtx_save_file(asset, path, &stored, NULL), GTX_OK); /* over what is there */
     bytes saved = read_file(path);
     assert_int_equal(saved.size, golden_file.size);
     assert_memory_equal(saved.data, golden_file.data, saved.size);

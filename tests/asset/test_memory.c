@@ -112,7 +112,7 @@ static gtx_result attempt_encode(const gtx_allocator *allocator, const golden *g
 {
     gtx_asset *asset;
     assert_int_equal(golden_create(g, NULL, &asset, NULL), GTX_OK);
-    gtx_encode_desc desc = {.allocator = allocator, .zstd_level = g->zstd_level};
+    gtx_encode_desc desc = {.allocator = allocator, .zstd_level = golden_level(g)};
     void *data = NULL;
     size_t size = 0;
     gtx_result result = gtx_encode(asset, &desc, &data, &size, NULL);
@@ -131,7 +131,7 @@ static gtx_result attempt_save(const gtx_allocator *allocator, const golden *g)
     snprintf(path, sizeof path, "%s/a.gtx", folder);
     gtx_asset *asset;
     assert_int_equal(golden_create(g, NULL, &asset, NULL), GTX_OK);
-    gtx_encode_desc desc = {.allocator = allocator, .zstd_level = g->zstd_level};
+    gtx_encode_desc desc = {.allocator = allocator, .zstd_level = golden_level(g)};
     gtx_result result = gtx_save_file(asset, path, &desc, NULL);
     assert_int_equal(remove(path) == 0, result == GTX_OK);
     assert_int_equal(rmdir(folder), 0);

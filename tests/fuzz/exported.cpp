@@ -30,7 +30,8 @@ void export_asset(const gtx_asset *asset, uint64_t how)
     void *bytes = nullptr, *out = nullptr;
     size_t size = 0, out_size = 0;
     gtx_error error = {};
-    const gtx_encode_desc stored = {};
+    gtx_encode_desc stored = {};
+    stored.zstd_level = -1;
     REQUIRE(!gtx_encode(asset, &stored, &bytes, &size, &error), "encode: %s", error.message);
     gtx_export_desc desc = {};
     desc.level = random.chance(4) ? random.below(4) : 0;

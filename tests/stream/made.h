@@ -46,7 +46,8 @@ static inline void made_asset(const double low[3], double side, uint8_t **data, 
     size_t size;
     if (gtx_create(&desc, &asset, &error))
         fail_msg("%s", error.message);
-    assert_int_equal(gtx_encode(asset, NULL, (void **)data, &size, NULL), GTX_OK);
+    const gtx_encode_desc stored = {.zstd_level = -1};
+    assert_int_equal(gtx_encode(asset, &stored, (void **)data, &size, NULL), GTX_OK);
     gtx_close(asset);
     *bytes = size;
 }
