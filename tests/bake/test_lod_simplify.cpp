@@ -39,7 +39,7 @@ struct Roof {
         draw_out({positions, triangles, start, around, {0, 1, 1, 1, 1, 1}, {point}}, most,
                  [&](uint32_t vertex, const Vec3d &way) {
                      positions[vertex] += way;
-                     ++moved;
+                     return ++moved > 0;
                  },
                  task, 1);
         return moved;

@@ -43,6 +43,21 @@ static std::array<double, 3> nearest_shares(const std::array<Vec3d, 3> &c, const
     return best;
 }
 
+/* A triangle, and the way to a point from the nearest of its own, by the shares of its corners. */
+struct Reached {
+    std::array<Vec3d, 3> corner;
+    std::array<double, 3> share;
+    Vec3d way;
+
+    Reached(const Simplified &surface, uint32_t triangle, const Vec3d &point)
+    {
+        const auto &[a, b, d] = surface.triangles[triangle];
+        corner = {surface.positions[a], surface.positions[b], surface.positions[d]};
+        share = nearest_shares(corner, point);
+        way = point - (corner[0] * share[0] + corner[1] * share[1] + corner[2] * share[2]);
+    }
+};
+
 /* A point above the `count` triangles of `near`, where it is farther from them than `most`. Which
  * side it is on is told by those that are all nearest to it: one, or those around an edge or a
  * corner. */
@@ -54,12 +69,9 @@ static Outlier find_outlier(const Simplified &surface, const uint32_t *near, siz
     Vec3d facing;
     double least = INFINITY;
     for (size_t i = 0; i < count; ++i) {
-        const auto &[a, b, d] = surface.triangles[near[i]];
-        const std::array<Vec3d, 3> c = {surface.positions[a], surface.positions[b],
-                                        surface.positions[d]};
-        const std::array<double, 3> share = nearest_shares(c, point);
-        const Vec3d way = point - (c[0] * share[0] + c[1] * share[1] + c[2] * share[2]);
-        const double distance = dot(way, way);
+        const Reached reached(surface, near[i], point);
+        const std::array<Vec3d, 3> &c = reached.corner;
+        const double distance = dot(reached.way, reached.way);
         if (distance <= most * most)
             return {};
         if (distance > least * same)
@@ -67,9 +79,9 @@ static Outlier find_outlier(const Simplified &surface, const uint32_t *near, siz
         const Vec3d area = cross(c[1] - c[0], c[2] - c[0]);
         facing = distance * same < least ? area : facing + area;
         least = std::min(least, distance);
-        out.way = way;
+        out.way = reached.way;
         out.triangle = near[i];
-        out.share = share;
+        out.share = reached.share;
     }
     out.height = dot(out.way, facing) > 0 ? std::sqrt(least) : 0;
     return out;
@@ -78,29 +90,45 @@ static Outlier find_outlier(const Simplified &surface, const uint32_t *near, siz
 /* The triangles around a vertex and those around their corners. */
 static Vector<uint32_t> find_near(const Simplified &s, uint32_t vertex)
 {
-    Vector<uint32_t> near;
+    Vector<uint32_t> ring, near;
     for (uint32_t i = s.start[vertex]; i < s.start[vertex + 1]; ++i)
         for (uint32_t v : s.triangles[s.around[i]])
-            near.insert(near.end(), s.around.begin() + s.start[v],
-                        s.around.begin() + s.start[v + 1]);
+            ring.push_back(v);
+    std::sort(ring.begin(), ring.end());
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    for (uint32_t v : ring)
+        near.insert(near.end(), s.around.begin() + s.start[v], s.around.begin() + s.start[v + 1]);
     std::sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());
     return near;
 }
 
-/* The planes of the triangles around a vertex: what is above none of them by more than `most` is
- * not outside. Of most points this is all that has to be known. */
+/* The triangles around a vertex: what is above none of their planes by more than `most` is not
+ * outside, nor what is as near to any. Of most points this is all that has to be known. */
 class Planes {
 public:
     Planes(const Simplified &s, uint32_t vertex)
     {
+        at_ = s.positions[vertex];
         for (uint32_t i = s.start[vertex]; i < s.start[vertex + 1] && count_ < MAX_FAN; ++i) {
             const auto &[a, b, c] = s.triangles[s.around[i]];
             const Vec3d &at = s.positions[a];
-            normal_[count_++] = normalize(cross(s.positions[b] - at, s.positions[c] - at));
+            normal_[count_] = normalize(cross(s.positions[b] - at, s.positions[c] - at));
+            middle_[count_++] = normalize(at + s.positions[b] + s.positions[c] - at_ * 3);
         }
-        at_ = s.positions[vertex];
         all_ = s.start[vertex + 1] - s.start[vertex] <= uint32_t(MAX_FAN);
+    }
+    /* The triangle that lies most in the way to a point. */
+    uint32_t towards(const Vec3d &point) const
+    {
+        int best = 0;
+        double most = -INFINITY;
+        for (int i = 0; i < count_; ++i) {
+            const double along = dot(middle_[i], point - at_);
+            best = along > most ? i : best;
+            most = std::max(most, along);
+        }
+        return uint32_t(best);
     }
     bool below(const Vec3d &point, double most) const
     {
@@ -111,7 +139,7 @@ public:
     }
 
 private:
-    Vec3d normal_[MAX_FAN], at_;
+    Vec3d normal_[MAX_FAN], middle_[MAX_FAN], at_;
     int count_ = 0;
     bool all_;
 };
@@ -123,12 +151,15 @@ static Outlier find_worst(const Simplified &s, uint32_t vertex, double most)
     Outlier worst;
     Vector<uint32_t> near;
     const Planes planes(s, vertex);
+    const uint32_t *around = s.around.data() + s.start[vertex];
     for (uint32_t i = s.first[vertex]; i < s.first[vertex + 1]; ++i) {
         const double least = std::max(most, worst.height);
         if (planes.below(s.points[i], least))
             continue;
-        if (find_outlier(s, s.around.data() + s.start[vertex],
-                         s.start[vertex + 1] - s.start[vertex], s.points[i], least).height == 0)
+        const Vec3d way = Reached(s, around[planes.towards(s.points[i])], s.points[i]).way;
+        if (dot(way, way) <= least * least ||
+            find_outlier(s, around, s.start[vertex + 1] - s.start[vertex], s.points[i],
+                         least).height == 0)
             continue;
         if (near.empty())
             near = find_near(s, vertex);
@@ -139,35 +170,67 @@ static Outlier find_worst(const Simplified &s, uint32_t vertex, double most)
     return worst;
 }
 
+/* Which vertices have moved, or one beside them has, since it was made: what was found at those two
+ * steps from all of them still holds. */
+class Moved {
+public:
+    explicit Moved(const Simplified &s) : s_(s), near_(s.positions.size(), 0) {}
+
+    void add(uint32_t vertex)
+    {
+        each_beside(vertex, [this](uint32_t v) { near_[v] = 1; });
+    }
+    bool near(uint32_t vertex) const
+    {
+        uint8_t any = 0;
+        each_beside(vertex, [&](uint32_t v) { any |= near_[v]; });
+        return any;
+    }
+
+private:
+    template <class Visit> void each_beside(uint32_t vertex, Visit visit) const
+    {
+        for (uint32_t i = s_.start[vertex]; i < s_.start[vertex + 1]; ++i)
+            for (uint32_t v : s_.triangles[s_.around[i]])
+                visit(v);
+    }
+
+    const Simplified &s_;
+    Vector<uint8_t> near_;
+};
+
 /* What has nothing outside hardly gets any: later rounds look at the others alone. The corners of a
  * triangle move by what each has of the point below, which moves all of them least. */
 void draw_out(const Simplified &surface, double most,
-              const std::function<void(uint32_t, const Vec3d &)> &move, Task &task, double done)
+              const std::function<bool(uint32_t, const Vec3d &)> &move, Task &task, double done)
 {
     const size_t chunk = 256;
     Vector<uint32_t> left(surface.positions.size());
     std::iota(left.begin(), left.end(), 0u);
     for (int n = 0; n < ROUNDS && !left.empty(); ++n) {
-        Vector<uint8_t> has_any(left.size());
+        Vector<Outlier> found(left.size());
         task.parallel((left.size() + chunk - 1) / chunk, [&](size_t of) {
             for (size_t i = of * chunk; i < std::min(left.size(), (of + 1) * chunk); ++i)
-                has_any[i] = find_worst(surface, left[i], most).height > 0;
+                found[i] = find_worst(surface, left[i], most);
         }, done, done);
+        Moved moved(surface);
         Vector<uint32_t> still;
-        for (size_t i = 0; i < left.size(); ++i)
-            if (has_any[i])
-                still.push_back(left[i]);
-        left.swap(still);
-        for (uint32_t v : left) {
-            const Outlier o = find_worst(surface, v, most); /* others may have moved */
+        for (size_t i = 0; i < left.size(); ++i) {
+            if (found[i].height == 0)
+                continue;
+            still.push_back(left[i]);
+            const Outlier o = moved.near(left[i]) ? find_worst(surface, left[i], most) : found[i];
             if (o.height == 0)
                 continue;
             const auto &[a, b, c] = o.share;
             const Vec3d way = o.way * ((1 - most / o.height) / (a * a + b * b + c * c));
-            for (int k = 0; k < 3; ++k)
-                if (o.share[k] > 0)
-                    move(surface.triangles[o.triangle][k], way * o.share[k]);
+            for (int k = 0; k < 3; ++k) {
+                const uint32_t v = surface.triangles[o.triangle][k];
+                if (o.share[k] > 0 && move(v, way * o.share[k]))
+                    moved.add(v);
+            }
         }
+        left.swap(still);
     }
 }
 

@@ -20,8 +20,9 @@ struct Simplified {
 };
 
 /* Draws the surface out to where no point is farther outside than `most`, as far as `move` lets it,
- * which changes the position of a vertex. The task is then done to the share given. */
+ * which changes the position of a vertex, or does not and returns false. The task is then done to
+ * the share given. */
 void draw_out(const Simplified &surface, double most,
-              const std::function<void(uint32_t, const Vec3d &)> &move, Task &task, double done);
+              const std::function<bool(uint32_t, const Vec3d &)> &move, Task &task, double done);
 
 } // namespace gtx::baking

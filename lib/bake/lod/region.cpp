@@ -92,8 +92,9 @@ bool PatchRegion::holds(const std::array<double, 2> (&corner)[3]) const
         }
         low = std::max(low, x0);
         high = std::min(high, x1);
-        for (int i = int(low); i <= int(high); ++i)
-            if (!clear_[size_t(j) * w_ + i])
+        const uint8_t *row = &clear_[size_t(j) * w_];
+        for (int i = int(low); i <= int(high); i += row[i]) /* what is as near is clear too */
+            if (!row[i])
                 return false;
     }
     return true;

@@ -22,10 +22,10 @@ constexpr uint32_t MAX_POINTS = 6;
 constexpr uint32_t LATER_POINTS = 4;
 
 /* Moves a vertex, less far where its triangles need it. */
-void Simplifier::State::move(uint32_t vertex, Vec3d way)
+bool Simplifier::State::move(uint32_t vertex, Vec3d way)
 {
     if (stays(vertex))
-        return;
+        return false;
     for (int n = 0; n < MOVE_STEPS; ++n, way = way * 0.5) {
         const Vec3d place = positions[vertex] + way;
         bool keeps = true;
@@ -33,9 +33,10 @@ void Simplifier::State::move(uint32_t vertex, Vec3d way)
             keeps = keeps_shape(around[i], vertex, place, false);
         if (keeps) {
             positions[vertex] = place;
-            return;
+            return true;
         }
     }
+    return false;
 }
 
 /* Sorts the points by the vertex that stands for them: `first` of each, and the end. */
@@ -106,7 +107,7 @@ void Simplifier::State::settle()
     Simplified surface = {positions, triangles, start, around, {}, {}};
     find_members(surface.first, surface.points);
     draw_out(surface, MAX_OUTSIDE * std::sqrt(error),
-             [&](uint32_t vertex, const Vec3d &way) { move(vertex, way); }, task, done());
+             [&](uint32_t vertex, const Vec3d &way) { return move(vertex, way); }, task, done());
     if (first_points)
         keep_points();
 }

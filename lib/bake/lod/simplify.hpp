@@ -88,7 +88,7 @@ struct Simplifier::State {
     {
         return !kept.empty() && kept[vertex] && !crossing;
     }
-    void move(uint32_t vertex, Vec3d way);
+    bool move(uint32_t vertex, Vec3d way);
     void settle();
     void keep_points();
     void find_members(Vector<uint32_t> &first, Vector<Vec3d> &members);
