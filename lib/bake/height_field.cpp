@@ -50,14 +50,18 @@ bool HeightField::field_above(const Vec3d &point, double &above, double &trim) c
     if (!(u >= 0 && v >= 0 && u < w - 1 && v < h - 1))
         return false;
     const CellPoint place = {at(int(u), int(v)), u - int(u), v - int(v)};
-    double mean = 0;
+    double codes[4], mean = 0;
+    for (size_t k = 0; k < 4; ++k) {
+        const uint32_t of_texel = code(corner(place, k));
+        if (!of_texel)
+            return false;
+        codes[k] = of_texel;
+    }
     trim = 0;
     for (size_t k = 0; k < 4; ++k) {
-        const size_t texel = corner(place, k);
-        if (!code(texel))
-            return false;
-        mean += place.weight(k) * code(texel);
-        trim += place.weight(k) * gtx_trim_distance(trim_[texel]);
+        const double weight = place.weight(k);
+        mean += weight * codes[k];
+        trim += weight * gtx_trim_distance(trim_[corner(place, k)]);
     }
     above = height(mean) - dot(dual[2], from);
     return true;

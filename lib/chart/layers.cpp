@@ -27,6 +27,9 @@ constexpr double DISCONTINUITY_PITCHES = 6, DISCONTINUITY_REACH = 2.5;
  * nodes takes up to 168, others 100. */
 constexpr size_t MAX_SEARCHED = 512;
 
+/* Triangles whose corners are computed once: memory against time. */
+constexpr size_t MAX_KEPT = 1 << 16;
+
 void join(Sample &s, const Sample &other)
 {
     if (other.low < s.low) {
@@ -200,11 +203,13 @@ LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Fr
                           double pitch)
 {
     const FlatRegion flat(surface, region, frame, pitch);
-    auto corner = [&](uint32_t local, int k) { return flat.corner(local, k); };
+    Vector<Vec3d> kept(3 * std::min(region.size(), MAX_KEPT));
     double from[2] = {INFINITY, INFINITY}, to[2] = {-INFINITY, -INFINITY};
     for (uint32_t local = 0; local < region.size(); ++local)
         for (int k = 0; k < 3; ++k) {
-            Vec3d p = corner(local, k);
+            const Vec3d p = flat.corner(local, k);
+            if (local < MAX_KEPT)
+                kept[3 * local + uint32_t(k)] = p;
             for (int a = 0; a < 2; ++a) {
                 from[a] = std::min(from[a], p[a]);
                 to[a] = std::max(to[a], p[a]);
@@ -221,7 +226,8 @@ LayerGrid make_layer_grid(const Surface &surface, const Region &region, const Fr
     for (uint32_t local = 0; local < region.size(); ++local) {
         Vec3d p[3];
         for (int k = 0; k < 3; ++k)
-            p[k] = corner(local, k) - Vec3d(low[0], low[1], 0);
+            p[k] = (local < MAX_KEPT ? kept[3 * local + uint32_t(k)] : flat.corner(local, k)) -
+                   Vec3d(low[0], low[1], 0);
         raster_centres(p, grid.size[0], grid.size[1], [&](int i, int j, double depth) {
             join(grid.samples[size_t(j) * size_t(grid.size[0]) + size_t(i)],
                  {float(depth), float(depth), local, local});

@@ -1,8 +1,8 @@
 /* The surface around a chart that its maps may show too. */
 #include "chart/frame.hpp"
+#include "chart/places.hpp"
 
 #include <algorithm>
-#include <unordered_set>
 
 namespace gtx {
 
@@ -112,7 +112,9 @@ Vector<uint32_t> overlap_triangles(const Mesh &mesh,
                                    const Chart &chart, double reach)
 {
     const Vector<uint32_t> &core = chart.triangles;
-    auto in_core = [&core](uint32_t t) { return std::binary_search(core.begin(), core.end(), t); };
+    Places in_core(core.size());
+    for (uint32_t t : core)
+        in_core.add(t, 0);
     FrameInverse inverse(chart.frame);
     auto plan = [&](uint32_t t, int k) {
         Vec3d p = inverse(mesh.position(t, k));
@@ -126,20 +128,20 @@ Vector<uint32_t> overlap_triangles(const Mesh &mesh,
     Vector<std::pair<uint32_t, int>> border;
     for (uint32_t t : core)
         for (int k = 0; k < 3; ++k)
-            if (neighbours[t][k] != NO_TRIANGLE && !in_core(neighbours[t][k]) &&
+            if (neighbours[t][k] != NO_TRIANGLE && !in_core.has(neighbours[t][k]) &&
                 !beyond_cut(plan(t, k), plan(t, (k + 1) % 3)))
                 border.emplace_back(t, k);
     Outline outline(chart.frame.extent[0], reach, border.size());
     Vector<std::pair<uint32_t, uint32_t>> found;      /* triangle, edge it was reached from */
-    std::unordered_set<uint32_t> seen;
+    Places seen(border.size());
     auto visit = [&](uint32_t t, uint32_t edge) {
-        if (t == NO_TRIANGLE || in_core(t) || seen.count(t))
+        if (t == NO_TRIANGLE || in_core.has(t) || seen.has(t))
             return;
         Vec3d normal = normalize(mesh.area_vector(t));
         Point corner[3] = {plan(t, 0), plan(t, 1), plan(t, 2)};
         if (!outline.tethered(corner, edge))
             return; /* it may be nearer to another edge */
-        seen.insert(t);
+        seen.add(t, 0);
         if (dot(normal, chart.frame.z) >= MIN_FACING && outline.near_triangle(corner))
             found.emplace_back(t, edge);
     };

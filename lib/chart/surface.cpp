@@ -1,5 +1,7 @@
-/* Connectivity through OpenMesh; areas, raw and smoothed normals, junk. */
+/* Connectivity, through OpenMesh where it is no manifold; areas, raw and smoothed normals, junk. */
 #include "chart/surface.hpp"
+
+#include "mesh/edges.hpp"
 
 #include <OpenMesh/Core/Mesh/TriConnectivity.hh>
 #include <OpenMesh/Core/System/omstream.hh>
@@ -53,8 +55,47 @@ Connectivity connect(const Mesh &mesh)
     return out;
 }
 
+/* Which triangles share an edge. False where the mesh is no oriented manifold, of whose triangles
+ * OpenMesh would refuse some: an edge of three triangles or of two alike, a vertex of two fans. */
+bool find_neighbours(const Mesh &mesh, Vector<std::array<uint32_t, 3>> &out)
+{
+    Vector<uint32_t> across(3 * mesh.triangle_count(), NO_EDGE); /* of each half-edge */
+    bool manifold = true;
+    for_each_edge(mesh, [&](const EdgeEntry *edge, size_t count) {
+        if (count == 1)
+            return;
+        const uint32_t a = edge[0].half_edge, b = edge[1].half_edge;
+        manifold = manifold && count == 2 && start_of(mesh, a) != start_of(mesh, b);
+        across[a] = b;
+        across[b] = a;
+    });
+    Vector<uint8_t> has_fan(mesh.positions.size(), 0), seen(across.size(), 0);
+    for (uint32_t h = 0; manifold && h < across.size(); ++h) {
+        if (seen[h])
+            continue;
+        cancel_point();
+        uint8_t &fan = has_fan[start_of(mesh, h)];
+        manifold = !fan && start_of(mesh, h) != start_of(mesh, next_edge(h));
+        fan = 1;
+        uint32_t at = h; /* round the vertex one way, and from an end of an open fan the other */
+        for (; at != NO_EDGE && !seen[at]; at = across[previous_edge(at)])
+            seen[at] = 1;
+        for (at = at == NO_EDGE ? across[h] : NO_EDGE; at != NO_EDGE; at = across[at]) {
+            at = next_edge(at);
+            seen[at] = 1;
+        }
+    }
+    out.resize(manifold ? mesh.triangle_count() : 0);
+    for (uint32_t h = 0; h < 3 * out.size(); ++h) /* from the last edge on, as OpenMesh has them */
+        out[h / 3][next_edge(h) % 3] = across[h] == NO_EDGE ? NO_TRIANGLE : across[h] / 3;
+    return manifold;
+}
+
 Vector<std::array<uint32_t, 3>> neighbours_of(const Mesh &mesh)
 {
+    Vector<std::array<uint32_t, 3>> neighbours;
+    if (find_neighbours(mesh, neighbours))
+        return neighbours;
     Connectivity connectivity = connect(mesh);
     Vector<std::array<uint32_t, 3>> out(mesh.triangle_count());
     for (size_t t = 0; t < out.size(); ++t) {

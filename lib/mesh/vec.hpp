@@ -50,6 +50,16 @@ inline double length(double x, double y)
     return std::hypot(x, y);
 }
 
+/* That times `parts`, a power of two, rounded down. The square root alone is nearly as exact, and
+ * takes a fifth of the time. */
+inline int whole_length(double parts, double x, double y)
+{
+    constexpr double ROUNDING = 1e-12;
+    const double about = parts * std::sqrt(x * x + y * y);
+    const bool sure = about < 1e9 && int(about * (1 - ROUNDING)) == int(about * (1 + ROUNDING));
+    return int(sure ? about : parts * length(x, y));
+}
+
 /* The zero vector stays zero. */
 template <class T> Vec3<T> normalize(const Vec3<T> &a)
 {

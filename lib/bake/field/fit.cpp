@@ -82,7 +82,7 @@ static Vector<Observation> observe_edges(const ChartField &field)
             if (mate != NO_TRIANGLE && mate < t)
                 continue; /* seen from the other side */
             Vec3d from = triangle.corner[k], along = triangle.corner[(k + 1) % 3] - from;
-            int steps = std::max(1, int(length(along.x, along.y) / STEP));
+            int steps = std::max(1, whole_length(1 / STEP, along.x, along.y));
             budget.spend(steps);
             if (budget.spent())
                 return out;
@@ -122,27 +122,33 @@ double fit_heights(double pitch, ChartField &field)
     const uint32_t row = uint32_t(chart.grid.w);
     const double farthest = FARTHEST * chart.grid.coarse_pitch();
     const double leeway = LEEWAY * chart.grid.coarse_pitch();
-    Vector<double> pull(sampled.size()), weight(sampled.size());
+    struct Step {
+        double pull, weight;
+    };
+    Vector<Step> steps(sampled.size());
     for (int round = 0; round < ROUNDS; ++round) {
         for (size_t i = 0; i < sampled.size(); ++i) {
             const double residual = sampled[i] - cover.height[i];
             const bool sunk = residual > leeway && cover.triangle[i] != NO_TRIANGLE;
-            weight[i] = (cover.triangle[i] < chart.core ? 1 : OVERLAP_COUNTS) * (sunk ? SUNK : 1);
-            pull[i] = weight[i] * residual;
+            const double weight = (cover.triangle[i] < chart.core ? 1 : OVERLAP_COUNTS) *
+                                  (sunk ? SUNK : 1);
+            steps[i] = {weight * residual, weight};
         }
         for (const Observation &o : observations) {
             const uint32_t corner[4] = {o.texel, o.texel + 1, o.texel + row, o.texel + row + 1};
             double residual = o.height;
             for (int k = 0; k < 4; ++k)
                 residual -= o.weight[k] * cover.height[corner[k]];
-            double trust = o.counts * (residual > leeway ? BELOW : 1);
+            const double trust = o.counts * (residual > leeway ? BELOW : 1);
             for (int k = 0; k < 4; ++k) {
-                pull[corner[k]] += trust * o.weight[k] * residual;
-                weight[corner[k]] += trust * o.weight[k]; /* row sums: no step overshoots */
+                Step &step = steps[corner[k]];
+                const double weight = trust * o.weight[k];
+                step.pull += weight * residual;
+                step.weight += weight; /* row sums: no step overshoots */
             }
         }
         for (size_t i = 0; i < sampled.size(); ++i)
-            cover.height[i] = std::clamp(cover.height[i] + pull[i] / weight[i],
+            cover.height[i] = std::clamp(cover.height[i] + steps[i].pull / steps[i].weight,
                                          sampled[i] - farthest, sampled[i] + farthest);
     }
     return missed_share(chart, observations, cover,

@@ -1,6 +1,8 @@
 /* Lays a chart and its overlap out in the texel grid of its frame. */
 #include "bake/field/flatten.hpp"
 
+#include "chart/places.hpp"
+
 #include <algorithm>
 
 namespace gtx::baking {
@@ -102,20 +104,6 @@ static FlatTriangle flat_triangle(const Mesh &mesh, const Grid &grid, uint32_t s
     return flat;
 }
 
-/* The place of `source` among the triangles, which are two ascending runs. */
-static uint32_t find_triangle(const FlatChart &chart, uint32_t source)
-{
-    auto before = [](const FlatTriangle &a, uint32_t b) { return a.source < b; };
-    auto begin = chart.triangles.begin(), middle = begin + ptrdiff_t(chart.core);
-    auto end = chart.triangles.end();
-    for (auto run : {std::make_pair(begin, middle), std::make_pair(middle, end)}) {
-        auto at = std::lower_bound(run.first, run.second, source, before);
-        if (at != run.second && at->source == source)
-            return uint32_t(at - begin);
-    }
-    return NO_TRIANGLE;
-}
-
 FlatChart flatten(const Mesh &mesh, const Neighbours &neighbours, const Chart &chart, double pitch,
                   double finer)
 {
@@ -138,11 +126,14 @@ FlatChart flatten(const Mesh &mesh, const Neighbours &neighbours, const Chart &c
         for (FlatTriangle &t : flat.triangles)
             t.front = true;
 
+    Places places(flat.triangles.size());
+    for (size_t i = 0; i < flat.triangles.size(); ++i)
+        places.add(flat.triangles[i].source, uint32_t(i));
     flat.mate.resize(flat.triangles.size());
     for (size_t i = 0; i < flat.triangles.size(); ++i) {
         for (int k = 0; k < 3; ++k) {
             uint32_t across = neighbours[flat.triangles[i].source][k];
-            uint32_t at = across == NO_TRIANGLE ? NO_TRIANGLE : find_triangle(flat, across);
+            uint32_t at = across == NO_TRIANGLE ? NO_TRIANGLE : places.find(across);
             flat.mate[i][k] = at != NO_TRIANGLE && flat.triangles[at].front ? at : NO_TRIANGLE;
         }
     }

@@ -99,30 +99,35 @@ struct DistanceField {
                 offer(i, j, edge);
     }
 
-    void offer_from(int i, int j, int di, int dj)
-    {
-        int x = i + di, y = j + dj;
-        if (x < 0 || y < 0 || x >= grid.w || y >= grid.h)
-            return;
-        uint32_t edge = outline.nearest[size_t(y) * grid.w + x];
-        if (edge != NO_EDGE)
-            offer(i, j, edge);
-    }
-
-    /* Passes nearest edges on across the grid (Danielsson 1980, with edges in place of points). */
+    /* Passes nearest edges on across the grid (Danielsson 1980, with edges in place of points).
+     * Most neighbours have the same one: `last` was offered just now. */
     void sweep(bool down)
     {
-        int back = down ? -1 : 1;
+        const int w = grid.w;
         for (int row = 0; row < grid.h; ++row) {
-            int j = down ? row : grid.h - 1 - row;
+            const int j = down ? row : grid.h - 1 - row;
+            const uint32_t *here = &outline.nearest[size_t(j) * w];
+            const uint32_t *back = down ? here - w : here + w;
             cancel_point();
-            for (int i = 0; i < grid.w; ++i) {
-                offer_from(i, j, -1, 0);
-                for (int di = -1; di <= 1; ++di)
-                    offer_from(i, j, di, back);
+            for (int i = 0; i < w; ++i) {
+                uint32_t last = NO_EDGE;
+                auto offer_from = [&](uint32_t edge) {
+                    if (edge != last && edge != NO_EDGE)
+                        offer(i, j, last = edge);
+                };
+                if (i)
+                    offer_from(here[i - 1]);
+                if (!row)
+                    continue;
+                if (i)
+                    offer_from(back[i - 1]);
+                offer_from(back[i]);
+                if (i + 1 < w)
+                    offer_from(back[i + 1]);
             }
-            for (int i = grid.w - 1; i >= 0; --i)
-                offer_from(i, j, 1, 0);
+            for (int i = w - 1; i-- > 0;)
+                if (here[i + 1] != NO_EDGE)
+                    offer(i, j, here[i + 1]);
         }
     }
 };
@@ -196,7 +201,7 @@ Vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Co
     for (const OutlineEdge &edge : core_outline.edges) {
         cancel_point();
         Vec3d along = edge.to - edge.from;
-        int steps = 1 + int(2 * length(along.x, along.y));
+        int steps = 1 + whole_length(2, along.x, along.y);
         for (int s = 0; s < steps; ++s) {
             Vec3d p = edge.from + along * (double(s) / steps);
             if (grid.outside(p.x, p.y) <= 0)

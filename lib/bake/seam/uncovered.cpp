@@ -3,6 +3,7 @@
 
 #include "bake/budget.hpp"
 #include "bake/height_field.hpp"
+#include "chart/frame.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -156,9 +157,9 @@ bool is_masked(const Mesh &mesh, uint32_t triangle)
     return !a.material.empty() && a.materials[a.material[triangle]].alpha_cutoff > 0;
 }
 
-bool in_core(const Chart &chart, const Vec3d &point)
+bool in_core(const Chart &chart, const FrameInverse &inverse, const Vec3d &point)
 {
-    const Vec3d local = chart.frame.local(point);
+    const Vec3d local = inverse(point);
     return local.x >= chart.clip_low[0] && local.x <= chart.clip_high[0] &&
            local.y >= chart.clip_low[1] && local.y <= chart.clip_high[1];
 }
@@ -191,15 +192,16 @@ double Search::uncovered_share(size_t field, uint32_t triangle, Budget &budget,
         return 0;
     const bool steep = dot(normal, own.axis[2]) < STEEP;
     const int parts = parts_of(triangle);
+    const FrameInverse inverse(chart.frame);
     std::optional<Vector<const HeightField *>> near;
     int uncovered = 0;
     for (int j = 0; j < parts; ++j) {
         cancel_point();
+        const Vec3d across = f * ((j + 1 / 3.) / parts);
         for (int i = 0; i + j < parts; ++i) {
-            const Sample at = {first + e * ((i + 1 / 3.) / parts) + f * ((j + 1 / 3.) / parts),
-                               normal};
+            const Sample at = {first + e * ((i + 1 / 3.) / parts) + across, normal};
             const bool by_own = shown_by(own, at, INFINITY);
-            if ((by_own && !steep) || !in_core(chart, at.point + job_.anchor))
+            if ((by_own && !steep) || !in_core(chart, inverse, at.point + job_.anchor))
                 continue;
             if (!near)
                 near = facing_near({first, first + e, first + f}, normal, budget);
@@ -219,8 +221,10 @@ Vector<Budget> Search::share_looks(Task &task) const
 {
     Vector<double> samples(fields_.size()), over(fields_.size());
     task.parallel(fields_.size(), [&](size_t s) {
-        for (uint32_t t : partition_.charts[fields_.patch(s)].triangles)
-            samples[s] += parts_of(t) * (parts_of(t) + 1.) / 2;
+        for (uint32_t t : partition_.charts[fields_.patch(s)].triangles) {
+            const int parts = parts_of(t);
+            samples[s] += parts * (parts + 1.) / 2;
+        }
         const Vec3d middle = (fields_[s].box.low + fields_[s].box.high) * 0.5;
         fields_.any_near(middle, 0, [&](const HeightField &) {
             cancel_point();

@@ -193,24 +193,27 @@ void set_cells(const CutNode &node, Chart &chart)
 
 /* Turns the frames of charts that will be cut so that their patches fill their rectangles best:
  * the least rectangle around a large chart says little about its parts. Coarse trees suffice to
- * tell. */
-void turn_frames(const Surface &surface, const Vector<Region> &regions, const CutPlan &plan,
-                 double share, Vector<Frame> &frames, Task &task)
+ * tell. Returns the reliefs of all. */
+Vector<Relief> turn_frames(const Surface &surface, const Vector<Region> &regions,
+                           const CutPlan &plan, double share, Vector<Frame> &frames, Task &task)
 {
     auto radians = [](size_t turn) { return M_PI / 2 * double(turn) / TURNS; };
     Vector<CutTree> trees(regions.size() * TURNS);
+    Vector<Relief> reliefs(regions.size());
     for_each_region(regions, task, [&](size_t i) {
-        Relief relief = make_relief(surface, regions[i], frames[i], plan.pitch);
+        reliefs[i] = make_relief(surface, regions[i], frames[i], plan.pitch);
         for (size_t turn = 0; turn < TURNS; ++turn)
             trees[i * TURNS + turn] =
-                grow_cut_tree(turn_relief(relief, radians(turn), COARSE), plan, share);
+                grow_cut_tree(turn_relief(reliefs[i], radians(turn), COARSE), plan, share);
     }, 0.2, 0.4);
     Vector<size_t> best = choose_turns(trees, TURNS, plan.patches);
     for_each_region(regions, task, [&](size_t i) {
-        if (trees[i * TURNS + best[i]].nodes[0].divided)
-            frames[i] = turned_frame(surface.mesh, regions[i].triangles, frames[i],
-                                     radians(best[i]));
+        if (!trees[i * TURNS + best[i]].nodes[0].divided)
+            return;
+        frames[i] = turned_frame(surface.mesh, regions[i].triangles, frames[i], radians(best[i]));
+        reliefs[i] = make_relief(surface, regions[i], frames[i], plan.pitch);
     });
+    return reliefs;
 }
 
 } // namespace
@@ -219,11 +222,10 @@ Vector<Chart> cut_charts(const Surface &surface, Vector<Region> regions,
                          Vector<Frame> frames, const CutPlan &plan, Task &task)
 {
     double share = surface.area / (plan.pitch * plan.pitch) / double(plan.patches);
-    turn_frames(surface, regions, plan, share, frames, task);
+    Vector<Relief> reliefs = turn_frames(surface, regions, plan, share, frames, task);
     Vector<CutTree> trees(regions.size());
     for_each_region(regions, task, [&](size_t i) {
-        trees[i] = grow_cut_tree(make_relief(surface, regions[i], frames[i], plan.pitch), plan,
-                                 share);
+        trees[i] = grow_cut_tree(std::move(reliefs[i]), plan, share);
         if (!plan.one_density)
             weigh_bends(trees[i]);
     }, 0.4, 0.8);

@@ -139,27 +139,35 @@ double Grower::relief(const Slice &s) const
 Vector<Lines> Grower::parts(const Rect &box, int axis, const Vector<int> &across) const
 {
     const size_t count = size_t(box.side(axis));
-    Vector<size_t> part_of;      /* a coordinate of the other axis */
-    for (int at = box.low[!axis]; at < box.high[!axis]; ++at) {
-        bool next = !part_of.empty() && at == across[part_of.back()];
-        part_of.push_back(part_of.empty() ? 0 : part_of.back() + next);
-    }
     Vector<Line> sums(across.size() * count);
-    for (int j = box.low[1]; j < box.high[1]; ++j)
-        for (int i = box.low[0]; i < box.high[0]; ++i) {
-            const size_t texel = relief_.at(i, j);
-            if (!relief_.touched[texel])
-                continue;
-            const int line = (axis ? j : i) - box.low[axis], at = axis ? i : j;
-            Line &sum = sums[part_of[size_t(at - box.low[!axis])] * count + size_t(line)];
-            sum.touch(at);
-            double height = double(relief_.height[texel]);
-            if (!std::isnan(height))
-                sum.add(at, height);
+    auto add = [this](size_t texel, int at, Line &sum) {
+        if (!relief_.touched[texel])
+            return;
+        sum.touch(at);
+        const double height = double(relief_.height[texel]);
+        if (!std::isnan(height))
+            sum.add(at, height);
+    };
+    int from = box.low[!axis];
+    Line *lines = sums.data();   /* of the part */
+    for (const int to : across) {
+        for (int j = box.low[1]; axis && j < box.high[1]; ++j) {
+            Line sum;            /* a row's, in registers */
+            for (int i = from; i < to; ++i)
+                add(relief_.at(i, j), i, sum);
+            lines[j - box.low[1]] = sum;
         }
+        for (int j = from; !axis && j < to; ++j)
+            for (int i = box.low[0]; i < box.high[0]; ++i)
+                add(relief_.at(i, j), j, lines[i - box.low[0]]);
+        from = to;
+        lines += count;
+    }
     Vector<Lines> out;
+    out.reserve(across.size());
     for (size_t part = 0; part < across.size(); ++part) {
         out.push_back({box.low[axis], {}});
+        out[part].slices.reserve(count);
         for (size_t i = 0; i < count; ++i)
             out[part].slices.push_back(sums[part * count + i].slice(axis, box.low[axis] + int(i)));
     }

@@ -82,7 +82,7 @@ Relief make_relief(const Surface &surface, const Region &region, const Frame &fr
         });
         for (int k = 0; k < 3; ++k) { /* a sliver passes between centres */
             Vec3d from = corner[k], along = corner[(k + 1) % 3] - from;
-            int steps = 1 + int(2 * length(along.x, along.y));
+            int steps = 1 + whole_length(2, along.x, along.y);
             for (int s = 0; s < steps; ++s) {
                 Vec3d p = from + along * (double(s) / steps);
                 int i = std::clamp(int(p.x), 0, out.size[0] - 1);
