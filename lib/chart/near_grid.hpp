@@ -38,12 +38,14 @@ private:
         constexpr uint64_t LOW = (1 << 21) - 1;
         return (x & LOW) << 42 | (y & LOW) << 21 | (z & LOW);
     }
+    Vector<Entry> moved(int axis, uint64_t by) const;
     static uint64_t coordinate(Cell cell, int axis) { return cell >> (42 - 21 * axis); }
     Cell cell_of(const Vec3d &p) const
     {
-        return pack(uint64_t(int64_t(std::floor(p.x / step_))),
-                    uint64_t(int64_t(std::floor(p.y / step_))),
-                    uint64_t(int64_t(std::floor(p.z / step_))));
+        constexpr uint64_t MIDDLE = 1 << 20; /* few cells are so far from 0 that bits are cut */
+        return pack(MIDDLE + uint64_t(int64_t(std::floor(p.x / step_))),
+                    MIDDLE + uint64_t(int64_t(std::floor(p.y / step_))),
+                    MIDDLE + uint64_t(int64_t(std::floor(p.z / step_))));
     }
     static uint16_t hash(Cell cell) { return uint16_t(cell * 0x9e3779b97f4a7c15 >> 48); }
 

@@ -76,7 +76,13 @@ bool PatchRegion::holds(const std::array<double, 2> (&corner)[3]) const
     for (const auto &c : corner)
         if (!holds(c))
             return false;
+    const int half = std::max(int(x1) - x, x - int(x0));
     for (int j = int(y0); j <= int(y1); ++j) { /* what of the triangle lies in this row of texels */
+        const uint8_t *row = &clear_[size_t(j) * w_];
+        if (row[x] > half) { /* all of it, and of as many rows */
+            j += row[x] - 1;
+            continue;
+        }
         double low = w_, high = 0;
         auto reach = [&](double at) {
             low = std::min(low, at);
@@ -92,7 +98,6 @@ bool PatchRegion::holds(const std::array<double, 2> (&corner)[3]) const
         }
         low = std::max(low, x0);
         high = std::min(high, x1);
-        const uint8_t *row = &clear_[size_t(j) * w_];
         for (int i = int(low); i <= int(high); i += row[i]) /* what is as near is clear too */
             if (!row[i])
                 return false;

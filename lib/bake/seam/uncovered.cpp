@@ -164,6 +164,23 @@ bool in_core(const Chart &chart, const FrameInverse &inverse, const Vec3d &point
            local.y >= chart.clip_low[1] && local.y <= chart.clip_high[1];
 }
 
+/* Whether all of a triangle lies beyond the same cut, and by more than rounding does: many do, for
+ * a chart has what its overlap is taken from. */
+bool beyond_cut(const Chart &chart, const FrameInverse &inverse, const Mesh &mesh,
+                uint32_t triangle, double pitch)
+{
+    constexpr double ROUNDING = 1e-2;
+    bool below[2] = {true, true}, above[2] = {true, true};
+    for (int k = 0; k < 3; ++k) {
+        const Vec3d local = inverse(mesh.position(triangle, k));
+        for (int a = 0; a < 2; ++a) {
+            below[a] = below[a] && local[a] < chart.clip_low[a] - ROUNDING * pitch;
+            above[a] = above[a] && local[a] > chart.clip_high[a] + ROUNDING * pitch;
+        }
+    }
+    return below[0] || below[1] || above[0] || above[1];
+}
+
 /* Samples along a side of a triangle. */
 int Search::parts_of(uint32_t triangle) const
 {
@@ -188,11 +205,12 @@ double Search::uncovered_share(size_t field, uint32_t triangle, Budget &budget,
     const Vec3d e = mesh.position(triangle, 1) - job_.anchor - first;
     const Vec3d f = mesh.position(triangle, 2) - job_.anchor - first;
     const Vec3d normal = normalize(cross(e, f));
-    if (!(dot(normal, own.axis[2]) > TWISTED) || is_masked(mesh, triangle))
+    const FrameInverse inverse(chart.frame);
+    if (!(dot(normal, own.axis[2]) > TWISTED) || is_masked(mesh, triangle) ||
+        beyond_cut(chart, inverse, mesh, triangle, job_.pitch))
         return 0;
     const bool steep = dot(normal, own.axis[2]) < STEEP;
     const int parts = parts_of(triangle);
-    const FrameInverse inverse(chart.frame);
     std::optional<Vector<const HeightField *>> near;
     int uncovered = 0;
     for (int j = 0; j < parts; ++j) {
