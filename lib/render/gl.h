@@ -29,6 +29,7 @@ enum {
     GL_CCW = 0x0901,
     GL_CULL_FACE = 0x0B44,
     GL_CULL_FACE_MODE = 0x0B45,
+    GL_FRONT = 0x0404,
     GL_BACK = 0x0405,
     GL_FRONT_FACE = 0x0B46,
     GL_DEPTH_TEST = 0x0B71,

@@ -167,30 +167,49 @@ static const gtx_program *lod_program(const gtx_draw_call *draw, const gtx_run *
                             forward && front ? TECHNIQUE_LOD_FRONT : TECHNIQUE_LOD);
 }
 
-/* Draws an LOD mesh, or parts of it: patches with a back face culled, then those without. */
-static void draw_lod(gtx_draw_call *draw, const gtx_run *r, uint32_t level, const uint8_t *parts)
+/* Draws those patches of a level that are seen from one side or from two, by the program for front
+ * faces or the one for all. */
+static void draw_side(gtx_draw_call *draw, const gtx_run *r, uint32_t level, const uint8_t *parts,
+                      bool two_sided, bool front)
 {
     const gtx_renderer *renderer = draw->renderer;
     const gtx_gl *gl = &renderer->gl;
     const gtx_lod_meshes *lods = &r->model->lods;
     const bool single = draw->view->pass == GTX_PASS_DEPTH && r->count == 1;
-    bool keeps_angles = true;
+    use_program(draw, single ? program_of(draw, r->model, TECHNIQUE_LOD_SINGLE)
+                             : lod_program(draw, r, front), r->model);
+    if (single)
+        gl->Uniform4fv(draw->program->place, 3, renderer->instances[r->first].world[0]);
+    gl->Uniform4fv(draw->program->lod, 1, lods->levels[level].place);
+    gtx_lod_draw(gl, lods, level, two_sided, single ? 0 : r->count, parts);
+}
+
+/* Draws an LOD mesh, or parts of it: patches with a back face culled, then those without. Of these
+ * the front faces first, by their own program: most back faces lie hidden behind them. */
+static void draw_lod(gtx_draw_call *draw, const gtx_run *r, uint32_t level, const uint8_t *parts)
+{
+    const gtx_renderer *renderer = draw->renderer;
+    const gtx_gl *gl = &renderer->gl;
+    const gtx_lod_meshes *lods = &r->model->lods;
+    bool front = draw->view->pass == GTX_PASS_FORWARD && !draw->view->shading;
     for (uint32_t i = 0; i < r->count; ++i)
-        keeps_angles = keeps_angles && gtx_keeps_angles(&renderer->instances[r->first + i]);
-    if (!single)
+        front = front && gtx_keeps_angles(&renderer->instances[r->first + i]);
+    if (draw->view->pass != GTX_PASS_DEPTH || r->count > 1)
         set_instances(renderer, r->first, 1);
     gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
-    for (int two_sided = 0; two_sided < 2; ++two_sided) {
-        if (lods->one_sided == (two_sided ? lods->patch_count : 0))
-            continue;
-        use_program(draw, single ? program_of(draw, r->model, TECHNIQUE_LOD_SINGLE)
-                                 : lod_program(draw, r, keeps_angles && !two_sided), r->model);
-        if (single)
-            gl->Uniform4fv(draw->program->place, 3, renderer->instances[r->first].world[0]);
-        gl->Uniform4fv(draw->program->lod, 1, lods->levels[level].place);
-        (two_sided ? gl->Disable : gl->Enable)(GL_CULL_FACE);
-        gtx_lod_draw(gl, lods, level, two_sided, single ? 0 : r->count, parts);
+    gl->Enable(GL_CULL_FACE);
+    if (lods->one_sided)
+        draw_side(draw, r, level, parts, false, front);
+    if (lods->one_sided == lods->patch_count)
+        return;
+    if (front) {
+        draw_side(draw, r, level, parts, true, true);
+        gl->CullFace(GL_FRONT);
+    } else {
+        gl->Disable(GL_CULL_FACE);
     }
+    draw_side(draw, r, level, parts, true, false);
+    gl->CullFace(GL_BACK);
 }
 
 /* Draws displaced grids. */
