@@ -19,7 +19,7 @@
 enum { HEADER = 192, ENTRY = 64, RECORD = 128, MAX_SECTIONS = 256 };
 enum { NO_MEMORY = 1, UNSUPPORTED = 2 }; /* in place of a rule */
 enum { LOD_HEADER = 32, MAX_LODS = 8 };
-enum { LOD = 112, UNKNOWN = 500 };       /* the order of LOD mesh sections, and of those to skip */
+enum { UNKNOWN = 500 };                  /* the order of sections to skip */
 
 typedef unsigned char byte;
 struct section {
@@ -118,7 +118,7 @@ static unsigned check_header(struct file *f)
         return 100;
     if (f->size < HEADER)
         return 118;
-    if (u16(h + 12) != 0 || u16(h + 14) != 4)
+    if (u16(h + 12) != 0 || u16(h + 14) != 5)
         return 101;
     if (u32(h + 16) != HEADER)
         return 102;
@@ -180,10 +180,10 @@ static unsigned check_header_hash(struct file *f)
 
 /* ---- 1.2 and 2: table ---- */
 
-/* In file order; those from NRML on have levels, those from COLR on may be absent. META is last. */
+/* In file order; LODM and the images from COLR to EMIT may be absent. META is last. */
 enum { KNOWN = 8 };
-static const char *const types[KNOWN] = {"PTCH", "HGHT", "TRIM", "NRML",
-                                         "COLR", "MATL", "EMIT", "LODM"};
+static const char *const types[KNOWN] = {"PTCH", "LODM", "COLR", "MATL",
+                                         "EMIT", "HGHT", "TRIM", "NRML"};
 
 static int is_type(const struct section *s, const char *type) { return !strcmp(s->type, type); }
 
@@ -195,10 +195,25 @@ static int order_of(const struct section *s)
     return is_type(s, "META") ? 1000 : UNKNOWN;
 }
 
+static int is_needed(const char *type)
+{
+    return !strcmp(type, "PTCH") || !strcmp(type, "HGHT") || !strcmp(type, "TRIM") ||
+           !strcmp(type, "NRML");
+}
+
+/* Sections of a type that there are, if there are any; of LODM, at most. */
+static uint32_t levels_of(const struct file *f, const char *type)
+{
+    static const char *const single[] = {"PTCH", "HGHT", "TRIM", "META"};
+    for (int i = 0; i < 4; ++i)
+        if (!strcmp(type, single[i]))
+            return 1;
+    return strcmp(type, "LODM") ? f->mips : MAX_LODS;
+}
+
 static unsigned check_known(struct file *f, struct section *s)
 {
-    int levels = order_of(s) > 16 * 3 && order_of(s) < UNKNOWN;
-    if (s->level >= (is_type(s, "LODM") ? MAX_LODS : levels ? f->mips : 1))
+    if (s->level >= levels_of(f, s->type))
         return 203;
     static const struct {
         const char *type;
@@ -254,7 +269,7 @@ static unsigned check_entry(struct file *f, uint32_t index, uint64_t *end)
     int order = order_of(s), known = order != UNKNOWN;
     if (!known && s->flags & 1)
         return 201;
-    if (s->flags != (known && order < 16 * 4 ? 1 : 0))
+    if (s->flags != (known && is_needed(s->type) ? 1 : 0))
         return 202;
     if (!known && (s->level || s->format))
         return s->level ? 203 : 204;
@@ -298,8 +313,9 @@ static uint32_t count_of(const struct file *f, const char *type)
 static unsigned check_presence(const struct file *f)
 {
     for (int i = 0; i < KNOWN; ++i) {
-        uint32_t count = count_of(f, types[i]), all = i < 3 ? 1 : f->mips;
-        if (i < 7 && count != all && (count || i < 4))
+        uint32_t count = count_of(f, types[i]);
+        if (strcmp(types[i], "LODM") && count != levels_of(f, types[i]) &&
+            (count || is_needed(types[i])))
             return 214;
     }
     uint32_t lods = count_of(f, "LODM");

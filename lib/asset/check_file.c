@@ -121,7 +121,7 @@ static void check_format(table_walk *walk, gtx_section *section, uint64_t at)
                   section->name, section->format);
     if (section->kind == GTX_SECTION_META && (section->size < 1 || section->size > GTX_META_LIMIT))
         gtx_break(walk->check, GTX_RULE_META, at + 32, "it has %" PRIu64 " bytes", section->size);
-    bool free_size = section->kind >= GTX_SECTION_LOD;
+    bool free_size = section->kind == GTX_SECTION_LOD || section->kind >= GTX_SECTION_UNKNOWN;
     if (section->kind == GTX_SECTION_LOD &&
         section->size < gtx_lod_size(info->patch_count, 3, 1))
         gtx_break(walk->check, GTX_RULE_LOD_SIZE, at + 32, "level %u has %" PRIu64 " bytes",

@@ -16,13 +16,15 @@
 
 /* Offsets in the golden files with four sections. */
 enum { ENTRY = 192, HGHT = ENTRY + 64, TRIM = ENTRY + 128, NRML = ENTRY + 192, RECORD = 448 };
+/* In `zstd`, behind its colours. */
+enum { ZSTD_HGHT = ENTRY + 5 * 64, ZSTD_TRIM = ENTRY + 6 * 64 };
 /* The smaller and the larger level in `material` and `emission`; in `zstd-material` the largest
  * levels of colour and material, and the smallest of emission. */
-enum { SMALL = ENTRY + 5 * 64, LARGE = ENTRY + 6 * 64 };
-enum { COLR = ENTRY + 10 * 64, MATL = ENTRY + 14 * 64, EMIT = ENTRY + 15 * 64 };
+enum { SMALL = ENTRY + 64, LARGE = ENTRY + 2 * 64 };
+enum { COLR = ENTRY + 4 * 64, MATL = ENTRY + 8 * 64, EMIT = ENTRY + 9 * 64 };
 
 /* The two levels in `lod`; the entries of its finer and of the coarsest in `zstd-lod`. */
-enum { COARSE = 960, FINE = 1088, LODM = ENTRY + 5 * 64, ZSTD_SHEL = ENTRY + 4 * 64 };
+enum { COARSE = 704, FINE = 832, LODM = ENTRY + 2 * 64, ZSTD_SHEL = ENTRY + 64 };
 
 typedef enum rehash {
     NOTHING, HEADER, CONTENT, SECTIONS
@@ -80,11 +82,27 @@ static inline void swap_sections(bytes *file)
     }
 }
 
-/* Makes a section one that readers skip. */
+/* Makes a section one that readers skip: the last of the file. */
 static inline void forget(bytes *file, size_t entry)
 {
-    memcpy(file->data + entry, "XTRA", 4);
-    memset(file->data + entry + 4, 0, 12);
+    const size_t last = ENTRY + 64 * (gtx_load_u32(file->data + 28) - 1);
+    const size_t at = gtx_load_u64(file->data + entry + 16);
+    const size_t next = entry == last ? file->size : gtx_load_u64(file->data + entry + 80);
+    const size_t size = next - at;
+    uint8_t kept[64], *block = need(malloc(size));
+    memcpy(block, file->data + at, size);
+    memmove(file->data + at, file->data + next, file->size - next);
+    memcpy(file->data + file->size - size, block, size);
+    free(block);
+    memcpy(kept, file->data + entry, 64);
+    for (; entry < last; entry += 64) {
+        memcpy(file->data + entry, file->data + entry + 64, 64);
+        gtx_store_u64(file->data + entry + 16, gtx_load_u64(file->data + entry + 16) - size);
+    }
+    memcpy(kept, "XTRA", 4);
+    memset(kept + 4, 0, 12);
+    gtx_store_u64(kept + 16, file->size - size);
+    memcpy(file->data + last, kept, 64);
 }
 
 static inline void rename_normals(bytes *file)
@@ -118,10 +136,10 @@ static inline void dirty_last_byte(bytes *file)
     file->data[file->size - 1] = 1;
 }
 
-/* The frame of the second section of `zstd` loses its first byte. */
+/* The frame of the heights of `zstd` loses its first byte. */
 static inline void break_frame(bytes *file)
 {
-    file->data[gtx_load_u64(file->data + HGHT + 16)] ^= 1;
+    file->data[gtx_load_u64(file->data + ZSTD_HGHT + 16)] ^= 1;
 }
 
 static const bad bads[] = {
@@ -152,7 +170,7 @@ static const bad bads[] = {
     {204, "section-format", "minimal", HGHT + 12, 4, 9, HEADER, HGHT + 12, NULL},
     {205, "section-offset", "minimal", HGHT + 16, 8, 640, HEADER, HGHT + 16, NULL},
     {206, "section-range", "minimal", NRML + 16, 8, 0xFFFFFFFFFFFFFFC0, HEADER, NRML + 16, NULL},
-    {207, "section-size", "zstd", HGHT + 32, 8, 4095, HEADER, HGHT + 32, NULL},
+    {207, "section-size", "zstd", ZSTD_HGHT + 32, 8, 4095, HEADER, ZSTD_HGHT + 32, NULL},
     {208, "section-scheme", "minimal", HGHT + 40, 4, 1, HEADER, HGHT + 40, NULL},
     {209, "section-filter", "minimal", HGHT + 44, 4, 1, HEADER, HGHT + 44, NULL},
     {210, "section-hash", "minimal", TRIM + 48, 8, 1, CONTENT, TRIM + 48, NULL},
@@ -203,7 +221,7 @@ static const bad variants[] = {
     {119, "emission-scale", "emission", 144, 4, 0xBF800000, HEADER, 144, NULL}, /* -1 */
     {119, "emission-scale", "minimal", 144, 4, 0x3F800000, HEADER, 144, NULL},  /* 1 */
     {119, "emission-scale", "minimal", 144, 4, 0x80000000, HEADER, 144, NULL},  /* -0 */
-    {200, "section-order", "zstd-material", 0, 0, 0, HEADER, ENTRY + 11 * 64,
+    {200, "section-order", "zstd-material", 0, 0, 0, HEADER, ENTRY + 5 * 64,
      material_before_color},
     {202, "section-flags", "material", SMALL + 4, 4, 1, HEADER, SMALL + 4, NULL},
     {202, "section-flags", "emission", LARGE + 4, 4, 2, HEADER, LARGE + 4, NULL},
@@ -213,9 +231,9 @@ static const bad variants[] = {
     {205, "section-offset", "minimal", HGHT + 16, 8, 577, HEADER, HGHT + 16, NULL},
     {207, "section-size", "zstd-material", EMIT + 32, 8, 383, HEADER, EMIT + 32, NULL},
     {208, "section-scheme", "minimal", TRIM + 24, 8, 63, HEADER, TRIM + 40, NULL},
-    {209, "section-filter", "zstd", HGHT + 44, 4, 4, HEADER, HGHT + 44, NULL},
-    {209, "section-filter", "zstd", HGHT + 44, 4, 6, HEADER, HGHT + 44, NULL},
-    {209, "section-filter", "zstd", TRIM + 44, 4, 5, HEADER, TRIM + 44, NULL},
+    {209, "section-filter", "zstd", ZSTD_HGHT + 44, 4, 4, HEADER, ZSTD_HGHT + 44, NULL},
+    {209, "section-filter", "zstd", ZSTD_HGHT + 44, 4, 6, HEADER, ZSTD_HGHT + 44, NULL},
+    {209, "section-filter", "zstd", ZSTD_TRIM + 44, 4, 5, HEADER, ZSTD_TRIM + 44, NULL},
     {209, "section-filter", "minimal", NRML + 44, 4, 4, HEADER, NRML + 44, NULL},
     {209, "section-filter", "zstd-material", EMIT + 44, 4, 4, HEADER, EMIT + 44, NULL},
     {209, "section-filter", "zstd", ENTRY + 44, 4, 1, HEADER, ENTRY + 44, NULL},

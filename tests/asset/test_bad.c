@@ -47,7 +47,7 @@ static bool needs_zstd(const bad *b)
 
 static uint64_t reported_offset(const bad *b, bytes file)
 {
-    return b->edit == break_frame ? gtx_load_u64(file.data + HGHT + 16) : b->reported;
+    return b->edit == break_frame ? gtx_load_u64(file.data + ZSTD_HGHT + 16) : b->reported;
 }
 
 static void test_validate(void **state)

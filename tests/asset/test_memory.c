@@ -271,10 +271,12 @@ static bytes make_large(uint32_t pages)
 {
     gtx_info info = {.patch_count = 1, .page_count = pages, .page_width = 16384,
                      .page_height = 16384, .mip_count = 1, .height_bits = 8, .unit = 1};
+    static const gtx_section_kind kinds[] = {GTX_SECTION_PATCHES, GTX_SECTION_HEIGHT,
+                                             GTX_SECTION_TRIM, GTX_SECTION_NORMAL};
     gtx_section sections[4];
     uint64_t end = GTX_HEADER_SIZE + 4 * GTX_ENTRY_SIZE;
     for (int i = 0; i < 4; ++i) {
-        sections[i] = gtx_section_describe(&info, (gtx_section_kind)i, 0);
+        sections[i] = gtx_section_describe(&info, kinds[i], 0);
         sections[i].scheme = GTX_SCHEME_ZSTD;
         sections[i].stored_size = sections[i].size / 32768 + 1;
         sections[i].offset = end;

@@ -92,9 +92,9 @@ static const struct Kind {
     const char *type;
     uint32_t format, texel, must;
     bool levels;
-} kinds[] = {{"PTCH", 0, 0, 1, false},  {"HGHT", 13, 1, 1, false}, {"TRIM", 9, 1, 1, false},
-             {"NRML", 16, 2, 1, true},  {"COLR", 43, 4, 0, true},  {"MATL", 37, 4, 0, true},
-             {"EMIT", 29, 3, 0, true},  {"LODM", 0, 0, 0, false},  {"META", 0, 0, 0, false}};
+} kinds[] = {{"PTCH", 0, 0, 1, false},  {"LODM", 0, 0, 0, false},  {"COLR", 43, 4, 0, true},
+             {"MATL", 37, 4, 0, true},  {"EMIT", 29, 3, 0, true},  {"HGHT", 13, 1, 1, false},
+             {"TRIM", 9, 1, 1, false},  {"NRML", 16, 2, 1, true},  {"META", 0, 0, 0, false}};
 
 static int order_of(const Section &s)
 {
@@ -141,7 +141,7 @@ void fit(Content &content)
         content.set(at, std::clamp(content.field(at) / block * block, 8u, 64u));
     for (size_t i = content.sections.size(); i-- > 0;) {
         const Section &s = content.sections[i];
-        const uint32_t levels = s.is("LODM") ? 8 : order_of(s) < 6500 ? mips : 1;
+        const uint32_t levels = s.is("LODM") ? 8 : order_of(s) < 7500 ? mips : 1;
         if (s.field(LEVEL) >= levels)
             content.sections.erase(content.sections.begin() + long(i));
     }
