@@ -205,6 +205,12 @@ static bool is_inside(const gtx_frustum *f, const float sphere[4])
     return square <= f->eye[3] * f->eye[3] * sphere[3] * sphere[3];
 }
 
+/* Entries come nearest first, and what is farther has fewer pixels a triangle: after so many given
+ * up in a row the rest is cast, for finding triangles that are not drawn takes time. Of 12 views of
+ * a bunny those from outside take up to a tenth less than without it; at half, two others take a
+ * quarter and two fifths longer. */
+static const uint32_t most_given_up = 6;
+
 bool gtx_blocks_fill(const gtx_draw_call *draw, const gtx_model *model,
                      const gtx_instance_data *placed)
 {
@@ -215,7 +221,7 @@ bool gtx_blocks_fill(const gtx_draw_call *draw, const gtx_model *model,
     const bool all = draw->view->method == GTX_METHOD_GRID;
     const bool tiles = gtx_tile_stream_suits(renderer, draw->view);
     const fill nothing = {.vertices = 0};
-    uint32_t left = 0;
+    uint32_t left = 0, given_up = 0;
     empty_to(grids, &nothing);
     if (!reserve_slots(renderer, model))
         return false;
@@ -225,9 +231,13 @@ bool gtx_blocks_fill(const gtx_draw_call *draw, const gtx_model *model,
         /* By fragments its box may cover the picture, whatever the patch does; by tiles rays in it
          * start at the eye. Near planes often touch what they show. */
         const bool beside = gtx_is_before_near(&f, hull) && (!tiles || is_inside(&f, hull));
+        const bool must = all || beside;
         const fill before = fill_of(grids);
-        if (add(draw, &f, model, entry.patch, all || beside))
+        if ((must || given_up < most_given_up) && add(draw, &f, model, entry.patch, must)) {
+            given_up = 0;
             continue;
+        }
+        ++given_up;
         empty_to(grids, &before);
         plan->entries[left++] = entry;
     }
