@@ -121,6 +121,11 @@ typedef struct gtx_cook_desc {
     const char *cache;            /* a folder of assets by their keys, or NULL: what it has is not
                                      cooked, and what is cooked is kept. Threads and machines may
                                      share it */
+    const char *texture_dir;      /* a folder for textures that are not beside a model, looked for
+                                     there by their file names alone; or NULL */
+    const char *base_color;       /* path of the image for materials that have none, of OBJ models
+                                     with texture coordinates; or NULL. If it cannot be read: READ.
+                                     Compare with the same two */
     uint32_t reserved[2];
 } gtx_cook_desc;
 
@@ -129,8 +134,8 @@ typedef struct gtx_cook_desc {
  *     and images that they refer to, missing ones included; not their paths or times;
  *   - the options that change the asset: partition, extract (and the driver, where it is GPU),
  *     charts, resolution, height_bits, dilation, mips, lod_levels, zstd_level, unit, error, z_up,
- *     adaptive, kept and texel_density; not threads, measure, progress, strict, allow, limits or
- *     allocator;
+ *     adaptive, kept, texel_density and base_color; not threads, measure, progress, strict, allow,
+ *     limits or allocator;
  *   - geotex's version and the revision of its cooker,
  * but not the libraries that decode images and compress sections. With `strict`, an asset whose
  * cook had warnings that are not allowed is cooked again; with `charts_ply`, or if importing read
@@ -304,6 +309,7 @@ typedef struct gtx_compare_desc {
     gtx_limits limits;            /* as for gtx_cook_desc; the asset counts as read too */
     uint32_t random_views;        /* beside the 26 fixed ones, up to 4096: those of `seed` */
     uint32_t seed;
+    const char *texture_dir, *base_color; /* as for gtx_cook_desc */
     uint32_t any_model;           /* 1: also a model that is not the one that the asset names as its
                                      source, by a hash of its content and its textures' */
     uint32_t reserved[5];

@@ -125,7 +125,8 @@ static void compare_files(const gtx_asset *asset, const char *asset_path, const 
     task.limits.allow_work(VIEWS * (1 + desc.random_views / FIXED_VIEWS));
     task.limits.read(asset_path, info.file_size);
     task.begin("import");
-    Models models = read_models({model}, desc.more, desc.more_count, task);
+    Models models = read_models({model}, desc.more, desc.more_count,
+                                {text_of(desc.texture_dir), text_of(desc.base_color)}, task);
     if (!desc.any_model)
         require_source(asset, models);
     Mesh mesh = import_models(models, desc.z_up, task);

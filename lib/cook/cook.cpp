@@ -255,7 +255,8 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
     for (uint32_t i = 0; i < desc.more_count; ++i)
         outputs.refuse(desc.more[i]);
     task.begin("import");
-    Models models = read_models(input, desc.more, desc.more_count, task);
+    Models models = read_models(input, desc.more, desc.more_count,
+                                {text_of(desc.texture_dir), text_of(desc.base_color)}, task);
     outputs.refuse_sources(models.sources);
     facts.source_hash = models.hash;
     facts.key = content_key(options, models.hash);

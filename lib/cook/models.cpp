@@ -70,7 +70,7 @@ static auto naming(const std::string &path, bool several, Task &task, Body body)
 }
 
 Models read_models(const ModelInput &first, const char *const *more, uint32_t more_count,
-                   Task &task)
+                   const TextureFiles &textures, Task &task)
 {
     Vector<ModelInput> inputs = {first};
     for (uint32_t i = 0; i < more_count; ++i)
@@ -85,6 +85,7 @@ Models read_models(const ModelInput &first, const char *const *more, uint32_t mo
                                                 input.path, task)
                               : read_model(input.path, task);
         });
+        file.textures = textures;
         if (!input.data)
             models.sources.push_back(input.path);
         /* Where the bytes leave the format open, the name decides. */
@@ -95,6 +96,8 @@ Models read_models(const ModelInput &first, const char *const *more, uint32_t mo
                 models.sources.push_back(path);
         models.files.push_back(std::move(file));
     }
+    if (!textures.base_color.empty() && add_file(hash, textures.base_color, task))
+        models.sources.push_back(textures.base_color);
     models.hash = gtx_hash_end(&hash);
     return models;
 }

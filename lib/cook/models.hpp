@@ -22,9 +22,11 @@ struct Models {
     bool foreseen = true;
 };
 
+inline std::string text_of(const char *text) { return text ? text : ""; }
+
 /* `more` holds further files. */
 Models read_models(const ModelInput &first, const char *const *more, uint32_t more_count,
-                   Task &task);
+                   const TextureFiles &textures, Task &task);
 
 /* One after another into one mesh; gives back the files' memory. With `z_up` the models' +Z becomes
  * +Y, and their +Y -Z. */

@@ -226,7 +226,8 @@ void SceneCook::run(gtx_report *report)
 {
     const auto start = std::chrono::steady_clock::now();
     task_.begin("import");
-    const ModelFile file = read_model(input_, task_);
+    ModelFile file = read_model(input_, task_);
+    file.textures.folder = desc_.texture_dir ? desc_.texture_dir : "";
     scene_ = std::make_unique<GltfScene>(file, task_);
     sources_.push_back(input_);
     sources_.insert(sources_.end(), scene_->sources().begin(), scene_->sources().end());

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/output.h"
 #include "image/module.h"
+#include "image/targa.h"
 
 #include <dlfcn.h>
 #include <stdio.h>
@@ -145,6 +146,8 @@ static gtx_result read_image(const char *path, const void *data, size_t size, gt
 {
     char message[GTX_IMAGE_MAX_MESSAGE];
     gtx_image image = {0};
+    if (data && gtx_is_targa(data, size))
+        return gtx_targa_decode(data, size, MAX_PIXELS, out, error);
     const gtx_image_functions *module = module_functions(error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
@@ -205,6 +208,10 @@ static gtx_result measure(const char *path, const void *data, size_t size, uint3
                           uint32_t *height, gtx_error *error)
 {
     char message[GTX_IMAGE_MAX_MESSAGE];
+    if (data && gtx_is_targa(data, size)) {
+        gtx_targa_measure(data, width, height);
+        return GTX_OK;
+    }
     const gtx_image_functions *module = module_functions(error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;

@@ -95,14 +95,6 @@ const char *format_of(const char *head, size_t size)
     return nullptr;
 }
 
-/* A file that has no such bytes goes by its name: TGA. */
-const char *format_of(const char *head, size_t size, const char *path)
-{
-    const char *format = format_of(head, size);
-    const char *extension = path ? std::strrchr(path, '.') : nullptr;
-    return format ? format : extension && !std::strcmp(extension, ".tga") ? "targa" : nullptr;
-}
-
 /* Whether a BMP is packed as runs: OpenImageIO 2.4 writes past the rows of a grey one, and looks
  * for colours where there is no palette. The oldest header tells of no packing. */
 bool is_bmp_of_runs(const char *head, size_t size)
@@ -144,10 +136,10 @@ struct Source {
             size = file ? std::fread(head, 1, sizeof head, file.get()) : 0;
             data = head;
         }
-        const char *start = static_cast<const char *>(data), *format = format_of(start, size, path);
+        const char *start = static_cast<const char *>(data), *format = format_of(start, size);
         if (!format)
-            return fail(message, name, "neither PNG, JPEG, WebP, BMP, GIF, TIFF, OpenEXR, HDR, "
-                                       "PNM nor TGA");
+            return fail(message, name, "neither PNG, JPEG, WebP, BMP, GIF, TIFF, OpenEXR, HDR "
+                                       "nor PNM");
         if (!std::strcmp(format, "bmp") && is_bmp_of_runs(start, size))
             return fail(message, name, "a BMP that is packed as runs is not supported");
         OIIO::ImageSpec hint, found;

@@ -49,12 +49,19 @@ struct CleanReport {
     bool closed = false;                     /* no boundary edge at all */
 };
 
+/* Where a model's textures may be besides its own folder. */
+struct TextureFiles {
+    std::string folder;     /* looked in by file name for those that are not beside it; or empty */
+    std::string base_color; /* the image for materials without one; or empty */
+};
+
 /* A model in memory. `path` names the format where the bytes do not, and is what the files that the
  * model refers to are relative to. */
 struct ModelFile {
     std::string path;
     Bytes bytes;      /* inflated when they were gzipped */
     Vector<std::string> *sources;      /* gets the path of every further file read; may be null */
+    TextureFiles textures = {};
 };
 
 /* Throw Error: READ, INPUT, LIMIT, MEMORY, CANCELLED. */

@@ -64,7 +64,7 @@ static EncodedImage image_beside(const ModelFile &file, std::string name, const 
                                  Task &task)
 {
     name += " ('" + printable(uri) + "')";
-    const std::string path = path_beside(file, percent_decoded(uri));
+    const std::string path = texture_path(file, percent_decoded(uri));
     if (!path.empty())
         return read_image_file(file, name, path, task);
     EncodedImage out;

@@ -1,7 +1,7 @@
 /* The images of a model: decoded once each, on the task's threads, within limits. */
 #include "mesh/import/images.hpp"
 
-#include "mesh/material/texture.hpp"
+#include "mesh/import/image_use.hpp"
 
 #include "image/image.h"
 
@@ -57,13 +57,6 @@ static void measure(const EncodedImage &from, const Limits &limits, Load &load)
     limits.require(GTX_LIMITED_PIXELS, from.name.c_str(), load.pixels);
 }
 
-/* Roughness is 1 - glossiness, in green; the surface counts as no metal. */
-static void make_rough(float glossiness, Vector<Rgba8> &texels)
-{
-    for (Rgba8 &c : texels)
-        c = {255, to_byte(1 - double(glossiness) * c.a / 255), 0, 255};
-}
-
 static void decode(const EncodedImage &from, Load &load)
 {
     constexpr size_t TURNS = 8; /* of a short loop, that take as long as a pixel */
@@ -85,6 +78,10 @@ static void decode(const EncodedImage &from, Load &load)
     guard.reset();
     if (from.glossiness >= 0)
         make_rough(from.glossiness, texels);
+    if (from.bump > 0)
+        make_normals(from.bump, width, height, texels);
+    if (from.opacity)
+        make_opacity(texels);
     for (Texels kind : {Texels::COLOR, Texels::DATA})
         if (load.needed[int(kind)])
             load.images[int(kind)] = make_image(width, height, texels, kind);
@@ -95,6 +92,10 @@ static void drop_texture(Texture Material::*map, Material &material)
     (material.*map).image = Texture::NONE;
     if (map == &Material::emission_map)
         std::fill_n(material.emission, 3, 0.f);
+    if (map == &Material::metal_map)
+        material.metallic = 0;
+    if (map == &Material::opacity_map)
+        material.alpha_cutoff = -1;
 }
 
 /* Coordinates and tangents that no texture looks at. */
@@ -135,6 +136,8 @@ void load_images(const Vector<EncodedImage> &encoded, Appearance &look, Task &ta
     }, 0.9, 1);
     for (size_t i : work) {
         Load &load = loads[i];
+        if (encoded[i].required && !load.problem.empty())
+            fail(GTX_ERROR_READ, "%s: %s", encoded[i].name.c_str(), load.problem.c_str());
         if (!load.problem.empty())
             task.warn(GTX_WARNING_UNREAD_IMAGE,
                       encoded[i].name + " was ignored: " + load.problem);

@@ -12,6 +12,10 @@ struct EncodedImage {
     std::string problem;   /* why there are none */
     float glossiness = -1; /* >= 0: the alpha holds glossiness, to be multiplied by this; it becomes
                             * roughness where a metal-rough map has that */
+    float bump = 0;        /* > 0: heights, if it is grey, which become normals; or normals; the
+                            * slopes times this */
+    bool opacity = false;  /* its alpha, or its grey where it has none, in all channels */
+    bool required = false; /* without it nothing is made: Error READ */
 };
 
 /* The bytes of a file that a model names, or the problem. Throws Error: LIMIT. */

@@ -227,6 +227,10 @@ Mesh import_model(const ModelFile &file, Task &task)
     if (mesh.triangles.empty())
         fail(GTX_ERROR_EMPTY, "the model has no triangle");
     require_triangles(mesh.triangles.size(), task);
+    if (!file.textures.base_color.empty() &&
+        (format->import != import_obj || mesh.appearance.uv[0].empty()))
+        task.warn(GTX_WARNING_IGNORED_TEXTURE,
+                  "the base colour was ignored: it is for OBJ models with texture coordinates");
     task.advance(1);
     return mesh;
 }

@@ -65,6 +65,12 @@ ModelFile unpacked_file(Bytes bytes, const std::string &path, Task &task, gtx_fi
 /* The path of a file that a model names: beside the model or in a folder below it. Empty where the
  * name leads anywhere else: a model from elsewhere must not make the cooker read other files. */
 std::string path_beside(const ModelFile &file, const std::string &name);
+/* Where the texture of a name may be, best first: beside the model, with the separators of any
+ * system; where the name leads elsewhere, the file of that name in the model's own folder; then in
+ * the folder of textures. */
+Vector<std::string> texture_paths(const ModelFile &file, const std::string &name);
+/* The first of them that is a file; else that beside the model, or empty. */
+std::string texture_path(const ModelFile &file, const std::string &name);
 /* The same whatever spelling names a file: without "." and doubled separators. */
 std::string normal_path(const std::string &path);
 std::string percent_decoded(std::string_view uri);

@@ -51,13 +51,28 @@ const struct {
                    {"-s", 3, true},       {"-t", 3, true},       {"-texres", 1, true},
                    {"-type", 1, false}};
 
+/* What a bump map holds, heights or normals, its image says: exporters write either. */
+enum class Holds : uint8_t { PLAIN, BUMP, OPACITY };
 const struct {
     const char *statement;
     Texture Material::*map;
-} MAPS[] = {{"map_Kd", &Material::color_map},
-            {"map_Ke", &Material::emission_map},
-            {"norm", &Material::normal_map},
-            {"map_Kn", &Material::normal_map}};
+    Holds holds;
+} MAPS[] = {{"map_Kd", &Material::color_map, Holds::PLAIN},
+            {"map_Ke", &Material::emission_map, Holds::PLAIN},
+            {"norm", &Material::normal_map, Holds::PLAIN},
+            {"map_Kn", &Material::normal_map, Holds::PLAIN},
+            {"map_Bump", &Material::normal_map, Holds::BUMP},
+            {"map_bump", &Material::normal_map, Holds::BUMP},
+            {"bump", &Material::normal_map, Holds::BUMP},
+            {"map_Pr", &Material::rough_map, Holds::PLAIN},
+            {"map_Pm", &Material::metal_map, Holds::PLAIN},
+            {"map_d", &Material::opacity_map, Holds::OPACITY}};
+
+/* Options of a map that its image or its material need. */
+struct MapOptions {
+    double bump = 1;
+    std::string_view channel;
+};
 
 /* Of older shading models, or of curves: nothing that the maps hold. */
 const char *const SILENT[] = {"Ka", "Ks", "Ns", "Ni", "Tf", "illum", "sharpness", "map_Ka",
@@ -74,14 +89,15 @@ public:
 private:
     bool factor(std::string_view word, Line &line);
     bool map(std::string_view word, Line &line);
-    bool map_options(Line &line, Texture &texture);
-    uint32_t image(const std::string &name);
+    bool map_options(Line &line, Texture &texture, MapOptions &options);
+    uint32_t image(const std::string &name, const EncodedImage &use);
     Material &look() { return library_.materials[current_]; }
 
     const ModelFile &file_;
     MtlLibrary &library_;
     Task &task_;
     size_t current_ = 0;
+    bool has_normals_ = false; /* the material, by a statement that leaves nothing open */
     bool repeated_ = true; /* nothing is defined yet, or it was before */
 };
 
@@ -114,7 +130,7 @@ bool MtlReader::factor(std::string_view word, Line &line)
     return true;
 }
 
-bool MtlReader::map_options(Line &line, Texture &texture)
+bool MtlReader::map_options(Line &line, Texture &texture, MapOptions &options)
 {
     double scale[3] = {1, 1, 1}, offset[3] = {0, 0, 0};
     for (line.skip_blanks(); line.at < line.end && *line.at == '-'; line.skip_blanks()) {
@@ -123,12 +139,18 @@ bool MtlReader::map_options(Line &line, Texture &texture)
                                    [&](const auto &o) { return name == o.name; });
         if (option == std::end(MAP_OPTIONS))
             return false;
-        double ignored[3], *values = name == "-s" ? scale : name == "-o" ? offset : ignored;
+        double ignored[3], *values = name == "-s"    ? scale
+                                     : name == "-o"  ? offset
+                                     : name == "-bm" ? &options.bump
+                                                     : ignored;
         for (int i = 0; i < option->words; ++i) {
             if (option->numbers && !line.number(values[i]))
                 break;
-            if (!option->numbers && line.word() == "on" && name == "-clamp")
+            const std::string_view word = option->numbers ? std::string_view() : line.word();
+            if (word == "on" && name == "-clamp")
                 texture.wrap[0] = texture.wrap[1] = Wrap::CLAMP;
+            if (name == "-imfchan")
+                options.channel = word;
         }
     }
     for (double v : {scale[0], scale[1], offset[0], offset[1]})
@@ -142,13 +164,13 @@ bool MtlReader::map_options(Line &line, Texture &texture)
     return true;
 }
 
-uint32_t MtlReader::image(const std::string &name)
+uint32_t MtlReader::image(const std::string &name, const EncodedImage &use)
 {
-    /* Exporters of another system write its separators. */
-    std::string local = name;
-    std::replace(local.begin(), local.end(), '\\', '/');
-    const std::string path = path_beside(file_, local);
-    const auto [number, fresh] = library_.image_names.add(path.empty() ? name : normal_path(path));
+    const std::string path = texture_path(file_, name);
+    std::string key = path.empty() ? name : normal_path(path);
+    if (use.bump > 0 || use.opacity) /* no name has such a separator */
+        key += '\n' + std::to_string(use.opacity ? -1 : use.bump);
+    const auto [number, fresh] = library_.image_names.add(key);
     if (fresh) {
         std::string shown = "image '" + printable(name) + "'";
         EncodedImage encoded;
@@ -156,8 +178,16 @@ uint32_t MtlReader::image(const std::string &name)
         encoded.problem = "it is not a file in the model's folder";
         library_.images.push_back(
             path.empty() ? encoded : read_image_file(file_, shown, path, task_));
+        library_.images.back().bump = use.bump;
+        library_.images.back().opacity = use.opacity;
     }
     return number;
+}
+
+/* Of -imfchan; luminance and depth are those of grey. */
+static uint8_t channel_of(std::string_view letter)
+{
+    return letter == "g" ? 1 : letter == "b" ? 2 : letter == "m" ? 3 : 0;
 }
 
 bool MtlReader::map(std::string_view word, Line &line)
@@ -166,11 +196,23 @@ bool MtlReader::map(std::string_view word, Line &line)
         if (word != m.statement)
             continue;
         Texture texture;
-        if (!map_options(line, texture) || line.rest().empty())
+        MapOptions options;
+        if (!map_options(line, texture, options) || line.rest().empty())
             return false;
-        texture.image = image(std::string(line.rest()));
+        if (m.holds == Holds::BUMP && (has_normals_ || !(options.bump > 0)))
+            return true;
+        EncodedImage use;
+        use.bump = m.holds == Holds::BUMP ? float(std::min(options.bump, 1e3)) : 0;
+        use.opacity = m.holds == Holds::OPACITY && options.channel.empty();
+        texture.channel = channel_of(options.channel);
+        texture.image = image(std::string(line.rest()), use);
         Material &material = look();
         material.*m.map = texture;
+        has_normals_ |= m.map == &Material::normal_map && m.holds == Holds::PLAIN;
+        if (m.map == &Material::metal_map && material.metallic == 0)
+            material.metallic = 1;
+        if (m.map == &Material::opacity_map)
+            material.alpha_cutoff = 0.5f; /* holes, as of foliage: nothing is half there */
         if (m.map == &Material::emission_map && material.emission[0] + material.emission[1] +
                                                         material.emission[2] == 0)
             std::fill_n(material.emission, 3, 1.f);
@@ -187,6 +229,7 @@ void MtlReader::statement(Line line)
     if (word == "newmtl") {
         const auto [number, fresh] = library_.names.add(std::string(line.rest()));
         repeated_ = !fresh;
+        has_normals_ = false;
         current_ = number;
         if (fresh)
             library_.materials.emplace_back();

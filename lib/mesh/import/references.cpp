@@ -4,6 +4,7 @@
 #include "base/bytes.h"
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -26,6 +27,33 @@ std::string path_beside(const ModelFile &file, const std::string &name)
     if (outside)
         return {};
     return (std::filesystem::path(file.path).parent_path() / relative).string();
+}
+
+Vector<std::string> texture_paths(const ModelFile &file, const std::string &name)
+{
+    std::string local = name;
+    std::replace(local.begin(), local.end(), '\\', '/');
+    const std::string last = local.substr(local.rfind('/') + 1);
+    ModelFile folder;
+    folder.path = file.textures.folder + "/";
+    Vector<std::string> paths = {path_beside(file, local)};
+    if (paths[0].empty())
+        paths[0] = path_beside(file, last);
+    if (!file.textures.folder.empty())
+        paths.push_back(path_beside(folder, last));
+    paths.erase(std::remove(paths.begin(), paths.end(), std::string()), paths.end());
+    return paths;
+}
+
+std::string texture_path(const ModelFile &file, const std::string &name)
+{
+    std::string local = name;
+    std::replace(local.begin(), local.end(), '\\', '/');
+    std::error_code ignored;
+    for (const std::string &path : texture_paths(file, name))
+        if (std::filesystem::is_regular_file(path, ignored))
+            return path;
+    return path_beside(file, local);
 }
 
 std::string normal_path(const std::string &path)
@@ -95,10 +123,14 @@ void gltf_references(const ModelFile &file, Task &, Vector<std::string> &out)
     for (const char *list : {"buffers", "images"}) {
         if (!root.is_object() || !root.contains(list) || !root[list].is_array())
             continue;
+        const bool is_image = !std::strcmp(list, "images");
         for (const json &item : root[list])
             if (item.is_object() && item.contains("uri") && item["uri"].is_string())
                 if (std::string uri = item["uri"]; uri.rfind("data:", 0) != 0)
-                    paths.add(path_beside(file, percent_decoded(uri)));
+                    for (const auto &path : is_image ? texture_paths(file, percent_decoded(uri))
+                                                     : Vector<std::string>{path_beside(
+                                                           file, percent_decoded(uri))})
+                        paths.add(path);
     }
 }
 
@@ -121,20 +153,19 @@ static void each_statement(std::string_view text, std::initializer_list<const ch
 }
 
 /* A name may have blanks in it, and options or further names before it: every tail of the line and
- * every word may be one. Exporters of another system write its separators. */
+ * every word may be one. */
 static void add_names(std::initializer_list<const ModelFile *> beside, std::string_view line,
                       Paths &paths)
 {
     constexpr int MAX_WORDS = 32;
-    std::string portable(line.substr(0, line.find_last_not_of(" \t") + 1));
-    std::replace(portable.begin(), portable.end(), '\\', '/');
-    line = portable;
+    line = line.substr(0, line.find_last_not_of(" \t") + 1);
     for (int i = 0; i < MAX_WORDS; ++i) {
         size_t blank = line.find_first_of(" \t");
         for (const ModelFile *file : beside)
             for (std::string_view name : {line, line.substr(0, blank)})
                 if (i > 0)
-                    paths.add(path_beside(*file, std::string(name)));
+                    for (const std::string &path : texture_paths(*file, std::string(name)))
+                        paths.add(path);
         size_t next = line.find_first_not_of(" \t", blank);
         if (blank == line.npos || next == line.npos)
             break;
@@ -151,7 +182,8 @@ void obj_references(const ModelFile &file, Task &task, Vector<std::string> &out)
         std::error_code ignored;
         if (!std::filesystem::is_regular_file(out[i], ignored))
             continue;
-        ModelFile library = {out[i], read_file_beside(out[i], task), nullptr};
+        ModelFile library = {out[i], read_file_beside(out[i], task), nullptr,
+                             file.textures};
         each_statement(library.bytes, {"map_", "bump", "norm", "disp", "refl", "decal"},
                        [&](std::string_view line) { add_names({&file, &library}, line, paths); });
     }

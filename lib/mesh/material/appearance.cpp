@@ -18,7 +18,8 @@ static bool has_material(const Material &m)
 {
     const Material plain;
     return m.metallic != plain.metallic || m.roughness != plain.roughness || m.unlit ||
-           m.metal_rough_map.used() || m.occlusion_map.used();
+           m.metal_rough_map.used() || m.occlusion_map.used() || m.rough_map.used() ||
+           m.metal_map.used();
 }
 
 AppearanceNeeds appearance_needs(const Mesh &mesh)
@@ -60,6 +61,10 @@ struct Point {
     Uv uv(const Texture &texture) const;
     double covered(const Texture &texture, const Uv &place) const;
     std::array<float, 4> sample(const Texture &texture, Texels kind) const;
+    float number(const Texture &texture) const
+    {
+        return sample(texture, Texels::DATA)[texture.channel];
+    }
     Vec3f normal() const;
 };
 } // namespace
@@ -200,6 +205,8 @@ static void set_color(const Point &point, const Material &m, SurfaceSample &s)
         for (size_t k = 0; k < 4; ++k)
             s.color[k] *= c[k];
     }
+    if (m.opacity_map.used())
+        s.color[3] = point.number(m.opacity_map);
     if (m.alpha_cutoff >= 0)
         s.cut = s.color[3] - m.alpha_cutoff;
     s.color[3] = 1; /* what is not cut away is opaque */
@@ -215,6 +222,10 @@ static void set_material(const Point &point, const Material &m, SurfaceSample &s
         s.roughness *= c[1];
         s.metallic *= c[2];
     }
+    if (m.rough_map.used())
+        s.roughness *= point.number(m.rough_map);
+    if (m.metal_map.used())
+        s.metallic *= point.number(m.metal_map);
     if (m.occlusion_map.used())
         s.occlusion =
             1 + m.occlusion_strength * (point.sample(m.occlusion_map, Texels::DATA)[0] - 1);

@@ -33,6 +33,7 @@ struct Texture {
     static constexpr uint32_t NONE = 0xffffffffu;
     uint32_t image = NONE;
     uint8_t set = 0;                           /* texture coordinates 0 or 1 */
+    uint8_t channel = 0;                       /* of maps that hold one number */
     Wrap wrap[2] = {Wrap::REPEAT, Wrap::REPEAT};
     float transform[6] = {1, 0, 0, 0, 1, 0};   /* u' = t0 u + t1 v + t2, v' = t3 u + t4 v + t5 */
     bool used() const { return image != NONE; }
@@ -45,12 +46,14 @@ struct Material {
     float alpha_cutoff = -1;                   /* below it nothing is there; < 0: opaque */
     bool unlit = false;
     Texture color_map, normal_map, metal_rough_map, occlusion_map, emission_map;
+    Texture rough_map, metal_map, opacity_map; /* one number each; as alpha the last one decides */
 };
 
 /* All textures of a material. */
 constexpr Texture Material::*MATERIAL_TEXTURES[] = {
     &Material::color_map, &Material::normal_map, &Material::metal_rough_map,
-    &Material::occlusion_map, &Material::emission_map};
+    &Material::occlusion_map, &Material::emission_map, &Material::rough_map,
+    &Material::metal_map, &Material::opacity_map};
 
 /* Per corner like the other attributes of a mesh, or empty. */
 struct Appearance {

@@ -40,7 +40,7 @@ void GltfScene::Inside::take_image(json &image, const ModelFile &file,
     const std::string uri = image.value("uri", "");
     if (uri.empty() || uri.rfind("data:", 0) == 0)
         return;
-    const std::string path = path_beside(file, percent_decoded(uri));
+    const std::string path = texture_path(file, percent_decoded(uri));
     std::shared_ptr<const Bytes> bytes;
     try {
         if (!path.empty())
