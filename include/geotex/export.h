@@ -14,6 +14,13 @@
 extern "C" {
 #endif
 
+typedef enum gtx_compress {
+    GTX_COMPRESS_NONE = 0,
+    GTX_COMPRESS_MESHOPT = 1      /* EXT_meshopt_compression, which readers have to know, with
+                                     normals, tangents and texture coordinates of 16 bits
+                                     (KHR_mesh_quantization); positions stay as they are */
+} gtx_compress;
+
 typedef struct gtx_export_desc {
     uint32_t level;               /* of the LOD mesh: 0 = the finest */
     uint32_t lods;                /* 1: all coarser ones too, as MSFT_lod, but far ones; the normals
@@ -29,7 +36,8 @@ typedef struct gtx_export_desc {
     void *progress_user;
     const gtx_allocator *allocator;   /* for the bytes, the asset meanwhile, and the report */
     gtx_limits limits;            /* memory, texels, patches; the asset's bytes count as read */
-    uint32_t reserved[6];
+    gtx_compress compress;        /* of vertices and triangles */
+    uint32_t reserved[5];
 } gtx_export_desc;
 
 /* Exports the asset of `size` bytes, those of a .gtx file or of a GLB that holds one. *out comes

@@ -9,6 +9,7 @@
 
 static gtx_export_desc desc;
 static const char *output, *report_path;
+static uint32_t compress;
 static bool lods, collision, without_asset;
 
 static const option options[] = {
@@ -20,6 +21,8 @@ static const option options[] = {
     {"collision", 0, OPTION_FLAG, &collision, NULL,
      "for physics: triangles alone, without maps and asset", 0, 0},
     {"without-asset", 0, OPTION_FLAG, &without_asset, NULL, "leave the asset itself out", 0, 0},
+    {"compress", 0, OPTION_CHOICE, &compress, "none|meshopt",
+     "of vertices and triangles: EXT_meshopt_compression [none]", 0, 0},
     {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
     PROGRESS_OPTION,
     {"report", 0, OPTION_STRING, &report_path, "R.json", "write what was exported, as JSON", 0, 0},
@@ -87,6 +90,7 @@ int cmd_export(int argc, char **argv)
     code = check(input);
     if (code)
         return code;
+    desc.compress = (gtx_compress)compress;
     desc.lods = lods;
     desc.collision = collision;
     desc.without_asset = without_asset;

@@ -55,7 +55,9 @@ ExportPrimitive Document::add_primitive(const ExportMesh &mesh, size_t first, si
 {
     const gtx_patch &patch = gtx_patches(asset_)[mesh.parts[first].patch];
     const uint32_t start = mesh.parts[first].first_vertex;
-    const size_t offset = start * EXPORT_VERTEX;
+    const size_t offset = start * (meshopt_ ? EXPORT_SHORT_VERTEX : EXPORT_VERTEX);
+    const GltfType unit = meshopt_ ? GLTF_SHORT : GLTF_FLOAT;
+    const GltfType share = meshopt_ ? GLTF_USHORT : GLTF_FLOAT;
     size_t vertices = 0, triangles = 0;
     for (size_t i = first; i < last; ++i) {
         vertices += mesh.parts[i].vertices;
@@ -73,31 +75,57 @@ ExportPrimitive Document::add_primitive(const ExportMesh &mesh, size_t first, si
         }
     ExportPrimitive out = {patch.page, (patch.flags & GTX_PATCH_TWO_SIDED) != 0, {}, 0};
     out.attributes[0] = buffer_.add_accessor(place);
-    out.attributes[1] = buffer_.add_accessor({view, offset + 12, GLTF_FLOAT, vertices, "VEC3"});
-    out.attributes[2] = buffer_.add_accessor({view, offset + 24, GLTF_FLOAT, vertices, "VEC4"});
-    out.attributes[3] = buffer_.add_accessor({view, offset + 40, GLTF_FLOAT, vertices, "VEC2"});
+    const struct {
+        size_t offset;
+        GltfType type;
+        const char *shape;
+    } others[] = {{12, unit, "VEC3"},
+                  {meshopt_ ? 20u : 24u, unit, "VEC4"},
+                  {meshopt_ ? 28u : 40u, share, "VEC2"}};
+    for (size_t i = 0; i < 3; ++i)
+        out.attributes[i + 1] =
+            buffer_.add_accessor({view, offset + others[i].offset, others[i].type, vertices,
+                                  others[i].shape, false, {}, {}, meshopt_});
     const unsigned indices = buffer_.add_view(view_of(bytes), GLTF_INDICES);
     out.indices = buffer_.add_accessor({indices, 0, GLTF_UINT, 3 * triangles, "SCALAR"});
     return out;
 }
 
-void Document::add_level(uint32_t number, const ExportMesh &mesh, unsigned coarser)
+/* -1 to 1, or 0 to 1, as glTF's normalised whole numbers have them. */
+static uint8_t *store_share(uint8_t *to, float value, float most)
 {
-    const gtx_patch *patches = gtx_patches(asset_);
-    Vector<uint8_t> bytes(EXPORT_VERTEX * mesh.vertices.size());
+    gtx_store_u16(to, uint16_t(int(std::lround(value * most))));
+    return to + 2;
+}
+
+Vector<uint8_t> Document::vertex_bytes(const ExportMesh &mesh) const
+{
+    constexpr float SIGNED = 32767, UNSIGNED = 65535;
+    Vector<uint8_t> bytes((meshopt_ ? EXPORT_SHORT_VERTEX : EXPORT_VERTEX) * mesh.vertices.size());
     uint8_t *to = bytes.data();
     for (const ExportVertex &v : mesh.vertices) {
         const float numbers[] = {
             v.position.x, v.position.y, v.position.z, v.normal.x, v.normal.y, v.normal.z,
             v.tangent.x, v.tangent.y, v.tangent.z, BITANGENT_SIGN,
             v.texel[0] / float(info_.page_width), v.texel[1] / float(info_.page_height)};
-        for (float f : numbers) {
-            gtx_store_f32(to, f);
-            to += 4;
+        constexpr size_t POSITION = 3, NORMAL = 6, TANGENT = 10, ALL = 12;
+        for (size_t i = 0; i < (meshopt_ ? POSITION : ALL); ++i, to += 4)
+            gtx_store_f32(to, numbers[i]);
+        for (size_t i = POSITION; meshopt_ && i < ALL; ++i) {
+            to = store_share(to, numbers[i], i < TANGENT ? SIGNED : UNSIGNED);
+            to += i + 1 == NORMAL ? 2 : 0; /* attributes start at words */
         }
     }
+    return bytes;
+}
+
+void Document::add_level(uint32_t number, const ExportMesh &mesh, unsigned coarser)
+{
+    const gtx_patch *patches = gtx_patches(asset_);
     DocumentLevel level = {number, double(mesh.from.error), {}, 0};
-    const unsigned view = buffer_.add_view(view_of(bytes), GLTF_VERTICES, EXPORT_VERTEX);
+    const unsigned view =
+        buffer_.add_view(view_of(vertex_bytes(mesh)), GLTF_VERTICES,
+                         meshopt_ ? EXPORT_SHORT_VERTEX : EXPORT_VERTEX);
     auto kind = [&](size_t part) {
         const gtx_patch &p = patches[mesh.parts[part].patch];
         return std::make_pair(p.page, p.flags & GTX_PATCH_TWO_SIDED);

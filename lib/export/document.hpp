@@ -24,7 +24,8 @@ struct DocumentLevel {
 
 class Document {
 public:
-    Document(const gtx_asset *asset, Task &task) : asset_(asset), task_(task)
+    Document(const gtx_asset *asset, bool meshopt, Task &task)
+        : asset_(asset), task_(task), meshopt_(meshopt), buffer_(meshopt)
     {
         gtx_get_info(asset, &info_);
     }
@@ -37,6 +38,7 @@ public:
 
 private:
     unsigned add_images(PageImages &pages);
+    Vector<uint8_t> vertex_bytes(const ExportMesh &mesh) const;
     ExportPrimitive add_primitive(const ExportMesh &mesh, size_t first, size_t last, unsigned view);
     double screen_coverage(size_t level) const;
     bool is_bright() const { return maps_.emission.pages && info_.emission_scale > 1; }
@@ -52,6 +54,7 @@ private:
     const gtx_asset *asset_;
     gtx_info info_;
     Task &task_;
+    const bool meshopt_;
     GlbBuffer buffer_;
     Vector<DocumentLevel> levels_;
     Vector<unsigned> image_views_;

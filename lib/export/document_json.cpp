@@ -232,16 +232,24 @@ void Document::write_extensions(Json &out) const
 {
     const struct {
         const char *name;
-        bool used;
+        bool used, required = false;
     } extensions[] = {{"GTX_geometry_texture", has_asset_},
                       {"MSFT_lod", levels_.size() > 1},
                       {"KHR_materials_unlit", maps_.unlit},
-                      {"KHR_materials_emissive_strength", is_bright()}};
+                      {"KHR_materials_emissive_strength", is_bright()},
+                      {"KHR_mesh_quantization", meshopt_ && !is_collision_, true},
+                      {"EXT_meshopt_compression", meshopt_, true}};
     if (std::any_of(std::begin(extensions), std::end(extensions),
                     [](const auto &e) { return e.used; }))
         write_array(out, "extensionsUsed", [&] {
             for (const auto &e : extensions)
                 if (e.used)
+                    gtx_json_string(&out, nullptr, e.name);
+        });
+    if (meshopt_)
+        write_array(out, "extensionsRequired", [&] {
+            for (const auto &e : extensions)
+                if (e.used && e.required)
                     gtx_json_string(&out, nullptr, e.name);
         });
     if (has_asset_)

@@ -15,6 +15,8 @@ struct ExportOptions {
     bool lods = false;             /* and all coarser ones but far ones, as MSFT_lod */
     bool collision = false;        /* triangles alone, no map and no asset */
     bool with_asset = true;
+    bool meshopt = false;          /* EXT_meshopt_compression, with normals, tangents and texture
+                                      coordinates of 16 bits */
 };
 
 struct ExportedLevel {
@@ -43,6 +45,7 @@ struct ExportVertex {
     float texel[2];                /* place in the page, texel i covers i to i + 1 */
 };
 constexpr size_t EXPORT_VERTEX = 12 * sizeof(float);
+constexpr size_t EXPORT_SHORT_VERTEX = 3 * sizeof(float) + 10 * sizeof(uint16_t); /* quantised */
 /* The bitangent is this times cross(normal, tangent): up in the page, as glTF has it. */
 constexpr float BITANGENT_SIGN = -1;
 

@@ -1,7 +1,7 @@
 /* Exports as any reader sees them: structure, light, levels, and the asset inside. */
 #include "asset/patch.h"
 #include "image/image.h"
-#include "mesh/vec.hpp"
+#include "mesh/mesh.hpp"
 
 #include <algorithm>
 #include <map>
@@ -248,6 +248,60 @@ static void collision_is_one_closed_mesh(void **state)
         assert_true(count == 1 && edges.count({edge.second, edge.first}) == 1);
 }
 
+/* Decoded again by the importer: the same triangles, whose corners may be turned, at the same
+ * places. */
+static void compressed_it_is_the_same(void **state)
+{
+    (void)state;
+    const std::string bytes = cooked_sphere();
+    gtx_export_desc desc = {};
+    for (uint32_t collision = 0; collision < 2; ++collision) {
+        desc.collision = collision;
+        desc.without_asset = 0;
+        gtx::Mesh meshes[2];
+        std::string files[2];
+        for (int packed = 0; packed < 2; ++packed) {
+            desc.compress = packed ? GTX_COMPRESS_MESHOPT : GTX_COMPRESS_NONE;
+            files[packed] = exported(bytes, desc);
+            gtx::Task task(1, nullptr, nullptr);
+            meshes[packed] = gtx::import_model(
+                gtx::model_in_memory(files[packed], "a.glb", task), task);
+            assert_true(task.warnings.empty());
+        }
+        assert_true(meshes[0].positions == meshes[1].positions);
+        assert_int_equal(meshes[0].triangle_count(), meshes[1].triangle_count());
+        const gtx::Mesh &a = meshes[0], &b = meshes[1];
+        for (size_t t = 0; t < a.triangle_count(); ++t) {
+            size_t turn = 0;
+            while (turn < 3 && b.triangles[t][turn] != a.triangles[t][0])
+                ++turn;
+            assert_true(turn < 3);
+            for (size_t k = 0; k < 3; ++k) {
+                const size_t other = 3 * t + (k + turn) % 3;
+                assert_int_equal(a.triangles[t][k], b.triangles[t][(k + turn) % 3]);
+                if (collision)
+                    continue;
+                assert_true(length(a.normals[3 * t + k] - b.normals[other]) < 1e-4f);
+                for (size_t i = 0; i < 2; ++i)
+                    assert_true(std::abs(a.appearance.uv[0][3 * t + k][i] -
+                                         b.appearance.uv[0][other][i]) < 1e-5f);
+            }
+        }
+        const Glb glb(files[1]);
+        assert_true(glb.root["extensionsRequired"].size() == 2 - collision);
+        const void *held = nullptr;
+        size_t size = 0;
+        assert_int_equal(gtx_find_asset(files[1].data(), files[1].size(), &held, &size, nullptr),
+                         collision ? GTX_ERROR_EMPTY : GTX_OK);
+        assert_true(collision || (size == bytes.size() && !std::memcmp(held, bytes.data(), size)));
+    }
+    desc.compress = gtx_compress(2);
+    void *out = nullptr;
+    size_t size = 0;
+    assert_int_equal(gtx_export_memory(bytes.data(), bytes.size(), &desc, &out, &size, nullptr,
+                                       nullptr), GTX_ERROR_ARGUMENT);
+}
+
 static void threads_and_copies_change_nothing(void **state)
 {
     (void)state;
@@ -269,6 +323,7 @@ int main(void)
         cmocka_unit_test(levels_are_named_by_msft_lod),
         cmocka_unit_test(one_level_is_chosen_by_number_or_error),
         cmocka_unit_test(collision_is_one_closed_mesh),
+        cmocka_unit_test(compressed_it_is_the_same),
         cmocka_unit_test(threads_and_copies_change_nothing),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
