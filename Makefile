@@ -221,6 +221,7 @@ links_cli      := base image
 links_consumer := base
 links_corpus   := base
 links_fuzz     := $(needs_world) export edit render
+links_python   := base
 links_samples  := $(needs_image)
 links_source   := base
 links_threads  := $(needs_cook) render host
@@ -303,14 +304,15 @@ run-demo: $(MODEL)
 	@$(out)/samples/mixed_scene $(build)/demo/model.gtx --headless $(build)/demo/mixed_scene.png
 	@echo $(build)/demo/mixed_scene.png
 
-include lib/package/install.mk lib/web/web.mk tests/bench/bench.mk tests/fuzz/fuzz.mk
+include lib/package/install.mk lib/web/web.mk lib/python/python.mk tests/bench/bench.mk \
+  tests/fuzz/fuzz.mk
 
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev \
             nlohmann-json3-dev libmeshoptimizer-dev \
             libglfw3-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri \
             libopenimageio-dev libzstd-dev zlib1g-dev libcmocka-dev glslang-tools \
-            ninja-build cmake xvfb libembree-dev
+            ninja-build cmake xvfb libembree-dev python3-cffi python3-numpy python3-venv
 
 deps: ## install the Debian packages that are missing (apt-get, with sudo when not root)
 	@missing=; for p in $(packages); do \
