@@ -228,6 +228,24 @@ GTX_API gtx_result gtx_open_memory(const void *data, size_t size, const gtx_open
 GTX_API gtx_result gtx_open_file(const char *path, const gtx_open_desc *desc, gtx_asset **out,
                                  gtx_error *error);
 
+/* What the first bytes of a file tell. */
+typedef struct gtx_prefix {
+    uint64_t file_size;           /* bytes; 0 until the header is there */
+    uint64_t needed;              /* so many first bytes show more than these; 0 = all are there */
+    uint32_t reserved[4];
+} gtx_prefix;
+
+/* Opens the first `size` bytes of a file, as a download has them so far. *out is an asset of what
+ * is there, or NULL where nothing can be shown yet; prefix->needed says what to wait for. Of less
+ * than the whole file it has the patches; the LOD meshes that are there, the finest of them as
+ * level 0; colours, material and emission as far as they are there; normals that follow from its
+ * finest LOD mesh; all at fewer texels; and no heights, so that no ray meets it, and only
+ * GTX_METHOD_AUTO and GTX_METHOD_LOD show it. It is an asset as any other; that of all bytes is
+ * gtx_open_memory's. What is there is checked as if the rest were right.
+ * Errors: as gtx_open_memory; TRUNCATED is none. */
+GTX_API gtx_result gtx_open_prefix(const void *data, size_t size, const gtx_open_desc *desc,
+                                   gtx_prefix *prefix, gtx_asset **out, gtx_error *error);
+
 /* Frees the asset. NULL is fine. */
 GTX_API void gtx_close(gtx_asset *asset);
 

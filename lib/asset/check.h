@@ -22,6 +22,7 @@ typedef struct gtx_check {
     gtx_error *error;             /* may be NULL */
     bool keep_going;              /* look for more after a broken rule, where that is safe */
     bool in_file;                 /* offsets mean something */
+    bool beginning;               /* of a file: its end may be missing */
     gtx_result result;            /* of what came first: a broken rule, or a failure */
     uint64_t broken;              /* rules broken so far */
     bool failed;                  /* something else went wrong: memory, a limit */
@@ -56,7 +57,7 @@ typedef struct gtx_layout {
  * 0 where it is not known yet. */
 void gtx_check_head(gtx_check *check, const uint8_t *data, size_t size, uint64_t file_size);
 
-/* Header, table and padding of a file. */
+/* Header, table and padding of a file, or of as much as is there. */
 void gtx_check_file(gtx_check *check, const uint8_t *data, uint64_t size, gtx_layout *out);
 
 /* The values of the header that an asset keeps, but for emission_scale. False when no size may be

@@ -45,13 +45,13 @@ static bool check_shape(gtx_check *check, const gtx_header *header, uint64_t siz
     if (!readable)
         gtx_break(check, GTX_RULE_SECTION_COUNT, 28, "it is %u", count);
     uint64_t least = GTX_HEADER_SIZE + (readable ? (uint64_t)count * GTX_ENTRY_SIZE : 0);
-    if (header->file_size > least)
+    if (header->file_size > least && !check->beginning)
         least = header->file_size;
     if (size < least) {
         gtx_break(check, GTX_RULE_TRUNCATED, 32, "it has %" PRIu64 " bytes of %" PRIu64, size,
                   least);
         readable = false;
-    } else if (header->file_size != size) {
+    } else if (header->file_size < size || (header->file_size > size && !check->beginning)) {
         gtx_break(check, GTX_RULE_FILE_SIZE, 32, "it is %" PRIu64 " of %" PRIu64 " bytes",
                   header->file_size, size);
     }
@@ -79,7 +79,7 @@ static void check_reserved(gtx_check *check, const uint8_t *data)
 typedef struct table_walk {
     gtx_check *check;
     gtx_layout *layout;
-    uint64_t size;                /* of the file */
+    uint64_t size, there;         /* of the file, and of it */
     uint64_t end;                 /* where the next section must start */
     bool chained;                 /* false once an end is unknown */
     uint32_t last_rank;
@@ -227,7 +227,7 @@ static void check_padding(const table_walk *walk, const uint8_t *data)
     for (uint32_t s = 0; s < walk->layout->section_count; ++s) {
         const gtx_section *section = &walk->layout->sections[s];
         uint64_t end = section->offset + section->stored_size, next = gtx_align64(end);
-        for (uint64_t i = end; i < next && i < walk->size; ++i) {
+        for (uint64_t i = end; i < next && i < walk->there; ++i) {
             if (data[i]) {
                 gtx_break(walk->check, GTX_RULE_PADDING, i, "byte %" PRIu64 " is 0x%02x", i,
                           data[i]);
@@ -237,9 +237,11 @@ static void check_padding(const table_walk *walk, const uint8_t *data)
     }
 }
 
-static void check_table(gtx_check *check, const uint8_t *data, uint64_t size, gtx_layout *layout)
+static void check_table(gtx_check *check, const uint8_t *data, uint64_t size, uint64_t there,
+                        gtx_layout *layout)
 {
-    table_walk walk = {.check = check, .layout = layout, .size = size, .chained = true};
+    table_walk walk = {.check = check, .layout = layout, .size = size, .there = there,
+                       .chained = true};
     walk.end = GTX_HEADER_SIZE + (uint64_t)GTX_ENTRY_SIZE * layout->section_count;
     bool readable = true;
     for (uint32_t i = 0; i < layout->section_count; ++i)
@@ -287,7 +289,7 @@ void gtx_check_file(gtx_check *check, const uint8_t *data, uint64_t size, gtx_la
         return;
 
     out->section_count = header.section_count;
-    check_table(check, data, header.file_size, out);
+    check_table(check, data, header.file_size, size, out);
     if (out->known && out->info.content_hash != gtx_content_hash(out->sections, out->section_count))
         gtx_break(check, GTX_RULE_CONTENT_HASH, 128, "it is 0x%016" PRIx64, out->info.content_hash);
 }

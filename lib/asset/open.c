@@ -20,17 +20,22 @@ static gtx_result check_open(const gtx_open_desc *desc, gtx_asset **out, gtx_err
 }
 
 /* `held` bytes are taken already, by those to open. */
-static gtx_result open_bytes(const void *data, size_t size, const gtx_open_desc *desc,
-                             uint64_t held, gtx_asset **out, gtx_error *error)
+static gtx_read_options options_of(const gtx_open_desc *desc, uint64_t held)
 {
-    gtx_check check = {.error = error};
-    const gtx_read_options options = {
+    return (gtx_read_options){
         .allocator = gtx_allocator_or_default(desc ? desc->allocator : NULL),
         .jobs = desc ? desc->jobs : NULL,
         .limits = desc ? &desc->limits : NULL,
         .bytes_held = held,
         .skip_hash = desc && desc->flags & GTX_OPEN_SKIP_HASH,
     };
+}
+
+static gtx_result open_bytes(const void *data, size_t size, const gtx_open_desc *desc,
+                             uint64_t held, gtx_asset **out, gtx_error *error)
+{
+    gtx_check check = {.error = error};
+    const gtx_read_options options = options_of(desc, held);
     return gtx_read_asset(&check, &options, data, size, out);
 }
 
@@ -43,6 +48,22 @@ gtx_result gtx_open_memory(const void *data, size_t size, const gtx_open_desc *d
     if (!data && size)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "the bytes to open are NULL");
     return open_bytes(data, size, desc, 0, out, error);
+}
+
+gtx_result gtx_open_prefix(const void *data, size_t size, const gtx_open_desc *desc,
+                           gtx_prefix *prefix, gtx_asset **out, gtx_error *error)
+{
+    gtx_result result = check_open(desc, out, error);
+    if (result)
+        return result;
+    if (!prefix || (!data && size))
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "a prefix to open needs bytes and a result");
+    const gtx_read_options options = options_of(desc, 0);
+    gtx_prefix found;
+    result = gtx_read_prefix(error, &options, data, size, &found, out);
+    if (!result)
+        *prefix = found;
+    return result;
 }
 
 /* What is no asset is not read. */

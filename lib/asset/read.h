@@ -18,4 +18,8 @@ typedef struct gtx_read_options {
 gtx_result gtx_read_asset(gtx_check *check, const gtx_read_options *options, const void *data,
                           size_t size, gtx_asset **out);
 
+/* The same of the first bytes of a file; *out stays as it is where they show nothing yet. */
+gtx_result gtx_read_prefix(gtx_error *error, const gtx_read_options *options, const void *data,
+                           size_t size, gtx_prefix *prefix, gtx_asset **out);
+
 #endif

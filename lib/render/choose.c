@@ -134,7 +134,8 @@ gtx_result gtx_choose(const gtx_draw_call *draw, const gtx_model *model,
 {
     const gtx_view *view = draw->view;
     const gtx_lod_meshes *lods = &model->lods;
-    const bool forced = view->method == GTX_METHOD_LOD;
+    const bool only = view->method == GTX_METHOD_AUTO && model->bare && lods->level_count;
+    const bool forced = view->method == GTX_METHOD_LOD || only;
     const bool by_error = view->level == 0 && view->viewport_height > 0;
     if (forced && !lods->level_count)
         return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "the asset has no LOD mesh to be drawn by");

@@ -37,11 +37,9 @@ static double area_of(const gtx_model *model, uint32_t patch)
 
 /* Seen from all sides, a surface covers a fourth of its area in the mean (Cauchy 1832), and so does
  * the box around it. */
-static double depth_complexity_of(const gtx_model *model)
+static double depth_complexity_of(const gtx_model *model, double area)
 {
-    double area = 0, side[3];
-    for (uint32_t i = 0; i < model->patch_count; ++i)
-        area += area_of(model, i);
+    double side[3];
     for (int k = 0; k < 3; ++k)
         side[k] = (double)model->lods.high[k] - model->lods.low[k];
     const double box = 2 * (side[0] * side[1] + side[1] * side[2] + side[2] * side[0]);
@@ -50,7 +48,7 @@ static double depth_complexity_of(const gtx_model *model)
 
 void gtx_model_sum_up(gtx_model *model)
 {
-    double radius = 0;
+    double radius = 0, area = 0;
     model->coarsest_error = 0;
     model->boxed_count = 0;
     for (uint32_t i = 0; i < model->patch_count; ++i) {
@@ -63,9 +61,11 @@ void gtx_model_sum_up(gtx_model *model)
         radius = fmax(radius, sqrt(square) + facts->hull[3]);
         model->coarsest_error = error > model->coarsest_error ? error : model->coarsest_error;
         model->boxed_count += facts->boxed;
+        area += area_of(model, i);
     }
     model->sphere[3] = (float)(radius * 1.0001);
-    model->depth_complexity = (float)fmin(depth_complexity_of(model), 1e6);
+    model->bare = !(area > 0);
+    model->depth_complexity = (float)fmin(depth_complexity_of(model, area), 1e6);
 }
 
 uint32_t gtx_model_cell_rows(const gtx_model *model)

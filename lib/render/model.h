@@ -60,6 +60,7 @@ struct gtx_model {
     float depth_complexity;   /* surfaces that face the eye behind a pixel, in the mean from
                                  outside, at least 1 */
     uint32_t boxed_count;
+    bool bare;                /* no height field has a cell: LOD meshes are all there is */
     gtx_lod_meshes lods;
     /* Slabs of all levels, and where those of a patch's level begin: mip_count * patch_count + 1
      * numbers. */

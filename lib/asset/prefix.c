@@ -1,0 +1,280 @@
+/* Opening the first bytes of a file: what is there of it, as an asset. */
+#include "asset/preview.h"
+#include "asset/read.h"
+
+#include "asset/decode.h"
+#include "asset/header.h"
+#include "asset/lod.h"
+#include "base/alloc.h"
+#include "base/bytes.h"
+
+#include <inttypes.h>
+
+/* What comes of the first bytes. */
+typedef struct beginning {
+    gtx_check check;
+    const gtx_read_options *options;
+    const uint8_t *data;
+    uint64_t size;
+    gtx_layout layout;
+    gtx_section parts[GTX_MAX_KNOWN_SECTIONS]; /* to decode: patches, LOD meshes, an image a kind */
+    uint32_t part_count;
+    int images[GTX_SECTION_META + 1];          /* the level of each kind, or -1 */
+    uint32_t lods, missing;                    /* LOD meshes that are there, and that are not */
+    gtx_decoding decoding;
+    gtx_asset *source;
+    gtx_occupancy occupancy;
+    uint32_t shift;
+    gtx_info info;                             /* of the preview */
+} beginning;
+
+static uint64_t end_of(const gtx_section *section)
+{
+    return section->offset + section->stored_size;
+}
+
+/* How many bytes show more than `size`: to the end of the next section of those before heights; the
+ * whole file where there is none, or where patches alone are there. */
+static uint64_t needed_of(const gtx_layout *layout, uint64_t size)
+{
+    for (uint32_t i = 1; i < layout->section_count; ++i) {
+        const gtx_section *section = &layout->sections[i];
+        if (section->kind >= GTX_SECTION_HEIGHT || layout->info.lod_levels == 0)
+            break;
+        if (end_of(section) > size)
+            return end_of(section);
+    }
+    return layout->info.file_size;
+}
+
+/* ---- what there is to decode ---- */
+
+static void find_parts(beginning *b)
+{
+    const gtx_layout *layout = &b->layout;
+    for (int kind = 0; kind <= GTX_SECTION_META; ++kind)
+        b->images[kind] = -1;
+    for (uint32_t i = 0; i < layout->section_count; ++i)
+        b->lods += layout->sections[i].kind == GTX_SECTION_LOD &&
+                   end_of(&layout->sections[i]) <= b->size;
+    b->missing = layout->info.lod_levels - b->lods;
+    for (uint32_t i = 0; i < layout->section_count; ++i) {
+        const gtx_section *section = &layout->sections[i];
+        const bool there = end_of(section) <= b->size;
+        if (!there || section->kind >= GTX_SECTION_HEIGHT)
+            continue;
+        gtx_section *part = &b->parts[b->part_count++];
+        *part = *section;
+        if (section->kind == GTX_SECTION_LOD)
+            part->level -= b->missing;
+        else if (gtx_section_is_image(section->kind))
+            b->images[section->kind] = (int)section->level;
+    }
+}
+
+/* Of each image the level that is nearest to the preview's, and not finer. */
+static void choose_images(beginning *b)
+{
+    uint32_t count = 0;
+    for (int kind = 0; kind <= GTX_SECTION_META; ++kind)
+        if (b->images[kind] >= 0 && b->images[kind] < (int)b->shift)
+            b->images[kind] = (int)b->shift;
+    for (uint32_t i = 0; i < b->part_count; ++i)
+        if (!gtx_section_is_image(b->parts[i].kind) ||
+            b->images[b->parts[i].kind] == (int)b->parts[i].level)
+            b->parts[count++] = b->parts[i];
+    b->part_count = count;
+}
+
+/* ---- memory ---- */
+
+static void *room_for(const gtx_asset *source, uint64_t size)
+{
+    return size > SIZE_MAX ? NULL : gtx_alloc_raw(&source->allocator, (size_t)size, 1);
+}
+
+/* An asset with room for the parts alone. */
+static bool make_source(beginning *b)
+{
+    gtx_asset *source = gtx_alloc_array(&b->options->allocator, 1, sizeof *source);
+    b->source = source;
+    if (!source)
+        return false;
+    source->allocator = b->options->allocator;
+    source->info = b->layout.info;
+    source->info.lod_levels = b->lods;
+    bool whole = true;
+    for (uint32_t i = 0; i < b->part_count && whole; ++i) {
+        const gtx_section *part = &b->parts[i];
+        void *room = room_for(source, part->size);
+        whole = room != NULL;
+        if (part->kind == GTX_SECTION_PATCHES)
+            source->patches = room;
+        else if (part->kind == GTX_SECTION_LOD)
+            source->lod[part->level] = room;
+        else
+            *gtx_asset_map(source, part->kind, part->level) = room;
+        if (part->kind == GTX_SECTION_LOD && whole)
+            source->lod_size[part->level] = (size_t)part->size;
+    }
+    return whole;
+}
+
+static bool is_allowed(beginning *b, uint64_t memory)
+{
+    const gtx_info *info = &b->layout.info;
+    const struct {
+        gtx_limited which;
+        uint64_t wanted;
+    } wants[] = {{GTX_LIMITED_PATCHES, info->patch_count},
+                 {GTX_LIMITED_TEXELS,
+                  (uint64_t)info->page_width * info->page_height * info->page_count},
+                 {GTX_LIMITED_MEMORY, memory + b->options->bytes_held}};
+    for (size_t i = 0; i < sizeof wants / sizeof *wants; ++i) {
+        const uint64_t allowed = gtx_limit_of(b->options->limits, wants[i].which, b->size);
+        if (wants[i].wanted > allowed) {
+            gtx_check_limit(&b->check, wants[i].which, "the asset", wants[i].wanted, allowed);
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Of all parts as they come out. */
+static uint64_t source_bytes(const beginning *b)
+{
+    uint64_t bytes = sizeof(gtx_asset);
+    for (uint32_t i = 0; i < b->part_count; ++i)
+        bytes += b->parts[i].size;
+    return bytes;
+}
+
+/* ---- decoding ---- */
+
+static bool holds(beginning *b, const gtx_part *part)
+{
+    const gtx_section *section = part->section;
+    if (part->wrong)
+        gtx_break(&b->check, GTX_RULE_SECTION_ZSTD, section->offset, "in %s %s", section->name,
+                  part->wrong);
+    else if (b->decoding.hashed && part->hash != section->hash)
+        gtx_break(&b->check, GTX_RULE_SECTION_HASH, section->offset, "that of %s is 0x%016" PRIx64,
+                  section->name, section->hash);
+    return !gtx_check_over(&b->check);
+}
+
+static void decode(beginning *b)
+{
+    gtx_decoding *d = &b->decoding;
+    gtx_decode_patches(d);
+    if (!holds(b, &d->parts[0]))
+        return;
+    gtx_check_patches(&b->check, b->source, b->parts[0].offset, &b->occupancy);
+    gtx_occupancy_free(&b->occupancy, &b->options->allocator);
+    if (gtx_check_over(&b->check))
+        return;
+    gtx_decode_rest(d, false, true);
+    for (uint32_t i = d->part_count; i-- > 1;) { /* the finest first */
+        const gtx_part *part = &d->parts[i];
+        if (!holds(b, part))
+            return;
+        if (part->section->kind == GTX_SECTION_LOD && !part->holds)
+            gtx_check_lod(&b->check, b->source, part->section->level, part->section->offset);
+        if (gtx_check_over(&b->check))
+            return;
+    }
+}
+
+/* The preview's shape, which hangs on patches and on the finest LOD mesh: both are there. */
+static uint64_t plan_preview(beginning *b, gtx_lod_mesh *mesh)
+{
+    gtx_get_lod_mesh(b->source, 0, mesh);
+    gtx_sizes sizes = {0};
+    for (uint32_t k = 0; k < b->lods; ++k)
+        sizes.lod[k] = b->source->lod_size[k];
+    return gtx_asset_bytes(&b->info, &sizes) + gtx_preview_scratch(&b->info, mesh->vertex_count);
+}
+
+static gtx_asset *preview(beginning *b)
+{
+    gtx_lod_mesh mesh;
+    if (!is_allowed(b, source_bytes(b) + plan_preview(b, &mesh)))
+        return NULL;
+    gtx_asset *out = gtx_preview_new(b->source, &b->info, b->shift, b->images);
+    if (!out)
+        gtx_check_fail(&b->check, GTX_ERROR_MEMORY, "out of memory for the beginning of an asset");
+    return out;
+}
+
+/* As many triangles as the bytes of the finest LOD mesh that is there may hold, for the shift is
+ * chosen before it is decoded. */
+static uint64_t most_triangles(const beginning *b)
+{
+    for (uint32_t i = 0; i < b->part_count; ++i)
+        if (b->parts[i].kind == GTX_SECTION_LOD && b->parts[i].level == 0)
+            return b->parts[i].size / 15;
+    return 0;
+}
+
+static gtx_asset *read_parts(beginning *b)
+{
+    b->shift = gtx_preview_shift(&b->layout.info, most_triangles(b));
+    choose_images(b);
+    b->info = gtx_preview_info(&b->layout.info, b->shift);
+    b->info.lod_levels = b->lods;
+    b->info.has_color = b->images[GTX_SECTION_COLOR] >= 0;
+    b->info.has_material = b->images[GTX_SECTION_MATERIAL] >= 0;
+    b->info.has_emission = b->images[GTX_SECTION_EMISSION] >= 0;
+    b->info.emission_scale = b->info.has_emission ? b->info.emission_scale : 0;
+    b->info.file_size = b->size;
+    gtx_decoding_plan(&b->decoding, b->parts, b->part_count, &b->layout.info, b->options->jobs);
+    b->decoding.hashed = !b->options->skip_hash;
+    if (b->decoding.zstd && !gtx_has_zstd())
+        gtx_check_fail(&b->check, GTX_ERROR_UNSUPPORTED,
+                       "the file is compressed and this build has no zstd");
+    if (gtx_check_over(&b->check) ||
+        !is_allowed(b, source_bytes(b) + b->decoding.size + gtx_occupancy_size(&b->layout.info)))
+        return NULL;
+    gtx_asset *out = NULL;
+    if (!make_source(b) || !gtx_decoding_begin(&b->decoding, b->source, b->data))
+        gtx_check_fail(&b->check, GTX_ERROR_MEMORY, "out of memory for the beginning of a file");
+    else
+        decode(b);
+    gtx_decoding_end(&b->decoding, &b->options->allocator);
+    if (!gtx_check_over(&b->check))
+        out = preview(b);
+    gtx_close(b->source);
+    return out;
+}
+
+gtx_result gtx_read_prefix(gtx_error *error, const gtx_read_options *options, const void *data,
+                           size_t size, gtx_prefix *prefix, gtx_asset **out)
+{
+    beginning b = {.check = {.error = error, .in_file = true, .beginning = true},
+                   .options = options, .data = data, .size = size};
+    *prefix = (gtx_prefix){.needed = GTX_HEADER_SIZE};
+    gtx_check quiet = {0};
+    gtx_check_head(&quiet, data, size, 0);
+    if (quiet.result == GTX_ERROR_TRUNCATED)
+        return GTX_OK;
+    const uint32_t count = quiet.result ? 0 : gtx_load_u32(b.data + 28);
+    const bool counted = count >= 4 && count <= GTX_MAX_SECTIONS;
+    const uint64_t table = GTX_HEADER_SIZE + (uint64_t)GTX_ENTRY_SIZE * count;
+    prefix->needed = table;
+    if (counted && size < table)
+        return GTX_OK;
+    gtx_check_file(&b.check, data, size, &b.layout);
+    if (b.check.result)
+        return b.check.result;
+    prefix->file_size = b.layout.info.file_size;
+    prefix->needed = 0;
+    if (size == prefix->file_size) {
+        gtx_check whole = {.error = error};
+        return gtx_read_asset(&whole, options, data, size, out);
+    }
+    prefix->needed = needed_of(&b.layout, size);
+    find_parts(&b);
+    if (b.lods)
+        *out = read_parts(&b);
+    return b.check.result;
+}

@@ -1,0 +1,219 @@
+/* The first bytes of a file, however many: what they show, what they need to show more, and that
+ * nothing beyond them is read. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "asset/codec.h"
+#include "asset/golden.h"
+
+#include <stdlib.h>
+
+/* All that a file may have; once stored, once compressed. */
+static const golden every[2] = {
+    {"every", 16, 2, 2, 8, EVERY_MAP, false, "{}", 0, false, 0, 0, 3},
+    {"zstd-every", 64, 2, 4, 16, EVERY_MAP, false, "{}", 3, false, 0, 0, 3}};
+
+/* Where entry `i` of a file ends. */
+static size_t end_of(bytes file, uint32_t i)
+{
+    const uint8_t *entry = file.data + GTX_HEADER_SIZE + GTX_ENTRY_SIZE * i;
+    return gtx_load_u64(entry + 16) + gtx_load_u64(entry + 24);
+}
+
+/* A copy of its own, so that sanitizers see what is read behind it. */
+static gtx_result open_prefix(bytes file, size_t size, const gtx_open_desc *desc,
+                              gtx_prefix *prefix, gtx_asset **out, gtx_error *error)
+{
+    uint8_t *copy = need(malloc(size ? size : 1));
+    memcpy(copy, file.data, size);
+    const gtx_result result = gtx_open_prefix(size ? copy : NULL, size, desc, prefix, out, error);
+    free(copy);
+    return result;
+}
+
+/* A preview is an asset that keeps every rule. */
+static void assert_valid(const gtx_asset *asset)
+{
+    void *data;
+    size_t size;
+    gtx_error error = {0};
+    assert_int_equal(gtx_encode(asset, NULL, &data, &size, NULL), GTX_OK);
+    if (gtx_validate(data, size, NULL, NULL, NULL, &error))
+        fail_msg("%s", error.message);
+    free(data);
+}
+
+static void check_golden(const golden *g)
+{
+    bytes file = golden_encode(g);
+    size_t needed = 0;
+    uint32_t shown = 0, stages = 0;
+    const uint32_t sections = gtx_load_u32(file.data + 28);
+    for (size_t size = 0; size <= file.size; ++size) {
+        gtx_prefix prefix = {0};
+        gtx_asset *asset = NULL;
+        gtx_error error = {0};
+        gtx_info info = {0};
+        if (open_prefix(file, size, NULL, &prefix, &asset, &error))
+            fail_msg("%zu of %s: %s", size, g->name, error.message);
+        const size_t table = GTX_HEADER_SIZE + GTX_ENTRY_SIZE * sections;
+        assert_int_equal(prefix.file_size, size < table ? 0 : file.size);
+        assert_true(size == file.size ? !prefix.needed : prefix.needed > size);
+        assert_in_range(prefix.needed, 0, file.size);
+        assert_true(prefix.needed >= needed || size == file.size);
+        assert_int_equal(asset != NULL, size == file.size || (g->lods && size >= end_of(file, 1)));
+        if (asset)
+            gtx_get_info(asset, &info);
+        /* More is there exactly where it was said to be. */
+        if (prefix.needed != needed) {
+            assert_true(size == needed || size == 0);
+            needed = prefix.needed;
+            stages += asset != NULL;
+            if (asset)
+                assert_valid(asset);
+        }
+        if (size < file.size) {
+            assert_in_range(info.lod_levels, shown, g->lods);
+            shown = info.lod_levels;
+            if (size >= end_of(file, g->lods) && asset)
+                assert_int_equal(info.lod_levels, g->lods);
+        }
+        gtx_close(asset);
+    }
+    assert_int_equal(stages, g->lods ? g->lods + 1 + (g->maps ? 3 * g->mips : 0) : 1);
+    free(file.data);
+}
+
+static void test_every_length(void **state)
+{
+    (void)state;
+    for (int i = 0; i < GOLDEN_COUNT; ++i)
+        if (gtx_has_zstd() || !goldens[i].zstd_level)
+            if (!goldens[i].unknown && (goldens[i].lods || goldens[i].side < 64))
+                check_golden(&goldens[i]);
+    for (int i = 0; i < (gtx_has_zstd() ? 2 : 1); ++i)
+        check_golden(&every[i]);
+}
+
+/* What is there is what the whole has: LOD meshes to the byte, images at some level. */
+static void test_content(void **state)
+{
+    (void)state;
+    bytes file = golden_encode(&every[0]);
+    gtx_asset *whole, *part;
+    gtx_prefix prefix;
+    gtx_lod_mesh a, b;
+    assert_int_equal(gtx_open_memory(file.data, file.size, NULL, &whole, NULL), GTX_OK);
+    assert_int_equal(open_prefix(file, end_of(file, 2), NULL, &prefix, &part, NULL), GTX_OK);
+    assert_int_equal(prefix.needed, end_of(file, 3));
+    assert_int_equal(gtx_get_lod_mesh(whole, 1, &a), GTX_OK);
+    assert_int_equal(gtx_get_lod_mesh(part, 0, &b), GTX_OK);
+    assert_int_equal(a.triangle_count, b.triangle_count);
+    assert_memory_equal(a.indices, b.indices, 12 * a.triangle_count);
+    assert_memory_equal(a.positions, b.positions, 6 * a.vertex_count);
+    gtx_close(part);
+    /* The last entry before heights is the finest of emission. */
+    assert_int_equal(open_prefix(file, end_of(file, 9), NULL, &prefix, &part, NULL), GTX_OK);
+    assert_int_equal(prefix.needed, file.size);
+    size_t size, fewer;
+    const void *all = gtx_map_data(whole, GTX_MAP_COLOR, 0, &size);
+    assert_memory_equal(gtx_map_data(part, GTX_MAP_COLOR, 0, &fewer), all, size);
+    assert_int_equal(size, fewer);
+    const uint8_t *heights = gtx_map_data(part, GTX_MAP_HEIGHT, 0, &size);
+    for (size_t i = 0; i < size; ++i)
+        assert_int_equal(heights[i], 0);
+    gtx_close(part);
+    gtx_close(whole);
+    free(file.data);
+}
+
+/* A wrong byte ends in an error, or in an asset that keeps the rules. */
+static void test_flips(void **state)
+{
+    (void)state;
+    bytes file = golden_encode(&every[0]);
+    const size_t size = end_of(file, 6);
+    uint32_t refused = 0;
+    for (size_t at = 0; at < size; ++at) {
+        file.data[at] ^= 0x11;
+        if (at % 2)
+            rehash_header(file, false);
+        gtx_prefix prefix;
+        gtx_asset *asset;
+        gtx_error error = {0};
+        const gtx_result result = open_prefix(file, size, NULL, &prefix, &asset, &error);
+        assert_int_equal(result, error.result);
+        assert_true(!result || !asset);
+        if (asset)
+            assert_valid(asset);
+        refused += result != GTX_OK;
+        gtx_close(asset);
+        file.data[at] ^= 0x11;
+        rehash_header(file, false);
+    }
+    assert_true(refused > size / 2);
+    free(file.data);
+}
+
+/* ---- memory ---- */
+
+typedef struct scarce {
+    uint32_t left;                /* calls that succeed */
+    uint64_t bytes;
+} scarce;
+
+static void *take(size_t size, void *user)
+{
+    scarce *s = user;
+    if (!s->left)
+        return NULL;
+    --s->left;
+    s->bytes += size;
+    return malloc(size);
+}
+
+static void give(void *memory, size_t size, void *user)
+{
+    ((scarce *)user)->bytes -= memory ? size : 0;
+    free(memory);
+}
+
+static void test_memory(void **state)
+{
+    (void)state;
+    bytes file = golden_encode(&every[0]);
+    gtx_result result = GTX_ERROR_MEMORY;
+    for (uint32_t calls = 0; result; ++calls) {
+        scarce s = {.left = calls};
+        const gtx_allocator hooks = {take, give, &s};
+        const gtx_open_desc desc = {.allocator = &hooks};
+        gtx_prefix prefix;
+        gtx_asset *asset;
+        assert_in_range(calls, 0, 100);
+        result = open_prefix(file, end_of(file, 6), &desc, &prefix, &asset, NULL);
+        assert_true(!result || result == GTX_ERROR_MEMORY);
+        gtx_close(asset);
+        assert_int_equal(s.bytes, 0);
+    }
+    gtx_open_desc desc = {.limits.memory = 1000};
+    gtx_prefix prefix;
+    gtx_asset *asset;
+    gtx_error error = {0};
+    assert_int_equal(open_prefix(file, end_of(file, 6), &desc, &prefix, &asset, &error),
+                     GTX_ERROR_LIMIT);
+    assert_string_equal(error.limit, "memory");
+    assert_int_equal(gtx_open_prefix(file.data, 9, NULL, NULL, &asset, NULL), GTX_ERROR_ARGUMENT);
+    assert_int_equal(gtx_open_prefix(NULL, 9, NULL, &prefix, &asset, NULL), GTX_ERROR_ARGUMENT);
+    free(file.data);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_length), cmocka_unit_test(test_content),
+        cmocka_unit_test(test_flips), cmocka_unit_test(test_memory)};
+    return cmocka_run_group_tests_name("prefix", tests, NULL, NULL);
+}
