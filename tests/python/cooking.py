@@ -39,6 +39,9 @@ class Cooking(unittest.TestCase):
         self.assertEqual(report.sources, [str(self.model)])
         self.assertIn("open-edges", [warned.name for warned in report.warnings])
         asset, _ = geotex.cook(self.model.read_bytes(), name="bumps.off", charts=9)
+        cached = geotex.cook(self.model, output, charts=9, cache=self.folder / "cache")[1]
+        self.assertFalse(cached.unchanged)
+        self.assertTrue(any((self.folder / "cache").rglob("*")))
         self.assertEqual(asset.info.content_hash, geotex.open(output).info.content_hash)
         self.assertTrue(geotex.cook(self.model, output, charts=9, if_changed=True)[1].unchanged)
         other, _ = geotex.cook(self.model, charts=9, height_bits=16, lod_levels=0)

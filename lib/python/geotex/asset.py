@@ -194,7 +194,7 @@ class Asset:
         """The bytes of a .gtx file; `zstd` 0 stores them, 1..19 compresses."""
         desc, data, size = ffi.new("gtx_encode_desc *"), ffi.new("void **"), ffi.new("size_t *")
         error = native.new_error()
-        desc.zstd_level = zstd
+        desc.zstd_level = zstd or -1  # to C, 0 is the default
         check(core.gtx_encode(self._pointer, desc, data, size, error), error)
         try:
             return ffi.buffer(data[0], size[0])[:]
@@ -204,7 +204,7 @@ class Asset:
     def save(self, path: Union[str, "os.PathLike[str]"], *, zstd: int = 3) -> None:
         """Writes a .gtx file: whole, or not at all."""
         desc, error = ffi.new("gtx_encode_desc *"), native.new_error()
-        desc.zstd_level = zstd
+        desc.zstd_level = zstd or -1  # to C, 0 is the default
         check(core.gtx_save_file(self._pointer, native.path_of(path), desc, error), error)
 
     def __repr__(self) -> str:

@@ -104,7 +104,7 @@ def cook(model: Source, output: Optional[Path] = None, *, name: Optional[Path] =
          lod_levels: int = 5, charts_ply: Optional[Path] = None, more: Sequence[Path] = (),
          strict: bool = False, allow: Sequence[str] = (), if_changed: bool = False,
          adaptive: bool = False, texel_density: Optional[float] = None,
-         limits: Optional[Limits] = None,
+         cache: Optional[Path] = None, limits: Optional[Limits] = None,
          progress: Optional[ProgressFn] = None) -> Tuple[Optional[Asset], Report]:
     """Cooks a model, from a path or from its bytes, and gives the asset and the report. With
     `output`, of a model at a path, it writes the file instead, and the asset is None.
@@ -121,6 +121,7 @@ def cook(model: Source, output: Optional[Path] = None, *, name: Optional[Path] =
                      their detail
       charts_ply     where to write the partition; more: further models for the same asset
       strict         a warning that `allow` does not name is an Error; if_changed: see cook.h
+      cache          a folder of cooked assets by their keys, which machines may share
       limits         of gtx_limits, such as {"memory": bytes}
       progress       called with a Progress now and then; returning True or raising stops the call
     Raises Error, Cancelled, and what `progress` raises. Other threads run meanwhile."""
@@ -143,6 +144,9 @@ def cook(model: Source, output: Optional[Path] = None, *, name: Optional[Path] =
     ply = ffi.new("char[]", native.path_of(charts_ply)) if charts_ply is not None else ffi.NULL
     desc.charts_ply = ply
 
+    kept_cache = ffi.new("char[]", native.path_of(cache)) if cache is not None else ffi.NULL
+    desc.cache = kept_cache
+
     library = cook_library()
     if native.is_path(model) and output is not None:
         source = native.path_of(model)  # type: ignore[arg-type]
@@ -164,15 +168,17 @@ def cook(model: Source, output: Optional[Path] = None, *, name: Optional[Path] =
 
 def compare(asset: Path, model: Path, *, size: int = 1024, levels: int = 0, threads: int = 0,
             up: str = "y", more: Sequence[Path] = (), random_views: int = 0, seed: int = 0,
-            limits: Optional[Limits] = None,
+            any_model: bool = False, limits: Optional[Limits] = None,
             progress: Optional[ProgressFn] = None) -> Comparison:
     """Measures an asset's file against the model that it was cooked from, in 26 views of `size`
-    pixels a side and random ones; `up` and `more` as it was cooked. Raises Error."""
+    pixels a side and random ones; `up` and `more` as it was cooked. A model that the asset does not
+    name as its source is refused, but with `any_model`. Raises Error."""
     desc, result = ffi.new("gtx_compare_desc *"), ffi.new("gtx_compare_result *")
     if up not in ("y", "z"):
         raise ValueError("up is y or z")
     native.fill(desc, dict(size=size, levels=levels, threads=threads, z_up=up == "z",
-                           random_views=random_views, seed=seed))
+                           random_views=random_views, seed=seed,
+                           any_model=any_model))
     others, kept = _names([native.path_of(path) for path in more])
     desc.more, desc.more_count = others, len(kept)
     paths = native.path_of(asset), native.path_of(model)
