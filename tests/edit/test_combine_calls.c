@@ -25,7 +25,7 @@ static void maps_are_filled_in(void **state)
         for (uint32_t k = 0; k < info.mip_count; ++k) {
             const gtx_patch *patch = &o.asset->patches[p];
             const uint8_t *texel =
-                gtx_edit_texel(o.asset, patch, 4 /* colour */, k, 20u >> k, 20u >> k);
+                gtx_edit_texel(o.asset, patch, GTX_SECTION_COLOR, k, 20u >> k, 20u >> k);
             if (p >= 6)
                 assert_memory_equal(texel, "\377\377\377\377", 4);
         }
