@@ -1,15 +1,18 @@
 /* gtx pack: what gtx unpack wrote, edited or not, or an asset -> an asset. */
 #include "cli/guard.hpp"
-#include "cli/unpack/unpacked.hpp"
+#include "cli/unpack/rebuild.hpp"
 
 #include <geotex/export.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
 namespace fs = std::filesystem;
 
-static const char *output;
+static const char *output, *rebuild_text;
+static bool strict;
+static unsigned rebuilt;
 static int32_t zstd_level = -1;
 static uint32_t lod_levels;
 
@@ -18,13 +21,18 @@ static const option options[] = {
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [as before]", 0, 19},
     {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
      "make a new LOD mesh of N levels from the maps [keep the old]", 1, 5},
+    {"rebuild", 0, OPTION_STRING, &rebuild_text, "mips,normals,trim",
+     "of edited patches: coarser levels and dilation from level 0, normals from heights, outlines",
+     0, 0},
+    {"strict", 0, OPTION_FLAG, &strict, nullptr, "a warning is an error (exit 3)", 0, 0},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
 static const verb pack = {
     "pack", "DIR|ASSET -o OUT.gtx",
     "Packs a folder that gtx unpack wrote: the same bytes again, or the edited asset. Every mip\n"
-    "level is taken from its own image; none is computed. Given an asset, writes it again with\n"
-    "another LOD mesh or compression.",
+    "level is taken from its own image, and where one was edited alone a warning tells: --rebuild\n"
+    "makes anew what follows from what was edited. Given an asset, writes it again with another\n"
+    "LOD mesh or compression.",
     1, 1, options};
 
 /* Rules that only tell of heights that have changed: coverage, sphere, bounds. */
@@ -42,6 +50,7 @@ static Asset open_folder(const char *folder, std::string &about)
     gtx::MemoryScope scope(limits);
     gtx::read_unpacked(folder, limits, unpacked, about);
     about = folder;
+    gtx::rebuild(unpacked, rebuilt);
     gtx_asset *asset = nullptr;
     gtx_error error = {};
     gtx_result result = gtx_create(&unpacked.desc, &asset, &error);
@@ -50,6 +59,9 @@ static Asset open_folder(const char *folder, std::string &about)
         result = gtx_create(&unpacked.desc, &asset, &error);
     }
     gtx::require_ok(result, error);
+    if (strict && !unpacked.warnings.empty())
+        throw gtx::Error(GTX_ERROR_INPUT, unpacked.warnings[0].sentence + " (" +
+                                              gtx_warning_name(unpacked.warnings[0].kind) + ")");
     gtx::report_warnings(folder, unpacked.warnings);
     if (zstd_level < 0)
         zstd_level = unpacked.zstd;
@@ -64,6 +76,27 @@ static Asset open_asset(const char *path)
     gtx_error error = {};
     gtx::require_ok(gtx_open_exported(path, &open, &asset, &error), error);
     return Asset(asset, gtx_close);
+}
+
+/* "mips,normals". */
+static bool parse_rebuild()
+{
+    static const struct {
+        const char *name;
+        unsigned bit;
+    } parts[] = {{"mips", gtx::REBUILD_MIPS}, {"normals", gtx::REBUILD_NORMALS},
+                 {"trim", gtx::REBUILD_TRIM}};
+    std::string rest = rebuild_text ? std::string(rebuild_text) + "," : "";
+    while (!rest.empty()) {
+        const std::string name = rest.substr(0, rest.find(','));
+        rest.erase(0, name.size() + 1);
+        const auto found = std::find_if(std::begin(parts), std::end(parts),
+                                        [&](const auto &part) { return name == part.name; });
+        if (found == std::end(parts))
+            return false;
+        rebuilt |= found->bit;
+    }
+    return true;
 }
 
 static Asset with_lod(const Asset &asset)
@@ -106,6 +139,8 @@ int cmd_pack(int argc, char **argv)
         return EXIT_CODE_USAGE;
     }
     return gtx::guarded(input, [&](std::string &about) {
+        if (!parse_rebuild())
+            throw gtx::Error(GTX_ERROR_ARGUMENT, "--rebuild takes some of mips, normals and trim");
         code = check_inputs(input);
         if (code)
             return code;

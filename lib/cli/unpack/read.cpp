@@ -79,6 +79,19 @@ static gtx_patch read_patch(const Reader &reader, const Json &json)
     return p;
 }
 
+static std::array<uint64_t, 12> read_hashes(const Reader &reader, const Json &json)
+{
+    std::array<uint64_t, 12> out;
+    if (!json.is_array() || json.size() != out.size())
+        reader.fail("hashes is not a list of 12");
+    for (size_t i = 0; i < out.size(); ++i) {
+        if (!json[i].is_string())
+            reader.fail("one of the hashes is not a string");
+        out[i] = std::strtoull(json[i].get_ref<const std::string &>().c_str(), nullptr, 16);
+    }
+    return out;
+}
+
 static Json parse(const std::string &path)
 {
     constexpr uintmax_t MAX_SIZE = uintmax_t(1) << 30;
@@ -222,8 +235,13 @@ void read_unpacked(const std::string &folder, Limits &limits, Unpacked &out, std
     if (!patches.is_array() || patches.empty() || patches.size() > GTX_MAX_PATCHES)
         reader.fail("patches is not a list of patches");
     limits.require(GTX_LIMITED_PATCHES, "the asset", patches.size());
-    for (const Json &patch : patches)
+    for (const Json &patch : patches) {
         out.patches.push_back(read_patch(reader, patch));
+        if (patch.contains("hashes"))
+            out.hashes.push_back(read_hashes(reader, patch["hashes"]));
+    }
+    if (out.hashes.size() != out.patches.size())
+        out.hashes.clear();
 
     const bool has[6] = {true, true, true, reader.flag(json, "has_color"),
                          reader.flag(json, "has_material"), reader.flag(json, "has_emission")};

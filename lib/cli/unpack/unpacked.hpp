@@ -6,6 +6,7 @@
 
 #include <geotex/geotex.h>
 
+#include <array>
 #include <string>
 
 namespace gtx {
@@ -60,6 +61,8 @@ struct Unpacked {
     gtx_asset_desc desc = {};    /* its pointers lead into what follows */
     int zstd = 0;
     Vector<gtx_patch> patches;
+    Vector<std::array<uint64_t, 12>> hashes;     /* of the patches' maps when they were unpacked, or
+                                                    none: see rebuild.hpp */
     std::string meta;
     Vector<Vector<uint8_t>> levels[6];           /* by UNPACKED_MAPS: pages one after another */
     Vector<const uint8_t *> pointers[6];

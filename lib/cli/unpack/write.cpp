@@ -1,12 +1,14 @@
 /* Writing an asset as a folder of images and one JSON file. */
 #include "cli/guard.hpp"
 #include "cli/unpack/json.hpp"
-#include "cli/unpack/unpacked.hpp"
+#include "cli/unpack/rebuild.hpp"
 
 #include "base/output.h"
 #include "image/image.h"
 
 #include <algorithm>
+#include <cinttypes>
+#include <cstdio>
 #include <filesystem>
 
 namespace gtx {
@@ -47,6 +49,22 @@ static Json patch_json(const gtx_patch &p)
     out["flags"] = p.flags;
     out["sphere"] = list(p.sphere, 4);
     out["source_triangles"] = p.source_triangles;
+    return out;
+}
+
+static MapLevels levels_of(const gtx_asset *asset, const gtx_info &info)
+{
+    MapLevels out;
+    out.width = info.page_width;
+    out.height = info.page_height;
+    out.mip_count = info.mip_count;
+    out.bits = info.height_bits;
+    for (size_t map = 0; map < 6; ++map)
+        for (uint32_t k = 0; k < (UNPACKED_MAPS[map].has_levels ? info.mip_count : 1); ++k) {
+            size_t size;
+            out.levels[map][k] = static_cast<const uint8_t *>(
+                gtx_map_data(asset, UNPACKED_MAPS[map].map, k, &size));
+        }
     return out;
 }
 
@@ -138,8 +156,18 @@ void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder,
     if (meta)
         json["meta"] = std::string(meta, meta_size);
     json["patches"] = Json::array();
-    for (uint32_t i = 0; i < info.patch_count; ++i)
-        json["patches"].push_back(patch_json(gtx_patches(asset)[i]));
+    const MapLevels maps = levels_of(asset, info);
+    for (uint32_t i = 0; i < info.patch_count; ++i) {
+        const gtx_patch &patch = gtx_patches(asset)[i];
+        Json member = patch_json(patch);
+        member["hashes"] = Json::array(); /* by which packing knows what was edited */
+        for (const uint64_t hash : hash_patch(maps, patch)) {
+            char text[24];
+            snprintf(text, sizeof text, "0x%016" PRIx64, hash);
+            member["hashes"].push_back(text);
+        }
+        json["patches"].push_back(std::move(member));
+    }
     write_images(asset, info, folder, about);
     write_lod(asset, info, folder, json, about);
     about = in_folder(folder, UNPACKED_JSON);
