@@ -12,7 +12,8 @@ struct Content {
     uint64_t hash;
 };
 
-static void assert_content(const std::string &path, const Content &expected)
+/* Whether it is; says what else it has. */
+static bool has_content(const std::string &path, const Content &expected)
 {
     gtx_cook_desc desc = {};
     desc.partition = expected.partition;
@@ -27,7 +28,9 @@ static void assert_content(const std::string &path, const Content &expected)
     gtx_get_info(asset, &info);
     gtx_close(asset);
     if (info.content_hash != expected.hash)
-        fail_msg("%s: 0x%016llx", expected.model, (unsigned long long)info.content_hash);
+        print_message("# %s: 0x%016llx instead of 0x%016llx\n", expected.model,
+                      (unsigned long long)info.content_hash, (unsigned long long)expected.hash);
+    return info.content_hash == expected.hash;
 }
 
 static void a_ball_has_its_content(void **)
@@ -35,12 +38,14 @@ static void a_ball_has_its_content(void **)
 #ifndef __x86_64__
     skip();
 #endif
-    for (const Content &ball : {Content{"ball", GTX_PARTITION_CUTS, 0, 0x1d4a74ca137452a9},
+    int others = 0;
+    for (const Content &ball : {Content{"ball", GTX_PARTITION_CUTS, 0, 0x6f30b22a63a44e00},
                                 Content{"ball", GTX_PARTITION_VSA, NONE, 0xff6480fca129567b},
                                 Content{"ball", GTX_PARTITION_PGP, NONE, 0xdb93daccf3025264},
                                 Content{"ball", GTX_PARTITION_LAYERS, NONE, 0xae7ea69709e3ca4b},
                                 Content{"ball", GTX_PARTITION_RELIEF, NONE, 0x5828e8c6bd317c33}})
-        assert_content(ball_file(), ball);
+        others += !has_content(ball_file(), ball);
+    assert_int_equal(others, 0);
 }
 
 static void models_have_their_content(void **)
@@ -51,21 +56,22 @@ static void models_have_their_content(void **)
 #endif
     if (!models || !*models)
         skip();
+    int others = 0;
     for (const Content &content : std::initializer_list<Content>{
              {"/scans/bunny.ply",
               GTX_PARTITION_CUTS, NONE, 0x32d3acb993ee9370},
              {"/scans/gargo_3dhop.ply.gz",
-              GTX_PARTITION_CUTS, NONE, 0x2db20155052fae71},
+              GTX_PARTITION_CUTS, NONE, 0x5550f4526d6858af},
              {"/textured/spot/spot/spot_control_mesh.obj",
               GTX_PARTITION_CUTS, NONE, 0xde293bf3a615b550},
              {"/gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf",
-              GTX_PARTITION_CUTS, NONE, 0xbfd3b4f42ee15bb3},
+              GTX_PARTITION_CUTS, NONE, 0xa08dcfe5b7af01a2},
              {"/gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb",
-              GTX_PARTITION_CUTS, 0, 0xe9d131c05c0cc817},
+              GTX_PARTITION_CUTS, 0, 0x90d53d391cd5710f},
              {"/gltf/dragon_draco_119k.glb",
-              GTX_PARTITION_CUTS, 0, 0xcf314123272600f7},
+              GTX_PARTITION_CUTS, 0, 0x7f5f966c024254cc},
              {"/gltf/2CylinderEngine.glb",
-              GTX_PARTITION_CUTS, NONE, 0xfb96d88b2c2cae11},
+              GTX_PARTITION_CUTS, NONE, 0x6315e476a1cbe7f5},
              {"/scans/horse.ply.gz",
               GTX_PARTITION_CUTS, NONE, 0x9b61dee445967f3f},
              {"/scans/armadillo_86k.obj.gz",
@@ -77,7 +83,8 @@ static void models_have_their_content(void **)
              {"/scans/bunny.ply",
               GTX_PARTITION_PGP, NONE, 0x1df8c7280af265f9},
          })
-        assert_content(std::string(models) + content.model, content);
+        others += !has_content(std::string(models) + content.model, content);
+    assert_int_equal(others, 0);
 }
 
 int main()

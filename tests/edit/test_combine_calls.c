@@ -1,6 +1,8 @@
 /* Calls that combine assets: what is refused, filled in, the same twice, and out of memory. */
 #include "edit/combined.h"
 
+#include "asset/section.h"
+
 /* A copy without its colours. */
 static gtx_asset *bare_copy(gtx_asset *asset)
 {
