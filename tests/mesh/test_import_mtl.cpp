@@ -178,7 +178,7 @@ static void textures_are_found_by_name(void **)
 {
     Folder folder, other;
     write_png(folder, "t.png", 1, 1, {255, 0, 0, 255});
-    for (const char *name : {"../maps/t.png", "C:\\work\\t.png", "/work/t.png", "t.png"}) {
+    for (const char *name : {"../maps/t.png", "C:\\art\\t.png", "/art/t.png", "t.png"}) {
         Imported i = import_square(folder, std::string("newmtl one\nmap_Kd ") + name + "\n");
         assert_true(i.warnings.empty() && middle_of(i).color[1] == 0);
         assert_int_equal(i.sources.size(), 3);
