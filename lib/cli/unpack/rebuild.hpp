@@ -3,7 +3,7 @@
 
 #include "cli/unpack/unpacked.hpp"
 
-#include "asset/asset.h"
+#include "bake/repaint.hpp"
 
 namespace gtx {
 
@@ -13,13 +13,7 @@ enum { REBUILD_MIPS = 1, REBUILD_NORMALS = 2, REBUILD_TRIM = 4 };
  * coarser levels. */
 using PatchHashes = std::array<uint64_t, 12>;
 
-/* `levels` are images of all pages one after another; null where the asset has no such map.
- * `bits` are those of heights. */
-struct MapLevels {
-    const uint8_t *levels[6][GTX_MAX_MIPS] = {};
-    uint32_t width, height, mip_count, bits;
-};
-PatchHashes hash_patch(const MapLevels &maps, const gtx_patch &patch);
+PatchHashes hash_patch(const PageMaps &maps, const gtx_patch &patch);
 
 /* In patches that were edited since they were unpacked, or in all where that is not known:
  *   - mips: coarser levels of normals, colours, materials and emission, and what dilation gives,

@@ -52,9 +52,10 @@ static Json patch_json(const gtx_patch &p)
     return out;
 }
 
-static MapLevels levels_of(const gtx_asset *asset, const gtx_info &info)
+/* To read, not to write. */
+static PageMaps levels_of(const gtx_asset *asset, const gtx_info &info)
 {
-    MapLevels out;
+    PageMaps out;
     out.width = info.page_width;
     out.height = info.page_height;
     out.mip_count = info.mip_count;
@@ -62,8 +63,8 @@ static MapLevels levels_of(const gtx_asset *asset, const gtx_info &info)
     for (size_t map = 0; map < 6; ++map)
         for (uint32_t k = 0; k < (UNPACKED_MAPS[map].has_levels ? info.mip_count : 1); ++k) {
             size_t size;
-            out.levels[map][k] = static_cast<const uint8_t *>(
-                gtx_map_data(asset, UNPACKED_MAPS[map].map, k, &size));
+            const void *texels = gtx_map_data(asset, UNPACKED_MAPS[map].map, k, &size);
+            out.levels[map][k] = static_cast<uint8_t *>(const_cast<void *>(texels));
         }
     return out;
 }
@@ -156,7 +157,7 @@ void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder,
     if (meta)
         json["meta"] = std::string(meta, meta_size);
     json["patches"] = Json::array();
-    const MapLevels maps = levels_of(asset, info);
+    const PageMaps maps = levels_of(asset, info);
     for (uint32_t i = 0; i < info.patch_count; ++i) {
         const gtx_patch &patch = gtx_patches(asset)[i];
         Json member = patch_json(patch);
