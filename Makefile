@@ -21,7 +21,7 @@ VERSION := 0.1.0
 SOVERSION := 0
 
 # ---- rooms: what each needs. Imports run one way, from right to left -----------------------------
-ROOMS_CORE := base asset derive trace edit stream render
+ROOMS_CORE := base asset derive trace edit stream frame render
 ROOMS_COOK := image mesh grid chart bake measure cook export world
 
 needs_base    := base
@@ -32,7 +32,8 @@ needs_edit    := $(needs_trace) edit
 needs_image   := base image
 needs_host    := base image host
 needs_stream  := base asset stream
-needs_render  := $(needs_derive) render
+needs_frame   := $(needs_derive) frame
+needs_render  := $(needs_frame) render
 needs_mesh    := base image mesh
 needs_grid    := $(needs_mesh) grid
 needs_chart   := $(needs_mesh) chart
@@ -41,7 +42,7 @@ needs_measure := $(needs_trace) image mesh measure
 needs_cook    := $(needs_trace) image mesh grid chart bake measure cook
 needs_export  := $(needs_cook) export
 needs_world   := $(needs_cook) stream world
-needs_cli     := $(needs_world) export edit render host cli
+needs_cli     := $(needs_world) export edit frame render host cli
 
 rooms := $(ROOMS_CORE) $(ROOMS_COOK) host cli
 tests := $(filter-out bench common golden run,$(notdir $(wildcard tests/*)))
@@ -82,6 +83,7 @@ cflags_host  = $(call pkg,--cflags,egl glfw3)
 cflags_asset  = -fno-trapping-math
 cflags_derive = -fno-trapping-math
 # The layouts of records are of shaders and of C.
+cflags_frame  = -Ishaders
 cflags_render = -Ishaders
 cflags_cli   = -D_POSIX_C_SOURCE=200809L -I$(out)/gen
 libs_asset   = $(if $(filter 1,$(zstd)),$(call pkg,--libs,libzstd))
@@ -97,7 +99,7 @@ say  = @printf '  %-5s %s\n'
 
 sources    = $(filter-out %/module.cpp,$(wildcard $(foreach d,lib/$(1) lib/$(1)/*,$(d)/*.c*)))
 objects    = $(patsubst %,$(out)/%.o,$(basename $(call sources,$(1)))) \
-             $(if $(filter render,$(1)),$(out)/gen/shader_sources.o)
+             $(if $(filter frame,$(1)),$(out)/gen/shader_sources.o)
 objects_of = $(foreach r,$(1),$(call objects,$(r)))
 room       = $(word 2,$(subst /, ,$(1)))
 
@@ -140,14 +142,14 @@ shaders := $(sort $(wildcard shaders/*.glsl shaders/*.vert shaders/*.frag))
 $(out)/gen/shader_sources.c: $(shaders) Makefile
 	@mkdir -p $(@D)
 	$(say) GEN $@
-	$(Q){ echo '/* Generated from shaders/. */'; echo '#include "render/shaders.h"'; n=0; \
+	$(Q){ echo '/* Generated from shaders/. */'; echo '#include "frame/shaders.h"'; n=0; \
 	for f in $(shaders); do echo "static const char text_$$n[] = {"; \
 	  od -An -v -tx1 $$f | sed 's/ \([0-9a-f][0-9a-f]\)/0x\1,/g'; echo '0};'; n=$$((n+1)); done; \
 	echo 'const gtx_shader_file gtx_shader_files[] = {'; n=0; \
 	for f in $(shaders); do echo "{\"$${f#shaders/}\", text_$$n},"; n=$$((n+1)); done; \
 	echo '{0, 0}};'; } > $@
 $(out)/gen/shader_sources.o: $(out)/gen/shader_sources.c | $(out)/sees/.made
-	$(Q)$(CC) $(cflags) -I$(out)/sees/lib/render -c $< -o $@
+	$(Q)$(CC) $(cflags) -I$(out)/sees/lib/frame -c $< -o $@
 
 # ---- products ------------------------------------------------------------------------------------
 lib_core := $(out)/libgeotex.a
@@ -220,11 +222,11 @@ test_needs    = $(or $(links_$(1)),$(needs_$(1)) $(extra_needs_$(1)))
 links_cli      := base image
 links_consumer := base
 links_corpus   := base
-links_fuzz     := $(needs_world) export edit render
+links_fuzz     := $(needs_world) export edit frame render
 links_python   := base
 links_samples  := $(needs_image)
 links_source   := base
-links_threads  := $(needs_cook) render host
+links_threads  := $(needs_cook) frame render host
 links_verbs    := $(needs_cli)
 links_web      := base
 extra_needs_render  := trace edit host image

@@ -30,33 +30,37 @@ static gtx_result check(const gtx_renderer *renderer, const gtx_view *view,
     return result;
 }
 
-/* Makes room for the data of `count` instances. */
-static gtx_result reserve(gtx_renderer *renderer, uint32_t count, gtx_error *error)
+/* Makes room for as many ranges as a model has patches. */
+static gtx_result reserve(gtx_renderer *renderer, const gtx_instance *instances, uint32_t count,
+                          gtx_error *error)
 {
-    if (count <= renderer->instance_capacity)
+    uint32_t most = renderer->range_capacity;
+    for (uint32_t i = 0; i < count; ++i)
+        if (instances[i].model->patch_count > most)
+            most = instances[i].model->patch_count;
+    if (most == renderer->range_capacity)
         return GTX_OK;
-    gtx_renderer_free_scratch(renderer);
+    gtx_renderer_free_ranges(renderer);
     const gtx_allocator *hooks = &renderer->allocator;
-    renderer->instance_capacity = count;
-    renderer->instances = gtx_alloc_array(hooks, count, sizeof *renderer->instances);
-    renderer->mirrored = gtx_alloc_array(hooks, count, sizeof *renderer->mirrored);
-    renderer->ways = gtx_alloc_array(hooks, count, sizeof *renderer->ways);
-    if (renderer->instances && renderer->mirrored && renderer->ways)
+    renderer->range_capacity = most;
+    renderer->counts = gtx_alloc_array(hooks, most, sizeof *renderer->counts);
+    renderer->offsets = gtx_alloc_array(hooks, most, sizeof *renderer->offsets);
+    if (renderer->counts && renderer->offsets)
         return GTX_OK;
-    gtx_renderer_free_scratch(renderer);
-    return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for %u instances", count);
+    gtx_renderer_free_ranges(renderer);
+    return gtx_fail(error, GTX_ERROR_MEMORY, "no memory to draw %u patches", most);
 }
 
 /* Compiles what the view is the first to need. */
-static gtx_result need_programs(const gtx_draw_call *draw, gtx_error *error)
+static gtx_result need_programs(const gtx_submission *draw, gtx_error *error)
 {
-    const gtx_view *view = draw->view;
+    const gtx_view *view = draw->call.view;
     const bool paper = view->method == GTX_METHOD_PAPER;
     const bool wanted[TECHNIQUE_COUNT] = {
         [TECHNIQUE_CAST] = !paper,
         [TECHNIQUE_BOX] = !paper,
         [TECHNIQUE_PAPER] = paper,
-        [TECHNIQUE_TILES] = gtx_tile_stream_suits(draw->renderer, view),
+        [TECHNIQUE_TILES] = gtx_tiles_suit(&draw->call),
         [TECHNIQUE_LOD] = !paper,
         [TECHNIQUE_LOD_FRONT] = !paper && view->pass == GTX_PASS_FORWARD,
         [TECHNIQUE_GRID] = !paper,
@@ -86,15 +90,15 @@ static void begin(const gtx_gl *gl, const gtx_frame *frame, gl_bool color)
 }
 
 /* Draws instances whose data is in the instance buffer. */
-static void draw_runs(gtx_draw_call *draw, const gtx_instance *instances, uint32_t count)
+static void draw_runs(gtx_submission *draw, const gtx_instance *instances, uint32_t count)
 {
-    const gtx_renderer *renderer = draw->renderer;
+    const gtx_planner *planner = draw->call.planner;
     gtx_run r = {0};
     for (uint32_t i = 0; i < count; ++i) {
-        if (instances[i].model != r.model || renderer->ways[i] != r.way ||
-            renderer->mirrored[i] != r.mirrored) {
+        if (instances[i].model != r.model || planner->ways[i] != r.way ||
+            planner->mirrored[i] != r.mirrored) {
             gtx_run_draw(draw, &r);
-            r = (gtx_run){instances[i].model, i, 0, renderer->ways[i], renderer->mirrored[i]};
+            r = (gtx_run){instances[i].model, i, 0, planner->ways[i], planner->mirrored[i]};
         }
         ++r.count;
     }
@@ -104,22 +108,16 @@ static void draw_runs(gtx_draw_call *draw, const gtx_instance *instances, uint32
 gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_instance *instances,
                     uint32_t count, gtx_error *error)
 {
-    gtx_draw_call draw = {.renderer = renderer, .view = view};
+    gtx_submission draw = {.call = {.planner = renderer ? &renderer->planner : NULL, .view = view},
+                           .renderer = renderer};
     gtx_state state;
     gtx_result result = check(renderer, view, instances, count, error);
     if (!result)
-        result = gtx_frame_from_view(view, &draw.frame, error);
+        result = gtx_frame_from_view(view, &draw.call.frame, error);
     if (!result)
-        result = reserve(renderer, count, error);
-    for (uint32_t i = 0; !result && i < count; ++i) {
-        result = gtx_plan_reserve(renderer, instances[i].model->patch_count, error);
-        if (!result)
-            result = gtx_place_instance(&draw.frame, &instances[i], &renderer->instances[i],
-                                        &renderer->mirrored[i], error);
-        if (!result)
-            result = gtx_choose(&draw, instances[i].model, &renderer->instances[i],
-                                    &renderer->ways[i], error);
-    }
+        result = reserve(renderer, instances, count, error);
+    if (!result)
+        result = gtx_planner_place(&draw.call, instances, count, error);
     if (!result)
         result = need_programs(&draw, error);
     if (result)
@@ -131,16 +129,16 @@ gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_inst
         gtx_state_read(gl, &state);
     if (gl->PushDebugGroup)
         gl->PushDebugGroup(GL_DEBUG_SOURCE_THIRD_PARTY, 0, -1, "geotex draw");
-    begin(gl, &draw.frame, view->pass != GTX_PASS_DEPTH);
+    begin(gl, &draw.call.frame, view->pass != GTX_PASS_DEPTH);
     gl->BindVertexArray(renderer->vertex_array);
     gl->BindBuffer(GL_ARRAY_BUFFER, renderer->instance_buffer);
-    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(count * sizeof *renderer->instances),
-                   renderer->instances, GL_STREAM_DRAW);
+    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(count * sizeof *renderer->planner.instances),
+                   renderer->planner.instances, GL_STREAM_DRAW);
     draw_runs(&draw, instances, count);
     if (restore)
         gtx_state_restore(gl, &state);
     else
-        gtx_state_leave(gl, draw.frame.reversed);
+        gtx_state_leave(gl, draw.call.frame.reversed);
     if (gl->PopDebugGroup)
         gl->PopDebugGroup();
     return GTX_OK;

@@ -1,12 +1,10 @@
 /* Displaced grids in OpenGL: streams of vertices and of triangles. */
-#include "render/grid.h"
 #include "render/renderer.h"
 
-void gtx_grids_create(gtx_renderer *renderer)
+void gtx_grid_stream_create(gtx_renderer *renderer)
 {
     const gtx_gl *gl = &renderer->gl;
-    gtx_grids *g = &renderer->grids;
-    gtx_rtin_triangles(g->triangles);
+    gtx_grid_stream *g = &renderer->grid_stream;
     gl->GenVertexArrays(1, &g->vertex_array);
     gl->BindVertexArray(g->vertex_array);
     gtx_gl_label(gl, GL_VERTEX_ARRAY, g->vertex_array, "geotex grids");
@@ -26,16 +24,12 @@ void gtx_grids_create(gtx_renderer *renderer)
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
 }
 
-void gtx_grids_destroy(gtx_renderer *renderer)
+void gtx_grid_stream_destroy(gtx_renderer *renderer)
 {
-    gtx_grids *g = &renderer->grids;
+    gtx_grid_stream *g = &renderer->grid_stream;
     renderer->gl.DeleteVertexArrays(1, &g->vertex_array);
     renderer->gl.DeleteBuffers(1, &g->vertex_buffer);
     renderer->gl.DeleteBuffers(1, &g->index_buffer);
-    gtx_scratch_free(&renderer->allocator, &g->vertices);
-    gtx_scratch_free(&renderer->allocator, &g->slots);
-    for (int k = 0; k < GTX_GRID_LOOKS; ++k)
-        gtx_scratch_free(&renderer->allocator, &g->indices[k]);
 }
 
 /* Bytes of the triangles before those of some looks. */
@@ -47,12 +41,12 @@ static size_t offset_of(const gtx_grids *g, uint32_t looks)
     return indices * sizeof(uint32_t);
 }
 
-void gtx_grids_begin(gtx_renderer *renderer)
+void gtx_grid_stream_begin(gtx_renderer *renderer)
 {
     const gtx_gl *gl = &renderer->gl;
-    const gtx_grids *g = &renderer->grids;
-    gl->BindVertexArray(g->vertex_array);
-    gl->BindBuffer(GL_ARRAY_BUFFER, g->vertex_buffer);
+    const gtx_grids *g = &renderer->planner.grids;
+    gl->BindVertexArray(renderer->grid_stream.vertex_array);
+    gl->BindBuffer(GL_ARRAY_BUFFER, renderer->grid_stream.vertex_buffer);
     gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(g->vertex_count * sizeof(gtx_grid_vertex)),
                    g->vertices.data, GL_STREAM_DRAW);
     gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (gl_pointer)offset_of(g, GTX_GRID_LOOKS), NULL,
@@ -64,9 +58,9 @@ void gtx_grids_begin(gtx_renderer *renderer)
                               g->indices[k].data);
 }
 
-void gtx_grids_draw(gtx_renderer *renderer, uint32_t looks)
+void gtx_grid_stream_draw(gtx_renderer *renderer, uint32_t looks)
 {
-    gtx_grids *g = &renderer->grids;
+    gtx_grids *g = &renderer->planner.grids;
     renderer->gl.DrawRangeElements(GL_TRIANGLES, 0, g->vertex_count - 1,
                                    (gl_size)g->index_count[looks], GL_UNSIGNED_INT,
                                    gtx_gl_offset(offset_of(g, looks)));

@@ -1,5 +1,5 @@
 /* Drawing a level of the LOD mesh, or what is wanted of it. */
-#include "render/lod.h"
+#include "render/run.h"
 
 /* Triangles of a run. */
 static void draw_run(const gtx_gl *gl, const gtx_lod_level *level, const gtx_lod_run *run,

@@ -6,8 +6,8 @@
 #include "base/error.h"
 #include "render/rays.h"
 #include "render/renderer.h"
-#include "render/shaders.h"
-#include "render/units.h"
+#include "frame/shaders.h"
+#include "frame/units.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -6,7 +6,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "derive/crowd.h"
-#include "render/model.h"
+#include "frame/model.h"
 #include "render/renderer.h"
 
 #include <string.h>

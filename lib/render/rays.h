@@ -5,7 +5,7 @@
 #include "derive/placement.h"
 #include "geotex_records.glsl"
 #include "render/gl.h"
-#include "render/units.h"
+#include "frame/units.h"
 
 /* Texels of a row of any of the textures, and rows of a layer. */
 enum { GTX_RAY_ROW = 1 << GTX_RAY_ROW_BITS, GTX_RAY_LAYER_ROWS = 1 << GTX_RAY_LAYER_BITS };

@@ -57,14 +57,16 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
     renderer->jobs = desc->jobs ? *desc->jobs : (gtx_jobs){0};
     renderer->log = desc->log;
     renderer->log_user = desc->log_user;
-    renderer->costs = desc->costs;
+    renderer->planner.allocator = hooks;
+    renderer->planner.costs = desc->costs;
+    gtx_planner_begin(&renderer->planner);
     result = gtx_gl_init(&renderer->gl, desc, error);
     if (result) { /* no function may be called */
         gtx_free_array(&hooks, renderer, 1, sizeof *renderer);
         return result;
     }
     gtx_tile_stream_create(renderer);
-    gtx_grids_create(renderer);
+    gtx_grid_stream_create(renderer);
     result = gtx_programs_create(renderer, error);
     if (result) {
         gtx_renderer_destroy(renderer);
@@ -82,26 +84,22 @@ void gtx_renderer_destroy(gtx_renderer *renderer)
         return;
     gtx_programs_destroy(renderer);
     gtx_tile_stream_destroy(renderer);
-    gtx_grids_destroy(renderer);
+    gtx_grid_stream_destroy(renderer);
     renderer->gl.DeleteVertexArrays(1, &renderer->vertex_array);
     renderer->gl.DeleteBuffers(1, &renderer->instance_buffer);
     const gtx_allocator hooks = renderer->allocator;
-    gtx_renderer_free_scratch(renderer);
-    gtx_plan_free(renderer);
-    gtx_tiles_free(renderer);
+    gtx_renderer_free_ranges(renderer);
+    gtx_planner_end(&renderer->planner);
     gtx_free_array(&hooks, renderer, 1, sizeof *renderer);
 }
 
-void gtx_renderer_free_scratch(gtx_renderer *renderer)
+void gtx_renderer_free_ranges(gtx_renderer *renderer)
 {
-    gtx_free_array(&renderer->allocator, renderer->instances, renderer->instance_capacity,
-                   sizeof *renderer->instances);
-    gtx_free_array(&renderer->allocator, renderer->mirrored, renderer->instance_capacity,
-                   sizeof *renderer->mirrored);
-    gtx_free_array(&renderer->allocator, renderer->ways, renderer->instance_capacity,
-                   sizeof *renderer->ways);
-    renderer->instances = NULL;
-    renderer->mirrored = NULL;
-    renderer->ways = NULL;
-    renderer->instance_capacity = 0;
+    gtx_free_array(&renderer->allocator, renderer->counts, renderer->range_capacity,
+                   sizeof *renderer->counts);
+    gtx_free_array(&renderer->allocator, renderer->offsets, renderer->range_capacity,
+                   sizeof *renderer->offsets);
+    renderer->counts = NULL;
+    renderer->offsets = NULL;
+    renderer->range_capacity = 0;
 }

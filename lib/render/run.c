@@ -1,8 +1,6 @@
 /* Drawing a run of instances: by an LOD mesh, cast, or patch by patch, each in its own way. */
 #include "render/run.h"
 
-#include "render/renderer.h"
-
 static gtx_material_kind material_of(const gtx_model *model)
 {
     if (model->emission_scale > 0)
@@ -12,10 +10,10 @@ static gtx_material_kind material_of(const gtx_model *model)
     return model->has_color ? MATERIAL_COLORS : MATERIAL_NONE;
 }
 
-static const gtx_program *program_of(const gtx_draw_call *draw, const gtx_model *model,
+static const gtx_program *program_of(const gtx_submission *draw, const gtx_model *model,
                                      gtx_technique technique)
 {
-    return gtx_program_of(draw->renderer, technique, draw->view->pass, material_of(model));
+    return gtx_program_of(draw->renderer, technique, draw->call.view->pass, material_of(model));
 }
 
 static void bind_textures(const gtx_gl *gl, const gtx_model *model)
@@ -67,10 +65,10 @@ static void set_attributes(const gtx_renderer *renderer, const gtx_run *r, uint3
 }
 
 /* Takes a program into use, with the model's uniforms. */
-static void use_program(gtx_draw_call *draw, const gtx_program *program, const gtx_model *model)
+static void use_program(gtx_submission *draw, const gtx_program *program, const gtx_model *model)
 {
     const gtx_gl *gl = &draw->renderer->gl;
-    const gtx_frame *frame = &draw->frame;
+    const gtx_frame *frame = &draw->call.frame;
     const float maps[4] = {(float)(model->mip_count - 1), model->has_color ? 1.0f : 0.0f,
                            model->emission_scale, model->has_material ? 1.0f : 0.0f};
     if (program != draw->program) {
@@ -109,92 +107,102 @@ static void cast_whole(const gtx_renderer *renderer, const gtx_run *r, uint32_t 
                                        gtx_gl_offset(first[0] * sizeof(uint32_t)), (gl_size)count);
 }
 
-/* Draws parts of a plan, of the instance that the attributes point at. */
-static void cast_parts(const gtx_gl *gl, const gtx_plan *plan, uint32_t first, uint32_t count)
+/* Draws ranges of a plan, of the instance that the attributes point at. */
+static void cast_parts(const gtx_renderer *renderer, const gtx_plan *plan, uint32_t first,
+                       uint32_t count)
 {
+    const gtx_gl *gl = &renderer->gl;
+    for (uint32_t i = 0; i < count; ++i) {
+        const gtx_range *range = &plan->ranges[first + i];
+        const void *offset = gtx_gl_offset(range->first * sizeof(uint32_t));
+        if (gl->MultiDrawElements) {
+            renderer->counts[i] = (gl_size)range->count;
+            renderer->offsets[i] = offset;
+        } else {
+            gl->DrawElementsInstanced(GL_TRIANGLES, (gl_size)range->count, GL_UNSIGNED_INT,
+                                      offset, 1);
+        }
+    }
     if (gl->MultiDrawElements && count)
-        gl->MultiDrawElements(GL_TRIANGLES, plan->counts + first, GL_UNSIGNED_INT,
-                              plan->offsets + first, (gl_size)count);
-    for (uint32_t i = first; !gl->MultiDrawElements && i < first + count; ++i)
-        gl->DrawElementsInstanced(GL_TRIANGLES, plan->counts[i], GL_UNSIGNED_INT, plan->offsets[i],
-                                  1);
+        gl->MultiDrawElements(GL_TRIANGLES, renderer->counts, GL_UNSIGNED_INT, renderer->offsets,
+                              (gl_size)count);
 }
 
 /* Casts an instance by tiles; false when it has to be done otherwise. */
-static bool cast_tiles(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
+static bool cast_tiles(gtx_submission *draw, const gtx_run *r, uint32_t instance)
 {
     gtx_renderer *renderer = draw->renderer;
-    const gtx_instance_data *placed = &renderer->instances[instance];
-    if (!gtx_tile_stream_suits(renderer, draw->view) || !gtx_tiles_fill(draw, r->model, placed))
+    const gtx_instance_data *placed = &renderer->planner.instances[instance];
+    if (!gtx_tiles_suit(&draw->call) || !gtx_tiles_fill(&draw->call, r->model, placed))
         return false;
-    if (!renderer->tiles.tile_count)
+    if (!renderer->planner.tiles.tile_count)
         return true;
     use_program(draw, program_of(draw, r->model, TECHNIQUE_TILES), r->model);
-    gtx_tile_stream_draw(draw, placed);
+    gtx_tile_stream_draw(renderer, draw->program, placed);
     renderer->gl.BindVertexArray(renderer->vertex_array);
     return true;
 }
 
-static const gtx_program *cast_program(const gtx_draw_call *draw, const gtx_model *model, bool box)
+static const gtx_program *cast_program(const gtx_submission *draw, const gtx_model *model, bool box)
 {
-    const gtx_technique technique = draw->view->method == GTX_METHOD_PAPER ? TECHNIQUE_PAPER
-                                    : box                                  ? TECHNIQUE_BOX
-                                                                           : TECHNIQUE_CAST;
-    return draw->view->shading ? &draw->view->shading->cast : program_of(draw, model, technique);
+    const gtx_view *view = draw->call.view;
+    const gtx_technique technique = view->method == GTX_METHOD_PAPER ? TECHNIQUE_PAPER
+                                    : box                            ? TECHNIQUE_BOX
+                                                                     : TECHNIQUE_CAST;
+    return view->shading ? &view->shading->cast : program_of(draw, model, technique);
 }
 
-static const gtx_program *grid_program(const gtx_draw_call *draw, const gtx_model *model,
+static const gtx_program *grid_program(const gtx_submission *draw, const gtx_model *model,
                                        uint32_t looks, bool keeps_angles)
 {
     static const gtx_technique techniques[2][2] = {
         {TECHNIQUE_GRID_WHOLE, TECHNIQUE_GRID_WHOLE_FRONT},
         {TECHNIQUE_GRID, TECHNIQUE_GRID_FRONT}};
-    const bool forward = draw->view->pass == GTX_PASS_FORWARD, whole = !(looks & GTX_GRID_TRIMMED);
+    const gtx_view *view = draw->call.view;
+    const bool forward = view->pass == GTX_PASS_FORWARD, whole = !(looks & GTX_GRID_TRIMMED);
     const bool front = forward && keeps_angles && !(looks & GTX_GRID_BEHIND);
-    if (forward && !draw->view->shading && !(looks & GTX_GRID_MAPPED))
+    if (forward && !view->shading && !(looks & GTX_GRID_MAPPED))
         return program_of(draw, model, whole ? TECHNIQUE_GRID_WHOLE_LIT : TECHNIQUE_GRID_LIT);
-    return draw->view->shading
-               ? &draw->view->shading->grid
-               : program_of(draw, model, techniques[!whole][front]);
+    return view->shading ? &view->shading->grid
+                         : program_of(draw, model, techniques[!whole][front]);
 }
 
-static const gtx_program *lod_program(const gtx_draw_call *draw, const gtx_run *r, bool front)
+static const gtx_program *lod_program(const gtx_submission *draw, const gtx_run *r, bool front)
 {
-    const bool forward = draw->view->pass == GTX_PASS_FORWARD;
-    return draw->view->shading
-               ? &draw->view->shading->lod
-               : program_of(draw, r->model,
-                            forward && front ? TECHNIQUE_LOD_FRONT : TECHNIQUE_LOD);
+    const bool forward = draw->call.view->pass == GTX_PASS_FORWARD;
+    const gtx_technique technique = forward && front ? TECHNIQUE_LOD_FRONT : TECHNIQUE_LOD;
+    return draw->call.view->shading ? &draw->call.view->shading->lod
+                                    : program_of(draw, r->model, technique);
 }
 
 /* Draws those patches of a level that are seen from one side or from two, by the program for front
  * faces or the one for all. */
-static void draw_side(gtx_draw_call *draw, const gtx_run *r, uint32_t level, const uint8_t *parts,
+static void draw_side(gtx_submission *draw, const gtx_run *r, uint32_t level, const uint8_t *parts,
                       bool two_sided, bool front)
 {
     const gtx_renderer *renderer = draw->renderer;
     const gtx_gl *gl = &renderer->gl;
     const gtx_lod_meshes *lods = &r->model->lods;
-    const bool single = draw->view->pass == GTX_PASS_DEPTH && r->count == 1;
+    const bool single = draw->call.view->pass == GTX_PASS_DEPTH && r->count == 1;
     use_program(draw, single ? program_of(draw, r->model, TECHNIQUE_LOD_SINGLE)
                              : lod_program(draw, r, front), r->model);
     if (single)
-        gl->Uniform4fv(draw->program->place, 3, renderer->instances[r->first].world[0]);
+        gl->Uniform4fv(draw->program->place, 3, renderer->planner.instances[r->first].world[0]);
     gl->Uniform4fv(draw->program->lod, 1, lods->levels[level].place);
     gtx_lod_draw(gl, lods, level, two_sided, single ? 0 : r->count, parts);
 }
 
 /* Draws an LOD mesh, or parts of it: patches with a back face culled, then those without. Of these
  * the front faces first, by their own program: most back faces lie hidden behind them. */
-static void draw_lod(gtx_draw_call *draw, const gtx_run *r, uint32_t level, const uint8_t *parts)
+static void draw_lod(gtx_submission *draw, const gtx_run *r, uint32_t level, const uint8_t *parts)
 {
     const gtx_renderer *renderer = draw->renderer;
     const gtx_gl *gl = &renderer->gl;
     const gtx_lod_meshes *lods = &r->model->lods;
-    bool front = draw->view->pass == GTX_PASS_FORWARD && !draw->view->shading;
+    bool front = draw->call.view->pass == GTX_PASS_FORWARD && !draw->call.view->shading;
     for (uint32_t i = 0; i < r->count; ++i)
-        front = front && gtx_keeps_angles(&renderer->instances[r->first + i]);
-    if (draw->view->pass != GTX_PASS_DEPTH || r->count > 1)
+        front = front && gtx_keeps_angles(&renderer->planner.instances[r->first + i]);
+    if (draw->call.view->pass != GTX_PASS_DEPTH || r->count > 1)
         set_instances(renderer, r->first, 1);
     gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
     gl->Enable(GL_CULL_FACE);
@@ -213,18 +221,18 @@ static void draw_lod(gtx_draw_call *draw, const gtx_run *r, uint32_t level, cons
 }
 
 /* Draws displaced grids. */
-static void draw_grids(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
+static void draw_grids(gtx_submission *draw, const gtx_run *r, uint32_t instance)
 {
     gtx_renderer *renderer = draw->renderer;
     const gtx_gl *gl = &renderer->gl;
-    const gtx_instance_data *placed = &renderer->instances[instance];
+    const gtx_instance_data *placed = &renderer->planner.instances[instance];
     const gl_uint all = 1u << 30;
     bool begun = false;
     for (uint32_t looks = 0; looks < GTX_GRID_LOOKS; ++looks) {
-        if (!renderer->grids.index_count[looks])
+        if (!renderer->planner.grids.index_count[looks])
             continue;
         if (!begun) {
-            gtx_grids_begin(renderer);
+            gtx_grid_stream_begin(renderer);
             set_instances(renderer, instance, all);
             gl->FrontFace(r->mirrored ? GL_CW : GL_CCW);
             gl->Disable(GL_CULL_FACE);
@@ -233,18 +241,18 @@ static void draw_grids(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
         use_program(draw, grid_program(draw, r->model, looks, gtx_keeps_angles(placed)), r->model);
         gl->Uniform4fv(draw->program->lod, 1,
                        (float[4]){looks & GTX_GRID_BEHIND ? 1.0f : 0.0f, 0, 0, 0});
-        gtx_grids_draw(renderer, looks);
+        gtx_grid_stream_draw(renderer, looks);
     }
     if (begun)
         gl->BindVertexArray(renderer->vertex_array);
 }
 
 /* Casts what the plan holds, nearest first. Boxes are told their level by a uniform. */
-static void cast_plan(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
+static void cast_plan(gtx_submission *draw, const gtx_run *r, uint32_t instance)
 {
     const gtx_renderer *renderer = draw->renderer;
     const gtx_gl *gl = &renderer->gl;
-    gtx_plan *plan = &draw->renderer->plan;
+    gtx_plan *plan = &draw->renderer->planner.plan;
     uint32_t first = 0;
     if (!plan->count || cast_tiles(draw, r, instance))
         return;
@@ -253,26 +261,26 @@ static void cast_plan(gtx_draw_call *draw, const gtx_run *r, uint32_t instance)
     set_attributes(renderer, r, instance);
     face(gl, r, true);
     for (uint32_t level = 0; level < r->model->mip_count; ++level) {
-        const float *d = draw->frame.detail, detail[4] = {d[0], d[1], (float)level, d[3]};
+        const float *d = draw->call.frame.detail, detail[4] = {d[0], d[1], (float)level, d[3]};
         if (!plan->box_count[level])
             continue;
         use_program(draw, cast_program(draw, r->model, true), r->model);
         gl->Uniform4fv(draw->program->detail, 1, detail);
-        cast_parts(gl, plan, first, plan->box_count[level]);
+        cast_parts(renderer, plan, first, plan->box_count[level]);
         first += plan->box_count[level];
     }
     face(gl, r, false);
     if (plan->hull_count)
         use_program(draw, cast_program(draw, r->model, false), r->model);
-    cast_parts(gl, plan, first, plan->hull_count);
+    cast_parts(renderer, plan, first, plan->hull_count);
 }
 
 /* How many levels of the LOD mesh may be mixed with height fields, the finest first. */
-static uint32_t levels_to_mix(const gtx_draw_call *draw, const gtx_run *r)
+static uint32_t levels_to_mix(const gtx_submission *draw, const gtx_run *r)
 {
     const gtx_lod_meshes *lods = &r->model->lods;
     uint32_t count = 0;
-    if (draw->view->method != GTX_METHOD_AUTO || r->way != GTX_DRAW_PATCHES)
+    if (draw->call.view->method != GTX_METHOD_AUTO || r->way != GTX_DRAW_PATCHES)
         return 0;
     while (count < lods->level_count && !lods->levels[count].far)
         ++count;
@@ -280,15 +288,15 @@ static uint32_t levels_to_mix(const gtx_draw_call *draw, const gtx_run *r)
 }
 
 /* Draws an instance patch by patch, each in its own way. */
-static void draw_patches(gtx_draw_call *draw, const gtx_run *r, uint32_t instance,
+static void draw_patches(gtx_submission *draw, const gtx_run *r, uint32_t instance,
                          bool edited_only)
 {
     gtx_renderer *renderer = draw->renderer;
-    gtx_plan *plan = &renderer->plan;
+    gtx_plan *plan = &renderer->planner.plan;
     const gtx_lod_meshes *lods = &r->model->lods;
-    const gtx_instance_data *placed = &renderer->instances[instance];
-    gtx_plan_patches(draw, r->model, placed, levels_to_mix(draw, r), edited_only);
-    if (r->way != GTX_DRAW_CAST && gtx_blocks_fill(draw, r->model, placed))
+    const gtx_instance_data *placed = &renderer->planner.instances[instance];
+    gtx_plan_patches(&draw->call, r->model, placed, levels_to_mix(draw, r), edited_only);
+    if (r->way != GTX_DRAW_CAST && gtx_blocks_fill(&draw->call, r->model, placed))
         draw_grids(draw, r, instance);
     cast_plan(draw, r, instance);
     const gtx_run one = {r->model, instance, 1, 0, r->mirrored};
@@ -299,23 +307,23 @@ static void draw_patches(gtx_draw_call *draw, const gtx_run *r, uint32_t instanc
 
 /* Draws the patches of a run, or only those that are edited. Instances that stand alone are sorted,
  * those that need it are looked at patch by patch, and others cast together. */
-static void draw_height_fields(gtx_draw_call *draw, const gtx_run *r, bool edited_only)
+static void draw_height_fields(gtx_submission *draw, const gtx_run *r, bool edited_only)
 {
     const gtx_renderer *renderer = draw->renderer;
     const gtx_model *model = r->model;
     const gtx_program *program = cast_program(draw, model, false);
-    if (draw->view->method == GTX_METHOD_PAPER) {
+    if (draw->call.view->method == GTX_METHOD_PAPER) {
         use_program(draw, program, model);
         cast_whole(renderer, r, 0, r->first, r->count);
         return;
     }
     for (uint32_t i = r->first, end = r->first + r->count; i < end;) {
         uint32_t last = i, kind = 0;
-        if (r->count > 1 && !edited_only && draw->view->method != GTX_METHOD_GRID &&
+        if (r->count > 1 && !edited_only && draw->call.view->method != GTX_METHOD_GRID &&
             (r->way == GTX_DRAW_CAST || !model->lods.level_count))
-            kind = gtx_plan_whole(draw, model, &renderer->instances[i]);
+            kind = gtx_plan_whole(&draw->call, model, &renderer->planner.instances[i]);
         for (++last; kind && last < end; ++last)
-            if (gtx_plan_whole(draw, model, &renderer->instances[last]) != kind)
+            if (gtx_plan_whole(&draw->call, model, &renderer->planner.instances[last]) != kind)
                 break;
         if (kind) {
             use_program(draw, program, model);
@@ -327,7 +335,7 @@ static void draw_height_fields(gtx_draw_call *draw, const gtx_run *r, bool edite
     }
 }
 
-void gtx_run_draw(gtx_draw_call *draw, const gtx_run *r)
+void gtx_run_draw(gtx_submission *draw, const gtx_run *r)
 {
     if (!r->model) /* before the first run */
         return;

@@ -3,7 +3,7 @@
 #define GTX_RENDER_STATE_H
 
 #include "render/gl.h"
-#include "render/units.h"
+#include "frame/units.h"
 
 #include <stdbool.h>
 

@@ -2,7 +2,8 @@
 #ifndef GTX_RENDER_UPLOAD_H
 #define GTX_RENDER_UPLOAD_H
 
-#include "render/model.h"
+#include "frame/model.h"
+#include "render/gl.h"
 
 /* How the texture of a unit is stored and read. */
 typedef struct gtx_texture_kind {

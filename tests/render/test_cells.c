@@ -150,9 +150,9 @@ static void expect_share(gtx_asset *asset, technique by, double least, double gr
     stage *s = &the_stage;
     gtx_renderer *own = s->renderer;
     s->renderer = counting_renderer(by);
-    const uint64_t before = s->renderer->tiles.draws, bound = gtx_ray_cells(asset);
+    const uint64_t before = s->renderer->planner.tiles.draws, bound = gtx_ray_cells(asset);
     const double most = most_of_views(s, asset, by, GL_FUNC_ADD);
-    const bool tiled = s->renderer->tiles.draws > before;
+    const bool tiled = s->renderer->planner.tiles.draws > before;
     gtx_renderer_destroy(s->renderer);
     s->renderer = own;
     assert_int_equal(tiled, by == TILES);
@@ -230,8 +230,8 @@ static void needles_are_left_to_fragments(void **state)
     gtx_asset *asset = mad_asset(1, 1024, MAD_STACK, MAD_NEEDLES);
     s->renderer = counting_renderer(TILES);
     assert_true(most_of_views(s, asset, TILES, GL_FUNC_ADD) > 0);
-    assert_int_equal(s->renderer->tiles.draws, 0);
-    assert_true(s->renderer->tiles.lists.size < 8 * STAGE_PIXELS);
+    assert_int_equal(s->renderer->planner.tiles.draws, 0);
+    assert_true(s->renderer->planner.tiles.lists.size < 8 * STAGE_PIXELS);
     gtx_renderer_destroy(s->renderer);
     s->renderer = own;
     gtx_close(asset);

@@ -86,7 +86,7 @@ static void lists_stay_short(void **state)
     if (s->renderer->gl.es)
         skip();
     subject shown = subject_open(s, fixture_sphere(2, 64, 8));
-    const gtx_tiles *t = &s->renderer->tiles;
+    const gtx_tiles *t = &s->renderer->planner.tiles;
     const uint64_t before = t->draws;
     gtx_view view = view_along(shown.asset);
     view.level = 1;

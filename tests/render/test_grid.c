@@ -36,9 +36,9 @@ static gtx_view standing(int way)
 
 static uint64_t triangles_of(stage *s, const gtx_view *view, const subject *shown)
 {
-    const uint64_t before = s->renderer->grids.drawn;
+    const uint64_t before = s->renderer->planner.grids.drawn;
     draw(s, view, GTX_METHOD_GRID, &shown->instance, 1, &first);
-    return s->renderer->grids.drawn - before;
+    return s->renderer->planner.grids.drawn - before;
 }
 
 /* Triangles over each cell: but for their twist what is cast. */
@@ -86,7 +86,7 @@ static void lit_at_corners(void **state)
             draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &first);
             draw(s, &view, GTX_METHOD_GRID, &shown.instance, 1, &second);
             for (uint32_t looks = 0; looks < GTX_GRID_LOOKS; ++looks)
-                met |= (s->renderer->grids.index_count[looks] > 0) << looks;
+                met |= (s->renderer->planner.grids.index_count[looks] > 0) << looks;
             const difference d = compare(&first, &second), back = compare(&second, &first);
             if (d.both < 200 || d.holes || back.holes > 4 || d.mean > 2)
                 fail_msg("%zu, %d: %ld pixels, %ld and %ld holes, colours differ by %g", i, turn,
@@ -175,7 +175,7 @@ static void ways_meet_without_a_hole(void **state)
             view.max_error = 0.3f * powf(1.6f, (float)e);
             draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &first);
             draw(s, &view, GTX_METHOD_AUTO, &shown.instance, 1, &second);
-            const uint8_t *ways = s->renderer->plan.ways;
+            const uint8_t *ways = s->renderer->planner.plan.ways;
             uint32_t met = 0;
             for (int p = 0; p < 6; ++p)
                 met |= 1u << ways[p];

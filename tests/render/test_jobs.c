@@ -7,7 +7,7 @@
 
 #include "common/fixture.h"
 #include "common/runners.h"
-#include "render/model.h"
+#include "frame/model.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* What models and sets of rays may take: known before it is taken, and refused by limits. */
-#include "render/model.h"
+#include "frame/model.h"
 #include "lods.h"
 
 #include "common/mad.h"

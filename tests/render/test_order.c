@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "render/order.h"
+#include "frame/order.h"
 
 #include <math.h>
 

@@ -11,7 +11,7 @@
 #include "asset/patch.h"
 #include "base/alloc.h"
 #include "common/fixture.h"
-#include "render/grid.h"
+#include "frame/grid.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -33,10 +33,10 @@ static int open_with_tiles(void **state)
 static void draw_by_tiles(stage *s, gtx_view *view, const gtx_instance *instances, uint32_t count,
                           bool in_view)
 {
-    const uint64_t before = s->renderer->tiles.draws;
+    const uint64_t before = s->renderer->planner.tiles.draws;
     by_tiles(view);
     stage_draw(s, view, instances, count);
-    assert_int_equal(s->renderer->tiles.draws > before, in_view && !s->renderer->gl.es);
+    assert_int_equal(s->renderer->planner.tiles.draws > before, in_view && !s->renderer->gl.es);
 }
 
 /* How many pixels of the stage differ from those kept: in what they show, or in colour by more than
@@ -119,9 +119,9 @@ static void viewports_of_any_place(void **state)
         view.viewport_height = HEIGHT;
         stage_clear(s, &view);
         s->gl.Viewport(LEFT, BOTTOM, WIDTH, HEIGHT);
-        const uint64_t before = s->renderer->tiles.draws;
+        const uint64_t before = s->renderer->planner.tiles.draws;
         must(gtx_draw(s->renderer, &view, &shown.instance, 1, &error), &error);
-        assert_int_equal(s->renderer->tiles.draws > before, tiles && !s->renderer->gl.es);
+        assert_int_equal(s->renderer->planner.tiles.draws > before, tiles && !s->renderer->gl.es);
         gtx_framebuffer_read_color(&s->gl, &s->framebuffer, s->color);
         gtx_framebuffer_read_depth(&s->gl, &s->framebuffer, s->depth);
     }
@@ -247,13 +247,13 @@ static void others_cast_in_fragments(void **state)
     gtx_camera camera = camera_around(shown.asset);
     gtx_view view = view_of(&camera);
     view.level = 1;
-    const uint64_t before = own->tiles.draws;
+    const uint64_t before = own->planner.tiles.draws;
     stage_draw(s, &view, &shown.instance, 1);
     keep(s);
     by_tiles(&view);
     view.viewport_width = UINT32_MAX;
     stage_draw(s, &view, &shown.instance, 1);
-    assert_int_equal(s->renderer->tiles.draws, before);
+    assert_int_equal(s->renderer->planner.tiles.draws, before);
     assert_memory_equal(s->color, other_color, sizeof other_color);
     by_tiles(&view);
     for (long n = 0; n < 8; ++n) {
@@ -262,13 +262,13 @@ static void others_cast_in_fragments(void **state)
         s->renderer = renderer_with(n ? GTX_TILES_ALWAYS : GTX_TILES_NEVER, &hooks);
         subject again = subject_open(s, fixture_sphere(2, 64, 8));
         stage_clear(s, &view);
-        c.until_failure = n ? 5 + n : 1000; /* those of instances and of the plan come first */
+        c.until_failure = n ? 6 + n : 1000; /* those of instances and of the plan come first */
         if (gtx_draw(s->renderer, &view, &again.instance, 1, NULL) == GTX_OK) {
             gtx_framebuffer_read_color(&s->gl, &s->framebuffer, s->color);
             gtx_framebuffer_read_depth(&s->gl, &s->framebuffer, s->depth);
             assert_true(differences(s) < 40);
             if (!n)
-                assert_int_equal(s->renderer->tiles.draws, 0);
+                assert_int_equal(s->renderer->planner.tiles.draws, 0);
         }
         subject_close(s, &again);
         gtx_renderer_destroy(s->renderer);

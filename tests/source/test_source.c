@@ -109,14 +109,15 @@ static void a_wrong_include_does_not_compile(void **state)
     } cases[] = {
         {"asset", "base/alloc.h", true},       {"asset", "derive/derive.h", false},
         {"derive", "asset/asset.h", true},     {"derive", "trace/caster.h", false},
-        {"render", "derive/derive.h", true},   {"render", "trace/caster.h", false},
+        {"frame", "derive/derive.h", true},    {"frame", "render/gl.h", false},
+        {"render", "frame/lod.h", true},       {"render", "trace/caster.h", false},
         {"trace", "derive/hierarchy.h", true}, {"trace", "render/rays.h", false},
         {"mesh", "image/image.h", true},       {"mesh", "chart/chart.hpp", false},
         {"bake", "mesh/vec.hpp", true},        {"bake", "cook/options.hpp", false},
         {"measure", "trace/caster.h", true},   {"measure", "bake/bake.hpp", false},
         {"export", "cook/options.hpp", true},  {"cook", "export/export.hpp", false},
         {"world", "cook/options.hpp", true},   {"cook", "world/world.hpp", false},
-        {"stream", "asset/asset.h", true},     {"stream", "render/model.h", false},
+        {"stream", "asset/asset.h", true},     {"stream", "frame/model.h", false},
         {"host", "image/image.h", true},       {"host", "asset/asset.h", false},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i)

@@ -1,0 +1,94 @@
+/* How far normals stray from those of their mip levels: what a mean normal alone has forgotten. */
+#include "frame/model.h"
+
+#include "asset/asset.h"
+#include "base/vec.h"
+
+#include <math.h>
+
+/* Texels looked at, of a patch: enough for a tenth of what the mean of all says, and a few
+ * microseconds. */
+enum { SAMPLES = 256 };
+
+/* Past it a surface is crumpled rather than rough, and a second order of its light says nothing. */
+static const float max_deviation = 0.5f;
+static const float least_deviation = 1e-3f; /* GTX_LEAST_DEVIATION of geotex_view.glsl */
+
+typedef struct normals {
+    const uint8_t *first;     /* of the patch's rectangle at a level */
+    size_t row;               /* bytes */
+    uint32_t width, height, level;
+} normals;
+
+static normals normals_of(const gtx_asset *asset, const gtx_patch *p, uint32_t level)
+{
+    const size_t width = asset->info.page_width >> level, height = asset->info.page_height >> level;
+    const size_t row = p->page * height + (p->rect[1] >> level);
+    return (normals){asset->normal[level] + 2 * (row * width + (p->rect[0] >> level)), 2 * width,
+                     p->rect[2] >> level, p->rect[3] >> level, level};
+}
+
+/* As geotex_surface.glsl looks a normal up at a place in texels of the level, not normalised: codes
+ * are mixed, then decoded. */
+static gtx_vec3 look_up(const normals *n, float x, float y)
+{
+    const float u = fminf(fmaxf(x - 0.5f, 0), (float)(n->width - 1));
+    const float v = fminf(fmaxf(y - 0.5f, 0), (float)(n->height - 1));
+    const uint32_t i = (uint32_t)u, j = (uint32_t)v;
+    const float fu = u - (float)i, fv = v - (float)j;
+    const uint8_t *low = n->first + j * n->row + 2 * (size_t)i;
+    const uint8_t *high = j + 1 < n->height ? low + n->row : low;
+    const size_t next = i + 1 < n->width ? 2 : 0;
+    float code[2];
+    for (int k = 0; k < 2; ++k) {
+        const float below = (float)low[k] + fu * ((float)low[k + next] - (float)low[k]);
+        const float above = (float)high[k] + fu * ((float)high[k + next] - (float)high[k]);
+        code[k] = (below + fv * (above - below)) / 127.5f - 1;
+    }
+    const float p = (code[0] + code[1]) / 2, q = (code[0] - code[1]) / 2;
+    return gtx_v3(p, q, 1 - fabsf(p) - fabsf(q));
+}
+
+/* Where in its pixel the normal of a sample is looked up: the R2 sequence (Roberts 2018). */
+static float jitter(uint32_t sample, float step)
+{
+    const float at = (float)sample * step;
+    return at - floorf(at) - 0.5f;
+}
+
+/* 1 - the mean cosine, which for directions that stray little is their variance along an axis. */
+static float variance(const gtx_grid *finest, const normals *own, const normals *coarse)
+{
+    const uint32_t texels = own->width * own->height;
+    /* Odd, so that it meets every place of a coarser texel: rectangles are even. */
+    const uint32_t step = texels / SAMPLES | 1;
+    const float scale = 1.0f / (float)(1u << coarse->level);
+    uint32_t count = 0;
+    float sum = 0;
+    for (uint32_t at = 0; at < texels; at += step) {
+        if (!finest->code[at])
+            continue;
+        ++count;
+        const float x = (float)(at % own->width) + 0.5f, y = (float)(at / own->width) + 0.5f;
+        const gtx_vec3 n = look_up(own, x, y);
+        const gtx_vec3 m = look_up(coarse, x * scale + jitter(count, 0.7548777f),
+                                   y * scale + jitter(count, 0.5698403f));
+        sum += 1 - gtx_v3_dot(n, m) / sqrtf(gtx_v3_dot(n, n) * gtx_v3_dot(m, m));
+    }
+    return count ? sum / (float)count : 0;
+}
+
+void gtx_normal_deviation(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
+                          float (*deviation)[4])
+{
+    const gtx_patch *p = &asset->patches[patch];
+    const normals own = normals_of(asset, p, 0);
+    for (uint32_t k = 0; k < GTX_MAX_MIPS; ++k) {
+        float found = least_deviation;
+        if (k > 0 && k < asset->info.mip_count) {
+            const normals coarse = normals_of(asset, p, k);
+            found = sqrtf(fmaxf(variance(finest, &own, &coarse), 0));
+        }
+        deviation[k / 4][k % 4] = fminf(fmaxf(found, least_deviation), max_deviation);
+    }
+}

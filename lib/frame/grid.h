@@ -1,0 +1,62 @@
+/* Height fields drawn as displaced grids: which blocks of their cells are in view, and their
+ * triangles. */
+#ifndef GTX_FRAME_GRID_H
+#define GTX_FRAME_GRID_H
+
+#include "frame/frustum.h"
+#include "frame/plan.h"
+#include "frame/scratch.h"
+
+/* A node of a patch's level 0, as geotex_lod.vert reads it. */
+typedef struct gtx_grid_vertex {
+    uint16_t x, y, code, unused;
+    uint32_t patch;
+} gtx_grid_vertex;
+
+/* Drawn alike: first those seen from the front, then those from behind; of either those that show
+ * whole, which leave the depth test first, then others; of these first those that may be lit at
+ * their vertices, then those whose pixels look maps up. */
+enum { GTX_GRID_MAPPED = 1, GTX_GRID_TRIMMED = 2, GTX_GRID_BEHIND = 4, GTX_GRID_LOOKS = 8 };
+
+/* What is drawn of one instance: vertices, and corners of triangles by their looks. */
+typedef struct gtx_grids {
+    gtx_scratch vertices, indices[GTX_GRID_LOOKS], slots;
+    uint32_t vertex_count, index_count[GTX_GRID_LOOKS];
+    gtx_rtin_triangle triangles[GTX_RTIN_TRIANGLES];
+    uint64_t drawn;           /* triangles so far: tests look at them */
+} gtx_grids;
+
+/* refine.c: a patch while its triangles are found. */
+typedef struct gtx_refining {
+    const gtx_allocator *hooks;
+    gtx_grids *grids;
+    const gtx_rtin *rtin;
+    const gtx_rtin_node *nodes;
+    const gtx_rtin_block *blocks;
+    uint32_t patch, row;
+    bool two_sided, mapped;   /* mapped: nothing is lit at vertices */
+    uint32_t depth;           /* levels that are halved: all by their errors, or some anyway */
+    bool by_error;
+    double w[4], eye[4];      /* of clip space, over grid space; and there */
+    double reach[GTX_RTIN_LEVELS]; /* how much nearer may be what halving a middle changes */
+    double scale;             /* w at which an error's unit is what the view allows */
+    double near;              /* w below which all triangles are to be lit at vertices */
+} gtx_refining;
+
+/* Begins a patch, with w of clip space as a linear function over its grid space, and the eye in
+ * that. */
+gtx_refining gtx_refine(const gtx_frustum *f, const gtx_model *model, uint32_t patch,
+                        const double w[4], const double eye[4], gtx_grids *grids,
+                        const gtx_allocator *hooks);
+/* Adds the triangles of a block. False without memory. */
+bool gtx_refine_block(const gtx_refining *r, uint32_t column, uint32_t row);
+
+/* blocks.c: takes those patches out of the planner's plan that are drawn so, and fills its grids
+ * with the blocks of theirs that are in view and may face the eye, in the order of the plan.
+ * Without memory they are cast; it is false when none can be drawn so. */
+bool gtx_blocks_fill(const gtx_draw_call *draw, const gtx_model *model,
+                     const gtx_instance_data *placed);
+
+void gtx_grids_free(gtx_grids *grids, const gtx_allocator *allocator);
+
+#endif
