@@ -172,7 +172,8 @@ $(lib_cook): $(call objects_of,$(ROOMS_COOK))
 	$(Q)rm -f $@ && $(AR) qcs $@ $^
 
 # What a shared library exports: the functions that its headers declare, and nothing else.
-$(out)/gen/libgeotex.map: $(addprefix include/geotex/,geotex.h edit.h solid.h render.h stream.h)
+headers_core := geotex edit solid frame render stream
+$(out)/gen/libgeotex.map: $(headers_core:%=include/geotex/%.h)
 $(out)/gen/libgeotex-cook.map: $(addprefix include/geotex/,cook.h export.h)
 $(out)/gen/%.map: Makefile
 	@mkdir -p $(@D)

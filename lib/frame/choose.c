@@ -48,7 +48,7 @@ static extent measure(const gtx_draw_call *draw, const gtx_model *model,
                       const gtx_instance_data *placed)
 {
     const gtx_lod_meshes *lods = &model->lods;
-    const float *clip = draw->frame.clip_from_world;
+    const float *clip = draw->sight.clip_from_world;
     double w[4] = {0, 0, 0, clip[15]}, radius = 0; /* w in clip space, as a row over object space */
     for (int k = 0; k < 4; ++k)
         for (int r = 0; r < 3; ++r)
@@ -63,7 +63,7 @@ static extent measure(const gtx_draw_call *draw, const gtx_model *model,
     if (nearest < near_share * middle)
         nearest = fmax(nearest, nearest_patch(model, w));
     /* detail[0]: pixels a world unit at w = 1, over the error allowed in pixels. */
-    const double scale = draw->frame.detail[0] * gtx_stretch_of(placed);
+    const double scale = draw->sight.detail[0] * gtx_stretch_of(placed);
     const double allowed = draw->view->max_error > 0 ? draw->view->max_error : 0.5;
     const double across = scale * allowed * sqrt(radius) / fmax(middle, DBL_MIN);
     return (extent){fmax(nearest, 0) / scale, across * across};

@@ -22,25 +22,25 @@ gtx_frustum gtx_frustum_of(const gtx_draw_call *draw, const gtx_model *model,
                            const gtx_instance_data *placed)
 {
     const gtx_view *view = draw->view;
-    const gtx_frame *frame = &draw->frame;
+    const gtx_sight *sight = &draw->sight;
     gtx_plane rows[4] = {{{0}, 0}};
     for (int r = 0; r < 4; ++r) {
         for (int k = 0; k < 4; ++k)
             for (int i = 0; i < 3; ++i)
-                rows[r].row[k] += (double)frame->clip_from_world[4 * i + r] * placed->world[i][k];
-        rows[r].row[3] += frame->clip_from_world[12 + r];
+                rows[r].row[k] += (double)sight->clip_from_world[4 * i + r] * placed->world[i][k];
+        rows[r].row[3] += sight->clip_from_world[12 + r];
     }
     const gtx_plane *w = &rows[3];
-    const gtx_plane low = combine(w, frame->depth[0], &rows[2], 1);
+    const gtx_plane low = combine(w, sight->depth[0], &rows[2], 1);
     const gtx_plane high = combine(w, 1, &rows[2], -1);
-    gtx_frustum f = {.side = {frame->reversed ? high : low, frame->reversed ? low : high,
+    gtx_frustum f = {.side = {sight->reversed ? high : low, sight->reversed ? low : high,
                               combine(w, 1, &rows[0], 1), combine(w, 1, &rows[0], -1),
                               combine(w, 1, &rows[1], 1), combine(w, 1, &rows[1], -1)},
                      .w = finish(*w),
                      .eye = {placed->object[0][3], placed->object[1][3], placed->object[2][3],
-                             frame->depth[3]},
-                     .pixels = frame->detail[0] * frame->detail[3] * gtx_stretch_of(placed),
-                     .scale = frame->detail[0] * gtx_stretch_of(placed),
+                             sight->depth[3]},
+                     .pixels = sight->detail[0] * sight->detail[3] * gtx_stretch_of(placed),
+                     .scale = sight->detail[0] * gtx_stretch_of(placed),
                      .level = -1};
     const int32_t last = (int32_t)model->mip_count - 1;
     if (view->level > 0)

@@ -4,6 +4,7 @@
 
 #include "asset/asset.h"
 
+#include <geotex/frame.h>
 #include <stdbool.h>
 
 /* A vertex on a border between patches is stored once for each of them. */
@@ -81,5 +82,11 @@ static inline void gtx_lod_mark(gtx_lod_meshes *lods, uint32_t patch)
 
 /* What of a patch is drawn by a level. */
 typedef enum gtx_lod_part { GTX_LOD_NOTHING, GTX_LOD_BORDER, GTX_LOD_ALL } gtx_lod_part;
+
+/* lod_ranges.c: what is drawn of a level: the parts, an array of gtx_lod_part by patch, or with
+ * NULL all patches that are not edited; of those seen from one side or from two. Writes at most two
+ * ranges a patch, and returns how many. */
+uint32_t gtx_lod_ranges(const gtx_lod_meshes *lods, uint32_t level, bool two_sided,
+                        const uint8_t *parts, gtx_range *ranges);
 
 #endif

@@ -96,6 +96,8 @@ void gtx_model_free_staging(gtx_model *model)
 
 void gtx_model_free(gtx_model *model)
 {
+    if (!model)
+        return;
     gtx_model_free_staging(model);
     const gtx_allocator hooks = model->allocator;
     gtx_lod_free(&model->lods, &hooks);

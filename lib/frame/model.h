@@ -7,7 +7,7 @@
 #include "frame/lod.h"
 #include "frame/units.h"
 
-#include <geotex/render.h>
+#include <geotex/frame.h>
 #include <stdbool.h>
 
 enum {
@@ -79,9 +79,9 @@ struct gtx_model {
 /* constant_material.c: whether all that the asset shows has one material, and which: 0..1. */
 bool gtx_find_constant_material(const gtx_asset *asset, float material[4]);
 
-/* model.c: frees the CPU's copy of maps and proxies; or the whole model but its OpenGL objects. */
+/* model.c: frees the CPU's copy of maps and proxies. gtx_model_free frees all but its OpenGL
+ * objects. */
 void gtx_model_free_staging(gtx_model *model);
-void gtx_model_free(gtx_model *model);
 /* reserve.c: room for records, slabs and displaced grids. False without memory. */
 bool gtx_model_reserve_blocks(gtx_model *model, const gtx_asset *asset);
 /* Rows of the texture of records and slabs, and which of its texels the slabs of a patch's level

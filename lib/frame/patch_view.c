@@ -47,8 +47,8 @@ static void fill_place(const gtx_camera_rows *c, const gtx_instance_data *placed
 gtx_camera_rows gtx_camera_rows_of(const gtx_draw_call *draw, const gtx_instance_data *placed,
                                    float place[GTX_PLACE_ROWS][4])
 {
-    const gtx_frame *frame = &draw->frame;
-    gtx_camera_rows c = {.perspective = frame->depth[3] > 0,
+    const gtx_sight *sight = &draw->sight;
+    gtx_camera_rows c = {.perspective = sight->depth[3] > 0,
                          .width = draw->view->viewport_width,
                          .height = draw->view->viewport_height};
     const double half[2] = {c.width / 2.0, c.height / 2.0};
@@ -56,16 +56,16 @@ gtx_camera_rows gtx_camera_rows_of(const gtx_draw_call *draw, const gtx_instance
     for (int r = 0; r < 4; ++r) {
         for (int k = 0; k < 4; ++k)
             for (int i = 0; i < 3; ++i)
-                clip[r][k] += (double)frame->clip_from_world[4 * i + r] * placed->world[i][k];
-        clip[r][3] += frame->clip_from_world[12 + r];
+                clip[r][k] += (double)sight->clip_from_world[4 * i + r] * placed->world[i][k];
+        clip[r][3] += sight->clip_from_world[12 + r];
     }
-    const double w = c.perspective ? 1 : clip[3][3], sign = frame->reversed ? -1 : 1;
+    const double w = c.perspective ? 1 : clip[3][3], sign = sight->reversed ? -1 : 1;
     for (int k = 0; k < 4; ++k) {
         c.row[0][k] = (clip[0][k] + clip[3][k]) * half[0] / w;
         c.row[1][k] = (clip[1][k] + clip[3][k]) * half[1] / w;
         c.row[2][k] = c.perspective ? clip[3][k] : sign * clip[2][k] / w;
-        c.near[k] = frame->reversed ? clip[3][k] - clip[2][k]
-                                    : clip[2][k] + (double)frame->depth[0] * clip[3][k];
+        c.near[k] = sight->reversed ? clip[3][k] - clip[2][k]
+                                    : clip[2][k] + (double)sight->depth[0] * clip[3][k];
     }
     set_rays(&c);
     fill_place(&c, placed, clip[2], w, place);

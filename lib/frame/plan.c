@@ -30,7 +30,7 @@ gtx_result gtx_plan_reserve(gtx_planner *planner, uint32_t patches, gtx_error *e
     gtx_plan_free(planner);
     const gtx_allocator *hooks = &planner->allocator;
     plan->capacity = patches;
-    plan->ranges = gtx_alloc_array(hooks, patches, sizeof *plan->ranges);
+    plan->ranges = gtx_alloc_array(hooks, 2 * (size_t)patches, sizeof *plan->ranges);
     plan->entries = gtx_alloc_array(hooks, patches, sizeof *plan->entries);
     plan->ways = gtx_alloc_array(hooks, patches, sizeof *plan->ways);
     plan->parts = gtx_alloc_array(hooks, patches, sizeof *plan->parts);
@@ -44,7 +44,7 @@ void gtx_plan_free(gtx_planner *planner)
 {
     gtx_plan *plan = &planner->plan;
     const gtx_allocator *hooks = &planner->allocator;
-    gtx_free_array(hooks, plan->ranges, plan->capacity, sizeof *plan->ranges);
+    gtx_free_array(hooks, plan->ranges, 2 * (size_t)plan->capacity, sizeof *plan->ranges);
     gtx_free_array(hooks, plan->entries, plan->capacity, sizeof *plan->entries);
     gtx_free_array(hooks, plan->ways, plan->capacity, sizeof *plan->ways);
     gtx_free_array(hooks, plan->parts, plan->capacity, sizeof *plan->parts);
@@ -122,7 +122,7 @@ void gtx_plan_proxies(gtx_plan *plan, const gtx_model *model)
             &model->first_index[(box ? 0 : 1 + entry->level) * model->patch_count + entry->patch];
         if (first[0] == first[1])
             continue;
-        plan->ranges[count++] = (gtx_range){first[0], first[1] - first[0]};
+        plan->ranges[count++] = (gtx_range){.first = first[0], .count = first[1] - first[0]};
         plan->box_count[entry->level] += box;
         boxes += box;
     }

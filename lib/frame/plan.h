@@ -15,11 +15,6 @@ typedef struct gtx_plan_entry {
     uint32_t patch, level;
 } gtx_plan_entry;
 
-/* Consecutive indices. */
-typedef struct gtx_range {
-    uint32_t first, count;
-} gtx_range;
-
 /* What is drawn of one instance. Entries are in the order of their distance: displaced grids are
  * taken out of them, and the others cast by ranges of the proxies' indices: first the boxes, level
  * by level, then the hulls. */
@@ -29,7 +24,7 @@ typedef struct gtx_plan {
     uint8_t *ways, *parts;    /* of each patch: how it is drawn, and what of it by one LOD mesh */
     bool any_lod;
     uint32_t box_count[GTX_MAX_MIPS], hull_count; /* boxes by the level that is cast */
-    gtx_range *ranges;
+    gtx_range *ranges;        /* two a patch: so many has a level of the LOD mesh at most */
 } gtx_plan;
 
 /* How an instance is drawn: patch by patch, each in its own way; by an LOD mesh, level n - 1; or
@@ -46,8 +41,8 @@ double gtx_grid_cost(const gtx_draw_call *draw, uint32_t triangles, double pixel
 double gtx_cast_cost(const gtx_draw_call *draw, uint32_t patches, double pixels);
 
 /* plan.c: makes room for plans of so many patches. Errors: MEMORY. */
-gtx_result gtx_plan_reserve(struct gtx_planner *planner, uint32_t patches, gtx_error *error);
-void gtx_plan_free(struct gtx_planner *planner);
+gtx_result gtx_plan_reserve(gtx_planner *planner, uint32_t patches, gtx_error *error);
+void gtx_plan_free(gtx_planner *planner);
 /* The kind of proxy that all patches of an instance get, if its bounds alone tell, or 0. */
 uint32_t gtx_plan_whole(const gtx_draw_call *draw, const gtx_model *model,
                         const gtx_instance_data *placed);

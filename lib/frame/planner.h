@@ -1,4 +1,4 @@
-/* What plans of frames are made in: scratch that lives from frame to frame. */
+/* The inside of planners. */
 #ifndef GTX_FRAME_PLANNER_H
 #define GTX_FRAME_PLANNER_H
 
@@ -7,9 +7,10 @@
 #include "frame/tiles.h"
 #include "frame/view.h"
 
-typedef struct gtx_planner {
+struct gtx_planner {
     gtx_allocator allocator;
     gtx_costs costs;          /* as told, or all 0 */
+    bool own_main;
     /* An instance each: its data for shaders, whether its winding is turned, and what it is drawn
      * by, as gtx_choose has it. */
     gtx_instance_data *instances;
@@ -19,13 +20,13 @@ typedef struct gtx_planner {
     gtx_plan plan;            /* of one instance at a time, and so are tiles and grids */
     gtx_tiles tiles;
     gtx_grids grids;
-} gtx_planner;
+    gtx_draw_call call;       /* the frame begun last */
+    gtx_constants constants;  /* of its draws, one at a time */
+};
 
-/* Of zeros, but for what is told. */
-void gtx_planner_begin(gtx_planner *planner);
-void gtx_planner_end(gtx_planner *planner);
-/* Places instances and chooses what each is drawn by. Errors: ARGUMENT, UNSUPPORTED, MEMORY. */
-gtx_result gtx_planner_place(const gtx_draw_call *draw, const gtx_instance *instances,
-                             uint32_t count, gtx_error *error);
+/* Takes allocator and costs, and no memory yet. Errors: ARGUMENT. */
+gtx_result gtx_planner_init(gtx_planner *planner, const gtx_allocator *allocator,
+                            const gtx_costs *costs, gtx_error *error);
+void gtx_planner_free(gtx_planner *planner);
 
 #endif

@@ -2,9 +2,17 @@
 #ifndef GTX_FRAME_UNITS_H
 #define GTX_FRAME_UNITS_H
 
+#include <geotex/frame.h>
+
 enum {
-    UNIT_CELLS, UNIT_TRIM, UNIT_NORMALS, UNIT_COLORS, UNIT_PATCHES, UNIT_MATERIALS, UNIT_EMISSIONS,
-    UNIT_COUNT,
+    UNIT_CELLS = GTX_SLOT_CELLS,
+    UNIT_TRIM = GTX_SLOT_TRIM,
+    UNIT_NORMALS = GTX_SLOT_NORMALS,
+    UNIT_COLORS = GTX_SLOT_COLORS,
+    UNIT_PATCHES = GTX_SLOT_PATCHES,
+    UNIT_MATERIALS = GTX_SLOT_MATERIALS,
+    UNIT_EMISSIONS = GTX_SLOT_EMISSIONS,
+    UNIT_COUNT = GTX_SLOT_COUNT,
     UNIT_CLEARED = 8, /* units that render.h promises to leave empty */
     UNIT_STREAM = 8,  /* a buffer's, which leaves the other textures of the unit alone */
     UNIT_RAYS = 13    /* the first of three, which gtx_rays_bind binds */

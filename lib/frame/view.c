@@ -68,7 +68,7 @@ static void multiply(const float a[16], const float b[16], double out[16])
 }
 
 /* The eye and the direction of view, and whether the view mirrors; false when there is none. */
-static bool find_eye(const double clip[16], gtx_frame *frame, double forward[3])
+static bool find_eye(const double clip[16], gtx_sight *sight, double forward[3])
 {
     double point[4];
     if (!shared_point(clip, point))
@@ -81,16 +81,16 @@ static bool find_eye(const double clip[16], gtx_frame *frame, double forward[3])
     }
     const bool perspective = w[0] != 0 || w[1] != 0 || w[2] != 0;
     /* Clip z grows away from the camera, or towards it when reversed. */
-    const double sign = frame->reversed ? -1 : 1;
+    const double sign = sight->reversed ? -1 : 1;
     for (int k = 0; k < 3; ++k) {
         forward[k] = perspective ? w[k] : sign * point[k];
-        frame->eye[k] = perspective ? point[k] / point[3] : -sign * point[k];
+        sight->eye[k] = perspective ? point[k] / point[3] : -sign * point[k];
     }
-    frame->eye[3] = perspective;
+    sight->eye[3] = perspective;
     const double turn = determinant(x, y, forward);
-    frame->mirrored = turn > 0;
-    return turn != 0 && isfinite(turn) && isfinite(frame->eye[0]) && isfinite(frame->eye[1]) &&
-           isfinite(frame->eye[2]);
+    sight->mirrored = turn > 0;
+    return turn != 0 && isfinite(turn) && isfinite(sight->eye[0]) && isfinite(sight->eye[1]) &&
+           isfinite(sight->eye[2]);
 }
 
 static void set_light(const gtx_view *view, const double forward[3], float light[4])
@@ -119,7 +119,7 @@ static void set_detail(const gtx_view *view, const double clip[16], float detail
     detail[3] = (float)max_error;
 }
 
-gtx_result gtx_frame_from_view(const gtx_view *view, gtx_frame *out, gtx_error *error)
+gtx_result gtx_sight_of_view(const gtx_view *view, gtx_sight *out, gtx_error *error)
 {
     double clip[16], forward[3];
     if (!all_finite(view->view, 16) || !all_finite(view->projection, 16) ||
@@ -161,7 +161,7 @@ gtx_result gtx_frame_from_view(const gtx_view *view, gtx_frame *out, gtx_error *
     return GTX_OK;
 }
 
-gtx_result gtx_place_instance(const gtx_frame *frame, const gtx_instance *instance,
+gtx_result gtx_place_instance(const gtx_sight *sight, const gtx_instance *instance,
                               gtx_instance_data *out, bool *mirrored, gtx_error *error)
 {
     const float *m = instance->transform;
@@ -174,7 +174,7 @@ gtx_result gtx_place_instance(const gtx_frame *frame, const gtx_instance *instan
             out->world[r][k] = m[4 * k + r];
         for (int k = 0; k < 3; ++k)
             row[r][k] = m[4 * k + r];
-        offset[r] = frame->eye[r] - frame->eye[3] * m[12 + r];
+        offset[r] = sight->eye[r] - sight->eye[3] * m[12 + r];
     }
     const double det = determinant(row[0], row[1], row[2]);
     for (int r = 0; r < 3; ++r) {
@@ -195,7 +195,7 @@ gtx_result gtx_place_instance(const gtx_frame *frame, const gtx_instance *instan
     for (int k = 0; k < 4; ++k)
         out->tint[k] = white ? 1.0f : t[k];
     out->id = instance->id;
-    *mirrored = (det < 0) != frame->mirrored;
+    *mirrored = (det < 0) != sight->mirrored;
     return GTX_OK;
 }
 

@@ -32,37 +32,15 @@ void gtx_grid_stream_destroy(gtx_renderer *renderer)
     renderer->gl.DeleteBuffers(1, &g->index_buffer);
 }
 
-/* Bytes of the triangles before those of some looks. */
-static size_t offset_of(const gtx_grids *g, uint32_t looks)
-{
-    size_t indices = 0;
-    for (uint32_t k = 0; k < looks; ++k)
-        indices += g->index_count[k];
-    return indices * sizeof(uint32_t);
-}
-
-void gtx_grid_stream_begin(gtx_renderer *renderer)
+void gtx_grid_stream_begin(gtx_renderer *renderer, const gtx_frame_draw *draw)
 {
     const gtx_gl *gl = &renderer->gl;
-    const gtx_grids *g = &renderer->planner.grids;
     gl->BindVertexArray(renderer->grid_stream.vertex_array);
-    gl->BindBuffer(GL_ARRAY_BUFFER, renderer->grid_stream.vertex_buffer);
-    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(g->vertex_count * sizeof(gtx_grid_vertex)),
-                   g->vertices.data, GL_STREAM_DRAW);
-    gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (gl_pointer)offset_of(g, GTX_GRID_LOOKS), NULL,
+    if (draw->vertex_data) {
+        gl->BindBuffer(GL_ARRAY_BUFFER, renderer->grid_stream.vertex_buffer);
+        gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)draw->vertex_bytes, draw->vertex_data,
+                       GL_STREAM_DRAW);
+    }
+    gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (gl_pointer)draw->index_bytes, draw->index_data,
                    GL_STREAM_DRAW);
-    for (uint32_t k = 0; k < GTX_GRID_LOOKS; ++k)
-        if (g->index_count[k])
-            gl->BufferSubData(GL_ELEMENT_ARRAY_BUFFER, (gl_pointer)offset_of(g, k),
-                              (gl_pointer)(g->index_count[k] * sizeof(uint32_t)),
-                              g->indices[k].data);
-}
-
-void gtx_grid_stream_draw(gtx_renderer *renderer, uint32_t looks)
-{
-    gtx_grids *g = &renderer->planner.grids;
-    renderer->gl.DrawRangeElements(GL_TRIANGLES, 0, g->vertex_count - 1,
-                                   (gl_size)g->index_count[looks], GL_UNSIGNED_INT,
-                                   gtx_gl_offset(offset_of(g, looks)));
-    g->drawn += g->index_count[looks] / 3;
 }

@@ -43,12 +43,6 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
         return result;
     if ((unsigned)desc->tiles > GTX_TILES_ALWAYS)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "the renderer asks for an unknown tiling");
-    const float costs[] = {desc->costs.lod_triangle, desc->costs.lod_pixel,
-                           desc->costs.cast_patch, desc->costs.cast_pixel,
-                           desc->costs.grid_triangle};
-    for (size_t i = 0; i < sizeof costs / sizeof *costs; ++i)
-        if (!(costs[i] >= 0))
-            return gtx_fail(error, GTX_ERROR_ARGUMENT, "a cost is not a number, or below 0");
     const gtx_allocator hooks = gtx_allocator_or_default(desc->allocator);
     gtx_renderer *renderer = gtx_alloc_array(&hooks, 1, sizeof *renderer);
     if (!renderer)
@@ -57,10 +51,9 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
     renderer->jobs = desc->jobs ? *desc->jobs : (gtx_jobs){0};
     renderer->log = desc->log;
     renderer->log_user = desc->log_user;
-    renderer->planner.allocator = hooks;
-    renderer->planner.costs = desc->costs;
-    gtx_planner_begin(&renderer->planner);
-    result = gtx_gl_init(&renderer->gl, desc, error);
+    result = gtx_planner_init(&renderer->planner, &hooks, &desc->costs, error);
+    if (!result)
+        result = gtx_gl_init(&renderer->gl, desc, error);
     if (result) { /* no function may be called */
         gtx_free_array(&hooks, renderer, 1, sizeof *renderer);
         return result;
@@ -88,18 +81,6 @@ void gtx_renderer_destroy(gtx_renderer *renderer)
     renderer->gl.DeleteVertexArrays(1, &renderer->vertex_array);
     renderer->gl.DeleteBuffers(1, &renderer->instance_buffer);
     const gtx_allocator hooks = renderer->allocator;
-    gtx_renderer_free_ranges(renderer);
-    gtx_planner_end(&renderer->planner);
+    gtx_planner_free(&renderer->planner);
     gtx_free_array(&hooks, renderer, 1, sizeof *renderer);
-}
-
-void gtx_renderer_free_ranges(gtx_renderer *renderer)
-{
-    gtx_free_array(&renderer->allocator, renderer->counts, renderer->range_capacity,
-                   sizeof *renderer->counts);
-    gtx_free_array(&renderer->allocator, renderer->offsets, renderer->range_capacity,
-                   sizeof *renderer->offsets);
-    renderer->counts = NULL;
-    renderer->offsets = NULL;
-    renderer->range_capacity = 0;
 }

@@ -20,33 +20,24 @@ struct gtx_renderer {
     gtx_gl gl;
     void (*log)(const char *message, void *user);
     void *log_user;
-    gtx_program programs[TECHNIQUE_COUNT][GTX_PASS_COUNT][MATERIAL_COUNT]; /* 0: not needed yet */
+    gtx_program programs[GTX_PIPELINE_COUNT]; /* 0: not needed yet */
     gl_uint vertex_array, instance_buffer;
     gtx_planner planner;
-    /* Ranges of indices, as glMultiDrawElements takes them. */
-    gl_size *counts;
-    const void **offsets;
-    uint32_t range_capacity;
     gtx_tile_stream tile_stream;
     gtx_grid_stream grid_stream;
 };
 
-/* Gives the memory of ranges back. */
-void gtx_renderer_free_ranges(gtx_renderer *renderer);
-
 /* stream.c: the objects of casting by tiles. Where they cannot be made, nothing is cast so. */
 void gtx_tile_stream_create(gtx_renderer *renderer);
 void gtx_tile_stream_destroy(gtx_renderer *renderer);
-/* Draws what the tiles hold by the program in use. Leaves the tiles' vertex array. */
+/* Draws what the tiles hold by the program in use. */
 void gtx_tile_stream_draw(gtx_renderer *renderer, const gtx_program *program,
                           const gtx_instance_data *placed);
 
 /* grid.c: the objects of displaced grids, which all models share. */
 void gtx_grid_stream_create(gtx_renderer *renderer);
 void gtx_grid_stream_destroy(gtx_renderer *renderer);
-/* Uploads the triangles and binds the grids' vertex array. */
-void gtx_grid_stream_begin(gtx_renderer *renderer);
-/* Draws those of some looks by the program in use; one instance's attributes are set. */
-void gtx_grid_stream_draw(gtx_renderer *renderer, uint32_t looks);
+/* Uploads what a draw brings along and binds the grids' vertex array. */
+void gtx_grid_stream_begin(gtx_renderer *renderer, const gtx_frame_draw *draw);
 
 #endif

@@ -72,7 +72,7 @@ void gtx_tile_stream_draw(gtx_renderer *renderer, const gtx_program *program,
 {
     const gtx_gl *gl = &renderer->gl;
     const gtx_tile_stream *stream = &renderer->tile_stream;
-    gtx_tiles *t = &renderer->planner.tiles;
+    const gtx_tiles *t = &renderer->planner.tiles;
     send(gl, stream->buffer, t);
     gl->BindBuffer(GL_ARRAY_BUFFER, stream->corner_buffer);
     gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)t->corner_count * 4, t->corners.data,
@@ -84,8 +84,6 @@ void gtx_tile_stream_draw(gtx_renderer *renderer, const gtx_program *program,
     gl->Uniform4fv(program->tint, 1, placed->tint);
     gl->Uniform1ui(program->instance, placed->id);
     gl->BindVertexArray(stream->vertex_array);
-    gl->Disable(GL_CULL_FACE);
     gl->DrawArrays(GL_TRIANGLES, 0, (gl_size)t->corner_count);
-    gl->Enable(GL_CULL_FACE);
-    ++t->draws;
+    gl->BindVertexArray(renderer->vertex_array);
 }

@@ -64,9 +64,9 @@ static void expect_alike(gtx_asset *asset)
         const bool own = other->levels[2].data != gtx_map_data(asset, GTX_MAP_TRIM, 0, NULL);
         assert_int_equal(own, !i);
         expect_equal(alone, other);
-        gtx_model_destroy(NULL, other);
+        gtx_model_free(other);
     }
-    gtx_model_destroy(NULL, alone);
+    gtx_model_free(alone);
     gtx_close(asset);
 }
 
@@ -131,7 +131,7 @@ static void expect_reports(gtx_asset *asset)
             assert_int_equal(error.result, GTX_ERROR_MEMORY);
             assert_null(model);
         }
-        gtx_model_destroy(NULL, model);
+        gtx_model_free(model);
         assert_int_equal(c.live, 0);
     }
     gtx_close(asset);

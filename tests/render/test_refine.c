@@ -78,7 +78,7 @@ static void close_subject(subject *s)
     gtx_scratch_free(&s->hooks, &s->grids.slots);
     for (int k = 0; k < GTX_GRID_LOOKS; ++k)
         gtx_scratch_free(&s->hooks, &s->grids.indices[k]);
-    gtx_model_destroy(NULL, s->model);
+    gtx_model_free(s->model);
     gtx_close(s->asset);
 }
 

@@ -1,0 +1,336 @@
+/* What a frame consists of, whatever graphics interface shows it: what is in view, at which level
+ * and by which method, as buffers, textures, constants, shaders and a list of draws. render.h
+ * submits them to OpenGL. An engine with a render hardware interface of its own takes them from
+ * here and submits them itself:
+ *
+ *     gtx_model_prepare(asset, NULL, &model, &error);                any thread
+ *     gtx_model_texture, gtx_model_buffer                            create, and copy
+ *     gtx_model_uploaded(model);                                     frees what was copied
+ *
+ *     gtx_frame_begin(planner, &view, instances, count, &frame, &error);
+ *     copy frame.instances                                           vertices, an instance each
+ *     gtx_frame_draws(planner, submit, user);                        calls submit for each draw
+ *
+ * Nothing here calls a graphics interface, waits, or keeps what the engine made: which texture is
+ * which model's the engine knows by the model, or the instance, that a draw names.
+ *
+ * Shaders are GLSL: gtx_pipeline_source. Behind the engine's #version and `#define GTX_RHI` they
+ * take one uniform block, gtx_constants, at binding 8 beside the textures at bindings 0..6
+ * (gtx_slot), and of a vertex only floats and whole numbers. With VULKAN defined, as compilers to
+ * SPIR-V do, that is so by itself. Not for other interfaces than OpenGL are casting by tiles, rays
+ * in shaders, and edits: an edited asset is prepared anew.
+ *
+ * Frames are drawn with depth test and depth writes on, without blending, into what has a depth
+ * buffer. The rules of geotex.h hold here too; a planner is used by one thread at a time. */
+#ifndef GEOTEX_FRAME_H
+#define GEOTEX_FRAME_H
+
+#include <geotex/geotex.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- models -------------------------------------------------------------------------------- */
+
+/* An asset made ready for a GPU, or on it. */
+typedef struct gtx_model gtx_model;
+
+typedef struct gtx_model_desc {
+    const gtx_allocator *allocator;   /* of the model; NULL = malloc */
+    const gtx_jobs *jobs;             /* used during the call; may be NULL */
+    uint32_t borrow;                  /* 1: maps are not copied; the asset must stay open until the
+                                         model is uploaded or destroyed */
+    gtx_limits limits;                /* memory, until the upload, and cells */
+    uint32_t reserved[4];
+} gtx_model_desc;
+
+/* Derives what the GPU needs, without GL: any thread. Keeps no reference to the asset unless it
+ * borrows its maps. `desc` may be NULL. The model comes from the descriptor's allocator, and is
+ * freed by gtx_model_destroy, most of it already by the upload. Errors: ARGUMENT, NOT_ZEROED,
+ * MEMORY, LIMIT. */
+GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc,
+                                     gtx_model **out, gtx_error *error);
+
+/* Bytes of the model's textures and buffers on the GPU; `color` is colour, material, emission. */
+typedef struct gtx_model_size {
+    uint64_t geometry, color;
+} gtx_model_size;
+/* Known from gtx_model_prepare on; zeros for NULL. */
+GTX_API gtx_model_size gtx_model_gpu_size(const gtx_model *model);
+
+/* The textures of a model, by their binding in shaders. */
+typedef enum gtx_slot {
+    GTX_SLOT_CELLS = 0,           /* gtx_cells */
+    GTX_SLOT_TRIM = 1,            /* gtx_trim */
+    GTX_SLOT_NORMALS = 2,         /* gtx_normals */
+    GTX_SLOT_COLORS = 3,          /* gtx_colors */
+    GTX_SLOT_PATCHES = 4,         /* gtx_patches */
+    GTX_SLOT_MATERIALS = 5,       /* gtx_materials */
+    GTX_SLOT_EMISSIONS = 6,       /* gtx_emissions */
+    GTX_SLOT_COUNT = 7
+} gtx_slot;
+
+typedef enum gtx_format {
+    GTX_FORMAT_R8 = 1,            /* bytes that shaders read as 0..1 */
+    GTX_FORMAT_RG8 = 2,
+    GTX_FORMAT_RGBA8 = 3,
+    GTX_FORMAT_RGB8_SRGB = 4,     /* decoded to linear as they are read; where an interface has no
+                                     three bytes a texel, RGBA8_SRGB with any fourth */
+    GTX_FORMAT_RGBA8_SRGB = 5,
+    GTX_FORMAT_RGBA8_UINT = 6,
+    GTX_FORMAT_RGBA16_UINT = 7,
+    GTX_FORMAT_RGBA32_FLOAT = 8
+} gtx_format;
+
+enum { GTX_MAX_TEXTURE_LEVELS = 8 };
+
+/* A texture: its levels are each half the size of the one before. */
+typedef struct gtx_texture {
+    gtx_format format;
+    uint32_t texel_size;          /* bytes */
+    uint32_t width, height, layers, levels;
+    uint32_t is_array;            /* 1: a 2D array, even of one layer; 0: a 2D texture */
+    uint32_t is_filtered;         /* 1: linear within the nearest level, clamped to the edge; 0:
+                                     read by texel alone */
+    /* Of each level: rows without gaps, then layers; NULL after gtx_model_uploaded. */
+    const void *texels[GTX_MAX_TEXTURE_LEVELS];
+} gtx_texture;
+
+/* False, and zeros, where the model has none: then shaders read none, and any texture will do. */
+GTX_API uint32_t gtx_model_texture(const gtx_model *model, gtx_slot slot, gtx_texture *out);
+
+/* Buffers of a model, and the vertices that each has. */
+typedef enum gtx_buffer {
+    GTX_BUFFER_PROXY_VERTICES = 0,    /* 16 bytes: 3 floats; a uint32_t */
+    GTX_BUFFER_PROXY_INDICES = 1,
+    GTX_BUFFER_LOD_VERTICES = 2,      /* 12 bytes: 4 uint16_t, as integers; a uint32_t */
+    GTX_BUFFER_LOD_INDICES = 3,
+    GTX_BUFFER_GRID_VERTICES = 4,     /* as LOD_VERTICES; of the frame, and told by its draws */
+    GTX_BUFFER_GRID_INDICES = 5
+} gtx_buffer;
+
+/* Its bytes, of the first four, and their number; NULL and 0 where the model has none, and NULL
+ * after gtx_model_uploaded. */
+GTX_API const void *gtx_model_buffer(const gtx_model *model, gtx_buffer buffer, uint64_t *size);
+
+/* Says that all is copied: frees it. */
+GTX_API void gtx_model_uploaded(gtx_model *model);
+/* Of a model that no renderer of render.h has uploaded. NULL is fine. */
+GTX_API void gtx_model_free(gtx_model *model);
+
+/* ---- views --------------------------------------------------------------------------------- */
+
+typedef enum gtx_method {
+    GTX_METHOD_AUTO = 0,          /* what is fastest within the error budget, patch by patch where
+                                     that pays: LOD meshes, displaced grids, or cast */
+    GTX_METHOD_CAST = 1,          /* exact: walks the cells and solves their bilinear patches */
+    GTX_METHOD_PAPER = 2,         /* linear then binary search, balanced by slant (paper, 4.1) */
+    GTX_METHOD_LOD = 3,           /* triangles of an LOD mesh, which the asset must have */
+    GTX_METHOD_GRID = 4           /* triangles of the height fields, each patch at its own level:
+                                     displaced grids (Cook, Shade Trees, SIGGRAPH 1984) */
+} gtx_method;
+
+/* What a draw writes besides depth, by fragment output location. The programs of the forward pass
+ * are compiled with the renderer, those of another pass by its first draw, even one of no
+ * instances. */
+typedef enum gtx_pass {
+    GTX_PASS_FORWARD = 0,         /* 0: lit colour, in sRGB bytes */
+    GTX_PASS_DEPTH = 1,           /* nothing, colour is masked; the same depth, bit for bit. For a
+                                     shadow map viewport_height is the map's height */
+    GTX_PASS_ID = 2,              /* 0, unsigned integers (RGBA32UI, or RG32UI for the first two):
+                                     the instance's id, the patch, and x and y of the hit cell's
+                                     low texel in the patch */
+    GTX_PASS_GBUFFER = 3          /* 0: albedo in sRGB bytes, alpha (RGBA8); 1: world-space normal
+                                     * 0.5 + 0.5 (RGB10_A2 or finer); 2: occlusion, roughness,
+                                     metallic, lit (RGBA8; 1, 1, 0, 1 without a material);
+                                     3: linear emission (R11F_G11F_B10F). Any may be missing */
+} gtx_pass;
+
+/* An engine's own fragment main, which finds the surface by a call and shades it as it likes. */
+typedef struct gtx_shading gtx_shading;
+
+enum { /* gtx_view.flags */
+    GTX_VIEW_REVERSED_Z = 1,          /* nearer is greater: depth func GREATER */
+    GTX_VIEW_DEPTH_ZERO_TO_ONE = 2,   /* clip z in 0..1 (glClipControl), not -1..1 */
+    GTX_VIEW_RESTORE_STATE = 4        /* read the touched state first and put it back */
+};
+
+/* One camera and one light.
+ *
+ * Levels of height fields. Each patch of an instance is cast at the coarsest level of its height
+ * field whose distance from level 0, measured by gtx_model_prepare, is at most `max_error` pixels
+ * at the point of the patch's sphere that is nearest to the camera. Coverage only grows from level
+ * to level, and neighbours of different levels meet within that error. Pixels are square.
+ * GTX_METHOD_PAPER always draws level 0.
+ *
+ * LOD meshes. GTX_METHOD_LOD draws an instance by the coarsest LOD mesh whose error is at most
+ * `max_error` pixels where the asset's bounds are nearest to the camera, or by the finest one if
+ * none is; `level` then counts LOD meshes. They write no depth of their own, so that the depth test
+ * comes first and multisampling smooths edges; `viewport_height` also sets the mip level of their
+ * maps. GTX_METHOD_AUTO takes the same LOD mesh, or the finest one if its error is at most 1.5
+ * times the allowed one, and draws it unless casting costs less (gtx_costs).
+ *
+ * Patch by patch. If none is fine enough for all of an instance, or part of it is beside the
+ * picture, AUTO draws each patch in view by the coarsest LOD mesh that is fine enough where the
+ * patch is nearest, or else as a displaced grid or cast, whichever costs less. Where ways meet, the
+ * coarser goes on beneath the finer by a ring of triangles. It casts if `viewport_height` is
+ * unknown, or if `level` is given. With AUTO and LOD patches taken by gtx_model_update have no LOD
+ * mesh from then on.
+ *
+ * Displaced grids. GTX_METHOD_GRID draws height fields as right triangles over cells of level 0,
+ * from two over 8 x 8 cells to two over each: halved until they keep to max_error where they are,
+ * and to a fourth of it at outlines, where neighbours meet; `level` n says two over squares of
+ * 2^(n - 1) cells. They are found anew in each draw, a few ten nanoseconds each. Blocks of 8 x 8
+ * cells that are out of view, and triangles that face away, are not drawn. They write no depth of
+ * their own. */
+typedef struct gtx_view {
+    float view[16], projection[16];   /* column-major; world -> eye -> clip */
+    float light_direction[3];         /* world space, towards the light; zero = headlight */
+    float ambient;                    /* share of colour without light; 0 = 0.2 */
+    gtx_method method;
+    uint32_t flags;
+    float depth_range[2];             /* of glDepthRange; both 0 = 0..1 */
+    uint32_t viewport_height;         /* pixels; 0 = unknown: level 0, unless `level` is given */
+    float max_error;                  /* pixels; 0 = 0.5 */
+    uint32_t level;                   /* 0 = by the error, n = level n - 1 or the coarsest */
+    gtx_pass pass;
+    const gtx_shading *shading;       /* in place of the forward pass's; not with PAPER */
+    uint32_t search_steps[2];         /* of PAPER: linear (1..1000), then binary (0..100); both 0 =
+                                         balanced by how slanted the view is */
+    uint32_t viewport_width;          /* pixels; 0 = unknown. If given, this and viewport_height are
+                                         the size of glViewport, for gtx_tiling */
+    uint32_t reserved[1];
+} gtx_view;
+
+/* A placed model. `transform` is affine and takes the asset's coordinates (relative to its anchor)
+ * to the world; its linear part must be invertible. `tint` multiplies the colour; all 0 = white.
+ * `id` is what GTX_PASS_ID writes and a shading reads. */
+typedef struct gtx_instance {
+    const gtx_model *model;
+    float transform[16];
+    float tint[4];
+    uint32_t id;
+    uint32_t reserved[3];
+} gtx_instance;
+
+/* What drawing costs, for GTX_METHOD_AUTO to compare: a triangle of an LOD mesh and a pixel that it
+ * covers; a patch that is cast and a pixel that its proxy covers; a triangle of a displaced grid,
+ * whose pixels cost what those of LOD meshes do. In any unit; all 0 = as measured with llvmpipe, on
+ * which only the finer LOD meshes may cost more than casting. */
+typedef struct gtx_costs {
+    float lod_triangle, lod_pixel;
+    float cast_patch, cast_pixel;
+    float grid_triangle;          /* 0 = twice lod_triangle */
+} gtx_costs;
+
+/* ---- frames -------------------------------------------------------------------------------- */
+
+/* Plans frames: scratch that lives from one to the next. */
+typedef struct gtx_planner gtx_planner;
+
+typedef struct gtx_planner_desc {
+    const gtx_allocator *allocator;   /* NULL = malloc */
+    gtx_costs costs;                  /* finite, none below 0 */
+    uint32_t own_main;                /* 1: forward passes are for an engine's own fragment main, by
+                                         pipelines whose gtx_pipeline.own_main is 1 */
+    uint32_t reserved[3];
+} gtx_planner_desc;
+
+/* `desc` may be NULL. Errors: ARGUMENT, NOT_ZEROED, MEMORY. */
+GTX_API gtx_result gtx_planner_create(const gtx_planner_desc *desc, gtx_planner **out,
+                                      gtx_error *error);
+/* NULL is fine. */
+GTX_API void gtx_planner_destroy(gtx_planner *planner);
+
+/* What shaders read of an instance: attributes 2 to 8, four floats each, and 9. 116 bytes. */
+typedef struct gtx_instance_data {
+    float world[3][4];        /* rows of object -> world */
+    float object[3][4];       /* rows of the inverse's linear part, and the eye in object space */
+    float tint[4];
+    uint32_t id;
+} gtx_instance_data;
+
+/* The uniform block of geotex_view.glsl, in std140. */
+typedef struct gtx_constants {
+    float clip_from_world[16];
+    float depth[4], light[4], detail[4], search[4];
+    float maps[4], lod_mesh[4], constant_material[4];
+} gtx_constants;
+
+typedef struct gtx_frame {
+    const gtx_instance_data *instances;   /* of the planner, until its next frame begins */
+    uint32_t instance_count;
+    uint32_t nearer_is_greater;       /* depth test: 1 = greater, 0 = less */
+} gtx_frame;
+
+/* Indices that are one draw: of each, `base_vertex` is added to it. */
+typedef struct gtx_range {
+    uint32_t first, count;
+    uint32_t base_vertex, vertex_count;   /* indices are below vertex_count, unless that is 0 */
+} gtx_range;
+
+typedef enum gtx_cull { GTX_CULL_NONE = 0, GTX_CULL_BACK = 1, GTX_CULL_FRONT = 2 } gtx_cull;
+
+typedef struct gtx_frame_draw {
+    uint32_t pipeline;                /* below GTX_PIPELINE_COUNT */
+    gtx_cull cull;
+    uint32_t clockwise;               /* 1: what is clockwise in the picture, y up, is a front */
+    const gtx_model *model;           /* whose textures, buffers */
+    uint32_t first_instance, instance_count;
+    const gtx_constants *constants;
+    gtx_buffer vertices, indices;
+    uint64_t vertex_offset, index_offset; /* bytes: where vertex 0 and index 0 are */
+    uint32_t index_size;              /* 2 or 4 bytes */
+    uint32_t range_count;
+    const gtx_range *ranges;
+    /* Of grids. Vertices are NULL where they are those of the draw before. */
+    const void *vertex_data, *index_data;
+    uint64_t vertex_bytes, index_bytes;
+} gtx_frame_draw;
+
+/* All that it points to is gone when it returns. */
+typedef void gtx_submit(const gtx_frame_draw *draw, void *user);
+
+/* Checks what is asked for, places the instances and chooses what each is drawn by. `view` and
+ * `instances` must stay until gtx_frame_draws has returned; view->shading is NULL. Errors:
+ * ARGUMENT, NOT_ZEROED, MEMORY, UNSUPPORTED (GTX_METHOD_LOD with an asset that has no LOD mesh). */
+GTX_API gtx_result gtx_frame_begin(gtx_planner *planner, const gtx_view *view,
+                                   const gtx_instance *instances, uint32_t count,
+                                   gtx_frame *out, gtx_error *error);
+/* The draws of the frame begun last, in the order that they are to be submitted. Without memory for
+ * displaced grids it casts. */
+GTX_API void gtx_frame_draws(gtx_planner *planner, gtx_submit *submit, void *user);
+
+/* ---- pipelines ----------------------------------------------------------------------------- */
+
+enum { GTX_PIPELINE_COUNT = 256, GTX_MAX_SHADER_TEXTS = 16 };
+
+typedef struct gtx_pipeline {
+    gtx_pass pass;
+    gtx_buffer vertices;              /* whose layout attributes 0 and 1 have */
+    uint32_t own_main;                /* 1: of an engine's own main */
+    uint32_t writes_depth;            /* 1: from its fragments; 0: the depth test can come first */
+} gtx_pipeline;
+
+/* False, and zeros, where there is none of that number. Any thread. */
+GTX_API uint32_t gtx_pipeline_get(uint32_t pipeline, gtx_pipeline *out);
+
+typedef enum gtx_stage { GTX_STAGE_VERTEX = 0, GTX_STAGE_FRAGMENT = 1 } gtx_stage;
+
+/* The texts of a stage's shader, which follow one another behind #version, and their number; 0
+ * where there is no such pipeline. `own_main` is the text of an engine's own fragment main, or
+ * NULL: it comes behind geotex_fragment.glsl, or behind geotex_lod_fragment.glsl with GTX_LOD
+ * defined. The others have static storage. Any thread. */
+GTX_API uint32_t gtx_pipeline_source(uint32_t pipeline, gtx_stage stage, const char *own_main,
+                                     const char *texts[GTX_MAX_SHADER_TEXTS]);
+
+/* The text of an installed shader file such as "geotex_cast.glsl", for engines that write their own
+ * mains; its first lines say which files come before it. NULL if there is none of that name. Static
+ * storage. Any thread. */
+GTX_API const char *gtx_shader_source(const char *name);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,286 @@
+/* The draws of a frame: runs of alike instances by an LOD mesh, cast, or patch by patch, each in
+ * its own way. */
+#include "frame/pipelines.h"
+#include "frame/planner.h"
+
+#include <string.h>
+
+/* Instances of one model, drawn alike, and of one winding. */
+typedef struct run {
+    const gtx_model *model;   /* NULL: nothing */
+    uint32_t first, count;
+    uint8_t way;              /* as gtx_choose has it */
+    bool mirrored;
+} run;
+
+static gtx_material_kind material_of(const gtx_model *model)
+{
+    if (model->emission_scale > 0)
+        return MATERIAL_MAPS;
+    if (model->has_material)
+        return model->has_constant_material ? MATERIAL_CONSTANT : MATERIAL_MAPS;
+    return model->has_color ? MATERIAL_COLORS : MATERIAL_NONE;
+}
+
+/* Whether the frame is shaded by an engine's own main. */
+static bool is_own(const gtx_draw_call *call)
+{
+    return call->view->pass == GTX_PASS_FORWARD && (call->view->shading || call->planner->own_main);
+}
+
+/* Constants of a model; the others are those of the frame, or of a draw. */
+static void set_model(gtx_constants *c, const gtx_model *model)
+{
+    c->maps[0] = (float)(model->mip_count - 1);
+    c->maps[1] = model->has_color ? 1.0f : 0.0f;
+    c->maps[2] = model->emission_scale;
+    c->maps[3] = model->has_material ? 1.0f : 0.0f;
+    memcpy(c->constant_material, model->constant_material, sizeof c->constant_material);
+}
+
+/* A draw of `count` instances of a run, by polygons of a buffer. */
+static gtx_frame_draw draw_of(const gtx_draw_call *call, const run *r, gtx_technique technique,
+                              uint32_t first, uint32_t count)
+{
+    return (gtx_frame_draw){
+        .pipeline = gtx_pipeline_of(technique, call->view->pass, material_of(r->model)),
+        .clockwise = r->mirrored, .model = r->model, .first_instance = first,
+        .instance_count = count, .constants = &call->planner->constants, .index_size = 4};
+}
+
+static gtx_technique cast_technique(const gtx_draw_call *call, bool box)
+{
+    return is_own(call)                              ? TECHNIQUE_OWN_CAST
+           : call->view->method == GTX_METHOD_PAPER ? TECHNIQUE_PAPER
+           : box                                     ? TECHNIQUE_BOX
+                                                     : TECHNIQUE_CAST;
+}
+
+/* Casts in proxies. Boxes are drawn by their back faces, so that a camera inside still sees the
+ * patch, hulls by their front faces, where rays begin. */
+static void cast_ranges(const gtx_draw_call *call, const run *r, bool box, uint32_t instance,
+                        uint32_t count, const gtx_range *ranges, uint32_t range_count)
+{
+    gtx_frame_draw draw = draw_of(call, r, cast_technique(call, box), instance, count);
+    draw.cull = box ? GTX_CULL_FRONT : GTX_CULL_BACK;
+    draw.vertices = GTX_BUFFER_PROXY_VERTICES;
+    draw.indices = GTX_BUFFER_PROXY_INDICES;
+    draw.ranges = ranges;
+    draw.range_count = range_count;
+    if (range_count)
+        call->submit(&draw, call->user);
+}
+
+/* All proxies of a kind, of `count` instances. */
+static void cast_whole(const gtx_draw_call *call, const run *r, uint32_t kind, uint32_t instance,
+                       uint32_t count)
+{
+    const uint32_t *first = &r->model->first_index[kind * r->model->patch_count];
+    const gtx_range all = {.first = first[0], .count = first[r->model->patch_count] - first[0]};
+    cast_ranges(call, r, kind == 0, instance, count, &all, all.count > 0);
+}
+
+/* Casts an instance by tiles; false when it has to be done otherwise. */
+static bool cast_tiles(const gtx_draw_call *call, const run *r, uint32_t instance)
+{
+    gtx_tiles *tiles = &call->planner->tiles;
+    const gtx_instance_data *placed = &call->planner->instances[instance];
+    if (!gtx_tiles_suit(call) || !gtx_tiles_fill(call, r->model, placed))
+        return false;
+    const gtx_frame_draw draw = draw_of(call, r, TECHNIQUE_TILES, instance, 1);
+    if (tiles->tile_count) {
+        call->submit(&draw, call->user);
+        ++tiles->draws;
+    }
+    return true;
+}
+
+/* Casts what the plan holds, nearest first. Boxes are told their level by a constant. */
+static void cast_plan(const gtx_draw_call *call, const run *r, uint32_t instance)
+{
+    gtx_plan *plan = &call->planner->plan;
+    float *level = &call->planner->constants.detail[2];
+    uint32_t first = 0;
+    if (!plan->count || cast_tiles(call, r, instance))
+        return;
+    gtx_plan_proxies(plan, r->model);
+    for (uint32_t k = 0; k < r->model->mip_count; ++k) {
+        *level = (float)k;
+        cast_ranges(call, r, true, instance, 1, plan->ranges + first, plan->box_count[k]);
+        first += plan->box_count[k];
+    }
+    *level = 0;
+    cast_ranges(call, r, false, instance, 1, plan->ranges + first, plan->hull_count);
+}
+
+/* Patches of a level that are seen from one side or from two, by the technique for front faces or
+ * the one for all. */
+static void draw_side(const gtx_draw_call *call, const run *r, uint32_t level,
+                      const uint8_t *parts, bool two_sided, bool front, gtx_cull cull)
+{
+    gtx_planner *planner = call->planner;
+    const gtx_lod_level *l = &r->model->lods.levels[level];
+    const gtx_technique technique = is_own(call) ? TECHNIQUE_OWN_LOD
+                                    : front      ? TECHNIQUE_LOD_FRONT
+                                                 : TECHNIQUE_LOD;
+    gtx_frame_draw draw = draw_of(call, r, technique, r->first, r->count);
+    draw.cull = cull;
+    draw.vertices = GTX_BUFFER_LOD_VERTICES;
+    draw.indices = GTX_BUFFER_LOD_INDICES;
+    draw.vertex_offset = l->vertex_offset;
+    draw.index_offset = l->index_offset;
+    draw.index_size = l->index_size;
+    draw.ranges = planner->plan.ranges;
+    draw.range_count =
+        gtx_lod_ranges(&r->model->lods, level, two_sided, parts, planner->plan.ranges);
+    memcpy(planner->constants.lod_mesh, l->place, sizeof l->place);
+    if (draw.range_count)
+        call->submit(&draw, call->user);
+}
+
+/* An LOD mesh, or parts of it: patches with a back face culled, then those without. Of these the
+ * front faces first, by their own technique: most back faces lie hidden behind them. */
+static void draw_lod(const gtx_draw_call *call, const run *r, uint32_t level, const uint8_t *parts)
+{
+    const gtx_lod_meshes *lods = &r->model->lods;
+    bool front = call->view->pass == GTX_PASS_FORWARD && !is_own(call);
+    for (uint32_t i = 0; i < r->count; ++i)
+        front = front && gtx_keeps_angles(&call->planner->instances[r->first + i]);
+    if (lods->one_sided)
+        draw_side(call, r, level, parts, false, front, GTX_CULL_BACK);
+    if (lods->one_sided == lods->patch_count)
+        return;
+    if (front)
+        draw_side(call, r, level, parts, true, true, GTX_CULL_BACK);
+    draw_side(call, r, level, parts, true, false, front ? GTX_CULL_FRONT : GTX_CULL_NONE);
+}
+
+static gtx_technique grid_technique(const gtx_draw_call *call, uint32_t looks, bool keeps_angles)
+{
+    static const gtx_technique techniques[2][2] = {
+        {TECHNIQUE_GRID_WHOLE, TECHNIQUE_GRID_WHOLE_FRONT},
+        {TECHNIQUE_GRID, TECHNIQUE_GRID_FRONT}};
+    const bool forward = call->view->pass == GTX_PASS_FORWARD, whole = !(looks & GTX_GRID_TRIMMED);
+    const bool front = forward && keeps_angles && !(looks & GTX_GRID_BEHIND);
+    if (is_own(call))
+        return TECHNIQUE_OWN_GRID;
+    if (forward && !(looks & GTX_GRID_MAPPED))
+        return whole ? TECHNIQUE_GRID_WHOLE_LIT : TECHNIQUE_GRID_LIT;
+    return techniques[!whole][front];
+}
+
+/* Displaced grids. */
+static void draw_grids(const gtx_draw_call *call, const run *r, uint32_t instance)
+{
+    gtx_planner *planner = call->planner;
+    gtx_grids *grids = &planner->grids;
+    const bool keeps_angles = gtx_keeps_angles(&planner->instances[instance]);
+    const void *vertices = grids->vertices.data;
+    for (uint32_t looks = 0; looks < GTX_GRID_LOOKS; ++looks) {
+        const gtx_range all = {
+            .count = grids->index_count[looks], .vertex_count = grids->vertex_count};
+        if (!all.count)
+            continue;
+        gtx_frame_draw draw =
+            draw_of(call, r, grid_technique(call, looks, keeps_angles), instance, 1);
+        draw.vertices = GTX_BUFFER_GRID_VERTICES;
+        draw.indices = GTX_BUFFER_GRID_INDICES;
+        draw.ranges = &all;
+        draw.range_count = 1;
+        draw.vertex_data = vertices;
+        draw.vertex_bytes = vertices ? grids->vertex_count * sizeof(gtx_grid_vertex) : 0;
+        draw.index_data = grids->indices[looks].data;
+        draw.index_bytes = all.count * sizeof(uint32_t);
+        const float behind[4] = {looks & GTX_GRID_BEHIND ? 1.0f : 0.0f, 0, 0, 0};
+        memcpy(planner->constants.lod_mesh, behind, sizeof behind);
+        call->submit(&draw, call->user);
+        grids->drawn += all.count / 3;
+        vertices = NULL;
+    }
+}
+
+/* How many levels of the LOD mesh may be mixed with height fields, the finest first. */
+static uint32_t levels_to_mix(const gtx_draw_call *call, const run *r)
+{
+    const gtx_lod_meshes *lods = &r->model->lods;
+    uint32_t count = 0;
+    if (call->view->method != GTX_METHOD_AUTO || r->way != GTX_DRAW_PATCHES)
+        return 0;
+    while (count < lods->level_count && !lods->levels[count].far)
+        ++count;
+    return count;
+}
+
+/* An instance patch by patch, each in its own way. */
+static void draw_patches(const gtx_draw_call *call, const run *r, uint32_t instance,
+                         bool edited_only)
+{
+    gtx_plan *plan = &call->planner->plan;
+    const gtx_lod_meshes *lods = &r->model->lods;
+    const gtx_instance_data *placed = &call->planner->instances[instance];
+    gtx_plan_patches(call, r->model, placed, levels_to_mix(call, r), edited_only);
+    if (r->way != GTX_DRAW_CAST && gtx_blocks_fill(call, r->model, placed))
+        draw_grids(call, r, instance);
+    cast_plan(call, r, instance);
+    const run one = {r->model, instance, 1, 0, r->mirrored};
+    for (uint32_t k = 0; plan->any_lod && k < lods->level_count; ++k)
+        if (gtx_plan_parts(plan, lods, k))
+            draw_lod(call, &one, k, plan->parts);
+}
+
+/* The patches of a run, or only those that are edited. Instances that stand alone are sorted, those
+ * that need it are looked at patch by patch, and others cast together. */
+static void draw_height_fields(const gtx_draw_call *call, const run *r, bool edited_only)
+{
+    const gtx_model *model = r->model;
+    const gtx_instance_data *placed = call->planner->instances;
+    if (call->view->method == GTX_METHOD_PAPER) {
+        cast_whole(call, r, 0, r->first, r->count);
+        return;
+    }
+    for (uint32_t i = r->first, end = r->first + r->count; i < end;) {
+        uint32_t last = i, kind = 0;
+        if (r->count > 1 && !edited_only && call->view->method != GTX_METHOD_GRID &&
+            (r->way == GTX_DRAW_CAST || !model->lods.level_count))
+            kind = gtx_plan_whole(call, model, &placed[i]);
+        for (++last; kind && last < end; ++last)
+            if (gtx_plan_whole(call, model, &placed[last]) != kind)
+                break;
+        if (kind)
+            cast_whole(call, r, kind, i, last - i);
+        else
+            draw_patches(call, r, i, edited_only);
+        i = last;
+    }
+}
+
+static void draw_run(const gtx_draw_call *call, const run *r)
+{
+    if (!r->model) /* before the first run */
+        return;
+    const bool lod = r->way != GTX_DRAW_PATCHES && r->way != GTX_DRAW_CAST;
+    set_model(&call->planner->constants, r->model);
+    if (lod)
+        draw_lod(call, r, r->way - 1u, NULL);
+    if (!lod || r->model->lods.edited_count)
+        draw_height_fields(call, r, lod);
+}
+
+void gtx_frame_draws(gtx_planner *planner, gtx_submit *submit, void *user)
+{
+    gtx_draw_call *call = planner ? &planner->call : NULL;
+    run r = {NULL, 0, 0, 0, false};
+    if (!call || !submit)
+        return;
+    call->submit = submit;
+    call->user = user;
+    for (uint32_t i = 0; i < call->count; ++i) {
+        const gtx_model *model = call->instances[i].model;
+        if (model != r.model || planner->ways[i] != r.way || planner->mirrored[i] != r.mirrored) {
+            draw_run(call, &r);
+            r = (run){model, i, 0, planner->ways[i], planner->mirrored[i]};
+        }
+        ++r.count;
+    }
+    draw_run(call, &r);
+}
