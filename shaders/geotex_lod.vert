@@ -8,8 +8,11 @@
  * several. Each number more that a triangle carries costs a few per cent on llvmpipe. */
 GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;
 
-#ifdef GTX_GRID
+#if defined(GTX_GRID)
 layout(location = 0) in uvec4 gtx_node;     /* of the patch, and the height's code */
+#elif defined(GTX_RHI)
+layout(location = 0) in uvec4 gtx_steps;
+#define gtx_position vec3(gtx_steps.xyz)
 #else
 layout(location = 0) in vec3 gtx_position;  /* in steps of the level */
 #endif

@@ -73,6 +73,16 @@ run-bench-rays: $(MODEL)
 	@$(build)/gtx cook $(MODEL) -o $(build)/demo/rays.gtx
 	@$(out)/tests/bench/rays $(build)/demo/rays.gtx
 
+bench-plan: ## what planning a frame of MODEL (default: the sculpt) costs, without drawing it
+	$(again) deps
+	$(again) -j$$(nproc) all $(out)/tests/bench/plan
+	$(again) run-bench-plan
+
+run-bench-plan: $(MODEL)
+	@mkdir -p $(build)/demo
+	@$(build)/gtx cook $(MODEL) -o $(build)/demo/plan.gtx
+	@$(out)/tests/bench/plan $(build)/demo/plan.gtx
+
 bunny := $(wildcard $(GEOTEX_MODELS)/scans/bunny.ply)
 # The bunny, closed, and a ball. With CGAL (libcgal-dev) beside the same operations on the meshes.
 cgal = $(shell printf '\043include <CGAL/version.h>' | \
@@ -166,7 +176,7 @@ $(out)/tests/bench/leaves: $(out)/tests/bench/leaves.o
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^
 
-$(out)/tests/bench/rays: $(out)/tests/bench/rays.o $(call objects_of,host image) $(lib_core)
+$(out)/tests/bench/rays $(out)/tests/bench/plan: %: %.o $(call objects_of,host image) $(lib_core)
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset host image)
 

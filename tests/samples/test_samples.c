@@ -135,6 +135,15 @@ static void draws_its_picture(void **state)
     draws_picture_of(*state, "$T/lod.gtx");
 }
 
+/* By draws that an engine submits itself, as by render.h. */
+static void an_engine_submits_the_same_picture(void **state)
+{
+    (void)state;
+    assert_int_equal(run("for s in rhi smallest_engine; do "
+                         "$S/$s $T/lod.gtx --headless $T/$s.png --size 240x160 || exit 1; done; "
+                         "cmp $T/rhi.png $T/smallest_engine.png"), 0);
+}
+
 static void horizons_are_made_and_drawn(void **state)
 {
     (void)state;
@@ -194,7 +203,7 @@ int main(void)
     static char smallest[] = "smallest_engine", instances[] = "instances", picking[] = "picking",
                 mixed[] = "mixed_scene", gbuffer[] = "engine_gbuffer", shadows[] = "shadows",
                 rays[] = "ray_shadows", implicit[] = "implicit", filters[] = "filters",
-                cellular[] = "cellular", footprints[] = "footprints";
+                cellular[] = "cellular", footprints[] = "footprints", rhi[] = "rhi";
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cooking_says_how_far_it_is),
         cmocka_unit_test(halls_and_caves_are_around_the_eye),
@@ -208,12 +217,13 @@ int main(void)
         PICTURE(shadows),
         PICTURE(rays),
         PICTURE(implicit),
+        cmocka_unit_test(an_engine_submits_the_same_picture),
         cmocka_unit_test(horizons_are_made_and_drawn),
         PICTURE(filters),
         PICTURE(cellular),
         PICTURE(footprints),
         cmocka_unit_test(a_world_is_walked_through),
-        MISUSE(smallest),
+        MISUSE(rhi), MISUSE(smallest),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
