@@ -2,6 +2,7 @@
 #include "render/rays.h"
 
 #include "base/error.h"
+#include "frame/units.h"
 #include "render/renderer.h"
 #include "render/upload.h"
 
@@ -62,7 +63,7 @@ static void begin(const gtx_gl *gl)
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
 }
 
-gtx_result gtx_rays_upload(const gtx_gl *gl, gtx_rays *rays, const void *cells, const void *trim,
+gtx_result gtx_rays_upload(const gtx_gl *gl, gtx_rays *rays, const gtx_ray_maps *maps,
                            gtx_error *error)
 {
     gl_int side = 0, layers = 0;
@@ -73,8 +74,8 @@ gtx_result gtx_rays_upload(const gtx_gl *gl, gtx_rays *rays, const void *cells, 
         return gtx_fail(error, GTX_ERROR_LIMIT, "the assets are too large for this GPU's textures");
     begin(gl);
     make_texture(gl, rays, GTX_RAY_NODES, rays->nodes, NULL);
-    make_texture(gl, rays, GTX_RAY_CELLS, rays->cells, cells);
-    make_texture(gl, rays, GTX_RAY_TRIM, rays->cells, trim);
+    make_texture(gl, rays, GTX_RAY_CELLS, rays->cells, maps->cells);
+    make_texture(gl, rays, GTX_RAY_TRIM, rays->cells, maps->trim);
     gtx_rays_leave(gl);
     return gtx_check_gl_memory(gl, error);
 }

@@ -111,7 +111,7 @@ static void a_wrong_include_does_not_compile(void **state)
         {"derive", "asset/asset.h", true},     {"derive", "trace/caster.h", false},
         {"frame", "derive/derive.h", true},    {"frame", "render/gl.h", false},
         {"render", "frame/lod.h", true},       {"render", "trace/caster.h", false},
-        {"trace", "derive/hierarchy.h", true}, {"trace", "render/rays.h", false},
+        {"trace", "derive/hierarchy.h", true}, {"trace", "frame/rays.h", false},
         {"mesh", "image/image.h", true},       {"mesh", "chart/chart.hpp", false},
         {"bake", "mesh/vec.hpp", true},        {"bake", "cook/options.hpp", false},
         {"measure", "trace/caster.h", true},   {"measure", "bake/bake.hpp", false},

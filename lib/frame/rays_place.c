@@ -1,10 +1,9 @@
 /* The hierarchies of rays in shaders: one over the blocks of each asset, one over the instances
  * above them. geotex_rays.glsl walks both. */
-#include "render/rays.h"
+#include "frame/rays.h"
 
 #include "base/alloc.h"
 #include "base/error.h"
-#include "render/renderer.h"
 
 #include <math.h>
 #include <string.h>
@@ -32,14 +31,14 @@ static void put_block(uint32_t box, float at[2], const void *user)
     memcpy(at, ((const float(*)[2])user)[box], 2 * sizeof *at);
 }
 
-static size_t fresh_texels(const gtx_ray_member *m)
+size_t gtx_ray_fresh_texels(const gtx_ray_member *m)
 {
     return m->end - m->nodes + GTX_RAY_FIELD_TEXELS * (size_t)m->patch_count;
 }
 
 static void free_fresh(gtx_ray_member *m, const gtx_allocator *hooks)
 {
-    gtx_free_array(hooks, m->fresh, fresh_texels(m), sizeof *m->fresh);
+    gtx_free_array(hooks, m->fresh, gtx_ray_fresh_texels(m), sizeof *m->fresh);
     m->fresh = NULL;
 }
 
@@ -51,7 +50,7 @@ static gtx_result derive_nodes(gtx_ray_member *m, const gtx_allocator *hooks, gt
     if (result)
         return result;
     m->end = m->nodes + GTX_RAY_NODE_TEXELS * (size_t)tree.node_count;
-    m->fresh = gtx_alloc_array(hooks, fresh_texels(m), sizeof *m->fresh);
+    m->fresh = gtx_alloc_array(hooks, gtx_ray_fresh_texels(m), sizeof *m->fresh);
     m->box = gtx_box_empty;
     for (int k = 0; tree.node_count && k < 3; ++k) {
         m->box.low[k] = tree.nodes[0].low[k];
@@ -122,28 +121,21 @@ static gtx_result derive_front(gtx_rays *rays, const gtx_ray_instance *instances
     return GTX_OK;
 }
 
-gtx_result gtx_rays_place(gtx_renderer *renderer, gtx_rays *rays,
-                          const gtx_ray_instance *instances, uint32_t count, gtx_error *error)
+gtx_result gtx_rays_plan(gtx_rays *rays, const gtx_ray_instance *instances, uint32_t count,
+                         size_t *texels, gtx_error *error)
 {
-    if (!renderer || !rays || (count && !instances) || count > rays->max_instances)
-        return gtx_fail(error, GTX_ERROR_ARGUMENT,
-                        "placing needs a renderer, rays and as many instances as they allow");
     gtx_result result = GTX_OK;
-    size_t texels = 0;
     for (uint32_t i = 0; !result && i < rays->member_count; ++i)
         if (rays->members[i].edited)
             result = derive_nodes(&rays->members[i], &rays->allocator, error);
-    if (!result)
-        result = derive_front(rays, instances, count, &texels, error);
+    return result ? result : derive_front(rays, instances, count, texels, error);
+}
+
+void gtx_rays_planned(gtx_rays *rays, bool sent)
+{
     for (uint32_t i = 0; i < rays->member_count; ++i) {
         gtx_ray_member *m = &rays->members[i];
-        if (!result && m->edited) {
-            gtx_rays_send(&renderer->gl, rays, GTX_RAY_NODES, m->nodes, fresh_texels(m), m->fresh);
-            m->edited = false;
-        }
+        m->edited = m->edited && !sent;
         free_fresh(m, &rays->allocator);
     }
-    if (!result)
-        gtx_rays_send(&renderer->gl, rays, GTX_RAY_NODES, 0, texels, rays->front);
-    return result;
 }
