@@ -145,12 +145,48 @@ void end_progress(void);
  * written, so that nothing is left half done. */
 void catch_interrupt(void);
 bool was_interrupted(void);
+/* Of a clock that only goes forward. */
+double seconds_now(void);
 
 /* ---- what verbs share ---- */
 
 /* Puts an asset with LOD meshes of its maps in the place of *asset, with progress. Errors: as
  * gtx_cook_lod_meshes; *asset is then as it was. */
 gtx_result add_lod_meshes(gtx_asset **asset, uint32_t levels, uint32_t threads, gtx_error *error);
+
+/* A verb that makes an asset of files which it reads: zero-filled but for `verb`, and freed by
+ * made_free. Each call below returns an exit code, and has told why it is not 0. */
+typedef struct made_file {
+    const char *verb, *output, *report, *depfile, *allow;
+    bool strict, if_changed;
+    /* The rest is made.c's. */
+    char **sources, **sentences;
+    size_t source_count, warning_count;
+    uint32_t *kinds;               /* of the sentences: a gtx_warning each */
+    bool allowed[64], unchanged;
+    uint64_t bytes;
+    double start;
+} made_file;
+#define MADE_OPTIONS(m)                                                                            \
+    {"if-changed", 0, OPTION_FLAG, &(m).if_changed, NULL,                                          \
+     "keep OUT.gtx, and its time, if it has these bytes already", 0, 0},                           \
+    {"strict", 0, OPTION_FLAG, &(m).strict, NULL,                                                  \
+     "a warning is an error (exit 3); a note is none", 0, 0},                                      \
+    {"allow", 0, OPTION_STRING, &(m).allow, "NAME,...",                                            \
+     "with --strict: warnings that are no errors", 0, 0},                                          \
+    {"report", 0, OPTION_STRING, &(m).report, "R.json", "write what was made, as JSON", 0, 0},     \
+    {"depfile", 0, OPTION_STRING, &(m).depfile, "D",                                               \
+     "write a dependency file for Make or Ninja", 0, 0}
+
+/* A file that is read, before any work. */
+int made_from(made_file *m, const char *source);
+/* Once all are named: what is written is no source, and --allow has names of warnings. */
+int made_check(made_file *m);
+/* Of a gtx_warning: tells it, and keeps it for the report; with --strict it may end the verb. */
+int made_warn(made_file *m, const char *file, uint32_t kind, const char *sentence);
+/* Writes the asset, and what of a report and a dependency file was asked for. */
+int made_save(made_file *m, const gtx_asset *asset, const gtx_encode_desc *encode);
+void made_free(made_file *m);
 
 /* Of the command, on stdout: its commit, the format, the cooker and the libraries. */
 void print_version(void);

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *output;
+static made_file making = {.verb = "filter"};
 static int32_t zstd_level = 3;
 static uint32_t lod_levels = 5;
 static steps chosen;
@@ -19,7 +19,8 @@ static bool naive;
 static double boost_radius = 2, pattern_height, pattern_size;
 
 static const option options[] = {
-    {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes (required)", 0, 0},
+    {"output", 'o', OPTION_STRING, &making.output, "OUT.gtx",
+     "where the asset goes (required)", 0, 0},
     {"gaussian", 0, OPTION_STEP, &chosen, "TEXELS", "blur; standard deviation in texels", 0, 1e6},
     {"gaussian-world", 0, OPTION_STEP, &chosen, "UNITS",
      "blur; standard deviation in object units", 0, 1e30},
@@ -37,6 +38,7 @@ static const option options[] = {
     {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
      "LOD meshes at most, made of the filtered maps; 0 = none at all [5]", 0, 5},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
+    MADE_OPTIONS(making),
     {0}};
 
 static const verb filter = {
@@ -92,38 +94,52 @@ static gtx_result take(gtx_edit *edit, const step *s, const char **file, gtx_err
 }
 
 /* *file is what a failure is about. */
-static gtx_result run(const gtx_asset *asset, const char **file, gtx_error *error)
+static gtx_result edit(const gtx_asset *asset, const char **file, gtx_asset **edited,
+                       gtx_error *error)
 {
     gtx_edit *edit = NULL;
-    gtx_asset *edited = NULL;
     gtx_result result = gtx_edit_begin(asset, NULL, &edit, error);
     for (uint32_t i = 0; !result && i < chosen.count; ++i)
         result = take(edit, &chosen.list[i], file, error);
     if (!result)
-        result = gtx_edit_finish(edit, &edited, error);
+        result = gtx_edit_finish(edit, edited, error);
     gtx_edit_end(edit);
     if (!result && lod_levels)
-        result = add_lod_meshes(&edited, lod_levels, 0, error);
-    if (!result) {
-        const gtx_encode_desc encode = {.zstd_level = encode_level(zstd_level)};
-        *file = output;
-        catch_interrupt();
-        result = gtx_save_file(edited, output, &encode, error);
-    }
-    gtx_close(edited);
+        result = add_lod_meshes(edited, lod_levels, 0, error);
     return result;
 }
 
 /* Everything that is read: the asset and the patterns. */
 static int check_inputs(const char *asset)
 {
-    const output_file outputs[] = {{"-o", output}, {NULL, NULL}};
-    const char *inputs[MAX_STEPS + 1] = {asset};
-    size_t count = 1;
-    for (uint32_t i = 0; i < chosen.count; ++i)
+    int code = made_from(&making, asset);
+    for (uint32_t i = 0; i < chosen.count && !code; ++i)
         if (!strcmp(chosen.list[i].name, "pattern"))
-            inputs[count++] = chosen.list[i].text;
-    return check_outputs("gtx filter", outputs, inputs, count);
+            code = made_from(&making, chosen.list[i].text);
+    return code ? code : made_check(&making);
+}
+
+static int run(const char *file)
+{
+    const gtx_open_desc open = {.limits = cli_limits};
+    const gtx_encode_desc encode = {.zstd_level = encode_level(zstd_level)};
+    gtx_asset *asset = NULL, *edited = NULL;
+    gtx_error error = {0};
+    gtx_info info;
+    if (gtx_open_exported(file, &open, &asset, &error))
+        return report_error(file, &error);
+    gtx_get_info(asset, &info);
+    int code = EXIT_CODE_OK;
+    if (info.lod_levels && !lod_levels)
+        code = made_warn(&making, file, GTX_WARNING_LOD_DROPPED,
+                         "the LOD meshes are those of the surface as it was, and are left out");
+    if (!code && edit(asset, &file, &edited, &error))
+        code = report_error(file, &error);
+    if (!code)
+        code = made_save(&making, edited, &encode);
+    gtx_close(edited);
+    gtx_close(asset);
+    return code;
 }
 
 int cmd_filter(int argc, char **argv)
@@ -133,27 +149,15 @@ int cmd_filter(int argc, char **argv)
     int code = parse_options(&filter, argc, argv, &file, &count);
     if (code >= 0)
         return code;
-    if (!output || !chosen.count) {
+    if (!making.output || !chosen.count) {
         print_message("gtx filter: error[usage]: %s",
-                      output ? "an operation is missing (see gtx filter --help)"
-                             : "-o OUT.gtx is missing");
+                      making.output ? "an operation is missing (see gtx filter --help)"
+                                    : "-o OUT.gtx is missing");
         return EXIT_CODE_USAGE;
     }
-    const gtx_open_desc open = {.limits = cli_limits};
     code = check_inputs(file);
-    if (code)
-        return code;
-    gtx_asset *asset = NULL;
-    gtx_error error = {0};
-    gtx_info info;
-    gtx_result result = gtx_open_exported(file, &open, &asset, &error);
-    if (!result) {
-        gtx_get_info(asset, &info);
-        if (info.lod_levels && !lod_levels)
-            report_warning(file, gtx_warning_name(GTX_WARNING_LOD_DROPPED),
-                           "the LOD meshes are those of the surface as it was, and are left out");
-        result = run(asset, &file, &error);
-    }
-    gtx_close(asset);
-    return result ? report_error(file, &error) : EXIT_CODE_OK;
+    if (!code)
+        code = run(file);
+    made_free(&making);
+    return code;
 }

@@ -14,14 +14,16 @@ enum { MAX_GRIDS = 4096, MAX_NAME = 4096 };
 
 static gtx_horizons_desc desc;
 static gtx_height_grid_desc reading, reading_property;
-static const char *output, *range, *property_range, *spacing, *origin, *color_range;
+static made_file making = {.verb = "horizons"};
+static const char *range, *property_range, *spacing, *origin, *color_range;
 static double missing = NAN, rotation = NAN, unit = 1;
 static uint32_t colors, lod_levels = 5;
 static int32_t zstd_level = 3;
 static bool depths, one_surface;
 
 static const option options[] = {
-    {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes (required)", 0, 0},
+    {"output", 'o', OPTION_STRING, &making.output, "OUT.gtx",
+     "where the asset goes (required)", 0, 0},
     {"colors", 0, OPTION_CHOICE, &colors, "viridis|rainbow|none",
      "colour map of the properties, or of the heights [viridis]", 0, 0},
     {"color-range", 0, OPTION_STRING, &color_range, "LOW,HIGH",
@@ -51,6 +53,7 @@ static const option options[] = {
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the grids [1]", 1e-30, 1e30},
     {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
     PROGRESS_OPTION,
+    MADE_OPTIONS(making),
     {0}};
 
 static const verb horizons = {
@@ -81,7 +84,7 @@ static bool parse_pair(const char *text, double out[2])
 static int check(void)
 {
     double pair[2];
-    if (!output)
+    if (!making.output)
         return usage("-o OUT.gtx is missing");
     if (range && !parse_pair(range, reading.range))
         return usage("--range takes LOW,HIGH");
@@ -122,13 +125,13 @@ static int cut(const char *operand, parts *out)
     return parse_pair(place, out->place) ? EXIT_CODE_OK : usage("a grid's place is @X,Y");
 }
 
-static int check_operand(const char *operand)
+static int add_sources(const char *operand)
 {
-    const output_file outputs[] = {{"-o", output}, {NULL, NULL}};
     parts p;
-    const int code = cut(operand, &p);
-    const char *inputs[] = {p.name, p.property};
-    return code ? code : check_outputs("gtx horizons", outputs, inputs, p.property ? 2 : 1);
+    int code = cut(operand, &p);
+    if (!code)
+        code = made_from(&making, p.name);
+    return code || !p.property ? code : made_from(&making, p.property);
 }
 
 static int read_operand(const char *operand, gtx_height_grid *grid)
@@ -172,7 +175,7 @@ static void tell(const gtx_horizons_result *r)
         snprintf(colored, sizeof colored, ", colours %g to %g", r->color_range[0],
                  r->color_range[1]);
     print_message("%s: %" PRIu64 " nodes, %" PRIu64 " triangles, %u patches, heights within %g "
-                  "(RMS %g)%s", output, r->nodes, r->triangles, r->patches, r->height_max,
+                  "(RMS %g)%s", making.output, r->nodes, r->triangles, r->patches, r->height_max,
                   r->height_rms, colored);
 }
 
@@ -183,16 +186,15 @@ static int make(const gtx_height_grid *grids, int count)
     gtx_error error;
     gtx_encode_desc encode = {.zstd_level = encode_level(zstd_level)};
     catch_interrupt();
-    gtx_result made = gtx_horizons(grids, (uint32_t)count, &desc, &asset, &result, &error);
+    const gtx_result failed = gtx_horizons(grids, (uint32_t)count, &desc, &asset, &result, &error);
     end_progress();
-    if (made)
+    if (failed)
         return report_error("gtx horizons", &error);
-    made = gtx_save_file(asset, output, &encode, &error);
+    const int code = made_save(&making, asset, &encode);
     gtx_close(asset);
-    if (made)
-        return report_error(output, &error);
-    tell(&result);
-    return EXIT_CODE_OK;
+    if (!code)
+        tell(&result);
+    return code;
 }
 
 int cmd_horizons(int argc, char **argv)
@@ -204,9 +206,13 @@ int cmd_horizons(int argc, char **argv)
         return code;
     code = check();
     for (int i = 0; i < count && !code; ++i)
-        code = check_operand(operands[i]);
-    if (code)
+        code = add_sources(operands[i]);
+    if (!code)
+        code = made_check(&making);
+    if (code) {
+        made_free(&making);
         return code;
+    }
     desc.colors = (gtx_colors)colors;
     desc.depths = depths;
     desc.one_surface = one_surface;
@@ -221,15 +227,16 @@ int cmd_horizons(int argc, char **argv)
 
     gtx_height_grid *grids = calloc((size_t)count, sizeof *grids);
     if (!grids)
-        return report_no_memory("gtx horizons");
+        code = report_no_memory("gtx horizons");
     for (int i = 0; i < count && !code; ++i)
         code = read_operand(operands[i], &grids[i]);
     if (!code)
         code = make(grids, count);
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < count && grids; ++i) {
         free((void *)grids[i].property);
         gtx_height_grid_free(&grids[i]);
     }
     free(grids);
+    made_free(&making);
     return code;
 }

@@ -10,21 +10,22 @@
 
 namespace fs = std::filesystem;
 
-static const char *output, *rebuild_text;
-static bool strict;
+static const char *rebuild_text;
+static made_file making = {};
 static unsigned rebuilt;
 static int32_t zstd_level = -1;
 static uint32_t lod_levels;
 
 static const option options[] = {
-    {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes (required)", 0, 0},
+    {"output", 'o', OPTION_STRING, &making.output, "OUT.gtx",
+     "where the asset goes (required)", 0, 0},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [as before]", 0, 19},
     {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
      "make a new LOD mesh of N levels from the maps [keep the old]", 1, 5},
     {"rebuild", 0, OPTION_STRING, &rebuild_text, "mips,normals,trim",
      "of edited patches: coarser levels and dilation from level 0, normals from heights, outlines",
      0, 0},
-    {"strict", 0, OPTION_FLAG, &strict, nullptr, "a warning is an error (exit 3)", 0, 0},
+    MADE_OPTIONS(making),
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
 static const verb pack = {
@@ -40,6 +41,11 @@ static bool follows_from_heights(uint32_t rule)
 {
     return rule == 304 || rule == 308 || rule == 311;
 }
+
+/* An exit code, whose reason has been told. */
+struct Told {
+    int code;
+};
 
 using Asset = std::unique_ptr<gtx_asset, void (*)(gtx_asset *)>;
 
@@ -59,10 +65,9 @@ static Asset open_folder(const char *folder, std::string &about)
         result = gtx_create(&unpacked.desc, &asset, &error);
     }
     gtx::require_ok(result, error);
-    if (strict && !unpacked.warnings.empty())
-        throw gtx::Error(GTX_ERROR_INPUT, unpacked.warnings[0].sentence + " (" +
-                                              gtx_warning_name(unpacked.warnings[0].kind) + ")");
-    gtx::report_warnings(folder, unpacked.warnings);
+    for (const gtx::Warning &warning : unpacked.warnings)
+        if (int code = made_warn(&making, folder, warning.kind, warning.sentence.c_str()))
+            throw Told{code};
     if (zstd_level < 0)
         zstd_level = unpacked.zstd;
     return Asset(asset, gtx_close);
@@ -117,44 +122,49 @@ static Asset with_lod(const Asset &asset)
 /* The asset, or all that lies in the folder. */
 static int check_inputs(const char *input)
 {
-    const output_file outputs[] = {{"-o", output}, {nullptr, nullptr}};
-    int code = check_outputs("gtx pack", outputs, &input, 1);
-    for (const std::string &name : gtx::names_in(input)) {
-        const std::string path = gtx::in_folder(input, name);
-        const char *file = path.c_str();
-        code = code ? code : check_outputs("gtx pack", outputs, &file, 1);
-    }
-    return code;
+    std::error_code ignored;
+    const bool is_file = !fs::is_directory(input, ignored);
+    int code = is_file ? made_from(&making, input) : EXIT_CODE_OK;
+    for (const std::string &name : gtx::names_in(input))
+        code = code ? code : made_from(&making, gtx::in_folder(input, name).c_str());
+    return code ? code : made_check(&making);
+}
+
+static int run(const char *input, std::string &about)
+{
+    if (!parse_rebuild())
+        throw gtx::Error(GTX_ERROR_ARGUMENT, "--rebuild takes some of mips, normals and trim");
+    if (int code = check_inputs(input))
+        return code;
+    std::error_code ignored;
+    const bool is_file = fs::is_regular_file(input, ignored);
+    Asset asset = is_file ? open_asset(input) : open_folder(input, about);
+    if (lod_levels)
+        asset = with_lod(asset);
+    gtx_encode_desc desc = {};
+    desc.zstd_level = encode_level(zstd_level >= 0 ? zstd_level : 3);
+    return made_save(&making, asset.get(), &desc);
 }
 
 int cmd_pack(int argc, char **argv)
 {
     const char *input;
     int count;
+    making.verb = "pack";
     int code = parse_options(&pack, argc, argv, &input, &count);
     if (code >= 0)
         return code;
-    if (!output) {
+    if (!making.output) {
         print_message("gtx pack: error[usage]: -o OUT.gtx is missing");
         return EXIT_CODE_USAGE;
     }
-    return gtx::guarded(input, [&](std::string &about) {
-        if (!parse_rebuild())
-            throw gtx::Error(GTX_ERROR_ARGUMENT, "--rebuild takes some of mips, normals and trim");
-        code = check_inputs(input);
-        if (code)
-            return code;
-        std::error_code ignored;
-        const bool is_file = fs::is_regular_file(input, ignored);
-        Asset asset = is_file ? open_asset(input) : open_folder(input, about);
-        if (lod_levels)
-            asset = with_lod(asset);
-        gtx_encode_desc desc = {};
-        desc.zstd_level = encode_level(zstd_level >= 0 ? zstd_level : 3);
-        gtx_error error = {};
-        about = output;
-        catch_interrupt();
-        gtx::require_ok(gtx_save_file(asset.get(), output, &desc, &error), error);
-        return int(EXIT_CODE_OK);
+    code = gtx::guarded(input, [&](std::string &about) {
+        try {
+            return run(input, about);
+        } catch (const Told &told) {
+            return told.code;
+        }
     });
+    made_free(&making);
+    return code;
 }

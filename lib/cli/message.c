@@ -131,7 +131,7 @@ bool was_interrupted(void)
     return interrupted;
 }
 
-static double seconds_now(void)
+double seconds_now(void)
 {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
