@@ -88,7 +88,7 @@ cflags_render = -Ishaders
 cflags_cli   = -D_POSIX_C_SOURCE=200809L -I$(out)/gen
 libs_asset   = $(if $(filter 1,$(zstd)),$(call pkg,--libs,libzstd))
 libs_mesh    = $(call pkg,--libs,openmesh draco zlib) -lmeshoptimizer -ldl -pthread -lstdc++
-libs_image   = -ldl
+libs_image   = -ldl $(libs_asset)
 libs_host    = $(call pkg,--libs,egl glfw3) -pthread
 libs_of      = $(strip $(foreach r,$(1),$(libs_$(r)))) -lm
 

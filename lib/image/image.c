@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/output.h"
+#include "image/ktx.h"
 #include "image/module.h"
 #include "image/targa.h"
 
@@ -141,13 +142,34 @@ gtx_result gtx_image_write_exr(const char *path, uint32_t width, uint32_t height
     return write_image(path, (gtx_image_rows){"exr", width, height, 1, z}, error);
 }
 
+/* ---- what is decoded here ---- */
+
+static const struct own {
+    int (*is)(const void *data, size_t size);
+    gtx_result (*measure)(const void *data, size_t size, uint32_t *width, uint32_t *height,
+                          gtx_error *error);
+    gtx_result (*decode)(const void *data, size_t size, uint64_t max_pixels, gtx_image *out,
+                         gtx_error *error);
+} own[] = {{gtx_is_ktx, gtx_ktx_measure, gtx_ktx_decode},
+           {gtx_is_targa, gtx_targa_measure, gtx_targa_decode}};
+
+/* NULL for what the module is to read. */
+static const struct own *own_of(const void *data, size_t size)
+{
+    for (size_t i = 0; data && i < sizeof own / sizeof *own; ++i)
+        if (own[i].is(data, size))
+            return &own[i];
+    return NULL;
+}
+
 static gtx_result read_image(const char *path, const void *data, size_t size, gtx_image *out,
                              gtx_error *error)
 {
     char message[GTX_IMAGE_MAX_MESSAGE];
     gtx_image image = {0};
-    if (data && gtx_is_targa(data, size))
-        return gtx_targa_decode(data, size, MAX_PIXELS, out, error);
+    const struct own *decoder = own_of(data, size);
+    if (decoder)
+        return decoder->decode(data, size, MAX_PIXELS, out, error);
     const gtx_image_functions *module = module_functions(error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;
@@ -208,10 +230,9 @@ static gtx_result measure(const char *path, const void *data, size_t size, uint3
                           uint32_t *height, gtx_error *error)
 {
     char message[GTX_IMAGE_MAX_MESSAGE];
-    if (data && gtx_is_targa(data, size)) {
-        gtx_targa_measure(data, width, height);
-        return GTX_OK;
-    }
+    const struct own *decoder = own_of(data, size);
+    if (decoder)
+        return decoder->measure(data, size, width, height, error);
     const gtx_image_functions *module = module_functions(error);
     if (!module)
         return GTX_ERROR_UNSUPPORTED;

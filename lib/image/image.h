@@ -56,7 +56,7 @@ typedef struct gtx_value_image {
 
 /* Reads 8 or 16 bits or floats a channel. Errors: as gtx_image_read. */
 gtx_result gtx_image_read_values(const char *path, gtx_value_image *out, gtx_error *error);
-/* gtx_image_read from the bytes of a file, and of TGA too. Errors: likewise. */
+/* gtx_image_read from the bytes of a file, and of KTX2 too. Errors: likewise. */
 gtx_result gtx_image_decode(const void *data, size_t size, gtx_image *out, gtx_error *error);
 /* The size that such bytes claim, without decoding them. Errors: likewise. */
 gtx_result gtx_image_measure(const void *data, size_t size, uint32_t *width, uint32_t *height,

@@ -51,11 +51,15 @@ int gtx_is_targa(const void *data, size_t size)
     }
 }
 
-void gtx_targa_measure(const void *data, uint32_t *width, uint32_t *height)
+gtx_result gtx_targa_measure(const void *data, size_t size, uint32_t *width, uint32_t *height,
+                             gtx_error *error)
 {
+    (void)size;
+    (void)error;
     const header h = read_header(data);
     *width = h.width;
     *height = h.height;
+    return GTX_OK;
 }
 
 static uint8_t of_5_bits(uint32_t value)

@@ -29,6 +29,14 @@ static void test_texture_info(void **)
                                "'extensions':{'EXT_texture_webp':{'source':0}}"));
     assert_true(i.warnings.empty() && material(i).color_map.used());
 
+    std::ifstream ktx("tests/image/ktx/etc1s_alpha.ktx2", std::ios::binary);
+    folder.write("a.ktx2", std::string(std::istreambuf_iterator<char>(ktx), {}));
+    rest = "'textures':[{'extensions':{'KHR_texture_basisu':{'source':0}}}],"
+           "'images':[{'uri':'a.ktx2','mimeType':'image/ktx2'}]";
+    i = import_textured(folder, base_color, rest);
+    assert_true(i.warnings.empty() && material(i).color_map.used());
+    assert_int_equal(i.mesh.appearance.images[0].levels[0].width, 45);
+
     /* KHR_texture_transform: half the size, turned a quarter, moved, and of another set */
     const std::string transform =
         "{'pbrMetallicRoughness':{'baseColorTexture':{'index':0,'texCoord':5,'extensions':"
