@@ -16,9 +16,12 @@ extern "C" {
 
 typedef enum gtx_compress {
     GTX_COMPRESS_NONE = 0,
-    GTX_COMPRESS_MESHOPT = 1      /* EXT_meshopt_compression, which readers have to know, with
+    GTX_COMPRESS_MESHOPT = 1,     /* EXT_meshopt_compression, which readers have to know, with
                                      normals, tangents and texture coordinates of 16 bits
                                      (KHR_mesh_quantization); positions stay as they are */
+    GTX_COMPRESS_DRACO = 2        /* KHR_draco_mesh_compression, likewise required: the smallest;
+                                     positions stay on the grid of the LOD mesh, normals and
+                                     tangents have 12 bits, texture coordinates 1/16 texel */
 } gtx_compress;
 
 typedef struct gtx_export_desc {

@@ -91,6 +91,71 @@ ExportPrimitive Document::add_primitive(const ExportMesh &mesh, size_t first, si
     return out;
 }
 
+/* ---- Draco ---- */
+
+/* Accessors whose values the stream has. */
+void Document::add_stream(ExportPrimitive &to, const gtx_lod_mesh &lod,
+                          Vector<DracoValues> &attributes, size_t vertices,
+                          const Vector<std::array<uint32_t, 3>> &triangles)
+{
+    static const char *const shapes[] = {"", "", "VEC2", "VEC3", "VEC4"};
+    constexpr float STEPS = 65535; /* of positions in an LOD mesh */
+    attributes[0].low = Vec3f(lod.origin[0], lod.origin[1], lod.origin[2]);
+    attributes[0].range = lod.step > 0 ? lod.step * STEPS : 1;
+    const DracoStream stream = encode_draco(attributes, vertices, triangles);
+    for (const DracoValues &a : attributes) {
+        GlbBuffer::Accessor accessor = positions(GlbBuffer::NO_VIEW, 0, stream.vertices);
+        accessor.shape = shapes[a.components];
+        accessor.bounded = a.kind == DracoValues::POSITION;
+        for (size_t v = 0; accessor.bounded && v < vertices; ++v)
+            bound(accessor, Vec3f(a.values[3 * v], a.values[3 * v + 1], a.values[3 * v + 2]));
+        to.attributes[a.kind] = buffer_.add_accessor(accessor);
+    }
+    to.indices = buffer_.add_accessor(
+        {GlbBuffer::NO_VIEW, 0, GLTF_UINT, 3 * stream.triangles, "SCALAR"});
+    to.stream = buffer_.add_view(stream.bytes, GLTF_NO_TARGET);
+}
+
+ExportPrimitive Document::add_draco(const ExportMesh &mesh, size_t first, size_t last)
+{
+    constexpr int POSITION_BITS = 16, FRAME_BITS = 12, SUB_TEXEL_BITS = 4;
+    int texel_bits = SUB_TEXEL_BITS;
+    while (texel_bits < 16 && (1u << (texel_bits - SUB_TEXEL_BITS)) <
+                                  std::max(info_.page_width, info_.page_height))
+        ++texel_bits;
+    const gtx_patch &patch = gtx_patches(asset_)[mesh.parts[first].patch];
+    const uint32_t start = mesh.parts[first].first_vertex;
+    const ExportPart &end = mesh.parts[last - 1];
+    const size_t vertices = end.first_vertex + end.vertices - start;
+    Vector<DracoValues> attributes;
+    attributes.push_back({DracoValues::POSITION, 3, {}, POSITION_BITS, {}, 0});
+    attributes.push_back({DracoValues::NORMAL, 3, {}, FRAME_BITS, {}, 0});
+    attributes.push_back({DracoValues::TANGENT, 4, {}, FRAME_BITS, Vec3f(-1, -1, -1), 2});
+    attributes.push_back({DracoValues::TEXCOORD, 2, {}, texel_bits, {}, 1});
+    for (size_t i = start; i < start + vertices; ++i) {
+        const ExportVertex &v = mesh.vertices[i];
+        const float numbers[][4] = {
+            {v.position.x, v.position.y, v.position.z, 0},
+            {v.normal.x, v.normal.y, v.normal.z, 0},
+            {v.tangent.x, v.tangent.y, v.tangent.z, BITANGENT_SIGN},
+            {v.texel[0] / float(info_.page_width), v.texel[1] / float(info_.page_height), 0, 0}};
+        for (size_t a = 0; a < attributes.size(); ++a)
+            attributes[a].values.insert(attributes[a].values.end(), numbers[a],
+                                        numbers[a] + attributes[a].components);
+    }
+    Vector<std::array<uint32_t, 3>> triangles;
+    const uint32_t after = end.first_triangle + end.triangles;
+    for (uint32_t t = mesh.parts[first].first_triangle; t < after; ++t) {
+        const auto &c = mesh.triangles[t];
+        triangles.push_back({c[0] - start, c[1] - start, c[2] - start});
+    }
+    ExportPrimitive out = {patch.page, (patch.flags & GTX_PATCH_TWO_SIDED) != 0, {}, 0};
+    add_stream(out, mesh.from, attributes, vertices, triangles);
+    return out;
+}
+
+/* ---- levels ---- */
+
 /* -1 to 1, or 0 to 1, as glTF's normalised whole numbers have them. */
 static uint8_t *store_share(uint8_t *to, float value, float most)
 {
@@ -123,9 +188,10 @@ void Document::add_level(uint32_t number, const ExportMesh &mesh, unsigned coars
 {
     const gtx_patch *patches = gtx_patches(asset_);
     DocumentLevel level = {number, double(mesh.from.error), {}, 0};
-    const unsigned view =
-        buffer_.add_view(view_of(vertex_bytes(mesh)), GLTF_VERTICES,
-                         meshopt_ ? EXPORT_SHORT_VERTEX : EXPORT_VERTEX);
+    unsigned view = GlbBuffer::NO_VIEW;
+    if (!draco_)
+        view = buffer_.add_view(view_of(vertex_bytes(mesh)), GLTF_VERTICES,
+                                meshopt_ ? EXPORT_SHORT_VERTEX : EXPORT_VERTEX);
     auto kind = [&](size_t part) {
         const gtx_patch &p = patches[mesh.parts[part].patch];
         return std::make_pair(p.page, p.flags & GTX_PATCH_TWO_SIDED);
@@ -133,7 +199,8 @@ void Document::add_level(uint32_t number, const ExportMesh &mesh, unsigned coars
     for (size_t first = 0, last; first < mesh.parts.size(); first = last) {
         for (last = first + 1; last < mesh.parts.size() && kind(last) == kind(first);)
             ++last;
-        level.primitives.push_back(add_primitive(mesh, first, last, view));
+        level.primitives.push_back(draco_ ? add_draco(mesh, first, last)
+                                          : add_primitive(mesh, first, last, view));
     }
     PageImages normals = tangent_normals(asset_, mesh, coarser, task_);
     level.first_normal_image = add_images(normals);
@@ -143,26 +210,35 @@ void Document::add_level(uint32_t number, const ExportMesh &mesh, unsigned coars
 /* Vertices stay shared across patches. */
 void Document::add_collision(uint32_t number, const gtx_lod_mesh &lod)
 {
-    Vector<uint8_t> bytes(12 * size_t(lod.vertex_count)), corners(12 * size_t(lod.triangle_count));
-    GlbBuffer::Accessor place = positions(0, 0, lod.vertex_count);
-    for (uint32_t v = 0; v < lod.vertex_count; ++v) {
-        Vec3f p;
-        for (int k = 0; k < 3; ++k) {
-            p[k] = float(double(lod.origin[k]) +
-                         double(lod.step) * lod.positions[3 * size_t(v) + size_t(k)]);
-            gtx_store_f32(&bytes[12 * size_t(v) + 4 * size_t(k)], p[k]);
-        }
-        bound(place, p);
-    }
-    for (size_t i = 0; i < 3 * size_t(lod.triangle_count); ++i)
-        gtx_store_u32(&corners[4 * i], lod.indices[i]);
-    place.view = buffer_.add_view(view_of(bytes), GLTF_VERTICES);
+    Vector<float> places;
+    Vector<std::array<uint32_t, 3>> triangles(lod.triangle_count);
+    for (size_t i = 0; i < 3 * size_t(lod.vertex_count); ++i)
+        places.push_back(float(double(lod.origin[i % 3]) +
+                               double(lod.step) * lod.positions[i]));
+    for (size_t i = 0; i < 3 * triangles.size(); ++i)
+        triangles[i / 3][i % 3] = lod.indices[i];
     ExportPrimitive p = {};
-    p.attributes[0] = buffer_.add_accessor(place);
-    p.indices = buffer_.add_accessor({buffer_.add_view(view_of(corners), GLTF_INDICES), 0,
-                                      GLTF_UINT, 3 * size_t(lod.triangle_count), "SCALAR"});
-    levels_.push_back({number, double(lod.error), {p}, 0});
+    p.stream = GlbBuffer::NO_VIEW;
     is_collision_ = true;
+    if (draco_) {
+        Vector<DracoValues> attributes;
+        attributes.push_back({DracoValues::POSITION, 3, std::move(places), 16, {}, 0});
+        add_stream(p, lod, attributes, lod.vertex_count, triangles);
+    } else {
+        Vector<uint8_t> bytes(4 * places.size()), corners(12 * triangles.size());
+        for (size_t i = 0; i < places.size(); ++i)
+            gtx_store_f32(&bytes[4 * i], places[i]);
+        for (size_t i = 0; i < 3 * triangles.size(); ++i)
+            gtx_store_u32(&corners[4 * i], lod.indices[i]);
+        GlbBuffer::Accessor place =
+            positions(buffer_.add_view(view_of(bytes), GLTF_VERTICES), 0, lod.vertex_count);
+        for (size_t i = 0; i < places.size(); i += 3)
+            bound(place, Vec3f(places[i], places[i + 1], places[i + 2]));
+        p.attributes[0] = buffer_.add_accessor(place);
+        p.indices = buffer_.add_accessor({buffer_.add_view(view_of(corners), GLTF_INDICES), 0,
+                                          GLTF_UINT, 3 * triangles.size(), "SCALAR"});
+    }
+    levels_.push_back({number, double(lod.error), {p}, 0});
 }
 
 void Document::add_maps()

@@ -2,6 +2,7 @@
  * Inside of the room. */
 #pragma once
 
+#include "export/draco.hpp"
 #include "export/export.hpp"
 #include "export/glb.hpp"
 
@@ -12,6 +13,7 @@ struct ExportPrimitive {
     uint32_t page;
     bool two_sided;
     unsigned attributes[4], indices; /* POSITION, NORMAL, TANGENT, TEXCOORD_0 */
+    unsigned stream = GlbBuffer::NO_VIEW; /* of Draco, whose attributes have these numbers */
 };
 
 /* A level of the document. */
@@ -24,8 +26,9 @@ struct DocumentLevel {
 
 class Document {
 public:
-    Document(const gtx_asset *asset, bool meshopt, Task &task)
-        : asset_(asset), task_(task), meshopt_(meshopt), buffer_(meshopt)
+    Document(const gtx_asset *asset, const ExportOptions &options, Task &task)
+        : asset_(asset), task_(task), meshopt_(options.meshopt), draco_(options.draco),
+          buffer_(options.meshopt)
     {
         gtx_get_info(asset, &info_);
     }
@@ -40,6 +43,9 @@ private:
     unsigned add_images(PageImages &pages);
     Vector<uint8_t> vertex_bytes(const ExportMesh &mesh) const;
     ExportPrimitive add_primitive(const ExportMesh &mesh, size_t first, size_t last, unsigned view);
+    void add_stream(ExportPrimitive &to, const gtx_lod_mesh &lod, Vector<DracoValues> &attributes,
+                    size_t vertices, const Vector<std::array<uint32_t, 3>> &triangles);
+    ExportPrimitive add_draco(const ExportMesh &mesh, size_t first, size_t last);
     double screen_coverage(size_t level) const;
     bool is_bright() const { return maps_.emission.pages && info_.emission_scale > 1; }
     void write_surface(Json &out, uint32_t page) const;
@@ -54,7 +60,7 @@ private:
     const gtx_asset *asset_;
     gtx_info info_;
     Task &task_;
-    const bool meshopt_;
+    const bool meshopt_, draco_;
     GlbBuffer buffer_;
     Vector<DocumentLevel> levels_;
     Vector<unsigned> image_views_;

@@ -147,9 +147,23 @@ void Document::write_materials(Json &out) const
 
 /* ---- meshes and nodes ---- */
 
+static const char *const attribute_names[] = {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0"};
+
+static void write_stream(Json &out, const ExportPrimitive &p, size_t attributes)
+{
+    write_object(out, "extensions", [&] {
+        write_object(out, "KHR_draco_mesh_compression", [&] {
+            gtx_json_integer(&out, "bufferView", p.stream);
+            write_object(out, "attributes", [&] {
+                for (size_t i = 0; i < attributes; ++i)
+                    gtx_json_integer(&out, attribute_names[i], i);
+            });
+        });
+    });
+}
+
 void Document::write_meshes(Json &out) const
 {
-    static const char *const names[] = {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0"};
     unsigned material = 0;
     write_array(out, "meshes", [&] {
         for (const DocumentLevel &level : levels_)
@@ -161,11 +175,14 @@ void Document::write_meshes(Json &out) const
                         write_object(out, nullptr, [&] {
                             write_object(out, "attributes", [&] {
                                 for (size_t i = 0; i < (is_collision_ ? 1 : 4); ++i)
-                                    gtx_json_integer(&out, names[i], p.attributes[i]);
+                                    gtx_json_integer(&out, attribute_names[i],
+                                                     p.attributes[i]);
                             });
                             gtx_json_integer(&out, "indices", p.indices);
                             if (!is_collision_)
                                 gtx_json_integer(&out, "material", material++);
+                            if (p.stream != GlbBuffer::NO_VIEW)
+                                write_stream(out, p, is_collision_ ? 1 : 4);
                         });
                 });
             });
@@ -238,7 +255,8 @@ void Document::write_extensions(Json &out) const
                       {"KHR_materials_unlit", maps_.unlit},
                       {"KHR_materials_emissive_strength", is_bright()},
                       {"KHR_mesh_quantization", meshopt_ && !is_collision_, true},
-                      {"EXT_meshopt_compression", meshopt_, true}};
+                      {"EXT_meshopt_compression", meshopt_, true},
+                      {"KHR_draco_mesh_compression", draco_, true}};
     if (std::any_of(std::begin(extensions), std::end(extensions),
                     [](const auto &e) { return e.used; }))
         write_array(out, "extensionsUsed", [&] {
@@ -246,7 +264,7 @@ void Document::write_extensions(Json &out) const
                 if (e.used)
                     gtx_json_string(&out, nullptr, e.name);
         });
-    if (meshopt_)
+    if (meshopt_ || draco_)
         write_array(out, "extensionsRequired", [&] {
             for (const auto &e : extensions)
                 if (e.used && e.required)

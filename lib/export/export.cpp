@@ -73,7 +73,7 @@ Exported export_glb(const gtx_asset *asset, std::string_view bytes, const Export
     gtx_info info;
     gtx_get_info(asset, &info);
     Exported out;
-    Document document(asset, options.meshopt, task);
+    Document document(asset, options, task);
     const uint32_t after = options.lods ? near_levels(asset) : options.level + 1;
     for (uint32_t level = options.level; level < after; ++level) {
         const gtx_lod_mesh lod = lod_mesh(asset, level);
@@ -108,7 +108,7 @@ static void check(const gtx_export_desc &desc)
     require_limits(desc.limits);
     require_argument(desc.lods <= 1 && desc.collision <= 1 && desc.without_asset <= 1,
                      "lods, collision and without_asset are 0 or 1");
-    require_argument(number_of(desc.compress) <= GTX_COMPRESS_MESHOPT, "unknown compression");
+    require_argument(number_of(desc.compress) <= GTX_COMPRESS_DRACO, "unknown compression");
     require_argument(desc.threads <= 1024, "threads is at most 1024");
     require_argument(desc.max_error >= 0 && std::isfinite(desc.max_error),
                      "max_error is finite and not negative");
@@ -163,6 +163,7 @@ static Bytes exported(std::string_view data, const gtx_export_desc &desc,
     options.collision = desc.collision;
     options.with_asset = !desc.without_asset;
     options.meshopt = number_of(desc.compress) == GTX_COMPRESS_MESHOPT;
+    options.draco = number_of(desc.compress) == GTX_COMPRESS_DRACO;
     Exported made = export_glb(asset.get(), bytes, options, task);
     task.end();
     if (report) {

@@ -16,7 +16,9 @@ struct ExportOptions {
     bool collision = false;        /* triangles alone, no map and no asset */
     bool with_asset = true;
     bool meshopt = false;          /* EXT_meshopt_compression, with normals, tangents and texture
-                                      coordinates of 16 bits */
+                                      coordinates of 16 bits; or: */
+    bool draco = false;            /* KHR_draco_mesh_compression, with positions as the LOD mesh has
+                                      them, and the rest of 12 to 16 bits */
 };
 
 struct ExportedLevel {

@@ -68,8 +68,10 @@ void GlbBuffer::describe(Json &out) const
     gtx_json_begin_array(&out, "accessors");
     for (const Accessor &a : accessors_) {
         gtx_json_begin_object(&out, nullptr);
-        gtx_json_integer(&out, "bufferView", a.view);
-        gtx_json_integer(&out, "byteOffset", a.offset);
+        if (a.view != NO_VIEW) {
+            gtx_json_integer(&out, "bufferView", a.view);
+            gtx_json_integer(&out, "byteOffset", a.offset);
+        }
         gtx_json_integer(&out, "componentType", a.type);
         gtx_json_integer(&out, "count", a.count);
         gtx_json_string(&out, "type", a.shape);

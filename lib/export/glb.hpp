@@ -26,8 +26,9 @@ public:
     unsigned add_view(std::string_view bytes, GltfTarget target, size_t stride = 0,
                       size_t alignment = 4);
 
+    static constexpr unsigned NO_VIEW = 0xffffffffu;
     struct Accessor {
-        unsigned view;
+        unsigned view;               /* or NO_VIEW: a Draco stream has the values */
         size_t offset;               /* in the view */
         GltfType type;
         size_t count;

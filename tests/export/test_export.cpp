@@ -295,7 +295,7 @@ static void compressed_it_is_the_same(void **state)
                          collision ? GTX_ERROR_EMPTY : GTX_OK);
         assert_true(collision || (size == bytes.size() && !std::memcmp(held, bytes.data(), size)));
     }
-    desc.compress = gtx_compress(2);
+    desc.compress = gtx_compress(3);
     void *out = nullptr;
     size_t size = 0;
     assert_int_equal(gtx_export_memory(bytes.data(), bytes.size(), &desc, &out, &size, nullptr,
