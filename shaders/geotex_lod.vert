@@ -7,6 +7,9 @@
  * triangle is found here and stays the same all over it: triangles are small, and a vertex serves
  * several. Each number more that a triangle carries costs a few per cent on llvmpipe. */
 GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;
+#if defined(GTX_LIT) && !defined(GTX_PLAIN)
+GTX_SAMPLER(3, highp sampler2DArray) gtx_colors;
+#endif
 
 #if defined(GTX_GRID)
 layout(location = 0) in uvec4 gtx_node;     /* of the patch, and the height's code */
@@ -120,9 +123,12 @@ void main()
     if (gtx_lod_mesh.x > 0.0) /* seen from behind */
         n = gtx_from_behind(n, ray);
     float light = gtx_diffuse(n, -ray, gtx_light.xyz, deviation);
-    vec3 root = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
+    gtx_lit = gtx_tint;
+#ifndef GTX_PLAIN
+    gtx_lit *= textureLod(gtx_colors, vec3(place, page), level);
+#endif
+    vec3 root = pow(max(gtx_lit.rgb, 0.0), vec3(1.0 / 2.4));
     gtx_lit.rgb = gtx_shaded_to_srgb(root, gtx_light.w + (1.0 - gtx_light.w) * light);
-    gtx_lit.a = gtx_tint.a;
 #ifdef GTX_TRIMMED
     gtx_outline = 255.0 * texelFetch(gtx_trim, ivec3(rect.xy + at, page), 0).r;
 #endif

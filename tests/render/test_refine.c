@@ -26,7 +26,8 @@ static void wavy(const gtx_patch *patch, double x, double y, const void *user, f
     const double ridge = fabs(x - 0.7 * y - 9) / 30;
     *out = (fixture_texel){.height = 0.45 + 0.2 * sin(0.31 * x) * cos(0.23 * y) +
                                      0.3 * fmin(ridge, 0.4) + 0.01 * sin(2.9 * x + 1.7 * y),
-                           .trim = -8, .normal = {x < 24 ? 0.01 * x : 0.3 * sin(2 * x + y), 0, 1}};
+                           .trim = -8, .normal = {x < 24 ? 0.01 * x : 0.3 * sin(2 * x + y), 0, 1},
+                           .color = {90, (uint8_t)(2 * y), y < 20 ? 10 : (uint8_t)(5 * x), 255}};
 }
 
 /* A height field that ends where its blocks do, and what is drawn of it. */
@@ -239,26 +240,30 @@ static void levels_are_uniform(void **state)
     for (int32_t level = 0; level < 5; ++level) {
         const gtx_frustum view = {.level = level, .scale = 1};
         const gtx_refining r = gtx_refine(&view, s.model, 0, w, eye, &s.grids, &s.hooks);
-        s.grids.vertex_count = s.grids.index_count[GTX_GRID_MAPPED] = 0;
+        s.grids.vertex_count = s.grids.index_count[0] = s.grids.index_count[GTX_GRID_MAPPED] = 0;
         for (uint32_t b = 0; b < r.rtin->columns * r.rtin->rows; ++b)
             assert_true(gtx_refine_block(&r, b % r.rtin->columns, b / r.rtin->columns));
         const uint32_t step = 1u << (level < 3 ? level : 3);
         const uint32_t cells = (WIDE - 1) / step * ((HIGH - 1) / step);
-        assert_int_equal(s.grids.index_count[GTX_GRID_MAPPED] / 3, 2 * cells);
+        const uint32_t mapped = s.grids.index_count[GTX_GRID_MAPPED] / 3;
+        assert_int_equal(lit_of(&s) + mapped, 2 * cells);
         assert_int_equal(s.grids.vertex_count, ((WIDE - 1) / step + 1) * ((HIGH - 1) / step + 1));
     }
     close_subject(&s);
 }
 
-/* A byte of the normal at a node. */
+/* A byte at a node: of the normal, then of the colour. */
 static double byte_at(const subject *s, uint32_t x, uint32_t y, int k)
 {
     const gtx_patch *p = s->asset->patches;
     const size_t row = p->rect[1] + y, column = p->rect[0] + x;
-    return s->asset->normal[0][2 * (row * s->asset->info.page_width + column) + (size_t)k];
+    const size_t at = row * s->asset->info.page_width + column;
+    return k < 2 ? s->asset->normal[0][2 * at + (size_t)k]
+                 : s->asset->color[0][4 * at + (size_t)k - 2];
 }
 
-/* How far the corners' normals are from that at a node that their triangle lies over, in bytes. */
+/* How far what the corners make is from what is at a node that their triangle lies over, in
+ * bytes. */
 static double stray_at(const subject *s, uint32_t triangle, uint32_t x, uint32_t y)
 {
     const gtx_grid_vertex *c[3];
@@ -271,7 +276,7 @@ static double stray_at(const subject *s, uint32_t triangle, uint32_t x, uint32_t
         if (area[i] < 0)
             return 0;
     }
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < (s->asset->info.has_color ? 6 : 2); ++k) {
         double mean = 0;
         for (int i = 0; i < 3; ++i)
             mean += area[i] * byte_at(s, c[i]->x, c[i]->y, k) / (area[0] + area[1] + area[2]);
@@ -280,13 +285,13 @@ static double stray_at(const subject *s, uint32_t triangle, uint32_t x, uint32_t
     return most;
 }
 
-/* Those lit at their corners have the normals that these make; and near they all are. */
-static void lit_ones_are_even(void **state)
+/* Those lit at their corners have the normals and colours that these make; and near they all
+ * are. */
+static void expect_to_be_even(bool colored)
 {
-    (void)state;
     subject s;
     uint32_t large = 0, mapped = 0, near = 0;
-    open_subject(&s, 8, false);
+    open_subject(&s, 8, colored);
     for (uint32_t n = 0; n < 40; ++n) {
         const uint32_t count = refine(&s, n), lit = lit_of(&s);
         const double least_w = s.w[3] + fmin(0, 48 * s.w[0]) + fmin(0, 40 * s.w[1]) - 255 * 0.01;
@@ -296,7 +301,7 @@ static void lit_ones_are_even(void **state)
                 const double stray = stray_at(&s, i, node % WIDE, node / WIDE);
                 large += stray > 0.4;
                 if (stray > 3.01)
-                    fail_msg("view %u: normals stray by %g", n, stray);
+                    fail_msg("view %u: they stray by %g", n, stray);
             }
         mapped += count - lit;
         if (most_w < 0.5 * s.view.pixels / 8) { /* the side of a texel */
@@ -306,6 +311,13 @@ static void lit_ones_are_even(void **state)
     }
     assert_true(large > 100 && mapped > 1000 && near > 3);
     close_subject(&s);
+}
+
+static void lit_ones_are_even(void **state)
+{
+    (void)state;
+    expect_to_be_even(false);
+    expect_to_be_even(true);
 }
 
 int main(void)

@@ -120,6 +120,8 @@ static void every_dialect(void **state)
                  versions[i][0]);
         compile(head, versions[i][1], "vert", lod_vertex);
         compile(head, versions[i][1], "frag", lit);
+        strcat(head, "\n#define GTX_PLAIN");
+        compile(head, versions[i][1], "vert", lod_vertex);
     }
 }
 
