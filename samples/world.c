@@ -2,9 +2,9 @@
  *
  *   world DIR [--headless OUT.png] [--size WxH]
  *
- * DIR is what `gtx world` makes. A stream says what to read, to upload and to draw; a thread reads,
- * opens and prepares; rays over what is there find the ground. Without a window a whole way around
- * is walked: the picture is its last frame, and what it took is told. */
+ * DIR is what `gtx world` makes. A stream says what to read, beginnings of files first, to upload
+ * and to draw; a thread reads, opens and prepares; rays over what is there find the ground. Without
+ * a window a whole way around is walked; the picture is its last frame, and its cost is told. */
 #include "host/sample.h"
 #include "host/worker.h"
 
@@ -28,7 +28,7 @@ static gtx_result load(const gtx_host_gl *gl, gtx_host_load loader, void *user, 
 {
     world *w = user;
     size_t size;
-    void *index = read_file(w->source.folder, "tiles.gtw", &size);
+    void *index = read_file(w->source.folder, "tiles.gtw", UINT64_MAX, NULL, 0, &size);
     const gtx_renderer_desc renderer = {.load = loader};
     const gtx_stream_desc desc = {.index = index, .index_size = size, .release = release_tile,
                                   .report = report_tile, .cpu_bytes = 768 << 20};
@@ -57,7 +57,7 @@ static void exchange(world *w, const gtx_stream_frame *frame, int wait)
     for (uint32_t i = 0; i < frame->request_count; ++i)
         gtx_worker_push(w->worker, ask_tile(&w->source, &frame->requests[i]));
     for (tile *t; (t = gtx_worker_pop(w->worker, wait));) {
-        w->read += t->request.bytes;
+        w->read += t->request.bytes - t->request.from;
         answer_tile(w->stream, t);
     }
 }
@@ -72,6 +72,7 @@ static gtx_result step(world *w, const gtx_host_gl *gl, int walks, gtx_stream_fr
                      .viewport_height = samples * (uint32_t)w->show.height};
     gtx_stream_view eye = {.viewport_height = (uint32_t)w->show.height};
     gtx_scene *ground = NULL;
+    uint32_t grounds = 0;
     gtx_camera_matrices(&w->show.camera, (float)w->show.width / (float)w->show.height, view.view,
                         view.projection);
     memcpy(eye.view, view.view, sizeof eye.view);
@@ -81,13 +82,13 @@ static gtx_result step(world *w, const gtx_host_gl *gl, int walks, gtx_stream_fr
     for (uint32_t i = 0; i < frame->upload_count && !result; ++i)
         result = upload_tile(w->stream, &frame->uploads[i], error);
     for (uint32_t i = 0; i < frame->draw_count && !result; ++i)
-        show_tile(frame->draws[i].payload, &w->instances[i], &w->ground[i]);
+        grounds += show_tile(frame->draws[i].payload, &w->instances[i], &w->ground[grounds]);
     gl->ClearColor(0.62f, 0.74f, 0.86f, 1);
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     if (!result)
         result = gtx_draw(w->source.renderer, &view, w->instances, frame->draw_count, error);
-    if (walks && frame->draw_count && !result &&
-        !gtx_scene_create(w->ground, frame->draw_count, NULL, &ground, NULL))
+    if (walks && grounds && !result &&
+        !gtx_scene_create(w->ground, grounds, NULL, &ground, NULL))
         walk_on(&w->show.camera, ground);
     gtx_scene_destroy(ground);
     return result;

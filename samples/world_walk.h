@@ -49,7 +49,8 @@ static inline void walk_on(gtx_camera *camera, const gtx_scene *ground)
 /* What a whole way around took. */
 typedef struct walk_record {
     double ms[FRAMES_AROUND];     /* of the processors, a frame */
-    uint64_t cpu, gpu, first;     /* bytes: most of both; read before the first picture */
+    uint64_t cpu, gpu;            /* bytes: most of both */
+    uint64_t first, read;         /* bytes: before the first picture, in all */
     uint64_t requested, released, draws;
 } walk_record;
 
@@ -60,6 +61,7 @@ static inline void walk_keep(walk_record *r, int n, clock_t took, const gtx_stre
     r->cpu = frame->cpu_bytes > r->cpu ? frame->cpu_bytes : r->cpu;
     r->gpu = frame->gpu_bytes > r->gpu ? frame->gpu_bytes : r->gpu;
     r->first = !r->first && frame->draw_count ? read : r->first;
+    r->read = read;
     r->requested = frame->requested;
     r->released = frame->released;
     r->draws += frame->draw_count;
@@ -76,10 +78,10 @@ static inline void walk_print(walk_record *r)
     qsort(r->ms, FRAMES_AROUND, sizeof *r->ms, walk_compare);
     printf("%d frames, %.1f ms in the median, %.1f at most in nine of ten; %.1f tiles a frame\n"
            "%.1f MB on the CPU and %.1f MB on the GPU at most; %.2f MB read before the first "
-           "picture\n%llu tiles read, %llu dropped\n",
+           "picture, %.1f in all\n%llu beginnings and rests of tiles read, %llu dropped\n",
            FRAMES_AROUND, r->ms[FRAMES_AROUND / 2], r->ms[FRAMES_AROUND * 9 / 10],
            (double)r->draws / FRAMES_AROUND, (double)r->cpu / 1e6, (double)r->gpu / 1e6,
-           (double)r->first / 1e6, (unsigned long long)r->requested,
+           (double)r->first / 1e6, (double)r->read / 1e6, (unsigned long long)r->requested,
            (unsigned long long)r->released);
 }
 

@@ -4,7 +4,8 @@
  * tile whether the host has it; it holds no asset, no thread and no GL. Each frame:
  *
  *     gtx_stream_update(stream, &view, 1, &frame, &error);
- *     for each frame.requests:  start to read `uri`, in any way, for any length of time
+ *     for each frame.requests:  start to read `uri`, in any way, for any length of time: its first
+ *                               `bytes` bytes
  *     for each frame.uploads:   gtx_model_upload(renderer, model, bytes, &done, &error);
  *                               if (done) gtx_stream_ready(stream, tile, 0);
  *     for each frame.draws:     one gtx_instance of the payload's model
@@ -18,6 +19,12 @@
  * Until then it stands. A tile stays as long as one below it is there: once the root is ready no
  * frame has a hole, wherever the camera jumps. Late, failing, truncated and lying reads leave the
  * parent standing; they are reported, and tried again a bounded number of times.
+ *
+ * Beginnings. A tile's file begins with its LOD meshes and colours: an eighth of it that is a tile
+ * already, without heights and with coarser normals (gtx_open_prefix). It is asked for first, and
+ * its children after it. The rest is wanted only where no child takes its place, and where the
+ * beginning's error is more than `max_error` pixels too; it is a payload of its own, and is drawn
+ * instead of the beginning, which stays while the rest is there.
  *
  * Budgets. What is asked for, held, and ready is never more than cpu_bytes and gpu_bytes, as far as
  * the index and the host tell sizes. Room is made by dropping leaves of what is there: those not in
@@ -40,7 +47,7 @@ typedef struct gtx_stream gtx_stream;
 /* What became of a request that brought no tile. */
 typedef struct gtx_stream_report {
     uint32_t tile;
-    const char *uri;              /* of the tile, as in gtx_stream_request; during the call */
+    const char *uri;              /* as in gtx_stream_request; during the call */
     const gtx_error *error;       /* what gtx_stream_fail was told; READ for one never answered;
                                      LIMIT for one that is larger than the room that is left */
     uint32_t tries_left;          /* 0: given up, until gtx_stream_retry; its parent stands */
@@ -83,9 +90,13 @@ typedef struct gtx_stream_request {
     char uri[GTX_STREAM_URI];     /* relative to the world's folder: "tiles/r07.gtx" */
     uint32_t tile;                /* number in the index, 0 = the root */
     float pixels;                 /* error on screen that it would mend: what is most urgent */
-    uint64_t bytes;               /* size of the file */
-    uint64_t memory;              /* that opening it takes, at most */
-    uint64_t hash;                /* XXH64 of the file */
+    uint64_t bytes;               /* wanted: so many first bytes of the file, or all */
+    uint64_t from;                /* of these the first ones that have been read already, for the
+                                     tile's beginning: who has kept them reads the others alone */
+    void *beginning;              /* its payload then; no longer than the frame */
+    uint64_t file_bytes;          /* size of the file */
+    uint64_t memory;              /* that opening them takes, at most */
+    uint64_t hash;                /* XXH64 of them */
     double low[3], high[3];       /* box of it and all below it */
 } gtx_stream_request;
 
@@ -108,10 +119,11 @@ typedef struct gtx_stream_frame {
     const gtx_stream_upload *uploads;
     const gtx_stream_draw *draws;
     uint32_t request_count, upload_count, draw_count;
-    uint32_t pending;             /* tiles in view that are wanted and not ready; 0: all is there */
+    uint32_t pending;             /* tiles in view and rests that are wanted and not ready; 0: all
+                                     is there */
     uint32_t without_room;        /* of these, those that wait for room in the budgets: no more is
                                      going to come where it is as many */
-    uint32_t given_up;            /* tiles whose tries have ended, of the whole world */
+    uint32_t given_up;            /* tiles and rests whose tries have ended, of the whole world */
     uint32_t resident, under_way; /* payloads, requests */
     uint64_t cpu_bytes, gpu_bytes;    /* taken of the budgets, by both */
     /* Since the stream was made. Every request ends as one of these four, or is under way. */
@@ -119,7 +131,7 @@ typedef struct gtx_stream_frame {
     uint64_t released;            /* payloads */
 } gtx_stream_frame;
 
-/* Reads an index (format/world.md). Takes all memory that it will ever take, some 400 bytes a tile,
+/* Reads an index (format/world.md). Takes all memory that it will ever take, some 550 bytes a tile,
  * from the descriptor's allocator; gtx_stream_destroy frees it.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT (the root is larger than cpu_bytes), NOT_GTX,
  * VERSION, TRUNCATED, CORRUPT. */
@@ -144,8 +156,9 @@ GTX_API void gtx_stream_get_info(const gtx_stream *stream, gtx_stream_info *out)
 GTX_API gtx_result gtx_stream_update(gtx_stream *stream, const gtx_stream_view *views,
                                      uint32_t count, gtx_stream_frame *frame, gtx_error *error);
 
-/* Opens what was read for a request, on any thread, if it is that tile: of its size and hash, an
- * asset that keeps every rule and takes no more memory than said, within its box. *held (may be
+/* Opens what was read for a request, on any thread, if it is that tile: `data` are the first
+ * request->bytes of its file, of their hash, an asset (or its beginning) that keeps every rule and
+ * takes no more memory than said, within its box. *held (may be
  * NULL) gets the bytes that the asset takes from the descriptor's allocator until gtx_close. `desc`
  * may be NULL; its limits hold too. Errors: those of gtx_open_memory; TRUNCATED and CORRUPT too
  * where the bytes are not the tile's. */

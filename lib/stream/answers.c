@@ -1,15 +1,13 @@
-/* What becomes of requests: payloads, failures, uploads; and opening what was read. */
+/* What becomes of requests: payloads, failures, uploads. */
 #include "stream/stream.h"
 
-#include "asset/section.h"
 #include "base/error.h"
-#include "base/hash.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { TILE_BITS = 20, MAX_DOUBLINGS = 16 };
+enum { TILE_BITS = 21, MAX_DOUBLINGS = 16 };
 
 void gtx_tile_uri(const gtx_tile *tile, char out[GTX_STREAM_URI])
 {
@@ -39,7 +37,7 @@ void gtx_tile_ask(gtx_stream *stream, gtx_tile *tile)
 {
     uint64_t cpu, gpu;
     gtx_tile_cost(stream, tile, &cpu, &gpu);
-    gtx_tile_take(stream, tile, tile->facts->bytes + tile->facts->memory, gpu);
+    gtx_tile_take(stream, tile, tile->file.bytes + tile->file.memory, gpu);
     gtx_list_add(stream, &stream->asked, tile);
     tile->state = GTX_TILE_ASKED;
     tile->request = ++stream->serial << TILE_BITS | gtx_tile_number(stream, tile);
@@ -74,7 +72,7 @@ void gtx_tile_fail(gtx_stream *stream, gtx_tile *tile, const gtx_error *error, b
     }
     counts ? ++stream->frame.failed : ++stream->frame.refused;
     gtx_tile_uri(tile, uri);
-    const gtx_stream_report report = {gtx_tile_number(stream, tile), uri, error,
+    const gtx_stream_report report = {gtx_tile_index(stream, tile), uri, error,
                                       desc->max_tries - tile->tries};
     if (desc->report)
         desc->report(&report, desc->user);
@@ -86,7 +84,7 @@ static gtx_tile *find_request(gtx_stream *stream, uint64_t id, gtx_result *resul
     const uint32_t number = (uint32_t)(id & ((1u << TILE_BITS) - 1));
     const uint64_t serial = id >> TILE_BITS;
     *result = GTX_ERROR_ARGUMENT;
-    if (number >= stream->info.tiles || serial == 0 || serial > stream->serial)
+    if (number >= 2 * stream->info.tiles || serial == 0 || serial > stream->serial)
         return NULL;
     *result = stream->tiles[number].request == id ? GTX_OK : GTX_CANCELLED;
     return *result ? NULL : &stream->tiles[number];
@@ -148,6 +146,8 @@ gtx_result gtx_stream_ready(gtx_stream *stream, uint32_t number, uint64_t cpu_by
     if (!stream || number >= stream->info.tiles)
         return GTX_ERROR_ARGUMENT;
     gtx_tile *tile = &stream->tiles[number];
+    if (tile->state == GTX_TILE_READY && gtx_tile_rest(stream, tile))
+        tile = gtx_tile_rest(stream, tile);
     if (tile->state != GTX_TILE_HELD || cpu_bytes > tile->cpu)
         return GTX_ERROR_ARGUMENT;
     gtx_tile_take(stream, tile, cpu_bytes, tile->gpu);
@@ -158,7 +158,7 @@ gtx_result gtx_stream_ready(gtx_stream *stream, uint32_t number, uint64_t cpu_by
 
 void gtx_stream_retry(gtx_stream *stream)
 {
-    for (uint32_t i = 0; stream && i < stream->info.tiles; ++i) {
+    for (uint32_t i = 0; stream && i < 2 * stream->info.tiles; ++i) {
         gtx_tile *tile = &stream->tiles[i];
         tile->retry = 0;
         tile->tries = 0;
@@ -167,55 +167,4 @@ void gtx_stream_retry(gtx_stream *stream)
     }
     if (stream)
         stream->frame.given_up = 0;
-}
-
-/* ---- opening ---- */
-
-static bool is_in_box(const gtx_stream_request *request, const gtx_info *info)
-{
-    for (int k = 0; k < 3; ++k)
-        if (!(info->anchor[k] + (double)info->bounds_min[k] >= request->low[k] &&
-              info->anchor[k] + (double)info->bounds_max[k] <= request->high[k]))
-            return false;
-    return true;
-}
-
-static uint64_t held_by(const gtx_asset *asset)
-{
-    gtx_sizes sizes = {.meta = asset->meta_size};
-    for (uint32_t k = 0; k < GTX_MAX_LODS; ++k)
-        sizes.lod[k] = asset->lod_size[k];
-    return gtx_asset_bytes(&asset->info, &sizes);
-}
-
-gtx_result gtx_stream_open(const gtx_stream_request *request, const void *data, size_t size,
-                           const gtx_open_desc *desc, gtx_asset **out, uint64_t *held,
-                           gtx_error *error)
-{
-    if (out)
-        *out = NULL;
-    if (!request || !out || (!data && size))
-        return gtx_fail(error, GTX_ERROR_ARGUMENT,
-                        "opening a tile needs its request, bytes, and a place for the asset");
-    if (size < request->bytes)
-        return gtx_fail(error, GTX_ERROR_TRUNCATED, "the tile ends after %zu of %" PRIu64
-                        " bytes", size, request->bytes);
-    if (size > request->bytes || gtx_hash_bytes(data, size) != request->hash)
-        return gtx_fail(error, GTX_ERROR_CORRUPT, "the bytes are not those of the tile");
-    gtx_open_desc open = desc ? *desc : (gtx_open_desc){0};
-    if (!open.limits.memory || open.limits.memory > request->memory)
-        open.limits.memory = request->memory ? request->memory : 1;
-    gtx_result result = gtx_open_memory(data, size, &open, out, error);
-    if (result)
-        return result;
-    gtx_info info;
-    gtx_get_info(*out, &info);
-    if (!is_in_box(request, &info)) {
-        gtx_close(*out);
-        *out = NULL;
-        return gtx_fail(error, GTX_ERROR_CORRUPT, "the tile is not within its box");
-    }
-    if (held)
-        *held = held_by(*out);
-    return GTX_OK;
 }

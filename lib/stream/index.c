@@ -9,7 +9,7 @@
 
 static const uint8_t identifier[12] = {0xab, 'G', 'T', 'W', ' ', '0', '1', 0xbb,
                                        '\r', '\n', 0x1a, '\n'};
-enum { MAJOR = 0, MINOR = 1 };
+enum { MAJOR = 0, MINOR = 2 };
 static const uint64_t MAX_BYTES = (uint64_t)1 << 40;
 
 static uint64_t hash_of(const uint8_t *data, uint32_t count)
@@ -63,6 +63,21 @@ static bool begins_like(const char *name, const char *start)
     return strncmp(name, start, strlen(start)) == 0;
 }
 
+static bool is_part(const gtx_index_part *part)
+{
+    return part->bytes <= MAX_BYTES && part->memory <= MAX_BYTES &&
+           (part->bytes || (!part->hash && !part->memory));
+}
+
+/* Shorter than the whole, and no finer. */
+static bool is_beginning(const gtx_index_tile *tile)
+{
+    if (!tile->beginning.bytes)
+        return is_part(&tile->beginning) && tile->beginning_error == 0;
+    return is_part(&tile->beginning) && tile->beginning.bytes < tile->whole.bytes &&
+           tile->beginning_error >= tile->error && isfinite(tile->beginning_error);
+}
+
 /* Of a tile alone. */
 static bool is_sound(const gtx_index_tile *tile)
 {
@@ -70,8 +85,7 @@ static bool is_sound(const gtx_index_tile *tile)
         if (!isfinite(tile->low[k]) || !isfinite(tile->high[k]) || tile->low[k] > tile->high[k])
             return false;
     return is_name(tile->name) && tile->error >= 0 && isfinite(tile->error) &&
-           tile->bytes <= MAX_BYTES && tile->memory <= MAX_BYTES &&
-           (tile->bytes || (!tile->hash && !tile->memory));
+           is_part(&tile->whole) && is_beginning(tile);
 }
 
 static bool is_within(const gtx_index_tile *tile, const gtx_index_tile *parent)
@@ -97,6 +111,18 @@ static bool is_in_place(const gtx_index_tile *tile, uint32_t number)
     return is_within(tile, tile - number + tile->parent);
 }
 
+static gtx_index_part load_part(const uint8_t *at)
+{
+    return (gtx_index_part){gtx_load_u64(at), gtx_load_u64(at + 8), gtx_load_u64(at + 16)};
+}
+
+static void store_part(uint8_t *at, const gtx_index_part *part)
+{
+    gtx_store_u64(at, part->bytes);
+    gtx_store_u64(at + 8, part->hash);
+    gtx_store_u64(at + 16, part->memory);
+}
+
 gtx_result gtx_index_read(const uint8_t *data, gtx_index_tile *tile, uint32_t number,
                           gtx_error *error)
 {
@@ -107,11 +133,11 @@ gtx_result gtx_index_read(const uint8_t *data, gtx_index_tile *tile, uint32_t nu
     }
     tile->error = gtx_load_f32(at + 48);
     tile->parent = gtx_load_u32(at + 52);
-    tile->bytes = gtx_load_u64(at + 56);
-    tile->hash = gtx_load_u64(at + 64);
-    tile->memory = gtx_load_u64(at + 72);
-    memcpy(tile->name, at + 80, GTX_INDEX_NAME);
-    if (!is_sound(tile) || !is_in_place(tile, number))
+    tile->whole = load_part(at + 56);
+    tile->beginning = load_part(at + 80);
+    tile->beginning_error = gtx_load_f32(at + 104);
+    memcpy(tile->name, at + 112, GTX_INDEX_NAME);
+    if (gtx_load_u32(at + 108) != 0 || !is_sound(tile) || !is_in_place(tile, number))
         return gtx_fail(error, GTX_ERROR_CORRUPT, "tile %u of the index is not as it must be",
                         number);
     return GTX_OK;
@@ -133,10 +159,11 @@ void gtx_index_write(const gtx_index_tile *tiles, uint32_t count, double unit, u
         }
         gtx_store_f32(at + 48, tiles[i].error);
         gtx_store_u32(at + 52, tiles[i].parent);
-        gtx_store_u64(at + 56, tiles[i].bytes);
-        gtx_store_u64(at + 64, tiles[i].hash);
-        gtx_store_u64(at + 72, tiles[i].memory);
-        memcpy(at + 80, tiles[i].name, GTX_INDEX_NAME);
+        store_part(at + 56, &tiles[i].whole);
+        store_part(at + 80, &tiles[i].beginning);
+        gtx_store_f32(at + 104, tiles[i].beginning_error);
+        gtx_store_u32(at + 108, 0);
+        memcpy(at + 112, tiles[i].name, GTX_INDEX_NAME);
     }
     gtx_store_u64(out + 32, hash_of(out, count));
 }

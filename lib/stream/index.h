@@ -8,15 +8,20 @@
 extern "C" {
 #endif
 
-enum { GTX_INDEX_HEADER = 40, GTX_INDEX_RECORD = 104, GTX_INDEX_NAME = 24 };
+enum { GTX_INDEX_HEADER = 40, GTX_INDEX_RECORD = 136, GTX_INDEX_NAME = 24 };
 #define GTX_INDEX_MAX_TILES (1u << 20)
 #define GTX_INDEX_FILE "tiles.gtw"
 
+/* First bytes of a file: how many, their XXH64, and what opening them takes. */
+typedef struct gtx_index_part {
+    uint64_t bytes, hash, memory;
+} gtx_index_part;
+
 typedef struct gtx_index_tile {
     double low[3], high[3];
-    float error;
+    float error, beginning_error;
     uint32_t parent;
-    uint64_t bytes, hash, memory;
+    gtx_index_part whole, beginning; /* the latter of 0 bytes: there is none */
     char name[GTX_INDEX_NAME];    /* terminated, zeros behind */
 } gtx_index_tile;
 

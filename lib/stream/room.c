@@ -14,26 +14,27 @@ void gtx_tile_cost(const gtx_stream *stream, const gtx_tile *tile, uint64_t *cpu
     *gpu = tile->cost_gpu;
     if (tile->known)
         return;
-    const double share =
-        stream->known.bytes ? (double)tile->facts->bytes / (double)stream->known.bytes : 0;
-    *cpu = stream->known.bytes ? (uint64_t)(share * (double)stream->known.cpu)
-                               : tile->facts->memory;
-    *gpu = (uint64_t)(share * (double)stream->known.gpu);
+    const bool rest = gtx_tile_is_rest(stream, tile);
+    const uint64_t bytes = stream->known[rest].bytes;
+    const double share = bytes ? (double)tile->file.bytes / (double)bytes : 0;
+    *cpu = bytes ? (uint64_t)(share * (double)stream->known[rest].cpu) : tile->file.memory;
+    *gpu = (uint64_t)(share * (double)stream->known[rest].gpu);
 }
 
 void gtx_tile_learn(gtx_stream *stream, gtx_tile *tile, uint64_t cpu, uint64_t gpu)
 {
+    const bool rest = gtx_tile_is_rest(stream, tile);
     if (tile->known) {
-        stream->known.bytes -= tile->facts->bytes;
-        stream->known.cpu -= tile->cost_cpu;
-        stream->known.gpu -= tile->cost_gpu;
+        stream->known[rest].bytes -= tile->file.bytes;
+        stream->known[rest].cpu -= tile->cost_cpu;
+        stream->known[rest].gpu -= tile->cost_gpu;
     }
     tile->known = true;
     tile->cost_cpu = cpu;
     tile->cost_gpu = gpu;
-    stream->known.bytes += tile->facts->bytes;
-    stream->known.cpu += cpu;
-    stream->known.gpu += gpu;
+    stream->known[rest].bytes += tile->file.bytes;
+    stream->known[rest].cpu += cpu;
+    stream->known[rest].gpu += gpu;
 }
 
 void gtx_tile_take(gtx_stream *stream, gtx_tile *tile, uint64_t cpu, uint64_t gpu)

@@ -19,13 +19,13 @@ static void arrays_of(gtx_stream *s, array out[ARRAYS])
     const size_t n = s->info.tiles, most = s->desc.max_requests;
     const array all[ARRAYS] = {
         {(void **)&s->facts, n, sizeof *s->facts},
-        {(void **)&s->tiles, n, sizeof *s->tiles},
+        {(void **)&s->tiles, 2 * n, sizeof *s->tiles},
         {(void **)&s->asked.tiles, most, sizeof *s->asked.tiles},
-        {(void **)&s->there.tiles, n, sizeof *s->there.tiles},
-        {(void **)&s->stack, n, sizeof *s->stack},
-        {(void **)&s->wants, 2 * n, sizeof *s->wants}, /* and those that leave */
+        {(void **)&s->there.tiles, 2 * n, sizeof *s->there.tiles},
+        {(void **)&s->stack, 2 * n, sizeof *s->stack},
+        {(void **)&s->wants, 3 * n, sizeof *s->wants}, /* and those that leave */
         {(void **)&s->requests, most, sizeof *s->requests},
-        {(void **)&s->uploads, n, sizeof *s->uploads},
+        {(void **)&s->uploads, 2 * n, sizeof *s->uploads},
         {(void **)&s->draws, n, sizeof *s->draws}};
     memcpy(out, all, sizeof all);
 }
@@ -80,9 +80,12 @@ static gtx_result read_tiles(gtx_stream *s, const uint8_t *data, gtx_error *erro
         if (result)
             return result;
         gtx_tile *tile = &s->tiles[i];
-        tile->facts = &s->facts[i];
-        tile->state = tile->facts->bytes ? GTX_TILE_ABSENT : GTX_TILE_READY;
-        s->info.bytes += tile->facts->bytes;
+        const gtx_index_tile *facts = &s->facts[i];
+        tile->facts = tile[s->info.tiles].facts = facts;
+        tile->file = facts->beginning.bytes ? facts->beginning : facts->whole;
+        tile[s->info.tiles].file = facts->whole;
+        tile->state = facts->whole.bytes ? GTX_TILE_ABSENT : GTX_TILE_READY;
+        s->info.bytes += facts->whole.bytes;
         if (i) {
             gtx_tile *parent = gtx_tile_parent(s, tile);
             parent->first_child = parent->child_count++ ? parent->first_child : i;
@@ -103,7 +106,7 @@ static gtx_result fill(gtx_stream *s, const uint8_t *data, gtx_error *error)
     if (result)
         return result;
     s->cpu = s->own_bytes;
-    const uint64_t least = s->own_bytes + s->facts->bytes + s->facts->memory;
+    const uint64_t least = s->own_bytes + s->tiles->file.bytes + s->tiles->file.memory;
     if (least > s->desc.cpu_bytes)
         return gtx_fail_limit(error, GTX_LIMITED_MEMORY, "the root of the world", least,
                               s->desc.cpu_bytes);

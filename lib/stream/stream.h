@@ -1,4 +1,8 @@
-/* The inside of a gtx_stream: tiles and what is known of them, and the room that they take. */
+/* The inside of a gtx_stream: tiles and what is known of them, and the room that they take.
+ *
+ * A tile whose file has a beginning is two nodes: the beginning, where the tree has the tile, and
+ * below it the *rest*, which is the tile at its finest and has nothing below. So a beginning stays
+ * as long as the rest is there, and as long as a child is. */
 #ifndef GTX_STREAM_STREAM_H
 #define GTX_STREAM_STREAM_H
 
@@ -17,9 +21,11 @@ typedef enum gtx_tile_state {
 
 typedef struct gtx_tile {
     const gtx_index_tile *facts;
+    gtx_index_part file;      /* what a request brings: first bytes of the file, or all */
     uint32_t first_child, child_count;
     gtx_tile_state state;
-    uint32_t users;           /* children that are asked for or there: it stays as long */
+    uint32_t users;           /* children, and the rest, that are asked for or there: it stays as
+                                 long */
     uint32_t tries;
     bool known;               /* what it costs is known, not estimated */
     bool leaving;             /* chosen to make room */
@@ -29,14 +35,15 @@ typedef struct gtx_tile {
     uint64_t request;         /* id, while asked for */
     uint64_t asked, retry;    /* updates: of the request; of the next one, at the earliest */
     uint64_t in_view, wanted; /* last updates that saw it; that would show it or what is below */
-    float pixels;             /* its error on screen, when last looked at */
+    float pixels;             /* its error on screen, when last looked at; of a rest, that of the
+                                 beginning */
     float value;              /* the error on screen that it mends, that of its parent, when last
                                  wanted */
     void *payload;
     uint32_t place;           /* in the list that its state puts it into */
 } gtx_tile;
 
-/* Numbers of tiles, each of which knows its place. */
+/* Numbers of tiles or rests, each of which knows its place. */
 typedef struct gtx_tile_list {
     uint32_t *tiles, count;
 } gtx_tile_list;
@@ -46,7 +53,7 @@ struct gtx_stream {
     gtx_stream_desc desc;     /* defaults filled in; no index */
     gtx_stream_info info;
     gtx_index_tile *facts;
-    gtx_tile *tiles;
+    gtx_tile *tiles;          /* and behind them as many rests */
     uint64_t own_bytes;
     uint64_t update, serial;
     gtx_eye eyes[GTX_STREAM_MAX_VIEWS];
@@ -54,10 +61,10 @@ struct gtx_stream {
     uint64_t cpu, gpu;        /* taken */
     struct {
         uint64_t bytes, cpu, gpu;
-    } known;                  /* sums over tiles that are: files, and what they cost */
+    } known[2];               /* sums over tiles that are, over rests: files, and what they cost */
     gtx_tile_list asked, there;
     uint32_t *stack, *wants, *leaving;
-    uint32_t want_count;      /* tiles whose children are missing */
+    uint32_t want_count;      /* tiles whose children are missing; rests that are */
     gtx_stream_request *requests;
     gtx_stream_upload *uploads;
     gtx_stream_draw *draws;
@@ -86,19 +93,45 @@ void gtx_tile_ask(gtx_stream *stream, gtx_tile *tile);
 void gtx_tile_fail(gtx_stream *stream, gtx_tile *tile, const gtx_error *error, bool counts);
 void gtx_tile_uri(const gtx_tile *tile, char out[GTX_STREAM_URI]);
 
+/* ---- ask.c ---- */
+
+/* Asks for what is wanted and missing, the most urgent first. */
+void gtx_stream_ask(gtx_stream *stream);
+/* The larger the error on screen the sooner, that it has or that it mends. */
+void gtx_stream_sort(const gtx_stream *stream, uint32_t *tiles, uint32_t count, bool by_value);
+
 /* ---- update.c ---- */
 
 void gtx_list_add(gtx_stream *stream, gtx_tile_list *list, gtx_tile *tile);
 void gtx_list_remove(gtx_stream *stream, gtx_tile_list *list, gtx_tile *tile);
 
-static inline gtx_tile *gtx_tile_parent(const gtx_stream *stream, const gtx_tile *tile)
-{
-    return &stream->tiles[tile->facts->parent];
-}
-
+/* Of a rest more than any tile's. */
 static inline uint32_t gtx_tile_number(const gtx_stream *stream, const gtx_tile *tile)
 {
     return (uint32_t)(tile - stream->tiles);
+}
+
+static inline bool gtx_tile_is_rest(const gtx_stream *stream, const gtx_tile *tile)
+{
+    return gtx_tile_number(stream, tile) >= stream->info.tiles;
+}
+
+/* NULL where the tile is one node. */
+static inline gtx_tile *gtx_tile_rest(const gtx_stream *stream, gtx_tile *tile)
+{
+    return tile->facts->beginning.bytes ? tile + stream->info.tiles : NULL;
+}
+
+static inline gtx_tile *gtx_tile_parent(const gtx_stream *stream, gtx_tile *tile)
+{
+    return gtx_tile_is_rest(stream, tile) ? tile - stream->info.tiles
+                                          : &stream->tiles[tile->facts->parent];
+}
+
+/* What the host knows it by. */
+static inline uint32_t gtx_tile_index(const gtx_stream *stream, const gtx_tile *tile)
+{
+    return gtx_tile_number(stream, tile) % stream->info.tiles;
 }
 
 #endif

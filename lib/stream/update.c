@@ -1,4 +1,4 @@
-/* A frame: what is in view and what is wanted of it; what to ask for, to upload, to draw. */
+/* A frame: what is in view and what is wanted of it; what to upload and to draw. */
 #include "stream/stream.h"
 
 #include "base/error.h"
@@ -21,16 +21,24 @@ void gtx_list_remove(gtx_stream *stream, gtx_tile_list *list, gtx_tile *tile)
 
 /* ---- what is in view ---- */
 
-/* Whether any eye sees the tile's box; sets its error on screen. */
+/* Whether any eye sees the tile's box; sets its error on screen, and that of its beginning. */
 static bool look_at(const gtx_stream *s, gtx_tile *tile)
 {
     const gtx_index_tile *facts = tile->facts;
-    double most = -1;
-    for (uint32_t i = 0; i < s->eye_count; ++i)
-        if (gtx_eye_sees(&s->eyes[i], facts->low, facts->high))
-            most = fmax(most, gtx_eye_pixels(&s->eyes[i], facts->low, facts->high,
-                                             (double)facts->error));
+    gtx_tile *rest = gtx_tile_rest(s, tile);
+    double most = -1, beginning = -1;
+    for (uint32_t i = 0; i < s->eye_count; ++i) {
+        const gtx_eye *eye = &s->eyes[i];
+        if (!gtx_eye_sees(eye, facts->low, facts->high))
+            continue;
+        most = fmax(most, gtx_eye_pixels(eye, facts->low, facts->high, (double)facts->error));
+        if (rest)
+            beginning = fmax(beginning, gtx_eye_pixels(eye, facts->low, facts->high,
+                                                       (double)facts->beginning_error));
+    }
     tile->pixels = (float)most;
+    if (rest)
+        rest->pixels = (float)beginning;
     if (most >= 0)
         tile->in_view = s->update;
     return most >= 0;
@@ -55,17 +63,40 @@ static below count_children(const gtx_stream *s, const gtx_tile *tile)
     return count;
 }
 
+/* What a tile is that nothing finer is to replace: its rest, where the beginning is not enough. */
+static void want_rest(gtx_stream *s, gtx_tile *tile)
+{
+    gtx_tile *rest = gtx_tile_rest(s, tile);
+    if (!rest || rest->state == GTX_TILE_GIVEN_UP || !(rest->pixels > s->desc.max_error))
+        return;
+    rest->in_view = rest->wanted = s->update;
+    rest->value = rest->pixels;
+    s->frame.pending += rest->state != GTX_TILE_READY;
+    if (rest->state == GTX_TILE_ABSENT)
+        s->wants[s->want_count++] = gtx_tile_number(s, rest);
+}
+
+/* Whether children should take a tile's place; they have been looked at. */
+static bool is_refined(const gtx_stream *s, const gtx_tile *tile, below *children)
+{
+    *children = (below){0};
+    if (!tile->child_count || !(tile->pixels > s->desc.max_error))
+        return false;
+    *children = count_children(s, tile);
+    return !children->given_up; /* then the others would be in vain */
+}
+
 /* A tile that is ready and in view: what should take its place, if anything. */
 static void visit(gtx_stream *s, gtx_tile *tile, uint32_t *depth)
 {
+    below children;
     tile->wanted = s->update;
-    if (!(tile->pixels > s->desc.max_error))
-        return;
-    for (uint32_t k = 0; k < tile->child_count; ++k)
+    for (uint32_t k = 0; k < tile->child_count && tile->pixels > s->desc.max_error; ++k)
         look_at(s, &s->tiles[tile->first_child + k]);
-    const below children = count_children(s, tile);
-    if (children.given_up) /* it stands, and the others would be in vain */
+    if (!is_refined(s, tile, &children)) {
+        want_rest(s, tile);
         return;
+    }
     for (uint32_t k = 0; k < tile->child_count; ++k) {
         gtx_tile *child = &s->tiles[tile->first_child + k];
         if (child->in_view != s->update)
@@ -96,142 +127,6 @@ static void visit_all(gtx_stream *s)
         visit(s, &s->tiles[s->stack[--depth]], &depth);
 }
 
-/* ---- requests ---- */
-
-static void request(gtx_stream *s, gtx_tile *tile)
-{
-    const gtx_index_tile *facts = tile->facts;
-    gtx_stream_request *out = &s->requests[s->frame.request_count++];
-    gtx_tile_ask(s, tile);
-    *out = (gtx_stream_request){.id = tile->request, .tile = gtx_tile_number(s, tile),
-                                .pixels = tile->value, .bytes = facts->bytes,
-                                .memory = facts->memory, .hash = facts->hash};
-    gtx_tile_uri(tile, out->uri);
-    for (int k = 0; k < 3; ++k) {
-        out->low[k] = facts->low[k];
-        out->high[k] = facts->high[k];
-    }
-}
-
-static bool is_missing(const gtx_stream *s, const gtx_tile *tile)
-{
-    return tile->in_view == s->update && tile->state == GTX_TILE_ABSENT;
-}
-
-/* What is planned already, but waits for a free request. */
-typedef struct plan {
-    uint64_t cpu, gpu;
-} plan;
-
-/* Asks for the children of a tile that are missing, all or none: some alone would show nothing.
- * False when there is no room. */
-static bool ask_for_children(gtx_stream *s, gtx_tile *tile, plan *planned)
-{
-    gtx_tile *children = &s->tiles[tile->first_child];
-    uint64_t cpu, gpu, most = 0;
-    plan need = *planned;
-    for (uint32_t k = 0; k < tile->child_count; ++k)
-        if (is_missing(s, &children[k])) {
-            const uint64_t opening = children[k].facts->bytes + children[k].facts->memory;
-            gtx_tile_cost(s, &children[k], &cpu, &gpu);
-            need.cpu += cpu;
-            need.gpu += gpu;
-            most = opening > most ? opening : most;
-        }
-    if (!gtx_stream_make_room(s, need.cpu + most, need.gpu, tile->pixels))
-        return false;
-    *planned = need;
-    for (uint32_t k = 0; k < tile->child_count; ++k) {
-        gtx_tile *child = &children[k];
-        const uint64_t opening = child->facts->bytes + child->facts->memory;
-        if (!is_missing(s, child) || child->retry > s->update ||
-            s->asked.count == s->desc.max_requests || opening > s->desc.cpu_bytes - s->cpu)
-            continue;
-        gtx_tile_cost(s, child, &cpu, &gpu);
-        planned->cpu -= cpu;
-        planned->gpu -= gpu;
-        request(s, child);
-    }
-    return true;
-}
-
-/* The larger the error that they mend the sooner; coarse tiles come first in the index. */
-static int compare(const gtx_tile *a, float a_pixels, const gtx_tile *b, float b_pixels)
-{
-    return a_pixels != b_pixels ? (a_pixels > b_pixels ? -1 : 1) : a < b ? -1 : a > b;
-}
-
-/* Heap sort, which needs no memory and no state beside its arguments. */
-static void sort(const gtx_stream *s, uint32_t *tiles, uint32_t count, bool by_value)
-{
-    for (uint32_t n = count, root = count / 2; n > 1;) {
-        uint32_t moved;
-        if (root > 0) {
-            moved = tiles[--root];
-        } else {
-            moved = tiles[--n];
-            tiles[n] = tiles[0];
-        }
-        uint32_t at = root;
-        for (uint32_t child; (child = 2 * at + 1) < n; at = child) {
-            const gtx_tile *t = s->tiles;
-#define KEY(i) &t[i], by_value ? t[i].value : t[i].pixels
-            if (child + 1 < n && compare(KEY(tiles[child]), KEY(tiles[child + 1])) < 0)
-                ++child;
-            if (compare(KEY(moved), KEY(tiles[child])) >= 0)
-                break;
-#undef KEY
-            tiles[at] = tiles[child];
-        }
-        tiles[at] = moved;
-    }
-}
-
-/* What of an incomplete group is there shows nothing, is not uploaded, and may leave. */
-static void give_way(gtx_stream *s, const gtx_tile *parent)
-{
-    for (uint32_t k = 0; k < parent->child_count; ++k) {
-        gtx_tile *child = &s->tiles[parent->first_child + k];
-        if (child->in_view != s->update)
-            continue;
-        child->wanted = s->update - 1;
-        s->frame.without_room +=
-            child->state == GTX_TILE_ABSENT || child->state == GTX_TILE_HELD;
-    }
-}
-
-static void ask_for_root(gtx_stream *s)
-{
-    gtx_tile *root = s->tiles;
-    uint64_t cpu, gpu;
-    if (root->state != GTX_TILE_ABSENT)
-        return;
-    gtx_tile_cost(s, root, &cpu, &gpu);
-    if (!gtx_stream_make_room(s, root->facts->bytes + root->facts->memory, gpu, 0))
-        s->frame.without_room = 1;
-    else if (root->retry <= s->update)
-        request(s, root);
-}
-
-static void ask(gtx_stream *s)
-{
-    enum { MAX_REFUSALS = 4 };    /* each looks through all that is there */
-    uint32_t refusals = 0;
-    plan planned = {0, 0};
-    s->frame.without_room = 0;
-    ask_for_root(s);
-    sort(s, s->wants, s->want_count, false);
-    for (uint32_t i = 0; i < s->want_count; ++i) {
-        gtx_tile *tile = &s->tiles[s->wants[i]];
-        if (tile->state != GTX_TILE_READY) /* it has left for something better */
-            continue;
-        if (refusals < MAX_REFUSALS && ask_for_children(s, tile, &planned))
-            continue;
-        ++refusals;
-        give_way(s, tile);
-    }
-}
-
 static void time_out(gtx_stream *s)
 {
     gtx_error error;
@@ -254,7 +149,7 @@ static void upload(gtx_stream *s)
         if (tile->state == GTX_TILE_HELD && tile->wanted == s->update)
             s->stack[count++] = s->there.tiles[i];
     }
-    sort(s, s->stack, count, true);
+    gtx_stream_sort(s, s->stack, count, true);
     for (uint32_t i = 0; i < count && left > 0; ++i) {
         gtx_tile *tile = &s->tiles[s->stack[i]];
         const uint64_t rest = tile->sent < tile->gpu ? tile->gpu - tile->sent : 1;
@@ -262,7 +157,7 @@ static void upload(gtx_stream *s)
         tile->sent += bytes;
         left -= bytes;
         s->uploads[s->frame.upload_count++] =
-            (gtx_stream_upload){s->stack[i], tile->payload, bytes};
+            (gtx_stream_upload){gtx_tile_index(s, tile), tile->payload, bytes};
     }
 }
 
@@ -273,19 +168,20 @@ static void draw(gtx_stream *s)
         s->stack[depth++] = 0;
     while (depth > 0) {
         const uint32_t number = s->stack[--depth];
-        const gtx_tile *tile = &s->tiles[number];
-        if (tile->pixels > s->desc.max_error && tile->child_count) {
-            const below children = count_children(s, tile);
-            if (!children.missing && !children.coming && !children.given_up) {
-                for (uint32_t k = tile->child_count; k-- > 0;)
-                    if (s->tiles[tile->first_child + k].in_view == s->update)
-                        s->stack[depth++] = tile->first_child + k;
-                continue;
-            }
+        gtx_tile *tile = &s->tiles[number], *rest = gtx_tile_rest(s, tile);
+        below children;
+        if (is_refined(s, tile, &children) && !children.missing && !children.coming) {
+            for (uint32_t k = tile->child_count; k-- > 0;)
+                if (s->tiles[tile->first_child + k].in_view == s->update)
+                    s->stack[depth++] = tile->first_child + k;
+            continue;
         }
-        if (tile->payload)
-            s->draws[s->frame.draw_count++] =
-                (gtx_stream_draw){number, tile->pixels, tile->payload};
+        const gtx_tile *shown = rest && rest->state == GTX_TILE_READY ? rest : tile;
+        if (shown == rest)
+            rest->wanted = s->update; /* as long as it is in the list */
+        if (shown->payload)
+            s->draws[s->frame.draw_count++] = (gtx_stream_draw){
+                number, rest && shown == tile ? rest->pixels : tile->pixels, shown->payload};
     }
 }
 
@@ -309,7 +205,7 @@ gtx_result gtx_stream_update(gtx_stream *s, const gtx_stream_view *views, uint32
     s->frame.request_count = s->frame.upload_count = s->frame.draw_count = 0;
     time_out(s);
     visit_all(s);
-    ask(s);
+    gtx_stream_ask(s);
     upload(s);
     draw(s);
     s->frame.requests = s->requests;

@@ -60,6 +60,9 @@ void write_facts(const Plan &plan, const Tile &tile, const TileFacts &facts)
     write_file(out, "glb", facts.glb);
     write_file(out, "low_surface", facts.low_surface);
     gtx_json_integer(&out, "memory", facts.memory);
+    write_file(out, "beginning", facts.beginning.file);
+    gtx_json_integer(&out, "beginning_memory", facts.beginning.memory);
+    gtx_json_exact(&out, "beginning_error", facts.beginning.error);
     gtx_json_end_object(&out);
     check_written(out);
     write_whole(facts_path(plan, tile), std::string(out.text, out.size));
@@ -95,6 +98,9 @@ TileFacts read_facts(const Plan &plan, const Tile &tile)
         facts.glb = read_file(root.at("glb"));
         facts.low_surface = read_file(root.at("low_surface"));
         facts.memory = root.at("memory");
+        facts.beginning.file = read_file(root.at("beginning"));
+        facts.beginning.memory = root.at("beginning_memory");
+        facts.beginning.error = root.at("beginning_error");
     } catch (const json::exception &) {
         throw Error(GTX_ERROR_INPUT, path + " is none that gtx world cook wrote");
     }

@@ -19,6 +19,7 @@ struct Entry {
     bool empty = false;
     MadeFile asset;
     uint64_t memory = 0;
+    Beginning beginning;
 };
 
 } // namespace
@@ -33,7 +34,7 @@ static Vector<Entry> entries_of(const Plan &plan)
             throw Error(GTX_ERROR_READ, "the files of the tile " + tile.name + " are not those "
                                         "that were cooked");
         entries.push_back({facts.low, facts.high, facts.error, facts.empty, facts.asset,
-                           facts.memory});
+                           facts.memory, facts.beginning});
     }
     for (size_t n = entries.size(); n-- > 1;) {
         Entry &parent = entries[plan.tiles[n].parent];
@@ -123,9 +124,11 @@ static std::string index_of(const Plan &plan, const Vector<Entry> &entries)
         }
         tile.error = no_less(e.error);
         tile.parent = plan.tiles[n].parent;
-        tile.bytes = e.asset.size;
-        tile.hash = e.asset.size ? e.asset.hash : 0;
-        tile.memory = e.memory;
+        tile.whole = {e.asset.size, e.asset.size ? e.asset.hash : 0, e.memory};
+        if (e.beginning.file.size) {
+            tile.beginning = {e.beginning.file.size, e.beginning.file.hash, e.beginning.memory};
+            tile.beginning_error = std::max(no_less(e.beginning.error), tile.error);
+        }
         std::copy(plan.tiles[n].name.begin(), plan.tiles[n].name.end(), tile.name);
         tiles.push_back(tile);
     }

@@ -84,48 +84,6 @@ std::string TileCook::encoded(const gtx_asset *asset) const
     return std::string(static_cast<const char *>(data), size);
 }
 
-/* Memory hooks that count; every block is freed with its size. */
-struct Meter {
-    uint64_t now = 0, most = 0;
-    static void *take(size_t size, void *user)
-    {
-        auto *meter = static_cast<Meter *>(user);
-        meter->now += size;
-        meter->most = std::max(meter->most, meter->now);
-        return std::malloc(size);
-    }
-    static void give(void *memory, size_t size, void *user)
-    {
-        static_cast<Meter *>(user)->now -= size;
-        std::free(memory);
-    }
-};
-
-static void run_in_turn(uint32_t count, void (*job)(uint32_t, void *), void *data, void *)
-{
-    for (uint32_t i = 0; i < count; ++i)
-        job(i, data);
-}
-
-/* The most that a reader of the file takes, with jobs or without: it does take it here. */
-static uint64_t memory_to_open(const std::string &bytes)
-{
-    Meter meter;
-    const gtx_allocator hooks = {Meter::take, Meter::give, &meter};
-    const gtx_jobs jobs = {run_in_turn, nullptr};
-    for (const gtx_jobs *with : {&jobs, static_cast<const gtx_jobs *>(nullptr)}) {
-        gtx_open_desc desc = {};
-        gtx_asset *asset = nullptr;
-        gtx_error error;
-        desc.allocator = &hooks;
-        desc.jobs = with;
-        desc.limits.memory = desc.limits.texels = desc.limits.patches = UINT64_MAX;
-        require_ok(gtx_open_memory(bytes.data(), bytes.size(), &desc, &asset, &error), error);
-        gtx_close(asset);
-    }
-    return meter.most;
-}
-
 /* The finest LOD mesh, where the asset has any. */
 static Sheet finest_mesh(const gtx_asset *asset)
 {
@@ -173,6 +131,7 @@ void TileCook::cook_all(const std::string &ply, const TileSurface &surface)
     const std::string bytes = encoded(asset.get());
     facts.asset = made_of(bytes);
     facts.memory = memory_to_open(bytes);
+    facts.beginning = beginning_of(bytes, facts.error, surface.header.deviation);
     write_whole(asset_path(plan, tile), bytes);
     if (plan.glb) {
         const std::string glb = glb_of(mesh, surface, task);

@@ -218,7 +218,7 @@ static void a_world_is_drawn(void **state)
                  "cp one/tiles/r.gtx $t; done"), 0);
     expect(gtx("render shown -o far.png --size 64x48 --camera 30,20,60"), 0);
     expect(gtx("render shown -o no.png --max-error 0.001"), 3);
-    expect_text("the tile ");
+    expect_text("of the tile");
     expect(shell("printf x >>shown/tiles.gtw"), 0);
     refuses("render shown -o no.png", 3, "shown: error[corrupt]: the header of the index");
     assert_false(exists("no.png"));

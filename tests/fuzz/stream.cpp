@@ -125,6 +125,14 @@ void Host::update()
     if (result)
         return;
     check();
+    for (uint32_t i = 0; i < frame.request_count; ++i) {
+        const gtx_stream_request &r = frame.requests[i];
+        const auto number = reinterpret_cast<uintptr_t>(r.beginning);
+        REQUIRE(r.from < r.bytes && r.bytes <= r.file_bytes && !r.from == !r.beginning,
+                "a request of nothing");
+        REQUIRE(number < cpu.size() && (!number || (cpu[number] && tiles[number] == r.tile)),
+                "a rest without its beginning");
+    }
     asked.insert(asked.end(), frame.requests, frame.requests + frame.request_count);
     for (uint32_t i = 0; i < frame.upload_count; ++i)
         if (random.chance(2)) {

@@ -10,7 +10,7 @@ const Target targets[] = {
     {"draco", run_draco, nullptr},   {"gzip", run_gzip, mutate_gzip},
     {"irap", run_irap, nullptr},     {"zmap", run_zmap, nullptr},
     {"image", run_image, nullptr},   {"world", run_world, nullptr},
-    {"stream", run_stream, nullptr},
+    {"stream", run_stream, nullptr}, {"prefix", run_prefix, mutate_gtx},
 };
 const size_t target_count = sizeof targets / sizeof *targets;
 

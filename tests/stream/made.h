@@ -22,7 +22,8 @@ typedef struct made_world {
     uint8_t index[GTX_INDEX_HEADER + MADE_TILES * GTX_INDEX_RECORD];
 } made_world;
 
-/* One patch of 8 x 8 texels: a flat square whose anchor is the tile's low corner. */
+/* One patch of 8 x 8 texels: a flat square whose anchor is the tile's low corner; and an LOD mesh
+ * of two triangles. */
 static inline void made_asset(const double low[3], double side, uint8_t **data, uint64_t *bytes)
 {
     uint8_t height[64], trim[64], normal[128];
@@ -31,6 +32,11 @@ static inline void made_asset(const double low[3], double side, uint8_t **data, 
     memset(normal, 128, sizeof normal);
     const uint8_t *normals[1] = {normal};
     const float s = (float)side;
+    static const uint32_t first[2] = {0, 2}, indices[6] = {0, 1, 2, 2, 1, 3};
+    static const uint16_t corners[12] = {0, 100, 0, 1000, 100, 0, 0, 100, 1000, 1000, 100, 1000};
+    const gtx_lod_mesh lod = {.step = s / 1000, .error = s / 100, .vertex_count = 4,
+                              .triangle_count = 2, .first = first, .indices = indices,
+                              .positions = corners};
     const gtx_patch patch = {.extent_x = s, .axis_x = {1, 0, 0}, .extent_y = s,
                              .axis_y = {0, 0, -1}, .origin = {0, 0, s}, .extent_z = 0.25f * s,
                              .axis_z = {0, 1, 0}, .coverage = 1, .rect = {0, 0, 8, 8},
@@ -40,7 +46,8 @@ static inline void made_asset(const double low[3], double side, uint8_t **data, 
                                  .page_width = 8, .page_height = 8, .mip_count = 1,
                                  .height_bits = 8, .height = height, .trim = trim,
                                  .normal = normals, .bounds_max = {s, 0.25f * s, s},
-                                 .anchor = {low[0], low[1], low[2]}, .source_triangles = 2};
+                                 .anchor = {low[0], low[1], low[2]}, .source_triangles = 2,
+                                 .lod = &lod, .lod_levels = 1};
     gtx_asset *asset;
     gtx_error error;
     size_t size;
@@ -55,7 +62,24 @@ static inline void made_asset(const double low[3], double side, uint8_t **data, 
 /* Memory that opening a made tile takes, with room to spare for readers of many parts. */
 enum { MADE_MEMORY = 8192 };
 
-static inline void made_begin(made_world *world)
+/* To the end of its LOD mesh. */
+static inline gtx_index_part made_beginning(const uint8_t *file)
+{
+    gtx_index_part part = {.memory = MADE_MEMORY};
+    gtx_prefix prefix = {0};
+    gtx_asset *asset = NULL;
+    while (!asset) {
+        part.bytes = prefix.needed;
+        assert_int_equal(gtx_open_prefix(file, (size_t)part.bytes, NULL, &prefix, &asset, NULL),
+                         GTX_OK);
+    }
+    gtx_close(asset);
+    part.hash = gtx_hash_bytes(file, (size_t)part.bytes);
+    return part;
+}
+
+/* `beginnings`: files are asked for in two parts, but each seventh. */
+static inline void made_begin(made_world *world, bool beginnings)
 {
     memset(world, 0, sizeof *world);
     uint32_t count = 1;
@@ -67,9 +91,13 @@ static inline void made_begin(made_world *world)
         for (int k = 0; k < 3; ++k)
             tile->high[k] = tile->low[k] + (k == 1 ? 16 : side);
         tile->error = 4.0f / (float)(1 << depth);
-        made_asset(tile->low, side, &world->files[i], &tile->bytes);
-        tile->hash = gtx_hash_bytes(world->files[i], (size_t)tile->bytes);
-        tile->memory = MADE_MEMORY;
+        made_asset(tile->low, side, &world->files[i], &tile->whole.bytes);
+        tile->whole.hash = gtx_hash_bytes(world->files[i], (size_t)tile->whole.bytes);
+        tile->whole.memory = MADE_MEMORY;
+        if (beginnings && i % 7 != 5) {
+            tile->beginning = made_beginning(world->files[i]);
+            tile->beginning_error = 1.5f * tile->error;
+        }
         world->first_child[i] = depth + 1 < MADE_LEVELS ? count : 0;
         for (uint32_t k = 0; k < 4 && depth + 1 < MADE_LEVELS; ++k) {
             gtx_index_tile *child = &world->tiles[count++];

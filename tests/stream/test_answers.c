@@ -201,7 +201,7 @@ static void memory_may_run_out(void **state)
 static int begin(void **state)
 {
     (void)state;
-    made_begin(&world);
+    made_begin(&world, false);
     return 0;
 }
 

@@ -83,8 +83,9 @@ static bool open_bytes(const answer *a, gtx_error *error)
     static uint8_t bytes[1 << 16];
     const uint32_t from = a->fault == FAULT_OTHER ? (a->request.tile + 1) % MADE_TILES
                                                   : a->request.tile;
-    size_t size = (size_t)world.tiles[from].bytes;
+    size_t size = (size_t)world.tiles[from].whole.bytes;
     memcpy(bytes, world.files[from], size);
+    size = a->request.bytes < size ? (size_t)a->request.bytes : size;
     if (a->fault == FAULT_FLIP)
         bytes[below((uint32_t)size)] ^= (uint8_t)(1 << below(8));
     size = a->fault == FAULT_SHORT ? below((uint32_t)size) : size + (a->fault == FAULT_LONG);
@@ -109,7 +110,7 @@ static bool open_bytes(const answer *a, gtx_error *error)
 static void give(host *h, const answer *a)
 {
     gtx_error error = {.result = GTX_ERROR_READ, .message = "the disk is on fire"};
-    const bool current = h->asked[a->request.tile].id == a->request.id;
+    const bool current = h->asked[host_node(&a->request)].id == a->request.id;
     if (a->fault == FAULT_ERROR || !open_bytes(a, &error)) {
         assert_int_equal(host_fail(h, &a->request, &error), current ? GTX_OK : GTX_CANCELLED);
         return;
@@ -181,7 +182,7 @@ static void a_million_requests(void **state)
 static int begin(void **state)
 {
     (void)state;
-    made_begin(&world);
+    made_begin(&world, true);
     return 0;
 }
 

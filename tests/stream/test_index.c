@@ -83,9 +83,15 @@ static void root_with_parent(gtx_index_tile *t) { t[0].parent = 1; }
 static void own_parent(gtx_index_tile *t) { t[9].parent = 9; }
 static void later_parent(gtx_index_tile *t) { t[9].parent = 40; }
 static void earlier_parent(gtx_index_tile *t) { t[9].parent = 0; }
-static void huge_file(gtx_index_tile *t) { t[9].bytes = UINT64_MAX; }
-static void huge_memory(gtx_index_tile *t) { t[9].memory = UINT64_MAX - 7; }
-static void hash_of_nothing(gtx_index_tile *t) { t[9].bytes = 0; }
+static void huge_file(gtx_index_tile *t) { t[9].whole.bytes = UINT64_MAX; }
+static void huge_memory(gtx_index_tile *t) { t[9].whole.memory = UINT64_MAX - 7; }
+static void hash_of_nothing(gtx_index_tile *t) { t[5].whole.bytes = 0; }
+static void beginning_of_all(gtx_index_tile *t) { t[9].beginning.bytes = t[9].whole.bytes; }
+static void finer_beginning(gtx_index_tile *t) { t[9].beginning_error = 0.9f * t[9].error; }
+static void infinite_beginning(gtx_index_tile *t) { t[9].beginning_error = INFINITY; }
+static void huge_opening(gtx_index_tile *t) { t[9].beginning.memory = UINT64_MAX; }
+static void error_of_none(gtx_index_tile *t) { t[5].beginning_error = 9; }
+static void memory_of_none(gtx_index_tile *t) { t[5].beginning.memory = 1; }
 static void no_name(gtx_index_tile *t) { memset(t[9].name, 0, GTX_INDEX_NAME); }
 static void path_name(gtx_index_tile *t) { memcpy(t[9].name, "r0/../x", 7); }
 static void long_name(gtx_index_tile *t) { memset(t[9].name + 1, '0', GTX_INDEX_NAME - 1); }
@@ -101,6 +107,8 @@ static void rules_hold(void **state)
     static const spoiler all[] = {nan_box, turned_box, outside, negative_error, infinite_error,
                                   larger_error, root_with_parent, own_parent, later_parent,
                                   earlier_parent, huge_file, huge_memory, hash_of_nothing,
+                                  beginning_of_all, finer_beginning, infinite_beginning,
+                                  huge_opening, error_of_none, memory_of_none,
                                   no_name, path_name, long_name, rest_behind, other_branch,
                                   same_name, begins_alike, parents_name};
     static made_world copy;
@@ -129,8 +137,9 @@ static void rules_hold(void **state)
 static gtx_stream_request request_of(uint32_t tile)
 {
     const gtx_index_tile *t = &world.tiles[tile];
-    gtx_stream_request request = {.tile = tile, .bytes = t->bytes, .memory = t->memory,
-                                  .hash = t->hash};
+    gtx_stream_request request = {.tile = tile, .bytes = t->whole.bytes,
+                                  .file_bytes = t->whole.bytes, .memory = t->whole.memory,
+                                  .hash = t->whole.hash};
     memcpy(request.low, t->low, sizeof t->low);
     memcpy(request.high, t->high, sizeof t->high);
     return request;
@@ -144,8 +153,11 @@ static gtx_result open_tile(const gtx_stream_request *request, uint32_t file,
     uint64_t held = 0;
     const gtx_open_desc desc = {.allocator = hooks};
     const gtx_result result =
-        gtx_stream_open(request, world.files[file], (size_t)world.tiles[file].bytes, &desc, &asset,
-                        &held, &error);
+        gtx_stream_open(request, world.files[file],
+                        (size_t)(request->bytes < request->file_bytes
+                                     ? request->bytes
+                                     : world.tiles[file].whole.bytes),
+                        &desc, &asset, &held, &error);
     assert_int_equal(!asset, result != GTX_OK);
     assert_int_equal(error.result, result);
     if (hooks && asset)
@@ -189,10 +201,50 @@ static void a_tile_is_what_was_asked_for(void **state)
     assert_int_equal(gtx_stream_open(&request, "", 0, NULL, NULL, NULL, NULL), GTX_ERROR_ARGUMENT);
 }
 
+static void a_beginning_is_what_was_asked_for(void **state)
+{
+    (void)state;
+    counter c = {-1, 0};
+    const gtx_allocator hooks = {counted_alloc, counted_free, &c};
+    const gtx_index_tile *tile = &world.tiles[9];
+    gtx_stream_request request = request_of(9);
+    request.bytes = tile->beginning.bytes;
+    request.hash = tile->beginning.hash;
+    request.memory = tile->beginning.memory;
+    const gtx_stream_request good = request;
+    assert_int_equal(open_tile(&request, 9, &hooks), GTX_OK);
+    assert_int_equal(open_tile(&request, 10, NULL), GTX_ERROR_CORRUPT);
+    request.hash = world.tiles[10].beginning.hash; /* a lie of the index */
+    assert_int_equal(open_tile(&request, 10, NULL), GTX_ERROR_CORRUPT);
+    request = good;
+    ++request.file_bytes;
+    assert_int_equal(open_tile(&request, 9, NULL), GTX_ERROR_CORRUPT);
+    request = good;
+    request.bytes -= 1; /* shows nothing */
+    request.hash = gtx_hash_bytes(world.files[9], (size_t)request.bytes);
+    assert_int_equal(open_tile(&request, 9, NULL), GTX_ERROR_CORRUPT);
+    request = good;
+    request.memory = 500;
+    assert_int_equal(open_tile(&request, 9, NULL), GTX_ERROR_LIMIT);
+    gtx_asset *asset;
+    assert_int_equal(gtx_stream_open(&good, world.files[9], (size_t)good.bytes - 1, NULL, &asset,
+                                     NULL, NULL), GTX_ERROR_TRUNCATED);
+    assert_int_equal(gtx_stream_open(&good, world.files[9], (size_t)good.bytes + 1, NULL, &asset,
+                                     NULL, NULL), GTX_ERROR_CORRUPT);
+    for (long calls = 0;; ++calls) {
+        c = (counter){calls, 0};
+        const gtx_result result = open_tile(&good, 9, &hooks);
+        assert_int_equal(c.bytes, 0);
+        if (!result)
+            break;
+        assert_int_equal(result, GTX_ERROR_MEMORY);
+    }
+}
+
 static int begin(void **state)
 {
     (void)state;
-    made_begin(&world);
+    made_begin(&world, true);
     return 0;
 }
 
@@ -211,6 +263,7 @@ int main(void)
         cmocka_unit_test(a_wrong_bit_is_refused),
         cmocka_unit_test(rules_hold),
         cmocka_unit_test(a_tile_is_what_was_asked_for),
+        cmocka_unit_test(a_beginning_is_what_was_asked_for),
     };
     return cmocka_run_group_tests(tests, begin, end);
 }

@@ -21,7 +21,7 @@ static void the_root_comes_first(void **state)
     assert_int_equal(h.frame.request_count, 1);
     const gtx_stream_request request = h.frame.requests[0];
     assert_string_equal(request.uri, "tiles/r.gtx");
-    assert_int_equal(request.bytes, world.tiles[0].bytes);
+    assert_int_equal(request.bytes, world.tiles[0].whole.bytes);
     assert_true(request.high[0] == MADE_SIDE && request.low[1] == 0);
     host_update(&h);
     assert_int_equal(h.frame.request_count + h.frame.draw_count, 0); /* it is asked for once */
@@ -188,7 +188,7 @@ static void small_budgets_come_to_rest(void **state)
 static int begin(void **state)
 {
     (void)state;
-    made_begin(&world);
+    made_begin(&world, false);
     return 0;
 }
 

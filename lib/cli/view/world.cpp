@@ -34,6 +34,19 @@ static bool read_whole(const std::string &path, std::string &out)
     return file && !file.bad();
 }
 
+/* Of a file the bytes behind those that are there, until these are so many; fewer where it ends. */
+static bool read_more(const std::string &path, uint64_t size, std::string &out)
+{
+    const size_t before = out.size();
+    std::ifstream file(path, std::ios::binary);
+    if (!file || before > size || !file.seekg(std::streamoff(before)))
+        return false;
+    out.resize(size_t(size));
+    file.read(&out[before], std::streamsize(size - before));
+    out.resize(before + size_t(file.gcount()));
+    return !file.bad();
+}
+
 PlacedWorld open_world(const std::string &path)
 {
     PlacedWorld world;
@@ -58,12 +71,20 @@ struct WorldStream::Tile {
     WorldStream *of = nullptr;
     gtx_asset *asset = nullptr;
     gtx_model *model = nullptr;
-    gtx_caster *caster = nullptr;
+    gtx_caster *caster = nullptr;    /* of a whole tile: beginnings have no heights */
+    LodRays rays;                    /* of a beginning */
     float transform[16] = {};
     uint64_t bytes = 0;
+    std::string file;                /* of a beginning, for its rest */
     gtx_error error = {};
 
-    Tile(const gtx_stream_request &wanted, WorldStream *stream) : request(wanted), of(stream) {}
+    Tile(const gtx_stream_request &wanted, WorldStream *stream) : request(wanted), of(stream)
+    {
+        if (wanted.beginning)
+            file = static_cast<const Tile *>(wanted.beginning)->file;
+    }
+    bool whole() const { return request.bytes == request.file_bytes; }
+    uint64_t size() const { return bytes + file.capacity() + rays.bytes(); }
     ~Tile()
     {
         gtx_model_destroy(of->renderer_, model);
@@ -81,31 +102,38 @@ struct WorldStream::Tile {
         static_cast<Tile *>(user)->bytes -= size;
         std::free(memory);
     }
-    void open(const std::string &file);
+    void open();
     void prepare();
 };
 
-void WorldStream::Tile::open(const std::string &file)
+void WorldStream::Tile::open()
 {
     const gtx_allocator hooks = {take, give, this};
     gtx_open_desc desc = {};
+    errno = 0;
+    if (!read_more(of->folder_ + "/" + request.uri, request.bytes, file))
+        throw Error(GTX_ERROR_READ, std::strerror(errno));
     desc.allocator = &hooks;
     gtx_stream_open(&request, file.data(), file.size(), &desc, &asset, nullptr, &error);
+    if (whole())
+        std::string().swap(file);
 }
 
 void WorldStream::Tile::prepare()
 {
     const gtx_allocator hooks = {take, give, this};
     gtx_model_desc desc = {};
-    gtx_caster_desc rays = {};
+    gtx_caster_desc solid = {};
     gtx_info info;
-    desc.allocator = rays.allocator = &hooks;
-    desc.limits = rays.limits = cli_limits;
+    desc.allocator = solid.allocator = &hooks;
+    desc.limits = solid.limits = cli_limits;
     desc.borrow = 1;
-    rays.level = GROUND_LEVEL;
+    solid.level = GROUND_LEVEL;
     if (gtx_model_prepare(asset, &desc, &model, &error) ||
-        gtx_caster_create(asset, &rays, &caster, &error))
+        (whole() && gtx_caster_create(asset, &solid, &caster, &error)))
         return;
+    if (!whole())
+        rays = LodRays(asset);
     gtx_get_info(asset, &info);
     for (int k = 0; k < 3; ++k) {
         transform[5 * k] = 1;
@@ -115,20 +143,16 @@ void WorldStream::Tile::prepare()
 }
 
 /* On the worker's thread. */
-void WorldStream::load(void *item, void *user)
+void WorldStream::load(void *item, void *)
 {
     auto *tile = static_cast<Tile *>(item);
-    auto *self = static_cast<WorldStream *>(user);
     try {
-        std::string file;
-        if (!read_whole(self->folder_ + "/" + tile->request.uri, file))
-            throw Error(GTX_ERROR_READ, std::strerror(errno));
-        tile->open(file);
+        tile->open();
+        if (!tile->error.result)
+            tile->prepare();
     } catch (...) {
         tile->error = caught_error();
     }
-    if (!tile->error.result)
-        tile->prepare();
 }
 
 void WorldStream::release(void *payload, void *)
@@ -188,7 +212,7 @@ void WorldStream::take_answers(bool wait)
             continue;
         }
         const gtx_model_size size = gtx_model_gpu_size(tile->model);
-        gtx_stream_deliver(stream_, tile->request.id, tile, tile->bytes,
+        gtx_stream_deliver(stream_, tile->request.id, tile, tile->size(),
                            size.geometry + size.color);
     }
 }
@@ -205,7 +229,7 @@ void WorldStream::upload()
             continue;
         gtx_close(tile->asset);
         tile->asset = nullptr;
-        gtx_stream_ready(stream_, part.tile, tile->bytes);
+        gtx_stream_ready(stream_, part.tile, tile->size());
     }
 }
 
@@ -231,6 +255,7 @@ void WorldStream::frame(const gtx_view &view, Vector<gtx_instance> &instances)
     }
     upload();
     places_.clear();
+    coarse_.clear();
     for (uint32_t i = 0; i < frame_.draw_count; ++i) {
         const auto *tile = static_cast<const Tile *>(frame_.draws[i].payload);
         gtx_instance instance = {};
@@ -240,7 +265,11 @@ void WorldStream::frame(const gtx_view &view, Vector<gtx_instance> &instances)
         std::copy(tile->transform, tile->transform + 16, instance.transform);
         std::copy(tile->transform, tile->transform + 16, place.transform);
         instances.push_back(instance);
-        places_.push_back(place);
+        if (tile->caster)
+            places_.push_back(place);
+        else
+            coarse_.push_back({&tile->rays, {tile->transform[12], tile->transform[13],
+                                             tile->transform[14]}});
     }
 }
 
@@ -263,12 +292,16 @@ float WorldStream::distance(const float origin[3], const float direction[3])
 {
     gtx_ray ray = {};
     gtx_hit hit;
+    float nearest = INFINITY;
+    for (const Coarse &c : coarse_)
+        nearest = std::min(nearest, c.rays->distance(origin, direction, c.place));
     if (!ground_ && (places_.empty() || gtx_scene_create(places_.data(), uint32_t(places_.size()),
                                                          nullptr, &ground_, nullptr)))
-        return INFINITY;
+        return nearest;
     std::copy(origin, origin + 3, ray.origin);
     std::copy(direction, direction + 3, ray.direction);
-    return gtx_scene_raycast(ground_, &ray, &hit, nullptr, 1, 0) ? INFINITY : hit.t;
+    return gtx_scene_raycast(ground_, &ray, &hit, nullptr, 1, 0) ? nearest
+                                                                 : std::min(nearest, hit.t);
 }
 
 std::string WorldStream::status() const

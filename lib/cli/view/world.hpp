@@ -1,6 +1,7 @@
 /* A world in a picture: its tiles are read by a thread while frames are drawn. */
 #pragma once
 
+#include "cli/view/lod_rays.hpp"
 #include "host/worker.h"
 #include "mesh/memory.hpp"
 #include "mesh/vec.hpp"
@@ -66,6 +67,11 @@ private:
     gtx_stream_frame frame_ = {};
     gtx_scene *ground_ = nullptr;    /* of the last frame; made when it is asked for */
     Vector<gtx_scene_instance> places_;
+    struct Coarse {
+        const LodRays *rays;
+        float place[3];
+    };
+    Vector<Coarse> coarse_;          /* of the last frame: beginnings of tiles */
     gtx_error failure_ = {};
     bool settles_ = false;           /* failures are thrown, not told */
 };
