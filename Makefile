@@ -44,7 +44,7 @@ needs_export  := $(needs_cook) export
 needs_world   := $(needs_cook) stream world
 needs_cli     := $(needs_world) export edit frame render host cli
 
-rooms := $(ROOMS_CORE) $(ROOMS_COOK) host cli
+rooms := $(ROOMS_CORE) $(ROOMS_COOK) vulkan host cli
 tests := $(filter-out bench common golden run,$(notdir $(wildcard tests/*)))
 
 # ---- flags ---------------------------------------------------------------------------------------
@@ -97,9 +97,10 @@ out := $(build)/$(config)
 Q   := $(if $(V),,@)
 say  = @printf '  %-5s %s\n'
 
-sources    = $(filter-out %/module.cpp,$(wildcard $(foreach d,lib/$(1) lib/$(1)/*,$(d)/*.c*)))
+sources    = $(filter-out %/module.cpp %/write_texts.c,$(wildcard lib/$(1)/*.c* lib/$(1)/*/*.c*))
 objects    = $(patsubst %,$(out)/%.o,$(basename $(call sources,$(1)))) \
-             $(if $(filter frame,$(1)),$(out)/gen/shader_sources.o)
+             $(if $(filter frame,$(1)),$(out)/gen/shader_sources.o) \
+             $(if $(filter vulkan,$(1)),$(out)/gen/spirv.o)
 objects_of = $(foreach r,$(1),$(call objects,$(r)))
 room       = $(word 2,$(subst /, ,$(1)))
 
@@ -161,7 +162,8 @@ module   := $(out)/geotex-image.so
 sample_names := $(basename $(notdir $(wildcard samples/*.c samples/*.cpp)))
 sample_bins  := $(addprefix $(out)/samples/,$(sample_names))
 
-all: $(build)/gtx $(so_core) $(so_cook) $(sample_bins) ## libraries, command (build/gtx) and samples
+include lib/vulkan/vulkan.mk
+all: $(build)/gtx $(libraries) $(sample_bins) ## libraries, command (build/gtx) and samples
 
 $(lib_core): $(call objects_of,$(ROOMS_CORE))
 	$(say) AR $@
@@ -216,7 +218,8 @@ $(out)/samples/%: $(out)/samples/%.o $(call objects_of,host image) $(lib_cook) $
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host image)
 
 # ---- tests: every tests/ROOM/test_*.c(pp) is a program that links its room and what it needs -----
-test_sources := $(wildcard tests/*/test_*.c tests/*/test_*.cpp)
+test_sources := $(filter-out $(if $(vulkan),,tests/vulkan/%),\
+                  $(wildcard tests/*/test_*.c tests/*/test_*.cpp))
 test_bins    := $(patsubst %,$(out)/%,$(basename $(test_sources)))
 test_needs    = $(or $(links_$(1)),$(needs_$(1)) $(extra_needs_$(1)))
 # These run the command and the products; they link nothing of ours but the smallest room.
@@ -312,10 +315,10 @@ include lib/package/install.mk lib/web/web.mk lib/python/python.mk tests/bench/b
 
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev \
-            nlohmann-json3-dev libmeshoptimizer-dev \
-            libglfw3-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri \
-            libopenimageio-dev libzstd-dev zlib1g-dev libcmocka-dev glslang-tools \
-            ninja-build cmake xvfb libembree-dev python3-cffi python3-numpy python3-venv
+            nlohmann-json3-dev libmeshoptimizer-dev libglfw3-dev libegl-dev libgl-dev libegl1 \
+            libegl-mesa0 libgl1-mesa-dri libopenimageio-dev libzstd-dev zlib1g-dev libcmocka-dev \
+            glslang-tools $(packages_vulkan) ninja-build cmake xvfb libembree-dev python3-cffi \
+            python3-numpy python3-venv
 
 deps: ## install the Debian packages that are missing (apt-get, with sudo when not root)
 	@missing=; for p in $(packages); do \

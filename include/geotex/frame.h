@@ -42,7 +42,9 @@ typedef struct gtx_model_desc {
     uint32_t borrow;                  /* 1: maps are not copied; the asset must stay open until the
                                          model is uploaded or destroyed */
     gtx_limits limits;                /* memory, until the upload, and cells */
-    uint32_t reserved[4];
+    uint32_t first_provokes;          /* 1: flat values of a triangle are its first vertex's, as
+                                         everywhere but in OpenGL; 0: its last one's */
+    uint32_t reserved[3];
 } gtx_model_desc;
 
 /* Derives what the GPU needs, without GL: any thread. Keeps no reference to the asset unless it

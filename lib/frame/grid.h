@@ -35,6 +35,7 @@ typedef struct gtx_refining {
     const gtx_rtin_block *blocks;
     uint32_t patch, row;
     bool two_sided, mapped;   /* mapped: nothing is lit at vertices */
+    int turn;                 /* of a triangle's corners: 0 or 1 */
     uint32_t depth;           /* levels that are halved: all by their errors, or some anyway */
     bool by_error;
     double w[4], eye[4];      /* of clip space, over grid space; and there */

@@ -93,10 +93,11 @@ static void split(const gtx_lod_meshes *lods, gtx_lod_level *level, const gtx_lo
                 const uint32_t *corners = source->indices + 3 * (size_t)t;
                 if (is_at_border(level, corners) != border)
                     continue;
-                for (int c = 0; c < 3; ++c) {
+                for (int k = 0; k < 3; ++k) {
+                    const uint32_t c = corners[lods->first_provokes ? (k + 2) % 3 : k];
                     const uint32_t before = count;
-                    const gtx_lod_copy *s = copy_of(level, corners[c], patch, &count);
-                    const uint16_t *q = source->positions + 3 * (size_t)corners[c];
+                    const gtx_lod_copy *s = copy_of(level, c, patch, &count);
+                    const uint16_t *q = source->positions + 3 * (size_t)c;
                     if (count > before)
                         vertices[s->index] = (gtx_lod_vertex){{q[0], q[1], q[2]}, 0, patch};
                     store_index(lods, level, met++, s->index - run->first_vertex);

@@ -43,6 +43,7 @@ typedef struct gtx_lod_meshes {
     gtx_lod_level levels[GTX_MAX_LODS];
     uint32_t *order;          /* of the patches: those seen from the front alone come first */
     uint32_t one_sided;       /* how many */
+    bool first_provokes;      /* as told: which vertex gives flat values, also of grids */
     bool *edited;             /* a patch each: its height field has changed, and it must be cast */
     uint32_t edited_count;
     float low[3], high[3];    /* bounds in object space */

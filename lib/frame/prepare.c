@@ -24,7 +24,7 @@ typedef struct making {
     uint8_t *pages;               /* of cells */
     batch *batches;
     uint32_t batch_count;
-    bool borrow;
+    bool borrow, first_provokes;
     const void *sources[GTX_MAX_LEVELS]; /* of levels that are copies, or NULL */
 } making;
 
@@ -219,6 +219,7 @@ static gtx_result begin_parts(making *m, const gtx_jobs *jobs, gtx_error *error)
     gtx_model *model = m->model;
     if (!gtx_lod_begin(m->asset, &model->allocator, &model->lods))
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's LOD mesh");
+    model->lods.first_provokes = m->first_provokes;
     gtx_run_jobs(jobs, model->lods.level_count + PIECES * model->level_count, begin_part, m);
     return gtx_lod_place(&model->allocator, &model->lods, error);
 }
@@ -279,7 +280,7 @@ static gtx_model *new_model(const gtx_asset *asset, const gtx_allocator *hooks)
 
 static gtx_result check(const gtx_asset *asset, const gtx_model_desc *desc, gtx_error *error)
 {
-    gtx_result result = gtx_check_reserved(desc->reserved, 4, error);
+    gtx_result result = gtx_check_reserved(desc->reserved, 3, error);
     if (!result)
         result = gtx_check_limits(&desc->limits, error);
     const gtx_info *info = &asset->info;
@@ -301,7 +302,8 @@ gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc,
     if (result)
         return result;
     const gtx_allocator hooks = gtx_allocator_or_default(d->allocator);
-    making m = {.asset = asset, .model = new_model(asset, &hooks), .borrow = d->borrow};
+    making m = {.asset = asset, .model = new_model(asset, &hooks), .borrow = d->borrow,
+                .first_provokes = d->first_provokes};
     if (!m.model)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a model");
     if (reserve(&m))

@@ -32,6 +32,7 @@ gtx_refining gtx_refine(const gtx_frustum *f, const gtx_model *model, uint32_t p
                       .patch = patch, .row = gtx_rtin_row(rtin),
                       .two_sided = model->records[patch][GTX_RECORD_TWO_SIDED][3] > 0,
                       .mapped = model->has_material || model->has_emission,
+                      .turn = model->lods.first_provokes,
                       .depth = GTX_RTIN_LEVELS, .by_error = f->level < 0,
                       .w = {w[0], w[1], w[2], w[3]},
                       .eye = {eye[0], eye[1], eye[2], eye[3]}, .scale = f->scale * rtin->unit,
@@ -163,7 +164,8 @@ static void add(const gtx_refining *r, const place *at, uint32_t triangle, uint3
     uint32_t *to = (uint32_t *)r->grids->indices[looks].data + r->grids->index_count[looks];
     if (!front && !r->two_sided)
         return;
-    memcpy(to, index, sizeof index);
+    for (int c = 0; c < 3; ++c)
+        to[(c + r->turn) % 3] = index[c];
     r->grids->index_count[looks] += 3;
 }
 

@@ -17,12 +17,12 @@ install: all $(out)/gen/gtx.1 ## libraries, headers, command, shaders, manual: b
 	  $(to)/share/man/man1 $(to)/share/bash-completion/completions
 	@install -m 755 $(command) $(to)/bin
 	@install -m 644 include/geotex/*.h $(to)/include/geotex
-	@install -m 644 $(lib_core) $(lib_cook) $(to)/lib
-	@install -m 755 $(so_core) $(so_cook) $(to)/lib
-	@for so in libgeotex.so libgeotex-cook.so; do \
+	@install -m 644 $(lib_core) $(lib_cook) $(lib_vulkan) $(to)/lib
+	@install -m 755 $(so_core) $(so_cook) $(so_vulkan) $(to)/lib
+	@for so in libgeotex.so libgeotex-cook.so $(if $(vulkan),libgeotex-vulkan.so); do \
 	  ln -sf $$so.$(VERSION) $(to)/lib/$$so.$(SOVERSION); ln -sf $$so.$(SOVERSION) $(to)/lib/$$so; done
 	@install -m 755 $(module) $(to)/lib/geotex
-	@for pc in geotex geotex-cook; do \
+	@for pc in geotex geotex-cook $(if $(vulkan),geotex-vulkan); do \
 	  $(fill) lib/package/$$pc.pc.in > $(to)/lib/pkgconfig/$$pc.pc; done
 	@for cmake in geotexConfig geotexConfigVersion; do \
 	  $(fill) lib/package/$$cmake.cmake.in > $(to)/lib/cmake/geotex/$$cmake.cmake; done
@@ -34,8 +34,8 @@ install: all $(out)/gen/gtx.1 ## libraries, headers, command, shaders, manual: b
 # Debugging data is nine tenths of the shared libraries and more of the command.
 install-strip: install ## the same, without debugging data
 	@strip --strip-unneeded $(to)/bin/gtx $(to)/lib/libgeotex.so.$(VERSION) \
-	  $(to)/lib/libgeotex-cook.so.$(VERSION) $(to)/lib/geotex/$(notdir $(module))
-	@strip --strip-debug $(to)/lib/libgeotex.a $(to)/lib/libgeotex-cook.a
+	  $(patsubst $(out)/%,$(to)/lib/%,$(so_cook) $(so_vulkan) $(module:$(out)/%=$(out)/geotex/%))
+	@strip --strip-debug $(patsubst $(out)/%,$(to)/lib/%,$(lib_core) $(lib_cook) $(lib_vulkan))
 
 uninstall: ## remove what install put there
 	@cd $(to) && rm -f $$(cat $(abspath lib/package/files)) && \

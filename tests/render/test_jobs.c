@@ -151,7 +151,7 @@ static void reserved_fields_are_zero(void **state)
     (void)state;
     gtx_asset *asset = fixture_flat(0.5, 8);
     gtx_model *model = NULL;
-    const gtx_model_desc desc = {.reserved = {0, 0, 0, 1}};
+    const gtx_model_desc desc = {.reserved = {0, 0, 1}};
     assert_int_equal(gtx_model_prepare(asset, &desc, &model, NULL), GTX_ERROR_NOT_ZEROED);
     assert_null(model);
     gtx_close(asset);

@@ -1,0 +1,117 @@
+/* The inside of gtx_vk. */
+#ifndef GTX_VULKAN_DEVICE_H
+#define GTX_VULKAN_DEVICE_H
+
+#include <geotex/vulkan.h>
+#include <stdbool.h>
+
+#define GTX_VK_FUNCTIONS(X)                                                                        \
+    X(AllocateDescriptorSets) X(AllocateMemory) X(BindBufferMemory) X(BindImageMemory)             \
+    X(CmdBindDescriptorSets) X(CmdBindIndexBuffer) X(CmdBindPipeline) X(CmdBindVertexBuffers)      \
+    X(CmdCopyBuffer) X(CmdCopyBufferToImage) X(CmdDrawIndexed) X(CmdPipelineBarrier)               \
+    X(CreateBuffer) X(CreateDescriptorPool) X(CreateDescriptorSetLayout)                           \
+    X(CreateGraphicsPipelines) X(CreateImage) X(CreateImageView) X(CreatePipelineLayout)           \
+    X(CreateSampler) X(CreateShaderModule) X(DestroyBuffer) X(DestroyDescriptorPool)               \
+    X(DestroyDescriptorSetLayout) X(DestroyImage) X(DestroyImageView) X(DestroyPipeline)           \
+    X(DestroyPipelineLayout) X(DestroySampler) X(DestroyShaderModule) X(FreeMemory)                \
+    X(GetBufferMemoryRequirements) X(GetImageMemoryRequirements) X(MapMemory)                      \
+    X(ResetDescriptorPool) X(UpdateDescriptorSets)
+
+typedef struct gtx_vk_api {
+#define GTX_VK_FIELD(name) PFN_vk##name name;
+    GTX_VK_FUNCTIONS(GTX_VK_FIELD)
+#undef GTX_VK_FIELD
+} gtx_vk_api;
+
+/* A buffer with memory of its own, mapped where the host writes it. */
+typedef struct gtx_vk_buffer {
+    VkBuffer buffer;
+    VkDeviceMemory memory;
+    uint8_t *mapped;
+    VkDeviceSize size;
+} gtx_vk_buffer;
+
+/* memory.c. Errors: GL. */
+gtx_result gtx_vk_buffer_create(const gtx_vk *vk, VkDeviceSize size, VkBufferUsageFlags usage,
+                                bool mapped, gtx_vk_buffer *out, gtx_error *error);
+void gtx_vk_buffer_destroy(const gtx_vk *vk, gtx_vk_buffer *buffer);
+/* Memory of the kind, or the next best; the index of a type that `bits` allow. */
+uint32_t gtx_vk_memory_type(const gtx_vk *vk, uint32_t bits, bool mapped);
+gtx_result gtx_vk_check(VkResult result, const char *what, gtx_error *error);
+
+enum { GTX_VK_MAX_FRAMES = 8, GTX_VK_SETS = 64 };
+
+/* What one frame writes: blocks of memory and pools of descriptor sets, used again by a later
+ * one. */
+typedef struct gtx_vk_frame {
+    gtx_vk_buffer *blocks;
+    VkDescriptorPool *pools;
+    uint32_t block_count, pool_count;
+    uint32_t block, pool, sets;   /* in use, and sets of that pool */
+    VkDeviceSize used;            /* of the block */
+} gtx_vk_frame;
+
+/* A piece of a block. */
+typedef struct gtx_vk_piece {
+    VkBuffer buffer;
+    VkDeviceSize offset;
+} gtx_vk_piece;
+
+/* memory.c: copies bytes into the frame. Errors: MEMORY, GL. */
+gtx_result gtx_vk_write(gtx_vk *vk, const void *data, VkDeviceSize size, gtx_vk_piece *out,
+                        gtx_error *error);
+/* A descriptor set of the frame. Errors: MEMORY, GL. */
+gtx_result gtx_vk_take_set(gtx_vk *vk, VkDescriptorSet *out, gtx_error *error);
+void gtx_vk_frame_free(gtx_vk *vk, gtx_vk_frame *frame);
+
+/* What a pipeline is made for: all of it is compared, byte by byte. */
+typedef struct gtx_vk_key {
+    gtx_vk_target target;
+    uint32_t pipeline, cull, clockwise, nearer_is_greater;
+} gtx_vk_key;
+
+typedef struct gtx_vk_pipeline {
+    gtx_vk_key key;
+    VkPipeline pipeline;
+} gtx_vk_pipeline;
+
+/* pipelines.c. Errors: MEMORY, GL. */
+gtx_result gtx_vk_pipeline_of(gtx_vk *vk, const gtx_vk_key *key, VkPipeline *out,
+                              gtx_error *error);
+gtx_result gtx_vk_layout_create(gtx_vk *vk, gtx_error *error);
+
+struct gtx_vk {
+    gtx_allocator allocator;
+    const VkAllocationCallbacks *callbacks;
+    VkDevice device;
+    gtx_vk_api api;
+    VkPhysicalDeviceMemoryProperties memory;
+    VkPhysicalDeviceLimits limits;
+    VkSampler samplers[2];        /* by texel; filtered */
+    VkDescriptorSetLayout set_layout;
+    VkPipelineLayout layout;
+    VkShaderModule modules[2 * GTX_PIPELINE_COUNT]; /* by pipeline and stage, once needed */
+    gtx_vk_pipeline *pipelines;
+    uint32_t pipeline_count, pipeline_room;
+    gtx_planner *planner;
+    gtx_vk_frame frames[GTX_VK_MAX_FRAMES];
+    uint32_t frame_count, frame;
+    gtx_instance *instances;      /* scratch of a draw */
+    uint32_t instance_room;
+};
+
+struct gtx_vk_model {
+    gtx_model *model;
+    VkImage images[GTX_SLOT_COUNT];
+    VkImageView views[GTX_SLOT_COUNT];
+    VkDeviceMemory memory;        /* of the images */
+    bool is_filtered[GTX_SLOT_COUNT];
+    gtx_vk_buffer buffer;         /* all of the model's, ... */
+    VkDeviceSize offsets[GTX_BUFFER_GRID_VERTICES]; /* ... where each begins */
+    gtx_vk_buffer staging;        /* until it is uploaded */
+};
+
+/* Makes room for `count` things of `size`, keeping what is there. False without memory. */
+bool gtx_vk_grow(const gtx_vk *vk, void **array, uint32_t *room, uint32_t count, size_t size);
+
+#endif

@@ -1,0 +1,181 @@
+/* Drawing: a frame's draws become commands. */
+#include "vulkan/device.h"
+
+#include "base/error.h"
+
+#include <string.h>
+
+/* One gtx_vk_draw, and what is bound so far. */
+typedef struct recording {
+    gtx_vk *vk;
+    VkCommandBuffer commands;
+    const gtx_vk_instance *placed;
+    gtx_vk_key key;
+    VkPipeline pipeline;
+    const gtx_vk_model *model;
+    VkBuffer constants;           /* the block that the set names */
+    VkDescriptorSet set;
+    gtx_vk_piece instances, grid[2]; /* grid: vertices, indices */
+    gtx_result result;
+    gtx_error *error;
+} recording;
+
+/* The model's textures, and the constants of a block. */
+static gtx_result make_set(recording *r, const gtx_vk_model *model, VkBuffer constants)
+{
+    enum { WRITES = GTX_SLOT_COUNT + 1, CONSTANTS_BINDING = 8 };
+    const gtx_vk *vk = r->vk;
+    VkDescriptorImageInfo images[GTX_SLOT_COUNT];
+    VkWriteDescriptorSet writes[WRITES];
+    const VkDescriptorBufferInfo buffer = {constants, 0, sizeof(gtx_constants)};
+    gtx_result result = gtx_vk_take_set(r->vk, &r->set, r->error);
+    if (result)
+        return result;
+    for (uint32_t s = 0; s < GTX_SLOT_COUNT; ++s) {
+        images[s] = (VkDescriptorImageInfo){vk->samplers[model->is_filtered[s]], model->views[s],
+                                            VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+        writes[s] = (VkWriteDescriptorSet){
+            .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, .dstSet = r->set, .dstBinding = s,
+            .descriptorCount = 1, .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+            .pImageInfo = &images[s]};
+    }
+    writes[GTX_SLOT_COUNT] = (VkWriteDescriptorSet){
+        .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, .dstSet = r->set,
+        .dstBinding = CONSTANTS_BINDING, .descriptorCount = 1,
+        .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, .pBufferInfo = &buffer};
+    vk->api.UpdateDescriptorSets(vk->device, WRITES, writes, 0, NULL);
+    r->model = model;
+    r->constants = constants;
+    return GTX_OK;
+}
+
+static gtx_result bind_set(recording *r, const gtx_frame_draw *d)
+{
+    const gtx_vk_model *model = r->placed[d->first_instance].model;
+    gtx_vk_piece constants;
+    gtx_result result =
+        gtx_vk_write(r->vk, d->constants, sizeof *d->constants, &constants, r->error);
+    if (!result && (model != r->model || constants.buffer != r->constants))
+        result = make_set(r, model, constants.buffer);
+    const uint32_t offset = (uint32_t)constants.offset;
+    if (!result)
+        r->vk->api.CmdBindDescriptorSets(r->commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                                         r->vk->layout, 0, 1, &r->set, 1, &offset);
+    return result;
+}
+
+static gtx_result bind_pipeline(recording *r, const gtx_frame_draw *d)
+{
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    r->key.pipeline = d->pipeline;
+    r->key.cull = d->cull;
+    r->key.clockwise = d->clockwise == r->key.target.y_up; /* seen in a picture with y down */
+    gtx_result result = gtx_vk_pipeline_of(r->vk, &r->key, &pipeline, r->error);
+    if (!result && pipeline != r->pipeline)
+        r->vk->api.CmdBindPipeline(r->commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+    r->pipeline = pipeline;
+    return result;
+}
+
+/* The model's buffers, or of a grid what the draw brings along. */
+static gtx_result bind_buffers(recording *r, const gtx_frame_draw *d)
+{
+    const gtx_vk_model *model = r->placed[d->first_instance].model;
+    gtx_vk_piece from[2];
+    gtx_result result = GTX_OK;
+    if (d->vertices == GTX_BUFFER_GRID_VERTICES) {
+        if (d->vertex_data)
+            result = gtx_vk_write(r->vk, d->vertex_data, d->vertex_bytes, &r->grid[0], r->error);
+        if (!result)
+            result = gtx_vk_write(r->vk, d->index_data, d->index_bytes, &r->grid[1], r->error);
+        memcpy(from, r->grid, sizeof from);
+    } else {
+        from[0] = (gtx_vk_piece){model->buffer.buffer, model->offsets[d->vertices]};
+        from[1] = (gtx_vk_piece){model->buffer.buffer, model->offsets[d->indices]};
+    }
+    if (result)
+        return result;
+    const VkBuffer buffers[2] = {from[0].buffer, r->instances.buffer};
+    const VkDeviceSize offsets[2] = {from[0].offset + d->vertex_offset, r->instances.offset};
+    r->vk->api.CmdBindVertexBuffers(r->commands, 0, 2, buffers, offsets);
+    r->vk->api.CmdBindIndexBuffer(r->commands, from[1].buffer, from[1].offset + d->index_offset,
+                                  d->index_size == 2 ? VK_INDEX_TYPE_UINT16
+                                                     : VK_INDEX_TYPE_UINT32);
+    return GTX_OK;
+}
+
+static void submit(const gtx_frame_draw *d, void *user)
+{
+    recording *r = user;
+    if (!r->result)
+        r->result = bind_pipeline(r, d);
+    if (!r->result)
+        r->result = bind_set(r, d);
+    if (!r->result)
+        r->result = bind_buffers(r, d);
+    for (uint32_t i = 0; i < d->range_count && !r->result; ++i)
+        r->vk->api.CmdDrawIndexed(r->commands, d->ranges[i].count, d->instance_count,
+                                  d->ranges[i].first, (int32_t)d->ranges[i].base_vertex,
+                                  d->first_instance);
+}
+
+static gtx_result check(const gtx_vk *vk, VkCommandBuffer commands, const gtx_vk_target *target,
+                        const gtx_view *view, const gtx_vk_instance *instances, uint32_t count,
+                        gtx_error *error)
+{
+    if (!vk || !commands || !target || !view || (count && !instances) || target->color_count > 4)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "a draw needs commands, a target of at most 4 colours, a view and "
+                        "instances");
+    if (!(view->flags & GTX_VIEW_DEPTH_ZERO_TO_ONE) || view->shading)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "a view for Vulkan has clip z in 0..1, and no shading");
+    for (uint32_t i = 0; i < count; ++i)
+        if (!instances[i].model)
+            return gtx_fail(error, GTX_ERROR_ARGUMENT, "instance %u has no model", i);
+    return gtx_check_reserved(target->reserved, 4, error);
+}
+
+/* Without what has no name between the members. */
+static void set_key(const gtx_vk_target *target, const gtx_frame *frame, gtx_vk_key *key)
+{
+    memset(key, 0, sizeof *key);
+    key->target.render_pass = target->render_pass;
+    key->target.subpass = target->subpass;
+    key->target.color_count = target->color_count;
+    for (uint32_t i = 0; i < target->color_count; ++i)
+        key->target.color_formats[i] = target->color_formats[i];
+    key->target.depth_format = target->depth_format;
+    key->target.stencil_format = target->stencil_format;
+    key->target.samples = target->samples ? target->samples : VK_SAMPLE_COUNT_1_BIT;
+    key->target.y_up = target->y_up != 0;
+    key->nearer_is_greater = frame->nearer_is_greater;
+}
+
+gtx_result gtx_vk_draw(gtx_vk *vk, VkCommandBuffer commands, const gtx_vk_target *target,
+                       const gtx_view *view, const gtx_vk_instance *instances, uint32_t count,
+                       gtx_error *error)
+{
+    recording r = {.vk = vk, .commands = commands, .placed = instances, .error = error};
+    gtx_frame frame;
+    gtx_result result = check(vk, commands, target, view, instances, count, error);
+    if (result)
+        return result;
+    void *scratch = vk->instances;
+    if (!gtx_vk_grow(vk, &scratch, &vk->instance_room, count, sizeof *vk->instances))
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for %u instances", count);
+    vk->instances = scratch;
+    for (uint32_t i = 0; i < count; ++i) {
+        vk->instances[i] = instances[i].instance;
+        vk->instances[i].model = instances[i].model->model;
+    }
+    result = gtx_frame_begin(vk->planner, view, vk->instances, count, &frame, error);
+    if (!result)
+        result = gtx_vk_write(vk, frame.instances, count * sizeof *frame.instances, &r.instances,
+                              error);
+    if (result)
+        return result;
+    set_key(target, &frame, &r.key);
+    gtx_frame_draws(vk->planner, submit, &r);
+    return r.result;
+}

@@ -1,0 +1,176 @@
+/* Pipelines: made of SPIR-V when something is first drawn by them into a kind of target. */
+#include "vulkan/device.h"
+
+#include "base/error.h"
+#include "vulkan/spirv.h"
+
+#include <string.h>
+
+enum { CONSTANTS_BINDING = 8, BINDINGS = GTX_SLOT_COUNT + 1, ATTRIBUTES = 10, OUTPUTS = 4 };
+
+gtx_result gtx_vk_layout_create(gtx_vk *vk, gtx_error *error)
+{
+    VkDescriptorSetLayoutBinding bindings[BINDINGS];
+    const VkShaderStageFlags both = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    for (uint32_t i = 0; i < GTX_SLOT_COUNT; ++i)
+        bindings[i] = (VkDescriptorSetLayoutBinding){
+            .binding = i, .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+            .descriptorCount = 1, .stageFlags = both};
+    bindings[GTX_SLOT_COUNT] = (VkDescriptorSetLayoutBinding){
+        .binding = CONSTANTS_BINDING,
+        .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC,
+        .descriptorCount = 1, .stageFlags = both};
+    const VkDescriptorSetLayoutCreateInfo set = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .bindingCount = BINDINGS, .pBindings = bindings};
+    gtx_result result = gtx_vk_check(
+        vk->api.CreateDescriptorSetLayout(vk->device, &set, vk->callbacks, &vk->set_layout),
+        "vkCreateDescriptorSetLayout", error);
+    if (result)
+        return result;
+    const VkPipelineLayoutCreateInfo layout = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+        .setLayoutCount = 1, .pSetLayouts = &vk->set_layout};
+    return gtx_vk_check(
+        vk->api.CreatePipelineLayout(vk->device, &layout, vk->callbacks, &vk->layout),
+        "vkCreatePipelineLayout", error);
+}
+
+static gtx_result module_of(gtx_vk *vk, uint32_t pipeline, uint32_t stage, VkShaderModule *out,
+                            gtx_error *error)
+{
+    VkShaderModule *module = &vk->modules[2 * pipeline + stage];
+    const gtx_spirv *code = gtx_spirvs;
+    while (code->words && (code->pipeline != pipeline || code->stage != stage))
+        ++code;
+    const VkShaderModuleCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+        .codeSize = code->bytes, .pCode = code->words};
+    gtx_result result = GTX_OK;
+    if (!code->words)
+        return gtx_fail(error, GTX_ERROR_INTERNAL, "pipeline %u has no shaders", pipeline);
+    if (!*module)
+        result = gtx_vk_check(
+            vk->api.CreateShaderModule(vk->device, &info, vk->callbacks, module),
+            "vkCreateShaderModule", error);
+    *out = *module;
+    return result;
+}
+
+/* Of vertices of a buffer at binding 0, and of instances at binding 1. */
+static void set_attributes(gtx_buffer vertices, VkVertexInputBindingDescription bindings[2],
+                           VkVertexInputAttributeDescription attributes[ATTRIBUTES])
+{
+    const bool proxy = vertices == GTX_BUFFER_PROXY_VERTICES;
+    enum { ROWS = 7, ID = 9 };
+    bindings[0] = (VkVertexInputBindingDescription){0, proxy ? 16 : 12,
+                                                    VK_VERTEX_INPUT_RATE_VERTEX};
+    bindings[1] = (VkVertexInputBindingDescription){1, sizeof(gtx_instance_data),
+                                                    VK_VERTEX_INPUT_RATE_INSTANCE};
+    attributes[0] = (VkVertexInputAttributeDescription){
+        0, 0, proxy ? VK_FORMAT_R32G32B32_SFLOAT : VK_FORMAT_R16G16B16A16_UINT, 0};
+    attributes[1] =
+        (VkVertexInputAttributeDescription){1, 0, VK_FORMAT_R32_UINT, proxy ? 12 : 8};
+    for (uint32_t i = 0; i < ROWS; ++i)
+        attributes[2 + i] =
+            (VkVertexInputAttributeDescription){2 + i, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 16 * i};
+    attributes[ID] = (VkVertexInputAttributeDescription){ID, 1, VK_FORMAT_R32_UINT,
+                                                         offsetof(gtx_instance_data, id)};
+}
+
+static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, VkPipeline *out, gtx_error *error)
+{
+    const gtx_vk_target *target = &key->target;
+    VkVertexInputBindingDescription bindings[2];
+    VkVertexInputAttributeDescription attributes[ATTRIBUTES];
+    VkPipelineShaderStageCreateInfo stages[2];
+    VkPipelineColorBlendAttachmentState outputs[OUTPUTS];
+    gtx_pipeline of;
+    gtx_pipeline_get(key->pipeline, &of);
+    set_attributes(of.vertices, bindings, attributes);
+    for (uint32_t i = 0; i < 2; ++i) {
+        stages[i] = (VkPipelineShaderStageCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+            .stage = i ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT,
+            .pName = "main"};
+        gtx_result result = module_of(vk, key->pipeline, i, &stages[i].module, error);
+        if (result)
+            return result;
+    }
+    for (uint32_t i = 0; i < OUTPUTS; ++i)
+        outputs[i] = (VkPipelineColorBlendAttachmentState){
+            .colorWriteMask = of.pass == GTX_PASS_DEPTH ? 0 : 15};
+    const VkPipelineVertexInputStateCreateInfo input = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
+        .vertexBindingDescriptionCount = 2, .pVertexBindingDescriptions = bindings,
+        .vertexAttributeDescriptionCount = ATTRIBUTES, .pVertexAttributeDescriptions = attributes};
+    const VkPipelineInputAssemblyStateCreateInfo assembly = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+    const VkPipelineViewportStateCreateInfo viewport = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+        .viewportCount = 1, .scissorCount = 1};
+    static const VkDynamicState dynamics[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+    const VkPipelineDynamicStateCreateInfo dynamic = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+        .dynamicStateCount = 2, .pDynamicStates = dynamics};
+    static const VkCullModeFlags culls[] = {[GTX_CULL_NONE] = VK_CULL_MODE_NONE,
+                                            [GTX_CULL_BACK] = VK_CULL_MODE_BACK_BIT,
+                                            [GTX_CULL_FRONT] = VK_CULL_MODE_FRONT_BIT};
+    const VkPipelineRasterizationStateCreateInfo raster = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+        .cullMode = culls[key->cull],
+        .frontFace = key->clockwise ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE,
+        .lineWidth = 1};
+    const VkPipelineMultisampleStateCreateInfo multisample = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+        .rasterizationSamples = target->samples};
+    const VkPipelineDepthStencilStateCreateInfo depth = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+        .depthTestEnable = VK_TRUE, .depthWriteEnable = VK_TRUE,
+        .depthCompareOp = key->nearer_is_greater ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS};
+    const VkPipelineColorBlendStateCreateInfo blend = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+        .attachmentCount = target->color_count, .pAttachments = outputs};
+    const VkPipelineRenderingCreateInfoKHR rendering = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO_KHR,
+        .colorAttachmentCount = target->color_count,
+        .pColorAttachmentFormats = target->color_formats,
+        .depthAttachmentFormat = target->depth_format,
+        .stencilAttachmentFormat = target->stencil_format};
+    const VkGraphicsPipelineCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+        .pNext = target->render_pass ? NULL : &rendering,
+        .stageCount = 2, .pStages = stages,
+        .pVertexInputState = &input, .pInputAssemblyState = &assembly,
+        .pViewportState = &viewport, .pRasterizationState = &raster,
+        .pMultisampleState = &multisample, .pDepthStencilState = &depth,
+        .pColorBlendState = &blend, .pDynamicState = &dynamic,
+        .layout = vk->layout, .renderPass = target->render_pass, .subpass = target->subpass};
+    return gtx_vk_check(vk->api.CreateGraphicsPipelines(vk->device, VK_NULL_HANDLE, 1, &info,
+                                                        vk->callbacks, out),
+                        "vkCreateGraphicsPipelines", error);
+}
+
+gtx_result gtx_vk_pipeline_of(gtx_vk *vk, const gtx_vk_key *key, VkPipeline *out,
+                              gtx_error *error)
+{
+    for (uint32_t i = 0; i < vk->pipeline_count; ++i)
+        if (!memcmp(&vk->pipelines[i].key, key, sizeof *key)) {
+            *out = vk->pipelines[i].pipeline;
+            return GTX_OK;
+        }
+    void *pipelines = vk->pipelines;
+    if (!gtx_vk_grow(vk, &pipelines, &vk->pipeline_room, vk->pipeline_count + 1,
+                     sizeof *vk->pipelines))
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a pipeline");
+    vk->pipelines = pipelines;
+    gtx_vk_pipeline *made = &vk->pipelines[vk->pipeline_count];
+    gtx_result result = make(vk, key, &made->pipeline, error);
+    if (result)
+        return result;
+    memcpy(&made->key, key, sizeof *key);
+    ++vk->pipeline_count;
+    *out = made->pipeline;
+    return GTX_OK;
+}
