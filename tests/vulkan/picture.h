@@ -4,7 +4,26 @@
 
 #include "host_device.h"
 
-enum { DEPTH = 4 }; /* the index of the depth image */
+enum { COLORS = 4, DEPTH = COLORS, IMAGES = COLORS + 1, MOST_BYTES = 16 };
+
+/* Up to four colours and a depth, and what they are read through. */
+typedef struct picture {
+    uint32_t color_count, sizes[IMAGES]; /* bytes of a pixel */
+    VkFormat formats[IMAGES];
+    VkImage images[IMAGES];
+    VkImageView views[IMAGES];
+    VkDeviceMemory memories[IMAGES], read_memory;
+    VkBuffer read;
+    uint8_t *bytes;
+    VkRenderPass pass;
+    VkFramebuffer framebuffer;
+} picture;
+
+/* Where an image's pixels begin in the buffer that is read. */
+static inline size_t offset_of(int which)
+{
+    return (size_t)which * MOST_BYTES * STAGE_PIXELS;
+}
 
 /* The type of memory: the first that allows it, of the host's for a mapped buffer. */
 static inline uint32_t memory_type(const device *d, uint32_t bits, VkMemoryPropertyFlags wanted)
@@ -19,107 +38,116 @@ static inline uint32_t memory_type(const device *d, uint32_t bits, VkMemoryPrope
     return 0;
 }
 
-static inline void make_image(device *d, int which, VkFormat format)
+static inline void make_image(const device *d, picture *p, int which)
 {
     const bool depth = which == DEPTH;
     const VkImageCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO, .imageType = VK_IMAGE_TYPE_2D,
-        .format = format, .extent = {STAGE_WIDTH, STAGE_HEIGHT, 1}, .mipLevels = 1,
+        .format = p->formats[which], .extent = {STAGE_WIDTH, STAGE_HEIGHT, 1}, .mipLevels = 1,
         .arrayLayers = 1, .samples = VK_SAMPLE_COUNT_1_BIT,
         .usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
                  (depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
                         : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT)};
     VkMemoryRequirements needs;
-    assert_int_equal(d->CreateImage(d->device, &info, NULL, &d->images[which]), VK_SUCCESS);
-    d->GetImageMemoryRequirements(d->device, d->images[which], &needs);
+    assert_int_equal(d->CreateImage(d->device, &info, NULL, &p->images[which]), VK_SUCCESS);
+    d->GetImageMemoryRequirements(d->device, p->images[which], &needs);
     const VkMemoryAllocateInfo memory = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs.size,
         .memoryTypeIndex = memory_type(d, needs.memoryTypeBits, 0)};
-    d->AllocateMemory(d->device, &memory, NULL, &d->memories[which]);
-    d->BindImageMemory(d->device, d->images[which], d->memories[which], 0);
+    d->AllocateMemory(d->device, &memory, NULL, &p->memories[which]);
+    d->BindImageMemory(d->device, p->images[which], p->memories[which], 0);
     const VkImageViewCreateInfo view = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO, .image = d->images[which],
-        .viewType = VK_IMAGE_VIEW_TYPE_2D, .format = format,
+        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO, .image = p->images[which],
+        .viewType = VK_IMAGE_VIEW_TYPE_2D, .format = p->formats[which],
         .subresourceRange = {depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT, 0, 1,
                              0, 1}};
-    assert_int_equal(d->CreateImageView(d->device, &view, NULL, &d->views[which]), VK_SUCCESS);
+    assert_int_equal(d->CreateImageView(d->device, &view, NULL, &p->views[which]), VK_SUCCESS);
 }
 
-/* Four bytes a pixel: one colour, or three, then depth. */
-static inline void make_read_buffer(device *d)
+static inline void make_read_buffer(const device *d, picture *p)
 {
     const VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                                     .size = 5 * 4 * STAGE_PIXELS,
+                                     .size = IMAGES * MOST_BYTES * STAGE_PIXELS,
                                      .usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT};
     const VkMemoryPropertyFlags mapped =
         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     VkMemoryRequirements needs;
     void *bytes;
-    assert_int_equal(d->CreateBuffer(d->device, &info, NULL, &d->read), VK_SUCCESS);
-    d->GetBufferMemoryRequirements(d->device, d->read, &needs);
+    assert_int_equal(d->CreateBuffer(d->device, &info, NULL, &p->read), VK_SUCCESS);
+    d->GetBufferMemoryRequirements(d->device, p->read, &needs);
     const VkMemoryAllocateInfo memory = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = needs.size,
         .memoryTypeIndex = memory_type(d, needs.memoryTypeBits, mapped)};
-    d->AllocateMemory(d->device, &memory, NULL, &d->memories[5]);
-    d->BindBufferMemory(d->device, d->read, d->memories[5], 0);
-    assert_int_equal(d->MapMemory(d->device, d->memories[5], 0, VK_WHOLE_SIZE, 0, &bytes),
+    d->AllocateMemory(d->device, &memory, NULL, &p->read_memory);
+    d->BindBufferMemory(d->device, p->read, p->read_memory, 0);
+    assert_int_equal(d->MapMemory(d->device, p->read_memory, 0, VK_WHOLE_SIZE, 0, &bytes),
                      VK_SUCCESS);
-    d->bytes = bytes;
+    p->bytes = bytes;
 }
 
-/* Of one colour, with what a pass of it needs. */
-static inline void make_picture(device *d, VkFormat color)
+/* Of so many colours, with what a pass of them needs. */
+static inline void make_picture(const device *d, picture *p, uint32_t colors,
+                                const VkFormat *formats, uint32_t size)
 {
-    make_image(d, 0, color);
-    make_image(d, DEPTH, VK_FORMAT_D32_SFLOAT);
-    make_read_buffer(d);
-    const VkAttachmentDescription attachments[2] = {
-        {.format = color, .samples = VK_SAMPLE_COUNT_1_BIT, .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
-         .storeOp = VK_ATTACHMENT_STORE_OP_STORE, .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
-         .finalLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL},
-        {.format = VK_FORMAT_D32_SFLOAT, .samples = VK_SAMPLE_COUNT_1_BIT,
-         .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR, .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
-         .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
-         .finalLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL}};
-    const VkAttachmentReference of_color = {0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-    const VkAttachmentReference of_depth = {1, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
-    const VkSubpassDescription subpass = {.colorAttachmentCount = 1,
-                                          .pColorAttachments = &of_color,
-                                          .pDepthStencilAttachment = &of_depth};
-    const VkRenderPassCreateInfo pass = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
-                                         .attachmentCount = 2, .pAttachments = attachments,
-                                         .subpassCount = 1, .pSubpasses = &subpass};
-    assert_int_equal(d->CreateRenderPass(d->device, &pass, NULL, &d->pass), VK_SUCCESS);
-    const VkImageView views[2] = {d->views[0], d->views[DEPTH]};
-    const VkFramebufferCreateInfo framebuffer = {
-        .sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO, .renderPass = d->pass,
-        .attachmentCount = 2, .pAttachments = views, .width = STAGE_WIDTH,
-        .height = STAGE_HEIGHT, .layers = 1};
-    assert_int_equal(d->CreateFramebuffer(d->device, &framebuffer, NULL, &d->framebuffer),
-                     VK_SUCCESS);
-}
-
-static inline void free_picture(device *d)
-{
-    d->DestroyFramebuffer(d->device, d->framebuffer, NULL);
-    d->DestroyRenderPass(d->device, d->pass, NULL);
-    d->DestroyBuffer(d->device, d->read, NULL);
-    for (int i = 0; i < 5; ++i) {
-        d->DestroyImageView(d->device, d->views[i], NULL);
-        d->DestroyImage(d->device, d->images[i], NULL);
+    VkAttachmentDescription attachments[IMAGES];
+    VkAttachmentReference references[IMAGES];
+    VkImageView views[IMAGES];
+    memset(p, 0, sizeof *p);
+    p->color_count = colors;
+    for (uint32_t i = 0; i <= colors; ++i) {
+        const bool depth = i == colors;
+        const int which = depth ? DEPTH : (int)i;
+        const VkImageLayout layout = depth ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
+                                           : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+        p->formats[which] = depth ? VK_FORMAT_D32_SFLOAT : formats[i];
+        p->sizes[which] = depth ? 4 : size;
+        make_image(d, p, which);
+        views[i] = p->views[which];
+        references[i] = (VkAttachmentReference){i, layout};
+        attachments[i] = (VkAttachmentDescription){
+            .format = p->formats[which], .samples = VK_SAMPLE_COUNT_1_BIT,
+            .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR, .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
+            .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED, .finalLayout = layout};
     }
-    for (int i = 0; i < 6; ++i)
-        d->FreeMemory(d->device, d->memories[i], NULL);
+    make_read_buffer(d, p);
+    const VkSubpassDescription subpass = {.colorAttachmentCount = colors,
+                                          .pColorAttachments = references,
+                                          .pDepthStencilAttachment = &references[colors]};
+    const VkRenderPassCreateInfo pass = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
+                                         .attachmentCount = colors + 1,
+                                         .pAttachments = attachments, .subpassCount = 1,
+                                         .pSubpasses = &subpass};
+    assert_int_equal(d->CreateRenderPass(d->device, &pass, NULL, &p->pass), VK_SUCCESS);
+    const VkFramebufferCreateInfo framebuffer = {
+        .sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO, .renderPass = p->pass,
+        .attachmentCount = colors + 1, .pAttachments = views, .width = STAGE_WIDTH,
+        .height = STAGE_HEIGHT, .layers = 1};
+    assert_int_equal(d->CreateFramebuffer(d->device, &framebuffer, NULL, &p->framebuffer),
+                     VK_SUCCESS);
 }
 
-static inline void turn(const device *d, int which, VkImageLayout from, VkImageLayout to)
+static inline void free_picture(const device *d, picture *p)
+{
+    d->DestroyFramebuffer(d->device, p->framebuffer, NULL);
+    d->DestroyRenderPass(d->device, p->pass, NULL);
+    d->DestroyBuffer(d->device, p->read, NULL);
+    d->FreeMemory(d->device, p->read_memory, NULL);
+    for (int i = 0; i < IMAGES; ++i) {
+        d->DestroyImageView(d->device, p->views[i], NULL);
+        d->DestroyImage(d->device, p->images[i], NULL);
+        d->FreeMemory(d->device, p->memories[i], NULL);
+    }
+}
+
+static inline void turn(const device *d, const picture *p, int which, VkImageLayout from,
+                        VkImageLayout to)
 {
     const VkImageMemoryBarrier barrier = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
         .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
         .dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
         .oldLayout = from, .newLayout = to, .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED, .image = d->images[which],
+        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED, .image = p->images[which],
         .subresourceRange = {which == DEPTH ? VK_IMAGE_ASPECT_DEPTH_BIT
                                             : VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
     d->CmdPipelineBarrier(d->commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
@@ -127,68 +155,73 @@ static inline void turn(const device *d, int which, VkImageLayout from, VkImageL
 }
 
 /* `by_pass`: by the render pass, or without one. */
-static inline void begin_picture(device *d, bool by_pass, float far, bool y_up)
+static inline void begin_picture(const device *d, const picture *p, bool by_pass, float far,
+                                 bool y_up)
 {
     const VkRect2D all = {{0, 0}, {STAGE_WIDTH, STAGE_HEIGHT}};
-    const VkClearValue clear[2] = {{.color = {.float32 = {0, 0, 0, 0}}},
-                                   {.depthStencil = {far, 0}}};
     const VkViewport viewport = {0, y_up ? STAGE_HEIGHT : 0, STAGE_WIDTH,
                                  y_up ? -(float)STAGE_HEIGHT : STAGE_HEIGHT, 0, 1};
+    VkClearValue clears[IMAGES];
+    VkRenderingAttachmentInfo attachments[IMAGES];
+    memset(clears, 0, sizeof clears);
+    clears[p->color_count].depthStencil.depth = far;
+    for (uint32_t i = 0; i <= p->color_count; ++i)
+        attachments[i] = (VkRenderingAttachmentInfo){
+            .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+            .imageView = p->views[i == p->color_count ? DEPTH : i],
+            .imageLayout = i == p->color_count ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
+                                               : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+            .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR, .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
+            .clearValue = clears[i]};
+    const VkRenderPassBeginInfo pass = {
+        .sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO, .renderPass = p->pass,
+        .framebuffer = p->framebuffer, .renderArea = all, .clearValueCount = p->color_count + 1,
+        .pClearValues = clears};
+    const VkRenderingInfo rendering = {.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                                       .renderArea = all, .layerCount = 1,
+                                       .colorAttachmentCount = p->color_count,
+                                       .pColorAttachments = attachments,
+                                       .pDepthAttachment = &attachments[p->color_count]};
     if (by_pass) {
-        const VkRenderPassBeginInfo info = {
-            .sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO, .renderPass = d->pass,
-            .framebuffer = d->framebuffer, .renderArea = all, .clearValueCount = 2,
-            .pClearValues = clear};
-        d->CmdBeginRenderPass(d->commands, &info, VK_SUBPASS_CONTENTS_INLINE);
+        d->CmdBeginRenderPass(d->commands, &pass, VK_SUBPASS_CONTENTS_INLINE);
     } else {
-        const VkRenderingAttachmentInfo attachments[2] = {
-            {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO, .imageView = d->views[0],
-             .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-             .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR, .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
-             .clearValue = clear[0]},
-            {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO, .imageView = d->views[DEPTH],
-             .imageLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
-             .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR, .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
-             .clearValue = clear[1]}};
-        const VkRenderingInfo info = {.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
-                                      .renderArea = all, .layerCount = 1,
-                                      .colorAttachmentCount = 1,
-                                      .pColorAttachments = &attachments[0],
-                                      .pDepthAttachment = &attachments[1]};
-        turn(d, 0, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-        turn(d, DEPTH, VK_IMAGE_LAYOUT_UNDEFINED,
+        for (uint32_t i = 0; i < p->color_count; ++i)
+            turn(d, p, (int)i, VK_IMAGE_LAYOUT_UNDEFINED,
+                 VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+        turn(d, p, DEPTH, VK_IMAGE_LAYOUT_UNDEFINED,
              VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
-        d->CmdBeginRendering(d->commands, &info);
+        d->CmdBeginRendering(d->commands, &rendering);
     }
     d->CmdSetViewport(d->commands, 0, 1, &viewport);
     d->CmdSetScissor(d->commands, 0, 1, &all);
 }
 
-/* Reads back, the uppermost row first. */
-static inline void end_picture(device *d, bool by_pass, uint8_t *color, float *depth)
+static inline void read_image(const device *d, const picture *p, int which)
+{
+    const bool depth = which == DEPTH;
+    const VkBufferImageCopy copy = {
+        .bufferOffset = offset_of(which),
+        .imageSubresource = {depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT, 0, 0,
+                             1},
+        .imageExtent = {STAGE_WIDTH, STAGE_HEIGHT, 1}};
+    turn(d, p, which, depth ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
+                            : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+         VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    d->CmdCopyImageToBuffer(d->commands, p->images[which], VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                            p->read, 1, &copy);
+}
+
+/* All images, the uppermost row first, in p->bytes from offset_of on. */
+static inline void end_picture(device *d, const picture *p, bool by_pass)
 {
     if (by_pass)
         d->CmdEndRenderPass(d->commands);
     else
         d->CmdEndRendering(d->commands);
-    for (int i = 0; i <= DEPTH; i += DEPTH) {
-        const VkBufferImageCopy copy = {
-            .bufferOffset = i ? 16 * STAGE_PIXELS : 0,
-            .imageSubresource = {i ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT, 0, 0,
-                                 1},
-            .imageExtent = {STAGE_WIDTH, STAGE_HEIGHT, 1}};
-        turn(d, i, i ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
-                     : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-             VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-        d->CmdCopyImageToBuffer(d->commands, d->images[i], VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                d->read, 1, &copy);
-    }
+    for (uint32_t i = 0; i < p->color_count; ++i)
+        read_image(d, p, (int)i);
+    read_image(d, p, DEPTH);
     run_commands(d);
-    for (int y = 0; y < STAGE_HEIGHT; ++y) {
-        const size_t row = 4 * STAGE_WIDTH, from = (size_t)y * row;
-        memcpy(color + (size_t)y * row, d->bytes + from, row);
-        memcpy(depth + y * STAGE_WIDTH, d->bytes + 16 * STAGE_PIXELS + from, row);
-    }
 }
 
 #endif

@@ -3,14 +3,14 @@
  * highlight, one in 200. The validation layer, where it is installed, has nothing to say. */
 #include "picture.h"
 
+#include "host/target.h"
 #include "render/look.h"
 
 enum { COUNT = 5 };
 
 static device the_device;
 static gtx_vk *vk;
-static uint8_t found_color[4 * STAGE_PIXELS];
-static float found_depth[STAGE_PIXELS];
+static picture shown;
 
 static int open_both(void **state)
 {
@@ -28,7 +28,7 @@ static int open_both(void **state)
     if (gtx_vk_create(&desc, &vk, &error))
         fprintf(stderr, "%s\n", error.message);
     else
-        make_picture(d, VK_FORMAT_R8G8B8A8_UNORM);
+        make_picture(d, &shown, 1, (VkFormat[]){VK_FORMAT_R8G8B8A8_UNORM}, 4);
     return vk ? 0 : -1;
 }
 
@@ -37,7 +37,7 @@ static int close_both(void **state)
     device *d = &the_device;
     if (vk) {
         gtx_vk_destroy(vk);
-        free_picture(d);
+        free_picture(d, &shown);
     }
     close_device(d);
     return stage_close(state) || d->complaints ? -1 : 0;
@@ -81,23 +81,35 @@ typedef struct way {
     bool by_pass, y_up;
 } way;
 
-static void draw_by(device *d, const pair *p, const gtx_view *view, const gtx_instance *instances,
-                    uint32_t count, way w)
+static void draw_by(device *d, const picture *in, const pair *p, const gtx_view *view,
+                    const gtx_instance *instances, uint32_t count, way w)
 {
     gtx_error error = {0};
     gtx_vk_instance placed[COUNT];
-    const gtx_vk_target target = {.render_pass = w.by_pass ? d->pass : VK_NULL_HANDLE,
-                                  .color_count = 1,
-                                  .color_formats = {VK_FORMAT_R8G8B8A8_UNORM},
-                                  .depth_format = VK_FORMAT_D32_SFLOAT, .y_up = w.y_up};
+    gtx_vk_target target = {.render_pass = w.by_pass ? in->pass : VK_NULL_HANDLE,
+                            .color_count = in->color_count,
+                            .depth_format = VK_FORMAT_D32_SFLOAT, .y_up = w.y_up};
+    memcpy(target.color_formats, in->formats, sizeof target.color_formats);
     memset(placed, 0, sizeof placed);
     for (uint32_t i = 0; i < count; ++i)
         placed[i] = (gtx_vk_instance){p->uploaded, instances[i]};
     gtx_vk_next_frame(vk);
     begin_commands(d);
-    begin_picture(d, w.by_pass, view->flags & GTX_VIEW_REVERSED_Z ? 0.0f : 1.0f, w.y_up);
+    begin_picture(d, in, w.by_pass, view->flags & GTX_VIEW_REVERSED_Z ? 0.0f : 1.0f, w.y_up);
     must(gtx_vk_draw(vk, d->commands, &target, view, placed, count, &error), &error);
-    end_picture(d, w.by_pass, found_color, found_depth);
+    end_picture(d, in, w.by_pass);
+}
+
+/* The view, with clip z and y as Vulkan has them. */
+static gtx_view for_vulkan(gtx_view view, gtx_camera camera, bool y_up)
+{
+    camera.zero_to_one = 1;
+    const gtx_view clip = view_of(&camera);
+    memcpy(view.projection, clip.projection, sizeof view.projection);
+    view.flags |= GTX_VIEW_DEPTH_ZERO_TO_ONE;
+    for (int k = 1; k < 16 && !y_up; k += 4)
+        view.projection[k] = -view.projection[k];
+    return view;
 }
 
 /* OpenGL's picture, with its own clip z, in the stage; then Vulkan's. */
@@ -106,21 +118,18 @@ static void expect_alike(stage *s, device *d, const pair *p, gtx_camera camera, 
 {
     size_t far = 0, apart = 0, covered = 0;
     stage_draw(s, &view, instances, count);
-    camera.zero_to_one = 1;
-    const gtx_view clip = view_of(&camera);
-    memcpy(view.projection, clip.projection, sizeof view.projection);
-    view.flags |= GTX_VIEW_DEPTH_ZERO_TO_ONE;
-    for (int k = 1; k < 16 && !w.y_up; k += 4)
-        view.projection[k] = -view.projection[k];
-    draw_by(d, p, &view, instances, count, w);
+    const gtx_view own = for_vulkan(view, camera, w.y_up);
+    const uint8_t *found = shown.bytes + offset_of(0);
+    const float *depth = (const float *)(const void *)(shown.bytes + offset_of(DEPTH));
+    draw_by(d, &shown, p, &own, instances, count, w);
     for (int i = 0; i < STAGE_PIXELS; ++i) {
         int most = 0;
         for (int c = 0; c < 4; ++c) {
-            const int difference = abs(found_color[4 * i + c] - s->color[4 * i + c]);
+            const int difference = abs(found[4 * i + c] - s->color[4 * i + c]);
             most = difference > most ? difference : most;
         }
         far += view.pass == GTX_PASS_FORWARD && most > 2;
-        apart += fabsf(found_depth[i] - s->depth[i]) > 1e-4f;
+        apart += fabsf(depth[i] - s->depth[i]) > 1e-4f;
         covered += s->depth[i] > 0 && s->depth[i] < 1;
     }
     assert_true(covered > 1000);
@@ -193,6 +202,93 @@ static void materials_and_emission_are_drawn(void **state)
     check_all(s, d, repaint(fixture_sphere(2, 64, 8), &shiny), 200);
 }
 
+/* Bytes of a colour of OpenGL's target, the uppermost row first. */
+static void read_target(stage *s, int which, bool ids, uint8_t *out)
+{
+    const size_t row = (ids ? 16u : 4u) * STAGE_WIDTH;
+    s->gl.ReadBuffer(GL_COLOR_ATTACHMENT0 + (GLenum)which);
+    for (int y = 0; y < STAGE_HEIGHT; ++y)
+        s->gl.ReadPixels(0, STAGE_HEIGHT - 1 - y, STAGE_WIDTH, 1,
+                         ids ? GL_RGBA_INTEGER : GL_RGBA, ids ? GL_UNSIGNED_INT : GL_UNSIGNED_BYTE,
+                         out + (size_t)y * row);
+}
+
+/* Pixels of which one of the first bytes is more than so much away. */
+static size_t apart(const uint8_t *a, const uint8_t *b, size_t size, size_t first, int most)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < STAGE_PIXELS; ++i) {
+        bool far = false;
+        for (size_t k = i * size; k < i * size + first; ++k)
+            far = far || abs(a[k] - b[k]) > most;
+        count += far;
+    }
+    return count;
+}
+
+/* Ids, or a G-buffer of bytes. */
+static void check_pass(stage *s, device *d, gtx_pass pass, uint32_t colors)
+{
+    static uint8_t expected[16 * STAGE_PIXELS];
+    const bool ids = pass == GTX_PASS_ID;
+    GLenum formats[COLORS + 1] = {0};
+    VkFormat of_vulkan[COLORS];
+    gtx_error error = {0};
+    gtx_target target;
+    picture own;
+    gtx_instance instances[COUNT];
+    for (uint32_t i = 0; i < colors; ++i) {
+        formats[i] = ids ? GL_RGBA32UI : GL_RGBA8;
+        of_vulkan[i] = ids ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R8G8B8A8_UNORM;
+    }
+    must(gtx_target_create(&s->gl, STAGE_WIDTH, STAGE_HEIGHT, formats, &target, &error), &error);
+    make_picture(d, &own, colors, of_vulkan, ids ? 16 : 4);
+    pair p = pair_open(s, d, with_lod_as(fixture_sphere(2, 64, 8), 2, 3, 0, LOD_SHINY));
+    gtx_camera camera = camera_around(p.gl.asset);
+    place(p.gl.model, camera.radius, instances);
+    for (int i = 0; i < 2 * (GTX_METHOD_GRID + 1); ++i) {
+        const way w = {.by_pass = i & 1 || !d->renders, .y_up = i & 1};
+        camera.distance = i & 1 ? 1.2f : 3.1f;
+        gtx_view view = view_of(&camera);
+        view.pass = pass;
+        view.method = (gtx_method)(i / 2);
+        view.viewport_height = STAGE_HEIGHT;
+        gtx_target_begin(&s->gl, &target);
+        for (uint32_t c = 0; c < colors; ++c) {
+            static const GLuint no_ids[4] = {0};
+            static const GLfloat nothing[4] = {0};
+            if (ids)
+                s->gl.ClearBufferuiv(GL_COLOR, (GLint)c, no_ids);
+            else
+                s->gl.ClearBufferfv(GL_COLOR, (GLint)c, nothing);
+        }
+        must(gtx_draw(s->renderer, &view, instances, COUNT, &error), &error);
+        const gtx_view of_own = for_vulkan(view, camera, w.y_up);
+        draw_by(d, &own, &p, &of_own, instances, COUNT, w);
+        for (uint32_t c = 0; c < colors; ++c) {
+            const uint8_t *found = own.bytes + offset_of((int)c);
+            read_target(s, (int)c, ids, expected);
+            const size_t far = apart(expected, found, ids ? 16 : 4, 4, ids ? 0 : 2);
+            if (far * 10000 > STAGE_PIXELS)
+                fail_msg("%zu of %d pixels of colour %u differ", far, STAGE_PIXELS, c);
+            /* On the line between two cells either is right. */
+            if (ids)
+                assert_true(apart(expected, found, 16, 16, 0) * 1000 <= STAGE_PIXELS);
+        }
+    }
+    pair_close(s, &p);
+    free_picture(d, &own);
+    gtx_target_destroy(&s->gl, &target);
+}
+
+static void ids_and_g_buffers_are_drawn(void **state)
+{
+    BOTH_OR_SKIP(state);
+    check_pass(s, d, GTX_PASS_ID, 1);
+    check_pass(s, d, GTX_PASS_GBUFFER, 4);
+    check_pass(s, d, GTX_PASS_GBUFFER, 2);
+}
+
 static void the_layer_is_silent(void **state)
 {
     BOTH_OR_SKIP(state);
@@ -234,6 +330,7 @@ int main(void)
         cmocka_unit_test(heights_are_drawn),
         cmocka_unit_test(lod_meshes_are_drawn),
         cmocka_unit_test(materials_and_emission_are_drawn),
+        cmocka_unit_test(ids_and_g_buffers_are_drawn),
         cmocka_unit_test(misuse_is_refused),
         cmocka_unit_test(the_layer_is_silent),
     };
