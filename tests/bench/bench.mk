@@ -63,6 +63,14 @@ run-bench-truth: $(foreach m,$(TRUTH),$(model_$(m)) $(build)/paths/$(m).gtx)
 	@$(foreach m,$(TRUTH),$(build)/gtx bench $(build)/paths/$(m).gtx $(model_$(m)) --truth -q \
 	  --frames 1 --sizes $(truth_sizes) --methods mesh,simplified,cast,lod,auto $(BENCH) &&) true
 
+ATLAS        ?= $(addprefix $(GEOTEX_MODELS)/scans/,bunny.ply armadillo_86k.obj.gz horse.ply.gz \
+                  gargo_3dhop.ply.gz nefertiti.obj.gz)
+ATLAS_PYTHON ?= python3
+bench-atlas: ## exports of ATLAS beside the same triangles unwrapped and baked by xatlas
+	$(again) deps
+	$(again) -j$$(nproc) all
+	@$(ATLAS_PYTHON) tests/bench/atlas.py $(build)/gtx $(ATLAS)
+
 bench-rays: ## rays a second into MODEL (default: the sculpt), and what shadows by ray cost a frame
 	$(again) deps
 	$(again) -j$$(nproc) all $(out)/tests/bench/rays
