@@ -71,17 +71,32 @@ static int compare(const void *a, const void *b)
     return x->patch < y->patch ? -1 : x->patch > y->patch;
 }
 
-/* The way of a patch in view. */
-static uint8_t way_of(const gtx_frustum *f, const gtx_model *model, uint32_t patch,
-                      uint32_t levels)
+/* Of patches that are seen from two sides, LOD meshes of more triangles than that are not drawn
+ * where rays are cast by tiles: both sides take their time, hidden or not, and along a surface each
+ * has few pixels. Standing among horizons of 10.8 million triangles views take 0.12 of the mesh's
+ * time instead of 0.19, standing on the Andes 0.17 instead of 0.21. Those have up to 2,000 a patch.
+ * At 64 random views of a dragon, of 150 a patch, take up to a fifth longer. */
+static const uint32_t most_lod_triangles = 400;
+
+/* What a draw may do with patches. */
+typedef struct choice {
+    uint32_t levels;          /* of the LOD mesh */
+    bool tiles;
+} choice;
+
+/* The way of the patch lods.order[i] in view. */
+static uint8_t way_of(const gtx_frustum *f, const gtx_model *model, uint32_t i, choice c)
 {
     const gtx_lod_level *lod = model->lods.levels;
+    const uint32_t patch = model->lods.level_count ? model->lods.order[i] : i;
+    const bool thin = c.tiles && model->records[patch][GTX_RECORD_TWO_SIDED][3] > 0;
     uint8_t way = GTX_BY_HEIGHT_FIELD;
-    if (!levels || model->lods.edited[patch])
+    if (!c.levels || model->lods.edited[patch])
         return way;
     const double allowed = gtx_allowed_error(f, model->facts[patch].sphere);
-    for (uint32_t k = 0; k < levels && lod[k].error <= allowed; ++k)
-        way = (uint8_t)(GTX_BY_LOD + k);
+    for (uint32_t k = 0; k < c.levels && lod[k].error <= allowed; ++k)
+        if (!thin || lod[k].first[i + 1] - lod[k].first[i] <= most_lod_triangles)
+            way = (uint8_t)(GTX_BY_LOD + k);
     return way;
 }
 
@@ -90,14 +105,16 @@ void gtx_plan_patches(const gtx_draw_call *draw, const gtx_model *model,
 {
     gtx_plan *plan = &draw->planner->plan;
     const gtx_frustum f = gtx_frustum_of(draw, model, placed);
+    const choice c = {levels, !model->bare && gtx_tiles_suit(draw)};
     plan->count = 0;
     plan->any_lod = false;
-    for (uint32_t i = 0; i < model->patch_count; ++i) {
+    for (uint32_t n = 0; n < model->patch_count; ++n) {
+        const uint32_t i = model->lods.level_count ? model->lods.order[n] : n;
         const gtx_patch_facts *facts = &model->facts[i];
         plan->ways[i] = GTX_OUT_OF_VIEW;
         if ((edited_only && !model->lods.edited[i]) || gtx_is_outside(&f, facts->hull))
             continue;
-        plan->ways[i] = way_of(&f, model, i, levels);
+        plan->ways[i] = way_of(&f, model, n, c);
         if (plan->ways[i] != GTX_BY_HEIGHT_FIELD) {
             plan->any_lod = true;
             continue;
