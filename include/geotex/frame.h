@@ -175,8 +175,9 @@ enum { /* gtx_view.flags */
  *
  * Patch by patch. If none is fine enough for all of an instance, or part of it is beside the
  * picture, AUTO draws each patch in view by the coarsest LOD mesh that is fine enough where the
- * patch is nearest, or else as a displaced grid or cast, whichever costs less. Where ways meet, the
- * coarser goes on beneath the finer by a ring of triangles. It casts if `viewport_height` is
+ * patch is nearest, or else as a displaced grid or cast, whichever costs less; so, too, by tiles,
+ * two-sided patches of which that mesh has many triangles. Where ways meet, the coarser goes on
+ * beneath the finer by a ring of triangles. It casts if `viewport_height` is
  * unknown, or if `level` is given. With AUTO and LOD patches taken by gtx_model_update have no LOD
  * mesh from then on.
  *
