@@ -27,8 +27,8 @@ static const verb view = {
     "view", "[FILE...]",
     "Shows assets, polygon models, worlds (DIR of gtx world, whose tiles are read as they are\n"
     "wanted) and glTF scenes in a window. Left drag turns, right or middle drag pans, the wheel\n"
-    "zooms, H lists the keys. A file dropped onto the window replaces what it shows; a model is\n"
-    "cooked first, in the background.\n"
+    "zooms, H lists the keys. What is dropped onto the window replaces what it shows: files, and\n"
+    "worlds by their folder or tileset.json; a model is cooked first, in the background.\n"
     "G walks on what is in the middle of the picture, then flies, then orbits again: W, A, S, D\n"
     "go, E and Q raise and lower the eye, Shift is faster, left drag looks around.\n"
     "Exit: 5 if no display offers OpenGL 3.3; with --frames, that of cook if a drop failed.",

@@ -282,6 +282,16 @@ static void a_world_is_shown_and_walked_on(void **state)
     assert_true(difference(&shown, &text, true) > 1000);
     assert_true(difference(&shown, &walked, false) > 3000);
     assert_true(abs(pixel(&walked, 160, 230)[0] - pixel(&walked, 160, 10)[0]) > 10);
+    const char *const drops[] = {"--drop world", "--drop world/", "--drop world/tileset.json",
+                                 "sphere.gtx --drop world/tiles.gtw"};
+    for (int i = 0; i < 4; ++i) {
+        gtx_image dropped = view(drops[i], "t");
+        assert_true(difference(&shown, &dropped, false) < 320 * 240 / 1000);
+        gtx_image_free(&dropped);
+    }
+    write_file("world/tiles.gtw", "no index", 8);
+    expect(gtx("view sphere.gtx --size 320x240 --frames 2 --drop world"), 3);
+    expect_text("world: error[");
     gtx_image_free(&shown);
     gtx_image_free(&text);
     gtx_image_free(&walked);

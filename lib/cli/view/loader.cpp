@@ -1,4 +1,4 @@
-/* A thread that opens assets and cooks models. */
+/* A thread that opens assets and worlds, and cooks models. */
 #include "cli/view/loader.hpp"
 
 #include "cli/cli.h"
@@ -58,6 +58,11 @@ AssetPointer Loader::cook(const std::string &path)
 void Loader::load(const std::string &path)
 {
     result_.path = path;
+    const std::string world = world_at(path);
+    if (!world.empty()) {
+        result_.scene.worlds.push_back(open_world(world));
+        return;
+    }
     PlacedAsset placed = {is_asset(path) ? open_asset(path) : cook(path), identity_transform};
     const gtx_jobs jobs = gtx_host_jobs(0);
     gtx_model_desc desc = {};

@@ -17,7 +17,7 @@ public:
     Loader(const Loader &) = delete;
     ~Loader() { stop(); }
 
-    /* Opens assets and cooks models into one scene; ends the job before. */
+    /* Opens assets and worlds and cooks models into one scene; ends the job before. */
     void start(Vector<std::string> paths);
     /* Asks the job to end soon; join() then tells GTX_CANCELLED. */
     void cancel() { cancelled_ = true; }

@@ -185,9 +185,10 @@ bool is_asset(const std::string &path)
 
 void add_file(Scene &scene, const std::string &path, Task &task)
 {
-    if (is_world(path)) {
-        scene.worlds.push_back(open_world(path));
-        scene.sources.push_back(path + "/" GTX_INDEX_FILE);
+    const std::string world = world_at(path);
+    if (!world.empty()) {
+        scene.worlds.push_back(open_world(world));
+        scene.sources.push_back(world + "/" GTX_INDEX_FILE);
     } else if (is_asset(path))
         add_asset(scene, path, identity_transform);
     else if (ends_with(path, ".gltf") || ends_with(path, ".glb"))

@@ -49,7 +49,11 @@ static bool has_lods(const Scene &scene)
 
 std::string file_name(const std::string &path)
 {
-    return path.substr(path.rfind('/') + 1);
+    const std::string world = world_at(path); /* known by its folder */
+    const std::string &named = world.empty() || world == "." ? path : world;
+    const size_t end = named.find_last_not_of('/') + 1;
+    const size_t slash = named.rfind('/', end ? end - 1 : 0);
+    return named.substr(slash + 1, end - slash - 1);
 }
 
 Viewer::Viewer(Scene scene_, std::string name_, const uint32_t size[2], const double at[3],
@@ -234,14 +238,16 @@ void Viewer::take_loaded()
         if (!done)
             return;
     }
-    if (incoming.models.empty())
+    const size_t count = incoming.models.size() + incoming.scene.worlds.size();
+    if (!count)
         return;
-    size_t others = incoming.models.size() - 1;
+    const size_t others = count - 1;
     name = file_name(incoming.path) + (others ? " and " + std::to_string(others) + " more" : "");
     note.clear();
     Vector<gtx_model *> models;
     models.swap(incoming.models);
     show(std::move(incoming.scene), std::move(models));
+    incoming = Loader::Result();
     frame_all();
 }
 

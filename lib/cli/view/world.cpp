@@ -21,10 +21,15 @@ namespace gtx {
 /* Rays of walking feet: four cells of the height fields at once are fine enough. */
 constexpr uint32_t GROUND_LEVEL = 2;
 
-bool is_world(const std::string &path)
+std::string world_at(const std::string &path)
 {
+    const size_t slash = path.rfind('/') + 1; /* 0 where there is none */
+    const std::string name = path.substr(slash);
+    const bool is_file = name == "tileset.json" || name == GTX_INDEX_FILE;
+    const std::string folder = !is_file ? path : slash ? path.substr(0, slash) : ".";
     struct stat about;
-    return !stat((path + "/" GTX_INDEX_FILE).c_str(), &about) && S_ISREG(about.st_mode);
+    const bool there = !stat((folder + "/" GTX_INDEX_FILE).c_str(), &about);
+    return there && S_ISREG(about.st_mode) ? folder : std::string();
 }
 
 static bool read_whole(const std::string &path, std::string &out)
@@ -308,9 +313,10 @@ std::string WorldStream::status() const
 {
     char line[160];
     snprintf(line, sizeof line,
-             "%u of %u tiles  %u there  %u to come%s  %.1f MB  %.1f MB GPU", frame_.draw_count,
-             tiles_, frame_.resident, frame_.pending, frame_.without_room ? ", no room" : "",
-             double(frame_.cpu_bytes) / 1e6, double(frame_.gpu_bytes) / 1e6);
+             "%u of %u tiles  %u parts there  %u to come%s  %.1f MB  %.1f MB GPU",
+             frame_.draw_count, tiles_, frame_.resident, frame_.pending,
+             frame_.without_room ? ", no room" : "", double(frame_.cpu_bytes) / 1e6,
+             double(frame_.gpu_bytes) / 1e6);
     return line;
 }
 

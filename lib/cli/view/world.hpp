@@ -19,8 +19,9 @@ struct PlacedWorld {
     gtx_stream_info info = {};
 };
 
-/* Whether a path is a world's folder, or its index. */
-bool is_world(const std::string &path);
+/* The folder of the world that a path is: the folder itself, its tileset.json, or its index. Empty
+ * where it is none. */
+std::string world_at(const std::string &path);
 /* Throws Error: READ, and those of an index. */
 PlacedWorld open_world(const std::string &path);
 
