@@ -78,6 +78,7 @@ pkg = $(shell pkg-config $(1) $(2))
 cflags_mesh  = $(call pkg,--cflags,openmesh draco tinygltf)
 cflags_chart = $(call pkg,--cflags,openmesh eigen3)
 cflags_image = $(call pkg,--cflags,OpenImageIO)
+cflags_grid  = $(if $(gdal),$(call pkg,--cflags,gdal))
 cflags_host  = $(call pkg,--cflags,egl glfw3)
 # Loops over texels become vectors where a comparison of floats may be made in vain.
 cflags_asset  = -fno-trapping-math
@@ -158,11 +159,10 @@ lib_cook := $(out)/libgeotex-cook.a
 so_core  := $(out)/libgeotex.so.$(VERSION)
 so_cook  := $(out)/libgeotex-cook.so.$(VERSION)
 command  := $(out)/gtx
-module   := $(out)/geotex-image.so
 sample_names := $(basename $(notdir $(wildcard samples/*.c samples/*.cpp)))
 sample_bins  := $(addprefix $(out)/samples/,$(sample_names))
 
-include lib/vulkan/vulkan.mk
+include lib/vulkan/vulkan.mk lib/image/modules.mk
 all: $(build)/gtx $(libraries) $(sample_bins) ## libraries, command (build/gtx) and samples
 
 $(lib_core): $(call objects_of,$(ROOMS_CORE))
@@ -195,25 +195,16 @@ $(so_cook): $(call objects_of,$(ROOMS_COOK)) $(so_core) | $(out)/gen/libgeotex-c
 	  $(call objects_of,$(ROOMS_COOK) base asset derive trace stream) $(call libs_of,asset mesh)
 	$(Q)ln -sf $(@F) $(out)/libgeotex-cook.so.$(SOVERSION) && ln -sf $(@F) $(out)/libgeotex-cook.so
 
-# It is looked for beside the program that asks: links for those that lie elsewhere.
-$(module): lib/image/module.cpp lib/image/module.h Makefile | $(out)/sees/.made
-	@mkdir -p $(@D)
-	$(say) LINK $@
-	$(Q)$(CXX) $(cxxflags) $(call room_flags,$<) $(CXXFLAGS) -shared -o $@ $< \
-	  $(call pkg,--libs,OpenImageIO)
-	$(Q)for d in $(out)/samples $(sort $(dir $(test_bins))); do \
-	  mkdir -p $$d && ln -sf $(abspath $@) $$d; done
-
-$(command): $(call objects_of,cli host image) $(lib_cook) $(lib_core) | $(module)
+$(command): $(call objects_of,cli host image) $(lib_cook) $(lib_core) | $(modules)
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host image)
 
-$(build)/gtx: $(command) $(module)
+$(build)/gtx: $(command) $(modules)
 	$(Q)ln -sf $(config)/gtx $@
 
 # A sample is one file; it links what an engine would link, and lib/host for its window.
 $(out)/samples/%: $(out)/samples/%.o $(call objects_of,host image) $(lib_cook) $(lib_core) \
-    | $(module)
+    | $(modules)
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host image)
 
@@ -264,7 +255,7 @@ $(out)/gtx_decode: format/gtx_decode.c
 	$(Q)$(CC) -std=c99 $(flags) $(warnings) $(if $(filter 1,$(zstd)),,-DNO_ZSTD) -o $@ $< \
 	  $(libs_asset) -lm
 $(filter $(out)/tests/asset/%,$(test_bins)): | $(out)/gtx_decode
-$(filter $(out)/tests/mesh/% $(out)/tests/grid/% $(out)/tests/verbs/%,$(test_bins)): | $(module)
+$(filter $(out)/tests/mesh/% $(out)/tests/grid/% $(out)/tests/verbs/%,$(test_bins)): | $(modules)
 
 build-tests: $(test_bins) $(out)/gtx_decode $(build)/amalgamation/geotex.c all
 
@@ -316,9 +307,9 @@ include lib/package/install.mk lib/web/web.mk lib/python/python.mk tests/bench/b
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev \
             nlohmann-json3-dev libmeshoptimizer-dev libglfw3-dev libegl-dev libgl-dev libegl1 \
-            libegl-mesa0 libgl1-mesa-dri libopenimageio-dev libzstd-dev zlib1g-dev libcmocka-dev \
-            glslang-tools $(packages_vulkan) ninja-build cmake xvfb libembree-dev python3-cffi \
-            python3-numpy python3-venv
+            libegl-mesa0 libgl1-mesa-dri libopenimageio-dev libgdal-dev libzstd-dev zlib1g-dev \
+            libcmocka-dev glslang-tools $(packages_vulkan) ninja-build cmake xvfb \
+            libembree-dev python3-cffi python3-numpy python3-venv
 
 deps: ## install the Debian packages that are missing (apt-get, with sudo when not root)
 	@missing=; for p in $(packages); do \

@@ -218,7 +218,9 @@ typedef struct gtx_height_grid {
     double origin[2], spacing[2]; /* object units; spacing > 0 */
     double rotation;              /* degrees, counter-clockwise */
     gtx_allocator allocator;      /* gave `values`, where gtx_height_grid_read did */
-    uint32_t reserved[4];
+    uint32_t in_degrees;          /* 1: origin and spacing are longitudes and latitudes, and of no
+                                     use beside heights until the caller has changed both */
+    uint32_t reserved[3];
 } gtx_height_grid;
 
 typedef struct gtx_height_grid_desc {
@@ -231,11 +233,14 @@ typedef struct gtx_height_grid_desc {
     gtx_limits limits;            /* memory, texels: the grid's nodes, and pixels */
 } gtx_height_grid_desc;
 
-/* Reads a grid: IRAP classic and binary (".irap", ".gri") or ZMAP+ text, each also gzipped, which
- * hold their position; or any image of 8 or 16 bits or of floats, whose top row is the
- * northernmost, with origin 0 and spacing 1, for the caller to change. Each format's own marker of
- * missing values is known (9999900, 1e30; -32767 and below in signed 16 bits). The values come from
- * the descriptor's allocator, and are freed by gtx_height_grid_free. `desc` may be NULL.
+/* Reads a grid: IRAP classic and binary (".irap", ".gri") or ZMAP+ text; through geotex-grid.so,
+ * which holds GDAL, ESRI ASCII, Surfer (text, binary and 7), HGT, XYZ (".xyz") and GeoTIFF, cloud
+ * optimised ones too. All of them hold their position, and may be gzipped but for GeoTIFF. Or any
+ * image of 8 or 16 bits or of floats, whose top row is the northernmost, with origin 0 and spacing
+ * 1, for the caller to change. Each format's own marker of missing values is known (9999900, 1e30;
+ * -32767 and below in signed 16 bits), and what a file tells itself. Only the file is read: none
+ * beside it. Where GDAL runs out of memory the process may end. The values come from the
+ * descriptor's allocator, and are freed by gtx_height_grid_free. `desc` may be NULL.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, READ, INPUT, UNSUPPORTED. */
 GTX_API gtx_result gtx_height_grid_read(const char *path, const gtx_height_grid_desc *desc,
                                         gtx_height_grid *out, gtx_error *error);
@@ -289,8 +294,8 @@ typedef struct gtx_horizons_result {
  * nodes, unless they are parts of one surface. Where a property is NaN the surface is grey. The
  * same grids and options give the same bytes. `desc`, `result` and `error` may be NULL; gtx_close
  * frees the asset.
- * Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, INPUT, EMPTY (a grid without four
- * neighbouring values). Any thread. */
+ * Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, INPUT (of other sizes; in degrees), EMPTY
+ * (a grid without four neighbouring values). Any thread. */
 GTX_API gtx_result gtx_horizons(const gtx_height_grid *grids, uint32_t count,
                                 const gtx_horizons_desc *desc, gtx_asset **out,
                                 gtx_horizons_result *result, gtx_error *error);

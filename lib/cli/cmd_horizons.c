@@ -58,8 +58,9 @@ static const option options[] = {
 
 static const verb horizons = {
     "horizons", "GRID[@X,Y][=PROPERTY]... -o OUT.gtx",
-    "Makes one asset of height grids: IRAP classic or binary, ZMAP+ (also gzipped), images (PNG,\n"
-    "TIFF, EXR: 8 or 16 bits, or floats). @X,Y sets the position of a grid's first node;\n"
+    "Makes one asset of height grids: IRAP classic or binary, ZMAP+, ESRI ASCII, Surfer, HGT, XYZ\n"
+    "(also gzipped), GeoTIFF, other images (PNG, TIFF, EXR: 8 or 16 bits, or floats). GDAL reads\n"
+    "all from ESRI ASCII to GeoTIFF. @X,Y sets the position of a grid's first node;\n"
     "=PROPERTY is a grid of the same size to colour it by. East becomes +X, up +Y, north -Z.",
     1, MAX_GRIDS, options};
 
@@ -144,8 +145,12 @@ static int read_operand(const char *operand, gtx_height_grid *grid)
         return code;
     if (gtx_height_grid_read(p.name, &reading, grid, &error))
         return report_error(p.name, &error);
-    if (spacing)
+    if (spacing) {
         parse_pair(spacing, grid->spacing);
+        if (grid->in_degrees)
+            grid->origin[0] = grid->origin[1] = 0;
+        grid->in_degrees = 0;
+    }
     if (origin)
         parse_pair(origin, grid->origin);
     if (p.has_place)

@@ -43,6 +43,7 @@ static void read(const char *path, const gtx_height_grid_desc &desc, gtx_height_
     std::copy_n(grid.origin, 2, made.origin);
     std::copy_n(grid.step, 2, made.spacing);
     made.rotation = grid.rotation;
+    made.in_degrees = grid.in_degrees;
     made.allocator = gtx_allocator_or_default(desc.allocator);
     auto *values =
         static_cast<float *>(gtx_alloc_array(&made.allocator, grid.count(), sizeof(float)));
@@ -81,6 +82,10 @@ static uint64_t check(const gtx_height_grid *grids, uint32_t count, const gtx_ho
         const std::string name = "grid " + std::to_string(n);
         require_zeroed(g.reserved);
         require_argument(g.values, "a grid has no values");
+        require_argument(g.in_degrees <= 1, "in_degrees is 0 or 1");
+        if (g.in_degrees)
+            throw Error(GTX_ERROR_INPUT, name + IN_DEGREES +
+                                             ", or say how far its nodes are apart (--spacing)");
         if (g.nx < 2 || g.ny < 2)
             throw Error(GTX_ERROR_INPUT, name + " has " + std::to_string(g.nx) + " x " +
                                              std::to_string(g.ny) +

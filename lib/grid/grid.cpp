@@ -41,6 +41,33 @@ void settle(HeightGrid &grid)
 /* 16 bits with a sign are terrain, whose voids are -32768 (SRTM) or -32767 (DTED). */
 constexpr float SIGNED_VOID = -32767;
 
+HeightGrid grid_of_codes(const GridCodes &image, const GridReading &reading)
+{
+    HeightGrid grid;
+    grid.nx = image.nx;
+    grid.ny = image.ny;
+    grid.values.resize(grid.count());
+    double least = image.least, scale = 1, low = least;
+    if (reading.range) {
+        if (!(image.greatest > image.least))
+            malformed("a range is for images of whole numbers");
+        if (reading.missing && *reading.missing == least)
+            least += 1;
+        low = reading.range[0];
+        scale = (reading.range[1] - low) / (image.greatest - least);
+    }
+    for (uint32_t j = 0; j < grid.ny; ++j)
+        for (uint32_t i = 0; i < grid.nx; ++i) {
+            const float code = image.codes[size_t(grid.ny - 1 - j) * grid.nx + i];
+            const bool is_void = (reading.missing && code == float(*reading.missing)) ||
+                                 (image.least < 0 && code <= SIGNED_VOID);
+            const double value = reading.range ? low + (code - least) * scale
+                                               : code * image.scale + image.offset;
+            grid.values[size_t(j) * grid.nx + i] = is_void ? NAN : float(value);
+        }
+    return grid;
+}
+
 static HeightGrid read_image(const std::string &path, const GridReading &reading, Task &task)
 {
     gtx_value_image image;
@@ -56,28 +83,8 @@ static HeightGrid read_image(const std::string &path, const GridReading &reading
     TakenMemory taken(2 * sizeof(float) * width * height);
     require_ok(gtx_image_read_values(path.c_str(), &image, &error), error);
     std::unique_ptr<float, void (*)(void *)> guard(image.values, std::free);
-    HeightGrid grid;
-    grid.nx = image.width;
-    grid.ny = image.height;
-    grid.values.resize(grid.count());
-    double least = image.least, scale = 1, low = least;
-    if (reading.range) {
-        if (!(image.greatest > image.least))
-            malformed("a range is for images of whole numbers");
-        if (reading.missing && *reading.missing == least)
-            least += 1;
-        low = reading.range[0];
-        scale = (reading.range[1] - low) / (image.greatest - least);
-    }
-    for (uint32_t j = 0; j < grid.ny; ++j)
-        for (uint32_t i = 0; i < grid.nx; ++i) {
-            const float code = image.values[size_t(grid.ny - 1 - j) * grid.nx + i];
-            const bool is_void = (reading.missing && code == float(*reading.missing)) ||
-                                 (image.least < 0 && code <= SIGNED_VOID);
-            const double value = reading.range ? low + (code - least) * scale : code;
-            grid.values[size_t(j) * grid.nx + i] = is_void ? NAN : float(value);
-        }
-    return grid;
+    return grid_of_codes(
+        {image.width, image.height, image.least, image.greatest, 1, 0, image.values}, reading);
 }
 
 /* ---- any file ---- */
@@ -90,11 +97,11 @@ static const struct {
                {is_zmap, read_zmap}};
 
 /* What is none of them is left to those who know images. */
-static gtx_result look_for_grid(const uint8_t *head, size_t size, uint64_t, void *,
+static gtx_result look_for_grid(const uint8_t *head, size_t size, uint64_t, void *path,
                                 gtx_error *error)
 {
     const std::string_view text(reinterpret_cast<const char *>(head), size);
-    bool known = false;
+    bool known = gdal_driver(text, *static_cast<const std::string *>(path));
     for (const auto &format : formats)
         known = known || format.is(text);
     return known ? GTX_OK : gtx_fail(error, GTX_ERROR_UNSUPPORTED, "no grid");
@@ -126,7 +133,9 @@ HeightGrid read_grid(const std::string &path, const GridReading &reading, Task &
                 value = NAN;
         return grid;
     }
-    HeightGrid grid = read_image(path, reading, task);
+    const char *driver = gdal_driver(file.bytes, path);
+    HeightGrid grid = driver ? read_gdal(driver, file.bytes, path, reading, task)
+                             : read_image(path, reading, task);
     for (float &value : grid.values)
         if (!(std::fabs(value) < 1e30f))
             value = NAN;

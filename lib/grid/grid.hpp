@@ -17,6 +17,7 @@ namespace gtx {
 struct HeightGrid {
     uint32_t nx = 0, ny = 0;
     double origin[2] = {0, 0}, step[2] = {1, 1}, rotation = 0;
+    bool in_degrees = false;   /* origin and step, but not the values */
     Vector<float> values;      /* nx * ny, row by row from the origin; NaN where there is none */
 
     size_t count() const { return size_t(nx) * ny; }
@@ -33,6 +34,10 @@ struct HeightGrid {
 /* Nodes along a side. */
 constexpr uint32_t MAX_SIDE = 1 << 24;
 
+/* What is wrong with a grid in degrees; its name goes before. */
+constexpr const char *IN_DEGREES = " lies in degrees, and its heights do not: reproject it to "
+                                   "metres (gdalwarp -t_srs EPSG:...)";
+
 /* What a file may leave open. */
 struct GridReading {
     const double *missing = nullptr; /* says that there is no value, as the format's does */
@@ -40,9 +45,10 @@ struct GridReading {
                                         missing one left out */
 };
 
-/* Reads a grid by its content: IRAP classic and IRAP binary, ZMAP+, else an image (PNG, TIFF, EXR
- * ... of 8 or 16 bits or of floats), whose top row is the last of the grid; each also gzipped but
- * images. Throws Error: READ, INPUT, UNSUPPORTED, LIMIT, MEMORY. */
+/* Reads a grid by its content: IRAP classic and IRAP binary, ZMAP+; through GDAL, GeoTIFF, ESRI
+ * ASCII, Surfer, and by their names HGT and XYZ; else an image (PNG, TIFF, EXR ... of 8 or 16 bits
+ * or of floats), whose top row is the last of the grid; each also gzipped but TIFF and images.
+ * Throws Error: READ, INPUT, UNSUPPORTED, LIMIT, MEMORY. */
 HeightGrid read_grid(const std::string &path, const GridReading &reading, Task &task);
 
 /* The formats, from the bytes of a file. */
@@ -52,6 +58,20 @@ bool is_zmap(std::string_view bytes);
 HeightGrid read_irap_classic(std::string_view bytes, const Limits &limits = Limits());
 HeightGrid read_irap_binary(std::string_view bytes, const Limits &limits = Limits());
 HeightGrid read_zmap(std::string_view bytes, const Limits &limits = Limits());
+
+/* Which of GDAL's drivers reads a file that starts so, or null. */
+const char *gdal_driver(std::string_view head, const std::string &path);
+HeightGrid read_gdal(const char *driver, std::string_view bytes, const std::string &path,
+                     const GridReading &reading, Task &task);
+
+/* Codes of an image, rows from the top, as values; `least` and `greatest` are those of its kind of
+ * whole number. */
+struct GridCodes {
+    uint32_t nx, ny;
+    double least, greatest, scale, offset;
+    const float *codes;
+};
+HeightGrid grid_of_codes(const GridCodes &image, const GridReading &reading);
 
 /* One grid of several that are parts of one lattice, such as neighbouring tiles of terrain; of
  * nodes that several have, the first with a value counts. Throws Error: INPUT where the lattices

@@ -1,71 +1,24 @@
 /* Opens the image module on first use; what it encodes is written as every file is. */
-#define _GNU_SOURCE /* dladdr */
 #include "image/image.h"
 
 #include "base/error.h"
 #include "base/output.h"
 #include "image/ktx.h"
 #include "image/module.h"
+#include "image/open.h"
 #include "image/targa.h"
 
-#include <dlfcn.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/auxv.h>
-#include <unistd.h>
 
-enum { MAX_PATH = 4096, MAX_PIXELS = 1 << 28 };
+enum { MAX_PIXELS = 1 << 28 };
 static const char module_name[] = "geotex-image.so";
 
-/* Where the module may be, from the folder of the library or program that holds this code. */
-static const char *const places[] = {"", "geotex/", "../lib/geotex/"};
-
-/* The path of that library or program, with links followed. A program's own name is what its caller
- * made it, so the kernel is asked for that. */
-static int path_of_code(char path[MAX_PATH])
-{
-    Dl_info here, program;
-    if (!dladdr((const void *)places, &here))
-        return 0;
-    const int in_program = dladdr((const void *)getauxval(AT_ENTRY), &program) &&
-                           program.dli_fbase == here.dli_fbase;
-    char *resolved = realpath(in_program ? "/proc/self/exe" : here.dli_fname, NULL);
-    const int length = resolved ? snprintf(path, MAX_PATH, "%s", resolved) : -1;
-    free(resolved);
-    return length > 0 && length < MAX_PATH;
-}
-
-static void *open_module(gtx_error *error)
-{
-    char path[MAX_PATH + 64], reason[GTX_IMAGE_MAX_MESSAGE] = "not found";
-    if (!path_of_code(path)) {
-        gtx_fail(error, GTX_ERROR_UNSUPPORTED, "images need %s", module_name);
-        return NULL;
-    }
-    char *name = strrchr(path, '/') + 1;
-    const size_t left = sizeof path - (size_t)(name - path);
-    for (size_t i = 0; i < sizeof places / sizeof *places; ++i) {
-        snprintf(name, left, "%s%s", places[i], module_name);
-        void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-        if (module)
-            return module;
-        if (access(path, F_OK) == 0) /* there, but not to be opened: that is the reason to tell */
-            snprintf(reason, sizeof reason, "%s", dlerror());
-    }
-    gtx_fail(error, GTX_ERROR_UNSUPPORTED, "images need %s: %.160s", module_name, reason);
-    return NULL;
-}
-
-/* dlopen counts references and gives the same module again, so nothing needs to be kept here. The
- * module stays open: OpenImageIO's threads do not survive being unloaded. */
 static const gtx_image_functions *module_functions(gtx_error *error)
 {
-    void *module = open_module(error);
-    if (!module)
-        return NULL;
-    const gtx_image_functions *functions = dlsym(module, GTX_IMAGE_MODULE_SYMBOL);
-    if (!functions || functions->version != GTX_IMAGE_MODULE_VERSION) {
+    const gtx_image_functions *functions =
+        gtx_open_module(module_name, GTX_IMAGE_MODULE_SYMBOL, "images need geotex-image.so", error);
+    if (functions && functions->version != GTX_IMAGE_MODULE_VERSION) {
         gtx_fail(error, GTX_ERROR_UNSUPPORTED, "%s is of another version", module_name);
         return NULL;
     }

@@ -21,7 +21,7 @@ install: all $(out)/gen/gtx.1 ## libraries, headers, command, shaders, manual: b
 	@install -m 755 $(so_core) $(so_cook) $(so_vulkan) $(to)/lib
 	@for so in libgeotex.so libgeotex-cook.so $(if $(vulkan),libgeotex-vulkan.so); do \
 	  ln -sf $$so.$(VERSION) $(to)/lib/$$so.$(SOVERSION); ln -sf $$so.$(SOVERSION) $(to)/lib/$$so; done
-	@install -m 755 $(module) $(to)/lib/geotex
+	@install -m 755 $(modules) $(to)/lib/geotex
 	@for pc in geotex geotex-cook $(if $(vulkan),geotex-vulkan); do \
 	  $(fill) lib/package/$$pc.pc.in > $(to)/lib/pkgconfig/$$pc.pc; done
 	@for cmake in geotexConfig geotexConfigVersion; do \
@@ -34,7 +34,7 @@ install: all $(out)/gen/gtx.1 ## libraries, headers, command, shaders, manual: b
 # Debugging data is nine tenths of the shared libraries and more of the command.
 install-strip: install ## the same, without debugging data
 	@strip --strip-unneeded $(to)/bin/gtx $(to)/lib/libgeotex.so.$(VERSION) \
-	  $(patsubst $(out)/%,$(to)/lib/%,$(so_cook) $(so_vulkan) $(module:$(out)/%=$(out)/geotex/%))
+	  $(patsubst $(out)/%,$(to)/lib/%,$(so_cook) $(so_vulkan) $(modules:$(out)/%=$(out)/geotex/%))
 	@strip --strip-debug $(patsubst $(out)/%,$(to)/lib/%,$(lib_core) $(lib_cook) $(lib_vulkan))
 
 uninstall: ## remove what install put there

@@ -11,11 +11,11 @@ $(python)/headers.i: include/geotex/export.h include/geotex/cook.h include/geote
 	$(Q)$(CC) -E -P -nostdinc -U__GNUC__ -I$(@D)/none -Iinclude $< -o $@
 
 # Without debug data, a tenth.
-$(python)/.libraries: $(so_core) $(so_cook) $(module)
+$(python)/.libraries: $(so_core) $(so_cook) $(modules)
 	@rm -rf $(python)/lib && mkdir -p $(python)/lib
 	$(Q)strip --strip-unneeded -o $(python)/lib/libgeotex.so $(so_core)
 	$(Q)strip --strip-unneeded -o $(python)/lib/libgeotex-cook.so $(so_cook)
-	$(Q)for m in $(module); do strip --strip-unneeded -o $(python)/lib/$$(basename $$m) $$m; done
+	$(Q)for m in $(modules); do strip --strip-unneeded -o $(python)/lib/$$(basename $$m) $$m; done
 	@touch $@
 
 python_needs := lib/python/wheel.py lib/python/README.md $(wildcard lib/python/geotex/*) \

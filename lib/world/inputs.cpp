@@ -27,7 +27,8 @@ static bool is_model(const std::string &path)
 /* Other images of a folder are some model's. */
 static bool is_grid(const std::string &path)
 {
-    return is_one_of(model_extension(path), {".irap", ".gri", ".zmap", ".tif", ".tiff"});
+    return is_one_of(model_extension(path), {".irap", ".gri", ".zmap", ".tif", ".tiff", ".asc",
+                                             ".grd", ".hgt"});
 }
 
 /* Whether `path` is `folder` or lies below it. */
@@ -91,6 +92,8 @@ public:
     void read(const TriangleSink &sink) override
     {
         const HeightGrid grid = read_grid(path_, {}, task_);
+        if (grid.in_degrees)
+            throw Error(GTX_ERROR_INPUT, "the grid" + std::string(IN_DEGREES));
         for (uint32_t j = 0; j + 1 < grid.ny; ++j) {
             task_.advance(double(j) / grid.ny);
             for (uint32_t i = 0; i + 1 < grid.nx; ++i)

@@ -58,7 +58,7 @@ static void core_needs_libc_only(void **state)
 
 static void needed_by_cook(char *line)
 {
-    static const char *const refused[] = {"libOpenImageIO", "libglfw", "libEGL", "libGL",
+    static const char *const refused[] = {"libOpenImageIO", "libgdal", "libglfw", "libEGL", "libGL",
                                           "libtinygltf", NULL};
     ++lines;
     if (starts_with_any(line, refused))

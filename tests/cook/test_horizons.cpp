@@ -75,6 +75,12 @@ static void bad_grids_have_a_clear_error(void **)
     bad = good.grid;
     bad.reserved[1] = 1;
     assert_int_equal(make(&bad, 1, nullptr), GTX_ERROR_NOT_ZEROED);
+    for (uint32_t degrees : {1u, 2u}) {
+        bad = good.grid;
+        bad.in_degrees = degrees;
+        assert_int_equal(make(&bad, 1, nullptr),
+                         degrees == 1 ? GTX_ERROR_INPUT : GTX_ERROR_ARGUMENT);
+    }
     bad = good.grid;
     bad.nx = bad.ny = 1u << 20;
     assert_int_equal(make(&bad, 1, nullptr), GTX_ERROR_LIMIT);

@@ -64,6 +64,7 @@ class Grid(NamedTuple):
     spacing: Tuple[float, float] = (1.0, 1.0)
     rotation: float = 0.0             # degrees, counter-clockwise
     property: Optional[np.ndarray] = None   # likewise, the values to colour by
+    in_degrees: bool = False          # origin and spacing, but not the values: horizons refuses
 
 
 def _read(report: Any) -> Report:
@@ -234,7 +235,8 @@ def read_grid(path: Path, *, missing: Optional[float] = None,
     native.check(library.gtx_height_grid_read(native.path_of(path), desc, grid, error), error)
     owner = ffi.gc(grid, library.gtx_height_grid_free)
     values = native.array_of(grid.values, "<f4", (grid.ny, grid.nx), owner)
-    return Grid(values, tuple(grid.origin), tuple(grid.spacing), grid.rotation)
+    return Grid(values, tuple(grid.origin), tuple(grid.spacing), grid.rotation,
+                in_degrees=bool(grid.in_degrees))
 
 
 def horizons(grids: Sequence[Grid], *, colors: str = "viridis",
@@ -261,7 +263,7 @@ def horizons(grids: Sequence[Grid], *, colors: str = "viridis",
         struct.ny, struct.nx = values.shape
         struct.values = ffi.cast("const float *", values.ctypes.data)
         native.fill(struct, dict(origin=grid.origin, spacing=grid.spacing,
-                                 rotation=grid.rotation))
+                                 rotation=grid.rotation, in_degrees=grid.in_degrees))
         if grid.property is not None:
             colored = np.ascontiguousarray(grid.property, np.float32)
             if colored.shape != values.shape:
