@@ -191,6 +191,35 @@ static void ways_meet_without_a_hole(void **state)
     subject_close(s, &shown);
 }
 
+/* Patches in standing views that are drawn by an LOD mesh of more than 400 triangles a patch: the
+ * two finest levels. */
+static uint32_t by_many_triangles(stage *s, uint16_t flags, bool tiles)
+{
+    gtx_asset *sphere = fixture_sphere(radius, TEXELS, 8);
+    subject shown = subject_open(s, with_lod_as(sphere, radius, LOD_LEVELS, flags, LOD_COLORED));
+    uint32_t count = 0;
+    for (int way = 0; way < 8; ++way) {
+        gtx_view view = standing(way);
+        view.viewport_width = tiles ? STAGE_WIDTH : 0;
+        for (view.max_error = 0.3f; view.max_error < 20; view.max_error *= 1.6f) {
+            draw(s, &view, GTX_METHOD_AUTO, &shown.instance, 1, &first);
+            const uint8_t *ways = s->renderer->planner.plan.ways;
+            for (int p = 0; p < 6; ++p)
+                count += ways[p] == GTX_BY_LOD || ways[p] == GTX_BY_LOD + 1;
+        }
+    }
+    subject_close(s, &shown);
+    return count;
+}
+
+static void two_sided_patches_take_few_triangles(void **state)
+{
+    STAGE_OR_SKIP(state);
+    assert_true(by_many_triangles(s, 0, true) > 0);
+    assert_true(by_many_triangles(s, GTX_PATCH_TWO_SIDED, false) > 0);
+    assert_int_equal(by_many_triangles(s, GTX_PATCH_TWO_SIDED, true), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -200,6 +229,7 @@ int main(void)
         cmocka_unit_test(coarser_keeps_the_error),
         cmocka_unit_test(only_what_may_be_seen),
         cmocka_unit_test(ways_meet_without_a_hole),
+        cmocka_unit_test(two_sided_patches_take_few_triangles),
     };
     return cmocka_run_group_tests(tests, open_stage, stage_close);
 }
