@@ -70,15 +70,17 @@ static gtx_result step(world *w, const gtx_host_gl *gl, int walks, gtx_stream_fr
     gtx_view view = {.light_direction = {0.8f, 0.4f, 0.3f},
                      .viewport_width = samples * (uint32_t)w->show.width,
                      .viewport_height = samples * (uint32_t)w->show.height};
-    gtx_stream_view eye = {.viewport_height = (uint32_t)w->show.height};
+    gtx_stream_view eyes[2] = {{.viewport_height = (uint32_t)w->show.height}}; /* ahead, down */
     gtx_scene *ground = NULL;
     uint32_t grounds = 0;
     gtx_camera_matrices(&w->show.camera, (float)w->show.width / (float)w->show.height, view.view,
                         view.projection);
-    memcpy(eye.view, view.view, sizeof eye.view);
-    memcpy(eye.projection, view.projection, sizeof eye.projection);
-    memcpy(eye.origin, w->source.middle, sizeof eye.origin);
-    gtx_result result = gtx_stream_update(w->stream, &eye, 1, frame, error);
+    memcpy(eyes[0].view, view.view, sizeof view.view);
+    memcpy(eyes[0].projection, view.projection, sizeof view.projection);
+    look_down(&w->show.camera, &eyes[1]);
+    for (int i = 0; i < 2; ++i)
+        memcpy(eyes[i].origin, w->source.middle, sizeof eyes[i].origin);
+    gtx_result result = gtx_stream_update(w->stream, eyes, 2, frame, error);
     for (uint32_t i = 0; i < frame->upload_count && !result; ++i)
         result = upload_tile(w->stream, &frame->uploads[i], error);
     for (uint32_t i = 0; i < frame->draw_count && !result; ++i)
@@ -87,8 +89,7 @@ static gtx_result step(world *w, const gtx_host_gl *gl, int walks, gtx_stream_fr
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     if (!result)
         result = gtx_draw(w->source.renderer, &view, w->instances, frame->draw_count, error);
-    if (walks && grounds && !result &&
-        !gtx_scene_create(w->ground, grounds, NULL, &ground, NULL))
+    if (walks && !result && (!grounds || !gtx_scene_create(w->ground, grounds, NULL, &ground, NULL)))
         walk_on(&w->show.camera, ground);
     gtx_scene_destroy(ground);
     return result;

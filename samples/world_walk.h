@@ -29,6 +29,17 @@ static inline void walk_begin(gtx_camera *camera, const gtx_stream_info *info)
     camera->pan[2] = WALK_RADIUS * camera->radius;
 }
 
+/* What lies under the eye, so closely that the beginning of a tile, which has no heights to stand
+ * on, is not enough. */
+static inline void look_down(const gtx_camera *camera, gtx_stream_view *feet)
+{
+    gtx_camera down = *camera;
+    down.elevation = 90;
+    down.field = 1;
+    feet->viewport_height = 1 << 14;
+    gtx_camera_matrices(&down, 1, feet->view, feet->projection);
+}
+
 /* One step along the circle, where the ground is known above it. */
 static inline void walk_on(gtx_camera *camera, const gtx_scene *ground)
 {
