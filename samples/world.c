@@ -89,7 +89,8 @@ static gtx_result step(world *w, const gtx_host_gl *gl, int walks, gtx_stream_fr
     gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     if (!result)
         result = gtx_draw(w->source.renderer, &view, w->instances, frame->draw_count, error);
-    if (walks && !result && (!grounds || !gtx_scene_create(w->ground, grounds, NULL, &ground, NULL)))
+    if (walks && !result &&
+        (!grounds || !gtx_scene_create(w->ground, grounds, NULL, &ground, NULL)))
         walk_on(&w->show.camera, ground);
     gtx_scene_destroy(ground);
     return result;

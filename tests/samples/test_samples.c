@@ -183,7 +183,8 @@ static void a_world_is_walked_through(void **state)
             "sh $T/hills/build.sh 2>$T/hills.log"), 0);
     draws_picture_of("world", "$T/hills >$T/walk.log");
     assert_no_hole("world");
-    assert_int_equal(run("grep -q '^600 frames' $T/walk.log && grep -q '27 beginnings' $T/walk.log"), 0);
+    assert_int_equal(run("grep -q '^600 frames' $T/walk.log && "
+                         "grep -q '27 beginnings' $T/walk.log"), 0);
     assert_int_equal(run("$S/world $T/nowhere --headless $T/x.png 2>/dev/null"), 1);
 }
 
