@@ -73,9 +73,9 @@ static int compare(const void *a, const void *b)
 
 /* Of patches that are seen from two sides, LOD meshes of more triangles than that are not drawn
  * where rays are cast by tiles: both sides take their time, hidden or not, and along a surface each
- * has few pixels. Standing on the Andes (tests/bench/paths), of up to 2,000 a patch, views take 0.17
- * of the mesh's time instead of 0.21; half and double are the same but for noise. At 64 random
- * views of a dragon, of 150 a patch, take up to a fifth longer. */
+ * has few pixels. Standing on the Andes (tests/bench/paths), of up to 2,000 a patch, views take
+ * 0.17 of the mesh's time instead of 0.21; half and double are the same but for noise. At 64
+ * random views of a dragon, of 150 a patch, take up to a fifth longer. */
 static const uint32_t most_lod_triangles = 400;
 
 /* What a draw may do with patches. */
