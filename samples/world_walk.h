@@ -40,21 +40,27 @@ static inline void look_down(const gtx_camera *camera, gtx_stream_view *feet)
     gtx_camera_matrices(&down, 1, feet->view, feet->projection);
 }
 
-/* One step along the circle, where the ground is known above it. */
+/* One step along the circle, where ground is known above all that is under the eye or soon will be:
+ * at a cliff the eye is above it before the picture's near plane cuts it open. */
 static inline void walk_on(gtx_camera *camera, const gtx_scene *ground)
 {
-    const float turn = 6.2831853f / FRAMES_AROUND;
+    const float turn = 6.2831853f / FRAMES_AROUND, soon = 24;   /* steps: the eye's height */
     const float step[3] = {0, 0, turn * WALK_RADIUS * camera->radius};
-    gtx_ray down = {.direction = {0, -1, 0}};
-    gtx_hit hit = {.t = INFINITY};
+    float highest = -INFINITY;
     gtx_walk_move(camera, step, 1);
     camera->azimuth -= 360.0f / FRAMES_AROUND;
-    gtx_walk_eye(camera, down.origin);
-    down.origin[1] = camera->radius; /* from above all */
-    if (ground)
+    for (int i = 0; i < 2 && ground; ++i) {
+        gtx_camera there = *camera;
+        gtx_ray down = {.direction = {0, -1, 0}};
+        gtx_hit hit = {.t = INFINITY};
+        gtx_walk_move(&there, (float[]){0, 0, (float)i * soon * step[2]}, 1);
+        gtx_walk_eye(&there, down.origin);
+        down.origin[1] = camera->radius; /* from above all */
         gtx_scene_raycast(ground, &down, &hit, NULL, 1, 0);
-    if (isfinite(hit.t))
-        gtx_walk_stand(camera, down.origin[1] - hit.t, WALK_HEIGHT * camera->radius, 1.0f / 30);
+        highest = fmaxf(highest, down.origin[1] - hit.t);
+    }
+    if (isfinite(highest))
+        gtx_walk_stand(camera, highest, WALK_HEIGHT * camera->radius, 1.0f / 30);
 }
 
 /* What a whole way around took. */
