@@ -3,6 +3,7 @@
 
 #include "base/bytes.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace gtx {
@@ -114,18 +115,51 @@ static void add_ring(const std::string &path, size_t own_vertices, Welder &welde
     }
 }
 
-/* Where the files have no normals: the means of the triangles around each place. */
-static void find_normals(TileSurface &s)
+/* Of the triangles beyond the ring, those that share a position with it: their areas. */
+static void add_beyond(const std::string &path, size_t own_vertices, const CellHeader &bounds,
+                       const Welder &welder, Vector<Vec3d> &areas)
 {
-    Vector<Vec3d> sum(s.positions.size());
-    for (const auto &t : s.triangles) {
-        const Vec3d area = cross(s.positions[t[1]] - s.positions[t[0]],
-                                 s.positions[t[2]] - s.positions[t[0]]);
-        for (uint32_t v : t)
-            sum[s.place[v]] += area;
+    CellReader cell(path);
+    if (!cell.header().touches(bounds))
+        return;
+    Corners3 c;
+    while (cell.next(c)) {
+        CellHeader box;
+        box.add(c);
+        if (!box.touches(bounds))
+            continue;
+        uint32_t at[3];
+        for (size_t k = 0; k < 3; ++k)
+            at[k] = welder.find(c[k].position + Vec3d());
+        if (std::any_of(at, at + 3, [&](uint32_t v) { return v < own_vertices; }))
+            continue;                /* it is in the ring */
+        const Vec3d area = cross(c[1].position - c[0].position, c[2].position - c[0].position);
+        for (uint32_t v : at)
+            if (v != NONE)
+                areas[v] += area;
     }
-    for (size_t v = 0; v < sum.size(); ++v)
-        s.normals[v] = Vec3f(normalize(sum[s.place[v]]));
+}
+
+/* Where the files have no normals: the means of the triangles around each place, those of a tile
+ * and of its neighbours alike. */
+static void find_normals(const Plan &plan, const Tile &tile, size_t own_vertices,
+                         const Welder &welder, TileSurface &s)
+{
+    Vector<Vec3d> areas(s.positions.size());
+    CellHeader bounds;
+    for (const auto &t : s.triangles) {
+        const Corners3 c = {s.corner(t[0]), s.corner(t[1]), s.corner(t[2])};
+        bounds.add(c);
+        const Vec3d area = cross(c[1].position - c[0].position, c[2].position - c[0].position);
+        for (uint32_t v : t)
+            areas[s.place[v]] += area;
+    }
+    for (const Tile &other : plan.tiles)
+        if (&other != &tile && other.is_leaf())
+            add_beyond(cell_path(plan, other), own_vertices, bounds, welder, areas);
+    for (size_t v = 0; v < areas.size(); ++v)
+        s.normals[v] = Vec3f(normalize(areas[s.place[v]]));
+    s.traits.normals = true;
 }
 
 TileSurface load_cell(const std::string &path)
@@ -155,7 +189,7 @@ TileSurface load_surface(const Plan &plan, const Tile &tile, Task &task)
             add_ring(low_path(plan, other), own, welder, out);
     }
     if (!out.traits.normals)
-        find_normals(out);
+        find_normals(plan, tile, own, welder, out);
     return out;
 }
 

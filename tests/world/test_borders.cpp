@@ -247,11 +247,46 @@ static void a_closed_ball_has_no_hole(void **)
     assert_int_equal(check_all(scene), 0);
 }
 
+/* A leaf of a model without normals has those of the whole, also where it ends: at the vertices of
+ * the ring, which lie within another tile. */
+static void normals_are_those_of_the_whole(void **)
+{
+    Mesh mesh = ball(60);
+    mesh.normals.clear();
+    write_file(in_folder("plain.ply"), ply_text(mesh));
+    PlanOptions options;
+    options.models = {in_folder("plain.ply")};
+    options.folder = in_folder("plain");
+    options.triangles = 1000;
+    const Plan plan = make_world(options);
+    std::map<std::array<double, 3>, Vec3d> areas;
+    auto key = [](const Vec3d &p) { return std::array<double, 3>{p.x, p.y, p.z}; };
+    Task task(1, nullptr, nullptr);
+    for (const Tile &tile : plan.tiles)
+        if (tile.is_leaf()) {
+            const TileSurface s = load_cell(cell_path(plan, tile));
+            for (const auto &[a, b, c] : s.triangles)
+                for (uint32_t v : {a, b, c})
+                    areas[key(s.positions[v])] += cross(s.positions[b] - s.positions[a],
+                                                        s.positions[c] - s.positions[a]);
+        }
+    size_t leaves = 0;
+    for (const Tile &tile : plan.tiles) {
+        const TileSurface s = load_surface(plan, tile, task);
+        leaves += tile.is_leaf();
+        assert_true(s.traits.normals);
+        for (size_t v = 0; tile.is_leaf() && v < s.positions.size(); ++v)
+            assert_true(dot(Vec3d(s.normals[v]), normalize(areas[key(s.positions[v])])) > 1 - 1e-6);
+    }
+    assert_true(leaves > 4);
+}
+
 int main()
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(terrain_has_no_hole),
         cmocka_unit_test(a_closed_ball_has_no_hole),
+        cmocka_unit_test(normals_are_those_of_the_whole),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
