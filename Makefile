@@ -42,7 +42,7 @@ needs_measure := $(needs_trace) image mesh measure
 needs_cook    := $(needs_trace) image mesh grid chart bake measure cook
 needs_export  := $(needs_cook) export
 needs_world   := $(needs_cook) stream world
-needs_cli     := $(needs_world) export edit frame render host cli
+needs_cli      = $(needs_world) export edit frame render host cli $(vulkan)
 
 rooms := $(ROOMS_CORE) $(ROOMS_COOK) vulkan host cli
 tests := $(filter-out bench common golden run,$(notdir $(wildcard tests/*)))
@@ -86,7 +86,7 @@ cflags_derive = -fno-trapping-math
 # The layouts of records are of shaders and of C.
 cflags_frame  = -Ishaders
 cflags_render = -Ishaders
-cflags_cli   = -D_POSIX_C_SOURCE=200809L -I$(out)/gen
+cflags_cli   = -D_POSIX_C_SOURCE=200809L -I$(out)/gen $(if $(vulkan),-DGTX_VULKAN)
 libs_asset   = $(if $(filter 1,$(zstd)),$(call pkg,--libs,libzstd))
 libs_mesh    = $(call pkg,--libs,openmesh draco zlib) -lmeshoptimizer -ldl -pthread -lstdc++
 libs_image   = -ldl $(libs_asset)
@@ -98,7 +98,8 @@ out := $(build)/$(config)
 Q   := $(if $(V),,@)
 say  = @printf '  %-5s %s\n'
 
-sources    = $(filter-out %/module.cpp %/write_texts.c,$(wildcard lib/$(1)/*.c* lib/$(1)/*/*.c*))
+sources    = $(filter-out %/module.cpp %/write_texts.c $(if $(vulkan),,lib/host/vulkan%), \
+               $(wildcard lib/$(1)/*.c* lib/$(1)/*/*.c*))
 objects    = $(patsubst %,$(out)/%.o,$(basename $(call sources,$(1)))) \
              $(if $(filter frame,$(1)),$(out)/gen/shader_sources.o) \
              $(if $(filter vulkan,$(1)),$(out)/gen/spirv.o)
@@ -195,7 +196,7 @@ $(so_cook): $(call objects_of,$(ROOMS_COOK)) $(so_core) | $(out)/gen/libgeotex-c
 	  $(call objects_of,$(ROOMS_COOK) base asset derive trace stream) $(call libs_of,asset mesh)
 	$(Q)ln -sf $(@F) $(out)/libgeotex-cook.so.$(SOVERSION) && ln -sf $(@F) $(out)/libgeotex-cook.so
 
-$(command): $(call objects_of,cli host image) $(lib_cook) $(lib_core) | $(modules)
+$(command): $(call objects_of,cli host image $(vulkan)) $(lib_cook) $(lib_core) | $(modules)
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host image)
 

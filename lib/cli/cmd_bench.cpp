@@ -19,7 +19,7 @@ constexpr const char *CELL_METHODS = "paper,cast,cast_fragment";
 const char *path_file;
 uint32_t frames, random_count, seed = 1, repeats = 3;
 double max_error = 0.5, min_iou, budget = 600;
-bool truth, as_json, count_cells;
+bool truth, as_json, count_cells, vulkan;
 
 const option options[] = {
     {"sizes", 0, OPTION_STRING, &sizes, "WxH,...",
@@ -53,6 +53,9 @@ const option options[] = {
      1e9},
     {"cells", 0, OPTION_FLAG, &count_cells, nullptr,
      "no times: how many cells rays look at, by paper, cast and cast_fragment", 0, 0},
+    {"vulkan", 0, OPTION_FLAG, &vulkan, nullptr,
+     "draw the asset by Vulkan, too, in the same run: paper, cast, lod, auto, cast_fragment, grid",
+     0, 0},
     {"json", 0, OPTION_FLAG, &as_json, nullptr, "the whole report as JSON", 0, 0},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
@@ -111,13 +114,14 @@ bool clash(const char *one, const char *other)
 bool choices_agree()
 {
     const char *along = path_file ? "path" : "random";
-    if (count_cells && (as_json || instances))
-        return clash(as_json ? "json" : "instances", "cells");
+    if (count_cells && (as_json || instances || vulkan))
+        return clash(as_json ? "json" : instances ? "instances" : "vulkan", "cells");
     if (path_file && random_count)
         return clash("random", "path");
     if (!path_file && !random_count)
         return true;
     return instances     ? clash("instances", along)
+           : vulkan      ? clash("vulkan", along)
            : min_iou > 0 ? clash("min-iou", along)
                          : true;
 }
@@ -143,8 +147,9 @@ bool parse_lists(gtx::BenchOptions &out)
     const char *usual = count_cells ? CELL_METHODS : along ? PATH_METHODS : ORBIT_METHODS;
     for (const std::string &word : split(methods ? methods : usual)) {
         const char *const *names = gtx::bench_method_names;
-        const char *const *name = std::find(names, names + gtx::BENCH_METHODS, word);
-        if (name == names + gtx::BENCH_METHODS)
+        const char *const *end = names + uint32_t(gtx::BenchMethod::PAPER_VULKAN);
+        const char *const *name = std::find(names, end, word);
+        if (name == end)
             return usage("methods", word);
         const bool orbits = word == "mesh_stream", follows = word == "floor";
         if (along ? orbits : follows)
@@ -152,6 +157,9 @@ bool parse_lists(gtx::BenchOptions &out)
         out.methods.push_back(gtx::BenchMethod(name - names));
         if (count_cells && !gtx::casts_alone(out.methods.back()))
             return usage("methods of cells", word);
+        const gtx::BenchMethod other = gtx::with_vulkan(out.methods.back());
+        if (vulkan && other != gtx::BenchMethod::MESH)
+            out.methods.push_back(other);
     }
     return true;
 }
@@ -197,10 +205,11 @@ void print_head(const char *scene, const gtx::BenchSetup &setup)
     gtx_make_printable(line.data());
     std::printf("%s: %u triangles, %.2f bytes each on the GPU (colour apart)\n"
                 "open %.1f ms, prepare %.1f ms, upload %.1f ms, together %.1f ms\n"
-                "%s, milliseconds; error: pixels, of a level\n", line.c_str(),
+                "%s%s%s, milliseconds; error: pixels, of a level\n", line.c_str(),
                 setup.triangles, double(setup.geometry_bytes) / std::max(1u, setup.triangles),
                 setup.open, setup.prepare, setup.upload,
-                setup.open + setup.prepare + setup.upload, setup.renderer.c_str());
+                setup.open + setup.prepare + setup.upload, setup.renderer.c_str(),
+                setup.device.empty() ? "" : "; Vulkan: ", setup.device.c_str());
 }
 
 void run_orbit(const char *scene, const char *asset, const gtx::Mesh &mesh,

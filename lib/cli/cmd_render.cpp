@@ -9,7 +9,7 @@ static const char *output, *depth_path;
 static gtx::StillOptions still_options;
 static uint32_t size[2] = {1024, 768};
 static uint32_t method;
-static bool gles;
+static bool gles, vulkan;
 static const gtx_method methods[] = {GTX_METHOD_AUTO, GTX_METHOD_CAST, GTX_METHOD_LOD,
                                      GTX_METHOD_GRID, GTX_METHOD_PAPER};
 
@@ -27,6 +27,7 @@ static const option options[] = {
     {"max-error", 0, OPTION_NUMBER, &still_options.max_error, "PIXELS",
      "largest error of a level of detail on screen [0.5]", 1e-6, 1e6},
     {"gles", 0, OPTION_FLAG, &gles, nullptr, "draw with OpenGL ES 3", 0, 0},
+    {"vulkan", 0, OPTION_FLAG, &vulkan, nullptr, "draw with Vulkan: assets alone", 0, 0},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
 static const verb render = {
@@ -59,6 +60,10 @@ int cmd_render(int argc, char **argv)
         print_message("gtx render: error[usage]: -o OUT.png is missing");
         return EXIT_CODE_USAGE;
     }
+    if (gles && vulkan) {
+        print_message("gtx render: error[usage]: --gles is not for --vulkan");
+        return EXIT_CODE_USAGE;
+    }
     const output_file outputs[] = {{"-o", output}, {"--depth", depth_path}, {nullptr, nullptr}};
     code = check_outputs("gtx render", outputs, files, size_t(count));
     if (code)
@@ -67,6 +72,7 @@ int cmd_render(int argc, char **argv)
     still_options.height = size[1];
     still_options.method = methods[method];
     still_options.gles = gles;
+    still_options.vulkan = vulkan;
 
     return gtx::guarded(files[0], [&](std::string &current) {
         gtx::Task task(0, nullptr, nullptr, {}, {}, cli_limits);

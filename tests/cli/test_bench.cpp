@@ -67,6 +67,30 @@ static void every_method_is_measured(void **)
     }
 }
 
+/* As good as by OpenGL, whose picture is the same but for some pixels. */
+static void vulkan_stands_beside_opengl(void **)
+{
+    expect(gtx("render sphere.gtx -o vulkan.png --vulkan --size 9x9") % 5, 0);
+    if (!exists("vulkan.png"))
+        skip(); /* no Vulkan here */
+    const json report =
+        bench("--vulkan --sizes 96x96 --methods mesh,paper,cast,cast_fragment,lod,auto,grid");
+    assert_int_equal(report["rows"].size(), 1 + 2 * 6);
+    for (const json &row : report["rows"])
+        for (const json &other : report["rows"])
+            if (other["method"] == row["method"].get<std::string>() + "_vulkan") {
+                const double apart = other["silhouette_iou"].get<double>() -
+                                     row["silhouette_iou"].get<double>();
+                assert_true(std::fabs(apart) < 0.005);
+                assert_true(std::fabs(other["psnr_db"].get<double>() -
+                                      row["psnr_db"].get<double>()) < 1);
+                assert_true(other["pixels"].get<int>() > 1000);
+            }
+    expect(gtx("bench sphere.gtx sphere.obj --vulkan --cells"), 1);
+    expect(gtx("bench sphere.gtx sphere.obj --vulkan --random 2"), 1);
+    expect(gtx("bench sphere.gtx sphere.obj --methods cast_vulkan"), 1);
+}
+
 static void the_error_follows_the_outline(void **)
 {
     double last = 5;
@@ -141,6 +165,7 @@ int main()
 {
     const CMUnitTest tests[] = {
         cmocka_unit_test(usage_is_exit_1), cmocka_unit_test(every_method_is_measured),
+        cmocka_unit_test(vulkan_stands_beside_opengl),
         cmocka_unit_test(the_error_follows_the_outline),
         cmocka_unit_test(the_mesh_has_the_materials),
         cmocka_unit_test(pictures_are_held_against_many_samples),

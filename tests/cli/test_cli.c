@@ -249,6 +249,14 @@ static void rendering_writes_a_png(void **state)
     free(exr);
     code = gtx("render sphere.gtx -o es.png --size 64x64 --gles");
     assert_true((code == 0 && exists("es.png")) || code == 5);
+    code = gtx("render sphere.gtx -o vulkan.png --size 64x64 --vulkan");
+    assert_true((code == 0 && exists("vulkan.png")) || code == 5);
+    if (code == 0) {
+        expect(gtx("render sphere.obj -o mesh.png --vulkan"), 5);
+        expect_text("by Vulkan only assets are drawn");
+        assert_false(exists("mesh.png"));
+    }
+    expect(gtx("render sphere.gtx -o x.png --vulkan --gles"), 1);
     expect(gtx("render none.gtx -o x.png"), 2);
     expect(gtx("render sphere.gtx -o x.png --max-cells 50"), 6);
     expect_text("a ray through the asset takes");

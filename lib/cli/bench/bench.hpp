@@ -19,9 +19,15 @@ enum class BenchMethod : uint32_t {
     CAST_DEPTH, AUTO_DEPTH, /* the depth pass alone */
     CAST_FRAGMENT, /* cast in fragments where CAST is by tiles */
     GRID, GRID_DEPTH,
-    FLOOR          /* of run_path alone: the pixels that AUTO covers, shaded once */
+    FLOOR,         /* of run_path alone: the pixels that AUTO covers, shaded once */
+    /* The same by Vulkan; of run_bench alone. */
+    PAPER_VULKAN, CAST_VULKAN, LOD_VULKAN, AUTO_VULKAN, CAST_FRAGMENT_VULKAN, GRID_VULKAN
 };
-constexpr uint32_t BENCH_METHODS = 13;
+constexpr uint32_t BENCH_METHODS = 19;
+/* What draws the same by OpenGL; itself for methods that are not Vulkan's. And the other way round,
+ * MESH where there is none. */
+BenchMethod without_vulkan(BenchMethod method);
+BenchMethod with_vulkan(BenchMethod method);
 extern const char *const bench_method_names[BENCH_METHODS]; /* as in reports */
 /* Pixels. An error is stated for the farthest point: outlines agree at larger ones. */
 constexpr double bench_errors[] = {0.25, 0.35, 0.5, 0.71, 1, 1.41, 2, 2.83, 4};
@@ -62,6 +68,7 @@ struct BenchRow {
 
 struct BenchSetup {
     std::string renderer;           /* of OpenGL: the platform */
+    std::string device;             /* of Vulkan, or empty */
     uint32_t triangles = 0;
     uint64_t geometry_bytes = 0;    /* of the asset on the GPU, colour apart */
     /* Milliseconds: file to asset, asset to model, model to GPU. */

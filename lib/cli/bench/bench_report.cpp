@@ -9,7 +9,7 @@ namespace gtx {
 
 void print_bench_head(bool truth)
 {
-    std::printf("| window    | count | method      | error | median    | least     | mesh/   "
+    std::printf("| window    | count | method        | error | median    | least     | mesh/   "
                 "| work      | IoU    | PSNR  | holes | rays     | triang. |%s\n"
                 "|---|---|---|---|---|---|---|---|---|---|---|---|---|%s\n",
                 truth ? TRUTH_COLUMNS : "", truth ? TRUTH_RULES : "");
@@ -23,7 +23,7 @@ void print_bench_row(const BenchRow &row, double mesh)
         std::snprintf(ratio, sizeof ratio, "%.2f", mesh / row.median);
     if (row.max_error > 0)
         std::snprintf(error, sizeof error, "%g", row.max_error);
-    std::printf("| %-9s | %5u | %-11s ", window, row.instances,
+    std::printf("| %-9s | %5u | %-13s ", window, row.instances,
                 bench_method_names[uint32_t(row.method)]);
     if (row.frames)
         std::printf("| %5s | %9.2f | %9.2f | %7s | %9.2f | %6.4f | %5.1f | %5llu | %8llu | %7u "
@@ -47,7 +47,9 @@ void write_bench_row(gtx_json &json, const BenchSetup &setup, const BenchRow &ro
     if (row.skipped) {
         gtx_json_string(&json, "reason", row.skipped);
     } else {
-        gtx_json_string(&json, "platform", setup.renderer.c_str());
+        gtx_json_string(&json, "platform", without_vulkan(row.method) != row.method
+                                               ? setup.device.c_str()
+                                               : setup.renderer.c_str());
         gtx_json_integer(&json, "pixels", row.pixels);
         gtx_json_integer(&json, "frames", row.frames);
         gtx_json_number(&json, "ms_median", row.median);

@@ -25,7 +25,7 @@ struct Technique {
 };
 static Technique technique_of(BenchMethod method)
 {
-    switch (method) {
+    switch (without_vulkan(method)) {
     case BenchMethod::PAPER: return {GTX_METHOD_PAPER, GTX_PASS_FORWARD};
     case BenchMethod::CAST:
     case BenchMethod::CAST_FRAGMENT: return {GTX_METHOD_CAST, GTX_PASS_FORWARD};
@@ -115,6 +115,7 @@ void BenchScene::load_asset(const std::string &path)
     setup.upload = milliseconds() - prepared;
     gtx_get_info(asset, &info);
     setup.geometry_bytes = gtx_model_gpu_size(model_).geometry;
+    open_vulkan(asset);
     float square = 0;
     for (int i = 0; i < 3; ++i) {
         centre_[i] = (info.bounds_min[i] + info.bounds_max[i]) / 2;
@@ -228,6 +229,11 @@ static void move_window(gtx_view &view, const double shift[2])
 void BenchScene::draw(BenchMethod method, gtx_view view, const Vector<gtx_instance> &placed)
 {
     move_window(view, shift_);
+    if (without_vulkan(method) != method) {
+        view.method = technique_of(method).method;
+        draw_by_vulkan(view, placed);
+        return;
+    }
     gl.DepthMask(GL_TRUE);
     gl.ClearDepthf(1);
     gl.Clear(GL_DEPTH_BUFFER_BIT | (is_depth_pass(method) ? 0 : GL_COLOR_BUFFER_BIT));
@@ -254,9 +260,13 @@ void BenchScene::draw(BenchMethod method, gtx_view view, const Vector<gtx_instan
     gl.Finish();
 }
 
-Picture BenchScene::read(const gtx_view &view, const Target &target)
+Picture BenchScene::read(BenchMethod method, const gtx_view &view, const Target &target)
 {
     Picture out;
+    if (without_vulkan(method) != method) {
+        vulkan_->read(out.color, out.depth);
+        return out;
+    }
     out.color.resize(size_t(4) * view.viewport_width * view.viewport_height);
     out.depth.resize(size_t(view.viewport_width) * view.viewport_height);
     gtx_framebuffer_read_color(&gl, &target.framebuffer, out.color.data());
@@ -268,13 +278,13 @@ Picture BenchScene::picture(BenchMethod method, const Shot &shot, const Target &
 {
     draw(method, shot);
     Vector<gtx_instance> placed;
-    return read(view_of(shot, placed), target);
+    return read(method, view_of(shot, placed), target);
 }
 
 Picture BenchScene::picture(BenchMethod method, const gtx_view &view, const Target &target)
 {
     draw(method, view);
-    return read(view, target);
+    return read(method, view, target);
 }
 
 template <class What> Truth BenchScene::truth_of(const What &what, const Target &target)
@@ -306,7 +316,7 @@ void BenchScene::set_floor(const Picture &covered, const gtx_view &view)
 void BenchScene::count(BenchMethod method, Shot shot, uint64_t &rays, uint64_t &hits)
 {
     rays = hits = 0;
-    if (!counts_)
+    if (!counts_ || without_vulkan(method) != method)
         return;
     const GLenum what[2] = {INVOCATIONS, GL_SAMPLES_PASSED};
     GLuint queries[2];

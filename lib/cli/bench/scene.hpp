@@ -5,6 +5,7 @@
 #include "cli/bench/floor.hpp"
 #include "cli/bench/parts.hpp"
 #include "cli/bench/path.hpp"
+#include "cli/view/vulkan.hpp"
 #include "host/framebuffer.h"
 #include "host/offscreen.h"
 
@@ -85,7 +86,9 @@ private:
     void draw(BenchMethod method, gtx_view view, const Vector<gtx_instance> &placed);
     void draw_mesh(BenchMethod method, const gtx_view &view,
                    const Vector<gtx_instance> &placed);
-    Picture read(const gtx_view &view, const Target &target);
+    void open_vulkan(const gtx_asset *asset);
+    void draw_by_vulkan(const gtx_view &view, const Vector<gtx_instance> &placed);
+    Picture read(BenchMethod method, const gtx_view &view, const Target &target);
 
     const BenchOptions &options_;
     BenchContext context_;
@@ -96,6 +99,7 @@ private:
     Vector<gtx_polygons> polygons_;      /* of the levels */
     std::unique_ptr<PartDrawer> part_drawer_;
     std::unique_ptr<Floor> floor_;
+    std::unique_ptr<VulkanDrawer> vulkan_;
     bool counts_ = false;                /* the driver counts shaded fragments */
     double shift_[2] = {};               /* of the window, in pixels */
 };

@@ -128,7 +128,8 @@ SceneRenderer::Uploaded &SceneRenderer::uploaded(DebugView debug)
 void SceneRenderer::draw(const gtx_view &view, DebugView debug)
 {
     const Uploaded &p = uploaded(debug);
-    gl.ClearColor(0.92f, 0.93f, 0.95f, 1);
+    const float *behind = STILL_BACKGROUND;
+    gl.ClearColor(behind[0], behind[1], behind[2], behind[3]);
     gl.ClearDepthf(1);
     gl.DepthMask(GL_TRUE);
     gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);

@@ -9,6 +9,9 @@
 
 namespace gtx {
 
+/* What is seen where nothing is. */
+constexpr float STILL_BACKGROUND[4] = {0.92f, 0.93f, 0.95f, 1};
+
 /* Needs its context current from the constructor to the destructor. Everything throws Error: GL,
  * SHADER, MEMORY, LIMIT. */
 class SceneRenderer {

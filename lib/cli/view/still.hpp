@@ -14,6 +14,7 @@ struct StillOptions {
     uint32_t level = 0;               /* of detail; as gtx_view has it, like the error */
     double max_error = 0;
     bool gles = false;                /* by OpenGL ES */
+    bool vulkan = false;              /* by Vulkan: assets alone */
 };
 
 struct Still {
@@ -21,7 +22,7 @@ struct Still {
     Vector<float> depth;        /* along the view axis in object units; infinity = nothing */
 };
 
-/* Throws Error: GL, SHADER, MEMORY, LIMIT. */
+/* Throws Error: GL, SHADER, MEMORY, LIMIT, UNSUPPORTED. */
 Still draw_still(const Scene &scene, const StillOptions &options);
 
 } // namespace gtx
