@@ -2,9 +2,9 @@
  * each other file names those that it needs before it, with what these need.
  *
  * GTX_SAMPLER(b, type) declares a sampler at binding b of set 0; GTX_VARYING(n) gives a varying its
- * location; members between GTX_UNIFORMS and GTX_UNIFORMS_END are plain uniforms, each marked
- * GTX_UNIFORM. With GTX_RHI, which Vulkan implies, they are one block at binding 8, and vertices
- * are read as floats and whole numbers alone; bindings are told from GLSL 4.20 on. */
+ * location; members between GTX_BLOCK(b, name) and GTX_BLOCK_END are plain uniforms, each marked
+ * GTX_UNIFORM. With GTX_RHI, which Vulkan implies, they are a block at binding b, and vertices are
+ * read as floats and whole numbers alone; bindings are told from GLSL 4.20 on. */
 #ifdef GL_ARM_shader_framebuffer_fetch_depth_stencil
 #extension GL_ARM_shader_framebuffer_fetch_depth_stencil : require
 #ifdef GL_OES_sample_variables
@@ -33,22 +33,22 @@ precision highp usampler2DArray;
 #ifdef VULKAN
 #define GTX_SAMPLER(b, type) layout(set = 0, binding = b) uniform type
 #define GTX_VARYING(n) layout(location = n)
-#define GTX_UNIFORMS layout(std140, set = 0, binding = 8) uniform gtx_uniforms {
+#define GTX_BLOCK(b, name) layout(std140, set = 0, binding = b) uniform name {
 #elif defined(GTX_RHI) && __VERSION__ >= 420
 #define GTX_SAMPLER(b, type) layout(binding = b) uniform type
 #define GTX_VARYING(n)
-#define GTX_UNIFORMS layout(std140, binding = 8) uniform gtx_uniforms {
+#define GTX_BLOCK(b, name) layout(std140, binding = b) uniform name {
 #else
 #define GTX_SAMPLER(b, type) uniform type
 #define GTX_VARYING(n)
-#define GTX_UNIFORMS layout(std140) uniform gtx_uniforms {
+#define GTX_BLOCK(b, name) layout(std140) uniform name {
 #endif
 #ifdef GTX_RHI
 #define GTX_UNIFORM
-#define GTX_UNIFORMS_END };
+#define GTX_BLOCK_END };
 #else
-#undef GTX_UNIFORMS
-#define GTX_UNIFORMS
+#undef GTX_BLOCK
+#define GTX_BLOCK(b, name)
 #define GTX_UNIFORM uniform
-#define GTX_UNIFORMS_END
+#define GTX_BLOCK_END
 #endif

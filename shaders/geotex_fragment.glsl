@@ -19,11 +19,11 @@
 vec4 gtx_clip_z, gtx_clip_w;
 vec3 gtx_normal_x, gtx_normal_y, gtx_normal_z, gtx_world, gtx_world_eye;
 int gtx_patch_index;
-uint gtx_id;
 GTX_VARYING(1) flat in vec4 gtx_color;
 /* What is the same all over comes as varyings, too: processors fetch a uniform for every pixel, but
  * a flat varying once. From 3 on it is gtx_place. */
 GTX_VARYING(2) flat in vec4 gtx_flat[3 + GTX_PLACE_ROWS];
+GTX_VARYING(14) flat in uint gtx_id;
 #define gtx_depth gtx_flat[0]
 #define gtx_light gtx_flat[1]
 #define gtx_maps gtx_flat[2]

@@ -10,8 +10,7 @@ GTX_VARYING(0) in vec2 gtx_pixel;
 /* Records of patches and of slabs (geotex_records.glsl). Then heads of a rectangle of tiles, two a
  * texel: where the list begins and ends, in half texels. Then the lists, two slabs a texel: where
  * the slab is, least t. */
-uniform highp usamplerBuffer gtx_stream;
-uniform uint gtx_instance;
+GTX_SAMPLER(9, highp usamplerBuffer) gtx_stream;
 #define gtx_place(i) gtx_flat[3 + i]
 
 struct gtx_line {
@@ -130,7 +129,6 @@ void gtx_place_hit(vec2 pixel, vec2 zw)
     gtx_clip_w = vec4(0.0, 0.0, 0.0, zw.y);
     gtx_world = world * vec4(line.origin, 1.0);
     gtx_world_eye = gtx_world * gtx_depth.w - world * vec4(line.direction, 0.0);
-    gtx_id = gtx_instance;
 }
 
 bool gtx_find(out gtx_surface s)

@@ -1,6 +1,6 @@
 /* The camera and the light of a draw: uniforms that the stock mains share, and what they do with
  * them. */
-GTX_UNIFORMS
+GTX_BLOCK(8, gtx_uniforms)
 GTX_UNIFORM mat4 gtx_clip_from_world;   /* the engine's projection * view */
 GTX_UNIFORM vec4 gtx_depth;             /* x: clip z >= -x * w at the near plane (1 or 0);
                                            y, z: window depth = z_clip / w_clip * y + z;
@@ -18,7 +18,7 @@ GTX_UNIFORM vec4 gtx_maps;              /* x: last mip level of normals and colo
                                            w: 1 when it has materials */
 GTX_UNIFORM vec4 gtx_lod_mesh;          /* of the LOD mesh's level, xyz: origin; w: step */
 GTX_UNIFORM vec4 gtx_constant_material; /* of geotex_lod_front.frag, with GTX_CONSTANT */
-GTX_UNIFORMS_END
+GTX_BLOCK_END
 
 /* In standard deviations of normals: how little the facets that are seen face the eye, and how near
  * the terminator some of them are on its other side. PSNR inside the outline to 8x8 samples, on

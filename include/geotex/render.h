@@ -31,17 +31,6 @@ typedef struct gtx_renderer gtx_renderer;
 
 typedef void (*gtx_gl_proc)(void);
 
-/* Casting by tiles: for each tile of 4 x 4 pixels the patches of an instance that may cover it are
- * listed, nearest first, and each pixel casts one ray, which stops at the nearest hit. It applies
- * to what GTX_METHOD_CAST and AUTO cast in views that give viewport_width, one instance at a time,
- * in every pass, but not with an engine's own shading. Everything else, and all of OpenGL ES, is
- * cast in the fragments of proxies. */
-typedef enum gtx_tiling {
-    GTX_TILES_AUTO = 0,           /* where it is known to be faster: with llvmpipe */
-    GTX_TILES_NEVER = 1,
-    GTX_TILES_ALWAYS = 2          /* wherever the context can */
-} gtx_tiling;
-
 typedef struct gtx_renderer_desc {
     gtx_gl_proc (*load)(const char *name, void *user);   /* required: the host's GL loader */
     void *load_user;

@@ -13,8 +13,8 @@
  *     gtx_vk_next_frame(vk);                                               once a frame
  *     gtx_vk_draw(vk, commands, &target, &view, placed, count, &error);    inside a render pass
  *
- * The picture is that of render.h with tiles off. Not there yet: casting by tiles, an engine's own
- * fragment main, rays in shaders, gtx_model_update.
+ * The picture is that of render.h. Not there yet: an engine's own fragment main, rays in shaders,
+ * gtx_model_update.
  *
  * State. gtx_vk_draw binds a graphics pipeline, descriptor set 0, vertex buffers 0 and 1 and an
  * index buffer. Viewport and scissor are dynamic, and the host's; other dynamic state is not used.
@@ -44,7 +44,8 @@ typedef struct gtx_vk_desc {
     const gtx_allocator *allocator;   /* of all else */
     gtx_costs costs;                  /* finite, none below 0 */
     uint32_t frames;                  /* recorded or executed at once; 0 = 2, at most 8 */
-    uint32_t reserved[3];
+    gtx_tiling tiles;
+    uint32_t reserved[2];
 } gtx_vk_desc;
 
 /* Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL (a function is missing, or a call of Vulkan failed: the

@@ -87,11 +87,27 @@ static bool cast_tiles(const gtx_draw_call *call, const run *r, uint32_t instanc
     const gtx_instance_data *placed = &call->planner->instances[instance];
     if (!gtx_tiles_suit(call) || !gtx_tiles_fill(call, r->model, placed))
         return false;
-    const gtx_frame_draw draw = draw_of(call, r, TECHNIQUE_TILES, instance, 1);
-    if (tiles->tile_count) {
-        call->submit(&draw, call->user);
-        ++tiles->draws;
-    }
+    if (!tiles->tile_count)
+        return true;
+    gtx_tile_constants constants = {.id = placed->id};
+    memcpy(constants.place, tiles->place, sizeof constants.place);
+    memcpy(constants.tint, placed->tint, sizeof constants.tint);
+    const gtx_tile_draw stream = {
+        &constants,
+        {tiles->records.data, tiles->slabs.data, tiles->heads.data, tiles->lists.data},
+        {16ull * tiles->record_texels, 16ull * tiles->slab_texels, 16ull * tiles->head_texels,
+         16ull * tiles->list_texels}};
+    const gtx_range corners = {.count = tiles->corner_count};
+    gtx_frame_draw draw = draw_of(call, r, TECHNIQUE_TILES, instance, 1);
+    draw.vertices = GTX_BUFFER_TILE_CORNERS;
+    draw.index_size = 0;
+    draw.vertex_data = tiles->corners.data;
+    draw.vertex_bytes = 4ull * tiles->corner_count;
+    draw.ranges = &corners;
+    draw.range_count = 1;
+    draw.tiles = &stream;
+    call->submit(&draw, call->user);
+    ++tiles->draws;
     return true;
 }
 

@@ -165,17 +165,18 @@ static bool is_cast(gtx_technique technique)
 uint32_t gtx_pipeline_get(uint32_t pipeline, gtx_pipeline *out)
 {
     const recipe r = recipe_of(pipeline);
-    const bool made = is_made(pipeline) && r.technique != TECHNIQUE_TILES &&
-                      r.technique != TECHNIQUE_LOD_SINGLE; /* these are OpenGL's alone */
+    const bool made = is_made(pipeline) &&
+                      r.technique != TECHNIQUE_LOD_SINGLE; /* OpenGL's alone */
     if (!out)
         return 0;
     *out = (gtx_pipeline){GTX_PASS_FORWARD, GTX_BUFFER_PROXY_VERTICES, 0, 0};
     if (made)
         *out = (gtx_pipeline){
             .pass = r.pass,
-            .vertices = is_cast(r.technique)  ? GTX_BUFFER_PROXY_VERTICES
-                        : is_lod(r.technique) ? GTX_BUFFER_LOD_VERTICES
-                                              : GTX_BUFFER_GRID_VERTICES,
+            .vertices = r.technique == TECHNIQUE_TILES ? GTX_BUFFER_TILE_CORNERS
+                        : is_cast(r.technique)         ? GTX_BUFFER_PROXY_VERTICES
+                        : is_lod(r.technique)          ? GTX_BUFFER_LOD_VERTICES
+                                                       : GTX_BUFFER_GRID_VERTICES,
             .own_main = is_own(r.technique),
             .writes_depth = is_cast(r.technique)};
     return made;

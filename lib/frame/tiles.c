@@ -230,11 +230,18 @@ bool gtx_tiles_fill(const gtx_draw_call *draw, const gtx_model *model,
     return true;
 }
 
+/* Halves of texels are counted, in ints. */
+uint32_t gtx_tiles_most(uint32_t texels)
+{
+    return texels < 1u << 29 ? texels : 1u << 29;
+}
+
 bool gtx_tiles_suit(const gtx_draw_call *draw)
 {
     const uint32_t most = 65528; /* corners are counted in 16 bits */
     const gtx_view *view = draw->view;
-    return draw->planner->tiles.max_texels && !view->shading &&
+    const bool own = view->shading || (draw->planner->own_main && !view->pass);
+    return draw->planner->tiles.max_texels && !own &&
            view->method != GTX_METHOD_PAPER && view->viewport_width > 0 &&
            view->viewport_width <= most && view->viewport_height > 0 &&
            view->viewport_height <= most;

@@ -13,9 +13,12 @@ typedef struct gtx_tiles {
     uint32_t visible_count, tile_count, corner_count;
     uint32_t first_column, first_row, columns, rows; /* the rectangle of tiles that have heads */
     uint32_t record_texels, slab_texels, head_texels, list_texels;
-    float place[GTX_PLACE_ROWS][4];
+    float place[GTX_TILE_ROWS][4];
     uint64_t draws;           /* by tiles, so far: tests look whether there were any */
 } gtx_tiles;
+
+/* Texels that streams may have where a buffer has so many. */
+uint32_t gtx_tiles_most(uint32_t texels);
 
 /* tiles.c: fills the planner's tiles from its plan. False when there is no memory for it, or it is
  * more than a stream takes or pays. */

@@ -54,7 +54,7 @@ drop_head = { echo '/* geotex $(VERSION), $(1)'; echo ' *'; sed 's/^/ * /; s/ *$
 amalgamation: $(drop)/geotex.c ## geotex.c, geotex.h and geotex_gl.h, to drop into an engine
 	@echo $(drop)
 
-$(drop)/geotex.h: $(foreach h,geotex edit solid stream frame,include/geotex/$(h).h) LICENSE
+$(drop)/geotex.h: $(foreach h,geotex edit solid stream view frame,include/geotex/$(h).h) LICENSE
 	@mkdir -p $(@D)
 	$(Q){ $(call drop_head,all of its headers but OpenGL); \
 	  sed '/^#include <geotex/d' $(filter %.h,$^); } > $@

@@ -30,9 +30,9 @@ struct gtx_renderer {
 /* stream.c: the objects of casting by tiles. Where they cannot be made, nothing is cast so. */
 void gtx_tile_stream_create(gtx_renderer *renderer);
 void gtx_tile_stream_destroy(gtx_renderer *renderer);
-/* Draws what the tiles hold by the program in use. */
+/* Uploads what a draw brings along and draws it by the program in use. */
 void gtx_tile_stream_draw(gtx_renderer *renderer, const gtx_program *program,
-                          const gtx_instance_data *placed);
+                          const gtx_frame_draw *draw);
 
 /* grid.c: the objects of displaced grids, which all models share. */
 void gtx_grid_stream_create(gtx_renderer *renderer);

@@ -10,8 +10,7 @@ void gtx_tile_stream_create(gtx_renderer *renderer)
     if (!gl->TexBuffer)
         return;
     gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-    /* Halves of texels are counted, in ints. */
-    renderer->planner.tiles.max_texels = most > 1 << 29 ? 1u << 29 : (uint32_t)most;
+    renderer->planner.tiles.max_texels = gtx_tiles_most((uint32_t)most);
     gl->GenVertexArrays(1, &t->vertex_array);
     gl->BindVertexArray(t->vertex_array);
     gtx_gl_label(gl, GL_VERTEX_ARRAY, t->vertex_array, "geotex tile corners");
@@ -45,45 +44,37 @@ void gtx_tile_stream_destroy(gtx_renderer *renderer)
 }
 
 /* Uploads the parts of the stream, one after the other. */
-static void send(const gtx_gl *gl, gl_uint buffer, const gtx_tiles *t)
+static void send(const gtx_gl *gl, gl_uint buffer, const gtx_tile_draw *t)
 {
-    const struct {
-        const void *data;
-        uint32_t texels;
-    } parts[4] = {{t->records.data, t->record_texels},
-                  {t->slabs.data, t->slab_texels},
-                  {t->heads.data, t->head_texels},
-                  {t->lists.data, t->list_texels}};
     gl_pointer at = 0;
-    for (int i = 0; i < 4; ++i)
-        at += 16 * (gl_pointer)parts[i].texels;
+    for (int i = 0; i < GTX_TILE_PARTS; ++i)
+        at += (gl_pointer)t->part_bytes[i];
     gl->BindBuffer(GL_ARRAY_BUFFER, buffer);
     gl->BufferData(GL_ARRAY_BUFFER, at, NULL, GL_STREAM_DRAW);
     at = 0;
-    for (int i = 0; i < 4; ++i) {
-        const gl_pointer size = 16 * (gl_pointer)parts[i].texels;
-        gl->BufferSubData(GL_ARRAY_BUFFER, at, size, parts[i].data);
-        at += size;
+    for (int i = 0; i < GTX_TILE_PARTS; ++i) {
+        gl->BufferSubData(GL_ARRAY_BUFFER, at, (gl_pointer)t->part_bytes[i], t->parts[i]);
+        at += (gl_pointer)t->part_bytes[i];
     }
 }
 
 void gtx_tile_stream_draw(gtx_renderer *renderer, const gtx_program *program,
-                          const gtx_instance_data *placed)
+                          const gtx_frame_draw *draw)
 {
     const gtx_gl *gl = &renderer->gl;
     const gtx_tile_stream *stream = &renderer->tile_stream;
-    const gtx_tiles *t = &renderer->planner.tiles;
-    send(gl, stream->buffer, t);
+    const gtx_tile_constants *c = draw->tiles->constants;
+    send(gl, stream->buffer, draw->tiles);
     gl->BindBuffer(GL_ARRAY_BUFFER, stream->corner_buffer);
-    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)t->corner_count * 4, t->corners.data,
+    gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)draw->vertex_bytes, draw->vertex_data,
                    GL_STREAM_DRAW);
     gl->BindBuffer(GL_ARRAY_BUFFER, 0);
     gl->ActiveTexture(GL_TEXTURE0 + UNIT_STREAM);
     gl->BindTexture(GL_TEXTURE_BUFFER, stream->texture);
-    gl->Uniform4fv(program->place, GTX_PLACE_ROWS, t->place[0]);
-    gl->Uniform4fv(program->tint, 1, placed->tint);
-    gl->Uniform1ui(program->instance, placed->id);
+    gl->Uniform4fv(program->place, GTX_TILE_ROWS, c->place[0]);
+    gl->Uniform4fv(program->tint, 1, c->tint);
+    gl->Uniform1ui(program->instance, c->id);
     gl->BindVertexArray(stream->vertex_array);
-    gl->DrawArrays(GL_TRIANGLES, 0, (gl_size)t->corner_count);
+    gl->DrawArrays(GL_TRIANGLES, 0, (gl_size)draw->ranges->count);
     gl->BindVertexArray(renderer->vertex_array);
 }

@@ -164,7 +164,7 @@ void gtx_submit_draw(const gtx_frame_draw *draw, void *user)
     use_program(s, program_of(s, draw, single), draw->constants);
     cull(s, draw);
     if (technique == TECHNIQUE_TILES) {
-        gtx_tile_stream_draw(s->renderer, s->program, placed);
+        gtx_tile_stream_draw(s->renderer, s->program, draw);
     } else if (draw->vertices == GTX_BUFFER_GRID_VERTICES) {
         submit_grid(s, draw);
     } else if (draw->vertices == GTX_BUFFER_LOD_VERTICES) {

@@ -6,6 +6,15 @@
 
 #include <string.h>
 
+/* Casting by tiles has been measured with llvmpipe alone. */
+static uint32_t tile_texels(const gtx_vk_desc *desc, const VkPhysicalDeviceProperties *of)
+{
+    return desc->tiles == GTX_TILES_ALWAYS ||
+                   (desc->tiles == GTX_TILES_AUTO && strstr(of->deviceName, "llvmpipe"))
+               ? of->limits.maxTexelBufferElements
+               : 0;
+}
+
 static gtx_result load(gtx_vk *vk, const gtx_vk_desc *desc, gtx_error *error)
 {
     const PFN_vkGetDeviceProcAddr of_device =
@@ -28,7 +37,9 @@ static gtx_result load(gtx_vk *vk, const gtx_vk_desc *desc, gtx_error *error)
     memory(desc->physical_device, &vk->memory);
     properties(desc->physical_device, &of);
     vk->limits = of.limits;
-    return GTX_OK;
+    const gtx_planner_desc planner = {.allocator = &vk->allocator, .costs = desc->costs,
+                                      .max_tile_texels = tile_texels(desc, &of)};
+    return gtx_planner_create(&planner, &vk->planner, error);
 }
 
 static gtx_result make_samplers(gtx_vk *vk, gtx_error *error)
@@ -55,12 +66,13 @@ static gtx_result make_samplers(gtx_vk *vk, gtx_error *error)
 gtx_result gtx_vk_create(const gtx_vk_desc *desc, gtx_vk **out, gtx_error *error)
 {
     if (!desc || !out || !desc->load || !desc->instance || !desc->physical_device ||
-        !desc->device || desc->frames > GTX_VK_MAX_FRAMES)
+        !desc->device || desc->frames > GTX_VK_MAX_FRAMES ||
+        (unsigned)desc->tiles > GTX_TILES_ALWAYS)
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
-                        "a device, what loads its functions and at most %d frames are needed",
-                        GTX_VK_MAX_FRAMES);
+                        "a device, what loads its functions, at most %d frames and a known tiling "
+                        "are needed", GTX_VK_MAX_FRAMES);
     *out = NULL;
-    gtx_result result = gtx_check_reserved(desc->reserved, 3, error);
+    gtx_result result = gtx_check_reserved(desc->reserved, 2, error);
     if (result)
         return result;
     const gtx_allocator hooks = gtx_allocator_or_default(desc->allocator);
@@ -71,18 +83,25 @@ gtx_result gtx_vk_create(const gtx_vk_desc *desc, gtx_vk **out, gtx_error *error
     vk->callbacks = desc->callbacks;
     vk->device = desc->device;
     vk->frame_count = desc->frames ? desc->frames : 2;
-    const gtx_planner_desc planner = {.allocator = &hooks, .costs = desc->costs};
-    result = gtx_planner_create(&planner, &vk->planner, error);
-    if (!result)
-        result = load(vk, desc, error);
-    if (result) { /* no function may be called */
-        gtx_planner_destroy(vk->planner);
+    result = load(vk, desc, error);
+    if (result) { /* there is nothing yet */
         gtx_free_array(&hooks, vk, 1, sizeof *vk);
         return result;
     }
     result = make_samplers(vk, error);
     if (!result)
         result = gtx_vk_layout_create(vk, error);
+    if (!result)
+        result = gtx_vk_buffer_create(vk, 16, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, false,
+                                      &vk->nothing, error);
+    if (!result) {
+        const VkBufferViewCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                             .buffer = vk->nothing.buffer, .range = 16,
+                                             .format = VK_FORMAT_R32G32B32A32_UINT};
+        result = gtx_vk_check(
+            vk->api.CreateBufferView(vk->device, &info, vk->callbacks, &vk->no_stream),
+            "vkCreateBufferView", error);
+    }
     if (result)
         gtx_vk_destroy(vk);
     else
@@ -103,6 +122,8 @@ void gtx_vk_destroy(gtx_vk *vk)
         gtx_vk_frame_free(vk, &vk->frames[i]);
     for (int i = 0; i < 2; ++i)
         api->DestroySampler(vk->device, vk->samplers[i], vk->callbacks);
+    api->DestroyBufferView(vk->device, vk->no_stream, vk->callbacks);
+    gtx_vk_buffer_destroy(vk, &vk->nothing);
     api->DestroyPipelineLayout(vk->device, vk->layout, vk->callbacks);
     api->DestroyDescriptorSetLayout(vk->device, vk->set_layout, vk->callbacks);
     gtx_planner_destroy(vk->planner);
@@ -120,6 +141,7 @@ void gtx_vk_next_frame(gtx_vk *vk)
     gtx_vk_frame *frame = &vk->frames[vk->frame];
     for (uint32_t i = 0; i < frame->pool_count; ++i)
         vk->api.ResetDescriptorPool(vk->device, frame->pools[i], 0);
+    gtx_vk_views_free(vk, frame);
     frame->block = frame->pool = frame->sets = 0;
     frame->used = 0;
 }

@@ -8,10 +8,11 @@
 #define GTX_VK_FUNCTIONS(X)                                                                        \
     X(AllocateDescriptorSets) X(AllocateMemory) X(BindBufferMemory) X(BindImageMemory)             \
     X(CmdBindDescriptorSets) X(CmdBindIndexBuffer) X(CmdBindPipeline) X(CmdBindVertexBuffers)      \
-    X(CmdCopyBuffer) X(CmdCopyBufferToImage) X(CmdDrawIndexed) X(CmdPipelineBarrier)               \
-    X(CreateBuffer) X(CreateDescriptorPool) X(CreateDescriptorSetLayout)                           \
+    X(CmdCopyBuffer) X(CmdCopyBufferToImage) X(CmdDraw) X(CmdDrawIndexed) X(CmdPipelineBarrier)    \
+    X(CreateBuffer) X(CreateBufferView) X(CreateDescriptorPool) X(CreateDescriptorSetLayout)       \
     X(CreateGraphicsPipelines) X(CreateImage) X(CreateImageView) X(CreatePipelineLayout)           \
-    X(CreateSampler) X(CreateShaderModule) X(DestroyBuffer) X(DestroyDescriptorPool)               \
+    X(CreateSampler) X(CreateShaderModule) X(DestroyBuffer) X(DestroyBufferView)                   \
+    X(DestroyDescriptorPool)                                                                       \
     X(DestroyDescriptorSetLayout) X(DestroyImage) X(DestroyImageView) X(DestroyPipeline)           \
     X(DestroyPipelineLayout) X(DestroySampler) X(DestroyShaderModule) X(FreeMemory)                \
     X(GetBufferMemoryRequirements) X(GetImageMemoryRequirements) X(MapMemory)                      \
@@ -41,12 +42,20 @@ gtx_result gtx_vk_check(VkResult result, const char *what, gtx_error *error);
 
 enum { GTX_VK_MAX_FRAMES = 8, GTX_VK_SETS = 64 };
 
+/* Bindings of the only set, behind the textures by their slots. */
+enum {
+    GTX_VK_CONSTANTS = 8,     /* gtx_constants, at a dynamic offset */
+    GTX_VK_STREAM = 9,        /* what tiles hold, in fragments */
+    GTX_VK_TILE = 10          /* gtx_tile_constants, at a dynamic offset */
+};
+
 /* What one frame writes: blocks of memory and pools of descriptor sets, used again by a later
- * one. */
+ * one; and views of streams, which are not. */
 typedef struct gtx_vk_frame {
     gtx_vk_buffer *blocks;
     VkDescriptorPool *pools;
-    uint32_t block_count, pool_count;
+    VkBufferView *views;
+    uint32_t block_count, pool_count, view_count, view_room;
     uint32_t block, pool, sets;   /* in use, and sets of that pool */
     VkDeviceSize used;            /* of the block */
 } gtx_vk_frame;
@@ -54,14 +63,21 @@ typedef struct gtx_vk_frame {
 /* A piece of a block. */
 typedef struct gtx_vk_piece {
     VkBuffer buffer;
-    VkDeviceSize offset;
+    VkDeviceSize offset, size;
 } gtx_vk_piece;
 
 /* memory.c: copies bytes into the frame. Errors: MEMORY, GL. */
 gtx_result gtx_vk_write(gtx_vk *vk, const void *data, VkDeviceSize size, gtx_vk_piece *out,
                         gtx_error *error);
+/* The same of several arrays, one behind the other. */
+gtx_result gtx_vk_write_all(gtx_vk *vk, const void *const *data, const uint64_t *sizes,
+                            uint32_t count, gtx_vk_piece *out, gtx_error *error);
 /* A descriptor set of the frame. Errors: MEMORY, GL. */
 gtx_result gtx_vk_take_set(gtx_vk *vk, VkDescriptorSet *out, gtx_error *error);
+/* A view of a piece as texels of 4 uint32_t, until the frame's memory is used again. Errors:
+ * MEMORY, GL. */
+gtx_result gtx_vk_view(gtx_vk *vk, const gtx_vk_piece *piece, VkBufferView *out, gtx_error *error);
+void gtx_vk_views_free(gtx_vk *vk, gtx_vk_frame *frame);
 void gtx_vk_frame_free(gtx_vk *vk, gtx_vk_frame *frame);
 
 /* What a pipeline is made for: all of it is compared, byte by byte. */
@@ -88,6 +104,8 @@ struct gtx_vk {
     VkPhysicalDeviceMemoryProperties memory;
     VkPhysicalDeviceLimits limits;
     VkSampler samplers[2];        /* by texel; filtered */
+    gtx_vk_buffer nothing;        /* what draws without tiles have as a stream: a texel */
+    VkBufferView no_stream;
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;
     VkShaderModule modules[2 * GTX_PIPELINE_COUNT]; /* by pipeline and stage, once needed */

@@ -12,22 +12,30 @@ typedef struct recording {
     const gtx_vk_instance *placed;
     gtx_vk_key key;
     VkPipeline pipeline;
-    const gtx_vk_model *model;
-    VkBuffer constants;           /* the block that the set names */
+    /* What the set names: a model's textures, blocks of constants, a stream. */
     VkDescriptorSet set;
+    const gtx_vk_model *model;
+    VkBuffer constants;
     gtx_vk_piece instances, grid[2]; /* grid: vertices, indices */
     gtx_result result;
     gtx_error *error;
 } recording;
 
-/* The model's textures, and the constants of a block. */
-static gtx_result make_set(recording *r, const gtx_vk_model *model, VkBuffer constants)
+/* What one draw's constants are, and its stream; those of no tiles are of no matter. */
+typedef struct pieces {
+    gtx_vk_piece constants, tile;
+    VkBufferView stream;
+} pieces;
+
+static gtx_result make_set(recording *r, const gtx_vk_model *model, const pieces *p)
 {
-    enum { WRITES = GTX_SLOT_COUNT + 1, CONSTANTS_BINDING = 8 };
+    enum { WRITES = GTX_SLOT_COUNT + 3 };
     const gtx_vk *vk = r->vk;
     VkDescriptorImageInfo images[GTX_SLOT_COUNT];
     VkWriteDescriptorSet writes[WRITES];
-    const VkDescriptorBufferInfo buffer = {constants, 0, sizeof(gtx_constants)};
+    const VkDescriptorBufferInfo buffers[] = {{p->constants.buffer, 0, sizeof(gtx_constants)},
+                                              {0},
+                                              {p->tile.buffer, 0, sizeof(gtx_tile_constants)}};
     gtx_result result = gtx_vk_take_set(r->vk, &r->set, r->error);
     if (result)
         return result;
@@ -39,28 +47,52 @@ static gtx_result make_set(recording *r, const gtx_vk_model *model, VkBuffer con
             .descriptorCount = 1, .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
             .pImageInfo = &images[s]};
     }
-    writes[GTX_SLOT_COUNT] = (VkWriteDescriptorSet){
-        .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, .dstSet = r->set,
-        .dstBinding = CONSTANTS_BINDING, .descriptorCount = 1,
-        .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, .pBufferInfo = &buffer};
+    for (uint32_t b = 0; b < 3; ++b)
+        writes[GTX_SLOT_COUNT + b] = (VkWriteDescriptorSet){
+            .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, .dstSet = r->set,
+            .dstBinding = GTX_VK_CONSTANTS + b, .descriptorCount = 1,
+            .descriptorType = b == 1 ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
+                                     : VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC,
+            .pBufferInfo = &buffers[b], .pTexelBufferView = &p->stream};
     vk->api.UpdateDescriptorSets(vk->device, WRITES, writes, 0, NULL);
     r->model = model;
-    r->constants = constants;
+    r->constants = p->constants.buffer;
     return GTX_OK;
 }
 
+static gtx_result write_pieces(recording *r, const gtx_frame_draw *d, pieces *p)
+{
+    const gtx_tile_draw *t = d->tiles;
+    gtx_result result =
+        gtx_vk_write(r->vk, d->constants, sizeof *d->constants, &p->constants, r->error);
+    gtx_vk_piece stream = {0};
+    p->tile = p->constants;
+    p->stream = r->vk->no_stream;
+    if (t && !result)
+        result = gtx_vk_write_all(r->vk, t->parts, t->part_bytes, GTX_TILE_PARTS, &stream,
+                                  r->error);
+    if (t && !result)
+        result = gtx_vk_view(r->vk, &stream, &p->stream, r->error);
+    if (t && !result)
+        result = gtx_vk_write(r->vk, t->constants, sizeof *t->constants, &p->tile, r->error);
+    return result;
+}
+
+/* Each stream has a set of its own. */
 static gtx_result bind_set(recording *r, const gtx_frame_draw *d)
 {
     const gtx_vk_model *model = r->placed[d->first_instance].model;
-    gtx_vk_piece constants;
-    gtx_result result =
-        gtx_vk_write(r->vk, d->constants, sizeof *d->constants, &constants, r->error);
-    if (!result && (model != r->model || constants.buffer != r->constants))
-        result = make_set(r, model, constants.buffer);
-    const uint32_t offset = (uint32_t)constants.offset;
+    pieces p;
+    gtx_result result = write_pieces(r, d, &p);
+    const bool same = !d->tiles && model == r->model && p.constants.buffer == r->constants;
+    if (!result && !same)
+        result = make_set(r, model, &p);
+    /* Of no tiles the block's first bytes will do. */
+    const uint32_t offsets[2] = {(uint32_t)p.constants.offset,
+                                 d->tiles ? (uint32_t)p.tile.offset : 0};
     if (!result)
         r->vk->api.CmdBindDescriptorSets(r->commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                                         r->vk->layout, 0, 1, &r->set, 1, &offset);
+                                         r->vk->layout, 0, 1, &r->set, 2, offsets);
     return result;
 }
 
@@ -77,31 +109,41 @@ static gtx_result bind_pipeline(recording *r, const gtx_frame_draw *d)
     return result;
 }
 
-/* The model's buffers, or of a grid what the draw brings along. */
+/* The model's buffers, or of grids and tiles what the draw brings along. */
 static gtx_result bind_buffers(recording *r, const gtx_frame_draw *d)
 {
     const gtx_vk_model *model = r->placed[d->first_instance].model;
     gtx_vk_piece from[2];
     gtx_result result = GTX_OK;
-    if (d->vertices == GTX_BUFFER_GRID_VERTICES) {
+    if (d->vertices >= GTX_BUFFER_GRID_VERTICES) {
         if (d->vertex_data)
             result = gtx_vk_write(r->vk, d->vertex_data, d->vertex_bytes, &r->grid[0], r->error);
-        if (!result)
+        if (!result && d->index_size)
             result = gtx_vk_write(r->vk, d->index_data, d->index_bytes, &r->grid[1], r->error);
         memcpy(from, r->grid, sizeof from);
     } else {
-        from[0] = (gtx_vk_piece){model->buffer.buffer, model->offsets[d->vertices]};
-        from[1] = (gtx_vk_piece){model->buffer.buffer, model->offsets[d->indices]};
+        from[0] = (gtx_vk_piece){model->buffer.buffer, model->offsets[d->vertices], 0};
+        from[1] = (gtx_vk_piece){model->buffer.buffer, model->offsets[d->indices], 0};
     }
     if (result)
         return result;
     const VkBuffer buffers[2] = {from[0].buffer, r->instances.buffer};
     const VkDeviceSize offsets[2] = {from[0].offset + d->vertex_offset, r->instances.offset};
     r->vk->api.CmdBindVertexBuffers(r->commands, 0, 2, buffers, offsets);
-    r->vk->api.CmdBindIndexBuffer(r->commands, from[1].buffer, from[1].offset + d->index_offset,
-                                  d->index_size == 2 ? VK_INDEX_TYPE_UINT16
-                                                     : VK_INDEX_TYPE_UINT32);
+    if (d->index_size)
+        r->vk->api.CmdBindIndexBuffer(
+            r->commands, from[1].buffer, from[1].offset + d->index_offset,
+            d->index_size == 2 ? VK_INDEX_TYPE_UINT16 : VK_INDEX_TYPE_UINT32);
     return GTX_OK;
+}
+
+static void draw_range(const recording *r, const gtx_frame_draw *d, const gtx_range *range)
+{
+    if (d->index_size)
+        r->vk->api.CmdDrawIndexed(r->commands, range->count, d->instance_count, range->first,
+                                  (int32_t)range->base_vertex, d->first_instance);
+    else
+        r->vk->api.CmdDraw(r->commands, range->count, 1, range->first, 0);
 }
 
 static void submit(const gtx_frame_draw *d, void *user)
@@ -114,9 +156,7 @@ static void submit(const gtx_frame_draw *d, void *user)
     if (!r->result)
         r->result = bind_buffers(r, d);
     for (uint32_t i = 0; i < d->range_count && !r->result; ++i)
-        r->vk->api.CmdDrawIndexed(r->commands, d->ranges[i].count, d->instance_count,
-                                  d->ranges[i].first, (int32_t)d->ranges[i].base_vertex,
-                                  d->first_instance);
+        draw_range(r, d, &d->ranges[i]);
 }
 
 static gtx_result check(const gtx_vk *vk, VkCommandBuffer commands, const gtx_vk_target *target,

@@ -88,6 +88,7 @@ static gtx_result add_block(gtx_vk *vk, gtx_vk_frame *frame, VkDeviceSize least,
 {
     const VkDeviceSize usual = 1 << 20;
     const VkBufferUsageFlags usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                                     VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
                                      VK_BUFFER_USAGE_VERTEX_BUFFER_BIT |
                                      VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
     gtx_vk_buffer block;
@@ -105,12 +106,20 @@ static gtx_result add_block(gtx_vk *vk, gtx_vk_frame *frame, VkDeviceSize least,
     return GTX_OK;
 }
 
-gtx_result gtx_vk_write(gtx_vk *vk, const void *data, VkDeviceSize size, gtx_vk_piece *out,
-                        gtx_error *error)
+static VkDeviceSize most_of(VkDeviceSize a, VkDeviceSize b)
+{
+    return a > b ? a : b;
+}
+
+gtx_result gtx_vk_write_all(gtx_vk *vk, const void *const *data, const uint64_t *sizes,
+                            uint32_t count, gtx_vk_piece *out, gtx_error *error)
 {
     gtx_vk_frame *frame = &vk->frames[vk->frame];
-    const VkDeviceSize least = vk->limits.minUniformBufferOffsetAlignment;
-    const VkDeviceSize to = least > 16 ? least : 16;
+    const VkDeviceSize to = most_of(16, most_of(vk->limits.minUniformBufferOffsetAlignment,
+                                                vk->limits.minTexelBufferOffsetAlignment));
+    VkDeviceSize size = 0;
+    for (uint32_t i = 0; i < count; ++i)
+        size += sizes[i];
     VkDeviceSize at = (frame->used + to - 1) / to * to;
     while (frame->block < frame->block_count && at + size > frame->blocks[frame->block].size) {
         ++frame->block;
@@ -123,21 +132,32 @@ gtx_result gtx_vk_write(gtx_vk *vk, const void *data, VkDeviceSize size, gtx_vk_
         at = 0;
     }
     const gtx_vk_buffer *block = &frame->blocks[frame->block];
-    if (size)
-        memcpy(block->mapped + at, data, size);
-    frame->used = at + size;
-    *out = (gtx_vk_piece){block->buffer, at};
+    *out = (gtx_vk_piece){block->buffer, at, size};
+    for (uint32_t i = 0; i < count; ++i) {
+        if (sizes[i])
+            memcpy(block->mapped + at, data[i], sizes[i]);
+        at += sizes[i];
+    }
+    frame->used = at;
     return GTX_OK;
+}
+
+gtx_result gtx_vk_write(gtx_vk *vk, const void *data, VkDeviceSize size, gtx_vk_piece *out,
+                        gtx_error *error)
+{
+    const uint64_t all = size;
+    return gtx_vk_write_all(vk, &data, &all, 1, out, error);
 }
 
 static gtx_result add_pool(gtx_vk *vk, gtx_vk_frame *frame, gtx_error *error)
 {
     const VkDescriptorPoolSize sizes[] = {
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, GTX_VK_SETS * GTX_SLOT_COUNT},
-        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, GTX_VK_SETS}};
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 2 * GTX_VK_SETS},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, GTX_VK_SETS}};
     const VkDescriptorPoolCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-        .maxSets = GTX_VK_SETS, .poolSizeCount = 2, .pPoolSizes = sizes};
+        .maxSets = GTX_VK_SETS, .poolSizeCount = 3, .pPoolSizes = sizes};
     VkDescriptorPool pool;
     void *pools = frame->pools;
     gtx_result result =
@@ -175,8 +195,36 @@ gtx_result gtx_vk_take_set(gtx_vk *vk, VkDescriptorSet *out, gtx_error *error)
                         "vkAllocateDescriptorSets", error);
 }
 
+gtx_result gtx_vk_view(gtx_vk *vk, const gtx_vk_piece *piece, VkBufferView *out, gtx_error *error)
+{
+    gtx_vk_frame *frame = &vk->frames[vk->frame];
+    const VkBufferViewCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                         .buffer = piece->buffer,
+                                         .format = VK_FORMAT_R32G32B32A32_UINT,
+                                         .offset = piece->offset, .range = piece->size};
+    void *views = frame->views;
+    if (!gtx_vk_grow(vk, &views, &frame->view_room, frame->view_count + 1, sizeof *frame->views))
+        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a frame");
+    frame->views = views;
+    gtx_result result =
+        gtx_vk_check(vk->api.CreateBufferView(vk->device, &info, vk->callbacks, out),
+                     "vkCreateBufferView", error);
+    if (!result)
+        frame->views[frame->view_count++] = *out;
+    return result;
+}
+
+void gtx_vk_views_free(gtx_vk *vk, gtx_vk_frame *frame)
+{
+    for (uint32_t i = 0; i < frame->view_count; ++i)
+        vk->api.DestroyBufferView(vk->device, frame->views[i], vk->callbacks);
+    frame->view_count = 0;
+}
+
 void gtx_vk_frame_free(gtx_vk *vk, gtx_vk_frame *frame)
 {
+    gtx_vk_views_free(vk, frame);
+    gtx_free_array(&vk->allocator, frame->views, frame->view_room, sizeof *frame->views);
     for (uint32_t i = 0; i < frame->block_count; ++i)
         gtx_vk_buffer_destroy(vk, &frame->blocks[i]);
     for (uint32_t i = 0; i < frame->pool_count; ++i)

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { CONSTANTS_BINDING = 8, BINDINGS = GTX_SLOT_COUNT + 1, ATTRIBUTES = 10, OUTPUTS = 4 };
+enum { BINDINGS = GTX_SLOT_COUNT + 3, ATTRIBUTES = 10, OUTPUTS = 4 };
 
 gtx_result gtx_vk_layout_create(gtx_vk *vk, gtx_error *error)
 {
@@ -16,10 +16,12 @@ gtx_result gtx_vk_layout_create(gtx_vk *vk, gtx_error *error)
         bindings[i] = (VkDescriptorSetLayoutBinding){
             .binding = i, .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
             .descriptorCount = 1, .stageFlags = both};
-    bindings[GTX_SLOT_COUNT] = (VkDescriptorSetLayoutBinding){
-        .binding = CONSTANTS_BINDING,
-        .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC,
-        .descriptorCount = 1, .stageFlags = both};
+    for (uint32_t i = GTX_VK_CONSTANTS; i <= GTX_VK_TILE; ++i)
+        bindings[GTX_SLOT_COUNT + i - GTX_VK_CONSTANTS] = (VkDescriptorSetLayoutBinding){
+            .binding = i, .descriptorCount = 1,
+            .descriptorType = i == GTX_VK_STREAM ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
+                                                 : VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC,
+            .stageFlags = i == GTX_VK_STREAM ? VK_SHADER_STAGE_FRAGMENT_BIT : both};
     const VkDescriptorSetLayoutCreateInfo set = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
         .bindingCount = BINDINGS, .pBindings = bindings};
@@ -57,9 +59,10 @@ static gtx_result module_of(gtx_vk *vk, uint32_t pipeline, uint32_t stage, VkSha
     return result;
 }
 
-/* Of vertices of a buffer at binding 0, and of instances at binding 1. */
-static void set_attributes(gtx_buffer vertices, VkVertexInputBindingDescription bindings[2],
-                           VkVertexInputAttributeDescription attributes[ATTRIBUTES])
+/* Of vertices of a buffer at binding 0, and of instances at binding 1; tiles have a corner alone.
+ * Returns the number of attributes. */
+static uint32_t set_attributes(gtx_buffer vertices, VkVertexInputBindingDescription bindings[2],
+                               VkVertexInputAttributeDescription attributes[ATTRIBUTES])
 {
     const bool proxy = vertices == GTX_BUFFER_PROXY_VERTICES;
     enum { ROWS = 7, ID = 9 };
@@ -67,6 +70,11 @@ static void set_attributes(gtx_buffer vertices, VkVertexInputBindingDescription 
                                                     VK_VERTEX_INPUT_RATE_VERTEX};
     bindings[1] = (VkVertexInputBindingDescription){1, sizeof(gtx_instance_data),
                                                     VK_VERTEX_INPUT_RATE_INSTANCE};
+    if (vertices == GTX_BUFFER_TILE_CORNERS) {
+        bindings[0].stride = 4;
+        attributes[0] = (VkVertexInputAttributeDescription){0, 0, VK_FORMAT_R16G16_UINT, 0};
+        return 1;
+    }
     attributes[0] = (VkVertexInputAttributeDescription){
         0, 0, proxy ? VK_FORMAT_R32G32B32_SFLOAT : VK_FORMAT_R16G16B16A16_UINT, 0};
     attributes[1] =
@@ -76,6 +84,7 @@ static void set_attributes(gtx_buffer vertices, VkVertexInputBindingDescription 
             (VkVertexInputAttributeDescription){2 + i, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 16 * i};
     attributes[ID] = (VkVertexInputAttributeDescription){ID, 1, VK_FORMAT_R32_UINT,
                                                          offsetof(gtx_instance_data, id)};
+    return ATTRIBUTES;
 }
 
 static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, VkPipeline *out, gtx_error *error)
@@ -87,7 +96,7 @@ static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, VkPipeline *out, gtx_e
     VkPipelineColorBlendAttachmentState outputs[OUTPUTS];
     gtx_pipeline of;
     gtx_pipeline_get(key->pipeline, &of);
-    set_attributes(of.vertices, bindings, attributes);
+    const uint32_t attribute_count = set_attributes(of.vertices, bindings, attributes);
     for (uint32_t i = 0; i < 2; ++i) {
         stages[i] = (VkPipelineShaderStageCreateInfo){
             .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
@@ -103,7 +112,8 @@ static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, VkPipeline *out, gtx_e
     const VkPipelineVertexInputStateCreateInfo input = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
         .vertexBindingDescriptionCount = 2, .pVertexBindingDescriptions = bindings,
-        .vertexAttributeDescriptionCount = ATTRIBUTES, .pVertexAttributeDescriptions = attributes};
+        .vertexAttributeDescriptionCount = attribute_count,
+        .pVertexAttributeDescriptions = attributes};
     const VkPipelineInputAssemblyStateCreateInfo assembly = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
         .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};

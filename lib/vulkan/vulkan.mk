@@ -3,6 +3,7 @@ packages_vulkan := libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
 vulkan := $(shell printf '\043include <vulkan/vulkan_core.h>' | $(CC) -E - >/dev/null 2>&1 && \
             command -v glslangValidator >/dev/null && echo vulkan)
 needs_vulkan := base vulkan
+cflags_vulkan = -Ishaders
 extra_needs_vulkan = $(needs_render) host image
 ifdef vulkan
 lib_vulkan := $(out)/libgeotex-vulkan.a

@@ -3,8 +3,10 @@
  * highlight, one in 200. The validation layer, where it is installed, has nothing to say. */
 #include "both.h"
 
+#include "frame/planner.h"
 #include "host/target.h"
 #include "render/look.h"
+#include "vulkan/device.h"
 
 /* Every method and both passes with a depth of their own, far and near, one instance and several;
  * by a render pass and without, either way up, both orders of depth. */
@@ -36,6 +38,32 @@ static void heights_are_drawn(void **state)
 {
     BOTH_OR_SKIP(state);
     check_all(s, d, fixture_sphere(2, 64, 16), 10000);
+}
+
+/* In the forward pass and that of depth, one instance and several, mirrored, either way up, both
+ * orders of depth; far and so near that the near plane cuts. */
+static void tiles_are_cast(void **state)
+{
+    BOTH_OR_SKIP(state);
+    const uint64_t *draws = &vk->planner->tiles.draws, before = *draws;
+    gtx_instance instances[COUNT];
+    pair p = pair_open(s, d, with_lod_as(fixture_sphere(2, 64, 8), 2, 3, 0, LOD_SHINY));
+    gtx_camera camera = camera_around(p.gl.asset);
+    place(p.gl.model, camera.radius, instances);
+    for (int i = 0; i < 16; ++i) {
+        camera.distance = i & 1 ? 0.8f : 3.1f;
+        camera.reversed_z = i >> 2 & 1;
+        gtx_view view = view_of(&camera);
+        view.pass = i & 2 ? GTX_PASS_DEPTH : GTX_PASS_FORWARD;
+        view.method = GTX_METHOD_CAST;
+        by_tiles(&view);
+        const way w = {.by_pass = i % 3 == 0 || !d->renders, .y_up = i & 8};
+        expect_alike(s, d, &p, camera, view, instances, i % 2 ? COUNT : 1, w, 200);
+    }
+    /* Where llvmpipe draws. */
+    if (strstr(d->name, "llvmpipe"))
+        assert_true(*draws >= before + 16);
+    pair_close(s, &p);
 }
 
 static void lod_meshes_are_drawn(void **state)
@@ -137,6 +165,7 @@ static void check_pass(stage *s, gtx_host_vulkan *d, gtx_pass pass, uint32_t col
         view.pass = pass;
         view.method = (gtx_method)(i / 2);
         view.viewport_height = STAGE_HEIGHT;
+        view.viewport_width = view.method == GTX_METHOD_CAST ? STAGE_WIDTH : 0;
         gtx_target_begin(&s->gl, &target);
         for (uint32_t c = 0; c < colors; ++c) {
             static const GLuint no_ids[4] = {0};
@@ -195,6 +224,9 @@ static void misuse_is_refused(void **state)
     desc.reserved[1] = 1;
     assert_int_equal(gtx_vk_create(&desc, &other, &error), GTX_ERROR_NOT_ZEROED);
     desc.reserved[1] = 0;
+    desc.tiles = (gtx_tiling)3;
+    assert_int_equal(gtx_vk_create(&desc, &other, &error), GTX_ERROR_ARGUMENT);
+    desc.tiles = GTX_TILES_AUTO;
     desc.costs.cast_pixel = -1;
     assert_int_equal(gtx_vk_create(&desc, &other, &error), GTX_ERROR_ARGUMENT);
     pair p = pair_open(s, d, fixture_sphere(2, 64, 8));
@@ -212,6 +244,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(heights_are_drawn),
+        cmocka_unit_test(tiles_are_cast),
         cmocka_unit_test(lod_meshes_are_drawn),
         cmocka_unit_test(materials_and_emission_are_drawn),
         cmocka_unit_test(samples_smooth_outlines),

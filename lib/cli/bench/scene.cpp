@@ -231,7 +231,7 @@ void BenchScene::draw(BenchMethod method, gtx_view view, const Vector<gtx_instan
     move_window(view, shift_);
     if (without_vulkan(method) != method) {
         view.method = technique_of(method).method;
-        draw_by_vulkan(view, placed);
+        draw_by_vulkan(method, view, placed);
         return;
     }
     gl.DepthMask(GL_TRUE);

@@ -87,7 +87,7 @@ private:
     void draw_mesh(BenchMethod method, const gtx_view &view,
                    const Vector<gtx_instance> &placed);
     void open_vulkan(const gtx_asset *asset);
-    void draw_by_vulkan(const gtx_view &view, const Vector<gtx_instance> &placed);
+    void draw_by_vulkan(BenchMethod method, gtx_view view, const Vector<gtx_instance> &placed);
     Picture read(BenchMethod method, const gtx_view &view, const Target &target);
 
     const BenchOptions &options_;

@@ -36,10 +36,13 @@ void BenchScene::open_vulkan(const gtx_asset *asset)
     setup.device = vulkan_->device();
 }
 
-void BenchScene::draw_by_vulkan(const gtx_view &view, const Vector<gtx_instance> &placed)
+void BenchScene::draw_by_vulkan(BenchMethod method, gtx_view view,
+                                const Vector<gtx_instance> &placed)
 {
     const float nothing[4] = {};
     vulkan_->resize(view.viewport_width, view.viewport_height);
+    if (method == BenchMethod::CAST_FRAGMENT_VULKAN)
+        view.viewport_width = 0;
     vulkan_->draw(view, placed, Vector<size_t>(placed.size()), nothing);
 }
 
