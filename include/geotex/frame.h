@@ -221,7 +221,7 @@ GTX_API void gtx_frame_draws(gtx_planner *planner, gtx_submit *submit, void *use
 
 /* ---- pipelines ----------------------------------------------------------------------------- */
 
-enum { GTX_PIPELINE_COUNT = 256, GTX_MAX_SHADER_TEXTS = 16 };
+enum { GTX_PIPELINE_COUNT = 272, GTX_MAX_SHADER_TEXTS = 16 };
 
 typedef struct gtx_pipeline {
     gtx_pass pass;
@@ -238,7 +238,8 @@ typedef enum gtx_stage { GTX_STAGE_VERTEX = 0, GTX_STAGE_FRAGMENT = 1 } gtx_stag
 /* The texts of a stage's shader, which follow one another behind #version, and their number; 0
  * where there is no such pipeline. `own_main` is the text of an engine's own fragment main, or
  * NULL: it comes behind geotex_fragment.glsl, or behind geotex_lod_fragment.glsl with GTX_LOD
- * defined. The others have static storage. Any thread. */
+ * defined, and compilers count its lines from 1, as those of string 1. The others have static
+ * storage. Any thread. */
 GTX_API uint32_t gtx_pipeline_source(uint32_t pipeline, gtx_stage stage, const char *own_main,
                                      const char *texts[GTX_MAX_SHADER_TEXTS]);
 

@@ -9,7 +9,7 @@
  *   program 0, vertex array 0, array and element buffers 0, active texture unit 0, textures (2D and
  *   2D array) and samplers 0 on units 0..7, depth test on, depth func LESS (GREATER when reversed),
  *   depth mask on, cull face off, cull mode BACK, front face CCW, blend off, colour mask all on.
- * With OpenGL also, where rays are cast by tiles (gtx_tiling): buffer texture 0 on unit 8.
+ * With OpenGL also, where rays are cast by tiles (gtx_tiling): buffer texture 0 on unit 16.
  * It does not touch the framebuffer binding, viewport, scissor, stencil or clip control.
  *
  * OpenGL ES is recognised by its version string; there is nothing to set. It encodes what is
@@ -83,8 +83,9 @@ GTX_API void gtx_model_destroy(gtx_renderer *renderer, gtx_model *model);
 /* `text` is GLSL that is put behind geotex_fragment.glsl, which says what there is to call, and for
  * LOD meshes and displaced grids behind geotex_lod_fragment.glsl, with GTX_LOD defined.
  * geotex_material.glsl and geotex_rays.glsl are there too; the rays are those of gtx_rays_bind.
- * `text` has no #version, its samplers start at unit 8, and it is not kept. The shading comes from
- * the renderer's allocator, and is freed by gtx_shading_destroy.
+ * `text` has no #version, its samplers have units 8 to 12, and it is not kept. Compilers count
+ * its lines from 1, in string 1 where they tell strings apart. The shading comes from the
+ * renderer's allocator, and is freed by gtx_shading_destroy.
  * Errors: ARGUMENT, MEMORY, SHADER (the renderer's log says why). */
 GTX_API gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
                                       gtx_error *error);
@@ -94,6 +95,9 @@ GTX_API void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading);
  * draw LOD meshes and displaced grids, for setting the engine's own uniforms between draws: AUTO
  * takes all three. */
 GTX_API uint32_t gtx_shading_program(const gtx_shading *shading, gtx_method method);
+/* The same of its program that casts by tiles, which GTX_VIEW_SHADING_BY_TILES asks for; 0 where
+ * the renderer has no tiles. */
+GTX_API uint32_t gtx_shading_tile_program(const gtx_shading *shading);
 
 /* Draws the instances into the bound framebuffer, which must have a depth buffer: writes depth and
  * what view->pass says. In the forward pass a model with materials or emission is shaded by

@@ -44,7 +44,9 @@ typedef struct gtx_shading gtx_shading;
 enum { /* gtx_view.flags */
     GTX_VIEW_REVERSED_Z = 1,          /* nearer is greater: depth func GREATER */
     GTX_VIEW_DEPTH_ZERO_TO_ONE = 2,   /* clip z in 0..1 (glClipControl), not -1..1 */
-    GTX_VIEW_RESTORE_STATE = 4        /* read the touched state first and put it back */
+    GTX_VIEW_RESTORE_STATE = 4,       /* read the touched state first and put it back */
+    GTX_VIEW_SHADING_BY_TILES = 8     /* an engine's own shading is cast by tiles, too, where others
+                                         are (gtx_tiling), by a program or pipeline of its own */
 };
 
 /* One camera and one light.
@@ -119,8 +121,8 @@ typedef struct gtx_costs {
 /* Casting by tiles: for each tile of 4 x 4 pixels the patches of an instance that may cover it are
  * listed, nearest first, and each pixel casts one ray, which stops at the nearest hit. It applies
  * to what GTX_METHOD_CAST and AUTO cast in views that give viewport_width, one instance at a time,
- * in every pass, but not with an engine's own shading. Everything else, and all of OpenGL ES, is
- * cast in the fragments of proxies. */
+ * in every pass, but with an engine's own shading only where GTX_VIEW_SHADING_BY_TILES is set.
+ * Everything else, and all of OpenGL ES, is cast in the fragments of proxies. */
 typedef enum gtx_tiling {
     GTX_TILES_AUTO = 0,           /* where it is known to be faster: with llvmpipe */
     GTX_TILES_NEVER = 1,

@@ -29,7 +29,8 @@ const option options[] = {
      "instances in view, in one draw call [1]", 0, 0},
     {"methods", 0, OPTION_STRING, &methods, "NAME,...",
      "mesh mesh_stream simplified paper cast lod auto cast_depth auto_depth cast_fragment "
-     "grid grid_depth floor [mesh,simplified,paper,cast,lod,auto; a path's: "
+     "grid grid_depth floor cast_own lod_own auto_own grid_own "
+     "[mesh,simplified,paper,cast,lod,auto; a path's: "
      "mesh,simplified,floor,cast,auto]", 0, 0},
     {"frames", 0, OPTION_UINT, &frames, "N",
      "frames per method [12]; views along a path [one a key]", 1, 10000},

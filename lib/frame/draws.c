@@ -98,7 +98,8 @@ static bool cast_tiles(const gtx_draw_call *call, const run *r, uint32_t instanc
         {16ull * tiles->record_texels, 16ull * tiles->slab_texels, 16ull * tiles->head_texels,
          16ull * tiles->list_texels}};
     const gtx_range corners = {.count = tiles->corner_count};
-    gtx_frame_draw draw = draw_of(call, r, TECHNIQUE_TILES, instance, 1);
+    const gtx_technique technique = is_own(call) ? TECHNIQUE_OWN_TILES : TECHNIQUE_TILES;
+    gtx_frame_draw draw = draw_of(call, r, technique, instance, 1);
     draw.vertices = GTX_BUFFER_TILE_CORNERS;
     draw.index_size = 0;
     draw.vertex_data = tiles->corners.data;

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_PARTS = 3 };
+enum { MAX_PARTS = 4 };
 
 /* What a technique consists of: between #version and the parts come the defines of technique and
  * material and, in either stage, the files that all share. */
@@ -68,6 +68,10 @@ static const technique_files techniques[TECHNIQUE_COUNT] = {
                            {"geotex_lod_fragment.glsl", "geotex_rays.glsl"}, NULL, ALL_MAPS},
     [TECHNIQUE_OWN_GRID] = {"grid, own", "geotex_lod.vert", "#define GTX_LOD\n" GRID TRIMMED,
                             {"geotex_lod_fragment.glsl", "geotex_rays.glsl"}, NULL, ALL_MAPS},
+    [TECHNIQUE_OWN_TILES] = {"tiles, own", "geotex_tiles.vert", "#define GTX_TILES\n",
+                             {"geotex_cast.glsl", "geotex_fragment.glsl", "geotex_tiles.glsl",
+                              "geotex_rays.glsl"},
+                             NULL, ALL_MAPS},
 };
 
 static const struct {
@@ -159,7 +163,13 @@ static bool is_lod(gtx_technique technique)
 
 static bool is_cast(gtx_technique technique)
 {
-    return technique <= TECHNIQUE_TILES || technique == TECHNIQUE_OWN_CAST;
+    return technique <= TECHNIQUE_TILES || technique == TECHNIQUE_OWN_CAST ||
+           technique == TECHNIQUE_OWN_TILES;
+}
+
+static bool is_tiles(gtx_technique technique)
+{
+    return technique == TECHNIQUE_TILES || technique == TECHNIQUE_OWN_TILES;
 }
 
 uint32_t gtx_pipeline_get(uint32_t pipeline, gtx_pipeline *out)
@@ -173,10 +183,10 @@ uint32_t gtx_pipeline_get(uint32_t pipeline, gtx_pipeline *out)
     if (made)
         *out = (gtx_pipeline){
             .pass = r.pass,
-            .vertices = r.technique == TECHNIQUE_TILES ? GTX_BUFFER_TILE_CORNERS
-                        : is_cast(r.technique)         ? GTX_BUFFER_PROXY_VERTICES
-                        : is_lod(r.technique)          ? GTX_BUFFER_LOD_VERTICES
-                                                       : GTX_BUFFER_GRID_VERTICES,
+            .vertices = is_tiles(r.technique)  ? GTX_BUFFER_TILE_CORNERS
+                        : is_cast(r.technique) ? GTX_BUFFER_PROXY_VERTICES
+                        : is_lod(r.technique)  ? GTX_BUFFER_LOD_VERTICES
+                                               : GTX_BUFFER_GRID_VERTICES,
             .own_main = is_own(r.technique),
             .writes_depth = is_cast(r.technique)};
     return made;
@@ -224,10 +234,12 @@ static void add_fragment(source *s, const recipe *r, const char *own_main)
     add_file(s, materials[r->material].file);
     for (int i = 0; i < MAX_PARTS; ++i)
         add_file(s, t->parts[i]);
-    if (is_own(r->technique))
+    if (is_own(r->technique)) {
+        add(s, "#line 1 1\n");
         add(s, own_main);
-    else
+    } else {
         add_file(s, r->pass == GTX_PASS_FORWARD ? t->forward : passes[r->pass].main);
+    }
 }
 
 uint32_t gtx_pipeline_source(uint32_t pipeline, gtx_stage stage, const char *own_main,

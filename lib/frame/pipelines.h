@@ -24,6 +24,7 @@ typedef enum gtx_technique {
     TECHNIQUE_OWN_CAST,       /* by an engine's own main */
     TECHNIQUE_OWN_LOD,
     TECHNIQUE_OWN_GRID,
+    TECHNIQUE_OWN_TILES,
     TECHNIQUE_COUNT
 } gtx_technique;
 

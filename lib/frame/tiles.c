@@ -241,7 +241,9 @@ bool gtx_tiles_suit(const gtx_draw_call *draw)
     const uint32_t most = 65528; /* corners are counted in 16 bits */
     const gtx_view *view = draw->view;
     const bool own = view->shading || (draw->planner->own_main && !view->pass);
-    return draw->planner->tiles.max_texels && !own &&
+    if (own && !(view->flags & GTX_VIEW_SHADING_BY_TILES))
+        return false;
+    return draw->planner->tiles.max_texels &&
            view->method != GTX_METHOD_PAPER && view->viewport_width > 0 &&
            view->viewport_width <= most && view->viewport_height > 0 &&
            view->viewport_height <= most;

@@ -14,8 +14,8 @@ enum {
     UNIT_EMISSIONS = GTX_SLOT_EMISSIONS,
     UNIT_COUNT = GTX_SLOT_COUNT,
     UNIT_CLEARED = 8, /* units that render.h promises to leave empty */
-    UNIT_STREAM = 8,  /* a buffer's, which leaves the other textures of the unit alone */
-    UNIT_RAYS = 13    /* the first of three, which gtx_rays_bind binds */
+    UNIT_RAYS = 13,   /* the first of three, which gtx_rays_bind binds */
+    UNIT_STREAM = 16  /* a buffer's; an engine's own samplers have 8 to 12 */
 };
 
 #endif

@@ -170,9 +170,11 @@ gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shad
     gtx_shading *shading = gtx_alloc_array(&renderer->allocator, 1, sizeof *shading);
     if (!shading)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a shading");
-    gtx_program *const programs[] = {&shading->cast, &shading->lod, &shading->grid};
+    gtx_program *const programs[] = {&shading->cast, &shading->lod, &shading->grid,
+                                     &shading->tiles};
+    const int count = renderer->gl.TexBuffer ? 4 : 3;
     gtx_result result = GTX_OK;
-    for (int i = 0; i < 3 && !result; ++i)
+    for (int i = 0; i < count && !result; ++i)
         result = build(renderer,
                        gtx_pipeline_of((gtx_technique)(TECHNIQUE_OWN_CAST + i), GTX_PASS_FORWARD,
                                        MATERIAL_MAPS),
@@ -191,6 +193,7 @@ void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading)
     renderer->gl.DeleteProgram(shading->cast.object);
     renderer->gl.DeleteProgram(shading->lod.object);
     renderer->gl.DeleteProgram(shading->grid.object);
+    renderer->gl.DeleteProgram(shading->tiles.object);
     gtx_free_array(&renderer->allocator, shading, 1, sizeof *shading);
 }
 
@@ -199,4 +202,9 @@ uint32_t gtx_shading_program(const gtx_shading *shading, gtx_method method)
     return method == GTX_METHOD_LOD    ? shading->lod.object
            : method == GTX_METHOD_GRID ? shading->grid.object
                                        : shading->cast.object;
+}
+
+uint32_t gtx_shading_tile_program(const gtx_shading *shading)
+{
+    return shading->tiles.object;
 }

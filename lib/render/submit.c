@@ -90,6 +90,8 @@ static const gtx_program *program_of(const gtx_submission *s, const gtx_frame_dr
         return &shading->lod;
     if (technique == TECHNIQUE_OWN_GRID)
         return &shading->grid;
+    if (technique == TECHNIQUE_OWN_TILES)
+        return &shading->tiles;
     /* All materials are drawn alike in other passes than the forward one. */
     return &s->renderer->programs[single ? gtx_pipeline_of(TECHNIQUE_LOD_SINGLE, s->view->pass,
                                                            MATERIAL_NONE)
@@ -163,7 +165,7 @@ void gtx_submit_draw(const gtx_frame_draw *draw, void *user)
     s->model = draw->model;
     use_program(s, program_of(s, draw, single), draw->constants);
     cull(s, draw);
-    if (technique == TECHNIQUE_TILES) {
+    if (draw->tiles) {
         gtx_tile_stream_draw(s->renderer, s->program, draw);
     } else if (draw->vertices == GTX_BUFFER_GRID_VERTICES) {
         submit_grid(s, draw);

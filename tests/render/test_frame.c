@@ -228,7 +228,7 @@ static void pipelines_have_shaders(void **state)
                              !p.own_main);
         }
     }
-    assert_int_equal(own, 3);
+    assert_int_equal(own, 4);
     assert_in_range(found, 40, 80);
 }
 

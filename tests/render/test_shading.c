@@ -35,12 +35,17 @@ static void a_main_of_the_engines_own(void **state)
     const matrix back = matrix_inverse(
         matrix_mul(matrix_of(view.projection), matrix_of(view.view)));
     const matrix to_object = matrix_inverse(matrix_of(instance.transform));
-    for (int i = 0; i < 4; ++i) {
+    const int ways = gtx_shading_tile_program(shading) ? 6 : 4; /* the last two by tiles */
+    for (int i = 0; i < ways; ++i) {
         const int world = i % 2;
         const float scale[4] = {0.2f, 0, 0, (float)world};
         long checked = 0;
-        view.method = i < 2 ? GTX_METHOD_CAST : GTX_METHOD_LOD;
-        const GLuint program = gtx_shading_program(shading, view.method);
+        view.method = i / 2 == 1 ? GTX_METHOD_LOD : GTX_METHOD_CAST;
+        view.flags |= GTX_VIEW_SHADING_BY_TILES;
+        by_tiles(&view);
+        view.viewport_width = i < 4 ? 0 : STAGE_WIDTH;
+        const GLuint program = i < 4 ? gtx_shading_program(shading, view.method)
+                                     : gtx_shading_tile_program(shading);
         s->gl.UseProgram(program);
         s->gl.Uniform4fv(s->gl.GetUniformLocation(program, "scale"), 1, scale);
         stage_draw(s, &view, &instance, 1);
@@ -89,6 +94,11 @@ static void bad_mains_are_refused(void **state)
     assert_int_equal(gtx_shading_create(renderer, "void main() { nonsense(); }", &shading, &error),
                      GTX_ERROR_SHADER);
     assert_non_null(strstr(log, "nonsense"));
+    /* By the engine's own line. */
+    assert_int_equal(gtx_shading_create(renderer, "void main()\n{\n\n\n\n    nonsense();\n}\n",
+                                        &shading, &error), GTX_ERROR_SHADER);
+    if (!strstr(log, ":6"))
+        fail_msg("%s", log);
     assert_null(shading);
     assert_int_equal(gtx_shading_create(renderer, NULL, &shading, NULL), GTX_ERROR_ARGUMENT);
     assert_int_equal(gtx_shading_create(NULL, "", &shading, NULL), GTX_ERROR_ARGUMENT);

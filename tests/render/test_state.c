@@ -72,8 +72,8 @@ static snapshot take(stage *s)
         for (int k = 0; k < 4; ++k)
             out.value[n++] = mask[k];
     }
-    for (int i = 0; !getenv("GEOTEX_ES") && i < STREAMS; ++i) { /* buffer textures of units 7, 8 */
-        active_texture(GL_TEXTURE7 + (GLenum)i);
+    for (int i = 0; !getenv("GEOTEX_ES") && i < STREAMS; ++i) { /* buffers of units 15, 16 */
+        active_texture(GL_TEXTURE15 + (GLenum)i);
         s->gl.GetIntegerv(GL_TEXTURE_BINDING_BUFFER, &out.value[n + i]);
     }
     active_texture((GLenum)unit);
@@ -105,7 +105,7 @@ static void disturb(stage *s)
         bind_sampler((GLuint)i, name);
     }
     for (int i = 0; !getenv("GEOTEX_ES") && i < STREAMS; ++i) {
-        active_texture(GL_TEXTURE7 + (GLenum)i);
+        active_texture(GL_TEXTURE15 + (GLenum)i);
         gen_textures(1, &name);
         bind_texture(GL_TEXTURE_BUFFER, name);
     }

@@ -10,7 +10,8 @@ namespace gtx {
 
 const char *const bench_method_names[BENCH_METHODS] = {
     "mesh", "mesh_stream", "simplified", "paper", "cast", "lod", "auto", "cast_depth", "auto_depth",
-    "cast_fragment", "grid", "grid_depth", "floor", "paper_vulkan", "cast_vulkan", "lod_vulkan",
+    "cast_fragment", "grid", "grid_depth", "floor",
+    "cast_own", "lod_own", "auto_own", "grid_own", "paper_vulkan", "cast_vulkan", "lod_vulkan",
     "auto_vulkan", "cast_fragment_vulkan", "grid_vulkan"};
 
 namespace {
@@ -160,7 +161,8 @@ void Bench::judge_all(const std::array<uint32_t, 2> &size, uint32_t instances,
 /* Ten times the instances of a mesh take ten times as long. */
 const char *Bench::reason_to_skip(const BenchRow &row) const
 {
-    if (without_vulkan(row.method) == BenchMethod::LOD && !scene.info.lod_levels)
+    const BenchMethod method = without_vulkan(row.method);
+    if ((method == BenchMethod::LOD || method == BenchMethod::LOD_OWN) && !scene.info.lod_levels)
         return "the asset has no LOD mesh";
     const double left = 1000 * options_.budget - (milliseconds() - began_);
     const auto last = last_.find({row.size[1], row.method});

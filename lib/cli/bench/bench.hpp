@@ -20,14 +20,19 @@ enum class BenchMethod : uint32_t {
     CAST_FRAGMENT, /* cast in fragments where CAST is by tiles */
     GRID, GRID_DEPTH,
     FLOOR,         /* of run_path alone: the pixels that AUTO covers, shaded once */
+    CAST_OWN, LOD_OWN, AUTO_OWN, GRID_OWN, /* by a fragment main of an engine's own (own.cpp) */
     /* The same by Vulkan; of run_bench alone. */
     PAPER_VULKAN, CAST_VULKAN, LOD_VULKAN, AUTO_VULKAN, CAST_FRAGMENT_VULKAN, GRID_VULKAN
 };
-constexpr uint32_t BENCH_METHODS = 19;
+constexpr uint32_t BENCH_METHODS = 23;
 /* What draws the same by OpenGL; itself for methods that are not Vulkan's. And the other way round,
  * MESH where there is none. */
 BenchMethod without_vulkan(BenchMethod method);
 BenchMethod with_vulkan(BenchMethod method);
+inline bool is_own(BenchMethod method)
+{
+    return method >= BenchMethod::CAST_OWN && method <= BenchMethod::GRID_OWN;
+}
 extern const char *const bench_method_names[BENCH_METHODS]; /* as in reports */
 /* Pixels. An error is stated for the farthest point: outlines agree at larger ones. */
 constexpr double bench_errors[] = {0.25, 0.35, 0.5, 0.71, 1, 1.41, 2, 2.83, 4};

@@ -18,31 +18,6 @@ namespace gtx {
 constexpr double MAX_LEVEL_ERROR = 0.003;
 constexpr GLenum INVOCATIONS = 0x82F4; /* GL_FRAGMENT_SHADER_INVOCATIONS: OpenGL 4.6 */
 
-/* How the methods of the library are asked for. */
-struct Technique {
-    gtx_method method;
-    gtx_pass pass;
-};
-static Technique technique_of(BenchMethod method)
-{
-    switch (without_vulkan(method)) {
-    case BenchMethod::PAPER: return {GTX_METHOD_PAPER, GTX_PASS_FORWARD};
-    case BenchMethod::CAST:
-    case BenchMethod::CAST_FRAGMENT: return {GTX_METHOD_CAST, GTX_PASS_FORWARD};
-    case BenchMethod::GRID: return {GTX_METHOD_GRID, GTX_PASS_FORWARD};
-    case BenchMethod::GRID_DEPTH: return {GTX_METHOD_GRID, GTX_PASS_DEPTH};
-    case BenchMethod::LOD: return {GTX_METHOD_LOD, GTX_PASS_FORWARD};
-    case BenchMethod::CAST_DEPTH: return {GTX_METHOD_CAST, GTX_PASS_DEPTH};
-    case BenchMethod::AUTO_DEPTH: return {GTX_METHOD_AUTO, GTX_PASS_DEPTH};
-    default: return {GTX_METHOD_AUTO, GTX_PASS_FORWARD};
-    }
-}
-
-bool is_depth_pass(BenchMethod method)
-{
-    return technique_of(method).pass == GTX_PASS_DEPTH;
-}
-
 double milliseconds()
 {
     using clock = std::chrono::steady_clock;
@@ -87,6 +62,7 @@ BenchScene::~BenchScene()
 {
     for (gtx_polygons &p : polygons_)
         gtx_polygons_destroy(&gl, &p);
+    gtx_shading_destroy(renderer_, own_);
     gtx_model_destroy(renderer_, model_);
     gtx_renderer_destroy(renderer_);
     gtx_polygon_program_destroy(&gl, &program_);
@@ -253,6 +229,8 @@ void BenchScene::draw(BenchMethod method, gtx_view view, const Vector<gtx_instan
         view.pass = technique.pass;
         if (method == BenchMethod::CAST_FRAGMENT)
             view.viewport_width = 0;
+        if (is_own(method))
+            shade_own(view);
         gtx_error error;
         require_ok(gtx_draw(renderer_, &view, placed.data(), uint32_t(placed.size()), &error),
                    error);

@@ -21,6 +21,13 @@ inline bool is_mesh(BenchMethod method)
 }
 bool is_depth_pass(BenchMethod method);
 
+/* How the methods of the library are asked for. */
+struct Technique {
+    gtx_method method;
+    gtx_pass pass;
+};
+Technique technique_of(BenchMethod method);
+
 /* What is drawn: `instances` on a wall of squares, each turned by `turn` of
  * BENCH_TURNS parts of a circle. */
 struct Shot {
@@ -86,6 +93,7 @@ private:
     void draw(BenchMethod method, gtx_view view, const Vector<gtx_instance> &placed);
     void draw_mesh(BenchMethod method, const gtx_view &view,
                    const Vector<gtx_instance> &placed);
+    void shade_own(gtx_view &view);
     void open_vulkan(const gtx_asset *asset);
     void draw_by_vulkan(BenchMethod method, gtx_view view, const Vector<gtx_instance> &placed);
     Picture read(BenchMethod method, const gtx_view &view, const Target &target);
@@ -95,6 +103,7 @@ private:
     gtx_polygon_program program_ = {};
     gtx_renderer *renderer_ = nullptr;
     gtx_model *model_ = nullptr;
+    gtx_shading *own_ = nullptr;         /* once it is asked for */
     float centre_[3] = {}, radius_ = 0;
     Vector<gtx_polygons> polygons_;      /* of the levels */
     std::unique_ptr<PartDrawer> part_drawer_;
