@@ -1,5 +1,5 @@
-/* The stock forward main of the LOD mesh: lit colour in sRGB bytes, from the same maps and by the
- * same light as geotex_forward.frag. Follows geotex_lod_fragment.glsl. GTX_PLAIN and
+/* The stock forward main of the LOD mesh: lit colour, in sRGB or linear, from the same maps and by
+ * the same light as geotex_forward.frag. Follows geotex_lod_fragment.glsl. GTX_PLAIN and
  * GTX_MATERIALS are as there. */
 layout(location = 0) out vec4 gtx_out_color;
 
@@ -33,15 +33,15 @@ void main()
     }
     if (gtx_maps.z > 0.0)
         material.emission = textureLod(gtx_emissions, place, level).rgb * gtx_maps.z;
-    color.rgb = gtx_to_srgb(gtx_shade(material, n, -gtx_ray, gtx_light.xyz, gtx_light.w,
-                                      gtx_page.z));
+    color.rgb = gtx_shown(gtx_shade(material, n, -gtx_ray, gtx_light.xyz, gtx_light.w,
+                                    gtx_page.z));
 #else
     float share = gtx_light.w + (1.0 - gtx_light.w) * gtx_lambert(n);
 #ifdef GTX_PLAIN
-    color.rgb = gtx_shaded_to_srgb(color.rgb, share);
+    color.rgb = gtx_shown(color.rgb, share);
 #else
     color *= textureLod(gtx_colors, place, level);
-    color.rgb = gtx_to_srgb(color.rgb * share);
+    color.rgb = gtx_shown(color.rgb * share);
 #endif
 #endif
     gtx_out_color = color;

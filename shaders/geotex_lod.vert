@@ -39,7 +39,7 @@ layout(location = 9) in uint gtx_instance;
 invariant gl_Position;                      /* bit for bit what a depth prepass has */
 
 #ifdef GTX_LIT
-GTX_VARYING(0) out vec4 gtx_lit;            /* colour, in sRGB */
+GTX_VARYING(0) out vec4 gtx_lit;            /* colour as it is shown */
 #else
 GTX_VARYING(0) out vec2 gtx_at;             /* place in the page, 0..1 */
 GTX_VARYING(1) flat out vec3 gtx_page;      /* page; mip level; how far normals stray from it */
@@ -128,7 +128,7 @@ void main()
     gtx_lit *= textureLod(gtx_colors, vec3(place, page), level);
 #endif
     vec3 root = pow(max(gtx_lit.rgb, 0.0), vec3(1.0 / 2.4));
-    gtx_lit.rgb = gtx_shaded_to_srgb(root, gtx_light.w + (1.0 - gtx_light.w) * light);
+    gtx_lit.rgb = gtx_shown(root, gtx_light.w + (1.0 - gtx_light.w) * light);
 #ifdef GTX_TRIMMED
     gtx_outline = 255.0 * texelFetch(gtx_trim, ivec3(rect.xy + at, page), 0).r;
 #endif

@@ -40,17 +40,17 @@ void main()
     if (gtx_maps.z > 0.0)
         material.emission = textureLod(gtx_emissions, place, level).rgb * gtx_maps.z;
 #endif
-    color.rgb = gtx_to_srgb(gtx_shade(material, n, gtx_eye * gtx_page.z, gtx_toward * gtx_page.z,
-                                      gtx_between, gtx_light.w, gtx_page.z));
+    color.rgb = gtx_shown(gtx_shade(material, n, gtx_eye * gtx_page.z, gtx_toward * gtx_page.z,
+                                    gtx_between, gtx_light.w, gtx_page.z));
 #else
     float deviation = gtx_page.z, lv = dot(gtx_toward, gtx_eye) * (deviation * deviation);
     float light = gtx_diffuse(dot(n, gtx_toward), dot(n, gtx_eye), lv, deviation);
     float share = gtx_light.w + (1.0 - gtx_light.w) * light;
 #ifdef GTX_PLAIN
-    color.rgb = gtx_shaded_to_srgb(color.rgb, share);
+    color.rgb = gtx_shown(color.rgb, share);
 #else
     color *= textureLod(gtx_colors, place, level);
-    color.rgb = gtx_to_srgb(color.rgb * share);
+    color.rgb = gtx_shown(color.rgb * share);
 #endif
 #endif
     gtx_out_color = color;

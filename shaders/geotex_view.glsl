@@ -12,7 +12,7 @@ GTX_UNIFORM vec4 gtx_detail;            /* x: pixels a world unit at clip w = 1,
                                            z: the level of boxes;
                                            w: the error allowed, in pixels */
 GTX_UNIFORM vec4 gtx_search;            /* of geotex_paper.glsl, x, y: linear and binary steps;
-                                           0: balanced */
+                                           0: balanced; z: 1 when mains write linear colours */
 GTX_UNIFORM vec4 gtx_maps;              /* x: last mip level of normals and colours; y: 1 when the
                                            model has colours; z: scale of its emission, or 0;
                                            w: 1 when it has materials */
@@ -99,4 +99,22 @@ vec3 gtx_shaded_to_srgb(vec3 root, float share)
     vec3 r = min(root * gtx_root(vec3(share)), 1.0);
     return mix(1.055 * r - 0.055, 12.92 * r * r * (0.197 + 2.05 * r),
                vec3(lessThan(r, vec3(0.0904))));
+}
+
+/* What stock mains write of a linear colour, and of a share of light times a colour, of which they
+ * have the 2.4th root. */
+vec3 gtx_shown(vec3 color)
+{
+    if (gtx_search.z > 0.0)
+        return color;
+    color = clamp(color, 0.0, 1.0);
+    return mix(1.055 * gtx_root(color) - 0.055, 12.92 * color,
+               vec3(lessThan(color, vec3(0.0031308))));
+}
+
+vec3 gtx_shown(vec3 root, float share)
+{
+    if (gtx_search.z > 0.0)
+        return pow(root, vec3(2.4)) * share;
+    return gtx_shaded_to_srgb(root, share);
 }

@@ -10,10 +10,12 @@
  *   2D array) and samplers 0 on units 0..7, depth test on, depth func LESS (GREATER when reversed),
  *   depth mask on, cull face off, cull mode BACK, front face CCW, blend off, colour mask all on.
  * With OpenGL also, where rays are cast by tiles (gtx_tiling): buffer texture 0 on unit 16.
+ * With GTX_VIEW_BY_SAMPLES: sample shading off, and its least share 1, which is not restored.
  * It does not touch the framebuffer binding, viewport, scissor, stencil or clip control.
  *
  * OpenGL ES is recognised by its version string; there is nothing to set. It encodes what is
- * written to an sRGB framebuffer, so bind another kind: colours are sRGB bytes already. Before ES
+ * written to an sRGB framebuffer, so bind another kind, or set GTX_VIEW_LINEAR: colours are sRGB
+ * bytes already. Before ES
  * 3.2, GTX_VIEW_RESTORE_STATE assumes that blending and colour mask are equal on all draw buffers.
  *
  * Where the context has KHR_debug, every object carries a label and a draw is a debug group. */

@@ -26,7 +26,7 @@ typedef enum gtx_method {
  * are compiled with the renderer, those of another pass by its first draw, even one of no
  * instances. */
 typedef enum gtx_pass {
-    GTX_PASS_FORWARD = 0,         /* 0: lit colour, in sRGB bytes */
+    GTX_PASS_FORWARD = 0,         /* 0: lit colour, in sRGB; linear with GTX_VIEW_LINEAR */
     GTX_PASS_DEPTH = 1,           /* nothing, colour is masked; the same depth, bit for bit. For a
                                      shadow map viewport_height is the map's height */
     GTX_PASS_ID = 2,              /* 0, unsigned integers (RGBA32UI, or RG32UI for the first two):
@@ -45,8 +45,15 @@ enum { /* gtx_view.flags */
     GTX_VIEW_REVERSED_Z = 1,          /* nearer is greater: depth func GREATER */
     GTX_VIEW_DEPTH_ZERO_TO_ONE = 2,   /* clip z in 0..1 (glClipControl), not -1..1 */
     GTX_VIEW_RESTORE_STATE = 4,       /* read the touched state first and put it back */
-    GTX_VIEW_SHADING_BY_TILES = 8     /* an engine's own shading is cast by tiles, too, where others
+    GTX_VIEW_SHADING_BY_TILES = 8,    /* an engine's own shading is cast by tiles, too, where others
                                          are (gtx_tiling), by a program or pipeline of its own */
+    GTX_VIEW_BY_SAMPLES = 32,         /* cast once a sample, not by tiles: multisampling smooths the
+                                         outlines of casts as those of polygons. In OpenGL where the
+                                         context has sample shading; in Vulkan with the device's
+                                         feature sampleRateShading */
+    GTX_VIEW_LINEAR = 16              /* lit colours, and albedos of a G-buffer, are written as
+                                         linear light, without a bound above: into floats, or what
+                                         encodes (sRGB formats; in OpenGL, FRAMEBUFFER_SRGB on) */
 };
 
 /* One camera and one light.

@@ -93,7 +93,8 @@ static gtx_result check(const gtx_planner *planner, const gtx_view *view,
                         const gtx_instance *instances, uint32_t count, gtx_error *error)
 {
     const uint32_t flags = GTX_VIEW_REVERSED_Z | GTX_VIEW_DEPTH_ZERO_TO_ONE |
-                           GTX_VIEW_RESTORE_STATE | GTX_VIEW_SHADING_BY_TILES;
+                           GTX_VIEW_RESTORE_STATE | GTX_VIEW_SHADING_BY_TILES | GTX_VIEW_LINEAR |
+                           GTX_VIEW_BY_SAMPLES;
     if (!planner || !view || (count && !instances))
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "a draw needs a renderer or planner, a view and instances");

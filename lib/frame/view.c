@@ -138,6 +138,7 @@ gtx_result gtx_sight_of_view(const gtx_view *view, gtx_sight *out, gtx_error *er
     memset(out, 0, sizeof *out);
     out->search[0] = (float)steps[0];
     out->search[1] = (float)steps[1];
+    out->search[2] = view->flags & GTX_VIEW_LINEAR ? 1.0f : 0.0f;
     out->reversed = view->flags & GTX_VIEW_REVERSED_Z;
     multiply(view->projection, view->view, clip);
     if (!find_eye(clip, out, forward))

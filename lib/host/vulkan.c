@@ -85,6 +85,11 @@ static gtx_result open_device(gtx_host_vulkan *v, gtx_error *error)
     if ((listed && listed != VK_INCOMPLETE) || !count)
         return gtx_fail(error, GTX_ERROR_GL, "there is no Vulkan device");
     properties(v->physical, &p);
+    VkPhysicalDeviceFeatures able;
+    ((PFN_vkGetPhysicalDeviceFeatures)v->load(v->instance, "vkGetPhysicalDeviceFeatures"))(
+        v->physical, &able);
+    v->by_samples = able.sampleRateShading;
+    const VkPhysicalDeviceFeatures wanted = {.sampleRateShading = able.sampleRateShading};
     v->renders = p.apiVersion >= VK_API_VERSION_1_3;
     memcpy(v->name, p.deviceName, sizeof v->name);
     const float priority = 1;
@@ -94,7 +99,8 @@ static gtx_result open_device(gtx_host_vulkan *v, gtx_error *error)
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES, .dynamicRendering = 1};
     const VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                      .pNext = v->renders ? &features : NULL,
-                                     .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue};
+                                     .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue,
+                                     .pEnabledFeatures = &wanted};
     if (create(v->physical, &info, NULL, &v->device))
         return gtx_fail(error, GTX_ERROR_GL, "%s cannot be used", v->name);
 #define LOAD(name) v->name = (PFN_vk##name)of(v->device, "vk" #name);

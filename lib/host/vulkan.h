@@ -40,6 +40,7 @@ typedef struct gtx_host_vulkan {
     char name[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
     bool validated;           /* by the layer, whose complaints are counted and go to stderr */
     bool renders;             /* without passes: Vulkan 1.3 */
+    bool by_samples;          /* has sampleRateShading */
     int complaints;
 } gtx_host_vulkan;
 

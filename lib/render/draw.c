@@ -77,6 +77,8 @@ gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_inst
     gl->BufferData(GL_ARRAY_BUFFER, (gl_pointer)(count * sizeof *frame.instances),
                    frame.instances, GL_STREAM_DRAW);
     gtx_frame_draws(&renderer->planner, gtx_submit_draw, &s);
+    if (view->flags & GTX_VIEW_BY_SAMPLES && gl->MinSampleShading)
+        gl->Disable(GL_SAMPLE_SHADING);
     if (restore)
         gtx_state_restore(gl, &state);
     else

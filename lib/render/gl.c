@@ -49,6 +49,12 @@ static void load_multi(gtx_gl *gl, const gtx_renderer_desc *desc, const char *su
 {
     char text[64];
     GTX_GL_MULTI(LOAD)
+}
+
+static void load_samples(gtx_gl *gl, const gtx_renderer_desc *desc, const char *suffix)
+{
+    char text[64];
+    GTX_GL_SAMPLES(LOAD)
 #undef LOAD
 }
 
@@ -103,6 +109,10 @@ gtx_result gtx_gl_init(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *err
         load_multi(gl, desc, gl->es ? "EXT" : "");
     else if (has_extension(gl, "GL_WEBGL_multi_draw"))
         load_multi(gl, desc, "WEBGL");
+    if (have >= (gl->es ? 32 : 40))
+        load_samples(gl, desc, "");
+    else if (has_extension(gl, gl->es ? "GL_OES_sample_shading" : "GL_ARB_sample_shading"))
+        load_samples(gl, desc, gl->es ? "OES" : "ARB");
     if (!gl->es && wants_tiles(gl, desc))
         load_tiles(gl, desc);
     return result;

@@ -33,6 +33,7 @@ enum {
     GL_BACK = 0x0405,
     GL_FRONT_FACE = 0x0B46,
     GL_DEPTH_TEST = 0x0B71,
+    GL_SAMPLE_SHADING = 0x8C36,
     GL_DEPTH_WRITEMASK = 0x0B72,
     GL_DEPTH_FUNC = 0x0B74,
     GL_BLEND = 0x0BE2,
@@ -218,6 +219,9 @@ enum {
     X(void, TexBuffer, (gl_enum target, gl_enum inner, gl_uint buffer))                            \
     X(void, Uniform1ui, (gl_int location, gl_uint value))
 
+/* Fragments once a sample: OpenGL 4.0, OpenGL ES 3.2, or extensions. NULL where there is none. */
+#define GTX_GL_SAMPLES(X) X(void, MinSampleShading, (float share))
+
 typedef struct gtx_gl {
 #define GTX_GL_FIELD(result, name, parameters) result(GTX_GL_CALL *name) parameters;
     GTX_GL(GTX_GL_FIELD)
@@ -225,6 +229,7 @@ typedef struct gtx_gl {
     GTX_GL_DEBUG(GTX_GL_FIELD)
     GTX_GL_MULTI(GTX_GL_FIELD)
     GTX_GL_TILES(GTX_GL_FIELD)
+    GTX_GL_SAMPLES(GTX_GL_FIELD)
 #undef GTX_GL_FIELD
     bool es;                  /* OpenGL ES */
 } gtx_gl;

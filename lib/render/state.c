@@ -69,6 +69,8 @@ void gtx_state_read(const gtx_gl *gl, gtx_state *state)
     state->depth_test = gl->IsEnabled(GL_DEPTH_TEST);
     gl->GetBooleanv(GL_DEPTH_WRITEMASK, &state->depth_mask);
     state->cull = gl->IsEnabled(GL_CULL_FACE);
+    if (gl->MinSampleShading)
+        state->by_samples = gl->IsEnabled(GL_SAMPLE_SHADING);
     read_draw_buffers(gl, state);
 }
 
@@ -108,6 +110,8 @@ void gtx_state_restore(const gtx_gl *gl, const gtx_state *state)
     gl->DepthFunc((gl_enum)state->depth_func);
     gl->DepthMask(state->depth_mask);
     set(gl, GL_CULL_FACE, state->cull);
+    if (gl->MinSampleShading)
+        set(gl, GL_SAMPLE_SHADING, state->by_samples);
     gl->CullFace((gl_enum)state->cull_mode);
     gl->FrontFace((gl_enum)state->front_face);
     restore_draw_buffers(gl, state);

@@ -14,6 +14,7 @@ typedef struct gtx_state {
     gl_int textures[UNIT_CLEARED], arrays[UNIT_CLEARED], samplers[UNIT_CLEARED];
     gl_int depth_func, cull_mode, front_face, draw_buffers;
     gl_bool depth_test, depth_mask, cull;
+    gl_bool by_samples;       /* where the context can */
     gl_int stream;            /* where the context casts by tiles */
     gl_bool blend[GTX_MAX_DRAW_BUFFERS], color_mask[GTX_MAX_DRAW_BUFFERS][4];
 } gtx_state;

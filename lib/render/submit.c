@@ -98,6 +98,13 @@ static const gtx_program *program_of(const gtx_submission *s, const gtx_frame_dr
                                          : draw->pipeline];
 }
 
+/* What casts is cast once a sample; polygons need no more than once a pixel. */
+static void shade_samples(const gtx_gl *gl, bool casts)
+{
+    (casts ? gl->Enable : gl->Disable)(GL_SAMPLE_SHADING);
+    gl->MinSampleShading(1);
+}
+
 /* Several ranges of one instance in one call where the context can. */
 static void draw_proxies(const gtx_gl *gl, const gtx_frame_draw *draw)
 {
@@ -165,6 +172,8 @@ void gtx_submit_draw(const gtx_frame_draw *draw, void *user)
     s->model = draw->model;
     use_program(s, program_of(s, draw, single), draw->constants);
     cull(s, draw);
+    if (s->view->flags & GTX_VIEW_BY_SAMPLES && renderer->gl.MinSampleShading)
+        shade_samples(&renderer->gl, draw->vertices == GTX_BUFFER_PROXY_VERTICES);
     if (draw->tiles) {
         gtx_tile_stream_draw(s->renderer, s->program, draw);
     } else if (draw->vertices == GTX_BUFFER_GRID_VERTICES) {

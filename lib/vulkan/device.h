@@ -83,7 +83,7 @@ void gtx_vk_frame_free(gtx_vk *vk, gtx_vk_frame *frame);
 /* What a pipeline is made for: all of it is compared, byte by byte. */
 typedef struct gtx_vk_key {
     gtx_vk_target target;
-    uint32_t pipeline, cull, clockwise, nearer_is_greater;
+    uint32_t pipeline, cull, clockwise, nearer_is_greater, by_samples;
 } gtx_vk_key;
 
 typedef struct gtx_vk_pipeline {
@@ -95,6 +95,9 @@ typedef struct gtx_vk_pipeline {
 gtx_result gtx_vk_pipeline_of(gtx_vk *vk, const gtx_vk_key *key, VkPipeline *out,
                               gtx_error *error);
 gtx_result gtx_vk_layout_create(gtx_vk *vk, gtx_error *error);
+/* samples.c: a copy of a fragment shader of ours, for once a sample, from the allocator, and its
+ * size in place of the shader's; NULL without memory. */
+uint32_t *gtx_vk_by_samples(const gtx_vk *vk, const uint32_t *words, size_t *bytes);
 
 struct gtx_vk {
     gtx_allocator allocator;
@@ -108,7 +111,8 @@ struct gtx_vk {
     VkBufferView no_stream;
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;
-    VkShaderModule modules[2 * GTX_PIPELINE_COUNT]; /* by pipeline and stage, once needed */
+    /* By pipeline: of vertices, of fragments, of those once a sample; once needed. */
+    VkShaderModule modules[3 * GTX_PIPELINE_COUNT];
     gtx_vk_pipeline *pipelines;
     uint32_t pipeline_count, pipeline_room;
     gtx_planner *planner;

@@ -177,7 +177,8 @@ static gtx_result check(const gtx_vk *vk, VkCommandBuffer commands, const gtx_vk
 }
 
 /* Without what has no name between the members. */
-static void set_key(const gtx_vk_target *target, const gtx_frame *frame, gtx_vk_key *key)
+static void set_key(const gtx_vk_target *target, const gtx_frame *frame, uint32_t flags,
+                    gtx_vk_key *key)
 {
     memset(key, 0, sizeof *key);
     key->target.render_pass = target->render_pass;
@@ -190,6 +191,7 @@ static void set_key(const gtx_vk_target *target, const gtx_frame *frame, gtx_vk_
     key->target.samples = target->samples ? target->samples : VK_SAMPLE_COUNT_1_BIT;
     key->target.y_up = target->y_up != 0;
     key->nearer_is_greater = frame->nearer_is_greater;
+    key->by_samples = flags & GTX_VIEW_BY_SAMPLES ? 1 : 0;
 }
 
 gtx_result gtx_vk_draw(gtx_vk *vk, VkCommandBuffer commands, const gtx_vk_target *target,
@@ -215,7 +217,7 @@ gtx_result gtx_vk_draw(gtx_vk *vk, VkCommandBuffer commands, const gtx_vk_target
                               error);
     if (result)
         return result;
-    set_key(target, &frame, &r.key);
+    set_key(target, &frame, view->flags, &r.key);
     gtx_frame_draws(vk->planner, submit, &r);
     return r.result;
 }

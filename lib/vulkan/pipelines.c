@@ -1,6 +1,7 @@
 /* Pipelines: made of SPIR-V when something is first drawn by them into a kind of target. */
 #include "vulkan/device.h"
 
+#include "base/alloc.h"
 #include "base/error.h"
 #include "vulkan/spirv.h"
 
@@ -38,23 +39,29 @@ gtx_result gtx_vk_layout_create(gtx_vk *vk, gtx_error *error)
         "vkCreatePipelineLayout", error);
 }
 
-static gtx_result module_of(gtx_vk *vk, uint32_t pipeline, uint32_t stage, VkShaderModule *out,
-                            gtx_error *error)
+static gtx_result module_of(gtx_vk *vk, uint32_t pipeline, uint32_t stage, bool by_samples,
+                            VkShaderModule *out, gtx_error *error)
 {
-    VkShaderModule *module = &vk->modules[2 * pipeline + stage];
+    VkShaderModule *module = &vk->modules[3 * pipeline + stage + by_samples];
     const gtx_spirv *code = gtx_spirvs;
+    gtx_result result = GTX_OK;
     while (code->words && (code->pipeline != pipeline || code->stage != stage))
         ++code;
-    const VkShaderModuleCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-        .codeSize = code->bytes, .pCode = code->words};
-    gtx_result result = GTX_OK;
     if (!code->words)
         return gtx_fail(error, GTX_ERROR_INTERNAL, "pipeline %u has no shaders", pipeline);
-    if (!*module)
+    if (!*module) {
+        size_t bytes = code->bytes;
+        uint32_t *own = by_samples ? gtx_vk_by_samples(vk, code->words, &bytes) : NULL;
+        if (by_samples && !own)
+            return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a shader");
+        const VkShaderModuleCreateInfo info = {
+            .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+            .codeSize = bytes, .pCode = own ? own : code->words};
         result = gtx_vk_check(
             vk->api.CreateShaderModule(vk->device, &info, vk->callbacks, module),
             "vkCreateShaderModule", error);
+        gtx_free_array(&vk->allocator, own, bytes, 1);
+    }
     *out = *module;
     return result;
 }
@@ -96,13 +103,15 @@ static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, VkPipeline *out, gtx_e
     VkPipelineColorBlendAttachmentState outputs[OUTPUTS];
     gtx_pipeline of;
     gtx_pipeline_get(key->pipeline, &of);
+    const bool by_samples = key->by_samples && of.writes_depth;
     const uint32_t attribute_count = set_attributes(of.vertices, bindings, attributes);
     for (uint32_t i = 0; i < 2; ++i) {
         stages[i] = (VkPipelineShaderStageCreateInfo){
             .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
             .stage = i ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT,
             .pName = "main"};
-        gtx_result result = module_of(vk, key->pipeline, i, &stages[i].module, error);
+        gtx_result result = module_of(vk, key->pipeline, i, i && by_samples,
+                                      &stages[i].module, error);
         if (result)
             return result;
     }
@@ -134,7 +143,9 @@ static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, VkPipeline *out, gtx_e
         .lineWidth = 1};
     const VkPipelineMultisampleStateCreateInfo multisample = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-        .rasterizationSamples = target->samples};
+        .rasterizationSamples = target->samples,
+        .sampleShadingEnable = by_samples,
+        .minSampleShading = 1};
     const VkPipelineDepthStencilStateCreateInfo depth = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
         .depthTestEnable = VK_TRUE, .depthWriteEnable = VK_TRUE,

@@ -82,38 +82,85 @@ static void materials_and_emission_are_drawn(void **state)
     check_all(s, d, repaint(fixture_sphere(2, 64, 8), &shiny), 200);
 }
 
+/* Pixels of which one of the first bytes is more than so much away. */
+static size_t apart(const uint8_t *a, const uint8_t *b, size_t size, size_t first, int most)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < STAGE_PIXELS; ++i) {
+        bool far = false;
+        for (size_t k = i * size; k < i * size + first; ++k)
+            far = far || abs(a[k] - b[k]) > most;
+        count += far;
+    }
+    return count;
+}
+
 /* Of several samples inside is as of one, and where the outline cuts a pixel some samples are
- * covered: for the exact LOD mesh, in most of the pixels along it. */
+ * covered: in most of the pixels along it, by polygons and by casts once a sample; none by casts
+ * once a pixel. */
+static void check_samples(gtx_host_vulkan *d, const pair *p, const gtx_picture *four, way w,
+                          gtx_method method, uint32_t flags)
+{
+    const gtx_camera camera = camera_around(p->gl.asset);
+    gtx_view view = for_vulkan(view_of(&camera), camera, true);
+    int partial = 0, outline = 0, differ = 0;
+    view.method = method;
+    view.flags |= flags;
+    by_tiles(&view);
+    draw_by(d, &shown, p, &view, &p->gl.instance, 1, w);
+    draw_by(d, four, p, &view, &p->gl.instance, 1, w);
+    const uint8_t *a = gtx_picture_bytes(&shown, 0), *b = gtx_picture_bytes(four, 0);
+    for (int i = STAGE_WIDTH; i < STAGE_PIXELS - STAGE_WIDTH; ++i) {
+        const bool covered = a[4 * i + 3];
+        const bool inside = covered && a[4 * i - 1] && a[4 * i + 7] &&
+                            a[4 * (i - STAGE_WIDTH) + 3] && a[4 * (i + STAGE_WIDTH) + 3];
+        outline += covered && !inside;
+        partial += b[4 * i + 3] > 0 && b[4 * i + 3] < 255;
+        differ += inside && abs(a[4 * i] - b[4 * i]) > 3;
+    }
+    assert_true(outline > 200);
+    if (method == GTX_METHOD_LOD || flags)
+        assert_in_range(partial, outline / 2, 3 * outline);
+    else
+        assert_int_equal(partial, 0);
+    assert_true(differ * 1000 < STAGE_PIXELS);
+}
+
 static void samples_smooth_outlines(void **state)
 {
     BOTH_OR_SKIP(state);
     pair p = pair_open(s, d, with_lod(fixture_sphere(2, 64, 8), 2, 3, 0));
     gtx_picture four = picture_of(d, 1, VK_FORMAT_R8G8B8A8_UNORM, 4, VK_SAMPLE_COUNT_4_BIT);
-    const gtx_camera camera = camera_around(p.gl.asset);
-    const gtx_instance one = {.model = p.gl.model, .transform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
-                                                                 0, 0, 0, 0, 1}};
     for (int by_pass = !d->renders; by_pass < 2; ++by_pass) {
         const way w = {.by_pass = by_pass, .y_up = true};
-        gtx_view view = for_vulkan(view_of(&camera), camera, true);
-        int partial = 0, outline = 0, differ = 0;
-        view.method = GTX_METHOD_LOD;
-        view.viewport_height = STAGE_HEIGHT;
-        draw_by(d, &shown, &p, &view, &one, 1, w);
-        draw_by(d, &four, &p, &view, &one, 1, w);
-        const uint8_t *a = gtx_picture_bytes(&shown, 0), *b = gtx_picture_bytes(&four, 0);
-        for (int i = STAGE_WIDTH; i < STAGE_PIXELS - STAGE_WIDTH; ++i) {
-            const bool covered = a[4 * i + 3];
-            const bool inside = covered && a[4 * i - 1] && a[4 * i + 7] &&
-                                a[4 * (i - STAGE_WIDTH) + 3] && a[4 * (i + STAGE_WIDTH) + 3];
-            outline += covered && !inside;
-            partial += b[4 * i + 3] > 0 && b[4 * i + 3] < 255;
-            differ += inside && abs(a[4 * i] - b[4 * i]) > 3;
-        }
-        assert_true(outline > 200);
-        assert_in_range(partial, outline / 2, 3 * outline);
-        assert_true(differ * 1000 < STAGE_PIXELS);
+        check_samples(d, &p, &four, w, GTX_METHOD_LOD, 0);
+        check_samples(d, &p, &four, w, GTX_METHOD_CAST, 0);
+        if (d->by_samples)
+            check_samples(d, &p, &four, w, GTX_METHOD_CAST, GTX_VIEW_BY_SAMPLES);
     }
     gtx_picture_destroy(d, &four);
+    pair_close(s, &p);
+}
+
+/* Into what encodes: the picture that is written in sRGB. */
+static void linear_light_is_encoded(void **state)
+{
+    BOTH_OR_SKIP(state);
+    pair p = pair_open(s, d, with_lod_as(fixture_sphere(2, 64, 8), 2, 3, 0, LOD_EVEN));
+    gtx_picture srgb = picture_of(d, 1, VK_FORMAT_R8G8B8A8_SRGB, 4, 1);
+    const gtx_camera camera = camera_around(p.gl.asset);
+    const way w = {.by_pass = true, .y_up = true};
+    for (gtx_method method = GTX_METHOD_CAST; method <= GTX_METHOD_LOD; ++method) {
+        gtx_view view = for_vulkan(view_of(&camera), camera, true);
+        view.method = method;
+        view.viewport_height = STAGE_HEIGHT;
+        draw_by(d, &shown, &p, &view, &p.gl.instance, 1, w);
+        view.flags |= GTX_VIEW_LINEAR;
+        draw_by(d, &srgb, &p, &view, &p.gl.instance, 1, w);
+        assert_true(apart(gtx_picture_bytes(&shown, 0), gtx_picture_bytes(&srgb, 0), 4, 4, 1) *
+                        1000 < STAGE_PIXELS);
+    }
+    gtx_picture_destroy(d, &srgb);
     pair_close(s, &p);
 }
 
@@ -126,19 +173,6 @@ static void read_target(stage *s, int which, bool ids, uint8_t *out)
         s->gl.ReadPixels(0, STAGE_HEIGHT - 1 - y, STAGE_WIDTH, 1,
                          ids ? GL_RGBA_INTEGER : GL_RGBA, ids ? GL_UNSIGNED_INT : GL_UNSIGNED_BYTE,
                          out + (size_t)y * row);
-}
-
-/* Pixels of which one of the first bytes is more than so much away. */
-static size_t apart(const uint8_t *a, const uint8_t *b, size_t size, size_t first, int most)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < STAGE_PIXELS; ++i) {
-        bool far = false;
-        for (size_t k = i * size; k < i * size + first; ++k)
-            far = far || abs(a[k] - b[k]) > most;
-        count += far;
-    }
-    return count;
 }
 
 /* Ids, or a G-buffer of bytes. */
@@ -248,6 +282,7 @@ int main(void)
         cmocka_unit_test(lod_meshes_are_drawn),
         cmocka_unit_test(materials_and_emission_are_drawn),
         cmocka_unit_test(samples_smooth_outlines),
+        cmocka_unit_test(linear_light_is_encoded),
         cmocka_unit_test(ids_and_g_buffers_are_drawn),
         cmocka_unit_test(misuse_is_refused),
         cmocka_unit_test(the_layer_is_silent),
