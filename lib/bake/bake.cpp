@@ -1,5 +1,6 @@
 /* All charts baked, and their maps put on the pages of one asset. */
 #include "bake/pages.hpp"
+#include "base/exact.h"
 #include "bake/seam/seam.hpp"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ Vec3d find_anchor(const Vec3d &low, const Vec3d &high, const char *what)
     double diagonal = length(high - low);
     if (!(diagonal >= MIN_DIAGONAL && diagonal <= MAX_DIAGONAL))
         throw Error(GTX_ERROR_INPUT, std::string(what) + " smaller than 1e-15 or larger than 1e15");
-    double step = std::exp2(std::floor(std::log2(diagonal)));
+    double step = gtx_exp2(std::floor(gtx_log2(diagonal)));
     Vec3d anchor;
     for (int k = 0; k < 3; ++k)
         anchor[k] = std::floor((low[k] / 2 + high[k] / 2) / step + 0.5) * step;

@@ -1,5 +1,6 @@
 /* Maps of edited patches: levels as baking makes them, normals and outlines of the heights. */
 #include "bake/repaint.hpp"
+#include "base/exact.h"
 
 #include "bake/field/shade.hpp"
 
@@ -119,7 +120,7 @@ double distance_to(const Vector<uint8_t> &cells, const PatchTexels &r, uint32_t 
                 continue;
             const double dx = std::max({0, i - int(x), int(x) - i - 1});
             const double dy = std::max({0, j - int(y), int(y) - j - 1});
-            best = std::min(best, std::hypot(dx, dy));
+            best = std::min(best, length(dx, dy));
         }
     return best;
 }

@@ -1,5 +1,6 @@
 /* Height grids cut into tiles that agree where they meet. */
 #include "bake/tiles.hpp"
+#include "base/exact.h"
 
 #include "bake/field/shade.hpp"
 #include "bake/pages.hpp"
@@ -119,9 +120,9 @@ static void choose_steps(Vector<Tile *> &tiles, const TileOptions &options,
     layer.step = std::max(most / (top - 2), least);
     for (Tile *tile : tiles) {
         const double range = std::max(tile->top - tile->bottom, least);
-        tile->halvings = std::clamp(int(std::floor(std::log2(layer.step * (top - 2) / range))), 0,
+        tile->halvings = std::clamp(int(std::floor(gtx_log2(layer.step * (top - 2) / range))), 0,
                                     std::min(MAX_HALVINGS,
-                                             int(std::floor(std::log2(layer.step / least)))));
+                                             int(std::floor(gtx_log2(layer.step / least)))));
     }
     for (bool again = true; again;) {
         layer.halvings.assign(layer.grid->count(), MAX_HALVINGS);
@@ -151,8 +152,8 @@ struct GridFrame {
     explicit GridFrame(const HeightGrid &grid)
     {
         const double turn = grid.rotation * std::acos(-1.0) / 180;
-        x = {std::cos(turn), 0, -std::sin(turn)};
-        y = {-std::sin(turn), 0, -std::cos(turn)};
+        x = {gtx_cos(turn), 0, -gtx_sin(turn)};
+        y = {-gtx_sin(turn), 0, -gtx_cos(turn)};
     }
 };
 

@@ -1,5 +1,6 @@
 /* The least rectangle and the minimax tilt of a chart's frame. */
 #include "chart/frame.hpp"
+#include "base/exact.h"
 
 #include <algorithm>
 
@@ -239,7 +240,7 @@ Frame turned_frame(const Mesh &mesh, const Vector<uint32_t> &triangles, const Fr
     const Vec3d &z = frame.z;
     const Vec3d u = normalize(frame.x - z * dot(frame.x, z)), v = cross(z, u);
     const double a = dot(frame.x, z) / dot(frame.x, u), b = dot(frame.y, z) / dot(frame.y, v);
-    const double c = std::cos(radians), s = std::sin(radians);
+    const double c = gtx_cos(radians), s = gtx_sin(radians);
     Frame out = frame;
     out.x = normalize(u * c + v * s + z * (a * c + b * s));
     out.y = normalize(v * c - u * s + z * (b * c - a * s));

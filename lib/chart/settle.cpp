@@ -1,5 +1,6 @@
 /* Splits clusters until each is a chart, and finds the texel pitch of the model. */
 #include "chart/settle.hpp"
+#include "base/exact.h"
 
 #include <algorithm>
 
@@ -22,7 +23,7 @@ constexpr double MAX_TEXELS = 4 * PATCH_TEXELS;
 
 uint32_t default_count(const Mesh &mesh)
 {
-    return uint32_t(std::lround(10 * std::pow(double(mesh.triangle_count()), 0.28)));
+    return uint32_t(std::lround(10 * gtx_pow(double(mesh.triangle_count()), 0.28)));
 }
 
 double side_texels(const ChartOptions &options)
@@ -136,7 +137,7 @@ Vector<Frame> split_for_count(const Surface &surface, const ChartOptions &option
                               Vector<Region> &regions, Bounds &bounds, Task &task)
 {
     const double wanted = chart_count(surface.mesh, options);
-    const double scale = std::pow(options.resolution / 128., 2);
+    const double scale = double(options.resolution) * options.resolution / (128 * 128);
     Vector<Frame> frames;
     for (;;) {
         split_all(surface, regions, frames, bounds, task);

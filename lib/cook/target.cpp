@@ -1,5 +1,6 @@
 /* Searches the texel pitch, then bits and patches, that keep to an error with the fewest bytes. */
 #include "cook/target.hpp"
+#include "base/exact.h"
 
 #include "asset/patch.h"
 
@@ -85,14 +86,14 @@ private:
 double Search::next_pitch(const std::optional<Point> &good, const std::optional<Point> &bad) const
 {
     if (good && bad) {
-        double power = std::log(bad->error / good->error) / std::log(bad->pitch / good->pitch);
-        double part = std::log(AIM * error_ / good->error) /
-                      (std::max(power, 0.1) * std::log(bad->pitch / good->pitch));
+        double power = gtx_log(bad->error / good->error) / gtx_log(bad->pitch / good->pitch);
+        double part = gtx_log(AIM * error_ / good->error) /
+                      (std::max(power, 0.1) * gtx_log(bad->pitch / good->pitch));
         part = std::clamp(part, 0.1, 0.9);
-        return good->pitch * std::pow(bad->pitch / good->pitch, part);
+        return good->pitch * gtx_pow(bad->pitch / good->pitch, part);
     }
     const Point &only = good ? *good : *bad;
-    double step = std::pow(AIM * error_ / only.error, 1 / POWER);
+    double step = gtx_pow(AIM * error_ / only.error, 1 / POWER);
     step = std::clamp(step, 1 / LONGEST_STEP, LONGEST_STEP);
     return std::clamp(only.pitch * step, FINEST * first_pitch_, COARSEST * first_pitch_);
 }

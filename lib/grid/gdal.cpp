@@ -1,5 +1,6 @@
 /* Grids that GDAL reads: which files are some, and where their nodes lie. */
 #include "grid/module.h"
+#include "base/exact.h"
 #include "grid/text.hpp"
 #include "image/open.h"
 #include "mesh/mesh.hpp"
@@ -199,11 +200,11 @@ static void lay(HeightGrid &grid, const double affine[6])
     grid.step[1] = north[1];
     if (east[1] == 0 && north[0] == 0)
         return;
-    const double width = std::hypot(east[0], east[1]), height = std::hypot(north[0], north[1]);
+    const double width = length(east[0], east[1]), height = length(north[0], north[1]);
     if (std::fabs(east[0] * north[0] + east[1] * north[1]) > SQUARE * width * height ||
         width == 0)
         malformed("its rows and columns are not at right angles");
-    grid.rotation = std::atan2(east[1], east[0]) * 180 / std::acos(-1.0);
+    grid.rotation = gtx_atan2(east[1], east[0]) * 180 / std::acos(-1.0);
     grid.step[0] = width;
     grid.step[1] = (east[0] * north[1] - east[1] * north[0]) / width;
 }

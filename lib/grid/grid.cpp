@@ -1,5 +1,6 @@
 /* Reading a grid of any format, and what is done to grids of all. */
 #include "grid/text.hpp"
+#include "base/exact.h"
 
 #include "image/image.h"
 #include "mesh/mesh.hpp"
@@ -155,8 +156,8 @@ HeightGrid mosaic(const Vector<HeightGrid> &parts, const Limits &limits)
     for (const HeightGrid &part : parts) {
         const double turn = -first.rotation * std::acos(-1.0) / 180;
         const double x = part.origin[0] - first.origin[0], y = part.origin[1] - first.origin[1];
-        const double local[2] = {std::cos(turn) * x - std::sin(turn) * y,
-                                 std::sin(turn) * x + std::cos(turn) * y};
+        const double local[2] = {gtx_cos(turn) * x - gtx_sin(turn) * y,
+                                 gtx_sin(turn) * x + gtx_cos(turn) * y};
         const uint32_t size[2] = {part.nx, part.ny};
         std::array<int64_t, 2> place;
         for (int k = 0; k < 2; ++k) {

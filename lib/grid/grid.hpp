@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/task.hpp"
+#include "base/exact.h"
 
 #include <array>
 #include <cmath>
@@ -25,7 +26,7 @@ struct HeightGrid {
     std::array<double, 2> place(double i, double j) const
     {
         const double turn = rotation * std::acos(-1.0) / 180;
-        const double c = std::cos(turn), s = std::sin(turn);
+        const double c = gtx_cos(turn), s = gtx_sin(turn);
         const double x = i * step[0], y = j * step[1];
         return {origin[0] + c * x - s * y, origin[1] + s * x + c * y};
     }

@@ -1,5 +1,6 @@
 /* The LOD meshes: how many, how fine, and the order of their triangles. */
 #include "bake/lod/parts.hpp"
+#include "base/exact.h"
 #include "bake/lod/strip.hpp"
 
 #include <algorithm>
@@ -201,12 +202,12 @@ static void add_far_levels(const LodJob &job, Simplifier &simplifier, double mos
                            Vector<LodLevel> &lod)
 {
     simplifier.cross_patches();
-    const double ways = std::log(double(simplifier.triangles().size()) / FAR_TRIANGLES);
-    const unsigned count = unsigned(std::clamp(std::ceil(ways / std::log(FAR_RATIO)), 0.0,
+    const double ways = gtx_log(double(simplifier.triangles().size()) / FAR_TRIANGLES);
+    const unsigned count = unsigned(std::clamp(std::ceil(ways / gtx_log(FAR_RATIO)), 0.0,
                                                double(FAR_LEVELS)));
     for (unsigned k = count; k-- > 0;) {
         const double before = double(simplifier.triangles().size());
-        const double ratio = std::pow(before / FAR_TRIANGLES, 1.0 / (k + 1));
+        const double ratio = gtx_pow(before / FAR_TRIANGLES, 1.0 / (k + 1));
         simplifier.reduce(size_t(before / ratio), 0, most);
         simplifier.settle();
         simplifier.drop(find_specks(simplifier, simplifier.error()));

@@ -5,6 +5,7 @@
  * share of texels by that: finer ones where the surface is rough and fills the rectangle, and along
  * the axis in which it bends more. */
 #include "chart/cuts/tree.hpp"
+#include "base/exact.h"
 
 namespace gtx {
 
@@ -74,8 +75,8 @@ struct Leaf {
     {
         const double filled = std::max(1., leaf.bends.filled) / (sides[0] * sides[1]);
         const double ratio = leaf.bends.mean_square(0) / leaf.bends.mean_square(1);
-        share = std::pow(roughness(leaf.bends) * std::pow(filled, FILLED), SHARE);
-        stretch = std::clamp(std::pow(ratio, 0.25 / POWER), 1 / STRETCH, STRETCH);
+        share = gtx_pow(roughness(leaf.bends) * gtx_pow(filled, FILLED), SHARE);
+        stretch = std::clamp(gtx_pow(ratio, 0.25 / POWER), 1 / STRETCH, STRETCH);
     }
     /* Texels of its rectangle, at most `longest` on a side, when the model's are `fine`; sets its
      * density. */
@@ -117,7 +118,7 @@ void weigh_bends(CutTree &tree)
         else
             for (int child : node.child)
                 node.bends.add(tree.nodes[size_t(child)].bends);
-        node.cost *= std::pow(roughness(node.bends), 2 * SHARE);
+        node.cost *= gtx_pow(roughness(node.bends), 2 * SHARE);
     }
 }
 

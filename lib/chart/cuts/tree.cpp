@@ -1,5 +1,6 @@
 /* Charts on the grids of their frames, and pruning their trees of cuts to a number of leaves. */
 #include "chart/cuts/tree.hpp"
+#include "base/exact.h"
 
 #include "chart/raster.hpp"
 
@@ -96,7 +97,7 @@ Relief make_relief(const Surface &surface, const Region &region, const Frame &fr
 
 Relief turn_relief(const Relief &relief, double turn, int coarse)
 {
-    const double c = std::cos(turn) / coarse, s = std::sin(turn) / coarse;
+    const double c = gtx_cos(turn) / coarse, s = gtx_sin(turn) / coarse;
     const double w = relief.size[0], h = relief.size[1];
     Relief out;
     out.coarse = coarse;

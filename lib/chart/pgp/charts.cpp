@@ -1,5 +1,6 @@
 /* Charts out of a parameterization: its squares, searched for the wanted number of them. */
 #include "chart/pgp/pgp.hpp"
+#include "base/exact.h"
 
 #include <algorithm>
 #include <map>
@@ -191,8 +192,8 @@ double next_cell(const Try &last, const Try &few, const Try &many)
 {
     if (few.cell == 0 || many.cell == 0)
         return last.cell * std::sqrt(std::clamp(last.ratio / BEST_RATIO, 0.25, 4.));
-    double share = std::log(BEST_RATIO / few.ratio) / std::log(many.ratio / few.ratio);
-    return few.cell * std::pow(many.cell / few.cell, std::clamp(share, 0.1, 0.9));
+    double share = gtx_log(BEST_RATIO / few.ratio) / gtx_log(many.ratio / few.ratio);
+    return few.cell * gtx_pow(many.cell / few.cell, std::clamp(share, 0.1, 0.9));
 }
 
 } // namespace
@@ -225,8 +226,8 @@ CutMesh square_cells(const Surface &surface, uint32_t &count, bool adaptive, Tas
         Joining joining(pieces, piece_areas(pieces, size), cells, squares);
         joining.join_smaller(MIN_CELLS * cell * cell);
         double ratio = double(std::max<size_t>(joining.count(), 1)) / wanted;
-        if (label.empty() || std::abs(std::log(ratio)) < nearest) {
-            nearest = std::abs(std::log(ratio));
+        if (label.empty() || std::abs(gtx_log(ratio)) < nearest) {
+            nearest = std::abs(gtx_log(ratio));
             joining.join_until(wanted);
             label = joining.labels(cells, count);
             best = std::move(pieces);

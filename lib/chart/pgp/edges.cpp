@@ -1,5 +1,6 @@
 /* Half-edges with fans for vertices, and angles in triangles. */
 #include "chart/pgp/pgp.hpp"
+#include "base/exact.h"
 
 #include <algorithm>
 
@@ -15,7 +16,7 @@ double corner_angle(const Mesh &mesh, uint32_t t, int k)
 {
     Vec3d a = mesh.position(t, (k + 1) % 3) - mesh.position(t, k);
     Vec3d b = mesh.position(t, (k + 2) % 3) - mesh.position(t, k);
-    return std::atan2(length(cross(a, b)), dot(a, b));
+    return gtx_atan2(length(cross(a, b)), dot(a, b));
 }
 
 /* The neighbours of a region come in any order. */
@@ -57,11 +58,16 @@ double HalfEdges::angle(uint32_t c) const
     return M_PI - std::abs(std::remainder(direction[c] - direction[previous_edge(c)], 2 * M_PI));
 }
 
+static double cotangent(double angle)
+{
+    return gtx_cos(angle) / gtx_sin(angle);
+}
+
 double HalfEdges::weight(uint32_t h) const
 {
-    double sum = 1 / std::tan(angle(previous_edge(h)));
+    double sum = cotangent(angle(previous_edge(h)));
     if (uint32_t o = opposite[h]; o != NO_EDGE)
-        sum += 1 / std::tan(angle(previous_edge(o)));
+        sum += cotangent(angle(previous_edge(o)));
     return std::clamp(sum / 2, MIN_WEIGHT, MAX_WEIGHT);
 }
 

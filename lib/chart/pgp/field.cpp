@@ -1,5 +1,6 @@
 /* The field of directions: fitted to the curvature, smooth across edges, and its singularities. */
 #include "chart/pgp/pgp.hpp"
+#include "base/exact.h"
 
 #include <Eigen/Dense>
 #include <Eigen/SparseCholesky>
@@ -234,7 +235,7 @@ Vector<Tensor> vertex_curvatures(const Surface &surface, const HalfEdges &edges)
         Vec3d e = (mesh.positions[start_of(mesh, o)] - mesh.positions[start_of(mesh, h)]) /
                   edges.length[h];
         Vec3d a = normalize(mesh.area_vector(h / 3)), b = normalize(mesh.area_vector(o / 3));
-        double bend = std::atan2(dot(cross(a, b), e), dot(a, b)) * edges.length[h];
+        double bend = gtx_atan2(dot(cross(a, b), e), dot(a, b)) * edges.length[h];
         Eigen::Matrix3d part = eigen(e) * eigen(e).transpose() * bend;
         for (uint32_t v : {edges.vertex[h], edges.vertex[o]})
             Eigen::Map<Eigen::Matrix3d>(out[v].data()) += part;

@@ -1,5 +1,6 @@
 /* How long cells are: as the directions want it, and shorter where the surface is curved. */
 #include "chart/pgp/pgp.hpp"
+#include "base/exact.h"
 
 #include <Eigen/SparseCholesky>
 
@@ -110,9 +111,9 @@ Eigen::VectorXd wanted_logarithm(const Eigen::VectorXd &curvatures, const Eigen:
     Eigen::VectorXd bend = curvatures * cell;
     for (double &b : bend)
         b = b > MIN_BEND ? b : MIN_BEND; /* also what is not a number */
-    const double median = weighted_median(bend, areas), most = std::log(MAX_ADAPTED);
+    const double median = weighted_median(bend, areas), most = gtx_log(MAX_ADAPTED);
     for (double &b : bend)
-        b = std::clamp(-std::log(b / median) / 2, -most, most);
+        b = std::clamp(-gtx_log(b / median) / 2, -most, most);
     return bend;
 }
 
@@ -127,10 +128,10 @@ Vector<double> make_scale(const HalfEdges &edges, const CrossField &field)
     if (solver.info() != Eigen::Success)
         return out;
     Eigen::VectorXd logarithm = solver.solve(side);
-    const double most = std::log(MAX_SCALE);
+    const double most = gtx_log(MAX_SCALE);
     for (int i = 0; i < logarithm.size(); ++i)
         if (std::isfinite(logarithm[i]))
-            out[size_t(i)] = std::exp(std::clamp(logarithm[i], -most, most));
+            out[size_t(i)] = gtx_exp(std::clamp(logarithm[i], -most, most));
     return out;
 }
 
@@ -150,7 +151,7 @@ void adapt_scale(const Surface &surface, const HalfEdges &edges, double cell,
     Eigen::VectorXd smooth = solver.solve(screen * areas.cwiseProduct(wish));
     for (size_t i = 0; i < scale.size(); ++i)
         if (std::isfinite(smooth[int(i)]))
-            scale[i] *= std::exp(smooth[int(i)]);
+            scale[i] *= gtx_exp(smooth[int(i)]);
 }
 
 } // namespace gtx

@@ -5,6 +5,7 @@
  * (q', p), where ' conjugates. An edge wants the phases at its ends to differ by its length along
  * the directions; that is linear in their real and imaginary parts (Ray et al. 2006). */
 #include "chart/pgp/pgp.hpp"
+#include "base/exact.h"
 
 #include <Eigen/Dense>
 #include <Eigen/IterativeLinearSolvers>
@@ -73,7 +74,7 @@ Matrix4 step_matrix(const Uv &step)
 {
     Matrix4 out = Matrix4::Zero();
     for (int i = 0; i < 2; ++i) {
-        double c = std::cos(2 * M_PI * step[size_t(i)]), s = std::sin(2 * M_PI * step[size_t(i)]);
+        double c = gtx_cos(2 * M_PI * step[size_t(i)]), s = gtx_sin(2 * M_PI * step[size_t(i)]);
         out.block<2, 2>(2 * i, 2 * i) << c, -s, s, c;
     }
     return out;
@@ -96,7 +97,7 @@ Solve::Solve(const HalfEdges &edges, const CrossField &field, const Vector<doubl
         uint32_t i = edges.vertex[h], j = edges.vertex[next];
         double size = 2 * edges.length[h] / (cell * (scale[i] + scale[j]));
         place_[h] = uint32_t(list_.size());
-        list_.push_back({h, {i, j}, {size * std::cos(angle), -size * std::sin(angle)}});
+        list_.push_back({h, {i, j}, {size * gtx_cos(angle), -size * gtx_sin(angle)}});
     }
 }
 
@@ -228,7 +229,7 @@ void Solve::run()
 
 double cells_of(double im, double re)
 {
-    double cells = std::atan2(im, re) / (2 * M_PI);
+    double cells = gtx_atan2(im, re) / (2 * M_PI);
     return std::abs(cells) < SNAP ? 0 : on_grid(cells);
 }
 

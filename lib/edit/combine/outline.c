@@ -57,7 +57,8 @@ static float distance_to(const double p[2], const double q[2], double x, double 
     const double ex = q[0] - p[0], ey = q[1] - p[1], square = ex * ex + ey * ey;
     double t = square > 0 ? ((x - p[0]) * ex + (y - p[1]) * ey) / square : 0;
     t = t > 0 ? t < 1 ? t : 1 : 0;
-    return (float)hypot(p[0] + t * ex - x, p[1] + t * ey - y);
+    const double dx = p[0] + t * ex - x, dy = p[1] + t * ey - y;
+    return (float)sqrt(dx * dx + dy * dy);
 }
 
 /* Part of the outline, within the cell (x, y). */

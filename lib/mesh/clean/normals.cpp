@@ -1,5 +1,6 @@
 /* Cleaning, corner by corner: a unit normal on the outer side of its triangle. */
 #include "mesh/clean/clean.hpp"
+#include "base/exact.h"
 
 namespace gtx {
 
@@ -30,7 +31,7 @@ static double angle_at(const Mesh &mesh, uint32_t c)
     const Vec3d &p = mesh.positions[start_of(mesh, c)];
     Vec3d a = mesh.positions[start_of(mesh, next_edge(c))] - p;
     Vec3d b = mesh.positions[start_of(mesh, previous_edge(c))] - p;
-    return std::atan2(length(cross(a, b)), dot(a, b));
+    return gtx_atan2(length(cross(a, b)), dot(a, b));
 }
 
 struct FanCorner {

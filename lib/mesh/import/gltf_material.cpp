@@ -1,5 +1,6 @@
 /* glTF materials: metal and roughness, and of the extensions those that a surface can show. */
 #include "mesh/import/gltf_material.hpp"
+#include "base/exact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -153,7 +154,7 @@ static int transform_of(const Item &info, Texture &out)
     from.numbers("offset", 2, -FAR, FAR, offset);
     from.numbers("scale", 2, -FAR, FAR, scale);
     const double angle = from.number("rotation", 0, -FAR, FAR);
-    const float c = float(std::cos(angle)), s = float(std::sin(angle));
+    const float c = float(gtx_cos(angle)), s = float(gtx_sin(angle));
     const float rows[6] = {c * scale[0], s * scale[1], offset[0],
                            -s * scale[0], c * scale[1], offset[1]};
     std::copy_n(rows, 6, out.transform);

@@ -1,5 +1,6 @@
 /* The sRGB transfer function (IEC 61966-2-1) by table. */
 #include "mesh/material/srgb.hpp"
+#include "base/exact.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +10,7 @@ namespace gtx {
 
 static float decode(double s)
 {
-    return float(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+    return float(s <= 0.04045 ? s / 12.92 : gtx_pow((s + 0.055) / 1.055, 2.4));
 }
 
 namespace {

@@ -1,5 +1,6 @@
 /* Images as textures: their smaller levels, and looking into them. */
 #include "mesh/material/texture.hpp"
+#include "base/exact.h"
 
 #include "mesh/material/srgb.hpp"
 
@@ -135,7 +136,7 @@ Value sample_image(const Image &image, const Wrap wrap[2], double u, double v, d
                    Texels kind)
 {
     const size_t last = image.levels.size() - 1;
-    const double depth = side > 1 ? std::min(std::log2(side), double(last)) : 0;
+    const double depth = side > 1 ? std::min(gtx_log2(side), double(last)) : 0;
     const size_t level = size_t(depth);
     const float share = float(depth - double(level));
     Value fine = sample_level(image.levels[level], wrap, u, v, kind);

@@ -1,6 +1,7 @@
 /* Winding numbers: solid angles of near triangles, and of far ones together by the moments of the
  * nodes of a hierarchy (Barill et al. 2018). */
 #include "trace/solid/solid.h"
+#include "base/exact.h"
 
 #include "base/alloc.h"
 #include "base/error.h"
@@ -32,7 +33,7 @@ static double angle_of(const gtx_element *e, const double point[3])
     }
     const double across = length[0] * length[1] * length[2] + dot[0] * length[0] +
                           dot[1] * length[1] + dot[2] * length[2];
-    return 2 * atan2(det, across);
+    return 2 * gtx_atan2(det, across);
 }
 
 static void add_moments(const gtx_solid_moments *from, gtx_solid_moments *to)
