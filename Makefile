@@ -256,6 +256,7 @@ $(out)/gtx_decode: format/gtx_decode.c
 	$(Q)$(CC) -std=c99 $(flags) $(warnings) $(if $(filter 1,$(zstd)),,-DNO_ZSTD) -o $@ $< \
 	  $(libs_asset) -lm
 $(filter $(out)/tests/asset/%,$(test_bins)): | $(out)/gtx_decode
+$(filter $(out)/tests/vulkan/%,$(test_bins)): | $(out)/gen/write_texts
 $(filter $(out)/tests/mesh/% $(out)/tests/grid/% $(out)/tests/verbs/%,$(test_bins)): | $(modules)
 
 build-tests: $(test_bins) $(out)/gtx_decode $(build)/amalgamation/geotex.c all

@@ -83,8 +83,13 @@ bool gtx_cast(gtx_height_field field, vec3 origin, vec3 direction, float t0, flo
             v.cell = next;
             v.enter = w.leave;
             v.leave = max(v.enter, min(min(planes.x, planes.y), limit));
+#ifdef GTX_FETCH /* languages that do not look up whole numbers by place */
+            vec4 height = vec4(texelFetch(
+                gtx_cells, ivec3(field.cells + ivec2(next), field.page), 0));
+#else
             vec4 height =
                 vec4(textureLod(gtx_cells, vec3(place + next * texel, float(field.page)), 0.0));
+#endif
             bool crosses = gtx_look(v, height, field.two_sided, last, fit, o, d);
             vec2 then = next + (planes.x <= planes.y ? vec2(way.x, 0.0) : vec2(0.0, way.y));
             bool left = v.known && (v.above ? v.gap.x : -v.gap.x) > field.reach;

@@ -10,9 +10,9 @@
  * in world space. Crossings count as for the picture: from above, and from below where a patch is
  * two-sided. The walk needs no stack: nodes lie depth first, each with the one behind its
  * subtree. */
-GTX_SAMPLER(9, highp sampler2D) gtx_ray_nodes;         /* texels are counted through rows */
-GTX_SAMPLER(10, highp usampler2DArray) gtx_ray_cells;  /* as gtx_cells; through layers */
-GTX_SAMPLER(11, highp sampler2DArray) gtx_ray_trim;
+GTX_SAMPLER(13, highp sampler2D) gtx_ray_nodes;        /* texels are counted through rows */
+GTX_SAMPLER(14, highp usampler2DArray) gtx_ray_cells;  /* as gtx_cells; through layers */
+GTX_SAMPLER(15, highp sampler2DArray) gtx_ray_trim;
 
 const int gtx_ray_row = (1 << GTX_RAY_ROW_BITS) - 1;
 const int gtx_ray_layer = (1 << GTX_RAY_LAYER_BITS) - 1;

@@ -38,7 +38,8 @@ install-strip: install ## the same, without debugging data
 	@strip --strip-debug $(patsubst $(out)/%,$(to)/lib/%,$(lib_core) $(lib_cook) $(lib_vulkan))
 
 uninstall: ## remove what install put there
-	@cd $(to) && rm -f $$(cat $(abspath lib/package/files)) && \
+	@cd $(to) && rm -f $$(cat $(abspath lib/package/files)) share/geotex/shaders/pipelines.json && \
+	  rm -rf $(addprefix share/geotex/shaders/,glsl spirv hlsl msl wgsl) && \
 	  rmdir --ignore-fail-on-non-empty -p include/geotex lib/geotex lib/cmake/geotex lib/pkgconfig \
 	    share/geotex/shaders share/doc/geotex share/man/man1 share/bash-completion/completions \
 	    bin 2>/dev/null || true

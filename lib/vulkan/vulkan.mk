@@ -1,5 +1,6 @@
 # libgeotex-vulkan, where there are Vulkan's headers and glslang; its tests skip without a driver.
-packages_vulkan := libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
+packages_vulkan := libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers spirv-cross \
+                   spirv-tools
 vulkan := $(shell printf '\043include <vulkan/vulkan_core.h>' | $(CC) -E - >/dev/null 2>&1 && \
             command -v glslangValidator >/dev/null && echo vulkan)
 needs_vulkan := base vulkan
@@ -34,3 +35,11 @@ $(out)/libgeotex-vulkan.so.$(VERSION): $(call objects_of,$(needs_vulkan)) $(so_c
 	  -Wl,--version-script=$(out)/gen/libgeotex-vulkan.map -o $@ $^ -lm
 	$(Q)ln -sf $(@F) $(out)/libgeotex-vulkan.so.$(SOVERSION) && \
 	  ln -sf $(@F) $(out)/libgeotex-vulkan.so
+
+# For engines with other interfaces: format/shaders.md.
+shaders: $(out)/gen/write_texts ## shaders of all pipelines as GLSL, SPIR-V, HLSL, MSL and WGSL
+	@sh lib/vulkan/products.sh $< $(build)/shaders
+	@echo $(build)/shaders
+install-shaders: shaders ## the same, below PREFIX
+	@install -d $(to)/share/geotex/shaders
+	@cp -r $(build)/shaders/* $(to)/share/geotex/shaders
