@@ -11,14 +11,18 @@
  *       gtx_write_depth(s);
  *   }
  *
+ * A main that reads no varying but through functions, gtx_color and gtx_id may say so by the line
+ * `#pragma geotex tiles`, to be cast by tiles, too.
+ *
  * Needs geotex_view.glsl, geotex_surface.glsl, with GTX_MATERIALS defined geotex_material.glsl, and
  * a gtx_cast (of geotex_cast.glsl or geotex_paper.glsl) before it. The varyings are those of
  * geotex_proxy.vert; with GTX_TILES defined geotex_tiles.glsl comes after it instead. */
 #ifdef GTX_TILES
-/* geotex_tiles.glsl fills these. */
-vec4 gtx_clip_z, gtx_clip_w;
-vec3 gtx_normal_x, gtx_normal_y, gtx_normal_z, gtx_world, gtx_world_eye;
-int gtx_patch_index;
+/* geotex_tiles.glsl fills these; with values at once compilers do not warn of them. */
+vec4 gtx_clip_z = vec4(0.0), gtx_clip_w = vec4(0.0);
+vec3 gtx_normal_x = vec3(0.0), gtx_normal_y = vec3(0.0), gtx_normal_z = vec3(0.0);
+vec3 gtx_world = vec3(0.0), gtx_world_eye = vec3(0.0);
+int gtx_patch_index = 0;
 GTX_VARYING(1) flat in vec4 gtx_color;
 /* What is the same all over comes as varyings, too: processors fetch a uniform for every pixel, but
  * a flat varying once. From 3 on it is gtx_place. */

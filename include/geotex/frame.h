@@ -155,6 +155,33 @@ typedef struct gtx_constants {
     float maps[4], lod_mesh[4], constant_material[4];
 } gtx_constants;
 
+enum { GTX_LAMPS = 8 };
+
+/* A light of geotex_lighting.frag: a sun, a point or a spot. Units are the engine's: a white wall
+ * that faces a sun of colour 1 is 1. */
+typedef struct gtx_lamp {
+    float place[4];           /* of a sun, unit, towards it, and 0; else in the world, and the range
+                                 > 0 at which its light ends */
+    float color[4];           /* linear; of a spot, the cosine where it ends, else -1 */
+    float axis[4];            /* of a spot: unit, away from it; the cosine where it is whole */
+} gtx_lamp;
+
+/* The uniform block `gtx_lighting` of geotex_lighting.frag, in std140: what an engine has around.
+ * Its samplers are gtx_shadow_map, which compares, and gtx_before, RGBA32F: in row `id` the first
+ * three texels are rows of object -> world of the instance of that id in the frame before. Samplers
+ * that are not used may have any texture of the kind. */
+typedef struct gtx_lighting {
+    float clip[16], clip_before[16]; /* world -> clip of this frame and the one before, without
+                                        jitter: what motion is told by */
+    float shadow[16];         /* world -> 0..1 of the shadow map, and its depth */
+    float eye[4];             /* in the world: where fog begins */
+    float around[4];          /* linear light from everywhere; the number of lights */
+    float fog[4];             /* linear colour; density a world unit */
+    float options[4];         /* 1: light 0, a sun, has a shadow map; the width of its texels as a
+                                 depth in it; 1: gtx_before is used; 0 */
+    gtx_lamp lamps[GTX_LAMPS];
+} gtx_lighting;
+
 typedef struct gtx_frame {
     const gtx_instance_data *instances;   /* of the planner, until its next frame begins */
     uint32_t instance_count;

@@ -97,8 +97,9 @@ GTX_API void gtx_shading_destroy(gtx_renderer *renderer, gtx_shading *shading);
  * draw LOD meshes and displaced grids, for setting the engine's own uniforms between draws: AUTO
  * takes all three. */
 GTX_API uint32_t gtx_shading_program(const gtx_shading *shading, gtx_method method);
-/* The same of its program that casts by tiles, which GTX_VIEW_SHADING_BY_TILES asks for; 0 where
- * the renderer has no tiles. */
+/* The same of its program that casts by tiles, which GTX_VIEW_SHADING_BY_TILES asks for: made
+ * where the text has the line `#pragma geotex tiles`, which says that it takes what it knows of a
+ * fragment from functions alone. 0 elsewhere, and where the renderer has no tiles. */
 GTX_API uint32_t gtx_shading_tile_program(const gtx_shading *shading);
 
 /* Draws the instances into the bound framebuffer, which must have a depth buffer: writes depth and

@@ -46,7 +46,8 @@ enum { /* gtx_view.flags */
     GTX_VIEW_DEPTH_ZERO_TO_ONE = 2,   /* clip z in 0..1 (glClipControl), not -1..1 */
     GTX_VIEW_RESTORE_STATE = 4,       /* read the touched state first and put it back */
     GTX_VIEW_SHADING_BY_TILES = 8,    /* an engine's own shading is cast by tiles, too, where others
-                                         are (gtx_tiling), by a program or pipeline of its own */
+                                         are (gtx_tiling) and it has what draws so: a program
+                                         (gtx_shading_tile_program), or a pipeline */
     GTX_VIEW_BY_SAMPLES = 32,         /* cast once a sample, not by tiles: multisampling smooths the
                                          outlines of casts as those of polygons. In OpenGL where the
                                          context has sample shading; in Vulkan with the device's

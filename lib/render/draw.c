@@ -53,9 +53,15 @@ static void begin(const gtx_gl *gl, const gtx_frame *frame, gl_bool color)
 gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view, const gtx_instance *instances,
                     uint32_t count, gtx_error *error)
 {
-    gtx_submission s = {.renderer = renderer, .view = view};
+    gtx_view own;
     gtx_state state;
     gtx_frame frame;
+    if (view && view->shading && !view->shading->tiles.object) {
+        own = *view;
+        own.flags &= ~(uint32_t)GTX_VIEW_SHADING_BY_TILES;
+        view = &own;
+    }
+    gtx_submission s = {.renderer = renderer, .view = view};
     gtx_result result = gtx_frame_begin(renderer ? &renderer->planner : NULL, view, instances,
                                         count, &frame, error);
     if (!result)

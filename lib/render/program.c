@@ -161,6 +161,11 @@ void gtx_programs_destroy(gtx_renderer *renderer)
             renderer->gl.DeleteProgram(renderer->programs[i].object);
 }
 
+static uint32_t own_pipeline(gtx_technique technique)
+{
+    return gtx_pipeline_of(technique, GTX_PASS_FORWARD, MATERIAL_MAPS);
+}
+
 gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shading **out,
                               gtx_error *error)
 {
@@ -170,15 +175,14 @@ gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shad
     gtx_shading *shading = gtx_alloc_array(&renderer->allocator, 1, sizeof *shading);
     if (!shading)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a shading");
-    gtx_program *const programs[] = {&shading->cast, &shading->lod, &shading->grid,
-                                     &shading->tiles};
-    const int count = renderer->gl.TexBuffer ? 4 : 3;
+    gtx_program *const programs[] = {&shading->cast, &shading->lod, &shading->grid};
     gtx_result result = GTX_OK;
-    for (int i = 0; i < count && !result; ++i)
-        result = build(renderer,
-                       gtx_pipeline_of((gtx_technique)(TECHNIQUE_OWN_CAST + i), GTX_PASS_FORWARD,
-                                       MATERIAL_MAPS),
-                       text, programs[i], error);
+    for (int i = 0; i < 3 && !result; ++i)
+        result = build(renderer, own_pipeline((gtx_technique)(TECHNIQUE_OWN_CAST + i)), text,
+                       programs[i], error);
+    /* Others may read what tiles do not have. */
+    if (!result && renderer->gl.TexBuffer && strstr(text, "#pragma geotex tiles"))
+        result = build(renderer, own_pipeline(TECHNIQUE_OWN_TILES), text, &shading->tiles, error);
     if (result)
         gtx_shading_destroy(renderer, shading);
     else

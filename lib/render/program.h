@@ -20,7 +20,7 @@ typedef struct gtx_program {
 /* In the order of TECHNIQUE_OWN_CAST and those behind it. */
 struct gtx_shading {
     gtx_program cast, lod, grid;
-    gtx_program tiles;        /* 0 where the context has none */
+    gtx_program tiles;        /* 0 where the context or the main has none */
 };
 
 /* Compiles what a technique needs for a pass, with any material. Errors: SHADER. */

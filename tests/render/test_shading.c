@@ -7,6 +7,7 @@ static void a_main_of_the_engines_own(void **state)
 {
     STAGE_OR_SKIP(state);
     static const char text[] =
+        "#pragma geotex tiles\n"
         "uniform vec4 scale;\n"
         "layout(location = 0) out vec4 color;\n"
         "void main()\n"
@@ -74,6 +75,44 @@ static void a_main_of_the_engines_own(void **state)
     subject_close(s, &shown);
 }
 
+/* A main that reads a varying of proxies does not say that it can: it is drawn without tiles. */
+static void not_all_mains_have_tiles(void **state)
+{
+    STAGE_OR_SKIP(state);
+    static const char text[] =
+        "layout(location = 0) out vec4 color;\n"
+        "void main()\n"
+        "{\n"
+        "    gtx_surface s;\n"
+        "    if (!gtx_find(s))\n"
+        "        discard;\n"
+        "#ifdef GTX_LOD\n"
+        "    color = vec4(1.0);\n"
+        "#else\n"
+        "    color = vec4(fract(gtx_point), 1.0);\n"
+        "#endif\n"
+        "    gtx_write_depth(s);\n"
+        "}\n";
+    gtx_error error = {0};
+    gtx_shading *shading;
+    subject shown = subject_open(s, fixture_sphere(2, 64, 8));
+    const gtx_camera camera = camera_around(shown.asset);
+    gtx_view view = view_of(&camera);
+    must(gtx_shading_create(s->renderer, text, &shading, &error), &error);
+    assert_int_equal(gtx_shading_tile_program(shading), 0);
+    view.shading = shading;
+    view.method = GTX_METHOD_CAST;
+    view.flags |= GTX_VIEW_SHADING_BY_TILES;
+    by_tiles(&view);
+    stage_draw(s, &view, &shown.instance, 1);
+    int covered = 0;
+    for (int p = 0; p < STAGE_PIXELS; ++p)
+        covered += s->color[4 * p + 3] == 255;
+    assert_true(covered > 5000);
+    gtx_shading_destroy(s->renderer, shading);
+    subject_close(s, &shown);
+}
+
 static void keep_log(const char *message, void *user)
 {
     snprintf(user, 256, "%s", message);
@@ -122,6 +161,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_main_of_the_engines_own),
+        cmocka_unit_test(not_all_mains_have_tiles),
         cmocka_unit_test(nobody_complained),
         cmocka_unit_test(bad_mains_are_refused),
     };

@@ -204,6 +204,7 @@ int main(void)
     static char smallest[] = "smallest_engine", instances[] = "instances", picking[] = "picking",
                 mixed[] = "mixed_scene", gbuffer[] = "engine_gbuffer", shadows[] = "shadows",
                 rays[] = "ray_shadows", implicit[] = "implicit", filters[] = "filters",
+                lighting[] = "engine_lighting",
                 cellular[] = "cellular", footprints[] = "footprints", rhi[] = "rhi";
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cooking_says_how_far_it_is),
@@ -216,6 +217,7 @@ int main(void)
         PICTURE(mixed),
         PICTURE(gbuffer),
         PICTURE(shadows),
+        PICTURE(lighting),
         PICTURE(rays),
         PICTURE(implicit),
         cmocka_unit_test(an_engine_submits_the_same_picture),

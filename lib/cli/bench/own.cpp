@@ -4,6 +4,7 @@
 namespace gtx {
 
 static const char own_main[] =
+    "#pragma geotex tiles\n"
     "layout(location = 0) out vec4 color;\n"
     "uniform vec4 own_light;\n" /* towards it, and the share without it */
     "void main()\n"
