@@ -74,6 +74,7 @@ static gtx::StepReport run_plan(const char *const *operands, int count, gtx::Tas
     options.folder = folder;
     options.triangles = uint32_t(triangles);
     options.memory = memory;
+    options.work = cli_limits.work;
     options.engine = gtx::Engine(engine);
     options.glb = glb;
     options.z_up = up == 1;

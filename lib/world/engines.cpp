@@ -48,7 +48,8 @@ static Vector<Stage> stages_of(const Plan &plan)
 static std::string command_line(const Plan &plan, const std::string &command)
 {
     return "[ \"$GTX\" ] || GTX=" + quoted(command) + "; \"$GTX\" world \"$@\" -q --threads 1 "
-           "--max-memory " + std::to_string(plan.memory);
+           "--max-memory " + std::to_string(plan.memory) +
+           (plan.work ? " --max-work " + std::to_string(plan.work) : "");
 }
 
 /* ---- Ninja ---- */

@@ -87,6 +87,7 @@ StepReport plan_world(const PlanOptions &options, Task &task)
     plan.folder = options.folder;
     plan.triangles = options.triangles;
     plan.memory = options.memory;
+    plan.work = options.work;
     plan.glb = options.glb;
     plan.z_up = options.z_up;
     plan.unit = options.unit;

@@ -39,7 +39,7 @@ struct Plan {
     std::string folder;
     uint64_t key = 0;                /* of the triangles and of the options */
     uint32_t triangles = 0;
-    uint64_t memory = 0, total = 0, dropped = 0;
+    uint64_t memory = 0, work = 0, total = 0, dropped = 0;
     bool glb = false, z_up = false;
     double unit = 1;
     CornerTraits traits;

@@ -123,6 +123,7 @@ void write_plan(const Plan &plan)
     gtx_json_integer(&out, "dropped", plan.dropped);
     gtx_json_integer(&out, "tile_triangles", plan.triangles);
     gtx_json_integer(&out, "memory", plan.memory);
+    gtx_json_integer(&out, "work", plan.work);
     gtx_json_bool(&out, "glb", plan.glb);
     gtx_json_string(&out, "up", plan.z_up ? "z" : "y");
     gtx_json_exact(&out, "unit", plan.unit);
@@ -190,6 +191,7 @@ static void read_parts(const json &from, Plan &plan)
     plan.dropped = whole_number(from, "dropped", UINT64_MAX);
     plan.triangles = uint32_t(whole_number(from, "tile_triangles", UINT32_MAX));
     plan.memory = whole_number(from, "memory", UINT64_MAX);
+    plan.work = from.contains("work") ? whole_number(from, "work", UINT64_MAX) : 0;
     plan.glb = from.at("glb");
     plan.z_up = from.at("up") == "z";
     plan.unit = from.at("unit");

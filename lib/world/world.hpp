@@ -35,6 +35,7 @@ struct PlanOptions {
     std::string folder;
     uint32_t triangles = MAX_TILE;   /* of a tile, at most */
     uint64_t memory = WORKER_MEMORY; /* of a worker */
+    uint64_t work = 0;               /* of a step, at most; 0: as files of its size may take */
     Engine engine = Engine::NINJA;
     bool glb = false, z_up = false;
     double unit = 1;

@@ -146,6 +146,38 @@ static void slurm_gets_jobs_that_wait(void **state)
     same_worlds("one", "by-slurm");
 }
 
+/* What plan was allowed, its steps are, whoever runs them. */
+static void limits_go_on_to_the_steps(void **state)
+{
+    static const char serial[] = /* of Dask, what the script asks of it: one after another */
+        "class Client:\n    def __init__(self, cluster): pass\n"
+        "    def __enter__(self): return self\n    def __exit__(self, *error): pass\n"
+        "    def submit(self, run, *arguments, pure): return run(*arguments)\n\n\n"
+        "def LocalCluster(**options): pass\n";
+    static const char *const engines[][3] = {
+        {"ninja", "ninja", "ninja -C limited"},
+        {"shell", "sh", "sh limited/build.sh"},
+        {"slurm", "awk", "cd limited; export SLURM_ARRAY_TASK_COUNT=1 SLURM_ARRAY_TASK_ID=1; "
+                         "sh slurm/job.sh split && sh slurm/job.sh cook $(ls slurm/cook-* | "
+                         "tail -1)"},
+        {"ninja", "python3", "PYTHONPATH=. python3 $ROOT/samples/pipeline/world_dask.py limited"},
+    };
+    (void)state;
+    char root[1024];
+    assert_non_null(getcwd(root, sizeof root));
+    setenv("ROOT", root, 1);
+    write_file("distributed.py", serial, sizeof serial - 1);
+    for (size_t i = 0; i < sizeof engines / sizeof *engines; ++i) {
+        if (shell("command -v %s", engines[i][1]))
+            continue;
+        expect(shell("rm -rf limited"), 0);
+        expect(gtx("world plan big.obj -o limited --triangles 2k --engine %s --max-work 200k -q",
+                   engines[i][0]), 0);
+        assert_int_not_equal(shell("%s", engines[i][2]), 0);
+        expect_text("--max-work allows more");
+    }
+}
+
 /* One line, and the exit code of what went wrong. */
 static void refuses(const char *arguments, int code, const char *text)
 {
@@ -235,6 +267,7 @@ int main(void)
         cmocka_unit_test(killed_workers_leave_nothing_wrong),
         cmocka_unit_test(leaves_may_come_in_any_order),
         cmocka_unit_test(slurm_gets_jobs_that_wait),
+        cmocka_unit_test(limits_go_on_to_the_steps),
         cmocka_unit_test(faults_are_one_line),
         cmocka_unit_test(triangles_come_from_stdin),
         cmocka_unit_test(a_world_is_drawn),

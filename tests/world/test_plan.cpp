@@ -47,7 +47,8 @@ static gtx_result read_result(const std::string &text)
 static void numbers_of_a_plan_are_whole(void **)
 {
     assert_int_equal(read_result(plan_text), GTX_OK);
-    for (const char *name : {"triangles", "dropped", "tile_triangles", "memory", "depth", "parent"})
+    for (const char *name : {"triangles", "dropped", "tile_triangles", "memory", "work", "depth",
+                             "parent"})
         for (const char *value : {"-1", "-1e300", "1e300", "0.5", "true", "\"1\"", "null", "[]"}) {
             if (read_result(changed(plan_text, name, value)) != GTX_ERROR_INPUT)
                 fail_msg("a plan of %s %s was read", name, value);
