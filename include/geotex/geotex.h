@@ -270,7 +270,8 @@ GTX_API const void *gtx_map_data(const gtx_asset *asset, gtx_map map, uint32_t l
  *   origin + step * q                                            relative to the asset's anchor. */
 typedef struct gtx_lod_mesh {
     float origin[3], step;
-    float error;                  /* distance from the source, object units */
+    float error;                  /* object units: no point is farther from the source, none of the
+                                     source from it, but for parts that are no longer */
     uint32_t vertex_count, triangle_count;
     uint32_t flags;               /* GTX_LOD_FAR */
     const uint32_t *first;        /* patch_count + 1: triangles first[p]..first[p + 1] - 1 belong

@@ -119,6 +119,8 @@ static Attempt attempt(const Mesh &mesh, const Options &options, Task &task, con
             mark_kept(options, maps, source);
             lod = make_lod(source, maps, options.lod_levels, task);
         }
+        for (const LodLevel &level : lod)
+            out.lod_rms.push_back(double(level.rms));
         refuse_warnings(options, task);
         CookFacts of_asset = facts;
         of_asset.chart_count = out.partition.charts.size();
@@ -157,6 +159,7 @@ static Attempt cook_mesh(const Mesh &mesh, const Options &options, Task &task, C
     facts.method = made.partition.method;
     facts.suitability = made.suitability;
     facts.error = made.error;
+    facts.lod_rms = made.lod_rms;
     return made;
 }
 

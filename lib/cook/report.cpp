@@ -88,14 +88,17 @@ static void write_error(Json &json, const Options &options, const SurfaceError &
     gtx_json_end_object(&json);
 }
 
-static void write_lod(Json &json, const Vector<gtx_lod_mesh> &levels)
+static void write_lod(Json &json, const Vector<gtx_lod_mesh> &levels, const Vector<double> &rms)
 {
     gtx_json_begin_array(&json, "lod_meshes");
-    for (const gtx_lod_mesh &level : levels) {
+    for (size_t k = 0; k < levels.size(); ++k) {
+        const gtx_lod_mesh &level = levels[k];
         gtx_json_begin_object(&json, nullptr);
         gtx_json_integer(&json, "triangles", level.triangle_count);
         gtx_json_integer(&json, "vertices", level.vertex_count);
         gtx_json_number(&json, "error", level.error);
+        if (k < rms.size())
+            gtx_json_number(&json, "rms", rms[k]);
         gtx_json_end_object(&json);
     }
     gtx_json_end_array(&json);
@@ -190,7 +193,7 @@ std::string write_cook_report(const Options &options, const CookFacts &facts, co
         write_made(json, options, facts);
     gtx_json_integer(&json, "bytes", facts.bytes);
     gtx_json_number(&json, "bytes_per_triangle", per_triangle(facts));
-    write_lod(json, facts.lod);
+    write_lod(json, facts.lod, facts.lod_rms);
     gtx_json_begin_object(&json, "seconds");
     for (size_t i = 0; i < task.stages().size() && !facts.unchanged; ++i)
         gtx_json_number(&json, task.stages()[i], task.seconds()[i]);

@@ -29,6 +29,7 @@ struct CookFacts {
     uint64_t source_hash = 0, key = 0;
     std::bitset<GTX_WARNING_COUNT> warnings;
     Vector<gtx_lod_mesh> lod;      /* the levels of the asset */
+    Vector<double> lod_rms;        /* of each, where it was cooked */
     uint64_t bytes = 0, content_hash = 0;
     double total_seconds = 0;
 };

@@ -18,6 +18,7 @@ struct Attempt {
     BakeReport bake;
     Suitability suitability;
     SurfaceError error;
+    Vector<double> lod_rms;             /* of the LOD meshes, the finest first */
     uint64_t bytes = 0;                 /* of the file */
     Vector<Warning> warnings;           /* of this attempt */
 };

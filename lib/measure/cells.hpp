@@ -1,7 +1,7 @@
 /* The surface of an asset as small shapes: its cells, trimmed. */
 #pragma once
 
-#include "measure/nearest.hpp"
+#include "mesh/nearest.hpp"
 
 #include <geotex/geotex.h>
 

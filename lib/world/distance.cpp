@@ -1,7 +1,7 @@
 /* How far two surfaces are from each other. */
 #include "world/surface.hpp"
 
-#include "measure/nearest.hpp"
+#include "mesh/nearest.hpp"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bake/shapes.hpp"
-#include "bake/lod/lod.hpp"
+#include "bake/lod/bound.hpp"
 
 #include <iterator>
 #include <map>
@@ -186,4 +186,55 @@ inline void assert_placed(const Lod &lod)
         });
 }
 
-} // namespace LOD meshes
+/* The greatest distance of points all over one surface from the other. */
+inline double farthest(const baking::Surface &from, const baking::Surface &to)
+{
+    const NearestTree<baking::Surface> tree(to);
+    const size_t each = 1 + 60000 / from.size();
+    uint32_t near = ~0u, random = 1;
+    double most = 0;
+    for (size_t t = 0; t < from.size(); ++t) {
+        const std::array<Vec3d, 3> c = from.corners(t);
+        for (size_t i = 0; i < each; ++i) {
+            double share[2];
+            for (double &s : share) {
+                random = random * 1664525u + 1013904223u;
+                s = (random >> 8) / double(1 << 24);
+            }
+            const double u = std::sqrt(share[0]), v = share[1];
+            const Vec3d p = c[0] * (1 - u) + c[1] * (u * (1 - v)) + c[2] * (u * v);
+            most = std::max(most, std::sqrt(tree.distance2(p, &near)));
+        }
+    }
+    return most;
+}
+
+/* No point of a level is farther from the mesh than it says, nor a point of the mesh from it; and
+ * it does not say much more. */
+inline void assert_bounded(const Lod &lod, const Mesh &mesh)
+{
+    const double *anchor = lod.maps.anchor;
+    Vector<Vec3d> at;
+    for (const Vec3d &p : mesh.positions)
+        at.push_back(p - Vec3d(anchor[0], anchor[1], anchor[2]));
+    const baking::Surface source = {at, mesh.triangles};
+    double before = 0;
+    for (const LodLevel &level : lod.levels) {
+        Vector<Vec3d> positions;
+        Vector<std::array<uint32_t, 3>> triangles;
+        for (uint32_t v = 0; 3 * v < level.positions.size(); ++v)
+            positions.push_back(point(level, v));
+        for (size_t i = 0; i < level.indices.size(); i += 3)
+            triangles.push_back({level.indices[i], level.indices[i + 1], level.indices[i + 2]});
+        const baking::Surface made = {positions, triangles};
+        const double most = std::max(farthest(source, made), farthest(made, source));
+        const double told = double(level.error);
+        if (most > told)
+            fail_msg("%zu triangles: %g instead of %g", triangles.size(), most, told);
+        assert_true(level.rms > 0 && level.rms < level.error);
+        assert_true(told < std::max(1.8 * most, before));
+        before = told;
+    }
+}
+
+} // namespace lods

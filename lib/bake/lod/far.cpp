@@ -76,10 +76,9 @@ private:
     Vector<uint32_t> lowest_;
 };
 
-Vector<uint8_t> find_specks(const Simplifier &simplified, double most)
+Vector<uint8_t> find_specks(const Vector<Vec3d> &positions, const Vector<Triangle> &triangles,
+                            double most)
 {
-    const Vector<Vec3d> &positions = simplified.positions();
-    const auto &triangles = simplified.triangles();
     Components components(triangles, positions.size());
     Vector<Vec3d> low(positions.size(), {INFINITY, INFINITY, INFINITY});
     Vector<Vec3d> high(positions.size(), {-INFINITY, -INFINITY, -INFINITY});

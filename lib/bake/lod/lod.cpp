@@ -1,4 +1,5 @@
 /* The LOD meshes: how many, how fine, and the order of their triangles. */
+#include "bake/lod/bound.hpp"
 #include "bake/lod/parts.hpp"
 #include "base/exact.h"
 #include "bake/lod/strip.hpp"
@@ -31,11 +32,11 @@ constexpr double MAX_ERROR = 1.0 / 64;
 /* The coarsest level beyond, for models of ten to twenty pixels, and how far it may stray. Spot:
  * one level more | one fewer; MAX_FAR_ERROR: error +13 % | a few bytes. */
 constexpr double FAR_TRIANGLES = 160, MAX_FAR_ERROR = 1.0 / 20;
-/* Errors are stated so many times what merging measured, the root of a mean of squares: outlines
- * are off by the farthest point. On bunny and armadillo that is 1.9 to 3.3 times as far. At half
- * the sculpt's outlines have holes of some pixels where two are allowed; at double levels are used
- * from twice as far. */
-constexpr double STATED = 2;
+/* Parts of the source that are no longer than so many times the error that merging measured may be
+ * missing: far levels go without those that have become no longer than that error, and specks of a
+ * scan merge into nothing. At 1 specks of the dragon of 810,080 triangles make the error of its
+ * second level nine times as large. */
+constexpr double SPECK = 2;
 /* How many lead there: a limit. And triangles of one for one of the next where fewer of them do;
  * Spot: one level fewer at half, a few bytes at double. */
 constexpr unsigned FAR_LEVELS = 3;
@@ -194,8 +195,22 @@ struct LodJob {
     const Maps &maps;
     const Vector<PatchRegion> &regions;
     const Lattice &lattice;
+    const Bounds &bounds;
     Task &task;
 };
+
+/* Adds a level that the simplifier made, and says how far it strays: no less than a finer one. */
+static void add_level(const LodJob &job, const Simplifier &simplifier, LodLevel &&level,
+                      Vector<LodLevel> &lod)
+{
+    const double speck = SPECK * simplifier.error();
+    const Strayed strayed = job.bounds.of(level, speck);
+    level.error = std::nextafter(float(std::max(strayed.most, speck)), INFINITY);
+    level.rms = float(strayed.rms);
+    if (!lod.empty())
+        level.error = std::max(level.error, lod.back().error);
+    lod.push_back(std::move(level));
+}
 
 /* Goes on without regard to patches: where each is a pixel, a triangle may show several. */
 static void add_far_levels(const LodJob &job, Simplifier &simplifier, double most,
@@ -210,18 +225,18 @@ static void add_far_levels(const LodJob &job, Simplifier &simplifier, double mos
         const double ratio = gtx_pow(before / FAR_TRIANGLES, 1.0 / (k + 1));
         simplifier.reduce(size_t(before / ratio), 0, most);
         simplifier.settle();
-        simplifier.drop(find_specks(simplifier, simplifier.error()));
+        simplifier.drop(find_specks(simplifier.positions(), simplifier.triangles(),
+                                    simplifier.error()));
         if (double(simplifier.triangles().size()) > MAX_SHARE * before)
             return;
         const Vector<uint32_t> homes =
             find_far_homes(simplifier, job.maps, job.regions, job.task);
         LodLevel level = make_level(simplifier, homes, round_all(simplifier, job.lattice),
                                     job.regions.size(), job.lattice);
-        level.error = float(STATED * simplifier.error());
         level.far = true;
         if (level.indices.empty())
             return;
-        lod.push_back(std::move(level));
+        add_level(job, simplifier, std::move(level), lod);
     }
 }
 
@@ -246,6 +261,8 @@ Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned le
         size[k] = double(maps.bounds_max[k]) - maps.bounds_min[k];
     const double free = FREE_ERROR * pitch;
     Simplifier simplifier(source, regions, task);
+    const Bounds bounds(source, pitch, task);
+    const LodJob job = {maps, regions, lattice, bounds, task};
     size_t wanted = (source.model ? source.model : source.triangles.size()) / FINEST_RATIO;
     for (unsigned k = 0; k < levels; ++k) {
         const size_t before = simplifier.triangles().size();
@@ -257,14 +274,12 @@ Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned le
         LodLevel level =
             make_level(simplifier, find_homes(simplifier, regions, lattice, places), places,
                        regions.size(), lattice);
-        level.error = float(STATED * simplifier.error());
         if (level.indices.empty())
             break;
-        lod.push_back(std::move(level));
+        add_level(job, simplifier, std::move(level), lod);
         wanted = size_t(double(simplifier.triangles().size()) / LEVEL_RATIO);
     }
-    add_far_levels({maps, regions, lattice, task}, simplifier,
-                   MAX_FAR_ERROR * length(size), lod);
+    add_far_levels(job, simplifier, MAX_FAR_ERROR * length(size), lod);
     return lod;
 }
 

@@ -24,7 +24,9 @@ struct LodSource {
 
 /* One level as the asset keeps it (format/gtx.md, "LOD mesh"). */
 struct LodLevel {
-    float origin[3] = {0, 0, 0}, step = 0, error = 0;
+    float origin[3] = {0, 0, 0}, step = 0;
+    float error = 0;                 /* nothing of it or of the source is farther from the other */
+    float rms = 0;                   /* distance of the source's vertices from it */
     bool far = false;                /* triangles reach across patches */
     Vector<uint32_t> first;          /* of each patch, and the end */
     Vector<uint32_t> indices;        /* 3 a triangle */

@@ -105,8 +105,8 @@ public:
     const Vector<std::array<uint32_t, 3>> &triangles() const;
     const Vector<uint32_t> &patch() const;
     /* The greatest at a vertex, so far, when they settled: root of the mean square of the distances
-     * to the planes that it stands for. About 99.7 of 100 points of the source are nearer than
-     * that, the farthest two to three times as far. */
+     * to the planes that it stands for. The farthest point of the source is up to three times as
+     * far away. */
     double error() const;
 
 private:
@@ -119,6 +119,7 @@ Vector<uint32_t> find_far_homes(const Simplifier &simplified, const Maps &maps,
                                 const Vector<PatchRegion> &regions, Task &task);
 
 /* Which triangles are of connected parts no longer than `most`; none where all are. */
-Vector<uint8_t> find_specks(const Simplifier &simplified, double most);
+Vector<uint8_t> find_specks(const Vector<Vec3d> &positions,
+                            const Vector<std::array<uint32_t, 3>> &triangles, double most);
 
 } // namespace gtx::baking

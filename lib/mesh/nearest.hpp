@@ -78,10 +78,11 @@ public:
      * try first, such as the nearest of a point close by (any number from size() on: none), and
      * becomes the nearest: a short distance known early spares most of the search. Only shapes that
      * `counts(shape)` is true of are sought. `*looks` are the nodes that may be looked at, which
-     * become fewer: where they are spent, the shape found by so few may not be the nearest. */
+     * become fewer: where they are spent, the shape found by so few may not be the nearest. The
+     * search ends at a shape that is as near as `enough`, a squared distance. */
     template <class Counts>
     double distance2(const Vec3d &p, uint32_t *near, const Counts &counts,
-                     size_t *looks = nullptr) const
+                     size_t *looks = nullptr, double enough = 0) const
     {
         constexpr size_t FEW = 32; /* they lead down one way */
         const size_t most = looks ? std::max(*looks, FEW) : SIZE_MAX;
@@ -92,7 +93,7 @@ public:
         std::pair<size_t, double> stack[64];
         int size = 0;
         stack[size++] = {1, boxes_[1].distance2(p)};
-        while (size) {
+        while (size && best > enough) {
             auto [node, distance] = stack[--size];
             if (distance >= best)
                 continue;
