@@ -69,8 +69,8 @@ enum { /* gtx_view.flags */
  * `max_error` pixels where the asset's bounds are nearest to the camera, or by the finest one if
  * none is; `level` then counts LOD meshes. They write no depth of their own, so that the depth test
  * comes first and multisampling smooths edges; `viewport_height` also sets the mip level of their
- * maps. GTX_METHOD_AUTO takes the same LOD mesh, or the finest one if its error is at most 1.5
- * times the allowed one, and draws it unless casting costs less (gtx_costs).
+ * maps. GTX_METHOD_AUTO draws the same LOD mesh, unless none is fine enough or casting costs less
+ * (gtx_costs).
  *
  * Patch by patch. If none is fine enough for all of an instance, or part of it is beside the
  * picture, AUTO draws each patch in view by the coarsest LOD mesh that is fine enough where the

@@ -69,13 +69,27 @@ static extent measure(const gtx_draw_call *draw, const gtx_model *model,
     return (extent){fmax(nearest, 0) / scale, across * across};
 }
 
-/* Whether casting is thought to take less. */
-static bool is_casting_cheaper(const gtx_costs *costs, const gtx_model *model, uint32_t level,
-                               double pixels)
+static bool is_cheaper(const gtx_costs *costs, const gtx_model *model, uint32_t level,
+                       double pixels)
 {
     const double triangles = model->lods.levels[level].triangle_count;
     return costs->cast_patch * model->patch_count + costs->cast_pixel * pixels <
            costs->lod_triangle * triangles + costs->lod_pixel * pixels;
+}
+
+/* Whether casting is thought to take less than the level, and to stay so as the instance grows, up
+ * to where the finest level is no longer fine enough: it must not be drawn by a mesh once more when
+ * it is nearer. */
+static bool is_casting_cheaper(const gtx_costs *costs, const gtx_model *model, uint32_t level,
+                               extent e)
+{
+    const gtx_lod_level *levels = model->lods.levels;
+    bool cheaper = is_cheaper(costs, model, level, e.pixels);
+    for (uint32_t k = 0; k <= level; ++k) {
+        const double growth = fmax(e.error / fmax(levels[k].error, FLT_MIN), 1);
+        cheaper = cheaper && is_cheaper(costs, model, k, growth * growth * e.pixels);
+    }
+    return cheaper;
 }
 
 double gtx_grid_cost(const gtx_draw_call *draw, uint32_t triangles, double pixels)
@@ -113,17 +127,13 @@ static uint32_t usable_levels(const gtx_lod_meshes *lods)
     return count;
 }
 
-/* The finest level is used up to this multiple of the allowed error: casting takes several times as
- * long. */
-static const double finest_excess = 1.5;
-
 /* What an instance is drawn by that `level` of the LOD mesh, counted from 1, is good enough for. */
 static uint8_t choose(const gtx_draw_call *draw, const gtx_model *model,
-                      const gtx_instance_data *placed, uint32_t level, double pixels)
+                      const gtx_instance_data *placed, uint32_t level, extent e)
 {
     if (!level)
         return GTX_DRAW_PATCHES;
-    if (is_casting_cheaper(costs_of(draw), model, level - 1, pixels))
+    if (is_casting_cheaper(costs_of(draw), model, level - 1, e))
         return GTX_DRAW_CAST;
     const bool far = model->lods.levels[level - 1].far;
     return !far && is_cut(draw, model, placed) ? GTX_DRAW_PATCHES : (uint8_t)level;
@@ -149,12 +159,10 @@ gtx_result gtx_choose(const gtx_draw_call *draw, const gtx_model *model,
         e = measure(draw, model, placed);
         while (level < usable && lods->levels[level].error <= e.error)
             ++level;
-        if (!level && usable && lods->levels[0].error <= finest_excess * e.error)
-            level = 1;
     }
     if (forced && usable)
         *out = (uint8_t)(level ? level : 1);
     else if (!forced)
-        *out = choose(draw, model, placed, level, e.pixels);
+        *out = choose(draw, model, placed, level, e);
     return GTX_OK;
 }

@@ -121,17 +121,13 @@ static void the_coarsest_within_the_error(void **state)
         assert_int_equal(gtx_get_lod_mesh(shown.asset, k, &level), GTX_OK);
         for (int over = 0; over < 2; ++over) {
             view.max_error = (float)(level.error * pixels * (over ? 1.02 : 0.98));
-            view.method = GTX_METHOD_AUTO; /* the finest up to one and a half times the error */
-            assert_int_equal(drawn_as(s, &view, &shown.instance), k + (over || !k ? 1 : 0));
+            view.method = GTX_METHOD_AUTO; /* none of them where none is within the error */
+            assert_int_equal(drawn_as(s, &view, &shown.instance), k + (over ? 1 : 0));
             view.method = GTX_METHOD_LOD; /* at its finest where none is within the error */
             assert_int_equal(drawn_as(s, &view, &shown.instance), k + (over || !k ? 1 : 0));
         }
     }
-    gtx_lod_mesh finest;
-    assert_int_equal(gtx_get_lod_mesh(shown.asset, 0, &finest), GTX_OK);
     view.method = GTX_METHOD_AUTO;
-    view.max_error = (float)(finest.error * pixels * 0.98 / 1.5);
-    assert_int_equal(drawn_as(s, &view, &shown.instance), 0);
     /* A large instance far away is as near. */
     for (int i = 0; i < 15; i += 5)
         shown.instance.transform[i] = 3;
@@ -145,6 +141,40 @@ static void the_coarsest_within_the_error(void **state)
         assert_int_equal(drawn_as(s, &view, &shown.instance), over ? 2 : 1);
     }
     subject_close(s, &shown);
+}
+
+/* As a camera comes nearer the level is never a coarser one, nor a mesh again once it was cast, not
+ * even where casting is cheap while it covers few pixels. */
+static void nearer_is_never_coarser(void **state)
+{
+    STAGE_OR_SKIP(state);
+    gtx_renderer *usual = s->renderer;
+    gtx_error error = {0};
+    const gtx_renderer_desc desc = {.load = gtx_offscreen_load, .log = stage_log,
+                                    .costs = {100, 25, 500, 160, 350}};
+    must(gtx_renderer_create(&desc, &s->renderer, &error), &error);
+    subject shown = sphere_open(s);
+    gtx_camera camera = camera_around(shown.asset);
+    uint32_t changes = 0;
+    for (float allowed = 0.5f; allowed > 0.02f; allowed /= 2) {
+        uint32_t before = LOD_LEVELS;
+        for (camera.distance = 60; camera.distance > 2.9f; camera.distance *= 0.85f) {
+            gtx_view view = view_of(&camera);
+            view.viewport_height = STAGE_HEIGHT;
+            view.max_error = allowed;
+            view.method = GTX_METHOD_AUTO;
+            const uint32_t level = drawn_as(s, &view, &shown.instance);
+            if (level > before)
+                fail_msg("level %u after %u, %g radii away, within %g pixels", level, before,
+                         (double)camera.distance, (double)allowed);
+            changes += level != before;
+            before = level;
+        }
+    }
+    assert_true(changes > 4);
+    subject_close(s, &shown);
+    gtx_renderer_destroy(s->renderer);
+    s->renderer = usual;
 }
 
 static void casts_when_it_must(void **state)
@@ -282,6 +312,7 @@ int main(void)
         cmocka_unit_test(one_material_looks_the_same),
         cmocka_unit_test(levels_keep_the_looks),
         cmocka_unit_test(the_coarsest_within_the_error),
+        cmocka_unit_test(nearer_is_never_coarser),
         cmocka_unit_test(casts_when_it_must),
         cmocka_unit_test(costs_are_compared),
         cmocka_unit_test(a_zoom_is_smooth),
