@@ -1,25 +1,48 @@
 /* gtx render: assets, meshes, worlds and scenes into a PNG, without a window. */
 #include "cli/guard.hpp"
-#include "cli/view/still.hpp"
+#include "cli/view/sheet.hpp"
 #include "image/image.h"
 
+#include <cerrno>
+#include <cmath>
 #include <cstring>
+#include <sys/stat.h>
 
-static const char *output, *depth_path;
+static const char *output, *depth_path, *turntable, *beside, *light_color, *background;
 static gtx::StillOptions still_options;
 static uint32_t size[2] = {1024, 768};
-static uint32_t method;
+static uint32_t method, views, frames = 36, debug;
+static double frames_per_second = 12, light[3] = {NAN, 0, 0};
 static bool gles, vulkan;
 static const gtx_method methods[] = {GTX_METHOD_AUTO, GTX_METHOD_CAST, GTX_METHOD_LOD,
                                      GTX_METHOD_GRID, GTX_METHOD_PAPER};
 
 static const option options[] = {
-    {"output", 'o', OPTION_STRING, &output, "OUT.png", "where the picture goes (required)", 0, 0},
-    {"size", 0, OPTION_SIZE, size, "WxH", "pixels [1024x768]", 1, 8192},
+    {"output", 'o', OPTION_STRING, &output, "OUT.png",
+     "where the picture goes (this or --turntable)", 0, 0},
+    {"size", 0, OPTION_SIZE, size, "WxH", "pixels, of a sheet as a whole [1024x768]", 1, 8192},
     {"camera", 0, OPTION_TRIPLE, still_options.camera, "AZ,EL,DIST",
      "degrees, degrees, bounding-sphere radii [30,20,2.8]", 0, 0},
     {"depth", 0, OPTION_STRING, &depth_path, "OUT.exr",
      "also write depth along the view axis, infinity for background", 0, 0},
+    {"sheet", 0, OPTION_UINT, &views, "N",
+     "N views in one picture; of several files, of each: a row each", 1, 64},
+    {"beside", 0, OPTION_STRING, &beside, "MODEL",
+     "show a model, such as the source, beside FILE, from the same side", 0, 0},
+    {"turntable", 0, OPTION_STRING, &turntable, "OUT.gif|DIR",
+     "a turn: an animated GIF, or frame-000.png ... in a folder", 0, 0},
+    {"frames", 0, OPTION_UINT, &frames, "N", "of the turn [36]", 2, 720},
+    {"rate", 0, OPTION_NUMBER, &frames_per_second, "FPS", "frames a second of the GIF [12]", 1, 50},
+    {"show", 0, OPTION_CHOICE, &debug, "color|patches|normals",
+     "colours of the model, a colour a patch, normals as colours [color]", 0, 0},
+    {"legend", 0, OPTION_FLAG, &still_options.legend, nullptr,
+     "say in the picture what its colours mean", 0, 0},
+    {"light", 0, OPTION_TRIPLE, light, "AZ,EL,AMBIENT",
+     "where light comes from, as --camera, and the share from everywhere [the camera's left]", 0,
+     0},
+    {"light-color", 0, OPTION_STRING, &light_color, "RRGGBB", "of all light [FFFFFF]", 0, 0},
+    {"background", 0, OPTION_STRING, &background, "RRGGBB|none",
+     "none: transparent [EBEDF2]", 0, 0},
     {"method", 0, OPTION_CHOICE, &method, "auto|cast|lod|grid|paper",
      "how patches are drawn [auto]", 0, 0},
     {"level", 0, OPTION_CHOICE, &still_options.level, "auto|0|1|2|3|4|5|6|7",
@@ -34,38 +57,138 @@ static const verb render = {
     "render", "FILE... -o OUT.png",
     "Draws assets, polygon models, worlds (DIR of gtx world) and glTF scenes into a PNG. A glTF\n"
     "node with the extras {\"geotex\": \"a.gtx\"}, or the extension GTX_geometry_texture, places\n"
-    "an asset; one that lies in a GLB is shown as its mesh.",
+    "an asset; one that lies in a GLB is shown as its mesh. Legends tell what --show shows, or\n"
+    "the values of the colours that gtx horizons gave.",
     1, 64, options};
 
-static int write_images(const gtx::Still &still)
+static int usage(const char *sentence)
+{
+    print_message("gtx render: error[usage]: %s", sentence);
+    return EXIT_CODE_USAGE;
+}
+
+/* Six hexadecimal digits, or, where `none` is allowed, that. */
+static bool parse_color(const char *text, uint8_t *out, bool none)
+{
+    if (none && !std::strcmp(text, "none")) {
+        std::memset(out, 0, 4);
+        return true;
+    }
+    if (std::strlen(text) != 6 || std::strspn(text, "0123456789abcdefABCDEF") != 6)
+        return false;
+    const unsigned long code = std::strtoul(text, nullptr, 16);
+    for (int k = 0; k < 3; ++k)
+        out[k] = uint8_t(code >> (16 - 8 * k));
+    return true;
+}
+
+static bool is_gif(const char *path)
+{
+    const size_t length = std::strlen(path);
+    return length > 4 && !std::strcmp(path + length - 4, ".gif");
+}
+
+static int check(void)
+{
+    if (!output && !turntable)
+        return usage("-o OUT.png is missing");
+    if (depth_path && (views > 1 || beside || turntable))
+        return usage("--depth is of one view");
+    if (vulkan && (gles || debug || still_options.legend))
+        return usage("--gles, --show and --legend are not for --vulkan");
+    if (light_color && !parse_color(light_color, still_options.light_color, false))
+        return usage("--light-color takes RRGGBB");
+    if (background && !parse_color(background, still_options.background, true))
+        return usage("--background takes RRGGBB or none");
+    if (turntable && is_gif(turntable) && !still_options.background[3])
+        return usage("only frames in a folder can be transparent, no GIF");
+    still_options.has_light = !std::isnan(light[0]);
+    if (still_options.has_light && (light[2] < 0 || light[2] > 1))
+        return usage("--light takes AZ,EL,AMBIENT, the last from 0 to 1");
+    return EXIT_CODE_OK;
+}
+
+/* Everything that will be written. */
+struct Outputs {
+    gtx::Vector<std::string> frames;     /* of a turn that goes into a folder */
+    gtx::Vector<output_file> list;
+    Outputs()
+    {
+        char name[32];
+        const bool folder = turntable && !is_gif(turntable);
+        for (uint32_t i = 0; folder && i < ::frames; ++i) {
+            std::snprintf(name, sizeof name, "/frame-%03u.png", i);
+            frames.push_back(turntable + std::string(name));
+        }
+        list.push_back({"-o", output});
+        list.push_back({"--depth", depth_path});
+        list.push_back({"--turntable", folder ? nullptr : turntable});
+        for (const std::string &frame : frames)
+            list.push_back({"--turntable", frame.c_str()});
+        list.push_back({nullptr, nullptr});
+    }
+    Outputs(const Outputs &) = delete;
+};
+
+static void write_png(const char *path, const gtx::Still &still)
 {
     gtx_error error;
-    catch_interrupt();
-    if (gtx_image_write_png(output, size[0], size[1], 4, still.color.data(), &error) != GTX_OK)
-        return report_error(output, &error);
-    if (depth_path &&
-        gtx_image_write_exr(depth_path, size[0], size[1], still.depth.data(), &error) != GTX_OK)
-        return report_error(depth_path, &error);
+    gtx::require_ok(gtx_image_write_png(path, size[0], size[1], 4, still.color.data(), &error),
+                    error);
+}
+
+static void write_turn(const gtx::Vector<gtx::Still> &turn, const Outputs &outputs,
+                       std::string &current)
+{
+    gtx_error error;
+    current = turntable;
+    if (is_gif(turntable)) {
+        gtx::Vector<uint8_t> pixels;
+        for (const gtx::Still &still : turn)
+            pixels.insert(pixels.end(), still.color.begin(), still.color.end());
+        gtx::require_ok(gtx_image_write_gif(turntable, size[0], size[1], uint32_t(turn.size()),
+                                            frames_per_second, pixels.data(), &error), error);
+        return;
+    }
+    if (mkdir(turntable, 0777) && errno != EEXIST)
+        throw gtx::Error(GTX_ERROR_WRITE, std::strerror(errno));
+    for (size_t i = 0; i < turn.size(); ++i) {
+        gtx::stop_if_interrupted();
+        write_png(outputs.frames[i].c_str(), turn[i]);
+    }
+}
+
+static int write_images(const gtx::Vector<gtx::Still> &turn, const Outputs &outputs,
+                        std::string &current)
+{
+    gtx_error error;
+    current = output ? output : "";
+    if (output)
+        write_png(output, turn[0]);
+    if (depth_path) {
+        current = depth_path;
+        gtx::require_ok(gtx_image_write_exr(depth_path, size[0], size[1], turn[0].depth.data(),
+                                            &error), error);
+    }
+    if (turntable)
+        write_turn(turn, outputs, current);
     return EXIT_CODE_OK;
 }
 
 int cmd_render(int argc, char **argv)
 {
-    const char *files[64];
+    const char *files[65];
     int count;
     int code = parse_options(&render, argc, argv, files, &count);
-    if (code >= 0)
+    if (code < 0)
+        code = check();
+    else
         return code;
-    if (!output) {
-        print_message("gtx render: error[usage]: -o OUT.png is missing");
-        return EXIT_CODE_USAGE;
-    }
-    if (gles && vulkan) {
-        print_message("gtx render: error[usage]: --gles is not for --vulkan");
-        return EXIT_CODE_USAGE;
-    }
-    const output_file outputs[] = {{"-o", output}, {"--depth", depth_path}, {nullptr, nullptr}};
-    code = check_outputs("gtx render", outputs, files, size_t(count));
+    const Outputs outputs;
+    files[count] = beside;
+    if (!code)
+        code = check_outputs("gtx render", outputs.list.data(), files,
+                             size_t(count + (beside != nullptr)));
     if (code)
         return code;
     still_options.width = size[0];
@@ -73,19 +196,33 @@ int cmd_render(int argc, char **argv)
     still_options.method = methods[method];
     still_options.gles = gles;
     still_options.vulkan = vulkan;
+    still_options.debug = gtx::DebugView(debug);
+    if (still_options.has_light)
+        std::copy(light, light + 3, still_options.light);
 
     return gtx::guarded(files[0], [&](std::string &current) {
-        gtx::Task task(0, nullptr, nullptr, {}, {}, cli_limits);
-        gtx::Scene scene;
-        for (int i = 0; i < count; ++i) {
-            current = files[i];
-            gtx::add_file(scene, current, task);
-        }
-        gtx::report_warnings(files[0], task.warnings);
-        current = "gtx render";
-        gtx::refuse_sources(scene, outputs);
-        current = files[0];
-        gtx::measure_bounds(scene);
-        return write_images(gtx::draw_still(scene, still_options));
+        gtx::SheetOptions sheet;
+        sheet.files.assign(files, files + count);
+        sheet.beside = beside ? beside : "";
+        sheet.is_sheet = views > 0;
+        sheet.views = views ? views : 1;
+        sheet.frames = turntable ? frames : 1;
+        auto open = [&](const gtx::Vector<std::string> &names) {
+            gtx::Task task(0, nullptr, nullptr, {}, {}, cli_limits);
+            gtx::Scene scene;
+            for (const std::string &name : names) {
+                current = name;
+                gtx::add_file(scene, current, task);
+            }
+            gtx::report_warnings(names[0].c_str(), task.warnings);
+            current = "gtx render";
+            gtx::refuse_sources(scene, outputs.list.data());
+            current = names[0];
+            gtx::measure_bounds(scene);
+            return scene;
+        };
+        const gtx::Vector<gtx::Still> turn = gtx::draw_sheet(sheet, still_options, open);
+        catch_interrupt();
+        return write_images(turn, outputs, current);
     });
 }

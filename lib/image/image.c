@@ -70,8 +70,8 @@ gtx_result gtx_image_write_png(const char *path, uint32_t width, uint32_t height
 {
     const gtx_result checked = check_png(channels, error);
     return checked ? checked
-                   : write_image(path, (gtx_image_rows){"png", width, height, channels, pixels},
-                                 error);
+                   : write_image(path, (gtx_image_rows){"png", width, height, channels, pixels, 1,
+                                                        0}, error);
 }
 
 gtx_result gtx_image_encode_png(uint32_t width, uint32_t height, uint32_t channels,
@@ -79,20 +79,30 @@ gtx_result gtx_image_encode_png(uint32_t width, uint32_t height, uint32_t channe
 {
     const gtx_result checked = check_png(channels, error);
     return checked ? checked
-                   : encode_image((gtx_image_rows){"png", width, height, channels, pixels}, data,
-                                  size, error);
+                   : encode_image((gtx_image_rows){"png", width, height, channels, pixels, 1, 0},
+                                  data, size, error);
 }
 
 gtx_result gtx_image_write_png16(const char *path, uint32_t width, uint32_t height,
                                  const uint16_t *pixels, gtx_error *error)
 {
-    return write_image(path, (gtx_image_rows){"png16", width, height, 1, pixels}, error);
+    return write_image(path, (gtx_image_rows){"png16", width, height, 1, pixels, 1, 0}, error);
 }
 
 gtx_result gtx_image_write_exr(const char *path, uint32_t width, uint32_t height, const float *z,
                                gtx_error *error)
 {
-    return write_image(path, (gtx_image_rows){"exr", width, height, 1, z}, error);
+    return write_image(path, (gtx_image_rows){"exr", width, height, 1, z, 1, 0}, error);
+}
+
+gtx_result gtx_image_write_gif(const char *path, uint32_t width, uint32_t height, uint32_t frames,
+                               double frames_per_second, const uint8_t *pixels, gtx_error *error)
+{
+    enum { MAX_GIF_SIDE = 65535 };
+    if (width > MAX_GIF_SIDE || height > MAX_GIF_SIDE)
+        return gtx_fail(error, GTX_ERROR_LIMIT, "a GIF of %u x %u", width, height);
+    return write_image(path, (gtx_image_rows){"gif", width, height, 4, pixels, frames,
+                                              (float)frames_per_second}, error);
 }
 
 /* ---- what is decoded here ---- */

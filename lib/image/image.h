@@ -29,6 +29,12 @@ gtx_result gtx_image_write_png16(const char *path, uint32_t width, uint32_t heig
 gtx_result gtx_image_write_exr(const char *path, uint32_t width, uint32_t height, const float *z,
                                gtx_error *error);
 
+/* Writes a GIF that plays its frames over and over, in 256 colours each. RGBA8 sRGB whose alpha
+ * does not count, frame after frame, rows from the top. Errors: likewise, LIMIT (sides past
+ * 65535). */
+gtx_result gtx_image_write_gif(const char *path, uint32_t width, uint32_t height, uint32_t frames,
+                               double frames_per_second, const uint8_t *pixels, gtx_error *error);
+
 /* An image in memory, rows from the top. */
 typedef struct gtx_image {
     uint32_t width, height;

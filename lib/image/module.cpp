@@ -36,7 +36,7 @@ int encode(const gtx_image_rows *rows, void **data, size_t *size, char *message)
     const OIIO::TypeDesc type = is_depth  ? OIIO::TypeDesc::FLOAT
                                 : is_deep ? OIIO::TypeDesc::UINT16
                                           : OIIO::TypeDesc::UINT8;
-    const std::string name = is_depth ? "exr" : "png";
+    const std::string name = is_depth ? "exr" : format == "gif" ? "gif" : "png";
     std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(name);
     if (!output)
         return fail(message, "", OIIO::geterror());
@@ -51,8 +51,15 @@ int encode(const gtx_image_rows *rows, void **data, size_t *size, char *message)
     OIIO::Filesystem::IOVecOutput memory;
     OIIO::Filesystem::IOProxy *proxy = &memory;
     spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    if (!output->open("memory." + name, spec) || !output->write_image(type, rows->pixels) ||
-        !output->close())
+    if (rows->frames_per_second > 0)
+        spec.attribute("FramesPerSecond", rows->frames_per_second);
+    auto pixels = static_cast<const char *>(rows->pixels);
+    for (uint32_t i = 0; i < std::max(rows->frames, 1u); ++i, pixels += spec.image_bytes())
+        if (!output->open("memory." + name, spec, i ? OIIO::ImageOutput::AppendSubimage
+                                                    : OIIO::ImageOutput::Create) ||
+            !output->write_image(type, pixels))
+            return fail(message, "", output->geterror());
+    if (!output->close())
         return fail(message, "", output->geterror());
     *size = memory.buffer().size();
     *data = std::malloc(*size);

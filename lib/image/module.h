@@ -9,15 +9,18 @@ extern "C" {
 #endif
 
 #define GTX_IMAGE_MODULE_SYMBOL "gtx_image_module"
-#define GTX_IMAGE_MODULE_VERSION 6
+#define GTX_IMAGE_MODULE_VERSION 7
 
 enum { GTX_IMAGE_MAX_MESSAGE = 200 };
 
-/* What to write; `format` is "png" (bytes), "png16" (uint16_t) or "exr" (floats). */
+/* What to write; `format` is "png" (bytes), "png16" (uint16_t), "exr" (floats) or "gif" (bytes,
+ * which alone has more than one frame: they follow each other in `pixels`). */
 typedef struct gtx_image_rows {
     const char *format;
     uint32_t width, height, channels;
     const void *pixels;
+    uint32_t frames;          /* 0: one */
+    float frames_per_second;
 } gtx_image_rows;
 
 enum { GTX_IMAGE_FAILED = 1, GTX_IMAGE_NO_MEMORY = 2 };

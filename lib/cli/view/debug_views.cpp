@@ -11,11 +11,11 @@ namespace gtx {
 using Color = std::array<uint8_t, 4>;
 
 /* Hues a golden section apart: neighbours in number are far apart in colour. */
-static Color patch_color(uint32_t index)
+std::array<uint8_t, 3> patch_color(uint32_t index)
 {
     const double hue = std::fmod(index * 0.6180339887498949, 1.0);
     const double strength = 0.55 + 0.1 * (index % 3);
-    Color out = {0, 0, 0, 255};
+    std::array<uint8_t, 3> out = {0, 0, 0};
     for (int k = 0; k < 3; ++k) {
         double away = std::fabs(std::fmod(6 * hue + 6 - 2 * k, 6.0) - 3);
         double share = std::clamp(away - 1, 0.0, 1.0);
@@ -43,7 +43,8 @@ static void paint(const gtx_asset *asset, const gtx_info &info, uint32_t index, 
     const size_t x0 = patch.rect[0] >> level, y0 = patch.rect[1] >> level;
     const size_t x1 = x0 + (size_t(patch.rect[2]) >> level);
     const size_t y1 = y0 + (size_t(patch.rect[3]) >> level);
-    const Color flat = patch_color(index);
+    const auto hue = patch_color(index);
+    const Color flat = {hue[0], hue[1], hue[2], 255};
     float rows[3][3];
     gtx_normal_frame(&patch, rows);
     for (size_t y = y0; y < y1; ++y)
@@ -113,7 +114,10 @@ AssetPointer recolor(const gtx_asset *asset, DebugView view)
 
 void recolor(Polygons &polygons, DebugView view)
 {
-    if (view == DebugView::NORMALS)
+    if (view != DebugView::NORMALS)
+        return;
+    polygons.has_materials = false;
+    polygons.emissions.clear();
         for (gtx_polygon_vertex &v : polygons.vertices) {
             Color color = normal_color(v.normal);
             color[3] = 0; /* unlit */
@@ -129,7 +133,7 @@ Polygons patch_boxes(const gtx_asset *asset)
     for (uint32_t i = 0; i < info.patch_count; ++i) {
         const gtx_patch &p = gtx_patches(asset)[i];
         const uint32_t first = uint32_t(out.vertices.size());
-        const Color color = patch_color(i);
+        const auto color = patch_color(i);
         for (uint32_t corner = 0; corner < 8; ++corner) { /* bits: along x, y, z */
             gtx_polygon_vertex v = {};
             for (int k = 0; k < 3; ++k) {

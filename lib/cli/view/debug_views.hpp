@@ -16,6 +16,9 @@ AssetPointer recolor(const gtx_asset *asset, DebugView view);
 /* The same of polygons, which have no patches: those stay as they are. */
 void recolor(Polygons &polygons, DebugView view);
 
+/* Of a patch in the view of patches. */
+std::array<uint8_t, 3> patch_color(uint32_t index);
+
 /* Pairs of ends: the edges of the patches' boxes, in the asset's own coordinates. */
 Polygons patch_boxes(const gtx_asset *asset);
 

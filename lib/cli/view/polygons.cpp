@@ -41,6 +41,7 @@ struct TriangleCutter {
     const Mesh &mesh;
     const Vec3d &centre;
     double side;                 /* of the small triangles */
+    bool emits;
     Polygons out = {};
     Vector<float> cut = {};      /* of one triangle's vertices */
 
@@ -62,6 +63,10 @@ struct TriangleCutter {
                                          linear_to_srgb(s.color[2]), uint8_t(s.lit > 0 ? 255 : 0)},
                                         {to_byte(s.occlusion), to_byte(s.roughness),
                                          to_byte(s.metallic), sides}});
+                if (emits)
+                    out.emissions.push_back({linear_to_srgb(s.emission[0]),
+                                             linear_to_srgb(s.emission[1]),
+                                             linear_to_srgb(s.emission[2]), 255});
                 cut.push_back(s.cut);
             }
         }
@@ -86,8 +91,10 @@ struct TriangleCutter {
 
 Polygons make_polygons(const Mesh &mesh, const Vec3d &centre)
 {
-    TriangleCutter cutter = {mesh, centre, find_side(mesh)};
+    const AppearanceNeeds needs = appearance_needs(mesh);
+    TriangleCutter cutter = {mesh, centre, find_side(mesh), needs.emission};
     Polygons &out = cutter.out;
+    out.has_materials = needs.material || needs.emission;
     out.vertices.reserve(3 * mesh.triangle_count());
     out.indices.reserve(3 * mesh.triangle_count());
     for (size_t t = 0; t < mesh.triangle_count(); ++t) {

@@ -4,11 +4,15 @@
 #include "host/polygons.h"
 #include "mesh/mesh.hpp"
 
+#include <array>
+
 namespace gtx {
 
 struct Polygons {
     Vector<gtx_polygon_vertex> vertices;      /* relative to `centre` */
     Vector<uint32_t> indices;
+    Vector<std::array<uint8_t, 4>> emissions; /* sRGB, of each vertex; empty: none emits anything */
+    bool has_materials = false;               /* metallic, roughness, occlusion or emission */
 };
 
 /* Textured triangles are cut into smaller ones, which take colour and normal at their corners; what

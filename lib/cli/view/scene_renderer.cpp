@@ -2,7 +2,7 @@
 #include "cli/view/scene_renderer.hpp"
 
 #include "cli/cli.h"
-#include "cli/view/polygons.hpp"
+#include "cli/view/mesh_program.hpp"
 #include "host/jobs.h"
 
 #include <algorithm>
@@ -19,9 +19,13 @@ SceneRenderer::SceneRenderer(gtx_host_load load)
     desc.jobs = &jobs;
     require_ok(gtx_host_gl_init(&gl, load, nullptr, &error), error);
     require_ok(gtx_polygon_program_create(&gl, &program, &error), error);
-    if (gtx_renderer_create(&desc, &renderer, &error) != GTX_OK) {
+    try {
+        mesh_program = make_mesh_program(gl);
+        require_ok(gtx_renderer_create(&desc, &renderer, &error), error);
+    } catch (const Error &) {
+        gtx_polygon_program_destroy(&gl, &mesh_program);
         gtx_polygon_program_destroy(&gl, &program);
-        throw Error(error);
+        throw;
     }
 }
 
@@ -29,6 +33,7 @@ SceneRenderer::~SceneRenderer()
 {
     clear();
     gtx_renderer_destroy(renderer);
+    gtx_polygon_program_destroy(&gl, &mesh_program);
     gtx_polygon_program_destroy(&gl, &program);
 }
 
@@ -38,8 +43,10 @@ void SceneRenderer::clear()
     for (Uploaded &p : views) {
         for (gtx_model *model : p.models)
             gtx_model_destroy(renderer, model);
-        for (gtx_polygons &polygons : p.polygons)
-            gtx_polygons_destroy(&gl, &polygons);
+        for (MeshOnGpu &mesh : p.meshes) {
+            gtx_polygons_destroy(&gl, &mesh.polygons);
+            gl.DeleteBuffers(1, &mesh.emissions);
+        }
         p = Uploaded();
     }
     for (gtx_polygons &lines : boxes)
@@ -114,12 +121,14 @@ SceneRenderer::Uploaded &SceneRenderer::uploaded(DebugView debug)
             copy = recolor(asset, debug);
         p.models.push_back(make_model(copy ? copy.get() : asset));
     }
-    for (size_t i = p.polygons.size(); i < scene->meshes.size(); ++i) {
+    for (size_t i = p.meshes.size(); i < scene->meshes.size(); ++i) {
         Polygons shape = make_polygons(scene->meshes[i], scene->centre);
         recolor(shape, debug);
-        p.polygons.push_back(upload(gl, shape));
+        p.meshes.push_back({upload(gl, shape), 0, shape.has_materials});
+        p.meshes.back().emissions = add_emissions(gl, p.meshes.back().polygons, shape.emissions);
         p.polygon_bytes += shape.vertices.size() * sizeof shape.vertices[0] +
-                           shape.indices.size() * sizeof shape.indices[0];
+                           shape.indices.size() * sizeof shape.indices[0] +
+                           shape.emissions.size() * sizeof shape.emissions[0];
     }
     p.ready = true;
     return p;
@@ -128,15 +137,16 @@ SceneRenderer::Uploaded &SceneRenderer::uploaded(DebugView debug)
 void SceneRenderer::draw(const gtx_view &view, DebugView debug)
 {
     const Uploaded &p = uploaded(debug);
-    const float *behind = STILL_BACKGROUND;
-    gl.ClearColor(behind[0], behind[1], behind[2], behind[3]);
+    gl.ClearColor(background[0], background[1], background[2], background[3]);
     gl.ClearDepthf(1);
     gl.DepthMask(GL_TRUE);
     gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_LESS);
-    for (const gtx_polygons &polygons : p.polygons)
-        gtx_polygons_draw(&gl, &program, &polygons, nullptr, &view);
+    for (const MeshOnGpu &mesh : p.meshes) {
+        set_mesh_shading(gl, mesh_program, mesh.has_materials, view.view);
+        gtx_polygons_draw(&gl, &mesh_program, &mesh.polygons, nullptr, &view);
+    }
     Vector<gtx_instance> instances = places;
     for (size_t i = 0; i < instances.size(); ++i)
         instances[i].model = p.models[i];

@@ -9,9 +9,6 @@
 
 namespace gtx {
 
-/* What is seen where nothing is. */
-constexpr float STILL_BACKGROUND[4] = {0.92f, 0.93f, 0.95f, 1};
-
 /* Needs its context current from the constructor to the destructor. Everything throws Error: GL,
  * SHADER, MEMORY, LIMIT. */
 class SceneRenderer {
@@ -40,19 +37,26 @@ public:
     uint64_t gpu_bytes() const;
 
     gtx_host_gl gl = {};
-    gtx_polygon_program program = {};
+    gtx_polygon_program program = {}; /* for text and lines */
+    float background[4] = {0.92f, 0.93f, 0.95f, 1};
     gtx_renderer *renderer = nullptr;
 
 private:
+    struct MeshOnGpu {
+        gtx_polygons polygons;
+        GLuint emissions;
+        bool has_materials;
+    };
     /* What one debug view draws; made when it is first asked for. */
     struct Uploaded {
         bool ready = false;
         Vector<gtx_model *> models;
-        Vector<gtx_polygons> polygons;
+        Vector<MeshOnGpu> meshes;
         uint64_t polygon_bytes = 0;
     };
     gtx_model *make_model(const gtx_asset *asset);
     Uploaded &uploaded(DebugView debug);
+    gtx_polygon_program mesh_program = {};
     void clear();
 
     const Scene *scene = nullptr;
