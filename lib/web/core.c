@@ -105,6 +105,18 @@ WEB_API gtx_asset *gtxw_open(const void *bytes, size_t size)
     return asset;
 }
 
+/* Of a file's first bytes; 0 without an error where they show nothing yet. `told` gets how many
+ * show more, 0 for a whole file, and the file's size, 0 while that is not known. */
+WEB_API gtx_asset *gtxw_open_prefix(const void *bytes, size_t size, double told[2])
+{
+    gtx_asset *asset = NULL;
+    gtx_prefix prefix = {0};
+    gtx_open_prefix(bytes, size, NULL, &prefix, &asset, begin());
+    told[0] = (double)prefix.needed;
+    told[1] = (double)prefix.file_size;
+    return asset;
+}
+
 WEB_API void gtxw_close(gtx_asset *asset)
 {
     gtx_close(asset);
@@ -113,7 +125,7 @@ WEB_API void gtxw_close(gtx_asset *asset)
 /* In the order that geotex.js names them in. Valid until the next call. */
 WEB_API const double *gtxw_info(const gtx_asset *asset)
 {
-    static double out[21];
+    static double out[22];
     gtx_info i;
     gtx_get_info(asset, &i);
     const double numbers[] = {
@@ -121,7 +133,7 @@ WEB_API const double *gtxw_info(const gtx_asset *asset)
         i.has_color, i.has_material, i.has_emission, i.lod_levels, (double)i.source_triangles,
         (double)i.unit, (double)i.bounds_min[0], (double)i.bounds_min[1], (double)i.bounds_min[2],
         (double)i.bounds_max[0], (double)i.bounds_max[1], (double)i.bounds_max[2], i.anchor[0],
-        i.anchor[1], i.anchor[2]};
+        i.anchor[1], i.anchor[2], (double)i.file_size};
     _Static_assert(sizeof numbers == sizeof out, "one place each");
     memcpy(out, numbers, sizeof out);
     return out;

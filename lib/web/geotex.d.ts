@@ -41,6 +41,8 @@ export class Asset {
   readonly min: number[];
   readonly max: number[];
   readonly anchor: number[];
+  /** Bytes that were opened: of a beginning fewer than the file has. */
+  readonly fileBytes: number;
   /** The nearest hit, on the CPU; null where nothing is hit. */
   raycast(origin: Numbers, direction: Numbers,
           options?: {near?: number, far?: number, twoSided?: boolean}): Hit | null;
@@ -100,6 +102,11 @@ export class Geotex {
                 options?: {wasm?: string, log?: (line: string) => void}): Promise<Geotex>;
   /** Throws GeotexError where the bytes are no whole, sound `.gtx`. They are not kept. */
   open(bytes: ArrayBuffer | ArrayBufferView): Asset;
+  /** The first bytes of a file: an asset of what is there, without heights, null where nothing can
+   * be shown yet; so many first bytes that show more, 0 for a whole file; and the file's size, 0
+   * while that is unknown. */
+  openPrefix(bytes: ArrayBuffer | ArrayBufferView):
+      {asset: Asset | null, needed: number, fileBytes: number};
   model(asset: Asset): Model;
   shading(text: string): Shading;
   draw(view: View, instances: Instance[]): void;

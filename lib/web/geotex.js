@@ -14,8 +14,8 @@ export const Pass = Object.freeze({FORWARD: 0, DEPTH: 1, ID: 2, GBUFFER: 3});
 
 /* As gtx_result; 0 is no error. */
 const RESULTS = {
-  10: 'argument', 11: 'not-zeroed', 20: 'memory', 21: 'limit', 40: 'not-gtx', 41: 'version',
-  42: 'truncated', 43: 'corrupt', 45: 'unsupported', 80: 'gl', 81: 'shader', 99: 'internal'};
+  10: 'argument', 11: 'not-zeroed', 20: 'memory', 21: 'limit', 30: 'read', 40: 'not-gtx',
+  41: 'version', 42: 'truncated', 43: 'corrupt', 45: 'unsupported', 80: 'gl', 81: 'shader', 99: 'internal'};
 
 export class GeotexError extends Error {
   constructor(result, message) {
@@ -88,12 +88,12 @@ export class Asset {
     this.#geotex = geotex;
     this.#handle = handle;
     const core = geotex.core, at = core._gtxw_info(handle) / 8;
-    const n = core.HEAPF64.slice(at, at + 21);
+    const n = core.HEAPF64.slice(at, at + 22);
     Object.assign(this, {
       patchCount: n[0], pageCount: n[1], pageWidth: n[2], pageHeight: n[3], mipCount: n[4],
       heightBits: n[5], hasColor: !!n[6], hasMaterial: !!n[7], hasEmission: !!n[8],
       lodLevels: n[9], sourceTriangles: n[10], unit: n[11], min: [...n.slice(12, 15)],
-      max: [...n.slice(15, 18)], anchor: [...n.slice(18, 21)]});
+      max: [...n.slice(15, 18)], anchor: [...n.slice(18, 21)], fileBytes: n[21]});
   }
 
   get handle() {
@@ -139,6 +139,8 @@ export class Model {
   /* Sends up to maxBytes, 0 for all. Returns whether that was the rest. */
   upload(maxBytes = 0) {
     const g = this.geotex;
+    if (!this.handle)
+      this.prepare();
     if (!this.ready) {
       const done = g.around(() => g.core._gtxw_model_upload(g.renderer, this.handle, maxBytes));
       if (done < 0)
@@ -149,9 +151,9 @@ export class Model {
   }
 
   dispose() {
+    this.geotex.models.delete(this);
     if (!this.handle)
       return;
-    this.geotex.models.delete(this);
     this.geotex.around(() => this.geotex.core._gtxw_model_destroy(this.geotex.renderer,
                                                                   this.handle));
     this.handle = 0;
@@ -292,15 +294,31 @@ export class Geotex {
   }
 
   open(bytes) {
+    return new Asset(this, this.must(this.withBytes(bytes, this.core._gtxw_open)));
+  }
+
+  /* The first bytes of a file: an asset of what is there, or null, and what to wait for. */
+  openPrefix(bytes) {
+    const {core} = this;
+    return this.withNumbers([0, 0, 0, 0], (told) => {
+      const handle = this.withBytes(bytes, (at, size) => core._gtxw_open_prefix(at, size, told));
+      const [needed, fileBytes] = core.HEAPF64.slice(told / 8, told / 8 + 2);
+      if (!handle && core._gtxw_result())
+        this.must(0);
+      return {asset: handle ? new Asset(this, handle) : null, needed, fileBytes};
+    });
+  }
+
+  withBytes(bytes, call) {
     const from = bytes instanceof ArrayBuffer ? new Uint8Array(bytes)
         : new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.byteLength);
     const pointer = this.core._malloc(from.length || 1);
     if (!pointer)
       throw new GeotexError(20, 'no memory for ' + from.length + ' bytes');
     this.core.HEAPU8.set(from, pointer);
-    const handle = this.core._gtxw_open(pointer, from.length);
+    const given = call(pointer, from.length);
     this.core._free(pointer);
-    return new Asset(this, this.must(handle));
+    return given;
   }
 
   /* Uploaded by the first draw, or before it in slices by upload(). */
@@ -323,8 +341,6 @@ export class Geotex {
                     view.ambient ?? 0, view.maxError ?? 0];
     const handles = [];
     for (const {model, transform, tint} of instances) {
-      if (!model.handle)
-        model.prepare();
       model.upload();
       floats.push(...(transform ?? IDENTITY), ...(tint ?? [0, 0, 0, 0]));
       handles.push(model.handle);

@@ -8,6 +8,8 @@ export {Method} from './geotex.js';
 export class GeotexModel extends Mesh {
   readonly asset: Asset;
   readonly model: Model;
+  /** Of a streamed model: once all is there; rejects where the rest does not come. */
+  readonly complete: Promise<GeotexModel>;
   /** One of Method. */
   method: number;
   /** Pixels that what is drawn may be off. */
@@ -20,4 +22,8 @@ export class GeotexLoader extends Loader<GeotexModel> {
   constructor(renderer: WebGLRenderer, options?: {wasm?: string, log?: (line: string) => void},
               manager?: LoadingManager);
   parseAsync(bytes: ArrayBuffer): Promise<GeotexModel>;
+  /** The model as soon as the file's first bytes show something. More of them make it finer, and its
+   * `asset` and `model` others, until it is `complete`: rays meet it from then on. */
+  stream(url: string, onProgress?: (bytes: number, of: number) => void, signal?: AbortSignal):
+      Promise<GeotexModel>;
 }

@@ -9,8 +9,10 @@ import {AmbientLight, Box3, BufferAttribute, BufferGeometry, ColorManagement, Di
         FileLoader, HemisphereLight, Loader, Matrix3, Matrix4, Mesh, MeshBasicMaterial,
         NoToneMapping, Ray, ShaderChunk, SRGBColorSpace, Vector3, Vector4} from 'three';
 import {Geotex, Method, Pass} from './geotex.js';
+import {assetsOf} from './load.js';
 
 const MOST_LIGHTS = 4, FIRST_UNIT = 8; /* units below are geotex's */
+const SLICE = 1 << 20;                 /* bytes sent at once: 2 ms in software; at double, 4 */
 const VIEW_FLAGS_REVERSED = 3;         /* reversed, and depth from 0 to 1 */
 
 /* Radiance as three's MeshStandardMaterial has it: light over pi. */
@@ -183,7 +185,9 @@ class Bridge {
     const {renderer} = this, viewport = renderer.getCurrentViewport(new Vector4());
     this.geotex.draw({
       view: camera.matrixWorldInverse.elements, projection: camera.projectionMatrix.elements,
-      width: viewport.z, height: viewport.w, method: model.method, maxError: model.maxError,
+      width: viewport.z, height: viewport.w, maxError: model.maxError,
+      /* LOD meshes are all that a beginning has. */
+      method: model.content.whole ? model.method : Method.AUTO,
       flags: renderer.state.buffers.depth.getReversed?.() ? VIEW_FLAGS_REVERSED : 0, ...more,
     }, [{model: model.model, transform: model.matrixWorld.elements}]);
   }
@@ -202,13 +206,50 @@ function boundsOf(asset) {
   return geometry;
 }
 
+/* An asset and its model, until better ones of the same file take their place. */
+class Content {
+  disposed = false;
+  whole = false;
+  complete = Promise.resolve();
+
+  constructor(geotex, asset) {
+    Object.assign(this, {geotex, asset, model: geotex.model(asset)});
+  }
+
+  /* All that a download still brings. */
+  async follow(assets) {
+    for await (const asset of assets)
+      await this.replace(asset);
+    this.whole = true;
+  }
+
+  /* Sent in slices, so that no frame waits for it; until all is there the old ones are drawn. */
+  async replace(asset) {
+    let model = this.geotex.model(asset);
+    while (!this.disposed && !this.geotex.gl.isContextLost() && !model.upload(SLICE))
+      await new Promise((next) => setTimeout(next));
+    if (!this.disposed)
+      [this.asset, this.model, asset, model] = [asset, model, this.asset, this.model];
+    model.dispose();
+    asset.dispose();
+  }
+
+  dispose() {
+    this.disposed = true;
+    this.stop?.();
+    this.model.dispose();
+    this.asset.dispose();
+  }
+}
+
 export class GeotexModel extends Mesh {
   #bridge;
 
-  constructor(bridge, asset, model = bridge.geotex.model(asset)) {
-    super(boundsOf(asset), new MeshBasicMaterial({colorWrite: false, depthWrite: false}));
+  /* `content`: what clones share, an asset and its model, replaced as better ones come. */
+  constructor(bridge, content) {
+    super(boundsOf(content.asset), new MeshBasicMaterial({colorWrite: false, depthWrite: false}));
     this.#bridge = bridge;
-    Object.assign(this, {type: 'GeotexModel', asset, model, method: Method.AUTO, maxError: 0.5});
+    Object.assign(this, {type: 'GeotexModel', content, method: Method.AUTO, maxError: 0.5});
     this.onAfterRender = (renderer, scene, camera) => {
       bridge.shading.set({...bridge.light(scene, camera, this.receiveShadow),
                           ...bridge.output(scene, camera)});
@@ -218,8 +259,20 @@ export class GeotexModel extends Mesh {
       bridge.draw(this, shadowCamera, {pass: Pass.DEPTH});
   }
 
+  get asset() {
+    return this.content.asset;
+  }
+
+  get model() {
+    return this.content.model;
+  }
+
+  get complete() {
+    return this.content.complete.then(() => this);
+  }
+
   clone(recursive) {
-    return new GeotexModel(this.#bridge, this.asset, this.model).copy(this, recursive);
+    return new GeotexModel(this.#bridge, this.content).copy(this, recursive);
   }
 
   copy(source, recursive) {
@@ -254,10 +307,9 @@ export class GeotexModel extends Mesh {
 
   /* Frees the model and its asset, which clones share. */
   dispose() {
+    this.content.dispose();
     this.geometry.dispose();
     this.material.dispose();
-    this.model.dispose();
-    this.asset.dispose();
   }
 }
 
@@ -282,7 +334,39 @@ export class GeotexLoader extends Loader {
 
   async parseAsync(bytes) {
     const bridge = await Bridge.of(this.renderer, this.options);
-    return new GeotexModel(bridge, bridge.geotex.open(bytes));
+    const content = new Content(bridge.geotex, bridge.geotex.open(bytes));
+    content.whole = true;
+    return new GeotexModel(bridge, content);
+  }
+
+  /* Gives the model as soon as the file's first bytes show something; more of them make it finer,
+   * and its `complete` tells when all is there, or why not: then what was there stays. */
+  async stream(url, onProgress, signal) {
+    const stop = new AbortController(), {manager} = this;
+    const failed = (error) => {
+      manager.itemError(url);
+      manager.itemEnd(url);
+      throw error;
+    };
+    signal?.addEventListener('abort', () => stop.abort(signal.reason));
+    manager.itemStart(url);
+    try {
+      const [response, bridge] = await Promise.all([
+        fetch(manager.resolveURL(this.path + url), {
+          headers: this.requestHeader, signal: stop.signal,
+          credentials: this.withCredentials ? 'include' : 'same-origin'}),
+        Bridge.of(this.renderer, this.options)]);
+      const assets = assetsOf(bridge.geotex, response, onProgress);
+      const content = new Content(bridge.geotex, (await assets.next()).value);
+      content.stop = () => stop.abort();
+      content.complete = content.follow(assets).then(() => manager.itemEnd(url),
+                                                     (error) => content.disposed ? manager.itemEnd(url) : failed(error));
+      content.complete.catch(() => {});
+      return new GeotexModel(bridge, content);
+    } catch (error) {
+      stop.abort();
+      return failed(error);
+    }
   }
 }
 

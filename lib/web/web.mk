@@ -60,9 +60,10 @@ $(web_package)/LICENSE: LICENSE
 	@mkdir -p $(@D)
 	$(Q)cp $< $@
 
-web_files := core.js geotex.js geotex.d.ts three.js three.d.ts package.json README.md LICENSE
+web_files := core.js geotex.js geotex.d.ts three.js three.d.ts load.js load.d.ts package.json \
+             README.md LICENSE
 web: $(web_files:%=$(web_package)/%) ## the npm package geotex, as WebAssembly (needs emscripten)
-	@cd $(web_package) && echo "$$PWD: $$(cat core.wasm core.js geotex.js | gzip -9 | wc -c)" \
+	@cd $(web_package) && echo "$$PWD: $$(cat core.wasm core.js geotex.js load.js | gzip -9 | wc -c)" \
 	  "bytes of core and glue, gzipped"
 
 # A project as a page's author has it: installs the package, checks its types, is built by Vite.

@@ -1,6 +1,7 @@
-/* The npm package in a real Chromium: node browser.mjs APP ASSET PICTURES
+/* The npm package in a real Chromium: node browser.mjs APP ASSET PICTURES [NAME]
  *   APP       the project of app/, built, with the package among its modules
  *   ASSET     a `.gtx` with LOD meshes       PICTURES  a folder for what was drawn
+ *   NAME      only the checks whose names hold it
  * Each check of checks.js is a line "ok NAME" or "not ok NAME: why"; the exit status counts. */
 import {createServer} from 'node:http';
 import {createRequire} from 'node:module';
@@ -8,7 +9,7 @@ import {mkdir, readFile, writeFile} from 'node:fs/promises';
 import {basename, dirname, extname, join, normalize, resolve} from 'node:path';
 import {fileURLToPath, pathToFileURL} from 'node:url';
 
-const [, , app, asset, pictures] = process.argv;
+const [, , app, asset, pictures, only = ''] = process.argv;
 const modules = join(app, 'node_modules');
 const here = dirname(fileURLToPath(import.meta.url));
 const {default: puppeteer} = await import(pathToFileURL(
@@ -24,7 +25,8 @@ const server = createServer(async (request, response) => {
     const path = normalize(join(...inside));
     const content = await readFile(path);
     response.writeHead(200, {'content-type': types[extname(path)] ?? 'application/octet-stream'});
-    response.end(content);
+    /* "?first=1000" is a server that gives up. */
+    response.end(content.subarray(0, request.url.match(/[?]first=(\d+)$/)?.[1] ?? content.length));
   } catch {
     response.writeHead(root === 'favicon.ico' ? 204 : 404).end();
   }
@@ -43,6 +45,11 @@ try {
   page.on('console', (message) => console.log('# ' + message.text()));
   page.on('response', (r) => r.status() < 400 || console.log(`# ${r.status()} ${r.url()}`));
   page.on('pageerror', (error) => console.log('# ' + error.message));
+  const network = await page.createCDPSession();
+  await network.send('Network.enable');
+  await page.exposeFunction('link', (bits) => network.send('Network.emulateNetworkConditions', {
+    offline: false, latency: bits ? 20 : 0, uploadThroughput: -1,
+    downloadThroughput: bits ? bits / 8 : -1}));
   await page.goto(`${address}/tests/checks.html?asset=/asset/${basename(asset)}`);
   const names = await page.waitForFunction('window.checks && Object.keys(checks)',
                                            {timeout: 60000}).then((h) => h.jsonValue());
@@ -50,7 +57,7 @@ try {
     console.log(fault ? `not ok ${name}: ${fault}` : `ok ${name}`);
     failed += fault ? 1 : 0;
   };
-  for (const name of names) {
+  for (const name of names.filter((n) => n.includes(only))) {
     const {fault, picture} = await page.evaluate((n) => run(n), name);
     tell(name, fault);
     if (picture)

@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import {Geotex, GeotexError, Method, Pass} from 'geotex';
 import {GeotexLoader, GeotexModel} from 'geotex/three';
+import {streaming} from './streaming.js';
 
 const WIDTH = 480, HEIGHT = 360;
 const address = new URLSearchParams(location.search).get('asset');
@@ -327,6 +328,7 @@ Object.assign(checks, {
   },
 });
 
+Object.assign(checks, streaming({expect, address, cameraOf, read, apart, WIDTH, HEIGHT}));
 window.checks = checks;
 window.run = async (name) => {
   try {

@@ -10,7 +10,7 @@ renderer.setSize(320, 240);
 document.body.append(renderer.domElement);
 try {
   const file = new URLSearchParams(location.search).get('asset')!;
-  const model = await new GeotexLoader(renderer, {wasm}).loadAsync(file);
+  const model = await (await new GeotexLoader(renderer, {wasm}).stream(file)).complete;
   const [size, middle] = [0, 1].map((k) => model.asset.max.map(
     (high, i) => k ? (high + model.asset.min[i]) / 2 : high - model.asset.min[i]));
   model.method = Method.CAST;

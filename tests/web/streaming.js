@@ -1,0 +1,122 @@
+/* What must hold while a file comes down a line: `link(bits)` of browser.mjs makes it slow. */
+import * as THREE from 'three';
+import {GeotexLoader} from 'geotex/three';
+
+const LINK = 10e6, FIRST_BYTES = 150e3;
+
+export const streaming = ({expect, address, cameraOf, read, apart, WIDTH, HEIGHT}) => {
+  function stage() {
+    const renderer = new THREE.WebGLRenderer({preserveDrawingBuffer: true});
+    renderer.setSize(WIDTH, HEIGHT, false);
+    const scene = new THREE.Scene(), light = new THREE.DirectionalLight(0xffffff, 3);
+    light.position.set(1, 2, 1.5);
+    scene.add(light, new THREE.HemisphereLight(0xffffff, 0x604020, 0.6));
+    const picture = (model) => {
+      scene.add(model);
+      renderer.render(scene, cameraOf(model.asset));
+      expect(renderer.getContext().getError() === 0, 'WebGL reports an error');
+      scene.remove(model);
+      return read(renderer.getContext());
+    };
+    return {renderer, picture, loader: new GeotexLoader(renderer)};
+  }
+
+  /* Intersection over union of what is not black, and the mean difference there. */
+  function likeness(a, b) {
+    const lit = (p, i) => p[i] + p[i + 1] + p[i + 2] > 0;
+    let both = 0, either = 0, sum = 0;
+    for (let i = 0; i < a.length; i += 4) {
+      both += lit(a, i) && lit(b, i);
+      either += lit(a, i) || lit(b, i);
+      sum += [0, 1, 2].reduce((s, k) => s + Math.abs(a[i + k] - b[i + k]), 0) / 3;
+    }
+    return {overlap: both / either, off: sum / either};
+  }
+
+  function sideBySide(...pictures) {
+    const canvas = document.createElement('canvas'), pen = canvas.getContext('2d');
+    Object.assign(canvas, {width: pictures.length * WIDTH, height: HEIGHT});
+    pictures.forEach((picture, i) => pen.drawImage(picture, i * WIDTH, 0));
+    return canvas;
+  }
+
+  return {
+    async a_slow_link_shows_a_coarse_picture_first() {
+      const {renderer, picture, loader} = stage();
+      const whole = await loader.loadAsync(address), wanted = picture(whole);
+      await link(LINK);
+      try {
+        const start = performance.now();
+        let come = 0, size = 0;
+        const model = await loader.stream(address + '?slow', (bytes, of) => {
+          come = bytes;
+          size = of || size;
+        });
+        const first = {bytes: come, at: performance.now() - start}, copy = model.clone();
+        const coarse = picture(model);
+        expect(first.bytes <= FIRST_BYTES && first.bytes < size / 4,
+               `a first picture after ${first.bytes} of ${size} bytes`);
+        expect(likeness(wanted, coarse).overlap > 0.75, 'the first picture is another model');
+        expect(apart(wanted, coarse, 0) > 0.05, 'nothing was left to come');
+        expect(await model.complete === model && copy.asset === model.asset, 'it has stayed coarse');
+        const at = performance.now() - start;
+        expect(model.asset.fileBytes === whole.asset.fileBytes, 'not all is there');
+        expect(apart(wanted, picture(model), 0) === 0, 'the last picture is another');
+        expect(apart(wanted, picture(copy), 0) === 0, 'a clone has stayed coarse');
+        console.log(`at ${LINK / 1e6} Mbit/s: first picture after ${first.bytes} bytes, ` +
+                    `${Math.round(first.at)} ms; all ${size} after ${Math.round(at)} ms`);
+        model.dispose();
+      } finally {
+        await link(0);
+        whole.dispose();
+        renderer.dispose();
+      }
+    },
+
+    async the_first_bytes_are_recognised() {
+      const {renderer, picture, loader} = stage();
+      const whole = await loader.loadAsync(address), wanted = picture(whole);
+      const shown = await createImageBitmap(renderer.domElement);
+      const model = await loader.stream(`${address}?first=${FIRST_BYTES}`);
+      await model.complete.catch(() => {});
+      const {overlap, off} = likeness(wanted, picture(model));
+      console.log(`${model.asset.fileBytes} of ${whole.asset.fileBytes} bytes: silhouettes ` +
+                  `overlap by ${overlap.toFixed(3)}, colours are off by ${off.toFixed(1)} of 255`);
+      expect(model.asset.fileBytes <= FIRST_BYTES, 'more than the first bytes');
+      expect(overlap > 0.95 && off < 25, 'nobody recognises it');
+      [model, whole].forEach((m) => m.dispose());
+      renderer.dispose();
+      return sideBySide(renderer.domElement, shown);
+    },
+
+    async a_download_that_breaks_off_leaves_what_was_there() {
+      const {renderer, picture, loader} = stage();
+      const model = await loader.stream(address + '?first=200000');
+      const why = await model.complete.then(() => null, (error) => error);
+      expect(why?.kind === 'truncated', `${why?.kind}: ${why?.message}`);
+      expect(picture(model).some((c, i) => i % 4 < 3 && c > 64), 'it is gone');
+      const none = await loader.stream(address + '.none').then(() => null, (error) => error);
+      expect(none?.kind === 'read' && /404/.test(none.message), `${none?.kind}: ${none?.message}`);
+      model.dispose();
+      renderer.dispose();
+    },
+
+    async disposing_stops_the_download() {
+      const {renderer, loader} = stage();
+      await link(LINK / 4);
+      try {
+        let come = 0, size = 0;
+        const model = await loader.stream(address + '?stopped', (bytes, of) => {
+          come = bytes;
+          size = of;
+        });
+        model.dispose();
+        await model.complete;
+        expect(come < size / 2, `${come} of ${size} bytes came`);
+      } finally {
+        await link(0);
+      }
+      renderer.dispose();
+    },
+  };
+};
