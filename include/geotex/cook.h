@@ -38,7 +38,10 @@ typedef enum gtx_partition {
                                      patches: what no side sees is lost, with a warning
                                      ("unseen-surface"; Oliveira, Bishop, McAllister, 2000) */
     GTX_PARTITION_AUTO = 6        /* cuts or layers, whichever takes fewer texels at one density;
-                                     takes the time of both partitions */
+                                     but where cuts would lose more than 0.003 of an outline, and
+                                     neither a resolution nor an error is asked for, layers of up
+                                     to twice as fine texels, at most 2.5 times as many in all.
+                                     Takes the time of two partitions, or of up to six */
 } gtx_partition;
 
 /* How the maps are extracted from the patches' triangles. GPU is the paper's method (section 5):

@@ -47,7 +47,8 @@ enum class PartitionMethod {
     PGP,  /* periodic global parameterization (paper, section 5.1) */
     LAYERS, /* peeled along three axes (Santos, de Toledo, Gattass, SPM 2008) */
     RELIEF, /* seen from six sides (Oliveira, Bishop, McAllister, SIGGRAPH 2000) */
-    AUTO  /* CUTS or LAYERS, whichever takes fewer texels */
+    AUTO  /* CUTS or LAYERS, whichever takes fewer texels; LAYERS of finer ones where outlines
+             need them */
 };
 
 struct ChartOptions {
@@ -55,6 +56,7 @@ struct ChartOptions {
     unsigned charts = 0;         /* wanted number; 0 = round(10 T^0.28) for T triangles */
     bool adaptive = false;       /* PGP: smaller cells where the surface is more curved */
     unsigned resolution = 128;   /* most texels along a patch side */
+    bool free_resolution = false; /* AUTO: where outlines need it, up to twice as many */
     double pitch = 0;            /* texel pitch for CUTS, object units; 0 = what gives patches
                                     their texels at this resolution */
     unsigned grain = 8;          /* sides will be multiples of as many texels */
@@ -90,6 +92,8 @@ struct Partition {
     Mesh mesh;
     Vector<uint32_t> source;             /* per triangle of `mesh`: that of the source, ascending */
     PartitionMethod method = PartitionMethod::CUTS; /* never AUTO */
+    unsigned resolution = 0;             /* most texels along a patch side */
+    bool for_outlines = false;           /* AUTO took layers and finer texels for them */
     bool complete = true;                /* false: what no chart has is not to be shown */
     double pitch = 0;                    /* texel pitch of the model, object units */
     double more_texels = 1;              /* with what textures ask for, about; of relief's */
@@ -98,6 +102,9 @@ struct Partition {
     ChartReport report;
 
     const Mesh &charted(const Mesh &source_mesh) const;
+    /* Share of a silhouette that may miss the source's, 0..1: along borders and sharp edges an
+     * outline is as sharp as texels are small. */
+    double outline_loss() const;
     uint32_t source_of(uint32_t triangle) const
     {
         return source.empty() ? triangle : source[triangle];

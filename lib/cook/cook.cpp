@@ -125,6 +125,7 @@ static Attempt attempt(const Mesh &mesh, const Options &options, Task &task, con
         CookFacts of_asset = facts;
         of_asset.chart_count = out.partition.charts.size();
         of_asset.method = out.partition.method;
+        of_asset.suitability = out.suitability;
         for (const Warning &warning : task.warnings)
             if (warning.kind != GTX_WARNING_CACHE) /* of this call, not of the asset */
                 of_asset.warnings.set(warning.kind);

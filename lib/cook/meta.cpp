@@ -23,7 +23,7 @@ std::string write_meta(const Options &options, const CookFacts &facts)
     if (options.chart.texel_density != 0)
         gtx_json_number(&json, "texel_density", options.chart.texel_density);
     gtx_json_integer(&json, "charts", facts.chart_count);
-    gtx_json_integer(&json, "resolution", options.chart.resolution);
+    gtx_json_integer(&json, "resolution", facts.suitability.resolution);
     gtx_json_integer(&json, "height_bits", options.bake.height_bits);
     gtx_json_integer(&json, "mips", options.bake.mips);
     gtx_json_integer(&json, "dilation", options.bake.dilation);

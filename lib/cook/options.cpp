@@ -95,6 +95,7 @@ Options checked_options(const gtx_cook_desc &desc)
     options.chart.texel_density = double(desc.texel_density);
     if (desc.resolution)
         options.chart.resolution = desc.resolution;
+    options.chart.free_resolution = !desc.resolution && desc.error == 0;
     if (desc.height_bits)
         options.bake.height_bits = desc.height_bits;
     if (desc.mips)
@@ -128,7 +129,9 @@ Options checked_options(const gtx_cook_desc &desc)
 double work_of(const Options &options)
 {
     constexpr double OTHER_PARTITION = 8, PATCHES = 1000;
-    const double finer = options.chart.resolution / 128.;
+    double finer = options.chart.resolution / 128.;
+    if (options.chart.method == PartitionMethod::AUTO && options.chart.free_resolution)
+        finer *= 2;
     double times = std::max({1., finer * finer, options.chart.charts / PATCHES});
     if (options.chart.method != PartitionMethod::CUTS)
         times *= OTHER_PARTITION;
@@ -168,6 +171,8 @@ uint64_t content_key(const Options &options, uint64_t source_hash)
     std::string text(numbers, size_t(size));
     if (options.chart.adaptive)
         text += " adaptive";
+    if (options.chart.method == PartitionMethod::AUTO && options.chart.free_resolution)
+        text += " free resolution";
     if (options.kept_count)
         text += " kept " + std::to_string(gtx_hash_bytes(options.kept, options.kept_count *
                                                                            3 * sizeof(double)));

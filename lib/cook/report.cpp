@@ -152,6 +152,10 @@ static void write_suitability(Json &json, const Suitability &suitability)
     gtx_json_number(&json, "empty_fraction", suitability.empty_fraction);
     gtx_json_number(&json, "outline_loss", suitability.outline_loss);
     gtx_json_number(&json, "unseen_fraction", suitability.unseen_fraction);
+    if (suitability.for_outlines)
+        gtx_json_string(&json, "taken_for", "outlines");
+    else
+        gtx_json_null(&json, "taken_for");
     if (suitability.better)
         gtx_json_string(&json, "better", suitability.better);
     else
@@ -163,6 +167,7 @@ static void write_suitability(Json &json, const Suitability &suitability)
 static void write_made(Json &json, const Options &options, const CookFacts &facts)
 {
     gtx_json_string(&json, "partition", partition_name(facts.method));
+    gtx_json_integer(&json, "resolution", facts.suitability.resolution);
     write_charts(json, facts.charts);
     write_suitability(json, facts.suitability);
     write_extract(json, options.bake.extractor);

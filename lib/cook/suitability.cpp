@@ -13,10 +13,6 @@ namespace {
 constexpr double FEW_TRIANGLES = 8;
 /* Of the texels. Scans have 0.1 to 0.3, an engine 0.5. */
 constexpr double MUCH_EMPTY = 0.45;
-/* Of a texel, how far an outline is off along borders and sharp edges: one less the IoU that
- * compare measures is 0.011 of an engine (estimated 0.018), 0.005 of a truck (0.004), 0.0006 of the
- * bunny (0.0002). */
-constexpr double OUTLINE_TEXELS = 0.04;
 constexpr double MUCH_LOST = 0.01;
 
 template <class... Args>
@@ -37,14 +33,17 @@ Suitability judge_suitability(const Partition &partition, const BakeReport &bake
     const size_t patches = std::max<size_t>(partition.charts.size(), 1);
     out.triangles_per_patch = double(triangles) / double(patches);
     out.empty_fraction = double(bake.texels_empty) / double(bake.texels_total);
-    out.outline_loss = std::min(1., OUTLINE_TEXELS * charts.edge_length * partition.pitch /
-                                        charts.area);
+    out.outline_loss = partition.outline_loss();
+    out.for_outlines = partition.for_outlines;
+    out.resolution = partition.resolution;
     out.unseen_fraction = charts.unseen_area_fraction;
     if (out.outline_loss > MUCH_LOST) {
+        const bool cuts = partition.method == PartitionMethod::CUTS;
         warn(task, GTX_WARNING_OUTLINE_LOSS,
-             "edges are sharper than texels: about %.1f %% of an outline may be off: more texels "
-             "(--resolution)", 100 * out.outline_loss);
-        out.better = "texels";
+             "edges are sharper than texels: about %.1f %% of an outline may be off: %s",
+             100 * out.outline_loss,
+             cuts ? "--partition auto takes finer ones" : "more texels (--resolution)");
+        out.better = cuts ? "auto" : "texels";
     }
     if (out.empty_fraction > MUCH_EMPTY) {
         const bool cuts = partition.method == PartitionMethod::CUTS;

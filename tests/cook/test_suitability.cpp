@@ -1,6 +1,7 @@
 /* What a cook says of models that geometry textures are not for, and of what partitions lose. */
 #include "common/schema.hpp"
 
+#include "cook/coarse.hpp"
 #include "cook/folder.hpp"
 
 struct Told {
@@ -9,12 +10,14 @@ struct Told {
     schema::json report;
 };
 
-static Told cook(const std::string &model, gtx_partition partition, bool strict = false)
+static Told cook(const std::string &model, gtx_partition partition, bool strict = false,
+                 uint32_t resolution = 0)
 {
     const std::string output = in_folder("told.gtx");
     gtx_cook_desc desc = {};
     desc.partition = partition;
     desc.strict = strict;
+    desc.resolution = resolution;
     gtx_report report = {};
     gtx_error error = {};
     Told told = {};
@@ -91,6 +94,48 @@ static void what_six_views_lose_is_told(void **)
     assert_false(cook(model, GTX_PARTITION_CUTS).warnings.count("unseen-surface"));
 }
 
+static uint64_t walls_of(const std::string &model, gtx_partition partition)
+{
+    const std::string output = in_folder("walls.gtx");
+    gtx_cook_desc desc = {};
+    desc.partition = partition;
+    desc.lod_levels = GTX_LOD_LEVELS_NONE;
+    assert_int_equal(gtx_cook_file(model.c_str(), output.c_str(), &desc, nullptr, nullptr), GTX_OK);
+    gtx_compare_desc compare = {};
+    compare.size = 512;
+    compare.levels = 1;
+    gtx_compare_result result = {};
+    assert_int_equal(gtx_compare_files(output.c_str(), model.c_str(), &compare, &result, nullptr,
+                                       nullptr), GTX_OK);
+    fs::remove(output);
+    return result.wall_pixels;
+}
+
+/* A tile of thin walls, but not a ball; nor where the resolution is asked for. */
+static void auto_takes_finer_layers_for_outlines(void **)
+{
+    const std::string tile_file = in_folder("tile.obj");
+    city_tile().write(tile_file);
+    const schema::json cuts = cook(tile_file, GTX_PARTITION_CUTS).report;
+    const schema::json taken = cook(tile_file, GTX_PARTITION_AUTO).report;
+    assert_true(taken["partition"] == "layers");
+    assert_true(taken["suitability"]["taken_for"] == "outlines");
+    const double loss = taken["suitability"]["outline_loss"];
+    assert_true(taken["resolution"] > 128);
+    assert_true(loss < 0.8 * double(cuts["suitability"]["outline_loss"]));
+    assert_true(double(taken["texels_total"]) < 2.7 * double(cuts["texels_total"]));
+    const uint64_t walls = walls_of(tile_file, GTX_PARTITION_AUTO);
+    const uint64_t walls_of_cuts = walls_of(tile_file, GTX_PARTITION_CUTS);
+    print_message("# %d wall pixels, with cuts %d\n", int(walls), int(walls_of_cuts));
+    assert_true(walls < walls_of_cuts / 2);
+
+    for (const Told &told : {cook(tile_file, GTX_PARTITION_AUTO, false, 128),
+                             cook(ball_file(), GTX_PARTITION_AUTO)}) {
+        assert_true(told.report["suitability"]["taken_for"].is_null());
+        assert_int_equal(told.report["resolution"], 128);
+    }
+}
+
 /* Neither layers nor what auto comes to leave a hole in a closed model. */
 static void other_partitions_leave_no_hole(void **)
 {
@@ -146,6 +191,7 @@ int main()
     const CMUnitTest tests[] = {cmocka_unit_test(a_ball_is_suitable),
                                 cmocka_unit_test(a_box_is_better_drawn_as_a_mesh),
                                 cmocka_unit_test(what_six_views_lose_is_told),
+                                cmocka_unit_test(auto_takes_finer_layers_for_outlines),
                                 cmocka_unit_test(other_partitions_leave_no_hole),
                                 cmocka_unit_test(nasty_models_are_cooked_or_refused)};
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
