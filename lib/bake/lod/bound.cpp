@@ -53,7 +53,7 @@ struct Search {
 
 void Search::look(const Corners &c)
 {
-    cancel_point(8);
+    cancel_point();
     if (is_covered(c))
         return;
     const Vec3d middle = (c[0] + c[1] + c[2]) / 3;
@@ -121,6 +121,7 @@ Bounds::Bounds(const LodSource &source, double pitch, Task &task)
 
 Strayed Bounds::of(const LodLevel &level, double speck) const
 {
+    task_.limits.work_again(); /* large sources take several looks a triangle at each level */
     Vector<Vec3d> positions;
     Vector<std::array<uint32_t, 3>> triangles;
     for (size_t i = 0; i < level.positions.size(); i += 3)
