@@ -40,7 +40,7 @@ typedef enum gtx_partition {
     GTX_PARTITION_AUTO = 6        /* cuts or layers, whichever takes fewer texels at one density;
                                      but where cuts would lose more than 0.003 of an outline, and
                                      neither a resolution nor an error is asked for, layers of up
-                                     to twice as fine texels, at most 2.5 times as many in all.
+                                     to twice as fine texels, about 2.5 times as many at most.
                                      Takes the time of two partitions, or of up to six */
 } gtx_partition;
 
