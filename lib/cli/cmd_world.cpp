@@ -36,8 +36,9 @@ enum { MAX_MODELS = 4096 };
 static const verb steps_of_world[] = {
     {"world plan", "MODEL... -o DIR",
      "Counts triangles, once, and plans a tree of tiles: plan.json, and what runs the steps.\n"
-     "Binary PLY, binary STL, and GLB of plain arrays may have any size; other models and\n"
-     "grids (as for horizons) are read one at a time, folders file by file; - reads\n"
+     "Binary PLY, binary STL, and GLB of plain arrays without textures may have any size;\n"
+     "other models and grids (as for horizons) are read one at a time, folders file by file.\n"
+     "Leaves keep all maps of textured models, coarser tiles the colours' means. - reads\n"
      "triangles of nine little-endian floats from stdin. `ninja -C DIR` then makes\n"
      "DIR/tileset.json (OGC 3D Tiles 1.1).",
      1, MAX_MODELS, plan_options},

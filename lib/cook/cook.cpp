@@ -254,7 +254,7 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
 
     const Outputs outputs = {output, desc.charts_ply, desc.sources_fn, desc.sources_user};
     outputs.refuse_one_file();
-    if (!input.data)
+    if (!input.data && !input.mesh)
         outputs.refuse(input.path);
     for (uint32_t i = 0; i < desc.more_count; ++i)
         outputs.refuse(desc.more[i]);
@@ -308,6 +308,24 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
     if (report)
         made->hand_over(report);
     return std::move(cooked.asset);
+}
+
+/* Texels of images count as bytes that were read, as many as a compressed image takes. */
+static size_t bytes_of(const Mesh &mesh)
+{
+    size_t bytes = mesh.triangle_count() * 36;
+    for (const Image &image : mesh.appearance.images)
+        bytes += image.levels[0].texels.size() / 4;
+    return bytes;
+}
+
+gtx_result cook_made_mesh(Mesh mesh, uint64_t hash, const gtx_cook_desc &desc, gtx_asset **out,
+                          gtx_report *report, gtx_error *error)
+{
+    return guard(error, [&] {
+        const ModelInput input = {"mesh", nullptr, bytes_of(mesh), &mesh, hash};
+        *out = cook(input, nullptr, desc, report).release();
+    });
 }
 
 } // namespace gtx

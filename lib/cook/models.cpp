@@ -72,6 +72,13 @@ static auto naming(const std::string &path, bool several, Task &task, Body body)
 Models read_models(const ModelInput &first, const char *const *more, uint32_t more_count,
                    const TextureFiles &textures, Task &task)
 {
+    if (first.mesh) {
+        Models made;
+        made.made = std::move(*first.mesh);
+        made.hash = first.hash;
+        task.limits.read(first.path, first.size);
+        return made;
+    }
     Vector<ModelInput> inputs = {first};
     for (uint32_t i = 0; i < more_count; ++i)
         inputs.push_back({more[i]});
@@ -170,7 +177,7 @@ static void turn_z_up(Mesh &mesh)
 
 Mesh import_models(Models &models, bool z_up, Task &task)
 {
-    Mesh mesh;
+    Mesh mesh = std::move(models.made);
     bool several = models.files.size() > 1;
     std::set<std::filesystem::path> known;
     auto is_new = [&known](const std::string &path) {

@@ -3,6 +3,8 @@
 
 #include "mesh/mesh.hpp"
 
+#include <geotex/cook.h>
+
 namespace gtx {
 
 /* A model file, or the bytes of one. */
@@ -10,10 +12,13 @@ struct ModelInput {
     const char *path;
     const void *data = nullptr; /* null: the file is read */
     size_t size = 0;
+    Mesh *mesh = nullptr;       /* or a mesh, which is taken, of this hash */
+    uint64_t hash = 0;
 };
 
 struct Models {
     Vector<ModelFile> files;
+    Mesh made;                  /* where it was given as such */
     /* Every file behind them that is there: the models, then what they refer to. */
     Vector<std::string> sources;
     /* Of the content of all of them, not of their paths. */
@@ -31,5 +36,9 @@ Models read_models(const ModelInput &first, const char *const *more, uint32_t mo
 /* One after another into one mesh; gives back the files' memory. With `z_up` the models' +Z becomes
  * +Y, and their +Y -Z. */
 Mesh import_models(Models &models, bool z_up, Task &task);
+
+/* As gtx_cook_memory, of a mesh as importers make one. `hash` stands for its content. */
+gtx_result cook_made_mesh(Mesh mesh, uint64_t hash, const gtx_cook_desc &desc, gtx_asset **out,
+                          gtx_report *report, gtx_error *error);
 
 } // namespace gtx

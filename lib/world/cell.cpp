@@ -17,7 +17,8 @@ std::string CellHeader::bytes() const
 {
     uint8_t out[BYTES] = {};
     std::memcpy(out, MAGIC, 8);
-    gtx_store_u32(out + 8, traits.doubles | traits.normals << 1 | traits.colors << 2);
+    gtx_store_u32(out + 8, traits.doubles | traits.normals << 1 | traits.colors << 2 |
+                               traits.textured << 3);
     gtx_store_u64(out + 16, count);
     gtx_store_u64(out + 24, hash);
     gtx_store_u64(out + 32, key);
@@ -86,9 +87,17 @@ void encode_triangle(const CornerTraits &traits, const Corners3 &corners, uint8_
         }
         for (int k = 0; k < 3 && traits.normals; ++k, out += 4)
             gtx_store_f32(out, c.normal[k]);
-        if (!traits.colors)
+        std::memcpy(out, &c.color, traits.colors ? 4 : 0);
+        out += traits.colors ? 4 : 0;
+        if (!traits.textured)
             continue;
-        std::memcpy(out, &c.color, 4);
+        for (float x : {c.look.uv[0][0], c.look.uv[0][1], c.look.uv[1][0], c.look.uv[1][1],
+                        c.look.tangent[0], c.look.tangent[1], c.look.tangent[2],
+                        c.look.tangent[3]}) {
+            gtx_store_f32(out, x);
+            out += 4;
+        }
+        gtx_store_u32(out, c.look.material);
         out += 4;
     }
 }
@@ -102,9 +111,17 @@ void decode_triangle(const CornerTraits &traits, const uint8_t *bytes, Corners3 
         }
         for (int k = 0; k < 3 && traits.normals; ++k, bytes += 4)
             c.normal[k] = gtx_load_f32(bytes);
-        if (!traits.colors)
+        std::memcpy(&c.color, bytes, traits.colors ? 4 : 0);
+        bytes += traits.colors ? 4 : 0;
+        if (!traits.textured)
             continue;
-        std::memcpy(&c.color, bytes, 4);
+        for (float *x : {&c.look.uv[0][0], &c.look.uv[0][1], &c.look.uv[1][0], &c.look.uv[1][1],
+                         &c.look.tangent[0], &c.look.tangent[1], &c.look.tangent[2],
+                         &c.look.tangent[3]}) {
+            *x = gtx_load_f32(bytes);
+            bytes += 4;
+        }
+        c.look.material = gtx_load_u32(bytes);
         bytes += 4;
     }
 }
@@ -117,7 +134,8 @@ CellReader::CellReader(const std::string &path) : file_(path, std::ios::binary),
     if (!file_.read(reinterpret_cast<char *>(head), sizeof head) || std::memcmp(head, MAGIC, 8))
         throw Error(GTX_ERROR_INPUT, path + " is no cell file");
     const uint32_t flags = gtx_load_u32(head + 8);
-    header_.traits = {(flags & 1) != 0, (flags & 2) != 0, (flags & 4) != 0};
+    header_.traits = {(flags & 1) != 0, (flags & 2) != 0, (flags & 4) != 0,
+                      (flags & 8) != 0};
     header_.count = left_ = gtx_load_u64(head + 16);
     header_.hash = gtx_load_u64(head + 24);
     header_.key = gtx_load_u64(head + 32);
@@ -129,7 +147,7 @@ CellReader::CellReader(const std::string &path) : file_(path, std::ios::binary),
     std::error_code error;
     const uint64_t size = std::filesystem::file_size(path, error) - CellHeader::BYTES;
     const uint64_t triangle = 3 * header_.traits.bytes();
-    if (error || flags > 7 || size % triangle || size / triangle != left_ ||
+    if (error || flags > 15 || size % triangle || size / triangle != left_ ||
         !(header_.deviation >= 0 && header_.deviation <= FARTHEST) ||
         (left_ && !(is_near(header_.low) && is_near(header_.high))))
         throw Error(GTX_ERROR_INPUT, path + " is not whole");

@@ -20,8 +20,7 @@ static uint16_t light_of(double srgb)
     return uint16_t(light * 65535 + 0.5);
 }
 
-/* The weights of a triangle's corners at the point of it nearest to p, about. */
-static Vec3d weights_at(const Vec3d &p, const Vec3d &a, const Vec3d &b, const Vec3d &c)
+Vec3d weights_at(const Vec3d &p, const Vec3d &a, const Vec3d &b, const Vec3d &c)
 {
     const Vec3d n = cross(b - a, c - a);
     const double area = dot(n, n);

@@ -166,19 +166,31 @@ CornerTraits input_traits(const Plan &plan, Task &task)
     return traits;
 }
 
-uint64_t read_inputs(const Plan &plan, Task &task, const TriangleSink &sink)
+uint64_t read_inputs(const Plan &plan, Task &task, const TriangleSink &sink,
+                     const LookSink &on_look)
 {
-    uint64_t dropped = 0, count = 0;
+    uint64_t dropped = 0, count = 0, materials = 0;
     const size_t before = task.warnings.size();
     for_each_input(plan, task, [&](const WorldInput &input, TriangleStream &stream) {
         const bool turned = plan.z_up && !input.grid;
+        uint64_t first = materials;
+        stream.on_look = [&](const Appearance &look) {
+            materials += look.materials.size();
+            if (on_look)
+                on_look(look);
+        };
         stream.read([&](const Corners3 &read) {
             Corners3 corners = read;
-            for (Corner &c : corners)
-                if (turned) {
-                    c.position = {c.position.x, c.position.z, -c.position.y};
-                    c.normal = {c.normal.x, c.normal.z, -c.normal.y};
-                }
+            for (Corner &c : corners) {
+                if (c.look.material != CornerLook::NO_MATERIAL)
+                    c.look.material += uint32_t(first);
+                if (!turned)
+                    continue;
+                c.position = {c.position.x, c.position.z, -c.position.y};
+                c.normal = {c.normal.x, c.normal.z, -c.normal.y};
+                std::swap(c.look.tangent[1], c.look.tangent[2]);
+                c.look.tangent[2] = -c.look.tangent[2];
+            }
             if (++count % 0x10000 == 0)
                 task.limits.require(GTX_LIMITED_TRIANGLES, "the world", count);
             if (are_near(corners))

@@ -30,7 +30,7 @@ static uint64_t key_of(const Plan &plan, const Tile &tile)
 
 static CellWriter joined(const Plan &plan, const Tile &tile)
 {
-    CellWriter out({plan.traits.doubles, true, plan.traits.colors});
+    CellWriter out(low_traits(plan.traits));
     for (uint32_t child : tile.children) {
         CellReader cell(low_path(plan, plan.tiles[child]));
         Corners3 corners;

@@ -1,5 +1,6 @@
 /* The step that looks at everything once: counts, tiles, and the files that run the others. */
 #include "world/cell.hpp"
+#include "world/look.hpp"
 
 #include "base/output.h"
 
@@ -72,7 +73,7 @@ static void count(Plan &plan, Task &task)
         encode_triangle(plan.traits, c, block.data());
         gtx_hash_add(&hash, block.data(), bytes);
         ++plan.total;
-    });
+    }, [&](const Appearance &look) { add_look(hash, look); });
     if (!plan.total)
         throw Error(GTX_ERROR_EMPTY, "there is no triangle");
     const Vector<CountedCell> counted = cells.finish(plan.lattice);

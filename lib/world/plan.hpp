@@ -76,8 +76,10 @@ void write_whole(const std::string &path, const std::string &text);
 /* ---- what plan and split read ---- */
 
 /* Every triangle of all inputs whose corners are near enough, turned where +Z is up, in the order
- * of the inputs. Returns how many were dropped. */
-uint64_t read_inputs(const Plan &plan, Task &task, const TriangleSink &sink);
+ * of the inputs. Materials are numbered in the order in which `on_look` gets them. Returns how many
+ * were dropped. */
+uint64_t read_inputs(const Plan &plan, Task &task, const TriangleSink &sink,
+                     const LookSink &on_look = nullptr);
 CornerTraits input_traits(const Plan &plan, Task &task);
 /* Files, those of folders in the order of their names. Throws Error: READ, ARGUMENT where the
  * world's folder is among them. */

@@ -130,6 +130,7 @@ void write_plan(const Plan &plan)
     gtx_json_bool(&out, "doubles", plan.traits.doubles);
     gtx_json_bool(&out, "normals", plan.traits.normals);
     gtx_json_bool(&out, "colors", plan.traits.colors);
+    gtx_json_bool(&out, "textured", plan.traits.textured);
     write_lattice(out, plan.lattice);
     write_inputs(out, plan);
     gtx_json_begin_array(&out, "tiles");
@@ -195,7 +196,8 @@ static void read_parts(const json &from, Plan &plan)
     plan.glb = from.at("glb");
     plan.z_up = from.at("up") == "z";
     plan.unit = from.at("unit");
-    plan.traits = {from.at("doubles"), from.at("normals"), from.at("colors")};
+    plan.traits = {from.at("doubles"), from.at("normals"), from.at("colors"),
+                   from.value("textured", false)};
     plan.lattice.exponent = int(whole_of(from.at("lattice").at("exponent"), 1100));
     for (int k = 0; k < 3; ++k)
         plan.lattice.low[k] = whole_of(from.at("lattice").at("low").at(size_t(k)), 1 << 20);

@@ -1,10 +1,13 @@
 /* A tile's surface with fewer triangles, for its parent; its border stays. */
 #include "world/surface.hpp"
 
+#include "mesh/material/srgb.hpp"
+
 #include <meshoptimizer.h>
 
 #include <algorithm>
 #include <cfloat>
+#include <cmath>
 
 namespace gtx {
 
@@ -64,12 +67,81 @@ static Vector<uint32_t> simplified(const Places &places, size_t wanted)
     return out;
 }
 
+/* What is seen of triangles, added up at places by light; `weight` is the triangles' area. */
+namespace {
+struct Light {
+    double sum[4] = {0, 0, 0, 0}, weight = 0;
+    void add(const Rgba8 &c, double w)
+    {
+        const double values[4] = {srgb_to_linear(c.r), srgb_to_linear(c.g), srgb_to_linear(c.b),
+                                  double(c.a)};
+        for (size_t k = 0; k < 4; ++k)
+            sum[k] += w * values[k];
+        weight += w;
+    }
+    Rgba8 mean() const
+    {
+        auto at = [&](size_t k) { return linear_to_srgb(float(sum[k] / weight)); };
+        return {at(0), at(1), at(2), uint8_t(sum[3] / weight + 0.5)};
+    }
+};
+} // namespace
+
+/* Each triangle of the painted surface gives its colour to the corners of the triangle of `low`
+ * that is nearest. Where neighbours meet, both see the same: the triangles around the place alone,
+ * the ring's with them. */
+static Vector<Rgba8> seen_around(const TileSurface &s, const Sheet &low, Task &task)
+{
+    Vector<Light> around(s.positions.size()), wide(s.positions.size());
+    Vector<uint8_t> is_ring(s.positions.size(), 0);
+    Vector<Vec3d> middles;
+    Vector<double> areas;
+    for (size_t t = 0; t < s.triangles.size(); ++t) {
+        const auto &[a, b, c] = s.triangles[t];
+        const Vec3d p = s.positions[a], q = s.positions[b], r = s.positions[c];
+        areas.push_back(std::max(length(cross(q - p, r - p)) / 2, DBL_MIN));
+        if (t < s.own)
+            middles.push_back((p + q + r) / 3);
+        for (uint32_t v : s.triangles[t]) {
+            around[s.place[v]].add(s.seen[t], areas[t]);
+            is_ring[s.place[v]] |= t >= s.own;
+        }
+    }
+    const Vector<uint32_t> nearest = nearest_triangles(middles, low, task);
+    for (size_t t = 0; t < s.own; ++t) {
+        const auto &to = low.triangles[nearest[t]];
+        const Vec3d w = weights_at(middles[t], low.positions[to[0]], low.positions[to[1]],
+                                   low.positions[to[2]]);
+        for (int k = 0; k < 3; ++k)
+            wide[to[size_t(k)]].add(s.seen[t], areas[t] * w[k]);
+    }
+    Vector<Rgba8> out(s.positions.size());
+    for (size_t v = 0; v < out.size(); ++v)
+        if (around[v].weight > 0)
+            out[v] = (is_ring[v] || !(wide[v].weight > 0) ? around : wide)[v].mean();
+    return out;
+}
+
+/* The mean side of a square of two triangles. */
+static double spacing_of(const Sheet &sheet)
+{
+    double area = 0;
+    for (const auto &[a, b, c] : sheet.triangles)
+        area += length(cross(sheet.positions[b] - sheet.positions[a],
+                             sheet.positions[c] - sheet.positions[a])) / 2;
+    return sheet.triangles.empty() ? 0 : std::sqrt(2 * area / double(sheet.triangles.size()));
+}
+
 LowSurface simplify_surface(const TileSurface &surface, size_t wanted, Task &task)
 {
-    const Places places = places_of(surface);
+    Places places = places_of(surface);
     const Vector<uint32_t> indices = simplified(places, wanted);
-    LowSurface out = {CellWriter({surface.traits.doubles, true, surface.traits.colors}), 0};
+    LowSurface out = {CellWriter(low_traits(surface.traits)), 0};
     Sheet sheet = {surface.positions, {}};
+    for (size_t i = 0; i < indices.size(); i += 3)
+        sheet.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    if (!surface.seen.empty() && !indices.empty())
+        places.colors = seen_around(surface, sheet, task);
     for (size_t i = 0; i < indices.size(); i += 3) {
         Corners3 corners;
         for (size_t k = 0; k < 3; ++k) {
@@ -77,11 +149,12 @@ LowSurface simplify_surface(const TileSurface &surface, size_t wanted, Task &tas
             corners[k] = {surface.positions[v], places.normals[v], places.colors[v]};
         }
         out.cell.add(corners);
-        sheet.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
     }
     if (indices.size() < places.indices.size())
         out.deviation = distance_between(sheet_of(surface, surface.own), surface.own, sheet, task);
     out.cell.header.deviation = surface.header.deviation + out.deviation;
+    if (!surface.seen.empty()) /* finer than its vertices lie no colour is seen */
+        out.cell.header.deviation = std::max(out.cell.header.deviation, spacing_of(sheet));
     return out;
 }
 

@@ -30,6 +30,13 @@ private:
     size_t used_ = 0;
 };
 
+/* Not-a-numbers are like themselves here. */
+static bool same_bits(const CornerLook &a, const CornerLook &b)
+{
+    static_assert(sizeof a == CornerLook::BYTES, "no bytes between its numbers");
+    return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
 size_t Welder::slot_of(const Vec3d &p) const
 {
     uint64_t hash = 0;
@@ -63,7 +70,8 @@ uint32_t Welder::add(const Corner &c)
     uint32_t last = NONE;
     for (uint32_t v = slots_[at]; v != NONE; last = v, v = next_[v])
         if ((!s.traits.normals || s.normals[v] == c.normal) &&
-            (!s.traits.colors || s.colors[v] == c.color))
+            (!s.traits.colors || s.colors[v] == c.color) &&
+            (!s.traits.textured || same_bits(s.looks[v], c.look)))
             return v;
     const uint32_t made = uint32_t(s.positions.size());
     if (made == NONE)
@@ -71,6 +79,8 @@ uint32_t Welder::add(const Corner &c)
     s.positions.push_back(p);
     s.normals.push_back(c.normal);
     s.colors.push_back(c.color);
+    if (s.traits.textured)
+        s.looks.push_back(c.look);
     s.place.push_back(last == NONE ? made : slots_[at]);
     next_.push_back(NONE);
     if (last != NONE) {

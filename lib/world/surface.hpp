@@ -13,8 +13,10 @@ struct TileSurface {
     Vector<Vec3d> positions;
     Vector<Vec3f> normals;           /* a vertex each; those of places where the cell has none */
     Vector<Rgba8> colors;
+    Vector<CornerLook> looks;        /* where it is textured */
     Vector<uint32_t> place;
     Vector<std::array<uint32_t, 3>> triangles;
+    Vector<Rgba8> seen;              /* a triangle each: its textures' mean, once painted */
     size_t own = 0;                  /* triangles that are the tile's own */
 
     Corner corner(uint32_t vertex) const
@@ -30,12 +32,18 @@ TileSurface load_surface(const Plan &plan, const Tile &tile, Task &task);
 /* A surface of one file alone. */
 TileSurface load_cell(const std::string &path);
 
-/* As a binary PLY file, which the cooker reads. */
+/* As a binary PLY file, which the cooker reads; without textures. */
 std::string ply_of(const TileSurface &surface);
+
+/* Of surfaces made for parents: what textures show has become colours. */
+inline CornerTraits low_traits(const CornerTraits &of)
+{
+    return {of.doubles, true, of.colors || of.textured, false};
+}
 
 /* The tile's own triangles, as few of them as `wanted` where that can be: vertices on their common
  * border stay, and those that are left are the surface's. A position has one normal and one colour,
- * the mean. */
+ * the mean; of a painted surface the mean of what is seen around it. */
 struct LowSurface {
     CellWriter cell;
     double deviation = 0;            /* from `surface`, as measured */
@@ -53,6 +61,8 @@ Sheet sheet_of(const TileSurface &surface, size_t triangles);
 /* The farthest that points of either are from the other: vertices and centres of triangles, as many
  * as take little time. Points of `from` beyond its first `own` triangles are not asked. */
 double distance_between(const Sheet &from, size_t own, const Sheet &to, Task &task);
+/* The weights of a triangle's corners at the point of it nearest to p, about. */
+Vec3d weights_at(const Vec3d &p, const Vec3d &a, const Vec3d &b, const Vec3d &c);
 /* The triangle of the sheet that is nearest to each point. */
 Vector<uint32_t> nearest_triangles(const Vector<Vec3d> &points, const Sheet &sheet, Task &task);
 

@@ -1,7 +1,8 @@
 /* The step that cooks one tile: asset, GLB, and the low surface for its parent. */
 #include "world/facts.hpp"
-#include "world/surface.hpp"
+#include "world/look.hpp"
 
+#include "cook/models.hpp"
 #include "cook/options.hpp"
 
 #include <geotex/cook.h>
@@ -23,6 +24,7 @@ struct TileCook {
     Task &task;
     gtx_cook_desc desc;
     TileFacts facts;
+    Mesh textured;                   /* what is cooked where the surface has textures */
 
     uint64_t key_of(const std::string &ply, const TileSurface &surface, size_t wanted) const;
     AssetOwner cook(const std::string &ply);
@@ -42,6 +44,10 @@ uint64_t TileCook::key_of(const std::string &ply, const TileSurface &surface, si
     gtx_hash hash;
     gtx_hash_begin(&hash);
     gtx_hash_add(&hash, numbers, sizeof numbers);
+    if (surface.traits.textured) { /* the ring's, and of all images */
+        gtx_hash_add(&hash, surface.looks.data(), CornerLook::BYTES * surface.looks.size());
+        gtx_hash_add(&hash, &plan.key, sizeof plan.key);
+    }
     gtx_hash_add(&hash, &surface.header.deviation, sizeof surface.header.deviation);
     return gtx_hash_end(&hash);
 }
@@ -55,7 +61,9 @@ AssetOwner TileCook::cook(const std::string &ply)
                                                                            gtx_report_free);
     gtx_error error;
     const gtx_result result =
-        gtx_cook_memory(ply.data(), ply.size(), "tile.ply", &desc, &asset, &report, &error);
+        textured.triangles.empty()
+            ? gtx_cook_memory(ply.data(), ply.size(), "tile.ply", &desc, &asset, &report, &error)
+            : cook_made_mesh(std::move(textured), facts.key, desc, &asset, &report, &error);
     AssetOwner owner(asset, gtx_close);
     if (result == GTX_ERROR_EMPTY)
         return owner;
@@ -167,11 +175,11 @@ StepReport cook_tile(const std::string &folder, const std::string &name, Task &t
     task.begin("read");
     const Plan plan = read_plan(folder, task);
     const Tile &tile = plan.tile(name);
-    TileCook job = {plan, tile, task, {}, {}};
+    TileCook job = {plan, tile, task, {}, {}, {}};
     job.desc.unit = float(plan.unit);
     job.desc.threads = task.threads();
     job.desc.limits = task.limits.given();
-    const TileSurface surface = load_surface(plan, tile, task);
+    TileSurface surface = load_surface(plan, tile, task);
     const Vector<double> ring = ring_of(surface);
     job.desc.kept = ring.data();
     job.desc.kept_count = ring.size() / 3;
@@ -190,6 +198,10 @@ StepReport cook_tile(const std::string &folder, const std::string &name, Task &t
         return {summary, true};
     job.facts = {};
     job.facts.key = key;
+    if (surface.traits.textured) {
+        job.textured = textured_mesh(plan, surface, task);
+        paint_surface(job.textured, surface, task);
+    }
     task.begin("cook");
     job.cook_all(ply, surface);
     task.begin("simplify");

@@ -3,13 +3,15 @@
  *   plan    counts the triangles in the cells of a fine lattice, one pass in bounded memory, and
  *           cuts the lattice into an octree whose leaves have at most so many; writes plan.json and
  *           what runs the other steps (Ninja, a shell script, Slurm).
- *   split   a second pass: each triangle goes to the cell file of the leaf that its centroid is in.
+ *   split   a second pass: each triangle goes to the cell file of the leaf that its centroid is in;
+ *           materials and decoded images of textured models to files beside them.
  *   cook    one tile: its own triangles, and a ring of those of its neighbours that share a vertex
  *           with them. LOD meshes keep the ring's vertices, so that the surfaces of two tiles meet
  *           along their border, and overlap: no sight passes between. Makes the asset, the GLB if
  *           wanted, and a *low* surface of a quarter of the triangles for the parent, whose border
  *           vertices stay where they are: the source's own, the same on both sides, at every
- *           level.
+ *           level. What textures show of a leaf is in its maps; in low surfaces it becomes
+ *           vertex colours, the mean of what lies around, the same on both sides.
  *   merge   the low surfaces of a tile's children become the cell file of a tile of its own.
  *   index   writes tileset.json (OGC 3D Tiles 1.1) once all tiles are there.
  *

@@ -267,7 +267,7 @@ static void merged_tiles_are_as_small_as_planned(void **)
     const CellHeader after = CellReader(path).header();
     assert_true(after.count <= 1000 && after.deviation > before.deviation);
     assert_true(merge_tile(plan.folder, "r", task).unchanged);
-    CellWriter halfway({plan.traits.doubles, true, plan.traits.colors});
+    CellWriter halfway(low_traits(plan.traits));
     write_whole(path, halfway.finish());
     assert_false(merge_tile(plan.folder, "r", task).unchanged);
     assert_int_equal(CellReader(path).header().hash, after.hash);

@@ -172,7 +172,7 @@ bool GlbStream::suits()
     for (const GltfMaterial &m : doc.look.materials)
         for (Texture Material::*map : MATERIAL_TEXTURES)
             textured |= (m.look.*map).used();
-    if (!doc.model.extensionsRequired.empty())
+    if (textured || !doc.model.extensionsRequired.empty())
         return false;
     for (const tinygltf::Node &node : doc.model.nodes)
         if (node.extensions.count("EXT_mesh_gpu_instancing"))
@@ -189,14 +189,12 @@ bool GlbStream::suits()
                 traits_.add({!is_still(place), part.normal.components != 0,
                              part.color.components != 0 ||
                                  std::any_of(part.factor, part.factor + 4,
-                                             [](float f) { return f != 1; })});
+                                             [](float f) { return f != 1; }),
+                             false});
                 task_.limits.require(GTX_LIMITED_TRIANGLES, "the model",
                                      triangles += part.triangles());
                 parts_.push_back(part);
             }
-    if (textured)
-        task_.warn(GTX_WARNING_IGNORED_TEXTURE, "textures were ignored: a world has vertex "
-                                                "colours");
     return true;
 }
 

@@ -103,46 +103,57 @@ Rgba8 tinted(const Rgba8 &color, const Material &m)
             linear_to_srgb(srgb_to_linear(color.b) * m.color[2]), color.a};
 }
 
+/* Of the corner of a mesh. */
+CornerLook look_of(const Appearance &from, size_t triangle, size_t corner)
+{
+    CornerLook out;
+    if (!from.material.empty())
+        out.material = from.material[triangle];
+    for (size_t set = 0; set < 2; ++set)
+        if (!from.uv[set].empty())
+            std::copy_n(from.uv[set][corner].data(), 2, out.uv[set]);
+    if (!from.tangents.empty())
+        std::copy_n(from.tangents[corner].data(), 4, out.tangent);
+    return out;
+}
+
 class WholeModel : public TriangleStream {
 public:
     WholeModel(const std::string &path, Task &task) : path_(path), task_(task)
     {
-        const Mesh mesh = import(true);
+        const Mesh mesh = import_mesh(path_, task_);
         const auto &materials = mesh.appearance.materials;
-        tinted_ = std::any_of(materials.begin(), materials.end(), tints);
-        traits_ = {true, !mesh.normals.empty(), tinted_ || !mesh.colors.empty()};
+        const bool textured = !mesh.appearance.images.empty();
+        tinted_ = !textured && std::any_of(materials.begin(), materials.end(), tints);
+        traits_ = {true, !mesh.normals.empty(), tinted_ || !mesh.colors.empty(), textured};
     }
     CornerTraits traits() const override { return traits_; }
     void read(const TriangleSink &sink) override
     {
-        const Mesh mesh = import(false);
+        const size_t before = task_.warnings.size(); /* they were heard */
+        const Mesh mesh = import_mesh(path_, task_);
+        task_.warnings.resize(before);
         const Appearance &look = mesh.appearance;
         Corners3 out;
+        if (traits_.textured && on_look)
+            on_look(look);
         for (size_t t = 0; t < mesh.triangle_count(); ++t) {
             for (size_t k = 0; k < 3; ++k) {
+                const size_t corner = 3 * t + k;
                 out[k].position = mesh.position(t, int(k));
                 if (traits_.normals)
-                    out[k].normal = mesh.normals[3 * t + k];
-                out[k].color = mesh.colors.empty() ? Rgba8() : mesh.colors[3 * t + k];
+                    out[k].normal = mesh.normals[corner];
+                out[k].color = mesh.colors.empty() ? Rgba8() : mesh.colors[corner];
                 if (tinted_)
                     out[k].color = tinted(out[k].color, look.materials[look.material[t]]);
+                if (traits_.textured)
+                    out[k].look = look_of(look, t, corner);
             }
             sink(out);
         }
     }
 
 private:
-    Mesh import(bool tell)
-    {
-        const size_t before = task_.warnings.size();
-        Mesh mesh = import_mesh(path_, task_);
-        if (!mesh.appearance.images.empty())
-            task_.warn(GTX_WARNING_IGNORED_TEXTURE, "textures were ignored: a world has vertex "
-                                                    "colours");
-        if (!tell)
-            task_.warnings.resize(before);
-        return mesh;
-    }
     const std::string path_;
     Task &task_;
     CornerTraits traits_;
