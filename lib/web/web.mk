@@ -72,5 +72,13 @@ web-test: web ## the package in a real Chromium (needs chromium, node and npm's 
 	  npm pack --silent ../geotex >/dev/null && \
 	  npm install --silent --no-fund --no-audit ./geotex-$(VERSION).tgz && npm run --silent build
 	$(again) test-web
-.PHONY: web web-test
+
+# Of what there is: the dragon and the bunny of GEOTEX_MODELS.
+web_models := dragon_810k_loop_q14 bunny
+bench-web: web-test ## .gtx beside Draco in three.js at 10 Mbit/s (needs GEOTEX_MODELS too)
+	$(Q)mkdir -p $(web)/bench && for m in $(web_models); do \
+	  cp -f $(GEOTEX_MODELS)/draco/$$m.drc $(web)/bench/ && \
+	  $(build)/gtx cook -q $(web)/bench/$$m.drc -o $(web)/bench/$$m.gtx || exit 1; done
+	$(Q)node tests/web/bench.mjs $(web)/app $(web)/bench $(web_models)
+.PHONY: web web-test bench-web
 -include $(wildcard $(web)/lib/*/*.d $(web)/lib/*/*/*.d)

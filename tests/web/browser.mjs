@@ -3,53 +3,20 @@
  *   ASSET     a `.gtx` with LOD meshes       PICTURES  a folder for what was drawn
  *   NAME      only the checks whose names hold it
  * Each check of checks.js is a line "ok NAME" or "not ok NAME: why"; the exit status counts. */
-import {createServer} from 'node:http';
-import {createRequire} from 'node:module';
-import {mkdir, readFile, writeFile} from 'node:fs/promises';
-import {basename, dirname, extname, join, normalize, resolve} from 'node:path';
-import {fileURLToPath, pathToFileURL} from 'node:url';
+import {mkdir, writeFile} from 'node:fs/promises';
+import {basename, dirname, join} from 'node:path';
+import {fileURLToPath} from 'node:url';
+import {open} from './serve.mjs';
 
 const [, , app, asset, pictures, only = ''] = process.argv;
-const modules = join(app, 'node_modules');
-const here = dirname(fileURLToPath(import.meta.url));
-const {default: puppeteer} = await import(pathToFileURL(
-  createRequire(resolve(modules, 'none.js')).resolve('puppeteer-core')).href);
-
-const roots = {modules, tests: here, app: join(app, 'dist'), asset: dirname(asset),
-               samples: join(here, '../../samples/web')};
-const types = {'.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm'};
-const server = createServer(async (request, response) => {
-  const [, root, ...rest] = decodeURIComponent(request.url.split('?')[0]).split('/');
-  try {
-    const inside = rest[0] === 'node_modules' ? [modules, ...rest.slice(1)] : [roots[root], ...rest];
-    const path = normalize(join(...inside));
-    const content = await readFile(path);
-    response.writeHead(200, {'content-type': types[extname(path)] ?? 'application/octet-stream'});
-    /* "?first=1000" is a server that gives up. */
-    response.end(content.subarray(0, request.url.match(/[?]first=(\d+)$/)?.[1] ?? content.length));
-  } catch {
-    response.writeHead(root === 'favicon.ico' ? 204 : 404).end();
-  }
-});
-await new Promise((ready) => server.listen(0, '127.0.0.1', ready));
-
-const browser = await puppeteer.launch({
-  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', headless: true,
-  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader',
-         '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist']});
+const modules = join(app, 'node_modules'), here = dirname(fileURLToPath(import.meta.url));
+const {page, address, close} = await open(modules, {
+  modules, tests: here, app: join(app, 'dist'), asset: dirname(asset),
+  samples: join(here, '../../samples/web')});
 let failed = 0;
 try {
   await mkdir(pictures, {recursive: true});
-  const page = await browser.newPage();
-  const address = `http://127.0.0.1:${server.address().port}`;
   page.on('console', (message) => console.log('# ' + message.text()));
-  page.on('response', (r) => r.status() < 400 || console.log(`# ${r.status()} ${r.url()}`));
-  page.on('pageerror', (error) => console.log('# ' + error.message));
-  const network = await page.createCDPSession();
-  await network.send('Network.enable');
-  await page.exposeFunction('link', (bits) => network.send('Network.emulateNetworkConditions', {
-    offline: false, latency: bits ? 20 : 0, uploadThroughput: -1,
-    downloadThroughput: bits ? bits / 8 : -1}));
   await page.goto(`${address}/tests/checks.html?asset=/asset/${basename(asset)}`);
   const names = await page.waitForFunction('window.checks && Object.keys(checks)',
                                            {timeout: 60000}).then((h) => h.jsonValue());
@@ -73,7 +40,6 @@ try {
       .then(() => page.screenshot({path: join(pictures, 'viewer.png')}))
       .then(() => tell('the_viewer_shows_it', ''), (fault) => tell('the_viewer_shows_it', fault));
 } finally {
-  await browser.close();
-  server.close();
+  await close();
 }
 process.exit(failed ? 1 : 0);
