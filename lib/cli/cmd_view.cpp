@@ -6,6 +6,7 @@ static double camera[3] = {30, 20, 2.8};
 static uint32_t size[2] = {1024, 768};
 static uint32_t method; /* in the viewer's table */
 static gtx::ViewScript script;
+static const char *source;
 
 static const option options[] = {
     {"size", 0, OPTION_SIZE, size, "WxH", "size of the window [1024x768]", 16, 8192},
@@ -13,10 +14,12 @@ static const option options[] = {
      "degrees, degrees, bounding-sphere radii [30,20,2.8]", 0, 0},
     {"method", 0, OPTION_CHOICE, &method, "auto|cast|lod|grid|paper",
      "how patches are drawn [auto]", 0, 0},
+    {"source", 0, OPTION_STRING, &source, "MODEL", "what X shows in place of FILE", 0, 0},
     {"frames", 0, OPTION_UINT, &script.frames, "N",
      "close after N frames, once --keys and cooking are done", 1, 1e9},
     {"keys", 0, OPTION_STRING, &script.keys, "KEYS",
-     "press KEYS, one a frame: . none, ! Escape, < > halve, double the window, _ minimise", 0, 0},
+     "press KEYS, one a frame: . none, ~ none until all is cooked, ! Escape, < > halve, double "
+     "the window, _ minimise", 0, 0},
     {"drop", 0, OPTION_STRING, &script.drop, "FILE",
      "drop FILE onto the window when it opens", 0, 0},
     {"screenshot", 0, OPTION_STRING, &script.picture, "OUT.png",
@@ -29,6 +32,7 @@ static const verb view = {
     "wanted) and glTF scenes in a window. Left drag turns, right or middle drag pans, the wheel\n"
     "zooms, H lists the keys. What is dropped onto the window replaces what it shows: files, and\n"
     "worlds by their folder or tileset.json; a model is cooked first, in the background.\n"
+    "K then saves its asset in this folder, and X shows the model in its place, and back.\n"
     "G walks on what is in the middle of the picture, then flies, then orbits again: W, A, S, D\n"
     "go, E and Q raise and lower the eye, Shift is faster, left drag looks around.\n"
     "Exit: 5 if no display offers OpenGL 3.3; with --frames, that of cook if a drop failed.",
@@ -46,6 +50,8 @@ int cmd_view(int argc, char **argv)
     code = check_outputs("gtx view", outputs, files, size_t(count));
     if (!code && script.drop)
         code = check_outputs("gtx view", outputs, &script.drop, 1);
+    if (!code && source)
+        code = check_outputs("gtx view", outputs, &source, 1);
     if (code)
         return code;
     return gtx::guarded("gtx view", [&](std::string &current) {
@@ -64,6 +70,7 @@ int cmd_view(int argc, char **argv)
             name += " and " + std::to_string(count - 1) + " more";
         current = "gtx view";
         gtx::Viewer viewer(std::move(scene), name, size, camera, method);
+        viewer.set_source(source ? source : "");
         return viewer.run(script);
     });
 }

@@ -63,7 +63,9 @@ void Loader::load(const std::string &path)
         result_.scene.worlds.push_back(open_world(world));
         return;
     }
-    PlacedAsset placed = {is_asset(path) ? open_asset(path) : cook(path), identity_transform};
+    const bool cooked = !is_asset(path);
+    PlacedAsset placed = {cooked ? cook(path) : open_asset(path), identity_transform,
+                          cooked ? path : std::string()};
     const gtx_jobs jobs = gtx_host_jobs(0);
     gtx_model_desc desc = {};
     desc.jobs = &jobs;

@@ -26,10 +26,12 @@ void Viewer::add_status(gtx_shapes &shapes, float dot)
     char line[160];
     const bool no_lod = view.method != methods[method].method;
     static const char *const motions[] = {"", "  walking", "  flying"};
-    std::snprintf(line, sizeof line, "%s  level %s%s%s%s%s  %.1f ms  %dx%d",
+    std::snprintf(line, sizeof line, "%s  level %s%s%s%s%s%s  %.1f ms  %dx%d",
                   no_lod ? "no LOD mesh: auto" : methods[method].name, levels_text[view.level],
                   debug_view_text[size_t(debug)], boxes ? "  boxes" : "",
-                  fixed_light ? "  light fixed" : "", motions[size_t(walker.motion())],
+                  shows_source ? "  source" : "",
+                  fixed_light ? "  light fixed" : "",
+                  motions[size_t(walker.motion())],
                   milliseconds, width, height);
     std::string lines = name + "\n";
     if (!scene.assets.empty() || !scene.meshes.empty())

@@ -63,7 +63,7 @@ AssetPointer open_asset(const std::string &path)
 
 static void add_asset(Scene &scene, const std::string &path, const Transform &transform)
 {
-    scene.assets.push_back({open_asset(path), transform});
+    scene.assets.push_back({open_asset(path), transform, {}});
     scene.sources.push_back(path);
 }
 

@@ -28,6 +28,7 @@ constexpr Transform identity_transform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,
 struct PlacedAsset {
     AssetPointer asset;
     Transform transform; /* of the asset's object space, before its anchor is taken off */
+    std::string model = {};   /* that it was cooked from just now; may be empty */
 };
 
 struct Scene {

@@ -3,12 +3,10 @@
 #include "cli/view/viewer.hpp"
 
 #include "cli/cli.h"
-#include "image/image.h"
 
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <unistd.h>
 
 namespace gtx {
 
@@ -30,6 +28,8 @@ const Viewer::Key Viewer::keys[] = {
     {'G', "walk, fly, or orbit", [](Viewer &v) { v.change_motion(); }},
     {'S', "save a picture, but on foot: back",
      [](Viewer &v) { v.wants_picture = v.walker.motion() == Motion::ORBIT; }},
+    {'K', "keep: save what was dropped and cooked", [](Viewer &v) { v.save_cooked(); }},
+    {'X', "the source, or the asset", [](Viewer &v) { v.toggle_source(); }},
     {'T', "this text on and off", [](Viewer &v) { v.text = !v.text; }},
     {'H', "help", [](Viewer &v) { v.help = !v.help; }},
     {GTX_KEY_ESCAPE, "cancel cooking, then close", [](Viewer &v) { v.escape(); }},
@@ -84,6 +84,7 @@ void Viewer::release()
         gtx_model_destroy(scene_renderer->renderer, model);
     if (target.object)
         gtx_framebuffer_destroy(&scene_renderer->gl, &target);
+    source_renderer.reset();
     scene_renderer.reset();
     gtx_window_destroy(window);
 }
@@ -91,6 +92,8 @@ void Viewer::release()
 void Viewer::show(Scene shown, Vector<gtx_model *> models)
 {
     facts = Facts();
+    shows_source = false;
+    source_renderer.reset();
     walker.forget(); /* the rays of what will be closed */
     scene = std::move(shown);
     scene_renderer->show(scene, std::move(models));
@@ -251,30 +254,6 @@ void Viewer::take_loaded()
     frame_all();
 }
 
-void Viewer::write_picture(const std::string &path)
-{
-    Vector<uint8_t> pixels(size_t(width) * size_t(height) * 4);
-    gtx_error error;
-    gtx_framebuffer_read_color(&scene_renderer->gl, &target, pixels.data());
-    require_ok(gtx_image_write_png(path.c_str(), uint32_t(width), uint32_t(height), 4,
-                                   pixels.data(), &error), error);
-}
-
-/* The picture without the text. */
-void Viewer::save_screenshot()
-{
-    std::string path;
-    for (int i = 1; path.empty() || access(path.c_str(), F_OK) == 0; ++i)
-        path = "gtx-view-" + std::to_string(i) + ".png";
-    wants_picture = false;
-    try {
-        write_picture(path);
-        note = "saved " + path;
-    } catch (const Error &e) {
-        note = path + ": " + e.message;
-    }
-}
-
 void Viewer::draw_frame()
 {
     using Clock = std::chrono::steady_clock;
@@ -295,7 +274,7 @@ void Viewer::draw_frame()
         view.method = GTX_METHOD_AUTO;
     view.viewport_width = uint32_t(width);
     view.viewport_height = uint32_t(height);
-    scene_renderer->draw(view, debug);
+    (shows_source ? *source_renderer : *scene_renderer).draw(view, debug);
     if (boxes)
         scene_renderer->draw_boxes(view);
     gl.Finish(); /* or the time would be that of giving orders */
@@ -325,7 +304,8 @@ int Viewer::run(const ViewScript &script)
             loader.start({script.drop});
         dropped = true;
         take_loaded();
-        if (*next && scene_renderer->is_settled())
+        const bool loads = loader.busy() || !incoming.models.empty();
+        if (*next && scene_renderer->is_settled() && !(*next == '~' && loads))
             press_script(*next++);
         if (width > 0 && height > 0) {
             draw_frame();

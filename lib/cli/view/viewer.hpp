@@ -30,6 +30,9 @@ public:
     Viewer(const Viewer &) = delete;
     ~Viewer();
 
+    /* What X shows in place of the assets; else the models that were dropped and cooked. */
+    void set_source(std::string path) { given_source = std::move(path); }
+
     /* Draws until the window is closed. Returns an exit code; throws Error: GL, MEMORY, WRITE. */
     int run(const ViewScript &script);
 
@@ -47,13 +50,16 @@ private:
     struct Facts {
         uint64_t triangles = 0, patches = 0, bytes = 0;
     };
-    static const Key keys[12];
+    static const Key keys[14];
     static const Method methods[5];
     void press(char key);
     void toggle(DebugView view);
     void press_script(char key);
     void escape();
     void save_screenshot();
+    void save_cooked();
+    void toggle_source();
+    void open_source();
     void take_drops();
     void take_loaded();
     void receive(Loader::Result result);
@@ -75,6 +81,10 @@ private:
     gtx_framebuffer target = {};
     int width = 0, height = 0;
     Scene scene;
+    std::string given_source;
+    Scene source;               /* of models, seen from where the scene is */
+    std::unique_ptr<SceneRenderer> source_renderer;    /* none until it is asked for */
+    bool shows_source = false;
     std::string name, note;     /* what is shown; a line about what happened last */
     Facts facts;                /* of the scene */
     Loader loader;
