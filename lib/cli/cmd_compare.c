@@ -24,7 +24,7 @@ static const option options[] = {
     {"any-model", 0, OPTION_FLAG, &any_model, NULL,
      "a model that the asset was not cooked from, or that has changed since", 0, 0},
     {"base-color", 0, OPTION_STRING, &desc.base_color, "FILE",
-     "image for an OBJ that has texture coordinates and names none", 0, 0},
+     "image where an OBJ or a glTF with texture coordinates names none that is read", 0, 0},
     {"texture-dir", 0, OPTION_STRING, &desc.texture_dir, "DIR",
      "folder of textures that are not beside the model, by file name", 0, 0},
     {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},

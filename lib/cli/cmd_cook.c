@@ -45,7 +45,7 @@ static const option options[] = {
      "the model's up axis; +Z is turned to +Y [y]", 0, 0},
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the model [1]", 1e-30, 1e30},
     {"base-color", 0, OPTION_STRING, &desc.base_color, "FILE",
-     "image for an OBJ that has texture coordinates and names none", 0, 0},
+     "image where an OBJ or a glTF with texture coordinates names none that is read", 0, 0},
     {"texture-dir", 0, OPTION_STRING, &desc.texture_dir, "DIR",
      "folder of textures that are not beside the model, by file name", 0, 0},
     {"name", 0, OPTION_STRING, &name, "PATH",

@@ -139,6 +139,28 @@ static void test_specular_glossiness(void **)
     assert_float_equal(look(i).roughness, 0.5, 1e-6);
 }
 
+/* The image that a caller gives takes the place of one that cannot be read, and of no other. */
+static void test_given_base_color(void **)
+{
+    Folder folder;
+    const std::string given = folder.write("given.png", png(folder, 1, 1, {0, 255, 0, 255}));
+    const std::string json = textured(base_color, "'textures':[{'source':0}],"
+                                                  "'images':[{'uri':'a.png'}]");
+    const std::string path = folder.write("a.gltf", with_data(json, square() + coordinates()));
+    const std::string images[] = {"", "no image", png(folder, 1, 1, {255, 0, 0, 255})};
+    for (const std::string &image : images) {
+        Task task(1, nullptr, nullptr);
+        if (!image.empty())
+            folder.write("a.png", image);
+        gtx::ModelFile file = gtx::read_model(path, task);
+        file.textures.base_color = given;
+        const Mesh mesh = gtx::import_model(file, task);
+        const bool reads = &image == images + 2;
+        assert_sample(mesh, 0, {reads ? 1.f : 0.f, reads ? 0.f : 1.f, 0, 1});
+        assert_true(task.warnings.empty());
+    }
+}
+
 /* Primitives with a material and without, with coordinates and without. */
 static void test_mixture(void **)
 {
@@ -198,6 +220,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_texture_info), cmocka_unit_test(test_shared_image),
         cmocka_unit_test(test_values), cmocka_unit_test(test_specular_glossiness),
+        cmocka_unit_test(test_given_base_color),
         cmocka_unit_test(test_mixture), cmocka_unit_test(test_quantised),
     };
     return cmocka_run_group_tests_name("import_material", tests, nullptr, nullptr);

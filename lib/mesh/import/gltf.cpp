@@ -111,6 +111,7 @@ static void fetch_images(const GltfDocument &doc, const ModelFile &file, Appeara
             if ((m.*map).used() && encoded[(m.*map).image].name.empty())
                 encoded[(m.*map).image] =
                     encoded_image(doc, doc.look.images[(m.*map).image], file, task);
+    add_base_color(file, look, encoded, task);
     load_images(encoded, look, task);
 }
 

@@ -115,6 +115,32 @@ static void drop_unseen(Appearance &look)
         Vector<std::array<float, 4>>().swap(look.tangents);
 }
 
+static bool is_readable(const EncodedImage &image)
+{
+    uint32_t width, height;
+    gtx_error error;
+    return image.problem.empty() && gtx_image_measure(image.bytes.data(), image.bytes.size(),
+                                                      &width, &height, &error) == GTX_OK;
+}
+
+void add_base_color(const ModelFile &file, Appearance &look, Vector<EncodedImage> &encoded,
+                    Task &task)
+{
+    const std::string &path = file.textures.base_color;
+    if (path.empty() || look.uv[0].empty())
+        return;
+    const uint32_t image = uint32_t(encoded.size());
+    encoded.push_back(read_image_file(file, "the base colour", path, task));
+    encoded.back().required = true;
+    if (look.materials.empty()) {
+        look.materials.emplace_back();
+        look.material.assign(look.uv[0].size() / 3, 0);
+    }
+    for (Material &m : look.materials)
+        if (!m.color_map.used() || !is_readable(encoded[m.color_map.image]))
+            m.color_map.image = image;
+}
+
 void load_images(const Vector<EncodedImage> &encoded, Appearance &look, Task &task)
 {
     Vector<Load> loads(encoded.size());

@@ -22,6 +22,11 @@ struct EncodedImage {
 EncodedImage read_image_file(const ModelFile &file, std::string name, const std::string &path,
                              Task &task);
 
+/* Materials whose base colour has no texture, or one that cannot be read, get the image that the
+ * caller gave for that, if any; `encoded` holds the images that they name. Throws Error: LIMIT. */
+void add_base_color(const ModelFile &file, Appearance &look, Vector<EncodedImage> &encoded,
+                    Task &task);
+
 /* Decodes those images that textures of `look` name (Texture::image is an index of `encoded`), each
  * once, and makes the textures name the results. An image that cannot be had is a warning, and the
  * textures that name it are gone: their factors alone are left, but nothing shines by a factor that

@@ -228,9 +228,11 @@ Mesh import_model(const ModelFile &file, Task &task)
         fail(GTX_ERROR_EMPTY, "the model has no triangle");
     require_triangles(mesh.triangles.size(), task);
     if (!file.textures.base_color.empty() &&
-        (format->import != import_obj || mesh.appearance.uv[0].empty()))
+        ((format->import != import_obj && format->import != import_gltf) ||
+         mesh.appearance.uv[0].empty()))
         task.warn(GTX_WARNING_IGNORED_TEXTURE,
-                  "the base colour was ignored: it is for OBJ models with texture coordinates");
+                  "the base colour was ignored: it is for OBJ and glTF models with texture "
+                  "coordinates");
     task.advance(1);
     return mesh;
 }

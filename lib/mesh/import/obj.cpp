@@ -31,7 +31,6 @@ private:
     void triangle(const Corner &a, const Corner &b, const Corner &c);
     void use_material();
     void ignore(std::string_view word);
-    void add_base_color(Vector<EncodedImage> &images);
     void finish_materials();
     void finish();
 
@@ -189,26 +188,6 @@ void ObjReader::statement(std::string_view word)
     }
 }
 
-/* Materials without a colour of their own get the one that was given. */
-void ObjReader::add_base_color(Vector<EncodedImage> &images)
-{
-    Appearance &look = mesh_.appearance;
-    const std::string &path = file_.textures.base_color;
-    if (path.empty() || look.uv[0].empty())
-        return;
-    Texture texture;
-    texture.image = uint32_t(images.size());
-    images.push_back(read_image_file(file_, "the base colour", path, task_));
-    images.back().required = true;
-    if (look.materials.empty()) {
-        look.materials.emplace_back();
-        look.material.assign(mesh_.triangles.size(), 0);
-    }
-    for (Material &m : look.materials)
-        if (!m.color_map.used())
-            m.color_map = texture;
-}
-
 /* Materials take the numbers of the names that are used; what no library defines is plain. */
 void ObjReader::finish_materials()
 {
@@ -227,7 +206,7 @@ void ObjReader::finish_materials()
                      uint32_t(look.materials.size()));
         look.materials.emplace_back();
     }
-    add_base_color(library.images);
+    add_base_color(file_, look, library.images, task_);
     const bool textured = std::any_of(
         look.materials.begin(), look.materials.end(), [](const Material &m) {
             return std::any_of(std::begin(MATERIAL_TEXTURES), std::end(MATERIAL_TEXTURES),
