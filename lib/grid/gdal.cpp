@@ -52,16 +52,41 @@ private:
 struct TiffTags {
     bool any = false, whole = true; /* whole: they lie inside the file */
     bool in_degrees = false;
+    double across = 0, up = 0;      /* metres in its units of length; 0: it does not say */
 };
 
-/* The model of GeoKeys (GeoTIFF 1.1, 7.4): GDAL would look a lot up, and print, to tell as much. */
-static bool has_degrees(TiffNumbers &numbers, uint64_t at, uint64_t items)
+/* Metres in a unit of EPSG's; 0 for others. */
+static double metres_in(uint64_t unit)
 {
-    constexpr uint64_t MODEL = 1024, GEOGRAPHIC = 2;
-    for (uint64_t k = 4; k + 4 <= std::min<uint64_t>(items, 1024); k += 4)
-        if (numbers.at(at + 2 * k, 2) == MODEL && numbers.at(at + 2 * k + 2, 2) == 0)
-            return numbers.at(at + 2 * k + 6, 2) == GEOGRAPHIC;
-    return false;
+    static const struct {
+        uint64_t unit;
+        double metres;
+    } units[] = {{9001, 1}, {9002, 0.3048}, {9003, 1200.0 / 3937}, {9036, 1000}};
+    for (const auto &known : units)
+        if (known.unit == unit)
+            return known.metres;
+    return 0;
+}
+
+/* The GeoKeys (GeoTIFF 1.1, 7.4) of the model, of its unit and of that of heights: GDAL would look
+ * a lot up, and print, to tell as much. Zones of UTM are in metres. */
+static void read_keys(TiffNumbers &numbers, uint64_t at, uint64_t items, TiffTags &out)
+{
+    constexpr uint64_t MODEL = 1024, GEOGRAPHIC = 2, PROJECTION = 3072, UNIT = 3076, UP = 4099;
+    constexpr uint64_t FIRST_UTM = 32601, LAST_UTM = 32760;
+    for (uint64_t k = 4; k + 4 <= std::min<uint64_t>(items, 1024); k += 4) {
+        const uint64_t key = numbers.at(at + 2 * k, 2), value = numbers.at(at + 2 * k + 6, 2);
+        if (numbers.at(at + 2 * k + 2, 2) != 0) /* it lies elsewhere */
+            continue;
+        if (key == MODEL)
+            out.in_degrees = value == GEOGRAPHIC;
+        else if (key == UNIT)
+            out.across = metres_in(value);
+        else if (key == UP)
+            out.up = metres_in(value);
+        else if (key == PROJECTION && value >= FIRST_UTM && value <= LAST_UTM && out.across == 0)
+            out.across = 1;
+    }
 }
 
 static TiffTags tags_of(std::string_view head, const std::string &path)
@@ -93,7 +118,7 @@ static TiffTags tags_of(std::string_view head, const std::string &path)
                                                                size * items > numbers.size() - at)))
             out.whole = false;
         else if (tag == GEO_KEYS)
-            out.in_degrees = has_degrees(numbers, at, items);
+            read_keys(numbers, at, items, out);
     }
     return out;
 }
@@ -274,6 +299,11 @@ HeightGrid read_gdal(const char *driver, std::string_view bytes, const std::stri
         malformed("it has two sizes");
     grid = grid_of_codes({raster.nx, raster.ny, raster.least, raster.greatest, raster.scale,
                           raster.offset, raster.codes}, reading);
+    if (tags.across > 0 && tags.up > 0 && tags.up != tags.across) {
+        const double scale = tags.up / tags.across; /* heights in the units of the lattice */
+        for (float &value : grid.values)
+            value = float(value * scale);
+    }
     if (!raster.has_place)
         return grid;
     lay(grid, raster.affine);

@@ -9,6 +9,7 @@ extern "C" {
 
 #include "grid/grid.hpp"
 #include "grid/module.h"
+#include "grid/tiff.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -93,13 +94,6 @@ static void xyz_is_read(void **)
     expect(read(file("south.xyz", std::string(south) + north)), 100, 50, 10, 20);
 }
 
-template <class T> static void put(std::string &to, T value)
-{
-    char raw[sizeof value];
-    std::memcpy(raw, &value, sizeof value);
-    to.append(raw, sizeof raw);
-}
-
 static std::string surfer_6()
 {
     std::string out = "DSBB";
@@ -123,69 +117,6 @@ static void surfer_is_read(void **)
 }
 
 /* ---- GeoTIFF ---- */
-
-struct Tag {
-    uint16_t number, type;
-    uint32_t count;
-    std::string value;
-};
-template <class T> static std::string list(std::initializer_list<T> values)
-{
-    std::string out;
-    for (T value : values)
-        put(out, value);
-    return out;
-}
-
-/* One strip of floats, and what more tags tell. Tags in order. */
-static std::string tiff(const std::vector<Tag> &more, uint32_t nx = 3, uint32_t ny = 2)
-{
-    enum : uint16_t { ASCII = 2, SHORT = 3, LONG = 4 };
-    const std::string nodes = list<float>({1.5, 2, 3, 4, -9999, 6});
-    std::vector<Tag> tags = {{256, LONG, 1, list<uint32_t>({nx})},
-                             {257, LONG, 1, list<uint32_t>({ny})},
-                             {258, SHORT, 1, list<uint32_t>({32})},
-                             {259, SHORT, 1, list<uint32_t>({1})},
-                             {262, SHORT, 1, list<uint32_t>({1})},
-                             {273, LONG, 1, list<uint32_t>({8})},
-                             {277, SHORT, 1, list<uint32_t>({1})},
-                             {278, LONG, 1, list<uint32_t>({ny})},
-                             {279, LONG, 1, list<uint32_t>({uint32_t(nodes.size())})},
-                             {339, SHORT, 1, list<uint32_t>({3})}};
-    tags.insert(tags.end(), more.begin(), more.end());
-    const uint32_t directory = uint32_t(8 + nodes.size());
-    uint32_t behind = directory + 2 + 12 * uint32_t(tags.size()) + 4;
-    std::string out = "II*", entries, values;
-    put(out, uint8_t(0));
-    put(out, directory);
-    out += nodes;
-    put(entries, uint16_t(tags.size()));
-    for (const Tag &tag : tags) {
-        put(entries, tag.number);
-        put(entries, tag.type);
-        put(entries, tag.count);
-        if (tag.value.size() == 4) {
-            entries += tag.value;
-            continue;
-        }
-        put(entries, behind + uint32_t(values.size()));
-        values += tag.value;
-    }
-    put(entries, uint32_t(0));
-    return out + entries + values;
-}
-
-enum : uint16_t { ASCII = 2, SHORT = 3, DOUBLE = 12 };
-static const Tag SCALE = {33550, DOUBLE, 3, list<double>({30, 30, 0})};
-static const Tag PLACE = {33922, DOUBLE, 6, list<double>({0, 0, 0, 600000, 5000060, 0})};
-static const Tag MISSING = {42113, ASCII, 6, std::string("-9999\0", 6)};
-/* A model type (1 metres, 2 degrees) of pixels that are areas. */
-static Tag keys(uint16_t model, uint16_t key, uint16_t system)
-{
-    return {34735, SHORT, 16, list<uint16_t>({1, 1, 0, 3, 1024, 0, 1, model, 1025, 0, 1, 1, key, 0,
-                                              1, system})};
-}
-static const Tag UTM = keys(1, 3072, 32632), WGS84 = keys(2, 2048, 4326);
 
 static void geotiff_is_read(void **)
 {
@@ -266,6 +197,29 @@ static void degrees_are_told(void **)
     assert_true(read(file("alps.asc", alps)).in_degrees);
 }
 
+/* Heights come in the units of the lattice, where both are told. */
+static void feet_become_metres(void **)
+{
+    need_module();
+    auto units = [](uint16_t across_key, uint16_t across, uint16_t up) {
+        return Tag{34735, SHORT, 20, list<uint16_t>({1, 1, 0, 4, 1024, 0, 1, 1, 1025, 0, 1, 1,
+                                                     across_key, 0, 1, across, 4099, 0, 1, up})};
+    };
+    const uint16_t METRE = 9001, FOOT = 9002, FATHOM = 9014;
+    struct {
+        uint16_t key, across, up;
+        double scale;
+    } const cases[] = {{3072, 32632, FOOT, 0.3048}, {3076, METRE, FOOT, 0.3048},
+                       {3076, FOOT, METRE, 1 / 0.3048}, {3076, FOOT, FOOT, 1},
+                       {3076, METRE, FATHOM, 1},     {3072, 2225, FOOT, 1}}; /* not told */
+    for (const auto &c : cases) {
+        const HeightGrid grid =
+            read(file("feet.tif", tiff({SCALE, PLACE, units(c.key, c.across, c.up)})));
+        assert_true(std::fabs(grid.at(1, 1) - 2 * c.scale) < 1e-6);
+        assert_true(std::fabs(grid.at(2, 0) - 6 * c.scale) < 1e-6 && grid.step[0] == 30);
+    }
+}
+
 /* ---- files that lie ---- */
 
 static void truncated_files_are_refused(void **)
@@ -337,6 +291,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(geotiff_is_read),
         cmocka_unit_test(rotated_grids_are_turned_or_refused),
         cmocka_unit_test(degrees_are_told),
+        cmocka_unit_test(feet_become_metres),
         cmocka_unit_test(truncated_files_are_refused),
         cmocka_unit_test(lying_sizes_are_refused),
         cmocka_unit_test(its_absence_is_told),
