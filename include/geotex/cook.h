@@ -126,10 +126,9 @@ typedef struct gtx_cook_desc {
                                      share it */
     const char *texture_dir;      /* a folder for textures that are not beside a model, looked for
                                      there by their file names alone; or NULL */
-    const char *base_color;       /* path of the image for materials that have none, or one that
-                                     cannot be read, of OBJ and glTF models with texture
-                                     coordinates; or NULL. If it cannot be read: READ.
-                                     Compare with the same two */
+    const char *base_color;       /* path of the image for materials that have none or an unreadable
+                                     one, in OBJ and glTF with texture coordinates; or NULL. If it
+                                     cannot be read: READ. Compare with the same two */
     uint32_t reserved[2];
 } gtx_cook_desc;
 

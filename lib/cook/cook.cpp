@@ -310,15 +310,6 @@ static Asset cook(const ModelInput &input, const char *output, const gtx_cook_de
     return std::move(cooked.asset);
 }
 
-/* Texels of images count as bytes that were read, as many as a compressed image takes. */
-static size_t bytes_of(const Mesh &mesh)
-{
-    size_t bytes = mesh.triangle_count() * 36;
-    for (const Image &image : mesh.appearance.images)
-        bytes += image.levels[0].texels.size() / 4;
-    return bytes;
-}
-
 gtx_result cook_made_mesh(Mesh mesh, uint64_t hash, const gtx_cook_desc &desc, gtx_asset **out,
                           gtx_report *report, gtx_error *error)
 {

@@ -206,4 +206,12 @@ Mesh import_models(Models &models, bool z_up, Task &task)
     return mesh;
 }
 
+size_t bytes_of(const Mesh &mesh)
+{
+    size_t texels = 0;
+    for (const Image &image : mesh.appearance.images)
+        texels += image.levels[0].texels.size();
+    return mesh.triangle_count() * 36 + texels / 4;
+}
+
 } // namespace gtx

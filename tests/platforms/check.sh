@@ -31,8 +31,9 @@ for platform in ${*:-arm64 i386}; do
     export PKG_CONFIG_SYSROOT_DIR="$root"
     export PKG_CONFIG_LIBDIR="$root/usr/lib/$where/pkgconfig:$root/usr/share/pkgconfig"
     # shellcheck disable=SC2086
-    make --no-print-directory -j"$(nproc)" build="$folder/$platform" vulkan= gdal= flags_release=-O2 \
-        CC="$triplet-gcc --sysroot=$root $flags" CXX="$triplet-g++ --sysroot=$root $flags" \
+    make --no-print-directory -j"$(nproc)" build="$folder/$platform" vulkan= gdal= \
+        flags_release=-O2 CC="$triplet-gcc --sysroot=$root $flags" \
+        CXX="$triplet-g++ --sysroot=$root $flags" \
         $(for program in $programs; do echo "$out/$program"; done) "$out/geotex-image.so" >&2
     for program in $programs; do
         log=$folder/$platform/$(basename $program).tap

@@ -18,9 +18,9 @@ struct Surface {
         const auto &[a, b, c] = triangles[t];
         return {positions[a], positions[b], positions[c]};
     }
-    Box box(size_t t) const
+    gtx::Box box(size_t t) const
     {
-        Box box;
+        gtx::Box box;
         for (const Vec3d &p : corners(t))
             box.add(p);
         return box;
