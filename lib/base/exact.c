@@ -15,6 +15,29 @@ static double series(const double *c, int n, double x)
     return sum;
 }
 
+/* a * a = high + low (Dekker 1971). */
+static void square(double a, double *high, double *low)
+{
+    const double split = 134217729 * a, head = split - (split - a), tail = a - head;
+    *high = a * a;
+    *low = ((head * head - *high) + 2 * head * tail) + tail * tail;
+}
+
+double gtx_hypot(double x, double y)
+{
+    const double a = fmax(fabs(x), fabs(y)), b = fmin(fabs(x), fabs(y));
+    if (!(a < 1e140))
+        return a < INFINITY ? gtx_hypot(a * 0x1p-600, b * 0x1p-600) * 0x1p+600 : a;
+    if (a < 1e-140)
+        return a > 0 ? gtx_hypot(a * 0x1p+600, b * 0x1p+600) * 0x1p-600 : 0;
+    double aa, bb, hh, a_low, b_low, h_low;
+    const double h = sqrt(a * a + b * b);
+    square(a, &aa, &a_low);
+    square(b, &bb, &b_low);
+    square(h, &hh, &h_low);
+    return h + ((aa - hh + bb) + (a_low + b_low - h_low)) / (2 * h);
+}
+
 double gtx_exp2(double x)
 {
     static const double c[] = {1 / 6227020800., 1 / 479001600., 1 / 39916800., 1 / 3628800.,

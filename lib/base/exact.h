@@ -8,6 +8,7 @@
 extern "C" {
 #endif
 
+double gtx_hypot(double x, double y); /* nearly always what is nearest */
 double gtx_exp2(double x);            /* infinite from 1024 on */
 double gtx_log2(double x);            /* x > 0; at powers of two exact */
 double gtx_exp(double x);             /* relative error: |x| units in the last place */

@@ -35,6 +35,10 @@ static Task make_task(const gtx_cook_desc &desc, const Options &options)
  * double the last ones hardly move it. */
 constexpr double ATTEMPT_SHARE = 0.2;
 
+/* Bounds of LOD meshes may take so many times the work of another stage: thousands of triangles on
+ * one edge are all as near, and take more than one. */
+constexpr double BOUND_WORK = 4;
+
 /* The files that a call writes, and who else wants to know what it reads. */
 struct Outputs {
     const char *asset, *charts_ply;
@@ -117,7 +121,9 @@ static Attempt attempt(const Mesh &mesh, const Options &options, Task &task, con
         if (options.lod_levels) {
             LodSource source = lod_source(charted, out.partition, maps, task);
             mark_kept(options, maps, source);
+            task.limits.allow_work(BOUND_WORK * work_of(options));
             lod = make_lod(source, maps, options.lod_levels, task);
+            task.limits.allow_work(work_of(options));
         }
         for (const LodLevel &level : lod)
             out.lod_rms.push_back(double(level.rms));

@@ -37,8 +37,8 @@ Models read_models(const ModelInput &first, const char *const *more, uint32_t mo
  * +Y, and their +Y -Z. */
 Mesh import_models(Models &models, bool z_up, Task &task);
 
-/* What a mesh counts as where limits go by the bytes that were read: of texels of images, as many as
- * a compressed image takes. */
+/* What a mesh counts as where limits go by the bytes that were read: of texels of images, as many
+ * as a compressed image takes. */
 size_t bytes_of(const Mesh &mesh);
 
 /* As gtx_cook_memory, of a mesh as importers make one. `hash` stands for its content. */

@@ -1,6 +1,8 @@
 /* Vectors of the cooker: three doubles, and three floats for storage. */
 #pragma once
 
+#include "base/exact.h"
+
 #include <cmath>
 
 namespace gtx {
@@ -47,13 +49,17 @@ template <class T> T length(const Vec3<T> &a)
 /* Of (x, y). */
 inline double length(double x, double y)
 {
-    return std::sqrt(x * x + y * y); /* hypot rounds differently elsewhere */
+    return gtx_hypot(x, y);
 }
 
-/* That times `parts`, rounded down. */
+/* That times `parts`, a power of two, rounded down. The square root alone is nearly as exact, and
+ * takes a fifth of the time. */
 inline int whole_length(double parts, double x, double y)
 {
-    return int(parts * length(x, y));
+    constexpr double ROUNDING = 1e-12;
+    const double about = parts * std::sqrt(x * x + y * y);
+    const bool sure = about < 1e9 && int(about * (1 - ROUNDING)) == int(about * (1 + ROUNDING));
+    return int(sure ? about : parts * length(x, y));
 }
 
 /* The zero vector stays zero. */

@@ -93,7 +93,8 @@ static void a_turn_goes_into_a_gif_or_a_folder(void **state)
 {
     (void)state;
     size_t size, frames = 0;
-    expect(gtx("render sphere.gtx --turntable turn.gif --frames 5 --size 64x64 -o first.png"), 0);
+    expect(gtx("render sphere.gtx --turntable turn.gif --frames 5 --rate 5 --size 64x64 "
+               "-o first.png"), 0);
     char *gif = slurp("turn.gif", &size);
     assert_memory_equal(gif, "GIF89a", 6);
     for (size_t i = 0; i + 3 < size; ++i)

@@ -101,7 +101,7 @@ static Strayed sample(const Surface &from, const Vector<uint8_t> &skipped, const
         Search search = start;
         for (size_t i = n * chunk; i < std::min(count, (n + 1) * chunk); ++i)
             if (skipped.empty() || !skipped[i * step])
-                away[i] = search.distance(from.corners(i * step)[0], 0);
+                away[i] = search.distance(from.corners(i * step)[0], start.free);
     }, 1, 1);
     Strayed out;
     double sum = 0, looked = 0;
@@ -139,7 +139,9 @@ Strayed Bounds::of(const LodLevel &level, double speck) const
     Search back = {source_, tree_, STEEPEST, pitch_, double(level.step) / 2, 0};
     Strayed out = sample(source_, specks, there, task_);
     back.found = std::max(out.most, sample(made, none, back, task_).most);
+    task_.limits.work_again();
     there.found = greatest(made, none, back, task_);
+    task_.limits.work_again();
     back.found = greatest(source_, specks, there, task_);
     out.most = back.most();
     return out;

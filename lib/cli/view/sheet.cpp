@@ -100,14 +100,14 @@ Vector<Still> draw_sheet(const SheetOptions &sheet, const StillOptions &still,
     StillOptions cell = still;
     cell.width = still.width / layout.columns;
     cell.height = still.height / layout.rows;
-    if (std::min(cell.width, cell.height) < LEAST_CELL)
+    const bool single = layout.columns * layout.rows == 1;
+    if (!single && std::min(cell.width, cell.height) < LEAST_CELL)
         throw Error(GTX_ERROR_ARGUMENT, std::to_string(layout.columns) + " x " +
                                             std::to_string(layout.rows) +
                                             " pictures need a larger --size");
     if (uint64_t(still.width) * still.height * sheet.frames > MOST_PIXELS)
         throw Error(GTX_ERROR_LIMIT, std::to_string(sheet.frames) +
                                          " frames are too many of this --size");
-    const bool single = layout.columns * layout.rows == 1;
     Vector<Still> out;
     for (uint32_t f = 0; f < sheet.frames; ++f)
         out.push_back(single ? Still() : empty_frame(still));
