@@ -76,7 +76,8 @@ cxxflags += $(if $(findstring clang,$(shell $(CXX) --version)),-Wshadow,-Wshadow
 # Packages, asked for only where they are used: nothing here is needed to build libgeotex.
 pkg = $(shell pkg-config $(1) $(2))
 cflags_mesh  = $(call pkg,--cflags,openmesh draco tinygltf)
-cflags_chart = $(call pkg,--cflags,openmesh eigen3)
+# Vectors of Eigen would add in another order on another processor.
+cflags_chart = $(call pkg,--cflags,openmesh eigen3) -DEIGEN_DONT_VECTORIZE
 cflags_image = $(call pkg,--cflags,OpenImageIO)
 cflags_grid  = $(if $(gdal),$(call pkg,--cflags,gdal))
 cflags_host  = $(call pkg,--cflags,egl glfw3)

@@ -1,6 +1,9 @@
 /* Draco streams. Damaged ones often decode without complaint, so all of the result is checked. */
 #include "mesh/import/draco.hpp"
 
+#include <draco/attributes/attribute_octahedron_transform.h>
+#include <draco/attributes/attribute_quantization_transform.h>
+#include <draco/compression/attributes/normal_compression_utils.h>
 #include <draco/compression/decode.h>
 #include <draco/mesh/mesh.h>
 
@@ -41,6 +44,43 @@ static bool convert(const draco::PointAttribute &from, draco::AttributeValueInde
     return true;
 }
 
+static draco::AttributeTransformType transform_of(const draco::PointAttribute &from)
+{
+    const draco::AttributeTransformData *data = from.GetAttributeTransformData();
+    return data ? data->transform_type() : draco::ATTRIBUTE_INVALID_TRANSFORM;
+}
+
+/* Whole steps become lengths, and folded squares directions, in floats as Draco does it; but here,
+ * where no processor multiplies and adds at once, so that the bits are the same on all. */
+static void dequantize(const draco::PointAttribute &from, DracoAttribute &to)
+{
+    draco::AttributeQuantizationTransform steps;
+    if (!steps.InitFromAttribute(from) || steps.quantization_bits() < 1 ||
+        steps.quantization_bits() > 30 || steps.min_values().size() < size_t(to.components))
+        fail(GTX_ERROR_INPUT, "Draco attribute %u has no sound quantization", to.id);
+    const float step = steps.range() / float((1u << steps.quantization_bits()) - 1);
+    for (size_t i = 0; i < to.values.size(); ++i)
+        to.values[i] = float(to.values[i]) * step + steps.min_value(int(i % to.components));
+}
+
+static void unfold(const draco::PointAttribute &from, DracoAttribute &to)
+{
+    draco::AttributeOctahedronTransform folds;
+    draco::OctahedronToolBox square;
+    if (!folds.InitFromAttribute(from) || to.components != 2 ||
+        !square.SetQuantizationBits(folds.quantization_bits()))
+        fail(GTX_ERROR_INPUT, "Draco attribute %u has no sound quantization", to.id);
+    Vector<double> directions;
+    for (size_t i = 0; i < to.values.size(); i += 2) {
+        float direction[3];
+        square.QuantizedOctahedralCoordsToUnitVector(int32_t(to.values[i]),
+                                                     int32_t(to.values[i + 1]), direction);
+        directions.insert(directions.end(), direction, direction + 3);
+    }
+    to.values = std::move(directions);
+    to.components = 3;
+}
+
 static DracoAttribute read_attribute(const draco::Mesh &mesh, const draco::PointAttribute &from)
 {
     DracoAttribute to;
@@ -67,6 +107,11 @@ static DracoAttribute read_attribute(const draco::Mesh &mesh, const draco::Point
     }
     if (!sound)
         fail(GTX_ERROR_INPUT, "Draco attribute %u refers to values that are not there", to.id);
+    switch (transform_of(from)) {
+    case draco::ATTRIBUTE_QUANTIZATION_TRANSFORM: dequantize(from, to); break;
+    case draco::ATTRIBUTE_OCTAHEDRON_TRANSFORM: unfold(from, to); break;
+    default: break;
+    }
     return to;
 }
 
@@ -95,6 +140,39 @@ static DracoMesh checked(const draco::Mesh &mesh, bool with_uv, Task &task)
     return out;
 }
 
+/* What may be left as the whole numbers that the stream has. */
+static const draco::GeometryAttribute::Type left[] = {
+    draco::GeometryAttribute::POSITION, draco::GeometryAttribute::NORMAL,
+    draco::GeometryAttribute::TEX_COORD};
+
+static std::unique_ptr<draco::Mesh> decode(std::string_view bytes, bool are_left)
+{
+    draco::DecoderBuffer buffer;
+    buffer.Init(bytes.data(), bytes.size());
+    draco::Decoder decoder;
+    for (size_t i = 0; are_left && i < std::size(left); ++i)
+        decoder.SetSkipAttributeTransform(left[i]);
+    auto mesh = decoder.DecodeMeshFromBuffer(&buffer);
+    if (!mesh.ok() || !mesh.value())
+        fail(GTX_ERROR_INPUT, "the Draco data is damaged: %s",
+             printable(mesh.status().error_msg_string()).c_str());
+    return std::move(mesh).value();
+}
+
+/* Numbers that were whole before they were written had a type of their own, which is lost where
+ * they are left. */
+static bool has_lost_types(const draco::Mesh &mesh)
+{
+    for (int i = 0; i < mesh.num_attributes(); ++i) {
+        const draco::PointAttribute &a = *mesh.attribute(i);
+        if (std::count(std::begin(left), std::end(left), a.attribute_type()) &&
+            transform_of(a) == draco::ATTRIBUTE_INVALID_TRANSFORM &&
+            draco::IsDataTypeIntegral(a.data_type()))
+            return true;
+    }
+    return false;
+}
+
 DracoMesh decode_draco(std::string_view bytes, bool with_uv, Task &task)
 {
     draco::DecoderBuffer buffer;
@@ -109,12 +187,12 @@ DracoMesh decode_draco(std::string_view bytes, bool with_uv, Task &task)
     const uint64_t most = std::max(claims.faces, claims.points / 3);
     task.limits.require(GTX_LIMITED_TRIANGLES, "the Draco data", most);
     TakenMemory taken(size_t(BYTES_PER_FACE * claims.faces + BYTES_PER_POINT * claims.points));
-    draco::Decoder decoder;
-    auto mesh = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!mesh.ok() || !mesh.value())
-        fail(GTX_ERROR_INPUT, "the Draco data is damaged: %s",
-             printable(mesh.status().error_msg_string()).c_str());
-    return checked(*mesh.value(), with_uv, task);
+    std::unique_ptr<draco::Mesh> mesh = decode(bytes, true);
+    if (has_lost_types(*mesh)) {
+        mesh.reset();
+        mesh = decode(bytes, false);
+    }
+    return checked(*mesh, with_uv, task);
 }
 
 Mesh import_draco(const ModelFile &file, Task &task)
