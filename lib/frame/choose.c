@@ -9,12 +9,12 @@
 
 /* The host's costs, or nanoseconds measured with llvmpipe on two cores, in the forward pass of a
  * dragon of 810,080 triangles in 526 patches: cast in fragments, and by tiles. Other passes cost
- * less, but must choose the same to get the same depth. That of a grid: in 24 random views each of
- * that dragon and of a bunny (gtx bench --random 24). At 120 the bunny takes a fifth longer, at
- * 1000 the dragon a quarter; without grids most views take three times as long. */
+ * less, but must choose the same to get the same depth. That of a grid's triangle, found and drawn:
+ * a fit of 36 random views of that dragon and 48 of a bunny (gtx bench --random --methods grid),
+ * off by a tenth in the mean. */
 static const gtx_costs *costs_of(const gtx_draw_call *draw)
 {
-    static const gtx_costs measured[2] = {{100, 25, 15000, 160, 350}, {100, 25, 5500, 75, 350}};
+    static const gtx_costs measured[2] = {{100, 25, 15000, 160, 460}, {100, 25, 5500, 75, 460}};
     const gtx_costs *told = &draw->planner->costs;
     const bool none = told->lod_triangle == 0 && told->lod_pixel == 0 &&
                       told->cast_patch == 0 && told->cast_pixel == 0 &&
@@ -92,12 +92,15 @@ static bool is_casting_cheaper(const gtx_costs *costs, const gtx_model *model, u
     return cheaper;
 }
 
+/* A pixel of a grid beside one of an LOD mesh, of the same fit: most are lit at corners. */
+static const double grid_pixel = 0.25;
+
 double gtx_grid_cost(const gtx_draw_call *draw, uint32_t triangles, double pixels)
 {
     const gtx_costs *costs = costs_of(draw);
     const double triangle =
         costs->grid_triangle > 0 ? costs->grid_triangle : 2 * costs->lod_triangle;
-    return triangle * triangles + costs->lod_pixel * pixels;
+    return triangle * triangles + grid_pixel * costs->lod_pixel * pixels;
 }
 
 double gtx_cast_cost(const gtx_draw_call *draw, uint32_t patches, double pixels)

@@ -20,7 +20,7 @@ enum { GTX_GRID_MAPPED = 1, GTX_GRID_TRIMMED = 2, GTX_GRID_BEHIND = 4, GTX_GRID_
 
 /* What is drawn of one instance: vertices, and corners of triangles by their looks. */
 typedef struct gtx_grids {
-    gtx_scratch vertices, indices[GTX_GRID_LOOKS], slots;
+    gtx_scratch vertices, indices[GTX_GRID_LOOKS], slots, covers;
     uint32_t vertex_count, index_count[GTX_GRID_LOOKS];
     gtx_rtin_triangle triangles[GTX_RTIN_TRIANGLES];
     uint64_t drawn;           /* triangles so far: tests look at them */
