@@ -163,6 +163,37 @@ static void only_what_may_be_seen(void **state)
     subject_close(s, &shown);
 }
 
+/* What a grid's triangle takes decides between grids and rays. A grid beside what is cast hides
+ * nothing from rays: rather than a few grids there are none. */
+static void few_grids_are_none(void **state)
+{
+    STAGE_OR_SKIP(state);
+    gtx_planner *planner = &s->renderer->planner;
+    const gtx_costs usual = planner->costs;
+    subject shown = subject_open(s, fixture_sphere(radius, TEXELS, 8));
+    for (int way = 0; way < 3; ++way) {
+        gtx_view view = view_from(shown.asset, 29 * (float)way, 25, 3);
+        by_tiles(&view);
+        uint32_t cast[96], count = 0, changed = 0;
+        for (float triangle = 1e-3f; triangle < 1e6f; triangle *= 1.25f) {
+            planner->costs = (gtx_costs){100, 25, 5500, 75, triangle};
+            draw(s, &view, GTX_METHOD_AUTO, &shown.instance, 1, &first);
+            cast[count] = planner->plan.count;
+            changed += count && cast[count] != cast[count - 1];
+            assert_true(!count || cast[count] >= cast[count - 1]);
+            ++count;
+        }
+        const uint32_t all = cast[count - 1];
+        for (uint32_t i = 0; i < count; ++i)
+            if (cast[i] < all && 4 * cast[i] > 3 * all)
+                fail_msg("view %d: %u of %u patches are cast, the others grids", way, cast[i], all);
+        assert_true(changed > 0);
+        assert_true(all >= 3);
+    }
+    planner->costs = usual;
+    subject_close(s, &shown);
+}
+
 /* Near patches by height fields, far ones by LOD meshes of several levels. */
 static void ways_meet_without_a_hole(void **state)
 {
@@ -228,6 +259,7 @@ int main(void)
         cmocka_unit_test(passes_agree),
         cmocka_unit_test(coarser_keeps_the_error),
         cmocka_unit_test(only_what_may_be_seen),
+        cmocka_unit_test(few_grids_are_none),
         cmocka_unit_test(ways_meet_without_a_hole),
         cmocka_unit_test(two_sided_patches_take_few_triangles),
     };
