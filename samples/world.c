@@ -4,7 +4,8 @@
  *
  * DIR is what `gtx world` makes. A stream says what to read, beginnings of files first, to upload
  * and to draw; a thread reads, opens and prepares; rays over what is there find the ground. Without
- * a window a whole way around is walked; the picture is its last frame, and its cost is told. */
+ * a window a whole way around is walked, in pictures of twice WxH; its last is kept at WxH, and its
+ * cost is told. */
 #include "host/sample.h"
 #include "host/worker.h"
 
@@ -12,6 +13,8 @@
 
 #include "world_tile.h"
 #include "world_walk.h"
+
+enum { SAMPLES = 2 };             /* a side of a pixel, without a window */
 
 typedef struct world {
     int still;                    /* no window */
@@ -66,7 +69,7 @@ static void exchange(world *w, const gtx_stream_frame *frame, int wait)
 static gtx_result step(world *w, const gtx_host_gl *gl, int walks, gtx_stream_frame *frame,
                        gtx_error *error)
 {
-    const uint32_t samples = w->still ? 2 : 1; /* a side of a pixel */
+    const uint32_t samples = w->still ? SAMPLES : 1;
     gtx_view view = {.light_direction = {0.8f, 0.4f, 0.3f},
                      .viewport_width = samples * (uint32_t)w->show.width,
                      .viewport_height = samples * (uint32_t)w->show.height};
@@ -119,7 +122,8 @@ static gtx_result draw(const gtx_host_gl *gl, const float view[16], const float 
         exchange(w, &frame, 1);
     }
     if (w->still && !result)
-        walk_print(&record);
+        walk_print(&record, SAMPLES * (uint32_t)w->show.width,
+                   SAMPLES * (uint32_t)w->show.height);
     return result;
 }
 

@@ -90,13 +90,15 @@ static inline int walk_compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static inline void walk_print(walk_record *r)
+/* Of pictures of so many pixels. */
+static inline void walk_print(walk_record *r, uint32_t width, uint32_t height)
 {
     qsort(r->ms, FRAMES_AROUND, sizeof *r->ms, walk_compare);
-    printf("%d frames, %.1f ms in the median, %.1f at most in nine of ten; %.1f tiles a frame\n"
+    printf("%d frames of %u x %u, %.1f ms in the median, %.1f at most in nine of ten; %.1f tiles "
+           "a frame\n"
            "%.1f MB on the CPU and %.1f MB on the GPU at most; %.2f MB read before the first "
            "picture, %.1f in all\n%llu beginnings and rests of tiles read, %llu dropped\n",
-           FRAMES_AROUND, r->ms[FRAMES_AROUND / 2], r->ms[FRAMES_AROUND * 9 / 10],
+           FRAMES_AROUND, width, height, r->ms[FRAMES_AROUND / 2], r->ms[FRAMES_AROUND * 9 / 10],
            (double)r->draws / FRAMES_AROUND, (double)r->cpu / 1e6, (double)r->gpu / 1e6,
            (double)r->first / 1e6, (double)r->read / 1e6, (unsigned long long)r->requested,
            (unsigned long long)r->released);
