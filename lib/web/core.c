@@ -122,18 +122,21 @@ WEB_API void gtxw_close(gtx_asset *asset)
     gtx_close(asset);
 }
 
-/* In the order that geotex.js names them in. Valid until the next call. */
+/* In the order that inside.js names them in. Valid until the next call. */
 WEB_API const double *gtxw_info(const gtx_asset *asset)
 {
-    static double out[22];
+    static double out[23];
     gtx_info i;
+    gtx_lod_mesh finest = {0};
     gtx_get_info(asset, &i);
+    if (i.lod_levels)
+        gtx_get_lod_mesh(asset, 0, &finest);
     const double numbers[] = {
         i.patch_count, i.page_count, i.page_width, i.page_height, i.mip_count, i.height_bits,
         i.has_color, i.has_material, i.has_emission, i.lod_levels, (double)i.source_triangles,
         (double)i.unit, (double)i.bounds_min[0], (double)i.bounds_min[1], (double)i.bounds_min[2],
         (double)i.bounds_max[0], (double)i.bounds_max[1], (double)i.bounds_max[2], i.anchor[0],
-        i.anchor[1], i.anchor[2], (double)i.file_size};
+        i.anchor[1], i.anchor[2], (double)i.file_size, (double)finest.error};
     _Static_assert(sizeof numbers == sizeof out, "one place each");
     memcpy(out, numbers, sizeof out);
     return out;
@@ -170,18 +173,13 @@ WEB_API const float *gtxw_raycast(const gtx_caster *caster, const gtx_asset *ass
 
 /* ---- models ---- */
 
+/* Maps are the asset's, which stays until all is sent: gtxw_model_sent. */
 WEB_API gtx_model *gtxw_model_prepare(const gtx_asset *asset)
 {
+    const gtx_model_desc desc = {.borrow = 1};
     gtx_model *model = NULL;
-    gtx_model_prepare(asset, NULL, &model, begin());
+    gtx_model_prepare(asset, &desc, &model, begin());
     return model;
-}
-
-/* 1 once all is there, 0 while it is not, -1 for an error. */
-WEB_API int gtxw_model_upload(gtx_renderer *renderer, gtx_model *model, uint32_t max_bytes)
-{
-    uint32_t done = 0;
-    return gtx_model_upload(renderer, model, max_bytes, &done, begin()) ? -1 : (int)done;
 }
 
 WEB_API void gtxw_model_destroy(gtx_renderer *renderer, gtx_model *model)

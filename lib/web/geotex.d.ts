@@ -43,6 +43,8 @@ export class Asset {
   readonly anchor: number[];
   /** Bytes that were opened: of a beginning fewer than the file has. */
   readonly fileBytes: number;
+  /** Of the finest LOD mesh, object units: how far it is from the surface. */
+  readonly lodError: number;
   /** The nearest hit, on the CPU; null where nothing is hit. */
   raycast(origin: Numbers, direction: Numbers,
           options?: {near?: number, far?: number, twoSided?: boolean}): Hit | null;
@@ -108,6 +110,12 @@ export class Geotex {
   openPrefix(bytes: ArrayBuffer | ArrayBufferView):
       {asset: Asset | null, needed: number, fileBytes: number};
   model(asset: Asset): Model;
+  /** Opened and prepared by a worker, where the page may have one: no long task here. The bytes are
+   * kept as they are, for rays and for a lost context: the first of either opens them here, too. With
+   * `prefix` the bytes are a file's first, as openPrefix has them. */
+  load(bytes: ArrayBuffer | ArrayBufferView, prefix?: false): Promise<{asset: Asset, model: Model}>;
+  load(bytes: ArrayBuffer | ArrayBufferView, prefix: true):
+      Promise<{asset: Asset | null, model: Model | null, needed: number, fileBytes: number}>;
   shading(text: string): Shading;
   draw(view: View, instances: Instance[]): void;
   dispose(): void;

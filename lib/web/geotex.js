@@ -8,95 +8,30 @@
  * Every draw writes true depth from the page's own matrices, and leaves WebGL's state as it was.
  * Types and units are in geotex.d.ts. */
 import createCore from './core.js';
+import {failure, GeotexError, infoOf, openPrefix, resourcesOf, withBytes} from './inside.js';
+import {State} from './state.js';
+import {Upload} from './upload.js';
+import {Workshop} from './workshop.js';
+
+export {GeotexError};
 
 export const Method = Object.freeze({AUTO: 0, CAST: 1, PAPER: 2, LOD: 3, GRID: 4});
 export const Pass = Object.freeze({FORWARD: 0, DEPTH: 1, ID: 2, GBUFFER: 3});
 
-/* As gtx_result; 0 is no error. */
-const RESULTS = {
-  10: 'argument', 11: 'not-zeroed', 20: 'memory', 21: 'limit', 30: 'read', 40: 'not-gtx',
-  41: 'version', 42: 'truncated', 43: 'corrupt', 45: 'unsupported', 80: 'gl', 81: 'shader', 99: 'internal'};
-
-export class GeotexError extends Error {
-  constructor(result, message) {
-    super(message);
-    this.name = 'GeotexError';
-    this.result = result;
-    this.kind = RESULTS[result] ?? 'other';
-  }
-}
-
-/* The state of WebGL 2 that geotex touches. Kept here and not in the core, which knows of objects
- * only by the numbers that its glue gave them. */
-const TEXTURE_UNITS = 8;
-class State {
-  constructor(gl) {
-    const get = (name) => gl.getParameter(name);
-    this.program = get(gl.CURRENT_PROGRAM);
-    this.array = get(gl.VERTEX_ARRAY_BINDING);
-    this.buffer = get(gl.ARRAY_BUFFER_BINDING);
-    this.pixels = get(gl.PIXEL_UNPACK_BUFFER_BINDING);
-    this.unit = get(gl.ACTIVE_TEXTURE);
-    this.units = [];
-    for (let i = 0; i < TEXTURE_UNITS; ++i) {
-      gl.activeTexture(gl.TEXTURE0 + i);
-      this.units.push([get(gl.TEXTURE_BINDING_2D), get(gl.TEXTURE_BINDING_2D_ARRAY),
-                       get(gl.SAMPLER_BINDING)]);
-    }
-    this.enabled = [gl.DEPTH_TEST, gl.CULL_FACE, gl.BLEND].map((name) => [name, gl.isEnabled(name)]);
-    this.depthFunc = get(gl.DEPTH_FUNC);
-    this.depthMask = get(gl.DEPTH_WRITEMASK);
-    this.cullFace = get(gl.CULL_FACE_MODE);
-    this.frontFace = get(gl.FRONT_FACE);
-    this.colorMask = get(gl.COLOR_WRITEMASK);
-    this.unpack = ['ALIGNMENT', 'ROW_LENGTH', 'SKIP_ROWS', 'SKIP_PIXELS', 'SKIP_IMAGES',
-                   'IMAGE_HEIGHT', 'FLIP_Y_WEBGL', 'PREMULTIPLY_ALPHA_WEBGL']
-        .map((name) => gl['UNPACK_' + name]).map((name) => [name, get(name)]);
-    gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
-    gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
-  }
-
-  restore(gl) {
-    gl.useProgram(this.program);
-    gl.bindVertexArray(this.array);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-    gl.bindBuffer(gl.PIXEL_UNPACK_BUFFER, this.pixels);
-    this.units.forEach(([plain, array, sampler], i) => {
-      gl.activeTexture(gl.TEXTURE0 + i);
-      gl.bindTexture(gl.TEXTURE_2D, plain);
-      gl.bindTexture(gl.TEXTURE_2D_ARRAY, array);
-      gl.bindSampler(i, sampler);
-    });
-    gl.activeTexture(this.unit);
-    for (const [name, on] of this.enabled)
-      on ? gl.enable(name) : gl.disable(name);
-    gl.depthFunc(this.depthFunc);
-    gl.depthMask(this.depthMask);
-    gl.cullFace(this.cullFace);
-    gl.frontFace(this.frontFace);
-    gl.colorMask(...this.colorMask);
-    for (const [name, value] of this.unpack)
-      gl.pixelStorei(name, value);
-  }
-}
-
-/* An opened `.gtx`: what it says, and rays into it on the CPU. */
+/* An opened `.gtx`: what it says, and rays into it on the CPU. One that a worker has opened is opened
+ * here too once that is needed: by a ray, or after a lost context. */
 export class Asset {
-  #geotex; #handle; #caster = 0;
+  #geotex; #open; #handle; #caster = 0;
 
-  constructor(geotex, handle) {
+  constructor(geotex, info, handle, open = null) {
     this.#geotex = geotex;
     this.#handle = handle;
-    const core = geotex.core, at = core._gtxw_info(handle) / 8;
-    const n = core.HEAPF64.slice(at, at + 22);
-    Object.assign(this, {
-      patchCount: n[0], pageCount: n[1], pageWidth: n[2], pageHeight: n[3], mipCount: n[4],
-      heightBits: n[5], hasColor: !!n[6], hasMaterial: !!n[7], hasEmission: !!n[8],
-      lodLevels: n[9], sourceTriangles: n[10], unit: n[11], min: [...n.slice(12, 15)],
-      max: [...n.slice(15, 18)], anchor: [...n.slice(18, 21)], fileBytes: n[21]});
+    this.#open = open;
+    Object.assign(this, info);
   }
 
   get handle() {
+    this.#handle ||= this.#open?.() ?? 0;
     if (!this.#handle)
       throw new GeotexError(10, 'the asset has been disposed');
     return this.#handle;
@@ -115,25 +50,32 @@ export class Asset {
   }
 
   dispose() {
-    if (!this.#handle)
-      return;
-    this.#geotex.core._gtxw_caster_destroy(this.#caster);
-    this.#geotex.core._gtxw_close(this.#handle);
+    if (this.#handle) {
+      this.#geotex.core._gtxw_caster_destroy(this.#caster);
+      this.#geotex.core._gtxw_close(this.#handle);
+    }
     this.#handle = this.#caster = 0;
+    this.#open = null;
   }
 }
 
 /* An asset on the GPU. It keeps the asset, from which it comes back after a lost context. */
 export class Model {
-  constructor(geotex, asset) {
+  #upload = null;
+
+  /* `made`: what a worker has prepared, if it has. */
+  constructor(geotex, asset, made = null) {
     Object.assign(this, {geotex, asset, handle: 0, ready: false});
-    this.prepare();
+    this.prepare(made);
   }
 
-  prepare() {
+  prepare(made) {
+    const {geotex, asset} = this, {core} = geotex;
     this.ready = false;
-    this.handle = this.geotex.must(this.geotex.core._gtxw_model_prepare(this.asset.handle));
-    this.gpuBytes = this.geotex.core._gtxw_model_gpu_bytes(this.handle);
+    this.handle = geotex.must(made ? withBytes(core, made.plan, core._gtxw_model_unpack)
+                                   : core._gtxw_model_prepare(asset.handle));
+    this.resources = made ? made.resources : resourcesOf(core, this.handle);
+    this.gpuBytes = core._gtxw_model_gpu_bytes(this.handle);
   }
 
   /* Sends up to maxBytes, 0 for all. Returns whether that was the rest. */
@@ -141,23 +83,36 @@ export class Model {
     const g = this.geotex;
     if (!this.handle)
       this.prepare();
-    if (!this.ready) {
-      const done = g.around(() => g.core._gtxw_model_upload(g.renderer, this.handle, maxBytes));
-      if (done < 0)
-        g.must(0);
-      this.ready = done === 1;
-    }
+    if (!this.ready && !g.gl.isContextLost())
+      g.around(() => {
+        this.#upload ??= new Upload(g, this.resources);
+        if (this.#upload.send(maxBytes || Infinity))
+          this.sent();
+      });
     return this.ready;
+  }
+
+  sent() {
+    const {core} = this.geotex;
+    this.geotex.withNumbers([], (_, names) => core._gtxw_model_sent(this.handle, names),
+                            this.#upload.names);
+    this.#upload = this.resources = null;
+    this.ready = true;
+  }
+
+  /* Frees the core's side, and what is on the GPU. */
+  forget() {
+    this.#upload?.stop();
+    this.#upload = this.resources = null;
+    this.geotex.core._gtxw_model_destroy(this.geotex.renderer, this.handle);
+    this.handle = 0;
+    this.ready = false;
   }
 
   dispose() {
     this.geotex.models.delete(this);
-    if (!this.handle)
-      return;
-    this.geotex.around(() => this.geotex.core._gtxw_model_destroy(this.geotex.renderer,
-                                                                  this.handle));
-    this.handle = 0;
-    this.ready = false;
+    if (this.handle)
+      this.geotex.around(() => this.forget());
   }
 }
 
@@ -217,13 +172,15 @@ export class Geotex {
   static async create(gl, {wasm, log = () => {}} = {}) {
     if (typeof WebGL2RenderingContext === 'undefined' || !(gl instanceof WebGL2RenderingContext))
       throw new GeotexError(80, 'geotex needs a WebGL 2 context');
-    const core = await createCore({
-      locateFile: (name) => wasm ?? new URL('./' + name, import.meta.url).href, onLog: log});
-    return new Geotex(gl, core);
+    const place = new URL(wasm ?? new URL('./core.wasm', import.meta.url), document.baseURI).href;
+    const workshop = new Workshop(place);
+    const core = await createCore({locateFile: () => place, onLog: log});
+    return new Geotex(gl, core, workshop);
   }
 
-  constructor(gl, core) {
-    Object.assign(this, {gl, core, models: new Set(), shadings: new Set(), numbers: 0, room: 0});
+  constructor(gl, core, workshop) {
+    Object.assign(this, {gl, core, workshop, models: new Set(), shadings: new Set(), numbers: 0,
+                         room: 0});
     this.begin();
     this.lost = (event) => { event.preventDefault(); this.forget(); };
     this.restored = () => this.begin();
@@ -242,11 +199,8 @@ export class Geotex {
   /* The context took its objects with it: the core frees its side of them. */
   forget() {
     this.around(() => {
-      for (const model of this.models) {
-        this.core._gtxw_model_destroy(this.renderer, model.handle);
-        model.handle = 0;
-        model.ready = false;
-      }
+      for (const model of this.models)
+        model.forget();
       for (const shading of this.shadings)
         this.core._gtxw_shading_destroy(this.renderer, shading.handle);
       this.core._gtxw_renderer_destroy(this.renderer);
@@ -258,8 +212,7 @@ export class Geotex {
   /* Throws what the last call failed by, unless it gave something. */
   must(given) {
     if (!given)
-      throw new GeotexError(this.core._gtxw_result(),
-                            this.core.UTF8ToString(this.core._gtxw_message()));
+      throw failure(this.core);
     return given;
   }
 
@@ -294,36 +247,35 @@ export class Geotex {
   }
 
   open(bytes) {
-    return new Asset(this, this.must(this.withBytes(bytes, this.core._gtxw_open)));
+    const handle = this.must(withBytes(this.core, bytes, this.core._gtxw_open));
+    return new Asset(this, infoOf(this.core, handle), handle);
   }
 
   /* The first bytes of a file: an asset of what is there, or null, and what to wait for. */
   openPrefix(bytes) {
-    const {core} = this;
-    return this.withNumbers([0, 0, 0, 0], (told) => {
-      const handle = this.withBytes(bytes, (at, size) => core._gtxw_open_prefix(at, size, told));
-      const [needed, fileBytes] = core.HEAPF64.slice(told / 8, told / 8 + 2);
-      if (!handle && core._gtxw_result())
-        this.must(0);
-      return {asset: handle ? new Asset(this, handle) : null, needed, fileBytes};
-    });
+    const {handle, ...told} = openPrefix(this.core, bytes);
+    return {asset: handle ? new Asset(this, infoOf(this.core, handle), handle) : null, ...told};
   }
 
-  withBytes(bytes, call) {
-    const from = bytes instanceof ArrayBuffer ? new Uint8Array(bytes)
-        : new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-    const pointer = this.core._malloc(from.length || 1);
-    if (!pointer)
-      throw new GeotexError(20, 'no memory for ' + from.length + ' bytes');
-    this.core.HEAPU8.set(from, pointer);
-    const given = call(pointer, from.length);
-    this.core._free(pointer);
-    return given;
+  /* The model of a file's bytes, which stay as they are; or of the first of them, as openPrefix has
+   * it. Opened and prepared by a worker, where there can be one. */
+  async load(bytes, prefix = false) {
+    const made = await this.workshop.prepare(bytes, prefix);
+    if (this.closed)
+      throw new GeotexError(10, 'geotex has been disposed');
+    if (!made) {
+      const told = prefix ? this.openPrefix(bytes) : {asset: this.open(bytes)};
+      return {model: told.asset && this.model(told.asset), ...told};
+    }
+    const open = () => prefix ? openPrefix(this.core, bytes).handle
+                              : withBytes(this.core, bytes, this.core._gtxw_open);
+    const asset = made.info && new Asset(this, made.info, 0, open);
+    return {...made.told, asset, model: asset && this.model(asset, made)};
   }
 
   /* Uploaded by the first draw, or before it in slices by upload(). */
-  model(asset) {
-    const model = new Model(this, asset);
+  model(asset, made) {
+    const model = new Model(this, asset, made);
     this.models.add(model);
     return model;
   }
@@ -363,7 +315,9 @@ export class Geotex {
     this.around(() => this.core._gtxw_renderer_destroy(this.renderer));
     this.core.GL.deleteContext(this.context);
     this.core._free(this.numbers);
+    this.workshop.close();
     this.renderer = this.numbers = this.room = 0;
+    this.closed = true;
   }
 }
 

@@ -1,7 +1,12 @@
-import type {Asset, Geotex} from './geotex.js';
+import type {Geotex, Model} from './geotex.js';
 
-/** Assets of a download's first bytes, coarse, then finer; the last is the file's, or an error is
- * thrown. Each is the caller's to dispose. `of` is 0 while the file's size is unknown. */
-export function assetsOf(geotex: Geotex, response: Response,
-                         onProgress?: (bytes: number, of: number) => void):
-    AsyncGenerator<Asset, void, void>;
+/** Models of a download's first bytes, coarse, then finer; the last is the file's, or an error is
+ * thrown. Each, and its asset, is the caller's to dispose. `ask` sends a request with the headers. */
+export function modelsOf(geotex: Geotex, ask: (headers: Record<string, string>) => Promise<Response>,
+                         options?: {
+  /** `of` is 0 while the file's size is unknown. */
+  onProgress?: (bytes: number, of: number) => void,
+  /** Whether something finer than `model` is wanted, or a promise to be asked again: until then
+   * nothing is read, where the server grants ranges (206). Without it: always. */
+  wanted?: (model: Model) => true | PromiseLike<unknown>,
+}): AsyncGenerator<Model, void, void>;

@@ -9,7 +9,7 @@ import {AmbientLight, Box3, BufferAttribute, BufferGeometry, ColorManagement, Di
         FileLoader, HemisphereLight, Loader, Matrix3, Matrix4, Mesh, MeshBasicMaterial,
         NoToneMapping, Ray, ShaderChunk, SRGBColorSpace, Vector3, Vector4} from 'three';
 import {Geotex, Method, Pass} from './geotex.js';
-import {assetsOf} from './load.js';
+import {modelsOf} from './load.js';
 
 const MOST_LIGHTS = 4, FIRST_UNIT = 8; /* units below are geotex's */
 const SLICE = 1 << 20;                 /* bytes sent at once: 2 ms in software; at double, 4 */
@@ -212,33 +212,36 @@ class Content {
   whole = false;
   complete = Promise.resolve();
 
-  constructor(geotex, asset) {
-    Object.assign(this, {geotex, asset, model: geotex.model(asset)});
+  constructor(geotex, model) {
+    Object.assign(this, {geotex, model});
+  }
+
+  get asset() {
+    return this.model.asset;
   }
 
   /* All that a download still brings. */
-  async follow(assets) {
-    for await (const asset of assets)
-      await this.replace(asset);
+  async follow(models) {
+    for await (const model of models)
+      await this.replace(model);
     this.whole = true;
   }
 
-  /* Sent in slices, so that no frame waits for it; until all is there the old ones are drawn. */
-  async replace(asset) {
-    let model = this.geotex.model(asset);
+  /* Sent in slices, so that no frame waits for it; until all is there the old one is drawn. */
+  async replace(model) {
     while (!this.disposed && !this.geotex.gl.isContextLost() && !model.upload(SLICE))
       await new Promise((next) => setTimeout(next));
     if (!this.disposed)
-      [this.asset, this.model, asset, model] = [asset, model, this.asset, this.model];
+      [this.model, model] = [model, this.model];
     model.dispose();
-    asset.dispose();
+    model.asset.dispose();
   }
 
   dispose() {
     this.disposed = true;
     this.stop?.();
-    this.model.dispose();
     this.asset.dispose();
+    this.model.dispose();
   }
 }
 
@@ -334,7 +337,7 @@ export class GeotexLoader extends Loader {
 
   async parseAsync(bytes) {
     const bridge = await Bridge.of(this.renderer, this.options);
-    const content = new Content(bridge.geotex, bridge.geotex.open(bytes));
+    const content = new Content(bridge.geotex, (await bridge.geotex.load(bytes)).model);
     content.whole = true;
     return new GeotexModel(bridge, content);
   }
@@ -351,15 +354,14 @@ export class GeotexLoader extends Loader {
     signal?.addEventListener('abort', () => stop.abort(signal.reason));
     manager.itemStart(url);
     try {
-      const [response, bridge] = await Promise.all([
-        fetch(manager.resolveURL(this.path + url), {
-          headers: this.requestHeader, signal: stop.signal,
-          credentials: this.withCredentials ? 'include' : 'same-origin'}),
-        Bridge.of(this.renderer, this.options)]);
-      const assets = assetsOf(bridge.geotex, response, onProgress);
-      const content = new Content(bridge.geotex, (await assets.next()).value);
+      const bridge = await Bridge.of(this.renderer, this.options);
+      bridge.geotex.workshop.start();
+      const models = modelsOf(bridge.geotex, (headers) => fetch(manager.resolveURL(this.path + url), {
+        headers: {...this.requestHeader, ...headers}, signal: stop.signal,
+        credentials: this.withCredentials ? 'include' : 'same-origin'}), {onProgress});
+      const content = new Content(bridge.geotex, (await models.next()).value);
       content.stop = () => stop.abort();
-      content.complete = content.follow(assets).then(() => manager.itemEnd(url),
+      content.complete = content.follow(models).then(() => manager.itemEnd(url),
                                                      (error) => content.disposed ? manager.itemEnd(url) : failed(error));
       content.complete.catch(() => {});
       return new GeotexModel(bridge, content);

@@ -22,15 +22,19 @@ $(web)/zstd/.fetched:
 	  $(apt_source) update && $(apt_source) source --download-only libzstd && \
 	  tar xf libzstd_*.orig.tar.xz --strip-components=1 && touch .fetched
 
-$(web)/zstd.o: $(web)/zstd/.fetched
+$(web)/zstd.o: $(web)/zstd/.fetched lib/web/web.mk
 	$(say) EMCC $@
-	$(Q)$(emcc) -O3 -DZSTD_DISABLE_ASM=1 -DDEBUGLEVEL=0 -DZSTD_STRIP_ERROR_STRINGS \
+	$(Q)$(emcc) -O2 -DZSTD_DISABLE_ASM=1 -DDEBUGLEVEL=0 -DZSTD_STRIP_ERROR_STRINGS \
+	  -DHUF_FORCE_DECOMPRESS_X1 -DZSTD_FORCE_DECOMPRESS_SEQUENCES_SHORT -DZSTD_NO_INLINE \
 	  -I$(zstd_dir) -I$(zstd_dir)/common -r -o $@ $(zstd_dir)/common/entropy_common.c \
 	  $(addprefix $(zstd_dir)/common/,error_private.c fse_decompress.c xxhash.c zstd_common.c) \
 	  $(addprefix $(zstd_dir)/decompress/,huf_decompress.c zstd_ddict.c zstd_decompress.c \
 	    zstd_decompress_block.c)
 
-$(web)/shader_sources.o: $(out)/gen/shader_sources.c
+$(web)/shader_sources.c: $(shaders) lib/web/shaders.mjs
+	@mkdir -p $(@D)
+	$(Q)node lib/web/shaders.mjs $(shaders) > $@
+$(web)/shader_sources.o: $(web)/shader_sources.c
 	$(Q)$(emcc) $(web_flags) -c $< -o $@
 $(web)/%.o: %.c $(web)/zstd/.fetched
 	@mkdir -p $(@D)
@@ -43,7 +47,8 @@ $(web)/core.a: $(web_objects)
 comma := ,
 space := $() $()
 web_methods := GL HEAPU8 HEAPU32 HEAPF32 HEAPF64 UTF8ToString stringToUTF8 lengthBytesUTF8
-$(web_package)/core.js: $(web)/lib/web/core.o $(web)/core.a $(web)/zstd.o
+web_faces := $(patsubst %.c,$(web)/%.o,$(wildcard lib/web/*.c))
+$(web_package)/core.js: $(web_faces) $(web)/core.a $(web)/zstd.o
 	@mkdir -p $(@D)
 	$(say) LINK $@
 	$(Q)$(emcc) -O3 --closure 0 -o $@ $^ --no-entry \
@@ -60,10 +65,11 @@ $(web_package)/LICENSE: LICENSE
 	@mkdir -p $(@D)
 	$(Q)cp $< $@
 
-web_files := core.js geotex.js geotex.d.ts three.js three.d.ts load.js load.d.ts package.json \
-             README.md LICENSE
+web_glue := geotex.js inside.js load.js state.js upload.js worker.js workshop.js
+web_files := core.js $(web_glue) three.js geotex.d.ts load.d.ts three.d.ts package.json README.md \
+             LICENSE
 web: $(web_files:%=$(web_package)/%) ## the npm package geotex, as WebAssembly (needs emscripten)
-	@cd $(web_package) && echo "$$PWD: $$(cat core.wasm core.js geotex.js load.js | gzip -9 | wc -c)" \
+	@cd $(web_package) && echo "$$PWD: $$(cat core.wasm core.js $(web_glue) | gzip -9 | wc -c)" \
 	  "bytes of core and glue, gzipped"
 
 # A project as a page's author has it: installs the package, checks its types, is built by Vite.

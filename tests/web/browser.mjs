@@ -13,7 +13,8 @@ const modules = join(app, 'node_modules'), here = dirname(fileURLToPath(import.m
 const {page, address, close} = await open(modules, {
   modules, tests: here, app: join(app, 'dist'), asset: dirname(asset),
   samples: join(here, '../../samples/web')});
-let failed = 0;
+let failed = 0, workers = 0;
+page.on('workercreated', () => ++workers);
 try {
   await mkdir(pictures, {recursive: true});
   page.on('console', (message) => console.log('# ' + message.text()));
@@ -30,10 +31,11 @@ try {
     if (picture)
       await writeFile(join(pictures, name + '.png'), Buffer.from(picture.split(',')[1], 'base64'));
   }
+  workers = 0;
   await page.goto(`${address}/app/index.html?asset=/asset/${basename(asset)}`);
   await page.waitForFunction('document.title !== "loading"', {timeout: 60000});
   const title = await page.title();
-  tell('a_bundler_takes_the_package', title === 'drawn' ? '' : title);
+  tell('a_bundler_takes_the_package', title === 'drawn' && workers ? '' : `${title}, ${workers} workers`);
   await page.goto(`${address}/samples/viewer.html?asset=/asset/${basename(asset)}`);
   await page.waitForFunction('document.title === "shown"', {timeout: 60000})
       .then(() => new Promise((seen) => setTimeout(seen, 1000)))

@@ -139,7 +139,7 @@ const checks = {
 
   async a_lost_context_comes_back() {
     const gl = context(), geotex = await Geotex.create(gl);
-    const asset = geotex.open(bytes), model = geotex.model(asset);
+    const {asset, model} = await geotex.load(bytes);
     clear(gl);
     geotex.draw(viewOf(asset), [{model}]);
     const before = read(gl), lose = gl.getExtension('WEBGL_lose_context');
@@ -172,6 +172,39 @@ const checks = {
     expect(sizes[49] === sizes[1], `${sizes[1]} bytes have become ${sizes[49]}`);
     expect(geotex.core.GL.buffers.filter(Boolean).length < 20 &&
            geotex.core.GL.textures.filter(Boolean).length < 20, 'objects of WebGL are left');
+    geotex.dispose();
+  },
+
+  async a_worker_opens_and_prepares() {
+    const gl = context(), geotex = await Geotex.create(gl), {core} = geotex;
+    const pictures = [], calls = [];
+    for (const name of ['_gtxw_open', '_gtxw_open_prefix', '_gtxw_model_prepare']) {
+      const call = core[name];
+      core[name] = (...all) => {
+        calls.push(name);
+        return call(...all);
+      };
+    }
+    for (const there of [true, false]) {
+      const {asset, model} = await geotex.load(bytes);
+      const part = await geotex.load(bytes.slice(0, 100000), true);
+      expect(part.model && part.needed > 100000 && part.fileBytes === bytes.byteLength, 'no prefix');
+      expect(!calls.length === there, `here: ${calls}`);
+      for (const m of [model, part.model]) {
+        clear(gl);
+        geotex.draw(viewOf(asset), [{model: m}]);
+        pictures.push(read(gl));
+      }
+      expect(!calls.length === there, `to draw: ${calls}`);
+      expect(asset.raycast(cameraOf(asset).position.toArray(), cameraOf(asset).getWorldDirection(
+        new THREE.Vector3()).toArray()), 'a ray meets nothing');
+      const why = await geotex.load(new Uint8Array(100)).then(() => null, (error) => error);
+      expect(why instanceof GeotexError && why.kind === 'not-gtx', `${why?.kind}: ${why?.message}`);
+      geotex.workshop.close();
+    }
+    expect(covered(pictures[0]) > WIDTH * HEIGHT / 10, 'nothing is drawn');
+    expect(apart(pictures[0], pictures[2], 0) + apart(pictures[1], pictures[3], 0) === 0,
+           'a worker makes something else');
     geotex.dispose();
   },
 
