@@ -28,7 +28,7 @@ class Gathered {
   }
 }
 
-/* A file that is being read, from its beginning or, where the server grants ranges, from a byte on. */
+/* A file that is being read: from its beginning, or from a byte on where the server grants ranges. */
 class Source {
   static async open(ask, before, first = 0) {
     const headers = {Range: `bytes=${first}-`};
@@ -95,7 +95,7 @@ export async function* modelsOf(geotex, ask, {onProgress = () => {}, wanted = ()
         continue;
       source.stop();
       while (fine !== true)
-        fine = await fine;
+        await fine, fine = wanted(model);
       source = await Source.open(ask, source, gathered.length);
       if (source.begins)
         gathered.length = 0;

@@ -107,8 +107,8 @@ WEB_API gtx_model *gtxw_model_unpack(uint8_t *bytes)
 
 enum { OF_A_TEXTURE = 7 + GTX_MAX_TEXTURE_LEVELS };
 
-/* Of each texture its format, texel size, width, height, layers, levels, whether it is an array, and
- * where its levels lie; then of each buffer where it lies, and its bytes. Valid until the next
+/* Of each texture its format, texel size, width, height, layers, levels, whether it is an array,
+ * and where its levels lie; then of each buffer where it lies, and its bytes. Valid until the next
  * call. */
 WEB_API const uint32_t *gtxw_model_resources(const gtx_model *model)
 {

@@ -8,7 +8,8 @@ export {Method} from './geotex.js';
 export class GeotexModel extends Mesh {
   readonly asset: Asset;
   readonly model: Model;
-  /** Of a streamed model: once all is there; rejects where the rest does not come. */
+  /** Of a streamed model: asks for the rest, whether or not frames need it, and tells once all is
+   * there; rejects where it does not come. */
   readonly complete: Promise<GeotexModel>;
   /** One of Method. */
   method: number;
@@ -23,7 +24,8 @@ export class GeotexLoader extends Loader<GeotexModel> {
               manager?: LoadingManager);
   parseAsync(bytes: ArrayBuffer): Promise<GeotexModel>;
   /** The model as soon as the file's first bytes show something. More of them make it finer, and its
-   * `asset` and `model` others, until it is `complete`: rays meet it from then on. */
+   * `asset` and `model` others, until it is `complete`: rays meet it from then on. Where the server
+   * grants ranges, no more is read while the last frame showed it within `maxError`, or not. */
   stream(url: string, onProgress?: (bytes: number, of: number) => void, signal?: AbortSignal):
       Promise<GeotexModel>;
 }

@@ -211,6 +211,7 @@ class Content {
   disposed = false;
   whole = false;
   complete = Promise.resolve();
+  #frame = -1; #need = 0; #demanded = false; #wake = () => {};
 
   constructor(geotex, model) {
     Object.assign(this, {geotex, model});
@@ -218,6 +219,25 @@ class Content {
 
   get asset() {
     return this.model.asset;
+  }
+
+  /* A frame shows it with an error so many times what is allowed: of what is there, and at most. */
+  seen(frame, need) {
+    this.#need = frame === this.#frame ? Math.max(this.#need, need) : need;
+    this.#frame = frame;
+    if (need > 1)
+      this.#wake();
+  }
+
+  demand() {
+    this.#demanded = true;
+    this.#wake();
+  }
+
+  /* Of what no frame has shown yet, and of what the last one did too coarsely; else a promise. */
+  wanted(frame) {
+    return this.#demanded || this.#frame < 0 || this.#frame >= frame - 1 && this.#need > 1 ||
+           new Promise((wake) => { this.#wake = () => wake(true); });
   }
 
   /* All that a download still brings. */
@@ -239,6 +259,7 @@ class Content {
 
   dispose() {
     this.disposed = true;
+    this.demand();
     this.stop?.();
     this.asset.dispose();
     this.model.dispose();
@@ -254,6 +275,7 @@ export class GeotexModel extends Mesh {
     this.#bridge = bridge;
     Object.assign(this, {type: 'GeotexModel', content, method: Method.AUTO, maxError: 0.5});
     this.onAfterRender = (renderer, scene, camera) => {
+      content.seen(renderer.info.render.frame, this.errorIn(renderer, camera) / this.maxError);
       bridge.shading.set({...bridge.light(scene, camera, this.receiveShadow),
                           ...bridge.output(scene, camera)});
       bridge.draw(this, camera, {shading: bridge.shading});
@@ -270,7 +292,20 @@ export class GeotexModel extends Mesh {
     return this.content.model;
   }
 
+  /* Pixels that the finest LOD mesh may be off where it is nearest. */
+  errorIn(renderer, camera) {
+    const {asset, matrixWorld} = this, scale = matrixWorld.getMaxScaleOnAxis();
+    const low = new Vector3(...asset.min), high = new Vector3(...asset.max);
+    const reach = low.distanceTo(high) / 2 * scale;
+    const place = low.add(high).multiplyScalar(0.5).applyMatrix4(matrixWorld);
+    const far = place.distanceTo(new Vector3().setFromMatrixPosition(camera.matrixWorld)) - reach;
+    const {elements: p} = camera.projectionMatrix;
+    return asset.lodError * scale * p[5] * renderer.getCurrentViewport(new Vector4()).w / 2 /
+           (p[15] ? 1 : Math.max(far, camera.near));
+  }
+
   get complete() {
+    this.content.demand();
     return this.content.complete.then(() => this);
   }
 
@@ -310,6 +345,7 @@ export class GeotexModel extends Mesh {
 
   /* Frees the model and its asset, which clones share. */
   dispose() {
+    this.#bridge.renderer.state.useProgram(null); /* which the material may take with it */
     this.content.dispose();
     this.geometry.dispose();
     this.material.dispose();
@@ -342,8 +378,9 @@ export class GeotexLoader extends Loader {
     return new GeotexModel(bridge, content);
   }
 
-  /* Gives the model as soon as the file's first bytes show something; more of them make it finer,
-   * and its `complete` tells when all is there, or why not: then what was there stays. */
+  /* Gives the model as soon as the file's first bytes show something; more of them make it finer, as
+   * long as it is seen too coarsely, where the server grants ranges. `complete` asks for the rest,
+   * and tells when all is there, or why not: then what was there stays. */
   async stream(url, onProgress, signal) {
     const stop = new AbortController(), {manager} = this;
     const failed = (error) => {
@@ -358,11 +395,13 @@ export class GeotexLoader extends Loader {
       bridge.geotex.workshop.start();
       const models = modelsOf(bridge.geotex, (headers) => fetch(manager.resolveURL(this.path + url), {
         headers: {...this.requestHeader, ...headers}, signal: stop.signal,
-        credentials: this.withCredentials ? 'include' : 'same-origin'}), {onProgress});
+        credentials: this.withCredentials ? 'include' : 'same-origin'}), {
+          onProgress, wanted: () => content.wanted(this.renderer.info.render.frame)});
       const content = new Content(bridge.geotex, (await models.next()).value);
       content.stop = () => stop.abort();
-      content.complete = content.follow(models).then(() => manager.itemEnd(url),
-                                                     (error) => content.disposed ? manager.itemEnd(url) : failed(error));
+      content.complete = content.follow(models).then(
+          () => manager.itemEnd(url),
+          (error) => content.disposed ? manager.itemEnd(url) : failed(error));
       content.complete.catch(() => {});
       return new GeotexModel(bridge, content);
     } catch (error) {

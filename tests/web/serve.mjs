@@ -18,8 +18,16 @@ export async function open(modules, roots) {
           : [roots[root], ...rest];
       const path = normalize(join(...inside));
       const content = await readFile(path);
-      response.writeHead(200, {'content-type': types[extname(path)] ?? 'application/octet-stream'});
-      /* "?first=1000" is a server that gives up. */
+      const type = {'content-type': types[extname(path)] ?? 'application/octet-stream'};
+      /* "?ranges" is a server that grants them; "?first=1000" one that gives up. */
+      const first = +request.headers.range?.match(/^bytes=(\d+)-$/)?.[1];
+      if (request.url.endsWith('?ranges') && first < content.length) {
+        response.writeHead(206, {...type, etag: `"${content.length}"`, 'content-range':
+          `bytes ${first}-${content.length - 1}/${content.length}`});
+        response.end(content.subarray(first));
+        return;
+      }
+      response.writeHead(200, type);
       response.end(content.subarray(0, request.url.match(/[?]first=(\d+)$/)?.[1] ?? content.length));
     } catch {
       response.writeHead(root === 'favicon.ico' ? 204 : 404).end();

@@ -101,6 +101,42 @@ export const streaming = ({expect, address, cameraOf, read, apart, WIDTH, HEIGHT
       renderer.dispose();
     },
 
+    async far_models_stay_coarse_where_ranges_are_granted() {
+      const {renderer, picture, loader} = stage(), scene = new THREE.Scene();
+      const later = (ms) => new Promise((next) => setTimeout(next, ms));
+      const show = async (model, distance, ms, until = () => false) => {
+        const camera = cameraOf(model.asset, 0.5, distance);
+        camera.far *= distance;
+        camera.updateProjectionMatrix();
+        scene.add(model);
+        for (const end = performance.now() + ms; performance.now() < end && !until(); await later(20))
+          renderer.render(scene, camera);
+      };
+      const whole = await loader.loadAsync(address), wanted = picture(whole);
+      const size = whole.asset.fileBytes;
+      await link(LINK);
+      try {
+        let come = 0, anew = false;
+        const told = (bytes) => { anew ||= bytes < come; come = bytes; };
+        const model = await loader.stream(address + '?ranges', told);
+        await show(model, 100, 1500);
+        const far = come;
+        await show(model, 100, 500);
+        expect(come === far && far < size / 4, `${far}, then ${come} of ${size} bytes came`);
+        await show(model, 3, 20000, () => model.content.whole);
+        expect(model.asset.fileBytes === size && !anew, `${come} of ${size} bytes, anew: ${anew}`);
+        expect(apart(wanted, picture(model), 0) === 0, 'the last picture is another');
+        const plain = await loader.stream(address + '?plain');
+        await show(plain, 100, 20000, () => plain.content.whole);
+        expect(plain.asset.fileBytes === size, 'without ranges it has stayed coarse');
+        [model, plain].forEach((m) => m.dispose());
+      } finally {
+        await link(0);
+      }
+      whole.dispose();
+      renderer.dispose();
+    },
+
     async disposing_stops_the_download() {
       const {renderer, loader} = stage();
       await link(LINK / 4);
