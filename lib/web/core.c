@@ -1,9 +1,10 @@
 /* What geotex.js calls: geotex with handles and rows of numbers, for JavaScript knows no structs.
  * Built by emscripten alone; see web.mk. */
-#include <geotex/geotex.h>
-#include <geotex/render.h>
+#include "web/core.h"
 
 #include "render/gl.h"
+
+#include <geotex/render.h>
 
 #include <emscripten/emscripten.h>
 #include <emscripten/html5_webgl.h>
@@ -27,7 +28,7 @@ WEB_API const char *gtxw_message(void)
     return last_error.message;
 }
 
-static gtx_error *begin(void)
+gtx_error *gtxw_begin(void)
 {
     memset(&last_error, 0, sizeof last_error);
     return &last_error;
@@ -70,7 +71,7 @@ WEB_API gtx_renderer *gtxw_renderer_create(void)
     const gtx_renderer_desc desc = {.load = load, .log = report};
     gtx_renderer *renderer = NULL;
     emscripten_webgl_enable_WEBGL_multi_draw(emscripten_webgl_get_current_context());
-    gtx_renderer_create(&desc, &renderer, begin());
+    gtx_renderer_create(&desc, &renderer, gtxw_begin());
     return renderer;
 }
 
@@ -82,7 +83,7 @@ WEB_API void gtxw_renderer_destroy(gtx_renderer *renderer)
 WEB_API gtx_shading *gtxw_shading_create(gtx_renderer *renderer, const char *text)
 {
     gtx_shading *shading = NULL;
-    gtx_shading_create(renderer, text, &shading, begin());
+    gtx_shading_create(renderer, text, &shading, gtxw_begin());
     return shading;
 }
 
@@ -101,7 +102,7 @@ WEB_API uint32_t gtxw_shading_program(const gtx_shading *shading, int method)
 WEB_API gtx_asset *gtxw_open(const void *bytes, size_t size)
 {
     gtx_asset *asset = NULL;
-    gtx_open_memory(bytes, size, NULL, &asset, begin());
+    gtx_open_memory(bytes, size, NULL, &asset, gtxw_begin());
     return asset;
 }
 
@@ -111,7 +112,7 @@ WEB_API gtx_asset *gtxw_open_prefix(const void *bytes, size_t size, double told[
 {
     gtx_asset *asset = NULL;
     gtx_prefix prefix = {0};
-    gtx_open_prefix(bytes, size, NULL, &prefix, &asset, begin());
+    gtx_open_prefix(bytes, size, NULL, &prefix, &asset, gtxw_begin());
     told[0] = (double)prefix.needed;
     told[1] = (double)prefix.file_size;
     return asset;
@@ -145,7 +146,7 @@ WEB_API const double *gtxw_info(const gtx_asset *asset)
 WEB_API gtx_caster *gtxw_caster_create(const gtx_asset *asset)
 {
     gtx_caster *caster = NULL;
-    gtx_caster_create(asset, NULL, &caster, begin());
+    gtx_caster_create(asset, NULL, &caster, gtxw_begin());
     return caster;
 }
 
@@ -178,7 +179,7 @@ WEB_API gtx_model *gtxw_model_prepare(const gtx_asset *asset)
 {
     const gtx_model_desc desc = {.borrow = 1};
     gtx_model *model = NULL;
-    gtx_model_prepare(asset, &desc, &model, begin());
+    gtx_model_prepare(asset, &desc, &model, gtxw_begin());
     return model;
 }
 
@@ -218,7 +219,7 @@ WEB_API int gtxw_draw(gtx_renderer *renderer, const float *view, const uint32_t 
             memcpy(placed[i].transform, numbers, sizeof placed[i].transform);
             memcpy(placed[i].tint, numbers + 16, sizeof placed[i].tint);
         }
-        if (gtx_draw(renderer, &v, placed, n, begin()))
+        if (gtx_draw(renderer, &v, placed, n, gtxw_begin()))
             return (int)last_error.result;
     }
     return 0;

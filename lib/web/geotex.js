@@ -8,7 +8,7 @@
  * Every draw writes true depth from the page's own matrices, and leaves WebGL's state as it was.
  * Types and units are in geotex.d.ts. */
 import createCore from './core.js';
-import {failure, GeotexError, infoOf, openPrefix, resourcesOf, withBytes} from './inside.js';
+import {failure, GeotexError, infoOf, openBytes, openPrefix, resourcesOf, withBytes} from './inside.js';
 import {State} from './state.js';
 import {Upload} from './upload.js';
 import {Workshop} from './workshop.js';
@@ -75,6 +75,7 @@ export class Model {
     this.handle = geotex.must(made ? withBytes(core, made.plan, core._gtxw_model_unpack)
                                    : core._gtxw_model_prepare(asset.handle));
     this.resources = made ? made.resources : resourcesOf(core, this.handle);
+    this.cpuBytes = made?.plan.length ?? 0;
     this.gpuBytes = core._gtxw_model_gpu_bytes(this.handle);
   }
 
@@ -258,17 +259,18 @@ export class Geotex {
   }
 
   /* The model of a file's bytes, which stay as they are; or of the first of them, as openPrefix has
-   * it. Opened and prepared by a worker, where there can be one. */
-  async load(bytes, prefix = false) {
-    const made = await this.workshop.prepare(bytes, prefix);
+   * it; or what was read for a request of a world. Opened and prepared by a worker, where there can
+   * be one. */
+  async load(bytes, prefix = false, request = null) {
+    const made = await this.workshop.prepare(bytes, prefix, request);
     if (this.closed)
       throw new GeotexError(10, 'geotex has been disposed');
     if (!made) {
-      const told = prefix ? this.openPrefix(bytes) : {asset: this.open(bytes)};
-      return {model: told.asset && this.model(told.asset), ...told};
+      const {handle, ...told} = openBytes(this.core, bytes, prefix, request);
+      const asset = handle ? new Asset(this, infoOf(this.core, handle), handle) : null;
+      return {asset, model: asset && this.model(asset), ...told};
     }
-    const open = () => prefix ? openPrefix(this.core, bytes).handle
-                              : withBytes(this.core, bytes, this.core._gtxw_open);
+    const open = () => openBytes(this.core, bytes, prefix).handle;
     const asset = made.info && new Asset(this, made.info, 0, open);
     return {...made.told, asset, model: asset && this.model(asset, made)};
   }

@@ -41,6 +41,20 @@ export function openPrefix(core, bytes) {
   return {handle, needed, fileBytes};
 }
 
+/* A file's bytes; its first, with `prefix`; or, with the bytes of a gtx_stream_request, what was read
+ * for that. Gives a handle, and of a prefix what to wait for. */
+export function openBytes(core, bytes, prefix, request) {
+  if (!request && prefix)
+    return openPrefix(core, bytes);
+  const handle = request
+      ? withBytes(core, request, (asked) =>
+          withBytes(core, bytes, (at, size) => core._gtxw_world_open(asked, at, size)))
+      : withBytes(core, bytes, core._gtxw_open);
+  if (!handle)
+    throw failure(core);
+  return {handle};
+}
+
 /* As Asset of geotex.d.ts has them. */
 export function infoOf(core, handle) {
   const at = core._gtxw_info(handle) / 8, n = core.HEAPF64.slice(at, at + 23);

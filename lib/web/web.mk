@@ -66,8 +66,9 @@ $(web_package)/LICENSE: LICENSE
 	$(Q)cp $< $@
 
 web_glue := geotex.js inside.js load.js state.js upload.js worker.js workshop.js
-web_files := core.js $(web_glue) three.js geotex.d.ts load.d.ts three.d.ts package.json README.md \
-             LICENSE
+web_three := bridge.js three.js world.js tiles.js
+web_files := core.js $(web_glue) $(web_three) package.json README.md LICENSE \
+             $(addsuffix .d.ts,geotex load three world tiles)
 web: $(web_files:%=$(web_package)/%) ## the npm package geotex, as WebAssembly (needs emscripten)
 	@cd $(web_package) && echo "$$PWD: $$(cat core.wasm core.js $(web_glue) | gzip -9 | wc -c)" \
 	  "bytes of core and glue, gzipped"

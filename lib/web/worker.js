@@ -1,16 +1,12 @@
 /* A core of its own in a worker: opens what the page sends it and prepares it, and gives back what
  * the page needs to draw it. Nothing stays. */
 import createCore from './core.js';
-import {failure, GeotexError, infoOf, openPrefix, resourcesOf, withBytes} from './inside.js';
+import {failure, GeotexError, infoOf, openBytes, resourcesOf} from './inside.js';
 
 let core = null;
 
-function prepare(bytes, prefix) {
-  const told = prefix ? openPrefix(core, bytes)
-                      : {handle: withBytes(core, bytes, core._gtxw_open)};
-  const {handle} = told, given = [];
-  if (!handle && !prefix)
-    throw failure(core);
+function prepare(bytes, prefix, request) {
+  const told = openBytes(core, bytes, prefix, request), {handle} = told, given = [];
   if (!handle)
     return {made: {told, info: null}, given};
   const copy = (from, size) => {
@@ -36,11 +32,11 @@ function prepare(bytes, prefix) {
   }
 }
 
-onmessage = async ({data: {id, wasm, bytes, prefix}}) => {
+onmessage = async ({data: {id, wasm, bytes, prefix, request}}) => {
   try {
     core ??= createCore({locateFile: () => wasm, onLog: () => {}});
     core = await core;
-    const {made, given} = prepare(bytes, prefix);
+    const {made, given} = prepare(bytes, prefix, request);
     postMessage({id, made}, given);
   } catch (error) {
     postMessage({id, result: error.result, message: String(error.message ?? error)});

@@ -3,6 +3,7 @@ import * as THREE from 'three';
 import {Geotex, GeotexError, Method, Pass} from 'geotex';
 import {GeotexLoader, GeotexModel} from 'geotex/three';
 import {streaming} from './streaming.js';
+import {worlds} from './worlds.js';
 
 const WIDTH = 480, HEIGHT = 360;
 const address = new URLSearchParams(location.search).get('asset');
@@ -361,7 +362,8 @@ Object.assign(checks, {
   },
 });
 
-Object.assign(checks, streaming({expect, address, cameraOf, read, apart, WIDTH, HEIGHT}));
+const kit = {expect, address, cameraOf, read, apart, WIDTH, HEIGHT};
+Object.assign(checks, streaming(kit), worlds(kit));
 window.checks = checks;
 window.run = async (name) => {
   try {

@@ -24,6 +24,10 @@ static void the_package_works_in_a_browser(void **state)
         skip();
     assert_int_equal(run("cd \"$GTX_BUILD/web\" && \"$GTX_OUT/samples/sculpt\" --triangles 100000 "
                          "sculpt.glb >/dev/null && \"$GTX\" cook -q sculpt.glb -o sculpt.gtx"), 0);
+    assert_int_equal(run("cd \"$GTX_BUILD/web\" && rm -rf world && \"$GTX_OUT/samples/sculpt\" "
+                         "--triangles 30000 small.glb >/dev/null && \"$GTX\" cook -q small.glb "
+                         "-o small.gtx && \"$GTX\" world plan small.glb -q -o world --triangles "
+                         "10000 --engine shell && sh world/build.sh"), 0);
     assert_int_equal(run("node tests/web/browser.mjs \"$GTX_BUILD/web/app\" "
                          "\"$GTX_BUILD/web/sculpt.gtx\" \"$GTX_BUILD/web/pictures\" >&2"), 0);
 }

@@ -2,6 +2,8 @@
 import {DirectionalLight, PerspectiveCamera, Raycaster, Scene, Vector2, WebGLRenderer} from 'three';
 import {GeotexError} from 'geotex';
 import {GeotexLoader, Method} from 'geotex/three';
+import {GeotexTilesPlugin} from 'geotex/tiles';
+import {GeotexWorld} from 'geotex/world';
 import wasm from 'geotex/core.wasm?url';
 
 const renderer = new WebGLRenderer({preserveDrawingBuffer: true});
@@ -19,7 +21,9 @@ try {
   renderer.render(scene, camera);
   const ray = new Raycaster();
   ray.setFromCamera(new Vector2(0, 0), camera);
-  document.title = ray.intersectObject(model).length ? 'drawn' : 'nothing is hit';
+  /* That their types hold, and a bundler finds them. */
+  const rest: unknown[] = [GeotexTilesPlugin, GeotexWorld.open];
+  document.title = ray.intersectObject(model).length && rest.length ? 'drawn' : 'nothing is hit';
 } catch (error) {
   document.title = error instanceof GeotexError ? `${error.kind}: ${error.message}` : String(error);
 }
