@@ -178,7 +178,7 @@ $(lib_cook): $(call objects_of,$(ROOMS_COOK))
 # What a shared library exports: the functions that its headers declare, and nothing else.
 headers_core := geotex edit solid frame render stream
 $(out)/gen/libgeotex.map: $(headers_core:%=include/geotex/%.h)
-$(out)/gen/libgeotex-cook.map: $(addprefix include/geotex/,cook.h export.h)
+$(out)/gen/libgeotex-cook.map: $(addprefix include/geotex/,cook.h export.h grid.h)
 $(out)/gen/%.map: Makefile
 	@mkdir -p $(@D)
 	$(Q){ echo '{ global:'; sed -n 's/^GTX_API.*[ *]\(gtx_[a-z_]*\)(.*/  \1;/p' $(filter %.h,$^); \

@@ -24,6 +24,12 @@ typedef enum gtx_compress {
                                      tangents have 12 bits, texture coordinates 1/16 texel */
 } gtx_compress;
 
+typedef enum gtx_textures {
+    GTX_TEXTURES_PNG = 0,
+    GTX_TEXTURES_KTX2 = 1         /* KHR_texture_basisu, which readers have to know: UASTC, which a
+                                     GPU keeps in a byte a texel, with all mip levels */
+} gtx_textures;
+
 typedef struct gtx_export_desc {
     uint32_t level;               /* of the LOD mesh: 0 = the finest */
     uint32_t lods;                /* 1: all coarser ones too, as MSFT_lod, but far ones; the normals
@@ -40,7 +46,8 @@ typedef struct gtx_export_desc {
     const gtx_allocator *allocator;   /* for the bytes, the asset meanwhile, and the report */
     gtx_limits limits;            /* memory, texels, patches; the asset's bytes count as read */
     gtx_compress compress;        /* of vertices and triangles */
-    uint32_t reserved[5];
+    gtx_textures textures;
+    uint32_t reserved[4];
 } gtx_export_desc;
 
 /* Exports the asset of `size` bytes, those of a .gtx file or of a GLB that holds one. *out comes
@@ -50,7 +57,7 @@ typedef struct gtx_export_desc {
  * NULL. Any thread.
  * Errors: CANCELLED, ARGUMENT (there is no such level, or it is a far one), NOT_ZEROED, MEMORY,
  * LIMIT (also: no LOD mesh is as near as `max_error`; more than 4 GiB), EMPTY (the asset has no LOD
- * mesh), UNSUPPORTED (images need the image module), and those of gtx_open_memory. */
+ * mesh), UNSUPPORTED (PNG needs the image module), and those of gtx_open_memory. */
 GTX_API gtx_result gtx_export_memory(const void *data, size_t size, const gtx_export_desc *desc,
                                      void **out, size_t *out_size, gtx_report *report,
                                      gtx_error *error);

@@ -9,7 +9,7 @@
 
 static gtx_export_desc desc;
 static const char *output, *report_path;
-static uint32_t compress;
+static uint32_t compress, textures;
 static bool lods, collision, without_asset;
 
 static const option options[] = {
@@ -24,6 +24,8 @@ static const option options[] = {
     {"compress", 0, OPTION_CHOICE, &compress, "none|meshopt|draco",
      "of vertices and triangles: EXT_meshopt_compression, KHR_draco_mesh_compression [none]", 0,
      0},
+    {"textures", 0, OPTION_CHOICE, &textures, "png|ktx2",
+     "ktx2: KHR_texture_basisu, a byte a texel on the GPU, with mip levels [png]", 0, 0},
     {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
     PROGRESS_OPTION,
     {"report", 0, OPTION_STRING, &report_path, "R.json", "write what was exported, as JSON", 0, 0},
@@ -92,6 +94,7 @@ int cmd_export(int argc, char **argv)
     if (code)
         return code;
     desc.compress = (gtx_compress)compress;
+    desc.textures = (gtx_textures)textures;
     desc.lods = lods;
     desc.collision = collision;
     desc.without_asset = without_asset;

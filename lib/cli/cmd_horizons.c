@@ -2,6 +2,7 @@
 #include "cli/cli.h"
 
 #include "base/error.h"
+#include "base/warnings.h"
 
 #include <geotex/cook.h>
 
@@ -19,7 +20,9 @@ static const char *range, *property_range, *spacing, *origin, *color_range;
 static double missing = NAN, rotation = NAN, unit = 1;
 static uint32_t colors, lod_levels = 5;
 static int32_t zstd_level = 3;
-static bool depths, one_surface;
+static bool depths, one_surface, local_metres;
+static char property_name[64];
+static double latitude = NAN; /* of the first grid in degrees */
 
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &making.output, "OUT.gtx",
@@ -42,6 +45,8 @@ static const option options[] = {
      0},
     {"origin", 0, OPTION_STRING, &origin, "X,Y", "position of the first node [the file's, or 0]", 0,
      0},
+    {"local-metres", 0, OPTION_FLAG, &local_metres, NULL,
+     "grids in degrees: in metres as they are at the first one's middle", 0, 0},
     {"rotation", 0, OPTION_NUMBER, &rotation, "DEG", "counter-clockwise [the file's, or 0]",
      -360, 360},
     {"tile", 0, OPTION_UINT, &desc.tile, "N", "a patch's largest side in texels [128]", 16, 512},
@@ -58,10 +63,11 @@ static const option options[] = {
 
 static const verb horizons = {
     "horizons", "GRID[@X,Y][=PROPERTY]... -o OUT.gtx",
-    "Makes one asset of height grids: IRAP classic or binary, ZMAP+, ESRI ASCII, Surfer, HGT, XYZ\n"
-    "(also gzipped), GeoTIFF, other images (PNG, TIFF, EXR: 8 or 16 bits, or floats). GDAL reads\n"
-    "all from ESRI ASCII to GeoTIFF. @X,Y sets the position of a grid's first node;\n"
-    "=PROPERTY is a grid of the same size to colour it by. East becomes +X, up +Y, north -Z.",
+    "Makes one asset of height grids: IRAP classic or binary, ZMAP+, CPS-3, NetCDF (classic),\n"
+    "ESRI ASCII, Surfer, HGT, XYZ (also gzipped), GeoTIFF, other images (PNG, TIFF, EXR: 8 or 16\n"
+    "bits, or floats). GDAL reads all from ESRI ASCII to GeoTIFF. @X,Y sets the position of a\n"
+    "grid's first node; =PROPERTY is a grid to colour it by, whose values are taken where the\n"
+    "grid's nodes lie: an image reaches over all of it. East becomes +X, up +Y, north -Z.",
     1, MAX_GRIDS, options};
 
 static int usage(const char *sentence)
@@ -135,18 +141,61 @@ static int add_sources(const char *operand)
     return code || !p.property ? code : made_from(&making, p.property);
 }
 
+/* With --local-metres; the latitude of all is that of the first. */
+static int use_metres(const char *name, gtx_height_grid *grid)
+{
+    gtx_error error;
+    if (!local_metres || !grid->in_degrees)
+        return EXIT_CODE_OK;
+    if (isnan(latitude))
+        latitude = grid->origin[1] + grid->spacing[1] * (grid->ny - 1) / 2;
+    return gtx_height_grid_to_metres(grid, latitude, &error) ? report_error(name, &error)
+                                                              : EXIT_CODE_OK;
+}
+
+/* The stem of its file, which META and legends have. */
+static void name_property(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    snprintf(property_name, sizeof property_name, "%.*s", (int)strcspn(name, "."), name);
+    desc.property_name = property_name;
+}
+
+/* The values of a property at the nodes of its grid, wherever its own are. */
+static int read_property(const char *path, gtx_height_grid *grid)
+{
+    gtx_height_grid property = {0}, fitted;
+    gtx_error error;
+    if (gtx_height_grid_read(path, &reading_property, &property, &error))
+        return report_error(path, &error);
+    int code = use_metres(path, &property);
+    if (!code && gtx_height_grid_resample(&property, grid, NULL, &fitted, &error))
+        code = report_error(path, &error);
+    gtx_height_grid_free(&property);
+    if (code)
+        return code;
+    grid->property = fitted.values; /* of malloc, freed with free */
+    if (!desc.property_name)
+        name_property(path);
+    return EXIT_CODE_OK;
+}
+
 static int read_operand(const char *operand, gtx_height_grid *grid)
 {
     parts p;
-    gtx_height_grid property = {0};
     gtx_error error;
-    const int code = cut(operand, &p);
+    int code = cut(operand, &p);
     if (code)
         return code;
     if (gtx_height_grid_read(p.name, &reading, grid, &error))
         return report_error(p.name, &error);
+    code = use_metres(p.name, grid);
+    if (!code && p.property)
+        code = read_property(p.property, grid);
+    if (code)
+        return code;
     if (spacing) {
-        parse_pair(spacing, grid->spacing);
+        parse_pair(spacing, grid->spacing); /* the property has been fitted to the file's own */
         if (grid->in_degrees)
             grid->origin[0] = grid->origin[1] = 0;
         grid->in_degrees = 0;
@@ -157,18 +206,35 @@ static int read_operand(const char *operand, gtx_height_grid *grid)
         memcpy(grid->origin, p.place, sizeof p.place);
     if (!isnan(rotation))
         grid->rotation = rotation;
-    if (!p.property)
-        return EXIT_CODE_OK;
-    if (gtx_height_grid_read(p.property, &reading_property, &property, &error))
-        return report_error(p.property, &error);
-    if (property.nx != grid->nx || property.ny != grid->ny) {
-        gtx_fail(&error, GTX_ERROR_INPUT, "the property has %u x %u nodes, its grid %u x %u",
-                 property.nx, property.ny, grid->nx, grid->ny);
-        gtx_height_grid_free(&property);
-        return report_error(p.property, &error);
-    }
-    grid->property = property.values; /* of malloc, freed with free */
     return EXIT_CODE_OK;
+}
+
+static int warn(const gtx_horizons_result *r)
+{
+    char text[160];
+    int code = EXIT_CODE_OK;
+    if (!isnan(latitude)) {
+        snprintf(text, sizeof text, "degrees were taken for metres as they are at latitude %.4g",
+                 latitude);
+        code = made_warn(&making, making.output, GTX_WARNING_LOCAL_METRES, text);
+    }
+    if (!code && r->differing) {
+        snprintf(text, sizeof text, "of %" PRIu64 " nodes that parts share %" PRIu64
+                 " have other values, by up to %g: those of the first count", r->shared,
+                 r->differing, r->difference);
+        code = made_warn(&making, making.output, GTX_WARNING_GRIDS_DIFFER, text);
+    }
+    if (!code && r->alike[1]) {
+        snprintf(text, sizeof text, "grids %u and %u have the same heights where both are: "
+                 "--one-surface joins tiles", r->alike[0] + 1, r->alike[1] + 1);
+        code = made_warn(&making, making.output, GTX_WARNING_GRIDS_OVERLAP, text);
+    }
+    if (!code && r->crossings) {
+        snprintf(text, sizeof text, "grids lie on the other side of the next one at %" PRIu64
+                 " nodes", r->crossings);
+        code = made_warn(&making, making.output, GTX_WARNING_GRIDS_CROSS, text);
+    }
+    return code;
 }
 
 static void tell(const gtx_horizons_result *r)
@@ -195,7 +261,9 @@ static int make(const gtx_height_grid *grids, int count)
     end_progress();
     if (failed)
         return report_error("gtx horizons", &error);
-    const int code = made_save(&making, asset, &encode);
+    int code = warn(&result);
+    if (!code)
+        code = made_save(&making, asset, &encode);
     gtx_close(asset);
     if (!code)
         tell(&result);

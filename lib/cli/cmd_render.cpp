@@ -8,7 +8,7 @@
 #include <cstring>
 #include <sys/stat.h>
 
-static const char *output, *depth_path, *turntable, *beside, *light_color, *background;
+static const char *output, *depth_path, *turntable, *beside, *light_color, *background, *contours;
 static gtx::StillOptions still_options;
 static uint32_t size[2] = {1024, 768};
 static uint32_t method, views, frames = 36, debug;
@@ -37,6 +37,8 @@ static const option options[] = {
      "colours of the model, a colour a patch, normals as colours [color]", 0, 0},
     {"legend", 0, OPTION_FLAG, &still_options.legend, nullptr,
      "say in the picture what its colours mean", 0, 0},
+    {"contours", 0, OPTION_STRING, &contours, "STEP|auto",
+     "lines of equal height, in the units of the model", 0, 0},
     {"light", 0, OPTION_TRIPLE, light, "AZ,EL,AMBIENT",
      "where light comes from, as --camera, and the share from everywhere [the camera's left]", 0,
      0},
@@ -55,10 +57,11 @@ static const option options[] = {
 
 static const verb render = {
     "render", "FILE... -o OUT.png",
-    "Draws assets, polygon models, worlds (DIR of gtx world) and glTF scenes into a PNG. A glTF\n"
-    "node with the extras {\"geotex\": \"a.gtx\"}, or the extension GTX_geometry_texture, places\n"
-    "an asset; one that lies in a GLB is shown as its mesh. Legends tell what --show shows, or\n"
-    "the values of the colours that gtx horizons gave.",
+    "Draws assets, polygon models, height grids, worlds (DIR of gtx world) and glTF scenes into a\n"
+    "PNG. A glTF node with the extras {\"geotex\": \"a.gtx\"}, or the extension\n"
+    "GTX_geometry_texture, places an asset; one that lies in a GLB is shown as its mesh. Grids\n"
+    "are shown as gtx horizons makes them. Legends tell what --show shows, or the values of the\n"
+    "colours that it gave.",
     1, 64, options};
 
 static int usage(const char *sentence)
@@ -82,6 +85,14 @@ static bool parse_color(const char *text, uint8_t *out, bool none)
     return true;
 }
 
+static bool parse_step(const char *text)
+{
+    char *end;
+    still_options.contour_step = std::strtod(text, &end);
+    return end != text && !*end && still_options.contour_step > 0 &&
+           still_options.contour_step < 1e15;
+}
+
 static bool is_gif(const char *path)
 {
     const size_t length = std::strlen(path);
@@ -102,6 +113,9 @@ static int check(void)
         return usage("--background takes RRGGBB or none");
     if (turntable && is_gif(turntable) && !still_options.background[3])
         return usage("only frames in a folder can be transparent, no GIF");
+    still_options.contours = contours != nullptr;
+    if (contours && std::strcmp(contours, "auto") && !parse_step(contours))
+        return usage("--contours takes a step above 0, or auto");
     still_options.has_light = !std::isnan(light[0]);
     if (still_options.has_light && (light[2] < 0 || light[2] > 1))
         return usage("--light takes AZ,EL,AMBIENT, the last from 0 to 1");

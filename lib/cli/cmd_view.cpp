@@ -28,10 +28,11 @@ static const option options[] = {
 
 static const verb view = {
     "view", "[FILE...]",
-    "Shows assets, polygon models, worlds (DIR of gtx world, whose tiles are read as they are\n"
-    "wanted) and glTF scenes in a window. Left drag turns, right or middle drag pans, the wheel\n"
-    "zooms, H lists the keys. What is dropped onto the window replaces what it shows: files, and\n"
-    "worlds by their folder or tileset.json; a model is cooked first, in the background.\n"
+    "Shows assets, polygon models, height grids, worlds (DIR of gtx world, whose tiles are read\n"
+    "as they are wanted) and glTF scenes in a window. Left drag turns, right or middle drag pans,\n"
+    "the wheel zooms, H lists the keys. What is dropped onto the window replaces what it shows:\n"
+    "files, and worlds by their folder or tileset.json; a model or a grid is cooked first, in the\n"
+    "background.\n"
     "K then saves its asset in this folder, and X shows the model in its place, and back.\n"
     "G walks on what is in the middle of the picture, then flies, then orbits again: W, A, S, D\n"
     "go, E and Q raise and lower the eye, Shift is faster, left drag looks around.\n"

@@ -1,5 +1,6 @@
 /* Height grids -> an asset (paper, section 6.2), behind the C API. */
 #include "cook/assemble.hpp"
+#include "cook/grids.hpp"
 #include "cook/guard.hpp"
 #include "cook/options.hpp"
 #include "cook/report.hpp"
@@ -20,38 +21,6 @@ constexpr std::array<uint8_t, 3> NO_PROPERTY = {128, 128, 128};
 static ColorMap map_of(const gtx_colors &colors)
 {
     return number_of(colors) == GTX_COLORS_RAINBOW ? ColorMap::RAINBOW : ColorMap::VIRIDIS;
-}
-
-/* ---- reading ---- */
-
-static void read(const char *path, const gtx_height_grid_desc &desc, gtx_height_grid *out)
-{
-    require_zeroed(desc.reserved);
-    require_argument(desc.has_missing <= 1, "has_missing is 0 or 1");
-    const bool ranged = desc.range[0] != 0 || desc.range[1] != 0;
-    require_argument(std::isfinite(desc.range[0]) && std::isfinite(desc.range[1]),
-                     "range is two finite numbers");
-    require_limits(desc.limits);
-    Task task(1, nullptr, nullptr, {}, {}, desc.limits);
-    GridReading reading;
-    reading.missing = desc.has_missing ? &desc.missing : nullptr;
-    reading.range = ranged ? desc.range : nullptr;
-    const HeightGrid grid = read_grid(path, reading, task);
-    gtx_height_grid made = {};
-    made.nx = grid.nx;
-    made.ny = grid.ny;
-    std::copy_n(grid.origin, 2, made.origin);
-    std::copy_n(grid.step, 2, made.spacing);
-    made.rotation = grid.rotation;
-    made.in_degrees = grid.in_degrees;
-    made.allocator = gtx_allocator_or_default(desc.allocator);
-    auto *values =
-        static_cast<float *>(gtx_alloc_array(&made.allocator, grid.count(), sizeof(float)));
-    if (!values)
-        throw std::bad_alloc();
-    std::copy(grid.values.begin(), grid.values.end(), values);
-    made.values = values;
-    *out = made;
 }
 
 /* ---- making ---- */
@@ -82,10 +51,11 @@ static uint64_t check(const gtx_height_grid *grids, uint32_t count, const gtx_ho
         const std::string name = "grid " + std::to_string(n);
         require_zeroed(g.reserved);
         require_argument(g.values, "a grid has no values");
-        require_argument(g.in_degrees <= 1, "in_degrees is 0 or 1");
+        require_argument(g.in_degrees <= 1 && g.unplaced <= 1, "in_degrees, unplaced: 0 or 1");
         if (g.in_degrees)
             throw Error(GTX_ERROR_INPUT, name + IN_DEGREES +
-                                             ", or say how far its nodes are apart (--spacing)");
+                                             ", take metres of one place (--local-metres), or say "
+                                             "how far its nodes are apart (--spacing)");
         if (g.nx < 2 || g.ny < 2)
             throw Error(GTX_ERROR_INPUT, name + " has " + std::to_string(g.nx) + " x " +
                                              std::to_string(g.ny) +
@@ -105,24 +75,10 @@ static uint64_t check(const gtx_height_grid *grids, uint32_t count, const gtx_ho
     return nodes;
 }
 
-static HeightGrid lattice(const gtx_height_grid &from, const float *values)
-{
-    HeightGrid grid;
-    grid.nx = from.nx;
-    grid.ny = from.ny;
-    std::copy_n(from.origin, 2, grid.origin);
-    std::copy_n(from.spacing, 2, grid.step);
-    grid.rotation = from.rotation;
-    grid.values.assign(values, values + grid.count());
-    for (float &value : grid.values)
-        if (!(std::fabs(value) < 1e30f))
-            value = NAN;
-    return grid;
-}
-
 /* The surfaces, and what each is coloured by: an empty grid stands for its heights. */
 struct Surfaces {
     Vector<HeightGrid> heights, properties;
+    SharedNodes shared;
 
     Surfaces(const gtx_height_grid *grids, uint32_t count, bool as_one, const Limits &limits)
     {
@@ -133,7 +89,7 @@ struct Surfaces {
         }
         if (!as_one)
             return;
-        heights = {mosaic(heights, limits)};
+        heights = {mosaic(heights, limits, &shared)};
         properties = {grids[0].property ? mosaic(properties, limits) : HeightGrid()};
     }
     const Vector<float> &coloured(size_t n) const
@@ -141,6 +97,25 @@ struct Surfaces {
         return properties[n].values.empty() ? heights[n].values : properties[n].values;
     }
 };
+
+/* Pairs are looked at among the first so many, which takes a moment. */
+constexpr size_t MOST_PAIRED = 64;
+
+static void find_mistakes(const Surfaces &surfaces, gtx_horizons_result &out)
+{
+    const Vector<HeightGrid> &grids = surfaces.heights;
+    out.shared = surfaces.shared.count;
+    out.differing = surfaces.shared.differing;
+    out.difference = surfaces.shared.difference;
+    for (size_t a = 0; a < std::min(grids.size(), MOST_PAIRED) && !out.alike[1]; ++a)
+        for (size_t b = a + 1; b < std::min(grids.size(), MOST_PAIRED) && !out.alike[1]; ++b)
+            if (are_alike(grids[a], grids[b])) {
+                out.alike[0] = uint32_t(a);
+                out.alike[1] = uint32_t(b);
+            }
+    for (size_t a = 0; a + 1 < grids.size(); ++a)
+        out.crossings += count_crossings(grids[a], grids[a + 1]);
+}
 
 static void find_color_range(const Surfaces &surfaces, const gtx_horizons_desc &desc,
                              double range[2])
@@ -197,6 +172,8 @@ static std::string meta_of(const gtx_horizons_desc &desc, const double range[2],
                         map_of(desc.colors) == ColorMap::RAINBOW ? "rainbow" : "viridis");
         gtx_json_number(&json, "color_low", range[0]);
         gtx_json_number(&json, "color_high", range[1]);
+        if (desc.property_name)
+            gtx_json_string(&json, "property", desc.property_name);
     }
     gtx_json_number(&json, "vertical", desc.vertical > 0 ? desc.vertical : 1);
     gtx_json_end_object(&json);
@@ -244,32 +221,20 @@ static Asset make_horizons(const gtx_height_grid *grids, uint32_t count,
     Asset asset = assemble(maps, levels, {meta_of(desc, range, allocator),
                                           desc.unit > 0 ? desc.unit : 1, report.triangles,
                                           allocator});
-    if (result)
-        *result = {report.nodes, report.triangles, uint32_t(maps.patches.size()),
-                   report.rms,   report.max,       {range[0], range[1]}};
+    if (result) {
+        *result = {};
+        result->nodes = report.nodes;
+        result->triangles = report.triangles;
+        result->patches = uint32_t(maps.patches.size());
+        result->height_rms = report.rms;
+        result->height_max = report.max;
+        std::copy_n(range, 2, result->color_range);
+        find_mistakes(surfaces, *result);
+    }
     return asset;
 }
 
 } // namespace gtx
-
-gtx_result gtx_height_grid_read(const char *path, const gtx_height_grid_desc *desc,
-                                gtx_height_grid *out, gtx_error *error)
-{
-    return gtx::guard(error, [&] {
-        gtx::require_argument(path && out, "gtx_height_grid_read needs a path and a result");
-        gtx::read(path, desc ? *desc : gtx_height_grid_desc{}, out);
-    });
-}
-
-void gtx_height_grid_free(gtx_height_grid *grid)
-{
-    if (!grid)
-        return;
-    if (grid->allocator.free)
-        gtx_free_array(&grid->allocator, const_cast<float *>(grid->values),
-                       size_t(grid->nx) * grid->ny, sizeof(float));
-    *grid = {};
-}
 
 void gtx_color(gtx_colors colors, double value, uint8_t rgb[3])
 {

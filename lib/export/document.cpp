@@ -30,20 +30,28 @@ static GlbBuffer::Accessor positions(unsigned view, size_t offset, size_t count)
     return {view, offset, GLTF_FLOAT, count, "VEC3", true, inf, -inf};
 }
 
+/* The view of one page's image. */
+unsigned Document::add_image(const PageImages &pages, const uint8_t *texels, TexelKind kind)
+{
+    if (ktx2_)
+        return buffer_.add_view(encode_ktx2(pages.width, pages.height, texels, kind, task_),
+                                GLTF_NO_TARGET);
+    void *data = nullptr;
+    size_t bytes = 0;
+    gtx_error error;
+    require_ok(gtx_image_encode_png(pages.width, pages.height, 3, texels, &data, &bytes, &error),
+               error);
+    const std::unique_ptr<void, void (*)(void *)> owner(data, std::free);
+    return buffer_.add_view({static_cast<const char *>(data), bytes}, GLTF_NO_TARGET);
+}
+
 /* Images of all pages, the first one's number; the pages' memory is given back. */
-unsigned Document::add_images(PageImages &pages)
+unsigned Document::add_images(PageImages &pages, TexelKind kind)
 {
     const unsigned first = unsigned(image_views_.size());
     const size_t size = 3 * size_t(pages.width) * pages.height;
     for (uint32_t p = 0; p < pages.pages; ++p) {
-        void *data = nullptr;
-        size_t bytes = 0;
-        gtx_error error;
-        require_ok(gtx_image_encode_png(pages.width, pages.height, 3, &pages.texels[p * size],
-                                        &data, &bytes, &error), error);
-        const std::unique_ptr<void, void (*)(void *)> owner(data, std::free);
-        image_views_.push_back(
-            buffer_.add_view({static_cast<const char *>(data), bytes}, GLTF_NO_TARGET));
+        image_views_.push_back(add_image(pages, &pages.texels[p * size], kind));
         task_.advance(double(p + 1) / pages.pages);
     }
     pages.texels = {};
@@ -203,7 +211,7 @@ void Document::add_level(uint32_t number, const ExportMesh &mesh, unsigned coars
                                           : add_primitive(mesh, first, last, view));
     }
     PageImages normals = tangent_normals(asset_, mesh, coarser, task_);
-    level.first_normal_image = add_images(normals);
+    level.first_normal_image = add_images(normals, TexelKind::NORMALS);
     levels_.push_back(level);
 }
 
@@ -247,11 +255,13 @@ void Document::add_maps()
     const struct {
         PageImages &pages;
         unsigned &image;
-    } all[] = {{maps_.color, color_image_}, {maps_.material, material_image_},
-               {maps_.emission, emission_image_}};
+        TexelKind kind;
+    } all[] = {{maps_.color, color_image_, TexelKind::COLOR},
+               {maps_.material, material_image_, TexelKind::NUMBERS},
+               {maps_.emission, emission_image_, TexelKind::COLOR}};
     for (const auto &map : all)
         if (map.pages.pages && !map.pages.constant)
-            map.image = add_images(map.pages);
+            map.image = add_images(map.pages, map.kind);
     if (maps_.partly_unlit)
         task_.warn(GTX_WARNING_APPROXIMATED, "parts of the surface are unlit, which one glTF "
                                              "material cannot say: they are lit");

@@ -5,6 +5,7 @@
 #include "export/draco.hpp"
 #include "export/export.hpp"
 #include "export/glb.hpp"
+#include "export/ktx2.hpp"
 
 namespace gtx {
 
@@ -28,7 +29,7 @@ class Document {
 public:
     Document(const gtx_asset *asset, const ExportOptions &options, Task &task)
         : asset_(asset), task_(task), meshopt_(options.meshopt), draco_(options.draco),
-          buffer_(options.meshopt)
+          ktx2_(options.ktx2), buffer_(options.meshopt)
     {
         gtx_get_info(asset, &info_);
     }
@@ -40,7 +41,8 @@ public:
     size_t images() const { return image_views_.size(); }
 
 private:
-    unsigned add_images(PageImages &pages);
+    unsigned add_images(PageImages &pages, TexelKind kind);
+    unsigned add_image(const PageImages &pages, const uint8_t *texels, TexelKind kind);
     Vector<uint8_t> vertex_bytes(const ExportMesh &mesh) const;
     ExportPrimitive add_primitive(const ExportMesh &mesh, size_t first, size_t last, unsigned view);
     void add_stream(ExportPrimitive &to, const gtx_lod_mesh &lod, Vector<DracoValues> &attributes,
@@ -60,7 +62,7 @@ private:
     const gtx_asset *asset_;
     gtx_info info_;
     Task &task_;
-    const bool meshopt_, draco_;
+    const bool meshopt_, draco_, ktx2_;
     GlbBuffer buffer_;
     Vector<DocumentLevel> levels_;
     Vector<unsigned> image_views_;

@@ -123,14 +123,21 @@ void Document::write_images(Json &out) const
         for (unsigned i = 0; i < image_views_.size(); ++i)
             write_object(out, nullptr, [&] {
                 gtx_json_integer(&out, "sampler", 0);
-                gtx_json_integer(&out, "source", i);
+                if (!ktx2_) {
+                    gtx_json_integer(&out, "source", i);
+                    return;
+                }
+                write_object(out, "extensions", [&] {
+                    write_object(out, "KHR_texture_basisu",
+                                 [&] { gtx_json_integer(&out, "source", i); });
+                });
             });
     });
     write_array(out, "images", [&] {
         for (unsigned view : image_views_)
             write_object(out, nullptr, [&] {
                 gtx_json_integer(&out, "bufferView", view);
-                gtx_json_string(&out, "mimeType", "image/png");
+                gtx_json_string(&out, "mimeType", ktx2_ ? "image/ktx2" : "image/png");
             });
     });
 }
@@ -256,7 +263,8 @@ void Document::write_extensions(Json &out) const
                       {"KHR_materials_emissive_strength", is_bright()},
                       {"KHR_mesh_quantization", meshopt_ && !is_collision_, true},
                       {"EXT_meshopt_compression", meshopt_, true},
-                      {"KHR_draco_mesh_compression", draco_, true}};
+                      {"KHR_draco_mesh_compression", draco_, true},
+                      {"KHR_texture_basisu", ktx2_ && !is_collision_, true}};
     if (std::any_of(std::begin(extensions), std::end(extensions),
                     [](const auto &e) { return e.used; }))
         write_array(out, "extensionsUsed", [&] {
@@ -264,7 +272,8 @@ void Document::write_extensions(Json &out) const
                 if (e.used)
                     gtx_json_string(&out, nullptr, e.name);
         });
-    if (meshopt_ || draco_)
+    if (std::any_of(std::begin(extensions), std::end(extensions),
+                    [](const auto &e) { return e.used && e.required; }))
         write_array(out, "extensionsRequired", [&] {
             for (const auto &e : extensions)
                 if (e.used && e.required)

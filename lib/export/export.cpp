@@ -67,6 +67,22 @@ static uint32_t chosen_level(const gtx_asset *asset, const gtx_export_desc &desc
     return level;
 }
 
+/* Halvings of the sides of a normal map; those of KTX2 stay multiples of 4. */
+static unsigned normals_coarser_by(unsigned wanted, const gtx_info &info,
+                                   const ExportOptions &options)
+{
+    const auto is_fit = [&](unsigned level) {
+        return (info.page_width >> level) % 4 == 0 && (info.page_height >> level) % 4 == 0;
+    };
+    unsigned level = std::min(wanted, info.mip_count - 1);
+    if (options.ktx2 && !is_fit(0))
+        throw Error(GTX_ERROR_UNSUPPORTED, "KTX2 textures need pages whose sides are multiples of "
+                                           "4");
+    while (options.ktx2 && !is_fit(level))
+        --level;
+    return level;
+}
+
 Exported export_glb(const gtx_asset *asset, std::string_view bytes, const ExportOptions &options,
                     Task &task)
 {
@@ -82,7 +98,7 @@ Exported export_glb(const gtx_asset *asset, std::string_view bytes, const Export
         if (options.collision) {
             document.add_collision(level, lod);
         } else {
-            const unsigned coarser = std::min(level - options.level, info.mip_count - 1);
+            const unsigned coarser = normals_coarser_by(level - options.level, info, options);
             const ExportMesh mesh = export_mesh(asset, lod, coarser, task);
             vertices = mesh.vertices.size();
             document.add_level(level, mesh, coarser);
@@ -109,6 +125,7 @@ static void check(const gtx_export_desc &desc)
     require_argument(desc.lods <= 1 && desc.collision <= 1 && desc.without_asset <= 1,
                      "lods, collision and without_asset are 0 or 1");
     require_argument(number_of(desc.compress) <= GTX_COMPRESS_DRACO, "unknown compression");
+    require_argument(number_of(desc.textures) <= GTX_TEXTURES_KTX2, "unknown kind of textures");
     require_argument(desc.threads <= 1024, "threads is at most 1024");
     require_argument(desc.max_error >= 0 && std::isfinite(desc.max_error),
                      "max_error is finite and not negative");
@@ -164,6 +181,7 @@ static Bytes exported(std::string_view data, const gtx_export_desc &desc,
     options.with_asset = !desc.without_asset;
     options.meshopt = number_of(desc.compress) == GTX_COMPRESS_MESHOPT;
     options.draco = number_of(desc.compress) == GTX_COMPRESS_DRACO;
+    options.ktx2 = number_of(desc.textures) == GTX_TEXTURES_KTX2;
     Exported made = export_glb(asset.get(), bytes, options, task);
     task.end();
     if (report) {

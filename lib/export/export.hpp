@@ -19,6 +19,7 @@ struct ExportOptions {
                                       coordinates of 16 bits; or: */
     bool draco = false;            /* KHR_draco_mesh_compression, with positions as the LOD mesh has
                                       them, and the rest of 12 to 16 bits */
+    bool ktx2 = false;             /* KHR_texture_basisu in place of PNG */
 };
 
 struct ExportedLevel {

@@ -306,6 +306,7 @@ HeightGrid read_gdal(const char *driver, std::string_view bytes, const std::stri
     }
     if (!raster.has_place)
         return grid;
+    grid.is_unplaced = false;
     lay(grid, raster.affine);
     settle(grid);
     grid.in_degrees = tags.in_degrees || is_hgt(bytes, path) || seems_in_degrees(grid);

@@ -6,8 +6,11 @@
 #include "mesh/mesh.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 
 namespace gtx {
@@ -45,6 +48,7 @@ constexpr float SIGNED_VOID = -32767;
 HeightGrid grid_of_codes(const GridCodes &image, const GridReading &reading)
 {
     HeightGrid grid;
+    grid.is_unplaced = true;
     grid.nx = image.nx;
     grid.ny = image.ny;
     grid.values.resize(grid.count());
@@ -95,14 +99,16 @@ static const struct {
     HeightGrid (*read)(std::string_view, const Limits &);
 } formats[] = {{is_irap_classic, read_irap_classic},
                {is_irap_binary, read_irap_binary},
-               {is_zmap, read_zmap}};
+               {is_zmap, read_zmap},
+               {is_cps3, read_cps3},
+               {is_netcdf, read_netcdf}};
 
 /* What is none of them is left to those who know images. */
 static gtx_result look_for_grid(const uint8_t *head, size_t size, uint64_t, void *path,
                                 gtx_error *error)
 {
     const std::string_view text(reinterpret_cast<const char *>(head), size);
-    bool known = gdal_driver(text, *static_cast<const std::string *>(path));
+    bool known = is_netcdf4(text) || gdal_driver(text, *static_cast<const std::string *>(path));
     for (const auto &format : formats)
         known = known || format.is(text);
     return known ? GTX_OK : gtx_fail(error, GTX_ERROR_UNSUPPORTED, "no grid");
@@ -120,6 +126,25 @@ static ModelFile read_grid_file(const std::string &path, Task &task)
     }
 }
 
+bool is_grid_file(const std::string &path)
+{
+    static const char *const images[] = {".png", ".tif", ".tiff", ".exr"};
+    const std::string extension = model_extension(path);
+    for (const char *image : images)
+        if (extension == image)
+            return true;
+    char head[4096];
+    std::ifstream file(path, std::ios::binary);
+    if (!file)
+        throw Error(GTX_ERROR_READ, std::strerror(errno));
+    file.read(head, sizeof head);
+    const std::string_view text(head, size_t(file.gcount()));
+    for (const auto &format : formats)
+        if (format.is(text))
+            return true;
+    return is_netcdf4(text) || gdal_driver(text, path);
+}
+
 HeightGrid read_grid(const std::string &path, const GridReading &reading, Task &task)
 {
     const ModelFile file = read_grid_file(path, task);
@@ -134,6 +159,9 @@ HeightGrid read_grid(const std::string &path, const GridReading &reading, Task &
                 value = NAN;
         return grid;
     }
+    if (is_netcdf4(file.bytes))
+        throw Error(GTX_ERROR_UNSUPPORTED, "it is HDF5, as NetCDF-4 is: nccopy -k classic IN OUT "
+                                           "makes one that is read");
     const char *driver = gdal_driver(file.bytes, path);
     HeightGrid grid = driver ? read_gdal(driver, file.bytes, path, reading, task)
                              : read_image(path, reading, task);
@@ -141,57 +169,6 @@ HeightGrid read_grid(const std::string &path, const GridReading &reading, Task &
         if (!(std::fabs(value) < 1e30f))
             value = NAN;
     return grid;
-}
-
-/* ---- mosaic ---- */
-
-/* Nodes of one lattice may differ by this part of a step: headers are rounded. */
-constexpr double OFF_LATTICE = 1e-3;
-
-HeightGrid mosaic(const Vector<HeightGrid> &parts, const Limits &limits)
-{
-    const HeightGrid &first = parts.at(0);
-    Vector<std::array<int64_t, 2>> at;
-    int64_t low[2] = {0, 0}, high[2] = {0, 0};
-    for (const HeightGrid &part : parts) {
-        const double turn = -first.rotation * std::acos(-1.0) / 180;
-        const double x = part.origin[0] - first.origin[0], y = part.origin[1] - first.origin[1];
-        const double local[2] = {gtx_cos(turn) * x - gtx_sin(turn) * y,
-                                 gtx_sin(turn) * x + gtx_cos(turn) * y};
-        const uint32_t size[2] = {part.nx, part.ny};
-        std::array<int64_t, 2> place;
-        for (int k = 0; k < 2; ++k) {
-            const double nodes = local[k] / first.step[k];
-            place[k] = std::llround(std::clamp(nodes, -1e9, 1e9));
-            if (std::fabs(nodes - double(place[k])) > OFF_LATTICE ||
-                std::fabs(part.step[k] / first.step[k] - 1) * size[k] > OFF_LATTICE ||
-                part.rotation != first.rotation)
-                malformed("parts of one surface have other steps, or nodes beside each other's");
-            low[k] = std::min(low[k], place[k]);
-            high[k] = std::max(high[k], place[k] + size[k]);
-        }
-        at.push_back(place);
-    }
-    limits.require(GTX_LIMITED_TEXELS, "the surface of all parts",
-                   uint64_t(high[0] - low[0]) * uint64_t(high[1] - low[1]));
-    if (std::max(high[0] - low[0], high[1] - low[1]) > MAX_SIDE)
-        throw Error(GTX_ERROR_LIMIT, "the parts of the surface span more than 2^24 nodes");
-    HeightGrid out = first;
-    const auto origin = first.place(double(low[0]), double(low[1]));
-    out.nx = uint32_t(high[0] - low[0]);
-    out.ny = uint32_t(high[1] - low[1]);
-    out.origin[0] = origin[0];
-    out.origin[1] = origin[1];
-    out.values.assign(out.count(), NAN);
-    for (size_t p = 0; p < parts.size(); ++p)
-        for (uint32_t j = 0; j < parts[p].ny; ++j)
-            for (uint32_t i = 0; i < parts[p].nx; ++i) {
-                const size_t row = size_t(at[p][1] - low[1]) + j;
-                float &to = out.values[row * out.nx + size_t(at[p][0] - low[0]) + i];
-                if (std::isnan(to))
-                    to = parts[p].at(i, j);
-            }
-    return out;
 }
 
 /* ---- colours ---- */

@@ -19,6 +19,7 @@ struct HeightGrid {
     uint32_t nx = 0, ny = 0;
     double origin[2] = {0, 0}, step[2] = {1, 1}, rotation = 0;
     bool in_degrees = false;   /* origin and step, but not the values */
+    bool is_unplaced = false;  /* no file told origin and step */
     Vector<float> values;      /* nx * ny, row by row from the origin; NaN where there is none */
 
     size_t count() const { return size_t(nx) * ny; }
@@ -46,19 +47,29 @@ struct GridReading {
                                         missing one left out */
 };
 
-/* Reads a grid by its content: IRAP classic and IRAP binary, ZMAP+; through GDAL, GeoTIFF, ESRI
- * ASCII, Surfer, and by their names HGT and XYZ; else an image (PNG, TIFF, EXR ... of 8 or 16 bits
- * or of floats), whose top row is the last of the grid; each also gzipped but TIFF and images.
+/* Reads a grid by its content: IRAP classic and IRAP binary, ZMAP+, CPS-3, NetCDF of the classic
+ * kinds; through GDAL, GeoTIFF, ESRI ASCII, Surfer, and by their names HGT and XYZ; else an image
+ * (PNG, TIFF, EXR ... of 8 or 16 bits or of floats), whose top row is the last of the grid; each
+ * also gzipped but TIFF and images.
  * Throws Error: READ, INPUT, UNSUPPORTED, LIMIT, MEMORY. */
 HeightGrid read_grid(const std::string &path, const GridReading &reading, Task &task);
+
+/* Whether read_grid would take a file that is no model: by its content, or the name of an image.
+ * Throws Error: READ. */
+bool is_grid_file(const std::string &path);
 
 /* The formats, from the bytes of a file. */
 bool is_irap_classic(std::string_view bytes);
 bool is_irap_binary(std::string_view bytes);
 bool is_zmap(std::string_view bytes);
+bool is_cps3(std::string_view bytes);
+bool is_netcdf(std::string_view bytes);
+bool is_netcdf4(std::string_view bytes); /* HDF5, which is not read */
 HeightGrid read_irap_classic(std::string_view bytes, const Limits &limits = Limits());
 HeightGrid read_irap_binary(std::string_view bytes, const Limits &limits = Limits());
 HeightGrid read_zmap(std::string_view bytes, const Limits &limits = Limits());
+HeightGrid read_cps3(std::string_view bytes, const Limits &limits = Limits());
+HeightGrid read_netcdf(std::string_view bytes, const Limits &limits = Limits());
 
 /* Which of GDAL's drivers reads a file that starts so, or null. */
 const char *gdal_driver(std::string_view head, const std::string &path);
@@ -74,10 +85,33 @@ struct GridCodes {
 };
 HeightGrid grid_of_codes(const GridCodes &image, const GridReading &reading);
 
+/* Of parts of one lattice: nodes that several have, those where their values differ, and by how
+ * much at most. */
+struct SharedNodes {
+    uint64_t count = 0, differing = 0;
+    double difference = 0;
+};
+
 /* One grid of several that are parts of one lattice, such as neighbouring tiles of terrain; of
  * nodes that several have, the first with a value counts. Throws Error: INPUT where the lattices
  * differ. */
-HeightGrid mosaic(const Vector<HeightGrid> &parts, const Limits &limits = Limits());
+HeightGrid mosaic(const Vector<HeightGrid> &parts, const Limits &limits = Limits(),
+                  SharedNodes *shared = nullptr);
+
+/* A grid in degrees becomes one in metres, which are true at a latitude (WGS 84). */
+void use_local_metres(HeightGrid &grid, double latitude);
+
+/* Values of `from` at the nodes of `to`: between its nodes bilinear, the mean over what a node of
+ * `to` stands for where those are further apart, and NaN where the nearest node has none or there
+ * is none. Where either is unplaced, `from` reaches over all of `to`. Throws Error: INPUT where the
+ * two have no place in common, or one alone lies in degrees. */
+Vector<float> resample(const HeightGrid &from, const HeightGrid &to);
+
+/* Whether two surfaces have the same heights in most of the places that both cover: tiles or copies
+ * that belong together, not layers. */
+bool are_alike(const HeightGrid &a, const HeightGrid &b);
+/* Nodes where `a` and `b`, layers of one lattice, lie the other way round than in most. */
+uint64_t count_crossings(const HeightGrid &a, const HeightGrid &b);
 
 /* Colours for a value of 0..1, sRGB. */
 enum class ColorMap { VIRIDIS, RAINBOW };

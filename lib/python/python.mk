@@ -6,7 +6,7 @@ wheel   = $(build)/geotex-$(VERSION)-py3-none-$(shell $(PYTHON) -c 'import sysco
             print(sysconfig.get_platform().replace("-", "_").replace(".", "_"))').whl
 
 # The headers without what cffi cannot parse: directives, attributes, the C library's own types.
-$(python)/headers.i: include/geotex/export.h include/geotex/cook.h include/geotex/geotex.h
+$(python)/headers.i: $(addprefix include/geotex/,export.h cook.h grid.h geotex.h)
 	@mkdir -p $(@D)/none && touch $(@D)/none/stddef.h $(@D)/none/stdint.h
 	$(Q)$(CC) -E -P -nostdinc -U__GNUC__ -I$(@D)/none -Iinclude $< -o $@
 

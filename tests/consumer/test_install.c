@@ -89,7 +89,7 @@ static void libraries_export_what_headers_declare(void **state)
     need_stage();
     assert_true(shell(
         "cd \"$STAGE/usr\" && "
-        "for pair in 'libgeotex.so " CORE_HEADERS "' 'libgeotex-cook.so cook.h export.h' "
+        "for pair in 'libgeotex.so " CORE_HEADERS "' 'libgeotex-cook.so cook.h export.h grid.h' "
         "'libgeotex-vulkan.so vulkan.h'; "
         "do set -- $pair; so=$1; shift; test -e lib/$so || continue; "
         "(cd include/geotex && cat \"$@\") | "
@@ -103,7 +103,7 @@ static void libraries_export_what_headers_declare(void **state)
     /* and the other way: every GTX_API function is there */
     assert_true(shell(
         "cd \"$STAGE/usr\" && "
-        "for pair in 'libgeotex.so " CORE_HEADERS "' 'libgeotex-cook.so cook.h export.h' "
+        "for pair in 'libgeotex.so " CORE_HEADERS "' 'libgeotex-cook.so cook.h export.h grid.h' "
         "'libgeotex-vulkan.so vulkan.h'; "
         "do set -- $pair; so=$1; shift; test -e lib/$so || continue; "
         "nm -D --defined-only lib/$so | awk '{print $3}' > "

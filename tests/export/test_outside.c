@@ -55,6 +55,7 @@ static void each_draws_it(void **state)
     } pictures[] = {{"ok three none", "three_none.png"},
                     {"ok three meshopt", "three_meshopt.png"},
                     {"ok three draco", "three_draco.png"},
+                    {"ok three ktx2", "three_ktx2.png"},
                     {"ok blender", "blender.png"},
                     {"ok godot", "godot.png"}};
     char command[1024];

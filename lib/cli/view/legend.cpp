@@ -10,7 +10,7 @@
 
 namespace gtx {
 
-constexpr size_t RAMP = 64;
+constexpr size_t RAMP = 64, MOST_TITLE = 40;
 
 static std::string text_of(double value)
 {
@@ -38,6 +38,9 @@ static Legend color_map_of(const gtx_asset *asset)
         out.ramp.push_back(color_of(map, double(i) / (RAMP - 1)));
     out.low = text_of(meta["color_low"].get<double>());
     out.high = text_of(meta["color_high"].get<double>());
+    if (meta.contains("property") && meta["property"].is_string())
+        for (char letter : meta["property"].get<std::string>().substr(0, MOST_TITLE))
+            out.title += letter >= ' ' && letter <= '~' ? letter : '?';
     return out;
 }
 
@@ -79,6 +82,11 @@ Legend legend_of(const Scene &scene, DebugView debug)
         if (Legend legend = color_map_of(placed.asset.get()); !legend.empty())
             return legend;
     return Legend();
+}
+
+Legend::Entry contours_legend(double step)
+{
+    return {{48, 48, 48}, "a line every " + text_of(step)};
 }
 
 static float dot_of(uint32_t width, uint32_t height)
@@ -126,6 +134,8 @@ void add_legend(gtx_shapes &shapes, uint32_t width, uint32_t height, const Legen
     y -= 8 * dot + line;
     gtx_text_add(&shapes, left, y, &style, legend.low.c_str());
     gtx_text_add(&shapes, left + full - float(w) * dot, y, &style, legend.high.c_str());
+    if (!legend.title.empty())
+        gtx_text_add(&shapes, left, y - line, &style, legend.title.c_str());
 }
 
 } // namespace gtx

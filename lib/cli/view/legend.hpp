@@ -14,12 +14,16 @@ struct Legend {
     Vector<Entry> entries;
     Vector<std::array<uint8_t, 3>> ramp;      /* from the lowest value up; may be empty */
     std::string low, high;                    /* at its ends */
+    std::string title;                        /* what it tells; may be empty */
     bool empty() const { return entries.empty() && ramp.empty(); }
 };
 
 /* Of a debug view, or else of the colour map that an asset's META tells of; empty where colours
  * are the model's own. */
 Legend legend_of(const Scene &scene, DebugView debug);
+
+/* Of lines of equal height. */
+Legend::Entry contours_legend(double step);
 
 /* Both onto a picture of so many pixels: a line in the upper left corner; the legend in the lower
  * left one. */

@@ -42,6 +42,10 @@ int Loader::on_progress(const gtx_progress *progress, void *user)
 
 AssetPointer Loader::cook(const std::string &path)
 {
+    if (is_grid(path))
+        return asset_of_grid(path, on_progress, this, [&](gtx_warning kind, const char *text) {
+            result_.warnings.push_back({gtx_warning_name(kind), text});
+        });
     TemporaryFile file;
     gtx_cook_desc desc = {};
     gtx_report report = {};

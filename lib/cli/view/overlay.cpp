@@ -1,4 +1,5 @@
 /* The text over the window of `gtx view`: status, progress, help. */
+#include "cli/view/legend.hpp"
 #include "cli/view/viewer.hpp"
 
 #include <algorithm>
@@ -90,6 +91,8 @@ void Viewer::draw_overlay()
     gtx_error error;
     if (text)
         add_status(shapes, dot);
+    if (text && !loader.busy())
+        add_legend(shapes, uint32_t(width), uint32_t(height), legend_of(scene, debug));
     if (loader.busy())
         add_progress(shapes, dot);
     if (help)

@@ -3,6 +3,7 @@
 
 #include "base/bytes.h"
 #include "cli/cli.h"
+#include "grid/grid.hpp"
 #include "host/jobs.h"
 #include "stream/index.h"
 
@@ -183,6 +184,21 @@ bool is_asset(const std::string &path)
     return ends_with(path, ".gtx") || (got == 4 && !std::memcmp(start, "\xabGTX", 4));
 }
 
+bool is_grid(const std::string &path)
+{
+    static const char *const models[] = {".glb", ".gltf", ".drc", ".ply", ".off", ".stl", ".obj"};
+    const std::string extension = model_extension(path);
+    return std::find(std::begin(models), std::end(models), extension) == std::end(models) &&
+           is_grid_file(path);
+}
+
+static void add_grid(Scene &scene, const std::string &path, Task &task)
+{
+    const auto warn = [&](gtx_warning kind, const char *text) { task.warn(kind, text); };
+    scene.assets.push_back({asset_of_grid(path, nullptr, nullptr, warn), identity_transform, {}});
+    scene.sources.push_back(path);
+}
+
 void add_file(Scene &scene, const std::string &path, Task &task)
 {
     const std::string world = world_at(path);
@@ -193,6 +209,8 @@ void add_file(Scene &scene, const std::string &path, Task &task)
         add_asset(scene, path, identity_transform);
     else if (ends_with(path, ".gltf") || ends_with(path, ".glb"))
         add_gltf(scene, path, task);
+    else if (is_grid(path))
+        add_grid(scene, path, task);
     else
         add_model(scene, read_model(path, task), task);
 }

@@ -8,6 +8,7 @@
 #include "mesh/mesh.hpp"
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -40,8 +41,17 @@ struct Scene {
     double radius = 0;
 };
 
-/* Adds a .gtx asset, a polygon model, the folder of a world, or a glTF scene whose nodes place
- * assets through `"extras": {"geotex": "FILE.gtx"}` (paths relative to it). Throws Error. */
+/* Makes an asset of a height grid as gtx horizons does by default: degrees as metres of its middle,
+ * and where no place is told heights that are no spikes. Throws Error. */
+using WarnFn = std::function<void(gtx_warning, const char *)>;
+AssetPointer asset_of_grid(const std::string &path, gtx_progress_fn progress, void *user,
+                           const WarnFn &warn);
+
+/* Whether a file is to be opened as a height grid: no model by its name. Throws Error: READ. */
+bool is_grid(const std::string &path);
+
+/* Adds a .gtx asset, a polygon model, a height grid, a world's folder, or a glTF scene whose nodes
+ * place assets through `"extras": {"geotex": "FILE.gtx"}` (paths relative to it). Throws Error. */
 void add_file(Scene &scene, const std::string &path, Task &task);
 
 /* Whether a file is to be opened as an asset: its name or first bytes. Throws Error: READ. */

@@ -1,6 +1,7 @@
 /* A scene -> an image: an offscreen context, polygons and patches in one z-buffer. */
 #include "cli/view/still.hpp"
 
+#include "cli/view/contours.hpp"
 #include "cli/view/legend.hpp"
 #include "host/camera.h"
 #include "mesh/material/srgb.hpp"
@@ -112,6 +113,9 @@ Still Studio::draw(const Shot &shot)
                   : std::numeric_limits<float>::infinity();
     }
     tint(still);
+    if (options.contours)
+        draw_contours(contours_of(*scene, options.contour_step), *scene, view, still.depth,
+                      still.color);
     add_text(still, shot.label);
     return still;
 }
@@ -136,7 +140,9 @@ void Studio::tint(Still &still) const
 void Studio::add_text(Still &still, const std::string &label)
 {
     const gtx_host_gl &gl = renderer.gl;
-    const Legend legend = options.legend ? legend_of(*scene, options.debug) : Legend();
+    Legend legend = options.legend ? legend_of(*scene, options.debug) : Legend();
+    if (options.legend && options.contours)
+        legend.entries.push_back(contours_legend(contours_of(*scene, options.contour_step).step));
     gtx_shapes shapes = {};
     add_label(shapes, options.width, options.height, label);
     add_legend(shapes, options.width, options.height, legend);

@@ -24,6 +24,8 @@ struct StillOptions {
                                          everywhere */
     uint8_t light_color[3] = {255, 255, 255};  /* sRGB; takes its share of all that is seen */
     uint8_t background[4] = {235, 237, 242, 255};
+    bool contours = false;            /* lines of equal height; a step of 0 is chosen */
+    double contour_step = 0;
     bool legend = false;              /* a line of text, and what colours mean, on the picture */
 };
 

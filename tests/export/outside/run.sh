@@ -9,6 +9,7 @@ mkdir -p "$3" && cd "$3" || exit 1
 for kind in none meshopt draco; do
     "$gtx" export "$asset" -q --compress $kind -o $kind.glb || exit 1
 done
+"$gtx" export "$asset" -q --textures ktx2 -o ktx2.glb || exit 1
 "$gtx" export "$asset" -q --lods -o lods.glb || exit 1
 "$gtx" export "$asset" -q --collision -o collision.glb || exit 1
 
@@ -39,7 +40,7 @@ has() {
 }
 
 if has node && [ -d "$modules/gltf-validator" ]; then
-    for kind in none meshopt draco lods collision; do
+    for kind in none meshopt draco ktx2 lods collision; do
         try "validator $kind" node "$here/validate.mjs" "$modules" $kind.glb
     done
 else
@@ -47,7 +48,7 @@ else
 fi
 if has node && has "${CHROMIUM:-chromium}" && [ -d "$modules/three" ] &&
    [ -d "$modules/puppeteer-core" ]; then
-    for kind in none meshopt draco; do
+    for kind in none meshopt draco ktx2; do
         try "three $kind" timeout 120 node "$here/three.mjs" "$modules" $kind.glb three_$kind.png
     done
 else
