@@ -33,6 +33,16 @@ extern "C" {
 
 /* ---- models -------------------------------------------------------------------------------- */
 
+/* Blocks of 4x4 texels that GPUs read as they are: a byte a texel, or half a byte for emission by
+ * ETC2. Heights and outlines are exact. gtx_model_prepare encodes, by its jobs; what is lost
+ * `gtx bench --compress` measures. */
+typedef enum gtx_compression {
+    GTX_COMPRESS_NONE = 0,
+    GTX_COMPRESS_BC = 1,              /* desktops: gtx_renderer_compression; Vulkan's feature
+                                         textureCompressionBC */
+    GTX_COMPRESS_ETC2 = 2             /* mobile devices: OpenGL ES 3.0; textureCompressionETC2 */
+} gtx_compression;
+
 typedef struct gtx_model_desc {
     const gtx_allocator *allocator;   /* of the model; NULL = malloc */
     const gtx_jobs *jobs;             /* used during the call; may be NULL */
@@ -41,7 +51,10 @@ typedef struct gtx_model_desc {
     gtx_limits limits;                /* memory, until the upload, and cells */
     uint32_t first_provokes;          /* 1: flat values of a triangle are its first vertex's, as
                                          everywhere but in OpenGL; 0: its last one's */
-    uint32_t reserved[3];
+    gtx_compression compress;         /* colours, materials, emission */
+    uint32_t compress_normals;        /* 1: normals, too, by the same kind of blocks: they stray by
+                                         some degrees where relief is as fine as texels */
+    uint32_t reserved[1];
 } gtx_model_desc;
 
 /* Derives what the GPU needs, without GL: any thread. Keeps no reference to the asset unless it
@@ -79,7 +92,14 @@ typedef enum gtx_format {
     GTX_FORMAT_RGBA8_SRGB = 5,
     GTX_FORMAT_RGBA8_UINT = 6,
     GTX_FORMAT_RGBA16_UINT = 7,
-    GTX_FORMAT_RGBA32_FLOAT = 8
+    GTX_FORMAT_RGBA32_FLOAT = 8,
+    GTX_FORMAT_BC5 = 9,           /* blocks of 4x4 texels, two channels */
+    GTX_FORMAT_BC7 = 10,
+    GTX_FORMAT_BC7_SRGB = 11,
+    GTX_FORMAT_EAC_RG11 = 12,     /* two channels */
+    GTX_FORMAT_ETC2_RGBA8 = 13,   /* alpha by EAC */
+    GTX_FORMAT_ETC2_RGBA8_SRGB = 14,
+    GTX_FORMAT_ETC2_RGB8_SRGB = 15
 } gtx_format;
 
 enum { GTX_MAX_TEXTURE_LEVELS = 8 };
@@ -87,7 +107,9 @@ enum { GTX_MAX_TEXTURE_LEVELS = 8 };
 /* A texture: its levels are each half the size of the one before. */
 typedef struct gtx_texture {
     gtx_format format;
-    uint32_t texel_size;          /* bytes */
+    uint32_t texel_size;          /* bytes; 0: of blocks */
+    uint32_t block_size;          /* bytes of a block of 4x4 texels, or 0: rows are of blocks then,
+                                     those at the ends not full */
     uint32_t width, height, layers, levels;
     uint32_t is_array;            /* 1: a 2D array, even of one layer; 0: a 2D texture */
     uint32_t is_filtered;         /* 1: linear within the nearest level, clamped to the edge; 0:
@@ -96,7 +118,8 @@ typedef struct gtx_texture {
     const void *texels[GTX_MAX_TEXTURE_LEVELS];
 } gtx_texture;
 
-/* False, and zeros, where the model has none: then shaders read none, and any texture will do. */
+/* A map that is the same everywhere has a single texel. False, and zeros, where the model has none:
+ * then shaders read none, and any texture will do. */
 GTX_API uint32_t gtx_model_texture(const gtx_model *model, gtx_slot slot, gtx_texture *out);
 
 /* Buffers of a model, and the vertices that each has. */

@@ -44,7 +44,8 @@ typedef struct gtx_renderer_desc {
                                                             NULL */
     gtx_costs costs;                                     /* finite, none below 0 */
     gtx_tiling tiles;
-    uint32_t reserved[3];
+    uint32_t compress;        /* 1: gtx_model_create compresses, as gtx_renderer_compression says */
+    uint32_t reserved[2];
 } gtx_renderer_desc;
 
 /* The context must be current, here and in all functions that take a renderer. Leaves program 0,
@@ -57,11 +58,15 @@ GTX_API gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_render
  * is fine. */
 GTX_API void gtx_renderer_destroy(gtx_renderer *renderer);
 
+/* The blocks that the context reads: BC with OpenGL 4.2 or its extensions, ETC2 with OpenGL ES 3.0
+ * else. For gtx_model_desc.compress. */
+GTX_API gtx_compression gtx_renderer_compression(const gtx_renderer *renderer);
+
 /* Uploads up to `max_bytes` (0 = everything) and sets *done to 1 once the model can be drawn.
  * Leaves texture unit 0 active without a 2D or 2D array texture, array and pixel unpack buffers 0,
  * and pixel unpacking at its defaults. A call sends at most one row of a map more than `max_bytes`.
- * Errors: ARGUMENT, LIMIT (texture size), GL (out of memory: what was sent is freed, and the next
- * call starts over). */
+ * Errors: ARGUMENT, LIMIT (texture size), UNSUPPORTED (blocks that the context does not read), GL
+ * (out of memory: what was sent is freed, and the next call starts over). */
 GTX_API gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t max_bytes,
                                     uint32_t *done, gtx_error *error);
 

@@ -57,7 +57,8 @@ GTX_API void gtx_vk_destroy(gtx_vk *vk);
 /* Creates a model's images and buffers and records their upload. The bytes are copied at once, and
  * `model` keeps none (gtx_model_uploaded): it plans frames from then on, and is freed by
  * gtx_model_free after the gtx_vk_model. Draws behind it in submission order see it; with several
- * queue families the host hands it over. Errors: ARGUMENT, MEMORY, LIMIT (image size), GL. */
+ * queue families the host hands it over. Errors: ARGUMENT, MEMORY, LIMIT (image size),
+ * UNSUPPORTED (blocks that the device does not read), GL. */
 GTX_API gtx_result gtx_vk_upload(gtx_vk *vk, VkCommandBuffer commands, gtx_model *model,
                                  gtx_vk_model **out, gtx_error *error);
 /* Frees what the upload was copied through: its commands have been executed. */

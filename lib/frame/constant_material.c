@@ -3,32 +3,38 @@
 
 #include <string.h>
 
-static bool is_constant(const uint8_t *texels, size_t count, const uint8_t material[4],
-                    const uint8_t *heights, size_t height_size)
+static const uint8_t none[4] = {0};
+
+bool gtx_is_material(const uint8_t *texels, size_t count, const uint8_t material[4])
 {
-    static const uint8_t none[4] = {0}, empty[2] = {0};
-    for (size_t i = 0; i < count; ++i) {
-        if (memcmp(texels + 4 * i, material, 4) == 0)
-            continue;
-        /* Between patches there is nothing. */
-        if (memcmp(texels + 4 * i, none, 4) != 0 ||
-            (heights && memcmp(heights + height_size * i, empty, height_size) != 0))
+    for (size_t i = 0; i < count; ++i)
+        if (memcmp(texels + 4 * i, material, 4) != 0 && memcmp(texels + 4 * i, none, 4) != 0)
             return false;
-    }
+    return true;
+}
+
+/* Between patches there is nothing. */
+static bool fills_heights(const uint8_t *texels, size_t count, const uint8_t *heights,
+                          size_t height_size)
+{
+    static const uint8_t empty[2] = {0};
+    for (size_t i = 0; i < count; ++i)
+        if (memcmp(texels + 4 * i, none, 4) == 0 &&
+            memcmp(heights + height_size * i, empty, height_size) != 0)
+            return false;
     return true;
 }
 
 /* The first texel that is not empty. */
 static const uint8_t *find_material(const uint8_t *texels, size_t count)
 {
-    static const uint8_t none[4] = {0};
     for (size_t i = 0; i < count; ++i)
         if (memcmp(texels + 4 * i, none, 4) != 0)
             return texels + 4 * i;
     return texels;
 }
 
-bool gtx_find_constant_material(const gtx_asset *asset, float out[4])
+bool gtx_find_constant_material(const gtx_asset *asset, uint8_t out[4])
 {
     const gtx_info *info = &asset->info;
     const uint8_t *heights = gtx_map_data(asset, GTX_MAP_HEIGHT, 0, NULL), *material = NULL;
@@ -39,10 +45,14 @@ bool gtx_find_constant_material(const gtx_asset *asset, float out[4])
             return false;
         if (k == 0)
             material = find_material(texels, size / 4);
-        if (!is_constant(texels, size / 4, material, k ? NULL : heights, info->height_bits / 8))
+        if (!gtx_is_material(texels, size / 4, material))
+            return false;
+        if (k == 0 && memcmp(material, none, 4) != 0 &&
+            !fills_heights(texels, size / 4, heights, info->height_bits / 8))
             return false;
     }
-    for (int c = 0; c < 4; ++c)
-        out[c] = (float)material[c] / 255.0f;
+    if (!material)
+        return false;
+    memcpy(out, material, 4);
     return true;
 }

@@ -35,7 +35,8 @@ static void set_model(gtx_constants *c, const gtx_model *model)
     c->maps[1] = model->has_color ? 1.0f : 0.0f;
     c->maps[2] = model->emission_scale;
     c->maps[3] = model->has_material ? 1.0f : 0.0f;
-    memcpy(c->constant_material, model->constant_material, sizeof c->constant_material);
+    for (int k = 0; k < 4; ++k)
+        c->constant_material[k] = (float)model->constant_material[k] / 255.0f;
 }
 
 /* A draw of `count` instances of a run, by polygons of a buffer. */

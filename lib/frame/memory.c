@@ -63,7 +63,7 @@ static uint64_t work_bytes(const gtx_asset *asset)
     return TEXEL * most * (count < JOBS ? count : JOBS) + sizeof(gtx_derived) * JOBS;
 }
 
-uint64_t gtx_model_memory(const gtx_asset *asset, bool borrow)
+uint64_t gtx_model_memory(const gtx_asset *asset, const gtx_model_desc *desc)
 {
     const gtx_info *info = &asset->info;
     const uint64_t texels = (uint64_t)info->page_count * info->page_width * info->page_height;
@@ -71,7 +71,8 @@ uint64_t gtx_model_memory(const gtx_asset *asset, bool borrow)
     const uint64_t cells = texels * (info->height_bits / 2);
     uint64_t bytes = sizeof(gtx_model) + lod_bytes(asset) + work_bytes(asset) + cells +
                      (info->mip_count > 1 ? cells / 2 : 0);
-    bytes += borrow ? 0 : texels * maps + (info->mip_count > 1 ? texels * maps / 3 : 0);
+    if (!desc->borrow || desc->compress)
+        bytes += texels * maps + (info->mip_count > 1 ? texels * maps / 3 : 0);
     bytes += 2 * GTX_PATCHES_ROW * sizeof(gtx_slab_texel); /* rows that are not full */
     for (uint32_t i = 0; i < info->patch_count; ++i) {
         bytes += patch_bytes() + gtx_rtin_nodes(&asset->patches[i]) * sizeof(gtx_rtin_node);

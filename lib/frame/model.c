@@ -86,8 +86,7 @@ void gtx_model_free_staging(gtx_model *model)
     for (uint32_t i = 0; i < model->level_count; ++i) {
         gtx_level *l = &model->levels[i];
         if (!l->borrowed)
-            gtx_free_array(&model->allocator, l->data, (size_t)l->width * l->height * l->layers,
-                           l->texel_size);
+            gtx_free_array(&model->allocator, l->data, gtx_level_size(l), 1);
         l->data = NULL;
     }
     gtx_proxies_free(&model->proxies, &model->allocator);

@@ -24,11 +24,28 @@ typedef float gtx_slab_texel[4];
 /* One mip level of a texture, waiting for its upload. All layers follow one another. */
 typedef struct gtx_level {
     uint32_t unit, level, width, height, layers;
-    uint32_t texel_size;
-    uint32_t next_row;        /* of height * layers rows, the first one not uploaded yet */
+    uint32_t texel_size, block_size; /* one of them is 0 */
+    uint32_t next_row;        /* of all rows of all layers, the first one not uploaded yet */
     uint8_t *data;            /* freed once it is uploaded, unless it is the asset's */
     bool borrowed;
 } gtx_level;
+
+/* Rows of a layer, of texels or blocks; bytes of a row, and of all layers. */
+static inline uint32_t gtx_level_rows(const gtx_level *l)
+{
+    return l->block_size ? (l->height + 3) / 4 : l->height;
+}
+
+static inline size_t gtx_level_row_size(const gtx_level *l)
+{
+    return l->block_size ? ((size_t)l->width + 3) / 4 * l->block_size
+                         : (size_t)l->width * l->texel_size;
+}
+
+static inline size_t gtx_level_size(const gtx_level *l)
+{
+    return gtx_level_row_size(l) * gtx_level_rows(l) * l->layers;
+}
 
 /* Bounds and errors that a patch's proxy is chosen by. */
 typedef struct gtx_patch_facts {
@@ -45,7 +62,9 @@ struct gtx_model {
     bool has_color, has_material, has_emission, ready;
     float emission_scale;     /* 0: no emission */
     bool has_constant_material; /* ignoring edits */
-    float constant_material[4];
+    uint8_t constant_material[4];
+    bool flat_material;       /* its texture is a single texel */
+    gtx_format formats[UNIT_COUNT];
     gtx_level levels[GTX_MAX_LEVELS];
     uint32_t level_count;
     gtx_proxies proxies;      /* freed once they are uploaded */
@@ -76,12 +95,25 @@ struct gtx_model {
     uint32_t textures[UNIT_COUNT], vertices, indices; /* names in OpenGL */
 };
 
-/* constant_material.c: whether all that the asset shows has one material, and which: 0..1. */
-bool gtx_find_constant_material(const gtx_asset *asset, float material[4]);
+/* constant_material.c: whether all that the asset shows has one material, and which. */
+bool gtx_find_constant_material(const gtx_asset *asset, uint8_t material[4]);
+/* Whether all texels of a level of a map of materials, or of a part of it, are that or none. */
+bool gtx_is_material(const uint8_t *texels, size_t count, const uint8_t material[4]);
 
 /* model.c: frees the CPU's copy of maps and proxies. gtx_model_free frees all but its OpenGL
  * objects. */
 void gtx_model_free_staging(gtx_model *model);
+/* maps.c. Adds a level and its memory, not yet written, unless it borrows what is there already.
+ * NULL without memory. */
+uint8_t *gtx_model_add_level(gtx_model *model, gtx_level level);
+/* All levels of all maps but cells. Of each that is a copy, or blocks, `sources` says of what.
+ * False without memory. */
+bool gtx_model_add_maps(gtx_model *model, const gtx_asset *asset, const gtx_model_desc *desc,
+                        const void **sources);
+/* Writes a piece of a level: a copy of its source, blocks of it, or empty, for what lies between
+ * patches. */
+void gtx_model_begin_level(gtx_model *model, const gtx_asset *asset, uint32_t index,
+                           const uint8_t *source, uint32_t piece, uint32_t pieces);
 /* reserve.c: room for records, slabs and displaced grids. False without memory. */
 bool gtx_model_reserve_blocks(gtx_model *model, const gtx_asset *asset);
 /* Rows of the texture of records and slabs, and which of its texels the slabs of a patch's level
@@ -89,7 +121,7 @@ bool gtx_model_reserve_blocks(gtx_model *model, const gtx_asset *asset);
 uint32_t gtx_model_patch_rows(const gtx_model *model);
 uint32_t gtx_model_slabs_at(const gtx_model *model, uint32_t patch, uint32_t level);
 /* memory.c: bytes that gtx_model_prepare takes, from above. */
-uint64_t gtx_model_memory(const gtx_asset *asset, bool borrow);
+uint64_t gtx_model_memory(const gtx_asset *asset, const gtx_model_desc *desc);
 /* A hash of where the patches' rectangles lie. */
 uint64_t gtx_model_layout(const gtx_asset *asset);
 /* Rows of a page of cells, and where the cells of a patch's level are in it: level 1 and the

@@ -24,53 +24,13 @@ typedef struct making {
     uint8_t *pages;               /* of cells */
     batch *batches;
     uint32_t batch_count;
-    bool borrow, first_provokes;
-    const void *sources[GTX_MAX_LEVELS]; /* of levels that are copies, or NULL */
+    const gtx_model_desc *desc;
+    const void *sources[GTX_MAX_LEVELS]; /* of levels that are copies, or blocks; or NULL */
 } making;
 
 /* Batches of patches, and pieces of each map: enough for many threads to end together, and each to
  * have enough to do. */
 enum { MAX_BATCHES = 64, PIECES = 4 };
-
-/* Adds a level and its memory, not yet written, unless it borrows what is there already. NULL
- * without memory. */
-static uint8_t *add_level(gtx_model *model, gtx_level level)
-{
-    gtx_level *l = &model->levels[model->level_count++];
-    const size_t texels = (size_t)level.width * level.height * level.layers;
-    const bool looks = level.unit == UNIT_COLORS || level.unit == UNIT_MATERIALS ||
-                       level.unit == UNIT_EMISSIONS;
-    *l = level;
-    if (!l->borrowed)
-        l->data = gtx_alloc_raw(&model->allocator, texels, l->texel_size);
-    *(looks ? &model->size.color : &model->size.geometry) += (uint64_t)texels * l->texel_size;
-    return l->data;
-}
-
-static size_t level_size(const gtx_level *l)
-{
-    return (size_t)l->width * l->height * l->layers * l->texel_size;
-}
-
-/* Levels that are a map's, or are to be copies of them. */
-static bool add_maps(making *m, gtx_map map, uint32_t unit, uint32_t count, uint32_t texel_size)
-{
-    const gtx_info *info = &m->asset->info;
-    for (uint32_t k = 0; k < count; ++k) {
-        const void *texels = gtx_map_data(m->asset, map, k, NULL);
-        if (!texels) /* an optional map */
-            return true;
-        m->sources[m->model->level_count] = m->borrow ? NULL : texels;
-        if (!add_level(m->model, (gtx_level){.unit = unit, .level = k,
-                                             .width = info->page_width >> k,
-                                             .height = info->page_height >> k,
-                                             .layers = info->page_count, .texel_size = texel_size,
-                                             .data = m->borrow ? (uint8_t *)texels : NULL,
-                                             .borrowed = m->borrow}))
-            return false;
-    }
-    return true;
-}
 
 /* Joins the batches' proxies: one array of vertices and one of indices, ordered by kind. */
 static gtx_result join_proxies(const making *m, gtx_error *error)
@@ -139,19 +99,6 @@ static gtx_result derive_patch(const making *m, uint32_t i, gtx_derived *derived
     return result;
 }
 
-/* A piece of a level of a map: a copy of the asset's, or empty, for what lies between patches. */
-static void begin_level(const making *m, uint32_t index, uint32_t piece)
-{
-    const gtx_level *l = &m->model->levels[index];
-    const uint8_t *source = m->sources[index];
-    const size_t size = level_size(l), first = size * piece / PIECES;
-    const size_t count = size * (piece + 1) / PIECES - first;
-    if (source)
-        memcpy(l->data + first, source + first, count);
-    else if (!l->borrowed)
-        memset(l->data + first, 0, count);
-}
-
 /* What comes before all else: sizes of the LOD meshes, and maps. */
 static void begin_part(uint32_t index, void *data)
 {
@@ -161,7 +108,8 @@ static void begin_part(uint32_t index, void *data)
     if (index < lods)
         gtx_lod_measure(m->asset, index, &model->allocator, &model->lods);
     else
-        begin_level(m, (index - lods) / PIECES, (index - lods) % PIECES);
+        gtx_model_begin_level(model, m->asset, (index - lods) / PIECES,
+                              m->sources[(index - lods) / PIECES], (index - lods) % PIECES, PIECES);
 }
 
 /* The LOD meshes, then patches. */
@@ -219,7 +167,7 @@ static gtx_result begin_parts(making *m, const gtx_jobs *jobs, gtx_error *error)
     gtx_model *model = m->model;
     if (!gtx_lod_begin(m->asset, &model->allocator, &model->lods))
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for the model's LOD mesh");
-    model->lods.first_provokes = m->first_provokes;
+    model->lods.first_provokes = m->desc->first_provokes;
     gtx_run_jobs(jobs, model->lods.level_count + PIECES * model->level_count, begin_part, m);
     return gtx_lod_place(&model->allocator, &model->lods, error);
 }
@@ -232,24 +180,23 @@ static bool reserve(making *m)
     const size_t slots = (size_t)model->kind_count * model->patch_count + 1;
     if (!gtx_model_reserve_blocks(model, m->asset))
         return false;
-    m->records = (void *)add_level(
+    m->records = (void *)gtx_model_add_level(
         model, (gtx_level){.unit = UNIT_PATCHES, .width = GTX_PATCHES_ROW,
                            .height = gtx_model_patch_rows(model), .layers = 1,
                            .texel_size = sizeof(gtx_slab_texel)});
     model->first_vertex = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_vertex);
     model->first_index = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_index);
     model->facts = gtx_alloc_array(&model->allocator, model->patch_count, sizeof *model->facts);
-    m->pages = add_level(
+    m->pages = gtx_model_add_level(
         model, (gtx_level){.unit = UNIT_CELLS, .width = info->page_width,
                            .height = gtx_model_cell_rows(model), .layers = info->page_count,
                            .texel_size = info->height_bits / 2});
     if (!m->records || !m->pages || !model->first_vertex || !model->first_index || !model->facts)
         return false;
-    return add_maps(m, GTX_MAP_TRIM, UNIT_TRIM, 1, 1) &&
-           add_maps(m, GTX_MAP_NORMAL, UNIT_NORMALS, info->mip_count, 2) &&
-           add_maps(m, GTX_MAP_COLOR, UNIT_COLORS, info->mip_count, 4) &&
-           add_maps(m, GTX_MAP_MATERIAL, UNIT_MATERIALS, info->mip_count, 4) &&
-           add_maps(m, GTX_MAP_EMISSION, UNIT_EMISSIONS, info->mip_count, 3);
+    model->formats[UNIT_PATCHES] = GTX_FORMAT_RGBA32_FLOAT;
+    model->formats[UNIT_CELLS] =
+        info->height_bits == 16 ? GTX_FORMAT_RGBA16_UINT : GTX_FORMAT_RGBA8_UINT;
+    return gtx_model_add_maps(model, m->asset, m->desc, m->sources);
 }
 
 static gtx_model *new_model(const gtx_asset *asset, const gtx_allocator *hooks)
@@ -267,8 +214,9 @@ static gtx_model *new_model(const gtx_asset *asset, const gtx_allocator *hooks)
     model->has_material = info->has_material;
     model->has_emission = info->has_emission;
     model->emission_scale = info->has_emission ? info->emission_scale : 0;
-    model->has_constant_material = info->has_material && info->lod_levels &&
-                               gtx_find_constant_material(asset, model->constant_material);
+    model->flat_material = info->has_material &&
+                           gtx_find_constant_material(asset, model->constant_material);
+    model->has_constant_material = model->flat_material && info->lod_levels;
     model->page_count = info->page_count;
     model->page_width = info->page_width;
     model->page_height = info->page_height;
@@ -280,14 +228,16 @@ static gtx_model *new_model(const gtx_asset *asset, const gtx_allocator *hooks)
 
 static gtx_result check(const gtx_asset *asset, const gtx_model_desc *desc, gtx_error *error)
 {
-    gtx_result result = gtx_check_reserved(desc->reserved, 3, error);
+    gtx_result result = gtx_check_reserved(desc->reserved, 1, error);
+    if (!result && (uint32_t)desc->compress > GTX_COMPRESS_ETC2)
+        result = gtx_fail(error, GTX_ERROR_ARGUMENT, "a model is compressed by no kind of blocks");
     if (!result)
         result = gtx_check_limits(&desc->limits, error);
     const gtx_info *info = &asset->info;
     const uint64_t texels = (uint64_t)info->page_count * info->page_width * info->page_height;
     if (!result)
         result = gtx_check_derived(texels, &desc->limits, "a model",
-                                   gtx_model_memory(asset, desc->borrow), error);
+                                   gtx_model_memory(asset, desc), error);
     return result ? result : gtx_check_crowd(asset, &desc->limits, error);
 }
 
@@ -302,8 +252,7 @@ gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc,
     if (result)
         return result;
     const gtx_allocator hooks = gtx_allocator_or_default(d->allocator);
-    making m = {.asset = asset, .model = new_model(asset, &hooks), .borrow = d->borrow,
-                .first_provokes = d->first_provokes};
+    making m = {.asset = asset, .model = new_model(asset, &hooks), .desc = d};
     if (!m.model)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a model");
     if (reserve(&m))

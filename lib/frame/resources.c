@@ -5,17 +5,6 @@
 
 _Static_assert(GTX_MAX_TEXTURE_LEVELS == GTX_MAX_MIPS, "frame.h has room for all levels");
 
-static gtx_format format_of(const gtx_model *model, uint32_t unit)
-{
-    static const gtx_format formats[UNIT_COUNT] = {
-        [UNIT_CELLS] = GTX_FORMAT_RGBA8_UINT,      [UNIT_TRIM] = GTX_FORMAT_R8,
-        [UNIT_NORMALS] = GTX_FORMAT_RG8,           [UNIT_COLORS] = GTX_FORMAT_RGBA8_SRGB,
-        [UNIT_PATCHES] = GTX_FORMAT_RGBA32_FLOAT,  [UNIT_MATERIALS] = GTX_FORMAT_RGBA8,
-        [UNIT_EMISSIONS] = GTX_FORMAT_RGB8_SRGB,
-    };
-    return unit == UNIT_CELLS && model->height_bits == 16 ? GTX_FORMAT_RGBA16_UINT : formats[unit];
-}
-
 uint32_t gtx_model_texture(const gtx_model *model, gtx_slot slot, gtx_texture *out)
 {
     if (!out)
@@ -27,7 +16,8 @@ uint32_t gtx_model_texture(const gtx_model *model, gtx_slot slot, gtx_texture *o
             continue;
         if (!l->level)
             *out = (gtx_texture){
-                .format = format_of(model, l->unit), .texel_size = l->texel_size,
+                .format = model->formats[l->unit], .texel_size = l->texel_size,
+                .block_size = l->block_size,
                 .width = l->width, .height = l->height, .layers = l->layers,
                 .is_array = l->unit != UNIT_PATCHES,
                 .is_filtered = l->unit == UNIT_NORMALS || l->unit == UNIT_COLORS ||

@@ -89,7 +89,10 @@ static gtx_result open_device(gtx_host_vulkan *v, gtx_error *error)
     ((PFN_vkGetPhysicalDeviceFeatures)v->load(v->instance, "vkGetPhysicalDeviceFeatures"))(
         v->physical, &able);
     v->by_samples = able.sampleRateShading;
-    const VkPhysicalDeviceFeatures wanted = {.sampleRateShading = able.sampleRateShading};
+    const VkPhysicalDeviceFeatures wanted = {
+        .sampleRateShading = able.sampleRateShading,
+        .textureCompressionBC = able.textureCompressionBC,
+        .textureCompressionETC2 = able.textureCompressionETC2};
     v->renders = p.apiVersion >= VK_API_VERSION_1_3;
     memcpy(v->name, p.deviceName, sizeof v->name);
     const float priority = 1;

@@ -83,6 +83,30 @@ static void load_tiles(gtx_gl *gl, const gtx_renderer_desc *desc)
 #undef CLEAR
 }
 
+/* Which blocks are read, and the functions for them. WebGL says so by extensions of its own. */
+static void load_blocks(gtx_gl *gl, const gtx_renderer_desc *desc, gl_int have)
+{
+    const char *version = (const char *)gl->GetString(GL_VERSION);
+    const bool web = gl->es && strstr(version, "WebGL") != NULL;
+    const bool bc7 = gl->es ? has_extension(gl, "GL_EXT_texture_compression_bptc")
+                            : have >= 42 || has_extension(gl, "GL_ARB_texture_compression_bptc");
+    const bool bc5 = !gl->es || has_extension(gl, "GL_EXT_texture_compression_rgtc");
+    const bool etc2 = web ? has_extension(gl, "GL_WEBGL_compressed_texture_etc")
+                          : gl->es || have >= 43 || has_extension(gl, "GL_ARB_ES3_compatibility");
+    bool whole = true;
+#define LOAD(result, name, parameters)                                                             \
+    gl->name = (result(GTX_GL_CALL *) parameters)desc->load("gl" #name, desc->load_user);          \
+    whole = whole && gl->name;
+    if (gl->es || have >= 42 || has_extension(gl, "GL_ARB_texture_storage")) {
+        GTX_GL_BLOCKS(LOAD)
+    } else {
+        whole = false;
+    }
+#undef LOAD
+    gl->reads[GTX_COMPRESS_BC] = whole && bc7 && bc5;
+    gl->reads[GTX_COMPRESS_ETC2] = whole && etc2;
+}
+
 /* A loader may answer for functions that the context does not have: the context is asked. */
 gtx_result gtx_gl_init(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *error)
 {
@@ -115,5 +139,6 @@ gtx_result gtx_gl_init(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *err
         load_samples(gl, desc, gl->es ? "OES" : "ARB");
     if (!gl->es && wants_tiles(gl, desc))
         load_tiles(gl, desc);
+    load_blocks(gl, desc, have);
     return result;
 }

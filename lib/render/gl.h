@@ -112,6 +112,13 @@ enum {
     GL_SRGB8 = 0x8C41,
     GL_SRGB8_ALPHA8 = 0x8C43,
     GL_RGBA16UI = 0x8D76,
+    GL_COMPRESSED_RG_RGTC2 = 0x8DBD,
+    GL_COMPRESSED_RGBA_BPTC_UNORM = 0x8E8C,
+    GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM = 0x8E8D,
+    GL_COMPRESSED_RG11_EAC = 0x9272,
+    GL_COMPRESSED_SRGB8_ETC2 = 0x9275,
+    GL_COMPRESSED_RGBA8_ETC2_EAC = 0x9278,
+    GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC = 0x9279,
     GL_RED_INTEGER = 0x8D94,
     GL_RGBA8UI = 0x8D7C,
     GL_RGBA_INTEGER = 0x8D99
@@ -222,6 +229,15 @@ enum {
 /* Fragments once a sample: OpenGL 4.0, OpenGL ES 3.2, or extensions. NULL where there is none. */
 #define GTX_GL_SAMPLES(X) X(void, MinSampleShading, (float share))
 
+/* Blocks of texels: where the context reads BC7 or ETC2. NULL where it does not. */
+#define GTX_GL_BLOCKS(X)                                                                           \
+    X(void, CompressedTexSubImage3D,                                                               \
+      (gl_enum target, gl_int level, gl_int x, gl_int y, gl_int z, gl_size width, gl_size height,  \
+       gl_size depth, gl_enum format, gl_size bytes, const void *blocks))                          \
+    X(void, TexStorage3D,                                                                          \
+      (gl_enum target, gl_size levels, gl_enum inner, gl_size width, gl_size height,               \
+       gl_size depth))
+
 typedef struct gtx_gl {
 #define GTX_GL_FIELD(result, name, parameters) result(GTX_GL_CALL *name) parameters;
     GTX_GL(GTX_GL_FIELD)
@@ -230,8 +246,10 @@ typedef struct gtx_gl {
     GTX_GL_MULTI(GTX_GL_FIELD)
     GTX_GL_TILES(GTX_GL_FIELD)
     GTX_GL_SAMPLES(GTX_GL_FIELD)
+    GTX_GL_BLOCKS(GTX_GL_FIELD)
 #undef GTX_GL_FIELD
     bool es;                  /* OpenGL ES */
+    bool reads[GTX_COMPRESS_ETC2 + 1]; /* kinds of blocks */
 } gtx_gl;
 
 /* Labels an object, where the context takes labels. */

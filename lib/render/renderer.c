@@ -38,7 +38,7 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
     if (!desc || !desc->load || !out)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a renderer needs a loader of OpenGL functions");
     *out = NULL;
-    gtx_result result = gtx_check_reserved(desc->reserved, 3, error);
+    gtx_result result = gtx_check_reserved(desc->reserved, 2, error);
     if (result)
         return result;
     if ((unsigned)desc->tiles > GTX_TILES_ALWAYS)
@@ -48,6 +48,7 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
     if (!renderer)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a renderer");
     renderer->allocator = hooks;
+    renderer->compress = desc->compress;
     renderer->jobs = desc->jobs ? *desc->jobs : (gtx_jobs){0};
     renderer->log = desc->log;
     renderer->log_user = desc->log_user;
@@ -69,6 +70,14 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
     log_context(renderer);
     *out = renderer;
     return GTX_OK;
+}
+
+gtx_compression gtx_renderer_compression(const gtx_renderer *renderer)
+{
+    return !renderer                                 ? GTX_COMPRESS_NONE
+           : renderer->gl.reads[GTX_COMPRESS_BC]   ? GTX_COMPRESS_BC
+           : renderer->gl.reads[GTX_COMPRESS_ETC2] ? GTX_COMPRESS_ETC2
+                                                     : GTX_COMPRESS_NONE;
 }
 
 void gtx_renderer_destroy(gtx_renderer *renderer)

@@ -18,6 +18,7 @@ struct gtx_renderer {
     gtx_allocator allocator;
     gtx_jobs jobs;            /* the host's, or zeros */
     gtx_gl gl;
+    bool compress;
     void (*log)(const char *message, void *user);
     void *log_user;
     gtx_program programs[GTX_PIPELINE_COUNT]; /* 0: not needed yet */

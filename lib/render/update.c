@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "render/renderer.h"
+#include "render/update.h"
 
 #include <string.h>
 
@@ -89,60 +90,14 @@ static gtx_result derive(const gtx_model *model, const gtx_asset *asset, uint32_
     return result ? result : gtx_patch_derive(asset, patch, &model->allocator, d, error);
 }
 
-/* Texels of a patch's rectangle at a level of detail, out of rows of `row_texels`. */
-typedef struct rect {
-    uint32_t unit, level;
-    uint32_t mip, at[2];      /* where they go in the patch's page */
-    const void *texels;
-    uint32_t row_texels;
-} rect;
-
-static void upload_rect(const gtx_gl *gl, const gtx_model *model, const gtx_patch *patch,
-                        const rect *r)
-{
-    const gtx_texture_kind kind = gtx_texture_kind_of(model, r->unit);
-    gl->BindTexture(kind.target, model->textures[r->unit]);
-    gl->PixelStorei(GL_UNPACK_ROW_LENGTH, (gl_int)r->row_texels);
-    gl->TexSubImage3D(kind.target, (gl_int)r->mip, (gl_int)r->at[0], (gl_int)r->at[1],
-                      (gl_int)patch->page, patch->rect[2] >> r->level, patch->rect[3] >> r->level,
-                      1, kind.format, kind.type, r->texels);
-}
-
 static void upload_cells(const gtx_gl *gl, const gtx_model *model, const gtx_patch *patch,
                          const gtx_derived *d)
 {
     for (uint32_t k = 0; k < model->mip_count; ++k) {
-        rect r = {.unit = UNIT_CELLS, .level = k, .texels = d->cells[k],
-                  .row_texels = patch->rect[2] >> k};
+        gtx_update_rect r = {.unit = UNIT_CELLS, .level = k, .texels = d->cells[k],
+                             .row_texels = patch->rect[2] >> k};
         gtx_model_cells_at(model, patch, k, r.at);
-        upload_rect(gl, model, patch, &r);
-    }
-}
-
-static void upload_maps(const gtx_gl *gl, const gtx_model *model, const gtx_asset *asset,
-                        const gtx_patch *patch)
-{
-    static const struct {
-        gtx_map map;
-        uint32_t unit, texel_size;
-    } maps[] = {{GTX_MAP_TRIM, UNIT_TRIM, 1},
-                {GTX_MAP_NORMAL, UNIT_NORMALS, 2},
-                {GTX_MAP_COLOR, UNIT_COLORS, 4},
-                {GTX_MAP_MATERIAL, UNIT_MATERIALS, 4},
-                {GTX_MAP_EMISSION, UNIT_EMISSIONS, 3}};
-    for (size_t i = 0; i < sizeof maps / sizeof *maps; ++i) {
-        for (uint32_t k = 0; k < model->mip_count; ++k) {
-            const uint8_t *data = gtx_map_data(asset, maps[i].map, k, NULL);
-            if (!data)
-                break;
-            const size_t width = model->page_width >> k, height = model->page_height >> k;
-            rect r = {.unit = maps[i].unit, .level = k, .mip = k,
-                      .at = {patch->rect[0] >> k, patch->rect[1] >> k},
-                      .row_texels = (uint32_t)width};
-            const size_t texel = (patch->page * height + r.at[1]) * width + r.at[0];
-            r.texels = data + texel * maps[i].texel_size;
-            upload_rect(gl, model, patch, &r);
-        }
+        gtx_update_texels(gl, model, patch, &r);
     }
 }
 
@@ -173,7 +128,7 @@ static void upload_record(const gtx_gl *gl, const gtx_model *model, const gtx_de
 }
 
 static gtx_result upload(const gtx_renderer *renderer, gtx_model *model, const gtx_asset *edited,
-                         uint32_t patch, gtx_derived *d, gtx_error *error)
+                         uint32_t patch, gtx_derived *d, uint8_t *blocks, gtx_error *error)
 {
     const gtx_gl *gl = &renderer->gl;
     const gtx_patch *p = &edited->patches[patch];
@@ -181,7 +136,7 @@ static gtx_result upload(const gtx_renderer *renderer, gtx_model *model, const g
     gtx_default_unpacking(gl);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     upload_cells(gl, model, p, d);
-    upload_maps(gl, model, edited, p);
+    gtx_update_maps(gl, model, edited, p, blocks);
     gl->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
     upload_record(gl, model, d, patch);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
@@ -212,14 +167,18 @@ gtx_result gtx_model_update(gtx_renderer *renderer, gtx_model *model, const gtx_
     gtx_derived d = {0};
     size_t size, slab_count;
     uint8_t *cells = make_cells(model, p, &d, &size);
+    const size_t block_bytes = gtx_update_scratch(model, p);
+    uint8_t *blocks = block_bytes ? gtx_alloc_raw(&model->allocator, block_bytes, 1) : NULL;
     const bool slabs = make_slabs(model, p, &d, &slab_count);
-    gtx_result result = cells && slabs ? derive(model, edited, patch, &d, error)
+    const bool whole = cells && slabs && (blocks || !block_bytes);
+    gtx_result result = whole ? derive(model, edited, patch, &d, error)
                               : gtx_fail(error, GTX_ERROR_MEMORY, "no memory for an update");
     if (!result)
-        result = upload(renderer, model, edited, patch, &d, error);
+        result = upload(renderer, model, edited, patch, &d, blocks, error);
     for (uint32_t kind = 0; kind < model->kind_count; ++kind)
         gtx_proxies_free(&d.proxies[kind], &model->allocator);
     gtx_free_array(&model->allocator, cells, size, 1);
+    gtx_free_array(&model->allocator, blocks, block_bytes, 1);
     gtx_free_array(&model->allocator, d.slabs[0], slab_count, sizeof *d.slabs[0]);
     gtx_free_array(&model->allocator, d.slab_texels[0], slab_count, sizeof *d.slab_texels[0]);
     gtx_free_array(&model->allocator, d.blocks, gtx_slab_count(p, 0), sizeof *d.blocks);

@@ -6,86 +6,6 @@
 
 #include <string.h>
 
-gtx_texture_kind gtx_texture_kind_of(const gtx_model *model, uint32_t unit)
-{
-    static const gtx_texture_kind kinds[UNIT_COUNT] = {
-        [UNIT_CELLS] = {GL_TEXTURE_2D_ARRAY, GL_RGBA8UI, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE,
-                        GL_NEAREST, GL_NEAREST},
-        [UNIT_TRIM] = {GL_TEXTURE_2D_ARRAY, GL_R8, GL_RED, GL_UNSIGNED_BYTE,
-                       GL_NEAREST, GL_NEAREST},
-        [UNIT_NORMALS] = {GL_TEXTURE_2D_ARRAY, GL_RG8, GL_RG, GL_UNSIGNED_BYTE,
-                          GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR},
-        [UNIT_COLORS] = {GL_TEXTURE_2D_ARRAY, GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE,
-                         GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR},
-        [UNIT_MATERIALS] = {GL_TEXTURE_2D_ARRAY, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE,
-                            GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR},
-        [UNIT_EMISSIONS] = {GL_TEXTURE_2D_ARRAY, GL_SRGB8, GL_RGB, GL_UNSIGNED_BYTE,
-                            GL_LINEAR_MIPMAP_NEAREST, GL_LINEAR},
-        [UNIT_PATCHES] = {GL_TEXTURE_2D, GL_RGBA32F, GL_RGBA, GL_FLOAT, GL_NEAREST, GL_NEAREST},
-    };
-    gtx_texture_kind kind = kinds[unit];
-    if (unit == UNIT_CELLS && model->height_bits == 16) {
-        kind.inner = GL_RGBA16UI;
-        kind.type = GL_UNSIGNED_SHORT;
-    }
-    return kind;
-}
-
-static gtx_result check_limits(const gtx_gl *gl, const gtx_model *model, gtx_error *error)
-{
-    gl_int side = 0, layers = 0;
-    gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &side);
-    gl->GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &layers);
-    for (uint32_t i = 0; i < model->level_count; ++i) {
-        const gtx_level *l = &model->levels[i];
-        if (l->width > (uint32_t)side || l->height > (uint32_t)side || l->layers > (uint32_t)layers)
-            return gtx_fail(error, GTX_ERROR_LIMIT,
-                            "a texture of %u x %u x %u is beyond this GPU's %d x %d x %d", l->width,
-                            l->height, l->layers, side, side, layers);
-    }
-    return GTX_OK;
-}
-
-/* The last level is told before there are images: drivers allocate for levels that may come. */
-static void begin_texture(const gtx_gl *gl, gtx_model *model, uint32_t unit, uint32_t last_level)
-{
-    static const char *const labels[UNIT_COUNT] = {
-        [UNIT_CELLS] = "geotex cells",         [UNIT_TRIM] = "geotex trim",
-        [UNIT_NORMALS] = "geotex normals",     [UNIT_COLORS] = "geotex colors",
-        [UNIT_PATCHES] = "geotex patches",     [UNIT_MATERIALS] = "geotex materials",
-        [UNIT_EMISSIONS] = "geotex emissions"};
-    const gtx_texture_kind kind = gtx_texture_kind_of(model, unit);
-    gl->GenTextures(1, &model->textures[unit]);
-    gl->BindTexture(kind.target, model->textures[unit]);
-    gtx_gl_label(gl, GL_TEXTURE, model->textures[unit], labels[unit]);
-    gl->TexParameteri(kind.target, GL_TEXTURE_BASE_LEVEL, 0);
-    gl->TexParameteri(kind.target, GL_TEXTURE_MAX_LEVEL, (gl_int)last_level);
-    gl->TexParameteri(kind.target, GL_TEXTURE_MIN_FILTER, (gl_int)kind.min_filter);
-    gl->TexParameteri(kind.target, GL_TEXTURE_MAG_FILTER, (gl_int)kind.mag_filter);
-    gl->TexParameteri(kind.target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    gl->TexParameteri(kind.target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-}
-
-/* The levels of a unit follow one another. */
-static void allocate_textures(const gtx_gl *gl, gtx_model *model)
-{
-    for (uint32_t i = 0; i < model->level_count; ++i) {
-        const gtx_level *l = &model->levels[i];
-        const gtx_texture_kind kind = gtx_texture_kind_of(model, l->unit);
-        uint32_t last = i;
-        while (last + 1 < model->level_count && model->levels[last + 1].unit == l->unit)
-            ++last;
-        if (l->level == 0)
-            begin_texture(gl, model, l->unit, last - i);
-        if (kind.target == GL_TEXTURE_2D)
-            gl->TexImage2D(kind.target, (gl_int)l->level, (gl_int)kind.inner, (gl_size)l->width,
-                           (gl_size)l->height, 0, kind.format, kind.type, NULL);
-        else
-            gl->TexImage3D(kind.target, (gl_int)l->level, (gl_int)kind.inner, (gl_size)l->width,
-                           (gl_size)l->height, (gl_size)l->layers, 0, kind.format, kind.type, NULL);
-    }
-}
-
 gl_uint gtx_take_vertex_array(const gtx_renderer *renderer)
 {
     gl_int hosts = 0;
@@ -177,36 +97,6 @@ static void upload_bytes(const gtx_gl *gl, gl_enum target, gl_uint buffer, const
     *budget -= count;
 }
 
-static bool is_complete(const gtx_level *l)
-{
-    return l->next_row == l->height * l->layers;
-}
-
-/* Uploads rows of a level until it is done or `*budget` bytes are used up; always at least one. */
-static void upload_rows(const gtx_gl *gl, gtx_model *model, gtx_level *l, uint64_t *budget)
-{
-    const gtx_texture_kind kind = gtx_texture_kind_of(model, l->unit);
-    const uint64_t row_size = (uint64_t)l->width * l->texel_size;
-    gl->BindTexture(kind.target, model->textures[l->unit]);
-    do {
-        const uint32_t layer = l->next_row / l->height, y = l->next_row % l->height;
-        const uint64_t affordable = *budget / row_size;
-        uint32_t rows = l->height - y;
-        if (rows > affordable)
-            rows = affordable ? (uint32_t)affordable : 1;
-        const uint8_t *data = l->data + l->next_row * row_size;
-        if (kind.target == GL_TEXTURE_2D)
-            gl->TexSubImage2D(kind.target, (gl_int)l->level, 0, (gl_int)y, (gl_size)l->width,
-                              (gl_size)rows, kind.format, kind.type, data);
-        else
-            gl->TexSubImage3D(kind.target, (gl_int)l->level, 0, (gl_int)y, (gl_int)layer,
-                              (gl_size)l->width, (gl_size)rows, 1, kind.format, kind.type, data);
-        l->next_row += rows;
-        *budget -= rows * row_size < *budget ? rows * row_size : *budget;
-    } while (!is_complete(l) && *budget > 0);
-    gl->BindTexture(kind.target, 0);
-}
-
 gtx_result gtx_check_gl_memory(const gtx_gl *gl, gtx_error *error)
 {
     for (int i = 0; i < 16; ++i) { /* a lost context reports errors for ever */
@@ -232,7 +122,7 @@ static void allocate_lods(const gtx_gl *gl, gtx_lod_meshes *s)
 /* Names, sizes and labels of all objects, still empty. */
 static void allocate(const gtx_gl *gl, gtx_model *model)
 {
-    allocate_textures(gl, model);
+    gtx_allocate_textures(gl, model);
     allocate_proxies(gl, model);
     allocate_lods(gl, &model->lods);
 }
@@ -268,9 +158,9 @@ static bool upload_slice(const gtx_gl *gl, gtx_model *model, uint64_t budget)
     upload_bytes(gl, GL_ELEMENT_ARRAY_BUFFER, model->indices, p->indices,
                  p->index_count * sizeof *p->indices, &model->index_bytes_sent, &budget);
     for (uint32_t i = 0; i < model->level_count; ++i) {
-        if (!is_complete(&model->levels[i]) && budget > 0)
-            upload_rows(gl, model, &model->levels[i], &budget);
-        if (!is_complete(&model->levels[i]))
+        if (!gtx_is_complete(&model->levels[i]) && budget > 0)
+            gtx_upload_rows(gl, model, &model->levels[i], &budget);
+        if (!gtx_is_complete(&model->levels[i]))
             return false;
     }
     return true; /* the buffers came first */
@@ -289,7 +179,7 @@ gtx_result gtx_model_upload(gtx_renderer *renderer, gtx_model *model, uint64_t m
     gl->ActiveTexture(GL_TEXTURE0);
     gtx_default_unpacking(gl);
     if (!model->vertices) {
-        gtx_result result = check_limits(gl, model, error);
+        gtx_result result = gtx_check_textures(gl, model, error);
         if (result)
             return result;
     }
@@ -321,7 +211,8 @@ gtx_result gtx_model_create(gtx_renderer *renderer, const gtx_asset *asset, gtx_
     if (!renderer)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a model needs a renderer");
     const gtx_model_desc desc = {
-        .allocator = &renderer->allocator, .jobs = &renderer->jobs, .borrow = 1};
+        .allocator = &renderer->allocator, .jobs = &renderer->jobs, .borrow = 1,
+        .compress = renderer->compress ? gtx_renderer_compression(renderer) : GTX_COMPRESS_NONE};
     gtx_result result = gtx_model_prepare(asset, &desc, out, error);
     if (result)
         return result;

@@ -10,6 +10,13 @@ typedef struct gtx_texture_kind {
     gl_enum target, inner, format, type, min_filter, mag_filter;
 } gtx_texture_kind;
 gtx_texture_kind gtx_texture_kind_of(const gtx_model *model, uint32_t unit);
+/* Errors: LIMIT, UNSUPPORTED (blocks). */
+gtx_result gtx_check_textures(const gtx_gl *gl, const gtx_model *model, gtx_error *error);
+void gtx_allocate_textures(const gtx_gl *gl, gtx_model *model);
+/* Whether all rows of a level have been uploaded. */
+bool gtx_is_complete(const gtx_level *l);
+/* Uploads rows of a level until it is done or `*budget` bytes are used up; always at least one. */
+void gtx_upload_rows(const gtx_gl *gl, gtx_model *model, gtx_level *l, uint64_t *budget);
 /* Binds the renderer's vertex array and returns the host's, to be bound again: index buffers go
  * through the element target, which belongs to vertex arrays; WebGL takes them no other way. */
 gl_uint gtx_take_vertex_array(const gtx_renderer *renderer);

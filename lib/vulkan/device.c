@@ -15,6 +15,18 @@ static uint32_t tile_texels(const gtx_vk_desc *desc, const VkPhysicalDevicePrope
                : 0;
 }
 
+/* Whether the device samples these blocks, if its host has enabled them. */
+static bool reads(const gtx_vk_desc *desc, VkFormat format)
+{
+    const PFN_vkGetPhysicalDeviceFormatProperties ask =
+        (PFN_vkGetPhysicalDeviceFormatProperties)desc->load(desc->instance,
+                                                            "vkGetPhysicalDeviceFormatProperties");
+    VkFormatProperties of = {0};
+    if (ask)
+        ask(desc->physical_device, format, &of);
+    return of.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+}
+
 static gtx_result load(gtx_vk *vk, const gtx_vk_desc *desc, gtx_error *error)
 {
     const PFN_vkGetDeviceProcAddr of_device =
@@ -37,6 +49,8 @@ static gtx_result load(gtx_vk *vk, const gtx_vk_desc *desc, gtx_error *error)
     memory(desc->physical_device, &vk->memory);
     properties(desc->physical_device, &of);
     vk->limits = of.limits;
+    vk->reads[GTX_COMPRESS_BC] = reads(desc, VK_FORMAT_BC7_UNORM_BLOCK);
+    vk->reads[GTX_COMPRESS_ETC2] = reads(desc, VK_FORMAT_ETC2_R8G8B8A8_UNORM_BLOCK);
     const gtx_planner_desc planner = {.allocator = &vk->allocator, .costs = desc->costs,
                                       .max_tile_texels = tile_texels(desc, &of)};
     return gtx_planner_create(&planner, &vk->planner, error);

@@ -105,6 +105,7 @@ struct gtx_vk {
     VkDevice device;
     gtx_vk_api api;
     VkPhysicalDeviceMemoryProperties memory;
+    bool reads[GTX_COMPRESS_ETC2 + 1]; /* kinds of blocks, where the host enables them */
     VkPhysicalDeviceLimits limits;
     VkSampler samplers[2];        /* by texel; filtered */
     gtx_vk_buffer nothing;        /* what draws without tiles have as a stream: a texel */

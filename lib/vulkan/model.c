@@ -24,6 +24,14 @@ static uint32_t stored_size(const gtx_texture *t)
     return t->format == GTX_FORMAT_RGB8_SRGB ? 4 : t->texel_size;
 }
 
+/* Bytes of a level as the device has it. */
+static VkDeviceSize bytes_of(const gtx_texture *t, uint32_t level)
+{
+    const VkDeviceSize width = t->width >> level, height = t->height >> level;
+    return t->block_size ? (width + 3) / 4 * ((height + 3) / 4) * t->layers * t->block_size
+                         : width * height * t->layers * stored_size(t);
+}
+
 static VkDeviceSize texels_of(const gtx_texture *t, uint32_t level)
 {
     return (VkDeviceSize)(t->width >> level) * (t->height >> level) * t->layers;
@@ -65,8 +73,12 @@ static gtx_result plan_of(const gtx_vk *vk, gtx_vk_model *out, plan *p, gtx_erro
             t->layers > vk->limits.maxImageArrayLayers)
             return gtx_fail(error, GTX_ERROR_LIMIT, "an image of %u x %u x %u is beyond this GPU",
                             t->width, t->height, t->layers);
+        const bool bc = t->format < GTX_FORMAT_EAC_RG11;
+        if (t->block_size && !vk->reads[bc ? GTX_COMPRESS_BC : GTX_COMPRESS_ETC2])
+            return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "the device reads no %s blocks",
+                            bc ? "BC5 and BC7" : "ETC2");
         for (uint32_t k = 0; k < t->levels; ++k)
-            p->at[s][k] = take(&p->all, texels_of(t, k) * stored_size(t));
+            p->at[s][k] = take(&p->all, bytes_of(t, k));
         out->is_filtered[s] = t->is_filtered;
     }
     return GTX_OK;
@@ -75,11 +87,11 @@ static gtx_result plan_of(const gtx_vk *vk, gtx_vk_model *out, plan *p, gtx_erro
 static void copy_texels(uint8_t *to, const gtx_texture *t, uint32_t level)
 {
     const uint8_t *from = t->texels[level];
-    const size_t count = (size_t)texels_of(t, level);
     if (t->format != GTX_FORMAT_RGB8_SRGB) {
-        memcpy(to, from, count * t->texel_size);
+        memcpy(to, from, (size_t)bytes_of(t, level));
         return;
     }
+    const size_t count = (size_t)texels_of(t, level);
     for (size_t i = 0; i < count; ++i, to += 4, from += 3) {
         memcpy(to, from, 3);
         to[3] = 255;
@@ -106,7 +118,14 @@ static VkFormat format_of(const gtx_texture *t)
         [GTX_FORMAT_RGBA8_SRGB] = VK_FORMAT_R8G8B8A8_SRGB,
         [GTX_FORMAT_RGBA8_UINT] = VK_FORMAT_R8G8B8A8_UINT,
         [GTX_FORMAT_RGBA16_UINT] = VK_FORMAT_R16G16B16A16_UINT,
-        [GTX_FORMAT_RGBA32_FLOAT] = VK_FORMAT_R32G32B32A32_SFLOAT};
+        [GTX_FORMAT_RGBA32_FLOAT] = VK_FORMAT_R32G32B32A32_SFLOAT,
+        [GTX_FORMAT_BC5] = VK_FORMAT_BC5_UNORM_BLOCK,
+        [GTX_FORMAT_BC7] = VK_FORMAT_BC7_UNORM_BLOCK,
+        [GTX_FORMAT_BC7_SRGB] = VK_FORMAT_BC7_SRGB_BLOCK,
+        [GTX_FORMAT_EAC_RG11] = VK_FORMAT_EAC_R11G11_UNORM_BLOCK,
+        [GTX_FORMAT_ETC2_RGBA8] = VK_FORMAT_ETC2_R8G8B8A8_UNORM_BLOCK,
+        [GTX_FORMAT_ETC2_RGBA8_SRGB] = VK_FORMAT_ETC2_R8G8B8A8_SRGB_BLOCK,
+        [GTX_FORMAT_ETC2_RGB8_SRGB] = VK_FORMAT_ETC2_R8G8B8_SRGB_BLOCK};
     return formats[t->format];
 }
 

@@ -52,7 +52,7 @@ static void bad_renderers(void **state)
     assert_int_equal(gtx_renderer_create(&desc, &renderer, NULL), GTX_ERROR_ARGUMENT);
     desc.load = gtx_offscreen_load;
     assert_int_equal(gtx_renderer_create(&desc, NULL, NULL), GTX_ERROR_ARGUMENT);
-    desc.reserved[2] = 1;
+    desc.reserved[1] = 1;
     assert_int_equal(gtx_renderer_create(&desc, &renderer, NULL), GTX_ERROR_NOT_ZEROED);
     gtx_renderer_destroy(NULL);
 }

@@ -182,7 +182,10 @@ static void models_and_draws_fit(void **state)
         assert_int_equal(has, t.levels > 0);
         for (uint32_t k = 0; k < t.levels; ++k) {
             assert_non_null(t.texels[k]);
-            all += (uint64_t)(t.width >> k) * (t.height >> k) * t.layers * t.texel_size;
+            const uint64_t width = t.width >> k, height = t.height >> k;
+            all += t.layers * (t.block_size
+                                   ? (width + 3) / 4 * ((height + 3) / 4) * t.block_size
+                                   : width * height * t.texel_size);
         }
     }
     const gtx_model_size size = gtx_model_gpu_size(model);

@@ -29,7 +29,7 @@ static void check_memory(gtx_asset *asset)
         ledger l = {0, 0};
         const gtx_allocator hooks = {ledger_alloc, ledger_free, &l};
         const gtx_model_desc desc = {.allocator = &hooks, .borrow = borrow};
-        const uint64_t said = gtx_model_memory(asset, borrow);
+        const uint64_t said = gtx_model_memory(asset, &desc);
         gtx_model *model;
         gtx_error error = {0};
         must(gtx_model_prepare(asset, &desc, &model, &error), &error);
