@@ -2,6 +2,7 @@
 #include "base/json.h"
 #include "cli/bench/along.hpp"
 #include "cli/bench/cells.hpp"
+#include "cli/bench/memory.hpp"
 #include "cli/guard.hpp"
 
 #include <algorithm>
@@ -15,11 +16,12 @@ const char *sizes, *instances, *methods; /* null: as of the orbit, or of the pat
 constexpr const char *ORBIT_SIZES = "100x100,200x200,400x400,640x480,800x600,1024x768,1280x1024";
 constexpr const char *ORBIT_METHODS = "mesh,simplified,paper,cast,lod,auto";
 constexpr const char *PATH_SIZE = "1280x720", *PATH_METHODS = "mesh,simplified,floor,cast,auto";
+constexpr const char *COMPRESS_SIZES = "100x100,640x480";
 constexpr const char *CELL_METHODS = "paper,cast,cast_fragment";
 const char *path_file;
 uint32_t frames, random_count, seed = 1, repeats = 3;
 double max_error = 0.5, min_iou, budget = 600;
-bool truth, as_json, count_cells, vulkan;
+bool truth, as_json, count_cells, compress, vulkan;
 
 const option options[] = {
     {"sizes", 0, OPTION_STRING, &sizes, "WxH,...",
@@ -54,6 +56,9 @@ const option options[] = {
      1e9},
     {"cells", 0, OPTION_FLAG, &count_cells, nullptr,
      "no times: how many cells rays look at, by paper, cast and cast_fragment", 0, 0},
+    {"compress", 0, OPTION_FLAG, &compress, nullptr,
+     "no times: what the asset takes of the GPU's memory, by texels and by each kind of blocks "
+     "that the driver reads, and what is lost by them; sizes [100x100,640x480]", 0, 0},
     {"vulkan", 0, OPTION_FLAG, &vulkan, nullptr,
      "draw the asset by Vulkan, too, in the same run: paper, cast, lod, auto, cast_fragment, grid",
      0, 0},
@@ -115,6 +120,8 @@ bool clash(const char *one, const char *other)
 bool choices_agree()
 {
     const char *along = path_file ? "path" : "random";
+    if (compress && (as_json || instances || vulkan || count_cells || path_file || random_count))
+        return clash("compress", "others than --sizes and --max-error");
     if (count_cells && (as_json || instances || vulkan))
         return clash(as_json ? "json" : instances ? "instances" : "vulkan", "cells");
     if (path_file && random_count)
@@ -130,7 +137,10 @@ bool choices_agree()
 bool parse_lists(gtx::BenchOptions &out)
 {
     const bool along = path_file || random_count;
-    for (const std::string &word : split(sizes ? sizes : along ? PATH_SIZE : ORBIT_SIZES)) {
+    for (const std::string &word : split(sizes      ? sizes
+                                         : compress ? COMPRESS_SIZES
+                                         : along    ? PATH_SIZE
+                                                    : ORBIT_SIZES)) {
         std::array<uint32_t, 2> size;
         const size_t x = word.find('x');
         if (x == std::string::npos || !parse_number(word.substr(0, x), 1, 8192, size[0]) ||
@@ -283,7 +293,7 @@ int cmd_bench(int argc, char **argv)
         current = files[1];
         gtx::CleanReport cleaned;
         gtx::Mesh mesh;
-        if (!count_cells || random_count)
+        if (!compress && (!count_cells || random_count))
             mesh = gtx::clean_mesh(gtx::import_mesh(files[1], task), task, cleaned);
         gtx::report_warnings(files[1], task.warnings);
         if (random_count)
@@ -293,6 +303,11 @@ int cmd_bench(int argc, char **argv)
             gtx::print_cells_head(files[0]);
             gtx::run_cells(files[0], wanted.along_path ? &path : nullptr, wanted,
                            gtx::print_cells);
+            return int(EXIT_CODE_OK);
+        }
+        if (compress) {
+            gtx::print_memory_head(files[0], wanted);
+            gtx::run_memory(files[0], wanted, gtx::print_memory);
             return int(EXIT_CODE_OK);
         }
         Report report;

@@ -91,6 +91,29 @@ static void vulkan_stands_beside_opengl(void **)
     expect(gtx("bench sphere.gtx sphere.obj --methods cast_vulkan"), 1);
 }
 
+/* A row for texels, and one for each kind of blocks that the driver reads, which take less. */
+static void memory_is_measured(void **)
+{
+    double texels = 0;
+    int kinds = 0;
+    expect(gtx("bench sphere.gtx none.obj --compress --sizes 64x48"), 0);
+    for (const char *row = output; (row = std::strstr(row, "\n| ")); ++row) {
+        char name[16];
+        double bytes, colors, mean, p99;
+        if (std::sscanf(row, "\n| %15[^|]| %lf | %lf | %*[^|]| %*[^|]| %*[^|]| %lf | %lf |", name,
+                        &bytes, &colors, &mean, &p99) != 5)
+            continue; /* the head */
+        const bool normals = std::strchr(name, ',') != nullptr;
+        texels = std::strncmp(name, "texels", 6) ? texels : bytes;
+        assert_true(normals ? bytes < texels && p99 > 0 && mean <= p99 : bytes <= texels);
+        assert_true(normals || p99 < 0.001);
+        ++kinds;
+    }
+    assert_true(texels > 0 && kinds >= 3);
+    for (const char *wrong : {"--json", "--instances 2", "--cells", "--random 2"})
+        expect(gtx("bench sphere.gtx sphere.obj --compress %s", wrong), 1);
+}
+
 static void the_error_follows_the_outline(void **)
 {
     double last = 5;
@@ -166,6 +189,7 @@ int main()
     const CMUnitTest tests[] = {
         cmocka_unit_test(usage_is_exit_1), cmocka_unit_test(every_method_is_measured),
         cmocka_unit_test(vulkan_stands_beside_opengl),
+        cmocka_unit_test(memory_is_measured),
         cmocka_unit_test(the_error_follows_the_outline),
         cmocka_unit_test(the_mesh_has_the_materials),
         cmocka_unit_test(pictures_are_held_against_many_samples),

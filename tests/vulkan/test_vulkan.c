@@ -6,6 +6,7 @@
 #include "frame/planner.h"
 #include "host/target.h"
 #include "render/look.h"
+#include "render/painted.h"
 #include "vulkan/device.h"
 
 /* Every method and both passes with a depth of their own, far and near, one instance and several;
@@ -274,6 +275,35 @@ static void misuse_is_refused(void **state)
     pair_close(s, &p);
 }
 
+/* Both read the same blocks; where a device reads none of a kind, both say so. */
+static void blocks_are_read(void **state)
+{
+    BOTH_OR_SKIP(state);
+    gtx_error error = {0};
+    gtx_asset *plain = fixture_sphere(2, 64, 8);
+    gtx_camera camera = camera_around(plain);
+    const gtx_view view = view_of(&camera);
+    for (int kind = GTX_COMPRESS_BC; kind <= GTX_COMPRESS_ETC2; ++kind) {
+        pair p = {.gl.asset = painted(plain, 3, UINT32_MAX, false)};
+        const gtx_model_desc desc = {.first_provokes = 1, .compress = (gtx_compression)kind,
+                                     .compress_normals = 1};
+        must(gtx_model_prepare(p.gl.asset, &desc, &p.gl.model, &error), &error);
+        must(gtx_model_prepare(p.gl.asset, &desc, &p.model, &error), &error);
+        must(gtx_host_vulkan_begin(d, &error), &error);
+        const gtx_result by_gl = gtx_model_upload(s->renderer, p.gl.model, 0, NULL, &error);
+        const gtx_result by_vk = gtx_vk_upload(vk, d->commands, p.model, &p.uploaded, &error);
+        must(gtx_host_vulkan_run(d, &error), &error);
+        gtx_instance instance = {.model = p.gl.model};
+        memcpy(instance.transform, identity, sizeof identity);
+        if (by_gl || by_vk)
+            assert_true(by_gl == GTX_ERROR_UNSUPPORTED || by_vk == GTX_ERROR_UNSUPPORTED);
+        else
+            expect_alike(s, d, &p, camera, view, &instance, 1, (way){.y_up = 1}, 1000);
+        pair_close(s, &p);
+    }
+    gtx_close(plain);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -284,6 +314,7 @@ int main(void)
         cmocka_unit_test(samples_smooth_outlines),
         cmocka_unit_test(linear_light_is_encoded),
         cmocka_unit_test(ids_and_g_buffers_are_drawn),
+        cmocka_unit_test(blocks_are_read),
         cmocka_unit_test(misuse_is_refused),
         cmocka_unit_test(the_layer_is_silent),
     };

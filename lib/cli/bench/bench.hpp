@@ -48,6 +48,8 @@ struct BenchOptions {
     double budget = 600;                        /* seconds, of all rows */
     bool along_path = false;                    /* for run_path, not run_bench */
     uint32_t repeats = 3;                       /* of a view of a path */
+    gtx_compression compress = GTX_COMPRESS_NONE; /* of the asset's model */
+    bool compress_normals = false;
     bool truth = false;                         /* compare pictures with it, too */
     gtx_host_load load = gtx_offscreen_load;    /* what the renderer is given */
 };

@@ -78,6 +78,8 @@ void BenchScene::load_asset(const std::string &path)
     open.jobs = model.jobs = &jobs;
     open.limits = model.limits = cli_limits;
     model.borrow = 1;
+    model.compress = options_.compress;
+    model.compress_normals = options_.compress_normals;
     const double start = milliseconds();
     require_ok(gtx_open_file(path.c_str(), &open, &asset, &error), error);
     AssetPointer owner(asset);

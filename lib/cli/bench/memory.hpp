@@ -1,0 +1,29 @@
+/* What maps in blocks take of the GPU's memory, and what they lose. */
+#pragma once
+
+#include "cli/bench/bench.hpp"
+
+namespace gtx {
+
+/* A kind of blocks, for all maps but normals or for these too. */
+struct MemoryRow {
+    const char *name;
+    gtx_compression compress;
+    bool normals;
+    uint64_t bytes = 0, color_bytes = 0;
+    double prepare = 0;             /* milliseconds of all processors */
+    /* Of occupied texels of level 0, decibels; 0: there are none. */
+    double color = 0, material = 0, emission = 0;
+    double mean = 0, p99 = 0;       /* of normals, degrees */
+    Vector<double> pictures = {};   /* decibels of cast pictures, a window each; of what is covered,
+                                       to those by texels */
+};
+
+/* Tells texels first. Kinds that the context does not read are left out. Throws as run_bench. */
+void run_memory(const std::string &asset_path, BenchOptions options,
+                const std::function<void(const MemoryRow &)> &tell);
+
+void print_memory_head(const char *scene, const BenchOptions &options);
+void print_memory(const MemoryRow &row);
+
+} // namespace gtx
