@@ -45,7 +45,7 @@ needs_world   := $(needs_cook) stream world
 needs_cli      = $(needs_world) export edit frame render host cli $(vulkan)
 
 rooms := $(ROOMS_CORE) $(ROOMS_COOK) vulkan host cli
-tests := $(filter-out bench common golden run,$(notdir $(wildcard tests/*)))
+tests := $(filter-out bench common golden platforms run,$(notdir $(wildcard tests/*)))
 
 # ---- flags ---------------------------------------------------------------------------------------
 CC  ?= cc
@@ -186,20 +186,20 @@ $(out)/gen/%.map: Makefile
 
 $(so_core): $(call objects_of,$(ROOMS_CORE)) | $(out)/gen/libgeotex.map
 	$(say) LINK $@
-	$(Q)$(CC) $(flags) -shared -Wl,-soname,libgeotex.so.$(SOVERSION) -Wl,--no-undefined \
+	$(Q)$(CC) $(flags) $(LDFLAGS) -shared -Wl,-soname,libgeotex.so.$(SOVERSION) -Wl,--no-undefined \
 	  -Wl,--version-script=$(out)/gen/libgeotex.map -o $@ $^ $(call libs_of,asset)
 	$(Q)ln -sf $(@F) $(out)/libgeotex.so.$(SOVERSION) && ln -sf $(@F) $(out)/libgeotex.so
 
 $(so_cook): $(call objects_of,$(ROOMS_COOK)) $(so_core) | $(out)/gen/libgeotex-cook.map
 	$(say) LINK $@
-	$(Q)$(CXX) $(flags) -shared -Wl,-soname,libgeotex-cook.so.$(SOVERSION) -Wl,--no-undefined \
+	$(Q)$(CXX) $(flags) $(LDFLAGS) -shared -Wl,-soname,libgeotex-cook.so.$(SOVERSION) -Wl,--no-undefined \
 	  -Wl,--version-script=$(out)/gen/libgeotex-cook.map -o $@ \
 	  $(call objects_of,$(ROOMS_COOK) base asset derive trace stream) $(call libs_of,asset mesh)
 	$(Q)ln -sf $(@F) $(out)/libgeotex-cook.so.$(SOVERSION) && ln -sf $(@F) $(out)/libgeotex-cook.so
 
 $(command): $(call objects_of,cli host image $(vulkan)) $(lib_cook) $(lib_core) | $(modules)
 	$(say) LINK $@
-	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host image)
+	$(Q)$(CXX) $(flags) $(LDFLAGS) -o $@ $^ $(call libs_of,asset mesh host image)
 
 $(build)/gtx: $(command) $(modules)
 	$(Q)ln -sf $(config)/gtx $@
@@ -208,7 +208,7 @@ $(build)/gtx: $(command) $(modules)
 $(out)/samples/%: $(out)/samples/%.o $(call objects_of,host image) $(lib_cook) $(lib_core) \
     | $(modules)
 	$(say) LINK $@
-	$(Q)$(CXX) $(flags) -o $@ $^ $(call libs_of,asset mesh host image)
+	$(Q)$(CXX) $(flags) $(LDFLAGS) -o $@ $^ $(call libs_of,asset mesh host image)
 
 # ---- tests: every tests/ROOM/test_*.c(pp) is a program that links its room and what it needs -----
 test_sources := $(filter-out $(if $(vulkan),,tests/vulkan/%),\
@@ -243,7 +243,7 @@ define test_rule
 $(out)/$(basename $(1)): $(out)/$(basename $(1)).o $(common_tests) \
     $(filter-out %/cli/gtx.o,$(call objects_of,$(call test_needs,$(call room,$(1)))))
 	$$(say) LINK $$@
-	$$(Q)$$(CXX) $$(flags) -o $$@ $$^ $$(call libs_of,$$(call test_needs,$(call room,$(1)))) \
+	$$(Q)$$(CXX) $$(flags) $$(LDFLAGS) -o $$@ $$^ $$(call libs_of,$$(call test_needs,$(call room,$(1)))) \
 	  $$(call pkg,--libs,cmocka) $$(libs_$(notdir $(basename $(1))))
 endef
 $(foreach t,$(test_sources),$(eval $(call test_rule,$(t))))
@@ -286,6 +286,9 @@ check: ## every test under the sanitizers, threads under theirs, every file of t
 	$(again) -j$$(nproc) config=sanitize werror=1 build-tests
 	@GTX_CORPUS=all $(MAKE) --no-print-directory config=sanitize run-tests
 	$(again) -j$$(nproc) config=thread werror=1 test-threads
+
+check-platforms: ## core and cooker by other compilers, for Windows, i386 and arm64
+	@tests/platforms/check.sh $(build)/platforms
 
 # ---- the demo ------------------------------------------------------------------------------------
 MODEL ?= $(build)/demo/sculpt.glb
@@ -334,7 +337,7 @@ clean: ## remove what was built
 	rm -rf $(build)
 
 .PHONY: all install install-strip uninstall \
-        dist build-tests run-tests test check demo run-demo bench run-bench \
+        dist build-tests run-tests test check check-platforms deb demo run-demo bench run-bench \
         bench-paths run-bench-paths bench-truth run-bench-truth bench-rays run-bench-rays tune \
         bench-atlas bench-solids run-bench-solids bench-texels run-bench-texels \
         paper-tables run-paper-tables paper-figures run-paper-figures deps help clean

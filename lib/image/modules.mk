@@ -9,7 +9,7 @@ module_grid  := gdal libtiff-4
 $(modules): $(out)/geotex-%.so: lib/%/module.cpp lib/%/module.h Makefile | $(out)/sees/.made
 	@mkdir -p $(@D)
 	$(say) LINK $@
-	$(Q)$(CXX) $(cxxflags) $(call room_flags,$<) $(CXXFLAGS) -shared -o $@ $< \
+	$(Q)$(CXX) $(cxxflags) $(call room_flags,$<) $(CXXFLAGS) $(LDFLAGS) -shared -o $@ $< \
 	  $(call pkg,--libs,$(module_$*))
 	$(Q)for d in $(out)/samples $(sort $(dir $(test_bins))); do \
 	  mkdir -p $$d && ln -sf $(abspath $@) $$d; done
