@@ -69,14 +69,14 @@ enum { /* gtx_view.flags */
  * `max_error` pixels where the asset's bounds are nearest to the camera, or by the finest one if
  * none is; `level` then counts LOD meshes. They write no depth of their own, so that the depth test
  * comes first and multisampling smooths edges; `viewport_height` also sets the mip level of their
- * maps. GTX_METHOD_AUTO draws the same LOD mesh, unless none is fine enough or casting costs less
- * (gtx_costs).
+ * maps. GTX_METHOD_AUTO draws the same LOD mesh where no part of the instance could be drawn by a
+ * coarser one, unless casting costs less wherever that mesh is just fine enough (gtx_costs).
  *
- * Patch by patch. If none is fine enough for all of an instance, or part of it is beside the
- * picture, AUTO draws each patch in view by the coarsest LOD mesh that is fine enough where the
- * patch is nearest, or else as a displaced grid or cast, whichever costs less; so, too, by tiles,
- * two-sided patches of which that mesh has many triangles. Where ways meet, the coarser goes on
- * beneath the finer by a ring of triangles. It casts if `viewport_height` is
+ * Patch by patch. Otherwise, or if part of it is beside the picture, AUTO draws each patch in view
+ * by the coarsest LOD mesh that is fine enough where the patch is nearest, or else as a displaced
+ * grid or cast, whichever costs less; so, too, by tiles, two-sided patches of which that mesh has
+ * many triangles. No patch is drawn coarser than before when it is nearer. Where ways meet, the
+ * coarser goes on beneath the finer by a ring of triangles. It casts if `viewport_height` is
  * unknown, or if `level` is given. With AUTO and LOD patches taken by gtx_model_update have no LOD
  * mesh from then on.
  *

@@ -26,10 +26,9 @@ static const gtx_costs *costs_of(const gtx_draw_call *draw)
  * middle, the spheres of the patches are looked at instead. */
 static const double near_share = 0.9;
 
-/* How large an instance is in the picture. */
+/* The error that an instance is allowed, in object units: at its nearest and its farthest point. */
 typedef struct extent {
-    double error;             /* allowed, in object units at its nearest point */
-    double pixels;            /* that it covers, roughly */
+    double nearest, farthest;
 } extent;
 
 /* The least w of what the patches reach, of w in clip space as a row over object space. */
@@ -49,47 +48,46 @@ static extent measure(const gtx_draw_call *draw, const gtx_model *model,
 {
     const gtx_lod_meshes *lods = &model->lods;
     const float *clip = draw->sight.clip_from_world;
-    double w[4] = {0, 0, 0, clip[15]}, radius = 0; /* w in clip space, as a row over object space */
+    double w[4] = {0, 0, 0, clip[15]};             /* w in clip space, as a row over object space */
     for (int k = 0; k < 4; ++k)
         for (int r = 0; r < 3; ++r)
             w[k] += (double)clip[4 * r + 3] * placed->world[r][k];
-    double nearest = w[3], middle = w[3];
+    double nearest = w[3], farthest = w[3];
     for (int k = 0; k < 3; ++k) {
         const double low = lods->low[k], high = lods->high[k];
         nearest += fmin(w[k] * low, w[k] * high);
-        middle += w[k] * (low + high) / 2;
-        radius += (high - low) * (high - low) / 4;
+        farthest += fmax(w[k] * low, w[k] * high);
     }
-    if (nearest < near_share * middle)
+    if (nearest < near_share * (nearest + farthest) / 2)
         nearest = fmax(nearest, nearest_patch(model, w));
     /* detail[0]: pixels a world unit at w = 1, over the error allowed in pixels. */
     const double scale = draw->sight.detail[0] * gtx_stretch_of(placed);
+    return (extent){fmax(nearest, 0) / scale, fmax(farthest, 0) / scale};
+}
+
+double gtx_allowed_anywhere(const gtx_draw_call *draw, const gtx_model *model,
+                            const gtx_instance_data *placed)
+{
+    return measure(draw, model, placed).nearest;
+}
+
+uint32_t gtx_levels_cast(const gtx_draw_call *draw, const gtx_model *model)
+{
+    const gtx_costs *costs = costs_of(draw);
+    const gtx_lod_meshes *lods = &model->lods;
     const double allowed = draw->view->max_error > 0 ? draw->view->max_error : 0.5;
-    const double across = scale * allowed * sqrt(radius) / fmax(middle, DBL_MIN);
-    return (extent){fmax(nearest, 0) / scale, across * across};
-}
-
-static bool is_cheaper(const gtx_costs *costs, const gtx_model *model, uint32_t level,
-                       double pixels)
-{
-    const double triangles = model->lods.levels[level].triangle_count;
-    return costs->cast_patch * model->patch_count + costs->cast_pixel * pixels <
-           costs->lod_triangle * triangles + costs->lod_pixel * pixels;
-}
-
-/* Whether casting is thought to take less than the level, and to stay so as the instance grows, up
- * to where the finest level is no longer fine enough: it must not be drawn by a mesh once more when
- * it is nearer. */
-static bool is_casting_cheaper(const gtx_costs *costs, const gtx_model *model, uint32_t level,
-                               extent e)
-{
-    const gtx_lod_level *levels = model->lods.levels;
-    bool cheaper = is_cheaper(costs, model, level, e.pixels);
-    for (uint32_t k = 0; k <= level; ++k) {
-        const double growth = fmax(e.error / fmax(levels[k].error, FLT_MIN), 1);
-        cheaper = cheaper && is_cheaper(costs, model, k, growth * growth * e.pixels);
+    double square = 0;
+    for (int k = 0; k < 3; ++k)
+        square += pow((double)lods->high[k] - lods->low[k], 2) / 4;
+    for (uint32_t k = 0; k < lods->level_count; ++k) {
+        const gtx_lod_level *level = &lods->levels[k];
+        const double error = fmax(level->error, FLT_MIN);
+        const double pixels = allowed * allowed * square / (error * error);
+        if (costs->cast_patch * model->patch_count + costs->cast_pixel * pixels >=
+            costs->lod_triangle * level->triangle_count + costs->lod_pixel * pixels)
+            return k;
     }
-    return cheaper;
+    return lods->level_count;
 }
 
 /* A pixel of a grid beside one of an LOD mesh, of the same fit: most are lit at corners. */
@@ -130,16 +128,33 @@ static uint32_t usable_levels(const gtx_lod_meshes *lods)
     return count;
 }
 
-/* What an instance is drawn by that `level` of the LOD mesh, counted from 1, is good enough for. */
-static uint8_t choose(const gtx_draw_call *draw, const gtx_model *model,
-                      const gtx_instance_data *placed, uint32_t level, extent e)
+/* How many levels, the finest first, are within an error. */
+static uint32_t levels_within(const gtx_lod_meshes *lods, uint32_t usable, double error)
 {
-    if (!level)
+    uint32_t level = 0;
+    while (level < usable && lods->levels[level].error <= error)
+        ++level;
+    return level;
+}
+
+/* As a whole only where that draws each patch as it would be drawn by itself: a part must not be
+ * drawn coarser again when the instance is nearer. `level` counts from 1. */
+static uint8_t choose(const gtx_draw_call *draw, const gtx_model *model,
+                      const gtx_instance_data *placed, uint32_t level, uint32_t usable, extent e)
+{
+    const gtx_lod_meshes *lods = &model->lods;
+    const bool far = level && lods->levels[level - 1].far;
+    uint32_t mixed = 0;
+    while (mixed < usable && !lods->levels[mixed].far)
+        ++mixed;
+    if (far)
+        return level <= gtx_levels_cast(draw, model) ? GTX_DRAW_CAST : (uint8_t)level;
+    if (!level || levels_within(lods, mixed, e.farthest) > level)
         return GTX_DRAW_PATCHES;
-    if (is_casting_cheaper(costs_of(draw), model, level - 1, e))
+    if (level <= gtx_levels_cast(draw, model))
         return GTX_DRAW_CAST;
-    const bool far = model->lods.levels[level - 1].far;
-    return !far && is_cut(draw, model, placed) ? GTX_DRAW_PATCHES : (uint8_t)level;
+    const bool whole = gtx_plan_suits_whole(draw, model, level - 1) && !is_cut(draw, model, placed);
+    return whole ? (uint8_t)level : GTX_DRAW_PATCHES;
 }
 
 gtx_result gtx_choose(const gtx_draw_call *draw, const gtx_model *model,
@@ -160,12 +175,11 @@ gtx_result gtx_choose(const gtx_draw_call *draw, const gtx_model *model,
     extent e = {0, 0};
     if (by_error) {
         e = measure(draw, model, placed);
-        while (level < usable && lods->levels[level].error <= e.error)
-            ++level;
+        level = levels_within(lods, usable, e.nearest);
     }
     if (forced && usable)
         *out = (uint8_t)(level ? level : 1);
     else if (!forced)
-        *out = choose(draw, model, placed, level, e);
+        *out = choose(draw, model, placed, level, usable, e);
     return GTX_OK;
 }

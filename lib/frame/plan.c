@@ -78,10 +78,25 @@ static int compare(const void *a, const void *b)
  * random views of a dragon, of 150 a patch, take up to a fifth longer. */
 static const uint32_t most_lod_triangles = 400;
 
+static bool is_too_fine(const gtx_lod_level *level, uint32_t i)
+{
+    return level->first[i + 1] - level->first[i] > most_lod_triangles;
+}
+
+bool gtx_plan_suits_whole(const gtx_draw_call *draw, const gtx_model *model, uint32_t level)
+{
+    const gtx_lod_meshes *lods = &model->lods;
+    bool suits = true;
+    for (uint32_t i = lods->one_sided; i < lods->patch_count && gtx_tiles_suit(draw); ++i)
+        suits = suits && !is_too_fine(&lods->levels[level], i);
+    return suits;
+}
+
 /* What a draw may do with patches. */
 typedef struct choice {
-    uint32_t levels;          /* of the LOD mesh */
+    uint32_t first, levels;   /* of the LOD mesh: levels first..levels - 1 */
     bool tiles;
+    double least;             /* allowed everywhere: spheres reach beyond the bounds */
 } choice;
 
 /* The way of the patch lods.order[i] in view. */
@@ -93,9 +108,9 @@ static uint8_t way_of(const gtx_frustum *f, const gtx_model *model, uint32_t i, 
     uint8_t way = GTX_BY_HEIGHT_FIELD;
     if (!c.levels || model->lods.edited[patch])
         return way;
-    const double allowed = gtx_allowed_error(f, model->facts[patch].sphere);
-    for (uint32_t k = 0; k < c.levels && lod[k].error <= allowed; ++k)
-        if (!thin || lod[k].first[i + 1] - lod[k].first[i] <= most_lod_triangles)
+    const double allowed = fmax(c.least, gtx_allowed_error(f, model->facts[patch].sphere));
+    for (uint32_t k = c.first; k < c.levels && lod[k].error <= allowed; ++k)
+        if (!thin || !is_too_fine(&lod[k], i))
             way = (uint8_t)(GTX_BY_LOD + k);
     return way;
 }
@@ -105,7 +120,8 @@ void gtx_plan_patches(const gtx_draw_call *draw, const gtx_model *model,
 {
     gtx_plan *plan = &draw->planner->plan;
     const gtx_frustum f = gtx_frustum_of(draw, model, placed);
-    const choice c = {levels, !model->bare && gtx_tiles_suit(draw)};
+    const choice c = {gtx_levels_cast(draw, model), levels, !model->bare && gtx_tiles_suit(draw),
+                      levels ? gtx_allowed_anywhere(draw, model, placed) : 0};
     plan->count = 0;
     plan->any_lod = false;
     for (uint32_t n = 0; n < model->patch_count; ++n) {

@@ -35,6 +35,12 @@ enum { GTX_DRAW_PATCHES = 0, GTX_DRAW_CAST = 255 };
  * none). */
 gtx_result gtx_choose(const gtx_draw_call *draw, const gtx_model *model,
                       const gtx_instance_data *placed, uint8_t *out, gtx_error *error);
+/* choose.c: the error that an instance is allowed at its nearest point, in object units. */
+double gtx_allowed_anywhere(const gtx_draw_call *draw, const gtx_model *model,
+                            const gtx_instance_data *placed);
+/* choose.c: how many levels of the LOD mesh, the finest first, are never drawn, for casting is
+ * thought to take less where each is just fine enough. */
+uint32_t gtx_levels_cast(const gtx_draw_call *draw, const gtx_model *model);
 /* choose.c: what displaced grids of so many triangles are thought to take, over so many pixels; and
  * casting so many patches. */
 double gtx_grid_cost(const gtx_draw_call *draw, uint32_t triangles, double pixels);
@@ -46,6 +52,8 @@ void gtx_plan_free(gtx_planner *planner);
 /* The kind of proxy that all patches of an instance get, if its bounds alone tell, or 0. */
 uint32_t gtx_plan_whole(const gtx_draw_call *draw, const gtx_model *model,
                         const gtx_instance_data *placed);
+/* Whether no two-sided patch has too many triangles of the level to be drawn by them. */
+bool gtx_plan_suits_whole(const gtx_draw_call *draw, const gtx_model *model, uint32_t level);
 /* Fills the planner's plan: each patch in view, by the coarsest of the first `levels` of the LOD
  * mesh that is good enough where it is, or by its height field; of those that are edited, the
  * latter. */

@@ -1,7 +1,6 @@
 /* Height fields drawn as displaced grids: what casting shows, however coarse; no more
  * blocks than are in view; and beside LOD meshes without a hole. */
-#include "render/renderer.h"
-#include "pictures.h"
+#include "parts.h"
 
 static gtx_view view_from(const gtx_asset *asset, float azimuth, float elevation, float distance)
 {
@@ -10,26 +9,6 @@ static gtx_view view_from(const gtx_asset *asset, float azimuth, float elevation
     camera.elevation = elevation;
     camera.distance = distance;
     gtx_view view = view_of(&camera);
-    view.viewport_height = STAGE_HEIGHT;
-    return view;
-}
-
-/* The eye near the surface of the sphere, looking along it; the near plane as close. */
-static gtx_view standing(int way)
-{
-    const gtx_camera around = {.radius = (float)radius, .azimuth = 37.0f * (float)way,
-                               .elevation = 11.0f * (float)(way % 5) - 20, .distance = 1.08f};
-    gtx_view view = view_of(&around);
-    const float near = 0.01f, far = 8;
-    view.projection[10] = -(far + near) / (far - near);
-    view.projection[14] = -2 * near * far / (far - near);
-    /* Turned up by 55 degrees: the horizon is in the picture. */
-    const double c = cos(0.96), n = sin(0.96);
-    const gtx_view flat = view;
-    for (int k = 0; k < 4; ++k) {
-        view.view[4 * k + 1] = (float)(c * flat.view[4 * k + 1] + n * flat.view[4 * k + 2]);
-        view.view[4 * k + 2] = (float)(c * flat.view[4 * k + 2] - n * flat.view[4 * k + 1]);
-    }
     view.viewport_height = STAGE_HEIGHT;
     return view;
 }
@@ -124,7 +103,7 @@ static void coarser_keeps_the_error(void **state)
     subject shown = subject_open(s, fixture_sphere(radius, TEXELS, 16));
     uint64_t coarse = 0, fine = 0;
     for (int way = 0; way < 8; ++way) {
-        gtx_view view = standing(way);
+        gtx_view view = standing((float)way);
         uint64_t last = UINT64_MAX;
         draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &second);
         static const float errors[] = {1e-3f, 0.25f, 0.5f, 1};
@@ -201,7 +180,7 @@ static void ways_meet_without_a_hole(void **state)
     subject shown = sphere_open(s);
     uint32_t mixed = 0, levels = 0;
     for (int way = 0; way < 26; ++way) {
-        gtx_view view = standing(way);
+        gtx_view view = standing((float)way);
         for (int e = 0; e < 12; ++e) {
             view.max_error = 0.3f * powf(1.6f, (float)e);
             draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &first);
@@ -230,7 +209,7 @@ static uint32_t by_many_triangles(stage *s, uint16_t flags, bool tiles)
     subject shown = subject_open(s, with_lod_as(sphere, radius, LOD_LEVELS, flags, LOD_COLORED));
     uint32_t count = 0;
     for (int way = 0; way < 8; ++way) {
-        gtx_view view = standing(way);
+        gtx_view view = standing((float)way);
         view.viewport_width = tiles ? STAGE_WIDTH : 0;
         for (view.max_error = 0.3f; view.max_error < 20; view.max_error *= 1.6f) {
             draw(s, &view, GTX_METHOD_AUTO, &shown.instance, 1, &first);

@@ -1,5 +1,6 @@
 /* The LOD mesh: drawn as casting draws, at the level that the error allows. */
-#include "pictures.h"
+#include "frame/frustum.h"
+#include "parts.h"
 
 /* From many sides: no hole, the outline, and colours, which show the normals. */
 static void as_cast(void **state)
@@ -105,6 +106,31 @@ static uint32_t drawn_as(stage *s, const gtx_view *view, const gtx_instance *ins
     return 0;
 }
 
+/* Every part by the coarsest level within the error where its sphere is nearest, of a whole that is
+ * `distance` away; or all by one that is within it everywhere. Returns whether they were looked at
+ * one by one. */
+static bool each_by_its_own(stage *s, const gtx_view *view, const subject *shown,
+                            double distance)
+{
+    gtx_planner *planner = &s->renderer->planner;
+    const gtx_lod_meshes *lods = &shown->model->lods;
+    int levels[6];
+    parts_of(s, view, &shown->instance, levels);
+    const bool whole = planner->ways[0] != GTX_DRAW_PATCHES;
+    const gtx_frustum f = gtx_frustum_of(&planner->call, shown->model, planner->instances);
+    for (int p = 0; p < 6; ++p) {
+        const double allowed =
+            fmax(gtx_allowed_error(&f, shown->model->facts[p].sphere), distance / f.scale);
+        int expected = 0;
+        while (expected < LOD_LEVELS && lods->levels[expected].error <= allowed)
+            ++expected;
+        if (whole ? levels[p] > expected : levels[p] != expected)
+            fail_msg("patch %d: level %d for %d, error %g", p, levels[p], expected,
+                     (double)view->max_error);
+    }
+    return !whole;
+}
+
 /* The coarsest level within the error at the nearest corner of the bounds. */
 static void the_coarsest_within_the_error(void **state)
 {
@@ -116,24 +142,25 @@ static void the_coarsest_within_the_error(void **state)
     view.viewport_height = STAGE_HEIGHT;
     const double distance = camera.distance * camera.radius - radius;
     const double pixels = view.projection[5] * STAGE_HEIGHT / 2 / distance;
+    uint32_t by_parts = 0;
     for (uint32_t k = 0; k < LOD_LEVELS; ++k) {
         gtx_lod_mesh level;
         assert_int_equal(gtx_get_lod_mesh(shown.asset, k, &level), GTX_OK);
         for (int over = 0; over < 2; ++over) {
             view.max_error = (float)(level.error * pixels * (over ? 1.02 : 0.98));
-            view.method = GTX_METHOD_AUTO; /* none of them where none is within the error */
-            assert_int_equal(drawn_as(s, &view, &shown.instance), k + (over ? 1 : 0));
+            by_parts += each_by_its_own(s, &view, &shown, distance);
             view.method = GTX_METHOD_LOD; /* at its finest where none is within the error */
             assert_int_equal(drawn_as(s, &view, &shown.instance), k + (over || !k ? 1 : 0));
         }
     }
-    view.method = GTX_METHOD_AUTO;
+    assert_true(by_parts > 0 && by_parts < 2 * LOD_LEVELS);
     /* A large instance far away is as near. */
     for (int i = 0; i < 15; i += 5)
         shown.instance.transform[i] = 3;
     camera.radius *= 3;
     view = view_of(&camera);
     view.viewport_height = STAGE_HEIGHT;
+    view.method = GTX_METHOD_LOD;
     gtx_lod_mesh level;
     assert_int_equal(gtx_get_lod_mesh(shown.asset, 1, &level), GTX_OK);
     for (int over = 0; over < 2; ++over) {
@@ -141,40 +168,6 @@ static void the_coarsest_within_the_error(void **state)
         assert_int_equal(drawn_as(s, &view, &shown.instance), over ? 2 : 1);
     }
     subject_close(s, &shown);
-}
-
-/* As a camera comes nearer the level is never a coarser one, nor a mesh again once it was cast, not
- * even where casting is cheap while it covers few pixels. */
-static void nearer_is_never_coarser(void **state)
-{
-    STAGE_OR_SKIP(state);
-    gtx_renderer *usual = s->renderer;
-    gtx_error error = {0};
-    const gtx_renderer_desc desc = {.load = gtx_offscreen_load, .log = stage_log,
-                                    .costs = {100, 25, 500, 160, 350}};
-    must(gtx_renderer_create(&desc, &s->renderer, &error), &error);
-    subject shown = sphere_open(s);
-    gtx_camera camera = camera_around(shown.asset);
-    uint32_t changes = 0;
-    for (float allowed = 0.5f; allowed > 0.02f; allowed /= 2) {
-        uint32_t before = LOD_LEVELS;
-        for (camera.distance = 60; camera.distance > 2.9f; camera.distance *= 0.85f) {
-            gtx_view view = view_of(&camera);
-            view.viewport_height = STAGE_HEIGHT;
-            view.max_error = allowed;
-            view.method = GTX_METHOD_AUTO;
-            const uint32_t level = drawn_as(s, &view, &shown.instance);
-            if (level > before)
-                fail_msg("level %u after %u, %g radii away, within %g pixels", level, before,
-                         (double)camera.distance, (double)allowed);
-            changes += level != before;
-            before = level;
-        }
-    }
-    assert_true(changes > 4);
-    subject_close(s, &shown);
-    gtx_renderer_destroy(s->renderer);
-    s->renderer = usual;
 }
 
 static void casts_when_it_must(void **state)
@@ -312,7 +305,6 @@ int main(void)
         cmocka_unit_test(one_material_looks_the_same),
         cmocka_unit_test(levels_keep_the_looks),
         cmocka_unit_test(the_coarsest_within_the_error),
-        cmocka_unit_test(nearer_is_never_coarser),
         cmocka_unit_test(casts_when_it_must),
         cmocka_unit_test(costs_are_compared),
         cmocka_unit_test(a_zoom_is_smooth),

@@ -1,0 +1,45 @@
+/* Views from near a sphere, and which level of the LOD mesh AUTO draws each part of it by. */
+#ifndef GTX_TESTS_PARTS_H
+#define GTX_TESTS_PARTS_H
+
+#include "render/renderer.h"
+#include "pictures.h"
+
+/* The eye near the surface of the sphere, looking along it; the near plane as close. */
+static inline gtx_view standing(float way)
+{
+    const gtx_camera around = {.radius = (float)radius, .azimuth = 37 * way,
+                               .elevation = 11 * fmodf(way, 5) - 20, .distance = 1.08f};
+    gtx_view view = view_of(&around);
+    const float near = 0.01f, far = 8;
+    view.projection[10] = -(far + near) / (far - near);
+    view.projection[14] = -2 * near * far / (far - near);
+    /* Turned up by 55 degrees: the horizon is in the picture. */
+    const double c = cos(0.96), n = sin(0.96);
+    const gtx_view flat = view;
+    for (int k = 0; k < 4; ++k) {
+        view.view[4 * k + 1] = (float)(c * flat.view[4 * k + 1] + n * flat.view[4 * k + 2]);
+        view.view[4 * k + 2] = (float)(c * flat.view[4 * k + 2] - n * flat.view[4 * k + 1]);
+    }
+    view.viewport_height = STAGE_HEIGHT;
+    return view;
+}
+
+/* What AUTO draws each patch by: n for level n - 1, 0 for its height field, -1: out of view. */
+static inline void parts_of(stage *s, const gtx_view *view, const gtx_instance *instance,
+                            int levels[6])
+{
+    const gtx_planner *planner = &s->renderer->planner;
+    draw(s, view, GTX_METHOD_AUTO, instance, 1, &first);
+    const uint8_t whole = planner->ways[0];
+    for (int p = 0; p < 6; ++p) {
+        const int way = planner->plan.ways[p];
+        levels[p] = whole == GTX_DRAW_CAST       ? 0
+                    : whole != GTX_DRAW_PATCHES  ? whole
+                    : way >= GTX_BY_LOD          ? way - GTX_BY_LOD + 1
+                    : way == GTX_BY_HEIGHT_FIELD ? 0
+                                                 : -1;
+    }
+}
+
+#endif
