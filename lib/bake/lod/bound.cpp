@@ -140,10 +140,12 @@ Strayed Bounds::of(const LodLevel &level, double speck) const
     Strayed out = sample(source_, specks, there, task_);
     back.found = std::max(out.most, sample(made, none, back, task_).most);
     task_.limits.work_again();
-    there.found = greatest(made, none, back, task_);
-    task_.limits.work_again();
+    /* The source first: it takes less, and its spots spare the level most of its looks. */
+    there.found = back.found;
     back.found = greatest(source_, specks, there, task_);
-    out.most = back.most();
+    task_.limits.work_again();
+    there.found = greatest(made, none, back, task_);
+    out.most = there.most();
     return out;
 }
 
