@@ -21,20 +21,27 @@ layout(location = 0) in vec3 gtx_position;  /* in steps of the level */
 #endif
 layout(location = 1) in uint gtx_patch;
 #ifdef GTX_SINGLE
-uniform vec4 gtx_place[3];                  /* what follows, of the only instance */
+uniform vec4 gtx_place[3];                  /* what follows, of the only instance: depth needs no
+                                               more, and WebGL draws nothing by attributes that
+                                               are not enabled */
 #define gtx_world_x gtx_place[0]
 #define gtx_world_y gtx_place[1]
 #define gtx_world_z gtx_place[2]
+#define gtx_object_x vec4(0.0)
+#define gtx_object_y vec4(0.0)
+#define gtx_object_z vec4(0.0)
+#define gtx_tint vec4(0.0)
+#define gtx_instance 0u
 #else
 layout(location = 2) in vec4 gtx_world_x;   /* as in geotex_proxy.vert */
 layout(location = 3) in vec4 gtx_world_y;
 layout(location = 4) in vec4 gtx_world_z;
-#endif
 layout(location = 5) in vec4 gtx_object_x;
 layout(location = 6) in vec4 gtx_object_y;
 layout(location = 7) in vec4 gtx_object_z;
 layout(location = 8) in vec4 gtx_tint;
 layout(location = 9) in uint gtx_instance;
+#endif
 
 invariant gl_Position;                      /* bit for bit what a depth prepass has */
 

@@ -58,6 +58,9 @@ export class Model {
   readonly gpuBytes: number;
   /** Sends up to `maxBytes`, 0 for all; returns whether that was the rest. Draws send all. */
   upload(maxBytes?: number): boolean;
+  /** Blends a colour (sRGB, 0 to 1) into those around a point, less towards `radius`, by `strength`
+   * (1); the asset keeps it. False where it meets nothing, or there are no colours. */
+  paint(point: Numbers, radius: number, color: number[], strength?: number): boolean;
   dispose(): void;
 }
 

@@ -10,7 +10,7 @@
 import createCore from './core.js';
 import {failure, GeotexError, infoOf, openBytes, openPrefix, resourcesOf, withBytes} from './inside.js';
 import {State} from './state.js';
-import {Upload} from './upload.js';
+import {Slot, unpackPlainly, Upload} from './upload.js';
 import {Workshop} from './workshop.js';
 
 export {GeotexError};
@@ -97,8 +97,36 @@ export class Model {
     const {core} = this.geotex;
     this.geotex.withNumbers([], (_, names) => core._gtxw_model_sent(this.handle, names),
                             this.#upload.names);
+    this.names = this.#upload.names;
     this.#upload = this.resources = null;
     this.ready = true;
+  }
+
+  /* Blends a colour into those around a point of the asset's space, less towards the radius: sRGB,
+   * 0 to 1. The asset keeps it. False where it meets nothing, or there are no colours. */
+  paint(point, radius, color, strength = 1) {
+    const g = this.geotex, {core, gl} = g, {asset} = this;
+    if (!this.ready || !asset.hasColor)
+      return false;
+    const brush = [...point, radius, ...color.map((c) => 255 * c), strength];
+    const at = g.must(g.withNumbers(brush, (from) => core._gtxw_paint(asset.handle, from))) / 4;
+    const count = core.HEAPU32[at], rows = core.HEAPU32.slice(at + 1, at + 1 + 5 * count);
+    g.around(() => {
+      unpackPlainly(gl);
+      gl.bindTexture(gl.TEXTURE_2D_ARRAY, core.GL.textures[this.names[Slot.COLORS]]);
+      for (let level = 0; level < asset.mipCount; ++level) {
+        const wide = asset.pageWidth >> level, high = asset.pageHeight >> level;
+        const colors = core._gtxw_colors(asset.handle, level);
+        gl.pixelStorei(gl.UNPACK_ROW_LENGTH, wide);
+        for (let i = 0; i < 5 * count; i += 5) {
+          const [x, y, w, h] = [1, 2, 3, 4].map((k) => rows[i + k] >> level), page = rows[i];
+          const from = colors + 4 * ((page * high + y) * wide + x);
+          gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, level, x, y, page, w, h, 1, gl.RGBA,
+                           gl.UNSIGNED_BYTE, core.HEAPU8.subarray(from, from + 4 * h * wide));
+        }
+      }
+    });
+    return count > 0;
   }
 
   /* Frees the core's side, and what is on the GPU. */

@@ -1,4 +1,4 @@
-import type {Loader, LoadingManager, Mesh, WebGLRenderer} from 'three';
+import type {Color, Loader, LoadingManager, Mesh, Vector3, WebGLRenderer} from 'three';
 import type {Asset, Model} from './geotex.js';
 
 export {Method} from './geotex.js';
@@ -15,6 +15,10 @@ export class GeotexModel extends Mesh {
   method: number;
   /** Pixels that what is drawn may be off. */
   maxError: number;
+  /** Blends `color` into those around a point of the world, less towards `radius`, by `strength` (1).
+   * Clones show it, too. False where it meets nothing, or the asset has no colours. The first call
+   * opens the asset here. */
+  paint(point: Vector3, radius: number, color: Color, strength?: number): boolean;
   /** Frees the model and its asset, which clones share. */
   dispose(): void;
 }

@@ -134,6 +134,13 @@ export class GeotexModel extends Mesh {
     meet(this.asset, this.matrixWorld, this, raycaster, intersects);
   }
 
+  /* Blends a colour into those around a point of the world; clones show it, too. */
+  paint(point, radius, color, strength) {
+    const place = this.worldToLocal(point.clone()), scale = this.matrixWorld.getMaxScaleOnAxis();
+    return this.model.paint(place.toArray(), radius / scale,
+                            color.clone().convertLinearToSRGB().toArray(), strength);
+  }
+
   /* Frees the model and its asset, which clones share. */
   dispose() {
     this.#bridge.renderer.state.useProgram(null); /* which the material may take with it */

@@ -13,6 +13,17 @@ const FORMATS = [null,
   ['RGBA32F', 'RGBA', 'FLOAT', false, Float32Array]];
 const INDEX_BUFFERS = new Set([1, 3]);
 
+/* As gtx_slot. */
+export const Slot = Object.freeze({COLORS: 3});
+
+export function unpackPlainly(gl) {
+  gl.bindBuffer(gl.PIXEL_UNPACK_BUFFER, null);
+  for (const name of ['ROW_LENGTH', 'SKIP_ROWS', 'SKIP_PIXELS', 'SKIP_IMAGES', 'IMAGE_HEIGHT'])
+    gl.pixelStorei(gl['UNPACK_' + name], 0);
+  gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+  gl.activeTexture(gl.TEXTURE0);
+}
+
 /* The glue's number of an object, which the core knows it by. */
 function named(GL, table, object) {
   const name = GL.getNewId(table);
@@ -85,11 +96,7 @@ export class Upload {
   /* Up to so many bytes, but a row at least. Whether that was the rest. */
   send(bytes) {
     const gl = this.#gl;
-    gl.bindBuffer(gl.PIXEL_UNPACK_BUFFER, null);
-    for (const name of ['ROW_LENGTH', 'SKIP_ROWS', 'SKIP_PIXELS', 'SKIP_IMAGES', 'IMAGE_HEIGHT'])
-      gl.pixelStorei(gl['UNPACK_' + name], 0);
-    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-    gl.activeTexture(gl.TEXTURE0);
+    unpackPlainly(gl);
     gl.bindVertexArray(this.array);
     while (this.#pieces.length && bytes > 0) {
       const piece = this.#pieces[this.#pieces.length - 1], {row, rows, at} = piece;

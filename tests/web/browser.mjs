@@ -13,11 +13,14 @@ const modules = join(app, 'node_modules'), here = dirname(fileURLToPath(import.m
 const {page, address, close} = await open(modules, {
   modules, tests: here, app: join(app, 'dist'), asset: dirname(asset),
   samples: join(here, '../../samples/web')});
-let failed = 0, workers = 0;
+let failed = 0, workers = 0, refused = 0; /* by WebGL */
 page.on('workercreated', () => ++workers);
 try {
   await mkdir(pictures, {recursive: true});
-  page.on('console', (message) => console.log('# ' + message.text()));
+  page.on('console', (message) => {
+    console.log('# ' + message.text());
+    refused += /GL_INVALID|INVALID_OPERATION/.test(message.text()) ? 1 : 0;
+  });
   await page.goto(`${address}/tests/checks.html?asset=/asset/${basename(asset)}`);
   const names = await page.waitForFunction('window.checks && Object.keys(checks)',
                                            {timeout: 60000}).then((h) => h.jsonValue());
@@ -41,6 +44,24 @@ try {
       .then(() => new Promise((seen) => setTimeout(seen, 1000)))
       .then(() => page.screenshot({path: join(pictures, 'viewer.png')}))
       .then(() => tell('the_viewer_shows_it', ''), (fault) => tell('the_viewer_shows_it', fault));
+  const museum = async () => {
+    await page.goto(`${address}/samples/museum.html?asset=/asset/${basename(asset)},/asset/small.gtx`);
+    await page.waitForFunction('document.title === "shown"', {timeout: 60000});
+    const shot = (name) => page.screenshot({path: join(pictures, name + '.png')});
+    await new Promise((seen) => setTimeout(seen, 1000));
+    const {width, height} = page.viewport();
+    await shot('museum');
+    await page.mouse.move(width * 0.48, height * 0.42);
+    await page.mouse.down();
+    await page.mouse.move(width * 0.54, height * 0.44, {steps: 2});
+    await page.mouse.up();
+    await page.waitForFunction('document.title === "painted"', {timeout: 60000});
+    await new Promise((seen) => setTimeout(seen, 1000));
+    await shot('museum_painted');
+  };
+  await museum().then(() => tell('the_museum_is_painted', ''),
+                      (fault) => tell('the_museum_is_painted', fault));
+  tell('webgl_takes_all_that_is_asked', refused ? `${refused} calls are refused` : '');
 } finally {
   await close();
 }

@@ -209,6 +209,32 @@ const checks = {
     geotex.dispose();
   },
 
+  async paint_stays_where_it_was_put() {
+    const gl = context(), geotex = await Geotex.create(gl), {asset, model} = await geotex.load(bytes);
+    const camera = cameraOf(asset), from = camera.position.toArray();
+    const to = camera.getWorldDirection(new THREE.Vector3()).toArray();
+    const shown = (method) => {
+      clear(gl);
+      geotex.draw(viewOf(asset, {method, ambient: 1}), [{model}]);
+      expect(gl.getError() === 0, 'WebGL reports an error');
+      return read(gl);
+    };
+    for (const method of [Method.CAST, Method.LOD]) {
+      const before = shown(method), hit = asset.raycast(from, to);
+      const color = method === Method.CAST ? [1, 0, 0] : [0, 0, 1], radius = asset.max[0] / 8;
+      expect(model.paint(hit.point, radius, color), 'nothing is met');
+      const after = shown(method), middle = 4 * (HEIGHT / 2 * WIDTH + WIDTH / 2);
+      const differ = apart(before, after, 8), painted = asset.raycast(from, to).color;
+      expect(differ > 0.005 && differ < 0.3, `${(100 * differ).toFixed(1)} % are painted`);
+      expect([0, 1, 2].every((k) => Math.abs(after[middle + k] - 255 * color[k]) < 70),
+             `${after.slice(middle, middle + 3)} in the middle`);
+      expect([0, 1, 2].every((k) => Math.abs(painted[k] - color[k]) < 0.2), `a ray sees ${painted}`);
+    }
+    expect(!model.paint([1e6, 0, 0], 1, [0, 0, 0]), 'something is met in nowhere');
+    geotex.dispose();
+    return gl.canvas;
+  },
+
   async uploads_come_in_slices() {
     const gl = context(), geotex = await Geotex.create(gl);
     const asset = geotex.open(bytes), model = geotex.model(asset);
