@@ -47,6 +47,8 @@ const kinds = {
     await model.complete;
     /* The module's heap, what is on the GPU, and the file, from which a lost context comes back. */
     const heap = model.model.geotex.core.HEAPU8.length;
+    console.log(`${heap} bytes of heap, of these ${model.model.cpuBytes} of the plan; ` +
+                `${model.model.gpuBytes} on the GPU`);
     return {object: model, memory: heap + model.model.gpuBytes + model.asset.fileBytes,
             close: () => model.dispose()};
   },

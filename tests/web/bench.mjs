@@ -8,6 +8,7 @@ import {open} from './serve.mjs';
 const [, , app, folder, ...names] = process.argv;
 const {page, address, close} = await open(join(app, 'node_modules'), {
   modules: join(app, 'node_modules'), tests: dirname(fileURLToPath(import.meta.url)), folder});
+page.on('console', (m) => m.text().includes('heap') && console.error(m.text()));
 try {
   await page.goto(`${address}/tests/bench.html`);
   await page.waitForFunction('window.measure', {timeout: 60000});
