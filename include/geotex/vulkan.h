@@ -13,8 +13,7 @@
  *     gtx_vk_next_frame(vk);                                               once a frame
  *     gtx_vk_draw(vk, commands, &target, &view, placed, count, &error);    inside a render pass
  *
- * The picture is that of render.h. Not there yet: an engine's own fragment main, rays in shaders,
- * gtx_model_update.
+ * The picture is that of render.h. Not there yet: rays in shaders, gtx_model_update.
  *
  * State. gtx_vk_draw binds a graphics pipeline, descriptor set 0, vertex buffers 0 and 1 and an
  * index buffer. Viewport and scissor are dynamic, and the host's; other dynamic state is not used.
@@ -95,6 +94,42 @@ typedef struct gtx_vk_instance {
 GTX_API gtx_result gtx_vk_draw(gtx_vk *vk, VkCommandBuffer commands, const gtx_vk_target *target,
                                const gtx_view *view, const gtx_vk_instance *instances,
                                uint32_t count, gtx_error *error);
+
+/* ---- an engine's own fragment main ------------------------------------------------------- */
+
+/* Pipelines whose fragments are an engine's: as gtx_shading, but compiled by the engine. */
+typedef struct gtx_vk_shading gtx_vk_shading;
+
+typedef struct gtx_vk_shading_desc {
+    /* The SPIR-V of the texts of gtx_pipeline_source(pipeline, GTX_STAGE_FRAGMENT, its own main)
+     * behind `#version 450`, whose entry point is `main`, and its bytes. Asked for each pipeline
+     * whose gtx_pipeline.own_main is 1; only needed until the next call. NULL is an error, but for
+     * GTX_BUFFER_TILE_CORNERS, where it means that nothing is cast by tiles. */
+    const uint32_t *(*fragment)(uint32_t pipeline, size_t *bytes, void *user);
+    void *user;
+    /* What the main has besides: descriptor sets 1 and on, and constants of the fragment stage. */
+    const VkDescriptorSetLayout *set_layouts;
+    const VkPushConstantRange *push_constants;
+    uint32_t set_layout_count, push_constant_count;
+    uint32_t reserved[4];
+} gtx_vk_shading_desc;
+
+/* Errors: ARGUMENT, NOT_ZEROED, MEMORY, GL. */
+GTX_API gtx_result gtx_vk_shading_create(gtx_vk *vk, const gtx_vk_shading_desc *desc,
+                                         gtx_vk_shading **out, gtx_error *error);
+/* No command that names it may be in execution. NULL is fine. */
+GTX_API void gtx_vk_shading_destroy(gtx_vk *vk, gtx_vk_shading *shading);
+/* Its layout, for binding sets 1 and on and pushing constants before gtx_vk_draw_shaded, which
+ * binds set 0 alone. VK_NULL_HANDLE for NULL. */
+GTX_API VkPipelineLayout gtx_vk_shading_layout(const gtx_vk_shading *shading);
+
+/* gtx_vk_draw by an engine's own main, in the forward pass; with GTX_VIEW_SHADING_BY_TILES by
+ * tiles, where rays are cast so. Errors: as gtx_vk_draw; UNSUPPORTED with GTX_VIEW_BY_SAMPLES. */
+GTX_API gtx_result gtx_vk_draw_shaded(gtx_vk *vk, VkCommandBuffer commands,
+                                      const gtx_vk_target *target, const gtx_view *view,
+                                      const gtx_vk_shading *shading,
+                                      const gtx_vk_instance *instances, uint32_t count,
+                                      gtx_error *error);
 
 #ifdef __cplusplus
 }

@@ -53,6 +53,8 @@ static gtx_result load(gtx_vk *vk, const gtx_vk_desc *desc, gtx_error *error)
     vk->reads[GTX_COMPRESS_ETC2] = reads(desc, VK_FORMAT_ETC2_R8G8B8A8_UNORM_BLOCK);
     const gtx_planner_desc planner = {.allocator = &vk->allocator, .costs = desc->costs,
                                       .max_tile_texels = tile_texels(desc, &of)};
+    vk->own = planner;
+    vk->own.own_main = 1;
     return gtx_planner_create(&planner, &vk->planner, error);
 }
 
@@ -141,6 +143,7 @@ void gtx_vk_destroy(gtx_vk *vk)
     api->DestroyPipelineLayout(vk->device, vk->layout, vk->callbacks);
     api->DestroyDescriptorSetLayout(vk->device, vk->set_layout, vk->callbacks);
     gtx_planner_destroy(vk->planner);
+    gtx_planner_destroy(vk->own_planner);
     const gtx_allocator hooks = vk->allocator;
     gtx_free_array(&hooks, vk->pipelines, vk->pipeline_room, sizeof *vk->pipelines);
     gtx_free_array(&hooks, vk->instances, vk->instance_room, sizeof *vk->instances);

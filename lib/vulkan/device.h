@@ -84,6 +84,7 @@ void gtx_vk_frame_free(gtx_vk *vk, gtx_vk_frame *frame);
 typedef struct gtx_vk_key {
     gtx_vk_target target;
     uint32_t pipeline, cull, clockwise, nearer_is_greater, by_samples;
+    uint32_t shading;         /* its number, or 0 */
 } gtx_vk_key;
 
 typedef struct gtx_vk_pipeline {
@@ -91,9 +92,11 @@ typedef struct gtx_vk_pipeline {
     VkPipeline pipeline;
 } gtx_vk_pipeline;
 
-/* pipelines.c. Errors: MEMORY, GL. */
-gtx_result gtx_vk_pipeline_of(gtx_vk *vk, const gtx_vk_key *key, VkPipeline *out,
-                              gtx_error *error);
+/* pipelines.c. The shading is that of the key's number, or NULL. Errors: MEMORY, GL. */
+gtx_result gtx_vk_pipeline_of(gtx_vk *vk, const gtx_vk_key *key, const gtx_vk_shading *shading,
+                              VkPipeline *out, gtx_error *error);
+/* Forgets the pipelines of a shading. */
+void gtx_vk_pipelines_drop(gtx_vk *vk, uint32_t shading);
 gtx_result gtx_vk_layout_create(gtx_vk *vk, gtx_error *error);
 /* samples.c: a copy of a fragment shader of ours, for once a sample, from the allocator, and its
  * size in place of the shader's; NULL without memory. */
@@ -116,11 +119,19 @@ struct gtx_vk {
     VkShaderModule modules[3 * GTX_PIPELINE_COUNT];
     gtx_vk_pipeline *pipelines;
     uint32_t pipeline_count, pipeline_room;
-    gtx_planner *planner;
+    gtx_planner *planner, *own_planner; /* the latter once there is a shading */
+    gtx_planner_desc own;         /* that it is made of */
+    uint32_t last_shading;
     gtx_vk_frame frames[GTX_VK_MAX_FRAMES];
     uint32_t frame_count, frame;
     gtx_instance *instances;      /* scratch of a draw */
     uint32_t instance_room;
+};
+
+struct gtx_vk_shading {
+    uint32_t number;
+    VkPipelineLayout layout;
+    VkShaderModule modules[GTX_BUFFER_TILE_CORNERS + 1]; /* by the vertices of their pipelines */
 };
 
 struct gtx_vk_model {

@@ -10,6 +10,7 @@ typedef struct recording {
     gtx_vk *vk;
     VkCommandBuffer commands;
     const gtx_vk_instance *placed;
+    const gtx_vk_shading *shading; /* or NULL */
     gtx_vk_key key;
     VkPipeline pipeline;
     /* What the set names: a model's textures, blocks of constants, a stream. */
@@ -92,7 +93,8 @@ static gtx_result bind_set(recording *r, const gtx_frame_draw *d)
                                  d->tiles ? (uint32_t)p.tile.offset : 0};
     if (!result)
         r->vk->api.CmdBindDescriptorSets(r->commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                                         r->vk->layout, 0, 1, &r->set, 2, offsets);
+                                         r->shading ? r->shading->layout : r->vk->layout, 0, 1,
+                                         &r->set, 2, offsets);
     return result;
 }
 
@@ -102,7 +104,7 @@ static gtx_result bind_pipeline(recording *r, const gtx_frame_draw *d)
     r->key.pipeline = d->pipeline;
     r->key.cull = d->cull;
     r->key.clockwise = d->clockwise == r->key.target.y_up; /* seen in a picture with y down */
-    gtx_result result = gtx_vk_pipeline_of(r->vk, &r->key, &pipeline, r->error);
+    gtx_result result = gtx_vk_pipeline_of(r->vk, &r->key, r->shading, &pipeline, r->error);
     if (!result && pipeline != r->pipeline)
         r->vk->api.CmdBindPipeline(r->commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
     r->pipeline = pipeline;
@@ -194,30 +196,64 @@ static void set_key(const gtx_vk_target *target, const gtx_frame *frame, uint32_
     key->by_samples = flags & GTX_VIEW_BY_SAMPLES ? 1 : 0;
 }
 
+/* The view of a shading, without tiles where it has no main for them. */
+static gtx_result shade(const gtx_vk_shading *shading, gtx_view *view, gtx_error *error)
+{
+    if (view->pass != GTX_PASS_FORWARD)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "a shading takes the forward pass's place");
+    if (view->flags & GTX_VIEW_BY_SAMPLES)
+        return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "a shading is not drawn by samples");
+    if (!shading->modules[GTX_BUFFER_TILE_CORNERS])
+        view->flags &= ~(uint32_t)GTX_VIEW_SHADING_BY_TILES;
+    return GTX_OK;
+}
+
+static gtx_result draw(gtx_vk *vk, recording *r, const gtx_vk_target *target,
+                       const gtx_view *wanted, uint32_t count)
+{
+    gtx_frame frame;
+    gtx_result result = check(vk, r->commands, target, wanted, r->placed, count, r->error);
+    if (result)
+        return result;
+    gtx_view view = *wanted;
+    gtx_planner *planner = r->shading ? vk->own_planner : vk->planner;
+    if (r->shading && (result = shade(r->shading, &view, r->error)))
+        return result;
+    void *scratch = vk->instances;
+    if (!gtx_vk_grow(vk, &scratch, &vk->instance_room, count, sizeof *vk->instances))
+        return gtx_fail(r->error, GTX_ERROR_MEMORY, "no memory for %u instances", count);
+    vk->instances = scratch;
+    for (uint32_t i = 0; i < count; ++i) {
+        vk->instances[i] = r->placed[i].instance;
+        vk->instances[i].model = r->placed[i].model->model;
+    }
+    result = gtx_frame_begin(planner, &view, vk->instances, count, &frame, r->error);
+    if (!result)
+        result = gtx_vk_write(vk, frame.instances, count * sizeof *frame.instances,
+                              &r->instances, r->error);
+    if (result)
+        return result;
+    set_key(target, &frame, view.flags, &r->key);
+    r->key.shading = r->shading ? r->shading->number : 0;
+    gtx_frame_draws(planner, submit, r);
+    return r->result;
+}
+
 gtx_result gtx_vk_draw(gtx_vk *vk, VkCommandBuffer commands, const gtx_vk_target *target,
                        const gtx_view *view, const gtx_vk_instance *instances, uint32_t count,
                        gtx_error *error)
 {
     recording r = {.vk = vk, .commands = commands, .placed = instances, .error = error};
-    gtx_frame frame;
-    gtx_result result = check(vk, commands, target, view, instances, count, error);
-    if (result)
-        return result;
-    void *scratch = vk->instances;
-    if (!gtx_vk_grow(vk, &scratch, &vk->instance_room, count, sizeof *vk->instances))
-        return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for %u instances", count);
-    vk->instances = scratch;
-    for (uint32_t i = 0; i < count; ++i) {
-        vk->instances[i] = instances[i].instance;
-        vk->instances[i].model = instances[i].model->model;
-    }
-    result = gtx_frame_begin(vk->planner, view, vk->instances, count, &frame, error);
-    if (!result)
-        result = gtx_vk_write(vk, frame.instances, count * sizeof *frame.instances, &r.instances,
-                              error);
-    if (result)
-        return result;
-    set_key(target, &frame, view->flags, &r.key);
-    gtx_frame_draws(vk->planner, submit, &r);
-    return r.result;
+    return draw(vk, &r, target, view, count);
+}
+
+gtx_result gtx_vk_draw_shaded(gtx_vk *vk, VkCommandBuffer commands, const gtx_vk_target *target,
+                              const gtx_view *view, const gtx_vk_shading *shading,
+                              const gtx_vk_instance *instances, uint32_t count, gtx_error *error)
+{
+    recording r = {.vk = vk, .commands = commands, .placed = instances, .shading = shading,
+                   .error = error};
+    if (!shading)
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "there is no shading to draw by");
+    return draw(vk, &r, target, view, count);
 }

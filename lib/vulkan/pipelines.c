@@ -94,7 +94,8 @@ static uint32_t set_attributes(gtx_buffer vertices, VkVertexInputBindingDescript
     return ATTRIBUTES;
 }
 
-static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, VkPipeline *out, gtx_error *error)
+static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, const gtx_vk_shading *shading,
+                       VkPipeline *out, gtx_error *error)
 {
     const gtx_vk_target *target = &key->target;
     VkVertexInputBindingDescription bindings[2];
@@ -110,6 +111,10 @@ static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, VkPipeline *out, gtx_e
             .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
             .stage = i ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT,
             .pName = "main"};
+        if (i && shading) {
+            stages[i].module = shading->modules[of.vertices];
+            continue;
+        }
         gtx_result result = module_of(vk, key->pipeline, i, i && by_samples,
                                       &stages[i].module, error);
         if (result)
@@ -167,14 +172,15 @@ static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, VkPipeline *out, gtx_e
         .pViewportState = &viewport, .pRasterizationState = &raster,
         .pMultisampleState = &multisample, .pDepthStencilState = &depth,
         .pColorBlendState = &blend, .pDynamicState = &dynamic,
-        .layout = vk->layout, .renderPass = target->render_pass, .subpass = target->subpass};
+        .layout = shading ? shading->layout : vk->layout,
+        .renderPass = target->render_pass, .subpass = target->subpass};
     return gtx_vk_check(vk->api.CreateGraphicsPipelines(vk->device, VK_NULL_HANDLE, 1, &info,
                                                         vk->callbacks, out),
                         "vkCreateGraphicsPipelines", error);
 }
 
-gtx_result gtx_vk_pipeline_of(gtx_vk *vk, const gtx_vk_key *key, VkPipeline *out,
-                              gtx_error *error)
+gtx_result gtx_vk_pipeline_of(gtx_vk *vk, const gtx_vk_key *key, const gtx_vk_shading *shading,
+                              VkPipeline *out, gtx_error *error)
 {
     for (uint32_t i = 0; i < vk->pipeline_count; ++i)
         if (!memcmp(&vk->pipelines[i].key, key, sizeof *key)) {
@@ -187,11 +193,22 @@ gtx_result gtx_vk_pipeline_of(gtx_vk *vk, const gtx_vk_key *key, VkPipeline *out
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a pipeline");
     vk->pipelines = pipelines;
     gtx_vk_pipeline *made = &vk->pipelines[vk->pipeline_count];
-    gtx_result result = make(vk, key, &made->pipeline, error);
+    gtx_result result = make(vk, key, shading, &made->pipeline, error);
     if (result)
         return result;
     memcpy(&made->key, key, sizeof *key);
     ++vk->pipeline_count;
     *out = made->pipeline;
     return GTX_OK;
+}
+
+void gtx_vk_pipelines_drop(gtx_vk *vk, uint32_t shading)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < vk->pipeline_count; ++i)
+        if (vk->pipelines[i].key.shading == shading)
+            vk->api.DestroyPipeline(vk->device, vk->pipelines[i].pipeline, vk->callbacks);
+        else
+            vk->pipelines[kept++] = vk->pipelines[i];
+    vk->pipeline_count = kept;
 }

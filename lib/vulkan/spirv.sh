@@ -6,7 +6,7 @@ set -e
 folder=$2/$(cksum <"$0" | cut -d ' ' -f 1)
 mkdir -p "$folder"
 rm -f "$folder"/*.vert "$folder"/*.frag "$folder/table"
-"$1" "$folder"
+"$1" "$folder" own
 cd "$folder"
 echo '/* Generated from shaders/. */'
 echo '#include "vulkan/spirv.h"'

@@ -1,12 +1,12 @@
 /* Writes the shaders of all pipelines as Vulkan GLSL, for the build to compile: NUMBER.vert and
- * NUMBER.frag in a folder. */
+ * NUMBER.frag in a folder. With a second word vertex shaders of an engine's own mains, too. */
 #include <geotex/frame.h>
 #include <stdio.h>
 
 static int write_stage(const char *folder, uint32_t pipeline, gtx_stage stage)
 {
     const char *texts[GTX_MAX_SHADER_TEXTS];
-    const uint32_t count = gtx_pipeline_source(pipeline, stage, NULL, texts);
+    const uint32_t count = gtx_pipeline_source(pipeline, stage, "", texts);
     char path[4096];
     snprintf(path, sizeof path, "%s/%u.%s", folder, pipeline,
              stage == GTX_STAGE_VERTEX ? "vert" : "frag");
@@ -21,12 +21,13 @@ static int write_stage(const char *folder, uint32_t pipeline, gtx_stage stage)
 
 int main(int argc, char **argv)
 {
-    int failed = argc != 2;
+    int failed = argc != 2 && argc != 3;
     for (uint32_t i = 0; !failed && i < GTX_PIPELINE_COUNT; ++i) {
         gtx_pipeline pipeline;
-        if (gtx_pipeline_get(i, &pipeline) && !pipeline.own_main)
-            failed = write_stage(argv[1], i, GTX_STAGE_VERTEX) ||
-                     write_stage(argv[1], i, GTX_STAGE_FRAGMENT);
+        if (!gtx_pipeline_get(i, &pipeline) || (pipeline.own_main && argc == 2))
+            continue;
+        failed = write_stage(argv[1], i, GTX_STAGE_VERTEX) ||
+                 (!pipeline.own_main && write_stage(argv[1], i, GTX_STAGE_FRAGMENT));
     }
     return failed;
 }
