@@ -22,6 +22,9 @@ static void comes_back_as_the_same_file(void **state)
     expect_text("taken as it is");
     assert_false(exists("other.gtx"));
     expect(gtx("cook out.glb sphere.obj -o other.gtx"), 1);
+    expect(gtx("export sphere.gtx --textures ktx2 -o ktx2.glb"), 0);
+    expect(gtx("cook ktx2.glb -o back3.gtx"), 0);
+    same_files("sphere.gtx", "back3.gtx");
 }
 
 static void verbs_open_it(void **state)

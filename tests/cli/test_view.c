@@ -209,6 +209,29 @@ static void a_world_is_shown_and_walked_on(void **state)
     gtx_image_free(&drawn);
 }
 
+static void grids_are_opened_with_their_legend(void **state)
+{
+    static const char grid[] = "-996 2 1 1\n0 1 0 1\n2 0 0 0\n0 0 0 0 0 0 0\n5 7\n6 8\n";
+    (void)state;
+    if (!server)
+        skip();
+    write_file("a.irap", grid, sizeof grid - 1);
+    write_file("short.irap", grid, 40);
+    gtx_image bare = view("a.irap", "t"), told = view("a.irap", ".");
+    gtx_image dropped = view("--drop a.irap", "t");
+    assert_true(pixel(&bare, 160, 120)[2] < 200); /* a surface in the middle */
+    assert_int_equal(difference(&bare, &dropped, false), 0);
+    const uint8_t *low = pixel(&told, 6, 232), *high = pixel(&told, 160, 232);
+    assert_true(low[0] < 80 && low[1] < 20);       /* viridis: violet, */
+    assert_true(high[0] > 220 && high[1] > 200);   /* yellow */
+    expect(gtx("view short.irap --frames 1"), 3);
+    expect_text("short.irap: error[input]");
+    expect(gtx("view a.irap --size 320x240 --frames 2 --drop short.irap"), 3);
+    gtx_image_free(&bare);
+    gtx_image_free(&told);
+    gtx_image_free(&dropped);
+}
+
 static void drops_are_opened_cooked_cancelled(void **state)
 {
     (void)state;
@@ -242,6 +265,7 @@ int main(void)
         cmocka_unit_test(it_walks_on_the_asset),
         cmocka_unit_test(screenshots_get_free_names),
         cmocka_unit_test(a_world_is_shown_and_walked_on),
+        cmocka_unit_test(grids_are_opened_with_their_legend),
         cmocka_unit_test(drops_are_opened_cooked_cancelled),
     };
     return cmocka_run_group_tests(tests, open_stage, close_stage);
