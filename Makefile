@@ -231,6 +231,7 @@ extra_needs_trace   := image mesh grid chart bake measure cook
 extra_needs_bake    := derive trace measure host
 extra_needs_cook    := host
 extra_needs_measure := grid chart bake cook
+extra_needs_world   := frame render host
 # Embree ships no pkg-config file; its test asks for the header in the same way.
 libs_test_embree = $(shell printf '\043include <embree3/rtcore.h>' | \
                      $(CXX) -E -x c++ - >/dev/null 2>&1 && echo -lembree3)

@@ -82,7 +82,7 @@ enum { /* gtx_view.flags */
  *
  * Displaced grids. GTX_METHOD_GRID draws height fields as right triangles over cells of level 0,
  * from two over 8 x 8 cells to two over each: halved until they keep to max_error where they are,
- * and to a fourth of it at outlines, where neighbours meet; `level` n says two over squares of
+ * and to a 16th of it at outlines, where neighbours meet; `level` n says two over squares of
  * 2^(n - 1) cells. They are found anew in each draw, a few ten nanoseconds each. Blocks of 8 x 8
  * cells that are out of view, and triangles that face away, are not drawn. They write no depth of
  * their own. */

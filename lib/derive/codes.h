@@ -17,8 +17,10 @@ void gtx_load_codes(const gtx_grid *grid, uint32_t x0, uint32_t count, uint32_t 
 bool gtx_solid_extent(const gtx_grid *grid, uint32_t low[2], uint32_t high[2]);
 
 /* How often a distance at an outline counts: neighbours drawn at levels of their own part by the
- * sum of their errors, and what is too little to be seen opens a hole there. */
-#define GTX_BORDER_COUNTS 4
+ * sum of their errors, and what is too little to be seen opens a hole there. At half of it one
+ * pixel of the pictures of tests/world/test_seams is a hole; at double there are more triangles
+ * for nothing. */
+#define GTX_BORDER_COUNTS 16
 
 /* Of a code along the frame's Z in object space, square to a height field with these slopes, in
  * codes a texel: the share of the step that leads away from the plane of its tangents. `step` has
