@@ -340,7 +340,7 @@ clean: ## remove what was built
 .PHONY: all install install-strip uninstall \
         dist build-tests run-tests test check check-platforms deb demo run-demo bench run-bench \
         bench-paths run-bench-paths bench-truth run-bench-truth bench-rays run-bench-rays tune \
-        bench-atlas bench-solids run-bench-solids bench-texels run-bench-texels \
+        bench-atlas bench-models bench-solids run-bench-solids bench-texels run-bench-texels \
         paper-tables run-paper-tables paper-figures run-paper-figures deps help clean
 .SECONDARY:
 .DELETE_ON_ERROR:

@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 typedef enum gtx_partition {
-    GTX_PARTITION_DEFAULT = 0,    /* cuts */
+    GTX_PARTITION_DEFAULT = 0,    /* cuts; for sharp outlines finer layers, as AUTO has them */
     GTX_PARTITION_CUTS = 1,       /* few large charts that fold nowhere, cut straight */
     GTX_PARTITION_VSA = 2,        /* variational shape approximation (paper, section 5.2) */
     GTX_PARTITION_PGP = 3,        /* periodic global parameterization: squares along the principal

@@ -47,16 +47,20 @@ enum class PartitionMethod {
     PGP,  /* periodic global parameterization (paper, section 5.1) */
     LAYERS, /* peeled along three axes (Santos, de Toledo, Gattass, SPM 2008) */
     RELIEF, /* seen from six sides (Oliveira, Bishop, McAllister, SIGGRAPH 2000) */
-    AUTO  /* CUTS or LAYERS, whichever takes fewer texels; LAYERS of finer ones where outlines
+    AUTO, /* CUTS or LAYERS, whichever takes fewer texels; LAYERS of finer ones where outlines
              need them */
+    DEFAULT /* CUTS, but LAYERS of finer texels where outlines need them */
 };
+
+/* Whether it is one of two others, which its partition tells. */
+inline bool chooses(PartitionMethod method) { return method >= PartitionMethod::AUTO; }
 
 struct ChartOptions {
     PartitionMethod method = PartitionMethod::CUTS;
     unsigned charts = 0;         /* wanted number; 0 = round(10 T^0.28) for T triangles */
     bool adaptive = false;       /* PGP: smaller cells where the surface is more curved */
     unsigned resolution = 128;   /* most texels along a patch side */
-    bool free_resolution = false; /* AUTO: where outlines need it, up to twice as many */
+    bool free_resolution = false; /* AUTO, DEFAULT: where outlines need it, up to twice as many */
     double pitch = 0;            /* texel pitch for CUTS, object units; 0 = what gives patches
                                     their texels at this resolution */
     unsigned grain = 8;          /* sides will be multiples of as many texels */
@@ -91,9 +95,9 @@ struct Partition {
     /* PGP cuts triangles where charts end; empty where the charts are of the source's own. */
     Mesh mesh;
     Vector<uint32_t> source;             /* per triangle of `mesh`: that of the source, ascending */
-    PartitionMethod method = PartitionMethod::CUTS; /* never AUTO */
+    PartitionMethod method = PartitionMethod::CUTS; /* never AUTO or DEFAULT */
     unsigned resolution = 0;             /* most texels along a patch side */
-    bool for_outlines = false;           /* AUTO took layers and finer texels for them */
+    bool for_outlines = false;           /* layers and finer texels were taken for them */
     bool complete = true;                /* false: what no chart has is not to be shown */
     double pitch = 0;                    /* texel pitch of the model, object units */
     double more_texels = 1;              /* with what textures ask for, about; of relief's */

@@ -26,12 +26,13 @@ constexpr double TWO_SIDED_AREA = 0.05;
 /* AUTO: part of the texels of cuts below which layers are taken. An engine takes 0.83, a leaf 0.86,
  * a truck 0.95, the bunny 1.03. */
 constexpr double WORTH_PEELING = 0.96;
-/* AUTO: the loss of outlines from which layers of finer texels are taken: cuts of an engine lose
- * 0.018, a truck 0.004, closed scans at most 0.0007, a tower with holes 0.002. Half takes that
- * tower too, double an engine alone. And the resolutions to try, times the usual one, until one
- * takes at most about so many times the texels of cuts: an engine gets 2.3 times the texels and
- * 1.04 times the bytes, DamagedHelmet 2.7 and 2.25. At 2 and 2.3 an engine gets 3.3 M texels and an
- * IoU of 0.9947, at this 0.9955; the helmet, at 2, 1.6 times the bytes and 5 times the walls. */
+/* AUTO, DEFAULT: the loss of outlines from which layers of finer texels are taken: cuts of an
+ * engine lose 0.018, a truck 0.004, closed scans at most 0.0007, a tower with holes 0.002. Half
+ * takes that tower too, double an engine alone. And the resolutions to try, times the usual one,
+ * until one takes at most about so many times the texels of cuts: an engine gets 2.3 times the
+ * texels and 1.04 times the bytes, DamagedHelmet 2.7 and 2.25. At 2 and 2.3 an engine gets 3.3 M
+ * texels and an IoU of 0.9947, at this 0.9955; the helmet, at 2, 1.6 times the bytes and 5 times
+ * the walls. */
 constexpr double MUCH_LOST = 0.003;
 constexpr double FINER[] = {2, 1.75, 1.5, 1.25}, MOST_TEXELS = 2.5;
 /* Of a texel, how far an outline is off along borders and sharp edges: one less the IoU that
@@ -229,18 +230,41 @@ static Partition make_textured(PartitionMethod method, const Mesh &mesh,
 }
 
 /* Layers of texels that are so much finer as the bound on all of them allows; without charts if
- * none is. */
+ * none is. Texels go at most with the square of the resolution, so what they say of a finer one
+ * spares those that must be too many, too. */
 static Partition finer_layers(const Mesh &mesh, const ChartOptions &options, double cut_texels,
                               Task &task)
 {
+    double most_finer = INFINITY;
     for (double finer : FINER) {
+        if (finer > most_finer)
+            continue;
         ChartOptions tried = options;
         tried.resolution = unsigned(finer * options.resolution);
+        task.limits.work_again();
         Partition out = make_textured(PartitionMethod::LAYERS, mesh, tried, task);
         out.for_outlines = true;
-        if (texels_of_patches(out, tried) <= MOST_TEXELS * cut_texels)
+        const double times = texels_of_patches(out, tried) / (MOST_TEXELS * cut_texels);
+        if (times <= 1)
             return out;
+        most_finer = finer / std::sqrt(times);
     }
+    return {};
+}
+
+/* None, either, where they take more than is allowed: nobody asked for them. */
+static Partition allowed_finer_layers(const Mesh &mesh, const ChartOptions &options,
+                                      double cut_texels, Task &task)
+{
+    const size_t warnings = task.warnings.size();
+    try {
+        return finer_layers(mesh, options, cut_texels, task);
+    } catch (const Error &error) {
+        if (error.result != GTX_ERROR_LIMIT)
+            throw;
+    }
+    task.warnings.resize(warnings);
+    task.limits.work_again();
     return {};
 }
 
@@ -250,16 +274,19 @@ Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &ta
         throw Error(GTX_ERROR_EMPTY, "the mesh has no triangle to partition");
     if (mesh.triangle_count() > MAX_TRIANGLES)
         throw Error(GTX_ERROR_LIMIT, "the mesh has more than 300 million triangles");
-    if (options.method != PartitionMethod::AUTO)
+    if (!chooses(options.method))
         return make_textured(options.method, mesh, options, task);
     Partition cuts = partition_by(PartitionMethod::CUTS, mesh, options, task);
     const double of_relief = texels_of_patches(cuts, options);
     follow_textures(mesh, options, cuts, task);
     if (options.free_resolution && cuts.outline_loss() > MUCH_LOST) {
-        Partition layers = finer_layers(mesh, options, texels_of_patches(cuts, options), task);
+        const double cut_texels = texels_of_patches(cuts, options);
+        Partition layers = allowed_finer_layers(mesh, options, cut_texels, task);
         if (!layers.charts.empty())
             return layers;
     }
+    if (options.method == PartitionMethod::DEFAULT)
+        return cuts;
     Partition layers = partition_by(PartitionMethod::LAYERS, mesh, options, task);
     if (texels_of_patches(layers, options) >= WORTH_PEELING * of_relief)
         return cuts;

@@ -27,8 +27,8 @@ static const option options[] = {
      "a patch's largest side in texels [128]", 64, 512},
     {"texel-density", 0, OPTION_NUMBER, &texel_density, "D",
      "texels for a pixel of textures along a side, at least; 0 = none [by their detail]", 0, 4},
-    {"partition", 0, OPTION_CHOICE, &partition, "cuts|vsa|pgp|layers|relief|auto",
-     "partition into charts [cuts]", 0, 0},
+    {"partition", 0, OPTION_CHOICE, &partition, "default|cuts|vsa|pgp|layers|relief|auto",
+     "partition into charts; default: cuts, or finer layers where outlines need them", 0, 0},
     {"adaptive", 0, OPTION_FLAG, &adaptive, NULL,
      "with --partition pgp: smaller patches where the surface is more curved", 0, 0},
     {"extract", 0, OPTION_CHOICE, &extract, "cpu|gpu",
@@ -118,7 +118,7 @@ static int check(const char *const *models, int count, bool folders)
         return usage("an asset is not written to a terminal");
     if (depfile_path && !fits_depfile(output))
         return usage("a dependency file cannot name a path with a line break");
-    if (adaptive && GTX_PARTITION_CUTS + partition != GTX_PARTITION_PGP)
+    if (adaptive && partition != GTX_PARTITION_PGP)
         return usage("--adaptive needs --partition pgp");
     if (per_mesh && (count > 1 || is_stream(models[0]) || is_stream(output) || depfile_path ||
                      desc.charts_ply || desc.z_up || unit != 1 || strict || if_changed || allow ||
@@ -275,7 +275,7 @@ int cmd_cook(int argc, char **argv)
         code = usage("--jobs and --shard are for folders");
     if (code)
         return code;
-    desc.partition = (gtx_partition)(GTX_PARTITION_CUTS + partition);
+    desc.partition = (gtx_partition)partition;
     desc.extract = (gtx_extract)(GTX_EXTRACT_CPU + extract);
     desc.zstd_level = encode_level(zstd_level);
     desc.lod_levels = lod_levels ? lod_levels : GTX_LOD_LEVELS_NONE;

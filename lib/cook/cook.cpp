@@ -1,14 +1,12 @@
 /* The line from a model file to an asset file (paper, section 5), behind the C API. */
-#include "cook/assemble.hpp"
+#include "cook/attempt.hpp"
 #include "cook/cache.hpp"
 #include "cook/encoded.hpp"
 #include "cook/guard.hpp"
 #include "cook/meta.hpp"
 #include "cook/models.hpp"
-#include "cook/target.hpp"
 
 #include "asset/asset.h"
-#include "bake/lod/lod.hpp"
 #include "mesh/glb.hpp"
 
 #include <algorithm>
@@ -34,10 +32,6 @@ static Task make_task(const gtx_cook_desc &desc, const Options &options)
  * 10 (spot and the duck at 1e-3 and 1e-4), which end at 74 to 89 %. At half they end at 47 %, at
  * double the last ones hardly move it. */
 constexpr double ATTEMPT_SHARE = 0.2;
-
-/* Bounds of LOD meshes may take so many times the work of another stage: thousands of triangles on
- * one edge are all as near, and take more than one. */
-constexpr double BOUND_WORK = 4;
 
 /* The files that a call writes, and who else wants to know what it reads. */
 struct Outputs {
@@ -71,85 +65,6 @@ struct Outputs {
         require_ok(error.result, error);
     }
 };
-
-static void refuse_warnings(const Options &options, const Task &task)
-{
-    const Warning *first = nullptr;
-    size_t count = 0;
-    for (const Warning &warning : task.warnings)
-        if (options.strict && !options.allowed[warning.kind]) {
-            first = first ? first : &warning;
-            ++count;
-        }
-    if (first)
-        throw Error(GTX_ERROR_INPUT, first->sentence + " (" + gtx_warning_name(first->kind) +
-                                         (count > 1 ? ", and " + std::to_string(count - 1) +
-                                                          " more warnings)"
-                                                    : ")"));
-}
-
-/* Which vertices of the LOD meshes' source are to stay. */
-static void mark_kept(const Options &options, const Maps &maps, LodSource &source)
-{
-    if (!options.kept_count)
-        return;
-    auto before = [](const Vec3d &a, const Vec3d &b) {
-        return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-    };
-    Vector<Vec3d> kept;
-    const Vec3d anchor(maps.anchor[0], maps.anchor[1], maps.anchor[2]);
-    for (const double *p = options.kept, *end = p + 3 * options.kept_count; p != end; p += 3)
-        kept.push_back(Vec3d(p[0], p[1], p[2]) - anchor);
-    std::sort(kept.begin(), kept.end(), before);
-    for (const Vec3d &p : source.positions)
-        source.kept.push_back(std::binary_search(kept.begin(), kept.end(), p, before));
-}
-
-/* Partition, maps and asset of the clean mesh, measured where that is wanted. */
-static Attempt attempt(const Mesh &mesh, const Options &options, Task &task, const CookFacts &facts)
-{
-    const size_t before = task.warnings.size();
-    Attempt out;
-    out.partition = make_partition(mesh, options.chart, task);
-    task.limits.allow_work(work_of(options) * out.partition.more_texels);
-    const Mesh &charted = out.partition.charted(mesh);
-    {
-        Maps maps = bake(charted, out.partition, options.bake, task);
-        out.suitability = judge_suitability(out.partition, maps.report, facts.source_triangles,
-                                            task);
-        Vector<LodLevel> lod;
-        if (options.lod_levels) {
-            LodSource source = lod_source(charted, out.partition, maps, task);
-            mark_kept(options, maps, source);
-            task.limits.allow_work(BOUND_WORK * work_of(options));
-            lod = make_lod(source, maps, options.lod_levels, task);
-            task.limits.allow_work(work_of(options));
-        }
-        for (const LodLevel &level : lod)
-            out.lod_rms.push_back(double(level.rms));
-        refuse_warnings(options, task);
-        CookFacts of_asset = facts;
-        of_asset.chart_count = out.partition.charts.size();
-        of_asset.method = out.partition.method;
-        of_asset.suitability = out.suitability;
-        for (const Warning &warning : task.warnings)
-            if (warning.kind != GTX_WARNING_CACHE) /* of this call, not of the asset */
-                of_asset.warnings.set(warning.kind);
-        out.bake = maps.report;
-        out.asset = assemble(maps, lod, {write_meta(options, of_asset), options.unit,
-                                         facts.source_triangles, options.allocator});
-    }
-    if (options.measure) {
-        task.begin("measure");
-        task.limits.work_again();
-        out.error = surface_error(out.asset.get(), charted, out.partition.junk, task);
-    }
-    if (options.error > 0)
-        out.bytes = Encoded(out.asset.get(), options, task).size;
-    out.warnings.assign(task.warnings.begin() + ptrdiff_t(before), task.warnings.end());
-    task.warnings.resize(before);
-    return out;
-}
 
 /* Everything from the clean mesh on; fills the rest of `facts`. */
 static Attempt cook_mesh(const Mesh &mesh, const Options &options, Task &task, CookFacts &facts)

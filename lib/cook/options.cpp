@@ -23,7 +23,7 @@ constexpr int DEFAULT_ZSTD = 0;
 #endif
 
 /* In the order of gtx_partition. */
-constexpr PartitionMethod METHODS[] = {PartitionMethod::CUTS, PartitionMethod::CUTS,
+constexpr PartitionMethod METHODS[] = {PartitionMethod::DEFAULT, PartitionMethod::CUTS,
                                        PartitionMethod::VSA, PartitionMethod::PGP,
                                        PartitionMethod::LAYERS, PartitionMethod::RELIEF,
                                        PartitionMethod::AUTO};
@@ -96,6 +96,10 @@ Options checked_options(const gtx_cook_desc &desc)
     if (desc.resolution)
         options.chart.resolution = desc.resolution;
     options.chart.free_resolution = !desc.resolution && desc.error == 0;
+    /* Who says how dense it is to be has said it; borders that are kept are no outlines. */
+    if (number_of(desc.partition) == GTX_PARTITION_DEFAULT &&
+        (!options.chart.free_resolution || desc.charts || desc.kept_count))
+        options.chart.method = PartitionMethod::CUTS;
     if (desc.height_bits)
         options.bake.height_bits = desc.height_bits;
     if (desc.mips)
@@ -133,7 +137,8 @@ double work_of(const Options &options)
     if (options.chart.method == PartitionMethod::AUTO && options.chart.free_resolution)
         finer *= 2;
     double times = std::max({1., finer * finer, options.chart.charts / PATCHES});
-    if (options.chart.method != PartitionMethod::CUTS)
+    if (options.chart.method != PartitionMethod::CUTS &&
+        options.chart.method != PartitionMethod::DEFAULT)
         times *= OTHER_PARTITION;
     return times;
 }
@@ -146,6 +151,7 @@ const char *partition_name(PartitionMethod method)
     case PartitionMethod::LAYERS: return "layers";
     case PartitionMethod::RELIEF: return "relief";
     case PartitionMethod::AUTO: return "auto";
+    case PartitionMethod::DEFAULT: return "default";
     default: return "cuts";
     }
 }

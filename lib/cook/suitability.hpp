@@ -11,7 +11,7 @@ struct Suitability {
     double empty_fraction = 0;      /* of the texels */
     double outline_loss = 0;        /* share of a silhouette that may miss the source's: outlines
                                        are as sharp as texels are small */
-    bool for_outlines = false;      /* auto took layers and finer texels for them */
+    bool for_outlines = false;      /* layers of finer texels were taken */
     unsigned resolution = 0;        /* what it came to */
     double unseen_fraction = 0;     /* of the surface, lost to six views */
     const char *better = nullptr;   /* "mesh", "auto", "texels", "cuts"; null: nothing known */

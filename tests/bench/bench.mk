@@ -71,6 +71,12 @@ bench-atlas: ## exports of ATLAS beside the same triangles unwrapped and baked b
 	$(again) -j$$(nproc) all
 	@$(ATLAS_PYTHON) tests/bench/atlas.py $(build)/gtx $(ATLAS)
 
+MODELS ?= $(addprefix $(GEOTEX_MODELS)/,gltf textured)
+bench-models: ## walls, holes, bytes and seconds of MODELS (files or folders), cooked with COOK
+	$(again) deps
+	$(again) -j$$(nproc) all
+	@python3 tests/bench/models.py $(build)/gtx $(COOK) $(MODELS)
+
 bench-rays: ## rays a second into MODEL (default: the sculpt), and what shadows by ray cost a frame
 	$(again) deps
 	$(again) -j$$(nproc) all $(out)/tests/bench/rays

@@ -11,13 +11,14 @@ struct Told {
 };
 
 static Told cook(const std::string &model, gtx_partition partition, bool strict = false,
-                 uint32_t resolution = 0)
+                 uint32_t resolution = 0, uint64_t texels = 0)
 {
     const std::string output = in_folder("told.gtx");
     gtx_cook_desc desc = {};
     desc.partition = partition;
     desc.strict = strict;
     desc.resolution = resolution;
+    desc.limits.texels = texels;
     gtx_report report = {};
     gtx_error error = {};
     Told told = {};
@@ -136,6 +137,28 @@ static void auto_takes_finer_layers_for_outlines(void **)
     }
 }
 
+/* As auto, but where nobody asks for a density, and what it takes passes no limit. */
+static void the_default_takes_them_where_it_may(void **)
+{
+    const std::string tile_file = in_folder("tile.obj");
+    city_tile().write(tile_file);
+    const schema::json cuts = cook(tile_file, GTX_PARTITION_CUTS).report;
+    const schema::json taken = cook(tile_file, GTX_PARTITION_DEFAULT).report;
+    assert_true(taken["suitability"]["taken_for"] == "outlines");
+    assert_true(taken["content_hash"] ==
+                cook(tile_file, GTX_PARTITION_AUTO).report["content_hash"]);
+
+    const double texels = double(cuts["texels_total"]) / double(cuts["page_fill"]);
+    for (const Told &told : {cook(tile_file, GTX_PARTITION_DEFAULT, false, 128),
+                             cook(tile_file, GTX_PARTITION_DEFAULT, false, 0,
+                                  uint64_t(texels + 1))}) {
+        assert_int_equal(told.result, GTX_OK);
+        assert_true(told.report["content_hash"] == cuts["content_hash"]);
+    }
+    assert_true(cook(ball_file(), GTX_PARTITION_DEFAULT).report["content_hash"] ==
+                cook(ball_file(), GTX_PARTITION_CUTS).report["content_hash"]);
+}
+
 /* Neither layers nor what auto comes to leave a hole in a closed model. */
 static void other_partitions_leave_no_hole(void **)
 {
@@ -192,6 +215,7 @@ int main()
                                 cmocka_unit_test(a_box_is_better_drawn_as_a_mesh),
                                 cmocka_unit_test(what_six_views_lose_is_told),
                                 cmocka_unit_test(auto_takes_finer_layers_for_outlines),
+                                cmocka_unit_test(the_default_takes_them_where_it_may),
                                 cmocka_unit_test(other_partitions_leave_no_hole),
                                 cmocka_unit_test(nasty_models_are_cooked_or_refused)};
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
