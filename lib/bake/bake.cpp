@@ -177,7 +177,7 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
     task.begin("bake");
     Neighbours neighbours = triangle_neighbours(mesh);
     Job job = {mesh,            neighbours,      options, appearance_needs(mesh),
-               partition.pitch, anchor_of(mesh), partition.charts.size()};
+               partition.pitch, anchor_of(mesh), partition.charts.size(), partition.for_outlines};
     Vector<PatchMaps> patches;
     auto bake_rest = [&](double from, double to) {
         const size_t done = patches.size();

@@ -29,7 +29,7 @@ constexpr double WORTH_PEELING = 0.96;
 /* AUTO, DEFAULT: the loss of outlines from which layers of finer texels are taken: cuts of an
  * engine lose 0.018, a truck 0.004, closed scans at most 0.0007, a tower with holes 0.002. Half
  * takes that tower too, double an engine alone. And the resolutions to try, times the usual one,
- * until one takes at most about so many times the texels of cuts: an engine gets 2.3 times the
+ * until one takes at most about so many times the texels of cuts: an engine gets 2.4 times the
  * texels and 1.04 times the bytes, DamagedHelmet 2.7 and 2.25. At 2 and 2.3 an engine gets 3.3 M
  * texels and an IoU of 0.9947, at this 0.9955; the helmet, at 2, 1.6 times the bytes and 5 times
  * the walls. */

@@ -61,7 +61,7 @@ static void models_have_their_content(void **)
              {"/gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf",
               GTX_PARTITION_CUTS, NONE, 0xa08dcfe5b7af01a2},
              {"/gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf",
-              GTX_PARTITION_DEFAULT, NONE, 0x266006cf6d40cc76},
+              GTX_PARTITION_DEFAULT, NONE, 0xc397ef0dc6f36c78},
              {"/gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb",
               GTX_PARTITION_DEFAULT, 0, 0x5b26782b586821e9},
              {"/gltf/dragon_draco_119k.glb",

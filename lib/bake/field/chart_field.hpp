@@ -132,7 +132,7 @@ void extrapolate(Paths &paths, ChartField &field);
 void cut_discontinuities(const Outline &core, Paths &paths, ChartField &field);
 /* Moves the heights of the supported texels so that the height field between them follows the
  * source. Returns the share of the core's samples that it still passes below by a visible part of a
- * texel, `pitch` being the model's. */
-double fit_heights(double pitch, ChartField &field);
+ * texel. */
+double fit_heights(const Job &job, ChartField &field);
 
 } // namespace gtx::baking

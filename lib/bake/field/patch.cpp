@@ -191,9 +191,9 @@ PatchMaps bake_chart(const Job &job, const Chart &chart)
 {
     constexpr double ALLOWED = 0.01, FINER = 1.4;
     ChartField field = lay_fitted(job, chart, chart.finer);
-    if (fit_heights(job.pitch, field) > ALLOWED && chart.finer < FINER) {
+    if (fit_heights(job, field) > ALLOWED && chart.finer < FINER) {
         field = lay_fitted(job, chart, FINER);
-        fit_heights(job.pitch, field);
+        fit_heights(job, field);
     }
     return encode_field(job, chart, field);
 }
