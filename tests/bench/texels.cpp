@@ -108,6 +108,7 @@ void add_model(const std::string &folder, const char *model)
     for (const auto &way : WAYS) {
         const std::string path = folder + "/texels.gtx";
         gtx_cook_desc desc = {};
+        desc.partition = GTX_PARTITION_CUTS;
         desc.texel_density = way.density;
         gtx_error error;
         const std::clock_t start = std::clock();
