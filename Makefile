@@ -186,14 +186,14 @@ $(out)/gen/%.map: Makefile
 
 $(so_core): $(call objects_of,$(ROOMS_CORE)) | $(out)/gen/libgeotex.map
 	$(say) LINK $@
-	$(Q)$(CC) $(flags) $(LDFLAGS) -shared -Wl,-soname,libgeotex.so.$(SOVERSION) -Wl,--no-undefined \
-	  -Wl,--version-script=$(out)/gen/libgeotex.map -o $@ $^ $(call libs_of,asset)
+	$(Q)$(CC) $(flags) $(LDFLAGS) -shared -Wl,-soname,libgeotex.so.$(SOVERSION) \
+	  -Wl,--no-undefined -Wl,--version-script=$(out)/gen/libgeotex.map -o $@ $^ $(call libs_of,asset)
 	$(Q)ln -sf $(@F) $(out)/libgeotex.so.$(SOVERSION) && ln -sf $(@F) $(out)/libgeotex.so
 
 $(so_cook): $(call objects_of,$(ROOMS_COOK)) $(so_core) | $(out)/gen/libgeotex-cook.map
 	$(say) LINK $@
-	$(Q)$(CXX) $(flags) $(LDFLAGS) -shared -Wl,-soname,libgeotex-cook.so.$(SOVERSION) -Wl,--no-undefined \
-	  -Wl,--version-script=$(out)/gen/libgeotex-cook.map -o $@ \
+	$(Q)$(CXX) $(flags) $(LDFLAGS) -shared -Wl,-soname,libgeotex-cook.so.$(SOVERSION) \
+	  -Wl,--no-undefined -Wl,--version-script=$(out)/gen/libgeotex-cook.map -o $@ \
 	  $(call objects_of,$(ROOMS_COOK) base asset derive trace stream) $(call libs_of,asset mesh)
 	$(Q)ln -sf $(@F) $(out)/libgeotex-cook.so.$(SOVERSION) && ln -sf $(@F) $(out)/libgeotex-cook.so
 
@@ -244,7 +244,8 @@ define test_rule
 $(out)/$(basename $(1)): $(out)/$(basename $(1)).o $(common_tests) \
     $(filter-out %/cli/gtx.o,$(call objects_of,$(call test_needs,$(call room,$(1)))))
 	$$(say) LINK $$@
-	$$(Q)$$(CXX) $$(flags) $$(LDFLAGS) -o $$@ $$^ $$(call libs_of,$$(call test_needs,$(call room,$(1)))) \
+	$$(Q)$$(CXX) $$(flags) $$(LDFLAGS) -o $$@ $$^ \
+	  $$(call libs_of,$$(call test_needs,$(call room,$(1)))) \
 	  $$(call pkg,--libs,cmocka) $$(libs_$(notdir $(basename $(1))))
 endef
 $(foreach t,$(test_sources),$(eval $(call test_rule,$(t))))

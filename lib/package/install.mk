@@ -81,17 +81,6 @@ dist: ## the committed sources as build/geotex-VERSION.tar.gz
 	@gzip -9nf $(build)/$(dist_name).tar
 	@echo $(build)/$(dist_name).tar.gz
 
-# Debian packages of the committed sources, in build/deb; needs debhelper, and lintian to be checked.
-comma := ,
-empty :=
 deb: dist ## Debian packages of the committed sources in build/deb (needs debhelper)
-	@rm -rf $(build)/deb && mkdir -p $(build)/deb
-	@tar -xzf $(build)/$(dist_name).tar.gz -C $(build)/deb
-	@cp -r lib/package/debian $(build)/deb/$(dist_name)/debian
-	@cd $(build)/deb/$(dist_name)/debian && \
-	  sed 's/@BUILD_DEPENDS@/$(subst $(empty) $(empty),$(comma) ,$(strip $(packages)))/' control.in > control && \
-	  rm control.in && printf 'geotex (%s) unstable; urgency=medium\n\n  * See CHANGELOG.md.\n\n -- %s  %s\n' \
-	    $(VERSION) "$$(sed -n 's/^Maintainer: //p' control)" \
-	    "$$(git -C $(CURDIR) log -1 --format=%cD)" > changelog
-	@cd $(build)/deb/$(dist_name) && dpkg-buildpackage -us -uc -b
+	@sh lib/package/deb.sh $(build) $(VERSION) '$(packages)'
 	@ls $(build)/deb/*.deb

@@ -31,8 +31,8 @@ $(out)/gen/libgeotex-vulkan.map: include/geotex/vulkan.h
 $(out)/libgeotex-vulkan.so.$(VERSION): $(call objects_of,$(needs_vulkan)) $(so_core) \
     | $(out)/gen/libgeotex-vulkan.map
 	$(say) LINK $@
-	$(Q)$(CC) $(flags) $(LDFLAGS) -shared -Wl,-soname,libgeotex-vulkan.so.$(SOVERSION) -Wl,--no-undefined \
-	  -Wl,--version-script=$(out)/gen/libgeotex-vulkan.map -o $@ $^ -lm
+	$(Q)$(CC) $(flags) $(LDFLAGS) -shared -Wl,-soname,libgeotex-vulkan.so.$(SOVERSION) \
+	  -Wl,--no-undefined -Wl,--version-script=$(out)/gen/libgeotex-vulkan.map -o $@ $^ -lm
 	$(Q)ln -sf $(@F) $(out)/libgeotex-vulkan.so.$(SOVERSION) && \
 	  ln -sf $(@F) $(out)/libgeotex-vulkan.so
 
