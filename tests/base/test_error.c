@@ -70,8 +70,8 @@ static void warnings_have_names(void **state)
     }
 }
 
-/* Those of models, of which comparing knows no suitability; LOD_DROPPED and what follows is of the
- * command alone. */
+/* Those of models, of which comparing knows no suitability; GRIDS_DIFFER and what follows is of
+ * grids and of the command alone. */
 static void schemas_know_the_names(void **state)
 {
     static const char *const schemas[] = {"format/cook-report.schema.json",
@@ -86,7 +86,7 @@ static void schemas_know_the_names(void **state)
         for (int i = 0; i < GTX_WARNING_COUNT; ++i) {
             char quoted[64];
             snprintf(quoted, sizeof quoted, "\"%s\"", gtx_warning_name((gtx_warning)i));
-            const int end = k ? GTX_WARNING_FEW_TRIANGLES : GTX_WARNING_LOD_DROPPED;
+            const int end = k ? GTX_WARNING_FEW_TRIANGLES : GTX_WARNING_GRIDS_DIFFER;
             assert_int_equal(strstr(text, quoted) != NULL, i < end);
         }
     }

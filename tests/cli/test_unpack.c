@@ -88,7 +88,7 @@ static void an_asset_is_packed_anew(void **state)
 static const char classic[] = "-996 3 10 10\n0 20 0 20\n3 0 0 0\n0 0 0 0 0 0 0\n"
                               "1 2 3\n2 3 4\n3 4 5\n";
 
-static const char smaller[] = "-996 2 10 10\n0 10 0 10\n2 0 0 0\n0 0 0 0 0 0 0\n1 2 3 4\n";
+static const char elsewhere[] = "-996 2 10 10\n500 510 0 10\n2 0 0 0\n0 0 0 0 0 0 0\n1 2 3 4\n";
 
 static void grids_become_an_asset(void **state)
 {
@@ -103,9 +103,9 @@ static void grids_become_an_asset(void **state)
     write_file("b.irap", classic, sizeof classic - 3);
     expect(gtx("horizons b.irap -o no.gtx"), 3);
     expect_text("b.irap: error[input]");
-    write_file("c.irap", smaller, sizeof smaller - 1);
+    write_file("c.irap", elsewhere, sizeof elsewhere - 1);
     expect(gtx("horizons a.irap=c.irap -o no.gtx"), 3);
-    expect_text("c.irap: error[input]: the property has 2 x 2 nodes, its grid 3 x 3\n");
+    expect_text("c.irap: error[input]: it has no value anywhere on its grid");
     expect(gtx("horizons nowhere.irap -o no.gtx"), 2);
     expect(gtx("horizons a.irap"), 1);
     expect(gtx("horizons a.irap -o no.gtx --spacing 3"), 1);
