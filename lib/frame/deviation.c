@@ -50,32 +50,63 @@ static gtx_vec3 look_up(const normals *n, float x, float y)
 }
 
 /* Where in its pixel the normal of a sample is looked up: the R2 sequence (Roberts 2018). */
-static float jitter(uint32_t sample, float step)
+static float jitter(int sample, float step)
 {
     const float at = (float)sample * step;
     return at - floorf(at) - 0.5f;
 }
 
-/* 1 - the mean cosine, which for directions that stray little is their variance along an axis. */
+/* The value that as many are below as above; leaves them in another order (Hoare's selection). */
+static float median_of(float *values, int count)
+{
+    const int middle = count / 2;
+    for (int low = 0, high = count - 1; low < high;) {
+        const float pivot = values[middle];
+        int i = low, j = high;
+        while (i <= j) {
+            while (values[i] < pivot)
+                ++i;
+            while (pivot < values[j])
+                --j;
+            if (i > j)
+                break;
+            const float swapped = values[i];
+            values[i++] = values[j];
+            values[j--] = swapped;
+        }
+        if (j < middle)
+            low = i;
+        if (middle < i)
+            high = j;
+    }
+    return values[middle];
+}
+
+/* 1 - the mean cosine, which for directions that stray little is their variance along an axis. It is
+ * the median by ln 2 where slopes are normally distributed, and no more is taken: where a few
+ * grooves cross a pane, the mean of all would frost the glass. */
 static float variance(const gtx_grid *finest, const normals *own, const normals *coarse)
 {
     const uint32_t texels = own->width * own->height;
     /* Odd, so that it meets every place of a coarser texel: rectangles are even. */
     const uint32_t step = texels / SAMPLES | 1;
     const float scale = 1.0f / (float)(1u << coarse->level);
-    uint32_t count = 0;
-    float sum = 0;
+    int count = 0;
+    float sum = 0, found[2 * SAMPLES];
     for (uint32_t at = 0; at < texels; at += step) {
         if (!finest->code[at])
             continue;
-        ++count;
         const float x = (float)(at % own->width) + 0.5f, y = (float)(at / own->width) + 0.5f;
         const gtx_vec3 n = look_up(own, x, y);
         const gtx_vec3 m = look_up(coarse, x * scale + jitter(count, 0.7548777f),
                                    y * scale + jitter(count, 0.5698403f));
-        sum += 1 - gtx_v3_dot(n, m) / sqrtf(gtx_v3_dot(n, n) * gtx_v3_dot(m, m));
+        found[count] = 1 - gtx_v3_dot(n, m) / sqrtf(gtx_v3_dot(n, n) * gtx_v3_dot(m, m));
+        sum += found[count++];
     }
-    return count ? sum / (float)count : 0;
+    if (!count)
+        return 0;
+    const float most = median_of(found, count) / 0.69314718f;
+    return fmaxf(fminf(sum / (float)count, most), 0);
 }
 
 void gtx_normal_deviation(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
@@ -87,7 +118,7 @@ void gtx_normal_deviation(const gtx_asset *asset, uint32_t patch, const gtx_grid
         float found = least_deviation;
         if (k > 0 && k < asset->info.mip_count) {
             const normals coarse = normals_of(asset, p, k);
-            found = sqrtf(fmaxf(variance(finest, &own, &coarse), 0));
+            found = sqrtf(variance(finest, &own, &coarse));
         }
         deviation[k / 4][k % 4] = fminf(fmaxf(found, least_deviation), max_deviation);
     }

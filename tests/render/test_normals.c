@@ -3,10 +3,11 @@
 
 #include <stdbool.h>
 
-/* Normals that lean by an angle along x: one way, or one way and the other from texel to texel. */
+/* Normals that lean by an angle along x: one way, or one way and the other from texel to texel; all
+ * of them, or sixteen columns of 64, none of which is in the middle. */
 typedef struct leaning {
     double angle;
-    bool alternates;
+    bool alternates, is_rare;
 } leaning;
 
 static void leaning_field(const gtx_patch *patch, double x, double y, const void *user,
@@ -15,7 +16,9 @@ static void leaning_field(const gtx_patch *patch, double x, double y, const void
     const leaning *l = user;
     (void)patch;
     (void)y;
-    const double side = !l->alternates ? 1 : x != floor(x) ? 0 : fmod(x, 2) < 1 ? 1 : -1;
+    double side = !l->alternates ? 1 : x != floor(x) ? 0 : fmod(x, 2) < 1 ? 1 : -1;
+    if (l->is_rare && fmod(x + 32, 64) >= 16)
+        side = 0;
     *out = (fixture_texel){.height = 0.5, .trim = -8, .color = {255, 255, 255, 255},
                            .normal = {side * sin(l->angle), 0, cos(l->angle)}};
 }
@@ -88,7 +91,7 @@ static double light_by(stage *s, const gtx_view *view, const subject *shown, int
 static void small_facets_are_lit_as_seen(void **state)
 {
     STAGE_OR_SKIP(state);
-    const leaning rough = {0.5, true};
+    const leaning rough = {0.5, true, false};
     subject shown = sheet_open(s, &rough, 0);
     for (int i = 0; i < 6; ++i) {
         gtx_camera camera = {.radius = 8, .azimuth = 45, .elevation = 35.2644f, .distance = 2,
@@ -114,11 +117,30 @@ static void small_facets_are_lit_as_seen(void **state)
     subject_close(s, &shown);
 }
 
+/* A pane with a few grooves is as smooth between them as one without. */
+static void grooves_frost_no_pane(void **state)
+{
+    STAGE_OR_SKIP(state);
+    const leaning grooves = {1.2, true, true};
+    subject shown = sheet_open(s, &grooves, 0);
+    gtx_camera camera = {.radius = 2, .distance = 4, .orthographic = 1};
+    gtx_view view = view_of(&camera);
+    const double light[3] = {-0.98, 0, 0.199};
+    for (int k = 0; k < 3; ++k)
+        view.light_direction[k] = (float)light[k];
+    for (int way = 0; way < WAYS; ++way) {
+        const double lit = light_by(s, &view, &shown, way);
+        if (fabs(lit - light[2]) > 0.01)
+            fail_msg("way %d: %g, but a pane has %g", way, lit, light[2]);
+    }
+    subject_close(s, &shown);
+}
+
 /* A two-sided mesh turns its normals round where its back is seen, however obliquely. */
 static void backs_have_turned_normals(void **state)
 {
     STAGE_OR_SKIP(state);
-    const leaning even = {0.3, false};
+    const leaning even = {0.3, false, false};
     const double n[3] = {sin(even.angle), 0, cos(even.angle)};
     subject shown = sheet_open(s, &even, GTX_PATCH_TWO_SIDED);
     for (int i = 0; i < 5; ++i) {
@@ -140,6 +162,7 @@ static void backs_have_turned_normals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(small_facets_are_lit_as_seen),
+                                       cmocka_unit_test(grooves_frost_no_pane),
                                        cmocka_unit_test(backs_have_turned_normals)};
     return cmocka_run_group_tests(tests, stage_open, stage_close);
 }
