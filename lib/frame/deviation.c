@@ -82,8 +82,8 @@ static float median_of(float *values, int count)
     return values[middle];
 }
 
-/* 1 - the mean cosine, which for directions that stray little is their variance along an axis. It is
- * the median by ln 2 where slopes are normally distributed, and no more is taken: where a few
+/* 1 - the mean cosine, which for directions that stray little is their variance along an axis. It
+ * is the median by ln 2 where slopes are normally distributed, and no more is taken: where a few
  * grooves cross a pane, the mean of all would frost the glass. */
 static float variance(const gtx_grid *finest, const normals *own, const normals *coarse)
 {
