@@ -39,7 +39,7 @@ static void a_ball_has_its_content(void **)
     int others = 0;
     for (const Content &ball : {Content{"ball", GTX_PARTITION_CUTS, 0, 0xb91921d6ccaebf77},
                                 Content{"ball", GTX_PARTITION_VSA, NONE, 0xff6480fca129567b},
-                                Content{"ball", GTX_PARTITION_PGP, NONE, 0x82756e9ada401946},
+                                Content{"ball", GTX_PARTITION_PGP, NONE, 0xdb93daccf3025264},
                                 Content{"ball", GTX_PARTITION_LAYERS, NONE, 0xae7ea69709e3ca4b},
                                 Content{"ball", GTX_PARTITION_RELIEF, NONE, 0x5828e8c6bd317c33}})
         others += !has_content(ball_file(), ball);
