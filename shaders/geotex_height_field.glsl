@@ -103,7 +103,7 @@ gtx_height_field gtx_field_of(int patch_index, int level)
 }
 
 /* How far a patch's normals stray from those that a lookup at a mip level gives: the standard
- * deviation along an axis across, as lib/render/deviation.c measures it. */
+ * deviation along an axis across, as lib/frame/deviation.c measures it. */
 float gtx_deviation_of(int patch_index, float level)
 {
     int k = clamp(int(floor(level + 0.5)), 0, 7);

@@ -133,7 +133,8 @@ void gtx_model_cells_at(const gtx_model *model, const gtx_patch *patch, uint32_t
 void gtx_model_sum_up(gtx_model *model);
 
 /* deviation.c: for each mip level the standard deviation, along an axis across, of a patch's
- * normals about those that pixels of the level's texels look up: 0.001 to 0.5, and 0.001 at 0. */
+ * normals about those that pixels of the level's texels look up, without the few that stray far:
+ * 0.001 to 0.5, and 0.001 at 0. */
 void gtx_normal_deviation(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
                           float (*deviation)[4]);
 
