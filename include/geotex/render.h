@@ -128,35 +128,14 @@ GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,
 
 /* ---- rays in shaders --------------------------------------------------------------------- */
 
-/* The patches of several assets, stored so that any shader can cast rays into them: heights and
- * outlines in textures of their own (5 bytes per texel, 9 with 16-bit heights), a hierarchy over
- * blocks of their cells, and above it one over their instances. geotex_rays.glsl says what there is
- * to call: hard and soft shadows and ambient occlusion across all patches of all instances. It
- * needs no more than OpenGL 3.3 or OpenGL ES 3.0, and is part of every gtx_shading. Height fields
- * are cast at level 0. */
-typedef struct gtx_rays gtx_rays;
-
-typedef struct gtx_rays_desc {
-    const gtx_asset *const *assets;   /* not kept */
-    uint32_t asset_count;
-    uint32_t max_instances;           /* up to 2^20 */
-    gtx_limits limits;                /* memory of all, cells of each asset */
-    uint32_t reserved[4];
-} gtx_rays_desc;
-
-/* Derives and uploads; no instance is placed yet. The rays come from the renderer's allocator, and
- * are freed by gtx_rays_destroy. State is left as by gtx_model_upload.
+/* The gtx_rays of frame.h, derived and uploaded; no instance is placed yet. The rays come from the
+ * descriptor's allocator, or else the renderer's, and are freed by gtx_rays_destroy. They are part
+ * of every gtx_shading. State is left as by gtx_model_upload.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT (limits, texture size), GL (out of memory). */
 GTX_API gtx_result gtx_rays_create(gtx_renderer *renderer, const gtx_rays_desc *desc,
                                    gtx_rays **out, gtx_error *error);
 /* NULL rays are fine. */
 GTX_API void gtx_rays_destroy(gtx_renderer *renderer, gtx_rays *rays);
-
-/* `asset` is an index into gtx_rays_desc.assets; `transform` is as in gtx_instance. */
-typedef struct gtx_ray_instance {
-    uint32_t asset;
-    float transform[16];
-} gtx_ray_instance;
 
 /* Replaces all instances, as often as they move; their hierarchy is rebuilt. State is left as by
  * gtx_model_upload. Errors: ARGUMENT, MEMORY (nothing has moved). */

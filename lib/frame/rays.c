@@ -156,16 +156,17 @@ static gtx_result derive_asset(gtx_rays *rays, const gtx_asset *asset, gtx_ray_m
     return GTX_OK;
 }
 
-void gtx_rays_free_maps(const gtx_rays *rays, gtx_ray_maps *maps)
+void gtx_rays_free_maps(gtx_rays *rays)
 {
-    gtx_free_array(&rays->allocator, maps->cells, rays->cells, rays->bits / 2);
-    gtx_free_array(&rays->allocator, maps->trim, rays->cells, 1);
+    gtx_free_array(&rays->allocator, rays->maps.cells, rays->cells, rays->bits / 2);
+    gtx_free_array(&rays->allocator, rays->maps.trim, rays->cells, 1);
+    rays->maps = (gtx_ray_maps){NULL, NULL};
 }
 
-static gtx_result fill(gtx_rays *rays, const gtx_rays_desc *desc, gtx_ray_maps *maps,
-                       gtx_error *error)
+static gtx_result fill(gtx_rays *rays, const gtx_rays_desc *desc, gtx_error *error)
 {
     const gtx_allocator *hooks = &rays->allocator;
+    gtx_ray_maps *maps = &rays->maps;
     maps->cells = gtx_alloc_array(hooks, rays->cells, rays->bits / 2);
     maps->trim = gtx_alloc_array(hooks, rays->cells, 1);
     room next = {.cells = maps->cells, .trim = maps->trim};
@@ -178,12 +179,13 @@ static gtx_result fill(gtx_rays *rays, const gtx_rays_desc *desc, gtx_ray_maps *
     return result;
 }
 
-gtx_result gtx_rays_derive(const gtx_allocator *hooks, const gtx_rays_desc *desc, gtx_rays **out,
-                           gtx_ray_maps *maps, gtx_error *error)
+gtx_result gtx_rays_prepare(const gtx_rays_desc *desc, gtx_rays **out, gtx_error *error)
 {
-    if (!desc->asset_count || !desc->assets || desc->max_instances > GTX_MAX_PATCHES)
+    if (!out || !desc || !desc->asset_count || !desc->assets ||
+        desc->max_instances > GTX_MAX_PATCHES)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "rays need assets, and at most %u instances",
                         GTX_MAX_PATCHES);
+    *out = NULL;
     gtx_result result =
         gtx_check_reserved(desc->reserved, sizeof desc->reserved / sizeof *desc->reserved, error);
     if (!result)
@@ -194,13 +196,14 @@ gtx_result gtx_rays_derive(const gtx_allocator *hooks, const gtx_rays_desc *desc
                      : gtx_fail(error, GTX_ERROR_ARGUMENT, "asset %u is missing", i);
     if (result)
         return result;
-    gtx_rays *rays = gtx_alloc_array(hooks, 1, sizeof *rays);
+    const gtx_allocator hooks = gtx_allocator_or_default(desc->allocator);
+    gtx_rays *rays = gtx_alloc_array(&hooks, 1, sizeof *rays);
     if (!rays)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for rays");
-    rays->allocator = *hooks;
+    rays->allocator = hooks;
     rays->max_instances = desc->max_instances;
     rays->member_count = desc->asset_count;
-    rays->members = gtx_alloc_array(hooks, rays->member_count, sizeof *rays->members);
+    rays->members = gtx_alloc_array(&hooks, rays->member_count, sizeof *rays->members);
     result = rays->members ? measure(rays, desc, error)
                            : gtx_fail(error, GTX_ERROR_MEMORY, "no memory to cast into %u assets",
                                       desc->asset_count);
@@ -208,18 +211,19 @@ gtx_result gtx_rays_derive(const gtx_allocator *hooks, const gtx_rays_desc *desc
         result = gtx_check_derived(rays->cells, &desc->limits, "a set of rays", bytes_of(rays),
                                    error);
     if (!result)
-        result = fill(rays, desc, maps, error);
-    if (result) {
-        gtx_rays_free_maps(rays, maps);
+        result = fill(rays, desc, error);
+    if (result)
         gtx_rays_free(rays);
-        return result;
-    }
-    *out = rays;
-    return GTX_OK;
+    else
+        *out = rays;
+    return result;
 }
 
 void gtx_rays_free(gtx_rays *rays)
 {
+    if (!rays)
+        return;
+    gtx_rays_free_maps(rays);
     const gtx_allocator hooks = rays->allocator;
     for (uint32_t i = 0; rays->members && i < rays->member_count; ++i) {
         const gtx_ray_member *m = &rays->members[i];

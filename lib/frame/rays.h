@@ -6,7 +6,7 @@
 #include "derive/placement.h"
 #include "geotex_records.glsl"
 
-#include <geotex/render.h>
+#include <geotex/frame.h>
 #include <stdbool.h>
 
 /* Texels of a row of any of the textures, and rows of a layer. */
@@ -37,12 +37,18 @@ typedef struct gtx_ray_member {
     bool edited;              /* its nodes are not those of its boxes */
 } gtx_ray_member;
 
+/* Cells and trim of patches, one after the other. */
+typedef struct gtx_ray_maps {
+    uint8_t *cells, *trim;
+} gtx_ray_maps;
+
 struct gtx_rays {
     gtx_allocator allocator;
     gtx_ray_member *members;
     uint32_t member_count, max_instances;
     uint32_t bits;            /* of all cells */
     size_t nodes, cells;      /* texels of the textures, whole rows and layers */
+    gtx_ray_maps maps;        /* `cells` texels, until they are uploaded */
     uint32_t textures[GTX_RAY_TEXTURES]; /* names in OpenGL */
     /* The front of the nodes' texture, for instances, and scratch for it. */
     size_t front_texels;
@@ -51,18 +57,8 @@ struct gtx_rays {
     gtx_placement *places;
 };
 
-/* rays.c: cells and trim of all patches, one after the other, rays->cells texels each;
- * gtx_rays_free_maps gives them back. */
-typedef struct gtx_ray_maps {
-    uint8_t *cells, *trim;
-} gtx_ray_maps;
-void gtx_rays_free_maps(const gtx_rays *rays, gtx_ray_maps *maps);
-
-/* Derives all but the hierarchies, which gtx_rays_plan does. Errors: ARGUMENT, NOT_ZEROED, LIMIT,
- * MEMORY. */
-gtx_result gtx_rays_derive(const gtx_allocator *hooks, const gtx_rays_desc *desc, gtx_rays **out,
-                           gtx_ray_maps *maps, gtx_error *error);
-void gtx_rays_free(gtx_rays *rays);
+/* rays.c: frees the maps of all patches. */
+void gtx_rays_free_maps(gtx_rays *rays);
 
 /* A patch of an edited asset: where its texels begin, how many there are, and their maps, which
  * gtx_rays_free_patch gives back. */

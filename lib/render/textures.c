@@ -6,24 +6,25 @@
 /* How OpenGL stores a format, and how it is told texels of it; blocks have no words for those. */
 typedef struct words {
     gl_enum inner, format, type;
+    uint32_t texel_size;
 } words;
 
 static const words words_of[] = {
-    [GTX_FORMAT_R8] = {GL_R8, GL_RED, GL_UNSIGNED_BYTE},
-    [GTX_FORMAT_RG8] = {GL_RG8, GL_RG, GL_UNSIGNED_BYTE},
-    [GTX_FORMAT_RGBA8] = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE},
-    [GTX_FORMAT_RGB8_SRGB] = {GL_SRGB8, GL_RGB, GL_UNSIGNED_BYTE},
-    [GTX_FORMAT_RGBA8_SRGB] = {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE},
-    [GTX_FORMAT_RGBA8_UINT] = {GL_RGBA8UI, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE},
-    [GTX_FORMAT_RGBA16_UINT] = {GL_RGBA16UI, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT},
-    [GTX_FORMAT_RGBA32_FLOAT] = {GL_RGBA32F, GL_RGBA, GL_FLOAT},
-    [GTX_FORMAT_BC5] = {GL_COMPRESSED_RG_RGTC2, 0, 0},
-    [GTX_FORMAT_BC7] = {GL_COMPRESSED_RGBA_BPTC_UNORM, 0, 0},
-    [GTX_FORMAT_BC7_SRGB] = {GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM, 0, 0},
-    [GTX_FORMAT_EAC_RG11] = {GL_COMPRESSED_RG11_EAC, 0, 0},
-    [GTX_FORMAT_ETC2_RGBA8] = {GL_COMPRESSED_RGBA8_ETC2_EAC, 0, 0},
-    [GTX_FORMAT_ETC2_RGBA8_SRGB] = {GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC, 0, 0},
-    [GTX_FORMAT_ETC2_RGB8_SRGB] = {GL_COMPRESSED_SRGB8_ETC2, 0, 0}};
+    [GTX_FORMAT_R8] = {GL_R8, GL_RED, GL_UNSIGNED_BYTE, 1},
+    [GTX_FORMAT_RG8] = {GL_RG8, GL_RG, GL_UNSIGNED_BYTE, 2},
+    [GTX_FORMAT_RGBA8] = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4},
+    [GTX_FORMAT_RGB8_SRGB] = {GL_SRGB8, GL_RGB, GL_UNSIGNED_BYTE, 3},
+    [GTX_FORMAT_RGBA8_SRGB] = {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE, 4},
+    [GTX_FORMAT_RGBA8_UINT] = {GL_RGBA8UI, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE, 4},
+    [GTX_FORMAT_RGBA16_UINT] = {GL_RGBA16UI, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT, 8},
+    [GTX_FORMAT_RGBA32_FLOAT] = {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16},
+    [GTX_FORMAT_BC5] = {GL_COMPRESSED_RG_RGTC2, 0, 0, 0},
+    [GTX_FORMAT_BC7] = {GL_COMPRESSED_RGBA_BPTC_UNORM, 0, 0, 0},
+    [GTX_FORMAT_BC7_SRGB] = {GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM, 0, 0, 0},
+    [GTX_FORMAT_EAC_RG11] = {GL_COMPRESSED_RG11_EAC, 0, 0, 0},
+    [GTX_FORMAT_ETC2_RGBA8] = {GL_COMPRESSED_RGBA8_ETC2_EAC, 0, 0, 0},
+    [GTX_FORMAT_ETC2_RGBA8_SRGB] = {GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC, 0, 0, 0},
+    [GTX_FORMAT_ETC2_RGB8_SRGB] = {GL_COMPRESSED_SRGB8_ETC2, 0, 0, 0}};
 
 gtx_texture_kind gtx_texture_kind_of(const gtx_model *model, uint32_t unit)
 {
@@ -32,7 +33,7 @@ gtx_texture_kind gtx_texture_kind_of(const gtx_model *model, uint32_t unit)
     const bool filtered = !flat && unit != UNIT_CELLS && unit != UNIT_TRIM;
     return (gtx_texture_kind){flat ? GL_TEXTURE_2D : GL_TEXTURE_2D_ARRAY, w.inner, w.format,
                               w.type, filtered ? GL_LINEAR_MIPMAP_NEAREST : GL_NEAREST,
-                              filtered ? GL_LINEAR : GL_NEAREST};
+                              filtered ? GL_LINEAR : GL_NEAREST, w.texel_size};
 }
 
 gtx_result gtx_check_textures(const gtx_gl *gl, const gtx_model *model, gtx_error *error)

@@ -26,8 +26,8 @@ static gl_uint allocate_buffer(const gtx_gl *gl, gl_enum target, size_t size, gl
     return buffer;
 }
 
-static void fill_buffer(const gtx_gl *gl, gl_enum target, gl_uint buffer, uint64_t at,
-                        uint64_t size, const void *data)
+void gtx_fill_buffer(const gtx_gl *gl, gl_enum target, gl_uint buffer, uint64_t at, uint64_t size,
+                     const void *data)
 {
     gl->BindBuffer(target, buffer);
     if (size)
@@ -43,34 +43,6 @@ static void allocate_proxies(const gtx_gl *gl, gtx_model *model)
     model->indices = allocate_buffer(gl, GL_ELEMENT_ARRAY_BUFFER,
                                      p->index_count * sizeof *p->indices, GL_DYNAMIC_DRAW,
                                      "geotex proxy indices");
-}
-
-/* Indices that are left over make triangles without area. */
-bool gtx_replace_proxies(const gtx_renderer *renderer, const gtx_model *model,
-                         gtx_proxies *proxies, uint32_t patch)
-{
-    const gtx_gl *gl = &renderer->gl;
-    const gl_uint hosts = gtx_take_vertex_array(renderer);
-    bool fits = true;
-    for (uint32_t kind = 0; kind < model->kind_count; ++kind) {
-        gtx_proxies *p = &proxies[kind];
-        const uint32_t slot = kind * model->patch_count + patch;
-        const uint32_t first = model->first_vertex[slot], start = model->first_index[slot];
-        const uint32_t room = model->first_index[slot + 1] - start;
-        if (p->vertex_count > model->first_vertex[slot + 1] - first || p->index_count > room ||
-            p->index_room < room) {
-            fits = false;
-            continue;
-        }
-        for (uint32_t i = 0; i < room; ++i)
-            p->indices[i] = i < p->index_count ? p->indices[i] + first : first;
-        fill_buffer(gl, GL_ARRAY_BUFFER, model->vertices, first * sizeof *p->vertices,
-                    p->vertex_count * sizeof *p->vertices, p->vertices);
-        fill_buffer(gl, GL_ELEMENT_ARRAY_BUFFER, model->indices, start * sizeof *p->indices,
-                    room * sizeof *p->indices, p->indices);
-    }
-    gl->BindVertexArray(hosts);
-    return fits;
 }
 
 void gtx_default_unpacking(const gtx_gl *gl)
@@ -92,7 +64,7 @@ static void upload_bytes(const gtx_gl *gl, gl_enum target, gl_uint buffer, const
     const uint64_t left = size - *sent, count = left < *budget ? left : *budget;
     if (count == 0)
         return;
-    fill_buffer(gl, target, buffer, *sent, count, (const char *)data + *sent);
+    gtx_fill_buffer(gl, target, buffer, *sent, count, (const char *)data + *sent);
     *sent += count;
     *budget -= count;
 }

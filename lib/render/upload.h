@@ -7,7 +7,8 @@
 
 /* How the texture of a unit is stored and read. */
 typedef struct gtx_texture_kind {
-    gl_enum target, inner, format, type, min_filter, mag_filter;
+    gl_enum target, inner, format, type, min_filter, mag_filter; /* format: 0 of blocks */
+    uint32_t texel_size;
 } gtx_texture_kind;
 gtx_texture_kind gtx_texture_kind_of(const gtx_model *model, uint32_t unit);
 /* Errors: LIMIT, UNSUPPORTED (blocks). */
@@ -20,9 +21,9 @@ void gtx_upload_rows(const gtx_gl *gl, gtx_model *model, gtx_level *l, uint64_t 
 /* Binds the renderer's vertex array and returns the host's, to be bound again: index buffers go
  * through the element target, which belongs to vertex arrays; WebGL takes them no other way. */
 gl_uint gtx_take_vertex_array(const gtx_renderer *renderer);
-/* Puts a patch's edited proxies in the place of its old ones. False when a hull does not fit. */
-bool gtx_replace_proxies(const gtx_renderer *renderer, const gtx_model *model,
-                         gtx_proxies *proxies, uint32_t patch);
+/* Leaves no buffer bound. */
+void gtx_fill_buffer(const gtx_gl *gl, gl_enum target, gl_uint buffer, uint64_t at, uint64_t size,
+                     const void *data);
 /* Pixel unpacking as render.h promises to leave it. */
 void gtx_default_unpacking(const gtx_gl *gl);
 /* Errors: GL (out of memory since the last look). */
