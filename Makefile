@@ -176,7 +176,7 @@ $(lib_cook): $(call objects_of,$(ROOMS_COOK))
 	$(Q)rm -f $@ && $(AR) qcs $@ $^
 
 # What a shared library exports: the functions that its headers declare, and nothing else.
-headers_core := geotex edit solid frame render stream
+headers_core := geotex edit solid frame rays render stream
 $(out)/gen/libgeotex.map: $(headers_core:%=include/geotex/%.h)
 $(out)/gen/libgeotex-cook.map: $(addprefix include/geotex/,cook.h export.h grid.h)
 $(out)/gen/%.map: Makefile

@@ -17,8 +17,8 @@
  * Shaders are GLSL: gtx_pipeline_source. Behind the engine's #version and `#define GTX_RHI` they
  * take one uniform block, gtx_constants, at binding 8 beside the textures at bindings 0..6
  * (gtx_slot), and of a vertex only floats and whole numbers. With VULKAN defined, as compilers to
- * SPIR-V do, that is so by itself. Edits of a model and rays in shaders tell a gtx_sink which texels
- * and bytes to replace.
+ * SPIR-V do, that is so by itself. Edits tell a gtx_sink which texels and bytes to replace; so do
+ * the rays in shaders of rays.h.
  *
  * Frames are drawn with depth test and depth writes on, without blending, into what has a depth
  * buffer. The rules of geotex.h hold here too; a planner is used by one thread at a time. */
@@ -273,7 +273,7 @@ GTX_API void gtx_frame_draws(gtx_planner *planner, gtx_submit *submit, void *use
 
 /* Texels of one layer of a texture. */
 typedef struct gtx_texture_piece {
-    uint32_t binding;                 /* a gtx_slot; of rays GTX_RAYS_BINDING and on */
+    uint32_t binding;                 /* a gtx_slot; of rays.h GTX_RAYS_BINDING and on */
     uint32_t level, layer, x, y, width, height; /* of blocks, whole ones, or up to the end */
     const void *data;
     uint64_t row_bytes;               /* from a row of texels, or of blocks, to the next */
@@ -293,62 +293,11 @@ typedef struct gtx_sink {
 /* Takes one patch from an edited asset: its maps at all levels, and the record, bounds and proxies
  * derived from them. `edited` has the pages, maps and rectangles of the asset that the model was
  * made from, and is not kept. Call it for each edited patch; the model is consistent again after
- * the last. Works in memory of the model's allocator. gtx_model_update of render.h and gtx_vk_update
- * of vulkan.h call it. Errors: ARGUMENT (also where the model has not been uploaded), MEMORY:
+ * the last. Works in memory of the model's allocator. gtx_model_update and gtx_vk_update call it.
+ * Errors: ARGUMENT (also where the model has not been uploaded), MEMORY:
  * nothing has changed. */
 GTX_API gtx_result gtx_model_edit(gtx_model *model, const gtx_asset *edited, uint32_t patch,
                                   const gtx_sink *sink, gtx_error *error);
-
-/* ---- rays in shaders ----------------------------------------------------------------------- */
-
-/* The patches of several assets, stored so that any shader can cast rays into them: heights and
- * outlines in textures of their own (5 bytes per texel, 9 with 16-bit heights), a hierarchy over
- * blocks of their cells, and above it one over their instances. geotex_rays.glsl says what there is
- * to call: hard and soft shadows and ambient occlusion across all patches of all instances. It
- * needs no more than OpenGL 3.3, OpenGL ES 3.0 or Vulkan 1.0, and is part of every fragment main of
- * an engine's own. Height fields are cast at level 0. */
-typedef struct gtx_rays gtx_rays;
-
-/* Their textures: nodes, cells, outlines; at these bindings in shaders. */
-enum { GTX_RAYS_BINDING = 13, GTX_RAYS_TEXTURES = 3 };
-
-typedef struct gtx_rays_desc {
-    const gtx_asset *const *assets;   /* not kept */
-    uint32_t asset_count;
-    uint32_t max_instances;           /* up to 2^20 */
-    gtx_limits limits;                /* memory of all, cells of each asset */
-    const gtx_allocator *allocator;   /* NULL = malloc; with gtx_rays_create, the renderer's */
-    uint32_t reserved[4];
-} gtx_rays_desc;
-
-/* `asset` is an index into gtx_rays_desc.assets; `transform` is as in gtx_instance. */
-typedef struct gtx_ray_instance {
-    uint32_t asset;
-    float transform[16];
-} gtx_ray_instance;
-
-/* Derives them, without a graphics interface: any thread. No instance is placed yet, and
- * gtx_rays_arrange must come before shaders read what is uploaded. Freed by gtx_rays_free. Errors:
- * ARGUMENT, NOT_ZEROED, MEMORY, LIMIT. */
-GTX_API gtx_result gtx_rays_prepare(const gtx_rays_desc *desc, gtx_rays **out, gtx_error *error);
-/* `which` is below GTX_RAYS_TEXTURES; else it is false, and zeros. Read by texel alone. The first
- * one has no texels yet. */
-GTX_API uint32_t gtx_rays_texture(const gtx_rays *rays, uint32_t which, gtx_texture *out);
-/* Says that all is copied: frees it. */
-GTX_API void gtx_rays_uploaded(gtx_rays *rays);
-/* Of what no renderer of render.h has created. NULL is fine. */
-GTX_API void gtx_rays_free(gtx_rays *rays);
-
-/* Replaces all instances, as often as they move; their hierarchy is rebuilt. Only sink->texels is
- * called. Errors: ARGUMENT, MEMORY: nothing has moved. */
-GTX_API gtx_result gtx_rays_arrange(gtx_rays *rays, const gtx_ray_instance *instances,
-                                    uint32_t count, const gtx_sink *sink, gtx_error *error);
-/* Takes one patch from an edited asset, like gtx_model_edit: call it for each. `edited` has the
- * rectangles of assets[asset] of the descriptor, and is not kept. Rays meet the new patches from
- * the next gtx_rays_arrange on, which rebuilds that asset's hierarchy. Errors: ARGUMENT, MEMORY:
- * nothing has changed. */
-GTX_API gtx_result gtx_rays_edit(gtx_rays *rays, uint32_t asset, const gtx_asset *edited,
-                                 uint32_t patch, const gtx_sink *sink, gtx_error *error);
 
 /* ---- pipelines ----------------------------------------------------------------------------- */
 

@@ -22,7 +22,7 @@
 #ifndef GEOTEX_RENDER_H
 #define GEOTEX_RENDER_H
 
-#include <geotex/frame.h>
+#include <geotex/rays.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -128,7 +128,7 @@ GTX_API gtx_result gtx_draw(gtx_renderer *renderer, const gtx_view *view,
 
 /* ---- rays in shaders --------------------------------------------------------------------- */
 
-/* The gtx_rays of frame.h, derived and uploaded; no instance is placed yet. The rays come from the
+/* The gtx_rays of rays.h, derived and uploaded; no instance is placed yet. The rays come from the
  * descriptor's allocator, or else the renderer's, and are freed by gtx_rays_destroy. They are part
  * of every gtx_shading. State is left as by gtx_model_upload.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT (limits, texture size), GL (out of memory). */

@@ -13,7 +13,7 @@
  *     gtx_vk_next_frame(vk);                                               once a frame
  *     gtx_vk_draw(vk, commands, &target, &view, placed, count, &error);    inside a render pass
  *
- * The picture is that of render.h. Not there yet: rays in shaders, gtx_model_update.
+ * The picture is that of render.h.
  *
  * State. gtx_vk_draw binds a graphics pipeline, descriptor set 0, vertex buffers 0 and 1 and an
  * index buffer. Viewport and scissor are dynamic, and the host's; other dynamic state is not used.
@@ -21,7 +21,7 @@
 #ifndef GEOTEX_VULKAN_H
 #define GEOTEX_VULKAN_H
 
-#include <geotex/frame.h>
+#include <geotex/rays.h>
 #include <vulkan/vulkan_core.h>
 
 #ifdef __cplusplus
@@ -62,6 +62,13 @@ GTX_API gtx_result gtx_vk_upload(gtx_vk *vk, VkCommandBuffer commands, gtx_model
                                  gtx_vk_model **out, gtx_error *error);
 /* Frees what the upload was copied through: its commands have been executed. */
 GTX_API void gtx_vk_uploaded(gtx_vk *vk, gtx_vk_model *model);
+/* Takes patches from an edited asset, as gtx_model_edit, and records what changes on the device,
+ * through the frame's memory: outside a render pass; draws behind it in submission order show it,
+ * those before it do not, and nothing waits. After MEMORY and GL a patch may be taken in part: take
+ * them again. Errors: ARGUMENT, MEMORY, GL. */
+GTX_API gtx_result gtx_vk_update(gtx_vk *vk, VkCommandBuffer commands, gtx_vk_model *model,
+                                 const gtx_asset *edited, const uint32_t *patches, uint32_t count,
+                                 gtx_error *error);
 /* No command that names it may be in execution. NULL is fine. */
 GTX_API void gtx_vk_model_destroy(gtx_vk *vk, gtx_vk_model *model);
 
@@ -122,6 +129,38 @@ GTX_API void gtx_vk_shading_destroy(gtx_vk *vk, gtx_vk_shading *shading);
 /* Its layout, for binding sets 1 and on and pushing constants before gtx_vk_draw_shaded, which
  * binds set 0 alone. VK_NULL_HANDLE for NULL. */
 GTX_API VkPipelineLayout gtx_vk_shading_layout(const gtx_vk_shading *shading);
+
+/* ---- rays in shaders ----------------------------------------------------------------------- */
+
+/* gtx_rays of rays.h on the device. */
+typedef struct gtx_vk_rays gtx_vk_rays;
+
+/* Creates their images and records their upload; no instance is placed yet. `rays` keeps no texels
+ * (gtx_rays_uploaded), and is freed by gtx_rays_free after the gtx_vk_rays. Errors: ARGUMENT,
+ * MEMORY, LIMIT (image size), GL. */
+GTX_API gtx_result gtx_vk_rays_upload(gtx_vk *vk, VkCommandBuffer commands, gtx_rays *rays,
+                                      gtx_vk_rays **out, gtx_error *error);
+/* Frees what the upload was copied through: its commands have been executed. */
+GTX_API void gtx_vk_rays_uploaded(gtx_vk *vk, gtx_vk_rays *rays);
+/* No command that names it may be in execution. NULL is fine. */
+GTX_API void gtx_vk_rays_destroy(gtx_vk *vk, gtx_vk_rays *rays);
+
+/* gtx_rays_arrange and gtx_rays_edit, recorded as by gtx_vk_update. Errors: ARGUMENT, MEMORY,
+ * GL. */
+GTX_API gtx_result gtx_vk_rays_place(gtx_vk *vk, VkCommandBuffer commands, gtx_vk_rays *rays,
+                                     const gtx_ray_instance *instances, uint32_t count,
+                                     gtx_error *error);
+GTX_API gtx_result gtx_vk_rays_update(gtx_vk *vk, VkCommandBuffer commands, gtx_vk_rays *rays,
+                                      uint32_t asset, const gtx_asset *edited,
+                                      const uint32_t *patches, uint32_t count, gtx_error *error);
+
+/* What the shading's draws cast into from now on; NULL, as at first: nothing, and nothing
+ * occludes. */
+GTX_API void gtx_vk_shading_cast(gtx_vk_shading *shading, const gtx_vk_rays *rays);
+/* What bindings 13, 14 and 15 are, for shaders of the engine's own that include geotex_rays.glsl,
+ * of any stage. */
+GTX_API void gtx_vk_rays_images(const gtx_vk *vk, const gtx_vk_rays *rays,
+                                VkDescriptorImageInfo out[GTX_RAYS_TEXTURES]);
 
 /* gtx_vk_draw by an engine's own main, in the forward pass; with GTX_VIEW_SHADING_BY_TILES by
  * tiles, where rays are cast so. Errors: as gtx_vk_draw; UNSUPPORTED with GTX_VIEW_BY_SAMPLES. */

@@ -6,7 +6,7 @@
 #include "derive/placement.h"
 #include "geotex_records.glsl"
 
-#include <geotex/frame.h>
+#include <geotex/rays.h>
 #include <stdbool.h>
 
 /* Texels of a row of any of the textures, and rows of a layer. */

@@ -95,21 +95,21 @@ static void send_cells(const gtx_sink *sink, const gtx_model *model, const gtx_p
         const uint32_t width = (uint32_t)patch->rect[2] >> k;
         uint32_t at[2];
         gtx_model_cells_at(model, patch, k, at);
-        sink->texels(&(gtx_texture_piece){.binding = GTX_SLOT_CELLS, .layer = patch->page, .x = at[0],
-                                   .y = at[1], .width = width,
-                                   .height = (uint32_t)patch->rect[3] >> k, .data = d->cells[k],
-                                   .row_bytes = width * (model->height_bits / 2)},
-                     sink->user);
+        const gtx_texture_piece piece = {
+            .binding = GTX_SLOT_CELLS, .layer = patch->page, .x = at[0], .y = at[1],
+            .width = width, .height = (uint32_t)patch->rect[3] >> k, .data = d->cells[k],
+            .row_bytes = width * (model->height_bits / 2)};
+        sink->texels(&piece, sink->user);
     }
 }
 
 /* A piece of a row of the texture of records and slabs. */
 static void send_row(const gtx_sink *sink, uint32_t at, uint32_t count, const float *texels)
 {
-    sink->texels(&(gtx_texture_piece){.binding = GTX_SLOT_PATCHES, .x = at % GTX_PATCHES_ROW,
-                               .y = at / GTX_PATCHES_ROW, .width = count, .height = 1,
-                               .data = texels, .row_bytes = count * sizeof(gtx_slab_texel)},
-                 sink->user);
+    const gtx_texture_piece piece = {.binding = GTX_SLOT_PATCHES, .x = at % GTX_PATCHES_ROW,
+                                     .y = at / GTX_PATCHES_ROW, .width = count, .height = 1,
+                                     .data = texels, .row_bytes = count * sizeof(gtx_slab_texel)};
+    sink->texels(&piece, sink->user);
 }
 
 static void send_record(const gtx_sink *sink, const gtx_model *model, const gtx_derived *d,

@@ -52,12 +52,12 @@ static void send_blocks(const gtx_model *model, const gtx_asset *asset, const gt
                               .out = scratch};
     const uint32_t block = r.format == GTX_FORMAT_ETC2_RGB8_SRGB ? 8 : 16;
     gtx_compress_rows(asset, &r);
-    sink->texels(&(gtx_texture_piece){.binding = m->unit, .level = l->level, .layer = patch->page,
-                               .x = SIDE * r.left, .y = SIDE * r.first,
-                               .width = least(SIDE * r.right, l->width) - SIDE * r.left,
-                               .height = least(SIDE * r.end, l->height) - SIDE * r.first,
-                               .data = scratch, .row_bytes = (r.right - r.left) * block},
-                 sink->user);
+    const gtx_texture_piece piece = {
+        .binding = m->unit, .level = l->level, .layer = patch->page, .x = SIDE * r.left,
+        .y = SIDE * r.first, .width = least(SIDE * r.right, l->width) - SIDE * r.left,
+        .height = least(SIDE * r.end, l->height) - SIDE * r.first, .data = scratch,
+        .row_bytes = (r.right - r.left) * block};
+    sink->texels(&piece, sink->user);
 }
 
 static void send_texels(const gtx_patch *patch, const map_of_unit *m, const level_of_map *l,
@@ -65,12 +65,12 @@ static void send_texels(const gtx_patch *patch, const map_of_unit *m, const leve
 {
     const uint32_t x = patch->rect[0] >> l->level, y = patch->rect[1] >> l->level;
     const size_t texel = ((size_t)patch->page * l->height + y) * l->width + x;
-    sink->texels(&(gtx_texture_piece){.binding = m->unit, .level = l->level, .layer = patch->page,
-                               .x = x, .y = y, .width = (uint32_t)patch->rect[2] >> l->level,
-                               .height = (uint32_t)patch->rect[3] >> l->level,
-                               .data = l->texels + texel * m->texel_size,
-                               .row_bytes = l->width * m->texel_size},
-                 sink->user);
+    const gtx_texture_piece piece = {
+        .binding = m->unit, .level = l->level, .layer = patch->page, .x = x, .y = y,
+        .width = (uint32_t)patch->rect[2] >> l->level,
+        .height = (uint32_t)patch->rect[3] >> l->level,
+        .data = l->texels + texel * m->texel_size, .row_bytes = l->width * m->texel_size};
+    sink->texels(&piece, sink->user);
 }
 
 /* Whether the edited patch still has the material that all have. */

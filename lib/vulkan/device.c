@@ -142,6 +142,7 @@ void gtx_vk_destroy(gtx_vk *vk)
     gtx_vk_buffer_destroy(vk, &vk->nothing);
     api->DestroyPipelineLayout(vk->device, vk->layout, vk->callbacks);
     api->DestroyDescriptorSetLayout(vk->device, vk->set_layout, vk->callbacks);
+    api->DestroyDescriptorSetLayout(vk->device, vk->own_set_layout, vk->callbacks);
     gtx_planner_destroy(vk->planner);
     gtx_planner_destroy(vk->own_planner);
     const gtx_allocator hooks = vk->allocator;

@@ -66,14 +66,18 @@ typedef struct gtx_vk_piece {
     VkDeviceSize offset, size;
 } gtx_vk_piece;
 
-/* memory.c: copies bytes into the frame. Errors: MEMORY, GL. */
+/* memory.c: room in the frame, mapped at *to. Errors: MEMORY, GL. */
+gtx_result gtx_vk_take(gtx_vk *vk, VkDeviceSize size, gtx_vk_piece *out, uint8_t **to,
+                       gtx_error *error);
+/* Copies bytes into the frame. Errors: MEMORY, GL. */
 gtx_result gtx_vk_write(gtx_vk *vk, const void *data, VkDeviceSize size, gtx_vk_piece *out,
                         gtx_error *error);
 /* The same of several arrays, one behind the other. */
 gtx_result gtx_vk_write_all(gtx_vk *vk, const void *const *data, const uint64_t *sizes,
                             uint32_t count, gtx_vk_piece *out, gtx_error *error);
 /* A descriptor set of the frame. Errors: MEMORY, GL. */
-gtx_result gtx_vk_take_set(gtx_vk *vk, VkDescriptorSet *out, gtx_error *error);
+gtx_result gtx_vk_take_set(gtx_vk *vk, VkDescriptorSetLayout layout, VkDescriptorSet *out,
+                           gtx_error *error);
 /* A view of a piece as texels of 4 uint32_t, until the frame's memory is used again. Errors:
  * MEMORY, GL. */
 gtx_result gtx_vk_view(gtx_vk *vk, const gtx_vk_piece *piece, VkBufferView *out, gtx_error *error);
@@ -113,7 +117,7 @@ struct gtx_vk {
     VkSampler samplers[2];        /* by texel; filtered */
     gtx_vk_buffer nothing;        /* what draws without tiles have as a stream: a texel */
     VkBufferView no_stream;
-    VkDescriptorSetLayout set_layout;
+    VkDescriptorSetLayout set_layout, own_set_layout; /* the latter of shadings, with rays */
     VkPipelineLayout layout;
     /* By pipeline: of vertices, of fragments, of those once a sample; once needed. */
     VkShaderModule modules[3 * GTX_PIPELINE_COUNT];
@@ -128,23 +132,46 @@ struct gtx_vk {
     uint32_t instance_room;
 };
 
+/* A model's textures, and one of a texel that is 0, for shaders that cast no rays. */
+enum { GTX_VK_IMAGES = GTX_SLOT_COUNT + 1 };
+
+/* images.h: textures, without their texels. */
+typedef struct gtx_vk_images {
+    uint32_t count;
+    gtx_texture of[GTX_VK_IMAGES];
+    VkImage images[GTX_VK_IMAGES];
+    VkImageView views[GTX_VK_IMAGES];
+    VkDeviceMemory memory;
+} gtx_vk_images;
+
+struct gtx_vk_rays {
+    gtx_rays *rays;
+    gtx_vk_images nodes, maps;    /* maps: cells and outlines */
+    gtx_vk_buffer staging;        /* until they are uploaded */
+};
+
 struct gtx_vk_shading {
     uint32_t number;
+    const gtx_vk_rays *rays;      /* or NULL */
     VkPipelineLayout layout;
     VkShaderModule modules[GTX_BUFFER_TILE_CORNERS + 1]; /* by the vertices of their pipelines */
 };
 
 struct gtx_vk_model {
     gtx_model *model;
-    VkImage images[GTX_SLOT_COUNT];
-    VkImageView views[GTX_SLOT_COUNT];
-    VkDeviceMemory memory;        /* of the images */
-    bool is_filtered[GTX_SLOT_COUNT];
+    gtx_vk_images maps;           /* by their slots */
+    gtx_vk_images spread;         /* materials, once an edit has made them more than a texel */
     gtx_vk_buffer buffer;         /* all of the model's, ... */
     VkDeviceSize offsets[GTX_BUFFER_GRID_VERTICES]; /* ... where each begins */
     gtx_vk_buffer staging;        /* until it is uploaded */
 };
 
+/* model.c: what a slot's binding reads. */
+VkDescriptorImageInfo gtx_vk_model_image(const gtx_vk *vk, const gtx_vk_model *model,
+                                         uint32_t slot);
+/* What rays read, where there are none: nothing occludes. */
+void gtx_vk_model_no_rays(const gtx_vk *vk, const gtx_vk_model *model,
+                          VkDescriptorImageInfo out[GTX_RAYS_TEXTURES]);
 /* Makes room for `count` things of `size`, keeping what is there. False without memory. */
 bool gtx_vk_grow(const gtx_vk *vk, void **array, uint32_t *room, uint32_t count, size_t size);
 

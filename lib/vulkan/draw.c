@@ -28,34 +28,51 @@ typedef struct pieces {
     VkBufferView stream;
 } pieces;
 
+/* Images at bindings that follow one another. */
+static uint32_t write_images(VkDescriptorSet set, uint32_t binding, uint32_t count,
+                             const VkDescriptorImageInfo *images, VkWriteDescriptorSet *out)
+{
+    for (uint32_t i = 0; i < count; ++i)
+        out[i] = (VkWriteDescriptorSet){
+            .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, .dstSet = set,
+            .dstBinding = binding + i, .descriptorCount = 1,
+            .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, .pImageInfo = &images[i]};
+    return count;
+}
+
 static gtx_result make_set(recording *r, const gtx_vk_model *model, const pieces *p)
 {
-    enum { WRITES = GTX_SLOT_COUNT + 3 };
+    enum { BUFFERS = 3 };
     const gtx_vk *vk = r->vk;
-    VkDescriptorImageInfo images[GTX_SLOT_COUNT];
-    VkWriteDescriptorSet writes[WRITES];
+    VkDescriptorImageInfo images[GTX_SLOT_COUNT], rays[GTX_RAYS_TEXTURES];
+    VkWriteDescriptorSet writes[GTX_SLOT_COUNT + BUFFERS + GTX_RAYS_TEXTURES];
+    uint32_t count = 0;
     const VkDescriptorBufferInfo buffers[] = {{p->constants.buffer, 0, sizeof(gtx_constants)},
                                               {0},
                                               {p->tile.buffer, 0, sizeof(gtx_tile_constants)}};
-    gtx_result result = gtx_vk_take_set(r->vk, &r->set, r->error);
+    gtx_result result =
+        gtx_vk_take_set(r->vk, r->shading ? vk->own_set_layout : vk->set_layout, &r->set,
+                        r->error);
     if (result)
         return result;
-    for (uint32_t s = 0; s < GTX_SLOT_COUNT; ++s) {
-        images[s] = (VkDescriptorImageInfo){vk->samplers[model->is_filtered[s]], model->views[s],
-                                            VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-        writes[s] = (VkWriteDescriptorSet){
-            .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, .dstSet = r->set, .dstBinding = s,
-            .descriptorCount = 1, .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-            .pImageInfo = &images[s]};
-    }
-    for (uint32_t b = 0; b < 3; ++b)
-        writes[GTX_SLOT_COUNT + b] = (VkWriteDescriptorSet){
+    for (uint32_t s = 0; s < GTX_SLOT_COUNT; ++s)
+        images[s] = gtx_vk_model_image(vk, model, s);
+    count += write_images(r->set, 0, GTX_SLOT_COUNT, images, writes);
+    for (uint32_t b = 0; b < BUFFERS; ++b)
+        writes[count++] = (VkWriteDescriptorSet){
             .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, .dstSet = r->set,
             .dstBinding = GTX_VK_CONSTANTS + b, .descriptorCount = 1,
             .descriptorType = b == 1 ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
                                      : VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC,
             .pBufferInfo = &buffers[b], .pTexelBufferView = &p->stream};
-    vk->api.UpdateDescriptorSets(vk->device, WRITES, writes, 0, NULL);
+    if (r->shading) {
+        if (r->shading->rays)
+            gtx_vk_rays_images(vk, r->shading->rays, rays);
+        else
+            gtx_vk_model_no_rays(vk, model, rays);
+        count += write_images(r->set, GTX_RAYS_BINDING, GTX_RAYS_TEXTURES, rays, writes + count);
+    }
+    vk->api.UpdateDescriptorSets(vk->device, count, writes, 0, NULL);
     r->model = model;
     r->constants = p->constants.buffer;
     return GTX_OK;

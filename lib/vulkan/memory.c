@@ -90,7 +90,8 @@ static gtx_result add_block(gtx_vk *vk, gtx_vk_frame *frame, VkDeviceSize least,
     const VkBufferUsageFlags usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
                                      VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
                                      VK_BUFFER_USAGE_VERTEX_BUFFER_BIT |
-                                     VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
+                                     VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
+                                     VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     gtx_vk_buffer block;
     void *blocks = frame->blocks;
     gtx_result result = gtx_vk_buffer_create(vk, least > usual ? least + least / 2 : usual, usage,
@@ -111,16 +112,13 @@ static VkDeviceSize most_of(VkDeviceSize a, VkDeviceSize b)
     return a > b ? a : b;
 }
 
-gtx_result gtx_vk_write_all(gtx_vk *vk, const void *const *data, const uint64_t *sizes,
-                            uint32_t count, gtx_vk_piece *out, gtx_error *error)
+gtx_result gtx_vk_take(gtx_vk *vk, VkDeviceSize size, gtx_vk_piece *out, uint8_t **to,
+                       gtx_error *error)
 {
     gtx_vk_frame *frame = &vk->frames[vk->frame];
-    const VkDeviceSize to = most_of(16, most_of(vk->limits.minUniformBufferOffsetAlignment,
-                                                vk->limits.minTexelBufferOffsetAlignment));
-    VkDeviceSize size = 0;
-    for (uint32_t i = 0; i < count; ++i)
-        size += sizes[i];
-    VkDeviceSize at = (frame->used + to - 1) / to * to;
+    const VkDeviceSize unit = most_of(16, most_of(vk->limits.minUniformBufferOffsetAlignment,
+                                                  vk->limits.minTexelBufferOffsetAlignment));
+    VkDeviceSize at = (frame->used + unit - 1) / unit * unit;
     while (frame->block < frame->block_count && at + size > frame->blocks[frame->block].size) {
         ++frame->block;
         at = 0;
@@ -133,13 +131,25 @@ gtx_result gtx_vk_write_all(gtx_vk *vk, const void *const *data, const uint64_t 
     }
     const gtx_vk_buffer *block = &frame->blocks[frame->block];
     *out = (gtx_vk_piece){block->buffer, at, size};
-    for (uint32_t i = 0; i < count; ++i) {
-        if (sizes[i])
-            memcpy(block->mapped + at, data[i], sizes[i]);
-        at += sizes[i];
-    }
-    frame->used = at;
+    *to = block->mapped + at;
+    frame->used = at + size;
     return GTX_OK;
+}
+
+gtx_result gtx_vk_write_all(gtx_vk *vk, const void *const *data, const uint64_t *sizes,
+                            uint32_t count, gtx_vk_piece *out, gtx_error *error)
+{
+    VkDeviceSize size = 0;
+    uint8_t *to = NULL;
+    for (uint32_t i = 0; i < count; ++i)
+        size += sizes[i];
+    gtx_result result = gtx_vk_take(vk, size, out, &to, error);
+    for (uint32_t i = 0; i < count && !result; ++i) {
+        if (sizes[i])
+            memcpy(to, data[i], sizes[i]);
+        to += sizes[i];
+    }
+    return result;
 }
 
 gtx_result gtx_vk_write(gtx_vk *vk, const void *data, VkDeviceSize size, gtx_vk_piece *out,
@@ -152,7 +162,8 @@ gtx_result gtx_vk_write(gtx_vk *vk, const void *data, VkDeviceSize size, gtx_vk_
 static gtx_result add_pool(gtx_vk *vk, gtx_vk_frame *frame, gtx_error *error)
 {
     const VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, GTX_VK_SETS * GTX_SLOT_COUNT},
+        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+         GTX_VK_SETS * (GTX_SLOT_COUNT + GTX_RAYS_TEXTURES)},
         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 2 * GTX_VK_SETS},
         {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, GTX_VK_SETS}};
     const VkDescriptorPoolCreateInfo info = {
@@ -174,7 +185,8 @@ static gtx_result add_pool(gtx_vk *vk, gtx_vk_frame *frame, gtx_error *error)
     return GTX_OK;
 }
 
-gtx_result gtx_vk_take_set(gtx_vk *vk, VkDescriptorSet *out, gtx_error *error)
+gtx_result gtx_vk_take_set(gtx_vk *vk, VkDescriptorSetLayout layout, VkDescriptorSet *out,
+                           gtx_error *error)
 {
     gtx_vk_frame *frame = &vk->frames[vk->frame];
     if (frame->sets == GTX_VK_SETS) {
@@ -189,7 +201,7 @@ gtx_result gtx_vk_take_set(gtx_vk *vk, VkDescriptorSet *out, gtx_error *error)
     const VkDescriptorSetAllocateInfo info = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
         .descriptorPool = frame->pools[frame->pool],
-        .descriptorSetCount = 1, .pSetLayouts = &vk->set_layout};
+        .descriptorSetCount = 1, .pSetLayouts = &layout};
     ++frame->sets;
     return gtx_vk_check(vk->api.AllocateDescriptorSets(vk->device, &info, out),
                         "vkAllocateDescriptorSets", error);

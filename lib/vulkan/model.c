@@ -1,5 +1,5 @@
-/* Models on the device: images and buffers, and the commands that fill them. */
-#include "vulkan/device.h"
+/* Models on the device: images and buffers, and the commands that fill and change them. */
+#include "vulkan/images.h"
 
 #include "base/alloc.h"
 #include "base/error.h"
@@ -10,32 +10,13 @@ enum { ALIGN = 16 };
 
 /* What is uploaded of a model. */
 typedef struct plan {
-    gtx_texture textures[GTX_SLOT_COUNT];
-    VkDeviceSize at[GTX_SLOT_COUNT][GTX_MAX_TEXTURE_LEVELS]; /* in the staging buffer */
+    gtx_texture textures[GTX_VK_IMAGES];
+    VkDeviceSize at[GTX_VK_IMAGES][GTX_MAX_TEXTURE_LEVELS]; /* in the staging buffer */
     const void *buffers[GTX_BUFFER_GRID_VERTICES];
     uint64_t sizes[GTX_BUFFER_GRID_VERTICES];
     VkDeviceSize bytes;         /* of the buffers; textures follow */
     VkDeviceSize all;
 } plan;
-
-/* Three bytes a texel are no format of many devices. */
-static uint32_t stored_size(const gtx_texture *t)
-{
-    return t->format == GTX_FORMAT_RGB8_SRGB ? 4 : t->texel_size;
-}
-
-/* Bytes of a level as the device has it. */
-static VkDeviceSize bytes_of(const gtx_texture *t, uint32_t level)
-{
-    const VkDeviceSize width = t->width >> level, height = t->height >> level;
-    return t->block_size ? (width + 3) / 4 * ((height + 3) / 4) * t->layers * t->block_size
-                         : width * height * t->layers * stored_size(t);
-}
-
-static VkDeviceSize texels_of(const gtx_texture *t, uint32_t level)
-{
-    return (VkDeviceSize)(t->width >> level) * (t->height >> level) * t->layers;
-}
 
 static VkDeviceSize take(VkDeviceSize *end, VkDeviceSize size)
 {
@@ -45,11 +26,11 @@ static VkDeviceSize take(VkDeviceSize *end, VkDeviceSize size)
 }
 
 /* Where the model has no texture shaders still name one: of a texel. */
-static gtx_texture stand_in(void)
+static gtx_texture stand_in(uint32_t is_array)
 {
     static const uint8_t texel[4] = {0, 0, 0, 0};
     return (gtx_texture){.format = GTX_FORMAT_RGBA8, .texel_size = 4, .width = 1, .height = 1,
-                         .layers = 1, .levels = 1, .is_array = 1, .texels = {texel}};
+                         .layers = 1, .levels = 1, .is_array = is_array, .texels = {texel}};
 }
 
 static gtx_result plan_of(const gtx_vk *vk, gtx_vk_model *out, plan *p, gtx_error *error)
@@ -62,40 +43,19 @@ static gtx_result plan_of(const gtx_vk *vk, gtx_vk_model *out, plan *p, gtx_erro
         out->offsets[b] = take(&p->bytes, p->sizes[b]);
     }
     p->all = p->bytes;
-    for (int s = 0; s < GTX_SLOT_COUNT; ++s) {
+    for (int s = 0; s < GTX_VK_IMAGES; ++s) {
         gtx_texture *t = &p->textures[s];
         if (!gtx_model_texture(out->model, (gtx_slot)s, t))
-            *t = stand_in();
+            *t = stand_in(s < GTX_SLOT_COUNT);
         if (!t->texels[0])
             return gtx_fail(error, GTX_ERROR_ARGUMENT, "the model's texels have been freed");
-        if (t->width > vk->limits.maxImageDimension2D ||
-            t->height > vk->limits.maxImageDimension2D ||
-            t->layers > vk->limits.maxImageArrayLayers)
-            return gtx_fail(error, GTX_ERROR_LIMIT, "an image of %u x %u x %u is beyond this GPU",
-                            t->width, t->height, t->layers);
-        const bool bc = t->format < GTX_FORMAT_EAC_RG11;
-        if (t->block_size && !vk->reads[bc ? GTX_COMPRESS_BC : GTX_COMPRESS_ETC2])
-            return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "the device reads no %s blocks",
-                            bc ? "BC5 and BC7" : "ETC2");
+        gtx_result result = gtx_vk_check_texture(vk, t, error);
+        if (result)
+            return result;
         for (uint32_t k = 0; k < t->levels; ++k)
-            p->at[s][k] = take(&p->all, bytes_of(t, k));
-        out->is_filtered[s] = t->is_filtered;
+            p->at[s][k] = take(&p->all, gtx_vk_level_bytes(t, k));
     }
     return GTX_OK;
-}
-
-static void copy_texels(uint8_t *to, const gtx_texture *t, uint32_t level)
-{
-    const uint8_t *from = t->texels[level];
-    if (t->format != GTX_FORMAT_RGB8_SRGB) {
-        memcpy(to, from, (size_t)bytes_of(t, level));
-        return;
-    }
-    const size_t count = (size_t)texels_of(t, level);
-    for (size_t i = 0; i < count; ++i, to += 4, from += 3) {
-        memcpy(to, from, 3);
-        to[3] = 255;
-    }
 }
 
 static void fill(const plan *p, const gtx_vk_model *out)
@@ -103,131 +63,41 @@ static void fill(const plan *p, const gtx_vk_model *out)
     for (int b = 0; b < GTX_BUFFER_GRID_VERTICES; ++b)
         if (p->sizes[b])
             memcpy(out->staging.mapped + out->offsets[b], p->buffers[b], (size_t)p->sizes[b]);
-    for (int s = 0; s < GTX_SLOT_COUNT; ++s)
+    for (int s = 0; s < GTX_VK_IMAGES; ++s)
         for (uint32_t k = 0; k < p->textures[s].levels; ++k)
-            copy_texels(out->staging.mapped + p->at[s][k], &p->textures[s], k);
+            gtx_vk_put_level(out->staging.mapped + p->at[s][k], &p->textures[s], k);
 }
 
-static VkFormat format_of(const gtx_texture *t)
+/* From drawing to copying, or back. */
+static void turn_buffer(const gtx_vk *vk, VkCommandBuffer commands, const gtx_vk_model *m,
+                        bool filled)
 {
-    static const VkFormat formats[] = {
-        [GTX_FORMAT_R8] = VK_FORMAT_R8_UNORM,
-        [GTX_FORMAT_RG8] = VK_FORMAT_R8G8_UNORM,
-        [GTX_FORMAT_RGBA8] = VK_FORMAT_R8G8B8A8_UNORM,
-        [GTX_FORMAT_RGB8_SRGB] = VK_FORMAT_R8G8B8A8_SRGB,
-        [GTX_FORMAT_RGBA8_SRGB] = VK_FORMAT_R8G8B8A8_SRGB,
-        [GTX_FORMAT_RGBA8_UINT] = VK_FORMAT_R8G8B8A8_UINT,
-        [GTX_FORMAT_RGBA16_UINT] = VK_FORMAT_R16G16B16A16_UINT,
-        [GTX_FORMAT_RGBA32_FLOAT] = VK_FORMAT_R32G32B32A32_SFLOAT,
-        [GTX_FORMAT_BC5] = VK_FORMAT_BC5_UNORM_BLOCK,
-        [GTX_FORMAT_BC7] = VK_FORMAT_BC7_UNORM_BLOCK,
-        [GTX_FORMAT_BC7_SRGB] = VK_FORMAT_BC7_SRGB_BLOCK,
-        [GTX_FORMAT_EAC_RG11] = VK_FORMAT_EAC_R11G11_UNORM_BLOCK,
-        [GTX_FORMAT_ETC2_RGBA8] = VK_FORMAT_ETC2_R8G8B8A8_UNORM_BLOCK,
-        [GTX_FORMAT_ETC2_RGBA8_SRGB] = VK_FORMAT_ETC2_R8G8B8A8_SRGB_BLOCK,
-        [GTX_FORMAT_ETC2_RGB8_SRGB] = VK_FORMAT_ETC2_R8G8B8_SRGB_BLOCK};
-    return formats[t->format];
-}
-
-static gtx_result make_images(gtx_vk *vk, const plan *p, gtx_vk_model *out, gtx_error *error)
-{
-    const gtx_vk_api *api = &vk->api;
-    VkDeviceSize at[GTX_SLOT_COUNT], end = 0;
-    uint32_t bits = ~0u;
-    gtx_result result = GTX_OK;
-    for (int s = 0; s < GTX_SLOT_COUNT && !result; ++s) {
-        const gtx_texture *t = &p->textures[s];
-        VkMemoryRequirements needs;
-        const VkImageCreateInfo info = {
-            .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO, .imageType = VK_IMAGE_TYPE_2D,
-            .format = format_of(t), .extent = {t->width, t->height, 1}, .mipLevels = t->levels,
-            .arrayLayers = t->layers, .samples = VK_SAMPLE_COUNT_1_BIT,
-            .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT};
-        result = gtx_vk_check(
-            api->CreateImage(vk->device, &info, vk->callbacks, &out->images[s]), "vkCreateImage",
-            error);
-        if (result)
-            return result;
-        api->GetImageMemoryRequirements(vk->device, out->images[s], &needs);
-        at[s] = (end + needs.alignment - 1) / needs.alignment * needs.alignment;
-        end = at[s] + needs.size;
-        bits &= needs.memoryTypeBits;
-    }
-    const VkMemoryAllocateInfo memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                         .allocationSize = end,
-                                         .memoryTypeIndex = gtx_vk_memory_type(vk, bits, false)};
-    result = gtx_vk_check(api->AllocateMemory(vk->device, &memory, vk->callbacks, &out->memory),
-                          "vkAllocateMemory", error);
-    for (int s = 0; s < GTX_SLOT_COUNT && !result; ++s) {
-        const gtx_texture *t = &p->textures[s];
-        result = gtx_vk_check(
-            api->BindImageMemory(vk->device, out->images[s], out->memory, at[s]),
-            "vkBindImageMemory", error);
-        const VkImageViewCreateInfo view = {
-            .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO, .image = out->images[s],
-            .viewType = t->is_array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D,
-            .format = format_of(t),
-            .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, t->levels, 0, t->layers}};
-        if (!result)
-            result = gtx_vk_check(
-                api->CreateImageView(vk->device, &view, vk->callbacks, &out->views[s]),
-                "vkCreateImageView", error);
-    }
-    return result;
-}
-
-/* All images at once, from what they are to what they shall be. */
-static void turn(const gtx_vk *vk, VkCommandBuffer commands, const gtx_vk_model *m, bool filled)
-{
-    VkImageMemoryBarrier images[GTX_SLOT_COUNT];
-    for (int s = 0; s < GTX_SLOT_COUNT; ++s)
-        images[s] = (VkImageMemoryBarrier){
-            .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
-            .srcAccessMask = filled ? VK_ACCESS_TRANSFER_WRITE_BIT : 0,
-            .dstAccessMask = filled ? VK_ACCESS_SHADER_READ_BIT : VK_ACCESS_TRANSFER_WRITE_BIT,
-            .oldLayout = filled ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL : VK_IMAGE_LAYOUT_UNDEFINED,
-            .newLayout = filled ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
-                                : VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-            .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-            .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED, .image = m->images[s],
-            .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
-                                 VK_REMAINING_ARRAY_LAYERS}};
+    const VkAccessFlags reads = VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_INDEX_READ_BIT;
     const VkBufferMemoryBarrier buffer = {
         .sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER,
-        .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
-        .dstAccessMask = VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_INDEX_READ_BIT,
+        .srcAccessMask = filled ? VK_ACCESS_TRANSFER_WRITE_BIT : 0,
+        .dstAccessMask = filled ? reads : VK_ACCESS_TRANSFER_WRITE_BIT,
         .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED, .buffer = m->buffer.buffer,
         .size = VK_WHOLE_SIZE};
-    const VkPipelineStageFlags readers = VK_PIPELINE_STAGE_VERTEX_INPUT_BIT |
-                                         VK_PIPELINE_STAGE_VERTEX_SHADER_BIT |
-                                         VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
     vk->api.CmdPipelineBarrier(
-        commands, filled ? VK_PIPELINE_STAGE_TRANSFER_BIT : VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
-        filled ? readers : VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL, filled, &buffer,
-        GTX_SLOT_COUNT, images);
+        commands, filled ? VK_PIPELINE_STAGE_TRANSFER_BIT : VK_PIPELINE_STAGE_VERTEX_INPUT_BIT,
+        filled ? VK_PIPELINE_STAGE_VERTEX_INPUT_BIT : VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL,
+        1, &buffer, 0, NULL);
 }
 
 static void record(const gtx_vk *vk, VkCommandBuffer commands, const plan *p,
                    const gtx_vk_model *m)
 {
-    turn(vk, commands, m, false);
+    gtx_vk_images_turn(vk, commands, &m->maps, GTX_VK_NEW, GTX_VK_WRITTEN);
     if (p->bytes) {
         const VkBufferCopy all = {0, 0, p->bytes};
         vk->api.CmdCopyBuffer(commands, m->staging.buffer, m->buffer.buffer, 1, &all);
     }
-    for (int s = 0; s < GTX_SLOT_COUNT; ++s) {
-        const gtx_texture *t = &p->textures[s];
-        VkBufferImageCopy copies[GTX_MAX_TEXTURE_LEVELS];
-        for (uint32_t k = 0; k < t->levels; ++k)
-            copies[k] = (VkBufferImageCopy){
-                .bufferOffset = p->at[s][k],
-                .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, k, 0, t->layers},
-                .imageExtent = {t->width >> k, t->height >> k, 1}};
-        vk->api.CmdCopyBufferToImage(commands, m->staging.buffer, m->images[s],
-                                     VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, t->levels, copies);
-    }
-    turn(vk, commands, m, true);
+    for (uint32_t s = 0; s < GTX_VK_IMAGES; ++s)
+        gtx_vk_copy_levels(vk, commands, &m->maps, s, m->staging.buffer, p->at[s]);
+    gtx_vk_images_turn(vk, commands, &m->maps, GTX_VK_WRITTEN, GTX_VK_READ);
+    turn_buffer(vk, commands, m, true);
 }
 
 gtx_result gtx_vk_upload(gtx_vk *vk, VkCommandBuffer commands, gtx_model *model,
@@ -246,7 +116,7 @@ gtx_result gtx_vk_upload(gtx_vk *vk, VkCommandBuffer commands, gtx_model *model,
     m->model = model;
     gtx_result result = plan_of(vk, m, &p, error);
     if (!result)
-        result = make_images(vk, &p, m, error);
+        result = gtx_vk_images_create(vk, p.textures, GTX_VK_IMAGES, &m->maps, error);
     if (!result)
         result = gtx_vk_buffer_create(vk, p.bytes, usage, false, &m->buffer, error);
     if (!result)
@@ -273,12 +143,108 @@ void gtx_vk_model_destroy(gtx_vk *vk, gtx_vk_model *model)
 {
     if (!vk || !model)
         return;
-    for (int s = 0; s < GTX_SLOT_COUNT; ++s) {
-        vk->api.DestroyImageView(vk->device, model->views[s], vk->callbacks);
-        vk->api.DestroyImage(vk->device, model->images[s], vk->callbacks);
-    }
-    vk->api.FreeMemory(vk->device, model->memory, vk->callbacks);
+    gtx_vk_images_destroy(vk, &model->maps);
+    gtx_vk_images_destroy(vk, &model->spread);
     gtx_vk_buffer_destroy(vk, &model->buffer);
     gtx_vk_buffer_destroy(vk, &model->staging);
     gtx_free_array(&vk->allocator, model, 1, sizeof *model);
+}
+
+VkDescriptorImageInfo gtx_vk_model_image(const gtx_vk *vk, const gtx_vk_model *model,
+                                         uint32_t slot)
+{
+    return slot == GTX_SLOT_MATERIALS && model->spread.count
+               ? gtx_vk_image_info(vk, &model->spread, 0)
+               : gtx_vk_image_info(vk, &model->maps, slot);
+}
+
+/* Nodes end at texel 0; the others are not read. */
+void gtx_vk_model_no_rays(const gtx_vk *vk, const gtx_vk_model *model,
+                          VkDescriptorImageInfo out[GTX_RAYS_TEXTURES])
+{
+    static const uint32_t images[GTX_RAYS_TEXTURES] = {GTX_SLOT_COUNT, GTX_SLOT_CELLS,
+                                                       GTX_SLOT_TRIM};
+    for (uint32_t i = 0; i < GTX_RAYS_TEXTURES; ++i)
+        out[i] = gtx_vk_image_info(vk, &model->maps, images[i]);
+}
+
+/* One gtx_vk_update. */
+typedef struct update {
+    gtx_vk *vk;
+    VkCommandBuffer commands;
+    gtx_vk_model *model;
+    gtx_result result;
+    gtx_error *error;
+} update;
+
+static void send_piece(const gtx_texture_piece *piece, void *user)
+{
+    update *u = user;
+    const bool spread = piece->binding == GTX_SLOT_MATERIALS && u->model->spread.count;
+    if (!u->result)
+        u->result = gtx_vk_copy_piece(u->vk, u->commands,
+                                      spread ? &u->model->spread : &u->model->maps,
+                                      spread ? 0 : piece->binding, piece, u->error);
+}
+
+static void send_bytes(gtx_buffer buffer, uint64_t at, const void *data, uint64_t size, void *user)
+{
+    update *u = user;
+    gtx_vk_piece staged;
+    if (!u->result)
+        u->result = gtx_vk_write(u->vk, data, size, &staged, u->error);
+    if (u->result)
+        return;
+    const VkBufferCopy copy = {staged.offset, u->model->offsets[buffer] + at, size};
+    u->vk->api.CmdCopyBuffer(u->commands, staged.buffer, u->model->buffer.buffer, 1, &copy);
+}
+
+/* The image of a single texel stays: frames may be reading it. */
+static void renew(gtx_slot slot, const gtx_texture *t, void *user)
+{
+    update *u = user;
+    VkDeviceSize at[GTX_MAX_TEXTURE_LEVELS];
+    uint64_t sizes[GTX_MAX_TEXTURE_LEVELS];
+    gtx_vk_piece staged = {0};
+    gtx_vk_images *spread = &u->model->spread;
+    (void)slot;
+    for (uint32_t k = 0; k < t->levels; ++k)
+        sizes[k] = gtx_vk_level_bytes(t, k);
+    if (!u->result)
+        u->result = gtx_vk_write_all(u->vk, t->texels, sizes, t->levels, &staged, u->error);
+    if (u->result)
+        return;
+    u->result = gtx_vk_images_create(u->vk, t, 1, spread, u->error);
+    if (u->result) {
+        gtx_vk_images_destroy(u->vk, spread);
+        return;
+    }
+    gtx_vk_images_turn(u->vk, u->commands, spread, GTX_VK_NEW, GTX_VK_WRITTEN);
+    for (uint32_t k = 0; k < t->levels; ++k) {
+        at[k] = staged.offset;
+        staged.offset += sizes[k];
+    }
+    gtx_vk_copy_levels(u->vk, u->commands, spread, 0, staged.buffer, at);
+}
+
+gtx_result gtx_vk_update(gtx_vk *vk, VkCommandBuffer commands, gtx_vk_model *model,
+                         const gtx_asset *edited, const uint32_t *patches, uint32_t count,
+                         gtx_error *error)
+{
+    update u = {vk, commands, model, GTX_OK, error};
+    const gtx_sink sink = {send_piece, send_bytes, renew, &u};
+    if (!vk || !commands || !model || !edited || (count && !patches))
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "an update needs commands, a model, an edited asset and its patches");
+    gtx_vk_images_turn(vk, commands, &model->maps, GTX_VK_READ, GTX_VK_WRITTEN);
+    gtx_vk_images_turn(vk, commands, &model->spread, GTX_VK_READ, GTX_VK_WRITTEN);
+    turn_buffer(vk, commands, model, false);
+    for (uint32_t i = 0; i < count && !u.result; ++i) {
+        const gtx_result result = gtx_model_edit(model->model, edited, patches[i], &sink, error);
+        u.result = u.result ? u.result : result;
+    }
+    gtx_vk_images_turn(vk, commands, &model->maps, GTX_VK_WRITTEN, GTX_VK_READ);
+    gtx_vk_images_turn(vk, commands, &model->spread, GTX_VK_WRITTEN, GTX_VK_READ);
+    turn_buffer(vk, commands, model, true);
+    return u.result;
 }

@@ -9,26 +9,40 @@
 
 enum { BINDINGS = GTX_SLOT_COUNT + 3, ATTRIBUTES = 10, OUTPUTS = 4 };
 
-gtx_result gtx_vk_layout_create(gtx_vk *vk, gtx_error *error)
+/* With those of rays, or without. */
+static gtx_result make_set_layout(const gtx_vk *vk, bool rays, VkDescriptorSetLayout *out,
+                                  gtx_error *error)
 {
-    VkDescriptorSetLayoutBinding bindings[BINDINGS];
+    VkDescriptorSetLayoutBinding bindings[BINDINGS + GTX_RAYS_TEXTURES];
     const VkShaderStageFlags both = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    uint32_t count = 0;
     for (uint32_t i = 0; i < GTX_SLOT_COUNT; ++i)
-        bindings[i] = (VkDescriptorSetLayoutBinding){
+        bindings[count++] = (VkDescriptorSetLayoutBinding){
             .binding = i, .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
             .descriptorCount = 1, .stageFlags = both};
     for (uint32_t i = GTX_VK_CONSTANTS; i <= GTX_VK_TILE; ++i)
-        bindings[GTX_SLOT_COUNT + i - GTX_VK_CONSTANTS] = (VkDescriptorSetLayoutBinding){
+        bindings[count++] = (VkDescriptorSetLayoutBinding){
             .binding = i, .descriptorCount = 1,
             .descriptorType = i == GTX_VK_STREAM ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
                                                  : VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC,
             .stageFlags = i == GTX_VK_STREAM ? VK_SHADER_STAGE_FRAGMENT_BIT : both};
+    for (uint32_t i = 0; rays && i < GTX_RAYS_TEXTURES; ++i)
+        bindings[count++] = (VkDescriptorSetLayoutBinding){
+            .binding = GTX_RAYS_BINDING + i, .descriptorCount = 1,
+            .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+            .stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT};
     const VkDescriptorSetLayoutCreateInfo set = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .bindingCount = BINDINGS, .pBindings = bindings};
-    gtx_result result = gtx_vk_check(
-        vk->api.CreateDescriptorSetLayout(vk->device, &set, vk->callbacks, &vk->set_layout),
-        "vkCreateDescriptorSetLayout", error);
+        .bindingCount = count, .pBindings = bindings};
+    return gtx_vk_check(vk->api.CreateDescriptorSetLayout(vk->device, &set, vk->callbacks, out),
+                        "vkCreateDescriptorSetLayout", error);
+}
+
+gtx_result gtx_vk_layout_create(gtx_vk *vk, gtx_error *error)
+{
+    gtx_result result = make_set_layout(vk, false, &vk->set_layout, error);
+    if (!result)
+        result = make_set_layout(vk, true, &vk->own_set_layout, error);
     if (result)
         return result;
     const VkPipelineLayoutCreateInfo layout = {

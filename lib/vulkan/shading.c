@@ -13,7 +13,7 @@ static gtx_result make_layout(gtx_vk *vk, const gtx_vk_shading_desc *desc, gtx_v
     VkDescriptorSetLayout *sets = gtx_alloc_array(&vk->allocator, count, sizeof *sets);
     if (!sets)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a shading");
-    sets[0] = vk->set_layout;
+    sets[0] = vk->own_set_layout;
     if (count > 1)
         memcpy(sets + 1, desc->set_layouts, (count - 1) * sizeof *sets);
     const VkPipelineLayoutCreateInfo info = {
@@ -92,4 +92,10 @@ void gtx_vk_shading_destroy(gtx_vk *vk, gtx_vk_shading *shading)
 VkPipelineLayout gtx_vk_shading_layout(const gtx_vk_shading *shading)
 {
     return shading ? shading->layout : VK_NULL_HANDLE;
+}
+
+void gtx_vk_shading_cast(gtx_vk_shading *shading, const gtx_vk_rays *rays)
+{
+    if (shading)
+        shading->rays = rays;
 }

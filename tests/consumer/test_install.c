@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define CORE_HEADERS "geotex.h edit.h solid.h view.h frame.h render.h stream.h"
+#define CORE_HEADERS "geotex.h edit.h solid.h view.h frame.h rays.h render.h stream.h"
 
 static char folder[] = "/tmp/gtx-install-XXXXXX";
 static bool staged;

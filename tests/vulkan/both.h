@@ -72,17 +72,28 @@ typedef struct pair {
     gtx_vk_model *uploaded;
 } pair;
 
-static inline pair pair_open(stage *s, gtx_host_vulkan *d, gtx_asset *asset)
+static inline pair pair_open_as(stage *s, gtx_host_vulkan *d, gtx_asset *asset,
+                                gtx_compression compress)
 {
     gtx_error error = {0};
-    pair p = {.gl = subject_open(s, asset)};
-    const gtx_model_desc desc = {.first_provokes = 1};
+    pair p = {.gl = {.asset = asset}};
+    gtx_model_desc desc = {.compress = compress};
+    must(gtx_model_prepare(asset, &desc, &p.gl.model, &error), &error);
+    must(gtx_model_upload(s->renderer, p.gl.model, 0, NULL, &error), &error);
+    p.gl.instance.model = p.gl.model;
+    memcpy(p.gl.instance.transform, identity, sizeof identity);
+    desc.first_provokes = 1;
     must(gtx_model_prepare(asset, &desc, &p.model, &error), &error);
     must(gtx_host_vulkan_begin(d, &error), &error);
     must(gtx_vk_upload(vk, d->commands, p.model, &p.uploaded, &error), &error);
     must(gtx_host_vulkan_run(d, &error), &error);
     gtx_vk_uploaded(vk, p.uploaded);
     return p;
+}
+
+static inline pair pair_open(stage *s, gtx_host_vulkan *d, gtx_asset *asset)
+{
+    return pair_open_as(s, d, asset, GTX_COMPRESS_NONE);
 }
 
 static inline void pair_close(stage *s, pair *p)

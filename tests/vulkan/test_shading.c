@@ -1,8 +1,6 @@
 /* An engine's own main by Vulkan: the picture is OpenGL's, by casting, tiles, LOD meshes and grids,
  * with constants of the engine's own, and the validation layer silent. */
-#include "both.h"
-
-#include <unistd.h>
+#include "compile.h"
 
 /* Where a point is, and the light of a lamp in it. */
 static const char own_main[] =
@@ -25,64 +23,6 @@ static const char own_main[] =
     "}\n";
 
 static const float scale[4] = {0.2f, 0.5f, 0.4f, 0};
-
-/* What the engine's compiler made. */
-typedef struct compiled {
-    char folder[64];
-    uint32_t *words;
-    bool no_tiles, broken;
-    uint32_t asked;
-} compiled;
-
-/* By glslangValidator, which the build of the library took, too. */
-static const uint32_t *compile(uint32_t pipeline, size_t *bytes, void *user)
-{
-    compiled *c = user;
-    const char *texts[GTX_MAX_SHADER_TEXTS];
-    gtx_pipeline of;
-    char path[128], command[512];
-    assert_true(gtx_pipeline_get(pipeline, &of) && of.own_main);
-    ++c->asked;
-    if (c->broken || (c->no_tiles && of.vertices == GTX_BUFFER_TILE_CORNERS))
-        return NULL;
-    const uint32_t count = gtx_pipeline_source(pipeline, GTX_STAGE_FRAGMENT, own_main, texts);
-    snprintf(path, sizeof path, "%s/own.frag", c->folder);
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs("#version 450\n", file);
-    for (uint32_t i = 0; i < count; ++i)
-        fputs(texts[i], file);
-    fclose(file);
-    snprintf(command, sizeof command,
-             "glslangValidator -V --target-env vulkan1.0 -o %s/own.spv %s >%s/log || "
-             "{ cat %s/log >&2; false; }", c->folder, path, c->folder, c->folder);
-    assert_int_equal(system(command), 0);
-    snprintf(path, sizeof path, "%s/own.spv", c->folder);
-    file = fopen(path, "rb");
-    assert_non_null(file);
-    fseek(file, 0, SEEK_END);
-    *bytes = (size_t)ftell(file);
-    rewind(file);
-    free(c->words);
-    c->words = malloc(*bytes);
-    assert_int_equal(fread(c->words, 1, *bytes, file), *bytes);
-    fclose(file);
-    return c->words;
-}
-
-static void begin_compiling(compiled *c)
-{
-    snprintf(c->folder, sizeof c->folder, "/tmp/gtx_shading_XXXXXX");
-    assert_non_null(mkdtemp(c->folder));
-}
-
-static void end_compiling(compiled *c)
-{
-    char command[128];
-    snprintf(command, sizeof command, "rm -r %s", c->folder);
-    assert_int_equal(system(command), 0);
-    free(c->words);
-}
 
 static const VkPushConstantRange constants = {VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof scale};
 
@@ -153,7 +93,7 @@ static void a_main_of_the_engines_own(void **state)
     gtx_error error = {0};
     gtx_shading *by_gl;
     gtx_instance instances[COUNT];
-    compiled c = {.asked = 0};
+    compiled c = {.main = own_main};
     begin_compiling(&c);
     for (int without = 0; without < 2; ++without) {
         gtx_vk_shading *shading = NULL;
@@ -196,7 +136,7 @@ static void misuse_is_refused(void **state)
         skip();
     gtx_error error = {0};
     gtx_vk_shading *shading = NULL;
-    compiled c = {.broken = true};
+    compiled c = {.main = own_main, .broken = true};
     gtx_vk_shading_desc desc = {.fragment = compile, .user = &c};
     assert_int_equal(gtx_vk_shading_create(vk, &desc, &shading, &error), GTX_ERROR_ARGUMENT);
     assert_int_equal(gtx_vk_shading_create(vk, NULL, &shading, &error), GTX_ERROR_ARGUMENT);
