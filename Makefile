@@ -161,7 +161,8 @@ lib_cook := $(out)/libgeotex-cook.a
 so_core  := $(out)/libgeotex.so.$(VERSION)
 so_cook  := $(out)/libgeotex-cook.so.$(VERSION)
 command  := $(out)/gtx
-sample_names := $(basename $(notdir $(wildcard samples/*.c samples/*.cpp)))
+sample_names := $(filter-out $(if $(vulkan),,vulkan%),\
+                  $(basename $(notdir $(wildcard samples/*.c samples/*.cpp))))
 sample_bins  := $(addprefix $(out)/samples/,$(sample_names))
 
 include lib/vulkan/vulkan.mk lib/image/modules.mk
@@ -205,8 +206,8 @@ $(build)/gtx: $(command) $(modules)
 	$(Q)ln -sf $(config)/gtx $@
 
 # A sample is one file; it links what an engine would link, and lib/host for its window.
-$(out)/samples/%: $(out)/samples/%.o $(call objects_of,host image) $(lib_cook) $(lib_core) \
-    | $(modules)
+$(out)/samples/%: $(out)/samples/%.o $(call objects_of,host image) $(lib_cook) $(lib_vulkan) \
+    $(lib_core) | $(modules)
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) $(LDFLAGS) -o $@ $^ $(call libs_of,asset mesh host image)
 

@@ -34,16 +34,23 @@ static bool has_layer(const gtx_host_vulkan *v, const char *name)
     return false;
 }
 
-static gtx_result open_instance(bool validate, gtx_host_vulkan *v, gtx_error *error)
+static gtx_result open_instance(const gtx_host_vulkan_desc *desc, gtx_host_vulkan *v,
+                                gtx_error *error)
 {
+    enum { MOST = 8 };
     static const char *const layers[] = {"VK_LAYER_KHRONOS_validation"};
-    static const char *const extensions[] = {"VK_EXT_debug_utils"};
+    const char *extensions[MOST + 1];
+    uint32_t count = 0;
     v->library = dlopen("libvulkan.so.1", RTLD_NOW);
     if (v->library)
         *(void **)&v->load = dlsym(v->library, "vkGetInstanceProcAddr");
     if (!v->load)
         return gtx_fail(error, GTX_ERROR_GL, "libvulkan.so.1 cannot be opened");
-    v->validated = validate && has_layer(v, layers[0]);
+    v->validated = desc->validate && has_layer(v, layers[0]);
+    for (uint32_t i = 0; i < desc->extension_count && i < MOST; ++i)
+        extensions[count++] = desc->extensions[i];
+    if (v->validated)
+        extensions[count++] = "VK_EXT_debug_utils";
     const VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
                                            .apiVersion = VK_API_VERSION_1_3};
     const VkDebugUtilsMessengerCreateInfoEXT messenger = {
@@ -56,7 +63,7 @@ static gtx_result open_instance(bool validate, gtx_host_vulkan *v, gtx_error *er
                                        .pApplicationInfo = &application,
                                        .enabledLayerCount = v->validated,
                                        .ppEnabledLayerNames = layers,
-                                       .enabledExtensionCount = v->validated,
+                                       .enabledExtensionCount = count,
                                        .ppEnabledExtensionNames = extensions};
     const PFN_vkCreateInstance create = (PFN_vkCreateInstance)v->load(NULL, "vkCreateInstance");
     if (create(&info, NULL, &v->instance))
@@ -69,8 +76,10 @@ static gtx_result open_instance(bool validate, gtx_host_vulkan *v, gtx_error *er
 }
 
 /* The first device and family of queues that draw. */
-static gtx_result open_device(gtx_host_vulkan *v, gtx_error *error)
+static gtx_result open_device(const gtx_host_vulkan_desc *desc, gtx_host_vulkan *v,
+                              gtx_error *error)
 {
+    static const char *const extensions[] = {"VK_KHR_swapchain"};
     const PFN_vkEnumeratePhysicalDevices list = (PFN_vkEnumeratePhysicalDevices)v->load(
         v->instance, "vkEnumeratePhysicalDevices");
     const PFN_vkCreateDevice create =
@@ -103,6 +112,8 @@ static gtx_result open_device(gtx_host_vulkan *v, gtx_error *error)
     const VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                      .pNext = v->renders ? &features : NULL,
                                      .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue,
+                                     .enabledExtensionCount = desc->shows,
+                                     .ppEnabledExtensionNames = extensions,
                                      .pEnabledFeatures = &wanted};
     if (create(v->physical, &info, NULL, &v->device))
         return gtx_fail(error, GTX_ERROR_GL, "%s cannot be used", v->name);
@@ -125,10 +136,16 @@ static gtx_result open_device(gtx_host_vulkan *v, gtx_error *error)
 
 gtx_result gtx_host_vulkan_create(bool validate, gtx_host_vulkan *out, gtx_error *error)
 {
+    return gtx_host_vulkan_open(&(gtx_host_vulkan_desc){.validate = validate}, out, error);
+}
+
+gtx_result gtx_host_vulkan_open(const gtx_host_vulkan_desc *desc, gtx_host_vulkan *out,
+                                gtx_error *error)
+{
     memset(out, 0, sizeof *out);
-    gtx_result result = open_instance(validate, out, error);
+    gtx_result result = open_instance(desc, out, error);
     if (!result)
-        result = open_device(out, error);
+        result = open_device(desc, out, error);
     if (result)
         gtx_host_vulkan_destroy(out);
     return result;

@@ -47,10 +47,22 @@ typedef struct gtx_host_vulkan {
 /* The first device, which the environment may choose (VK_ICD_FILENAMES). `validate`: with the
  * validation layer, where it is installed. `out` must stay where it is. Errors: GL. */
 gtx_result gtx_host_vulkan_create(bool validate, gtx_host_vulkan *out, gtx_error *error);
+typedef struct gtx_host_vulkan_desc {
+    bool validate;
+    bool shows;               /* in windows: VK_KHR_swapchain */
+    const char *const *extensions; /* of the instance, at most 8 */
+    uint32_t extension_count;
+} gtx_host_vulkan_desc;
+gtx_result gtx_host_vulkan_open(const gtx_host_vulkan_desc *desc, gtx_host_vulkan *out,
+                                gtx_error *error);
 void gtx_host_vulkan_destroy(gtx_host_vulkan *vulkan);
 /* Begins to record; and executes what was recorded, and waits for it. Errors: GL. */
 gtx_result gtx_host_vulkan_begin(gtx_host_vulkan *vulkan, gtx_error *error);
 gtx_result gtx_host_vulkan_run(gtx_host_vulkan *vulkan, gtx_error *error);
+
+/* vulkan_picture.c: memory of the kind. */
+bool gtx_host_vulkan_memory(const gtx_host_vulkan *vulkan, const VkMemoryRequirements *needs,
+                            VkMemoryPropertyFlags wanted, VkDeviceMemory *out);
 
 enum { GTX_PICTURE_COLORS = 4, GTX_PICTURE_DEPTH = 4, GTX_PICTURE_IMAGES = 9 };
 

@@ -40,8 +40,8 @@ static int drawn(const gtx_picture *p, uint32_t color)
     return (int)color + (has_samples(p) ? SAMPLED : 0);
 }
 
-static bool find_memory(const gtx_host_vulkan *v, const VkMemoryRequirements *needs,
-                        VkMemoryPropertyFlags wanted, VkDeviceMemory *out)
+bool gtx_host_vulkan_memory(const gtx_host_vulkan *v, const VkMemoryRequirements *needs,
+                            VkMemoryPropertyFlags wanted, VkDeviceMemory *out)
 {
     VkPhysicalDeviceMemoryProperties p;
     VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
@@ -75,7 +75,7 @@ static bool make_image(const gtx_host_vulkan *v, gtx_picture *p, int which)
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO, .image = p->images[which],
         .viewType = VK_IMAGE_VIEW_TYPE_2D, .format = format_of(p, which),
         .subresourceRange = {aspect_of(which), 0, 1, 0, 1}};
-    return find_memory(v, &needs, 0, &p->memories[which]) &&
+    return gtx_host_vulkan_memory(v, &needs, 0, &p->memories[which]) &&
            !v->BindImageMemory(v->device, p->images[which], p->memories[which], 0) &&
            !v->CreateImageView(v->device, &view, NULL, &p->views[which]);
 }
@@ -97,7 +97,7 @@ static bool make_read_buffer(const gtx_host_vulkan *v, gtx_picture *p)
     if (v->CreateBuffer(v->device, &info, NULL, &p->read))
         return false;
     v->GetBufferMemoryRequirements(v->device, p->read, &needs);
-    if (!find_memory(v, &needs, mapped, &p->read_memory) ||
+    if (!gtx_host_vulkan_memory(v, &needs, mapped, &p->read_memory) ||
         v->BindBufferMemory(v->device, p->read, p->read_memory, 0) ||
         v->MapMemory(v->device, p->read_memory, 0, VK_WHOLE_SIZE, 0, &bytes))
         return false;

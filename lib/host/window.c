@@ -18,6 +18,7 @@ struct gtx_window {
     float scrolled;
     char **dropped;
     int dropped_count, dropped_next;
+    int bare;                 /* without a context */
     int minimised;            /* asked for, or seen: not every window manager says so */
 };
 
@@ -125,8 +126,17 @@ static void on_drop(GLFWwindow *glfw, int count, const char **paths)
         window->dropped[window->dropped_count++] = copy(paths[i]);
 }
 
-gtx_result gtx_window_create(const char *title, int width, int height, gtx_camera *camera,
-                             gtx_window **out, gtx_error *error)
+static void ask_for_context(void)
+{
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    glfwWindowHint(GLFW_DEPTH_BITS, 24);
+}
+
+static gtx_result create(const char *title, int width, int height, gtx_camera *camera, int bare,
+                         gtx_window **out, gtx_error *error)
 {
     *out = NULL;
     if (!glfwInit())
@@ -136,19 +146,23 @@ gtx_result gtx_window_create(const char *title, int width, int height, gtx_camer
         glfwTerminate();
         return gtx_fail(error, GTX_ERROR_MEMORY, "out of memory");
     }
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    glfwWindowHint(GLFW_DEPTH_BITS, 24);
+    if (bare)
+        glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+    else
+        ask_for_context();
+    window->bare = bare;
     window->glfw = glfwCreateWindow(width, height, title, NULL, NULL);
     window->camera = camera;
     if (!window->glfw) {
         gtx_window_destroy(window);
-        return gtx_fail(error, GTX_ERROR_GL, "the display offers no OpenGL 3.3 core context");
+        return gtx_fail(error, GTX_ERROR_GL,
+                        bare ? "the display opens no window"
+                             : "the display offers no OpenGL 3.3 core context");
     }
-    glfwMakeContextCurrent(window->glfw);
-    glfwSwapInterval(1);
+    if (!bare) {
+        glfwMakeContextCurrent(window->glfw);
+        glfwSwapInterval(1);
+    }
     glfwSetWindowUserPointer(window->glfw, window);
     glfwSetCursorPosCallback(window->glfw, on_pointer);
     glfwSetScrollCallback(window->glfw, on_wheel);
@@ -158,6 +172,23 @@ gtx_result gtx_window_create(const char *title, int width, int height, gtx_camer
     glfwGetCursorPos(window->glfw, &window->x, &window->y);
     *out = window;
     return GTX_OK;
+}
+
+gtx_result gtx_window_create(const char *title, int width, int height, gtx_camera *camera,
+                             gtx_window **out, gtx_error *error)
+{
+    return create(title, width, height, camera, 0, out, error);
+}
+
+gtx_result gtx_window_create_bare(const char *title, int width, int height, gtx_camera *camera,
+                                  gtx_window **out, gtx_error *error)
+{
+    return create(title, width, height, camera, 1, out, error);
+}
+
+void *gtx_window_glfw(const gtx_window *window)
+{
+    return window->glfw;
 }
 
 void gtx_window_destroy(gtx_window *window)
@@ -174,7 +205,8 @@ void gtx_window_destroy(gtx_window *window)
 int gtx_window_next(gtx_window *window, int *width, int *height)
 {
     const double patience = 0.05; /* seconds */
-    glfwSwapBuffers(window->glfw);
+    if (!window->bare)
+        glfwSwapBuffers(window->glfw);
     if (window->minimised)
         glfwWaitEventsTimeout(patience);
     else

@@ -18,7 +18,12 @@ enum { GTX_KEY_SHIFT = 1, GTX_KEY_ESCAPE = 27 };
  * Errors: MEMORY, GL (no display, no 3.3 core). */
 gtx_result gtx_window_create(const char *title, int width, int height, gtx_camera *camera,
                              gtx_window **out, gtx_error *error);
+/* The same without a context, for Vulkan. */
+gtx_result gtx_window_create_bare(const char *title, int width, int height, gtx_camera *camera,
+                                  gtx_window **out, gtx_error *error);
 void gtx_window_destroy(gtx_window *window);
+/* Its GLFWwindow. */
+void *gtx_window_glfw(const gtx_window *window);
 
 /* Shows what was drawn and takes input. Returns 0 once the window wants to close; otherwise
  * *width and *height are the framebuffer's size for the next frame. Both are 0 while the window is
