@@ -108,7 +108,7 @@ template <class Shapes>
 static Deviation deviation(const Vector<Vec3d> &points, const Shapes &shapes, double diagonal,
                            Task &task, double from, double to)
 {
-    NearestTree<Shapes> tree(shapes);
+    NearestTree<Shapes> tree(shapes, task, from);
     Vector<double> square(points.size());
     task.parallel((points.size() + CHUNK - 1) / CHUNK, [&](size_t chunk) {
         const size_t first = chunk * CHUNK, count = std::min(CHUNK, points.size() - first);

@@ -105,8 +105,8 @@ SeamReport measure_seams(const gtx_asset *asset, const Mesh &mesh, Task &task)
     const Vec3d anchor(info.anchor[0], info.anchor[1], info.anchor[2]);
     const Cells cells(asset);
     const BorderEdges border(mesh, anchor);
-    const NearestTree<Cells> fields(cells);
-    const NearestTree<BorderEdges> ends(border);
+    const NearestTree<Cells> fields(cells, task, 0);
+    const NearestTree<BorderEdges> ends(border, task, 0);
     const Vector<SeamPoint> points = sample_outlines(cells);
 
     struct Gap {

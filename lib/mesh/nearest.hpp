@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -20,8 +21,9 @@ struct Box {
     void add(const Vec3d &p)
     {
         for (int k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], std::nextafter(float(p[k]), -HUGE_F));
-            high[k] = std::max(high[k], std::nextafter(float(p[k]), HUGE_F));
+            const float at = float(p[k]);
+            low[k] = std::min(low[k], at <= p[k] ? at : std::nextafter(at, -HUGE_F));
+            high[k] = std::max(high[k], at >= p[k] ? at : std::nextafter(at, HUGE_F));
         }
     }
     void add(const Box &b)
@@ -51,26 +53,61 @@ double triangle_distance2(const Vec3d &p, const Vec3d &a, const Vec3d &b, const 
  * takes as much time as looks(i) nodes of the tree. It outlives the tree. */
 template <class Shapes> class NearestTree {
 public:
-    explicit NearestTree(const Shapes &shapes) : shapes_(shapes), order_(shapes.size())
+    /* On the task's threads, with so much of its stage `done`. */
+    NearestTree(const Shapes &shapes, Task &task, double done) : shapes_(shapes)
     {
         leaves_ = 1;
-        while (leaves_ * LEAF < order_.size())
+        while (leaves_ * LEAF < shapes.size())
             leaves_ *= 2;
-        Vector<Vec3f> centre;
-        for (size_t i = 0; i < order_.size(); ++i) {
-            cancel_point();
-            centre.push_back(Vec3f(shapes_.box(i).centre()));
-            order_[i] = uint32_t(i);
-        }
-        split(centre, order_.begin(), order_.end(), leaves_ * LEAF);
+        Vector<Centre> centres(shapes.size());
+        const auto parallel = [&](size_t count, const std::function<void(size_t)> &body) {
+            task.parallel(count, body, done, done);
+        };
+        parallel(parts(), [&](size_t part) {
+            for (uint32_t i = first(part); i < first(part + 1); ++i)
+                centres[i] = {Vec3f(shapes_.box(i).centre()), i};
+        });
+        size_t nodes = 1;
+        for (; nodes < std::min(parts(), FORKS); nodes *= 2)
+            parallel(nodes, [&](size_t n) { halve(centres, leaves_ / nodes, n); });
+        parallel(nodes, [&](size_t n) { split(centres, leaves_ / nodes, n); });
+        order_.resize(shapes.size());
         boxes_.resize(2 * leaves_);
-        for (size_t i = 0; i < order_.size(); ++i) {
-            cancel_point();
-            boxes_[leaves_ + i / LEAF].add(shapes_.box(order_[i]));
-        }
+        parallel(parts(), [&](size_t part) {
+            for (uint32_t i = first(part); i < first(part + 1); ++i) {
+                order_[i] = centres[i].shape;
+                boxes_[leaves_ + i / LEAF].add(shapes_.box(order_[i]));
+            }
+        });
         for (size_t n = leaves_ - 1; n > 0; --n) {
             boxes_[n].add(boxes_[2 * n]);
             boxes_[n].add(boxes_[2 * n + 1]);
+        }
+    }
+
+    /* Parts of the tree that may be visited by themselves, whatever the number of threads. */
+    size_t parts() const { return (leaves_ + PART - 1) / PART; }
+
+    /* Visits the shapes of a part, close ones one after another, but those in a box that `skips` is
+     * true of. */
+    template <class Skips, class Visit>
+    void visit(size_t part, const Skips &skips, const Visit &visit) const
+    {
+        size_t stack[64], size = 0;
+        stack[size++] = leaves_ / std::min(leaves_, PART) + part;
+        while (size) {
+            const size_t node = stack[--size];
+            cancel_point();
+            if (skips(boxes_[node]))
+                continue;
+            if (node < leaves_) {
+                stack[size++] = 2 * node + 1;
+                stack[size++] = 2 * node;
+                continue;
+            }
+            const size_t from = (node - leaves_) * LEAF;
+            for (size_t i = from; i < std::min(from + LEAF, order_.size()); ++i)
+                visit(order_[i]);
         }
     }
 
@@ -136,32 +173,47 @@ private:
     static constexpr size_t LEAF = 4;
     static constexpr size_t LOOK_TURNS = 8; /* of a short loop, that take as long as a look */
 
-    /* Orders the shapes of a node with places for `room` of them: those of its first child have the
-     * lower centres along the longest side of all, and fill it. */
-    using Place = Vector<uint32_t>::iterator;
-    static void split(const Vector<Vec3f> &centre, Place from, Place to, size_t room)
+    static constexpr size_t PART = 1024;    /* leaves of a part */
+    static constexpr size_t FORKS = 16;     /* nodes that are ordered at once */
+
+    struct Centre {
+        Vec3f at;
+        uint32_t shape;
+    };
+
+    uint32_t first(size_t part) const
     {
-        if (room <= LEAF)
+        return uint32_t(std::min(part * PART * LEAF, shapes_.size()));
+    }
+
+    /* Orders the shapes of the `n`th node of so many leaves: those of its first child have the
+     * lower centres along the longest side of all, and fill it. */
+    void halve(Vector<Centre> &centres, size_t leaves, size_t n) const
+    {
+        const auto place = [&](size_t leaf) {
+            return centres.begin() + std::ptrdiff_t(std::min(leaf * LEAF, centres.size()));
+        };
+        const auto from = place(n * leaves), to = place((n + 1) * leaves);
+        const auto middle = place(n * leaves + leaves / 2);
+        if (middle == to)
             return;
         cancel_point(size_t(to - from));
-        Place middle = from + std::min(std::ptrdiff_t(room / 2), to - from);
-        if (middle != to) {
-            Vec3f low = centre[*from], high = low;
-            for (Place i = from; i != to; ++i) {
-                for (int k = 0; k < 3; ++k) {
-                    low[k] = std::min(low[k], centre[*i][k]);
-                    high[k] = std::max(high[k], centre[*i][k]);
-                }
-            }
-            Vec3f side = high - low;
-            int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
-            std::nth_element(from, middle, to, [&](uint32_t a, uint32_t b) {
-                float at = centre[a][axis], other = centre[b][axis];
-                return at < other || (at == other && a < b);
-            });
-            split(centre, middle, to, room / 2);
-        }
-        split(centre, from, middle, room / 2);
+        Box all;
+        for (auto i = from; i != to; ++i)
+            all.add({i->at, i->at});
+        const Vec3f side = all.high - all.low;
+        const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
+        std::nth_element(from, middle, to, [axis](const Centre &a, const Centre &b) {
+            return a.at[axis] < b.at[axis] || (a.at[axis] == b.at[axis] && a.shape < b.shape);
+        });
+    }
+    void split(Vector<Centre> &centres, size_t leaves, size_t n) const
+    {
+        if (leaves == 1 || n * leaves * LEAF >= centres.size())
+            return;
+        halve(centres, leaves, n);
+        split(centres, leaves / 2, 2 * n + 1);
+        split(centres, leaves / 2, 2 * n);
     }
 
     const Shapes &shapes_;

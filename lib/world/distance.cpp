@@ -46,7 +46,7 @@ double find_nearest(const Vector<Vec3d> &points, const Sheet &sheet, Vector<uint
 {
     constexpr size_t CHUNK = 1024;
     const SheetShapes shapes(sheet);
-    const NearestTree<SheetShapes> tree(shapes);
+    const NearestTree<SheetShapes> tree(shapes, task, 0);
     nearest.assign(points.size(), UINT32_MAX);
     Vector<double> farthest((points.size() + CHUNK - 1) / CHUNK, 0);
     task.parallel(farthest.size(), [&](size_t chunk) {

@@ -189,7 +189,8 @@ inline void assert_placed(const Lod &lod)
 /* The greatest distance of points all over one surface from the other. */
 inline double farthest(const baking::Surface &from, const baking::Surface &to)
 {
-    const NearestTree<baking::Surface> tree(to);
+    Task task(0, nullptr, nullptr);
+    const NearestTree<baking::Surface> tree(to, task, 0);
     const size_t each = 1 + 60000 / from.size();
     uint32_t near = ~0u, random = 1;
     double most = 0;

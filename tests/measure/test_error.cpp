@@ -82,7 +82,8 @@ static void tree_finds_the_nearest(void **)
             for (int k = 0; k < 3; ++k)
                 soup.corners.push_back(at + random_point(seed, 0.5));
         }
-        NearestTree<Soup> tree(soup);
+        Task task(0, nullptr, nullptr);
+        NearestTree<Soup> tree(soup, task, 0);
         uint32_t near = NO_HIT; /* then whatever the point before was near to */
         for (int q = 0; q < 500; ++q) {
             Vec3d p = random_point(seed, 8);
@@ -102,7 +103,8 @@ static void few_looks_find_something_as_near_at_least(void **)
     Soup soup;
     for (size_t i = 0; i < 3 * 5000; ++i)
         soup.corners.push_back(random_point(seed, 4));
-    NearestTree<Soup> tree(soup);
+    Task task(0, nullptr, nullptr);
+    NearestTree<Soup> tree(soup, task, 0);
     size_t looks = 1000, visited = 0;
     for (int q = 0; q < 100; ++q) {
         const Vec3d p = random_point(seed, 4);
@@ -146,7 +148,8 @@ static void trim_is_honoured(void **)
     fixture_patch patch = {fixture_frame(corner, 16, 16, 1, 1), half_field, nullptr};
     gtx_asset *asset = fixture_build(&patch, 1, 8, 1);
     Cells cells(asset);
-    NearestTree<Cells> tree(cells);
+    Task task(0, nullptr, nullptr);
+    NearestTree<Cells> tree(cells, task, 0);
     uint32_t near = NO_HIT;
     assert_float_equal(std::sqrt(tree.distance2(Vec3d(12, 7.3, 0.5), &near)), 12 - 7.8, 0.02);
     assert_float_equal(std::sqrt(tree.distance2(Vec3d(7.7, 7.3, 0.75), &near)), 0.25, 1e-9);

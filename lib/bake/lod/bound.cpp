@@ -18,9 +18,6 @@ constexpr size_t FIRST = 2048;
 /* How steeply a level's triangle may leave the source. Of source to level nothing is taken for
  * granted: triangles there are small, and few are looked at twice. */
 constexpr double STEEPEST = 0.35;
-/* Triangles of a surface that start from the same knowledge, whatever the number of threads. */
-constexpr size_t CHUNK = 4096;
-
 namespace {
 
 /* From triangles to a surface. */
@@ -42,6 +39,20 @@ struct Search {
         return near < to.size() && to.distance2(near, c[0], limit) <= limit &&
                to.distance2(near, c[1], limit) <= limit && to.distance2(near, c[2], limit) <= limit;
     }
+    bool is_covered(const gtx::Box &box) const
+    {
+        const double limit = most() * most();
+        if (near >= to.size())
+            return false;
+        for (int corner = 0; corner < 8; ++corner) {
+            Vec3d p;
+            for (int k = 0; k < 3; ++k)
+                p[k] = corner >> k & 1 ? box.high[k] : box.low[k];
+            if (!(to.distance2(near, p, limit) <= limit))
+                return false;
+        }
+        return true;
+    }
     double distance(const Vec3d &p, double enough)
     {
         const double square = tree.distance2(
@@ -59,12 +70,15 @@ void Search::look(const Corners &c)
     const Vec3d middle = (c[0] + c[1] + c[2]) / 3;
     const double radius =
         std::max({length(c[0] - middle), length(c[1] - middle), length(c[2] - middle)});
-    const double enough = std::max(0.0, most() - slope * radius), away = distance(middle, enough);
-    if (away <= enough)
-        return;
-    found = std::max(found, away);
-    if (away + slope * radius <= most() || radius <= least || is_covered(c))
-        return;
+    const double enough = most() - slope * radius;
+    if (enough > 0 || radius <= least) {
+        const double away = distance(middle, std::max(0.0, enough));
+        if (away <= enough)
+            return;
+        found = std::max(found, away);
+        if (away + slope * radius <= most() || radius <= least || is_covered(c))
+            return;
+    }
     const Vec3d side[3] = {(c[1] + c[2]) / 2, (c[2] + c[0]) / 2, (c[0] + c[1]) / 2};
     look({side[0], side[1], side[2]});
     look({c[0], side[2], side[1]});
@@ -74,25 +88,27 @@ void Search::look(const Corners &c)
 
 } // namespace
 
-/* `skipped`: triangles of `from` that are left out, or empty. */
-static double greatest(const Surface &from, const Vector<uint8_t> &skipped, const Search &start,
-                       Task &task)
+/* `counts(t)`: whether triangle t of `from` is to be near. */
+template <class Counts>
+static double greatest(const NearestTree<Surface> &from, const Surface &surface,
+                       const Counts &counts, const Search &start, Task &task)
 {
-    const size_t chunks = (from.size() + CHUNK - 1) / CHUNK;
-    Vector<double> found(chunks, 0);
-    task.parallel(chunks, [&](size_t n) {
+    Vector<double> found(from.parts(), 0);
+    task.parallel(found.size(), [&](size_t part) {
         Search search = start;
-        for (size_t t = n * CHUNK; t < std::min(from.size(), (n + 1) * CHUNK); ++t)
-            if (skipped.empty() || !skipped[t])
-                search.look(from.corners(t));
-        found[n] = search.found;
+        from.visit(part, [&](const gtx::Box &box) { return search.is_covered(box); },
+                   [&](uint32_t t) {
+                       if (counts(t))
+                           search.look(surface.corners(t));
+                   });
+        found[part] = search.found;
     }, 1, 1);
     return *std::max_element(found.begin(), found.end());
 }
 
 /* The first points: their greatest distance, and the root of the mean square. */
-static Strayed sample(const Surface &from, const Vector<uint8_t> &skipped, const Search &start,
-                      Task &task)
+template <class Counts>
+static Strayed sample(const Surface &from, const Counts &counts, const Search &start, Task &task)
 {
     const size_t step = (from.size() + FIRST - 1) / FIRST, count = (from.size() + step - 1) / step;
     const size_t chunk = 256;
@@ -100,7 +116,7 @@ static Strayed sample(const Surface &from, const Vector<uint8_t> &skipped, const
     task.parallel((count + chunk - 1) / chunk, [&](size_t n) {
         Search search = start;
         for (size_t i = n * chunk; i < std::min(count, (n + 1) * chunk); ++i)
-            if (skipped.empty() || !skipped[i * step])
+            if (counts(uint32_t(i * step)))
                 away[i] = search.distance(from.corners(i * step)[0], start.free);
     }, 1, 1);
     Strayed out;
@@ -115,7 +131,9 @@ static Strayed sample(const Surface &from, const Vector<uint8_t> &skipped, const
 }
 
 Bounds::Bounds(const LodSource &source, double pitch, Task &task)
-    : source_{source.positions, source.triangles}, pitch_(pitch), task_(task), tree_(source_)
+    : source_{source.positions, source.triangles}, pitch_(pitch), task_(task),
+      tree_(source_, task, 0), parts_(part_sizes(source.positions, source.triangles)),
+      largest_part_(*std::max_element(parts_.begin(), parts_.end()))
 {
 }
 
@@ -131,20 +149,19 @@ Strayed Bounds::of(const LodLevel &level, double speck) const
     for (size_t i = 0; i < level.indices.size(); i += 3)
         triangles.push_back({level.indices[i], level.indices[i + 1], level.indices[i + 2]});
     const Surface made = {positions, triangles};
-    const NearestTree<Surface> tree(made);
-    const Vector<uint8_t> none;
-    const Vector<uint8_t> specks =
-        speck > 0 ? find_specks(source_.positions, source_.triangles, speck) : none;
+    const NearestTree<Surface> tree(made, task_, 1);
+    const auto any = [](uint32_t) { return true; };
+    const auto shown = [&](uint32_t t) { return parts_[t] > speck || largest_part_ <= speck; };
     Search there = {made, tree, 1, 0, double(level.step) / 2, 0};
     Search back = {source_, tree_, STEEPEST, pitch_, double(level.step) / 2, 0};
-    Strayed out = sample(source_, specks, there, task_);
-    back.found = std::max(out.most, sample(made, none, back, task_).most);
+    Strayed out = sample(source_, shown, there, task_);
+    back.found = std::max(out.most, sample(made, any, back, task_).most);
     task_.limits.work_again();
     /* The source first: it takes less, and its spots spare the level most of its looks. */
     there.found = back.found;
-    back.found = greatest(source_, specks, there, task_);
+    back.found = greatest(tree_, source_, shown, there, task_);
     task_.limits.work_again();
-    there.found = greatest(made, none, back, task_);
+    there.found = greatest(tree, made, any, back, task_);
     out.most = there.most();
     return out;
 }

@@ -51,6 +51,8 @@ private:
     double pitch_;
     Task &task_;
     NearestTree<Surface> tree_;
+    Vector<double> parts_;       /* how long the connected part of each triangle is */
+    double largest_part_;
 };
 
 } // namespace gtx::baking

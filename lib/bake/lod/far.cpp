@@ -76,8 +76,7 @@ private:
     Vector<uint32_t> lowest_;
 };
 
-Vector<uint8_t> find_specks(const Vector<Vec3d> &positions, const Vector<Triangle> &triangles,
-                            double most)
+Vector<double> part_sizes(const Vector<Vec3d> &positions, const Vector<Triangle> &triangles)
 {
     Components components(triangles, positions.size());
     Vector<Vec3d> low(positions.size(), {INFINITY, INFINITY, INFINITY});
@@ -89,16 +88,12 @@ Vector<uint8_t> find_specks(const Vector<Vec3d> &positions, const Vector<Triangl
             high[of][k] = std::max(high[of][k], positions[v][k]);
         }
     }
-    Vector<uint8_t> specks(triangles.size(), 0);
-    size_t count = 0;
+    Vector<double> sizes(triangles.size());
     for (size_t t = 0; t < triangles.size(); ++t) {
         const uint32_t of = components.of(triangles[t][0]);
-        specks[t] = length(high[of] - low[of]) <= most;
-        count += specks[t];
+        sizes[t] = length(high[of] - low[of]);
     }
-    if (count == triangles.size())
-        specks.assign(count, 0);
-    return specks;
+    return sizes;
 }
 
 } // namespace gtx::baking

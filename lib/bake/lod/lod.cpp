@@ -212,6 +212,17 @@ static void add_level(const LodJob &job, const Simplifier &simplifier, LodLevel 
     lod.push_back(std::move(level));
 }
 
+/* Takes away the parts that are no longer than the error; not all. */
+static void drop_specks(Simplifier &simplifier)
+{
+    const Vector<double> sizes = part_sizes(simplifier.positions(), simplifier.triangles());
+    Vector<uint8_t> specks;
+    for (double size : sizes)
+        specks.push_back(size <= simplifier.error());
+    if (std::find(specks.begin(), specks.end(), 0) != specks.end())
+        simplifier.drop(specks);
+}
+
 /* Goes on without regard to patches: where each is a pixel, a triangle may show several. */
 static void add_far_levels(const LodJob &job, Simplifier &simplifier, double most,
                            Vector<LodLevel> &lod)
@@ -225,8 +236,7 @@ static void add_far_levels(const LodJob &job, Simplifier &simplifier, double mos
         const double ratio = gtx_pow(before / FAR_TRIANGLES, 1.0 / (k + 1));
         simplifier.reduce(size_t(before / ratio), 0, most);
         simplifier.settle();
-        simplifier.drop(find_specks(simplifier.positions(), simplifier.triangles(),
-                                    simplifier.error()));
+        drop_specks(simplifier);
         if (double(simplifier.triangles().size()) > MAX_SHARE * before)
             return;
         const Vector<uint32_t> homes =

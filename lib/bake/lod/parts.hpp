@@ -118,8 +118,8 @@ private:
 Vector<uint32_t> find_far_homes(const Simplifier &simplified, const Maps &maps,
                                 const Vector<PatchRegion> &regions, Task &task);
 
-/* Which triangles are of connected parts no longer than `most`; none where all are. */
-Vector<uint8_t> find_specks(const Vector<Vec3d> &positions,
-                            const Vector<std::array<uint32_t, 3>> &triangles, double most);
+/* Of each triangle the diagonal of the box of its connected part. */
+Vector<double> part_sizes(const Vector<Vec3d> &positions,
+                          const Vector<std::array<uint32_t, 3>> &triangles);
 
 } // namespace gtx::baking
