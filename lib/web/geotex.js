@@ -159,18 +159,18 @@ export class Shading {
     this.handle = g.around(() => core._gtxw_shading_create(g.renderer, pointer));
     core._free(pointer);
     g.must(this.handle);
-    this.programs = [Method.CAST, Method.LOD, Method.GRID].map((method) =>
-      core.GL.programs[core._gtxw_shading_program(this.handle, method)]);
+    this.programs = [Method.CAST, Method.LOD, Method.GRID].map((method) => ({
+      program: core.GL.programs[core._gtxw_shading_program(this.handle, method)], places: {}}));
   }
 
   /* Numbers and rows of 2, 3, 4 or 16 of them; arrays of vec3 and mat4 as {vec3: [...]}, {mat4:
    * [...]}; samplers and other whole numbers as {int: n}. */
   set(uniforms) {
     const gl = this.geotex.gl, before = gl.getParameter(gl.CURRENT_PROGRAM);
-    for (const program of this.programs) {
+    for (const {program, places} of this.programs) {
       gl.useProgram(program);
       for (const [name, value] of Object.entries(uniforms)) {
-        const at = gl.getUniformLocation(program, name);
+        const at = places[name] ??= gl.getUniformLocation(program, name);
         if (value.int !== undefined)
           gl.uniform1i(at, value.int);
         else if (value.vec3)
