@@ -44,7 +44,7 @@ static inline void rhi_create(rhi *r, rhi_proc (*load)(const char *name, void *u
 
 /* Formats that this engine knows: how OpenGL stores a texel, and how it is told. */
 typedef enum rhi_format {
-    RHI_R8, RHI_RG8, RHI_RGBA8, RHI_RGB8_SRGB, RHI_RGBA8_SRGB, RHI_RGBA8_UINT, RHI_RGBA16_UINT,
+    RHI_R8, RHI_RG8, RHI_RGBA8, RHI_RGB8_SRGB, RHI_RGBA8_SRGB, RHI_R8_UINT, RHI_R16_UINT,
     RHI_RGBA32_FLOAT
 } rhi_format;
 
@@ -61,8 +61,8 @@ static inline GLuint rhi_texture(const rhi *r, const rhi_texture_desc *d)
                                    {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE},
                                    {GL_SRGB8, GL_RGB, GL_UNSIGNED_BYTE},
                                    {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE},
-                                   {GL_RGBA8UI, GL_RGBA_INTEGER, GL_UNSIGNED_BYTE},
-                                   {GL_RGBA16UI, GL_RGBA_INTEGER, GL_UNSIGNED_SHORT},
+                                   {GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE},
+                                   {GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT},
                                    {GL_RGBA32F, GL_RGBA, GL_FLOAT}};
     const GLenum *f = as[d->format], target = d->is_array ? GL_TEXTURE_2D_ARRAY : GL_TEXTURE_2D;
     GLuint texture;

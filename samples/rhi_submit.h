@@ -26,7 +26,7 @@ static inline void rhi_upload(const rhi *r, gtx_model *model, rhi_model *out)
     static const rhi_format formats[] = {
         [GTX_FORMAT_R8] = RHI_R8, [GTX_FORMAT_RG8] = RHI_RG8, [GTX_FORMAT_RGBA8] = RHI_RGBA8,
         [GTX_FORMAT_RGB8_SRGB] = RHI_RGB8_SRGB, [GTX_FORMAT_RGBA8_SRGB] = RHI_RGBA8_SRGB,
-        [GTX_FORMAT_RGBA8_UINT] = RHI_RGBA8_UINT, [GTX_FORMAT_RGBA16_UINT] = RHI_RGBA16_UINT,
+        [GTX_FORMAT_R8_UINT] = RHI_R8_UINT, [GTX_FORMAT_R16_UINT] = RHI_R16_UINT,
         [GTX_FORMAT_RGBA32_FLOAT] = RHI_RGBA32_FLOAT};
     for (int slot = 0; slot < GTX_SLOT_COUNT; ++slot) {
         gtx_texture t;

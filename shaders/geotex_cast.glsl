@@ -40,7 +40,7 @@ bool gtx_look(inout gtx_walk w, vec4 height, bool two_sided, vec2 last, float fi
                     vec3(direction.xy * w.fit, direction.z));
     w.above = w.known ? w.then_above : w.gap.x >= 0.0;
     w.then_above = w.gap.x + span * (w.gap.y + span * w.gap.z) >= 0.0;
-    w.known = w.height.x > 0.0;
+    w.known = gtx_exists(w.height);
     /* Two crossings: the gap has its extremum in between, beyond zero. */
     bool change = w.above != w.then_above;
     bool bends = (w.gap.y < 0.0) == w.above && (w.gap.y + 2.0 * span * w.gap.z > 0.0) == w.above;
@@ -62,7 +62,8 @@ bool gtx_cast(gtx_height_field field, vec3 origin, vec3 direction, float t0, flo
     float limit = (t1 - t0) * speed;
     /* Drivers that draw on the CPU look up by place for less than they fetch. */
     vec2 texel = 1.0 / vec2(textureSize(gtx_cells, 0).xy);
-    vec2 place = (vec2(field.cells) + 0.5) * texel;
+    vec2 place = (vec2(field.cells) + 1.0) * texel;
+    vec2 stride = float(field.step) * texel;
 
     vec2 way = vec2(d.x < 0.0 ? -1.0 : 1.0, d.y < 0.0 ? -1.0 : 1.0), ahead = max(way, 0.0);
     vec2 inverse = way / max(abs(d.xy), 1e-9);
@@ -83,12 +84,12 @@ bool gtx_cast(gtx_height_field field, vec3 origin, vec3 direction, float t0, flo
             v.cell = next;
             v.enter = w.leave;
             v.leave = max(v.enter, min(min(planes.x, planes.y), limit));
-#ifdef GTX_FETCH /* languages that do not look up whole numbers by place */
-            vec4 height = vec4(texelFetch(
-                gtx_cells, ivec3(field.cells + ivec2(next), field.page), 0));
+#ifdef GTX_GATHER_CODES
+            vec4 height = vec4(
+                textureGather(gtx_cells, vec3(place + next * stride, float(field.page))).wzxy);
 #else
             vec4 height =
-                vec4(textureLod(gtx_cells, vec3(place + next * texel, float(field.page)), 0.0));
+                gtx_codes(ivec3(field.cells + field.step * ivec2(next), field.page));
 #endif
             bool crosses = gtx_look(v, height, field.two_sided, last, fit, o, d);
             vec2 then = next + (planes.x <= planes.y ? vec2(way.x, 0.0) : vec2(0.0, way.y));

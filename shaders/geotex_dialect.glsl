@@ -19,6 +19,11 @@
 #ifdef GL_ARB_texture_gather
 #extension GL_ARB_texture_gather : require
 #define GTX_GATHER
+#elif (defined(GL_ES) && __VERSION__ >= 310) || (!defined(GL_ES) && __VERSION__ >= 400)
+#define GTX_GATHER
+#endif
+#if defined(GTX_GATHER) && !defined(GTX_FETCH) /* languages that gather no whole numbers */
+#define GTX_GATHER_CODES
 #endif
 #ifdef GL_ES
 precision highp float;

@@ -6,9 +6,9 @@
  * is the bilinear patch through them (format/gtx.md, section 4.1). At level k cell (i, j) spans 2^k
  * texels from texel 2^k i, 2^k j on, the last ones of a row or column a texel less (section 5);
  * grid space is the same at all levels. */
-GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* four codes a cell: (0,0) (1,0) (0,1) (1,1);
-                                                     under level 0 the others side by side, for
-                                                     lookups by level cost more */
+GTX_SAMPLER(0, highp usampler2DArray) gtx_cells;  /* codes: of level 0 the texels'; of the coarser
+                                                     levels each cell has 2 x 2 of its own. All in
+                                                     one level: lookups by level cost more */
 GTX_SAMPLER(1, highp sampler2DArray) gtx_trim;    /* distance to the outline, as stored */
 GTX_SAMPLER(4, highp sampler2D) gtx_patches;      /* records and slabs: geotex_records.glsl */
 
@@ -23,7 +23,8 @@ vec2 gtx_looked = vec2(0.0);
 /* What casting needs of a patch. */
 struct gtx_height_field {
     ivec2 corner;                         /* of the rectangle in its page */
-    ivec2 cells;                          /* where the level's begin there */
+    ivec2 cells;                          /* where the level's codes begin there */
+    int step;                             /* from a cell's to the next one's */
     ivec2 size;                           /* of the rectangle, in texels */
     ivec2 first, last;                    /* cells to look at */
     int page;
@@ -71,12 +72,38 @@ gtx_frame gtx_frame_of(int patch_index)
  * all levels, for a ray from anywhere. */
 gtx_height_field gtx_field_of(vec4 rect, vec4 span, int level)
 {
-    ivec2 page = textureSize(gtx_cells, 0).xy;
-    ivec2 from = level > 0 ? ivec2(page.x - (page.x >> (level - 1)), page.y / 3 * 2) : ivec2(0);
-    return gtx_height_field(ivec2(rect.xy), from + (ivec2(rect.xy) >> level), ivec2(rect.zw),
-                            ivec2(0), (ivec2(rect.zw) - 2) >> level, int(span.z), level,
-                            span.w > 0.0, vec3(0.0, 0.0, span.x), vec3(rect.zw - 1.0, span.y),
-                            1e30);
+    ivec2 page = textureSize(gtx_trim, 0).xy;
+    int up = max(level - 1, 0);
+    ivec2 from = ivec2(0);
+    if (up > 0)
+        from.x = page.x - (page.x >> (up - 1));
+    if (page.y > GTX_HIGH_PAGE)
+        from += level == 1 ? ivec2(page.x, 0) : ivec2(0, level > 0 ? page.y : 0);
+    else
+        from.y = page.y * min(level, 2);
+    return gtx_height_field(ivec2(rect.xy), from + (ivec2(rect.xy) >> up), level > 0 ? 2 : 1,
+                            ivec2(rect.zw), ivec2(0), (ivec2(rect.zw) - 2) >> level, int(span.z),
+                            level, span.w > 0.0, vec3(0.0, 0.0, span.x),
+                            vec3(rect.zw - 1.0, span.y), 1e30);
+}
+
+/* The codes of 2 x 2 texels from one on: (0,0) (1,0) (0,1) (1,1). A cell exists where none is 0. */
+vec4 gtx_codes(ivec3 first)
+{
+#ifdef GTX_GATHER_CODES
+    vec2 corner = (vec2(first.xy) + 1.0) / vec2(textureSize(gtx_cells, 0).xy);
+    return vec4(textureGather(gtx_cells, vec3(corner, float(first.z))).wzxy);
+#else
+    return vec4(texelFetch(gtx_cells, first, 0).r,
+                texelFetch(gtx_cells, first + ivec3(1, 0, 0), 0).r,
+                texelFetch(gtx_cells, first + ivec3(0, 1, 0), 0).r,
+                texelFetch(gtx_cells, first + ivec3(1, 1, 0), 0).r);
+#endif
+}
+
+bool gtx_exists(vec4 codes)
+{
+    return min(min(codes.x, codes.y), min(codes.z, codes.w)) > 0.0;
 }
 
 /* Lowest z, highest z, page and two-sided of a record. */

@@ -10,9 +10,9 @@ bool gtx_below(gtx_height_field field, vec3 point, out vec4 height, out ivec2 ce
 {
     cell = clamp(ivec2(floor(point.xy)), ivec2(0), field.size - 2);
     GTX_LOOK(x, true);
-    height = vec4(texelFetch(gtx_cells, ivec3(field.corner + cell, field.page), 0));
+    height = gtx_codes(ivec3(field.corner + cell, field.page));
     vec2 f = point.xy - vec2(cell);
-    return height.x > 0.0 &&
+    return gtx_exists(height) &&
            point.z <= mix(mix(height.x, height.y, f.x), mix(height.z, height.w, f.x), f.y);
 }
 

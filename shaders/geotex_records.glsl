@@ -8,6 +8,11 @@
 
 #define GTX_BLOCK_CELLS 8                /* along the side of a block */
 
+/* In gtx_cells level 1 lies below level 0, or beside it where the page has more rows than so many,
+ * and the coarser ones below both, side by side: no texture of a page of 4096 x 4096 texels is
+ * larger than 8192 a side. */
+#define GTX_HIGH_PAGE 3276
+
 /* A patch, in gtx_patches. A texel's w has a name of its own where it says something else. */
 #define GTX_RECORD_TO_GRID 0             /* 3: rows of object space -> grid space */
 #define GTX_RECORD_ORIGIN 3              /* of grid space in object space */

@@ -62,7 +62,7 @@ bool gtx_is_shown()
     if (any(greaterThan(gtx_texel, vec2(field.size) - 0.99))) /* triangles may stick out */
         return false;
     ivec2 cell = clamp(ivec2(floor(gtx_texel)), ivec2(0), field.size - 2);
-    uvec4 codes = texelFetch(gtx_cells, ivec3(field.corner + cell, field.page), 0);
-    return codes.x != 0u && gtx_shows(field, gtx_texel);
+    return gtx_exists(gtx_codes(ivec3(field.corner + cell, field.page))) &&
+           gtx_shows(field, gtx_texel);
 }
 #endif

@@ -90,8 +90,8 @@ typedef enum gtx_format {
     GTX_FORMAT_RGB8_SRGB = 4,     /* decoded to linear as they are read; where an interface has no
                                      three bytes a texel, RGBA8_SRGB with any fourth */
     GTX_FORMAT_RGBA8_SRGB = 5,
-    GTX_FORMAT_RGBA8_UINT = 6,
-    GTX_FORMAT_RGBA16_UINT = 7,
+    GTX_FORMAT_R8_UINT = 6,       /* whole numbers */
+    GTX_FORMAT_R16_UINT = 7,
     GTX_FORMAT_RGBA32_FLOAT = 8,
     GTX_FORMAT_BC5 = 9,           /* blocks of 4x4 texels, two channels */
     GTX_FORMAT_BC7 = 10,

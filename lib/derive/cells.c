@@ -1,5 +1,5 @@
-/* What kernels on the GPU take of a level: corner cells, the four codes of a cell in one texel, and
- * how far the level's height field lies from the finest one. */
+/* What kernels on the GPU take of a level: codes, or corner cells, the four codes of a cell in one
+ * texel; and how far the level's height field lies from the finest one. */
 #include "derive/codes.h"
 
 #include <math.h>
@@ -38,6 +38,53 @@ void gtx_grid_cells(const gtx_grid *grid, uint32_t height_bits, size_t row_texel
         uint8_t *to = (uint8_t *)out + j * row_texels * texel_size;
         (height_bits == 8 ? pack_8 : pack_16)(row, next, grid->solid + j * cells, cells, to);
     }
+}
+
+/* The codes of a row of nodes, and 0 of those that are no cell's corner: beside them, from the
+ * cells above and below. */
+static void pack_nodes(const gtx_grid *grid, size_t j, size_t code_size, uint8_t *out)
+{
+    const size_t cells = grid->nodes_x - 1, last = grid->nodes_y - 2;
+    const uint8_t *above = grid->solid + (j ? j - 1 : 0) * cells;
+    const uint8_t *below = grid->solid + (j > last ? last : j) * cells;
+    const uint16_t *row = grid->code + j * grid->nodes_x;
+    uint8_t left = 0;
+    for (size_t i = 0; i <= cells; ++i) {
+        const uint8_t right = i < cells ? above[i] | below[i] : 0;
+        const uint16_t code = left | right ? row[i] : 0;
+        if (code_size == 1)
+            out[i] = (uint8_t)code;
+        else
+            memcpy(out + 2 * i, &code, 2);
+        left = right;
+    }
+}
+
+/* The corners of a row of cells, two in each of two rows of codes. */
+static void pack_pairs(const gtx_grid *grid, size_t j, size_t code_size, size_t row_codes,
+                       uint8_t *out)
+{
+    const size_t cells = grid->nodes_x - 1;
+    for (size_t k = 0; k < 2; ++k, out += row_codes * code_size) {
+        const uint16_t *row = grid->code + (j + k) * grid->nodes_x;
+        const uint8_t *solid = grid->solid + j * cells;
+        for (size_t i = 0; i < cells; ++i) {
+            const uint16_t pair[2] = {solid[i] ? row[i] : 0, solid[i] ? row[i + 1] : 0};
+            const uint8_t narrow[2] = {(uint8_t)pair[0], (uint8_t)pair[1]};
+            memcpy(out + 2 * i * code_size, code_size == 1 ? (const void *)narrow : pair,
+                   2 * code_size);
+        }
+    }
+}
+
+void gtx_grid_codes(const gtx_grid *grid, uint32_t height_bits, size_t row_codes, void *out)
+{
+    const size_t size = height_bits / 8;
+    uint8_t *to = out;
+    for (size_t j = 0; !grid->level && j < grid->nodes_y; ++j)
+        pack_nodes(grid, j, size, to + j * row_codes * size);
+    for (size_t j = 0; grid->level && j + 1 < grid->nodes_y; ++j)
+        pack_pairs(grid, j, size, row_codes, to + 2 * j * row_codes * size);
 }
 
 /* A level's height field over texel (x, y): its height in codes, and its slopes in codes a

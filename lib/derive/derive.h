@@ -39,6 +39,12 @@ void gtx_grid_trim(const gtx_asset *asset, uint32_t patch, gtx_grid *grid);
  * rectangle at mip level k. */
 void gtx_grid_cells(const gtx_grid *grid, uint32_t height_bits, size_t row_texels, void *out);
 
+/* The same for kernels that gather: codes as uint8_t or uint16_t, `row_codes` a row. Of level 0 the
+ * nodes', 0 where no cell has them as a corner: then a cell between four others may seem to be
+ * there that gtx_grid_trim has taken. Of coarser levels 2 x 2 a cell, at (2i, 2j), or zeros. Level
+ * k > 0 of a patch fits its rectangle at mip level k - 1. */
+void gtx_grid_codes(const gtx_grid *grid, uint32_t height_bits, size_t row_codes, void *out);
+
 /* How far, in object units, a patch's height field at a level is from that at level 0, `finest`:
  * the largest distance of a texel from the plane that touches the level's height field over it, or
  * what the wider trim limit lets stick out, if that is more. At the border, where a neighbour's

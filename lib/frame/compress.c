@@ -50,7 +50,7 @@ static encoder *const encoders[] = {[GTX_FORMAT_BC5] = encode_bc5,
 gtx_storage gtx_storage_of(uint32_t unit, gtx_compression compress)
 {
     static const gtx_storage all[][UNIT_COUNT] = {
-        [GTX_COMPRESS_NONE] = {[UNIT_CELLS] = {GTX_FORMAT_RGBA8_UINT, 4, 0},
+        [GTX_COMPRESS_NONE] = {[UNIT_CELLS] = {GTX_FORMAT_R8_UINT, 1, 0},
                                [UNIT_TRIM] = {GTX_FORMAT_R8, 1, 0},
                                [UNIT_NORMALS] = {GTX_FORMAT_RG8, 2, 0},
                                [UNIT_COLORS] = {GTX_FORMAT_RGBA8_SRGB, 4, 0},

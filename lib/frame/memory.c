@@ -68,9 +68,8 @@ uint64_t gtx_model_memory(const gtx_asset *asset, const gtx_model_desc *desc)
     const gtx_info *info = &asset->info;
     const uint64_t texels = (uint64_t)info->page_count * info->page_width * info->page_height;
     const uint32_t maps = 3 + 4 * info->has_color + 4 * info->has_material + 3 * info->has_emission;
-    const uint64_t cells = texels * (info->height_bits / 2);
-    uint64_t bytes = sizeof(gtx_model) + lod_bytes(asset) + work_bytes(asset) + cells +
-                     (info->mip_count > 1 ? cells / 2 : 0);
+    const uint64_t cells = texels * (info->height_bits / 8) * (info->mip_count > 1 ? 3 : 1);
+    uint64_t bytes = sizeof(gtx_model) + lod_bytes(asset) + work_bytes(asset) + cells;
     if (!desc->borrow || desc->compress)
         bytes += texels * maps + (info->mip_count > 1 ? texels * maps / 3 : 0);
     bytes += 2 * GTX_PATCHES_ROW * sizeof(gtx_slab_texel); /* rows that are not full */

@@ -68,17 +68,31 @@ void gtx_model_sum_up(gtx_model *model)
     model->depth_complexity = (float)fmin(depth_complexity_of(model, area), 1e6);
 }
 
+static bool is_high(const gtx_model *model)
+{
+    return model->page_height > GTX_HIGH_PAGE;
+}
+
 uint32_t gtx_model_cell_rows(const gtx_model *model)
 {
-    return model->page_height + (model->mip_count > 1 ? model->page_height / 2 : 0);
+    const uint32_t height = model->page_height, mips = model->mip_count;
+    return (mips > 1 && !is_high(model) ? 2 * height : height) + (mips > 2 ? height / 2 : 0);
+}
+
+uint32_t gtx_model_cell_columns(const gtx_model *model)
+{
+    return model->mip_count > 1 && is_high(model) ? 2 * model->page_width : model->page_width;
 }
 
 void gtx_model_cells_at(const gtx_model *model, const gtx_patch *patch, uint32_t level,
                         uint32_t at[2])
 {
-    at[0] = (patch->rect[0] >> level) +
-            (level ? model->page_width - (model->page_width >> (level - 1)) : 0);
-    at[1] = (patch->rect[1] >> level) + (level ? model->page_height : 0);
+    const uint32_t up = level ? level - 1 : 0, width = model->page_width;
+    const bool high = is_high(model);
+    at[0] = (patch->rect[0] >> up) + (up ? width - (width >> (up - 1)) : 0) +
+            (high && level == 1 ? width : 0);
+    at[1] = (patch->rect[1] >> up) +
+            model->page_height * (high ? level > 1 : level < 2 ? level : 2);
 }
 
 void gtx_model_free_staging(gtx_model *model)

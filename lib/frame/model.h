@@ -124,9 +124,10 @@ uint32_t gtx_model_slabs_at(const gtx_model *model, uint32_t patch, uint32_t lev
 uint64_t gtx_model_memory(const gtx_asset *asset, const gtx_model_desc *desc);
 /* A hash of where the patches' rectangles lie. */
 uint64_t gtx_model_layout(const gtx_asset *asset);
-/* Rows of a page of cells, and where the cells of a patch's level are in it: level 1 and the
- * coarser ones lie side by side under level 0. */
+/* Rows and columns of a page of codes of cells, and where those of a patch's level are in it
+ * (GTX_HIGH_PAGE). */
 uint32_t gtx_model_cell_rows(const gtx_model *model);
+uint32_t gtx_model_cell_columns(const gtx_model *model);
 void gtx_model_cells_at(const gtx_model *model, const gtx_patch *patch, uint32_t level,
                         uint32_t at[2]);
 /* Bounds and more of all patches, from the facts, slabs and records of each. */
@@ -149,8 +150,8 @@ typedef struct gtx_derived {
     gtx_rtin rtin;
     gtx_rtin_block *blocks;                   /* where those of level 0 go, and its nodes */
     gtx_rtin_node *nodes;
-    void *cells[GTX_MAX_MIPS];                /* where those of each level go */
-    size_t row_texels[GTX_MAX_MIPS];          /* from a row of cells to the next */
+    void *cells[GTX_MAX_MIPS];                /* where codes of each level's go */
+    size_t row_texels[GTX_MAX_MIPS];          /* from a row of codes to the next */
 } gtx_derived;
 /* Errors: MEMORY. */
 gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_allocator *allocator,

@@ -86,7 +86,7 @@ static gtx_result derive_level(const gtx_asset *asset, uint32_t patch, gtx_grid 
     gtx_proxies *hulls = &out->proxies[1 + k];
     const uint32_t first = hulls->vertex_count;
     gtx_grid_trim(asset, patch, grid);
-    gtx_grid_cells(grid, asset->info.height_bits, out->row_texels[k], out->cells[k]);
+    gtx_grid_codes(grid, asset->info.height_bits, out->row_texels[k], out->cells[k]);
     gtx_grid_slabs(&asset->patches[patch], grid, out->slabs[k]);
     fill_slabs(out, k, gtx_slab_count(&asset->patches[patch], k));
     if (out->facts.boxed)

@@ -21,7 +21,7 @@ typedef struct making {
     gtx_model *model;
     const gtx_asset *asset;
     gtx_record *records;
-    uint8_t *pages;               /* of cells */
+    uint8_t *pages;               /* of codes of cells */
     batch *batches;
     uint32_t batch_count;
     const gtx_model_desc *desc;
@@ -79,8 +79,9 @@ static gtx_result derive_patch(const making *m, uint32_t i, gtx_derived *derived
         uint32_t at[2];
         gtx_model_cells_at(model, p, k, at);
         const size_t row = (size_t)p->page * gtx_model_cell_rows(model) + at[1];
-        derived->row_texels[k] = info->page_width;
-        derived->cells[k] = m->pages + (row * info->page_width + at[0]) * (info->height_bits / 2);
+        derived->row_texels[k] = gtx_model_cell_columns(model);
+        derived->cells[k] =
+            m->pages + (row * derived->row_texels[k] + at[0]) * (info->height_bits / 8);
         derived->slabs[k] = model->slabs + model->first_slab[k * info->patch_count + i];
         derived->slabs_at[k] = gtx_model_slabs_at(model, i, k);
         derived->slab_texels[k] = (gtx_slab_texel *)m->records + derived->slabs_at[k];
@@ -188,14 +189,14 @@ static bool reserve(making *m)
     model->first_index = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_index);
     model->facts = gtx_alloc_array(&model->allocator, model->patch_count, sizeof *model->facts);
     m->pages = gtx_model_add_level(
-        model, (gtx_level){.unit = UNIT_CELLS, .width = info->page_width,
+        model, (gtx_level){.unit = UNIT_CELLS, .width = gtx_model_cell_columns(model),
                            .height = gtx_model_cell_rows(model), .layers = info->page_count,
-                           .texel_size = info->height_bits / 2});
+                           .texel_size = info->height_bits / 8});
     if (!m->records || !m->pages || !model->first_vertex || !model->first_index || !model->facts)
         return false;
     model->formats[UNIT_PATCHES] = GTX_FORMAT_RGBA32_FLOAT;
     model->formats[UNIT_CELLS] =
-        info->height_bits == 16 ? GTX_FORMAT_RGBA16_UINT : GTX_FORMAT_RGBA8_UINT;
+        info->height_bits == 16 ? GTX_FORMAT_R16_UINT : GTX_FORMAT_R8_UINT;
     return gtx_model_add_maps(model, m->asset, m->desc, m->sources);
 }
 

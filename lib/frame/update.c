@@ -24,9 +24,10 @@ static uint8_t *make_cells(const gtx_model *model, const gtx_patch *patch, gtx_d
     size_t offset[GTX_MAX_MIPS];
     *size = 0;
     for (uint32_t k = 0; k < model->mip_count; ++k) {
-        d->row_texels[k] = patch->rect[2] >> k;
+        const uint32_t up = k ? k - 1 : 0;
+        d->row_texels[k] = patch->rect[2] >> up;
         offset[k] = *size;
-        *size += d->row_texels[k] * (patch->rect[3] >> k) * (model->height_bits / 2);
+        *size += d->row_texels[k] * (patch->rect[3] >> up) * (model->height_bits / 8);
     }
     uint8_t *cells = gtx_alloc_array(&model->allocator, *size, 1);
     for (uint32_t k = 0; cells && k < model->mip_count; ++k)
@@ -92,13 +93,13 @@ static void send_cells(const gtx_sink *sink, const gtx_model *model, const gtx_p
                        const gtx_derived *d)
 {
     for (uint32_t k = 0; k < model->mip_count; ++k) {
-        const uint32_t width = (uint32_t)patch->rect[2] >> k;
+        const uint32_t up = k ? k - 1 : 0, width = (uint32_t)patch->rect[2] >> up;
         uint32_t at[2];
         gtx_model_cells_at(model, patch, k, at);
         const gtx_texture_piece piece = {
             .binding = GTX_SLOT_CELLS, .layer = patch->page, .x = at[0], .y = at[1],
-            .width = width, .height = (uint32_t)patch->rect[3] >> k, .data = d->cells[k],
-            .row_bytes = width * (model->height_bits / 2)};
+            .width = width, .height = (uint32_t)patch->rect[3] >> up, .data = d->cells[k],
+            .row_bytes = width * (model->height_bits / 8)};
         sink->texels(&piece, sink->user);
     }
 }

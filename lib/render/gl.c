@@ -123,6 +123,9 @@ gtx_result gtx_gl_init(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *err
         return gtx_fail(error, GTX_ERROR_GL, "OpenGL 3.3 or OpenGL ES 3.0 is needed and the context"
                                              " is %s %d.%d", gl->es ? "OpenGL ES" : "OpenGL", major,
                         minor);
+    gl->glsl = !gl->es      ? "#version 330 core\n"
+               : have >= 31 ? "#version 310 es\n" /* which gathers */
+                            : "#version 300 es\n";
     if (!gl->es || have >= 32)
         result = load_indexed(gl, desc, error);
     if (have >= (gl->es ? 32 : 43))

@@ -111,6 +111,8 @@ enum {
     GL_TEXTURE_BINDING_2D_ARRAY = 0x8C1D,
     GL_SRGB8 = 0x8C41,
     GL_SRGB8_ALPHA8 = 0x8C43,
+    GL_R8UI = 0x8232,
+    GL_R16UI = 0x8234,
     GL_RGBA16UI = 0x8D76,
     GL_COMPRESSED_RG_RGTC2 = 0x8DBD,
     GL_COMPRESSED_RGBA_BPTC_UNORM = 0x8E8C,
@@ -249,6 +251,7 @@ typedef struct gtx_gl {
     GTX_GL_BLOCKS(GTX_GL_FIELD)
 #undef GTX_GL_FIELD
     bool es;                  /* OpenGL ES */
+    const char *glsl;         /* the first line of shaders */
     bool reads[GTX_COMPRESS_ETC2 + 1]; /* kinds of blocks */
 } gtx_gl;
 

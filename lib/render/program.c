@@ -105,8 +105,7 @@ static gl_uint stage_of(const gtx_renderer *renderer, uint32_t pipeline, gtx_sta
                         const char *own_main)
 {
     const gl_enum kind = stage == GTX_STAGE_VERTEX ? GL_VERTEX_SHADER : GL_FRAGMENT_SHADER;
-    const char *texts[1 + GTX_MAX_SHADER_TEXTS] = {renderer->gl.es ? "#version 300 es\n"
-                                                                   : "#version 330 core\n"};
+    const char *texts[1 + GTX_MAX_SHADER_TEXTS] = {renderer->gl.glsl};
     const uint32_t count = gtx_pipeline_source(pipeline, stage, own_main, texts + 1);
     return count ? compile(renderer, kind, texts, 1 + count) : 0;
 }

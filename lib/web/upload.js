@@ -8,8 +8,8 @@ const FORMATS = [null,
   ['RGBA8', 'RGBA', 'UNSIGNED_BYTE', true, Uint8Array],
   ['SRGB8', 'RGB', 'UNSIGNED_BYTE', true, Uint8Array],
   ['SRGB8_ALPHA8', 'RGBA', 'UNSIGNED_BYTE', true, Uint8Array],
-  ['RGBA8UI', 'RGBA_INTEGER', 'UNSIGNED_BYTE', false, Uint8Array],
-  ['RGBA16UI', 'RGBA_INTEGER', 'UNSIGNED_SHORT', false, Uint16Array],
+  ['R8UI', 'RED_INTEGER', 'UNSIGNED_BYTE', false, Uint8Array],
+  ['R16UI', 'RED_INTEGER', 'UNSIGNED_SHORT', false, Uint16Array],
   ['RGBA32F', 'RGBA', 'FLOAT', false, Float32Array]];
 const INDEX_BUFFERS = new Set([1, 3]);
 

@@ -160,6 +160,45 @@ static void cells_hold_their_corners(void **state)
         }
 }
 
+static uint32_t code_at(const uint8_t *codes, uint32_t bits, size_t at)
+{
+    return bits == 8 ? codes[at] : ((const uint16_t *)(const void *)codes)[at];
+}
+
+/* Level 0 by its nodes, coarser ones by 2 x 2 a cell: of either the four codes are a cell's. */
+static void codes_are_those_of_cells(void **state)
+{
+    (void)state;
+    enum { ROW = 50, ROWS = 48 };
+    for (uint32_t bits = 8; bits <= 16; bits += 8)
+        for (uint32_t level = 0; level < 4; ++level) {
+            gtx_asset *asset = fixture_sphere(1, 48, bits);
+            gtx_grid grid;
+            gtx_error error = {0};
+            uint32_t solid = 0;
+            const uint32_t step = level ? 2 : 1;
+            uint8_t codes[ROW * ROWS * 2] = {0};
+            assert_int_equal(gtx_grid_build(asset, 2, level, NULL, &grid, &error), GTX_OK);
+            gtx_grid_codes(&grid, bits, ROW, codes);
+            for (uint32_t y = 0; y + 1 < grid.nodes_y; ++y)
+                for (uint32_t x = 0; x + 1 < grid.nodes_x; ++x) {
+                    uint32_t exists = 1;
+                    for (uint32_t k = 0; k < 4; ++k) {
+                        const size_t at = (size_t)(y * step + (k >> 1)) * ROW + x * step + (k & 1);
+                        const size_t node = (y + (k >> 1)) * grid.nodes_x + x + (k & 1);
+                        const uint32_t code = code_at(codes, bits, at);
+                        assert_true(!code || code == grid.code[node]);
+                        exists &= code != 0;
+                    }
+                    assert_int_equal(exists, grid.solid[y * (grid.nodes_x - 1) + x]);
+                    solid += exists;
+                }
+            assert_true(solid << (2 * level) > 1000);
+            gtx_grid_free(&grid, NULL);
+            gtx_close(asset);
+        }
+}
+
 /* A wave along x of eight texels' length, and a ramp with a step at every other texel. */
 static void wave(const gtx_patch *patch, double x, double y, const void *user, fixture_texel *out)
 {
@@ -211,6 +250,7 @@ int main(void)
         cmocka_unit_test(every_level_follows_the_rule),
         cmocka_unit_test(no_such_patch_or_level),
         cmocka_unit_test(cells_hold_their_corners),
+        cmocka_unit_test(codes_are_those_of_cells),
         cmocka_unit_test(errors_are_distances_from_level_0),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
