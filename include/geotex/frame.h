@@ -93,13 +93,15 @@ typedef enum gtx_format {
     GTX_FORMAT_R8_UINT = 6,       /* whole numbers */
     GTX_FORMAT_R16_UINT = 7,
     GTX_FORMAT_RGBA32_FLOAT = 8,
-    GTX_FORMAT_BC5 = 9,           /* blocks of 4x4 texels, two channels */
-    GTX_FORMAT_BC7 = 10,
-    GTX_FORMAT_BC7_SRGB = 11,
-    GTX_FORMAT_EAC_RG11 = 12,     /* two channels */
-    GTX_FORMAT_ETC2_RGBA8 = 13,   /* alpha by EAC */
-    GTX_FORMAT_ETC2_RGBA8_SRGB = 14,
-    GTX_FORMAT_ETC2_RGB8_SRGB = 15
+    GTX_FORMAT_RGBA8_UINT = 9,
+    GTX_FORMAT_RGBA16_UINT = 10,
+    GTX_FORMAT_BC5 = 11,           /* blocks of 4x4 texels, two channels */
+    GTX_FORMAT_BC7 = 12,
+    GTX_FORMAT_BC7_SRGB = 13,
+    GTX_FORMAT_EAC_RG11 = 14,     /* two channels */
+    GTX_FORMAT_ETC2_RGBA8 = 15,   /* alpha by EAC */
+    GTX_FORMAT_ETC2_RGBA8_SRGB = 16,
+    GTX_FORMAT_ETC2_RGB8_SRGB = 17
 } gtx_format;
 
 enum { GTX_MAX_TEXTURE_LEVELS = 8 };
