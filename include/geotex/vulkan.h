@@ -71,6 +71,11 @@ GTX_API gtx_result gtx_vk_update(gtx_vk *vk, VkCommandBuffer commands, gtx_vk_mo
                                  gtx_error *error);
 /* No command that names it may be in execution. NULL is fine. */
 GTX_API void gtx_vk_model_destroy(gtx_vk *vk, gtx_vk_model *model);
+/* Destroys it once what may name it has been executed: its commands are of this frame (since
+ * gtx_vk_next_frame) or of those before it, and the frame's memory is used again. For tiles of a
+ * world, which a stream releases while frames show them. The gtx_model may be freed at once. NULL
+ * is fine. */
+GTX_API void gtx_vk_model_retire(gtx_vk *vk, gtx_vk_model *model);
 
 /* Begins a frame: what was recorded gtx_vk_desc.frames of them ago has been executed, and its
  * memory is used again. */

@@ -160,6 +160,7 @@ void gtx_vk_next_frame(gtx_vk *vk)
     for (uint32_t i = 0; i < frame->pool_count; ++i)
         vk->api.ResetDescriptorPool(vk->device, frame->pools[i], 0);
     gtx_vk_views_free(vk, frame);
+    gtx_vk_models_free(vk, frame);
     frame->block = frame->pool = frame->sets = 0;
     frame->used = 0;
 }

@@ -58,6 +58,7 @@ typedef struct gtx_vk_frame {
     uint32_t block_count, pool_count, view_count, view_room;
     uint32_t block, pool, sets;   /* in use, and sets of that pool */
     VkDeviceSize used;            /* of the block */
+    gtx_vk_model *retired;        /* the first of those that end with it */
 } gtx_vk_frame;
 
 /* A piece of a block. */
@@ -159,6 +160,7 @@ struct gtx_vk_shading {
 
 struct gtx_vk_model {
     gtx_model *model;
+    gtx_vk_model *next;           /* of those that are retired */
     gtx_vk_images maps;           /* by their slots */
     gtx_vk_images spread;         /* materials, once an edit has made them more than a texel */
     gtx_vk_buffer buffer;         /* all of the model's, ... */
@@ -166,7 +168,9 @@ struct gtx_vk_model {
     gtx_vk_buffer staging;        /* until it is uploaded */
 };
 
-/* model.c: what a slot's binding reads. */
+/* model.c: destroys what is retired. */
+void gtx_vk_models_free(gtx_vk *vk, gtx_vk_frame *frame);
+/* What a slot's binding reads. */
 VkDescriptorImageInfo gtx_vk_model_image(const gtx_vk *vk, const gtx_vk_model *model,
                                          uint32_t slot);
 /* What rays read, where there are none: nothing occludes. */

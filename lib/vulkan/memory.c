@@ -236,6 +236,7 @@ void gtx_vk_views_free(gtx_vk *vk, gtx_vk_frame *frame)
 void gtx_vk_frame_free(gtx_vk *vk, gtx_vk_frame *frame)
 {
     gtx_vk_views_free(vk, frame);
+    gtx_vk_models_free(vk, frame);
     gtx_free_array(&vk->allocator, frame->views, frame->view_room, sizeof *frame->views);
     for (uint32_t i = 0; i < frame->block_count; ++i)
         gtx_vk_buffer_destroy(vk, &frame->blocks[i]);

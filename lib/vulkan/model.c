@@ -150,6 +150,24 @@ void gtx_vk_model_destroy(gtx_vk *vk, gtx_vk_model *model)
     gtx_free_array(&vk->allocator, model, 1, sizeof *model);
 }
 
+void gtx_vk_model_retire(gtx_vk *vk, gtx_vk_model *model)
+{
+    if (!vk || !model)
+        return;
+    gtx_vk_frame *frame = &vk->frames[vk->frame];
+    model->next = frame->retired;
+    frame->retired = model;
+}
+
+void gtx_vk_models_free(gtx_vk *vk, gtx_vk_frame *frame)
+{
+    while (frame->retired) {
+        gtx_vk_model *model = frame->retired;
+        frame->retired = model->next;
+        gtx_vk_model_destroy(vk, model);
+    }
+}
+
 VkDescriptorImageInfo gtx_vk_model_image(const gtx_vk *vk, const gtx_vk_model *model,
                                          uint32_t slot)
 {

@@ -5,7 +5,7 @@ vulkan := $(shell printf '\043include <vulkan/vulkan_core.h>' | $(CC) -E - >/dev
             command -v glslangValidator >/dev/null && echo vulkan)
 needs_vulkan := base vulkan
 cflags_vulkan = -Ishaders
-extra_needs_vulkan = $(needs_render) host image
+extra_needs_vulkan = $(needs_render) host $(needs_world)
 ifdef vulkan
 lib_vulkan := $(out)/libgeotex-vulkan.a
 so_vulkan  := $(out)/libgeotex-vulkan.so.$(VERSION)

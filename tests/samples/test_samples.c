@@ -197,6 +197,26 @@ static void misuse_is_one_line(void **state)
     assert_int_equal(run("$S/%s $T/lod.gtx --headless $T/x.png --size 0x9 2>/dev/null", name), 1);
 }
 
+/* Without a window and, where Xvfb is, in one: there the validation layer has nothing to say. */
+static void vulkan_draws_into_windows(void **state)
+{
+    (void)state;
+    if (run("test -x $S/vulkan_window") ||
+        !run("$S/vulkan_window $T/lod.gtx --headless $T/x.png 2>&1 | grep -q 'is no Vulkan'"))
+        skip();
+    draws_picture_of("vulkan_window", "$T/lod.gtx");
+    assert_int_equal(run("$S/vulkan_window $T/nothing.gtx --headless $T/x.png 2>/dev/null"), 1);
+    assert_int_equal(run("DISPLAY= WAYLAND_DISPLAY= $S/vulkan_window $T/lod.gtx --frames 1 "
+                         "2>/dev/null"), 1);
+    if (run("command -v Xvfb >/dev/null"))
+        skip();
+    assert_int_equal(
+        run("Xvfb -displayfd 1 -screen 0 640x480x24 >$T/display 2>/dev/null & server=$!; "
+            "for i in $(seq 100); do test -s $T/display && break; sleep 0.1; done; "
+            "DISPLAY=:$(cat $T/display) WAYLAND_DISPLAY= $S/vulkan_window $T/lod.gtx "
+            "--size 240x160 --frames 4; result=$?; kill $server; wait $server; exit $result"), 0);
+}
+
 int main(void)
 {
 #define PICTURE(name) cmocka_unit_test_prestate(draws_its_picture, name)
@@ -226,6 +246,7 @@ int main(void)
         PICTURE(cellular),
         PICTURE(footprints),
         cmocka_unit_test(a_world_is_walked_through),
+        cmocka_unit_test(vulkan_draws_into_windows),
         MISUSE(rhi), MISUSE(smallest),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
