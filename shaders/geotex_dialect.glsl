@@ -4,7 +4,11 @@
  * GTX_SAMPLER(b, type) declares a sampler at binding b of set 0; GTX_VARYING(n) gives a varying its
  * location; members between GTX_BLOCK(b, name) and GTX_BLOCK_END are plain uniforms, each marked
  * GTX_UNIFORM. With GTX_RHI, which Vulkan implies, they are a block at binding b, and vertices are
- * read as floats and whole numbers alone; bindings are told from GLSL 4.20 on. */
+ * read as floats and whole numbers alone; bindings are told from GLSL 4.20 on. With GTX_MULTIVIEW,
+ * which is for vertex shaders alone, two views are drawn at once. */
+#ifdef GTX_MULTIVIEW
+#extension GL_EXT_multiview : require
+#endif
 #ifdef GL_ARM_shader_framebuffer_fetch_depth_stencil
 #extension GL_ARM_shader_framebuffer_fetch_depth_stencil : require
 #ifdef GL_OES_sample_variables

@@ -94,7 +94,7 @@ void main()
     vec2 at = gtx_to_grid(index, object).xy;
 #endif
     vec3 world = gtx_to_world(object.xyz) + vec3(gtx_world_x.w, gtx_world_y.w, gtx_world_z.w);
-    gl_Position = gtx_clip_from_world * vec4(world, 1.0);
+    gl_Position = gtx_view_clip() * vec4(world, 1.0);
 
     /* The mip level whose texels, seen from above, are nearest to a pixel in size; 0 when the size
      * of a pixel is unknown. */
@@ -125,7 +125,7 @@ void main()
 #ifdef GTX_LIT
     vec3 p = gtx_decode_normal(textureLod(gtx_normals, vec3(place, page), level).xy);
     vec3 n = normalize(world_normals * (mat3(x, cross(z, x), z) * p));
-    vec3 eye = vec3(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w);
+    vec3 eye = gtx_view_eye(gtx_object_x, gtx_object_y, gtx_object_z);
     vec3 ray = normalize(gtx_to_world(object.xyz * gtx_depth.w - eye));
     if (gtx_lod_mesh.x > 0.0) /* seen from behind */
         n = gtx_from_behind(n, ray);
@@ -146,7 +146,7 @@ void main()
     mat3 frame = mat3(x, cross(z, x), z);
     vec3 toward = normalize(gtx_light.xyz * world_normals) * frame;
     gtx_toward = toward / deviation;
-    vec3 eye = vec3(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w) - object.xyz * gtx_depth.w;
+    vec3 eye = gtx_view_eye(gtx_object_x, gtx_object_y, gtx_object_z) - object.xyz * gtx_depth.w;
     eye = normalize(eye) * frame;
     gtx_eye = eye / deviation;
 #ifdef GTX_MATERIALS
@@ -158,7 +158,7 @@ void main()
     gtx_normal_z = world_normals * z;
     gtx_object = object.xyz;
     gtx_world = world;
-    vec3 eye = vec3(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w);
+    vec3 eye = gtx_view_eye(gtx_object_x, gtx_object_y, gtx_object_z);
     gtx_ray = normalize(gtx_to_world(object.xyz * gtx_depth.w - eye));
     gtx_patch_index = index;
     gtx_id = gtx_instance;

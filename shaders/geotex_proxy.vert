@@ -72,8 +72,8 @@ void main()
         gtx_reach = -1.0 - gtx_record(index, GTX_RECORD_SLABS + gtx_level / 4)[gtx_level % 4];
     }
     vec4 grid = vec4(gtx_point, 1.0);
-    vec4 eye = vec4(gtx_object_x.w, gtx_object_y.w, gtx_object_z.w, gtx_depth.w);
-    mat4 rows = transpose(gtx_clip_from_world);
+    vec4 eye = vec4(gtx_view_eye(gtx_object_x, gtx_object_y, gtx_object_z), gtx_depth.w);
+    mat4 rows = transpose(gtx_view_clip());
     gtx_eye = gtx_to_grid(index, eye);
     gtx_clip_z = gtx_row(rows[2], frame);
     gtx_clip_w = gtx_row(rows[3], frame);

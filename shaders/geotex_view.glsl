@@ -18,7 +18,32 @@ GTX_UNIFORM vec4 gtx_maps;              /* x: last mip level of normals and colo
                                            w: 1 when it has materials */
 GTX_UNIFORM vec4 gtx_lod_mesh;          /* of the LOD mesh's level, xyz: origin; w: step */
 GTX_UNIFORM vec4 gtx_constant_material; /* of geotex_lod_front.frag, with GTX_CONSTANT */
+#ifdef GTX_MULTIVIEW
+GTX_UNIFORM mat4 gtx_other_clip_from_world; /* of the second view, and its eye less the first's */
+GTX_UNIFORM vec4 gtx_other_eye;
+#endif
 GTX_BLOCK_END
+
+/* Of the view that a vertex is drawn in: its clip space, and the eye in an instance's object space,
+ * of which the first view's is told with the rows of world -> object. */
+mat4 gtx_view_clip()
+{
+#ifdef GTX_MULTIVIEW
+    return gl_ViewIndex == 0 ? gtx_clip_from_world : gtx_other_clip_from_world;
+#else
+    return gtx_clip_from_world;
+#endif
+}
+
+vec3 gtx_view_eye(vec4 x, vec4 y, vec4 z)
+{
+    vec3 eye = vec3(x.w, y.w, z.w);
+#ifdef GTX_MULTIVIEW
+    vec3 step = gtx_other_eye.xyz * float(gl_ViewIndex);
+    eye += vec3(dot(x.xyz, step), dot(y.xyz, step), dot(z.xyz, step));
+#endif
+    return eye;
+}
 
 /* In standard deviations of normals: how little the facets that are seen face the eye, and how near
  * the terminator some of them are on its other side. PSNR inside the outline to 8x8 samples, on

@@ -17,8 +17,9 @@
  * Shaders are GLSL: gtx_pipeline_source. Behind the engine's #version and `#define GTX_RHI` they
  * take one uniform block, gtx_constants, at binding 8 beside the textures at bindings 0..6
  * (gtx_slot), and of a vertex only floats and whole numbers. With VULKAN defined, as compilers to
- * SPIR-V do, that is so by itself. Edits tell a gtx_sink which texels and bytes to replace; so do
- * the rays in shaders of rays.h.
+ * SPIR-V do, that is so by itself. With GTX_MULTIVIEW vertex shaders draw the two views of
+ * gtx_view.other at once, by GL_EXT_multiview. Edits tell a gtx_sink which texels and bytes to
+ * replace; so do the rays in shaders of rays.h.
  *
  * Frames are drawn with depth test and depth writes on, without blending, into what has a depth
  * buffer. The rules of geotex.h hold here too; a planner is used by one thread at a time. */
@@ -178,6 +179,8 @@ typedef struct gtx_constants {
     float clip_from_world[16];
     float depth[4], light[4], detail[4], search[4];
     float maps[4], lod_mesh[4], constant_material[4];
+    float other_clip_from_world[16];  /* with GTX_MULTIVIEW, of gtx_view.other, ... */
+    float other_eye[4];               /* ... and its eye less the first one's, in the world */
 } gtx_constants;
 
 enum { GTX_LAMPS = 8 };

@@ -57,6 +57,11 @@ enum { /* gtx_view.flags */
                                          encodes (sRGB formats; in OpenGL, FRAMEBUFFER_SRGB on) */
 };
 
+/* What the other one of two eyes has of its own. */
+typedef struct gtx_eye {
+    float view[16], projection[16];   /* as in gtx_view, and of the same clip space */
+} gtx_eye;
+
 /* One camera and one light.
  *
  * Levels of height fields. Each patch of an instance is cast at the coarsest level of its height
@@ -102,6 +107,10 @@ typedef struct gtx_view {
                                          balanced by how slanted the view is */
     uint32_t viewport_width;          /* pixels; 0 = unknown. If given, this and viewport_height are
                                          the size of glViewport, for gtx_tiling */
+    const gtx_eye *other;             /* NULL, or the second view of what draws two at once
+                                         (multiview: gtx_vk_target.view_mask): a patch in view of
+                                         either is drawn, at the finer level of both, cast or by LOD
+                                         meshes, not by tiles nor as a displaced grid */
     uint32_t reserved[1];
 } gtx_view;
 

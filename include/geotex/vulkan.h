@@ -92,7 +92,10 @@ typedef struct gtx_vk_target {
     VkSampleCountFlagBits samples;    /* 0 = 1 */
     uint32_t y_up;                    /* 1: clip y is up as in OpenGL, and the viewport's height
                                          negative; 0: clip y is down, as is usual in Vulkan */
-    uint32_t reserved[4];
+    uint32_t view_mask;               /* 3: two views at once, of gtx_view and its `other`, into
+                                         layers 0 and 1: of the subpass, or of dynamic rendering;
+                                         with the device's feature multiview. 0: one */
+    uint32_t reserved[3];
 } gtx_vk_target;
 
 typedef struct gtx_vk_instance {

@@ -321,7 +321,7 @@ bool gtx_blocks_fill(const gtx_draw_call *draw, const gtx_model *model,
     cover *covers = gtx_scratch_reserve(&planner->allocator, &grids->covers, plan->count,
                                         sizeof *covers);
     empty_to(grids, &nothing);
-    if (!covers || !reserve_slots(planner, model))
+    if (f.two || !covers || !reserve_slots(planner, model)) /* blocks are culled for one eye */
         return false;
     if (draw->view->method == GTX_METHOD_GRID) {
         all_grids(draw, &f, model, covers);

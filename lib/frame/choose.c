@@ -43,11 +43,10 @@ static double nearest_patch(const gtx_model *model, const double w[4])
     return least + w[3];
 }
 
-static extent measure(const gtx_draw_call *draw, const gtx_model *model,
-                      const gtx_instance_data *placed)
+static extent measure_from(const gtx_draw_call *draw, const float clip[16],
+                           const gtx_model *model, const gtx_instance_data *placed)
 {
     const gtx_lod_meshes *lods = &model->lods;
-    const float *clip = draw->sight.clip_from_world;
     double w[4] = {0, 0, 0, clip[15]};             /* w in clip space, as a row over object space */
     for (int k = 0; k < 4; ++k)
         for (int r = 0; r < 3; ++r)
@@ -63,6 +62,18 @@ static extent measure(const gtx_draw_call *draw, const gtx_model *model,
     /* detail[0]: pixels a world unit at w = 1, over the error allowed in pixels. */
     const double scale = draw->sight.detail[0] * gtx_stretch_of(placed);
     return (extent){fmax(nearest, 0) / scale, fmax(farthest, 0) / scale};
+}
+
+/* Of two eyes, the nearer and the farther one. */
+static extent measure(const gtx_draw_call *draw, const gtx_model *model,
+                      const gtx_instance_data *placed)
+{
+    const gtx_sight *sight = &draw->sight;
+    const extent e = measure_from(draw, sight->clip_from_world, model, placed);
+    if (!sight->two)
+        return e;
+    const extent other = measure_from(draw, sight->other_clip, model, placed);
+    return (extent){fmin(e.nearest, other.nearest), fmax(e.farthest, other.farthest)};
 }
 
 double gtx_allowed_anywhere(const gtx_draw_call *draw, const gtx_model *model,
@@ -107,18 +118,6 @@ double gtx_cast_cost(const gtx_draw_call *draw, uint32_t patches, double pixels)
     return costs->cast_patch * patches + costs->cast_pixel * pixels;
 }
 
-/* Whether a part of the instance may be out of view: beside it, for camera's near and far planes
- * often touch what they show. */
-static bool is_cut(const gtx_draw_call *draw, const gtx_model *model,
-                   const gtx_instance_data *placed)
-{
-    const gtx_frustum f = gtx_frustum_of(draw, model, placed);
-    bool cut = false;
-    for (int k = 2; k < GTX_FRUSTUM_SIDES; ++k)
-        cut = cut || gtx_plane_at(&f.side[k], model->sphere) < f.side[k].slope * model->sphere[3];
-    return cut;
-}
-
 /* Far levels cannot be mixed with edited patches. */
 static uint32_t usable_levels(const gtx_lod_meshes *lods)
 {
@@ -153,7 +152,9 @@ static uint8_t choose(const gtx_draw_call *draw, const gtx_model *model,
         return GTX_DRAW_PATCHES;
     if (level <= gtx_levels_cast(draw, model))
         return GTX_DRAW_CAST;
-    const bool whole = gtx_plan_suits_whole(draw, model, level - 1) && !is_cut(draw, model, placed);
+    const gtx_frustum f = gtx_frustum_of(draw, model, placed);
+    const bool whole =
+        gtx_plan_suits_whole(draw, model, level - 1) && !gtx_is_cut(&f, model->sphere);
     return whole ? (uint8_t)level : GTX_DRAW_PATCHES;
 }
 

@@ -107,6 +107,8 @@ static gtx_result check(const gtx_planner *planner, const gtx_view *view,
          view->method == GTX_METHOD_PAPER))
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "a shading takes the forward pass's place, and not by the paper's search");
+    if (view->other && view->method == GTX_METHOD_GRID)
+        return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "displaced grids are drawn for one eye");
     gtx_result result = gtx_check_reserved(view->reserved, 1, error);
     for (uint32_t i = 0; !result && i < count; ++i) {
         result = gtx_check_reserved(instances[i].reserved, 3, error);
@@ -119,12 +121,14 @@ static gtx_result check(const gtx_planner *planner, const gtx_view *view,
 /* What is the same in all draws of a frame. */
 static void set_constants(const gtx_sight *sight, gtx_constants *c)
 {
-    *c = (gtx_constants){{0}, {0}, {0}, {0}, {0}, {0}, {0}, {0}};
+    memset(c, 0, sizeof *c);
     memcpy(c->clip_from_world, sight->clip_from_world, sizeof c->clip_from_world);
     memcpy(c->depth, sight->depth, sizeof c->depth);
     memcpy(c->light, sight->light, sizeof c->light);
     memcpy(c->detail, sight->detail, sizeof c->detail);
     memcpy(c->search, sight->search, sizeof c->search);
+    memcpy(c->other_clip_from_world, sight->other_clip, sizeof c->other_clip_from_world);
+    memcpy(c->other_eye, sight->other_eye, sizeof c->other_eye);
 }
 
 gtx_result gtx_frame_begin(gtx_planner *planner, const gtx_view *view,

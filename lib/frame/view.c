@@ -93,6 +93,26 @@ static bool find_eye(const double clip[16], gtx_sight *sight, double forward[3])
            isfinite(sight->eye[2]);
 }
 
+/* The other eye of a view that draws two. */
+static gtx_result set_other(const gtx_eye *other, gtx_sight *sight, gtx_error *error)
+{
+    double clip[16], forward[3];
+    gtx_sight its = {.reversed = sight->reversed};
+    if (!all_finite(other->view, 16) || !all_finite(other->projection, 16))
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "the other eye's view is not finite");
+    multiply(other->projection, other->view, clip);
+    if (!find_eye(clip, &its, forward) || its.mirrored != sight->mirrored ||
+        its.eye[3] != sight->eye[3])
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "the other eye's projection * view has no inverse, or is of another kind");
+    sight->two = true;
+    for (int i = 0; i < 16; ++i)
+        sight->other_clip[i] = (float)clip[i];
+    for (int k = 0; k < 3; ++k)
+        sight->other_eye[k] = (float)(its.eye[k] - sight->eye[k]);
+    return GTX_OK;
+}
+
 static void set_light(const gtx_view *view, const double forward[3], float light[4])
 {
     double direction[3], length = 0;
@@ -159,7 +179,7 @@ gtx_result gtx_sight_of_view(const gtx_view *view, gtx_sight *out, gtx_error *er
     out->depth[2] = zero_to_one ? n : (f + n) / 2;
     out->depth[3] = (float)out->eye[3];
     out->detail[1] = !(f > n) ? 0.0f : out->reversed ? -1.0f : 1.0f;
-    return GTX_OK;
+    return view->other ? set_other(view->other, out, error) : GTX_OK;
 }
 
 gtx_result gtx_place_instance(const gtx_sight *sight, const gtx_instance *instance,

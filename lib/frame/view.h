@@ -11,6 +11,8 @@ typedef struct gtx_sight {
     double eye[4];            /* world; the ray through a point p has the direction p * w - xyz */
     float depth[4], light[4], detail[4], search[4]; /* as geotex_view.glsl has them */
     bool reversed, mirrored;  /* mirrored: the view turns clockwise into counter-clockwise */
+    bool two;                 /* there is another eye: its clip space, and where it is from this */
+    float other_clip[16], other_eye[4];
 } gtx_sight;
 
 /* One frame, for the steps of its plan. */

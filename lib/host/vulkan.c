@@ -107,8 +107,19 @@ static gtx_result open_device(const gtx_host_vulkan_desc *desc, gtx_host_vulkan 
     const float priority = 1;
     const VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                            .queueCount = 1, .pQueuePriorities = &priority};
+    VkPhysicalDeviceVulkan11Features eyes = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES};
     const VkPhysicalDeviceVulkan13Features features = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES, .dynamicRendering = 1};
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES, .pNext = &eyes,
+        .dynamicRendering = 1};
+    VkPhysicalDeviceFeatures2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                     .pNext = &eyes};
+    const PFN_vkGetPhysicalDeviceFeatures2 ask = (PFN_vkGetPhysicalDeviceFeatures2)v->load(
+        v->instance, "vkGetPhysicalDeviceFeatures2");
+    if (v->renders && ask)
+        ask(v->physical, &all);
+    v->multiview = eyes.multiview;
+    eyes = (VkPhysicalDeviceVulkan11Features){.sType = eyes.sType, .multiview = v->multiview};
     const VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                      .pNext = v->renders ? &features : NULL,
                                      .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue,

@@ -41,6 +41,7 @@ typedef struct gtx_host_vulkan {
     bool validated;           /* by the layer, whose complaints are counted and go to stderr */
     bool renders;             /* without passes: Vulkan 1.3 */
     bool by_samples;          /* has sampleRateShading */
+    bool multiview;
     int complaints;
 } gtx_host_vulkan;
 
@@ -72,6 +73,7 @@ typedef struct gtx_picture_desc {
     VkFormat colors[GTX_PICTURE_COLORS];
     uint32_t pixel_size;      /* bytes of a pixel of each colour, at most 16 */
     VkSampleCountFlagBits samples; /* 0 = 1 */
+    uint32_t views;           /* drawn at once, into a layer each; 0 = 1 */
 } gtx_picture_desc;
 
 /* Colours and a depth of D32_SFLOAT, and a mapped buffer that they are read into. Of several
@@ -106,7 +108,7 @@ void gtx_picture_end(const gtx_host_vulkan *vulkan, const gtx_picture *picture, 
 /* Records that the images are read, once drawing has ended: rows from the top, in
  * gtx_picture_bytes once that is executed. */
 void gtx_picture_read(const gtx_host_vulkan *vulkan, const gtx_picture *picture);
-/* Of a colour, or of GTX_PICTURE_DEPTH: floats. */
+/* Of a colour, or of GTX_PICTURE_DEPTH: floats. Views follow one another. */
 const void *gtx_picture_bytes(const gtx_picture *picture, int which);
 
 #ifdef __cplusplus

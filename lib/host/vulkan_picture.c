@@ -62,7 +62,7 @@ static bool make_image(const gtx_host_vulkan *v, gtx_picture *p, int which)
     const VkImageCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO, .imageType = VK_IMAGE_TYPE_2D,
         .format = format_of(p, which), .extent = {p->desc.width, p->desc.height, 1},
-        .mipLevels = 1, .arrayLayers = 1,
+        .mipLevels = 1, .arrayLayers = p->desc.views,
         .samples = sampled ? p->desc.samples : VK_SAMPLE_COUNT_1_BIT,
         .usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
                  (is_depth(which) ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
@@ -73,8 +73,9 @@ static bool make_image(const gtx_host_vulkan *v, gtx_picture *p, int which)
     v->GetImageMemoryRequirements(v->device, p->images[which], &needs);
     const VkImageViewCreateInfo view = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO, .image = p->images[which],
-        .viewType = VK_IMAGE_VIEW_TYPE_2D, .format = format_of(p, which),
-        .subresourceRange = {aspect_of(which), 0, 1, 0, 1}};
+        .viewType = p->desc.views > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D,
+        .format = format_of(p, which),
+        .subresourceRange = {aspect_of(which), 0, 1, 0, p->desc.views}};
     return gtx_host_vulkan_memory(v, &needs, 0, &p->memories[which]) &&
            !v->BindImageMemory(v->device, p->images[which], p->memories[which], 0) &&
            !v->CreateImageView(v->device, &view, NULL, &p->views[which]);
@@ -82,7 +83,7 @@ static bool make_image(const gtx_host_vulkan *v, gtx_picture *p, int which)
 
 static size_t offset_of(const gtx_picture *p, int which)
 {
-    return (size_t)which * MOST_BYTES * p->desc.width * p->desc.height;
+    return (size_t)which * MOST_BYTES * p->desc.width * p->desc.height * p->desc.views;
 }
 
 static bool make_read_buffer(const gtx_host_vulkan *v, gtx_picture *p)
@@ -136,7 +137,12 @@ static bool make_pass(const gtx_host_vulkan *v, gtx_picture *p)
         .colorAttachmentCount = colors, .pColorAttachments = references,
         .pResolveAttachments = has_samples(p) ? references + colors + 1 : NULL,
         .pDepthStencilAttachment = &references[colors]};
+    const uint32_t mask = (1u << p->desc.views) - 1;
+    const VkRenderPassMultiviewCreateInfo views_of = {
+        .sType = VK_STRUCTURE_TYPE_RENDER_PASS_MULTIVIEW_CREATE_INFO, .subpassCount = 1,
+        .pViewMasks = &mask};
     const VkRenderPassCreateInfo pass = {.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
+                                         .pNext = p->desc.views > 1 ? &views_of : NULL,
                                          .attachmentCount = p->attachments,
                                          .pAttachments = attachments, .subpassCount = 1,
                                          .pSubpasses = &subpass};
@@ -157,6 +163,8 @@ gtx_result gtx_picture_create(const gtx_host_vulkan *v, const gtx_picture_desc *
     out->desc = *desc;
     if (!out->desc.samples)
         out->desc.samples = VK_SAMPLE_COUNT_1_BIT;
+    if (!out->desc.views)
+        out->desc.views = 1;
     out->attachments = desc->color_count + 1 + (has_samples(out) ? desc->color_count : 0);
     bool made = make_image(v, out, GTX_PICTURE_DEPTH);
     for (uint32_t i = 0; i < desc->color_count; ++i) {
@@ -193,7 +201,7 @@ static void turn(const gtx_host_vulkan *v, const gtx_picture *p, int which, VkIm
         .dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
         .oldLayout = from, .newLayout = to, .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED, .image = p->images[which],
-        .subresourceRange = {aspect_of(which), 0, 1, 0, 1}};
+        .subresourceRange = {aspect_of(which), 0, 1, 0, p->desc.views}};
     v->CmdPipelineBarrier(v->commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                           VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0, NULL, 1, &barrier);
 }
@@ -218,6 +226,8 @@ static void begin_rendering(const gtx_host_vulkan *v, const gtx_picture *p, VkRe
     }
     const VkRenderingInfo rendering = {.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                                        .renderArea = all, .layerCount = 1,
+                                       .viewMask = p->desc.views > 1 ? (1u << p->desc.views) - 1
+                                                                     : 0,
                                        .colorAttachmentCount = colors,
                                        .pColorAttachments = attachments,
                                        .pDepthAttachment = &attachments[colors]};
@@ -260,7 +270,7 @@ void gtx_picture_end(const gtx_host_vulkan *v, const gtx_picture *p, bool by_pas
 static void read_image(const gtx_host_vulkan *v, const gtx_picture *p, int which)
 {
     const VkBufferImageCopy copy = {.bufferOffset = offset_of(p, which),
-                                    .imageSubresource = {aspect_of(which), 0, 0, 1},
+                                    .imageSubresource = {aspect_of(which), 0, 0, p->desc.views},
                                     .imageExtent = {p->desc.width, p->desc.height, 1}};
     turn(v, p, which, layout_of(which), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     v->CmdCopyImageToBuffer(v->commands, p->images[which], VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,

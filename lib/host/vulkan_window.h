@@ -37,8 +37,8 @@ typedef struct gtx_vulkan_frame {
  * *open becomes 0 once the window wants to close. Errors: GL. */
 gtx_result gtx_vulkan_window_begin(gtx_vulkan_window *window, gtx_vulkan_frame *out, int *open,
                                    gtx_error *error);
-/* Executes the frame's commands, which leave its colour in the layout PRESENT_SRC_KHR, and shows it.
- * Errors: GL. */
+/* Executes the frame's commands, which leave its colour in the layout PRESENT_SRC_KHR, and shows
+ * it. Errors: GL. */
 gtx_result gtx_vulkan_window_end(gtx_vulkan_window *window, gtx_error *error);
 
 #ifdef __cplusplus

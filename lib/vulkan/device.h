@@ -85,6 +85,9 @@ gtx_result gtx_vk_view(gtx_vk *vk, const gtx_vk_piece *piece, VkBufferView *out,
 void gtx_vk_views_free(gtx_vk *vk, gtx_vk_frame *frame);
 void gtx_vk_frame_free(gtx_vk *vk, gtx_vk_frame *frame);
 
+/* Shaders of a pipeline. */
+enum { GTX_VK_VERTEX, GTX_VK_FRAGMENT, GTX_VK_VERTEX_TWO, GTX_VK_FRAGMENT_SAMPLE, GTX_VK_STAGES };
+
 /* What a pipeline is made for: all of it is compared, byte by byte. */
 typedef struct gtx_vk_key {
     gtx_vk_target target;
@@ -120,8 +123,7 @@ struct gtx_vk {
     VkBufferView no_stream;
     VkDescriptorSetLayout set_layout, own_set_layout; /* the latter of shadings, with rays */
     VkPipelineLayout layout;
-    /* By pipeline: of vertices, of fragments, of those once a sample; once needed. */
-    VkShaderModule modules[3 * GTX_PIPELINE_COUNT];
+    VkShaderModule modules[GTX_VK_STAGES * GTX_PIPELINE_COUNT]; /* by pipeline; once needed */
     gtx_vk_pipeline *pipelines;
     uint32_t pipeline_count, pipeline_room;
     gtx_planner *planner, *own_planner; /* the latter once there is a shading */

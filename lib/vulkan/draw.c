@@ -192,7 +192,10 @@ static gtx_result check(const gtx_vk *vk, VkCommandBuffer commands, const gtx_vk
     for (uint32_t i = 0; i < count; ++i)
         if (!instances[i].model)
             return gtx_fail(error, GTX_ERROR_ARGUMENT, "instance %u has no model", i);
-    return gtx_check_reserved(target->reserved, 4, error);
+    if (target->view_mask != (view->other ? 3u : 0u))
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "a target has two views where the view has another eye, and else none");
+    return gtx_check_reserved(target->reserved, 3, error);
 }
 
 /* Without what has no name between the members. */
@@ -209,6 +212,7 @@ static void set_key(const gtx_vk_target *target, const gtx_frame *frame, uint32_
     key->target.stencil_format = target->stencil_format;
     key->target.samples = target->samples ? target->samples : VK_SAMPLE_COUNT_1_BIT;
     key->target.y_up = target->y_up != 0;
+    key->target.view_mask = target->view_mask;
     key->nearer_is_greater = frame->nearer_is_greater;
     key->by_samples = flags & GTX_VIEW_BY_SAMPLES ? 1 : 0;
 }

@@ -53,10 +53,12 @@ gtx_result gtx_vk_layout_create(gtx_vk *vk, gtx_error *error)
         "vkCreatePipelineLayout", error);
 }
 
-static gtx_result module_of(gtx_vk *vk, uint32_t pipeline, uint32_t stage, bool by_samples,
-                            VkShaderModule *out, gtx_error *error)
+static gtx_result module_of(gtx_vk *vk, uint32_t pipeline, uint32_t which, VkShaderModule *out,
+                            gtx_error *error)
 {
-    VkShaderModule *module = &vk->modules[3 * pipeline + stage + by_samples];
+    const bool by_samples = which == GTX_VK_FRAGMENT_SAMPLE;
+    const uint32_t stage = by_samples ? GTX_VK_FRAGMENT : which;
+    VkShaderModule *module = &vk->modules[GTX_VK_STAGES * pipeline + which];
     const gtx_spirv *code = gtx_spirvs;
     gtx_result result = GTX_OK;
     while (code->words && (code->pipeline != pipeline || code->stage != stage))
@@ -129,8 +131,11 @@ static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, const gtx_vk_shading *
             stages[i].module = shading->modules[of.vertices];
             continue;
         }
-        gtx_result result = module_of(vk, key->pipeline, i, i && by_samples,
-                                      &stages[i].module, error);
+        static const uint32_t which[2][2] = {{GTX_VK_VERTEX, GTX_VK_VERTEX_TWO},
+                                             {GTX_VK_FRAGMENT, GTX_VK_FRAGMENT_SAMPLE}};
+        gtx_result result =
+            module_of(vk, key->pipeline, which[i][i ? by_samples : target->view_mask != 0],
+                      &stages[i].module, error);
         if (result)
             return result;
     }
@@ -174,7 +179,7 @@ static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, const gtx_vk_shading *
         .attachmentCount = target->color_count, .pAttachments = outputs};
     const VkPipelineRenderingCreateInfoKHR rendering = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO_KHR,
-        .colorAttachmentCount = target->color_count,
+        .viewMask = target->view_mask, .colorAttachmentCount = target->color_count,
         .pColorAttachmentFormats = target->color_formats,
         .depthAttachmentFormat = target->depth_format,
         .stencilAttachmentFormat = target->stencil_format};

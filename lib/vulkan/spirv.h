@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 typedef struct gtx_spirv {
-    uint32_t pipeline, stage;
+    uint32_t pipeline, stage; /* 0, 1: vertices, fragments; 2: vertices in two views */
     const uint32_t *words;
     size_t bytes;
 } gtx_spirv;

@@ -5,17 +5,19 @@
 set -e
 folder=$2/$(cksum <"$0" | cut -d ' ' -f 1)
 mkdir -p "$folder"
-rm -f "$folder"/*.vert "$folder"/*.frag "$folder/table"
+rm -f "$folder"/*.vert "$folder"/*.two "$folder"/*.frag "$folder/table"
 "$1" "$folder" own
 cd "$folder"
 echo '/* Generated from shaders/. */'
 echo '#include "vulkan/spirv.h"'
-for text in *.vert *.frag; do
+for text in *.vert *.two *.frag; do
+    case $text in *.frag) stage=frag ;; *) stage=vert ;; esac
     sum=$(cksum <"$text" | tr ' ' _)
     grep -q " $sum " table 2>/dev/null && known=1 || known=
     echo "$text $sum " >>table
     [ -z "$known" ] || continue
-    [ -e "$sum.spv" ] || glslangValidator -V --target-env vulkan1.0 -g0 -o new "$text" >log || {
+    [ -e "$sum.spv" ] || \
+        glslangValidator -V --target-env vulkan1.0 -g0 -S $stage -o new "$text" >log || {
         cat log >&2
         exit 1
     }
@@ -26,5 +28,6 @@ for text in *.vert *.frag; do
 done
 echo 'const gtx_spirv gtx_spirvs[] = {'
 sed 's/\([0-9]*\)\.vert \(.*\) /{\1, 0, code_\2, sizeof code_\2},/
-     s/\([0-9]*\)\.frag \(.*\) /{\1, 1, code_\2, sizeof code_\2},/' table
+     s/\([0-9]*\)\.frag \(.*\) /{\1, 1, code_\2, sizeof code_\2},/
+     s/\([0-9]*\)\.two \(.*\) /{\1, 2, code_\2, sizeof code_\2},/' table
 echo '{0, 0, 0, 0}};'

@@ -117,7 +117,8 @@ static inline void draw_by(gtx_host_vulkan *d, const gtx_picture *in, const pair
     gtx_vk_target target = {.render_pass = w.by_pass ? in->pass : VK_NULL_HANDLE,
                             .color_count = in->desc.color_count,
                             .depth_format = VK_FORMAT_D32_SFLOAT, .y_up = w.y_up,
-                            .samples = in->desc.samples};
+                            .samples = in->desc.samples,
+                            .view_mask = in->desc.views > 1 ? 3 : 0};
     const gtx_picture_clear clear = {.depth = view->flags & GTX_VIEW_REVERSED_Z ? 0.0f : 1.0f};
     memcpy(target.color_formats, in->desc.colors, sizeof target.color_formats);
     memset(placed, 0, sizeof placed);
