@@ -34,14 +34,17 @@ extern "C" {
 
 /* ---- models -------------------------------------------------------------------------------- */
 
-/* Blocks of 4x4 texels that GPUs read as they are: a byte a texel, or half a byte for emission by
- * ETC2. Heights and outlines are exact. gtx_model_prepare encodes, by its jobs; what is lost
- * `gtx bench --compress` measures. */
+/* Blocks of 4x4 texels that GPUs read as they are: a byte a texel, or half a byte, by ETC2, for
+ * emission and for colours that are opaque all over; these stay so through edits. Heights and
+ * outlines are exact. gtx_model_prepare encodes, by its jobs; what is lost `gtx bench --compress`
+ * measures. */
 typedef enum gtx_compression {
     GTX_COMPRESS_NONE = 0,
     GTX_COMPRESS_BC = 1,              /* desktops: gtx_renderer_compression; Vulkan's feature
                                          textureCompressionBC */
-    GTX_COMPRESS_ETC2 = 2             /* mobile devices: OpenGL ES 3.0; textureCompressionETC2 */
+    GTX_COMPRESS_ETC2 = 2,            /* mobile devices: OpenGL ES 3.0; textureCompressionETC2 */
+    GTX_COMPRESS_BC_SMALL = 3         /* as GTX_COMPRESS_BC, but half a byte for colours that are
+                                         opaque, and emission, which lose as much as by ETC2 */
 } gtx_compression;
 
 typedef struct gtx_model_desc {
@@ -96,13 +99,14 @@ typedef enum gtx_format {
     GTX_FORMAT_RGBA32_FLOAT = 8,
     GTX_FORMAT_RGBA8_UINT = 9,
     GTX_FORMAT_RGBA16_UINT = 10,
-    GTX_FORMAT_BC5 = 11,           /* blocks of 4x4 texels, two channels */
+    GTX_FORMAT_BC5 = 11,          /* blocks of 4x4 texels, two channels */
     GTX_FORMAT_BC7 = 12,
     GTX_FORMAT_BC7_SRGB = 13,
-    GTX_FORMAT_EAC_RG11 = 14,     /* two channels */
-    GTX_FORMAT_ETC2_RGBA8 = 15,   /* alpha by EAC */
-    GTX_FORMAT_ETC2_RGBA8_SRGB = 16,
-    GTX_FORMAT_ETC2_RGB8_SRGB = 17
+    GTX_FORMAT_BC1_SRGB = 14,     /* opaque */
+    GTX_FORMAT_EAC_RG11 = 15,     /* two channels */
+    GTX_FORMAT_ETC2_RGBA8 = 16,   /* alpha by EAC */
+    GTX_FORMAT_ETC2_RGBA8_SRGB = 17,
+    GTX_FORMAT_ETC2_RGB8_SRGB = 18
 } gtx_format;
 
 enum { GTX_MAX_TEXTURE_LEVELS = 8 };

@@ -1,4 +1,4 @@
-/* Blocks of 4x4 texels as GPUs read them: BC4, of which BC5 is two, and BC7. */
+/* Blocks of 4x4 texels as GPUs read them: BC1, BC4, of which BC5 is two, and BC7. */
 #ifndef GTX_FRAME_BC_H
 #define GTX_FRAME_BC_H
 
@@ -12,6 +12,9 @@ typedef struct gtx_texels {
 } gtx_texels;
 
 /* Texels of weight 0 are not looked up, and cost no error; at least one weighs something. */
+/* Three channels along one line, 4 steps; alpha is not looked at. */
+void gtx_bc1_encode(const gtx_texels *texels, const uint8_t weights[GTX_BLOCK_TEXELS],
+                    uint8_t out[8]);
 void gtx_bc4_encode(const uint8_t texels[GTX_BLOCK_TEXELS],
                     const uint8_t weights[GTX_BLOCK_TEXELS], uint8_t out[8]);
 /* Mode 6 alone: four channels along one line, 16 steps. */

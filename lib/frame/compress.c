@@ -4,7 +4,6 @@
 #include "frame/bc.h"
 #include "frame/etc.h"
 
-#include <stdbool.h>
 #include <string.h>
 
 static void encode_channels(const gtx_texels *texels, const uint8_t *weights, uint8_t *out,
@@ -39,7 +38,8 @@ static void encode_etc2_rgba(const gtx_texels *texels, const uint8_t *weights, u
 
 typedef void encoder(const gtx_texels *texels, const uint8_t *weights, uint8_t *out);
 
-static encoder *const encoders[] = {[GTX_FORMAT_BC5] = encode_bc5,
+static encoder *const encoders[] = {[GTX_FORMAT_BC1_SRGB] = gtx_bc1_encode,
+                                    [GTX_FORMAT_BC5] = encode_bc5,
                                     [GTX_FORMAT_BC7] = gtx_bc7_encode,
                                     [GTX_FORMAT_BC7_SRGB] = gtx_bc7_encode,
                                     [GTX_FORMAT_EAC_RG11] = encode_eac_rg,
@@ -47,7 +47,7 @@ static encoder *const encoders[] = {[GTX_FORMAT_BC5] = encode_bc5,
                                     [GTX_FORMAT_ETC2_RGBA8_SRGB] = encode_etc2_rgba,
                                     [GTX_FORMAT_ETC2_RGB8_SRGB] = gtx_etc2_encode};
 
-gtx_storage gtx_storage_of(uint32_t unit, gtx_compression compress)
+gtx_storage gtx_storage_of(uint32_t unit, gtx_compression compress, bool opaque)
 {
     static const gtx_storage all[][UNIT_COUNT] = {
         [GTX_COMPRESS_NONE] = {[UNIT_CELLS] = {GTX_FORMAT_R8_UINT, 1, 0},
@@ -61,12 +61,23 @@ gtx_storage gtx_storage_of(uint32_t unit, gtx_compression compress)
                              [UNIT_COLORS] = {GTX_FORMAT_BC7_SRGB, 0, 16},
                              [UNIT_MATERIALS] = {GTX_FORMAT_BC7, 0, 16},
                              [UNIT_EMISSIONS] = {GTX_FORMAT_BC7_SRGB, 0, 16}},
+        [GTX_COMPRESS_BC_SMALL] = {[UNIT_NORMALS] = {GTX_FORMAT_BC5, 0, 16},
+                                   [UNIT_COLORS] = {GTX_FORMAT_BC7_SRGB, 0, 16},
+                                   [UNIT_MATERIALS] = {GTX_FORMAT_BC7, 0, 16},
+                                   [UNIT_EMISSIONS] = {GTX_FORMAT_BC1_SRGB, 0, 8}},
         [GTX_COMPRESS_ETC2] = {[UNIT_NORMALS] = {GTX_FORMAT_EAC_RG11, 0, 16},
                                [UNIT_COLORS] = {GTX_FORMAT_ETC2_RGBA8_SRGB, 0, 16},
                                [UNIT_MATERIALS] = {GTX_FORMAT_ETC2_RGBA8, 0, 16},
                                [UNIT_EMISSIONS] = {GTX_FORMAT_ETC2_RGB8_SRGB, 0, 8}}};
-    const gtx_storage s = all[compress][unit];
+    gtx_storage s = all[compress][unit];
+    if (unit == UNIT_COLORS && opaque && compress >= GTX_COMPRESS_ETC2)
+        s = all[compress][UNIT_EMISSIONS]; /* of three channels, too */
     return s.format ? s : all[GTX_COMPRESS_NONE][unit];
+}
+
+uint32_t gtx_block_size(gtx_format format)
+{
+    return format == GTX_FORMAT_ETC2_RGB8_SRGB || format == GTX_FORMAT_BC1_SRGB ? 8 : 16;
 }
 
 /* Whether a texel of level 0 among those under (x, y) of a level, and those around it, has a
@@ -110,10 +121,10 @@ static void load(const gtx_asset *asset, const gtx_block_rows *r, uint32_t bx, u
 
 void gtx_compress_rows(const gtx_asset *asset, const gtx_block_rows *r)
 {
-    const bool half = r->format == GTX_FORMAT_ETC2_RGB8_SRGB;
+    const uint32_t size = gtx_block_size(r->format);
     uint8_t *out = r->out;
     for (uint32_t by = r->first; by < r->end; ++by)
-        for (uint32_t bx = r->left; bx < r->right; ++bx, out += half ? 8 : 16) {
+        for (uint32_t bx = r->left; bx < r->right; ++bx, out += size) {
             gtx_texels texels;
             uint8_t weights[GTX_BLOCK_TEXELS];
             load(asset, r, bx, by, &texels, weights);

@@ -5,13 +5,18 @@
 #include "asset/asset.h"
 #include "frame/units.h"
 
+#include <stdbool.h>
+
 /* How a unit's map is stored. */
 typedef struct gtx_storage {
     gtx_format format;
     uint32_t texel_size, block_size; /* one of them is 0 */
 } gtx_storage;
 
-gtx_storage gtx_storage_of(uint32_t unit, gtx_compression compress);
+/* Of colours, whether they are opaque all over. */
+gtx_storage gtx_storage_of(uint32_t unit, gtx_compression compress, bool opaque);
+/* Of formats that are blocks, bytes of one. */
+uint32_t gtx_block_size(gtx_format format);
 
 /* A level of a map, or the rows of blocks of it that are wanted. */
 typedef struct gtx_block_rows {

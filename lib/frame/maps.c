@@ -31,7 +31,9 @@ static bool add_maps(const making *m, gtx_map map, uint32_t unit, uint32_t count
 {
     const gtx_info *info = &m->asset->info;
     const bool compress = unit != UNIT_NORMALS || m->desc->compress_normals;
-    const gtx_storage s = gtx_storage_of(unit, compress ? m->desc->compress : GTX_COMPRESS_NONE);
+    const gtx_storage s = gtx_storage_of(
+        unit, compress ? m->desc->compress : GTX_COMPRESS_NONE,
+        unit == UNIT_COLORS && m->desc->compress && gtx_is_opaque(m->asset));
     const bool borrow = m->desc->borrow && !s.block_size;
     for (uint32_t k = 0; k < count; ++k) {
         const void *texels = gtx_map_data(m->asset, map, k, NULL);

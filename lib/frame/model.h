@@ -95,10 +95,13 @@ struct gtx_model {
     uint32_t textures[UNIT_COUNT], vertices, indices; /* names in OpenGL */
 };
 
-/* constant_material.c: whether all that the asset shows has one material, and which. */
+/* looks.c: whether all that the asset shows has one material, and which. */
 bool gtx_find_constant_material(const gtx_asset *asset, uint8_t material[4]);
 /* Whether all texels of a level of a map of materials, or of a part of it, are that or none. */
 bool gtx_is_material(const uint8_t *texels, size_t count, const uint8_t material[4]);
+
+/* Whether all that the asset shows is opaque. */
+bool gtx_is_opaque(const gtx_asset *asset);
 
 /* model.c: frees the CPU's copy of maps and proxies. gtx_model_free frees all but its OpenGL
  * objects. */

@@ -230,7 +230,7 @@ static gtx_model *new_model(const gtx_asset *asset, const gtx_allocator *hooks)
 static gtx_result check(const gtx_asset *asset, const gtx_model_desc *desc, gtx_error *error)
 {
     gtx_result result = gtx_check_reserved(desc->reserved, 1, error);
-    if (!result && (uint32_t)desc->compress > GTX_COMPRESS_ETC2)
+    if (!result && (uint32_t)desc->compress > GTX_COMPRESS_BC_SMALL)
         result = gtx_fail(error, GTX_ERROR_ARGUMENT, "a model is compressed by no kind of blocks");
     if (!result)
         result = gtx_check_limits(&desc->limits, error);

@@ -50,13 +50,12 @@ static void send_blocks(const gtx_model *model, const gtx_asset *asset, const gt
                               .left = x / SIDE,
                               .right = (x + (patch->rect[2] >> l->level) + SIDE - 1) / SIDE,
                               .out = scratch};
-    const uint32_t block = r.format == GTX_FORMAT_ETC2_RGB8_SRGB ? 8 : 16;
     gtx_compress_rows(asset, &r);
     const gtx_texture_piece piece = {
         .binding = m->unit, .level = l->level, .layer = patch->page, .x = SIDE * r.left,
         .y = SIDE * r.first, .width = least(SIDE * r.right, l->width) - SIDE * r.left,
         .height = least(SIDE * r.end, l->height) - SIDE * r.first, .data = scratch,
-        .row_bytes = (r.right - r.left) * block};
+        .row_bytes = (r.right - r.left) * gtx_block_size(r.format)};
     sink->texels(&piece, sink->user);
 }
 

@@ -90,6 +90,10 @@ static void load_blocks(gtx_gl *gl, const gtx_renderer_desc *desc, gl_int have)
     const bool web = gl->es && strstr(version, "WebGL") != NULL;
     const bool bc7 = gl->es ? has_extension(gl, "GL_EXT_texture_compression_bptc")
                             : have >= 42 || has_extension(gl, "GL_ARB_texture_compression_bptc");
+    const bool bc1 = web      ? has_extension(gl, "GL_WEBGL_compressed_texture_s3tc_srgb")
+                     : gl->es ? has_extension(gl, "GL_EXT_texture_compression_s3tc_srgb")
+                              : has_extension(gl, "GL_EXT_texture_compression_s3tc") &&
+                                    has_extension(gl, "GL_EXT_texture_sRGB");
     const bool bc5 = !gl->es || has_extension(gl, "GL_EXT_texture_compression_rgtc");
     const bool etc2 = web ? has_extension(gl, "GL_WEBGL_compressed_texture_etc")
                           : gl->es || have >= 43 || has_extension(gl, "GL_ARB_ES3_compatibility");
@@ -103,7 +107,7 @@ static void load_blocks(gtx_gl *gl, const gtx_renderer_desc *desc, gl_int have)
         whole = false;
     }
 #undef LOAD
-    gl->reads[GTX_COMPRESS_BC] = whole && bc7 && bc5;
+    gl->reads[GTX_COMPRESS_BC] = whole && bc7 && bc5 && bc1;
     gl->reads[GTX_COMPRESS_ETC2] = whole && etc2;
 }
 

@@ -23,6 +23,7 @@ static const words words_of[] = {
     [GTX_FORMAT_BC5] = {GL_COMPRESSED_RG_RGTC2, 0, 0, 0},
     [GTX_FORMAT_BC7] = {GL_COMPRESSED_RGBA_BPTC_UNORM, 0, 0, 0},
     [GTX_FORMAT_BC7_SRGB] = {GL_COMPRESSED_SRGB_ALPHA_BPTC_UNORM, 0, 0, 0},
+    [GTX_FORMAT_BC1_SRGB] = {GL_COMPRESSED_SRGB_S3TC_DXT1, 0, 0, 0},
     [GTX_FORMAT_EAC_RG11] = {GL_COMPRESSED_RG11_EAC, 0, 0, 0},
     [GTX_FORMAT_ETC2_RGBA8] = {GL_COMPRESSED_RGBA8_ETC2_EAC, 0, 0, 0},
     [GTX_FORMAT_ETC2_RGBA8_SRGB] = {GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC, 0, 0, 0},
@@ -48,7 +49,7 @@ gtx_result gtx_check_textures(const gtx_gl *gl, const gtx_model *model, gtx_erro
         const bool bc = model->formats[l->unit] < GTX_FORMAT_EAC_RG11;
         if (l->block_size && !gl->reads[bc ? GTX_COMPRESS_BC : GTX_COMPRESS_ETC2])
             return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "the context reads no %s blocks",
-                            bc ? "BC5 and BC7" : "ETC2");
+                            bc ? "BC" : "ETC2");
         if (l->width > (uint32_t)side || l->height > (uint32_t)side || l->layers > (uint32_t)layers)
             return gtx_fail(error, GTX_ERROR_LIMIT,
                             "a texture of %u x %u x %u is beyond this GPU's %d x %d x %d", l->width,

@@ -47,7 +47,7 @@ gtx_result gtx_vk_check_texture(const gtx_vk *vk, const gtx_texture *t, gtx_erro
                         t->width, t->height, t->layers);
     if (t->block_size && !vk->reads[bc ? GTX_COMPRESS_BC : GTX_COMPRESS_ETC2])
         return gtx_fail(error, GTX_ERROR_UNSUPPORTED, "the device reads no %s blocks",
-                        bc ? "BC5 and BC7" : "ETC2");
+                        bc ? "BC" : "ETC2");
     return GTX_OK;
 }
 
@@ -67,6 +67,7 @@ static VkFormat format_of(const gtx_texture *t)
         [GTX_FORMAT_BC5] = VK_FORMAT_BC5_UNORM_BLOCK,
         [GTX_FORMAT_BC7] = VK_FORMAT_BC7_UNORM_BLOCK,
         [GTX_FORMAT_BC7_SRGB] = VK_FORMAT_BC7_SRGB_BLOCK,
+        [GTX_FORMAT_BC1_SRGB] = VK_FORMAT_BC1_RGB_SRGB_BLOCK,
         [GTX_FORMAT_EAC_RG11] = VK_FORMAT_EAC_R11G11_UNORM_BLOCK,
         [GTX_FORMAT_ETC2_RGBA8] = VK_FORMAT_ETC2_R8G8B8A8_UNORM_BLOCK,
         [GTX_FORMAT_ETC2_RGBA8_SRGB] = VK_FORMAT_ETC2_R8G8B8A8_SRGB_BLOCK,

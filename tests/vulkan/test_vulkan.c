@@ -283,7 +283,7 @@ static void blocks_are_read(void **state)
     gtx_asset *plain = fixture_sphere(2, 64, 8);
     gtx_camera camera = camera_around(plain);
     const gtx_view view = view_of(&camera);
-    for (int kind = GTX_COMPRESS_BC; kind <= GTX_COMPRESS_ETC2; ++kind) {
+    for (int kind = GTX_COMPRESS_BC; kind <= GTX_COMPRESS_BC_SMALL; ++kind) {
         pair p = {.gl.asset = painted(plain, 3, UINT32_MAX, false)};
         const gtx_model_desc desc = {.first_provokes = 1, .compress = (gtx_compression)kind,
                                      .compress_normals = 1};

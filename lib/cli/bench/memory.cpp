@@ -15,14 +15,14 @@ namespace gtx {
 namespace {
 
 constexpr GLenum RGTC2 = 0x8DBD, BPTC = 0x8E8C, SRGB_BPTC = 0x8E8D, RG11 = 0x9272;
-constexpr GLenum SRGB_ETC2 = 0x9275, ETC2_EAC = 0x9278, SRGB_ETC2_EAC = 0x9279;
+constexpr GLenum SRGB_BC1 = 0x8C4C, SRGB_ETC2 = 0x9275, ETC2_EAC = 0x9278, SRGB_ETC2_EAC = 0x9279;
 
 /* Decibels: beyond it floats alone differ. */
 constexpr double EXACT = 120;
 
 /* Of formats that are blocks, from GTX_FORMAT_BC5 on. */
-constexpr GLenum block_formats[] = {RGTC2, BPTC, SRGB_BPTC, RG11, ETC2_EAC, SRGB_ETC2_EAC,
-                                    SRGB_ETC2};
+constexpr GLenum block_formats[] = {RGTC2, BPTC, SRGB_BPTC, SRGB_BC1, RG11, ETC2_EAC,
+                                    SRGB_ETC2_EAC, SRGB_ETC2};
 
 template <class Function> Function look_up(const char *name)
 {
@@ -130,6 +130,26 @@ double processor_milliseconds()
     return double(std::clock()) * 1e3 / CLOCKS_PER_SEC;
 }
 
+void measure_parts(const gtx_model *model, MemoryRow &row)
+{
+    const size_t part_of[] = {0, 1, 2, 3, 4, 3, 3}; /* a slot */
+    gtx_texture t;
+    for (int slot = 0; slot < GTX_SLOT_COUNT; ++slot) {
+        (void)gtx_model_texture(model, gtx_slot(slot), &t);
+        for (uint32_t k = 0; k < t.levels; ++k) {
+            const uint64_t wide = t.width >> k, high = t.height >> k;
+            row.parts[part_of[slot]] +=
+                t.layers * (t.block_size ? (wide + 3) / 4 * ((high + 3) / 4) * t.block_size
+                                         : wide * high * t.texel_size);
+        }
+    }
+    for (int buffer = 0; buffer < GTX_BUFFER_GRID_VERTICES; ++buffer) {
+        uint64_t size;
+        (void)gtx_model_buffer(model, gtx_buffer(buffer), &size);
+        row.parts[buffer < GTX_BUFFER_LOD_VERTICES ? 5 : 6] += size;
+    }
+}
+
 void measure_maps(BenchScene &scene, const std::string &path, MemoryRow &row)
 {
     gtx_error error;
@@ -150,7 +170,7 @@ void measure_maps(BenchScene &scene, const std::string &path, MemoryRow &row)
     row.prepare = processor_milliseconds() - start;
     std::unique_ptr<gtx_model, void (*)(gtx_model *)> freed(model, gtx_model_free);
     row.bytes = gtx_model_gpu_size(model).geometry + gtx_model_gpu_size(model).color;
-    row.color_bytes = gtx_model_gpu_size(model).color;
+    measure_parts(model, row);
     const Compared compared = {asset, scene.info};
     const struct {
         gtx_slot slot;
@@ -208,6 +228,8 @@ void run_memory(const std::string &asset_path, BenchOptions options,
     MemoryRow rows[] = {{"texels", GTX_COMPRESS_NONE, false},
                         {"BC7", GTX_COMPRESS_BC, false},
                         {"BC7, BC5", GTX_COMPRESS_BC, true},
+                        {"BC1", GTX_COMPRESS_BC_SMALL, false},
+                        {"BC1, BC5", GTX_COMPRESS_BC_SMALL, true},
                         {"ETC2", GTX_COMPRESS_ETC2, false},
                         {"ETC2, EAC", GTX_COMPRESS_ETC2, true}};
     Vector<Vector<Picture>> exact;
@@ -236,24 +258,28 @@ void print_memory_head(const char *scene, const BenchOptions &options)
 {
     std::string line = scene; /* of a table, whatever the path holds */
     gtx_make_printable(line.data());
-    std::printf("%s: MB on the GPU, of it colour, material and emission; dB of their texels;\n"
-                "degrees that normals stray; dB of cast pictures; processor ms to prepare\n"
-                "| maps      | MB     | colours | colour | material | emission | mean  | p99   |",
+    std::printf("%s: MB on the GPU, and of its parts, colours with material and emission; dB of\n"
+                "their texels; degrees that normals stray; dB of cast pictures; processor ms to\n"
+                "prepare\n| maps      | MB     |",
                 line.c_str());
+    for (const char *part : MEMORY_PARTS)
+        std::printf(" %-8s |", part);
+    std::printf(" colour | material | emission | mean  | p99   |");
     for (const std::array<uint32_t, 2> &size : options.sizes)
         std::printf(" %ux%u |", size[0], size[1]);
-    std::printf(" prepare |\n|---|---|---|---|---|---|---|---|---|");
-    for (size_t k = 0; k < options.sizes.size(); ++k)
+    std::printf(" prepare |\n|---|---|---|---|---|---|---|---|");
+    for (size_t k = 0; k < options.sizes.size() + std::size(MEMORY_PARTS); ++k)
         std::printf("---|");
     std::printf("\n");
 }
 
 void print_memory(const MemoryRow &row)
 {
-    std::printf("| %-9s | %6.3f | %7.3f | %6s | %8s | %8s | %5.2f | %5.2f |", row.name,
-                double(row.bytes) / 1e6, double(row.color_bytes) / 1e6,
-                decibels(row.color).c_str(), decibels(row.material).c_str(),
-                decibels(row.emission).c_str(), row.mean, row.p99);
+    std::printf("| %-9s | %6.3f |", row.name, double(row.bytes) / 1e6);
+    for (uint64_t bytes : row.parts)
+        std::printf(" %8.3f |", double(bytes) / 1e6);
+    std::printf(" %6s | %8s | %8s | %5.2f | %5.2f |", decibels(row.color).c_str(),
+                decibels(row.material).c_str(), decibels(row.emission).c_str(), row.mean, row.p99);
     for (double psnr : row.pictures)
         std::printf(" %s |", decibels(psnr).c_str());
     std::printf(" %.0f |\n", row.prepare);

@@ -5,12 +5,17 @@
 
 namespace gtx {
 
+/* Heights, outlines, normals, colours with material and emission, records, hulls, LOD meshes. */
+constexpr const char *MEMORY_PARTS[] = {"heights", "outlines", "normals", "colours",
+                                        "records", "hulls",    "LOD"};
+
 /* A kind of blocks, for all maps but normals or for these too. */
 struct MemoryRow {
     const char *name;
     gtx_compression compress;
     bool normals;
-    uint64_t bytes = 0, color_bytes = 0;
+    uint64_t bytes = 0;             /* of all, and of each part by MEMORY_PARTS */
+    std::array<uint64_t, 7> parts = {};
     double prepare = 0;             /* milliseconds of all processors */
     /* Of occupied texels of level 0, decibels; 0: there are none. */
     double color = 0, material = 0, emission = 0;

@@ -1,4 +1,5 @@
-/* Finds models with one constant material, which need no lookups of it. */
+/* What can be told of all texels: one constant material, which needs no lookups, and opaque
+ * colours, which need no alpha. */
 #include "frame/model.h"
 
 #include <string.h>
@@ -55,4 +56,18 @@ bool gtx_find_constant_material(const gtx_asset *asset, uint8_t out[4])
         return false;
     memcpy(out, material, 4);
     return true;
+}
+
+bool gtx_is_opaque(const gtx_asset *asset)
+{
+    static const uint8_t empty[2] = {0};
+    const gtx_info *info = &asset->info;
+    const size_t size = info->height_bits / 8;
+    const uint8_t *heights = gtx_map_data(asset, GTX_MAP_HEIGHT, 0, NULL);
+    size_t bytes;
+    const uint8_t *texels = gtx_map_data(asset, GTX_MAP_COLOR, 0, &bytes);
+    for (size_t i = 0; texels && i < bytes / 4; ++i)
+        if (texels[4 * i + 3] != UINT8_MAX && memcmp(heights + size * i, empty, size) != 0)
+            return false;
+    return texels != NULL;
 }
