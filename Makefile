@@ -99,7 +99,8 @@ out := $(build)/$(config)
 Q   := $(if $(V),,@)
 say  = @printf '  %-5s %s\n'
 
-sources    = $(filter-out %/module.cpp %/write_texts.c $(if $(vulkan),,lib/host/vulkan%), \
+sources    = $(filter-out %/module.cpp %/geotex_netcdf.c %/write_texts.c \
+               $(if $(vulkan),,lib/host/vulkan%), \
                $(wildcard lib/$(1)/*.c* lib/$(1)/*/*.c*))
 objects    = $(patsubst %,$(out)/%.o,$(basename $(call sources,$(1)))) \
              $(if $(filter frame,$(1)),$(out)/gen/shader_sources.o) \
@@ -316,8 +317,8 @@ include lib/package/install.mk lib/web/web.mk lib/python/python.mk tests/bench/b
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev \
             nlohmann-json3-dev libmeshoptimizer-dev libglfw3-dev libegl-dev libgl-dev libegl1 \
-            libegl-mesa0 libgl1-mesa-dri libopenimageio-dev libgdal-dev libzstd-dev zlib1g-dev \
-            libcmocka-dev glslang-tools $(packages_vulkan) ninja-build cmake xvfb \
+            libegl-mesa0 libgl1-mesa-dri libopenimageio-dev libgdal-dev libnetcdf-dev libzstd-dev \
+            zlib1g-dev libcmocka-dev glslang-tools $(packages_vulkan) ninja-build cmake xvfb \
             libembree-dev python3-cffi python3-numpy python3-venv
 
 deps: ## install the Debian packages that are missing (apt-get, with sudo when not root)

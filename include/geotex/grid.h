@@ -22,7 +22,9 @@ typedef struct gtx_height_grid {
     uint32_t in_degrees;          /* 1: origin and spacing are longitudes and latitudes, and of no
                                      use beside heights until the caller has changed both */
     uint32_t unplaced;            /* 1: its file tells neither origin nor spacing */
-    uint32_t reserved[2];
+    uint32_t categories;          /* 1: the values to colour by are kinds of something, as of rock,
+                                     and nothing lies between two; for the caller to say */
+    uint32_t reserved[1];
 } gtx_height_grid;
 
 typedef struct gtx_height_grid_desc {
@@ -35,16 +37,17 @@ typedef struct gtx_height_grid_desc {
     gtx_limits limits;            /* memory, texels: the grid's nodes, and pixels */
 } gtx_height_grid_desc;
 
-/* Reads a grid: IRAP classic and binary (".irap", ".gri"), ZMAP+ and CPS-3 text, NetCDF of the
- * classic kinds (one variable of two dimensions, placed by the variables called as these: CF,
- * COARDS; coordinates of other units of length than the values are converted); through
- * geotex-grid.so, which holds GDAL, ESRI ASCII, Surfer (text, binary and 7), HGT, XYZ (".xyz") and
- * GeoTIFF, cloud optimised ones too. All of them hold their position, and may be gzipped but for
- * GeoTIFF. Or any image of 8 or 16 bits or of floats, whose top row is the northernmost, with
- * origin 0 and spacing 1, for the caller to change. Each format's own marker of missing values is
- * known (9999900, 1e30; -32767 and below in signed 16 bits), and what a file tells itself. Only the
- * file is read: none beside it. Where GDAL runs out of memory the process may end. The values come
- * from the descriptor's allocator, and are freed by gtx_height_grid_free. `desc` may be NULL.
+/* Reads a grid: IRAP classic and binary (".irap", ".gri"), ZMAP+ and CPS-3 text, NetCDF (one
+ * variable of two dimensions, placed by the variables called as these: CF, COARDS; coordinates of
+ * other units of length than the values are converted; NetCDF-4, which is HDF5, by geotex-netcdf,
+ * a process that is started for it and waited for); through geotex-grid.so, which holds GDAL, ESRI
+ * ASCII, Surfer (text, binary and 7), HGT, XYZ (".xyz") and GeoTIFF, cloud optimised ones too. All
+ * of them hold their position, and may be gzipped but for GeoTIFF. Or any image of 8 or 16 bits or
+ * of floats, whose top row is the northernmost, with origin 0 and spacing 1, for the caller to
+ * change. Each format's own marker of missing values is known (9999900, 1e30; -32767 and below in
+ * signed 16 bits), and what a file tells itself. Only the file is read: none beside it. Where GDAL
+ * runs out of memory the process may end. The values come from the descriptor's allocator, and are
+ * freed by gtx_height_grid_free. `desc` may be NULL.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, READ, INPUT, UNSUPPORTED. */
 GTX_API gtx_result gtx_height_grid_read(const char *path, const gtx_height_grid_desc *desc,
                                         gtx_height_grid *out, gtx_error *error);
@@ -53,9 +56,11 @@ GTX_API void gtx_height_grid_free(gtx_height_grid *grid);
 
 /* The values of `from` at the nodes of `to`, such as a property that has other nodes than its grid:
  * bilinear between the nodes of `from`, the mean over what a node of `to` stands for where those
- * are further apart; NaN where the nearest node has no value, or lies more than half a step away.
+ * are further apart; of categories the nearest node's, or the most frequent, of which the lowest.
+ * NaN where the nearest node has no value, or lies more than half a step away.
  * Where either is unplaced, `from` reaches over all of `to`. `out` has the lattice of `to`, and
- * values from the allocator (NULL: the default one), which gtx_height_grid_free frees. Any thread.
+ * values from the allocator (NULL: the default one), which gtx_height_grid_free frees; `categories`
+ * is that of `from`. Any thread.
  * Errors: ARGUMENT, MEMORY, INPUT (no place in common, or one alone lies in degrees). */
 GTX_API gtx_result gtx_height_grid_resample(const gtx_height_grid *from, const gtx_height_grid *to,
                                             const gtx_allocator *allocator, gtx_height_grid *out,
@@ -120,6 +125,7 @@ typedef struct gtx_horizons_result {
  * height step, but neighbours have the same heights where they meet, so that no border shows. Nodes
  * without a value are empty texels; patches are two-sided. All grids have the same numbers of
  * nodes, unless they are parts of one surface. Where a property is NaN the surface is grey. The
+ * values of categories, up to 64, are in META, for legends, as the ends of colours are. The
  * same grids and options give the same bytes. `desc`, `result` and `error` may be NULL; gtx_close
  * frees the asset.
  * Errors: CANCELLED, ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, INPUT (of other sizes; in degrees), EMPTY

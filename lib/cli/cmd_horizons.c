@@ -20,7 +20,7 @@ static const char *range, *property_range, *spacing, *origin, *color_range;
 static double missing = NAN, rotation = NAN, unit = 1;
 static uint32_t colors, lod_levels = 5;
 static int32_t zstd_level = 3;
-static bool depths, one_surface, local_metres;
+static bool depths, one_surface, local_metres, categories;
 static char property_name[64];
 static double latitude = NAN; /* of the first grid in degrees */
 
@@ -41,6 +41,8 @@ static const option options[] = {
      "heights of black and white in height images [the pixel values]", 0, 0},
     {"property-range", 0, OPTION_STRING, &property_range, "LOW,HIGH",
      "likewise for property images", 0, 0},
+    {"categories", 0, OPTION_FLAG, &categories, NULL,
+     "properties are kinds, such as rock: the nearest one's, with a legend of them", 0, 0},
     {"spacing", 0, OPTION_STRING, &spacing, "DX,DY", "distance between nodes [the file's, or 1]", 0,
      0},
     {"origin", 0, OPTION_STRING, &origin, "X,Y", "position of the first node [the file's, or 0]", 0,
@@ -63,7 +65,7 @@ static const option options[] = {
 
 static const verb horizons = {
     "horizons", "GRID[@X,Y][=PROPERTY]... -o OUT.gtx",
-    "Makes one asset of height grids: IRAP classic or binary, ZMAP+, CPS-3, NetCDF (classic),\n"
+    "Makes one asset of height grids: IRAP classic or binary, ZMAP+, CPS-3, NetCDF,\n"
     "ESRI ASCII, Surfer, HGT, XYZ (also gzipped), GeoTIFF, other images (PNG, TIFF, EXR: 8 or 16\n"
     "bits, or floats). GDAL reads all from ESRI ASCII to GeoTIFF. @X,Y sets the position of a\n"
     "grid's first node; =PROPERTY is a grid to colour it by, whose values are taken where the\n"
@@ -168,6 +170,7 @@ static int read_property(const char *path, gtx_height_grid *grid)
     gtx_error error;
     if (gtx_height_grid_read(path, &reading_property, &property, &error))
         return report_error(path, &error);
+    property.categories = categories;
     int code = use_metres(path, &property);
     if (!code && gtx_height_grid_resample(&property, grid, NULL, &fitted, &error))
         code = report_error(path, &error);
@@ -175,6 +178,7 @@ static int read_property(const char *path, gtx_height_grid *grid)
     if (code)
         return code;
     grid->property = fitted.values; /* of malloc, freed with free */
+    grid->categories = fitted.categories;
     if (!desc.property_name)
         name_property(path);
     return EXIT_CODE_OK;

@@ -20,6 +20,7 @@ HeightGrid lattice(const gtx_height_grid &from, const float *values)
     grid.rotation = from.rotation;
     grid.in_degrees = from.in_degrees;
     grid.is_unplaced = from.unplaced;
+    grid.has_categories = from.categories;
     grid.values.assign(values, values + grid.count());
     for (float &value : grid.values)
         if (!(std::fabs(value) < 1e30f))
@@ -31,7 +32,8 @@ void require_lattice(const gtx_height_grid &g)
 {
     require_zeroed(g.reserved);
     require_argument(g.values, "a grid has no values");
-    require_argument(g.in_degrees <= 1 && g.unplaced <= 1, "in_degrees, unplaced: 0 or 1");
+    require_argument(g.in_degrees <= 1 && g.unplaced <= 1 && g.categories <= 1,
+                     "in_degrees, unplaced, categories: 0 or 1");
     require_argument(g.nx > 0 && g.ny > 0 && g.nx <= MAX_SIDE && g.ny <= MAX_SIDE,
                      "a side of a grid has 1 to 2^24 nodes");
     for (double place : {g.origin[0], g.origin[1], g.rotation, g.spacing[0], g.spacing[1]})
@@ -82,6 +84,7 @@ static void fit(const gtx_height_grid &from, const gtx_height_grid &to,
     require_lattice(to);
     gtx_height_grid made = to;
     made.property = nullptr;
+    made.categories = from.categories;
     made.allocator = gtx_allocator_or_default(allocator);
     made.values = given(resample(lattice(from, from.values), lattice(to, to.values)),
                         made.allocator);

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <set>
 
 namespace gtx {
 
@@ -51,7 +52,8 @@ static uint64_t check(const gtx_height_grid *grids, uint32_t count, const gtx_ho
         const std::string name = "grid " + std::to_string(n);
         require_zeroed(g.reserved);
         require_argument(g.values, "a grid has no values");
-        require_argument(g.in_degrees <= 1 && g.unplaced <= 1, "in_degrees, unplaced: 0 or 1");
+        require_argument(g.in_degrees <= 1 && g.unplaced <= 1 && g.categories <= 1,
+                         "in_degrees, unplaced, categories: 0 or 1");
         if (g.in_degrees)
             throw Error(GTX_ERROR_INPUT, name + IN_DEGREES +
                                              ", take metres of one place (--local-metres), or say "
@@ -148,6 +150,23 @@ static Vector<std::array<uint8_t, 3>> colors_of(const Vector<float> &values,
     return colors;
 }
 
+/* Of all grids that have some, in ascending order; none where there are more than a legend has room
+ * for. */
+static std::set<float> categories_of(const Surfaces &surfaces)
+{
+    constexpr size_t MOST = 64;
+    std::set<float> out;
+    for (size_t n = 0; n < surfaces.heights.size(); ++n)
+        if (surfaces.heights[n].has_categories)
+            for (float value : surfaces.coloured(n)) {
+                if (!std::isnan(value))
+                    out.insert(value);
+                if (out.size() > MOST)
+                    return {};
+            }
+    return out;
+}
+
 static TileOptions options_of(const gtx_horizons_desc &desc)
 {
     TileOptions options;
@@ -161,8 +180,8 @@ static TileOptions options_of(const gtx_horizons_desc &desc)
     return options;
 }
 
-static std::string meta_of(const gtx_horizons_desc &desc, const double range[2],
-                           const gtx_allocator &allocator)
+static std::string meta_of(const gtx_horizons_desc &desc, const Surfaces &surfaces,
+                           const double range[2], const gtx_allocator &allocator)
 {
     Json json(allocator);
     gtx_json_begin_object(&json, nullptr);
@@ -174,6 +193,13 @@ static std::string meta_of(const gtx_horizons_desc &desc, const double range[2],
         gtx_json_number(&json, "color_high", range[1]);
         if (desc.property_name)
             gtx_json_string(&json, "property", desc.property_name);
+        const std::set<float> categories = categories_of(surfaces);
+        if (!categories.empty()) {
+            gtx_json_begin_array(&json, "categories");
+            for (float value : categories)
+                gtx_json_number(&json, nullptr, double(value));
+            gtx_json_end_array(&json);
+        }
     }
     gtx_json_number(&json, "vertical", desc.vertical > 0 ? desc.vertical : 1);
     gtx_json_end_object(&json);
@@ -218,7 +244,7 @@ static Asset make_horizons(const gtx_height_grid *grids, uint32_t count,
         levels = make_lod(lod_source(maps, task), maps, lod_levels, task);
     task.begin("write");
     const gtx_allocator allocator = gtx_allocator_or_default(desc.allocator);
-    Asset asset = assemble(maps, levels, {meta_of(desc, range, allocator),
+    Asset asset = assemble(maps, levels, {meta_of(desc, surfaces, range, allocator),
                                           desc.unit > 0 ? desc.unit : 1, report.triangles,
                                           allocator});
     if (result) {

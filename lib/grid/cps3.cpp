@@ -1,29 +1,42 @@
 /* CPS-3 text grids (Schlumberger): lines of a header that start with a word of six letters,
- *   FSASCI 0 1 COMPUTED 0 1E30            the last one marks a node without a value
+ *   FSASCI 0 1 COMPUTED 0 1E30            the fifth marks a node without a value; more may follow
  *   FSATTR 0 0
  *   FSLIMI least x, greatest x, least y, greatest y, least and greatest value
  *   FSNROW rows, columns
  *   FSXINC steps in x and y               may be left out
  *   ->name
- * and then columns of nodes, each from the greatest y down. */
+ * and then columns of nodes from the least x on, each from the greatest y down, as Petrel writes
+ * them. Lines may be comments after '!', the first ones too. */
 #include "grid/text.hpp"
 
 namespace gtx {
 
-bool is_cps3(std::string_view bytes)
-{
-    return bytes.substr(0, 6) == "FSASCI";
-}
-
-namespace {
-
 /* Cuts off the first line. */
-std::string_view take_line(std::string_view &text)
+static std::string_view take_line(std::string_view &text)
 {
     const size_t size = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, size);
     text.remove_prefix(std::min(size + 1, text.size()));
     return line;
+}
+
+bool is_cps3(std::string_view bytes)
+{
+    while (bytes.substr(0, 1) == "!")
+        take_line(bytes);
+    return bytes.substr(0, 6) == "FSASCI";
+}
+
+namespace {
+
+/* A word, or all up to the next quotation mark. */
+std::string_view take_item(Words &words)
+{
+    const std::string_view first = words.next();
+    if (first.substr(0, 1) == "\"" && (first.size() == 1 || first.back() != '"'))
+        for (auto word = words.next(); !word.empty() && word.back() != '"'; word = words.next())
+            ;
+    return first;
 }
 
 struct Header {
@@ -40,8 +53,8 @@ Header read_header(std::string_view &text)
         Words words(take_line(text));
         const std::string_view key = words.next();
         if (key == "FSASCI") {
-            for (std::string_view word = words.next(); !word.empty(); word = words.next())
-                out.missing = word;
+            for (int k = 0; k < 5; ++k)
+                out.missing = take_item(words);
         } else if (key == "FSLIMI") {
             for (double &side : out.side)
                 side = words.number("the grid's extent");

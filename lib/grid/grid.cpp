@@ -148,20 +148,19 @@ bool is_grid_file(const std::string &path)
 HeightGrid read_grid(const std::string &path, const GridReading &reading, Task &task)
 {
     const ModelFile file = read_grid_file(path, task);
+    const Bytes classic = is_netcdf4(file.bytes) ? classic_of_netcdf4(file.bytes, task) : Bytes();
+    const std::string_view bytes = classic.empty() ? std::string_view(file.bytes) : classic;
     for (const auto &format : formats) {
-        if (!format.is(file.bytes))
+        if (!format.is(bytes))
             continue;
         if (reading.range)
             throw Error(GTX_ERROR_ARGUMENT, "a range is for images of whole numbers");
-        HeightGrid grid = format.read(file.bytes, task.limits);
+        HeightGrid grid = format.read(bytes, task.limits);
         for (float &value : grid.values)
             if (!std::isfinite(value) || (reading.missing && value == float(*reading.missing)))
                 value = NAN;
         return grid;
     }
-    if (is_netcdf4(file.bytes))
-        throw Error(GTX_ERROR_UNSUPPORTED, "it is HDF5, as NetCDF-4 is: nccopy -k classic IN OUT "
-                                           "makes one that is read");
     const char *driver = gdal_driver(file.bytes, path);
     HeightGrid grid = driver ? read_gdal(driver, file.bytes, path, reading, task)
                              : read_image(path, reading, task);

@@ -20,6 +20,7 @@ struct HeightGrid {
     double origin[2] = {0, 0}, step[2] = {1, 1}, rotation = 0;
     bool in_degrees = false;   /* origin and step, but not the values */
     bool is_unplaced = false;  /* no file told origin and step */
+    bool has_categories = false; /* values are kinds: nothing lies between two */
     Vector<float> values;      /* nx * ny, row by row from the origin; NaN where there is none */
 
     size_t count() const { return size_t(nx) * ny; }
@@ -47,10 +48,10 @@ struct GridReading {
                                         missing one left out */
 };
 
-/* Reads a grid by its content: IRAP classic and IRAP binary, ZMAP+, CPS-3, NetCDF of the classic
- * kinds; through GDAL, GeoTIFF, ESRI ASCII, Surfer, and by their names HGT and XYZ; else an image
- * (PNG, TIFF, EXR ... of 8 or 16 bits or of floats), whose top row is the last of the grid; each
- * also gzipped but TIFF and images.
+/* Reads a grid by its content: IRAP classic and IRAP binary, ZMAP+, CPS-3, NetCDF; through GDAL,
+ * GeoTIFF, ESRI ASCII, Surfer, and by their names HGT and XYZ; else an image (PNG, TIFF, EXR ... of
+ * 8 or 16 bits or of floats), whose top row is the last of the grid; each also gzipped but TIFF and
+ * images.
  * Throws Error: READ, INPUT, UNSUPPORTED, LIMIT, MEMORY. */
 HeightGrid read_grid(const std::string &path, const GridReading &reading, Task &task);
 
@@ -64,12 +65,16 @@ bool is_irap_binary(std::string_view bytes);
 bool is_zmap(std::string_view bytes);
 bool is_cps3(std::string_view bytes);
 bool is_netcdf(std::string_view bytes);
-bool is_netcdf4(std::string_view bytes); /* HDF5, which is not read */
+bool is_netcdf4(std::string_view bytes); /* HDF5 */
 HeightGrid read_irap_classic(std::string_view bytes, const Limits &limits = Limits());
 HeightGrid read_irap_binary(std::string_view bytes, const Limits &limits = Limits());
 HeightGrid read_zmap(std::string_view bytes, const Limits &limits = Limits());
 HeightGrid read_cps3(std::string_view bytes, const Limits &limits = Limits());
 HeightGrid read_netcdf(std::string_view bytes, const Limits &limits = Limits());
+
+/* A classic NetCDF of one of NetCDF-4: its dimensions, and variables of up to two of them. Throws
+ * Error: UNSUPPORTED where the program that reads HDF5 is not there, INPUT, LIMIT. */
+Bytes classic_of_netcdf4(std::string_view bytes, Task &task);
 
 /* Which of GDAL's drivers reads a file that starts so, or null. */
 const char *gdal_driver(std::string_view head, const std::string &path);
@@ -102,9 +107,10 @@ HeightGrid mosaic(const Vector<HeightGrid> &parts, const Limits &limits = Limits
 void use_local_metres(HeightGrid &grid, double latitude);
 
 /* Values of `from` at the nodes of `to`: between its nodes bilinear, the mean over what a node of
- * `to` stands for where those are further apart, and NaN where the nearest node has none or there
- * is none. Where either is unplaced, `from` reaches over all of `to`. Throws Error: INPUT where the
- * two have no place in common, or one alone lies in degrees. */
+ * `to` stands for where those are further apart; of categories the nearest and most frequent; NaN
+ * where the nearest node has none or there is none. Where either is unplaced, `from` reaches over
+ * all of `to`. Throws Error: INPUT where the two have no place in common, or one alone lies in
+ * degrees. */
 Vector<float> resample(const HeightGrid &from, const HeightGrid &to);
 
 /* Whether two surfaces have the same heights in most of the places that both cover: tiles or copies

@@ -62,8 +62,8 @@ private:
     double at_[2] = {0, 0}, along_[2][2] = {{0, 0}, {0, 0}};
 };
 
-/* Between four nodes, of those that have a value; NaN where the nearest has none, or beyond the
- * outermost by more than half a step. */
+/* Between four nodes, of those that have a value; of categories the nearest; NaN where the
+ * nearest has none, or beyond the outermost by more than half a step. */
 static double value_at(const HeightGrid &grid, double x, double y)
 {
     constexpr double BESIDE = 0.5 + 1e-6;
@@ -71,8 +71,9 @@ static double value_at(const HeightGrid &grid, double x, double y)
         return NAN;
     x = std::clamp(x, 0.0, double(grid.nx - 1));
     y = std::clamp(y, 0.0, double(grid.ny - 1));
-    if (std::isnan(grid.at(uint32_t(x + 0.5), uint32_t(y + 0.5))))
-        return NAN;
+    const float nearest = grid.at(uint32_t(x + 0.5), uint32_t(y + 0.5));
+    if (std::isnan(nearest) || grid.has_categories)
+        return double(nearest);
     const uint32_t i = std::min(uint32_t(x), std::max(grid.nx, 2u) - 2);
     const uint32_t j = std::min(uint32_t(y), std::max(grid.ny, 2u) - 2);
     double sum = 0, weights = 0;
@@ -97,6 +98,28 @@ static uint32_t samples_in(double nodes)
     return uint32_t(std::clamp(std::ceil(nodes - 1e-6), 1.0, MOST));
 }
 
+/* The mean, or of categories the most frequent, of which the lowest. Sorts them. */
+static double middle_of(Vector<double> &values, bool has_categories)
+{
+    if (!has_categories) {
+        double sum = 0;
+        for (double value : values)
+            sum += value;
+        return sum / double(values.size());
+    }
+    std::sort(values.begin(), values.end());
+    size_t best = 0, most = 0;
+    for (size_t i = 0, j = 0; i < values.size(); i = j) {
+        while (j < values.size() && values[j] == values[i])
+            ++j;
+        if (j - i > most) {
+            most = j - i;
+            best = i;
+        }
+    }
+    return values[best];
+}
+
 Vector<float> resample(const HeightGrid &from, const HeightGrid &to)
 {
     if (from.in_degrees != to.in_degrees && !from.is_unplaced && !to.is_unplaced)
@@ -115,24 +138,22 @@ Vector<float> resample(const HeightGrid &from, const HeightGrid &to)
     };
     const uint32_t nx = samples_in(far(right)), ny = samples_in(far(up));
     Vector<float> out(to.count(), NAN);
+    Vector<double> found;
     bool any = false;
     for (uint32_t j = 0; j < to.ny; ++j) {
         cancel_point(size_t(to.nx) * nx * ny);
         for (uint32_t i = 0; i < to.nx; ++i) {
-            double sum = 0;
-            uint32_t found = 0;
+            found.clear();
             for (uint32_t k = 0; k < nx * ny; ++k) {
                 const double dx = (k % nx + 0.5) / nx - 0.5, dy = (k / nx + 0.5) / ny - 0.5;
                 const auto place = passage(i + dx, j + dy);
                 const double value = value_at(from, place[0], place[1]);
-                if (!std::isnan(value)) {
-                    sum += value;
-                    ++found;
-                }
+                if (!std::isnan(value))
+                    found.push_back(value);
             }
-            if (found == 0 || 2 * found < nx * ny)
+            if (found.empty() || 2 * found.size() < nx * ny)
                 continue;
-            out[size_t(j) * to.nx + i] = float(sum / found);
+            out[size_t(j) * to.nx + i] = float(middle_of(found, from.has_categories));
             any = true;
         }
     }

@@ -230,11 +230,20 @@ private:
                 return false;
         return sides >= 2 && v.type != CHARACTERS;
     }
+    /* By CF the edges of cells, two beside each other. */
+    bool is_bounds(const Variable &v) const
+    {
+        for (const Variable &other : header_.variables)
+            if (const Attribute *a = other.attribute("bounds"))
+                if (a->type == CHARACTERS && a->raw == v.name)
+                    return true;
+        return false;
+    }
     const Variable &find_grid() const
     {
         const Variable *found = nullptr;
         for (const Variable &v : header_.variables) {
-            if (!is_grid(v))
+            if (!is_grid(v) || is_bounds(v))
                 continue;
             if (found)
                 malformed("it holds several grids, such as " + found->name + " and " + v.name +

@@ -69,6 +69,32 @@ void gtx_framebuffer_read_depth(const gtx_host_gl *gl, const gtx_framebuffer *fr
     read_rows(gl, framebuffer, GL_DEPTH_COMPONENT, GL_FLOAT, (uint8_t *)depth);
 }
 
+/* By a texture, which is copied upside down: its first row is the top one. */
+gtx_result gtx_framebuffer_write_color(const gtx_host_gl *gl, const gtx_framebuffer *framebuffer,
+                                       const uint8_t *pixels, gtx_error *error)
+{
+    const int w = framebuffer->width, h = framebuffer->height;
+    GLuint texture, object;
+    gl->GenTextures(1, &texture);
+    gl->GenFramebuffers(1, &object);
+    gl->ActiveTexture(GL_TEXTURE0);
+    gl->BindTexture(GL_TEXTURE_2D, texture);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, w, h, 0, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+    gl->BindFramebuffer(GL_READ_FRAMEBUFFER, object);
+    gl->FramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
+    const int whole = gl->CheckFramebufferStatus(GL_READ_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+    gl->BindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer->object);
+    if (whole)
+        gl->BlitFramebuffer(0, 0, w, h, 0, h, w, 0, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    gtx_framebuffer_bind(gl, framebuffer);
+    gl->BindTexture(GL_TEXTURE_2D, 0);
+    gl->DeleteFramebuffers(1, &object);
+    gl->DeleteTextures(1, &texture);
+    return whole ? GTX_OK : gtx_fail(error, GTX_ERROR_GL, "a picture of %d x %d cannot be shown", w,
+                                     h);
+}
+
 void gtx_average_down(uint8_t *pixels, int width, int height, int n)
 {
     const size_t row = (size_t)4 * n * width;

@@ -27,6 +27,9 @@ void gtx_framebuffer_read_color(const gtx_host_gl *gl, const gtx_framebuffer *fr
                                 uint8_t *pixels);
 void gtx_framebuffer_read_depth(const gtx_host_gl *gl, const gtx_framebuffer *framebuffer,
                                 float *depth);
+/* Writes what was read, changed. Leaves the framebuffer bound. Errors: GL. */
+gtx_result gtx_framebuffer_write_color(const gtx_host_gl *gl, const gtx_framebuffer *framebuffer,
+                                       const uint8_t *pixels, gtx_error *error);
 
 /* Averages squares of n x n texels, in place: an image drawn n times as large becomes a smooth one
  * of width x height RGBA texels. */

@@ -52,6 +52,19 @@ static void *open_module(const char *file, const char *need, gtx_error *error)
     return NULL;
 }
 
+int gtx_find_program(const char *file, char path[GTX_MAX_PROGRAM_PATH])
+{
+    if (!path_of_code(path))
+        return 0;
+    char *name = strrchr(path, '/') + 1;
+    for (size_t i = 0; i < sizeof places / sizeof *places; ++i) {
+        snprintf(name, (size_t)(path + GTX_MAX_PROGRAM_PATH - name), "%s%s", places[i], file);
+        if (access(path, X_OK) == 0)
+            return 1;
+    }
+    return 0;
+}
+
 /* dlopen counts references and gives the same module again, so nothing needs to be kept here. */
 const void *gtx_open_module(const char *file, const char *symbol, const char *need,
                             gtx_error *error)

@@ -1,4 +1,4 @@
-/* Opening a module: a shared library of ours that holds a large one of others. */
+/* Opening modules, shared libraries of ours that hold large ones of others; finding programs. */
 #ifndef GTX_IMAGE_OPEN_H
 #define GTX_IMAGE_OPEN_H
 
@@ -15,6 +15,10 @@ extern "C" {
  * open: threads of such libraries do not survive being unloaded. Any thread. */
 const void *gtx_open_module(const char *file, const char *symbol, const char *need,
                             gtx_error *error);
+
+/* The path of a program of ours, looked for in the same places; returns 0 where it is not there. */
+enum { GTX_MAX_PROGRAM_PATH = 4096 + 64 };
+int gtx_find_program(const char *file, char path[GTX_MAX_PROGRAM_PATH]);
 
 #ifdef __cplusplus
 }

@@ -73,7 +73,7 @@ static void bad_grids_have_a_clear_error(void **)
     bad.values = nullptr;
     assert_int_equal(make(&bad, 1, nullptr), GTX_ERROR_ARGUMENT);
     bad = good.grid;
-    bad.reserved[1] = 1;
+    bad.reserved[0] = 1;
     assert_int_equal(make(&bad, 1, nullptr), GTX_ERROR_NOT_ZEROED);
     for (uint32_t degrees : {1u, 2u}) {
         bad = good.grid;

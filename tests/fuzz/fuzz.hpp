@@ -32,6 +32,8 @@ void run_draco(const uint8_t *data, size_t size);
 void run_gzip(const uint8_t *data, size_t size);
 void run_irap(const uint8_t *data, size_t size);
 void run_zmap(const uint8_t *data, size_t size);
+void run_cps3(const uint8_t *data, size_t size);
+void run_netcdf(const uint8_t *data, size_t size);
 void run_image(const uint8_t *data, size_t size);
 void run_world(const uint8_t *data, size_t size);
 void run_stream(const uint8_t *data, size_t size);

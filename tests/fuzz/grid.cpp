@@ -76,6 +76,19 @@ void run_zmap(const uint8_t *data, size_t size)
         run(data, size, "a.zmap");
 }
 
+void run_cps3(const uint8_t *data, size_t size)
+{
+    if (gtx::is_cps3({reinterpret_cast<const char *>(data), size}))
+        run(data, size, "a.cps3");
+}
+
+/* The classic kinds; what reads HDF5 is another process. */
+void run_netcdf(const uint8_t *data, size_t size)
+{
+    if (gtx::is_netcdf({reinterpret_cast<const char *>(data), size}))
+        run(data, size, "a.nc");
+}
+
 void run_image(const uint8_t *data, size_t size) { run(data, size, "a.png"); }
 
 } // namespace fuzz

@@ -9,6 +9,7 @@ const Target targets[] = {
     {"stl", run_stl, nullptr},       {"gltf", run_gltf, mutate_glb},
     {"draco", run_draco, nullptr},   {"gzip", run_gzip, mutate_gzip},
     {"irap", run_irap, nullptr},     {"zmap", run_zmap, nullptr},
+    {"cps3", run_cps3, nullptr},     {"netcdf", run_netcdf, nullptr},
     {"image", run_image, nullptr},   {"world", run_world, nullptr},
     {"stream", run_stream, nullptr}, {"prefix", run_prefix, mutate_gtx},
 };

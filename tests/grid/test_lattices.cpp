@@ -47,6 +47,13 @@ static void cps3_is_read(void **)
 {
     assert_true(is_cps3(CPS3) && !is_zmap(CPS3));
     expect(read_cps3(CPS3), 100, 50, 10, 20);
+    /* Comments first, a name of two words, more numbers behind the marker of no value. */
+    std::string other = "! made by hand\n! for a test\n" + CPS3;
+    other.replace(other.find("\"Computed\" 0 1.0E+30"), 20, "\"Computed twice\" 0 1E30 0");
+    assert_true(is_cps3(other) && !is_zmap(other));
+    expect(read_cps3(other), 100, 50, 10, 20);
+    other.replace(other.find("\n3 6"), 4, "\n0 6"); /* 0 is a value */
+    assert_true(read_cps3(other).at(2, 1) == 0);
     for (size_t size = 0; size < CPS3.size() - 2; ++size)
         assert_int_equal(failure([&] { read_cps3(CPS3.substr(0, size)); }), GTX_ERROR_INPUT);
     for (const char *line : {"FSNROW 2000000 3000000", "FSNROW -2 3", "FSNROW .5 3", "FSNROW x"}) {
@@ -160,6 +167,32 @@ static void finer_values_are_averaged(void **)
         assert_true(std::fabs(value - 0.5f) < 0.06f);
 }
 
+/* Between rock 1 and rock 3 lies no rock 2. */
+static void categories_stay_what_they_are(void **)
+{
+    HeightGrid rocks = plane(11, 11, 0, 0, 10);
+    rocks.has_categories = true;
+    for (size_t k = 0; k < rocks.count(); ++k)
+        rocks.values[k] = k % 11 < 5 ? 1 : 3;
+    const HeightGrid fine = plane(181, 181, 5, 5, 0.5), coarse = plane(3, 3, 5, 5, 45);
+    for (const HeightGrid *to : {&fine, &coarse}) {
+        const Vector<float> values = resample(rocks, *to);
+        for (size_t k = 0; k < values.size(); ++k) {
+            const double x = to->place(k % to->nx, 0)[0];
+            assert_true(values[k] == 1 || values[k] == 3);
+            if (to == &fine && x != 45) /* as far from both */
+                assert_true(values[k] == (x < 45 ? 1 : 3));
+        }
+    }
+    /* Three columns of 1 for every two of 7: the most frequent, not the mean. */
+    HeightGrid stripes = plane(101, 101, 0, 0, 1);
+    stripes.has_categories = true;
+    for (size_t k = 0; k < stripes.count(); ++k)
+        stripes.values[k] = k % 101 % 5 < 3 ? 1 : 7;
+    for (float value : resample(stripes, plane(8, 8, 12, 12, 10)))
+        assert_true(value == 1);
+}
+
 static void what_is_missing_stays_so(void **)
 {
     HeightGrid from = plane(11, 11, 0, 0, 10);
@@ -252,6 +285,7 @@ int main()
         cmocka_unit_test(hostile_netcdf_is_refused),
         cmocka_unit_test(planes_stay_planes),
         cmocka_unit_test(finer_values_are_averaged),
+        cmocka_unit_test(categories_stay_what_they_are),
         cmocka_unit_test(what_is_missing_stays_so),
         cmocka_unit_test(degrees_become_metres),
         cmocka_unit_test(copies_and_layers_are_told_apart),

@@ -10,7 +10,7 @@
 
 namespace gtx {
 
-constexpr size_t RAMP = 64, MOST_TITLE = 40;
+constexpr size_t RAMP = 64, MOST_TITLE = 40, MOST_ENTRIES = 24;
 
 static std::string text_of(double value)
 {
@@ -34,10 +34,17 @@ static Legend color_map_of(const gtx_asset *asset)
     if (name != "viridis" && name != "rainbow")
         return out;
     const ColorMap map = name == "rainbow" ? ColorMap::RAINBOW : ColorMap::VIRIDIS;
-    for (size_t i = 0; i < RAMP; ++i)
+    const double low = meta["color_low"].get<double>(), high = meta["color_high"].get<double>();
+    if (meta.contains("categories") && meta["categories"].is_array())
+        for (const auto &value : meta["categories"])
+            if (value.is_number() && out.entries.size() < MOST_ENTRIES)
+                out.entries.push_back({color_of(map, high > low ? (value.get<double>() - low) /
+                                                                      (high - low) : 0.5),
+                                       text_of(value.get<double>())});
+    for (size_t i = 0; out.entries.empty() && i < RAMP; ++i)
         out.ramp.push_back(color_of(map, double(i) / (RAMP - 1)));
-    out.low = text_of(meta["color_low"].get<double>());
-    out.high = text_of(meta["color_high"].get<double>());
+    out.low = text_of(low);
+    out.high = text_of(high);
     if (meta.contains("property") && meta["property"].is_string())
         for (char letter : meta["property"].get<std::string>().substr(0, MOST_TITLE))
             out.title += letter >= ' ' && letter <= '~' ? letter : '?';
@@ -122,6 +129,8 @@ void add_legend(gtx_shapes &shapes, uint32_t width, uint32_t height, const Legen
         gtx_text_rectangle(&shapes, left, y, 8 * dot, 8 * dot, rgb_of(legend.entries[i].color));
         gtx_text_add(&shapes, left + 11 * dot, y, &style, legend.entries[i].text.c_str());
     }
+    if (legend.ramp.empty() && !legend.title.empty())
+        gtx_text_add(&shapes, left, y - line, &style, legend.title.c_str());
     if (legend.ramp.empty())
         return;
     const float full = std::min(float(width) / 2, 160 * dot);

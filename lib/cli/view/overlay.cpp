@@ -1,10 +1,28 @@
-/* The text over the window of `gtx view`: status, progress, help. */
-#include "cli/view/legend.hpp"
+/* What lies over the picture of `gtx view`: contours; text: status, legend, progress, help. */
+#include "cli/view/contours.hpp"
 #include "cli/view/viewer.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace gtx {
+
+/* Blended on the CPU, as those of pictures are. */
+void Viewer::draw_lines()
+{
+    const size_t count = size_t(width) * size_t(height);
+    Vector<uint8_t> color(4 * count);
+    Vector<float> depth(count);
+    gtx_framebuffer_read_color(&scene_renderer->gl, &target, color.data());
+    gtx_framebuffer_read_depth(&scene_renderer->gl, &target, depth.data());
+    for (float &d : depth)
+        d = d < 1 ? gtx_camera_distance(view.projection, 0, d)
+                  : std::numeric_limits<float>::infinity();
+    draw_contours(contours_of(scene, 0), scene, view, depth, color);
+    gtx_error error;
+    require_ok(gtx_framebuffer_write_color(&scene_renderer->gl, &target, color.data(), &error),
+               error);
+}
 
 static std::string format_bytes(uint64_t bytes)
 {
@@ -84,6 +102,14 @@ void Viewer::add_help(gtx_shapes &shapes, float dot)
     gtx_text_add(&shapes, x, y, &style, lines.c_str());
 }
 
+Legend Viewer::legend() const
+{
+    Legend out = legend_of(scene, debug);
+    if (contours)
+        out.entries.push_back(contours_legend(contours_of(scene, 0).step));
+    return out;
+}
+
 void Viewer::draw_overlay()
 {
     const float dot = float(std::max(1, std::min(height / 300, width / 400)));
@@ -92,7 +118,7 @@ void Viewer::draw_overlay()
     if (text)
         add_status(shapes, dot);
     if (text && !loader.busy())
-        add_legend(shapes, uint32_t(width), uint32_t(height), legend_of(scene, debug));
+        add_legend(shapes, uint32_t(width), uint32_t(height), legend());
     if (loader.busy())
         add_progress(shapes, dot);
     if (help)

@@ -24,6 +24,7 @@ const Viewer::Key Viewer::keys[] = {
     {'P', "a colour a patch", [](Viewer &v) { v.toggle(DebugView::PATCHES); }},
     {'N', "normals as colours", [](Viewer &v) { v.toggle(DebugView::NORMALS); }},
     {'B', "boxes of the patches", [](Viewer &v) { v.boxes = !v.boxes; }},
+    {'C', "contours: lines of equal height", [](Viewer &v) { v.contours = !v.contours; }},
     {'O', "light fixed, or with the camera", [](Viewer &v) { v.fixed_light = !v.fixed_light; }},
     {'G', "walk, fly, or orbit", [](Viewer &v) { v.change_motion(); }},
     {'S', "save a picture, but on foot: back",
@@ -277,6 +278,8 @@ void Viewer::draw_frame()
     (shows_source ? *source_renderer : *scene_renderer).draw(view, debug);
     if (boxes)
         scene_renderer->draw_boxes(view);
+    if (contours)
+        draw_lines();
     gl.Finish(); /* or the time would be that of giving orders */
     const double took = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     milliseconds = milliseconds > 0 ? 0.8 * milliseconds + 0.2 * took : took;

@@ -1,6 +1,7 @@
 /* The window of `gtx view`: what it shows, its keys, its text. */
 #pragma once
 
+#include "cli/view/legend.hpp"
 #include "cli/view/loader.hpp"
 #include "cli/view/scene_renderer.hpp"
 #include "cli/view/walk.hpp"
@@ -50,7 +51,7 @@ private:
     struct Facts {
         uint64_t triangles = 0, patches = 0, bytes = 0;
     };
-    static const Key keys[14];
+    static const Key keys[15];
     static const Method methods[5];
     void press(char key);
     void toggle(DebugView view);
@@ -69,7 +70,9 @@ private:
     bool walk(char key, double seconds);
     void walk_by_hand();
     void draw_frame();
+    void draw_lines();
     void draw_overlay();
+    Legend legend() const;
     void add_status(gtx_shapes &shapes, float dot);
     void add_progress(gtx_shapes &shapes, float dot);
     void add_help(gtx_shapes &shapes, float dot);
@@ -96,8 +99,8 @@ private:
     gtx_view view = {};
     size_t method;              /* in the table of methods */
     DebugView debug = DebugView::NONE;
-    bool boxes = false, help = false, text = true, fixed_light = false, wants_picture = false;
-    bool minimised = false;
+    bool boxes = false, contours = false, help = false, text = true, fixed_light = false;
+    bool wants_picture = false, minimised = false;
     double milliseconds = 0;    /* of a frame, lately */
     int code = 0;
 };
