@@ -236,6 +236,7 @@ static void draw_patches(const gtx_draw_call *call, const run *r, uint32_t insta
     gtx_plan *plan = &call->planner->plan;
     const gtx_lod_meshes *lods = &r->model->lods;
     const gtx_instance_data *placed = &call->planner->instances[instance];
+    gtx_occlusion_end(&call->planner->occlusion);
     gtx_plan_patches(call, r->model, placed, levels_to_mix(call, r), edited_only);
     if (r->way != GTX_DRAW_CAST && gtx_blocks_fill(call, r->model, placed))
         draw_grids(call, r, instance);

@@ -20,11 +20,16 @@ enum { GTX_GRID_MAPPED = 1, GTX_GRID_TRIMMED = 2, GTX_GRID_BEHIND = 4, GTX_GRID_
 
 /* What is drawn of one instance: vertices, and corners of triangles by their looks. */
 typedef struct gtx_grids {
-    gtx_scratch vertices, indices[GTX_GRID_LOOKS], slots, covers;
+    gtx_scratch vertices, indices[GTX_GRID_LOOKS], slots, covers, shown;
     uint32_t vertex_count, index_count[GTX_GRID_LOOKS];
     gtx_rtin_triangle triangles[GTX_RTIN_TRIANGLES];
     uint64_t drawn;           /* triangles so far: tests look at them */
 } gtx_grids;
+
+/* How much they hold. */
+typedef struct gtx_grids_state {
+    uint32_t vertices, indices[GTX_GRID_LOOKS];
+} gtx_grids_state;
 
 /* refine.c: a patch while its triangles are found. */
 typedef struct gtx_refining {
@@ -52,9 +57,9 @@ gtx_refining gtx_refine(const gtx_frustum *f, const gtx_model *model, uint32_t p
 /* Adds the triangles of a block. False without memory. */
 bool gtx_refine_block(const gtx_refining *r, uint32_t column, uint32_t row);
 
-/* blocks.c: takes those patches out of the planner's plan that are drawn so, and fills its grids
- * with the blocks of theirs that are in view and may face the eye, in the order of the plan.
- * Without memory they are cast; it is false when none can be drawn so. */
+/* mix.c: takes those patches out of the planner's plan that are drawn so, and those that they hide,
+ * and fills its grids with the blocks of theirs that are in view and may face the eye, in the order
+ * of the plan. Without memory they are cast; it is false when none can be drawn so. */
 bool gtx_blocks_fill(const gtx_draw_call *draw, const gtx_model *model,
                      const gtx_instance_data *placed);
 

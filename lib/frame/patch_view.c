@@ -152,6 +152,17 @@ static void put_patch(const gtx_patch_view *v, const float (*record)[4],
     put_deviation(record + GTX_RECORD_DEVIATION, out[GTX_TILE_PATCH_DEVIATION] + 2);
 }
 
+void gtx_camera_over_patch(const gtx_camera_rows *c, const float (*record)[4], gtx_patch_view *v)
+{
+    for (int a = 0; a < 4; ++a) { /* the origin, then the axes */
+        const float *from = record[GTX_RECORD_ORIGIN + a];
+        const double p[3] = {from[0], from[1], from[2]};
+        for (int k = 0; k < 3; ++k)
+            v->row[k][(a + 3) % 4] = (float)dot4(c->row[k], p, a == 0);
+        v->near[(a + 3) % 4] = (float)dot4(c->near, p, a == 0);
+    }
+}
+
 gtx_patch_view gtx_patch_view_of(const gtx_camera_rows *c, const gtx_model *model,
                                  const gtx_instance_data *placed, const gtx_plan_entry *entry,
                                  gtx_tile_patch out)
@@ -163,13 +174,7 @@ gtx_patch_view gtx_patch_view_of(const gtx_camera_rows *c, const gtx_model *mode
                         .patch = entry->patch, .level = entry->level,
                         .two_sided = record[GTX_RECORD_TWO_SIDED][3] > 0,
                         .perspective = c->perspective};
-    for (int a = 0; a < 4; ++a) { /* the origin, then the axes */
-        const float *from = record[GTX_RECORD_ORIGIN + a];
-        const double p[3] = {from[0], from[1], from[2]};
-        for (int k = 0; k < 3; ++k)
-            v.row[k][(a + 3) % 4] = (float)dot4(c->row[k], p, a == 0);
-        v.near[(a + 3) % 4] = (float)dot4(c->near, p, a == 0);
-    }
+    gtx_camera_over_patch(c, record, &v);
     for (int k = 0; k < 3; ++k) {
         const float *to_grid = record[GTX_RECORD_TO_GRID + k];
         const double row[4] = {to_grid[0], to_grid[1], to_grid[2], to_grid[3]};

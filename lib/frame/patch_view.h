@@ -36,6 +36,8 @@ typedef struct gtx_patch_view {
 /* Fills `place` but for where the heads are. */
 gtx_camera_rows gtx_camera_rows_of(const gtx_draw_call *draw, const gtx_instance_data *placed,
                                    float place[GTX_PLACE_ROWS][4]);
+/* Takes rows and near plane to a patch's grid space. */
+void gtx_camera_over_patch(const gtx_camera_rows *c, const float (*record)[4], gtx_patch_view *v);
 /* Sets a patch up at a level, and writes its record. */
 gtx_patch_view gtx_patch_view_of(const gtx_camera_rows *c, const gtx_model *model,
                                  const gtx_instance_data *placed, const gtx_plan_entry *entry,

@@ -3,6 +3,7 @@
 #define GTX_FRAME_PLANNER_H
 
 #include "frame/grid.h"
+#include "frame/occlusion.h"
 #include "frame/plan.h"
 #include "frame/tiles.h"
 #include "frame/view.h"
@@ -20,6 +21,7 @@ struct gtx_planner {
     gtx_plan plan;            /* of one instance at a time, and so are tiles and grids */
     gtx_tiles tiles;
     gtx_grids grids;
+    gtx_occlusion occlusion;  /* of them */
     gtx_draw_call call;       /* the frame begun last */
     gtx_constants constants;  /* of its draws, one at a time */
 };

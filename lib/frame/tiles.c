@@ -52,11 +52,14 @@ static bool find_slabs(gtx_planner *planner, const gtx_camera_rows *c, const gtx
         const gtx_plan_entry *entry = &plan->entries[i];
         const gtx_patch_view v =
             gtx_patch_view_of(c, model, placed, entry, records[entry->patch]);
+        const gtx_patch_view over =
+            gtx_occlusion_view(&planner->occlusion, model->records[entry->patch]);
         for (uint32_t k = 0; k < v.count; ++k) {
             const gtx_slab *slab = &v.slabs[k];
             gtx_visible_slab *out = &visible[t->visible_count];
             if (slab->low[0] > slab->high[0] || gtx_patch_view_faces_away(&v, slab) ||
-                !gtx_project_slab(c, &v, slab, out))
+                !gtx_project_slab(c, &v, slab, out) ||
+                gtx_is_slab_hidden(&planner->occlusion, &over, slab))
                 continue;
             gtx_patch_view_put_slab(&v, slab, GTX_TILE_PATCH_TEXELS * v.patch,
                                     slabs[t->visible_count]);

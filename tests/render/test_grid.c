@@ -142,6 +142,33 @@ static void only_what_may_be_seen(void **state)
     subject_close(s, &shown);
 }
 
+/* What lies behind grids is not drawn, and the picture stays the same to the last bit: of a sphere
+ * that shows its inside through a hole, and of bumps. Without the viewport's width nothing is
+ * hidden. */
+static void nothing_shows_that_is_hidden(void **state)
+{
+    STAGE_OR_SKIP(state);
+    gtx_asset *const open = fixture_sphere_without(radius, TEXELS, 16, 5);
+    subject shown = subject_open(
+        s, with_lod_meshes(open, NULL, 0, GTX_PATCH_TWO_SIDED, LOD_PLAIN));
+    uint64_t all = 0, left = 0;
+    for (int turn = 0; turn < 24; ++turn) {
+        gtx_view view = turn % 2 ? standing((float)turn)
+                                 : view_from(shown.asset, 61.0f * (float)turn,
+                                             15.0f * (float)(turn % 11 - 5), 1.4f);
+        view.max_error = 0.2f;
+        all += triangles_of(s, &view, &shown);
+        second = first;
+        view.viewport_width = STAGE_WIDTH;
+        left += triangles_of(s, &view, &shown);
+        assert_memory_equal(first.color, second.color, sizeof first.color);
+        assert_memory_equal(first.depth, second.depth, sizeof first.depth);
+    }
+    subject_close(s, &shown);
+    if (!left || 10 * left > 9 * all)
+        fail_msg("%llu of %llu triangles", (unsigned long long)left, (unsigned long long)all);
+}
+
 /* What a grid's triangle takes decides between grids and rays. A grid beside what is cast hides
  * nothing from rays: rather than a few grids there are none. */
 static void few_grids_are_none(void **state)
@@ -238,6 +265,7 @@ int main(void)
         cmocka_unit_test(passes_agree),
         cmocka_unit_test(coarser_keeps_the_error),
         cmocka_unit_test(only_what_may_be_seen),
+        cmocka_unit_test(nothing_shows_that_is_hidden),
         cmocka_unit_test(few_grids_are_none),
         cmocka_unit_test(ways_meet_without_a_hole),
         cmocka_unit_test(two_sided_patches_take_few_triangles),
