@@ -1,8 +1,9 @@
 /* Holes, walls, leaks, silhouettes, depth and shading of an asset against its source. */
+#include "measure/distribution.hpp"
 #include "measure/look.hpp"
-#include "measure/sample.hpp"
 
 #include <algorithm>
+#include <mutex>
 
 namespace gtx {
 
@@ -10,28 +11,37 @@ namespace gtx {
 static const double DETAIL_PIXELS = 0.5;
 static const uint32_t DETAIL_SIZES = 5, MIN_SIZE = 16;
 
-/* The figures of level 0 that come from lists: figures[view]. */
-static void summarise(const Vector<Figures> &figures, CompareReport &report)
+/* The figures of level 0 that are means and distributions: figures[view]. */
+static void summarise(const Vector<Figures> &figures, const Distribution &depths,
+                      const Distribution &angles, CompareReport &report)
 {
-    Vector<float> depth, angle;
     double depth_square = 0, angle_sum = 0, color_square = 0, pixels = 0;
     for (const Figures &f : figures) {
-        depth.insert(depth.end(), f.depth.begin(), f.depth.end());
-        angle.insert(angle.end(), f.angle.begin(), f.angle.end());
+        depth_square += f.depth_square;
+        angle_sum += f.angle_sum;
         color_square += f.color_square;
         pixels += double(f.either);
     }
-    for (float d : depth) {
-        depth_square += double(d) * d;
-        report.depth_max = std::max(report.depth_max, double(d));
-    }
-    for (float a : angle)
-        angle_sum += a;
-    report.depth_rms = depth.empty() ? 0 : std::sqrt(depth_square / double(depth.size()));
-    report.depth_p99 = percentile_99(depth);
-    report.normal_mean_deg = angle.empty() ? 0 : angle_sum / double(angle.size());
-    report.normal_p99_deg = percentile_99(angle);
+    const double count = double(std::max<uint64_t>(depths.count(), 1));
+    report.depth_rms = std::sqrt(depth_square / count);
+    report.depth_p99 = depths.percentile_99();
+    report.depth_max = depths.most();
+    report.normal_mean_deg = angle_sum / double(std::max<uint64_t>(angles.count(), 1));
+    report.normal_p99_deg = angles.percentile_99();
     report.psnr_db = 10 * std::log10(255. * 255. * 3 * pixels / color_square);
+}
+
+/* Adds what a view lists, and keeps but its sums. */
+static void gather(Figures &figures, Distribution &depths, Distribution &angles)
+{
+    for (float depth : figures.depth)
+        figures.depth_square += double(depth) * double(depth);
+    for (float angle : figures.angle)
+        figures.angle_sum += double(angle);
+    depths.add(figures.depth);
+    angles.add(figures.angle);
+    Vector<float>().swap(figures.depth);
+    Vector<float>().swap(figures.angle);
 }
 
 /* The figures that are sums; returns the least silhouette IoU of a view. */
@@ -83,6 +93,8 @@ CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOpt
     const Vector<Scene> scenes = make_scenes(asset, all.extent, options);
     const size_t views = scenes[0].views.size();
     Vector<Vector<Figures>> figures(scenes.size(), Vector<Figures>(views));
+    Distribution depths, angles;
+    std::mutex gathering;
     task.parallel(views, [&](size_t v) {
         MeshImage image;
         uint32_t size = 0;
@@ -92,6 +104,10 @@ CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOpt
                 image = rasterise(mesh, view);
             size = view.size;
             measure_view(all, scenes[s], uint32_t(v), image, figures[s][v]);
+            if (!scenes[s].appearance)
+                continue;
+            const std::lock_guard<std::mutex> lock(gathering);
+            gather(figures[s][v], depths, angles);
         }
     }, 0, options.surface ? 0.8 : 1);
 
@@ -120,7 +136,7 @@ CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOpt
             report.leak_pixels = level.leak_pixels;
             report.silhouette_iou = level.silhouette_iou;
             report.silhouette_iou_min = least;
-            summarise(figures[s], report);
+            summarise(figures[s], depths, angles, report);
         }
     }
     if (options.surface) {

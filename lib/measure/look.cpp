@@ -113,18 +113,20 @@ static bool shows_as_deep(const MeshImage &close, const Suspect &s)
 static bool shows_as_near(const MeshImage &close, const Suspect &s)
 {
     return std::any_of(close.depth.begin(), close.depth.end(),
-                       [&](float depth) { return depth - s.hit.t <= s.tolerance; });
+                       [&](float depth) { return depth <= s.hit.t + s.tolerance; });
 }
 
 /* Suspects are looked at more closely, so many at a time that their images take little room. */
 void Look::faults()
 {
-    constexpr size_t AT_ONCE = 4096;
+    constexpr size_t AT_ONCE = 1024;
     for (size_t first = 0; first < suspects.size(); first += AT_ONCE) {
         const size_t end = std::min(first + AT_ONCE, suspects.size());
-        Vector<std::array<uint32_t, 2>> pixels;
-        for (size_t k = first; k < end; ++k)
-            pixels.push_back({suspects[k].i, suspects[k].j});
+        Vector<ClosePixel> pixels;
+        for (size_t k = first; k < end; ++k) {
+            const Suspect &s = suspects[k];
+            pixels.push_back({s.i, s.j, s.wall ? double(s.hit.t) + s.tolerance : INFINITY});
+        }
         const Vector<MeshImage> close = rasterise_close(all.mesh, view, pixels);
         for (size_t k = first; k < end; ++k)
             if (!(suspects[k].wall ? shows_as_near : shows_as_deep)(close[k - first], suspects[k]))

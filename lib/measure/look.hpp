@@ -10,9 +10,9 @@ namespace gtx {
  * that they do not depend on the threads. */
 struct Figures {
     uint64_t surface = 0, holes = 0, walls = 0, leaks = 0, both = 0, either = 0;
-    /* At level 0 only. */
+    /* At level 0 only; the lists until they are added up. */
     Vector<float> depth, angle;
-    double color_square = 0;
+    double depth_square = 0, angle_sum = 0, color_square = 0;
     Vector<PixelFault> faults;
 };
 

@@ -118,15 +118,19 @@ MeshImage rasterise(const Mesh &mesh, const View &view)
 }
 
 Vector<MeshImage> rasterise_close(const Mesh &mesh, const View &view,
-                                  const Vector<std::array<uint32_t, 2>> &pixels)
+                                  const Vector<ClosePixel> &pixels)
 {
     View close = view;
     close.size = CLOSE_SIDE;
     close.pixel = view.pixel / CLOSER;
     /* Which of the pixels one is, NO_HIT for none. */
     Vector<uint32_t> which(size_t(view.size) * view.size, NO_HIT);
-    for (size_t k = 0; k < pixels.size(); ++k)
-        which[size_t(pixels[k][1]) * view.size + pixels[k][0]] = uint32_t(k);
+    uint32_t first_row = view.size, end_row = 0;
+    for (size_t k = 0; k < pixels.size(); ++k) {
+        which[size_t(pixels[k].j) * view.size + pixels[k].i] = uint32_t(k);
+        first_row = std::min(first_row, pixels[k].j);
+        end_row = std::max(end_row, pixels[k].j + 1);
+    }
 
     Vector<MeshImage> images(pixels.size(), blank_image(CLOSE_SIDE));
     const Vector<Vec3d> projected = project(mesh, view);
@@ -136,12 +140,13 @@ Vector<MeshImage> rasterise_close(const Mesh &mesh, const View &view,
             v[k] = projected[mesh.triangles[t][k]];
         const auto x = std::minmax({v[0].x, v[1].x, v[2].x});
         const auto y = std::minmax({v[0].y, v[1].y, v[2].y});
+        const double nearest = double(float(std::min({v[0].z, v[1].z, v[2].z})));
         const uint32_t end_x = end_pixel(x.second + 1, view.size);
-        const uint32_t end_y = end_pixel(y.second + 1, view.size);
-        for (uint32_t j = first_pixel(y.first - 1); j < end_y; ++j)
+        const uint32_t end_y = std::min(end_pixel(y.second + 1, view.size), end_row);
+        for (uint32_t j = std::max(first_pixel(y.first - 1), first_row); j < end_y; ++j)
             for (uint32_t i = first_pixel(x.first - 1); i < end_x; ++i) {
                 const uint32_t at = which[size_t(j) * view.size + i];
-                if (at == NO_HIT)
+                if (at == NO_HIT || nearest > pixels[at].deepest)
                     continue;
                 for (int k = 0; k < 3; ++k)
                     near[k] = {(v[k].x - i - 0.5) * CLOSER + 0.5 * CLOSE_SIDE,

@@ -58,10 +58,15 @@ struct MeshImage {
 MeshImage rasterise(const Mesh &mesh, const View &view);
 
 /* The square that a pixel's centre and those of its neighbours span, so many times finer:
- * CLOSE_SIDE x CLOSE_SIDE fragments for each of these pixels. */
+ * CLOSE_SIDE x CLOSE_SIDE fragments for each of these pixels, without triangles that lie all
+ * deeper than a pixel asks for. */
 constexpr uint32_t CLOSER = 8, CLOSE_SIDE = 2 * CLOSER + 1;
+struct ClosePixel {
+    uint32_t i, j;
+    double deepest;
+};
 Vector<MeshImage> rasterise_close(const Mesh &mesh, const View &view,
-                                  const Vector<std::array<uint32_t, 2>> &pixels);
+                                  const Vector<ClosePixel> &pixels);
 
 /* Normal (unit, towards the eye's side) and colour of the source where pixel (i, j) shows it: those
  * of its materials, textures included, else those of its corners. */

@@ -10,6 +10,7 @@ extern "C" {
 
 #include "asset/asset.h"
 #include "common/fixture.h"
+#include "measure/distribution.hpp"
 #include "measure/measure.hpp"
 #include "measure/view.hpp"
 #include "meshes.hpp"
@@ -217,6 +218,34 @@ static void can_be_cancelled_and_refuses_nothing_to_measure(void **)
     gtx_close(asset);
 }
 
+/* Every pixel of every view has a depth and an angle: lists of all would be 16 MB here. */
+static void pixels_take_no_room(void **)
+{
+    gtx_asset *asset = fixture_sphere(2, 96, 16);
+    gtx_limits limits = {};
+    limits.memory = 9 << 20;
+    Task task(1, nullptr, nullptr, {}, {}, limits);
+    MemoryScope scope(task.limits);
+    CompareReport r = compare(asset, sphere_mesh(2, 40), views_of(192), task);
+    assert_true(r.surface_pixels > 26 * 24000);
+    gtx_close(asset);
+}
+
+static void percentiles_of_a_distribution(void **)
+{
+    Distribution distribution;
+    assert_true(distribution.percentile_99() == 0);
+    Vector<float> values;
+    for (int i = 1; i <= 1000; ++i)
+        values.push_back(float(i) / 1000);
+    distribution.add(values);
+    assert_float_equal(distribution.percentile_99(), 0.99, 0.99 / 1024);
+    assert_true(distribution.most() == 1 && distribution.count() == 1000);
+    Distribution zero;
+    zero.add(Vector<float>(7, 0.f));
+    assert_true(zero.percentile_99() == 0 && zero.count() == 7);
+}
+
 int main()
 {
     const struct CMUnitTest tests[] = {
@@ -228,6 +257,8 @@ int main()
         cmocka_unit_test(two_sided_fields),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(far_from_the_origin),
+        cmocka_unit_test(pixels_take_no_room),
+        cmocka_unit_test(percentiles_of_a_distribution),
         cmocka_unit_test(can_be_cancelled_and_refuses_nothing_to_measure),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -77,12 +77,15 @@ static void slits_are_seen_from_close(void **)
             mesh.triangles.push_back({at, at + 3, at + 2});
         }
         const MeshImage image = rasterise(mesh, view);
-        const Vector<std::array<uint32_t, 2>> pixels = {{15, 16}, {16, 9}, {9, 16}};
+        const Vector<ClosePixel> pixels = {{15, 16, INFINITY}, {16, 9, INFINITY},
+                                           {9, 16, INFINITY}, {10, 16, 0.25}};
         const Vector<MeshImage> close = rasterise_close(mesh, view, pixels);
-        assert_int_equal(close.size(), 3);
+        assert_int_equal(close.size(), 4);
+        const auto &shown = close[3].triangle; /* all is deeper than it asks for */
+        assert_int_equal(std::count(shown.begin(), shown.end(), NO_HIT), CLOSE_SIDE * CLOSE_SIDE);
         for (size_t k = 0; k < 3; ++k) {
             const size_t centre = CLOSER * CLOSE_SIDE + CLOSER;
-            const size_t pixel = pixels[k][1] * 32 + pixels[k][0];
+            const size_t pixel = pixels[k].j * 32 + pixels[k].i;
             assert_int_equal(image.front[pixel], 1);
             assert_int_equal(close[k].triangle[centre], image.triangle[pixel]);
             assert_float_equal(close[k].depth[centre], image.depth[pixel], 1e-6);

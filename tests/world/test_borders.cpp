@@ -138,7 +138,7 @@ size_t holes_in(const Scene &scene, const View &view, const Vector<float> &depth
                 }
             if (!front || seen - deepest <= tolerance)
                 continue;
-            const MeshImage close = rasterise_close(scene.source, view, {{i, j}})[0];
+            const MeshImage close = rasterise_close(scene.source, view, {{i, j, INFINITY}})[0];
             bool as_deep = false;
             for (size_t at = 0; at < close.depth.size(); ++at)
                 as_deep = as_deep || !close.front[at] || seen - close.depth[at] <= tolerance;
