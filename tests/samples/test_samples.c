@@ -202,10 +202,10 @@ static void vulkan_draws_into_windows(void **state)
 {
     (void)state;
     if (run("test -x $S/vulkan_window") ||
-        !run("$S/vulkan_window $T/lod.gtx --headless $T/x.png 2>&1 | grep -q 'is no Vulkan'"))
+        !run("$S/vulkan_window $T/lod.gtx --headless $T/no-window.png 2>&1 | grep -q 'is no Vulkan'"))
         skip();
     draws_picture_of("vulkan_window", "$T/lod.gtx");
-    assert_int_equal(run("$S/vulkan_window $T/nothing.gtx --headless $T/x.png 2>/dev/null"), 1);
+    assert_int_equal(run("$S/vulkan_window $T/nothing.gtx --headless $T/none.png 2>/dev/null"), 1);
     assert_int_equal(run("DISPLAY= WAYLAND_DISPLAY= $S/vulkan_window $T/lod.gtx --frames 1 "
                          "2>/dev/null"), 1);
     if (run("command -v Xvfb >/dev/null"))
