@@ -141,7 +141,7 @@ $(out)/gen/commit.h: .FORCE
 	echo "#define GTX_COMMIT \"$$commit\"" | cmp -s - $@ || \
 	echo "#define GTX_COMMIT \"$$commit\"" > $@
 $(out)/lib/cli/version.o: $(out)/gen/commit.h
-.FORCE:
+.PHONY: .FORCE
 
 shaders := $(sort $(wildcard shaders/*.glsl shaders/*.vert shaders/*.frag))
 $(out)/gen/shader_sources.c: $(shaders) Makefile

@@ -51,6 +51,23 @@ static void help_is_exit_0(void **state)
     expect_text("unknown verb 'frobnicate'");
 }
 
+/* Of a checkout, the commit that it stands at, however it was built before. */
+static void version_tells_the_commit(void **state)
+{
+    (void)state;
+    char commit[64] = "";
+    FILE *git = popen("test \"$(git rev-parse --show-toplevel 2>/dev/null)\" = \"$PWD\" && "
+                      "git rev-parse --short=12 HEAD", "r");
+    assert_non_null(git);
+    const char *line = fgets(commit, sizeof commit, git);
+    pclose(git);
+    if (!line)
+        skip();
+    commit[strcspn(commit, "\n")] = '\0';
+    expect(gtx("--version"), 0);
+    expect_text(commit);
+}
+
 /* What bash would offer for the last of the words, which follow the command. */
 static void completes(const char *words, const char *wanted)
 {
@@ -307,6 +324,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(usage_is_exit_1),
         cmocka_unit_test(help_is_exit_0),
+        cmocka_unit_test(version_tells_the_commit),
         cmocka_unit_test(bash_completes_verbs_options_and_values),
         cmocka_unit_test(a_missing_file_is_exit_2),
         cmocka_unit_test(bad_models_are_exit_3_and_write_nothing),
