@@ -52,7 +52,8 @@ drop_headers := $(wildcard lib/*/*.h lib/*/*/*.h lib/*/*.def shaders/*.glsl)
 # $(call drop_head,WHAT): its first lines.
 drop_head = { echo '/* geotex $(VERSION), $(1)'; echo ' *'; sed 's/^/ * /; s/ *$$//' LICENSE; \
               echo ' */'; }
-amalgamation: $(drop)/geotex.c ## geotex.c, geotex.h and geotex_gl.h, to drop into an engine
+drop_sources_made = $(drop)/geotex.c $(if $(vulkan),$(drop)/geotex_vulkan.c)
+amalgamation: $(drop_sources_made) ## geotex.c and headers, GL and Vulkan too, to drop into an engine
 	@echo $(drop)
 
 $(drop)/geotex.h: $(foreach h,geotex edit solid stream view frame,include/geotex/$(h).h) LICENSE
@@ -72,6 +73,19 @@ $(drop)/geotex.c: lib/package/amalgamate.awk $(drop_sources) $(drop_headers) $(d
 	  echo '#include "geotex_gl.h"'; echo '#ifdef __clang__'; \
 	  echo '#pragma clang diagnostic ignored "-Wunused-function" /* inline ones of headers */'; \
 	  echo '#endif'; awk -f $< $(drop_sources); } > $@.tmp && mv $@.tmp $@
+
+# Drawing with Vulkan beside it, its SPIR-V inside; where there is glslang.
+drop_vulkan := $(filter-out %/write_texts.c,$(wildcard lib/vulkan/*.c)) $(out)/gen/spirv.c
+$(drop)/geotex_vulkan.h: include/geotex/vulkan.h LICENSE
+	@mkdir -p $(@D)
+	$(Q){ $(call drop_head,drawing with Vulkan); \
+	  sed 's/^#include <geotex.*/#include "geotex.h"/' $<; } > $@
+$(drop)/geotex_vulkan.c: lib/package/amalgamate.awk $(drop_vulkan) $(drop_headers) \
+    $(drop)/geotex_vulkan.h
+	$(say) GEN $@
+	$(Q){ $(call drop_head,drawing with Vulkan. Compile as C11 beside geotex.c.); \
+	  echo '#define GTX_BUILDING'; echo '#include "geotex_vulkan.h"'; \
+	  awk -f $< $(drop_vulkan); } > $@.tmp && mv $@.tmp $@
 
 # The same bytes from the same commit, wherever and whenever.
 dist_name := geotex-$(VERSION)

@@ -49,6 +49,9 @@ static void one_file_compiles_anywhere(void **state)
         {"gcc", "g++"}, {"clang", "clang++"},
         {"x86_64-w64-mingw32-gcc", "x86_64-w64-mingw32-g++"}, {"gcc-11", "g++-11"}};
     unsigned compiled = 0;
+    assert_true(shell("printf '#include \"geotex_vulkan.h\"\\nint main() { gtx_vk *vk; return "
+                      "gtx_vk_create(nullptr, &vk, nullptr) != GTX_ERROR_ARGUMENT; }\\n' "
+                      ">\"$DROP/vulkan.cpp\""));
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; ++i) {
         setenv("C_COMPILER", pairs[i][0], 1);
         setenv("CXX_COMPILER", pairs[i][1], 1);
@@ -60,7 +63,18 @@ static void one_file_compiles_anywhere(void **state)
                           "-DDROPPED -I\"$GTX_BUILD/amalgamation\" -c tests/consumer/runtime.c "
                           "-o \"$DROP/runtime.o\" && $CXX_COMPILER \"$DROP/runtime.o\" "
                           "\"$DROP/geotex.o\" -lm -o \"$DROP/dropped\""));
-        print_message("# %s\n", pairs[i][0]);
+        assert_true(shell("$C_COMPILER --version | head -1"));
+        /* The face of Vulkan beside it, whose headers lie where those of the system do. */
+        assert_true(shell("test ! -e \"$GTX_BUILD/amalgamation/geotex_vulkan.c\" || { "
+                          "$C_COMPILER -std=c11 -O0 -Wall -Wextra -Wpedantic -Werror "
+                          "-idirafter /usr/include -c "
+                          "\"$GTX_BUILD/amalgamation/geotex_vulkan.c\" -o \"$DROP/vulkan.o\" && "
+                          "$CXX_COMPILER -std=c++17 -Wall -Wextra -Wpedantic -Werror "
+                          "-idirafter /usr/include -I\"$GTX_BUILD/amalgamation\" "
+                          "\"$DROP/vulkan.cpp\" \"$DROP/vulkan.o\" \"$DROP/geotex.o\" -lm "
+                          "-o \"$DROP/by_vulkan\"; }"));
+        if (i == 0)
+            assert_true(shell("test ! -e \"$DROP/by_vulkan\" || \"$DROP/by_vulkan\""));
         ++compiled;
     }
     assert_true(compiled > 0);
