@@ -53,7 +53,7 @@ drop_headers := $(wildcard lib/*/*.h lib/*/*/*.h lib/*/*.def shaders/*.glsl)
 drop_head = { echo '/* geotex $(VERSION), $(1)'; echo ' *'; sed 's/^/ * /; s/ *$$//' LICENSE; \
               echo ' */'; }
 drop_sources_made = $(drop)/geotex.c $(if $(vulkan),$(drop)/geotex_vulkan.c)
-amalgamation: $(drop_sources_made) ## geotex.c and headers, GL and Vulkan too, to drop into an engine
+amalgamation: $(drop_sources_made) ## geotex.c, .h, GL's and Vulkan's faces, to drop into an engine
 	@echo $(drop)
 
 $(drop)/geotex.h: $(foreach h,geotex edit solid stream view frame,include/geotex/$(h).h) LICENSE
