@@ -66,6 +66,7 @@ static void cast_ranges(const gtx_draw_call *call, const run *r, bool box, uint3
     draw.cull = box ? GTX_CULL_FRONT : GTX_CULL_BACK;
     draw.vertices = GTX_BUFFER_PROXY_VERTICES;
     draw.indices = GTX_BUFFER_PROXY_INDICES;
+    draw.index_size = r->model->proxy_index_size;
     draw.ranges = ranges;
     draw.range_count = range_count;
     if (range_count)

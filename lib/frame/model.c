@@ -5,6 +5,7 @@
 #include "base/hash.h"
 
 #include <math.h>
+#include <string.h>
 
 uint64_t gtx_model_layout(const gtx_asset *asset)
 {
@@ -93,6 +94,18 @@ void gtx_model_cells_at(const gtx_model *model, const gtx_patch *patch, uint32_t
             (high && level == 1 ? width : 0);
     at[1] = (patch->rect[1] >> up) +
             model->page_height * (high ? level > 1 : level < 2 ? level : 2);
+}
+
+void gtx_model_pack_indices(const gtx_model *model, const uint32_t *indices, uint32_t count,
+                            void *out)
+{
+    uint8_t *to = out;
+    for (uint32_t i = 0; i < count; ++i, to += model->proxy_index_size) {
+        const uint32_t wide = indices[i];
+        const uint16_t narrow = (uint16_t)wide;
+        memcpy(to, model->proxy_index_size == 2 ? (const void *)&narrow : &wide,
+               model->proxy_index_size);
+    }
 }
 
 void gtx_model_free_staging(gtx_model *model)

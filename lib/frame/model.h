@@ -67,7 +67,8 @@ struct gtx_model {
     gtx_format formats[UNIT_COUNT];
     gtx_level levels[GTX_MAX_LEVELS];
     uint32_t level_count;
-    gtx_proxies proxies;      /* freed once they are uploaded */
+    gtx_proxies proxies;      /* freed once they are uploaded; indices are packed, ... */
+    uint32_t proxy_index_size; /* ... of so many bytes: 2 where they are below 65535 */
     uint64_t vertex_bytes_sent, index_bytes_sent;
     /* Proxies are in order of their kind, boxes first and then the hulls of each level, and of
      * patches. Where each begins, and the end: kind_count * patch_count + 1. */
@@ -133,6 +134,9 @@ uint32_t gtx_model_cell_rows(const gtx_model *model);
 uint32_t gtx_model_cell_columns(const gtx_model *model);
 void gtx_model_cells_at(const gtx_model *model, const gtx_patch *patch, uint32_t level,
                         uint32_t at[2]);
+/* Writes 32-bit indices of proxies as the model has them, which may be in their place. */
+void gtx_model_pack_indices(const gtx_model *model, const uint32_t *indices, uint32_t count,
+                            void *out);
 /* Bounds and more of all patches, from the facts, slabs and records of each. */
 void gtx_model_sum_up(gtx_model *model);
 

@@ -66,6 +66,8 @@ static gtx_result join_proxies(const making *m, gtx_error *error)
     }
     model->first_vertex[model->kind_count * model->patch_count] = all->vertex_count;
     model->first_index[model->kind_count * model->patch_count] = all->index_count;
+    model->proxy_index_size = all->vertex_count < UINT16_MAX ? 2 : 4;
+    gtx_model_pack_indices(model, all->indices, all->index_count, all->indices);
     return GTX_OK;
 }
 
@@ -269,7 +271,7 @@ gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc,
     }
     gtx_model_sum_up(model);
     const gtx_proxies *proxies = &model->proxies;
-    model->size.geometry += (uint64_t)proxies->index_count * sizeof *proxies->indices +
+    model->size.geometry += (uint64_t)proxies->index_count * model->proxy_index_size +
                             (uint64_t)proxies->vertex_count * sizeof *proxies->vertices +
                             model->lods.vertex_bytes + model->lods.index_bytes;
     *out = model;

@@ -37,7 +37,7 @@ const void *gtx_model_buffer(const gtx_model *model, gtx_buffer buffer, uint64_t
         bytes = model->proxies.vertex_count * (uint64_t)sizeof *model->proxies.vertices;
     } else if (model && buffer == GTX_BUFFER_PROXY_INDICES) {
         data = model->proxies.indices;
-        bytes = model->proxies.index_count * (uint64_t)sizeof *model->proxies.indices;
+        bytes = model->proxies.index_count * (uint64_t)model->proxy_index_size;
     } else if (model && buffer == GTX_BUFFER_LOD_VERTICES) {
         data = model->lods.vertices;
         bytes = model->lods.vertex_bytes;

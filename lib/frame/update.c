@@ -149,9 +149,10 @@ static bool send_proxies(const gtx_sink *sink, const gtx_model *model, gtx_proxi
         if (p->vertex_count)
             sink->bytes(GTX_BUFFER_PROXY_VERTICES, first * sizeof *p->vertices, p->vertices,
                         p->vertex_count * sizeof *p->vertices, sink->user);
+        gtx_model_pack_indices(model, p->indices, room, p->indices);
         if (room)
-            sink->bytes(GTX_BUFFER_PROXY_INDICES, start * sizeof *p->indices, p->indices,
-                        room * sizeof *p->indices, sink->user);
+            sink->bytes(GTX_BUFFER_PROXY_INDICES, (uint64_t)start * model->proxy_index_size,
+                        p->indices, (uint64_t)room * model->proxy_index_size, sink->user);
     }
     return fits;
 }

@@ -112,14 +112,15 @@ static void draw_proxies(const gtx_gl *gl, const gtx_frame_draw *draw)
     gl_size counts[AT_ONCE];
     const void *offsets[AT_ONCE];
     const bool multi = gl->MultiDrawElements && draw->instance_count == 1 && draw->range_count > 1;
+    const gl_enum type = draw->index_size == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
     for (uint32_t i = 0, ready = 0; i < draw->range_count; ++i) {
         counts[ready] = (gl_size)draw->ranges[i].count;
-        offsets[ready] = gtx_gl_offset(draw->ranges[i].first * sizeof(uint32_t));
+        offsets[ready] = gtx_gl_offset((size_t)draw->ranges[i].first * draw->index_size);
         if (!multi) {
-            gl->DrawElementsInstanced(GL_TRIANGLES, counts[0], GL_UNSIGNED_INT, offsets[0],
+            gl->DrawElementsInstanced(GL_TRIANGLES, counts[0], type, offsets[0],
                                       (gl_size)draw->instance_count);
         } else if (++ready == AT_ONCE || i + 1 == draw->range_count) {
-            gl->MultiDrawElements(GL_TRIANGLES, counts, GL_UNSIGNED_INT, offsets, (gl_size)ready);
+            gl->MultiDrawElements(GL_TRIANGLES, counts, type, offsets, (gl_size)ready);
             ready = 0;
         }
     }

@@ -41,7 +41,8 @@ static void allocate_proxies(const gtx_gl *gl, gtx_model *model)
     model->vertices = allocate_buffer(gl, GL_ARRAY_BUFFER, p->vertex_count * sizeof *p->vertices,
                                       GL_DYNAMIC_DRAW, "geotex proxy vertices");
     model->indices = allocate_buffer(gl, GL_ELEMENT_ARRAY_BUFFER,
-                                     p->index_count * sizeof *p->indices, GL_DYNAMIC_DRAW,
+                                     (size_t)p->index_count * model->proxy_index_size,
+                                     GL_DYNAMIC_DRAW,
                                      "geotex proxy indices");
 }
 
@@ -128,7 +129,8 @@ static bool upload_slice(const gtx_gl *gl, gtx_model *model, uint64_t budget)
     upload_bytes(gl, GL_ARRAY_BUFFER, model->vertices, p->vertices,
                  p->vertex_count * sizeof *p->vertices, &model->vertex_bytes_sent, &budget);
     upload_bytes(gl, GL_ELEMENT_ARRAY_BUFFER, model->indices, p->indices,
-                 p->index_count * sizeof *p->indices, &model->index_bytes_sent, &budget);
+                 (uint64_t)p->index_count * model->proxy_index_size, &model->index_bytes_sent,
+                 &budget);
     for (uint32_t i = 0; i < model->level_count; ++i) {
         if (!gtx_is_complete(&model->levels[i]) && budget > 0)
             gtx_upload_rows(gl, model, &model->levels[i], &budget);

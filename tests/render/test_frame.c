@@ -148,6 +148,8 @@ static void check(const gtx_frame_draw *d, void *user)
 {
     const uint64_t *sizes = user;
     const bool grid = d->vertices == GTX_BUFFER_GRID_VERTICES;
+    if (d->indices == GTX_BUFFER_PROXY_INDICES && d->index_size)
+        assert_int_equal(d->index_size, sizes[GTX_BUFFER_PROXY_VERTICES] / 16 < 65535 ? 2 : 4);
     const uint64_t indices = grid ? d->index_bytes : sizes[d->indices];
     assert_in_range(d->first_instance + d->instance_count, 1, COUNT);
     for (uint32_t i = 0; i < d->range_count; ++i) {
