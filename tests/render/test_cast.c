@@ -22,6 +22,9 @@ static void check_shape(stage *s, shape which, uint32_t height_bits)
     const size_t views = which == HIGH ? 1 : sizeof angles / sizeof *angles;
     gtx_info info;
     gtx_get_info(shown.asset, &info);
+    gtx_texture cells;
+    assert_true(gtx_model_texture(shown.model, GTX_SLOT_CELLS, &cells));
+    assert_in_range(cells.height, info.page_height, 8192);
     for (size_t i = 0; i < views; ++i)
         for (uint32_t level = 0; level < info.mip_count; ++level) {
             gtx_camera camera = camera_around(shown.asset);
