@@ -10,7 +10,7 @@ static gtx_asset *build(shape which, uint32_t height_bits)
     case BUMPY: return fixture_bumpy(height_bits, 0);
     case BUMPY_TWO_SIDED: return fixture_bumpy(height_bits, GTX_PATCH_TWO_SIDED);
     case SPHERE: return fixture_sphere(2, 64, height_bits);
-    case HIGH: return fixture_sphere(2, 144, height_bits); /* 3,456 rows: GTX_HIGH_PAGE */
+    case HIGH: return fixture_sphere(2, 552, height_bits); /* 3,312 rows: GTX_HIGH_PAGE */
     }
     return NULL;
 }
