@@ -65,9 +65,12 @@ static Asset open_folder(const char *folder, std::string &about)
         result = gtx_create(&unpacked.desc, &asset, &error);
     }
     gtx::require_ok(result, error);
-    for (const gtx::Warning &warning : unpacked.warnings)
+    for (const gtx::Warning &warning : unpacked.warnings) {
+        if (warning.kind == GTX_WARNING_LOD_DROPPED && lod_levels)
+            continue; /* another one is about to be made */
         if (int code = made_warn(&making, folder, warning.kind, warning.sentence.c_str()))
             throw Told{code};
+    }
     if (zstd_level < 0)
         zstd_level = unpacked.zstd;
     return Asset(asset, gtx_close);

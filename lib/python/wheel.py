@@ -71,7 +71,7 @@ def main(package, libraries, headers, version, out):
     with zipfile.ZipFile(out + ".part", "w", zipfile.ZIP_DEFLATED) as wheel:
         for name, data in content.items():
             entry = zipfile.ZipInfo(name)  # of 1980: no time of today's
-            entry.external_attr = (0o100755 if name.endswith(".so") else 0o100644) << 16
+            entry.external_attr = (0o100755 if name.startswith("geotex/lib/") else 0o100644) << 16
             entry.compress_type = zipfile.ZIP_DEFLATED
             wheel.writestr(entry, data)
     os.replace(out + ".part", out)

@@ -86,7 +86,11 @@ static void what_follows_is_rebuilt(void **state)
     expect_text("heights were edited and normals were not (--rebuild normals)");
     expect(gtx("pack maps -o bent.gtx --rebuild mips,normals,trim"), 0);
     assert_null(strstr(output, "maps-disagree"));
+    expect_text("warning[lod-dropped]");
     expect(gtx("validate bent.gtx"), 0);
+    /* The old LOD mesh is no loss where a new one is made. */
+    expect(gtx("pack maps -o lod.gtx --rebuild mips,normals,trim --lod-levels 2"), 0);
+    assert_null(strstr(output, "lod-dropped"));
     shell("rm -rf again && \"$GTX\" unpack bent.gtx again && "
           "! cmp -s maps/normal-0-0.png again/normal-0-0.png && "
           "cmp -s maps/height-0.png again/height-0.png");

@@ -17,7 +17,7 @@ core='base/test_exact base/test_error base/test_json base/test_limits asset/test
     derive/test_hierarchy derive/test_levels derive/test_proxies edit/test_edit
     edit/test_operations edit/test_combine stream/test_answers stream/test_stream'
 cooker='trace/test_cells trace/test_caster cook/test_content'
-options='vulkan= gdal='
+options='vulkan= gdal= netcdf='
 failed=0
 
 # Packages of a processor, in a folder that compilers take for the root.

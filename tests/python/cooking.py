@@ -131,12 +131,19 @@ class Cooking(unittest.TestCase):
                              for k in range(asset.info.patch_count)) >= 40 * 60 - 25, True)
         size = np.subtract(asset.info.bounds_max, asset.info.bounds_min)
         np.testing.assert_allclose(size[[0, 2]], [2 * 59, 3 * 39], rtol=.01)
+        rocks = grid._replace(property=1 + (values > 0), categories=True)
+        self.assertEqual(geotex.horizons([rocks]).meta["categories"], [1, 2])
         text = "-996 3 2. 2.\n0. 2. 0. 4.\n2 0. 0. 0.\n0 0 0 0 0 0 0\n1 2 3 4 9999900 6\n"
         path = self.folder / "grid.irap"
         path.write_text(text)
         read = geotex.read_grid(path)
         self.assertEqual((read.values.shape, read.spacing), ((3, 2), (2.0, 2.0)))
         np.testing.assert_array_equal(read.values, [[1, 2], [3, 4], [np.nan, 6]])
+        try:  # by the program that the wheel holds, where NetCDF was there to build it
+            read = geotex.read_grid("tests/golden/grids/netcdf4.nc")
+            self.assertEqual((read.values.shape, read.spacing), ((2, 3), (10.0, 20.0)))
+        except geotex.Error as error:
+            self.assertIn("geotex-netcdf is not there", str(error))
         with self.assertRaises(ValueError):
             geotex.horizons([geotex.Grid(np.zeros(4))])
         with self.assertRaises(geotex.Error):

@@ -65,6 +65,7 @@ class Grid(NamedTuple):
     rotation: float = 0.0             # degrees, counter-clockwise
     property: Optional[np.ndarray] = None   # likewise, the values to colour by
     in_degrees: bool = False          # origin and spacing, but not the values: horizons refuses
+    categories: bool = False          # the values to colour by are kinds, which a legend names
 
 
 def _read(report: Any) -> Report:
@@ -263,7 +264,8 @@ def horizons(grids: Sequence[Grid], *, colors: str = "viridis",
         struct.ny, struct.nx = values.shape
         struct.values = ffi.cast("const float *", values.ctypes.data)
         native.fill(struct, dict(origin=grid.origin, spacing=grid.spacing,
-                                 rotation=grid.rotation, in_degrees=grid.in_degrees))
+                                 rotation=grid.rotation, in_degrees=grid.in_degrees,
+                                 categories=grid.categories))
         if grid.property is not None:
             colored = np.ascontiguousarray(grid.property, np.float32)
             if colored.shape != values.shape:
