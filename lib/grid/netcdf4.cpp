@@ -109,7 +109,9 @@ private:
 
 Bytes classic_of_netcdf4(std::string_view bytes, Task &task)
 {
-    constexpr uint64_t LIBRARIES = 256 << 20; /* bytes of addresses that the program starts with */
+    /* Bytes of addresses beside what the job may take: a small file needs 70 MB, so half would do
+     * with these libraries, and at double nothing changes. */
+    constexpr uint64_t LIBRARIES = 256 << 20;
     char path[GTX_MAX_PROGRAM_PATH];
     if (!gtx_find_program("geotex-netcdf", path))
         throw Error(GTX_ERROR_UNSUPPORTED, NO_PROGRAM);
