@@ -4,6 +4,8 @@
 
 #include "asset/patch.h"
 
+#include <stdbool.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -27,6 +29,8 @@ struct gtx_asset {
     size_t lod_size[GTX_MAX_LODS];
     char *meta;
     size_t meta_size;
+    bool bare;                /* of a file's parts: it has no heights */
+    uint8_t *marks;           /* then, or NULL: 1 where texels have one in the file */
 };
 
 /* Texels of a page at a level, and of all pages. */

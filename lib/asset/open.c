@@ -60,7 +60,7 @@ gtx_result gtx_open_prefix(const void *data, size_t size, const gtx_open_desc *d
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a prefix to open needs bytes and a result");
     const gtx_read_options options = options_of(desc, 0);
     gtx_prefix found;
-    result = gtx_read_prefix(error, &options, data, size, &found, out);
+    result = gtx_read_prefix(error, &options, data, size, NULL, 0, &found, out);
     if (!result)
         *prefix = found;
     return result;

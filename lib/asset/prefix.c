@@ -1,4 +1,4 @@
-/* Opening the first bytes of a file: what is there of it, as an asset. */
+/* Opening the first bytes of a file, and more of it: what is there of it, as an asset. */
 #include "asset/preview.h"
 #include "asset/read.h"
 
@@ -16,10 +16,13 @@ typedef struct beginning {
     const gtx_read_options *options;
     const uint8_t *data;
     uint64_t size;
+    const gtx_piece *pieces;
+    uint32_t piece_count;
+    bool normals;                              /* and heights are there, too */
     gtx_layout layout;
-    gtx_section parts[GTX_MAX_KNOWN_SECTIONS]; /* to decode: patches, LOD meshes, an image a kind */
+    gtx_section parts[GTX_MAX_KNOWN_SECTIONS]; /* to decode: patches, LOD meshes, images */
     uint32_t part_count;
-    int images[GTX_SECTION_META + 1];          /* the level of each kind, or -1 */
+    int images[GTX_SECTION_META + 1];          /* the finest level of each kind, or -1 */
     uint32_t lods, missing;                    /* LOD meshes that are there, and that are not */
     gtx_decoding decoding;
     gtx_asset *source;
@@ -49,6 +52,33 @@ static uint64_t needed_of(const gtx_layout *layout, uint64_t size)
 
 /* ---- what there is to decode ---- */
 
+/* NULL where it is not there. */
+static const uint8_t *bytes_of(const beginning *b, const gtx_section *section)
+{
+    if (end_of(section) <= b->size)
+        return b->data + section->offset;
+    for (uint32_t i = 0; i < b->piece_count; ++i) {
+        const gtx_piece *p = &b->pieces[i];
+        if (section->offset >= p->first && section->offset - p->first <= p->size &&
+            section->stored_size <= p->size - (section->offset - p->first))
+            return p->bytes + (section->offset - p->first);
+    }
+    return NULL;
+}
+
+/* Normals are coded against heights, and coarse ones against finer ones: all of them, or none. */
+static bool has_normals(const beginning *b)
+{
+    bool all = true;
+    for (uint32_t i = 0; i < b->layout.section_count; ++i) {
+        const gtx_section *section = &b->layout.sections[i];
+        const bool needed = section->kind == GTX_SECTION_HEIGHT ||
+                            section->kind == GTX_SECTION_NORMAL;
+        all = all && (!needed || bytes_of(b, section));
+    }
+    return all;
+}
+
 static void find_parts(beginning *b)
 {
     const gtx_layout *layout = &b->layout;
@@ -58,10 +88,14 @@ static void find_parts(beginning *b)
         b->lods += layout->sections[i].kind == GTX_SECTION_LOD &&
                    end_of(&layout->sections[i]) <= b->size;
     b->missing = layout->info.lod_levels - b->lods;
+    b->normals = has_normals(b);
     for (uint32_t i = 0; i < layout->section_count; ++i) {
         const gtx_section *section = &layout->sections[i];
-        const bool there = end_of(section) <= b->size;
-        if (!there || section->kind >= GTX_SECTION_HEIGHT)
+        const bool there = section->kind < GTX_SECTION_HEIGHT
+                               ? end_of(section) <= b->size
+                               : b->normals && (section->kind == GTX_SECTION_HEIGHT ||
+                                                section->kind == GTX_SECTION_NORMAL);
+        if (!there)
             continue;
         gtx_section *part = &b->parts[b->part_count++];
         *part = *section;
@@ -72,17 +106,20 @@ static void find_parts(beginning *b)
     }
 }
 
-/* Of each image the level that is nearest to the preview's, and not finer. */
+/* Of each image the level that is nearest to the preview's and not finer, and where that has mip
+ * levels all coarser ones. */
 static void choose_images(beginning *b)
 {
     uint32_t count = 0;
     for (int kind = 0; kind <= GTX_SECTION_META; ++kind)
         if (b->images[kind] >= 0 && b->images[kind] < (int)b->shift)
             b->images[kind] = (int)b->shift;
-    for (uint32_t i = 0; i < b->part_count; ++i)
-        if (!gtx_section_is_image(b->parts[i].kind) ||
-            b->images[b->parts[i].kind] == (int)b->parts[i].level)
+    for (uint32_t i = 0; i < b->part_count; ++i) {
+        const int level = (int)b->parts[i].level, finest = b->images[b->parts[i].kind];
+        if (!gtx_section_is_image(b->parts[i].kind) || level == finest ||
+            (level > finest && b->normals))
             b->parts[count++] = b->parts[i];
+    }
     b->part_count = count;
 }
 
@@ -173,7 +210,7 @@ static void decode(beginning *b)
     gtx_occupancy_free(&b->occupancy, &b->options->allocator);
     if (gtx_check_over(&b->check))
         return;
-    gtx_decode_rest(d, false, true);
+    gtx_decode_rest(d, b->normals, true);
     for (uint32_t i = d->part_count; i-- > 1;) { /* the finest first */
         const gtx_part *part = &d->parts[i];
         if (!holds(b, part))
@@ -218,9 +255,9 @@ static uint64_t most_triangles(const beginning *b)
 
 static gtx_asset *read_parts(beginning *b)
 {
-    b->shift = gtx_preview_shift(&b->layout.info, most_triangles(b));
+    b->shift = b->normals ? 0 : gtx_preview_shift(&b->layout.info, most_triangles(b));
     choose_images(b);
-    b->info = gtx_preview_info(&b->layout.info, b->shift);
+    b->info = gtx_preview_info(&b->layout.info, b->shift, b->normals);
     b->info.lod_levels = b->lods;
     b->info.has_color = b->images[GTX_SECTION_COLOR] >= 0;
     b->info.has_material = b->images[GTX_SECTION_MATERIAL] >= 0;
@@ -238,8 +275,11 @@ static gtx_asset *read_parts(beginning *b)
     gtx_asset *out = NULL;
     if (!make_source(b) || !gtx_decoding_begin(&b->decoding, b->source, b->data))
         gtx_check_fail(&b->check, GTX_ERROR_MEMORY, "out of memory for the beginning of a file");
-    else
+    else {
+        for (uint32_t i = 0; i < b->decoding.part_count; ++i)
+            b->decoding.parts[i].bytes = bytes_of(b, b->decoding.parts[i].section);
         decode(b);
+    }
     gtx_decoding_end(&b->decoding, &b->options->allocator);
     if (!gtx_check_over(&b->check))
         out = preview(b);
@@ -248,10 +288,12 @@ static gtx_asset *read_parts(beginning *b)
 }
 
 gtx_result gtx_read_prefix(gtx_error *error, const gtx_read_options *options, const void *data,
-                           size_t size, gtx_prefix *prefix, gtx_asset **out)
+                           size_t size, const gtx_piece *pieces, uint32_t piece_count,
+                           gtx_prefix *prefix, gtx_asset **out)
 {
     beginning b = {.check = {.error = error, .in_file = true, .beginning = true},
-                   .options = options, .data = data, .size = size};
+                   .options = options, .data = data, .size = size,
+                   .pieces = pieces, .piece_count = piece_count};
     *prefix = (gtx_prefix){.needed = GTX_HEADER_SIZE};
     gtx_check quiet = {0};
     gtx_check_head(&quiet, data, size, 0);

@@ -30,19 +30,19 @@ uint32_t gtx_preview_shift(const gtx_info *info, uint64_t triangles)
     return shift;
 }
 
-gtx_info gtx_preview_info(const gtx_info *info, uint32_t shift)
+gtx_info gtx_preview_info(const gtx_info *info, uint32_t shift, bool mips)
 {
     gtx_info out = *info;
     out.page_width >>= shift;
     out.page_height >>= shift;
-    out.mip_count = 1;
+    out.mip_count = mips ? info->mip_count - shift : 1;
     out.height_bits = 8;
     return out;
 }
 
 uint64_t gtx_preview_scratch(const gtx_info *preview, uint32_t vertices)
 {
-    return texels_of(preview) * (sizeof(gtx_normal_sum) + 1) +
+    return texels_of(preview) * (sizeof(gtx_normal_sum) + 2) +
            3 * sizeof(float) * (uint64_t)vertices;
 }
 
@@ -158,21 +158,35 @@ static bool shape(gtx_asset *asset)
 
 /* ---- all of it ---- */
 
-/* From a level that has as many texels, or fewer. */
+/* A level of the preview, from one that has as many texels, or fewer. */
 static void copy_image(const gtx_asset *source, gtx_asset *out, gtx_section_kind kind,
-                       uint32_t level, uint32_t shift)
+                       uint32_t level, uint32_t finest, uint32_t shift)
 {
-    const gtx_map_shape from = gtx_section_shape(&source->info, kind, level);
-    const gtx_map_shape to = gtx_section_shape(&out->info, kind, 0);
-    const uint8_t *texels = gtx_asset_data(source, kind, level);
-    uint8_t *at = gtx_asset_data(out, kind, 0);
-    const uint32_t by = level - shift;
+    const uint32_t found = shift + level > finest ? shift + level : finest;
+    const uint32_t by = found - shift - level;
+    const gtx_map_shape from = gtx_section_shape(&source->info, kind, found);
+    const gtx_map_shape to = gtx_section_shape(&out->info, kind, level);
+    const uint8_t *texels = gtx_asset_data(source, kind, found);
+    uint8_t *at = gtx_asset_data(out, kind, level);
     for (size_t page = 0; page < to.pages; ++page)
         for (size_t y = 0; y < to.height; ++y)
             for (size_t x = 0; x < to.width; ++x, at += to.texel) {
                 const size_t row = page * from.height + (y >> by);
                 memcpy(at, texels + (row * from.width + (x >> by)) * to.texel, to.texel);
             }
+}
+
+/* False when memory is out. */
+static bool mark(const gtx_asset *source, gtx_asset *out)
+{
+    const size_t texels = (size_t)texels_of(&out->info), bytes = source->info.height_bits / 8;
+    out->marks = gtx_alloc_raw(&out->allocator, texels, 1);
+    if (!out->marks)
+        return false;
+    for (size_t i = 0; i < texels; ++i)
+        out->marks[i] = source->height[bytes * i] || source->height[bytes * (i + 1) - 1];
+    memset(out->trim, GTX_FAR_TRIM, texels);
+    return true;
 }
 
 gtx_asset *gtx_preview_new(const gtx_asset *source, const gtx_info *preview, uint32_t shift,
@@ -194,10 +208,13 @@ gtx_asset *gtx_preview_new(const gtx_asset *source, const gtx_info *preview, uin
     }
     for (uint32_t k = 0; k < preview->lod_levels; ++k)
         memcpy(out->lod[k], source->lod[k], out->lod_size[k]);
+    const bool has_normals = levels[GTX_SECTION_NORMAL] >= 0;
     for (int kind = GTX_SECTION_FIRST_IMAGE; kind <= GTX_SECTION_LAST_IMAGE; ++kind)
-        if (levels[kind] >= 0)
-            copy_image(source, out, (gtx_section_kind)kind, (uint32_t)levels[kind], shift);
-    if (!shape(out)) {
+        for (uint32_t k = 0; k < preview->mip_count && levels[kind] >= 0 &&
+                             kind != GTX_SECTION_HEIGHT; ++k)
+            copy_image(source, out, (gtx_section_kind)kind, k, (uint32_t)levels[kind], shift);
+    out->bare = true;
+    if (!(has_normals ? mark(source, out) : shape(out))) {
         gtx_close(out);
         return NULL;
     }

@@ -84,6 +84,8 @@ double gtx_allowed_anywhere(const gtx_draw_call *draw, const gtx_model *model,
 
 uint32_t gtx_levels_cast(const gtx_draw_call *draw, const gtx_model *model)
 {
+    if (model->bare)
+        return 0;
     const gtx_costs *costs = costs_of(draw);
     const gtx_lod_meshes *lods = &model->lods;
     const double allowed = draw->view->max_error > 0 ? draw->view->max_error : 0.5;
@@ -178,9 +180,11 @@ gtx_result gtx_choose(const gtx_draw_call *draw, const gtx_model *model,
         e = measure(draw, model, placed);
         level = levels_within(lods, usable, e.nearest);
     }
-    if (forced && usable)
+    /* Patch by patch, as the whole asset's. */
+    const bool mixed = only && by_error && !lods->levels[0].far;
+    if (forced && usable && !mixed)
         *out = (uint8_t)(level ? level : 1);
-    else if (!forced)
+    else if (!forced || usable)
         *out = choose(draw, model, placed, level, usable, e);
     return GTX_OK;
 }

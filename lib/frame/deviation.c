@@ -18,14 +18,16 @@ typedef struct normals {
     const uint8_t *first;     /* of the patch's rectangle at a level */
     size_t row;               /* bytes */
     uint32_t width, height, level;
+    const uint8_t *marks;     /* as gtx_asset.marks, from the rectangle on, or NULL */
 } normals;
 
 static normals normals_of(const gtx_asset *asset, const gtx_patch *p, uint32_t level)
 {
     const size_t width = asset->info.page_width >> level, height = asset->info.page_height >> level;
     const size_t row = p->page * height + (p->rect[1] >> level);
-    return (normals){asset->normal[level] + 2 * (row * width + (p->rect[0] >> level)), 2 * width,
-                     p->rect[2] >> level, p->rect[3] >> level, level};
+    const size_t first = row * width + (p->rect[0] >> level);
+    return (normals){asset->normal[level] + 2 * first, 2 * width, p->rect[2] >> level,
+                     p->rect[3] >> level, level, asset->marks ? asset->marks + first : NULL};
 }
 
 /* As geotex_surface.glsl looks a normal up at a place in texels of the level, not normalised: codes
@@ -94,9 +96,10 @@ static float variance(const gtx_grid *finest, const normals *own, const normals 
     int count = 0;
     float sum = 0, found[2 * SAMPLES];
     for (uint32_t at = 0; at < texels; at += step) {
-        if (!finest->code[at])
+        const uint32_t column = at % own->width, line = at / own->width;
+        if (own->marks ? !own->marks[line * (own->row / 2) + column] : !finest->code[at])
             continue;
-        const float x = (float)(at % own->width) + 0.5f, y = (float)(at / own->width) + 0.5f;
+        const float x = (float)column + 0.5f, y = (float)line + 0.5f;
         const gtx_vec3 n = look_up(own, x, y);
         const gtx_vec3 m = look_up(coarse, x * scale + jitter(count, 0.7548777f),
                                    y * scale + jitter(count, 0.5698403f));

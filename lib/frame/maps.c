@@ -26,6 +26,17 @@ typedef struct making {
     const void **sources;
 } making;
 
+/* A single texel. */
+static bool add_texel(const making *m, uint32_t unit, const void *texel, gtx_format format,
+                      uint32_t size)
+{
+    gtx_model *model = m->model;
+    model->formats[unit] = format;
+    m->sources[model->level_count] = texel;
+    return gtx_model_add_level(model, (gtx_level){.unit = unit, .width = 1, .height = 1,
+                                                  .layers = 1, .texel_size = size});
+}
+
 /* Levels that are a map's, or are to be copies or blocks of them. */
 static bool add_maps(const making *m, gtx_map map, uint32_t unit, uint32_t count)
 {
@@ -60,10 +71,7 @@ static bool add_materials(const making *m)
     gtx_model *model = m->model;
     if (!model->flat_material)
         return add_maps(m, GTX_MAP_MATERIAL, UNIT_MATERIALS, m->asset->info.mip_count);
-    model->formats[UNIT_MATERIALS] = GTX_FORMAT_RGBA8;
-    m->sources[model->level_count] = model->constant_material;
-    return gtx_model_add_level(model, (gtx_level){.unit = UNIT_MATERIALS, .width = 1, .height = 1,
-                                                  .layers = 1, .texel_size = 4});
+    return add_texel(m, UNIT_MATERIALS, model->constant_material, GTX_FORMAT_RGBA8, 4);
 }
 
 bool gtx_model_add_maps(gtx_model *model, const gtx_asset *asset, const gtx_model_desc *desc,
@@ -71,7 +79,9 @@ bool gtx_model_add_maps(gtx_model *model, const gtx_asset *asset, const gtx_mode
 {
     const making m = {model, asset, desc, sources};
     const uint32_t mips = asset->info.mip_count;
-    return add_maps(&m, GTX_MAP_TRIM, UNIT_TRIM, 1) &&
+    const bool trim = asset->bare ? add_texel(&m, UNIT_TRIM, asset->trim, GTX_FORMAT_R8, 1)
+                                  : add_maps(&m, GTX_MAP_TRIM, UNIT_TRIM, 1);
+    return trim &&
            add_maps(&m, GTX_MAP_NORMAL, UNIT_NORMALS, mips) &&
            add_maps(&m, GTX_MAP_COLOR, UNIT_COLORS, mips) && add_materials(&m) &&
            add_maps(&m, GTX_MAP_EMISSION, UNIT_EMISSIONS, mips);

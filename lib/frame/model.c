@@ -11,6 +11,7 @@ uint64_t gtx_model_layout(const gtx_asset *asset)
 {
     gtx_hash hash;
     gtx_hash_begin(&hash);
+    gtx_hash_add(&hash, &asset->bare, sizeof asset->bare);
     for (uint32_t i = 0; i < asset->info.patch_count; ++i) {
         const gtx_patch *p = &asset->patches[i];
         gtx_hash_add(&hash, &p->page, sizeof p->page);

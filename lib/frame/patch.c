@@ -98,9 +98,24 @@ static gtx_result derive_level(const gtx_asset *asset, uint32_t patch, gtx_grid 
     return result;
 }
 
+/* Of an asset that has no heights. */
+static gtx_result derive_bare(const gtx_asset *asset, uint32_t patch, gtx_derived *out)
+{
+    const gtx_patch *p = &asset->patches[patch];
+    memset(out->record, 0, sizeof out->record);
+    memset(&out->facts, 0, sizeof out->facts);
+    fill_frame(out->record, p, asset->info.height_bits);
+    memcpy(out->facts.sphere, p->sphere, sizeof out->facts.sphere);
+    memcpy(out->facts.hull, p->sphere, sizeof out->facts.hull);
+    gtx_normal_deviation(asset, patch, NULL, out->record + GTX_RECORD_DEVIATION);
+    return GTX_OK;
+}
+
 gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_allocator *allocator,
                             gtx_derived *out, gtx_error *error)
 {
+    if (asset->bare)
+        return derive_bare(asset, patch, out);
     const gtx_patch *p = &asset->patches[patch];
     gtx_grid finest = {0}, grid;
     gtx_proxies *boxes = &out->proxies[0];

@@ -105,7 +105,7 @@ static uint8_t way_of(const gtx_frustum *f, const gtx_model *model, uint32_t i, 
     const gtx_lod_level *lod = model->lods.levels;
     const uint32_t patch = model->lods.level_count ? model->lods.order[i] : i;
     const bool thin = c.tiles && model->records[patch][GTX_RECORD_TWO_SIDED][3] > 0;
-    uint8_t way = GTX_BY_HEIGHT_FIELD;
+    uint8_t way = model->bare && c.levels ? GTX_BY_LOD : GTX_BY_HEIGHT_FIELD;
     if (!c.levels || model->lods.edited[patch])
         return way;
     const double allowed = fmax(c.least, gtx_allowed_error(f, model->facts[patch].sphere));

@@ -77,7 +77,7 @@ static gtx_result derive_patch(const making *m, uint32_t i, gtx_derived *derived
     gtx_model *model = m->model;
     const gtx_info *info = &m->asset->info;
     const gtx_patch *p = &m->asset->patches[i];
-    for (uint32_t k = 0; k < info->mip_count; ++k) {
+    for (uint32_t k = 0; k < info->mip_count && !m->asset->bare; ++k) {
         uint32_t at[2];
         gtx_model_cells_at(model, p, k, at);
         const size_t row = (size_t)p->page * gtx_model_cell_rows(model) + at[1];
@@ -190,9 +190,12 @@ static bool reserve(making *m)
     model->first_vertex = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_vertex);
     model->first_index = gtx_alloc_array(&model->allocator, slots, sizeof *model->first_index);
     model->facts = gtx_alloc_array(&model->allocator, model->patch_count, sizeof *model->facts);
+    const bool bare = m->asset->bare;
     m->pages = gtx_model_add_level(
-        model, (gtx_level){.unit = UNIT_CELLS, .width = gtx_model_cell_columns(model),
-                           .height = gtx_model_cell_rows(model), .layers = info->page_count,
+        model, (gtx_level){.unit = UNIT_CELLS,
+                           .width = bare ? 1 : gtx_model_cell_columns(model),
+                           .height = bare ? 1 : gtx_model_cell_rows(model),
+                           .layers = bare ? 1 : info->page_count,
                            .texel_size = info->height_bits / 8});
     if (!m->records || !m->pages || !model->first_vertex || !model->first_index || !model->facts)
         return false;

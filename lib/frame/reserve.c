@@ -33,7 +33,9 @@ static bool reserve_slabs(gtx_model *model, const gtx_asset *asset)
                                         sizeof *model->first_slab);
     for (uint32_t i = 0; model->first_slab && i < slots; ++i) {
         model->first_slab[i] = (uint32_t)count;
-        count += gtx_slab_count(&asset->patches[i % model->patch_count], i / model->patch_count);
+        count += asset->bare ? 0
+                             : gtx_slab_count(&asset->patches[i % model->patch_count],
+                                              i / model->patch_count);
     }
     if (!model->first_slab || !model->records || count > UINT32_MAX)
         return false;
@@ -41,7 +43,7 @@ static bool reserve_slabs(gtx_model *model, const gtx_asset *asset)
     if (gtx_model_patch_rows(model) > MAX_PATCH_ROWS)
         return false;
     model->slabs = gtx_alloc_raw(&model->allocator, (size_t)count, sizeof *model->slabs);
-    return model->slabs != NULL;
+    return model->slabs || !count;
 }
 
 /* For displaced grids, after the slabs. */
@@ -55,9 +57,10 @@ static bool reserve_grids(gtx_model *model, const gtx_asset *asset)
     if (!model->first_node)
         return false;
     for (uint32_t i = 0; i < count; ++i)
-        model->first_node[i + 1] = model->first_node[i] + gtx_rtin_nodes(&asset->patches[i]);
+        model->first_node[i + 1] =
+            model->first_node[i] + (asset->bare ? 0 : gtx_rtin_nodes(&asset->patches[i]));
     model->nodes = gtx_alloc_raw(hooks, model->first_node[count], sizeof *model->nodes);
-    return model->blocks && model->rtins && model->nodes;
+    return asset->bare || (model->blocks && model->rtins && model->nodes);
 }
 
 bool gtx_model_reserve_blocks(gtx_model *model, const gtx_asset *asset)

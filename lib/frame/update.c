@@ -13,7 +13,8 @@ static bool is_alike(const gtx_model *model, const gtx_asset *asset)
            info->page_height == model->page_height && info->mip_count == model->mip_count &&
            info->height_bits == model->height_bits && info->patch_count == model->patch_count &&
            info->has_color == model->has_color && info->has_material == model->has_material &&
-           info->has_emission == model->has_emission && gtx_model_layout(asset) == model->layout;
+           info->has_emission == model->has_emission && !asset->bare &&
+           gtx_model_layout(asset) == model->layout;
 }
 
 /* Cells of all levels, one after another, and how many bytes. NULL without memory. Zeroed: at level

@@ -2,6 +2,8 @@
  * Built by emscripten alone; see web.mk. */
 #include "web/core.h"
 
+#include "asset/read.h"
+#include "base/alloc.h"
 #include "render/gl.h"
 
 #include <geotex/render.h>
@@ -106,13 +108,23 @@ WEB_API gtx_asset *gtxw_open(const void *bytes, size_t size)
     return asset;
 }
 
-/* Of a file's first bytes; 0 without an error where they show nothing yet. `told` gets how many
- * show more, 0 for a whole file, and the file's size, 0 while that is not known. */
-WEB_API gtx_asset *gtxw_open_prefix(const void *bytes, size_t size, double told[2])
+/* Of a file's first bytes, and of two pieces behind them, or none, one after the other in `more`:
+ * `places` has the number of the first byte of each, and its size. 0 without an error where they
+ * show nothing yet. `told` gets how many show more, 0 for a whole file, and the file's size, 0
+ * while that is not known. */
+WEB_API gtx_asset *gtxw_open_prefix(const void *bytes, size_t size, const uint8_t *more,
+                                    const double *places, double told[2])
 {
+    const gtx_read_options options = {.allocator = gtx_allocator_or_default(NULL)};
+    gtx_piece pieces[2] = {{NULL, 0, 0}};
+    for (int i = 0; i < 2 && more; ++i) {
+        pieces[i] = (gtx_piece){more, (uint64_t)places[2 * i], (uint64_t)places[2 * i + 1]};
+        more += pieces[i].size;
+    }
     gtx_asset *asset = NULL;
     gtx_prefix prefix = {0};
-    gtx_open_prefix(bytes, size, NULL, &prefix, &asset, gtxw_begin());
+    gtx_read_prefix(gtxw_begin(), &options, bytes, size, pieces, more ? 2 : 0, &prefix,
+                    &asset);
     told[0] = (double)prefix.needed;
     told[1] = (double)prefix.file_size;
     return asset;

@@ -58,6 +58,9 @@ export class Model {
   readonly gpuBytes: number;
   /** Sends up to `maxBytes`, 0 for all; returns whether that was the rest. Draws send all. */
   upload(maxBytes?: number): boolean;
+  /** Of a view, whose matrix takes the asset's coordinates to clip space, and the picture's height:
+   * pixels of a unit where a patch in it is nearest, and of a texel where they are most. */
+  need(clip: Numbers, height: number): {unit: number, texel: number};
   /** Blends a colour (sRGB, 0 to 1) into those around a point, less towards `radius`, by `strength`
    * (1); the asset keeps it. False where it meets nothing, or there are no colours. */
   paint(point: Numbers, radius: number, color: number[], strength?: number): boolean;
@@ -115,9 +118,12 @@ export class Geotex {
   model(asset: Asset): Model;
   /** Opened and prepared by a worker, where the page may have one: no long task here. The bytes are
    * kept as they are, for rays and for a lost context: the first of either opens them here, too. With
-   * `prefix` the bytes are a file's first, as openPrefix has them. */
-  load(bytes: ArrayBuffer | ArrayBufferView, prefix?: false): Promise<{asset: Asset, model: Model}>;
-  load(bytes: ArrayBuffer | ArrayBufferView, prefix: true):
+   * `prefix` the bytes are a file's first, as openPrefix has them, and `pieces` are its heights and
+   * its normals, from the byte numbered `first` on: then the model is drawn as that of the whole file
+   * by its LOD meshes. */
+  load(bytes: ArrayBuffer | ArrayBufferView): Promise<{asset: Asset, model: Model}>;
+  load(bytes: ArrayBuffer | ArrayBufferView,
+       how: {prefix: true, pieces?: {first: number, bytes: Uint8Array}[]}):
       Promise<{asset: Asset | null, model: Model | null, needed: number, fileBytes: number}>;
   shading(text: string): Shading;
   draw(view: View, instances: Instance[]): void;

@@ -72,8 +72,10 @@ export class Model {
   prepare(made) {
     const {geotex, asset} = this, {core} = geotex;
     this.ready = false;
-    this.handle = geotex.must(made ? withBytes(core, made.plan, core._gtxw_model_unpack)
+    core.plan = made?.plan;
+    this.handle = geotex.must(made ? core._gtxw_model_unpack()
                                    : core._gtxw_model_prepare(asset.handle));
+    core.plan = null;
     this.resources = made ? made.resources : resourcesOf(core, this.handle);
     this.cpuBytes = made?.plan.length ?? 0;
     this.gpuBytes = core._gtxw_model_gpu_bytes(this.handle);
@@ -100,6 +102,15 @@ export class Model {
     this.names = this.#upload.names;
     this.#upload = this.resources = null;
     this.ready = true;
+  }
+
+  /* Of a view, whose matrix takes the asset's coordinates to clip space: pixels of a unit where a
+   * patch in it is nearest, and of a texel where they are most. */
+  need(clip, height) {
+    const {core} = this.geotex;
+    const at = this.geotex.withNumbers(clip, (from) =>
+      core._gtxw_model_need(this.handle, from, height)) / 4;
+    return {unit: core.HEAPF32[at], texel: core.HEAPF32[at + 1]};
   }
 
   /* Blends a colour into those around a point of the asset's space, less towards the radius: sRGB,
@@ -159,15 +170,17 @@ export class Shading {
     this.handle = g.around(() => core._gtxw_shading_create(g.renderer, pointer));
     core._free(pointer);
     g.must(this.handle);
-    this.programs = [Method.CAST, Method.LOD, Method.GRID].map((method) => ({
-      program: core.GL.programs[core._gtxw_shading_program(this.handle, method)], places: {}}));
+    this.programs = [Method.CAST, Method.LOD, Method.GRID].map((method) =>
+      core.GL.programs[core._gtxw_shading_program(this.handle, method)]);
+    this.places = this.programs.map(() => ({}));
   }
 
   /* Numbers and rows of 2, 3, 4 or 16 of them; arrays of vec3 and mat4 as {vec3: [...]}, {mat4:
    * [...]}; samplers and other whole numbers as {int: n}. */
   set(uniforms) {
     const gl = this.geotex.gl, before = gl.getParameter(gl.CURRENT_PROGRAM);
-    for (const {program, places} of this.programs) {
+    this.programs.forEach((program, i) => {
+      const places = this.places[i];
       gl.useProgram(program);
       for (const [name, value] of Object.entries(uniforms)) {
         const at = places[name] ??= gl.getUniformLocation(program, name);
@@ -182,7 +195,7 @@ export class Shading {
         else
           gl.uniform1f(at, value);
       }
-    }
+    });
     gl.useProgram(before);
   }
 
@@ -286,19 +299,19 @@ export class Geotex {
     return {asset: handle ? new Asset(this, infoOf(this.core, handle), handle) : null, ...told};
   }
 
-  /* The model of a file's bytes, which stay as they are; or of the first of them, as openPrefix has
-   * it; or what was read for a request of a world. Opened and prepared by a worker, where there can
-   * be one. */
-  async load(bytes, prefix = false, request = null) {
-    const made = await this.workshop.prepare(bytes, prefix, request);
+  /* The model of a file's bytes, which stay as they are; with `prefix` of the first of them, as
+   * openPrefix has it, and two `pieces` {first, bytes} of the rest; or what was read for a `request` of
+   * a world. Opened and prepared by a worker, where there can be one. */
+  async load(bytes, how = {}) {
+    const made = await this.workshop.prepare(bytes, how);
     if (this.closed)
       throw new GeotexError(10, 'geotex has been disposed');
     if (!made) {
-      const {handle, ...told} = openBytes(this.core, bytes, prefix, request);
+      const {handle, ...told} = openBytes(this.core, bytes, how);
       const asset = handle ? new Asset(this, infoOf(this.core, handle), handle) : null;
       return {asset, model: asset && this.model(asset), ...told};
     }
-    const open = () => openBytes(this.core, bytes, prefix).handle;
+    const open = () => openBytes(this.core, bytes, how).handle;
     const asset = made.info && new Asset(this, made.info, 0, open);
     return {...made.told, asset, model: asset && this.model(asset, made)};
   }

@@ -31,9 +31,17 @@ export function withBytes(core, bytes, call) {
   return given;
 }
 
-export function openPrefix(core, bytes) {
-  const told = core._malloc(16);
-  const handle = withBytes(core, bytes, (at, size) => core._gtxw_open_prefix(at, size, told));
+/* Of a file's first bytes, and of two pieces {first, bytes} of what is behind them, or none. */
+export function openPrefix(core, bytes, pieces) {
+  const told = core._malloc(48), places = told + 16;
+  const open = (at, size, more) => core._gtxw_open_prefix(at, size, more, places, told);
+  const more = pieces && new Uint8Array(pieces[0].bytes.length + pieces[1].bytes.length);
+  pieces?.forEach(({first, bytes: {length}, bytes: piece}, i) => {
+    core.HEAPF64.set([first, length], places / 8 + 2 * i);
+    more.set(piece, i * pieces[0].bytes.length);
+  });
+  const handle = withBytes(core, bytes, (at, size) =>
+    more ? withBytes(core, more, (from) => open(at, size, from)) : open(at, size, 0));
   const [needed, fileBytes] = core.HEAPF64.slice(told / 8, told / 8 + 2);
   core._free(told);
   if (!handle && core._gtxw_result())
@@ -41,11 +49,11 @@ export function openPrefix(core, bytes) {
   return {handle, needed, fileBytes};
 }
 
-/* A file's bytes; its first, with `prefix`; or, with the bytes of a gtx_stream_request, what was read
- * for that. Gives a handle, and of a prefix what to wait for. */
-export function openBytes(core, bytes, prefix, request) {
+/* A file's bytes; its first, with `prefix`, and pieces of the rest; or, with the bytes of a
+ * gtx_stream_request, what was read for that. Gives a handle, and of a prefix what to wait for. */
+export function openBytes(core, bytes, {prefix, pieces, request} = {}) {
   if (!request && prefix)
-    return openPrefix(core, bytes);
+    return openPrefix(core, bytes, pieces);
   const handle = request
       ? withBytes(core, request, (asked) =>
           withBytes(core, bytes, (at, size) => core._gtxw_world_open(asked, at, size)))

@@ -28,10 +28,25 @@ class Gathered {
   }
 }
 
-/* A file that is being read: from its beginning, or from a byte on where the server grants ranges. */
+/* Where heights lie, and normals of all levels, which are coded against them, in a file whose table is
+ * there. */
+function placesIn(bytes) {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const places = new Map([[0x54484748, null], [0x4c4d524e, null]]); /* HGHT, NRML */
+  for (let i = 0, at = 192; i < view.getUint32(28, true); ++i, at += 64) {
+    const type = view.getUint32(at, true), first = Number(view.getBigUint64(at + 16, true));
+    if (places.has(type))
+      places.set(type, {first: places.get(type)?.first ?? first,
+                        end: first + Number(view.getBigUint64(at + 24, true))});
+  }
+  return [...places.values()];
+}
+
+/* A file that is being read: from its beginning, or where the server grants ranges from a byte on,
+ * to the last before `end`. */
 class Source {
-  static async open(ask, before, first = 0) {
-    const headers = {Range: `bytes=${first}-`};
+  static async open(ask, before, first = 0, end = 0) {
+    const headers = {Range: `bytes=${first}-${end ? end - 1 : ''}`};
     if (before?.tag)
       headers['If-Range'] = before.tag;
     const response = await ask(headers);
@@ -66,44 +81,88 @@ const MOST_EXPECTED = 1 << 26;
 
 /* `ask(headers)` asks for the file; `onProgress(bytes, of)` is called as bytes come: `of` is 0 while
  * the file's size is unknown. Where the server grants ranges, a finer model is waited for only once
- * `wanted(model)` holds, or the promise that it gives does: until then nothing is read. */
-export async function* modelsOf(geotex, ask, {onProgress = () => {}, wanted = () => true} = {}) {
+ * `wanted(model)` holds, or the promise that it gives does: until then nothing is read but normals, once
+ * those that follow from LOD meshes are too coarse: where `finest(model)`, the mip level of its own
+ * that is shown, is below 0. */
+export async function* modelsOf(geotex, ask, {onProgress = () => {}, wanted = () => true,
+                                              finest = () => 0} = {}) {
   const gathered = new Gathered();
+  let held = []; /* pieces of what is behind it */
   let source = await Source.open(ask, null), needed = 1, size = 0, whole = 0;
+  const tell = () => onProgress(held.reduce((n, {bytes}) => n + bytes.length, gathered.length), size);
+  /* What is next, up to what is there already. */
+  const open = async () => {
+    source = await Source.open(ask, source, gathered.length, held[0]?.first);
+    if (source.begins) {
+      gathered.length = 0;
+      held = [];
+    }
+  };
   try {
     for (;;) {
       const chunk = await source.read();
-      if (chunk)
+      if (chunk) {
         gathered.add(chunk, Math.min(size, MOST_EXPECTED));
-      onProgress(gathered.length, size);
+      } else if (held.length && gathered.length === held[0].first) {
+        gathered.add(held.shift().bytes);
+        await open();
+        continue;
+      }
+      tell();
       if (!chunk || size && gathered.length >= size)
         break;
       if (gathered.length < needed)
         continue;
-      const {model, ...told} = await geotex.load(gathered.all, true);
+      const {model, ...told} = await geotex.load(gathered.all, {prefix: true, pieces: held[1] && held});
       size = told.fileBytes;
       whole = told.needed ? 0 : gathered.length;
-      /* Twice as much each time: all beginnings together take no longer than the last two. */
+      /* Twice as much each time: all beginnings together take no longer than the last two; but the last
+       * LOD mesh is seen to. */
+      const [{first}] = size ? placesIn(gathered.all) : [{first: 0}];
       needed = Math.max(told.needed, model ? 2 * gathered.length : 0);
+      if (gathered.length < first)
+        needed = Math.min(needed, first);
       if (!model)
         continue;
       yield model;
       if (!source.grants || whole)
         continue;
-      let fine = wanted(model);
+      let fine = wanted(model), shown = model;
       if (fine === true)
         continue;
       source.stop();
-      while (fine !== true)
-        await fine, fine = wanted(model);
-      source = await Source.open(ask, source, gathered.length);
-      if (source.begins)
-        gathered.length = 0;
+      for (; fine !== true; fine = wanted(shown)) {
+        if (held.length || finest(shown) >= 0) {
+          await fine;
+          continue;
+        }
+        held = await Promise.all(placesIn(gathered.all).map(async ({first, end}) => {
+          const piece = new Gathered(), come = Math.min(Math.max(first, gathered.length), end);
+          piece.add(gathered.bytes.subarray(first, come));
+          const asked = come < end ? await Source.open(ask, source, come, end) : null;
+          if (asked && !asked.grants)
+            return asked.stop() ?? {};
+          for (let chunk; (chunk = await asked?.read());)
+            piece.add(chunk);
+          return {first, bytes: piece.all};
+        }));
+        gathered.length = Math.min(gathered.length, held[0].first ?? 0);
+        if (!held.every(({bytes}) => bytes)) {
+          held = []; /* another file by now */
+          break;
+        }
+        tell();
+        shown = (await geotex.load(gathered.all, {prefix: true, pieces: held})).model;
+        yield shown;
+      }
+      await open();
     }
     /* A line that broke: what it did bring is shown, and then the error. */
-    const rest = gathered.length < size ? (await geotex.load(gathered.all, true)).model : null;
-    if (rest)
-      yield rest;
+    if (gathered.length < size) {
+      const {model} = await geotex.load(gathered.all, {prefix: true, pieces: held[1] && held});
+      if (model)
+        yield model;
+    }
     if (!whole || whole !== gathered.length)
       yield (await geotex.load(gathered.all)).model;
   } finally {

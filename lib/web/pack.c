@@ -57,13 +57,17 @@ static void put(void **array, size_t count, size_t size, void *user)
     p->at += count * size;
 }
 
+/* Of Module.plan, so that the heap never holds it twice. */
+EM_JS(void, read_plan, (void *to, size_t from, size_t size),
+      { HEAPU8.set(Module['plan'].subarray(from, from + size), to); });
+
 static void take(void **array, size_t count, size_t size, void *user)
 {
     packed *p = user;
     const bool there = *array != NULL;
     *array = there && !p->failed ? gtx_alloc_raw(&p->hooks, count, size) : NULL;
     if (*array)
-        memcpy(*array, p->bytes + p->at, count * size);
+        read_plan(*array, p->at, count * size);
     p->failed |= there && count && !*array;
     p->at += there ? count * size : 0;
 }
@@ -82,14 +86,14 @@ WEB_API void *gtxw_model_pack(gtx_model *model, uint32_t *size)
     return p.bytes;
 }
 
-/* Of bytes that gtxw_model_pack of this very core gave. 0 without memory. */
-WEB_API gtx_model *gtxw_model_unpack(uint8_t *bytes)
+/* Of bytes that gtxw_model_pack of this very core gave, as Module.plan. 0 without memory. */
+WEB_API gtx_model *gtxw_model_unpack(void)
 {
-    packed p = {.bytes = bytes, .at = sizeof(gtx_model), .hooks = gtx_allocator_or_default(NULL)};
+    packed p = {.at = sizeof(gtx_model), .hooks = gtx_allocator_or_default(NULL)};
     gtx_model *model = gtx_alloc_raw(&p.hooks, 1, sizeof *model);
     if (!model)
         return NULL;
-    memcpy(model, bytes, sizeof *model);
+    read_plan(model, 0, sizeof *model);
     model->allocator = p.hooks;
     for (uint32_t i = 0; i < model->level_count; ++i)
         model->levels[i].data = NULL;

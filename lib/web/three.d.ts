@@ -13,7 +13,7 @@ export class GeotexModel extends Mesh {
   readonly complete: Promise<GeotexModel>;
   /** One of Method. */
   method: number;
-  /** Pixels that what is drawn may be off. */
+  /** Pixels that what is drawn may be off, anywhere: 1. */
   maxError: number;
   /** Blends `color` into those around a point of the world, less towards `radius`, by `strength` (1).
    * Clones show it, too. False where it meets nothing, or the asset has no colours. The first call
@@ -29,7 +29,8 @@ export class GeotexLoader extends Loader<GeotexModel> {
   parseAsync(bytes: ArrayBuffer): Promise<GeotexModel>;
   /** The model as soon as the file's first bytes show something. More of them make it finer, and its
    * `asset` and `model` others, until it is `complete`: rays meet it from then on. Where the server
-   * grants ranges, no more is read while the last frame showed it within `maxError`, or not. */
+   * grants ranges, no more is read than what makes the last frame, if that showed it, the picture of
+   * the whole file. */
   stream(url: string, onProgress?: (bytes: number, of: number) => void, signal?: AbortSignal):
       Promise<GeotexModel>;
 }

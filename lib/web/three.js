@@ -2,7 +2,7 @@
  *
  *   const model = await new GeotexLoader(renderer).loadAsync('bunny.gtx');
  *   scene.add(model); */
-import {FileLoader, Loader, Mesh, MeshBasicMaterial, Vector3, Vector4} from 'three';
+import {FileLoader, Loader, Matrix4, Mesh, MeshBasicMaterial, Vector4} from 'three';
 import {boundsOf, Bridge, meet} from './bridge.js';
 import {Method, Pass} from './geotex.js';
 import {modelsOf} from './load.js';
@@ -14,7 +14,7 @@ class Content {
   disposed = false;
   whole = false;
   complete = Promise.resolve();
-  #frame = -1; #need = 0; #demanded = false; #wake = () => {};
+  #frame = -1; #need = 0; #texel = 0; #demanded = false; #wake = () => {};
 
   constructor(geotex, model) {
     Object.assign(this, {geotex, model});
@@ -24,12 +24,20 @@ class Content {
     return this.model.asset;
   }
 
-  /* A frame shows it with an error so many times what is allowed: of what is there, and at most. */
-  seen(frame, need) {
-    this.#need = frame === this.#frame ? Math.max(this.#need, need) : need;
+  /* A frame shows it with an error so many times what is allowed, of what is there and at most, and
+   * texels of so many pixels. */
+  seen(frame, need, texel) {
+    const same = frame === this.#frame;
+    this.#need = same ? Math.max(this.#need, need) : need;
+    this.#texel = same ? Math.max(this.#texel, texel) : texel;
     this.#frame = frame;
-    if (need > 1)
+    if (need > 1 || this.finest < 0)
       this.#wake();
+  }
+
+  /* The finest mip level that was looked up, of those of the model and finer ones. */
+  get finest() {
+    return Math.floor(0.5 - Math.log2(Math.max(this.#texel, 1e-9)));
   }
 
   demand() {
@@ -54,8 +62,12 @@ class Content {
   async replace(model) {
     while (!this.disposed && !this.geotex.gl.isContextLost() && !model.upload(SLICE))
       await new Promise((next) => setTimeout(next));
-    if (!this.disposed)
+    if (!this.disposed) {
       [this.model, model] = [model, this.model];
+      /* What the last frame would have needed of it. */
+      this.#need *= this.asset.lodError / model.asset.lodError || 0;
+      this.#texel *= model.asset.pageWidth / this.asset.pageWidth;
+    }
     model.dispose();
     model.asset.dispose();
   }
@@ -76,9 +88,14 @@ export class GeotexModel extends Mesh {
   constructor(bridge, content) {
     super(boundsOf(content.asset), new MeshBasicMaterial({colorWrite: false, depthWrite: false}));
     this.#bridge = bridge;
-    Object.assign(this, {type: 'GeotexModel', content, method: Method.AUTO, maxError: 0.5});
+    Object.assign(this, {type: 'GeotexModel', content, method: Method.AUTO, maxError: 1});
+    const clip = new Matrix4();
     this.onAfterRender = (renderer, scene, camera) => {
-      content.seen(renderer.info.render.frame, this.errorIn(renderer, camera) / this.maxError);
+      const {unit, texel} = this.model.need(
+          clip.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
+              .multiply(this.matrixWorld).elements,
+          renderer.getCurrentViewport(new Vector4()).w);
+      content.seen(renderer.info.render.frame, unit * this.asset.lodError / this.maxError, texel);
       bridge.show(this, scene, camera, this.way, this.placed);
     };
     this.onAfterShadow = (renderer, object, camera, shadowCamera) =>
@@ -100,18 +117,6 @@ export class GeotexModel extends Mesh {
 
   get model() {
     return this.content.model;
-  }
-
-  /* Pixels that the finest LOD mesh may be off where it is nearest. */
-  errorIn(renderer, camera) {
-    const {asset, matrixWorld} = this, scale = matrixWorld.getMaxScaleOnAxis();
-    const low = new Vector3(...asset.min), high = new Vector3(...asset.max);
-    const reach = low.distanceTo(high) / 2 * scale;
-    const place = low.add(high).multiplyScalar(0.5).applyMatrix4(matrixWorld);
-    const far = place.distanceTo(new Vector3().setFromMatrixPosition(camera.matrixWorld)) - reach;
-    const {elements: p} = camera.projectionMatrix;
-    return asset.lodError * scale * p[5] * renderer.getCurrentViewport(new Vector4()).w / 2 /
-           (p[15] ? 1 : Math.max(far, camera.near));
   }
 
   get complete() {
@@ -194,7 +199,8 @@ export class GeotexLoader extends Loader {
       const models = modelsOf(bridge.geotex, (headers) => fetch(manager.resolveURL(this.path + url), {
         headers: {...this.requestHeader, ...headers}, signal: stop.signal,
         credentials: this.withCredentials ? 'include' : 'same-origin'}), {
-          onProgress, wanted: () => content.wanted(this.renderer.info.render.frame)});
+          onProgress, wanted: () => content.wanted(this.renderer.info.render.frame),
+          finest: () => content.finest});
       const content = new Content(bridge.geotex, (await models.next()).value);
       content.stop = () => stop.abort();
       content.complete = content.follow(models).then(

@@ -5,8 +5,8 @@ import {failure, GeotexError, infoOf, openBytes, resourcesOf} from './inside.js'
 
 let core = null;
 
-function prepare(bytes, prefix, request) {
-  const told = openBytes(core, bytes, prefix, request), {handle} = told, given = [];
+function prepare(bytes, how) {
+  const told = openBytes(core, bytes, how), {handle} = told, given = [];
   if (!handle)
     return {made: {told, info: null}, given};
   const copy = (from, size) => {
@@ -32,11 +32,11 @@ function prepare(bytes, prefix, request) {
   }
 }
 
-onmessage = async ({data: {id, wasm, bytes, prefix, request}}) => {
+onmessage = async ({data: {id, wasm, bytes, how}}) => {
   try {
     core ??= createCore({locateFile: () => wasm, onLog: () => {}});
     core = await core;
-    const {made, given} = prepare(bytes, prefix, request);
+    const {made, given} = prepare(bytes, how);
     postMessage({id, made}, given);
   } catch (error) {
     postMessage({id, result: error.result, message: String(error.message ?? error)});

@@ -11,7 +11,7 @@ export class Workshop {
   }
 
   /* What worker.js makes of a copy of the bytes; null where there can be no worker. */
-  prepare(bytes, prefix, request) {
+  prepare(bytes, how) {
     if (!this.start())
       return Promise.resolve(null);
     const view = ArrayBuffer.isView(bytes) ? bytes : new Uint8Array(bytes);
@@ -20,7 +20,7 @@ export class Workshop {
     clearTimeout(this.#idle);
     return new Promise((resolve, reject) => {
       this.#asked.set(id, {resolve, reject});
-      this.#worker.postMessage({id, wasm: this.#wasm, bytes: copy, prefix, request}, [copy.buffer]);
+      this.#worker.postMessage({id, wasm: this.#wasm, bytes: copy, how}, [copy.buffer]);
     });
   }
 

@@ -114,7 +114,7 @@ export class GeotexWorld extends Mesh {
         headers: {...this.#options.requests?.headers, ...headers}});
       const kept = this.#payloads.get(beginning)?.bytes ?? new Uint8Array();
       const data = await read(ask, kept, bytes);
-      const {asset, model} = await geotex.load(data, !!more, request);
+      const {asset, model} = await geotex.load(data, {prefix: !!more, request});
       const number = this.#next++, cpu = data.length + model.cpuBytes;
       const [x, y, z] = asset.anchor.map((c, k) => c - this.origin[k]);
       this.#payloads.set(number, {bytes: data, asset, model, cpu,

@@ -8,6 +8,8 @@
 
 #include "asset/codec.h"
 #include "asset/golden.h"
+#include "asset/read.h"
+#include "base/alloc.h"
 
 #include <stdlib.h>
 
@@ -130,6 +132,71 @@ static void test_content(void **state)
     free(file.data);
 }
 
+/* The sections of a kind, in a copy of their own; they lie side by side. */
+static gtx_piece piece_of(bytes file, const char *type)
+{
+    gtx_piece piece = {NULL, 0, 0};
+    for (uint32_t i = 0; i < gtx_load_u32(file.data + 28); ++i) {
+        const uint8_t *entry = file.data + GTX_HEADER_SIZE + GTX_ENTRY_SIZE * i;
+        if (memcmp(entry, type, 4))
+            continue;
+        piece.first = piece.first ? piece.first : gtx_load_u64(entry + 16);
+        piece.size = end_of(file, i) - piece.first;
+    }
+    uint8_t *copy = need(malloc(piece.size));
+    memcpy(copy, file.data + piece.first, piece.size);
+    piece.bytes = copy;
+    return piece;
+}
+
+static gtx_result open_pieces(bytes file, size_t size, const gtx_piece *pieces, gtx_asset **out)
+{
+    const gtx_read_options options = {.allocator = gtx_allocator_or_default(NULL)};
+    gtx_prefix prefix;
+    *out = NULL;
+    return gtx_read_prefix(NULL, &options, file.data, size, pieces, 2, &prefix, out);
+}
+
+/* Heights and normals from behind a beginning: it has the file's normals, and no heights. */
+static void test_pieces(void **state)
+{
+    (void)state;
+    for (int i = 0; i < (gtx_has_zstd() ? 2 : 1); ++i) {
+        bytes file = golden_encode(&every[i]);
+        const gtx_piece pieces[2] = {piece_of(file, "HGHT"), piece_of(file, "NRML")};
+        const size_t size = end_of(file, 3);
+        gtx_asset *whole, *part;
+        assert_int_equal(gtx_open_memory(file.data, file.size, NULL, &whole, NULL), GTX_OK);
+        assert_int_equal(open_pieces(file, size, pieces, &part), GTX_OK);
+        assert_int_equal(part->info.mip_count, whole->info.mip_count);
+        assert_int_equal(part->info.lod_levels, 3);
+        const size_t texels = gtx_page_texels(whole, 0) * whole->info.page_count;
+        for (uint32_t k = 0; k < whole->info.mip_count; ++k)
+            assert_memory_equal(part->normal[k], whole->normal[k], 2 * (texels >> 2 * k));
+        const size_t bytes_each = whole->info.height_bits / 8;
+        for (size_t t = 0; t < texels; ++t) {
+            const uint8_t *code = whole->height + bytes_each * t;
+            assert_int_equal(part->marks[t], code[0] || code[bytes_each - 1]);
+            assert_int_equal(part->height[t], 0);
+        }
+        gtx_close(part);
+        /* A piece that ends early is none: normals follow from the LOD mesh. */
+        for (int cut = 0; cut < 2; ++cut) {
+            gtx_piece fewer[2] = {pieces[0], pieces[1]};
+            --fewer[cut].size;
+            assert_int_equal(open_pieces(file, size, fewer, &part), GTX_OK);
+            assert_null(part->marks);
+            gtx_close(part);
+        }
+        ((uint8_t *)(uintptr_t)pieces[1].bytes)[pieces[1].size / 2] ^= 0x11;
+        assert_int_equal(open_pieces(file, size, pieces, &part), GTX_ERROR_CORRUPT);
+        gtx_close(whole);
+        free((void *)(uintptr_t)pieces[0].bytes);
+        free((void *)(uintptr_t)pieces[1].bytes);
+        free(file.data);
+    }
+}
+
 /* A wrong byte ends in an error, or in an asset that keeps the rules. */
 static void test_flips(void **state)
 {
@@ -214,6 +281,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_length), cmocka_unit_test(test_content),
-        cmocka_unit_test(test_flips), cmocka_unit_test(test_memory)};
+        cmocka_unit_test(test_pieces), cmocka_unit_test(test_flips), cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests_name("prefix", tests, NULL, NULL);
 }

@@ -1,18 +1,24 @@
-/* An asset beside its mesh as Draco in three.js: what a reader of a page waits for, and pays. */
+/* An asset beside its mesh as Draco and meshopt in three.js: what a page's reader waits for, and pays. */
 import * as THREE from 'three';
 import {DRACOLoader} from 'three/addons/loaders/DRACOLoader.js';
+import {GLTFLoader} from 'three/addons/loaders/GLTFLoader.js';
+import {MeshoptDecoder} from 'three/addons/libs/meshopt_decoder.module.js';
 import {GeotexLoader} from 'geotex/three';
 
 const WIDTH = 640, HEIGHT = 480, FRAMES = 15;
+const MOST_APART = 1e-4, CODES = 2;   /* of pixels; as much as no picture of "full" is off */
+const QUIET = 1500;                   /* ms without a finer model: the view has all that it needs */
 const renderer = new THREE.WebGLRenderer({preserveDrawingBuffer: true});
 renderer.setSize(WIDTH, HEIGHT, false);
 const gl = renderer.getContext(), scene = new THREE.Scene();
+scene.background = new THREE.Color(0x0000ff);
 const camera = new THREE.PerspectiveCamera(40, WIDTH / HEIGHT, 0.01, 10);
 const light = new THREE.DirectionalLight(0xffffff, 3);
 light.position.set(1, 2, 1.5);
 scene.add(light, new THREE.HemisphereLight(0xffffff, 0x604020, 0.6));
 const ours = new GeotexLoader(renderer);
 const draco = new DRACOLoader().setDecoderPath('/modules/three/examples/jsm/libs/draco/').preload();
+const glb = new GLTFLoader().setMeshoptDecoder(MeshoptDecoder);
 
 /* Tasks of more than 50 ms, but those of frames, for which the page waits here. */
 const tasks = [], frames = [];
@@ -25,62 +31,137 @@ function longest(from, to) {
       !frames.some(([c, d]) => c < b && a < d)).map(([a, b]) => b - a));
 }
 
-/* Until it is in the picture: a pixel is read, so that the GPU has ended. */
-function frame(object) {
-  const begin = performance.now();
-  const ball = new THREE.Box3().setFromObject(object).getBoundingSphere(new THREE.Sphere());
+/* All look at the model from where the first of them did. */
+let ball = null;
+function look(object) {
+  ball ??= new THREE.Box3().setFromObject(object).getBoundingSphere(new THREE.Sphere());
   Object.assign(camera, {near: ball.radius / 20, far: ball.radius * 20});
   camera.position.set(0.5, 0.5, 0.9).normalize().multiplyScalar(3 * ball.radius).add(ball.center);
   camera.lookAt(ball.center);
   camera.updateProjectionMatrix();
+}
+
+/* Until it is in the picture: a pixel is read, so that the GPU has ended. */
+function frame(object) {
+  const begin = performance.now();
+  look(object);
   scene.add(object);
   renderer.render(scene, camera);
   gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   scene.remove(object);
   frames.push([begin, performance.now()]);
+  return performance.now() - begin;
 }
 
-const kinds = {
-  async gtx(url, first) {
-    const model = await ours.stream(url);
-    first(model);
-    await model.complete;
-    /* The module's heap, what is on the GPU, and the file, from which a lost context comes back. */
-    const heap = model.model.geotex.core.HEAPU8.length;
-    console.log(`${heap} bytes of heap, of these ${model.model.cpuBytes} of the plan; ` +
-                `${model.model.gpuBytes} on the GPU`);
-    return {object: model, memory: heap + model.model.gpuBytes + model.asset.fileBytes,
-            close: () => model.dispose()};
+function picture() {
+  const out = new Uint8Array(4 * WIDTH * HEIGHT);
+  gl.readPixels(0, 0, WIDTH, HEIGHT, gl.RGBA, gl.UNSIGNED_BYTE, out);
+  return out;
+}
+
+/* The share of pixels that differ, and the intersection over union of what is not background. */
+function compare(a, b) {
+  let apart = 0, both = 0, either = 0;
+  for (let i = 0; i < a.length; i += 4) {
+    apart += [0, 1, 2].some((k) => Math.abs(a[i + k] - b[i + k]) > CODES);
+    const [x, y] = [a, b].map((p) => p[i] + p[i + 1] > 0 || p[i + 2] !== 255);
+    both += x && y;
+    either += x || y;
+  }
+  return {apart: apart / (WIDTH * HEIGHT), iou: both / either};
+}
+
+const later = (ms) => new Promise((next) => setTimeout(next, ms));
+
+const ways = {
+  /* Drawn anew with each finer model; all that frames need is there once none comes. */
+  async gtx(url, shown, maxError) {
+    let bytes = 0, changed = performance.now();
+    const came = (come) => {
+      bytes = come;
+      changed = performance.now();
+    };
+    const model = await ours.stream(url, came), pictures = [];
+    model.maxError = maxError;
+    let last = null;
+    for (; !last || performance.now() - changed < QUIET && !model.content.whole; await later(5)) {
+      if (model.model === last)
+        continue;
+      last = model.model;
+      shown(model);
+      changed = performance.now();
+      pictures.push({at: changed, picture: picture(), bytes});
+    }
+    if (model.model !== last) {
+      shown(model);
+      pictures.push({at: performance.now(), picture: picture(), bytes});
+    }
+    /* The module's heap, what is on the GPU, and of the file what a lost context comes back from. */
+    const memory = model.model.geotex.core.HEAPU8.length + model.model.gpuBytes + bytes;
+    return {object: model, pictures, memory, bytes, close: () => model.dispose(),
+            complete: () => model.complete};
   },
-  async draco(url, first) {
-    const geometry = await draco.loadAsync(url), {attributes, index} = geometry;
-    if (!attributes.normal)
+  async mesh(object, shown, bytes) {
+    shown(object);
+    const {geometry: {attributes, index}} = object;
+    const size = [...Object.values(attributes), index].reduce((n, a) => n + a.array.byteLength, 0);
+    return {object, pictures: [{at: performance.now(), picture: picture()}], bytes,
+            memory: 2 * size, close: () => object.geometry.dispose()}; /* three keeps a copy */
+  },
+  async draco(url, shown) {
+    const geometry = await draco.loadAsync(url);
+    if (!geometry.attributes.normal)
       geometry.computeVertexNormals();
-    const object = new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({roughness: 1}));
-    first(object);
-    const bytes = [...Object.values(attributes), index].reduce((n, a) => n + a.array.byteLength, 0);
-    return {object, memory: 2 * bytes, close: () => geometry.dispose()}; /* three keeps a copy */
+    return ways.mesh(new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({roughness: 1})), shown);
+  },
+  async meshopt(url, shown) {
+    const {scene: loaded} = await glb.loadAsync(url);
+    let mesh = null;
+    loaded.updateMatrixWorld();
+    loaded.traverse((o) => { mesh ??= o.isMesh ? o : null; });
+    mesh.matrixWorld.decompose(mesh.position, mesh.quaternion, mesh.scale);
+    mesh.removeFromParent();
+    if (!mesh.geometry.attributes.normal)
+      mesh.geometry.computeVertexNormals();
+    mesh.material = new THREE.MeshStandardMaterial({roughness: 1});
+    return ways.mesh(mesh, shown);
   },
 };
 
-/* Loaded once at full speed, so that modules, workers and shaders are there, then on the line. */
-window.measure = async (kind, url, bits) => {
-  (await kinds[kind](url + '?warm', frame)).close();
+/* Loaded once at full speed, so that modules, workers and shaders are there, then on the line. `mesh`
+ * is the url of the Draco file, to compare outlines with. */
+let outline = null;
+window.measure = async (kind, url, bits, maxError) => {
+  if (kind === 'draco')
+    ball = outline = null;
+  (await ways[kind](url + '?warm', frame, maxError)).close();
   await link(bits);
   const start = performance.now();
   let first = 0;
-  const {object, memory, close} = await kinds[kind](url + '?slow', (shown) => {
+  const all = await ways[kind](url + '?ranges', (shown) => {
     frame(shown);
-    first = performance.now() - start;
-  });
-  frame(object);
-  const full = performance.now() - start, times = [];
+    first ||= performance.now() - start;
+  }, maxError);
   await link(0);
-  for (let i = 0; i < FRAMES; ++i) {
-    const begin = performance.now();
-    frame(object);
-    times.push(performance.now() - begin);
-  }
+  const {object, pictures, close} = all, times = [];
+  const end = pictures[pictures.length - 1];
+  for (let i = 0; i < FRAMES; ++i)
+    times.push(frame(object));
+  await all.complete?.();
+  frame(object);
+  const final = picture();
+  outline ??= final;
+  /* The first picture from which on none differs from that of all bytes. */
+  let full = pictures.length;
+  while (full && compare(pictures[full - 1].picture, final).apart <= MOST_APART)
+    --full;
+  const {iou} = compare(final, outline), {apart} = compare(end.picture, final);
   close();
-  return {first, full, task: longest(start, start + full), frame: times.sort((a, b) => a - b)[FRAMES >> 1], memory};
+  for (const {at, picture: p, bytes} of pictures)
+    console.log(`${url}: at ${(at - start).toFixed(0)} ms, ${bytes} bytes: ` +
+                `${(100 * compare(p, final).apart).toFixed(4)} % off`);
+  return {first, full: full < pictures.length ? pictures[full].at - start : null, apart, iou,
+          last: end.at - start, task: longest(start, end.at), bytes: all.bytes,
+          frame: times.sort((a, b) => a - b)[FRAMES >> 1], memory: all.memory};
 };
+window.shot = () => renderer.domElement.toDataURL('image/png');

@@ -1,27 +1,36 @@
-/* node bench.mjs APP FOLDER NAME...: of each NAME.gtx and NAME.drc in FOLDER, one line in one
+/* node bench.mjs APP FOLDER NAME...: of each NAME.gtx, NAME.drc and NAME.glb in FOLDER, one line in one
  * Chromium: bytes, seconds to the first and to the last picture at 10 Mbit/s, a frame, memory. */
 import {stat} from 'node:fs/promises';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
+import {writeFile} from 'node:fs/promises';
 import {open} from './serve.mjs';
 
 const [, , app, folder, ...names] = process.argv;
+const KINDS = {'Draco': ['draco', 'drc'], 'meshopt': ['meshopt', 'glb'],
+               '.gtx, 1 px': ['gtx', 'gtx', 1], '.gtx, 2 px': ['gtx', 'gtx', 2]};
 const {page, address, close} = await open(join(app, 'node_modules'), {
   modules: join(app, 'node_modules'), tests: dirname(fileURLToPath(import.meta.url)), folder});
-page.on('console', (m) => m.text().includes('heap') && console.error(m.text()));
+page.on('console', (m) => console.error(m.text()));
 try {
   await page.goto(`${address}/tests/bench.html`);
   await page.waitForFunction('window.measure', {timeout: 60000});
-  console.log('| model | file | KB | first picture, s | full, s | longest task, ms | frame, ms | memory, MB |');
-  console.log('|---|---|---|---|---|---|---|---|');
+  console.log('| model | file | KB | read, KB | first picture, s | full, s | longest task, ms | frame, ms |' +
+              ' memory, MB | IoU |');
+  console.log('|---|---|---|---|---|---|---|---|---|---|');
   for (const name of names)
-    for (const kind of ['gtx', 'draco']) {
-      const file = `${name}.${kind === 'gtx' ? 'gtx' : 'drc'}`;
-      const {size} = await stat(join(folder, file));
-      const m = await page.evaluate((k, u) => measure(k, u, 10e6), kind, `/folder/${file}`);
-      console.log(`| ${name} | ${kind} | ${Math.round(size / 1000)} | ${(m.first / 1000).toFixed(2)} |` +
-                  ` ${(m.full / 1000).toFixed(2)} | ${m.task.toFixed(0)} | ${m.frame.toFixed(0)} |` +
-                  ` ${(m.memory / 1e6).toFixed(0)} |`);
+    for (const [title, [kind, end, error]] of Object.entries(KINDS)) {
+      const {size} = await stat(join(folder, `${name}.${end}`));
+      const m = await page.evaluate((...a) => measure(...a), kind, `/folder/${name}.${end}`, 10e6, error);
+      const seconds = (ms) => ms === null ? '' : (ms / 1000).toFixed(2);
+      console.log(`| ${name} | ${title} | ${Math.round(size / 1000)} |` +
+                  ` ${Math.round((m.bytes ?? size) / 1000)} | ${seconds(m.first)} | ${seconds(m.full)} |` +
+                  ` ${m.task.toFixed(0)} | ${m.frame.toFixed(0)} | ${(m.memory / 1e6).toFixed(0)} |` +
+                  ` ${m.iou.toFixed(4)} |`);
+      console.error(`last ${seconds(m.last)} s, of all bytes' picture ${(100 * m.apart).toFixed(4)} % off`);
+      const picture = await page.evaluate(() => shot());
+      await writeFile(join(folder, `${name}-${kind}-${error ?? 0}.png`),
+                      Buffer.from(picture.slice(picture.indexOf(',') + 1), 'base64'));
     }
 } finally {
   await close();

@@ -188,7 +188,7 @@ const checks = {
     }
     for (const there of [true, false]) {
       const {asset, model} = await geotex.load(bytes);
-      const part = await geotex.load(bytes.slice(0, 100000), true);
+      const part = await geotex.load(bytes.slice(0, 100000), {prefix: true});
       expect(part.model && part.needed > 100000 && part.fileBytes === bytes.byteLength, 'no prefix');
       expect(!calls.length === there, `here: ${calls}`);
       for (const m of [model, part.model]) {

@@ -20,11 +20,12 @@ export async function open(modules, roots) {
       const content = await readFile(path);
       const type = {'content-type': types[extname(path)] ?? 'application/octet-stream'};
       /* "?ranges" is a server that grants them; "?first=1000" one that gives up. */
-      const first = +request.headers.range?.match(/^bytes=(\d+)-$/)?.[1];
-      if (request.url.endsWith('?ranges') && first < content.length) {
+      const [, from, to] = request.headers.range?.match(/^bytes=(\d+)-(\d*)$/) ?? [];
+      const first = +from, last = Math.min(+to || Infinity, content.length - 1);
+      if (request.url.endsWith('?ranges') && first <= last) {
         response.writeHead(206, {...type, etag: `"${content.length}"`, 'content-range':
-          `bytes ${first}-${content.length - 1}/${content.length}`});
-        response.end(content.subarray(first));
+          `bytes ${first}-${last}/${content.length}`});
+        response.end(content.subarray(first, last + 1));
         return;
       }
       response.writeHead(200, type);
