@@ -28,18 +28,34 @@ class Gathered {
   }
 }
 
-/* Where heights lie, and normals of all levels, which are coded against them, in a file whose table is
- * there. */
+/* Of a file whose table is there: its sections, each with its type, as little-endian characters,
+ * level, and the numbers of its first byte and of the one behind it. */
+const COLR = 0x524c4f43, MATL = 0x4c54414d, EMIT = 0x54494d45, HGHT = 0x54484748, NRML = 0x4c4d524e;
+const viewOf = ({buffer, byteOffset, byteLength}) => new DataView(buffer, byteOffset, byteLength);
+function sectionsOf(bytes) {
+  const view = viewOf(bytes), count = view.getUint32(28, true);
+  return Array.from({length: count}, (_, i) => 192 + 64 * i).map((at) => {
+    const first = Number(view.getBigUint64(at + 16, true));
+    return {type: view.getUint32(at, true), level: view.getUint32(at + 8, true), first,
+            end: first + Number(view.getBigUint64(at + 24, true))};
+  });
+}
+
+/* Where heights lie, and normals of all levels, which are coded against them. */
 function placesIn(bytes) {
-  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  const places = new Map([[0x54484748, null], [0x4c4d524e, null]]); /* HGHT, NRML */
-  for (let i = 0, at = 192; i < view.getUint32(28, true); ++i, at += 64) {
-    const type = view.getUint32(at, true), first = Number(view.getBigUint64(at + 16, true));
-    if (places.has(type))
-      places.set(type, {first: places.get(type)?.first ?? first,
-                        end: first + Number(view.getBigUint64(at + 24, true))});
-  }
-  return [...places.values()];
+  return [HGHT, NRML].map((kind) => {
+    const all = sectionsOf(bytes).filter(({type}) => type === kind);
+    return {first: all[0].first, end: all[all.length - 1].end};
+  });
+}
+
+/* How many first bytes hold the colours that a mip level of the file's takes, and where that is the
+ * finest all else that shows. */
+function lookEnds(bytes, level) {
+  const coarsest = viewOf(bytes).getUint32(68, true) - 1;
+  return Math.max(0, ...sectionsOf(bytes)
+      .filter((s) => s.type === COLR && s.level >= Math.min(level, coarsest) ||
+                     level <= 0 && (s.type === MATL || s.type === EMIT)).map(({end}) => end));
 }
 
 /* A file that is being read: from its beginning, or where the server grants ranges from a byte on,
@@ -92,6 +108,8 @@ export async function* modelsOf(geotex, ask, {onProgress = () => {}, wanted = ()
   const tell = () => onProgress(held.reduce((n, {bytes}) => n + bytes.length, gathered.length), size);
   /* What is next, up to what is there already. */
   const open = async () => {
+    while (held.length && held[0].first === gathered.length)
+      gathered.add(held.shift().bytes);
     source = await Source.open(ask, source, gathered.length, held[0]?.first);
     if (source.begins) {
       gathered.length = 0;
@@ -104,7 +122,6 @@ export async function* modelsOf(geotex, ask, {onProgress = () => {}, wanted = ()
       if (chunk) {
         gathered.add(chunk, Math.min(size, MOST_EXPECTED));
       } else if (held.length && gathered.length === held[0].first) {
-        gathered.add(held.shift().bytes);
         await open();
         continue;
       }
@@ -130,8 +147,14 @@ export async function* modelsOf(geotex, ask, {onProgress = () => {}, wanted = ()
       let fine = wanted(model), shown = model;
       if (fine === true)
         continue;
+      const look = () => lookEnds(gathered.all, finest(shown) + Math.round(Math.log2(
+          viewOf(gathered.all).getUint32(60, true) / shown.asset.pageWidth)));
+      if (gathered.length < look()) {
+        needed = Math.min(needed, look());
+        continue;
+      }
       source.stop();
-      for (; fine !== true; fine = wanted(shown)) {
+      for (; fine !== true && gathered.length >= look(); fine = wanted(shown)) {
         if (held.length || finest(shown) >= 0) {
           await fine;
           continue;
@@ -155,6 +178,8 @@ export async function* modelsOf(geotex, ask, {onProgress = () => {}, wanted = ()
         shown = (await geotex.load(gathered.all, {prefix: true, pieces: held})).model;
         yield shown;
       }
+      if (fine !== true)
+        needed = Math.min(needed, look() || needed);
       await open();
     }
     /* A line that broke: what it did bring is shown, and then the error. */

@@ -27,7 +27,6 @@ try {
                   ` ${Math.round((m.bytes ?? size) / 1000)} | ${seconds(m.first)} | ${seconds(m.full)} |` +
                   ` ${m.task.toFixed(0)} | ${m.frame.toFixed(0)} | ${(m.memory / 1e6).toFixed(0)} |` +
                   ` ${m.iou.toFixed(4)} |`);
-      console.error(`last ${seconds(m.last)} s, of all bytes' picture ${(100 * m.apart).toFixed(4)} % off`);
       const picture = await page.evaluate(() => shot());
       await writeFile(join(folder, `${name}-${kind}-${error ?? 0}.png`),
                       Buffer.from(picture.slice(picture.indexOf(',') + 1), 'base64'));
