@@ -83,7 +83,7 @@ web-test: web ## the package in a real Chromium (needs chromium, node and npm's 
 
 # Of what there is: the dragon and the bunny of GEOTEX_MODELS.
 web_models := dragon_810k_loop_q14 bunny
-bench-web: web-test ## .gtx beside Draco and meshopt in three.js at 10 Mbit/s (needs GEOTEX_MODELS too)
+bench-web: web-test ## .gtx beside Draco and meshopt at 10 Mbit/s (needs GEOTEX_MODELS too)
 	$(Q)mkdir -p $(web)/bench && for m in $(web_models); do b=$(web)/bench/$$m; \
 	  cp -f $(GEOTEX_MODELS)/draco/$$m.drc $$b.drc && $(build)/gtx cook -q $$b.drc -o $$b.gtx && \
 	  node tests/web/meshopt.mjs $(web)/app $$b.drc $$b.obj && \

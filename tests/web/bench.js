@@ -160,7 +160,8 @@ window.measure = async (kind, url, bits, maxError) => {
   for (const {at, picture: p, bytes} of pictures)
     console.log(`${url}: at ${(at - start).toFixed(0)} ms, ${bytes ?? 'all'} bytes: ` +
                 `${(100 * compare(p, final).apart).toFixed(4)} % off`);
-  return {first, full: full < pictures.length ? pictures[full].at - start : null, iou, task: longest(start, end.at), bytes: all.bytes,
+  return {first, full: full < pictures.length ? pictures[full].at - start : null, iou,
+          task: longest(start, end.at), bytes: all.bytes,
           frame: times.sort((a, b) => a - b)[FRAMES >> 1], memory: all.memory};
 };
 window.shot = () => renderer.domElement.toDataURL('image/png');
