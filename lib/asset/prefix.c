@@ -229,7 +229,10 @@ static uint64_t plan_preview(beginning *b, gtx_lod_mesh *mesh)
     gtx_sizes sizes = {0};
     for (uint32_t k = 0; k < b->lods; ++k)
         sizes.lod[k] = b->source->lod_size[k];
-    return gtx_asset_bytes(&b->info, &sizes) + gtx_preview_scratch(&b->info, mesh->vertex_count);
+    const uint64_t marks =
+        b->normals ? (uint64_t)b->info.page_width * b->info.page_height * b->info.page_count : 0;
+    return gtx_asset_bytes(&b->info, &sizes) + marks +
+           gtx_preview_scratch(&b->info, mesh->vertex_count);
 }
 
 static gtx_asset *preview(beginning *b)

@@ -42,7 +42,7 @@ gtx_info gtx_preview_info(const gtx_info *info, uint32_t shift, bool mips)
 
 uint64_t gtx_preview_scratch(const gtx_info *preview, uint32_t vertices)
 {
-    return texels_of(preview) * (sizeof(gtx_normal_sum) + 2) +
+    return texels_of(preview) * (sizeof(gtx_normal_sum) + 1) +
            3 * sizeof(float) * (uint64_t)vertices;
 }
 

@@ -1,36 +1,20 @@
 /* What must hold while a file comes down a line: `link(bits)` of browser.mjs makes it slow. */
 import * as THREE from 'three';
 import {GeotexLoader} from 'geotex/three';
+import {likeness, stage as stageOf} from './pictures.js';
 
 const LINK = 10e6, FIRST_BYTES = 150e3;
 
-export const streaming = ({expect, address, cameraOf, read, apart, WIDTH, HEIGHT}) => {
-  function stage() {
-    const renderer = new THREE.WebGLRenderer({preserveDrawingBuffer: true});
-    renderer.setSize(WIDTH, HEIGHT, false);
-    const scene = new THREE.Scene(), light = new THREE.DirectionalLight(0xffffff, 3);
-    light.position.set(1, 2, 1.5);
-    scene.add(light, new THREE.HemisphereLight(0xffffff, 0x604020, 0.6));
-    const picture = (model) => {
-      scene.add(model);
-      renderer.render(scene, cameraOf(model.asset));
-      expect(renderer.getContext().getError() === 0, 'WebGL reports an error');
-      scene.remove(model);
-      return read(renderer.getContext());
-    };
-    return {renderer, picture, loader: new GeotexLoader(renderer)};
-  }
+export const streaming = (checks) => {
+  const {expect, address, cameraOf, apart, WIDTH, HEIGHT} = checks;
 
-  /* Intersection over union of what is not black, and the mean difference there. */
-  function likeness(a, b) {
-    const lit = (p, i) => p[i] + p[i + 1] + p[i + 2] > 0;
-    let both = 0, either = 0, sum = 0;
-    for (let i = 0; i < a.length; i += 4) {
-      both += lit(a, i) && lit(b, i);
-      either += lit(a, i) || lit(b, i);
-      sum += [0, 1, 2].reduce((s, k) => s + Math.abs(a[i + k] - b[i + k]), 0) / 3;
-    }
-    return {overlap: both / either, off: sum / either};
+  function stage() {
+    const light = new THREE.DirectionalLight(0xffffff, 3);
+    light.position.set(1, 2, 1.5);
+    const {renderer, picture} =
+        stageOf(checks, light, new THREE.HemisphereLight(0xffffff, 0x604020, 0.6));
+    return {renderer, picture: (model) => picture(model, cameraOf(model.asset)),
+            loader: new GeotexLoader(renderer)};
   }
 
   function sideBySide(...pictures) {

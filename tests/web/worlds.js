@@ -4,37 +4,17 @@ import {TilesRenderer} from '3d-tiles-renderer';
 import {GeotexLoader} from 'geotex/three';
 import {GeotexTilesPlugin} from 'geotex/tiles';
 import {GeotexWorld} from 'geotex/world';
+import {likeness, stage as stageOf} from './pictures.js';
 
 const WORLD = '/asset/world/', WHOLE = '/asset/small.gtx'; /* of the same model */
 
-export const worlds = ({expect, cameraOf, read, WIDTH, HEIGHT}) => {
-  async function stage() {
-    const renderer = new THREE.WebGLRenderer({preserveDrawingBuffer: true});
-    renderer.setSize(WIDTH, HEIGHT, false);
-    const scene = new THREE.Scene();
-    scene.add(new THREE.HemisphereLight(0xffffff, 0x604020, 3));
-    const whole = await new GeotexLoader(renderer).loadAsync(WHOLE);
-    const picture = (object, camera) => {
-      scene.add(object);
-      renderer.render(scene, camera);
-      expect(renderer.getContext().getError() === 0, 'WebGL reports an error');
-      scene.remove(object);
-      return read(renderer.getContext());
-    };
-    const later = () => new Promise((next) => setTimeout(next, 20));
-    return {renderer, scene, whole, picture, later};
-  }
+export const worlds = (checks) => {
+  const {expect, cameraOf, WIDTH, HEIGHT} = checks;
 
-  /* Intersection over union of what is not black, and the mean difference there. */
-  function likeness(a, b) {
-    const lit = (p, i) => p[i] + p[i + 1] + p[i + 2] > 0;
-    let both = 0, either = 0, sum = 0;
-    for (let i = 0; i < a.length; i += 4) {
-      both += lit(a, i) && lit(b, i);
-      either += lit(a, i) || lit(b, i);
-      sum += [0, 1, 2].reduce((s, k) => s + Math.abs(a[i + k] - b[i + k]), 0) / 3;
-    }
-    return {overlap: both / either, off: sum / either};
+  async function stage() {
+    const made = stageOf(checks, new THREE.HemisphereLight(0xffffff, 0x604020, 3));
+    const whole = await new GeotexLoader(made.renderer).loadAsync(WHOLE);
+    return {...made, whole, later: () => new Promise((next) => setTimeout(next, 20))};
   }
 
   function same(a, b, what, least = 0.98, most = 12) {
