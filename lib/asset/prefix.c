@@ -16,7 +16,7 @@ typedef struct beginning {
     const gtx_read_options *options;
     const uint8_t *data;
     uint64_t size;
-    const gtx_piece *pieces;
+    const gtx_file_part *pieces;
     uint32_t piece_count;
     bool normals;                              /* and heights are there, too */
     gtx_layout layout;
@@ -58,7 +58,7 @@ static const uint8_t *bytes_of(const beginning *b, const gtx_section *section)
     if (end_of(section) <= b->size)
         return b->data + section->offset;
     for (uint32_t i = 0; i < b->piece_count; ++i) {
-        const gtx_piece *p = &b->pieces[i];
+        const gtx_file_part *p = &b->pieces[i];
         if (section->offset >= p->first && section->offset - p->first <= p->size &&
             section->stored_size <= p->size - (section->offset - p->first))
             return p->bytes + (section->offset - p->first);
@@ -291,7 +291,7 @@ static gtx_asset *read_parts(beginning *b)
 }
 
 gtx_result gtx_read_prefix(gtx_error *error, const gtx_read_options *options, const void *data,
-                           size_t size, const gtx_piece *pieces, uint32_t piece_count,
+                           size_t size, const gtx_file_part *pieces, uint32_t piece_count,
                            gtx_prefix *prefix, gtx_asset **out)
 {
     beginning b = {.check = {.error = error, .in_file = true, .beginning = true},

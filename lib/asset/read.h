@@ -19,16 +19,16 @@ gtx_result gtx_read_asset(gtx_check *check, const gtx_read_options *options, con
                           size_t size, gtx_asset **out);
 
 /* Bytes of a file behind its beginning, from the one numbered `first` on. */
-typedef struct gtx_piece {
+typedef struct gtx_file_part {
     const uint8_t *bytes;
     uint64_t first, size;
-} gtx_piece;
+} gtx_file_part;
 
 /* The same of the first bytes of a file, and of pieces that hold sections behind them; *out stays
  * as it is where they show nothing yet. Where heights and all normals are among them, the latter
  * take the place of those that follow from the LOD mesh. */
 gtx_result gtx_read_prefix(gtx_error *error, const gtx_read_options *options, const void *data,
-                           size_t size, const gtx_piece *pieces, uint32_t piece_count,
+                           size_t size, const gtx_file_part *pieces, uint32_t piece_count,
                            gtx_prefix *prefix, gtx_asset **out);
 
 #endif

@@ -56,7 +56,8 @@ drop_sources_made = $(drop)/geotex.c $(if $(vulkan),$(drop)/geotex_vulkan.c)
 amalgamation: $(drop_sources_made) ## geotex.c, .h, GL's and Vulkan's faces, to drop into an engine
 	@echo $(drop)
 
-$(drop)/geotex.h: $(foreach h,geotex edit solid stream view frame,include/geotex/$(h).h) LICENSE
+$(drop)/geotex.h: $(foreach h,geotex edit solid stream view frame rays,include/geotex/$(h).h) \
+    lib/package/install.mk LICENSE
 	@mkdir -p $(@D)
 	$(Q){ $(call drop_head,all of its headers but OpenGL); \
 	  sed '/^#include <geotex/d' $(filter %.h,$^); } > $@

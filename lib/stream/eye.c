@@ -44,7 +44,7 @@ static void find_eye(double rows[3][4], double determinant, double at[3])
 }
 
 /* w grows least, over a length, towards the corners of the picture. */
-static double least_growth(const gtx_eye *eye)
+static double least_growth(const gtx_stream_eye *eye)
 {
     double least = INFINITY;
     for (int i = 0; i < 4; ++i) {
@@ -63,7 +63,7 @@ static bool all_finite(const gtx_stream_view *view)
     return isfinite(view->origin[0]) && isfinite(view->origin[1]) && isfinite(view->origin[2]);
 }
 
-gtx_result gtx_eye_of(const gtx_stream_view *view, gtx_eye *out, gtx_error *error)
+gtx_result gtx_eye_of(const gtx_stream_view *view, gtx_stream_eye *out, gtx_error *error)
 {
     double rows[3][4], normal[3];
     gtx_result result = gtx_check_reserved(view->reserved, 3, error);
@@ -104,7 +104,7 @@ static double least_of(const double f[4], double sign, const double low[3], cons
     return sum;
 }
 
-bool gtx_eye_sees(const gtx_eye *eye, const double low[3], const double high[3])
+bool gtx_eye_sees(const gtx_stream_eye *eye, const double low[3], const double high[3])
 {
     for (int i = 0; i < 4; ++i)
         if (least_of(eye->side[i], -1, low, high) > 0)
@@ -112,7 +112,8 @@ bool gtx_eye_sees(const gtx_eye *eye, const double low[3], const double high[3])
     return true;
 }
 
-double gtx_eye_pixels(const gtx_eye *eye, const double low[3], const double high[3], double length)
+double gtx_eye_pixels(const gtx_stream_eye *eye, const double low[3], const double high[3],
+                      double length)
 {
     double nearest = least_of(eye->w, 1, low, high), distance = 0;
     if (eye->perspective) {

@@ -56,7 +56,7 @@ struct gtx_stream {
     gtx_tile *tiles;          /* and behind them as many rests */
     uint64_t own_bytes;
     uint64_t update, serial;
-    gtx_eye eyes[GTX_STREAM_MAX_VIEWS];
+    gtx_stream_eye eyes[GTX_STREAM_MAX_VIEWS];
     uint32_t eye_count;
     uint64_t cpu, gpu;        /* taken */
     struct {

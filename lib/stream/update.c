@@ -28,7 +28,7 @@ static bool look_at(const gtx_stream *s, gtx_tile *tile)
     gtx_tile *rest = gtx_tile_rest(s, tile);
     double most = -1, beginning = -1;
     for (uint32_t i = 0; i < s->eye_count; ++i) {
-        const gtx_eye *eye = &s->eyes[i];
+        const gtx_stream_eye *eye = &s->eyes[i];
         if (!gtx_eye_sees(eye, facts->low, facts->high))
             continue;
         most = fmax(most, gtx_eye_pixels(eye, facts->low, facts->high, (double)facts->error));
@@ -188,7 +188,7 @@ static void draw(gtx_stream *s)
 gtx_result gtx_stream_update(gtx_stream *s, const gtx_stream_view *views, uint32_t count,
                              gtx_stream_frame *frame, gtx_error *error)
 {
-    gtx_eye eyes[GTX_STREAM_MAX_VIEWS];
+    gtx_stream_eye eyes[GTX_STREAM_MAX_VIEWS];
     if (!s || !frame || (!views && count) || count > GTX_STREAM_MAX_VIEWS)
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "an update needs a stream, a frame, and up to %d views",

@@ -116,9 +116,9 @@ WEB_API gtx_asset *gtxw_open_prefix(const void *bytes, size_t size, const uint8_
                                     const double *places, double told[2])
 {
     const gtx_read_options options = {.allocator = gtx_allocator_or_default(NULL)};
-    gtx_piece pieces[2] = {{NULL, 0, 0}};
+    gtx_file_part pieces[2] = {{NULL, 0, 0}};
     for (int i = 0; i < 2 && more; ++i) {
-        pieces[i] = (gtx_piece){more, (uint64_t)places[2 * i], (uint64_t)places[2 * i + 1]};
+        pieces[i] = (gtx_file_part){more, (uint64_t)places[2 * i], (uint64_t)places[2 * i + 1]};
         more += pieces[i].size;
     }
     gtx_asset *asset = NULL;

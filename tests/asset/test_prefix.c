@@ -133,9 +133,9 @@ static void test_content(void **state)
 }
 
 /* The sections of a kind, in a copy of their own; they lie side by side. */
-static gtx_piece piece_of(bytes file, const char *type)
+static gtx_file_part piece_of(bytes file, const char *type)
 {
-    gtx_piece piece = {NULL, 0, 0};
+    gtx_file_part piece = {NULL, 0, 0};
     for (uint32_t i = 0; i < gtx_load_u32(file.data + 28); ++i) {
         const uint8_t *entry = file.data + GTX_HEADER_SIZE + GTX_ENTRY_SIZE * i;
         if (memcmp(entry, type, 4))
@@ -149,7 +149,7 @@ static gtx_piece piece_of(bytes file, const char *type)
     return piece;
 }
 
-static gtx_result open_pieces(bytes file, size_t size, const gtx_piece *pieces, gtx_asset **out)
+static gtx_result open_pieces(bytes file, size_t size, const gtx_file_part *pieces, gtx_asset **out)
 {
     const gtx_read_options options = {.allocator = gtx_allocator_or_default(NULL)};
     gtx_prefix prefix;
@@ -163,7 +163,7 @@ static void test_pieces(void **state)
     (void)state;
     for (int i = 0; i < (gtx_has_zstd() ? 2 : 1); ++i) {
         bytes file = golden_encode(&every[i]);
-        const gtx_piece pieces[2] = {piece_of(file, "HGHT"), piece_of(file, "NRML")};
+        const gtx_file_part pieces[2] = {piece_of(file, "HGHT"), piece_of(file, "NRML")};
         const size_t size = end_of(file, 3);
         gtx_asset *whole, *part;
         assert_int_equal(gtx_open_memory(file.data, file.size, NULL, &whole, NULL), GTX_OK);
@@ -182,7 +182,7 @@ static void test_pieces(void **state)
         gtx_close(part);
         /* A piece that ends early is none: normals follow from the LOD mesh. */
         for (int cut = 0; cut < 2; ++cut) {
-            gtx_piece fewer[2] = {pieces[0], pieces[1]};
+            gtx_file_part fewer[2] = {pieces[0], pieces[1]};
             --fewer[cut].size;
             assert_int_equal(open_pieces(file, size, fewer, &part), GTX_OK);
             assert_null(part->marks);

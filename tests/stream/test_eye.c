@@ -18,7 +18,7 @@ static double between(double low, double high)
     return low + (high - low) * (double)(seed >> 33) / (double)(1u << 31);
 }
 
-static double w_of(const gtx_eye *eye, const double p[3])
+static double w_of(const gtx_stream_eye *eye, const double p[3])
 {
     return eye->w[0] * p[0] + eye->w[1] * p[1] + eye->w[2] * p[2] + eye->w[3];
 }
@@ -56,7 +56,7 @@ static void bounds_hold(void **state)
         const double far = n % 3 ? 0 : 1e7;
         const gtx_stream_view view = any_view(far, n % 5 != 0);
         double low[3], high[3], most = 0;
-        gtx_eye eye;
+        gtx_stream_eye eye;
         int seen = 0;
         assert_int_equal(gtx_eye_of(&view, &eye, NULL), GTX_OK);
         for (int k = 0; k < 3; ++k) {
@@ -92,7 +92,7 @@ static void an_eye_in_the_box_sees_all_errors(void **state)
     (void)state;
     const gtx_stream_view view = made_view((double[3]){1, 2, 3}, 0.3, 0.1);
     const double low[3] = {0, 0, 0}, high[3] = {5, 5, 5};
-    gtx_eye eye;
+    gtx_stream_eye eye;
     assert_int_equal(gtx_eye_of(&view, &eye, NULL), GTX_OK);
     assert_true(fabs(eye.at[0] - 1) < 1e-6 && fabs(eye.at[2] - 3) < 1e-6);
     assert_true(isinf(gtx_eye_pixels(&eye, low, high, 1e-9)));
