@@ -202,7 +202,8 @@ static void vulkan_draws_into_windows(void **state)
 {
     (void)state;
     if (run("test -x $S/vulkan_window") ||
-        !run("$S/vulkan_window $T/lod.gtx --headless $T/no-window.png 2>&1 | grep -q 'is no Vulkan'"))
+        !run("$S/vulkan_window $T/lod.gtx --headless $T/no-window.png 2>&1 | "
+             "grep -q 'is no Vulkan'"))
         skip();
     draws_picture_of("vulkan_window", "$T/lod.gtx");
     assert_int_equal(run("$S/vulkan_window $T/nothing.gtx --headless $T/none.png 2>/dev/null"), 1);
