@@ -240,8 +240,9 @@ typedef struct gtx_prefix {
  * than the whole file it has the patches; the LOD meshes that are there, the finest of them as
  * level 0; colours, material and emission as far as they are there; normals that follow from its
  * finest LOD mesh; all at fewer texels; and no heights, so that no ray meets it, and only
- * GTX_METHOD_AUTO and GTX_METHOD_LOD show it. It is an asset as any other; that of all bytes is
- * gtx_open_memory's. What is there is checked as if the rest were right.
+ * GTX_METHOD_AUTO and GTX_METHOD_LOD show it, and models of it take no gtx_model_update. Else it is
+ * an asset as any other; that of all bytes is gtx_open_memory's. What is there is checked as if the
+ * rest were right.
  * Errors: as gtx_open_memory; TRUNCATED is none. */
 GTX_API gtx_result gtx_open_prefix(const void *data, size_t size, const gtx_open_desc *desc,
                                    gtx_prefix *prefix, gtx_asset **out, gtx_error *error);

@@ -164,12 +164,14 @@ export async function* modelsOf(geotex, ask, {onProgress = () => {}, wanted = ()
         const places = placesIn(gathered.all);
         if (places[0].first - gathered.length > NEAR)
           source.stop();
-        held = await Promise.all(places.map(async ({first, end}) => {
-          while (first - gathered.length <= NEAR && gathered.length < end && !source.ended) {
+        held = await Promise.all(places.map(async ({first, end}, i) => {
+          while (!i && gathered.length < end && !source.ended) {
             const chunk = await source.read();
             if (chunk)
               gathered.add(chunk, Math.min(size, MOST_EXPECTED));
           }
+          if (!i)
+            source.stop(); /* it would take its share of the line */
           if (gathered.length >= end)
             return {first, bytes: gathered.bytes.slice(first, end)};
           const asked = await Source.open(ask, source, first, end), piece = new Gathered();
