@@ -35,6 +35,11 @@ constexpr double WORTH_PEELING = 0.96;
  * the walls. */
 constexpr double MUCH_LOST = 0.003;
 constexpr double FINER[] = {2, 1.75, 1.5, 1.25}, MOST_TEXELS = 2.5;
+/* Likewise where texels are this part of the diagonal, for less: a box loses 0.0024 and its texels
+ * are 0.015, Spot's control mesh 0.0023 and 0.0039; a bottle, whose loss of 0.0028 is nowhere a
+ * pixel, 0.0026, and half takes that, too. So many texels are taken anyway: at half Spot's control
+ * mesh gets 192 for 256, and 4,814 wall pixels for 745. */
+constexpr double LOST_OF_COARSE = 0.0022, COARSE = 0.003, FREE_TEXELS = 1 << 19;
 /* Of a texel, how far an outline is off along borders and sharp edges: one less the IoU that
  * compare measures is 0.011 of an engine (estimated 0.018), 0.005 of a truck (0.004), 0.0006 of the
  * bunny (0.0002). */
@@ -229,6 +234,19 @@ static Partition make_textured(PartitionMethod method, const Mesh &mesh,
     return out;
 }
 
+/* Whether it loses so much of its outlines that finer texels are worth it. */
+static bool loses_outlines(const Mesh &mesh, const Partition &partition)
+{
+    Vec3d low = mesh.positions[0], high = low;
+    for (const Vec3d &p : mesh.positions)
+        for (int k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], p[k]);
+            high[k] = std::max(high[k], p[k]);
+        }
+    const bool coarse = partition.pitch > COARSE * length(high - low);
+    return partition.outline_loss() > (coarse ? LOST_OF_COARSE : MUCH_LOST);
+}
+
 /* Layers of texels that are so much finer as the bound on all of them allows; without charts if
  * none is. Texels go at most with the square of the resolution, so what they say of a finer one
  * spares those that must be too many, too. */
@@ -244,7 +262,8 @@ static Partition finer_layers(const Mesh &mesh, const ChartOptions &options, dou
         task.limits.work_again();
         Partition out = make_textured(PartitionMethod::LAYERS, mesh, tried, task);
         out.for_outlines = true;
-        const double times = texels_of_patches(out, tried) / (MOST_TEXELS * cut_texels);
+        const double times = texels_of_patches(out, tried) /
+                             std::max(MOST_TEXELS * cut_texels, FREE_TEXELS);
         if (times <= 1)
             return out;
         most_finer = finer / std::sqrt(times);
@@ -279,7 +298,7 @@ Partition make_partition(const Mesh &mesh, const ChartOptions &options, Task &ta
     Partition cuts = partition_by(PartitionMethod::CUTS, mesh, options, task);
     const double of_relief = texels_of_patches(cuts, options);
     follow_textures(mesh, options, cuts, task);
-    if (options.free_resolution && cuts.outline_loss() > MUCH_LOST) {
+    if (options.free_resolution && loses_outlines(mesh, cuts)) {
         const double cut_texels = texels_of_patches(cuts, options);
         Partition layers = allowed_finer_layers(mesh, options, cut_texels, task);
         if (!layers.charts.empty())

@@ -159,6 +159,19 @@ static void the_default_takes_them_where_it_may(void **)
                 cook(ball_file(), GTX_PARTITION_CUTS).report["content_hash"]);
 }
 
+/* A box loses less of its outlines, but its texels are coarse. */
+static void a_box_takes_finer_texels(void **)
+{
+    const std::string box = write_model("coarse_box.obj", shapes::ball(1, [](const gtx::Vec3d &) {
+                                            return 1.;
+                                        }));
+    const schema::json cuts = cook(box, GTX_PARTITION_CUTS).report;
+    const schema::json taken = cook(box, GTX_PARTITION_DEFAULT).report;
+    assert_true(cuts["suitability"]["outline_loss"] < 0.003);
+    assert_true(taken["suitability"]["taken_for"] == "outlines");
+    assert_int_equal(taken["resolution"], 256);
+}
+
 /* Neither layers nor what auto comes to leave a hole in a closed model. */
 static void other_partitions_leave_no_hole(void **)
 {
@@ -216,6 +229,7 @@ int main()
                                 cmocka_unit_test(what_six_views_lose_is_told),
                                 cmocka_unit_test(auto_takes_finer_layers_for_outlines),
                                 cmocka_unit_test(the_default_takes_them_where_it_may),
+        cmocka_unit_test(a_box_takes_finer_texels),
                                 cmocka_unit_test(other_partitions_leave_no_hole),
                                 cmocka_unit_test(nasty_models_are_cooked_or_refused)};
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
