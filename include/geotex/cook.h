@@ -130,7 +130,10 @@ typedef struct gtx_cook_desc {
     const char *base_color;       /* path of the image for materials that have none or an unreadable
                                      one, in OBJ and glTF with texture coordinates; or NULL. If it
                                      cannot be read: READ. Compare with the same two */
-    uint32_t reserved[2];
+    uint32_t closed;              /* 1: the models are part of a closed surface, counterclockwise
+                                     seen from outside: their borders are where it is cut, and their
+                                     patches are seen from the front alone */
+    uint32_t reserved[1];
 } gtx_cook_desc;
 
 /* An asset keeps the key that it was cooked under. The key covers
@@ -138,8 +141,8 @@ typedef struct gtx_cook_desc {
  *     and images that they refer to, missing ones included; not their paths or times;
  *   - the options that change the asset: partition, extract (and the driver, where it is GPU),
  *     charts, resolution, height_bits, dilation, mips, lod_levels, zstd_level, unit, error, z_up,
- *     adaptive, kept, texel_density and base_color; not threads, measure, progress, strict, allow,
- *     limits or allocator;
+ *     adaptive, kept, closed, texel_density and base_color; not threads, measure, progress, strict,
+ *     allow, limits or allocator;
  *   - geotex's version and the revision of its cooker,
  * but not the libraries that decode images and compress sections. With `strict`, an asset whose
  * cook had warnings that are not allowed is cooked again; with `charts_ply`, or if importing read

@@ -75,8 +75,8 @@ GTX_API gtx_result gtx_export_file(const char *input, const char *output,
  * "empty-texels", "outline-loss" and "unseen-surface" tell of, those with skins, morph targets,
  * points, lines or blending, and those that cannot be cooked; the report
  * (format/scene-report.schema.json) says why. Files are written whole, the scene last. `more`,
- * `charts_ply`, `z_up`, `unit`, `kept`, `strict` and `if_changed` of the descriptor must be 0.
- * `desc`, `report` and `error` may be NULL. Any thread. Errors: as gtx_cook_file. */
+ * `charts_ply`, `z_up`, `unit`, `kept`, `closed`, `strict` and `if_changed` of the descriptor must
+ * be 0. `desc`, `report` and `error` may be NULL. Any thread. Errors: as gtx_cook_file. */
 GTX_API gtx_result gtx_cook_scene(const char *input, const char *folder, const gtx_cook_desc *desc,
                                   gtx_report *report, gtx_error *error);
 

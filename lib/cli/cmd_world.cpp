@@ -6,7 +6,7 @@
 #include <filesystem>
 
 static const char *folder;
-static uint32_t engine, threads, up;
+static uint32_t engine, threads, up, sides;
 static uint64_t triangles = gtx::MAX_TILE, memory = gtx::WORKER_MEMORY;
 static double unit = 1;
 static bool glb;
@@ -21,6 +21,8 @@ static const option plan_options[] = {
      1e15},
     {"glb", 0, OPTION_FLAG, &glb, nullptr,
      "write each tile's finest LOD mesh as GLB too, for any reader of 3D Tiles", 0, 0},
+    {"sides", 0, OPTION_CHOICE, &sides, "auto|front|both",
+     "that show: of a closed surface the front, of others both; or as you say [auto]", 0, 0},
     {"up", 0, OPTION_CHOICE, &up, "y|z", "the models' up axis; +Z is turned to +Y [y]", 0, 0},
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the models [1]", 1e-30, 1e30},
     PROGRESS_OPTION,
@@ -78,6 +80,7 @@ static gtx::StepReport run_plan(const char *const *operands, int count, gtx::Tas
     options.work = cli_limits.work;
     options.engine = gtx::Engine(engine);
     options.glb = glb;
+    options.sides = gtx::Sides(sides);
     options.z_up = up == 1;
     options.unit = unit;
     options.command = own_path();

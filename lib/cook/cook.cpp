@@ -125,7 +125,7 @@ static Cooked cook_models(Models &models, const Options &options, const Outputs 
         facts.key = 0; /* nobody's: it would not cover all, so this asset is always cooked again */
     }
     task.begin("clean");
-    mesh = clean_mesh(std::move(mesh), task, facts.clean);
+    mesh = clean_mesh(std::move(mesh), task, facts.clean, options.closed);
     refuse_warnings(options, task);
     Attempt made = cook_mesh(mesh, options, task, facts);
 

@@ -31,6 +31,8 @@ std::string write_meta(const Options &options, const CookFacts &facts)
     gtx_json_string(&json, "up", options.z_up ? "z" : "y");
     if (options.kept_count)
         gtx_json_integer(&json, "kept", options.kept_count);
+    if (options.closed)
+        gtx_json_bool(&json, "closed", true);
     if (options.bake.extractor)
         gtx_json_string(&json, "extract", "gpu");
     gtx_json_end_object(&json);

@@ -64,6 +64,7 @@ static void check(const gtx_cook_desc &desc)
     require_argument(desc.if_changed <= 1, "if_changed is 0 or 1");
     require_argument(desc.kept || !desc.kept_count, "kept is NULL, and kept_count is not 0");
     require_argument(desc.kept_count <= UINT32_MAX, "kept_count is at most 2^32 - 1");
+    require_argument(desc.closed <= 1, "closed is 0 or 1");
     require_models(desc.more, desc.more_count);
     require_argument(desc.allow_count <= 64, "allow_count is at most 64");
     require_argument(desc.allow || !desc.allow_count, "allow is NULL, and allow_count is not 0");
@@ -122,6 +123,7 @@ Options checked_options(const gtx_cook_desc &desc)
     options.strict = desc.strict;
     options.allowed = allowed_by(desc);
     options.if_changed = desc.if_changed;
+    options.closed = desc.closed;
     options.kept = desc.kept;
     options.kept_count = desc.kept_count;
     options.charts_ply = desc.charts_ply;
@@ -182,6 +184,8 @@ uint64_t content_key(const Options &options, uint64_t source_hash)
     if (options.kept_count)
         text += " kept " + std::to_string(gtx_hash_bytes(options.kept, options.kept_count *
                                                                            3 * sizeof(double)));
+    if (options.closed)
+        text += " closed";
     if (options.chart.texel_density != 0)
         text += " density " + std::to_string(gtx_hash_bytes(&options.chart.texel_density,
                                                             sizeof(double)));

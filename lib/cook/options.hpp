@@ -40,7 +40,7 @@ struct Options {
     bool free_charts = false;     /* and on the number of patches */
     bool measure = false;         /* also where an error is asked for */
     std::bitset<GTX_WARNING_COUNT> allowed; /* warnings that `strict` lets pass; notes always */
-    bool z_up = false, strict = false, if_changed = false;
+    bool z_up = false, strict = false, if_changed = false, closed = false;
     const double *kept = nullptr;
     size_t kept_count = 0;
     const char *charts_ply = nullptr, *cache = nullptr;

@@ -87,9 +87,9 @@ SceneCook::SceneCook(const char *input, const char *folder, const gtx_cook_desc 
             desc.limits)
 {
     require_argument(!desc.more_count && !desc.charts_ply && !desc.z_up && !(desc.unit > 0) &&
-                         !desc.kept_count && !desc.strict && !desc.if_changed,
-                     "more, charts_ply, z_up, unit, kept, strict and if_changed do not go with "
-                     "the meshes of a scene");
+                         !desc.kept_count && !desc.closed && !desc.strict && !desc.if_changed,
+                     "more, charts_ply, z_up, unit, kept, closed, strict and if_changed do not go "
+                     "with the meshes of a scene");
 }
 
 /* No file to write may be one that was read. */

@@ -87,9 +87,9 @@ Mesh import_model(const ModelFile &file, Task &task);
  * first). */
 Mesh import_mesh(const std::string &path, Task &task, Vector<std::string> *sources = nullptr);
 
-/* Welds, repairs and orients; the result keeps the promises above. Throws Error: EMPTY,
- * CANCELLED. */
-Mesh clean_mesh(Mesh mesh, Task &task, CleanReport &report);
+/* Welds, repairs and orients; the result keeps the promises above. Parts of a `closed` surface have
+ * no border. Throws Error: EMPTY, CANCELLED. */
+Mesh clean_mesh(Mesh mesh, Task &task, CleanReport &report, bool closed = false);
 
 /* Three neighbours a triangle: neighbour[t][k] shares the edge from corner k to corner k + 1, or is
  * NO_TRIANGLE at a border. For cleaned meshes. */

@@ -124,11 +124,11 @@ static void write_arrays(Json &out, const Arrays &a)
     gtx_json_end_array(&out);
 }
 
-static void write_mesh(Json &out)
+static void write_mesh(Json &out, bool closed)
 {
     gtx_json_begin_array(&out, "materials");
     gtx_json_begin_object(&out, nullptr);
-    gtx_json_bool(&out, "doubleSided", true); /* a tile is an open surface */
+    gtx_json_bool(&out, "doubleSided", !closed);
     gtx_json_begin_object(&out, "pbrMetallicRoughness");
     gtx_json_number(&out, "metallicFactor", 0);
     gtx_json_end_object(&out);
@@ -151,7 +151,7 @@ static void write_mesh(Json &out)
     gtx_json_end_array(&out);
 }
 
-static std::string json_of(const Arrays &a)
+static std::string json_of(const Arrays &a, bool closed)
 {
     Json out(gtx_allocator{});
     gtx_json_begin_object(&out, nullptr);
@@ -176,7 +176,7 @@ static std::string json_of(const Arrays &a)
     gtx_json_end_array(&out);
     gtx_json_end_object(&out);
     gtx_json_end_array(&out);
-    write_mesh(out);
+    write_mesh(out, closed);
     write_arrays(out, a);
     gtx_json_end_object(&out);
     check_written(out);
@@ -192,7 +192,7 @@ static std::string chunk(uint32_t type, std::string bytes, char padding)
     return std::string(reinterpret_cast<char *>(head), sizeof head) + bytes;
 }
 
-std::string glb_of(const Sheet &mesh, const TileSurface &surface, Task &task)
+std::string glb_of(const Sheet &mesh, const TileSurface &surface, bool closed, Task &task)
 {
     const size_t vertices = mesh.positions.size(), indices = 3 * mesh.triangles.size();
     Arrays arrays = {vertices, indices, (surface.header.low + surface.header.high) / 2,
@@ -213,7 +213,7 @@ std::string glb_of(const Sheet &mesh, const TileSurface &surface, Task &task)
             gtx_store_u32(to, v);
             to += 4;
         }
-    const std::string chunks = chunk(0x4e4f534a, json_of(arrays), ' ') +
+    const std::string chunks = chunk(0x4e4f534a, json_of(arrays, closed), ' ') +
                                chunk(0x004e4942, std::move(bytes), '\0');
     uint8_t head[12] = {'g', 'l', 'T', 'F', 2};
     gtx_store_u32(head + 8, uint32_t(sizeof head + chunks.size()));

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 /* Raised with every change that makes other tiles of the same triangles and options; the cooker has
  * one of its own. */
-constexpr uint32_t WORLD_REVISION = 1;
+constexpr uint32_t WORLD_REVISION = 2;
 
 /* Standard input can be read once, and the steps read twice. */
 static void keep_stdin(const std::string &path, Task &task)
@@ -61,21 +61,24 @@ static uint64_t key_of(const Plan &plan, uint64_t triangles)
     return gtx_hash_end(&hash);
 }
 
-static void count(Plan &plan, Task &task)
+static void count(Plan &plan, Sides sides, Task &task)
 {
     CellCounts cells;
+    Boundary boundary;
     gtx_hash hash;
     gtx_hash_begin(&hash);
     const size_t bytes = 3 * plan.traits.bytes();
     Vector<uint8_t> block(bytes);
     plan.dropped = read_inputs(plan, task, [&](const Corners3 &c) {
         cells.add((c[0].position + c[1].position + c[2].position) / 3);
+        boundary.add(c);
         encode_triangle(plan.traits, c, block.data());
         gtx_hash_add(&hash, block.data(), bytes);
         ++plan.total;
     }, [&](const Appearance &look) { add_look(hash, look); });
     if (!plan.total)
         throw Error(GTX_ERROR_EMPTY, "there is no triangle");
+    plan.closed = sides == Sides::AUTO ? boundary.closed() : sides == Sides::FRONT;
     const Vector<CountedCell> counted = cells.finish(plan.lattice);
     plan.tiles = make_tiles(counted, plan.triangles);
     plan.key = key_of(plan, gtx_hash_end(&hash));
@@ -97,7 +100,7 @@ StepReport plan_world(const PlanOptions &options, Task &task)
         if (input.raw)
             keep_stdin(input.path, task);
     plan.traits = input_traits(plan, task);
-    count(plan, task);
+    count(plan, options.sides, task);
     if (plan.dropped)
         task.warn(GTX_WARNING_NON_FINITE,
                   std::to_string(plan.dropped) + " triangles with corners that are not finite, or "
@@ -109,8 +112,9 @@ StepReport plan_world(const PlanOptions &options, Task &task)
     for (const Tile &tile : plan.tiles)
         leaves += tile.is_leaf();
     char line[160];
-    snprintf(line, sizeof line, "%llu triangles, %zu leaves, %zu tiles, %u levels",
-             (unsigned long long)plan.total, leaves, plan.tiles.size(), plan.depths());
+    snprintf(line, sizeof line, "%llu triangles%s, %zu leaves, %zu tiles, %u levels",
+             (unsigned long long)plan.total, plan.closed ? " seen from the front" : "", leaves,
+             plan.tiles.size(), plan.depths());
     return {line, false};
 }
 

@@ -41,6 +41,7 @@ struct Plan {
     uint32_t triangles = 0;
     uint64_t memory = 0, work = 0, total = 0, dropped = 0;
     bool glb = false, z_up = false;
+    bool closed = false;             /* or as good as that: nothing shows from behind */
     double unit = 1;
     CornerTraits traits;
     Lattice lattice;
@@ -110,6 +111,22 @@ private:
     Vector<Slot> slots_;
     size_t used_ = 0;
     int exponent_;
+};
+
+/* Whether triangles make a closed surface, of which nobody sees the inside. Edges from a to b and
+ * from b to a cancel out in a sum of their hashes, whatever the order and the number of triangles;
+ * 2^-64 is how likely others do. Corners are the same where their positions are. */
+class Boundary {
+public:
+    void add(const Corners3 &corners);
+    /* And counterclockwise seen from outside: the volume tells, of all components together. */
+    bool closed() const { return !sum_ && volume_ > 0; }
+
+private:
+    uint64_t sum_ = 0;
+    double volume_ = 0;              /* six times */
+    Vec3d origin_;
+    bool any_ = false;
 };
 
 } // namespace gtx

@@ -125,6 +125,7 @@ void write_plan(const Plan &plan)
     gtx_json_integer(&out, "memory", plan.memory);
     gtx_json_integer(&out, "work", plan.work);
     gtx_json_bool(&out, "glb", plan.glb);
+    gtx_json_bool(&out, "closed", plan.closed);
     gtx_json_string(&out, "up", plan.z_up ? "z" : "y");
     gtx_json_exact(&out, "unit", plan.unit);
     gtx_json_bool(&out, "doubles", plan.traits.doubles);
@@ -194,6 +195,7 @@ static void read_parts(const json &from, Plan &plan)
     plan.memory = whole_number(from, "memory", UINT64_MAX);
     plan.work = from.contains("work") ? whole_number(from, "work", UINT64_MAX) : 0;
     plan.glb = from.at("glb");
+    plan.closed = from.value("closed", false);
     plan.z_up = from.at("up") == "z";
     plan.unit = from.at("unit");
     plan.traits = {from.at("doubles"), from.at("normals"), from.at("colors"),

@@ -68,7 +68,8 @@ Vector<uint32_t> nearest_triangles(const Vector<Vec3d> &points, const Sheet &she
 
 /* ---- plain meshes ---- */
 
-/* A GLB of the mesh, with normals and colours of the surface's nearest points. */
-std::string glb_of(const Sheet &mesh, const TileSurface &surface, Task &task);
+/* A GLB of the mesh, with normals and colours of the surface's nearest points; seen from both sides
+ * unless the whole is closed. */
+std::string glb_of(const Sheet &mesh, const TileSurface &surface, bool closed, Task &task);
 
 } // namespace gtx

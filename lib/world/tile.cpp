@@ -142,7 +142,7 @@ void TileCook::cook_all(const std::string &ply, const TileSurface &surface)
     facts.beginning = beginning_of(bytes, facts.error, surface.header.deviation);
     write_whole(asset_path(plan, tile), bytes);
     if (plan.glb) {
-        const std::string glb = glb_of(mesh, surface, task);
+        const std::string glb = glb_of(mesh, surface, plan.closed, task);
         facts.glb = made_of(glb);
         write_whole(glb_path(plan, tile), glb);
     }
@@ -177,6 +177,7 @@ StepReport cook_tile(const std::string &folder, const std::string &name, Task &t
     const Tile &tile = plan.tile(name);
     TileCook job = {plan, tile, task, {}, {}, {}};
     job.desc.unit = float(plan.unit);
+    job.desc.closed = plan.closed;
     job.desc.threads = task.threads();
     job.desc.limits = task.limits.given();
     TileSurface surface = load_surface(plan, tile, task);

@@ -31,6 +31,8 @@ constexpr uint32_t MIN_TILE = 1000, MAX_TILE = 1000000;
 constexpr uint64_t WORKER_MEMORY = 1000000000;
 
 enum class Engine { NINJA, SHELL, SLURM };
+/* AUTO: closed surfaces from the front, others from both. */
+enum class Sides { AUTO, FRONT, BOTH };
 
 struct PlanOptions {
     Vector<std::string> models;      /* files, folders, or "-": raw triangles from standard input */
@@ -40,6 +42,7 @@ struct PlanOptions {
     uint64_t work = 0;               /* of a step, at most; 0: as files of its size may take */
     Engine engine = Engine::NINJA;
     bool glb = false, z_up = false;
+    Sides sides = Sides::AUTO;       /* that show */
     double unit = 1;
     std::string command = "gtx";     /* that runs the steps */
 };

@@ -45,7 +45,7 @@ static void each_option_that_matters_changes_the_key(void **)
         [](gtx_cook_desc &d) { d.mips = 2; },        [](gtx_cook_desc &d) { d.zstd_level = 7; },
         [](gtx_cook_desc &d) { d.zstd_level = -1; }, [](gtx_cook_desc &d) { d.unit = 0.001f; },
         [](gtx_cook_desc &d) { d.z_up = 1; },        [](gtx_cook_desc &d) { d.error = 0.01; },
-        [](gtx_cook_desc &d) { d.lod_levels = 2; },
+        [](gtx_cook_desc &d) { d.lod_levels = 2; },  [](gtx_cook_desc &d) { d.closed = 1; },
         [](gtx_cook_desc &d) { d.kept = points, d.kept_count = 1; },
         [](gtx_cook_desc &d) { d.kept = points, d.kept_count = 2; },
         [](gtx_cook_desc &d) { d.lod_levels = GTX_LOD_LEVELS_NONE; },

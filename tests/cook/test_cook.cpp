@@ -182,7 +182,8 @@ static void wrong_arguments_are_refused(void **)
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.texel_density = -0.5f; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.texel_density = 4.5f; }},
         {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.texel_density = NAN; }},
-        {GTX_ERROR_NOT_ZEROED, [](gtx_cook_desc &d) { d.reserved[1] = 1; }},
+        {GTX_ERROR_ARGUMENT, [](gtx_cook_desc &d) { d.closed = 2; }},
+        {GTX_ERROR_NOT_ZEROED, [](gtx_cook_desc &d) { d.reserved[0] = 1; }},
     };
     std::string output = in_folder("e.gtx");
     for (const auto &c : cases) {

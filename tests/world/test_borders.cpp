@@ -233,10 +233,25 @@ size_t check_all(const Scene &scene)
 
 } // namespace
 
+/* How many patches of all tiles show from both sides, and how many there are. */
+static std::pair<size_t, size_t> count_sides(const Scene &scene)
+{
+    std::pair<size_t, size_t> count;
+    for (const auto &[name, tile] : scene.tiles) {
+        gtx_info info;
+        gtx_get_info(tile.asset.get(), &info);
+        count.second += info.patch_count;
+        for (uint32_t i = 0; i < info.patch_count; ++i)
+            count.first += (gtx_patches(tile.asset.get())[i].flags & GTX_PATCH_TWO_SIDED) != 0;
+    }
+    return count;
+}
+
 static void terrain_has_no_hole(void **)
 {
     const Scene scene = make_scene("terrain", terrain(150), 4000);
     assert_true(cut_of(scene.plan, [](const Tile &) { return false; }).size() >= 8);
+    assert_int_equal(count_sides(scene).first, count_sides(scene).second);
     assert_int_equal(check_all(scene), 0);
 }
 
@@ -244,6 +259,7 @@ static void a_closed_ball_has_no_hole(void **)
 {
     const Scene scene = make_scene("ball", ball(60), 4000);
     assert_true(cut_of(scene.plan, [](const Tile &) { return false; }).size() >= 8);
+    assert_int_equal(count_sides(scene).first, 0);
     assert_int_equal(check_all(scene), 0);
 }
 

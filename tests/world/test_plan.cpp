@@ -108,6 +108,39 @@ static void facts_of_numbers_that_are_none_are_refused(void **)
     assert_int_equal(read_facts(plan, plan.tiles[0]).triangles, plan.total);
 }
 
+/* What a plan says of the mesh in a file. */
+static bool is_closed(const Mesh &mesh, Sides sides = Sides::AUTO)
+{
+    PlanOptions options;
+    options.sides = sides;
+    Task task(1, nullptr, nullptr, {"read"}, {1});
+    options.models = {in_folder("surface.ply")};
+    options.folder = in_folder("surface");
+    write_file(options.models[0], ply_text(mesh));
+    plan_world(options, task);
+    return read_plan(options.folder, task).closed;
+}
+
+static void a_plan_knows_closed_surfaces(void **)
+{
+    const Mesh whole = ball(12);
+    assert_true(is_closed(whole));
+    assert_false(is_closed(terrain(12)));
+    assert_true(is_closed(terrain(12), Sides::FRONT));
+    assert_false(is_closed(whole, Sides::BOTH));
+    Mesh mesh = whole;
+    std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
+    assert_false(is_closed(mesh));
+    mesh = whole;
+    mesh.triangles.pop_back();
+    assert_false(is_closed(mesh));
+    mesh.triangles.insert(mesh.triangles.begin(), whole.triangles.back());
+    assert_true(is_closed(mesh));
+    for (auto &t : mesh.triangles)
+        std::swap(t[0], t[1]);
+    assert_false(is_closed(mesh)); /* inside out */
+}
+
 int main()
 {
     const CMUnitTest tests[] = {
@@ -116,6 +149,7 @@ int main()
         cmocka_unit_test(names_hold_no_paths),
         cmocka_unit_test(torn_plans_are_refused),
         cmocka_unit_test(facts_of_numbers_that_are_none_are_refused),
+        cmocka_unit_test(a_plan_knows_closed_surfaces),
     };
     return cmocka_run_group_tests(tests, make_plan, remove_folder);
 }

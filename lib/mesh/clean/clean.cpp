@@ -67,7 +67,7 @@ static void drop_misfits(Mesh &mesh)
         }
 }
 
-Mesh clean_mesh(Mesh mesh, Task &task, CleanReport &report)
+Mesh clean_mesh(Mesh mesh, Task &task, CleanReport &report, bool closed)
 {
     report = CleanReport();
     if (mesh.triangles.size() >= NO_EDGE / 3 || mesh.positions.size() >= NO_EDGE)
@@ -90,7 +90,7 @@ Mesh clean_mesh(Mesh mesh, Task &task, CleanReport &report)
     task.advance(0.5);
     split_fans(surface);
     task.advance(0.6);
-    choose_sides(surface, task, report);
+    choose_sides(surface, closed, task, report);
     task.advance(0.7);
     make_normals(surface, task);
     for (uint8_t turned : surface.turned)

@@ -51,8 +51,9 @@ void orient(Draft &surface);
 void split_fans(Draft &surface);
 
 /* Turns closed components that are inside out, flags open ones as two-sided, counts both. One with
- * gaps of at most 1 % of its area counts as closed. */
-void choose_sides(Draft &surface, Task &task, CleanReport &report);
+ * gaps of at most 1 % of its area counts as closed. Where all is `cut` out of a closed surface open
+ * ones have no inside that shows: they are neither flagged nor counted. */
+void choose_sides(Draft &surface, bool cut, Task &task, CleanReport &report);
 
 /* Keeps the source's usable corner normals and derives the others. */
 void make_normals(Draft &surface, Task &task);

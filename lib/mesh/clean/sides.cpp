@@ -136,7 +136,7 @@ static double gap_at(const Draft &surface, uint32_t h, Vector<bool> &seen)
     return area;
 }
 
-void choose_sides(Draft &surface, Task &task, CleanReport &report)
+void choose_sides(Draft &surface, bool cut, Task &task, CleanReport &report)
 {
     Components components = flood(surface.twin, [](uint32_t, uint32_t, bool) {});
     Vector<bool> closed(components.count()), seen(surface.twin.size());
@@ -154,8 +154,8 @@ void choose_sides(Draft &surface, Task &task, CleanReport &report)
         }
         closed[c] = gaps <= SMALL_GAPS * area;
         report.boundary_edges += borders;
-        surface.open_components += !closed[c];
-        for (size_t i = from; i < to && !closed[c]; ++i)
+        surface.open_components += !closed[c] && !cut;
+        for (size_t i = from; i < to && !closed[c] && !cut; ++i)
             surface.mesh.flags[components.order[i]] |= TRIANGLE_TWO_SIDED;
     }
     report.components = components.count();
