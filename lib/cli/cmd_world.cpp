@@ -38,8 +38,9 @@ enum { MAX_MODELS = 4096 };
 static const verb steps_of_world[] = {
     {"world plan", "MODEL... -o DIR",
      "Counts triangles, once, and plans a tree of tiles: plan.json, and what runs the steps.\n"
-     "Binary PLY, binary STL, and GLB of plain arrays without textures may have any size;\n"
-     "other models and grids (as for horizons) are read one at a time, folders file by file.\n"
+     "Binary PLY, binary STL, and GLB of plain arrays may have any size, images are decoded one\n"
+     "after another; other models and grids (as for horizons) are read one at a time, folders\n"
+     "file by file.\n"
      "Leaves keep all maps of textured models, coarser tiles the colours' means. - reads\n"
      "triangles of nine little-endian floats from stdin. `ninja -C DIR` then makes\n"
      "DIR/tileset.json (OGC 3D Tiles 1.1).",

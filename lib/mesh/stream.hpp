@@ -26,7 +26,7 @@ struct Corner {
 };
 using Corners3 = std::array<Corner, 3>;
 using TriangleSink = std::function<void(const Corners3 &)>;
-/* Materials and images of the triangles that follow. */
+/* Images, and materials that name those that came since the last materials. */
 using LookSink = std::function<void(const Appearance &)>;
 
 /* What the corners of a stream have. */
@@ -61,7 +61,7 @@ public:
 };
 
 /* A model file: binary PLY, binary STL, and GLB whose accessors are plain are read in pieces, of
- * which at most 64 MiB are in memory, if they have no textures; any other model is imported whole,
+ * which at most 64 MiB are in memory, and an image; any other model is imported whole,
  * within the task's limits. Of materials without textures the vertex colours are kept. The stream
  * keeps `task`. Throws Error: as import_model. */
 std::unique_ptr<TriangleStream> open_triangles(const std::string &path, Task &task);

@@ -170,8 +170,9 @@ uint64_t read_inputs(const Plan &plan, Task &task, const TriangleSink &sink,
                      const LookSink &on_look)
 {
     uint64_t dropped = 0, count = 0, materials = 0;
-    const size_t before = task.warnings.size();
+    size_t heard = task.warnings.size(); /* those of opening were, already */
     for_each_input(plan, task, [&](const WorldInput &input, TriangleStream &stream) {
+        task.warnings.resize(heard);
         const bool turned = plan.z_up && !input.grid;
         uint64_t first = materials;
         stream.on_look = [&](const Appearance &look) {
@@ -198,9 +199,9 @@ uint64_t read_inputs(const Plan &plan, Task &task, const TriangleSink &sink,
             else
                 ++dropped;
         });
+        heard = task.warnings.size();
     });
     task.limits.require(GTX_LIMITED_TRIANGLES, "the world", count);
-    task.warnings.resize(before); /* those of opening were heard */
     return dropped;
 }
 

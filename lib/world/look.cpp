@@ -111,15 +111,17 @@ static void write_image(const std::string &path, const Image &image)
 
 void LookWriter::add(const Appearance &look)
 {
+    for (const Image &image : look.images)
+        write_image(image_path(folder_, images_++), image);
     for (Material m : look.materials) {
         for (Texture Material::*map : MATERIAL_TEXTURES)
             if ((m.*map).used())
-                (m.*map).image += images_;
+                (m.*map).image += first_;
         const Vector<uint32_t> words = words_of(m);
         words_.insert(words_.end(), words.begin(), words.end());
     }
-    for (const Image &image : look.images)
-        write_image(image_path(folder_, images_++), image);
+    if (!look.materials.empty())
+        first_ = images_;
 }
 
 void LookWriter::finish()

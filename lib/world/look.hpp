@@ -14,14 +14,15 @@ void add_look(gtx_hash &hash, const Appearance &look);
 class LookWriter {
 public:
     explicit LookWriter(const std::string &folder) : folder_(folder) {}
-    /* Materials and images go on counting. Throws Error: WRITE. */
+    /* Materials and images go on counting: materials name images that came since the last ones.
+     * Throws Error: WRITE. */
     void add(const Appearance &look);
     void finish();
 
 private:
     const std::string folder_;
     Vector<uint32_t> words_;
-    uint32_t images_ = 0;
+    uint32_t images_ = 0, first_ = 0;
 };
 
 /* The materials of a world, the last of them that of triangles without any, and those of the images

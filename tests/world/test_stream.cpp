@@ -79,6 +79,131 @@ static void streams_are_what_importing_gives(void **)
     assert_int_equal(read_all(in_folder("a.glb")).size(), s.own);
 }
 
+/* Targa of so many grey pixels a side. */
+static std::string image(unsigned side, unsigned grey)
+{
+    std::string out(18, 0);
+    out[2] = 2;
+    out[12] = out[14] = char(side);
+    out[16] = 24;
+    for (unsigned i = 0; i < side * side; ++i)
+        out += std::string(3, char(grey + i));
+    return out;
+}
+
+static std::string glb_with(std::string json, std::string binary)
+{
+    std::string out = "glTF";
+    auto word = [&](size_t x) {
+        for (int k = 0; k < 4; ++k)
+            out += char(x >> (8 * k) & 255);
+    };
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    binary.resize((binary.size() + 3) / 4 * 4, 0);
+    word(2);
+    word(28 + json.size() + binary.size());
+    word(json.size());
+    out += "JSON" + json;
+    word(binary.size());
+    return out + std::string("BIN\0", 4) + binary;
+}
+
+/* A square twice, turned and moved: one with images of the file, one with that of a file beside it
+ * and one that is not there. */
+static std::string textured_glb()
+{
+    const float numbers[] = {0, 0, 0, 1,    0,    0, 1, 1,    0, 0, 1, 0,   /* positions */
+                             0, 1, 1, 1,    1,    0, 0, 0.25f,              /* coordinates */
+                             1, 0, 0, 1,    1,    0, 0, 1,    1, 0, 0, 1,   1, 0, 0, -1};
+    std::string binary(sizeof numbers + 12, 0);
+    auto *to = reinterpret_cast<uint8_t *>(&binary[0]);
+    for (float x : numbers) {
+        gtx_store_f32(to, x);
+        to += 4;
+    }
+    for (unsigned v : {0u, 1u, 2u, 0u, 2u, 3u}) {
+        gtx_store_u16(to, uint16_t(v));
+        to += 2;
+    }
+    const std::string pictures[] = {image(8, 7), image(4, 99)};
+    std::string views;
+    for (const std::string &picture : pictures) {
+        views += ",{\"buffer\":0,\"byteOffset\":" + std::to_string(binary.size()) +
+                 ",\"byteLength\":" + std::to_string(picture.size()) + "}";
+        binary += picture;
+    }
+    return glb_with(
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],"
+        "\"nodes\":[{\"mesh\":0},{\"mesh\":1,\"rotation\":[0,0.6,0,0.8],\"scale\":[-1,2,1]}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_1\":1,"
+        "\"TANGENT\":2},\"indices\":3,\"material\":0}]},{\"primitives\":[{\"attributes\":{"
+        "\"POSITION\":0,\"TEXCOORD_0\":1},\"indices\":3,\"material\":1}]}],"
+        "\"materials\":[{\"normalTexture\":{\"index\":1,\"texCoord\":1},\"pbrMetallicRoughness\":{"
+        "\"baseColorFactor\":[0.5,1,1,1],\"baseColorTexture\":{\"index\":0,\"texCoord\":1}}},"
+        "{\"occlusionTexture\":{\"index\":3},\"pbrMetallicRoughness\":{"
+        "\"metallicRoughnessTexture\":{\"index\":0,\"texCoord\":5},"
+        "\"baseColorTexture\":{\"index\":2}}}],"
+        "\"textures\":[{\"source\":0},{\"source\":1},{\"source\":2},{\"source\":3}],"
+        "\"images\":[{\"bufferView\":4},{\"bufferView\":5},{\"uri\":\"beside.tga\"},"
+        "{\"uri\":\"none.tga\"}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"
+        "{\"bufferView\":1,\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"},"
+        "{\"bufferView\":2,\"componentType\":5126,\"count\":4,\"type\":\"VEC4\"},"
+        "{\"bufferView\":3,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":48},"
+        "{\"buffer\":0,\"byteOffset\":48,\"byteLength\":32},"
+        "{\"buffer\":0,\"byteOffset\":80,\"byteLength\":64},"
+        "{\"buffer\":0,\"byteOffset\":144,\"byteLength\":12}" + views + "],"
+        "\"buffers\":[{\"byteLength\":" + std::to_string(binary.size()) + "}]}", binary);
+}
+
+static void same_texture(const Texture &a, const Texture &b)
+{
+    assert_int_equal(a.image, b.image);
+    assert_int_equal(a.set, b.set);
+}
+
+/* What the GLB looks like, too, an image at a time. */
+static void images_come_one_by_one(void **)
+{
+    const std::string path = in_folder("textured.glb");
+    write_file(path, textured_glb());
+    write_file(in_folder("beside.tga"), image(16, 30));
+    same_as_imported(path);
+    Task task(1, nullptr, nullptr), heard(1, nullptr, nullptr);
+    const Mesh mesh = import_mesh(path, heard);
+    const Appearance &whole = mesh.appearance;
+    const auto stream = open_triangles(path, task);
+    assert_true(stream->traits().textured);
+    size_t images = 0, t = 0;
+    stream->on_look = [&](const Appearance &look) {
+        assert_true(look.images.size() + (look.materials.empty() ? 0 : 1) == 1);
+        for (const Image &one : look.images)
+            assert_true(one.levels[0].texels == whole.images[images++].levels[0].texels);
+        assert_int_equal(look.materials.size(), look.materials.empty() ? 0 : 2);
+        for (size_t m = 0; m < look.materials.size(); ++m) {
+            assert_float_equal(look.materials[m].color[0], whole.materials[m].color[0], 0);
+            for (Texture Material::*map : MATERIAL_TEXTURES)
+                same_texture(look.materials[m].*map, whole.materials[m].*map);
+        }
+    };
+    stream->read([&](const Corners3 &corners) {
+        for (size_t k = 0; k < 3; ++k) {
+            const CornerLook &look = corners[k].look;
+            assert_int_equal(look.material, whole.material[t]);
+            for (size_t i = 0; i < 2; ++i)
+                assert_float_equal(look.uv[0][i], whole.uv[0][3 * t + k][i], 0);
+            for (size_t i = 0; i < 4; ++i)
+                assert_float_equal(look.tangent[i], whole.tangents[3 * t + k][i], 0);
+        }
+        ++t;
+    });
+    assert_int_equal(t, 4);
+    assert_int_equal(images, 3);
+    assert_int_equal(images, whole.images.size());
+    assert_int_equal(task.warnings.size(), heard.warnings.size());
+}
+
 /* Rows of text may take fewer bytes than their numbers do in memory. */
 static void text_is_imported_whole(void **)
 {
@@ -189,6 +314,7 @@ int main()
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(streams_are_what_importing_gives),
+        cmocka_unit_test(images_come_one_by_one),
         cmocka_unit_test(text_is_imported_whole),
         cmocka_unit_test(polygons_and_other_orders_of_bytes),
         cmocka_unit_test(lies_are_found_before_memory_is_taken),

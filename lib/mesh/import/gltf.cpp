@@ -8,19 +8,6 @@ namespace gtx {
 
 /* ---- materials ---- */
 
-namespace {
-/* The materials in use, numbered as the mesh has them. */
-struct Palette {
-    const GltfDocument &doc;
-    Appearance &look;
-    std::map<std::pair<int, unsigned>, uint32_t> numbers; /* by material and lacking sets */
-    std::set<Warning> warnings;
-    std::set<std::pair<int, unsigned>> warned = {}; /* of a set that primitives lack: once */
-
-    uint32_t number(int material, const GltfPrimitive &primitive, const std::string &where);
-};
-} // namespace
-
 /* As nothing was said of it. */
 static bool is_plain(const Material &m)
 {
@@ -32,20 +19,14 @@ static bool is_plain(const Material &m)
     return plain;
 }
 
-/* A primitive may lack the coordinates that its material looks at: then it goes without those
- * textures. -1 is no material. */
-uint32_t Palette::number(int material, const GltfPrimitive &primitive, const std::string &where)
+uint32_t GltfPalette::number(int material, unsigned lacking, const std::string &where)
 {
-    const GltfMaterial none, &from = material < 0 ? none : doc.look.materials[size_t(material)];
-    unsigned lacking = 0;
+    const GltfMaterial none, &from = material < 0 ? none : from_.materials[size_t(material)];
     for (unsigned k = 0; k < from.sets.size(); ++k)
-        if (primitive.uv[k].empty()) {
-            lacking |= 1u << k;
-            if (warned.insert({material, k}).second)
-                warnings.insert({GTX_WARNING_IGNORED_TEXTURE,
-                                 where + " has no TEXCOORD_" + std::to_string(from.sets[k]) +
-                                     ": the textures that need it were ignored"});
-        }
+        if ((lacking >> k & 1) && warned_.insert({material, k}).second)
+            warnings.insert({GTX_WARNING_IGNORED_TEXTURE,
+                             where + " has no TEXCOORD_" + std::to_string(from.sets[k]) +
+                                 ": the textures that need it were ignored"});
     warnings.insert(from.warnings.begin(), from.warnings.end());
     Material m = from.look;
     for (Texture Material::*map : MATERIAL_TEXTURES)
@@ -53,10 +34,10 @@ uint32_t Palette::number(int material, const GltfPrimitive &primitive, const std
             (m.*map).image = Texture::NONE;
     if (is_plain(m))
         material = -1;
-    auto [entry, fresh] = numbers.try_emplace({material, material < 0 ? 0 : lacking},
-                                              uint32_t(look.materials.size()));
+    auto [entry, fresh] = numbers_.try_emplace({material, material < 0 ? 0 : lacking},
+                                               uint32_t(look_.materials.size()));
     if (fresh)
-        look.materials.push_back(material < 0 ? Material() : m);
+        look_.materials.push_back(material < 0 ? Material() : m);
     return entry->second;
 }
 
@@ -71,6 +52,11 @@ static EncodedImage image_beside(const ModelFile &file, std::string name, const 
     out.name = name;
     out.problem = "it is not a file in the model's folder";
     return out;
+}
+
+bool is_gltf_image_packed(const GltfDocument &doc, const GltfImage &image)
+{
+    return doc.images[size_t(image.number)].uri.empty();
 }
 
 static EncodedImage image_inside(const GltfDocument &doc, std::string name,
@@ -89,8 +75,8 @@ static EncodedImage image_inside(const GltfDocument &doc, std::string name,
     return out;
 }
 
-static EncodedImage encoded_image(const GltfDocument &doc, const GltfImage &image,
-                                  const ModelFile &file, Task &task)
+EncodedImage gltf_image(const GltfDocument &doc, const GltfImage &image, const ModelFile &file,
+                        Task &task)
 {
     const GltfDocument::ImageSource &source = doc.images[size_t(image.number)];
     const std::string name = "image " + std::to_string(image.number);
@@ -110,7 +96,7 @@ static void fetch_images(const GltfDocument &doc, const ModelFile &file, Appeara
         for (Texture Material::*map : MATERIAL_TEXTURES)
             if ((m.*map).used() && encoded[(m.*map).image].name.empty())
                 encoded[(m.*map).image] =
-                    encoded_image(doc, doc.look.images[(m.*map).image], file, task);
+                    gltf_image(doc, doc.look.images[(m.*map).image], file, task);
     add_base_color(file, look, encoded, task);
     load_images(encoded, look, task);
 }
@@ -200,7 +186,7 @@ Mesh import_gltf(const ModelFile &file, Task &task)
     GltfDocument doc = read_gltf_document(file, task);
     Vector<Vector<Affine>> instances = gltf_instances(doc);
     Mesh mesh;
-    Palette palette = {doc, mesh.appearance, {}, {}};
+    GltfPalette palette(doc.look, mesh.appearance);
     bool has_lines = false;
     for (size_t m = 0; m < instances.size(); ++m) {
         const std::vector<tinygltf::Primitive> &primitives = doc.model.meshes[m].primitives;
@@ -220,7 +206,9 @@ Mesh import_gltf(const ModelFile &file, Task &task)
                 number < 0 ? nullptr : &doc.look.materials[size_t(number)];
             GltfPrimitive primitive =
                 read_gltf_primitive(doc, primitives[i], material, where, task);
-            const uint32_t shown = palette.number(number, primitive, where);
+            const unsigned lacking = (primitive.uv[0].empty() ? 1 : 0) |
+                                     (primitive.uv[1].empty() ? 2 : 0);
+            const uint32_t shown = palette.number(number, lacking, where);
             const Part part = {std::move(primitive), material && material->two_sided, shown, where};
             append_instances(part, instances[m], task, mesh);
         }

@@ -10,6 +10,7 @@
 #define TINYGLTF_NO_STB_IMAGE_WRITE
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
+#include <map>
 #include <memory>
 
 #include <fstream> /* which tinygltf forgets once it is told to stay off the file system */
@@ -62,6 +63,29 @@ Vector<uint32_t> gltf_indices(const GltfDocument &doc, int accessor, size_t vert
 
 /* Unpacks the buffer views of EXT_meshopt_compression to doc.views. Throws Error: INPUT. */
 void unpack_gltf_views(GltfDocument &doc, Task &task);
+
+/* The materials in use, numbered as a mesh has them: in the order of their use, those that nothing
+ * is said of as one. */
+class GltfPalette {
+public:
+    GltfPalette(const GltfMaterials &from, Appearance &look) : from_(from), look_(look) {}
+    /* Of a primitive of a material, -1 for none, which lacks the coordinates of bits of its sets:
+     * it goes without the textures that look at them. */
+    uint32_t number(int material, unsigned lacking, const std::string &where);
+    std::set<Warning> warnings;
+
+private:
+    const GltfMaterials &from_;
+    Appearance &look_;
+    std::map<std::pair<int, unsigned>, uint32_t> numbers_; /* by material and lacking sets */
+    std::set<std::pair<int, unsigned>> warned_;            /* of a set that primitives lack: once */
+};
+
+/* Whether an image lies in a buffer of the document. */
+bool is_gltf_image_packed(const GltfDocument &doc, const GltfImage &image);
+/* The image's bytes, or the problem. Throws Error: LIMIT. */
+EncodedImage gltf_image(const GltfDocument &doc, const GltfImage &image, const ModelFile &file,
+                        Task &task);
 
 /* The bytes of a base64 data URI. Throws Error: INPUT. */
 Bytes data_uri_bytes(const std::string &uri, const std::string &user);

@@ -217,6 +217,7 @@ GltfDocument read_gltf_outline(std::string_view text, Task &task)
     json root = read_gltf_json(text, task);
     GltfDocument doc;
     doc.look = read_gltf_materials(root);
+    doc.images = read_images(root);
     strip_gltf_json(root, task);
     doc.model = load_model(root);
     return doc;

@@ -141,38 +141,33 @@ void add_base_color(const ModelFile &file, Appearance &look, Vector<EncodedImage
             m.color_map.image = image;
 }
 
-void load_images(const Vector<EncodedImage> &encoded, Appearance &look, Task &task)
+static Vector<Load> find_needed(const Appearance &look, size_t count)
 {
-    Vector<Load> loads(encoded.size());
+    Vector<Load> loads(count);
     for (const Material &m : look.materials)
         for (Texture Material::*map : MATERIAL_TEXTURES)
             if ((m.*map).used())
                 loads[(m.*map).image].needed[int(kind_of(map))] = true;
+    return loads;
+}
 
-    Vector<size_t> work;
-    for (size_t i = 0; i < loads.size(); ++i) {
-        if (!loads[i].needed[0] && !loads[i].needed[1])
-            continue;
-        measure(encoded[i], task.limits, loads[i]);
-        work.push_back(i);
-    }
-    task.parallel(work.size(), [&](size_t k) {
-        if (loads[work[k]].problem.empty())
-            decode(encoded[work[k]], loads[work[k]]);
-    }, 0.9, 1);
-    for (size_t i : work) {
-        Load &load = loads[i];
-        if (encoded[i].required && !load.problem.empty())
-            fail(GTX_ERROR_READ, "%s: %s", encoded[i].name.c_str(), load.problem.c_str());
-        if (!load.problem.empty())
-            task.warn(GTX_WARNING_UNREAD_IMAGE,
-                      encoded[i].name + " was ignored: " + load.problem);
-        for (int kind = 0; kind < 2 && load.problem.empty(); ++kind)
-            if (load.needed[kind]) {
-                load.number[kind] = uint32_t(look.images.size());
-                look.images.push_back(std::move(load.images[kind]));
-            }
-    }
+/* Numbers what was decoded, and gives it away. */
+static void take(const EncodedImage &from, Load &load, uint32_t &count,
+                 const std::function<void(Image)> &sink, Task &task)
+{
+    if (from.required && !load.problem.empty())
+        fail(GTX_ERROR_READ, "%s: %s", from.name.c_str(), load.problem.c_str());
+    if (!load.problem.empty())
+        task.warn(GTX_WARNING_UNREAD_IMAGE, from.name + " was ignored: " + load.problem);
+    for (int kind = 0; kind < 2 && load.problem.empty(); ++kind)
+        if (load.needed[kind]) {
+            load.number[kind] = count++;
+            sink(std::move(load.images[kind]));
+        }
+}
+
+static void name_images(const Vector<Load> &loads, Appearance &look)
+{
     for (Material &m : look.materials)
         for (Texture Material::*map : MATERIAL_TEXTURES) {
             Texture &t = m.*map;
@@ -183,6 +178,44 @@ void load_images(const Vector<EncodedImage> &encoded, Appearance &look, Task &ta
                 drop_texture(map, m);
         }
     drop_unseen(look);
+}
+
+void load_images(const Vector<EncodedImage> &encoded, Appearance &look, Task &task)
+{
+    Vector<Load> loads = find_needed(look, encoded.size());
+    Vector<size_t> work;
+    uint32_t count = 0;
+    for (size_t i = 0; i < loads.size(); ++i) {
+        if (!loads[i].needed[0] && !loads[i].needed[1])
+            continue;
+        measure(encoded[i], task.limits, loads[i]);
+        work.push_back(i);
+    }
+    task.parallel(work.size(), [&](size_t k) {
+        if (loads[work[k]].problem.empty())
+            decode(encoded[work[k]], loads[work[k]]);
+    }, 0.9, 1);
+    for (size_t i : work)
+        take(encoded[i], loads[i], count,
+             [&](Image image) { look.images.push_back(std::move(image)); }, task);
+    name_images(loads, look);
+}
+
+void stream_images(size_t count, const std::function<EncodedImage(size_t)> &encoded,
+                   const std::function<void(Image)> &sink, Appearance &look, Task &task)
+{
+    Vector<Load> loads = find_needed(look, count);
+    uint32_t numbered = 0;
+    for (size_t i = 0; i < loads.size(); ++i) {
+        if (!loads[i].needed[0] && !loads[i].needed[1])
+            continue;
+        const EncodedImage from = encoded(i);
+        measure(from, task.limits, loads[i]);
+        if (loads[i].problem.empty())
+            decode(from, loads[i]);
+        take(from, loads[i], numbered, sink, task);
+    }
+    name_images(loads, look);
 }
 
 } // namespace gtx

@@ -3,6 +3,8 @@
 
 #include "mesh/import/import.hpp"
 
+#include <functional>
+
 namespace gtx {
 
 /* An image as a file or a buffer holds it. */
@@ -32,5 +34,10 @@ void add_base_color(const ModelFile &file, Appearance &look, Vector<EncodedImage
  * textures that name it are gone: their factors alone are left, but nothing shines by a factor that
  * waited for its texture. Coordinates and tangents that no texture looks at go too. */
 void load_images(const Vector<EncodedImage> &encoded, Appearance &look, Task &task);
+
+/* The same of images that `encoded` reads when it is asked, one after another: each is given to
+ * `sink` and to nobody else. */
+void stream_images(size_t count, const std::function<EncodedImage(size_t)> &encoded,
+                   const std::function<void(Image)> &sink, Appearance &look, Task &task);
 
 } // namespace gtx
