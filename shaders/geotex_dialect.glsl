@@ -61,3 +61,13 @@ precision highp usampler2DArray;
 #define GTX_UNIFORM uniform
 #define GTX_BLOCK_END
 #endif
+#ifdef VULKAN
+/* Mesa divides each component by the length where SPIR-V says normalize: LOD meshes of a bunny took
+ * 1.25 times the processor time of OpenGL with it, and 1.14 without (llvmpipe). Gone again before
+ * an engine's own main. */
+vec3 gtx_unit(vec3 v)
+{
+    return v * inversesqrt(dot(v, v));
+}
+#define normalize gtx_unit
+#endif

@@ -145,10 +145,10 @@ void main()
 #ifdef GTX_FRONT
     mat3 frame = mat3(x, cross(z, x), z);
     vec3 toward = normalize(gtx_light.xyz * world_normals) * frame;
-    gtx_toward = toward / deviation;
+    gtx_toward = toward * (1.0 / deviation);
     vec3 eye = gtx_view_eye(gtx_object_x, gtx_object_y, gtx_object_z) - object.xyz * gtx_depth.w;
     eye = normalize(eye) * frame;
-    gtx_eye = eye / deviation;
+    gtx_eye = eye * (1.0 / deviation);
 #ifdef GTX_MATERIALS
     gtx_between = gtx_half_way(vec3(0.0, 0.0, 1.0), eye, toward);
 #endif

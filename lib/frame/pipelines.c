@@ -235,7 +235,7 @@ static void add_fragment(source *s, const recipe *r, const char *own_main)
     for (int i = 0; i < MAX_PARTS; ++i)
         add_file(s, t->parts[i]);
     if (is_own(r->technique)) {
-        add(s, "#line 1 1\n");
+        add(s, "#undef normalize\n#line 1 1\n");
         add(s, own_main);
     } else {
         add_file(s, r->pass == GTX_PASS_FORWARD ? t->forward : passes[r->pass].main);
