@@ -58,7 +58,7 @@ static void models_have_their_content(void **)
              {"/scans/gargo_3dhop.ply.gz",
               GTX_PARTITION_DEFAULT, NONE, 0x5550f4526d6858af},
              {"/textured/spot/spot/spot_control_mesh.obj",
-              GTX_PARTITION_DEFAULT, NONE, 0xde293bf3a615b550},
+              GTX_PARTITION_DEFAULT, NONE, 0xb8b6ada28958b065},
              {"/gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf",
               GTX_PARTITION_CUTS, NONE, 0xa08dcfe5b7af01a2},
              {"/gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf",
