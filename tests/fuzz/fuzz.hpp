@@ -38,6 +38,7 @@ void run_image(const uint8_t *data, size_t size);
 void run_world(const uint8_t *data, size_t size);
 void run_stream(const uint8_t *data, size_t size);
 void run_prefix(const uint8_t *data, size_t size);
+void run_pieces(const uint8_t *data, size_t size);
 
 size_t mutate_gtx(uint8_t *data, size_t size, size_t most, unsigned seed);
 size_t mutate_glb(uint8_t *data, size_t size, size_t most, unsigned seed);

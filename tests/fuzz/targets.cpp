@@ -12,6 +12,7 @@ const Target targets[] = {
     {"cps3", run_cps3, nullptr},     {"netcdf", run_netcdf, nullptr},
     {"image", run_image, nullptr},   {"world", run_world, nullptr},
     {"stream", run_stream, nullptr}, {"prefix", run_prefix, mutate_gtx},
+    {"pieces", run_pieces, mutate_glb},
 };
 const size_t target_count = sizeof targets / sizeof *targets;
 
