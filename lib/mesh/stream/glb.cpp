@@ -97,9 +97,10 @@ void GlbStream::read_part(const Part &part, const TriangleSink &sink)
         uint64_t vertex[3] = {3 * t, 3 * t + 1, 3 * t + 2};
         for (uint64_t &v : vertex) {
             double index = 0;
-            if (part.indexed)
+            if (part.indexed) {
                 values(part.index, v, &index);
-            v = part.indexed ? uint64_t(index) : v;
+                v = index >= 0 ? uint64_t(index) : UINT64_MAX;
+            }
             if (v >= part.position.count)
                 fail(GTX_ERROR_INPUT, "triangle %llu: vertex %llu of %llu", (unsigned long long)t,
                      (unsigned long long)v, (unsigned long long)part.position.count);
