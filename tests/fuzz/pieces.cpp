@@ -94,7 +94,8 @@ static void compare(const Pieces &p, const gtx::Mesh &mesh)
                                                    double(look.uv[i / 2][c][i % 2])),
                     "corner %zu looks elsewhere", c);
     }
-    REQUIRE(!p.traits.textured || look.images.size() == p.images, "%zu images for %zu", p.images,
+    /* Read in pieces, an image may end in the chunk's padding, beyond the buffer. */
+    REQUIRE(!p.traits.textured || look.images.size() <= p.images, "%zu images for %zu", p.images,
             look.images.size());
 }
 
