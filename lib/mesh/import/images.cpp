@@ -44,6 +44,12 @@ static Texels kind_of(Texture Material::*map)
                                                                          : Texels::DATA;
 }
 
+/* Libraries may fail without a word. */
+static std::string reason_of(const gtx_error &error)
+{
+    return error.message[0] ? error.message : "it cannot be decoded";
+}
+
 static void measure(const EncodedImage &from, const Limits &limits, Load &load)
 {
     uint32_t width = 0, height = 0;
@@ -52,7 +58,7 @@ static void measure(const EncodedImage &from, const Limits &limits, Load &load)
     if (!load.problem.empty())
         return;
     if (gtx_image_measure(from.bytes.data(), from.bytes.size(), &width, &height, &error))
-        load.problem = error.message;
+        load.problem = reason_of(error);
     load.pixels = size_t(width) * height;
     limits.require(GTX_LIMITED_PIXELS, from.name.c_str(), load.pixels);
 }
@@ -65,7 +71,7 @@ static void decode(const EncodedImage &from, Load &load)
     gtx_error error = {};
     TakenMemory taken(2 * sizeof(Rgba8) * load.pixels); /* as decoded, and as RGBA */
     if (gtx_image_decode(from.bytes.data(), from.bytes.size(), &decoded, &error)) {
-        load.problem = error.message;
+        load.problem = reason_of(error);
         return;
     }
     std::unique_ptr<gtx_image, void (*)(gtx_image *)> guard(&decoded, gtx_image_free);
