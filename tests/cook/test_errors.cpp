@@ -33,7 +33,7 @@ static void every_field_is_set(void **)
     write_file(obj, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     write_file(bad, "v 0 0\n");
     gtx_cook_desc odd = {}, strict = {}, lost = {};
-    odd.reserved[1] = 1;
+    odd.reserved[0] = 1;
     strict.strict = 1;
     lost.charts_ply = "/nowhere/a.ply";
     gtx_asset *asset = nullptr;
