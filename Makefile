@@ -264,7 +264,7 @@ $(filter $(out)/tests/asset/%,$(test_bins)): | $(out)/gtx_decode
 $(filter $(out)/tests/vulkan/%,$(test_bins)): | $(out)/gen/write_texts
 $(filter $(out)/tests/mesh/% $(out)/tests/grid/% $(out)/tests/verbs/%,$(test_bins)): | $(modules)
 
-build-tests: $(test_bins) $(out)/gtx_decode $(drop_sources_made) all
+build-tests: $(test_bins) $(out)/gtx_decode all
 
 # What test programs may ask for: the command, the build folder, the compilers.
 test_env = GTX=$(abspath $(command)) GTX_BUILD=$(abspath $(build)) GTX_OUT=$(abspath $(out)) \

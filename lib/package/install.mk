@@ -53,6 +53,7 @@ drop_headers := $(wildcard lib/*/*.h lib/*/*/*.h lib/*/*.def shaders/*.glsl)
 drop_head = { echo '/* geotex $(VERSION), $(1)'; echo ' *'; sed 's/^/ * /; s/ *$$//' LICENSE; \
               echo ' */'; }
 drop_sources_made = $(drop)/geotex.c $(if $(vulkan),$(drop)/geotex_vulkan.c)
+build-tests: $(drop_sources_made)
 amalgamation: $(drop_sources_made) ## geotex.c, .h, GL's and Vulkan's faces, to drop into an engine
 	@echo $(drop)
 

@@ -66,7 +66,9 @@ static void a_world_has_all_triangles(void **state)
     expect(shell("ls one/tiles/*.gtx | wc -l"), 0);
     assert_true(atoi(output) >= 9);
     expect(gtx("world plan big.obj -o two --triangles 2k --up z"), 0);
-    expect_text("14160 triangles");
+    expect_text("14160 triangles seen from the front, ");
+    expect(gtx("world plan big.obj -o inside --triangles 2k --sides both"), 0);
+    expect_text("14160 triangles, ");
     expect(shell("grep -o '\"geometricError\"' one/tileset.json | wc -l"), 0);
     assert_true(atoi(output) >= 10);
 }
