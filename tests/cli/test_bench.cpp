@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <numeric>
 
 extern "C" {
 #include "cli/command.h"
@@ -91,7 +92,8 @@ static void vulkan_stands_beside_opengl(void **)
     expect(gtx("bench sphere.gtx sphere.obj --methods cast_vulkan"), 1);
 }
 
-/* A row for texels, and one for each kind of blocks that the driver reads, which take less. */
+/* A row for texels, and one for each kind of blocks that the driver reads, which take less; parts
+ * are what all takes. */
 static void memory_is_measured(void **)
 {
     double texels = 0;
@@ -99,14 +101,16 @@ static void memory_is_measured(void **)
     expect(gtx("bench sphere.gtx none.obj --compress --sizes 64x48"), 0);
     for (const char *row = output; (row = std::strstr(row, "\n| ")); ++row) {
         char name[16];
-        double bytes, colors, mean, p99;
-        if (std::sscanf(row, "\n| %15[^|]| %lf | %lf | %*[^|]| %*[^|]| %*[^|]| %lf | %lf |", name,
-                        &bytes, &colors, &mean, &p99) != 5)
+        double bytes, part[7], mean, p99;
+        if (std::sscanf(row, "\n| %15[^|]| %lf | %lf | %lf | %lf | %lf | %lf | %lf | %lf |"
+                             "%*[^|]|%*[^|]|%*[^|]| %lf | %lf |", name, &bytes, &part[0], &part[1],
+                        &part[2], &part[3], &part[4], &part[5], &part[6], &mean, &p99) != 11)
             continue; /* the head */
         const bool normals = std::strchr(name, ',') != nullptr;
         texels = std::strncmp(name, "texels", 6) ? texels : bytes;
         assert_true(normals ? bytes < texels && p99 > 0 && mean <= p99 : bytes <= texels);
         assert_true(normals || p99 < 0.001);
+        assert_true(std::fabs(std::accumulate(part, part + 7, -bytes)) < 0.005);
         ++kinds;
     }
     assert_true(texels > 0 && kinds >= 3);
