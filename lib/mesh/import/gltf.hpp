@@ -150,4 +150,7 @@ GltfPrimitive read_gltf_primitive(const GltfDocument &doc, const tinygltf::Primi
 /* What stands for 1 in a component of that type; 1 unless the integers are normalised. */
 double gltf_full_value(int component_type, bool normalized);
 
+/* Bytes of a component; 0 of none that there is. */
+unsigned gltf_component_size(int component_type);
+
 } // namespace gtx

@@ -43,7 +43,7 @@ static double component(const uint8_t *p, int type)
     }
 }
 
-static size_t component_size(int type)
+unsigned gltf_component_size(int type)
 {
     switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
@@ -75,7 +75,7 @@ static const tinygltf::Accessor &find_accessor(const GltfDocument &doc, int numb
     if (number < 0 || size_t(number) >= doc.model.accessors.size())
         fail(GTX_ERROR_INPUT, "there is no accessor %d", number);
     const tinygltf::Accessor &a = doc.model.accessors[size_t(number)];
-    if (!component_size(a.componentType))
+    if (!gltf_component_size(a.componentType))
         fail(GTX_ERROR_INPUT, "accessor %d: %d is not a component type", number, a.componentType);
     if (a.type != TINYGLTF_TYPE_SCALAR &&
         (a.type < TINYGLTF_TYPE_VEC2 || a.type > TINYGLTF_TYPE_VEC4))
@@ -93,7 +93,7 @@ static Vector<uint32_t> sparse_places(const GltfDocument &doc, const tinygltf::A
                                       const std::string &user)
 {
     int type = a.sparse.indices.componentType;
-    size_t size = component_size(type);
+    size_t size = gltf_component_size(type);
     std::string_view bytes = gltf_view(doc, a.sparse.indices.bufferView, user);
     if (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
         type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
@@ -120,7 +120,7 @@ static void substitute_sparse(const GltfDocument &doc, const tinygltf::Accessor 
 {
     Vector<uint32_t> places = sparse_places(doc, a, user);
     std::string_view bytes = gltf_view(doc, a.sparse.values.bufferView, user);
-    size_t size = component_size(a.componentType), item = size * size_t(out.components);
+    size_t size = gltf_component_size(a.componentType), item = size * size_t(out.components);
     if (a.sparse.values.byteOffset < 0 ||
         !fits(uint64_t(a.sparse.values.byteOffset), places.size(), item, item, bytes.size()))
         fail(GTX_ERROR_INPUT, "%s: its sparse values lie outside their buffer view", user.c_str());
@@ -138,7 +138,7 @@ GltfValues gltf_values(const GltfDocument &doc, int accessor)
     GltfValues out;
     out.components = components_of(a);
     out.count = a.count;
-    size_t components = size_t(out.components), size = component_size(a.componentType);
+    size_t components = size_t(out.components), size = gltf_component_size(a.componentType);
     double full = gltf_full_value(a.componentType, a.normalized);
     if (a.bufferView >= 0) {
         std::string_view bytes = gltf_view(doc, a.bufferView, user);

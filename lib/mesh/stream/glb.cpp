@@ -51,7 +51,7 @@ void GlbStream::give_look()
 void GlbStream::values(const Values &from, uint64_t item, double *out)
 {
     uint8_t bytes[16];
-    const unsigned size = glb_component_size(from.type);
+    const unsigned size = gltf_component_size(from.type);
     file_.read(from.first + item * from.stride, bytes, size * from.components);
     for (unsigned k = 0; k < from.components; ++k)
         out[k] = component(bytes + k * size, from.type) / from.full;

@@ -32,9 +32,6 @@ struct Picture {
     uint64_t first = 0, size = 0;
 };
 
-/* Bytes of a component; 0 where there is no such type. */
-unsigned glb_component_size(int type);
-
 class GlbStream : public TriangleStream {
 public:
     GlbStream(const std::string &path, Task &task) : path_(path), file_(path, task), task_(task) {}

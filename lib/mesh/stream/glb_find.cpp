@@ -7,19 +7,6 @@
 
 namespace gtx {
 
-unsigned glb_component_size(int type)
-{
-    switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
-    default: return 0;
-    }
-}
-
 /* Malformed containers are left to the importer, which says what is wrong. */
 bool GlbStream::find_chunks(Bytes &json)
 {
@@ -48,7 +35,7 @@ bool GlbStream::find_values(const tinygltf::Model &model, int accessor, Values &
         return false;
     const tinygltf::Accessor &a = model.accessors[size_t(accessor)];
     if (a.sparse.isSparse || a.bufferView < 0 || size_t(a.bufferView) >= model.bufferViews.size() ||
-        !glb_component_size(a.componentType) ||
+        !gltf_component_size(a.componentType) ||
         (a.type != TINYGLTF_TYPE_SCALAR &&
          (a.type < TINYGLTF_TYPE_VEC2 || a.type > TINYGLTF_TYPE_VEC4)))
         return false;
@@ -57,7 +44,7 @@ bool GlbStream::find_values(const tinygltf::Model &model, int accessor, Values &
     out.type = a.componentType;
     out.full = gltf_full_value(a.componentType, a.normalized);
     out.count = a.count;
-    const uint64_t item = glb_component_size(out.type) * out.components;
+    const uint64_t item = gltf_component_size(out.type) * out.components;
     out.stride = v.byteStride ? v.byteStride : item;
     out.first = binary_ + v.byteOffset + a.byteOffset;
     uint64_t last;
