@@ -27,9 +27,14 @@ unpack()
     mkdir -p "$folder/$1"
     [ -d "$root/usr" ] || mmdebstrap --quiet --architectures="$1" --variant=extract \
         --include="$packages" bookworm "$root" "$mirror"
+    # Linkers follow links such as libm.so, and would leave the folder by those that begin with /.
+    find "$root" -type l -lname '/*' | while read -r link; do
+        target=$(readlink "$link")
+        case $target in "$root"/*) ;; *) ln -sfn "$root$target" "$link" ;; esac
+    done
     export PKG_CONFIG_SYSROOT_DIR="$root"
     export PKG_CONFIG_LIBDIR="$root/usr/lib/$2/pkgconfig:$root/usr/share/pkgconfig"
-    libraries=/usr/lib/$2:/usr/lib/$2/blas:/usr/lib/$2/lapack:/lib/$2
+    libraries=/usr/lib/$2:/usr/lib/$2/blas:/usr/lib/$2/lapack:/lib/$2:/usr/lib
 }
 
 # cmocka for Windows, which Debian has no package of.
@@ -78,8 +83,8 @@ for platform in ${*:-gcc-11 clang-14 mingw i386 arm64}; do
     case $platform in
     mingw) build_cmocka ;;
     i386) unpack i386 i386-linux-gnu
-        run="$root/lib/ld-linux.so.2 --library-path $(echo "$libraries" | sed "s|^/|$root/|
-            s|:/|:$root/|g")" ;;
+        flags="$flags -Wl,--dynamic-linker=$root/lib/ld-linux.so.2"
+        run="env LD_LIBRARY_PATH=$(echo "$libraries" | sed "s|/*:/|:$root/|g; s|^|$root|")" ;;
     arm64) unpack arm64 aarch64-linux-gnu
         run="qemu-aarch64-static -L $root -E LD_LIBRARY_PATH=$libraries" ;;
     esac
