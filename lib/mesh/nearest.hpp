@@ -38,15 +38,61 @@ struct Box {
     {
         double sum = 0;
         for (int k = 0; k < 3; ++k) {
-            double d = std::max({low[k] - p[k], p[k] - high[k], 0.});
+            const double d = std::max(std::max(low[k] - p[k], p[k] - high[k]), 0.);
             sum += d * d;
         }
         return sum;
     }
 };
 
+/* A triangle as its distances want it. */
+struct NearTriangle {
+    Vec3d a, b, ab, ac, across;
+    double bb = 0, bc = 0, cc = 0, area = 0;
+
+    NearTriangle() = default;
+    NearTriangle(const Vec3d &a, const Vec3d &b, const Vec3d &c)
+        : a(a), b(b), ab(b - a), ac(c - a), across(c - b), bb(dot(ab, ab)), bc(dot(ab, ac)),
+          cc(dot(ac, ac)), area(bb * cc - bc * bc)
+    {
+    }
+    /* Where p is over the triangle (by its barycentric coordinates v and w, times `area`) to the
+     * plane, else to those sides that p is outside of. Rounding may pick another point of the
+     * triangle, never one beside it. */
+    double distance2(const Vec3d &p) const
+    {
+        const Vec3d d = p - a;
+        const double db = dot(d, ab), dc = dot(d, ac);
+        const double v = cc * db - bc * dc, w = bb * dc - bc * db;
+        const bool flat = !(area > 0);
+        if (!flat && v >= 0 && w >= 0 && v + w <= area) {
+            const Vec3d off = d - ab * (v / area) - ac * (w / area);
+            return dot(off, off);
+        }
+        double best = std::numeric_limits<double>::infinity();
+        if (flat || w < 0)
+            best = beside(d, ab, db, bb);
+        if (flat || v < 0)
+            best = std::min(best, beside(d, ac, dc, cc));
+        if (flat || v + w > area)
+            best = std::min(best, beside(p - b, across, dot(p - b, across), dot(across, across)));
+        return best;
+    }
+
+private:
+    static double beside(const Vec3d &from_start, const Vec3d &edge, double along, double square)
+    {
+        const double s = square > 0 ? std::clamp(along / square, 0., 1.) : 0;
+        const Vec3d off = from_start - edge * s;
+        return dot(off, off);
+    }
+};
+
 /* The squared distance from p to the triangle abc. */
-double triangle_distance2(const Vec3d &p, const Vec3d &a, const Vec3d &b, const Vec3d &c);
+inline double triangle_distance2(const Vec3d &p, const Vec3d &a, const Vec3d &b, const Vec3d &c)
+{
+    return NearTriangle(a, b, c).distance2(p);
+}
 
 /* `Shapes` has size(), box(i) and distance2(i, p, bound), which may answer anything >= bound for
  * what is not nearer than that, `bound` itself where it is told by little work; otherwise shape i
@@ -121,43 +167,51 @@ public:
     double distance2(const Vec3d &p, uint32_t *near, const Counts &counts,
                      size_t *looks = nullptr, double enough = 0) const
     {
+        double known = std::numeric_limits<double>::infinity();
+        if (*near < shapes_.size() && counts(*near))
+            known = shapes_.distance2(*near, p, known);
+        return nearer(known, p, near, counts, looks, enough);
+    }
+    /* The same where the squared distance to `*near` is known, or infinity. */
+    template <class Counts>
+    double nearer(double best, const Vec3d &p, uint32_t *near, const Counts &counts,
+                  size_t *looks = nullptr, double enough = 0) const
+    {
         constexpr size_t FEW = 32; /* they lead down one way */
         const size_t most = looks ? std::max(*looks, FEW) : SIZE_MAX;
         size_t left = most;
-        double best = std::numeric_limits<double>::infinity();
-        if (*near < shapes_.size() && counts(*near))
-            best = shapes_.distance2(*near, p, best);
-        std::pair<size_t, double> stack[64];
-        int size = 0;
-        stack[size++] = {1, boxes_[1].distance2(p)};
-        while (size && best > enough) {
-            auto [node, distance] = stack[--size];
-            if (distance >= best)
+        Way stack[64], at = {1, boxes_[1].distance2(p)};
+        size_t size = 0;
+        while (best > enough && left) {
+            if (!(at.distance < best)) {
+                if (!size)
+                    break;
+                at = stack[--size];
                 continue;
-            if (left == 0)
-                break;
+            }
             --left;
-            if (node >= leaves_) {
-                size_t first = (node - leaves_) * LEAF;
+            if (at.node >= leaves_) {
+                const size_t first = (at.node - leaves_) * LEAF;
                 for (size_t i = first; i < std::min(first + LEAF, order_.size()); ++i) {
                     if (!counts(order_[i]))
                         continue;
-                    double distance2 = shapes_.distance2(order_[i], p, best);
+                    const double distance2 = shapes_.distance2(order_[i], p, best);
                     left -= std::min(left, distance2 == best ? 1 : shapes_.looks(order_[i]));
                     if (distance2 < best) {
                         best = distance2;
                         *near = order_[i];
                     }
                 }
+                at.distance = best;
                 continue;
             }
-            const double low = boxes_[2 * node].distance2(p);
-            const double high = boxes_[2 * node + 1].distance2(p);
+            const size_t child = 2 * at.node;
+            const double low = boxes_[child].distance2(p), high = boxes_[child + 1].distance2(p);
             const bool low_first = low <= high;
-            if (std::max(low, high) < best)
-                stack[size++] = {2 * node + low_first, std::max(low, high)};
-            if (std::min(low, high) < best)
-                stack[size++] = {2 * node + !low_first, std::min(low, high)};
+            const double farther = low_first ? high : low;
+            stack[size] = {child + low_first, farther};
+            size += farther < best;
+            at = {child + !low_first, low_first ? low : high};
         }
         cancel_point(LOOK_TURNS * (most - left));
         if (looks)
@@ -176,6 +230,10 @@ private:
     static constexpr size_t PART = 1024;    /* leaves of a part */
     static constexpr size_t FORKS = 16;     /* nodes that are ordered at once */
 
+    struct Way {
+        size_t node;
+        double distance;         /* squared, of its box */
+    };
     struct Centre {
         Vec3f at;
         uint32_t shape;

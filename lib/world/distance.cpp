@@ -40,22 +40,21 @@ struct SheetShapes {
     }
 };
 
-/* The nearest triangle of each point, and how far the farthest point is. */
-double find_nearest(const Vector<Vec3d> &points, const Sheet &sheet, Vector<uint32_t> &nearest,
-                    Task &task)
+constexpr size_t CHUNK = 1024;
+
+/* How far the farthest point is. */
+double farthest_of(const Vector<Vec3d> &points, const Sheet &sheet, Task &task)
 {
-    constexpr size_t CHUNK = 1024;
     const SheetShapes shapes(sheet);
     const NearestTree<SheetShapes> tree(shapes, task, 0);
-    nearest.assign(points.size(), UINT32_MAX);
     Vector<double> farthest((points.size() + CHUNK - 1) / CHUNK, 0);
     task.parallel(farthest.size(), [&](size_t chunk) {
         uint32_t near = UINT32_MAX;
-        for (size_t i = chunk * CHUNK; i < std::min(points.size(), (chunk + 1) * CHUNK); ++i) {
-            const double square = tree.distance2(points[i] - shapes.origin, &near);
-            nearest[i] = near;
-            farthest[chunk] = std::max(farthest[chunk], square);
-        }
+        for (size_t i = chunk * CHUNK; i < std::min(points.size(), (chunk + 1) * CHUNK); ++i)
+            farthest[chunk] = std::max(
+                farthest[chunk], tree.distance2(points[i] - shapes.origin, &near,
+                                                [](uint32_t) { return true; }, nullptr,
+                                                farthest[chunk]));
     }, 0, 0);
     double most = 0;
     for (double square : farthest)
@@ -86,17 +85,24 @@ Sheet sheet_of(const TileSurface &surface, size_t triangles)
 
 double distance_between(const Sheet &from, size_t own, const Sheet &to, Task &task)
 {
-    Vector<uint32_t> nearest;
     if (from.triangles.empty() || to.triangles.empty())
         return 0;
-    const double there = find_nearest(points_of(from, own), to, nearest, task);
-    return std::max(there, find_nearest(points_of(to, to.triangles.size()), from, nearest, task));
+    return std::max(farthest_of(points_of(from, own), to, task),
+                    farthest_of(points_of(to, to.triangles.size()), from, task));
 }
 
 Vector<uint32_t> nearest_triangles(const Vector<Vec3d> &points, const Sheet &sheet, Task &task)
 {
-    Vector<uint32_t> nearest;
-    find_nearest(points, sheet, nearest, task);
+    const SheetShapes shapes(sheet);
+    const NearestTree<SheetShapes> tree(shapes, task, 0);
+    Vector<uint32_t> nearest(points.size(), UINT32_MAX);
+    task.parallel((points.size() + CHUNK - 1) / CHUNK, [&](size_t chunk) {
+        uint32_t near = UINT32_MAX;
+        for (size_t i = chunk * CHUNK; i < std::min(points.size(), (chunk + 1) * CHUNK); ++i) {
+            tree.distance2(points[i] - shapes.origin, &near);
+            nearest[i] = near;
+        }
+    }, 0, 0);
     return nearest;
 }
 

@@ -20,6 +20,13 @@ constexpr size_t FIRST = 2048;
 constexpr double STEEPEST = 0.35;
 namespace {
 
+/* A point, and how far it was from the nearest triangle at the time. */
+struct Corner {
+    Vec3d at;
+    uint32_t near = NO_PATCH;
+    double away = 0;             /* squared */
+};
+
 /* From triangles to a surface. */
 struct Search {
     const Surface &to;
@@ -28,16 +35,25 @@ struct Search {
     double least;                /* triangles of a smaller radius are not split */
     double free;                 /* a distance of no interest */
     double found;                /* the greatest so far */
-    uint32_t near = NO_PATCH;    /* the triangle of `to` that was nearest last */
+    uint32_t near;               /* the triangle of `to` that was nearest last */
+    NearTriangle nearest;        /* that */
 
     double most() const { return std::max(free, LOOSE * found); }
+    bool is_within(Corner &c, double square) const
+    {
+        if (c.near != near) {
+            c.near = near;
+            c.away = nearest.distance2(c.at);
+        }
+        return c.away <= square;
+    }
     /* Whether that triangle is within most() of all that the corners span: distances from a convex
      * set are greatest at corners. */
-    bool is_covered(const Corners &c) const
+    bool is_covered(Corner &a, Corner &b, Corner &c) const
     {
         const double limit = most() * most();
-        return near < to.size() && to.distance2(near, c[0], limit) <= limit &&
-               to.distance2(near, c[1], limit) <= limit && to.distance2(near, c[2], limit) <= limit;
+        return near < to.size() && is_within(a, limit) && is_within(b, limit) &&
+               is_within(c, limit);
     }
     bool is_covered(const gtx::Box &box) const
     {
@@ -48,42 +64,53 @@ struct Search {
             Vec3d p;
             for (int k = 0; k < 3; ++k)
                 p[k] = corner >> k & 1 ? box.high[k] : box.low[k];
-            if (!(to.distance2(near, p, limit) <= limit))
+            if (!(nearest.distance2(p) <= limit))
                 return false;
         }
         return true;
     }
     double distance(const Vec3d &p, double enough)
     {
-        const double square = tree.distance2(
-            p, &near, [](uint32_t) { return true; }, nullptr, enough * enough);
+        const uint32_t before = near;
+        const double known = near < to.size() ? nearest.distance2(p) : INFINITY;
+        const double square = tree.nearer(
+            known, p, &near, [](uint32_t) { return true; }, nullptr, enough * enough);
+        if (near != before) {
+            const Corners c = to.corners(near);
+            nearest = {c[0], c[1], c[2]};
+        }
         return std::sqrt(square);
     }
-    void look(const Corners &c);
+    void look(const Corners &c)
+    {
+        Corner a = {c[0]}, b = {c[1]}, d = {c[2]};
+        look(a, b, d);
+    }
+    void look(Corner &a, Corner &b, Corner &c);
 };
 
-void Search::look(const Corners &c)
+void Search::look(Corner &a, Corner &b, Corner &c)
 {
     cancel_point();
-    if (is_covered(c))
+    if (is_covered(a, b, c))
         return;
-    const Vec3d middle = (c[0] + c[1] + c[2]) / 3;
+    const Vec3d middle = (a.at + b.at + c.at) / 3;
     const double radius =
-        std::max({length(c[0] - middle), length(c[1] - middle), length(c[2] - middle)});
+        std::max({length(a.at - middle), length(b.at - middle), length(c.at - middle)});
     const double enough = most() - slope * radius;
     if (enough > 0 || radius <= least) {
         const double away = distance(middle, std::max(0.0, enough));
         if (away <= enough)
             return;
         found = std::max(found, away);
-        if (away + slope * radius <= most() || radius <= least || is_covered(c))
+        if (away + slope * radius <= most() || radius <= least || is_covered(a, b, c))
             return;
     }
-    const Vec3d side[3] = {(c[1] + c[2]) / 2, (c[2] + c[0]) / 2, (c[0] + c[1]) / 2};
-    look({side[0], side[1], side[2]});
-    look({c[0], side[2], side[1]});
-    look({side[2], c[1], side[0]});
-    look({side[1], side[0], c[2]});
+    Corner x = {(b.at + c.at) / 2}, y = {(c.at + a.at) / 2}, z = {(a.at + b.at) / 2};
+    look(x, y, z);
+    look(a, z, y);
+    look(z, b, x);
+    look(y, x, c);
 }
 
 } // namespace
@@ -152,8 +179,8 @@ Strayed Bounds::of(const LodLevel &level, double speck) const
     const NearestTree<Surface> tree(made, task_, 1);
     const auto any = [](uint32_t) { return true; };
     const auto shown = [&](uint32_t t) { return parts_[t] > speck || largest_part_ <= speck; };
-    Search there = {made, tree, 1, 0, double(level.step) / 2, 0};
-    Search back = {source_, tree_, STEEPEST, pitch_, double(level.step) / 2, 0};
+    Search there = {made, tree, 1, 0, double(level.step) / 2, 0, NO_PATCH, {}};
+    Search back = {source_, tree_, STEEPEST, pitch_, double(level.step) / 2, 0, NO_PATCH, {}};
     Strayed out = sample(source_, shown, there, task_);
     back.found = std::max(out.most, sample(made, any, back, task_).most);
     task_.limits.work_again();
