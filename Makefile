@@ -81,9 +81,8 @@ cflags_chart = $(call pkg,--cflags,openmesh eigen3) -DEIGEN_DONT_VECTORIZE
 cflags_image = $(call pkg,--cflags,OpenImageIO)
 cflags_grid  = $(if $(gdal),$(call pkg,--cflags,gdal))
 cflags_host  = $(call pkg,--cflags,egl glfw3)
-# Loops over texels become vectors where a comparison of floats may be made in vain.
-cflags_asset  = -fno-trapping-math
-cflags_derive = -fno-trapping-math
+# Loops become vectors where a comparison of floats may be made in vain, and a root sets no errno.
+quick = $(if $(filter asset derive mesh chart bake,$(room)),-fno-trapping-math -fno-math-errno)
 # The layouts of records are of shaders and of C.
 cflags_frame  = -Ishaders
 cflags_render = -Ishaders
@@ -112,7 +111,7 @@ room       = $(word 2,$(subst /, ,$(1)))
 # path is a folder of links to those rooms; benchmarks, samples and what is generated see all.
 path_of    = $(out)/sees/$(or $(filter $(rooms:%=lib/%) $(tests:%=tests/%),$(call folder,$(1))),all)
 folder     = $(word 1,$(subst /, ,$(1)))/$(room)
-room_flags = -I$(path_of) $(cflags_$(room))
+room_flags = -I$(path_of) $(cflags_$(room)) $(quick)
 link_rooms = mkdir -p $(out)/sees/$(1) && \
              ln -sfn $(foreach r,$(2),$(CURDIR)/lib/$(r)) $(out)/sees/$(1) &&
 $(out)/sees/.made: Makefile
