@@ -5,7 +5,7 @@ namespace gtx::baking {
 
 HeightField::HeightField(const PatchMaps &patch, unsigned height_bits)
     : codes_(reinterpret_cast<const uint8_t *>(patch.height.data())), trim_(patch.trim.data()),
-      border_(patch.border.data()), code_bytes_(2), row_(patch.record.rect[2])
+      ending_(patch.ending.data()), code_bytes_(2), row_(patch.record.rect[2])
 {
     decode(patch.record, height_bits);
 }

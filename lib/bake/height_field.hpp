@@ -62,7 +62,7 @@ public:
     }
     uint8_t trim(size_t texel) const { return trim_[texel]; }
     /* Whether the outline nearest to a texel is the model's own border; pages do not tell. */
-    bool at_border(size_t texel) const { return border_ && border_[texel]; }
+    bool at_border(size_t texel) const { return ending_ && ending_[texel] == AT_BORDER; }
 
     Vec3d point(double u, double v, double height) const
     {
@@ -104,7 +104,7 @@ private:
     void decode(const gtx_patch &record, unsigned height_bits);
 
     Vec3d per_texel_[2];         /* dual, in texels */
-    const uint8_t *codes_, *trim_, *border_ = nullptr;
+    const uint8_t *codes_, *trim_, *ending_ = nullptr;
     size_t code_bytes_, row_;    /* texels from one row to the next */
 };
 

@@ -191,7 +191,7 @@ static void a_chart_that_folds(void **)
     });
     paint(mesh);
     assert_true(mesh.area_vector(0).z < 0);
-    expect_the_same(mesh, one_chart(mesh, 80), 0.998);
+    expect_the_same(mesh, one_chart(mesh, 84), 0.998);
 }
 
 /* Junk is shown whole, though it faces away. */

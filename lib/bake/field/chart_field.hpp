@@ -123,6 +123,10 @@ Vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Co
 void trim_mask(const Mesh &mesh, const Neighbours &neighbours, const FlatChart &chart,
                Vector<float> &trim);
 
+/* What ends at each edge of the outline; adds what is known of creases among those that are nearest
+ * to a texel. */
+Vector<Ending> find_endings(const Job &job, const ChartField &field, Vector<Crease> &creases);
+
 /* Which texels need a code: the corners of every cell where a hit may be shown. */
 Vector<uint8_t> find_support(const Grid &grid, const Vector<float> &trim);
 /* Gives every supported texel that nothing covers the height of the surface continued there. */

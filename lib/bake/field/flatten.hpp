@@ -17,6 +17,7 @@ struct Grid {
     double pitch[2] = {};  /* object units a texel */
     double corner[2] = {}; /* local (a, b) of the outer corner of texel (0, 0) */
     int w = 0, h = 0;
+    bool aligned[2] = {};  /* the core's sides lie on texels, not midway between two */
     double clip_low[2] = {}, clip_high[2] = {}; /* of the core, texel space; infinite: none */
 
     /* How far (u, v) lies outside the straight cuts; negative inside. */
@@ -58,6 +59,10 @@ struct FlatChart {
     /* mate[t][k] is the index here of the front-facing triangle across edge k, or NO_TRIANGLE. */
     Neighbours mate;
 };
+
+/* Whether the plane of the triangle beyond an edge of the model turns down from this one's sharply.
+ */
+bool is_crease(const Mesh &mesh, const Neighbours &neighbours, uint32_t triangle, int side);
 
 /* Lays a chart out at the model's pitch, or `finer` times as fine. */
 FlatChart flatten(const Mesh &mesh, const Neighbours &neighbours, const Chart &chart, double pitch,

@@ -79,21 +79,30 @@ uint8_t trim_code(float distance)
     return gtx_nearest_trim(std::max(distance, DEEPEST_TRIM));
 }
 
-static void quantise(const ChartField &s, const Crop &crop, double low, unsigned height_bits,
-                     PatchMaps &maps)
+/* Trims and distances that are the same, in texels. */
+constexpr float ROUNDING = 1e-3f;
+
+/* `ending` is that of each edge of the outline. */
+static void quantise(const ChartField &s, const Vector<Ending> &ending, const Crop &crop,
+                     double low, unsigned height_bits, PatchMaps &maps)
 {
     const Grid &grid = s.flat.grid;
     const double steps = gtx_height_steps(height_bits) / double(maps.record.extent_z);
     maps.height.assign(size_t(crop.w) * crop.h, 0);
     maps.trim.resize(maps.height.size());
-    maps.border.resize(maps.height.size());
+    maps.ending.resize(maps.height.size());
     for (int j = 0; j < crop.h; ++j) {
         for (int i = 0; i < crop.w; ++i) {
             int x = crop.x + i, y = crop.y + j;
             int near_x = std::clamp(x, 0, grid.w - 1), near_y = std::clamp(y, 0, grid.h - 1);
             size_t from = size_t(near_y) * grid.w + near_x, to = size_t(j) * crop.w + i;
             maps.trim[to] = trim_code(s.trim[from]);
-            maps.border[to] = s.outline.edges[s.outline.nearest[from]].border;
+            maps.ending[to] = ending[s.outline.nearest[from]];
+            /* where overlap or a cut ends it before */
+            const float to_all = s.cover.triangle[from] == NO_TRIANGLE ? s.outline.distance[from]
+                                                                       : -s.outline.distance[from];
+            if (maps.ending[to] == AT_CREASE && s.trim[from] > to_all + ROUNDING)
+                maps.ending[to] = AT_CHART;
             if (x == near_x && y == near_y && s.support[from])
                 maps.height[to] = uint16_t(
                     gtx_nearest_code((s.cover.height[from] - low) * steps, height_bits));
@@ -141,7 +150,8 @@ static PatchMaps encode_field(const Job &job, const Chart &chart, const ChartFie
         return maps;
     Crop crop = crop_support(s.flat.grid, s.support, 1 << (job.options.mips - 1));
     maps.record = make_record(job, chart, s.flat.grid, crop, low, high);
-    quantise(s, crop, low, job.options.height_bits, maps);
+    const Vector<Ending> ending = find_endings(job, s, maps.creases);
+    quantise(s, ending, crop, low, job.options.height_bits, maps);
     measure_patch(job.options.height_bits, maps);
     build_mips(shade_texels(job, s, crop, maps.height), job.options.mips, job.needs, maps);
     return maps;

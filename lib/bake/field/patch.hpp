@@ -9,12 +9,23 @@ namespace gtx::baking {
 
 using Levels = Vector<Vector<uint8_t>>;
 
+/* What ends at the outline nearest to a texel: a chart, the model itself, or a face at a convex
+ * edge beyond which the next one faces away. */
+enum Ending : uint8_t { AT_CHART, AT_BORDER, AT_CREASE };
+
+/* Such an edge, relative to the anchor, and the planes that meet there: the patch's own, and the
+ * other's. */
+struct Crease {
+    Vec3d from, to, normal, other;
+};
+
 /* The maps of one patch, `rect` still without its place on a page. */
 struct PatchMaps {
     gtx_patch record = {};
     Vector<uint16_t> height;                  /* codes */
     Vector<uint8_t> trim;
-    Vector<uint8_t> border;                   /* the nearest outline is the model's own border */
+    Vector<uint8_t> ending;                   /* as Ending */
+    Vector<Crease> creases;                   /* those that a texel is near to */
     Levels normal;                            /* a level each, 2 bytes a texel */
     Levels color, material, emission;         /* 4, 4 and 3 bytes a texel, or none */
     Vec3d low, high;                          /* of the coded texels' points */

@@ -21,4 +21,8 @@ void close_cuts(const Partition &partition, const Vector<uint32_t> &charts,
                 const Vec3d &anchor, unsigned height_bits, Vector<PatchMaps> &patches,
                 Task &task);
 
+/* Ends height fields sooner beyond convex edges of the source at which they meet those of the next
+ * face: what they show there stands in the air. */
+void end_at_creases(unsigned height_bits, Vector<PatchMaps> &patches, Task &task);
+
 } // namespace gtx::baking
