@@ -69,6 +69,15 @@ typedef gtx_result (*gtx_sources_fn)(const char *const *paths, size_t count, voi
 /* For texel_density: as many texels as relief needs, whatever textures show. */
 #define GTX_TEXEL_DENSITY_RELIEF (-1.0f)
 
+/* Blocks that a cook adds to an asset, so that models need not encode them: those that
+ * gtx_add_blocks (frame.h) adds for the gtx_compression k, 1 << k each. */
+enum {
+    GTX_TEXTURES_NORMALS = 1,     /* with the others: normals, too */
+    GTX_TEXTURES_BC = 2,
+    GTX_TEXTURES_ETC2 = 4,
+    GTX_TEXTURES_BC_SMALL = 8
+};
+
 typedef struct gtx_cook_desc {
     gtx_partition partition;
     gtx_extract extract;
@@ -133,7 +142,8 @@ typedef struct gtx_cook_desc {
     uint32_t closed;              /* 1: the models are part of a closed surface, counterclockwise
                                      seen from outside: their borders are where it is cut, and their
                                      patches are seen from the front alone */
-    uint32_t reserved[1];
+    uint32_t texture_formats;     /* GTX_TEXTURES_...: blocks for GPUs, kept beside the texels */
+    uint32_t reserved[2];
 } gtx_cook_desc;
 
 /* An asset keeps the key that it was cooked under. The key covers
@@ -141,8 +151,8 @@ typedef struct gtx_cook_desc {
  *     and images that they refer to, missing ones included; not their paths or times;
  *   - the options that change the asset: partition, extract (and the driver, where it is GPU),
  *     charts, resolution, height_bits, dilation, mips, lod_levels, zstd_level, unit, error, z_up,
- *     adaptive, kept, closed, texel_density and base_color; not threads, measure, progress, strict,
- *     allow, limits or allocator;
+ *     adaptive, kept, closed, texel_density, texture_formats, base_color; not threads, measure,
+ *     progress, strict, allow, limits or allocator;
  *   - geotex's version and the revision of its cooker,
  * but not the libraries that decode images and compress sections. With `strict`, an asset whose
  * cook had warnings that are not allowed is cooked again; with `charts_ply`, or if importing read

@@ -36,8 +36,8 @@ extern "C" {
 
 /* Blocks of 4x4 texels that GPUs read as they are: a byte a texel, or half a byte, by ETC2, for
  * emission and for colours that are opaque all over; these stay so through edits. Heights and
- * outlines are exact. gtx_model_prepare encodes, by its jobs; what is lost `gtx bench --compress`
- * measures. */
+ * outlines are exact. gtx_model_prepare takes those that an asset has (gtx_add_blocks) or encodes,
+ * by its jobs; what is lost `gtx bench --compress` measures. */
 typedef enum gtx_compression {
     GTX_COMPRESS_NONE = 0,
     GTX_COMPRESS_BC = 1,              /* desktops: gtx_renderer_compression; Vulkan's feature
@@ -67,6 +67,13 @@ typedef struct gtx_model_desc {
  * MEMORY, LIMIT. */
 GTX_API gtx_result gtx_model_prepare(const gtx_asset *asset, const gtx_model_desc *desc,
                                      gtx_model **out, gtx_error *error);
+
+/* Adds to the asset the blocks that gtx_model_prepare would encode with this descriptor, beside
+ * those that it has: it takes them from then on, the same byte for byte, and files of the asset
+ * hold them (format/gtx.md, 2.1). An edited asset has none until they are added. The asset must not
+ * be in use elsewhere. Errors: ARGUMENT (compress is NONE), and those of gtx_model_prepare; then
+ * nothing has changed. */
+GTX_API gtx_result gtx_add_blocks(gtx_asset *asset, const gtx_model_desc *desc, gtx_error *error);
 
 /* Bytes of the model's textures and buffers on the GPU; `color` is colour, material, emission. */
 typedef struct gtx_model_size {

@@ -94,6 +94,7 @@ void gtx_close(gtx_asset *asset)
                            (size_t)map_size(info, kind, k), 1);
     for (uint32_t k = 0; k < GTX_MAX_LODS; ++k)
         gtx_free_array(&allocator, asset->lod[k], asset->lod_size[k], 1);
+    gtx_free_array(&allocator, asset->blocks, asset->blocks_size, 1);
     gtx_free_array(&allocator, asset->meta, asset->meta_size, 1);
     gtx_free_array(&allocator, asset->marks,
                    (size_t)info->page_count * info->page_width * info->page_height, 1);

@@ -27,6 +27,8 @@ struct gtx_asset {
     uint8_t *material[GTX_MAX_MIPS], *emission[GTX_MAX_MIPS];
     uint8_t *lod[GTX_MAX_LODS]; /* as a section holds them: lib/asset/lod.h */
     size_t lod_size[GTX_MAX_LODS];
+    uint8_t *blocks;          /* as a BLKS section holds them, or NULL: lib/asset/blocks.h */
+    size_t blocks_size;
     char *meta;
     size_t meta_size;
     bool bare;                /* of a file's parts: it has no heights */

@@ -1,8 +1,11 @@
 /* One pass over hostile bytes, in the order of format/gtx.md, section 7. */
 #include "asset/read.h"
 
+#include "asset/blocks.h"
 #include "asset/decode.h"
 #include "asset/header.h"
+#include "base/alloc.h"
+#include "base/hash.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -139,6 +142,52 @@ static void read_sections(reader *r)
     check_rest(r, hold);
 }
 
+/* A section that this reader can use, if it is there and what the asset may take allows. */
+static const gtx_section *find_blocks(const reader *r, size_t *decoder)
+{
+    const gtx_layout *layout = &r->layout;
+    const gtx_sizes sizes = sizes_of(layout);
+    for (uint32_t i = 0; i < layout->section_count; ++i) {
+        const gtx_section *s = &layout->sections[i];
+        if (s->kind != GTX_SECTION_UNKNOWN || memcmp(s->type, "BLKS", 4) != 0)
+            continue;
+        *decoder = s->scheme == GTX_SCHEME_ZSTD ? gtx_decoder_size() : 0;
+        const uint64_t held = gtx_asset_bytes(&layout->info, &sizes) + r->options.bytes_held;
+        const bool fits = s->size <= gtx_blocks_most(&layout->info) && s->size <= SIZE_MAX &&
+                          (s->scheme == GTX_SCHEME_STORED || gtx_has_zstd()) &&
+                          held + s->size + *decoder <=
+                              gtx_limit_of(r->options.limits, GTX_LIMITED_MEMORY,
+                                           layout->info.file_size);
+        return fits ? s : NULL;
+    }
+    return NULL;
+}
+
+/* Whatever is wrong with them, texels are there: then it is as if there were none. */
+static void read_blocks(const reader *r)
+{
+    gtx_block_map maps[GTX_MAX_BLOCK_MAPS];
+    size_t decoder_size = 0;
+    const gtx_section *s = find_blocks(r, &decoder_size);
+    if (!s)
+        return;
+    const gtx_allocator *hooks = &r->asset->allocator;
+    const size_t size = (size_t)s->size;
+    uint8_t *bytes = gtx_alloc_raw(hooks, size, 1);
+    void *decoder = decoder_size ? gtx_alloc_raw(hooks, decoder_size, 1) : NULL;
+    bool holds = bytes && (decoder || !decoder_size);
+    if (holds && decoder)
+        holds = !gtx_decompress(decoder, s, r->data + s->offset, bytes);
+    else if (holds)
+        memcpy(bytes, r->data + s->offset, size);
+    holds = holds && gtx_hash_bytes(bytes, size) == s->hash &&
+            gtx_blocks_load(&r->asset->info, bytes, size, maps);
+    gtx_free_array(hooks, decoder, decoder_size, 1);
+    if (!holds)
+        gtx_free_array(hooks, bytes, size, 1);
+    gtx_keep_blocks(r->asset, holds ? bytes : NULL, size);
+}
+
 gtx_result gtx_read_asset(gtx_check *check, const gtx_read_options *options, const void *data,
                           size_t size, gtx_asset **out)
 {
@@ -152,6 +201,8 @@ gtx_result gtx_read_asset(gtx_check *check, const gtx_read_options *options, con
         gtx_decoding_end(&r.decoding, &r.options.allocator);
         gtx_occupancy_free(&r.occupancy, &r.options.allocator);
     }
+    if (r.asset && !check->result)
+        read_blocks(&r);
     if (check->result) {
         gtx_close(r.asset);
         r.asset = NULL;

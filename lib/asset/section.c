@@ -24,7 +24,7 @@ static const kind_row kinds[] = {
     [GTX_SECTION_MATERIAL] = {"MATL", 0, 37, 4, true},
     [GTX_SECTION_EMISSION] = {"EMIT", 0, 29, 3, true},
     [GTX_SECTION_LOD] = {"LODM", 0, 0, 0, false},
-    [GTX_SECTION_UNKNOWN] = {"", 0, 0, 0, false},
+    [GTX_SECTION_UNKNOWN] = {"BLKS", 0, 0, 0, false}, /* of what assets keep */
     [GTX_SECTION_META] = {"META", 0, 0, 0, false},
 };
 
@@ -93,6 +93,8 @@ uint32_t gtx_asset_sections(const gtx_asset *asset, gtx_section out[GTX_MAX_KNOW
             *section = gtx_section_describe(&asset->info, (gtx_section_kind)kind, level);
             if (kind == GTX_SECTION_META)
                 section->size = asset->meta_size;
+            if (kind == GTX_SECTION_UNKNOWN)
+                section->size = asset->blocks_size;
             if (kind == GTX_SECTION_LOD)
                 section->size = asset->lod_size[level];
             section->hash = gtx_hash_bytes(data, (size_t)section->size);
@@ -123,6 +125,8 @@ void *gtx_asset_data(const gtx_asset *asset, gtx_section_kind kind, uint32_t lev
         return asset->patches;
     if (kind == GTX_SECTION_LOD)
         return asset->lod[level];
+    if (kind == GTX_SECTION_UNKNOWN)
+        return asset->blocks;
     return kind == GTX_SECTION_META ? asset->meta : NULL;
 }
 

@@ -83,7 +83,7 @@ static inline uint64_t gtx_shape_size(gtx_map_shape image)
 gtx_section gtx_section_describe(const gtx_info *info, gtx_section_kind kind, uint32_t level);
 
 /* Entries of all sections of an asset in file order, with their hashes. Returns how many. */
-#define GTX_MAX_KNOWN_SECTIONS (4 + 4 * GTX_MAX_MIPS + GTX_MAX_LODS)
+#define GTX_MAX_KNOWN_SECTIONS (5 + 4 * GTX_MAX_MIPS + GTX_MAX_LODS)
 uint32_t gtx_asset_sections(const gtx_asset *asset, gtx_section out[GTX_MAX_KNOWN_SECTIONS]);
 
 /* Where the asset keeps the image of a level; NULL when the kind is no image. */

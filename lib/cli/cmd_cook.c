@@ -13,7 +13,7 @@
 enum { MAX_MODELS = 4096 };
 
 static gtx_cook_desc desc;
-static const char *output, *name, *report_path, *depfile_path, *allow, *shard_text;
+static const char *output, *name, *report_path, *depfile_path, *allow, *shard_text, *textures;
 static uint32_t partition, extract, lod_levels = 5, job_count, shard = 1, shards = 1;
 static double unit = 1, texel_density = -1; /* by their detail */
 static int32_t zstd_level = 3;
@@ -41,6 +41,8 @@ static const option options[] = {
     {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
      "LOD meshes at most, besides far ones; 0 = none at all [5]", 0, 5},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
+    {"texture-format", 0, OPTION_STRING, &textures, "KIND,...",
+     "keep blocks for GPUs beside the texels: bc, bc-small, etc2; with normals, those too", 0, 0},
     {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z",
      "the model's up axis; +Z is turned to +Y [y]", 0, 0},
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the model [1]", 1e-30, 1e30},
@@ -259,6 +261,27 @@ static void set_allowed(void)
     desc.allow = names;
 }
 
+/* False where there is no kind of that name. */
+static bool set_textures(void)
+{
+    static const struct {
+        const char *name;
+        uint32_t bit;
+    } kinds[] = {{"normals", GTX_TEXTURES_NORMALS}, {"bc", GTX_TEXTURES_BC},
+                 {"bc-small", GTX_TEXTURES_BC_SMALL}, {"etc2", GTX_TEXTURES_ETC2}};
+    for (const char *at = textures; at;) {
+        const size_t size = strcspn(at, ",");
+        const uint32_t before = desc.texture_formats;
+        for (size_t i = 0; i < sizeof kinds / sizeof *kinds; ++i)
+            if (strlen(kinds[i].name) == size && !memcmp(kinds[i].name, at, size))
+                desc.texture_formats |= kinds[i].bit;
+        if (desc.texture_formats == before)
+            return false;
+        at = at[size] ? at + size + 1 : NULL;
+    }
+    return desc.texture_formats != GTX_TEXTURES_NORMALS;
+}
+
 int cmd_cook(int argc, char **argv)
 {
     static const char *models[MAX_MODELS];
@@ -273,6 +296,8 @@ int cmd_cook(int argc, char **argv)
         code = check_folders(models, count);
     if (!code && !folders && (job_count || shard_text))
         code = usage("--jobs and --shard are for folders");
+    if (!code && !set_textures())
+        code = usage("--texture-format takes bc, bc-small, etc2, once each, and normals with one");
     if (code)
         return code;
     desc.partition = (gtx_partition)partition;

@@ -134,6 +134,7 @@ static Cooked cook_models(Models &models, const Options &options, const Outputs 
         mesh = {};
         made.partition = {};
     }
+    add_textures(made.asset.get(), options, task);
     Cooked out;
     if (encoded)
         out.file = std::make_unique<Encoded>(made.asset.get(), options, task);

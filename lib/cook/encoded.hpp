@@ -6,6 +6,8 @@
 #include "base/alloc.h"
 #include "base/output.h"
 
+#include <geotex/frame.h>
+
 #include <string_view>
 
 namespace gtx {
@@ -26,6 +28,28 @@ struct TaskJobs {
         }
     }
 };
+
+/* Blocks of the asset's maps, as asked for. */
+inline void add_textures(gtx_asset *asset, const Options &options, Task &task)
+{
+    TaskJobs on_task = {task};
+    const gtx_jobs jobs = {TaskJobs::run, &on_task};
+    gtx_model_desc desc = {};
+    desc.allocator = &options.allocator;
+    desc.jobs = &jobs;
+    desc.limits.memory = UINT64_MAX; /* those of the cook hold */
+    desc.compress_normals = options.texture_formats & GTX_TEXTURES_NORMALS;
+    for (uint32_t kind = GTX_COMPRESS_BC; kind <= GTX_COMPRESS_BC_SMALL; ++kind) {
+        if (!(options.texture_formats >> kind & 1))
+            continue;
+        gtx_error error;
+        desc.compress = gtx_compression(kind);
+        const gtx_result result = gtx_add_blocks(asset, &desc, &error);
+        if (on_task.thrown)
+            std::rethrow_exception(on_task.thrown);
+        require_ok(result, error);
+    }
+}
 
 /* The bytes of a file. */
 struct Encoded {

@@ -33,6 +33,8 @@ std::string write_meta(const Options &options, const CookFacts &facts)
         gtx_json_integer(&json, "kept", options.kept_count);
     if (options.closed)
         gtx_json_bool(&json, "closed", true);
+    if (options.texture_formats)
+        gtx_json_integer(&json, "texture_formats", options.texture_formats);
     if (options.bake.extractor)
         gtx_json_string(&json, "extract", "gpu");
     gtx_json_end_object(&json);

@@ -65,6 +65,8 @@ static void check(const gtx_cook_desc &desc)
     require_argument(desc.kept || !desc.kept_count, "kept is NULL, and kept_count is not 0");
     require_argument(desc.kept_count <= UINT32_MAX, "kept_count is at most 2^32 - 1");
     require_argument(desc.closed <= 1, "closed is 0 or 1");
+    require_argument(desc.texture_formats < 16 && desc.texture_formats != GTX_TEXTURES_NORMALS,
+                     "texture_formats has a kind of blocks, and no bit that is unknown");
     require_models(desc.more, desc.more_count);
     require_argument(desc.allow_count <= 64, "allow_count is at most 64");
     require_argument(desc.allow || !desc.allow_count, "allow is NULL, and allow_count is not 0");
@@ -126,6 +128,7 @@ Options checked_options(const gtx_cook_desc &desc)
     options.closed = desc.closed;
     options.kept = desc.kept;
     options.kept_count = desc.kept_count;
+    options.texture_formats = desc.texture_formats;
     options.charts_ply = desc.charts_ply;
     options.cache = desc.cache;
     options.allocator = gtx_allocator_or_default(desc.allocator);
@@ -186,6 +189,8 @@ uint64_t content_key(const Options &options, uint64_t source_hash)
                                                                            3 * sizeof(double)));
     if (options.closed)
         text += " closed";
+    if (options.texture_formats)
+        text += " textures " + std::to_string(options.texture_formats);
     if (options.chart.texel_density != 0)
         text += " density " + std::to_string(gtx_hash_bytes(&options.chart.texel_density,
                                                             sizeof(double)));

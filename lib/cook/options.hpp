@@ -43,6 +43,7 @@ struct Options {
     bool z_up = false, strict = false, if_changed = false, closed = false;
     const double *kept = nullptr;
     size_t kept_count = 0;
+    uint32_t texture_formats = 0; /* GTX_TEXTURES_... */
     const char *charts_ply = nullptr, *cache = nullptr;
     gtx_allocator allocator = {}; /* never empty hooks */
 };

@@ -75,6 +75,16 @@ gtx_storage gtx_storage_of(uint32_t unit, gtx_compression compress, bool opaque)
     return s.format ? s : all[GTX_COMPRESS_NONE][unit];
 }
 
+uint32_t gtx_block_number(gtx_format format)
+{
+    static const uint32_t numbers[] = {
+        [GTX_FORMAT_BC5] = 141,         [GTX_FORMAT_BC7] = 145,
+        [GTX_FORMAT_BC7_SRGB] = 146,    [GTX_FORMAT_BC1_SRGB] = 132,
+        [GTX_FORMAT_EAC_RG11] = 155,    [GTX_FORMAT_ETC2_RGBA8] = 151,
+        [GTX_FORMAT_ETC2_RGBA8_SRGB] = 152, [GTX_FORMAT_ETC2_RGB8_SRGB] = 148};
+    return numbers[format];
+}
+
 uint32_t gtx_block_size(gtx_format format)
 {
     return format == GTX_FORMAT_ETC2_RGB8_SRGB || format == GTX_FORMAT_BC1_SRGB ? 8 : 16;

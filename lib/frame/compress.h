@@ -15,6 +15,8 @@ typedef struct gtx_storage {
 
 /* Of colours, whether they are opaque all over. */
 gtx_storage gtx_storage_of(uint32_t unit, gtx_compression compress, bool opaque);
+/* The number that files have for it: a VkFormat; 0 where it is no format of blocks. */
+uint32_t gtx_block_number(gtx_format format);
 /* Of formats that are blocks, bytes of one. */
 uint32_t gtx_block_size(gtx_format format);
 

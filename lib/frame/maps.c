@@ -2,6 +2,7 @@
 #include "frame/compress.h"
 #include "frame/model.h"
 
+#include "asset/blocks.h"
 #include "base/alloc.h"
 
 #include <string.h>
@@ -45,21 +46,26 @@ static bool add_maps(const making *m, gtx_map map, uint32_t unit, uint32_t count
     const gtx_storage s = gtx_storage_of(
         unit, compress ? m->desc->compress : GTX_COMPRESS_NONE,
         unit == UNIT_COLORS && m->desc->compress && gtx_is_opaque(m->asset));
-    const bool borrow = m->desc->borrow && !s.block_size;
+    const uint8_t *blocks =
+        s.block_size ? gtx_find_blocks(m->asset, map, gtx_block_number(s.format)) : NULL;
+    const bool borrow = m->desc->borrow && (blocks || !s.block_size);
     for (uint32_t k = 0; k < count; ++k) {
         const void *texels = gtx_map_data(m->asset, map, k, NULL);
         if (!texels) /* an optional map */
             return true;
+        const void *source = blocks ? blocks : texels;
         m->model->formats[unit] = s.format;
-        m->sources[m->model->level_count] = borrow ? NULL : texels;
+        m->sources[m->model->level_count] = borrow ? NULL : source;
+        if (blocks)
+            blocks += gtx_blocks_level_size(info, k, s.block_size);
         if (!gtx_model_add_level(m->model, (gtx_level){.unit = unit, .level = k,
                                              .width = info->page_width >> k,
                                              .height = info->page_height >> k,
                                              .layers = info->page_count,
                                              .texel_size = s.texel_size,
                                              .block_size = s.block_size,
-                                             .data = borrow ? (uint8_t *)texels : NULL,
-                                             .borrowed = borrow}))
+                                             .data = borrow ? (uint8_t *)source : NULL,
+                                             .borrowed = borrow, .encoded = source != texels}))
             return false;
     }
     return true;
@@ -112,7 +118,7 @@ void gtx_model_begin_level(gtx_model *model, const gtx_asset *asset, uint32_t in
     const gtx_level *l = &model->levels[index];
     const size_t size = gtx_level_size(l), first = size * piece / pieces;
     const size_t count = size * (piece + 1) / pieces - first;
-    if (source && l->block_size)
+    if (source && l->block_size && !l->encoded)
         compress_level(model, asset, l, source, piece, pieces);
     else if (source)
         memcpy(l->data + first, source + first, count);

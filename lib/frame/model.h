@@ -27,7 +27,7 @@ typedef struct gtx_level {
     uint32_t texel_size, block_size; /* one of them is 0 */
     uint32_t next_row;        /* of all rows of all layers, the first one not uploaded yet */
     uint8_t *data;            /* freed once it is uploaded, unless it is the asset's */
-    bool borrowed;
+    bool borrowed, encoded;   /* encoded: its source is blocks already */
 } gtx_level;
 
 /* Rows of a layer, of texels or blocks; bytes of a row, and of all layers. */

@@ -53,6 +53,24 @@ static void streams_carry_models_and_assets(void **state)
     same_files("a.gtx", "b.gtx");
 }
 
+static void blocks_are_kept_where_asked_for(void **state)
+{
+    static const char *const wrong[] = {"bc7", "normals", "bc,,etc2", "bc,bc", "''"};
+    size_t plain, kept;
+    (void)state;
+    expect(gtx("cook sphere.obj -o a.gtx -q"), 0);
+    expect(gtx("cook sphere.obj -o b.gtx -q --texture-format bc-small,normals,etc2"), 0);
+    expect(gtx("validate b.gtx"), 0);
+    free(slurp("a.gtx", &plain));
+    free(slurp("b.gtx", &kept));
+    assert_true(kept > plain);
+    expect(gtx("cook sphere.obj -o b.gtx --if-changed --texture-format bc,normals"), 0);
+    expect(gtx("cook sphere.obj -o c.gtx -q --texture-format normals,bc"), 0);
+    same_files("b.gtx", "c.gtx"); /* another key */
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i)
+        expect(gtx("cook sphere.obj -o c.gtx --texture-format %s", wrong[i]), 1);
+}
+
 static void a_dependency_file_names_every_source(void **state)
 {
     static const char odd[] = "a b$c#d\\e.obj", library[] = "newmtl m\nKd 1 0 0\n";
@@ -292,6 +310,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(streams_carry_models_and_assets),
+        cmocka_unit_test(blocks_are_kept_where_asked_for),
         cmocka_unit_test(a_dependency_file_names_every_source),
         cmocka_unit_test(unchanged_outputs_stay),
         cmocka_unit_test(strict_is_exit_3),
