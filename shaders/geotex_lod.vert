@@ -127,7 +127,7 @@ void main()
     vec3 n = normalize(world_normals * (mat3(x, cross(z, x), z) * p));
     vec3 eye = gtx_view_eye(gtx_object_x, gtx_object_y, gtx_object_z);
     vec3 ray = normalize(gtx_to_world(object.xyz * gtx_depth.w - eye));
-    if (gtx_lod_mesh.x > 0.0) /* seen from behind */
+    if (gtx_lod_mesh.x > min(float(index), 0.0)) /* seen from behind; min as in gtx_shown */
         n = gtx_from_behind(n, ray);
     float light = gtx_diffuse(n, -ray, gtx_light.xyz, deviation);
     gtx_lit = gtx_tint;

@@ -127,10 +127,11 @@ vec3 gtx_shaded_to_srgb(vec3 root, float share)
 }
 
 /* What stock mains write of a linear colour, and of a share of light times a colour, of which they
- * have the 2.4th root. */
+ * have the 2.4th root. What is below 0 is there for lavapipe alone: where uniforms decide by
+ * themselves it compiles the shader anew, for what they are, each time that others are bound. */
 vec3 gtx_shown(vec3 color)
 {
-    if (gtx_search.z > 0.0)
+    if (gtx_search.z > min(color.x, 0.0))
         return color;
     color = clamp(color, 0.0, 1.0);
     return mix(1.055 * gtx_root(color) - 0.055, 12.92 * color,
@@ -139,7 +140,7 @@ vec3 gtx_shown(vec3 color)
 
 vec3 gtx_shown(vec3 root, float share)
 {
-    if (gtx_search.z > 0.0)
+    if (gtx_search.z > min(share, 0.0))
         return pow(root, vec3(2.4)) * share;
     return gtx_shaded_to_srgb(root, share);
 }
