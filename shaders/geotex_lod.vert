@@ -1,7 +1,8 @@
 /* Polygons, whose vertices know their place and their patch: of an LOD mesh or, with GTX_GRID, of
  * height fields drawn as displaced grids (Cook, Shade Trees, SIGGRAPH 1984). Map coordinates and
- * the frame of normals follow from the patch's record. With GTX_LIT, for geotex_lit.frag, triangles
- * are so small, or so even, that the light at their corners is enough.
+ * the frame of normals follow from the patch's record. With GTX_LIT, for geotex_lit.frag and
+ * geotex_lod_lit.frag, triangles are so small, or so even, that the light at their corners is
+ * enough.
  *
  * Needs geotex_height_field.glsl and geotex_view.glsl before it. What hardly changes over a
  * triangle is found here and stays the same all over it: triangles are small, and a vertex serves
@@ -14,10 +15,9 @@ GTX_SAMPLER(3, highp sampler2DArray) gtx_colors;
 #if defined(GTX_GRID)
 layout(location = 0) in uvec4 gtx_node;     /* of the patch, and the height's code */
 #elif defined(GTX_RHI)
-layout(location = 0) in uvec4 gtx_steps;
-#define gtx_position vec3(gtx_steps.xyz)
+layout(location = 0) in uvec4 gtx_steps;    /* of the level; the normal */
 #else
-layout(location = 0) in vec3 gtx_position;  /* in steps of the level */
+layout(location = 0) in vec4 gtx_steps;
 #endif
 layout(location = 1) in uint gtx_patch;
 #ifdef GTX_SINGLE
@@ -47,6 +47,9 @@ invariant gl_Position;                      /* bit for bit what a depth prepass 
 
 #ifdef GTX_LIT
 GTX_VARYING(0) out vec4 gtx_lit;            /* colour as it is shown */
+#ifndef GTX_GRID
+GTX_VARYING(1) out vec3 gtx_behind;         /* the same, of the back */
+#endif
 #else
 GTX_VARYING(0) out vec2 gtx_at;             /* place in the page, 0..1 */
 GTX_VARYING(1) flat out vec3 gtx_page;      /* page; mip level; how far normals stray from it */
@@ -82,6 +85,37 @@ vec3 gtx_to_world(vec3 object)
                 dot(gtx_world_z.xyz, object));
 }
 
+#if defined(GTX_LIT) && !defined(GTX_GRID)
+/* Not of unit length. */
+vec3 gtx_octahedral(float code)
+{
+    float high = floor(code * (1.0 / 256.0));
+    vec2 e = vec2(code - 256.0 * high, high) * (2.0 / 255.0) - 1.0;
+    float z = 1.0 - abs(e.x) - abs(e.y);
+    return vec3(e + mix(vec2(min(z, 0.0)), vec2(max(-z, 0.0)), vec2(lessThan(e, vec2(0.0)))), z);
+}
+
+vec3 gtx_shown_to(vec3 n, vec3 eye, vec3 root)
+{
+    float light = gtx_diffuse(n, eye, gtx_light.xyz, GTX_LEAST_DEVIATION);
+    return gtx_shown(root, gtx_light.w + (1.0 - gtx_light.w) * light);
+}
+
+/* All that light needs comes with the vertices. */
+void main()
+{
+    vec4 object = vec4(gtx_lod_mesh.xyz + gtx_lod_mesh.w * vec3(gtx_steps.xyz), 1.0);
+    vec3 world = gtx_to_world(object.xyz) + vec3(gtx_world_x.w, gtx_world_y.w, gtx_world_z.w);
+    gl_Position = gtx_view_clip() * vec4(world, 1.0);
+    mat3 world_normals = mat3(gtx_object_x.xyz, gtx_object_y.xyz, gtx_object_z.xyz);
+    vec3 n = normalize(world_normals * gtx_octahedral(float(gtx_steps.w)));
+    vec3 eye = gtx_view_eye(gtx_object_x, gtx_object_y, gtx_object_z);
+    vec3 ray = normalize(gtx_to_world(object.xyz * gtx_depth.w - eye));
+    vec3 root = pow(max(gtx_tint.rgb, 0.0), vec3(1.0 / 2.4));
+    gtx_lit = vec4(gtx_shown_to(n, -ray, root), gtx_tint.a);
+    gtx_behind = gtx_shown_to(gtx_from_behind(n, ray), -ray, root);
+}
+#else
 void main()
 {
     int index = int(gtx_patch);
@@ -90,7 +124,7 @@ void main()
     vec4 object = vec4(gtx_object_point(gtx_frame_of(index), grid), 1.0);
     vec2 at = grid.xy;
 #else
-    vec4 object = vec4(gtx_lod_mesh.xyz + gtx_lod_mesh.w * gtx_position, 1.0);
+    vec4 object = vec4(gtx_lod_mesh.xyz + gtx_lod_mesh.w * vec3(gtx_steps.xyz), 1.0);
     vec2 at = gtx_to_grid(index, object).xy;
 #endif
     vec3 world = gtx_to_world(object.xyz) + vec3(gtx_world_x.w, gtx_world_y.w, gtx_world_z.w);
@@ -169,3 +203,4 @@ void main()
 #endif
 #endif
 }
+#endif

@@ -132,6 +132,13 @@ static void cast_plan(const gtx_draw_call *call, const run *r, uint32_t instance
     cast_ranges(call, r, false, instance, 1, plan->ranges + first, plan->hull_count);
 }
 
+/* Whether a level is lit at its vertices, both sides in one pass. */
+static bool is_lit(const gtx_draw_call *call, const run *r, uint32_t level)
+{
+    return call->view->pass == GTX_PASS_FORWARD && !is_own(call) &&
+           r->model->lods.levels[level].lit && material_of(r->model) == MATERIAL_NONE;
+}
+
 /* Patches of a level that are seen from one side or from two, by the technique for front faces or
  * the one for all. */
 static void draw_side(const gtx_draw_call *call, const run *r, uint32_t level,
@@ -139,9 +146,10 @@ static void draw_side(const gtx_draw_call *call, const run *r, uint32_t level,
 {
     gtx_planner *planner = call->planner;
     const gtx_lod_level *l = &r->model->lods.levels[level];
-    const gtx_technique technique = is_own(call) ? TECHNIQUE_OWN_LOD
-                                    : front      ? TECHNIQUE_LOD_FRONT
-                                                 : TECHNIQUE_LOD;
+    const gtx_technique technique = is_own(call)             ? TECHNIQUE_OWN_LOD
+                                    : is_lit(call, r, level) ? TECHNIQUE_LOD_LIT
+                                    : front                  ? TECHNIQUE_LOD_FRONT
+                                                             : TECHNIQUE_LOD;
     gtx_frame_draw draw = draw_of(call, r, technique, r->first, r->count);
     draw.cull = cull;
     draw.vertices = GTX_BUFFER_LOD_VERTICES;
@@ -162,7 +170,7 @@ static void draw_side(const gtx_draw_call *call, const run *r, uint32_t level,
 static void draw_lod(const gtx_draw_call *call, const run *r, uint32_t level, const uint8_t *parts)
 {
     const gtx_lod_meshes *lods = &r->model->lods;
-    bool front = call->view->pass == GTX_PASS_FORWARD && !is_own(call);
+    bool front = call->view->pass == GTX_PASS_FORWARD && !is_own(call) && !is_lit(call, r, level);
     for (uint32_t i = 0; i < r->count; ++i)
         front = front && gtx_keeps_angles(&call->planner->instances[r->first + i]);
     if (lods->one_sided)

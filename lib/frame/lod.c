@@ -228,6 +228,7 @@ void gtx_lod_fill(const gtx_asset *asset, uint32_t k, const gtx_allocator *alloc
     /* The next level's indices are aligned. */
     const size_t end = 3 * (size_t)level->triangle_count * level->index_size;
     memset(out->indices + level->index_offset + end, 0, (4 - end % 4) % 4);
+    gtx_lod_light(asset, k, out);
 }
 
 void gtx_lod_free_staging(gtx_lod_meshes *lods, const gtx_allocator *allocator)

@@ -9,7 +9,8 @@
 
 /* A vertex on a border between patches is stored once for each of them. */
 typedef struct gtx_lod_vertex {
-    uint16_t position[3], spare;
+    uint16_t position[3];
+    uint16_t normal;          /* octahedral, where the level may be lit by it */
     uint32_t patch;
 } gtx_lod_vertex;
 
@@ -22,7 +23,8 @@ typedef struct gtx_lod_run {
 
 typedef struct gtx_lod_level {
     float place[4];           /* origin and step of the positions */
-    float error;              /* object units */
+    float error;              /* object units; 0: as near to the source as height fields */
+    bool lit;                 /* at its vertices, while the model has no more than normals */
     bool far;                 /* its triangles span patches: not mixed with edited ones */
     uint32_t triangle_count;
     uint32_t *first;          /* triangles first[i]..first[i + 1] - 1 are those of patch order[i] */
@@ -67,6 +69,8 @@ void gtx_lod_measure(const gtx_asset *asset, uint32_t level, const gtx_allocator
 gtx_result gtx_lod_place(const gtx_allocator *allocator, gtx_lod_meshes *out, gtx_error *error);
 void gtx_lod_fill(const gtx_asset *asset, uint32_t level, const gtx_allocator *allocator,
                   gtx_lod_meshes *out);
+/* lod_normals.c: of a filled level: normals of its vertices, and whether they are enough. */
+void gtx_lod_light(const gtx_asset *asset, uint32_t level, gtx_lod_meshes *out);
 /* lod_neighbours.c: of a model's finest level; `meetings` counts its vertices once for each patch
  * that has them. False without memory. */
 bool gtx_lod_find_neighbours(const gtx_lod_mesh *source, uint32_t meetings,

@@ -45,6 +45,8 @@ static const technique_files techniques[TECHNIQUE_COUNT] = {
                              {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS, MATERIAL_CONSTANT}},
     [TECHNIQUE_LOD_SINGLE] = {"LOD mesh single", "geotex_lod.vert", "#define GTX_SINGLE\n",
                               {"geotex_lod_fragment.glsl"}, NULL, {0}},
+    [TECHNIQUE_LOD_LIT] = {"lit LOD mesh", "geotex_lod.vert", LIT, {NULL},
+                           "geotex_lod_lit.frag", {MATERIAL_NONE}},
     [TECHNIQUE_GRID] = {"grid", "geotex_lod.vert", GRID TRIMMED, {"geotex_lod_fragment.glsl"},
                         "geotex_lod.frag", ALL_BUT_CONSTANT},
     [TECHNIQUE_GRID_FRONT] = {"grid front", "geotex_lod.vert", GRID TRIMMED FRONT, {NULL},
@@ -158,7 +160,8 @@ static bool is_made(uint32_t pipeline)
 static bool is_lod(gtx_technique technique)
 {
     return technique == TECHNIQUE_LOD || technique == TECHNIQUE_LOD_FRONT ||
-           technique == TECHNIQUE_LOD_SINGLE || technique == TECHNIQUE_OWN_LOD;
+           technique == TECHNIQUE_LOD_SINGLE ||
+           technique == TECHNIQUE_LOD_LIT || technique == TECHNIQUE_OWN_LOD;
 }
 
 static bool is_cast(gtx_technique technique)

@@ -15,6 +15,7 @@ typedef enum gtx_technique {
     TECHNIQUE_LOD,
     TECHNIQUE_LOD_FRONT,      /* front faces alone, under transforms that keep angles */
     TECHNIQUE_LOD_SINGLE,     /* depth of one instance, whose transform is a uniform */
+    TECHNIQUE_LOD_LIT,        /* lit at vertices, both sides in one pass */
     TECHNIQUE_GRID,           /* triangles of a displaced grid that do not show whole */
     TECHNIQUE_GRID_FRONT,
     TECHNIQUE_GRID_WHOLE,     /* those that do */

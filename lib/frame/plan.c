@@ -75,12 +75,13 @@ static int compare(const void *a, const void *b)
  * where rays are cast by tiles: both sides take their time, hidden or not, and along a surface each
  * has few pixels. Standing on the Andes (tests/bench/paths), of up to 2,000 a patch, views take
  * 0.17 of the mesh's time instead of 0.21; half and double are the same but for noise. At 64
- * random views of a dragon, of 150 a patch, take up to a fifth longer. */
+ * random views of a dragon, of 150 a patch, take up to a fifth longer. Levels that are lit at
+ * vertices are drawn in one pass, and with any number. */
 static const uint32_t most_lod_triangles = 400;
 
 static bool is_too_fine(const gtx_lod_level *level, uint32_t i)
 {
-    return level->first[i + 1] - level->first[i] > most_lod_triangles;
+    return !level->lit && level->first[i + 1] - level->first[i] > most_lod_triangles;
 }
 
 bool gtx_plan_suits_whole(const gtx_draw_call *draw, const gtx_model *model, uint32_t level)

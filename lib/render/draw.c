@@ -24,6 +24,7 @@ static gtx_result need_programs(gtx_renderer *renderer, const gtx_view *view, gt
         [TECHNIQUE_TILES] = gtx_tiles_suit(&renderer->planner.call),
         [TECHNIQUE_LOD] = !paper,
         [TECHNIQUE_LOD_FRONT] = !paper && view->pass == GTX_PASS_FORWARD,
+        [TECHNIQUE_LOD_LIT] = !paper && view->pass == GTX_PASS_FORWARD,
         [TECHNIQUE_GRID] = !paper,
         [TECHNIQUE_GRID_WHOLE] = !paper,
         [TECHNIQUE_GRID_FRONT] = !paper && view->pass == GTX_PASS_FORWARD,

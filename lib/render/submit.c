@@ -134,7 +134,7 @@ static void draw_lods(const gtx_gl *gl, const gtx_frame_draw *draw, bool instanc
         const void *indices = gtx_gl_offset(draw->index_offset + r->first * draw->index_size);
         const uint64_t vertex =
             draw->vertex_offset + r->base_vertex * (uint64_t)sizeof(gtx_lod_vertex);
-        gl->VertexAttribPointer(0, 3, GL_UNSIGNED_SHORT, GL_FALSE, sizeof(gtx_lod_vertex),
+        gl->VertexAttribPointer(0, 4, GL_UNSIGNED_SHORT, GL_FALSE, sizeof(gtx_lod_vertex),
                                 gtx_gl_offset(vertex));
         gl->VertexAttribIPointer(1, 1, GL_UNSIGNED_INT, sizeof(gtx_lod_vertex),
                                  gtx_gl_offset(vertex + offsetof(gtx_lod_vertex, patch)));

@@ -1,0 +1,119 @@
+/* LOD meshes lit at their vertices, and levels that are as near to the source as height fields. */
+#include "pictures.h"
+
+#include "frame/pipelines.h"
+
+static subject open_sphere(stage *s, lod_looks looks, uint16_t flags)
+{
+    gtx_asset *sphere = flags ? fixture_sphere_without(radius, TEXELS, 8, 1 << 4)
+                              : fixture_sphere(radius, TEXELS, 8);
+    return subject_open(s, with_lod_as(sphere, radius, LOD_LEVELS, flags, looks));
+}
+
+/* Draws of a frame: by lit LOD meshes, by others, and by height fields. */
+typedef struct drawn {
+    int lit, mapped, fields;
+} drawn;
+
+static void count_draw(const gtx_frame_draw *draw, void *user)
+{
+    drawn *d = user;
+    const gtx_technique technique = gtx_pipeline_technique(draw->pipeline);
+    d->lit += technique == TECHNIQUE_LOD_LIT;
+    d->mapped += technique == TECHNIQUE_LOD || technique == TECHNIQUE_LOD_FRONT;
+    d->fields += draw->vertices != GTX_BUFFER_LOD_VERTICES;
+}
+
+static drawn draws_of(const gtx_model *model, const gtx_view *view)
+{
+    drawn d = {0, 0, 0};
+    gtx_planner *planner = NULL;
+    gtx_frame frame;
+    gtx_error error = {0};
+    gtx_instance instance = {.model = model};
+    memcpy(instance.transform, identity, sizeof identity);
+    must(gtx_planner_create(NULL, &planner, &error), &error);
+    must(gtx_frame_begin(planner, view, &instance, 1, &frame, &error), &error);
+    gtx_frame_draws(planner, count_draw, &d);
+    gtx_planner_destroy(planner);
+    return d;
+}
+
+/* From outside and, where a face is missing, at backs; as it is and mirrored. */
+static void light_is_what_rays_find(void **state)
+{
+    STAGE_OR_SKIP(state);
+    for (int i = 0; i < 8; ++i) {
+        subject shown = open_sphere(s, LOD_PLAIN, i & 1 ? GTX_PATCH_TWO_SIDED : 0);
+        gtx_camera camera = camera_around(shown.asset);
+        camera.target[0] = camera.target[1] = camera.target[2] = 0;
+        camera.azimuth = i & 1 ? 10 : 40;
+        camera.elevation = i & 1 ? 5 : 30;
+        camera.reversed_z = i >> 2;
+        shown.instance.transform[0] = i & 2 ? -1 : 1;
+        shown.instance.tint[0] = shown.instance.tint[3] = 1;
+        shown.instance.tint[1] = 0.4f;
+        gtx_view view = view_of(&camera);
+        view.level = 1;
+        draw(s, &view, GTX_METHOD_CAST, &shown.instance, 1, &first);
+        draw(s, &view, GTX_METHOD_LOD, &shown.instance, 1, &second);
+        const difference d = compare(&first, &second);
+        assert_true(covers(&second, STAGE_WIDTH / 2, STAGE_HEIGHT / 2));
+        assert_true(d.both > 5000 && d.mean < 1.5);
+        view.method = GTX_METHOD_LOD;
+        assert_int_equal(draws_of(shown.model, &view).lit, 1); /* both sides at once */
+        assert_int_equal(draws_of(shown.model, &view).mapped, 0);
+        subject_close(s, &shown);
+    }
+}
+
+/* Where vertices do not say all, maps are looked up. */
+static void colors_are_looked_up(void **state)
+{
+    STAGE_OR_SKIP(state);
+    static const lod_looks looks[] = {LOD_COLORED, LOD_SHINY, LOD_EVEN};
+    for (int i = 0; i < 3; ++i) {
+        subject shown = open_sphere(s, looks[i], GTX_PATCH_TWO_SIDED);
+        gtx_camera camera = camera_around(shown.asset);
+        gtx_view view = view_of(&camera);
+        view.method = GTX_METHOD_LOD;
+        view.level = 1;
+        assert_int_equal(draws_of(shown.model, &view).lit, 0);
+        assert_true(draws_of(shown.model, &view).mapped > 0);
+        subject_close(s, &shown);
+    }
+}
+
+/* A level within .4 texels of 1 / 24 is drawn where the view allows a hundredth of its error, a
+ * coarser one is not. */
+static void exact_levels_are_drawn_however_near(void **state)
+{
+    STAGE_OR_SKIP(state);
+    static lod_level made;
+    for (int n = 8; n <= 32; n += 24) {
+        gtx_asset *sphere = fixture_sphere(radius, TEXELS, 8);
+        make_lod_level(gtx_patches(sphere), 6, radius, n, &made);
+        assert_int_equal(n == 32, made.lod.error < 0.4 / 24);
+        subject shown = subject_open(s, with_lod_meshes(sphere, &made.lod, 1, 0, LOD_PLAIN));
+        gtx_camera camera = camera_around(shown.asset);
+        camera.distance = 1.6f;
+        gtx_view view = view_of(&camera);
+        view.method = GTX_METHOD_AUTO;
+        view.viewport_height = STAGE_HEIGHT;
+        view.max_error = made.lod.error * STAGE_HEIGHT / 400;
+        const drawn d = draws_of(shown.model, &view);
+        assert_int_equal(d.lit > 0, n == 32);
+        assert_int_equal(d.fields > 0, n == 8);
+        subject_close(s, &shown);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(light_is_what_rays_find),
+        cmocka_unit_test(colors_are_looked_up),
+        cmocka_unit_test(exact_levels_are_drawn_however_near),
+    };
+    return cmocka_run_group_tests(tests, open_stage, stage_close);
+}
