@@ -29,6 +29,10 @@ struct TaskJobs {
     }
 };
 
+static_assert(GTX_TEXTURES_BC == 1 << GTX_COMPRESS_BC &&
+              GTX_TEXTURES_ETC2 == 1 << GTX_COMPRESS_ETC2 &&
+              GTX_TEXTURES_BC_SMALL == 1 << GTX_COMPRESS_BC_SMALL, "as cook.h says");
+
 /* Blocks of the asset's maps, as asked for. */
 inline void add_textures(gtx_asset *asset, const Options &options, Task &task)
 {
