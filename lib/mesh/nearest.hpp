@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -22,9 +23,18 @@ struct Box {
     {
         for (int k = 0; k < 3; ++k) {
             const float at = float(p[k]);
-            low[k] = std::min(low[k], at <= p[k] ? at : std::nextafter(at, -HUGE_F));
-            high[k] = std::max(high[k], at >= p[k] ? at : std::nextafter(at, HUGE_F));
+            low[k] = std::min(low[k], at <= p[k] ? at : -above(-at));
+            high[k] = std::max(high[k], at >= p[k] ? at : above(at));
         }
+    }
+    /* The next float: std::nextafter in a few instructions. */
+    static float above(float at)
+    {
+        int32_t bits;
+        std::memcpy(&bits, &at, sizeof bits);
+        bits = at == 0 ? 1 : at > 0 ? bits + 1 : bits - 1;
+        std::memcpy(&at, &bits, sizeof bits);
+        return at;
     }
     void add(const Box &b)
     {

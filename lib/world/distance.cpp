@@ -12,21 +12,21 @@ constexpr size_t MAX_POINTS = size_t(1) << 16;
 
 namespace {
 
+using Triangles = Vector<std::array<uint32_t, 3>>;
+
 /* Shapes for NearestTree, relative to a point of theirs: boxes are floats. */
 struct SheetShapes {
-    const Sheet &sheet;
+    const Vector<Vec3d> &positions;
+    const Triangles &triangles;
     Vec3d origin;
 
-    explicit SheetShapes(const Sheet &s)
-        : sheet(s), origin(s.positions.empty() ? Vec3d() : s.positions[0])
+    SheetShapes(const Vector<Vec3d> &at, const Triangles &of)
+        : positions(at), triangles(of), origin(at.empty() ? Vec3d() : at[0])
     {
     }
-    size_t size() const { return sheet.triangles.size(); }
+    size_t size() const { return triangles.size(); }
     size_t looks(size_t) const { return 1; }
-    Vec3d corner(size_t t, size_t k) const
-    {
-        return sheet.positions[sheet.triangles[t][k]] - origin;
-    }
+    Vec3d corner(size_t t, size_t k) const { return positions[triangles[t][k]] - origin; }
     Box box(size_t t) const
     {
         Box out;
@@ -42,35 +42,34 @@ struct SheetShapes {
 
 constexpr size_t CHUNK = 1024;
 
-/* How far the farthest point is. */
-double farthest_of(const Vector<Vec3d> &points, const Sheet &sheet, Task &task)
+/* The square of how far the farthest point is from the first `count` shapes, or `least`: what is
+ * nearer need not be known. */
+double farthest_of(const Vector<Vec3d> &points, const SheetShapes &shapes,
+                   const NearestTree<SheetShapes> &tree, size_t count, double least, Task &task)
 {
-    const SheetShapes shapes(sheet);
-    const NearestTree<SheetShapes> tree(shapes, task, 0);
-    Vector<double> farthest((points.size() + CHUNK - 1) / CHUNK, 0);
+    Vector<double> farthest((points.size() + CHUNK - 1) / CHUNK, least);
     task.parallel(farthest.size(), [&](size_t chunk) {
         uint32_t near = UINT32_MAX;
+        double &most = farthest[chunk];
         for (size_t i = chunk * CHUNK; i < std::min(points.size(), (chunk + 1) * CHUNK); ++i)
-            farthest[chunk] = std::max(
-                farthest[chunk], tree.distance2(points[i] - shapes.origin, &near,
-                                                [](uint32_t) { return true; }, nullptr,
-                                                farthest[chunk]));
+            most = std::max(most, tree.distance2(points[i] - shapes.origin, &near,
+                                                 [&](uint32_t t) { return t < count; }, nullptr,
+                                                 most));
     }, 0, 0);
-    double most = 0;
     for (double square : farthest)
-        most = std::max(most, square);
-    return std::sqrt(most);
+        least = std::max(least, square);
+    return least;
 }
 
-/* Corners and centres of triangles, each so many-th. */
-Vector<Vec3d> points_of(const Sheet &sheet, size_t own)
+/* Corners and centres of the first `own` triangles, each so many-th. */
+Vector<Vec3d> points_of(const Vector<Vec3d> &positions, const Triangles &triangles, size_t own)
 {
     Vector<Vec3d> out;
     const size_t step = (2 * own + MAX_POINTS - 1) / MAX_POINTS;
     for (size_t i = 0; i < 2 * own; i += std::max(step, size_t(1))) {
-        const auto &t = sheet.triangles[i / 2];
-        const Vec3d &a = sheet.positions[t[0]], &b = sheet.positions[t[1]];
-        out.push_back(i % 2 ? (a + b + sheet.positions[t[2]]) / 3 : a);
+        const auto &t = triangles[i / 2];
+        const Vec3d &a = positions[t[0]], &b = positions[t[1]];
+        out.push_back(i % 2 ? (a + b + positions[t[2]]) / 3 : a);
     }
     return out;
 }
@@ -83,17 +82,42 @@ Sheet sheet_of(const TileSurface &surface, size_t triangles)
                                 surface.triangles.begin() + std::ptrdiff_t(triangles)}};
 }
 
-double distance_between(const Sheet &from, size_t own, const Sheet &to, Task &task)
+struct NearSurface::Tree {
+    SheetShapes shapes;
+    NearestTree<SheetShapes> tree;
+
+    Tree(const TileSurface &surface, Task &task)
+        : shapes(surface.positions, surface.triangles), tree(shapes, task, 0)
+    {
+    }
+};
+
+NearSurface::NearSurface(const TileSurface &surface, Task &task)
+    : surface_(surface), task_(task)
 {
-    if (from.triangles.empty() || to.triangles.empty())
+}
+
+NearSurface::~NearSurface() = default;
+
+double NearSurface::distance_to(const Sheet &sheet, bool with_ring)
+{
+    const size_t count = with_ring ? surface_.triangles.size() : surface_.own;
+    if (!count || sheet.triangles.empty())
         return 0;
-    return std::max(farthest_of(points_of(from, own), to, task),
-                    farthest_of(points_of(to, to.triangles.size()), from, task));
+    if (!tree_)
+        tree_ = std::make_unique<Tree>(surface_, task_);
+    const SheetShapes shapes(sheet.positions, sheet.triangles);
+    const NearestTree<SheetShapes> tree(shapes, task_, 0);
+    const double there =
+        farthest_of(points_of(surface_.positions, surface_.triangles, surface_.own), shapes, tree,
+                    shapes.size(), 0, task_);
+    return std::sqrt(farthest_of(points_of(sheet.positions, sheet.triangles, shapes.size()),
+                                 tree_->shapes, tree_->tree, count, there, task_));
 }
 
 Vector<uint32_t> nearest_triangles(const Vector<Vec3d> &points, const Sheet &sheet, Task &task)
 {
-    const SheetShapes shapes(sheet);
+    const SheetShapes shapes(sheet.positions, sheet.triangles);
     const NearestTree<SheetShapes> tree(shapes, task, 0);
     Vector<uint32_t> nearest(points.size(), UINT32_MAX);
     task.parallel((points.size() + CHUNK - 1) / CHUNK, [&](size_t chunk) {

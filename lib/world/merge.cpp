@@ -55,7 +55,9 @@ StepReport merge_tile(const std::string &folder, const std::string &name, Task &
         CellWriter cell = joined(plan, tile);
         if (cell.header.count > plan.triangles) { /* borders took more than their share */
             write_whole(path, cell.finish()); /* without a key: it is nobody's yet */
-            cell = simplify_surface(load_cell(path), plan.triangles, task).cell;
+            const TileSurface surface = load_cell(path);
+            NearSurface near(surface, task);
+            cell = simplify_surface(surface, near, plan.triangles, task).cell;
         }
         cell.header.key = key;
         write_whole(path, cell.finish());

@@ -132,7 +132,8 @@ static double spacing_of(const Sheet &sheet)
     return sheet.triangles.empty() ? 0 : std::sqrt(2 * area / double(sheet.triangles.size()));
 }
 
-LowSurface simplify_surface(const TileSurface &surface, size_t wanted, Task &task)
+LowSurface simplify_surface(const TileSurface &surface, NearSurface &near, size_t wanted,
+                            Task &task)
 {
     Places places = places_of(surface);
     const Vector<uint32_t> indices = simplified(places, wanted);
@@ -151,7 +152,7 @@ LowSurface simplify_surface(const TileSurface &surface, size_t wanted, Task &tas
         out.cell.add(corners);
     }
     if (indices.size() < places.indices.size())
-        out.deviation = distance_between(sheet_of(surface, surface.own), surface.own, sheet, task);
+        out.deviation = near.distance_to(sheet, false);
     out.cell.header.deviation = surface.header.deviation + out.deviation;
     if (!surface.seen.empty()) /* finer than its vertices lie no colour is seen */
         out.cell.header.deviation = std::max(out.cell.header.deviation, spacing_of(sheet));

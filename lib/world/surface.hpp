@@ -3,6 +3,8 @@
 
 #include "world/cell.hpp"
 
+#include <memory>
+
 namespace gtx {
 
 /* Corners that have all alike are one vertex; `place` names the first vertex at the same
@@ -48,7 +50,9 @@ struct LowSurface {
     CellWriter cell;
     double deviation = 0;            /* from `surface`, as measured */
 };
-LowSurface simplify_surface(const TileSurface &surface, size_t wanted, Task &task);
+class NearSurface;
+LowSurface simplify_surface(const TileSurface &surface, NearSurface &near, size_t wanted,
+                            Task &task);
 
 /* ---- distances ---- */
 
@@ -58,9 +62,21 @@ struct Sheet {
     Vector<std::array<uint32_t, 3>> triangles;
 };
 Sheet sheet_of(const TileSurface &surface, size_t triangles);
-/* The farthest that points of either are from the other: vertices and centres of triangles, as many
- * as take little time. Points of `from` beyond its first `own` triangles are not asked. */
-double distance_between(const Sheet &from, size_t own, const Sheet &to, Task &task);
+/* A tile's surface, from the first on ready for several of them. It outlives this. */
+class NearSurface {
+public:
+    NearSurface(const TileSurface &surface, Task &task);
+    ~NearSurface();
+    /* The farthest that points of either are from the other: vertices and centres of triangles, as
+     * many as take little time. The ring is asked for none, and counts where `with_ring`. */
+    double distance_to(const Sheet &sheet, bool with_ring);
+
+private:
+    struct Tree;
+    const TileSurface &surface_;
+    Task &task_;
+    std::unique_ptr<Tree> tree_;
+};
 /* The weights of a triangle's corners at the point of it nearest to p, about. */
 Vec3d weights_at(const Vec3d &p, const Vec3d &a, const Vec3d &b, const Vec3d &c);
 /* The triangle of the sheet that is nearest to each point. */

@@ -29,8 +29,8 @@ struct TileCook {
     uint64_t key_of(const std::string &ply, const TileSurface &surface, size_t wanted) const;
     AssetOwner cook(const std::string &ply);
     std::string encoded(const gtx_asset *asset) const;
-    void cook_all(const std::string &ply, const TileSurface &surface);
-    void make_low(const TileSurface &surface, size_t wanted);
+    void cook_all(const std::string &ply, const TileSurface &surface, NearSurface &near);
+    void make_low(const TileSurface &surface, NearSurface &near, size_t wanted);
 };
 
 } // namespace
@@ -114,7 +114,7 @@ static Sheet finest_mesh(const gtx_asset *asset)
     return out;
 }
 
-void TileCook::cook_all(const std::string &ply, const TileSurface &surface)
+void TileCook::cook_all(const std::string &ply, const TileSurface &surface, NearSurface &near)
 {
     const AssetOwner asset = cook(ply);
     facts.empty = !asset;
@@ -133,9 +133,7 @@ void TileCook::cook_all(const std::string &ply, const TileSurface &surface)
     for (const Vec3d &p : mesh.positions)
         facts.add(p);
     facts.lod_triangles = mesh.triangles.size();
-    facts.error = surface.header.deviation +
-                  distance_between(sheet_of(surface, surface.triangles.size()), surface.own, mesh,
-                                   task);
+    facts.error = surface.header.deviation + near.distance_to(mesh, true);
     const std::string bytes = encoded(asset.get());
     facts.asset = made_of(bytes);
     facts.memory = memory_to_open(bytes);
@@ -148,9 +146,9 @@ void TileCook::cook_all(const std::string &ply, const TileSurface &surface)
     }
 }
 
-void TileCook::make_low(const TileSurface &surface, size_t wanted)
+void TileCook::make_low(const TileSurface &surface, NearSurface &near, size_t wanted)
 {
-    LowSurface low = simplify_surface(surface, wanted, task);
+    LowSurface low = simplify_surface(surface, near, wanted, task);
     facts.low_surface = made_of(low.cell.finish());
     write_whole(low_path(plan, tile), low.cell.finish());
 }
@@ -203,11 +201,12 @@ StepReport cook_tile(const std::string &folder, const std::string &name, Task &t
         job.textured = textured_mesh(plan, surface, task);
         paint_surface(job.textured, surface, task);
     }
+    NearSurface near(surface, task);
     task.begin("cook");
-    job.cook_all(ply, surface);
+    job.cook_all(ply, surface, near);
     task.begin("simplify");
     if (tile.depth)
-        job.make_low(surface, wanted);
+        job.make_low(surface, near, wanted);
     write_facts(plan, tile, job.facts);
     task.end();
     return {summary, false};
