@@ -204,7 +204,8 @@ Vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Co
         int steps = 1 + whole_length(2, along.x, along.y);
         for (int s = 0; s < steps; ++s) {
             Vec3d p = edge.from + along * (double(s) / steps);
-            if (grid.outside(p.x, p.y) <= 0)
+            /* nearer to a cut the next piece shows it */
+            if (grid.outside(p.x, p.y) <= -CUT_OVERLAP)
                 show_point(grid, p.x, p.y, trim);
         }
     }
