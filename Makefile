@@ -310,8 +310,8 @@ run-demo: $(MODEL)
 	@$(out)/samples/mixed_scene $(build)/demo/model.gtx --headless $(build)/demo/mixed_scene.png
 	@echo $(build)/demo/mixed_scene.png
 
-include lib/package/install.mk lib/web/web.mk lib/python/python.mk tests/bench/bench.mk \
-  tests/fuzz/fuzz.mk
+include lib/package/install.mk lib/web/web.mk lib/web/cook.mk lib/python/python.mk \
+  tests/bench/bench.mk tests/fuzz/fuzz.mk
 
 # ---- dependencies --------------------------------------------------------------------------------
 packages := g++ pkg-config libopenmesh-dev libeigen3-dev libdraco-dev libtinygltf-dev \

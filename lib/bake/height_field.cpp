@@ -130,8 +130,10 @@ void HeightFields::build(uint32_t from, uint32_t to)
         middles.add(twice_middle(order_[i]));
     }
     nodes_.push_back(node);
-    if (to - from <= LEAF)
+    if (to - from <= LEAF) { /* in which order halving leaves them is the library's choice */
+        std::sort(order_.begin() + from, order_.begin() + to);
         return;
+    }
     const Vec3d side = middles.high - middles.low;
     const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
     const uint32_t middle = from + (to - from) / 2;

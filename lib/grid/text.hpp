@@ -2,8 +2,7 @@
 #pragma once
 
 #include "grid/grid.hpp"
-
-#include <charconv>
+#include "mesh/number.hpp"
 
 namespace gtx {
 
@@ -40,7 +39,7 @@ public:
         double value = 0;
         const char *from = word.data() + (!word.empty() && word[0] == '+');
         const char *end = word.data() + word.size();
-        const auto [stop, error] = std::from_chars(from, end, value);
+        const auto [stop, error] = number_from(from, end, value);
         if (error != std::errc() || stop != end)
             malformed(std::string(what) + " is not a number");
         return value;

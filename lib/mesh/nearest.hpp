@@ -134,6 +134,9 @@ public:
                 order_[i] = centres[i].shape;
                 boxes_[leaves_ + i / LEAF].add(shapes_.box(order_[i]));
             }
+            /* In which order halving leaves them is the library's choice. */
+            for (size_t i = first(part), end = first(part + 1); i < end; i += LEAF)
+                std::sort(&order_[i], &order_[i] + std::min(LEAF, end - i));
         });
         for (size_t n = leaves_ - 1; n > 0; --n) {
             boxes_[n].add(boxes_[2 * n]);

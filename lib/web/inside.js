@@ -3,7 +3,8 @@
 /* As gtx_result; 0 is no error. */
 const RESULTS = {
   10: 'argument', 11: 'not-zeroed', 20: 'memory', 21: 'limit', 30: 'read', 40: 'not-gtx',
-  41: 'version', 42: 'truncated', 43: 'corrupt', 45: 'unsupported', 80: 'gl', 81: 'shader', 99: 'internal'};
+  41: 'version', 42: 'truncated', 43: 'corrupt', 45: 'unsupported', 60: 'input', 61: 'empty', 80: 'gl',
+  81: 'shader', 99: 'internal'};
 
 export class GeotexError extends Error {
   constructor(result, message) {

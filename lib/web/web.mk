@@ -78,6 +78,7 @@ web: $(web_files:%=$(web_package)/%) ## the npm package geotex, as WebAssembly (
 	  "bytes of core and glue, gzipped"
 
 # A project as a page's author has it: installs the package, checks its types, is built by Vite.
+web-test: | $(filter web-cook,$(MAKECMDGOALS))
 web-test: web ## the package in a real Chromium (needs chromium, node and npm's registry)
 	$(Q)rm -rf $(web)/app && cp -r tests/web/app $(web)/app && cd $(web)/app && \
 	  npm pack --silent ../geotex >/dev/null && \

@@ -18,7 +18,7 @@ Paths::Place &Paths::place_of(uint32_t triangle)
                 place_of(place.triangle) = place;
     }
     const size_t mask = places_.size() - 1;
-    size_t at = (triangle * size_t(0x9e3779b97f4a7c15)) >> 32 & mask; /* Knuth 6.4 */
+    size_t at = size_t(triangle * 0x9e3779b97f4a7c15u >> 32) & mask; /* Knuth 6.4 */
     while (places_[at].triangle != NO_TRIANGLE && places_[at].triangle != triangle)
         at = (at + 1) & mask;
     Place &place = places_[at];

@@ -1,7 +1,8 @@
 /* From the bytes of a model file to the importer of its format. */
 #include "mesh/import/import.hpp"
 
-#include <charconv>
+#include "mesh/number.hpp"
+
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -75,7 +76,7 @@ bool parse_number(const char *&at, const char *end, double &value)
     if (parse_whole(at, end, value))
         return true;
     const char *start = at + (at < end && *at == '+');
-    auto [stop, error] = std::from_chars(start, end, value);
+    auto [stop, error] = number_from(start, end, value);
     if (error == std::errc::result_out_of_range) { /* too large or too small? */
         std::string_view text(start, size_t(stop - start));
         bool negative = text[0] == '-';
