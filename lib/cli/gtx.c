@@ -3,6 +3,9 @@
 
 #include <signal.h>
 #include <string.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 static const struct {
     const char *name;
@@ -36,6 +39,18 @@ static void print_verbs(FILE *to)
           "130 cancelled.\n", to);
 }
 
+/* A cook takes large blocks and gives them back all the time: kept, they are not new pages that
+ * the kernel has to clear. Andes of 2.88 M triangles: 1.7 s in the kernel become .7, of 19.5 in
+ * all, and the peak grows by 1 to 7 %. */
+static void keep_memory(void)
+{
+#ifdef __GLIBC__
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TRIM_THRESHOLD, -1);
+    mallopt(M_TOP_PAD, 16 << 20);
+#endif
+}
+
 int main(int argc, char **argv)
 {
     signal(SIGXFSZ, SIG_IGN); /* a file that may not grow is an error, as a full disk is */
@@ -58,8 +73,11 @@ int main(int argc, char **argv)
         return EXIT_CODE_OK;
     }
     for (size_t i = 0; i < sizeof verbs / sizeof *verbs; ++i)
-        if (!strcmp(argv[1], verbs[i].name))
+        if (!strcmp(argv[1], verbs[i].name)) {
+            if (verbs[i].run == cmd_cook || verbs[i].run == cmd_world)
+                keep_memory();
             return verbs[i].run(argc - 1, argv + 1);
+        }
     print_message("gtx: error[usage]: unknown verb '%s' (see gtx --help)", argv[1]);
     return EXIT_CODE_USAGE;
 }
