@@ -24,7 +24,7 @@ typedef struct gtx_lod_run {
 typedef struct gtx_lod_level {
     float place[4];           /* origin and step of the positions */
     float error;              /* object units; 0: as near to the source as height fields */
-    bool lit;                 /* at its vertices, while the model has no more than normals */
+    bool lit;                 /* at its vertices, while the model has normals alone: the finest */
     bool far;                 /* its triangles span patches: not mixed with edited ones */
     uint32_t triangle_count;
     uint32_t *first;          /* triangles first[i]..first[i + 1] - 1 are those of patch order[i] */

@@ -295,7 +295,10 @@ static void a_scan_is_followed(void **)
     const double diagonal = 0.25;
     assert_bounded(lod, mesh);
     assert_true(lod.levels[0].error < 2.5e-3 * diagonal);
-    assert_true(lod.levels[0].triangle_count() < mesh.triangle_count() / 7);
+    /* The finest as near as height fields are, the next one of a few bytes. */
+    assert_true(lod.levels[0].error < 0.5e-3 * diagonal);
+    assert_true(lod.levels[0].triangle_count() > mesh.triangle_count() / 2);
+    assert_true(lod.levels[1].triangle_count() < mesh.triangle_count() / 7);
 }
 
 /* Not an edge of a closed model is open at any level: nothing shows through. */

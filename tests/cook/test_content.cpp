@@ -66,7 +66,7 @@ static void models_have_their_content(void **)
              {"/gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb",
               GTX_PARTITION_DEFAULT, 0, 0x5b26782b586821e9},
              {"/gltf/dragon_draco_119k.glb",
-              GTX_PARTITION_DEFAULT, 0, 0xb2cbe0be3354460c},
+              GTX_PARTITION_DEFAULT, 0, 0xb5edd5e9c227981e},
              {"/gltf/2CylinderEngine.glb",
               GTX_PARTITION_CUTS, NONE, 0xf45be7c46b2eb0fd},
              {"/scans/horse.ply.gz",

@@ -16,6 +16,13 @@ using Place = std::array<uint16_t, 3>; /* of a vertex, in steps */
 /* Triangles of the source for one of the finest level: fills the bytes that an LOD mesh may take.
  * Bunny: 82 % more triangles | 51 % fewer. */
 constexpr size_t FINEST_RATIO = 9;
+/* Models of so many triangles, with normals alone, get a level of a share of their own first, which
+ * is drawn however near: no search in maps is faster than what so few triangles take. Bunny: 16 %
+ * more bytes, and near views take .6 of the mesh's time; as many triangles as the source has, 39 %
+ * more | a third of them, and the level strays twice as far. Half as many models have it with a
+ * SMALL of half; a TINY of half and less has it in toys, whose meshes are fast enough. */
+constexpr size_t SMALL = 1 << 17, TINY = 1 << 15;
+constexpr size_t SMALL_RATIO = 2;
 /* Triangles of a level for one of the next: five levels then reach from windows of a million pixels
  * to models of a hundred across. Bunny: two levels fewer at half. */
 constexpr double LEVEL_RATIO = 2.2;
@@ -273,7 +280,10 @@ Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned le
     Simplifier simplifier(source, regions, task);
     const Bounds bounds(source, pitch, task);
     const LodJob job = {maps, regions, lattice, bounds, task};
-    size_t wanted = (source.model ? source.model : source.triangles.size()) / FINEST_RATIO;
+    const size_t model = source.model ? source.model : source.triangles.size();
+    const bool finer = model > TINY && model <= SMALL && maps.color.empty() &&
+                       maps.material.empty() && maps.emission.empty();
+    size_t wanted = model / (finer ? SMALL_RATIO : FINEST_RATIO);
     for (unsigned k = 0; k < levels; ++k) {
         const size_t before = simplifier.triangles().size();
         simplifier.reduce(wanted, k ? 0 : free, MAX_ERROR * length(size));
@@ -288,6 +298,8 @@ Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned le
             break;
         add_level(job, simplifier, std::move(level), lod);
         wanted = size_t(double(simplifier.triangles().size()) / LEVEL_RATIO);
+        if (finer && k == 0)
+            wanted = model / FINEST_RATIO;
     }
     add_far_levels(job, simplifier, MAX_FAR_ERROR * length(size), lod);
     return lod;
