@@ -195,7 +195,7 @@ $(so_cook): $(call objects_of,$(ROOMS_COOK)) $(so_core) | $(out)/gen/libgeotex-c
 	$(say) LINK $@
 	$(Q)$(CXX) $(flags) $(LDFLAGS) -shared -Wl,-soname,libgeotex-cook.so.$(SOVERSION) \
 	  -Wl,--no-undefined -Wl,--version-script=$(out)/gen/libgeotex-cook.map -o $@ \
-	  $(call objects_of,$(ROOMS_COOK) base asset derive trace stream) $(call libs_of,asset mesh)
+	  $(call objects_of,$(ROOMS_COOK) base asset derive trace stream frame) $(call libs_of,asset mesh)
 	$(Q)ln -sf $(@F) $(out)/libgeotex-cook.so.$(SOVERSION) && ln -sf $(@F) $(out)/libgeotex-cook.so
 
 $(command): $(call objects_of,cli host image $(vulkan)) $(lib_cook) $(lib_core) | $(modules)
