@@ -204,7 +204,8 @@ Maps bake(const Mesh &mesh, Partition &partition, const BakeOptions &options, Ta
 
     stitch(options.height_bits, patches, task);
     close_cuts(partition, charts, job.anchor, options.height_bits, patches, task);
-    end_at_creases(options.height_bits, patches, task);
+    if (job.sharp)
+        end_at_creases(options.height_bits, patches, task);
     task.parallel(patches.size(),
                   [&](size_t i) { measure_patch(options.height_bits, patches[i]); });
 

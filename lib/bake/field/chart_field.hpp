@@ -116,9 +116,10 @@ Outline find_outline(const Neighbours &neighbours, const FlatChart &chart, size_
 double nearest_parameter(const OutlineEdge &edge, double u, double v);
 /* Finds what of `outline` follows from its edges. */
 void measure_distances(const Grid &grid, size_t charts, Outline &outline);
-/* Signed distances to the outline of the true surface, per texel, in texels. */
+/* Signed distances to the outline of the true surface, per texel, in texels; `sharp` as of a job.
+ */
 Vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Cover &all,
-                             const Outline &core_outline, const Outline &all_outline);
+                             const Outline &core_outline, const Outline &all_outline, bool sharp);
 /* Lets the trim end where the surface's material is cut away, too. */
 void trim_mask(const Mesh &mesh, const Neighbours &neighbours, const FlatChart &chart,
                Vector<float> &trim);

@@ -12,6 +12,9 @@ constexpr double OVERLAP = 1;
 /* Where the model itself ends, up to this many texels beyond its border: nobody else's height field
  * starts there. Bunny's holes: 0.4 % RMS either way. */
 constexpr double BORDER_SHOWN = 0.1;
+/* Texels from a cut: a strip of surface as narrow as that is the next piece's to show, where texels
+ * are fine. At 0.15 Spot's control mesh has a hole at half size. */
+constexpr double STRIP = 0.06;
 /* A limit on time: texels of all edges' boxes for a texel of the chart, and in all beyond that. An
  * engine of 82 nodes has up to 45 in a chart, a chair 24. */
 constexpr double SPLATS = 64, SPLATS_OF_ALL = 1 << 28;
@@ -184,7 +187,7 @@ static void show_point(const Grid &grid, double u, double v, Vector<float> &trim
 }
 
 Vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Cover &all,
-                             const Outline &core_outline, const Outline &all_outline)
+                             const Outline &core_outline, const Outline &all_outline, bool sharp)
 {
     const Grid &grid = chart.grid;
     Vector<float> trim(grid.texels());
@@ -204,8 +207,7 @@ Vector<float> trim_distances(const FlatChart &chart, const Cover &core, const Co
         int steps = 1 + whole_length(2, along.x, along.y);
         for (int s = 0; s < steps; ++s) {
             Vec3d p = edge.from + along * (double(s) / steps);
-            /* nearer to a cut the next piece shows it */
-            if (grid.outside(p.x, p.y) <= -CUT_OVERLAP)
+            if (grid.outside(p.x, p.y) <= (sharp ? -STRIP : 0))
                 show_point(grid, p.x, p.y, trim);
         }
     }

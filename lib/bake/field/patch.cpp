@@ -127,7 +127,7 @@ static ChartField lay_field(const Job &job, FlatChart flat, Extractor *extractor
     Paths paths(job.mesh, job.neighbours, s.flat);
     raster_overlap(s.flat, core_outline, paths, s.cover);
     s.outline = find_outline(job.neighbours, s.flat, s.flat.triangles.size());
-    s.trim = trim_distances(s.flat, core, s.cover, core_outline, s.outline);
+    s.trim = trim_distances(s.flat, core, s.cover, core_outline, s.outline, job.sharp);
     if (job.needs.mask)
         trim_mask(job.mesh, job.neighbours, s.flat, s.trim);
     s.support = find_support(s.flat.grid, s.trim);
