@@ -28,22 +28,22 @@ static const double exact_texels = 1.7;
 enum { EACH = 4 };
 
 /* Of a patch: what takes points to its texels, and normals from there. */
-typedef struct place {
+typedef struct look_place {
     gtx_patch_frame frame;
     float rows[3][3];
     const gtx_patch *patch;
-} place;
+} look_place;
 
-static place place_of(const gtx_asset *asset, uint32_t patch)
+static look_place place_of(const gtx_asset *asset, uint32_t patch)
 {
     const gtx_patch *p = &asset->patches[patch];
-    place out = {.frame = gtx_patch_frame_of(p, asset->info.height_bits), .patch = p};
+    look_place out = {.frame = gtx_patch_frame_of(p, asset->info.height_bits), .patch = p};
     gtx_normal_frame(p, out.rows);
     return out;
 }
 
 /* Bilinear, of codes, as shaders look it up; not of unit length. */
-static gtx_vec3 look_up(const gtx_asset *asset, const place *at, const double point[3])
+static gtx_vec3 look_up(const gtx_asset *asset, const look_place *at, const double point[3])
 {
     const uint16_t *rect = at->patch->rect;
     uint32_t first[2], next[2];
@@ -119,7 +119,7 @@ static const gtx_lod_vertex *corner_of(const gtx_lod_meshes *lods, const gtx_lod
 }
 
 /* Adds the square of the angle in a triangle's middle, by its area. */
-static void add_angle(const gtx_asset *asset, const place *at, const gtx_lod_level *level,
+static void add_angle(const gtx_asset *asset, const look_place *at, const gtx_lod_level *level,
                       const gtx_lod_vertex *const corner[3], double *sum, double *area)
 {
     double p[3][3], middle[3], square = 0;
@@ -147,7 +147,7 @@ static double stray_of(const gtx_asset *asset, const gtx_lod_meshes *lods,
 {
     double sum = 0, area = 0;
     uint32_t from = 0, patch = lods->patch_count;
-    place at = {.patch = NULL};
+    look_place at = {.patch = NULL};
     for (const gtx_lod_run *run = level->runs; run < level->runs + level->run_count; ++run) {
         for (uint32_t t = from; t < run->end; t += EACH) {
             const gtx_lod_vertex *corner[3];
@@ -186,7 +186,7 @@ void gtx_lod_light(const gtx_asset *asset, uint32_t k, gtx_lod_meshes *lods)
         level->far || level->triangle_count < least_share * (double)info->source_triangles)
         return;
     uint32_t patch = lods->patch_count;
-    place at = {.patch = NULL};
+    look_place at = {.patch = NULL};
     for (gtx_lod_vertex *v = first; v < end; ++v) {
         double point[3];
         if (v->patch != patch)

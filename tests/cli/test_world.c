@@ -140,11 +140,17 @@ static void slurm_gets_jobs_that_wait(void **state)
                  "by-slurm/slurm/submit.sh && sh -n by-slurm/slurm/job.sh"), 0);
     expect_text("--mem=501M");
     expect_text("--dependency=afterok:$job --array=1-");
-    if (shell("sinfo -h -o %%a | grep up")) {
-        printf("no Slurm is running here\n");
+    char root[1024];
+    assert_non_null(getcwd(root, sizeof root));
+    if (!shell("sinfo -h -o %%a | grep up")) {
+        expect(shell("job=$(sh by-slurm/slurm/submit.sh | tail -1); srun -Q -d afterany:$job true"),
+               0);
+    } else if (!shell("[ $(id -u) = 0 ] && command -v munged slurmctld slurmd")) {
+        expect(shell("sh %s/samples/pipeline/cluster/slurm.sh by-slurm", root), 0);
+    } else {
+        printf("no Slurm is running or installed here\n");
         skip();
     }
-    expect(shell("job=$(sh by-slurm/slurm/submit.sh | tail -1); srun -Q -d afterany:$job true"), 0);
     same_worlds("one", "by-slurm");
 }
 
