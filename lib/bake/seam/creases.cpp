@@ -78,7 +78,7 @@ private:
         for (const Crease &crease : maps_.creases) {
             const Vec3d along = crease.to - crease.from;
             const double u = dot(own_.row(0), along), v = dot(own_.row(1), along);
-            const double steps = std::ceil(SAMPLES * std::hypot(u, v)) + 1;
+            const double steps = std::ceil(SAMPLES * std::sqrt(u * u + v * v)) + 1;
             if (!budget_.grants(steps))
                 return;
             for (double s = 0; s <= steps; ++s) {
