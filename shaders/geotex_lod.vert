@@ -1,8 +1,8 @@
 /* Polygons, whose vertices know their place and their patch: of an LOD mesh or, with GTX_GRID, of
- * height fields drawn as displaced grids (Cook, Shade Trees, SIGGRAPH 1984). Map coordinates and
- * the frame of normals follow from the patch's record. With GTX_LIT, for geotex_lit.frag and
- * geotex_lod_lit.frag, triangles are so small, or so even, that the light at their corners is
- * enough.
+ * height fields drawn as displaced grids (Cook, Shade Trees, SIGGRAPH 1984); with GTX_BLOCKS, too,
+ * nodes fetch their heights. Map coordinates and the frame of normals follow from the patch's
+ * record. With GTX_LIT, for geotex_lit.frag and geotex_lod_lit.frag, triangles are so small, or so
+ * even, that the light at their corners is enough.
  *
  * Needs geotex_height_field.glsl and geotex_view.glsl before it. What hardly changes over a
  * triangle is found here and stays the same all over it: triangles are small, and a vertex serves
@@ -12,14 +12,20 @@ GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;
 GTX_SAMPLER(3, highp sampler2DArray) gtx_colors;
 #endif
 
-#if defined(GTX_GRID)
+#if defined(GTX_BLOCKS)
+layout(location = 0) in uvec2 gtx_corner;   /* node of any block, and of which one: */
+layout(location = 1) in uvec2 gtx_block;    /* patch + 2^28 * level; the first node, 16 bits each */
+#define gtx_patch (gtx_block.x & 0x0fffffffu)
+#elif defined(GTX_GRID)
 layout(location = 0) in uvec4 gtx_node;     /* of the patch, and the height's code */
 #elif defined(GTX_RHI)
 layout(location = 0) in uvec4 gtx_steps;    /* of the level; the normal */
 #else
 layout(location = 0) in vec4 gtx_steps;
 #endif
+#ifndef GTX_BLOCKS
 layout(location = 1) in uint gtx_patch;
+#endif
 #ifdef GTX_SINGLE
 uniform vec4 gtx_place[3];                  /* what follows, of the only instance: depth needs no
                                                more, and WebGL draws nothing by attributes that
@@ -76,7 +82,8 @@ GTX_VARYING(10) flat out uint gtx_id;       /* of the instance */
 GTX_VARYING(11) out float gtx_outline;      /* code of the trim */
 #elif defined(GTX_TRIMMED)
 GTX_VARYING(11) out vec2 gtx_texel;         /* of the patch */
-GTX_VARYING(12) flat out uvec3 gtx_trimmed; /* of the rectangle, 16 bits each: corner; size; page */
+GTX_VARYING(12) flat out uvec3 gtx_trimmed; /* of the rectangle, 16 bits each: corner; size; page,
+                                               and with GTX_BLOCKS level */
 #endif
 
 vec3 gtx_to_world(vec3 object)
@@ -84,6 +91,33 @@ vec3 gtx_to_world(vec3 object)
     return vec3(dot(gtx_world_x.xyz, object), dot(gtx_world_y.xyz, object),
                 dot(gtx_world_z.xyz, object));
 }
+
+#ifdef GTX_BLOCKS
+/* A node of the block, as a corner of any cell that is there. Between cells that are not,
+ * triangles stay in the block's slab: nothing of them shows. */
+vec3 gtx_displaced(int index, int level)
+{
+    vec4 rect = gtx_record(index, GTX_RECORD_RECT);
+    float page = gtx_record(index, GTX_RECORD_PAGE).w, code = 0.0;
+    gtx_height_field field = gtx_field_of(rect, vec4(0.0, 0.0, page, 0.0), level);
+    ivec2 end = field.last + 1, first = ivec2(gtx_block.y & 0xffffu, gtx_block.y >> 16);
+    ivec2 node = min(first + ivec2(gtx_corner), end), texel = min(node << level, field.size - 1);
+    for (int i = 0; i < 4 && code == 0.0; ++i) {
+        ivec2 corner = ivec2(i & 1, i >> 1), cell = node - corner;
+        if (cell == clamp(cell, ivec2(0), field.last))
+            code = float(texelFetch(gtx_cells, ivec3(field.cells + field.step * cell + corner,
+                                                     field.page), 0).r);
+    }
+    if (code == 0.0) {
+        ivec2 block = first / GTX_BLOCK_CELLS;
+        int at = block.y * (field.last.x / GTX_BLOCK_CELLS + 1) + block.x;
+        int slabs = int(gtx_record(index, GTX_RECORD_SLABS + level / 4)[level % 4]);
+        vec4 slab = gtx_patches_texel(slabs + at);
+        code = dot(slab.xy, vec2(texel)) + 0.5 * (slab.z + slab.w);
+    }
+    return vec3(vec2(texel), code);
+}
+#endif
 
 #if defined(GTX_LIT) && !defined(GTX_GRID)
 /* Not of unit length. */
@@ -120,7 +154,12 @@ void main()
 {
     int index = int(gtx_patch);
 #ifdef GTX_GRID
+#ifdef GTX_BLOCKS
+    int level_of_detail = int(gtx_block.x >> 28);
+    vec3 grid = gtx_displaced(index, level_of_detail);
+#else
     vec3 grid = vec3(gtx_node.xyz);
+#endif
     vec4 object = vec4(gtx_object_point(gtx_frame_of(index), grid), 1.0);
     vec2 at = grid.xy;
 #else
@@ -148,6 +187,9 @@ void main()
     gtx_texel = at;
     gtx_trimmed = uvec3(corners.x | corners.y << 16, corners.z | corners.w << 16,
                         uint(gtx_record(index, GTX_RECORD_PAGE).w));
+#ifdef GTX_BLOCKS
+    gtx_trimmed.z |= uint(level_of_detail) << 16;
+#endif
 #endif
     vec2 size = vec2(textureSize(gtx_normals, 0).xy);
     vec2 place = (rect.xy + clamp(at + 0.5, vec2(half_texel), rect.zw - half_texel)) / size;

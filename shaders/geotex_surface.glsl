@@ -54,15 +54,24 @@ GTX_VARYING(12) flat in uvec3 gtx_trimmed;
 bool gtx_is_shown()
 {
     uvec3 t = gtx_trimmed;
+#ifdef GTX_BLOCKS
+    vec4 rect = vec4(uvec4(t.x & 0xffffu, t.x >> 16, t.y & 0xffffu, t.y >> 16));
+    gtx_height_field field =
+        gtx_field_of(rect, vec4(0.0, 0.0, float(t.z & 0xffffu), 0.0), int(t.z >> 16));
+#else
     gtx_height_field field;
     field.corner = ivec2(t.x & 0xffffu, t.x >> 16);
     field.size = ivec2(t.y & 0xffffu, t.y >> 16);
     field.page = int(t.z);
+    field.cells = field.corner;
+    field.step = 1;
     field.level = 0;
+#endif
     if (any(greaterThan(gtx_texel, vec2(field.size) - 0.99))) /* triangles may stick out */
         return false;
     ivec2 cell = clamp(ivec2(floor(gtx_texel)), ivec2(0), field.size - 2);
-    return gtx_exists(gtx_codes(ivec3(field.corner + cell, field.page))) &&
+    ivec2 codes = field.cells + field.step * (cell >> field.level);
+    return gtx_exists(gtx_codes(ivec3(codes, field.page))) &&
            gtx_shows(field, gtx_texel);
 }
 #endif

@@ -144,7 +144,8 @@ typedef enum gtx_buffer {
     GTX_BUFFER_LOD_INDICES = 3,
     GTX_BUFFER_GRID_VERTICES = 4,     /* as LOD_VERTICES; of the frame, and told by its draws */
     GTX_BUFFER_GRID_INDICES = 5,
-    GTX_BUFFER_TILE_CORNERS = 6       /* 4 bytes: 2 uint16_t, as integers; of the frame, too */
+    GTX_BUFFER_TILE_CORNERS = 6,      /* 4 bytes: 2 uint16_t, as integers; of the frame, too */
+    GTX_BUFFER_BLOCKS = 7             /* of the frame, and of render.h alone */
 } gtx_buffer;
 
 /* Its bytes, of the first four, and their number; NULL and 0 where the model has none, and NULL
@@ -164,11 +165,10 @@ typedef struct gtx_planner gtx_planner;
 typedef struct gtx_planner_desc {
     const gtx_allocator *allocator;   /* NULL = malloc */
     gtx_costs costs;                  /* finite, none below 0 */
-    uint32_t own_main;                /* 1: forward passes are for an engine's own fragment main, by
-                                         pipelines whose gtx_pipeline.own_main is 1 */
-    uint32_t max_tile_texels;         /* casts by tiles whose streams have up to so many texels; 0:
-                                         not by tiles */
-    uint32_t reserved[2];
+    uint32_t own_main;                /* 1: forward passes are by pipelines whose own_main is 1 */
+    uint32_t max_tile_texels;         /* of a stream of tiles; 0: nothing is cast by tiles */
+    uint32_t on_gpu;                  /* 1: costs that are not told are a GPU's; 0: llvmpipe's */
+    uint32_t reserved[1];
 } gtx_planner_desc;
 
 /* `desc` may be NULL. Errors: ARGUMENT, NOT_ZEROED, MEMORY. */
@@ -317,7 +317,7 @@ GTX_API gtx_result gtx_model_edit(gtx_model *model, const gtx_asset *edited, uin
 
 /* ---- pipelines ----------------------------------------------------------------------------- */
 
-enum { GTX_PIPELINE_COUNT = 288, GTX_MAX_SHADER_TEXTS = 16 };
+enum { GTX_PIPELINE_COUNT = 368, GTX_MAX_SHADER_TEXTS = 16 };
 
 typedef struct gtx_pipeline {
     gtx_pass pass;

@@ -90,7 +90,8 @@ typedef struct gtx_eye {
  * and to a 16th of it at outlines, where neighbours meet; `level` n says two over squares of
  * 2^(n - 1) cells. They are found anew in each draw, a few ten nanoseconds each. Blocks of 8 x 8
  * cells that are out of view, and triangles that face away, are not drawn. They write no depth of
- * their own. */
+ * their own. OpenGL on a GPU displaces whole blocks in the vertex shader instead, of the coarsest
+ * level within max_error, and finds no triangle. */
 typedef struct gtx_view {
     float view[16], projection[16];   /* column-major; world -> eye -> clip */
     float light_direction[3];         /* world space, towards the light; zero = headlight */
@@ -127,8 +128,9 @@ typedef struct gtx_instance {
 
 /* What drawing costs, for GTX_METHOD_AUTO to compare: a triangle of an LOD mesh and a pixel that it
  * covers; a patch that is cast and a pixel that its proxy covers; a triangle of a displaced grid,
- * whose pixels cost what those of LOD meshes do. In any unit; all 0 = as measured with llvmpipe, on
- * which only the finer LOD meshes may cost more than casting. */
+ * whose pixels cost what those of LOD meshes do. In any unit; all 0 = as measured, with llvmpipe,
+ * on which only the finer LOD meshes may cost more than casting, or on a GPU, where polygons cost
+ * less wherever there are few to a pixel. */
 typedef struct gtx_costs {
     float lod_triangle, lod_pixel;
     float cast_patch, cast_pixel;

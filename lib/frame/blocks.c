@@ -116,6 +116,20 @@ static bool is_seen(const patch_view *v, const gtx_slab *s)
     return s->low[0] <= s->high[0] && is_in_view(v, s) && (v->two_sided || may_face(v, s));
 }
 
+uint32_t gtx_blocks_seen(const gtx_frustum *f, const gtx_model *model, uint32_t patch,
+                         uint32_t level, uint32_t *shown)
+{
+    const patch_view v = view_of(f, model, patch);
+    const uint32_t *first = &model->first_slab[level * model->patch_count + patch];
+    const gtx_slab *slabs = model->slabs + first[0];
+    const uint32_t count = first[1] - first[0];
+    uint32_t seen = 0;
+    for (uint32_t i = 0; i < count; ++i)
+        if (is_seen(&v, &slabs[i]))
+            shown[seen++] = i;
+    return seen;
+}
+
 gtx_cover gtx_cover_of(const gtx_frustum *f, const gtx_model *model, uint32_t patch, bool tiles,
                        const gtx_occlusion *occlusion, uint32_t *shown)
 {

@@ -166,7 +166,8 @@ static void draw_side(const gtx_draw_call *call, const run *r, uint32_t level,
 }
 
 /* An LOD mesh, or parts of it: patches with a back face culled, then those without. Of these the
- * front faces first, by their own technique: most back faces lie hidden behind them. */
+ * front faces first, by their own technique: most back faces lie hidden behind them. A GPU takes
+ * longer for vertices than that spares. */
 static void draw_lod(const gtx_draw_call *call, const run *r, uint32_t level, const uint8_t *parts)
 {
     const gtx_lod_meshes *lods = &r->model->lods;
@@ -177,9 +178,10 @@ static void draw_lod(const gtx_draw_call *call, const run *r, uint32_t level, co
         draw_side(call, r, level, parts, false, front, GTX_CULL_BACK);
     if (lods->one_sided == lods->patch_count)
         return;
-    if (front)
+    const bool twice = front && !call->planner->on_gpu;
+    if (twice)
         draw_side(call, r, level, parts, true, true, GTX_CULL_BACK);
-    draw_side(call, r, level, parts, true, false, front ? GTX_CULL_FRONT : GTX_CULL_NONE);
+    draw_side(call, r, level, parts, true, false, twice ? GTX_CULL_FRONT : GTX_CULL_NONE);
 }
 
 static gtx_technique grid_technique(const gtx_draw_call *call, uint32_t looks, bool keeps_angles)
@@ -226,6 +228,35 @@ static void draw_grids(const gtx_draw_call *call, const run *r, uint32_t instanc
     }
 }
 
+/* Blocks that the GPU displaces. Those that are seen from two sides are drawn once: what vertices
+ * take is more than what front faces would save of pixels. */
+static void draw_blocks(const gtx_draw_call *call, const run *r, uint32_t instance)
+{
+    static const gtx_technique techniques[2][2] = {
+        {TECHNIQUE_BLOCKS_WHOLE, TECHNIQUE_BLOCKS_WHOLE_FRONT},
+        {TECHNIQUE_BLOCKS, TECHNIQUE_BLOCKS_FRONT}};
+    gtx_grids *grids = &call->planner->grids;
+    const bool angles = gtx_keeps_angles(&call->planner->instances[instance]);
+    for (uint32_t look = 0; look < GTX_BLOCK_LOOKS; ++look) {
+        const bool two_sided = look & GTX_BLOCKS_TWO_SIDED, trimmed = look & GTX_BLOCKS_TRIMMED;
+        const bool front = angles && !two_sided && call->view->pass == GTX_PASS_FORWARD;
+        const gtx_range all = {.count = grids->block_count[look]};
+        if (!all.count)
+            continue;
+        gtx_frame_draw draw =
+            draw_of(call, r, is_own(call) ? TECHNIQUE_OWN_BLOCKS : techniques[trimmed][front],
+                    instance, 1);
+        draw.cull = two_sided ? GTX_CULL_NONE : GTX_CULL_BACK;
+        draw.vertices = GTX_BUFFER_BLOCKS;
+        draw.ranges = &all;
+        draw.range_count = 1;
+        draw.vertex_data = grids->blocks[look].data;
+        draw.vertex_bytes = all.count * sizeof(gtx_block);
+        call->submit(&draw, call->user);
+        grids->drawn += (uint64_t)all.count * GTX_BLOCK_TRIANGLES;
+    }
+}
+
 /* How many levels of the LOD mesh may be mixed with height fields, the finest first. */
 static uint32_t levels_to_mix(const gtx_draw_call *call, const run *r)
 {
@@ -247,8 +278,12 @@ static void draw_patches(const gtx_draw_call *call, const run *r, uint32_t insta
     const gtx_instance_data *placed = &call->planner->instances[instance];
     gtx_occlusion_end(&call->planner->occlusion);
     gtx_plan_patches(call, r->model, placed, levels_to_mix(call, r), edited_only);
-    if (r->way != GTX_DRAW_CAST && gtx_blocks_fill(call, r->model, placed))
+    if (r->way != GTX_DRAW_CAST && call->planner->displaces) {
+        if (gtx_displace_fill(call, r->model, placed))
+            draw_blocks(call, r, instance);
+    } else if (r->way != GTX_DRAW_CAST && gtx_blocks_fill(call, r->model, placed)) {
         draw_grids(call, r, instance);
+    }
     cast_plan(call, r, instance);
     const run one = {r->model, instance, 1, 0, r->mirrored};
     for (uint32_t k = 0; plan->any_lod && k < lods->level_count; ++k)

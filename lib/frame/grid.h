@@ -18,8 +18,23 @@ typedef struct gtx_grid_vertex {
  * their vertices, then those whose pixels look maps up. */
 enum { GTX_GRID_MAPPED = 1, GTX_GRID_TRIMMED = 2, GTX_GRID_BEHIND = 4, GTX_GRID_LOOKS = 8 };
 
-/* What is drawn of one instance: vertices, and corners of triangles by their looks. */
+/* A block whose nodes the GPU displaces, of any level, as geotex_lod.vert reads it: its patch +
+ * 2^28 times the level, and its first node. Drawn alike: those that show whole, those that do not,
+ * and of either those of patches that are seen from two sides. */
+typedef struct gtx_block {
+    uint32_t patch;
+    uint16_t x, y;
+} gtx_block;
+
+enum {
+    GTX_BLOCKS_TRIMMED = 1, GTX_BLOCKS_TWO_SIDED = 2, GTX_BLOCK_LOOKS = 4,
+    GTX_BLOCK_TRIANGLES = 2 * GTX_SLAB_CELLS * GTX_SLAB_CELLS
+};
+
+/* What is drawn of one instance: vertices, and corners of triangles by their looks; or blocks. */
 typedef struct gtx_grids {
+    gtx_scratch blocks[GTX_BLOCK_LOOKS];
+    uint32_t block_count[GTX_BLOCK_LOOKS];
     gtx_scratch vertices, indices[GTX_GRID_LOOKS], slots, covers, shown;
     uint32_t vertex_count, index_count[GTX_GRID_LOOKS];
     gtx_rtin_triangle triangles[GTX_RTIN_TRIANGLES];
@@ -62,6 +77,11 @@ bool gtx_refine_block(const gtx_refining *r, uint32_t column, uint32_t row);
  * of the plan. Without memory they are cast; it is false when none can be drawn so. */
 bool gtx_blocks_fill(const gtx_draw_call *draw, const gtx_model *model,
                      const gtx_instance_data *placed);
+
+/* displace.c: the same where the GPU displaces blocks; all that are seen of the patches that take
+ * less so than cast. */
+bool gtx_displace_fill(const gtx_draw_call *draw, const gtx_model *model,
+                       const gtx_instance_data *placed);
 
 void gtx_grids_free(gtx_grids *grids, const gtx_allocator *allocator);
 

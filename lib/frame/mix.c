@@ -233,4 +233,6 @@ void gtx_grids_free(gtx_grids *grids, const gtx_allocator *allocator)
     gtx_scratch_free(allocator, &grids->shown);
     for (int k = 0; k < GTX_GRID_LOOKS; ++k)
         gtx_scratch_free(allocator, &grids->indices[k]);
+    for (int k = 0; k < GTX_BLOCK_LOOKS; ++k)
+        gtx_scratch_free(allocator, &grids->blocks[k]);
 }

@@ -6,6 +6,7 @@
 #include "base/error.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* How far, in texels and codes, hulls stand off the height field: rounding in the rasteriser must
@@ -78,6 +79,20 @@ static void fill_slabs(gtx_derived *out, uint32_t level, uint32_t count)
     out->record[GTX_RECORD_SLABS + level / 4][level % 4] = (float)out->slabs_at[level];
 }
 
+/* In the middle a cell's surface is so far from its diagonal, in codes. */
+static float most_twist(const gtx_grid *grid)
+{
+    int32_t most = 0;
+    for (uint32_t j = 0; j + 1 < grid->nodes_y; ++j)
+        for (uint32_t i = 0; i + 1 < grid->nodes_x; ++i) {
+            const uint16_t *c = grid->code + (size_t)j * grid->nodes_x + i;
+            const int32_t twist = c[0] - c[1] - c[grid->nodes_x] + c[grid->nodes_x + 1];
+            if (grid->solid[(size_t)j * (grid->nodes_x - 1) + i] && abs(twist) > most)
+                most = abs(twist);
+        }
+    return (float)most / 4;
+}
+
 /* Trims a level, and derives its cells, its slabs and its hull. */
 static gtx_result derive_level(const gtx_asset *asset, uint32_t patch, gtx_grid *grid,
                                const gtx_allocator *allocator, gtx_derived *out, gtx_error *error)
@@ -120,6 +135,7 @@ gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_al
     gtx_grid finest = {0}, grid;
     gtx_proxies *boxes = &out->proxies[0];
     float *errors = out->facts.error;
+    const float code = p->extent_z / (float)(asset->info.height_bits == 16 ? 65534 : 254);
     gtx_result result = gtx_grid_build(asset, patch, 0, allocator, &finest, error);
     if (!result)
         result = gtx_add_box(patch, &finest, hull_margin, allocator, boxes, error);
@@ -144,6 +160,7 @@ gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_al
         if (errors[k] < errors[k - 1])
             errors[k] = errors[k - 1];
         result = derive_level(asset, patch, &grid, allocator, out, error);
+        out->facts.twist[k] = fmaxf(out->facts.twist[k - 1], most_twist(&grid) * code);
         gtx_grid_free(&grid, allocator);
     }
     uint16_t *filled = NULL;

@@ -21,6 +21,7 @@ typedef struct technique_files {
 #define GRID "#define GTX_GRID\n"
 #define TRIMMED "#define GTX_TRIMMED\n"
 #define LIT "#define GTX_LIT\n"
+#define BLOCKS GRID "#define GTX_BLOCKS\n"
 #define ALL_MAPS {MATERIAL_MAPS, MATERIAL_MAPS, MATERIAL_MAPS, MATERIAL_MAPS}
 #define ALL_BUT_CONSTANT {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS, MATERIAL_MAPS}
 
@@ -62,6 +63,19 @@ static const technique_files techniques[TECHNIQUE_COUNT] = {
                             "geotex_lit.frag", {MATERIAL_NONE, MATERIAL_COLORS}},
     [TECHNIQUE_GRID_WHOLE_LIT] = {"whole lit grid", "geotex_lod.vert", GRID LIT, {NULL},
                                   "geotex_lit.frag", {MATERIAL_NONE, MATERIAL_COLORS}},
+    [TECHNIQUE_BLOCKS] = {"blocks", "geotex_lod.vert", BLOCKS TRIMMED,
+                          {"geotex_lod_fragment.glsl"}, "geotex_lod.frag", ALL_BUT_CONSTANT},
+    [TECHNIQUE_BLOCKS_FRONT] = {"blocks front", "geotex_lod.vert", BLOCKS TRIMMED FRONT, {NULL},
+                                "geotex_lod_front.frag",
+                                {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS,
+                                 MATERIAL_CONSTANT}},
+    [TECHNIQUE_BLOCKS_WHOLE] = {"whole blocks", "geotex_lod.vert", BLOCKS,
+                                {"geotex_lod_fragment.glsl"}, "geotex_lod.frag",
+                                ALL_BUT_CONSTANT},
+    [TECHNIQUE_BLOCKS_WHOLE_FRONT] = {"whole blocks front", "geotex_lod.vert", BLOCKS FRONT,
+                                      {NULL}, "geotex_lod_front.frag",
+                                      {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS,
+                                       MATERIAL_CONSTANT}},
     [TECHNIQUE_OWN_CAST] = {"cast, own", "geotex_proxy.vert", "",
                             {"geotex_cast.glsl", "geotex_fragment.glsl", "geotex_rays.glsl"},
                             NULL, ALL_MAPS},
@@ -70,6 +84,9 @@ static const technique_files techniques[TECHNIQUE_COUNT] = {
                            {"geotex_lod_fragment.glsl", "geotex_rays.glsl"}, NULL, ALL_MAPS},
     [TECHNIQUE_OWN_GRID] = {"grid, own", "geotex_lod.vert", "#define GTX_LOD\n" GRID TRIMMED,
                             {"geotex_lod_fragment.glsl", "geotex_rays.glsl"}, NULL, ALL_MAPS},
+    [TECHNIQUE_OWN_BLOCKS] = {"blocks, own", "geotex_lod.vert",
+                              "#define GTX_LOD\n" BLOCKS TRIMMED,
+                              {"geotex_lod_fragment.glsl", "geotex_rays.glsl"}, NULL, ALL_MAPS},
     [TECHNIQUE_OWN_TILES] = {"tiles, own", "geotex_tiles.vert", "#define GTX_TILES\n",
                              {"geotex_cast.glsl", "geotex_fragment.glsl", "geotex_tiles.glsl",
                               "geotex_rays.glsl"},
@@ -139,6 +156,18 @@ gtx_technique gtx_pipeline_technique(uint32_t pipeline)
     return recipe_of(pipeline).technique;
 }
 
+bool gtx_technique_is_grid(gtx_technique technique)
+{
+    return (technique >= TECHNIQUE_GRID && technique <= TECHNIQUE_GRID_WHOLE_LIT) ||
+           technique == TECHNIQUE_OWN_GRID;
+}
+
+bool gtx_technique_is_blocks(gtx_technique technique)
+{
+    return (technique >= TECHNIQUE_BLOCKS && technique <= TECHNIQUE_BLOCKS_WHOLE_FRONT) ||
+           technique == TECHNIQUE_OWN_BLOCKS;
+}
+
 bool gtx_technique_is_forward(gtx_technique technique)
 {
     return techniques[technique].forward;
@@ -178,8 +207,8 @@ static bool is_tiles(gtx_technique technique)
 uint32_t gtx_pipeline_get(uint32_t pipeline, gtx_pipeline *out)
 {
     const recipe r = recipe_of(pipeline);
-    const bool made = is_made(pipeline) &&
-                      r.technique != TECHNIQUE_LOD_SINGLE; /* OpenGL's alone */
+    const bool made = is_made(pipeline) && r.technique != TECHNIQUE_LOD_SINGLE &&
+                      !gtx_technique_is_blocks(r.technique); /* OpenGL's alone */
     if (!out)
         return 0;
     *out = (gtx_pipeline){GTX_PASS_FORWARD, GTX_BUFFER_PROXY_VERTICES, 0, 0};

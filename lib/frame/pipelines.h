@@ -22,9 +22,14 @@ typedef enum gtx_technique {
     TECHNIQUE_GRID_WHOLE_FRONT,
     TECHNIQUE_GRID_LIT,       /* those lit at their vertices */
     TECHNIQUE_GRID_WHOLE_LIT,
+    TECHNIQUE_BLOCKS,         /* grids again, whose nodes fetch their heights */
+    TECHNIQUE_BLOCKS_FRONT,
+    TECHNIQUE_BLOCKS_WHOLE,
+    TECHNIQUE_BLOCKS_WHOLE_FRONT,
     TECHNIQUE_OWN_CAST,       /* by an engine's own main */
     TECHNIQUE_OWN_LOD,
     TECHNIQUE_OWN_GRID,
+    TECHNIQUE_OWN_BLOCKS,
     TECHNIQUE_OWN_TILES,
     TECHNIQUE_COUNT
 } gtx_technique;
@@ -43,6 +48,10 @@ enum { GTX_PASS_COUNT = GTX_PASS_GBUFFER + 1, GTX_MAX_LABEL = 64 };
 /* The number of what draws a material by a technique in a pass; that of gtx_pipeline_get. */
 uint32_t gtx_pipeline_of(gtx_technique technique, gtx_pass pass, gtx_material_kind material);
 gtx_technique gtx_pipeline_technique(uint32_t pipeline);
+/* Whether it displaces grids on the CPU, or blocks on the GPU, which OpenGL's renderer alone
+ * does. */
+bool gtx_technique_is_grid(gtx_technique technique);
+bool gtx_technique_is_blocks(gtx_technique technique);
 /* Whether a technique has a forward pass. */
 bool gtx_technique_is_forward(gtx_technique technique);
 void gtx_pipeline_label(uint32_t pipeline, char label[GTX_MAX_LABEL]);

@@ -41,9 +41,10 @@ double gtx_allowed_anywhere(const gtx_draw_call *draw, const gtx_model *model,
 /* choose.c: how many levels of the LOD mesh, the finest first, are never drawn, for casting is
  * thought to take less where each is just fine enough. */
 uint32_t gtx_levels_cast(const gtx_draw_call *draw, const gtx_model *model);
-/* choose.c: what displaced grids of so many triangles are thought to take, over so many pixels; and
- * casting so many patches. */
+/* choose.c: what displaced grids of so many triangles are thought to take, over so many pixels; the
+ * same where the GPU displaces them; and casting so many patches. */
 double gtx_grid_cost(const gtx_draw_call *draw, uint32_t triangles, double pixels);
+double gtx_displaced_cost(const gtx_draw_call *draw, uint32_t triangles, double pixels);
 double gtx_cast_cost(const gtx_draw_call *draw, uint32_t patches, double pixels);
 
 /* plan.c: makes room for plans of so many patches. Errors: MEMORY. */

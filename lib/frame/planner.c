@@ -26,7 +26,7 @@ gtx_result gtx_planner_create(const gtx_planner_desc *desc, gtx_planner **out, g
     if (!out)
         return gtx_fail(error, GTX_ERROR_ARGUMENT, "a planner needs a place");
     *out = NULL;
-    gtx_result result = gtx_check_reserved(d->reserved, 2, error);
+    gtx_result result = gtx_check_reserved(d->reserved, 1, error);
     if (result)
         return result;
     const gtx_allocator hooks = gtx_allocator_or_default(d->allocator);
@@ -34,6 +34,7 @@ gtx_result gtx_planner_create(const gtx_planner_desc *desc, gtx_planner **out, g
     if (!planner)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a planner");
     planner->own_main = d->own_main;
+    planner->on_gpu = d->on_gpu;
     planner->tiles.max_texels = gtx_tiles_most(d->max_tile_texels);
     result = gtx_planner_init(planner, &hooks, &d->costs, error);
     if (result)

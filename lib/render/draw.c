@@ -17,20 +17,26 @@ static gtx_result check_ready(const gtx_instance *instances, uint32_t count, gtx
 static gtx_result need_programs(gtx_renderer *renderer, const gtx_view *view, gtx_error *error)
 {
     const bool paper = view->method == GTX_METHOD_PAPER;
+    const bool blocks = renderer->planner.displaces && !paper, grids = !blocks && !paper;
+    const bool forward = view->pass == GTX_PASS_FORWARD;
     const bool wanted[TECHNIQUE_COUNT] = {
         [TECHNIQUE_CAST] = !paper,
         [TECHNIQUE_BOX] = !paper,
         [TECHNIQUE_PAPER] = paper,
         [TECHNIQUE_TILES] = gtx_tiles_suit(&renderer->planner.call),
         [TECHNIQUE_LOD] = !paper,
-        [TECHNIQUE_LOD_FRONT] = !paper && view->pass == GTX_PASS_FORWARD,
-        [TECHNIQUE_LOD_LIT] = !paper && view->pass == GTX_PASS_FORWARD,
-        [TECHNIQUE_GRID] = !paper,
-        [TECHNIQUE_GRID_WHOLE] = !paper,
-        [TECHNIQUE_GRID_FRONT] = !paper && view->pass == GTX_PASS_FORWARD,
-        [TECHNIQUE_GRID_WHOLE_FRONT] = !paper && view->pass == GTX_PASS_FORWARD,
-        [TECHNIQUE_GRID_LIT] = !paper && view->pass == GTX_PASS_FORWARD,
-        [TECHNIQUE_GRID_WHOLE_LIT] = !paper && view->pass == GTX_PASS_FORWARD,
+        [TECHNIQUE_LOD_FRONT] = !paper && forward,
+        [TECHNIQUE_LOD_LIT] = !paper && forward,
+        [TECHNIQUE_GRID] = grids,
+        [TECHNIQUE_GRID_WHOLE] = grids,
+        [TECHNIQUE_GRID_FRONT] = grids && forward,
+        [TECHNIQUE_GRID_WHOLE_FRONT] = grids && forward,
+        [TECHNIQUE_GRID_LIT] = grids && forward,
+        [TECHNIQUE_GRID_WHOLE_LIT] = grids && forward,
+        [TECHNIQUE_BLOCKS] = blocks,
+        [TECHNIQUE_BLOCKS_WHOLE] = blocks,
+        [TECHNIQUE_BLOCKS_FRONT] = blocks && forward,
+        [TECHNIQUE_BLOCKS_WHOLE_FRONT] = blocks && forward,
         [TECHNIQUE_LOD_SINGLE] = !paper && view->pass == GTX_PASS_DEPTH};
     gtx_result result = GTX_OK;
     for (int i = 0; i < TECHNIQUE_COUNT && !result; ++i)

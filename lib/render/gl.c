@@ -58,6 +58,16 @@ static void load_samples(gtx_gl *gl, const gtx_renderer_desc *desc, const char *
 #undef LOAD
 }
 
+bool gtx_gl_is_software(const gtx_gl *gl)
+{
+    static const char *const names[] = {"llvmpipe", "softpipe", "swrast", "SwiftShader"};
+    const char *name = (const char *)gl->GetString(GL_RENDERER);
+    for (size_t i = 0; name && i < sizeof names / sizeof *names; ++i)
+        if (strstr(name, names[i]))
+            return true;
+    return false;
+}
+
 /* Casting by tiles has been measured with llvmpipe alone, where it takes half the time of
  * fragments; other drivers get it when the host asks. */
 static bool wants_tiles(const gtx_gl *gl, const gtx_renderer_desc *desc)

@@ -263,6 +263,8 @@ static inline void gtx_gl_label(const gtx_gl *gl, gl_enum kind, gl_uint object, 
         gl->ObjectLabel(kind, object, -1, label);
 }
 
+/* Whether the driver draws on the CPU. */
+bool gtx_gl_is_software(const gtx_gl *gl);
 /* Errors: GL, which names the first missing function, or the version below 3.3 (OpenGL ES: 3.0). */
 gtx_result gtx_gl_init(gtx_gl *gl, const gtx_renderer_desc *desc, gtx_error *error);
 

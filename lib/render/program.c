@@ -143,12 +143,20 @@ gtx_result gtx_programs_need(gtx_renderer *renderer, gtx_technique technique, gt
     return result;
 }
 
+/* What only a CPU displaces where a GPU draws, and the other way round. */
+static bool is_displaced_otherwise(const gtx_renderer *renderer, gtx_technique technique)
+{
+    return renderer->planner.displaces ? gtx_technique_is_grid(technique)
+                                    : gtx_technique_is_blocks(technique);
+}
+
 gtx_result gtx_programs_create(gtx_renderer *renderer, gtx_error *error)
 {
     gtx_result result = GTX_OK;
     for (int i = 0; i < TECHNIQUE_COUNT && !result; ++i)
         if (gtx_technique_is_forward((gtx_technique)i) &&
-            (i != TECHNIQUE_TILES || renderer->gl.TexBuffer))
+            (i != TECHNIQUE_TILES || renderer->gl.TexBuffer) &&
+            !is_displaced_otherwise(renderer, (gtx_technique)i))
             result = gtx_programs_need(renderer, (gtx_technique)i, GTX_PASS_FORWARD, error);
     return result;
 }
@@ -174,11 +182,16 @@ gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shad
     gtx_shading *shading = gtx_alloc_array(&renderer->allocator, 1, sizeof *shading);
     if (!shading)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a shading");
-    gtx_program *const programs[] = {&shading->cast, &shading->lod, &shading->grid};
+    const struct {
+        gtx_technique technique;
+        gtx_program *program;
+    } made[] = {{TECHNIQUE_OWN_CAST, &shading->cast},
+                {TECHNIQUE_OWN_LOD, &shading->lod},
+                {renderer->planner.displaces ? TECHNIQUE_OWN_BLOCKS : TECHNIQUE_OWN_GRID,
+                 &shading->grid}};
     gtx_result result = GTX_OK;
     for (int i = 0; i < 3 && !result; ++i)
-        result = build(renderer, own_pipeline((gtx_technique)(TECHNIQUE_OWN_CAST + i)), text,
-                       programs[i], error);
+        result = build(renderer, own_pipeline(made[i].technique), text, made[i].program, error);
     /* Others may read what tiles do not have. */
     if (!result && renderer->gl.TexBuffer && strstr(text, "#pragma geotex tiles"))
         result = build(renderer, own_pipeline(TECHNIQUE_OWN_TILES), text, &shading->tiles, error);

@@ -59,6 +59,7 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
         gtx_free_array(&hooks, renderer, 1, sizeof *renderer);
         return result;
     }
+    renderer->planner.on_gpu = renderer->planner.displaces = !gtx_gl_is_software(&renderer->gl);
     gtx_tile_stream_create(renderer);
     gtx_grid_stream_create(renderer);
     result = gtx_programs_create(renderer, error);
@@ -87,6 +88,7 @@ void gtx_renderer_destroy(gtx_renderer *renderer)
     gtx_programs_destroy(renderer);
     gtx_tile_stream_destroy(renderer);
     gtx_grid_stream_destroy(renderer);
+    gtx_block_stream_destroy(renderer);
     renderer->gl.DeleteVertexArrays(1, &renderer->vertex_array);
     renderer->gl.DeleteBuffers(1, &renderer->instance_buffer);
     const gtx_allocator hooks = renderer->allocator;

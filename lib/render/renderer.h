@@ -14,6 +14,11 @@ typedef struct gtx_grid_stream {
     gl_uint vertex_array, vertex_buffer, index_buffer;
 } gtx_grid_stream;
 
+/* What blocks are displaced from: the corners and triangles of any, and which ones. */
+typedef struct gtx_block_stream {
+    gl_uint vertex_array, corner_buffer, index_buffer, buffer;
+} gtx_block_stream;
+
 struct gtx_renderer {
     gtx_allocator allocator;
     gtx_jobs jobs;            /* the host's, or zeros */
@@ -26,6 +31,7 @@ struct gtx_renderer {
     gtx_planner planner;
     gtx_tile_stream tile_stream;
     gtx_grid_stream grid_stream;
+    gtx_block_stream block_stream;
 };
 
 /* stream.c: the objects of casting by tiles. Where they cannot be made, nothing is cast so. */
@@ -34,6 +40,11 @@ void gtx_tile_stream_destroy(gtx_renderer *renderer);
 /* Uploads what a draw brings along and draws it by the program in use. */
 void gtx_tile_stream_draw(gtx_renderer *renderer, const gtx_program *program,
                           const gtx_frame_draw *draw);
+
+/* blocks.c: the objects of blocks that the GPU displaces, made when they are first drawn. Uploads
+ * what a draw brings along and binds their vertex array. */
+void gtx_block_stream_begin(gtx_renderer *renderer, const gtx_frame_draw *draw);
+void gtx_block_stream_destroy(gtx_renderer *renderer);
 
 /* grid.c: the objects of displaced grids, which all models share. */
 void gtx_grid_stream_create(gtx_renderer *renderer);

@@ -88,7 +88,7 @@ static const gtx_program *program_of(const gtx_submission *s, const gtx_frame_dr
         return &shading->cast;
     if (technique == TECHNIQUE_OWN_LOD)
         return &shading->lod;
-    if (technique == TECHNIQUE_OWN_GRID)
+    if (technique == TECHNIQUE_OWN_GRID || technique == TECHNIQUE_OWN_BLOCKS)
         return &shading->grid;
     if (technique == TECHNIQUE_OWN_TILES)
         return &shading->tiles;
@@ -160,6 +160,18 @@ static void submit_grid(gtx_submission *s, const gtx_frame_draw *draw)
     gl->BindVertexArray(s->renderer->vertex_array);
 }
 
+/* A block each instance. */
+static void submit_blocks(gtx_submission *s, const gtx_frame_draw *draw)
+{
+    const gtx_gl *gl = &s->renderer->gl;
+    const gl_uint all = 1u << 30;
+    gtx_block_stream_begin(s->renderer, draw);
+    set_instances(s->renderer, draw->first_instance, all);
+    gl->DrawElementsInstanced(GL_TRIANGLES, 3 * GTX_BLOCK_TRIANGLES, GL_UNSIGNED_SHORT,
+                              gtx_gl_offset(0), (gl_size)draw->ranges->count);
+    gl->BindVertexArray(s->renderer->vertex_array);
+}
+
 void gtx_submit_draw(const gtx_frame_draw *draw, void *user)
 {
     gtx_submission *s = user;
@@ -177,6 +189,8 @@ void gtx_submit_draw(const gtx_frame_draw *draw, void *user)
         shade_samples(&renderer->gl, draw->vertices == GTX_BUFFER_PROXY_VERTICES);
     if (draw->tiles) {
         gtx_tile_stream_draw(s->renderer, s->program, draw);
+    } else if (draw->vertices == GTX_BUFFER_BLOCKS) {
+        submit_blocks(s, draw);
     } else if (draw->vertices == GTX_BUFFER_GRID_VERTICES) {
         submit_grid(s, draw);
     } else if (draw->vertices == GTX_BUFFER_LOD_VERTICES) {

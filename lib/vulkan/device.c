@@ -52,7 +52,8 @@ static gtx_result load(gtx_vk *vk, const gtx_vk_desc *desc, gtx_error *error)
     vk->reads[GTX_COMPRESS_BC] = reads(desc, VK_FORMAT_BC7_UNORM_BLOCK);
     vk->reads[GTX_COMPRESS_ETC2] = reads(desc, VK_FORMAT_ETC2_R8G8B8A8_UNORM_BLOCK);
     const gtx_planner_desc planner = {.allocator = &vk->allocator, .costs = desc->costs,
-                                      .max_tile_texels = tile_texels(desc, &of)};
+                                      .max_tile_texels = tile_texels(desc, &of),
+                                      .on_gpu = of.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU};
     vk->own = planner;
     vk->own.own_main = 1;
     return gtx_planner_create(&planner, &vk->planner, error);
