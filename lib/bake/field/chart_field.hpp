@@ -43,14 +43,42 @@ private:
     const FlatChart &chart_;
     /* A triangle of the source that a search has come to: the box around it, in texels. */
     struct Place {
-        uint32_t triangle = NO_TRIANGLE, seen = 0; /* by the search of this number */
-        double low[2] = {}, high[2] = {};
+        double low[2], high[2];
+        uint32_t triangle;
+        uint32_t near[3];        /* places across its edges; UNKNOWN until a search needs them */
+        uint32_t seen;           /* by the search of this number, last */
     };
-    Place &place_of(uint32_t triangle);
-    Vector<Place> places_;      /* hashed by the triangle; a power of two */
-    size_t known_ = 0;
-    uint32_t search_ = 0;
-    Vector<uint32_t> queue_;
+    static constexpr uint32_t UNKNOWN = 0xfffffffeu;
+    /* Where to look, from where. */
+    struct Window {
+        uint32_t from = NO_TRIANGLE;
+        double u = 0, v = 0, reach = 0;
+
+        bool operator==(const Window &other) const
+        {
+            return from == other.from && u == other.u && v == other.v && reach == other.reach;
+        }
+        bool misses(const Place &place) const
+        {
+            return !(place.low[0] <= u + reach) || !(place.high[0] >= u - reach) ||
+                   !(place.low[1] <= v + reach) || !(place.high[1] >= v - reach);
+        }
+    };
+    /* What is found from one end of a way, those before `next` with all around them. */
+    struct End {
+        uint32_t search = 0;
+        size_t next = 0;
+        Vector<uint32_t> queue;
+    };
+    uint32_t place_of(uint32_t triangle);
+    uint32_t near(uint32_t place, size_t side);
+    void grow_table();
+    void begin(End &end, uint32_t place);
+    Vector<Place> places_;
+    Vector<uint32_t> table_;    /* places, hashed by the triangle; a power of two */
+    Window window_;             /* of what the first end has found */
+    End ends_[2];
+    uint32_t searches_ = 0;
     Budget budget_;
 };
 

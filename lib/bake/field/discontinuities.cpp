@@ -6,61 +6,108 @@
 
 namespace gtx::baking {
 
-/* Searches come to the same triangles again and again: each is laid flat once. */
-Paths::Place &Paths::place_of(uint32_t triangle)
+/* Knuth 6.4: where in a table of a power of two to look for a triangle first. */
+static size_t hashed(uint32_t triangle, size_t size)
 {
-    if (2 * known_ >= places_.size()) {
-        Vector<Place> less(std::max<size_t>(64, 2 * places_.size()));
-        less.swap(places_);
-        known_ = 0;
-        for (const Place &place : less)
-            if (place.triangle != NO_TRIANGLE)
-                place_of(place.triangle) = place;
+    return size_t(triangle * 0x9e3779b97f4a7c15u >> 32) & (size - 1);
+}
+
+void Paths::grow_table()
+{
+    table_.assign(std::max<size_t>(64, 2 * table_.size()), NO_TRIANGLE);
+    for (uint32_t place = 0; place < places_.size(); ++place) {
+        size_t at = hashed(places_[place].triangle, table_.size());
+        while (table_[at] != NO_TRIANGLE)
+            at = (at + 1) & (table_.size() - 1);
+        table_[at] = place;
     }
-    const size_t mask = places_.size() - 1;
-    size_t at = size_t(triangle * 0x9e3779b97f4a7c15u >> 32) & mask; /* Knuth 6.4 */
-    while (places_[at].triangle != NO_TRIANGLE && places_[at].triangle != triangle)
-        at = (at + 1) & mask;
-    Place &place = places_[at];
-    if (place.triangle == triangle)
-        return place;
-    ++known_;
+}
+
+/* Searches come to the same triangles again and again: each is laid flat once. */
+uint32_t Paths::place_of(uint32_t triangle)
+{
+    if (2 * places_.size() >= table_.size())
+        grow_table();
+    size_t at = hashed(triangle, table_.size());
+    while (table_[at] != NO_TRIANGLE && places_[table_[at]].triangle != triangle)
+        at = (at + 1) & (table_.size() - 1);
+    if (table_[at] != NO_TRIANGLE)
+        return table_[at];
+    table_[at] = uint32_t(places_.size());
     Vec3d p[3];
     for (int k = 0; k < 3; ++k)
         p[k] = chart_.grid.texel(mesh_.position(triangle, k));
-    place.triangle = triangle;
+    Place place;
     for (int k = 0; k < 2; ++k) {
         place.low[k] = std::min({p[0][k], p[1][k], p[2][k]});
         place.high[k] = std::max({p[0][k], p[1][k], p[2][k]});
     }
-    return place;
+    place.triangle = triangle;
+    std::fill_n(place.near, 3, UNKNOWN);
+    place.seen = 0;
+    places_.push_back(place);
+    return table_[at];
 }
 
+/* The place across a side, NO_TRIANGLE where the model ends. */
+uint32_t Paths::near(uint32_t place, size_t side)
+{
+    uint32_t found = places_[place].near[side];
+    if (found != UNKNOWN)
+        return found;
+    const uint32_t beyond = neighbours_[places_[place].triangle][side];
+    found = beyond == NO_TRIANGLE ? NO_TRIANGLE : place_of(beyond);
+    places_[place].near[side] = found;
+    return found;
+}
+
+void Paths::begin(End &end, uint32_t place)
+{
+    end.search = ++searches_;
+    end.next = 0;
+    end.queue.assign(1, place);
+    places_[place].seen = end.search;
+}
+
+/* From both ends, a triangle of each in turn: where no way leads, the smaller part is soon at its
+ * end. Many ask for ways from one place to all around it: what that end has found stays. */
 bool Paths::joined(uint32_t from, uint32_t to, double u, double v, double reach)
 {
-    const uint32_t goal = chart_.triangles[to].source;
-    if (chart_.triangles[from].source == goal)
+    const uint32_t source = chart_.triangles[from].source, goal = chart_.triangles[to].source;
+    if (source == goal)
         return true;
-    ++search_;
-    queue_.assign(1, chart_.triangles[from].source);
-    place_of(queue_[0]).seen = search_;
-    for (size_t next = 0; next < queue_.size() && !budget_.spent(); ++next) {
+    const Window window = {source, u, v, reach};
+    if (!(window == window_)) {
+        window_ = window;
+        begin(ends_[0], place_of(source));
+    }
+    const uint32_t last = place_of(goal);
+    if (places_[last].seen == ends_[0].search)
+        return true;
+    if (window.misses(places_[last]))
+        return false;
+    begin(ends_[1], last);
+    for (size_t turn = 0; !budget_.spent(); turn = !turn) {
+        End &end = ends_[turn];
+        if (end.next == end.queue.size())
+            return false;
         budget_.spend(1);
         cancel_point(); /* three places all over memory take as long as two steps */
         cancel_point();
-        for (uint32_t n : neighbours_[queue_[next]]) {
-            if (n == NO_TRIANGLE)
+        const uint32_t here = end.queue[end.next];
+        for (size_t side = 0; side < 3; ++side) {
+            const uint32_t beyond = near(here, side);
+            if (beyond == NO_TRIANGLE)
                 continue;
-            Place &place = place_of(n);
-            if (place.seen == search_ || !(place.low[0] <= u + reach) ||
-                !(place.high[0] >= u - reach) || !(place.low[1] <= v + reach) ||
-                !(place.high[1] >= v - reach))
-                continue;
-            if (n == goal)
+            Place &place = places_[beyond];
+            if (place.seen == ends_[!turn].search)
                 return true;
-            place.seen = search_;
-            queue_.push_back(n);
+            if (place.seen == end.search || window.misses(place))
+                continue;
+            place.seen = end.search;
+            end.queue.push_back(beyond);
         }
+        ++end.next;
     }
     return false;
 }
