@@ -129,10 +129,11 @@ bool Attachment::faces(const Region &candidate, const Vec3d &z) const
     double steep = 0, size = 0;
     const double least = texels(candidate) < SMALL_ISLAND_TEXELS ? ISLAND_FACING : CANDIDATE_FACING;
     for (uint32_t t : candidate.triangles) {
-        if (leans_back(surface_, t, z, bounds_.pitch))
+        const double facing = dot(Vec3d(surface_.normal[t]), z);
+        if (leans_back(surface_, t, facing, z, bounds_.pitch))
             return false;
         size += surface_.facets[t].size;
-        if (dot(Vec3d(surface_.normal[t]), z) < least)
+        if (facing < least)
             steep += surface_.facets[t].size;
     }
     return steep <= STEEP_AREA * size &&

@@ -47,15 +47,19 @@ Vec3d ball_axis(const Vector<Vec3f> &normals)
     for (const Vec3f &n : normals)
         centre += n / float(normals.size());
     const Vector<Vec3f> outer = outermost(normals, Vec3d(centre));
+    const size_t count = outer.size();
+    Vector<float> x, y, z, cosine(count); /* apart, so that the loop becomes vectors */
+    for (const Vec3f &n : outer) {
+        x.push_back(n.x);
+        y.push_back(n.y);
+        z.push_back(n.z);
+    }
     for (int step = 1; step <= CONE_STEPS; ++step) {
-        const Vec3f *farthest = &outer[0];
-        float least = INFINITY;
-        for (const Vec3f &n : outer)
-            if (dot(n, centre) < least) {
-                least = dot(n, centre);
-                farthest = &n;
-            }
-        centre += (*farthest - centre) / float(step + 1);
+        for (size_t i = 0; i < count; ++i)
+            cosine[i] = x[i] * centre.x + y[i] * centre.y + z[i] * centre.z;
+        const size_t farthest =
+            size_t(std::min_element(cosine.begin(), cosine.end()) - cosine.begin());
+        centre += (outer[farthest] - centre) / float(step + 1);
     }
     return normalize(Vec3d(centre));
 }
@@ -90,6 +94,8 @@ Vec3d any_perpendicular(const Vec3d &z)
 Vec3d median_axis(const Mesh &mesh, const Vector<uint32_t> &triangles)
 {
     Vector<float> values[3];
+    for (Vector<float> &of_axis : values)
+        of_axis.reserve(triangles.size());
     for (uint32_t t : triangles) {
         Vec3d normal = normalize(mesh.area_vector(t));
         for (int i = 0; i < 3; ++i)
@@ -107,6 +113,7 @@ Vec3d median_axis(const Mesh &mesh, const Vector<uint32_t> &triangles)
 Vec3d cone_axis(const Surface &surface, const Vector<uint32_t> &triangles)
 {
     Vector<Vec3f> normals;
+    normals.reserve(triangles.size());
     float size = 0;
     for (uint32_t t : triangles) {
         normals.push_back(surface.facets[t].normal);
@@ -114,6 +121,7 @@ Vec3d cone_axis(const Surface &surface, const Vector<uint32_t> &triangles)
     }
     Vec3d axis = ball_axis(normals);
     Vector<std::pair<float, uint32_t>> order;
+    order.reserve(triangles.size());
     for (uint32_t t : triangles)
         order.emplace_back(dot(surface.facets[t].normal, Vec3f(axis)), t);
     const size_t first_kept = drop_deviants(surface, size, order);

@@ -52,6 +52,41 @@ Vector<uint32_t> vertices_of(const Mesh &mesh, const Vector<uint32_t> &triangles
     return out;
 }
 
+/* Those that may be on the convex hull: the others lie inside of the octagon of the points that are
+ * outermost along eight directions (Akl, Toussaint 1978), by more than rounding does. */
+Vector<Point> outermost_points(const Vector<Point> &points)
+{
+    constexpr size_t SIDES = 8;
+    constexpr double ROUNDING = 1e-9;
+    constexpr double ALONG[SIDES][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1},
+                                        {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
+    Point outermost[SIDES + 1];
+    double most[SIDES];
+    std::fill_n(outermost, SIDES, points[0]);
+    std::fill_n(most, SIDES, -INFINITY);
+    for (const Point &p : points)
+        for (size_t k = 0; k < SIDES; ++k) {
+            const double along = ALONG[k][0] * p.u + ALONG[k][1] * p.v;
+            if (along > most[k]) {
+                most[k] = along;
+                outermost[k] = p;
+            }
+        }
+    outermost[SIDES] = outermost[0];
+    const double width = most[0] + most[4] + most[2] + most[6], least = ROUNDING * width * width;
+    Vector<Point> out;
+    for (const Point &p : points) {
+        bool inside = true;
+        for (size_t k = 0; k < SIDES && inside; ++k) {
+            const Point &a = outermost[k], &b = outermost[k + 1];
+            inside = (a.u == b.u && a.v == b.v) || turn(a, b, p) > least;
+        }
+        if (!inside)
+            out.push_back(p);
+    }
+    return out.empty() ? points : out; /* all in one place */
+}
+
 /* Andrew's monotone chain: the convex hull in the plane, counter-clockwise. */
 Vector<Point> hull_of(Vector<Point> points)
 {
@@ -77,7 +112,7 @@ Vector<Point> hull_of(Vector<Point> points)
  * One side of that rectangle lies along an edge of the hull (Freeman, Shapira 1975). */
 Point least_rectangle(const Vector<Point> &points)
 {
-    Vector<Point> hull = hull_of(points);
+    Vector<Point> hull = hull_of(outermost_points(points));
     Point best = {1, 0, 0};
     double least = INFINITY;
     for (size_t i = 0; i < hull.size(); i += 1 + hull.size() / MAX_SIDES) {
@@ -109,15 +144,17 @@ struct Plane {
     double above(const Point &p) const { return p.h - a * p.u - b * p.v - c; }
 };
 
-/* The weighted least-squares plane; false when the points do not span one. */
-bool fit_plane(const Vector<Point> &points, const Vector<double> &weights, Plane &out)
+/* The weighted least-squares plane, once weights are `scaled`; false when the points do not span
+ * one. */
+bool fit_plane(const Vector<Point> &points, double scaled, Vector<double> &weights, Plane &out)
 {
     double w = 0, u = 0, v = 0, h = 0;
     for (size_t i = 0; i < points.size(); ++i) {
-        w += weights[i];
-        u += weights[i] * points[i].u;
-        v += weights[i] * points[i].v;
-        h += weights[i] * points[i].h;
+        const double weight = weights[i] *= scaled;
+        w += weight;
+        u += weight * points[i].u;
+        v += weight * points[i].v;
+        h += weight * points[i].h;
     }
     u /= w, v /= w, h /= w;
     double uu = 0, uv = 0, vv = 0, uh = 0, vh = 0;
@@ -138,13 +175,18 @@ bool fit_plane(const Vector<Point> &points, const Vector<double> &weights, Plane
     return true;
 }
 
-double range_above(const Plane &plane, const Vector<Point> &points)
+/* Weighs points by their distances from the plane, too. Returns the range of these; adds up the
+ * weights. */
+double weigh_again(const Plane &plane, const Vector<Point> &points, Vector<double> &weights,
+                   double &sum)
 {
     double low = INFINITY, high = -INFINITY;
-    for (const Point &p : points) {
-        double d = plane.above(p);
+    sum = 0;
+    for (size_t i = 0; i < points.size(); ++i) {
+        const double d = plane.above(points[i]);
         low = std::min(low, d);
         high = std::max(high, d);
+        sum += weights[i] *= std::abs(d);
     }
     return high - low;
 }
@@ -154,40 +196,39 @@ double range_above(const Plane &plane, const Vector<Point> &points)
 Plane minimax_plane(const Vector<Point> &points)
 {
     Plane best, plane;
-    double least = range_above(best, points);
+    double low = INFINITY, high = -INFINITY, scaled = 1, sum;
+    for (const Point &p : points) {
+        low = std::min(low, p.h);
+        high = std::max(high, p.h);
+    }
+    double least = high - low;
     Vector<double> weights(points.size(), 1);
-    for (int step = 0; step <= LAWSON_STEPS && fit_plane(points, weights, plane); ++step) {
+    for (int step = 0; step <= LAWSON_STEPS && fit_plane(points, scaled, weights, plane); ++step) {
         cancel_point(points.size());
-        double range = range_above(plane, points);
+        const double range = weigh_again(plane, points, weights, sum);
         bool gentle = std::abs(plane.a) <= STEEPEST_TILT && std::abs(plane.b) <= STEEPEST_TILT;
         if (gentle && range < least) {
             least = range;
             best = plane;
         }
-        double sum = 0;
-        for (size_t i = 0; i < points.size(); ++i)
-            sum += weights[i] *= std::abs(plane.above(points[i]));
         if (!(sum > 0))
             break;
-        for (double &w : weights)
-            w *= double(points.size()) / sum;
+        scaled = double(points.size()) / sum;
     }
     return best;
 }
 
-/* Sets the origin and the extents of a frame so that it encloses the triangles. */
-void enclose(const Mesh &mesh, const Vector<uint32_t> &triangles, Frame &frame)
+/* Sets the origin and the extents of a frame so that it encloses some vertices. */
+void enclose(const Mesh &mesh, const Vector<uint32_t> &vertices, Frame &frame)
 {
     FrameInverse inverse(frame);
     Vec3d low(INFINITY, INFINITY, INFINITY), high = -low;
-    for (uint32_t t : triangles) {
+    for (uint32_t vertex : vertices) {
         cancel_point();
-        for (int corner = 0; corner < 3; ++corner) {
-            Vec3d p = inverse(mesh.position(t, corner));
-            for (int k = 0; k < 3; ++k) {
-                low[k] = std::min(low[k], p[k]);
-                high[k] = std::max(high[k], p[k]);
-            }
+        const Vec3d p = inverse(mesh.positions[vertex]);
+        for (int k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], p[k]);
+            high[k] = std::max(high[k], p[k]);
         }
     }
     frame.origin = frame.point(low);
@@ -230,7 +271,7 @@ Frame make_frame(const Mesh &mesh, const Vector<uint32_t> &triangles, const Vec3
     frame.y = normalize(v * side.u - u * side.v + z * plane.b);
     frame.z = z;
     frame.origin = base;
-    enclose(mesh, triangles, frame);
+    enclose(mesh, vertices, frame);
     return frame;
 }
 
@@ -244,7 +285,7 @@ Frame turned_frame(const Mesh &mesh, const Vector<uint32_t> &triangles, const Fr
     Frame out = frame;
     out.x = normalize(u * c + v * s + z * (a * c + b * s));
     out.y = normalize(v * c - u * s + z * (b * c - a * s));
-    enclose(mesh, triangles, out);
+    enclose(mesh, vertices_of(mesh, triangles), out);
     return out;
 }
 

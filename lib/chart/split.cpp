@@ -49,9 +49,14 @@ Candidate try_axis(const Surface &surface, const Region &region, const Vec3d &z,
         size += surface.facets[t].size;
         if (dot(Vec3d(surface.facets[t].normal), z) < MIN_FACING)
             steep += surface.facets[t].size;
-        out.inverted = out.inverted || leans_back(surface, t, z, bounds.pitch);
+        const double facing = dot(Vec3d(surface.normal[t]), z);
+        out.inverted = out.inverted || leans_back(surface, t, facing, z, bounds.pitch);
     }
     out.steep = region.size() > 1 && steep > STEEP_SHARE * size;
+    if ((out.steep || out.inverted) && region.size() > 1 && bounds.side == INFINITY) {
+        out.frame.z = z; /* all that is asked of it */
+        return out;
+    }
     out.frame = make_frame(surface.mesh, region.triangles, z);
     if (!out.steep && !out.inverted && out.frame.extent[0] <= bounds.side &&
         out.frame.extent[1] <= bounds.side)
@@ -257,14 +262,16 @@ bool has_wall(const Surface &surface, const Region &region, const Vec3d &z, doub
     return !find_walls(surface, region, z, pitch, most_texels).empty();
 }
 
-bool leans_back(const Surface &surface, uint32_t t, const Vec3d &z, double pitch)
+bool leans_back(const Surface &surface, uint32_t t, double facing, const Vec3d &z, double pitch)
 {
     /* Texels: their sides are seen, if not their tops. Half: RMS +8 %, double: RMS +1 %
      * (Duck, bunny). */
     constexpr double WALL = 4;
-    return is_inverted(surface, t, z, pitch) ||
-           (dot(Vec3d(surface.normal[t]), z) <= 0 && !surface.junk[t] &&
-            length(surface.mesh.area_vector(t)) / 2 > WALL * pitch * pitch);
+    const double texel = pitch * pitch;
+    if (!(facing <= 0) || surface.junk[t])
+        return false;
+    const Vec3d area = surface.mesh.area_vector(t);
+    return -dot(area, z) / 2 > texel || length(area) / 2 > WALL * texel;
 }
 
 bool fits_along(const Surface &surface, const Region &region, const Vec3d &z, const Bounds &bounds,

@@ -46,8 +46,10 @@ Verdict judge(const Surface &surface, const Region &region, const Bounds &bounds
 /* Core triangles with n.z <= 0 and a projected area over a texel, junk left out. */
 bool is_inverted(const Surface &surface, uint32_t triangle, const Vec3d &z, double pitch);
 
-/* Likewise, or a wall of some texels that leans back: neither belongs in a chart. */
-bool leans_back(const Surface &surface, uint32_t triangle, const Vec3d &z, double pitch);
+/* Likewise, or a wall of some texels that leans back: neither belongs in a chart. `facing` is the
+ * cosine of its raw normal with z. */
+bool leans_back(const Surface &surface, uint32_t triangle, double facing, const Vec3d &z,
+                double pitch);
 
 /* Whether a connected part of the region, of more than `most_texels`, is too upright along unit `z`
  * for a height field to show. */

@@ -274,9 +274,56 @@ private:
             all.add({i->at, i->at});
         const Vec3f side = all.high - all.low;
         const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
-        std::nth_element(from, middle, to, [axis](const Centre &a, const Centre &b) {
-            return a.at[axis] < b.at[axis] || (a.at[axis] == b.at[axis] && a.shape < b.shape);
-        });
+        select(&*from, &*from + (middle - from), &*from + (to - from), axis);
+    }
+    /* What std::nth_element does, with pivots of samples, so that few rounds are needed, and no
+     * branch on a comparison, which nobody could foresee. */
+    static void select(Centre *from, Centre *middle, Centre *to, int axis)
+    {
+        constexpr std::ptrdiff_t FEW = 16, MANY = 1024, SAMPLES = FEW;
+        constexpr int ROUNDS = 64; /* of five that are to be expected */
+        const auto before = [axis](const Centre &a, const Centre &b) {
+            const float x = a.at[axis], y = b.at[axis];
+            return bool(int(x < y) | (int(x == y) & int(a.shape < b.shape)));
+        };
+        for (int round = 0; to - from > FEW && round < ROUNDS; ++round) {
+            const std::ptrdiff_t size = to - from, samples = size > MANY ? SAMPLES : SAMPLES / 4;
+            Centre sample[SAMPLES];
+            for (std::ptrdiff_t i = 0; i < samples; ++i)
+                sample[i] = from[(2 * i + 1) * size / (2 * samples)];
+            order_few(sample, samples, before);
+            const Centre pivot = sample[(middle - from) * samples / size];
+            Centre *end = from; /* of what comes before the pivot */
+            for (Centre *i = from; i != to; ++i) {
+                const Centre moved = *i;
+                *i = *end;
+                *end = moved;
+                end += before(moved, pivot);
+            }
+            if (end == from) /* the pivot is the first of all */
+                break;
+            (middle < end ? to : from) = end;
+        }
+        if (to - from <= FEW)
+            order_few(from, to - from, before);
+        else
+            std::nth_element(from, middle, to, before);
+    }
+    /* Each goes where as many are before it. */
+    template <class Before>
+    static void order_few(Centre *from, std::ptrdiff_t count, const Before &before)
+    {
+        Centre few[16];
+        std::ptrdiff_t rank[16] = {};
+        std::copy_n(from, count, few);
+        for (std::ptrdiff_t i = 1; i < count; ++i)
+            for (std::ptrdiff_t k = 0; k < i; ++k) {
+                const bool later = before(few[k], few[i]);
+                rank[i] += later;
+                rank[k] += !later;
+            }
+        for (std::ptrdiff_t i = 0; i < count; ++i)
+            from[rank[i]] = few[i];
     }
     void split(Vector<Centre> &centres, size_t leaves, size_t n) const
     {
