@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 namespace gtx::baking {
 
@@ -61,8 +62,8 @@ public:
 private:
     Vector<Budget> share_looks(Task &task) const;
     int parts_of(uint32_t triangle) const;
-    double uncovered_share(size_t field, uint32_t triangle, Budget &budget,
-                           Vector<RelaxedTrim> &relaxed) const;
+    double uncovered_share(size_t field, const FrameInverse &inverse, uint32_t triangle,
+                           Budget &budget, Vector<RelaxedTrim> &relaxed) const;
     bool shown_by(const HeightField &field, const Sample &at, double max_above) const;
     Vector<const HeightField *> facing_near(const Vec3d (&corner)[3], const Vec3d &normal,
                                             Budget &budget) const;
@@ -189,14 +190,16 @@ int Search::parts_of(uint32_t triangle) const
     const Vec3d e = mesh.position(triangle, 1) - job_.anchor - first;
     const Vec3d f = mesh.position(triangle, 2) - job_.anchor - first;
     const double square = std::max({dot(e, e), dot(f, f), dot(f - e, f - e)});
-    const double longest = std::sqrt(square) / job_.pitch;
-    const double sides = NEEDLE + std::sqrt(length(cross(e, f)) / 2) / job_.pitch;
-    return std::max(1, int(std::ceil(SAMPLES * std::min(longest, sides))));
+    double longest = std::sqrt(square) / job_.pitch;
+    if (longest > NEEDLE)
+        longest = std::min(longest,
+                           NEEDLE + std::sqrt(length(cross(e, f)) / 2) / job_.pitch);
+    return std::max(1, int(std::ceil(SAMPLES * longest)));
 }
 
 /* How much of a triangle no height field shows, 0..1, once trims are `relaxed`. */
-double Search::uncovered_share(size_t field, uint32_t triangle, Budget &budget,
-                               Vector<RelaxedTrim> &relaxed) const
+double Search::uncovered_share(size_t field, const FrameInverse &inverse, uint32_t triangle,
+                               Budget &budget, Vector<RelaxedTrim> &relaxed) const
 {
     const Mesh &mesh = job_.mesh;
     const HeightField &own = fields_[field];
@@ -205,21 +208,25 @@ double Search::uncovered_share(size_t field, uint32_t triangle, Budget &budget,
     const Vec3d e = mesh.position(triangle, 1) - job_.anchor - first;
     const Vec3d f = mesh.position(triangle, 2) - job_.anchor - first;
     const Vec3d normal = normalize(cross(e, f));
-    const FrameInverse inverse(chart.frame);
-    if (!(dot(normal, own.axis[2]) > TWISTED) || is_masked(mesh, triangle) ||
-        beyond_cut(chart, inverse, mesh, triangle, job_.pitch))
+    if (!(dot(normal, own.axis[2]) > TWISTED) || is_masked(mesh, triangle))
         return 0;
     const bool steep = dot(normal, own.axis[2]) < STEEP;
     const int parts = parts_of(triangle);
     std::optional<Vector<const HeightField *>> near;
     int uncovered = 0;
+    bool first_look = true;
     for (int j = 0; j < parts; ++j) {
         cancel_point();
         const Vec3d across = f * ((j + 1 / 3.) / parts);
         for (int i = 0; i + j < parts; ++i) {
             const Sample at = {first + e * ((i + 1 / 3.) / parts) + across, normal};
             const bool by_own = shown_by(own, at, INFINITY);
-            if ((by_own && !steep) || !in_core(chart, inverse, at.point + job_.anchor))
+            if (by_own && !steep)
+                continue;
+            if (std::exchange(first_look, false) &&
+                beyond_cut(chart, inverse, mesh, triangle, job_.pitch))
+                return 0;
+            if (!in_core(chart, inverse, at.point + job_.anchor))
                 continue;
             if (!near)
                 near = facing_near({first, first + e, first + f}, normal, budget);
@@ -266,8 +273,9 @@ Gaps Search::run(Task &task) const
     Vector<Budget> budgets = share_looks(task);
     task.parallel(fields_.size(), [&](size_t s) {
         Budget &budget = budgets[s];
+        const FrameInverse inverse(partition_.charts[fields_.patch(s)].frame);
         for (uint32_t t : partition_.charts[fields_.patch(s)].triangles) {
-            const double share = uncovered_share(s, t, budget, of_field[s].relaxed);
+            const double share = uncovered_share(s, inverse, t, budget, of_field[s].relaxed);
             if (!(share > 0))
                 continue;
             const double area = length(job_.mesh.area_vector(t)) / (2 * job_.pitch * job_.pitch);
