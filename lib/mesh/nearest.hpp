@@ -10,6 +10,7 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace gtx {
@@ -193,7 +194,62 @@ public:
         constexpr size_t FEW = 32; /* they lead down one way */
         const size_t most = looks ? std::max(*looks, FEW) : SIZE_MAX;
         size_t left = most;
-        Way stack[64], at = {1, boxes_[1].distance2(p)};
+        best = nearer_below(1, boxes_[1].distance2(p), best, p, near, counts, left, enough);
+        cancel_point(LOOK_TURNS * (most - left));
+        if (looks)
+            *looks -= std::min(*looks, most - left);
+        return best;
+    }
+    /* Gives each shape its place in the tree as number, and returns which it was: shapes that are
+     * close are then close in memory, if the caller orders them so before any other call. */
+    Vector<uint32_t> renumber()
+    {
+        Vector<uint32_t> were = order_;
+        std::iota(order_.begin(), order_.end(), 0u);
+        return were;
+    }
+    /* As nearer(), in a tree of renumbered shapes, of which `*near` is one close by: from there up
+     * the tree, which takes less than from the root down. */
+    double nearer_around(double best, const Vec3d &p, uint32_t *near, double enough) const
+    {
+        const auto any = [](uint32_t) { return true; };
+        size_t left = SIZE_MAX, node = leaves_ + *near / LEAF;
+        best = nearer_below(node, 0, best, p, near, any, left, enough);
+        for (; node > 1 && best > enough; node /= 2) {
+            const double distance = boxes_[node ^ 1].distance2(p);
+            --left;
+            if (distance < best)
+                best = nearer_below(node ^ 1, distance, best, p, near, any, left, enough);
+        }
+        cancel_point(LOOK_TURNS * (SIZE_MAX - left));
+        return best;
+    }
+    double distance2(const Vec3d &p, uint32_t *near, size_t *looks = nullptr) const
+    {
+        return distance2(p, near, [](uint32_t) { return true; }, looks);
+    }
+
+private:
+    static constexpr size_t LEAF = 4;
+    static constexpr size_t LOOK_TURNS = 8; /* of a short loop, that take as long as a look */
+
+    static constexpr size_t PART = 1024;    /* leaves of a part */
+    static constexpr size_t FORKS = 16;     /* nodes that are ordered at once */
+
+    struct Way {
+        size_t node;
+        double distance;         /* squared, of its box */
+    };
+    struct Centre {
+        Vec3f at;
+        uint32_t shape;
+    };
+
+    template <class Counts>
+    double nearer_below(size_t node, double distance, double best, const Vec3d &p, uint32_t *near,
+                        const Counts &counts, size_t &left, double enough) const
+    {
+        Way stack[64], at = {node, distance};
         size_t size = 0;
         while (best > enough && left) {
             if (!(at.distance < best)) {
@@ -226,31 +282,8 @@ public:
             size += farther < best;
             at = {child + !low_first, low_first ? low : high};
         }
-        cancel_point(LOOK_TURNS * (most - left));
-        if (looks)
-            *looks -= std::min(*looks, most - left);
         return best;
     }
-    double distance2(const Vec3d &p, uint32_t *near, size_t *looks = nullptr) const
-    {
-        return distance2(p, near, [](uint32_t) { return true; }, looks);
-    }
-
-private:
-    static constexpr size_t LEAF = 4;
-    static constexpr size_t LOOK_TURNS = 8; /* of a short loop, that take as long as a look */
-
-    static constexpr size_t PART = 1024;    /* leaves of a part */
-    static constexpr size_t FORKS = 16;     /* nodes that are ordered at once */
-
-    struct Way {
-        size_t node;
-        double distance;         /* squared, of its box */
-    };
-    struct Centre {
-        Vec3f at;
-        uint32_t shape;
-    };
 
     uint32_t first(size_t part) const
     {

@@ -18,6 +18,10 @@ constexpr size_t FIRST = 2048;
 /* How steeply a level's triangle may leave the source. Of source to level nothing is taken for
  * granted: triangles there are small, and few are looked at twice. */
 constexpr double STEEPEST = 0.35;
+/* So many of the last triangles that were nearest are tried before the tree is asked; 7 take as
+ * long, 15 a tenth more. */
+constexpr size_t EARLIER = 3;
+
 namespace {
 
 /* A point, and how far it was from the nearest triangle at the time. */
@@ -27,16 +31,41 @@ struct Corner {
     double away = 0;             /* squared */
 };
 
+/* A triangle that was the nearest, and its box. */
+struct Known {
+    uint32_t triangle = NO_PATCH;
+    NearTriangle shape = {};
+    Vec3d low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+
+    Known() = default;
+    Known(uint32_t triangle, const NearTriangle &shape) : triangle(triangle), shape(shape)
+    {
+        for (const Vec3d &p : {shape.a, shape.b, shape.a + shape.ac})
+            for (int k = 0; k < 3; ++k) {
+                low[k] = std::min(low[k], p[k]);
+                high[k] = std::max(high[k], p[k]);
+            }
+    }
+    bool is_within(const Vec3d &p, double limit) const
+    {
+        for (int k = 0; k < 3; ++k)
+            if (!(p[k] >= low[k] - limit && p[k] <= high[k] + limit))
+                return false;
+        return shape.distance2(p) <= limit * limit;
+    }
+};
+
 /* From triangles to a surface. */
 struct Search {
-    const Surface &to;
-    const NearestTree<Surface> &tree;
+    const SortedSurface &to;
     double slope;                /* how fast distances may change along a triangle */
     double least;                /* triangles of a smaller radius are not split */
     double free;                 /* a distance of no interest */
     double found;                /* the greatest so far */
-    uint32_t near;               /* the triangle of `to` that was nearest last */
-    NearTriangle nearest;        /* that */
+    uint32_t near = NO_PATCH;    /* the triangle of `to` that was nearest last */
+    NearTriangle nearest = {};   /* that */
+    Known earlier[EARLIER] = {}; /* others that were */
+    size_t next = 0;
 
     double most() const { return std::max(free, LOOSE * found); }
     bool is_within(Corner &c, double square) const
@@ -55,6 +84,21 @@ struct Search {
         return near < to.size() && is_within(a, limit) && is_within(b, limit) &&
                is_within(c, limit);
     }
+    /* The same of an earlier one, which becomes the nearest. */
+    bool was_covered(const Corner &a, const Corner &b, const Corner &c)
+    {
+        for (Known &known : earlier) {
+            if (!known.is_within(a.at, most()) || !known.is_within(b.at, most()) ||
+                !known.is_within(c.at, most()))
+                continue;
+            const Known last(near, nearest);
+            near = known.triangle;
+            nearest = known.shape;
+            known = last;
+            return true;
+        }
+        return false;
+    }
     bool is_covered(const gtx::Box &box) const
     {
         const double limit = most() * most();
@@ -71,11 +115,16 @@ struct Search {
     }
     double distance(const Vec3d &p, double enough)
     {
-        const uint32_t before = near;
+        const uint32_t last = near;
         const double known = near < to.size() ? nearest.distance2(p) : INFINITY;
-        const double square = tree.nearer(
-            known, p, &near, [](uint32_t) { return true; }, nullptr, enough * enough);
-        if (near != before) {
+        const double square =
+            near < to.size() && slope >= 1 /* of smaller triangles than these is it close by */
+                ? to.tree().nearer_around(known, p, &near, enough * enough)
+                : to.tree().nearer(known, p, &near, [](uint32_t) { return true; }, nullptr,
+                                   enough * enough);
+        if (near != last) {
+            earlier[next] = last < to.size() ? Known(last, nearest) : Known();
+            next = (next + 1) % EARLIER;
             const Corners c = to.corners(near);
             nearest = {c[0], c[1], c[2]};
         }
@@ -92,7 +141,7 @@ struct Search {
 void Search::look(Corner &a, Corner &b, Corner &c)
 {
     cancel_point();
-    if (is_covered(a, b, c))
+    if (is_covered(a, b, c) || (slope >= 1 && was_covered(a, b, c)))
         return;
     const Vec3d middle = (a.at + b.at + c.at) / 3;
     const double radius =
@@ -117,17 +166,17 @@ void Search::look(Corner &a, Corner &b, Corner &c)
 
 /* `counts(t)`: whether triangle t of `from` is to be near. */
 template <class Counts>
-static double greatest(const NearestTree<Surface> &from, const Surface &surface,
-                       const Counts &counts, const Search &start, Task &task)
+static double greatest(const SortedSurface &from, const Counts &counts, const Search &start,
+                       Task &task)
 {
-    Vector<double> found(from.parts(), 0);
+    Vector<double> found(from.tree().parts(), 0);
     task.parallel(found.size(), [&](size_t part) {
         Search search = start;
-        from.visit(part, [&](const gtx::Box &box) { return search.is_covered(box); },
-                   [&](uint32_t t) {
-                       if (counts(t))
-                           search.look(surface.corners(t));
-                   });
+        from.tree().visit(part, [&](const gtx::Box &box) { return search.is_covered(box); },
+                          [&](uint32_t t) {
+                              if (counts(t))
+                                  search.look(from.corners(t));
+                          });
         found[part] = search.found;
     }, 1, 1);
     return *std::max_element(found.begin(), found.end());
@@ -135,16 +184,19 @@ static double greatest(const NearestTree<Surface> &from, const Surface &surface,
 
 /* The first points: their greatest distance, and the root of the mean square. */
 template <class Counts>
-static Strayed sample(const Surface &from, const Counts &counts, const Search &start, Task &task)
+static Strayed sample(const SortedSurface &from, const Counts &counts, const Search &start,
+                      Task &task)
 {
     const size_t step = (from.size() + FIRST - 1) / FIRST, count = (from.size() + step - 1) / step;
     const size_t chunk = 256;
     Vector<double> away(count, -1);
     task.parallel((count + chunk - 1) / chunk, [&](size_t n) {
         Search search = start;
-        for (size_t i = n * chunk; i < std::min(count, (n + 1) * chunk); ++i)
+        for (size_t i = n * chunk; i < std::min(count, (n + 1) * chunk); ++i) {
+            search.near = NO_PATCH; /* the last was far away */
             if (counts(uint32_t(i * step)))
                 away[i] = search.distance(from.corners(i * step)[0], start.free);
+        }
     }, 1, 1);
     Strayed out;
     double sum = 0, looked = 0;
@@ -157,9 +209,33 @@ static Strayed sample(const Surface &from, const Counts &counts, const Search &s
     return out;
 }
 
+SortedSurface::SortedSurface(Vector<Vec3d> positions,
+                             Vector<std::array<uint32_t, 3>> triangles, Task &task, double done)
+    : positions_(std::move(positions)), triangles_(std::move(triangles)),
+      shapes_{positions_, triangles_}, tree_(shapes_, task, done), given_(tree_.renumber())
+{
+    Vector<Vec3d> places;
+    Vector<std::array<uint32_t, 3>> ordered;
+    Vector<uint32_t> name(positions_.size(), NO_VERTEX);
+    places.reserve(positions_.size());
+    ordered.reserve(triangles_.size());
+    for (uint32_t t : given_) {
+        ordered.push_back(triangles_[t]);
+        for (uint32_t &v : ordered.back()) {
+            if (name[v] == NO_VERTEX) {
+                name[v] = uint32_t(places.size());
+                places.push_back(positions_[v]);
+            }
+            v = name[v];
+        }
+    }
+    positions_ = std::move(places);
+    triangles_ = std::move(ordered);
+}
+
 Bounds::Bounds(const LodSource &source, double pitch, Task &task)
-    : source_{source.positions, source.triangles}, pitch_(pitch), task_(task),
-      tree_(source_, task, 0), parts_(part_sizes(source.positions, source.triangles)),
+    : pitch_(pitch), task_(task), source_(source.positions, source.triangles, task, 0),
+      parts_(part_sizes(source.positions, source.triangles)),
       largest_part_(*std::max_element(parts_.begin(), parts_.end()))
 {
 }
@@ -175,20 +251,21 @@ Strayed Bounds::of(const LodLevel &level, double speck) const
                              level.origin[2] + double(level.step) * level.positions[i + 2]});
     for (size_t i = 0; i < level.indices.size(); i += 3)
         triangles.push_back({level.indices[i], level.indices[i + 1], level.indices[i + 2]});
-    const Surface made = {positions, triangles};
-    const NearestTree<Surface> tree(made, task_, 1);
+    const SortedSurface made(std::move(positions), std::move(triangles), task_, 1);
     const auto any = [](uint32_t) { return true; };
-    const auto shown = [&](uint32_t t) { return parts_[t] > speck || largest_part_ <= speck; };
-    Search there = {made, tree, 1, 0, double(level.step) / 2, 0, NO_PATCH, {}};
-    Search back = {source_, tree_, STEEPEST, pitch_, double(level.step) / 2, 0, NO_PATCH, {}};
+    const auto shown = [&](uint32_t t) {
+        return parts_[source_.given(t)] > speck || largest_part_ <= speck;
+    };
+    Search there = {made, 1, 0, double(level.step) / 2, 0};
+    Search back = {source_, STEEPEST, pitch_, double(level.step) / 2, 0};
     Strayed out = sample(source_, shown, there, task_);
     back.found = std::max(out.most, sample(made, any, back, task_).most);
     task_.limits.work_again();
     /* The source first: it takes less, and its spots spare the level most of its looks. */
     there.found = back.found;
-    back.found = greatest(tree_, source_, shown, there, task_);
+    back.found = greatest(source_, shown, there, task_);
     task_.limits.work_again();
-    there.found = greatest(tree, made, any, back, task_);
+    there.found = greatest(made, any, back, task_);
     out.most = there.most();
     return out;
 }

@@ -32,6 +32,28 @@ struct Surface {
     }
 };
 
+/* A surface and a tree of its triangles, which have the order of the tree. */
+class SortedSurface {
+public:
+    SortedSurface(Vector<Vec3d> positions, Vector<std::array<uint32_t, 3>> triangles, Task &task,
+                  double done);
+    SortedSurface(const SortedSurface &) = delete;
+    SortedSurface &operator=(const SortedSurface &) = delete;
+
+    size_t size() const { return triangles_.size(); }
+    std::array<Vec3d, 3> corners(size_t t) const { return shapes_.corners(t); }
+    const NearestTree<Surface> &tree() const { return tree_; }
+    /* Which of those that were given triangle t is. */
+    uint32_t given(size_t t) const { return given_[t]; }
+
+private:
+    Vector<Vec3d> positions_;
+    Vector<std::array<uint32_t, 3>> triangles_;
+    Surface shapes_;
+    NearestTree<Surface> tree_;
+    Vector<uint32_t> given_;
+};
+
 /* Object units. */
 struct Strayed {
     double most = 0;             /* a bound, both ways */
@@ -47,11 +69,10 @@ public:
     Strayed of(const LodLevel &level, double speck) const;
 
 private:
-    Surface source_;
     double pitch_;
     Task &task_;
-    NearestTree<Surface> tree_;
-    Vector<double> parts_;       /* how long the connected part of each triangle is */
+    SortedSurface source_;
+    Vector<double> parts_;       /* how long the connected part of each triangle given is */
     double largest_part_;
 };
 
