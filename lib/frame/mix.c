@@ -129,8 +129,8 @@ static bool add(const gtx_draw_call *draw, const gtx_frustum *f, const gtx_model
     return true;
 }
 
-/* Grids instead of casting, patch by patch. False where casting all of them takes no more than
- * what was found. */
+/* Grids instead of casting, patch by patch: `covers` has what each covers. False where casting all
+ * of them takes no more than what was found. */
 static bool mix(const gtx_draw_call *draw, const gtx_frustum *f, const gtx_model *model,
                 double most, gtx_cover *covers)
 {
@@ -140,11 +140,15 @@ static bool mix(const gtx_draw_call *draw, const gtx_frustum *f, const gtx_model
     const bool tiles = gtx_tiles_suit(draw);
     double cost = 0;
     uint32_t given_up = 0;
+    bool any = false;
     for (uint32_t i = 0; i < plan->count && cost < most; ++i) {
         const uint32_t patch = plan->entries[i].patch;
         const bool must = is_beside(draw, f, model->facts[patch].hull);
-        const gtx_cover c =
-            gtx_cover_of(f, model, patch, tiles, &planner->occlusion, grids->shown.data);
+        /* Without a grid nothing is hidden, and the cover is the one that was found. */
+        const bool known = !any && !must && given_up >= most_given_up;
+        const gtx_cover c = known ? covers[i]
+                                  : gtx_cover_of(f, model, patch, tiles, &planner->occlusion,
+                                                 grids->shown.data);
         const double cast = cast_cost(draw, model, 1, c.cast);
         const double empty = gtx_grid_cost(draw, 0, c.pixels);
         const double room = (fmin(cast, most - cost) - empty) / gtx_grid_cost(draw, 1, 0);
@@ -156,6 +160,7 @@ static bool mix(const gtx_draw_call *draw, const gtx_frustum *f, const gtx_model
         covers[i].grid = (must || given_up < most_given_up) &&
                          add(draw, f, model, patch, &c, must ? UINT32_MAX : triangles_in(room));
         given_up = covers[i].grid ? 0 : given_up + 1;
+        any = any || covers[i].grid;
         cost += covers[i].grid ? empty + gtx_grid_cost(draw, gtx_triangles_since(grids, &before), 0)
                                : cast;
     }
