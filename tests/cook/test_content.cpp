@@ -66,7 +66,7 @@ static void models_have_their_content(void **)
              {"/gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb",
               GTX_PARTITION_DEFAULT, 0, 0x20f8c6e5b8696c04},
              {"/gltf/dragon_draco_119k.glb",
-              GTX_PARTITION_DEFAULT, 0, 0xfc9bec2601b10384},
+              GTX_PARTITION_DEFAULT, 0, 0xceb85958b17c58a9},
              {"/gltf/2CylinderEngine.glb",
               GTX_PARTITION_CUTS, NONE, 0x428ff19f04b6dcd5},
              {"/scans/horse.ply.gz",

@@ -70,7 +70,7 @@ static void every_dialect(void **state)
         skip();
     for (size_t i = 0; i < sizeof versions / sizeof *versions; ++i) {
         compile(versions[i][0], versions[i][1], "vert", vertex);
-        char head[80];
+        char head[80], blocks[100];
         snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS", versions[i][0]);
         for (int k = 0; k < MAINS * METHODS; ++k) {
             const char *const parts[] = {SHARED, "geotex_surface.glsl",
@@ -120,6 +120,11 @@ static void every_dialect(void **state)
                  versions[i][0]);
         compile(head, versions[i][1], "vert", lod_vertex);
         compile(head, versions[i][1], "frag", lit);
+        snprintf(blocks, sizeof blocks,
+                 "%s\n#define GTX_GRID\n#define GTX_BLOCKS\n#define GTX_TRIMMED", versions[i][0]);
+        compile(blocks, versions[i][1], "vert", lod_vertex);
+        compile(blocks, versions[i][1], "frag", lod);
+        compile(blocks, versions[i][1], "frag", lod_front);
         strcat(head, "\n#define GTX_PLAIN");
         compile(head, versions[i][1], "vert", lod_vertex);
     }
