@@ -34,7 +34,8 @@ static bool reserve(gtx_planner *planner, const gtx_model *model)
     }
     bool room = gtx_scratch_reserve(&planner->allocator, &g->shown, most, sizeof(uint32_t));
     for (uint32_t k = 0; k < GTX_BLOCK_LOOKS && room; ++k)
-        room = gtx_scratch_reserve(&planner->allocator, &g->blocks[k], all, sizeof(gtx_block));
+        room = gtx_scratch_reserve(&planner->allocator, &g->blocks[k], all,
+                                   sizeof(gtx_displaced_block));
     return room;
 }
 
@@ -66,10 +67,11 @@ static void add(gtx_grids *grids, const gtx_model *model, const gtx_plan_entry *
         const uint32_t x = shown[i] % columns, y = shown[i] / columns;
         const gtx_rtin_block b = merged(model, patch, entry->level, x, y);
         const uint32_t look = sides | (b.whole == UINT16_MAX ? 0 : GTX_BLOCKS_TRIMMED);
+        gtx_displaced_block *blocks = grids->blocks[look].data;
         if (b.some)
-            ((gtx_block *)grids->blocks[look].data)[grids->block_count[look]++] =
-                (gtx_block){patch | entry->level << GTX_PROXY_KIND_SHIFT,
-                            (uint16_t)(x * GTX_SLAB_CELLS), (uint16_t)(y * GTX_SLAB_CELLS)};
+            blocks[grids->block_count[look]++] = (gtx_displaced_block){
+                patch | entry->level << GTX_PROXY_KIND_SHIFT, (uint16_t)(x * GTX_SLAB_CELLS),
+                (uint16_t)(y * GTX_SLAB_CELLS)};
     }
 }
 

@@ -251,7 +251,7 @@ static void draw_blocks(const gtx_draw_call *call, const run *r, uint32_t instan
         draw.ranges = &all;
         draw.range_count = 1;
         draw.vertex_data = grids->blocks[look].data;
-        draw.vertex_bytes = all.count * sizeof(gtx_block);
+        draw.vertex_bytes = all.count * sizeof(gtx_displaced_block);
         call->submit(&draw, call->user);
         grids->drawn += (uint64_t)all.count * GTX_BLOCK_TRIANGLES;
     }

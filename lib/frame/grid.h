@@ -21,10 +21,10 @@ enum { GTX_GRID_MAPPED = 1, GTX_GRID_TRIMMED = 2, GTX_GRID_BEHIND = 4, GTX_GRID_
 /* A block whose nodes the GPU displaces, of any level, as geotex_lod.vert reads it: its patch +
  * 2^28 times the level, and its first node. Drawn alike: those that show whole, those that do not,
  * and of either those of patches that are seen from two sides. */
-typedef struct gtx_block {
+typedef struct gtx_displaced_block {
     uint32_t patch;
     uint16_t x, y;
-} gtx_block;
+} gtx_displaced_block;
 
 enum {
     GTX_BLOCKS_TRIMMED = 1, GTX_BLOCKS_TWO_SIDED = 2, GTX_BLOCK_LOOKS = 4,

@@ -1,109 +1,18 @@
 /* Nearest point on many small shapes: a balanced tree of boxes, split at medians. */
 #pragma once
 
+#include "mesh/near_shapes.hpp"
 #include "mesh/task.hpp"
-#include "mesh/vec.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
 
 namespace gtx {
-
-struct Box {
-    static constexpr float HUGE_F = std::numeric_limits<float>::infinity();
-    Vec3f low{HUGE_F, HUGE_F, HUGE_F}, high{-HUGE_F, -HUGE_F, -HUGE_F};
-
-    /* Rounded outwards. */
-    void add(const Vec3d &p)
-    {
-        for (int k = 0; k < 3; ++k) {
-            const float at = float(p[k]);
-            low[k] = std::min(low[k], at <= p[k] ? at : -above(-at));
-            high[k] = std::max(high[k], at >= p[k] ? at : above(at));
-        }
-    }
-    /* The next float: std::nextafter in a few instructions. */
-    static float above(float at)
-    {
-        int32_t bits;
-        std::memcpy(&bits, &at, sizeof bits);
-        bits = at == 0 ? 1 : at > 0 ? bits + 1 : bits - 1;
-        std::memcpy(&at, &bits, sizeof bits);
-        return at;
-    }
-    void add(const Box &b)
-    {
-        for (int k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], b.low[k]);
-            high[k] = std::max(high[k], b.high[k]);
-        }
-    }
-    Vec3d centre() const { return (Vec3d(low) + Vec3d(high)) * 0.5; }
-    double distance2(const Vec3d &p) const
-    {
-        double sum = 0;
-        for (int k = 0; k < 3; ++k) {
-            const double d = std::max(std::max(low[k] - p[k], p[k] - high[k]), 0.);
-            sum += d * d;
-        }
-        return sum;
-    }
-};
-
-/* A triangle as its distances want it. */
-struct NearTriangle {
-    Vec3d a, b, ab, ac, across;
-    double bb = 0, bc = 0, cc = 0, area = 0;
-
-    NearTriangle() = default;
-    NearTriangle(const Vec3d &a, const Vec3d &b, const Vec3d &c)
-        : a(a), b(b), ab(b - a), ac(c - a), across(c - b), bb(dot(ab, ab)), bc(dot(ab, ac)),
-          cc(dot(ac, ac)), area(bb * cc - bc * bc)
-    {
-    }
-    /* Where p is over the triangle (by its barycentric coordinates v and w, times `area`) to the
-     * plane, else to those sides that p is outside of. Rounding may pick another point of the
-     * triangle, never one beside it. */
-    double distance2(const Vec3d &p) const
-    {
-        const Vec3d d = p - a;
-        const double db = dot(d, ab), dc = dot(d, ac);
-        const double v = cc * db - bc * dc, w = bb * dc - bc * db;
-        const bool flat = !(area > 0);
-        if (!flat && v >= 0 && w >= 0 && v + w <= area) {
-            const Vec3d off = d - ab * (v / area) - ac * (w / area);
-            return dot(off, off);
-        }
-        double best = std::numeric_limits<double>::infinity();
-        if (flat || w < 0)
-            best = beside(d, ab, db, bb);
-        if (flat || v < 0)
-            best = std::min(best, beside(d, ac, dc, cc));
-        if (flat || v + w > area)
-            best = std::min(best, beside(p - b, across, dot(p - b, across), dot(across, across)));
-        return best;
-    }
-
-private:
-    static double beside(const Vec3d &from_start, const Vec3d &edge, double along, double square)
-    {
-        const double s = square > 0 ? std::clamp(along / square, 0., 1.) : 0;
-        const Vec3d off = from_start - edge * s;
-        return dot(off, off);
-    }
-};
-
-/* The squared distance from p to the triangle abc. */
-inline double triangle_distance2(const Vec3d &p, const Vec3d &a, const Vec3d &b, const Vec3d &c)
-{
-    return NearTriangle(a, b, c).distance2(p);
-}
 
 /* `Shapes` has size(), box(i) and distance2(i, p, bound), which may answer anything >= bound for
  * what is not nearer than that, `bound` itself where it is told by little work; otherwise shape i

@@ -46,7 +46,7 @@ static void create(gtx_renderer *renderer)
     gl->GenBuffers(1, &b->buffer);
     gl->BindBuffer(GL_ARRAY_BUFFER, b->buffer);
     gtx_gl_label(gl, GL_BUFFER, b->buffer, "geotex blocks");
-    gl->VertexAttribIPointer(1, 2, GL_UNSIGNED_INT, sizeof(gtx_block), NULL);
+    gl->VertexAttribIPointer(1, 2, GL_UNSIGNED_INT, sizeof(gtx_displaced_block), NULL);
     gl->VertexAttribDivisor(1, 1);
     gl->EnableVertexAttribArray(1);
 }
