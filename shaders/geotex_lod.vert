@@ -13,9 +13,14 @@ GTX_SAMPLER(3, highp sampler2DArray) gtx_colors;
 #endif
 
 #if defined(GTX_BLOCKS)
-layout(location = 0) in uvec2 gtx_corner;   /* node of any block, and of which one: */
-layout(location = 1) in uvec2 gtx_block;    /* patch + 2^28 * level; the first node, 16 bits each */
+layout(location = 0) in uvec2 gtx_block;    /* patch + 2^28 * level; the first node, 16 bits each.
+                                               The vertex's number tells which one after it. */
 #define gtx_patch (gtx_block.x & 0x0fffffffu)
+#ifdef VULKAN
+#define GTX_VERTEX gl_VertexIndex
+#else
+#define GTX_VERTEX gl_VertexID
+#endif
 #elif defined(GTX_GRID)
 layout(location = 0) in uvec4 gtx_node;     /* of the patch, and the height's code */
 #elif defined(GTX_RHI)
@@ -101,11 +106,12 @@ vec3 gtx_displaced(int index, int level)
     float page = gtx_record(index, GTX_RECORD_PAGE).w, code = 0.0;
     gtx_height_field field = gtx_field_of(rect, vec4(0.0, 0.0, page, 0.0), level);
     ivec2 end = field.last + 1, first = ivec2(gtx_block.y & 0xffffu, gtx_block.y >> 16);
-    ivec2 node = min(first + ivec2(gtx_corner), end), texel = min(node << level, field.size - 1);
+    ivec2 corner = ivec2(GTX_VERTEX % (GTX_BLOCK_CELLS + 1), GTX_VERTEX / (GTX_BLOCK_CELLS + 1));
+    ivec2 node = min(first + corner, end), texel = min(node << level, field.size - 1);
     for (int i = 0; i < 4 && code == 0.0; ++i) {
-        ivec2 corner = ivec2(i & 1, i >> 1), cell = node - corner;
+        ivec2 side = ivec2(i & 1, i >> 1), cell = node - side;
         if (cell == clamp(cell, ivec2(0), field.last))
-            code = float(texelFetch(gtx_cells, ivec3(field.cells + field.step * cell + corner,
+            code = float(texelFetch(gtx_cells, ivec3(field.cells + field.step * cell + side,
                                                      field.page), 0).r);
     }
     if (code == 0.0) {

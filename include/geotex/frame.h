@@ -145,7 +145,7 @@ typedef enum gtx_buffer {
     GTX_BUFFER_GRID_VERTICES = 4,     /* as LOD_VERTICES; of the frame, and told by its draws */
     GTX_BUFFER_GRID_INDICES = 5,
     GTX_BUFFER_TILE_CORNERS = 6,      /* 4 bytes: 2 uint16_t, as integers; of the frame, too */
-    GTX_BUFFER_BLOCKS = 7             /* of the frame, and of render.h alone */
+    GTX_BUFFER_BLOCKS = 7             /* 8 bytes an instance: 2 uint32_t; of the frame, too */
 } gtx_buffer;
 
 /* Its bytes, of the first four, and their number; NULL and 0 where the model has none, and NULL
@@ -167,7 +167,7 @@ typedef struct gtx_planner_desc {
     gtx_costs costs;                  /* finite, none below 0 */
     uint32_t own_main;                /* 1: forward passes are by pipelines whose own_main is 1 */
     uint32_t max_tile_texels;         /* of a stream of tiles; 0: nothing is cast by tiles */
-    uint32_t on_gpu;                  /* 1: costs that are not told are a GPU's; 0: llvmpipe's */
+    uint32_t on_gpu;                  /* 1: costs not told are a GPU's, and it displaces blocks */
     uint32_t reserved[1];
 } gtx_planner_desc;
 
@@ -258,7 +258,7 @@ typedef struct gtx_frame_draw {
     gtx_cull cull;
     uint32_t clockwise;               /* 1: what is clockwise in the picture, y up, is a front */
     const gtx_model *model;           /* whose textures, buffers */
-    uint32_t first_instance, instance_count;
+    uint32_t first_instance, instance_count; /* of blocks: how many, placed as first_instance */
     const gtx_constants *constants;
     gtx_buffer vertices, indices;
     uint64_t vertex_offset, index_offset; /* bytes: where vertex 0 and index 0 are */

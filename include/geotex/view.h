@@ -90,7 +90,7 @@ typedef struct gtx_eye {
  * and to a 16th of it at outlines, where neighbours meet; `level` n says two over squares of
  * 2^(n - 1) cells. They are found anew in each draw, a few ten nanoseconds each. Blocks of 8 x 8
  * cells that are out of view, and triangles that face away, are not drawn. They write no depth of
- * their own. OpenGL on a GPU displaces whole blocks in the vertex shader instead, of the coarsest
+ * their own. A GPU displaces whole blocks in the vertex shader instead, of the coarsest
  * level within max_error, and finds no triangle. */
 typedef struct gtx_view {
     float view[16], projection[16];   /* column-major; world -> eye -> clip */

@@ -125,7 +125,7 @@ uint32_t gtx_blocks_seen(const gtx_frustum *f, const gtx_model *model, uint32_t 
     const uint32_t count = first[1] - first[0];
     uint32_t seen = 0;
     for (uint32_t i = 0; i < count; ++i)
-        if (is_seen(&v, &slabs[i]))
+        if (f->two ? slabs[i].low[0] <= slabs[i].high[0] : is_seen(&v, &slabs[i]))
             shown[seen++] = i;
     return seen;
 }

@@ -4,6 +4,18 @@
 
 #include <math.h>
 
+/* Counterclockwise from above the height field. */
+void gtx_block_triangles(uint16_t out[3 * GTX_BLOCK_TRIANGLES])
+{
+    enum { SIDE = GTX_SLAB_CELLS + 1 };
+    for (uint32_t c = 0; c < GTX_SLAB_CELLS * GTX_SLAB_CELLS; ++c) {
+        const uint32_t a = c / GTX_SLAB_CELLS * SIDE + c % GTX_SLAB_CELLS;
+        const uint32_t corners[6] = {a, a + 1, a + SIDE, a + SIDE, a + 1, a + SIDE + 1};
+        for (int k = 0; k < 6; ++k)
+            out[6 * c + k] = (uint16_t)corners[k];
+    }
+}
+
 /* Pixels that a patch covers, roughly: half of the disc that its sphere is in the picture. */
 static double pixels_of(const gtx_frustum *f, const float sphere[4])
 {
@@ -87,8 +99,8 @@ bool gtx_displace_fill(const gtx_draw_call *draw, const gtx_model *model,
     bool any = false;
     for (uint32_t k = 0; k < GTX_BLOCK_LOOKS; ++k)
         grids->block_count[k] = 0;
-    if (f.two || !reserve(planner, model))
-        return false; /* blocks are culled for one eye */
+    if (!reserve(planner, model))
+        return false;
     for (uint32_t i = 0; i < plan->count; ++i) {
         gtx_plan_entry entry = plan->entries[i];
         entry.level = level_of(&f, &model->facts[entry.patch], entry.level);

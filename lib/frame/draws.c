@@ -228,32 +228,34 @@ static void draw_grids(const gtx_draw_call *call, const run *r, uint32_t instanc
     }
 }
 
-/* Blocks that the GPU displaces. Those that are seen from two sides are drawn once: what vertices
- * take is more than what front faces would save of pixels. */
+/* Blocks that the GPU displaces; those seen from two sides in one pass: vertices take most. */
 static void draw_blocks(const gtx_draw_call *call, const run *r, uint32_t instance)
 {
     static const gtx_technique techniques[2][2] = {
         {TECHNIQUE_BLOCKS_WHOLE, TECHNIQUE_BLOCKS_WHOLE_FRONT},
         {TECHNIQUE_BLOCKS, TECHNIQUE_BLOCKS_FRONT}};
+    static const gtx_range whole = {.count = 3 * GTX_BLOCK_TRIANGLES};
     gtx_grids *grids = &call->planner->grids;
     const bool angles = gtx_keeps_angles(&call->planner->instances[instance]);
     for (uint32_t look = 0; look < GTX_BLOCK_LOOKS; ++look) {
         const bool two_sided = look & GTX_BLOCKS_TWO_SIDED, trimmed = look & GTX_BLOCKS_TRIMMED;
         const bool front = angles && !two_sided && call->view->pass == GTX_PASS_FORWARD;
-        const gtx_range all = {.count = grids->block_count[look]};
-        if (!all.count)
-            continue;
-        gtx_frame_draw draw =
-            draw_of(call, r, is_own(call) ? TECHNIQUE_OWN_BLOCKS : techniques[trimmed][front],
-                    instance, 1);
+        const gtx_technique by = is_own(call) ? TECHNIQUE_OWN_BLOCKS : techniques[trimmed][front];
+        const uint32_t count = grids->block_count[look];
+        gtx_frame_draw draw = draw_of(call, r, by, instance, count);
         draw.cull = two_sided ? GTX_CULL_NONE : GTX_CULL_BACK;
         draw.vertices = GTX_BUFFER_BLOCKS;
-        draw.ranges = &all;
+        draw.indices = GTX_BUFFER_GRID_INDICES;
+        draw.index_size = sizeof *grids->block_indices;
+        draw.ranges = &whole;
         draw.range_count = 1;
         draw.vertex_data = grids->blocks[look].data;
-        draw.vertex_bytes = all.count * sizeof(gtx_displaced_block);
-        call->submit(&draw, call->user);
-        grids->drawn += (uint64_t)all.count * GTX_BLOCK_TRIANGLES;
+        draw.vertex_bytes = count * sizeof(gtx_displaced_block);
+        draw.index_data = grids->block_indices;
+        draw.index_bytes = sizeof grids->block_indices;
+        grids->drawn += (uint64_t)count * GTX_BLOCK_TRIANGLES;
+        if (count)
+            call->submit(&draw, call->user);
     }
 }
 
@@ -278,12 +280,11 @@ static void draw_patches(const gtx_draw_call *call, const run *r, uint32_t insta
     const gtx_instance_data *placed = &call->planner->instances[instance];
     gtx_occlusion_end(&call->planner->occlusion);
     gtx_plan_patches(call, r->model, placed, levels_to_mix(call, r), edited_only);
-    if (r->way != GTX_DRAW_CAST && call->planner->displaces) {
-        if (gtx_displace_fill(call, r->model, placed))
-            draw_blocks(call, r, instance);
-    } else if (r->way != GTX_DRAW_CAST && gtx_blocks_fill(call, r->model, placed)) {
+    const bool only_cast = r->way == GTX_DRAW_CAST, by_gpu = call->planner->displaces;
+    if (!only_cast && by_gpu && gtx_displace_fill(call, r->model, placed))
+        draw_blocks(call, r, instance);
+    else if (!only_cast && !by_gpu && gtx_blocks_fill(call, r->model, placed))
         draw_grids(call, r, instance);
-    }
     cast_plan(call, r, instance);
     const run one = {r->model, instance, 1, 0, r->mirrored};
     for (uint32_t k = 0; plan->any_lod && k < lods->level_count; ++k)

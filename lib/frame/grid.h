@@ -35,6 +35,7 @@ enum {
 typedef struct gtx_grids {
     gtx_scratch blocks[GTX_BLOCK_LOOKS];
     uint32_t block_count[GTX_BLOCK_LOOKS];
+    uint16_t block_indices[3 * GTX_BLOCK_TRIANGLES]; /* of any block */
     gtx_scratch vertices, indices[GTX_GRID_LOOKS], slots, covers, shown;
     uint32_t vertex_count, index_count[GTX_GRID_LOOKS];
     gtx_rtin_triangle triangles[GTX_RTIN_TRIANGLES];
@@ -78,7 +79,9 @@ bool gtx_refine_block(const gtx_refining *r, uint32_t column, uint32_t row);
 bool gtx_blocks_fill(const gtx_draw_call *draw, const gtx_model *model,
                      const gtx_instance_data *placed);
 
-/* displace.c: the same where the GPU displaces blocks; all that are seen of the patches that take
+/* displace.c: fills in the triangles of blocks. */
+void gtx_block_triangles(uint16_t out[3 * GTX_BLOCK_TRIANGLES]);
+/* The same where the GPU displaces blocks; all that are seen of the patches that take
  * less so than cast. */
 bool gtx_displace_fill(const gtx_draw_call *draw, const gtx_model *model,
                        const gtx_instance_data *placed);

@@ -13,8 +13,8 @@ typedef struct gtx_cover {
     bool grid;                /* it is drawn by a grid, or not at all */
 } gtx_cover;
 
-/* blocks.c: lists the blocks of a patch's level that are in view and may face the eye. Returns how
- * many. */
+/* blocks.c: lists the blocks of a patch's level that are in view and may face the eye; all where
+ * there are two. Returns how many. */
 uint32_t gtx_blocks_seen(const gtx_frustum *f, const gtx_model *model, uint32_t patch,
                          uint32_t level, uint32_t *shown);
 /* blocks.c: looks for the blocks of a patch that are in view, may face the eye and, where

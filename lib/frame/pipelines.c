@@ -207,8 +207,8 @@ static bool is_tiles(gtx_technique technique)
 uint32_t gtx_pipeline_get(uint32_t pipeline, gtx_pipeline *out)
 {
     const recipe r = recipe_of(pipeline);
-    const bool made = is_made(pipeline) && r.technique != TECHNIQUE_LOD_SINGLE &&
-                      !gtx_technique_is_blocks(r.technique); /* OpenGL's alone */
+    const bool made = is_made(pipeline) &&
+                      r.technique != TECHNIQUE_LOD_SINGLE; /* OpenGL's alone */
     if (!out)
         return 0;
     *out = (gtx_pipeline){GTX_PASS_FORWARD, GTX_BUFFER_PROXY_VERTICES, 0, 0};
@@ -218,7 +218,8 @@ uint32_t gtx_pipeline_get(uint32_t pipeline, gtx_pipeline *out)
             .vertices = is_tiles(r.technique)  ? GTX_BUFFER_TILE_CORNERS
                         : is_cast(r.technique) ? GTX_BUFFER_PROXY_VERTICES
                         : is_lod(r.technique)  ? GTX_BUFFER_LOD_VERTICES
-                                               : GTX_BUFFER_GRID_VERTICES,
+                        : gtx_technique_is_blocks(r.technique) ? GTX_BUFFER_BLOCKS
+                                                               : GTX_BUFFER_GRID_VERTICES,
             .own_main = is_own(r.technique),
             .writes_depth = is_cast(r.technique)};
     return made;

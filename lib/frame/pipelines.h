@@ -48,8 +48,7 @@ enum { GTX_PASS_COUNT = GTX_PASS_GBUFFER + 1, GTX_MAX_LABEL = 64 };
 /* The number of what draws a material by a technique in a pass; that of gtx_pipeline_get. */
 uint32_t gtx_pipeline_of(gtx_technique technique, gtx_pass pass, gtx_material_kind material);
 gtx_technique gtx_pipeline_technique(uint32_t pipeline);
-/* Whether it displaces grids on the CPU, or blocks on the GPU, which OpenGL's renderer alone
- * does. */
+/* Whether it displaces grids on the CPU, or blocks on the GPU. */
 bool gtx_technique_is_grid(gtx_technique technique);
 bool gtx_technique_is_blocks(gtx_technique technique);
 /* Whether a technique has a forward pass. */

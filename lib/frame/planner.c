@@ -17,6 +17,7 @@ gtx_result gtx_planner_init(gtx_planner *planner, const gtx_allocator *allocator
     planner->allocator = *allocator;
     planner->costs = *costs;
     gtx_rtin_triangles(planner->grids.triangles);
+    gtx_block_triangles(planner->grids.block_indices);
     return GTX_OK;
 }
 
@@ -34,7 +35,7 @@ gtx_result gtx_planner_create(const gtx_planner_desc *desc, gtx_planner **out, g
     if (!planner)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a planner");
     planner->own_main = d->own_main;
-    planner->on_gpu = d->on_gpu;
+    planner->on_gpu = planner->displaces = d->on_gpu;
     planner->tiles.max_texels = gtx_tiles_most(d->max_tile_texels);
     result = gtx_planner_init(planner, &hooks, &d->costs, error);
     if (result)

@@ -14,9 +14,9 @@ typedef struct gtx_grid_stream {
     gl_uint vertex_array, vertex_buffer, index_buffer;
 } gtx_grid_stream;
 
-/* What blocks are displaced from: the corners and triangles of any, and which ones. */
+/* What blocks are displaced from: the triangles of any, and which ones. */
 typedef struct gtx_block_stream {
-    gl_uint vertex_array, corner_buffer, index_buffer, buffer;
+    gl_uint vertex_array, index_buffer, buffer;
 } gtx_block_stream;
 
 struct gtx_renderer {

@@ -167,8 +167,8 @@ static void submit_blocks(gtx_submission *s, const gtx_frame_draw *draw)
     const gl_uint all = 1u << 30;
     gtx_block_stream_begin(s->renderer, draw);
     set_instances(s->renderer, draw->first_instance, all);
-    gl->DrawElementsInstanced(GL_TRIANGLES, 3 * GTX_BLOCK_TRIANGLES, GL_UNSIGNED_SHORT,
-                              gtx_gl_offset(0), (gl_size)draw->ranges->count);
+    gl->DrawElementsInstanced(GL_TRIANGLES, (gl_size)draw->ranges->count, GL_UNSIGNED_SHORT,
+                              gtx_gl_offset(0), (gl_size)draw->instance_count);
     gl->BindVertexArray(s->renderer->vertex_array);
 }
 

@@ -157,7 +157,7 @@ struct gtx_vk_shading {
     uint32_t number;
     const gtx_vk_rays *rays;      /* or NULL */
     VkPipelineLayout layout;
-    VkShaderModule modules[GTX_BUFFER_TILE_CORNERS + 1]; /* by the vertices of their pipelines */
+    VkShaderModule modules[GTX_BUFFER_BLOCKS + 1]; /* by the vertices of their pipelines */
 };
 
 struct gtx_vk_model {

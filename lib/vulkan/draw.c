@@ -147,7 +147,10 @@ static gtx_result bind_buffers(recording *r, const gtx_frame_draw *d)
     if (result)
         return result;
     const VkBuffer buffers[2] = {from[0].buffer, r->instances.buffer};
-    const VkDeviceSize offsets[2] = {from[0].offset + d->vertex_offset, r->instances.offset};
+    const bool blocks = d->vertices == GTX_BUFFER_BLOCKS; /* all of one instance */
+    const VkDeviceSize placed = blocks ? d->first_instance * sizeof(gtx_instance_data) : 0;
+    const VkDeviceSize offsets[2] = {from[0].offset + d->vertex_offset,
+                                     r->instances.offset + placed};
     r->vk->api.CmdBindVertexBuffers(r->commands, 0, 2, buffers, offsets);
     if (d->index_size)
         r->vk->api.CmdBindIndexBuffer(
@@ -160,7 +163,8 @@ static void draw_range(const recording *r, const gtx_frame_draw *d, const gtx_ra
 {
     if (d->index_size)
         r->vk->api.CmdDrawIndexed(r->commands, range->count, d->instance_count, range->first,
-                                  (int32_t)range->base_vertex, d->first_instance);
+                                  (int32_t)range->base_vertex,
+                                  d->vertices == GTX_BUFFER_BLOCKS ? 0 : d->first_instance);
     else
         r->vk->api.CmdDraw(r->commands, range->count, 1, range->first, 0);
 }

@@ -83,11 +83,13 @@ static gtx_result module_of(gtx_vk *vk, uint32_t pipeline, uint32_t which, VkSha
 }
 
 /* Of vertices of a buffer at binding 0, and of instances at binding 1; tiles have a corner alone.
- * Returns the number of attributes. */
+ * Blocks are instances themselves, all placed as the same one. Returns the number of attributes. */
 static uint32_t set_attributes(gtx_buffer vertices, VkVertexInputBindingDescription bindings[2],
                                VkVertexInputAttributeDescription attributes[ATTRIBUTES])
 {
     const bool proxy = vertices == GTX_BUFFER_PROXY_VERTICES;
+    const bool blocks = vertices == GTX_BUFFER_BLOCKS;
+    uint32_t count = 0;
     enum { ROWS = 7, ID = 9 };
     bindings[0] = (VkVertexInputBindingDescription){0, proxy ? 16 : 12,
                                                     VK_VERTEX_INPUT_RATE_VERTEX};
@@ -98,16 +100,23 @@ static uint32_t set_attributes(gtx_buffer vertices, VkVertexInputBindingDescript
         attributes[0] = (VkVertexInputAttributeDescription){0, 0, VK_FORMAT_R16G16_UINT, 0};
         return 1;
     }
-    attributes[0] = (VkVertexInputAttributeDescription){
-        0, 0, proxy ? VK_FORMAT_R32G32B32_SFLOAT : VK_FORMAT_R16G16B16A16_UINT, 0};
-    attributes[1] =
-        (VkVertexInputAttributeDescription){1, 0, VK_FORMAT_R32_UINT, proxy ? 12 : 8};
+    if (blocks) {
+        bindings[0] = (VkVertexInputBindingDescription){0, 8, VK_VERTEX_INPUT_RATE_INSTANCE};
+        bindings[1].stride = 0;
+        attributes[count++] =
+            (VkVertexInputAttributeDescription){0, 0, VK_FORMAT_R32G32_UINT, 0};
+    } else {
+        attributes[count++] = (VkVertexInputAttributeDescription){
+            0, 0, proxy ? VK_FORMAT_R32G32B32_SFLOAT : VK_FORMAT_R16G16B16A16_UINT, 0};
+        attributes[count++] =
+            (VkVertexInputAttributeDescription){1, 0, VK_FORMAT_R32_UINT, proxy ? 12 : 8};
+    }
     for (uint32_t i = 0; i < ROWS; ++i)
-        attributes[2 + i] =
+        attributes[count++] =
             (VkVertexInputAttributeDescription){2 + i, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 16 * i};
-    attributes[ID] = (VkVertexInputAttributeDescription){ID, 1, VK_FORMAT_R32_UINT,
-                                                         offsetof(gtx_instance_data, id)};
-    return ATTRIBUTES;
+    attributes[count++] = (VkVertexInputAttributeDescription){ID, 1, VK_FORMAT_R32_UINT,
+                                                              offsetof(gtx_instance_data, id)};
+    return count;
 }
 
 static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, const gtx_vk_shading *shading,

@@ -27,7 +27,8 @@ int main(int argc, char **argv)
         gtx_pipeline pipeline;
         if (!gtx_pipeline_get(i, &pipeline) || (pipeline.own_main && argc == 2))
             continue;
-        const int two = argc == 3 && pipeline.vertices < GTX_BUFFER_GRID_VERTICES;
+        const int two = argc == 3 && (pipeline.vertices < GTX_BUFFER_GRID_VERTICES ||
+                                      pipeline.vertices == GTX_BUFFER_BLOCKS);
         failed = write_stage(argv[1], i, GTX_STAGE_VERTEX, 0) ||
                  (two && write_stage(argv[1], i, GTX_STAGE_VERTEX, 1)) ||
                  (!pipeline.own_main && write_stage(argv[1], i, GTX_STAGE_FRAGMENT, 0));

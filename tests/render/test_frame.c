@@ -233,8 +233,8 @@ static void pipelines_have_shaders(void **state)
                              !p.own_main);
         }
     }
-    assert_int_equal(own, 4);
-    assert_in_range(found, 40, 80);
+    assert_int_equal(own, 5);
+    assert_in_range(found, 40, 100);
 }
 
 int main(void)

@@ -1,6 +1,8 @@
 /* Vulkan draws what OpenGL draws: at most one pixel in 10,000 is more than two codes away, or close
  * to what shines, where llvmpipe's eight bits between texels of a normal are some codes of a
  * highlight, one in 200. The validation layer, where it is installed, has nothing to say. */
+#include "render/renderer.h" /* before headers of OpenGL */
+
 #include "both.h"
 
 #include "frame/planner.h"
@@ -81,6 +83,18 @@ static void materials_and_emission_are_drawn(void **state)
     const look shiny = {.color = {200, 90, 30, 255}, .material = {255, 90, 200, 255},
                         .emission = {9, 30, 5}};
     check_all(s, d, repaint(fixture_sphere(2, 64, 8), &shiny), 200);
+}
+
+/* The same where a GPU displaces height fields, alone and beside LOD meshes. */
+static void blocks_are_displaced(void **state)
+{
+    BOTH_OR_SKIP(state);
+    vk->planner->displaces = s->renderer->planner.displaces = true;
+    const uint64_t before = vk->planner->grids.drawn;
+    check_all(s, d, fixture_sphere_without(2, 64, 8, 5), 10000);
+    check_all(s, d, with_lod(fixture_sphere(2, 64, 8), 2, 3, GTX_PATCH_TWO_SIDED), 10000);
+    assert_true(vk->planner->grids.drawn > before);
+    vk->planner->displaces = s->renderer->planner.displaces = false;
 }
 
 /* Pixels of which one of the first bytes is more than so much away. */
@@ -310,6 +324,7 @@ int main(void)
         cmocka_unit_test(heights_are_drawn),
         cmocka_unit_test(tiles_are_cast),
         cmocka_unit_test(lod_meshes_are_drawn),
+        cmocka_unit_test(blocks_are_displaced),
         cmocka_unit_test(materials_and_emission_are_drawn),
         cmocka_unit_test(samples_smooth_outlines),
         cmocka_unit_test(linear_light_is_encoded),
