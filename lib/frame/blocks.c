@@ -71,10 +71,16 @@ static bool is_in_view(const patch_view *v, const gtx_slab *s)
     return true;
 }
 
+/* fmin is a call. */
+static inline double lesser(double a, double b)
+{
+    return a < b ? a : b;
+}
+
 /* The least of rise * away, of both in their ranges. */
 static double least_product(const float rise[2], double low, double high)
 {
-    return fmin(fmin(rise[0] * low, rise[0] * high), fmin(rise[1] * low, rise[1] * high));
+    return lesser(lesser(rise[0] * low, rise[0] * high), lesser(rise[1] * low, rise[1] * high));
 }
 
 /* Pixels that a block covers, roughly: `above` is how far the eye is above its slope. */
@@ -97,7 +103,8 @@ static double pixels_of(const patch_view *v, const gtx_frustum *f, const gtx_sla
         w += f->w.row[r] * p;
     }
     const double area = v->scale * (s->high[0] - s->low[0]) * (s->high[1] - s->low[1]);
-    return area * fabs(above) / fmax(sqrt(away) * w * w, 1e-300);
+    const double square = sqrt(away) * w * w;
+    return area * fabs(above) / (square > 1e-300 ? square : 1e-300);
 }
 
 /* Whether the eye e may be above the plane of any of its triangles. Above that through p, which is

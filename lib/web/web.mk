@@ -5,8 +5,9 @@ web_package := $(web)/geotex
 # Debian's emscripten does not find its own acorn.
 emcc := NODE_PATH=/usr/share/nodejs emcc
 # -Os, and -Oz where it is linked: 149 KB gzipped of the 150 that a page is to wait for at most.
-web_flags := -std=c11 -Os -flto -Wall -Wextra $(if $(filter 1,$(werror)),-Werror) -ffp-contract=off \
-             -fvisibility=hidden -Iinclude -Ilib -Ishaders -DGTX_BUILDING -DGTX_ZSTD
+web_flags := -std=c11 -Os -flto -Wall -Wextra $(if $(filter 1,$(werror)),-Werror) \
+             -ffp-contract=off -fvisibility=hidden -Iinclude -Ilib -Ishaders -DGTX_BUILDING \
+             -DGTX_ZSTD
 web_sources := $(foreach r,$(ROOMS_CORE),$(wildcard lib/$(r)/*.c lib/$(r)/*/*.c))
 web_objects := $(web_sources:%.c=$(web)/%.o) $(web)/shader_sources.o
 zstd_dir := $(web)/zstd/lib

@@ -25,7 +25,8 @@ static void count(const gtx_frame_draw *draw, void *user)
     ++t->draws;
     t->ranges += draw->range_count;
     for (uint32_t i = 0; i < draw->range_count; ++i)
-        t->triangles += draw->ranges[i].count / 3;
+        t->triangles += (uint64_t)draw->ranges[i].count / 3 *
+                        (draw->vertices == GTX_BUFFER_BLOCKS ? draw->instance_count : 1);
 }
 
 static void must(gtx_result result, const gtx_error *error)
@@ -80,7 +81,7 @@ static void measure(gtx_planner *planner, gtx_view *view, const gtx_instance *in
         all.triangles += one.triangles;
     }
     qsort(times, AZIMUTHS, sizeof *times, compare);
-    printf("| %-7s | %-6s | %9.1f | %9.1f | %6.1f | %6.0f | %9.0f |\n", place, method,
+    printf("| %-7s | %-9s | %9.1f | %9.1f | %6.1f | %6.0f | %9.0f |\n", place, method,
            times[AZIMUTHS / 2], times[AZIMUTHS - 1], (double)all.draws / AZIMUTHS,
            (double)all.ranges / AZIMUTHS, (double)all.triangles / AZIMUTHS);
 }
@@ -90,11 +91,13 @@ int main(int argc, char **argv)
     static const struct {
         const char *name;
         gtx_method method;
-    } methods[] = {{"cast", GTX_METHOD_CAST}, {"lod", GTX_METHOD_LOD}, {"auto", GTX_METHOD_AUTO},
-                   {"grid", GTX_METHOD_GRID}};
+        uint32_t on_gpu;
+    } methods[] = {{"cast", GTX_METHOD_CAST, 0},     {"lod", GTX_METHOD_LOD, 0},
+                   {"auto", GTX_METHOD_AUTO, 0},     {"grid", GTX_METHOD_GRID, 0},
+                   {"auto, GPU", GTX_METHOD_AUTO, 1}, {"grid, GPU", GTX_METHOD_GRID, 1}};
     gtx_error error;
     gtx_asset *asset;
-    gtx_planner *planner;
+    gtx_planner *planners[2];
     gtx_model *model;
     gtx_info info;
     gtx_camera camera = {.elevation = 20};
@@ -105,14 +108,16 @@ int main(int argc, char **argv)
     }
     must(gtx_open_file(argv[1], NULL, &asset, &error), &error);
     must(gtx_model_prepare(asset, NULL, &model, &error), &error);
-    must(gtx_planner_create(NULL, &planner, &error), &error);
+    for (uint32_t on_gpu = 0; on_gpu < 2; ++on_gpu)
+        must(gtx_planner_create(&(gtx_planner_desc){.on_gpu = on_gpu}, &planners[on_gpu], &error),
+             &error);
     gtx_get_info(asset, &info);
     gtx_model_uploaded(model);
     gtx_instance instance = {.model = model};
     for (int k = 0; k < 16; k += 5)
         instance.transform[k] = 1;
     printf("%u patches\n"
-           "| view    | method | us median | us most   | draws  | ranges | triangles |\n"
+           "| view    | method    | us median | us most   | draws  | ranges | triangles |\n"
            "|---|---|---|---|---|---|---|\n", info.patch_count);
     gtx_camera_frame(&camera, info.bounds_min, info.bounds_max);
     for (int near = 0; near < 2; ++near)
@@ -120,10 +125,11 @@ int main(int argc, char **argv)
             camera.distance = near ? 0.7f : 2.8f;
             view.method = methods[m].method;
             if (view.method != GTX_METHOD_LOD || info.lod_levels)
-                measure(planner, &view, &instance, &camera, near ? "near" : "outside",
-                        methods[m].name);
+                measure(planners[methods[m].on_gpu], &view, &instance, &camera,
+                        near ? "near" : "outside", methods[m].name);
         }
-    gtx_planner_destroy(planner);
+    for (int i = 0; i < 2; ++i)
+        gtx_planner_destroy(planners[i]);
     gtx_model_free(model);
     gtx_close(asset);
     return 0;
