@@ -16,14 +16,14 @@
 static const gtx_costs *costs_of(const gtx_draw_call *draw)
 {
     static const gtx_costs measured[2] = {{100, 25, 15000, 160, 460}, {100, 25, 5500, 75, 460}};
-    static const gtx_costs on_gpu = {2, 1, 4000, 17, 150};
+    static const gtx_costs on_gpu = {2, 1, 4000, 17, 0};
     const gtx_costs *told = &draw->planner->costs;
     const bool none = told->lod_triangle == 0 && told->lod_pixel == 0 &&
                       told->cast_patch == 0 && told->cast_pixel == 0 &&
                       told->grid_triangle == 0;
-    return !none                    ? told
+    return !none                   ? told
            : draw->planner->on_gpu ? &on_gpu
-                                    : &measured[gtx_tiles_suit(draw)];
+                                   : &measured[gtx_tiles_suit(draw)];
 }
 
 /* Where the nearest corner of the bounds is closer than this fraction of the distance to their

@@ -280,7 +280,7 @@ static void draw_patches(const gtx_draw_call *call, const run *r, uint32_t insta
     const gtx_instance_data *placed = &call->planner->instances[instance];
     gtx_occlusion_end(&call->planner->occlusion);
     gtx_plan_patches(call, r->model, placed, levels_to_mix(call, r), edited_only);
-    const bool only_cast = r->way == GTX_DRAW_CAST, by_gpu = call->planner->displaces;
+    const bool only_cast = r->way == GTX_DRAW_CAST, by_gpu = call->planner->on_gpu;
     if (!only_cast && by_gpu && gtx_displace_fill(call, r->model, placed))
         draw_blocks(call, r, instance);
     else if (!only_cast && !by_gpu && gtx_blocks_fill(call, r->model, placed))

@@ -35,7 +35,7 @@ gtx_result gtx_planner_create(const gtx_planner_desc *desc, gtx_planner **out, g
     if (!planner)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a planner");
     planner->own_main = d->own_main;
-    planner->on_gpu = planner->displaces = d->on_gpu;
+    planner->on_gpu = d->on_gpu;
     planner->tiles.max_texels = gtx_tiles_most(d->max_tile_texels);
     result = gtx_planner_init(planner, &hooks, &d->costs, error);
     if (result)

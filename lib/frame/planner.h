@@ -12,8 +12,7 @@ struct gtx_planner {
     gtx_allocator allocator;
     gtx_costs costs;          /* as told, or all 0 */
     bool own_main;
-    bool on_gpu;              /* costs are a GPU's, where none were told, */
-    bool displaces;           /* and blocks of height fields are displaced by it */
+    bool on_gpu;              /* it displaces blocks, and costs are its, where none were told */
     /* An instance each: its data for shaders, whether its winding is turned, and what it is drawn
      * by, as gtx_choose has it. */
     gtx_instance_data *instances;

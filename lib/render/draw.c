@@ -17,7 +17,7 @@ static gtx_result check_ready(const gtx_instance *instances, uint32_t count, gtx
 static gtx_result need_programs(gtx_renderer *renderer, const gtx_view *view, gtx_error *error)
 {
     const bool paper = view->method == GTX_METHOD_PAPER;
-    const bool blocks = renderer->planner.displaces && !paper, grids = !blocks && !paper;
+    const bool blocks = renderer->planner.on_gpu && !paper, grids = !blocks && !paper;
     const bool forward = view->pass == GTX_PASS_FORWARD;
     const bool wanted[TECHNIQUE_COUNT] = {
         [TECHNIQUE_CAST] = !paper,

@@ -146,7 +146,7 @@ gtx_result gtx_programs_need(gtx_renderer *renderer, gtx_technique technique, gt
 /* What only a CPU displaces where a GPU draws, and the other way round. */
 static bool is_displaced_otherwise(const gtx_renderer *renderer, gtx_technique technique)
 {
-    return renderer->planner.displaces ? gtx_technique_is_grid(technique)
+    return renderer->planner.on_gpu ? gtx_technique_is_grid(technique)
                                     : gtx_technique_is_blocks(technique);
 }
 
@@ -187,7 +187,7 @@ gtx_result gtx_shading_create(gtx_renderer *renderer, const char *text, gtx_shad
         gtx_program *program;
     } made[] = {{TECHNIQUE_OWN_CAST, &shading->cast},
                 {TECHNIQUE_OWN_LOD, &shading->lod},
-                {renderer->planner.displaces ? TECHNIQUE_OWN_BLOCKS : TECHNIQUE_OWN_GRID,
+                {renderer->planner.on_gpu ? TECHNIQUE_OWN_BLOCKS : TECHNIQUE_OWN_GRID,
                  &shading->grid}};
     gtx_result result = GTX_OK;
     for (int i = 0; i < 3 && !result; ++i)

@@ -59,7 +59,7 @@ gtx_result gtx_renderer_create(const gtx_renderer_desc *desc, gtx_renderer **out
         gtx_free_array(&hooks, renderer, 1, sizeof *renderer);
         return result;
     }
-    renderer->planner.on_gpu = renderer->planner.displaces = !gtx_gl_is_software(&renderer->gl);
+    renderer->planner.on_gpu = !gtx_gl_is_software(&renderer->gl);
     gtx_tile_stream_create(renderer);
     gtx_grid_stream_create(renderer);
     result = gtx_programs_create(renderer, error);

@@ -25,6 +25,19 @@ static inline gtx_view standing(float way)
     return view;
 }
 
+/* Grids with triangles over each cell show what is cast, but for their twist. */
+static inline void expect_as_cast(stage *s, const gtx_view *view, const gtx_instance *instance)
+{
+    draw(s, view, GTX_METHOD_CAST, instance, 1, &first);
+    draw(s, view, GTX_METHOD_GRID, instance, 1, &second);
+    const difference d = compare(&first, &second), back = compare(&second, &first);
+    const double iou = (double)d.both / (double)d.either;
+    /* The diagonal of a twisted cell may stand out by more than a pixel. */
+    if (d.both < 200 || iou < 0.85 || d.holes || back.holes > 4 || d.mean > 4)
+        fail_msg("%ld pixels, IoU %g, %ld and %ld holes, colours differ by %g", d.both, iou,
+                 d.holes, back.holes, d.mean);
+}
+
 /* What AUTO draws each patch by: n for level n - 1, 0 for its height field, -1: out of view. */
 static inline void parts_of(stage *s, const gtx_view *view, const gtx_instance *instance,
                             int levels[6])

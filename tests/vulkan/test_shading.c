@@ -108,10 +108,10 @@ static void a_main_of_the_engines_own(void **state)
         pair p = pair_open(s, d, with_lod(fixture_sphere(2, 64, 8), 2, 3, 0));
         const gtx_camera camera = camera_around(p.gl.asset);
         place(p.gl.model, camera.radius, instances);
-        s->renderer->planner.displaces = without; /* blocks, or grids */
+        s->renderer->planner.on_gpu = without; /* blocks, or grids */
         must(gtx_shading_create(s->renderer, own_main, &by_gl, &error), &error);
         must(gtx_vk_shading_create(vk, &desc, &shading, &error), &error);
-        vk->own_planner->displaces = without;
+        vk->own_planner->on_gpu = without;
         for (int i = 0; i < 8; ++i) {
             gtx_view view = view_of(&camera);
             view.method = methods[i / 2];
@@ -130,7 +130,7 @@ static void a_main_of_the_engines_own(void **state)
         gtx_shading_destroy(s->renderer, by_gl);
         pair_close(s, &p);
     }
-    s->renderer->planner.displaces = vk->own_planner->displaces = false;
+    s->renderer->planner.on_gpu = vk->own_planner->on_gpu = false;
     assert_int_equal(c.asked, 2 * 5);
     end_compiling(&c);
 }

@@ -89,12 +89,12 @@ static void materials_and_emission_are_drawn(void **state)
 static void blocks_are_displaced(void **state)
 {
     BOTH_OR_SKIP(state);
-    vk->planner->displaces = s->renderer->planner.displaces = true;
+    vk->planner->on_gpu = s->renderer->planner.on_gpu = true;
     const uint64_t before = vk->planner->grids.drawn;
     check_all(s, d, fixture_sphere_without(2, 64, 8, 5), 10000);
     check_all(s, d, with_lod(fixture_sphere(2, 64, 8), 2, 3, GTX_PATCH_TWO_SIDED), 10000);
     assert_true(vk->planner->grids.drawn > before);
-    vk->planner->displaces = s->renderer->planner.displaces = false;
+    vk->planner->on_gpu = s->renderer->planner.on_gpu = false;
 }
 
 /* Pixels of which one of the first bytes is more than so much away. */
