@@ -51,8 +51,8 @@ static inline size_t gtx_level_size(const gtx_level *l)
 typedef struct gtx_patch_facts {
     float sphere[4], hull[4]; /* around the height field; around the proxies */
     float error[GTX_MAX_MIPS]; /* of each level, as gtx_grid_error has it, never falling */
-    float twist[GTX_MAX_MIPS]; /* how far two triangles are from a cell of it, at most; never
-                                  falling, 0 at level 0 */
+    float twist[GTX_MAX_MIPS]; /* how far two triangles are from a cell of it, at most, as errors
+                                  count; never falling, 0 at level 0 */
     bool boxed;               /* too large for hulls, or edited ones outgrew their room: cast by the
                                  box instead */
 } gtx_patch_facts;

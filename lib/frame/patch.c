@@ -4,6 +4,7 @@
 #include "asset/patch.h"
 #include "base/alloc.h"
 #include "base/error.h"
+#include "derive/codes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -79,16 +80,30 @@ static void fill_slabs(gtx_derived *out, uint32_t level, uint32_t count)
     out->record[GTX_RECORD_SLABS + level / 4][level % 4] = (float)out->slabs_at[level];
 }
 
-/* In the middle a cell's surface is so far from its diagonal, in codes. */
+/* Whether a cell and all around it are solid. */
+static bool is_inner(const gtx_grid *grid, uint32_t i, uint32_t j)
+{
+    const uint32_t cells_x = grid->nodes_x - 1, cells_y = grid->nodes_y - 1;
+    bool inner = i > 0 && j > 0 && i + 1 < cells_x && j + 1 < cells_y;
+    for (uint32_t k = 0; inner && k < 9; ++k)
+        inner = grid->solid[(size_t)(j + k / 3 - 1) * cells_x + i + k % 3 - 1];
+    return inner;
+}
+
+/* In the middle a cell's surface is so far from its diagonal, in codes; at outlines that counts
+ * more. */
 static float most_twist(const gtx_grid *grid)
 {
     int32_t most = 0;
     for (uint32_t j = 0; j + 1 < grid->nodes_y; ++j)
         for (uint32_t i = 0; i + 1 < grid->nodes_x; ++i) {
             const uint16_t *c = grid->code + (size_t)j * grid->nodes_x + i;
-            const int32_t twist = c[0] - c[1] - c[grid->nodes_x] + c[grid->nodes_x + 1];
-            if (grid->solid[(size_t)j * (grid->nodes_x - 1) + i] && abs(twist) > most)
-                most = abs(twist);
+            int32_t twist = abs(c[0] - c[1] - c[grid->nodes_x] + c[grid->nodes_x + 1]);
+            if (twist <= most / GTX_BORDER_COUNTS ||
+                !grid->solid[(size_t)j * (grid->nodes_x - 1) + i])
+                continue;
+            twist *= is_inner(grid, i, j) ? 1 : GTX_BORDER_COUNTS;
+            most = twist > most ? twist : most;
         }
     return (float)most / 4;
 }

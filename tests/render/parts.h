@@ -5,6 +5,24 @@
 #include "render/renderer.h"
 #include "pictures.h"
 
+/* As open_stage, and whatever the driver is: height fields are displaced by the GPU; or they are
+ * grids, and rays are cast by tiles. */
+static inline int open_stage_as(void **state, bool on_gpu)
+{
+    const int result = stage_open(state);
+    stage *s = *state;
+    const gtx_renderer_desc desc = {
+        .load = gtx_offscreen_load, .log = stage_log, .costs = {0, 0, 1, 1},
+        .tiles = on_gpu ? GTX_TILES_NEVER : GTX_TILES_ALWAYS};
+    if (result || !s->offscreen)
+        return result;
+    gtx_renderer_destroy(s->renderer);
+    if (gtx_renderer_create(&desc, &s->renderer, NULL))
+        return -1;
+    s->renderer->planner.on_gpu = on_gpu;
+    return 0;
+}
+
 /* The eye near the surface of the sphere, looking along it; the near plane as close. */
 static inline gtx_view standing(float way)
 {

@@ -4,10 +4,7 @@
 
 static int open_on_gpu(void **state)
 {
-    const int result = open_stage(state);
-    if (!result && the_stage.offscreen)
-        the_stage.renderer->planner.on_gpu = true;
-    return result;
+    return open_stage_as(state, true);
 }
 
 static gtx_view view_at(const gtx_asset *asset, int turn)

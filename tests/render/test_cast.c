@@ -1,5 +1,5 @@
 /* What is drawn against gtx_raycast, pixel by pixel and at every level: no wrong ray. */
-#include "stage.h"
+#include "oracle.h"
 
 typedef enum shape { FLAT, BUMPY, BUMPY_TWO_SIDED, SPHERE, HIGH } shape;
 

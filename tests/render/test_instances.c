@@ -1,5 +1,5 @@
 /* Placed models: rotated, scaled, sheared, mirrored, many at once, and among polygons. */
-#include "stage.h"
+#include "oracle.h"
 
 /* Column-major, linear part given by rows. */
 static void place(float out[16], const float rows[9], float x, float y, float z)

@@ -136,7 +136,7 @@ static void bad_mains_are_refused(void **state)
     /* By the engine's own line. */
     assert_int_equal(gtx_shading_create(renderer, "void main()\n{\n\n\n\n    nonsense();\n}\n",
                                         &shading, &error), GTX_ERROR_SHADER);
-    if (!strstr(log, ":6"))
+    if (!strstr(log, ":6") && !strstr(log, "(6)")) /* drivers write lines so or so */
         fail_msg("%s", log);
     assert_null(shading);
     assert_int_equal(gtx_shading_create(renderer, NULL, &shading, NULL), GTX_ERROR_ARGUMENT);

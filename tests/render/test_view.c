@@ -1,5 +1,5 @@
 /* Every camera: reversed depth, clip conventions, near and far planes, a camera inside a patch. */
-#include "stage.h"
+#include "oracle.h"
 
 /* Without glClipControl the pipeline maps -1..1, so the other convention is asked for through the
  * matrix alone: depth written by the draw still follows the flag. */
