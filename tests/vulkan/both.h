@@ -3,8 +3,11 @@
 #ifndef GTX_TESTS_VULKAN_BOTH_H
 #define GTX_TESTS_VULKAN_BOTH_H
 
+#include "render/renderer.h" /* before headers of OpenGL */
+
 #include "host/vulkan.h"
 #include "render/lods.h"
+#include "vulkan/device.h"
 
 #include <geotex/vulkan.h>
 
@@ -28,6 +31,19 @@ static inline gtx_picture picture_of(const gtx_host_vulkan *d, uint32_t colors, 
     return out;
 }
 
+/* OpenGL draws in the same way as Vulkan, on a GPU or not, whatever its own driver is. */
+static inline int follow_vulkan(stage *s, gtx_error *error)
+{
+    const gtx_renderer_desc desc = {
+        .load = gtx_offscreen_load, .log = stage_log,
+        .tiles = vk->planner->tiles.max_texels ? GTX_TILES_ALWAYS : GTX_TILES_NEVER};
+    gtx_renderer_destroy(s->renderer);
+    if (gtx_renderer_create(&desc, &s->renderer, error))
+        return -1;
+    s->renderer->planner.on_gpu = vk->planner->on_gpu;
+    return 0;
+}
+
 static inline int open_both(void **state)
 {
     gtx_error error = {0};
@@ -41,11 +57,12 @@ static inline int open_both(void **state)
     fprintf(stderr, "validation layer: %s\n", d->validated ? "on" : "not installed");
     const gtx_vk_desc desc = {.load = d->load, .instance = d->instance,
                               .physical_device = d->physical, .device = d->device};
-    if (gtx_vk_create(&desc, &vk, &error))
+    if (gtx_vk_create(&desc, &vk, &error) || follow_vulkan(*state, &error)) {
         fprintf(stderr, "%s\n", error.message);
-    else
-        shown = picture_of(d, 1, VK_FORMAT_R8G8B8A8_UNORM, 4, 1);
-    return vk ? 0 : -1;
+        return -1;
+    }
+    shown = picture_of(d, 1, VK_FORMAT_R8G8B8A8_UNORM, 4, 1);
+    return 0;
 }
 
 static inline int close_both(void **state)

@@ -1,10 +1,6 @@
 /* An engine's own main by Vulkan: the picture is OpenGL's, by casting, tiles, LOD meshes and grids,
  * with constants of the engine's own, and the validation layer silent. */
-#include "render/renderer.h" /* before headers of OpenGL */
-
 #include "compile.h"
-
-#include "vulkan/device.h"
 
 /* Where a point is, and the light of a lamp in it. */
 static const char own_main[] =

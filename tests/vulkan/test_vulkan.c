@@ -1,15 +1,11 @@
 /* Vulkan draws what OpenGL draws: at most one pixel in 10,000 is more than two codes away, or close
  * to what shines, where llvmpipe's eight bits between texels of a normal are some codes of a
  * highlight, one in 200. The validation layer, where it is installed, has nothing to say. */
-#include "render/renderer.h" /* before headers of OpenGL */
-
 #include "both.h"
 
-#include "frame/planner.h"
 #include "host/target.h"
 #include "render/look.h"
 #include "render/painted.h"
-#include "vulkan/device.h"
 
 /* Every method and both passes with a depth of their own, far and near, one instance and several;
  * by a render pass and without, either way up, both orders of depth. */
@@ -89,12 +85,13 @@ static void materials_and_emission_are_drawn(void **state)
 static void blocks_are_displaced(void **state)
 {
     BOTH_OR_SKIP(state);
+    const bool usual = vk->planner->on_gpu;
     vk->planner->on_gpu = s->renderer->planner.on_gpu = true;
     const uint64_t before = vk->planner->grids.drawn;
     check_all(s, d, fixture_sphere_without(2, 64, 8, 5), 10000);
     check_all(s, d, with_lod(fixture_sphere(2, 64, 8), 2, 3, GTX_PATCH_TWO_SIDED), 10000);
     assert_true(vk->planner->grids.drawn > before);
-    vk->planner->on_gpu = s->renderer->planner.on_gpu = false;
+    vk->planner->on_gpu = s->renderer->planner.on_gpu = usual;
 }
 
 /* Pixels of which one of the first bytes is more than so much away. */
