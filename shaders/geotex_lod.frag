@@ -26,13 +26,7 @@ void main()
         n = gtx_from_behind(n, gtx_ray);
     if (gtx_maps.y > 0.0)
         color *= textureLod(gtx_colors, place, level);
-    gtx_material material = gtx_material(color.rgb, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
-    if (gtx_maps.w > 0.0) {
-        vec4 map = textureLod(gtx_materials, place, level);
-        material = gtx_material(color.rgb, vec3(0.0), map.x, map.y, map.z, map.w);
-    }
-    if (gtx_maps.z > 0.0)
-        material.emission = textureLod(gtx_emissions, place, level).rgb * gtx_maps.z;
+    gtx_material material = gtx_material_at(place, level, color.rgb);
     color.rgb = gtx_shown(gtx_shade(material, n, -gtx_ray, gtx_light.xyz, gtx_light.w,
                                     gtx_page.z));
 #else

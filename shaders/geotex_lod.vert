@@ -4,12 +4,15 @@
  * record. With GTX_LIT, for geotex_lit.frag and geotex_lod_lit.frag, triangles are so small, or so
  * even, that the light at their corners is enough.
  *
- * Needs geotex_height_field.glsl and geotex_view.glsl before it. What hardly changes over a
+ * Needs geotex_height_field.glsl and geotex_view.glsl before it, and with GTX_LIT and GTX_MATERIALS
+ * geotex_surface.glsl and geotex_material.glsl. What hardly changes over a
  * triangle is found here and stays the same all over it: triangles are small, and a vertex serves
  * several. Each number more that a triangle carries costs a few per cent on llvmpipe. */
+#if !defined(GTX_LIT) || !defined(GTX_MATERIALS)
 GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;
 #if defined(GTX_LIT) && !defined(GTX_PLAIN)
 GTX_SAMPLER(3, highp sampler2DArray) gtx_colors;
+#endif
 #endif
 
 #if defined(GTX_BLOCKS)
@@ -211,13 +214,20 @@ void main()
     vec3 ray = normalize(gtx_to_world(object.xyz * gtx_depth.w - eye));
     if (gtx_lod_mesh.x > min(float(index), 0.0)) /* seen from behind; min as in gtx_shown */
         n = gtx_from_behind(n, ray);
-    float light = gtx_diffuse(n, -ray, gtx_light.xyz, deviation);
     gtx_lit = gtx_tint;
+#ifdef GTX_MATERIALS
+    if (gtx_maps.y > 0.0)
+        gtx_lit *= textureLod(gtx_colors, vec3(place, page), level);
+    gtx_material material = gtx_material_at(vec3(place, page), level, gtx_lit.rgb);
+    gtx_lit.rgb = gtx_shown(gtx_shade(material, n, -ray, gtx_light.xyz, gtx_light.w, deviation));
+#else
+    float light = gtx_diffuse(n, -ray, gtx_light.xyz, deviation);
 #ifndef GTX_PLAIN
     gtx_lit *= textureLod(gtx_colors, vec3(place, page), level);
 #endif
     vec3 root = pow(max(gtx_lit.rgb, 0.0), vec3(1.0 / 2.4));
     gtx_lit.rgb = gtx_shown(root, gtx_light.w + (1.0 - gtx_light.w) * light);
+#endif
 #ifdef GTX_TRIMMED
     gtx_outline = 255.0 * texelFetch(gtx_trim, ivec3(rect.xy + at, page), 0).r;
 #endif

@@ -1,6 +1,6 @@
 /* geotex_lod.frag for what the LOD mesh mostly is: patches that are seen from the front alone, of
  * instances whose transform keeps angles. All is done in the patch's own frame, where its normals
- * are. With GTX_CONSTANT the model has one material all over, and no emission. Needs
+ * are. Needs
  * geotex_view.glsl, geotex_surface.glsl and, with GTX_MATERIALS defined, geotex_material.glsl
  * before it, and GTX_FRONT in the vertex shader. */
 GTX_VARYING(0) in vec2 gtx_at;
@@ -27,19 +27,7 @@ void main()
 #ifdef GTX_MATERIALS
     if (gtx_maps.y > 0.0)
         color *= textureLod(gtx_colors, place, level);
-#ifdef GTX_CONSTANT
-    gtx_material material =
-        gtx_material(color.rgb, vec3(0.0), gtx_constant_material.x, gtx_constant_material.y,
-                     gtx_constant_material.z, gtx_constant_material.w);
-#else
-    gtx_material material = gtx_material(color.rgb, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
-    if (gtx_maps.w > 0.0) {
-        vec4 map = textureLod(gtx_materials, place, level);
-        material = gtx_material(color.rgb, vec3(0.0), map.x, map.y, map.z, map.w);
-    }
-    if (gtx_maps.z > 0.0)
-        material.emission = textureLod(gtx_emissions, place, level).rgb * gtx_maps.z;
-#endif
+    gtx_material material = gtx_material_at(place, level, color.rgb);
     color.rgb = gtx_shown(gtx_shade(material, n, gtx_eye * gtx_page.z, gtx_toward * gtx_page.z,
                                     gtx_between, gtx_light.w, gtx_page.z));
 #else

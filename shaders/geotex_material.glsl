@@ -11,6 +11,25 @@ struct gtx_material {
     float lit;                /* share of lighting: 0 shows the colour as it is */
 };
 
+/* The same at a place in the page; with GTX_CONSTANT the model has one material all over, and no
+ * emission. */
+gtx_material gtx_material_at(vec3 place, float level, vec3 color)
+{
+#ifdef GTX_CONSTANT
+    vec4 map = gtx_constant_material;
+    return gtx_material(color, vec3(0.0), map.x, map.y, map.z, map.w);
+#else
+    gtx_material m = gtx_material(color, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
+    if (gtx_maps.w > 0.0) {
+        vec4 map = textureLod(gtx_materials, place, level);
+        m = gtx_material(color, vec3(0.0), map.x, map.y, map.z, map.w);
+    }
+    if (gtx_maps.z > 0.0)
+        m.emission = textureLod(gtx_emissions, place, level).rgb * gtx_maps.z;
+    return m;
+#endif
+}
+
 /* gtx_maps.z scales the emission, 0 when there is none; .w is 1 when the model has materials. */
 gtx_material gtx_material_of(gtx_height_field field, vec2 at, float level, vec3 color)
 {

@@ -1,6 +1,5 @@
 /* Networks of right triangles: where there are cells and they show, and over which triangles
- * normals and colours are what those of the corners make, so that what they look like there is
- * enough. */
+ * maps are what those at the corners make, so that what they look like there is enough. */
 #include "derive/rtin.h"
 
 #include "asset/patch.h"
@@ -11,10 +10,16 @@
 
 enum { CELLS = GTX_RTIN_CELLS };
 
-/* Normals and colours may be so far from what corners make, in codes of 8 bits, of which one is
+/* Maps may be so far from what corners make, in codes of 8 bits, of which one is
  * 0.8 % of a unit normal. In ten near views of a bunny grids take 7 % longer at half and 2 % less
  * at double. */
 static const float tolerance = 3;
+
+/* The brightest highlight of a patch that is lit at its corners, of what a white wall shows; what
+ * is brighter may hide between them. Without metal that is a roughness of 0.5. In a hall of that
+ * (samples/sculpt) PSNR to 2x2 samples is 34.6 dB instead of 34.9 by maps; at double, of 0.4, 31.9
+ * instead of 32.4. At half it is by maps, which take 2.5 times as long. */
+static const float most_gloss = 0.16f;
 
 /* A map of a patch's level 0. */
 typedef struct texel_map {
@@ -23,14 +28,15 @@ typedef struct texel_map {
     uint32_t channels;
 } texel_map;
 
-/* Normals and colours, and sums of how far they stray, of each node. */
+/* Maps, the first of which are normals, and sums of how far they stray, of each node. */
 typedef struct search {
-    texel_map maps[2];
+    texel_map maps[4];
     uint32_t map_count;
     uint32_t width, height;   /* texels */
     gtx_rtin *rtin;
     const gtx_rtin_node *nodes;
     float *sum;
+    float bend;               /* of highlights, by the square of how normals turn, in codes */
 } search;
 
 /* Half of the longest side that the node is the middle of. */
@@ -60,6 +66,17 @@ static int surplus_in(const texel_map *map, side of, int32_t x, int32_t y)
     return most;
 }
 
+/* How much darker a highlight in the middle of a side may be as its ends have it, in codes of 8
+ * bits. */
+static float highlight_in(const search *s, side of, int32_t x, int32_t y)
+{
+    const texel_map *map = &s->maps[0];
+    const uint8_t *m = map->first + (size_t)y * map->row + (size_t)x * 2;
+    const ptrdiff_t away = of.y * (ptrdiff_t)map->row + of.x * 2;
+    const int turn[2] = {m[away] - m[-away], m[away + 1] - m[1 - away]};
+    return s->bend * (float)(turn[0] * turn[0] + turn[1] * turn[1]);
+}
+
 static float surplus(const search *s, side of, int32_t x, int32_t y)
 {
     if ((uint32_t)(x + abs(of.x)) >= s->width || (uint32_t)(y + of.y) >= s->height)
@@ -69,7 +86,7 @@ static float surplus(const search *s, side of, int32_t x, int32_t y)
         const int here = surplus_in(&s->maps[k], of, x, y);
         most = here > most ? here : most;
     }
-    return 0.5f * (float)most;
+    return 0.5f * (float)most + (s->bend > 0 ? highlight_in(s, of, x, y) : 0);
 }
 
 /* Of the middles of a level: the surplus and the greatest sum of their halves' middles, as errors
@@ -121,6 +138,24 @@ static void find_rough(const search *s, size_t count, gtx_rtin_node *nodes)
         nodes[i].bits |= s->sum[i] > tolerance ? GTX_RTIN_ROUGH : 0;
 }
 
+/* Looks for the brightest highlight, of materials as geotex_material.glsl has them, and for the one
+ * that bends most. One is f0 / 4 a^2 where a is the square of the roughness, by (1 + x^2 / a^2)^-2
+ * at a slope of x: between ends that lie `turn` apart a line is off by f0 turn^2 / 8 a^4. */
+static void find_highlights(search *s, gtx_rtin *rtin)
+{
+    const texel_map *map = &s->maps[s->map_count - 1];
+    float most = 0;
+    for (uint32_t y = 0; y < s->height; ++y)
+        for (uint32_t x = 0; x < s->width; ++x) {
+            const uint8_t *m = map->first + y * map->row + (size_t)x * map->channels;
+            const float rough = fmaxf((float)m[1] / 255, 0.05f), a2 = rough * rough * rough * rough;
+            const float f0 = (0.04f + 0.96f * (float)m[2] / 255) * (float)m[3] / 255;
+            most = fmaxf(most, f0 / (4 * a2));
+            s->bend = fmaxf(s->bend, f0 / (8 * a2 * a2) * 255 / (127 * 127));
+        }
+    rtin->glossy = most > most_gloss;
+}
+
 void gtx_rtin_mark(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest, gtx_rtin *rtin,
                    gtx_rtin_node *nodes, float *scratch)
 {
@@ -129,10 +164,16 @@ void gtx_rtin_mark(const gtx_asset *asset, uint32_t patch, const gtx_grid *fines
     const size_t row = info->page_width;
     const size_t first = ((size_t)p->page * info->page_height + p->rect[1]) * row + p->rect[0];
     search s = {{{asset->normal[0] + 2 * first, 2 * row, 2}}, 1, p->rect[2], p->rect[3], rtin,
-                nodes, scratch};
+                nodes, scratch, 0};
     if (info->has_color)
         s.maps[s.map_count++] = (texel_map){asset->color[0] + 4 * first, 4 * row, 4};
+    if (info->has_emission)
+        s.maps[s.map_count++] = (texel_map){asset->emission[0] + 3 * first, 3 * row, 3};
+    if (info->has_material) {
+        s.maps[s.map_count++] = (texel_map){asset->material[0] + 4 * first, 4 * row, 4};
+        find_highlights(&s, rtin);
+    }
     find_outline(finest, asset->trim + first, row, gtx_rtin_row(rtin), nodes);
-    if (!info->has_material && !info->has_emission)
+    if (!rtin->glossy)
         find_rough(&s, gtx_rtin_nodes(p), nodes);
 }

@@ -35,8 +35,8 @@ static inline uint32_t gtx_rtin_level(uint32_t triangle)
 /* A node of the blocks; beyond the grid it repeats the last one. The error is 0 where blocks begin,
  * and else what the triangles are off by that it is the middle of, and all that come of halving
  * them: never less than that of a node that a half of them has for a middle. They are rough where
- * normals or colours of their corners do not make those over them; then so is a node whose halves'
- * middle it is. */
+ * maps at their corners do not make those over them; then so is a node whose halves' middle it
+ * is. */
 typedef struct gtx_rtin_node {
     uint16_t code, bits;      /* bits: the error, and those below */
 } gtx_rtin_node;
@@ -60,6 +60,7 @@ typedef struct gtx_rtin {
     float unit;               /* of errors, in object units */
     uint16_t rise[GTX_RTIN_LEVELS]; /* codes from a middle of the level to those of the halves, at
                                        most, where they have an error */
+    bool glossy;              /* light at corners does not tell of its highlights */
 } gtx_rtin;
 
 static inline uint32_t gtx_rtin_row(const gtx_rtin *r)
@@ -78,8 +79,8 @@ gtx_result gtx_grid_rtin(const gtx_asset *asset, uint32_t patch, const gtx_grid 
                          const gtx_allocator *allocator, gtx_rtin *out, gtx_rtin_node *nodes,
                          gtx_rtin_block *blocks, gtx_error *error);
 
-/* marks.c: what nodes tell besides their errors; of assets with materials none is rough.
- * `scratch` has room for a number a node. */
+/* marks.c: what nodes tell besides their errors, and whether the patch is glossy. `scratch`
+ * has room for a number a node. */
 void gtx_rtin_mark(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest, gtx_rtin *rtin,
                    gtx_rtin_node *nodes, float *scratch);
 

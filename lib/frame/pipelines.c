@@ -60,9 +60,12 @@ static const technique_files techniques[TECHNIQUE_COUNT] = {
                                     {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS,
                                      MATERIAL_CONSTANT}},
     [TECHNIQUE_GRID_LIT] = {"lit grid", "geotex_lod.vert", GRID TRIMMED LIT, {NULL},
-                            "geotex_lit.frag", {MATERIAL_NONE, MATERIAL_COLORS}},
+                            "geotex_lit.frag",
+                            {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS, MATERIAL_CONSTANT}},
     [TECHNIQUE_GRID_WHOLE_LIT] = {"whole lit grid", "geotex_lod.vert", GRID LIT, {NULL},
-                                  "geotex_lit.frag", {MATERIAL_NONE, MATERIAL_COLORS}},
+                                  "geotex_lit.frag",
+                                  {MATERIAL_NONE, MATERIAL_COLORS, MATERIAL_MAPS,
+                                   MATERIAL_CONSTANT}},
     [TECHNIQUE_BLOCKS] = {"blocks", "geotex_lod.vert", BLOCKS TRIMMED,
                           {"geotex_lod_fragment.glsl"}, "geotex_lod.frag", ALL_BUT_CONSTANT},
     [TECHNIQUE_BLOCKS_FRONT] = {"blocks front", "geotex_lod.vert", BLOCKS TRIMMED FRONT, {NULL},
@@ -260,6 +263,18 @@ static void begin(source *s, const recipe *r)
         add_file(s, shared[i]);
 }
 
+/* Vertices that are lit have materials. */
+static void add_vertex(source *s, const recipe *r)
+{
+    const gtx_technique by = r->technique;
+    const bool is_lit = by == TECHNIQUE_GRID_LIT || by == TECHNIQUE_GRID_WHOLE_LIT;
+    if (is_lit && materials[r->material].file) {
+        add_file(s, "geotex_surface.glsl");
+        add_file(s, materials[r->material].file);
+    }
+    add_file(s, techniques[r->technique].vertex);
+}
+
 static void add_fragment(source *s, const recipe *r, const char *own_main)
 {
     const technique_files *t = &techniques[r->technique];
@@ -284,7 +299,7 @@ uint32_t gtx_pipeline_source(uint32_t pipeline, gtx_stage stage, const char *own
         return 0;
     begin(&s, &r);
     if (stage == GTX_STAGE_VERTEX)
-        add_file(&s, techniques[r.technique].vertex);
+        add_vertex(&s, &r);
     else
         add_fragment(&s, &r, own_main);
     return s.count;

@@ -31,7 +31,7 @@ gtx_refining gtx_refine(const gtx_frustum *f, const gtx_model *model, uint32_t p
                       .blocks = model->blocks + model->first_slab[patch],
                       .patch = patch, .row = gtx_rtin_row(rtin),
                       .two_sided = model->records[patch][GTX_RECORD_TWO_SIDED][3] > 0,
-                      .mapped = model->has_material || model->has_emission,
+                      .mapped = rtin->glossy,
                       .turn = model->lods.first_provokes,
                       .depth = GTX_RTIN_LEVELS, .by_error = f->level < 0,
                       .w = {w[0], w[1], w[2], w[3]},

@@ -1,4 +1,5 @@
 /* Materials: what metallic, roughness, occlusion, emission and unlit do to a sphere. */
+#include "render/renderer.h"
 #include "look.h"
 
 /* What a sphere of that look shows: the middle of the picture (facing the light), its brightest
@@ -117,6 +118,53 @@ static void a_headlight_leaves_no_dark_specks(void **state)
     subject_close(s, &sphere);
 }
 
+/* How far the picture of the displaced grid is from that of the cast sphere, in the mean and at
+ * most; and what share of its triangles look maps up. */
+static double compare_grid(stage *s, look l, int *most, double *mapped)
+{
+    subject sphere = subject_open(s, repaint(fixture_sphere(2, 48, 8), &l));
+    gtx_camera camera = camera_around(sphere.asset);
+    gtx_view view = view_of(&camera);
+    uint8_t *cast = malloc(sizeof s->color);
+    const uint32_t *corners = s->renderer->planner.grids.index_count;
+    double all = 0, looked_up = 0, sum = 0;
+    view.method = GTX_METHOD_CAST;
+    stage_draw(s, &view, &sphere.instance, 1);
+    memcpy(cast, s->color, sizeof s->color);
+    view.method = GTX_METHOD_GRID;
+    stage_draw(s, &view, &sphere.instance, 1);
+    for (uint32_t k = 0; k < GTX_GRID_LOOKS; ++k) {
+        all += corners[k];
+        looked_up += k & GTX_GRID_MAPPED ? corners[k] : 0;
+    }
+    *most = 0;
+    *mapped = looked_up / all;
+    for (int i = 0; i < 4 * STAGE_PIXELS; ++i) {
+        const int off = cast[i | 3] && s->color[i | 3] ? abs(s->color[i] - cast[i]) : 0;
+        *most = off > *most ? off : *most;
+        sum += off;
+    }
+    free(cast);
+    subject_close(s, &sphere);
+    return sum / (4.0 * STAGE_PIXELS);
+}
+
+/* Where nothing gleams, the light at corners is enough, whatever the material. */
+static void corners_have_what_maps_have(void **state)
+{
+    STAGE_OR_SKIP(state);
+    look glossy = clay, lamp = clay;
+    int most;
+    double mapped;
+    memcpy(lamp.emission, (uint8_t[3]){20, 200, 90}, 3);
+    lamp.material[0] = 100;
+    lamp.material[1] = 150;
+    glossy.material[1] = 90;
+    assert_true(compare_grid(s, clay, &most, &mapped) < 0.02 && most < 24 && mapped == 0);
+    assert_true(compare_grid(s, lamp, &most, &mapped) < 0.02 && most < 24 && mapped == 0);
+    assert_true(compare_grid(s, glossy, &most, &mapped) < 0.02 && most < 24 && mapped == 1);
+}
+
 /* Models with and without materials in one draw, in any order, are as each alone. */
 static void programs_change_within_a_draw(void **state)
 {
@@ -160,6 +208,7 @@ int main(void)
         cmocka_unit_test(unlit_shows_its_colour_everywhere),
         cmocka_unit_test(emission_shines_in_the_dark),
         cmocka_unit_test(a_headlight_leaves_no_dark_specks),
+        cmocka_unit_test(corners_have_what_maps_have),
         cmocka_unit_test(programs_change_within_a_draw),
     };
     return cmocka_run_group_tests(tests, stage_open, stage_close);
