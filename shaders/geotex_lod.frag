@@ -6,8 +6,8 @@ layout(location = 0) out vec4 gtx_out_color;
 /* Light from the front on a unit normal; on a back, on what gtx_from_behind makes of it. */
 float gtx_lambert(vec3 n)
 {
-    vec3 m = gl_FrontFacing ? n : gtx_from_behind(n, gtx_ray);
-    return gtx_diffuse(m, -gtx_ray, gtx_light.xyz, gtx_page.z);
+    vec3 m = gl_FrontFacing ? n : gtx_from_behind(n, gtx_sight());
+    return gtx_diffuse(m, -gtx_sight(), gtx_light.xyz, gtx_page.z);
 }
 
 void main()
@@ -23,11 +23,11 @@ void main()
     vec4 color = gtx_color;
 #ifdef GTX_MATERIALS
     if (!gl_FrontFacing)
-        n = gtx_from_behind(n, gtx_ray);
+        n = gtx_from_behind(n, gtx_sight());
     if (gtx_maps.y > 0.0)
         color *= textureLod(gtx_colors, place, level);
     gtx_material material = gtx_material_at(place, level, color.rgb);
-    color.rgb = gtx_shown(gtx_shade(material, n, -gtx_ray, gtx_light.xyz, gtx_light.w,
+    color.rgb = gtx_shown(gtx_shade(material, n, -gtx_sight(), gtx_light.xyz, gtx_light.w,
                                     gtx_page.z));
 #else
     float share = gtx_light.w + (1.0 - gtx_light.w) * gtx_lambert(n);

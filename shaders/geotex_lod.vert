@@ -70,15 +70,16 @@ GTX_VARYING(1) flat out vec3 gtx_page;      /* page; mip level; how far normals 
 GTX_VARYING(5) flat out vec4 gtx_color;     /* where no map gives colours, the 2.4th root of rgb */
 #ifdef GTX_FRONT
 GTX_VARYING(2) flat out vec3 gtx_toward;    /* the light among the patch's normals, and the eye: */
-GTX_VARYING(3) flat out vec3 gtx_eye;       /* unit, over how far normals stray */
-#ifdef GTX_MATERIALS
+GTX_VARYING(3) GTX_STEADY out vec3 gtx_eye; /* unit, over how far normals stray; with GTX_BLOCKS
+                                               the eye is neither */
+#if defined(GTX_MATERIALS) && !defined(GTX_BLOCKS)
 GTX_VARYING(4) flat out vec4 gtx_between;   /* what gtx_half_way says there */
 #endif
 #else
 GTX_VARYING(2) flat out vec3 gtx_normal_x;  /* the patch's normals -> world */
 GTX_VARYING(3) flat out vec3 gtx_normal_y;
 GTX_VARYING(4) flat out vec3 gtx_normal_z;
-GTX_VARYING(6) flat out vec3 gtx_ray;       /* of sight; world space, unit */
+GTX_VARYING(6) GTX_STEADY out vec3 gtx_ray; /* of sight; world space, but with GTX_BLOCKS unit */
 GTX_VARYING(7) out vec3 gtx_object;         /* the point in either space; what follows costs only */
 GTX_VARYING(8) out vec3 gtx_world;          /* where a main reads it */
 GTX_VARYING(9) flat out int gtx_patch_index;
@@ -239,9 +240,13 @@ void main()
     vec3 toward = normalize(gtx_light.xyz * world_normals) * frame;
     gtx_toward = toward * (1.0 / deviation);
     vec3 eye = gtx_view_eye(gtx_object_x, gtx_object_y, gtx_object_z) - object.xyz * gtx_depth.w;
+#ifdef GTX_BLOCKS
+    gtx_eye = eye * frame;
+#else
     eye = normalize(eye) * frame;
     gtx_eye = eye * (1.0 / deviation);
-#ifdef GTX_MATERIALS
+#endif
+#if defined(GTX_MATERIALS) && !defined(GTX_BLOCKS)
     gtx_between = gtx_half_way(vec3(0.0, 0.0, 1.0), eye, toward);
 #endif
 #else
@@ -251,7 +256,10 @@ void main()
     gtx_object = object.xyz;
     gtx_world = world;
     vec3 eye = gtx_view_eye(gtx_object_x, gtx_object_y, gtx_object_z);
-    gtx_ray = normalize(gtx_to_world(object.xyz * gtx_depth.w - eye));
+    gtx_ray = gtx_to_world(object.xyz * gtx_depth.w - eye);
+#ifndef GTX_BLOCKS
+    gtx_ray = normalize(gtx_ray);
+#endif
     gtx_patch_index = index;
     gtx_id = gtx_instance;
 #endif

@@ -10,11 +10,21 @@ GTX_VARYING(2) flat in vec3 gtx_normal_x;
 GTX_VARYING(3) flat in vec3 gtx_normal_y;
 GTX_VARYING(4) flat in vec3 gtx_normal_z;
 GTX_VARYING(5) flat in vec4 gtx_color;
-GTX_VARYING(6) flat in vec3 gtx_ray;
+GTX_VARYING(6) GTX_STEADY in vec3 gtx_ray;
 GTX_VARYING(7) in vec3 gtx_object;
 GTX_VARYING(8) in vec3 gtx_world;
 GTX_VARYING(9) flat in int gtx_patch_index;
 GTX_VARYING(10) flat in uint gtx_id;
+
+/* Of sight; world space, unit. */
+vec3 gtx_sight()
+{
+#ifdef GTX_BLOCKS
+    return normalize(gtx_ray);
+#else
+    return gtx_ray;
+#endif
+}
 
 struct gtx_surface {
     gtx_hit hit;        /* hit.grid.xy: texel coordinates in the patch */
@@ -64,7 +74,7 @@ vec3 gtx_world_point(gtx_surface s)
 
 vec3 gtx_world_ray(gtx_surface s)
 {
-    return gtx_ray;
+    return gtx_sight();
 }
 
 vec3 gtx_place()
@@ -76,7 +86,7 @@ vec3 gtx_world_normal(gtx_surface s)
 {
     vec3 p = gtx_decode_normal(textureLod(gtx_normals, gtx_place(), gtx_page.y).xy);
     vec3 n = normalize(gtx_normal_x * p.x + gtx_normal_y * p.y + gtx_normal_z * p.z);
-    return gl_FrontFacing ? n : gtx_from_behind(n, gtx_ray);
+    return gl_FrontFacing ? n : gtx_from_behind(n, gtx_sight());
 }
 
 vec4 gtx_albedo(gtx_surface s)

@@ -1,5 +1,13 @@
 /* The camera and the light of a draw: uniforms that the stock mains share, and what they do with
  * them. */
+/* Of the eye's direction, which hardly changes over a small triangle; those of a block that a GPU
+ * displaces may be large. */
+#ifdef GTX_BLOCKS
+#define GTX_STEADY
+#else
+#define GTX_STEADY flat
+#endif
+
 GTX_BLOCK(8, gtx_uniforms)
 GTX_UNIFORM mat4 gtx_clip_from_world;   /* the engine's projection * view */
 GTX_UNIFORM vec4 gtx_depth;             /* x: clip z >= -x * w at the near plane (1 or 0);

@@ -90,6 +90,7 @@ static void blocks_are_displaced(void **state)
     const uint64_t before = vk->planner->grids.drawn;
     check_all(s, d, fixture_sphere_without(2, 64, 8, 5), 10000);
     check_all(s, d, with_lod(fixture_sphere(2, 64, 8), 2, 3, GTX_PATCH_TWO_SIDED), 10000);
+    check_all(s, d, with_lod_as(fixture_sphere(2, 64, 8), 2, 3, 0, LOD_EVEN), 200);
     assert_true(vk->planner->grids.drawn > before);
     vk->planner->on_gpu = s->renderer->planner.on_gpu = usual;
 }
