@@ -93,8 +93,8 @@ int cmd_export(int argc, char **argv)
     code = check(input);
     if (code)
         return code;
-    desc.compress = (gtx_compress)compress;
-    desc.textures = (gtx_textures)textures;
+    desc.compress = (gtx_export_compression)compress;
+    desc.textures = (gtx_export_textures)textures;
     desc.lods = lods;
     desc.collision = collision;
     desc.without_asset = without_asset;

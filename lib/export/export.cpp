@@ -124,8 +124,8 @@ static void check(const gtx_export_desc &desc)
     require_limits(desc.limits);
     require_argument(desc.lods <= 1 && desc.collision <= 1 && desc.without_asset <= 1,
                      "lods, collision and without_asset are 0 or 1");
-    require_argument(number_of(desc.compress) <= GTX_COMPRESS_DRACO, "unknown compression");
-    require_argument(number_of(desc.textures) <= GTX_TEXTURES_KTX2, "unknown kind of textures");
+    require_argument(number_of(desc.compress) <= GTX_EXPORT_DRACO, "unknown compression");
+    require_argument(number_of(desc.textures) <= GTX_EXPORT_KTX2, "unknown kind of textures");
     require_argument(desc.threads <= 1024, "threads is at most 1024");
     require_argument(desc.max_error >= 0 && std::isfinite(desc.max_error),
                      "max_error is finite and not negative");
@@ -179,9 +179,9 @@ static Bytes exported(std::string_view data, const gtx_export_desc &desc,
     options.lods = desc.lods;
     options.collision = desc.collision;
     options.with_asset = !desc.without_asset;
-    options.meshopt = number_of(desc.compress) == GTX_COMPRESS_MESHOPT;
-    options.draco = number_of(desc.compress) == GTX_COMPRESS_DRACO;
-    options.ktx2 = number_of(desc.textures) == GTX_TEXTURES_KTX2;
+    options.meshopt = number_of(desc.compress) == GTX_EXPORT_MESHOPT;
+    options.draco = number_of(desc.compress) == GTX_EXPORT_DRACO;
+    options.ktx2 = number_of(desc.textures) == GTX_EXPORT_KTX2;
     Exported made = export_glb(asset.get(), bytes, options, task);
     task.end();
     if (report) {

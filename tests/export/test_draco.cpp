@@ -59,9 +59,9 @@ static void the_same_within_its_steps(void **)
     gtx_export_desc desc = {};
     for (uint32_t collision = 0; collision < 2; ++collision) {
         desc.collision = collision;
-        desc.compress = GTX_COMPRESS_NONE;
+        desc.compress = GTX_EXPORT_UNCOMPRESSED;
         const std::string plain = exported(asset, desc);
-        desc.compress = GTX_COMPRESS_DRACO;
+        desc.compress = GTX_EXPORT_DRACO;
         const std::string packed = exported(asset, desc);
         assert_true(packed == exported(asset, desc));
         const gtx::Mesh a = imported(plain), b = imported(packed);
@@ -86,7 +86,7 @@ static void what_it_says_of_itself(void **)
 {
     const std::string asset = cooked_sphere();
     gtx_export_desc desc = {};
-    desc.compress = GTX_COMPRESS_DRACO;
+    desc.compress = GTX_EXPORT_DRACO;
     desc.lods = 1;
     const std::string file = exported(asset, desc);
     const Glb glb(file);
@@ -105,10 +105,10 @@ static void what_it_says_of_itself(void **)
     size_t size = 0;
     assert_int_equal(gtx_find_asset(file.data(), file.size(), &held, &size, nullptr), GTX_OK);
     assert_true(size == asset.size() && !std::memcmp(held, asset.data(), size));
-    desc.compress = GTX_COMPRESS_MESHOPT;
+    desc.compress = GTX_EXPORT_MESHOPT;
     desc.without_asset = 1;
     const size_t meshopt = exported(asset, desc).size();
-    desc.compress = GTX_COMPRESS_DRACO;
+    desc.compress = GTX_EXPORT_DRACO;
     assert_true(exported(asset, desc).size() < meshopt);
 }
 
@@ -117,7 +117,7 @@ static void memory_is_limited(void **)
 {
     gtx_export_desc desc = {};
     desc.collision = 1;
-    desc.compress = GTX_COMPRESS_DRACO;
+    desc.compress = GTX_EXPORT_DRACO;
     const std::string asset = cooked_sphere();
     std::string out;
     desc.limits.memory = 1 << 20;

@@ -261,7 +261,7 @@ static void compressed_it_is_the_same(void **state)
         gtx::Mesh meshes[2];
         std::string files[2];
         for (int packed = 0; packed < 2; ++packed) {
-            desc.compress = packed ? GTX_COMPRESS_MESHOPT : GTX_COMPRESS_NONE;
+            desc.compress = packed ? GTX_EXPORT_MESHOPT : GTX_EXPORT_UNCOMPRESSED;
             files[packed] = exported(bytes, desc);
             gtx::Task task(1, nullptr, nullptr);
             meshes[packed] = gtx::import_model(
@@ -295,7 +295,7 @@ static void compressed_it_is_the_same(void **state)
                          collision ? GTX_ERROR_EMPTY : GTX_OK);
         assert_true(collision || (size == bytes.size() && !std::memcmp(held, bytes.data(), size)));
     }
-    desc.compress = gtx_compress(3);
+    desc.compress = gtx_export_compression(3);
     void *out = nullptr;
     size_t size = 0;
     assert_int_equal(gtx_export_memory(bytes.data(), bytes.size(), &desc, &out, &size, nullptr,

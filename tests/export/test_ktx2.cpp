@@ -151,7 +151,7 @@ static void exports_hold_the_same_maps(void **)
     const std::string asset = cooked(sphere_obj(40, true), "a.obj");
     gtx_export_desc desc = {};
     const Glb png(exported(asset, desc));
-    desc.textures = GTX_TEXTURES_KTX2;
+    desc.textures = GTX_EXPORT_KTX2;
     const Glb ktx(exported(asset, desc));
     const auto &required = ktx.root["extensionsRequired"];
     assert_true(std::find(required.begin(), required.end(), "KHR_texture_basisu") !=
@@ -183,7 +183,7 @@ static void exports_hold_the_same_maps(void **)
     }
     /* The asset is there as it was, and coarser levels have normals of fit sides. */
     desc.lods = 1;
-    desc.compress = GTX_COMPRESS_DRACO;
+    desc.compress = GTX_EXPORT_DRACO;
     const std::string file = exported(asset, desc);
     const Glb all(file);
     const void *found = nullptr;
