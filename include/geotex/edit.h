@@ -1,17 +1,17 @@
-/* Image operations on the surface of an asset: blur, boost, patterns, operations of your own, and
- * edits while the asset is drawn.
+/* Editing the surface of an asset: blur, high-boost, patterns, operations of your own, and edits
+ * while the asset is drawn.
  *
  * An edit unpacks each patch's height field into a grid of points with normals. A texel of it
  * belongs to the patch if it is inside the patch's outline; otherwise it is borrowed: the surface
- * there belongs to a neighbour, and moves with the neighbour's points. So all patches see one
- * surface across their borders, and no operation opens a seam. (In the paper, section 6.3, every
- * patch is filtered by itself; GTX_EDIT_PER_PATCH does the same, for comparison.)
+ * there belongs to a neighbouring patch, and moves with that patch's points. So the surface stays
+ * continuous across patches, and no operation opens a seam. (In the paper, section 6.3, every patch
+ * is filtered by itself; GTX_EDIT_PER_PATCH does the same, for comparison.)
  *
- * A fold limiter holds back changes that would turn part of a patch's surface away from its axis_z,
- * where no height map can show it, fully there and ever less around: the tip of a claw is rounded
- * off a little less than its flanks.
+ * A height map cannot show surface that is turned away from its axis_z. A fold limiter holds
+ * changes back that would turn it so: fully where it would, and less with distance. The tip of a
+ * claw is then rounded a little less than its flanks.
  *
- * Points may move in any direction. At the end they are resampled to texels, once, however many
+ * Points may move in any direction. They are resampled to texels once, at the end, however many
  * operations there were; outlines, colours and materials move with the surface.
  *
  * The rules of geotex.h hold here too. An operation that fails leaves the edit as it was. LOD
@@ -33,23 +33,23 @@ typedef struct gtx_edit_desc {
     uint32_t reserved[6];
 } gtx_edit_desc;
 
-/* Begins an edit. `asset` is not changed, and must stay open until gtx_edit_end, which frees the
- * edit; `desc` may be NULL. Takes some 100 bytes per texel.
+/* Begins an edit; free it with gtx_edit_end. `asset` is not changed, and must stay open until then.
+ * `desc` may be NULL. Takes some 100 bytes per texel.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, EMPTY (no texel has a height). */
 GTX_API gtx_result gtx_edit_begin(const gtx_asset *asset, const gtx_edit_desc *desc, gtx_edit **out,
                                   gtx_error *error);
-/* Frees the edit, and the asset that gtx_edit_refresh gave. NULL is fine. */
+/* Frees the edit and the asset of gtx_edit_refresh. NULL is fine. */
 GTX_API void gtx_edit_end(gtx_edit *edit);
 
 /* The median texel size of the patches, in object units. */
 GTX_API float gtx_edit_texel_size(const gtx_edit *edit);
 
 enum { /* gtx_edit_blur.flags */
-    GTX_EDIT_WORLD = 1,           /* radius in object units, not in texels */
+    GTX_EDIT_WORLD = 1,           /* the radius is in object units, not in texels */
     GTX_EDIT_PER_PATCH = 2        /* as in the paper: each patch by itself, heights along its z */
 };
 
-/* A Gaussian over the surface, of points and normals. Distances are measured along the surface,
+/* A Gaussian blur of points and normals over the surface. Distances are measured along the surface,
  * whatever the patches' frames: it is a heat flow for a time of radius^2 / 2 (Desbrun et al.,
  * "Implicit Fairing of Irregular Meshes using Diffusion and Curvature Flow", SIGGRAPH 1999). */
 typedef struct gtx_edit_blur {
@@ -58,8 +58,8 @@ typedef struct gtx_edit_blur {
     uint32_t reserved[6];
 } gtx_edit_blur;
 
-/* Replaces the surface by its blur. A plane stays; a sphere of radius R shrinks by a factor of
- * exp(-(radius / R)^2). Takes some 200 bytes per texel meanwhile.
+/* Replaces the surface by its blur. A plane stays as it is; a sphere of radius R shrinks by a
+ * factor of exp(-(radius / R)^2). Takes some 200 bytes per texel during the call.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT (the radius is larger than the largest patch). */
 GTX_API gtx_result gtx_edit_gaussian(gtx_edit *edit, const gtx_edit_blur *blur, gtx_error *error);
 
@@ -82,10 +82,10 @@ GTX_API gtx_result gtx_edit_pattern(gtx_edit *edit, const gtx_edit_image *image,
                                     float size, gtx_error *error);
 
 enum { /* gtx_edit_field.kind */
-    GTX_TEXEL_NONE = 0,           /* no surface; the other arrays mean nothing here */
+    GTX_TEXEL_NONE = 0,           /* no surface; the other arrays are undefined here */
     GTX_TEXEL_OWN = 1,            /* the patch's own: operations act here */
-    GTX_TEXEL_BORROWED = 2,       /* a neighbour's: follows automatically */
-    GTX_TEXEL_LOOSE = 3           /* past a border without a neighbour: follows automatically */
+    GTX_TEXEL_BORROWED = 2,       /* a neighbouring patch's: follows that patch */
+    GTX_TEXEL_LOOSE = 3           /* beyond an open border: follows the patch's own texels */
 };
 
 /* A patch's height field: arrays of width * height, row by row, for the patch's rectangle and a
@@ -101,9 +101,9 @@ typedef struct gtx_edit_field {
 
 typedef void (*gtx_edit_fn)(const gtx_edit_field *field, void *user);
 
-/* An operation of your own: calls `fn` for every height field on the calling thread, then makes
- * borrowed texels follow. `fn` may read any texel, neighbours' texels up to at least 3 past the
- * outline included, and writes `point` and `next` of its own texels.
+/* An operation of your own: calls `fn` for every height field, on the calling thread, then updates
+ * borrowed and loose texels. `fn` may read any texel (there are at least 3 borrowed ones beyond the
+ * outline), and may write `point` and `next` of the patch's own texels.
  * Errors: ARGUMENT (a value or a point is not finite), MEMORY. */
 GTX_API gtx_result gtx_edit_apply(gtx_edit *edit, gtx_edit_fn fn, void *user, gtx_error *error);
 
@@ -131,18 +131,19 @@ GTX_API gtx_result gtx_edit_stamp(gtx_edit *edit, const gtx_edit_stamp_desc *sta
 GTX_API gtx_result gtx_edit_set_heights(gtx_edit *edit, uint32_t patch, const uint32_t rectangle[4],
                                         const float *heights, gtx_error *error);
 
-/* Makes an asset of the edited surface, from the edit's allocator; gtx_close frees it. Patches that
- * did not change keep their bytes. If a patch has outgrown its rectangle, pages are laid out anew.
+/* Makes an asset of the edited surface, allocated from the edit's allocator; free it with
+ * gtx_close. Unchanged patches keep their bytes. If a patch has outgrown its rectangle, pages are
+ * packed anew.
  * Errors: ARGUMENT, MEMORY, LIMIT (a patch would be larger than a page may be, all patches 16 times
  * as large as they were, or numbers larger or smaller than the rules of the format allow). */
 GTX_API gtx_result gtx_edit_finish(const gtx_edit *edit, gtx_asset **out, gtx_error *error);
 
 /* The same for an asset that is being drawn: rectangles stay where they are, and only patches that
- * have changed since the last call are written again. *asset belongs to the edit, is valid until
- * gtx_edit_end and is changed by the next call; its content_hash is 0. *patches gets the *count
- * indices of changed patches, valid until the next call: give each to gtx_model_update, and to
- * gtx_rays_update if shaders cast rays into it. What moves out of its rectangle is lost: sideways
- * there is room for a texel or two.
+ * have changed since the last call are written. *asset belongs to the edit, is valid until
+ * gtx_edit_end and is changed by the next call; its content_hash is 0. *patches gets the indices of
+ * the *count patches that changed, valid until the next call: pass each to gtx_model_update, and to
+ * gtx_rays_update if shaders cast rays into it. Surface that moves out of its patch's rectangle is
+ * lost; sideways there is room for a texel or two.
  * Errors: ARGUMENT, MEMORY. */
 GTX_API gtx_result gtx_edit_refresh(gtx_edit *edit, const gtx_asset **asset,
                                     const uint32_t **patches, uint32_t *count, gtx_error *error);

@@ -1,4 +1,4 @@
-/* geotex: finely tessellated models as oriented height-map patches, cast beside polygons.
+/* geotex: finely tessellated models as oriented height-map patches, ray-cast beside polygons.
  *
  * This header opens, inspects, validates, creates and encodes `.gtx` assets and casts rays into
  * them. It needs libc and libm, and zstd unless that is left out of the build. Drawing is in
@@ -6,8 +6,8 @@
  *
  * Rules that hold everywhere
  *   - A descriptor struct filled with zeros asks for the defaults; `reserved` fields must be zero.
- *   - Functions that can fail return a gtx_result and take an optional, caller-owned gtx_error
- *     last. On failure the outputs are left NULL or untouched.
+ *   - Functions that can fail return a gtx_result. Most take an optional, caller-owned gtx_error as
+ *     their last parameter. On failure, outputs are set to NULL or left untouched.
  *   - There is no global state. Distinct objects may be used from distinct threads at once; one
  *     object may be read (every function taking a const pointer) from many threads at once.
  *   - Nothing prints, exits or throws.
@@ -55,8 +55,8 @@ GTX_API uint32_t gtx_version(void);
 /* Values are frozen: appended to, never renumbered. */
 typedef enum gtx_result {
     GTX_OK = 0,
-    GTX_CANCELLED = 1,            /* a progress callback asked to stop */
-    GTX_ERROR_ARGUMENT = 10,      /* a NULL or an out-of-range argument */
+    GTX_CANCELLED = 1,            /* a progress callback asked to stop; also gtx_stream_deliver */
+    GTX_ERROR_ARGUMENT = 10,      /* an argument is NULL or out of range */
     GTX_ERROR_NOT_ZEROED = 11,    /* a descriptor's reserved field is not zero */
     GTX_ERROR_MEMORY = 20,        /* the allocator returned NULL */
     GTX_ERROR_LIMIT = 21,         /* a stated limit (memory, texture size, patches) is exceeded */
@@ -90,48 +90,47 @@ typedef struct gtx_error {
 
 /* ---- memory and progress ---------------------------------------------------------------- */
 
-/* Memory hooks. `alloc` returns at least `size` bytes aligned to 16, or NULL; `free` gets the size
- * back. Both may be called from any thread that calls into geotex. NULL hooks mean malloc and free.
- * Objects copy the struct: each is freed by the function named with it, through the hooks it was
- * made with. Memory that a call takes for its own use is given back before it returns. */
+/* Memory hooks. `alloc` returns at least `size` bytes, aligned to 16 bytes, or NULL; `free` is
+ * given the size that was allocated. Both may be called from any thread that calls into geotex.
+ * NULL hooks mean malloc and free. Objects copy the struct: an object is freed through the hooks
+ * that it was made with. Temporary memory is freed before a call returns. */
 typedef struct gtx_allocator {
     void *(*alloc)(size_t size, void *user);
     void (*free)(void *memory, size_t size, void *user);
     void *user;
 } gtx_allocator;
 
-/* A host's threads, such as an engine's job system, for calls that can use several. `run` calls
- * job(i, data) once for every i below `count`, in any order, on any threads, in parallel or not,
- * and returns when all jobs have. A job neither waits for another nor calls `run`. Jobs may take
- * memory from the call's allocator, which must then be safe to call from several threads at once,
- * as malloc is. Results are the same, byte by byte and error by error, however jobs are run. Zeros,
- * like NULL, run the jobs one after another on the calling thread; the library has no threads of
- * its own. */
+/* The host's job system, for calls that can use several threads. `run` calls job(i, data) once for
+ * every i below `count`, in any order, on any threads, and returns when all jobs have finished.
+ * Jobs never wait for each other and never call `run`. They may allocate from the call's allocator,
+ * which must then be thread-safe, as malloc is. Results and errors are the same however jobs are
+ * run. NULL or a zeroed struct runs the jobs one after another on the calling thread; the library
+ * itself starts no threads. */
 typedef struct gtx_jobs {
     void (*run)(uint32_t count, void (*job)(uint32_t index, void *data), void *data, void *user);
     void *user;
 } gtx_jobs;
 
-/* What a call may take for files that others made. 0 asks for a field's default, which grows with
- * the bytes that the call reads; UINT64_MAX lifts a limit. What would pass one ends in LIMIT before
- * it is taken. */
+/* How much a call may use for untrusted files. 0 asks for a field's default; most defaults grow
+ * with the number of bytes that the call reads, as "A + B per byte read". UINT64_MAX removes a
+ * limit. A call fails with LIMIT before it exceeds one. */
 typedef struct gtx_limits {
-    uint64_t memory;              /* bytes at once; 0 = 256 MiB and 2,000 for each byte read */
-    uint64_t triangles;           /* of all models together, once polygons are cut and instances
-                                     placed; 0 = 2^19 and 1.5 for each byte read */
-    uint64_t texels;              /* of an asset's pages at level 0, and nodes of height grids;
-                                     0 = 2^26 and 256 for each byte read */
-    uint64_t pixels;              /* of one image; 0 = 2^26 and 16 for each byte read */
+    uint64_t memory;              /* bytes held at any time; 0 = 256 MiB + 2,000 per byte read */
+    uint64_t triangles;           /* in all models together, after polygons are triangulated and
+                                     instances expanded; 0 = 2^19 + 1.5 per byte read */
+    uint64_t texels;              /* in an asset's pages at level 0, or nodes in height grids;
+                                     0 = 2^26 + 256 per byte read */
+    uint64_t pixels;              /* in one image; 0 = 2^26 + 16 per byte read */
     uint64_t patches;             /* 0 = 2^20 */
-    uint64_t cells;               /* that a ray may visit (gtx_ray_cells); 0 = 2^19 */
-    uint64_t work;                /* of cooking and comparing, in steps that are counted: the same
-                                     file always passes it or never; some 25 million take a second;
-                                     a report's measuring may take as much again;
-                                     0 = 3 x 2^26 and 32 for each byte read */
+    uint64_t cells;               /* that one ray may visit (gtx_ray_cells); 0 = 2^19 */
+    uint64_t work;                /* steps of cooking or comparing; a second is about 25 million.
+                                     Steps are counted, not timed: the same file always passes or
+                                     always fails. Measuring for a report may take as much again.
+                                     0 = 3 x 2^26 + 32 per byte read */
     uint32_t reserved[2];
 } gtx_limits;
 
-/* How far a long call has come. `stage` is a static string such as "bake". */
+/* Progress of a long call. `stage` is a static string such as "bake". */
 typedef struct gtx_progress {
     const char *stage;
     uint32_t stage_index, stage_count;
@@ -144,15 +143,17 @@ typedef int (*gtx_progress_fn)(const gtx_progress *progress, void *user);
 
 /* ---- assets ----------------------------------------------------------------------------- */
 
-/* An asset in memory: patch records and maps, checked. Immutable after it was made. */
+/* An asset in memory: patch records and maps that passed the format's rules. Immutable, but for
+ * gtx_add_blocks (frame.h). */
 typedef struct gtx_asset gtx_asset;
 
 enum { /* gtx_patch.flags */
     GTX_PATCH_TWO_SIDED = 1u << 8 /* the height field is visible from below too */
 };
 
-/* A patch: the frame of its parallelepiped and the rectangle of its maps. 128 bytes, the layout of
- * the file record (little-endian). Lengths are in object units, relative to the asset's anchor.
+/* A patch: a parallelepiped (its frame), and a rectangle of the asset's pages that holds its maps.
+ * 128 bytes, laid out as in the file (little-endian). Lengths and positions are in object units,
+ * positions relative to the asset's anchor.
  *
  * The texel (i, j) of a w x h rectangle with height code c lies at
  *   origin + (i + 0.5) / w * extent_x * axis_x
@@ -163,26 +164,26 @@ typedef struct gtx_patch {
     float origin[3], extent_x;
     float axis_x[3], extent_y;
     float axis_y[3], extent_z;
-    float axis_z[3], coverage;    /* coverage: share of texels with a code, 0..1 */
+    float axis_z[3], coverage;    /* coverage: share of texels that are not empty, 0..1 */
     uint32_t page;
     uint16_t rect[4];             /* x, y, w, h in texels of the page at level 0 */
-    uint16_t dilation;            /* rings of texels with valid normals, colours, materials and
-                                     emission around the coded ones */
-    uint16_t flags;
-    float sphere[4];              /* centre and radius around the coded texels' surface */
+    uint16_t dilation;            /* rings of texels around the non-empty ones that have valid
+                                     normals, colours, materials and emission */
+    uint16_t flags;               /* GTX_PATCH_... */
+    float sphere[4];              /* centre and radius of a sphere around the surface */
     uint32_t source_triangles;    /* triangles of the chart */
     uint32_t reserved[7];
 } gtx_patch;
 
 typedef enum gtx_map {
     GTX_MAP_HEIGHT = 0,           /* level 0 only; uint8_t or uint16_t codes, 0 = empty */
-    GTX_MAP_TRIM = 1,             /* level 0 only; uint8_t, (c - 128) / 16 texels outside the
-                                     outline */
+    GTX_MAP_TRIM = 1,             /* level 0 only; uint8_t: signed distance to the patch's outline,
+                                     (c - 128) / 16 texels, positive outside */
     GTX_MAP_NORMAL = 2,           /* 2 x uint8_t, hemi-octahedral in the patch's normal frame */
-    GTX_MAP_COLOR = 3,            /* 4 x uint8_t, sRGB colour and linear alpha; may be absent */
-    GTX_MAP_MATERIAL = 4,         /* 4 x uint8_t: occlusion, roughness, metallic, share of lighting
-                                     (0: unlit); may be absent: 255, 255, 0, 255 */
-    GTX_MAP_EMISSION = 5          /* 3 x uint8_t, sRGB, times emission_scale; may be absent */
+    GTX_MAP_COLOR = 3,            /* 4 x uint8_t: sRGB colour and linear alpha; optional */
+    GTX_MAP_MATERIAL = 4,         /* 4 x uint8_t: occlusion, roughness, metallic, lit (0: unlit);
+                                     optional: 255, 255, 0, 255 where absent */
+    GTX_MAP_EMISSION = 5          /* 3 x uint8_t: sRGB, times emission_scale; optional */
 } gtx_map;
 
 typedef struct gtx_info {
@@ -195,113 +196,118 @@ typedef struct gtx_info {
     uint32_t lod_levels;          /* LOD meshes, 0..8 */
     float bounds_min[3], bounds_max[3];       /* relative to the anchor */
     float unit;                   /* metres per object unit */
-    float emission_scale;         /* light of a full emission texel; 0 without emission */
+    float emission_scale;         /* radiance of an emission texel of 255; 0 without emission */
     double anchor[3];             /* object-space position of the asset's origin */
     uint64_t source_triangles;
-    uint64_t content_hash;        /* of the decoded sections: the same for any compression */
-    uint64_t file_size;           /* bytes that were opened, 0 for a created asset */
+    uint64_t content_hash;        /* of the decoded sections: independent of compression */
+    uint64_t file_size;           /* bytes; 0 for an asset that was not opened from a file */
 } gtx_info;
 
 typedef struct gtx_open_desc {
     const gtx_allocator *allocator;
-    const gtx_jobs *jobs;         /* used during the call; opening then holds all coded sections in
-                                     memory at once */
-    gtx_limits limits;            /* memory, texels and patches */
-    uint32_t flags;
+    const gtx_jobs *jobs;         /* used during the call; opening then holds all compressed
+                                     sections in memory at once */
+    gtx_limits limits;            /* of memory, texels and patches */
+    uint32_t flags;               /* GTX_OPEN_... */
     uint32_t reserved[5];
 } gtx_open_desc;
 
 enum { /* gtx_open_desc.flags */
-    GTX_OPEN_SKIP_HASH = 1        /* trust the section hashes (the header hash is always checked) */
+    GTX_OPEN_SKIP_HASH = 1        /* do not check the sections' hashes, only the header's */
 };
 
-/* Reads an asset from `size` bytes, which may be freed afterwards. Every rule of format/gtx.md is
- * checked; hostile bytes end in an error, never in a fault. `desc` may be NULL. The asset comes
- * from the descriptor's allocator, and is freed by gtx_close.
+/* Opens the `size` bytes of a .gtx file, which may be freed afterwards. Every rule of format/gtx.md
+ * is checked; malformed or hostile bytes give an error. `desc` may be NULL. The asset is allocated
+ * from the descriptor's allocator; free it with gtx_close.
  * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, NOT_GTX, VERSION, TRUNCATED, CORRUPT,
  * UNSUPPORTED. */
 GTX_API gtx_result gtx_open_memory(const void *data, size_t size, const gtx_open_desc *desc,
                                    gtx_asset **out, gtx_error *error);
 
-/* The same from a file. Its bytes come from the allocator too, and count towards limits.memory,
- * while they are read. Errors: also READ. */
+/* The same from a file. The file's bytes are held in memory from the same allocator during the
+ * call, and count towards limits.memory. Errors: also READ. */
 GTX_API gtx_result gtx_open_file(const char *path, const gtx_open_desc *desc, gtx_asset **out,
                                  gtx_error *error);
 
-/* What the first bytes of a file tell. */
+/* What gtx_open_prefix learned from the first bytes of a file. */
 typedef struct gtx_prefix {
-    uint64_t file_size;           /* bytes; 0 until the header is there */
-    uint64_t needed;              /* so many first bytes show more than these; 0 = all are there */
+    uint64_t file_size;           /* bytes; 0 until the header has arrived */
+    uint64_t needed;              /* number of bytes, from the start of the file, that would show
+                                     more than these do; 0 = the file is complete */
     uint32_t reserved[4];
 } gtx_prefix;
 
-/* Opens the first `size` bytes of a file, as a download has them so far. *out is an asset of what
- * is there, or NULL where nothing can be shown yet; prefix->needed says what to wait for. Of less
- * than the whole file it has the patches; the LOD meshes that are there, the finest of them as
- * level 0; colours, material and emission as far as they are there; normals that follow from its
- * finest LOD mesh; all at fewer texels; and no heights, so that no ray meets it, and only
- * GTX_METHOD_AUTO and GTX_METHOD_LOD show it, and models of it take no gtx_model_update. Else it is
- * an asset as any other; that of all bytes is gtx_open_memory's. What is there is checked as if the
- * rest were right.
- * Errors: as gtx_open_memory; TRUNCATED is none. */
+/* Opens the first `size` bytes of a file, such as an unfinished download. *out is an asset of what
+ * has arrived, or NULL with GTX_OK when nothing can be shown yet: wait for prefix->needed bytes.
+ *
+ * The asset of an incomplete file has all patches; the LOD meshes that have arrived, the finest of
+ * them as level 0; colours, materials and emission if they have arrived; and normals taken from its
+ * finest LOD mesh. Its maps have fewer texels than the file's. It has no heights: rays miss it,
+ * only GTX_METHOD_AUTO and GTX_METHOD_LOD draw it, and its models cannot be edited
+ * (gtx_model_edit). In all else it is an ordinary asset. A complete file gives the asset of
+ * gtx_open_memory. What has arrived is checked by the format's rules.
+ * Errors: as gtx_open_memory, but never TRUNCATED. */
 GTX_API gtx_result gtx_open_prefix(const void *data, size_t size, const gtx_open_desc *desc,
                                    gtx_prefix *prefix, gtx_asset **out, gtx_error *error);
 
 /* Frees the asset. NULL is fine. */
 GTX_API void gtx_close(gtx_asset *asset);
 
-/* What the asset's header says, copied to *out. */
+/* Copies the facts of the asset's header to *out. */
 GTX_API void gtx_get_info(const gtx_asset *asset, gtx_info *out);
 
 /* gtx_info.patch_count records, owned by the asset. */
 GTX_API const gtx_patch *gtx_patches(const gtx_asset *asset);
 
-/* All pages of one level of a map, page after page, rows tight, owned by the asset; *size (may be
- * NULL) gets the bytes. NULL when the asset has no such map or level. Level k is
- * (page_width >> k) x (page_height >> k). */
+/* All pages of one level of a map, page after page, rows without padding; owned by the asset. *size
+ * (may be NULL) gets the number of bytes. NULL when the asset has no such map or level. A page of
+ * level k has (page_width >> k) x (page_height >> k) texels. */
 GTX_API const void *gtx_map_data(const gtx_asset *asset, gtx_map map, uint32_t level, size_t *size);
 
-/* Of gtx_lod_mesh.flags, for models of a few pixels: a triangle may be larger than its patch; its
- * lookups are clamped to the patch's rectangle. */
+/* A flag of gtx_lod_mesh: the mesh is for models of a few pixels. A triangle may be larger than its
+ * patch; texture lookups are clamped to the patch's rectangle. */
 #define GTX_LOD_FAR 1u
 
-/* An LOD mesh: the whole surface as triangles, for drawing it small. A vertex is a position and
- * nothing else: triangles of several patches may share it, and its texel coordinates in each patch
- * follow from that patch's frame. Position q of a vertex stands for the point
+/* An LOD mesh: the whole surface as triangles, for drawing it small. Vertices have positions only:
+ * triangles of several patches may share a vertex, and its texel coordinates in each patch follow
+ * from that patch's frame. The quantised position q of a vertex stands for the point
  *   origin + step * q                                            relative to the asset's anchor. */
 typedef struct gtx_lod_mesh {
     float origin[3], step;
-    float error;                  /* object units: no point is farther from the source, none of the
-                                     source from it, but for parts that are no longer */
+    float error;                  /* object units: bounds the distance of any point of the mesh from
+                                     the source and of any point of the source from the mesh, except
+                                     for parts of the source no longer than `error` */
     uint32_t vertex_count, triangle_count;
     uint32_t flags;               /* GTX_LOD_FAR */
-    const uint32_t *first;        /* patch_count + 1: triangles first[p]..first[p + 1] - 1 belong
-                                     to patch p */
+    const uint32_t *first;        /* patch_count + 1 numbers: triangles first[p]..first[p + 1] - 1
+                                     belong to patch p */
     const uint32_t *indices;      /* 3 per triangle */
     const uint16_t *positions;    /* 3 per vertex */
 } gtx_lod_mesh;
 
-/* Gives LOD mesh `level`, 0 being the finest; its arrays are owned by the asset.
- * Errors: ARGUMENT (there is no such level). */
+/* Gives LOD mesh `level`, 0 being the finest. Its arrays are owned by the asset.
+ * Errors: ARGUMENT (also when there is no such level). */
 GTX_API gtx_result gtx_get_lod_mesh(const gtx_asset *asset, uint32_t level, gtx_lod_mesh *out);
 
-/* The META section: JSON text of *size bytes, not terminated; NULL when absent. Informative. */
+/* The META section: *size bytes of JSON, not null-terminated, owned by the asset; NULL when absent.
+ * Informative: nothing that is drawn depends on it. */
 GTX_API const char *gtx_meta(const gtx_asset *asset, size_t *size);
 
-/* No ray through the asset visits more cells of height fields than this, wherever it comes from and
- * goes: it bounds what rays, and pixels that are drawn (gtx_draw says how), cost. Tests of boxes in
- * hierarchies come on top, at most two for each block of 8 x 8 cells of the asset. It is the sum of
- * width and height over the patches that a ray may meet, found for bundles of rays and so from
- * above: ordinary assets have a few thousand up to 10^5, of which most rays visit a small part;
- * where patches are stacked in one place it is what a ray takes. limits.cells holds it wherever an
- * asset is prepared for rays or drawing. 0 for NULL. Takes time in proportion to the patches, and
- * no memory. */
+/* An upper bound on the number of height-field cells that any single ray through the asset visits,
+ * and so on the cost of a ray or of a pixel (see gtx_draw). Tests of boxes in hierarchies come on
+ * top: at most two per block of 8 x 8 cells of the asset.
+ *
+ * The bound is the largest sum of width + height, in texels, over the patches that one bundle of
+ * rays meets. Ordinary assets have a few thousand to 10^5, and most rays visit a small part of
+ * that; where patches are stacked in one place a ray really visits that many. limits.cells is
+ * compared with it wherever an asset is prepared for rays or for drawing. 0 for NULL. Allocates
+ * nothing; time grows with the number of patches. */
 GTX_API uint64_t gtx_ray_cells(const gtx_asset *asset);
 
 /* ---- validation ------------------------------------------------------------------------- */
 
 typedef struct gtx_issue {
-    uint32_t rule;                /* number in format/gtx.md */
+    uint32_t rule;                /* its number in format/gtx.md */
     uint32_t is_error;            /* 0: a warning */
     uint64_t offset;              /* byte offset in the file */
     const char *name;             /* short identifier such as "patch-axis-unit" */
@@ -310,18 +316,19 @@ typedef struct gtx_issue {
 
 typedef void (*gtx_issue_fn)(const gtx_issue *issue, void *user);
 
-/* Checks untrusted bytes against every rule of format/gtx.md and reports each broken one, in the
- * order of its section 7, for as long as it is safe to read on.
- * GTX_OK when no error was reported (warnings do not count). `limits` and `fn` may be NULL. Takes
- * from malloc what opening would.
- * Errors: as gtx_open_memory; a broken rule comes before MEMORY and LIMIT. */
+/* Checks untrusted bytes against every rule of format/gtx.md and reports each broken rule to `fn`,
+ * in the order of the specification's section 7, as far as it is safe to read on. Returns GTX_OK if
+ * no error was reported (warnings do not count). `limits` and `fn` may be NULL. Uses malloc, and as
+ * much memory as opening the asset.
+ * Errors: as gtx_open_memory; a broken rule takes precedence over MEMORY and LIMIT. */
 GTX_API gtx_result gtx_validate(const void *data, size_t size, const gtx_limits *limits,
                                 gtx_issue_fn fn, void *user, gtx_error *error);
 
 /* ---- creating and encoding -------------------------------------------------------------- */
 
-/* The content of an asset. All arrays are copied and checked by the rules of format/gtx.md;
- * coverage, spheres and bounds must be given (the rules check them). */
+/* The content of a new asset. All arrays are copied, and checked by the rules of format/gtx.md. The
+ * patches' coverage and spheres and the bounds are not computed: they must be given, and are
+ * checked too. */
 typedef struct gtx_asset_desc {
     const gtx_patch *patches;
     uint32_t patch_count;
@@ -329,12 +336,12 @@ typedef struct gtx_asset_desc {
     uint32_t mip_count;           /* 1..8 */
     uint32_t height_bits;         /* 8 or 16 */
     const void *height;           /* page_count * page_width * page_height codes */
-    const uint8_t *trim;          /* the same count */
+    const uint8_t *trim;          /* the same number of codes */
     const uint8_t *const *normal; /* mip_count pointers, level 0 first */
-    const uint8_t *const *color;  /* mip_count pointers, or NULL; so are the next two */
+    const uint8_t *const *color;  /* mip_count pointers, or NULL; likewise the next two */
     const uint8_t *const *material;
     const uint8_t *const *emission;
-    float emission_scale;         /* 0 = 1 if there is emission */
+    float emission_scale;         /* 0 = 1 with emission */
     const gtx_lod_mesh *lod;      /* lod_levels LOD meshes, the finest first; or NULL */
     uint32_t lod_levels;          /* up to 8 */
     const char *meta;             /* JSON text, or NULL */
@@ -347,8 +354,8 @@ typedef struct gtx_asset_desc {
     uint32_t reserved[6];
 } gtx_asset_desc;
 
-/* Makes an asset from the descriptor's allocator, which gtx_close frees.
- * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, CORRUPT (with the broken rule). */
+/* Makes an asset, allocated from the descriptor's allocator; free it with gtx_close.
+ * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT, CORRUPT (gtx_error.rule is the broken rule). */
 GTX_API gtx_result gtx_create(const gtx_asset_desc *desc, gtx_asset **out, gtx_error *error);
 
 typedef struct gtx_encode_desc {
@@ -359,50 +366,51 @@ typedef struct gtx_encode_desc {
     uint32_t reserved[5];
 } gtx_encode_desc;
 
-/* Encodes the asset as the bytes of a `.gtx` file. *data comes from the descriptor's allocator
- * (malloc when none), and is freed with it, as *size bytes. The same asset and options give the
- * same bytes (for one zstd version). Errors: ARGUMENT, NOT_ZEROED, MEMORY, UNSUPPORTED (built
- * without zstd). */
+/* Encodes the asset as the bytes of a `.gtx` file. *data holds *size bytes from the descriptor's
+ * allocator (malloc when there is none), and must be freed with that allocator. The same asset and
+ * options give the same bytes with the same version of zstd. Errors: ARGUMENT, NOT_ZEROED, MEMORY,
+ * UNSUPPORTED (built without zstd). */
 GTX_API gtx_result gtx_encode(const gtx_asset *asset, const gtx_encode_desc *desc, void **data,
                               size_t *size, gtx_error *error);
 
-/* Encodes, with the descriptor's allocator, and writes a file: whole, under a temporary name of its
- * own in the same folder, or not at all. It takes the place of what was there once it is on the
- * disk, and keeps its permissions; a symbolic link stays one, and devices and pipes are written to.
- * Errors: also WRITE. */
+/* Encodes the asset, with the descriptor's allocator, and writes it to a file atomically: under a
+ * temporary name in the same folder, which replaces `path` once it is on the disk. An existing
+ * file's permissions are kept, symbolic links are followed, devices and pipes are written to
+ * directly. Errors: as gtx_encode, and WRITE. */
 GTX_API gtx_result gtx_save_file(const gtx_asset *asset, const char *path,
                                  const gtx_encode_desc *desc, gtx_error *error);
 
 /* ---- ray query -------------------------------------------------------------------------- */
 
-/* What casting rays on the CPU derives from an asset: levels, bounds and a hierarchy over the
- * patches. Keeps no reference to the asset. Immutable; any number of threads may cast at once. */
+/* An asset prepared for ray casting on the CPU: a level of its height fields, bounds, and a
+ * hierarchy over the patches. Keeps no reference to the asset. Immutable; any number of threads may
+ * cast at once. */
 typedef struct gtx_caster gtx_caster;
 
 typedef struct gtx_caster_desc {
     const gtx_allocator *allocator;
-    uint32_t level;               /* level of the height fields to cast, 0 = finest .. 7 */
-    /* Object units; when > 0, each patch is cast at the coarsest of its mip_count levels that is
+    uint32_t level;               /* of the height fields: 0 = finest .. 7 */
+    /* Object units. When > 0, each patch is cast at the coarsest of its mip_count levels that is
      * within this distance of level 0, as the renderer chooses levels; `level` must then be 0. */
     float max_error;
-    gtx_limits limits;            /* memory and cells */
+    gtx_limits limits;            /* of memory and cells */
     uint32_t reserved[4];
 } gtx_caster_desc;
 
-/* Coordinates are relative to the asset's anchor. `direction` need not be normalised; t is in
- * units of its length. Hits with t_min <= t <= t_max are found; t_max <= 0 means infinity. */
+/* A ray: the points origin + t * direction with t_min <= t <= t_max, relative to the asset's
+ * anchor. `direction` need not be normalised; t_max <= 0 means infinity. */
 typedef struct gtx_ray {
     float origin[3], t_min;
     float direction[3], t_max;
 } gtx_ray;
 
 typedef struct gtx_hit {
-    float t;                      /* along the ray; infinity when nothing was hit */
+    float t;                      /* parameter of the hit; infinity when nothing was hit */
     uint32_t patch;               /* index of the patch, UINT32_MAX when nothing was hit */
     float x, y;                   /* texel coordinates in the patch: texel i is at x = i */
     float normal[3];              /* unit normal from the normal map, object space */
-    float facet[3];               /* unit geometric normal of the height field, on the side of
-                                     axis_z */
+    float facet[3];               /* unit geometric normal of the height field; towards axis_z,
+                                     whichever side was hit */
     uint32_t back;                /* 1: the ray crossed the height field from below */
 } gtx_hit;
 
@@ -413,48 +421,48 @@ enum { /* flags of gtx_raycast */
                                      without a bound */
 };
 
-/* Makes a caster from the descriptor's allocator; gtx_caster_destroy frees it. `desc` may be NULL.
- * Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT. */
+/* Makes a caster, allocated from the descriptor's allocator; free it with gtx_caster_destroy.
+ * `desc` may be NULL. Errors: ARGUMENT, NOT_ZEROED, MEMORY, LIMIT. */
 GTX_API gtx_result gtx_caster_create(const gtx_asset *asset, const gtx_caster_desc *desc,
                                      gtx_caster **out, gtx_error *error);
 /* NULL is fine. */
 GTX_API void gtx_caster_destroy(gtx_caster *caster);
 
-/* Casts `count` rays; takes no memory. A ray with a NaN, or with a zero direction, hits nothing.
+/* Casts `count` rays. Allocates nothing. A ray with a NaN or a zero direction hits nothing.
  * Errors: ARGUMENT. */
 GTX_API gtx_result gtx_raycast(const gtx_caster *caster, const gtx_ray *rays, gtx_hit *hits,
                                size_t count, uint32_t flags);
 
-/* The surface under points, for things that stand, fall or drive: casts a ray straight down,
- * against `up` (of any length but 0), starting `step` >= 0 object units above each point, so that a
- * surface a little above the point counts too. hit.t is the height of the point above the surface,
- * in object units: negative when the surface is above it, infinite when there is none. Flags as for
- * gtx_raycast. Errors: ARGUMENT. */
+/* The surface below points, for things that stand, fall or drive. Casts a ray straight down,
+ * against `up` (of any length but 0), from `step` >= 0 object units above each point, so that a
+ * surface a little above the point is found too. hit.t is the height of the point above the
+ * surface, in object units: negative if the surface is above the point, infinity if there is none.
+ * Flags as for gtx_raycast. Errors: ARGUMENT. */
 GTX_API gtx_result gtx_drop(const gtx_caster *caster, const float up[3], float step,
                             const float (*points)[3], gtx_hit *hits, size_t count,
                             uint32_t flags);
 
-/* The colour map at hits: linear red, green, blue and alpha, each 0..1, interpolated between the
- * texels of level 0; white where nothing was hit, or if the asset has no colours. `asset` is the
- * one that the caster was made from. Errors: ARGUMENT. */
+/* The colour map at hits: linear RGBA in 0..1, interpolated bilinearly at level 0. White where
+ * nothing was hit, or if the asset has no colours. `asset` must be the one that the caster was made
+ * from. Errors: ARGUMENT. */
 GTX_API gtx_result gtx_hit_colors(const gtx_asset *asset, const gtx_hit *hits,
                                   float (*colors)[4], size_t count);
 
 /* ---- scenes: rays among instances ------------------------------------------------------------ */
 
-/* Casters placed in a world, with a hierarchy over them. Keeps references to the casters, which
- * must outlive it. Immutable; any number of threads may use it at once. */
+/* Instances of casters in a world, with a hierarchy over them. The casters must outlive the scene.
+ * Immutable; any number of threads may use it at once. */
 typedef struct gtx_scene gtx_scene;
 
-/* `transform` is column-major and affine, and takes the asset's coordinates (relative to its
- * anchor) to the world; its linear part must be invertible. */
+/* `transform` is column-major, affine and invertible, and maps the asset's coordinates (relative to
+ * its anchor) to the world. */
 typedef struct gtx_scene_instance {
     const gtx_caster *caster;
     float transform[16];
 } gtx_scene_instance;
 
-/* Makes a scene from `allocator` (NULL = malloc); gtx_scene_destroy frees it.
- * Errors: ARGUMENT (an instance without a caster, or a transform that is not as said above),
+/* Makes a scene, allocated from `allocator` (NULL = malloc); free it with gtx_scene_destroy.
+ * Errors: ARGUMENT (also for an instance without a caster or with an unsuitable transform),
  * MEMORY. */
 GTX_API gtx_result gtx_scene_create(const gtx_scene_instance *instances, uint32_t count,
                                     const gtx_allocator *allocator, gtx_scene **out,
@@ -462,43 +470,43 @@ GTX_API gtx_result gtx_scene_create(const gtx_scene_instance *instances, uint32_
 /* NULL is fine. */
 GTX_API void gtx_scene_destroy(gtx_scene *scene);
 
-/* gtx_raycast in the world: rays, normals and facets are in world space. `which` gets the index of
- * the instance that was hit, UINT32_MAX for none; it may be NULL. Errors: ARGUMENT. */
+/* gtx_raycast with rays, normals and facets in world space. which[i] gets the index of the instance
+ * that ray i hit, or UINT32_MAX; `which` may be NULL. Errors: ARGUMENT. */
 GTX_API gtx_result gtx_scene_raycast(const gtx_scene *scene, const gtx_ray *rays, gtx_hit *hits,
                                      uint32_t *which, size_t count, uint32_t flags);
 
-/* A point to be lit: world position, unit normal towards the visible side, and `turn`, 0..1, which
- * rotates the pattern of its rays. Random turns trade banding for grain. */
+/* A point to light: world position, unit normal on its visible side, and `turn`, 0..1, which
+ * rotates the pattern of its rays. A random turn per point trades banding for noise. */
 typedef struct gtx_lit_point {
     float position[3], normal[3];
     float turn;
 } gtx_lit_point;
 
-/* A distant disc of light, or the sky. */
+/* A distant disc such as the sun, or the sky. */
 typedef struct gtx_light_desc {
-    float direction[3];           /* world, towards the light; zero: the sky, the hemisphere above
-                                     each point, weighted by the cosine */
-    float spread;                 /* tangent of half the disc's angle; 0: hard shadows */
-    float reach;                  /* length of the rays, world units: what is farther away does not
-                                     occlude; 0 = infinite */
-    uint32_t rays;                /* for each point; 0 = 1 */
-    float offset;                 /* distance from the surface at which rays start; 0 =
+    float direction[3];           /* world space, towards the disc; zero: the sky, a
+                                     cosine-weighted hemisphere above each point */
+    float spread;                 /* tangent of the disc's angular radius; 0: hard shadows */
+    float reach;                  /* length of the rays, world units: nothing farther away
+                                     occludes; 0 = infinity */
+    uint32_t rays;                /* per point; 0 = 1 */
+    float offset;                 /* distance from the point at which rays start, world units; 0 =
                                      gtx_scene_offset */
     uint32_t reserved[5];
 } gtx_light_desc;
 
-/* The share of the light, 0..1, that reaches each point past all patches of all instances: for a
- * disc, a hard or soft shadow, still to be multiplied by the cosine; for the sky, ambient
- * occlusion. A disc's rays below the horizon of the normal count as dark. The same arguments give
- * the same shares; shaders use the same patterns (geotex_rays.glsl). Errors: ARGUMENT,
+/* Gives the share of the light, 0..1, that reaches each point: for a disc a hard or soft shadow,
+ * yet to be multiplied by the cosine of the angle of incidence; for the sky, ambient occlusion.
+ * Rays to a disc that go below the point's tangent plane count as occluded. The result is
+ * deterministic; shaders use the same ray patterns (geotex_rays.glsl). Errors: ARGUMENT,
  * NOT_ZEROED. */
 GTX_API gtx_result gtx_scene_light(const gtx_scene *scene, const gtx_light_desc *light,
                                    const gtx_lit_point *points, float *shares, size_t count);
 
-/* The default distance from the surface at which rays start, in world units: two height steps of
- * the patch with the coarsest ones, or a 32nd of a texel if that is more. Heights are rounded by up
- * to half a step, and cells cut a little into round shapes: started from there, no ray that leaves
- * a convex surface meets it again, however grazing. The offset hides nothing else. */
+/* The default gtx_light_desc.offset, in world units: two height steps of the patch with the
+ * coarsest steps, or 1/32 texel if that is more. Heights are rounded by up to half a step, and
+ * cells cut a little into curved surfaces; with this offset no ray that leaves a convex surface
+ * hits it again, however grazing. */
 GTX_API float gtx_scene_offset(const gtx_scene *scene);
 
 #ifdef __cplusplus
