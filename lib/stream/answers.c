@@ -1,4 +1,4 @@
-/* What becomes of requests: payloads, failures, uploads. */
+/* Answers to requests: payloads, failures, uploads. */
 #include "stream/stream.h"
 
 #include "base/error.h"
@@ -23,7 +23,7 @@ static void give_back(gtx_stream *stream, void *payload)
 void gtx_tile_drop(gtx_stream *stream, gtx_tile *tile)
 {
     void *payload = tile->payload;
-    gtx_list_remove(stream, &stream->there, tile);
+    gtx_list_remove(stream, &stream->resident, tile);
     gtx_tile_take(stream, tile, 0, 0);
     tile->state = GTX_TILE_ABSENT;
     tile->payload = NULL;
@@ -38,8 +38,8 @@ void gtx_tile_ask(gtx_stream *stream, gtx_tile *tile)
     uint64_t cpu, gpu;
     gtx_tile_cost(stream, tile, &cpu, &gpu);
     gtx_tile_take(stream, tile, tile->file.bytes + tile->file.memory, gpu);
-    gtx_list_add(stream, &stream->asked, tile);
-    tile->state = GTX_TILE_ASKED;
+    gtx_list_add(stream, &stream->requested, tile);
+    tile->state = GTX_TILE_REQUESTED;
     tile->request = ++stream->serial << TILE_BITS | gtx_tile_number(stream, tile);
     tile->asked = stream->update;
     if (tile != stream->tiles)
@@ -50,7 +50,7 @@ void gtx_tile_ask(gtx_stream *stream, gtx_tile *tile)
 /* The request is over: its tile takes nothing. */
 static void end_request(gtx_stream *stream, gtx_tile *tile)
 {
-    gtx_list_remove(stream, &stream->asked, tile);
+    gtx_list_remove(stream, &stream->requested, tile);
     gtx_tile_take(stream, tile, 0, 0);
     tile->state = GTX_TILE_ABSENT;
     tile->request = 0;
@@ -112,10 +112,10 @@ gtx_result gtx_stream_deliver(gtx_stream *stream, uint64_t id, void *payload, ui
         give_back(stream, payload);
         return GTX_ERROR_LIMIT;
     }
-    gtx_list_remove(stream, &stream->asked, tile);
-    gtx_list_add(stream, &stream->there, tile);
+    gtx_list_remove(stream, &stream->requested, tile);
+    gtx_list_add(stream, &stream->resident, tile);
     gtx_tile_take(stream, tile, cpu_bytes, gpu_bytes);
-    tile->state = gpu_bytes ? GTX_TILE_HELD : GTX_TILE_READY;
+    tile->state = gpu_bytes ? GTX_TILE_DELIVERED : GTX_TILE_READY;
     tile->request = 0;
     tile->tries = 0;
     tile->sent = 0;
@@ -148,7 +148,7 @@ gtx_result gtx_stream_ready(gtx_stream *stream, uint32_t number, uint64_t cpu_by
     gtx_tile *tile = &stream->tiles[number];
     if (tile->state == GTX_TILE_READY && gtx_tile_rest(stream, tile))
         tile = gtx_tile_rest(stream, tile);
-    if (tile->state != GTX_TILE_HELD || cpu_bytes > tile->cpu)
+    if (tile->state != GTX_TILE_DELIVERED || cpu_bytes > tile->cpu)
         return GTX_ERROR_ARGUMENT;
     gtx_tile_take(stream, tile, cpu_bytes, tile->gpu);
     gtx_tile_learn(stream, tile, cpu_bytes, tile->gpu);

@@ -25,7 +25,7 @@ gtx_result gtx_index_check(const uint8_t *data, size_t size, uint32_t *count, do
                            gtx_error *error)
 {
     if (size < sizeof identifier || memcmp(data, identifier, sizeof identifier) != 0)
-        return gtx_fail(error, GTX_ERROR_NOT_GTX, "the bytes are no index of a world");
+        return gtx_fail(error, GTX_ERROR_NOT_GTX, "the bytes are not the index of a world");
     if (size < GTX_INDEX_HEADER)
         return gtx_fail(error, GTX_ERROR_TRUNCATED, "the index ends within its header");
     if (gtx_load_u16(data + 12) != MAJOR || gtx_load_u16(data + 14) != MINOR)
@@ -34,15 +34,16 @@ gtx_result gtx_index_check(const uint8_t *data, size_t size, uint32_t *count, do
     *count = gtx_load_u32(data + 16);
     *unit = gtx_load_f64(data + 24);
     if (*count < 1 || *count > GTX_INDEX_MAX_TILES)
-        return gtx_fail(error, GTX_ERROR_CORRUPT, "the index tells of %u tiles", *count);
+        return gtx_fail(error, GTX_ERROR_CORRUPT, "the index has %u tiles, not 1 to %u",
+                        *count, GTX_INDEX_MAX_TILES);
     const uint64_t whole = GTX_INDEX_HEADER + (uint64_t)*count * GTX_INDEX_RECORD;
     if (size < whole)
         return gtx_fail(error, GTX_ERROR_TRUNCATED, "the index of %u tiles ends after %zu bytes",
                         *count, size);
     if (size > whole || gtx_load_u32(data + 20) != 0 || !(*unit > 0) || isinf(*unit))
-        return gtx_fail(error, GTX_ERROR_CORRUPT, "the header of the index is not as it must be");
+        return gtx_fail(error, GTX_ERROR_CORRUPT, "the header of the index is invalid");
     if (gtx_load_u64(data + 32) != hash_of(data, *count))
-        return gtx_fail(error, GTX_ERROR_CORRUPT, "the index is not what its hash tells");
+        return gtx_fail(error, GTX_ERROR_CORRUPT, "the index does not match its hash");
     return GTX_OK;
 }
 
@@ -138,8 +139,7 @@ gtx_result gtx_index_read(const uint8_t *data, gtx_index_tile *tile, uint32_t nu
     tile->beginning_error = gtx_load_f32(at + 104);
     memcpy(tile->name, at + 112, GTX_INDEX_NAME);
     if (gtx_load_u32(at + 108) != 0 || !is_sound(tile) || !is_in_place(tile, number))
-        return gtx_fail(error, GTX_ERROR_CORRUPT, "tile %u of the index is not as it must be",
-                        number);
+        return gtx_fail(error, GTX_ERROR_CORRUPT, "tile %u of the index is invalid", number);
     return GTX_OK;
 }
 

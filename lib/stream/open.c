@@ -1,4 +1,4 @@
-/* Opening what was read for a request, if it is what was asked for. */
+/* Opening what was read for a request, if it is the tile that was requested. */
 #include <geotex/stream.h>
 
 #include "asset/section.h"
@@ -33,7 +33,7 @@ static gtx_result open_beginning(const gtx_stream_request *request, const void *
     if (!result && (!*out || prefix.file_size != request->file_bytes)) {
         gtx_close(*out);
         *out = NULL;
-        result = gtx_fail(error, GTX_ERROR_CORRUPT, "the bytes are no beginning of the tile");
+        result = gtx_fail(error, GTX_ERROR_CORRUPT, "the bytes are not the beginning of the tile");
     }
     return result;
 }
@@ -65,7 +65,7 @@ gtx_result gtx_stream_open(const gtx_stream_request *request, const void *data, 
     if (!is_in_box(request, &info)) {
         gtx_close(*out);
         *out = NULL;
-        return gtx_fail(error, GTX_ERROR_CORRUPT, "the tile is not within its box");
+        return gtx_fail(error, GTX_ERROR_CORRUPT, "the tile exceeds its bounding box");
     }
     if (held)
         *held = held_by(*out);

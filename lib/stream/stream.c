@@ -1,4 +1,4 @@
-/* Making a stream of an index: all memory at once. */
+/* Making a stream from an index: allocates all memory at once. */
 #include "stream/stream.h"
 
 #include "base/alloc.h"
@@ -20,8 +20,8 @@ static void arrays_of(gtx_stream *s, array out[ARRAYS])
     const array all[ARRAYS] = {
         {(void **)&s->facts, n, sizeof *s->facts},
         {(void **)&s->tiles, 2 * n, sizeof *s->tiles},
-        {(void **)&s->asked.tiles, most, sizeof *s->asked.tiles},
-        {(void **)&s->there.tiles, 2 * n, sizeof *s->there.tiles},
+        {(void **)&s->requested.tiles, most, sizeof *s->requested.tiles},
+        {(void **)&s->resident.tiles, 2 * n, sizeof *s->resident.tiles},
         {(void **)&s->stack, 2 * n, sizeof *s->stack},
         {(void **)&s->wants, 3 * n, sizeof *s->wants}, /* and those that leave */
         {(void **)&s->requests, most, sizeof *s->requests},
@@ -118,7 +118,7 @@ gtx_result gtx_stream_create(const gtx_stream_desc *desc, gtx_stream **out, gtx_
     uint32_t count;
     double unit;
     if (!out)
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "creating needs a place for the stream");
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "gtx_stream_create needs a result");
     *out = NULL;
     gtx_result result = check_desc(desc, error);
     if (!result)
@@ -148,9 +148,9 @@ void gtx_stream_destroy(gtx_stream *s)
     array arrays[ARRAYS];
     if (!s)
         return;
-    for (uint32_t i = 0; i < s->there.count; ++i)
+    for (uint32_t i = 0; i < s->resident.count; ++i)
         if (s->desc.release)
-            s->desc.release(s->tiles[s->there.tiles[i]].payload, s->desc.user);
+            s->desc.release(s->tiles[s->resident.tiles[i]].payload, s->desc.user);
     arrays_of(s, arrays);
     for (int i = 0; i < ARRAYS; ++i)
         gtx_free_array(&s->allocator, *arrays[i].memory, arrays[i].count, arrays[i].size);

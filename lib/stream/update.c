@@ -1,4 +1,4 @@
-/* A frame: what is in view and what is wanted of it; what to upload and to draw. */
+/* A frame: which tiles are in view and wanted, which to upload and to draw. */
 #include "stream/stream.h"
 
 #include "base/error.h"
@@ -21,19 +21,20 @@ void gtx_list_remove(gtx_stream *stream, gtx_tile_list *list, gtx_tile *tile)
 
 /* ---- what is in view ---- */
 
-/* Whether any eye sees the tile's box; sets its error on screen, and that of its beginning. */
+/* Whether any view sees the tile's box; sets its error on screen, and that of its beginning. */
 static bool look_at(const gtx_stream *s, gtx_tile *tile)
 {
     const gtx_index_tile *facts = tile->facts;
     gtx_tile *rest = gtx_tile_rest(s, tile);
     double most = -1, beginning = -1;
-    for (uint32_t i = 0; i < s->eye_count; ++i) {
-        const gtx_stream_eye *eye = &s->eyes[i];
-        if (!gtx_eye_sees(eye, facts->low, facts->high))
+    for (uint32_t i = 0; i < s->frustum_count; ++i) {
+        const gtx_stream_frustum *frustum = &s->frusta[i];
+        if (!gtx_stream_frustum_sees(frustum, facts->low, facts->high))
             continue;
-        most = fmax(most, gtx_eye_pixels(eye, facts->low, facts->high, (double)facts->error));
+        most = fmax(most, gtx_stream_frustum_pixels(frustum, facts->low, facts->high,
+                                                    (double)facts->error));
         if (rest)
-            beginning = fmax(beginning, gtx_eye_pixels(eye, facts->low, facts->high,
+            beginning = fmax(beginning, gtx_stream_frustum_pixels(frustum, facts->low, facts->high,
                                                        (double)facts->beginning_error));
     }
     tile->pixels = (float)most;
@@ -57,13 +58,13 @@ static below count_children(const gtx_stream *s, const gtx_tile *tile)
             continue;
         count.ready += child->state == GTX_TILE_READY;
         count.missing += child->state == GTX_TILE_ABSENT;
-        count.coming += child->state == GTX_TILE_ASKED || child->state == GTX_TILE_HELD;
+        count.coming += child->state == GTX_TILE_REQUESTED || child->state == GTX_TILE_DELIVERED;
         count.given_up += child->state == GTX_TILE_GIVEN_UP;
     }
     return count;
 }
 
-/* What a tile is that nothing finer is to replace: its rest, where the beginning is not enough. */
+/* A tile that is not refined needs its rest, if its beginning is not fine enough. */
 static void want_rest(gtx_stream *s, gtx_tile *tile)
 {
     gtx_tile *rest = gtx_tile_rest(s, tile);
@@ -83,10 +84,10 @@ static bool is_refined(const gtx_stream *s, const gtx_tile *tile, below *childre
     if (!tile->child_count || !(tile->pixels > s->desc.max_error))
         return false;
     *children = count_children(s, tile);
-    return !children->given_up; /* then the others would be in vain */
+    return !children->given_up; /* the others alone could not replace it */
 }
 
-/* A tile that is ready and in view: what should take its place, if anything. */
+/* Visits a tile that is ready and in view: finds what should replace it, if anything. */
 static void visit(gtx_stream *s, gtx_tile *tile, uint32_t *depth)
 {
     below children;
@@ -131,8 +132,8 @@ static void time_out(gtx_stream *s)
 {
     gtx_error error;
     gtx_fail(&error, GTX_ERROR_READ, "the request was not answered in time");
-    for (uint32_t i = s->asked.count; i-- > 0;) {
-        gtx_tile *tile = &s->tiles[s->asked.tiles[i]];
+    for (uint32_t i = s->requested.count; i-- > 0;) {
+        gtx_tile *tile = &s->tiles[s->requested.tiles[i]];
         if (s->update - tile->asked >= s->desc.patience_updates)
             gtx_tile_fail(s, tile, &error, true);
     }
@@ -144,10 +145,10 @@ static void upload(gtx_stream *s)
 {
     uint32_t count = 0;
     uint64_t left = s->desc.upload_bytes;
-    for (uint32_t i = 0; i < s->there.count; ++i) {
-        const gtx_tile *tile = &s->tiles[s->there.tiles[i]];
-        if (tile->state == GTX_TILE_HELD && tile->wanted == s->update)
-            s->stack[count++] = s->there.tiles[i];
+    for (uint32_t i = 0; i < s->resident.count; ++i) {
+        const gtx_tile *tile = &s->tiles[s->resident.tiles[i]];
+        if (tile->state == GTX_TILE_DELIVERED && tile->wanted == s->update)
+            s->stack[count++] = s->resident.tiles[i];
     }
     gtx_stream_sort(s, s->stack, count, true);
     for (uint32_t i = 0; i < count && left > 0; ++i) {
@@ -188,19 +189,19 @@ static void draw(gtx_stream *s)
 gtx_result gtx_stream_update(gtx_stream *s, const gtx_stream_view *views, uint32_t count,
                              gtx_stream_frame *frame, gtx_error *error)
 {
-    gtx_stream_eye eyes[GTX_STREAM_MAX_VIEWS];
+    gtx_stream_frustum frusta[GTX_STREAM_MAX_VIEWS];
     if (!s || !frame || (!views && count) || count > GTX_STREAM_MAX_VIEWS)
         return gtx_fail(error, GTX_ERROR_ARGUMENT,
                         "an update needs a stream, a frame, and up to %d views",
                         GTX_STREAM_MAX_VIEWS);
     for (uint32_t i = 0; i < count; ++i) {
-        gtx_result result = gtx_eye_of(&views[i], &eyes[i], error);
+        gtx_result result = gtx_stream_frustum_of(&views[i], &frusta[i], error);
         if (result)
             return result;
     }
     for (uint32_t i = 0; i < count; ++i)
-        s->eyes[i] = eyes[i];
-    s->eye_count = count;
+        s->frusta[i] = frusta[i];
+    s->frustum_count = count;
     ++s->update;
     s->frame.request_count = s->frame.upload_count = s->frame.draw_count = 0;
     time_out(s);
@@ -211,8 +212,8 @@ gtx_result gtx_stream_update(gtx_stream *s, const gtx_stream_view *views, uint32
     s->frame.requests = s->requests;
     s->frame.uploads = s->uploads;
     s->frame.draws = s->draws;
-    s->frame.resident = s->there.count;
-    s->frame.under_way = s->asked.count;
+    s->frame.resident = s->resident.count;
+    s->frame.under_way = s->requested.count;
     s->frame.cpu_bytes = s->cpu;
     s->frame.gpu_bytes = s->gpu;
     *frame = s->frame;

@@ -9,8 +9,7 @@
 
 #include "common/counter.h"
 #include "stream/host.h"
-
-static made_world world;
+#include "stream/world.h"
 
 static void failures_are_bounded(void **state)
 {
@@ -198,20 +197,6 @@ static void memory_may_run_out(void **state)
     }
 }
 
-static int begin(void **state)
-{
-    (void)state;
-    made_begin(&world, false);
-    return 0;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    made_end(&world);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -222,5 +207,5 @@ int main(void)
         cmocka_unit_test(misuse_is_refused),
         cmocka_unit_test(memory_may_run_out),
     };
-    return cmocka_run_group_tests(tests, begin, end);
+    return cmocka_run_group_tests(tests, make_world, free_world);
 }

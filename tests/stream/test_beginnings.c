@@ -8,8 +8,7 @@
 #include <stdbool.h>
 
 #include "stream/host.h"
-
-static made_world world;
+#include "stream/world.h"
 
 /* Beginnings have an error half as large again as the tile's. */
 static void the_rest_comes_after(void **state)
@@ -158,20 +157,6 @@ static void a_drawn_rest_does_not_leave(void **state)
     host_end(&h);
 }
 
-static int begin(void **state)
-{
-    (void)state;
-    made_begin(&world, true);
-    return 0;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    made_end(&world);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -182,5 +167,5 @@ int main(void)
         cmocka_unit_test(small_budgets_come_to_rest),
         cmocka_unit_test(a_drawn_rest_does_not_leave),
     };
-    return cmocka_run_group_tests(tests, begin, end);
+    return cmocka_run_group_tests(tests, make_world_with_beginnings, free_world);
 }

@@ -10,6 +10,7 @@
 #include <stdio.h>
 
 #include "stream/host.h"
+#include "stream/world.h"
 
 enum { MAX_UNDER_WAY = 48, MAX_DELAY = 12, QUEUE = 4096 };
 
@@ -34,7 +35,6 @@ typedef struct answer {
     fault fault;
 } answer;
 
-static made_world world;
 static answer queue[QUEUE];
 static uint32_t queued;
 static uint64_t seed = 1, faults[FAULTS], opened, lies;
@@ -179,24 +179,10 @@ static void a_million_requests(void **state)
     host_end(&h);
 }
 
-static int begin(void **state)
-{
-    (void)state;
-    made_begin(&world, true);
-    return 0;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    made_end(&world);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_million_requests),
     };
-    return cmocka_run_group_tests(tests, begin, end);
+    return cmocka_run_group_tests(tests, make_world_with_beginnings, free_world);
 }

@@ -7,9 +7,7 @@
 
 #include "base/bytes.h"
 #include "common/counter.h"
-#include "stream/made.h"
-
-static made_world world;
+#include "stream/world.h"
 
 static gtx_result create(const uint8_t *data, size_t size)
 {
@@ -241,20 +239,6 @@ static void a_beginning_is_what_was_asked_for(void **state)
     }
 }
 
-static int begin(void **state)
-{
-    (void)state;
-    made_begin(&world, true);
-    return 0;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    made_end(&world);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -265,5 +249,5 @@ int main(void)
         cmocka_unit_test(a_tile_is_what_was_asked_for),
         cmocka_unit_test(a_beginning_is_what_was_asked_for),
     };
-    return cmocka_run_group_tests(tests, begin, end);
+    return cmocka_run_group_tests(tests, make_world_with_beginnings, free_world);
 }

@@ -8,8 +8,7 @@
 #include <stdbool.h>
 
 #include "stream/host.h"
-
-static made_world world;
+#include "stream/world.h"
 
 static void the_root_comes_first(void **state)
 {
@@ -185,20 +184,6 @@ static void small_budgets_come_to_rest(void **state)
     }
 }
 
-static int begin(void **state)
-{
-    (void)state;
-    made_begin(&world, false);
-    return 0;
-}
-
-static int end(void **state)
-{
-    (void)state;
-    made_end(&world);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -209,5 +194,5 @@ int main(void)
         cmocka_unit_test(parts_of_groups_come_to_rest),
         cmocka_unit_test(small_budgets_come_to_rest),
     };
-    return cmocka_run_group_tests(tests, begin, end);
+    return cmocka_run_group_tests(tests, make_world, free_world);
 }

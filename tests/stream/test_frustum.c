@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-#include "stream/eye.h"
+#include "stream/frustum.h"
 #include "stream/made.h"
 
 static uint64_t seed = 7;
@@ -18,9 +18,9 @@ static double between(double low, double high)
     return low + (high - low) * (double)(seed >> 33) / (double)(1u << 31);
 }
 
-static double w_of(const gtx_stream_eye *eye, const double p[3])
+static double w_of(const gtx_stream_frustum *frustum, const double p[3])
 {
-    return eye->w[0] * p[0] + eye->w[1] * p[1] + eye->w[2] * p[2] + eye->w[3];
+    return frustum->w[0] * p[0] + frustum->w[1] * p[1] + frustum->w[2] * p[2] + frustum->w[3];
 }
 
 /* A view from anywhere, with fields of any width, off the middle too. */
@@ -56,14 +56,14 @@ static void bounds_hold(void **state)
         const double far = n % 3 ? 0 : 1e7;
         const gtx_stream_view view = any_view(far, n % 5 != 0);
         double low[3], high[3], most = 0;
-        gtx_stream_eye eye;
+        gtx_stream_frustum frustum;
         int seen = 0;
-        assert_int_equal(gtx_eye_of(&view, &eye, NULL), GTX_OK);
+        assert_int_equal(gtx_stream_frustum_of(&view, &frustum, NULL), GTX_OK);
         for (int k = 0; k < 3; ++k) {
             low[k] = between(-9, 9) + (k == 0 ? far : k == 2 ? -far : 0);
             high[k] = low[k] + between(0, 6);
         }
-        const double pixels = gtx_eye_pixels(&eye, low, high, 0.25);
+        const double pixels = gtx_stream_frustum_pixels(&frustum, low, high, 0.25);
         for (int i = 0; i < 400; ++i) {
             double p[3];
             for (int k = 0; k < 3; ++k)
@@ -71,11 +71,11 @@ static void bounds_hold(void **state)
             if (!made_sees(&view, p))
                 continue;
             ++seen;
-            most = fmax(most, 0.25 * eye.pixels / w_of(&eye, p));
+            most = fmax(most, 0.25 * frustum.pixels / w_of(&frustum, p));
         }
         if (seen)
-            assert_true(gtx_eye_sees(&eye, low, high));
-        unseen += !gtx_eye_sees(&eye, low, high);
+            assert_true(gtx_stream_frustum_sees(&frustum, low, high));
+        unseen += !gtx_stream_frustum_sees(&frustum, low, high);
         assert_true(most <= pixels * 1.00001);
         if (seen > 100 && !isinf(pixels)) {
             loosest = fmax(loosest, pixels / most);
@@ -92,11 +92,11 @@ static void an_eye_in_the_box_sees_all_errors(void **state)
     (void)state;
     const gtx_stream_view view = made_view((double[3]){1, 2, 3}, 0.3, 0.1);
     const double low[3] = {0, 0, 0}, high[3] = {5, 5, 5};
-    gtx_stream_eye eye;
-    assert_int_equal(gtx_eye_of(&view, &eye, NULL), GTX_OK);
-    assert_true(fabs(eye.at[0] - 1) < 1e-6 && fabs(eye.at[2] - 3) < 1e-6);
-    assert_true(isinf(gtx_eye_pixels(&eye, low, high, 1e-9)));
-    assert_true(gtx_eye_pixels(&eye, low, high, 0) == 0);
+    gtx_stream_frustum frustum;
+    assert_int_equal(gtx_stream_frustum_of(&view, &frustum, NULL), GTX_OK);
+    assert_true(fabs(frustum.at[0] - 1) < 1e-6 && fabs(frustum.at[2] - 3) < 1e-6);
+    assert_true(isinf(gtx_stream_frustum_pixels(&frustum, low, high, 1e-9)));
+    assert_true(gtx_stream_frustum_pixels(&frustum, low, high, 0) == 0);
 }
 
 int main(void)

@@ -1,11 +1,11 @@
-/* Budgets: what tiles take, and who leaves when there is no room. */
+/* Budgets: what tiles take of them, and which are dropped to make room. */
 #include "stream/stream.h"
 
 #include <math.h>
 
-/* What is in view leaves only for what mends an error so many times larger: at 1, two tiles of one
- * value would take turns for ever; the larger, the longer the picture is uneven where the budgets
- * are too small. */
+/* A tile in view is dropped only for one that removes an error so many times larger. With 1, two
+ * tiles of equal value would replace each other forever; the larger, the longer the picture stays
+ * uneven where the budgets are too small. */
 static const float WORTH = 2;
 
 void gtx_tile_cost(const gtx_stream *stream, const gtx_tile *tile, uint64_t *cpu, uint64_t *gpu)
@@ -53,7 +53,7 @@ static bool fits(uint64_t taken, uint64_t freed, uint64_t more, uint64_t budget)
 
 static bool may_leave(const gtx_stream *stream, const gtx_tile *tile, float value)
 {
-    if (tile->leaving || tile->users) /* what is below it would hang in the air */
+    if (tile->leaving || tile->users) /* its descendants would be unreachable */
         return false;
     return tile->wanted < stream->update || WORTH * tile->value < value;
 }
@@ -68,8 +68,8 @@ static bool leaves_before(const gtx_tile *a, const gtx_tile *b)
 static gtx_tile *next_to_leave(const gtx_stream *stream, float value)
 {
     gtx_tile *best = NULL;
-    for (uint32_t i = 0; i < stream->there.count; ++i) {
-        gtx_tile *tile = &stream->tiles[stream->there.tiles[i]];
+    for (uint32_t i = 0; i < stream->resident.count; ++i) {
+        gtx_tile *tile = &stream->tiles[stream->resident.tiles[i]];
         if (may_leave(stream, tile, value) && (!best || leaves_before(tile, best)))
             best = tile;
     }

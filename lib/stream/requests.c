@@ -1,4 +1,4 @@
-/* What a frame asks for: the most urgent first, as far as there is room. */
+/* The requests of a frame: the most urgent first, as far as the budgets allow. */
 #include "stream/stream.h"
 
 static void request(gtx_stream *s, gtx_tile *tile)
@@ -32,12 +32,12 @@ static uint64_t opening(const gtx_tile *tile)
     return tile->file.bytes + tile->file.memory;
 }
 
-/* Nodes that take the place of one that is there. */
+/* Tiles that together replace a resident one. */
 typedef struct group {
     gtx_tile *first;
     uint32_t count;
     const gtx_tile *stands;
-    float pixels;             /* the error on screen that they mend */
+    float pixels;             /* the error on screen that they remove */
 } group;
 
 /* The children of a tile, or a rest. */
@@ -48,13 +48,13 @@ static group group_of(const gtx_stream *s, gtx_tile *wanted)
     return (group){&s->tiles[wanted->first_child], wanted->child_count, wanted, wanted->pixels};
 }
 
-/* What is planned already, but waits for a free request. */
+/* The cost of groups that have room already, but wait for a free request. */
 typedef struct plan {
     uint64_t cpu, gpu;
 } plan;
 
-/* Asks for those of a group that are missing, all or none: some children alone would show nothing.
- * False when there is no room. */
+/* Requests the missing tiles of a group, all or none: only a whole group can be drawn. False when
+ * there is no room. */
 static bool ask_for_group(gtx_stream *s, const group *g, plan *planned)
 {
     uint64_t cpu, gpu, most = 0;
@@ -71,7 +71,8 @@ static bool ask_for_group(gtx_stream *s, const group *g, plan *planned)
     *planned = need;
     for (gtx_tile *tile = g->first; tile < g->first + g->count; ++tile) {
         if (!is_missing(s, tile) || tile->retry > s->update ||
-            s->asked.count == s->desc.max_requests || opening(tile) > s->desc.cpu_bytes - s->cpu)
+            s->requested.count == s->desc.max_requests ||
+            opening(tile) > s->desc.cpu_bytes - s->cpu)
             continue;
         gtx_tile_cost(s, tile, &cpu, &gpu);
         planned->cpu -= cpu;
@@ -113,14 +114,15 @@ void gtx_stream_sort(const gtx_stream *s, uint32_t *tiles, uint32_t count, bool 
     }
 }
 
-/* What of an incomplete group is there shows nothing, is not uploaded, and may leave. */
+/* The tiles of an incomplete group without room are not uploaded and may be dropped. */
 static void give_way(gtx_stream *s, const group *g)
 {
     for (gtx_tile *tile = g->first; tile < g->first + g->count; ++tile) {
         if (tile->in_view != s->update)
             continue;
         tile->wanted = s->update - 1;
-        s->frame.without_room += tile->state == GTX_TILE_ABSENT || tile->state == GTX_TILE_HELD;
+        s->frame.without_room +=
+            tile->state == GTX_TILE_ABSENT || tile->state == GTX_TILE_DELIVERED;
     }
 }
 
@@ -139,7 +141,7 @@ static void ask_for_root(gtx_stream *s)
 
 void gtx_stream_ask(gtx_stream *s)
 {
-    enum { MAX_REFUSALS = 4 };    /* each looks through all that is there */
+    enum { MAX_REFUSALS = 4 };    /* each takes time for all resident tiles */
     uint32_t refusals = 0;
     plan planned = {0, 0};
     s->frame.without_room = 0;

@@ -1,5 +1,5 @@
-/* Planes and distances of a view, in double. */
-#include "stream/eye.h"
+/* The frustum of a view, and error on its screen, in double precision. */
+#include "stream/frustum.h"
 
 #include "base/error.h"
 
@@ -32,7 +32,7 @@ static void clip_rows(const gtx_stream_view *view, double rows[3][4])
     }
 }
 
-/* Where x, y and w are 0. */
+/* The point where clip x, y and w are 0. */
 static void find_eye(double rows[3][4], double determinant, double at[3])
 {
     double c[3][3];
@@ -43,14 +43,14 @@ static void find_eye(double rows[3][4], double determinant, double at[3])
                 determinant;
 }
 
-/* w grows least, over a length, towards the corners of the picture. */
-static double least_growth(const gtx_stream_eye *eye)
+/* How much w grows per unit of distance from the eye: least towards the corners of the picture. */
+static double least_growth(const gtx_stream_frustum *frustum)
 {
     double least = INFINITY;
     for (int i = 0; i < 4; ++i) {
         double ray[3];
-        cross(eye->side[i & 1], eye->side[2 + (i >> 1)], ray);
-        least = fmin(least, fabs(dot(ray, eye->w)) / sqrt(dot(ray, ray)));
+        cross(frustum->side[i & 1], frustum->side[2 + (i >> 1)], ray);
+        least = fmin(least, fabs(dot(ray, frustum->w)) / sqrt(dot(ray, ray)));
     }
     return least;
 }
@@ -63,7 +63,8 @@ static bool all_finite(const gtx_stream_view *view)
     return isfinite(view->origin[0]) && isfinite(view->origin[1]) && isfinite(view->origin[2]);
 }
 
-gtx_result gtx_eye_of(const gtx_stream_view *view, gtx_stream_eye *out, gtx_error *error)
+gtx_result gtx_stream_frustum_of(const gtx_stream_view *view, gtx_stream_frustum *out,
+                                 gtx_error *error)
 {
     double rows[3][4], normal[3];
     gtx_result result = gtx_check_reserved(view->reserved, 3, error);
@@ -95,7 +96,7 @@ gtx_result gtx_eye_of(const gtx_stream_view *view, gtx_stream_eye *out, gtx_erro
     return GTX_OK;
 }
 
-/* The least of a linear function over a box, or with `sign` -1 minus its greatest. */
+/* The minimum over a box of sign * f: with `sign` -1, minus the maximum of f. */
 static double least_of(const double f[4], double sign, const double low[3], const double high[3])
 {
     double sum = sign * f[3];
@@ -104,26 +105,27 @@ static double least_of(const double f[4], double sign, const double low[3], cons
     return sum;
 }
 
-bool gtx_eye_sees(const gtx_stream_eye *eye, const double low[3], const double high[3])
+bool gtx_stream_frustum_sees(const gtx_stream_frustum *frustum, const double low[3],
+                             const double high[3])
 {
     for (int i = 0; i < 4; ++i)
-        if (least_of(eye->side[i], -1, low, high) > 0)
+        if (least_of(frustum->side[i], -1, low, high) > 0)
             return false;
     return true;
 }
 
-double gtx_eye_pixels(const gtx_stream_eye *eye, const double low[3], const double high[3],
-                      double length)
+double gtx_stream_frustum_pixels(const gtx_stream_frustum *frustum, const double low[3],
+                                 const double high[3], double length)
 {
-    double nearest = least_of(eye->w, 1, low, high), distance = 0;
-    if (eye->perspective) {
+    double nearest = least_of(frustum->w, 1, low, high), distance = 0;
+    if (frustum->perspective) {
         for (int k = 0; k < 3; ++k) {
-            const double out = fmax(fmax(low[k] - eye->at[k], eye->at[k] - high[k]), 0);
+            const double out = fmax(fmax(low[k] - frustum->at[k], frustum->at[k] - high[k]), 0);
             distance += out * out;
         }
-        nearest = fmax(nearest, sqrt(distance) * eye->least);
+        nearest = fmax(nearest, sqrt(distance) * frustum->least);
     }
     if (length == 0)
         return 0;
-    return nearest > 0 ? length * eye->pixels / nearest : INFINITY;
+    return nearest > 0 ? length * frustum->pixels / nearest : INFINITY;
 }
