@@ -21,8 +21,8 @@ enum { /* exit codes of the command */
     EXIT_CODE_INVALID = 3,     /* invalid input */
     EXIT_CODE_INTERNAL = 4,
     EXIT_CODE_UNSUPPORTED = 5, /* legal, but not supported */
-    EXIT_CODE_LIMIT = 6,       /* would take more than is allowed, or than there is */
-    EXIT_CODE_DIFFERS = 7,     /* a stated limit is passed */
+    EXIT_CODE_LIMIT = 6,       /* a limit of --max-... is exceeded, or memory is out */
+    EXIT_CODE_DIFFERS = 7,     /* a limit of gtx compare is exceeded */
     EXIT_CODE_CANCELLED = 130
 };
 
@@ -90,7 +90,10 @@ extern uint32_t cli_progress;
 enum { PROGRESS_BAR, PROGRESS_JSON };
 #define PROGRESS_OPTION                                                                            \
     {"progress", 0, OPTION_CHOICE, &cli_progress, "bar|json",                                      \
-     "bar: on a terminal; json: an object a line on stderr [bar]", 0, 0}
+     "bar: on a terminal; json: an object per line, on stderr [bar]", 0, 0}
+
+#define THREADS_OPTION(value)                                                                      \
+    {"threads", 0, OPTION_UINT, value, "N", "number of threads; 0 = one per processor [0]", 0, 1024}
 
 /* ---- messages ---- */
 
@@ -169,11 +172,11 @@ typedef struct made_file {
 } made_file;
 #define MADE_OPTIONS(m)                                                                            \
     {"if-changed", 0, OPTION_FLAG, &(m).if_changed, NULL,                                          \
-     "keep OUT.gtx, and its time, if it has these bytes already", 0, 0},                           \
+     "do not touch OUT.gtx if it has these bytes already", 0, 0},                                  \
     {"strict", 0, OPTION_FLAG, &(m).strict, NULL,                                                  \
-     "a warning is an error (exit 3); a note is none", 0, 0},                                      \
+     "warnings are errors (exit 3), notes are not", 0, 0},                                         \
     {"allow", 0, OPTION_STRING, &(m).allow, "NAME,...",                                            \
-     "with --strict: warnings that are no errors", 0, 0},                                          \
+     "with --strict: warnings that are not errors", 0, 0},                                         \
     {"report", 0, OPTION_STRING, &(m).report, "R.json", "write what was made, as JSON", 0, 0},     \
     {"depfile", 0, OPTION_STRING, &(m).depfile, "D",                                               \
      "write a dependency file for Make or Ninja", 0, 0}

@@ -35,57 +35,56 @@ const option options[] = {
      "[mesh,simplified,paper,cast,lod,auto; a path's: "
      "mesh,simplified,floor,cast,auto]", 0, 0},
     {"frames", 0, OPTION_UINT, &frames, "N",
-     "frames per method [12]; views along a path [one a key]", 1, 10000},
+     "frames per method [12]; views along a path [one per key]", 1, 10000},
     {"path", 0, OPTION_STRING, &path_file, "FILE",
-     "see it from along a path: a key a line, x y z x y z, eye and target in the model's own "
-     "coordinates; before them 'up x y z' [0 1 0] and 'fov DEGREES' [45]", 0, 0},
+     "move the camera along a path: per line a key, x y z x y z, eye and target in the model's "
+     "coordinates; before them optionally 'up x y z' [0 1 0] and 'fov DEGREES' [45]", 0, 0},
     {"random", 0, OPTION_UINT, &random_count, "N",
      "a path of N random views: outside, just above the surface, in the bounding box", 1, 10000},
-    {"seed", 0, OPTION_UINT, &seed, "S", "other random views [1]", 0, 4294967295.},
+    {"seed", 0, OPTION_UINT, &seed, "S", "seed of the random views [1]", 0, 4294967295.},
     {"repeats", 0, OPTION_UINT, &repeats, "N",
-     "frames of a view of a path, of which the fastest counts [3]", 1, 1000},
+     "frames per view of a path, of which the fastest counts [3]", 1, 1000},
     {"max-error", 0, OPTION_NUMBER, &max_error, "PIXELS",
-     "largest error of a level of detail on screen [0.5]", 1e-6, 1e6},
+     "largest error on screen of a level of detail [0.5]", 1e-6, 1e6},
     {"min-iou", 0, OPTION_NUMBER, &min_iou, "SHARE",
      "per window, the largest --max-error of 0.25 to 4 pixels whose silhouette IoU with the mesh "
-     "is at least SHARE [0: --max-error as given]", 0,
-     1},
+     "is at least SHARE [0: --max-error as given]", 0, 1},
     {"truth", 0, OPTION_FLAG, &truth, nullptr,
-     "compare pictures with the mesh's at 8x8 samples a pixel, too", 0, 0},
+     "also compare pictures with the mesh's at 8x8 samples per pixel", 0, 0},
     {"budget", 0, OPTION_NUMBER, &budget, "SECONDS", "skip what would exceed this time [600]", 0,
      1e9},
     {"cells", 0, OPTION_FLAG, &count_cells, nullptr,
-     "no times: how many cells rays look at, by paper, cast and cast_fragment", 0, 0},
+     "instead of times: how many cells rays visit with paper, cast and cast_fragment", 0, 0},
     {"compress", 0, OPTION_FLAG, &compress, nullptr,
-     "no times: what the asset takes of the GPU's memory, by texels and by each kind of blocks "
-     "that the driver reads, and what is lost by them; sizes [100x100,640x480]", 0, 0},
+     "instead of times: the asset's GPU memory, uncompressed and with each block compression that "
+     "the driver supports, and the loss of quality; sizes [100x100,640x480]", 0, 0},
     {"vulkan", 0, OPTION_FLAG, &vulkan, nullptr,
-     "draw the asset by Vulkan, too, in the same run: paper, cast, lod, auto, cast_fragment, grid",
+     "also draw with Vulkan, in the same run: paper, cast, lod, auto, cast_fragment, grid",
      0, 0},
-    {"json", 0, OPTION_FLAG, &as_json, nullptr, "the whole report as JSON", 0, 0},
+    {"json", 0, OPTION_FLAG, &as_json, nullptr, "print the whole report as JSON", 0, 0},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
 const verb bench = {
     "bench", "ASSET MODEL",
-    "Times an asset against the mesh it was cooked from. The mesh is drawn culled, sent again\n"
-    "each frame, or simplified until it looks as good as auto; the asset by each method.\n"
-    "Along a path the mesh is cut into parts, of which those out of view are left out, and drawn\n"
-    "from both sides where it is open, as the asset is; simplified is the coarsest with an error\n"
-    "of at most --max-error at the nearest vertex in view, chosen before the clock starts; and\n"
-    "floor is what maps cost alone: flat rectangles over the pixels that auto covers, each pixel\n"
-    "shaded once by the main that draws LOD meshes, from textures of its own. Displaced grids lit\n"
-    "at their corners may take less.\n"
-    "The worst views are printed as a path. Of the outcome, holes are pixels not covered inside\n"
-    "what the mesh covers, enclosed those of them that are no shift of the outline, and outline\n"
-    "is how many pixels the outlines are apart.\n"
-    "With --truth, truth is the PSNR to the mesh at 8x8 samples a pixel, whose light is averaged,\n"
-    "where either covers; inside the same where all samples cover, and outline the share of the\n"
-    "squared error elsewhere.",
+    "Times an asset against the mesh it was cooked from. The mesh is drawn with back faces culled\n"
+    "(mesh), uploaded anew each frame (mesh_stream), or simplified until it looks as good as auto\n"
+    "(simplified); the asset by each method.\n"
+    "Along a path, parts of the mesh that are out of view are not drawn, and an open mesh is\n"
+    "drawn from both sides, as the asset is. simplified is then the coarsest mesh with an error\n"
+    "of at most --max-error at the nearest vertex in view, chosen before the clock starts. floor\n"
+    "is the cost of shading alone: flat rectangles over the pixels that auto covers, each shaded\n"
+    "once as LOD meshes are. Displaced grids that are lit at their vertices may take less.\n"
+    "The worst views are printed as a path. holes are pixels that the mesh covers and the asset\n"
+    "does not; enclosed are those of them that are not a shift of the outline; outline is the\n"
+    "distance of the outlines in pixels.\n"
+    "With --truth, truth is the PSNR to the mesh at 8x8 samples per pixel, averaged in linear\n"
+    "light, where either covers; inside is the same where all samples cover; outline is the share\n"
+    "of the squared error elsewhere.",
     2, 2, options};
 
 bool usage(const char *what, const std::string &word)
 {
-    print_message("gtx bench: error[usage]: --%s: '%s' is none", what, word.c_str());
+    print_message("gtx bench: error[usage]: --%s: invalid value '%s'", what, word.c_str());
     return false;
 }
 

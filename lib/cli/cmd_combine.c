@@ -19,14 +19,14 @@ static bool strict;
 static const option options[] = {
     {"op", 0, OPTION_CHOICE, &op, "union|intersect|subtract",
      "what is inside A or B, both, or A and not B (required)", 0, 0},
-    {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "where the asset goes (required)", 0, 0},
+    {"output", 'o', OPTION_STRING, &output, "OUT.gtx", "file to write (required)", 0, 0},
     {"openness", 0, OPTION_NUMBER, &openness, "X",
-     "take assets whose inside is in doubt at up to this share of points [0.01]", 1e-9, 1},
+     "accept assets whose inside is in doubt at up to this share of points [0.01]", 1e-9, 1},
     {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
-     "LOD meshes at most, made of the combined maps; 0 = none at all [5]", 0, 5},
+     "most LOD meshes, made from the combined maps; 0 = none at all [5]", 0, 5},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
-    {"strict", 0, OPTION_FLAG, &strict, NULL, "a warning is an error (exit 3)", 0, 0},
-    {"threads", 0, OPTION_UINT, &threads, "N", "0 = all processors [0]", 0, 1024},
+    {"strict", 0, OPTION_FLAG, &strict, NULL, "warnings are errors (exit 3)", 0, 0},
+    THREADS_OPTION(&threads),
     PROGRESS_OPTION,
     {"report", 0, OPTION_STRING, &report_path, "R.json",
      "write a report, with the volumes of both assets and of the result", 0, 0},
@@ -34,9 +34,9 @@ static const option options[] = {
 
 static const verb combine = {
     "combine", "A.gtx B.gtx --op OP -o OUT.gtx",
-    "Combines two closed assets, in one frame of coordinates, as solids: patches are trimmed\n"
+    "Combines two closed assets, placed in the same coordinates, as solids. Patches are trimmed\n"
     "where the surfaces cross, and keep their heights, normals, colours and materials. Patches of\n"
-    "B that bound a hollow are turned round.",
+    "B that become the wall of a cavity are reversed.",
     2, 2, options};
 
 /* What the default allows; beyond it there is a warning. */

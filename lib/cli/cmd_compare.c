@@ -13,35 +13,36 @@ static bool as_json, any_model;
 static double max_holes = -1, max_walls = -1, min_iou = -1, max_rms = -1;
 
 static const option options[] = {
-    {"json", 0, OPTION_FLAG, &as_json, NULL, "the whole report as JSON", 0, 0},
+    {"json", 0, OPTION_FLAG, &as_json, NULL, "print the whole report as JSON", 0, 0},
     {"size", 0, OPTION_UINT, &desc.size, "N", "pixels along a side of a view [1024]", 64, 4096},
     {"views", 0, OPTION_UINT, &desc.random_views, "N",
-     "random views beside the 26 fixed ones [0]", 0, 4096},
-    {"seed", 0, OPTION_UINT, &desc.seed, "S", "which random views [0]", 0, UINT32_MAX},
-    {"levels", 0, OPTION_UINT, &desc.levels, "N", "levels of detail to evaluate [all]", 1, 8},
+     "random views in addition to the 26 fixed ones [0]", 0, 4096},
+    {"seed", 0, OPTION_UINT, &desc.seed, "S", "seed of the random views [0]", 0, UINT32_MAX},
+    {"levels", 0, OPTION_UINT, &desc.levels, "N", "levels of detail to measure [all]", 1, 8},
     {"up", 0, OPTION_CHOICE, &desc.z_up, "y|z",
      "the up axis that the asset was cooked with [y]", 0, 0},
     {"any-model", 0, OPTION_FLAG, &any_model, NULL,
-     "a model that the asset was not cooked from, or that has changed since", 0, 0},
+     "also measure against a model that the asset was not cooked from, or that has changed", 0, 0},
     {"base-color", 0, OPTION_STRING, &desc.base_color, "FILE",
-     "image where an OBJ or a glTF with texture coordinates names none that is read", 0, 0},
+     "image for materials of OBJ and glTF that have texture coordinates but no readable image",
+     0, 0},
     {"texture-dir", 0, OPTION_STRING, &desc.texture_dir, "DIR",
-     "folder of textures that are not beside the model, by file name", 0, 0},
-    {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
+     "folder in which to look, by file name, for textures that are not beside the model", 0, 0},
+    THREADS_OPTION(&desc.threads),
     PROGRESS_OPTION,
     {"max-holes", 0, OPTION_NUMBER, &max_holes, "N", "exit 7 above N hole pixels", 0, 1e18},
     {"max-walls", 0, OPTION_NUMBER, &max_walls, "N", "exit 7 above N wall pixels", 0, 1e18},
     {"min-iou", 0, OPTION_NUMBER, &min_iou, "X", "exit 7 below this silhouette IoU", 0, 1},
     {"max-rms", 0, OPTION_NUMBER, &max_rms, "X",
-     "exit 7 above this forward RMS error, in diagonals", 0, 1},
+     "exit 7 above this RMS distance of the source from the asset, in bounding-box diagonals",
+     0, 1},
     {0}};
 
 static const verb compare_verb = {
     "compare", "ASSET MODEL...",
-    "Measures an asset against the models it was cooked from, on the CPU. format/measures.md of\n"
-    "the source, installed as share/doc/geotex/measures.md, has the rules of every figure. An\n"
-    "asset that tells what it was cooked from is compared with nothing else (exit 3), but for\n"
-    "--any-model.",
+    "Measures an asset against the models it was cooked from, on the CPU. format/measures.md,\n"
+    "installed as share/doc/geotex/measures.md, defines every figure. An asset that names its\n"
+    "source is not compared with any other model (exit 3), unless --any-model is given.",
     2, MAX_FILES, options};
 
 static int differs(const char *asset, const char *what, double value, const char *how, double limit)

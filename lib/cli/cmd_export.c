@@ -1,4 +1,4 @@
-/* gtx export: an asset -> a GLB that any tool shows. */
+/* gtx export: an asset -> a GLB for other tools. */
 #include "cli/cli.h"
 
 #include <geotex/export.h>
@@ -13,29 +13,29 @@ static uint32_t compress, textures;
 static bool lods, collision, without_asset;
 
 static const option options[] = {
-    {"output", 'o', OPTION_STRING, &output, "OUT.glb", "where the GLB goes, - for stdout", 0, 0},
-    {"level", 0, OPTION_UINT, &desc.level, "N", "LOD mesh, 0 = the finest [0]", 0, 7},
+    {"output", 'o', OPTION_STRING, &output, "OUT.glb", "file to write, - for stdout", 0, 0},
+    {"level", 0, OPTION_UINT, &desc.level, "N", "LOD mesh to export, 0 = the finest [0]", 0, 7},
     {"max-error", 0, OPTION_NUMBER, &desc.max_error, "E",
-     "the coarsest LOD mesh within E bounding-box diagonals of the source", 1e-9, 1},
-    {"lods", 0, OPTION_FLAG, &lods, NULL, "the coarser LOD meshes too, as MSFT_lod", 0, 0},
+     "export the coarsest LOD mesh within E bounding-box diagonals of the source", 1e-9, 1},
+    {"lods", 0, OPTION_FLAG, &lods, NULL, "export coarser LOD meshes too, as MSFT_lod", 0, 0},
     {"collision", 0, OPTION_FLAG, &collision, NULL,
-     "for physics: triangles alone, without maps and asset", 0, 0},
-    {"without-asset", 0, OPTION_FLAG, &without_asset, NULL, "leave the asset itself out", 0, 0},
+     "for physics: export triangles only, without maps and asset", 0, 0},
+    {"without-asset", 0, OPTION_FLAG, &without_asset, NULL, "do not embed the asset itself", 0, 0},
     {"compress", 0, OPTION_CHOICE, &compress, "none|meshopt|draco",
-     "of vertices and triangles: EXT_meshopt_compression, KHR_draco_mesh_compression [none]", 0,
-     0},
+     "compress vertices and triangles: EXT_meshopt_compression, KHR_draco_mesh_compression [none]",
+     0, 0},
     {"textures", 0, OPTION_CHOICE, &textures, "png|ktx2",
-     "ktx2: KHR_texture_basisu, a byte a texel on the GPU, with mip levels [png]", 0, 0},
-    {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
+     "ktx2: KHR_texture_basisu, one byte per texel on the GPU, with mip levels [png]", 0, 0},
+    THREADS_OPTION(&desc.threads),
     PROGRESS_OPTION,
     {"report", 0, OPTION_STRING, &report_path, "R.json", "write what was exported, as JSON", 0, 0},
     {0}};
 
 static const verb export_verb = {
     "export", "ASSET -o OUT.glb",
-    "Writes an asset as glTF 2.0: an LOD mesh with the asset's maps as its textures, and the\n"
-    "asset itself as the extension GTX_geometry_texture. gtx cook and the verbs that open assets\n"
-    "read it back; gtx render and view draw the mesh. Units are metres.",
+    "Writes an asset as glTF 2.0: an LOD mesh textured with the asset's maps, and the asset\n"
+    "itself as the extension GTX_geometry_texture. gtx cook and the verbs that open assets read\n"
+    "it back; gtx render and gtx view draw the mesh. Units are metres.",
     1, 1, options};
 
 static int usage(const char *sentence)

@@ -20,7 +20,7 @@ static double boost_radius = 2, pattern_height, pattern_size;
 
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &making.output, "OUT.gtx",
-     "where the asset goes (required)", 0, 0},
+     "file to write (required)", 0, 0},
     {"gaussian", 0, OPTION_STEP, &chosen, "TEXELS", "blur; standard deviation in texels", 0, 1e6},
     {"gaussian-world", 0, OPTION_STEP, &chosen, "UNITS",
      "blur; standard deviation in object units", 0, 1e30},
@@ -33,10 +33,10 @@ static const option options[] = {
      "height of white, object units [1 texel]", -1e30, 1e30},
     {"pattern-size", 0, OPTION_NUMBER, &pattern_size, "S",
      "width of the image, object units [64 texels]", 0, 1e30},
-    {"naive", 0, OPTION_FLAG, &naive, NULL, "blur each patch alone, as in the paper: seams open", 0,
-     0},
+    {"naive", 0, OPTION_FLAG, &naive, NULL,
+     "blur each patch by itself, as in the paper: seams open", 0, 0},
     {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
-     "LOD meshes at most, made of the filtered maps; 0 = none at all [5]", 0, 5},
+     "most LOD meshes, made from the filtered maps; 0 = none at all [5]", 0, 5},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
     MADE_OPTIONS(making),
     {0}};

@@ -26,39 +26,39 @@ static double latitude = NAN; /* of the first grid in degrees */
 
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &making.output, "OUT.gtx",
-     "where the asset goes (required)", 0, 0},
+     "file to write (required)", 0, 0},
     {"colors", 0, OPTION_CHOICE, &colors, "viridis|rainbow|none",
-     "colour map of the properties, or of the heights [viridis]", 0, 0},
+     "colour map of the properties or, without, of the heights [viridis]", 0, 0},
     {"color-range", 0, OPTION_STRING, &color_range, "LOW,HIGH",
      "values at the ends of the colour map [the data's own range]", 0, 0},
     {"depths", 0, OPTION_FLAG, &depths, NULL, "values are depths: positive is down", 0, 0},
     {"vertical", 0, OPTION_NUMBER, &desc.vertical, "X", "vertical exaggeration [1]", 1e-6, 1e6},
     {"one-surface", 0, OPTION_FLAG, &one_surface, NULL,
-     "the grids are parts of one lattice: join them", 0, 0},
+     "the grids are tiles of one larger grid: join them", 0, 0},
     {"missing", 0, OPTION_NUMBER, &missing, "V",
-     "value of a node that has no data", -1e30, 1e30},
+     "value of nodes without data", -1e30, 1e30},
     {"range", 0, OPTION_STRING, &range, "LOW,HIGH",
      "heights of black and white in height images [the pixel values]", 0, 0},
     {"property-range", 0, OPTION_STRING, &property_range, "LOW,HIGH",
      "likewise for property images", 0, 0},
     {"categories", 0, OPTION_FLAG, &categories, NULL,
-     "properties are kinds, such as rock: the nearest one's, with a legend of them", 0, 0},
+     "properties are categories, such as kinds of rock: do not interpolate them", 0, 0},
     {"spacing", 0, OPTION_STRING, &spacing, "DX,DY", "distance between nodes [the file's, or 1]", 0,
      0},
     {"origin", 0, OPTION_STRING, &origin, "X,Y", "position of the first node [the file's, or 0]", 0,
      0},
     {"local-metres", 0, OPTION_FLAG, &local_metres, NULL,
-     "grids in degrees: in metres as they are at the first one's middle", 0, 0},
-    {"rotation", 0, OPTION_NUMBER, &rotation, "DEG", "counter-clockwise [the file's, or 0]",
-     -360, 360},
+     "convert grids in degrees to metres, by the latitude of the first one's middle", 0, 0},
+    {"rotation", 0, OPTION_NUMBER, &rotation, "DEG",
+     "counter-clockwise rotation [the file's, or 0]", -360, 360},
     {"tile", 0, OPTION_UINT, &desc.tile, "N", "a patch's largest side in texels [128]", 16, 512},
-    {"height-bits", 0, OPTION_ONE_OF, &desc.height_bits, "8|16", "bits of a height [8]", 0, 0},
-    {"mips", 0, OPTION_UINT, &desc.mips, "N", "mip levels of normal and colour [4]", 1, 8},
+    {"height-bits", 0, OPTION_ONE_OF, &desc.height_bits, "8|16", "bits per height [8]", 0, 0},
+    {"mips", 0, OPTION_UINT, &desc.mips, "N", "mip levels of normals and colours [4]", 1, 8},
     {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
-     "LOD meshes at most, besides far ones; 0 = none at all [5]", 0, 5},
+     "most LOD meshes, besides far ones; 0 = none at all [5]", 0, 5},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [3]", 0, 19},
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the grids [1]", 1e-30, 1e30},
-    {"threads", 0, OPTION_UINT, &desc.threads, "N", "0 = all processors [0]", 0, 1024},
+    THREADS_OPTION(&desc.threads),
     PROGRESS_OPTION,
     MADE_OPTIONS(making),
     {0}};
@@ -66,10 +66,10 @@ static const option options[] = {
 static const verb horizons = {
     "horizons", "GRID[@X,Y][=PROPERTY]... -o OUT.gtx",
     "Makes one asset of height grids: IRAP classic or binary, ZMAP+, CPS-3, NetCDF,\n"
-    "ESRI ASCII, Surfer, HGT, XYZ (also gzipped), GeoTIFF, other images (PNG, TIFF, EXR: 8 or 16\n"
-    "bits, or floats). GDAL reads all from ESRI ASCII to GeoTIFF. @X,Y sets the position of a\n"
-    "grid's first node; =PROPERTY is a grid to colour it by, whose values are taken where the\n"
-    "grid's nodes lie: an image reaches over all of it. East becomes +X, up +Y, north -Z.",
+    "ESRI ASCII, Surfer, HGT, XYZ (all also gzipped), GeoTIFF, and other images (PNG, TIFF, EXR)\n"
+    "of 8 or 16 bits or floats. ESRI ASCII to GeoTIFF are read by GDAL. @X,Y sets the position of\n"
+    "a grid's first node. =PROPERTY is a grid to colour it by; it is resampled at the grid's\n"
+    "nodes, and an image is stretched over them. East becomes +X, up +Y, north -Z.",
     1, MAX_GRIDS, options};
 
 static int usage(const char *sentence)

@@ -18,12 +18,12 @@ static uint32_t lod_levels;
 
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &making.output, "OUT.gtx",
-     "where the asset goes (required)", 0, 0},
+     "file to write (required)", 0, 0},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [as before]", 0, 19},
     {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
-     "make a new LOD mesh of N levels from the maps [keep the old]", 1, 5},
+     "make N new LOD meshes from the maps; 0 = none [keep the old ones]", 1, 5},
     {"rebuild", 0, OPTION_STRING, &rebuild_text, "mips,normals,trim",
-     "of edited patches: coarser levels and dilation from level 0, normals from heights, outlines",
+     "derive anew, in edited patches: mip levels and dilation, normals, outlines",
      0, 0},
     MADE_OPTIONS(making),
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
@@ -31,9 +31,9 @@ static const option options[] = {
 static const verb pack = {
     "pack", "DIR|ASSET -o OUT.gtx",
     "Packs a folder that gtx unpack wrote: the same bytes again, or the edited asset. Every mip\n"
-    "level is taken from its own image, and where one was edited alone a warning tells: --rebuild\n"
-    "makes anew what follows from what was edited. Given an asset, writes it again with another\n"
-    "LOD mesh or compression.",
+    "level is read from its own image; a warning tells if only some were edited, and --rebuild\n"
+    "derives the others from the edited ones. Given an asset, writes it again with other LOD\n"
+    "meshes or another compression level.",
     1, 1, options};
 
 /* Rules that only tell of heights that have changed: coverage, sphere, bounds. */

@@ -19,49 +19,51 @@ static const gtx_method methods[] = {GTX_METHOD_AUTO, GTX_METHOD_CAST, GTX_METHO
 
 static const option options[] = {
     {"output", 'o', OPTION_STRING, &output, "OUT.png",
-     "where the picture goes (this or --turntable)", 0, 0},
-    {"size", 0, OPTION_SIZE, size, "WxH", "pixels, of a sheet as a whole [1024x768]", 1, 8192},
+     "picture to write (this or --turntable)", 0, 0},
+    {"size", 0, OPTION_SIZE, size, "WxH",
+     "size in pixels; with --sheet, of the whole sheet [1024x768]", 1, 8192},
     {"camera", 0, OPTION_TRIPLE, still_options.camera, "AZ,EL,DIST",
-     "degrees, degrees, bounding-sphere radii [30,20,2.8]", 0, 0},
+     "azimuth and elevation in degrees, distance in bounding-sphere radii [30,20,2.8]", 0, 0},
     {"depth", 0, OPTION_STRING, &depth_path, "OUT.exr",
-     "also write depth along the view axis, infinity for background", 0, 0},
+     "also write depth along the view axis, infinity where there is nothing", 0, 0},
     {"sheet", 0, OPTION_UINT, &views, "N",
-     "N views in one picture; of several files, of each: a row each", 1, 64},
+     "a contact sheet of N views; of several files: a row of N views each", 1, 64},
     {"beside", 0, OPTION_STRING, &beside, "MODEL",
-     "show a model, such as the source, beside FILE, from the same side", 0, 0},
+     "show a model, such as the source, next to FILE, from the same camera", 0, 0},
     {"turntable", 0, OPTION_STRING, &turntable, "OUT.gif|DIR",
-     "a turn: an animated GIF, or frame-000.png ... in a folder", 0, 0},
-    {"frames", 0, OPTION_UINT, &frames, "N", "of the turn [36]", 2, 720},
-    {"rate", 0, OPTION_NUMBER, &frames_per_second, "FPS", "frames a second of the GIF [12]", 1, 50},
+     "write a turntable: an animated GIF, or frame-000.png ... in a folder", 0, 0},
+    {"frames", 0, OPTION_UINT, &frames, "N", "frames of the turntable [36]", 2, 720},
+    {"rate", 0, OPTION_NUMBER, &frames_per_second, "FPS",
+     "frames per second of the GIF [12]", 1, 50},
     {"show", 0, OPTION_CHOICE, &debug, "color|patches|normals",
-     "colours of the model, a colour a patch, normals as colours [color]", 0, 0},
+     "the model's colours, a colour per patch, or normals as colours [color]", 0, 0},
     {"legend", 0, OPTION_FLAG, &still_options.legend, nullptr,
-     "say in the picture what its colours mean", 0, 0},
+     "draw a legend of the colours", 0, 0},
     {"contours", 0, OPTION_STRING, &contours, "STEP|auto",
-     "lines of equal height, in the units of the model", 0, 0},
+     "draw lines of equal height every STEP units of the model", 0, 0},
     {"light", 0, OPTION_TRIPLE, light, "AZ,EL,AMBIENT",
-     "where light comes from, as --camera, and the share from everywhere [the camera's left]", 0,
+     "direction of the light, as in --camera, and share of ambient light [left of the camera]", 0,
      0},
-    {"light-color", 0, OPTION_STRING, &light_color, "RRGGBB", "of all light [FFFFFF]", 0, 0},
+    {"light-color", 0, OPTION_STRING, &light_color, "RRGGBB", "colour of the light [FFFFFF]", 0, 0},
     {"background", 0, OPTION_STRING, &background, "RRGGBB|none",
-     "none: transparent [EBEDF2]", 0, 0},
+     "background colour; none: transparent [EBEDF2]", 0, 0},
     {"method", 0, OPTION_CHOICE, &method, "auto|cast|lod|grid|paper",
      "how patches are drawn [auto]", 0, 0},
     {"level", 0, OPTION_CHOICE, &still_options.level, "auto|0|1|2|3|4|5|6|7",
-     "level of detail, or the coarsest there is; auto: by --max-error [auto]", 0, 0},
+     "level of detail to draw, or the coarsest there is; auto: by --max-error [auto]", 0, 0},
     {"max-error", 0, OPTION_NUMBER, &still_options.max_error, "PIXELS",
-     "largest error of a level of detail on screen [0.5]", 1e-6, 1e6},
+     "largest error on screen of a level of detail [0.5]", 1e-6, 1e6},
     {"gles", 0, OPTION_FLAG, &gles, nullptr, "draw with OpenGL ES 3", 0, 0},
-    {"vulkan", 0, OPTION_FLAG, &vulkan, nullptr, "draw with Vulkan: assets alone", 0, 0},
+    {"vulkan", 0, OPTION_FLAG, &vulkan, nullptr, "draw with Vulkan; assets only", 0, 0},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
 static const verb render = {
     "render", "FILE... -o OUT.png",
-    "Draws assets, polygon models, height grids, worlds (DIR of gtx world) and glTF scenes into a\n"
-    "PNG. A glTF node with the extras {\"geotex\": \"a.gtx\"}, or the extension\n"
-    "GTX_geometry_texture, places an asset; one that lies in a GLB is shown as its mesh. Grids\n"
-    "are shown as gtx horizons makes them. Legends tell what --show shows, or the values of the\n"
-    "colours that it gave.",
+    "Draws assets, polygon models, height grids, worlds (DIR of gtx world) and glTF scenes to a\n"
+    "PNG. A glTF node with the extras {\"geotex\": \"a.gtx\"} or the extension\n"
+    "GTX_geometry_texture places an asset; an asset embedded in a GLB is drawn as its mesh. Grids\n"
+    "are drawn as gtx horizons makes them. --legend explains the colours of --show, or those that\n"
+    "gtx horizons gave.",
     1, 64, options};
 
 static int usage(const char *sentence)

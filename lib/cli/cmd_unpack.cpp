@@ -14,8 +14,8 @@ static const option options[] = {{nullptr, 0, OPTION_FLAG, nullptr, nullptr, nul
 
 static const verb unpack = {
     "unpack", "ASSET DIR",
-    "Writes an asset into a new folder: the maps as PNG images, the LOD mesh as lod-N.bin, the\n"
-    "rest as asset.json. gtx pack makes the asset again, edited or not.",
+    "Writes an asset to a new folder: its maps as PNG images, its LOD meshes as lod-N.bin, the\n"
+    "rest as asset.json. gtx pack makes an asset of the folder, edited or not.",
     2, 2, options};
 
 namespace fs = std::filesystem;

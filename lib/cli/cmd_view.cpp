@@ -11,10 +11,10 @@ static const char *source;
 static const option options[] = {
     {"size", 0, OPTION_SIZE, size, "WxH", "size of the window [1024x768]", 16, 8192},
     {"camera", 0, OPTION_TRIPLE, camera, "AZ,EL,DIST",
-     "degrees, degrees, bounding-sphere radii [30,20,2.8]", 0, 0},
+     "azimuth and elevation in degrees, distance in bounding-sphere radii [30,20,2.8]", 0, 0},
     {"method", 0, OPTION_CHOICE, &method, "auto|cast|lod|grid|paper",
      "how patches are drawn [auto]", 0, 0},
-    {"source", 0, OPTION_STRING, &source, "MODEL", "what X shows in place of FILE", 0, 0},
+    {"source", 0, OPTION_STRING, &source, "MODEL", "model that X shows instead of FILE", 0, 0},
     {"frames", 0, OPTION_UINT, &script.frames, "N",
      "close after N frames, once --keys and cooking are done", 1, 1e9},
     {"keys", 0, OPTION_STRING, &script.keys, "KEYS",
@@ -28,15 +28,14 @@ static const option options[] = {
 
 static const verb view = {
     "view", "[FILE...]",
-    "Shows assets, polygon models, height grids, worlds (DIR of gtx world, whose tiles are read\n"
-    "as they are wanted) and glTF scenes in a window. Left drag turns, right or middle drag pans,\n"
-    "the wheel zooms, H lists the keys. What is dropped onto the window replaces what it shows:\n"
-    "files, and worlds by their folder or tileset.json; a model or a grid is cooked first, in the\n"
-    "background.\n"
-    "K then saves its asset in this folder, and X shows the model in its place, and back.\n"
-    "G walks on what is in the middle of the picture, then flies, then orbits again: W, A, S, D\n"
-    "go, E and Q raise and lower the eye, Shift is faster, left drag looks around.\n"
-    "Exit: 5 if no display offers OpenGL 3.3; with --frames, that of cook if a drop failed.",
+    "Shows assets, polygon models, height grids, worlds (DIR of gtx world, streamed) and glTF\n"
+    "scenes in a window. Left drag orbits, right or middle drag pans, the wheel zooms, H lists\n"
+    "the keys. Files, and a world's folder or tileset.json, that are dropped onto the window\n"
+    "replace what it shows; models and grids are cooked first, in the background. K then saves\n"
+    "the asset in the current folder, and X switches between asset and model.\n"
+    "G walks on the surface in the middle of the window, then flies, then orbits again: W, A, S,\n"
+    "D move, E and Q raise and lower the eye, Shift is faster, left drag looks around.\n"
+    "Exit code 5 if no display offers OpenGL 3.3; with --frames, that of cook if a drop failed.",
     0, 64, options};
 
 int cmd_view(int argc, char **argv)

@@ -17,19 +17,19 @@ static const option plan_options[] = {
      gtx::MIN_TILE, gtx::MAX_TILE},
     {"engine", 0, OPTION_CHOICE, &engine, "ninja|shell|slurm",
      "who runs the steps: DIR/build.ninja, DIR/build.sh, or DIR/slurm/submit.sh [ninja]", 0, 0},
-    {"worker-memory", 0, OPTION_AMOUNT, &memory, "BYTES", "most memory of a worker [1G]", 1e8,
+    {"worker-memory", 0, OPTION_AMOUNT, &memory, "BYTES", "memory limit of each worker [1G]", 1e8,
      1e15},
     {"glb", 0, OPTION_FLAG, &glb, nullptr,
-     "write each tile's finest LOD mesh as GLB too, for any reader of 3D Tiles", 0, 0},
+     "also write each tile's finest LOD mesh as GLB, for any viewer of 3D Tiles", 0, 0},
     {"sides", 0, OPTION_CHOICE, &sides, "auto|front|both",
-     "that show: of a closed surface the front, of others both; or as you say [auto]", 0, 0},
-    {"up", 0, OPTION_CHOICE, &up, "y|z", "the models' up axis; +Z is turned to +Y [y]", 0, 0},
+     "visible sides; auto: front of closed surfaces, both of others [auto]", 0, 0},
+    {"up", 0, OPTION_CHOICE, &up, "y|z", "the models' up axis; z: +Z becomes +Y [y]", 0, 0},
     {"unit", 0, OPTION_NUMBER, &unit, "M", "metres per unit of the models [1]", 1e-30, 1e30},
     PROGRESS_OPTION,
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
 static const option step_options[] = {
-    {"threads", 0, OPTION_UINT, &threads, "N", "0 = all processors [0]", 0, 1024},
+    THREADS_OPTION(&threads),
     PROGRESS_OPTION,
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
@@ -37,27 +37,26 @@ enum { MAX_MODELS = 4096 };
 
 static const verb steps_of_world[] = {
     {"world plan", "MODEL... -o DIR",
-     "Counts triangles, once, and plans a tree of tiles: plan.json, and what runs the steps.\n"
-     "Binary PLY, binary STL, and GLB of plain arrays may have any size, images are decoded one\n"
-     "after another; other models and grids (as for horizons) are read one at a time, folders\n"
-     "file by file.\n"
-     "Leaves keep all maps of textured models, coarser tiles the colours' means. - reads\n"
-     "triangles of nine little-endian floats from stdin. `ninja -C DIR` then makes\n"
-     "DIR/tileset.json (OGC 3D Tiles 1.1).",
+     "Counts the models' triangles and plans a tree of tiles: DIR/plan.json, and a build file\n"
+     "that runs the steps below. Models of binary PLY, binary STL and GLB with plain accessors\n"
+     "may have any size; other models and grids (as for horizons) are read one at a time. Folders\n"
+     "are read file by file; - reads triangles of nine little-endian floats from stdin.\n"
+     "Leaf tiles keep all maps of textured models, coarser tiles have averaged colours.\n"
+     "`ninja -C DIR` then makes DIR/tileset.json (OGC 3D Tiles 1.1).",
      1, MAX_MODELS, plan_options},
     {"world split", "DIR",
-     "Reads the planned models again and gives each triangle to its leaf: DIR/work/split.",
+     "Reads the planned models again and sorts their triangles into leaf tiles: DIR/work/split.",
      1, 1, step_options},
     {"world cook", "DIR TILE",
-     "Cooks one tile: DIR/tiles/TILE.gtx, and a surface of fewer triangles for its parent.",
+     "Cooks one tile: DIR/tiles/TILE.gtx, and a simplified surface for its parent.",
      2, 2, step_options},
     {"world merge", "DIR TILE",
-     "Makes the surface of a tile from those of its children: DIR/work/merge/TILE.",
+     "Makes a tile's surface from the simplified ones of its children: DIR/work/merge/TILE.",
      2, 2, step_options},
     {"world index", "DIR",
      "Writes DIR/tileset.json, and DIR/tiles.gtw for gtx_stream_create, once all tiles are\n"
-     "cooked. A step whose result is there does nothing; killed and begun again, any number at\n"
-     "a time, they make the same bytes.",
+     "cooked. A step whose result exists does nothing. Steps may be killed and run again, and any\n"
+     "number of them may run at once: the bytes are the same.",
      1, 1, step_options},
 };
 enum { PLAN, SPLIT, COOK, MERGE, INDEX, STEPS };

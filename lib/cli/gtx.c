@@ -12,18 +12,18 @@ static const struct {
     int (*run)(int argc, char **argv);
     const char *summary;
 } verbs[] = {
-    {"cook", cmd_cook, "turn a triangle mesh into a .gtx asset"},
-    {"horizons", cmd_horizons, "turn height grids, horizons or terrain, into an asset"},
+    {"cook", cmd_cook, "cook a triangle mesh into a .gtx asset"},
+    {"horizons", cmd_horizons, "make an asset of height grids: horizons or terrain"},
     {"world", cmd_world, "cook models of any size in parts, into a tree of tiles (3D Tiles)"},
     {"info", cmd_info, "print what is in an asset"},
     {"validate", cmd_validate, "check an asset against every rule of the format"},
-    {"unpack", cmd_unpack, "write an asset's maps as images, to look at and to edit"},
-    {"pack", cmd_pack, "pack unpacked images into an asset again"},
-    {"export", cmd_export, "write an asset as glTF, for tools that know nothing of assets"},
+    {"unpack", cmd_unpack, "write an asset's maps as images, to inspect and edit"},
+    {"pack", cmd_pack, "make an asset of unpacked images"},
+    {"export", cmd_export, "export an asset as glTF, for tools that do not read .gtx"},
     {"filter", cmd_filter, "blur, boost or pattern the surface of an asset"},
     {"combine", cmd_combine, "unite, intersect or subtract two closed assets"},
-    {"render", cmd_render, "draw assets and meshes into a PNG, without a window"},
-    {"view", cmd_view, "look at assets and meshes in a window"},
+    {"render", cmd_render, "draw assets and meshes to a PNG, without a window"},
+    {"view", cmd_view, "show assets and meshes in a window"},
     {"compare", cmd_compare, "measure an asset against the mesh it was cooked from"},
     {"bench", cmd_bench, "time an asset against the mesh it was cooked from"},
 };
@@ -34,9 +34,9 @@ static void print_verbs(FILE *to)
     for (size_t i = 0; i < sizeof verbs / sizeof *verbs; ++i)
         fprintf(to, "  %-10s %s\n", verbs[i].name, verbs[i].summary);
     fputs("\n`gtx help VERB` lists a verb's options. Results go to stdout, messages to stderr.\n"
-          "Exit: 0 ok, 1 usage, 2 file cannot be read or written, 3 invalid input, 4 internal,\n"
-          "5 unsupported, 6 more than is allowed or than there is, 7 a stated limit is passed,\n"
-          "130 cancelled.\n", to);
+          "Exit codes: 0 ok, 1 usage, 2 a file cannot be read or written, 3 invalid input,\n"
+          "4 internal error, 5 unsupported, 6 a --max limit is exceeded or memory is out,\n"
+          "7 a limit of compare is exceeded, 130 cancelled.\n", to);
 }
 
 /* A cook takes large blocks and gives them back all the time: kept, they are not new pages that

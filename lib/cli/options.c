@@ -12,24 +12,26 @@ gtx_limits cli_limits;
 /* Their names are those of gtx_error.limit. */
 static const option common_options[] = {
     {"max-memory", 0, OPTION_AMOUNT, &cli_limits.memory, "BYTES",
-     "most memory to take, as in 8G [268M and 2k for each byte read]", 1, 1e18},
+     "limit of memory, such as 8G [268M + 2k per byte read]", 1, 1e18},
     {"max-triangles", 0, OPTION_AMOUNT, &cli_limits.triangles, "N",
-     "most triangles of all models [524k and 1.5 for each byte read]", 1, 1e18},
+     "limit of triangles in all models [524k + 1.5 per byte read]", 1, 1e18},
     {"max-texels", 0, OPTION_AMOUNT, &cli_limits.texels, "N",
-     "most texels of an asset, nodes of a grid [67M and 256 for each byte read]", 1, 1e18},
+     "limit of texels of an asset, nodes of a grid [67M + 256 per byte read]", 1, 1e18},
     {"max-pixels", 0, OPTION_AMOUNT, &cli_limits.pixels, "N",
-     "most pixels of an image [67M and 16 for each byte read]", 1, 1e18},
-    {"max-patches", 0, OPTION_AMOUNT, &cli_limits.patches, "N", "most patches [1M]", 1, 1e18},
+     "limit of pixels of an image [67M + 16 per byte read]", 1, 1e18},
+    {"max-patches", 0, OPTION_AMOUNT, &cli_limits.patches, "N", "limit of patches [1M]", 1, 1e18},
     {"max-cells", 0, OPTION_AMOUNT, &cli_limits.cells, "N",
-     "most cells that a ray may visit, to draw [524k]", 1, 1e18},
+     "limit of cells that a ray may visit, when drawing [524k]", 1, 1e18},
     {"max-work", 0, OPTION_AMOUNT, &cli_limits.work, "N",
-     "most steps of cooking, comparing [201M and 32 for each byte read]", 1, 1e18},
+     "limit of steps of cooking or comparing [201M + 32 per byte read]", 1, 1e18},
     {"quiet", 'q', OPTION_FLAG, &cli_quiet, NULL, "print errors only", 0, 0},
-    {"help", 'h', OPTION_FLAG, NULL, NULL, "this text", 0, 0},
+    {"help", 'h', OPTION_FLAG, NULL, NULL, "print this text", 0, 0},
     {0}};
 
+/* An option that is wider than its column has its meaning on a line of its own. */
 static void print_options(const option *options)
 {
+    enum { COLUMN = 34 };
     for (; options->name; ++options) {
         char left[64];
         char letter[8] = "    ";
@@ -37,7 +39,10 @@ static void print_options(const option *options)
             snprintf(letter, sizeof letter, "-%c, ", options->letter);
         snprintf(left, sizeof left, "%s--%s%s%s", letter, options->name,
                  options->argument ? " " : "", options->argument ? options->argument : "");
-        printf("  %-34s %s\n", left, options->help);
+        if (strlen(left) >= COLUMN)
+            printf("  %s\n  %*s %s\n", left, COLUMN, "", options->help);
+        else
+            printf("  %-*s %s\n", COLUMN, left, options->help);
     }
 }
 

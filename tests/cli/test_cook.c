@@ -123,7 +123,7 @@ static void unchanged_outputs_stay(void **state)
     expect(gtx("cook sphere.obj -o a.gtx --if-changed --mips 3"), 0);
     assert_true(changed("a.gtx") != before);
     expect(gtx("cook --help"), 0);
-    expect_text("keeps a key");
+    expect_text("stores a key");
 }
 
 static void strict_is_exit_3(void **state)
