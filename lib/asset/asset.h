@@ -1,4 +1,4 @@
-/* The inside of a gtx_asset, for the rooms that derive, write and edit. */
+/* The struct of a gtx_asset, for the rooms that derive, write and edit. */
 #ifndef GTX_ASSET_ASSET_H
 #define GTX_ASSET_ASSET_H
 
@@ -17,7 +17,7 @@ extern "C" {
 #define GTX_MAX_PAGES 2048
 #define GTX_MAX_PAGE_SIDE 16384
 
-/* Maps are decoded and tight; the pointers of maps that the asset lacks are NULL. */
+/* Maps are decoded, rows without padding; maps that the asset lacks are NULL. */
 struct gtx_asset {
     gtx_allocator allocator;
     gtx_info info;
@@ -25,14 +25,14 @@ struct gtx_asset {
     uint8_t *height, *trim;
     uint8_t *normal[GTX_MAX_MIPS], *color[GTX_MAX_MIPS];
     uint8_t *material[GTX_MAX_MIPS], *emission[GTX_MAX_MIPS];
-    uint8_t *lod[GTX_MAX_LODS]; /* as a section holds them: lib/asset/lod.h */
+    uint8_t *lod[GTX_MAX_LODS]; /* in the layout of a section: lib/asset/lod.h */
     size_t lod_size[GTX_MAX_LODS];
-    uint8_t *blocks;          /* as a BLKS section holds them, or NULL: lib/asset/blocks.h */
+    uint8_t *blocks;          /* in the layout of a BLKS section: lib/asset/blocks.h; or NULL */
     size_t blocks_size;
     char *meta;
     size_t meta_size;
-    bool bare;                /* of a file's parts: it has no heights */
-    uint8_t *marks;           /* then, or NULL: 1 where texels have one in the file */
+    bool bare;                /* opened from the beginning of a file: it has no heights */
+    uint8_t *marks;           /* if bare, 1 for texels that have a height in the file; or NULL */
 };
 
 /* Texels of a page at a level, and of all pages. */
@@ -52,7 +52,7 @@ static inline uint32_t gtx_height_code(const gtx_asset *asset, const gtx_patch *
     return asset->height[2 * texel] | (uint32_t)asset->height[2 * texel + 1] << 8;
 }
 
-/* Where the height codes of a patch lie. */
+/* The height codes of a patch. */
 static inline gtx_code_map gtx_codes_of(const gtx_asset *asset, const gtx_patch *patch)
 {
     const size_t width = asset->info.page_width, bytes = asset->info.height_bits / 8;

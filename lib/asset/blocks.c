@@ -1,4 +1,4 @@
-/* The section of maps in blocks: which there can be, and where they lie in it. */
+/* The section of block-compressed maps: the formats that it may hold, and their layout. */
 #include "asset/blocks.h"
 
 #include "base/alloc.h"

@@ -1,5 +1,5 @@
-/* Maps in blocks of 4x4 texels, as GPUs read them, kept beside the texels that they were made of: a
- * BLKS section (format/gtx.md, section 2.1). */
+/* Block-compressed maps of an asset, stored beside the uncompressed ones: the BLKS section
+ * (format/gtx.md, section 2.1). */
 #ifndef GTX_ASSET_BLOCKS_H
 #define GTX_ASSET_BLOCKS_H
 

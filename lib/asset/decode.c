@@ -1,5 +1,5 @@
-/* Stages of decoding: what sections can do alone, then the texels with a height of what is coded
- * against heights, then its patches, and last what is left. */
+/* Stages of decoding: first sections that depend on no other, then texels with a height of maps
+ * that are coded against heights, then the rest of these, patch by patch. */
 #include "asset/decode.h"
 
 #include "asset/check.h"

@@ -1,4 +1,4 @@
-/* What has a height, continued where there is none: normals ring by ring, trim by sweeps. */
+/* Extends normals and trim to texels without a height: normals ring by ring, trim by sweeps. */
 #include "asset/fill.h"
 
 #include "asset/lanes.h"

@@ -1,6 +1,6 @@
-/* What texels hold by rule, in integers (format/gtx.md, 4.8): normals of coarser levels, and
- * normals and trim where there is no height. Cooking obeys, and filter 4 leaves it out of the
- * file. */
+/* What the format prescribes for texels, in integers (format/gtx.md, 4.8): normals of coarser
+ * levels, and normals and trim where there is no height. The cooker writes just that, and filter 4
+ * leaves it out of the file. */
 #ifndef GTX_ASSET_FILL_H
 #define GTX_ASSET_FILL_H
 

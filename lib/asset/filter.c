@@ -1,4 +1,4 @@
-/* Image filters before compression: which there are, planes, and Paeth's predictor (PNG
+/* Image filters before compression: their numbers, byte planes, and Paeth's predictor (PNG
  * specification, 9.4). */
 #include "asset/codec.h"
 

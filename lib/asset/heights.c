@@ -1,4 +1,5 @@
-/* The filter of heights, which tells them from their neighbours (format/gtx.md, 1.2: filter 5). */
+/* The filter of heights, which predicts them from their neighbours (format/gtx.md, 1.2: filter 5).
+ * */
 #include "asset/codec.h"
 
 #include "base/bytes.h"

@@ -1,4 +1,4 @@
-/* Means of normals, several side by side: plain loops over arrays, which compilers make vectors. */
+/* Means of normals, several side by side: plain loops over arrays that compilers vectorise. */
 #ifndef GTX_ASSET_LANES_H
 #define GTX_ASSET_LANES_H
 

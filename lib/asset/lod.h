@@ -1,4 +1,4 @@
-/* LOD mesh sections: how their bytes lie, and how they are coded (format/gtx.md, sections 1.2 and
+/* LOD mesh sections: the layout of their bytes, and their coding (format/gtx.md, sections 1.2 and
  * 6). */
 #ifndef GTX_ASSET_LOD_H
 #define GTX_ASSET_LOD_H

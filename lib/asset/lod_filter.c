@@ -1,6 +1,6 @@
 /* The filter of LOD mesh sections: triangles as steps over recent edges and vertices, positions as
- * differences from where the triangle before expects them; all of it in planes of bytes.
- * After Touma and Gotsman 1998 (parallelogram) and Kapoulkine's meshoptimizer (recent edges). */
+ * differences from a prediction by the triangle before; all of it in planes of bytes. After Touma
+ * and Gotsman 1998 (parallelogram) and Kapoulkine's meshoptimizer (recent edges). */
 #include "asset/lod.h"
 
 #include "base/bytes.h"

@@ -1,4 +1,4 @@
-/* The frame of a patch, and what of its record follows from its codes. */
+/* The frame of a patch, and the fields of its record that follow from its height codes. */
 #include "asset/patch.h"
 
 void gtx_invert_affine(double (*map)[4], double (*out)[4])

@@ -1,4 +1,4 @@
-/* What the codes and the record of a patch mean (format/gtx.md, sections 3 and 4). */
+/* The meaning of a patch's codes and record (format/gtx.md, sections 3 and 4). */
 #ifndef GTX_ASSET_PATCH_H
 #define GTX_ASSET_PATCH_H
 
@@ -12,7 +12,7 @@ extern "C" {
 
 /* ---- heights: code 0 is empty, code c >= 1 is c - 1 steps high ---- */
 
-/* Steps of the whole extent_z. */
+/* Height steps in extent_z. */
 static inline double gtx_height_steps(uint32_t height_bits)
 {
     return height_bits == 8 ? 254 : 65534;
@@ -41,7 +41,7 @@ static inline uint32_t gtx_nearest_code(double steps, uint32_t height_bits)
 
 /* As in shaders/geotex_records.glsl. */
 #define GTX_TRIM_OUTLINE 128             /* the outline's code */
-#define GTX_TRIM_TEXEL 16                /* codes a texel */
+#define GTX_TRIM_TEXEL 16                /* codes per texel */
 #define GTX_TRIM_SHOWN 0.3               /* a point belongs to the surface up to this distance */
 
 static inline double gtx_trim_distance(double code)
@@ -91,22 +91,22 @@ typedef struct gtx_patch_frame {
     double to_grid[3][4];         /* rows of the inverse: linear part and translation */
 } gtx_patch_frame;
 
-/* Axes are taken as they stand. */
+/* Does not normalise the axes. */
 gtx_patch_frame gtx_patch_frame_of(const gtx_patch *patch, uint32_t height_bits);
 
-/* From three rows of an affine map, linear part and translation, to those of its inverse. One that
- * has none gives numbers that are not finite. */
+/* Inverts an affine map, given as three rows of linear part and translation. A singular one gives
+ * numbers that are not finite. */
 void gtx_invert_affine(double (*map)[4], double (*out)[4]);
 
-/* Where the height codes of a patch lie. */
+/* The height codes of a patch in memory. */
 typedef struct gtx_code_map {
     const void *first;            /* of texel (0, 0) */
     size_t width;                 /* texels from one row to the next */
-    uint32_t bytes;               /* of a code: 1, or 2 with the low one first */
+    uint32_t bytes;               /* per code: 1, or 2 little-endian */
     uint32_t height_bits;
 } gtx_code_map;
 
-/* What the texels with a code span. */
+/* Bounds and number of the texels with a code. */
 typedef struct gtx_patch_span {
     double low[3], high[3];       /* of their points; low is above high when there are none */
     uint64_t coded;

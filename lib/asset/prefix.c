@@ -1,4 +1,4 @@
-/* Opening the first bytes of a file, and more of it: what is there of it, as an asset. */
+/* Opening the first bytes of a file as an asset of what has arrived, and again with more bytes. */
 #include "asset/preview.h"
 #include "asset/read.h"
 

@@ -1,4 +1,4 @@
-/* Sections of a file: their kinds, order, formats and sizes; and the version of the format. */
+/* Sections of a file: their types, order, formats and sizes; and the version of the format. */
 #ifndef GTX_ASSET_SECTION_H
 #define GTX_ASSET_SECTION_H
 

@@ -1,4 +1,4 @@
-/* Encoding an asset as the one file that is right for it, and saving that file whole. */
+/* Encoding an asset in its one canonical form, and saving the file atomically. */
 #include "asset/codec.h"
 
 #include "asset/header.h"

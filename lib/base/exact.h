@@ -1,6 +1,6 @@
-/* Functions of the C library that round differently from one processor or system to another, for
- * what cooked bytes depend on: made of + - * / alone, which IEEE 754 fixes bit by bit, so that they
- * give the same on all. Within 4 units in the last place where not said otherwise; in double. */
+/* Functions of the C library that round differently on different processors or systems, for
+ * computations that cooked bytes depend on: made of + - * / alone, which IEEE 754 defines bit by
+ * bit. In double precision, within 4 units in the last place unless said otherwise. */
 #ifndef GTX_BASE_EXACT_H
 #define GTX_BASE_EXACT_H
 

@@ -1,4 +1,4 @@
-/* The limits' defaults, and the one sentence of what passes one. */
+/* Default limits, and the error of an exceeded one. */
 #include "base/limits.h"
 
 #include <inttypes.h>

@@ -1,4 +1,4 @@
-/* What a call may take for files that others made. */
+/* Limits on what a call may use for untrusted files. */
 #ifndef GTX_BASE_LIMITS_H
 #define GTX_BASE_LIMITS_H
 

@@ -1,5 +1,5 @@
-/* Writing files whole. The one file of libgeotex that asks for POSIX, where there is POSIX: C knows
- * neither links nor permissions, and has no way to tell when bytes are on the disk. */
+/* Writing files atomically. The only file of libgeotex that uses POSIX, where it exists: standard C
+ * has neither links nor permissions, and cannot tell when bytes are on the disk. */
 #if defined(__unix__) || defined(__APPLE__)
 #define _POSIX_C_SOURCE 200809L
 #define HAS_POSIX

@@ -1,4 +1,4 @@
-/* Writing files whole: the one way in which geotex writes a file. */
+/* Writing files atomically: the only way in which geotex writes a file. */
 #ifndef GTX_BASE_OUTPUT_H
 #define GTX_BASE_OUTPUT_H
 

@@ -1,4 +1,4 @@
-/* The kinds of warnings: each has a name that stays, beside a sentence that may change. */
+/* The kinds of warnings: each has a stable name, and a sentence that may change. */
 #ifndef GTX_BASE_WARNINGS_H
 #define GTX_BASE_WARNINGS_H
 

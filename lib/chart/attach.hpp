@@ -1,4 +1,4 @@
-/* Small islands of surface find a place in a larger chart. */
+/* Joins small islands of surface to a larger chart. */
 #pragma once
 
 #include "chart/split.hpp"

@@ -1,4 +1,4 @@
-/* Charts that are one height map together become one. */
+/* Merges charts that together are still one height map. */
 #pragma once
 
 #include "chart/split.hpp"

@@ -1,4 +1,4 @@
-/* Small charts and the cells of a grid that they are near. */
+/* A grid of cells, each with the small charts near it. */
 #include "chart/near_grid.hpp"
 
 #include <iterator>

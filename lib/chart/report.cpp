@@ -1,4 +1,4 @@
-/* Counts what partitioning tells: folds, layers, junk, edges. */
+/* Counts folds, layers, junk and edges for the report. */
 #include "chart/report.hpp"
 
 #include <algorithm>

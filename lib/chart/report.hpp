@@ -1,4 +1,4 @@
-/* What partitioning tells of its charts. */
+/* What the report says about charts. */
 #pragma once
 
 #include "chart/split.hpp"

@@ -1,4 +1,4 @@
-/* Settles what becomes of clusters: charts that are height maps, at a density for all of them. */
+/* From clusters to charts that are height maps, at a common texel density. */
 #pragma once
 
 #include "chart/split.hpp"

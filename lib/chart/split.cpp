@@ -1,4 +1,4 @@
-/* Judges regions: too long, too steep, folded, or fit to be a chart. */
+/* Judges whether a region is too long, too steep or folded, or can be a chart. */
 #include "chart/split.hpp"
 
 #include "chart/layers/peel.hpp"

@@ -1,4 +1,4 @@
-/* The mesh as the partition's loops want it: flat arrays, a triangle an entry. */
+/* The mesh as partitioning uses it: flat arrays with an entry per triangle. */
 #pragma once
 
 #include "mesh/mesh.hpp"

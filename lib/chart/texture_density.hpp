@@ -1,4 +1,4 @@
-/* Finer texels for charts on which relief needs fewer than textures show. */
+/* Finer texels for charts whose textures have more detail than their relief. */
 #pragma once
 
 #include "chart/chart.hpp"

@@ -1,4 +1,4 @@
-/* What the verbs share that make an asset of assets, grids or images: checking, saving, telling. */
+/* Shared by the verbs that make an asset of assets, grids or images: checks, saving, reports. */
 #include "cli/cli.h"
 
 #include "base/warnings.h"

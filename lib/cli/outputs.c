@@ -1,4 +1,4 @@
-/* What a call writes: whole, and over nothing that it reads. */
+/* Outputs: written atomically, and never over an input. */
 #include "cli/cli.h"
 
 #include "base/error.h"

@@ -1,4 +1,4 @@
-/* gtx --version: what a bug report and a build's log should tell. */
+/* gtx --version: versions for bug reports and build logs. */
 #include "cli/cli.h"
 
 extern "C" {

@@ -1,4 +1,4 @@
-/* Assets that need no cooking: one that lies at the output already, one in a cache. */
+/* Assets that need not be cooked again: the output of an earlier cook, or one in a cache. */
 #pragma once
 
 #include "cook/embedded.hpp"

@@ -1,4 +1,4 @@
-/* The line from a model file to an asset file (paper, section 5), behind the C API. */
+/* The pipeline from a model file to an asset file (paper, section 5), behind the C API. */
 #include "cook/attempt.hpp"
 #include "cook/cache.hpp"
 #include "cook/encoded.hpp"

@@ -1,4 +1,4 @@
-/* Where C++ ends: exceptions become results, and descriptors are checked. */
+/* The C boundary: exceptions become results, and descriptors are checked. */
 #pragma once
 
 #include "mesh/task.hpp"

@@ -1,4 +1,5 @@
-/* The META section of an asset: what made it, from what. Nothing of when, where or by how many. */
+/* The META section of an asset: which program made it, with which options, from which source;
+ * not when or where. */
 #pragma once
 
 #include "cook/options.hpp"

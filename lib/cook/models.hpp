@@ -1,4 +1,4 @@
-/* The models of one call: read once, known by a hash, and imported as one mesh. */
+/* The models of one call: read once, identified by a hash, and imported as one mesh. */
 #pragma once
 
 #include "mesh/mesh.hpp"

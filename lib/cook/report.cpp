@@ -1,4 +1,4 @@
-/* The report of a cook, as JSON and as a line, and the block that a report is handed over in. */
+/* The report of a cook, as JSON and as a line, and the block that holds a report. */
 #include "cook/report.hpp"
 
 #include "base/alloc.h"

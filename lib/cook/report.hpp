@@ -1,4 +1,4 @@
-/* What the two calls of cook.h tell about their work. */
+/* The reports of cooking and comparing. */
 #pragma once
 
 #include "cook/options.hpp"

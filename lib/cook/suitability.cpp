@@ -1,4 +1,4 @@
-/* Says what a model will be like as an asset, of what partition and maps are like. */
+/* Judges from its charts and maps how well a model suits geometry textures. */
 #include "cook/suitability.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/* Whether a model is one for geometry textures, and what would be better. */
+/* Whether a model suits geometry textures, and warnings with advice. */
 #pragma once
 
 #include "bake/bake.hpp"

@@ -1,4 +1,5 @@
-/* Searches the texel pitch, then bits and patches, that keep to an error with the fewest bytes. */
+/* Searches the texel pitch, then the height bits and the number of patches, that keep a bound on
+ * the error with the fewest bytes. */
 #include "cook/target.hpp"
 #include "base/exact.h"
 

@@ -1,4 +1,4 @@
-/* Cooking to an error: the smallest asset that keeps to it. */
+/* Cooking with a bound on the error: the smallest asset that keeps it. */
 #pragma once
 
 #include "cook/assemble.hpp"

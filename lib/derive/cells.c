@@ -1,5 +1,5 @@
-/* What kernels on the GPU take of a level: codes, or corner cells, the four codes of a cell in one
- * texel; and how far the level's height field lies from the finest one. */
+/* Height fields for the GPU: codes, or corner cells with the four codes of a cell in one texel; and
+ * a level's distance from the finest one. */
 #include "derive/codes.h"
 
 #include <math.h>

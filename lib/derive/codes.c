@@ -1,4 +1,4 @@
-/* Where solid cells are, and codes of the nodes that are their corners. */
+/* The range of solid cells, and the codes of the nodes at their corners. */
 #include "derive/codes.h"
 
 #include <math.h>

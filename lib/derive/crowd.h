@@ -1,4 +1,4 @@
-/* Whether an asset takes more than a host allows those that prepare it for rays. */
+/* Limits for preparing an asset for rays or drawing: the cells on a ray, and memory. */
 #ifndef GTX_DERIVE_CROWD_H
 #define GTX_DERIVE_CROWD_H
 

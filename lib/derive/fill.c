@@ -1,4 +1,4 @@
-/* Heights where a height field has none, so that triangles over several of its cells may end
+/* Extrapolates heights beyond a height field, so that triangles over several of its cells can end
  * there. */
 #include "derive/derive.h"
 

@@ -1,4 +1,4 @@
-/* The inside of a hull while it is made. */
+/* Internal to hulls: their state while they are built. */
 #ifndef GTX_DERIVE_HULL_H
 #define GTX_DERIVE_HULL_H
 

@@ -1,5 +1,5 @@
-/* Hulls close to the height field: where their nodes are, how high the lid, how deep walls and
- * floor. */
+/* Fits hulls closely to the height field: positions of their nodes, height of the lid, depth of
+ * walls and floor. */
 #include "derive/hull.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* Networks of right triangles: where there are cells and they show, and over which triangles
- * maps are what those at the corners make, so that what they look like there is enough. */
+/* Networks of right triangles: which cells exist and are inside the trim, and over which triangles
+ * the maps are close enough to the interpolation of the corners. */
 #include "derive/rtin.h"
 
 #include "asset/patch.h"

@@ -1,4 +1,4 @@
-/* Where instances stand in the world, for rays on the CPU and in shaders. */
+/* Transforms of instances, for rays on the CPU and in shaders. */
 #ifndef GTX_DERIVE_PLACEMENT_H
 #define GTX_DERIVE_PLACEMENT_H
 

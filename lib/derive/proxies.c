@@ -1,4 +1,4 @@
-/* Proxies: room for them, and the boxes around the solid cells of a patch. */
+/* Proxies: memory for them, and the boxes around the solid cells of a patch. */
 #include "derive/codes.h"
 
 #include "base/alloc.h"

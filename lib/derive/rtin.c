@@ -1,4 +1,4 @@
-/* Networks of right triangles: which there are, and what each is off by. */
+/* Networks of right triangles: their triangles, and the error of each. */
 #include "derive/rtin.h"
 
 #include "asset/patch.h"

@@ -1,5 +1,5 @@
-/* What an operation changes: which height fields it touches, and how its changes are done or
- * forgotten. */
+/* Pending changes of an operation: which height fields it touches; committing and discarding them.
+ * */
 #include "edit/edit.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
-/* Whose surface it is: texels outside a patch's outline are looked up in its neighbours, by
- * casting along the patch's z, or around the ridge where that meets nothing; they follow them
- * from then on. */
+/* Correspondences: texels outside a patch's outline are looked up in its neighbours, by casting
+ * along the patch's z, or around the ridge where that hits nothing; from then on they follow the
+ * texels found. */
 #include "edit/edit.h"
 
 #include "base/alloc.h"

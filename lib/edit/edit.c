@@ -1,4 +1,4 @@
-/* An edit: its memory, from beginning to end. */
+/* The memory of an edit, from beginning to end. */
 #include "edit/edit.h"
 
 #include "base/alloc.h"

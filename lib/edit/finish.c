@@ -1,4 +1,4 @@
-/* What comes out of an edit: an asset of its own, or one that is drawn meanwhile. */
+/* The results of an edit: a new asset, or updates of one that is being drawn. */
 #include "edit/edit.h"
 
 #include "asset/section.h"

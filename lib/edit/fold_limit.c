@@ -1,6 +1,5 @@
-/* Changes are held back where a patch could not show the surface any more: a height field is a
- * height field, and of the tip of a claw that a blur rounds off, some would turn away from its
- * z. */
+/* The fold limiter: holds back changes that would turn part of a height field away from its z,
+ * where no height map can show it. */
 #include "edit/edit.h"
 
 #include "base/alloc.h"

@@ -1,4 +1,5 @@
-/* What follows the own texels: borrowed ones their owners, loose ones what is beside them. */
+/* Updates texels that are not the patch's own: borrowed ones from their owners, loose ones from
+ * those beside them. */
 #include "edit/edit.h"
 
 /* The neighbour k of 8 of a texel; false past the height field's end. */

@@ -1,4 +1,4 @@
-/* Normals of moved points: those of the grid, and what the normal map knew beyond it. */
+/* Normals of moved points: those of the grid, with the finer detail of the normal map on top. */
 #include "edit/edit.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* Pages for rectangles of other sizes: shelves, tallest first. The cooker packs a tenth
- * tighter, and takes longer than an edit may. */
+/* Packs rectangles into pages: shelves, tallest first. The cooker packs a tenth tighter, but takes
+ * longer than an edit may. */
 #include "edit/edit.h"
 
 #include "base/alloc.h"

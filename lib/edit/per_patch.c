@@ -1,6 +1,5 @@
-/* The paper's own blur (section 6.3), for comparison: heights and normals patch by patch, of
- * coded texels alone. A patch knows nothing of its neighbours, and so flattens and comes apart
- * from them. */
+/* The paper's blur (section 6.3), for comparison: heights and normals patch by patch, from coded
+ * texels only. Patches know nothing of their neighbours, and so flatten and come apart. */
 #include "edit/edit.h"
 
 #include "base/alloc.h"

@@ -1,4 +1,4 @@
-/* A height field whose points have moved, put back on the texels of its patch: its cells are drawn,
+/* Resamples a height field whose points have moved to the texels of its patch: its cells are drawn,
  * as two triangles each, along the patch's z. */
 #include "edit/edit.h"
 

@@ -1,4 +1,4 @@
-/* What lies in the buffer of an export: vertices, triangles, images, the asset. */
+/* The buffer of an export: vertices, triangles, images, the asset. */
 #include "export/document.hpp"
 
 #include "base/bytes.h"

@@ -1,5 +1,5 @@
-/* ETC1 (Khronos Data Format Specification 1.4, chapter 21) of the texels of a block, as far as the
- * hints of UASTC tell of it. */
+/* ETC1 (Khronos Data Format Specification 1.4, chapter 21) of a block's texels, as far as the hints
+ * of UASTC need it. */
 #include "export/etc1_hints.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/* The asset's maps as images without holes. */
+/* The asset's maps as images whose empty texels are filled. */
 #include "export/export.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-/* The asset's normals as glTF wants them: against the frames of a mesh's own vertices. */
+/* Tangent-space normals for glTF: the asset's normals in the tangent frames of a mesh's vertices.
+ * */
 #include "export/export.hpp"
 
 #include "asset/patch.h"

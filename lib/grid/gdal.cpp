@@ -1,4 +1,4 @@
-/* Grids that GDAL reads: which files are some, and where their nodes lie. */
+/* Grids that GDAL reads: recognising them, and the positions of their nodes. */
 #include "grid/module.h"
 #include "base/exact.h"
 #include "grid/text.hpp"

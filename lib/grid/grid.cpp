@@ -1,4 +1,4 @@
-/* Reading a grid of any format, and what is done to grids of all. */
+/* Reading a grid of any format, and the processing that all grids share. */
 #include "grid/text.hpp"
 #include "base/exact.h"
 

@@ -1,4 +1,4 @@
-/* A sky and a tiled floor with soft shadows baked in: what a picture of a model stands on. */
+/* A sky and a tiled floor with baked soft shadows: the surroundings of a model in a picture. */
 #ifndef GTX_HOST_BACKDROP_H
 #define GTX_HOST_BACKDROP_H
 

@@ -1,4 +1,4 @@
-/* Compiles and links; draws the screen. */
+/* Compiles and links shaders; draws full-screen triangles. */
 #include "host/program.h"
 
 #include "base/error.h"

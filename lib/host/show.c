@@ -1,4 +1,4 @@
-/* A window with an orbit camera, or a single smooth still. */
+/* A window with an orbit camera, or one antialiased picture. */
 #include "host/show.h"
 
 #include "base/error.h"

@@ -1,4 +1,5 @@
-/* One loop for samples and the command: a window with an orbit camera, or a single smooth still. */
+/* One loop for samples and the command: a window with an orbit camera, or one antialiased picture.
+ * */
 #ifndef GTX_HOST_SHOW_H
 #define GTX_HOST_SHOW_H
 

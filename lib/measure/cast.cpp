@@ -1,4 +1,4 @@
-/* Looking at an asset through the ray query. */
+/* Renders an asset with the ray query. */
 #include "measure/cast.hpp"
 
 #include "asset/asset.h"

@@ -1,4 +1,4 @@
-/* What is seen of an asset in a view, row by row. */
+/* An asset as seen in a view, row by row. */
 #pragma once
 
 #include "measure/view.hpp"

@@ -1,4 +1,4 @@
-/* The cells of an asset as shapes to be near to. */
+/* The cells of an asset as shapes for nearest-point queries. */
 #include "measure/cells.hpp"
 
 #include "asset/asset.h"

@@ -1,4 +1,4 @@
-/* How values are distributed, in the same room however many they are. */
+/* Percentiles of values, in constant memory. */
 #pragma once
 
 #include "mesh/mesh.hpp"

@@ -1,4 +1,4 @@
-/* Distances between the source and the asset, sampled on either and sought on the other. */
+/* Distances between source and asset: points sampled on one, nearest points sought on the other. */
 #include "measure/cells.hpp"
 #include "measure/measure.hpp"
 #include "measure/sample.hpp"

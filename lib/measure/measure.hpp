@@ -1,4 +1,4 @@
-/* Measures of an asset against its source mesh. format/measures.md has the rules of all. */
+/* Measures of an asset against its source mesh, as format/measures.md defines them. */
 #pragma once
 
 #include "mesh/mesh.hpp"

@@ -1,4 +1,4 @@
-/* Points spread evenly over shapes, the same everywhere. */
+/* Deterministic points spread evenly over shapes. */
 #pragma once
 
 #include "mesh/task.hpp"

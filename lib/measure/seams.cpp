@@ -1,4 +1,4 @@
-/* How far apart the height fields of neighbouring patches are where they meet. */
+/* Gaps between the height fields of neighbouring patches along their borders. */
 #include "measure/cells.hpp"
 #include "measure/measure.hpp"
 #include "measure/sample.hpp"

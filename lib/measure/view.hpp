@@ -1,4 +1,4 @@
-/* The views of a comparison, and what is seen of the source in them. */
+/* The views of a comparison, and images of the source in them. */
 #pragma once
 
 #include "mesh/mesh.hpp"

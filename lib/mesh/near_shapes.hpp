@@ -1,4 +1,4 @@
-/* A box and a triangle, as the nearest of many are looked for. */
+/* A box and a triangle, for nearest-point queries. */
 #pragma once
 
 #include "mesh/vec.hpp"

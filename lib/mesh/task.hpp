@@ -1,4 +1,5 @@
-/* What a long job carries through the cooker's rooms: errors, progress, cancelling, threads. */
+/* The context of a long job, passed through the rooms of the cooker: errors, progress, cancelling,
+ * threads. */
 #pragma once
 
 #include "base/warnings.h"

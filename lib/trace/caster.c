@@ -1,4 +1,4 @@
-/* The ray query: a caster is made of an asset, rays go in, hits come out. */
+/* The ray query: making a caster of an asset, and casting rays. */
 #include "trace/caster.h"
 
 #include "base/alloc.h"

@@ -1,4 +1,4 @@
-/* The inside of a gtx_caster: height fields (one a patch), and a hierarchy over blocks of their
+/* The struct of a gtx_caster: a height field per patch, and a hierarchy over blocks of their
  * cells. */
 #ifndef GTX_TRACE_CASTER_H
 #define GTX_TRACE_CASTER_H
@@ -8,18 +8,18 @@
 
 #include <stdbool.h>
 
-/* A patch's height field as a ray meets it: the codes of one level, with the frame, the trim and
- * the normals that a hit needs. Grid space: x and y in texels of level 0 (texel i at x = i), z in
- * codes. The map from object space is affine, so t means the same in both. */
+/* A patch's height field for casting: the codes of one level, with the frame, trim and normals that
+ * a hit needs. Grid space: x and y in texels of level 0 (texel i at x = i), z in codes. The map
+ * from object space is affine, so t is the same in both. */
 typedef struct gtx_height_field {
     double to_grid[3][4];       /* rows: linear part and translation */
     float normal_frame[3][3];   /* rows x', y', z' */
     uint32_t width, height;     /* texels of level 0 */
-    uint32_t level;             /* of detail */
-    double trim_limit;          /* code of the trim map at the limit of that level */
+    uint32_t level;             /* of the codes */
+    double trim_limit;          /* greatest trim code that shows at that level */
     uint32_t nodes_x, nodes_y;
     uint32_t first_block, blocks_x;
-    uint16_t *code;             /* nodes of the detail level */
+    uint16_t *code;             /* of the nodes of the level */
     uint8_t *trim, *normal;     /* texels of level 0 */
     bool two_sided;
 } gtx_height_field;
@@ -36,8 +36,8 @@ struct gtx_caster {
     gtx_allocator allocator;
     uint32_t field_count, block_count;
     gtx_height_field *fields;
-    gtx_block *blocks;          /* a height field's in rows; the hierarchy is over those with a
-                                   cell */
+    gtx_block *blocks;          /* of each height field in rows; the hierarchy is over those that
+                                   have a cell */
     gtx_hierarchy tree;
     double ray_offset;          /* of the asset, in object units */
     /* What the height fields point into. */
@@ -60,18 +60,18 @@ typedef struct gtx_crossing {
     uint32_t field;             /* UINT32_MAX when there is none */
     double x, y;                /* texels of level 0 */
     bool back;
-    uint64_t visited;           /* cells that the ray was taken through to find it */
+    uint64_t visited;           /* cells visited to find it */
 } gtx_crossing;
 
-/* A cell of the detail level as a bilinear patch over [x0, x1] x [y0, y1]:
+/* A cell of the level as a bilinear patch over [x0, x1] x [y0, y1]:
  * z = c + cx u + cy v + cxy u v, with u and v in 0..1. */
 typedef struct gtx_cell {
     double x0, x1, y0, y1;
     double c, cx, cy, cxy;
 } gtx_cell;
 
-/* field.c: height fields, all at one level or each at its coarsest within an error, and what is
- * looked up in them. */
+/* field.c: builds height fields, all at one level or each at its coarsest level within an error,
+ * and looks values up in them. */
 gtx_result gtx_fields_build(gtx_caster *caster, const gtx_asset *asset,
                             const gtx_caster_desc *desc, gtx_error *error);
 void gtx_fields_free(gtx_caster *caster);
@@ -98,13 +98,14 @@ void gtx_walk_field(const gtx_caster *caster, uint32_t field, const gtx_line *ra
 void gtx_search_field(const gtx_caster *caster, uint32_t field, const gtx_line *ray, bool both,
                       gtx_crossing *best);
 
-/* caster.c: a ray in double, false when it hits nothing by rule; its nearest crossing, or any by
- * GTX_RAY_ANY; and what is known of that, in object space. */
+/* caster.c: converts a ray to double, false if by definition it hits nothing; finds its nearest
+ * crossing, or any with GTX_RAY_ANY; and describes that in object space. */
 bool gtx_read_ray(const gtx_ray *ray, gtx_line *out);
 gtx_crossing gtx_cast_line(const gtx_caster *caster, const gtx_line *line, uint32_t flags);
 gtx_hit gtx_describe(const gtx_caster *caster, const gtx_crossing *crossing);
-/* The first crossing, from above or below, of every block that the ray meets, in no order. One on
- * the border of two blocks comes twice. Returns the blocks that were looked at. */
+/* Calls `fn` with the first crossing, from above or below, of every block that the ray hits, in no
+ * particular order. A crossing on the border of two blocks is reported twice. Returns the number of
+ * blocks that were tested. */
 typedef void (*gtx_crossing_fn)(const gtx_crossing *crossing, void *user);
 uint32_t gtx_cast_each(const gtx_caster *caster, const gtx_line *ray, gtx_crossing_fn fn,
                        void *user);

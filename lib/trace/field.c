@@ -1,4 +1,4 @@
-/* Height fields: what casting needs of one patch, and the lookups in its maps. */
+/* Height fields: what casting needs of one patch, and lookups in its maps. */
 #include "trace/caster.h"
 
 #include "asset/patch.h"

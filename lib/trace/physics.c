@@ -1,4 +1,4 @@
-/* What stands on a surface, and what it is coloured there. */
+/* Points on the surface: the ground below a point, and the colour of a hit. */
 #include "trace/caster.h"
 
 #include <math.h>

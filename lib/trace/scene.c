@@ -1,4 +1,4 @@
-/* Scenes: casters placed in a world, the rays among them, and the light that reaches points. */
+/* Scenes: instances of casters, rays among them, and the light that reaches points. */
 #include "trace/slabs.h"
 
 #include "base/alloc.h"

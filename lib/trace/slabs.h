@@ -1,4 +1,4 @@
-/* How a ray meets the boxes of a hierarchy. */
+/* Intersection of a ray with the boxes of a hierarchy. */
 #ifndef GTX_TRACE_SLABS_H
 #define GTX_TRACE_SLABS_H
 

@@ -1,4 +1,4 @@
-/* Whether a surface is closed, told from its triangles as they pass by. */
+/* Whether a surface is closed, decided while its triangles stream by. */
 #include "world/plan.hpp"
 
 #include <cstring>

@@ -1,4 +1,4 @@
-/* Cell files: triangles of one tile, each corner with all that it has. */
+/* Cell files: the triangles of one tile, with all attributes of their corners. */
 #include "world/cell.hpp"
 
 #include "base/bytes.h"

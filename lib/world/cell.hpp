@@ -1,4 +1,4 @@
-/* Cell files: triangles of one tile, each corner with all that it has. */
+/* Cell files: the triangles of one tile, with all attributes of their corners. */
 #pragma once
 
 #include "base/hash.h"
@@ -8,13 +8,13 @@
 
 namespace gtx {
 
-/* What a cell file says of itself, in its first bytes. */
+/* The header of a cell file. */
 struct CellHeader {
     CornerTraits traits;
     uint64_t count = 0;
     uint64_t hash = 0;               /* of the triangles' bytes */
-    uint64_t key = 0;                /* of what they were made from, where a merge made them */
-    double deviation = 0;            /* from the source, at most, as measured */
+    uint64_t key = 0;                /* of its inputs, if a merge made it */
+    double deviation = 0;            /* upper bound on the distance from the source, measured */
 
     Vec3d low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
 
@@ -24,7 +24,7 @@ struct CellHeader {
     std::string bytes() const;
 };
 
-/* Farther out than this no tile has corners: what is computed from distances stays finite. */
+/* The largest coordinate of corners, so that what is computed from distances stays finite. */
 constexpr double FARTHEST = 1e60;
 bool are_near(const Corners3 &corners);
 
@@ -32,7 +32,7 @@ bool are_near(const Corners3 &corners);
 void encode_triangle(const CornerTraits &traits, const Corners3 &corners, uint8_t *out);
 void decode_triangle(const CornerTraits &traits, const uint8_t *bytes, Corners3 &out);
 
-/* A whole cell file in memory, for what others simplified. */
+/* Writes a cell file in memory, for simplified surfaces. */
 class CellWriter {
 public:
     explicit CellWriter(const CornerTraits &traits) { header.traits = traits; }
@@ -45,8 +45,8 @@ private:
     std::string bytes_ = std::string(CellHeader::BYTES, 0);
 };
 
-/* Reads one triangle after another. Throws Error: READ, INPUT where the file is none, or is not
- * whole. */
+/* Reads one triangle after another. Throws Error: READ; INPUT if the file is not a cell file, or
+ * not complete. */
 class CellReader {
 public:
     explicit CellReader(const std::string &path);

@@ -1,4 +1,4 @@
-/* Triangles counted by place, in a bounded number of cells whatever comes. */
+/* Counts triangles by place, in a bounded number of cells. */
 #include "world/plan.hpp"
 
 #include <algorithm>

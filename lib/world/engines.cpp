@@ -1,4 +1,5 @@
-/* Who runs the steps: a Ninja file, a shell script, job arrays of Slurm. Nothing here schedules. */
+/* Build files that run the steps: Ninja, a shell script, job arrays of Slurm. Nothing here
+ * schedules. */
 #include "world/plan.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/* What cooking a tile left, as a small JSON file. */
+/* Results of cooking a tile, as a small JSON file. */
 #include "world/facts.hpp"
 
 #include "base/hash.h"

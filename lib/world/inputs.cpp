@@ -1,4 +1,4 @@
-/* What a world is made of: models, folders of them, grids, lists of triangles. */
+/* The inputs of a world: models, folders of them, grids, raw triangles. */
 #include "world/cell.hpp"
 
 #include "grid/grid.hpp"

@@ -1,4 +1,4 @@
-/* The step that makes one surface of the low ones of a tile's children. */
+/* The step that merges the simplified surfaces of a tile's children. */
 #include "world/surface.hpp"
 
 #include <algorithm>

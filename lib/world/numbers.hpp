@@ -1,4 +1,4 @@
-/* Whole numbers out of JSON files that anybody may have written. */
+/* Whole numbers from untrusted JSON files. */
 #pragma once
 
 #include "mesh/task.hpp"

@@ -1,4 +1,4 @@
-/* Counted cells -> the tree of tiles. */
+/* Cells with their numbers of triangles -> the tree of tiles. */
 #include "world/plan.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/* What opening a tile's file takes, and where its beginning ends. */
+/* How much memory opening a tile's file takes, and where its beginning ends. */
 #include "world/facts.hpp"
 
 #include <algorithm>

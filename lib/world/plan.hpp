@@ -1,4 +1,5 @@
-/* The plan of a world: its tiles, where their files lie, and the lattice that tells them apart. */
+/* The plan of a world: its tiles, the paths of their files, and the lattice of cells that they
+ * consist of. */
 #pragma once
 
 #include "mesh/stream.hpp"
@@ -6,8 +7,8 @@
 
 namespace gtx {
 
-/* Cubes of side 2^exponent. A place is a number of three interleaved coordinates (Morton 1966), so
- * that the cells of an octree's node are a range of them. */
+/* A lattice of cubes of side 2^exponent. A place is the Morton code of a cube (Morton 1966), so
+ * that the cubes in a node of an octree are a range of places. */
 struct Lattice {
     int exponent = 0;
     int64_t low[3] = {0, 0, 0};      /* the first cell, along each axis */
@@ -24,7 +25,7 @@ struct Tile {
     uint32_t depth = 0, parent = 0;
     Vector<uint32_t> children;
     uint64_t first = 0, end = 0;     /* places of the lattice */
-    uint64_t triangles = 0;          /* of a leaf; of others as many as are to be expected */
+    uint64_t triangles = 0;          /* of a leaf; of other tiles, the expected number */
 
     bool is_leaf() const { return children.empty(); }
 };
@@ -41,7 +42,7 @@ struct Plan {
     uint32_t triangles = 0;
     uint64_t memory = 0, work = 0, total = 0, dropped = 0;
     bool glb = false, z_up = false;
-    bool closed = false;             /* or as good as that: nothing shows from behind */
+    bool closed = false;             /* back faces are never seen */
     double unit = 1;
     CornerTraits traits;
     Lattice lattice;
@@ -50,7 +51,7 @@ struct Plan {
 
     const Tile &tile(const std::string &name) const;
     uint32_t depths() const { return tiles.back().depth + 1; }
-    /* Of a tile's surface as many triangles go into its parent's. */
+    /* The share of a tile's triangles that its simplified surface has. */
     double low_share(const Tile &tile) const;
 };
 
@@ -63,36 +64,36 @@ void write_engine(const Plan &plan, Engine engine, const std::string &command);
 /* ---- files below the folder ---- */
 
 std::string plan_path(const std::string &folder);
-/* Files of the plan's folder that tiles are made of, and of what they are made. */
+/* Intermediate and final files of a tile. */
 std::string cell_path(const Plan &plan, const Tile &tile);
 std::string low_path(const Plan &plan, const Tile &tile);
 std::string facts_path(const Plan &plan, const Tile &tile);
 std::string asset_path(const Plan &plan, const Tile &tile);
 std::string glb_path(const Plan &plan, const Tile &tile);
-/* Makes the folder that a file is to lie in. Throws Error: WRITE. */
+/* Creates the folder of a file. Throws Error: WRITE. */
 void make_folder_of(const std::string &path);
-/* As gtx_write_file, in a folder that need not be there. Nothing where that is the content. */
+/* gtx_write_file, creating the folder; does nothing if the file has that content already. */
 void write_whole(const std::string &path, const std::string &text);
 
 /* ---- what plan and split read ---- */
 
-/* Every triangle of all inputs whose corners are near enough, turned where +Z is up, in the order
- * of the inputs. Materials are numbered in the order in which `on_look` gets them. Returns how many
- * were dropped. */
+/* Reads every triangle of all inputs, in their order, rotated if +Z is up; drops those with corners
+ * that are not are_near, and returns their number. Materials are numbered in the order in which
+ * `on_look` gets them. */
 uint64_t read_inputs(const Plan &plan, Task &task, const TriangleSink &sink,
                      const LookSink &on_look = nullptr);
 CornerTraits input_traits(const Plan &plan, Task &task);
-/* Files, those of folders in the order of their names. Throws Error: READ, ARGUMENT where the
- * world's folder is among them. */
+/* The input files, those of folders sorted by name. Throws Error: READ; ARGUMENT if the world's
+ * folder is among them. */
 Vector<WorldInput> find_inputs(const PlanOptions &options);
 
-/* Leaves of an octree over counted cells; throws Error(LIMIT) where one cell has too many. */
+/* The octree over counted cells; throws Error(LIMIT) if one cell has more than `most`. */
 struct CountedCell {
     uint64_t place, count;
 };
 Vector<Tile> make_tiles(Vector<CountedCell> cells, uint64_t most);
 
-/* Counts triangles by place, in cells as fine as a bounded number of them can be. */
+/* Counts triangles by place, in a bounded number of cells that are as small as possible. */
 class CellCounts {
 public:
     CellCounts();
@@ -113,13 +114,13 @@ private:
     int exponent_;
 };
 
-/* Whether triangles make a closed surface, of which nobody sees the inside. Edges from a to b and
- * from b to a cancel out in a sum of their hashes, whatever the order and the number of triangles;
- * 2^-64 is how likely others do. Corners are the same where their positions are. */
+/* Whether triangles make a closed surface that faces outwards. In a sum of hashes of edges, an edge
+ * from a to b and one from b to a cancel each other, whatever the order and number of triangles;
+ * that other edges do has a probability of 2^-64. Corners at equal positions are the same. */
 class Boundary {
 public:
     void add(const Corners3 &corners);
-    /* And counterclockwise seen from outside: the volume tells, of all components together. */
+    /* And counter-clockwise seen from outside, by the volume of all components together. */
     bool closed() const { return !sum_ && volume_ > 0; }
 
 private:

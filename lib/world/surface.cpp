@@ -1,4 +1,5 @@
-/* Cell files -> the surface of one tile, with the ring that it shares with its neighbours. */
+/* Cell files -> the surface of one tile, with the ring of triangles that it shares with its
+ * neighbours. */
 #include "world/surface.hpp"
 
 #include "base/bytes.h"

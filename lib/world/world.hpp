@@ -7,17 +7,17 @@
  *           materials and decoded images of textured models to files beside them.
  *   cook    one tile: its own triangles, and a ring of those of its neighbours that share a vertex
  *           with them. LOD meshes keep the ring's vertices, so that the surfaces of two tiles meet
- *           along their border, and overlap: no sight passes between. Makes the asset, the GLB if
- *           wanted, and a *low* surface of a quarter of the triangles for the parent, whose border
- *           vertices stay where they are: the source's own, the same on both sides, at every
- *           level. What textures show of a leaf is in its maps; in low surfaces it becomes
- *           vertex colours, the mean of what lies around, the same on both sides.
- *   merge   the low surfaces of a tile's children become the cell file of a tile of its own.
+ *           along their border, and overlap: there is no gap to see through. Makes the asset, the
+ *           GLB if asked for, and for the parent a *low* surface of a quarter of the triangles. Its
+ *           border vertices are the source's own, the same on both sides of a border and at every
+ *           level. A leaf's maps have its textures; low surfaces have vertex colours instead, the
+ *           mean of the textures around a vertex, the same on both sides.
+ *   merge   the low surfaces of a tile's children become the cell file of that tile.
  *   index   writes tileset.json (OGC 3D Tiles 1.1) once all tiles are there.
  *
- * Every step writes files whole (base/output.h) and keeps the key of what it made them from: where
- * that is what it would make, it does nothing. Bytes do not depend on the workers, on the order of
- * steps that do not need each other, or on what was killed and begun again. */
+ * Every step writes files atomically (base/output.h) and stores the key of their inputs: if that is
+ * the same, it does nothing. The bytes do not depend on the workers, on the order of independent
+ * steps, or on steps that were killed and run again. */
 #pragma once
 
 #include "mesh/task.hpp"
@@ -26,7 +26,7 @@
 
 namespace gtx {
 
-/* Promised: a tile's own triangles, and the memory of whoever cooks it. */
+/* Limits on a tile's own triangles, and the default memory of the worker that cooks it. */
 constexpr uint32_t MIN_TILE = 1000, MAX_TILE = 1000000;
 constexpr uint64_t WORKER_MEMORY = 1000000000;
 
@@ -39,22 +39,22 @@ struct PlanOptions {
     std::string folder;
     uint32_t triangles = MAX_TILE;   /* of a tile, at most */
     uint64_t memory = WORKER_MEMORY; /* of a worker */
-    uint64_t work = 0;               /* of a step, at most; 0: as files of its size may take */
+    uint64_t work = 0;               /* limit of each step; 0: the default for files of its size */
     Engine engine = Engine::NINJA;
     bool glb = false, z_up = false;
-    Sides sides = Sides::AUTO;       /* that show */
+    Sides sides = Sides::AUTO;       /* that are visible */
     double unit = 1;
     std::string command = "gtx";     /* that runs the steps */
 };
 
-/* What a step says of itself. */
+/* The outcome of a step. */
 struct StepReport {
     std::string summary;
-    bool unchanged = false;          /* all was there */
+    bool unchanged = false;          /* its results existed already */
 };
 
-/* Throw Error: READ, WRITE, INPUT, EMPTY, LIMIT, ARGUMENT, MEMORY, UNSUPPORTED, CANCELLED.
- * `tile` is the name of one. */
+/* The steps. Throw Error: READ, WRITE, INPUT, EMPTY, LIMIT, ARGUMENT, MEMORY, UNSUPPORTED,
+ * CANCELLED. `tile` is a Tile::name. */
 StepReport plan_world(const PlanOptions &options, Task &task);
 StepReport split_world(const std::string &folder, Task &task);
 StepReport cook_tile(const std::string &folder, const std::string &tile, Task &task);

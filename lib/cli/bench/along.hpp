@@ -1,4 +1,4 @@
-/* Frame times along a path: view by view, each method beside the mesh. */
+/* Frame times along a path, view by view, of each method and of the mesh. */
 #pragma once
 
 #include "cli/bench/bench.hpp"

@@ -1,4 +1,4 @@
-/* What was measured along a path, as a table and as JSON. */
+/* The measurements along a path, as a table and as JSON. */
 #include "cli/bench/along.hpp"
 
 #include "base/json.h"

@@ -1,4 +1,4 @@
-/* Judges how what `gtx bench` compares looks, and takes its time. */
+/* Times what `gtx bench` compares, and judges its pictures. */
 #include "cli/bench/scene.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/* Frame times of an asset beside the mesh it was cooked from and what else a user would draw. */
+/* Frame times of an asset, of the mesh it was cooked from, and of simplified meshes. */
 #pragma once
 
 #include "base/json.h"

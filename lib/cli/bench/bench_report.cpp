@@ -1,4 +1,4 @@
-/* What was measured in an orbit, as a table and as JSON. */
+/* The measurements in an orbit, as a table and as JSON. */
 #include "cli/bench/bench.hpp"
 
 #include "base/json.h"

@@ -1,4 +1,4 @@
-/* The camera of a viewpoint: not around the model as the orbit's is, but anywhere. */
+/* A camera anywhere, for viewpoints that are not on an orbit. */
 #include "cli/bench/scene.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-/* Counts cells: the renderer is given the context's functions but for those that let shaders count
- * and fragments add up in the framebuffer. */
+/* Counts cells: the renderer gets the functions of the context, except for those that are replaced
+ * so that shaders count and fragments add up in the framebuffer. */
 #include "cli/bench/cells.hpp"
 
 #include "cli/bench/scene.hpp"

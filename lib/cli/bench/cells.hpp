@@ -1,4 +1,4 @@
-/* Cells that rays visit: what casting costs, whatever the machine. */
+/* The number of cells that rays visit: a cost of casting that does not depend on the machine. */
 #pragma once
 
 #include "cli/bench/bench.hpp"

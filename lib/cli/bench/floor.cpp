@@ -1,4 +1,4 @@
-/* Covered pixels as rectangles, shaded by the library's shader texts. */
+/* Rectangles over covered pixels, shaded with the shaders of the library. */
 #include "cli/bench/floor.hpp"
 
 #include "host/offscreen.h"

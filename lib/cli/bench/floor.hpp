@@ -1,4 +1,4 @@
-/* What no method can beat: the pixels that a picture covers, shaded once. */
+/* A lower bound for every method: the pixels that a picture covers, shaded once. */
 #pragma once
 
 #include "cli/bench/picture.hpp"

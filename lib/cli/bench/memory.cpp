@@ -1,4 +1,4 @@
-/* Measures maps in blocks: the driver decodes textures, and draws by them. */
+/* Measures block compression: the driver decodes the textures, and draws with them. */
 #include "cli/bench/memory.hpp"
 
 #include "cli/bench/scene.hpp"

@@ -1,4 +1,4 @@
-/* What maps in blocks take of the GPU's memory, and what they lose. */
+/* GPU memory and loss of quality with each block compression. */
 #pragma once
 
 #include "cli/bench/bench.hpp"

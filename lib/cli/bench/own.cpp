@@ -1,4 +1,4 @@
-/* What of `gtx bench` an engine's own fragment main shades: as the stock one does. */
+/* The runs of `gtx bench` with an engine's own fragment main, which shades like the stock one. */
 #include "cli/bench/scene.hpp"
 
 namespace gtx {

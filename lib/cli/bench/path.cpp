@@ -1,4 +1,4 @@
-/* Reads files of camera keys, goes from key to key, and chooses viewpoints by chance. */
+/* Reads files of camera keys, interpolates between keys, and chooses random viewpoints. */
 #include "cli/bench/path.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/* Viewpoints to measure from: keys of a file, or chosen by chance around a model. */
+/* Viewpoints to measure from: keys of a file, or random ones around a model. */
 #pragma once
 
 #include "mesh/mesh.hpp"

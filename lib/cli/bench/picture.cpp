@@ -1,4 +1,4 @@
-/* Compares what two pictures cover. */
+/* Compares the coverage of two pictures. */
 #include "cli/bench/picture.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/* A picture as it is judged against another. */
+/* A picture, compared with another. */
 #pragma once
 
 #include "mesh/memory.hpp"

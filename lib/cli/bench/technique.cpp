@@ -1,4 +1,4 @@
-/* How methods of `gtx bench` are asked for, and which belong together. */
+/* The names of `gtx bench`'s methods, and which belong together. */
 #include "cli/bench/scene.hpp"
 
 #include <algorithm>

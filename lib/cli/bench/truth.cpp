@@ -1,4 +1,5 @@
-/* Averages pictures of a window moved by parts of a pixel, and compares others with the average. */
+/* Averages pictures of a window that is moved by parts of a pixel, and compares others with the
+ * average. */
 #include "cli/bench/truth.hpp"
 
 #include "mesh/material/srgb.hpp"

@@ -1,4 +1,4 @@
-/* What a picture ought to be: the mesh at many samples a pixel; and how far one is from it. */
+/* The reference picture, which is the mesh with many samples per pixel, and the error of others. */
 #pragma once
 
 #include "base/json.h"

@@ -1,4 +1,4 @@
-/* What of `gtx bench` Vulkan draws. */
+/* The runs of `gtx bench` that draw with Vulkan. */
 #include "cli/bench/scene.hpp"
 
 #include <algorithm>

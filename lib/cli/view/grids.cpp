@@ -1,4 +1,4 @@
-/* Height grids as assets to look at, with what their files leave open guessed and told. */
+/* Height grids as assets to show; guesses what their files leave open, and says so. */
 #include "cli/view/scene.hpp"
 
 #include <geotex/grid.h>

@@ -1,4 +1,4 @@
-/* What `gtx view` saves, and the source that it shows in place of an asset. */
+/* Saving from `gtx view`, and switching between an asset and its source. */
 #include "cli/view/viewer.hpp"
 
 #include "image/image.h"

@@ -1,4 +1,4 @@
-/* Rays over an LOD mesh: for tiles of which no heights are there. */
+/* Rays against an LOD mesh, for tiles whose heights are not resident. */
 #pragma once
 
 #include "mesh/memory.hpp"

@@ -1,4 +1,4 @@
-/* What lies over the picture of `gtx view`: contours; text: status, legend, progress, help. */
+/* The overlay of `gtx view`: contours, and text for status, legend, progress and help. */
 #include "cli/view/contours.hpp"
 #include "cli/view/viewer.hpp"
 

@@ -1,5 +1,5 @@
-/* Union, intersection and difference of two assets: each is cut by the other, and what is left is
- * put together. */
+/* Union, intersection and difference of two assets: each is cut by the other, and the remaining
+ * pieces are put together. */
 #include "edit/combine/combine.h"
 
 #include "base/alloc.h"

@@ -1,19 +1,19 @@
-/* The inside of gtx_combine: what is left of each patch, and an asset of that. */
+/* The inside of gtx_combine: the remaining piece of each patch, and the asset of all pieces. */
 #ifndef GTX_EDIT_COMBINE_H
 #define GTX_EDIT_COMBINE_H
 
 #include "edit/edit.h"
 #include "trace/solid/solid.h"
 
-/* Which part of an asset's surface bounds the result: what is inside the other asset or what is
- * not, and what coincides with the other's surface and faces the same way, or the opposite one. */
+/* Which parts of an asset's surface bound the result: those inside the other asset or those
+ * outside, and those that coincide with its surface, facing the same or the opposite way. */
 typedef struct gtx_keep {
     bool inside, alike, opposed;
-    bool turned;              /* the result is on the other side of it */
-    float inset;              /* texels that the outline is moved inwards */
+    bool turned;              /* the surface is reversed */
+    float inset;              /* texels by which the outline is moved inwards */
 } gtx_keep;
 
-/* One of the two assets, as it is cut by the other. */
+/* One of the two assets, and the other one that cuts it. */
 typedef struct gtx_operand {
     const gtx_asset *asset;
     const gtx_solid *other;
@@ -21,26 +21,26 @@ typedef struct gtx_operand {
     gtx_keep keep;
 } gtx_operand;
 
-/* What is left of a patch. */
+/* The remaining part of a patch. */
 typedef struct gtx_piece {
     uint8_t *trim;            /* a code for each texel of the patch's rectangle; NULL: as it was */
-    uint8_t *kept;            /* whether its height code stays, likewise */
-    uint32_t low[2], size[2]; /* the part of the rectangle that stays; 0 when nothing does */
-    uint64_t steps;           /* that it took */
-    double error;             /* how far the outline may be from the crossing, object units */
+    uint8_t *kept;            /* likewise, whether the height code stays */
+    uint32_t low[2], size[2]; /* the part of the rectangle that stays; size 0: none */
+    uint64_t steps;           /* of work, that cutting took */
+    double error;             /* distance of the outline from the true crossing, object units */
     gtx_result result;        /* MEMORY or OK */
 } gtx_piece;
 
-/* cut.c: where texels of a patch stay, and where along the edges of its cells that ends. */
+/* cut.c: which texels of a patch stay, and where the cut crosses the edges of cells. */
 enum { GTX_NO_LABEL = 0, GTX_DROPPED = 1, GTX_KEPT = 2 };
 typedef struct gtx_cut {
     const gtx_operand *operand;
     const gtx_patch *patch;
     uint32_t width, height;
-    double apart;             /* within this, surfaces coincide: object units */
+    double apart;             /* distance within which surfaces coincide, object units */
     uint8_t *label;           /* of each texel */
     bool coincided;
-    uint64_t steps, left;     /* of work: past what is left it gives up */
+    uint64_t steps, left;     /* of work: done; the most that may be done */
 } gtx_cut;
 void gtx_cut_point(const gtx_cut *cut, double x, double y, double out[3]);
 void gtx_cut_label(gtx_cut *cut);
@@ -53,7 +53,7 @@ gtx_piece gtx_cut_patch(const gtx_operand *operand, uint32_t patch, uint32_t gra
 void gtx_free_piece(const gtx_operand *operand, uint32_t patch, gtx_piece *piece,
                     const gtx_allocator *hooks);
 
-/* pieces.c: an asset of what is left of both; `info` has its maps and their precision. Errors:
+/* pieces.c: makes an asset of the pieces of both; `info` has its maps and their precision. Errors:
  * MEMORY, LIMIT. */
 gtx_result gtx_join_pieces(const gtx_operand operands[2], gtx_piece *const pieces[2],
                            const gtx_info *info, const char *meta, size_t meta_size,

@@ -1,4 +1,4 @@
-/* An asset of what is left of the patches of two: records, and maps copied into them. */
+/* Makes an asset of the remaining pieces of patches: records, and maps copied into them. */
 #include "edit/combine/combine.h"
 
 #include "asset/section.h"

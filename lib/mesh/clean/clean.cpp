@@ -1,4 +1,4 @@
-/* From whatever a file held to a mesh that keeps its promises. */
+/* Cleaning: from the triangles of a file to a mesh that keeps the promises of mesh.hpp. */
 #include "mesh/clean/clean.hpp"
 
 namespace gtx {

@@ -1,4 +1,4 @@
-/* Images that hold something else than a material's textures do: glossiness, heights, opacity. */
+/* Images that are not used as a material's textures are: glossiness, heights, opacity. */
 #include "mesh/import/image_use.hpp"
 
 #include "mesh/import/import.hpp"

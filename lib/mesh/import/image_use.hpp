@@ -1,4 +1,4 @@
-/* Images that hold something else than a material's textures do. Internal to lib/mesh. */
+/* Images that are not used as a material's textures are. Internal to lib/mesh. */
 #pragma once
 
 #include "mesh/material/texture.hpp"

@@ -1,4 +1,4 @@
-/* What a gtx_solid is made of: weighted triangles, in groups that a hierarchy is over. */
+/* The inside of a gtx_solid: weighted triangles, in groups that are the leaves of a hierarchy. */
 #ifndef GTX_TRACE_SOLID_H
 #define GTX_TRACE_SOLID_H
 
