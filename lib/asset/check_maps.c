@@ -67,10 +67,10 @@ typedef struct patch_finding {
 
 static inline uint64_t count_codes(const uint8_t *row, uint32_t bytes, uint32_t width)
 {
-    enum { MOST = UINT8_MAX };    /* that bytes can count, for vectors of them */
+    enum { MAX_COUNT = UINT8_MAX };    /* that bytes can count, for vectors of them */
     uint64_t coded = 0;
     for (uint32_t x = 0; x < width;) {
-        const uint32_t end = width - x > MOST ? x + MOST : width;
+        const uint32_t end = width - x > MAX_COUNT ? x + MAX_COUNT : width;
         uint8_t count = 0;
         for (; x < end; ++x)
             count = (uint8_t)(count + ((bytes == 1 ? row[x] : row[2 * x] | row[2 * x + 1]) != 0));

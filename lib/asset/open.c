@@ -7,7 +7,7 @@
 static gtx_result check_open(const gtx_open_desc *desc, gtx_asset **out, gtx_error *error)
 {
     if (!out)
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "opening needs a place for the asset");
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "opening needs a result");
     *out = NULL;
     if (!desc)
         return GTX_OK;

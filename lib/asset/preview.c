@@ -1,5 +1,6 @@
-/* Previews: patches and LOD meshes with maps made up for them. Normals follow from the finest LOD
- * mesh: each texel has the mean of those of the corners in it, the others what is around them. */
+/* Assets of a file's beginning: the patches and LOD meshes get maps of few texels. A texel's normal
+ * is the mean of the normals of the LOD mesh's corners in it; texels without one are filled from
+ * around. */
 #include "asset/preview.h"
 
 #include "asset/fill.h"
@@ -10,7 +11,7 @@
 #include <string.h>
 
 /* Sums of more normals would not fit 32 bits when their mean is taken. */
-enum { MOST = 1 << 22 };
+enum { MAX_SUM = 1 << 22 };
 
 static uint64_t texels_of(const gtx_info *info)
 {
@@ -101,8 +102,8 @@ static void put_vertex(const shaping *s, const gtx_patch *patch, const gtx_patch
     const size_t texel = ((size_t)patch->page * info->page_height + at[1]) * info->page_width +
                          at[0];
     gtx_normal_sum *sum = &s->sums[texel];
-    if (sum->a < MOST / 2 && sum->a > -MOST / 2 && sum->b < MOST / 2 && sum->b > -MOST / 2 &&
-        sum->z < MOST / 2)
+    if (sum->a < MAX_SUM / 2 && sum->a > -MAX_SUM / 2 && sum->b < MAX_SUM / 2 &&
+        sum->b > -MAX_SUM / 2 && sum->z < MAX_SUM / 2)
         gtx_normal_add(sum, code);
     s->ring[texel] = 1;
 }

@@ -1,4 +1,4 @@
-/* The order of partitioning: cluster, split what is no height map, set the density, report. */
+/* The steps of partitioning: cluster, split what is not a height map, set the density, report. */
 #include "chart/cuts/agglomerate.hpp"
 #include "chart/attach.hpp"
 #include "chart/cuts/cut.hpp"
@@ -34,7 +34,7 @@ constexpr double WORTH_PEELING = 0.96;
  * texels and an IoU of 0.9947, at this 0.9955; the helmet, at 2, 1.6 times the bytes and 5 times
  * the walls. */
 constexpr double MUCH_LOST = 0.003;
-constexpr double FINER[] = {2, 1.75, 1.5, 1.25}, MOST_TEXELS = 2.5;
+constexpr double FINER[] = {2, 1.75, 1.5, 1.25}, MAX_TEXELS = 2.5;
 /* Likewise where texels are this part of the diagonal, for less: a box loses 0.0024 and its texels
  * are 0.015, Spot's control mesh 0.0023 and 0.0039; a bottle, whose loss of 0.0028 is nowhere a
  * pixel, 0.0026, and half takes that, too. So many texels are taken anyway: at half Spot's control
@@ -268,7 +268,7 @@ static Partition finer_layers(const Mesh &mesh, const ChartOptions &options, dou
         Partition out = make_textured(PartitionMethod::LAYERS, mesh, tried, task);
         out.for_outlines = true;
         const double times = texels_of_patches(out, tried) /
-                             std::min(std::max(MOST_TEXELS * cut_texels, FREE_TEXELS), room);
+                             std::min(std::max(MAX_TEXELS * cut_texels, FREE_TEXELS), room);
         if (times <= 1)
             return out;
         most_finer = finer / std::sqrt(times);

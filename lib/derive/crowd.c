@@ -1,18 +1,20 @@
-/* How many cells a ray may visit, from above: bundles of rays against the boxes of the patches.
+/* An upper bound on the number of cells that a ray visits, from bundles of rays against the boxes
+ * of the patches.
  *
- * All directions are split into bundles, the cells of a cube map. Along axis z, say, rays go by
- * (x, y) = p + z * (u, v), with u and v of a bundle within an interval. A box is met only by those
- * whose p, where the ray passes the middle of the asset, is in a rectangle, which is wider the
- * farther the box is from there. The rectangles go into a raster of p, each with what a ray may
- * visit in its box; the fullest place of all rasters bounds every ray. */
+ * Directions are split into bundles, the cells of a cube map. Along axis z, say, a ray is (x, y) =
+ * p + z * (u, v), with u and v in an interval of the bundle. Rays that hit a box have their p,
+ * where they pass the plane through the middle of the asset, in a rectangle that grows with the
+ * distance of the box from the plane. These rectangles are added up in a raster over p, each with
+ * the number of cells that a ray may visit in its box; the maximum over all rasters bounds every
+ * ray. */
 #include "derive/crowd.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Intervals of u and v on each of the three axes, and rectangles looked at in all, about. More make
- * the bound of ordinary assets lower by a few parts in ten, and take longer. */
-enum { MOST_SPLITS = 8, EFFORT = 1 << 19 };
+/* Intervals of u and v per axis, and about the number of rectangles in all. More of them lower the
+ * bound of ordinary assets by some tenths, and take longer. */
+enum { MAX_SPLITS = 8, EFFORT = 1 << 19 };
 enum { RASTER = 32 };
 
 typedef struct bundle {
@@ -20,12 +22,12 @@ typedef struct bundle {
     double slope[2], spread;  /* middle of the intervals of u and v; half their width */
 } bundle;
 
-/* A parallelepiped: its middle, and half of each edge. */
+/* A parallelepiped: its centre, and half of each edge. */
 typedef struct solid {
     double centre[3], edge[3][3];
 } solid;
 
-/* Where a ray of the bundle that meets the solid passes the plane at 0. */
+/* The rectangle in which rays of the bundle that hit the solid pass the plane at 0. */
 static void rectangle_of(const bundle *b, const solid *s, double low[2], double high[2])
 {
     const int z = b->axis[2];
@@ -41,8 +43,7 @@ static void rectangle_of(const bundle *b, const solid *s, double low[2], double 
     }
 }
 
-/* Around a patch's cells, as rays are cut off at them: a few codes higher than the height field may
- * be. */
+/* The box that rays into a patch are clipped to: a few height codes taller than its frame. */
 static solid solid_of(const gtx_patch *p, const double middle[3])
 {
     static const double margin = 1.05;
@@ -69,7 +70,7 @@ static solid solid_of_bounds(const gtx_info *info, double middle[3])
     return s;
 }
 
-/* What is beyond the raster goes into its outermost places, as do rays. */
+/* Rectangles and rays beyond the raster are clamped to its border. */
 static int place_of(double at, double low, double high)
 {
     const double place = high > low ? (at - low) / (high - low) * RASTER : 0;
@@ -108,7 +109,7 @@ static double cells_along(const gtx_asset *asset, const bundle *b)
             from[k] = place_of(first[k], low[k], high[k]);
             end[k] = place_of(last[k], low[k], high[k]) + 1;
         }
-        sums[from[1]][from[0]] += cells; /* differences, of which fullest() makes sums */
+        sums[from[1]][from[0]] += cells; /* differences, which fullest() integrates */
         sums[from[1]][end[0]] -= cells;
         sums[end[1]][from[0]] -= cells;
         sums[end[1]][end[0]] += cells;
@@ -118,7 +119,7 @@ static double cells_along(const gtx_asset *asset, const bundle *b)
 
 uint64_t gtx_ray_cells(const gtx_asset *asset)
 {
-    int splits = MOST_SPLITS;
+    int splits = MAX_SPLITS;
     double most = 0;
     if (!asset)
         return 0;

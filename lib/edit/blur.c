@@ -1,4 +1,4 @@
-/* Blurs of the surface, and boosts by what they take away. */
+/* Blur and high-boost. */
 #include "edit/edit.h"
 
 #include "base/error.h"
@@ -20,9 +20,10 @@ static gtx_result read_blur(const gtx_edit *edit, const gtx_edit_blur *blur, dou
     if (result)
         return result;
     if (blur->flags & ~(uint32_t)(GTX_EDIT_WORLD | GTX_EDIT_PER_PATCH))
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "a blur has no such flags");
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "unknown flags of a blur");
     if (!(blur->radius > 0) || isinf(blur->radius))
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "the radius of a blur is finite and above 0");
+        return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                        "the radius of a blur is not finite and above 0");
     *radius = (double)blur->radius * (blur->flags & GTX_EDIT_WORLD ? 1 : edit->texel_size);
     double largest = 0, texels = 0;
     for (uint32_t p = 0; p < edit->count; ++p) {

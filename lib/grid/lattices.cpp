@@ -94,8 +94,8 @@ static double value_at(const HeightGrid &grid, double x, double y)
 /* Samples along a side of what a node stands for: no node of a finer grid is passed over. */
 static uint32_t samples_in(double nodes)
 {
-    constexpr double MOST = 64; /* 4096 looks a node */
-    return uint32_t(std::clamp(std::ceil(nodes - 1e-6), 1.0, MOST));
+    constexpr double MAX_SAMPLES = 64; /* 4096 looks a node */
+    return uint32_t(std::clamp(std::ceil(nodes - 1e-6), 1.0, MAX_SAMPLES));
 }
 
 /* The mean, or of categories the most frequent, of which the lowest. Sorts them. */

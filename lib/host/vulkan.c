@@ -37,9 +37,9 @@ static bool has_layer(const gtx_host_vulkan *v, const char *name)
 static gtx_result open_instance(const gtx_host_vulkan_desc *desc, gtx_host_vulkan *v,
                                 gtx_error *error)
 {
-    enum { MOST = 8 };
+    enum { MAX_EXTENSIONS = 8 };
     static const char *const layers[] = {"VK_LAYER_KHRONOS_validation"};
-    const char *extensions[MOST + 1];
+    const char *extensions[MAX_EXTENSIONS + 1];
     uint32_t count = 0;
     v->library = dlopen("libvulkan.so.1", RTLD_NOW);
     if (v->library)
@@ -47,7 +47,7 @@ static gtx_result open_instance(const gtx_host_vulkan_desc *desc, gtx_host_vulka
     if (!v->load)
         return gtx_fail(error, GTX_ERROR_GL, "libvulkan.so.1 cannot be opened");
     v->validated = desc->validate && has_layer(v, layers[0]);
-    for (uint32_t i = 0; i < desc->extension_count && i < MOST; ++i)
+    for (uint32_t i = 0; i < desc->extension_count && i < MAX_EXTENSIONS; ++i)
         extensions[count++] = desc->extensions[i];
     if (v->validated)
         extensions[count++] = "VK_EXT_debug_utils";

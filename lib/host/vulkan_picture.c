@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { MOST_BYTES = 16, SAMPLED = GTX_PICTURE_DEPTH + 1, MOST = GTX_PICTURE_IMAGES };
+enum { MAX_BYTES = 16, SAMPLED = GTX_PICTURE_DEPTH + 1 };
 
 static bool is_depth(int which)
 {
@@ -83,7 +83,7 @@ static bool make_image(const gtx_host_vulkan *v, gtx_picture *p, int which)
 
 static size_t offset_of(const gtx_picture *p, int which)
 {
-    return (size_t)which * MOST_BYTES * p->desc.width * p->desc.height * p->desc.views;
+    return (size_t)which * MAX_BYTES * p->desc.width * p->desc.height * p->desc.views;
 }
 
 static bool make_read_buffer(const gtx_host_vulkan *v, gtx_picture *p)
@@ -115,9 +115,9 @@ static int attachment(const gtx_picture *p, uint32_t i)
 
 static bool make_pass(const gtx_host_vulkan *v, gtx_picture *p)
 {
-    VkAttachmentDescription attachments[MOST];
-    VkAttachmentReference references[MOST];
-    VkImageView views[MOST];
+    VkAttachmentDescription attachments[GTX_PICTURE_IMAGES];
+    VkAttachmentReference references[GTX_PICTURE_IMAGES];
+    VkImageView views[GTX_PICTURE_IMAGES];
     const uint32_t colors = p->desc.color_count;
     for (uint32_t i = 0; i < p->attachments; ++i) {
         const int which = attachment(p, i);
@@ -184,7 +184,7 @@ void gtx_picture_destroy(const gtx_host_vulkan *v, gtx_picture *p)
     v->DestroyRenderPass(v->device, p->pass, NULL);
     v->DestroyBuffer(v->device, p->read, NULL);
     v->FreeMemory(v->device, p->read_memory, NULL);
-    for (int i = 0; i < MOST; ++i) {
+    for (int i = 0; i < GTX_PICTURE_IMAGES; ++i) {
         v->DestroyImageView(v->device, p->views[i], NULL);
         v->DestroyImage(v->device, p->images[i], NULL);
         v->FreeMemory(v->device, p->memories[i], NULL);
@@ -209,7 +209,7 @@ static void turn(const gtx_host_vulkan *v, const gtx_picture *p, int which, VkIm
 static void begin_rendering(const gtx_host_vulkan *v, const gtx_picture *p, VkRect2D all,
                             const VkClearValue *clears)
 {
-    VkRenderingAttachmentInfo attachments[MOST];
+    VkRenderingAttachmentInfo attachments[GTX_PICTURE_IMAGES];
     const uint32_t colors = p->desc.color_count;
     for (uint32_t i = 0; i < p->attachments; ++i)
         turn(v, p, attachment(p, i), VK_IMAGE_LAYOUT_UNDEFINED, layout_of(attachment(p, i)));
@@ -241,7 +241,7 @@ void gtx_picture_begin(const gtx_host_vulkan *v, const gtx_picture *p, bool by_p
     const float height = (float)p->desc.height;
     const VkViewport viewport = {0, y_up ? height : 0, (float)p->desc.width,
                                  y_up ? -height : height, 0, 1};
-    VkClearValue clears[MOST];
+    VkClearValue clears[GTX_PICTURE_IMAGES];
     memset(clears, 0, sizeof clears);
     for (uint32_t i = 0; i < p->desc.color_count; ++i)
         memcpy(clears[i].color.float32, clear->color, sizeof clear->color);

@@ -157,10 +157,10 @@ static void require_plan(bool fine)
 }
 
 /* A name becomes part of paths, and has a digit for each step below the root. */
-static constexpr uint64_t MOST_DEPTH = 62;
+static constexpr uint64_t MAX_DEPTH = 62;
 static bool is_name(const std::string &name)
 {
-    return !name.empty() && name.size() <= MOST_DEPTH + 1 && name[0] == 'r' &&
+    return !name.empty() && name.size() <= MAX_DEPTH + 1 && name[0] == 'r' &&
            name.find_first_not_of("01234567", 1) == name.npos;
 }
 
@@ -169,7 +169,7 @@ static Tile read_tile(const json &from, Plan &plan)
     Tile tile;
     const uint32_t number = uint32_t(plan.tiles.size());
     tile.name = from.at("name");
-    tile.depth = uint32_t(whole_number(from, "depth", MOST_DEPTH));
+    tile.depth = uint32_t(whole_number(from, "depth", MAX_DEPTH));
     tile.parent = uint32_t(whole_number(from, "parent", UINT32_MAX));
     tile.first = hash_of(from.at("first"));
     tile.end = hash_of(from.at("end"));

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_SIDE = 1024 };      /* of a page, unless a patch is larger */
+enum { MAX_SIDE = 1024 };      /* of a page, unless a patch is larger */
 
 typedef struct maps {
     uint32_t side, columns, page; /* of patches; patches in a row of a page; texels of its side */
@@ -70,7 +70,7 @@ static void *must(void *memory)
 
 gtx_asset *mad_asset(uint32_t count, uint32_t side, mad_place place, mad_field field)
 {
-    const uint32_t page = side > MOST_SIDE ? side : side * (MOST_SIDE / side);
+    const uint32_t page = side > MAX_SIDE ? side : side * (MAX_SIDE / side);
     maps m = {.side = side, .columns = page / side, .page = page < 8 ? 8 : page};
     const uint32_t pages = (count + m.columns * m.columns - 1) / (m.columns * m.columns);
     const size_t texels = (size_t)pages * m.page * m.page;

@@ -51,11 +51,11 @@ struct Watch {
 /* Distances out of searches that were given up would be a hundredth and more. */
 static void assert_measured_right(const char *json)
 {
-    constexpr double MOST = 3e-3; /* of the diagonal */
+    constexpr double MAX_ERROR = 3e-3; /* of the diagonal */
     for (const char *direction : {"\"forward\":", "\"reverse\":"}) {
         const char *rms = strstr(strstr(json, direction), "\"rms\":");
         const double error = strtod(rms + strlen("\"rms\":"), nullptr);
-        if (!(error < MOST))
+        if (!(error < MAX_ERROR))
             fail_msg("%s %g", direction, error);
     }
 }
@@ -150,7 +150,7 @@ static double work_of(const std::string &text)
 static void work_grows_as_triangles_do(void **)
 {
     constexpr unsigned FEW = 100, MANY = 8 * FEW;
-    constexpr double MOST = 24;
+    constexpr double MAX_RATIO = 24;
     const struct {
         const char *name;
         std::string (*make)(unsigned);
@@ -160,7 +160,7 @@ static void work_grows_as_triangles_do(void **)
         const double few = work_of(family.make(FEW)), many = work_of(family.make(MANY));
         print_message("%s: %.0f steps a triangle, then %.0f\n", family.name, few / FEW,
                       many / MANY);
-        if (many > MOST * few)
+        if (many > MAX_RATIO * few)
             fail_msg("%s: %.1f times the work", family.name, many / few);
     }
 }

@@ -10,15 +10,15 @@
 
 #include <math.h>
 
-enum { MOST = 1000 };
+enum { MAX_COUNT = 1000 };
 
 static void least_first(void **state)
 {
     (void)state;
     static const float some[] = {3, -INFINITY, 1e-30f, -2, INFINITY, 0.5f, -1e30f, 3, -2, 256};
-    for (size_t count = 0; count <= MOST; count = 2 * count + 1) {
-        gtx_rank ranks[MOST], room[MOST];
-        float values[MOST];
+    for (size_t count = 0; count <= MAX_COUNT; count = 2 * count + 1) {
+        gtx_rank ranks[MAX_COUNT], room[MAX_COUNT];
+        float values[MAX_COUNT];
         for (uint32_t i = 0; i < count; ++i) {
             values[i] = some[i * i % 10] * (float)(1 + i % 7);
             ranks[i] = gtx_rank_of(values[i], i);

@@ -5,9 +5,9 @@
 
 #include <stdbool.h>
 
-enum { MOST_NAMES = 4096 };
+enum { MAX_NAMES = 4096 };
 static struct {
-    GLenum target[MOST_NAMES]; /* what each buffer was bound to first */
+    GLenum target[MAX_NAMES]; /* what each buffer was bound to first */
     int broken, multi_draws;
     bool web;                  /* the context says that it is WebGL */
 } spy;
@@ -16,7 +16,7 @@ static struct {
 
 static void APIENTRY bind_buffer(GLenum target, GLuint name)
 {
-    if (name && name < MOST_NAMES) {
+    if (name && name < MAX_NAMES) {
         GLenum *first = &spy.target[name];
         spy.broken += *first && (*first == GL_ELEMENT_ARRAY_BUFFER) !=
                                     (target == GL_ELEMENT_ARRAY_BUFFER);
@@ -28,7 +28,7 @@ static void APIENTRY bind_buffer(GLenum target, GLuint name)
 static void APIENTRY delete_buffers(GLsizei count, const GLuint *names)
 {
     for (GLsizei i = 0; i < count; ++i)
-        if (names[i] < MOST_NAMES)
+        if (names[i] < MAX_NAMES)
             spy.target[names[i]] = 0;
     REAL(PFNGLDELETEBUFFERSPROC, "glDeleteBuffers")(count, names);
 }

@@ -30,7 +30,7 @@ constexpr double MIN_BEND = 0.03, MAX_BEND = 0.5;
 
 Bends measure_bends(const Relief &relief, const Rect &box)
 {
-    constexpr double MOST = MAX_BEND * MAX_BEND;
+    constexpr double MAX_BEND2 = MAX_BEND * MAX_BEND;
     const int stride[2] = {1, relief.size[0]};
     Bends out;
     for (int j = box.low[1]; j < box.high[1]; ++j)
@@ -52,7 +52,7 @@ Bends measure_bends(const Relief &relief, const Rect &box)
             for (int axis = 0; axis < 2; ++axis)
                 if (!std::isnan(bend[axis])) {
                     out.square[axis] +=
-                        std::min(bend[axis] * bend[axis], MOST) / std::sqrt(1 + slope2);
+                        std::min(bend[axis] * bend[axis], MAX_BEND2) / std::sqrt(1 + slope2);
                     out.count[axis] += 1;
                 }
         }

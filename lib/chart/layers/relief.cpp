@@ -12,7 +12,7 @@ namespace {
 
 /* Least cosine between a triangle and the direction that it is seen along, and least share of it
  * that is seen. Not tuned. */
-constexpr double LEAST_FACING = 0.15, LEAST_SEEN = 0.25;
+constexpr double MIN_FACING = 0.15, MIN_SEEN = 0.25;
 /* Texels that surface may lie behind what is in front of it and yet be the same. */
 constexpr double SAME_DEPTH = 1;
 /* Where a triangle is looked at: its centre, and near its corners. */
@@ -32,7 +32,7 @@ public:
     double sees(uint32_t t) const
     {
         const double facing = dot(Vec3d(surface_.normal[t]), frame_.z);
-        if (facing < LEAST_FACING)
+        if (facing < MIN_FACING)
             return 0;
         const double behind = pitch_ * (SAME_DEPTH + 1 / facing);
         double seen = 0;
@@ -44,7 +44,7 @@ public:
                 grid_.at(int(std::floor(p.x / pitch_)), int(std::floor(p.y / pitch_)));
             seen += !s || !(double(s->high) > p.z + behind) ? 0.25 : 0;
         }
-        return seen >= LEAST_SEEN ? seen * facing : 0;
+        return seen >= MIN_SEEN ? seen * facing : 0;
     }
 
 private:

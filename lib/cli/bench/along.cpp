@@ -1,4 +1,4 @@
-/* Measures along a path. */
+/* Measures frame times along a path. */
 #include "cli/bench/along.hpp"
 
 #include "cli/bench/scene.hpp"
@@ -111,14 +111,14 @@ PathRow sum_up(BenchMethod method, const Vector<PathCell> &cells, const Vector<P
 {
     PathRow row;
     row.method = method;
-    constexpr double LEAST = 1e-3; /* milliseconds: the clock's own step */
+    constexpr double MIN_TIME = 1e-3; /* milliseconds: the clock's own step */
     Vector<double> times, works, ratios, work_ratios;
     for (size_t v = 0; v < cells.size(); ++v) {
         times.push_back(cells[v].ms);
         works.push_back(cells[v].work);
         row.mean += cells[v].ms / double(cells.size());
         ratios.push_back(mesh ? cells[v].ms / (*mesh)[v].ms : 0);
-        work_ratios.push_back(mesh ? cells[v].work / std::max(LEAST, (*mesh)[v].work) : 0);
+        work_ratios.push_back(mesh ? cells[v].work / std::max(MIN_TIME, (*mesh)[v].work) : 0);
         row.work_worst = std::max(row.work_worst, work_ratios.back());
         row.order.push_back(v);
         row.iou = std::min(row.iou, cells[v].iou);

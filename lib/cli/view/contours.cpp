@@ -58,14 +58,14 @@ static double height_of(const Scene &scene)
 
 Contours contours_of(const Scene &scene, double step)
 {
-    constexpr double MOST = 25;
+    constexpr double MAX_LINES = 25;
     Contours out = {step, vertical_of(scene)};
     const double height = height_of(scene) / out.vertical;
     if (step > 0 || height <= 0)
         return out;
-    const double power = std::pow(10, std::floor(std::log10(height / MOST)));
+    const double power = std::pow(10, std::floor(std::log10(height / MAX_LINES)));
     for (double times : {1., 2., 5., 10.})
-        if (out.step <= 0 && height / (times * power) <= MOST)
+        if (out.step <= 0 && height / (times * power) <= MAX_LINES)
             out.step = times * power;
     return out;
 }

@@ -10,7 +10,7 @@
 
 namespace gtx {
 
-constexpr size_t RAMP = 64, MOST_TITLE = 40, MOST_ENTRIES = 24;
+constexpr size_t RAMP = 64, MAX_TITLE = 40, MAX_ENTRIES = 24;
 
 static std::string text_of(double value)
 {
@@ -37,7 +37,7 @@ static Legend color_map_of(const gtx_asset *asset)
     const double low = meta["color_low"].get<double>(), high = meta["color_high"].get<double>();
     if (meta.contains("categories") && meta["categories"].is_array())
         for (const auto &value : meta["categories"])
-            if (value.is_number() && out.entries.size() < MOST_ENTRIES)
+            if (value.is_number() && out.entries.size() < MAX_ENTRIES)
                 out.entries.push_back({color_of(map, high > low ? (value.get<double>() - low) /
                                                                       (high - low) : 0.5),
                                        text_of(value.get<double>())});
@@ -46,7 +46,7 @@ static Legend color_map_of(const gtx_asset *asset)
     out.low = text_of(low);
     out.high = text_of(high);
     if (meta.contains("property") && meta["property"].is_string())
-        for (char letter : meta["property"].get<std::string>().substr(0, MOST_TITLE))
+        for (char letter : meta["property"].get<std::string>().substr(0, MAX_TITLE))
             out.title += letter >= ' ' && letter <= '~' ? letter : '?';
     return out;
 }

@@ -6,8 +6,8 @@
 
 namespace gtx {
 
-constexpr uint32_t LEAST_CELL = 16;             /* pixels along a side */
-constexpr uint64_t MOST_PIXELS = 1 << 28;       /* of all frames together: a gigabyte */
+constexpr uint32_t MIN_CELL = 16;             /* pixels along a side */
+constexpr uint64_t MAX_PIXELS = 1 << 28;       /* of all frames together: a gigabyte */
 
 struct Group {
     std::string label;
@@ -101,11 +101,11 @@ Vector<Still> draw_sheet(const SheetOptions &sheet, const StillOptions &still,
     cell.width = still.width / layout.columns;
     cell.height = still.height / layout.rows;
     const bool single = layout.columns * layout.rows == 1;
-    if (!single && std::min(cell.width, cell.height) < LEAST_CELL)
+    if (!single && std::min(cell.width, cell.height) < MIN_CELL)
         throw Error(GTX_ERROR_ARGUMENT, std::to_string(layout.columns) + " x " +
                                             std::to_string(layout.rows) +
                                             " pictures need a larger --size");
-    if (uint64_t(still.width) * still.height * sheet.frames > MOST_PIXELS)
+    if (uint64_t(still.width) * still.height * sheet.frames > MAX_PIXELS)
         throw Error(GTX_ERROR_LIMIT, std::to_string(sheet.frames) +
                                          " frames are too many of this --size");
     Vector<Still> out;

@@ -52,9 +52,9 @@ static Affine local_transform(const tinygltf::Node &node, int number)
 /* A node needs a few bytes to repeat a mesh as often as another said. */
 static void check_repeats(size_t count, int number)
 {
-    constexpr size_t MOST = 1 << 20;
-    if (count > MOST)
-        fail(GTX_ERROR_LIMIT, "node %d: more than %zu repeated instances", number, MOST);
+    constexpr size_t MAX_INSTANCES = 1 << 20;
+    if (count > MAX_INSTANCES)
+        fail(GTX_ERROR_LIMIT, "node %d: more than %zu repeated instances", number, MAX_INSTANCES);
 }
 
 /* EXT_mesh_gpu_instancing: where a node repeats its mesh, relative to itself. */

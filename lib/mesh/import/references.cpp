@@ -89,11 +89,11 @@ public:
 
     void add(std::string path)
     {
-        constexpr size_t MOST = 1 << 16;
+        constexpr size_t MAX_FILES = 1 << 16;
         if (!seen_.insert(normal_path(path)).second)
             return;
-        if (paths_.size() == MOST)
-            fail(GTX_ERROR_LIMIT, "the model refers to more than %zu files", MOST);
+        if (paths_.size() == MAX_FILES)
+            fail(GTX_ERROR_LIMIT, "the model refers to more than %zu files", MAX_FILES);
         paths_.push_back(std::move(path));
     }
 

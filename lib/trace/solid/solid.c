@@ -1,4 +1,4 @@
-/* A solid: made of an asset, measured, asked. */
+/* Solids: made of an asset, measured, and queried. */
 #include "trace/solid/solid.h"
 
 #include "base/alloc.h"
@@ -10,7 +10,7 @@
 
 /* Bunny with its five holes at the bottom, and scans with more, are below it; half a sphere, or a
  * cup with walls of no thickness, far above. */
-static const double MOST_OPEN = 0.01;
+static const double MAX_OPENNESS = 0.01;
 enum { SAMPLES = 1024 };
 
 /* Flux of x / 3 through the surface, from the middle of the bounds, which rounds least. */
@@ -90,7 +90,7 @@ static gtx_result build(gtx_solid *solid, const gtx_asset *asset, const gtx_soli
                         gtx_error *error)
 {
     const gtx_caster_desc casting = {.allocator = &solid->allocator, .limits = desc->limits};
-    const double most = desc->max_openness > 0 ? (double)desc->max_openness : MOST_OPEN;
+    const double most = desc->max_openness > 0 ? (double)desc->max_openness : MAX_OPENNESS;
     gtx_budget budget = gtx_solid_budget(&desc->limits, gtx_solid_texels(asset));
     gtx_result result = gtx_caster_create(asset, &casting, &solid->caster, error);
     if (!result)
