@@ -1,6 +1,6 @@
 /* Holes, walls, leaks, silhouettes, depth and shading of an asset against its source. */
 #include "measure/distribution.hpp"
-#include "measure/look.hpp"
+#include "measure/figures.hpp"
 
 #include <algorithm>
 #include <mutex>

@@ -1,4 +1,4 @@
-/* How far two surfaces are from each other. */
+/* The distance between two surfaces. */
 #include "world/surface.hpp"
 
 #include "mesh/nearest.hpp"
@@ -15,12 +15,12 @@ namespace {
 using Triangles = Vector<std::array<uint32_t, 3>>;
 
 /* Shapes for NearestTree, relative to a point of theirs: boxes are floats. */
-struct SheetShapes {
+struct Shapes {
     const Vector<Vec3d> &positions;
     const Triangles &triangles;
     Vec3d origin;
 
-    SheetShapes(const Vector<Vec3d> &at, const Triangles &of)
+    Shapes(const Vector<Vec3d> &at, const Triangles &of)
         : positions(at), triangles(of), origin(at.empty() ? Vec3d() : at[0])
     {
     }
@@ -44,8 +44,8 @@ constexpr size_t CHUNK = 1024;
 
 /* The square of how far the farthest point is from the first `count` shapes, or `least`: what is
  * nearer need not be known. */
-double farthest_of(const Vector<Vec3d> &points, const SheetShapes &shapes,
-                   const NearestTree<SheetShapes> &tree, size_t count, double least, Task &task)
+double farthest_of(const Vector<Vec3d> &points, const Shapes &shapes,
+                   const NearestTree<Shapes> &tree, size_t count, double least, Task &task)
 {
     Vector<double> farthest((points.size() + CHUNK - 1) / CHUNK, least);
     task.parallel(farthest.size(), [&](size_t chunk) {
@@ -76,15 +76,15 @@ Vector<Vec3d> points_of(const Vector<Vec3d> &positions, const Triangles &triangl
 
 } // namespace
 
-Sheet sheet_of(const TileSurface &surface, size_t triangles)
+PlainMesh plain_mesh_of(const TileSurface &surface, size_t triangles)
 {
     return {surface.positions, {surface.triangles.begin(),
                                 surface.triangles.begin() + std::ptrdiff_t(triangles)}};
 }
 
 struct NearSurface::Tree {
-    SheetShapes shapes;
-    NearestTree<SheetShapes> tree;
+    Shapes shapes;
+    NearestTree<Shapes> tree;
 
     Tree(const TileSurface &surface, Task &task)
         : shapes(surface.positions, surface.triangles), tree(shapes, task, 0)
@@ -99,26 +99,26 @@ NearSurface::NearSurface(const TileSurface &surface, Task &task)
 
 NearSurface::~NearSurface() = default;
 
-double NearSurface::distance_to(const Sheet &sheet, bool with_ring)
+double NearSurface::distance_to(const PlainMesh &mesh, bool with_ring)
 {
     const size_t count = with_ring ? surface_.triangles.size() : surface_.own;
-    if (!count || sheet.triangles.empty())
+    if (!count || mesh.triangles.empty())
         return 0;
     if (!tree_)
         tree_ = std::make_unique<Tree>(surface_, task_);
-    const SheetShapes shapes(sheet.positions, sheet.triangles);
-    const NearestTree<SheetShapes> tree(shapes, task_, 0);
+    const Shapes shapes(mesh.positions, mesh.triangles);
+    const NearestTree<Shapes> tree(shapes, task_, 0);
     const double there =
         farthest_of(points_of(surface_.positions, surface_.triangles, surface_.own), shapes, tree,
                     shapes.size(), 0, task_);
-    return std::sqrt(farthest_of(points_of(sheet.positions, sheet.triangles, shapes.size()),
+    return std::sqrt(farthest_of(points_of(mesh.positions, mesh.triangles, shapes.size()),
                                  tree_->shapes, tree_->tree, count, there, task_));
 }
 
-Vector<uint32_t> nearest_triangles(const Vector<Vec3d> &points, const Sheet &sheet, Task &task)
+Vector<uint32_t> nearest_triangles(const Vector<Vec3d> &points, const PlainMesh &mesh, Task &task)
 {
-    const SheetShapes shapes(sheet.positions, sheet.triangles);
-    const NearestTree<SheetShapes> tree(shapes, task, 0);
+    const Shapes shapes(mesh.positions, mesh.triangles);
+    const NearestTree<Shapes> tree(shapes, task, 0);
     Vector<uint32_t> nearest(points.size(), UINT32_MAX);
     task.parallel((points.size() + CHUNK - 1) / CHUNK, [&](size_t chunk) {
         uint32_t near = UINT32_MAX;

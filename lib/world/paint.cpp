@@ -1,5 +1,5 @@
-/* A tile's surface with its textures, and what is seen of them as colours of its vertices. */
-#include "world/look.hpp"
+/* A tile's surface with its textures, and their colours averaged at its vertices. */
+#include "world/materials.hpp"
 
 #include "mesh/material/srgb.hpp"
 
@@ -12,7 +12,7 @@ Mesh textured_mesh(const Plan &plan, const TileSurface &s, Task &task)
     Mesh mesh;
     mesh.positions = s.positions;
     mesh.triangles = s.triangles;
-    Appearance &look = mesh.appearance = read_look(plan, s, task);
+    Appearance &look = mesh.appearance = read_appearance(plan, s, task);
     const uint32_t plain = uint32_t(look.materials.size() - 1);
     bool bent = false, set[2] = {false, false};
     for (const Material &m : look.materials)

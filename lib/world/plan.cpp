@@ -1,6 +1,7 @@
-/* The step that looks at everything once: counts, tiles, and the files that run the others. */
+/* The step that reads all inputs once: counts triangles, plans tiles, and writes the build files.
+ * */
 #include "world/cell.hpp"
-#include "world/look.hpp"
+#include "world/materials.hpp"
 
 #include "base/output.h"
 
@@ -75,7 +76,7 @@ static void count(Plan &plan, Sides sides, Task &task)
         encode_triangle(plan.traits, c, block.data());
         gtx_hash_add(&hash, block.data(), bytes);
         ++plan.total;
-    }, [&](const Appearance &look) { add_look(hash, look); });
+    }, [&](const Appearance &look) { hash_appearance(hash, look); });
     if (!plan.total)
         throw Error(GTX_ERROR_EMPTY, "there is no triangle");
     plan.closed = sides == Sides::AUTO ? boundary.closed() : sides == Sides::FRONT;

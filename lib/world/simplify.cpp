@@ -1,4 +1,4 @@
-/* A tile's surface with fewer triangles, for its parent; its border stays. */
+/* Simplifies a tile's surface for its parent, keeping its border. */
 #include "world/surface.hpp"
 
 #include "mesh/material/srgb.hpp"
@@ -90,7 +90,7 @@ struct Light {
 /* Each triangle of the painted surface gives its colour to the corners of the triangle of `low`
  * that is nearest. Where neighbours meet, both see the same: the triangles around the place alone,
  * the ring's with them. */
-static Vector<Rgba8> seen_around(const TileSurface &s, const Sheet &low, Task &task)
+static Vector<Rgba8> seen_around(const TileSurface &s, const PlainMesh &low, Task &task)
 {
     Vector<Light> around(s.positions.size()), wide(s.positions.size());
     Vector<uint8_t> is_ring(s.positions.size(), 0);
@@ -123,13 +123,13 @@ static Vector<Rgba8> seen_around(const TileSurface &s, const Sheet &low, Task &t
 }
 
 /* The mean side of a square of two triangles. */
-static double spacing_of(const Sheet &sheet)
+static double spacing_of(const PlainMesh &mesh)
 {
     double area = 0;
-    for (const auto &[a, b, c] : sheet.triangles)
-        area += length(cross(sheet.positions[b] - sheet.positions[a],
-                             sheet.positions[c] - sheet.positions[a])) / 2;
-    return sheet.triangles.empty() ? 0 : std::sqrt(2 * area / double(sheet.triangles.size()));
+    for (const auto &[a, b, c] : mesh.triangles)
+        area += length(cross(mesh.positions[b] - mesh.positions[a],
+                             mesh.positions[c] - mesh.positions[a])) / 2;
+    return mesh.triangles.empty() ? 0 : std::sqrt(2 * area / double(mesh.triangles.size()));
 }
 
 LowSurface simplify_surface(const TileSurface &surface, NearSurface &near, size_t wanted,
@@ -138,11 +138,11 @@ LowSurface simplify_surface(const TileSurface &surface, NearSurface &near, size_
     Places places = places_of(surface);
     const Vector<uint32_t> indices = simplified(places, wanted);
     LowSurface out = {CellWriter(low_traits(surface.traits)), 0};
-    Sheet sheet = {surface.positions, {}};
+    PlainMesh mesh = {surface.positions, {}};
     for (size_t i = 0; i < indices.size(); i += 3)
-        sheet.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+        mesh.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
     if (!surface.seen.empty() && !indices.empty())
-        places.colors = seen_around(surface, sheet, task);
+        places.colors = seen_around(surface, mesh, task);
     for (size_t i = 0; i < indices.size(); i += 3) {
         Corners3 corners;
         for (size_t k = 0; k < 3; ++k) {
@@ -152,10 +152,10 @@ LowSurface simplify_surface(const TileSurface &surface, NearSurface &near, size_
         out.cell.add(corners);
     }
     if (indices.size() < places.indices.size())
-        out.deviation = near.distance_to(sheet, false);
+        out.deviation = near.distance_to(mesh, false);
     out.cell.header.deviation = surface.header.deviation + out.deviation;
     if (!surface.seen.empty()) /* finer than its vertices lie no colour is seen */
-        out.cell.header.deviation = std::max(out.cell.header.deviation, spacing_of(sheet));
+        out.cell.header.deviation = std::max(out.cell.header.deviation, spacing_of(mesh));
     return out;
 }
 

@@ -1,6 +1,6 @@
-/* The step that gives each triangle to a leaf: cell files, filled in bounded memory. */
+/* The step that sorts triangles into leaf tiles: writes cell files in bounded memory. */
 #include "world/cell.hpp"
-#include "world/look.hpp"
+#include "world/materials.hpp"
 
 #include "base/bytes.h"
 
@@ -163,14 +163,14 @@ StepReport split_world(const std::string &folder, Task &task)
         fs::remove_all(temporary, ignored);
         make_folder_of(stamp_of(temporary).native());
         Cells cells(plan, temporary);
-        LookWriter looks(temporary.native());
+        MaterialWriter materials(temporary.native());
         uint64_t count = 0;
         read_inputs(plan, task, [&](const Corners3 &corners) {
             require_planned(++count <= plan.total);
             cells.add(corners);
-        }, [&](const Appearance &look) { looks.add(look); });
+        }, [&](const Appearance &look) { materials.add(look); });
         cells.finish();
-        looks.finish();
+        materials.finish();
         write_whole(stamp_of(temporary).native(), key + "\n");
         fs::remove_all(target, ignored);
         fs::rename(temporary, target);

@@ -1,6 +1,6 @@
-/* The step that cooks one tile: asset, GLB, and the low surface for its parent. */
+/* The step that cooks one tile: asset, GLB, and the simplified surface for the parent. */
 #include "world/facts.hpp"
-#include "world/look.hpp"
+#include "world/materials.hpp"
 
 #include "cook/models.hpp"
 #include "cook/options.hpp"
@@ -93,11 +93,11 @@ std::string TileCook::encoded(const gtx_asset *asset) const
 }
 
 /* The finest LOD mesh, where the asset has any. */
-static Sheet finest_mesh(const gtx_asset *asset)
+static PlainMesh finest_mesh(const gtx_asset *asset)
 {
     gtx_info info;
     gtx_lod_mesh mesh;
-    Sheet out;
+    PlainMesh out;
     gtx_get_info(asset, &info);
     if (!info.lod_levels || gtx_get_lod_mesh(asset, 0, &mesh))
         return out;
@@ -129,7 +129,7 @@ void TileCook::cook_all(const std::string &ply, const TileSurface &surface, Near
     for (const float *corner : {info.bounds_min, info.bounds_max})
         facts.add({info.anchor[0] + double(corner[0]), info.anchor[1] + double(corner[1]),
                    info.anchor[2] + double(corner[2])});
-    const Sheet mesh = finest_mesh(asset.get());
+    const PlainMesh mesh = finest_mesh(asset.get());
     for (const Vec3d &p : mesh.positions)
         facts.add(p);
     facts.lod_triangles = mesh.triangles.size();

@@ -1,5 +1,5 @@
-/* Materials and images of a world beside its cell files. */
-#include "world/look.hpp"
+/* Materials and images of a world, in files beside its cell files. */
+#include "world/materials.hpp"
 
 #include "base/bytes.h"
 
@@ -78,7 +78,7 @@ std::string bytes_of(const Vector<uint32_t> &words)
 
 } // namespace
 
-void add_look(gtx_hash &hash, const Appearance &look)
+void hash_appearance(gtx_hash &hash, const Appearance &look)
 {
     for (const Material &m : look.materials) {
         const std::string bytes = bytes_of(words_of(m));
@@ -109,7 +109,7 @@ static void write_image(const std::string &path, const Image &image)
         throw Error(GTX_ERROR_WRITE, "cannot write " + path);
 }
 
-void LookWriter::add(const Appearance &look)
+void MaterialWriter::add(const Appearance &look)
 {
     for (const Image &image : look.images)
         write_image(image_path(folder_, images_++), image);
@@ -124,7 +124,7 @@ void LookWriter::add(const Appearance &look)
         first_ = images_;
 }
 
-void LookWriter::finish()
+void MaterialWriter::finish()
 {
     if (!words_.empty())
         write_whole(folder_ + "/look", MAGIC + bytes_of({images_}) + bytes_of(words_));
@@ -222,7 +222,7 @@ static uint32_t levels_to_skip(const Vector<ImageHeader> &heads, uint64_t most)
     throw Error(GTX_ERROR_LIMIT, "the tile looks at more images than a worker has memory for");
 }
 
-/* Of materials that the surface has the images, which are numbered anew; others look at none. */
+/* The images of materials that the surface uses, renumbered; other materials lose theirs. */
 static Vector<uint32_t> images_used(Appearance &look, const TileSurface &surface)
 {
     Vector<uint8_t> is_used(look.materials.size(), 0);
@@ -249,7 +249,7 @@ static Vector<uint32_t> images_used(Appearance &look, const TileSurface &surface
     return images;
 }
 
-Appearance read_look(const Plan &plan, const TileSurface &surface, Task &task)
+Appearance read_appearance(const Plan &plan, const TileSurface &surface, Task &task)
 {
     const std::string folder = std::filesystem::path(cell_path(plan, plan.tiles.back()))
                                    .parent_path().native(); /* the last tile is a leaf */

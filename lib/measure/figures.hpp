@@ -1,4 +1,4 @@
-/* One view of an asset beside its source, pixel by pixel. */
+/* The figures of one view of an asset and its source, pixel by pixel. */
 #pragma once
 
 #include "measure/cast.hpp"

@@ -1,5 +1,5 @@
 /* Holes, walls, leaks, depth and shading in one view of an asset. */
-#include "measure/look.hpp"
+#include "measure/figures.hpp"
 
 #include <algorithm>
 
