@@ -83,7 +83,8 @@ Asset assemble(const Maps &maps, const Vector<LodLevel> &lod, const AssetFacts &
     return Asset(asset, gtx_close);
 }
 
-Maps maps_of(const gtx_asset *asset)
+/* The maps of an asset; its charts are its patches. */
+static Maps maps_of(const gtx_asset *asset)
 {
     gtx_info info;
     gtx_get_info(asset, &info);

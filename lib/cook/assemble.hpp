@@ -1,4 +1,4 @@
-/* Maps and LOD mesh -> an asset, and an asset's maps back. */
+/* Maps and LOD meshes -> an asset. */
 #pragma once
 
 #include "bake/lod/lod.hpp"
@@ -20,8 +20,5 @@ struct AssetFacts {
 
 /* Throws Error: what gtx_create reports. */
 Asset assemble(const Maps &maps, const Vector<LodLevel> &lod, const AssetFacts &facts);
-
-/* The maps of an asset; its charts are its patches. */
-Maps maps_of(const gtx_asset *asset);
 
 } // namespace gtx

@@ -22,6 +22,15 @@ static void check(const gtx_compare_desc &desc)
     require_models(desc.more, desc.more_count);
 }
 
+/* Of a LevelReport or a DetailReport. */
+template <class Part> static void write_cover(Json &json, const Part &part)
+{
+    gtx_json_integer(&json, "hole_pixels", part.hole_pixels);
+    gtx_json_integer(&json, "wall_pixels", part.wall_pixels);
+    gtx_json_integer(&json, "leak_pixels", part.leak_pixels);
+    gtx_json_number(&json, "silhouette_iou", part.silhouette_iou);
+}
+
 static void write_pixels(Json &json, const CompareReport &report)
 {
     gtx_json_integer(&json, "views", report.views);
@@ -33,10 +42,7 @@ static void write_pixels(Json &json, const CompareReport &report)
     for (const LevelReport &level : report.levels) {
         gtx_json_begin_object(&json, nullptr);
         gtx_json_integer(&json, "level", level.level);
-        gtx_json_integer(&json, "hole_pixels", level.hole_pixels);
-        gtx_json_integer(&json, "wall_pixels", level.wall_pixels);
-        gtx_json_integer(&json, "leak_pixels", level.leak_pixels);
-        gtx_json_number(&json, "silhouette_iou", level.silhouette_iou);
+        write_cover(json, level);
         gtx_json_end_object(&json);
     }
     gtx_json_end_array(&json);
@@ -45,10 +51,7 @@ static void write_pixels(Json &json, const CompareReport &report)
         gtx_json_begin_object(&json, nullptr);
         gtx_json_integer(&json, "size", detail.size);
         gtx_json_integer(&json, "surface_pixels", detail.surface_pixels);
-        gtx_json_integer(&json, "hole_pixels", detail.hole_pixels);
-        gtx_json_integer(&json, "wall_pixels", detail.wall_pixels);
-        gtx_json_integer(&json, "leak_pixels", detail.leak_pixels);
-        gtx_json_number(&json, "silhouette_iou", detail.silhouette_iou);
+        write_cover(json, detail);
         gtx_json_end_object(&json);
     }
     gtx_json_end_array(&json);

@@ -28,17 +28,23 @@ HeightGrid lattice(const gtx_height_grid &from, const float *values)
     return grid;
 }
 
-void require_lattice(const gtx_height_grid &g)
+void require_placed(const gtx_height_grid &g)
 {
     require_zeroed(g.reserved);
     require_argument(g.values, "a grid has no values");
     require_argument(g.in_degrees <= 1 && g.unplaced <= 1 && g.categories <= 1,
-                     "in_degrees, unplaced, categories: 0 or 1");
+                     "in_degrees, unplaced and categories are 0 or 1");
+    for (double place : {g.origin[0], g.origin[1], g.rotation, g.spacing[0], g.spacing[1]})
+        require_argument(std::fabs(place) < 1e15,
+                         "a grid's origin, rotation or spacing is not below 10^15");
+    require_argument(g.spacing[0] > 0 && g.spacing[1] > 0, "a grid's spacing is not positive");
+}
+
+static void require_lattice(const gtx_height_grid &g)
+{
+    require_placed(g);
     require_argument(g.nx > 0 && g.ny > 0 && g.nx <= MAX_SIDE && g.ny <= MAX_SIDE,
                      "a side of a grid has 1 to 2^24 nodes");
-    for (double place : {g.origin[0], g.origin[1], g.rotation, g.spacing[0], g.spacing[1]})
-        require_argument(std::fabs(place) < 1e15, "a grid lies nowhere");
-    require_argument(g.spacing[0] > 0 && g.spacing[1] > 0, "a grid's spacing is not positive");
 }
 
 /* A copy of values by an allocator. */

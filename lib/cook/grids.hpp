@@ -7,10 +7,10 @@
 
 namespace gtx {
 
-/* The lattice of a grid, with some values of its nodes. */
+/* The nodes of a grid, with other values. */
 HeightGrid lattice(const gtx_height_grid &from, const float *values);
 
-/* Throws Error(ARGUMENT) where it could not be one. */
-void require_lattice(const gtx_height_grid &grid);
+/* Throws Error(ARGUMENT) unless its fields but the numbers of nodes are valid. */
+void require_placed(const gtx_height_grid &grid);
 
 } // namespace gtx

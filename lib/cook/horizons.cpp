@@ -50,10 +50,7 @@ static uint64_t check(const gtx_height_grid *grids, uint32_t count, const gtx_ho
     for (uint32_t n = 0; n < count; ++n) {
         const gtx_height_grid &g = grids[n];
         const std::string name = "grid " + std::to_string(n);
-        require_zeroed(g.reserved);
-        require_argument(g.values, "a grid has no values");
-        require_argument(g.in_degrees <= 1 && g.unplaced <= 1 && g.categories <= 1,
-                         "in_degrees, unplaced, categories: 0 or 1");
+        require_placed(g);
         if (g.in_degrees)
             throw Error(GTX_ERROR_INPUT, name + IN_DEGREES +
                                              ", take metres of one place (--local-metres), or say "
@@ -63,9 +60,6 @@ static uint64_t check(const gtx_height_grid *grids, uint32_t count, const gtx_ho
                                              std::to_string(g.ny) +
                                              " nodes, and a surface takes 2 x 2");
         nodes += uint64_t(g.nx) * g.ny;
-        for (double place : {g.origin[0], g.origin[1], g.rotation, g.spacing[0], g.spacing[1]})
-            require_argument(std::fabs(place) < 1e15, "a grid lies nowhere");
-        require_argument(g.spacing[0] > 0 && g.spacing[1] > 0, "a grid's spacing is not positive");
         if (!desc.one_surface && (g.nx != grids[0].nx || g.ny != grids[0].ny))
             throw Error(GTX_ERROR_INPUT,
                         name + " has " + std::to_string(g.nx) + " x " + std::to_string(g.ny) +
@@ -101,7 +95,7 @@ struct Surfaces {
 };
 
 /* Pairs are looked at among the first so many, which takes a moment. */
-constexpr size_t MOST_PAIRED = 64;
+constexpr size_t MAX_PAIRED = 64;
 
 static void find_mistakes(const Surfaces &surfaces, gtx_horizons_result &out)
 {
@@ -109,8 +103,8 @@ static void find_mistakes(const Surfaces &surfaces, gtx_horizons_result &out)
     out.shared = surfaces.shared.count;
     out.differing = surfaces.shared.differing;
     out.difference = surfaces.shared.difference;
-    for (size_t a = 0; a < std::min(grids.size(), MOST_PAIRED) && !out.alike[1]; ++a)
-        for (size_t b = a + 1; b < std::min(grids.size(), MOST_PAIRED) && !out.alike[1]; ++b)
+    for (size_t a = 0; a < std::min(grids.size(), MAX_PAIRED) && !out.alike[1]; ++a)
+        for (size_t b = a + 1; b < std::min(grids.size(), MAX_PAIRED) && !out.alike[1]; ++b)
             if (are_alike(grids[a], grids[b])) {
                 out.alike[0] = uint32_t(a);
                 out.alike[1] = uint32_t(b);
@@ -154,14 +148,14 @@ static Vector<std::array<uint8_t, 3>> colors_of(const Vector<float> &values,
  * for. */
 static std::set<float> categories_of(const Surfaces &surfaces)
 {
-    constexpr size_t MOST = 64;
+    constexpr size_t MAX_CATEGORIES = 64;
     std::set<float> out;
     for (size_t n = 0; n < surfaces.heights.size(); ++n)
         if (surfaces.heights[n].has_categories)
             for (float value : surfaces.coloured(n)) {
                 if (!std::isnan(value))
                     out.insert(value);
-                if (out.size() > MOST)
+                if (out.size() > MAX_CATEGORIES)
                     return {};
             }
     return out;

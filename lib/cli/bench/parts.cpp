@@ -164,7 +164,9 @@ static Vec3f eye_of(const gtx_view &view)
     return eye;
 }
 
-double nearest_distance(const PartLevels &levels, const gtx_view &view)
+/* From the eye to the nearest vertex of the source among the parts in view; infinity if there is
+ * none. */
+static double nearest_distance(const PartLevels &levels, const gtx_view &view)
 {
     const Frustum frustum = frustum_of(view);
     const Vec3f eye = eye_of(view);

@@ -54,11 +54,6 @@ static EncodedImage image_beside(const ModelFile &file, std::string name, const 
     return out;
 }
 
-bool is_gltf_image_packed(const GltfDocument &doc, const GltfImage &image)
-{
-    return doc.images[size_t(image.number)].uri.empty();
-}
-
 static EncodedImage image_inside(const GltfDocument &doc, std::string name,
                                  const GltfDocument::ImageSource &source)
 {

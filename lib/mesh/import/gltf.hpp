@@ -81,8 +81,6 @@ private:
     std::set<std::pair<int, unsigned>> warned_;            /* of a set that primitives lack: once */
 };
 
-/* Whether an image lies in a buffer of the document. */
-bool is_gltf_image_packed(const GltfDocument &doc, const GltfImage &image);
 /* The image's bytes, or the problem. Throws Error: LIMIT. */
 EncodedImage gltf_image(const GltfDocument &doc, const GltfImage &image, const ModelFile &file,
                         Task &task);
@@ -152,5 +150,7 @@ double gltf_full_value(int component_type, bool normalized);
 
 /* Bytes of a component; 0 of none that there is. */
 unsigned gltf_component_size(int component_type);
+/* The component at `p`, as a number: integers are not normalised. */
+double gltf_component(const uint8_t *p, int component_type);
 
 } // namespace gtx

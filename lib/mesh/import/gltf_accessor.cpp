@@ -31,7 +31,7 @@ std::string_view gltf_view(const GltfDocument &doc, int view, const std::string 
     return buffer.substr(v.byteOffset, v.byteLength);
 }
 
-static double component(const uint8_t *p, int type)
+double gltf_component(const uint8_t *p, int type)
 {
     switch (type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE: return int8_t(p[0]);
@@ -106,7 +106,7 @@ static Vector<uint32_t> sparse_places(const GltfDocument &doc, const tinygltf::A
     Vector<uint32_t> places;
     auto data = reinterpret_cast<const uint8_t *>(bytes.data()) + a.sparse.indices.byteOffset;
     for (size_t i = 0; i < size_t(a.sparse.count); ++i) {
-        double place = component(data + i * size, type);
+        double place = gltf_component(data + i * size, type);
         if (place >= double(a.count))
             fail(GTX_ERROR_INPUT, "%s: sparse index %.0f of %zu values", user.c_str(), place,
                  a.count);
@@ -128,7 +128,7 @@ static void substitute_sparse(const GltfDocument &doc, const tinygltf::Accessor 
     for (size_t i = 0; i < places.size(); ++i)
         for (size_t k = 0; k < size_t(out.components); ++k)
             out.values[places[i] * size_t(out.components) + k] =
-                component(data + i * item + k * size, a.componentType) / full;
+                gltf_component(data + i * item + k * size, a.componentType) / full;
 }
 
 GltfValues gltf_values(const GltfDocument &doc, int accessor)
@@ -152,7 +152,7 @@ GltfValues gltf_values(const GltfDocument &doc, int accessor)
         out.values.reserve(a.count * components);
         for (size_t i = 0; i < a.count; ++i)
             for (size_t k = 0; k < components; ++k)
-                out.values.push_back(component(data + i * stride + k * size, a.componentType) /
+                out.values.push_back(gltf_component(data + i * stride + k * size, a.componentType) /
                                      full);
     } else {
         if (a.count > MAX_VERTICES)

@@ -3,24 +3,10 @@
 
 #include "mesh/material/srgb.hpp"
 
-#include "base/bytes.h"
-
 #include <algorithm>
 #include <filesystem>
 
 namespace gtx {
-
-static double component(const uint8_t *p, int type)
-{
-    switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return int8_t(p[0]);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return p[0];
-    case TINYGLTF_COMPONENT_TYPE_SHORT: return int16_t(gtx_load_u16(p));
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return gtx_load_u16(p);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return gtx_load_u32(p);
-    default: return double(gtx_load_f32(p));
-    }
-}
 
 EncodedImage GlbStream::encoded(const Picture &picture)
 {
@@ -54,7 +40,7 @@ void GlbStream::values(const Values &from, uint64_t item, double *out)
     const unsigned size = gltf_component_size(from.type);
     file_.read(from.first + item * from.stride, bytes, size * from.components);
     for (unsigned k = 0; k < from.components; ++k)
-        out[k] = component(bytes + k * size, from.type) / from.full;
+        out[k] = gltf_component(bytes + k * size, from.type) / from.full;
 }
 
 Corner GlbStream::corner(const Part &part, uint64_t vertex)
