@@ -59,6 +59,35 @@ static inline void expect_text(const char *text)
         fail_msg("'%s' is not in: %s", text, output);
 }
 
+/* Runs a shell command in the test's folder; its output goes to `output`. */
+static inline int shell(const char *format, ...)
+{
+    char line[2048], command[3072];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(line, sizeof line, format, args);
+    va_end(args);
+    snprintf(command, sizeof command, "cd %s && { %s; } 2>&1", folder, line);
+    FILE *pipe = popen(command, "r");
+    assert_non_null(pipe);
+    output[fread(output, 1, sizeof output - 1, pipe)] = 0;
+    int status = pclose(pipe);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+/* The same; fails the test if the command fails. */
+static inline void run_shell(const char *command)
+{
+    expect(shell("%s", command), 0);
+}
+
+/* Skips the test where the machine lacks a program. */
+static inline void need(const char *program)
+{
+    if (shell("command -v %s", program))
+        skip();
+}
+
 static inline char *in_folder(const char *name)
 {
     static char path[4][192];

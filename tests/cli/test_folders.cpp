@@ -19,11 +19,7 @@ using schema::json;
 
 static int shell(const std::string &line)
 {
-    FILE *pipe = popen(("cd " + std::string(folder) + " && { " + line + "; } 2>&1").c_str(), "r");
-    assert_non_null(pipe);
-    output[fread(output, 1, sizeof output - 1, pipe)] = 0;
-    const int status = pclose(pipe);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return shell("%s", line.c_str());
 }
 
 static void write_text(const std::string &name, const std::string &text)

@@ -18,12 +18,6 @@ static std::string text_of(const char *name)
     return text.str();
 }
 
-static void shell(const std::string &command)
-{
-    if (system(("cd " + std::string(folder) + " && " + command).c_str()))
-        fail_msg("%s failed", command.c_str());
-}
-
 static json report()
 {
     const json report = json::parse(text_of("r.json"));
@@ -93,15 +87,15 @@ static void what_is_the_same_is_left_alone(void **)
     for (const Case &c : cases) {
         const std::string command = std::string(c.verb) + " " + c.arguments + " -o x.gtx";
         expect(gtx("%s", command.c_str()), 0);
-        shell("touch -d 2001-01-01 x.gtx && cp -p x.gtx y.gtx");
+        run_shell("touch -d 2001-01-01 x.gtx && cp -p x.gtx y.gtx");
         expect(gtx("%s --if-changed --report r.json", command.c_str()), 0);
         assert_true(report()["unchanged"].get<bool>());
-        shell("test ! x.gtx -nt y.gtx");
-        shell(c.alter);
+        run_shell("test ! x.gtx -nt y.gtx");
+        run_shell(c.alter);
         expect(gtx("%s --if-changed --report r.json", command.c_str()), 0);
         assert_false(report()["unchanged"].get<bool>());
-        shell("test x.gtx -nt y.gtx && ! cmp -s x.gtx y.gtx");
-        shell("printf x >>x.gtx"); /* longer than what would be written */
+        run_shell("test x.gtx -nt y.gtx && ! cmp -s x.gtx y.gtx");
+        run_shell("printf x >>x.gtx"); /* longer than what would be written */
         expect(gtx("%s --if-changed --report r.json", command.c_str()), 0);
         assert_false(report()["unchanged"].get<bool>());
     }

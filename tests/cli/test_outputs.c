@@ -35,8 +35,9 @@ static const struct {
 };
 enum { OUTPUTS = sizeof outputs / sizeof *outputs };
 
-/* Runs a shell command in the test's folder. Returns its exit code; `output` is what it said. */
-static int shell(const char *format, ...)
+/* As shell(), through a file: programs that the command leaves in the background would keep a pipe
+ * open. */
+static int sh(const char *format, ...)
 {
     char text[1024], command[2048];
     va_list args;
@@ -60,7 +61,7 @@ static bool makes(int i, const char *before, const char *path, int wanted)
 {
     char arguments[512];
     snprintf(arguments, sizeof arguments, outputs[i].command, path);
-    const int code = shell("%s \"$GTX\" %s", before, arguments);
+    const int code = sh("%s \"$GTX\" %s", before, arguments);
     if (outputs[i].draws && code == 5)
         return false;
     if (code != wanted)
@@ -70,7 +71,7 @@ static bool makes(int i, const char *before, const char *path, int wanted)
 
 static void same_file(const char *a, const char *b)
 {
-    if (shell("cmp %s %s", a, b))
+    if (sh("cmp %s %s", a, b))
         fail_msg("%s", output);
 }
 
@@ -78,13 +79,13 @@ static void links_stay_links(void **state)
 {
     (void)state;
     for (int i = 0; i < OUTPUTS; ++i) {
-        shell("rm -rf real link far; mkdir far; echo old >real; ln -s real link");
+        sh("rm -rf real link far; mkdir far; echo old >real; ln -s real link");
         if (!makes(i, "", "link", 0))
             continue;
-        if (shell("test -h link && ! grep -q '^old$' real && rm link && ln -s far/real link"))
+        if (sh("test -h link && ! grep -q '^old$' real && rm link && ln -s far/real link"))
             fail_msg("%s: the link was replaced", outputs[i].command);
         makes(i, "", "link", 0); /* it dangles */
-        if (shell("test -h link && test -s far/real"))
+        if (sh("test -h link && test -s far/real"))
             fail_msg("%s: the link was replaced", outputs[i].command);
     }
     assert_int_equal(left_over(), 0);
@@ -94,9 +95,9 @@ static void what_is_no_file_is_written_to(void **state)
 {
     (void)state;
     for (int i = 0; i < OUTPUTS; ++i) {
-        shell("rm -rf pipe got; mkfifo pipe");
+        sh("rm -rf pipe got; mkfifo pipe");
         if (makes(i, "timeout 20 cat pipe >got & ", "pipe", 0) &&
-            shell("test -p pipe || exit 1; until test -s got; do sleep 0.1; n=x$n; "
+            sh("test -p pipe || exit 1; until test -s got; do sleep 0.1; n=x$n; "
                   "test $n != xxxxxxxxxxxxxxxxxxxx || exit 1; done"))
             fail_msg("%s: the pipe was replaced", outputs[i].command);
     }
@@ -109,7 +110,7 @@ static void what_is_no_file_is_written_to(void **state)
         makes(i, "", "null", 0);
         if (makes(i, "", "full", 2))
             expect_text("cannot write full: No space left on device");
-        if (shell("test -c null && test -c full"))
+        if (sh("test -c null && test -c full"))
             fail_msg("%s: the device was replaced", outputs[i].command);
     }
     assert_int_equal(left_over(), 0);
@@ -120,14 +121,14 @@ static void a_full_disk_costs_nothing(void **state)
 {
     (void)state;
     for (int i = 0; i < OUTPUTS; ++i) {
-        shell("echo old >kept; rm -f fresh");
+        sh("echo old >kept; rm -f fresh");
         makes(i, "ulimit -f 0;", "kept", 2);
         makes(i, "ulimit -f 0;", "fresh", 2);
-        if (shell("test \"$(cat kept)\" = old && ! test -e fresh"))
+        if (sh("test \"$(cat kept)\" = old && ! test -e fresh"))
             fail_msg("%s: something was written", outputs[i].command);
         assert_int_equal(left_over(), 0);
     }
-    if (shell("ulimit -f 0; \"$GTX\" unpack a.gtx other") != 2 || exists("other"))
+    if (sh("ulimit -f 0; \"$GTX\" unpack a.gtx other") != 2 || exists("other"))
         fail_msg("unpack: %s", output);
     assert_int_equal(left_over(), 0);
 }
@@ -136,7 +137,7 @@ static void no_output_is_an_input(void **state)
 {
     static const char *const spellings[] = {"", "./maps/../", "hard", "soft"};
     (void)state;
-    shell("\"$GTX\" cook t.obj -q -o x.gtx; cp g.png x.png");
+    sh("\"$GTX\" cook t.obj -q -o x.gtx; cp g.png x.png");
     for (int i = 0; i < OUTPUTS; ++i)
         for (int k = 0; k < 4 && outputs[i].inputs[k]; ++k)
             for (int s = k ? (i + k) % 4 : 0; s < (k ? (i + k) % 4 + 1 : 4); ++s) {
@@ -144,7 +145,7 @@ static void no_output_is_an_input(void **state)
                 const bool is_link = s >= 2;
                 snprintf(input, sizeof input, "%s", outputs[i].inputs[k]);
                 snprintf(path, sizeof path, "%s%s", spellings[s], is_link ? "" : input);
-                shell("rm -f hard soft before; cp %s before; ln %s hard; ln -s %s soft", input,
+                sh("rm -f hard soft before; cp %s before; ln %s hard; ln -s %s soft", input,
                       input, input);
                 if (makes(i, "", path, 1))
                     expect_text("error[usage]");
@@ -161,7 +162,7 @@ static void names_may_be_long_and_folders_closed(void **state)
 {
     char name[256];
     (void)state;
-    shell("mkdir folder");
+    sh("mkdir folder");
     memset(name, 'n', 255);
     name[255] = 0;
     for (int i = 0; i < OUTPUTS; ++i) {
@@ -179,19 +180,19 @@ static void standard_output_goes_on(void **state)
     (void)state;
     if (access("/proc/self/fd/1", F_OK))
         skip();
-    assert_int_equal(shell("ln -s /proc/self/fd/1 stdout; echo head >log; "
+    assert_int_equal(sh("ln -s /proc/self/fd/1 stdout; echo head >log; "
                            "\"$GTX\" cook t.obj -q -o stdout >>log"), 0);
-    assert_int_equal(shell("test -h stdout && { echo head; cat a.gtx; } | cmp - log"), 0);
+    assert_int_equal(sh("test -h stdout && { echo head; cat a.gtx; } | cmp - log"), 0);
 }
 
 static void one_of_two_cooks_wins(void **state)
 {
     (void)state;
     for (int i = 0; i < 6; ++i) {
-        assert_int_equal(shell("\"$GTX\" cook t.obj -q -o two.gtx & "
+        assert_int_equal(sh("\"$GTX\" cook t.obj -q -o two.gtx & "
                                "\"$GTX\" cook sphere.obj -q -o two.gtx; code=$?; wait $! && "
                                "(exit $code)"), 0);
-        assert_int_equal(shell("cmp two.gtx a.gtx || cmp two.gtx sphere.gtx"), 0);
+        assert_int_equal(sh("cmp two.gtx a.gtx || cmp two.gtx sphere.gtx"), 0);
     }
     assert_int_equal(left_over(), 0);
 }
@@ -200,14 +201,14 @@ static void one_of_two_cooks_wins(void **state)
 static void unpacking_fills_a_folder(void **state)
 {
     (void)state;
-    assert_int_equal(shell("mkdir -m 700 empty; ln -s empty way; \"$GTX\" unpack a.gtx way"), 0);
-    assert_int_equal(shell("test -h way && test \"$(stat -c %%a empty)\" = 700"), 0);
-    assert_int_equal(shell("\"$GTX\" pack empty -o b.gtx && cmp a.gtx b.gtx"), 0);
-    assert_int_equal(shell("mkdir here; cd here; \"$GTX\" unpack ../a.gtx . && test -e asset.json"),
+    assert_int_equal(sh("mkdir -m 700 empty; ln -s empty way; \"$GTX\" unpack a.gtx way"), 0);
+    assert_int_equal(sh("test -h way && test \"$(stat -c %%a empty)\" = 700"), 0);
+    assert_int_equal(sh("\"$GTX\" pack empty -o b.gtx && cmp a.gtx b.gtx"), 0);
+    assert_int_equal(sh("mkdir here; cd here; \"$GTX\" unpack ../a.gtx . && test -e asset.json"),
                      0);
-    assert_int_equal(shell("\"$GTX\" pack here -o here/b.gtx"), 0); /* beside what is read */
-    assert_int_equal(shell("\"$GTX\" unpack a.gtx a.gtx"), 2);
-    assert_int_equal(shell("test -z \"$(find . -name '.gtx-*')\""), 0);
+    assert_int_equal(sh("\"$GTX\" pack here -o here/b.gtx"), 0); /* beside what is read */
+    assert_int_equal(sh("\"$GTX\" unpack a.gtx a.gtx"), 2);
+    assert_int_equal(sh("test -z \"$(find . -name '.gtx-*')\""), 0);
 }
 
 static int prepare(void **state)

@@ -29,28 +29,6 @@ static const unsigned char png[] = {
 
 static char root[512]; /* where the project lies */
 
-/* Runs a shell command in the test's folder; its output goes to `output`. */
-static int shell(const char *format, ...)
-{
-    char line[2048], command[3072];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(line, sizeof line, format, args);
-    va_end(args);
-    snprintf(command, sizeof command, "cd %s && { %s; } 2>&1", folder, line);
-    FILE *pipe = popen(command, "r");
-    assert_non_null(pipe);
-    output[fread(output, 1, sizeof output - 1, pipe)] = 0;
-    int status = pclose(pipe);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-static void need(const char *program)
-{
-    if (shell("command -v %s", program))
-        skip();
-}
-
 static void make_models(void)
 {
     expect(shell("rm -rf models out && mkdir -p models/sub out"), 0);

@@ -3,15 +3,6 @@
 
 #include "image/image.h"
 
-/* Runs a shell command in the test's folder. */
-static void shell(const char *command)
-{
-    char full[1024];
-    snprintf(full, sizeof full, "cd %s && %s", folder, command);
-    if (system(full))
-        fail_msg("%s failed", command);
-}
-
 /* Changes every texel of an image: `change` gets its channels. */
 static void paint(const char *name, void (*change)(uint8_t *texel))
 {
@@ -48,7 +39,7 @@ static void count(uint8_t *texel)
 static void count_colors(const char *asset, unsigned level)
 {
     char name[64];
-    shell("rm -rf again");
+    run_shell("rm -rf again");
     expect(gtx("unpack %s again", asset), 0);
     snprintf(name, sizeof name, "again/color-0-%u.png", level);
     reds = blues = 0;
@@ -58,7 +49,8 @@ static void count_colors(const char *asset, unsigned level)
 static void what_follows_is_rebuilt(void **state)
 {
     (void)state;
-    shell("rm -rf maps && { echo 'mtllib m.mtl'; echo 'usemtl red'; cat sphere.obj; } >red.obj && "
+    run_shell("rm -rf maps && "
+              "{ echo 'mtllib m.mtl'; echo 'usemtl red'; cat sphere.obj; } >red.obj && "
           "printf 'newmtl red\nKd 0.5 0 0\n' >m.mtl");
     expect(gtx("cook red.obj -q -o red.gtx"), 0);
     expect(gtx("unpack red.gtx maps"), 0);
@@ -91,7 +83,7 @@ static void what_follows_is_rebuilt(void **state)
     /* The old LOD mesh is no loss where a new one is made. */
     expect(gtx("pack maps -o lod.gtx --rebuild mips,normals,trim --lod-levels 2"), 0);
     assert_null(strstr(output, "lod-dropped"));
-    shell("rm -rf again && \"$GTX\" unpack bent.gtx again && "
+    run_shell("rm -rf again && \"$GTX\" unpack bent.gtx again && "
           "! cmp -s maps/normal-0-0.png again/normal-0-0.png && "
           "cmp -s maps/height-0.png again/height-0.png");
     expect(gtx("pack maps -o no.gtx --rebuild mips,all"), 1);

@@ -6,15 +6,6 @@
 #include <glob.h>
 #include <unistd.h>
 
-/* Runs a shell command in the test's folder. */
-static void shell(const char *command)
-{
-    char full[1024];
-    snprintf(full, sizeof full, "cd %s && %s", folder, command);
-    if (system(full))
-        fail_msg("%s failed", command);
-}
-
 /* Replaces the first `from` in a text file. */
 static void edit(const char *name, const char *from, const char *to)
 {
@@ -34,7 +25,7 @@ static void edit(const char *name, const char *from, const char *to)
 
 static void there_and_back_again(const char *name)
 {
-    shell("rm -rf maps back.gtx");
+    run_shell("rm -rf maps back.gtx");
     expect(gtx("unpack %s maps", name), 0);
     expect(gtx("pack maps -o back.gtx"), 0);
     same_files(name, "back.gtx");
@@ -159,7 +150,7 @@ static void unknown_sections_are_warned_of(void **state)
     char command[512];
     snprintf(command, sizeof command, "cp tests/golden/good/unknown.gtx %s/u.gtx", folder);
     assert_int_equal(system(command), 0);
-    shell("rm -rf maps");
+    run_shell("rm -rf maps");
     expect(gtx("unpack u.gtx maps"), 0);
     expect_text("warning[other-bytes]: packed again it will have other bytes");
     expect(gtx("pack maps -o back.gtx"), 0);
@@ -169,7 +160,7 @@ static void unknown_sections_are_warned_of(void **state)
 static void edits_arrive(void **state)
 {
     (void)state;
-    shell("rm -rf maps && cp sphere.gtx e.gtx");
+    run_shell("rm -rf maps && cp sphere.gtx e.gtx");
     expect(gtx("unpack e.gtx maps"), 0);
     edit("maps/asset.json", "\"unit\": 1.0", "\"unit\": 0.5");
     expect(gtx("pack maps -o e.gtx --zstd 0"), 0);
@@ -193,10 +184,10 @@ static void edits_arrive(void **state)
 static void what_is_there_stays(void **state)
 {
     (void)state;
-    shell("rm -rf maps && mkdir maps && echo mine >maps/note");
+    run_shell("rm -rf maps && mkdir maps && echo mine >maps/note");
     expect(gtx("unpack sphere.gtx maps"), 2);
     expect_text("maps: error[write]: is there and not an empty folder");
-    shell("test \"$(cat maps/note)\" = mine && rm maps/note");
+    run_shell("test \"$(cat maps/note)\" = mine && rm maps/note");
     expect(gtx("unpack sphere.gtx maps"), 0); /* an empty folder will do */
     expect(gtx("unpack sphere.gtx no/such/place"), 2);
     expect(gtx("unpack sphere.obj other"), 3);
@@ -239,24 +230,24 @@ static void what_is_no_asset_is_refused(void **state)
         {"\"triangles\": ", "\"triangles\": 1", "lod-0.bin: error[input]: has not the size", 3},
         {"\"vertices\": ", "\"vertices\": -", "vertices is not a whole number", 3},
     };
-    shell("rm -rf maps");
+    run_shell("rm -rf maps");
     expect(gtx("cook -q sphere.obj --lod-levels 3 -o s.gtx"), 0);
     expect(gtx("unpack s.gtx maps"), 0);
-    shell("cp maps/asset.json good.json && rm -f no.gtx");
+    run_shell("cp maps/asset.json good.json && rm -f no.gtx");
     for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
-        shell("cp good.json maps/asset.json");
+        run_shell("cp good.json maps/asset.json");
         edit("maps/asset.json", bad[i].from, bad[i].to);
         const int code = gtx("pack maps -o no.gtx");
         if (code != bad[i].code || !strstr(output, bad[i].says) || exists("no.gtx"))
             fail_msg("edit %zu: exit code %d, not %d '%s': %s", i, code, bad[i].code, bad[i].says,
                      output);
     }
-    shell("cp good.json maps/asset.json && cp maps/normal-0-1.png maps/normal-0-0.png");
+    run_shell("cp good.json maps/asset.json && cp maps/normal-0-1.png maps/normal-0-0.png");
     expect(gtx("pack maps -o no.gtx"), 3);
     expect_text("normal-0-0.png: error[input]: is ");
-    shell("echo nonsense >maps/normal-0-0.png");
+    run_shell("echo nonsense >maps/normal-0-0.png");
     expect(gtx("pack maps -o no.gtx"), 2);
-    shell("rm maps/normal-0-0.png");
+    run_shell("rm maps/normal-0-0.png");
     expect(gtx("pack maps -o no.gtx"), 2);
     assert_false(exists("no.gtx"));
 }

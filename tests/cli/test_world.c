@@ -3,28 +3,6 @@
 
 #include <unistd.h>
 
-/* Runs a shell command in the test's folder; its output goes to `output`. */
-static int shell(const char *format, ...)
-{
-    char line[2048], command[3072];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(line, sizeof line, format, args);
-    va_end(args);
-    snprintf(command, sizeof command, "cd %s && { %s; } 2>&1", folder, line);
-    FILE *pipe = popen(command, "r");
-    assert_non_null(pipe);
-    output[fread(output, 1, sizeof output - 1, pipe)] = 0;
-    int status = pclose(pipe);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
-static void need(const char *program)
-{
-    if (shell("command -v %s", program))
-        skip();
-}
-
 static void plan(const char *world, const char *engine)
 {
     expect(gtx("world plan big.obj --output %s --triangles 2k --glb --engine %s "

@@ -1,13 +1,12 @@
-/* A folder of its own for each test program, with a bumpy ball in it. */
+/* A folder of its own for each test program, with two bumpy balls in it. */
 #pragma once
 
 #include "bake/shapes.hpp"
+#include "common/folder.hpp"
 
 #include <geotex/cook.h>
 
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <set>
@@ -21,15 +20,6 @@
 
 extern "C" {
 #include <cmocka.h>
-}
-
-namespace fs = std::filesystem;
-
-inline fs::path folder;
-
-inline std::string in_folder(const char *name)
-{
-    return (folder / name).string();
 }
 
 inline void write_file(const std::string &path, const std::string &text)
@@ -77,20 +67,12 @@ inline size_t files_in_folder()
     return size_t(std::distance(fs::directory_iterator(folder), {}));
 }
 
-inline int make_folder(void **)
+inline int make_ball_folder(void **state)
 {
-    char name[] = "/tmp/geotex-cook-XXXXXX";
-    if (!mkdtemp(name))
+    if (make_folder(state))
         return -1;
-    folder = name;
     ball_file();
     small_ball_file();
-    return 0;
-}
-
-inline int remove_folder(void **)
-{
-    fs::remove_all(folder);
     return 0;
 }
 

@@ -290,5 +290,5 @@ int main()
         cmocka_unit_test(an_unchanged_output_is_left_alone),
         cmocka_unit_test(strict_cooks_refuse_warnings),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_ball_folder, remove_folder);
 }

@@ -258,5 +258,5 @@ int main()
         cmocka_unit_test(several_threads_stop),
         cmocka_unit_test(long_imports_are_cancelled),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_ball_folder, remove_folder);
 }

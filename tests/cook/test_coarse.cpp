@@ -60,5 +60,5 @@ int main()
 {
     const CMUnitTest tests[] = {cmocka_unit_test(round_ones), cmocka_unit_test(animals),
                                 cmocka_unit_test(thin_ones)};
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_ball_folder, remove_folder);
 }

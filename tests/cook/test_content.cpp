@@ -88,5 +88,5 @@ int main()
 {
     const CMUnitTest tests[] = {cmocka_unit_test(a_ball_has_its_content),
                                 cmocka_unit_test(models_have_their_content)};
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_ball_folder, remove_folder);
 }

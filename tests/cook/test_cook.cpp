@@ -327,5 +327,5 @@ int main()
         cmocka_unit_test(a_comparison_measures_the_cook),
         cmocka_unit_test(a_scan_keeps_its_figures),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_ball_folder, remove_folder);
 }

@@ -98,5 +98,5 @@ int main()
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_field_is_set),
                                        cmocka_unit_test(sources_may_be_refused)};
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_ball_folder, remove_folder);
 }

@@ -175,7 +175,7 @@ static const struct {
 
 static int prepare(void **state)
 {
-    if (make_folder(state))
+    if (make_ball_folder(state))
         return 1;
     model = in_folder("ball.obj");
     output = in_folder("out.gtx");

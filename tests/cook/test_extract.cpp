@@ -230,5 +230,5 @@ int main()
         cmocka_unit_test(any_thread_count_gives_the_same),
         cmocka_unit_test(the_callers_context_is_current_again),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_ball_folder, remove_folder);
 }

@@ -88,5 +88,5 @@ int main()
 {
     const CMUnitTest tests[] = {cmocka_unit_test(stars_stay_closed),
                                 cmocka_unit_test(closed_models_stay_closed)};
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_ball_folder, remove_folder);
 }

@@ -211,5 +211,5 @@ int main()
         cmocka_unit_test(a_comparison_runs_out_of_memory),
         cmocka_unit_test(hooks_change_no_byte),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_ball_folder, remove_folder);
 }

@@ -218,5 +218,5 @@ int main()
         cmocka_unit_test(memory_and_file_give_the_same_bytes),
         cmocka_unit_test(the_report_is_right),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_ball_folder, remove_folder);
 }

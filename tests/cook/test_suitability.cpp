@@ -232,5 +232,5 @@ int main()
         cmocka_unit_test(a_box_takes_finer_texels),
                                 cmocka_unit_test(other_partitions_leave_no_hole),
                                 cmocka_unit_test(nasty_models_are_cooked_or_refused)};
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_ball_folder, remove_folder);
 }

@@ -105,5 +105,5 @@ int main()
         cmocka_unit_test(a_model_without_textures_stays_as_it_is),
         cmocka_unit_test(any_thread_count_gives_the_same_texels),
     };
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return cmocka_run_group_tests(tests, make_ball_folder, remove_folder);
 }

@@ -2,12 +2,11 @@
 #pragma once
 
 #include "bake/shapes.hpp"
+#include "common/folder.hpp"
 #include "world/facts.hpp"
 #include "world/surface.hpp"
 
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -19,30 +18,6 @@
 
 extern "C" {
 #include <cmocka.h>
-}
-
-namespace fs = std::filesystem;
-
-inline fs::path folder;
-
-inline std::string in_folder(const char *name)
-{
-    return (folder / name).string();
-}
-
-inline int make_folder(void **)
-{
-    char name[] = "/tmp/geotex-world-XXXXXX";
-    if (!mkdtemp(name))
-        return -1;
-    folder = name;
-    return 0;
-}
-
-inline int remove_folder(void **)
-{
-    fs::remove_all(folder);
-    return 0;
 }
 
 /* Hills upon hills, 2 x 2 wide, +Y up. */
