@@ -241,11 +241,12 @@ common_tests := $(out)/tests/common.a
 $(common_tests): $(patsubst %,$(out)/%.o,$(basename $(wildcard tests/common/*.c)))
 	$(Q)rm -f $@ && $(AR) qcs $@ $^
 
+# Debugging data stays in the objects: in 200 programs it would be 7 GB.
 define test_rule
 $(out)/$(basename $(1)): $(out)/$(basename $(1)).o $(common_tests) \
     $(filter-out %/cli/gtx.o,$(call objects_of,$(call test_needs,$(call room,$(1)))))
 	$$(say) LINK $$@
-	$$(Q)$$(CXX) $$(flags) $$(LDFLAGS) -o $$@ $$^ \
+	$$(Q)$$(CXX) $$(flags) $$(if $$(filter release,$$(config)),-Xlinker -S) $$(LDFLAGS) -o $$@ $$^ \
 	  $$(call libs_of,$$(call test_needs,$(call room,$(1)))) \
 	  $$(call pkg,--libs,cmocka) $$(libs_$(notdir $(basename $(1))))
 endef

@@ -80,11 +80,26 @@ web: $(web_files:%=$(web_package)/%) ## the npm package geotex, as WebAssembly (
 	  "bytes of core and glue, gzipped"
 
 # A project as a page's author has it: installs the package, checks its types, is built by Vite.
+web_app := $(web)/app/.built
+$(web_app): $(web_files:%=$(web_package)/%) $(wildcard tests/web/app/*)
+	$(say) NPM $(@D)
+	$(Q)rm -rf $(@D) && cp -r tests/web/app $(@D) && cd $(@D) && \
+	  npm pack --silent ../geotex >/dev/null && \
+	  if npm install --silent --no-fund --no-audit --fetch-retries=1 ./geotex-$(VERSION).tgz; then \
+	    npm run --silent build && touch $(@F); \
+	  else echo "  npm's registry does not answer: the tests of web are skipped"; fi
+
+# Among all tests, where there is what it takes.
+build-tests: $(if $(and $(shell command -v emcc),$(shell command -v npm)),$(web_app))
+
+web-deps: ## install the Debian packages of the web's tests that are missing
+	$(again) deps packages="$(if $(shell command -v emcc),,emscripten) \
+	  $(if $(shell command -v chromium),,chromium) $(if $(shell command -v npm),,npm)"
+
 web-test: | $(filter web-cook,$(MAKECMDGOALS))
 web-test: web ## the package in a real Chromium (needs chromium, node and npm's registry)
-	$(Q)rm -rf $(web)/app && cp -r tests/web/app $(web)/app && cd $(web)/app && \
-	  npm pack --silent ../geotex >/dev/null && \
-	  npm install --silent --no-fund --no-audit ./geotex-$(VERSION).tgz && npm run --silent build
+	$(Q)rm -f $(web_app)
+	$(again) $(web_app)
 	$(again) test-web
 
 # Of what there is: the dragon and the bunny of GEOTEX_MODELS.
@@ -95,5 +110,5 @@ bench-web: web-test ## .gtx beside Draco and meshopt at 10 Mbit/s (needs GEOTEX_
 	  node tests/web/meshopt.mjs $(web)/app $$b.drc $$b.obj && \
 	  npx --yes gltfpack@1.3.0 -i $$b.obj -o $$b.glb -cc -vp 14 || exit 1; done
 	$(Q)node tests/web/bench.mjs $(web)/app $(web)/bench $(web_models)
-.PHONY: web web-test bench-web
+.PHONY: web web-deps web-test bench-web
 -include $(wildcard $(web)/lib/*/*.d $(web)/lib/*/*/*.d)
