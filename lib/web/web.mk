@@ -93,7 +93,7 @@ $(web_app): $(web_files:%=$(web_package)/%) $(wildcard tests/web/app/*)
 build-tests: $(if $(and $(shell command -v emcc),$(shell command -v npm)),$(web_app))
 
 web-deps: ## install the Debian packages of the web's tests that are missing
-	$(again) deps packages="$(if $(shell command -v emcc),,emscripten) \
+	$(again) deps packages="xz-utils $(if $(shell command -v emcc),,emscripten) \
 	  $(if $(shell command -v chromium),,chromium) $(if $(shell command -v npm),,npm)"
 
 web-test: | $(filter web-cook,$(MAKECMDGOALS))
@@ -102,13 +102,20 @@ web-test: web ## the package in a real Chromium (needs chromium, node and npm's 
 	$(again) $(web_app)
 	$(again) test-web
 
-# Of what there is: the dragon and the bunny of GEOTEX_MODELS.
+# Of what there is: the dragon and the bunny of GEOTEX_MODELS. Nexus is compared where NEXUS is a
+# checkout of github.com/cnr-isti-vclab/nexus, built by CMake in NEXUS/build.
 web_models := dragon_810k_loop_q14 bunny
+nxs := QT_QPA_PLATFORM=offscreen $(NEXUS)/build/src
 bench-web: web-test ## .gtx beside Draco and meshopt at 10 Mbit/s (needs GEOTEX_MODELS too)
 	$(Q)mkdir -p $(web)/bench && for m in $(web_models); do b=$(web)/bench/$$m; \
 	  cp -f $(GEOTEX_MODELS)/draco/$$m.drc $$b.drc && $(build)/gtx cook -q $$b.drc -o $$b.gtx && \
 	  node tests/web/meshopt.mjs $(web)/app $$b.drc $$b.obj && \
-	  npx --yes gltfpack@1.3.0 -i $$b.obj -o $$b.glb -cc -vp 14 || exit 1; done
+	  npx --yes gltfpack@1.3.0 -i $$b.obj -o $$b.glb -cc -vp 14 || exit 1; \
+	  $(if $(NEXUS),$(nxs)/nxsbuild/nxsbuild $$b.obj -o $$b.nxs >/dev/null && \
+	    $(nxs)/nxsedit/nxscompress $$b.nxs -o $$b.nxz >/dev/null || exit 1;) done
+	$(if $(NEXUS),$(Q)mkdir -p $(web)/bench/nexus && \
+	  cp $(NEXUS)/nexus3d/src/*.js $(web)/bench/nexus && \
+	  cp $(NEXUS)/nexus3d/dist/corto.em.js $(web)/bench/nexus/corto.worker.js)
 	$(Q)node tests/web/bench.mjs $(web)/app $(web)/bench $(web_models)
 .PHONY: web web-deps web-test bench-web
 -include $(wildcard $(web)/lib/*/*.d $(web)/lib/*/*/*.d)

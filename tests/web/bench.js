@@ -71,6 +71,9 @@ function compare(a, b) {
   return {apart: apart / (WIDTH * HEIGHT), iou: both / either};
 }
 
+/* Its worker and its modules are files of their own; where there are none it is not asked for. */
+const nexus = (name) => import('/folder/nexus/' + name);
+
 const later = (ms) => new Promise((next) => setTimeout(next, ms));
 
 const ways = {
@@ -101,6 +104,39 @@ const ways = {
     return {object: model, pictures, memory, bytes, close: () => model.dispose(),
             complete: () => model.complete};
   },
+  /* Drawn anew with each node, until its cut of them is within the error. */
+  async nexus(url, shown, maxError) {
+    const {Nexus3D, Cache} = await nexus('Nexus3D.js');
+    Object.assign(Cache, {targetError: maxError, currentError: maxError, minFps: 0});
+    let bytes = 0, nodes = 0, changed = performance.now();
+    const pictures = [];
+    const object = await new Promise((loaded) => {
+      const it = new Nexus3D(null, renderer, {material: new THREE.MeshStandardMaterial({roughness: 1}),
+                                              onLoad: loaded, onUpdate: () => ++nodes});
+      const {httpRequest} = it.mesh;
+      it.mesh.httpRequest = function (path, from, to, load, ...rest) {
+        const counted = function () {
+          bytes += this.response.byteLength;
+          load.call(this);
+        };
+        return httpRequest.call(this, path, from, to, counted, ...rest);
+      };
+      it.open(url);
+    });
+    for (let drawn = -1; performance.now() - changed < QUIET; await later(5)) {
+      if (nodes === drawn && nodes)
+        continue;
+      drawn = nodes;
+      if (!nodes) { /* a frame asks for nodes */
+        frame(object);
+        continue;
+      }
+      shown(object);
+      changed = performance.now();
+      pictures.push({at: changed, picture: picture(), bytes});
+    }
+    return {object, pictures, bytes, memory: Cache.cacheSize, close: () => object.dispose()};
+  },
   async mesh(object, shown, bytes) {
     shown(object);
     const {geometry: {attributes, index}} = object;
@@ -128,14 +164,14 @@ const ways = {
   },
 };
 
-/* Loaded once at full speed, so that modules, workers and shaders are there, then on the line. `mesh`
- * is the url of the Draco file, to compare outlines with. */
+/* Loaded twice on the line, so that modules, workers and shaders are there the second time: those of
+ * coarse models, too. Outlines are compared with Draco's. */
 let outline = null;
 window.measure = async (kind, url, bits, maxError) => {
   if (kind === 'draco')
     ball = outline = null;
-  (await ways[kind](url + '?warm', frame, maxError)).close();
   await link(bits);
+  (await ways[kind](url + '?warm&ranges', frame, maxError)).close();
   const start = performance.now();
   let first = 0;
   const all = await ways[kind](url + '?ranges', (shown) => {

@@ -1,5 +1,7 @@
-/* node bench.mjs APP FOLDER NAME...: of each NAME.gtx, NAME.drc and NAME.glb in FOLDER, one line in one
- * Chromium: bytes, seconds to the first and to the last picture at 10 Mbit/s, a frame, memory. */
+/* node bench.mjs APP FOLDER NAME...: of each NAME.gtx, .drc, .glb and, where it is there, .nxz in FOLDER,
+ * one line in one Chromium: bytes, seconds to the first and to the last picture at 10 Mbit/s, a frame,
+ * memory. */
+import {existsSync} from 'node:fs';
 import {stat} from 'node:fs/promises';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
@@ -8,18 +10,21 @@ import {open} from './serve.mjs';
 
 const [, , app, folder, ...names] = process.argv;
 const KINDS = {'Draco': ['draco', 'drc'], 'meshopt': ['meshopt', 'glb'],
+               'Nexus, 1 px': ['nexus', 'nxz', 1], 'Nexus, 2 px': ['nexus', 'nxz', 2],
                '.gtx, 1 px': ['gtx', 'gtx', 1], '.gtx, 2 px': ['gtx', 'gtx', 2]};
 const {page, address, close} = await open(join(app, 'node_modules'), {
   modules: join(app, 'node_modules'), tests: dirname(fileURLToPath(import.meta.url)), folder});
 page.on('console', (m) => console.error(m.text()));
 try {
-  await page.goto(`${address}/tests/bench.html`);
-  await page.waitForFunction('window.measure', {timeout: 60000});
   console.log('| model | file | KB | read, KB | first picture, s | full, s | longest task, ms | frame, ms |' +
               ' memory, MB | IoU |');
   console.log('|---|---|---|---|---|---|---|---|---|---|');
-  for (const name of names)
+  for (const name of names) {
+    await page.goto(`${address}/tests/bench.html`);
+    await page.waitForFunction('window.measure', {timeout: 60000});
     for (const [title, [kind, end, error]] of Object.entries(KINDS)) {
+      if (!existsSync(join(folder, `${name}.${end}`)))
+        continue;
       const {size} = await stat(join(folder, `${name}.${end}`));
       const m = await page.evaluate((...a) => measure(...a), kind, `/folder/${name}.${end}`, 10e6, error);
       const seconds = (ms) => ms === null ? '' : (ms / 1000).toFixed(2);
@@ -31,6 +36,7 @@ try {
       await writeFile(join(folder, `${name}-${kind}-${error ?? 0}.png`),
                       Buffer.from(picture.slice(picture.indexOf(',') + 1), 'base64'));
     }
+  }
 } finally {
   await close();
 }

@@ -22,7 +22,7 @@ export async function open(modules, roots) {
       /* "?ranges" is a server that grants them; "?first=1000" one that gives up. */
       const [, from, to] = request.headers.range?.match(/^bytes=(\d+)-(\d*)$/) ?? [];
       const first = +from, last = Math.min(+to || Infinity, content.length - 1);
-      if (request.url.endsWith('?ranges') && first <= last) {
+      if (/[?&]ranges$/.test(request.url) && first <= last) {
         response.writeHead(206, {...type, etag: `"${content.length}"`, 'content-range':
           `bytes ${first}-${last}/${content.length}`});
         response.end(content.subarray(first, last + 1));
