@@ -54,6 +54,7 @@ typedef struct gtx_refining {
     const gtx_rtin *rtin;
     const gtx_rtin_node *nodes;
     const gtx_rtin_block *blocks;
+    const gtx_slab *slabs;    /* of level 0 */
     uint32_t patch, row;
     bool two_sided, mapped;   /* mapped: nothing is lit at vertices */
     int turn;                 /* of a triangle's corners: 0 or 1 */

@@ -167,20 +167,40 @@ static void swap_if(bool wanted, const point **a, const point **b)
     }
 }
 
+static float least_of(float a, float b, float c)
+{
+    const float ab = a < b ? a : b;
+    return ab < c ? ab : c;
+}
+
+/* Whether there is no dot between first and end in x and y, or all are in a tile that is filled
+ * before t, as they mostly are. */
+static bool adds_nothing(const gtx_occlusion *o, const int32_t x[2], const int32_t y[2], float t)
+{
+    if (x[0] >= x[1] || y[0] >= y[1])
+        return true;
+    const tile *in = (const tile *)o->tiles.data + y[0] / SIDE * o->columns + x[0] / SIDE;
+    return x[0] / SIDE == (x[1] - 1) / SIDE && y[0] / SIDE == (y[1] - 1) / SIDE && t >= in->far;
+}
+
 /* Fills the dots whose centres are in a triangle. */
 static void fill_triangle(const gtx_occlusion *o, const point *a, const point *b, const point *c)
 {
     tile *tiles = o->tiles.data;
     const int32_t width = o->columns * SIDE, height = o->rows * SIDE;
-    const float ab = a->t > b->t ? a->t : b->t, t = ab > c->t ? ab : c->t;
+    const float t = -least_of(-a->t, -b->t, -c->t);
+    const int32_t across[2] = {first_from(least_of(a->x, b->x, c->x), width),
+                               first_from(-least_of(-a->x, -b->x, -c->x), width)};
+    const int32_t down[2] = {first_from(least_of(a->y, b->y, c->y), height),
+                             first_from(-least_of(-a->y, -b->y, -c->y), height)};
+    if (adds_nothing(o, across, down, t))
+        return;
     swap_if(b->y < a->y, &a, &b);
     swap_if(c->y < b->y, &b, &c);
     swap_if(b->y < a->y, &a, &b);
-    const int32_t top = first_from(a->y, height), end = first_from(c->y, height);
-    if (top >= end)
-        return;
+    const int32_t end = down[1];
     const edge whole = edge_of(a, c), upper = edge_of(a, b), lower = edge_of(b, c);
-    for (int32_t y = top; y < end;) {
+    for (int32_t y = down[0]; y < end;) {
         const int32_t row = y / SIDE, from = row * SIDE;
         spans s = {.top = y - from, .bottom = (end - from < SIDE ? end - from : SIDE)};
         int32_t first = width, last = 0;
