@@ -34,8 +34,8 @@ private:
     float planes_[6][4];
 };
 
-/* The coarsest level with an error of at most `max_error` pixels at the nearest vertex of the source
- * in view. */
+/* The coarsest level with an error of at most `max_error` pixels at the nearest vertex of the
+ * source in view. */
 size_t coarsest_level(const PartLevels &levels, const gtx_view &view, double max_error);
 
 /* Draws what is in view in one call, or two where some of it is two-sided. */
