@@ -171,7 +171,9 @@ window.measure = async (kind, url, bits, maxError) => {
   if (kind === 'draco')
     ball = outline = null;
   await link(bits);
-  (await ways[kind](url + '?warm&ranges', frame, maxError)).close();
+  const warm = await ways[kind](url + '?warm&ranges', frame, maxError);
+  await warm.complete?.(); /* what a stopped download has sent would count for the next */
+  warm.close();
   const start = performance.now();
   let first = 0;
   const all = await ways[kind](url + '?ranges', (shown) => {

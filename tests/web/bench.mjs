@@ -14,6 +14,7 @@ const KINDS = {'Draco': ['draco', 'drc'], 'meshopt': ['meshopt', 'glb'],
                '.gtx, 1 px': ['gtx', 'gtx', 1], '.gtx, 2 px': ['gtx', 'gtx', 2]};
 const {page, address, close} = await open(join(app, 'node_modules'), {
   modules: join(app, 'node_modules'), tests: dirname(fileURLToPath(import.meta.url)), folder});
+await page.setCacheEnabled(false);
 page.on('console', (m) => console.error(m.text()));
 try {
   console.log('| model | file | KB | read, KB | first picture, s | full, s | longest task, ms | frame, ms |' +
