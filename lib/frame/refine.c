@@ -77,7 +77,6 @@ static bool is_halved(const gtx_refining *r, uint32_t level, uint32_t x, uint32_
     return (error && error * r->scale > w) || (n->bits & GTX_RTIN_ROUGH && w < r->near);
 }
 
-
 /* The vertex of a node, which is there already where its slot tells of it. */
 static uint32_t vertex_of(const gtx_refining *r, uint32_t x, uint32_t y)
 {

@@ -90,7 +90,11 @@ $(web_app): $(web_files:%=$(web_package)/%) $(wildcard tests/web/app/*)
 	  else echo "  npm's registry does not answer: the tests of web are skipped"; fi
 
 # Among all tests, where there is what it takes.
-build-tests: $(if $(and $(shell command -v emcc),$(shell command -v npm)),$(web_app))
+build-tests: $(if $(and $(shell command -v emcc),$(shell command -v npm)),web-app)
+web-app:
+	$(Q)if $(MAKE) --no-print-directory $(web)/zstd/.fetched; then \
+	  $(MAKE) --no-print-directory $(web_app); \
+	else echo "  sources of zstd cannot be had: the tests of web are skipped"; fi
 
 web-deps: ## install the Debian packages of the web's tests that are missing
 	$(again) deps packages="xz-utils $(if $(shell command -v emcc),,emscripten) \
@@ -117,5 +121,5 @@ bench-web: web-test ## .gtx beside Draco and meshopt at 10 Mbit/s (needs GEOTEX_
 	  cp $(NEXUS)/nexus3d/src/*.js $(web)/bench/nexus && \
 	  cp $(NEXUS)/nexus3d/dist/corto.em.js $(web)/bench/nexus/corto.worker.js)
 	$(Q)node tests/web/bench.mjs $(web)/app $(web)/bench $(web_models)
-.PHONY: web web-deps web-test bench-web
+.PHONY: web web-app web-deps web-test bench-web
 -include $(wildcard $(web)/lib/*/*.d $(web)/lib/*/*/*.d)
