@@ -29,8 +29,8 @@ private:
  * surfaces lie over each other that it is more, nobody can tell what belongs together. */
 inline double looks_each(double items, double wanted, double enough, double each)
 {
-    constexpr double MOST = 1 << 23, LEAST = 4;
-    return wanted <= enough + each * items ? INFINITY : LEAST + MOST / items;
+    constexpr double MAX_LOOKS = 1 << 23, MIN_LOOKS = 4;
+    return wanted <= enough + each * items ? INFINITY : MIN_LOOKS + MAX_LOOKS / items;
 }
 
 } // namespace gtx::baking

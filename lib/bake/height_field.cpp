@@ -152,8 +152,8 @@ Vector<const HeightField *> HeightFields::around(const HeightField &field, doubl
 {
     /* A limit on time and memory: of one, and of all together. An engine of 82 nodes has 697 of
      * one and 0.2 million of all. */
-    constexpr size_t MOST = 2048, OF_ALL = size_t(1) << 24, LEAST = 64;
-    const size_t most = std::max(LEAST, std::min(MOST, OF_ALL / fields_.size()));
+    constexpr size_t MAX_AROUND = 2048, OF_ALL = size_t(1) << 24, MIN_AROUND = 64;
+    const size_t most = std::max(MIN_AROUND, std::min(MAX_AROUND, OF_ALL / fields_.size()));
     Vector<uint32_t> ranks; /* many are sorted for each: numbers, not what they stand for */
     any_near(field.box, reach, [&](const HeightField &other) {
         cancel_point();

@@ -264,12 +264,12 @@ static void store_errors(const making *m, size_t count)
     float most = 0;
     for (size_t i = 0; i < count; ++i)
         most = greater(most, m->error[i] < FLT_MAX ? m->error[i] : FLT_MAX);
-    m->rtin->unit = most / GTX_RTIN_MOST;
+    m->rtin->unit = most / GTX_RTIN_MAX_ERROR;
     for (size_t i = 0; i < count; ++i) {
         const float share = m->error[i] < most ? m->error[i] / most : 1;
-        const float units = most > 0 ? share * GTX_RTIN_MOST : 0;
+        const float units = most > 0 ? share * GTX_RTIN_MAX_ERROR : 0;
         const uint16_t below = (uint16_t)units;
-        m->nodes[i].bits = (uint16_t)(below + (below < units && below < GTX_RTIN_MOST));
+        m->nodes[i].bits = (uint16_t)(below + (below < units && below < GTX_RTIN_MAX_ERROR));
     }
 }
 

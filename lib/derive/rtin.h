@@ -44,7 +44,7 @@ typedef struct gtx_rtin_node {
 /* SOLID: the cell from the node on exists; WITHIN: the trim lets the node show. */
 enum {
     GTX_RTIN_ROUGH = 0x8000, GTX_RTIN_SOLID = 0x4000, GTX_RTIN_WITHIN = 0x2000,
-    GTX_RTIN_MOST = 0x1fff
+    GTX_RTIN_MAX_ERROR = 0x1fff
 };
 
 /* What shows of a block: its 4x4 parts of 2x2 cells, in rows. */

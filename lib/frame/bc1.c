@@ -88,7 +88,7 @@ static void write(const bc1 *b, uint8_t out[8])
 void gtx_bc1_encode(const gtx_texels *texels, const uint8_t weights[GTX_BLOCK_TEXELS],
                     uint8_t out[8])
 {
-    enum { MOST = 4 };
+    enum { MAX_ROUNDS = 4 };
     static const float share[STEPS] = {0, 1 / 3.0f, 2 / 3.0f, 1};
     gtx_texels opaque = *texels;
     gtx_ends ends;
@@ -97,7 +97,7 @@ void gtx_bc1_encode(const gtx_texels *texels, const uint8_t weights[GTX_BLOCK_TE
         opaque.at[i][3] = 255;
     gtx_first_ends(&opaque, weights, ends);
     try_ends(&opaque, weights, ends, &best);
-    for (int i = 0; i < MOST && best.error > 0; ++i)
+    for (int i = 0; i < MAX_ROUNDS && best.error > 0; ++i)
         if (!gtx_solve_ends(&opaque, weights, best.step, share, ends) ||
             !try_ends(&opaque, weights, ends, &best))
             break;

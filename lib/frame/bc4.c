@@ -79,7 +79,7 @@ static void write(const bc4 *b, uint8_t out[8])
 void gtx_bc4_encode(const uint8_t texels[GTX_BLOCK_TEXELS],
                     const uint8_t weights[GTX_BLOCK_TEXELS], uint8_t out[8])
 {
-    enum { MOST = 4, NEAR = 2 };
+    enum { MAX_ROUNDS = 4, NEAR = 2 };
     int high = 0, low = 255;
     for (int i = 0; i < GTX_BLOCK_TEXELS; ++i) {
         high = weights[i] && texels[i] > high ? texels[i] : high;
@@ -89,7 +89,7 @@ void gtx_bc4_encode(const uint8_t texels[GTX_BLOCK_TEXELS],
         high < 255 ? ++high : --low;
     bc4 best = {.high = high, .low = low};
     fit(texels, weights, &best);
-    for (int i = 0; i < MOST && best.error > 0 && refine(texels, weights, &best); ++i)
+    for (int i = 0; i < MAX_ROUNDS && best.error > 0 && refine(texels, weights, &best); ++i)
         ;
     high = best.high;
     low = best.low;

@@ -109,7 +109,7 @@ static void write(const bc7 *b, uint8_t out[16])
 void gtx_bc7_encode(const gtx_texels *texels, const uint8_t weights[GTX_BLOCK_TEXELS],
                     uint8_t out[16])
 {
-    enum { MOST = 3 };
+    enum { MAX_ROUNDS = 3 };
     gtx_ends ends;
     float share[STEPS];
     bc7 best = {.error = INFINITY};
@@ -117,7 +117,7 @@ void gtx_bc7_encode(const gtx_texels *texels, const uint8_t weights[GTX_BLOCK_TE
         share[s] = shares[s] / 64.0f;
     gtx_first_ends(texels, weights, ends);
     try_ends(texels, weights, ends, &best);
-    for (int i = 0; i < MOST && best.error > 0; ++i)
+    for (int i = 0; i < MAX_ROUNDS && best.error > 0; ++i)
         if (!gtx_solve_ends(texels, weights, best.step, share, ends) ||
             !try_ends(texels, weights, ends, &best))
             break;

@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 
+#include <math.h>
 #include <string.h>
 
 gtx_result gtx_planner_init(gtx_planner *planner, const gtx_allocator *allocator,
@@ -12,8 +13,8 @@ gtx_result gtx_planner_init(gtx_planner *planner, const gtx_allocator *allocator
     const float all[] = {costs->lod_triangle, costs->lod_pixel, costs->cast_patch,
                          costs->cast_pixel, costs->grid_triangle};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
-        if (!(all[i] >= 0))
-            return gtx_fail(error, GTX_ERROR_ARGUMENT, "a cost is not a number, or below 0");
+        if (!(all[i] >= 0 && all[i] < INFINITY))
+            return gtx_fail(error, GTX_ERROR_ARGUMENT, "a cost is not finite, or below 0");
     planner->allocator = *allocator;
     planner->costs = *costs;
     gtx_rtin_triangles(planner->grids.triangles);
@@ -25,7 +26,7 @@ gtx_result gtx_planner_create(const gtx_planner_desc *desc, gtx_planner **out, g
 {
     const gtx_planner_desc defaults = {0}, *d = desc ? desc : &defaults;
     if (!out)
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "a planner needs a place");
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "the pointer for the planner is NULL");
     *out = NULL;
     gtx_result result = gtx_check_reserved(d->reserved, 1, error);
     if (result)
@@ -141,7 +142,7 @@ gtx_result gtx_frame_begin(gtx_planner *planner, const gtx_view *view,
     gtx_draw_call call = {
         .planner = planner, .view = view, .instances = instances, .count = count};
     gtx_result result = out ? check(planner, view, instances, count, error)
-                            : gtx_fail(error, GTX_ERROR_ARGUMENT, "a frame needs a place");
+                            : gtx_fail(error, GTX_ERROR_ARGUMENT, "the pointer for the frame is NULL");
     if (!result)
         result = gtx_sight_of_view(view, &call.sight, error);
     if (!result)

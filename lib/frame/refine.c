@@ -72,7 +72,7 @@ static bool is_halved(const gtx_refining *r, uint32_t level, uint32_t x, uint32_
     const gtx_rtin_node *n = &r->nodes[y * r->row + x];
     if (!r->by_error)
         return true;
-    const uint32_t error = n->bits & GTX_RTIN_MOST;
+    const uint32_t error = n->bits & GTX_RTIN_MAX_ERROR;
     const double w = r->w[0] * x + r->w[1] * y + r->w[2] * n->code + r->w[3] - r->reach[level];
     return (error && error * r->scale > w) || (n->bits & GTX_RTIN_ROUGH && w < r->near);
 }

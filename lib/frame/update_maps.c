@@ -12,11 +12,11 @@ static bool has_blocks(const gtx_model *model, uint32_t unit)
 
 size_t gtx_update_scratch(const gtx_model *model, const gtx_patch *patch)
 {
-    enum { MOST = 16 };       /* bytes of a block */
+    enum { MAX_BLOCK = 16 };       /* bytes of a block */
     bool any = false;
     for (uint32_t unit = 0; unit < UNIT_COUNT; ++unit)
         any = any || has_blocks(model, unit);
-    return any ? ((size_t)patch->rect[2] / SIDE + 2) * (patch->rect[3] / SIDE + 2u) * MOST : 0;
+    return any ? ((size_t)patch->rect[2] / SIDE + 2) * (patch->rect[3] / SIDE + 2u) * MAX_BLOCK : 0;
 }
 
 /* A map of an asset, as a unit has it. */

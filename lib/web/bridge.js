@@ -7,7 +7,7 @@ import {AmbientLight, Box3, BufferAttribute, BufferGeometry, ColorManagement, Di
         Vector4} from 'three';
 import {Geotex} from './geotex.js';
 
-const MOST_LIGHTS = 4, FIRST_UNIT = 8; /* units below are geotex's */
+const MAX_LIGHTS = 4, FIRST_UNIT = 8; /* units below are geotex's */
 const VIEW_FLAGS_REVERSED = 3;         /* reversed, and depth from 0 to 1 */
 /* By three's numbers; a custom one stays linear. */
 const TONES = ['', 'Linear', 'Reinhard', 'Cineon', 'ACESFilmic', '', 'AgX', 'Neutral'];
@@ -106,7 +106,7 @@ export class Bridge {
     scene.traverseVisible((light) => {
       if (!light.isLight || !light.layers.test(camera.layers))
         return;
-      if (light instanceof DirectionalLight && lights.length < MOST_LIGHTS)
+      if (light instanceof DirectionalLight && lights.length < MAX_LIGHTS)
         lights.push({light, map: receives && this.shadowOf(light)});
       else if (light instanceof HemisphereLight) {
         add(sky, light.color, light.intensity);

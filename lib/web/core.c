@@ -208,7 +208,7 @@ WEB_API double gtxw_model_gpu_bytes(const gtx_model *model)
 
 /* ---- drawing ---- */
 
-enum { MOST_AT_ONCE = 256 };
+enum { MAX_AT_ONCE = 256 };
 
 /* `view`: both matrices, light and ambient, max_error. `whole`: method, flags, width, height, pass,
  * level. An instance has 20 numbers: its matrix and its tint. Returns a gtx_result. */
@@ -216,15 +216,15 @@ WEB_API int gtxw_draw(gtx_renderer *renderer, const float *view, const uint32_t 
                       const gtx_shading *shading, gtx_model *const *models, const float *instances,
                       uint32_t count)
 {
-    static gtx_instance placed[MOST_AT_ONCE];
+    static gtx_instance placed[MAX_AT_ONCE];
     gtx_view v = {.method = (gtx_method)whole[0], .flags = whole[1], .viewport_width = whole[2],
                   .viewport_height = whole[3], .pass = (gtx_pass)whole[4], .level = whole[5],
                   .shading = shading, .max_error = view[36], .ambient = view[35]};
     memcpy(v.view, view, sizeof v.view);
     memcpy(v.projection, view + 16, sizeof v.projection);
     memcpy(v.light_direction, view + 32, sizeof v.light_direction);
-    for (uint32_t first = 0; first < count; first += MOST_AT_ONCE) {
-        uint32_t n = count - first < MOST_AT_ONCE ? count - first : MOST_AT_ONCE;
+    for (uint32_t first = 0; first < count; first += MAX_AT_ONCE) {
+        uint32_t n = count - first < MAX_AT_ONCE ? count - first : MAX_AT_ONCE;
         for (uint32_t i = 0; i < n; ++i) {
             const float *numbers = instances + 20 * (size_t)(first + i);
             placed[i] = (gtx_instance){.model = models[first + i], .id = first + i};

@@ -93,7 +93,7 @@ class Source {
 }
 
 /* Told by a file's own head, which anybody may have written: room is made for no more at once. */
-const MOST_EXPECTED = 1 << 26;
+const MAX_EXPECTED = 1 << 26;
 /* Bytes up to something that take no longer than asking for it: 20 ms at 25 Mbit/s. */
 const NEAR = 1 << 16;
 
@@ -122,7 +122,7 @@ export async function* modelsOf(geotex, ask, {onProgress = () => {}, wanted = ()
     for (;;) {
       const chunk = await source.read();
       if (chunk) {
-        gathered.add(chunk, Math.min(size, MOST_EXPECTED));
+        gathered.add(chunk, Math.min(size, MAX_EXPECTED));
       } else if (held.length && gathered.length === held[0].first) {
         await open();
         continue;
@@ -168,7 +168,7 @@ export async function* modelsOf(geotex, ask, {onProgress = () => {}, wanted = ()
           while (!i && gathered.length < end && !source.ended) {
             const chunk = await source.read();
             if (chunk)
-              gathered.add(chunk, Math.min(size, MOST_EXPECTED));
+              gathered.add(chunk, Math.min(size, MAX_EXPECTED));
           }
           if (!i)
             source.stop(); /* it would take its share of the line */

@@ -8,12 +8,12 @@
 enum {
     LOD_LEVELS = 4,
     LOD_FINEST = 32,
-    LOD_MOST = 6 * (LOD_FINEST + 1) * (LOD_FINEST + 1)
+    LOD_MAX_VERTICES = 6 * (LOD_FINEST + 1) * (LOD_FINEST + 1)
 };
 
 typedef struct lod_level {
     uint32_t first[7], indices[36 * LOD_FINEST * LOD_FINEST];
-    uint16_t positions[3 * LOD_MOST];
+    uint16_t positions[3 * LOD_MAX_VERTICES];
     gtx_lod_mesh lod;
 } lod_level;
 

@@ -218,8 +218,12 @@ static void costs_are_compared(void **state)
         gtx_model_destroy(s->renderer, shown.model);
         gtx_renderer_destroy(s->renderer);
     }
-    const gtx_renderer_desc bad = {.load = gtx_offscreen_load, .costs = {.cast_pixel = -1}};
-    assert_int_equal(gtx_renderer_create(&bad, &s->renderer, &error), GTX_ERROR_ARGUMENT);
+    const float bad[] = {-1, NAN, INFINITY};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
+        const gtx_renderer_desc desc = {.load = gtx_offscreen_load,
+                                        .costs.cast_pixel = bad[i]};
+        assert_int_equal(gtx_renderer_create(&desc, &s->renderer, &error), GTX_ERROR_ARGUMENT);
+    }
     s->renderer = usual;
     gtx_close(asset);
 }

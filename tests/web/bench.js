@@ -6,7 +6,7 @@ import {MeshoptDecoder} from 'three/addons/libs/meshopt_decoder.module.js';
 import {GeotexLoader} from 'geotex/three';
 
 const WIDTH = 640, HEIGHT = 480, FRAMES = 15;
-const MOST_APART = 1e-4, CODES = 2;   /* of pixels; as much as no picture of "full" is off */
+const MAX_APART = 1e-4, CODES = 2;   /* of pixels; as much as no picture of "full" is off */
 const QUIET = 1500;                   /* ms without a finer model: the view has all that it needs */
 const renderer = new THREE.WebGLRenderer({preserveDrawingBuffer: true});
 renderer.setSize(WIDTH, HEIGHT, false);
@@ -191,7 +191,7 @@ window.measure = async (kind, url, bits, maxError) => {
   outline ??= final;
   /* The first picture from which on none differs from that of all bytes. */
   let full = pictures.length;
-  while (full && compare(pictures[full - 1].picture, final).apart <= MOST_APART)
+  while (full && compare(pictures[full - 1].picture, final).apart <= MAX_APART)
     --full;
   const {iou} = compare(final, outline);
   close();

@@ -22,7 +22,7 @@ constexpr double MIN_AREA = 0.05;
 constexpr double RING = 1.25, MIN_COSINE = 0.5;
 /* Patches that are added at most, for each that there is: a limit. At a sixth, what is hidden uses
  * it up before what is seen: 583 hole pixels on a tile of thin walls, and one at this. */
-constexpr size_t MOST = 1;
+constexpr size_t MAX_ADDED = 1;
 
 namespace {
 
@@ -124,7 +124,7 @@ Vector<Chart> gather_charts(const Job &job, const Partition &partition,
         charts.push_back(std::move(chart));
     }
     std::sort(size.begin(), size.end());
-    size.resize(std::min(size.size(), 1 + partition.charts.size() * MOST));
+    size.resize(std::min(size.size(), 1 + partition.charts.size() * MAX_ADDED));
     std::sort(size.begin(), size.end(), [](auto &a, auto &b) { return a.second < b.second; });
     Vector<Chart> out;
     for (const auto &[area, i] : size)
