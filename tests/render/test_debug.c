@@ -56,7 +56,7 @@ static void objects_carry_labels(void **state)
         skip();
     subject shown = subject_open(s, with_lod(fixture_sphere(2, 48, 8), 2, 2, 0));
     const int tiles = s->renderer->planner.tiles.max_texels > 0;
-    const int grids = s->renderer->planner.on_gpu ? 30 : 34; /* of blocks there are fewer */
+    const int grids = s->renderer->planner.on_gpu ? 30 : 38; /* of blocks there are fewer */
     assert_int_equal(labelled(GL_PROGRAM), tiles ? grids + 3 : grids);
     assert_int_equal(labelled(GL_TEXTURE), tiles ? 6 : 5);
     assert_int_equal(labelled(GL_BUFFER), tiles ? 9 : 7);
