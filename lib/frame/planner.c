@@ -26,7 +26,7 @@ gtx_result gtx_planner_create(const gtx_planner_desc *desc, gtx_planner **out, g
 {
     const gtx_planner_desc defaults = {0}, *d = desc ? desc : &defaults;
     if (!out)
-        return gtx_fail(error, GTX_ERROR_ARGUMENT, "the pointer for the planner is NULL");
+        return gtx_fail(error, GTX_ERROR_ARGUMENT, "no pointer for the planner");
     *out = NULL;
     gtx_result result = gtx_check_reserved(d->reserved, 1, error);
     if (result)
@@ -142,7 +142,7 @@ gtx_result gtx_frame_begin(gtx_planner *planner, const gtx_view *view,
     gtx_draw_call call = {
         .planner = planner, .view = view, .instances = instances, .count = count};
     gtx_result result = out ? check(planner, view, instances, count, error)
-                            : gtx_fail(error, GTX_ERROR_ARGUMENT, "the pointer for the frame is NULL");
+                            : gtx_fail(error, GTX_ERROR_ARGUMENT, "no pointer for the frame");
     if (!result)
         result = gtx_sight_of_view(view, &call.sight, error);
     if (!result)
