@@ -5,9 +5,9 @@
  * even, that the light at their corners is enough.
  *
  * Needs geotex_height_field.glsl and geotex_view.glsl before it, and with GTX_LIT and GTX_MATERIALS
- * geotex_surface.glsl and geotex_material.glsl. What hardly changes over a
- * triangle is found here and stays the same all over it: triangles are small, and a vertex serves
- * several. Each number more that a triangle carries costs a few per cent on llvmpipe. */
+ * geotex_surface.glsl and geotex_material.glsl. What hardly changes over a triangle is found here
+ * and stays the same all over it: triangles are small, and a vertex serves several. Each number
+ * more that a triangle carries costs a few per cent on llvmpipe. */
 #if !defined(GTX_LIT) || !defined(GTX_MATERIALS)
 GTX_SAMPLER(2, highp sampler2DArray) gtx_normals;
 #if defined(GTX_LIT) && !defined(GTX_PLAIN)
@@ -79,7 +79,7 @@ GTX_VARYING(4) flat out vec4 gtx_between;   /* what gtx_half_way says there */
 GTX_VARYING(2) flat out vec3 gtx_normal_x;  /* the patch's normals -> world */
 GTX_VARYING(3) flat out vec3 gtx_normal_y;
 GTX_VARYING(4) flat out vec3 gtx_normal_z;
-GTX_VARYING(6) GTX_STEADY out vec3 gtx_ray; /* of sight; world space, but with GTX_BLOCKS unit */
+GTX_VARYING(6) GTX_STEADY out vec3 gtx_ray; /* of sight; world space, unit unless GTX_BLOCKS */
 GTX_VARYING(7) out vec3 gtx_object;         /* the point in either space; what follows costs only */
 GTX_VARYING(8) out vec3 gtx_world;          /* where a main reads it */
 GTX_VARYING(9) flat out int gtx_patch_index;

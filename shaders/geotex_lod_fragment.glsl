@@ -100,13 +100,6 @@ vec4 gtx_albedo(gtx_surface s)
 #ifdef GTX_MATERIALS
 gtx_material gtx_material_of(gtx_surface s, vec3 albedo)
 {
-    gtx_material m = gtx_material(albedo, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
-    if (gtx_maps.w > 0.0) {
-        vec4 map = textureLod(gtx_materials, gtx_place(), gtx_page.y);
-        m = gtx_material(albedo, vec3(0.0), map.x, map.y, map.z, map.w);
-    }
-    if (gtx_maps.z > 0.0)
-        m.emission = textureLod(gtx_emissions, gtx_place(), gtx_page.y).rgb * gtx_maps.z;
-    return m;
+    return gtx_material_at(gtx_place(), gtx_page.y, albedo);
 }
 #endif

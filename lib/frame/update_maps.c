@@ -12,7 +12,7 @@ static bool has_blocks(const gtx_model *model, uint32_t unit)
 
 size_t gtx_update_scratch(const gtx_model *model, const gtx_patch *patch)
 {
-    enum { MAX_BLOCK = 16 };       /* bytes of a block */
+    enum { MAX_BLOCK = 16 };  /* bytes of a block */
     bool any = false;
     for (uint32_t unit = 0; unit < UNIT_COUNT; ++unit)
         any = any || has_blocks(model, unit);
