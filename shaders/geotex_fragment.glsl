@@ -174,6 +174,13 @@ vec4 gtx_albedo(gtx_surface s)
 /* With the albedo as its colour. A model without a material map is rough and no metal. */
 gtx_material gtx_material_of(gtx_surface s, vec3 albedo)
 {
-    return gtx_material_of(s.field, s.hit.grid.xy, s.level, albedo);
+    vec4 map = vec4(1.0, 1.0, 0.0, 1.0);
+    vec3 emission = vec3(0.0);
+    if (gtx_maps.w > 0.0)
+        map = gtx_lookup(gtx_materials, s.field, s.hit.grid.xy, s.level, gtx_maps.x);
+    if (gtx_maps.z > 0.0)
+        emission = gtx_maps.z *
+                   gtx_lookup(gtx_emissions, s.field, s.hit.grid.xy, s.level, gtx_maps.x).rgb;
+    return gtx_material(albedo, emission, map.x, map.y, map.z, map.w);
 }
 #endif

@@ -11,8 +11,9 @@ struct gtx_material {
     float lit;                /* share of lighting: 0 shows the colour as it is */
 };
 
-/* The same at a place in the page; with GTX_CONSTANT the model has one material all over, and no
- * emission. */
+/* At a place of the pages, for what interpolates one: LOD meshes and displaced grids. gtx_maps.z
+ * scales the emission, 0 when there is none; .w is 1 when the model has materials. With
+ * GTX_CONSTANT it has one material all over, and no emission. */
 gtx_material gtx_material_at(vec3 place, float level, vec3 color)
 {
 #ifdef GTX_CONSTANT
@@ -28,22 +29,6 @@ gtx_material gtx_material_at(vec3 place, float level, vec3 color)
         m.emission = textureLod(gtx_emissions, place, level).rgb * gtx_maps.z;
     return m;
 #endif
-}
-
-/* gtx_maps.z scales the emission, 0 when there is none; .w is 1 when the model has materials. */
-gtx_material gtx_material_of(gtx_height_field field, vec2 at, float level, vec3 color)
-{
-    gtx_material m = gtx_material(color, vec3(0.0), 1.0, 1.0, 0.0, 1.0);
-    if (gtx_maps.w > 0.0) {
-        vec4 map = gtx_lookup(gtx_materials, field, at, level, gtx_maps.x);
-        m.occlusion = map.x;
-        m.roughness = map.y;
-        m.metallic = map.z;
-        m.lit = map.w;
-    }
-    if (gtx_maps.z > 0.0)
-        m.emission = gtx_lookup(gtx_emissions, field, at, level, gtx_maps.x).rgb * gtx_maps.z;
-    return m;
 }
 
 /* The roughness of glTF to the fourth, with what normals stray added to it: variances of slopes add
