@@ -119,6 +119,64 @@ static uint32_t set_attributes(gtx_buffer vertices, VkVertexInputBindingDescript
     return count;
 }
 
+/* What writes depth has to be shaded once a sample, where the target wants that. */
+static bool is_by_samples(const gtx_vk_key *key, const gtx_pipeline *of)
+{
+    return key->by_samples && of->writes_depth;
+}
+
+/* The vertex shader, for one view or two, and the fragment shader, a pixel or a sample each. */
+static gtx_result set_stages(gtx_vk *vk, const gtx_vk_key *key, const gtx_vk_shading *shading,
+                             const gtx_pipeline *of, VkPipelineShaderStageCreateInfo stages[2],
+                             gtx_error *error)
+{
+    for (uint32_t i = 0; i < 2; ++i)
+        stages[i] = (VkPipelineShaderStageCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+            .stage = i ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT,
+            .pName = "main"};
+    gtx_result result = module_of(vk, key->pipeline,
+                                  key->target.view_mask ? GTX_VK_VERTEX_TWO : GTX_VK_VERTEX,
+                                  &stages[0].module, error);
+    if (result)
+        return result;
+    if (shading) {
+        stages[1].module = shading->modules[of->vertices];
+        return GTX_OK;
+    }
+    return module_of(vk, key->pipeline,
+                     is_by_samples(key, of) ? GTX_VK_FRAGMENT_SAMPLE : GTX_VK_FRAGMENT,
+                     &stages[1].module, error);
+}
+
+/* Culling, samples and depth, as the key and its target have them. */
+typedef struct fixed_state {
+    VkPipelineRasterizationStateCreateInfo raster;
+    VkPipelineMultisampleStateCreateInfo multisample;
+    VkPipelineDepthStencilStateCreateInfo depth;
+} fixed_state;
+
+static fixed_state fixed_state_of(const gtx_vk_key *key, const gtx_pipeline *of)
+{
+    static const VkCullModeFlags culls[] = {[GTX_CULL_NONE] = VK_CULL_MODE_NONE,
+                                            [GTX_CULL_BACK] = VK_CULL_MODE_BACK_BIT,
+                                            [GTX_CULL_FRONT] = VK_CULL_MODE_FRONT_BIT};
+    return (fixed_state){
+        .raster = {.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+                   .cullMode = culls[key->cull],
+                   .frontFace = key->clockwise ? VK_FRONT_FACE_CLOCKWISE
+                                               : VK_FRONT_FACE_COUNTER_CLOCKWISE,
+                   .lineWidth = 1},
+        .multisample = {.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+                        .rasterizationSamples = key->target.samples,
+                        .sampleShadingEnable = is_by_samples(key, of),
+                        .minSampleShading = 1},
+        .depth = {.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+                  .depthTestEnable = VK_TRUE, .depthWriteEnable = VK_TRUE,
+                  .depthCompareOp = key->nearer_is_greater ? VK_COMPARE_OP_GREATER
+                                                           : VK_COMPARE_OP_LESS}};
+}
+
 static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, const gtx_vk_shading *shading,
                        VkPipeline *out, gtx_error *error)
 {
@@ -129,60 +187,29 @@ static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, const gtx_vk_shading *
     VkPipelineColorBlendAttachmentState outputs[OUTPUTS];
     gtx_pipeline of;
     gtx_pipeline_get(key->pipeline, &of);
-    const bool by_samples = key->by_samples && of.writes_depth;
+    const gtx_result result = set_stages(vk, key, shading, &of, stages, error);
+    if (result)
+        return result;
     const uint32_t attribute_count = set_attributes(of.vertices, bindings, attributes);
-    for (uint32_t i = 0; i < 2; ++i) {
-        stages[i] = (VkPipelineShaderStageCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-            .stage = i ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT,
-            .pName = "main"};
-        if (i && shading) {
-            stages[i].module = shading->modules[of.vertices];
-            continue;
-        }
-        static const uint32_t which[2][2] = {{GTX_VK_VERTEX, GTX_VK_VERTEX_TWO},
-                                             {GTX_VK_FRAGMENT, GTX_VK_FRAGMENT_SAMPLE}};
-        gtx_result result =
-            module_of(vk, key->pipeline, which[i][i ? by_samples : target->view_mask != 0],
-                      &stages[i].module, error);
-        if (result)
-            return result;
-    }
     for (uint32_t i = 0; i < OUTPUTS; ++i)
         outputs[i] = (VkPipelineColorBlendAttachmentState){
             .colorWriteMask = of.pass == GTX_PASS_DEPTH ? 0 : 15};
+    const fixed_state fixed = fixed_state_of(key, &of);
     const VkPipelineVertexInputStateCreateInfo input = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO,
         .vertexBindingDescriptionCount = 2, .pVertexBindingDescriptions = bindings,
         .vertexAttributeDescriptionCount = attribute_count,
         .pVertexAttributeDescriptions = attributes};
-    const VkPipelineInputAssemblyStateCreateInfo assembly = {
+    static const VkPipelineInputAssemblyStateCreateInfo assembly = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
         .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
-    const VkPipelineViewportStateCreateInfo viewport = {
+    static const VkPipelineViewportStateCreateInfo viewport = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
         .viewportCount = 1, .scissorCount = 1};
     static const VkDynamicState dynamics[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-    const VkPipelineDynamicStateCreateInfo dynamic = {
+    static const VkPipelineDynamicStateCreateInfo dynamic = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
         .dynamicStateCount = 2, .pDynamicStates = dynamics};
-    static const VkCullModeFlags culls[] = {[GTX_CULL_NONE] = VK_CULL_MODE_NONE,
-                                            [GTX_CULL_BACK] = VK_CULL_MODE_BACK_BIT,
-                                            [GTX_CULL_FRONT] = VK_CULL_MODE_FRONT_BIT};
-    const VkPipelineRasterizationStateCreateInfo raster = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
-        .cullMode = culls[key->cull],
-        .frontFace = key->clockwise ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE,
-        .lineWidth = 1};
-    const VkPipelineMultisampleStateCreateInfo multisample = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-        .rasterizationSamples = target->samples,
-        .sampleShadingEnable = by_samples,
-        .minSampleShading = 1};
-    const VkPipelineDepthStencilStateCreateInfo depth = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
-        .depthTestEnable = VK_TRUE, .depthWriteEnable = VK_TRUE,
-        .depthCompareOp = key->nearer_is_greater ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS};
     const VkPipelineColorBlendStateCreateInfo blend = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
         .attachmentCount = target->color_count, .pAttachments = outputs};
@@ -197,8 +224,8 @@ static gtx_result make(gtx_vk *vk, const gtx_vk_key *key, const gtx_vk_shading *
         .pNext = target->render_pass ? NULL : &rendering,
         .stageCount = 2, .pStages = stages,
         .pVertexInputState = &input, .pInputAssemblyState = &assembly,
-        .pViewportState = &viewport, .pRasterizationState = &raster,
-        .pMultisampleState = &multisample, .pDepthStencilState = &depth,
+        .pViewportState = &viewport, .pRasterizationState = &fixed.raster,
+        .pMultisampleState = &fixed.multisample, .pDepthStencilState = &fixed.depth,
         .pColorBlendState = &blend, .pDynamicState = &dynamic,
         .layout = shading ? shading->layout : vk->layout,
         .renderPass = target->render_pass, .subpass = target->subpass};
