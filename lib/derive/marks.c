@@ -156,11 +156,12 @@ static void find_highlights(search *s, gtx_rtin *rtin)
     rtin->glossy = most > most_gloss;
 }
 
-void gtx_rtin_mark(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest, gtx_rtin *rtin,
-                   gtx_rtin_node *nodes, float *scratch)
+void gtx_rtin_mark(const gtx_rtin_source *source, gtx_rtin *rtin, gtx_rtin_node *nodes,
+                   float *scratch)
 {
+    const gtx_asset *asset = source->asset;
     const gtx_info *info = &asset->info;
-    const gtx_patch *p = &asset->patches[patch];
+    const gtx_patch *p = &asset->patches[source->patch];
     const size_t row = info->page_width;
     const size_t first = ((size_t)p->page * info->page_height + p->rect[1]) * row + p->rect[0];
     search s = {{{asset->normal[0] + 2 * first, 2 * row, 2}}, 1, p->rect[2], p->rect[3], rtin,
@@ -173,7 +174,7 @@ void gtx_rtin_mark(const gtx_asset *asset, uint32_t patch, const gtx_grid *fines
         s.maps[s.map_count++] = (texel_map){asset->material[0] + 4 * first, 4 * row, 4};
         find_highlights(&s, rtin);
     }
-    find_outline(finest, asset->trim + first, row, gtx_rtin_row(rtin), nodes);
+    find_outline(source->finest, asset->trim + first, row, gtx_rtin_row(rtin), nodes);
     if (!rtin->glossy)
         find_rough(&s, gtx_rtin_nodes(p), nodes);
 }

@@ -273,19 +273,21 @@ static void store_errors(const making *m, size_t count)
     }
 }
 
-static void load_codes(const making *m, const gtx_grid *finest, const uint16_t *filled)
+static void load_codes(const making *m, const gtx_rtin_source *source)
 {
+    const gtx_grid *finest = source->finest;
     for (uint32_t y = 0; y <= m->rtin->rows * CELLS; ++y)
         for (uint32_t x = 0; x < m->row; ++x) {
             const uint32_t i = x < finest->nodes_x ? x : finest->nodes_x - 1;
             const uint32_t j = y < finest->nodes_y ? y : finest->nodes_y - 1;
-            m->nodes[y * m->row + x].code = filled[(size_t)j * finest->nodes_x + i];
+            m->nodes[y * m->row + x].code = source->filled[(size_t)j * finest->nodes_x + i];
         }
 }
 
-static void measure(const making *m, const gtx_asset *asset, const gtx_patch *p,
-                    const gtx_grid *finest, const gtx_slab *slabs, gtx_rtin_block *blocks)
+static void measure(const making *m, const gtx_rtin_source *source, gtx_rtin_block *blocks)
 {
+    const gtx_asset *asset = source->asset;
+    const gtx_patch *p = &asset->patches[source->patch];
     const size_t row_texels = asset->info.page_width;
     const uint8_t *trim =
         asset->trim + ((size_t)p->page * asset->info.page_height + p->rect[1]) * row_texels +
@@ -295,12 +297,13 @@ static void measure(const making *m, const gtx_asset *asset, const gtx_patch *p,
     for (uint32_t i = 0; i < m->rtin->columns * m->rtin->rows; ++i) {
         const uint32_t x = i % m->rtin->columns * CELLS, y = i / m->rtin->columns * CELLS;
         block b;
-        load(m, finest, x, y, &b);
+        load(m, source->finest, x, y, &b);
         blocks[i] = look_at_parts(&b, trim + y * row_texels + x, row_texels);
         if (!blocks[i].some)
             continue;
         weigh(&b, blocks[i].whole);
-        measure_block(m, &b, m->error + (size_t)y * m->row + x, flattest(p, step, &slabs[i]));
+        measure_block(m, &b, m->error + (size_t)y * m->row + x,
+                      flattest(p, step, &source->slabs[i]));
     }
 }
 
@@ -311,26 +314,25 @@ size_t gtx_rtin_nodes(const gtx_patch *patch)
     return (columns * CELLS + 1) * (rows * CELLS + 1);
 }
 
-gtx_result gtx_grid_rtin(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
-                         const uint16_t *filled, const gtx_slab *slabs,
-                         const gtx_allocator *allocator, gtx_rtin *out, gtx_rtin_node *nodes,
-                         gtx_rtin_block *blocks, gtx_error *error)
+gtx_result gtx_rtin_build(const gtx_rtin_source *source, const gtx_allocator *allocator,
+                          gtx_rtin *out, gtx_rtin_node *nodes, gtx_rtin_block *blocks,
+                          gtx_error *error)
 {
-    const size_t count = gtx_rtin_nodes(&asset->patches[patch]);
+    const size_t count = gtx_rtin_nodes(&source->asset->patches[source->patch]);
     making m = {.rtin = out, .nodes = nodes,
                 .error = gtx_alloc_array(allocator, count, sizeof *m.error)};
     if (!m.error)
         return gtx_fail(error, GTX_ERROR_MEMORY, "no memory for a patch's network of triangles");
-    *out = (gtx_rtin){.columns = (finest->nodes_x - 2) / CELLS + 1,
-                      .rows = (finest->nodes_y - 2) / CELLS + 1};
+    *out = (gtx_rtin){.columns = (source->finest->nodes_x - 2) / CELLS + 1,
+                      .rows = (source->finest->nodes_y - 2) / CELLS + 1};
     m.row = gtx_rtin_row(out);
     halve(m.triangles);
-    load_codes(&m, finest, filled);
-    measure(&m, asset, &asset->patches[patch], finest, slabs, blocks);
+    load_codes(&m, source);
+    measure(&m, source, blocks);
     for (uint32_t level = GTX_RTIN_LEVELS - 1; level-- > 0;)
         gather(&m, level);
     store_errors(&m, count);
-    gtx_rtin_mark(asset, patch, finest, out, nodes, m.error);
+    gtx_rtin_mark(source, out, nodes, m.error);
     gtx_free_array(allocator, m.error, count, sizeof *m.error);
     return GTX_OK;
 }

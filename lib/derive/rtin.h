@@ -71,17 +71,25 @@ static inline uint32_t gtx_rtin_row(const gtx_rtin *r)
 /* Nodes that the network of a patch has, in rows, and its blocks: by the rectangle alone. */
 size_t gtx_rtin_nodes(const gtx_patch *patch);
 
-/* The network of a patch's level 0, trimmed, of which gtx_grid_fill made `filled` before, and
- * gtx_grid_slabs the slabs. Errors at outlines, where neighbours meet, count GTX_BORDER_COUNTS
- * times. `nodes` has room for gtx_rtin_nodes, `blocks` for gtx_slab_count. Errors: MEMORY. */
-gtx_result gtx_grid_rtin(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest,
-                         const uint16_t *filled, const gtx_slab *slabs,
-                         const gtx_allocator *allocator, gtx_rtin *out, gtx_rtin_node *nodes,
-                         gtx_rtin_block *blocks, gtx_error *error);
+/* What a network is made of: a patch's level 0, trimmed, `filled` by gtx_grid_fill before, and its
+ * slabs, of gtx_grid_slabs. */
+typedef struct gtx_rtin_source {
+    const gtx_asset *asset;
+    uint32_t patch;
+    const gtx_grid *finest;
+    const uint16_t *filled;
+    const gtx_slab *slabs;
+} gtx_rtin_source;
+
+/* Errors at outlines, where neighbours meet, count GTX_BORDER_COUNTS times. `nodes` has room for
+ * gtx_rtin_nodes, `blocks` for gtx_slab_count. Errors: MEMORY. */
+gtx_result gtx_rtin_build(const gtx_rtin_source *source, const gtx_allocator *allocator,
+                          gtx_rtin *out, gtx_rtin_node *nodes, gtx_rtin_block *blocks,
+                          gtx_error *error);
 
 /* marks.c: what nodes tell besides their errors, and whether the patch is glossy. `scratch`
  * has room for a number a node. */
-void gtx_rtin_mark(const gtx_asset *asset, uint32_t patch, const gtx_grid *finest, gtx_rtin *rtin,
-                   gtx_rtin_node *nodes, float *scratch);
+void gtx_rtin_mark(const gtx_rtin_source *source, gtx_rtin *rtin, gtx_rtin_node *nodes,
+                   float *scratch);
 
 #endif

@@ -183,9 +183,9 @@ gtx_result gtx_patch_derive(const gtx_asset *asset, uint32_t patch, const gtx_al
         result = gtx_grid_fill(&finest, asset->info.height_bits, allocator, &filled, error);
     if (!result) /* last, for errors are measured against what is not trimmed */
         result = derive_level(asset, patch, &finest, allocator, out, error);
+    const gtx_rtin_source source = {asset, patch, &finest, filled, out->slabs[0]};
     if (!result)
-        result = gtx_grid_rtin(asset, patch, &finest, filled, out->slabs[0], allocator, &out->rtin,
-                               out->nodes, out->blocks, error);
+        result = gtx_rtin_build(&source, allocator, &out->rtin, out->nodes, out->blocks, error);
     gtx_free_array(allocator, filled, (size_t)finest.nodes_x * finest.nodes_y, sizeof *filled);
     gtx_grid_free(&finest, allocator);
     return result;
