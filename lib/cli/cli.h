@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/json.h"
+#include "base/limits.h"
 
 #include <geotex/geotex.h>
 
@@ -69,7 +70,16 @@ typedef struct verb {
     const char *summary;
     int min_operands, max_operands;
     const option *options; /* ends with a NULL name */
+    uint32_t limits;       /* a bit for each gtx_limited that bounds what it does */
 } verb;
+
+/* Of verbs that open assets; that make some; that make them of models; and that draw those. */
+enum {
+    ASSET_LIMITS = 1 << GTX_LIMITED_MEMORY | 1 << GTX_LIMITED_TEXELS | 1 << GTX_LIMITED_PATCHES,
+    MAKING_LIMITS = ASSET_LIMITS | 1 << GTX_LIMITED_WORK,
+    MODEL_LIMITS = MAKING_LIMITS | 1 << GTX_LIMITED_TRIANGLES | 1 << GTX_LIMITED_PIXELS,
+    DRAWING_LIMITS = MODEL_LIMITS | 1 << GTX_LIMITED_CELLS
+};
 
 /* Parses argv[1..] (argv[0] is the verb) into the options' values; operands are moved, in order, to
  * operands[0..*count). Returns -1 to go on, or an exit code: 0 after --help, 1 after a message. */

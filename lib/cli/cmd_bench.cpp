@@ -80,7 +80,7 @@ const verb bench = {
     "With --truth, truth is the PSNR to the mesh at 8x8 samples per pixel, averaged in linear\n"
     "light, where either covers; inside is the same where all samples cover; outline is the share\n"
     "of the squared error elsewhere.",
-    2, 2, options};
+    2, 2, options, DRAWING_LIMITS};
 
 bool usage(const char *what, const std::string &word)
 {

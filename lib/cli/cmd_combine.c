@@ -37,7 +37,7 @@ static const verb combine = {
     "Combines two closed assets, placed in the same coordinates, as solids. Patches are trimmed\n"
     "where the surfaces cross, and keep their heights, normals, colours and materials. Patches of\n"
     "B that become the wall of a cavity are reversed.",
-    2, 2, options};
+    2, 2, options, MAKING_LIMITS | 1 << GTX_LIMITED_CELLS};
 
 /* What the default allows; beyond it there is a warning. */
 static const double CLOSED = 0.01;

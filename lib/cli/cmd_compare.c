@@ -43,7 +43,7 @@ static const verb compare_verb = {
     "Measures an asset against the models it was cooked from, on the CPU. format/measures.md,\n"
     "installed as share/doc/geotex/measures.md, defines every figure. An asset that names its\n"
     "source is not compared with any other model (exit 3), unless --any-model is given.",
-    2, MAX_FILES, options};
+    2, MAX_FILES, options, MODEL_LIMITS};
 
 static int differs(const char *asset, const char *what, double value, const char *how, double limit)
 {

@@ -90,7 +90,7 @@ static const verb cook = {
     "tried; the highest exit code is returned. An asset stores a key for --if-changed and\n"
     "--cache: a hash of the models, of every file that they refer to, of the options from\n"
     "--charts to --unit and of the cooker's revision; not of paths, times, threads or reports.",
-    1, MAX_MODELS, options};
+    1, MAX_MODELS, options, MODEL_LIMITS};
 
 static output_file outputs[] = {{"-o", NULL}, {"--report", NULL}, {"--depfile", NULL},
                                 {"--charts-ply", NULL}, {NULL, NULL}};

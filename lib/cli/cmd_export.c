@@ -36,7 +36,7 @@ static const verb export_verb = {
     "Writes an asset as glTF 2.0: an LOD mesh textured with the asset's maps, and the asset\n"
     "itself as the extension GTX_geometry_texture. gtx cook and the verbs that open assets read\n"
     "it back; gtx render and gtx view draw the mesh. Units are metres.",
-    1, 1, options};
+    1, 1, options, MAKING_LIMITS};
 
 static int usage(const char *sentence)
 {

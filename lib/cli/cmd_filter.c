@@ -45,7 +45,7 @@ static const verb filter = {
     "filter", "ASSET -o OUT.gtx",
     "Filters the surface of an asset, heights and normals, across patch borders.\n"
     "Operations run in the order given, and may be repeated.",
-    1, 1, options};
+    1, 1, options, MAKING_LIMITS};
 
 /* Grey of the image, 0..1. *file names it when it is at fault. */
 static gtx_result lay_pattern(gtx_edit *edit, const char *path, const char **file,

@@ -70,7 +70,7 @@ static const verb horizons = {
     "of 8 or 16 bits or floats. ESRI ASCII to GeoTIFF are read by GDAL. @X,Y sets the position of\n"
     "a grid's first node. =PROPERTY is a grid to colour it by; it is resampled at the grid's\n"
     "nodes, and an image is stretched over them. East becomes +X, up +Y, north -Z.",
-    1, MAX_GRIDS, options};
+    1, MAX_GRIDS, options, MAKING_LIMITS | 1 << GTX_LIMITED_PIXELS};
 
 static int usage(const char *sentence)
 {

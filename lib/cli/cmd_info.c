@@ -11,7 +11,8 @@ static bool as_json;
 static const option options[] = {
     {"json", 0, OPTION_FLAG, &as_json, NULL, "one JSON object instead of text", 0, 0}, {0}};
 
-static const verb info_verb = {"info", "ASSET", "Prints what is in a .gtx asset.", 1, 1, options};
+static const verb info_verb = {
+    "info", "ASSET", "Prints what is in a .gtx asset.", 1, 1, options, ASSET_LIMITS};
 
 static uint64_t texels(const gtx_asset *asset, const gtx_info *info)
 {

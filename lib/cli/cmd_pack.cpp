@@ -21,7 +21,7 @@ static const option options[] = {
      "file to write (required)", 0, 0},
     {"zstd", 0, OPTION_INT, &zstd_level, "L", "compression level, 0 = stored [as before]", 0, 19},
     {"lod-levels", 0, OPTION_UINT, &lod_levels, "N",
-     "make N new LOD meshes from the maps; 0 = none [keep the old ones]", 1, 5},
+     "make N new LOD meshes from the maps [keep the old ones]", 1, 5},
     {"rebuild", 0, OPTION_STRING, &rebuild_text, "mips,normals,trim",
      "derive anew, in edited patches: mip levels and dilation, normals, outlines",
      0, 0},
@@ -34,7 +34,7 @@ static const verb pack = {
     "level is read from its own image; a warning tells if only some were edited, and --rebuild\n"
     "derives the others from the edited ones. Given an asset, writes it again with other LOD\n"
     "meshes or another compression level.",
-    1, 1, options};
+    1, 1, options, MAKING_LIMITS};
 
 /* Rules that only tell of heights that have changed: coverage, sphere, bounds. */
 static bool follows_from_heights(uint32_t rule)

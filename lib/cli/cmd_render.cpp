@@ -64,7 +64,7 @@ static const verb render = {
     "GTX_geometry_texture places an asset; an asset embedded in a GLB is drawn as its mesh. Grids\n"
     "are drawn as gtx horizons makes them. --legend explains the colours of --show, or those that\n"
     "gtx horizons gave.",
-    1, 64, options};
+    1, 64, options, DRAWING_LIMITS};
 
 static int usage(const char *sentence)
 {

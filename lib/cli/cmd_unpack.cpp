@@ -16,7 +16,7 @@ static const verb unpack = {
     "unpack", "ASSET DIR",
     "Writes an asset to a new folder: its maps as PNG images, its LOD meshes as lod-N.bin, the\n"
     "rest as asset.json. gtx pack makes an asset of the folder, edited or not.",
-    2, 2, options};
+    2, 2, options, ASSET_LIMITS};
 
 namespace fs = std::filesystem;
 

@@ -12,7 +12,7 @@ static const option options[] = {
 
 static const verb validate_verb = {"validate", "ASSET",
                                    "Checks a file against every rule of the .gtx format.", 1, 1,
-                                   options};
+                                   options, ASSET_LIMITS};
 
 typedef struct listener {
     const char *path;

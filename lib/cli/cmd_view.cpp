@@ -36,7 +36,7 @@ static const verb view = {
     "G walks on the surface in the middle of the window, then flies, then orbits again: W, A, S,\n"
     "D move, E and Q raise and lower the eye, Shift is faster, left drag looks around.\n"
     "Exit code 5 if no display offers OpenGL 3.3; with --frames, that of cook if a drop failed.",
-    0, 64, options};
+    0, 64, options, DRAWING_LIMITS};
 
 int cmd_view(int argc, char **argv)
 {

@@ -35,6 +35,11 @@ static const option step_options[] = {
 
 enum { MAX_MODELS = 4096 };
 
+enum {
+    OWN_LIMITS = 1 << GTX_LIMITED_MEMORY | 1 << GTX_LIMITED_WORK, /* files of its own making */
+    READING_LIMITS = MODEL_LIMITS & ~(1 << GTX_LIMITED_PATCHES)
+};
+
 static const verb steps_of_world[] = {
     {"world plan", "MODEL... -o DIR",
      "Counts the models' triangles and plans a tree of tiles: DIR/plan.json, and a build file\n"
@@ -43,21 +48,21 @@ static const verb steps_of_world[] = {
      "are read file by file; - reads triangles of nine little-endian floats from stdin.\n"
      "Leaf tiles keep all maps of textured models, coarser tiles have averaged colours.\n"
      "`ninja -C DIR` then makes DIR/tileset.json (OGC 3D Tiles 1.1).",
-     1, MAX_MODELS, plan_options},
+     1, MAX_MODELS, plan_options, READING_LIMITS},
     {"world split", "DIR",
      "Reads the planned models again and sorts their triangles into leaf tiles: DIR/work/split.",
-     1, 1, step_options},
+     1, 1, step_options, READING_LIMITS},
     {"world cook", "DIR TILE",
      "Cooks one tile: DIR/tiles/TILE.gtx, and a simplified surface for its parent.",
-     2, 2, step_options},
+     2, 2, step_options, MAKING_LIMITS},
     {"world merge", "DIR TILE",
      "Makes a tile's surface from the simplified ones of its children: DIR/work/merge/TILE.",
-     2, 2, step_options},
+     2, 2, step_options, OWN_LIMITS},
     {"world index", "DIR",
      "Writes DIR/tileset.json, and DIR/tiles.gtw for gtx_stream_create, once all tiles are\n"
      "cooked. A step whose result exists does nothing. Steps may be killed and run again, and any\n"
      "number of them may run at once: the bytes are the same.",
-     1, 1, step_options},
+     1, 1, step_options, OWN_LIMITS},
 };
 enum { PLAN, SPLIT, COOK, MERGE, INDEX, STEPS };
 

@@ -9,48 +9,58 @@ bool cli_quiet;
 uint32_t cli_progress;
 gtx_limits cli_limits;
 
-/* Their names are those of gtx_error.limit. */
+/* Their names are those of gtx_error.limit. Every verb takes them all, so that a script may give
+ * the same ones to each; its help lists those that bound something. */
+static const option limit_options[GTX_LIMITED_COUNT + 1] = {
+    [GTX_LIMITED_MEMORY] = {"max-memory", 0, OPTION_AMOUNT, &cli_limits.memory, "BYTES",
+                            "limit of memory, such as 8G [268M + 2k per byte read]", 1, 1e18},
+    [GTX_LIMITED_TRIANGLES] = {"max-triangles", 0, OPTION_AMOUNT, &cli_limits.triangles, "N",
+                               "limit of triangles in all models [524k + 1.5 per byte read]", 1,
+                               1e18},
+    [GTX_LIMITED_TEXELS] =
+        {"max-texels", 0, OPTION_AMOUNT, &cli_limits.texels, "N",
+         "limit of texels of an asset, nodes of a grid [67M + 256 per byte read]", 1, 1e18},
+    [GTX_LIMITED_PIXELS] = {"max-pixels", 0, OPTION_AMOUNT, &cli_limits.pixels, "N",
+                            "limit of pixels of an image [67M + 16 per byte read]", 1, 1e18},
+    [GTX_LIMITED_PATCHES] = {"max-patches", 0, OPTION_AMOUNT, &cli_limits.patches, "N",
+                             "limit of patches [1M]", 1, 1e18},
+    [GTX_LIMITED_CELLS] = {"max-cells", 0, OPTION_AMOUNT, &cli_limits.cells, "N",
+                           "limit of cells that a ray may visit [524k]", 1, 1e18},
+    [GTX_LIMITED_WORK] = {"max-work", 0, OPTION_AMOUNT, &cli_limits.work, "N",
+                          "limit of steps of work [201M + 32 per byte read]", 1, 1e18},
+};
+
 static const option common_options[] = {
-    {"max-memory", 0, OPTION_AMOUNT, &cli_limits.memory, "BYTES",
-     "limit of memory, such as 8G [268M + 2k per byte read]", 1, 1e18},
-    {"max-triangles", 0, OPTION_AMOUNT, &cli_limits.triangles, "N",
-     "limit of triangles in all models [524k + 1.5 per byte read]", 1, 1e18},
-    {"max-texels", 0, OPTION_AMOUNT, &cli_limits.texels, "N",
-     "limit of texels of an asset, nodes of a grid [67M + 256 per byte read]", 1, 1e18},
-    {"max-pixels", 0, OPTION_AMOUNT, &cli_limits.pixels, "N",
-     "limit of pixels of an image [67M + 16 per byte read]", 1, 1e18},
-    {"max-patches", 0, OPTION_AMOUNT, &cli_limits.patches, "N", "limit of patches [1M]", 1, 1e18},
-    {"max-cells", 0, OPTION_AMOUNT, &cli_limits.cells, "N",
-     "limit of cells that a ray may visit, when drawing [524k]", 1, 1e18},
-    {"max-work", 0, OPTION_AMOUNT, &cli_limits.work, "N",
-     "limit of steps of cooking or comparing [201M + 32 per byte read]", 1, 1e18},
     {"quiet", 'q', OPTION_FLAG, &cli_quiet, NULL, "print errors only", 0, 0},
     {"help", 'h', OPTION_FLAG, NULL, NULL, "print this text", 0, 0},
     {0}};
 
 /* An option that is wider than its column has its meaning on a line of its own. */
-static void print_options(const option *options)
+static void print_option(const option *o)
 {
     enum { COLUMN = 34 };
-    for (; options->name; ++options) {
-        char left[64];
-        char letter[8] = "    ";
-        if (options->letter)
-            snprintf(letter, sizeof letter, "-%c, ", options->letter);
-        snprintf(left, sizeof left, "%s--%s%s%s", letter, options->name,
-                 options->argument ? " " : "", options->argument ? options->argument : "");
-        if (strlen(left) >= COLUMN)
-            printf("  %s\n  %*s %s\n", left, COLUMN, "", options->help);
-        else
-            printf("  %-*s %s\n", COLUMN, left, options->help);
-    }
+    char left[64];
+    char letter[8] = "    ";
+    if (o->letter)
+        snprintf(letter, sizeof letter, "-%c, ", o->letter);
+    snprintf(left, sizeof left, "%s--%s%s%s", letter, o->name, o->argument ? " " : "",
+             o->argument ? o->argument : "");
+    if (strlen(left) >= COLUMN)
+        printf("  %s\n  %*s %s\n", left, COLUMN, "", o->help);
+    else
+        printf("  %-*s %s\n", COLUMN, left, o->help);
 }
 
 static void print_help(const verb *v)
 {
     printf("gtx %s %s\n%s\n\n", v->name, v->operands, v->summary);
-    print_options(v->options);
-    print_options(common_options);
+    for (const option *o = v->options; o->name; ++o)
+        print_option(o);
+    for (uint32_t i = 0; i < GTX_LIMITED_COUNT; ++i)
+        if (v->limits >> i & 1)
+            print_option(&limit_options[i]);
+    for (const option *o = common_options; o->name; ++o)
+        print_option(o);
 }
 
 static int usage(const verb *v, const char *what, const char *which)
@@ -184,6 +194,25 @@ static const option *find(const option *options, const char *name, size_t length
     return NULL;
 }
 
+static const option *find_any(const verb *v, const char *name, size_t length)
+{
+    const option *const tables[] = {v->options, limit_options, common_options};
+    const option *found = NULL;
+    for (int i = 0; i < 3 && !found; ++i)
+        found = find(tables[i], name, length);
+    return found;
+}
+
+static int wrong_value(const verb *v, const option *o, const char *value)
+{
+    char range[64] = "";
+    if (o->max > o->min)
+        snprintf(range, sizeof range, " (%g to %g)", o->min, o->max);
+    print_message("gtx %s: error[usage]: --%s wants %s, not '%s'%s", v->name, o->name, o->argument,
+                  value, range);
+    return EXIT_CODE_USAGE;
+}
+
 int parse_options(const verb *v, int argc, char **argv, const char **operands, int *count)
 {
     bool only_operands = false;
@@ -203,9 +232,7 @@ int parse_options(const verb *v, int argc, char **argv, const char **operands, i
         const char *name = text + (text[1] == '-' ? 2 : 1);
         const char *equals = text[1] == '-' ? strchr(name, '=') : NULL;
         size_t length = equals ? (size_t)(equals - name) : strlen(name);
-        const option *o = find(v->options, name, length);
-        if (!o)
-            o = find(common_options, name, length);
+        const option *o = find_any(v, name, length);
         if (!o || (text[1] != '-' && length != 1))
             return usage(v, "unknown option", text);
         if (o->kind == OPTION_FLAG) {
@@ -221,14 +248,8 @@ int parse_options(const verb *v, int argc, char **argv, const char **operands, i
         const char *value = equals ? equals + 1 : i + 1 < argc ? argv[++i] : NULL;
         if (!value)
             return usage(v, "a value is missing after", text);
-        if (!parse_value(o, value)) {
-            char range[64] = "";
-            if (o->max > o->min)
-                snprintf(range, sizeof range, " (%g to %g)", o->min, o->max);
-            print_message("gtx %s: error[usage]: --%s wants %s, not '%s'%s", v->name, o->name,
-                          o->argument, value, range);
-            return EXIT_CODE_USAGE;
-        }
+        if (!parse_value(o, value))
+            return wrong_value(v, o, value);
     }
     if (*count < v->min_operands)
         return usage(v, "operands are missing: expected", v->operands);

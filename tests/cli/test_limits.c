@@ -1,4 +1,5 @@
-/* What the command may take: every verb has the options, and a limit that is passed is exit 6. */
+/* What the command may take: every verb has the options, and a limit that is passed is exit 6. Its
+ * help lists those that bound something. */
 #include "cli/command.h"
 
 static void every_limit_names_its_option(void **state)
@@ -37,6 +38,39 @@ static void every_limit_names_its_option(void **state)
     }
 }
 
+static void a_limit_that_help_leaves_out_bounds_nothing(void **state)
+{
+    (void)state;
+    static const char *const limits[] = {"memory", "triangles", "texels", "pixels",
+                                         "patches", "cells", "work"};
+    static const struct {
+        const char *verb, *arguments;
+        uint32_t left_out;
+    } cases[] = {
+        {"info", "sphere.gtx", 4},
+        {"validate", "sphere.gtx", 4},
+        {"unpack", "sphere.gtx new", 4},
+        {"pack", "h -o x.gtx", 3},
+        {"horizons", "h/height-0.png -o x.gtx --lod-levels 0", 2},
+        {"cook", "sphere.obj -o x.gtx --lod-levels 0", 1},
+    };
+    expect(gtx("unpack sphere.gtx h"), 0);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        uint32_t left_out = 0;
+        for (size_t k = 0; k < sizeof limits / sizeof *limits; ++k) {
+            char listed[32];
+            expect(gtx("%s --help", cases[i].verb), 0);
+            snprintf(listed, sizeof listed, "--max-%s ", limits[k]);
+            if (strstr(output, listed))
+                continue;
+            ++left_out;
+            expect(gtx("%s %s --max-%s 1", cases[i].verb, cases[i].arguments, limits[k]), 0);
+            shell("rm -rf new");
+        }
+        assert_int_equal(left_out, cases[i].left_out);
+    }
+}
+
 static void amounts_have_units(void **state)
 {
     (void)state;
@@ -52,6 +86,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_limit_names_its_option),
+        cmocka_unit_test(a_limit_that_help_leaves_out_bounds_nothing),
         cmocka_unit_test(amounts_have_units),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
