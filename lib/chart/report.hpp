@@ -1,4 +1,4 @@
-/* What the report says about charts. */
+/* Fills in what the report of cooking says of a partition: folds, charts, edges, unseen surface. */
 #pragma once
 
 #include "chart/split.hpp"

@@ -1,4 +1,4 @@
-/* Maps in blocks of 4x4 texels. */
+/* Encodes the maps of a model as compressed textures: BC, or ETC2 and EAC. */
 #ifndef GTX_FRAME_COMPRESS_H
 #define GTX_FRAME_COMPRESS_H
 

@@ -1,4 +1,5 @@
-/* Fits a line to a block's texels, as BC1 and BC7 store them. */
+/* The end colours of a block: a line is fitted to its texels by principal axis, then by least
+ * squares. */
 #include "frame/ends.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* Two ends of a line that a block's texels lie along. */
+/* The two end colours that a block of BC1 or BC7 stores; its texels are steps between them. */
 #ifndef GTX_FRAME_ENDS_H
 #define GTX_FRAME_ENDS_H
 

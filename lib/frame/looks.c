@@ -1,5 +1,5 @@
-/* What can be told of all texels: one constant material, which needs no lookups, and opaque
- * colours, which need no alpha. */
+/* Looks for what spares a model a map or a channel: a material that is the same everywhere is not
+ * looked up, and opaque colours are compressed without alpha. */
 #include "frame/model.h"
 
 #include <string.h>

@@ -1,4 +1,5 @@
-/* Displaced grids beside casting: what patches take in the picture, and which way each is drawn. */
+/* Which patches of an instance are drawn as displaced grids and which are cast: how many pixels and
+ * blocks each has in view, and what of that the planner's grids hold so far. */
 #ifndef GTX_FRAME_MIX_H
 #define GTX_FRAME_MIX_H
 

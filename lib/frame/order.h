@@ -1,4 +1,4 @@
-/* Sorting by floats. */
+/* A stable radix sort by floats. */
 #ifndef GTX_FRAME_ORDER_H
 #define GTX_FRAME_ORDER_H
 

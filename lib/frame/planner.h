@@ -1,4 +1,4 @@
-/* The inside of planners. */
+/* gtx_planner, for the files that plan a frame: what it keeps from one frame to the next. */
 #ifndef GTX_FRAME_PLANNER_H
 #define GTX_FRAME_PLANNER_H
 

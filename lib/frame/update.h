@@ -1,4 +1,4 @@
-/* Edits of a patch's maps. */
+/* Replaces the maps of one patch of a model, and what follows from them. */
 #ifndef GTX_FRAME_UPDATE_H
 #define GTX_FRAME_UPDATE_H
 

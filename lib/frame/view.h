@@ -1,4 +1,5 @@
-/* What a draw takes from a gtx_view and from each instance. */
+/* Matrices and vectors that shaders are given for a view and for each instance, computed in double
+ * precision. */
 #ifndef GTX_FRAME_VIEW_H
 #define GTX_FRAME_VIEW_H
 

@@ -1,4 +1,4 @@
-/* The inside of renderers. */
+/* gtx_renderer: its programs, and the buffers and textures through which frames are streamed. */
 #ifndef GTX_RENDER_RENDERER_H
 #define GTX_RENDER_RENDERER_H
 

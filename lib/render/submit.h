@@ -1,4 +1,4 @@
-/* A frame's draws in OpenGL. */
+/* Carries out the draws of a planned frame in OpenGL. */
 #ifndef GTX_RENDER_SUBMIT_H
 #define GTX_RENDER_SUBMIT_H
 

@@ -1,4 +1,5 @@
-/* What ends where a chart does: convex edges between faces of which one faces away. */
+/* Why a chart ends at each edge of its outline: a neighbouring chart, an open border, or a crease,
+ * behind which the surface turns away from the chart. */
 #include "bake/field/chart_field.hpp"
 
 namespace gtx::baking {

@@ -1,4 +1,5 @@
-/* What of the source no height field shows. */
+/* Finds the triangles of the source that no height field shows, and the cells that would show them
+ * if their trim were relaxed. */
 #pragma once
 
 #include "bake/field/patch.hpp"
