@@ -8,12 +8,18 @@ namespace gtx {
 
 namespace {
 
+/* What is warned of, by --partition cuts of a box, Spot's control mesh, a truck, a chair, a helmet,
+ * a bird, an engine and scans. */
 /* Triangles of the source that a patch stands for: below, the asset is larger than the mesh, and
- * drawing triangles is faster than casting. */
+ * drawing triangles is faster than casting. A box has 2 and Spot 7, a bird 17. At half Spot is not
+ * warned of; at double still no other. */
 constexpr double FEW_TRIANGLES = 8;
-/* Of the texels. Scans have 0.1 to 0.3, an engine 0.5. */
+/* Of the texels. Scans have 0.1 to 0.3, a chair 0.44, helmet, truck, engine and bird 0.45 to 0.50.
+ * At half most scans are warned of, at double nothing is. */
 constexpr double MUCH_EMPTY = 0.45;
-constexpr double MUCH_LOST = 0.01;
+/* Of a silhouette. An engine loses 0.018, trucks 0.004 and 0.006, scans at most 0.002. At half a
+ * truck is warned of, too, at double nothing is. (The default takes finer texels from less on.) */
+constexpr double WARNED_LOSS = 0.01;
 
 template <class... Args>
 void warn(Task &task, gtx_warning kind, const char *format, Args... args)
@@ -37,7 +43,7 @@ Suitability judge_suitability(const Partition &partition, const BakeReport &bake
     out.for_outlines = partition.for_outlines;
     out.resolution = partition.resolution;
     out.unseen_fraction = charts.unseen_area_fraction;
-    if (out.outline_loss > MUCH_LOST) {
+    if (out.outline_loss > WARNED_LOSS) {
         const bool cuts = partition.method == PartitionMethod::CUTS;
         warn(task, GTX_WARNING_OUTLINE_LOSS,
              "edges are sharper than texels: about %.1f %% of an outline may be off: %s",

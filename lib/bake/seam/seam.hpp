@@ -1,5 +1,5 @@
-/* The steps of baking that close the surface along the seams between patches: what no patch shows is
- * found a place, and height fields that meet are made to touch or cross. */
+/* The steps of baking that close the surface along the seams between patches: what no patch shows
+ * is given to one, and height fields that meet are made to touch or cross. */
 #pragma once
 
 #include "bake/field/patch.hpp"
