@@ -265,4 +265,18 @@ static inline gtx_stream_view from_above(double pixels)
     return made_view((double[3]){32, 16 + 4 * 250 / pixels, 32}, 0, -pi / 2);
 }
 
+/* A host with room for so many tiles, which are too few for its view: it has come to rest. */
+static inline void host_begin_small(host *h, const made_world *world, uint64_t tiles)
+{
+    host_begin(h, world, (gtx_stream_desc){.max_error = 1, .gpu_bytes = 1000 * tiles + 7});
+    h->view = made_view((double[3]){30, 6, 62}, 0.1, -0.2);
+    host_run(h, 400, 10, 1000);
+    const uint64_t requested = h->frame.requested;
+    host_run(h, 200, 10, 1000);
+    assert_int_equal(h->frame.requested, requested);
+    assert_true(h->frame.without_room > 0 && h->frame.draw_count > 0);
+    assert_int_equal(h->frame.pending, h->frame.without_room);
+    assert_true(tiles < 10 || h->frame.resident > tiles / 2);
+}
+
 #endif

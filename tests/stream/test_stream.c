@@ -170,15 +170,7 @@ static void small_budgets_come_to_rest(void **state)
     (void)state;
     for (uint64_t tiles = 1; tiles < 120; tiles += 1 + tiles / 4) {
         host h;
-        host_begin(&h, &world, (gtx_stream_desc){.max_error = 1, .gpu_bytes = 1000 * tiles + 7});
-        h.view = made_view((double[3]){30, 6, 62}, 0.1, -0.2);
-        host_run(&h, 400, 10, 1000);
-        const uint64_t requested = h.frame.requested;
-        host_run(&h, 200, 10, 1000);
-        assert_int_equal(h.frame.requested, requested);
-        assert_true(h.frame.without_room > 0 && h.frame.draw_count > 0);
-        assert_int_equal(h.frame.pending, h.frame.without_room);
-        assert_true(tiles < 10 || h.frame.resident > tiles / 2);
+        host_begin_small(&h, &world, tiles);
         assert_true(8 * count_useful(&h) >= 7 * h.frame.resident);
         host_end(&h);
     }
