@@ -21,32 +21,15 @@ static Vector<const uint8_t *> level_pointers(const Vector<Vector<uint8_t>> &lev
     return pointers;
 }
 
-static Vector<gtx_lod_mesh> lod_levels(const Vector<LodLevel> &lod)
-{
-    Vector<gtx_lod_mesh> levels;
-    for (const LodLevel &level : lod) {
-        gtx_lod_mesh out = {};
-        std::copy_n(level.origin, 3, out.origin);
-        out.step = level.step;
-        out.error = level.error;
-        out.vertex_count = uint32_t(level.positions.size() / 3);
-        out.triangle_count = uint32_t(level.triangle_count());
-        out.flags = level.far ? GTX_LOD_FAR : 0;
-        out.first = level.first.data();
-        out.indices = level.indices.data();
-        out.positions = level.positions.data();
-        levels.push_back(out);
-    }
-    return levels;
-}
-
 Asset assemble(const Maps &maps, const Vector<LodLevel> &lod, const AssetFacts &facts)
 {
     const Vector<const uint8_t *> normal = level_pointers(maps.normal),
                                        color = level_pointers(maps.color),
                                        material = level_pointers(maps.material),
                                        emission = level_pointers(maps.emission);
-    const Vector<gtx_lod_mesh> levels = lod_levels(lod);
+    Vector<gtx_lod_mesh> levels;
+    for (const LodLevel &level : lod)
+        levels.push_back(level.mesh());
 
     gtx_asset_desc desc = {};
     desc.patches = maps.patches.data();

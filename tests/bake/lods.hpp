@@ -38,19 +38,8 @@ inline Vector<LodLevel> near_levels(const Lod &lod)
 inline Vector<gtx_lod_mesh> describe(const Vector<LodLevel> &levels)
 {
     Vector<gtx_lod_mesh> out;
-    for (const LodLevel &level : levels) {
-        gtx_lod_mesh lod = {};
-        std::copy_n(level.origin, 3, lod.origin);
-        lod.step = level.step;
-        lod.error = level.error;
-        lod.vertex_count = uint32_t(level.positions.size() / 3);
-        lod.triangle_count = uint32_t(level.triangle_count());
-        lod.flags = level.far ? GTX_LOD_FAR : 0;
-        lod.first = level.first.data();
-        lod.indices = level.indices.data();
-        lod.positions = level.positions.data();
-        out.push_back(lod);
-    }
+    for (const LodLevel &level : levels)
+        out.push_back(level.mesh());
     return out;
 }
 

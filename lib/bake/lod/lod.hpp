@@ -4,6 +4,8 @@
 
 #include "bake/bake.hpp"
 
+#include <algorithm>
+
 namespace gtx {
 
 /* Surface with a patch a triangle, and vertices that patches share, relative to the anchor. */
@@ -33,6 +35,21 @@ struct LodLevel {
     Vector<uint16_t> positions;      /* 3 a vertex */
 
     size_t triangle_count() const { return indices.size() / 3; }
+    /* As gtx_create takes it; of the level's arrays, which must stay. */
+    gtx_lod_mesh mesh() const
+    {
+        gtx_lod_mesh out = {};
+        std::copy_n(origin, 3, out.origin);
+        out.step = step;
+        out.error = error;
+        out.vertex_count = uint32_t(positions.size() / 3);
+        out.triangle_count = uint32_t(triangle_count());
+        out.flags = far ? GTX_LOD_FAR : 0;
+        out.first = first.data();
+        out.indices = indices.data();
+        out.positions = positions.data();
+        return out;
+    }
 };
 
 /* What the charts show; `maps` is what bake made of them. A triangle has the patch of its chart; of
