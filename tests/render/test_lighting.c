@@ -156,93 +156,127 @@ static bool point_of(const stage *s, const matrix *back, int p, double at[3])
     return true;
 }
 
-/* A lamp at a place, alone, gives what a sun from there gives, by the square of the distance; a
- * spot only within its cone; two lights give the sum; fog hides by distance; the shadow map takes
- * the sun where x is below 0; and a moved instance moves by what its points move. */
-static void lamps_fog_shadow_and_motion(void **state)
+/* A sphere under the light of a view, and what shows in it of that light alone, and without. */
+typedef struct lit_sphere {
+    subject p;
+    gtx_camera camera;
+    scene c;
+    gtx_view view;
+    gtx_lighting sun;
+    float with_sun[4 * STAGE_PIXELS], without[4 * STAGE_PIXELS];
+} lit_sphere;
+
+static void open_lit(stage *s, lit_sphere *l)
+{
+    l->p = subject_open(s, with_lod_as(fixture_sphere(2, 64, 8), 2, 3, 0, LOD_EVEN));
+    l->camera = camera_around(l->p.asset);
+    l->c = open_scene(s);
+    l->view = view_of(&l->camera);
+    l->view.method = GTX_METHOD_CAST;
+    by_tiles(&l->view);
+    l->view.light_direction[1] = 0.6f;
+    l->view.light_direction[2] = 0.8f;
+    stage_draw(s, &l->view, &l->p.instance, 1);
+    l->sun = sun_of(&l->view);
+    l->sun.around[0] = l->sun.around[1] = l->sun.around[2] = 0;
+    draw_scene(s, &l->c, &l->sun, l->view, &l->p.instance);
+    memcpy(l->with_sun, shown[0], sizeof l->with_sun);
+    gtx_lighting dark = l->sun;
+    dark.around[3] = 0;
+    draw_scene(s, &l->c, &dark, l->view, &l->p.instance);
+    memcpy(l->without, shown[0], sizeof l->without);
+}
+
+static void close_lit(stage *s, lit_sphere *l)
+{
+    close_scene(s, &l->c);
+    subject_close(s, &l->p);
+}
+
+/* A lamp at a place, alone, gives what a sun from there gives, by the square of the distance; two
+ * lights give the sum; a spot only within its cone. */
+static void lamps_and_spots(void **state)
 {
     STAGE_OR_SKIP(state);
-    static float sun[4 * STAGE_PIXELS], both[4 * STAGE_PIXELS], motion[4 * STAGE_PIXELS];
-    static float none[4 * STAGE_PIXELS]; /* what shows without light */
-    const float far = 100, eye_distance = 3.1f;
-    subject p = subject_open(s, with_lod_as(fixture_sphere(2, 64, 8), 2, 3, 0, LOD_EVEN));
-    gtx_camera camera = camera_around(p.asset);
-    scene c = open_scene(s);
-    gtx_view view = view_of(&camera);
-    view.method = GTX_METHOD_CAST;
-    by_tiles(&view);
-    view.light_direction[1] = 0.6f;
-    view.light_direction[2] = 0.8f;
-    stage_draw(s, &view, &p.instance, 1);
-    const matrix clip = matrix_mul(matrix_of(view.projection), matrix_of(view.view));
-    const matrix back = matrix_inverse(clip);
-    gtx_lighting b = sun_of(&view);
-    b.around[0] = b.around[1] = b.around[2] = 0;
-    draw_scene(s, &c, &b, view, &p.instance);
-    memcpy(sun, shown[0], sizeof sun);
-    b.around[3] = 0;
-    draw_scene(s, &c, &b, view, &p.instance);
-    memcpy(none, shown[0], sizeof none);
-
-    /* So far away that it is a sun, but for the distance; and a second of the same. */
-    for (int k = 0; k < 3; ++k)
+    static lit_sphere l;
+    static float lamp[4 * STAGE_PIXELS];
+    const float far = 100;
+    open_lit(s, &l);
+    /* So far away that it is a sun, but for the distance. */
+    gtx_lighting b = l.sun;
+    for (int k = 0; k < 3; ++k) {
         b.lamps[0].place[k] *= far;
-    b.lamps[0].place[3] = 1000 * far;
-    b.lamps[1] = b.lamps[0];
-    for (int k = 0; k < 3; ++k)
         b.lamps[0].color[k] *= far * far;
-    b.around[3] = 1;
-    draw_scene(s, &c, &b, view, &p.instance);
-    memcpy(both, shown[0], sizeof both);
-    int checked = 0, cut = 0, dark = 0;
+    }
+    b.lamps[0].place[3] = 1000 * far;
+    draw_scene(s, &l.c, &b, l.view, &l.p.instance);
+    memcpy(lamp, shown[0], sizeof lamp);
+    int checked = 0, cut = 0;
     for (int i = 0; i < 4 * STAGE_PIXELS; ++i)
-        if (i % 4 < 3 && sun[i] > 0.05f) {
-            assert_true(fabsf(both[i] / sun[i] - 1) < 0.08f);
+        if (i % 4 < 3 && l.with_sun[i] > 0.05f) {
+            assert_true(fabsf(lamp[i] / l.with_sun[i] - 1) < 0.08f);
             ++checked;
         }
     assert_true(checked > 5000);
     b.lamps[1] = b.lamps[0];
     b.around[3] = 2;
-    draw_scene(s, &c, &b, view, &p.instance);
+    draw_scene(s, &l.c, &b, l.view, &l.p.instance);
     for (int i = 0; i < 4 * STAGE_PIXELS; ++i)
-        assert_true(i % 4 == 3 ||
-                    fabsf(shown[0][i] + none[i] - 2 * both[i]) <= 0.004f * both[i] + 1e-4f);
+        assert_true(i % 4 == 3 || fabsf(shown[0][i] + l.without[i] - 2 * lamp[i]) <=
+                                      0.004f * lamp[i] + 1e-4f);
     /* A spot of which the sphere takes up more than the cone. */
     b.around[3] = 1;
     for (int k = 0; k < 3; ++k)
         b.lamps[0].axis[k] = -b.lamps[0].place[k] / far;
     b.lamps[0].color[3] = cosf(0.006f);
     b.lamps[0].axis[3] = cosf(0.003f);
-    draw_scene(s, &c, &b, view, &p.instance);
+    draw_scene(s, &l.c, &b, l.view, &l.p.instance);
+    checked = 0;
     for (int i = 0; i < 4 * STAGE_PIXELS; i += 4) {
-        cut += sun[i] > 0.05f && shown[0][i] <= none[i] + 1e-4f;
-        checked += sun[i] > 0.05f && fabsf(shown[0][i] - both[i]) < 1e-3f;
+        cut += l.with_sun[i] > 0.05f && shown[0][i] <= l.without[i] + 1e-4f;
+        checked += l.with_sun[i] > 0.05f && fabsf(shown[0][i] - lamp[i]) < 1e-3f;
     }
     assert_true(cut > 1000 && checked > 100);
+    close_lit(s, &l);
+}
 
-    /* Fog, and the first light's shadow where x is below 0. */
-    b = sun_of(&view);
-    b.around[0] = b.around[1] = b.around[2] = 0;
-    b.fog[1] = 0.5f;
-    b.fog[3] = 0.3f;
-    const float eye[3] = {view.view[2] * eye_distance, view.view[6] * eye_distance,
-                          view.view[10] * eye_distance};
-    memcpy(b.eye, eye, sizeof eye);
-    const float to_map[16] = {0.125f, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.5f, 0.5f, 0.5f, 1};
-    memcpy(b.shadow, to_map, sizeof to_map);
-    b.options[0] = 1;
-    b.options[1] = 0.001f;
-    /* The instance was elsewhere in the frame before. */
-    const float before[12] = {1, 0, 0, 0.1f, 0, 1, 0, -0.05f, 0, 0, 1, 0.2f};
+/* Rows of the transform that the instance had in the frame before. */
+static const float before[12] = {1, 0, 0, 0.1f, 0, 1, 0, -0.05f, 0, 0, 1, 0.2f};
+
+static void bind_before(stage *s, const scene *c)
+{
     s->gl.ActiveTexture(GL_TEXTURE9);
-    s->gl.BindTexture(GL_TEXTURE_2D, c.before);
+    s->gl.BindTexture(GL_TEXTURE_2D, c->before);
     s->gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 3, 1, 0, GL_RGBA, GL_FLOAT, before);
     s->gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     s->gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
+/* Fog hides by distance; the shadow map takes the sun where x is below 0; and a moved instance
+ * moves by what its points move. */
+static void fog_shadow_and_motion(void **state)
+{
+    STAGE_OR_SKIP(state);
+    static lit_sphere l;
+    const float eye_distance = 3.1f;
+    open_lit(s, &l);
+    const gtx_view *view = &l.view;
+    const matrix clip = matrix_mul(matrix_of(view->projection), matrix_of(view->view));
+    const matrix back = matrix_inverse(clip);
+    const float eye[3] = {view->view[2] * eye_distance, view->view[6] * eye_distance,
+                          view->view[10] * eye_distance};
+    const float to_map[16] = {0.125f, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0.5f, 0.5f, 0.5f, 1};
+    gtx_lighting b = l.sun;
+    b.fog[1] = 0.5f;
+    b.fog[3] = 0.3f;
+    memcpy(b.eye, eye, sizeof eye);
+    memcpy(b.shadow, to_map, sizeof to_map);
+    b.options[0] = 1;
+    b.options[1] = 0.001f;
     b.options[2] = 1;
-    draw_scene(s, &c, &b, view, &p.instance);
-    memcpy(motion, shown[1], sizeof motion);
-    checked = 0;
+    bind_before(s, &l.c);
+    draw_scene(s, &l.c, &b, *view, &l.p.instance);
+    int checked = 0, dark = 0;
     for (int i = 0; i < STAGE_PIXELS; ++i) {
         double at[3], was[3], now[3], then[3], square = 0;
         if (!point_of(s, &back, i, at) || fabs(at[0]) < 0.02)
@@ -253,23 +287,23 @@ static void lamps_fog_shadow_and_motion(void **state)
         }
         const double fog = 1 - exp(-0.3 * sqrt(square));
         const bool lit = at[0] > 0;
-        assert_true(fabs((double)shown[0][4 * i + 1] -
-                         ((1 - fog) * (double)(lit ? sun : none)[4 * i + 1] + fog * 0.5)) < 0.01);
+        const double light = (double)(lit ? l.with_sun : l.without)[4 * i + 1];
+        assert_true(fabs((double)shown[0][4 * i + 1] - ((1 - fog) * light + fog * 0.5)) < 0.01);
         matrix_point(clip, at, now);
         matrix_point(clip, was, then);
         for (int k = 0; k < 2; ++k)
-            assert_true(fabs(0.5 * (now[k] - then[k]) - (double)motion[4 * i + k]) < 1e-3);
+            assert_true(fabs(0.5 * (now[k] - then[k]) - (double)shown[1][4 * i + k]) < 1e-3);
         dark += !lit;
         ++checked;
     }
     assert_true(checked > 3000 && dark > 300);
-    close_scene(s, &c);
-    subject_close(s, &p);
+    close_lit(s, &l);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(one_sun_is_the_stock_light),
-                                       cmocka_unit_test(lamps_fog_shadow_and_motion)};
+                                       cmocka_unit_test(lamps_and_spots),
+                                       cmocka_unit_test(fog_shadow_and_motion)};
     return cmocka_run_group_tests(tests, stage_open, stage_close);
 }
