@@ -75,51 +75,76 @@ static gtx_result open_instance(const gtx_host_vulkan_desc *desc, gtx_host_vulka
     return GTX_OK;
 }
 
-/* The first device and family of queues that draw. */
-static gtx_result open_device(const gtx_host_vulkan_desc *desc, gtx_host_vulkan *v,
-                              gtx_error *error)
+/* The first one, and what it can do. */
+static gtx_result find_device(gtx_host_vulkan *v, VkPhysicalDeviceFeatures *able, gtx_error *error)
 {
-    static const char *const extensions[] = {"VK_KHR_swapchain"};
     const PFN_vkEnumeratePhysicalDevices list = (PFN_vkEnumeratePhysicalDevices)v->load(
         v->instance, "vkEnumeratePhysicalDevices");
-    const PFN_vkCreateDevice create =
-        (PFN_vkCreateDevice)v->load(v->instance, "vkCreateDevice");
     const PFN_vkGetPhysicalDeviceProperties properties =
         (PFN_vkGetPhysicalDeviceProperties)v->load(v->instance, "vkGetPhysicalDeviceProperties");
-    const PFN_vkGetDeviceProcAddr of =
-        (PFN_vkGetDeviceProcAddr)v->load(v->instance, "vkGetDeviceProcAddr");
+    VkPhysicalDeviceVulkan11Features eyes = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES};
+    VkPhysicalDeviceFeatures2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                     .pNext = &eyes};
+    const PFN_vkGetPhysicalDeviceFeatures2 ask = (PFN_vkGetPhysicalDeviceFeatures2)v->load(
+        v->instance, "vkGetPhysicalDeviceFeatures2");
     VkPhysicalDeviceProperties p;
     uint32_t count = 1;
     const VkResult listed = list(v->instance, &count, &v->physical);
     if ((listed && listed != VK_INCOMPLETE) || !count)
         return gtx_fail(error, GTX_ERROR_GL, "there is no Vulkan device");
     properties(v->physical, &p);
-    VkPhysicalDeviceFeatures able;
     ((PFN_vkGetPhysicalDeviceFeatures)v->load(v->instance, "vkGetPhysicalDeviceFeatures"))(
-        v->physical, &able);
-    v->by_samples = able.sampleRateShading;
+        v->physical, able);
+    memcpy(v->name, p.deviceName, sizeof v->name);
+    v->by_samples = able->sampleRateShading;
+    v->renders = p.apiVersion >= VK_API_VERSION_1_3;
+    if (v->renders && ask)
+        ask(v->physical, &all);
+    v->multiview = eyes.multiview;
+    return GTX_OK;
+}
+
+static gtx_result make_commands(gtx_host_vulkan *v, gtx_error *error)
+{
+    const VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+    VkCommandBufferAllocateInfo commands = {
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY, .commandBufferCount = 1};
+    if (v->CreateCommandPool(v->device, &pool, NULL, &v->pool))
+        return gtx_fail(error, GTX_ERROR_GL, "vkCreateCommandPool failed");
+    commands.commandPool = v->pool;
+    return v->AllocateCommandBuffers(v->device, &commands, &v->commands)
+               ? gtx_fail(error, GTX_ERROR_GL, "vkAllocateCommandBuffers failed")
+               : GTX_OK;
+}
+
+/* Of the first family of queues. */
+static gtx_result open_device(const gtx_host_vulkan_desc *desc, gtx_host_vulkan *v,
+                              gtx_error *error)
+{
+    static const char *const extensions[] = {"VK_KHR_swapchain"};
+    const PFN_vkCreateDevice create =
+        (PFN_vkCreateDevice)v->load(v->instance, "vkCreateDevice");
+    const PFN_vkGetDeviceProcAddr of =
+        (PFN_vkGetDeviceProcAddr)v->load(v->instance, "vkGetDeviceProcAddr");
+    VkPhysicalDeviceFeatures able;
+    const gtx_result result = find_device(v, &able, error);
+    if (result)
+        return result;
     const VkPhysicalDeviceFeatures wanted = {
         .sampleRateShading = able.sampleRateShading,
         .textureCompressionBC = able.textureCompressionBC,
         .textureCompressionETC2 = able.textureCompressionETC2};
-    v->renders = p.apiVersion >= VK_API_VERSION_1_3;
-    memcpy(v->name, p.deviceName, sizeof v->name);
     const float priority = 1;
     const VkDeviceQueueCreateInfo queue = {.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                            .queueCount = 1, .pQueuePriorities = &priority};
     VkPhysicalDeviceVulkan11Features eyes = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES};
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES,
+        .multiview = v->multiview};
     const VkPhysicalDeviceVulkan13Features features = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES, .pNext = &eyes,
         .dynamicRendering = 1};
-    VkPhysicalDeviceFeatures2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
-                                     .pNext = &eyes};
-    const PFN_vkGetPhysicalDeviceFeatures2 ask = (PFN_vkGetPhysicalDeviceFeatures2)v->load(
-        v->instance, "vkGetPhysicalDeviceFeatures2");
-    if (v->renders && ask)
-        ask(v->physical, &all);
-    v->multiview = eyes.multiview;
-    eyes = (VkPhysicalDeviceVulkan11Features){.sType = eyes.sType, .multiview = v->multiview};
     const VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                      .pNext = v->renders ? &features : NULL,
                                      .queueCreateInfoCount = 1, .pQueueCreateInfos = &queue,
@@ -133,16 +158,7 @@ static gtx_result open_device(const gtx_host_vulkan_desc *desc, gtx_host_vulkan 
     v->CmdBeginRendering = (PFN_vkCmdBeginRenderingKHR)of(v->device, "vkCmdBeginRendering");
     v->CmdEndRendering = (PFN_vkCmdEndRenderingKHR)of(v->device, "vkCmdEndRendering");
     v->GetDeviceQueue(v->device, 0, 0, &v->queue);
-    const VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
-    VkCommandBufferAllocateInfo commands = {
-        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY, .commandBufferCount = 1};
-    if (v->CreateCommandPool(v->device, &pool, NULL, &v->pool))
-        return gtx_fail(error, GTX_ERROR_GL, "vkCreateCommandPool failed");
-    commands.commandPool = v->pool;
-    return v->AllocateCommandBuffers(v->device, &commands, &v->commands)
-               ? gtx_fail(error, GTX_ERROR_GL, "vkAllocateCommandBuffers failed")
-               : GTX_OK;
+    return make_commands(v, error);
 }
 
 gtx_result gtx_host_vulkan_create(bool validate, gtx_host_vulkan *out, gtx_error *error)

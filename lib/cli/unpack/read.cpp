@@ -196,15 +196,9 @@ static void read_lod(const Reader &reader, const Json &levels, const std::string
     out.desc.lod_levels = uint32_t(out.lod.size());
 }
 
-void read_unpacked(const std::string &folder, Limits &limits, Unpacked &out, std::string &about)
+/* What the header of an asset has. */
+static void read_header(const Reader &reader, const Json &json, Limits &limits, Unpacked &out)
 {
-    about = in_folder(folder, UNPACKED_JSON);
-    const JsonTree tree{parse(about)};
-    const Json &json = tree.root;
-    const Reader reader;
-    const Json &format = reader.at(json, "format");
-    if (!format.is_string() || format.get_ref<const std::string &>() != UNPACKED_FORMAT)
-        reader.fail(std::string("format is not \"") + UNPACKED_FORMAT + '"');
     gtx_asset_desc &d = out.desc;
     uint32_t size[2];
     reader.numbers(json, "page_size", size, 2);
@@ -231,6 +225,10 @@ void read_unpacked(const std::string &folder, Limits &limits, Unpacked &out, std
             reader.fail("meta is not a string");
         out.meta = json["meta"].get<std::string>();
     }
+}
+
+static void read_patches(const Reader &reader, const Json &json, Limits &limits, Unpacked &out)
+{
     const Json &patches = reader.at(json, "patches");
     if (!patches.is_array() || patches.empty() || patches.size() > GTX_MAX_PATCHES)
         reader.fail("patches is not a list of patches");
@@ -242,11 +240,24 @@ void read_unpacked(const std::string &folder, Limits &limits, Unpacked &out, std
     }
     if (out.hashes.size() != out.patches.size())
         out.hashes.clear();
+}
 
+void read_unpacked(const std::string &folder, Limits &limits, Unpacked &out, std::string &about)
+{
+    about = in_folder(folder, UNPACKED_JSON);
+    const JsonTree tree{parse(about)};
+    const Json &json = tree.root;
+    const Reader reader;
+    const Json &format = reader.at(json, "format");
+    if (!format.is_string() || format.get_ref<const std::string &>() != UNPACKED_FORMAT)
+        reader.fail(std::string("format is not \"") + UNPACKED_FORMAT + '"');
+    read_header(reader, json, limits, out);
+    read_patches(reader, json, limits, out);
     const bool has[6] = {true, true, true, reader.flag(json, "has_color"),
                          reader.flag(json, "has_material"), reader.flag(json, "has_emission")};
     read_lod(reader, reader.at(json, "lod_meshes"), folder, out, about);
     read_maps(folder, has, limits, out, about);
+    gtx_asset_desc &d = out.desc;
     auto levels = [&](size_t m) { return has[m] ? out.pointers[m].data() : nullptr; };
     d.patches = out.patches.data();
     d.patch_count = uint32_t(out.patches.size());
