@@ -9,6 +9,8 @@
 #include <stdlib.h>
 
 static const uint32_t MAX_SIDE = 4096, MIN_SIDE = 8;
+/* Of a square page, as a multiple of the rectangles' area: shelves leave some of it empty. */
+static const double ROOM = 1.05;
 
 typedef struct item {
     uint32_t patch, width, height;
@@ -66,7 +68,7 @@ gtx_result gtx_edit_place(gtx_patch *patches, const gtx_allocator *hooks, gtx_in
     }
     if (!result) {
         qsort(items, n, sizeof *items, by_height);
-        uint32_t width = (uint32_t)fmin(sqrt(area * 1.05), MAX_SIDE);
+        uint32_t width = (uint32_t)fmin(sqrt(area * ROOM), MAX_SIDE);
         width = width > widest ? width : widest;
         width = (width + grain - 1) / grain * grain;
         uint32_t used = MIN_SIDE > grain ? MIN_SIDE : grain, pages = 1;

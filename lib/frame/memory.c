@@ -38,9 +38,10 @@ static uint64_t patch_bytes(void)
 static uint64_t lod_bytes(const gtx_asset *asset)
 {
     enum { COPIES = 16 };     /* bytes of a vertex while a level is made */
+    enum { PATCH = 5 };       /* of gtx_lod_meshes: order and edited */
     const uint64_t triangle = 3 * (sizeof(gtx_lod_vertex) + sizeof(uint32_t));
     const uint64_t patch = sizeof(uint32_t) + sizeof(gtx_lod_run);
-    uint64_t bytes = asset->info.lod_levels ? 5 * (uint64_t)asset->info.patch_count : 0;
+    uint64_t bytes = asset->info.lod_levels ? PATCH * (uint64_t)asset->info.patch_count : 0;
     for (uint32_t k = 0; k < asset->info.lod_levels; ++k) {
         gtx_lod_mesh level;
         gtx_get_lod_mesh(asset, k, &level);
