@@ -167,29 +167,56 @@ Vector<float> resample(const HeightGrid &from, const HeightGrid &to)
 /* Nodes of one lattice may differ by this part of a step: headers are rounded. */
 constexpr double OFF_LATTICE = 1e-3;
 
+/* The node of the first part's lattice that a part begins at. */
+static std::array<int64_t, 2> place_of(const HeightGrid &part, const HeightGrid &first)
+{
+    const double turn = -first.rotation * std::acos(-1.0) / 180;
+    const double x = part.origin[0] - first.origin[0], y = part.origin[1] - first.origin[1];
+    const double local[2] = {gtx_cos(turn) * x - gtx_sin(turn) * y,
+                             gtx_sin(turn) * x + gtx_cos(turn) * y};
+    const uint32_t size[2] = {part.nx, part.ny};
+    std::array<int64_t, 2> place;
+    for (int k = 0; k < 2; ++k) {
+        const double nodes = local[k] / first.step[k];
+        place[size_t(k)] = std::llround(std::clamp(nodes, -1e9, 1e9));
+        if (std::fabs(nodes - double(place[size_t(k)])) > OFF_LATTICE ||
+            std::fabs(part.step[k] / first.step[k] - 1) * size[k] > OFF_LATTICE ||
+            part.rotation != first.rotation)
+            malformed("parts of one surface have other steps, or nodes beside each other's");
+    }
+    return place;
+}
+
+/* Copies a part to column x and row y of the surface; what an earlier part had stays. */
+static void lay(const HeightGrid &part, size_t x, size_t y, HeightGrid &out, SharedNodes *shared)
+{
+    for (uint32_t j = 0; j < part.ny; ++j)
+        for (uint32_t i = 0; i < part.nx; ++i) {
+            float &to = out.values[(y + j) * out.nx + x + i];
+            const float value = part.at(i, j);
+            if (shared && !std::isnan(to) && !std::isnan(value)) {
+                ++shared->count;
+                shared->differing += to != value;
+                shared->difference =
+                    std::max(shared->difference, std::fabs(double(to) - double(value)));
+            }
+            if (std::isnan(to))
+                to = value;
+        }
+}
+
 HeightGrid mosaic(const Vector<HeightGrid> &parts, const Limits &limits, SharedNodes *shared)
 {
     const HeightGrid &first = parts.at(0);
     Vector<std::array<int64_t, 2>> at;
     int64_t low[2] = {0, 0}, high[2] = {0, 0};
     for (const HeightGrid &part : parts) {
-        const double turn = -first.rotation * std::acos(-1.0) / 180;
-        const double x = part.origin[0] - first.origin[0], y = part.origin[1] - first.origin[1];
-        const double local[2] = {gtx_cos(turn) * x - gtx_sin(turn) * y,
-                                 gtx_sin(turn) * x + gtx_cos(turn) * y};
+        at.push_back(place_of(part, first));
         const uint32_t size[2] = {part.nx, part.ny};
-        std::array<int64_t, 2> place;
         for (int k = 0; k < 2; ++k) {
-            const double nodes = local[k] / first.step[k];
-            place[k] = std::llround(std::clamp(nodes, -1e9, 1e9));
-            if (std::fabs(nodes - double(place[k])) > OFF_LATTICE ||
-                std::fabs(part.step[k] / first.step[k] - 1) * size[k] > OFF_LATTICE ||
-                part.rotation != first.rotation)
-                malformed("parts of one surface have other steps, or nodes beside each other's");
-            low[k] = std::min(low[k], place[k]);
-            high[k] = std::max(high[k], place[k] + size[k]);
+            low[k] = std::min(low[k], at.back()[size_t(k)]);
+            high[k] = std::max(high[k], at.back()[size_t(k)] + size[k]);
         }
-        at.push_back(place);
     }
     limits.require(GTX_LIMITED_TEXELS, "the surface of all parts",
                    uint64_t(high[0] - low[0]) * uint64_t(high[1] - low[1]));
@@ -203,20 +230,7 @@ HeightGrid mosaic(const Vector<HeightGrid> &parts, const Limits &limits, SharedN
     out.origin[1] = origin[1];
     out.values.assign(out.count(), NAN);
     for (size_t p = 0; p < parts.size(); ++p)
-        for (uint32_t j = 0; j < parts[p].ny; ++j)
-            for (uint32_t i = 0; i < parts[p].nx; ++i) {
-                const size_t row = size_t(at[p][1] - low[1]) + j;
-                float &to = out.values[row * out.nx + size_t(at[p][0] - low[0]) + i];
-                const float value = parts[p].at(i, j);
-                if (shared && !std::isnan(to) && !std::isnan(value)) {
-                    ++shared->count;
-                    shared->differing += to != value;
-                    shared->difference = std::max(shared->difference,
-                                                  std::fabs(double(to) - double(value)));
-                }
-                if (std::isnan(to))
-                    to = value;
-            }
+        lay(parts[p], size_t(at[p][0] - low[0]), size_t(at[p][1] - low[1]), out, shared);
     return out;
 }
 

@@ -84,6 +84,33 @@ static Vector<Scene> make_scenes(const gtx_asset *asset, const Extent &extent,
     return scenes;
 }
 
+/* Adds what was measured of one scene to the report. */
+static void report_scene(const Scene &scene, const Vector<Figures> &figures, bool is_level,
+                         Distribution &depths, Distribution &angles, CompareReport &report)
+{
+    if (!is_level) {
+        DetailReport detail;
+        detail.size = scene.views[0].size;
+        add_up(figures, detail, detail.surface_pixels);
+        report.details.push_back(detail);
+        return;
+    }
+    LevelReport level;
+    uint64_t surface = 0;
+    level.level = scene.level;
+    const double least = add_up(figures, level, surface);
+    report.levels.push_back(level);
+    if (!scene.appearance)
+        return;
+    report.surface_pixels = surface;
+    report.hole_pixels = level.hole_pixels;
+    report.wall_pixels = level.wall_pixels;
+    report.leak_pixels = level.leak_pixels;
+    report.silhouette_iou = level.silhouette_iou;
+    report.silhouette_iou_min = least;
+    summarise(figures, depths, angles, report);
+}
+
 CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOptions &options,
                       Task &task)
 {
@@ -117,27 +144,7 @@ CompareReport compare(const gtx_asset *asset, const Mesh &mesh, const CompareOpt
         for (const Figures &f : figures[s])
             if (options.faults)
                 options.faults->insert(options.faults->end(), f.faults.begin(), f.faults.end());
-        if (s >= options.levels) {
-            DetailReport detail;
-            detail.size = scenes[s].views[0].size;
-            add_up(figures[s], detail, detail.surface_pixels);
-            report.details.push_back(detail);
-            continue;
-        }
-        LevelReport level;
-        uint64_t surface = 0;
-        level.level = scenes[s].level;
-        double least = add_up(figures[s], level, surface);
-        report.levels.push_back(level);
-        if (scenes[s].appearance) {
-            report.surface_pixels = surface;
-            report.hole_pixels = level.hole_pixels;
-            report.wall_pixels = level.wall_pixels;
-            report.leak_pixels = level.leak_pixels;
-            report.silhouette_iou = level.silhouette_iou;
-            report.silhouette_iou_min = least;
-            summarise(figures[s], depths, angles, report);
-        }
+        report_scene(scenes[s], figures[s], s < options.levels, depths, angles, report);
     }
     if (options.surface) {
         report.error = surface_error(asset, mesh, {}, task);
