@@ -57,6 +57,8 @@ static const option options[] = {
     {"vulkan", 0, OPTION_FLAG, &vulkan, nullptr, "draw with Vulkan; assets only", 0, 0},
     {nullptr, 0, OPTION_FLAG, nullptr, nullptr, nullptr, 0, 0}};
 
+enum { MAX_FILES = 64 };
+
 static const verb render = {
     "render", "FILE... -o OUT.png",
     "Draws assets, polygon models, height grids, worlds (DIR of gtx world) and glTF scenes to a\n"
@@ -64,7 +66,7 @@ static const verb render = {
     "GTX_geometry_texture places an asset; an asset embedded in a GLB is drawn as its mesh. Grids\n"
     "are drawn as gtx horizons makes them. --legend explains the colours of --show, or those that\n"
     "gtx horizons gave.",
-    1, 64, options, DRAWING_LIMITS};
+    1, MAX_FILES, options, DRAWING_LIMITS};
 
 static int usage(const char *sentence)
 {
@@ -193,13 +195,12 @@ static int write_images(const gtx::Vector<gtx::Still> &turn, const Outputs &outp
 
 int cmd_render(int argc, char **argv)
 {
-    const char *files[65];
+    const char *files[MAX_FILES + 1]; /* and what is beside them */
     int count;
     int code = parse_options(&render, argc, argv, files, &count);
-    if (code < 0)
-        code = check();
-    else
+    if (code >= 0)
         return code;
+    code = check();
     const Outputs outputs;
     files[count] = beside;
     if (!code)

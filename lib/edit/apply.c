@@ -1,4 +1,4 @@
-/* Operations of the caller's own. */
+/* Calls an operation of the caller's for each patch, and takes over what it did to own texels. */
 #include "edit/edit.h"
 
 #include "base/error.h"

@@ -1,5 +1,5 @@
-/* Packs rectangles into pages: shelves, tallest first. The cooker packs a tenth tighter, but takes
- * longer than an edit may. */
+/* Packs the rectangles of patches into pages, on shelves, tallest first. The cooker packs a tenth
+ * tighter, but takes longer than an edit may. */
 #include "edit/edit.h"
 
 #include "base/alloc.h"

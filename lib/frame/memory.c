@@ -1,4 +1,4 @@
-/* What making a model takes, known before it is taken. */
+/* An upper bound on the memory that making a model takes, from the sizes of its asset. */
 #include "frame/model.h"
 
 /* A hull has a vertex above and one below each corner of its blocks, and seven quads a block at

@@ -58,75 +58,91 @@ static void compile(const char *version, const char *options, const char *kind,
         fail_msg("%s does not compile as %s", kind, version);
 }
 
+/* A #version line, and glslangValidator's options for it. */
+typedef struct dialect {
+    const char *version, *options;
+} dialect;
+
+/* With macros after the version: lines, or "". */
+static void compile_as(const dialect *d, const char *macros, const char *kind,
+                       const char *const *parts)
+{
+    char head[160];
+    snprintf(head, sizeof head, "%s%s", d->version, macros);
+    compile(head, d->options, kind, parts);
+}
+
+#define MATERIALS "\n#define GTX_MATERIALS"
+
+static void compile_casts(const dialect *d)
+{
+    compile_as(d, "", "vert", vertex);
+    for (int k = 0; k < MAINS * METHODS; ++k) {
+        const char *const parts[] = {SHARED, "geotex_surface.glsl", methods[k % METHODS],
+                                     "geotex_fragment.glsl", mains[k / METHODS], NULL};
+        const char *const shaded[] = {SHARED, "geotex_surface.glsl", "geotex_material.glsl",
+                                      methods[k % METHODS], "geotex_fragment.glsl",
+                                      mains[k / METHODS], NULL};
+        if (k / METHODS < 3)
+            compile_as(d, "", "frag", parts);
+        if (k / METHODS == 0 || k / METHODS == 3)
+            compile_as(d, MATERIALS, "frag", shaded);
+    }
+    for (int k = 0; k < MAINS; ++k)
+        compile_as(d, MATERIALS "\n#define GTX_SKIP", "frag",
+                   (const char *const[]){SHARED, "geotex_surface.glsl", "geotex_material.glsl",
+                                         "geotex_cast.glsl", "geotex_skip.glsl",
+                                         "geotex_fragment.glsl", mains[k], NULL});
+    compile_as(d, MATERIALS, "frag", rays);
+}
+
+static void compile_lods(const dialect *d)
+{
+    compile_as(d, "", "vert", lod_vertex);
+    for (int k = 0; k < MAINS; ++k) {
+        const char *main = k ? mains[k] : "geotex_lod.frag";
+        const char *const parts[] = {SHARED, "geotex_surface.glsl", "geotex_lod_fragment.glsl",
+                                     main, NULL};
+        const char *const shaded[] = {SHARED, "geotex_surface.glsl", "geotex_material.glsl",
+                                      "geotex_lod_fragment.glsl", main, NULL};
+        if (k < 3)
+            compile_as(d, "", "frag", parts);
+        if (k == 0 || k == 3)
+            compile_as(d, MATERIALS "\n#define GTX_SKIP", "frag", shaded);
+    }
+    compile_as(d, MATERIALS, "frag", lod_front_shaded);
+    compile_as(d, MATERIALS "\n#define GTX_CONSTANT", "frag", lod_front_shaded);
+    compile_as(d, "\n#define GTX_PLAIN", "frag", lod);
+    compile_as(d, "\n#define GTX_PLAIN", "frag", lod_front);
+    compile_as(d, "", "frag", lod_front);
+    compile_as(d, "\n#define GTX_FRONT", "vert", lod_vertex);
+    compile_as(d, "\n#define GTX_FRONT" MATERIALS, "vert", lod_vertex);
+}
+
+static void compile_grids(const dialect *d)
+{
+#define LIT_GRID "\n#define GTX_GRID\n#define GTX_LIT\n#define GTX_TRIMMED"
+#define BLOCKS "\n#define GTX_GRID\n#define GTX_BLOCKS\n#define GTX_TRIMMED"
+    compile_as(d, LIT_GRID, "vert", lod_vertex);
+    compile_as(d, LIT_GRID, "frag", lit);
+    compile_as(d, LIT_GRID "\n#define GTX_PLAIN", "vert", lod_vertex);
+    compile_as(d, BLOCKS, "vert", lod_vertex);
+    compile_as(d, BLOCKS, "frag", lod);
+    compile_as(d, BLOCKS, "frag", lod_front);
+}
+
 static void every_dialect(void **state)
 {
     (void)state;
-    static const char *const versions[][2] = {{"#version 330 core", ""},
-                                              {"#version 450 core", ""},
-                                              {"#version 300 es", ""},
-                                              {"#version 310 es", ""},
-                                              {"#version 450", "-V -o /dev/null"}};
+    static const dialect dialects[] = {{"#version 330 core", ""}, {"#version 450 core", ""},
+                                       {"#version 300 es", ""}, {"#version 310 es", ""},
+                                       {"#version 450", "-V -o /dev/null"}};
     if (system("glslangValidator --version >/dev/null 2>&1"))
         skip();
-    for (size_t i = 0; i < sizeof versions / sizeof *versions; ++i) {
-        compile(versions[i][0], versions[i][1], "vert", vertex);
-        char head[80], blocks[100];
-        snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS", versions[i][0]);
-        for (int k = 0; k < MAINS * METHODS; ++k) {
-            const char *const parts[] = {SHARED, "geotex_surface.glsl",
-                                         methods[k % METHODS], "geotex_fragment.glsl",
-                                         mains[k / METHODS], NULL};
-            const char *const shaded[] = {SHARED, "geotex_surface.glsl",
-                                          "geotex_material.glsl", methods[k % METHODS],
-                                          "geotex_fragment.glsl", mains[k / METHODS], NULL};
-            if (k / METHODS < 3)
-                compile(versions[i][0], versions[i][1], "frag", parts);
-            if (k / METHODS == 0 || k / METHODS == 3)
-                compile(head, versions[i][1], "frag", shaded);
-        }
-        snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS\n#define GTX_SKIP", versions[i][0]);
-        for (int k = 0; k < MAINS; ++k)
-            compile(head, versions[i][1], "frag",
-                    (const char *const[]){SHARED, "geotex_surface.glsl", "geotex_material.glsl",
-                                          "geotex_cast.glsl", "geotex_skip.glsl",
-                                          "geotex_fragment.glsl", mains[k], NULL});
-        compile(versions[i][0], versions[i][1], "vert", lod_vertex);
-        for (int k = 0; k < MAINS; ++k) {
-            const char *main = k ? mains[k] : "geotex_lod.frag";
-            const char *const parts[] = {SHARED, "geotex_surface.glsl",
-                                         "geotex_lod_fragment.glsl", main, NULL};
-            const char *const shaded[] = {SHARED, "geotex_surface.glsl",
-                                          "geotex_material.glsl", "geotex_lod_fragment.glsl",
-                                          main, NULL};
-            if (k < 3)
-                compile(versions[i][0], versions[i][1], "frag", parts);
-            if (k == 0 || k == 3)
-                compile(head, versions[i][1], "frag", shaded);
-        }
-        snprintf(head, sizeof head, "%s\n#define GTX_MATERIALS", versions[i][0]);
-        compile(head, versions[i][1], "frag", rays);
-        compile(head, versions[i][1], "frag", lod_front_shaded);
-        strcat(head, "\n#define GTX_CONSTANT");
-        compile(head, versions[i][1], "frag", lod_front_shaded);
-        snprintf(head, sizeof head, "%s\n#define GTX_PLAIN", versions[i][0]);
-        compile(head, versions[i][1], "frag", lod);
-        compile(head, versions[i][1], "frag", lod_front);
-        compile(versions[i][0], versions[i][1], "frag", lod_front);
-        snprintf(head, sizeof head, "%s\n#define GTX_FRONT", versions[i][0]);
-        compile(head, versions[i][1], "vert", lod_vertex);
-        snprintf(head, sizeof head, "%s\n#define GTX_FRONT\n#define GTX_MATERIALS", versions[i][0]);
-        compile(head, versions[i][1], "vert", lod_vertex);
-        snprintf(head, sizeof head, "%s\n#define GTX_GRID\n#define GTX_LIT\n#define GTX_TRIMMED",
-                 versions[i][0]);
-        compile(head, versions[i][1], "vert", lod_vertex);
-        compile(head, versions[i][1], "frag", lit);
-        snprintf(blocks, sizeof blocks,
-                 "%s\n#define GTX_GRID\n#define GTX_BLOCKS\n#define GTX_TRIMMED", versions[i][0]);
-        compile(blocks, versions[i][1], "vert", lod_vertex);
-        compile(blocks, versions[i][1], "frag", lod);
-        compile(blocks, versions[i][1], "frag", lod_front);
-        strcat(head, "\n#define GTX_PLAIN");
-        compile(head, versions[i][1], "vert", lod_vertex);
+    for (size_t i = 0; i < sizeof dialects / sizeof *dialects; ++i) {
+        compile_casts(&dialects[i]);
+        compile_lods(&dialects[i]);
+        compile_grids(&dialects[i]);
     }
 }
 
