@@ -23,6 +23,13 @@ struct Box {
             high[k] = std::max(high[k], at >= p[k] ? at : above(at));
         }
     }
+    bool touches(const Box &b) const
+    {
+        bool apart = false;
+        for (int k = 0; k < 3; ++k)
+            apart |= low[k] > b.high[k] || high[k] < b.low[k];
+        return !apart;
+    }
     /* The next float: std::nextafter in a few instructions. */
     static float above(float at)
     {

@@ -57,13 +57,16 @@ public:
     /* Parts of the tree that may be visited by themselves, whatever the number of threads. */
     size_t parts() const { return (leaves_ + PART - 1) / PART; }
 
+    /* Of all shapes of a part. */
+    const Box &box(size_t part) const { return boxes_[root(part)]; }
+
     /* Visits the shapes of a part, close ones one after another, but those in a box that `skips` is
      * true of. */
     template <class Skips, class Visit>
     void visit(size_t part, const Skips &skips, const Visit &visit) const
     {
         size_t stack[64], size = 0;
-        stack[size++] = leaves_ / std::min(leaves_, PART) + part;
+        stack[size++] = root(part);
         while (size) {
             const size_t node = stack[--size];
             cancel_point();
@@ -194,6 +197,7 @@ private:
         return best;
     }
 
+    size_t root(size_t part) const { return leaves_ / std::min(leaves_, PART) + part; }
     uint32_t first(size_t part) const
     {
         return uint32_t(std::min(part * PART * LEAF, shapes_.size()));

@@ -178,7 +178,8 @@ static void relief_that_wants_a_finer_pitch(void **)
     const Partition partition = one_chart(mesh, 48);
     const gtx_patch patch = bake_with(mesh, partition, nullptr).patches[0];
     assert_true(patch.extent_x / patch.rect[2] < 0.9 * partition.pitch);
-    expect_the_same(mesh, partition);
+    /* How far a texel may rise goes by the triangle that it shows; on walls a GPU sees another. */
+    expect_the_same(mesh, partition, 0.98);
 }
 
 /* Waves that lean over: every tenth triangle or so faces away and cannot be seen. Patches of their

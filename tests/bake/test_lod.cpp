@@ -299,6 +299,9 @@ static void a_scan_is_followed(void **)
     assert_true(lod.levels[0].error < 0.5e-3 * diagonal);
     assert_true(lod.levels[0].triangle_count() > mesh.triangle_count() / 2);
     assert_true(lod.levels[1].triangle_count() < mesh.triangle_count() / 7);
+    /* No spots set an error: without vertices of their own 10 and 11 times the mean. */
+    for (int k = 1; k < 3; ++k)
+        assert_true(lod.levels[k].error < 9 * lod.levels[k].rms);
 }
 
 /* Not an edge of a closed model is open at any level: nothing shows through. */

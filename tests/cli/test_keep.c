@@ -26,7 +26,7 @@ static void the_source_takes_turns_with_its_asset(void **state)
     gtx_image source = view("cooked.gtx --source box.obj", "tx");
     gtx_image back = view("cooked.gtx --source box.obj", "txx");
     gtx_image dropped = view("--drop sphere.obj", "~tx"), mesh = view("sphere.obj", "t");
-    assert_true(difference(&dropped, &mesh, false) < 300); /* it is where the asset's bounds are */
+    assert_true(difference(&dropped, &mesh, false) < 500); /* it is where the asset's bounds are */
     gtx_image none = view("cooked.gtx", "tx"); /* no source is known */
     gtx_image wrong = view("cooked.gtx --source none.obj", "tx");
     assert_true(difference(&asset, &source, false) > 1000);

@@ -1,58 +1,10 @@
 /* How far an LOD mesh strays from the surface that it was made of. */
 #pragma once
 
-#include "bake/lod/lod.hpp"
-#include "mesh/nearest.hpp"
+#include "bake/lod/far_search.hpp"
+#include "bake/lod/spots.hpp"
 
 namespace gtx::baking {
-
-/* Triangles, for NearestTree. */
-struct Surface {
-    const Vector<Vec3d> &positions;
-    const Vector<std::array<uint32_t, 3>> &triangles;
-
-    size_t size() const { return triangles.size(); }
-    size_t looks(size_t) const { return 1; }
-    std::array<Vec3d, 3> corners(size_t t) const
-    {
-        const auto &[a, b, c] = triangles[t];
-        return {positions[a], positions[b], positions[c]};
-    }
-    gtx::Box box(size_t t) const
-    {
-        gtx::Box box;
-        for (const Vec3d &p : corners(t))
-            box.add(p);
-        return box;
-    }
-    double distance2(size_t t, const Vec3d &p, double) const
-    {
-        const std::array<Vec3d, 3> c = corners(t);
-        return triangle_distance2(p, c[0], c[1], c[2]);
-    }
-};
-
-/* A surface and a tree of its triangles, which have the order of the tree. */
-class SortedSurface {
-public:
-    SortedSurface(Vector<Vec3d> positions, Vector<std::array<uint32_t, 3>> triangles, Task &task,
-                  double done);
-    SortedSurface(const SortedSurface &) = delete;
-    SortedSurface &operator=(const SortedSurface &) = delete;
-
-    size_t size() const { return triangles_.size(); }
-    std::array<Vec3d, 3> corners(size_t t) const { return shapes_.corners(t); }
-    const NearestTree<Surface> &tree() const { return tree_; }
-    /* Which of those that were given triangle t is. */
-    uint32_t given(size_t t) const { return given_[t]; }
-
-private:
-    Vector<Vec3d> positions_;
-    Vector<std::array<uint32_t, 3>> triangles_;
-    Surface shapes_;
-    NearestTree<Surface> tree_;
-    Vector<uint32_t> given_;
-};
 
 /* Object units. */
 struct Strayed {
@@ -60,17 +12,39 @@ struct Strayed {
     double rms = 0;              /* of the surface's vertices from the level */
 };
 
+/* What of the source is farther from a level than `most`, or of the level from the source: a point
+ * of each triangle. */
+struct Spots {
+    Vector<FarPoint> points;
+    bool of_level = false;
+    double most = 0;
+    double rms = 0;              /* as in Strayed; of the source */
+};
+
 class Bounds {
 public:
     /* `source` outlives it; texels are `pitch` apart. */
     Bounds(const LodSource &source, double pitch, Task &task);
 
-    /* Parts of the source that are no longer than `speck` need not be in the level. */
-    Strayed of(const LodLevel &level, double speck) const;
+    /* Of a level. Parts of the source that are no longer than `speck` need not be in it. */
+    Strayed of(const LevelMesh &mesh, const Lattice &lattice, double speck) const;
+    /* What of the source is farther from it than `least`, and much farther than the rest. */
+    Spots spots(const LevelMesh &mesh, const Lattice &lattice, double speck, double least) const;
+    /* What of it is farther from the source than `least`. */
+    Spots spots_of(const LevelMesh &mesh, const Lattice &lattice, double least) const;
+    /* A bound, after what lay there was changed: of the source, and of the level where they were
+     * of that, if it was bounded elsewhere by as much as theirs. */
+    double after(const LevelMesh &mesh, const Lattice &lattice, double speck, const Spots &spots,
+                 const Vector<std::array<Vec3d, 3>> &changed) const;
 
 private:
+    struct LevelSurface;
+
+    bool is_shown(uint32_t triangle, double speck) const;
+
     double pitch_;
     Task &task_;
+    const Vector<uint32_t> &patch_;
     SortedSurface source_;
     Vector<double> parts_;       /* how long the connected part of each triangle given is */
     double largest_part_;

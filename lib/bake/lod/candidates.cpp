@@ -5,9 +5,7 @@
 
 namespace gtx::baking {
 
-/* A few bytes change at half and at double, of either. */
-/* A triangle may turn by as much as has this cosine. */
-constexpr double MIN_TURN_COSINE = 0.25;
+/* A few bytes change at half and at double. */
 /* What moving a vertex along a plane costs, as a share of the squared distance: of two that
  * leave the surface alone, the shorter way makes better triangles. */
 constexpr double SLIDE = 1e-5;
@@ -44,24 +42,8 @@ bool Simplifier::State::keeps_topology(const Fan &fan, uint32_t from, uint32_t t
     return remains;
 }
 
-/* Whether a triangle that changes stays where its patch can show it. One that never was there
- * may go anywhere; several that cover the same area as before are where they were. */
-bool Simplifier::State::keeps_place(uint32_t of, const Corners &before, const Corners &after,
-                                    bool same_area) const
-{
-    const PatchRegion &region = regions[of];
-    std::array<double, 2> was[3], is[3];
-    for (int k = 0; k < 3; ++k)
-        is[k] = region.place(after[k]);
-    const bool turned = winding(is) <= 0;
-    if (!turned && (same_area || region.holds(is)))
-        return true;
-    for (int k = 0; k < 3; ++k)
-        was[k] = region.place(before[k]);
-    return (!turned || winding(was) <= 0) && (region.holds(is) || !region.holds(was));
-}
-
-/* Whether a triangle does so, and does not turn much, when one of its vertices is at `place`. */
+/* Whether a triangle stays where its patch can show it, and does not turn much, when one of its
+ * vertices is at `place`. */
 bool Simplifier::State::keeps_shape(uint32_t triangle, uint32_t vertex, const Vec3d &place,
                                     bool same_area) const
 {
@@ -75,7 +57,7 @@ bool Simplifier::State::keeps_shape(uint32_t triangle, uint32_t vertex, const Ve
     const double sizes = std::sqrt(dot(was, was) * dot(is, is));
     if (dot(was, was) > 0 && dot(was, is) <= MIN_TURN_COSINE * sizes)
         return false;
-    return crossing || keeps_place(patch[triangle], before, after, same_area);
+    return crossing || regions[patch[triangle]].keeps(before, after, same_area);
 }
 
 bool Simplifier::State::keeps_shapes(const Fan &fan, uint32_t from, uint32_t to) const

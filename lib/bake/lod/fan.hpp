@@ -15,6 +15,11 @@ using Triangle = std::array<uint32_t, 3>;
 /* Triangles around a vertex beyond which it stays. */
 constexpr int MAX_FAN = 40;
 
+/* A triangle of which a vertex is merged or moved may turn by as much as has this cosine. At half
+ * and at double a few bytes change of what is merged; of what is moved at double 15 % more of one
+ * level's error (bunny). */
+constexpr double MIN_TURN_COSINE = 0.25;
+
 /* The triangles around a vertex in order: `ring` holds their other vertices, one more than there
  * are triangles where the fan is open. Where height fields meet there is no order, and each other
  * vertex is in the ring once. */

@@ -1,15 +1,11 @@
 /* The LOD meshes: how many, how fine, and the order of their triangles. */
 #include "bake/lod/bound.hpp"
-#include "bake/lod/parts.hpp"
+#include "bake/lod/spots.hpp"
 #include "base/exact.h"
-#include "bake/lod/strip.hpp"
 
 #include <algorithm>
-#include <map>
 
 namespace gtx::baking {
-
-using Place = std::array<uint16_t, 3>; /* of a vertex, in steps */
 
 /* Measured with five levels of bunny, Spot's control mesh and the truck, at half and at double. */
 
@@ -69,134 +65,6 @@ static double mean_pitch(const Maps &maps)
     return std::sqrt(area / texels);
 }
 
-/* The places that positions are rounded to. */
-struct Lattice {
-    float origin[3] = {0, 0, 0}, step = 0;
-
-    Lattice(const Vector<Vec3d> &points, double wanted)
-    {
-        Vec3d low = points[0], high = low;
-        for (const Vec3d &p : points) {
-            for (int k = 0; k < 3; ++k) {
-                low[k] = std::min(low[k], p[k]);
-                high[k] = std::max(high[k], p[k]);
-            }
-        }
-        const Vec3d size = high - low;
-        step = float(std::max(wanted, std::max({size.x, size.y, size.z}) / 65534));
-        store(origin, low);
-    }
-    Place round(const Vec3d &point) const
-    {
-        Place place;
-        for (int k = 0; k < 3; ++k)
-            place[k] = uint16_t(
-                std::clamp(std::floor((point[k] - origin[k]) / step + 0.5), 0.0, 65535.0));
-        return place;
-    }
-    Vec3d point(const Place &place) const
-    {
-        return {origin[0] + double(step) * place[0], origin[1] + double(step) * place[1],
-                origin[2] + double(step) * place[2]};
-    }
-};
-
-static bool collapses(const Triangle &t, const Vector<Place> &places)
-{
-    return places[t[0]] == places[t[1]] || places[t[1]] == places[t[2]] ||
-           places[t[2]] == places[t[0]];
-}
-
-/* Whether a level may have the triangle: it has an area, and lies on the rectangle of its patch or
- * next to it. */
-static bool fits(const PatchRegion &region, const Triangle &t, const Lattice &lattice,
-                 const Vector<Place> &places)
-{
-    if (collapses(t, places))
-        return false;
-    for (uint32_t v : t)
-        if (!region.near(region.place(lattice.point(places[v]))))
-            return false;
-    return true;
-}
-
-/* The patch of each triangle, or NO_PATCH where none may have it: a triangle that does not fit its
- * own goes to one that has a neighbour of it, for without it there would be a hole. */
-static Vector<uint32_t> find_homes(const Simplifier &simplified,
-                                   const Vector<PatchRegion> &regions,
-                                   const Lattice &lattice, const Vector<Place> &places)
-{
-    const auto &triangles = simplified.triangles();
-    Vector<uint32_t> homes = simplified.patch(), homeless;
-    Vector<std::pair<uint32_t, uint32_t>> beside;      /* vertices, and patches that have them */
-    for (uint32_t t = 0; t < triangles.size(); ++t) {
-        if (fits(regions[homes[t]], triangles[t], lattice, places))
-            continue;
-        homes[t] = NO_PATCH;
-        if (!collapses(triangles[t], places))
-            homeless.push_back(t);
-    }
-    for (uint32_t t = 0; t < triangles.size() && !homeless.empty(); ++t)
-        for (uint32_t v : triangles[t])
-            if (homes[t] != NO_PATCH)
-                beside.push_back({v, homes[t]});
-    std::sort(beside.begin(), beside.end());
-    beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
-    for (uint32_t t : homeless)
-        for (uint32_t v : triangles[t])
-            for (auto at = std::lower_bound(beside.begin(), beside.end(), std::make_pair(v, 0u));
-                 homes[t] == NO_PATCH && at != beside.end() && at->first == v; ++at)
-                if (fits(regions[at->second], triangles[t], lattice, places))
-                    homes[t] = at->second;
-    return homes;
-}
-
-static Vector<Place> round_all(const Simplifier &simplified, const Lattice &lattice)
-{
-    Vector<Place> places;
-    for (const Vec3d &p : simplified.positions())
-        places.push_back(lattice.round(p));
-    return places;
-}
-
-/* `patch` has NO_PATCH for triangles that are left out. */
-static LodLevel make_level(const Simplifier &simplified, const Vector<uint32_t> &patch,
-                           const Vector<Place> &places, size_t patches,
-                           const Lattice &lattice)
-{
-    const auto &triangles = simplified.triangles();
-    Vector<Vector<uint32_t>> members(patches);
-    for (size_t t = 0; t < triangles.size(); ++t)
-        if (patch[t] != NO_PATCH && !collapses(triangles[t], places))
-            members[patch[t]].push_back(uint32_t(t));
-
-    LodLevel level;
-    std::copy_n(lattice.origin, 3, level.origin);
-    level.step = lattice.step;
-    std::map<Place, uint32_t> name; /* of the vertex at a place */
-    Vector<uint32_t> named(places.size(), NO_VERTEX);
-    Vector<Triangle> ordered;
-    Strip strip(triangles, patch, places.size());
-    for (uint32_t p = 0; p < members.size(); ++p) {
-        level.first.push_back(uint32_t(ordered.size()));
-        strip.follow(p, members[p], ordered);
-    }
-    level.first.push_back(uint32_t(ordered.size()));
-    for (const Triangle &t : ordered) {
-        for (uint32_t v : t) {
-            if (named[v] == NO_VERTEX) {
-                const auto [at, is_new] = name.try_emplace(places[v], uint32_t(name.size()));
-                if (is_new)
-                    level.positions.insert(level.positions.end(), places[v].begin(),
-                                           places[v].end());
-                named[v] = at->second;
-            }
-            level.indices.push_back(named[v]);
-        }
-    }
-    return level;
-}
-
 /* What all levels of an asset are made with. */
 struct LodJob {
     const Maps &maps;
@@ -206,17 +74,33 @@ struct LodJob {
     Task &task;
 };
 
-/* Adds a level that the simplifier made, and says how far it strays: no less than a finer one. */
-static void add_level(const LodJob &job, const Simplifier &simplifier, LodLevel &&level,
-                      Vector<LodLevel> &lod)
+/* Adds a level that strays so far, or misses specks: it says no less than a finer one. */
+static void add_level(const LodJob &job, const LevelMesh &mesh, const Strayed &strayed,
+                      double speck, Vector<LodLevel> &lod)
 {
-    const double speck = SPECK * simplifier.error();
-    const Strayed strayed = job.bounds.of(level, speck);
+    LodLevel level = stored(mesh, job.regions.size(), job.lattice);
     level.error = std::nextafter(float(std::max(strayed.most, speck)), INFINITY);
     level.rms = float(strayed.rms);
     if (!lod.empty())
         level.error = std::max(level.error, lod.back().error);
     lod.push_back(std::move(level));
+}
+
+/* Gives vertices to the few spots that a level is far from, which would set its error, and says how
+ * far it strays then. The source first: it takes less, and what is left of its spots spares most
+ * looks at the level. Triangles lie in their patches. */
+static Strayed mend(const LodJob &job, LevelMesh &mesh, double speck)
+{
+    const Bounds &bounds = job.bounds;
+    const Lattice &lattice = job.lattice;
+    auto reach = [&](const Spots &spots) {
+        const auto changed = reach_spots(mesh, spots.points, spots.most, job.regions, lattice);
+        return bounds.after(mesh, lattice, speck, spots, changed);
+    };
+    const Spots spots = bounds.spots(mesh, lattice, speck, lattice.step / 2);
+    if (spots.points.empty())
+        return bounds.of(mesh, lattice, speck);
+    return {reach(bounds.spots_of(mesh, lattice, reach(spots))), spots.rms};
 }
 
 /* Takes away the parts that are no longer than the error; not all. */
@@ -246,14 +130,13 @@ static void add_far_levels(const LodJob &job, Simplifier &simplifier, double mos
         drop_specks(simplifier);
         if (double(simplifier.triangles().size()) > MAX_SHARE * before)
             return;
-        const Vector<uint32_t> homes =
-            find_far_homes(simplifier, job.maps, job.regions, job.task);
-        LodLevel level = make_level(simplifier, homes, round_all(simplifier, job.lattice),
-                                    job.regions.size(), job.lattice);
-        level.far = true;
-        if (level.indices.empty())
+        const LevelMesh mesh =
+            far_level_mesh(simplifier, job.maps, job.regions, job.lattice, job.task);
+        if (mesh.empty())
             return;
-        add_level(job, simplifier, std::move(level), lod);
+        const double speck = SPECK * simplifier.error();
+        add_level(job, mesh, job.bounds.of(mesh, job.lattice, speck), speck, lod);
+        lod.back().far = true;
     }
 }
 
@@ -290,13 +173,11 @@ Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned le
         if (k && double(simplifier.triangles().size()) > MAX_SHARE * double(before))
             break;
         simplifier.settle();
-        const Vector<Place> places = round_all(simplifier, lattice);
-        LodLevel level =
-            make_level(simplifier, find_homes(simplifier, regions, lattice, places), places,
-                       regions.size(), lattice);
-        if (level.indices.empty())
+        LevelMesh mesh = level_mesh(simplifier, regions, lattice);
+        if (mesh.empty())
             break;
-        add_level(job, simplifier, std::move(level), lod);
+        const double speck = SPECK * simplifier.error();
+        add_level(job, mesh, mend(job, mesh, speck), speck, lod);
         wanted = size_t(double(simplifier.triangles().size()) / LEVEL_RATIO);
         if (finer && k == 0)
             wanted = model / FINEST_RATIO;

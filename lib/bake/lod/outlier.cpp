@@ -17,8 +17,7 @@ struct Outlier {
     std::array<double, 3> share{}; /* and what its corners have of it */
 };
 
-/* By which shares of its corners a triangle is nearest to a point. */
-static std::array<double, 3> nearest_shares(const std::array<Vec3d, 3> &c, const Vec3d &point)
+std::array<double, 3> nearest_shares(const std::array<Vec3d, 3> &c, const Vec3d &point)
 {
     const Vec3d x = c[1] - c[0], y = c[2] - c[0], p = point - c[0];
     const double xx = dot(x, x), xy = dot(x, y), yy = dot(y, y), px = dot(p, x), py = dot(p, y);

@@ -23,6 +23,10 @@ public:
     bool holds(const std::array<double, 2> (&corner)[3]) const;
     /* Whether it has one at this place. */
     bool holds(const std::array<double, 2> &place) const;
+    /* Whether a triangle that changes stays where the patch can show it. One that never was there
+     * may go anywhere; several that cover the same area as before are where they were. */
+    bool keeps(const std::array<Vec3d, 3> &before, const std::array<Vec3d, 3> &after,
+               bool same_area) const;
     /* Whether this is on the patch's rectangle, or at most half a texel beside it. */
     bool near(const std::array<double, 2> &place) const
     {
@@ -104,6 +108,7 @@ public:
     const Vector<Vec3d> &positions() const;
     const Vector<std::array<uint32_t, 3>> &triangles() const;
     const Vector<uint32_t> &patch() const;
+    const Vector<uint8_t> &kept() const; /* as in LodSource */
     /* The greatest at a vertex, so far, when they settled: root of the mean square of the distances
      * to the planes that it stands for. The farthest point of the source is up to three times as
      * far away. */

@@ -63,6 +63,20 @@ bool PatchRegion::holds(const std::array<double, 2> &place) const
            clear_[size_t(place[1]) * w_ + size_t(place[0])];
 }
 
+bool PatchRegion::keeps(const std::array<Vec3d, 3> &before, const std::array<Vec3d, 3> &after,
+                        bool same_area) const
+{
+    std::array<double, 2> was[3], is[3];
+    for (int k = 0; k < 3; ++k)
+        is[k] = place(after[k]);
+    const bool turned = winding(is) <= 0;
+    if (!turned && (same_area || holds(is)))
+        return true;
+    for (int k = 0; k < 3; ++k)
+        was[k] = place(before[k]);
+    return (!turned || winding(was) <= 0) && (holds(is) || !holds(was));
+}
+
 bool PatchRegion::holds(const std::array<double, 2> (&corner)[3]) const
 {
     const auto [x0, x1] = std::minmax({corner[0][0], corner[1][0], corner[2][0]});

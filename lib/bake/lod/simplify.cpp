@@ -167,7 +167,7 @@ size_t Simplifier::State::merge(uint32_t vertex, float limit, double most)
  * those inside a block on a thread each, then those between blocks. Returns how many. */
 size_t Simplifier::State::round(size_t wanted, double free, double most)
 {
-find_around();
+    find_around();
     find_costs(most);
     const float limit = find_limit(free);
     const size_t blocks = (positions.size() + BLOCK - 1) / BLOCK, before = positions.size();
@@ -186,7 +186,7 @@ find_around();
                 gone[block] += merge(c.from, limit, most);
         }
     }, done(), done());
-Vector<Candidate> rest;
+    Vector<Candidate> rest;
     size_t left = triangles.size();
     for (size_t block = 0; block < blocks; ++block) {
         rest.insert(rest.end(), outside[block].begin(), outside[block].end());
@@ -202,7 +202,7 @@ Vector<Candidate> rest;
         cancel_point();
         left -= merge(c.from, limit, most);
     }
-compact();
+    compact();
     return before - positions.size();
 }
 
@@ -269,6 +269,11 @@ const Vector<Triangle> &Simplifier::triangles() const
 const Vector<uint32_t> &Simplifier::patch() const
 {
     return state_->patch;
+}
+
+const Vector<uint8_t> &Simplifier::kept() const
+{
+    return state_->kept;
 }
 
 double Simplifier::error() const

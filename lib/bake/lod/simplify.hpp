@@ -67,8 +67,6 @@ struct Simplifier::State {
                                 start[vertex + 1] - start[vertex], vertex, fan);
     }
     bool keeps_topology(const Fan &fan, uint32_t from, uint32_t to) const;
-    bool keeps_place(uint32_t patch, const Corners &before, const Corners &after,
-                     bool same_area) const;
     bool keeps_shape(uint32_t triangle, uint32_t vertex, const Vec3d &place,
                      bool same_area) const;
     bool keeps_shapes(const Fan &fan, uint32_t from, uint32_t to) const;

@@ -1,0 +1,62 @@
+/* Splits triangles until none may be farther than the farthest point that is known. */
+#include "bake/lod/far_search.hpp"
+
+#include <algorithm>
+
+namespace gtx::baking {
+
+static double radius_of(const Corners &c, const Vec3d &middle)
+{
+    return std::max({length(c[0] - middle), length(c[1] - middle), length(c[2] - middle)});
+}
+
+void FarSearch::look(FarCorner &a, FarCorner &b, FarCorner &c)
+{
+    cancel_point();
+    if (is_covered(a, b, c) || (slope >= 1 && was_covered(a, b, c)))
+        return;
+    const Vec3d middle = (a.at + b.at + c.at) / 3;
+    const double radius = radius_of({a.at, b.at, c.at}, middle);
+    const double enough = most() - slope * radius;
+    if (enough > 0 || radius <= least) {
+        const double away = distance(middle, std::max(0.0, enough));
+        if (away <= enough)
+            return;
+        if (away > found)
+            farthest = {middle, near};
+        found = std::max(found, away);
+        if (away + slope * radius <= most() || radius <= least || is_covered(a, b, c))
+            return;
+    }
+    FarCorner x = {(b.at + c.at) / 2}, y = {(c.at + a.at) / 2}, z = {(a.at + b.at) / 2};
+    look(x, y, z);
+    look(a, z, y);
+    look(z, b, x);
+    look(y, x, c);
+}
+
+SortedSurface::SortedSurface(Vector<Vec3d> positions,
+                             Vector<std::array<uint32_t, 3>> triangles, Task &task, double done)
+    : positions_(std::move(positions)), triangles_(std::move(triangles)),
+      shapes_{positions_, triangles_}, tree_(shapes_, task, done), given_(tree_.renumber())
+{
+    Vector<Vec3d> places;
+    Vector<std::array<uint32_t, 3>> ordered;
+    Vector<uint32_t> name(positions_.size(), NO_VERTEX);
+    places.reserve(positions_.size());
+    ordered.reserve(triangles_.size());
+    for (uint32_t t : given_) {
+        ordered.push_back(triangles_[t]);
+        for (uint32_t &v : ordered.back()) {
+            if (name[v] == NO_VERTEX) {
+                name[v] = uint32_t(places.size());
+                places.push_back(positions_[v]);
+            }
+            v = name[v];
+        }
+    }
+    positions_ = std::move(places);
+    triangles_ = std::move(ordered);
+}
+
+} // namespace gtx::baking

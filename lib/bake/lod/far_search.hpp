@@ -1,0 +1,206 @@
+/* Where a surface is far from another: its triangles are split where the other may be farther from
+ * them than from any point looked at so far. */
+#pragma once
+
+#include "bake/lod/parts.hpp"
+#include "mesh/nearest.hpp"
+
+namespace gtx::baking {
+
+using Corners = std::array<Vec3d, 3>;
+
+/* The bound that is told, as a multiple of the farthest point found: at 1.05 twice as many
+ * triangles are split, at 1.2 levels are used that much nearer than they might. */
+constexpr double LOOSE = 1.1;
+/* So many of the last triangles that were nearest are tried before the tree is asked; 7 take as
+ * long, 15 a tenth more. */
+constexpr size_t EARLIER = 3;
+
+/* Triangles, for NearestTree. */
+struct Surface {
+    const Vector<Vec3d> &positions;
+    const Vector<std::array<uint32_t, 3>> &triangles;
+
+    size_t size() const { return triangles.size(); }
+    size_t looks(size_t) const { return 1; }
+    std::array<Vec3d, 3> corners(size_t t) const
+    {
+        const auto &[a, b, c] = triangles[t];
+        return {positions[a], positions[b], positions[c]};
+    }
+    gtx::Box box(size_t t) const
+    {
+        gtx::Box box;
+        for (const Vec3d &p : corners(t))
+            box.add(p);
+        return box;
+    }
+    double distance2(size_t t, const Vec3d &p, double) const
+    {
+        const std::array<Vec3d, 3> c = corners(t);
+        return triangle_distance2(p, c[0], c[1], c[2]);
+    }
+};
+
+/* A surface and a tree of its triangles, which have the order of the tree. */
+class SortedSurface {
+public:
+    SortedSurface(Vector<Vec3d> positions, Vector<std::array<uint32_t, 3>> triangles, Task &task,
+                  double done);
+    SortedSurface(const SortedSurface &) = delete;
+    SortedSurface &operator=(const SortedSurface &) = delete;
+
+    size_t size() const { return triangles_.size(); }
+    std::array<Vec3d, 3> corners(size_t t) const { return shapes_.corners(t); }
+    const NearestTree<Surface> &tree() const { return tree_; }
+    /* Which of those that were given triangle t is. */
+    uint32_t given(size_t t) const { return given_[t]; }
+
+private:
+    Vector<Vec3d> positions_;
+    Vector<std::array<uint32_t, 3>> triangles_;
+    Surface shapes_;
+    NearestTree<Surface> tree_;
+    Vector<uint32_t> given_;
+};
+
+/* A point, and how far it was from the nearest triangle at the time. */
+struct FarCorner {
+    Vec3d at;
+    uint32_t near = NO_PATCH;
+    double away = 0;             /* squared */
+};
+
+/* A triangle that was the nearest, and its box. */
+struct KnownTriangle {
+    uint32_t triangle = NO_PATCH;
+    NearTriangle shape = {};
+    Vec3d low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+
+    KnownTriangle() = default;
+    KnownTriangle(uint32_t triangle, const NearTriangle &shape) : triangle(triangle), shape(shape)
+    {
+        for (const Vec3d &p : {shape.a, shape.b, shape.a + shape.ac})
+            for (int k = 0; k < 3; ++k) {
+                low[k] = std::min(low[k], p[k]);
+                high[k] = std::max(high[k], p[k]);
+            }
+    }
+    bool is_within(const Vec3d &p, double limit) const
+    {
+        for (int k = 0; k < 3; ++k)
+            if (!(p[k] >= low[k] - limit && p[k] <= high[k] + limit))
+                return false;
+        return shape.distance2(p) <= limit * limit;
+    }
+};
+
+/* A point of a triangle, the triangle that is nearest to it, and how far that is. */
+struct FarPlace {
+    Vec3d at;
+    uint32_t near = NO_PATCH;
+    double away = 0;
+    int corner = -1;             /* of the triangle, where it is one */
+};
+
+/* From triangles to a surface. */
+struct FarSearch {
+    const SortedSurface &to;
+    double slope;                /* how fast distances may change along a triangle */
+    double least;                /* triangles of a smaller radius are not split */
+    double free;                 /* a distance of no interest */
+    double found;                /* the greatest so far */
+    FarCorner farthest = {};     /* where that was */
+    uint32_t near = NO_PATCH;    /* the triangle of `to` that was nearest last */
+    NearTriangle nearest = {};   /* that */
+    KnownTriangle earlier[EARLIER] = {}; /* others that were */
+    size_t next = 0;
+
+    double most() const { return std::max(free, LOOSE * found); }
+    bool is_within(FarCorner &c, double square) const
+    {
+        if (c.near != near) {
+            c.near = near;
+            c.away = nearest.distance2(c.at);
+        }
+        return c.away <= square;
+    }
+    /* Whether that triangle is within most() of all that the corners span: distances from a convex
+     * set are greatest at corners. */
+    bool is_covered(FarCorner &a, FarCorner &b, FarCorner &c) const
+    {
+        const double limit = most() * most();
+        return near < to.size() && is_within(a, limit) && is_within(b, limit) &&
+               is_within(c, limit);
+    }
+    /* The same of an earlier one, which becomes the nearest. */
+    bool was_covered(const FarCorner &a, const FarCorner &b, const FarCorner &c)
+    {
+        for (KnownTriangle &known : earlier) {
+            if (!known.is_within(a.at, most()) || !known.is_within(b.at, most()) ||
+                !known.is_within(c.at, most()))
+                continue;
+            const KnownTriangle last(near, nearest);
+            near = known.triangle;
+            nearest = known.shape;
+            known = last;
+            return true;
+        }
+        return false;
+    }
+    bool is_covered(const gtx::Box &box) const
+    {
+        const double limit = most() * most();
+        if (near >= to.size())
+            return false;
+        for (int corner = 0; corner < 8; ++corner) {
+            Vec3d p;
+            for (int k = 0; k < 3; ++k)
+                p[k] = corner >> k & 1 ? box.high[k] : box.low[k];
+            if (!(nearest.distance2(p) <= limit))
+                return false;
+        }
+        return true;
+    }
+    double distance(const Vec3d &p, double enough)
+    {
+        const uint32_t last = near;
+        const double known = near < to.size() ? nearest.distance2(p) : INFINITY;
+        const double square =
+            near < to.size() && slope >= 1 /* of smaller triangles than these is it close by */
+                ? to.tree().nearer_around(known, p, &near, enough * enough)
+                : to.tree().nearer(known, p, &near, [](uint32_t) { return true; }, nullptr,
+                                   enough * enough);
+        if (near != last) {
+            earlier[next] = last < to.size() ? KnownTriangle(last, nearest) : KnownTriangle();
+            next = (next + 1) % EARLIER;
+            const Corners c = to.corners(near);
+            nearest = {c[0], c[1], c[2]};
+        }
+        return std::sqrt(square);
+    }
+    /* Where a triangle is farther than `free`: at a corner, if any of them is, else where it is
+     * farthest of what was looked at. An `away` of 0: nowhere. */
+    FarPlace find_far(const Corners &c)
+    {
+        found = 0;
+        look(c);
+        if (found <= free)
+            return {};
+        const FarPlace inside = {farthest.at, farthest.near, found, -1};
+        for (int k = 0; k < 3; ++k) {
+            const double away = distance(c[k], free);
+            if (away > free)
+                return {c[k], near, away, k};
+        }
+        return inside;
+    }
+    void look(const Corners &c)
+    {
+        FarCorner a = {c[0]}, b = {c[1]}, d = {c[2]};
+        look(a, b, d);
+    }
+    void look(FarCorner &a, FarCorner &b, FarCorner &c);
+};
+
+} // namespace gtx::baking
