@@ -41,7 +41,7 @@ struct Job {
     double pitch;
     Vec3d anchor;
     size_t charts;
-    bool sharp; /* texels are finer for the sake of outlines: no height stands out of them */
+    bool sharp; /* texels are finer for the sake of outlines */
 };
 
 PatchMaps bake_chart(const Job &job, const Chart &chart);
