@@ -97,9 +97,9 @@ uint32_t gtx_levels_cast(const gtx_draw_call *draw, const gtx_model *model)
     for (int k = 0; k < 3; ++k)
         square += pow((double)lods->high[k] - lods->low[k], 2) / 4;
     for (uint32_t k = 0; k < lods->level_count; ++k) {
-        const gtx_lod_level *level = &lods->levels[k];
-        const double error = fmax(level->error, FLT_MIN);
-        const double pixels = allowed * allowed * square / (error * error);
+        const gtx_lod_level *level = &lods->levels[k], *next = level + (k + 1 < lods->level_count);
+        const double errors = fmax((double)level->error * next->error, FLT_MIN);
+        const double pixels = allowed * allowed * square / errors;
         if (costs->cast_patch * model->patch_count + costs->cast_pixel * pixels >=
             costs->lod_triangle * level->triangle_count + costs->lod_pixel * pixels)
             return k;

@@ -39,7 +39,7 @@ gtx_result gtx_choose(const gtx_draw_call *draw, const gtx_model *model,
 double gtx_allowed_anywhere(const gtx_draw_call *draw, const gtx_model *model,
                             const gtx_instance_data *placed);
 /* choose.c: how many levels of the LOD mesh, the finest first, are never drawn, for casting is
- * thought to take less where each is just fine enough. */
+ * thought to take less at a size between those where it and the next are just fine enough. */
 uint32_t gtx_levels_cast(const gtx_draw_call *draw, const gtx_model *model);
 /* choose.c: what displaced grids of so many triangles are thought to take, over so many pixels; the
  * same where the GPU displaces them; and casting so many patches. */
