@@ -35,7 +35,8 @@ inline bool is_own(BenchMethod method)
 }
 extern const char *const bench_method_names[BENCH_METHODS]; /* as in reports */
 /* Pixels. An error is stated for the farthest point: outlines agree at larger ones. */
-constexpr double bench_errors[] = {0.25, 0.35, 0.5, 0.71, 1, 1.41, 2, 2.83, 4};
+constexpr double bench_errors[] = {0.25, 0.3, 0.35, 0.42, 0.5, 0.59, 0.71, 0.84, 1,
+                                   1.19, 1.41, 1.68, 2, 2.38, 2.83, 3.36, 4};
 
 struct BenchOptions {
     Vector<std::array<uint32_t, 2>> sizes;      /* windows, pixels */
