@@ -208,7 +208,7 @@ static gtx::Box box_around(const Corners &corners, double beyond)
 }
 
 double Bounds::after(const LevelMesh &mesh, const Lattice &lattice, double speck,
-                     const Spots &spots, const Vector<std::array<Vec3d, 3>> &changed) const
+                     const Spots &spots, const Vector<Corners> &changed) const
 {
     if (spots.points.empty())
         return spots.most;
@@ -216,11 +216,9 @@ double Bounds::after(const LevelMesh &mesh, const Lattice &lattice, double speck
     for (const Corners &c : changed)
         boxes.push_back(box_around(c, spots.most));
     for (const FarPoint &p : spots.points) {
-        Corners near;
-        for (int k = 0; k < 3; ++k)
-            near[k] = lattice.point(mesh.places[mesh.triangles[p.near][k]]);
         boxes.push_back(box_around(p.source, spots.most));
-        boxes.push_back(box_around(near, spots.most));
+        boxes.push_back(
+            box_around(mesh.corners(mesh.triangles[p.near], lattice), spots.most));
     }
     const LevelSurface level(mesh, lattice, task_);
     const auto any = [](uint32_t) { return true; };

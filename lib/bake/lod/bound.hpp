@@ -35,7 +35,7 @@ public:
     /* A bound, after what lay there was changed: of the source, and of the level where they were
      * of that, if it was bounded elsewhere by as much as theirs. */
     double after(const LevelMesh &mesh, const Lattice &lattice, double speck, const Spots &spots,
-                 const Vector<std::array<Vec3d, 3>> &changed) const;
+                 const Vector<Corners> &changed) const;
 
 private:
     struct LevelSurface;

@@ -7,8 +7,6 @@
 
 namespace gtx::baking {
 
-using Corners = std::array<Vec3d, 3>;
-
 /* The bound that is told, as a multiple of the farthest point found: at 1.05 twice as many
  * triangles are split, at 1.2 levels are used that much nearer than they might. */
 constexpr double LOOSE = 1.1;

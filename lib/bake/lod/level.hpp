@@ -31,6 +31,11 @@ struct LevelMesh {
 
     /* Whether nothing of it is left. */
     bool empty() const;
+    Corners corners(const Triangle &t, const Lattice &lattice) const
+    {
+        return {lattice.point(places[t[0]]), lattice.point(places[t[1]]),
+                lattice.point(places[t[2]])};
+    }
     bool collapses(const Triangle &t) const
     {
         return places[t[0]] == places[t[1]] || places[t[1]] == places[t[2]] ||

@@ -8,6 +8,9 @@
 
 namespace gtx::baking {
 
+/* Of a triangle. */
+using Corners = std::array<Vec3d, 3>;
+
 /* Where a triangle of a patch may lie in its maps. */
 class PatchRegion {
 public:
@@ -25,8 +28,7 @@ public:
     bool holds(const std::array<double, 2> &place) const;
     /* Whether a triangle that changes stays where the patch can show it. One that never was there
      * may go anywhere; several that cover the same area as before are where they were. */
-    bool keeps(const std::array<Vec3d, 3> &before, const std::array<Vec3d, 3> &after,
-               bool same_area) const;
+    bool keeps(const Corners &before, const Corners &after, bool same_area) const;
     /* Whether this is on the patch's rectangle, or at most half a texel beside it. */
     bool near(const std::array<double, 2> &place) const
     {

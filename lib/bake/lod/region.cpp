@@ -63,8 +63,7 @@ bool PatchRegion::holds(const std::array<double, 2> &place) const
            clear_[size_t(place[1]) * w_ + size_t(place[0])];
 }
 
-bool PatchRegion::keeps(const std::array<Vec3d, 3> &before, const std::array<Vec3d, 3> &after,
-                        bool same_area) const
+bool PatchRegion::keeps(const Corners &before, const Corners &after, bool same_area) const
 {
     std::array<double, 2> was[3], is[3];
     for (int k = 0; k < 3; ++k)

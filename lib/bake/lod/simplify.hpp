@@ -11,9 +11,6 @@ namespace gtx::baking {
  * Spot's control mesh: error +13 % at half, +2 % at double. */
 constexpr double ROUND_SHARE = 0.4;
 
-/* Of a triangle. */
-using Corners = std::array<Vec3d, 3>;
-
 /* Vertices next to each other in memory, that one thread merges. */
 constexpr size_t BLOCK = 1 << 14;
 

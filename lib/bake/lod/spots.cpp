@@ -13,8 +13,6 @@ constexpr int MOVE_STEPS = 3;
 
 namespace {
 
-using Corners = std::array<Vec3d, 3>;
-
 /* A triangle that becomes several: each has a new vertex for one of these corners. */
 struct Split {
     uint32_t triangle;
@@ -33,13 +31,7 @@ public:
     Vector<Corners> changed;
 
 private:
-    Corners corners(const Triangle &t) const
-    {
-        Corners c;
-        for (int k = 0; k < 3; ++k)
-            c[k] = lattice_.point(mesh_.places[t[k]]);
-        return c;
-    }
+    Corners corners(const Triangle &t) const { return mesh_.corners(t, lattice_); }
     bool keeps(uint32_t vertex) const { return !mesh_.kept.empty() && mesh_.kept[vertex]; }
     bool turns(const Triangle &part, const Corners &whole) const;
     bool suits(const Triangle &part, const Corners &whole, uint32_t patch) const;

@@ -9,7 +9,7 @@ namespace gtx::baking {
  * nearest to one of the level that is far from the source. */
 struct FarPoint {
     Vec3d at;
-    std::array<Vec3d, 3> source; /* the triangle that it is of */
+    Corners source;              /* the triangle that it is of */
     uint32_t patch;              /* of that */
     uint32_t near;               /* the level's triangle: the nearest, or that which is far */
     double away;                 /* how far */
@@ -18,8 +18,7 @@ struct FarPoint {
 
 /* Gives the level vertices at such points, or moves one of its own there, the farthest first, where
  * that can be; how near is near enough is `most`. Returns what it changed, as that was. */
-Vector<std::array<Vec3d, 3>> reach_spots(LevelMesh &mesh, Vector<FarPoint> spots, double most,
-                                         const Vector<PatchRegion> &regions,
-                                         const Lattice &lattice);
+Vector<Corners> reach_spots(LevelMesh &mesh, Vector<FarPoint> spots, double most,
+                            const Vector<PatchRegion> &regions, const Lattice &lattice);
 
 } // namespace gtx::baking
