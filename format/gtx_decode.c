@@ -734,12 +734,87 @@ static void undo_triangle(struct steps *s, uint64_t t)
         s->indices[12 * t + (uint64_t)k] = (byte)(v[k / 4] >> k % 4 * 8);
 }
 
+static int64_t absolute(int64_t n)
+{
+    return n < 0 ? -n : n;
+}
+
+static byte unorm_of(int64_t v, int64_t size)
+{
+    int64_t code = size ? (256 * size + 255 * v) / (2 * size) : 128;
+    return (byte)(code < 255 ? code : 255);
+}
+
+static void normal_of_triangle(const struct steps *s, uint64_t t, int64_t out[3])
+{
+    int64_t p[3][3] = {{0}};
+    for (int c = 0; c < 3; ++c) {
+        uint32_t v = u32(s->indices + 12 * t + 4 * c);
+        for (int k = 0; k < 3 && v < s->vertices; ++k)
+            p[c][k] = u16(s->positions + 6 * (uint64_t)v + 2 * k);
+        if (v >= s->vertices) {
+            out[0] = out[1] = out[2] = 0;
+            return;
+        }
+    }
+    for (int k = 0; k < 3; ++k) {
+        int i = (k + 1) % 3, j = (k + 2) % 3;
+        out[k] = (p[1][i] - p[0][i]) * (p[2][j] - p[0][j]) -
+                 (p[1][j] - p[0][j]) * (p[2][i] - p[0][i]);
+    }
+}
+
+/* Adds what is expected to the differences in `planes`. */
+static unsigned undo_normals(const struct steps *s, const byte *planes, byte *out)
+{
+    uint64_t count = s->vertices;
+    uint32_t *sums = calloc((size_t)(count ? count : 1), 3 * sizeof *sums);
+    int64_t most = 0, n[3], part = 1;
+    if (!sums)
+        return NO_MEMORY;
+    for (uint64_t t = 0; t < s->triangles; ++t) {
+        normal_of_triangle(s, t, n);
+        for (int k = 0; k < 3; ++k)
+            most = absolute(n[k]) > most ? absolute(n[k]) : most;
+    }
+    while (most >= (part << 24))
+        part *= 2;
+    for (uint64_t t = 0; t < s->triangles; ++t) {
+        normal_of_triangle(s, t, n);
+        for (int c = 0; c < 3; ++c) {
+            uint32_t v = u32(s->indices + 12 * t + 4 * c);
+            for (int k = 0; k < 3 && v < count; ++k) {
+                int64_t down = n[k] % part < 0;
+                sums[3 * (uint64_t)v + k] += (uint32_t)(n[k] / part - down);
+            }
+        }
+    }
+    for (uint64_t v = 0; v < count; ++v) {
+        int64_t x = (int32_t)sums[3 * v], y = (int32_t)sums[3 * v + 1];
+        int64_t z = (int32_t)sums[3 * v + 2], size = absolute(x) + absolute(y) + absolute(z);
+        int64_t from[2] = {x, y};
+        if (z < 0) {
+            from[0] = (size - absolute(y)) * (x < 0 ? -1 : 1);
+            from[1] = (size - absolute(x)) * (y < 0 ? -1 : 1);
+        }
+        for (uint64_t k = 0; k < 2; ++k)
+            out[2 * v + k] = (byte)(planes[k * count + v] + unorm_of(from[k], size));
+    }
+    memcpy(out + 2 * count, planes + 2 * count, 4);
+    free(sums);
+    return 0;
+}
+
 static unsigned undo_steps(struct section *s)
 {
     struct steps steps = {.vertices = u32(s->bytes + 20), .triangles = u32(s->bytes + 24)};
     uint64_t arrays = 6 * (uint64_t)steps.vertices + 12 * (uint64_t)steps.triangles;
     uint64_t left = s->size - LOD_HEADER;
-    if (arrays > left || (left - arrays) % 4)
+    int normals = u32(s->bytes + 28) & 2 ? 1 : 0;
+    if (normals)
+        arrays += 2 * (uint64_t)steps.vertices + 4;
+    if (arrays > left || (left - arrays) % 4 ||
+        (normals && steps.vertices > 2 * (uint64_t)steps.triangles))
         return 213;
     byte *out = malloc((size_t)s->size);
     if (!out)
@@ -760,9 +835,13 @@ static unsigned undo_steps(struct section *s)
         undo_triangle(&steps, t);
     while (steps.met < steps.vertices)
         meet(&steps, steps.met, NULL);
+    unsigned rule = 0;
+    if (normals)
+        rule = undo_normals(&steps, steps.numbers + 6 * (uint64_t)steps.vertices,
+                            steps.positions + 6 * (uint64_t)steps.vertices);
     free(s->bytes);
     s->bytes = out;
-    return 0;
+    return rule;
 }
 
 static unsigned decode_section(const struct file *f, struct section *s)
@@ -959,14 +1038,19 @@ static unsigned check_lod(const struct file *f, const struct section *s,
 {
     const byte *h = s->bytes, *first = h + LOD_HEADER;
     uint64_t vertices = u32(h + 20), triangles = u32(h + 24);
+    int normals = u32(h + 28) & 2 ? 1 : 0;
     if (!triangles || vertices > 1u << 28 ||
-        s->size != 36 + 4 * (uint64_t)f->patches + 12 * triangles + 6 * vertices)
+        s->size != 36 + 4 * (uint64_t)f->patches + 12 * triangles + 6 * vertices +
+                       (normals ? 2 * vertices + 4 : 0))
         return 500;
     for (int i = 0; i < 20; i += 4)
         if (!isfinite(f32(h + i)) || (i == 12 && f32(h + i) <= 0) || (i == 16 && f32(h + i) < 0))
             return 501;
-    if (u32(h + 28) > 1)
+    if (u32(h + 28) > 3)
         return 501;
+    if (normals && (vertices > 2 * triangles || !(f32(h + s->size - 4) >= 0) ||
+                    f32(h + s->size - 4) > 2))
+        return 506;
     if (finer && f32(finer->bytes + 16) > f32(h + 16))
         return 502;
     if (u32(first) != 0 || u32(first + 4 * f->patches) != triangles)

@@ -268,9 +268,13 @@ GTX_API const void *gtx_map_data(const gtx_asset *asset, gtx_map map, uint32_t l
  * patch; texture lookups are clamped to the patch's rectangle. */
 #define GTX_LOD_FAR 1u
 
-/* An LOD mesh: the whole surface as triangles, for drawing it small. Vertices have positions only:
- * triangles of several patches may share a vertex, and its texel coordinates in each patch follow
- * from that patch's frame. The quantised position q of a vertex stands for the point
+/* Another: its vertices have normals, which tell how the surface is lit before normal maps are
+ * there. */
+#define GTX_LOD_NORMALS 2u
+
+/* An LOD mesh: the whole surface as triangles, for drawing it small. Triangles of several patches
+ * may share a vertex, and its texel coordinates in each patch follow from that patch's frame. The
+ * quantised position q of a vertex stands for the point
  *   origin + step * q                                            relative to the asset's anchor. */
 typedef struct gtx_lod_mesh {
     float origin[3], step;
@@ -278,11 +282,15 @@ typedef struct gtx_lod_mesh {
                                      the source and of any point of the source from the mesh, except
                                      for parts of the source no longer than `error` */
     uint32_t vertex_count, triangle_count;
-    uint32_t flags;               /* GTX_LOD_FAR */
+    uint32_t flags;               /* GTX_LOD_FAR, GTX_LOD_NORMALS */
     const uint32_t *first;        /* patch_count + 1 numbers: triangles first[p]..first[p + 1] - 1
                                      belong to patch p */
     const uint32_t *indices;      /* 3 per triangle */
     const uint16_t *positions;    /* 3 per vertex */
+    const uint8_t *normals;       /* with GTX_LOD_NORMALS 2 per vertex, octahedral; else NULL */
+    float normal_error;           /* of these, between vertices, to the normal maps: the root of the
+                                     mean square of the distance of unit vectors (of small angles,
+                                     radians) */
 } gtx_lod_mesh;
 
 /* Gives LOD mesh `level`, 0 being the finest. Its arrays are owned by the asset.

@@ -12,6 +12,7 @@ typedef struct walk {
     gtx_check *check;
     const gtx_asset *asset;
     gtx_lod_mesh lod;
+    uint32_t level;
     uint64_t offset;
 } walk;
 
@@ -28,9 +29,16 @@ static void check_header(const walk *w)
     if (!(s->error >= 0) || !isfinite(s->error))
         gtx_break(w->check, GTX_RULE_LOD_HEADER, w->offset + 16, "its error is %g",
                   (double)s->error);
-    if (s->flags & ~(uint32_t)GTX_LOD_FAR)
+    if (s->flags & ~(uint32_t)(GTX_LOD_FAR | GTX_LOD_NORMALS))
         gtx_break(w->check, GTX_RULE_LOD_HEADER, w->offset + 28, "its flags are 0x%08x",
                   s->flags);
+    if (!(s->normal_error >= 0 && s->normal_error <= 2))
+        gtx_break(w->check, GTX_RULE_LOD_NORMALS,
+                  w->offset + w->asset->lod_size[w->level] - 4, "their error is %g",
+                  (double)s->normal_error);
+    if (s->normals && !gtx_lod_may_have_normals(s->vertex_count, s->triangle_count))
+        gtx_break(w->check, GTX_RULE_LOD_NORMALS, w->offset + 20, "%u vertices have them, of %u "
+                  "triangles", s->vertex_count, s->triangle_count);
 }
 
 static void check_first(const walk *w)
@@ -134,7 +142,7 @@ void gtx_check_lod(gtx_check *check, const gtx_asset *asset, uint32_t level, uin
 {
     const uint32_t patches = asset->info.patch_count;
     const uint8_t *bytes = asset->lod[level];
-    walk w = {.check = check, .asset = asset, .offset = offset};
+    walk w = {.check = check, .asset = asset, .level = level, .offset = offset};
     bool sized = gtx_lod_load(bytes, asset->lod_size[level], patches, &w.lod);
     if (!sized || !w.lod.triangle_count || w.lod.vertex_count > GTX_MAX_LOD_VERTICES) {
         gtx_break(check, GTX_RULE_LOD_SIZE, offset + 20, "level %u has %zu bytes for %u and %u",

@@ -34,6 +34,10 @@ static gtx_result check_levels(const gtx_asset_desc *desc, gtx_error *error)
     for (uint32_t k = 0; k < desc->lod_levels; ++k)
         if (!desc->lod[k].first || !desc->lod[k].indices || !desc->lod[k].positions)
             return gtx_fail(error, GTX_ERROR_ARGUMENT, "an array of LOD mesh %u is missing", k);
+    for (uint32_t k = 0; k < desc->lod_levels; ++k)
+        if (!(desc->lod[k].flags & GTX_LOD_NORMALS) != !desc->lod[k].normals)
+            return gtx_fail(error, GTX_ERROR_ARGUMENT,
+                            "LOD mesh %u has normals without their flag, or the flag alone", k);
     return GTX_OK;
 }
 
@@ -124,7 +128,8 @@ gtx_result gtx_create(const gtx_asset_desc *desc, gtx_asset **out, gtx_error *er
     gtx_sizes sizes = {.meta = desc->meta_size};
     for (uint32_t k = 0; k < desc->lod_levels; ++k)
         sizes.lod[k] = gtx_lod_size(desc->patch_count, desc->lod[k].vertex_count,
-                                    desc->lod[k].triangle_count);
+                                    desc->lod[k].triangle_count) +
+                       gtx_lod_normals_size(desc->lod[k].flags, desc->lod[k].vertex_count);
     gtx_asset *asset = gtx_asset_new(&allocator, &info, &sizes, false);
     if (!asset)
         return gtx_fail(error, GTX_ERROR_MEMORY, "out of memory for the maps of an asset");

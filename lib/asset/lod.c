@@ -14,7 +14,8 @@ bool gtx_lod_load(const uint8_t *bytes, uint64_t size, uint32_t patches, gtx_lod
                      .flags = gtx_load_u32(bytes + 28)};
     for (int k = 0; k < 3; ++k)
         out->origin[k] = gtx_load_f32(bytes + 4 * k);
-    if (size != gtx_lod_size(patches, out->vertex_count, out->triangle_count))
+    const uint64_t plain = gtx_lod_size(patches, out->vertex_count, out->triangle_count);
+    if (size != plain + gtx_lod_normals_size(out->flags, out->vertex_count))
         return false;
     /* The bytes of an asset are aligned to 16. */
     const uint8_t *first = bytes + GTX_LOD_HEADER;
@@ -22,6 +23,10 @@ bool gtx_lod_load(const uint8_t *bytes, uint64_t size, uint32_t patches, gtx_lod
     out->first = (const uint32_t *)(const void *)first;
     out->indices = (const uint32_t *)(const void *)indices;
     out->positions = (const uint16_t *)(const void *)(indices + 12 * (size_t)out->triangle_count);
+    if (out->flags & GTX_LOD_NORMALS) {
+        out->normals = bytes + plain;
+        out->normal_error = gtx_load_f32(out->normals + 2 * (size_t)out->vertex_count);
+    }
     return true;
 }
 
@@ -37,8 +42,13 @@ void gtx_lod_store(const gtx_lod_mesh *lod, uint32_t patches, uint8_t *out)
     const size_t first = 4 * ((size_t)patches + 1), indices = 12 * (size_t)lod->triangle_count;
     memcpy(out + GTX_LOD_HEADER, lod->first, first);
     memcpy(out + GTX_LOD_HEADER + first, lod->indices, indices);
-    memcpy(out + GTX_LOD_HEADER + first + indices, lod->positions,
-           6 * (size_t)lod->vertex_count);
+    const size_t vertices = lod->vertex_count;
+    out += GTX_LOD_HEADER + first + indices;
+    memcpy(out, lod->positions, 6 * vertices);
+    if (lod->flags & GTX_LOD_NORMALS) {
+        memcpy(out + 6 * vertices, lod->normals, 2 * vertices);
+        gtx_store_f32(out + 8 * vertices, lod->normal_error);
+    }
 }
 
 gtx_result gtx_get_lod_mesh(const gtx_asset *asset, uint32_t level, gtx_lod_mesh *out)

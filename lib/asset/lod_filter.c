@@ -1,6 +1,7 @@
 /* The filter of LOD mesh sections: triangles as steps over recent edges and vertices, positions as
- * differences from a prediction by the triangle before; all of it in planes of bytes. After Touma
- * and Gotsman 1998 (parallelogram) and Kapoulkine's meshoptimizer (recent edges). */
+ * differences from a prediction by the triangle before, normals from those of the triangles; all of
+ * it in planes of bytes. After Touma and Gotsman 1998 (parallelogram) and Kapoulkine's
+ * meshoptimizer (recent edges). */
 #include "asset/lod.h"
 
 #include "base/bytes.h"
@@ -11,6 +12,7 @@ enum { RECENT = 16 };
 typedef struct parts {
     size_t first_count, vertices, triangles;
     size_t first, indices, positions;
+    size_t normals;               /* 0: none */
 } parts;
 
 static bool find_parts(const uint8_t *bytes, size_t size, parts *out)
@@ -18,14 +20,19 @@ static bool find_parts(const uint8_t *bytes, size_t size, parts *out)
     if (size < GTX_LOD_HEADER)
         return false;
     uint64_t vertices = gtx_load_u32(bytes + 20), triangles = gtx_load_u32(bytes + 24);
-    uint64_t arrays = 6 * vertices + 12 * triangles, left = size - GTX_LOD_HEADER;
-    if (arrays > left || (left - arrays) % 4)
+    const uint32_t flags = gtx_load_u32(bytes + 28);
+    uint64_t arrays = 6 * vertices + 12 * triangles + gtx_lod_normals_size(flags, vertices);
+    const uint64_t left = size - GTX_LOD_HEADER;
+    if (arrays > left || (left - arrays) % 4 ||
+        ((flags & GTX_LOD_NORMALS) && !gtx_lod_may_have_normals(vertices, triangles)))
         return false;
     size_t first_bytes = (size_t)(left - arrays);
     *out = (parts){.first_count = first_bytes / 4, .vertices = (size_t)vertices,
                    .triangles = (size_t)triangles, .first = GTX_LOD_HEADER};
     out->indices = out->first + first_bytes;
     out->positions = out->indices + 12 * (size_t)triangles;
+    if (flags & GTX_LOD_NORMALS)
+        out->normals = out->positions + 6 * (size_t)vertices;
     return true;
 }
 
@@ -180,20 +187,46 @@ static void code_level(run *r)
         meet(r, r->next, NULL);
 }
 
+/* Triangles and positions are known, and what is before coded normals is free: sums go there, which
+ * it has room for where a level may have normals. The expected ones are found in their place. */
+static void code_normals(run *r, size_t size)
+{
+    const size_t count = r->at.vertices;
+    uint8_t *plain = r->plain + r->at.normals, *coded = r->coded + r->at.normals;
+    uint8_t *to = r->apply ? coded : plain;
+    if (!r->at.normals)
+        return;
+    uint8_t *expected = r->coded;
+    gtx_lod_expect_normals(r->plain + r->at.indices, r->at.triangles, r->plain + r->at.positions,
+                           count, r->coded, expected);
+    for (size_t i = 0; i < count; ++i)
+        for (size_t k = 0; k < 2; ++k) {
+            if (r->apply)
+                coded[k * count + i] = (uint8_t)(plain[2 * i + k] - expected[2 * i + k]);
+            else
+                plain[2 * i + k] = (uint8_t)(coded[k * count + i] + expected[2 * i + k]);
+        }
+    const uint8_t *from = r->apply ? plain : coded;
+    memcpy(to + 2 * count, from + 2 * count, size - r->at.normals - 2 * count); /* their error */
+}
+
 void gtx_lod_filter_apply(const uint8_t *in, size_t size, uint8_t *out)
 {
     run r = {.plain = (uint8_t *)in, .coded = out, .apply = true};
-    memcpy(out, in, size < GTX_LOD_HEADER ? size : GTX_LOD_HEADER);
-    if (find_parts(in, size, &r.at))
+    if (find_parts(in, size, &r.at)) {
+        code_normals(&r, size);
         code_level(&r);
+    }
+    memcpy(out, in, size < GTX_LOD_HEADER ? size : GTX_LOD_HEADER);
 }
 
-bool gtx_lod_filter_undo(const uint8_t *in, size_t size, uint8_t *out)
+bool gtx_lod_filter_undo(uint8_t *in, size_t size, uint8_t *out)
 {
-    run r = {.plain = out, .coded = (uint8_t *)in};
+    run r = {.plain = out, .coded = in};
     if (!find_parts(in, size, &r.at))
         return false;
     memcpy(out, in, GTX_LOD_HEADER);
     code_level(&r);
+    code_normals(&r, size);
     return true;
 }

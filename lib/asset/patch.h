@@ -71,6 +71,11 @@ void gtx_normal_frame(const gtx_patch *patch, float rows[3][3]);
 void gtx_encode_normal(const float n[3], uint8_t out[2]);
 void gtx_decode_normal(const uint8_t in[2], float n[3]);
 
+/* Octahedral, of any direction, as the vertices of LOD meshes have them: lod_normals.c. Of any
+ * length, and back to a unit vector. */
+void gtx_encode_octahedral(const float n[3], uint8_t out[2]);
+void gtx_decode_octahedral(const uint8_t in[2], float n[3]);
+
 /* ---- the record ---- */
 
 /* The point of texel (x, y), or between texels, at a fraction of extent_z. */

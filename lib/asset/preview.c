@@ -1,6 +1,6 @@
 /* Assets of a file's beginning: the patches and LOD meshes get maps of few texels. A texel's normal
- * is the mean of the normals of the LOD mesh's corners in it; texels without one are filled from
- * around. */
+ * lies between those of the corners of the LOD mesh's triangle that it is in: its own, or what its
+ * triangles tell; texels without one are filled from around. */
 #include "asset/preview.h"
 
 #include "asset/fill.h"
@@ -8,10 +8,11 @@
 #include "asset/patch.h"
 #include "base/alloc.h"
 
+#include <math.h>
 #include <string.h>
 
-/* Sums of more normals would not fit 32 bits when their mean is taken. */
-enum { MAX_SUM = 1 << 22 };
+/* Texels for each triangle, at most: fewer blur what lies between vertices. */
+enum { TEXELS = 4 };
 
 static uint64_t texels_of(const gtx_info *info)
 {
@@ -26,7 +27,7 @@ uint32_t gtx_preview_shift(const gtx_info *info, uint64_t triangles)
                                                                : info->page_height;
     uint32_t shift = 0;
     while (shift + 2 < info->mip_count && side >> (shift + 1) >= 8 &&
-           texels_of(info) >> 2 * shift > triangles)
+           texels_of(info) >> 2 * shift > TEXELS * triangles)
         ++shift;
     return shift;
 }
@@ -43,8 +44,7 @@ gtx_info gtx_preview_info(const gtx_info *info, uint32_t shift, bool mips)
 
 uint64_t gtx_preview_scratch(const gtx_info *preview, uint32_t vertices)
 {
-    return texels_of(preview) * (sizeof(gtx_normal_sum) + 1) +
-           3 * sizeof(float) * (uint64_t)vertices;
+    return texels_of(preview) + 3 * sizeof(float) * (uint64_t)vertices;
 }
 
 /* ---- normals ---- */
@@ -53,13 +53,16 @@ typedef struct shaping {
     gtx_asset *asset;
     gtx_lod_mesh mesh;
     float *normals;               /* 3 per vertex, of any length */
-    gtx_normal_sum *sums;         /* a texel each */
     uint8_t *ring;
 } shaping;
 
-/* Of triangles, each as much as its area. */
-static void sum_normals(const shaping *s)
+/* The vertices' own, or those of triangles, each as much as its area. */
+static void find_normals(const shaping *s)
 {
+    for (size_t v = 0; v < s->mesh.vertex_count && s->mesh.normals; ++v)
+        gtx_decode_octahedral(s->mesh.normals + 2 * v, s->normals + 3 * v);
+    if (s->mesh.normals)
+        return;
     for (uint32_t t = 0; t < s->mesh.triangle_count; ++t) {
         const uint32_t *v = s->mesh.indices + 3 * (size_t)t;
         float side[2][3];
@@ -76,36 +79,84 @@ static void sum_normals(const shaping *s)
     }
 }
 
-/* Adds a vertex's normal to the texel of the patch that it is in, or nearest to. */
-static void put_vertex(const shaping *s, const gtx_patch *patch, const gtx_patch_frame *frame,
-                       float (*rows)[3], uint32_t vertex)
+/* A corner of a triangle: where it is among the patch's texels, and its normal in the patch's own
+ * frame. */
+typedef struct corner {
+    double at[2];
+    float normal[3];
+} corner;
+
+static corner corner_of(const shaping *s, const gtx_patch_frame *frame, float (*rows)[3],
+                        uint32_t vertex)
 {
     const uint16_t *q = s->mesh.positions + 3 * (size_t)vertex;
     const float *n = s->normals + 3 * (size_t)vertex;
-    uint32_t at[2];
+    const float size = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    corner out = {.normal = {0, 0, 0}};
     for (int a = 0; a < 2; ++a) {
-        double texel = frame->to_grid[a][3];
+        out.at[a] = frame->to_grid[a][3];
         for (int k = 0; k < 3; ++k)
-            texel += frame->to_grid[a][k] * ((double)s->mesh.origin[k] +
-                                             (double)s->mesh.step * q[k]);
-        const double last = patch->rect[2 + a] - 1;
-        texel = texel > 0 ? texel < last ? texel + 0.5 : last : 0; /* NaN ends at 0 */
-        at[a] = patch->rect[a] + (uint32_t)texel;
+            out.at[a] += frame->to_grid[a][k] * ((double)s->mesh.origin[k] +
+                                                 (double)s->mesh.step * q[k]);
     }
-    float local[3] = {0, 0, 0};
-    uint8_t code[2];
     for (int r = 0; r < 3; ++r)
-        for (int k = 0; k < 3; ++k)
-            local[r] += rows[r][k] * n[k];
-    gtx_encode_normal(local, code);
+        for (int k = 0; k < 3 && size > 0; ++k)
+            out.normal[r] += rows[r][k] * n[k] / size;
+    return out;
+}
+
+static double within(double at, double most)
+{
+    return at > 0 ? at < most ? at : most : 0; /* NaN ends at 0 */
+}
+
+static void put_normal(const shaping *s, const gtx_patch *patch, uint32_t x, uint32_t y,
+                       const float n[3])
+{
     const gtx_info *info = &s->asset->info;
-    const size_t texel = ((size_t)patch->page * info->page_height + at[1]) * info->page_width +
-                         at[0];
-    gtx_normal_sum *sum = &s->sums[texel];
-    if (sum->a < MAX_SUM / 2 && sum->a > -MAX_SUM / 2 && sum->b < MAX_SUM / 2 &&
-        sum->b > -MAX_SUM / 2 && sum->z < MAX_SUM / 2)
-        gtx_normal_add(sum, code);
+    const size_t row = (size_t)patch->page * info->page_height + patch->rect[1] + y;
+    const size_t texel = row * info->page_width + patch->rect[0] + x;
+    gtx_encode_normal(n, s->asset->normal[0] + 2 * texel);
     s->ring[texel] = 1;
+}
+
+/* The texels whose middles are in the triangle. */
+static void put_triangle(const shaping *s, const gtx_patch *patch, const corner c[3])
+{
+    double low[2], high[2], side[2][2];
+    for (int a = 0; a < 2; ++a) {
+        const double most = patch->rect[2 + a] - 1;
+        low[a] = ceil(within(fmin(fmin(c[0].at[a], c[1].at[a]), c[2].at[a]), most));
+        high[a] = floor(within(fmax(fmax(c[0].at[a], c[1].at[a]), c[2].at[a]), most));
+        for (int e = 0; e < 2; ++e)
+            side[e][a] = c[e + 1].at[a] - c[0].at[a];
+    }
+    const double area = side[0][0] * side[1][1] - side[0][1] * side[1][0];
+    for (double y = low[1]; y <= high[1]; ++y)
+        for (double x = low[0]; x <= high[0]; ++x) {
+            const double u = x - c[0].at[0], v = y - c[0].at[1];
+            const double p = (u * side[1][1] - v * side[1][0]) / area;
+            const double q = (side[0][0] * v - side[0][1] * u) / area;
+            if (!(p >= 0 && q >= 0 && p + q <= 1))
+                continue;
+            float n[3];
+            for (int k = 0; k < 3; ++k)
+                n[k] = (float)(1 - p - q) * c[0].normal[k] + (float)p * c[1].normal[k] +
+                       (float)q * c[2].normal[k];
+            put_normal(s, patch, (uint32_t)x, (uint32_t)y, n);
+        }
+}
+
+/* Where no triangle lies on a corner's texel. */
+static void put_corner(const shaping *s, const gtx_patch *patch, const corner *c)
+{
+    const gtx_info *info = &s->asset->info;
+    uint32_t at[2];
+    for (int a = 0; a < 2; ++a)
+        at[a] = (uint32_t)(within(c->at[a], patch->rect[2 + a] - 1) + 0.5);
+    const size_t row = (size_t)patch->page * info->page_height + patch->rect[1] + at[1];
+    if (!s->ring[row * info->page_width + patch->rect[0] + at[0]])
+        put_normal(s, patch, at[0], at[1], c->normal);
 }
 
 static void shape_patch(const shaping *s, uint32_t index)
@@ -115,17 +166,18 @@ static void shape_patch(const shaping *s, uint32_t index)
     const gtx_patch_frame frame = gtx_patch_frame_of(patch, info->height_bits);
     float rows[3][3];
     gtx_normal_frame(patch, rows);
-    for (uint32_t t = s->mesh.first[index]; t < s->mesh.first[index + 1]; ++t)
-        for (int c = 0; c < 3; ++c)
-            put_vertex(s, patch, &frame, rows, s->mesh.indices[3 * (size_t)t + (size_t)c]);
+    for (int corners = 0; corners < 2; ++corners)
+        for (uint32_t t = s->mesh.first[index]; t < s->mesh.first[index + 1]; ++t) {
+            corner c[3];
+            for (size_t k = 0; k < 3; ++k)
+                c[k] = corner_of(s, &frame, rows, s->mesh.indices[3 * (size_t)t + k]);
+            if (!corners)
+                put_triangle(s, patch, c);
+            for (int k = 0; k < 3 && corners; ++k)
+                put_corner(s, patch, &c[k]);
+        }
     const size_t row = (size_t)patch->page * info->page_height + patch->rect[1];
     const size_t first = row * info->page_width + patch->rect[0];
-    for (uint32_t y = 0; y < patch->rect[3]; ++y)
-        for (uint32_t x = 0; x < patch->rect[2]; ++x) {
-            const size_t texel = first + y * (size_t)info->page_width + x;
-            if (s->ring[texel])
-                gtx_normal_mean(&s->sums[texel], s->asset->normal[0] + 2 * texel);
-        }
     const gtx_fill area = {s->asset->normal[0] + 2 * first, s->ring + first, info->page_width,
                            patch->rect[2], patch->rect[3]};
     gtx_patch wide = *patch;
@@ -141,18 +193,16 @@ static bool shape(gtx_asset *asset)
     gtx_get_lod_mesh(asset, 0, &s.mesh);
     const gtx_allocator *hooks = &asset->allocator;
     s.normals = gtx_alloc_array(hooks, s.mesh.vertex_count, 3 * sizeof *s.normals);
-    s.sums = gtx_alloc_array(hooks, texels, sizeof *s.sums);
     s.ring = gtx_alloc_array(hooks, texels, 1);
-    const bool whole = s.normals && s.sums && s.ring;
+    const bool whole = s.normals && s.ring;
     if (whole) {
         memset(asset->normal[0], GTX_FAR_NORMAL, 2 * texels);
         memset(asset->trim, GTX_FAR_TRIM, texels);
-        sum_normals(&s);
+        find_normals(&s);
         for (uint32_t i = 0; i < asset->info.patch_count; ++i)
             shape_patch(&s, i);
     }
     gtx_free_array(hooks, s.normals, s.mesh.vertex_count, 3 * sizeof *s.normals);
-    gtx_free_array(hooks, s.sums, texels, sizeof *s.sums);
     gtx_free_array(hooks, s.ring, texels, 1);
     return whole;
 }

@@ -4,8 +4,8 @@
 
 #include "asset/section.h"
 
-/* The mip levels by which a preview's maps are smaller than the asset's: it has about as many
- * texels as `triangles`, and valid rectangles. */
+/* The mip levels by which a preview's maps are smaller than the asset's: it has up to four texels
+ * for each of `triangles`, and valid rectangles. */
 uint32_t gtx_preview_shift(const gtx_info *info, uint64_t triangles);
 
 /* The preview's gtx_info, without its colours and the sizes of its LOD meshes. With `mips` it has

@@ -51,6 +51,8 @@ static void lod(gtx_json *json, const gtx_asset *asset, const gtx_info *info)
         gtx_json_integer(json, "vertices", level.vertex_count);
         gtx_json_number(json, "error", (double)level.error);
         gtx_json_bool(json, "far", level.flags & GTX_LOD_FAR);
+        if (level.normals)
+            gtx_json_number(json, "normal_error", (double)level.normal_error);
         gtx_json_end_object(json);
     }
     gtx_json_end_array(json);
@@ -104,9 +106,12 @@ static int tell_text(const gtx_asset *asset, const gtx_info *info)
     for (uint32_t k = 0; k < info->lod_levels; ++k) {
         gtx_lod_mesh level;
         gtx_get_lod_mesh(asset, k, &level);
-        printf("%s%u triangles, error %g%s\n", k ? "                " : "LOD meshes      ",
+        printf("%s%u triangles, error %g%s", k ? "                " : "LOD meshes      ",
                level.triangle_count, (double)level.error,
                level.flags & GTX_LOD_FAR ? ", across patches" : "");
+        if (level.normals)
+            printf(", normals off by %.2g degrees", (double)level.normal_error * 57.29578);
+        printf("\n");
     }
     printf("bounds          %g %g %g .. %g %g %g\n", (double)info->bounds_min[0],
            (double)info->bounds_min[1], (double)info->bounds_min[2], (double)info->bounds_max[0],

@@ -57,14 +57,21 @@ static Asset open_folder(const char *folder, std::string &about)
     gtx::read_unpacked(folder, limits, unpacked, about);
     about = folder;
     gtx::rebuild(unpacked, rebuilt);
+    bool refit = unpacked.has_old_normals && gtx::drop_lod_normals(unpacked);
     gtx_asset *asset = nullptr;
     gtx_error error = {};
     gtx_result result = gtx_create(&unpacked.desc, &asset, &error);
     if (result == GTX_ERROR_CORRUPT && follows_from_heights(error.rule)) {
         gtx::derive_again(unpacked);
+        refit = false;
         result = gtx_create(&unpacked.desc, &asset, &error);
     }
     gtx::require_ok(result, error);
+    if (refit) {
+        gtx_close(asset);
+        gtx::fit_lod_normals(unpacked);
+        gtx::require_ok(gtx_create(&unpacked.desc, &asset, &error), error);
+    }
     for (const gtx::Warning &warning : unpacked.warnings) {
         if (warning.kind == GTX_WARNING_LOD_DROPPED && lod_levels)
             continue; /* another one is about to be made */

@@ -1,6 +1,7 @@
 /* Maps and LOD mesh -> an asset; the LOD mesh of an asset without a mesh, behind the C API. */
 #include "cook/assemble.hpp"
 
+#include "bake/lod_normals.hpp"
 #include "cook/guard.hpp"
 #include "cook/options.hpp"
 
@@ -30,6 +31,11 @@ Asset assemble(const Maps &maps, const Vector<LodLevel> &lod, const AssetFacts &
     Vector<gtx_lod_mesh> levels;
     for (const LodLevel &level : lod)
         levels.push_back(level.mesh());
+    const NormalMaps shown = {maps.patches.data(), uint32_t(maps.patches.size()), maps.page_width,
+                              maps.page_height, maps.height_bits, maps.height.data(),
+                              maps.normal[0].data()};
+    Vector<LodNormals> lit;
+    add_lod_normals(levels, shown, lit);
 
     gtx_asset_desc desc = {};
     desc.patches = maps.patches.data();

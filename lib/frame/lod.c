@@ -78,6 +78,13 @@ static bool is_at_border(const gtx_lod_level *level, const uint32_t *corners)
            level->copies[corners[2]].shared;
 }
 
+/* As it is in the file, 0 where there is none. */
+static uint16_t normal_of(const gtx_lod_mesh *source, uint32_t vertex)
+{
+    const uint8_t *n = source->normals ? source->normals + 2 * (size_t)vertex : NULL;
+    return n ? (uint16_t)(n[0] | n[1] << 8) : 0;
+}
+
 /* Writes copies and indices in drawing order, of each patch the triangles at its border last. */
 static void split(const gtx_lod_meshes *lods, gtx_lod_level *level, const gtx_lod_mesh *source)
 {
@@ -99,7 +106,8 @@ static void split(const gtx_lod_meshes *lods, gtx_lod_level *level, const gtx_lo
                     const gtx_lod_copy *s = copy_of(level, c, patch, &count);
                     const uint16_t *q = source->positions + 3 * (size_t)c;
                     if (count > before)
-                        vertices[s->index] = (gtx_lod_vertex){{q[0], q[1], q[2]}, 0, patch};
+                        vertices[s->index] = (gtx_lod_vertex){
+                            {q[0], q[1], q[2]}, normal_of(source, c), patch};
                     store_index(lods, level, met++, s->index - run->first_vertex);
                 }
             }

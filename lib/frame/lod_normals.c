@@ -1,4 +1,5 @@
-/* Normals of the vertices of LOD meshes, and whether those are enough to be lit by. */
+/* Normals of the vertices of LOD meshes, where the file has none, and whether normals are enough to
+ * be lit by. */
 #include "frame/lod.h"
 
 #include "asset/patch.h"
@@ -23,6 +24,8 @@ static const double least_share = 1.0 / 3;
  * armadillo's are .9 to 1.7 texels away, of their levels .3 to 1.6. At half the horse's is drawn no
  * more, whose near views then take twice as long. */
 static const double exact_texels = 1.7;
+
+static const double degrees = 57.29577951308232;
 
 /* One triangle of so many is looked at. */
 enum { EACH = 4 };
@@ -75,26 +78,21 @@ static gtx_vec3 look_up(const gtx_asset *asset, const look_place *at, const doub
     return gtx_v3(n[0], n[1], n[2]);
 }
 
-/* Octahedral, two bytes, as geotex_lod.vert reads it. */
+/* Two bytes, as geotex_lod.vert reads them. */
 static uint16_t encode(gtx_vec3 n)
 {
-    const float sum = fabsf(n.x) + fabsf(n.y) + fabsf(n.z);
-    float x = n.x / sum, y = n.y / sum;
-    if (n.z < 0) {
-        const float folded = (1 - fabsf(y)) * (x < 0 ? -1.0f : 1.0f);
-        y = (1 - fabsf(x)) * (y < 0 ? -1.0f : 1.0f);
-        x = folded;
-    }
-    const uint32_t low = (uint32_t)(127.5f * x + 128), high = (uint32_t)(127.5f * y + 128);
-    return (uint16_t)(low | high << 8);
+    const float v[3] = {n.x, n.y, n.z};
+    uint8_t code[2];
+    gtx_encode_octahedral(v, code);
+    return (uint16_t)(code[0] | code[1] << 8);
 }
 
 static gtx_vec3 decode(uint16_t code)
 {
-    const float x = (float)(code & 255) / 127.5f - 1, y = (float)(code >> 8) / 127.5f - 1;
-    const float z = 1 - fabsf(x) - fabsf(y), fold = z < 0 ? -z : 0;
-    const gtx_vec3 n = gtx_v3(x < 0 ? x + fold : x - fold, y < 0 ? y + fold : y - fold, z);
-    return gtx_v3_normalize(n);
+    const uint8_t bytes[2] = {(uint8_t)code, (uint8_t)(code >> 8)};
+    float n[3];
+    gtx_decode_octahedral(bytes, n);
+    return gtx_v3_load(n);
 }
 
 static void point_of(const gtx_lod_level *level, const gtx_lod_vertex *v, double out[3])
@@ -160,7 +158,7 @@ static double stray_of(const gtx_asset *asset, const gtx_lod_meshes *lods,
         }
         from = run->end;
     }
-    return area > 0 ? sqrt(sum / area) * 57.29577951308232 : 180;
+    return area > 0 ? sqrt(sum / area) * degrees : 180;
 }
 
 /* The side of a texel, in the mean of all patches. */
@@ -181,13 +179,17 @@ void gtx_lod_light(const gtx_asset *asset, uint32_t k, gtx_lod_meshes *lods)
     gtx_lod_vertex *first = lods->vertices + level->vertex_offset / sizeof *first;
     gtx_lod_vertex *end = first + level->vertex_bytes / sizeof *first;
     const gtx_info *info = &asset->info;
-    /* Coarser levels are seen from so far that maps have to be averaged. */
-    if (k > 0 || info->has_color || info->has_material || info->has_emission || asset->bare ||
-        level->far || level->triangle_count < least_share * (double)info->source_triangles)
+    gtx_lod_mesh source;
+    gtx_get_lod_mesh(asset, k, &source);
+    /* Coarser levels are seen from so far that maps have to be averaged. What a file's beginning
+     * has for maps is made of the mesh. */
+    if (k > 0 || info->has_color || info->has_material || info->has_emission || level->far ||
+        (asset->bare ? !source.normals
+                     : level->triangle_count < least_share * (double)info->source_triangles))
         return;
     uint32_t patch = lods->patch_count;
     look_place at = {.patch = NULL};
-    for (gtx_lod_vertex *v = first; v < end; ++v) {
+    for (gtx_lod_vertex *v = first; v < end && !source.normals; ++v) {
         double point[3];
         if (v->patch != patch)
             at = place_of(asset, v->patch);
@@ -195,7 +197,9 @@ void gtx_lod_light(const gtx_asset *asset, uint32_t k, gtx_lod_meshes *lods)
         point_of(level, v, point);
         v->normal = encode(look_up(asset, &at, point));
     }
-    level->lit = stray_of(asset, lods, level) <= most_degrees;
-    if (level->lit && (double)level->error <= exact_texels * texel_of(asset))
+    const double stray = source.normals ? degrees * (double)source.normal_error
+                                        : stray_of(asset, lods, level);
+    level->lit = asset->bare || stray <= most_degrees;
+    if (level->lit && !asset->bare && (double)level->error <= exact_texels * texel_of(asset))
         level->error = 0;
 }

@@ -25,6 +25,8 @@ enum { COLR = ENTRY + 4 * 64, MATL = ENTRY + 8 * 64, EMIT = ENTRY + 9 * 64 };
 
 /* The two levels in `lod`; the entries of its finer and of the coarsest in `zstd-lod`. */
 enum { COARSE = 704, FINE = 832, LODM = ENTRY + 2 * 64, ZSTD_SHEL = ENTRY + 64 };
+/* Of the coarser level in `normals`. */
+enum { NORMAL_ERROR = COARSE + 96 };
 
 typedef enum rehash {
     NOTHING, HEADER, CONTENT, SECTIONS
@@ -198,6 +200,7 @@ static const bad bads[] = {
     {503, "lod-first", "lod", COARSE + 36, 4, 1, SECTIONS, COARSE + 36, NULL},
     {504, "lod-index", "lod", COARSE + 40, 4, 1, SECTIONS, COARSE + 40, NULL},
     {505, "lod-place", "lod", COARSE + 64, 2, 3000, SECTIONS, COARSE + 40, NULL},
+    {506, "lod-normals", "normals", NORMAL_ERROR, 4, 0x40400000, SECTIONS, NORMAL_ERROR, NULL},
     {600, "meta", "color", 3648, 1, 0xFF, SECTIONS, 3648, NULL},
 };
 enum { BAD_COUNT = sizeof bads / sizeof bads[0] };
@@ -251,7 +254,12 @@ static const bad variants[] = {
     {500, "lod-size", "lod", COARSE + 20, 4, 0xFFFFFFFF, SECTIONS, COARSE + 20, NULL},
     {501, "lod-header", "lod", COARSE + 4, 4, 0x7FC00000, SECTIONS, COARSE + 4, NULL}, /* NaN */
     {501, "lod-header", "lod", FINE + 16, 4, 0xBF800000, SECTIONS, FINE + 16, NULL},       /* -1 */
-    {501, "lod-header", "lod", COARSE + 28, 4, 2, SECTIONS, COARSE + 28, NULL},
+    {501, "lod-header", "lod", COARSE + 28, 4, 4, SECTIONS, COARSE + 28, NULL},
+    {500, "lod-size", "lod", COARSE + 28, 4, 2, SECTIONS, COARSE + 20, NULL},
+    {500, "lod-size", "normals", COARSE + 28, 4, 0, SECTIONS, COARSE + 20, NULL},
+    {500, "lod-size", "normals", COARSE + 20, 4, 3, SECTIONS, COARSE + 20, NULL},
+    {506, "lod-normals", "normals", NORMAL_ERROR, 4, 0x7FC00000, SECTIONS, NORMAL_ERROR, NULL},
+    {506, "lod-normals", "normals", NORMAL_ERROR, 4, 0xBF800000, SECTIONS, NORMAL_ERROR, NULL},
     {503, "lod-first", "lod", COARSE + 32, 4, 1, SECTIONS, COARSE + 32, NULL},
     {504, "lod-index", "lod", COARSE + 40, 4, 3, SECTIONS, COARSE + 40, NULL},
     {504, "lod-index", "lod", COARSE + 52, 4, 0xFFFFFFFF, SECTIONS, COARSE + 52, NULL},

@@ -2,6 +2,7 @@
 #ifndef GTX_TESTS_GOLDEN_H
 #define GTX_TESTS_GOLDEN_H
 
+#include "asset/golden_lod.h"
 #include "asset/header.h"
 #include "base/bytes.h"
 #include "base/hash.h"
@@ -26,6 +27,7 @@ typedef struct golden {
     bool unknown;                 /* a section that readers skip is put in */
     uint64_t content_hash, file_hash;
     uint32_t lods;
+    bool normals;                 /* of the LOD meshes' vertices */
 } golden;
 
 /* As gtx_encode_desc has it. */
@@ -37,31 +39,35 @@ static inline int golden_level(const golden *g)
 /* Hashes are literals: a change of the format must be made knowingly. */
 static const golden goldens[] = {
     {"minimal", 8, 1, 1, 8, NO_MAP, false, NULL, 0, false,
-     0xa1ada67a311afbb8, 0xf51e957f9f589c3f, 0},
+     0xa1ada67a311afbb8, 0xf51e957f9f589c3f, 0, false},
     {"two-sided", 8, 1, 1, 8, NO_MAP, true, NULL, 0, false,
-     0x2a060121eecc877a, 0x0120055519eb4753, 0},
+     0x2a060121eecc877a, 0x0120055519eb4753, 0, false},
     {"height16", 16, 1, 1, 16, NO_MAP, false, NULL, 0, false,
-     0x203462dc802c36e8, 0x8bd81f1606d2bb6a, 0},
+     0x203462dc802c36e8, 0x8bd81f1606d2bb6a, 0, false},
     {"color", 16, 1, 3, 8, COLOR, false, "{\"generator\":\"golden\"}", 0, false,
-     0xc17d8818b7b4faff, 0x97f1959e34ff7d0f, 0},
+     0xc17d8818b7b4faff, 0x97f1959e34ff7d0f, 0, false},
     {"two-pages", 16, 2, 1, 8, NO_MAP, false, NULL, 0, false,
-     0x3c7934d87b3b52d9, 0xe4cc3a0141c3b7ae, 0},
+     0x3c7934d87b3b52d9, 0xe4cc3a0141c3b7ae, 0, false},
     {"unknown", 8, 1, 1, 8, NO_MAP, false, NULL, 0, true,
-     0x99111e7725385c91, 0xd2736992e6ced2eb, 0},
+     0x99111e7725385c91, 0xd2736992e6ced2eb, 0, false},
     {"zstd", 64, 1, 4, 8, COLOR, false, "{\"generator\":\"golden\"}", 3, false,
-     0xe81392a3b3417493, 0xdd7640d8ab275b31, 0},
+     0xe81392a3b3417493, 0xdd7640d8ab275b31, 0, false},
     {"zstd16", 64, 2, 2, 16, NO_MAP, false, NULL, 19, false,
-     0x725a3d49f50dad05, 0x20a5584c5e1a1ddd, 0},
+     0x725a3d49f50dad05, 0x20a5584c5e1a1ddd, 0, false},
     {"material", 8, 1, 2, 8, MATERIAL, false, NULL, 0, false,
-     0xd30176fb5abe8750, 0x2e96035a1dd17b76, 0},
+     0xd30176fb5abe8750, 0x2e96035a1dd17b76, 0, false},
     {"emission", 8, 1, 2, 8, EMISSION, false, NULL, 0, false,
-     0x1bfebc5da0431036, 0xc623e4052b7b52ba, 0},
+     0x1bfebc5da0431036, 0xc623e4052b7b52ba, 0, false},
     {"zstd-material", 64, 2, 4, 8, EVERY_MAP, false, NULL, 3, false,
-     0xa0cdc932cd093aea, 0x2b9aed112d532f70, 0},
+     0xa0cdc932cd093aea, 0x2b9aed112d532f70, 0, false},
     {"lod", 8, 1, 1, 8, NO_MAP, false, NULL, 0, false,
-     0xfc1aab954e897207, 0x537f45455cc73656, 2},
+     0xfc1aab954e897207, 0x537f45455cc73656, 2, false},
     {"zstd-lod", 64, 2, 1, 8, NO_MAP, false, NULL, 3, false,
-     0x88b38f4e59c5b5ab, 0xea7c35bbc0d879b5, 3},
+     0x88b38f4e59c5b5ab, 0xea7c35bbc0d879b5, 3, false},
+    {"normals", 8, 1, 1, 8, NO_MAP, false, NULL, 0, false,
+     0xd84199b4cfeeb603, 0xf11c805392d1053f, 2, true},
+    {"zstd-normals", 64, 2, 1, 8, NO_MAP, false, NULL, 3, false,
+     0xd1e4721fd56ddb08, 0x1257c2e7098af705, 3, true},
 };
 enum { GOLDEN_COUNT = sizeof goldens / sizeof goldens[0] };
 
@@ -69,13 +75,6 @@ typedef struct bytes {
     uint8_t *data;
     size_t size;
 } bytes;
-
-static inline void *need(void *memory)
-{
-    if (!memory)
-        abort();
-    return memory;
-}
 
 /* Code of a texel of a patch; every eighth column and a few more texels are empty. */
 static inline uint32_t golden_code(uint32_t x, uint32_t y, uint32_t bits)
@@ -132,49 +131,6 @@ static inline void golden_fill(const golden *g, gtx_patch *patch, uint8_t *heigh
     patch->coverage = (float)coded / (float)(patch->rect[2] * patch->rect[3]);
 }
 
-/* A level in memory of its own: a square of 2^n x 2^n cells on every patch, whose first corners are
- * those of the patch before, so that patches share vertices. */
-static inline gtx_lod_mesh golden_lod(uint32_t patches, uint32_t level, uint32_t levels)
-{
-    const uint32_t side = 1u << (levels - 1 - level), row = side + 1;
-    const uint32_t triangles = 2 * side * side, own = row * row;
-    uint32_t *first = need(calloc(patches + 1, sizeof *first));
-    uint32_t *indices = need(calloc((size_t)patches * triangles, 3 * sizeof *indices));
-    uint16_t *positions = need(calloc((size_t)patches * own, 3 * sizeof *positions));
-    uint32_t name[81], met = 0, at = 0;
-    for (uint32_t p = 0; p < patches; ++p) {
-        first[p] = p * triangles;
-        for (uint32_t i = p ? 1 : 0; i < own; ++i)
-            name[i] = UINT32_MAX;
-        for (uint32_t t = 0; t < triangles; ++t) {
-            static const uint32_t corners[2][3][2] = {{{0, 0}, {1, 0}, {0, 1}},
-                                                      {{0, 1}, {1, 0}, {1, 1}}};
-            for (uint32_t k = 0; k < 3; ++k) {
-                uint32_t x = t / 2 % side + corners[t % 2][k][0];
-                uint32_t y = t / 2 / side + corners[t % 2][k][1], i = y * row + x;
-                if (name[i] == UINT32_MAX) {
-                    name[i] = met++;
-                    positions[3 * name[i]] = (uint16_t)(x * 1000 / side);
-                    positions[3 * name[i] + 1] = (uint16_t)(y * 1000 / side);
-                    positions[3 * name[i] + 2] = (uint16_t)(x * y % 7 + 40 * p);
-                }
-                indices[at++] = name[i];
-            }
-        }
-    }
-    first[patches] = patches * triangles;
-    return (gtx_lod_mesh){.step = 1.0f / 1024, .error = 0.25f * (float)level, .vertex_count = met,
-                          .triangle_count = patches * triangles, .first = first, .indices = indices,
-                          .positions = positions};
-}
-
-static inline void golden_free_lod(gtx_lod_mesh *lod)
-{
-    free((void *)lod->first);
-    free((void *)lod->indices);
-    free((void *)lod->positions);
-}
-
 static inline gtx_result golden_create(const golden *g, const gtx_allocator *allocator,
                                        gtx_asset **out, gtx_error *error)
 {
@@ -205,6 +161,8 @@ static inline gtx_result golden_create(const golden *g, const gtx_allocator *all
     gtx_lod_mesh lod[4];
     for (uint32_t k = 0; k < g->lods; ++k)
         lod[k] = golden_lod(patch_count, k, g->lods);
+    for (uint32_t k = 0; k < g->lods && g->normals; ++k)
+        golden_normals(&lod[k]);
     gtx_asset_desc desc = {
         .patches = patches, .patch_count = patch_count, .page_count = g->pages,
         .page_width = g->side, .page_height = g->side, .mip_count = g->mips,

@@ -166,7 +166,7 @@ static void test_lod(void **state)
     assert_int_equal(gtx_get_lod_mesh(asset, 1, &shown), GTX_OK);
     assert_int_equal(shown.flags, GTX_LOD_FAR);
     gtx_close(asset);
-    levels[0].flags = levels[1].flags = 2;
+    levels[0].flags = levels[1].flags = 4;
     assert_int_equal(broken_rule(&s), 501);
     levels[0].flags = levels[1].flags = 0;
     positions[3] = 4;
@@ -183,6 +183,48 @@ static void test_lod(void **state)
     s.desc.lod = NULL;
     s.desc.lod_levels = 1;
     assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_ERROR_ARGUMENT);
+}
+
+/* Normals of vertices: with their flag alone, and of no more vertices than can be coded. */
+static void test_lod_normals(void **state)
+{
+    (void)state;
+    specimen s;
+    make_specimen(&s);
+    const uint32_t first[] = {0, 2, 2}, indices[] = {0, 1, 2, 0, 2, 3, 3, 4, 5};
+    const uint16_t positions[] = {0, 0, 0, 4, 0, 1, 0, 4, 2, 1, 4, 2, 2, 4, 2, 3, 4, 2};
+    const uint8_t normals[] = {128, 128, 0, 255, 7, 9, 128, 200, 1, 2, 3, 4};
+    gtx_lod_mesh level = {.step = 0.125f, .vertex_count = 4, .triangle_count = 2,
+                          .flags = GTX_LOD_NORMALS, .first = first, .indices = indices,
+                          .positions = positions, .normals = normals, .normal_error = 0.5f};
+    s.desc.lod = &level;
+    s.desc.lod_levels = 1;
+    gtx_asset *asset = NULL;
+    gtx_lod_mesh shown;
+    assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_OK);
+    assert_int_equal(gtx_get_lod_mesh(asset, 0, &shown), GTX_OK);
+    assert_int_equal(shown.flags, GTX_LOD_NORMALS);
+    assert_memory_equal(shown.normals, normals, 8);
+    assert_true(shown.normal_error == 0.5f);
+    gtx_close(asset);
+    for (float error = -1; error < 4; error += 4) {
+        level.normal_error = error;
+        assert_int_equal(broken_rule(&s), 506);
+    }
+    level.normal_error = 2;
+    assert_int_equal(broken_rule(&s), 0);
+    level.flags = 0;
+    assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_ERROR_ARGUMENT);
+    level.normals = NULL;
+    level.flags = GTX_LOD_NORMALS;
+    assert_int_equal(gtx_create(&s.desc, &asset, NULL), GTX_ERROR_ARGUMENT);
+    /* A triangle alone has more vertices than may have normals. */
+    const uint32_t one[] = {0, 1, 1};
+    level.first = one;
+    level.normals = normals;
+    level.triangle_count = 1;
+    level.vertex_count = 3;
+    assert_int_equal(broken_rule(&s), 506);
 }
 
 /* ---- size ---- */
@@ -225,6 +267,7 @@ int main(void)
         cmocka_unit_test(test_material_and_emission),
         cmocka_unit_test(test_huge_values),
         cmocka_unit_test(test_lod),
+        cmocka_unit_test(test_lod_normals),
         cmocka_unit_test(test_many_patches),
     };
     return cmocka_run_group_tests_name("api", tests, NULL, NULL);

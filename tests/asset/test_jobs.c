@@ -91,7 +91,7 @@ static void test_bad(void **state)
 static void test_mutated(void **state)
 {
     (void)state;
-    static const char *const names[] = {"zstd", "zstd-material", "zstd-lod", "lod"};
+    static const char *const names[] = {"zstd", "zstd-material", "zstd-lod", "lod", "zstd-normals"};
     uint32_t random = 1;
     for (int n = 0; n < 4; ++n) {
         bytes file = read_golden(names[n]);

@@ -15,8 +15,8 @@
 
 /* All that a file may have; once stored, once compressed. */
 static const golden every[2] = {
-    {"every", 16, 2, 2, 8, EVERY_MAP, false, "{}", 0, false, 0, 0, 3},
-    {"zstd-every", 64, 2, 4, 16, EVERY_MAP, false, "{}", 3, false, 0, 0, 3}};
+    {"every", 16, 2, 2, 8, EVERY_MAP, false, "{}", 0, false, 0, 0, 3, true},
+    {"zstd-every", 64, 2, 4, 16, EVERY_MAP, false, "{}", 3, false, 0, 0, 3, true}};
 
 /* Where entry `i` of a file ends. */
 static size_t end_of(bytes file, uint32_t i)

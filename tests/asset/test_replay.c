@@ -148,7 +148,9 @@ static void test_steps_agree(void **state)
     uint64_t seed = 7;
     for (uint32_t round = 0; round < 3000; ++round) {
         uint32_t patches = round % 4, vertices = round / 4 % 30, triangles = round / 120;
-        size_t size = (size_t)gtx_lod_size(patches, vertices, triangles);
+        const uint32_t flags = round % 3 ? 0 : GTX_LOD_NORMALS;
+        size_t size = (size_t)(gtx_lod_size(patches, vertices, triangles) +
+                               gtx_lod_normals_size(flags, vertices));
         uint8_t *coded = need(malloc(size)), *out = need(malloc(size));
         struct section section = {.type = "LODM", .size = size, .bytes = need(malloc(size))};
         for (size_t i = 0; i < size; ++i) {
@@ -159,6 +161,7 @@ static void test_steps_agree(void **state)
         }
         gtx_store_u32(coded + 20, vertices + (round % 50 == 49));
         gtx_store_u32(coded + 24, triangles + 100 * (round % 70 == 69));
+        gtx_store_u32(coded + 28, flags);
         memcpy(section.bytes, coded, size);
         bool undone = gtx_lod_filter_undo(coded, size, out);
         assert_int_equal(undone, undo_steps(&section) == 0);
@@ -237,7 +240,7 @@ static void test_repaired_flips(void **state)
     (void)state;
     static const char *const names[] = {"minimal", "two-pages", "unknown", "color",
                                         "material", "emission", "lod",
-                                        "zstd", "zstd-material", "zstd-lod"};
+                                        "zstd", "zstd-material", "zstd-lod", "zstd-normals"};
     for (int i = 0; i < (gtx_has_zstd() ? 10 : 7); ++i) {
         uint32_t accepted = flip(names[i], 0, table_end(names[i]), 1, REPAIR_HEADER);
         assert_in_range(accepted, 100, 1000);

@@ -187,6 +187,9 @@ static void read_lod(const Reader &reader, const Json &levels, const std::string
         level.triangle_count = uint32_t(reader.whole(json, "triangles", UINT32_MAX));
         level.vertex_count = uint32_t(reader.whole(json, "vertices", UINT32_MAX));
         level.flags = uint32_t(reader.whole(json, "flags", UINT32_MAX));
+        if (level.flags & GTX_LOD_NORMALS)
+            level.normal_error =
+                float(reader.number(reader.at(json, "normal_error"), "normal_error"));
         const uint32_t k = uint32_t(out.lod.size());
         about = in_folder(folder, unpacked_lod_name(k));
         read_unpacked_lod(about, uint32_t(out.patches.size()), level, out.lod_arrays[k]);

@@ -49,6 +49,7 @@ void rebuild(Unpacked &unpacked, unsigned what)
                    now[2 * size_t(map) + 1] == was[2 * size_t(map) + 1];
         };
         const bool heights = edited(GTX_MAP_HEIGHT), normals = heights && (what & REBUILD_NORMALS);
+        unpacked.has_old_normals |= heights || edited(GTX_MAP_NORMAL);
         old_normals += known && heights && !normals && !edited(GTX_MAP_NORMAL);
         if (heights && (what & REBUILD_TRIM))
             repaint_trim(maps, p);

@@ -49,6 +49,7 @@ void write_unpacked(const gtx_asset *asset, int zstd, const std::string &folder,
 struct UnpackedLod {
     Vector<uint32_t> numbers;      /* first, then indices */
     Vector<uint16_t> positions;
+    Vector<uint8_t> normals;       /* 2 a vertex, or none */
 };
 std::string unpacked_lod_name(uint32_t level); /* "lod-0.bin" */
 void write_unpacked_lod(const gtx_lod_mesh &level, uint32_t patches, const std::string &path);
@@ -68,11 +69,17 @@ struct Unpacked {
     Vector<const uint8_t *> pointers[6];
     Vector<gtx_lod_mesh> lod;
     Vector<UnpackedLod> lod_arrays;
+    bool has_old_normals = false;                /* LOD meshes' are of maps edited since */
     Vector<Warning> warnings;
 };
 
 /* Fills `out`, which must stay where it is. */
 void read_unpacked(const std::string &folder, Limits &limits, Unpacked &out, std::string &about);
+
+/* Leaves out the normals of LOD meshes. False where there are none. */
+bool drop_lod_normals(Unpacked &unpacked);
+/* Makes them anew of the maps; all of it makes a valid asset. */
+void fit_lod_normals(Unpacked &unpacked);
 
 /* Computes coverage, spheres and bounds anew from the heights, and leaves out the LOD mesh, which
  * does not follow them. */

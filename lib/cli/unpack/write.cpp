@@ -125,6 +125,8 @@ static void write_lod(const gtx_asset *asset, const gtx_info &info, const std::s
         member["triangles"] = level.triangle_count;
         member["vertices"] = level.vertex_count;
         member["flags"] = level.flags;
+        if (level.normals)
+            member["normal_error"] = level.normal_error;
         json["lod_meshes"].push_back(std::move(member));
     }
 }
