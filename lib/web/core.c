@@ -11,6 +11,7 @@
 #include <emscripten/emscripten.h>
 #include <emscripten/html5_webgl.h>
 
+#include <math.h>
 #include <string.h>
 
 #define WEB_API EMSCRIPTEN_KEEPALIVE
@@ -138,7 +139,7 @@ WEB_API void gtxw_close(gtx_asset *asset)
 /* In the order that inside.js names them in. Valid until the next call. */
 WEB_API const double *gtxw_info(const gtx_asset *asset)
 {
-    static double out[23];
+    static double out[24];
     gtx_info i;
     gtx_lod_mesh finest = {0};
     gtx_get_info(asset, &i);
@@ -149,7 +150,8 @@ WEB_API const double *gtxw_info(const gtx_asset *asset)
         i.has_color, i.has_material, i.has_emission, i.lod_levels, (double)i.source_triangles,
         (double)i.unit, (double)i.bounds_min[0], (double)i.bounds_min[1], (double)i.bounds_min[2],
         (double)i.bounds_max[0], (double)i.bounds_max[1], (double)i.bounds_max[2], i.anchor[0],
-        i.anchor[1], i.anchor[2], (double)i.file_size, (double)finest.error};
+        i.anchor[1], i.anchor[2], (double)i.file_size, (double)finest.error,
+        finest.normals ? (double)finest.normal_error : HUGE_VAL};
     _Static_assert(sizeof numbers == sizeof out, "one place each");
     memcpy(out, numbers, sizeof out);
     return out;

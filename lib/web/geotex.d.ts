@@ -45,6 +45,8 @@ export class Asset {
   readonly fileBytes: number;
   /** Of the finest LOD mesh, object units: how far it is from the surface. */
   readonly lodError: number;
+  /** How far normals of its vertices stray from the maps, in radians; infinite where it has none. */
+  readonly normalError: number;
   /** The nearest hit, on the CPU; null where nothing is hit. */
   raycast(origin: Numbers, direction: Numbers,
           options?: {near?: number, far?: number, twoSided?: boolean}): Hit | null;

@@ -66,12 +66,13 @@ export function openBytes(core, bytes, {prefix, pieces, request} = {}) {
 
 /* As Asset of geotex.d.ts has them. */
 export function infoOf(core, handle) {
-  const at = core._gtxw_info(handle) / 8, n = core.HEAPF64.slice(at, at + 23);
+  const at = core._gtxw_info(handle) / 8, n = core.HEAPF64.slice(at, at + 24);
   return {
     patchCount: n[0], pageCount: n[1], pageWidth: n[2], pageHeight: n[3], mipCount: n[4],
     heightBits: n[5], hasColor: !!n[6], hasMaterial: !!n[7], hasEmission: !!n[8],
     lodLevels: n[9], sourceTriangles: n[10], unit: n[11], min: [...n.slice(12, 15)],
-    max: [...n.slice(15, 18)], anchor: [...n.slice(18, 21)], fileBytes: n[21], lodError: n[22]};
+    max: [...n.slice(15, 18)], anchor: [...n.slice(18, 21)], fileBytes: n[21], lodError: n[22],
+    normalError: n[23]};
 }
 
 const SLOTS = 7, OF_A_SLOT = 15, BUFFERS = 4;

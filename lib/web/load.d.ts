@@ -9,7 +9,7 @@ export function modelsOf(geotex: Geotex, ask: (headers: Record<string, string>) 
   /** Whether something finer than `model` is wanted, or a promise to be asked again: until then
    * nothing is read, where the server grants ranges (206). Without it: always. */
   wanted?: (model: Model) => true | PromiseLike<unknown>,
-  /** The finest mip level that is shown, of those of `model`, below 0 of finer ones: then its normals
-   * are read, too, from within the file. Without it: 0. */
+  /** The finest mip level that is shown, of those of `model`, below 0 of finer ones. Below 1 its normals
+   * are read, too, from within the file, unless those of vertices are as good. Without it: 1. */
   finest?: (model: Model) => number,
 }): AsyncGenerator<Model, void, void>;

@@ -30,7 +30,7 @@ class Gathered {
 
 /* Of a file whose table is there: its sections, each with its type, as little-endian characters,
  * level, and the numbers of its first byte and of the one behind it. */
-const COLR = 0x524c4f43, MATL = 0x4c54414d, EMIT = 0x54494d45, HGHT = 0x54484748, NRML = 0x4c4d524e;
+const LODM = 0x4d444f4c, COLR = 0x524c4f43, MATL = 0x4c54414d, EMIT = 0x54494d45, HGHT = 0x54484748, NRML = 0x4c4d524e;
 const viewOf = ({buffer, byteOffset, byteLength}) => new DataView(buffer, byteOffset, byteLength);
 function sectionsOf(bytes) {
   const view = viewOf(bytes), count = view.getUint32(28, true);
@@ -47,6 +47,22 @@ function placesIn(bytes) {
     const all = sectionsOf(bytes).filter(({type}) => type === kind);
     return {first: all[0].first, end: all[all.length - 1].end};
   });
+}
+
+/* Normals of an LOD mesh's vertices take the place of maps from which they stray by 4 degrees or less,
+ * as they do where models are lit at vertices (lib/frame/lod_normals.c). */
+const MAX_NORMAL_ERROR = 4 * Math.PI / 180;
+
+/* Whether maps would show more than the normals of a model whose mip level `finest` is shown: those of
+ * vertices, whose distance is up to two texels. */
+export const isBlurred = ({asset}, finest) =>
+  finest < 1 && !(asset.normalError <= MAX_NORMAL_ERROR);
+
+/* How many first bytes hold all LOD meshes, if they and what is before them are fewer than the maps of
+ * placesIn; else 0. */
+function lodEnd(bytes) {
+  const end = Math.max(0, ...sectionsOf(bytes).filter(({type}) => type === LODM).map((s) => s.end));
+  return end < placesIn(bytes).reduce((n, place) => n + place.end - place.first, 0) ? end : 0;
 }
 
 /* How many first bytes hold the colours that a mip level of the file's takes, and where that is the
@@ -99,11 +115,12 @@ const NEAR = 1 << 16;
 
 /* `ask(headers)` asks for the file; `onProgress(bytes, of)` is called as bytes come: `of` is 0 while
  * the file's size is unknown. Where the server grants ranges, a finer model is waited for only once
- * `wanted(model)` holds, or the promise that it gives does: until then nothing is read but normals, once
- * those that follow from LOD meshes are too coarse: where `finest(model)`, the mip level of its own
- * that is shown, is below 0. */
+ * `wanted(model)` holds, or the promise that it gives does: until then nothing is read but colours as far
+ * as `finest(model)`, the mip level of its own that is shown, asks for, and normals where that is
+ * blurred: first those of finer LOD meshes, then maps. */
 export async function* modelsOf(geotex, ask, {onProgress = () => {}, wanted = () => true,
-                                              finest = () => 0} = {}) {
+                                              finest = () => 1} = {}) {
+  const blurred = (model) => isBlurred(model, finest(model));
   const gathered = new Gathered();
   let held = []; /* pieces of what is behind it */
   let source = await Source.open(ask, null), needed = 1, size = 0, whole = 0;
@@ -149,6 +166,10 @@ export async function* modelsOf(geotex, ask, {onProgress = () => {}, wanted = ()
       let fine = wanted(model), shown = model;
       if (fine === true)
         continue;
+      if (gathered.length < lodEnd(gathered.all) && blurred(model)) {
+        needed = Math.min(needed, lodEnd(gathered.all));
+        continue;
+      }
       const look = () => lookEnds(gathered.all, finest(shown) + Math.round(Math.log2(
           viewOf(gathered.all).getUint32(60, true) / shown.asset.pageWidth)));
       if (gathered.length < look()) {
@@ -156,7 +177,7 @@ export async function* modelsOf(geotex, ask, {onProgress = () => {}, wanted = ()
         continue;
       }
       for (; fine !== true && gathered.length >= look(); fine = wanted(shown)) {
-        if (held.length || finest(shown) >= 0) {
+        if (held.length || !blurred(shown)) {
           source.stop();
           await fine;
           continue;

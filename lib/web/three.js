@@ -5,7 +5,7 @@
 import {FileLoader, Loader, Matrix4, Mesh, MeshBasicMaterial, Vector4} from 'three';
 import {boundsOf, Bridge, meet} from './bridge.js';
 import {Method, Pass} from './geotex.js';
-import {modelsOf} from './load.js';
+import {isBlurred, modelsOf} from './load.js';
 
 const SLICE = 1 << 20;                 /* bytes sent at once: 2 ms in software; at double, 4 */
 
@@ -31,7 +31,7 @@ class Content {
     this.#need = same ? Math.max(this.#need, need) : need;
     this.#texel = same ? Math.max(this.#texel, texel) : texel;
     this.#frame = frame;
-    if (need > 1 || this.finest < 0)
+    if (need > 1 || isBlurred(this.model, this.finest))
       this.#wake();
   }
 

@@ -71,6 +71,19 @@ function compare(a, b) {
   return {apart: apart / (WIDTH * HEIGHT), iou: both / either};
 }
 
+/* dB, where one of them shows the model. */
+function psnr(a, b) {
+  let sum = 0, count = 0;
+  for (let i = 0; i < a.length; i += 4) {
+    if (![a, b].some((p) => p[i] + p[i + 1] > 0 || p[i + 2] !== 255))
+      continue;
+    count += 3;
+    for (let k = 0; k < 3; ++k)
+      sum += (a[i + k] - b[i + k]) ** 2;
+  }
+  return 10 * Math.log10(255 ** 2 * count / sum);
+}
+
 /* Its worker and its modules are files of their own; where there are none it is not asked for. */
 const nexus = (name) => import('/folder/nexus/' + name);
 
@@ -165,8 +178,8 @@ const ways = {
 };
 
 /* Loaded twice on the line, so that modules, workers and shaders are there the second time: those of
- * coarse models, too. Outlines are compared with Draco's. */
-let outline = null;
+ * coarse models, too. Outlines and pictures are compared with Draco's. */
+let outline = null, last = '';
 window.measure = async (kind, url, bits, maxError) => {
   if (kind === 'draco')
     ball = outline = null;
@@ -183,23 +196,25 @@ window.measure = async (kind, url, bits, maxError) => {
   await link(0);
   const {object, pictures, close} = all, times = [];
   const end = pictures[pictures.length - 1];
+  last = renderer.domElement.toDataURL('image/png');
   for (let i = 0; i < FRAMES; ++i)
     times.push(frame(object));
   await all.complete?.();
   frame(object);
   const final = picture();
   outline ??= final;
-  /* The first picture from which on none differs from that of all bytes. */
+  /* The first picture from which on none differs from the last one, after which nothing is asked for. */
   let full = pictures.length;
-  while (full && compare(pictures[full - 1].picture, final).apart <= MAX_APART)
+  while (full && compare(pictures[full - 1].picture, end.picture).apart <= MAX_APART)
     --full;
   const {iou} = compare(final, outline);
   close();
   for (const {at, picture: p, bytes} of pictures)
     console.log(`${url}: at ${(at - start).toFixed(0)} ms, ${bytes ?? 'all'} bytes: ` +
                 `${(100 * compare(p, final).apart).toFixed(4)} % off`);
-  return {first, full: full < pictures.length ? pictures[full].at - start : null, iou,
+  return {first, full: pictures[full].at - start, iou, psnr: psnr(end.picture, outline),
+          wholePsnr: psnr(final, outline),
           task: longest(start, end.at), bytes: all.bytes,
           frame: times.sort((a, b) => a - b)[FRAMES >> 1], memory: all.memory};
 };
-window.shot = () => renderer.domElement.toDataURL('image/png');
+window.shot = () => last;

@@ -1,6 +1,6 @@
 /* node bench.mjs APP FOLDER NAME...: of each NAME.gtx, .drc, .glb and, where it is there, .nxz in FOLDER,
  * one line in one Chromium: bytes, seconds to the first and to the last picture at 10 Mbit/s, a frame,
- * memory. */
+ * memory, and how near pictures are to Draco's. */
 import {existsSync} from 'node:fs';
 import {stat} from 'node:fs/promises';
 import {dirname, join} from 'node:path';
@@ -18,8 +18,8 @@ await page.setCacheEnabled(false);
 page.on('console', (m) => console.error(m.text()));
 try {
   console.log('| model | file | KB | read, KB | first picture, s | full, s | longest task, ms | frame, ms |' +
-              ' memory, MB | IoU |');
-  console.log('|---|---|---|---|---|---|---|---|---|---|');
+              ' memory, MB | IoU | PSNR, dB: full | all bytes |');
+  console.log('|---|---|---|---|---|---|---|---|---|---|---|---|');
   for (const name of names) {
     await page.goto(`${address}/tests/bench.html`);
     await page.waitForFunction('window.measure', {timeout: 60000});
@@ -28,11 +28,11 @@ try {
         continue;
       const {size} = await stat(join(folder, `${name}.${end}`));
       const m = await page.evaluate((...a) => measure(...a), kind, `/folder/${name}.${end}`, 10e6, error);
-      const seconds = (ms) => ms === null ? '' : (ms / 1000).toFixed(2);
+      const seconds = (ms) => (ms / 1000).toFixed(2);
       console.log(`| ${name} | ${title} | ${Math.round(size / 1000)} |` +
                   ` ${Math.round((m.bytes ?? size) / 1000)} | ${seconds(m.first)} | ${seconds(m.full)} |` +
                   ` ${m.task.toFixed(0)} | ${m.frame.toFixed(0)} | ${(m.memory / 1e6).toFixed(0)} |` +
-                  ` ${m.iou.toFixed(4)} |`);
+                  ` ${m.iou.toFixed(4)} | ${m.psnr?.toFixed(1) ?? ''} | ${m.wholePsnr?.toFixed(1) ?? ''} |`);
       const picture = await page.evaluate(() => shot());
       await writeFile(join(folder, `${name}-${kind}-${error ?? 0}.png`),
                       Buffer.from(picture.slice(picture.indexOf(',') + 1), 'base64'));
