@@ -152,6 +152,37 @@ export const streaming = (checks) => {
       renderer.dispose();
     },
 
+    /* Of two that are as smooth, one has relief in its normal map alone. */
+    async maps_are_read_for_what_vertices_do_not_tell() {
+      const {renderer, picture, loader} = stage(), QUIET = 1500, PIXELS = 4;
+      const later = (ms) => new Promise((next) => setTimeout(next, ms));
+      for (const [name, relief] of [['smooth', false], ['relief', true]]) {
+        const file = address.replace('sculpt', name), whole = await loader.loadAsync(file);
+        whole.maxError = PIXELS;
+        const wanted = picture(whole), size = whole.asset.fileBytes;
+        let come = 0, changed = performance.now();
+        await link(LINK);
+        const model = await loader.stream(file + '?ranges', (bytes) => {
+          come = bytes;
+          changed = performance.now();
+        });
+        model.maxError = PIXELS;
+        for (; performance.now() - changed < QUIET; await later(20))
+          picture(model);
+        await link(0);
+        const {off} = likeness(wanted, picture(model)), {normalError, mipCount} = model.asset;
+        console.log(`${name}: ${come} of ${size} bytes, colours are off by ${off.toFixed(2)} of 255, ` +
+                    `normals by ${normalError.toFixed(4)}`);
+        expect(!model.content.whole, 'all has come');
+        expect(relief === (normalError === Infinity), `normals are off by ${normalError}`);
+        expect(relief === mipCount > 1, relief ? 'its relief is not seen' : 'maps have come');
+        expect(relief || come < size / 2, `${come} of ${size} bytes came`);
+        expect(off < (relief ? 0.01 : 2), 'the picture is another');
+        [model, whole].forEach((m) => m.dispose());
+      }
+      renderer.dispose();
+    },
+
     async disposing_stops_the_download() {
       const {renderer, loader} = stage();
       await link(LINK / 4);
