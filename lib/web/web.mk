@@ -62,7 +62,7 @@ $(web_package)/core.js: $(web_faces) $(web)/core.a $(web)/zstd.o
 	$(Q)$(emcc) -Oz --closure 0 -o $@ $^ --no-entry \
 	  -sMODULARIZE=1 -sEXPORT_ES6=1 -sENVIRONMENT=web,worker -sFILESYSTEM=0 -sMALLOC=emmalloc \
 	  -sMIN_WEBGL_VERSION=2 -sMAX_WEBGL_VERSION=2 -sALLOW_MEMORY_GROWTH=1 \
-	  -sINITIAL_MEMORY=4MB -sTOTAL_STACK=1MB \
+	  -sINITIAL_MEMORY=2MB -sTOTAL_STACK=1MB \
 	  -sGL_SUPPORT_AUTOMATIC_ENABLE_EXTENSIONS=0 -sINCOMING_MODULE_JS_API=[locateFile] \
 	  -sEXPORTED_RUNTIME_METHODS=$(subst $(space),$(comma),$(web_methods)) \
 	  -sEXPORTED_FUNCTIONS=_malloc,_free
