@@ -1,4 +1,4 @@
-/* Normals of LOD meshes' vertices: near to the maps where they can be, and none where they cannot. */
+/* Normals of LOD meshes: near to the maps where they can be, and none where they cannot. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
