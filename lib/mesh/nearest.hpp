@@ -65,22 +65,18 @@ public:
     template <class Skips, class Visit>
     void visit(size_t part, const Skips &skips, const Visit &visit) const
     {
-        size_t stack[64], size = 0;
-        stack[size++] = root(part);
-        while (size) {
-            const size_t node = stack[--size];
-            cancel_point();
-            if (skips(boxes_[node]))
-                continue;
-            if (node < leaves_) {
-                stack[size++] = 2 * node + 1;
-                stack[size++] = 2 * node;
-                continue;
-            }
-            const size_t from = (node - leaves_) * LEAF;
-            for (size_t i = from; i < std::min(from + LEAF, order_.size()); ++i)
-                visit(order_[i]);
-        }
+        visit_below(root(part), skips, visit);
+    }
+    /* Of all parts, in a tree of renumbered shapes, from one close by up the tree; from the root
+     * down where that is none. */
+    template <class Skips, class Visit>
+    void visit_around(uint32_t near, const Skips &skips, const Visit &visit) const
+    {
+        size_t node = near < shapes_.size() ? leaves_ + near / LEAF : 1;
+        visit_below(node, skips, visit);
+        for (; node > 1; node /= 2)
+            if (!skips(boxes_[node ^ 1]))
+                visit_below(node ^ 1, skips, visit);
     }
 
     /* The squared distance to the nearest shape; infinity when there is none. `*near` is a shape to
@@ -156,6 +152,27 @@ private:
         Vec3f at;
         uint32_t shape;
     };
+
+    template <class Skips, class Visit>
+    void visit_below(size_t root, const Skips &skips, const Visit &visit) const
+    {
+        size_t stack[64], size = 0;
+        stack[size++] = root;
+        while (size) {
+            const size_t node = stack[--size];
+            cancel_point();
+            if (skips(boxes_[node]))
+                continue;
+            if (node < leaves_) {
+                stack[size++] = 2 * node + 1;
+                stack[size++] = 2 * node;
+                continue;
+            }
+            const size_t from = (node - leaves_) * LEAF;
+            for (size_t i = from; i < std::min(from + LEAF, order_.size()); ++i)
+                visit(order_[i]);
+        }
+    }
 
     template <class Counts>
     double nearer_below(size_t node, double distance, double best, const Vec3d &p, uint32_t *near,

@@ -1,5 +1,5 @@
 /* Splits triangles until none may be farther than the farthest point that is known. */
-#include "bake/lod/far_search.hpp"
+#include "bake/lod/cover.hpp"
 
 #include <algorithm>
 
@@ -8,6 +8,20 @@ namespace gtx::baking {
 static double radius_of(const Corners &c, const Vec3d &middle)
 {
     return std::max({length(c[0] - middle), length(c[1] - middle), length(c[2] - middle)});
+}
+
+bool FarSearch::is_clear(const Corners &c)
+{
+    FarCorner a = {c[0]}, b = {c[1]}, d = {c[2]};
+    if (slope >= 1 && (is_covered(a, b, d) || was_covered(a, b, d)))
+        return true;
+    const uint32_t last = near, over = covering(c, to, most(), near);
+    if (over == NO_PATCH)
+        return false;
+    near = over;
+    if (near != last)
+        remember(last);
+    return true;
 }
 
 void FarSearch::look(FarCorner &a, FarCorner &b, FarCorner &c)

@@ -50,6 +50,7 @@ public:
 
     size_t size() const { return triangles_.size(); }
     std::array<Vec3d, 3> corners(size_t t) const { return shapes_.corners(t); }
+    const std::array<uint32_t, 3> &vertices(size_t t) const { return triangles_[t]; }
     const NearestTree<Surface> &tree() const { return tree_; }
     /* Which of those that were given triangle t is. */
     uint32_t given(size_t t) const { return given_[t]; }
@@ -169,23 +170,29 @@ struct FarSearch {
                 ? to.tree().nearer_around(known, p, &near, enough * enough)
                 : to.tree().nearer(known, p, &near, [](uint32_t) { return true; }, nullptr,
                                    enough * enough);
-        if (near != last) {
-            earlier[next] = last < to.size() ? KnownTriangle(last, nearest) : KnownTriangle();
-            next = (next + 1) % EARLIER;
-            const Corners c = to.corners(near);
-            nearest = {c[0], c[1], c[2]};
-        }
+        if (near != last)
+            remember(last);
         return std::sqrt(square);
     }
+    /* That another was nearest before. */
+    void remember(uint32_t last)
+    {
+        earlier[next] = last < to.size() ? KnownTriangle(last, nearest) : KnownTriangle();
+        next = (next + 1) % EARLIER;
+        const Corners c = to.corners(near);
+        nearest = {c[0], c[1], c[2]};
+    }
+    /* Whether a triangle is known to be nowhere farther than most(), without splitting it. */
+    bool is_clear(const Corners &c);
     /* Where a triangle is farther than `free`: at a corner, if any of them is, else where it is
      * farthest of what was looked at. An `away` of 0: nowhere. */
     FarPlace find_far(const Corners &c)
     {
-        found = 0;
         look(c);
-        if (found <= free)
-            return {};
         const FarPlace inside = {farthest.at, farthest.near, found, -1};
+        found = 0; /* the next is another's */
+        if (inside.away <= free)
+            return {};
         for (int k = 0; k < 3; ++k) {
             const double away = distance(c[k], free);
             if (away > free)

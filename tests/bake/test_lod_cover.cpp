@@ -1,0 +1,146 @@
+/* What lies all over a triangle is known without a look at its points, and nothing else is. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+extern "C" {
+#include <cmocka.h>
+}
+
+#include "bake/lod/cover.hpp"
+#include "measure/sample.hpp"
+
+using namespace gtx;
+using namespace gtx::baking;
+
+/* Squares of a side of 1 from -2 to 6 along x and y, each two triangles, over the triangle. */
+struct Ground {
+    static constexpr int SIDE = 9;
+    Vector<Vec3d> positions;
+    Vector<std::array<uint32_t, 3>> triangles;
+
+    Ground()
+    {
+        for (int j = 0; j < SIDE; ++j)
+            for (int i = 0; i < SIDE; ++i)
+                positions.push_back({i - 2.0, j - 2.0, 0});
+        for (int j = 0; j + 1 < SIDE; ++j)
+            for (int i = 0; i + 1 < SIDE; ++i) {
+                const uint32_t from = at(i, j), to = at(i + 1, j + 1);
+                triangles.push_back({from, at(i + 1, j), to});
+                triangles.push_back({from, to, at(i, j + 1)});
+            }
+    }
+    static uint32_t at(int i, int j) { return uint32_t(j * SIDE + i); }
+    bool covers(const Corners &t, double most) const
+    {
+        Task task(1, nullptr, nullptr);
+        const SortedSurface surface(positions, triangles, task, 0);
+        const uint32_t from_root = covering(t, surface, most, NO_PATCH);
+        for (uint32_t near = 0; near < surface.size(); near += 17)
+            assert_int_equal(covering(t, surface, most, near) == NO_PATCH, from_root == NO_PATCH);
+        return from_root != NO_PATCH;
+    }
+};
+
+static const Corners low = {{{0.3, 0.4, 0.1}, {3.2, 0.6, 0.1}, {1.1, 3.7, 0.1}}};
+static const Corners turned = {{low[1], low[0], low[2]}};
+
+static void all_of_it_or_nothing(void **)
+{
+    Ground ground;
+    assert_true(ground.covers(low, 0.11));
+    assert_false(ground.covers(low, 0.09));
+    assert_false(ground.covers(turned, 0.11));
+    ground.positions[Ground::at(3, 3)].z = 0.15; /* within */
+    assert_true(ground.covers(low, 0.11));
+    ground.positions[Ground::at(3, 3)].z = 0.3; /* a peak */
+    assert_false(ground.covers(low, 0.11));
+    assert_true(ground.covers(low, 0.21));
+}
+
+static void holes_and_borders_are_seen(void **)
+{
+    for (size_t t = 0; t < Ground().triangles.size(); ++t) {
+        Ground ground;
+        Vec3d middle = {0, 0, 0};
+        for (uint32_t v : ground.triangles[t])
+            middle = middle + ground.positions[v] / 3;
+        ground.triangles.erase(ground.triangles.begin() + std::ptrdiff_t(t));
+        const bool over = middle.x > 0.9 && middle.x < 1.9 && middle.y > 0.9 && middle.y < 1.9;
+        const bool beside = middle.x < 0 || middle.y < 0 || middle.x > 4 || middle.y > 4;
+        if (over || beside)
+            assert_int_equal(ground.covers(low, 0.11), beside);
+    }
+    Corners beyond = low;
+    beyond[2].y = 6.1;
+    assert_false(Ground().covers(beyond, 0.11));
+    Ground empty;
+    empty.triangles.resize(1);
+    assert_false(empty.covers(low, 10));
+}
+
+/* What is turned over, and what comes to an end under what lies above it. */
+static void folds_cover_nothing(void **)
+{
+    Ground over;
+    std::swap(over.triangles[54][0], over.triangles[54][1]);
+    assert_false(over.covers(low, 0.11));
+    Ground doubled;
+    doubled.triangles.push_back(doubled.triangles[54]);
+    assert_false(doubled.covers(low, 0.11));
+    Ground two; /* whole below, and a part of it again above */
+    const uint32_t above = uint32_t(two.positions.size());
+    for (const Vec3d &p : {Vec3d(0, 0, 0.12), Vec3d(3, 0, 0.12), Vec3d(0, 3, 0.12)})
+        two.positions.push_back(p);
+    two.triangles.push_back({above, above + 1, above + 2});
+    assert_false(two.covers(low, 0.11));
+}
+
+static void what_has_no_area_is_not_sure(void **)
+{
+    const Ground ground;
+    assert_false(ground.covers({{low[0], low[0], low[1]}}, 1));
+    assert_false(ground.covers({{low[0], (low[0] + low[1]) / 2, low[1]}}, 1));
+    assert_false(ground.covers({{{0, 0, 0}, {1e-160, 0, 0}, {0, 1e-160, 0}}}, 1));
+    assert_false(ground.covers({{{NAN, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, 1));
+}
+
+/* Where a rough surface is said to cover a triangle, all of its points are as near. */
+static void what_is_covered_is_near(void **)
+{
+    Random random(5);
+    unsigned covered = 0;
+    for (int n = 0; n < 400; ++n) {
+        Ground ground;
+        for (Vec3d &p : ground.positions)
+            p = p + Vec3d(random.next() - 0.5, random.next() - 0.5, random.next() - 0.5) *
+                        (0.002 * n);
+        const double most = 0.1 + 0.3 * random.next();
+        if (!ground.covers(low, most))
+            continue;
+        ++covered;
+        Task task(1, nullptr, nullptr);
+        const SortedSurface surface(ground.positions, ground.triangles, task, 0);
+        FarSearch search = {surface, 1, 0, 0, 0};
+        for (int i = 0; i <= 20; ++i)
+            for (int j = 0; i + j <= 20; ++j) {
+                const Vec3d p = low[0] * (i / 20.0) + low[1] * (j / 20.0) +
+                                low[2] * ((20 - i - j) / 20.0);
+                assert_true(search.distance(p, 0) <= most * (1 + 1e-12));
+            }
+    }
+    assert_in_range(covered, 100, 390);
+}
+
+int main()
+{
+    const CMUnitTest tests[] = {
+        cmocka_unit_test(all_of_it_or_nothing),
+        cmocka_unit_test(holes_and_borders_are_seen),
+        cmocka_unit_test(folds_cover_nothing),
+        cmocka_unit_test(what_has_no_area_is_not_sure),
+        cmocka_unit_test(what_is_covered_is_near),
+    };
+    return cmocka_run_group_tests_name("LOD mesh cover", tests, nullptr, nullptr);
+}
