@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace gtx::baking {
 
@@ -96,6 +95,22 @@ LevelMesh far_level_mesh(const Simplifier &simplified, const Maps &maps,
     return mesh;
 }
 
+/* Of each vertex the first one that has its place. */
+static Vector<uint32_t> first_there(const Vector<Place> &places)
+{
+    Vector<std::pair<uint64_t, uint32_t>> all;
+    all.reserve(places.size());
+    for (const auto &[x, y, z] : places)
+        all.push_back({uint64_t(x) << 32 | uint64_t(y) << 16 | z, uint32_t(all.size())});
+    std::sort(all.begin(), all.end());
+    Vector<uint32_t> first(places.size());
+    for (size_t i = 0, same = 0; i < all.size(); ++i) {
+        same = all[i].first == all[same].first ? same : i;
+        first[all[i].second] = all[same].second;
+    }
+    return first;
+}
+
 LodLevel stored(const LevelMesh &mesh, size_t patches, const Lattice &lattice)
 {
     const auto &[triangles, patch, places, kept] = mesh;
@@ -107,8 +122,8 @@ LodLevel stored(const LevelMesh &mesh, size_t patches, const Lattice &lattice)
     LodLevel level;
     std::copy_n(lattice.origin, 3, level.origin);
     level.step = lattice.step;
-    std::map<Place, uint32_t> name; /* of the vertex at a place */
-    Vector<uint32_t> named(places.size(), NO_VERTEX);
+    const Vector<uint32_t> first = first_there(places);
+    Vector<uint32_t> name(places.size(), NO_VERTEX);
     Vector<Triangle> ordered;
     Strip strip(triangles, patch, places.size());
     for (uint32_t p = 0; p < members.size(); ++p) {
@@ -118,14 +133,12 @@ LodLevel stored(const LevelMesh &mesh, size_t patches, const Lattice &lattice)
     level.first.push_back(uint32_t(ordered.size()));
     for (const Triangle &t : ordered) {
         for (uint32_t v : t) {
-            if (named[v] == NO_VERTEX) {
-                const auto [at, is_new] = name.try_emplace(places[v], uint32_t(name.size()));
-                if (is_new)
-                    level.positions.insert(level.positions.end(), places[v].begin(),
-                                           places[v].end());
-                named[v] = at->second;
+            uint32_t &n = name[first[v]];
+            if (n == NO_VERTEX) {
+                n = uint32_t(level.positions.size() / 3);
+                level.positions.insert(level.positions.end(), places[v].begin(), places[v].end());
             }
-            level.indices.push_back(named[v]);
+            level.indices.push_back(n);
         }
     }
     return level;

@@ -65,6 +65,13 @@ static double mean_pitch(const Maps &maps)
     return std::sqrt(area / texels);
 }
 
+/* A level before its triangles are in order. */
+struct MadeLevel {
+    LevelMesh mesh;
+    float error = 0, rms = 0;    /* as in LodLevel, and */
+    bool far = false;
+};
+
 /* What all levels of an asset are made with. */
 struct LodJob {
     const Maps &maps;
@@ -75,15 +82,27 @@ struct LodJob {
 };
 
 /* Adds a level that strays so far, or misses specks: it says no less than a finer one. */
-static void add_level(const LodJob &job, const LevelMesh &mesh, const Strayed &strayed,
-                      double speck, Vector<LodLevel> &lod)
+static void add_level(LevelMesh &&mesh, const Strayed &strayed, double speck, bool far,
+                      Vector<MadeLevel> &levels)
 {
-    LodLevel level = stored(mesh, job.regions.size(), job.lattice);
-    level.error = std::nextafter(float(std::max(strayed.most, speck)), INFINITY);
-    level.rms = float(strayed.rms);
-    if (!lod.empty())
-        level.error = std::max(level.error, lod.back().error);
-    lod.push_back(std::move(level));
+    float error = std::nextafter(float(std::max(strayed.most, speck)), INFINITY);
+    if (!levels.empty())
+        error = std::max(error, levels.back().error);
+    levels.push_back({std::move(mesh), error, float(strayed.rms), far});
+}
+
+/* At once, for each has one thread. */
+static Vector<LodLevel> stored(const LodJob &job, const Vector<MadeLevel> &levels)
+{
+    Vector<LodLevel> lod(levels.size());
+    job.task.parallel(lod.size(), [&](size_t k) {
+        const MadeLevel &made = levels[k];
+        lod[k] = stored(made.mesh, job.regions.size(), job.lattice);
+        lod[k].error = made.error;
+        lod[k].rms = made.rms;
+        lod[k].far = made.far;
+    }, 1, 1);
+    return lod;
 }
 
 /* Gives vertices to the few spots that a level is far from, which would set its error, and says how
@@ -116,7 +135,7 @@ static void drop_specks(Simplifier &simplifier)
 
 /* Goes on without regard to patches: where each is a pixel, a triangle may show several. */
 static void add_far_levels(const LodJob &job, Simplifier &simplifier, double most,
-                           Vector<LodLevel> &lod)
+                           Vector<MadeLevel> &levels)
 {
     simplifier.cross_patches();
     const double ways = gtx_log(double(simplifier.triangles().size()) / FAR_TRIANGLES);
@@ -130,13 +149,13 @@ static void add_far_levels(const LodJob &job, Simplifier &simplifier, double mos
         drop_specks(simplifier);
         if (double(simplifier.triangles().size()) > MAX_SHARE * before)
             return;
-        const LevelMesh mesh =
+        LevelMesh mesh =
             far_level_mesh(simplifier, job.maps, job.regions, job.lattice, job.task);
         if (mesh.empty())
             return;
         const double speck = SPECK * simplifier.error();
-        add_level(job, mesh, job.bounds.of(mesh, job.lattice, speck), speck, lod);
-        lod.back().far = true;
+        const Strayed strayed = job.bounds.of(mesh, job.lattice, speck);
+        add_level(std::move(mesh), strayed, speck, true, levels);
     }
 }
 
@@ -150,9 +169,8 @@ Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned le
                           Task &task)
 {
     task.begin("lod");
-    Vector<LodLevel> lod;
     if (source.triangles.empty() || !levels)
-        return lod;
+        return {};
     const Vector<PatchRegion> regions = patch_regions(maps, task);
     const double pitch = mean_pitch(maps);
     const Lattice lattice(source.positions, STEP * pitch);
@@ -167,6 +185,7 @@ Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned le
     const bool finer = model > TINY && model <= SMALL && maps.color.empty() &&
                        maps.material.empty() && maps.emission.empty();
     size_t wanted = model / (finer ? SMALL_RATIO : FINEST_RATIO);
+    Vector<MadeLevel> made;
     for (unsigned k = 0; k < levels; ++k) {
         const size_t before = simplifier.triangles().size();
         simplifier.reduce(wanted, k ? 0 : free, MAX_ERROR * length(size));
@@ -177,13 +196,14 @@ Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned le
         if (mesh.empty())
             break;
         const double speck = SPECK * simplifier.error();
-        add_level(job, mesh, mend(job, mesh, speck), speck, lod);
+        const Strayed strayed = mend(job, mesh, speck);
+        add_level(std::move(mesh), strayed, speck, false, made);
         wanted = size_t(double(simplifier.triangles().size()) / LEVEL_RATIO);
         if (finer && k == 0)
             wanted = model / FINEST_RATIO;
     }
-    add_far_levels(job, simplifier, MAX_FAR_ERROR * length(size), lod);
-    return lod;
+    add_far_levels(job, simplifier, MAX_FAR_ERROR * length(size), made);
+    return stored(job, made);
 }
 
 } // namespace gtx
