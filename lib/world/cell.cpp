@@ -34,10 +34,15 @@ void CellHeader::add(const Corners3 &corners)
 {
     ++count;
     for (const Corner &c : corners)
-        for (int k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], c.position[k]);
-            high[k] = std::max(high[k], c.position[k]);
-        }
+        add(c.position);
+}
+
+void CellHeader::add(const Vec3d &p)
+{
+    for (int k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], p[k]);
+        high[k] = std::max(high[k], p[k]);
+    }
 }
 
 bool CellHeader::touches(const CellHeader &other) const

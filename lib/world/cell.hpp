@@ -19,7 +19,13 @@ struct CellHeader {
     Vec3d low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
 
     void add(const Corners3 &corners);
+    void add(const Vec3d &p);        /* to the box alone */
     bool touches(const CellHeader &other) const;
+    bool has(const Vec3d &p) const   /* in its box */
+    {
+        return low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y && low.z <= p.z &&
+               p.z <= high.z;
+    }
     static constexpr size_t BYTES = 96;
     std::string bytes() const;
 };

@@ -99,26 +99,31 @@ NearSurface::NearSurface(const TileSurface &surface, Task &task)
 
 NearSurface::~NearSurface() = default;
 
+const NearSurface::Tree &NearSurface::tree()
+{
+    if (!tree_)
+        tree_ = std::make_unique<Tree>(surface_, task_);
+    return *tree_;
+}
+
 double NearSurface::distance_to(const PlainMesh &mesh, bool with_ring)
 {
     const size_t count = with_ring ? surface_.triangles.size() : surface_.own;
     if (!count || mesh.triangles.empty())
         return 0;
-    if (!tree_)
-        tree_ = std::make_unique<Tree>(surface_, task_);
+    const Tree &own = this->tree();
     const Shapes shapes(mesh.positions, mesh.triangles);
     const NearestTree<Shapes> tree(shapes, task_, 0);
     const double there =
         farthest_of(points_of(surface_.positions, surface_.triangles, surface_.own), shapes, tree,
                     shapes.size(), 0, task_);
     return std::sqrt(farthest_of(points_of(mesh.positions, mesh.triangles, shapes.size()),
-                                 tree_->shapes, tree_->tree, count, there, task_));
+                                 own.shapes, own.tree, count, there, task_));
 }
 
-Vector<uint32_t> nearest_triangles(const Vector<Vec3d> &points, const PlainMesh &mesh, Task &task)
+static Vector<uint32_t> nearest_of(const Vector<Vec3d> &points, const Shapes &shapes,
+                                   const NearestTree<Shapes> &tree, Task &task)
 {
-    const Shapes shapes(mesh.positions, mesh.triangles);
-    const NearestTree<Shapes> tree(shapes, task, 0);
     Vector<uint32_t> nearest(points.size(), UINT32_MAX);
     task.parallel((points.size() + CHUNK - 1) / CHUNK, [&](size_t chunk) {
         uint32_t near = UINT32_MAX;
@@ -128,6 +133,17 @@ Vector<uint32_t> nearest_triangles(const Vector<Vec3d> &points, const PlainMesh 
         }
     }, 0, 0);
     return nearest;
+}
+
+Vector<uint32_t> NearSurface::nearest_to(const Vector<Vec3d> &points)
+{
+    return nearest_of(points, tree().shapes, tree().tree, task_);
+}
+
+Vector<uint32_t> nearest_triangles(const Vector<Vec3d> &points, const PlainMesh &mesh, Task &task)
+{
+    const Shapes shapes(mesh.positions, mesh.triangles);
+    return nearest_of(points, shapes, NearestTree<Shapes>(shapes, task, 0), task);
 }
 
 } // namespace gtx

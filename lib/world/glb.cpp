@@ -192,13 +192,13 @@ static std::string chunk(uint32_t type, std::string bytes, char padding)
     return std::string(reinterpret_cast<char *>(head), sizeof head) + bytes;
 }
 
-std::string glb_of(const PlainMesh &mesh, const TileSurface &surface, bool closed, Task &task)
+std::string glb_of(const PlainMesh &mesh, NearSurface &near, bool closed)
 {
+    const TileSurface &surface = near.surface();
     const size_t vertices = mesh.positions.size(), indices = 3 * mesh.triangles.size();
     Arrays arrays = {vertices, indices, (surface.header.low + surface.header.high) / 2,
                      {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    const Vector<uint32_t> nearest =
-        nearest_triangles(mesh.positions, plain_mesh_of(surface, surface.triangles.size()), task);
+    const Vector<uint32_t> nearest = near.nearest_to(mesh.positions);
     std::string bytes(vertices * VERTEX + 4 * indices, 0);
     auto *to = reinterpret_cast<uint8_t *>(&bytes[0]);
     for (size_t v = 0; v < vertices; ++v, to += VERTEX) {

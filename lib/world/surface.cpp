@@ -107,20 +107,19 @@ static void add_own(const std::string &path, Welder &welder, TileSurface &out)
     out.own = out.triangles.size();
 }
 
-static void add_ring(const std::string &path, size_t own_vertices, Welder &welder, TileSurface &out)
+/* `own` is the box of the tile's own vertices: outside of it none is shared. */
+static void add_ring(const std::string &path, size_t own_vertices, const CellHeader &own,
+                     Welder &welder, TileSurface &out)
 {
     CellReader cell(path);
     if (!cell.header().touches(out.header))
         return;
     Corners3 c;
     while (cell.next(c)) {
-        CellHeader bounds;
-        bounds.add(c);
-        if (!bounds.touches(out.header))
-            continue;
         bool shares = false;
         for (const Corner &corner : c)
-            shares = shares || welder.find(corner.position + Vec3d()) < own_vertices;
+            shares = shares || (own.has(corner.position) &&
+                                welder.find(corner.position + Vec3d()) < own_vertices);
         if (shares)
             out.triangles.push_back({welder.add(c[0]), welder.add(c[1]), welder.add(c[2])});
     }
@@ -187,6 +186,9 @@ TileSurface load_surface(const Plan &plan, const Tile &tile, Task &task)
     Welder welder(out);
     add_own(cell_path(plan, tile), welder, out);
     const size_t own = out.positions.size();
+    CellHeader box;
+    for (const Vec3d &p : out.positions)
+        box.add(p);
     for (size_t n = 0; n < plan.tiles.size(); ++n) {
         const Tile &other = plan.tiles[n];
         task.advance(double(n) / double(plan.tiles.size()));
@@ -194,10 +196,10 @@ TileSurface load_surface(const Plan &plan, const Tile &tile, Task &task)
         if (&other == &tile || is_child)
             continue;
         if (tile.is_leaf() && other.is_leaf())
-            add_ring(cell_path(plan, other), own, welder, out);
+            add_ring(cell_path(plan, other), own, box, welder, out);
         if (!tile.is_leaf() && (other.depth == tile.depth + 1 ||
                                 (other.is_leaf() && other.depth <= tile.depth)))
-            add_ring(low_path(plan, other), own, welder, out);
+            add_ring(low_path(plan, other), own, box, welder, out);
     }
     if (!out.traits.normals)
         find_normals(plan, tile, own, welder, out);

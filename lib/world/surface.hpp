@@ -61,8 +61,8 @@ struct PlainMesh {
     Vector<std::array<uint32_t, 3>> triangles;
 };
 PlainMesh plain_mesh_of(const TileSurface &surface, size_t triangles);
-/* A tile's surface for distance queries; the first one builds a tree. The surface must outlive
- * it. */
+/* A tile's surface for distance queries; the first one builds a tree, for all. The surface must
+ * outlive it. */
 class NearSurface {
 public:
     NearSurface(const TileSurface &surface, Task &task);
@@ -70,9 +70,13 @@ public:
     /* The largest distance of points of either from the other: a bounded number of vertices and
      * centres of triangles. The ring gives no points; with `with_ring` distances are to it too. */
     double distance_to(const PlainMesh &mesh, bool with_ring);
+    /* The triangle of it that is nearest to each point; the ring's count, too. */
+    Vector<uint32_t> nearest_to(const Vector<Vec3d> &points);
+    const TileSurface &surface() const { return surface_; }
 
 private:
     struct Tree;
+    const Tree &tree();
     const TileSurface &surface_;
     Task &task_;
     std::unique_ptr<Tree> tree_;
@@ -86,6 +90,6 @@ Vector<uint32_t> nearest_triangles(const Vector<Vec3d> &points, const PlainMesh 
 
 /* A GLB of the mesh, with normals and colours of the surface's nearest points; double-sided unless
  * the world is closed. */
-std::string glb_of(const PlainMesh &mesh, const TileSurface &surface, bool closed, Task &task);
+std::string glb_of(const PlainMesh &mesh, NearSurface &near, bool closed);
 
 } // namespace gtx

@@ -140,7 +140,7 @@ void TileCook::cook_all(const std::string &ply, const TileSurface &surface, Near
     facts.beginning = beginning_of(bytes, facts.error, surface.header.deviation);
     write_whole(asset_path(plan, tile), bytes);
     if (plan.glb) {
-        const std::string glb = glb_of(mesh, surface, plan.closed, task);
+        const std::string glb = glb_of(mesh, near, plan.closed);
         facts.glb = made_of(glb);
         write_whole(glb_path(plan, tile), glb);
     }

@@ -74,7 +74,8 @@ static void streams_are_what_importing_gives(void **)
     same_as_imported(in_folder("a.stl"));
     const TileSurface s = patch(true);
     Task task(1, nullptr, nullptr);
-    write_file(in_folder("a.glb"), glb_of(plain_mesh_of(s, s.own), s, false, task));
+    NearSurface near(s, task);
+    write_file(in_folder("a.glb"), glb_of(plain_mesh_of(s, s.own), near, false));
     same_as_imported(in_folder("a.glb"));
     assert_int_equal(read_all(in_folder("a.glb")).size(), s.own);
 }
@@ -284,7 +285,8 @@ static void lies_are_found_before_memory_is_taken(void **)
     assert_int_equal(reading("x.stl", stl), GTX_ERROR_INPUT);
     const TileSurface s = patch(true);
     Task task(1, nullptr, nullptr);
-    const std::string glb = glb_of(plain_mesh_of(s, s.own), s, false, task);
+    NearSurface near(s, task);
+    const std::string glb = glb_of(plain_mesh_of(s, s.own), near, false);
     for (size_t cut : {glb.size() - 4, size_t(400), size_t(21)})
         assert_int_equal(reading("x.glb", glb.substr(0, cut)), GTX_ERROR_INPUT);
     for (const char *count : {"\"count\": 169", "\"count\": 864"})
