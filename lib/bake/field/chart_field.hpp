@@ -116,6 +116,7 @@ struct ChartField {
     Cover cover;
     Vector<float> trim;             /* signed distance to the outline, in texels */
     Vector<uint8_t> support;        /* texels that need a code */
+    Vector<double> ceiling;         /* how high each height may rise, whatever raises it */
 };
 
 /* A point of the true surface. */
@@ -164,8 +165,8 @@ void extrapolate(Paths &paths, ChartField &field);
  * shows bridges a depth discontinuity. */
 void cut_discontinuities(const Outline &core, Paths &paths, ChartField &field);
 /* Moves the heights of the supported texels so that the height field between them follows the
- * source. Returns the share of the core's samples that it still passes below by a visible part of a
- * texel. */
+ * source, and finds their ceilings. Returns the share of the core's samples that it still passes
+ * below by a visible part of a texel. */
 double fit_heights(const Job &job, ChartField &field);
 
 } // namespace gtx::baking

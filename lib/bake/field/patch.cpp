@@ -91,6 +91,7 @@ static void quantise(const ChartField &s, const Vector<Ending> &ending, const Cr
     maps.height.assign(size_t(crop.w) * crop.h, 0);
     maps.trim.resize(maps.height.size());
     maps.ending.resize(maps.height.size());
+    maps.room.assign(maps.height.size(), 0);
     for (int j = 0; j < crop.h; ++j) {
         for (int i = 0; i < crop.w; ++i) {
             int x = crop.x + i, y = crop.y + j;
@@ -103,9 +104,11 @@ static void quantise(const ChartField &s, const Vector<Ending> &ending, const Cr
                                                                        : -s.outline.distance[from];
             if (maps.ending[to] == AT_CREASE && s.trim[from] > to_all + ROUNDING)
                 maps.ending[to] = AT_CHART;
-            if (x == near_x && y == near_y && s.support[from])
-                maps.height[to] = uint16_t(
-                    gtx_nearest_code((s.cover.height[from] - low) * steps, height_bits));
+            if (x != near_x || y != near_y || !s.support[from])
+                continue;
+            maps.height[to] = uint16_t(
+                gtx_nearest_code((s.cover.height[from] - low) * steps, height_bits));
+            maps.room[to] = float(std::max(s.ceiling[from] - s.cover.height[from], 0.));
         }
     }
     fill_trim(maps);

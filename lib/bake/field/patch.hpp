@@ -23,6 +23,7 @@ struct Crease {
 struct PatchMaps {
     gtx_patch record = {};
     Vector<uint16_t> height;                  /* codes */
+    Vector<float> room;                       /* how far each may yet rise, object units */
     Vector<uint8_t> trim;
     Vector<uint8_t> ending;                   /* as Ending */
     Vector<Crease> creases;                   /* those that a texel is near to */

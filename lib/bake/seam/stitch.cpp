@@ -67,8 +67,10 @@ public:
     {
         task.parallel(patches.size(), [&](size_t i) {
             texels_[i].reserve(patches[i].trim.size());
-            for (uint8_t trim : patches[i].trim)
-                texels_[i].push_back({0, 0, false, ground_of(trim)});
+            for (size_t k = 0; k < patches[i].trim.size(); ++k)
+                texels_[i].push_back(
+                    {0, 0, patches[i].room[k], false, ground_of(patches[i].trim[k])});
+            patches[i].room = {};
         });
     }
     /* `open` are those of the ties that are. */
@@ -80,6 +82,7 @@ public:
 private:
     struct Texel {
         float moved = 0, applied = 0; /* all, and what of it is in the maps */
+        float room = 0;               /* how far it may move up */
         bool at_open = false;         /* around the end of a tie that is open, in this pass */
         Ground ground = BEYOND;
     };
@@ -168,7 +171,8 @@ void Moves::project(const Equation &e, const Mobilities &mobility) const
         Texel &texel = e.texel(n);
         const Mobility &own = mobility[texel.ground];
         texel.moved = float(std::clamp(texel.moved - share * (own.readiness * lever[n]),
-                                       -own.down * texel_, own.up * texel_));
+                                       -own.down * texel_,
+                                       std::min(double(texel.room), own.up * texel_)));
     }
 }
 
