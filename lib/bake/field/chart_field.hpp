@@ -30,9 +30,12 @@ public:
     {
     }
 
-    /* Whether edges lead from triangle `from` of the chart to `to` inside the square of `reach`
-     * texels around (u, v). */
-    bool joined(uint32_t from, uint32_t to, double u, double v, double reach);
+    /* Whether edges lead from triangle `from` of the chart to `to` over triangles whose boxes come
+     * into the square of `reach` texels around (u, v); or over edges that do, for the box around a
+     * large triangle reaches far. */
+    enum Ways { OVER_TRIANGLES, OVER_EDGES };
+    bool joined(uint32_t from, uint32_t to, double u, double v, double reach,
+                Ways ways = OVER_TRIANGLES);
 
 private:
     /* A limit on time: triangles that all searches look at for a texel, and in all beyond that. An
@@ -41,9 +44,9 @@ private:
     const Mesh &mesh_;
     const Neighbours &neighbours_;
     const FlatChart &chart_;
-    /* A triangle of the source that a search has come to: the box around it, in texels. */
+    /* A triangle of the source that a search has come to, in texels, and the box around it. */
     struct Place {
-        double low[2], high[2];
+        double corner[3][2], low[2], high[2];
         uint32_t triangle;
         uint32_t near[3];        /* places across its edges; UNKNOWN until a search needs them */
         uint32_t seen;           /* by the search of this number, last */
@@ -53,16 +56,26 @@ private:
     struct Window {
         uint32_t from = NO_TRIANGLE;
         double u = 0, v = 0, reach = 0;
+        Ways ways = OVER_TRIANGLES;
 
         bool operator==(const Window &other) const
         {
-            return from == other.from && u == other.u && v == other.v && reach == other.reach;
+            return from == other.from && u == other.u && v == other.v && reach == other.reach &&
+                   ways == other.ways;
         }
         bool misses(const Place &place) const
         {
             return !(place.low[0] <= u + reach) || !(place.high[0] >= u - reach) ||
                    !(place.low[1] <= v + reach) || !(place.high[1] >= v - reach);
         }
+        /* Whether a way may lead across a side. */
+        bool lets_cross(const Place &place, size_t side) const
+        {
+            return ways == OVER_TRIANGLES ||
+                   meets(place.corner[side], place.corner[(side + 1) % 3]);
+        }
+        /* Whether the line from one point to another comes into the square. */
+        bool meets(const double from[2], const double to[2]) const;
     };
     /* What is found from one end of a way, those before `next` with all around them. */
     struct End {

@@ -35,9 +35,12 @@ uint32_t Paths::place_of(uint32_t triangle)
         return table_[at];
     table_[at] = uint32_t(places_.size());
     Vec3d p[3];
-    for (int k = 0; k < 3; ++k)
-        p[k] = chart_.grid.texel(mesh_.position(triangle, k));
     Place place;
+    for (int k = 0; k < 3; ++k) {
+        p[k] = chart_.grid.texel(mesh_.position(triangle, k));
+        place.corner[k][0] = p[k].x;
+        place.corner[k][1] = p[k].y;
+    }
     for (int k = 0; k < 2; ++k) {
         place.low[k] = std::min({p[0][k], p[1][k], p[2][k]});
         place.high[k] = std::max({p[0][k], p[1][k], p[2][k]});
@@ -61,6 +64,17 @@ uint32_t Paths::near(uint32_t place, size_t side)
     return found;
 }
 
+bool Paths::Window::meets(const double from[2], const double to[2]) const
+{
+    const double a[2] = {from[0] - u, from[1] - v}, b[2] = {to[0] - u, to[1] - v};
+    for (int k = 0; k < 2; ++k)
+        if (std::min(a[k], b[k]) > reach || std::max(a[k], b[k]) < -reach)
+            return false;
+    /* neither axis parts them, nor the line's own normal */
+    return std::fabs(a[0] * b[1] - a[1] * b[0]) <=
+           reach * (std::fabs(b[0] - a[0]) + std::fabs(b[1] - a[1]));
+}
+
 void Paths::begin(End &end, uint32_t place)
 {
     end.search = ++searches_;
@@ -71,12 +85,12 @@ void Paths::begin(End &end, uint32_t place)
 
 /* From both ends, a triangle of each in turn: where no way leads, the smaller part is soon at its
  * end. Many ask for ways from one place to all around it: what that end has found stays. */
-bool Paths::joined(uint32_t from, uint32_t to, double u, double v, double reach)
+bool Paths::joined(uint32_t from, uint32_t to, double u, double v, double reach, Ways ways)
 {
     const uint32_t source = chart_.triangles[from].source, goal = chart_.triangles[to].source;
     if (source == goal)
         return true;
-    const Window window = {source, u, v, reach};
+    const Window window = {source, u, v, reach, ways};
     if (!(window == window_)) {
         window_ = window;
         begin(ends_[0], place_of(source));
@@ -97,7 +111,7 @@ bool Paths::joined(uint32_t from, uint32_t to, double u, double v, double reach)
         const uint32_t here = end.queue[end.next];
         for (size_t side = 0; side < 3; ++side) {
             const uint32_t beyond = near(here, side);
-            if (beyond == NO_TRIANGLE)
+            if (beyond == NO_TRIANGLE || !window.lets_cross(places_[here], side))
                 continue;
             Place &place = places_[beyond];
             if (place.seen == ends_[!turn].search)
@@ -171,6 +185,12 @@ bool Bridges::bridges(Jumps jumps, size_t cell)
         uint32_t t = cover_.triangle[texel];
         return t != NO_TRIANGLE ? t : outline.edges[outline.nearest[texel]].triangle;
     };
+    /* Beyond the outline nothing is lost with a cell, and between two far heights it is a sheet in
+     * the air, unless a wall is there. Spot's control mesh: 746 wall pixels without. Where an
+     * outline crosses the cell it may be all that shows a wall: an engine, a slit of 50 pixels. */
+    constexpr double FAR = 2; /* jumps */
+    const bool beyond = std::all_of(corner.begin(), corner.end(),
+                                    [&](size_t texel) { return field_.trim[texel] > 0; });
     double u = double(cell % grid_.w) + 0.5, v = double(cell / grid_.w) + 0.5;
     for (int a = 0; a < 4; ++a) {
         for (int b = a + 1; b < 4; ++b) {
@@ -179,7 +199,9 @@ bool Bridges::bridges(Jumps jumps, size_t cell)
                 continue;
             if (jumps == BESIDE_CORE && is_core(corner[a]) != is_core(corner[b]))
                 return true;
-            if (!paths_.joined(triangle(corner[a]), triangle(corner[b]), u, v, REACH))
+            if (!paths_.joined(triangle(corner[a]), triangle(corner[b]), u, v, REACH,
+                               beyond && step > FAR * jump_ ? Paths::OVER_EDGES
+                                                            : Paths::OVER_TRIANGLES))
                 return true;
         }
     }
