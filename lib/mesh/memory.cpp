@@ -53,9 +53,11 @@ void Limits::take(int64_t bytes)
     throw Error(error);
 }
 
+thread_local unsigned Limits::lane = 0;
+
 void Limits::work(uint64_t steps)
 {
-    const uint64_t done = worked_ += steps, allowed = work_allowed();
+    const uint64_t done = worked_[lane] += steps, allowed = work_allowed();
     if (done <= allowed)
         return;
     gtx_error error;

@@ -32,10 +32,12 @@ public:
     void tell(int64_t bytes) noexcept { taken_ += bytes; }
     const gtx_limits &given() const { return given_; }
 
-    /* Throws Error(LIMIT) once more steps than are allowed have been done. */
+    /* Throws Error(LIMIT) once more steps than are allowed have been done in the thread's lane. */
     void work(uint64_t steps);
-    /* What follows may do as much once more. */
-    void work_again() noexcept { worked_ = 0; }
+    /* What follows in it may do as much once more. */
+    void work_again() noexcept { worked_[lane] = 0; }
+    /* Of two things done at once, for each to count its own work alone. */
+    static thread_local unsigned lane;
     /* Options that ask for more may do so many times as much as the default. */
     void allow_work(double times) noexcept { more_work_ = times; }
 
@@ -52,7 +54,7 @@ private:
     std::set<std::string> files_;
     std::atomic<uint64_t> read_{0}, most_{0};
     std::atomic<int64_t> taken_{0};
-    std::atomic<uint64_t> worked_{0};
+    std::atomic<uint64_t> worked_[2] = {};
     double more_work_ = 1;
 };
 

@@ -152,7 +152,9 @@ void Task::end()
 
 void Task::report(double fraction)
 {
-    if (!progress_)
+    if (std::this_thread::get_id() != caller_ && cancelled_)
+        throw Error(GTX_CANCELLED, "cancelled");
+    if (!progress_ || std::this_thread::get_id() != caller_)
         return;
     double whole = before_[stage_] + fraction * (before_[stage_ + 1] - before_[stage_]);
     if (stage_ >= pass_.first && stage_ < pass_.after) {
@@ -221,8 +223,9 @@ void Task::Crew::hire(size_t helpers)
     helpers_.reserve(helpers);
     for (size_t i = 0; i < helpers; ++i) {
         try {
-            helpers_.emplace_back([this] {
+            helpers_.emplace_back([this, lane = Limits::lane] {
                 Scope scope(task_);
+                Limits::lane = lane;
                 while (run_one()) {}
                 std::lock_guard<std::mutex> lock(mutex_);
                 ++gone_;
@@ -270,6 +273,19 @@ void Task::parallel(size_t count, const std::function<void(size_t)> &body, doubl
     crew.work([&](size_t done) { advance(from + (to - from) * double(done) / double(count)); });
     crew.rethrow();
     advance(to);
+}
+
+void Task::both(const std::function<void()> &first, const std::function<void()> &second)
+{
+    parallel(2, [&](size_t which) {
+        const unsigned outer = Limits::lane;
+        struct Lane {
+            unsigned outer;
+            ~Lane() { Limits::lane = outer; }
+        } lane = {outer};
+        Limits::lane = which ? 1 - outer : outer;
+        which ? second() : first();
+    }, 0, 0);
 }
 
 } // namespace gtx

@@ -90,6 +90,10 @@ public:
     void parallel(size_t count, const std::function<void(size_t)> &body, double from = 0,
                   double to = 1);
 
+    /* Both at once where there are threads for it, or one after the other; each may use parallel(),
+     * and counts its own work. Not for use inside of either. */
+    void both(const std::function<void()> &first, const std::function<void()> &second);
+
     unsigned threads() const { return threads_; }
     /* Seconds spent in each stage so far, in the order of the constructor. */
     const std::vector<double> &seconds() const { return seconds_; }

@@ -4,6 +4,10 @@
 #include "base/exact.h"
 
 #include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
 
 namespace gtx::baking {
 
@@ -65,52 +69,68 @@ static double mean_pitch(const Maps &maps)
     return std::sqrt(area / texels);
 }
 
-/* A level before its triangles are in order. */
-struct MadeLevel {
-    LevelMesh mesh;
-    float error = 0, rms = 0;    /* as in LodLevel, and */
-    bool far = false;
-};
-
 /* What all levels of an asset are made with. */
 struct LodJob {
+    const LodSource &source;
     const Maps &maps;
     const Vector<PatchRegion> &regions;
     const Lattice &lattice;
-    const Bounds &bounds;
+    double pitch, size;          /* of the texels, of the model */
     Task &task;
 };
 
-/* Adds a level that strays so far, or misses specks: it says no less than a finer one. */
-static void add_level(LevelMesh &&mesh, const Strayed &strayed, double speck, bool far,
-                      Vector<MadeLevel> &levels)
-{
-    float error = std::nextafter(float(std::max(strayed.most, speck)), INFINITY);
-    if (!levels.empty())
-        error = std::max(error, levels.back().error);
-    levels.push_back({std::move(mesh), error, float(strayed.rms), far});
-}
+/* A level before its triangles are in order. */
+struct MadeLevel {
+    LevelMesh mesh;
+    double speck;                /* parts that are no longer may be missing */
+    bool far;                    /* these and the following as in LodLevel */
+    float error = 0, rms = 0;
+};
 
-/* At once, for each has one thread. */
-static Vector<LodLevel> stored(const LodJob &job, const Vector<MadeLevel> &levels)
-{
-    Vector<LodLevel> lod(levels.size());
-    job.task.parallel(lod.size(), [&](size_t k) {
-        const MadeLevel &made = levels[k];
-        lod[k] = stored(made.mesh, job.regions.size(), job.lattice);
-        lod[k].error = made.error;
-        lod[k].rms = made.rms;
-        lod[k].far = made.far;
-    }, 1, 1);
-    return lod;
-}
+/* Levels on their way from who makes them to who finds their errors, both at once: either has one
+ * thread for much of its time. */
+class Line {
+public:
+    void add(MadeLevel &&level)
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        levels_.push_back(std::move(level));
+        changed_.notify_one();
+    }
+    /* No more are to come. */
+    void end()
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        ended_ = true;
+        changed_.notify_one();
+    }
+    /* Waits for a level; null where there are no more. */
+    MadeLevel *at(size_t k, Task &task)
+    {
+        const std::chrono::milliseconds wait(10);
+        std::unique_lock<std::mutex> lock(mutex_);
+        while (!changed_.wait_for(lock, wait, [&] { return ended_ || k < levels_.size(); })) {
+            lock.unlock();
+            task.advance(0); /* which may throw */
+            lock.lock();
+        }
+        return k < levels_.size() ? &levels_[k] : nullptr;
+    }
+    /* All, once they are made. */
+    std::deque<MadeLevel> &all() { return levels_; }
+
+private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<MadeLevel> levels_;
+    bool ended_ = false;
+};
 
 /* Gives vertices to the few spots that a level is far from, which would set its error, and says how
  * far it strays then. The source first: it takes less, and what is left of its spots spares most
  * looks at the level. Triangles lie in their patches. */
-static Strayed mend(const LodJob &job, LevelMesh &mesh, double speck)
+static Strayed mend(const LodJob &job, const Bounds &bounds, LevelMesh &mesh, double speck)
 {
-    const Bounds &bounds = job.bounds;
     const Lattice &lattice = job.lattice;
     auto reach = [&](const Spots &spots) {
         const auto changed = reach_spots(mesh, spots.points, spots.most, job.regions, lattice);
@@ -120,6 +140,21 @@ static Strayed mend(const LodJob &job, LevelMesh &mesh, double speck)
     if (spots.points.empty())
         return bounds.of(mesh, lattice, speck);
     return {reach(bounds.spots_of(mesh, lattice, reach(spots))), spots.rms};
+}
+
+/* Finds out how far levels stray: one says no less than a finer one, and than the specks that it
+ * misses. */
+static void find_errors(const LodJob &job, Line &line)
+{
+    const Bounds bounds(job.source, job.pitch, job.task);
+    float finer = 0;
+    for (size_t k = 0; MadeLevel *level = line.at(k, job.task); ++k) {
+        const Strayed strayed = level->far ? bounds.of(level->mesh, job.lattice, level->speck)
+                                           : mend(job, bounds, level->mesh, level->speck);
+        const float most = float(std::max(strayed.most, level->speck));
+        level->error = finer = std::max(finer, std::nextafter(most, INFINITY));
+        level->rms = float(strayed.rms);
+    }
 }
 
 /* Takes away the parts that are no longer than the error; not all. */
@@ -134,17 +169,17 @@ static void drop_specks(Simplifier &simplifier)
 }
 
 /* Goes on without regard to patches: where each is a pixel, a triangle may show several. */
-static void add_far_levels(const LodJob &job, Simplifier &simplifier, double most,
-                           Vector<MadeLevel> &levels)
+static void make_far_levels(const LodJob &job, Simplifier &simplifier, Line &line)
 {
     simplifier.cross_patches();
     const double ways = gtx_log(double(simplifier.triangles().size()) / FAR_TRIANGLES);
     const unsigned count = unsigned(std::clamp(std::ceil(ways / gtx_log(FAR_RATIO)), 0.0,
                                                double(FAR_LEVELS)));
     for (unsigned k = count; k-- > 0;) {
+        job.task.limits.work_again();
         const double before = double(simplifier.triangles().size());
         const double ratio = gtx_pow(before / FAR_TRIANGLES, 1.0 / (k + 1));
-        simplifier.reduce(size_t(before / ratio), 0, most);
+        simplifier.reduce(size_t(before / ratio), 0, MAX_FAR_ERROR * job.size);
         simplifier.settle();
         drop_specks(simplifier);
         if (double(simplifier.triangles().size()) > MAX_SHARE * before)
@@ -153,10 +188,49 @@ static void add_far_levels(const LodJob &job, Simplifier &simplifier, double mos
             far_level_mesh(simplifier, job.maps, job.regions, job.lattice, job.task);
         if (mesh.empty())
             return;
-        const double speck = SPECK * simplifier.error();
-        const Strayed strayed = job.bounds.of(mesh, job.lattice, speck);
-        add_level(std::move(mesh), strayed, speck, true, levels);
+        line.add({std::move(mesh), SPECK * simplifier.error(), true});
     }
+}
+
+/* At most `count` that keep to their patches, and far ones. */
+static void make_levels(const LodJob &job, unsigned count, Line &line)
+{
+    const Maps &maps = job.maps;
+    Simplifier simplifier(job.source, job.regions, job.task);
+    const size_t model = job.source.model ? job.source.model : job.source.triangles.size();
+    const bool finer = model > TINY && model <= SMALL && maps.color.empty() &&
+                       maps.material.empty() && maps.emission.empty();
+    size_t wanted = model / (finer ? SMALL_RATIO : FINEST_RATIO);
+    for (unsigned k = 0; k < count; ++k) {
+        job.task.limits.work_again();
+        const size_t before = simplifier.triangles().size();
+        simplifier.reduce(wanted, k ? 0 : FREE_ERROR * job.pitch, MAX_ERROR * job.size);
+        if (k && double(simplifier.triangles().size()) > MAX_SHARE * double(before))
+            break;
+        simplifier.settle();
+        LevelMesh mesh = level_mesh(simplifier, job.regions, job.lattice);
+        if (mesh.empty())
+            break;
+        line.add({std::move(mesh), SPECK * simplifier.error(), false});
+        wanted = size_t(double(simplifier.triangles().size()) / LEVEL_RATIO);
+        if (finer && k == 0)
+            wanted = model / FINEST_RATIO;
+    }
+    make_far_levels(job, simplifier, line);
+}
+
+/* At once, for each has one thread. */
+static Vector<LodLevel> stored(const LodJob &job, const std::deque<MadeLevel> &levels)
+{
+    Vector<LodLevel> lod(levels.size());
+    job.task.parallel(lod.size(), [&](size_t k) {
+        const MadeLevel &made = levels[k];
+        lod[k] = stored(made.mesh, job.regions.size(), job.lattice);
+        lod[k].error = made.error;
+        lod[k].rms = made.rms;
+        lod[k].far = made.far;
+    }, 1, 1);
+    return lod;
 }
 
 } // namespace gtx::baking
@@ -177,33 +251,18 @@ Vector<LodLevel> make_lod(const LodSource &source, const Maps &maps, unsigned le
     Vec3d size;
     for (int k = 0; k < 3; ++k)
         size[k] = double(maps.bounds_max[k]) - maps.bounds_min[k];
-    const double free = FREE_ERROR * pitch;
-    Simplifier simplifier(source, regions, task);
-    const Bounds bounds(source, pitch, task);
-    const LodJob job = {maps, regions, lattice, bounds, task};
-    const size_t model = source.model ? source.model : source.triangles.size();
-    const bool finer = model > TINY && model <= SMALL && maps.color.empty() &&
-                       maps.material.empty() && maps.emission.empty();
-    size_t wanted = model / (finer ? SMALL_RATIO : FINEST_RATIO);
-    Vector<MadeLevel> made;
-    for (unsigned k = 0; k < levels; ++k) {
-        const size_t before = simplifier.triangles().size();
-        simplifier.reduce(wanted, k ? 0 : free, MAX_ERROR * length(size));
-        if (k && double(simplifier.triangles().size()) > MAX_SHARE * double(before))
-            break;
-        simplifier.settle();
-        LevelMesh mesh = level_mesh(simplifier, regions, lattice);
-        if (mesh.empty())
-            break;
-        const double speck = SPECK * simplifier.error();
-        const Strayed strayed = mend(job, mesh, speck);
-        add_level(std::move(mesh), strayed, speck, false, made);
-        wanted = size_t(double(simplifier.triangles().size()) / LEVEL_RATIO);
-        if (finer && k == 0)
-            wanted = model / FINEST_RATIO;
-    }
-    add_far_levels(job, simplifier, MAX_FAR_ERROR * length(size), made);
-    return stored(job, made);
+    const LodJob job = {source, maps, regions, lattice, pitch, length(size), task};
+    Line line;
+    task.both(
+        [&] {
+            struct End {
+                Line &line;
+                ~End() { line.end(); }
+            } end = {line};
+            make_levels(job, levels, line);
+        },
+        [&] { find_errors(job, line); });
+    return stored(job, line.all());
 }
 
 } // namespace gtx
