@@ -132,7 +132,8 @@ struct Fit {
                 high[a] = uint32_t(std::clamp(
                     std::floor(std::max({at[0][a], at[1][a], at[2][a]})), 0., most));
             }
-            for (uint32_t y = low[1]; y <= high[1]; ++y)
+            for (uint32_t y = low[1]; y <= high[1]; ++y) {
+                cancel_point();
                 for (uint32_t x = low[0]; x <= high[0]; ++x) {
                     const double du = x - at[0].x, dv = y - at[0].y;
                     const double b = (du * f.y - dv * f.x) / area;
@@ -145,6 +146,7 @@ struct Fit {
                         mean += normals[vertex[k]] * share[k];
                     each(place.weight, vertex, share, place.normal(x, y), normalize(mean));
                 }
+            }
         });
     }
 
@@ -240,17 +242,15 @@ LodNormals lod_normals(const gtx_lod_mesh &level, const NormalMaps &maps)
     return out;
 }
 
-void add_lod_normals(Vector<gtx_lod_mesh> &levels, const NormalMaps &maps, Vector<LodNormals> &out)
+void add_lod_normals(Vector<gtx_lod_mesh> &levels, const NormalMaps &maps, Vector<LodNormals> &out,
+                     Task &task)
 {
-    out.clear();
-    for (gtx_lod_mesh &level : levels) {
-        out.push_back(lod_normals(level, maps));
-        const LodNormals &made = out.back();
-        if (made.codes.empty())
-            return;
-        level.flags |= GTX_LOD_NORMALS;
-        level.normals = made.codes.data();
-        level.normal_error = made.error;
+    out.assign(levels.size(), {});
+    task.parallel(levels.size(), [&](size_t k) { out[k] = lod_normals(levels[k], maps); }, 0, 0);
+    for (size_t k = 0; k < levels.size() && !out[k].codes.empty(); ++k) {
+        levels[k].flags |= GTX_LOD_NORMALS;
+        levels[k].normals = out[k].codes.data();
+        levels[k].normal_error = out[k].error;
     }
 }
 

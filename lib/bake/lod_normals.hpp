@@ -1,7 +1,7 @@
 /* Normals of the vertices of LOD meshes: as near to the normal maps as a level can be. */
 #pragma once
 
-#include "mesh/memory.hpp"
+#include "mesh/task.hpp"
 
 #include <geotex/geotex.h>
 
@@ -24,6 +24,7 @@ struct LodNormals {
 LodNormals lod_normals(const gtx_lod_mesh &level, const NormalMaps &maps);
 
 /* Puts them into levels, the finest first, up to the first that has none; `out` holds them. */
-void add_lod_normals(Vector<gtx_lod_mesh> &levels, const NormalMaps &maps, Vector<LodNormals> &out);
+void add_lod_normals(Vector<gtx_lod_mesh> &levels, const NormalMaps &maps, Vector<LodNormals> &out,
+                     Task &task);
 
 } // namespace gtx

@@ -35,8 +35,9 @@ static void vertices_of_a_ball_look_outward(void **)
         const Lod lod = ball(bits);
         Vector<gtx_lod_mesh> levels = describe(lod.levels), again = levels;
         Vector<LodNormals> made, same;
-        add_lod_normals(levels, maps_of(lod.maps), made);
-        add_lod_normals(again, maps_of(lod.maps), same);
+        Task one(1, nullptr, nullptr), three(3, nullptr, nullptr);
+        add_lod_normals(levels, maps_of(lod.maps), made, one);
+        add_lod_normals(again, maps_of(lod.maps), same, three);
         assert_int_equal(levels[0].flags, GTX_LOD_NORMALS);
         for (size_t k = 0; k < levels.size(); ++k) {
             const gtx_lod_mesh &level = levels[k];
@@ -73,7 +74,8 @@ static void relief_of_the_maps_alone_leaves_none(void **)
             std::clamp(lod.maps.normal[0][2 * i] + (i / 3 % 2 ? 26 : -26), 0, 255));
     Vector<gtx_lod_mesh> levels = describe(lod.levels);
     Vector<LodNormals> made;
-    add_lod_normals(levels, maps_of(lod.maps), made);
+    Task task(1, nullptr, nullptr);
+    add_lod_normals(levels, maps_of(lod.maps), made, task);
     for (const gtx_lod_mesh &level : levels)
         assert_true(!level.normals && !(level.flags & GTX_LOD_NORMALS));
 }

@@ -76,7 +76,8 @@ void fit_lod_normals(Unpacked &unpacked)
     const NormalMaps maps = {d.patches, d.patch_count, d.page_width, d.page_height, d.height_bits,
                              static_cast<const uint8_t *>(d.height), d.normal[0]};
     Vector<LodNormals> made;
-    add_lod_normals(unpacked.lod, maps, made);
+    Task task(0, nullptr, nullptr);
+    add_lod_normals(unpacked.lod, maps, made, task);
     for (size_t k = 0; k < made.size() && !made[k].codes.empty(); ++k) {
         unpacked.lod_arrays[k].normals = std::move(made[k].codes);
         unpacked.lod[k].normals = unpacked.lod_arrays[k].normals.data();
