@@ -37,11 +37,11 @@ static bool has_content(const std::string &path, const Content &expected)
 static void a_ball_has_its_content(void **)
 {
     int others = 0;
-    for (const Content &ball : {Content{"ball", GTX_PARTITION_CUTS, 0, 0x142e9613552f828b},
+    for (const Content &ball : {Content{"ball", GTX_PARTITION_CUTS, 0, 0x20bb26773f7e09ed},
                                 Content{"ball", GTX_PARTITION_VSA, NONE, 0x8a1670d692fba1aa},
                                 Content{"ball", GTX_PARTITION_PGP, NONE, 0xf6936329671a7910},
-                                Content{"ball", GTX_PARTITION_LAYERS, NONE, 0xec089c505c5e9696},
-                                Content{"ball", GTX_PARTITION_RELIEF, NONE, 0x00a75c92d0af6394}})
+                                Content{"ball", GTX_PARTITION_LAYERS, NONE, 0xf5ddd303256cf2d1},
+                                Content{"ball", GTX_PARTITION_RELIEF, NONE, 0x69151298b39c2922}})
         others += !has_content(ball_file(), ball);
     assert_int_equal(others, 0);
 }
@@ -54,31 +54,31 @@ static void models_have_their_content(void **)
     int others = 0;
     for (const Content &content : std::initializer_list<Content>{
              {"/scans/bunny.ply",
-              GTX_PARTITION_DEFAULT, NONE, 0xd04f2805302f678d},
+              GTX_PARTITION_DEFAULT, NONE, 0x78186b0cebbfdc7e},
              {"/scans/gargo_3dhop.ply.gz",
-              GTX_PARTITION_DEFAULT, NONE, 0x1dc2dfd03b3e48d7},
+              GTX_PARTITION_DEFAULT, NONE, 0x736cc57398a60c85},
              {"/textured/spot/spot/spot_control_mesh.obj",
-              GTX_PARTITION_DEFAULT, NONE, 0xf896608511f550fc},
+              GTX_PARTITION_DEFAULT, NONE, 0x43c117628779e32e},
              {"/gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf",
-              GTX_PARTITION_CUTS, NONE, 0xaa0494382ff9a69c},
+              GTX_PARTITION_CUTS, NONE, 0xbb0151353dba9623},
              {"/gltf/CesiumMilkTruck/glTF/CesiumMilkTruck.gltf",
-              GTX_PARTITION_DEFAULT, NONE, 0xa8126c01ce62cdc9},
+              GTX_PARTITION_DEFAULT, NONE, 0xe8a481ea83d10038},
              {"/gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb",
-              GTX_PARTITION_DEFAULT, 0, 0x8dd6a7c93643c182},
+              GTX_PARTITION_DEFAULT, 0, 0x2c5b88f7497d55e2},
              {"/gltf/dragon_draco_119k.glb",
-              GTX_PARTITION_DEFAULT, 0, 0xb2a7a63a894ca9f2},
+              GTX_PARTITION_DEFAULT, 0, 0x73e055319cdaf929},
              {"/gltf/2CylinderEngine.glb",
-              GTX_PARTITION_CUTS, NONE, 0x07e44e4ecca2324c},
+              GTX_PARTITION_CUTS, NONE, 0x8ffadf9297b5619e},
              {"/scans/horse.ply.gz",
-              GTX_PARTITION_DEFAULT, NONE, 0x94ec126efe46cfe4},
+              GTX_PARTITION_DEFAULT, NONE, 0x8fef63dbf65d4b14},
              {"/scans/armadillo_86k.obj.gz",
-              GTX_PARTITION_DEFAULT, NONE, 0x9e9ab41d202106f3},
+              GTX_PARTITION_DEFAULT, NONE, 0x112484574e5df517},
              {"/nasty/gen_2000_tiny_components.ply",
-              GTX_PARTITION_DEFAULT, NONE, 0x8cd8ea13b5efe51c},
+              GTX_PARTITION_DEFAULT, NONE, 0x07820fa2d7650461},
              {"/scans/bunny.ply",
-              GTX_PARTITION_VSA, NONE, 0x33d4c14dc8764c4d},
+              GTX_PARTITION_VSA, NONE, 0xedec1ed28e3639d7},
              {"/scans/bunny.ply",
-              GTX_PARTITION_PGP, NONE, 0x88881780594fa607},
+              GTX_PARTITION_PGP, NONE, 0xc4137fb8c0c1a376},
          })
         others += !has_content(std::string(models) + content.model, content);
     assert_int_equal(others, 0);
