@@ -122,7 +122,7 @@ static void what_is_covered_is_near(void **)
         ++covered;
         Task task(1, nullptr, nullptr);
         const SortedSurface surface(ground.positions, ground.triangles, task, 0);
-        FarSearch search = {surface, 1, 0, 0, 0};
+        FarSearch search = {surface, 0, 0};
         for (int i = 0; i <= 20; ++i)
             for (int j = 0; i + j <= 20; ++j) {
                 const Vec3d p = low[0] * (i / 20.0) + low[1] * (j / 20.0) +

@@ -10,18 +10,11 @@ namespace gtx::baking {
 /* Of each surface so many points come first, for most of the other triangles need no look once
  * something far is known. Half and double take a few hundredths more time. */
 constexpr size_t FIRST = 2048;
-/* How steeply a level's triangle may leave the source; LOOSE makes up for a little more. Of source
- * to level nothing is taken for granted: triangles there are small, and few are looked at twice. */
-constexpr double STEEPEST = 0.35;
 /* What is farther than so many times the root of the mean square is a spot, and nothing less is
  * told of what has spots. At half a cook takes a fourth more instructions and levels have a tenth
  * more triangles, at double their errors are 40 to 100 % larger (bunny; dragon of 810,080: a fifth,
  * 9 %, 3 to 60). */
 constexpr double OUTLYING = 6;
-
-/* Where a triangle has so many over it, a few points of it take less than all of those. Cycles of a
- * cook at half and at double, dragon: 2 and 1.5 % more. */
-constexpr size_t MANY = 32;
 
 /* Those of the boxes that touch another; all of space touches it where `near` is null. */
 class Near {
@@ -49,7 +42,6 @@ template <class Counts>
 static double greatest(const SortedSurface &from, const Counts &counts, const FarSearch &start,
                        const Vector<gtx::Box> *boxes, Task &task)
 {
-    const bool covers = start.to.size() < MANY * from.size();
     Vector<double> found(from.tree().parts(), 0);
     task.parallel(found.size(), [&](size_t part) {
         FarSearch search = start;
@@ -57,7 +49,7 @@ static double greatest(const SortedSurface &from, const Counts &counts, const Fa
         from.tree().visit(part, [&](const gtx::Box &box) {
             return !near.touches(box) || search.is_covered(box);
         }, [&](uint32_t t) {
-            if (counts(t) && !(covers && search.is_clear(from.corners(t))))
+            if (counts(t))
                 search.look(from.corners(t));
         });
         found[part] = search.found;
@@ -70,13 +62,12 @@ template <class Counts, class Add>
 static Vector<FarPoint> all_far(const SortedSurface &from, const Counts &counts,
                                 const FarSearch &start, const Add &add, Task &task)
 {
-    const bool covers = start.to.size() < MANY * from.size();
     Vector<Vector<FarPoint>> found(from.tree().parts());
     task.parallel(found.size(), [&](size_t part) {
         FarSearch search = start;
         from.tree().visit(part, [&](const gtx::Box &box) { return search.is_covered(box); },
                           [&](uint32_t t) {
-            if (!counts(t) || (covers && search.is_clear(from.corners(t))))
+            if (!counts(t))
                 return;
             const FarPlace place = search.find_far(from.corners(t));
             if (place.away > 0)
@@ -116,8 +107,8 @@ static Strayed sample(const SortedSurface &from, const Counts &counts, const Far
     return out;
 }
 
-Bounds::Bounds(const LodSource &source, double pitch, Task &task)
-    : pitch_(pitch), task_(task), patch_(source.patch),
+Bounds::Bounds(const LodSource &source, Task &task)
+    : task_(task), patch_(source.patch),
       source_(source.positions, source.triangles, task, 0),
       parts_(part_sizes(source.positions, source.triangles)),
       largest_part_(*std::max_element(parts_.begin(), parts_.end()))
@@ -171,7 +162,7 @@ Spots Bounds::spots(const LevelMesh &mesh, const Lattice &lattice, double speck,
     task_.limits.work_again(); /* large sources take several looks a triangle at each level */
     const LevelSurface level(mesh, lattice, task_);
     const auto shown = [&](uint32_t t) { return is_shown(t, speck); };
-    FarSearch there = {level.surface, 1, 0, 0, 0};
+    FarSearch there = {level.surface, 0, 0};
     Spots out;
     out.rms = sample(source_, shown, there, task_).rms;
     out.most = there.free = std::max(least, OUTLYING * out.rms);
@@ -186,7 +177,7 @@ Spots Bounds::spots_of(const LevelMesh &mesh, const Lattice &lattice, double lea
 {
     task_.limits.work_again();
     const LevelSurface level(mesh, lattice, task_);
-    const FarSearch back = {source_, STEEPEST, pitch_, least / LOOSE, 0};
+    const FarSearch back = {source_, least / LOOSE, 0};
     const auto any = [](uint32_t) { return true; };
     Spots out;
     out.of_level = true;
@@ -229,10 +220,10 @@ double Bounds::after(const LevelMesh &mesh, const Lattice &lattice, double speck
     const LevelSurface level(mesh, lattice, task_);
     const auto any = [](uint32_t) { return true; };
     const auto shown = [&](uint32_t t) { return is_shown(t, speck); };
-    FarSearch there = {level.surface, 1, 0, spots.most, 0};
+    FarSearch there = {level.surface, spots.most, 0};
     there.found = greatest(source_, shown, there, &boxes, task_);
     if (spots.of_level) {
-        const FarSearch back = {source_, STEEPEST, pitch_, spots.most / LOOSE, there.found};
+        const FarSearch back = {source_, spots.most / LOOSE, there.found};
         there.found = greatest(level.surface, any, back, &boxes, task_);
     }
     return there.most();
@@ -244,8 +235,8 @@ Strayed Bounds::of(const LevelMesh &mesh, const Lattice &lattice, double speck) 
     const LevelSurface level(mesh, lattice, task_);
     const auto any = [](uint32_t) { return true; };
     const auto shown = [&](uint32_t t) { return is_shown(t, speck); };
-    FarSearch there = {level.surface, 1, 0, double(lattice.step) / 2, 0};
-    FarSearch back = {source_, STEEPEST, pitch_, double(lattice.step) / 2, 0};
+    FarSearch there = {level.surface, double(lattice.step) / 2, 0};
+    FarSearch back = {source_, double(lattice.step) / 2, 0};
     Strayed out = sample(source_, shown, there, task_);
     back.found = std::max(out.most, sample(level.surface, any, back, task_).most);
     task_.limits.work_again();

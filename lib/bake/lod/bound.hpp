@@ -23,8 +23,8 @@ struct Spots {
 
 class Bounds {
 public:
-    /* `source` outlives it; texels are `pitch` apart. */
-    Bounds(const LodSource &source, double pitch, Task &task);
+    /* `source` outlives it. */
+    Bounds(const LodSource &source, Task &task);
 
     /* Of a level. Parts of the source that are no longer than `speck` need not be in it. */
     Strayed of(const LevelMesh &mesh, const Lattice &lattice, double speck) const;
@@ -42,7 +42,6 @@ private:
 
     bool is_shown(uint32_t triangle, double speck) const;
 
-    double pitch_;
     Task &task_;
     const Vector<uint32_t> &patch_;
     SortedSurface source_;

@@ -5,16 +5,18 @@
 
 namespace gtx::baking {
 
+/* Where a square as wide as the error asked for has so many triangles of the surface, looks at
+ * points take less than looks at all that lies over a triangle. Cycles of the dragon's cook: 8 %
+ * more at an eighth, 7 % without a limit. */
+constexpr double MANY = 8;
+
 static double radius_of(const Corners &c, const Vec3d &middle)
 {
     return std::max({length(c[0] - middle), length(c[1] - middle), length(c[2] - middle)});
 }
 
-bool FarSearch::is_clear(const Corners &c)
+bool FarSearch::is_covered_whole(const Corners &c)
 {
-    FarCorner a = {c[0]}, b = {c[1]}, d = {c[2]};
-    if (slope >= 1 && (is_covered(a, b, d) || was_covered(a, b, d)))
-        return true;
     const uint32_t last = near, over = covering(c, to, most(), near);
     if (over == NO_PATCH)
         return false;
@@ -27,20 +29,23 @@ bool FarSearch::is_clear(const Corners &c)
 void FarSearch::look(FarCorner &a, FarCorner &b, FarCorner &c)
 {
     cancel_point();
-    if (is_covered(a, b, c) || (slope >= 1 && was_covered(a, b, c)))
+    if (is_covered(a, b, c) || was_covered(a, b, c))
         return;
     const Vec3d middle = (a.at + b.at + c.at) / 3;
     const double radius = radius_of({a.at, b.at, c.at}, middle);
-    const double enough = most() - slope * radius;
-    if (enough > 0 || radius <= least) {
-        const double away = distance(middle, std::max(0.0, enough));
+    const double enough = most() - radius;
+    if (enough > 0) {
+        const double away = distance(middle, enough);
         if (away <= enough)
             return;
         if (away > found)
             farthest = {middle, near};
         found = std::max(found, away);
-        if (away + slope * radius <= most() || radius <= least || is_covered(a, b, c))
+        if (away + radius <= most() || is_covered(a, b, c))
             return;
+    } else if (most() * most() < MANY * to.mean_area() &&
+               is_covered_whole({a.at, b.at, c.at})) {
+        return;
     }
     FarCorner x = {(b.at + c.at) / 2}, y = {(c.at + a.at) / 2}, z = {(a.at + b.at) / 2};
     look(x, y, z);
@@ -69,6 +74,10 @@ SortedSurface::SortedSurface(Vector<Vec3d> positions,
             v = name[v];
         }
     }
+    double area = 0;
+    for (const auto &[a, b, c] : ordered)
+        area += length(cross(places[b] - places[a], places[c] - places[a])) / 2;
+    mean_area_ = area / double(std::max<size_t>(ordered.size(), 1));
     positions_ = std::move(places);
     triangles_ = std::move(ordered);
 }

@@ -51,6 +51,7 @@ public:
     size_t size() const { return triangles_.size(); }
     std::array<Vec3d, 3> corners(size_t t) const { return shapes_.corners(t); }
     const std::array<uint32_t, 3> &vertices(size_t t) const { return triangles_[t]; }
+    double mean_area() const { return mean_area_; }
     const NearestTree<Surface> &tree() const { return tree_; }
     /* Which of those that were given triangle t is. */
     uint32_t given(size_t t) const { return given_[t]; }
@@ -61,6 +62,7 @@ private:
     Surface shapes_;
     NearestTree<Surface> tree_;
     Vector<uint32_t> given_;
+    double mean_area_ = 0;
 };
 
 /* A point, and how far it was from the nearest triangle at the time. */
@@ -105,8 +107,6 @@ struct FarPlace {
 /* From triangles to a surface. */
 struct FarSearch {
     const SortedSurface &to;
-    double slope;                /* how fast distances may change along a triangle */
-    double least;                /* triangles of a smaller radius are not split */
     double free;                 /* a distance of no interest */
     double found;                /* the greatest so far */
     FarCorner farthest = {};     /* where that was */
@@ -166,7 +166,7 @@ struct FarSearch {
         const uint32_t last = near;
         const double known = near < to.size() ? nearest.distance2(p) : INFINITY;
         const double square =
-            near < to.size() && slope >= 1 /* of smaller triangles than these is it close by */
+            near < to.size()
                 ? to.tree().nearer_around(known, p, &near, enough * enough)
                 : to.tree().nearer(known, p, &near, [](uint32_t) { return true; }, nullptr,
                                    enough * enough);
@@ -182,8 +182,8 @@ struct FarSearch {
         const Corners c = to.corners(near);
         nearest = {c[0], c[1], c[2]};
     }
-    /* Whether a triangle is known to be nowhere farther than most(), without splitting it. */
-    bool is_clear(const Corners &c);
+    /* Whether the surface covers a triangle that near to it. */
+    bool is_covered_whole(const Corners &c);
     /* Where a triangle is farther than `free`: at a corner, if any of them is, else where it is
      * farthest of what was looked at. An `away` of 0: nowhere. */
     FarPlace find_far(const Corners &c)

@@ -146,7 +146,7 @@ static Strayed mend(const LodJob &job, const Bounds &bounds, LevelMesh &mesh, do
  * misses. */
 static void find_errors(const LodJob &job, Line &line)
 {
-    const Bounds bounds(job.source, job.pitch, job.task);
+    const Bounds bounds(job.source, job.task);
     float finer = 0;
     for (size_t k = 0; MadeLevel *level = line.at(k, job.task); ++k) {
         const Strayed strayed = level->far ? bounds.of(level->mesh, job.lattice, level->speck)
