@@ -66,7 +66,7 @@ static void models_have_their_content(void **)
              {"/gltf/KhronosSampleModels/Duck/glTF_Binary/Duck.glb",
               GTX_PARTITION_DEFAULT, 0, 0x2c5b88f7497d55e2},
              {"/gltf/dragon_draco_119k.glb",
-              GTX_PARTITION_DEFAULT, 0, 0x73e055319cdaf929},
+              GTX_PARTITION_DEFAULT, 0, 0x1eefa132673bc141},
              {"/gltf/2CylinderEngine.glb",
               GTX_PARTITION_CUTS, NONE, 0x8ffadf9297b5619e},
              {"/scans/horse.ply.gz",
