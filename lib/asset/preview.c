@@ -14,6 +14,10 @@
 /* Texels for each triangle, at most: fewer blur what lies between vertices. */
 enum { TEXELS = 4 };
 
+/* Looks at texels for each of them and each triangle. Five models take at most 2; of hostile files,
+ * in which all triangles may lie over all texels, most triangles are left out. */
+enum { MAX_LOOKS = 16 };
+
 static uint64_t texels_of(const gtx_info *info)
 {
     return (uint64_t)info->page_width * info->page_height * info->page_count;
@@ -54,6 +58,7 @@ typedef struct shaping {
     gtx_lod_mesh mesh;
     float *normals;               /* 3 per vertex, of any length */
     uint8_t *ring;
+    double looks;                 /* at texels that triangles may still take */
 } shaping;
 
 /* The vertices' own, or those of triangles, each as much as its area. */
@@ -121,7 +126,7 @@ static void put_normal(const shaping *s, const gtx_patch *patch, uint32_t x, uin
 }
 
 /* The texels whose middles are in the triangle. */
-static void put_triangle(const shaping *s, const gtx_patch *patch, const corner c[3])
+static void put_triangle(shaping *s, const gtx_patch *patch, const corner c[3])
 {
     double low[2], high[2], side[2][2];
     for (int a = 0; a < 2; ++a) {
@@ -132,6 +137,10 @@ static void put_triangle(const shaping *s, const gtx_patch *patch, const corner 
             side[e][a] = c[e + 1].at[a] - c[0].at[a];
     }
     const double area = side[0][0] * side[1][1] - side[0][1] * side[1][0];
+    const double looks = fmax(high[0] - low[0] + 1, 0) * fmax(high[1] - low[1] + 1, 0);
+    if (looks > s->looks)
+        return;
+    s->looks -= looks;
     for (double y = low[1]; y <= high[1]; ++y)
         for (double x = low[0]; x <= high[0]; ++x) {
             const double u = x - c[0].at[0], v = y - c[0].at[1];
@@ -159,7 +168,7 @@ static void put_corner(const shaping *s, const gtx_patch *patch, const corner *c
         put_normal(s, patch, at[0], at[1], c->normal);
 }
 
-static void shape_patch(const shaping *s, uint32_t index)
+static void shape_patch(shaping *s, uint32_t index)
 {
     const gtx_info *info = &s->asset->info;
     const gtx_patch *patch = &s->asset->patches[index];
@@ -194,6 +203,7 @@ static bool shape(gtx_asset *asset)
     const gtx_allocator *hooks = &asset->allocator;
     s.normals = gtx_alloc_array(hooks, s.mesh.vertex_count, 3 * sizeof *s.normals);
     s.ring = gtx_alloc_array(hooks, texels, 1);
+    s.looks = MAX_LOOKS * ((double)texels + (double)s.mesh.triangle_count);
     const bool whole = s.normals && s.ring;
     if (whole) {
         memset(asset->normal[0], GTX_FAR_NORMAL, 2 * texels);
