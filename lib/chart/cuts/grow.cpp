@@ -75,7 +75,7 @@ private:
     void sweep(const Lines &lines, int axis, const Rect &region, const Cuts &cuts, Visit visit);
     double best_half(const Lines &along, const Lines &across, int axis, const Half &half);
     Cut look_ahead(const CutNode &node, const Rect &box, const Lines lines[2],
-                   const Vector<Cut> &sorted);
+                   Vector<Cut> cuts);
     double texels(const Rect &box, const Cuts &cuts, double &patches) const;
     double area(const Slice &s, const Rect &region, const Cuts &cuts, double &patches) const;
     double relief(const Slice &s) const;
@@ -224,16 +224,15 @@ double Grower::best_half(const Lines &along, const Lines &across, int axis, cons
 /* The best of the first few cuts that are not beside each other, each with the best cut that may
  * follow on its two sides. */
 Cut Grower::look_ahead(const CutNode &node, const Rect &box, const Lines lines[2],
-                       const Vector<Cut> &sorted)
+                       Vector<Cut> cuts)
 {
     Vector<Cut> tried;
-    for (const Cut &cut : sorted) {
-        if (tried.size() == CANDIDATES)
-            break;
-        if (std::none_of(tried.begin(), tried.end(), [&](const Cut &t) {
-                return t.axis == cut.axis && std::abs(t.at - cut.at) < least_ / 2;
-            }))
-            tried.push_back(cut);
+    while (tried.size() < CANDIDATES && !cuts.empty()) {
+        const Cut next = *std::min_element(cuts.begin(), cuts.end());
+        tried.push_back(next);
+        cuts.erase(std::remove_if(cuts.begin(), cuts.end(), [&](const Cut &cut) {
+            return cut.axis == next.axis && std::abs(cut.at - next.at) < std::max(1, least_ / 2);
+        }), cuts.end());
     }
     Cut best;
     for (int axis = 0; axis < 2; ++axis) {
@@ -293,13 +292,13 @@ void Grower::grow_node(size_t n, Vector<CutNode> &nodes)
               });
         all = above_[0];
     }
-    std::sort(cuts.begin(), cuts.end());
     double patches;
     node.tight = all.box;
     node.cost = area(all, node.region, node.cuts, patches) * relief(all);
     const bool fits = patches <= 1;
     if (!cuts.empty() && !(fits && node.cost < smallest_)) {
-        Cut cut = node.cost < ahead_ ? look_ahead(node, box, lines, cuts) : cuts[0];
+        const Cut cut = node.cost < ahead_ ? look_ahead(node, box, lines, std::move(cuts))
+                                           : *std::min_element(cuts.begin(), cuts.end());
         for (int side = 0; side < 2; ++side) {
             Half half = half_of(node.region, node.cuts, cut.axis, cut.at, side);
             CutNode child;
