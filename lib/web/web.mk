@@ -94,7 +94,7 @@ $(web_app): $(web_files:%=$(web_package)/%) $(wildcard tests/web/app/*)
 
 # Among all tests, where there is what it takes.
 build-tests: $(if $(and $(shell command -v emcc),$(shell command -v npm)),web-app)
-web-app:
+web-app: | $(filter web,$(MAKECMDGOALS)) # one make at a time links the core
 	$(Q)if $(MAKE) --no-print-directory $(web)/zstd/.fetched; then \
 	  $(MAKE) --no-print-directory $(web_app); \
 	else echo "  sources of zstd cannot be had: the tests of web are skipped"; fi
