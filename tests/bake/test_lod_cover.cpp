@@ -133,6 +133,40 @@ static void what_is_covered_is_near(void **)
     assert_in_range(covered, 100, 390);
 }
 
+/* Two of a scan that meet at a corner, which rounding puts now on one side of edges, now on the
+ * other: clipping gave more corners than there was room for. */
+static void a_corner_in_common(void **)
+{
+    const Corners low_one = {{{0x1.644ddf3cp-6, 0x1.31678a768p-4, -0x1.0b2c4c7p-5},
+                              {0x1.6b74796ep-6, 0x1.31beb6608p-4, -0x1.0ebf9989p-5},
+                              {0x1.680cc24ap-6, 0x1.2fb3aee48p-4, -0x1.0ebf9989p-5}}};
+    const Vector<Vec3d> positions = {{0x1.5edb209cp-6, 0x1.2f0557108p-4, -0x1.094cdae9p-5},
+                                     {0x1.780dd24p-6, 0x1.33f553d18p-4, -0x1.114d62e4p-5},
+                                     low_one[1]};
+    Task task(1, nullptr, nullptr);
+    const SortedSurface surface(positions, {{0, 1, 2}}, task, 0);
+    assert_int_equal(covering(low_one, surface, 0x1.824e69e97f6a5p-14, NO_PATCH), NO_PATCH);
+}
+
+/* Of needles rounding says anything, such as that an edge crosses a side again and again. */
+static void needles_are_not_sure(void **)
+{
+    Random random(9);
+    for (int n = 0; n < 2000; ++n) {
+        Ground ground;
+        for (Vec3d &p : ground.positions)
+            p = p + Vec3d(random.next(), random.next(), random.next());
+        const Vec3d from(4 * random.next(), 4 * random.next(), random.next());
+        const Vec3d to(4 * random.next(), 4 * random.next(), random.next());
+        const double thin = std::pow(10, -8 - 10 * random.next());
+        const Vec3d beside(thin * random.next(), thin * random.next(), thin * random.next());
+        Task task(1, nullptr, nullptr);
+        const SortedSurface surface(ground.positions, ground.triangles, task, 0);
+        const Vec3d between = from + (to - from) * (0.2 + 0.6 * random.next()) + beside;
+        assert_int_equal(covering({{from, to, between}}, surface, 1, NO_PATCH), NO_PATCH);
+    }
+}
+
 int main()
 {
     const CMUnitTest tests[] = {
@@ -140,6 +174,8 @@ int main()
         cmocka_unit_test(holes_and_borders_are_seen),
         cmocka_unit_test(folds_cover_nothing),
         cmocka_unit_test(what_has_no_area_is_not_sure),
+        cmocka_unit_test(a_corner_in_common),
+        cmocka_unit_test(needles_are_not_sure),
         cmocka_unit_test(what_is_covered_is_near),
     };
     return cmocka_run_group_tests_name("LOD mesh cover", tests, nullptr, nullptr);

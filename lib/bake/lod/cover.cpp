@@ -9,6 +9,9 @@ namespace gtx::baking {
 
 namespace {
 
+/* Of an angle of a triangle: what thinner ones say of places over them is lost in rounding. */
+constexpr double MIN_SINE = 1e-6;
+
 /* A place over a triangle: the shares of its corners, of which none is below 0 inside, and the
  * height over its plane. */
 struct Over {
@@ -21,7 +24,8 @@ public:
     {
         const Vec3d b = t[1] - t[0], c = t[2] - t[0], normal = cross(b, c);
         const double square = dot(normal, normal);
-        is_flat_ = !(square > std::numeric_limits<double>::min());
+        is_flat_ = !(square > MIN_SINE * MIN_SINE * dot(b, b) * dot(c, c)) ||
+                   !(square > std::numeric_limits<double>::min());
         up_ = normal / std::sqrt(square);
         b_ = cross(c, normal) / square;
         c_ = cross(normal, b) / square;
@@ -56,14 +60,16 @@ private:
     bool is_flat_;
 };
 
-/* Of a triangle what lies over another, clipped side by side. */
+/* Of a triangle what lies over another, clipped side by side. A side adds a corner; one through a
+ * corner may for rounding be crossed again and again, and adds half as many as there are. */
 struct Piece {
-    Over corner[6];
+    static constexpr int MAX = 9;
+    Over corner[MAX];
     int count = 3;
 
     void clip(int k)
     {
-        Over left[6];
+        Over left[MAX];
         int kept = 0;
         for (int i = 0; i < count; ++i) {
             const Over &from = corner[i], &to = corner[i + 1 < count ? i + 1 : 0];
